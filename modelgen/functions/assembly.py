@@ -165,3 +165,16 @@ def _range(name: str, index: int, span: tuple[float, float], margin: float) -> I
 def vector(name: str, size: int, unit: str, text: str) -> Output:
     """A column vector."""
     return Output(name, size, 1, unit, text)
+
+
+def from_the_tips(names: Sequence[str], n: int) -> list[tuple[str, int]]:
+    """An order of computation for n x n outputs: joint after joint from the last on, as the bodies beyond
+    them are put together.
+
+    Of each joint its column down to the diagonal, then its row: few of its values are alive at a time.
+    """
+    found: list[tuple[str, int]] = []
+    for k in reversed(range(n)):
+        found += [(name, n * row + k) for name in names for row in reversed(range(k + 1))]
+        found += [(name, n * k + column) for name in names for column in reversed(range(k))]
+    return found

@@ -17,7 +17,9 @@ ORDER = ("q", "sin_q", "cos_q", "dq", "ddq", "dq_r", "ddq_r", "input", "q_m", "d
 # Names that the arm's code has besides its functions.
 TAKEN = frozenset(
     (
+        "bounded",
         "check_parameters",
+        "held",
         "lanes",
         "levels",
         "max",
@@ -38,6 +40,7 @@ TAKEN = frozenset(
         "sincos",
         "sine_cosine",
         "status_t",
+        "turns",
         "within",
         "within_joints",
         "zero",
@@ -107,15 +110,22 @@ def _combined(name: str, parts: Sequence[Function], with_what: str) -> Function:
     outputs: list[Output] = []
     values: dict[str, list[Expr]] = {}
     guards: list[tuple[Expr, int]] = []
+    orders: list[list[tuple[str, int]]] = []  # of every part its own
     for part in parts:
         of_part, demands = restored(graph, part.program)
         guards += demands
+        places: dict[str, tuple[str, int]] = {}
         own = [[of_part.get((o.name, i), graph.zero) for i in range(o.size)] for o in part.outputs]
         if part.stacked:
             first = part.outputs[0]
             rows = sum(o.rows for o in part.outputs)
             outputs.append(Output(part.name, rows, first.columns, first.unit, "one below the other"))
             values[part.name] = [x for block in own for x in block]
+            offset = 0
+            for output in part.outputs:
+                places[output.name] = part.name, offset
+                offset += output.size
+            orders.append([(places[o][0], places[o][1] + i) for o, i in of_part])
             continue
         for output, block in zip(part.outputs, own, strict=True):
             clear = taken.count(output.name) == 1 and output.name not in arguments
@@ -123,7 +133,11 @@ def _combined(name: str, parts: Sequence[Function], with_what: str) -> Function:
             called = output.name if clear else part.name if alone else f"{part.name}_{output.name}"
             outputs.append(replace(output, name=called))
             values[called] = block
-    program = lower(values, guards)
+            places[output.name] = called, 0
+        orders.append([(places[o][0], i) for o, i in of_part])
+    # The part with the most elements first: the others read what it leaves.
+    ordered = [place for order in sorted(orders, key=len, reverse=True) for place in order]
+    program = lower(values, guards, ordered)
     known = {k: place for place, k in enumerate(ORDER)}
     listed = sorted(arguments.values(), key=lambda a: known.get(a.name, len(known)))
     names = [part.name for part in parts]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from modelgen.base_parameters import Grouping
 from modelgen.functions.arguments import input_units, joint_units, per
-from modelgen.functions.assembly import Assembly, Result, vector
+from modelgen.functions.assembly import Assembly, Result, from_the_tips, vector
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.objects import STATUS_PIVOT, Function, Output
 from modelgen.functions.parametric import WITH, row_wise_dynamics
@@ -53,7 +53,7 @@ def derivative_functions(
             ["q", "dq", "input", *parameters],
             _results(accelerations, units, forward),
             guards=[(value, STATUS_PIVOT) for value in positive],
-            order=_by_columns("ddq", units, a.n),
+            order=_by_columns("ddq", list(units), a.n),
         ),
     ]
 
@@ -79,7 +79,10 @@ def _inverse_function(
         f"Inputs that give the accelerations ddq, and their derivatives; {KINKS}; {with_what}.",
         [*STATE, *parameters],
         _results(effort, units, found),
-        order=_by_columns("input", units, a.n),
+        order=[
+            *(("input", k) for k in range(a.n)),
+            *from_the_tips([f"input_by_{x}" for x in STATE], a.n),
+        ],
     )
 
 
@@ -93,9 +96,9 @@ def _results(value: Output, units: Mapping[str, str], found: Derived) -> list[Re
     return results
 
 
-def _by_columns(name: str, by: Iterable[str], n: int) -> list[tuple[str, int]]:
-    """Order of computation: the values, then what belongs to one joint's motion after the other."""
-    columns = [(f"{name}_by_{x}", n * row + j) for j in range(n) for x in by for row in range(n)]
+def _by_columns(name: str, by: Sequence[str], n: int) -> list[tuple[str, int]]:
+    """Order of computation: the values, then what belongs to one joint's motion, from the last joint on."""
+    columns = [(f"{name}_by_{x}", n * row + j) for j in reversed(range(n)) for x in by for row in range(n)]
     return [*((name, k) for k in range(n)), *columns]
 
 

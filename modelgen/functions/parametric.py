@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from modelgen.base_parameters import Grouping
 from modelgen.errors import InputError
 from modelgen.functions.arguments import effort_units, input_units, joint_units
-from modelgen.functions.assembly import Assembly, vector
+from modelgen.functions.assembly import Assembly, from_the_tips, vector
 from modelgen.functions.dynamics import Dynamics
 from modelgen.functions.nominal import factor_value
 from modelgen.functions.objects import STATUS_PIVOT, Function, Output
@@ -113,6 +113,7 @@ def parametric_functions(
             f"Mass matrix in joint space, drives included; {with_what}.",
             ["q", *parameters],
             [(Output("mass", n, n, "kg m^2, kg m, kg", "mass matrix"), [x for row in matrix for x in row])],
+            order=from_the_tips(["mass"], n),
         ),
         a.function(
             f"forward_dynamics{suffix}",

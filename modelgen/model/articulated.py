@@ -18,7 +18,7 @@ from typing import TypeAlias
 from modelgen.geometry import Frame, Frames
 from modelgen.graph import Expr
 from modelgen.graph.vectors import Matrix, Vector, add, cross, dot, scaled, times, transposed
-from modelgen.model.composite import VANISHED
+from modelgen.model.composite import VANISHED, least
 from modelgen.model.dynamics import Parameters
 from modelgen.model.motion import LinkMotion
 from modelgen.model.wrench import Wrench, carried_wrench, wrench
@@ -77,9 +77,9 @@ def accelerations(
     """Joint accelerations, and what must be positive for them to be those of an arm.
 
     motions: of the links while no joint accelerates; efforts: at the joints [N m or N]; drives: inertia of
-    each coordinate's drive at its joint [kg m^2 or kg]. Positive must be every pivot, and what it exceeds
-    VANISHED of the inertia by that all links beyond it can have about its axis at most, in their order of
-    magnitude.
+    each coordinate's drive at its joint [kg m^2 or kg]. Positive must be every pivot, and the least of what
+    they exceed VANISHED of the inertia by that all links beyond the joint can have about its axis at most, in
+    their order of magnitude.
     """
     zero = frames.graph.zero
     bodies = [_rigid(p, zero) for p in parameters]
@@ -87,6 +87,7 @@ def accelerations(
     sizes = [(p[5], p[9]) for p in parameters]
     joints: dict[int, _Joint] = {}
     positive: list[Expr] = []
+    left: list[Expr] = []
     for i in reversed(frames.order):
         frame, body, bias = frames[i], bodies[i], biases[i]
         if frame.coordinate is not None:
@@ -95,14 +96,14 @@ def accelerations(
             positive.append(joint.pivot)
             size = sizes[i][frame.prismatic] + drive
             if size.key != joint.pivot.key:
-                positive.append(joint.pivot - size * VANISHED)
+                left.append(joint.pivot - size * VANISHED)
             if frame.antecedent is not None:
                 body, bias = body.yielding(joint.along, joint.shares), joint.passed_on(bias, effort)
         if frame.antecedent is not None:
             bodies[frame.antecedent] = bodies[frame.antecedent] + body.carried(frame)
             biases[frame.antecedent] = _joined(biases[frame.antecedent], frame, bias)
             sizes[frame.antecedent] = _larger(sizes[frame.antecedent], sizes[i], frame)
-    return _outwards(frames, joints), positive
+    return _outwards(frames, joints), positive + least(left)
 
 
 @dataclass(frozen=True)

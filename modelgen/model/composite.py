@@ -121,19 +121,20 @@ def solve(matrix: Sequence[Sequence[Expr]], right: Sequence[Expr]) -> tuple[list
     """matrix^-1 right for a symmetric matrix, and what must be positive for it to be one of an arm.
 
     matrix = L' D L, unrolled from the last row to the first: that order keeps the zeros of branches
-    that do not touch (Featherstone 2008, section 6.5). Positive must be every pivot, and what it
-    exceeds VANISHED of its diagonal element by: less is what rounding leaves of nothing, in arms of
-    any size.
+    that do not touch (Featherstone 2008, section 6.5). Positive must be every pivot, and the least of
+    what they exceed VANISHED of their diagonal elements by: less is what rounding leaves of nothing,
+    in arms of any size.
     """
     n = len(matrix)
     lower = [[matrix[i][j] for j in range(i + 1)] for i in range(n)]
     x = list(right)
     positive: list[Expr] = []
+    left: list[Expr] = []
     for k in reversed(range(n)):
         pivot, diagonal = lower[k][k], matrix[k][k]
         positive.append(pivot)
         if pivot is not diagonal:
-            positive.append(pivot - diagonal * VANISHED)
+            left.append(pivot - diagonal * VANISHED)
         inverse = 1.0 / pivot
         for i in reversed(range(k)):
             if lower[k][i].is_zero:
@@ -148,4 +149,12 @@ def solve(matrix: Sequence[Sequence[Expr]], right: Sequence[Expr]) -> tuple[list
         for i in range(k):
             if not lower[k][i].is_zero:
                 x[k] = x[k] - lower[k][i] * x[i]
-    return x, positive
+    return x, positive + least(left)
+
+
+def least(values: Sequence[Expr]) -> list[Expr]:
+    """The least of the values, none of none: one test for all, and no branch for each."""
+    found = list(values[:1])
+    for x in values[1:]:
+        found = [x.graph.call("min", found[0], x)]
+    return found

@@ -62,7 +62,7 @@
 #define ARIANE4_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_GENERATION 0xE8C979F5UL
+#define ARIANE4_GENERATION 0xBFCC16D8UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_MODEL "5ed7fb32121b496f9a81ec9c47c88af48af61a30038001833754bd36783ec35a"
@@ -340,7 +340,7 @@ ariane4_status_t ariane4_mass_matrix(
  * @param[out]  out         [3]   [rad/s^2]  joint accelerations
  * @return ARIANE4_STATUS_OK or status bits
  *
- * Operations: 319 (197 mul, 122 add, 0 neg), 6 div, 3 sqrt, 6 trig, 3 other calls (sign, select and the like).
+ * Operations: 319 (197 mul, 122 add, 0 neg), 6 div, 3 sqrt, 6 trig, 4 other calls (sign, select and the like).
  */
 ariane4_status_t ariane4_forward_dynamics(
     const ariane4_real_t q[ARIANE4_N_JOINTS],
@@ -538,7 +538,7 @@ ariane4_status_t ariane4_mass_matrix_standard(
  * @param[out]  out         [3]   [rad/s^2]  joint accelerations
  * @return ARIANE4_STATUS_OK or status bits
  *
- * Operations: 471 (261 mul, 210 add, 0 neg), 6 div, 3 sqrt, 6 trig, 3 other calls (sign, select and the like).
+ * Operations: 471 (261 mul, 210 add, 0 neg), 6 div, 3 sqrt, 6 trig, 4 other calls (sign, select and the like).
  */
 ariane4_status_t ariane4_forward_dynamics_standard(
     const ariane4_real_t q[ARIANE4_N_JOINTS],
@@ -712,7 +712,7 @@ ariane4_status_t ariane4_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [9]   [(rad/s^2) per A]        d ddq / d input; 3 x 3, row-major
  * @return ARIANE4_STATUS_OK or status bits
  *
- * Operations: 1044 (643 mul, 394 add, 7 neg), 12 div, 3 sqrt, 6 trig, 3 other calls (sign, select and the like).
+ * Operations: 1044 (643 mul, 394 add, 7 neg), 12 div, 3 sqrt, 6 trig, 4 other calls (sign, select and the like).
  */
 ariane4_status_t ariane4_forward_dynamics_derivatives(
     const ariane4_real_t q[ARIANE4_N_JOINTS],
@@ -765,7 +765,7 @@ ariane4_status_t ariane4_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [9]   [(rad/s^2) per A]        d ddq / d input; 3 x 3, row-major
  * @return ARIANE4_STATUS_OK or status bits
  *
- * Operations: 1494 (843 mul, 647 add, 4 neg), 15 div, 3 sqrt, 6 trig, 6 other calls (sign, select and the like).
+ * Operations: 1493 (843 mul, 647 add, 3 neg), 15 div, 3 sqrt, 6 trig, 7 other calls (sign, select and the like).
  */
 ariane4_status_t ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t q[ARIANE4_N_JOINTS],

@@ -6,7 +6,7 @@
  * Arm ariane4, description 5ed7fb32121b496f.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 319 (197 mul, 122 add, 0 neg), 6 div, 3 sqrt, 6 trig, 3 other calls (sign, select and the like).
+ * Operations: 319 (197 mul, 122 add, 0 neg), 6 div, 3 sqrt, 6 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [3]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [3]   [rad/s]    joint velocities; norm at most 100000
@@ -51,7 +51,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -82,8 +82,8 @@ ariane4_status_t ariane4_forward_dynamics(
         return status;
     }
 
-    ariane4_real_t t30, t31;
-    ARIANE4_SINCOS(q[0], &t30, &t31);
+    ariane4_real_t t29, t30;
+    ARIANE4_SINCOS(q[0], &t29, &t30);
     ariane4_real_t t8, t9;
     ARIANE4_SINCOS(q[1], &t8, &t9);
     ariane4_real_t t0, t1;
@@ -94,7 +94,7 @@ ariane4_status_t ariane4_forward_dynamics(
     const ariane4_real_t t4 = ARIANE4_SQRT(ARIANE4_C(0.052812) * t3 + ARIANE4_C(0.242037));
     const ariane4_real_t t5 = ARIANE4_C(1.0) / t4;
     const ariane4_real_t t6 = t2 * (ARIANE4_C(7124.375926654358) * t5);
-    const ariane4_real_t t7 = ariane4_bounded(parameters[ZZ3R] + parameters[IA3] * (t6 * t6));
+    const ariane4_real_t t7 = parameters[ZZ3R] + parameters[IA3] * (t6 * t6);
     if (!(t7 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
@@ -113,150 +113,145 @@ ariane4_status_t ariane4_forward_dynamics(
     /* link j3: column of the mass matrix */
     const ariane4_real_t t19 = ARIANE4_C(-0.443) * t15 - parameters[ZZ3R];
     const ariane4_real_t t20 = t19 * t18;
-    const ariane4_real_t t21 = ariane4_bounded(t17 + t19 * t20);
+    const ariane4_real_t t21 = t17 + t19 * t20;
     if (!(t21 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t22 = t21 + ARIANE4_C(-1.0e-9) * t17;
-    if (!(t22 > ARIANE4_C(1.0e-12))) {
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t22 = t1 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t0);
+    const ariane4_real_t t23 = t1 * t22;
+    const ariane4_real_t t24 = parameters[XX2R] + t23;
+    /* link j3: column of the mass matrix */
+    const ariane4_real_t t25 = t1 * parameters[MY3R] + t0 * parameters[MX3R];
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t26 = (parameters[XY2] + (parameters[XY3R] + t0 * t22
+        + ARIANE4_C(-0.443) * t25)) * (ARIANE4_C(2.0) * t8);
+    const ariane4_real_t t27 = t9 * (t9 * (parameters[XX3R] - t23 + t16 - t24) + t26);
+    const ariane4_real_t t28 = ARIANE4_C(0.232) * (t9 * (parameters[MX2R] + t15) - t8 * (parameters[MY2]
+        + t25));
+    /* joint j1: drive */
+    const ariane4_real_t t31 = ARIANE4_C(-0.28217402066925895) * t29 + ARIANE4_C(0.9593632378089879) * t30;
+    const ariane4_real_t t32 = ARIANE4_C(0.28217402066925895) * t30 + ARIANE4_C(0.9593632378089879) * t29;
+    const ariane4_real_t t33 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t32 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t34 = ARIANE4_C(-1.0) / t33;
+    const ariane4_real_t t35 = t31 * (ARIANE4_C(3885.523436256565) * t34);
+    const ariane4_real_t t36 = parameters[ZZ1R] + (t24 + t27 + t28) + parameters[IA1] * (t35 * t35);
+    /* link j3: column of the mass matrix */
+    const ariane4_real_t t37 = t0 * parameters[YZ3R] - t1 * parameters[XZ3R];
+    const ariane4_real_t t38 = t0 * parameters[XZ3R] + t1 * parameters[YZ3R];
+    const ariane4_real_t t39 = t9 * t38 - t8 * t37;
+    const ariane4_real_t t40 = t39 * t18;
+    const ariane4_real_t t41 = ARIANE4_C(1.0) / t21;
+    const ariane4_real_t t42 = t8 * (t37 - parameters[XZ2R]) - t9 * (parameters[YZ2] + t38) + t39 * t20;
+    const ariane4_real_t t43 = t42 * t41;
+    const ariane4_real_t t44 = t36 + t39 * t40 - t42 * t43;
+    if (!(t44 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t23 = t1 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t0);
-    const ariane4_real_t t24 = t1 * t23;
-    const ariane4_real_t t25 = parameters[XX2R] + t24;
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t26 = t1 * parameters[MY3R] + t0 * parameters[MX3R];
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t27 = (parameters[XY2] + (parameters[XY3R] + t0 * t23
-        + ARIANE4_C(-0.443) * t26)) * (ARIANE4_C(2.0) * t8);
-    const ariane4_real_t t28 = t9 * (t9 * (parameters[XX3R] - t24 + t16 - t25) + t27);
-    const ariane4_real_t t29 = ARIANE4_C(0.232) * (t9 * (parameters[MX2R] + t15) - t8 * (parameters[MY2]
-        + t26));
-    /* joint j1: drive */
-    const ariane4_real_t t32 = ARIANE4_C(-0.28217402066925895) * t30 + ARIANE4_C(0.9593632378089879) * t31;
-    const ariane4_real_t t33 = ARIANE4_C(0.28217402066925895) * t31 + ARIANE4_C(0.9593632378089879) * t30;
-    const ariane4_real_t t34 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t33 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t35 = ARIANE4_C(-1.0) / t34;
-    const ariane4_real_t t36 = t32 * (ARIANE4_C(3885.523436256565) * t35);
-    const ariane4_real_t t37 = parameters[ZZ1R] + (t25 + t28 + t29) + parameters[IA1] * (t36 * t36);
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t38 = t0 * parameters[YZ3R] - t1 * parameters[XZ3R];
-    const ariane4_real_t t39 = t0 * parameters[XZ3R] + t1 * parameters[YZ3R];
-    const ariane4_real_t t40 = t9 * t39 - t8 * t38;
-    const ariane4_real_t t41 = t40 * t18;
-    const ariane4_real_t t42 = ARIANE4_C(1.0) / t21;
-    const ariane4_real_t t43 = t8 * (t38 - parameters[XZ2R]) - t9 * (parameters[YZ2] + t39) + t40 * t20;
-    const ariane4_real_t t44 = t43 * t42;
-    const ariane4_real_t t45 = ariane4_bounded(t37 + t40 * t41 - t43 * t44);
+    const ariane4_real_t t45 = ariane4_min(t21 + ARIANE4_C(-1.0e-9) * t17, t44 + ARIANE4_C(-1.0e-9) * t36);
     if (!(t45 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t46 = t45 + ARIANE4_C(-1.0e-9) * t37;
-    if (!(t46 > ARIANE4_C(1.0e-12))) {
-        ariane4_zero(out, 3);
-        return ARIANE4_STATUS_PIVOT;
-    }
-    const ariane4_real_t t47 = t8 * dq[0]; /* link j2: motion */
-    const ariane4_real_t t48 = t9 * dq[0];
-    const ariane4_real_t t49 = t0 * t47 - t1 * t48; /* link j3: motion */
-    const ariane4_real_t t50 = dq[1] + dq[2];
-    const ariane4_real_t t51 = t49 * t50;
-    const ariane4_real_t t52 = t1 * t47 + t0 * t48;
-    const ariane4_real_t t53 = t52 * t50;
-    const ariane4_real_t t54 = ARIANE4_C(2.0) * t53; /* link j4: motion */
-    const ariane4_real_t t55 = t52 * t49; /* link j3: motion */
+    const ariane4_real_t t46 = t8 * dq[0]; /* link j2: motion */
+    const ariane4_real_t t47 = t9 * dq[0];
+    const ariane4_real_t t48 = t0 * t46 - t1 * t47; /* link j3: motion */
+    const ariane4_real_t t49 = dq[1] + dq[2];
+    const ariane4_real_t t50 = t48 * t49;
+    const ariane4_real_t t51 = t1 * t46 + t0 * t47;
+    const ariane4_real_t t52 = t51 * t49;
+    const ariane4_real_t t53 = ARIANE4_C(2.0) * t52; /* link j4: motion */
+    const ariane4_real_t t54 = t51 * t48; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t56 = parameters[XX3R] * t51 + parameters[ZZ3R] * t51 + parameters[XY3R] * t54
-        + parameters[XZ3R] * t55;
-    const ariane4_real_t t57 = t49 * t49; /* link j3: motion */
-    const ariane4_real_t t58 = t50 * t50;
-    const ariane4_real_t t59 = dq[1] * t47; /* link j2: motion */
-    const ariane4_real_t t60 = ARIANE4_C(-0.886) * t59; /* link j3: motion */
+    const ariane4_real_t t55 = parameters[XX3R] * t50 + parameters[ZZ3R] * t50 + parameters[XY3R] * t53
+        + parameters[XZ3R] * t54;
+    const ariane4_real_t t56 = t48 * t48; /* link j3: motion */
+    const ariane4_real_t t57 = t49 * t49;
+    const ariane4_real_t t58 = dq[1] * t46; /* link j2: motion */
+    const ariane4_real_t t59 = ARIANE4_C(-0.886) * t58; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t61 = t56 + parameters[YZ3R] * (t58 - t57) + parameters[MY3R] * t60;
-    const ariane4_real_t t62 = ARIANE4_C(-2.0) * t51; /* link j4: motion */
+    const ariane4_real_t t60 = t55 + parameters[YZ3R] * (t57 - t56) + parameters[MY3R] * t59;
+    const ariane4_real_t t61 = ARIANE4_C(-2.0) * t50; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t63 = t53 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t62
-        + parameters[YZ3R] * t55;
-    const ariane4_real_t t64 = t52 * t52; /* link j3: motion */
+    const ariane4_real_t t62 = t52 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t61
+        + parameters[YZ3R] * t54;
+    const ariane4_real_t t63 = t51 * t51; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t65 = t63 - parameters[XZ3R] * (t64 - t58) + parameters[MX3R] * t60;
-    const ariane4_real_t t66 = dq[1] * t48; /* link j2: motion */
-    const ariane4_real_t t67 = ARIANE4_C(2.0) * t59;
-    const ariane4_real_t t68 = t47 * t48;
+    const ariane4_real_t t64 = t62 - parameters[XZ3R] * (t63 - t57) + parameters[MX3R] * t59;
+    const ariane4_real_t t65 = dq[1] * t47; /* link j2: motion */
+    const ariane4_real_t t66 = ARIANE4_C(2.0) * t58;
+    const ariane4_real_t t67 = t46 * t47;
     /* link j2: force and moment */
-    const ariane4_real_t t69 = parameters[XY2] * t67 - (parameters[XX2R] * t66 + parameters[ZZ2R] * t66)
-        - parameters[XZ2R] * t68;
-    const ariane4_real_t t70 = t48 * t48; /* link j2: motion */
-    const ariane4_real_t t71 = dq[1] * dq[1];
+    const ariane4_real_t t68 = parameters[XY2] * t66 - (parameters[XX2R] * t65 + parameters[ZZ2R] * t65)
+        - parameters[XZ2R] * t67;
+    const ariane4_real_t t69 = t47 * t47; /* link j2: motion */
+    const ariane4_real_t t70 = dq[1] * dq[1];
     /* link j3: what it passes on */
-    const ariane4_real_t t72 = t69 + parameters[YZ2] * (t71 - t70) + (t1 * t61 + t0 * t65);
+    const ariane4_real_t t71 = t68 + parameters[YZ2] * (t70 - t69) + (t1 * t60 + t0 * t64);
     /* link j3: force and moment */
-    const ariane4_real_t t73 = parameters[MX3R] * t54 + parameters[MY3R] * t62;
-    const ariane4_real_t t74 = ARIANE4_C(2.0) * t66; /* link j2: motion */
+    const ariane4_real_t t72 = parameters[MX3R] * t53 + parameters[MY3R] * t61;
+    const ariane4_real_t t73 = ARIANE4_C(2.0) * t65; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_real_t t75 = t59 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t74
-        + parameters[YZ2] * t68;
-    const ariane4_real_t t76 = t47 * t47; /* link j2: motion */
+    const ariane4_real_t t74 = t58 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t73
+        + parameters[YZ2] * t67;
+    const ariane4_real_t t75 = t46 * t46; /* link j2: motion */
     /* link j3: what it passes on */
-    const ariane4_real_t t77 = t75 + parameters[XZ2R] * (t76 - t71) + (t0 * t61 - t1 * t65
-        + ARIANE4_C(0.443) * t73);
+    const ariane4_real_t t76 = t74 + parameters[XZ2R] * (t75 - t70) + (t0 * t60 - t1 * t64
+        + ARIANE4_C(0.443) * t72);
     /* link j2: what it passes on */
-    const ariane4_real_t t78 = t8 * t72 + t9 * t77 + ARIANE4_C(0.116) * (parameters[MX2R] * t67
-        + parameters[MY2] * t74 + t73);
-    const ariane4_real_t t79 = t36 * dq[0];
-    const ariane4_real_t t80 = ariane4_sign(t79); /* joint j1: coulomb_friction */
+    const ariane4_real_t t77 = t8 * t71 + t9 * t76 + ARIANE4_C(0.116) * (parameters[MX2R] * t66
+        + parameters[MY2] * t73 + t72);
+    const ariane4_real_t t78 = t35 * dq[0];
+    const ariane4_real_t t79 = ariane4_sign(t78); /* joint j1: coulomb_friction */
     /* joint j1: drive */
-    const ariane4_real_t t81 = ARIANE4_C(-3885.523436256565) * t33
-        + ARIANE4_C(-72.7913960548305) * (t35 * t35) * (t32 * t32);
-    const ariane4_real_t t82 = dq[0] * dq[0];
-    const ariane4_real_t t83 = parameters[FV1] * t79 + parameters[FC1] * t80
-        + parameters[IA1] * (t35 * t81 * t82);
-    const ariane4_real_t t84 = t6 * dq[2];
-    const ariane4_real_t t85 = ariane4_sign(t84); /* joint j3: coulomb_friction */
+    const ariane4_real_t t80 = ARIANE4_C(-3885.523436256565) * t32
+        + ARIANE4_C(-72.7913960548305) * (t34 * t34) * (t31 * t31);
+    const ariane4_real_t t81 = dq[0] * dq[0];
+    const ariane4_real_t t82 = parameters[FV1] * t78 + parameters[FC1] * t79
+        + parameters[IA1] * (t34 * t80 * t81);
+    const ariane4_real_t t83 = t6 * dq[2];
+    const ariane4_real_t t84 = ariane4_sign(t83); /* joint j3: coulomb_friction */
     /* joint j3: drive */
-    const ariane4_real_t t86 = ARIANE4_C(7124.375926654358) * t3
+    const ariane4_real_t t85 = ARIANE4_C(7124.375926654358) * t3
         + ARIANE4_C(188.12627071923498) * (t5 * t5) * (t2 * t2);
-    const ariane4_real_t t87 = parameters[FV3] * t84 + parameters[FC3] * t85
-        + parameters[IA3] * (t5 * t86 * (dq[2] * dq[2]));
-    const ariane4_real_t t88 = ARIANE4_C(0.116) * t82; /* link j2: motion */
-    const ariane4_real_t t89 = t9 * t88 - ARIANE4_C(9.81) * t8;
-    const ariane4_real_t t90 = t89 + ARIANE4_C(0.443) * (t71 + t70); /* link j3: motion */
-    const ariane4_real_t t91 = t8 * t88 + ARIANE4_C(9.81) * t9; /* link j2: motion */
-    const ariane4_real_t t92 = t91 + ARIANE4_C(0.443) * t68; /* link j3: motion */
+    const ariane4_real_t t86 = parameters[FV3] * t83 + parameters[FC3] * t84
+        + parameters[IA3] * (t5 * t85 * (dq[2] * dq[2]));
+    const ariane4_real_t t87 = ARIANE4_C(0.116) * t81; /* link j2: motion */
+    const ariane4_real_t t88 = t9 * t87 - ARIANE4_C(9.81) * t8;
+    const ariane4_real_t t89 = t88 + ARIANE4_C(0.443) * (t70 + t69); /* link j3: motion */
+    const ariane4_real_t t90 = t8 * t87 + ARIANE4_C(9.81) * t9; /* link j2: motion */
+    const ariane4_real_t t91 = t90 + ARIANE4_C(0.443) * t67; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t93 = parameters[MX3R] * (t0 * t90 + t1 * t92) + parameters[MY3R] * (t1 * t90
-        - t0 * t92);
-    const ariane4_real_t t94 = parameters[XX3R] * t55 + parameters[XY3R] * (t64 - t57) + t93;
-    const ariane4_real_t t95 = input[2] * (ARIANE4_C(0.003) * t6) + (t6 * t87 + t94);
-    const ariane4_real_t t96 = input[0] * (ARIANE4_C(-0.004) * t36) + (t78 - t36 * t83) - t95 * t41;
+    const ariane4_real_t t92 = parameters[MX3R] * (t0 * t89 + t1 * t91) + parameters[MY3R] * (t1 * t89
+        - t0 * t91);
+    const ariane4_real_t t93 = parameters[XX3R] * t54 + parameters[XY3R] * (t63 - t56) + t92;
+    const ariane4_real_t t94 = input[2] * (ARIANE4_C(0.003) * t6) + (t6 * t86 + t93);
+    const ariane4_real_t t95 = input[0] * (ARIANE4_C(-0.004) * t35) + (t77 - t35 * t82) - t94 * t40;
     /* link j3: what it passes on */
-    const ariane4_real_t t97 = t0 * (parameters[MX3R] * (t57 + t58) + parameters[MY3R] * t55)
-        + t1 * (parameters[MX3R] * t55 + parameters[MY3R] * (t64 + t58));
+    const ariane4_real_t t96 = t0 * (parameters[MX3R] * (t56 + t57) + parameters[MY3R] * t54)
+        + t1 * (parameters[MX3R] * t54 + parameters[MY3R] * (t63 + t57));
     /* link j2: force and moment */
-    const ariane4_real_t t98 = parameters[XX2R] * t68 - parameters[XY2] * (t76 - t70)
-        - (parameters[MX2R] * t91 + parameters[MY2] * t89);
-    const ariane4_real_t t99 = t14 * dq[1];
-    const ariane4_real_t t100 = ariane4_sign(t99); /* joint j2: coulomb_friction */
+    const ariane4_real_t t97 = parameters[XX2R] * t67 - parameters[XY2] * (t75 - t69)
+        - (parameters[MX2R] * t90 + parameters[MY2] * t88);
+    const ariane4_real_t t98 = t14 * dq[1];
+    const ariane4_real_t t99 = ariane4_sign(t98); /* joint j2: coulomb_friction */
     /* joint j2: drive */
-    const ariane4_real_t t101 = ARIANE4_C(-2656.3065671641784) * t11
+    const ariane4_real_t t100 = ARIANE4_C(-2656.3065671641784) * t11
         - ARIANE4_C(104.12987373940295) * (t13 * t13) * (t10 * t10);
-    const ariane4_real_t t102 = parameters[FV2] * t99 + parameters[FC2] * t100
-        + parameters[IA2] * (t13 * t101 * t71);
-    const ariane4_real_t t103 = input[1] * (ARIANE4_C(0.012) * t14) - (t14 * t102 - (t98 - (t94
-        - ARIANE4_C(0.443) * t97)));
-    const ariane4_real_t t104 = t103 + t95 * t20;
-    const ariane4_real_t t105 = ARIANE4_C(1.0) / t45;
-    const ariane4_real_t t106 = ariane4_bounded((t96 + t104 * t44) * t105);
-    out[0] = t106;
-    const ariane4_real_t t107 = ariane4_bounded(t104 * t42 + t44 * t106);
-    out[1] = t107;
-    out[2] = t95 * t18 + t41 * t106 - t20 * t107;
-    if (!ariane4_all_bounded(out, 3)) {
+    const ariane4_real_t t101 = parameters[FV2] * t98 + parameters[FC2] * t99
+        + parameters[IA2] * (t13 * t100 * t70);
+    const ariane4_real_t t102 = input[1] * (ARIANE4_C(0.012) * t14) - (t14 * t101 - (t97 - (t93
+        - ARIANE4_C(0.443) * t96)));
+    const ariane4_real_t t103 = t102 + t94 * t20;
+    const ariane4_real_t t104 = ARIANE4_C(1.0) / t44;
+    const ariane4_real_t t105 = ariane4_held((t95 + t103 * t43) * t104);
+    out[0] = t105;
+    const ariane4_real_t t106 = ariane4_held(t103 * t41 + t43 * t105);
+    out[1] = t106;
+    out[2] = t94 * t18 + t40 * t105 - t20 * t106;
+    if (!ariane4_bounded(out, 3)) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }

@@ -7,7 +7,7 @@
  * Arm ariane4, description 5ed7fb32121b496f.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1044 (643 mul, 394 add, 7 neg), 12 div, 3 sqrt, 6 trig, 3 other calls (sign, select and the like).
+ * Operations: 1044 (643 mul, 394 add, 7 neg), 12 div, 3 sqrt, 6 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q             [3]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [3]   [rad/s]                  joint velocities; norm at most 100000
@@ -55,7 +55,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -92,8 +92,8 @@ ariane4_status_t ariane4_forward_dynamics_derivatives(
         return status;
     }
 
-    ariane4_real_t t32, t33;
-    ARIANE4_SINCOS(q[0], &t32, &t33);
+    ariane4_real_t t31, t32;
+    ARIANE4_SINCOS(q[0], &t31, &t32);
     ariane4_real_t t9, t10;
     ARIANE4_SINCOS(q[1], &t9, &t10);
     ariane4_real_t t0, t1;
@@ -105,7 +105,7 @@ ariane4_status_t ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t5 = ARIANE4_C(1.0) / t4;
     const ariane4_real_t t6 = ARIANE4_C(7124.375926654358) * t5;
     const ariane4_real_t t7 = t2 * t6;
-    const ariane4_real_t t8 = ariane4_bounded(parameters[ZZ3R] + parameters[IA3] * (t7 * t7));
+    const ariane4_real_t t8 = parameters[ZZ3R] + parameters[IA3] * (t7 * t7);
     if (!(t8 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -128,7 +128,7 @@ ariane4_status_t ariane4_forward_dynamics_derivatives(
     /* link j3: column of the mass matrix */
     const ariane4_real_t t21 = ARIANE4_C(-0.443) * t17 - parameters[ZZ3R];
     const ariane4_real_t t22 = t21 * t20;
-    const ariane4_real_t t23 = ariane4_bounded(t19 + t21 * t22);
+    const ariane4_real_t t23 = t19 + t21 * t22;
     if (!(t23 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -136,43 +136,43 @@ ariane4_status_t ariane4_forward_dynamics_derivatives(
         ariane4_zero(ddq_by_input, 9);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t24 = t23 + ARIANE4_C(-1.0e-9) * t19;
-    if (!(t24 > ARIANE4_C(1.0e-12))) {
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t24 = t1 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t0);
+    const ariane4_real_t t25 = t1 * t24;
+    const ariane4_real_t t26 = parameters[XX2R] + t25;
+    /* link j3: column of the mass matrix */
+    const ariane4_real_t t27 = t1 * parameters[MY3R] + t0 * parameters[MX3R];
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t28 = (parameters[XY2] + (parameters[XY3R] + t0 * t24
+        + ARIANE4_C(-0.443) * t27)) * (ARIANE4_C(2.0) * t9);
+    const ariane4_real_t t29 = t10 * (t10 * (parameters[XX3R] - t25 + t18 - t26) + t28);
+    const ariane4_real_t t30 = ARIANE4_C(0.232) * (t10 * (parameters[MX2R] + t17) - t9 * (parameters[MY2]
+        + t27));
+    /* joint j1: drive */
+    const ariane4_real_t t33 = ARIANE4_C(0.28217402066925895) * t31 + ARIANE4_C(-0.9593632378089879) * t32;
+    const ariane4_real_t t34 = ARIANE4_C(0.28217402066925895) * t32 + ARIANE4_C(0.9593632378089879) * t31;
+    const ariane4_real_t t35 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t34 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t36 = ARIANE4_C(1.0) / t35;
+    const ariane4_real_t t37 = ARIANE4_C(3885.523436256565) * t36;
+    const ariane4_real_t t38 = t33 * t37;
+    const ariane4_real_t t39 = parameters[ZZ1R] + (t26 + t29 + t30) + parameters[IA1] * (t38 * t38);
+    /* link j3: column of the mass matrix */
+    const ariane4_real_t t40 = t1 * parameters[XZ3R] - t0 * parameters[YZ3R];
+    const ariane4_real_t t41 = t0 * parameters[XZ3R] + t1 * parameters[YZ3R];
+    const ariane4_real_t t42 = t9 * t40 + t10 * t41;
+    const ariane4_real_t t43 = t42 * t20;
+    const ariane4_real_t t44 = ARIANE4_C(1.0) / t23;
+    const ariane4_real_t t45 = t9 * (parameters[XZ2R] + t40) + t10 * (parameters[YZ2] + t41) - t42 * t22;
+    const ariane4_real_t t46 = t45 * t44;
+    const ariane4_real_t t47 = t39 + t42 * t43 - t45 * t46;
+    if (!(t47 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
         ariane4_zero(ddq_by_dq, 9);
         ariane4_zero(ddq_by_input, 9);
         return ARIANE4_STATUS_PIVOT;
     }
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t25 = t1 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t0);
-    const ariane4_real_t t26 = t1 * t25;
-    const ariane4_real_t t27 = parameters[XX2R] + t26;
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t28 = t1 * parameters[MY3R] + t0 * parameters[MX3R];
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t29 = (parameters[XY2] + (parameters[XY3R] + t0 * t25
-        + ARIANE4_C(-0.443) * t28)) * (ARIANE4_C(2.0) * t9);
-    const ariane4_real_t t30 = t10 * (t10 * (parameters[XX3R] - t26 + t18 - t27) + t29);
-    const ariane4_real_t t31 = ARIANE4_C(0.232) * (t10 * (parameters[MX2R] + t17) - t9 * (parameters[MY2]
-        + t28));
-    /* joint j1: drive */
-    const ariane4_real_t t34 = ARIANE4_C(0.28217402066925895) * t32 + ARIANE4_C(-0.9593632378089879) * t33;
-    const ariane4_real_t t35 = ARIANE4_C(0.28217402066925895) * t33 + ARIANE4_C(0.9593632378089879) * t32;
-    const ariane4_real_t t36 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t35 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t37 = ARIANE4_C(1.0) / t36;
-    const ariane4_real_t t38 = ARIANE4_C(3885.523436256565) * t37;
-    const ariane4_real_t t39 = t34 * t38;
-    const ariane4_real_t t40 = parameters[ZZ1R] + (t27 + t30 + t31) + parameters[IA1] * (t39 * t39);
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t41 = t1 * parameters[XZ3R] - t0 * parameters[YZ3R];
-    const ariane4_real_t t42 = t0 * parameters[XZ3R] + t1 * parameters[YZ3R];
-    const ariane4_real_t t43 = t9 * t41 + t10 * t42;
-    const ariane4_real_t t44 = t43 * t20;
-    const ariane4_real_t t45 = ARIANE4_C(1.0) / t23;
-    const ariane4_real_t t46 = t9 * (parameters[XZ2R] + t41) + t10 * (parameters[YZ2] + t42) - t43 * t22;
-    const ariane4_real_t t47 = t46 * t45;
-    const ariane4_real_t t48 = ariane4_bounded(t40 + t43 * t44 - t46 * t47);
+    const ariane4_real_t t48 = ariane4_min(t23 + ARIANE4_C(-1.0e-9) * t19, t47 + ARIANE4_C(-1.0e-9) * t39);
     if (!(t48 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -180,382 +180,374 @@ ariane4_status_t ariane4_forward_dynamics_derivatives(
         ariane4_zero(ddq_by_input, 9);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t49 = t48 + ARIANE4_C(-1.0e-9) * t40;
-    if (!(t49 > ARIANE4_C(1.0e-12))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
-    const ariane4_real_t t50 = t9 * dq[0]; /* link j2: motion */
-    const ariane4_real_t t51 = t10 * dq[0];
-    const ariane4_real_t t52 = t0 * t50 - t1 * t51; /* link j3: motion */
-    const ariane4_real_t t53 = dq[1] + dq[2];
-    const ariane4_real_t t54 = t52 * t53;
-    const ariane4_real_t t55 = t1 * t50 + t0 * t51;
-    const ariane4_real_t t56 = t55 * t53;
-    const ariane4_real_t t57 = ARIANE4_C(2.0) * t56; /* link j4: motion */
-    const ariane4_real_t t58 = t55 * t52; /* link j3: motion */
+    const ariane4_real_t t49 = t9 * dq[0]; /* link j2: motion */
+    const ariane4_real_t t50 = t10 * dq[0];
+    const ariane4_real_t t51 = t0 * t49 - t1 * t50; /* link j3: motion */
+    const ariane4_real_t t52 = dq[1] + dq[2];
+    const ariane4_real_t t53 = t51 * t52;
+    const ariane4_real_t t54 = t1 * t49 + t0 * t50;
+    const ariane4_real_t t55 = t54 * t52;
+    const ariane4_real_t t56 = ARIANE4_C(2.0) * t55; /* link j4: motion */
+    const ariane4_real_t t57 = t54 * t51; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t59 = parameters[XX3R] * t54 + parameters[ZZ3R] * t54 + parameters[XY3R] * t57
-        + parameters[XZ3R] * t58;
-    const ariane4_real_t t60 = t52 * t52; /* link j3: motion */
-    const ariane4_real_t t61 = t53 * t53;
-    const ariane4_real_t t62 = dq[1] * t50; /* link j2: motion */
-    const ariane4_real_t t63 = ARIANE4_C(-0.886) * t62; /* link j3: motion */
+    const ariane4_real_t t58 = parameters[XX3R] * t53 + parameters[ZZ3R] * t53 + parameters[XY3R] * t56
+        + parameters[XZ3R] * t57;
+    const ariane4_real_t t59 = t51 * t51; /* link j3: motion */
+    const ariane4_real_t t60 = t52 * t52;
+    const ariane4_real_t t61 = dq[1] * t49; /* link j2: motion */
+    const ariane4_real_t t62 = ARIANE4_C(-0.886) * t61; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t64 = t59 + parameters[YZ3R] * (t61 - t60) + parameters[MY3R] * t63;
-    const ariane4_real_t t65 = parameters[ZZ3R] - parameters[XX3R];
-    const ariane4_real_t t66 = ARIANE4_C(-2.0) * t54; /* link j4: motion */
-    const ariane4_real_t t67 = t55 * t55; /* link j3: motion */
+    const ariane4_real_t t63 = t58 + parameters[YZ3R] * (t60 - t59) + parameters[MY3R] * t62;
+    const ariane4_real_t t64 = parameters[ZZ3R] - parameters[XX3R];
+    const ariane4_real_t t65 = ARIANE4_C(-2.0) * t53; /* link j4: motion */
+    const ariane4_real_t t66 = t54 * t54; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t68 = parameters[XY3R] * t66 - t56 * t65 + parameters[YZ3R] * t58
-        - parameters[XZ3R] * (t67 - t61);
-    const ariane4_real_t t69 = t68 + parameters[MX3R] * t63;
-    const ariane4_real_t t70 = dq[1] * t51; /* link j2: motion */
-    const ariane4_real_t t71 = parameters[ZZ2R] * t70; /* link j2: force and moment */
-    const ariane4_real_t t72 = ARIANE4_C(2.0) * t62; /* link j2: motion */
-    const ariane4_real_t t73 = t50 * t51;
+    const ariane4_real_t t67 = parameters[XY3R] * t65 - t55 * t64 + parameters[YZ3R] * t57
+        - parameters[XZ3R] * (t66 - t60);
+    const ariane4_real_t t68 = t67 + parameters[MX3R] * t62;
+    const ariane4_real_t t69 = dq[1] * t50; /* link j2: motion */
+    const ariane4_real_t t70 = parameters[ZZ2R] * t69; /* link j2: force and moment */
+    const ariane4_real_t t71 = ARIANE4_C(2.0) * t61; /* link j2: motion */
+    const ariane4_real_t t72 = t49 * t50;
     /* link j2: force and moment */
-    const ariane4_real_t t74 = parameters[XY2] * t72 - (parameters[XX2R] * t70 + t71)
-        - parameters[XZ2R] * t73;
-    const ariane4_real_t t75 = t51 * t51; /* link j2: motion */
-    const ariane4_real_t t76 = dq[1] * dq[1];
-    const ariane4_real_t t77 = parameters[YZ2] * (t76 - t75); /* link j2: force and moment */
-    const ariane4_real_t t78 = t9 * (t74 + t77 + (t1 * t64 + t0 * t69)); /* link j2: what it passes on */
+    const ariane4_real_t t73 = parameters[XY2] * t71 - (parameters[XX2R] * t69 + t70)
+        - parameters[XZ2R] * t72;
+    const ariane4_real_t t74 = t50 * t50; /* link j2: motion */
+    const ariane4_real_t t75 = dq[1] * dq[1];
+    const ariane4_real_t t76 = parameters[YZ2] * (t75 - t74); /* link j2: force and moment */
+    const ariane4_real_t t77 = t9 * (t73 + t76 + (t1 * t63 + t0 * t68)); /* link j2: what it passes on */
     /* link j3: force and moment */
-    const ariane4_real_t t79 = parameters[MX3R] * t57 + parameters[MY3R] * t66;
-    const ariane4_real_t t80 = parameters[XX2R] - parameters[ZZ2R]; /* link j2: force and moment */
-    const ariane4_real_t t81 = t62 * t80;
-    const ariane4_real_t t82 = ARIANE4_C(2.0) * t70; /* link j2: motion */
-    const ariane4_real_t t83 = t50 * t50;
-    const ariane4_real_t t84 = parameters[XZ2R] * (t83 - t76); /* link j2: force and moment */
+    const ariane4_real_t t78 = parameters[MX3R] * t56 + parameters[MY3R] * t65;
+    const ariane4_real_t t79 = parameters[XX2R] - parameters[ZZ2R]; /* link j2: force and moment */
+    const ariane4_real_t t80 = t61 * t79;
+    const ariane4_real_t t81 = ARIANE4_C(2.0) * t69; /* link j2: motion */
+    const ariane4_real_t t82 = t49 * t49;
+    const ariane4_real_t t83 = parameters[XZ2R] * (t82 - t75); /* link j2: force and moment */
     /* link j3: what it passes on */
-    const ariane4_real_t t85 = parameters[YZ2] * t73 - (t81 + parameters[XY2] * t82) + t84 + (t0 * t64
-        - t1 * t69 + ARIANE4_C(0.443) * t79);
+    const ariane4_real_t t84 = parameters[YZ2] * t72 - (t80 + parameters[XY2] * t81) + t83 + (t0 * t63
+        - t1 * t68 + ARIANE4_C(0.443) * t78);
     /* link j2: what it passes on */
-    const ariane4_real_t t86 = t78 + t10 * t85 + ARIANE4_C(0.116) * (parameters[MX2R] * t72
-        + parameters[MY2] * t82 + t79);
-    const ariane4_real_t t87 = t39 * dq[0];
-    const ariane4_real_t t88 = ariane4_sign(t87); /* joint j1: coulomb_friction */
-    const ariane4_real_t t89 = ARIANE4_C(72.7913960548305) * (t37 * t37); /* joint j1: drive */
-    const ariane4_real_t t90 = t34 * t34;
-    const ariane4_real_t t91 = ARIANE4_C(3885.523436256565) * t35 + t89 * t90;
-    const ariane4_real_t t92 = t37 * t91;
-    const ariane4_real_t t93 = dq[0] * dq[0];
-    const ariane4_real_t t94 = parameters[FV1] * t87 + parameters[FC1] * t88 + parameters[IA1] * (t92 * t93);
-    const ariane4_real_t t95 = ARIANE4_C(0.004) * t39;
-    const ariane4_real_t t96 = t7 * dq[2];
-    const ariane4_real_t t97 = ariane4_sign(t96); /* joint j3: coulomb_friction */
-    const ariane4_real_t t98 = ARIANE4_C(188.12627071923498) * (t5 * t5); /* joint j3: drive */
-    const ariane4_real_t t99 = t2 * t2;
-    const ariane4_real_t t100 = ARIANE4_C(7124.375926654358) * t3 + t98 * t99;
-    const ariane4_real_t t101 = t5 * t100;
-    const ariane4_real_t t102 = dq[2] * dq[2];
-    const ariane4_real_t t103 = parameters[FV3] * t96 + parameters[FC3] * t97
-        + parameters[IA3] * (t101 * t102);
-    const ariane4_real_t t104 = ARIANE4_C(0.116) * t93; /* link j2: motion */
-    const ariane4_real_t t105 = t10 * t104 + ARIANE4_C(-9.81) * t9;
-    const ariane4_real_t t106 = t105 + ARIANE4_C(0.443) * (t76 + t75); /* link j3: motion */
-    const ariane4_real_t t107 = t0 * t106;
-    const ariane4_real_t t108 = ARIANE4_C(-9.81) * t10 - t9 * t104; /* link j2: motion */
-    const ariane4_real_t t109 = ARIANE4_C(0.443) * t73 - t108; /* link j3: motion */
-    const ariane4_real_t t110 = t1 * t106;
+    const ariane4_real_t t85 = t77 + t10 * t84 + ARIANE4_C(0.116) * (parameters[MX2R] * t71
+        + parameters[MY2] * t81 + t78);
+    const ariane4_real_t t86 = t38 * dq[0];
+    const ariane4_real_t t87 = ariane4_sign(t86); /* joint j1: coulomb_friction */
+    const ariane4_real_t t88 = ARIANE4_C(72.7913960548305) * (t36 * t36); /* joint j1: drive */
+    const ariane4_real_t t89 = t33 * t33;
+    const ariane4_real_t t90 = ARIANE4_C(3885.523436256565) * t34 + t88 * t89;
+    const ariane4_real_t t91 = t36 * t90;
+    const ariane4_real_t t92 = dq[0] * dq[0];
+    const ariane4_real_t t93 = parameters[FV1] * t86 + parameters[FC1] * t87 + parameters[IA1] * (t91 * t92);
+    const ariane4_real_t t94 = ARIANE4_C(0.004) * t38;
+    const ariane4_real_t t95 = t7 * dq[2];
+    const ariane4_real_t t96 = ariane4_sign(t95); /* joint j3: coulomb_friction */
+    const ariane4_real_t t97 = ARIANE4_C(188.12627071923498) * (t5 * t5); /* joint j3: drive */
+    const ariane4_real_t t98 = t2 * t2;
+    const ariane4_real_t t99 = ARIANE4_C(7124.375926654358) * t3 + t97 * t98;
+    const ariane4_real_t t100 = t5 * t99;
+    const ariane4_real_t t101 = dq[2] * dq[2];
+    const ariane4_real_t t102 = parameters[FV3] * t95 + parameters[FC3] * t96
+        + parameters[IA3] * (t100 * t101);
+    const ariane4_real_t t103 = ARIANE4_C(0.116) * t92; /* link j2: motion */
+    const ariane4_real_t t104 = t10 * t103 + ARIANE4_C(-9.81) * t9;
+    const ariane4_real_t t105 = t104 + ARIANE4_C(0.443) * (t75 + t74); /* link j3: motion */
+    const ariane4_real_t t106 = t0 * t105;
+    const ariane4_real_t t107 = ARIANE4_C(-9.81) * t10 - t9 * t103; /* link j2: motion */
+    const ariane4_real_t t108 = ARIANE4_C(0.443) * t72 - t107; /* link j3: motion */
+    const ariane4_real_t t109 = t1 * t105;
     /* link j3: force and moment */
-    const ariane4_real_t t111 = parameters[MX3R] * (t107 + t1 * t109) + parameters[MY3R] * (t110 - t0 * t109);
-    const ariane4_real_t t112 = parameters[XX3R] * t58 + parameters[XY3R] * (t67 - t60) + t111;
-    const ariane4_real_t t113 = ARIANE4_C(0.003) * t7;
-    const ariane4_real_t t114 = input[2] * t113 + (t7 * t103 + t112);
-    const ariane4_real_t t115 = t86 - t39 * t94 - input[0] * t95 - t114 * t44;
+    const ariane4_real_t t110 = parameters[MX3R] * (t106 + t1 * t108) + parameters[MY3R] * (t109 - t0 * t108);
+    const ariane4_real_t t111 = parameters[XX3R] * t57 + parameters[XY3R] * (t66 - t59) + t110;
+    const ariane4_real_t t112 = ARIANE4_C(0.003) * t7;
+    const ariane4_real_t t113 = input[2] * t112 + (t7 * t102 + t111);
+    const ariane4_real_t t114 = t85 - t38 * t93 - input[0] * t94 - t113 * t43;
     /* link j3: what it passes on */
-    const ariane4_real_t t116 = t0 * (parameters[MX3R] * (t60 + t61) + parameters[MY3R] * t58)
-        + t1 * (parameters[MX3R] * t58 + parameters[MY3R] * (t67 + t61));
-    const ariane4_real_t t117 = t83 - t75; /* link j2: force and moment */
-    const ariane4_real_t t118 = parameters[XY2] * t117;
-    const ariane4_real_t t119 = parameters[XX2R] * t73;
-    const ariane4_real_t t120 = parameters[MY2] * t105 - parameters[MX2R] * t108;
-    const ariane4_real_t t121 = t16 * dq[1];
-    const ariane4_real_t t122 = ariane4_sign(t121); /* joint j2: coulomb_friction */
-    const ariane4_real_t t123 = ARIANE4_C(-104.12987373940295) * (t14 * t14); /* joint j2: drive */
-    const ariane4_real_t t124 = t11 * t11;
-    const ariane4_real_t t125 = ARIANE4_C(-2656.3065671641784) * t12 + t123 * t124;
-    const ariane4_real_t t126 = t14 * t125;
-    const ariane4_real_t t127 = parameters[FV2] * t121 + parameters[FC2] * t122
-        - parameters[IA2] * (t126 * t76);
-    const ariane4_real_t t128 = t16 * t127 - (t119 - t118 - t120 - (t112 - ARIANE4_C(0.443) * t116));
-    const ariane4_real_t t129 = ARIANE4_C(-0.012) * t16;
-    const ariane4_real_t t130 = t114 * t22 - (input[1] * t129 + t128);
-    const ariane4_real_t t131 = ARIANE4_C(1.0) / t48;
-    const ariane4_real_t t132 = ariane4_bounded((t115 - t130 * t47) * t131);
-    ddq[0] = t132;
-    const ariane4_real_t t133 = ariane4_bounded(t130 * t45 - t47 * t132);
-    ddq[1] = t133;
-    const ariane4_real_t t134 = ariane4_bounded(t114 * t20 + t44 * t132 - t22 * t133);
-    ddq[2] = t134;
-    const ariane4_real_t t135 = t9 * t1 + t10 * t0; /* link j3: motion */
-    const ariane4_real_t t136 = t132 * t135;
-    const ariane4_real_t t137 = t10 * t1 - t9 * t0;
-    const ariane4_real_t t138 = dq[0] * t137;
-    const ariane4_real_t t139 = t53 * t138;
-    const ariane4_real_t t140 = t139 + t136;
-    const ariane4_real_t t141 = t132 * t137;
-    const ariane4_real_t t142 = dq[0] * t135;
-    const ariane4_real_t t143 = t53 * t142;
-    const ariane4_real_t t144 = t143 - t141;
-    const ariane4_real_t t145 = t143 + t144;
-    const ariane4_real_t t146 = parameters[XY3R] * t145;
-    const ariane4_real_t t147 = t133 + t134;
-    const ariane4_real_t t148 = t142 * t138;
-    const ariane4_real_t t149 = t148 + t147;
-    const ariane4_real_t t150 = t146 - (parameters[ZZ3R] * t139 + parameters[XX3R] * t140)
-        - parameters[XZ3R] * t149;
-    const ariane4_real_t t151 = t138 * t138;
-    const ariane4_real_t t152 = ARIANE4_C(-0.116) * t132;
-    const ariane4_real_t t153 = t10 * t132;
-    const ariane4_real_t t154 = t62 - t153;
-    const ariane4_real_t t155 = t62 + t154;
-    const ariane4_real_t t156 = t152 + ARIANE4_C(0.443) * t155;
-    const ariane4_real_t t157 = parameters[MY3R] * t156 - (parameters[YZ3R] * (t61 - t151) + t150);
-    const ariane4_real_t t158 = t1 * t157;
-    const ariane4_real_t t159 = t148 - t147;
-    const ariane4_real_t t160 = t139 + t140;
-    const ariane4_real_t t161 = parameters[XY3R] * t160;
-    const ariane4_real_t t162 = t142 * t142;
-    const ariane4_real_t t163 = parameters[XZ3R] * (t162 - t61) + (t65 * t143 - t161
-        + parameters[YZ3R] * t159);
-    const ariane4_real_t t164 = parameters[MX3R] * t156 + t163;
-    const ariane4_real_t t165 = t0 * t164;
-    const ariane4_real_t t166 = t9 * t132;
-    const ariane4_real_t t167 = t70 + t166;
-    const ariane4_real_t t168 = parameters[XY2] * t155;
-    const ariane4_real_t t169 = t73 + t133;
-    const ariane4_real_t t170 = t77 - (t71 + parameters[XX2R] * t167 - t168 + parameters[XZ2R] * t169);
-    const ariane4_real_t t171 = t170 - parameters[MY2] * t152 - (t158 + t165);
-    const ariane4_real_t t172 = t0 * t157;
-    const ariane4_real_t t173 = t1 * t164;
-    const ariane4_real_t t174 = parameters[MX3R] * t145 + parameters[MY3R] * t160;
-    const ariane4_real_t t175 = t70 + t167;
-    const ariane4_real_t t176 = parameters[XY2] * t175;
-    const ariane4_real_t t177 = t84 + (parameters[YZ2] * (t73 - t133) - (t81 + t176))
-        + parameters[MX2R] * t152;
-    const ariane4_real_t t178 = t177 + (t173 - t172 + ARIANE4_C(0.443) * t174);
-    const ariane4_real_t t179 = t9 * t171 + t10 * t178 + ARIANE4_C(0.116) * (parameters[MX2R] * t155
-        + parameters[MY2] * t175 + t174);
-    const ariane4_real_t t180 = ARIANE4_C(0.037468) * t34 * (ARIANE4_C(0.5) * t37);
-    const ariane4_real_t t181 = ARIANE4_C(-0.06434139546481742) * t36 / t34; /* joint j1: drive */
-    const ariane4_real_t t182 = ARIANE4_C(1.0) / t34;
-    const ariane4_real_t t183 = t182 * (ARIANE4_C(0.06434139546481742) * t180 - t35 * t181) * (t179
-        - parameters[ZZ1R] * t132);
-    const ariane4_real_t t184 = t37 * (t37 * t180);
-    const ariane4_real_t t185 = t35 * t38 + t34 * (ARIANE4_C(3885.523436256565) * t184);
-    const ariane4_real_t t186 = t90 * (ARIANE4_C(145.582792109661) * (t37 * t184))
-        + t89 * (ARIANE4_C(2.0) * (t34 * t35));
-    const ariane4_real_t t187 = t93 * (t91 * t184 + t37 * (ARIANE4_C(-3885.523436256565) * t34 + t186));
-    const ariane4_real_t t188 = parameters[FV1] * (dq[0] * t185) + parameters[IA1] * (t187 + t132 * t185);
-    const ariane4_real_t t189 = ARIANE4_C(250.0) * t188 + t183;
-    const ariane4_real_t t190 = t95 * t131;
-    ddq_by_q[0] = -(t190 * t189);
-    const ariane4_real_t t191 = t47 * t131;
-    const ariane4_real_t t192 = ariane4_bounded(t95 * t191);
-    ddq_by_q[3] = t192 * t189;
-    const ariane4_real_t t193 = t131 * (t44 + t22 * t47);
-    const ariane4_real_t t194 = t95 * t193;
-    ddq_by_q[6] = -(t194 * t189);
-    const ariane4_real_t t195 = t135 * t138 + t137 * t142;
-    const ariane4_real_t t196 = t53 * t137;
-    const ariane4_real_t t197 = t53 * t135;
-    const ariane4_real_t t198 = ARIANE4_C(-2.0) * t197;
-    const ariane4_real_t t199 = parameters[ZZ3R] * t196 + parameters[XX3R] * t196 + parameters[XY3R] * t198
-        + parameters[XZ3R] * t195;
-    const ariane4_real_t t200 = ARIANE4_C(-2.0) * (t137 * t138);
-    const ariane4_real_t t201 = t9 * dq[1];
-    const ariane4_real_t t202 = ARIANE4_C(0.886) * t201;
-    const ariane4_real_t t203 = parameters[MY3R] * t202 + (t199 - parameters[YZ3R] * t200);
-    const ariane4_real_t t204 = ARIANE4_C(-2.0) * t196;
-    const ariane4_real_t t205 = ARIANE4_C(2.0) * (t135 * t142);
-    const ariane4_real_t t206 = parameters[XZ3R] * t205 + (t65 * t197 + parameters[XY3R] * t204
-        + parameters[YZ3R] * t195);
-    const ariane4_real_t t207 = parameters[MX3R] * t202 + t206;
-    const ariane4_real_t t208 = t10 * dq[1];
-    const ariane4_real_t t209 = ARIANE4_C(-2.0) * t201;
-    const ariane4_real_t t210 = t9 * t51 + t10 * t50;
-    const ariane4_real_t t211 = parameters[ZZ2R] * t208 + parameters[XX2R] * t208 + parameters[XY2] * t209
-        + parameters[XZ2R] * t210;
-    const ariane4_real_t t212 = t10 * t51;
-    const ariane4_real_t t213 = ARIANE4_C(-2.0) * t212;
-    const ariane4_real_t t214 = t211 - parameters[YZ2] * t213 + (t1 * t203 + t0 * t207);
-    const ariane4_real_t t215 = parameters[MX3R] * t198 + parameters[MY3R] * t204;
-    const ariane4_real_t t216 = ARIANE4_C(2.0) * t208;
-    const ariane4_real_t t217 = ARIANE4_C(2.0) * (t9 * t50);
-    const ariane4_real_t t218 = t80 * t201 + parameters[XY2] * t216 - parameters[YZ2] * t210
-        - parameters[XZ2R] * t217;
-    const ariane4_real_t t219 = t218 + (t0 * t203 - t1 * t207 + ARIANE4_C(0.443) * t215);
-    const ariane4_real_t t220 = t9 * t214 + t10 * t219 + ARIANE4_C(0.116) * (parameters[MX2R] * t209
-        - parameters[MY2] * t216 + t215);
-    const ariane4_real_t t221 = ARIANE4_C(250.0) * (t39 * parameters[FV1]
-        + parameters[IA1] * (t92 * (ARIANE4_C(2.0) * dq[0])));
-    const ariane4_real_t t222 = t221 - t181 * t220;
-    const ariane4_real_t t223 = ARIANE4_C(0.232) * dq[0];
-    const ariane4_real_t t224 = t10 * t223;
-    const ariane4_real_t t225 = t224 + ARIANE4_C(0.886) * t212;
-    const ariane4_real_t t226 = t9 * t223;
-    const ariane4_real_t t227 = t226 + ARIANE4_C(0.443) * t210;
-    const ariane4_real_t t228 = parameters[MX3R] * (t0 * t225 + t1 * t227) + parameters[MY3R] * (t1 * t225
-        - t0 * t227);
-    const ariane4_real_t t229 = t228 + (parameters[XY3R] * (t205 + t200) - parameters[XX3R] * t195);
-    const ariane4_real_t t230 = t0 * (parameters[MX3R] * t200 + parameters[MY3R] * t195)
-        + t1 * (parameters[MX3R] * t195 - parameters[MY3R] * t205);
-    const ariane4_real_t t231 = parameters[MX2R] * t226 + parameters[MY2] * t224 + (parameters[XY2] * (t217
-        + t213) - parameters[XX2R] * t210);
-    const ariane4_real_t t232 = ARIANE4_C(0.03137188092799786) * t13 / t11; /* joint j2: drive */
-    const ariane4_real_t t233 = t232 * (t231 + (t229 + ARIANE4_C(0.443) * t230));
-    const ariane4_real_t t234 = ariane4_bounded(t129 * t191);
-    const ariane4_real_t t235 = t113 * t193;
-    const ariane4_real_t t236 = ARIANE4_C(-0.046787723832235825) * t4 / t2; /* joint j3: drive */
-    const ariane4_real_t t237 = t236 * t229;
-    ddq_by_dq[0] = t237 * t235 - (t222 * t190 + t233 * t234);
-    const ariane4_real_t t238 = t129 * (t45 + t47 * t191);
-    const ariane4_real_t t239 = t22 * t45 + t47 * t193;
-    const ariane4_real_t t240 = t113 * t239;
-    ddq_by_dq[3] = t222 * t192 + t233 * t238 - t237 * t240;
-    const ariane4_real_t t241 = ariane4_bounded(t129 * t239);
-    const ariane4_real_t t242 = t113 * (t20 - t44 * t193 - t22 * t239);
-    ddq_by_dq[6] = -(t222 * t194 + t233 * t241 + t237 * t242);
-    ddq_by_input[0] = -t190;
-    ddq_by_input[3] = t192;
-    ddq_by_input[6] = -t194;
-    const ariane4_real_t t243 = t151 - t162; /* link j3: force and moment */
-    const ariane4_real_t t244 = parameters[XZ3R] * t243 - (t161 + (parameters[ZZ3R] * t143
-        + parameters[XX3R] * t144));
-    const ariane4_real_t t245 = ARIANE4_C(-2.0) * t148;
-    const ariane4_real_t t246 = parameters[YZ3R] * t245 + t244;
-    const ariane4_real_t t247 = ARIANE4_C(0.443) * t175;
-    const ariane4_real_t t248 = parameters[MY3R] * t247 + t246;
-    const ariane4_real_t t249 = parameters[XZ3R] * t245 - (parameters[YZ3R] * t243 + (t65 * t139 + t146));
-    const ariane4_real_t t250 = parameters[MX3R] * t247 - t249;
-    const ariane4_real_t t251 = parameters[XZ2R] * t117 + (t176 + (parameters[ZZ2R] * t62
-        + parameters[XX2R] * t154));
-    const ariane4_real_t t252 = ARIANE4_C(-2.0) * t73;
-    const ariane4_real_t t253 = parameters[YZ2] * t252 - t251 + (t1 * t248 + t0 * t250);
-    const ariane4_real_t t254 = parameters[MY3R] * t145 - parameters[MX3R] * t160;
-    const ariane4_real_t t255 = ARIANE4_C(0.443) * t254;
-    const ariane4_real_t t256 = parameters[XZ2R] * t252 + (parameters[YZ2] * t117 + (t70 * t80 - t168));
-    const ariane4_real_t t257 = t10 * (t256 + (t0 * t248 - t1 * t250 + t255));
-    const ariane4_real_t t258 = t9 * t253 - t10 * t171 + (t9 * t178 + t257);
-    const ariane4_real_t t259 = t258 + ARIANE4_C(0.116) * (parameters[MY2] * t155 - parameters[MX2R] * t175
-        + t254);
-    const ariane4_real_t t260 = t181 * t259;
-    const ariane4_real_t t261 = t108 + ARIANE4_C(-0.443) * t169;
-    const ariane4_real_t t262 = t107 - t1 * t261;
-    const ariane4_real_t t263 = t110 + t0 * t261;
-    const ariane4_real_t t264 = parameters[ZZ3R] * t147 - parameters[XX3R] * t148 + parameters[YZ3R] * t141
-        + parameters[XZ3R] * t136;
-    const ariane4_real_t t265 = parameters[MX3R] * t262 + parameters[MY3R] * t263 + (t264
-        - parameters[XY3R] * t243);
-    const ariane4_real_t t266 = parameters[MY3R] * t159 - parameters[MX3R] * (t61 + t151);
-    const ariane4_real_t t267 = parameters[MY3R] * (t61 + t162) - parameters[MX3R] * t149;
-    const ariane4_real_t t268 = parameters[ZZ2R] * t133 - t119 + parameters[YZ2] * t153
-        + parameters[XZ2R] * t166;
-    const ariane4_real_t t269 = t120 + (t118 + t268) + (t265 + ARIANE4_C(0.443) * (t0 * t266 - t1 * t267));
-    const ariane4_real_t t270 = ARIANE4_C(0.078402) * t11 * (ARIANE4_C(-0.5) * t14);
-    const ariane4_real_t t271 = ARIANE4_C(1.0) / t11;
-    const ariane4_real_t t272 = parameters[XY2] * (ARIANE4_C(4.0) * t73) + (parameters[XX2R] * t117
-        - parameters[YZ2] * t166 + parameters[XZ2R] * t153);
-    const ariane4_real_t t273 = parameters[XY3R] * (ARIANE4_C(4.0) * t148) + (parameters[XZ3R] * t141
-        - (parameters[XX3R] * t243 + parameters[YZ3R] * t136));
-    const ariane4_real_t t274 = t108 + ARIANE4_C(-0.886) * t73;
-    const ariane4_real_t t275 = t105 - ARIANE4_C(0.443) * t117;
-    const ariane4_real_t t276 = parameters[MX3R] * (t0 * t274 + t1 * t275) + parameters[MY3R] * (t1 * t274
-        - t0 * t275);
-    const ariane4_real_t t277 = t276 + t273;
-    const ariane4_real_t t278 = t0 * (parameters[MY3R] * t243 - parameters[MX3R] * t245);
-    const ariane4_real_t t279 = t1 * (parameters[MY3R] * t245 + parameters[MX3R] * t243);
-    const ariane4_real_t t280 = parameters[MX2R] * t105 + parameters[MY2] * t108 + t272
-        + (ARIANE4_C(0.443) * (t278 + t279) + t277);
-    const ariane4_real_t t281 = t271 * (ARIANE4_C(0.03137188092799786) * t270 + t12 * t232) * t269
-        + t232 * t280;
-    const ariane4_real_t t282 = t14 * (t14 * t270);
-    const ariane4_real_t t283 = t11 * (ARIANE4_C(-2656.3065671641784) * t282) - t12 * t15;
-    const ariane4_real_t t284 = t124 * (ARIANE4_C(-208.2597474788059) * (t14 * t282))
-        - t123 * (ARIANE4_C(2.0) * (t11 * t12));
-    const ariane4_real_t t285 = t76 * (t125 * t282 + t14 * (ARIANE4_C(-2656.3065671641784) * t11 + t284));
-    const ariane4_real_t t286 = parameters[FV2] * (dq[1] * t283) + parameters[IA2] * (t133 * t283 - t285);
-    const ariane4_real_t t287 = ARIANE4_C(83.33333333333333) * t286 + t281;
-    const ariane4_real_t t288 = t236 * t277;
-    ddq_by_q[1] = t190 * t260 - t234 * t287 + t235 * t288;
-    ddq_by_q[4] = t238 * t287 - t192 * t260 - t240 * t288;
-    ddq_by_q[7] = t194 * t260 - t241 * t287 - t242 * t288;
-    const ariane4_real_t t289 = ARIANE4_C(-2.0) * t142;
-    const ariane4_real_t t290 = ARIANE4_C(-2.0) * t53;
-    const ariane4_real_t t291 = parameters[YZ3R] * t290 + (parameters[ZZ3R] * t138 + parameters[XX3R] * t138
-        + parameters[XY3R] * t289);
-    const ariane4_real_t t292 = ARIANE4_C(0.886) * t50;
-    const ariane4_real_t t293 = parameters[MY3R] * t292 + t291;
-    const ariane4_real_t t294 = ARIANE4_C(-2.0) * t138;
-    const ariane4_real_t t295 = parameters[XZ3R] * t290 + (t65 * t142 + parameters[XY3R] * t294);
-    const ariane4_real_t t296 = parameters[MX3R] * t292 + t295;
-    const ariane4_real_t t297 = ARIANE4_C(-2.0) * t50;
-    const ariane4_real_t t298 = ARIANE4_C(2.0) * dq[1];
-    const ariane4_real_t t299 = parameters[ZZ2R] * t51 + parameters[XX2R] * t51 + parameters[XY2] * t297
-        - parameters[YZ2] * t298;
-    const ariane4_real_t t300 = parameters[MX3R] * t289 + parameters[MY3R] * t294;
-    const ariane4_real_t t301 = ARIANE4_C(0.443) * t300;
-    const ariane4_real_t t302 = ARIANE4_C(2.0) * t51;
-    const ariane4_real_t t303 = parameters[XZ2R] * t298 + (t50 * t80 + parameters[XY2] * t302) + (t0 * t293
-        - t1 * t296 + t301);
-    const ariane4_real_t t304 = t9 * (t299 + (t1 * t293 + t0 * t296)) + t10 * t303;
-    const ariane4_real_t t305 = t304 + ARIANE4_C(0.116) * (parameters[MX2R] * t297 - parameters[MY2] * t302
-        + t300);
-    const ariane4_real_t t306 = t181 * t305;
-    const ariane4_real_t t307 = ARIANE4_C(0.886) * dq[1];
-    const ariane4_real_t t308 = parameters[MX3R] * (t0 * t307) + parameters[MY3R] * (t1 * t307);
-    const ariane4_real_t t309 = ARIANE4_C(0.443) * (t0 * (parameters[MX3R] * t290)
-        + t1 * (parameters[MY3R] * t290));
-    const ariane4_real_t t310 = ARIANE4_C(83.33333333333333) * (t16 * parameters[FV2]
-        - parameters[IA2] * (t126 * t298)) + t232 * (t308 + t309);
-    const ariane4_real_t t311 = t236 * t308;
-    ddq_by_dq[1] = t306 * t190 - t310 * t234 + t311 * t235;
-    ddq_by_dq[4] = t310 * t238 - t306 * t192 - t311 * t240;
-    ddq_by_dq[7] = t306 * t194 - t310 * t241 - t311 * t242;
-    ddq_by_input[1] = t234;
-    ddq_by_input[4] = -t238;
-    ddq_by_input[7] = t241;
-    const ariane4_real_t t312 = t9 * (t1 * t246 - t172 + (t173 - t0 * t249));
-    const ariane4_real_t t313 = t255 + (t158 + t0 * t246 + (t165 + t1 * t249));
-    const ariane4_real_t t314 = t181 * (t312 + t10 * t313 + ARIANE4_C(0.116) * t254);
-    const ariane4_real_t t315 = t273 + (parameters[MX3R] * t263 - parameters[MY3R] * t262);
-    const ariane4_real_t t316 = ARIANE4_C(0.443) * (t278 + t1 * t266 + (t279 + t0 * t267));
-    const ariane4_real_t t317 = t232 * (t315 + t316);
-    const ariane4_real_t t318 = ARIANE4_C(0.052812) * t2 * (ARIANE4_C(0.5) * t5);
-    const ariane4_real_t t319 = ARIANE4_C(-1.0) / t2;
-    const ariane4_real_t t320 = t319 * (ARIANE4_C(-0.046787723832235825) * t318 + t3 * t236) * t265
-        + t236 * t315;
-    const ariane4_real_t t321 = t5 * (t5 * t318);
-    const ariane4_real_t t322 = t3 * t6 + t2 * (ARIANE4_C(7124.375926654358) * t321);
-    const ariane4_real_t t323 = t99 * (ARIANE4_C(376.25254143846996) * (t5 * t321))
-        + t98 * (ARIANE4_C(2.0) * (t2 * t3));
-    const ariane4_real_t t324 = t102 * (t100 * t321 + t5 * (ARIANE4_C(-7124.375926654358) * t2 + t323));
-    const ariane4_real_t t325 = parameters[FV3] * (dq[2] * t322) + parameters[IA3] * (t324 + t134 * t322);
-    const ariane4_real_t t326 = ARIANE4_C(333.3333333333333) * t325 - t320;
-    ddq_by_q[2] = t190 * t314 - t234 * t317 - t235 * t326;
-    ddq_by_q[5] = t238 * t317 - t192 * t314 + t240 * t326;
-    ddq_by_q[8] = t194 * t314 - t241 * t317 + t242 * t326;
-    const ariane4_real_t t327 = t9 * (t1 * t291 + t0 * t295) + t10 * (t301 + (t0 * t291 - t1 * t295));
-    const ariane4_real_t t328 = t181 * (t327 + ARIANE4_C(0.116) * t300);
-    const ariane4_real_t t329 = t232 * t309;
-    const ariane4_real_t t330 = ARIANE4_C(333.3333333333333) * (t7 * parameters[FV3]
-        + parameters[IA3] * (t101 * (ARIANE4_C(2.0) * dq[2])));
-    ddq_by_dq[2] = t328 * t190 - t329 * t234 - t330 * t235;
-    ddq_by_dq[5] = t329 * t238 - t328 * t192 + t330 * t240;
-    ddq_by_dq[8] = t328 * t194 - t329 * t241 + t330 * t242;
-    ddq_by_input[2] = -t235;
-    ddq_by_input[5] = t240;
-    ddq_by_input[8] = t242;
-    if (!ariane4_all_bounded(ddq, 3)
-        || !ariane4_all_bounded(ddq_by_q, 9)
-        || !ariane4_all_bounded(ddq_by_dq, 9)
-        || !ariane4_all_bounded(ddq_by_input, 9)) {
+    const ariane4_real_t t115 = t0 * (parameters[MX3R] * (t59 + t60) + parameters[MY3R] * t57)
+        + t1 * (parameters[MX3R] * t57 + parameters[MY3R] * (t66 + t60));
+    const ariane4_real_t t116 = t82 - t74; /* link j2: force and moment */
+    const ariane4_real_t t117 = parameters[XY2] * t116;
+    const ariane4_real_t t118 = parameters[XX2R] * t72;
+    const ariane4_real_t t119 = parameters[MY2] * t104 - parameters[MX2R] * t107;
+    const ariane4_real_t t120 = t16 * dq[1];
+    const ariane4_real_t t121 = ariane4_sign(t120); /* joint j2: coulomb_friction */
+    const ariane4_real_t t122 = ARIANE4_C(-104.12987373940295) * (t14 * t14); /* joint j2: drive */
+    const ariane4_real_t t123 = t11 * t11;
+    const ariane4_real_t t124 = ARIANE4_C(-2656.3065671641784) * t12 + t122 * t123;
+    const ariane4_real_t t125 = t14 * t124;
+    const ariane4_real_t t126 = parameters[FV2] * t120 + parameters[FC2] * t121
+        - parameters[IA2] * (t125 * t75);
+    const ariane4_real_t t127 = t16 * t126 - (t118 - t117 - t119 - (t111 - ARIANE4_C(0.443) * t115));
+    const ariane4_real_t t128 = ARIANE4_C(-0.012) * t16;
+    const ariane4_real_t t129 = t113 * t22 - (input[1] * t128 + t127);
+    const ariane4_real_t t130 = ARIANE4_C(1.0) / t47;
+    const ariane4_real_t t131 = ariane4_held((t114 - t129 * t46) * t130);
+    ddq[0] = t131;
+    const ariane4_real_t t132 = ariane4_held(t129 * t44 - t46 * t131);
+    ddq[1] = t132;
+    const ariane4_real_t t133 = ariane4_held(t113 * t20 + t43 * t131 - t22 * t132);
+    ddq[2] = t133;
+    const ariane4_real_t t134 = t9 * t1 + t10 * t0; /* link j3: motion */
+    const ariane4_real_t t135 = t131 * t134;
+    const ariane4_real_t t136 = t10 * t1 - t9 * t0;
+    const ariane4_real_t t137 = dq[0] * t136;
+    const ariane4_real_t t138 = t52 * t137;
+    const ariane4_real_t t139 = t138 + t135;
+    const ariane4_real_t t140 = t131 * t136;
+    const ariane4_real_t t141 = dq[0] * t134;
+    const ariane4_real_t t142 = t52 * t141;
+    const ariane4_real_t t143 = t142 - t140;
+    const ariane4_real_t t144 = t142 + t143;
+    const ariane4_real_t t145 = parameters[XY3R] * t144;
+    const ariane4_real_t t146 = t132 + t133;
+    const ariane4_real_t t147 = t141 * t137;
+    const ariane4_real_t t148 = t147 + t146;
+    const ariane4_real_t t149 = t145 - (parameters[ZZ3R] * t138 + parameters[XX3R] * t139)
+        - parameters[XZ3R] * t148;
+    const ariane4_real_t t150 = t137 * t137;
+    const ariane4_real_t t151 = ARIANE4_C(-0.116) * t131;
+    const ariane4_real_t t152 = t10 * t131;
+    const ariane4_real_t t153 = t61 - t152;
+    const ariane4_real_t t154 = t61 + t153;
+    const ariane4_real_t t155 = t151 + ARIANE4_C(0.443) * t154;
+    const ariane4_real_t t156 = parameters[MY3R] * t155 - (parameters[YZ3R] * (t60 - t150) + t149);
+    const ariane4_real_t t157 = t0 * t156;
+    const ariane4_real_t t158 = t138 + t139;
+    const ariane4_real_t t159 = parameters[XY3R] * t158;
+    const ariane4_real_t t160 = t141 * t141;
+    const ariane4_real_t t161 = t150 - t160; /* link j3: force and moment */
+    const ariane4_real_t t162 = parameters[XZ3R] * t161 - (t159 + (parameters[ZZ3R] * t142
+        + parameters[XX3R] * t143));
+    const ariane4_real_t t163 = ARIANE4_C(-2.0) * t147;
+    const ariane4_real_t t164 = parameters[YZ3R] * t163 + t162;
+    const ariane4_real_t t165 = t147 - t146;
+    const ariane4_real_t t166 = parameters[XZ3R] * (t160 - t60) + (t64 * t142 - t159
+        + parameters[YZ3R] * t165);
+    const ariane4_real_t t167 = parameters[MX3R] * t155 + t166;
+    const ariane4_real_t t168 = t1 * t167;
+    const ariane4_real_t t169 = parameters[XZ3R] * t163 - (parameters[YZ3R] * t161 + (t64 * t138 + t145));
+    const ariane4_real_t t170 = t9 * (t1 * t164 - t157 + (t168 - t0 * t169));
+    const ariane4_real_t t171 = t1 * t156;
+    const ariane4_real_t t172 = t0 * t167;
+    const ariane4_real_t t173 = parameters[MY3R] * t144 - parameters[MX3R] * t158;
+    const ariane4_real_t t174 = ARIANE4_C(0.443) * t173;
+    const ariane4_real_t t175 = t174 + (t171 + t0 * t164 + (t172 + t1 * t169));
+    const ariane4_real_t t176 = ARIANE4_C(-0.06434139546481742) * t35 / t33; /* joint j1: drive */
+    const ariane4_real_t t177 = t176 * (t170 + t10 * t175 + ARIANE4_C(0.116) * t173);
+    const ariane4_real_t t178 = t94 * t130;
+    const ariane4_real_t t179 = parameters[XY3R] * (ARIANE4_C(4.0) * t147) + (parameters[XZ3R] * t140
+        - (parameters[XX3R] * t161 + parameters[YZ3R] * t135));
+    const ariane4_real_t t180 = t72 + t132;
+    const ariane4_real_t t181 = t107 + ARIANE4_C(-0.443) * t180;
+    const ariane4_real_t t182 = t109 + t0 * t181;
+    const ariane4_real_t t183 = t106 - t1 * t181;
+    const ariane4_real_t t184 = t179 + (parameters[MX3R] * t182 - parameters[MY3R] * t183);
+    const ariane4_real_t t185 = parameters[MY3R] * t165 - parameters[MX3R] * (t60 + t150);
+    const ariane4_real_t t186 = t0 * (parameters[MY3R] * t161 - parameters[MX3R] * t163);
+    const ariane4_real_t t187 = parameters[MY3R] * (t60 + t160) - parameters[MX3R] * t148;
+    const ariane4_real_t t188 = t1 * (parameters[MY3R] * t163 + parameters[MX3R] * t161);
+    const ariane4_real_t t189 = ARIANE4_C(0.443) * (t186 + t1 * t185 + (t188 + t0 * t187));
+    const ariane4_real_t t190 = ARIANE4_C(0.03137188092799786) * t13 / t11; /* joint j2: drive */
+    const ariane4_real_t t191 = t190 * (t184 + t189);
+    const ariane4_real_t t192 = t46 * t130;
+    const ariane4_real_t t193 = ariane4_held(t128 * t192);
+    const ariane4_real_t t194 = parameters[ZZ3R] * t146 - parameters[XX3R] * t147 + parameters[YZ3R] * t140
+        + parameters[XZ3R] * t135;
+    const ariane4_real_t t195 = parameters[MX3R] * t183 + parameters[MY3R] * t182 + (t194
+        - parameters[XY3R] * t161);
+    const ariane4_real_t t196 = ARIANE4_C(0.052812) * t2 * (ARIANE4_C(0.5) * t5);
+    const ariane4_real_t t197 = ARIANE4_C(-0.046787723832235825) * t4 / t2; /* joint j3: drive */
+    const ariane4_real_t t198 = ARIANE4_C(-1.0) / t2;
+    const ariane4_real_t t199 = t198 * (ARIANE4_C(-0.046787723832235825) * t196 + t3 * t197) * t195
+        + t197 * t184;
+    const ariane4_real_t t200 = t5 * (t5 * t196);
+    const ariane4_real_t t201 = t3 * t6 + t2 * (ARIANE4_C(7124.375926654358) * t200);
+    const ariane4_real_t t202 = t98 * (ARIANE4_C(376.25254143846996) * (t5 * t200))
+        + t97 * (ARIANE4_C(2.0) * (t2 * t3));
+    const ariane4_real_t t203 = t101 * (t99 * t200 + t5 * (ARIANE4_C(-7124.375926654358) * t2 + t202));
+    const ariane4_real_t t204 = parameters[FV3] * (dq[2] * t201) + parameters[IA3] * (t203 + t133 * t201);
+    const ariane4_real_t t205 = ARIANE4_C(333.3333333333333) * t204 - t199;
+    const ariane4_real_t t206 = t130 * (t43 + t22 * t46);
+    const ariane4_real_t t207 = t112 * t206;
+    ddq_by_q[2] = t178 * t177 - t193 * t191 - t207 * t205;
+    const ariane4_real_t t208 = ariane4_held(t94 * t192);
+    const ariane4_real_t t209 = t128 * (t44 + t46 * t192);
+    const ariane4_real_t t210 = t22 * t44 + t46 * t206;
+    const ariane4_real_t t211 = ariane4_held(t112 * t210);
+    ddq_by_q[5] = t209 * t191 - t208 * t177 + t211 * t205;
+    const ariane4_real_t t212 = t94 * t206;
+    const ariane4_real_t t213 = ariane4_held(t128 * t210);
+    const ariane4_real_t t214 = ariane4_held(t112 * (t20 - t43 * t206 - t22 * t210));
+    ddq_by_q[8] = t212 * t177 - t213 * t191 + t214 * t205;
+    const ariane4_real_t t215 = ARIANE4_C(-2.0) * t141;
+    const ariane4_real_t t216 = ARIANE4_C(-2.0) * t52;
+    const ariane4_real_t t217 = parameters[YZ3R] * t216 + (parameters[ZZ3R] * t137 + parameters[XX3R] * t137
+        + parameters[XY3R] * t215);
+    const ariane4_real_t t218 = ARIANE4_C(-2.0) * t137;
+    const ariane4_real_t t219 = parameters[XZ3R] * t216 + (t64 * t141 + parameters[XY3R] * t218);
+    const ariane4_real_t t220 = parameters[MX3R] * t215 + parameters[MY3R] * t218;
+    const ariane4_real_t t221 = ARIANE4_C(0.443) * t220;
+    const ariane4_real_t t222 = t9 * (t1 * t217 + t0 * t219) + t10 * (t221 + (t0 * t217 - t1 * t219));
+    const ariane4_real_t t223 = t176 * (t222 + ARIANE4_C(0.116) * t220);
+    const ariane4_real_t t224 = ARIANE4_C(0.443) * (t0 * (parameters[MX3R] * t216)
+        + t1 * (parameters[MY3R] * t216));
+    const ariane4_real_t t225 = t190 * t224;
+    const ariane4_real_t t226 = ARIANE4_C(333.3333333333333) * (t7 * parameters[FV3]
+        + parameters[IA3] * (t100 * (ARIANE4_C(2.0) * dq[2])));
+    ddq_by_dq[2] = t223 * t178 - t225 * t193 - t226 * t207;
+    ddq_by_dq[5] = t225 * t209 - t223 * t208 + t226 * t211;
+    ddq_by_dq[8] = t223 * t212 - t225 * t213 + t226 * t214;
+    ddq_by_input[2] = -t207;
+    ddq_by_input[5] = t211;
+    ddq_by_input[8] = t214;
+    const ariane4_real_t t227 = t9 * t131;
+    const ariane4_real_t t228 = t69 + t227;
+    const ariane4_real_t t229 = parameters[XY2] * t154;
+    const ariane4_real_t t230 = t76 - (t70 + parameters[XX2R] * t228 - t229 + parameters[XZ2R] * t180);
+    const ariane4_real_t t231 = t230 - parameters[MY2] * t151 - (t171 + t172);
+    const ariane4_real_t t232 = t69 + t228;
+    const ariane4_real_t t233 = ARIANE4_C(0.443) * t232;
+    const ariane4_real_t t234 = parameters[MY3R] * t233 + t164;
+    const ariane4_real_t t235 = parameters[MX3R] * t233 - t169;
+    const ariane4_real_t t236 = parameters[XY2] * t232;
+    const ariane4_real_t t237 = parameters[XZ2R] * t116 + (t236 + (parameters[ZZ2R] * t61
+        + parameters[XX2R] * t153));
+    const ariane4_real_t t238 = ARIANE4_C(-2.0) * t72;
+    const ariane4_real_t t239 = parameters[YZ2] * t238 - t237 + (t1 * t234 + t0 * t235);
+    const ariane4_real_t t240 = parameters[MX3R] * t144 + parameters[MY3R] * t158;
+    const ariane4_real_t t241 = t83 + (parameters[YZ2] * (t72 - t132) - (t80 + t236))
+        + parameters[MX2R] * t151;
+    const ariane4_real_t t242 = t241 + (t168 - t157 + ARIANE4_C(0.443) * t240);
+    const ariane4_real_t t243 = parameters[XZ2R] * t238 + (parameters[YZ2] * t116 + (t69 * t79 - t229));
+    const ariane4_real_t t244 = t10 * (t243 + (t0 * t234 - t1 * t235 + t174));
+    const ariane4_real_t t245 = t9 * t239 - t10 * t231 + (t9 * t242 + t244);
+    const ariane4_real_t t246 = t245 + ARIANE4_C(0.116) * (parameters[MY2] * t154 - parameters[MX2R] * t232
+        + t173);
+    const ariane4_real_t t247 = t176 * t246;
+    const ariane4_real_t t248 = parameters[ZZ2R] * t132 - t118 + parameters[YZ2] * t152
+        + parameters[XZ2R] * t227;
+    const ariane4_real_t t249 = t119 + (t117 + t248) + (t195 + ARIANE4_C(0.443) * (t0 * t185 - t1 * t187));
+    const ariane4_real_t t250 = ARIANE4_C(0.078402) * t11 * (ARIANE4_C(-0.5) * t14);
+    const ariane4_real_t t251 = ARIANE4_C(1.0) / t11;
+    const ariane4_real_t t252 = parameters[XY2] * (ARIANE4_C(4.0) * t72) + (parameters[XX2R] * t116
+        - parameters[YZ2] * t227 + parameters[XZ2R] * t152);
+    const ariane4_real_t t253 = t107 + ARIANE4_C(-0.886) * t72;
+    const ariane4_real_t t254 = t104 - ARIANE4_C(0.443) * t116;
+    const ariane4_real_t t255 = parameters[MX3R] * (t0 * t253 + t1 * t254) + parameters[MY3R] * (t1 * t253
+        - t0 * t254);
+    const ariane4_real_t t256 = t255 + t179;
+    const ariane4_real_t t257 = parameters[MX2R] * t104 + parameters[MY2] * t107 + t252
+        + (ARIANE4_C(0.443) * (t186 + t188) + t256);
+    const ariane4_real_t t258 = t251 * (ARIANE4_C(0.03137188092799786) * t250 + t12 * t190) * t249
+        + t190 * t257;
+    const ariane4_real_t t259 = t14 * (t14 * t250);
+    const ariane4_real_t t260 = t11 * (ARIANE4_C(-2656.3065671641784) * t259) - t12 * t15;
+    const ariane4_real_t t261 = t123 * (ARIANE4_C(-208.2597474788059) * (t14 * t259))
+        - t122 * (ARIANE4_C(2.0) * (t11 * t12));
+    const ariane4_real_t t262 = t75 * (t124 * t259 + t14 * (ARIANE4_C(-2656.3065671641784) * t11 + t261));
+    const ariane4_real_t t263 = parameters[FV2] * (dq[1] * t260) + parameters[IA2] * (t132 * t260 - t262);
+    const ariane4_real_t t264 = ARIANE4_C(83.33333333333333) * t263 + t258;
+    const ariane4_real_t t265 = t197 * t256;
+    ddq_by_q[1] = t178 * t247 - t193 * t264 + t207 * t265;
+    ddq_by_q[4] = t209 * t264 - t208 * t247 - t211 * t265;
+    ddq_by_q[7] = t212 * t247 - t213 * t264 - t214 * t265;
+    const ariane4_real_t t266 = ARIANE4_C(0.886) * t49;
+    const ariane4_real_t t267 = parameters[MY3R] * t266 + t217;
+    const ariane4_real_t t268 = parameters[MX3R] * t266 + t219;
+    const ariane4_real_t t269 = ARIANE4_C(-2.0) * t49;
+    const ariane4_real_t t270 = ARIANE4_C(2.0) * dq[1];
+    const ariane4_real_t t271 = parameters[ZZ2R] * t50 + parameters[XX2R] * t50 + parameters[XY2] * t269
+        - parameters[YZ2] * t270;
+    const ariane4_real_t t272 = ARIANE4_C(2.0) * t50;
+    const ariane4_real_t t273 = parameters[XZ2R] * t270 + (t49 * t79 + parameters[XY2] * t272) + (t0 * t267
+        - t1 * t268 + t221);
+    const ariane4_real_t t274 = t9 * (t271 + (t1 * t267 + t0 * t268)) + t10 * t273;
+    const ariane4_real_t t275 = t274 + ARIANE4_C(0.116) * (parameters[MX2R] * t269 - parameters[MY2] * t272
+        + t220);
+    const ariane4_real_t t276 = t176 * t275;
+    const ariane4_real_t t277 = ARIANE4_C(0.886) * dq[1];
+    const ariane4_real_t t278 = parameters[MX3R] * (t0 * t277) + parameters[MY3R] * (t1 * t277);
+    const ariane4_real_t t279 = ARIANE4_C(83.33333333333333) * (t16 * parameters[FV2]
+        - parameters[IA2] * (t125 * t270)) + t190 * (t278 + t224);
+    const ariane4_real_t t280 = t197 * t278;
+    ddq_by_dq[1] = t276 * t178 - t279 * t193 + t280 * t207;
+    ddq_by_dq[4] = t279 * t209 - t276 * t208 - t280 * t211;
+    ddq_by_dq[7] = t276 * t212 - t279 * t213 - t280 * t214;
+    ddq_by_input[1] = t193;
+    ddq_by_input[4] = -t209;
+    ddq_by_input[7] = t213;
+    const ariane4_real_t t281 = t9 * t231 + t10 * t242 + ARIANE4_C(0.116) * (parameters[MX2R] * t154
+        + parameters[MY2] * t232 + t240);
+    const ariane4_real_t t282 = ARIANE4_C(0.037468) * t33 * (ARIANE4_C(0.5) * t36);
+    const ariane4_real_t t283 = ARIANE4_C(1.0) / t33;
+    const ariane4_real_t t284 = t283 * (ARIANE4_C(0.06434139546481742) * t282 - t34 * t176) * (t281
+        - parameters[ZZ1R] * t131);
+    const ariane4_real_t t285 = t36 * (t36 * t282);
+    const ariane4_real_t t286 = t34 * t37 + t33 * (ARIANE4_C(3885.523436256565) * t285);
+    const ariane4_real_t t287 = t89 * (ARIANE4_C(145.582792109661) * (t36 * t285))
+        + t88 * (ARIANE4_C(2.0) * (t33 * t34));
+    const ariane4_real_t t288 = t92 * (t90 * t285 + t36 * (ARIANE4_C(-3885.523436256565) * t33 + t287));
+    const ariane4_real_t t289 = parameters[FV1] * (dq[0] * t286) + parameters[IA1] * (t288 + t131 * t286);
+    const ariane4_real_t t290 = ARIANE4_C(250.0) * t289 + t284;
+    ddq_by_q[0] = -(t178 * t290);
+    ddq_by_q[3] = t208 * t290;
+    ddq_by_q[6] = -(t212 * t290);
+    const ariane4_real_t t291 = t134 * t137 + t136 * t141;
+    const ariane4_real_t t292 = t52 * t136;
+    const ariane4_real_t t293 = t52 * t134;
+    const ariane4_real_t t294 = ARIANE4_C(-2.0) * t293;
+    const ariane4_real_t t295 = parameters[ZZ3R] * t292 + parameters[XX3R] * t292 + parameters[XY3R] * t294
+        + parameters[XZ3R] * t291;
+    const ariane4_real_t t296 = ARIANE4_C(-2.0) * (t136 * t137);
+    const ariane4_real_t t297 = t9 * dq[1];
+    const ariane4_real_t t298 = ARIANE4_C(0.886) * t297;
+    const ariane4_real_t t299 = parameters[MY3R] * t298 + (t295 - parameters[YZ3R] * t296);
+    const ariane4_real_t t300 = ARIANE4_C(-2.0) * t292;
+    const ariane4_real_t t301 = ARIANE4_C(2.0) * (t134 * t141);
+    const ariane4_real_t t302 = parameters[XZ3R] * t301 + (t64 * t293 + parameters[XY3R] * t300
+        + parameters[YZ3R] * t291);
+    const ariane4_real_t t303 = parameters[MX3R] * t298 + t302;
+    const ariane4_real_t t304 = t10 * dq[1];
+    const ariane4_real_t t305 = ARIANE4_C(-2.0) * t297;
+    const ariane4_real_t t306 = t9 * t50 + t10 * t49;
+    const ariane4_real_t t307 = parameters[ZZ2R] * t304 + parameters[XX2R] * t304 + parameters[XY2] * t305
+        + parameters[XZ2R] * t306;
+    const ariane4_real_t t308 = t10 * t50;
+    const ariane4_real_t t309 = ARIANE4_C(-2.0) * t308;
+    const ariane4_real_t t310 = t307 - parameters[YZ2] * t309 + (t1 * t299 + t0 * t303);
+    const ariane4_real_t t311 = parameters[MX3R] * t294 + parameters[MY3R] * t300;
+    const ariane4_real_t t312 = ARIANE4_C(2.0) * t304;
+    const ariane4_real_t t313 = ARIANE4_C(2.0) * (t9 * t49);
+    const ariane4_real_t t314 = t79 * t297 + parameters[XY2] * t312 - parameters[YZ2] * t306
+        - parameters[XZ2R] * t313;
+    const ariane4_real_t t315 = t314 + (t0 * t299 - t1 * t303 + ARIANE4_C(0.443) * t311);
+    const ariane4_real_t t316 = t9 * t310 + t10 * t315 + ARIANE4_C(0.116) * (parameters[MX2R] * t305
+        - parameters[MY2] * t312 + t311);
+    const ariane4_real_t t317 = ARIANE4_C(250.0) * (t38 * parameters[FV1]
+        + parameters[IA1] * (t91 * (ARIANE4_C(2.0) * dq[0])));
+    const ariane4_real_t t318 = t317 - t176 * t316;
+    const ariane4_real_t t319 = ARIANE4_C(0.232) * dq[0];
+    const ariane4_real_t t320 = t10 * t319;
+    const ariane4_real_t t321 = t320 + ARIANE4_C(0.886) * t308;
+    const ariane4_real_t t322 = t9 * t319;
+    const ariane4_real_t t323 = t322 + ARIANE4_C(0.443) * t306;
+    const ariane4_real_t t324 = parameters[MX3R] * (t0 * t321 + t1 * t323) + parameters[MY3R] * (t1 * t321
+        - t0 * t323);
+    const ariane4_real_t t325 = t324 + (parameters[XY3R] * (t301 + t296) - parameters[XX3R] * t291);
+    const ariane4_real_t t326 = t0 * (parameters[MX3R] * t296 + parameters[MY3R] * t291)
+        + t1 * (parameters[MX3R] * t291 - parameters[MY3R] * t301);
+    const ariane4_real_t t327 = parameters[MX2R] * t322 + parameters[MY2] * t320 + (parameters[XY2] * (t313
+        + t309) - parameters[XX2R] * t306);
+    const ariane4_real_t t328 = t190 * (t327 + (t325 + ARIANE4_C(0.443) * t326));
+    const ariane4_real_t t329 = t197 * t325;
+    ddq_by_dq[0] = t329 * t207 - (t318 * t178 + t328 * t193);
+    ddq_by_dq[3] = t318 * t208 + t328 * t209 - t329 * t211;
+    ddq_by_dq[6] = -(t318 * t212 + t328 * t213 + t329 * t214);
+    ddq_by_input[0] = -t178;
+    ddq_by_input[3] = t208;
+    ddq_by_input[6] = -t212;
+    if (!ariane4_bounded(ddq, 3)
+        || !ariane4_bounded(ddq_by_q, 9)
+        || !ariane4_bounded(ddq_by_dq, 9)
+        || !ariane4_bounded(ddq_by_input, 9)) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
         ariane4_zero(ddq_by_dq, 9);

@@ -7,7 +7,7 @@
  * Arm ariane4, description 5ed7fb32121b496f.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1494 (843 mul, 647 add, 4 neg), 15 div, 3 sqrt, 6 trig, 6 other calls (sign, select and the like).
+ * Operations: 1493 (843 mul, 647 add, 3 neg), 15 div, 3 sqrt, 6 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [3]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [3]   [rad/s]                  joint velocities; norm at most 100000
@@ -79,7 +79,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -117,8 +117,8 @@ ariane4_status_t ariane4_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    ariane4_real_t t51, t52;
-    ARIANE4_SINCOS(q[0], &t51, &t52);
+    ariane4_real_t t50, t51;
+    ARIANE4_SINCOS(q[0], &t50, &t51);
     ariane4_real_t t14, t15;
     ARIANE4_SINCOS(q[1], &t14, &t15);
     ariane4_real_t t0, t1;
@@ -135,7 +135,7 @@ ariane4_status_t ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t10 = ARIANE4_C(0.436) * parameters[M4];
     const ariane4_real_t t11 = ARIANE4_C(0.436) * (t10 + ARIANE4_C(2.0) * parameters[MZ4]);
     const ariane4_real_t t12 = parameters[ZZ3] + (parameters[YY4] + (t9 + t11));
-    const ariane4_real_t t13 = ariane4_bounded(t12 + t7 * t7 * parameters[IA3]);
+    const ariane4_real_t t13 = t12 + t7 * t7 * parameters[IA3];
     if (!(t13 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -163,7 +163,7 @@ ariane4_status_t ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t32 = ARIANE4_C(-1.0) / t13;
     const ariane4_real_t t33 = ARIANE4_C(-0.443) * t26 - t12; /* link j3: column of the mass matrix */
     const ariane4_real_t t34 = t33 * t32;
-    const ariane4_real_t t35 = ariane4_bounded(t31 + t33 * t34);
+    const ariane4_real_t t35 = t31 + t33 * t34;
     if (!(t35 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -171,59 +171,59 @@ ariane4_status_t ariane4_forward_dynamics_derivatives_standard(
         ariane4_zero(ddq_by_input, 9);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t36 = t35 + ARIANE4_C(-1.0e-9) * t31;
-    if (!(t36 > ARIANE4_C(1.0e-12))) {
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t36 = parameters[XX3] + (parameters[XX4] + t11);
+    const ariane4_real_t t37 = parameters[YY3] + (parameters[ZZ4] + t9);
+    const ariane4_real_t t38 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
+        + ARIANE4_C(0.436) * t24));
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t39 = t1 * (t36 - t37) - t38 * (ARIANE4_C(2.0) * t0);
+    const ariane4_real_t t40 = t1 * t39;
+    const ariane4_real_t t41 = parameters[XX2] + (t37 + t40);
+    const ariane4_real_t t42 = parameters[YY2] + (t36 - t40 + t29);
+    const ariane4_real_t t43 = t1 * t23 + t0 * t25; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t44 = parameters[XY2] + (t38 + t0 * t39 + ARIANE4_C(-0.443) * t43);
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t45 = t15 * (t15 * (t42 - t41) + t44 * (ARIANE4_C(2.0) * t14));
+    const ariane4_real_t t46 = parameters[MY2] + t43; /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t47 = t26 + t28;
+    const ariane4_real_t t48 = parameters[MX2] + t47;
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t49 = ARIANE4_C(0.116) * (parameters[M2] + t27) + ARIANE4_C(2.0) * (t15 * t48
+        - t14 * t46);
+    /* joint j1: drive */
+    const ariane4_real_t t52 = ARIANE4_C(0.28217402066925895) * t50 + ARIANE4_C(-0.9593632378089879) * t51;
+    const ariane4_real_t t53 = ARIANE4_C(0.28217402066925895) * t51 + ARIANE4_C(0.9593632378089879) * t50;
+    const ariane4_real_t t54 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t53 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t55 = ARIANE4_C(1.0) / t54;
+    const ariane4_real_t t56 = ARIANE4_C(3885.523436256565) * t55;
+    const ariane4_real_t t57 = t52 * t56;
+    const ariane4_real_t t58 = parameters[ZZ1] + (t41 + t45 + ARIANE4_C(0.116) * t49)
+        + t57 * t57 * parameters[IA1];
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t59 = parameters[XY4] + ARIANE4_C(0.1) * parameters[MY4] - parameters[XZ3];
+    const ariane4_real_t t60 = parameters[YZ4] + ARIANE4_C(-0.436) * parameters[MY4] - parameters[YZ3];
+    const ariane4_real_t t61 = t1 * t59 - t0 * t60; /* link j3: column of the mass matrix */
+    const ariane4_real_t t62 = t0 * t59 + t1 * t60;
+    const ariane4_real_t t63 = t14 * t61 + t15 * t62;
+    const ariane4_real_t t64 = t63 * t32;
+    const ariane4_real_t t65 = ARIANE4_C(1.0) / t35;
+    const ariane4_real_t t66 = parameters[MY4] - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t67 = t61 + ARIANE4_C(-0.443) * t66 - parameters[XZ2];
+    const ariane4_real_t t68 = t62 - parameters[YZ2];
+    const ariane4_real_t t69 = t63 * t34 - (t14 * t67 + t15 * t68);
+    const ariane4_real_t t70 = t69 * t65;
+    const ariane4_real_t t71 = t58 + t63 * t64 - t69 * t70;
+    if (!(t71 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
         ariane4_zero(ddq_by_dq, 9);
         ariane4_zero(ddq_by_input, 9);
         return ARIANE4_STATUS_PIVOT;
     }
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t37 = parameters[XX3] + (parameters[XX4] + t11);
-    const ariane4_real_t t38 = parameters[YY3] + (parameters[ZZ4] + t9);
-    const ariane4_real_t t39 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
-        + ARIANE4_C(0.436) * t24));
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t40 = t1 * (t37 - t38) - t39 * (ARIANE4_C(2.0) * t0);
-    const ariane4_real_t t41 = t1 * t40;
-    const ariane4_real_t t42 = parameters[XX2] + (t38 + t41);
-    const ariane4_real_t t43 = parameters[YY2] + (t37 - t41 + t29);
-    const ariane4_real_t t44 = t1 * t23 + t0 * t25; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t45 = parameters[XY2] + (t39 + t0 * t40 + ARIANE4_C(-0.443) * t44);
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t46 = t15 * (t15 * (t43 - t42) + t45 * (ARIANE4_C(2.0) * t14));
-    const ariane4_real_t t47 = parameters[MY2] + t44; /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t48 = t26 + t28;
-    const ariane4_real_t t49 = parameters[MX2] + t48;
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t50 = ARIANE4_C(0.116) * (parameters[M2] + t27) + ARIANE4_C(2.0) * (t15 * t49
-        - t14 * t47);
-    /* joint j1: drive */
-    const ariane4_real_t t53 = ARIANE4_C(0.28217402066925895) * t51 + ARIANE4_C(-0.9593632378089879) * t52;
-    const ariane4_real_t t54 = ARIANE4_C(0.28217402066925895) * t52 + ARIANE4_C(0.9593632378089879) * t51;
-    const ariane4_real_t t55 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t54 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t56 = ARIANE4_C(1.0) / t55;
-    const ariane4_real_t t57 = ARIANE4_C(3885.523436256565) * t56;
-    const ariane4_real_t t58 = t53 * t57;
-    const ariane4_real_t t59 = parameters[ZZ1] + (t42 + t46 + ARIANE4_C(0.116) * t50)
-        + t58 * t58 * parameters[IA1];
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t60 = parameters[XY4] + ARIANE4_C(0.1) * parameters[MY4] - parameters[XZ3];
-    const ariane4_real_t t61 = parameters[YZ4] + ARIANE4_C(-0.436) * parameters[MY4] - parameters[YZ3];
-    const ariane4_real_t t62 = t1 * t60 - t0 * t61; /* link j3: column of the mass matrix */
-    const ariane4_real_t t63 = t0 * t60 + t1 * t61;
-    const ariane4_real_t t64 = t14 * t62 + t15 * t63;
-    const ariane4_real_t t65 = t64 * t32;
-    const ariane4_real_t t66 = ARIANE4_C(1.0) / t35;
-    const ariane4_real_t t67 = parameters[MY4] - parameters[MZ3]; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t68 = t62 + ARIANE4_C(-0.443) * t67 - parameters[XZ2];
-    const ariane4_real_t t69 = t63 - parameters[YZ2];
-    const ariane4_real_t t70 = t64 * t34 - (t14 * t68 + t15 * t69);
-    const ariane4_real_t t71 = t70 * t66;
-    const ariane4_real_t t72 = ariane4_bounded(t59 + t64 * t65 - t70 * t71);
+    const ariane4_real_t t72 = ariane4_min(t35 + ARIANE4_C(-1.0e-9) * t31, t71 + ARIANE4_C(-1.0e-9) * t58);
     if (!(t72 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
@@ -231,512 +231,503 @@ ariane4_status_t ariane4_forward_dynamics_derivatives_standard(
         ariane4_zero(ddq_by_input, 9);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t73 = t72 + ARIANE4_C(-1.0e-9) * t59;
-    if (!(t73 > ARIANE4_C(1.0e-12))) {
-        ariane4_zero(ddq, 3);
-        ariane4_zero(ddq_by_q, 9);
-        ariane4_zero(ddq_by_dq, 9);
-        ariane4_zero(ddq_by_input, 9);
-        return ARIANE4_STATUS_PIVOT;
-    }
-    const ariane4_real_t t74 = t14 * dq[0]; /* link j2: motion */
-    const ariane4_real_t t75 = t15 * dq[0];
-    const ariane4_real_t t76 = t0 * t74 - t1 * t75; /* link j3: motion */
-    const ariane4_real_t t77 = dq[1] + dq[2];
-    const ariane4_real_t t78 = t77 * t76;
-    const ariane4_real_t t79 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
-    const ariane4_real_t t80 = t1 * t74 + t0 * t75; /* link j3: motion */
-    const ariane4_real_t t81 = t77 * t80;
-    const ariane4_real_t t82 = ARIANE4_C(2.0) * t81; /* link j4: motion */
-    const ariane4_real_t t83 = t80 * t76; /* link j3: motion */
+    const ariane4_real_t t73 = t14 * dq[0]; /* link j2: motion */
+    const ariane4_real_t t74 = t15 * dq[0];
+    const ariane4_real_t t75 = t0 * t73 - t1 * t74; /* link j3: motion */
+    const ariane4_real_t t76 = dq[1] + dq[2];
+    const ariane4_real_t t77 = t76 * t75;
+    const ariane4_real_t t78 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const ariane4_real_t t79 = t1 * t73 + t0 * t74; /* link j3: motion */
+    const ariane4_real_t t80 = t76 * t79;
+    const ariane4_real_t t81 = ARIANE4_C(2.0) * t80; /* link j4: motion */
+    const ariane4_real_t t82 = t79 * t75; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t84 = parameters[XX3] * t78 + t78 * t79 + parameters[XY3] * t82
-        + parameters[XZ3] * t83;
-    const ariane4_real_t t85 = t76 * t76; /* link j3: motion */
-    const ariane4_real_t t86 = t77 * t77;
-    const ariane4_real_t t87 = t86 - t85; /* link j3: force and moment */
-    const ariane4_real_t t88 = dq[0] * dq[0]; /* link j1: motion */
-    const ariane4_real_t t89 = ARIANE4_C(-0.116) * t88; /* link j2: motion */
-    const ariane4_real_t t90 = t15 * t89 + ARIANE4_C(9.81) * t14;
-    const ariane4_real_t t91 = t75 * t75;
-    const ariane4_real_t t92 = dq[1] * dq[1];
-    const ariane4_real_t t93 = t90 + ARIANE4_C(-0.443) * (t91 + t92); /* link j3: motion */
-    const ariane4_real_t t94 = t0 * t93;
-    const ariane4_real_t t95 = t14 * t89 + ARIANE4_C(-9.81) * t15; /* link j2: motion */
-    const ariane4_real_t t96 = t74 * t75;
-    const ariane4_real_t t97 = t95 + ARIANE4_C(-0.443) * t96; /* link j3: motion */
-    const ariane4_real_t t98 = t94 + t1 * t97;
-    const ariane4_real_t t99 = dq[1] * t74; /* link j2: motion */
-    const ariane4_real_t t100 = ARIANE4_C(0.886) * t99; /* link j3: motion */
+    const ariane4_real_t t83 = parameters[XX3] * t77 + t77 * t78 + parameters[XY3] * t81
+        + parameters[XZ3] * t82;
+    const ariane4_real_t t84 = t75 * t75; /* link j3: motion */
+    const ariane4_real_t t85 = t76 * t76;
+    const ariane4_real_t t86 = t85 - t84; /* link j3: force and moment */
+    const ariane4_real_t t87 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_real_t t88 = ARIANE4_C(-0.116) * t87; /* link j2: motion */
+    const ariane4_real_t t89 = t15 * t88 + ARIANE4_C(9.81) * t14;
+    const ariane4_real_t t90 = t74 * t74;
+    const ariane4_real_t t91 = dq[1] * dq[1];
+    const ariane4_real_t t92 = t89 + ARIANE4_C(-0.443) * (t90 + t91); /* link j3: motion */
+    const ariane4_real_t t93 = t0 * t92;
+    const ariane4_real_t t94 = t14 * t88 + ARIANE4_C(-9.81) * t15; /* link j2: motion */
+    const ariane4_real_t t95 = t73 * t74;
+    const ariane4_real_t t96 = t94 + ARIANE4_C(-0.443) * t95; /* link j3: motion */
+    const ariane4_real_t t97 = t93 + t1 * t96;
+    const ariane4_real_t t98 = dq[1] * t73; /* link j2: motion */
+    const ariane4_real_t t99 = ARIANE4_C(0.886) * t98; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t101 = t84 + parameters[YZ3] * t87 - (parameters[MY3] * t100
-        + parameters[MZ3] * t98);
-    const ariane4_real_t t102 = t80 * t80; /* link j3: motion */
-    const ariane4_real_t t103 = t86 + t102; /* link j4: motion */
-    const ariane4_real_t t104 = t98 + (ARIANE4_C(-0.1) * t83 + ARIANE4_C(0.436) * t103);
-    const ariane4_real_t t105 = t100 - (ARIANE4_C(0.2) * t81 + ARIANE4_C(0.872) * t78);
-    const ariane4_real_t t106 = parameters[YY4] - parameters[ZZ4]; /* link j4: force and moment */
-    const ariane4_real_t t107 = parameters[XX4] * t78 + t78 * t106 - parameters[XY4] * t83
-        + parameters[XZ4] * t82;
-    const ariane4_real_t t108 = t107 - parameters[YZ4] * t87 + (parameters[MY4] * t104
-        - parameters[MZ4] * t105);
-    const ariane4_real_t t109 = t102 + t85; /* link j4: motion */
-    const ariane4_real_t t110 = ARIANE4_C(-2.0) * t78;
+    const ariane4_real_t t100 = t83 + parameters[YZ3] * t86 - (parameters[MY3] * t99 + parameters[MZ3] * t97);
+    const ariane4_real_t t101 = t79 * t79; /* link j3: motion */
+    const ariane4_real_t t102 = t85 + t101; /* link j4: motion */
+    const ariane4_real_t t103 = t97 + (ARIANE4_C(-0.1) * t82 + ARIANE4_C(0.436) * t102);
+    const ariane4_real_t t104 = t99 - (ARIANE4_C(0.2) * t80 + ARIANE4_C(0.872) * t77);
+    const ariane4_real_t t105 = parameters[YY4] - parameters[ZZ4]; /* link j4: force and moment */
+    const ariane4_real_t t106 = parameters[XX4] * t77 + t77 * t105 - parameters[XY4] * t82
+        + parameters[XZ4] * t81;
+    const ariane4_real_t t107 = t106 - parameters[YZ4] * t86 + (parameters[MY4] * t103
+        - parameters[MZ4] * t104);
+    const ariane4_real_t t108 = t101 + t84; /* link j4: motion */
+    const ariane4_real_t t109 = ARIANE4_C(-2.0) * t77;
     /* link j4: force and moment */
-    const ariane4_real_t t111 = parameters[M4] * t105 + (parameters[MX4] * t82 + parameters[MY4] * t109
-        + parameters[MZ4] * t110);
-    const ariane4_real_t t112 = t101 + (t108 + ARIANE4_C(-0.436) * t111); /* link j4: what it passes on */
-    const ariane4_real_t t113 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
-    const ariane4_real_t t114 = parameters[YY3] * t81 + t81 * t113 - parameters[XY3] * t110
-        - parameters[YZ3] * t83;
-    const ariane4_real_t t115 = t86 - t102;
-    const ariane4_real_t t116 = t1 * t93; /* link j3: motion */
-    const ariane4_real_t t117 = t0 * t97 - t116;
+    const ariane4_real_t t110 = parameters[M4] * t104 + (parameters[MX4] * t81 + parameters[MY4] * t108
+        + parameters[MZ4] * t109);
+    const ariane4_real_t t111 = t100 + (t107 + ARIANE4_C(-0.436) * t110); /* link j4: what it passes on */
+    const ariane4_real_t t112 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
+    const ariane4_real_t t113 = parameters[YY3] * t80 + t80 * t112 - parameters[XY3] * t109
+        - parameters[YZ3] * t82;
+    const ariane4_real_t t114 = t85 - t101;
+    const ariane4_real_t t115 = t1 * t92; /* link j3: motion */
+    const ariane4_real_t t116 = t0 * t96 - t115;
     /* link j3: force and moment */
-    const ariane4_real_t t118 = t114 - parameters[XZ3] * t115 + (parameters[MZ3] * t117
-        + parameters[MX3] * t100);
-    const ariane4_real_t t119 = t86 + t85; /* link j4: motion */
-    const ariane4_real_t t120 = t117 - (ARIANE4_C(0.1) * t119 - ARIANE4_C(0.436) * t83);
-    const ariane4_real_t t121 = parameters[YY4] - parameters[XX4]; /* link j4: force and moment */
-    const ariane4_real_t t122 = parameters[ZZ4] * t81 + t81 * t121 + parameters[YZ4] * t83
-        - parameters[XZ4] * t110;
-    const ariane4_real_t t123 = t122 + parameters[XY4] * t115 + (parameters[MX4] * t105
-        - parameters[MY4] * t120);
-    const ariane4_real_t t124 = t118 + (t123 - ARIANE4_C(0.1) * t111); /* link j4: what it passes on */
-    const ariane4_real_t t125 = dq[1] * t75; /* link j2: motion */
-    const ariane4_real_t t126 = t125 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
-    const ariane4_real_t t127 = ARIANE4_C(2.0) * t99; /* link j2: motion */
+    const ariane4_real_t t117 = t113 - parameters[XZ3] * t114 + (parameters[MZ3] * t116
+        + parameters[MX3] * t99);
+    const ariane4_real_t t118 = t85 + t84; /* link j4: motion */
+    const ariane4_real_t t119 = t116 - (ARIANE4_C(0.1) * t118 - ARIANE4_C(0.436) * t82);
+    const ariane4_real_t t120 = parameters[YY4] - parameters[XX4]; /* link j4: force and moment */
+    const ariane4_real_t t121 = parameters[ZZ4] * t80 + t80 * t120 + parameters[YZ4] * t82
+        - parameters[XZ4] * t109;
+    const ariane4_real_t t122 = t121 + parameters[XY4] * t114 + (parameters[MX4] * t104
+        - parameters[MY4] * t119);
+    const ariane4_real_t t123 = t117 + (t122 - ARIANE4_C(0.1) * t110); /* link j4: what it passes on */
+    const ariane4_real_t t124 = dq[1] * t74; /* link j2: motion */
+    const ariane4_real_t t125 = t124 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const ariane4_real_t t126 = ARIANE4_C(2.0) * t98; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_real_t t128 = t126 - t125 * parameters[XX2] + t127 * parameters[XY2]
-        - t96 * parameters[XZ2];
-    const ariane4_real_t t129 = (t91 - t92) * parameters[YZ2];
-    const ariane4_real_t t130 = t95 * parameters[MZ2];
-    const ariane4_real_t t131 = t128 - t129 - t130 + (t1 * t112 - t0 * t124); /* link j3: what it passes on */
+    const ariane4_real_t t127 = t125 - t124 * parameters[XX2] + t126 * parameters[XY2]
+        - t95 * parameters[XZ2];
+    const ariane4_real_t t128 = (t90 - t91) * parameters[YZ2];
+    const ariane4_real_t t129 = t94 * parameters[MZ2];
+    const ariane4_real_t t130 = t127 - t128 - t129 + (t1 * t111 - t0 * t123); /* link j3: what it passes on */
     /* link j3: force and moment */
-    const ariane4_real_t t132 = parameters[M3] * t100 + (parameters[MX3] * t82 + parameters[MY3] * t110
-        - parameters[MZ3] * t109);
-    const ariane4_real_t t133 = t132 + t111; /* link j4: what it passes on */
-    const ariane4_real_t t134 = t99 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
-    const ariane4_real_t t135 = ARIANE4_C(2.0) * t125; /* link j2: motion */
+    const ariane4_real_t t131 = parameters[M3] * t99 + (parameters[MX3] * t81 + parameters[MY3] * t109
+        - parameters[MZ3] * t108);
+    const ariane4_real_t t132 = t131 + t110; /* link j4: what it passes on */
+    const ariane4_real_t t133 = t98 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
+    const ariane4_real_t t134 = ARIANE4_C(2.0) * t124; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_real_t t136 = t99 * parameters[YY2] + t134 - t135 * parameters[XY2] + t96 * parameters[YZ2];
-    const ariane4_real_t t137 = t74 * t74; /* link j2: motion */
-    const ariane4_real_t t138 = (t137 - t92) * parameters[XZ2]; /* link j2: force and moment */
-    const ariane4_real_t t139 = t90 * parameters[MZ2];
+    const ariane4_real_t t135 = t98 * parameters[YY2] + t133 - t134 * parameters[XY2] + t95 * parameters[YZ2];
+    const ariane4_real_t t136 = t73 * t73; /* link j2: motion */
+    const ariane4_real_t t137 = (t136 - t91) * parameters[XZ2]; /* link j2: force and moment */
+    const ariane4_real_t t138 = t89 * parameters[MZ2];
     /* link j3: what it passes on */
-    const ariane4_real_t t140 = t136 + t138 - t139 + (t0 * t112 + t1 * t124 + ARIANE4_C(0.443) * t133);
-    const ariane4_real_t t141 = t137 + t91; /* link j3: motion */
-    const ariane4_real_t t142 = t141 * parameters[MZ2]; /* link j2: force and moment */
+    const ariane4_real_t t139 = t135 + t137 - t138 + (t0 * t111 + t1 * t123 + ARIANE4_C(0.443) * t132);
+    const ariane4_real_t t140 = t136 + t90; /* link j3: motion */
+    const ariane4_real_t t141 = t140 * parameters[MZ2]; /* link j2: force and moment */
     /* link j2: what it passes on */
-    const ariane4_real_t t143 = ARIANE4_C(0.116) * (t127 * parameters[MX2] + t135 * parameters[MY2] - t142
-        + t133);
-    const ariane4_real_t t144 = t58 * dq[0];
-    const ariane4_real_t t145 = ariane4_sign(t144); /* joint j1: coulomb_friction */
-    const ariane4_real_t t146 = ARIANE4_C(72.7913960548305) * (t56 * t56); /* joint j1: drive */
-    const ariane4_real_t t147 = t53 * t53;
-    const ariane4_real_t t148 = ARIANE4_C(3885.523436256565) * t54 + t146 * t147;
-    const ariane4_real_t t149 = t56 * t148;
-    const ariane4_real_t t150 = t144 * parameters[FV1] + t145 * parameters[FC1]
-        + t149 * t88 * parameters[IA1];
-    const ariane4_real_t t151 = t14 * t131 + t15 * t140 + t143 - t58 * t150;
-    const ariane4_real_t t152 = ARIANE4_C(0.004) * t58;
-    const ariane4_real_t t153 = t102 - t85; /* link j3: force and moment */
-    const ariane4_real_t t154 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
-    const ariane4_real_t t155 = parameters[XZ4] * t153 - t83 * t154 + (parameters[MZ4] * t120
-        - parameters[MX4] * t104);
-    const ariane4_real_t t156 = parameters[M4] * t104 + (parameters[MX4] * t83 + parameters[MZ4] * t103);
-    const ariane4_real_t t157 = parameters[M4] * t120 + (parameters[MX4] * t119 + parameters[MZ4] * t83);
-    const ariane4_real_t t158 = parameters[YY3] - parameters[XX3]; /* link j3: force and moment */
-    const ariane4_real_t t159 = parameters[XY3] * t153 - t83 * t158 + (parameters[MY3] * t117
-        - parameters[MX3] * t98);
+    const ariane4_real_t t142 = ARIANE4_C(0.116) * (t126 * parameters[MX2] + t134 * parameters[MY2] - t141
+        + t132);
+    const ariane4_real_t t143 = t57 * dq[0];
+    const ariane4_real_t t144 = ariane4_sign(t143); /* joint j1: coulomb_friction */
+    const ariane4_real_t t145 = ARIANE4_C(72.7913960548305) * (t55 * t55); /* joint j1: drive */
+    const ariane4_real_t t146 = t52 * t52;
+    const ariane4_real_t t147 = ARIANE4_C(3885.523436256565) * t53 + t145 * t146;
+    const ariane4_real_t t148 = t55 * t147;
+    const ariane4_real_t t149 = t143 * parameters[FV1] + t144 * parameters[FC1]
+        + t148 * t87 * parameters[IA1];
+    const ariane4_real_t t150 = t14 * t130 + t15 * t139 + t142 - t57 * t149;
+    const ariane4_real_t t151 = ARIANE4_C(0.004) * t57;
+    const ariane4_real_t t152 = t101 - t84; /* link j3: force and moment */
+    const ariane4_real_t t153 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
+    const ariane4_real_t t154 = parameters[XZ4] * t152 - t82 * t153 + (parameters[MZ4] * t119
+        - parameters[MX4] * t103);
+    const ariane4_real_t t155 = parameters[M4] * t103 + (parameters[MX4] * t82 + parameters[MZ4] * t102);
+    const ariane4_real_t t156 = parameters[M4] * t119 + (parameters[MX4] * t118 + parameters[MZ4] * t82);
+    const ariane4_real_t t157 = parameters[YY3] - parameters[XX3]; /* link j3: force and moment */
+    const ariane4_real_t t158 = parameters[XY3] * t152 - t82 * t157 + (parameters[MY3] * t116
+        - parameters[MX3] * t97);
     /* link j4: what it passes on */
-    const ariane4_real_t t160 = t159 + (t155 - (ARIANE4_C(-0.1) * t156 - ARIANE4_C(0.436) * t157));
-    const ariane4_real_t t161 = t7 * dq[2];
-    const ariane4_real_t t162 = ariane4_sign(t161); /* joint j3: coulomb_friction */
-    const ariane4_real_t t163 = ARIANE4_C(188.12627071923498) * (t5 * t5); /* joint j3: drive */
-    const ariane4_real_t t164 = t2 * t2;
-    const ariane4_real_t t165 = ARIANE4_C(7124.375926654358) * t3 + t163 * t164;
-    const ariane4_real_t t166 = t5 * t165;
-    const ariane4_real_t t167 = dq[2] * dq[2];
-    const ariane4_real_t t168 = t161 * parameters[FV3] + t162 * parameters[FC3]
-        + t166 * t167 * parameters[IA3];
-    const ariane4_real_t t169 = ARIANE4_C(0.003) * t7;
-    const ariane4_real_t t170 = input[2] * t169 + (t7 * t168 + t160);
+    const ariane4_real_t t159 = t158 + (t154 - (ARIANE4_C(-0.1) * t155 - ARIANE4_C(0.436) * t156));
+    const ariane4_real_t t160 = t7 * dq[2];
+    const ariane4_real_t t161 = ariane4_sign(t160); /* joint j3: coulomb_friction */
+    const ariane4_real_t t162 = ARIANE4_C(188.12627071923498) * (t5 * t5); /* joint j3: drive */
+    const ariane4_real_t t163 = t2 * t2;
+    const ariane4_real_t t164 = ARIANE4_C(7124.375926654358) * t3 + t162 * t163;
+    const ariane4_real_t t165 = t5 * t164;
+    const ariane4_real_t t166 = dq[2] * dq[2];
+    const ariane4_real_t t167 = t160 * parameters[FV3] + t161 * parameters[FC3]
+        + t165 * t166 * parameters[IA3];
+    const ariane4_real_t t168 = ARIANE4_C(0.003) * t7;
+    const ariane4_real_t t169 = input[2] * t168 + (t7 * t167 + t159);
     /* link j4: what it passes on */
-    const ariane4_real_t t171 = parameters[M3] * t117 + (parameters[MX3] * t119 + parameters[MY3] * t83)
-        + t157;
-    const ariane4_real_t t172 = parameters[M3] * t98 + (parameters[MX3] * t83 + parameters[MY3] * t103)
+    const ariane4_real_t t170 = parameters[M3] * t116 + (parameters[MX3] * t118 + parameters[MY3] * t82)
         + t156;
-    const ariane4_real_t t173 = (t91 - t137) * parameters[XY2]; /* link j2: force and moment */
-    const ariane4_real_t t174 = t96 * (parameters[XX2] - parameters[YY2]);
-    const ariane4_real_t t175 = t95 * parameters[MX2] + t90 * parameters[MY2];
+    const ariane4_real_t t171 = parameters[M3] * t97 + (parameters[MX3] * t82 + parameters[MY3] * t102)
+        + t155;
+    const ariane4_real_t t172 = (t90 - t136) * parameters[XY2]; /* link j2: force and moment */
+    const ariane4_real_t t173 = t95 * (parameters[XX2] - parameters[YY2]);
+    const ariane4_real_t t174 = t94 * parameters[MX2] + t89 * parameters[MY2];
     /* link j3: what it passes on */
-    const ariane4_real_t t176 = t174 + t173 + t175 - (t160 - ARIANE4_C(0.443) * (t0 * t171 + t1 * t172));
-    const ariane4_real_t t177 = t21 * dq[1];
-    const ariane4_real_t t178 = ariane4_sign(t177); /* joint j2: coulomb_friction */
-    const ariane4_real_t t179 = ARIANE4_C(-104.12987373940295) * (t19 * t19); /* joint j2: drive */
-    const ariane4_real_t t180 = t16 * t16;
-    const ariane4_real_t t181 = ARIANE4_C(-2656.3065671641784) * t17 + t179 * t180;
-    const ariane4_real_t t182 = t19 * t181;
-    const ariane4_real_t t183 = t177 * parameters[FV2] + t178 * parameters[FC2]
-        + t182 * t92 * parameters[IA2];
-    const ariane4_real_t t184 = ARIANE4_C(-0.012) * t21;
-    const ariane4_real_t t185 = t170 * t34 - (t21 * t183 - t176 - t184 * input[1]);
-    const ariane4_real_t t186 = t151 - input[0] * t152 + t170 * t65 - t185 * t71;
-    const ariane4_real_t t187 = ARIANE4_C(1.0) / t72;
-    const ariane4_real_t t188 = ariane4_bounded(t186 * t187);
-    ddq[0] = t188;
-    const ariane4_real_t t189 = ariane4_bounded(t185 * t66 - t71 * t188);
-    ddq[1] = t189;
-    const ariane4_real_t t190 = ariane4_bounded(t170 * t32 - t65 * t188 - t34 * t189);
-    ddq[2] = t190;
-    const ariane4_real_t t191 = ARIANE4_C(-0.116) * t188;
-    const ariane4_real_t t192 = t15 * t188;
-    const ariane4_real_t t193 = t99 - t192;
-    const ariane4_real_t t194 = t99 + t193;
-    const ariane4_real_t t195 = t191 + ARIANE4_C(0.443) * t194;
-    const ariane4_real_t t196 = t15 * t1 - t14 * t0; /* link j3: motion */
-    const ariane4_real_t t197 = t196 * t188;
-    const ariane4_real_t t198 = t14 * t1 + t15 * t0;
-    const ariane4_real_t t199 = dq[0] * t198;
-    const ariane4_real_t t200 = t199 * t77;
-    const ariane4_real_t t201 = t200 - t197;
-    const ariane4_real_t t202 = t200 + t201;
-    const ariane4_real_t t203 = t198 * t188;
-    const ariane4_real_t t204 = dq[0] * t196;
-    const ariane4_real_t t205 = t204 * t77;
-    const ariane4_real_t t206 = t205 + t203;
-    const ariane4_real_t t207 = t205 + t206;
-    const ariane4_real_t t208 = t195 + (ARIANE4_C(-0.1) * t202 + ARIANE4_C(0.436) * t207);
-    const ariane4_real_t t209 = t189 + t190;
-    const ariane4_real_t t210 = t199 * t204;
-    const ariane4_real_t t211 = t210 + t209;
-    const ariane4_real_t t212 = t199 * t199;
-    const ariane4_real_t t213 = t212 + t86; /* link j4: motion */
-    const ariane4_real_t t214 = t96 + t189;
-    const ariane4_real_t t215 = ARIANE4_C(0.443) * t214 - t95;
-    const ariane4_real_t t216 = t94 - t1 * t215;
-    const ariane4_real_t t217 = t216 + (ARIANE4_C(0.436) * t213 + ARIANE4_C(0.1) * t211);
-    const ariane4_real_t t218 = parameters[XY4] * t211 - (t205 * t106 + parameters[XX4] * t206)
-        + parameters[XZ4] * t202;
-    const ariane4_real_t t219 = t204 * t204; /* link j3: motion */
-    const ariane4_real_t t220 = t219 - t86; /* link j3: columns */
-    const ariane4_real_t t221 = t220 * parameters[YZ4] + t218 - (parameters[MZ4] * t208
-        - parameters[MY4] * t217);
-    const ariane4_real_t t222 = t212 + t219; /* link j4: motion */
-    const ariane4_real_t t223 = parameters[M4] * t208 + (t222 * parameters[MY4] + parameters[MX4] * t202
-        + parameters[MZ4] * t207);
-    const ariane4_real_t t224 = t205 * t79 + parameters[XX3] * t206 - parameters[XY3] * t202
-        + parameters[XZ3] * t211;
-    const ariane4_real_t t225 = parameters[MY3] * t195 + parameters[MZ3] * t216 + (t220 * parameters[YZ3]
-        + t224);
-    const ariane4_real_t t226 = t225 - (t221 - ARIANE4_C(0.436) * t223);
-    const ariane4_real_t t227 = t210 - t209;
-    const ariane4_real_t t228 = t219 + t86;
-    const ariane4_real_t t229 = t116 + t0 * t215;
-    const ariane4_real_t t230 = t229 + (ARIANE4_C(0.1) * t228 + ARIANE4_C(0.436) * t227);
-    const ariane4_real_t t231 = t200 * t121 + parameters[ZZ4] * t201 - parameters[YZ4] * t227
-        - parameters[XZ4] * t207;
-    const ariane4_real_t t232 = t212 - t86; /* link j3: columns */
-    const ariane4_real_t t233 = t231 - t232 * parameters[XY4] + (parameters[MX4] * t208
-        + parameters[MY4] * t230);
-    const ariane4_real_t t234 = t200 * t113 + parameters[YY3] * t201 - parameters[XY3] * t207
-        + parameters[YZ3] * t227;
-    const ariane4_real_t t235 = parameters[MX3] * t195 - parameters[MZ3] * t229 + (t232 * parameters[XZ3]
-        + t234);
-    const ariane4_real_t t236 = t235 + (t233 + ARIANE4_C(-0.1) * t223);
-    const ariane4_real_t t237 = t14 * t188;
-    const ariane4_real_t t238 = t125 + t237;
-    const ariane4_real_t t239 = parameters[XX2] * t238 - t126 - parameters[XY2] * t194
-        + parameters[XZ2] * t214;
-    const ariane4_real_t t240 = t129 + t239 + (t130 + parameters[MY2] * t191) + (t1 * t226 + t0 * t236);
-    const ariane4_real_t t241 = parameters[M3] * t195 + (parameters[MX3] * t202 + parameters[MY3] * t207
-        - t222 * parameters[MZ3]);
-    const ariane4_real_t t242 = t241 + t223;
-    const ariane4_real_t t243 = t125 + t238;
-    const ariane4_real_t t244 = t134 + parameters[YY2] * t193 - parameters[XY2] * t243
-        + parameters[YZ2] * (t96 - t189);
-    const ariane4_real_t t245 = t138 + t244 + (parameters[MX2] * t191 - t139) + (t1 * t236 - t0 * t226
-        + ARIANE4_C(0.443) * t242);
-    const ariane4_real_t t246 = parameters[M2] * t191 + (parameters[MX2] * t194 + parameters[MY2] * t243
-        - t142);
-    const ariane4_real_t t247 = t15 * t245 - t14 * t240 + ARIANE4_C(0.116) * (t246 + t242);
-    const ariane4_real_t t248 = ARIANE4_C(0.06434139546481742) * t55 / t53; /* joint j1: drive */
-    const ariane4_real_t t249 = ariane4_select(t55, t55, ARIANE4_C(1.0));
-    const ariane4_real_t t250 = ARIANE4_C(1.0) / t249;
-    const ariane4_real_t t251 = ARIANE4_C(0.037468) * t53;
-    const ariane4_real_t t252 = ARIANE4_C(1.0) / t53;
-    const ariane4_real_t t253 = t252 * (t54 * t248
-        + ARIANE4_C(0.06434139546481742) * (t251 * (ARIANE4_C(0.5) * t250)));
-    const ariane4_real_t t254 = t56 * (t56 * (t251 * (ARIANE4_C(0.5) * t56)));
-    const ariane4_real_t t255 = t54 * t57 + t53 * (ARIANE4_C(3885.523436256565) * t254);
-    const ariane4_real_t t256 = t147 * (ARIANE4_C(145.582792109661) * (t56 * t254))
-        + t146 * (ARIANE4_C(2.0) * (t53 * t54));
-    const ariane4_real_t t257 = t88 * (t148 * t254 + t56 * (ARIANE4_C(-3885.523436256565) * t53 + t256));
-    const ariane4_real_t t258 = parameters[FV1] * (dq[0] * t255) + parameters[IA1] * (t257 + t188 * t255);
-    const ariane4_real_t t259 = ARIANE4_C(250.0) * t258 + t253 * (t247 - parameters[ZZ1] * t188);
-    const ariane4_real_t t260 = t152 * t187;
-    ddq_by_q[0] = -(t260 * t259);
-    const ariane4_real_t t261 = t71 * t187;
-    const ariane4_real_t t262 = ariane4_bounded(t152 * t261);
-    ddq_by_q[3] = t262 * t259;
-    const ariane4_real_t t263 = t187 * (t65 - t34 * t71);
-    const ariane4_real_t t264 = ariane4_bounded(t152 * t263);
-    ddq_by_q[6] = t264 * t259;
-    const ariane4_real_t t265 = ARIANE4_C(-0.436) * t77; /* link j4: velocity of its origin */
-    const ariane4_real_t t266 = t24 * t265; /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t267 = ARIANE4_C(0.1) * t77; /* link j4: velocity of its origin */
-    const ariane4_real_t t268 = t22 * t267; /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t269 = ARIANE4_C(0.436) * t199 - ARIANE4_C(-0.1) * t204;
-    const ariane4_real_t t270 = parameters[MY4] * t269;
-    const ariane4_real_t t271 = t77 * parameters[MZ4] + t204 * parameters[MY4];
-    const ariane4_real_t t272 = ARIANE4_C(0.1) * t271;
-    const ariane4_real_t t273 = t199 * parameters[MY4] + t77 * parameters[MX4];
-    const ariane4_real_t t274 = ARIANE4_C(0.436) * t273;
-    const ariane4_real_t t275 = t272 + t274 - (t266 + t268 + t270);
-    const ariane4_real_t t276 = t204 * parameters[XY4];
-    const ariane4_real_t t277 = t77 * parameters[XZ4];
-    const ariane4_real_t t278 = t204 * parameters[XZ3];
-    const ariane4_real_t t279 = t77 * parameters[XY3];
-    const ariane4_real_t t280 = t278 - t279 + (t275 + (t266 - t272 - (t277 + t276)));
-    const ariane4_real_t t281 = t199 * parameters[YZ4];
-    const ariane4_real_t t282 = t199 * parameters[YZ3];
-    const ariane4_real_t t283 = t279 - t282 + (t275 + (t277 + t281 - (t274 - t268)));
-    const ariane4_real_t t284 = ARIANE4_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const ariane4_real_t t285 = parameters[ZZ4] - t284;
-    const ariane4_real_t t286 = t77 * t285 + t204 * parameters[YZ4] + (ARIANE4_C(-0.436) * t271 + t22 * t265);
-    const ariane4_real_t t287 = ARIANE4_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const ariane4_real_t t288 = parameters[YY3] - t287;
-    const ariane4_real_t t289 = t77 * t288 - t204 * parameters[YZ3] + t286;
-    const ariane4_real_t t290 = parameters[XX4] - t284;
-    const ariane4_real_t t291 = t199 * parameters[XY4] + t77 * t290 + (ARIANE4_C(0.1) * t273 - t24 * t267);
-    const ariane4_real_t t292 = parameters[XX3] - t287;
-    const ariane4_real_t t293 = t77 * t292 - t199 * parameters[XZ3] + t291;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t294 = t1 * (t280 - t283) + t0 * (t289 - t293);
-    const ariane4_real_t t295 = t1 * t294;
+    const ariane4_real_t t175 = t173 + t172 + t174 - (t159 - ARIANE4_C(0.443) * (t0 * t170 + t1 * t171));
+    const ariane4_real_t t176 = t21 * dq[1];
+    const ariane4_real_t t177 = ariane4_sign(t176); /* joint j2: coulomb_friction */
+    const ariane4_real_t t178 = ARIANE4_C(-104.12987373940295) * (t19 * t19); /* joint j2: drive */
+    const ariane4_real_t t179 = t16 * t16;
+    const ariane4_real_t t180 = ARIANE4_C(-2656.3065671641784) * t17 + t178 * t179;
+    const ariane4_real_t t181 = t19 * t180;
+    const ariane4_real_t t182 = t176 * parameters[FV2] + t177 * parameters[FC2]
+        + t181 * t91 * parameters[IA2];
+    const ariane4_real_t t183 = ARIANE4_C(0.012) * t21;
+    const ariane4_real_t t184 = t169 * t34 - (t183 * input[1] + (t21 * t182 - t175));
+    const ariane4_real_t t185 = t150 - input[0] * t151 + t169 * t64 - t184 * t70;
+    const ariane4_real_t t186 = ARIANE4_C(1.0) / t71;
+    const ariane4_real_t t187 = ariane4_held(t185 * t186);
+    ddq[0] = t187;
+    const ariane4_real_t t188 = ariane4_held(t184 * t65 - t70 * t187);
+    ddq[1] = t188;
+    const ariane4_real_t t189 = ariane4_held(t169 * t32 - t64 * t187 - t34 * t188);
+    ddq[2] = t189;
+    const ariane4_real_t t190 = ARIANE4_C(-0.116) * t187;
+    const ariane4_real_t t191 = t15 * t187;
+    const ariane4_real_t t192 = t98 - t191;
+    const ariane4_real_t t193 = t98 + t192;
+    const ariane4_real_t t194 = t190 + ARIANE4_C(0.443) * t193;
+    const ariane4_real_t t195 = t15 * t1 - t14 * t0; /* link j3: motion */
+    const ariane4_real_t t196 = t195 * t187;
+    const ariane4_real_t t197 = t14 * t1 + t15 * t0;
+    const ariane4_real_t t198 = dq[0] * t197;
+    const ariane4_real_t t199 = t198 * t76;
+    const ariane4_real_t t200 = t199 - t196;
+    const ariane4_real_t t201 = t199 + t200;
+    const ariane4_real_t t202 = t197 * t187;
+    const ariane4_real_t t203 = dq[0] * t195;
+    const ariane4_real_t t204 = t203 * t76;
+    const ariane4_real_t t205 = t204 + t202;
+    const ariane4_real_t t206 = t204 + t205;
+    const ariane4_real_t t207 = t194 + (ARIANE4_C(-0.1) * t201 + ARIANE4_C(0.436) * t206);
+    const ariane4_real_t t208 = t188 + t189;
+    const ariane4_real_t t209 = t198 * t203;
+    const ariane4_real_t t210 = t209 - t208;
+    const ariane4_real_t t211 = t203 * t203;
+    const ariane4_real_t t212 = t211 + t85; /* link j4: motion */
+    const ariane4_real_t t213 = t95 + t188;
+    const ariane4_real_t t214 = ARIANE4_C(0.443) * t213 - t94;
+    const ariane4_real_t t215 = t115 + t0 * t214;
+    const ariane4_real_t t216 = t215 + (ARIANE4_C(0.1) * t212 + ARIANE4_C(0.436) * t210);
+    const ariane4_real_t t217 = t199 * t120 + parameters[ZZ4] * t200 - parameters[YZ4] * t210
+        - parameters[XZ4] * t206;
+    const ariane4_real_t t218 = t198 * t198; /* link j3: motion */
+    const ariane4_real_t t219 = t218 - t85; /* link j3: columns */
+    const ariane4_real_t t220 = t217 - t219 * parameters[XY4] + (parameters[MX4] * t207
+        + parameters[MY4] * t216);
+    const ariane4_real_t t221 = t218 + t211; /* link j4: motion */
+    const ariane4_real_t t222 = parameters[M4] * t207 + (t221 * parameters[MY4] + parameters[MX4] * t201
+        + parameters[MZ4] * t206);
+    const ariane4_real_t t223 = t199 * t112 + parameters[YY3] * t200 - parameters[XY3] * t206
+        + parameters[YZ3] * t210;
+    const ariane4_real_t t224 = parameters[MX3] * t194 - parameters[MZ3] * t215 + (t219 * parameters[XZ3]
+        + t223);
+    const ariane4_real_t t225 = t224 + (t220 + ARIANE4_C(-0.1) * t222);
+    const ariane4_real_t t226 = ARIANE4_C(-0.436) * t76; /* link j4: velocity of its origin */
+    const ariane4_real_t t227 = t24 * t226; /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t228 = ARIANE4_C(0.1) * t76; /* link j4: velocity of its origin */
+    const ariane4_real_t t229 = t22 * t228; /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t230 = ARIANE4_C(0.436) * t198 - ARIANE4_C(-0.1) * t203;
+    const ariane4_real_t t231 = parameters[MY4] * t230;
+    const ariane4_real_t t232 = t76 * parameters[MZ4] + t203 * parameters[MY4];
+    const ariane4_real_t t233 = ARIANE4_C(0.1) * t232;
+    const ariane4_real_t t234 = t198 * parameters[MY4] + t76 * parameters[MX4];
+    const ariane4_real_t t235 = ARIANE4_C(0.436) * t234;
+    const ariane4_real_t t236 = t233 + t235 - (t227 + t229 + t231);
+    const ariane4_real_t t237 = t203 * parameters[XY4];
+    const ariane4_real_t t238 = t76 * parameters[XZ4];
+    const ariane4_real_t t239 = t203 * parameters[XZ3];
+    const ariane4_real_t t240 = t76 * parameters[XY3];
+    const ariane4_real_t t241 = t239 - t240 + (t236 + (t227 - t233 - (t238 + t237)));
+    const ariane4_real_t t242 = ARIANE4_C(-2.0) * t203;
+    const ariane4_real_t t243 = ARIANE4_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const ariane4_real_t t244 = parameters[ZZ4] - t243;
+    const ariane4_real_t t245 = t76 * t244 + t203 * parameters[YZ4] + (ARIANE4_C(-0.436) * t232 + t22 * t226);
+    const ariane4_real_t t246 = ARIANE4_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const ariane4_real_t t247 = parameters[YY3] - t246;
+    const ariane4_real_t t248 = t76 * t247 - t203 * parameters[YZ3] + t245;
+    const ariane4_real_t t249 = ARIANE4_C(-2.0) * t198;
+    const ariane4_real_t t250 = t221 * t59 + (t36 * t196 - t38 * t202) - (t242 * t241 + t249 * t248);
+    const ariane4_real_t t251 = t225 + (t250 - t66 * t215);
+    const ariane4_real_t t252 = t209 + t208;
+    const ariane4_real_t t253 = t218 + t85; /* link j4: motion */
+    const ariane4_real_t t254 = t93 - t1 * t214;
+    const ariane4_real_t t255 = t254 + (ARIANE4_C(0.436) * t253 + ARIANE4_C(0.1) * t252);
+    const ariane4_real_t t256 = parameters[XY4] * t252 - (t204 * t105 + parameters[XX4] * t205)
+        + parameters[XZ4] * t201;
+    const ariane4_real_t t257 = t211 - t85; /* link j3: columns */
+    const ariane4_real_t t258 = t257 * parameters[YZ4] + t256 - (parameters[MZ4] * t207
+        - parameters[MY4] * t255);
+    const ariane4_real_t t259 = t204 * t78 + parameters[XX3] * t205 - parameters[XY3] * t201
+        + parameters[XZ3] * t252;
+    const ariane4_real_t t260 = parameters[MY3] * t194 + parameters[MZ3] * t254 + (t257 * parameters[YZ3]
+        + t259);
+    const ariane4_real_t t261 = t260 - (t258 - ARIANE4_C(0.436) * t222);
+    const ariane4_real_t t262 = parameters[XX4] - t243;
     /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t296 = t77 * parameters[MY3] - t204 * parameters[MZ3] + (t271
-        - parameters[M4] * t265);
-    const ariane4_real_t t297 = t199 * parameters[MZ3] - t77 * parameters[MX3] + (parameters[M4] * t267
-        - t273);
-    const ariane4_real_t t298 = t1 * t296 - t0 * t297; /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t299 = ARIANE4_C(0.443) * t298;
-    const ariane4_real_t t300 = ARIANE4_C(-0.443) * dq[1]; /* link j3: velocity of its origin */
-    const ariane4_real_t t301 = t44 * t300; /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t302 = ARIANE4_C(-0.443) * t75; /* link j3: velocity of its origin */
-    const ariane4_real_t t303 = t67 * t302; /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t304 = t299 + (t301 + t303);
-    const ariane4_real_t t305 = t75 * parameters[XZ2];
-    const ariane4_real_t t306 = dq[1] * parameters[XY2];
-    const ariane4_real_t t307 = t305 - t306 + (t283 + t295 + t299 - t304);
-    const ariane4_real_t t308 = t74 * parameters[YZ2];
-    const ariane4_real_t t309 = t306 - t308 + (t280 - t295 + t301 - t304);
-    const ariane4_real_t t310 = t0 * t294;
-    const ariane4_real_t t311 = ARIANE4_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const ariane4_real_t t312 = t311 - parameters[YY2];
-    const ariane4_real_t t313 = t75 * parameters[YZ2] + dq[1] * t312 + (t310 - t289);
-    const ariane4_real_t t314 = t0 * t296 + t1 * t297;
-    const ariane4_real_t t315 = parameters[XX2] - t311;
-    const ariane4_real_t t316 = dq[1] * t315 - t74 * parameters[XZ2] + (t293 + t310 + (ARIANE4_C(0.443) * t314
-        + t48 * t300));
+    const ariane4_real_t t263 = t198 * parameters[XY4] + t76 * t262 + (ARIANE4_C(0.1) * t234 - t24 * t228);
+    const ariane4_real_t t264 = parameters[XX3] - t246;
+    const ariane4_real_t t265 = t76 * t264 - t198 * parameters[XZ3] + t263;
+    const ariane4_real_t t266 = t198 * parameters[YZ4];
+    const ariane4_real_t t267 = t198 * parameters[YZ3];
+    const ariane4_real_t t268 = t240 - t267 + (t236 + (t238 + t266 - (t235 - t229)));
+    const ariane4_real_t t269 = t242 * t265 - t249 * t268 - (t221 * t60 + (t38 * t196 - t37 * t202));
+    const ariane4_real_t t270 = t261 - (t269 - t66 * t254);
+    const ariane4_real_t t271 = t198 * parameters[MZ3] - t76 * parameters[MX3] + (parameters[M4] * t228
+        - t234);
+    const ariane4_real_t t272 = t76 * parameters[MY3] - t203 * parameters[MZ3] + (t232
+        - parameters[M4] * t226);
+    const ariane4_real_t t273 = t242 * t271 + t249 * t272 + (t23 * t196 + t25 * t202);
+    const ariane4_real_t t274 = t15 * (t0 * t251 + t1 * t270 + ARIANE4_C(-0.443) * t273);
+    const ariane4_real_t t275 = t14 * (t1 * t251 - t0 * t270) + t274 + ARIANE4_C(-0.116) * t273;
+    const ariane4_real_t t276 = ARIANE4_C(0.06434139546481742) * t54 / t52; /* joint j1: drive */
+    const ariane4_real_t t277 = t276 * t275;
+    const ariane4_real_t t278 = t151 * t186;
+    const ariane4_real_t t279 = parameters[M4] * t255 + (t253 * parameters[MZ4] - (parameters[MX4] * t252
+        + parameters[MY4] * t202));
+    const ariane4_real_t t280 = parameters[M3] * t254 + (t253 * parameters[MY3] - parameters[MX3] * t252
+        + parameters[MZ3] * t202);
+    const ariane4_real_t t281 = t280 + t279;
+    const ariane4_real_t t282 = t203 * parameters[MX4] - t198 * parameters[MZ4];
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t283 = t203 * parameters[MX3] - t198 * parameters[MY3] + (t282
+        - parameters[M4] * t230);
+    const ariane4_real_t t284 = t221 * t23 + t66 * t202 - (t249 * t283 + t27 * t254);
+    const ariane4_real_t t285 = parameters[M4] * t216 + (parameters[MZ4] * t210 - (t212 * parameters[MX4]
+        + parameters[MY4] * t196));
+    const ariane4_real_t t286 = parameters[M3] * t215 + (parameters[MY3] * t210 - t212 * parameters[MX3]
+        + parameters[MZ3] * t196);
+    const ariane4_real_t t287 = t286 + t285;
+    const ariane4_real_t t288 = t66 * t196 - t221 * t25 - (t242 * t283 + t27 * t215);
+    const ariane4_real_t t289 = ARIANE4_C(0.443) * (t0 * (t281 + t284) + t1 * (t287 + t288));
+    const ariane4_real_t t290 = t60 * t202 - t59 * t196 - t221 * t12;
+    const ariane4_real_t t291 = t198 * parameters[XZ4] - t203 * t262 + (ARIANE4_C(-0.1) * t282 + t24 * t230);
+    const ariane4_real_t t292 = t198 * parameters[XY3] - t203 * t264 + t291;
+    const ariane4_real_t t293 = t203 * parameters[XZ4] - t198 * t244 + (ARIANE4_C(-0.436) * t282
+        + t22 * t230);
+    const ariane4_real_t t294 = t203 * parameters[XY3] - t198 * t247 + t293;
+    const ariane4_real_t t295 = t23 * t254 - t25 * t215;
+    const ariane4_real_t t296 = t290 - (t242 * t292 + t249 * t294) + t295 + t289;
+    const ariane4_real_t t297 = ARIANE4_C(0.03137188092799786) * t18 / t16; /* joint j2: drive */
+    const ariane4_real_t t298 = t297 * t296;
+    const ariane4_real_t t299 = t70 * t186;
+    const ariane4_real_t t300 = ariane4_held(t183 * t299);
+    const ariane4_real_t t301 = parameters[XY4] * t202 - (t209 * t153 + parameters[YY4] * t208)
+        + parameters[YZ4] * t196;
+    const ariane4_real_t t302 = t211 - t218; /* link j3: columns */
+    const ariane4_real_t t303 = t302 * parameters[XZ4] + t301 + (parameters[MZ4] * t216
+        + parameters[MX4] * t255);
+    const ariane4_real_t t304 = t209 * t157 + parameters[ZZ3] * t208 + parameters[YZ3] * t196
+        + parameters[XZ3] * t202;
+    const ariane4_real_t t305 = parameters[MX3] * t254 + parameters[MY3] * t215 + (t302 * parameters[XY3]
+        - t304);
+    const ariane4_real_t t306 = t305 + (t303 + (ARIANE4_C(-0.1) * t279 + ARIANE4_C(0.436) * t285));
+    const ariane4_real_t t307 = ARIANE4_C(0.046787723832235825) * t4 / t2; /* joint j3: drive */
+    const ariane4_real_t t308 = ariane4_select(t4, t4, ARIANE4_C(1.0));
+    const ariane4_real_t t309 = ARIANE4_C(-1.0) / t308;
+    const ariane4_real_t t310 = ARIANE4_C(0.052812) * t2;
+    const ariane4_real_t t311 = ARIANE4_C(-1.0) / t2;
+    const ariane4_real_t t312 = t311 * (ARIANE4_C(0.046787723832235825) * (t310 * (ARIANE4_C(0.5) * t309))
+        - t3 * t307);
+    const ariane4_real_t t313 = ARIANE4_C(2.0) * t292; /* link j3: derivatives */
+    const ariane4_real_t t314 = ARIANE4_C(2.0) * t294;
+    const ariane4_real_t t315 = t307 * (t295 + (t203 * t313 + t198 * t314 + t290));
+    const ariane4_real_t t316 = t5 * (t5 * (t310 * (ARIANE4_C(0.5) * t5)));
+    const ariane4_real_t t317 = t3 * t6 + t2 * (ARIANE4_C(7124.375926654358) * t316);
+    const ariane4_real_t t318 = t163 * (ARIANE4_C(376.25254143846996) * (t5 * t316))
+        + t162 * (ARIANE4_C(2.0) * (t2 * t3));
+    const ariane4_real_t t319 = t166 * (t164 * t316 + t5 * (ARIANE4_C(-7124.375926654358) * t2 + t318));
+    const ariane4_real_t t320 = parameters[FV3] * (dq[2] * t317) + parameters[IA3] * (t319 + t189 * t317);
+    const ariane4_real_t t321 = ARIANE4_C(333.3333333333333) * t320 + t315 + t312 * t306;
+    const ariane4_real_t t322 = t186 * (t64 - t34 * t70);
+    const ariane4_real_t t323 = ariane4_held(t168 * t322);
+    ddq_by_q[2] = t300 * t298 - t278 * t277 + t323 * t321;
+    const ariane4_real_t t324 = ariane4_held(t151 * t299);
+    const ariane4_real_t t325 = t183 * (t65 + t70 * t299);
+    const ariane4_real_t t326 = t34 * t65 - t70 * t322;
+    const ariane4_real_t t327 = ariane4_held(t168 * t326);
+    ddq_by_q[5] = t324 * t277 - t325 * t298 + t327 * t321;
+    const ariane4_real_t t328 = ariane4_held(t151 * t322);
+    const ariane4_real_t t329 = ariane4_held(t183 * t326);
+    const ariane4_real_t t330 = ariane4_held(t168 * (t32 - t64 * t322 - t34 * t326));
+    ddq_by_q[8] = t328 * t277 + t329 * t298 + t330 * t321;
+    const ariane4_real_t t331 = t246 - parameters[ZZ3];
+    const ariane4_real_t t332 = t243 - parameters[YY4];
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t333 = t76 * parameters[YZ4] - t203 * t332 + parameters[MY4] * t226
+        - (t76 * parameters[YZ3] + t203 * t331);
+    const ariane4_real_t t334 = ARIANE4_C(2.0) * t333 + (t38 * t249 - t36 * t242); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t335 = t76 * parameters[XZ3] + t198 * t331 - (t76 * parameters[XY4] - t198 * t332
+        + parameters[MY4] * t228);
+    const ariane4_real_t t336 = ARIANE4_C(2.0) * t335 - (t38 * t242 - t37 * t249); /* link j3: derivatives */
+    const ariane4_real_t t337 = t23 * t242 + t25 * t249;
+    const ariane4_real_t t338 = t15 * (t0 * t334 + t1 * t336 + ARIANE4_C(0.443) * t337);
+    const ariane4_real_t t339 = t14 * (t1 * t334 - t0 * t336) + t338 + ARIANE4_C(0.116) * t337;
+    const ariane4_real_t t340 = t276 * t339;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t341 = t267 - t239 + (t236 + (t237 - t266 + t231));
+    const ariane4_real_t t342 = ARIANE4_C(2.0) * t341; /* link j3: derivatives */
+    const ariane4_real_t t343 = t0 * (ARIANE4_C(2.0) * t271 - t66 * t249) + t1 * (ARIANE4_C(-2.0) * t272
+        - t66 * t242);
+    const ariane4_real_t t344 = t342 + (t59 * t242 - t60 * t249) + ARIANE4_C(0.443) * t343;
+    const ariane4_real_t t345 = t297 * t344;
+    const ariane4_real_t t346 = t307 * (t342 + ARIANE4_C(2.0) * (t198 * t60 - t203 * t59));
+    const ariane4_real_t t347 = ARIANE4_C(333.3333333333333) * (t7 * parameters[FV3]
+        + parameters[IA3] * (t165 * (ARIANE4_C(2.0) * dq[2])));
+    const ariane4_real_t t348 = t347 + t346;
+    ddq_by_dq[2] = t345 * t300 - t340 * t278 + t348 * t323;
+    ddq_by_dq[5] = t340 * t324 - t345 * t325 + t348 * t327;
+    ddq_by_dq[8] = t340 * t328 + t345 * t329 + t348 * t330;
+    ddq_by_input[2] = t323;
+    ddq_by_input[5] = t327;
+    ddq_by_input[8] = t330;
+    const ariane4_real_t t349 = parameters[M3] * t194 + (parameters[MX3] * t201 + parameters[MY3] * t206
+        - t221 * parameters[MZ3]);
+    const ariane4_real_t t350 = t349 + t222;
+    const ariane4_real_t t351 = t14 * t187;
+    const ariane4_real_t t352 = t124 + t351;
+    const ariane4_real_t t353 = t124 + t352;
+    const ariane4_real_t t354 = t133 + parameters[YY2] * t192 - parameters[XY2] * t353
+        + parameters[YZ2] * (t95 - t188);
+    const ariane4_real_t t355 = t137 + t354 + (parameters[MX2] * t190 - t138) + (t1 * t225 - t0 * t261
+        + ARIANE4_C(0.443) * t350);
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t356 = t1 * (t241 - t268) + t0 * (t248 - t265);
+    const ariane4_real_t t357 = t1 * t356;
+    const ariane4_real_t t358 = t1 * t272 - t0 * t271;
+    const ariane4_real_t t359 = ARIANE4_C(0.443) * t358;
+    const ariane4_real_t t360 = ARIANE4_C(-0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_real_t t361 = t43 * t360; /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t362 = ARIANE4_C(-0.443) * t74; /* link j3: velocity of its origin */
+    const ariane4_real_t t363 = t66 * t362; /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t364 = t359 + (t361 + t363);
+    const ariane4_real_t t365 = t74 * parameters[XZ2];
+    const ariane4_real_t t366 = dq[1] * parameters[XY2];
+    const ariane4_real_t t367 = t365 - t366 + (t268 + t357 + t359 - t364);
+    const ariane4_real_t t368 = ARIANE4_C(2.0) * t74;
+    const ariane4_real_t t369 = t0 * t356;
+    const ariane4_real_t t370 = ARIANE4_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const ariane4_real_t t371 = t370 - parameters[YY2];
+    const ariane4_real_t t372 = t74 * parameters[YZ2] + dq[1] * t371 + (t369 - t248);
+    const ariane4_real_t t373 = ARIANE4_C(-2.0) * t73;
+    const ariane4_real_t t374 = t368 * t367 + t373 * t372 + (t140 * t67 + (t41 * t191 - t44 * t351));
+    const ariane4_real_t t375 = t66 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t376 = parameters[XX2] * t352 - t125 - parameters[XY2] * t193
+        + parameters[XZ2] * t213;
+    const ariane4_real_t t377 = t128 + t376 + (t129 + parameters[MY2] * t190) + (t1 * t261 + t0 * t225);
+    const ariane4_real_t t378 = t0 * t272 + t1 * t271; /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t379 = parameters[XX2] - t370;
+    const ariane4_real_t t380 = dq[1] * t379 - t73 * parameters[XZ2] + (t265 + t369 + (ARIANE4_C(0.443) * t378
+        + t47 * t360));
+    const ariane4_real_t t381 = t73 * parameters[YZ2];
+    const ariane4_real_t t382 = t366 - t381 + (t241 - t357 + t361 - t364);
+    const ariane4_real_t t383 = t368 * t380 + t373 * t382 + (t140 * t68 + (t44 * t191 - t42 * t351));
+    const ariane4_real_t t384 = t14 * (t355 + (t374 - t89 * t375)) + t15 * (t377 + (t94 * t375 + t383));
+    const ariane4_real_t t385 = t73 * parameters[MZ2] - dq[1] * parameters[MX2] + (t378 + t27 * t360);
+    const ariane4_real_t t386 = t74 * parameters[MZ2] - dq[1] * parameters[MY2] - t358;
+    const ariane4_real_t t387 = t368 * t385 + t373 * t386 - (t46 * t191 + t48 * t351);
+    const ariane4_real_t t388 = t276 * (t384 + ARIANE4_C(0.116) * t387);
+    const ariane4_real_t t389 = t173 - parameters[ZZ2] * t188 - parameters[YZ2] * t191
+        - parameters[XZ2] * t351;
+    const ariane4_real_t t390 = t174 + (t172 + t389) + (t306 + ARIANE4_C(0.443) * (t1 * t281 - t0 * t287));
+    const ariane4_real_t t391 = ariane4_select(t18, t18, ARIANE4_C(1.0));
+    const ariane4_real_t t392 = ARIANE4_C(1.0) / t391;
+    const ariane4_real_t t393 = ARIANE4_C(-0.078402) * t16;
+    const ariane4_real_t t394 = ARIANE4_C(1.0) / t16;
+    const ariane4_real_t t395 = t394 * (ARIANE4_C(0.03137188092799786) * (t393 * (ARIANE4_C(0.5) * t392))
+        - t17 * t297);
+    const ariane4_real_t t396 = t1 * t292 + t0 * t294 + (ARIANE4_C(0.443) * t283 - t47 * t362);
+    /* link j2: derivatives */
+    const ariane4_real_t t397 = ARIANE4_C(2.0) * (t73 * parameters[XY2] - t74 * t379 + t396);
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t398 = t74 * parameters[XY2] + t73 * t371 - (t0 * t292 - t1 * t294 - t43 * t362);
+    const ariane4_real_t t399 = ARIANE4_C(2.0) * t398; /* link j2: derivatives */
+    const ariane4_real_t t400 = t74 * t397 + t73 * t399 + (t68 * t351 - t67 * t191 - t140 * t30);
+    const ariane4_real_t t401 = t19 * (t19 * (t393 * (ARIANE4_C(0.5) * t19)));
+    const ariane4_real_t t402 = t17 * t20 + t16 * (ARIANE4_C(2656.3065671641784) * t401);
+    const ariane4_real_t t403 = t179 * (ARIANE4_C(208.2597474788059) * (t19 * t401))
+        - t178 * (ARIANE4_C(-2.0) * (t16 * t17));
+    const ariane4_real_t t404 = t91 * (t180 * t401 - t19 * (ARIANE4_C(2656.3065671641784) * t16 + t403));
+    const ariane4_real_t t405 = parameters[IA2] * (t404 - t188 * t402) - parameters[FV2] * (dq[1] * t402);
+    const ariane4_real_t t406 = ARIANE4_C(83.33333333333333) * t405 - t297 * (t94 * t46 - t89 * t48 + t400);
+    const ariane4_real_t t407 = t406 + t395 * t390;
+    const ariane4_real_t t408 = ARIANE4_C(-0.886) * t74; /* link j3: derivatives */
+    const ariane4_real_t t409 = t1 * t313 + t0 * t314 - t26 * t408;
+    const ariane4_real_t t410 = t0 * t313 - t1 * t314 - t43 * t408;
+    const ariane4_real_t t411 = t74 * t409 - t73 * t410 + (t140 * t33 + (t62 * t351 - t61 * t191));
+    const ariane4_real_t t412 = t307 * (t94 * t43 - t89 * t26 + t411);
+    ddq_by_q[1] = t323 * t412 - (t278 * t388 + t300 * t407);
+    ddq_by_q[4] = t324 * t388 + t325 * t407 + t327 * t412;
+    ddq_by_q[7] = t328 * t388 - t329 * t407 + t330 * t412;
+    const ariane4_real_t t413 = parameters[ZZ2] - t370;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t414 = t74 * t413 - dq[1] * parameters[YZ2] + (t1 * t333 - t0 * t335);
+    /* link j2: derivatives */
+    const ariane4_real_t t415 = t14 * (ARIANE4_C(2.0) * t414 + (t41 * t368 + t44 * t373));
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t416 = dq[1] * parameters[XZ2] - t73 * t413 + (t0 * t333 + t1 * t335 - t66 * t360);
+    /* link j2: derivatives */
+    const ariane4_real_t t417 = t15 * (ARIANE4_C(2.0) * t416 + (t44 * t368 + t42 * t373));
+    const ariane4_real_t t418 = t415 + t417 + ARIANE4_C(0.116) * (t48 * t373 - t46 * t368);
+    const ariane4_real_t t419 = t276 * t418;
+    const ariane4_real_t t420 = ARIANE4_C(2.0) * (t381 - t365 + (t341 + t363 - t364))
+        + ARIANE4_C(2.0) * (t73 * t68 - t74 * t67);
+    const ariane4_real_t t421 = ARIANE4_C(-83.33333333333333) * (t21 * parameters[FV2]
+        + parameters[IA2] * (t181 * (ARIANE4_C(2.0) * dq[1])));
+    const ariane4_real_t t422 = t421 - t297 * t420;
+    /* link j3: derivatives */
+    const ariane4_real_t t423 = t342 + t43 * (ARIANE4_C(0.886) * dq[1]) + ARIANE4_C(2.0) * (t73 * t62
+        - t74 * t61);
+    const ariane4_real_t t424 = t307 * t423;
+    ddq_by_dq[1] = t424 * t323 - (t419 * t278 + t422 * t300);
+    ddq_by_dq[4] = t419 * t324 + t422 * t325 + t424 * t327;
+    ddq_by_dq[7] = t419 * t328 - t422 * t329 + t424 * t330;
+    ddq_by_input[1] = t300;
+    ddq_by_input[4] = -t325;
+    ddq_by_input[7] = t329;
+    const ariane4_real_t t425 = parameters[M2] * t190 + (parameters[MX2] * t193 + parameters[MY2] * t353
+        - t141);
+    const ariane4_real_t t426 = t15 * t355 - t14 * t377 + ARIANE4_C(0.116) * (t425 + t350);
+    const ariane4_real_t t427 = ariane4_select(t54, t54, ARIANE4_C(1.0));
+    const ariane4_real_t t428 = ARIANE4_C(1.0) / t427;
+    const ariane4_real_t t429 = ARIANE4_C(0.037468) * t52;
+    const ariane4_real_t t430 = ARIANE4_C(1.0) / t52;
+    const ariane4_real_t t431 = t430 * (t53 * t276
+        + ARIANE4_C(0.06434139546481742) * (t429 * (ARIANE4_C(0.5) * t428)));
+    const ariane4_real_t t432 = t55 * (t55 * (t429 * (ARIANE4_C(0.5) * t55)));
+    const ariane4_real_t t433 = t53 * t56 + t52 * (ARIANE4_C(3885.523436256565) * t432);
+    const ariane4_real_t t434 = t146 * (ARIANE4_C(145.582792109661) * (t55 * t432))
+        + t145 * (ARIANE4_C(2.0) * (t52 * t53));
+    const ariane4_real_t t435 = t87 * (t147 * t432 + t55 * (ARIANE4_C(-3885.523436256565) * t52 + t434));
+    const ariane4_real_t t436 = parameters[FV1] * (dq[0] * t433) + parameters[IA1] * (t435 + t187 * t433);
+    const ariane4_real_t t437 = ARIANE4_C(250.0) * t436 + t431 * (t426 - parameters[ZZ1] * t187);
+    ddq_by_q[0] = -(t278 * t437);
+    ddq_by_q[3] = t324 * t437;
+    ddq_by_q[6] = t328 * t437;
     /* link j2: inertia, momentum beyond */
-    const ariane4_real_t t317 = t15 * (t15 * (t309 - t307) + t14 * (t313 + t316));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t318 = t75 * parameters[MZ2] - dq[1] * parameters[MY2] - t298;
-    const ariane4_real_t t319 = t74 * parameters[MZ2] - dq[1] * parameters[MX2] + (t314 + t27 * t300);
-    const ariane4_real_t t320 = t67 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia, momentum beyond */
-    const ariane4_real_t t321 = ARIANE4_C(0.116) * (t15 * t318 + t14 * t319)
-        - t320 * (ARIANE4_C(-0.116) * dq[0]);
-    const ariane4_real_t t322 = ARIANE4_C(250.0) * (t58 * parameters[FV1]
-        + parameters[IA1] * (t149 * (ARIANE4_C(2.0) * dq[0])));
-    const ariane4_real_t t323 = t322 + t248 * (ARIANE4_C(2.0) * (t307 + t317 + t321));
-    const ariane4_real_t t324 = t204 * parameters[MX4] - t199 * parameters[MZ4];
-    /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t325 = t199 * parameters[XZ4] - t204 * t290 + (ARIANE4_C(-0.1) * t324 + t24 * t269);
-    const ariane4_real_t t326 = t199 * parameters[XY3] - t204 * t292 + t325;
-    const ariane4_real_t t327 = t204 * parameters[XZ4] - t199 * t285 + (ARIANE4_C(-0.436) * t324
-        + t22 * t269);
-    const ariane4_real_t t328 = t204 * parameters[XY3] - t199 * t288 + t327;
-    const ariane4_real_t t329 = t204 * parameters[MX3] - t199 * parameters[MY3] + (t324
-        - parameters[M4] * t269);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t330 = t1 * t326 + t0 * t328 + (ARIANE4_C(0.443) * t329 - t48 * t302);
+    const ariane4_real_t t438 = t15 * (t15 * (t382 - t367) + t14 * (t372 + t380));
+    const ariane4_real_t t439 = ARIANE4_C(0.116) * (t15 * t386 + t14 * t385)
+        - t375 * (ARIANE4_C(-0.116) * dq[0]);
+    const ariane4_real_t t440 = ARIANE4_C(250.0) * (t57 * parameters[FV1]
+        + parameters[IA1] * (t148 * (ARIANE4_C(2.0) * dq[0])));
+    const ariane4_real_t t441 = t440 + t276 * (ARIANE4_C(2.0) * (t367 + t438 + t439));
+    const ariane4_real_t t442 = ARIANE4_C(0.232) * dq[0];
     /* link j2: derivatives */
-    const ariane4_real_t t331 = ARIANE4_C(2.0) * (t74 * parameters[XY2] - t75 * t315 + t330);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t332 = t75 * parameters[XY2] + t74 * t312 - (t0 * t326 - t1 * t328 - t44 * t302);
-    const ariane4_real_t t333 = ARIANE4_C(2.0) * t332; /* link j2: derivatives */
-    const ariane4_real_t t334 = ARIANE4_C(0.232) * dq[0];
-    const ariane4_real_t t335 = t14 * t331 - t15 * t333 + (t15 * t47 + t14 * t49) * t334;
-    const ariane4_real_t t336 = ARIANE4_C(0.03137188092799786) * t18 / t16; /* joint j2: drive */
-    const ariane4_real_t t337 = t336 * t335;
-    const ariane4_real_t t338 = t184 * t261;
-    const ariane4_real_t t339 = ARIANE4_C(2.0) * t326; /* link j3: derivatives */
-    const ariane4_real_t t340 = ARIANE4_C(2.0) * t328;
-    const ariane4_real_t t341 = ARIANE4_C(-0.886) * t75;
-    const ariane4_real_t t342 = t1 * t339 + t0 * t340 - t26 * t341;
-    const ariane4_real_t t343 = t0 * t339 - t1 * t340 - t44 * t341;
-    const ariane4_real_t t344 = t14 * t342 + t15 * t343 + (t15 * t44 + t14 * t26) * t334;
-    const ariane4_real_t t345 = ARIANE4_C(0.046787723832235825) * t4 / t2; /* joint j3: drive */
-    const ariane4_real_t t346 = t345 * t344;
-    const ariane4_real_t t347 = t169 * t263;
-    ddq_by_dq[0] = t346 * t347 - (t323 * t260 + t337 * t338);
-    const ariane4_real_t t348 = ariane4_bounded(t184 * (t66 + t71 * t261));
-    const ariane4_real_t t349 = t71 * t263 - t34 * t66;
-    const ariane4_real_t t350 = t169 * t349;
-    ddq_by_dq[3] = t323 * t262 + t337 * t348 - t346 * t350;
-    const ariane4_real_t t351 = ariane4_bounded(t184 * t349);
-    const ariane4_real_t t352 = t169 * (t32 - t65 * t263 + t34 * t349);
-    ddq_by_dq[6] = t323 * t264 + t337 * t351 + t346 * t352;
-    ddq_by_input[0] = -t260;
-    ddq_by_input[3] = t262;
-    ddq_by_input[6] = t264;
-    const ariane4_real_t t353 = ARIANE4_C(2.0) * t75;
-    const ariane4_real_t t354 = ARIANE4_C(-2.0) * t74;
-    const ariane4_real_t t355 = t353 * t307 + t354 * t313 + (t141 * t68 + (t42 * t192 - t45 * t237));
-    const ariane4_real_t t356 = t353 * t316 + t354 * t309 + (t141 * t69 + (t45 * t192 - t43 * t237));
-    const ariane4_real_t t357 = t14 * (t245 + (t355 - t90 * t320)) + t15 * (t240 + (t95 * t320 + t356));
-    const ariane4_real_t t358 = t353 * t319 + t354 * t318 - (t47 * t192 + t49 * t237);
-    const ariane4_real_t t359 = t248 * (t357 + ARIANE4_C(0.116) * t358);
-    const ariane4_real_t t360 = parameters[M4] * t217 + (t213 * parameters[MZ4] - (parameters[MX4] * t211
-        + parameters[MY4] * t203));
-    const ariane4_real_t t361 = parameters[M4] * t230 + (parameters[MZ4] * t227 - (t228 * parameters[MX4]
-        + parameters[MY4] * t197));
-    const ariane4_real_t t362 = parameters[XY4] * t203 - (t210 * t154 + parameters[YY4] * t209)
-        + parameters[YZ4] * t197;
-    const ariane4_real_t t363 = t219 - t212; /* link j3: columns */
-    const ariane4_real_t t364 = t363 * parameters[XZ4] + t362 + (parameters[MZ4] * t230
-        + parameters[MX4] * t217);
-    const ariane4_real_t t365 = t210 * t158 + parameters[ZZ3] * t209 + parameters[YZ3] * t197
-        + parameters[XZ3] * t203;
-    const ariane4_real_t t366 = parameters[MX3] * t216 + parameters[MY3] * t229 + (t363 * parameters[XY3]
-        - t365);
-    const ariane4_real_t t367 = t366 + (t364 + (ARIANE4_C(-0.1) * t360 + ARIANE4_C(0.436) * t361));
-    const ariane4_real_t t368 = parameters[M3] * t229 + (parameters[MY3] * t227 - t228 * parameters[MX3]
-        + parameters[MZ3] * t197);
-    const ariane4_real_t t369 = t368 + t361;
-    const ariane4_real_t t370 = parameters[M3] * t216 + (t213 * parameters[MY3] - parameters[MX3] * t211
-        + parameters[MZ3] * t203);
-    const ariane4_real_t t371 = t370 + t360;
-    const ariane4_real_t t372 = t174 - parameters[ZZ2] * t189 - parameters[YZ2] * t192
-        - parameters[XZ2] * t237;
-    const ariane4_real_t t373 = t175 + (t173 + t372) + (t367 + ARIANE4_C(0.443) * (t1 * t371 - t0 * t369));
-    const ariane4_real_t t374 = ariane4_select(t18, t18, ARIANE4_C(1.0));
-    const ariane4_real_t t375 = ARIANE4_C(1.0) / t374;
-    const ariane4_real_t t376 = ARIANE4_C(-0.078402) * t16;
-    const ariane4_real_t t377 = ARIANE4_C(1.0) / t16;
-    const ariane4_real_t t378 = t377 * (ARIANE4_C(0.03137188092799786) * (t376 * (ARIANE4_C(0.5) * t375))
-        - t17 * t336);
-    const ariane4_real_t t379 = t75 * t331 + t74 * t333 + (t69 * t237 - t68 * t192 - t141 * t30);
-    const ariane4_real_t t380 = t19 * (t19 * (t376 * (ARIANE4_C(0.5) * t19)));
-    const ariane4_real_t t381 = t17 * t20 + t16 * (ARIANE4_C(2656.3065671641784) * t380);
-    const ariane4_real_t t382 = t180 * (ARIANE4_C(208.2597474788059) * (t19 * t380))
-        - t179 * (ARIANE4_C(-2.0) * (t16 * t17));
-    const ariane4_real_t t383 = t92 * (t181 * t380 - t19 * (ARIANE4_C(2656.3065671641784) * t16 + t382));
-    const ariane4_real_t t384 = parameters[IA2] * (t383 - t189 * t381) - parameters[FV2] * (dq[1] * t381);
-    const ariane4_real_t t385 = ARIANE4_C(83.33333333333333) * t384 - t336 * (t95 * t47 - t90 * t49 + t379);
-    const ariane4_real_t t386 = t385 + t378 * t373;
-    const ariane4_real_t t387 = t75 * t342 - t74 * t343 + (t141 * t33 + (t63 * t237 - t62 * t192));
-    const ariane4_real_t t388 = t345 * (t95 * t44 - t90 * t26 + t387);
-    ddq_by_q[1] = t347 * t388 - (t260 * t359 - t338 * t386);
-    ddq_by_q[4] = t262 * t359 - t348 * t386 - t350 * t388;
-    ddq_by_q[7] = t264 * t359 - t351 * t386 + t352 * t388;
-    const ariane4_real_t t389 = t287 - parameters[ZZ3];
-    const ariane4_real_t t390 = t284 - parameters[YY4];
-    /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t391 = t77 * parameters[YZ4] - t204 * t390 + parameters[MY4] * t265
-        - (t77 * parameters[YZ3] + t204 * t389);
-    const ariane4_real_t t392 = t77 * parameters[XZ3] + t199 * t389 - (t77 * parameters[XY4] - t199 * t390
-        + parameters[MY4] * t267);
-    const ariane4_real_t t393 = parameters[ZZ2] - t311;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t394 = t75 * t393 - dq[1] * parameters[YZ2] + (t1 * t391 - t0 * t392);
-    /* link j2: derivatives */
-    const ariane4_real_t t395 = t14 * (ARIANE4_C(2.0) * t394 + (t42 * t353 + t45 * t354));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t396 = dq[1] * parameters[XZ2] - t74 * t393 + (t0 * t391 + t1 * t392 - t67 * t300);
-    /* link j2: derivatives */
-    const ariane4_real_t t397 = t15 * (ARIANE4_C(2.0) * t396 + (t45 * t353 + t43 * t354));
-    const ariane4_real_t t398 = t395 + t397 + ARIANE4_C(0.116) * (t49 * t354 - t47 * t353);
-    const ariane4_real_t t399 = t248 * t398;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t400 = t282 - t278 + (t275 + (t276 - t281 + t270));
-    /* link j2: derivatives */
-    const ariane4_real_t t401 = ARIANE4_C(2.0) * (t308 - t305 + (t400 + t303 - t304))
-        + ARIANE4_C(2.0) * (t74 * t69 - t75 * t68);
-    const ariane4_real_t t402 = ARIANE4_C(-83.33333333333333) * (t21 * parameters[FV2]
-        + parameters[IA2] * (t182 * (ARIANE4_C(2.0) * dq[1])));
-    const ariane4_real_t t403 = t402 - t336 * t401;
-    const ariane4_real_t t404 = ARIANE4_C(2.0) * t400; /* link j3: derivatives */
-    const ariane4_real_t t405 = t404 + t44 * (ARIANE4_C(0.886) * dq[1]) + ARIANE4_C(2.0) * (t74 * t63
-        - t75 * t62);
-    const ariane4_real_t t406 = t345 * t405;
-    ddq_by_dq[1] = t406 * t347 - (t399 * t260 - t403 * t338);
-    ddq_by_dq[4] = t399 * t262 - t403 * t348 - t406 * t350;
-    ddq_by_dq[7] = t399 * t264 - t403 * t351 + t406 * t352;
-    ddq_by_input[1] = -t338;
-    ddq_by_input[4] = t348;
-    ddq_by_input[7] = t351;
-    const ariane4_real_t t407 = ARIANE4_C(-2.0) * t204;
-    const ariane4_real_t t408 = ARIANE4_C(-2.0) * t199;
-    const ariane4_real_t t409 = t222 * t60 + (t37 * t197 - t39 * t203) - (t407 * t280 + t408 * t289);
-    const ariane4_real_t t410 = t236 + (t409 - t67 * t229);
-    const ariane4_real_t t411 = t407 * t293 - t408 * t283 - (t222 * t61 + (t39 * t197 - t38 * t203));
-    const ariane4_real_t t412 = t226 - (t411 - t67 * t216);
-    const ariane4_real_t t413 = t407 * t297 + t408 * t296 + (t23 * t197 + t25 * t203);
-    const ariane4_real_t t414 = t15 * (t0 * t410 + t1 * t412 + ARIANE4_C(-0.443) * t413);
-    const ariane4_real_t t415 = t14 * (t1 * t410 - t0 * t412) + t414 + ARIANE4_C(-0.116) * t413;
-    const ariane4_real_t t416 = t248 * t415;
-    const ariane4_real_t t417 = t222 * t23 + t67 * t203 - (t408 * t329 + t27 * t216);
-    const ariane4_real_t t418 = t67 * t197 - t222 * t25 - (t407 * t329 + t27 * t229);
-    const ariane4_real_t t419 = ARIANE4_C(0.443) * (t0 * (t371 + t417) + t1 * (t369 + t418));
-    const ariane4_real_t t420 = t61 * t203 - t60 * t197 - t222 * t12;
-    const ariane4_real_t t421 = t23 * t216 - t25 * t229;
-    const ariane4_real_t t422 = t420 - (t407 * t326 + t408 * t328) + t421 + t419;
-    const ariane4_real_t t423 = t336 * t422;
-    const ariane4_real_t t424 = ariane4_select(t4, t4, ARIANE4_C(1.0));
-    const ariane4_real_t t425 = ARIANE4_C(-1.0) / t424;
-    const ariane4_real_t t426 = ARIANE4_C(0.052812) * t2;
-    const ariane4_real_t t427 = ARIANE4_C(-1.0) / t2;
-    const ariane4_real_t t428 = t427 * (ARIANE4_C(0.046787723832235825) * (t426 * (ARIANE4_C(0.5) * t425))
-        - t3 * t345);
-    const ariane4_real_t t429 = t345 * (t421 + (t204 * t339 + t199 * t340 + t420));
-    const ariane4_real_t t430 = t5 * (t5 * (t426 * (ARIANE4_C(0.5) * t5)));
-    const ariane4_real_t t431 = t3 * t6 + t2 * (ARIANE4_C(7124.375926654358) * t430);
-    const ariane4_real_t t432 = t164 * (ARIANE4_C(376.25254143846996) * (t5 * t430))
-        + t163 * (ARIANE4_C(2.0) * (t2 * t3));
-    const ariane4_real_t t433 = t167 * (t165 * t430 + t5 * (ARIANE4_C(-7124.375926654358) * t2 + t432));
-    const ariane4_real_t t434 = parameters[FV3] * (dq[2] * t431) + parameters[IA3] * (t433 + t190 * t431);
-    const ariane4_real_t t435 = ARIANE4_C(333.3333333333333) * t434 + t429 + t428 * t367;
-    ddq_by_q[2] = t347 * t435 - (t260 * t416 + t338 * t423);
-    ddq_by_q[5] = t262 * t416 + t348 * t423 - t350 * t435;
-    ddq_by_q[8] = t264 * t416 + t351 * t423 + t352 * t435;
-    const ariane4_real_t t436 = ARIANE4_C(2.0) * t391 + (t39 * t408 - t37 * t407);
-    const ariane4_real_t t437 = ARIANE4_C(2.0) * t392 - (t39 * t407 - t38 * t408);
-    const ariane4_real_t t438 = t23 * t407 + t25 * t408;
-    const ariane4_real_t t439 = t15 * (t0 * t436 + t1 * t437 + ARIANE4_C(0.443) * t438);
-    const ariane4_real_t t440 = t14 * (t1 * t436 - t0 * t437) + t439 + ARIANE4_C(0.116) * t438;
-    const ariane4_real_t t441 = t248 * t440;
-    const ariane4_real_t t442 = t0 * (ARIANE4_C(2.0) * t297 - t67 * t408) + t1 * (ARIANE4_C(-2.0) * t296
-        - t67 * t407);
-    const ariane4_real_t t443 = t404 + (t60 * t407 - t61 * t408) + ARIANE4_C(0.443) * t442;
-    const ariane4_real_t t444 = t336 * t443;
-    const ariane4_real_t t445 = t345 * (t404 + ARIANE4_C(2.0) * (t199 * t61 - t204 * t60));
-    const ariane4_real_t t446 = ARIANE4_C(333.3333333333333) * (t7 * parameters[FV3]
-        + parameters[IA3] * (t166 * (ARIANE4_C(2.0) * dq[2])));
-    const ariane4_real_t t447 = t446 + t445;
-    ddq_by_dq[2] = t447 * t347 - (t441 * t260 + t444 * t338);
-    ddq_by_dq[5] = t441 * t262 + t444 * t348 - t447 * t350;
-    ddq_by_dq[8] = t441 * t264 + t444 * t351 + t447 * t352;
-    ddq_by_input[2] = t347;
-    ddq_by_input[5] = -t350;
-    ddq_by_input[8] = t352;
-    if (!ariane4_all_bounded(ddq, 3)
-        || !ariane4_all_bounded(ddq_by_q, 9)
-        || !ariane4_all_bounded(ddq_by_dq, 9)
-        || !ariane4_all_bounded(ddq_by_input, 9)) {
+    const ariane4_real_t t443 = t14 * t397 - t15 * t399 + (t15 * t46 + t14 * t48) * t442;
+    const ariane4_real_t t444 = t297 * t443;
+    /* link j3: derivatives */
+    const ariane4_real_t t445 = t14 * t409 + t15 * t410 + (t15 * t43 + t14 * t26) * t442;
+    const ariane4_real_t t446 = t307 * t445;
+    ddq_by_dq[0] = t444 * t300 - t441 * t278 + t446 * t323;
+    ddq_by_dq[3] = t441 * t324 - t444 * t325 + t446 * t327;
+    ddq_by_dq[6] = t441 * t328 + t444 * t329 + t446 * t330;
+    ddq_by_input[0] = -t278;
+    ddq_by_input[3] = t324;
+    ddq_by_input[6] = t328;
+    if (!ariane4_bounded(ddq, 3)
+        || !ariane4_bounded(ddq_by_q, 9)
+        || !ariane4_bounded(ddq_by_dq, 9)
+        || !ariane4_bounded(ddq_by_input, 9)) {
         ariane4_zero(ddq, 3);
         ariane4_zero(ddq_by_q, 9);
         ariane4_zero(ddq_by_dq, 9);

@@ -6,7 +6,7 @@
  * Arm ariane4, description 5ed7fb32121b496f.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 471 (261 mul, 210 add, 0 neg), 6 div, 3 sqrt, 6 trig, 3 other calls (sign, select and the like).
+ * Operations: 471 (261 mul, 210 add, 0 neg), 6 div, 3 sqrt, 6 trig, 4 other calls (sign, select and the like).
  *
  * @param[in]   q           [3]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [3]   [rad/s]    joint velocities; norm at most 100000
@@ -75,7 +75,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -107,8 +107,8 @@ ariane4_status_t ariane4_forward_dynamics_standard(
         return status;
     }
 
-    ariane4_real_t t44, t45;
-    ARIANE4_SINCOS(q[0], &t44, &t45);
+    ariane4_real_t t43, t44;
+    ARIANE4_SINCOS(q[0], &t43, &t44);
     ariane4_real_t t13, t14;
     ARIANE4_SINCOS(q[1], &t13, &t14);
     ariane4_real_t t0, t1;
@@ -124,7 +124,7 @@ ariane4_status_t ariane4_forward_dynamics_standard(
     const ariane4_real_t t9 = ARIANE4_C(0.436) * parameters[M4];
     const ariane4_real_t t10 = ARIANE4_C(0.436) * (t9 + ARIANE4_C(2.0) * parameters[MZ4]);
     const ariane4_real_t t11 = parameters[ZZ3] + (parameters[YY4] + (t8 + t10));
-    const ariane4_real_t t12 = ariane4_bounded(t11 + t6 * t6 * parameters[IA3]);
+    const ariane4_real_t t12 = t11 + t6 * t6 * parameters[IA3];
     if (!(t12 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
@@ -147,204 +147,199 @@ ariane4_status_t ariane4_forward_dynamics_standard(
     const ariane4_real_t t28 = ARIANE4_C(-1.0) / t12;
     const ariane4_real_t t29 = ARIANE4_C(-0.443) * t23 - t11; /* link j3: column of the mass matrix */
     const ariane4_real_t t30 = t29 * t28;
-    const ariane4_real_t t31 = ariane4_bounded(t27 + t29 * t30);
+    const ariane4_real_t t31 = t27 + t29 * t30;
     if (!(t31 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t32 = t31 + ARIANE4_C(-1.0e-9) * t27;
-    if (!(t32 > ARIANE4_C(1.0e-12))) {
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t32 = parameters[XX3] + (parameters[XX4] + t10);
+    const ariane4_real_t t33 = parameters[YY3] + (parameters[ZZ4] + t8);
+    const ariane4_real_t t34 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
+        + ARIANE4_C(0.436) * t21));
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t35 = t1 * (t32 - t33) - t34 * (ARIANE4_C(2.0) * t0);
+    const ariane4_real_t t36 = t1 * t35;
+    const ariane4_real_t t37 = parameters[XX2] + (t33 + t36);
+    const ariane4_real_t t38 = t1 * t20 + t0 * t22; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t39 = (parameters[XY2] + (t34 + t0 * t35
+        + ARIANE4_C(-0.443) * t38)) * (ARIANE4_C(2.0) * t13);
+    const ariane4_real_t t40 = t14 * (parameters[YY2] + (t32 - t36 + t26) - t37) + t39;
+    /* link j2: column of the mass matrix */
+    const ariane4_real_t t41 = t14 * (parameters[MX2] + (t23 + t25)) - t13 * (parameters[MY2] + t38);
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t42 = t37 + t14 * t40 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2] + t24)
+        + ARIANE4_C(2.0) * t41);
+    /* joint j1: drive */
+    const ariane4_real_t t45 = ARIANE4_C(-0.28217402066925895) * t43 + ARIANE4_C(0.9593632378089879) * t44;
+    const ariane4_real_t t46 = ARIANE4_C(0.28217402066925895) * t44 + ARIANE4_C(0.9593632378089879) * t43;
+    const ariane4_real_t t47 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t46 + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t48 = ARIANE4_C(-1.0) / t47;
+    const ariane4_real_t t49 = t45 * (ARIANE4_C(3885.523436256565) * t48);
+    const ariane4_real_t t50 = parameters[ZZ1] + t42 + t49 * t49 * parameters[IA1];
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t51 = parameters[XY4] + ARIANE4_C(0.1) * parameters[MY4] - parameters[XZ3];
+    const ariane4_real_t t52 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
+    const ariane4_real_t t53 = t1 * t51 + t0 * t52; /* link j3: column of the mass matrix */
+    const ariane4_real_t t54 = t0 * t51 - t1 * t52;
+    const ariane4_real_t t55 = t13 * t53 + t14 * t54;
+    const ariane4_real_t t56 = t55 * t28;
+    const ariane4_real_t t57 = ARIANE4_C(1.0) / t31;
+    /* link j2: column of the mass matrix */
+    const ariane4_real_t t58 = t13 * (t53 + ARIANE4_C(0.443) * (parameters[MZ3] - parameters[MY4])
+        - parameters[XZ2]) + t14 * (t54 - parameters[YZ2]);
+    const ariane4_real_t t59 = t58 - t55 * t30;
+    const ariane4_real_t t60 = t59 * t57;
+    const ariane4_real_t t61 = t50 + t55 * t56 - t59 * t60;
+    if (!(t61 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t33 = parameters[XX3] + (parameters[XX4] + t10);
-    const ariane4_real_t t34 = parameters[YY3] + (parameters[ZZ4] + t8);
-    const ariane4_real_t t35 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
-        + ARIANE4_C(0.436) * t21));
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t36 = t1 * (t33 - t34) - t35 * (ARIANE4_C(2.0) * t0);
-    const ariane4_real_t t37 = t1 * t36;
-    const ariane4_real_t t38 = parameters[XX2] + (t34 + t37);
-    const ariane4_real_t t39 = t1 * t20 + t0 * t22; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t40 = (parameters[XY2] + (t35 + t0 * t36
-        + ARIANE4_C(-0.443) * t39)) * (ARIANE4_C(2.0) * t13);
-    const ariane4_real_t t41 = t14 * (parameters[YY2] + (t33 - t37 + t26) - t38) + t40;
-    /* link j2: column of the mass matrix */
-    const ariane4_real_t t42 = t14 * (parameters[MX2] + (t23 + t25)) - t13 * (parameters[MY2] + t39);
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t43 = t38 + t14 * t41 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2] + t24)
-        + ARIANE4_C(2.0) * t42);
-    /* joint j1: drive */
-    const ariane4_real_t t46 = ARIANE4_C(-0.28217402066925895) * t44 + ARIANE4_C(0.9593632378089879) * t45;
-    const ariane4_real_t t47 = ARIANE4_C(0.28217402066925895) * t45 + ARIANE4_C(0.9593632378089879) * t44;
-    const ariane4_real_t t48 = ARIANE4_SQRT(ARIANE4_C(0.037468) * t47 + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t49 = ARIANE4_C(-1.0) / t48;
-    const ariane4_real_t t50 = t46 * (ARIANE4_C(3885.523436256565) * t49);
-    const ariane4_real_t t51 = parameters[ZZ1] + t43 + t50 * t50 * parameters[IA1];
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t52 = parameters[XY4] + ARIANE4_C(0.1) * parameters[MY4] - parameters[XZ3];
-    const ariane4_real_t t53 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
-    const ariane4_real_t t54 = t1 * t52 + t0 * t53; /* link j3: column of the mass matrix */
-    const ariane4_real_t t55 = t0 * t52 - t1 * t53;
-    const ariane4_real_t t56 = t13 * t54 + t14 * t55;
-    const ariane4_real_t t57 = t56 * t28;
-    const ariane4_real_t t58 = ARIANE4_C(1.0) / t31;
-    /* link j2: column of the mass matrix */
-    const ariane4_real_t t59 = t13 * (t54 + ARIANE4_C(0.443) * (parameters[MZ3] - parameters[MY4])
-        - parameters[XZ2]) + t14 * (t55 - parameters[YZ2]);
-    const ariane4_real_t t60 = t59 - t56 * t30;
-    const ariane4_real_t t61 = t60 * t58;
-    const ariane4_real_t t62 = ariane4_bounded(t51 + t56 * t57 - t60 * t61);
+    const ariane4_real_t t62 = ariane4_min(t31 + ARIANE4_C(-1.0e-9) * t27, t61 + ARIANE4_C(-1.0e-9) * t50);
     if (!(t62 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }
-    const ariane4_real_t t63 = t62 + ARIANE4_C(-1.0e-9) * t51;
-    if (!(t63 > ARIANE4_C(1.0e-12))) {
-        ariane4_zero(out, 3);
-        return ARIANE4_STATUS_PIVOT;
-    }
-    const ariane4_real_t t64 = t13 * dq[0]; /* link j2: motion */
-    const ariane4_real_t t65 = t14 * dq[0];
-    const ariane4_real_t t66 = t0 * t64 - t1 * t65; /* link j3: motion */
-    const ariane4_real_t t67 = dq[1] + dq[2];
-    const ariane4_real_t t68 = t67 * t66;
-    const ariane4_real_t t69 = t1 * t64 + t0 * t65;
-    const ariane4_real_t t70 = t67 * t69;
-    const ariane4_real_t t71 = ARIANE4_C(2.0) * t70; /* link j4: motion */
+    const ariane4_real_t t63 = t13 * dq[0]; /* link j2: motion */
+    const ariane4_real_t t64 = t14 * dq[0];
+    const ariane4_real_t t65 = t0 * t63 - t1 * t64; /* link j3: motion */
+    const ariane4_real_t t66 = dq[1] + dq[2];
+    const ariane4_real_t t67 = t66 * t65;
+    const ariane4_real_t t68 = t1 * t63 + t0 * t64;
+    const ariane4_real_t t69 = t66 * t68;
+    const ariane4_real_t t70 = ARIANE4_C(2.0) * t69; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t72 = parameters[XX3] * t68 + t68 * (parameters[ZZ3] - parameters[YY3])
-        + parameters[XY3] * t71;
-    const ariane4_real_t t73 = t69 * t66; /* link j3: motion */
+    const ariane4_real_t t71 = parameters[XX3] * t67 + t67 * (parameters[ZZ3] - parameters[YY3])
+        + parameters[XY3] * t70;
+    const ariane4_real_t t72 = t68 * t65; /* link j3: motion */
+    const ariane4_real_t t73 = t65 * t65;
     const ariane4_real_t t74 = t66 * t66;
-    const ariane4_real_t t75 = t67 * t67;
-    const ariane4_real_t t76 = t75 - t74; /* link j3: force and moment */
-    const ariane4_real_t t77 = dq[0] * dq[0]; /* link j1: motion */
-    const ariane4_real_t t78 = ARIANE4_C(-0.116) * t77; /* link j2: motion */
-    const ariane4_real_t t79 = t14 * t78 + ARIANE4_C(9.81) * t13;
-    const ariane4_real_t t80 = t65 * t65;
-    const ariane4_real_t t81 = dq[1] * dq[1];
-    const ariane4_real_t t82 = t79 + ARIANE4_C(-0.443) * (t80 + t81); /* link j3: motion */
-    const ariane4_real_t t83 = t13 * t78 + ARIANE4_C(-9.81) * t14; /* link j2: motion */
-    const ariane4_real_t t84 = t64 * t65;
-    const ariane4_real_t t85 = t83 + ARIANE4_C(-0.443) * t84; /* link j3: motion */
-    const ariane4_real_t t86 = t0 * t82 + t1 * t85;
-    const ariane4_real_t t87 = dq[1] * t64; /* link j2: motion */
-    const ariane4_real_t t88 = ARIANE4_C(0.886) * t87; /* link j3: motion */
+    const ariane4_real_t t75 = t74 - t73; /* link j3: force and moment */
+    const ariane4_real_t t76 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_real_t t77 = ARIANE4_C(-0.116) * t76; /* link j2: motion */
+    const ariane4_real_t t78 = t14 * t77 + ARIANE4_C(9.81) * t13;
+    const ariane4_real_t t79 = t64 * t64;
+    const ariane4_real_t t80 = dq[1] * dq[1];
+    const ariane4_real_t t81 = t78 + ARIANE4_C(-0.443) * (t79 + t80); /* link j3: motion */
+    const ariane4_real_t t82 = t13 * t77 + ARIANE4_C(-9.81) * t14; /* link j2: motion */
+    const ariane4_real_t t83 = t63 * t64;
+    const ariane4_real_t t84 = t82 + ARIANE4_C(-0.443) * t83; /* link j3: motion */
+    const ariane4_real_t t85 = t0 * t81 + t1 * t84;
+    const ariane4_real_t t86 = dq[1] * t63; /* link j2: motion */
+    const ariane4_real_t t87 = ARIANE4_C(0.886) * t86; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t89 = t72 + parameters[XZ3] * t73 + parameters[YZ3] * t76 - (parameters[MY3] * t88
-        + parameters[MZ3] * t86);
-    const ariane4_real_t t90 = t69 * t69; /* link j3: motion */
-    const ariane4_real_t t91 = t75 + t90; /* link j4: motion */
-    const ariane4_real_t t92 = t86 + (ARIANE4_C(-0.1) * t73 + ARIANE4_C(0.436) * t91);
-    const ariane4_real_t t93 = t88 - (ARIANE4_C(0.2) * t70 + ARIANE4_C(0.872) * t68);
+    const ariane4_real_t t88 = t71 + parameters[XZ3] * t72 + parameters[YZ3] * t75 - (parameters[MY3] * t87
+        + parameters[MZ3] * t85);
+    const ariane4_real_t t89 = t68 * t68; /* link j3: motion */
+    const ariane4_real_t t90 = t74 + t89; /* link j4: motion */
+    const ariane4_real_t t91 = t85 + (ARIANE4_C(-0.1) * t72 + ARIANE4_C(0.436) * t90);
+    const ariane4_real_t t92 = t87 - (ARIANE4_C(0.2) * t69 + ARIANE4_C(0.872) * t67);
     /* link j4: force and moment */
-    const ariane4_real_t t94 = parameters[XX4] * t68 + t68 * (parameters[YY4] - parameters[ZZ4])
-        - parameters[XY4] * t73;
-    const ariane4_real_t t95 = t94 + parameters[XZ4] * t71 - parameters[YZ4] * t76 + (parameters[MY4] * t92
-        - parameters[MZ4] * t93);
-    const ariane4_real_t t96 = t90 + t74; /* link j4: motion */
-    const ariane4_real_t t97 = ARIANE4_C(-2.0) * t68;
+    const ariane4_real_t t93 = parameters[XX4] * t67 + t67 * (parameters[YY4] - parameters[ZZ4])
+        - parameters[XY4] * t72;
+    const ariane4_real_t t94 = t93 + parameters[XZ4] * t70 - parameters[YZ4] * t75 + (parameters[MY4] * t91
+        - parameters[MZ4] * t92);
+    const ariane4_real_t t95 = t89 + t73; /* link j4: motion */
+    const ariane4_real_t t96 = ARIANE4_C(-2.0) * t67;
     /* link j4: force and moment */
-    const ariane4_real_t t98 = parameters[M4] * t93 + (parameters[MX4] * t71 + parameters[MY4] * t96
-        + parameters[MZ4] * t97);
-    const ariane4_real_t t99 = t89 + (t95 + ARIANE4_C(-0.436) * t98); /* link j4: what it passes on */
+    const ariane4_real_t t97 = parameters[M4] * t92 + (parameters[MX4] * t70 + parameters[MY4] * t95
+        + parameters[MZ4] * t96);
+    const ariane4_real_t t98 = t88 + (t94 + ARIANE4_C(-0.436) * t97); /* link j4: what it passes on */
     /* link j3: force and moment */
-    const ariane4_real_t t100 = parameters[YY3] * t70 - t70 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t97;
-    const ariane4_real_t t101 = t75 - t90;
-    const ariane4_real_t t102 = t0 * t85 - t1 * t82; /* link j3: motion */
+    const ariane4_real_t t99 = parameters[YY3] * t69 - t69 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t96;
+    const ariane4_real_t t100 = t74 - t89;
+    const ariane4_real_t t101 = t0 * t84 - t1 * t81; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_real_t t103 = t100 - parameters[YZ3] * t73 - parameters[XZ3] * t101
-        + (parameters[MZ3] * t102 + parameters[MX3] * t88);
-    const ariane4_real_t t104 = t75 + t74; /* link j4: motion */
-    const ariane4_real_t t105 = t102 - (ARIANE4_C(0.1) * t104 - ARIANE4_C(0.436) * t73);
+    const ariane4_real_t t102 = t99 - parameters[YZ3] * t72 - parameters[XZ3] * t100 + (parameters[MZ3] * t101
+        + parameters[MX3] * t87);
+    const ariane4_real_t t103 = t74 + t73; /* link j4: motion */
+    const ariane4_real_t t104 = t101 - (ARIANE4_C(0.1) * t103 - ARIANE4_C(0.436) * t72);
     /* link j4: force and moment */
-    const ariane4_real_t t106 = parameters[ZZ4] * t70 - t70 * (parameters[XX4] - parameters[YY4])
-        + parameters[YZ4] * t73;
-    const ariane4_real_t t107 = t106 - parameters[XZ4] * t97 + parameters[XY4] * t101 + (parameters[MX4] * t93
-        - parameters[MY4] * t105);
-    const ariane4_real_t t108 = t103 + (t107 - ARIANE4_C(0.1) * t98); /* link j4: what it passes on */
-    const ariane4_real_t t109 = dq[1] * t65; /* link j2: motion */
-    const ariane4_real_t t110 = ARIANE4_C(2.0) * t87;
+    const ariane4_real_t t105 = parameters[ZZ4] * t69 - t69 * (parameters[XX4] - parameters[YY4])
+        + parameters[YZ4] * t72;
+    const ariane4_real_t t106 = t105 - parameters[XZ4] * t96 + parameters[XY4] * t100 + (parameters[MX4] * t92
+        - parameters[MY4] * t104);
+    const ariane4_real_t t107 = t102 + (t106 - ARIANE4_C(0.1) * t97); /* link j4: what it passes on */
+    const ariane4_real_t t108 = dq[1] * t64; /* link j2: motion */
+    const ariane4_real_t t109 = ARIANE4_C(2.0) * t86;
     /* link j2: force and moment */
-    const ariane4_real_t t111 = t109 * (parameters[YY2] - parameters[ZZ2]) - t109 * parameters[XX2]
-        + t110 * parameters[XY2];
-    const ariane4_real_t t112 = t111 - t84 * parameters[XZ2] + (t81 - t80) * parameters[YZ2]
-        - t83 * parameters[MZ2];
+    const ariane4_real_t t110 = t108 * (parameters[YY2] - parameters[ZZ2]) - t108 * parameters[XX2]
+        + t109 * parameters[XY2];
+    const ariane4_real_t t111 = t110 - t83 * parameters[XZ2] + (t80 - t79) * parameters[YZ2]
+        - t82 * parameters[MZ2];
     /* link j3: force and moment */
-    const ariane4_real_t t113 = parameters[M3] * t88 + (parameters[MX3] * t71 + parameters[MY3] * t97
-        - parameters[MZ3] * t96);
-    const ariane4_real_t t114 = t113 + t98; /* link j4: what it passes on */
-    const ariane4_real_t t115 = ARIANE4_C(2.0) * t109; /* link j2: motion */
+    const ariane4_real_t t112 = parameters[M3] * t87 + (parameters[MX3] * t70 + parameters[MY3] * t96
+        - parameters[MZ3] * t95);
+    const ariane4_real_t t113 = t112 + t97; /* link j4: what it passes on */
+    const ariane4_real_t t114 = ARIANE4_C(2.0) * t108; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_real_t t116 = t87 * parameters[YY2] + t87 * (parameters[ZZ2] - parameters[XX2])
-        - t115 * parameters[XY2];
-    const ariane4_real_t t117 = t64 * t64; /* link j2: motion */
+    const ariane4_real_t t115 = t86 * parameters[YY2] + t86 * (parameters[ZZ2] - parameters[XX2])
+        - t114 * parameters[XY2];
+    const ariane4_real_t t116 = t63 * t63; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_real_t t118 = t116 + t84 * parameters[YZ2] + (t117 - t81) * parameters[XZ2]
-        - t79 * parameters[MZ2];
+    const ariane4_real_t t117 = t115 + t83 * parameters[YZ2] + (t116 - t80) * parameters[XZ2]
+        - t78 * parameters[MZ2];
     /* link j3: what it passes on */
-    const ariane4_real_t t119 = t118 + (t0 * t99 + t1 * t108 + ARIANE4_C(0.443) * t114);
+    const ariane4_real_t t118 = t117 + (t0 * t98 + t1 * t107 + ARIANE4_C(0.443) * t113);
     /* link j2: what it passes on */
-    const ariane4_real_t t120 = t13 * (t112 + (t1 * t99 - t0 * t108)) + t14 * t119;
+    const ariane4_real_t t119 = t13 * (t111 + (t1 * t98 - t0 * t107)) + t14 * t118;
     /* link j2: force and moment */
-    const ariane4_real_t t121 = t110 * parameters[MX2] + t115 * parameters[MY2] - (t117
-        + t80) * parameters[MZ2];
-    const ariane4_real_t t122 = t50 * dq[0];
-    const ariane4_real_t t123 = ariane4_sign(t122); /* joint j1: coulomb_friction */
+    const ariane4_real_t t120 = t109 * parameters[MX2] + t114 * parameters[MY2] - (t116
+        + t79) * parameters[MZ2];
+    const ariane4_real_t t121 = t49 * dq[0];
+    const ariane4_real_t t122 = ariane4_sign(t121); /* joint j1: coulomb_friction */
     /* joint j1: drive */
-    const ariane4_real_t t124 = ARIANE4_C(-3885.523436256565) * t47
-        + ARIANE4_C(-72.7913960548305) * (t49 * t49) * (t46 * t46);
-    const ariane4_real_t t125 = t122 * parameters[FV1] + t123 * parameters[FC1]
-        + t49 * t124 * t77 * parameters[IA1];
-    const ariane4_real_t t126 = input[0] * (ARIANE4_C(-0.004) * t50) + (t120 + ARIANE4_C(0.116) * (t121
-        + t114) - t50 * t125);
-    const ariane4_real_t t127 = t90 - t74; /* link j3: force and moment */
+    const ariane4_real_t t123 = ARIANE4_C(-3885.523436256565) * t46
+        + ARIANE4_C(-72.7913960548305) * (t48 * t48) * (t45 * t45);
+    const ariane4_real_t t124 = t121 * parameters[FV1] + t122 * parameters[FC1]
+        + t48 * t123 * t76 * parameters[IA1];
+    const ariane4_real_t t125 = input[0] * (ARIANE4_C(-0.004) * t49) + (t119 + ARIANE4_C(0.116) * (t120
+        + t113) - t49 * t124);
+    const ariane4_real_t t126 = t89 - t73; /* link j3: force and moment */
     /* link j4: force and moment */
-    const ariane4_real_t t128 = t73 * (parameters[XX4] - parameters[ZZ4]) + parameters[XZ4] * t127
-        + (parameters[MZ4] * t105 - parameters[MX4] * t92);
-    const ariane4_real_t t129 = parameters[M4] * t92 + (parameters[MX4] * t73 + parameters[MZ4] * t91);
-    const ariane4_real_t t130 = parameters[M4] * t105 + (parameters[MX4] * t104 + parameters[MZ4] * t73);
+    const ariane4_real_t t127 = t72 * (parameters[XX4] - parameters[ZZ4]) + parameters[XZ4] * t126
+        + (parameters[MZ4] * t104 - parameters[MX4] * t91);
+    const ariane4_real_t t128 = parameters[M4] * t91 + (parameters[MX4] * t72 + parameters[MZ4] * t90);
+    const ariane4_real_t t129 = parameters[M4] * t104 + (parameters[MX4] * t103 + parameters[MZ4] * t72);
     /* link j3: force and moment */
-    const ariane4_real_t t131 = t73 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * t127
-        + (parameters[MY3] * t102 - parameters[MX3] * t86);
+    const ariane4_real_t t130 = t72 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * t126
+        + (parameters[MY3] * t101 - parameters[MX3] * t85);
     /* link j4: what it passes on */
-    const ariane4_real_t t132 = t131 + (t128 - (ARIANE4_C(-0.1) * t129 - ARIANE4_C(0.436) * t130));
-    const ariane4_real_t t133 = t6 * dq[2];
-    const ariane4_real_t t134 = ariane4_sign(t133); /* joint j3: coulomb_friction */
+    const ariane4_real_t t131 = t130 + (t127 - (ARIANE4_C(-0.1) * t128 - ARIANE4_C(0.436) * t129));
+    const ariane4_real_t t132 = t6 * dq[2];
+    const ariane4_real_t t133 = ariane4_sign(t132); /* joint j3: coulomb_friction */
     /* joint j3: drive */
-    const ariane4_real_t t135 = ARIANE4_C(7124.375926654358) * t3
+    const ariane4_real_t t134 = ARIANE4_C(7124.375926654358) * t3
         + ARIANE4_C(188.12627071923498) * (t5 * t5) * (t2 * t2);
-    const ariane4_real_t t136 = t133 * parameters[FV3] + t134 * parameters[FC3]
-        + t5 * t135 * (dq[2] * dq[2]) * parameters[IA3];
-    const ariane4_real_t t137 = input[2] * (ARIANE4_C(0.003) * t6) + (t6 * t136 + t132);
+    const ariane4_real_t t135 = t132 * parameters[FV3] + t133 * parameters[FC3]
+        + t5 * t134 * (dq[2] * dq[2]) * parameters[IA3];
+    const ariane4_real_t t136 = input[2] * (ARIANE4_C(0.003) * t6) + (t6 * t135 + t131);
     /* link j4: what it passes on */
-    const ariane4_real_t t138 = parameters[M3] * t102 + (parameters[MX3] * t104 + parameters[MY3] * t73)
-        + t130;
-    const ariane4_real_t t139 = parameters[M3] * t86 + (parameters[MX3] * t73 + parameters[MY3] * t91) + t129;
+    const ariane4_real_t t137 = parameters[M3] * t101 + (parameters[MX3] * t103 + parameters[MY3] * t72)
+        + t129;
+    const ariane4_real_t t138 = parameters[M3] * t85 + (parameters[MX3] * t72 + parameters[MY3] * t90) + t128;
     /* link j2: force and moment */
-    const ariane4_real_t t140 = t84 * (parameters[XX2] - parameters[YY2]) - (t117 - t80) * parameters[XY2]
-        + (t83 * parameters[MX2] + t79 * parameters[MY2]);
+    const ariane4_real_t t139 = t83 * (parameters[XX2] - parameters[YY2]) - (t116 - t79) * parameters[XY2]
+        + (t82 * parameters[MX2] + t78 * parameters[MY2]);
     /* link j3: what it passes on */
-    const ariane4_real_t t141 = t140 - (t132 - ARIANE4_C(0.443) * (t0 * t138 + t1 * t139));
-    const ariane4_real_t t142 = t19 * dq[1];
-    const ariane4_real_t t143 = ariane4_sign(t142); /* joint j2: coulomb_friction */
+    const ariane4_real_t t140 = t139 - (t131 - ARIANE4_C(0.443) * (t0 * t137 + t1 * t138));
+    const ariane4_real_t t141 = t19 * dq[1];
+    const ariane4_real_t t142 = ariane4_sign(t141); /* joint j2: coulomb_friction */
     /* joint j2: drive */
-    const ariane4_real_t t144 = ARIANE4_C(-2656.3065671641784) * t16
+    const ariane4_real_t t143 = ARIANE4_C(-2656.3065671641784) * t16
         - ARIANE4_C(104.12987373940295) * (t18 * t18) * (t15 * t15);
-    const ariane4_real_t t145 = t142 * parameters[FV2] + t143 * parameters[FC2]
-        + t18 * t144 * t81 * parameters[IA2];
-    const ariane4_real_t t146 = ARIANE4_C(0.012) * t19 * input[1] - (t19 * t145 - t141) + t137 * t30;
-    const ariane4_real_t t147 = ARIANE4_C(1.0) / t62;
-    const ariane4_real_t t148 = ariane4_bounded((t126 + t137 * t57 + t146 * t61) * t147);
-    out[0] = t148;
-    const ariane4_real_t t149 = ariane4_bounded(t146 * t58 + t61 * t148);
-    out[1] = t149;
-    out[2] = t137 * t28 - t57 * t148 - t30 * t149;
-    if (!ariane4_all_bounded(out, 3)) {
+    const ariane4_real_t t144 = t141 * parameters[FV2] + t142 * parameters[FC2]
+        + t18 * t143 * t80 * parameters[IA2];
+    const ariane4_real_t t145 = ARIANE4_C(0.012) * t19 * input[1] - (t19 * t144 - t140) + t136 * t30;
+    const ariane4_real_t t146 = ARIANE4_C(1.0) / t61;
+    const ariane4_real_t t147 = ariane4_held((t125 + t136 * t56 + t145 * t60) * t146);
+    out[0] = t147;
+    const ariane4_real_t t148 = ariane4_held(t145 * t57 + t60 * t147);
+    out[1] = t148;
+    out[2] = t136 * t28 - t56 * t147 - t30 * t148;
+    if (!ariane4_bounded(out, 3)) {
         ariane4_zero(out, 3);
         return ARIANE4_STATUS_PIVOT;
     }

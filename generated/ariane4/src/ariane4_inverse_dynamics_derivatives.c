@@ -54,7 +54,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -239,194 +239,194 @@ ariane4_status_t ariane4_inverse_dynamics_derivatives(
         + parameters[IA3] * (t120 * t121 + t114 * ddq[2]);
     const ariane4_real_t t123 = ARIANE4_C(0.046787723832235825) * t111 / t109;
     input[2] = ARIANE4_C(-333.3333333333333) * t122 + t123 * t88;
-    const ariane4_real_t t124 = ARIANE4_C(-0.037468) * t66 * (ARIANE4_C(-0.5) * t68);
-    const ariane4_real_t t125 = ARIANE4_C(-1.0) / t66;
-    const ariane4_real_t t126 = t68 * (t68 * t124);
-    const ariane4_real_t t127 = t74 * (ARIANE4_C(145.582792109661) * (t68 * t126))
-        - t73 * (ARIANE4_C(-2.0) * (t66 * t64));
-    const ariane4_real_t t128 = t77 * (t75 * t126 - t68 * (ARIANE4_C(-3885.523436256565) * t66 + t127));
-    const ariane4_real_t t129 = t64 * t69 + t66 * (ARIANE4_C(-3885.523436256565) * t126);
-    const ariane4_real_t t130 = parameters[IA1] * (t128 - ddq[0] * t129) - parameters[FV1] * (dq[0] * t129);
-    const ariane4_real_t t131 = ARIANE4_C(250.0) * t130 + t61 * (t125 * (ARIANE4_C(0.06434139546481742) * t124
-        - t64 * t67));
-    input_by_q[0] = t131;
-    const ariane4_real_t t132 = t8 * t5 + t4 * t11;
-    const ariane4_real_t t133 = t6 * t4;
-    const ariane4_real_t t134 = t6 * t8;
-    const ariane4_real_t t135 = ARIANE4_C(2.0) * t134;
-    const ariane4_real_t t136 = parameters[XY3R] * t135 - (parameters[ZZ3R] * t133 + parameters[XX3R] * t133)
-        - parameters[XZ3R] * t132;
-    const ariane4_real_t t137 = ARIANE4_C(-2.0) * (t4 * t5);
-    const ariane4_real_t t138 = t0 * dq[1];
-    const ariane4_real_t t139 = ARIANE4_C(-0.886) * t138;
-    const ariane4_real_t t140 = parameters[MY3R] * t139 + (parameters[YZ3R] * t137 + t136);
-    const ariane4_real_t t141 = ARIANE4_C(2.0) * t133;
-    const ariane4_real_t t142 = ARIANE4_C(2.0) * (t8 * t11);
-    const ariane4_real_t t143 = parameters[XZ3R] * t142 - (t34 * t134 + parameters[XY3R] * t141
-        - parameters[YZ3R] * t132);
-    const ariane4_real_t t144 = t143 - parameters[MX3R] * t139;
-    const ariane4_real_t t145 = t2 * dq[1];
-    const ariane4_real_t t146 = ARIANE4_C(2.0) * t138;
-    const ariane4_real_t t147 = t0 * t40 + t2 * t23;
-    const ariane4_real_t t148 = parameters[XY2] * t146 - (parameters[ZZ2R] * t145 + parameters[XX2R] * t145)
-        - parameters[XZ2R] * t147;
-    const ariane4_real_t t149 = t2 * t40;
-    const ariane4_real_t t150 = ARIANE4_C(-2.0) * t149;
-    const ariane4_real_t t151 = parameters[YZ2] * t150 + t148 + (t3 * t140 - t1 * t144);
-    const ariane4_real_t t152 = parameters[MX3R] * t135 + parameters[MY3R] * t141;
-    const ariane4_real_t t153 = ARIANE4_C(2.0) * t145;
-    const ariane4_real_t t154 = ARIANE4_C(2.0) * (t0 * t23);
-    const ariane4_real_t t155 = parameters[XZ2R] * t154 + (t54 * t138 - parameters[XY2] * t153
-        + parameters[YZ2] * t147);
-    const ariane4_real_t t156 = t155 + (t1 * t140 + t3 * t144 + ARIANE4_C(0.443) * t152);
-    const ariane4_real_t t157 = t0 * t151 + t2 * t156 + ARIANE4_C(0.116) * (parameters[MX2R] * t146
-        + parameters[MY2] * t153 + t152);
-    const ariane4_real_t t158 = ARIANE4_C(250.0) * (parameters[IA1] * (t76 * (ARIANE4_C(-2.0) * dq[0]))
-        - t70 * parameters[FV1]);
-    input_by_dq[0] = t158 + t67 * t157;
-    const ariane4_real_t t159 = ARIANE4_C(0.232) * dq[0];
-    const ariane4_real_t t160 = t2 * t159;
-    const ariane4_real_t t161 = t160 + ARIANE4_C(0.886) * t149;
-    const ariane4_real_t t162 = t0 * t159;
-    const ariane4_real_t t163 = t162 + ARIANE4_C(0.443) * t147;
-    const ariane4_real_t t164 = parameters[MX3R] * (t1 * t161 + t3 * t163) + parameters[MY3R] * (t3 * t161
-        - t1 * t163);
-    const ariane4_real_t t165 = t164 + (parameters[XY3R] * (t142 + t137) - parameters[XX3R] * t132);
-    const ariane4_real_t t166 = t1 * (parameters[MX3R] * t137 + parameters[MY3R] * t132)
-        + t3 * (parameters[MX3R] * t132 - parameters[MY3R] * t142);
-    const ariane4_real_t t167 = parameters[MX2R] * t162 + parameters[MY2] * t160 + (parameters[XY2] * (t154
-        + t150) - parameters[XX2R] * t147);
-    input_by_dq[3] = t98 * (t167 + (t165 + ARIANE4_C(0.443) * t166));
-    input_by_dq[6] = t123 * t165;
-    /* link j3: velocities by those of the joints */
-    const ariane4_real_t t168 = ARIANE4_C(0.443) * t2 + ARIANE4_C(0.116);
-    const ariane4_real_t t169 = parameters[MY3R] * t168 - (parameters[XX3R] * t8 + parameters[XY3R] * t4);
-    const ariane4_real_t t170 = parameters[MX3R] * t168 + parameters[XY3R] * t8;
-    const ariane4_real_t t171 = parameters[MY3R] * t8 - parameters[MX3R] * t4;
-    const ariane4_real_t t172 = ARIANE4_C(-0.116) * parameters[MX2R] - t0 * parameters[XY2] + (t1 * t169
-        - t3 * t170 + ARIANE4_C(0.443) * t171);
-    const ariane4_real_t t173 = ARIANE4_C(0.116) * parameters[MY2] - (t0 * parameters[XX2R]
-        + t2 * parameters[XY2]) + (t3 * t169 + t1 * t170);
-    const ariane4_real_t t174 = t0 * t173 + t2 * t172 + ARIANE4_C(0.116) * (t0 * parameters[MY2]
-        - t2 * parameters[MX2R] + t171);
-    input_by_ddq[0] = ARIANE4_C(-250.0) * (t70 * parameters[IA1]) + t67 * (t174 - parameters[ZZ1R]);
-    const ariane4_real_t t175 = parameters[YZ3R] * t4 + parameters[XZ3R] * t8;
-    input_by_ddq[3] = t98 * (t2 * parameters[YZ2] + t0 * parameters[XZ2R] + t175);
-    input_by_ddq[6] = t123 * t175;
-    const ariane4_real_t t176 = t33 + (parameters[ZZ3R] * t12 - parameters[XX3R] * t14)
-        + parameters[XZ3R] * t86;
-    const ariane4_real_t t177 = ARIANE4_C(2.0) * t17;
-    const ariane4_real_t t178 = parameters[YZ3R] * t177 + t176;
-    const ariane4_real_t t179 = ARIANE4_C(-0.443) * t55;
-    const ariane4_real_t t180 = parameters[MY3R] * t179 + t178;
-    const ariane4_real_t t181 = t16 + t34 * t7 + parameters[YZ3R] * t86 - parameters[XZ3R] * t177;
-    const ariane4_real_t t182 = parameters[MX3R] * t179 + t181;
-    const ariane4_real_t t183 = t56 + (parameters[ZZ2R] * t24 - parameters[XX2R] * t26)
-        + parameters[XZ2R] * t91;
-    const ariane4_real_t t184 = ARIANE4_C(2.0) * t45;
-    const ariane4_real_t t185 = parameters[YZ2] * t184 + t183 + (t3 * t180 + t1 * t182);
-    const ariane4_real_t t186 = parameters[MX3R] * t32 + parameters[MY3R] * t15;
-    const ariane4_real_t t187 = ARIANE4_C(0.443) * t186;
-    const ariane4_real_t t188 = parameters[XZ2R] * t184 + (t41 * t54 - t44 - parameters[YZ2] * t91);
-    const ariane4_real_t t189 = t2 * (t188 + (t1 * t180 - t3 * t182 + t187));
-    const ariane4_real_t t190 = t2 * t50 + t0 * t185 + (t0 * t59 + t189);
-    const ariane4_real_t t191 = t190 + ARIANE4_C(0.116) * (parameters[MX2R] * t55 + parameters[MY2] * t27
-        + t186);
-    input_by_q[1] = t67 * t191;
-    const ariane4_real_t t192 = ARIANE4_C(0.078402) * t97 * (ARIANE4_C(-0.5) * t99);
-    const ariane4_real_t t193 = ARIANE4_C(1.0) / t97;
-    const ariane4_real_t t194 = t82 + ARIANE4_C(-0.886) * t45;
-    const ariane4_real_t t195 = t80 - ARIANE4_C(0.443) * t91;
-    const ariane4_real_t t196 = parameters[MX3R] * (t1 * t194 + t3 * t195) + parameters[MY3R] * (t3 * t194
-        - t1 * t195);
-    const ariane4_real_t t197 = parameters[XY3R] * (ARIANE4_C(4.0) * t17) + (parameters[XX3R] * t86
+    const ariane4_real_t t124 = ARIANE4_C(-0.052812) * t109 * (ARIANE4_C(-0.5) * t112);
+    const ariane4_real_t t125 = ARIANE4_C(-1.0) / t109;
+    const ariane4_real_t t126 = parameters[XY3R] * (ARIANE4_C(4.0) * t17) + (parameters[XX3R] * t86
         - parameters[YZ3R] * t9 + parameters[XZ3R] * t13);
-    const ariane4_real_t t198 = t196 + t197;
-    const ariane4_real_t t199 = t1 * (parameters[MX3R] * t177 - parameters[MY3R] * t86);
-    const ariane4_real_t t200 = t3 * (parameters[MY3R] * t177 + parameters[MX3R] * t86);
-    const ariane4_real_t t201 = parameters[XY2] * (ARIANE4_C(4.0) * t45) + (parameters[XX2R] * t91
-        - parameters[YZ2] * t42 + parameters[XZ2R] * t25);
-    const ariane4_real_t t202 = parameters[MX2R] * t80 + parameters[MY2] * t82 + t201 + (t198
-        + ARIANE4_C(0.443) * (t199 - t200));
-    const ariane4_real_t t203 = t94 * (t193 * (ARIANE4_C(0.03137188092799786) * t192 + t95 * t98))
-        + t98 * t202;
-    const ariane4_real_t t204 = t99 * (t99 * t192);
-    const ariane4_real_t t205 = t105 * (ARIANE4_C(-208.2597474788059) * (t99 * t204))
-        - t104 * (ARIANE4_C(2.0) * (t97 * t95));
-    const ariane4_real_t t206 = t49 * (t106 * t204 + t99 * (ARIANE4_C(-2656.3065671641784) * t97 + t205));
-    const ariane4_real_t t207 = t97 * (ARIANE4_C(-2656.3065671641784) * t204) - t95 * t100;
-    const ariane4_real_t t208 = parameters[FV2] * (dq[1] * t207) + parameters[IA2] * (ddq[1] * t207 - t206);
-    input_by_q[4] = ARIANE4_C(83.33333333333333) * t208 + t203;
-    input_by_q[7] = t123 * t198;
-    const ariane4_real_t t209 = ARIANE4_C(2.0) * t11;
-    const ariane4_real_t t210 = ARIANE4_C(-2.0) * t6;
-    const ariane4_real_t t211 = parameters[XY3R] * t209 - (parameters[ZZ3R] * t5 + parameters[XX3R] * t5)
-        - parameters[YZ3R] * t210;
-    const ariane4_real_t t212 = ARIANE4_C(-0.886) * t23;
-    const ariane4_real_t t213 = parameters[MY3R] * t212 + t211;
-    const ariane4_real_t t214 = ARIANE4_C(2.0) * t5;
-    const ariane4_real_t t215 = t34 * t11 + parameters[XY3R] * t214 - parameters[XZ3R] * t210;
-    const ariane4_real_t t216 = parameters[MX3R] * t212 + t215;
-    const ariane4_real_t t217 = ARIANE4_C(2.0) * t23;
-    const ariane4_real_t t218 = ARIANE4_C(2.0) * dq[1];
-    const ariane4_real_t t219 = parameters[YZ2] * t218 + (parameters[XY2] * t217 - (parameters[ZZ2R] * t40
-        + parameters[XX2R] * t40));
-    const ariane4_real_t t220 = parameters[MX3R] * t209 + parameters[MY3R] * t214;
-    const ariane4_real_t t221 = ARIANE4_C(0.443) * t220;
-    const ariane4_real_t t222 = ARIANE4_C(2.0) * t40;
-    const ariane4_real_t t223 = t23 * t54 - parameters[XY2] * t222 - parameters[XZ2R] * t218 + (t1 * t213
-        - t3 * t216 + t221);
-    const ariane4_real_t t224 = t0 * (t219 + (t3 * t213 + t1 * t216)) + t2 * t223;
-    const ariane4_real_t t225 = t224 + ARIANE4_C(0.116) * (parameters[MX2R] * t217 + parameters[MY2] * t222
-        + t220);
-    input_by_dq[1] = t67 * t225;
-    const ariane4_real_t t226 = ARIANE4_C(0.886) * dq[1];
-    const ariane4_real_t t227 = parameters[MX3R] * (t1 * t226) + parameters[MY3R] * (t3 * t226);
-    const ariane4_real_t t228 = ARIANE4_C(0.443) * (t1 * (parameters[MX3R] * t210)
-        + t3 * (parameters[MY3R] * t210));
-    const ariane4_real_t t229 = ARIANE4_C(83.33333333333333) * (t101 * parameters[FV2]
-        - parameters[IA2] * (t107 * t218)) + t98 * (t227 + t228);
-    input_by_dq[4] = t229;
-    input_by_dq[7] = t123 * t227;
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t230 = t1 * parameters[YZ3R] - t3 * parameters[XZ3R];
-    const ariane4_real_t t231 = t1 * parameters[XZ3R] + t3 * parameters[YZ3R];
-    const ariane4_real_t t232 = t67 * (t0 * (t230 - parameters[XZ2R]) - t2 * (parameters[YZ2] + t231));
-    input_by_ddq[1] = t232;
-    const ariane4_real_t t233 = ARIANE4_C(0.443) * (t3 * parameters[MX3R] - t1 * parameters[MY3R]);
-    const ariane4_real_t t234 = parameters[ZZ3R] + (parameters[MX3R] * (ARIANE4_C(0.443) * t3)
-        + parameters[MY3R] * (ARIANE4_C(-0.443) * t1));
-    const ariane4_real_t t235 = ARIANE4_C(83.33333333333333) * (t101 * parameters[IA2])
-        + t98 * (parameters[ZZ2R] + (t233 + t234));
-    input_by_ddq[4] = t235;
-    input_by_ddq[7] = t123 * t234;
-    const ariane4_real_t t236 = t0 * (t3 * t178 - t51 + (t52 + t1 * t181));
-    const ariane4_real_t t237 = t187 + (t31 + t1 * t178 + (t39 - t3 * t181));
-    input_by_q[2] = t67 * (t236 + t2 * t237 + ARIANE4_C(0.116) * t186);
-    const ariane4_real_t t238 = ARIANE4_C(0.443) * (t199 - t3 * t89 + (t1 * t90 - t200));
-    const ariane4_real_t t239 = t197 + (parameters[MX3R] * t85 - parameters[MY3R] * t84);
-    input_by_q[5] = t98 * (t239 + t238);
-    const ariane4_real_t t240 = ARIANE4_C(-0.052812) * t109 * (ARIANE4_C(-0.5) * t112);
-    const ariane4_real_t t241 = ARIANE4_C(-1.0) / t109;
-    const ariane4_real_t t242 = t88 * (t241 * (ARIANE4_C(0.046787723832235825) * t240 + t110 * t123))
-        + t123 * t239;
-    const ariane4_real_t t243 = t112 * (t112 * t240);
-    const ariane4_real_t t244 = t118 * (ARIANE4_C(376.25254143846996) * (t112 * t243))
+    const ariane4_real_t t127 = t126 + (parameters[MX3R] * t85 - parameters[MY3R] * t84);
+    const ariane4_real_t t128 = t88 * (t125 * (ARIANE4_C(0.046787723832235825) * t124 + t110 * t123))
+        + t123 * t127;
+    const ariane4_real_t t129 = t112 * (t112 * t124);
+    const ariane4_real_t t130 = t118 * (ARIANE4_C(376.25254143846996) * (t112 * t129))
         - t117 * (ARIANE4_C(-2.0) * (t109 * t110));
-    const ariane4_real_t t245 = t121 * (t119 * t243 - t112 * (ARIANE4_C(-7124.375926654358) * t109 + t244));
-    const ariane4_real_t t246 = t110 * t113 + t109 * (ARIANE4_C(-7124.375926654358) * t243);
-    const ariane4_real_t t247 = parameters[IA3] * (t245 - ddq[2] * t246) - parameters[FV3] * (dq[2] * t246);
-    input_by_q[8] = ARIANE4_C(333.3333333333333) * t247 + t242;
-    const ariane4_real_t t248 = t0 * (t3 * t211 + t1 * t215) + t2 * (t221 + (t1 * t211 - t3 * t215));
-    input_by_dq[2] = t67 * (t248 + ARIANE4_C(0.116) * t220);
-    input_by_dq[5] = t98 * t228;
+    const ariane4_real_t t131 = t121 * (t119 * t129 - t112 * (ARIANE4_C(-7124.375926654358) * t109 + t130));
+    const ariane4_real_t t132 = t110 * t113 + t109 * (ARIANE4_C(-7124.375926654358) * t129);
+    const ariane4_real_t t133 = parameters[IA3] * (t131 - ddq[2] * t132) - parameters[FV3] * (dq[2] * t132);
+    input_by_q[8] = ARIANE4_C(333.3333333333333) * t133 + t128;
+    const ariane4_real_t t134 = ARIANE4_C(2.0) * t17;
+    const ariane4_real_t t135 = t1 * (parameters[MX3R] * t134 - parameters[MY3R] * t86);
+    const ariane4_real_t t136 = t3 * (parameters[MY3R] * t134 + parameters[MX3R] * t86);
+    const ariane4_real_t t137 = ARIANE4_C(0.443) * (t135 - t3 * t89 + (t1 * t90 - t136));
+    input_by_q[5] = t98 * (t127 + t137);
+    const ariane4_real_t t138 = t33 + (parameters[ZZ3R] * t12 - parameters[XX3R] * t14)
+        + parameters[XZ3R] * t86;
+    const ariane4_real_t t139 = parameters[YZ3R] * t134 + t138;
+    const ariane4_real_t t140 = t16 + t34 * t7 + parameters[YZ3R] * t86 - parameters[XZ3R] * t134;
+    const ariane4_real_t t141 = t0 * (t3 * t139 - t51 + (t52 + t1 * t140));
+    const ariane4_real_t t142 = parameters[MX3R] * t32 + parameters[MY3R] * t15;
+    const ariane4_real_t t143 = ARIANE4_C(0.443) * t142;
+    const ariane4_real_t t144 = t143 + (t31 + t1 * t139 + (t39 - t3 * t140));
+    input_by_q[2] = t67 * (t141 + t2 * t144 + ARIANE4_C(0.116) * t142);
     const ariane4_real_t
-        t249 = ARIANE4_C(333.3333333333333) * (parameters[IA3] * (t120 * (ARIANE4_C(-2.0) * dq[2]))
+        t145 = ARIANE4_C(333.3333333333333) * (parameters[IA3] * (t120 * (ARIANE4_C(-2.0) * dq[2]))
         - t114 * parameters[FV3]);
-    input_by_dq[8] = t249;
-    input_by_ddq[2] = t67 * (t0 * t230 - t2 * t231);
-    input_by_ddq[5] = t98 * (parameters[ZZ3R] + t233);
+    input_by_dq[8] = t145;
+    const ariane4_real_t t146 = ARIANE4_C(-2.0) * t6;
+    const ariane4_real_t t147 = ARIANE4_C(0.443) * (t1 * (parameters[MX3R] * t146)
+        + t3 * (parameters[MY3R] * t146));
+    input_by_dq[5] = t98 * t147;
+    const ariane4_real_t t148 = ARIANE4_C(2.0) * t11;
+    const ariane4_real_t t149 = parameters[XY3R] * t148 - (parameters[ZZ3R] * t5 + parameters[XX3R] * t5)
+        - parameters[YZ3R] * t146;
+    const ariane4_real_t t150 = ARIANE4_C(2.0) * t5;
+    const ariane4_real_t t151 = t34 * t11 + parameters[XY3R] * t150 - parameters[XZ3R] * t146;
+    const ariane4_real_t t152 = parameters[MX3R] * t148 + parameters[MY3R] * t150;
+    const ariane4_real_t t153 = ARIANE4_C(0.443) * t152;
+    const ariane4_real_t t154 = t0 * (t3 * t149 + t1 * t151) + t2 * (t153 + (t1 * t149 - t3 * t151));
+    input_by_dq[2] = t67 * (t154 + ARIANE4_C(0.116) * t152);
     input_by_ddq[8] = ARIANE4_C(-333.3333333333333) * (t114 * parameters[IA3]) + t123 * parameters[ZZ3R];
+    /* link j3: column of the mass matrix */
+    const ariane4_real_t t155 = ARIANE4_C(0.443) * (t3 * parameters[MX3R] - t1 * parameters[MY3R]);
+    input_by_ddq[5] = t98 * (parameters[ZZ3R] + t155);
+    const ariane4_real_t t156 = t1 * parameters[YZ3R] - t3 * parameters[XZ3R];
+    const ariane4_real_t t157 = t1 * parameters[XZ3R] + t3 * parameters[YZ3R];
+    input_by_ddq[2] = t67 * (t0 * t156 - t2 * t157);
+    const ariane4_real_t t158 = t82 + ARIANE4_C(-0.886) * t45;
+    const ariane4_real_t t159 = t80 - ARIANE4_C(0.443) * t91;
+    const ariane4_real_t t160 = parameters[MX3R] * (t1 * t158 + t3 * t159) + parameters[MY3R] * (t3 * t158
+        - t1 * t159);
+    const ariane4_real_t t161 = t160 + t126;
+    input_by_q[7] = t123 * t161;
+    const ariane4_real_t t162 = ARIANE4_C(0.886) * dq[1];
+    const ariane4_real_t t163 = parameters[MX3R] * (t1 * t162) + parameters[MY3R] * (t3 * t162);
+    input_by_dq[7] = t123 * t163;
+    const ariane4_real_t t164 = t8 * t5 + t4 * t11;
+    const ariane4_real_t t165 = ARIANE4_C(2.0) * (t8 * t11);
+    const ariane4_real_t t166 = ARIANE4_C(-2.0) * (t4 * t5);
+    const ariane4_real_t t167 = ARIANE4_C(0.232) * dq[0];
+    const ariane4_real_t t168 = t2 * t167;
+    const ariane4_real_t t169 = t2 * t40;
+    const ariane4_real_t t170 = t168 + ARIANE4_C(0.886) * t169;
+    const ariane4_real_t t171 = t0 * t40 + t2 * t23;
+    const ariane4_real_t t172 = t0 * t167;
+    const ariane4_real_t t173 = t172 + ARIANE4_C(0.443) * t171;
+    const ariane4_real_t t174 = parameters[MX3R] * (t1 * t170 + t3 * t173) + parameters[MY3R] * (t3 * t170
+        - t1 * t173);
+    const ariane4_real_t t175 = t174 + (parameters[XY3R] * (t165 + t166) - parameters[XX3R] * t164);
+    input_by_dq[6] = t123 * t175;
+    const ariane4_real_t t176 = parameters[ZZ3R] + (parameters[MX3R] * (ARIANE4_C(0.443) * t3)
+        + parameters[MY3R] * (ARIANE4_C(-0.443) * t1));
+    input_by_ddq[7] = t123 * t176;
+    const ariane4_real_t t177 = parameters[YZ3R] * t4 + parameters[XZ3R] * t8;
+    input_by_ddq[6] = t123 * t177;
+    const ariane4_real_t t178 = ARIANE4_C(0.078402) * t97 * (ARIANE4_C(-0.5) * t99);
+    const ariane4_real_t t179 = ARIANE4_C(1.0) / t97;
+    const ariane4_real_t t180 = parameters[XY2] * (ARIANE4_C(4.0) * t45) + (parameters[XX2R] * t91
+        - parameters[YZ2] * t42 + parameters[XZ2R] * t25);
+    const ariane4_real_t t181 = parameters[MX2R] * t80 + parameters[MY2] * t82 + t180 + (t161
+        + ARIANE4_C(0.443) * (t135 - t136));
+    const ariane4_real_t t182 = t94 * (t179 * (ARIANE4_C(0.03137188092799786) * t178 + t95 * t98))
+        + t98 * t181;
+    const ariane4_real_t t183 = t99 * (t99 * t178);
+    const ariane4_real_t t184 = t105 * (ARIANE4_C(-208.2597474788059) * (t99 * t183))
+        - t104 * (ARIANE4_C(2.0) * (t97 * t95));
+    const ariane4_real_t t185 = t49 * (t106 * t183 + t99 * (ARIANE4_C(-2656.3065671641784) * t97 + t184));
+    const ariane4_real_t t186 = t97 * (ARIANE4_C(-2656.3065671641784) * t183) - t95 * t100;
+    const ariane4_real_t t187 = parameters[FV2] * (dq[1] * t186) + parameters[IA2] * (ddq[1] * t186 - t185);
+    input_by_q[4] = ARIANE4_C(83.33333333333333) * t187 + t182;
+    const ariane4_real_t t188 = ARIANE4_C(-0.443) * t55;
+    const ariane4_real_t t189 = parameters[MY3R] * t188 + t139;
+    const ariane4_real_t t190 = parameters[MX3R] * t188 + t140;
+    const ariane4_real_t t191 = t56 + (parameters[ZZ2R] * t24 - parameters[XX2R] * t26)
+        + parameters[XZ2R] * t91;
+    const ariane4_real_t t192 = ARIANE4_C(2.0) * t45;
+    const ariane4_real_t t193 = parameters[YZ2] * t192 + t191 + (t3 * t189 + t1 * t190);
+    const ariane4_real_t t194 = parameters[XZ2R] * t192 + (t41 * t54 - t44 - parameters[YZ2] * t91);
+    const ariane4_real_t t195 = t2 * (t194 + (t1 * t189 - t3 * t190 + t143));
+    const ariane4_real_t t196 = t2 * t50 + t0 * t193 + (t0 * t59 + t195);
+    const ariane4_real_t t197 = t196 + ARIANE4_C(0.116) * (parameters[MX2R] * t55 + parameters[MY2] * t27
+        + t142);
+    input_by_q[1] = t67 * t197;
+    const ariane4_real_t t198 = ARIANE4_C(2.0) * dq[1];
+    const ariane4_real_t t199 = ARIANE4_C(83.33333333333333) * (t101 * parameters[FV2]
+        - parameters[IA2] * (t107 * t198)) + t98 * (t163 + t147);
+    input_by_dq[4] = t199;
+    const ariane4_real_t t200 = ARIANE4_C(-0.886) * t23;
+    const ariane4_real_t t201 = parameters[MY3R] * t200 + t149;
+    const ariane4_real_t t202 = parameters[MX3R] * t200 + t151;
+    const ariane4_real_t t203 = ARIANE4_C(2.0) * t23;
+    const ariane4_real_t t204 = parameters[YZ2] * t198 + (parameters[XY2] * t203 - (parameters[ZZ2R] * t40
+        + parameters[XX2R] * t40));
+    const ariane4_real_t t205 = ARIANE4_C(2.0) * t40;
+    const ariane4_real_t t206 = t23 * t54 - parameters[XY2] * t205 - parameters[XZ2R] * t198 + (t1 * t201
+        - t3 * t202 + t153);
+    const ariane4_real_t t207 = t0 * (t204 + (t3 * t201 + t1 * t202)) + t2 * t206;
+    const ariane4_real_t t208 = t207 + ARIANE4_C(0.116) * (parameters[MX2R] * t203 + parameters[MY2] * t205
+        + t152);
+    input_by_dq[1] = t67 * t208;
+    const ariane4_real_t t209 = ARIANE4_C(83.33333333333333) * (t101 * parameters[IA2])
+        + t98 * (parameters[ZZ2R] + (t155 + t176));
+    input_by_ddq[4] = t209;
+    const ariane4_real_t t210 = t67 * (t0 * (t156 - parameters[XZ2R]) - t2 * (parameters[YZ2] + t157));
+    input_by_ddq[1] = t210;
+    const ariane4_real_t t211 = t1 * (parameters[MX3R] * t166 + parameters[MY3R] * t164)
+        + t3 * (parameters[MX3R] * t164 - parameters[MY3R] * t165);
+    const ariane4_real_t t212 = ARIANE4_C(2.0) * (t0 * t23);
+    const ariane4_real_t t213 = ARIANE4_C(-2.0) * t169;
+    const ariane4_real_t t214 = parameters[MX2R] * t172 + parameters[MY2] * t168 + (parameters[XY2] * (t212
+        + t213) - parameters[XX2R] * t171);
+    input_by_dq[3] = t98 * (t214 + (t175 + ARIANE4_C(0.443) * t211));
+    input_by_ddq[3] = t98 * (t2 * parameters[YZ2] + t0 * parameters[XZ2R] + t177);
+    const ariane4_real_t t215 = ARIANE4_C(-0.037468) * t66 * (ARIANE4_C(-0.5) * t68);
+    const ariane4_real_t t216 = ARIANE4_C(-1.0) / t66;
+    const ariane4_real_t t217 = t68 * (t68 * t215);
+    const ariane4_real_t t218 = t74 * (ARIANE4_C(145.582792109661) * (t68 * t217))
+        - t73 * (ARIANE4_C(-2.0) * (t66 * t64));
+    const ariane4_real_t t219 = t77 * (t75 * t217 - t68 * (ARIANE4_C(-3885.523436256565) * t66 + t218));
+    const ariane4_real_t t220 = t64 * t69 + t66 * (ARIANE4_C(-3885.523436256565) * t217);
+    const ariane4_real_t t221 = parameters[IA1] * (t219 - ddq[0] * t220) - parameters[FV1] * (dq[0] * t220);
+    const ariane4_real_t t222 = ARIANE4_C(250.0) * t221 + t61 * (t216 * (ARIANE4_C(0.06434139546481742) * t215
+        - t64 * t67));
+    input_by_q[0] = t222;
+    const ariane4_real_t t223 = t6 * t4;
+    const ariane4_real_t t224 = t6 * t8;
+    const ariane4_real_t t225 = ARIANE4_C(2.0) * t224;
+    const ariane4_real_t t226 = parameters[XY3R] * t225 - (parameters[ZZ3R] * t223 + parameters[XX3R] * t223)
+        - parameters[XZ3R] * t164;
+    const ariane4_real_t t227 = t0 * dq[1];
+    const ariane4_real_t t228 = ARIANE4_C(-0.886) * t227;
+    const ariane4_real_t t229 = parameters[MY3R] * t228 + (parameters[YZ3R] * t166 + t226);
+    const ariane4_real_t t230 = ARIANE4_C(2.0) * t223;
+    const ariane4_real_t t231 = parameters[XZ3R] * t165 - (t34 * t224 + parameters[XY3R] * t230
+        - parameters[YZ3R] * t164);
+    const ariane4_real_t t232 = t231 - parameters[MX3R] * t228;
+    const ariane4_real_t t233 = t2 * dq[1];
+    const ariane4_real_t t234 = ARIANE4_C(2.0) * t227;
+    const ariane4_real_t t235 = parameters[XY2] * t234 - (parameters[ZZ2R] * t233 + parameters[XX2R] * t233)
+        - parameters[XZ2R] * t171;
+    const ariane4_real_t t236 = parameters[YZ2] * t213 + t235 + (t3 * t229 - t1 * t232);
+    const ariane4_real_t t237 = parameters[MX3R] * t225 + parameters[MY3R] * t230;
+    const ariane4_real_t t238 = ARIANE4_C(2.0) * t233;
+    const ariane4_real_t t239 = parameters[XZ2R] * t212 + (t54 * t227 - parameters[XY2] * t238
+        + parameters[YZ2] * t171);
+    const ariane4_real_t t240 = t239 + (t1 * t229 + t3 * t232 + ARIANE4_C(0.443) * t237);
+    const ariane4_real_t t241 = t0 * t236 + t2 * t240 + ARIANE4_C(0.116) * (parameters[MX2R] * t234
+        + parameters[MY2] * t238 + t237);
+    const ariane4_real_t t242 = ARIANE4_C(250.0) * (parameters[IA1] * (t76 * (ARIANE4_C(-2.0) * dq[0]))
+        - t70 * parameters[FV1]);
+    input_by_dq[0] = t242 + t67 * t241;
+    /* link j3: velocities by those of the joints */
+    const ariane4_real_t t243 = ARIANE4_C(0.443) * t2 + ARIANE4_C(0.116);
+    const ariane4_real_t t244 = parameters[MY3R] * t243 - (parameters[XX3R] * t8 + parameters[XY3R] * t4);
+    const ariane4_real_t t245 = parameters[MX3R] * t243 + parameters[XY3R] * t8;
+    const ariane4_real_t t246 = parameters[MY3R] * t8 - parameters[MX3R] * t4;
+    const ariane4_real_t t247 = ARIANE4_C(-0.116) * parameters[MX2R] - t0 * parameters[XY2] + (t1 * t244
+        - t3 * t245 + ARIANE4_C(0.443) * t246);
+    const ariane4_real_t t248 = ARIANE4_C(0.116) * parameters[MY2] - (t0 * parameters[XX2R]
+        + t2 * parameters[XY2]) + (t3 * t244 + t1 * t245);
+    const ariane4_real_t t249 = t0 * t248 + t2 * t247 + ARIANE4_C(0.116) * (t0 * parameters[MY2]
+        - t2 * parameters[MX2R] + t246);
+    input_by_ddq[0] = ARIANE4_C(-250.0) * (t70 * parameters[IA1]) + t67 * (t249 - parameters[ZZ1R]);
     /* always zero */
     input_by_q[3] = ARIANE4_C(0.0);
     input_by_q[6] = ARIANE4_C(0.0);

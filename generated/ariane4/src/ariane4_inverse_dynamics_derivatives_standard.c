@@ -78,7 +78,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -311,275 +311,284 @@ ariane4_status_t ariane4_inverse_dynamics_derivatives_standard(
     const ariane4_real_t t139 = t132 * parameters[FV3] + t133 * parameters[FC3] + (t131 * ddq[2]
         + t137 * t138) * parameters[IA3];
     input[2] = ARIANE4_C(-333.3333333333333) * t139 - t128 * t103;
-    const ariane4_real_t t140 = ariane4_select(t83, t83, ARIANE4_C(1.0));
+    const ariane4_real_t t140 = ariane4_select(t126, t126, ARIANE4_C(1.0));
     const ariane4_real_t t141 = ARIANE4_C(1.0) / t140;
-    const ariane4_real_t t142 = ARIANE4_C(-0.037468) * t84;
-    const ariane4_real_t t143 = ARIANE4_C(-1.0) / t84;
-    const ariane4_real_t t144 = t143 * (ARIANE4_C(0.06434139546481742) * (t142 * (ARIANE4_C(0.5) * t141))
-        - t82 * t85);
-    const ariane4_real_t t145 = t86 * (t86 * (t142 * (ARIANE4_C(0.5) * t86)));
-    const ariane4_real_t t146 = t92 * (ARIANE4_C(-145.582792109661) * (t86 * t145))
-        - t91 * (ARIANE4_C(-2.0) * (t84 * t82));
-    const ariane4_real_t t147 = t0 * (t93 * t145 + t86 * (ARIANE4_C(-3885.523436256565) * t84 + t146));
-    const ariane4_real_t t148 = t82 * t87 + t84 * (ARIANE4_C(3885.523436256565) * t145);
-    const ariane4_real_t t149 = parameters[FV1] * (dq[0] * t148) + parameters[IA1] * (ddq[0] * t148 + t147);
-    input_by_q[0] = ARIANE4_C(-250.0) * t149 + t79 * t144;
-    const ariane4_real_t t150 = ARIANE4_C(0.1) * parameters[M4]; /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t151 = parameters[MX4] - t150;
-    const ariane4_real_t t152 = ARIANE4_C(0.436) * t25; /* link j4: velocity of its origin */
-    const ariane4_real_t t153 = t151 * t152; /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t154 = ARIANE4_C(0.436) * parameters[M4]; /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t155 = parameters[MZ4] + t154;
-    const ariane4_real_t t156 = ARIANE4_C(0.1) * t25; /* link j4: velocity of its origin */
-    const ariane4_real_t t157 = t155 * t156; /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t158 = ARIANE4_C(0.436) * t18 + ARIANE4_C(0.1) * t20;
-    const ariane4_real_t t159 = parameters[MY4] * t158;
-    const ariane4_real_t t160 = t25 * parameters[MZ4] + t20 * parameters[MY4];
-    const ariane4_real_t t161 = ARIANE4_C(0.1) * t160;
-    const ariane4_real_t t162 = t18 * parameters[MY4] + t25 * parameters[MX4];
-    const ariane4_real_t t163 = ARIANE4_C(0.436) * t162;
-    const ariane4_real_t t164 = t161 + t163 - (t153 + t157 + t159);
-    const ariane4_real_t t165 = t20 * parameters[XY4];
-    const ariane4_real_t t166 = t25 * parameters[XZ4];
-    const ariane4_real_t t167 = t20 * parameters[XZ3];
-    const ariane4_real_t t168 = t25 * parameters[XY3];
-    const ariane4_real_t t169 = t168 - t167 + (t166 + t165 + (t161 - t153) - t164);
-    const ariane4_real_t t170 = t18 * parameters[YZ4];
-    const ariane4_real_t t171 = t18 * parameters[YZ3];
-    const ariane4_real_t t172 = t168 - t171 + (t164 + (t166 + t170 - (t163 - t157)));
-    const ariane4_real_t t173 = ARIANE4_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const ariane4_real_t t174 = t173 - parameters[ZZ4];
-    const ariane4_real_t t175 = t25 * t174 - t20 * parameters[YZ4] + (ARIANE4_C(0.436) * t160 + t155 * t152);
-    const ariane4_real_t t176 = ARIANE4_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const ariane4_real_t t177 = t176 - parameters[YY3];
-    const ariane4_real_t t178 = t20 * parameters[YZ3] + t25 * t177 + t175;
-    const ariane4_real_t t179 = parameters[XX4] - t173;
-    const ariane4_real_t t180 = t18 * parameters[XY4] + t25 * t179 + (ARIANE4_C(0.1) * t162 + t151 * t156);
-    const ariane4_real_t t181 = parameters[XX3] - t176;
-    const ariane4_real_t t182 = t25 * t181 - t18 * parameters[XZ3] + t180;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t183 = t15 * (t169 + t172) + t9 * (t178 + t182);
-    const ariane4_real_t t184 = t15 * t183;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t185 = t20 * parameters[MZ3] - t25 * parameters[MY3] - (t160
-        + parameters[M4] * t152);
-    const ariane4_real_t t186 = t18 * parameters[MZ3] - t25 * parameters[MX3] + (parameters[M4] * t156
-        - t162);
-    const ariane4_real_t t187 = t15 * t185 + t9 * t186; /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t188 = ARIANE4_C(-0.443) * t187;
-    const ariane4_real_t t189 = parameters[MY3] + t155; /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t190 = parameters[MX3] + t151;
-    const ariane4_real_t t191 = t15 * t189 + t9 * t190; /* link j3: column of the mass matrix */
-    const ariane4_real_t t192 = ARIANE4_C(0.443) * dq[1]; /* link j3: velocity of its origin */
-    const ariane4_real_t t193 = t191 * t192; /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t194 = parameters[MZ3] - parameters[MY4]; /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t195 = ARIANE4_C(0.443) * t5; /* link j3: velocity of its origin */
-    const ariane4_real_t t196 = t194 * t195; /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t197 = t188 + (t196 - t193);
-    const ariane4_real_t t198 = t5 * parameters[XZ2];
-    const ariane4_real_t t199 = dq[1] * parameters[XY2];
-    const ariane4_real_t t200 = t199 - t198 + (t197 + (t184 - t172 - t188));
-    const ariane4_real_t t201 = t11 * parameters[YZ2];
-    const ariane4_real_t t202 = t201 - t199 + (t197 + (t169 - t184 + t193));
-    const ariane4_real_t t203 = t9 * t183;
-    const ariane4_real_t t204 = ARIANE4_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const ariane4_real_t t205 = parameters[YY2] - t204;
-    const ariane4_real_t t206 = dq[1] * t205 - t5 * parameters[YZ2] + (t203 - t178);
-    const ariane4_real_t t207 = t9 * t185 - t15 * t186;
-    const ariane4_real_t t208 = t9 * t189 - t15 * t190; /* link j3: column of the mass matrix */
-    const ariane4_real_t t209 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t210 = ARIANE4_C(0.443) * t209; /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t211 = t210 - t208;
-    const ariane4_real_t t212 = t204 - parameters[XX2];
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t213 = t11 * parameters[XZ2] + dq[1] * t212 + (t203 - t182 + (ARIANE4_C(0.443) * t207
-        + t211 * t192));
-    /* link j2: inertia, momentum beyond */
-    const ariane4_real_t t214 = t2 * (t2 * (t202 - t200) + t3 * (t206 + t213));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t215 = t5 * parameters[MZ2] - dq[1] * parameters[MY2] + t187;
-    const ariane4_real_t t216 = dq[1] * parameters[MX2] - t11 * parameters[MZ2] + (t207 + t209 * t192);
-    const ariane4_real_t t217 = parameters[MZ2] + t194; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia, momentum beyond */
-    const ariane4_real_t t218 = ARIANE4_C(0.116) * (t3 * t216 - t2 * t215)
-        + t217 * (ARIANE4_C(0.116) * dq[0]);
-    const ariane4_real_t t219 = ARIANE4_C(250.0) * (parameters[IA1] * (t94 * (ARIANE4_C(-2.0) * dq[0]))
-        - t88 * parameters[FV1]);
-    input_by_dq[0] = t219 + t85 * (ARIANE4_C(2.0) * (t200 + t214 + t218));
-    const ariane4_real_t t220 = t20 * parameters[MX4] - t18 * parameters[MZ4];
-    /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t221 = t18 * parameters[XZ4] - t20 * t179 + (ARIANE4_C(-0.1) * t220 - t151 * t158);
-    const ariane4_real_t t222 = t18 * parameters[XY3] - t20 * t181 + t221;
-    const ariane4_real_t t223 = t20 * parameters[XZ4] + t18 * t174 + (ARIANE4_C(-0.436) * t220 + t155 * t158);
-    const ariane4_real_t t224 = t18 * t177 + t20 * parameters[XY3] + t223;
-    const ariane4_real_t t225 = t20 * parameters[MX3] - t18 * parameters[MY3] + (t220
-        - parameters[M4] * t158);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t226 = t15 * t222 + t9 * t224 + (ARIANE4_C(0.443) * t225 + t211 * t195);
-    /* link j2: derivatives */
-    const ariane4_real_t t227 = ARIANE4_C(2.0) * (t11 * parameters[XY2] + t5 * t212 + t226);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t228 = t5 * parameters[XY2] - t11 * t205 - (t9 * t222 - t15 * t224 + t191 * t195);
-    const ariane4_real_t t229 = ARIANE4_C(2.0) * t228; /* link j2: derivatives */
-    const ariane4_real_t t230 = parameters[MY2] + t191; /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t231 = parameters[MX2] + t211;
-    const ariane4_real_t t232 = ARIANE4_C(0.232) * dq[0];
-    /* link j2: derivatives */
-    const ariane4_real_t t233 = t3 * t227 - t2 * t229 + (t2 * t230 + t3 * t231) * t232;
-    input_by_dq[3] = t114 * t233;
-    const ariane4_real_t t234 = ARIANE4_C(2.0) * t222; /* link j3: derivatives */
-    const ariane4_real_t t235 = ARIANE4_C(-2.0) * t224;
-    const ariane4_real_t t236 = ARIANE4_C(0.886) * t5;
-    const ariane4_real_t t237 = t9 * t235 - t15 * t234 + t208 * t236;
-    const ariane4_real_t t238 = t9 * t234 + t15 * t235 + t191 * t236;
-    const ariane4_real_t t239 = t3 * t237 - t2 * t238 + (t3 * t208 - t2 * t191) * t232;
-    input_by_dq[6] = t128 * t239;
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t240 = ARIANE4_C(0.436) * (t154 + ARIANE4_C(2.0) * parameters[MZ4]);
-    const ariane4_real_t t241 = parameters[XX3] + (parameters[XX4] + t240);
-    const ariane4_real_t t242 = ARIANE4_C(0.1) * (t150 + ARIANE4_C(-2.0) * parameters[MX4]);
-    const ariane4_real_t t243 = parameters[YY3] + (parameters[ZZ4] + t242);
-    const ariane4_real_t t244 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
-        + ARIANE4_C(-0.436) * t151));
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t245 = t15 * (t243 - t241) + t244 * (ARIANE4_C(2.0) * t9);
-    const ariane4_real_t t246 = t15 * t245;
-    const ariane4_real_t t247 = t246 - t243 - parameters[XX2];
-    const ariane4_real_t t248 = ARIANE4_C(0.443) * (t210 - ARIANE4_C(2.0) * t208);
-    const ariane4_real_t t249 = parameters[YY2] + (t241 + t246 + t248);
-    const ariane4_real_t t250 = t9 * t245 - t244 + ARIANE4_C(0.443) * t191 - parameters[XY2];
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t251 = t2 * (t2 * (t247 + t249) + t250 * (ARIANE4_C(-2.0) * t3));
-    const ariane4_real_t t252 = ARIANE4_C(-0.116) * (parameters[M2] + t209) + ARIANE4_C(2.0) * (t3 * t230
-        - t2 * t231);
-    const ariane4_real_t t253 = ARIANE4_C(-250.0) * (t88 * parameters[IA1]) + t85 * (t247 - t251
-        + ARIANE4_C(0.116) * t252 - parameters[ZZ1]);
-    input_by_ddq[0] = t253;
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t254 = parameters[XY4] + ARIANE4_C(0.1) * parameters[MY4] - parameters[XZ3];
-    const ariane4_real_t t255 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
-    const ariane4_real_t t256 = t15 * t254 + t9 * t255; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t257 = parameters[XZ2] + (ARIANE4_C(-0.443) * t194 - t256);
-    const ariane4_real_t t258 = t9 * t254 - t15 * t255; /* link j3: column of the mass matrix */
-    const ariane4_real_t t259 = t258 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t260 = t3 * t257 - t2 * t259; /* link j2: column of the mass matrix */
-    input_by_ddq[3] = t114 * t260;
-    const ariane4_real_t t261 = t3 * t256 + t2 * t258; /* link j3: column of the mass matrix */
-    input_by_ddq[6] = t128 * t261;
-    const ariane4_real_t t262 = ARIANE4_C(2.0) * t5;
-    const ariane4_real_t t263 = ARIANE4_C(2.0) * t11;
-    /* link j2: derivatives */
-    const ariane4_real_t t264 = t262 * t200 - t263 * t206 + (t37 * t247 - t64 * t250 + t76 * t257);
-    const ariane4_real_t t265 = t262 * t213 - t263 * t202 + (t37 * t250 + t64 * t249 - t76 * t259);
-    const ariane4_real_t t266 = t3 * (t75 + (t264 - t4 * t217)) + t2 * (t68 + (t265 + t10 * t217));
-    const ariane4_real_t t267 = t262 * t216 + t263 * t215 + (t37 * t230 + t64 * t231);
-    input_by_q[1] = t85 * (t266 + ARIANE4_C(0.116) * t267);
-    const ariane4_real_t t268 = ariane4_select(t112, t112, ARIANE4_C(1.0));
-    const ariane4_real_t t269 = ARIANE4_C(1.0) / t268;
-    const ariane4_real_t t270 = ARIANE4_C(0.078402) * t113;
-    const ariane4_real_t t271 = ARIANE4_C(-1.0) / t113;
-    const ariane4_real_t t272 = t271 * (t111 * t114
-        + ARIANE4_C(0.03137188092799786) * (t270 * (ARIANE4_C(0.5) * t269)));
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t273 = parameters[ZZ3] + (parameters[YY4] + (t242 + t240));
-    const ariane4_real_t t274 = parameters[ZZ2] + (t273 + t248); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const ariane4_real_t t275 = t37 * t257 + t64 * t259 - t76 * t274 + (t5 * t227 + t11 * t229);
-    const ariane4_real_t t276 = t115 * (t115 * (t270 * (ARIANE4_C(0.5) * t115)));
-    const ariane4_real_t t277 = t121 * (ARIANE4_C(208.2597474788059) * (t115 * t276))
-        - t120 * (ARIANE4_C(2.0) * (t113 * t111));
-    const ariane4_real_t t278 = t7 * (t122 * t276 - t115 * (ARIANE4_C(-2656.3065671641784) * t113 + t277));
-    const ariane4_real_t t279 = t113 * (ARIANE4_C(2656.3065671641784) * t276) - t111 * t116;
-    const ariane4_real_t t280 = parameters[FV2] * (dq[1] * t279) + parameters[IA2] * (ddq[1] * t279 + t278);
-    const ariane4_real_t t281 = ARIANE4_C(83.33333333333333) * t280 + t114 * (t10 * t230 - t4 * t231 + t275);
-    input_by_q[4] = t281 - t110 * t272;
-    const ariane4_real_t t282 = t273 + ARIANE4_C(-0.443) * t208; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const ariane4_real_t t283 = t5 * t237 + t11 * t238 + (t37 * t256 - t64 * t258 + t76 * t282);
-    input_by_q[7] = t128 * (t283 - (t10 * t191 + t4 * t208));
-    const ariane4_real_t t284 = parameters[ZZ3] - t176;
-    const ariane4_real_t t285 = parameters[YY4] - t173;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t286 = t25 * parameters[YZ3] - t20 * t284 + (parameters[MY4] * t152
-        - (t25 * parameters[YZ4] + t20 * t285));
-    const ariane4_real_t t287 = t25 * parameters[XZ3] - t18 * t284 - (t25 * parameters[XY4] + t18 * t285
-        + parameters[MY4] * t156);
-    const ariane4_real_t t288 = parameters[ZZ2] - t204;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t289 = dq[1] * parameters[YZ2] - t5 * t288 + (t15 * t286 + t9 * t287);
-    /* link j2: derivatives */
-    const ariane4_real_t t290 = t3 * (ARIANE4_C(2.0) * t289 + (t247 * t262 - t250 * t263));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_real_t t291 = t11 * t288 - dq[1] * parameters[XZ2] + (t9 * t286 - t15 * t287 + t194 * t192);
-    /* link j2: derivatives */
-    const ariane4_real_t t292 = t2 * (ARIANE4_C(2.0) * t291 + (t250 * t262 + t249 * t263));
-    const ariane4_real_t t293 = t290 + t292 + ARIANE4_C(0.116) * (t230 * t262 + t231 * t263);
-    input_by_dq[1] = t85 * t293;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_real_t t294 = t171 - t167 + (t164 + (t165 - t170 + t159));
-    /* link j2: derivatives */
-    const ariane4_real_t t295 = ARIANE4_C(2.0) * (t201 - t198 + (t294 + t196 - t197))
-        + ARIANE4_C(2.0) * (t5 * t257 + t11 * t259);
-    const ariane4_real_t t296 = ARIANE4_C(83.33333333333333) * (t117 * parameters[FV2]
-        - parameters[IA2] * (t123 * (ARIANE4_C(2.0) * dq[1])));
-    input_by_dq[4] = t296 + t114 * t295;
-    const ariane4_real_t t297 = ARIANE4_C(-2.0) * t294; /* link j3: derivatives */
-    const ariane4_real_t t298 = t297 + t191 * (ARIANE4_C(-0.886) * dq[1]) + ARIANE4_C(2.0) * (t5 * t256
-        - t11 * t258);
-    input_by_dq[7] = t128 * t298;
-    input_by_ddq[1] = -(t85 * t260);
-    input_by_ddq[4] = ARIANE4_C(83.33333333333333) * (t117 * parameters[IA2]) + t114 * t274;
-    input_by_ddq[7] = -(t128 * t282);
-    const ariane4_real_t t299 = ARIANE4_C(2.0) * t20;
-    const ariane4_real_t t300 = ARIANE4_C(-2.0) * t18;
-    const ariane4_real_t t301 = t299 * t169 - t300 * t178 + (t33 * t244 - t29 * t241 - t48 * t254);
-    const ariane4_real_t t302 = t62 + (t301 + t53 * t194);
-    const ariane4_real_t t303 = t33 * t243 - t29 * t244 + t48 * t255 - (t299 * t182 + t300 * t172);
-    const ariane4_real_t t304 = t52 + (t303 + t16 * t194);
-    const ariane4_real_t t305 = t29 * t189 + t33 * t190 - (t299 * t186 + t300 * t185);
-    const ariane4_real_t t306 = t2 * (t9 * t302 + t15 * t304 + ARIANE4_C(0.443) * t305);
-    const ariane4_real_t t307 = t3 * (t15 * t302 - t9 * t304) + t306 + ARIANE4_C(0.116) * t305;
-    input_by_q[2] = t85 * t307;
-    const ariane4_real_t t308 = t48 * t189 - t33 * t194 - (t300 * t225 + t16 * t209);
-    const ariane4_real_t t309 = t299 * t225 + t53 * t209 - (t48 * t190 + t29 * t194);
-    const ariane4_real_t t310 = ARIANE4_C(0.443) * (t9 * (t107 + t308) + t15 * (t105 + t309));
-    const ariane4_real_t t311 = t29 * t254 + t33 * t255 + t48 * t273;
-    const ariane4_real_t t312 = t53 * t190 + t16 * t189;
-    const ariane4_real_t t313 = t299 * t222 - t300 * t224 - t311 + t312 + t310;
-    input_by_q[5] = t114 * t313;
-    const ariane4_real_t t314 = ariane4_select(t126, t126, ARIANE4_C(1.0));
-    const ariane4_real_t t315 = ARIANE4_C(1.0) / t314;
-    const ariane4_real_t t316 = ARIANE4_C(-0.052812) * t127;
-    const ariane4_real_t t317 = ARIANE4_C(-1.0) / t127;
-    const ariane4_real_t t318 = t317 * (ARIANE4_C(0.046787723832235825) * (t316 * (ARIANE4_C(0.5) * t315))
+    const ariane4_real_t t142 = ARIANE4_C(-0.052812) * t127;
+    const ariane4_real_t t143 = ARIANE4_C(-1.0) / t127;
+    const ariane4_real_t t144 = t143 * (ARIANE4_C(0.046787723832235825) * (t142 * (ARIANE4_C(0.5) * t141))
         - t125 * t128);
-    const ariane4_real_t t319 = t128 * (t311 + (t18 * t235 - t20 * t234) - t312);
-    const ariane4_real_t t320 = t129 * (t129 * (t316 * (ARIANE4_C(0.5) * t129)));
-    const ariane4_real_t t321 = t135 * (ARIANE4_C(-376.25254143846996) * (t129 * t320))
+    const ariane4_real_t t145 = ARIANE4_C(0.1) * parameters[M4]; /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t146 = parameters[MX4] - t145;
+    const ariane4_real_t t147 = parameters[MX3] + t146;
+    const ariane4_real_t t148 = ARIANE4_C(0.436) * parameters[M4];
+    const ariane4_real_t t149 = parameters[MZ4] + t148;
+    const ariane4_real_t t150 = parameters[MY3] + t149;
+    const ariane4_real_t t151 = t53 * t147 + t16 * t150; /* link j3: derivatives */
+    const ariane4_real_t t152 = t20 * parameters[MX4] - t18 * parameters[MZ4];
+    const ariane4_real_t t153 = ARIANE4_C(0.436) * t18 + ARIANE4_C(0.1) * t20;
+    const ariane4_real_t t154 = ARIANE4_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const ariane4_real_t t155 = parameters[XX4] - t154;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t156 = t18 * parameters[XZ4] - t20 * t155 + (ARIANE4_C(-0.1) * t152 - t146 * t153);
+    const ariane4_real_t t157 = ARIANE4_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const ariane4_real_t t158 = parameters[XX3] - t157;
+    const ariane4_real_t t159 = t18 * parameters[XY3] - t20 * t158 + t156;
+    const ariane4_real_t t160 = ARIANE4_C(2.0) * t159; /* link j3: derivatives */
+    const ariane4_real_t t161 = t154 - parameters[ZZ4];
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t162 = t20 * parameters[XZ4] + t18 * t161 + (ARIANE4_C(-0.436) * t152 + t149 * t153);
+    const ariane4_real_t t163 = t157 - parameters[YY3];
+    const ariane4_real_t t164 = t18 * t163 + t20 * parameters[XY3] + t162;
+    const ariane4_real_t t165 = ARIANE4_C(-2.0) * t164; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t166 = ARIANE4_C(0.1) * (t145 + ARIANE4_C(-2.0) * parameters[MX4]);
+    const ariane4_real_t t167 = ARIANE4_C(0.436) * (t148 + ARIANE4_C(2.0) * parameters[MZ4]);
+    const ariane4_real_t t168 = parameters[ZZ3] + (parameters[YY4] + (t166 + t167));
+    const ariane4_real_t t169 = parameters[XY4] + ARIANE4_C(0.1) * parameters[MY4] - parameters[XZ3];
+    const ariane4_real_t t170 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
+    const ariane4_real_t t171 = t29 * t169 + t33 * t170 + t48 * t168; /* link j3: derivatives */
+    const ariane4_real_t t172 = t128 * (t171 + (t18 * t165 - t20 * t160) - t151);
+    const ariane4_real_t t173 = t129 * (t129 * (t142 * (ARIANE4_C(0.5) * t129)));
+    const ariane4_real_t t174 = t135 * (ARIANE4_C(-376.25254143846996) * (t129 * t173))
         - t134 * (ARIANE4_C(-2.0) * (t127 * t125));
-    const ariane4_real_t t322 = t138 * (t136 * t320 + t129 * (ARIANE4_C(-7124.375926654358) * t127 + t321));
-    const ariane4_real_t t323 = t125 * t130 + t127 * (ARIANE4_C(7124.375926654358) * t320);
-    const ariane4_real_t t324 = parameters[FV3] * (dq[2] * t323) + parameters[IA3] * (ddq[2] * t323 + t322);
-    input_by_q[8] = ARIANE4_C(-333.3333333333333) * t324 + t319 + t103 * t318;
-    const ariane4_real_t t325 = ARIANE4_C(2.0) * t286 - (t241 * t299 + t244 * t300);
-    const ariane4_real_t t326 = ARIANE4_C(2.0) * t287 + (t244 * t299 + t243 * t300);
-    const ariane4_real_t t327 = t189 * t299 - t190 * t300;
-    const ariane4_real_t t328 = t2 * (t9 * t325 - t15 * t326 + ARIANE4_C(0.443) * t327);
-    const ariane4_real_t t329 = t3 * (t15 * t325 + t9 * t326) + t328 + ARIANE4_C(0.116) * t327;
-    input_by_dq[2] = t85 * t329;
-    const ariane4_real_t t330 = t9 * (ARIANE4_C(2.0) * t186 + t194 * t300) + t15 * (ARIANE4_C(2.0) * t185
-        - t194 * t299);
-    const ariane4_real_t t331 = t255 * t300 - t254 * t299 - t297 + ARIANE4_C(0.443) * t330;
-    input_by_dq[5] = t114 * t331;
-    const ariane4_real_t t332 = t128 * (t297 + ARIANE4_C(2.0) * (t20 * t254 + t18 * t255));
+    const ariane4_real_t t175 = t138 * (t136 * t173 + t129 * (ARIANE4_C(-7124.375926654358) * t127 + t174));
+    const ariane4_real_t t176 = t125 * t130 + t127 * (ARIANE4_C(7124.375926654358) * t173);
+    const ariane4_real_t t177 = parameters[FV3] * (dq[2] * t176) + parameters[IA3] * (ddq[2] * t176 + t175);
+    input_by_q[8] = ARIANE4_C(-333.3333333333333) * t177 + t172 + t103 * t144;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t178 = t20 * parameters[MX3] - t18 * parameters[MY3] + (t152
+        - parameters[M4] * t153);
+    const ariane4_real_t t179 = ARIANE4_C(-2.0) * t18;
+    const ariane4_real_t t180 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t181 = parameters[MZ3] - parameters[MY4];
+    /* link j3: derivatives */
+    const ariane4_real_t t182 = t48 * t150 - t33 * t181 - (t179 * t178 + t16 * t180);
+    const ariane4_real_t t183 = ARIANE4_C(2.0) * t20;
+    const ariane4_real_t t184 = t183 * t178 + t53 * t180 - (t48 * t147 + t29 * t181);
+    const ariane4_real_t t185 = ARIANE4_C(0.443) * (t9 * (t107 + t182) + t15 * (t105 + t184));
+    const ariane4_real_t t186 = t183 * t159 - t179 * t164 - t171 + t151 + t185;
+    input_by_q[5] = t114 * t186;
+    const ariane4_real_t t187 = ARIANE4_C(0.436) * t25; /* link j4: velocity of its origin */
+    const ariane4_real_t t188 = t146 * t187; /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t189 = ARIANE4_C(0.1) * t25; /* link j4: velocity of its origin */
+    const ariane4_real_t t190 = t149 * t189; /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t191 = parameters[MY4] * t153;
+    const ariane4_real_t t192 = t25 * parameters[MZ4] + t20 * parameters[MY4];
+    const ariane4_real_t t193 = ARIANE4_C(0.1) * t192;
+    const ariane4_real_t t194 = t18 * parameters[MY4] + t25 * parameters[MX4];
+    const ariane4_real_t t195 = ARIANE4_C(0.436) * t194;
+    const ariane4_real_t t196 = t193 + t195 - (t188 + t190 + t191);
+    const ariane4_real_t t197 = t20 * parameters[XY4];
+    const ariane4_real_t t198 = t25 * parameters[XZ4];
+    const ariane4_real_t t199 = t20 * parameters[XZ3];
+    const ariane4_real_t t200 = t25 * parameters[XY3];
+    const ariane4_real_t t201 = t200 - t199 + (t198 + t197 + (t193 - t188) - t196);
+    const ariane4_real_t t202 = t25 * t161 - t20 * parameters[YZ4] + (ARIANE4_C(0.436) * t192 + t149 * t187);
+    const ariane4_real_t t203 = t20 * parameters[YZ3] + t25 * t163 + t202;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t204 = parameters[XX3] + (parameters[XX4] + t167);
+    const ariane4_real_t t205 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
+        + ARIANE4_C(-0.436) * t146));
+    /* link j3: derivatives */
+    const ariane4_real_t t206 = t183 * t201 - t179 * t203 + (t33 * t205 - t29 * t204 - t48 * t169);
+    const ariane4_real_t t207 = t62 + (t206 + t53 * t181);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t208 = t18 * parameters[XY4] + t25 * t155 + (ARIANE4_C(0.1) * t194 + t146 * t189);
+    const ariane4_real_t t209 = t25 * t158 - t18 * parameters[XZ3] + t208;
+    const ariane4_real_t t210 = t18 * parameters[YZ4];
+    const ariane4_real_t t211 = t18 * parameters[YZ3];
+    const ariane4_real_t t212 = t200 - t211 + (t196 + (t198 + t210 - (t195 - t190)));
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t213 = parameters[YY3] + (parameters[ZZ4] + t166);
+    /* link j3: derivatives */
+    const ariane4_real_t t214 = t33 * t213 - t29 * t205 + t48 * t170 - (t183 * t209 + t179 * t212);
+    const ariane4_real_t t215 = t52 + (t214 + t16 * t181);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t216 = t18 * parameters[MZ3] - t25 * parameters[MX3] + (parameters[M4] * t189
+        - t194);
+    const ariane4_real_t t217 = t20 * parameters[MZ3] - t25 * parameters[MY3] - (t192
+        + parameters[M4] * t187);
+    /* link j3: derivatives */
+    const ariane4_real_t t218 = t29 * t150 + t33 * t147 - (t183 * t216 + t179 * t217);
+    const ariane4_real_t t219 = t2 * (t9 * t207 + t15 * t215 + ARIANE4_C(0.443) * t218);
+    const ariane4_real_t t220 = t3 * (t15 * t207 - t9 * t215) + t219 + ARIANE4_C(0.116) * t218;
+    input_by_q[2] = t85 * t220;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t221 = t211 - t199 + (t196 + (t197 - t210 + t191));
+    const ariane4_real_t t222 = ARIANE4_C(-2.0) * t221; /* link j3: derivatives */
+    const ariane4_real_t t223 = t128 * (t222 + ARIANE4_C(2.0) * (t20 * t169 + t18 * t170));
     const ariane4_real_t
-        t333 = ARIANE4_C(333.3333333333333) * (parameters[IA3] * (t137 * (ARIANE4_C(-2.0) * dq[2]))
+        t224 = ARIANE4_C(333.3333333333333) * (parameters[IA3] * (t137 * (ARIANE4_C(-2.0) * dq[2]))
         - t131 * parameters[FV3]);
-    input_by_dq[8] = t333 + t332;
-    input_by_ddq[2] = t85 * t261;
-    input_by_ddq[5] = t114 * t282;
-    input_by_ddq[8] = ARIANE4_C(-333.3333333333333) * (t131 * parameters[IA3]) - t128 * t273;
+    input_by_dq[8] = t224 + t223;
+    const ariane4_real_t t225 = t9 * (ARIANE4_C(2.0) * t216 + t181 * t179) + t15 * (ARIANE4_C(2.0) * t217
+        - t181 * t183);
+    const ariane4_real_t t226 = t170 * t179 - t169 * t183 - t222 + ARIANE4_C(0.443) * t225;
+    input_by_dq[5] = t114 * t226;
+    const ariane4_real_t t227 = parameters[ZZ3] - t157;
+    const ariane4_real_t t228 = parameters[YY4] - t154;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t229 = t25 * parameters[YZ3] - t20 * t227 + (parameters[MY4] * t187
+        - (t25 * parameters[YZ4] + t20 * t228));
+    /* link j3: derivatives */
+    const ariane4_real_t t230 = ARIANE4_C(2.0) * t229 - (t204 * t183 + t205 * t179);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_real_t t231 = t25 * parameters[XZ3] - t18 * t227 - (t25 * parameters[XY4] + t18 * t228
+        + parameters[MY4] * t189);
+    /* link j3: derivatives */
+    const ariane4_real_t t232 = ARIANE4_C(2.0) * t231 + (t205 * t183 + t213 * t179);
+    const ariane4_real_t t233 = t150 * t183 - t147 * t179;
+    const ariane4_real_t t234 = t2 * (t9 * t230 - t15 * t232 + ARIANE4_C(0.443) * t233);
+    const ariane4_real_t t235 = t3 * (t15 * t230 + t9 * t232) + t234 + ARIANE4_C(0.116) * t233;
+    input_by_dq[2] = t85 * t235;
+    input_by_ddq[8] = ARIANE4_C(-333.3333333333333) * (t131 * parameters[IA3]) - t128 * t168;
+    const ariane4_real_t t236 = t9 * t150 - t15 * t147; /* link j3: column of the mass matrix */
+    const ariane4_real_t t237 = t168 + ARIANE4_C(-0.443) * t236;
+    input_by_ddq[5] = t114 * t237;
+    const ariane4_real_t t238 = t15 * t169 + t9 * t170;
+    const ariane4_real_t t239 = t9 * t169 - t15 * t170;
+    const ariane4_real_t t240 = t3 * t238 + t2 * t239;
+    input_by_ddq[2] = t85 * t240;
+    const ariane4_real_t t241 = ARIANE4_C(0.886) * t5; /* link j3: derivatives */
+    const ariane4_real_t t242 = t9 * t165 - t15 * t160 + t236 * t241;
+    const ariane4_real_t t243 = t15 * t150 + t9 * t147; /* link j3: column of the mass matrix */
+    const ariane4_real_t t244 = t9 * t160 + t15 * t165 + t243 * t241; /* link j3: derivatives */
+    const ariane4_real_t t245 = t5 * t242 + t11 * t244 + (t37 * t238 - t64 * t239 + t76 * t237);
+    input_by_q[7] = t128 * (t245 - (t10 * t243 + t4 * t236));
+    const ariane4_real_t t246 = t222 + t243 * (ARIANE4_C(-0.886) * dq[1]) + ARIANE4_C(2.0) * (t5 * t238
+        - t11 * t239);
+    input_by_dq[7] = t128 * t246;
+    const ariane4_real_t t247 = ARIANE4_C(0.232) * dq[0];
+    const ariane4_real_t t248 = t3 * t242 - t2 * t244 + (t3 * t236 - t2 * t243) * t247;
+    input_by_dq[6] = t128 * t248;
+    input_by_ddq[7] = -(t128 * t237);
+    input_by_ddq[6] = t128 * t240;
+    const ariane4_real_t t249 = ariane4_select(t112, t112, ARIANE4_C(1.0));
+    const ariane4_real_t t250 = ARIANE4_C(1.0) / t249;
+    const ariane4_real_t t251 = ARIANE4_C(0.078402) * t113;
+    const ariane4_real_t t252 = ARIANE4_C(-1.0) / t113;
+    const ariane4_real_t t253 = t252 * (t111 * t114
+        + ARIANE4_C(0.03137188092799786) * (t251 * (ARIANE4_C(0.5) * t250)));
+    const ariane4_real_t t254 = ARIANE4_C(0.443) * t180; /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t255 = t254 - t236;
+    const ariane4_real_t t256 = ARIANE4_C(0.443) * t5; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t257 = t15 * t159 + t9 * t164 + (ARIANE4_C(0.443) * t178 + t255 * t256);
+    const ariane4_real_t t258 = ARIANE4_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const ariane4_real_t t259 = t258 - parameters[XX2];
+    /* link j2: derivatives */
+    const ariane4_real_t t260 = ARIANE4_C(2.0) * (t11 * parameters[XY2] + t5 * t259 + t257);
+    const ariane4_real_t t261 = parameters[YY2] - t258;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t262 = t5 * parameters[XY2] - t11 * t261 - (t9 * t159 - t15 * t164 + t243 * t256);
+    const ariane4_real_t t263 = ARIANE4_C(2.0) * t262; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t264 = ARIANE4_C(0.443) * (t254 - ARIANE4_C(2.0) * t236);
+    const ariane4_real_t t265 = parameters[ZZ2] + (t168 + t264);
+    const ariane4_real_t t266 = parameters[XZ2] + (ARIANE4_C(-0.443) * t181 - t238);
+    const ariane4_real_t t267 = t239 - parameters[YZ2];
+    /* link j2: derivatives */
+    const ariane4_real_t t268 = t37 * t266 + t64 * t267 - t76 * t265 + (t5 * t260 + t11 * t263);
+    const ariane4_real_t t269 = parameters[MX2] + t255; /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t270 = parameters[MY2] + t243;
+    const ariane4_real_t t271 = t115 * (t115 * (t251 * (ARIANE4_C(0.5) * t115)));
+    const ariane4_real_t t272 = t121 * (ARIANE4_C(208.2597474788059) * (t115 * t271))
+        - t120 * (ARIANE4_C(2.0) * (t113 * t111));
+    const ariane4_real_t t273 = t7 * (t122 * t271 - t115 * (ARIANE4_C(-2656.3065671641784) * t113 + t272));
+    const ariane4_real_t t274 = t113 * (ARIANE4_C(2656.3065671641784) * t271) - t111 * t116;
+    const ariane4_real_t t275 = parameters[FV2] * (dq[1] * t274) + parameters[IA2] * (ddq[1] * t274 + t273);
+    const ariane4_real_t t276 = ARIANE4_C(83.33333333333333) * t275 + t114 * (t10 * t270 - t4 * t269 + t268);
+    input_by_q[4] = t276 - t110 * t253;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t277 = t15 * (t201 + t212) + t9 * (t203 + t209);
+    const ariane4_real_t t278 = t15 * t277;
+    const ariane4_real_t t279 = t15 * t217 + t9 * t216;
+    const ariane4_real_t t280 = ARIANE4_C(-0.443) * t279;
+    const ariane4_real_t t281 = ARIANE4_C(0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_real_t t282 = t243 * t281; /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t283 = t181 * t256;
+    const ariane4_real_t t284 = t280 + (t283 - t282);
+    const ariane4_real_t t285 = t5 * parameters[XZ2];
+    const ariane4_real_t t286 = dq[1] * parameters[XY2];
+    const ariane4_real_t t287 = t286 - t285 + (t284 + (t278 - t212 - t280));
+    const ariane4_real_t t288 = ARIANE4_C(2.0) * t5;
+    const ariane4_real_t t289 = t9 * t277;
+    const ariane4_real_t t290 = dq[1] * t261 - t5 * parameters[YZ2] + (t289 - t203);
+    const ariane4_real_t t291 = ARIANE4_C(2.0) * t11;
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t292 = t15 * (t213 - t204) + t205 * (ARIANE4_C(2.0) * t9);
+    const ariane4_real_t t293 = t15 * t292;
+    const ariane4_real_t t294 = t293 - t213 - parameters[XX2];
+    const ariane4_real_t t295 = t9 * t292 - t205 + ARIANE4_C(0.443) * t243 - parameters[XY2];
+    /* link j2: derivatives */
+    const ariane4_real_t t296 = t288 * t287 - t291 * t290 + (t37 * t294 - t64 * t295 + t76 * t266);
+    const ariane4_real_t t297 = parameters[MZ2] + t181; /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t298 = t9 * t217 - t15 * t216; /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t299 = t11 * parameters[XZ2] + dq[1] * t259 + (t289 - t209 + (ARIANE4_C(0.443) * t298
+        + t255 * t281));
+    const ariane4_real_t t300 = t11 * parameters[YZ2];
+    const ariane4_real_t t301 = t300 - t286 + (t284 + (t201 - t278 + t282));
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t302 = parameters[YY2] + (t204 + t293 + t264);
+    /* link j2: derivatives */
+    const ariane4_real_t t303 = t288 * t299 - t291 * t301 + (t37 * t295 + t64 * t302 - t76 * t267);
+    const ariane4_real_t t304 = t3 * (t75 + (t296 - t4 * t297)) + t2 * (t68 + (t303 + t10 * t297));
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t305 = dq[1] * parameters[MX2] - t11 * parameters[MZ2] + (t298 + t180 * t281);
+    const ariane4_real_t t306 = t5 * parameters[MZ2] - dq[1] * parameters[MY2] + t279;
+    /* link j2: derivatives */
+    const ariane4_real_t t307 = t288 * t305 + t291 * t306 + (t37 * t270 + t64 * t269);
+    input_by_q[1] = t85 * (t304 + ARIANE4_C(0.116) * t307);
+    const ariane4_real_t t308 = ARIANE4_C(2.0) * (t300 - t285 + (t221 + t283 - t284))
+        + ARIANE4_C(2.0) * (t5 * t266 + t11 * t267);
+    const ariane4_real_t t309 = ARIANE4_C(83.33333333333333) * (t117 * parameters[FV2]
+        - parameters[IA2] * (t123 * (ARIANE4_C(2.0) * dq[1])));
+    input_by_dq[4] = t309 + t114 * t308;
+    const ariane4_real_t t310 = parameters[ZZ2] - t258;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t311 = dq[1] * parameters[YZ2] - t5 * t310 + (t15 * t229 + t9 * t231);
+    /* link j2: derivatives */
+    const ariane4_real_t t312 = t3 * (ARIANE4_C(2.0) * t311 + (t294 * t288 - t295 * t291));
+    /* link j3: inertia, momentum beyond */
+    const ariane4_real_t t313 = t11 * t310 - dq[1] * parameters[XZ2] + (t9 * t229 - t15 * t231 + t181 * t281);
+    /* link j2: derivatives */
+    const ariane4_real_t t314 = t2 * (ARIANE4_C(2.0) * t313 + (t295 * t288 + t302 * t291));
+    const ariane4_real_t t315 = t312 + t314 + ARIANE4_C(0.116) * (t270 * t288 + t269 * t291);
+    input_by_dq[1] = t85 * t315;
+    input_by_ddq[4] = ARIANE4_C(83.33333333333333) * (t117 * parameters[IA2]) + t114 * t265;
+    const ariane4_real_t t316 = t3 * t266 - t2 * t267; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = -(t85 * t316);
+    /* link j2: derivatives */
+    const ariane4_real_t t317 = t3 * t260 - t2 * t263 + (t2 * t270 + t3 * t269) * t247;
+    input_by_dq[3] = t114 * t317;
+    input_by_ddq[3] = t114 * t316;
+    const ariane4_real_t t318 = ariane4_select(t83, t83, ARIANE4_C(1.0));
+    const ariane4_real_t t319 = ARIANE4_C(1.0) / t318;
+    const ariane4_real_t t320 = ARIANE4_C(-0.037468) * t84;
+    const ariane4_real_t t321 = ARIANE4_C(-1.0) / t84;
+    const ariane4_real_t t322 = t321 * (ARIANE4_C(0.06434139546481742) * (t320 * (ARIANE4_C(0.5) * t319))
+        - t82 * t85);
+    const ariane4_real_t t323 = t86 * (t86 * (t320 * (ARIANE4_C(0.5) * t86)));
+    const ariane4_real_t t324 = t92 * (ARIANE4_C(-145.582792109661) * (t86 * t323))
+        - t91 * (ARIANE4_C(-2.0) * (t84 * t82));
+    const ariane4_real_t t325 = t0 * (t93 * t323 + t86 * (ARIANE4_C(-3885.523436256565) * t84 + t324));
+    const ariane4_real_t t326 = t82 * t87 + t84 * (ARIANE4_C(3885.523436256565) * t323);
+    const ariane4_real_t t327 = parameters[FV1] * (dq[0] * t326) + parameters[IA1] * (ddq[0] * t326 + t325);
+    input_by_q[0] = ARIANE4_C(-250.0) * t327 + t79 * t322;
+    /* link j2: inertia, momentum beyond */
+    const ariane4_real_t t328 = t2 * (t2 * (t301 - t287) + t3 * (t290 + t299));
+    const ariane4_real_t t329 = ARIANE4_C(0.116) * (t3 * t305 - t2 * t306)
+        + t297 * (ARIANE4_C(0.116) * dq[0]);
+    const ariane4_real_t t330 = ARIANE4_C(250.0) * (parameters[IA1] * (t94 * (ARIANE4_C(-2.0) * dq[0]))
+        - t88 * parameters[FV1]);
+    input_by_dq[0] = t330 + t85 * (ARIANE4_C(2.0) * (t287 + t328 + t329));
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t331 = t2 * (t2 * (t294 + t302) + t295 * (ARIANE4_C(-2.0) * t3));
+    const ariane4_real_t t332 = ARIANE4_C(-0.116) * (parameters[M2] + t180) + ARIANE4_C(2.0) * (t3 * t270
+        - t2 * t269);
+    const ariane4_real_t t333 = ARIANE4_C(-250.0) * (t88 * parameters[IA1]) + t85 * (t294 - t331
+        + ARIANE4_C(0.116) * t332 - parameters[ZZ1]);
+    input_by_ddq[0] = t333;
     /* always zero */
     input_by_q[3] = ARIANE4_C(0.0);
     input_by_q[6] = ARIANE4_C(0.0);

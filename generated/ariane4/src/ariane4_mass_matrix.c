@@ -48,7 +48,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -75,62 +75,60 @@ ariane4_status_t ariane4_mass_matrix(
         return status;
     }
 
-    ariane4_real_t t13, t14;
-    ARIANE4_SINCOS(q[0], &t13, &t14);
-    ariane4_real_t t9, t7;
-    ARIANE4_SINCOS(q[1], &t9, &t7);
-    ariane4_real_t t1, t0;
-    ARIANE4_SINCOS(q[2], &t1, &t0);
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t2 = t0 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t1);
-    const ariane4_real_t t3 = t0 * t2;
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t4 = t0 * parameters[MX3R] - t1 * parameters[MY3R];
-    const ariane4_real_t t5 = ARIANE4_C(0.886) * t4; /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t6 = parameters[XX2R] + t3;
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t8 = t0 * parameters[MY3R] + t1 * parameters[MX3R];
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t10 = (parameters[XY2] + (parameters[XY3R] + t1 * t2
-        + ARIANE4_C(-0.443) * t8)) * (ARIANE4_C(2.0) * t9);
-    const ariane4_real_t t11 = t7 * (t7 * (parameters[XX3R] - t3 + t5 - t6) + t10);
-    const ariane4_real_t t12 = ARIANE4_C(0.232) * (t7 * (parameters[MX2R] + t4) - t9 * (parameters[MY2]
-        + t8));
-    /* joint j1: drive */
-    const ariane4_real_t t15 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t14
-        + ARIANE4_C(0.9593632378089879) * t13) + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t16 = ARIANE4_C(1.0) / t15;
-    const ariane4_real_t t17 = (ARIANE4_C(0.28217402066925895) * t13
-        + ARIANE4_C(-0.9593632378089879) * t14) * (ARIANE4_C(3885.523436256565) * t16);
-    const ariane4_real_t t18 = parameters[ZZ1R] + (t6 + t11 + t12) + parameters[IA1] * (t17 * t17);
-    out[0] = t18;
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t19 = t0 * parameters[XZ3R] - t1 * parameters[YZ3R];
-    const ariane4_real_t t20 = t1 * parameters[XZ3R] + t0 * parameters[YZ3R];
-    /* link j2: column of the mass matrix */
-    const ariane4_real_t t21 = t9 * (parameters[XZ2R] + t19) + t7 * (parameters[YZ2] + t20);
-    out[1] = t21;
-    const ariane4_real_t t22 = t9 * t19 + t7 * t20; /* link j3: column of the mass matrix */
-    out[2] = t22;
-    out[3] = t21;
-    /* joint j2: drive */
-    const ariane4_real_t t23 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t7
-        + ARIANE4_C(0.5568756164881881) * t9) + ARIANE4_C(0.293698));
-    const ariane4_real_t t24 = ARIANE4_C(1.0) / t23;
-    const ariane4_real_t t25 = (ARIANE4_C(0.8305958991958126) * t9
-        + ARIANE4_C(0.5568756164881881) * t7) * (ARIANE4_C(2656.3065671641784) * t24);
-    out[4] = parameters[ZZ2R] + (parameters[ZZ3R] + t5) + parameters[IA2] * (t25 * t25);
-    /* link j3: column of the mass matrix */
-    const ariane4_real_t t26 = parameters[ZZ3R] + ARIANE4_C(0.443) * t4;
-    out[5] = t26;
-    out[6] = t22;
-    out[7] = t26;
+    ariane4_real_t t24, t25;
+    ARIANE4_SINCOS(q[0], &t24, &t25);
+    ariane4_real_t t8, t10;
+    ARIANE4_SINCOS(q[1], &t8, &t10);
+    ariane4_real_t t0, t1;
+    ARIANE4_SINCOS(q[2], &t0, &t1);
     /* joint j3: drive */
-    const ariane4_real_t t27 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t0
-        + ARIANE4_C(-0.9979715533496006) * t1) + ARIANE4_C(0.242037));
-    const ariane4_real_t t28 = ARIANE4_C(1.0) / t27;
-    const ariane4_real_t t29 = (ARIANE4_C(0.06366143813161289) * t1
-        + ARIANE4_C(0.9979715533496006) * t0) * (ARIANE4_C(7124.375926654358) * t28);
-    out[8] = parameters[ZZ3R] + parameters[IA3] * (t29 * t29);
+    const ariane4_real_t t2 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t1
+        + ARIANE4_C(-0.9979715533496006) * t0) + ARIANE4_C(0.242037));
+    const ariane4_real_t t3 = ARIANE4_C(1.0) / t2;
+    const ariane4_real_t t4 = (ARIANE4_C(0.06366143813161289) * t0
+        + ARIANE4_C(0.9979715533496006) * t1) * (ARIANE4_C(7124.375926654358) * t3);
+    out[8] = parameters[ZZ3R] + parameters[IA3] * (t4 * t4);
+    /* link j3: column of the mass matrix */
+    const ariane4_real_t t5 = t1 * parameters[MX3R] - t0 * parameters[MY3R];
+    const ariane4_real_t t6 = parameters[ZZ3R] + ARIANE4_C(0.443) * t5;
+    out[5] = t6;
+    const ariane4_real_t t7 = t1 * parameters[XZ3R] - t0 * parameters[YZ3R];
+    const ariane4_real_t t9 = t0 * parameters[XZ3R] + t1 * parameters[YZ3R];
+    const ariane4_real_t t11 = t8 * t7 + t10 * t9;
+    out[2] = t11;
+    out[7] = t6;
+    out[6] = t11;
+    /* joint j2: drive */
+    const ariane4_real_t t12 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t10
+        + ARIANE4_C(0.5568756164881881) * t8) + ARIANE4_C(0.293698));
+    const ariane4_real_t t13 = ARIANE4_C(1.0) / t12;
+    const ariane4_real_t t14 = (ARIANE4_C(0.8305958991958126) * t8
+        + ARIANE4_C(0.5568756164881881) * t10) * (ARIANE4_C(2656.3065671641784) * t13);
+    const ariane4_real_t t15 = ARIANE4_C(0.886) * t5; /* link j3: inertia of it and all beyond */
+    out[4] = parameters[ZZ2R] + (parameters[ZZ3R] + t15) + parameters[IA2] * (t14 * t14);
+    /* link j2: column of the mass matrix */
+    const ariane4_real_t t16 = t8 * (parameters[XZ2R] + t7) + t10 * (parameters[YZ2] + t9);
+    out[1] = t16;
+    out[3] = t16;
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t17 = t1 * parameters[XX3R] - parameters[XY3R] * (ARIANE4_C(2.0) * t0);
+    const ariane4_real_t t18 = t1 * t17;
+    const ariane4_real_t t19 = parameters[XX2R] + t18;
+    /* link j3: column of the mass matrix */
+    const ariane4_real_t t20 = t1 * parameters[MY3R] + t0 * parameters[MX3R];
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t21 = (parameters[XY2] + (parameters[XY3R] + t0 * t17
+        + ARIANE4_C(-0.443) * t20)) * (ARIANE4_C(2.0) * t8);
+    const ariane4_real_t t22 = t10 * (t10 * (parameters[XX3R] - t18 + t15 - t19) + t21);
+    const ariane4_real_t t23 = ARIANE4_C(0.232) * (t10 * (parameters[MX2R] + t5) - t8 * (parameters[MY2]
+        + t20));
+    /* joint j1: drive */
+    const ariane4_real_t t26 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t25
+        + ARIANE4_C(0.9593632378089879) * t24) + ARIANE4_C(0.10769300000000001));
+    const ariane4_real_t t27 = ARIANE4_C(1.0) / t26;
+    const ariane4_real_t t28 = (ARIANE4_C(0.28217402066925895) * t24
+        + ARIANE4_C(-0.9593632378089879) * t25) * (ARIANE4_C(3885.523436256565) * t27);
+    const ariane4_real_t t29 = parameters[ZZ1R] + (t19 + t22 + t23) + parameters[IA1] * (t28 * t28);
+    out[0] = t29;
     return ARIANE4_STATUS_OK;
 }

@@ -72,7 +72,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -100,80 +100,79 @@ ariane4_status_t ariane4_mass_matrix_standard(
         return status;
     }
 
-    ariane4_real_t t26, t27;
-    ARIANE4_SINCOS(q[0], &t26, &t27);
-    ariane4_real_t t21, t19;
-    ARIANE4_SINCOS(q[1], &t21, &t19);
-    ariane4_real_t t9, t6;
-    ARIANE4_SINCOS(q[2], &t9, &t6);
-    const ariane4_real_t t0 = ARIANE4_C(0.436) * parameters[M4]; /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t1 = ARIANE4_C(0.436) * (t0 + ARIANE4_C(2.0) * parameters[MZ4]);
-    const ariane4_real_t t2 = parameters[XX3] + (parameters[XX4] + t1);
-    const ariane4_real_t t3 = ARIANE4_C(0.1) * parameters[M4];
-    const ariane4_real_t t4 = ARIANE4_C(0.1) * (t3 + ARIANE4_C(-2.0) * parameters[MX4]);
-    const ariane4_real_t t5 = parameters[YY3] + (parameters[ZZ4] + t4);
-    const ariane4_real_t t7 = t3 - parameters[MX4];
-    const ariane4_real_t t8 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
-        + ARIANE4_C(0.436) * t7));
-    /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t10 = t6 * (t2 - t5) - t8 * (ARIANE4_C(2.0) * t9);
-    const ariane4_real_t t11 = t6 * t10;
-    const ariane4_real_t t12 = parameters[XX2] + (t5 + t11);
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t13 = parameters[MY3] + (parameters[MZ4] + t0);
-    const ariane4_real_t t14 = parameters[MX3] - t7;
-    const ariane4_real_t t15 = t6 * t14 - t9 * t13; /* link j3: column of the mass matrix */
-    const ariane4_real_t t16 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t17 = ARIANE4_C(0.443) * t16; /* link j3: inertia of it and all beyond */
-    const ariane4_real_t t18 = ARIANE4_C(0.443) * (t17 + ARIANE4_C(2.0) * t15);
-    const ariane4_real_t t20 = t6 * t13 + t9 * t14; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t22 = (parameters[XY2] + (t8 + t9 * t10
-        + ARIANE4_C(-0.443) * t20)) * (ARIANE4_C(2.0) * t21);
-    const ariane4_real_t t23 = t19 * (parameters[YY2] + (t2 - t11 + t18) - t12) + t22;
-    /* link j2: column of the mass matrix */
-    const ariane4_real_t t24 = t19 * (parameters[MX2] + (t15 + t17)) - t21 * (parameters[MY2] + t20);
-    /* link j2: inertia of it and all beyond */
-    const ariane4_real_t t25 = t12 + t19 * t23 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2] + t16)
-        + ARIANE4_C(2.0) * t24);
-    /* joint j1: drive */
-    const ariane4_real_t t28 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t27
-        + ARIANE4_C(0.9593632378089879) * t26) + ARIANE4_C(0.10769300000000001));
-    const ariane4_real_t t29 = ARIANE4_C(1.0) / t28;
-    const ariane4_real_t t30 = (ARIANE4_C(0.28217402066925895) * t26
-        + ARIANE4_C(-0.9593632378089879) * t27) * (ARIANE4_C(3885.523436256565) * t29);
-    out[0] = parameters[ZZ1] + t25 + t30 * t30 * parameters[IA1];
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t31 = parameters[XZ3] + (ARIANE4_C(-0.1) * parameters[MY4] - parameters[XY4]);
-    const ariane4_real_t t32 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
-    const ariane4_real_t t33 = t6 * t31 - t9 * t32; /* link j3: column of the mass matrix */
-    const ariane4_real_t t34 = t9 * t31 + t6 * t32;
-    /* link j2: column of the mass matrix */
-    const ariane4_real_t t35 = t21 * (parameters[XZ2] + (t33 + ARIANE4_C(0.443) * (parameters[MY4]
-        - parameters[MZ3]))) + t19 * (parameters[YZ2] + t34);
-    out[1] = t35;
-    const ariane4_real_t t36 = t21 * t33 + t19 * t34; /* link j3: column of the mass matrix */
-    out[2] = t36;
-    out[3] = t35;
-    /* joint j2: drive */
-    const ariane4_real_t t37 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t19
-        + ARIANE4_C(0.5568756164881881) * t21) + ARIANE4_C(0.293698));
-    const ariane4_real_t t38 = ARIANE4_C(1.0) / t37;
-    const ariane4_real_t t39 = (ARIANE4_C(0.8305958991958126) * t21
-        + ARIANE4_C(0.5568756164881881) * t19) * (ARIANE4_C(2656.3065671641784) * t38);
-    /* link j4: inertia of it and all beyond */
-    const ariane4_real_t t40 = parameters[ZZ3] + (parameters[YY4] + (t4 + t1));
-    out[4] = parameters[ZZ2] + (t40 + t18) + t39 * t39 * parameters[IA2];
-    const ariane4_real_t t41 = t40 + ARIANE4_C(0.443) * t15; /* link j3: column of the mass matrix */
-    out[5] = t41;
-    out[6] = t36;
-    out[7] = t41;
+    ariane4_real_t t40, t41;
+    ARIANE4_SINCOS(q[0], &t40, &t41);
+    ariane4_real_t t18, t20;
+    ARIANE4_SINCOS(q[1], &t18, &t20);
+    ariane4_real_t t0, t1;
+    ARIANE4_SINCOS(q[2], &t0, &t1);
     /* joint j3: drive */
-    const ariane4_real_t t42 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t6
-        + ARIANE4_C(-0.9979715533496006) * t9) + ARIANE4_C(0.242037));
+    const ariane4_real_t t2 = ARIANE4_SQRT(ARIANE4_C(0.052812) * (ARIANE4_C(0.06366143813161289) * t1
+        + ARIANE4_C(-0.9979715533496006) * t0) + ARIANE4_C(0.242037));
+    const ariane4_real_t t3 = ARIANE4_C(1.0) / t2;
+    const ariane4_real_t t4 = (ARIANE4_C(0.06366143813161289) * t0
+        + ARIANE4_C(0.9979715533496006) * t1) * (ARIANE4_C(7124.375926654358) * t3);
+    const ariane4_real_t t5 = ARIANE4_C(0.1) * parameters[M4]; /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t6 = ARIANE4_C(0.1) * (t5 + ARIANE4_C(-2.0) * parameters[MX4]);
+    const ariane4_real_t t7 = ARIANE4_C(0.436) * parameters[M4];
+    const ariane4_real_t t8 = ARIANE4_C(0.436) * (t7 + ARIANE4_C(2.0) * parameters[MZ4]);
+    const ariane4_real_t t9 = parameters[ZZ3] + (parameters[YY4] + (t6 + t8));
+    out[8] = t9 + t4 * t4 * parameters[IA3];
+    const ariane4_real_t t10 = parameters[MY3] + (parameters[MZ4] + t7);
+    const ariane4_real_t t11 = t5 - parameters[MX4];
+    const ariane4_real_t t12 = parameters[MX3] - t11;
+    const ariane4_real_t t13 = t1 * t12 - t0 * t10; /* link j3: column of the mass matrix */
+    const ariane4_real_t t14 = t9 + ARIANE4_C(0.443) * t13;
+    out[5] = t14;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t15 = parameters[XZ3] + (ARIANE4_C(-0.1) * parameters[MY4] - parameters[XY4]);
+    const ariane4_real_t t16 = parameters[YZ3] - (parameters[YZ4] - ARIANE4_C(0.436) * parameters[MY4]);
+    const ariane4_real_t t17 = t1 * t15 - t0 * t16; /* link j3: column of the mass matrix */
+    const ariane4_real_t t19 = t0 * t15 + t1 * t16;
+    const ariane4_real_t t21 = t18 * t17 + t20 * t19;
+    out[2] = t21;
+    out[7] = t14;
+    out[6] = t21;
+    /* joint j2: drive */
+    const ariane4_real_t t22 = ARIANE4_SQRT(ARIANE4_C(0.078402) * (ARIANE4_C(-0.8305958991958126) * t20
+        + ARIANE4_C(0.5568756164881881) * t18) + ARIANE4_C(0.293698));
+    const ariane4_real_t t23 = ARIANE4_C(1.0) / t22;
+    const ariane4_real_t t24 = (ARIANE4_C(0.8305958991958126) * t18
+        + ARIANE4_C(0.5568756164881881) * t20) * (ARIANE4_C(2656.3065671641784) * t23);
+    const ariane4_real_t t25 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t26 = ARIANE4_C(0.443) * t25; /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t27 = ARIANE4_C(0.443) * (t26 + ARIANE4_C(2.0) * t13);
+    out[4] = parameters[ZZ2] + (t9 + t27) + t24 * t24 * parameters[IA2];
+    /* link j2: column of the mass matrix */
+    const ariane4_real_t t28 = t18 * (parameters[XZ2] + (t17 + ARIANE4_C(0.443) * (parameters[MY4]
+        - parameters[MZ3]))) + t20 * (parameters[YZ2] + t19);
+    out[1] = t28;
+    out[3] = t28;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_real_t t29 = parameters[XX3] + (parameters[XX4] + t8);
+    const ariane4_real_t t30 = parameters[YY3] + (parameters[ZZ4] + t6);
+    const ariane4_real_t t31 = parameters[XY3] + (parameters[XZ4] + (ARIANE4_C(0.1) * parameters[MZ4]
+        + ARIANE4_C(0.436) * t11));
+    /* link j3: inertia of it and all beyond */
+    const ariane4_real_t t32 = t1 * (t29 - t30) - t31 * (ARIANE4_C(2.0) * t0);
+    const ariane4_real_t t33 = t1 * t32;
+    const ariane4_real_t t34 = parameters[XX2] + (t30 + t33);
+    const ariane4_real_t t35 = t1 * t10 + t0 * t12; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t36 = (parameters[XY2] + (t31 + t0 * t32
+        + ARIANE4_C(-0.443) * t35)) * (ARIANE4_C(2.0) * t18);
+    const ariane4_real_t t37 = t20 * (parameters[YY2] + (t29 - t33 + t27) - t34) + t36;
+    /* link j2: column of the mass matrix */
+    const ariane4_real_t t38 = t20 * (parameters[MX2] + (t13 + t26)) - t18 * (parameters[MY2] + t35);
+    /* link j2: inertia of it and all beyond */
+    const ariane4_real_t t39 = t34 + t20 * t37 + ARIANE4_C(0.116) * (ARIANE4_C(0.116) * (parameters[M2] + t25)
+        + ARIANE4_C(2.0) * t38);
+    /* joint j1: drive */
+    const ariane4_real_t t42 = ARIANE4_SQRT(ARIANE4_C(0.037468) * (ARIANE4_C(0.28217402066925895) * t41
+        + ARIANE4_C(0.9593632378089879) * t40) + ARIANE4_C(0.10769300000000001));
     const ariane4_real_t t43 = ARIANE4_C(1.0) / t42;
-    const ariane4_real_t t44 = (ARIANE4_C(0.06366143813161289) * t9
-        + ARIANE4_C(0.9979715533496006) * t6) * (ARIANE4_C(7124.375926654358) * t43);
-    out[8] = t40 + t44 * t44 * parameters[IA3];
+    const ariane4_real_t t44 = (ARIANE4_C(0.28217402066925895) * t40
+        + ARIANE4_C(-0.9593632378089879) * t41) * (ARIANE4_C(3885.523436256565) * t43);
+    out[0] = parameters[ZZ1] + t39 + t44 * t44 * parameters[IA1];
     return ARIANE4_STATUS_OK;
 }

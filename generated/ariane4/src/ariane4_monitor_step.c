@@ -74,7 +74,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_monitor_step.c are of different generations: generate the arm again"
 #endif
 
@@ -206,15 +206,15 @@ ariane4_status_t ariane4_monitor_step(
     const ariane4_real_t t81 = ARIANE4_ABS(dq[2]);
     const ariane4_real_t t82 = ariane4_select(t81, ARIANE4_C(1.0), ARIANE4_C(0.0));
     const ariane4_real_t t83 = t80 * t82;
-    const ariane4_real_t t84 = forgetting[0] * state[14] + (t72 * t75 + t40 * t43 + t80 * t83);
+    const ariane4_real_t t84 = ariane4_held(forgetting[0] * state[14] + (t72 * t75 + t40 * t43 + t80 * t83));
     const ariane4_real_t t85 = ARIANE4_C(1.0) / t37; /* joint j2: drive */
     const ariane4_real_t t86 = t38 * (ARIANE4_C(-2656.3065671641784) * t85);
     const ariane4_real_t t87 = t86 * dq[1];
     const ariane4_real_t t88 = ariane4_sign(t87); /* joint j2: coulomb_friction */
     const ariane4_real_t t89 = ARIANE4_C(-0.6510416666666666) * t88;
-    const ariane4_real_t t90 = forgetting[0] * state[12] + t89 * t43;
+    const ariane4_real_t t90 = ariane4_held(forgetting[0] * state[12] + t89 * t43);
     const ariane4_real_t t91 = t89 * t42;
-    const ariane4_real_t t92 = forgetting[0] * state[9] + t89 * t91;
+    const ariane4_real_t t92 = ariane4_held(forgetting[0] * state[9] + t89 * t91);
     const ariane4_real_t t93 = t92 + (ARIANE4_C(-0.0001) * t92 - ARIANE4_C(1.0e-20));
     const ariane4_real_t t94 = ariane4_select(t93, t92, ARIANE4_C(1.0));
     const ariane4_real_t t95 = ARIANE4_C(1.0) / t94;
@@ -222,15 +222,15 @@ ariane4_status_t ariane4_monitor_step(
     const ariane4_real_t t97 = t90 * t96;
     const ariane4_real_t t98 = ARIANE4_C(-0.0003178914388020833) * t87;
     const ariane4_real_t t99 = t98 * t42;
-    const ariane4_real_t t100 = forgetting[0] * state[10] + t89 * t99;
+    const ariane4_real_t t100 = ariane4_held(forgetting[0] * state[10] + t89 * t99);
     const ariane4_real_t t101 = t100 * t96;
-    const ariane4_real_t t102 = forgetting[0] * state[11] + t98 * t99;
+    const ariane4_real_t t102 = ariane4_held(forgetting[0] * state[11] + t98 * t99);
     const ariane4_real_t t103 = t102 - t100 * t101;
     const ariane4_real_t t104 = t103 + (ARIANE4_C(-0.0001) * t102 - ARIANE4_C(1.0e-20));
     const ariane4_real_t t105 = ariane4_select(t104, t103, ARIANE4_C(1.0));
     const ariane4_real_t t106 = ARIANE4_C(1.0) / t105;
     const ariane4_real_t t107 = ariane4_select(t104, t106, ARIANE4_C(0.0));
-    const ariane4_real_t t108 = forgetting[0] * state[13] + t98 * t43;
+    const ariane4_real_t t108 = ariane4_held(forgetting[0] * state[13] + t98 * t43);
     const ariane4_real_t t109 = t100 * t97 - t108;
     const ariane4_real_t t110 = t107 * t109;
     const ariane4_real_t t111 = t84 - t90 * t97 - t109 * t110;
@@ -308,9 +308,9 @@ ariane4_status_t ariane4_monitor_step(
     const ariane4_real_t t150 = ARIANE4_C(333.3333333333333) * (parameters[FV3] * t146
         + parameters[FC3] * t147 + t149) - t79 * t117;
     const ariane4_real_t t151 = t143 * t75 + t125 * t43 + (input[2] + t150) * t83;
-    const ariane4_real_t t152 = forgetting[0] * state[8] + t151;
-    const ariane4_real_t t153 = forgetting[0] * state[6] + t125 * t91;
-    const ariane4_real_t t154 = forgetting[0] * state[7] + t125 * t99;
+    const ariane4_real_t t152 = ariane4_held(forgetting[0] * state[8] + t151);
+    const ariane4_real_t t153 = ariane4_held(forgetting[0] * state[6] + t125 * t91);
+    const ariane4_real_t t154 = ariane4_held(forgetting[0] * state[7] + t125 * t99);
     const ariane4_real_t t155 = t154 - t153 * t101;
     const ariane4_real_t t156 = t115 * (t152 - t153 * t97 + t110 * t155);
     const ariane4_real_t t157 = t107 * t155 + t110 * t156;
@@ -335,7 +335,7 @@ ariane4_status_t ariane4_monitor_step(
     out[12] = t90;
     out[13] = t108;
     out[14] = t84;
-    if (!ariane4_all_bounded(out, 15)) {
+    if (!ariane4_bounded(out, 15)) {
         ariane4_zero(out, 15);
         return ARIANE4_STATUS_INPUT;
     }

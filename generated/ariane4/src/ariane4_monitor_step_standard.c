@@ -98,7 +98,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_monitor_step_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -221,27 +221,27 @@ ariane4_status_t ariane4_monitor_step_standard(
     const ariane4_real_t t78 = ARIANE4_ABS(dq[2]);
     const ariane4_real_t t79 = ariane4_select(t78, ARIANE4_C(1.0), ARIANE4_C(0.0));
     const ariane4_real_t t80 = t77 * t79;
-    const ariane4_real_t t81 = forgetting[0] * state[14] + (t69 * t72 + t40 * t43 + t77 * t80);
+    const ariane4_real_t t81 = ariane4_held(forgetting[0] * state[14] + (t69 * t72 + t40 * t43 + t77 * t80));
     const ariane4_real_t t82 = ARIANE4_C(1.0) / t36; /* joint j2: drive */
     const ariane4_real_t t83 = t37 * (ARIANE4_C(-2656.3065671641784) * t82);
     const ariane4_real_t t84 = t83 * dq[1];
     const ariane4_real_t t85 = ariane4_sign(t84); /* joint j2: coulomb_friction */
     const ariane4_real_t t86 = ARIANE4_C(-0.6510416666666666) * t85;
-    const ariane4_real_t t87 = forgetting[0] * state[12] + t86 * t43;
+    const ariane4_real_t t87 = ariane4_held(forgetting[0] * state[12] + t86 * t43);
     const ariane4_real_t t88 = t86 * t42;
-    const ariane4_real_t t89 = forgetting[0] * state[9] + t86 * t88;
+    const ariane4_real_t t89 = ariane4_held(forgetting[0] * state[9] + t86 * t88);
     const ariane4_real_t t90 = t89 + (ARIANE4_C(-0.0001) * t89 - ARIANE4_C(1.0e-20));
     const ariane4_real_t t91 = ariane4_select(t90, t89, ARIANE4_C(1.0));
     const ariane4_real_t t92 = ARIANE4_C(1.0) / t91;
     const ariane4_real_t t93 = ariane4_select(t90, t92, ARIANE4_C(0.0));
     const ariane4_real_t t94 = t87 * t93;
     const ariane4_real_t t95 = ARIANE4_C(-0.0003178914388020833) * t84;
-    const ariane4_real_t t96 = forgetting[0] * state[13] + t95 * t43;
+    const ariane4_real_t t96 = ariane4_held(forgetting[0] * state[13] + t95 * t43);
     const ariane4_real_t t97 = t95 * t42;
-    const ariane4_real_t t98 = forgetting[0] * state[10] + t86 * t97;
+    const ariane4_real_t t98 = ariane4_held(forgetting[0] * state[10] + t86 * t97);
     const ariane4_real_t t99 = t98 * t94 - t96;
     const ariane4_real_t t100 = t98 * t93;
-    const ariane4_real_t t101 = forgetting[0] * state[11] + t95 * t97;
+    const ariane4_real_t t101 = ariane4_held(forgetting[0] * state[11] + t95 * t97);
     const ariane4_real_t t102 = t101 - t98 * t100;
     const ariane4_real_t t103 = t102 + (ARIANE4_C(-0.0001) * t101 - ARIANE4_C(1.0e-20));
     const ariane4_real_t t104 = ariane4_select(t103, t102, ARIANE4_C(1.0));
@@ -370,9 +370,9 @@ ariane4_status_t ariane4_monitor_step_standard(
     const ariane4_real_t t170 = (t166 * ddq[2] + t165 * t169 * (dq[2] * dq[2])) * parameters[IA3];
     const ariane4_real_t t171 = ARIANE4_C(-333.3333333333333) * (t167 * parameters[FV3]
         + t168 * parameters[FC3] + t170) - t76 * t155;
-    const ariane4_real_t t172 = forgetting[0] * state[8] + (t164 + (t171 - input[2]) * t80);
-    const ariane4_real_t t173 = forgetting[0] * state[6] + t163 * t88;
-    const ariane4_real_t t174 = forgetting[0] * state[7] + t163 * t97;
+    const ariane4_real_t t172 = ariane4_held(forgetting[0] * state[8] + (t164 + (t171 - input[2]) * t80));
+    const ariane4_real_t t173 = ariane4_held(forgetting[0] * state[6] + t163 * t88);
+    const ariane4_real_t t174 = ariane4_held(forgetting[0] * state[7] + t163 * t97);
     const ariane4_real_t t175 = t174 - t173 * t100;
     const ariane4_real_t t176 = t112 * (t172 - t173 * t94 + t107 * t175);
     const ariane4_real_t t177 = t106 * t175 + t107 * t176;
@@ -397,7 +397,7 @@ ariane4_status_t ariane4_monitor_step_standard(
     out[12] = t87;
     out[13] = t96;
     out[14] = t81;
-    if (!ariane4_all_bounded(out, 15)) {
+    if (!ariane4_bounded(out, 15)) {
         ariane4_zero(out, 15);
         return ARIANE4_STATUS_INPUT;
     }

@@ -13,7 +13,7 @@
 
 #include "ariane4.h"
 
-#if ARIANE4_GENERATION != 0xE8C979F5UL
+#if ARIANE4_GENERATION != 0xBFCC16D8UL
 #error "ariane4.h and ariane4_private.h are of different generations: generate the arm again"
 #endif
 
@@ -102,15 +102,24 @@ static inline void ariane4_sine_cosine(ariane4_real_t x, ariane4_real_t *sine, a
 }
 #endif
 
-/* Whether the sum of squares is at most limit; false where an element is not a number. */
+/*
+ * Whether the sum of squares is at most limit; false where an element is not a number. Four sums at a time wait
+ * less for one another, and fill a vector where the processor has them.
+ */
 static inline int ariane4_within(const ariane4_real_t x[], int n, ariane4_real_t limit)
 {
-    ariane4_real_t sum = ARIANE4_C(0.0);
-    int i;
-    for (i = 0; i < n; ++i) {
-        sum += x[i] * x[i];
+    ariane4_real_t a = ARIANE4_C(0.0), b = ARIANE4_C(0.0), c = ARIANE4_C(0.0), d = ARIANE4_C(0.0);
+    int i = 0;
+    for (; n - i >= 4; i += 4) {
+        a += x[i] * x[i];
+        b += x[i + 1] * x[i + 1];
+        c += x[i + 2] * x[i + 2];
+        d += x[i + 3] * x[i + 3];
     }
-    return sum <= limit;
+    for (; n - i >= 1; ++i) {
+        a += x[i] * x[i];
+    }
+    return (a + b) + (c + d) <= limit;
 }
 
 /* The same for a vector with an element for each joint. */
@@ -119,22 +128,28 @@ static inline int ariane4_within_joints(const ariane4_real_t x[], ariane4_real_t
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] <= limit;
 }
 
-/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
-static inline ariane4_real_t ariane4_bounded(ariane4_real_t x)
+/* x held within twice the limit of a result, above it where x is not a number: what builds on it is finite. */
+static inline ariane4_real_t ariane4_held(ariane4_real_t x)
 {
-    return x >= ARIANE4_C(-1.0e15) && x <= ARIANE4_C(1.0e15) ? x : ARIANE4_C(2.0e15);
+    const ariane4_real_t below = x < ARIANE4_C(2.0e15) ? x : ARIANE4_C(2.0e15);
+    return below > -ARIANE4_C(2.0e15) ? below : -ARIANE4_C(2.0e15);
 }
 
-/* Whether every element of a result is within the limit; false where one is not a number. */
-static inline int ariane4_all_bounded(const ariane4_real_t x[], int n)
+/* Whether the magnitudes of a result's elements add up to its limit at most; false where one is not a number. */
+static inline int ariane4_bounded(const ariane4_real_t x[], int n)
 {
-    int i;
-    for (i = 0; i < n; ++i) {
-        if (!(x[i] >= ARIANE4_C(-1.0e15) && x[i] <= ARIANE4_C(1.0e15))) {
-            return 0;
-        }
+    ariane4_real_t a = ARIANE4_C(0.0), b = ARIANE4_C(0.0), c = ARIANE4_C(0.0), d = ARIANE4_C(0.0);
+    int i = 0;
+    for (; n - i >= 4; i += 4) {
+        a += ARIANE4_ABS(x[i]);
+        b += ARIANE4_ABS(x[i + 1]);
+        c += ARIANE4_ABS(x[i + 2]);
+        d += ARIANE4_ABS(x[i + 3]);
     }
-    return 1;
+    for (; n - i >= 1; ++i) {
+        a += ARIANE4_ABS(x[i]);
+    }
+    return (a + b) + (c + d) <= ARIANE4_C(1.0e15);
 }
 
 /* Left out of every call with -DARIANE4_PARAMETERS_CHECKED, for parameters that ariane4_check_parameters has seen. */

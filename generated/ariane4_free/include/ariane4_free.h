@@ -70,7 +70,7 @@
 #define ARIANE4_FREE_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_FREE_GENERATION 0x6EBE5535UL
+#define ARIANE4_FREE_GENERATION 0x24FD4A54UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_FREE_MODEL "79391f27012d8ce47144bfbc151d699a1e5dab86799c694096ed4c590478ba07"
@@ -358,7 +358,7 @@ ariane4_free_status_t ariane4_free_mass_matrix(
  * @param[out]  out         [4]   [rad/s^2]  joint accelerations
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 519 (302 mul, 217 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
+ * Operations: 519 (302 mul, 217 add, 0 neg), 7 div, 3 sqrt, 8 trig, 6 other calls (sign, select and the like).
  */
 ariane4_free_status_t ariane4_free_forward_dynamics(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
@@ -557,7 +557,7 @@ ariane4_free_status_t ariane4_free_mass_matrix_standard(
  * @param[out]  out         [4]   [rad/s^2]  joint accelerations
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 611 (340 mul, 271 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
+ * Operations: 611 (340 mul, 271 add, 0 neg), 7 div, 3 sqrt, 8 trig, 6 other calls (sign, select and the like).
  */
 ariane4_free_status_t ariane4_free_forward_dynamics_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
@@ -731,7 +731,7 @@ ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [16]  [(rad/s^2) per A]        d ddq / d input; 4 x 4, row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 1887 (1102 mul, 782 add, 3 neg), 16 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
+ * Operations: 1887 (1102 mul, 782 add, 3 neg), 16 div, 3 sqrt, 8 trig, 9 other calls (sign, select and the like).
  */
 ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],
@@ -784,7 +784,7 @@ ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [16]  [(rad/s^2) per A]        d ddq / d input; 4 x 4, row-major
  * @return ARIANE4_FREE_STATUS_OK or status bits
  *
- * Operations: 2111 (1198 mul, 909 add, 4 neg), 16 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
+ * Operations: 2111 (1198 mul, 909 add, 4 neg), 16 div, 3 sqrt, 8 trig, 9 other calls (sign, select and the like).
  */
 ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t q[ARIANE4_FREE_N_JOINTS],

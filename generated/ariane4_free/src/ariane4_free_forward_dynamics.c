@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 519 (302 mul, 217 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
+ * Operations: 519 (302 mul, 217 add, 0 neg), 7 div, 3 sqrt, 8 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
@@ -61,7 +61,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
+#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -92,16 +92,15 @@ ariane4_free_status_t ariane4_free_forward_dynamics(
         return status;
     }
 
-    ariane4_free_real_t t51, t52;
-    ARIANE4_FREE_SINCOS(q[0], &t51, &t52);
-    ariane4_free_real_t t21, t22;
-    ARIANE4_FREE_SINCOS(q[1], &t21, &t22);
+    ariane4_free_real_t t49, t50;
+    ARIANE4_FREE_SINCOS(q[0], &t49, &t50);
+    ariane4_free_real_t t20, t21;
+    ARIANE4_FREE_SINCOS(q[1], &t20, &t21);
     ariane4_free_real_t t1, t2;
     ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
     ariane4_free_real_t t9, t8;
     ARIANE4_FREE_SINCOS(q[3], &t9, &t8);
-    const ariane4_free_real_t t0 = ariane4_free_bounded(parameters[ZZ4]
-        + ARIANE4_FREE_C(1.0e4) * parameters[IA4]);
+    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
     if (!(t0 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -127,255 +126,247 @@ ariane4_free_status_t ariane4_free_forward_dynamics(
     const ariane4_free_real_t t16 = t9 * parameters[XZ4R] + t8 * parameters[YZ4R];
     const ariane4_free_real_t t17 = ARIANE4_FREE_C(-1.0) / t0;
     const ariane4_free_real_t t18 = t16 * t17;
-    const ariane4_free_real_t t19 = ariane4_free_bounded(t15 + t16 * t18);
+    const ariane4_free_real_t t19 = t15 + t16 * t18;
     if (!(t19 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t20 = t19 + ARIANE4_FREE_C(-1.0e-9) * t15;
-    if (!(t20 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     /* joint j2: drive */
-    const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.8305958991958126) * t21
-        + ARIANE4_FREE_C(0.5568756164881881) * t22;
-    const ariane4_free_real_t t24 = ARIANE4_FREE_C(-0.8305958991958126) * t22
+    const ariane4_free_real_t t22 = ARIANE4_FREE_C(0.8305958991958126) * t20
         + ARIANE4_FREE_C(0.5568756164881881) * t21;
-    const ariane4_free_real_t t25 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t24
+    const ariane4_free_real_t t23 = ARIANE4_FREE_C(-0.8305958991958126) * t21
+        + ARIANE4_FREE_C(0.5568756164881881) * t20;
+    const ariane4_free_real_t t24 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t23
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t26 = ARIANE4_FREE_C(1.0) / t25;
-    const ariane4_free_real_t t27 = t23 * (ARIANE4_FREE_C(2656.3065671641784) * t26);
-    const ariane4_free_real_t t28 = parameters[MX3R] - t12; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t29 = t2 * t28 - t1 * parameters[MY3R]; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(0.886) * t29; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t31 = parameters[ZZ2R] + (t14 + t30) + parameters[IA2] * (t27 * t27);
+    const ariane4_free_real_t t25 = ARIANE4_FREE_C(1.0) / t24;
+    const ariane4_free_real_t t26 = t22 * (ARIANE4_FREE_C(2656.3065671641784) * t25);
+    const ariane4_free_real_t t27 = parameters[MX3R] - t12; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t28 = t2 * t27 - t1 * parameters[MY3R]; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t29 = ARIANE4_FREE_C(0.886) * t28; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t30 = parameters[ZZ2R] + (t14 + t29) + parameters[IA2] * (t26 * t26);
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t32 = t8 * parameters[MY4] + t9 * parameters[MX4];
-    const ariane4_free_real_t t33 = ARIANE4_FREE_C(-0.443) * (t1 * t32) - t16;
-    const ariane4_free_real_t t34 = t33 * t17;
-    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-0.443) * t29 - t14 + t33 * t18;
-    const ariane4_free_real_t t36 = ARIANE4_FREE_C(-1.0) / t19;
-    const ariane4_free_real_t t37 = t35 * t36;
-    const ariane4_free_real_t t38 = ariane4_free_bounded(t31 + t33 * t34 + t35 * t37);
-    if (!(t38 > ARIANE4_FREE_C(1.0e-12))) {
+    const ariane4_free_real_t t31 = t8 * parameters[MY4] + t9 * parameters[MX4];
+    const ariane4_free_real_t t32 = ARIANE4_FREE_C(-0.443) * (t1 * t31) - t16;
+    const ariane4_free_real_t t33 = t32 * t17;
+    const ariane4_free_real_t t34 = ARIANE4_FREE_C(-0.443) * t28 - t14 + t32 * t18;
+    const ariane4_free_real_t t35 = ARIANE4_FREE_C(-1.0) / t19;
+    const ariane4_free_real_t t36 = t34 * t35;
+    const ariane4_free_real_t t37 = t30 + t32 * t33 + t34 * t36;
+    if (!(t37 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t39 = t38 + ARIANE4_FREE_C(-1.0e-9) * t31;
-    if (!(t39 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
-    const ariane4_free_real_t t40 = parameters[ZZ4] + t13; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t41 = parameters[XX3R] + t11;
+    const ariane4_free_real_t t38 = parameters[ZZ4] + t13; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t39 = parameters[XX3R] + t11;
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t42 = t8 * parameters[XZ4R] - t9 * parameters[YZ4R];
-    const ariane4_free_real_t t43 = parameters[XY3R] + t42; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t40 = t8 * parameters[XZ4R] - t9 * parameters[YZ4R];
+    const ariane4_free_real_t t41 = parameters[XY3R] + t40; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t44 = t2 * (t40 - t41) + t43 * (ARIANE4_FREE_C(2.0) * t1);
-    const ariane4_free_real_t t45 = t2 * t44;
-    const ariane4_free_real_t t46 = parameters[XX2R] + (t40 - t45);
-    const ariane4_free_real_t t47 = t2 * parameters[MY3R] + t1 * t28; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t42 = t2 * (t38 - t39) + t41 * (ARIANE4_FREE_C(2.0) * t1);
+    const ariane4_free_real_t t43 = t2 * t42;
+    const ariane4_free_real_t t44 = parameters[XX2R] + (t38 - t43);
+    const ariane4_free_real_t t45 = t2 * parameters[MY3R] + t1 * t27; /* link j3: column of the mass matrix */
     /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t48 = (parameters[XY2] + (t43 - t1 * t44
-        + ARIANE4_FREE_C(-0.443) * t47)) * (ARIANE4_FREE_C(2.0) * t21);
-    const ariane4_free_real_t t49 = t22 * (t22 * (t41 + t45 + t30 - t46) + t48);
-    const ariane4_free_real_t t50 = ARIANE4_FREE_C(0.232) * (t22 * (parameters[MX2R] + t29)
-        - t21 * (parameters[MY2] + t47));
+    const ariane4_free_real_t t46 = (parameters[XY2] + (t41 - t1 * t42
+        + ARIANE4_FREE_C(-0.443) * t45)) * (ARIANE4_FREE_C(2.0) * t20);
+    const ariane4_free_real_t t47 = t21 * (t21 * (t39 + t43 + t29 - t44) + t46);
+    const ariane4_free_real_t t48 = ARIANE4_FREE_C(0.232) * (t21 * (parameters[MX2R] + t28)
+        - t20 * (parameters[MY2] + t45));
     /* joint j1: drive */
-    const ariane4_free_real_t t53 = ARIANE4_FREE_C(-0.28217402066925895) * t51
-        + ARIANE4_FREE_C(0.9593632378089879) * t52;
-    const ariane4_free_real_t t54 = ARIANE4_FREE_C(0.28217402066925895) * t52
-        + ARIANE4_FREE_C(0.9593632378089879) * t51;
-    const ariane4_free_real_t t55 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t54
+    const ariane4_free_real_t t51 = ARIANE4_FREE_C(-0.28217402066925895) * t49
+        + ARIANE4_FREE_C(0.9593632378089879) * t50;
+    const ariane4_free_real_t t52 = ARIANE4_FREE_C(0.28217402066925895) * t50
+        + ARIANE4_FREE_C(0.9593632378089879) * t49;
+    const ariane4_free_real_t t53 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t52
         + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t56 = ARIANE4_FREE_C(-1.0) / t55;
-    const ariane4_free_real_t t57 = t53 * (ARIANE4_FREE_C(3885.523436256565) * t56);
-    const ariane4_free_real_t t58 = parameters[ZZ1R] + (t46 + t49 + t50) + parameters[IA1] * (t57 * t57);
+    const ariane4_free_real_t t54 = ARIANE4_FREE_C(-1.0) / t53;
+    const ariane4_free_real_t t55 = t51 * (ARIANE4_FREE_C(3885.523436256565) * t54);
+    const ariane4_free_real_t t56 = parameters[ZZ1R] + (t44 + t47 + t48) + parameters[IA1] * (t55 * t55);
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t59 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t12;
-    const ariane4_free_real_t t60 = t22 * (ARIANE4_FREE_C(0.443) * t12 - (t1 * t42 + t2 * t59));
-    const ariane4_free_real_t t61 = t21 * (t1 * t59 - t2 * t42) + t60 + ARIANE4_FREE_C(0.116) * t12;
-    const ariane4_free_real_t t62 = t61 * t17;
+    const ariane4_free_real_t t57 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t12;
+    const ariane4_free_real_t t58 = t21 * (ARIANE4_FREE_C(0.443) * t12 - (t1 * t40 + t2 * t57));
+    const ariane4_free_real_t t59 = t20 * (t1 * t57 - t2 * t40) + t58 + ARIANE4_FREE_C(0.116) * t12;
+    const ariane4_free_real_t t60 = t59 * t17;
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t63 = parameters[XY4] + t9 * t10 + ARIANE4_FREE_C(0.1) * t32 - parameters[XZ3];
-    const ariane4_free_real_t t64 = parameters[YZ3] - t16;
-    const ariane4_free_real_t t65 = t2 * t63 + t1 * t64; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t66 = t1 * t63 - t2 * t64;
-    const ariane4_free_real_t t67 = t61 * t18 - (t21 * t65 + t22 * t66);
-    const ariane4_free_real_t t68 = t67 * t36;
+    const ariane4_free_real_t t61 = parameters[XY4] + t9 * t10 + ARIANE4_FREE_C(0.1) * t31 - parameters[XZ3];
+    const ariane4_free_real_t t62 = parameters[YZ3] - t16;
+    const ariane4_free_real_t t63 = t2 * t61 + t1 * t62; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t64 = t1 * t61 - t2 * t62;
+    const ariane4_free_real_t t65 = t59 * t18 - (t20 * t63 + t21 * t64);
+    const ariane4_free_real_t t66 = t65 * t35;
     /* link j2: column of the mass matrix */
-    const ariane4_free_real_t t69 = t21 * (t65 + ARIANE4_FREE_C(-0.443) * t32 - parameters[XZ2R]) + t22 * (t66
+    const ariane4_free_real_t t67 = t20 * (t63 + ARIANE4_FREE_C(-0.443) * t31 - parameters[XZ2R]) + t21 * (t64
         - parameters[YZ2]);
-    const ariane4_free_real_t t70 = t69 + t61 * t34 + t67 * t37;
-    const ariane4_free_real_t t71 = ARIANE4_FREE_C(1.0) / t38;
-    const ariane4_free_real_t t72 = t70 * t71;
-    const ariane4_free_real_t t73 = ariane4_free_bounded(t58 + t61 * t62 + t67 * t68 - t70 * t72);
+    const ariane4_free_real_t t68 = t67 + t59 * t33 + t65 * t36;
+    const ariane4_free_real_t t69 = ARIANE4_FREE_C(1.0) / t37;
+    const ariane4_free_real_t t70 = t68 * t69;
+    const ariane4_free_real_t t71 = t56 + t59 * t60 + t65 * t66 - t68 * t70;
+    if (!(t71 > ARIANE4_FREE_C(1.0e-12))) {
+        ariane4_free_zero(out, 4);
+        return ARIANE4_FREE_STATUS_PIVOT;
+    }
+    const ariane4_free_real_t t72 = ariane4_free_min(t19 + ARIANE4_FREE_C(-1.0e-9) * t15, t37
+        + ARIANE4_FREE_C(-1.0e-9) * t30);
+    const ariane4_free_real_t t73 = ariane4_free_min(t72, t71 + ARIANE4_FREE_C(-1.0e-9) * t56);
     if (!(t73 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t74 = t73 + ARIANE4_FREE_C(-1.0e-9) * t58;
-    if (!(t74 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
-    const ariane4_free_real_t t75 = t21 * dq[0]; /* link j2: motion */
-    const ariane4_free_real_t t76 = t22 * dq[0];
-    const ariane4_free_real_t t77 = t2 * t75 + t1 * t76; /* link j3: motion */
-    const ariane4_free_real_t t78 = t2 * t76 - t1 * t75;
-    const ariane4_free_real_t t79 = t77 * t78;
-    const ariane4_free_real_t t80 = dq[1] + dq[2];
-    const ariane4_free_real_t t81 = t78 * t80;
-    const ariane4_free_real_t t82 = ARIANE4_FREE_C(2.0) * t81; /* link j4: motion */
-    const ariane4_free_real_t t83 = t9 * t79 + t8 * t82;
-    const ariane4_free_real_t t84 = t9 * t77 + t8 * t80;
-    const ariane4_free_real_t t85 = dq[3] + t78;
-    const ariane4_free_real_t t86 = t84 * t85;
-    const ariane4_free_real_t t87 = t83 - t86;
-    const ariane4_free_real_t t88 = t9 * t82 - t8 * t79;
-    const ariane4_free_real_t t89 = t8 * t77 - t9 * t80;
-    const ariane4_free_real_t t90 = t89 * t85;
-    const ariane4_free_real_t t91 = t90 + (t88 + t90); /* link j4: force and moment */
-    const ariane4_free_real_t t92 = t89 * t84; /* link j4: motion */
-    const ariane4_free_real_t t93 = t77 * t80; /* link j3: motion */
-    const ariane4_free_real_t t94 = t93 + t92; /* link j4: force and moment */
-    const ariane4_free_real_t t95 = parameters[ZZ4] * t86 - parameters[XX4R] * t87 + parameters[XY4] * t91
-        + parameters[XZ4R] * t94;
-    const ariane4_free_real_t t96 = t84 * t84; /* link j4: motion */
-    const ariane4_free_real_t t97 = t85 * t85;
-    const ariane4_free_real_t t98 = dq[0] * dq[0];
-    const ariane4_free_real_t t99 = ARIANE4_FREE_C(-0.116) * t98; /* link j2: motion */
-    const ariane4_free_real_t t100 = t22 * t99 + ARIANE4_FREE_C(9.81) * t21;
-    const ariane4_free_real_t t101 = t76 * t76;
-    const ariane4_free_real_t t102 = dq[1] * dq[1];
-    const ariane4_free_real_t t103 = t100 + ARIANE4_FREE_C(-0.443) * (t102 + t101); /* link j3: motion */
-    const ariane4_free_real_t t104 = t21 * t99 + ARIANE4_FREE_C(-9.81) * t22; /* link j2: motion */
-    const ariane4_free_real_t t105 = t75 * t76;
-    const ariane4_free_real_t t106 = t104 + ARIANE4_FREE_C(-0.443) * t105; /* link j3: motion */
-    const ariane4_free_real_t t107 = t1 * t103 + t2 * t106;
-    const ariane4_free_real_t t108 = t107 + ARIANE4_FREE_C(0.1) * t79; /* link j4: motion */
+    const ariane4_free_real_t t74 = t20 * dq[0]; /* link j2: motion */
+    const ariane4_free_real_t t75 = t21 * dq[0];
+    const ariane4_free_real_t t76 = t2 * t74 + t1 * t75; /* link j3: motion */
+    const ariane4_free_real_t t77 = t2 * t75 - t1 * t74;
+    const ariane4_free_real_t t78 = t76 * t77;
+    const ariane4_free_real_t t79 = dq[1] + dq[2];
+    const ariane4_free_real_t t80 = t77 * t79;
+    const ariane4_free_real_t t81 = ARIANE4_FREE_C(2.0) * t80; /* link j4: motion */
+    const ariane4_free_real_t t82 = t9 * t78 + t8 * t81;
+    const ariane4_free_real_t t83 = t9 * t76 + t8 * t79;
+    const ariane4_free_real_t t84 = dq[3] + t77;
+    const ariane4_free_real_t t85 = t83 * t84;
+    const ariane4_free_real_t t86 = t82 - t85;
+    const ariane4_free_real_t t87 = t9 * t81 - t8 * t78;
+    const ariane4_free_real_t t88 = t8 * t76 - t9 * t79;
+    const ariane4_free_real_t t89 = t88 * t84;
+    const ariane4_free_real_t t90 = t89 + (t87 + t89); /* link j4: force and moment */
+    const ariane4_free_real_t t91 = t88 * t83; /* link j4: motion */
+    const ariane4_free_real_t t92 = t76 * t79; /* link j3: motion */
+    const ariane4_free_real_t t93 = t92 + t91; /* link j4: force and moment */
+    const ariane4_free_real_t t94 = parameters[ZZ4] * t85 - parameters[XX4R] * t86 + parameters[XY4] * t90
+        + parameters[XZ4R] * t93;
+    const ariane4_free_real_t t95 = t83 * t83; /* link j4: motion */
+    const ariane4_free_real_t t96 = t84 * t84;
+    const ariane4_free_real_t t97 = dq[0] * dq[0];
+    const ariane4_free_real_t t98 = ARIANE4_FREE_C(-0.116) * t97; /* link j2: motion */
+    const ariane4_free_real_t t99 = t21 * t98 + ARIANE4_FREE_C(9.81) * t20;
+    const ariane4_free_real_t t100 = t75 * t75;
+    const ariane4_free_real_t t101 = dq[1] * dq[1];
+    const ariane4_free_real_t t102 = t99 + ARIANE4_FREE_C(-0.443) * (t101 + t100); /* link j3: motion */
+    const ariane4_free_real_t t103 = t20 * t98 + ARIANE4_FREE_C(-9.81) * t21; /* link j2: motion */
+    const ariane4_free_real_t t104 = t74 * t75;
+    const ariane4_free_real_t t105 = t103 + ARIANE4_FREE_C(-0.443) * t104; /* link j3: motion */
+    const ariane4_free_real_t t106 = t1 * t102 + t2 * t105;
+    const ariane4_free_real_t t107 = t106 + ARIANE4_FREE_C(0.1) * t78; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane4_free_real_t t109 = t95 + parameters[YZ4R] * (t97 - t96) + parameters[MY4] * t108;
-    const ariane4_free_real_t t110 = t87 - t86;
-    const ariane4_free_real_t t111 = t92 - t93;
-    const ariane4_free_real_t t112 = t90 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t110
-        + parameters[YZ4R] * t111;
-    const ariane4_free_real_t t113 = t89 * t89; /* link j4: motion */
+    const ariane4_free_real_t t108 = t94 + parameters[YZ4R] * (t96 - t95) + parameters[MY4] * t107;
+    const ariane4_free_real_t t109 = t86 - t85;
+    const ariane4_free_real_t t110 = t91 - t92;
+    const ariane4_free_real_t t111 = t89 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t109
+        + parameters[YZ4R] * t110;
+    const ariane4_free_real_t t112 = t88 * t88; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane4_free_real_t t114 = t112 + parameters[XZ4R] * (t97 - t113) + parameters[MX4] * t108;
-    const ariane4_free_real_t t115 = ARIANE4_FREE_C(2.0) * t93; /* link j4: motion */
+    const ariane4_free_real_t t113 = t111 + parameters[XZ4R] * (t96 - t112) + parameters[MX4] * t107;
+    const ariane4_free_real_t t114 = ARIANE4_FREE_C(2.0) * t92; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane4_free_real_t t116 = parameters[XY3R] * t115 - (parameters[XX3R] * t81
-        + parameters[ZZ3R] * t81) - parameters[XZ3] * t79;
-    const ariane4_free_real_t t117 = t78 * t78; /* link j3: motion */
-    const ariane4_free_real_t t118 = t80 * t80;
-    const ariane4_free_real_t t119 = dq[1] * t75; /* link j2: motion */
-    const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.886) * t119; /* link j3: motion */
+    const ariane4_free_real_t t115 = parameters[XY3R] * t114 - (parameters[XX3R] * t80
+        + parameters[ZZ3R] * t80) - parameters[XZ3] * t78;
+    const ariane4_free_real_t t116 = t77 * t77; /* link j3: motion */
+    const ariane4_free_real_t t117 = t79 * t79;
+    const ariane4_free_real_t t118 = dq[1] * t74; /* link j2: motion */
+    const ariane4_free_real_t t119 = ARIANE4_FREE_C(-0.886) * t118; /* link j3: motion */
     /* link j4: what it passes on */
-    const ariane4_free_real_t t121 = t116 + parameters[YZ3] * (t118 - t117) + parameters[MY3R] * t120
-        + (t8 * t109 + t9 * t114);
+    const ariane4_free_real_t t120 = t115 + parameters[YZ3] * (t117 - t116) + parameters[MY3R] * t119
+        + (t8 * t108 + t9 * t113);
     /* link j4: force and moment */
-    const ariane4_free_real_t t122 = parameters[ZZ4] * t93 - parameters[XX4R] * t92 + parameters[YZ4R] * t88
-        - parameters[XZ4R] * t83;
-    const ariane4_free_real_t t123 = t1 * t106 - t2 * t103; /* link j3: motion */
-    const ariane4_free_real_t t124 = t117 + t118; /* link j4: motion */
-    const ariane4_free_real_t t125 = t123 - ARIANE4_FREE_C(0.1) * t124;
-    const ariane4_free_real_t t126 = t120 + ARIANE4_FREE_C(0.2) * t93;
+    const ariane4_free_real_t t121 = parameters[ZZ4] * t92 - parameters[XX4R] * t91 + parameters[YZ4R] * t87
+        - parameters[XZ4R] * t82;
+    const ariane4_free_real_t t122 = t1 * t105 - t2 * t102; /* link j3: motion */
+    const ariane4_free_real_t t123 = t116 + t117; /* link j4: motion */
+    const ariane4_free_real_t t124 = t122 - ARIANE4_FREE_C(0.1) * t123;
+    const ariane4_free_real_t t125 = t119 + ARIANE4_FREE_C(0.2) * t92;
     /* link j4: force and moment */
-    const ariane4_free_real_t t127 = parameters[MX4] * (t9 * t125 + t8 * t126) + parameters[MY4] * (t8 * t125
-        - t9 * t126);
-    const ariane4_free_real_t t128 = t122 - parameters[XY4] * (t113 - t96) - t127;
-    const ariane4_free_real_t t129 = parameters[MX4] * (t96 + t97) + parameters[MY4] * t111;
-    const ariane4_free_real_t t130 = parameters[MX4] * t94 + parameters[MY4] * (t113 + t97);
-    const ariane4_free_real_t t131 = t9 * t129 + t8 * t130; /* link j4: what it passes on */
+    const ariane4_free_real_t t126 = parameters[MX4] * (t9 * t124 + t8 * t125) + parameters[MY4] * (t8 * t124
+        - t9 * t125);
+    const ariane4_free_real_t t127 = t121 - parameters[XY4] * (t112 - t95) - t126;
+    const ariane4_free_real_t t128 = parameters[MX4] * (t95 + t96) + parameters[MY4] * t110;
+    const ariane4_free_real_t t129 = parameters[MX4] * t93 + parameters[MY4] * (t112 + t96);
+    const ariane4_free_real_t t130 = t9 * t128 + t8 * t129; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const ariane4_free_real_t t132 = t93 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t82
-        - parameters[YZ3] * t79;
-    const ariane4_free_real_t t133 = t77 * t77; /* link j3: motion */
+    const ariane4_free_real_t t131 = t92 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t81
+        - parameters[YZ3] * t78;
+    const ariane4_free_real_t t132 = t76 * t76; /* link j3: motion */
     /* link j4: what it passes on */
-    const ariane4_free_real_t t134 = t132 - parameters[XZ3] * (t133 - t118) + parameters[MX3R] * t120 - (t128
-        - ARIANE4_FREE_C(0.1) * t131);
-    const ariane4_free_real_t t135 = dq[1] * t76; /* link j2: motion */
-    const ariane4_free_real_t t136 = ARIANE4_FREE_C(2.0) * t119;
+    const ariane4_free_real_t t133 = t131 - parameters[XZ3] * (t132 - t117) + parameters[MX3R] * t119 - (t127
+        - ARIANE4_FREE_C(0.1) * t130);
+    const ariane4_free_real_t t134 = dq[1] * t75; /* link j2: motion */
+    const ariane4_free_real_t t135 = ARIANE4_FREE_C(2.0) * t118;
     /* link j2: force and moment */
-    const ariane4_free_real_t t137 = parameters[XY2] * t136 - (parameters[XX2R] * t135
-        + parameters[ZZ2R] * t135) - parameters[XZ2R] * t105;
+    const ariane4_free_real_t t136 = parameters[XY2] * t135 - (parameters[XX2R] * t134
+        + parameters[ZZ2R] * t134) - parameters[XZ2R] * t104;
     /* link j3: what it passes on */
-    const ariane4_free_real_t t138 = t137 + parameters[YZ2] * (t102 - t101) + (t2 * t121 + t1 * t134);
+    const ariane4_free_real_t t137 = t136 + parameters[YZ2] * (t101 - t100) + (t2 * t120 + t1 * t133);
     /* link j4: what it passes on */
-    const ariane4_free_real_t t139 = parameters[MX3R] * t115 + parameters[MY3R] * t82 + t131;
-    const ariane4_free_real_t t140 = ARIANE4_FREE_C(2.0) * t135; /* link j2: motion */
+    const ariane4_free_real_t t138 = parameters[MX3R] * t114 + parameters[MY3R] * t81 + t130;
+    const ariane4_free_real_t t139 = ARIANE4_FREE_C(2.0) * t134; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_free_real_t t141 = t119 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t140
-        + parameters[YZ2] * t105;
-    const ariane4_free_real_t t142 = t75 * t75; /* link j2: motion */
+    const ariane4_free_real_t t140 = t118 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t139
+        + parameters[YZ2] * t104;
+    const ariane4_free_real_t t141 = t74 * t74; /* link j2: motion */
     /* link j3: what it passes on */
-    const ariane4_free_real_t t143 = t141 + parameters[XZ2R] * (t142 - t102) + (t1 * t121 - t2 * t134
-        + ARIANE4_FREE_C(0.443) * t139);
+    const ariane4_free_real_t t142 = t140 + parameters[XZ2R] * (t141 - t101) + (t1 * t120 - t2 * t133
+        + ARIANE4_FREE_C(0.443) * t138);
     /* link j2: what it passes on */
-    const ariane4_free_real_t t144 = t21 * t138 + t22 * t143
-        + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t136 + parameters[MY2] * t140 + t139);
-    const ariane4_free_real_t t145 = t57 * dq[0];
-    const ariane4_free_real_t t146 = ariane4_free_sign(t145); /* joint j1: coulomb_friction */
+    const ariane4_free_real_t t143 = t20 * t137 + t21 * t142
+        + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t135 + parameters[MY2] * t139 + t138);
+    const ariane4_free_real_t t144 = t55 * dq[0];
+    const ariane4_free_real_t t145 = ariane4_free_sign(t144); /* joint j1: coulomb_friction */
     /* joint j1: drive */
-    const ariane4_free_real_t t147 = ARIANE4_FREE_C(-3885.523436256565) * t54
-        + ARIANE4_FREE_C(-72.7913960548305) * (t56 * t56) * (t53 * t53);
-    const ariane4_free_real_t t148 = parameters[FV1] * t145 + parameters[FC1] * t146
-        + parameters[IA1] * (t56 * t147 * t98);
-    const ariane4_free_real_t t149 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ariane4_free_real_t t146 = ARIANE4_FREE_C(-3885.523436256565) * t52
+        + ARIANE4_FREE_C(-72.7913960548305) * (t54 * t54) * (t51 * t51);
+    const ariane4_free_real_t t147 = parameters[FV1] * t144 + parameters[FC1] * t145
+        + parameters[IA1] * (t54 * t146 * t97);
+    const ariane4_free_real_t t148 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t
-        t150 = ARIANE4_FREE_C(1.0e2) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
-        + parameters[FC4] * t149) - t128;
-    const ariane4_free_real_t t151 = ARIANE4_FREE_C(5.0) * input[3] - t150;
-    const ariane4_free_real_t t152 = input[0] * (ARIANE4_FREE_C(-0.004) * t57) + (t144 - t57 * t148)
-        - t151 * t62;
+        t149 = ARIANE4_FREE_C(1.0e2) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
+        + parameters[FC4] * t148) - t127;
+    const ariane4_free_real_t t150 = ARIANE4_FREE_C(5.0) * input[3] - t149;
+    const ariane4_free_real_t t151 = input[0] * (ARIANE4_FREE_C(-0.004) * t55) + (t143 - t55 * t147)
+        - t150 * t60;
     /* link j4: force and moment */
-    const ariane4_free_real_t t153 = parameters[MX4] * t91 + parameters[MY4] * t110;
+    const ariane4_free_real_t t152 = parameters[MX4] * t90 + parameters[MY4] * t109;
     /* link j3: force and moment */
-    const ariane4_free_real_t t154 = parameters[XY3R] * (t133 - t117) - parameters[XX3R] * t79
-        + (parameters[MY3R] * t123 - parameters[MX3R] * t107);
+    const ariane4_free_real_t t153 = parameters[XY3R] * (t132 - t116) - parameters[XX3R] * t78
+        + (parameters[MY3R] * t122 - parameters[MX3R] * t106);
     /* link j4: what it passes on */
-    const ariane4_free_real_t t155 = t154 + (t9 * t109 - t8 * t114 - ARIANE4_FREE_C(0.1) * t153);
-    const ariane4_free_real_t t156 = t7 * dq[2];
-    const ariane4_free_real_t t157 = ariane4_free_sign(t156); /* joint j3: coulomb_friction */
+    const ariane4_free_real_t t154 = t153 + (t9 * t108 - t8 * t113 - ARIANE4_FREE_C(0.1) * t152);
+    const ariane4_free_real_t t155 = t7 * dq[2];
+    const ariane4_free_real_t t156 = ariane4_free_sign(t155); /* joint j3: coulomb_friction */
     /* joint j3: drive */
-    const ariane4_free_real_t t158 = ARIANE4_FREE_C(7124.375926654358) * t4
+    const ariane4_free_real_t t157 = ARIANE4_FREE_C(7124.375926654358) * t4
         + ARIANE4_FREE_C(188.12627071923498) * (t6 * t6) * (t3 * t3);
-    const ariane4_free_real_t t159 = parameters[FV3] * t156 + parameters[FC3] * t157
-        + parameters[IA3] * (t6 * t158 * (dq[2] * dq[2]));
-    const ariane4_free_real_t t160 = input[2] * (ARIANE4_FREE_C(0.003) * t7) + (t7 * t159 + t155)
-        + t151 * t18;
+    const ariane4_free_real_t t158 = parameters[FV3] * t155 + parameters[FC3] * t156
+        + parameters[IA3] * (t6 * t157 * (dq[2] * dq[2]));
+    const ariane4_free_real_t t159 = input[2] * (ARIANE4_FREE_C(0.003) * t7) + (t7 * t158 + t154)
+        + t150 * t18;
     /* link j4: what it passes on */
-    const ariane4_free_real_t t161 = parameters[MX3R] * t124 - parameters[MY3R] * t79 + (t8 * t129
-        - t9 * t130);
+    const ariane4_free_real_t t160 = parameters[MX3R] * t123 - parameters[MY3R] * t78 + (t8 * t128
+        - t9 * t129);
     /* link j3: what it passes on */
-    const ariane4_free_real_t t162 = t2 * (parameters[MY3R] * (t133 + t118) - parameters[MX3R] * t79 - t153);
+    const ariane4_free_real_t t161 = t2 * (parameters[MY3R] * (t132 + t117) - parameters[MX3R] * t78 - t152);
     /* link j2: force and moment */
-    const ariane4_free_real_t t163 = parameters[XX2R] * t105 - parameters[XY2] * (t142 - t101)
-        + (parameters[MX2R] * t104 + parameters[MY2] * t100);
-    const ariane4_free_real_t t164 = t27 * dq[1];
-    const ariane4_free_real_t t165 = ariane4_free_sign(t164); /* joint j2: coulomb_friction */
+    const ariane4_free_real_t t162 = parameters[XX2R] * t104 - parameters[XY2] * (t141 - t100)
+        + (parameters[MX2R] * t103 + parameters[MY2] * t99);
+    const ariane4_free_real_t t163 = t26 * dq[1];
+    const ariane4_free_real_t t164 = ariane4_free_sign(t163); /* joint j2: coulomb_friction */
     /* joint j2: drive */
-    const ariane4_free_real_t t166 = ARIANE4_FREE_C(-2656.3065671641784) * t24
-        - ARIANE4_FREE_C(104.12987373940295) * (t26 * t26) * (t23 * t23);
-    const ariane4_free_real_t t167 = parameters[FV2] * t164 + parameters[FC2] * t165
-        + parameters[IA2] * (t26 * t166 * t102);
-    const ariane4_free_real_t t168 = t27 * t167 - (t163 - (t155 - ARIANE4_FREE_C(0.443) * (t1 * t161
-        + t162)));
-    const ariane4_free_real_t t169 = input[1] * (ARIANE4_FREE_C(0.012) * t27) - t168 + t151 * t34
-        + t160 * t37;
-    const ariane4_free_real_t t170 = ARIANE4_FREE_C(1.0) / t73;
-    const ariane4_free_real_t t171 = ariane4_free_bounded((t152 - t160 * t68 + t169 * t72) * t170);
-    out[0] = t171;
-    const ariane4_free_real_t t172 = ariane4_free_bounded(t169 * t71 + t72 * t171);
-    out[1] = t172;
-    const ariane4_free_real_t t173 = ariane4_free_bounded(t160 * t36 + t68 * t171 - t37 * t172);
-    out[2] = t173;
-    const ariane4_free_real_t t174 = t34 * t172 - (t151 * t17 + t62 * t171) - t18 * t173;
-    out[3] = t174;
-    if (!ariane4_free_all_bounded(out, 4)) {
+    const ariane4_free_real_t t165 = ARIANE4_FREE_C(-2656.3065671641784) * t23
+        - ARIANE4_FREE_C(104.12987373940295) * (t25 * t25) * (t22 * t22);
+    const ariane4_free_real_t t166 = parameters[FV2] * t163 + parameters[FC2] * t164
+        + parameters[IA2] * (t25 * t165 * t101);
+    const ariane4_free_real_t t167 = t26 * t166 - (t162 - (t154 - ARIANE4_FREE_C(0.443) * (t1 * t160
+        + t161)));
+    const ariane4_free_real_t t168 = input[1] * (ARIANE4_FREE_C(0.012) * t26) - t167 + t150 * t33
+        + t159 * t36;
+    const ariane4_free_real_t t169 = ARIANE4_FREE_C(1.0) / t71;
+    const ariane4_free_real_t t170 = ariane4_free_held((t151 - t159 * t66 + t168 * t70) * t169);
+    out[0] = t170;
+    const ariane4_free_real_t t171 = ariane4_free_held(t168 * t69 + t70 * t170);
+    out[1] = t171;
+    const ariane4_free_real_t t172 = ariane4_free_held(t159 * t35 + t66 * t170 - t36 * t171);
+    out[2] = t172;
+    const ariane4_free_real_t t173 = t33 * t171 - (t150 * t17 + t60 * t170) - t18 * t172;
+    out[3] = t173;
+    if (!ariane4_free_bounded(out, 4)) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }

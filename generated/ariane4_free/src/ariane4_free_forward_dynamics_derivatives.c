@@ -7,7 +7,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1887 (1102 mul, 782 add, 3 neg), 16 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
+ * Operations: 1887 (1102 mul, 782 add, 3 neg), 16 div, 3 sqrt, 8 trig, 9 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [4]   [rad/s]                  joint velocities; norm at most 100000
@@ -65,7 +65,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
+#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -102,16 +102,15 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
         return status;
     }
 
-    ariane4_free_real_t t59, t60;
-    ARIANE4_FREE_SINCOS(q[0], &t59, &t60);
-    ariane4_free_real_t t22, t23;
-    ARIANE4_FREE_SINCOS(q[1], &t22, &t23);
+    ariane4_free_real_t t57, t58;
+    ARIANE4_FREE_SINCOS(q[0], &t57, &t58);
+    ariane4_free_real_t t21, t22;
+    ARIANE4_FREE_SINCOS(q[1], &t21, &t22);
     ariane4_free_real_t t1, t2;
     ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
     ariane4_free_real_t t10, t9;
     ARIANE4_FREE_SINCOS(q[3], &t10, &t9);
-    const ariane4_free_real_t t0 = ariane4_free_bounded(parameters[ZZ4]
-        + ARIANE4_FREE_C(1.0e4) * parameters[IA4]);
+    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
     if (!(t0 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -141,7 +140,7 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t17 = t10 * parameters[XZ4R] + t9 * parameters[YZ4R];
     const ariane4_free_real_t t18 = ARIANE4_FREE_C(1.0) / t0;
     const ariane4_free_real_t t19 = t17 * t18;
-    const ariane4_free_real_t t20 = ariane4_free_bounded(t16 - t17 * t19);
+    const ariane4_free_real_t t20 = t16 - t17 * t19;
     if (!(t20 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -149,105 +148,99 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t21 = t20 + ARIANE4_FREE_C(-1.0e-9) * t16;
-    if (!(t21 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     /* joint j2: drive */
-    const ariane4_free_real_t t24 = ARIANE4_FREE_C(0.8305958991958126) * t22
-        + ARIANE4_FREE_C(0.5568756164881881) * t23;
-    const ariane4_free_real_t t25 = ARIANE4_FREE_C(-0.8305958991958126) * t23
+    const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.8305958991958126) * t21
         + ARIANE4_FREE_C(0.5568756164881881) * t22;
-    const ariane4_free_real_t t26 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t25
+    const ariane4_free_real_t t24 = ARIANE4_FREE_C(-0.8305958991958126) * t22
+        + ARIANE4_FREE_C(0.5568756164881881) * t21;
+    const ariane4_free_real_t t25 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t24
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t27 = ARIANE4_FREE_C(1.0) / t26;
-    const ariane4_free_real_t t28 = ARIANE4_FREE_C(2656.3065671641784) * t27;
-    const ariane4_free_real_t t29 = t24 * t28;
-    const ariane4_free_real_t t30 = parameters[MX3R] - t13; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t31 = t2 * t30 - t1 * parameters[MY3R]; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.886) * t31; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t33 = parameters[ZZ2R] + (t15 + t32);
-    const ariane4_free_real_t t34 = t33 + parameters[IA2] * (t29 * t29);
+    const ariane4_free_real_t t26 = ARIANE4_FREE_C(1.0) / t25;
+    const ariane4_free_real_t t27 = ARIANE4_FREE_C(2656.3065671641784) * t26;
+    const ariane4_free_real_t t28 = t23 * t27;
+    const ariane4_free_real_t t29 = parameters[MX3R] - t13; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t30 = t2 * t29 - t1 * parameters[MY3R]; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t31 = ARIANE4_FREE_C(0.886) * t30; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t32 = parameters[ZZ2R] + (t15 + t31);
+    const ariane4_free_real_t t33 = t32 + parameters[IA2] * (t28 * t28);
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t35 = t9 * parameters[MY4] + t10 * parameters[MX4];
-    const ariane4_free_real_t t36 = t1 * t35;
-    const ariane4_free_real_t t37 = t17 + ARIANE4_FREE_C(0.443) * t36;
-    const ariane4_free_real_t t38 = t37 * t18;
+    const ariane4_free_real_t t34 = t9 * parameters[MY4] + t10 * parameters[MX4];
+    const ariane4_free_real_t t35 = t1 * t34;
+    const ariane4_free_real_t t36 = t17 + ARIANE4_FREE_C(0.443) * t35;
+    const ariane4_free_real_t t37 = t36 * t18;
     /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t39 = ARIANE4_FREE_C(-0.443) * t31 - t15;
-    const ariane4_free_real_t t40 = t39 + t37 * t19;
-    const ariane4_free_real_t t41 = ARIANE4_FREE_C(-1.0) / t20;
-    const ariane4_free_real_t t42 = t40 * t41;
-    const ariane4_free_real_t t43 = ariane4_free_bounded(t34 - t37 * t38 + t40 * t42);
-    if (!(t43 > ARIANE4_FREE_C(1.0e-12))) {
+    const ariane4_free_real_t t38 = ARIANE4_FREE_C(-0.443) * t30 - t15;
+    const ariane4_free_real_t t39 = t38 + t36 * t19;
+    const ariane4_free_real_t t40 = ARIANE4_FREE_C(-1.0) / t20;
+    const ariane4_free_real_t t41 = t39 * t40;
+    const ariane4_free_real_t t42 = t33 - t36 * t37 + t39 * t41;
+    if (!(t42 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
         ariane4_free_zero(ddq_by_dq, 16);
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t44 = t43 + ARIANE4_FREE_C(-1.0e-9) * t34;
-    if (!(t44 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
-    const ariane4_free_real_t t45 = parameters[ZZ4] + t14; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t46 = parameters[XX3R] + t12;
+    const ariane4_free_real_t t43 = parameters[ZZ4] + t14; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t44 = parameters[XX3R] + t12;
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t47 = t9 * parameters[XZ4R] - t10 * parameters[YZ4R];
-    const ariane4_free_real_t t48 = parameters[XY3R] + t47; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t45 = t9 * parameters[XZ4R] - t10 * parameters[YZ4R];
+    const ariane4_free_real_t t46 = parameters[XY3R] + t45; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t49 = t2 * (t45 - t46) + t48 * (ARIANE4_FREE_C(2.0) * t1);
-    const ariane4_free_real_t t50 = t2 * t49;
-    const ariane4_free_real_t t51 = t46 + t50 + t32;
-    const ariane4_free_real_t t52 = parameters[XX2R] + (t45 - t50);
-    const ariane4_free_real_t t53 = t2 * parameters[MY3R] + t1 * t30; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t47 = t2 * (t43 - t44) + t46 * (ARIANE4_FREE_C(2.0) * t1);
+    const ariane4_free_real_t t48 = t2 * t47;
+    const ariane4_free_real_t t49 = t44 + t48 + t31;
+    const ariane4_free_real_t t50 = parameters[XX2R] + (t43 - t48);
+    const ariane4_free_real_t t51 = t2 * parameters[MY3R] + t1 * t29; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t54 = parameters[XY2] + (t48 - t1 * t49 + ARIANE4_FREE_C(-0.443) * t53);
+    const ariane4_free_real_t t52 = parameters[XY2] + (t46 - t1 * t47 + ARIANE4_FREE_C(-0.443) * t51);
     /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t55 = t23 * (t23 * (t51 - t52) + t54 * (ARIANE4_FREE_C(2.0) * t22));
-    const ariane4_free_real_t t56 = parameters[MY2] + t53; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t57 = parameters[MX2R] + t31;
+    const ariane4_free_real_t t53 = t22 * (t22 * (t49 - t50) + t52 * (ARIANE4_FREE_C(2.0) * t21));
+    const ariane4_free_real_t t54 = parameters[MY2] + t51; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t55 = parameters[MX2R] + t30;
     /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t58 = t52 + t55 + ARIANE4_FREE_C(0.232) * (t23 * t57 - t22 * t56);
+    const ariane4_free_real_t t56 = t50 + t53 + ARIANE4_FREE_C(0.232) * (t22 * t55 - t21 * t54);
     /* joint j1: drive */
-    const ariane4_free_real_t t61 = ARIANE4_FREE_C(0.28217402066925895) * t59
-        + ARIANE4_FREE_C(-0.9593632378089879) * t60;
-    const ariane4_free_real_t t62 = ARIANE4_FREE_C(0.28217402066925895) * t60
-        + ARIANE4_FREE_C(0.9593632378089879) * t59;
-    const ariane4_free_real_t t63 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t62
+    const ariane4_free_real_t t59 = ARIANE4_FREE_C(0.28217402066925895) * t57
+        + ARIANE4_FREE_C(-0.9593632378089879) * t58;
+    const ariane4_free_real_t t60 = ARIANE4_FREE_C(0.28217402066925895) * t58
+        + ARIANE4_FREE_C(0.9593632378089879) * t57;
+    const ariane4_free_real_t t61 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t60
         + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t64 = ARIANE4_FREE_C(1.0) / t63;
-    const ariane4_free_real_t t65 = ARIANE4_FREE_C(3885.523436256565) * t64;
-    const ariane4_free_real_t t66 = t61 * t65;
-    const ariane4_free_real_t t67 = parameters[ZZ1R] + t58 + parameters[IA1] * (t66 * t66);
+    const ariane4_free_real_t t62 = ARIANE4_FREE_C(1.0) / t61;
+    const ariane4_free_real_t t63 = ARIANE4_FREE_C(3885.523436256565) * t62;
+    const ariane4_free_real_t t64 = t59 * t63;
+    const ariane4_free_real_t t65 = parameters[ZZ1R] + t56 + parameters[IA1] * (t64 * t64);
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t68 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t13;
-    const ariane4_free_real_t t69 = t2 * t47 - t1 * t68;
-    const ariane4_free_real_t t70 = t1 * t47 + t2 * t68 - ARIANE4_FREE_C(0.443) * t13;
-    const ariane4_free_real_t t71 = t22 * t69 + t23 * t70 - ARIANE4_FREE_C(0.116) * t13;
-    const ariane4_free_real_t t72 = t71 * t18;
+    const ariane4_free_real_t t66 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t13;
+    const ariane4_free_real_t t67 = t2 * t45 - t1 * t66;
+    const ariane4_free_real_t t68 = t1 * t45 + t2 * t66 - ARIANE4_FREE_C(0.443) * t13;
+    const ariane4_free_real_t t69 = t21 * t67 + t22 * t68 - ARIANE4_FREE_C(0.116) * t13;
+    const ariane4_free_real_t t70 = t69 * t18;
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t73 = parameters[XY4] + t10 * t11 + ARIANE4_FREE_C(0.1) * t35 - parameters[XZ3];
-    const ariane4_free_real_t t74 = parameters[YZ3] - t17;
-    const ariane4_free_real_t t75 = t2 * t73 + t1 * t74; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t76 = t1 * t73 - t2 * t74;
-    const ariane4_free_real_t t77 = t71 * t19 - (t22 * t75 + t23 * t76);
-    const ariane4_free_real_t t78 = t77 * t41;
+    const ariane4_free_real_t t71 = parameters[XY4] + t10 * t11 + ARIANE4_FREE_C(0.1) * t34 - parameters[XZ3];
+    const ariane4_free_real_t t72 = parameters[YZ3] - t17;
+    const ariane4_free_real_t t73 = t2 * t71 + t1 * t72; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t74 = t1 * t71 - t2 * t72;
+    const ariane4_free_real_t t75 = t69 * t19 - (t21 * t73 + t22 * t74);
+    const ariane4_free_real_t t76 = t75 * t40;
     /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t79 = t75 + ARIANE4_FREE_C(-0.443) * t35 - parameters[XZ2R];
-    const ariane4_free_real_t t80 = t76 - parameters[YZ2];
-    const ariane4_free_real_t t81 = t77 * t42 - (t71 * t38 - (t22 * t79 + t23 * t80));
-    const ariane4_free_real_t t82 = ARIANE4_FREE_C(1.0) / t43;
-    const ariane4_free_real_t t83 = t81 * t82;
-    const ariane4_free_real_t t84 = ariane4_free_bounded(t67 - t71 * t72 + t77 * t78 - t81 * t83);
+    const ariane4_free_real_t t77 = t73 + ARIANE4_FREE_C(-0.443) * t34 - parameters[XZ2R];
+    const ariane4_free_real_t t78 = t74 - parameters[YZ2];
+    const ariane4_free_real_t t79 = t75 * t41 - (t69 * t37 - (t21 * t77 + t22 * t78));
+    const ariane4_free_real_t t80 = ARIANE4_FREE_C(1.0) / t42;
+    const ariane4_free_real_t t81 = t79 * t80;
+    const ariane4_free_real_t t82 = t65 - t69 * t70 + t75 * t76 - t79 * t81;
+    if (!(t82 > ARIANE4_FREE_C(1.0e-12))) {
+        ariane4_free_zero(ddq, 4);
+        ariane4_free_zero(ddq_by_q, 16);
+        ariane4_free_zero(ddq_by_dq, 16);
+        ariane4_free_zero(ddq_by_input, 16);
+        return ARIANE4_FREE_STATUS_PIVOT;
+    }
+    const ariane4_free_real_t t83 = ariane4_free_min(t20 + ARIANE4_FREE_C(-1.0e-9) * t16, t42
+        + ARIANE4_FREE_C(-1.0e-9) * t33);
+    const ariane4_free_real_t t84 = ariane4_free_min(t83, t82 + ARIANE4_FREE_C(-1.0e-9) * t65);
     if (!(t84 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -255,665 +248,661 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t85 = t84 + ARIANE4_FREE_C(-1.0e-9) * t67;
-    if (!(t85 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
-    const ariane4_free_real_t t86 = t22 * dq[0]; /* link j2: motion */
-    const ariane4_free_real_t t87 = t23 * dq[0];
-    const ariane4_free_real_t t88 = t2 * t86 + t1 * t87; /* link j3: motion */
-    const ariane4_free_real_t t89 = t2 * t87 - t1 * t86;
-    const ariane4_free_real_t t90 = t88 * t89;
-    const ariane4_free_real_t t91 = dq[1] + dq[2];
-    const ariane4_free_real_t t92 = t89 * t91;
-    const ariane4_free_real_t t93 = ARIANE4_FREE_C(2.0) * t92; /* link j4: motion */
-    const ariane4_free_real_t t94 = t10 * t90 + t9 * t93;
-    const ariane4_free_real_t t95 = t9 * t91;
-    const ariane4_free_real_t t96 = t10 * t88 + t95;
-    const ariane4_free_real_t t97 = dq[3] + t89;
-    const ariane4_free_real_t t98 = t96 * t97;
-    const ariane4_free_real_t t99 = t94 - t98;
-    const ariane4_free_real_t t100 = t10 * t93 - t9 * t90;
-    const ariane4_free_real_t t101 = t10 * t91;
-    const ariane4_free_real_t t102 = t9 * t88 - t101;
-    const ariane4_free_real_t t103 = t102 * t97;
-    const ariane4_free_real_t t104 = t103 + (t100 + t103); /* link j4: force and moment */
-    const ariane4_free_real_t t105 = t102 * t96; /* link j4: motion */
-    const ariane4_free_real_t t106 = t88 * t91; /* link j3: motion */
-    const ariane4_free_real_t t107 = t106 + t105; /* link j4: force and moment */
-    const ariane4_free_real_t t108 = parameters[ZZ4] * t98 - parameters[XX4R] * t99 + parameters[XY4] * t104
-        + parameters[XZ4R] * t107;
-    const ariane4_free_real_t t109 = t96 * t96; /* link j4: motion */
-    const ariane4_free_real_t t110 = t97 * t97;
-    const ariane4_free_real_t t111 = dq[0] * dq[0];
-    const ariane4_free_real_t t112 = ARIANE4_FREE_C(0.116) * t111; /* link j2: motion */
-    const ariane4_free_real_t t113 = t23 * t112 - ARIANE4_FREE_C(9.81) * t22;
-    const ariane4_free_real_t t114 = t87 * t87;
-    const ariane4_free_real_t t115 = dq[1] * dq[1];
-    const ariane4_free_real_t t116 = ARIANE4_FREE_C(-0.443) * (t115 + t114) - t113; /* link j3: motion */
-    const ariane4_free_real_t t117 = t1 * t116;
-    const ariane4_free_real_t t118 = t22 * t112 + ARIANE4_FREE_C(9.81) * t23; /* link j2: motion */
-    const ariane4_free_real_t t119 = t86 * t87;
-    const ariane4_free_real_t t120 = ARIANE4_FREE_C(-0.443) * t119 - t118; /* link j3: motion */
-    const ariane4_free_real_t t121 = t117 + t2 * t120;
-    const ariane4_free_real_t t122 = t121 + ARIANE4_FREE_C(0.1) * t90; /* link j4: motion */
+    const ariane4_free_real_t t85 = t21 * dq[0]; /* link j2: motion */
+    const ariane4_free_real_t t86 = t22 * dq[0];
+    const ariane4_free_real_t t87 = t2 * t85 + t1 * t86; /* link j3: motion */
+    const ariane4_free_real_t t88 = t2 * t86 - t1 * t85;
+    const ariane4_free_real_t t89 = t87 * t88;
+    const ariane4_free_real_t t90 = dq[1] + dq[2];
+    const ariane4_free_real_t t91 = t88 * t90;
+    const ariane4_free_real_t t92 = ARIANE4_FREE_C(2.0) * t91; /* link j4: motion */
+    const ariane4_free_real_t t93 = t10 * t89 + t9 * t92;
+    const ariane4_free_real_t t94 = t9 * t90;
+    const ariane4_free_real_t t95 = t10 * t87 + t94;
+    const ariane4_free_real_t t96 = dq[3] + t88;
+    const ariane4_free_real_t t97 = t95 * t96;
+    const ariane4_free_real_t t98 = t93 - t97;
+    const ariane4_free_real_t t99 = t10 * t92 - t9 * t89;
+    const ariane4_free_real_t t100 = t10 * t90;
+    const ariane4_free_real_t t101 = t9 * t87 - t100;
+    const ariane4_free_real_t t102 = t101 * t96;
+    const ariane4_free_real_t t103 = t102 + (t99 + t102); /* link j4: force and moment */
+    const ariane4_free_real_t t104 = t101 * t95; /* link j4: motion */
+    const ariane4_free_real_t t105 = t87 * t90; /* link j3: motion */
+    const ariane4_free_real_t t106 = t105 + t104; /* link j4: force and moment */
+    const ariane4_free_real_t t107 = parameters[ZZ4] * t97 - parameters[XX4R] * t98 + parameters[XY4] * t103
+        + parameters[XZ4R] * t106;
+    const ariane4_free_real_t t108 = t95 * t95; /* link j4: motion */
+    const ariane4_free_real_t t109 = t96 * t96;
+    const ariane4_free_real_t t110 = dq[0] * dq[0];
+    const ariane4_free_real_t t111 = ARIANE4_FREE_C(0.116) * t110; /* link j2: motion */
+    const ariane4_free_real_t t112 = t22 * t111 - ARIANE4_FREE_C(9.81) * t21;
+    const ariane4_free_real_t t113 = t86 * t86;
+    const ariane4_free_real_t t114 = dq[1] * dq[1];
+    const ariane4_free_real_t t115 = ARIANE4_FREE_C(-0.443) * (t114 + t113) - t112; /* link j3: motion */
+    const ariane4_free_real_t t116 = t1 * t115;
+    const ariane4_free_real_t t117 = t21 * t111 + ARIANE4_FREE_C(9.81) * t22; /* link j2: motion */
+    const ariane4_free_real_t t118 = t85 * t86;
+    const ariane4_free_real_t t119 = ARIANE4_FREE_C(-0.443) * t118 - t117; /* link j3: motion */
+    const ariane4_free_real_t t120 = t116 + t2 * t119;
+    const ariane4_free_real_t t121 = t120 + ARIANE4_FREE_C(0.1) * t89; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane4_free_real_t t123 = t108 + parameters[YZ4R] * (t110 - t109) + parameters[MY4] * t122;
-    const ariane4_free_real_t t124 = t99 - t98;
-    const ariane4_free_real_t t125 = parameters[XX4R] - parameters[ZZ4];
-    const ariane4_free_real_t t126 = t105 - t106;
-    const ariane4_free_real_t t127 = t102 * t102; /* link j4: motion */
+    const ariane4_free_real_t t122 = t107 + parameters[YZ4R] * (t109 - t108) + parameters[MY4] * t121;
+    const ariane4_free_real_t t123 = t98 - t97;
+    const ariane4_free_real_t t124 = parameters[XX4R] - parameters[ZZ4];
+    const ariane4_free_real_t t125 = t104 - t105;
+    const ariane4_free_real_t t126 = t101 * t101; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane4_free_real_t t128 = t103 * t125 + parameters[XY4] * t124 + parameters[YZ4R] * t126
-        + parameters[XZ4R] * (t110 - t127);
-    const ariane4_free_real_t t129 = t128 + parameters[MX4] * t122;
-    const ariane4_free_real_t t130 = ARIANE4_FREE_C(2.0) * t106; /* link j4: motion */
+    const ariane4_free_real_t t127 = t102 * t124 + parameters[XY4] * t123 + parameters[YZ4R] * t125
+        + parameters[XZ4R] * (t109 - t126);
+    const ariane4_free_real_t t128 = t127 + parameters[MX4] * t121;
+    const ariane4_free_real_t t129 = ARIANE4_FREE_C(2.0) * t105; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane4_free_real_t t131 = parameters[XY3R] * t130 - (parameters[XX3R] * t92
-        + parameters[ZZ3R] * t92) - parameters[XZ3] * t90;
-    const ariane4_free_real_t t132 = t89 * t89; /* link j3: motion */
-    const ariane4_free_real_t t133 = t91 * t91;
-    const ariane4_free_real_t t134 = dq[1] * t86; /* link j2: motion */
-    const ariane4_free_real_t t135 = ARIANE4_FREE_C(-0.886) * t134; /* link j3: motion */
+    const ariane4_free_real_t t130 = parameters[XY3R] * t129 - (parameters[XX3R] * t91
+        + parameters[ZZ3R] * t91) - parameters[XZ3] * t89;
+    const ariane4_free_real_t t131 = t88 * t88; /* link j3: motion */
+    const ariane4_free_real_t t132 = t90 * t90;
+    const ariane4_free_real_t t133 = dq[1] * t85; /* link j2: motion */
+    const ariane4_free_real_t t134 = ARIANE4_FREE_C(-0.886) * t133; /* link j3: motion */
     /* link j4: what it passes on */
-    const ariane4_free_real_t t136 = t131 + parameters[YZ3] * (t133 - t132) + parameters[MY3R] * t135
-        + (t9 * t123 + t10 * t129);
+    const ariane4_free_real_t t135 = t130 + parameters[YZ3] * (t132 - t131) + parameters[MY3R] * t134
+        + (t9 * t122 + t10 * t128);
     /* link j4: force and moment */
-    const ariane4_free_real_t t137 = parameters[ZZ4] * t106 - parameters[XX4R] * t105
-        + parameters[YZ4R] * t100 - parameters[XZ4R] * t94;
-    const ariane4_free_real_t t138 = t2 * t116; /* link j3: motion */
-    const ariane4_free_real_t t139 = t1 * t120 - t138;
-    const ariane4_free_real_t t140 = t132 + t133; /* link j4: motion */
-    const ariane4_free_real_t t141 = t139 - ARIANE4_FREE_C(0.1) * t140;
-    const ariane4_free_real_t t142 = t135 + ARIANE4_FREE_C(0.2) * t106;
+    const ariane4_free_real_t t136 = parameters[ZZ4] * t105 - parameters[XX4R] * t104 + parameters[YZ4R] * t99
+        - parameters[XZ4R] * t93;
+    const ariane4_free_real_t t137 = t2 * t115; /* link j3: motion */
+    const ariane4_free_real_t t138 = t1 * t119 - t137;
+    const ariane4_free_real_t t139 = t131 + t132; /* link j4: motion */
+    const ariane4_free_real_t t140 = t138 - ARIANE4_FREE_C(0.1) * t139;
+    const ariane4_free_real_t t141 = t134 + ARIANE4_FREE_C(0.2) * t105;
     /* link j4: force and moment */
-    const ariane4_free_real_t t143 = parameters[MX4] * (t10 * t141 + t9 * t142) + parameters[MY4] * (t9 * t141
-        - t10 * t142);
-    const ariane4_free_real_t t144 = t137 - parameters[XY4] * (t127 - t109) - t143;
-    const ariane4_free_real_t t145 = parameters[MX4] * (t109 + t110) + parameters[MY4] * t126;
-    const ariane4_free_real_t t146 = parameters[MX4] * t107 + parameters[MY4] * (t127 + t110);
-    const ariane4_free_real_t t147 = t10 * t145 + t9 * t146; /* link j4: what it passes on */
-    const ariane4_free_real_t t148 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
-    const ariane4_free_real_t t149 = t88 * t88; /* link j3: motion */
+    const ariane4_free_real_t t142 = parameters[MX4] * (t10 * t140 + t9 * t141) + parameters[MY4] * (t9 * t140
+        - t10 * t141);
+    const ariane4_free_real_t t143 = t136 - parameters[XY4] * (t126 - t108) - t142;
+    const ariane4_free_real_t t144 = parameters[MX4] * (t108 + t109) + parameters[MY4] * t125;
+    const ariane4_free_real_t t145 = parameters[MX4] * t106 + parameters[MY4] * (t126 + t109);
+    const ariane4_free_real_t t146 = t10 * t144 + t9 * t145; /* link j4: what it passes on */
+    const ariane4_free_real_t t147 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
+    const ariane4_free_real_t t148 = t87 * t87; /* link j3: motion */
     /* link j3: force and moment */
-    const ariane4_free_real_t t150 = parameters[XY3R] * t93 - t106 * t148 - parameters[YZ3] * t90
-        - parameters[XZ3] * (t149 - t133);
+    const ariane4_free_real_t t149 = parameters[XY3R] * t92 - t105 * t147 - parameters[YZ3] * t89
+        - parameters[XZ3] * (t148 - t132);
     /* link j4: what it passes on */
-    const ariane4_free_real_t t151 = t150 + parameters[MX3R] * t135 - (t144 - ARIANE4_FREE_C(0.1) * t147);
-    const ariane4_free_real_t t152 = dq[1] * t87; /* link j2: motion */
-    const ariane4_free_real_t t153 = parameters[ZZ2R] * t152; /* link j2: force and moment */
-    const ariane4_free_real_t t154 = ARIANE4_FREE_C(2.0) * t134; /* link j2: motion */
+    const ariane4_free_real_t t150 = t149 + parameters[MX3R] * t134 - (t143 - ARIANE4_FREE_C(0.1) * t146);
+    const ariane4_free_real_t t151 = dq[1] * t86; /* link j2: motion */
+    const ariane4_free_real_t t152 = parameters[ZZ2R] * t151; /* link j2: force and moment */
+    const ariane4_free_real_t t153 = ARIANE4_FREE_C(2.0) * t133; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_free_real_t t155 = parameters[XY2] * t154 - (parameters[XX2R] * t152 + t153)
-        - parameters[XZ2R] * t119;
-    const ariane4_free_real_t t156 = parameters[YZ2] * (t115 - t114);
+    const ariane4_free_real_t t154 = parameters[XY2] * t153 - (parameters[XX2R] * t151 + t152)
+        - parameters[XZ2R] * t118;
+    const ariane4_free_real_t t155 = parameters[YZ2] * (t114 - t113);
     /* link j2: what it passes on */
-    const ariane4_free_real_t t157 = t22 * (t155 + t156 + (t2 * t136 + t1 * t151));
+    const ariane4_free_real_t t156 = t21 * (t154 + t155 + (t2 * t135 + t1 * t150));
     /* link j4: what it passes on */
-    const ariane4_free_real_t t158 = parameters[MX3R] * t130 + parameters[MY3R] * t93 + t147;
+    const ariane4_free_real_t t157 = parameters[MX3R] * t129 + parameters[MY3R] * t92 + t146;
     /* link j2: force and moment */
-    const ariane4_free_real_t t159 = t134 * (parameters[ZZ2R] - parameters[XX2R]);
-    const ariane4_free_real_t t160 = ARIANE4_FREE_C(2.0) * t152; /* link j2: motion */
-    const ariane4_free_real_t t161 = t86 * t86;
-    const ariane4_free_real_t t162 = parameters[XZ2R] * (t161 - t115); /* link j2: force and moment */
+    const ariane4_free_real_t t158 = t133 * (parameters[ZZ2R] - parameters[XX2R]);
+    const ariane4_free_real_t t159 = ARIANE4_FREE_C(2.0) * t151; /* link j2: motion */
+    const ariane4_free_real_t t160 = t85 * t85;
+    const ariane4_free_real_t t161 = parameters[XZ2R] * (t160 - t114); /* link j2: force and moment */
     /* link j3: what it passes on */
-    const ariane4_free_real_t t163 = t159 - parameters[XY2] * t160 + parameters[YZ2] * t119 + t162
-        + (t1 * t136 - t2 * t151 + ARIANE4_FREE_C(0.443) * t158);
+    const ariane4_free_real_t t162 = t158 - parameters[XY2] * t159 + parameters[YZ2] * t118 + t161
+        + (t1 * t135 - t2 * t150 + ARIANE4_FREE_C(0.443) * t157);
     /* link j2: what it passes on */
-    const ariane4_free_real_t t164 = t157 + t23 * t163 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t154
-        + parameters[MY2] * t160 + t158);
-    const ariane4_free_real_t t165 = t66 * dq[0];
-    const ariane4_free_real_t t166 = ariane4_free_sign(t165); /* joint j1: coulomb_friction */
-    const ariane4_free_real_t t167 = ARIANE4_FREE_C(72.7913960548305) * (t64 * t64); /* joint j1: drive */
-    const ariane4_free_real_t t168 = t61 * t61;
-    const ariane4_free_real_t t169 = ARIANE4_FREE_C(3885.523436256565) * t62 + t167 * t168;
-    const ariane4_free_real_t t170 = t64 * t169;
-    const ariane4_free_real_t t171 = parameters[FV1] * t165 + parameters[FC1] * t166
-        + parameters[IA1] * (t170 * t111);
-    const ariane4_free_real_t t172 = ARIANE4_FREE_C(0.004) * t66;
-    const ariane4_free_real_t t173 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ariane4_free_real_t t163 = t156 + t22 * t162 + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t153
+        + parameters[MY2] * t159 + t157);
+    const ariane4_free_real_t t164 = t64 * dq[0];
+    const ariane4_free_real_t t165 = ariane4_free_sign(t164); /* joint j1: coulomb_friction */
+    const ariane4_free_real_t t166 = ARIANE4_FREE_C(72.7913960548305) * (t62 * t62); /* joint j1: drive */
+    const ariane4_free_real_t t167 = t59 * t59;
+    const ariane4_free_real_t t168 = ARIANE4_FREE_C(3885.523436256565) * t60 + t166 * t167;
+    const ariane4_free_real_t t169 = t62 * t168;
+    const ariane4_free_real_t t170 = parameters[FV1] * t164 + parameters[FC1] * t165
+        + parameters[IA1] * (t169 * t110);
+    const ariane4_free_real_t t171 = ARIANE4_FREE_C(0.004) * t64;
+    const ariane4_free_real_t t172 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
     const ariane4_free_real_t
-        t174 = ARIANE4_FREE_C(1.0e2) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
-        + parameters[FC4] * t173) - t144;
-    const ariane4_free_real_t t175 = ARIANE4_FREE_C(5.0) * input[3] - t174;
-    const ariane4_free_real_t t176 = t164 - t66 * t171 - input[0] * t172 - t175 * t72;
+        t173 = ARIANE4_FREE_C(1.0e2) * (parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
+        + parameters[FC4] * t172) - t143;
+    const ariane4_free_real_t t174 = ARIANE4_FREE_C(5.0) * input[3] - t173;
+    const ariane4_free_real_t t175 = t163 - t64 * t170 - input[0] * t171 - t174 * t70;
     /* link j4: force and moment */
-    const ariane4_free_real_t t177 = parameters[MX4] * t104 + parameters[MY4] * t124;
+    const ariane4_free_real_t t176 = parameters[MX4] * t103 + parameters[MY4] * t123;
     /* link j3: force and moment */
-    const ariane4_free_real_t t178 = parameters[XY3R] * (t149 - t132) - parameters[XX3R] * t90
-        + (parameters[MY3R] * t139 - parameters[MX3R] * t121);
+    const ariane4_free_real_t t177 = parameters[XY3R] * (t148 - t131) - parameters[XX3R] * t89
+        + (parameters[MY3R] * t138 - parameters[MX3R] * t120);
     /* link j4: what it passes on */
-    const ariane4_free_real_t t179 = t178 + (t10 * t123 - t9 * t129 - ARIANE4_FREE_C(0.1) * t177);
-    const ariane4_free_real_t t180 = t8 * dq[2];
-    const ariane4_free_real_t t181 = ariane4_free_sign(t180); /* joint j3: coulomb_friction */
-    const ariane4_free_real_t t182 = ARIANE4_FREE_C(188.12627071923498) * (t6 * t6); /* joint j3: drive */
-    const ariane4_free_real_t t183 = t3 * t3;
-    const ariane4_free_real_t t184 = ARIANE4_FREE_C(7124.375926654358) * t4 + t182 * t183;
-    const ariane4_free_real_t t185 = t6 * t184;
-    const ariane4_free_real_t t186 = dq[2] * dq[2];
-    const ariane4_free_real_t t187 = parameters[FV3] * t180 + parameters[FC3] * t181
-        + parameters[IA3] * (t185 * t186);
-    const ariane4_free_real_t t188 = ARIANE4_FREE_C(0.003) * t8;
-    const ariane4_free_real_t t189 = input[2] * t188 + (t8 * t187 + t179) - t175 * t19;
+    const ariane4_free_real_t t178 = t177 + (t10 * t122 - t9 * t128 - ARIANE4_FREE_C(0.1) * t176);
+    const ariane4_free_real_t t179 = t8 * dq[2];
+    const ariane4_free_real_t t180 = ariane4_free_sign(t179); /* joint j3: coulomb_friction */
+    const ariane4_free_real_t t181 = ARIANE4_FREE_C(188.12627071923498) * (t6 * t6); /* joint j3: drive */
+    const ariane4_free_real_t t182 = t3 * t3;
+    const ariane4_free_real_t t183 = ARIANE4_FREE_C(7124.375926654358) * t4 + t181 * t182;
+    const ariane4_free_real_t t184 = t6 * t183;
+    const ariane4_free_real_t t185 = dq[2] * dq[2];
+    const ariane4_free_real_t t186 = parameters[FV3] * t179 + parameters[FC3] * t180
+        + parameters[IA3] * (t184 * t185);
+    const ariane4_free_real_t t187 = ARIANE4_FREE_C(0.003) * t8;
+    const ariane4_free_real_t t188 = input[2] * t187 + (t8 * t186 + t178) - t174 * t19;
     /* link j4: what it passes on */
-    const ariane4_free_real_t t190 = parameters[MX3R] * t140 - parameters[MY3R] * t90 + (t9 * t145
-        - t10 * t146);
+    const ariane4_free_real_t t189 = parameters[MX3R] * t139 - parameters[MY3R] * t89 + (t9 * t144
+        - t10 * t145);
     /* link j3: what it passes on */
-    const ariane4_free_real_t t191 = t2 * (parameters[MY3R] * (t149 + t133) - parameters[MX3R] * t90 - t177);
-    const ariane4_free_real_t t192 = parameters[XY2] * (t161 - t114); /* link j2: force and moment */
-    const ariane4_free_real_t t193 = parameters[XX2R] * t119;
-    const ariane4_free_real_t t194 = parameters[MX2R] * t118 + parameters[MY2] * t113;
+    const ariane4_free_real_t t190 = t2 * (parameters[MY3R] * (t148 + t132) - parameters[MX3R] * t89 - t176);
+    const ariane4_free_real_t t191 = parameters[XY2] * (t160 - t113); /* link j2: force and moment */
+    const ariane4_free_real_t t192 = parameters[XX2R] * t118;
+    const ariane4_free_real_t t193 = parameters[MX2R] * t117 + parameters[MY2] * t112;
     /* link j3: what it passes on */
-    const ariane4_free_real_t t195 = t193 - t192 - t194 - (t179 - ARIANE4_FREE_C(0.443) * (t1 * t190 + t191));
-    const ariane4_free_real_t t196 = t29 * dq[1];
-    const ariane4_free_real_t t197 = ariane4_free_sign(t196); /* joint j2: coulomb_friction */
-    const ariane4_free_real_t t198 = ARIANE4_FREE_C(104.12987373940295) * (t27 * t27); /* joint j2: drive */
-    const ariane4_free_real_t t199 = t24 * t24;
-    const ariane4_free_real_t t200 = ARIANE4_FREE_C(-2656.3065671641784) * t25 - t198 * t199;
-    const ariane4_free_real_t t201 = t27 * t200;
-    const ariane4_free_real_t t202 = parameters[FV2] * t196 + parameters[FC2] * t197
-        + parameters[IA2] * (t201 * t115);
-    const ariane4_free_real_t t203 = ARIANE4_FREE_C(0.012) * t29;
-    const ariane4_free_real_t t204 = input[1] * t203 - (t29 * t202 - t195) + t175 * t38;
-    const ariane4_free_real_t t205 = t204 + t189 * t42;
-    const ariane4_free_real_t t206 = ARIANE4_FREE_C(-1.0) / t84;
-    const ariane4_free_real_t t207 = (t176 - t189 * t78 + t205 * t83) * t206;
-    ddq[0] = -t207;
-    const ariane4_free_real_t t208 = ariane4_free_bounded(t205 * t82 - t83 * t207);
-    ddq[1] = t208;
-    const ariane4_free_real_t t209 = ariane4_free_bounded(t189 * t41 - t78 * t207 - t42 * t208);
-    ddq[2] = t209;
-    const ariane4_free_real_t t210 = ariane4_free_bounded(t175 * t18 + t72 * t207 + t38 * t208 + t19 * t209);
-    ddq[3] = t210;
-    const ariane4_free_real_t t211 = t22 * t1 - t23 * t2; /* link j3: motion */
-    const ariane4_free_real_t t212 = t207 * t211;
-    const ariane4_free_real_t t213 = t22 * t2 + t23 * t1;
-    const ariane4_free_real_t t214 = dq[0] * t213;
-    const ariane4_free_real_t t215 = t91 * t214;
-    const ariane4_free_real_t t216 = t215 - t212;
-    const ariane4_free_real_t t217 = t216 - t210;
-    const ariane4_free_real_t t218 = t9 * t214 - t101; /* link j4: motion */
-    const ariane4_free_real_t t219 = t95 + t10 * t214;
-    const ariane4_free_real_t t220 = t218 * t219;
-    const ariane4_free_real_t t221 = t208 + t209;
-    const ariane4_free_real_t t222 = dq[0] * t211; /* link j3: motion */
-    const ariane4_free_real_t t223 = t214 * t222;
+    const ariane4_free_real_t t194 = t192 - t191 - t193 - (t178 - ARIANE4_FREE_C(0.443) * (t1 * t189 + t190));
+    const ariane4_free_real_t t195 = t28 * dq[1];
+    const ariane4_free_real_t t196 = ariane4_free_sign(t195); /* joint j2: coulomb_friction */
+    const ariane4_free_real_t t197 = ARIANE4_FREE_C(104.12987373940295) * (t26 * t26); /* joint j2: drive */
+    const ariane4_free_real_t t198 = t23 * t23;
+    const ariane4_free_real_t t199 = ARIANE4_FREE_C(-2656.3065671641784) * t24 - t197 * t198;
+    const ariane4_free_real_t t200 = t26 * t199;
+    const ariane4_free_real_t t201 = parameters[FV2] * t195 + parameters[FC2] * t196
+        + parameters[IA2] * (t200 * t114);
+    const ariane4_free_real_t t202 = ARIANE4_FREE_C(0.012) * t28;
+    const ariane4_free_real_t t203 = input[1] * t202 - (t28 * t201 - t194) + t174 * t37;
+    const ariane4_free_real_t t204 = t203 + t188 * t41;
+    const ariane4_free_real_t t205 = ARIANE4_FREE_C(-1.0) / t82;
+    const ariane4_free_real_t t206 = (t175 - t188 * t76 + t204 * t81) * t205;
+    ddq[0] = -t206;
+    const ariane4_free_real_t t207 = ariane4_free_held(t204 * t80 - t81 * t206);
+    ddq[1] = t207;
+    const ariane4_free_real_t t208 = ariane4_free_held(t188 * t40 - t76 * t206 - t41 * t207);
+    ddq[2] = t208;
+    const ariane4_free_real_t t209 = ariane4_free_held(t174 * t18 + t70 * t206 + t37 * t207 + t19 * t208);
+    ddq[3] = t209;
+    const ariane4_free_real_t t210 = t21 * t1 - t22 * t2; /* link j3: motion */
+    const ariane4_free_real_t t211 = t206 * t210;
+    const ariane4_free_real_t t212 = t21 * t2 + t22 * t1;
+    const ariane4_free_real_t t213 = dq[0] * t212;
+    const ariane4_free_real_t t214 = t90 * t213;
+    const ariane4_free_real_t t215 = t214 - t211;
+    const ariane4_free_real_t t216 = t215 - t209;
+    const ariane4_free_real_t t217 = t9 * t213 - t100; /* link j4: motion */
+    const ariane4_free_real_t t218 = t94 + t10 * t213;
+    const ariane4_free_real_t t219 = t217 * t218;
+    const ariane4_free_real_t t220 = t216 - t219;
+    const ariane4_free_real_t t221 = t207 + t208;
+    const ariane4_free_real_t t222 = dq[0] * t210; /* link j3: motion */
+    const ariane4_free_real_t t223 = t213 * t222;
     const ariane4_free_real_t t224 = t223 + t221;
-    const ariane4_free_real_t t225 = t207 * t213;
-    const ariane4_free_real_t t226 = t91 * t222;
+    const ariane4_free_real_t t225 = t206 * t212;
+    const ariane4_free_real_t t226 = t90 * t222;
     const ariane4_free_real_t t227 = t226 + t225;
     const ariane4_free_real_t t228 = t226 + t227;
-    const ariane4_free_real_t t229 = t9 * t224 - t10 * t228;
-    const ariane4_free_real_t t230 = t10 * t224 + t9 * t228;
-    const ariane4_free_real_t t231 = parameters[ZZ4] * t217 - parameters[XX4R] * t220
-        + parameters[YZ4R] * t229 + parameters[XZ4R] * t230;
-    const ariane4_free_real_t t232 = t218 * t218; /* link j4: motion */
-    const ariane4_free_real_t t233 = t219 * t219;
-    const ariane4_free_real_t t234 = ARIANE4_FREE_C(0.116) * t207;
-    const ariane4_free_real_t t235 = t23 * t207;
-    const ariane4_free_real_t t236 = t134 + (t134 + t235);
-    const ariane4_free_real_t t237 = ARIANE4_FREE_C(-0.443) * t236 - t234;
-    const ariane4_free_real_t t238 = t215 + t216;
-    const ariane4_free_real_t t239 = t237 + ARIANE4_FREE_C(0.1) * t238;
-    const ariane4_free_real_t t240 = t119 + t208;
-    const ariane4_free_real_t t241 = t118 + ARIANE4_FREE_C(0.443) * t240;
-    const ariane4_free_real_t t242 = t138 + t1 * t241;
-    const ariane4_free_real_t t243 = t222 * t222; /* link j3: motion */
-    const ariane4_free_real_t t244 = t133 + t243; /* link j4: motion */
-    const ariane4_free_real_t t245 = ARIANE4_FREE_C(0.1) * t244 + t242;
-    const ariane4_free_real_t t246 = t10 * t245 - t9 * t239;
-    const ariane4_free_real_t t247 = t9 * t245 + t10 * t239;
-    const ariane4_free_real_t t248 = parameters[XY4] * (t233 - t232) + t231 + (parameters[MX4] * t246
-        + parameters[MY4] * t247);
-    const ariane4_free_real_t t249 = t217 - t220;
-    const ariane4_free_real_t t250 = dq[3] - t222;
-    const ariane4_free_real_t t251 = t250 * t250;
-    const ariane4_free_real_t t252 = parameters[MY4] * t249 - parameters[MX4] * (t233 + t251);
-    const ariane4_free_real_t t253 = t220 + t217;
-    const ariane4_free_real_t t254 = parameters[MY4] * (t232 + t251) + parameters[MX4] * t253;
-    const ariane4_free_real_t t255 = t9 * t254 - t10 * t252;
-    const ariane4_free_real_t t256 = t214 * t214; /* link j3: motion */
-    const ariane4_free_real_t t257 = parameters[XZ3] * (t256 - t133) + (t148 * t215 + parameters[XY3R] * t228
+    const ariane4_free_real_t t229 = t10 * t224 + t9 * t228;
+    const ariane4_free_real_t t230 = dq[3] - t222; /* link j4: motion */
+    const ariane4_free_real_t t231 = t218 * t230;
+    const ariane4_free_real_t t232 = t231 + t229;
+    const ariane4_free_real_t t233 = t231 + t232;
+    const ariane4_free_real_t t234 = t217 * t230;
+    const ariane4_free_real_t t235 = t217 * t217;
+    const ariane4_free_real_t t236 = t230 * t230;
+    const ariane4_free_real_t t237 = parameters[XZ4R] * (t235 - t236) + (parameters[XY4] * t233 - t124 * t234
+        + parameters[YZ4R] * t220);
+    const ariane4_free_real_t t238 = t223 - t221;
+    const ariane4_free_real_t t239 = t118 + t207;
+    const ariane4_free_real_t t240 = t117 + ARIANE4_FREE_C(0.443) * t239;
+    const ariane4_free_real_t t241 = t2 * t240 - t116;
+    const ariane4_free_real_t t242 = t241 + ARIANE4_FREE_C(0.1) * t238;
+    const ariane4_free_real_t t243 = t237 + parameters[MX4] * t242;
+    const ariane4_free_real_t t244 = t9 * t224 - t10 * t228;
+    const ariane4_free_real_t t245 = t218 * t218;
+    const ariane4_free_real_t t246 = t235 + t245; /* link j4: force and moment */
+    const ariane4_free_real_t t247 = parameters[XZ4R] * t218;
+    const ariane4_free_real_t t248 = parameters[XY4] * t230;
+    const ariane4_free_real_t t249 = t247 + t248;
+    const ariane4_free_real_t t250 = ARIANE4_FREE_C(2.0) * t218;
+    const ariane4_free_real_t t251 = ARIANE4_FREE_C(-0.5) * (parameters[XX4R] + parameters[ZZ4]);
+    const ariane4_free_real_t t252 = parameters[YZ4R] * t218 + t230 * t251;
+    const ariane4_free_real_t t253 = ARIANE4_FREE_C(2.0) * t217;
+    const ariane4_free_real_t t254 = t250 * t249 + t253 * t252 + (parameters[XY4] * t229
+        - parameters[XX4R] * t244 - parameters[XZ4R] * t246);
+    const ariane4_free_real_t t255 = t243 + t254;
+    const ariane4_free_real_t t256 = t234 + (t234 + t244);
+    const ariane4_free_real_t t257 = t219 + t216;
+    const ariane4_free_real_t t258 = parameters[ZZ4] * t231 + parameters[XX4R] * t232 + parameters[XY4] * t256
+        + parameters[XZ4R] * t257;
+    const ariane4_free_real_t t259 = parameters[YZ4R] * (t236 - t245) + t258 - parameters[MY4] * t242;
+    const ariane4_free_real_t t260 = parameters[XX4R] + t251;
+    const ariane4_free_real_t t261 = t230 * t260 - parameters[XZ4R] * t217;
+    const ariane4_free_real_t t262 = parameters[YZ4R] * t217;
+    const ariane4_free_real_t t263 = t248 - t262;
+    const ariane4_free_real_t t264 = t250 * t261 + t253 * t263 + (parameters[YZ4R] * t246
+        + parameters[XY4] * t244);
+    const ariane4_free_real_t t265 = t259 + t264;
+    const ariane4_free_real_t t266 = t9 * t255 + t10 * t265;
+    const ariane4_free_real_t t267 = ARIANE4_FREE_C(0.116) * t206;
+    const ariane4_free_real_t t268 = t22 * t206;
+    const ariane4_free_real_t t269 = t133 + (t133 + t268);
+    const ariane4_free_real_t t270 = ARIANE4_FREE_C(-0.443) * t269 - t267;
+    const ariane4_free_real_t t271 = t214 + t215;
+    const ariane4_free_real_t t272 = t270 + ARIANE4_FREE_C(0.1) * t271;
+    const ariane4_free_real_t t273 = t137 + t1 * t240;
+    const ariane4_free_real_t t274 = t222 * t222; /* link j3: motion */
+    const ariane4_free_real_t t275 = t132 + t274; /* link j4: motion */
+    const ariane4_free_real_t t276 = ARIANE4_FREE_C(0.1) * t275 + t273;
+    const ariane4_free_real_t t277 = t9 * t276 + t10 * t272;
+    const ariane4_free_real_t t278 = t10 * t276 - t9 * t272;
+    const ariane4_free_real_t t279 = parameters[MX4] * t277 - parameters[MY4] * t278;
+    const ariane4_free_real_t t280 = parameters[ZZ4] * t246 + (parameters[XZ4R] * t244
+        - parameters[YZ4R] * t229);
+    const ariane4_free_real_t t281 = parameters[XY4] * t217 + t218 * t260;
+    const ariane4_free_real_t t282 = t217 * t251 + parameters[XY4] * t218;
+    const ariane4_free_real_t t283 = parameters[MY4] * (t235 + t236) + parameters[MX4] * t257;
+    const ariane4_free_real_t t284 = parameters[MY4] * t217 + parameters[MX4] * t218;
+    const ariane4_free_real_t t285 = parameters[MY4] * t246 - t253 * t284 + t283;
+    const ariane4_free_real_t t286 = parameters[MY4] * t220 - parameters[MX4] * (t245 + t236);
+    const ariane4_free_real_t t287 = t250 * t284 - parameters[MX4] * t246 + t286;
+    const ariane4_free_real_t t288 = t10 * t285 + t9 * t287;
+    const ariane4_free_real_t t289 = t279 + (t250 * t281 + t253 * t282 + t280) - ARIANE4_FREE_C(-0.1) * t288;
+    const ariane4_free_real_t t290 = t22 * (t1 * t266 - t2 * t289 + ARIANE4_FREE_C(0.443) * t288);
+    const ariane4_free_real_t t291 = t21 * (t2 * t266 + t1 * t289) + t290 + ARIANE4_FREE_C(0.116) * t288;
+    const ariane4_free_real_t t292 = ARIANE4_FREE_C(0.06434139546481742) * t61 / t59; /* joint j1: drive */
+    const ariane4_free_real_t t293 = t292 * t291;
+    const ariane4_free_real_t t294 = ariane4_free_held(t171 * t205);
+    const ariane4_free_real_t t295 = parameters[MX4] * t230;
+    const ariane4_free_real_t t296 = parameters[MY4] * t230;
+    const ariane4_free_real_t t297 = t250 * t295 + t253 * t296 + (parameters[MY4] * t244
+        + parameters[MX4] * t229);
+    const ariane4_free_real_t t298 = t10 * t255 - t9 * t265 - ARIANE4_FREE_C(0.1) * t297;
+    const ariane4_free_real_t t299 = t1 * (t10 * t287 - t9 * t285) + t2 * t297;
+    const ariane4_free_real_t t300 = ARIANE4_FREE_C(0.03137188092799786) * t25 / t23; /* joint j2: drive */
+    const ariane4_free_real_t t301 = t300 * (t298 + ARIANE4_FREE_C(0.443) * t299);
+    const ariane4_free_real_t t302 = t81 * t205;
+    const ariane4_free_real_t t303 = t202 * t302;
+    const ariane4_free_real_t t304 = ARIANE4_FREE_C(0.046787723832235825) * t5 / t3; /* joint j3: drive */
+    const ariane4_free_real_t t305 = t304 * t298;
+    const ariane4_free_real_t t306 = t205 * (t76 - t41 * t81);
+    const ariane4_free_real_t t307 = ariane4_free_held(t187 * t306);
+    const ariane4_free_real_t t308 = ARIANE4_FREE_C(2.0) * t281; /* link j4: derivatives */
+    const ariane4_free_real_t t309 = ARIANE4_FREE_C(2.0) * t282;
+    const ariane4_free_real_t t310 = ARIANE4_FREE_C(0.2) * (t279 + (t218 * t308 + t217 * t309 + t280));
+    const ariane4_free_real_t t311 = t37 - t19 * t41;
+    const ariane4_free_real_t t312 = t205 * (t81 * t311 - (t70 - t19 * t76));
+    const ariane4_free_real_t t313 = ariane4_free_held(ARIANE4_FREE_C(-5.0) * t312);
+    const ariane4_free_real_t t314 = t313 * t310 - (t307 * t305 - (t294 * t293 - t303 * t301));
+    ddq_by_q[3] = t314;
+    const ariane4_free_real_t t315 = ariane4_free_held(t171 * t302);
+    const ariane4_free_real_t t316 = ariane4_free_held(t202 * (t80 - t81 * t302));
+    const ariane4_free_real_t t317 = t41 * t80 + t81 * t306;
+    const ariane4_free_real_t t318 = ariane4_free_held(t187 * t317);
+    const ariane4_free_real_t t319 = t80 * t311 - t81 * t312;
+    const ariane4_free_real_t t320 = ariane4_free_held(ARIANE4_FREE_C(5.0) * t319);
+    const ariane4_free_real_t t321 = t315 * t293 + t316 * t301 - t318 * t305 + t320 * t310;
+    ddq_by_q[7] = t321;
+    const ariane4_free_real_t t322 = ariane4_free_held(t171 * t306);
+    const ariane4_free_real_t t323 = t202 * t317;
+    const ariane4_free_real_t t324 = ariane4_free_held(t187 * (t40 + t76 * t306 - t41 * t317));
+    const ariane4_free_real_t t325 = t19 * t40 + t76 * t312 + t41 * t319;
+    const ariane4_free_real_t t326 = ariane4_free_held(ARIANE4_FREE_C(-5.0) * t325);
+    const ariane4_free_real_t t327 = t326 * t310 - (t323 * t301 - t322 * t293 + t324 * t305);
+    ddq_by_q[11] = t327;
+    const ariane4_free_real_t t328 = ariane4_free_held(t171 * t312);
+    const ariane4_free_real_t t329 = ariane4_free_held(t202 * t319);
+    const ariane4_free_real_t t330 = ariane4_free_held(t187 * t325);
+    const ariane4_free_real_t t331 = t18 + t70 * t312 + t37 * t319 - t19 * t325;
+    const ariane4_free_real_t t332 = ariane4_free_held(ARIANE4_FREE_C(5.0) * t331);
+    const ariane4_free_real_t t333 = t328 * t293 + t329 * t301 - t330 * t305 + t332 * t310;
+    ddq_by_q[15] = t333;
+    const ariane4_free_real_t t334 = parameters[ZZ4] + t251;
+    const ariane4_free_real_t t335 = t218 * t334 + parameters[YZ4R] * t230;
+    const ariane4_free_real_t t336 = ARIANE4_FREE_C(-2.0) * t335 - (parameters[XY4] * t253
+        + parameters[XX4R] * t250);
+    const ariane4_free_real_t t337 = parameters[XZ4R] * t230 - t217 * t334;
+    const ariane4_free_real_t t338 = parameters[XY4] * t250 + ARIANE4_FREE_C(-2.0) * t337;
+    const ariane4_free_real_t t339 = t9 * t336 + t10 * t338;
+    const ariane4_free_real_t t340 = t247 + t262;
+    const ariane4_free_real_t t341 = ARIANE4_FREE_C(2.0) * t340;
+    const ariane4_free_real_t t342 = ARIANE4_FREE_C(-2.0) * t295;
+    const ariane4_free_real_t t343 = ARIANE4_FREE_C(-2.0) * t296;
+    const ariane4_free_real_t t344 = t10 * t342 + t9 * t343;
+    const ariane4_free_real_t t345 = t341 - (parameters[XZ4R] * t250 + parameters[YZ4R] * t253)
+        + ARIANE4_FREE_C(-0.1) * t344;
+    const ariane4_free_real_t t346 = t22 * (t1 * t339 + t2 * t345 + ARIANE4_FREE_C(0.443) * t344);
+    const ariane4_free_real_t t347 = t21 * (t2 * t339 - t1 * t345) + t346 + ARIANE4_FREE_C(0.116) * t344;
+    const ariane4_free_real_t t348 = t292 * t347;
+    const ariane4_free_real_t t349 = parameters[MY4] * t250 - parameters[MX4] * t253;
+    const ariane4_free_real_t t350 = ARIANE4_FREE_C(0.1) * t349 + (t9 * t338 - t10 * t336);
+    const ariane4_free_real_t t351 = t2 * t349 + t1 * (t10 * t343 - t9 * t342);
+    const ariane4_free_real_t t352 = t300 * (t350 - ARIANE4_FREE_C(0.443) * t351);
+    const ariane4_free_real_t t353 = t304 * t350;
+    const ariane4_free_real_t t354 = ARIANE4_FREE_C(-2.0e3) * parameters[FV4];
+    const ariane4_free_real_t t355 = t348 * t294 + t352 * t303 + t353 * t307 + t354 * t313;
+    ddq_by_dq[3] = t355;
+    const ariane4_free_real_t t356 = t353 * t318 - (t352 * t316 - t348 * t315) + t354 * t320;
+    ddq_by_dq[7] = t356;
+    const ariane4_free_real_t t357 = t348 * t322 + t352 * t323 + t353 * t324 + t354 * t326;
+    ddq_by_dq[11] = t357;
+    const ariane4_free_real_t t358 = t353 * t330 - (t352 * t329 - t348 * t328) + t354 * t332;
+    ddq_by_dq[15] = t358;
+    ddq_by_input[3] = t313;
+    ddq_by_input[7] = t320;
+    ddq_by_input[11] = t326;
+    ddq_by_input[15] = t332;
+    const ariane4_free_real_t t359 = parameters[ZZ4] * t216 - parameters[XX4R] * t219
+        + parameters[YZ4R] * t244 + parameters[XZ4R] * t229;
+    const ariane4_free_real_t t360 = parameters[XY4] * (t245 - t235) + t359 + (parameters[MX4] * t278
+        + parameters[MY4] * t277);
+    const ariane4_free_real_t t361 = t9 * t283 - t10 * t286;
+    const ariane4_free_real_t t362 = t213 * t213; /* link j3: motion */
+    const ariane4_free_real_t t363 = parameters[XZ3] * (t362 - t132) + (t147 * t214 + parameters[XY3R] * t228
         - parameters[YZ3] * t224);
-    const ariane4_free_real_t t258 = t257 - parameters[MX3R] * t237 + (t248 + ARIANE4_FREE_C(-0.1) * t255);
-    const ariane4_free_real_t t259 = t219 * t250; /* link j4: motion */
-    const ariane4_free_real_t t260 = t259 + t230;
-    const ariane4_free_real_t t261 = t218 * t250;
-    const ariane4_free_real_t t262 = t261 + (t261 + t229);
-    const ariane4_free_real_t t263 = parameters[ZZ4] * t259 + parameters[XX4R] * t260 + parameters[XY4] * t262
-        + parameters[XZ4R] * t253;
-    const ariane4_free_real_t t264 = t223 - t221;
-    const ariane4_free_real_t t265 = t2 * t241 - t117;
-    const ariane4_free_real_t t266 = t265 + ARIANE4_FREE_C(0.1) * t264;
-    const ariane4_free_real_t t267 = parameters[YZ4R] * (t251 - t233) + t263 - parameters[MY4] * t266;
-    const ariane4_free_real_t t268 = t259 + t260;
-    const ariane4_free_real_t t269 = parameters[XZ4R] * (t232 - t251) + (parameters[XY4] * t268 - t125 * t261
-        + parameters[YZ4R] * t249);
-    const ariane4_free_real_t t270 = t269 + parameters[MX4] * t266;
-    const ariane4_free_real_t t271 = parameters[ZZ3R] * t226 + parameters[XX3R] * t227
-        + parameters[XY3R] * t238 + parameters[XZ3] * t264;
-    const ariane4_free_real_t t272 = t10 * t270 - t9 * t267 - (parameters[MY3R] * t237
-        + (parameters[YZ3] * (t133 - t243) + t271));
-    const ariane4_free_real_t t273 = t22 * t207;
-    const ariane4_free_real_t t274 = t152 - t273;
-    const ariane4_free_real_t t275 = t153 + parameters[XX2R] * t274 - parameters[XY2] * t236
-        + parameters[XZ2R] * t240;
-    const ariane4_free_real_t t276 = t275 - t156 + parameters[MY2] * t234 + (t2 * t272 + t1 * t258);
-    const ariane4_free_real_t t277 = parameters[MX3R] * t238 - parameters[MY3R] * t228 + t255;
-    const ariane4_free_real_t t278 = t152 + t274;
-    const ariane4_free_real_t t279 = t162 + (t159 - parameters[XY2] * t278 + parameters[YZ2] * (t119 - t208));
-    const ariane4_free_real_t t280 = t279 + parameters[MX2R] * t234 + (t2 * t258 - t1 * t272
-        + ARIANE4_FREE_C(0.443) * t277);
-    const ariane4_free_real_t t281 = t23 * t280 - t22 * t276
-        + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t236 + parameters[MY2] * t278 + t277);
-    const ariane4_free_real_t t282 = ARIANE4_FREE_C(0.06434139546481742) * t63 / t61; /* joint j1: drive */
-    const ariane4_free_real_t t283 = ariane4_free_select(t63, t63, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t284 = ARIANE4_FREE_C(1.0) / t283;
-    const ariane4_free_real_t t285 = ARIANE4_FREE_C(0.037468) * t61;
-    const ariane4_free_real_t t286 = ARIANE4_FREE_C(1.0) / t61;
-    const ariane4_free_real_t t287 = t286 * (t62 * t282
-        + ARIANE4_FREE_C(0.06434139546481742) * (t285 * (ARIANE4_FREE_C(0.5) * t284)));
-    const ariane4_free_real_t t288 = t64 * (t64 * (t285 * (ARIANE4_FREE_C(0.5) * t64)));
-    const ariane4_free_real_t t289 = t62 * t65 + t61 * (ARIANE4_FREE_C(3885.523436256565) * t288);
-    const ariane4_free_real_t t290 = t168 * (ARIANE4_FREE_C(145.582792109661) * (t64 * t288))
-        + t167 * (ARIANE4_FREE_C(2.0) * (t61 * t62));
-    const ariane4_free_real_t t291 = t111 * (t169 * t288 + t64 * (ARIANE4_FREE_C(-3885.523436256565) * t61
-        + t290));
-    const ariane4_free_real_t t292 = parameters[FV1] * (dq[0] * t289) + parameters[IA1] * (t291
-        - t207 * t289);
-    const ariane4_free_real_t t293 = ARIANE4_FREE_C(250.0) * t292 + t287 * (parameters[ZZ1R] * t207 + t281);
-    const ariane4_free_real_t t294 = ariane4_free_bounded(t172 * t206);
-    ddq_by_q[0] = t294 * t293;
-    const ariane4_free_real_t t295 = t83 * t206;
-    const ariane4_free_real_t t296 = ariane4_free_bounded(t172 * t295);
-    ddq_by_q[4] = t296 * t293;
-    const ariane4_free_real_t t297 = t206 * (t78 - t42 * t83);
-    const ariane4_free_real_t t298 = ariane4_free_bounded(t172 * t297);
-    ddq_by_q[8] = t298 * t293;
-    const ariane4_free_real_t t299 = t38 - t19 * t42;
-    const ariane4_free_real_t t300 = t206 * (t83 * t299 - (t72 - t19 * t78));
-    const ariane4_free_real_t t301 = ariane4_free_bounded(t172 * t300);
-    ddq_by_q[12] = t301 * t293;
-    const ariane4_free_real_t t302 = parameters[XZ4R] * t219;
-    const ariane4_free_real_t t303 = parameters[XY4] * t250;
-    const ariane4_free_real_t t304 = t302 + t303;
-    const ariane4_free_real_t t305 = parameters[YZ4R] * t218;
-    const ariane4_free_real_t t306 = t303 - t305;
-    const ariane4_free_real_t t307 = ARIANE4_FREE_C(-0.5) * (parameters[XX4R] + parameters[ZZ4]);
-    const ariane4_free_real_t t308 = parameters[XX4R] + t307;
-    const ariane4_free_real_t t309 = t250 * t308 - parameters[XZ4R] * t218;
-    const ariane4_free_real_t t310 = parameters[YZ4R] * t219 + t250 * t307;
+    const ariane4_free_real_t t364 = t363 - parameters[MX3R] * t270 + (t360 + ARIANE4_FREE_C(-0.1) * t361);
+    const ariane4_free_real_t t365 = t362 + t274; /* link j4: motion */
     /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t311 = t9 * (t304 + t306) + t10 * (t309 - t310);
-    const ariane4_free_real_t t312 = t9 * t311;
-    const ariane4_free_real_t t313 = parameters[MY4] * t250;
-    const ariane4_free_real_t t314 = parameters[MX4] * t250;
-    const ariane4_free_real_t t315 = t9 * t313 + t10 * t314;
-    const ariane4_free_real_t t316 = ARIANE4_FREE_C(0.1) * t315;
-    const ariane4_free_real_t t317 = ARIANE4_FREE_C(0.1) * t222;
-    const ariane4_free_real_t t318 = t35 * t317;
-    const ariane4_free_real_t t319 = t316 + t318;
-    const ariane4_free_real_t t320 = parameters[XZ3] * t222;
-    const ariane4_free_real_t t321 = parameters[XY3R] * t91;
-    const ariane4_free_real_t t322 = t319 + (t306 - t312 - t316) - (t320 + t321);
-    const ariane4_free_real_t t323 = t302 + t305;
-    const ariane4_free_real_t t324 = parameters[YZ3] * t214;
-    const ariane4_free_real_t t325 = t321 - t324 + (t323 + t319);
-    const ariane4_free_real_t t326 = parameters[ZZ4] + t307;
-    const ariane4_free_real_t t327 = t219 * t326 + parameters[YZ4R] * t250;
-    const ariane4_free_real_t t328 = parameters[XZ4R] * t250 - t218 * t326;
-    const ariane4_free_real_t t329 = ARIANE4_FREE_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const ariane4_free_real_t t330 = parameters[YZ3] * t222 - t91 * t329 + (t9 * t327 + t10 * t328);
-    const ariane4_free_real_t t331 = parameters[XY4] * t218 + t219 * t308;
-    const ariane4_free_real_t t332 = t218 * t307 + parameters[XY4] * t219;
-    const ariane4_free_real_t t333 = parameters[MY4] * t218 + parameters[MX4] * t219;
-    const ariane4_free_real_t t334 = ARIANE4_FREE_C(0.1) * t91; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t366 = t9 * (t249 + t263) + t10 * (t261 - t252);
+    const ariane4_free_real_t t367 = t9 * t366;
+    const ariane4_free_real_t t368 = t9 * t296 + t10 * t295;
+    const ariane4_free_real_t t369 = ARIANE4_FREE_C(0.1) * t368;
+    const ariane4_free_real_t t370 = ARIANE4_FREE_C(0.1) * t222;
+    const ariane4_free_real_t t371 = t34 * t370;
+    const ariane4_free_real_t t372 = t369 + t371;
+    const ariane4_free_real_t t373 = parameters[XZ3] * t222;
+    const ariane4_free_real_t t374 = parameters[XY3R] * t90;
+    const ariane4_free_real_t t375 = t372 + (t263 - t367 - t369) - (t373 + t374);
+    const ariane4_free_real_t t376 = ARIANE4_FREE_C(2.0) * t222;
+    const ariane4_free_real_t t377 = ARIANE4_FREE_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const ariane4_free_real_t t378 = parameters[YZ3] * t222 - t90 * t377 + (t9 * t335 + t10 * t337);
+    const ariane4_free_real_t t379 = ARIANE4_FREE_C(2.0) * t213;
+    const ariane4_free_real_t t380 = t379 * t378 - t376 * t375 + (t71 * t365 + (t44 * t211 + t46 * t225));
+    const ariane4_free_real_t t381 = t364 + (t380 - t34 * t273);
+    const ariane4_free_real_t t382 = parameters[ZZ3R] * t226 + parameters[XX3R] * t227
+        + parameters[XY3R] * t271 + parameters[XZ3] * t238;
+    const ariane4_free_real_t t383 = t10 * t243 - t9 * t259 - (parameters[MY3R] * t270
+        + (parameters[YZ3] * (t132 - t274) + t382));
+    const ariane4_free_real_t t384 = ARIANE4_FREE_C(0.1) * t90; /* link j4: velocity of its origin */
     /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t335 = t10 * t332 - t9 * t331 + (ARIANE4_FREE_C(-0.1) * t333 + t13 * t334);
-    const ariane4_free_real_t t336 = parameters[XX3R] - t329;
-    const ariane4_free_real_t t337 = t91 * t336 - parameters[XZ3] * t214 - t335;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t338 = t2 * (t322 - t325) + t1 * (t330 - t337);
-    const ariane4_free_real_t t339 = t2 * t338;
-    const ariane4_free_real_t t340 = parameters[MY3R] * t91 + t315; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t341 = parameters[MX3R] * t91 + t333;
-    const ariane4_free_real_t t342 = t2 * t340 + t1 * t341; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t343 = ARIANE4_FREE_C(0.443) * t342;
-    const ariane4_free_real_t t344 = ARIANE4_FREE_C(0.443) * dq[1]; /* link j3: velocity of its origin */
-    const ariane4_free_real_t t345 = t53 * t344; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t346 = ARIANE4_FREE_C(0.443) * t87; /* link j3: velocity of its origin */
-    const ariane4_free_real_t t347 = t35 * t346; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t348 = t345 + t347 - t343;
-    const ariane4_free_real_t t349 = parameters[XZ2R] * t87;
-    const ariane4_free_real_t t350 = parameters[XY2] * dq[1];
-    const ariane4_free_real_t t351 = t349 - t350 + (t348 + (t325 + t339 + t343));
-    const ariane4_free_real_t t352 = parameters[YZ2] * t86;
-    const ariane4_free_real_t t353 = t350 - t352 + (t348 + (t322 - t339 - t345));
-    const ariane4_free_real_t t354 = t1 * t338;
-    const ariane4_free_real_t t355 = ARIANE4_FREE_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const ariane4_free_real_t t356 = parameters[YZ2] * t87 - dq[1] * t355 + (t354 - t330);
-    const ariane4_free_real_t t357 = t1 * t340 - t2 * t341;
-    const ariane4_free_real_t t358 = parameters[XX2R] + t355;
-    const ariane4_free_real_t t359 = dq[1] * t358 - parameters[XZ2R] * t86 + (t337 + t354
-        + (ARIANE4_FREE_C(0.443) * t357 - t31 * t344));
-    /* link j2: inertia, momentum beyond */
-    const ariane4_free_real_t t360 = t23 * (t23 * (t353 - t351) + t22 * (t356 + t359));
-    const ariane4_free_real_t t361 = parameters[MY2] * dq[1] + t342; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t362 = t357 - parameters[MX2R] * dq[1];
-    /* link j2: inertia, momentum beyond */
-    const ariane4_free_real_t t363 = ARIANE4_FREE_C(0.116) * (t22 * t362 - t23 * t361)
-        + t35 * (ARIANE4_FREE_C(0.116) * dq[0]);
-    const ariane4_free_real_t t364 = ARIANE4_FREE_C(250.0) * (t66 * parameters[FV1]
-        + parameters[IA1] * (t170 * (ARIANE4_FREE_C(2.0) * dq[0])));
-    const ariane4_free_real_t t365 = t364 + t282 * (ARIANE4_FREE_C(2.0) * (t351 + t360 + t363));
-    const ariane4_free_real_t t366 = t203 * t295;
-    const ariane4_free_real_t t367 = t10 * t311; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t368 = t10 * t313 - t9 * t314;
-    const ariane4_free_real_t t369 = parameters[XY3R] * t214 + t222 * t336 - (t309 - t367
-        - (ARIANE4_FREE_C(0.1) * t368 - t13 * t317));
-    const ariane4_free_real_t t370 = t214 * t329 - parameters[XY3R] * t222 - (t10 * t327 - t9 * t328);
-    const ariane4_free_real_t t371 = parameters[MY3R] * t214 + parameters[MX3R] * t222 + t368;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t372 = t2 * t369 + t1 * t370 - (ARIANE4_FREE_C(0.443) * t371 - t31 * t346);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t373 = ARIANE4_FREE_C(2.0) * (parameters[XY2] * t86 - t87 * t358 + t372);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t374 = parameters[XY2] * t87 - t86 * t355 - (t1 * t369 - t2 * t370
-        + t53 * t346);
-    const ariane4_free_real_t t375 = ARIANE4_FREE_C(2.0) * t374; /* link j2: derivatives */
-    const ariane4_free_real_t t376 = ARIANE4_FREE_C(-0.232) * dq[0];
-    const ariane4_free_real_t t377 = t22 * t373 - t23 * t375 - (t23 * t56 + t22 * t57) * t376;
-    const ariane4_free_real_t t378 = ARIANE4_FREE_C(0.03137188092799786) * t26 / t24; /* joint j2: drive */
-    const ariane4_free_real_t t379 = t378 * t377;
-    const ariane4_free_real_t t380 = ariane4_free_bounded(t188 * t297);
-    const ariane4_free_real_t t381 = ARIANE4_FREE_C(2.0) * t369; /* link j3: derivatives */
-    const ariane4_free_real_t t382 = ARIANE4_FREE_C(2.0) * t370;
-    const ariane4_free_real_t t383 = ARIANE4_FREE_C(0.886) * t87; /* link j4: derivatives */
-    const ariane4_free_real_t t384 = t2 * t381 + t1 * t382 + t31 * t383; /* link j3: derivatives */
-    const ariane4_free_real_t t385 = t1 * t381 - t2 * t382 + t53 * t383;
-    const ariane4_free_real_t t386 = t22 * t384 + t23 * t385 - (t23 * t53 + t22 * t31) * t376;
-    const ariane4_free_real_t t387 = ARIANE4_FREE_C(0.046787723832235825) * t5 / t3; /* joint j3: drive */
-    const ariane4_free_real_t t388 = t387 * t386;
-    const ariane4_free_real_t t389 = ARIANE4_FREE_C(-5.0) * t300;
-    const ariane4_free_real_t t390 = ARIANE4_FREE_C(2.0) * t331; /* link j4: derivatives */
-    const ariane4_free_real_t t391 = ARIANE4_FREE_C(2.0) * t332;
-    const ariane4_free_real_t t392 = ARIANE4_FREE_C(0.2) * t91;
-    const ariane4_free_real_t t393 = t10 * t391 - t9 * t390 + t13 * t392;
-    const ariane4_free_real_t t394 = ARIANE4_FREE_C(2.0) * t323;
-    const ariane4_free_real_t t395 = t394 + t35 * (ARIANE4_FREE_C(0.2) * t222);
-    const ariane4_free_real_t t396 = ARIANE4_FREE_C(-0.886) * dq[1];
-    const ariane4_free_real_t t397 = t2 * t393 + t1 * t395 + (t13 * t396 + t36 * t383);
-    const ariane4_free_real_t t398 = t2 * t35; /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t399 = t1 * t393 - t2 * t395 - t398 * t383; /* link j4: derivatives */
-    const ariane4_free_real_t t400 = t22 * t397 + t23 * t399 - (t22 * t36 - t23 * t398) * t376;
-    const ariane4_free_real_t t401 = ARIANE4_FREE_C(0.2) * t400;
-    const ariane4_free_real_t t402 = t365 * t294 + t379 * t366 + t388 * t380 + t401 * t389;
-    ddq_by_dq[0] = t402;
-    const ariane4_free_real_t t403 = ariane4_free_bounded(t203 * (t82 - t83 * t295));
-    const ariane4_free_real_t t404 = t42 * t82 + t83 * t297;
-    const ariane4_free_real_t t405 = ariane4_free_bounded(t188 * t404);
-    const ariane4_free_real_t t406 = t82 * t299 - t83 * t300;
-    const ariane4_free_real_t t407 = ARIANE4_FREE_C(5.0) * t406;
-    const ariane4_free_real_t t408 = t388 * t405 - (t379 * t403 - t365 * t296) + t401 * t407;
-    ddq_by_dq[4] = t408;
-    const ariane4_free_real_t t409 = t203 * t404;
-    const ariane4_free_real_t t410 = ariane4_free_bounded(t188 * (t41 + t78 * t297 - t42 * t404));
-    const ariane4_free_real_t t411 = t19 * t41 + t78 * t300 + t42 * t406;
-    const ariane4_free_real_t t412 = ARIANE4_FREE_C(-5.0) * t411;
-    const ariane4_free_real_t t413 = t365 * t298 + t379 * t409 + t388 * t410 + t401 * t412;
-    ddq_by_dq[8] = t413;
-    const ariane4_free_real_t t414 = ariane4_free_bounded(t203 * t406);
-    const ariane4_free_real_t t415 = ariane4_free_bounded(t188 * t411);
-    const ariane4_free_real_t t416 = t18 + t72 * t300 + t38 * t406 - t19 * t411;
-    const ariane4_free_real_t t417 = ARIANE4_FREE_C(5.0) * t416;
-    const ariane4_free_real_t t418 = t388 * t415 - (t379 * t414 - t365 * t301) + t401 * t417;
-    ddq_by_dq[12] = t418;
-    ddq_by_input[0] = t294;
-    ddq_by_input[4] = t296;
-    ddq_by_input[8] = t298;
-    ddq_by_input[12] = t301;
-    const ariane4_free_real_t t419 = t161 + t114; /* link j3: motion */
-    const ariane4_free_real_t t420 = ARIANE4_FREE_C(2.0) * t87;
-    const ariane4_free_real_t t421 = ARIANE4_FREE_C(-2.0) * t86;
-    const ariane4_free_real_t t422 = t420 * t351 + t421 * t356 + (t79 * t419 - (t52 * t235 - t54 * t273));
-    const ariane4_free_real_t t423 = t420 * t359 + t421 * t353 + (t80 * t419 - (t54 * t235 - t51 * t273));
-    const ariane4_free_real_t t424 = t22 * (t280 + (t35 * t113 + t422)) + t23 * (t276 + (t423 - t35 * t118));
-    const ariane4_free_real_t t425 = t420 * t362 - t421 * t361 + (t56 * t235 + t57 * t273);
-    const ariane4_free_real_t t426 = t282 * (t424 + ARIANE4_FREE_C(0.116) * t425);
-    const ariane4_free_real_t t427 = parameters[MY4] * t268 - parameters[MX4] * t262;
-    const ariane4_free_real_t t428 = parameters[XX3R] * t223 + parameters[ZZ3R] * t221
-        + parameters[YZ3] * t212 - parameters[XZ3] * t225;
-    const ariane4_free_real_t t429 = parameters[MX3R] * t265 - parameters[MY3R] * t242
-        + (parameters[XY3R] * (t256 - t243) + t428);
-    const ariane4_free_real_t t430 = t429 + (t10 * t267 + t9 * t270 + ARIANE4_FREE_C(0.1) * t427);
-    const ariane4_free_real_t t431 = parameters[MX3R] * t244 + parameters[MY3R] * t224 - (t9 * t252
-        + t10 * t254);
-    const ariane4_free_real_t t432 = parameters[MY3R] * (t133 + t256) + parameters[MX3R] * t264 + t427;
-    const ariane4_free_real_t t433 = t193 - parameters[ZZ2R] * t208 + parameters[YZ2] * t235
-        + parameters[XZ2R] * t273;
-    const ariane4_free_real_t t434 = t194 + (t192 - t433) + (t430 - ARIANE4_FREE_C(0.443) * (t1 * t431
-        + t2 * t432));
-    const ariane4_free_real_t t435 = ariane4_free_select(t26, t26, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t436 = ARIANE4_FREE_C(1.0) / t435;
-    const ariane4_free_real_t t437 = ARIANE4_FREE_C(0.078402) * t24;
-    const ariane4_free_real_t t438 = ARIANE4_FREE_C(1.0) / t24;
-    const ariane4_free_real_t t439 = t438 * (t25 * t378
-        + ARIANE4_FREE_C(0.03137188092799786) * (t437 * (ARIANE4_FREE_C(0.5) * t436)));
-    const ariane4_free_real_t t440 = t87 * t373 + t86 * t375 - (t33 * t419 - (t79 * t235 - t80 * t273));
-    const ariane4_free_real_t t441 = t27 * (t27 * (t437 * (ARIANE4_FREE_C(0.5) * t27)));
-    const ariane4_free_real_t t442 = t25 * t28 + t24 * (ARIANE4_FREE_C(2656.3065671641784) * t441);
-    const ariane4_free_real_t t443 = t199 * (ARIANE4_FREE_C(208.2597474788059) * (t27 * t441))
-        - t198 * (ARIANE4_FREE_C(-2.0) * (t24 * t25));
-    const ariane4_free_real_t t444 = t115 * (t200 * t441 + t27 * (ARIANE4_FREE_C(2656.3065671641784) * t24
-        - t443));
-    const ariane4_free_real_t t445 = parameters[FV2] * (dq[1] * t442) + parameters[IA2] * (t444
-        + t208 * t442);
-    const ariane4_free_real_t t446 = ARIANE4_FREE_C(-83.33333333333333) * t445 + t378 * (t57 * t113
-        - t56 * t118 + t440);
-    const ariane4_free_real_t t447 = t446 + t439 * t434;
-    const ariane4_free_real_t t448 = t87 * t384 - t86 * t385 + (t39 * t419 + (t75 * t235 - t76 * t273));
-    const ariane4_free_real_t t449 = t387 * (t53 * t118 - t31 * t113 - t448);
-    const ariane4_free_real_t t450 = t87 * t397 - t86 * t399 + (t69 * t235 - t70 * t273 - t37 * t419);
-    const ariane4_free_real_t t451 = ARIANE4_FREE_C(0.2) * (t398 * t118 + t36 * t113 + t450);
-    const ariane4_free_real_t t452 = t294 * t426 + t366 * t447 - t380 * t449 + t389 * t451;
-    ddq_by_q[1] = t452;
-    const ariane4_free_real_t t453 = t407 * t451 - (t403 * t447 - t296 * t426 + t405 * t449);
-    ddq_by_q[5] = t453;
-    const ariane4_free_real_t t454 = t298 * t426 + t409 * t447 - t410 * t449 + t412 * t451;
-    ddq_by_q[9] = t454;
-    const ariane4_free_real_t t455 = t417 * t451 - (t414 * t447 - t301 * t426 + t415 * t449);
-    ddq_by_q[13] = t455;
-    const ariane4_free_real_t t456 = t329 - parameters[ZZ3R];
+    const ariane4_free_real_t t385 = t10 * t282 - t9 * t281 + (ARIANE4_FREE_C(-0.1) * t284 + t13 * t384);
+    const ariane4_free_real_t t386 = parameters[XX3R] - t377;
+    const ariane4_free_real_t t387 = t90 * t386 - parameters[XZ3] * t213 - t385;
+    const ariane4_free_real_t t388 = parameters[YZ3] * t213;
+    const ariane4_free_real_t t389 = t374 - t388 + (t340 + t372);
+    const ariane4_free_real_t t390 = t376 * t387 + t379 * t389 + (t72 * t365 - (t46 * t211 + t43 * t225));
+    const ariane4_free_real_t t391 = t34 * t241;
+    const ariane4_free_real_t t392 = t383 - (t391 + t390);
+    const ariane4_free_real_t t393 = parameters[MX3R] * t90 + t284;
+    const ariane4_free_real_t t394 = parameters[MY3R] * t90 + t368;
+    const ariane4_free_real_t t395 = t376 * t393 + t379 * t394 + (t29 * t225 - parameters[MY3R] * t211);
+    const ariane4_free_real_t t396 = t22 * (t1 * t381 + t2 * t392 + ARIANE4_FREE_C(0.443) * t395);
+    const ariane4_free_real_t t397 = t21 * (t2 * t381 - t1 * t392) + t396 + ARIANE4_FREE_C(0.116) * t395;
+    const ariane4_free_real_t t398 = t292 * t397;
+    const ariane4_free_real_t t399 = parameters[MX3R] * t275 + parameters[MY3R] * t224 - (t9 * t286
+        + t10 * t283);
+    const ariane4_free_real_t t400 = t10 * t296 - t9 * t295;
+    const ariane4_free_real_t t401 = parameters[MY3R] * t213 + parameters[MX3R] * t222 + t400;
+    const ariane4_free_real_t t402 = t399 - (t376 * t401 - (t29 * t365 - t34 * t211));
+    const ariane4_free_real_t t403 = parameters[MY4] * t233 - parameters[MX4] * t256;
+    const ariane4_free_real_t t404 = parameters[MY3R] * (t132 + t362) + parameters[MX3R] * t238 + t403;
+    const ariane4_free_real_t t405 = t404 - (t379 * t401 - (parameters[MY3R] * t365 - t34 * t225));
+    const ariane4_free_real_t t406 = t15 * t365 - (t72 * t225 - t71 * t211);
+    const ariane4_free_real_t t407 = t10 * t366;
+    const ariane4_free_real_t t408 = parameters[XY3R] * t213 + t222 * t386 - (t261 - t407
+        - (ARIANE4_FREE_C(0.1) * t400 - t13 * t370));
+    const ariane4_free_real_t t409 = t213 * t377 - parameters[XY3R] * t222 - (t10 * t335 - t9 * t337);
+    const ariane4_free_real_t t410 = parameters[MY3R] * t241 + t29 * t273;
+    const ariane4_free_real_t t411 = t376 * t408 - t379 * t409 + t406 + t410
+        - ARIANE4_FREE_C(0.443) * (t1 * t405 - t2 * t402);
+    const ariane4_free_real_t t412 = t300 * t411;
+    const ariane4_free_real_t t413 = parameters[XX3R] * t223 + parameters[ZZ3R] * t221
+        + parameters[YZ3] * t211 - parameters[XZ3] * t225;
+    const ariane4_free_real_t t414 = parameters[MX3R] * t241 - parameters[MY3R] * t273
+        + (parameters[XY3R] * (t362 - t274) + t413);
+    const ariane4_free_real_t t415 = t414 + (t10 * t259 + t9 * t243 + ARIANE4_FREE_C(0.1) * t403);
+    const ariane4_free_real_t t416 = ariane4_free_select(t5, t5, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t417 = ARIANE4_FREE_C(1.0) / t416;
+    const ariane4_free_real_t t418 = ARIANE4_FREE_C(0.052812) * t3;
+    const ariane4_free_real_t t419 = ARIANE4_FREE_C(1.0) / t3;
+    const ariane4_free_real_t t420 = t419 * (t4 * t304
+        + ARIANE4_FREE_C(0.046787723832235825) * (t418 * (ARIANE4_FREE_C(0.5) * t417)));
+    const ariane4_free_real_t t421 = ARIANE4_FREE_C(2.0) * t408; /* link j3: derivatives */
+    const ariane4_free_real_t t422 = ARIANE4_FREE_C(2.0) * t409;
+    const ariane4_free_real_t t423 = t304 * (t410 + (t222 * t421 - t213 * t422 + t406));
+    const ariane4_free_real_t t424 = t6 * (t6 * (t418 * (ARIANE4_FREE_C(0.5) * t6)));
+    const ariane4_free_real_t t425 = t4 * t7 + t3 * (ARIANE4_FREE_C(7124.375926654358) * t424);
+    const ariane4_free_real_t t426 = t182 * (ARIANE4_FREE_C(376.25254143846996) * (t6 * t424))
+        + t181 * (ARIANE4_FREE_C(2.0) * (t3 * t4));
+    const ariane4_free_real_t t427 = t185 * (t183 * t424 - t6 * (ARIANE4_FREE_C(7124.375926654358) * t3
+        - t426));
+    const ariane4_free_real_t t428 = parameters[FV3] * (dq[2] * t425) + parameters[IA3] * (t427
+        + t208 * t425);
+    const ariane4_free_real_t t429 = ARIANE4_FREE_C(333.3333333333333) * t428 - t423 - t420 * t415;
+    const ariane4_free_real_t t430 = ARIANE4_FREE_C(0.2) * t90;
+    const ariane4_free_real_t t431 = t10 * t309 - t9 * t308 + t13 * t430; /* link j4: derivatives */
+    const ariane4_free_real_t t432 = t341 + t34 * (ARIANE4_FREE_C(0.2) * t222);
+    const ariane4_free_real_t t433 = t213 * t432 - t222 * t431 - (t17 * t365 + (t45 * t211 + t66 * t225));
+    const ariane4_free_real_t t434 = ARIANE4_FREE_C(0.2) * (t433 + t391);
+    const ariane4_free_real_t t435 = t294 * t398 - t303 * t412 + t307 * t429 + t313 * t434;
+    ddq_by_q[2] = t435;
+    const ariane4_free_real_t t436 = t315 * t398 + t316 * t412 + t318 * t429 + t320 * t434;
+    ddq_by_q[6] = t436;
+    const ariane4_free_real_t t437 = t324 * t429 - (t323 * t412 - t322 * t398) + t326 * t434;
+    ddq_by_q[10] = t437;
+    const ariane4_free_real_t t438 = t328 * t398 + t329 * t412 + t330 * t429 + t332 * t434;
+    ddq_by_q[14] = t438;
+    const ariane4_free_real_t t439 = t377 - parameters[ZZ3R];
     /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t457 = t222 * t456 - parameters[YZ3] * t91 + (t310 + t367);
-    const ariane4_free_real_t t458 = parameters[XZ3] * t91 + t214 * t456 - (t10 * t331 + t9 * t332
-        + t35 * t334);
-    const ariane4_free_real_t t459 = parameters[ZZ2R] + t355;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t460 = t87 * t459 - parameters[YZ2] * dq[1] + (t2 * t457 - t1 * t458);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t461 = t22 * (ARIANE4_FREE_C(2.0) * t460 + (t52 * t420 + t54 * t421));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t462 = parameters[XZ2R] * dq[1] - t86 * t459 + (t1 * t457 + t2 * t458
-        + t35 * t344);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t463 = t23 * (ARIANE4_FREE_C(2.0) * t462 + (t54 * t420 + t51 * t421));
-    const ariane4_free_real_t t464 = t461 + t463 + ARIANE4_FREE_C(0.116) * (t57 * t421 - t56 * t420);
-    const ariane4_free_real_t t465 = t282 * t464;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t466 = t320 + t324 + (t319 - (t304 - t312 + t318));
-    /* link j2: derivatives */
-    const ariane4_free_real_t t467 = ARIANE4_FREE_C(2.0) * (t349 - t352 - (t348 + (t466 - t347)))
-        - ARIANE4_FREE_C(2.0) * (t80 * t86 - t79 * t87);
-    const ariane4_free_real_t t468 = ARIANE4_FREE_C(83.33333333333333) * (t29 * parameters[FV2]
-        + parameters[IA2] * (t201 * (ARIANE4_FREE_C(2.0) * dq[1])));
-    const ariane4_free_real_t t469 = t468 - t378 * t467;
-    const ariane4_free_real_t t470 = ARIANE4_FREE_C(2.0) * t466; /* link j3: derivatives */
-    const ariane4_free_real_t t471 = t470 - t53 * t396 + ARIANE4_FREE_C(2.0) * (t76 * t86 - t75 * t87);
-    const ariane4_free_real_t t472 = t387 * t471;
-    const ariane4_free_real_t t473 = t10 * t390 + t9 * t391 + t35 * t392; /* link j4: derivatives */
-    const ariane4_free_real_t t474 = t473 + t398 * t396 + ARIANE4_FREE_C(2.0) * (t70 * t86 - t69 * t87);
-    const ariane4_free_real_t t475 = ARIANE4_FREE_C(0.2) * t474;
-    const ariane4_free_real_t t476 = t465 * t294 + t469 * t366 + t472 * t380 + t475 * t389;
-    ddq_by_dq[1] = t476;
-    const ariane4_free_real_t t477 = t472 * t405 - (t469 * t403 - t465 * t296) + t475 * t407;
-    ddq_by_dq[5] = t477;
-    const ariane4_free_real_t t478 = t465 * t298 + t469 * t409 + t472 * t410 + t475 * t412;
-    ddq_by_dq[9] = t478;
-    const ariane4_free_real_t t479 = t472 * t415 - (t469 * t414 - t465 * t301) + t475 * t417;
-    ddq_by_dq[13] = t479;
-    ddq_by_input[1] = -t366;
-    ddq_by_input[5] = t403;
-    ddq_by_input[9] = -t409;
-    ddq_by_input[13] = t414;
-    const ariane4_free_real_t t480 = t256 + t243; /* link j4: motion */
-    const ariane4_free_real_t t481 = ARIANE4_FREE_C(2.0) * t222;
-    const ariane4_free_real_t t482 = ARIANE4_FREE_C(2.0) * t214;
-    const ariane4_free_real_t t483 = t482 * t330 - t481 * t322 + (t73 * t480 + (t46 * t212 + t48 * t225));
-    const ariane4_free_real_t t484 = t258 + (t483 - t35 * t242);
-    const ariane4_free_real_t t485 = t481 * t337 + t482 * t325 + (t74 * t480 - (t48 * t212 + t45 * t225));
-    const ariane4_free_real_t t486 = t35 * t265;
-    const ariane4_free_real_t t487 = t272 - (t486 + t485);
-    const ariane4_free_real_t t488 = t481 * t341 + t482 * t340 + (t30 * t225 - parameters[MY3R] * t212);
-    const ariane4_free_real_t t489 = t23 * (t1 * t484 + t2 * t487 + ARIANE4_FREE_C(0.443) * t488);
-    const ariane4_free_real_t t490 = t22 * (t2 * t484 - t1 * t487) + t489 + ARIANE4_FREE_C(0.116) * t488;
-    const ariane4_free_real_t t491 = t282 * t490;
-    const ariane4_free_real_t t492 = t431 - (t481 * t371 - (t30 * t480 - t35 * t212));
-    const ariane4_free_real_t t493 = t432 - (t482 * t371 - (parameters[MY3R] * t480 - t35 * t225));
-    const ariane4_free_real_t t494 = t15 * t480 - (t74 * t225 - t73 * t212);
-    const ariane4_free_real_t t495 = parameters[MY3R] * t265 + t30 * t242;
-    const ariane4_free_real_t t496 = t481 * t369 - t482 * t370 + t494 + t495
-        - ARIANE4_FREE_C(0.443) * (t1 * t493 - t2 * t492);
-    const ariane4_free_real_t t497 = t378 * t496;
-    const ariane4_free_real_t t498 = ariane4_free_select(t5, t5, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t499 = ARIANE4_FREE_C(1.0) / t498;
-    const ariane4_free_real_t t500 = ARIANE4_FREE_C(0.052812) * t3;
-    const ariane4_free_real_t t501 = ARIANE4_FREE_C(1.0) / t3;
-    const ariane4_free_real_t t502 = t501 * (t4 * t387
-        + ARIANE4_FREE_C(0.046787723832235825) * (t500 * (ARIANE4_FREE_C(0.5) * t499)));
-    const ariane4_free_real_t t503 = t387 * (t495 + (t222 * t381 - t214 * t382 + t494));
-    const ariane4_free_real_t t504 = t6 * (t6 * (t500 * (ARIANE4_FREE_C(0.5) * t6)));
-    const ariane4_free_real_t t505 = t4 * t7 + t3 * (ARIANE4_FREE_C(7124.375926654358) * t504);
-    const ariane4_free_real_t t506 = t183 * (ARIANE4_FREE_C(376.25254143846996) * (t6 * t504))
-        + t182 * (ARIANE4_FREE_C(2.0) * (t3 * t4));
-    const ariane4_free_real_t t507 = t186 * (t184 * t504 - t6 * (ARIANE4_FREE_C(7124.375926654358) * t3
-        - t506));
-    const ariane4_free_real_t t508 = parameters[FV3] * (dq[2] * t505) + parameters[IA3] * (t507
-        + t209 * t505);
-    const ariane4_free_real_t t509 = ARIANE4_FREE_C(333.3333333333333) * t508 - t503 - t502 * t430;
-    const ariane4_free_real_t t510 = t214 * t395 - t222 * t393 - (t17 * t480 + (t47 * t212 + t68 * t225));
-    const ariane4_free_real_t t511 = ARIANE4_FREE_C(0.2) * (t510 + t486);
-    const ariane4_free_real_t t512 = t294 * t491 - t366 * t497 + t380 * t509 + t389 * t511;
-    ddq_by_q[2] = t512;
-    const ariane4_free_real_t t513 = t296 * t491 + t403 * t497 + t405 * t509 + t407 * t511;
-    ddq_by_q[6] = t513;
-    const ariane4_free_real_t t514 = t410 * t509 - (t409 * t497 - t298 * t491) + t412 * t511;
-    ddq_by_q[10] = t514;
-    const ariane4_free_real_t t515 = t301 * t491 + t414 * t497 + t415 * t509 + t417 * t511;
-    ddq_by_q[14] = t515;
+    const ariane4_free_real_t t440 = t222 * t439 - parameters[YZ3] * t90 + (t252 + t407);
     /* link j3: derivatives */
-    const ariane4_free_real_t t516 = ARIANE4_FREE_C(2.0) * t457 - (t46 * t481 + t48 * t482);
-    const ariane4_free_real_t t517 = ARIANE4_FREE_C(2.0) * t458 - (t48 * t481 + t45 * t482);
-    const ariane4_free_real_t t518 = parameters[MY3R] * t481 - t30 * t482;
-    const ariane4_free_real_t t519 = t23 * (t1 * t516 + t2 * t517 + ARIANE4_FREE_C(0.443) * t518);
-    const ariane4_free_real_t t520 = t22 * (t2 * t516 - t1 * t517) + t519 + ARIANE4_FREE_C(0.116) * t518;
-    const ariane4_free_real_t t521 = t282 * t520;
-    const ariane4_free_real_t t522 = t1 * (ARIANE4_FREE_C(2.0) * t341 - t35 * t482)
-        + t2 * (ARIANE4_FREE_C(2.0) * t340 + t35 * t481);
-    const ariane4_free_real_t t523 = t470 - (t74 * t482 - t73 * t481) - ARIANE4_FREE_C(0.443) * t522;
-    const ariane4_free_real_t t524 = t378 * t523;
-    const ariane4_free_real_t t525 = t387 * (t470 - ARIANE4_FREE_C(2.0) * (t74 * t214 - t73 * t222));
-    const ariane4_free_real_t t526 = ARIANE4_FREE_C(333.3333333333333) * (t8 * parameters[FV3]
-        + parameters[IA3] * (t185 * (ARIANE4_FREE_C(2.0) * dq[2])));
-    const ariane4_free_real_t t527 = t526 + t525;
-    const ariane4_free_real_t t528 = ARIANE4_FREE_C(0.2) * (t473 + ARIANE4_FREE_C(2.0) * (t47 * t222
-        + t68 * t214));
-    const ariane4_free_real_t t529 = t521 * t294 + t524 * t366 + t527 * t380 + t528 * t389;
-    ddq_by_dq[2] = t529;
-    const ariane4_free_real_t t530 = t527 * t405 - (t524 * t403 - t521 * t296) + t528 * t407;
-    ddq_by_dq[6] = t530;
-    const ariane4_free_real_t t531 = t521 * t298 + t524 * t409 + t527 * t410 + t528 * t412;
-    ddq_by_dq[10] = t531;
-    const ariane4_free_real_t t532 = t527 * t415 - (t524 * t414 - t521 * t301) + t528 * t417;
-    ddq_by_dq[14] = t532;
-    ddq_by_input[2] = t380;
-    ddq_by_input[6] = t405;
-    ddq_by_input[10] = t410;
-    ddq_by_input[14] = t415;
-    const ariane4_free_real_t t533 = t232 + t233; /* link j4: force and moment */
-    const ariane4_free_real_t t534 = ARIANE4_FREE_C(2.0) * t219;
-    const ariane4_free_real_t t535 = ARIANE4_FREE_C(2.0) * t218;
-    const ariane4_free_real_t t536 = t534 * t304 + t535 * t310 + (parameters[XY4] * t230
-        - parameters[XX4R] * t229 - parameters[XZ4R] * t533);
-    const ariane4_free_real_t t537 = t270 + t536;
-    const ariane4_free_real_t t538 = t534 * t309 + t535 * t306 + (parameters[YZ4R] * t533
-        + parameters[XY4] * t229);
-    const ariane4_free_real_t t539 = t267 + t538;
-    const ariane4_free_real_t t540 = t9 * t537 + t10 * t539;
-    const ariane4_free_real_t t541 = parameters[MX4] * t247 - parameters[MY4] * t246;
-    const ariane4_free_real_t t542 = parameters[ZZ4] * t533 + (parameters[XZ4R] * t229
-        - parameters[YZ4R] * t230);
-    const ariane4_free_real_t t543 = parameters[MY4] * t533 - t535 * t333 + t254;
-    const ariane4_free_real_t t544 = t534 * t333 - parameters[MX4] * t533 + t252;
-    const ariane4_free_real_t t545 = t10 * t543 + t9 * t544;
-    const ariane4_free_real_t t546 = t541 + (t534 * t331 + t535 * t332 + t542) - ARIANE4_FREE_C(-0.1) * t545;
-    const ariane4_free_real_t t547 = t23 * (t1 * t540 - t2 * t546 + ARIANE4_FREE_C(0.443) * t545);
-    const ariane4_free_real_t t548 = t22 * (t2 * t540 + t1 * t546) + t547 + ARIANE4_FREE_C(0.116) * t545;
-    const ariane4_free_real_t t549 = t282 * t548;
-    const ariane4_free_real_t t550 = t534 * t314 + t535 * t313 + (parameters[MY4] * t229
-        + parameters[MX4] * t230);
-    const ariane4_free_real_t t551 = t10 * t537 - t9 * t539 - ARIANE4_FREE_C(0.1) * t550;
-    const ariane4_free_real_t t552 = t1 * (t10 * t544 - t9 * t543) + t2 * t550;
-    const ariane4_free_real_t t553 = t378 * (t551 + ARIANE4_FREE_C(0.443) * t552);
-    const ariane4_free_real_t t554 = t387 * t551;
-    const ariane4_free_real_t t555 = ARIANE4_FREE_C(0.2) * (t541 + (t219 * t390 + t218 * t391 + t542));
-    const ariane4_free_real_t t556 = t389 * t555 - (t380 * t554 - (t294 * t549 - t366 * t553));
-    ddq_by_q[3] = t556;
-    const ariane4_free_real_t t557 = t296 * t549 + t403 * t553 - t405 * t554 + t407 * t555;
-    ddq_by_q[7] = t557;
-    const ariane4_free_real_t t558 = t412 * t555 - (t409 * t553 - t298 * t549 + t410 * t554);
-    ddq_by_q[11] = t558;
-    const ariane4_free_real_t t559 = t301 * t549 + t414 * t553 - t415 * t554 + t417 * t555;
-    ddq_by_q[15] = t559;
+    const ariane4_free_real_t t441 = ARIANE4_FREE_C(2.0) * t440 - (t44 * t376 + t46 * t379);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t442 = parameters[XZ3] * t90 + t213 * t439 - (t10 * t281 + t9 * t282
+        + t34 * t384);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t443 = ARIANE4_FREE_C(2.0) * t442 - (t46 * t376 + t43 * t379);
+    const ariane4_free_real_t t444 = parameters[MY3R] * t376 - t29 * t379;
+    const ariane4_free_real_t t445 = t22 * (t1 * t441 + t2 * t443 + ARIANE4_FREE_C(0.443) * t444);
+    const ariane4_free_real_t t446 = t21 * (t2 * t441 - t1 * t443) + t445 + ARIANE4_FREE_C(0.116) * t444;
+    const ariane4_free_real_t t447 = t292 * t446;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t448 = t373 + t388 + (t372 - (t249 - t367 + t371));
+    const ariane4_free_real_t t449 = ARIANE4_FREE_C(2.0) * t448; /* link j3: derivatives */
+    const ariane4_free_real_t t450 = t1 * (ARIANE4_FREE_C(2.0) * t393 - t34 * t379)
+        + t2 * (ARIANE4_FREE_C(2.0) * t394 + t34 * t376);
+    const ariane4_free_real_t t451 = t449 - (t72 * t379 - t71 * t376) - ARIANE4_FREE_C(0.443) * t450;
+    const ariane4_free_real_t t452 = t300 * t451;
+    const ariane4_free_real_t t453 = t304 * (t449 - ARIANE4_FREE_C(2.0) * (t72 * t213 - t71 * t222));
+    const ariane4_free_real_t t454 = ARIANE4_FREE_C(333.3333333333333) * (t8 * parameters[FV3]
+        + parameters[IA3] * (t184 * (ARIANE4_FREE_C(2.0) * dq[2])));
+    const ariane4_free_real_t t455 = t454 + t453;
+    const ariane4_free_real_t t456 = t10 * t308 + t9 * t309 + t34 * t430; /* link j4: derivatives */
+    const ariane4_free_real_t t457 = ARIANE4_FREE_C(0.2) * (t456 + ARIANE4_FREE_C(2.0) * (t45 * t222
+        + t66 * t213));
+    const ariane4_free_real_t t458 = t447 * t294 + t452 * t303 + t455 * t307 + t457 * t313;
+    ddq_by_dq[2] = t458;
+    const ariane4_free_real_t t459 = t455 * t318 - (t452 * t316 - t447 * t315) + t457 * t320;
+    ddq_by_dq[6] = t459;
+    const ariane4_free_real_t t460 = t447 * t322 + t452 * t323 + t455 * t324 + t457 * t326;
+    ddq_by_dq[10] = t460;
+    const ariane4_free_real_t t461 = t455 * t330 - (t452 * t329 - t447 * t328) + t457 * t332;
+    ddq_by_dq[14] = t461;
+    ddq_by_input[2] = t307;
+    ddq_by_input[6] = t318;
+    ddq_by_input[10] = t324;
+    ddq_by_input[14] = t330;
+    const ariane4_free_real_t t462 = parameters[MX3R] * t271 - parameters[MY3R] * t228 + t361;
+    const ariane4_free_real_t t463 = t21 * t206;
+    const ariane4_free_real_t t464 = t151 - t463;
+    const ariane4_free_real_t t465 = t151 + t464;
+    const ariane4_free_real_t t466 = t161 + (t158 - parameters[XY2] * t465 + parameters[YZ2] * (t118 - t207));
+    const ariane4_free_real_t t467 = t466 + parameters[MX2R] * t267 + (t2 * t364 - t1 * t383
+        + ARIANE4_FREE_C(0.443) * t462);
+    const ariane4_free_real_t t468 = t160 + t113; /* link j3: motion */
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t469 = t2 * (t375 - t389) + t1 * (t378 - t387);
+    const ariane4_free_real_t t470 = t2 * t469;
+    const ariane4_free_real_t t471 = t2 * t394 + t1 * t393;
+    const ariane4_free_real_t t472 = ARIANE4_FREE_C(0.443) * t471;
+    const ariane4_free_real_t t473 = ARIANE4_FREE_C(0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t474 = t51 * t473; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t475 = ARIANE4_FREE_C(0.443) * t86; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t476 = t34 * t475; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t477 = t474 + t476 - t472;
+    const ariane4_free_real_t t478 = parameters[XZ2R] * t86;
+    const ariane4_free_real_t t479 = parameters[XY2] * dq[1];
+    const ariane4_free_real_t t480 = t478 - t479 + (t477 + (t389 + t470 + t472));
+    const ariane4_free_real_t t481 = ARIANE4_FREE_C(2.0) * t86;
+    const ariane4_free_real_t t482 = t1 * t469;
+    const ariane4_free_real_t t483 = ARIANE4_FREE_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const ariane4_free_real_t t484 = parameters[YZ2] * t86 - dq[1] * t483 + (t482 - t378);
+    const ariane4_free_real_t t485 = ARIANE4_FREE_C(-2.0) * t85;
+    const ariane4_free_real_t t486 = t481 * t480 + t485 * t484 + (t77 * t468 - (t50 * t268 - t52 * t463));
+    const ariane4_free_real_t t487 = t152 + parameters[XX2R] * t464 - parameters[XY2] * t269
+        + parameters[XZ2R] * t239;
+    const ariane4_free_real_t t488 = t487 - t155 + parameters[MY2] * t267 + (t2 * t383 + t1 * t364);
+    const ariane4_free_real_t t489 = t1 * t394 - t2 * t393;
+    const ariane4_free_real_t t490 = parameters[XX2R] + t483;
+    const ariane4_free_real_t t491 = dq[1] * t490 - parameters[XZ2R] * t85 + (t387 + t482
+        + (ARIANE4_FREE_C(0.443) * t489 - t30 * t473));
+    const ariane4_free_real_t t492 = parameters[YZ2] * t85;
+    const ariane4_free_real_t t493 = t479 - t492 + (t477 + (t375 - t470 - t474));
+    const ariane4_free_real_t t494 = t481 * t491 + t485 * t493 + (t78 * t468 - (t52 * t268 - t49 * t463));
+    const ariane4_free_real_t t495 = t21 * (t467 + (t34 * t112 + t486)) + t22 * (t488 + (t494 - t34 * t117));
+    const ariane4_free_real_t t496 = t489 - parameters[MX2R] * dq[1];
+    const ariane4_free_real_t t497 = parameters[MY2] * dq[1] + t471;
+    const ariane4_free_real_t t498 = t481 * t496 - t485 * t497 + (t54 * t268 + t55 * t463);
+    const ariane4_free_real_t t499 = t292 * (t495 + ARIANE4_FREE_C(0.116) * t498);
+    const ariane4_free_real_t t500 = t192 - parameters[ZZ2R] * t207 + parameters[YZ2] * t268
+        + parameters[XZ2R] * t463;
+    const ariane4_free_real_t t501 = t193 + (t191 - t500) + (t415 - ARIANE4_FREE_C(0.443) * (t1 * t399
+        + t2 * t404));
+    const ariane4_free_real_t t502 = ariane4_free_select(t25, t25, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t503 = ARIANE4_FREE_C(1.0) / t502;
+    const ariane4_free_real_t t504 = ARIANE4_FREE_C(0.078402) * t23;
+    const ariane4_free_real_t t505 = ARIANE4_FREE_C(1.0) / t23;
+    const ariane4_free_real_t t506 = t505 * (t24 * t300
+        + ARIANE4_FREE_C(0.03137188092799786) * (t504 * (ARIANE4_FREE_C(0.5) * t503)));
+    const ariane4_free_real_t t507 = t2 * t408 + t1 * t409 - (ARIANE4_FREE_C(0.443) * t401 - t30 * t475);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t508 = ARIANE4_FREE_C(2.0) * (parameters[XY2] * t85 - t86 * t490 + t507);
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t509 = parameters[XY2] * t86 - t85 * t483 - (t1 * t408 - t2 * t409
+        + t51 * t475);
+    const ariane4_free_real_t t510 = ARIANE4_FREE_C(2.0) * t509; /* link j2: derivatives */
+    const ariane4_free_real_t t511 = t86 * t508 + t85 * t510 - (t32 * t468 - (t77 * t268 - t78 * t463));
+    const ariane4_free_real_t t512 = t26 * (t26 * (t504 * (ARIANE4_FREE_C(0.5) * t26)));
+    const ariane4_free_real_t t513 = t24 * t27 + t23 * (ARIANE4_FREE_C(2656.3065671641784) * t512);
+    const ariane4_free_real_t t514 = t198 * (ARIANE4_FREE_C(208.2597474788059) * (t26 * t512))
+        - t197 * (ARIANE4_FREE_C(-2.0) * (t23 * t24));
+    const ariane4_free_real_t t515 = t114 * (t199 * t512 + t26 * (ARIANE4_FREE_C(2656.3065671641784) * t23
+        - t514));
+    const ariane4_free_real_t t516 = parameters[FV2] * (dq[1] * t513) + parameters[IA2] * (t515
+        + t207 * t513);
+    const ariane4_free_real_t t517 = ARIANE4_FREE_C(-83.33333333333333) * t516 + t300 * (t55 * t112
+        - t54 * t117 + t511);
+    const ariane4_free_real_t t518 = t517 + t506 * t501;
+    const ariane4_free_real_t t519 = ARIANE4_FREE_C(0.886) * t86; /* link j4: derivatives */
+    const ariane4_free_real_t t520 = t2 * t421 + t1 * t422 + t30 * t519; /* link j3: derivatives */
+    const ariane4_free_real_t t521 = t1 * t421 - t2 * t422 + t51 * t519;
+    const ariane4_free_real_t t522 = t86 * t520 - t85 * t521 + (t38 * t468 + (t73 * t268 - t74 * t463));
+    const ariane4_free_real_t t523 = t304 * (t51 * t117 - t30 * t112 - t522);
+    const ariane4_free_real_t t524 = ARIANE4_FREE_C(-0.886) * dq[1];
     /* link j4: derivatives */
-    const ariane4_free_real_t t560 = ARIANE4_FREE_C(-2.0) * t327 - (parameters[XY4] * t535
-        + parameters[XX4R] * t534);
-    const ariane4_free_real_t t561 = parameters[XY4] * t534 + ARIANE4_FREE_C(-2.0) * t328;
-    const ariane4_free_real_t t562 = t9 * t560 + t10 * t561;
-    const ariane4_free_real_t t563 = ARIANE4_FREE_C(-2.0) * t314;
-    const ariane4_free_real_t t564 = ARIANE4_FREE_C(-2.0) * t313;
-    const ariane4_free_real_t t565 = t10 * t563 + t9 * t564;
-    const ariane4_free_real_t t566 = t394 - (parameters[XZ4R] * t534 + parameters[YZ4R] * t535)
-        + ARIANE4_FREE_C(-0.1) * t565;
-    const ariane4_free_real_t t567 = t23 * (t1 * t562 + t2 * t566 + ARIANE4_FREE_C(0.443) * t565);
-    const ariane4_free_real_t t568 = t22 * (t2 * t562 - t1 * t566) + t567 + ARIANE4_FREE_C(0.116) * t565;
-    const ariane4_free_real_t t569 = t282 * t568;
-    const ariane4_free_real_t t570 = parameters[MY4] * t534 - parameters[MX4] * t535;
-    const ariane4_free_real_t t571 = ARIANE4_FREE_C(0.1) * t570 + (t9 * t561 - t10 * t560);
-    const ariane4_free_real_t t572 = t2 * t570 + t1 * (t10 * t564 - t9 * t563);
-    const ariane4_free_real_t t573 = t378 * (t571 - ARIANE4_FREE_C(0.443) * t572);
-    const ariane4_free_real_t t574 = t387 * t571;
-    const ariane4_free_real_t t575 = ARIANE4_FREE_C(-2.0e3) * parameters[FV4];
-    const ariane4_free_real_t t576 = t569 * t294 + t573 * t366 + t574 * t380 + t575 * t389;
-    ddq_by_dq[3] = t576;
-    const ariane4_free_real_t t577 = t574 * t405 - (t573 * t403 - t569 * t296) + t575 * t407;
-    ddq_by_dq[7] = t577;
-    const ariane4_free_real_t t578 = t569 * t298 + t573 * t409 + t574 * t410 + t575 * t412;
-    ddq_by_dq[11] = t578;
-    const ariane4_free_real_t t579 = t574 * t415 - (t573 * t414 - t569 * t301) + t575 * t417;
-    ddq_by_dq[15] = t579;
-    ddq_by_input[3] = t389;
-    ddq_by_input[7] = t407;
-    ddq_by_input[11] = t412;
-    ddq_by_input[15] = t417;
-    if (!ariane4_free_all_bounded(ddq, 4)
-        || !ariane4_free_all_bounded(ddq_by_q, 16)
-        || !ariane4_free_all_bounded(ddq_by_dq, 16)
-        || !ariane4_free_all_bounded(ddq_by_input, 16)) {
+    const ariane4_free_real_t t525 = t2 * t431 + t1 * t432 + (t13 * t524 + t35 * t519);
+    const ariane4_free_real_t t526 = t2 * t34; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t527 = t1 * t431 - t2 * t432 - t526 * t519; /* link j4: derivatives */
+    const ariane4_free_real_t t528 = t86 * t525 - t85 * t527 + (t67 * t268 - t68 * t463 - t36 * t468);
+    const ariane4_free_real_t t529 = ARIANE4_FREE_C(0.2) * (t526 * t117 + t35 * t112 + t528);
+    const ariane4_free_real_t t530 = t294 * t499 + t303 * t518 - t307 * t523 + t313 * t529;
+    ddq_by_q[1] = t530;
+    const ariane4_free_real_t t531 = t320 * t529 - (t316 * t518 - t315 * t499 + t318 * t523);
+    ddq_by_q[5] = t531;
+    const ariane4_free_real_t t532 = t322 * t499 + t323 * t518 - t324 * t523 + t326 * t529;
+    ddq_by_q[9] = t532;
+    const ariane4_free_real_t t533 = t332 * t529 - (t329 * t518 - t328 * t499 + t330 * t523);
+    ddq_by_q[13] = t533;
+    const ariane4_free_real_t t534 = parameters[ZZ2R] + t483;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t535 = t86 * t534 - parameters[YZ2] * dq[1] + (t2 * t440 - t1 * t442);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t536 = t21 * (ARIANE4_FREE_C(2.0) * t535 + (t50 * t481 + t52 * t485));
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t537 = parameters[XZ2R] * dq[1] - t85 * t534 + (t1 * t440 + t2 * t442
+        + t34 * t473);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t538 = t22 * (ARIANE4_FREE_C(2.0) * t537 + (t52 * t481 + t49 * t485));
+    const ariane4_free_real_t t539 = t536 + t538 + ARIANE4_FREE_C(0.116) * (t55 * t485 - t54 * t481);
+    const ariane4_free_real_t t540 = t292 * t539;
+    const ariane4_free_real_t t541 = ARIANE4_FREE_C(2.0) * (t478 - t492 - (t477 + (t448 - t476)))
+        - ARIANE4_FREE_C(2.0) * (t78 * t85 - t77 * t86);
+    const ariane4_free_real_t t542 = ARIANE4_FREE_C(83.33333333333333) * (t28 * parameters[FV2]
+        + parameters[IA2] * (t200 * (ARIANE4_FREE_C(2.0) * dq[1])));
+    const ariane4_free_real_t t543 = t542 - t300 * t541;
+    /* link j3: derivatives */
+    const ariane4_free_real_t t544 = t449 - t51 * t524 + ARIANE4_FREE_C(2.0) * (t74 * t85 - t73 * t86);
+    const ariane4_free_real_t t545 = t304 * t544;
+    /* link j4: derivatives */
+    const ariane4_free_real_t t546 = t456 + t526 * t524 + ARIANE4_FREE_C(2.0) * (t68 * t85 - t67 * t86);
+    const ariane4_free_real_t t547 = ARIANE4_FREE_C(0.2) * t546;
+    const ariane4_free_real_t t548 = t540 * t294 + t543 * t303 + t545 * t307 + t547 * t313;
+    ddq_by_dq[1] = t548;
+    const ariane4_free_real_t t549 = t545 * t318 - (t543 * t316 - t540 * t315) + t547 * t320;
+    ddq_by_dq[5] = t549;
+    const ariane4_free_real_t t550 = t540 * t322 + t543 * t323 + t545 * t324 + t547 * t326;
+    ddq_by_dq[9] = t550;
+    const ariane4_free_real_t t551 = t545 * t330 - (t543 * t329 - t540 * t328) + t547 * t332;
+    ddq_by_dq[13] = t551;
+    ddq_by_input[1] = -t303;
+    ddq_by_input[5] = t316;
+    ddq_by_input[9] = -t323;
+    ddq_by_input[13] = t329;
+    const ariane4_free_real_t t552 = t22 * t467 - t21 * t488
+        + ARIANE4_FREE_C(0.116) * (parameters[MX2R] * t269 + parameters[MY2] * t465 + t462);
+    const ariane4_free_real_t t553 = ariane4_free_select(t61, t61, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t554 = ARIANE4_FREE_C(1.0) / t553;
+    const ariane4_free_real_t t555 = ARIANE4_FREE_C(0.037468) * t59;
+    const ariane4_free_real_t t556 = ARIANE4_FREE_C(1.0) / t59;
+    const ariane4_free_real_t t557 = t556 * (t60 * t292
+        + ARIANE4_FREE_C(0.06434139546481742) * (t555 * (ARIANE4_FREE_C(0.5) * t554)));
+    const ariane4_free_real_t t558 = t62 * (t62 * (t555 * (ARIANE4_FREE_C(0.5) * t62)));
+    const ariane4_free_real_t t559 = t60 * t63 + t59 * (ARIANE4_FREE_C(3885.523436256565) * t558);
+    const ariane4_free_real_t t560 = t167 * (ARIANE4_FREE_C(145.582792109661) * (t62 * t558))
+        + t166 * (ARIANE4_FREE_C(2.0) * (t59 * t60));
+    const ariane4_free_real_t t561 = t110 * (t168 * t558 + t62 * (ARIANE4_FREE_C(-3885.523436256565) * t59
+        + t560));
+    const ariane4_free_real_t t562 = parameters[FV1] * (dq[0] * t559) + parameters[IA1] * (t561
+        - t206 * t559);
+    const ariane4_free_real_t t563 = ARIANE4_FREE_C(250.0) * t562 + t557 * (parameters[ZZ1R] * t206 + t552);
+    ddq_by_q[0] = t294 * t563;
+    ddq_by_q[4] = t315 * t563;
+    ddq_by_q[8] = t322 * t563;
+    ddq_by_q[12] = t328 * t563;
+    /* link j2: inertia, momentum beyond */
+    const ariane4_free_real_t t564 = t22 * (t22 * (t493 - t480) + t21 * (t484 + t491));
+    const ariane4_free_real_t t565 = ARIANE4_FREE_C(0.116) * (t21 * t496 - t22 * t497)
+        + t34 * (ARIANE4_FREE_C(0.116) * dq[0]);
+    const ariane4_free_real_t t566 = ARIANE4_FREE_C(250.0) * (t64 * parameters[FV1]
+        + parameters[IA1] * (t169 * (ARIANE4_FREE_C(2.0) * dq[0])));
+    const ariane4_free_real_t t567 = t566 + t292 * (ARIANE4_FREE_C(2.0) * (t480 + t564 + t565));
+    const ariane4_free_real_t t568 = ARIANE4_FREE_C(-0.232) * dq[0];
+    /* link j2: derivatives */
+    const ariane4_free_real_t t569 = t21 * t508 - t22 * t510 - (t22 * t54 + t21 * t55) * t568;
+    const ariane4_free_real_t t570 = t300 * t569;
+    /* link j3: derivatives */
+    const ariane4_free_real_t t571 = t21 * t520 + t22 * t521 - (t22 * t51 + t21 * t30) * t568;
+    const ariane4_free_real_t t572 = t304 * t571;
+    /* link j4: derivatives */
+    const ariane4_free_real_t t573 = t21 * t525 + t22 * t527 - (t21 * t35 - t22 * t526) * t568;
+    const ariane4_free_real_t t574 = ARIANE4_FREE_C(0.2) * t573;
+    const ariane4_free_real_t t575 = t567 * t294 + t570 * t303 + t572 * t307 + t574 * t313;
+    ddq_by_dq[0] = t575;
+    const ariane4_free_real_t t576 = t572 * t318 - (t570 * t316 - t567 * t315) + t574 * t320;
+    ddq_by_dq[4] = t576;
+    const ariane4_free_real_t t577 = t567 * t322 + t570 * t323 + t572 * t324 + t574 * t326;
+    ddq_by_dq[8] = t577;
+    const ariane4_free_real_t t578 = t572 * t330 - (t570 * t329 - t567 * t328) + t574 * t332;
+    ddq_by_dq[12] = t578;
+    ddq_by_input[0] = t294;
+    ddq_by_input[4] = t315;
+    ddq_by_input[8] = t322;
+    ddq_by_input[12] = t328;
+    if (!ariane4_free_bounded(ddq, 4)
+        || !ariane4_free_bounded(ddq_by_q, 16)
+        || !ariane4_free_bounded(ddq_by_dq, 16)
+        || !ariane4_free_bounded(ddq_by_input, 16)) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
         ariane4_free_zero(ddq_by_dq, 16);

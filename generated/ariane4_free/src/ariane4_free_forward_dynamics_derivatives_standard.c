@@ -7,7 +7,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2111 (1198 mul, 909 add, 4 neg), 16 div, 3 sqrt, 8 trig, 7 other calls (sign, select and the like).
+ * Operations: 2111 (1198 mul, 909 add, 4 neg), 16 div, 3 sqrt, 8 trig, 9 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [4]   [rad/s]                  joint velocities; norm at most 100000
@@ -83,7 +83,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
+#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -121,16 +121,15 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    ariane4_free_real_t t69, t70;
-    ARIANE4_FREE_SINCOS(q[0], &t69, &t70);
-    ariane4_free_real_t t27, t28;
-    ARIANE4_FREE_SINCOS(q[1], &t27, &t28);
+    ariane4_free_real_t t67, t68;
+    ARIANE4_FREE_SINCOS(q[0], &t67, &t68);
+    ariane4_free_real_t t26, t27;
+    ARIANE4_FREE_SINCOS(q[1], &t26, &t27);
     ariane4_free_real_t t1, t2;
     ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
     ariane4_free_real_t t9, t10;
     ARIANE4_FREE_SINCOS(q[3], &t9, &t10);
-    const ariane4_free_real_t t0 = ariane4_free_bounded(parameters[ZZ4]
-        + ARIANE4_FREE_C(1.0e4) * parameters[IA4]);
+    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
     if (!(t0 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -166,7 +165,7 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
         + t10 * parameters[YZ4]);
     const ariane4_free_real_t t23 = ARIANE4_FREE_C(1.0) / t0;
     const ariane4_free_real_t t24 = t22 * t23;
-    const ariane4_free_real_t t25 = ariane4_free_bounded(t20 - t22 * t24);
+    const ariane4_free_real_t t25 = t20 - t22 * t24;
     if (!(t25 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -174,53 +173,37 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t26 = t25 + ARIANE4_FREE_C(-1.0e-9) * t20;
-    if (!(t26 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     /* joint j2: drive */
-    const ariane4_free_real_t t29 = ARIANE4_FREE_C(0.8305958991958126) * t27
-        + ARIANE4_FREE_C(0.5568756164881881) * t28;
-    const ariane4_free_real_t t30 = ARIANE4_FREE_C(-0.8305958991958126) * t28
+    const ariane4_free_real_t t28 = ARIANE4_FREE_C(0.8305958991958126) * t26
         + ARIANE4_FREE_C(0.5568756164881881) * t27;
-    const ariane4_free_real_t t31 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t30
+    const ariane4_free_real_t t29 = ARIANE4_FREE_C(-0.8305958991958126) * t27
+        + ARIANE4_FREE_C(0.5568756164881881) * t26;
+    const ariane4_free_real_t t30 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t29
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t32 = ARIANE4_FREE_C(1.0) / t31;
-    const ariane4_free_real_t t33 = ARIANE4_FREE_C(2656.3065671641784) * t32;
-    const ariane4_free_real_t t34 = t29 * t33;
-    const ariane4_free_real_t t35 = t11 + t12; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t36 = parameters[MX3] - t35;
-    const ariane4_free_real_t t37 = parameters[MZ4] + t14;
-    const ariane4_free_real_t t38 = parameters[MY3] + t37;
-    const ariane4_free_real_t t39 = t2 * t36 - t1 * t38; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t31 = ARIANE4_FREE_C(1.0) / t30;
+    const ariane4_free_real_t t32 = ARIANE4_FREE_C(2656.3065671641784) * t31;
+    const ariane4_free_real_t t33 = t28 * t32;
+    const ariane4_free_real_t t34 = t11 + t12; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t35 = parameters[MX3] - t34;
+    const ariane4_free_real_t t36 = parameters[MZ4] + t14;
+    const ariane4_free_real_t t37 = parameters[MY3] + t36;
+    const ariane4_free_real_t t38 = t2 * t35 - t1 * t37; /* link j3: column of the mass matrix */
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t40 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t41 = ARIANE4_FREE_C(0.443) * t40; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t42 = ARIANE4_FREE_C(0.443) * (t41 + ARIANE4_FREE_C(2.0) * t39);
-    const ariane4_free_real_t t43 = parameters[ZZ2] + (t19 + t42);
-    const ariane4_free_real_t t44 = t43 + t34 * t34 * parameters[IA2];
-    const ariane4_free_real_t t45 = t1 * t21; /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t46 = ARIANE4_FREE_C(0.443) * t45 - t22;
-    const ariane4_free_real_t t47 = t46 * t23;
-    const ariane4_free_real_t t48 = ARIANE4_FREE_C(-1.0) / t25;
+    const ariane4_free_real_t t39 = parameters[M3] + parameters[M4];
+    const ariane4_free_real_t t40 = ARIANE4_FREE_C(0.443) * t39; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t41 = ARIANE4_FREE_C(0.443) * (t40 + ARIANE4_FREE_C(2.0) * t38);
+    const ariane4_free_real_t t42 = parameters[ZZ2] + (t19 + t41);
+    const ariane4_free_real_t t43 = t42 + t33 * t33 * parameters[IA2];
+    const ariane4_free_real_t t44 = t1 * t21; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t45 = ARIANE4_FREE_C(0.443) * t44 - t22;
+    const ariane4_free_real_t t46 = t45 * t23;
+    const ariane4_free_real_t t47 = ARIANE4_FREE_C(-1.0) / t25;
     /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t49 = ARIANE4_FREE_C(-0.443) * t39 - t19;
-    const ariane4_free_real_t t50 = t49 - t46 * t24;
-    const ariane4_free_real_t t51 = t50 * t48;
-    const ariane4_free_real_t t52 = ariane4_free_bounded(t44 - t46 * t47 + t50 * t51);
-    if (!(t52 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
-    const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(-1.0e-9) * t44;
-    if (!(t53 > ARIANE4_FREE_C(1.0e-12))) {
+    const ariane4_free_real_t t48 = ARIANE4_FREE_C(-0.443) * t38 - t19;
+    const ariane4_free_real_t t49 = t48 - t45 * t24;
+    const ariane4_free_real_t t50 = t49 * t47;
+    const ariane4_free_real_t t51 = t43 - t45 * t46 + t49 * t50;
+    if (!(t51 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
         ariane4_free_zero(ddq_by_dq, 16);
@@ -228,63 +211,73 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
         return ARIANE4_FREE_STATUS_PIVOT;
     }
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t54 = parameters[XX3] + (parameters[YY4] + t18 + t15);
-    const ariane4_free_real_t t55 = parameters[YY3] + (parameters[ZZ4] + t13);
+    const ariane4_free_real_t t52 = parameters[XX3] + (parameters[YY4] + t18 + t15);
+    const ariane4_free_real_t t53 = parameters[YY3] + (parameters[ZZ4] + t13);
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t56 = t10 * parameters[XZ4] - t9 * parameters[YZ4];
+    const ariane4_free_real_t t54 = t10 * parameters[XZ4] - t9 * parameters[YZ4];
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t57 = parameters[XY3] + (t56 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
-        + ARIANE4_FREE_C(0.436) * t35));
+    const ariane4_free_real_t t55 = parameters[XY3] + (t54 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
+        + ARIANE4_FREE_C(0.436) * t34));
     /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t58 = t2 * (t54 - t55) - t57 * (ARIANE4_FREE_C(2.0) * t1);
-    const ariane4_free_real_t t59 = t2 * t58;
-    const ariane4_free_real_t t60 = parameters[XX2] + (t55 + t59);
-    const ariane4_free_real_t t61 = parameters[YY2] + (t54 - t59 + t42);
-    const ariane4_free_real_t t62 = t2 * t38 + t1 * t36; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t56 = t2 * (t52 - t53) - t55 * (ARIANE4_FREE_C(2.0) * t1);
+    const ariane4_free_real_t t57 = t2 * t56;
+    const ariane4_free_real_t t58 = parameters[XX2] + (t53 + t57);
+    const ariane4_free_real_t t59 = parameters[YY2] + (t52 - t57 + t41);
+    const ariane4_free_real_t t60 = t2 * t37 + t1 * t35; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t63 = parameters[XY2] + (t57 + t1 * t58 + ARIANE4_FREE_C(-0.443) * t62);
+    const ariane4_free_real_t t61 = parameters[XY2] + (t55 + t1 * t56 + ARIANE4_FREE_C(-0.443) * t60);
     /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t64 = t28 * (t28 * (t61 - t60) + t63 * (ARIANE4_FREE_C(2.0) * t27));
-    const ariane4_free_real_t t65 = parameters[MY2] + t62; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t66 = t39 + t41;
-    const ariane4_free_real_t t67 = parameters[MX2] + t66;
+    const ariane4_free_real_t t62 = t27 * (t27 * (t59 - t58) + t61 * (ARIANE4_FREE_C(2.0) * t26));
+    const ariane4_free_real_t t63 = parameters[MY2] + t60; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t64 = t38 + t40;
+    const ariane4_free_real_t t65 = parameters[MX2] + t64;
     /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t68 = ARIANE4_FREE_C(0.116) * (parameters[M2] + t40)
-        + ARIANE4_FREE_C(2.0) * (t28 * t67 - t27 * t65);
+    const ariane4_free_real_t t66 = ARIANE4_FREE_C(0.116) * (parameters[M2] + t39)
+        + ARIANE4_FREE_C(2.0) * (t27 * t65 - t26 * t63);
     /* joint j1: drive */
-    const ariane4_free_real_t t71 = ARIANE4_FREE_C(0.28217402066925895) * t69
-        + ARIANE4_FREE_C(-0.9593632378089879) * t70;
-    const ariane4_free_real_t t72 = ARIANE4_FREE_C(0.28217402066925895) * t70
-        + ARIANE4_FREE_C(0.9593632378089879) * t69;
-    const ariane4_free_real_t t73 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t72
+    const ariane4_free_real_t t69 = ARIANE4_FREE_C(0.28217402066925895) * t67
+        + ARIANE4_FREE_C(-0.9593632378089879) * t68;
+    const ariane4_free_real_t t70 = ARIANE4_FREE_C(0.28217402066925895) * t68
+        + ARIANE4_FREE_C(0.9593632378089879) * t67;
+    const ariane4_free_real_t t71 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t70
         + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t74 = ARIANE4_FREE_C(1.0) / t73;
-    const ariane4_free_real_t t75 = ARIANE4_FREE_C(3885.523436256565) * t74;
-    const ariane4_free_real_t t76 = t71 * t75;
-    const ariane4_free_real_t t77 = parameters[ZZ1] + (t60 + t64 + ARIANE4_FREE_C(0.116) * t68)
-        + t76 * t76 * parameters[IA1];
+    const ariane4_free_real_t t72 = ARIANE4_FREE_C(1.0) / t71;
+    const ariane4_free_real_t t73 = ARIANE4_FREE_C(3885.523436256565) * t72;
+    const ariane4_free_real_t t74 = t69 * t73;
+    const ariane4_free_real_t t75 = parameters[ZZ1] + (t58 + t62 + ARIANE4_FREE_C(0.116) * t66)
+        + t74 * t74 * parameters[IA1];
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t78 = t56 + ARIANE4_FREE_C(0.436) * t11;
-    const ariane4_free_real_t t79 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t11;
-    const ariane4_free_real_t t80 = t2 * t78 - t1 * t79;
-    const ariane4_free_real_t t81 = t1 * t78 + t2 * t79 - ARIANE4_FREE_C(0.443) * t11;
-    const ariane4_free_real_t t82 = t27 * t80 + t28 * t81 - ARIANE4_FREE_C(0.116) * t11;
-    const ariane4_free_real_t t83 = t82 * t23;
+    const ariane4_free_real_t t76 = t54 + ARIANE4_FREE_C(0.436) * t11;
+    const ariane4_free_real_t t77 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t11;
+    const ariane4_free_real_t t78 = t2 * t76 - t1 * t77;
+    const ariane4_free_real_t t79 = t1 * t76 + t2 * t77 - ARIANE4_FREE_C(0.443) * t11;
+    const ariane4_free_real_t t80 = t26 * t78 + t27 * t79 - ARIANE4_FREE_C(0.116) * t11;
+    const ariane4_free_real_t t81 = t80 * t23;
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t84 = parameters[XY4] + t9 * t17 + ARIANE4_FREE_C(0.1) * t21 - parameters[XZ3];
-    const ariane4_free_real_t t85 = parameters[YZ3] + t22;
-    const ariane4_free_real_t t86 = t2 * t84 + t1 * t85; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t87 = t1 * t84 - t2 * t85;
-    const ariane4_free_real_t t88 = t27 * t86 + t28 * t87 + t82 * t24;
-    const ariane4_free_real_t t89 = t88 * t48;
-    const ariane4_free_real_t t90 = t21 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t82 = parameters[XY4] + t9 * t17 + ARIANE4_FREE_C(0.1) * t21 - parameters[XZ3];
+    const ariane4_free_real_t t83 = parameters[YZ3] + t22;
+    const ariane4_free_real_t t84 = t2 * t82 + t1 * t83; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t85 = t1 * t82 - t2 * t83;
+    const ariane4_free_real_t t86 = t26 * t84 + t27 * t85 + t80 * t24;
+    const ariane4_free_real_t t87 = t86 * t47;
+    const ariane4_free_real_t t88 = t21 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t91 = t86 + ARIANE4_FREE_C(-0.443) * t90 - parameters[XZ2];
-    const ariane4_free_real_t t92 = t87 - parameters[YZ2];
-    const ariane4_free_real_t t93 = t82 * t47 - (t27 * t91 + t28 * t92) + t88 * t51;
-    const ariane4_free_real_t t94 = ARIANE4_FREE_C(1.0) / t52;
-    const ariane4_free_real_t t95 = t93 * t94;
-    const ariane4_free_real_t t96 = ariane4_free_bounded(t77 - t82 * t83 + t88 * t89 - t93 * t95);
+    const ariane4_free_real_t t89 = t84 + ARIANE4_FREE_C(-0.443) * t88 - parameters[XZ2];
+    const ariane4_free_real_t t90 = t85 - parameters[YZ2];
+    const ariane4_free_real_t t91 = t80 * t46 - (t26 * t89 + t27 * t90) + t86 * t50;
+    const ariane4_free_real_t t92 = ARIANE4_FREE_C(1.0) / t51;
+    const ariane4_free_real_t t93 = t91 * t92;
+    const ariane4_free_real_t t94 = t75 - t80 * t81 + t86 * t87 - t91 * t93;
+    if (!(t94 > ARIANE4_FREE_C(1.0e-12))) {
+        ariane4_free_zero(ddq, 4);
+        ariane4_free_zero(ddq_by_q, 16);
+        ariane4_free_zero(ddq_by_dq, 16);
+        ariane4_free_zero(ddq_by_input, 16);
+        return ARIANE4_FREE_STATUS_PIVOT;
+    }
+    const ariane4_free_real_t t95 = ariane4_free_min(t25 + ARIANE4_FREE_C(-1.0e-9) * t20, t51
+        + ARIANE4_FREE_C(-1.0e-9) * t43);
+    const ariane4_free_real_t t96 = ariane4_free_min(t95, t94 + ARIANE4_FREE_C(-1.0e-9) * t75);
     if (!(t96 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
@@ -292,736 +285,730 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
         ariane4_free_zero(ddq_by_input, 16);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t97 = t96 + ARIANE4_FREE_C(-1.0e-9) * t77;
-    if (!(t97 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(ddq, 4);
-        ariane4_free_zero(ddq_by_q, 16);
-        ariane4_free_zero(ddq_by_dq, 16);
-        ariane4_free_zero(ddq_by_input, 16);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
-    const ariane4_free_real_t t98 = dq[0] * dq[0]; /* link j1: motion */
-    const ariane4_free_real_t t99 = ARIANE4_FREE_C(0.116) * t98; /* link j2: motion */
-    const ariane4_free_real_t t100 = ARIANE4_FREE_C(9.81) * t27 - t28 * t99;
-    const ariane4_free_real_t t101 = t28 * dq[0];
-    const ariane4_free_real_t t102 = t101 * t101;
-    const ariane4_free_real_t t103 = dq[1] * dq[1];
-    const ariane4_free_real_t t104 = t100 + ARIANE4_FREE_C(-0.443) * (t102 + t103); /* link j3: motion */
-    const ariane4_free_real_t t105 = t1 * t104;
-    const ariane4_free_real_t t106 = t27 * t99 + ARIANE4_FREE_C(9.81) * t28; /* link j2: motion */
-    const ariane4_free_real_t t107 = t27 * dq[0];
-    const ariane4_free_real_t t108 = t107 * t101;
-    const ariane4_free_real_t t109 = ARIANE4_FREE_C(-0.443) * t108 - t106; /* link j3: motion */
-    const ariane4_free_real_t t110 = t105 + t2 * t109;
-    const ariane4_free_real_t t111 = t2 * t107 + t1 * t101;
-    const ariane4_free_real_t t112 = t2 * t101 - t1 * t107;
-    const ariane4_free_real_t t113 = t111 * t112;
-    const ariane4_free_real_t t114 = t111 * t111;
-    const ariane4_free_real_t t115 = dq[1] + dq[2];
-    const ariane4_free_real_t t116 = t115 * t115;
-    const ariane4_free_real_t t117 = t116 + t114; /* link j4: motion */
-    const ariane4_free_real_t t118 = t110 + (ARIANE4_FREE_C(0.1) * t113 + ARIANE4_FREE_C(0.436) * t117);
-    const ariane4_free_real_t t119 = t2 * t104; /* link j3: motion */
-    const ariane4_free_real_t t120 = t1 * t109 - t119;
-    const ariane4_free_real_t t121 = t112 * t112;
-    const ariane4_free_real_t t122 = t116 + t121; /* link j4: motion */
-    const ariane4_free_real_t t123 = t120 - (ARIANE4_FREE_C(0.1) * t122 - ARIANE4_FREE_C(-0.436) * t113);
-    const ariane4_free_real_t t124 = t115 * t111; /* link j3: motion */
-    const ariane4_free_real_t t125 = t115 * t112;
-    const ariane4_free_real_t t126 = dq[1] * t107; /* link j2: motion */
-    const ariane4_free_real_t t127 = ARIANE4_FREE_C(0.886) * t126; /* link j3: motion */
+    const ariane4_free_real_t t97 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_free_real_t t98 = ARIANE4_FREE_C(0.116) * t97; /* link j2: motion */
+    const ariane4_free_real_t t99 = ARIANE4_FREE_C(9.81) * t26 - t27 * t98;
+    const ariane4_free_real_t t100 = t27 * dq[0];
+    const ariane4_free_real_t t101 = t100 * t100;
+    const ariane4_free_real_t t102 = dq[1] * dq[1];
+    const ariane4_free_real_t t103 = t99 + ARIANE4_FREE_C(-0.443) * (t101 + t102); /* link j3: motion */
+    const ariane4_free_real_t t104 = t1 * t103;
+    const ariane4_free_real_t t105 = t26 * t98 + ARIANE4_FREE_C(9.81) * t27; /* link j2: motion */
+    const ariane4_free_real_t t106 = t26 * dq[0];
+    const ariane4_free_real_t t107 = t106 * t100;
+    const ariane4_free_real_t t108 = ARIANE4_FREE_C(-0.443) * t107 - t105; /* link j3: motion */
+    const ariane4_free_real_t t109 = t104 + t2 * t108;
+    const ariane4_free_real_t t110 = t2 * t106 + t1 * t100;
+    const ariane4_free_real_t t111 = t2 * t100 - t1 * t106;
+    const ariane4_free_real_t t112 = t110 * t111;
+    const ariane4_free_real_t t113 = t110 * t110;
+    const ariane4_free_real_t t114 = dq[1] + dq[2];
+    const ariane4_free_real_t t115 = t114 * t114;
+    const ariane4_free_real_t t116 = t115 + t113; /* link j4: motion */
+    const ariane4_free_real_t t117 = t109 + (ARIANE4_FREE_C(0.1) * t112 + ARIANE4_FREE_C(0.436) * t116);
+    const ariane4_free_real_t t118 = t2 * t103; /* link j3: motion */
+    const ariane4_free_real_t t119 = t1 * t108 - t118;
+    const ariane4_free_real_t t120 = t111 * t111;
+    const ariane4_free_real_t t121 = t115 + t120; /* link j4: motion */
+    const ariane4_free_real_t t122 = t119 - (ARIANE4_FREE_C(0.1) * t121 - ARIANE4_FREE_C(-0.436) * t112);
+    const ariane4_free_real_t t123 = t114 * t110; /* link j3: motion */
+    const ariane4_free_real_t t124 = t114 * t111;
+    const ariane4_free_real_t t125 = dq[1] * t106; /* link j2: motion */
+    const ariane4_free_real_t t126 = ARIANE4_FREE_C(0.886) * t125; /* link j3: motion */
     /* link j4: motion */
-    const ariane4_free_real_t t128 = t127 - (ARIANE4_FREE_C(0.2) * t124 + ARIANE4_FREE_C(-0.872) * t125);
-    const ariane4_free_real_t t129 = t9 * t123 - t10 * t128;
-    const ariane4_free_real_t t130 = ARIANE4_FREE_C(2.0) * t125;
-    const ariane4_free_real_t t131 = t9 * t113 + t10 * t130;
-    const ariane4_free_real_t t132 = t10 * t115;
-    const ariane4_free_real_t t133 = t132 + t9 * t111;
-    const ariane4_free_real_t t134 = dq[3] + t112;
-    const ariane4_free_real_t t135 = t133 * t134;
-    const ariane4_free_real_t t136 = t131 - t135;
-    const ariane4_free_real_t t137 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
-    const ariane4_free_real_t t138 = t9 * t130 - t10 * t113; /* link j4: motion */
-    const ariane4_free_real_t t139 = t9 * t115;
-    const ariane4_free_real_t t140 = t10 * t111 - t139;
-    const ariane4_free_real_t t141 = t140 * t134;
-    const ariane4_free_real_t t142 = t138 + t141;
-    const ariane4_free_real_t t143 = t141 + t142; /* link j4: force and moment */
-    const ariane4_free_real_t t144 = t140 * t133; /* link j4: motion */
-    const ariane4_free_real_t t145 = t124 + t144; /* link j4: force and moment */
-    const ariane4_free_real_t t146 = t135 * t137 - parameters[XX4] * t136 + parameters[XY4] * t143
-        + parameters[XZ4] * t145;
-    const ariane4_free_real_t t147 = t133 * t133; /* link j4: motion */
-    const ariane4_free_real_t t148 = t134 * t134;
+    const ariane4_free_real_t t127 = t126 - (ARIANE4_FREE_C(0.2) * t123 + ARIANE4_FREE_C(-0.872) * t124);
+    const ariane4_free_real_t t128 = t9 * t122 - t10 * t127;
+    const ariane4_free_real_t t129 = ARIANE4_FREE_C(2.0) * t124;
+    const ariane4_free_real_t t130 = t9 * t112 + t10 * t129;
+    const ariane4_free_real_t t131 = t10 * t114;
+    const ariane4_free_real_t t132 = t131 + t9 * t110;
+    const ariane4_free_real_t t133 = dq[3] + t111;
+    const ariane4_free_real_t t134 = t132 * t133;
+    const ariane4_free_real_t t135 = t130 - t134;
+    const ariane4_free_real_t t136 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
+    const ariane4_free_real_t t137 = t9 * t129 - t10 * t112; /* link j4: motion */
+    const ariane4_free_real_t t138 = t9 * t114;
+    const ariane4_free_real_t t139 = t10 * t110 - t138;
+    const ariane4_free_real_t t140 = t139 * t133;
+    const ariane4_free_real_t t141 = t137 + t140;
+    const ariane4_free_real_t t142 = t140 + t141; /* link j4: force and moment */
+    const ariane4_free_real_t t143 = t139 * t132; /* link j4: motion */
+    const ariane4_free_real_t t144 = t123 + t143; /* link j4: force and moment */
+    const ariane4_free_real_t t145 = t134 * t136 - parameters[XX4] * t135 + parameters[XY4] * t142
+        + parameters[XZ4] * t144;
+    const ariane4_free_real_t t146 = t132 * t132; /* link j4: motion */
+    const ariane4_free_real_t t147 = t133 * t133;
     /* link j4: force and moment */
-    const ariane4_free_real_t t149 = t146 + parameters[YZ4] * (t148 - t147) + (parameters[MY4] * t118
-        + parameters[MZ4] * t129);
-    const ariane4_free_real_t t150 = t10 * t123 + t9 * t128; /* link j4: motion */
-    const ariane4_free_real_t t151 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
-    const ariane4_free_real_t t152 = t136 - t135;
-    const ariane4_free_real_t t153 = t144 - t124;
-    const ariane4_free_real_t t154 = parameters[XY4] * t152 - (parameters[YY4] * t142 + t141 * t151)
-        + parameters[YZ4] * t153;
-    const ariane4_free_real_t t155 = t140 * t140; /* link j4: motion */
+    const ariane4_free_real_t t148 = t145 + parameters[YZ4] * (t147 - t146) + (parameters[MY4] * t117
+        + parameters[MZ4] * t128);
+    const ariane4_free_real_t t149 = t10 * t122 + t9 * t127; /* link j4: motion */
+    const ariane4_free_real_t t150 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
+    const ariane4_free_real_t t151 = t135 - t134;
+    const ariane4_free_real_t t152 = t143 - t123;
+    const ariane4_free_real_t t153 = parameters[XY4] * t151 - (parameters[YY4] * t141 + t140 * t150)
+        + parameters[YZ4] * t152;
+    const ariane4_free_real_t t154 = t139 * t139; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane4_free_real_t t156 = t154 + parameters[XZ4] * (t148 - t155) + (parameters[MX4] * t118
-        - parameters[MZ4] * t150);
-    const ariane4_free_real_t t157 = parameters[MX4] * (t147 + t148) + parameters[MY4] * t153
-        + parameters[MZ4] * t138;
-    const ariane4_free_real_t t158 = parameters[M4] * t150 + t157;
-    const ariane4_free_real_t t159 = parameters[MX4] * t145 + parameters[MY4] * (t155 + t148)
-        + parameters[MZ4] * t131;
-    const ariane4_free_real_t t160 = t159 - parameters[M4] * t129;
-    const ariane4_free_real_t t161 = t9 * t158 + t10 * t160; /* link j4: what it passes on */
-    const ariane4_free_real_t t162 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
-    const ariane4_free_real_t t163 = ARIANE4_FREE_C(2.0) * t124; /* link j4: motion */
+    const ariane4_free_real_t t155 = t153 + parameters[XZ4] * (t147 - t154) + (parameters[MX4] * t117
+        - parameters[MZ4] * t149);
+    const ariane4_free_real_t t156 = parameters[MX4] * (t146 + t147) + parameters[MY4] * t152
+        + parameters[MZ4] * t137;
+    const ariane4_free_real_t t157 = parameters[M4] * t149 + t156;
+    const ariane4_free_real_t t158 = parameters[MX4] * t144 + parameters[MY4] * (t154 + t147)
+        + parameters[MZ4] * t130;
+    const ariane4_free_real_t t159 = t158 - parameters[M4] * t128;
+    const ariane4_free_real_t t160 = t9 * t157 + t10 * t159; /* link j4: what it passes on */
+    const ariane4_free_real_t t161 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const ariane4_free_real_t t162 = ARIANE4_FREE_C(2.0) * t123; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane4_free_real_t t164 = parameters[XY3] * t163 - (parameters[XX3] * t125 + t125 * t162)
-        - parameters[XZ3] * t113;
-    const ariane4_free_real_t t165 = t164 + parameters[YZ3] * (t116 - t121) - (parameters[MY3] * t127
-        + parameters[MZ3] * t110);
+    const ariane4_free_real_t t163 = parameters[XY3] * t162 - (parameters[XX3] * t124 + t124 * t161)
+        - parameters[XZ3] * t112;
+    const ariane4_free_real_t t164 = t163 + parameters[YZ3] * (t115 - t120) - (parameters[MY3] * t126
+        + parameters[MZ3] * t109);
     /* link j4: what it passes on */
-    const ariane4_free_real_t t166 = t165 + (t10 * t149 + t9 * t156 + ARIANE4_FREE_C(-0.436) * t161);
+    const ariane4_free_real_t t165 = t164 + (t10 * t148 + t9 * t155 + ARIANE4_FREE_C(-0.436) * t160);
     /* link j4: force and moment */
-    const ariane4_free_real_t t167 = parameters[ZZ4] * t124 - t16 * t144 + parameters[YZ4] * t138
-        - parameters[XZ4] * t131;
-    const ariane4_free_real_t t168 = t167 - parameters[XY4] * (t155 - t147) - (parameters[MX4] * t129
-        + parameters[MY4] * t150);
-    const ariane4_free_real_t t169 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
-    const ariane4_free_real_t t170 = parameters[YY3] * t124 + t124 * t169 - parameters[XY3] * t130
-        + parameters[YZ3] * t113;
-    const ariane4_free_real_t t171 = t170 - parameters[XZ3] * (t116 - t114) + (parameters[MZ3] * t120
-        + parameters[MX3] * t127);
+    const ariane4_free_real_t t166 = parameters[ZZ4] * t123 - t16 * t143 + parameters[YZ4] * t137
+        - parameters[XZ4] * t130;
+    const ariane4_free_real_t t167 = t166 - parameters[XY4] * (t154 - t146) - (parameters[MX4] * t128
+        + parameters[MY4] * t149);
+    const ariane4_free_real_t t168 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
+    const ariane4_free_real_t t169 = parameters[YY3] * t123 + t123 * t168 - parameters[XY3] * t129
+        + parameters[YZ3] * t112;
+    const ariane4_free_real_t t170 = t169 - parameters[XZ3] * (t115 - t113) + (parameters[MZ3] * t119
+        + parameters[MX3] * t126);
     /* link j4: what it passes on */
-    const ariane4_free_real_t t172 = t171 + (t168 - ARIANE4_FREE_C(0.1) * t161);
-    const ariane4_free_real_t t173 = dq[1] * t101; /* link j2: motion */
+    const ariane4_free_real_t t171 = t170 + (t167 - ARIANE4_FREE_C(0.1) * t160);
+    const ariane4_free_real_t t172 = dq[1] * t100; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_free_real_t t174 = t173 * (parameters[YY2] - parameters[ZZ2]);
-    const ariane4_free_real_t t175 = ARIANE4_FREE_C(2.0) * t126; /* link j2: motion */
+    const ariane4_free_real_t t173 = t172 * (parameters[YY2] - parameters[ZZ2]);
+    const ariane4_free_real_t t174 = ARIANE4_FREE_C(2.0) * t125; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_free_real_t t176 = t174 - t173 * parameters[XX2] + t175 * parameters[XY2]
-        - t108 * parameters[XZ2];
-    const ariane4_free_real_t t177 = (t102 - t103) * parameters[YZ2];
-    const ariane4_free_real_t t178 = t106 * parameters[MZ2];
+    const ariane4_free_real_t t175 = t173 - t172 * parameters[XX2] + t174 * parameters[XY2]
+        - t107 * parameters[XZ2];
+    const ariane4_free_real_t t176 = (t101 - t102) * parameters[YZ2];
+    const ariane4_free_real_t t177 = t105 * parameters[MZ2];
     /* link j3: what it passes on */
-    const ariane4_free_real_t t179 = t176 - t177 + t178 + (t2 * t166 - t1 * t172);
+    const ariane4_free_real_t t178 = t175 - t176 + t177 + (t2 * t165 - t1 * t171);
     /* link j3: force and moment */
-    const ariane4_free_real_t t180 = parameters[MX3] * t163 + parameters[MY3] * t130 - parameters[MZ3] * (t114
-        + t121);
-    const ariane4_free_real_t t181 = parameters[M3] * t127 + t180 + t161; /* link j4: what it passes on */
+    const ariane4_free_real_t t179 = parameters[MX3] * t162 + parameters[MY3] * t129 - parameters[MZ3] * (t113
+        + t120);
+    const ariane4_free_real_t t180 = parameters[M3] * t126 + t179 + t160; /* link j4: what it passes on */
     /* link j2: force and moment */
-    const ariane4_free_real_t t182 = t126 * (parameters[ZZ2] - parameters[XX2]);
-    const ariane4_free_real_t t183 = ARIANE4_FREE_C(2.0) * t173; /* link j2: motion */
+    const ariane4_free_real_t t181 = t125 * (parameters[ZZ2] - parameters[XX2]);
+    const ariane4_free_real_t t182 = ARIANE4_FREE_C(2.0) * t172; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_free_real_t t184 = t126 * parameters[YY2] + t182 - t183 * parameters[XY2]
-        + t108 * parameters[YZ2];
-    const ariane4_free_real_t t185 = t107 * t107; /* link j2: motion */
-    const ariane4_free_real_t t186 = (t185 - t103) * parameters[XZ2]; /* link j2: force and moment */
-    const ariane4_free_real_t t187 = t100 * parameters[MZ2];
+    const ariane4_free_real_t t183 = t125 * parameters[YY2] + t181 - t182 * parameters[XY2]
+        + t107 * parameters[YZ2];
+    const ariane4_free_real_t t184 = t106 * t106; /* link j2: motion */
+    const ariane4_free_real_t t185 = (t184 - t102) * parameters[XZ2]; /* link j2: force and moment */
+    const ariane4_free_real_t t186 = t99 * parameters[MZ2];
     /* link j3: what it passes on */
-    const ariane4_free_real_t t188 = t184 + t186 - t187 + (t1 * t166 + t2 * t172
-        + ARIANE4_FREE_C(0.443) * t181);
-    const ariane4_free_real_t t189 = t185 + t102; /* link j3: motion */
-    const ariane4_free_real_t t190 = t189 * parameters[MZ2]; /* link j2: force and moment */
+    const ariane4_free_real_t t187 = t183 + t185 - t186 + (t1 * t165 + t2 * t171
+        + ARIANE4_FREE_C(0.443) * t180);
+    const ariane4_free_real_t t188 = t184 + t101; /* link j3: motion */
+    const ariane4_free_real_t t189 = t188 * parameters[MZ2]; /* link j2: force and moment */
     /* link j2: what it passes on */
-    const ariane4_free_real_t t191 = ARIANE4_FREE_C(0.116) * (t175 * parameters[MX2] + t183 * parameters[MY2]
-        - t190 + t181);
-    const ariane4_free_real_t t192 = t76 * dq[0];
-    const ariane4_free_real_t t193 = ariane4_free_sign(t192); /* joint j1: coulomb_friction */
-    const ariane4_free_real_t t194 = ARIANE4_FREE_C(72.7913960548305) * (t74 * t74); /* joint j1: drive */
-    const ariane4_free_real_t t195 = t71 * t71;
-    const ariane4_free_real_t t196 = ARIANE4_FREE_C(3885.523436256565) * t72 + t194 * t195;
-    const ariane4_free_real_t t197 = t74 * t196;
-    const ariane4_free_real_t t198 = t192 * parameters[FV1] + t193 * parameters[FC1]
-        + t197 * t98 * parameters[IA1];
-    const ariane4_free_real_t t199 = t27 * t179 + t28 * t188 + t191 - t76 * t198;
-    const ariane4_free_real_t t200 = ARIANE4_FREE_C(0.004) * t76;
-    const ariane4_free_real_t t201 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ariane4_free_real_t t202 = ARIANE4_FREE_C(1.0e2) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]
-        + t201 * parameters[FC4]) - t168;
-    const ariane4_free_real_t t203 = ARIANE4_FREE_C(5.0) * input[3] - t202;
+    const ariane4_free_real_t t190 = ARIANE4_FREE_C(0.116) * (t174 * parameters[MX2] + t182 * parameters[MY2]
+        - t189 + t180);
+    const ariane4_free_real_t t191 = t74 * dq[0];
+    const ariane4_free_real_t t192 = ariane4_free_sign(t191); /* joint j1: coulomb_friction */
+    const ariane4_free_real_t t193 = ARIANE4_FREE_C(72.7913960548305) * (t72 * t72); /* joint j1: drive */
+    const ariane4_free_real_t t194 = t69 * t69;
+    const ariane4_free_real_t t195 = ARIANE4_FREE_C(3885.523436256565) * t70 + t193 * t194;
+    const ariane4_free_real_t t196 = t72 * t195;
+    const ariane4_free_real_t t197 = t191 * parameters[FV1] + t192 * parameters[FC1]
+        + t196 * t97 * parameters[IA1];
+    const ariane4_free_real_t t198 = t26 * t178 + t27 * t187 + t190 - t74 * t197;
+    const ariane4_free_real_t t199 = ARIANE4_FREE_C(0.004) * t74;
+    const ariane4_free_real_t t200 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ariane4_free_real_t t201 = ARIANE4_FREE_C(1.0e2) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]
+        + t200 * parameters[FC4]) - t167;
+    const ariane4_free_real_t t202 = ARIANE4_FREE_C(5.0) * input[3] - t201;
     /* link j4: force and moment */
-    const ariane4_free_real_t t204 = parameters[MZ4] * (t155 + t147) - (parameters[MX4] * t143
-        + parameters[MY4] * t152);
-    const ariane4_free_real_t t205 = parameters[M4] * t118 + t204;
-    const ariane4_free_real_t t206 = t10 * t158 - t9 * t160; /* link j4: what it passes on */
-    const ariane4_free_real_t t207 = t9 * t149 - t10 * t156 - (ARIANE4_FREE_C(-0.1) * t205
-        - ARIANE4_FREE_C(0.436) * t206);
-    const ariane4_free_real_t t208 = parameters[XX3] - parameters[YY3]; /* link j3: force and moment */
-    const ariane4_free_real_t t209 = parameters[XY3] * (t114 - t121) - t113 * t208 + (parameters[MY3] * t120
-        - parameters[MX3] * t110);
-    const ariane4_free_real_t t210 = t209 + t207; /* link j4: what it passes on */
-    const ariane4_free_real_t t211 = t8 * dq[2];
-    const ariane4_free_real_t t212 = ariane4_free_sign(t211); /* joint j3: coulomb_friction */
-    const ariane4_free_real_t t213 = ARIANE4_FREE_C(188.12627071923498) * (t6 * t6); /* joint j3: drive */
-    const ariane4_free_real_t t214 = t3 * t3;
-    const ariane4_free_real_t t215 = ARIANE4_FREE_C(7124.375926654358) * t4 + t213 * t214;
-    const ariane4_free_real_t t216 = t6 * t215;
-    const ariane4_free_real_t t217 = dq[2] * dq[2];
-    const ariane4_free_real_t t218 = t211 * parameters[FV3] + t212 * parameters[FC3]
-        + t216 * t217 * parameters[IA3];
-    const ariane4_free_real_t t219 = ARIANE4_FREE_C(0.003) * t8;
-    const ariane4_free_real_t t220 = input[2] * t219 + (t8 * t218 + t210) + t203 * t24;
-    const ariane4_free_real_t t221 = t199 - input[0] * t200 - t203 * t83 + t220 * t89;
+    const ariane4_free_real_t t203 = parameters[MZ4] * (t154 + t146) - (parameters[MX4] * t142
+        + parameters[MY4] * t151);
+    const ariane4_free_real_t t204 = parameters[M4] * t117 + t203;
+    const ariane4_free_real_t t205 = t10 * t157 - t9 * t159; /* link j4: what it passes on */
+    const ariane4_free_real_t t206 = t9 * t148 - t10 * t155 - (ARIANE4_FREE_C(-0.1) * t204
+        - ARIANE4_FREE_C(0.436) * t205);
+    const ariane4_free_real_t t207 = parameters[XX3] - parameters[YY3]; /* link j3: force and moment */
+    const ariane4_free_real_t t208 = parameters[XY3] * (t113 - t120) - t112 * t207 + (parameters[MY3] * t119
+        - parameters[MX3] * t109);
+    const ariane4_free_real_t t209 = t208 + t206; /* link j4: what it passes on */
+    const ariane4_free_real_t t210 = t8 * dq[2];
+    const ariane4_free_real_t t211 = ariane4_free_sign(t210); /* joint j3: coulomb_friction */
+    const ariane4_free_real_t t212 = ARIANE4_FREE_C(188.12627071923498) * (t6 * t6); /* joint j3: drive */
+    const ariane4_free_real_t t213 = t3 * t3;
+    const ariane4_free_real_t t214 = ARIANE4_FREE_C(7124.375926654358) * t4 + t212 * t213;
+    const ariane4_free_real_t t215 = t6 * t214;
+    const ariane4_free_real_t t216 = dq[2] * dq[2];
+    const ariane4_free_real_t t217 = t210 * parameters[FV3] + t211 * parameters[FC3]
+        + t215 * t216 * parameters[IA3];
+    const ariane4_free_real_t t218 = ARIANE4_FREE_C(0.003) * t8;
+    const ariane4_free_real_t t219 = input[2] * t218 + (t8 * t217 + t209) + t202 * t24;
+    const ariane4_free_real_t t220 = t198 - input[0] * t199 - t202 * t81 + t219 * t87;
     /* link j4: what it passes on */
-    const ariane4_free_real_t t222 = parameters[M3] * t120 + (parameters[MX3] * t122 - parameters[MY3] * t113)
-        + t206;
-    const ariane4_free_real_t t223 = parameters[M3] * t110 + (parameters[MY3] * t117 - parameters[MX3] * t113)
+    const ariane4_free_real_t t221 = parameters[M3] * t119 + (parameters[MX3] * t121 - parameters[MY3] * t112)
         + t205;
-    const ariane4_free_real_t t224 = (t185 - t102) * parameters[XY2]; /* link j2: force and moment */
-    const ariane4_free_real_t t225 = t108 * (parameters[XX2] - parameters[YY2]);
-    const ariane4_free_real_t t226 = t106 * parameters[MX2] - t100 * parameters[MY2];
+    const ariane4_free_real_t t222 = parameters[M3] * t109 + (parameters[MY3] * t116 - parameters[MX3] * t112)
+        + t204;
+    const ariane4_free_real_t t223 = (t184 - t101) * parameters[XY2]; /* link j2: force and moment */
+    const ariane4_free_real_t t224 = t107 * (parameters[XX2] - parameters[YY2]);
+    const ariane4_free_real_t t225 = t105 * parameters[MX2] - t99 * parameters[MY2];
     /* link j3: what it passes on */
-    const ariane4_free_real_t t227 = t225 - t224 - t226 - (t210 - ARIANE4_FREE_C(0.443) * (t1 * t222
-        + t2 * t223));
-    const ariane4_free_real_t t228 = t34 * dq[1];
-    const ariane4_free_real_t t229 = ariane4_free_sign(t228); /* joint j2: coulomb_friction */
-    const ariane4_free_real_t t230 = ARIANE4_FREE_C(104.12987373940295) * (t32 * t32); /* joint j2: drive */
-    const ariane4_free_real_t t231 = t29 * t29;
-    const ariane4_free_real_t t232 = ARIANE4_FREE_C(-2656.3065671641784) * t30 - t230 * t231;
-    const ariane4_free_real_t t233 = t32 * t232;
-    const ariane4_free_real_t t234 = t228 * parameters[FV2] + t229 * parameters[FC2]
-        + t233 * t103 * parameters[IA2];
-    const ariane4_free_real_t t235 = ARIANE4_FREE_C(0.012) * t34;
-    const ariane4_free_real_t t236 = t235 * input[1] - (t34 * t234 - t227) + t203 * t47;
-    const ariane4_free_real_t t237 = t236 + t220 * t51;
-    const ariane4_free_real_t t238 = ARIANE4_FREE_C(1.0) / t96;
-    const ariane4_free_real_t t239 = ariane4_free_bounded((t221 - t237 * t95) * t238);
-    ddq[0] = t239;
-    const ariane4_free_real_t t240 = ariane4_free_bounded(t237 * t94 - t95 * t239);
-    ddq[1] = t240;
-    const ariane4_free_real_t t241 = ariane4_free_bounded(t220 * t48 - t89 * t239 - t51 * t240);
-    ddq[2] = t241;
-    const ariane4_free_real_t t242 = ariane4_free_bounded(t203 * t23 - t83 * t239 + t47 * t240 - t24 * t241);
-    ddq[3] = t242;
-    const ariane4_free_real_t t243 = t240 + t241;
-    const ariane4_free_real_t t244 = t27 * t2 + t28 * t1; /* link j3: motion */
-    const ariane4_free_real_t t245 = dq[0] * t244;
-    const ariane4_free_real_t t246 = t27 * t1 - t28 * t2;
-    const ariane4_free_real_t t247 = dq[0] * t246;
-    const ariane4_free_real_t t248 = t245 * t247;
-    const ariane4_free_real_t t249 = t248 + t243;
-    const ariane4_free_real_t t250 = t244 * t239;
-    const ariane4_free_real_t t251 = t247 * t115;
-    const ariane4_free_real_t t252 = t251 - t250;
-    const ariane4_free_real_t t253 = t251 + t252;
-    const ariane4_free_real_t t254 = t9 * t249 + t10 * t253;
-    const ariane4_free_real_t t255 = t9 * t245 + t132; /* link j4: motion */
-    const ariane4_free_real_t t256 = dq[3] - t247;
-    const ariane4_free_real_t t257 = t255 * t256;
-    const ariane4_free_real_t t258 = t257 + t254;
-    const ariane4_free_real_t t259 = t10 * t249 - t9 * t253;
-    const ariane4_free_real_t t260 = t10 * t245 - t139;
-    const ariane4_free_real_t t261 = t260 * t256;
-    const ariane4_free_real_t t262 = t261 + t259;
-    const ariane4_free_real_t t263 = t261 + t262;
-    const ariane4_free_real_t t264 = t246 * t239;
-    const ariane4_free_real_t t265 = t245 * t115; /* link j3: motion */
-    const ariane4_free_real_t t266 = t265 + t264;
-    const ariane4_free_real_t t267 = t266 - t242;
-    const ariane4_free_real_t t268 = t260 * t255; /* link j4: motion */
-    const ariane4_free_real_t t269 = t268 + t267;
-    const ariane4_free_real_t t270 = t257 * t137 + parameters[XX4] * t258 + parameters[XY4] * t263
-        + parameters[XZ4] * t269;
+    const ariane4_free_real_t t226 = t224 - t223 - t225 - (t209 - ARIANE4_FREE_C(0.443) * (t1 * t221
+        + t2 * t222));
+    const ariane4_free_real_t t227 = t33 * dq[1];
+    const ariane4_free_real_t t228 = ariane4_free_sign(t227); /* joint j2: coulomb_friction */
+    const ariane4_free_real_t t229 = ARIANE4_FREE_C(104.12987373940295) * (t31 * t31); /* joint j2: drive */
+    const ariane4_free_real_t t230 = t28 * t28;
+    const ariane4_free_real_t t231 = ARIANE4_FREE_C(-2656.3065671641784) * t29 - t229 * t230;
+    const ariane4_free_real_t t232 = t31 * t231;
+    const ariane4_free_real_t t233 = t227 * parameters[FV2] + t228 * parameters[FC2]
+        + t232 * t102 * parameters[IA2];
+    const ariane4_free_real_t t234 = ARIANE4_FREE_C(0.012) * t33;
+    const ariane4_free_real_t t235 = t234 * input[1] - (t33 * t233 - t226) + t202 * t46;
+    const ariane4_free_real_t t236 = t235 + t219 * t50;
+    const ariane4_free_real_t t237 = ARIANE4_FREE_C(1.0) / t94;
+    const ariane4_free_real_t t238 = ariane4_free_held((t220 - t236 * t93) * t237);
+    ddq[0] = t238;
+    const ariane4_free_real_t t239 = ariane4_free_held(t236 * t92 - t93 * t238);
+    ddq[1] = t239;
+    const ariane4_free_real_t t240 = ariane4_free_held(t219 * t47 - t87 * t238 - t50 * t239);
+    ddq[2] = t240;
+    const ariane4_free_real_t t241 = ariane4_free_held(t202 * t23 - t81 * t238 + t46 * t239 - t24 * t240);
+    ddq[3] = t241;
+    const ariane4_free_real_t t242 = t239 + t240;
+    const ariane4_free_real_t t243 = t26 * t2 + t27 * t1; /* link j3: motion */
+    const ariane4_free_real_t t244 = dq[0] * t243;
+    const ariane4_free_real_t t245 = t26 * t1 - t27 * t2;
+    const ariane4_free_real_t t246 = dq[0] * t245;
+    const ariane4_free_real_t t247 = t244 * t246;
+    const ariane4_free_real_t t248 = t247 + t242;
+    const ariane4_free_real_t t249 = t243 * t238;
+    const ariane4_free_real_t t250 = t246 * t114;
+    const ariane4_free_real_t t251 = t250 - t249;
+    const ariane4_free_real_t t252 = t250 + t251;
+    const ariane4_free_real_t t253 = t10 * t248 - t9 * t252;
+    const ariane4_free_real_t t254 = t10 * t244 - t138; /* link j4: motion */
+    const ariane4_free_real_t t255 = dq[3] - t246;
+    const ariane4_free_real_t t256 = t254 * t255;
+    const ariane4_free_real_t t257 = t256 + t253;
+    const ariane4_free_real_t t258 = t9 * t248 + t10 * t252;
+    const ariane4_free_real_t t259 = t9 * t244 + t131;
+    const ariane4_free_real_t t260 = t259 * t255;
+    const ariane4_free_real_t t261 = t260 + t258;
+    const ariane4_free_real_t t262 = t260 + t261;
+    const ariane4_free_real_t t263 = t245 * t238;
+    const ariane4_free_real_t t264 = t244 * t114; /* link j3: motion */
+    const ariane4_free_real_t t265 = t264 + t263;
+    const ariane4_free_real_t t266 = t265 - t241;
+    const ariane4_free_real_t t267 = t254 * t259; /* link j4: motion */
+    const ariane4_free_real_t t268 = t266 - t267;
+    const ariane4_free_real_t t269 = t256 * t150 + parameters[YY4] * t257 + parameters[XY4] * t262
+        + parameters[YZ4] * t268;
+    const ariane4_free_real_t t270 = t254 * t254;
     const ariane4_free_real_t t271 = t255 * t255;
-    const ariane4_free_real_t t272 = t256 * t256;
-    const ariane4_free_real_t t273 = ARIANE4_FREE_C(-0.116) * t239;
-    const ariane4_free_real_t t274 = t28 * t239;
-    const ariane4_free_real_t t275 = t126 - t274;
-    const ariane4_free_real_t t276 = t126 + t275;
-    const ariane4_free_real_t t277 = t273 + ARIANE4_FREE_C(0.443) * t276;
-    const ariane4_free_real_t t278 = t265 + t266;
-    const ariane4_free_real_t t279 = ARIANE4_FREE_C(0.1) * t278 + ARIANE4_FREE_C(0.436) * t253 - t277;
-    const ariane4_free_real_t t280 = t247 * t247; /* link j3: motion */
-    const ariane4_free_real_t t281 = t280 + t116; /* link j4: motion */
-    const ariane4_free_real_t t282 = t108 + t240;
-    const ariane4_free_real_t t283 = t106 + ARIANE4_FREE_C(0.443) * t282;
-    const ariane4_free_real_t t284 = t119 + t1 * t283;
-    const ariane4_free_real_t t285 = t284 + (ARIANE4_FREE_C(0.1) * t281 + ARIANE4_FREE_C(-0.436) * t249);
-    const ariane4_free_real_t t286 = t10 * t279 - t9 * t285;
-    const ariane4_free_real_t t287 = parameters[MZ4] * t286;
-    const ariane4_free_real_t t288 = t248 - t243;
-    const ariane4_free_real_t t289 = t245 * t245; /* link j3: motion */
-    const ariane4_free_real_t t290 = t289 + t116; /* link j4: motion */
-    const ariane4_free_real_t t291 = t2 * t283 - t105;
-    const ariane4_free_real_t t292 = t291 - (ARIANE4_FREE_C(0.436) * t290 - ARIANE4_FREE_C(0.1) * t288);
-    const ariane4_free_real_t t293 = (t272 - t271) * parameters[YZ4] + t270 + (t287 - parameters[MY4] * t292);
-    const ariane4_free_real_t t294 = t257 + t258;
-    const ariane4_free_real_t t295 = t267 - t268;
-    const ariane4_free_real_t t296 = t261 * t151 + parameters[YY4] * t262 + parameters[XY4] * t294
-        + parameters[YZ4] * t295;
-    const ariane4_free_real_t t297 = t260 * t260;
-    const ariane4_free_real_t t298 = t10 * t285 + t9 * t279;
-    const ariane4_free_real_t t299 = parameters[MZ4] * t298;
-    const ariane4_free_real_t t300 = (t297 - t272) * parameters[XZ4] + t296 + (parameters[MX4] * t292 - t299);
-    const ariane4_free_real_t t301 = parameters[M4] * t298;
-    const ariane4_free_real_t t302 = parameters[MZ4] * t259;
-    const ariane4_free_real_t t303 = t301 + (parameters[MY4] * t295 - (t271 + t272) * parameters[MX4] - t302);
-    const ariane4_free_real_t t304 = parameters[M4] * t286;
-    const ariane4_free_real_t t305 = parameters[MZ4] * t254;
-    const ariane4_free_real_t t306 = (t297 + t272) * parameters[MY4] + parameters[MX4] * t269 - t305 - t304;
-    const ariane4_free_real_t t307 = t10 * t306 - t9 * t303;
-    const ariane4_free_real_t t308 = t251 * t162 + parameters[XX3] * t252 + parameters[XY3] * t278
-        + parameters[XZ3] * t288;
-    const ariane4_free_real_t t309 = parameters[MY3] * t277 - parameters[MZ3] * t291 + ((t280
-        - t116) * parameters[YZ3] - t308);
-    const ariane4_free_real_t t310 = t309 + (t9 * t300 - t10 * t293 + ARIANE4_FREE_C(0.436) * t307);
-    const ariane4_free_real_t t311 = parameters[ZZ4] * t267 - t268 * t16 + parameters[YZ4] * t259
-        + parameters[XZ4] * t254;
-    const ariane4_free_real_t t312 = (t271 - t297) * parameters[XY4] + t311 + (parameters[MY4] * t298
-        - parameters[MX4] * t286);
-    const ariane4_free_real_t t313 = t265 * t169 + parameters[YY3] * t266 + parameters[XY3] * t253
-        - parameters[YZ3] * t249;
-    const ariane4_free_real_t t314 = parameters[MX3] * t277 - parameters[MZ3] * t284 + ((t289
-        - t116) * parameters[XZ3] + t313);
-    const ariane4_free_real_t t315 = t314 + (t312 + ARIANE4_FREE_C(-0.1) * t307);
-    const ariane4_free_real_t t316 = t27 * t239;
-    const ariane4_free_real_t t317 = t173 + t316;
-    const ariane4_free_real_t t318 = parameters[XX2] * t317 - t174 - parameters[XY2] * t276
-        + parameters[XZ2] * t282;
-    const ariane4_free_real_t t319 = t177 + t318 + (parameters[MY2] * t273 - t178) + (t2 * t310 + t1 * t315);
-    const ariane4_free_real_t t320 = t289 + t280;
-    const ariane4_free_real_t t321 = parameters[M3] * t277 + (parameters[MX3] * t278 - parameters[MY3] * t253
-        - t320 * parameters[MZ3]);
-    const ariane4_free_real_t t322 = t321 + t307;
-    const ariane4_free_real_t t323 = t173 + t317;
-    const ariane4_free_real_t t324 = t182 + parameters[YY2] * t275 - parameters[XY2] * t323
-        + parameters[YZ2] * (t108 - t240);
-    const ariane4_free_real_t t325 = t186 + t324 + (parameters[MX2] * t273 - t187) + (t2 * t315 - t1 * t310
-        + ARIANE4_FREE_C(0.443) * t322);
-    const ariane4_free_real_t t326 = parameters[M2] * t273 + (parameters[MX2] * t276 + parameters[MY2] * t323
-        - t190);
-    const ariane4_free_real_t t327 = t28 * t325 - t27 * t319 + ARIANE4_FREE_C(0.116) * (t326 + t322);
-    const ariane4_free_real_t t328 = ARIANE4_FREE_C(0.06434139546481742) * t73 / t71; /* joint j1: drive */
-    const ariane4_free_real_t t329 = ariane4_free_select(t73, t73, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t330 = ARIANE4_FREE_C(1.0) / t329;
-    const ariane4_free_real_t t331 = ARIANE4_FREE_C(0.037468) * t71;
-    const ariane4_free_real_t t332 = ARIANE4_FREE_C(1.0) / t71;
-    const ariane4_free_real_t t333 = t332 * (t72 * t328
-        + ARIANE4_FREE_C(0.06434139546481742) * (t331 * (ARIANE4_FREE_C(0.5) * t330)));
-    const ariane4_free_real_t t334 = t74 * (t74 * (t331 * (ARIANE4_FREE_C(0.5) * t74)));
-    const ariane4_free_real_t t335 = t72 * t75 + t71 * (ARIANE4_FREE_C(3885.523436256565) * t334);
-    const ariane4_free_real_t t336 = t195 * (ARIANE4_FREE_C(145.582792109661) * (t74 * t334))
-        + t194 * (ARIANE4_FREE_C(2.0) * (t71 * t72));
-    const ariane4_free_real_t t337 = t98 * (t196 * t334 + t74 * (ARIANE4_FREE_C(-3885.523436256565) * t71
-        + t336));
-    const ariane4_free_real_t t338 = parameters[FV1] * (dq[0] * t335) + parameters[IA1] * (t337
-        + t239 * t335);
-    const ariane4_free_real_t t339 = ARIANE4_FREE_C(250.0) * t338 + t333 * (t327 - parameters[ZZ1] * t239);
-    const ariane4_free_real_t t340 = t200 * t238;
-    ddq_by_q[0] = -(t340 * t339);
-    const ariane4_free_real_t t341 = t95 * t238;
-    const ariane4_free_real_t t342 = ariane4_free_bounded(t200 * t341);
-    ddq_by_q[4] = t342 * t339;
-    const ariane4_free_real_t t343 = t238 * (t89 - t51 * t95);
-    const ariane4_free_real_t t344 = ariane4_free_bounded(t200 * t343);
-    ddq_by_q[8] = t344 * t339;
-    const ariane4_free_real_t t345 = t47 + t24 * t51;
-    const ariane4_free_real_t t346 = t238 * (t83 - t24 * t89 + t95 * t345);
-    const ariane4_free_real_t t347 = ariane4_free_bounded(t200 * t346);
-    ddq_by_q[12] = t347 * t339;
-    const ariane4_free_real_t t348 = t255 * parameters[MZ4] + t256 * parameters[MY4];
-    const ariane4_free_real_t t349 = t256 * parameters[MX4] - t260 * parameters[MZ4];
-    const ariane4_free_real_t t350 = t10 * t348 + t9 * t349; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t351 = ARIANE4_FREE_C(0.1) * t350;
-    const ariane4_free_real_t t352 = t260 * parameters[MY4] + t255 * parameters[MX4];
-    const ariane4_free_real_t t353 = ARIANE4_FREE_C(0.436) * t352;
-    const ariane4_free_real_t t354 = ARIANE4_FREE_C(-0.436) * t115; /* link j4: velocity of its origin */
-    const ariane4_free_real_t t355 = t35 * t354; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t356 = ARIANE4_FREE_C(-0.1) * t115; /* link j4: velocity of its origin */
-    const ariane4_free_real_t t357 = t37 * t356; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t358 = ARIANE4_FREE_C(-0.436) * t245 + ARIANE4_FREE_C(0.1) * t247;
-    const ariane4_free_real_t t359 = t21 * t358;
-    const ariane4_free_real_t t360 = t351 + t353 + (t357 - t355 + t359);
-    const ariane4_free_real_t t361 = t255 * parameters[XZ4];
-    const ariane4_free_real_t t362 = t256 * parameters[XY4];
-    const ariane4_free_real_t t363 = t361 + t362;
-    const ariane4_free_real_t t364 = t260 * parameters[YZ4];
-    const ariane4_free_real_t t365 = t362 - t364;
-    const ariane4_free_real_t t366 = ARIANE4_FREE_C(-0.5) * (parameters[ZZ4] + (parameters[XX4]
+    const ariane4_free_real_t t272 = ARIANE4_FREE_C(-0.116) * t238;
+    const ariane4_free_real_t t273 = t27 * t238;
+    const ariane4_free_real_t t274 = t125 - t273;
+    const ariane4_free_real_t t275 = t125 + t274;
+    const ariane4_free_real_t t276 = t272 + ARIANE4_FREE_C(0.443) * t275;
+    const ariane4_free_real_t t277 = t264 + t265;
+    const ariane4_free_real_t t278 = ARIANE4_FREE_C(0.1) * t277 + ARIANE4_FREE_C(0.436) * t252 - t276;
+    const ariane4_free_real_t t279 = t246 * t246; /* link j3: motion */
+    const ariane4_free_real_t t280 = t279 + t115; /* link j4: motion */
+    const ariane4_free_real_t t281 = t107 + t239;
+    const ariane4_free_real_t t282 = t105 + ARIANE4_FREE_C(0.443) * t281;
+    const ariane4_free_real_t t283 = t118 + t1 * t282;
+    const ariane4_free_real_t t284 = t283 + (ARIANE4_FREE_C(0.1) * t280 + ARIANE4_FREE_C(-0.436) * t248);
+    const ariane4_free_real_t t285 = t10 * t284 + t9 * t278;
+    const ariane4_free_real_t t286 = parameters[MZ4] * t285;
+    const ariane4_free_real_t t287 = t247 - t242;
+    const ariane4_free_real_t t288 = t244 * t244; /* link j3: motion */
+    const ariane4_free_real_t t289 = t288 + t115; /* link j4: motion */
+    const ariane4_free_real_t t290 = t2 * t282 - t104;
+    const ariane4_free_real_t t291 = t290 - (ARIANE4_FREE_C(0.436) * t289 - ARIANE4_FREE_C(0.1) * t287);
+    const ariane4_free_real_t t292 = (t270 - t271) * parameters[XZ4] + t269 + (parameters[MX4] * t291 - t286);
+    const ariane4_free_real_t t293 = t259 * t259;
+    const ariane4_free_real_t t294 = t270 + t293; /* link j4: columns */
+    const ariane4_free_real_t t295 = t259 * parameters[XZ4];
+    const ariane4_free_real_t t296 = t255 * parameters[XY4];
+    const ariane4_free_real_t t297 = t295 + t296;
+    const ariane4_free_real_t t298 = ARIANE4_FREE_C(2.0) * t259;
+    const ariane4_free_real_t t299 = ARIANE4_FREE_C(-0.5) * (parameters[ZZ4] + (parameters[XX4]
         + parameters[YY4]));
-    const ariane4_free_real_t t367 = parameters[XX4] + t366;
-    const ariane4_free_real_t t368 = t256 * t367 - t260 * parameters[XZ4];
-    const ariane4_free_real_t t369 = parameters[YY4] + t366;
-    const ariane4_free_real_t t370 = t255 * parameters[YZ4] + t256 * t369;
-    const ariane4_free_real_t t371 = t10 * (t363 + t365) + t9 * (t368 - t370);
-    const ariane4_free_real_t t372 = t10 * t371;
-    const ariane4_free_real_t t373 = t247 * parameters[XZ3];
-    const ariane4_free_real_t t374 = t115 * parameters[XY3];
-    const ariane4_free_real_t t375 = t360 + (t365 - t372 + (t355 - t351)) - (t373 + t374);
-    const ariane4_free_real_t t376 = t361 + t364;
-    const ariane4_free_real_t t377 = t245 * parameters[YZ3];
-    const ariane4_free_real_t t378 = t374 - t377 + (t360 + (t376 - (t353 + t357)));
-    const ariane4_free_real_t t379 = parameters[ZZ4] + t366;
-    const ariane4_free_real_t t380 = t255 * t379 + t256 * parameters[YZ4];
-    const ariane4_free_real_t t381 = t256 * parameters[XZ4] - t260 * t379;
-    const ariane4_free_real_t t382 = t10 * t380 + t9 * t381 + (ARIANE4_FREE_C(-0.436) * t350 + t37 * t354);
-    const ariane4_free_real_t t383 = ARIANE4_FREE_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
+    const ariane4_free_real_t t300 = parameters[YY4] + t299;
+    const ariane4_free_real_t t301 = t259 * parameters[YZ4] + t255 * t300;
+    const ariane4_free_real_t t302 = ARIANE4_FREE_C(2.0) * t254;
+    const ariane4_free_real_t t303 = t298 * t297 + t302 * t301 + (parameters[XY4] * t258
+        - parameters[XX4] * t253 - t294 * parameters[XZ4]);
+    const ariane4_free_real_t t304 = t292 + (t286 + t303);
+    const ariane4_free_real_t t305 = t256 + t257;
+    const ariane4_free_real_t t306 = t267 + t266;
+    const ariane4_free_real_t t307 = t260 * t136 + parameters[XX4] * t261 + parameters[XY4] * t305
+        + parameters[XZ4] * t306;
+    const ariane4_free_real_t t308 = t10 * t278 - t9 * t284;
+    const ariane4_free_real_t t309 = parameters[MZ4] * t308;
+    const ariane4_free_real_t t310 = (t271 - t293) * parameters[YZ4] + t307 + (t309 - parameters[MY4] * t291);
+    const ariane4_free_real_t t311 = parameters[XX4] + t299;
+    const ariane4_free_real_t t312 = t255 * t311 - t254 * parameters[XZ4];
+    const ariane4_free_real_t t313 = t254 * parameters[YZ4];
+    const ariane4_free_real_t t314 = t296 - t313;
+    const ariane4_free_real_t t315 = t298 * t312 + t302 * t314 + (t294 * parameters[YZ4]
+        + (parameters[XY4] * t253 - parameters[YY4] * t258));
+    const ariane4_free_real_t t316 = t310 + (t315 - t309);
+    const ariane4_free_real_t t317 = parameters[M4] * t308;
+    const ariane4_free_real_t t318 = parameters[MZ4] * t258;
+    const ariane4_free_real_t t319 = (t270 + t271) * parameters[MY4] + parameters[MX4] * t306 - t318 - t317;
+    const ariane4_free_real_t t320 = t254 * parameters[MY4] + t259 * parameters[MX4];
+    const ariane4_free_real_t t321 = t319 + (t317 - t302 * t320 + (t294 * parameters[MY4] + t318));
+    const ariane4_free_real_t t322 = parameters[M4] * t285;
+    const ariane4_free_real_t t323 = parameters[MZ4] * t253;
+    const ariane4_free_real_t t324 = t322 + (parameters[MY4] * t268 - (t293 + t271) * parameters[MX4] - t323);
+    const ariane4_free_real_t t325 = t324 + (t298 * t320 - t322 + (t323 - t294 * parameters[MX4]));
+    const ariane4_free_real_t t326 = t9 * t321 + t10 * t325;
+    const ariane4_free_real_t t327 = t10 * t304 + t9 * t316 + ARIANE4_FREE_C(-0.436) * t326;
+    const ariane4_free_real_t t328 = parameters[MX4] * t285 + parameters[MY4] * t308;
+    const ariane4_free_real_t t329 = t294 * parameters[ZZ4] + (parameters[XZ4] * t253
+        - parameters[YZ4] * t258);
+    const ariane4_free_real_t t330 = t254 * parameters[XY4] + t259 * t311;
+    const ariane4_free_real_t t331 = t254 * t300 + t259 * parameters[XY4];
+    const ariane4_free_real_t t332 = ARIANE4_FREE_C(-0.1) * t326 - (t328 + (t298 * t330 + t302 * t331
+        + t329));
+    const ariane4_free_real_t t333 = t27 * (t1 * t327 + t2 * t332 + ARIANE4_FREE_C(0.443) * t326);
+    const ariane4_free_real_t t334 = t26 * (t2 * t327 - t1 * t332) + t333 + ARIANE4_FREE_C(0.116) * t326;
+    const ariane4_free_real_t t335 = ARIANE4_FREE_C(0.06434139546481742) * t71 / t69; /* joint j1: drive */
+    const ariane4_free_real_t t336 = t335 * t334;
+    const ariane4_free_real_t t337 = t199 * t237;
+    const ariane4_free_real_t t338 = t9 * t325 - t10 * t321;
+    const ariane4_free_real_t t339 = t255 * parameters[MX4] - t254 * parameters[MZ4];
+    const ariane4_free_real_t t340 = t259 * parameters[MZ4] + t255 * parameters[MY4];
+    const ariane4_free_real_t t341 = t298 * t339 + t302 * t340 + (parameters[MY4] * t253
+        + parameters[MX4] * t258);
+    const ariane4_free_real_t t342 = t9 * t304 - t10 * t316 - (ARIANE4_FREE_C(0.1) * t341
+        + ARIANE4_FREE_C(0.436) * t338);
+    const ariane4_free_real_t t343 = ARIANE4_FREE_C(0.03137188092799786) * t30 / t28; /* joint j2: drive */
+    const ariane4_free_real_t t344 = t343 * (t342 + ARIANE4_FREE_C(0.443) * (t1 * t338 + t2 * t341));
+    const ariane4_free_real_t t345 = t93 * t237;
+    const ariane4_free_real_t t346 = t234 * t345;
+    const ariane4_free_real_t t347 = ARIANE4_FREE_C(0.046787723832235825) * t5 / t3; /* joint j3: drive */
+    const ariane4_free_real_t t348 = t347 * t342;
+    const ariane4_free_real_t t349 = t237 * (t87 - t50 * t93);
+    const ariane4_free_real_t t350 = ariane4_free_held(t218 * t349);
+    const ariane4_free_real_t t351 = ARIANE4_FREE_C(2.0) * t330; /* link j4: derivatives */
+    const ariane4_free_real_t t352 = ARIANE4_FREE_C(2.0) * t331;
+    const ariane4_free_real_t t353 = ARIANE4_FREE_C(0.2) * (t328 + (t259 * t351 + t254 * t352 + t329));
+    const ariane4_free_real_t t354 = t46 + t24 * t50;
+    const ariane4_free_real_t t355 = t237 * (t81 - t24 * t87 + t93 * t354);
+    const ariane4_free_real_t t356 = ariane4_free_held(ARIANE4_FREE_C(-5.0) * t355);
+    const ariane4_free_real_t t357 = t356 * t353 - (t337 * t336 + t346 * t344 + t350 * t348);
+    ddq_by_q[3] = t357;
+    const ariane4_free_real_t t358 = ariane4_free_held(t199 * t345);
+    const ariane4_free_real_t t359 = ariane4_free_held(t234 * (t92 + t93 * t345));
+    const ariane4_free_real_t t360 = t93 * t349 - t50 * t92;
+    const ariane4_free_real_t t361 = t218 * t360;
+    const ariane4_free_real_t t362 = t92 * t354 + t93 * t355;
+    const ariane4_free_real_t t363 = ariane4_free_held(ARIANE4_FREE_C(5.0) * t362);
+    const ariane4_free_real_t t364 = t358 * t336 + t359 * t344 + t361 * t348 + t363 * t353;
+    ddq_by_q[7] = t364;
+    const ariane4_free_real_t t365 = ariane4_free_held(t199 * t349);
+    const ariane4_free_real_t t366 = ariane4_free_held(t234 * t360);
+    const ariane4_free_real_t t367 = ariane4_free_held(t218 * (t47 - t87 * t349 + t50 * t360));
+    const ariane4_free_real_t t368 = t50 * t362 - (t24 * t47 + t87 * t355);
+    const ariane4_free_real_t t369 = ariane4_free_held(ARIANE4_FREE_C(-5.0) * t368);
+    const ariane4_free_real_t t370 = t365 * t336 + t366 * t344 - t367 * t348 + t369 * t353;
+    ddq_by_q[11] = t370;
+    const ariane4_free_real_t t371 = ariane4_free_held(t199 * t355);
+    const ariane4_free_real_t t372 = ariane4_free_held(t234 * t362);
+    const ariane4_free_real_t t373 = ariane4_free_held(t218 * t368);
+    const ariane4_free_real_t t374 = t23 + t81 * t355 + t46 * t362 + t24 * t368;
+    const ariane4_free_real_t t375 = ariane4_free_held(ARIANE4_FREE_C(5.0) * t374);
+    const ariane4_free_real_t t376 = t371 * t336 + t372 * t344 - t373 * t348 + t375 * t353;
+    ddq_by_q[15] = t376;
+    const ariane4_free_real_t t377 = parameters[ZZ4] + t299;
+    const ariane4_free_real_t t378 = t259 * t377 + t255 * parameters[YZ4];
+    const ariane4_free_real_t t379 = ARIANE4_FREE_C(-2.0) * t378 - (parameters[XY4] * t302
+        + parameters[XX4] * t298);
+    const ariane4_free_real_t t380 = t255 * parameters[XZ4] - t254 * t377;
+    const ariane4_free_real_t t381 = ARIANE4_FREE_C(-2.0) * t380 + (parameters[XY4] * t298
+        + parameters[YY4] * t302);
+    const ariane4_free_real_t t382 = ARIANE4_FREE_C(-2.0) * t339 - parameters[MZ4] * t302;
+    const ariane4_free_real_t t383 = ARIANE4_FREE_C(-2.0) * t340 + parameters[MZ4] * t298;
+    const ariane4_free_real_t t384 = t9 * t382 + t10 * t383;
+    const ariane4_free_real_t t385 = t10 * t379 + t9 * t381 + ARIANE4_FREE_C(-0.436) * t384;
+    const ariane4_free_real_t t386 = t295 + t313;
+    const ariane4_free_real_t t387 = ARIANE4_FREE_C(2.0) * t386;
+    const ariane4_free_real_t t388 = t387 - (parameters[XZ4] * t298 + parameters[YZ4] * t302)
+        + ARIANE4_FREE_C(-0.1) * t384;
+    const ariane4_free_real_t t389 = t27 * (t1 * t385 + t2 * t388 + ARIANE4_FREE_C(0.443) * t384);
+    const ariane4_free_real_t t390 = t26 * (t2 * t385 - t1 * t388) + t389 + ARIANE4_FREE_C(0.116) * t384;
+    const ariane4_free_real_t t391 = t335 * t390;
+    const ariane4_free_real_t t392 = t9 * t383 - t10 * t382;
+    const ariane4_free_real_t t393 = parameters[MX4] * t302 - parameters[MY4] * t298;
+    const ariane4_free_real_t t394 = t10 * t381 - t9 * t379 - (ARIANE4_FREE_C(0.1) * t393
+        - ARIANE4_FREE_C(0.436) * t392);
+    const ariane4_free_real_t t395 = t343 * (t394 + ARIANE4_FREE_C(0.443) * (t2 * t393 - t1 * t392));
+    const ariane4_free_real_t t396 = t347 * t394;
+    const ariane4_free_real_t t397 = ARIANE4_FREE_C(-2.0e3) * parameters[FV4];
+    const ariane4_free_real_t t398 = t395 * t346 - t391 * t337 + t396 * t350 + t397 * t356;
+    ddq_by_dq[3] = t398;
+    const ariane4_free_real_t t399 = t391 * t358 - t395 * t359 - t396 * t361 + t397 * t363;
+    ddq_by_dq[7] = t399;
+    const ariane4_free_real_t t400 = t391 * t365 - t395 * t366 + t396 * t367 + t397 * t369;
+    ddq_by_dq[11] = t400;
+    const ariane4_free_real_t t401 = t391 * t371 - t395 * t372 + t396 * t373 + t397 * t375;
+    ddq_by_dq[15] = t401;
+    ddq_by_input[3] = t356;
+    ddq_by_input[7] = t363;
+    ddq_by_input[11] = t369;
+    ddq_by_input[15] = t375;
+    const ariane4_free_real_t t402 = t10 * t319 - t9 * t324;
+    const ariane4_free_real_t t403 = t250 * t161 + parameters[XX3] * t251 + parameters[XY3] * t277
+        + parameters[XZ3] * t287;
+    const ariane4_free_real_t t404 = parameters[MY3] * t276 - parameters[MZ3] * t290 + ((t279
+        - t115) * parameters[YZ3] - t403);
+    const ariane4_free_real_t t405 = t404 + (t9 * t292 - t10 * t310 + ARIANE4_FREE_C(0.436) * t402);
+    const ariane4_free_real_t t406 = t288 + t279; /* link j4: motion */
+    const ariane4_free_real_t t407 = t10 * t340 + t9 * t339; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t408 = ARIANE4_FREE_C(0.1) * t407;
+    const ariane4_free_real_t t409 = ARIANE4_FREE_C(0.436) * t320;
+    const ariane4_free_real_t t410 = ARIANE4_FREE_C(-0.436) * t114; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t411 = t34 * t410; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t412 = ARIANE4_FREE_C(-0.1) * t114; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t413 = t36 * t412; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t414 = ARIANE4_FREE_C(-0.436) * t244 + ARIANE4_FREE_C(0.1) * t246;
+    const ariane4_free_real_t t415 = t21 * t414;
+    const ariane4_free_real_t t416 = t408 + t409 + (t413 - t411 + t415);
+    const ariane4_free_real_t t417 = t244 * parameters[YZ3];
+    const ariane4_free_real_t t418 = t114 * parameters[XY3];
+    const ariane4_free_real_t t419 = t418 - t417 + (t416 + (t386 - (t409 + t413)));
+    const ariane4_free_real_t t420 = ARIANE4_FREE_C(2.0) * t244;
+    const ariane4_free_real_t t421 = t10 * t330 - t9 * t331 + (ARIANE4_FREE_C(0.1) * t320 + t34 * t412);
+    const ariane4_free_real_t t422 = ARIANE4_FREE_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
         + parameters[YY3]));
-    const ariane4_free_real_t t384 = parameters[YY3] - t383;
-    const ariane4_free_real_t t385 = t247 * parameters[YZ3] + t115 * t384 + t382;
-    const ariane4_free_real_t t386 = t260 * parameters[XY4] + t255 * t367;
-    const ariane4_free_real_t t387 = t260 * t369 + t255 * parameters[XY4];
-    const ariane4_free_real_t t388 = t10 * t386 - t9 * t387 + (ARIANE4_FREE_C(0.1) * t352 + t35 * t356);
-    const ariane4_free_real_t t389 = parameters[XX3] - t383;
-    const ariane4_free_real_t t390 = t115 * t389 - t245 * parameters[XZ3] + t388;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t391 = t2 * (t375 - t378) + t1 * (t385 - t390);
-    const ariane4_free_real_t t392 = t2 * t391;
-    const ariane4_free_real_t t393 = ARIANE4_FREE_C(-0.443) * dq[1]; /* link j3: velocity of its origin */
-    const ariane4_free_real_t t394 = t62 * t393; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t423 = parameters[XX3] - t422;
+    const ariane4_free_real_t t424 = t114 * t423 - t244 * parameters[XZ3] + t421;
+    const ariane4_free_real_t t425 = ARIANE4_FREE_C(2.0) * t246;
+    const ariane4_free_real_t t426 = t425 * t424 + t420 * t419 + (t406 * t83 + (t55 * t263 + t53 * t249));
+    const ariane4_free_real_t t427 = t405 - (t426 + t88 * t290);
+    const ariane4_free_real_t t428 = parameters[ZZ4] * t266 - t267 * t16 + parameters[YZ4] * t253
+        + parameters[XZ4] * t258;
+    const ariane4_free_real_t t429 = (t293 - t270) * parameters[XY4] + t428 + (parameters[MY4] * t285
+        - parameters[MX4] * t308);
+    const ariane4_free_real_t t430 = t264 * t168 + parameters[YY3] * t265 + parameters[XY3] * t252
+        - parameters[YZ3] * t248;
+    const ariane4_free_real_t t431 = parameters[MX3] * t276 - parameters[MZ3] * t283 + ((t288
+        - t115) * parameters[XZ3] + t430);
+    const ariane4_free_real_t t432 = t431 + (t429 + ARIANE4_FREE_C(-0.1) * t402);
+    const ariane4_free_real_t t433 = t10 * (t297 + t314) + t9 * (t312 - t301);
+    const ariane4_free_real_t t434 = t10 * t433;
+    const ariane4_free_real_t t435 = t246 * parameters[XZ3];
+    const ariane4_free_real_t t436 = t416 + (t314 - t434 + (t411 - t408)) - (t435 + t418);
+    const ariane4_free_real_t t437 = t10 * t378 + t9 * t380 + (ARIANE4_FREE_C(-0.436) * t407 + t36 * t410);
+    const ariane4_free_real_t t438 = parameters[YY3] - t422;
+    const ariane4_free_real_t t439 = t246 * parameters[YZ3] + t114 * t438 + t437;
+    const ariane4_free_real_t t440 = t420 * t439 - t425 * t436 + (t406 * t82 - (t52 * t263 + t55 * t249));
+    const ariane4_free_real_t t441 = t432 + (t440 - t88 * t283);
+    const ariane4_free_real_t t442 = t246 * parameters[MZ3] + t114 * parameters[MY3] + (t407
+        - parameters[M4] * t410);
+    const ariane4_free_real_t t443 = t114 * parameters[MX3] - t244 * parameters[MZ3] + (t320
+        + parameters[M4] * t412);
+    const ariane4_free_real_t t444 = t425 * t443 + t420 * t442 + (t37 * t263 - t35 * t249);
+    const ariane4_free_real_t t445 = t27 * (t1 * t441 + t2 * t427 + ARIANE4_FREE_C(0.443) * t444);
+    const ariane4_free_real_t t446 = t26 * (t2 * t441 - t1 * t427) + t445 + ARIANE4_FREE_C(0.116) * t444;
+    const ariane4_free_real_t t447 = t335 * t446;
+    const ariane4_free_real_t t448 = t10 * t324 + t9 * t319;
+    const ariane4_free_real_t t449 = t280 * parameters[MX3] + parameters[MY3] * t248 + parameters[MZ3] * t263
+        - parameters[M3] * t283;
+    const ariane4_free_real_t t450 = t449 - t448;
+    const ariane4_free_real_t t451 = t9 * t340 - t10 * t339;
+    const ariane4_free_real_t t452 = t244 * parameters[MY3] + t246 * parameters[MX3] + (t451
+        - parameters[M4] * t414);
+    const ariane4_free_real_t t453 = t425 * t452 - t39 * t283 - (t406 * t35 + t88 * t263);
+    const ariane4_free_real_t t454 = parameters[M4] * t291 - (t294 * parameters[MZ4] - (parameters[MX4] * t305
+        - parameters[MY4] * t262));
+    const ariane4_free_real_t t455 = parameters[M3] * t290 - (t289 * parameters[MY3] + parameters[MX3] * t287
+        + parameters[MZ3] * t249);
+    const ariane4_free_real_t t456 = t455 + t454;
+    const ariane4_free_real_t t457 = t420 * t452 - t39 * t290 - (t406 * t37 + t88 * t249);
+    const ariane4_free_real_t t458 = ARIANE4_FREE_C(0.443) * (t1 * (t456 + t457) + t2 * (t450 - t453));
+    const ariane4_free_real_t t459 = t406 * t19 - (t82 * t263 - t83 * t249);
+    const ariane4_free_real_t t460 = t9 * t433;
+    const ariane4_free_real_t t461 = t244 * parameters[XY3] + t246 * t423 - (t312 - t460
+        - (ARIANE4_FREE_C(0.1) * t451 - t34 * t414));
+    const ariane4_free_real_t t462 = t9 * t378 - t10 * t380 - (ARIANE4_FREE_C(0.436) * t451 - t36 * t414);
+    const ariane4_free_real_t t463 = t244 * t438 + t246 * parameters[XY3] + t462;
+    const ariane4_free_real_t t464 = t35 * t283 + t37 * t290;
+    const ariane4_free_real_t t465 = t425 * t461 + t420 * t463 + t459 + t464 + t458;
+    const ariane4_free_real_t t466 = t343 * t465;
+    const ariane4_free_real_t t467 = ARIANE4_FREE_C(0.1) * t454 - ARIANE4_FREE_C(-0.436) * t448 - (t9 * t310
+        + t10 * t292);
+    const ariane4_free_real_t t468 = t247 * t207 + parameters[ZZ3] * t242 - parameters[YZ3] * t263
+        + parameters[XZ3] * t249;
+    const ariane4_free_real_t t469 = parameters[MX3] * t290 - parameters[MY3] * t283 + ((t288
+        - t279) * parameters[XY3] + t468);
+    const ariane4_free_real_t t470 = t469 - t467;
+    const ariane4_free_real_t t471 = ariane4_free_select(t5, t5, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t472 = ARIANE4_FREE_C(1.0) / t471;
+    const ariane4_free_real_t t473 = ARIANE4_FREE_C(0.052812) * t3;
+    const ariane4_free_real_t t474 = ARIANE4_FREE_C(1.0) / t3;
+    const ariane4_free_real_t t475 = t474 * (t4 * t347
+        + ARIANE4_FREE_C(0.046787723832235825) * (t473 * (ARIANE4_FREE_C(0.5) * t472)));
+    const ariane4_free_real_t t476 = ARIANE4_FREE_C(2.0) * t461; /* link j3: derivatives */
+    const ariane4_free_real_t t477 = ARIANE4_FREE_C(2.0) * t463;
+    const ariane4_free_real_t t478 = t347 * (t464 + (t246 * t476 + t244 * t477 + t459));
+    const ariane4_free_real_t t479 = t6 * (t6 * (t473 * (ARIANE4_FREE_C(0.5) * t6)));
+    const ariane4_free_real_t t480 = t4 * t7 + t3 * (ARIANE4_FREE_C(7124.375926654358) * t479);
+    const ariane4_free_real_t t481 = t213 * (ARIANE4_FREE_C(376.25254143846996) * (t6 * t479))
+        + t212 * (ARIANE4_FREE_C(2.0) * (t3 * t4));
+    const ariane4_free_real_t t482 = t216 * (t214 * t479 - t6 * (ARIANE4_FREE_C(7124.375926654358) * t3
+        - t481));
+    const ariane4_free_real_t t483 = parameters[FV3] * (dq[2] * t480) + parameters[IA3] * (t482
+        + t240 * t480);
+    const ariane4_free_real_t t484 = ARIANE4_FREE_C(333.3333333333333) * t483 - t478 - t475 * t470;
+    const ariane4_free_real_t t485 = ARIANE4_FREE_C(0.2) * t114;
+    const ariane4_free_real_t t486 = t10 * t351 - t9 * t352 - t11 * t485; /* link j4: derivatives */
+    const ariane4_free_real_t t487 = t387 + (t21 * (ARIANE4_FREE_C(2.0) * t414)
+        + t11 * (ARIANE4_FREE_C(0.872) * t114));
+    const ariane4_free_real_t t488 = t246 * t486 + t244 * t487 + (t406 * t22 + (t76 * t263 + t77 * t249));
+    const ariane4_free_real_t t489 = ARIANE4_FREE_C(0.2) * (t488 + t21 * t290);
+    const ariane4_free_real_t t490 = t350 * t484 - (t337 * t447 + t346 * t466) + t356 * t489;
+    ddq_by_q[2] = t490;
+    const ariane4_free_real_t t491 = t358 * t447 + t359 * t466 - t361 * t484 + t363 * t489;
+    ddq_by_q[6] = t491;
+    const ariane4_free_real_t t492 = t365 * t447 + t366 * t466 + t367 * t484 + t369 * t489;
+    ddq_by_q[10] = t492;
+    const ariane4_free_real_t t493 = t371 * t447 + t372 * t466 + t373 * t484 + t375 * t489;
+    ddq_by_q[14] = t493;
+    const ariane4_free_real_t t494 = t422 - parameters[ZZ3];
     /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t395 = t247 * parameters[MZ3] + t115 * parameters[MY3] + (t350
-        - parameters[M4] * t354);
-    const ariane4_free_real_t t396 = t115 * parameters[MX3] - t245 * parameters[MZ3] + (t352
-        + parameters[M4] * t356);
-    const ariane4_free_real_t t397 = t2 * t395 + t1 * t396; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t398 = ARIANE4_FREE_C(0.443) * t397;
-    const ariane4_free_real_t t399 = ARIANE4_FREE_C(-0.443) * t101; /* link j3: velocity of its origin */
-    const ariane4_free_real_t t400 = t90 * t399; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t401 = t398 + (t394 + t400);
-    const ariane4_free_real_t t402 = dq[1] * parameters[XY2];
-    const ariane4_free_real_t t403 = t107 * parameters[YZ2];
-    const ariane4_free_real_t t404 = t402 - t403 + (t375 - t392 + t394 - t401);
-    const ariane4_free_real_t t405 = t101 * parameters[XZ2];
-    const ariane4_free_real_t t406 = t405 - t402 + (t378 + t392 + t398 - t401);
-    const ariane4_free_real_t t407 = t1 * t391;
-    const ariane4_free_real_t t408 = ARIANE4_FREE_C(0.5) * (parameters[ZZ2] + (parameters[XX2]
-        + parameters[YY2]));
-    const ariane4_free_real_t t409 = t408 - parameters[YY2];
-    const ariane4_free_real_t t410 = t101 * parameters[YZ2] + dq[1] * t409 + (t407 - t385);
-    const ariane4_free_real_t t411 = t1 * t395 - t2 * t396;
-    const ariane4_free_real_t t412 = parameters[XX2] - t408;
-    const ariane4_free_real_t t413 = dq[1] * t412 - t107 * parameters[XZ2] + (t390 + t407
-        + (ARIANE4_FREE_C(0.443) * t411 + t66 * t393));
-    /* link j2: inertia, momentum beyond */
-    const ariane4_free_real_t t414 = t28 * (t28 * (t404 - t406) + t27 * (t410 + t413));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t415 = t101 * parameters[MZ2] - dq[1] * parameters[MY2] - t397;
-    const ariane4_free_real_t t416 = t107 * parameters[MZ2] - dq[1] * parameters[MX2] + (t411 + t40 * t393);
-    const ariane4_free_real_t t417 = t90 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia, momentum beyond */
-    const ariane4_free_real_t t418 = ARIANE4_FREE_C(0.116) * (t28 * t415 + t27 * t416)
-        - t417 * (ARIANE4_FREE_C(-0.116) * dq[0]);
-    const ariane4_free_real_t t419 = ARIANE4_FREE_C(250.0) * (t76 * parameters[FV1]
-        + parameters[IA1] * (t197 * (ARIANE4_FREE_C(2.0) * dq[0])));
-    const ariane4_free_real_t t420 = t419 + t328 * (ARIANE4_FREE_C(2.0) * (t406 + t414 + t418));
-    const ariane4_free_real_t t421 = t235 * t341;
-    const ariane4_free_real_t t422 = t9 * t371; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t423 = t9 * t348 - t10 * t349;
-    const ariane4_free_real_t t424 = t245 * parameters[XY3] + t247 * t389 - (t368 - t422
-        - (ARIANE4_FREE_C(0.1) * t423 - t35 * t358));
-    const ariane4_free_real_t t425 = t9 * t380 - t10 * t381 - (ARIANE4_FREE_C(0.436) * t423 - t37 * t358);
-    const ariane4_free_real_t t426 = t245 * t384 + t247 * parameters[XY3] + t425;
-    const ariane4_free_real_t t427 = t245 * parameters[MY3] + t247 * parameters[MX3] + (t423
-        - parameters[M4] * t358);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t428 = t2 * t424 - t1 * t426 - (ARIANE4_FREE_C(0.443) * t427 + t66 * t399);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t429 = ARIANE4_FREE_C(2.0) * (t107 * parameters[XY2] - t101 * t412 + t428);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t430 = t101 * parameters[XY2] + t107 * t409 - (t1 * t424 + t2 * t426
-        - t62 * t399);
-    const ariane4_free_real_t t431 = ARIANE4_FREE_C(2.0) * t430; /* link j2: derivatives */
-    const ariane4_free_real_t t432 = ARIANE4_FREE_C(-0.232) * dq[0];
-    const ariane4_free_real_t t433 = t27 * t429 - t28 * t431 - (t28 * t65 + t27 * t67) * t432;
-    const ariane4_free_real_t t434 = ARIANE4_FREE_C(0.03137188092799786) * t31 / t29; /* joint j2: drive */
-    const ariane4_free_real_t t435 = t434 * t433;
-    const ariane4_free_real_t t436 = ariane4_free_bounded(t219 * t343);
-    const ariane4_free_real_t t437 = ARIANE4_FREE_C(2.0) * t424; /* link j3: derivatives */
-    const ariane4_free_real_t t438 = ARIANE4_FREE_C(2.0) * t426;
-    const ariane4_free_real_t t439 = ARIANE4_FREE_C(0.886) * t101; /* link j4: derivatives */
-    const ariane4_free_real_t t440 = t2 * t437 - t1 * t438 + t39 * t439; /* link j3: derivatives */
-    const ariane4_free_real_t t441 = t1 * t437 + t2 * t438 + t62 * t439;
-    const ariane4_free_real_t t442 = t27 * t440 + t28 * t441 - (t28 * t62 + t27 * t39) * t432;
-    const ariane4_free_real_t t443 = ARIANE4_FREE_C(0.046787723832235825) * t5 / t3; /* joint j3: drive */
-    const ariane4_free_real_t t444 = t443 * t442;
-    const ariane4_free_real_t t445 = ARIANE4_FREE_C(-5.0) * t346;
-    const ariane4_free_real_t t446 = ARIANE4_FREE_C(2.0) * t386; /* link j4: derivatives */
-    const ariane4_free_real_t t447 = ARIANE4_FREE_C(2.0) * t387;
-    const ariane4_free_real_t t448 = ARIANE4_FREE_C(0.2) * t115;
-    const ariane4_free_real_t t449 = t10 * t446 - t9 * t447 - t11 * t448;
-    const ariane4_free_real_t t450 = ARIANE4_FREE_C(2.0) * t376;
-    const ariane4_free_real_t t451 = t450 + (t21 * (ARIANE4_FREE_C(2.0) * t358)
-        + t11 * (ARIANE4_FREE_C(0.872) * t115));
-    const ariane4_free_real_t t452 = ARIANE4_FREE_C(-0.886) * dq[1];
-    const ariane4_free_real_t t453 = t1 * t451 - t2 * t449 + (t11 * t452 + t45 * t439);
-    const ariane4_free_real_t t454 = t2 * t21; /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t455 = t1 * t449 + t2 * t451 + t454 * t439; /* link j4: derivatives */
-    const ariane4_free_real_t t456 = t27 * t453 - t28 * t455 - (t27 * t45 - t28 * t454) * t432;
-    const ariane4_free_real_t t457 = ARIANE4_FREE_C(0.2) * t456;
-    const ariane4_free_real_t t458 = t435 * t421 - t420 * t340 + t444 * t436 + t457 * t445;
-    ddq_by_dq[0] = t458;
-    const ariane4_free_real_t t459 = ariane4_free_bounded(t235 * (t94 + t95 * t341));
-    const ariane4_free_real_t t460 = t95 * t343 - t51 * t94;
-    const ariane4_free_real_t t461 = t219 * t460;
-    const ariane4_free_real_t t462 = t94 * t345 + t95 * t346;
-    const ariane4_free_real_t t463 = ARIANE4_FREE_C(5.0) * t462;
-    const ariane4_free_real_t t464 = t420 * t342 - t435 * t459 - t444 * t461 + t457 * t463;
-    ddq_by_dq[4] = t464;
-    const ariane4_free_real_t t465 = ariane4_free_bounded(t235 * t460);
-    const ariane4_free_real_t t466 = ariane4_free_bounded(t219 * (t48 - t89 * t343 + t51 * t460));
-    const ariane4_free_real_t t467 = t51 * t462 - (t24 * t48 + t89 * t346);
-    const ariane4_free_real_t t468 = ARIANE4_FREE_C(-5.0) * t467;
-    const ariane4_free_real_t t469 = t420 * t344 - t435 * t465 + t444 * t466 + t457 * t468;
-    ddq_by_dq[8] = t469;
-    const ariane4_free_real_t t470 = ariane4_free_bounded(t235 * t462);
-    const ariane4_free_real_t t471 = ariane4_free_bounded(t219 * t467);
-    const ariane4_free_real_t t472 = t23 + t83 * t346 + t47 * t462 + t24 * t467;
-    const ariane4_free_real_t t473 = ARIANE4_FREE_C(5.0) * t472;
-    const ariane4_free_real_t t474 = t420 * t347 - t435 * t470 + t444 * t471 + t457 * t473;
-    ddq_by_dq[12] = t474;
-    ddq_by_input[0] = -t340;
-    ddq_by_input[4] = t342;
-    ddq_by_input[8] = t344;
-    ddq_by_input[12] = t347;
-    const ariane4_free_real_t t475 = ARIANE4_FREE_C(2.0) * t101;
-    const ariane4_free_real_t t476 = ARIANE4_FREE_C(-2.0) * t107;
-    const ariane4_free_real_t t477 = t475 * t406 + t476 * t410 + (t189 * t91 + (t60 * t274 - t63 * t316));
-    const ariane4_free_real_t t478 = t475 * t413 + t476 * t404 + (t189 * t92 + (t63 * t274 - t61 * t316));
-    const ariane4_free_real_t t479 = t27 * (t325 + (t477 - t100 * t417)) + t28 * (t319 + (t478
-        - t106 * t417));
-    const ariane4_free_real_t t480 = t475 * t416 + t476 * t415 - (t65 * t274 + t67 * t316);
-    const ariane4_free_real_t t481 = t328 * (t479 + ARIANE4_FREE_C(0.116) * t480);
-    const ariane4_free_real_t t482 = t10 * t303 + t9 * t306;
-    const ariane4_free_real_t t483 = t297 + t271; /* link j4: columns */
-    const ariane4_free_real_t t484 = parameters[M4] * t292 - (t483 * parameters[MZ4] - (parameters[MX4] * t263
-        - parameters[MY4] * t294));
-    const ariane4_free_real_t t485 = ARIANE4_FREE_C(0.1) * t484 - ARIANE4_FREE_C(-0.436) * t482 - (t9 * t293
-        + t10 * t300);
-    const ariane4_free_real_t t486 = t248 * t208 + parameters[ZZ3] * t243 - parameters[YZ3] * t264
-        + parameters[XZ3] * t250;
-    const ariane4_free_real_t t487 = parameters[MX3] * t291 - parameters[MY3] * t284 + ((t289
-        - t280) * parameters[XY3] + t486);
-    const ariane4_free_real_t t488 = t487 - t485;
-    const ariane4_free_real_t t489 = t281 * parameters[MX3] + parameters[MY3] * t249 + parameters[MZ3] * t264
-        - parameters[M3] * t284;
-    const ariane4_free_real_t t490 = t489 - t482;
-    const ariane4_free_real_t t491 = parameters[M3] * t291 - (t290 * parameters[MY3] + parameters[MX3] * t288
-        + parameters[MZ3] * t250);
-    const ariane4_free_real_t t492 = t491 + t484;
-    const ariane4_free_real_t t493 = t225 - parameters[ZZ2] * t240 - parameters[YZ2] * t274
-        - parameters[XZ2] * t316;
-    const ariane4_free_real_t t494 = t226 + (t224 - t493) + (t488 - ARIANE4_FREE_C(0.443) * (t1 * t490
-        - t2 * t492));
-    const ariane4_free_real_t t495 = ariane4_free_select(t31, t31, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t496 = ARIANE4_FREE_C(1.0) / t495;
-    const ariane4_free_real_t t497 = ARIANE4_FREE_C(0.078402) * t29;
-    const ariane4_free_real_t t498 = ARIANE4_FREE_C(1.0) / t29;
-    const ariane4_free_real_t t499 = t498 * (t30 * t434
-        + ARIANE4_FREE_C(0.03137188092799786) * (t497 * (ARIANE4_FREE_C(0.5) * t496)));
-    const ariane4_free_real_t t500 = t101 * t429 + t107 * t431 - (t189 * t43 + (t91 * t274 - t92 * t316));
-    const ariane4_free_real_t t501 = t32 * (t32 * (t497 * (ARIANE4_FREE_C(0.5) * t32)));
-    const ariane4_free_real_t t502 = t30 * t33 + t29 * (ARIANE4_FREE_C(2656.3065671641784) * t501);
-    const ariane4_free_real_t t503 = t231 * (ARIANE4_FREE_C(208.2597474788059) * (t32 * t501))
-        - t230 * (ARIANE4_FREE_C(-2.0) * (t29 * t30));
-    const ariane4_free_real_t t504 = t103 * (t232 * t501 + t32 * (ARIANE4_FREE_C(2656.3065671641784) * t29
-        - t503));
-    const ariane4_free_real_t t505 = parameters[FV2] * (dq[1] * t502) + parameters[IA2] * (t504
-        + t240 * t502);
-    const ariane4_free_real_t t506 = ARIANE4_FREE_C(-83.33333333333333) * t505 + t434 * (t500 - (t100 * t67
-        + t106 * t65));
-    const ariane4_free_real_t t507 = t506 + t499 * t494;
-    const ariane4_free_real_t t508 = t101 * t440 - t107 * t441 - (t86 * t274 - t87 * t316 - t189 * t49);
-    const ariane4_free_real_t t509 = t443 * (t106 * t62 + t100 * t39 - t508);
-    const ariane4_free_real_t t510 = t101 * t453 + t107 * t455 + (t81 * t316 - t80 * t274 - t189 * t46);
-    const ariane4_free_real_t t511 = ARIANE4_FREE_C(0.2) * (t106 * t454 - t100 * t45 + t510);
-    const ariane4_free_real_t t512 = t421 * t507 - t340 * t481 - t436 * t509 + t445 * t511;
-    ddq_by_q[1] = t512;
-    const ariane4_free_real_t t513 = t342 * t481 - t459 * t507 + t461 * t509 + t463 * t511;
-    ddq_by_q[5] = t513;
-    const ariane4_free_real_t t514 = t344 * t481 - t465 * t507 - t466 * t509 + t468 * t511;
-    ddq_by_q[9] = t514;
-    const ariane4_free_real_t t515 = t347 * t481 - t470 * t507 - t471 * t509 + t473 * t511;
-    ddq_by_q[13] = t515;
-    const ariane4_free_real_t t516 = t383 - parameters[ZZ3];
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t517 = t247 * t516 - t115 * parameters[YZ3] + (t370 + t422 + t21 * t354);
-    const ariane4_free_real_t t518 = t115 * parameters[XZ3] + t245 * t516 - (t9 * t386 + t10 * t387
-        - t21 * t356);
-    const ariane4_free_real_t t519 = parameters[ZZ2] - t408;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t520 = t101 * t519 - dq[1] * parameters[YZ2] + (t2 * t517 - t1 * t518);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t521 = t27 * (ARIANE4_FREE_C(2.0) * t520 + (t60 * t475 + t63 * t476));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t522 = dq[1] * parameters[XZ2] - t107 * t519 + (t1 * t517 + t2 * t518
-        - t90 * t393);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t523 = t28 * (ARIANE4_FREE_C(2.0) * t522 + (t63 * t475 + t61 * t476));
-    const ariane4_free_real_t t524 = t521 + t523 + ARIANE4_FREE_C(0.116) * (t67 * t476 - t65 * t475);
-    const ariane4_free_real_t t525 = t328 * t524;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t526 = t373 + t377 + (t360 - (t363 - t372 + t359));
-    /* link j2: derivatives */
-    const ariane4_free_real_t t527 = ARIANE4_FREE_C(2.0) * (t405 - t403 + (t401 - (t526 + t400)))
-        - ARIANE4_FREE_C(2.0) * (t107 * t92 - t101 * t91);
-    const ariane4_free_real_t t528 = ARIANE4_FREE_C(83.33333333333333) * (t34 * parameters[FV2]
-        + parameters[IA2] * (t233 * (ARIANE4_FREE_C(2.0) * dq[1])));
-    const ariane4_free_real_t t529 = t528 - t434 * t527;
-    const ariane4_free_real_t t530 = ARIANE4_FREE_C(2.0) * t526; /* link j3: derivatives */
-    const ariane4_free_real_t t531 = t530 - t62 * t452 + ARIANE4_FREE_C(2.0) * (t107 * t87 - t101 * t86);
-    const ariane4_free_real_t t532 = t443 * t531;
-    const ariane4_free_real_t t533 = t9 * t446 + t10 * t447 + t21 * t448; /* link j4: derivatives */
-    const ariane4_free_real_t t534 = t533 + t454 * t452 + ARIANE4_FREE_C(2.0) * (t107 * t81 - t101 * t80);
-    const ariane4_free_real_t t535 = ARIANE4_FREE_C(0.2) * t534;
-    const ariane4_free_real_t t536 = t529 * t421 - t525 * t340 + t532 * t436 + t535 * t445;
-    ddq_by_dq[1] = t536;
-    const ariane4_free_real_t t537 = t525 * t342 - t529 * t459 - t532 * t461 + t535 * t463;
-    ddq_by_dq[5] = t537;
-    const ariane4_free_real_t t538 = t525 * t344 - t529 * t465 + t532 * t466 + t535 * t468;
-    ddq_by_dq[9] = t538;
-    const ariane4_free_real_t t539 = t525 * t347 - t529 * t470 + t532 * t471 + t535 * t473;
-    ddq_by_dq[13] = t539;
-    ddq_by_input[1] = -t421;
-    ddq_by_input[5] = t459;
-    ddq_by_input[9] = t465;
-    ddq_by_input[13] = t470;
-    const ariane4_free_real_t t540 = ARIANE4_FREE_C(2.0) * t245;
-    const ariane4_free_real_t t541 = ARIANE4_FREE_C(2.0) * t247;
-    const ariane4_free_real_t t542 = t541 * t390 + t540 * t378 + (t320 * t85 + (t57 * t264 + t55 * t250));
-    const ariane4_free_real_t t543 = t310 - (t542 + t90 * t291);
-    const ariane4_free_real_t t544 = t540 * t385 - t541 * t375 + (t320 * t84 - (t54 * t264 + t57 * t250));
-    const ariane4_free_real_t t545 = t315 + (t544 - t90 * t284);
-    const ariane4_free_real_t t546 = t541 * t396 + t540 * t395 + (t38 * t264 - t36 * t250);
-    const ariane4_free_real_t t547 = t28 * (t1 * t545 + t2 * t543 + ARIANE4_FREE_C(0.443) * t546);
-    const ariane4_free_real_t t548 = t27 * (t2 * t545 - t1 * t543) + t547 + ARIANE4_FREE_C(0.116) * t546;
-    const ariane4_free_real_t t549 = t328 * t548;
-    const ariane4_free_real_t t550 = t541 * t427 - t40 * t284 - (t320 * t36 + t90 * t264);
-    const ariane4_free_real_t t551 = t540 * t427 - t40 * t291 - (t320 * t38 + t90 * t250);
-    const ariane4_free_real_t t552 = ARIANE4_FREE_C(0.443) * (t1 * (t492 + t551) + t2 * (t490 - t550));
-    const ariane4_free_real_t t553 = t320 * t19 - (t84 * t264 - t85 * t250);
-    const ariane4_free_real_t t554 = t36 * t284 + t38 * t291;
-    const ariane4_free_real_t t555 = t541 * t424 + t540 * t426 + t553 + t554 + t552;
-    const ariane4_free_real_t t556 = t434 * t555;
-    const ariane4_free_real_t t557 = ariane4_free_select(t5, t5, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t558 = ARIANE4_FREE_C(1.0) / t557;
-    const ariane4_free_real_t t559 = ARIANE4_FREE_C(0.052812) * t3;
-    const ariane4_free_real_t t560 = ARIANE4_FREE_C(1.0) / t3;
-    const ariane4_free_real_t t561 = t560 * (t4 * t443
-        + ARIANE4_FREE_C(0.046787723832235825) * (t559 * (ARIANE4_FREE_C(0.5) * t558)));
-    const ariane4_free_real_t t562 = t443 * (t554 + (t247 * t437 + t245 * t438 + t553));
-    const ariane4_free_real_t t563 = t6 * (t6 * (t559 * (ARIANE4_FREE_C(0.5) * t6)));
-    const ariane4_free_real_t t564 = t4 * t7 + t3 * (ARIANE4_FREE_C(7124.375926654358) * t563);
-    const ariane4_free_real_t t565 = t214 * (ARIANE4_FREE_C(376.25254143846996) * (t6 * t563))
-        + t213 * (ARIANE4_FREE_C(2.0) * (t3 * t4));
-    const ariane4_free_real_t t566 = t217 * (t215 * t563 - t6 * (ARIANE4_FREE_C(7124.375926654358) * t3
-        - t565));
-    const ariane4_free_real_t t567 = parameters[FV3] * (dq[2] * t564) + parameters[IA3] * (t566
-        + t241 * t564);
-    const ariane4_free_real_t t568 = ARIANE4_FREE_C(333.3333333333333) * t567 - t562 - t561 * t488;
-    const ariane4_free_real_t t569 = t247 * t449 + t245 * t451 + (t320 * t22 + (t78 * t264 + t79 * t250));
-    const ariane4_free_real_t t570 = ARIANE4_FREE_C(0.2) * (t569 + t21 * t291);
-    const ariane4_free_real_t t571 = t436 * t568 - (t340 * t549 + t421 * t556) + t445 * t570;
-    ddq_by_q[2] = t571;
-    const ariane4_free_real_t t572 = t342 * t549 + t459 * t556 - t461 * t568 + t463 * t570;
-    ddq_by_q[6] = t572;
-    const ariane4_free_real_t t573 = t344 * t549 + t465 * t556 + t466 * t568 + t468 * t570;
-    ddq_by_q[10] = t573;
-    const ariane4_free_real_t t574 = t347 * t549 + t470 * t556 + t471 * t568 + t473 * t570;
-    ddq_by_q[14] = t574;
+    const ariane4_free_real_t t495 = t246 * t494 - t114 * parameters[YZ3] + (t301 + t460 + t21 * t410);
     /* link j3: derivatives */
-    const ariane4_free_real_t t575 = ARIANE4_FREE_C(2.0) * t517 - (t54 * t541 + t57 * t540);
-    const ariane4_free_real_t t576 = ARIANE4_FREE_C(2.0) * t518 - (t57 * t541 + t55 * t540);
-    const ariane4_free_real_t t577 = t38 * t541 - t36 * t540;
-    const ariane4_free_real_t t578 = t28 * (t1 * t575 + t2 * t576 + ARIANE4_FREE_C(0.443) * t577);
-    const ariane4_free_real_t t579 = t27 * (t2 * t575 - t1 * t576) + t578 + ARIANE4_FREE_C(0.116) * t577;
-    const ariane4_free_real_t t580 = t328 * t579;
-    const ariane4_free_real_t t581 = t1 * (ARIANE4_FREE_C(2.0) * t396 - t90 * t540)
-        + t2 * (ARIANE4_FREE_C(2.0) * t395 + t90 * t541);
-    const ariane4_free_real_t t582 = t530 - (t85 * t540 - t84 * t541) - ARIANE4_FREE_C(0.443) * t581;
-    const ariane4_free_real_t t583 = t434 * t582;
-    const ariane4_free_real_t t584 = t443 * (t530 - ARIANE4_FREE_C(2.0) * (t245 * t85 - t247 * t84));
-    const ariane4_free_real_t t585 = ARIANE4_FREE_C(333.3333333333333) * (t8 * parameters[FV3]
-        + parameters[IA3] * (t216 * (ARIANE4_FREE_C(2.0) * dq[2])));
-    const ariane4_free_real_t t586 = t585 + t584;
-    const ariane4_free_real_t t587 = ARIANE4_FREE_C(0.2) * (t533 + ARIANE4_FREE_C(2.0) * (t247 * t78
-        + t245 * t79));
-    const ariane4_free_real_t t588 = t583 * t421 - t580 * t340 + t586 * t436 + t587 * t445;
-    ddq_by_dq[2] = t588;
-    const ariane4_free_real_t t589 = t580 * t342 - t583 * t459 - t586 * t461 + t587 * t463;
-    ddq_by_dq[6] = t589;
-    const ariane4_free_real_t t590 = t580 * t344 - t583 * t465 + t586 * t466 + t587 * t468;
-    ddq_by_dq[10] = t590;
-    const ariane4_free_real_t t591 = t580 * t347 - t583 * t470 + t586 * t471 + t587 * t473;
-    ddq_by_dq[14] = t591;
-    ddq_by_input[2] = t436;
-    ddq_by_input[6] = -t461;
-    ddq_by_input[10] = t466;
-    ddq_by_input[14] = t471;
-    const ariane4_free_real_t t592 = ARIANE4_FREE_C(2.0) * t255;
-    const ariane4_free_real_t t593 = ARIANE4_FREE_C(2.0) * t260;
-    const ariane4_free_real_t t594 = t592 * t363 + t593 * t370 + (parameters[XY4] * t254
-        - parameters[XX4] * t259 - t483 * parameters[XZ4]);
-    const ariane4_free_real_t t595 = t300 + (t299 + t594);
-    const ariane4_free_real_t t596 = t592 * t368 + t593 * t365 + (t483 * parameters[YZ4]
-        + (parameters[XY4] * t259 - parameters[YY4] * t254));
-    const ariane4_free_real_t t597 = t293 + (t596 - t287);
-    const ariane4_free_real_t t598 = t306 + (t304 - t593 * t352 + (t483 * parameters[MY4] + t305));
-    const ariane4_free_real_t t599 = t303 + (t592 * t352 - t301 + (t302 - t483 * parameters[MX4]));
-    const ariane4_free_real_t t600 = t9 * t598 + t10 * t599;
-    const ariane4_free_real_t t601 = t10 * t595 + t9 * t597 + ARIANE4_FREE_C(-0.436) * t600;
-    const ariane4_free_real_t t602 = parameters[MX4] * t298 + parameters[MY4] * t286;
-    const ariane4_free_real_t t603 = t483 * parameters[ZZ4] + (parameters[XZ4] * t259
-        - parameters[YZ4] * t254);
-    const ariane4_free_real_t t604 = ARIANE4_FREE_C(-0.1) * t600 - (t602 + (t592 * t386 + t593 * t387
-        + t603));
-    const ariane4_free_real_t t605 = t28 * (t1 * t601 + t2 * t604 + ARIANE4_FREE_C(0.443) * t600);
-    const ariane4_free_real_t t606 = t27 * (t2 * t601 - t1 * t604) + t605 + ARIANE4_FREE_C(0.116) * t600;
-    const ariane4_free_real_t t607 = t328 * t606;
-    const ariane4_free_real_t t608 = t9 * t599 - t10 * t598;
-    const ariane4_free_real_t t609 = t592 * t349 + t593 * t348 + (parameters[MY4] * t259
-        + parameters[MX4] * t254);
-    const ariane4_free_real_t t610 = t9 * t595 - t10 * t597 - (ARIANE4_FREE_C(0.1) * t609
-        + ARIANE4_FREE_C(0.436) * t608);
-    const ariane4_free_real_t t611 = t434 * (t610 + ARIANE4_FREE_C(0.443) * (t1 * t608 + t2 * t609));
-    const ariane4_free_real_t t612 = t443 * t610;
-    const ariane4_free_real_t t613 = ARIANE4_FREE_C(0.2) * (t602 + (t255 * t446 + t260 * t447 + t603));
-    const ariane4_free_real_t t614 = t445 * t613 - (t340 * t607 + t421 * t611 + t436 * t612);
-    ddq_by_q[3] = t614;
-    const ariane4_free_real_t t615 = t342 * t607 + t459 * t611 + t461 * t612 + t463 * t613;
-    ddq_by_q[7] = t615;
-    const ariane4_free_real_t t616 = t344 * t607 + t465 * t611 - t466 * t612 + t468 * t613;
-    ddq_by_q[11] = t616;
-    const ariane4_free_real_t t617 = t347 * t607 + t470 * t611 - t471 * t612 + t473 * t613;
-    ddq_by_q[15] = t617;
+    const ariane4_free_real_t t496 = ARIANE4_FREE_C(2.0) * t495 - (t52 * t425 + t55 * t420);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t497 = t114 * parameters[XZ3] + t244 * t494 - (t9 * t330 + t10 * t331
+        - t21 * t412);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t498 = ARIANE4_FREE_C(2.0) * t497 - (t55 * t425 + t53 * t420);
+    const ariane4_free_real_t t499 = t37 * t425 - t35 * t420;
+    const ariane4_free_real_t t500 = t27 * (t1 * t496 + t2 * t498 + ARIANE4_FREE_C(0.443) * t499);
+    const ariane4_free_real_t t501 = t26 * (t2 * t496 - t1 * t498) + t500 + ARIANE4_FREE_C(0.116) * t499;
+    const ariane4_free_real_t t502 = t335 * t501;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t503 = t435 + t417 + (t416 - (t297 - t434 + t415));
+    const ariane4_free_real_t t504 = ARIANE4_FREE_C(2.0) * t503; /* link j3: derivatives */
+    const ariane4_free_real_t t505 = t1 * (ARIANE4_FREE_C(2.0) * t443 - t88 * t420)
+        + t2 * (ARIANE4_FREE_C(2.0) * t442 + t88 * t425);
+    const ariane4_free_real_t t506 = t504 - (t83 * t420 - t82 * t425) - ARIANE4_FREE_C(0.443) * t505;
+    const ariane4_free_real_t t507 = t343 * t506;
+    const ariane4_free_real_t t508 = t347 * (t504 - ARIANE4_FREE_C(2.0) * (t244 * t83 - t246 * t82));
+    const ariane4_free_real_t t509 = ARIANE4_FREE_C(333.3333333333333) * (t8 * parameters[FV3]
+        + parameters[IA3] * (t215 * (ARIANE4_FREE_C(2.0) * dq[2])));
+    const ariane4_free_real_t t510 = t509 + t508;
+    const ariane4_free_real_t t511 = t9 * t351 + t10 * t352 + t21 * t485; /* link j4: derivatives */
+    const ariane4_free_real_t t512 = ARIANE4_FREE_C(0.2) * (t511 + ARIANE4_FREE_C(2.0) * (t246 * t76
+        + t244 * t77));
+    const ariane4_free_real_t t513 = t507 * t346 - t502 * t337 + t510 * t350 + t512 * t356;
+    ddq_by_dq[2] = t513;
+    const ariane4_free_real_t t514 = t502 * t358 - t507 * t359 - t510 * t361 + t512 * t363;
+    ddq_by_dq[6] = t514;
+    const ariane4_free_real_t t515 = t502 * t365 - t507 * t366 + t510 * t367 + t512 * t369;
+    ddq_by_dq[10] = t515;
+    const ariane4_free_real_t t516 = t502 * t371 - t507 * t372 + t510 * t373 + t512 * t375;
+    ddq_by_dq[14] = t516;
+    ddq_by_input[2] = t350;
+    ddq_by_input[6] = -t361;
+    ddq_by_input[10] = t367;
+    ddq_by_input[14] = t373;
+    const ariane4_free_real_t t517 = parameters[M3] * t276 + (parameters[MX3] * t277 - parameters[MY3] * t252
+        - t406 * parameters[MZ3]);
+    const ariane4_free_real_t t518 = t517 + t402;
+    const ariane4_free_real_t t519 = t26 * t238;
+    const ariane4_free_real_t t520 = t172 + t519;
+    const ariane4_free_real_t t521 = t172 + t520;
+    const ariane4_free_real_t t522 = t181 + parameters[YY2] * t274 - parameters[XY2] * t521
+        + parameters[YZ2] * (t107 - t239);
+    const ariane4_free_real_t t523 = t185 + t522 + (parameters[MX2] * t272 - t186) + (t2 * t432 - t1 * t405
+        + ARIANE4_FREE_C(0.443) * t518);
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t524 = t2 * (t436 - t419) + t1 * (t439 - t424);
+    const ariane4_free_real_t t525 = t2 * t524;
+    const ariane4_free_real_t t526 = t2 * t442 + t1 * t443;
+    const ariane4_free_real_t t527 = ARIANE4_FREE_C(0.443) * t526;
+    const ariane4_free_real_t t528 = ARIANE4_FREE_C(-0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t529 = t60 * t528; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t530 = ARIANE4_FREE_C(-0.443) * t100; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t531 = t88 * t530; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t532 = t527 + (t529 + t531);
+    const ariane4_free_real_t t533 = t100 * parameters[XZ2];
+    const ariane4_free_real_t t534 = dq[1] * parameters[XY2];
+    const ariane4_free_real_t t535 = t533 - t534 + (t419 + t525 + t527 - t532);
+    const ariane4_free_real_t t536 = ARIANE4_FREE_C(2.0) * t100;
+    const ariane4_free_real_t t537 = t1 * t524;
+    const ariane4_free_real_t t538 = ARIANE4_FREE_C(0.5) * (parameters[ZZ2] + (parameters[XX2]
+        + parameters[YY2]));
+    const ariane4_free_real_t t539 = t538 - parameters[YY2];
+    const ariane4_free_real_t t540 = t100 * parameters[YZ2] + dq[1] * t539 + (t537 - t439);
+    const ariane4_free_real_t t541 = ARIANE4_FREE_C(-2.0) * t106;
+    const ariane4_free_real_t t542 = t536 * t535 + t541 * t540 + (t188 * t89 + (t58 * t273 - t61 * t519));
+    const ariane4_free_real_t t543 = t88 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t544 = parameters[XX2] * t520 - t173 - parameters[XY2] * t275
+        + parameters[XZ2] * t281;
+    const ariane4_free_real_t t545 = t176 + t544 + (parameters[MY2] * t272 - t177) + (t2 * t405 + t1 * t432);
+    const ariane4_free_real_t t546 = t106 * parameters[YZ2];
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t547 = t534 - t546 + (t436 - t525 + t529 - t532);
+    const ariane4_free_real_t t548 = t1 * t442 - t2 * t443;
+    const ariane4_free_real_t t549 = parameters[XX2] - t538;
+    const ariane4_free_real_t t550 = dq[1] * t549 - t106 * parameters[XZ2] + (t424 + t537
+        + (ARIANE4_FREE_C(0.443) * t548 + t64 * t528));
+    const ariane4_free_real_t t551 = t536 * t550 + t541 * t547 + (t188 * t90 + (t61 * t273 - t59 * t519));
+    const ariane4_free_real_t t552 = t26 * (t523 + (t542 - t99 * t543)) + t27 * (t545 + (t551 - t105 * t543));
+    const ariane4_free_real_t t553 = t106 * parameters[MZ2] - dq[1] * parameters[MX2] + (t548 + t39 * t528);
+    const ariane4_free_real_t t554 = t100 * parameters[MZ2] - dq[1] * parameters[MY2] - t526;
+    const ariane4_free_real_t t555 = t536 * t553 + t541 * t554 - (t63 * t273 + t65 * t519);
+    const ariane4_free_real_t t556 = t335 * (t552 + ARIANE4_FREE_C(0.116) * t555);
+    const ariane4_free_real_t t557 = t224 - parameters[ZZ2] * t239 - parameters[YZ2] * t273
+        - parameters[XZ2] * t519;
+    const ariane4_free_real_t t558 = t225 + (t223 - t557) + (t470 - ARIANE4_FREE_C(0.443) * (t1 * t450
+        - t2 * t456));
+    const ariane4_free_real_t t559 = ariane4_free_select(t30, t30, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t560 = ARIANE4_FREE_C(1.0) / t559;
+    const ariane4_free_real_t t561 = ARIANE4_FREE_C(0.078402) * t28;
+    const ariane4_free_real_t t562 = ARIANE4_FREE_C(1.0) / t28;
+    const ariane4_free_real_t t563 = t562 * (t29 * t343
+        + ARIANE4_FREE_C(0.03137188092799786) * (t561 * (ARIANE4_FREE_C(0.5) * t560)));
+    const ariane4_free_real_t t564 = t2 * t461 - t1 * t463 - (ARIANE4_FREE_C(0.443) * t452 + t64 * t530);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t565 = ARIANE4_FREE_C(2.0) * (t106 * parameters[XY2] - t100 * t549 + t564);
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t566 = t100 * parameters[XY2] + t106 * t539 - (t1 * t461 + t2 * t463
+        - t60 * t530);
+    const ariane4_free_real_t t567 = ARIANE4_FREE_C(2.0) * t566; /* link j2: derivatives */
+    const ariane4_free_real_t t568 = t100 * t565 + t106 * t567 - (t188 * t42 + (t89 * t273 - t90 * t519));
+    const ariane4_free_real_t t569 = t31 * (t31 * (t561 * (ARIANE4_FREE_C(0.5) * t31)));
+    const ariane4_free_real_t t570 = t29 * t32 + t28 * (ARIANE4_FREE_C(2656.3065671641784) * t569);
+    const ariane4_free_real_t t571 = t230 * (ARIANE4_FREE_C(208.2597474788059) * (t31 * t569))
+        - t229 * (ARIANE4_FREE_C(-2.0) * (t28 * t29));
+    const ariane4_free_real_t t572 = t102 * (t231 * t569 + t31 * (ARIANE4_FREE_C(2656.3065671641784) * t28
+        - t571));
+    const ariane4_free_real_t t573 = parameters[FV2] * (dq[1] * t570) + parameters[IA2] * (t572
+        + t239 * t570);
+    const ariane4_free_real_t t574 = ARIANE4_FREE_C(-83.33333333333333) * t573 + t343 * (t568 - (t99 * t65
+        + t105 * t63));
+    const ariane4_free_real_t t575 = t574 + t563 * t558;
+    const ariane4_free_real_t t576 = ARIANE4_FREE_C(0.886) * t100; /* link j4: derivatives */
+    const ariane4_free_real_t t577 = t2 * t476 - t1 * t477 + t38 * t576; /* link j3: derivatives */
+    const ariane4_free_real_t t578 = t1 * t476 + t2 * t477 + t60 * t576;
+    const ariane4_free_real_t t579 = t100 * t577 - t106 * t578 - (t84 * t273 - t85 * t519 - t188 * t48);
+    const ariane4_free_real_t t580 = t347 * (t105 * t60 + t99 * t38 - t579);
+    const ariane4_free_real_t t581 = ARIANE4_FREE_C(-0.886) * dq[1];
     /* link j4: derivatives */
-    const ariane4_free_real_t t618 = ARIANE4_FREE_C(-2.0) * t380 - (parameters[XY4] * t593
-        + parameters[XX4] * t592);
-    const ariane4_free_real_t t619 = ARIANE4_FREE_C(-2.0) * t381 + (parameters[XY4] * t592
-        + parameters[YY4] * t593);
-    const ariane4_free_real_t t620 = ARIANE4_FREE_C(-2.0) * t349 - parameters[MZ4] * t593;
-    const ariane4_free_real_t t621 = ARIANE4_FREE_C(-2.0) * t348 + parameters[MZ4] * t592;
-    const ariane4_free_real_t t622 = t9 * t620 + t10 * t621;
-    const ariane4_free_real_t t623 = t10 * t618 + t9 * t619 + ARIANE4_FREE_C(-0.436) * t622;
-    const ariane4_free_real_t t624 = t450 - (parameters[XZ4] * t592 + parameters[YZ4] * t593)
-        + ARIANE4_FREE_C(-0.1) * t622;
-    const ariane4_free_real_t t625 = t28 * (t1 * t623 + t2 * t624 + ARIANE4_FREE_C(0.443) * t622);
-    const ariane4_free_real_t t626 = t27 * (t2 * t623 - t1 * t624) + t625 + ARIANE4_FREE_C(0.116) * t622;
-    const ariane4_free_real_t t627 = t328 * t626;
-    const ariane4_free_real_t t628 = t9 * t621 - t10 * t620;
-    const ariane4_free_real_t t629 = parameters[MX4] * t593 - parameters[MY4] * t592;
-    const ariane4_free_real_t t630 = t10 * t619 - t9 * t618 - (ARIANE4_FREE_C(0.1) * t629
-        - ARIANE4_FREE_C(0.436) * t628);
-    const ariane4_free_real_t t631 = t434 * (t630 + ARIANE4_FREE_C(0.443) * (t2 * t629 - t1 * t628));
-    const ariane4_free_real_t t632 = t443 * t630;
-    const ariane4_free_real_t t633 = ARIANE4_FREE_C(-2.0e3) * parameters[FV4];
-    const ariane4_free_real_t t634 = t631 * t421 - t627 * t340 + t632 * t436 + t633 * t445;
-    ddq_by_dq[3] = t634;
-    const ariane4_free_real_t t635 = t627 * t342 - t631 * t459 - t632 * t461 + t633 * t463;
-    ddq_by_dq[7] = t635;
-    const ariane4_free_real_t t636 = t627 * t344 - t631 * t465 + t632 * t466 + t633 * t468;
-    ddq_by_dq[11] = t636;
-    const ariane4_free_real_t t637 = t627 * t347 - t631 * t470 + t632 * t471 + t633 * t473;
-    ddq_by_dq[15] = t637;
-    ddq_by_input[3] = t445;
-    ddq_by_input[7] = t463;
-    ddq_by_input[11] = t468;
-    ddq_by_input[15] = t473;
-    if (!ariane4_free_all_bounded(ddq, 4)
-        || !ariane4_free_all_bounded(ddq_by_q, 16)
-        || !ariane4_free_all_bounded(ddq_by_dq, 16)
-        || !ariane4_free_all_bounded(ddq_by_input, 16)) {
+    const ariane4_free_real_t t582 = t1 * t487 - t2 * t486 + (t11 * t581 + t44 * t576);
+    const ariane4_free_real_t t583 = t2 * t21; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t584 = t1 * t486 + t2 * t487 + t583 * t576; /* link j4: derivatives */
+    const ariane4_free_real_t t585 = t100 * t582 + t106 * t584 + (t79 * t519 - t78 * t273 - t188 * t45);
+    const ariane4_free_real_t t586 = ARIANE4_FREE_C(0.2) * (t105 * t583 - t99 * t44 + t585);
+    const ariane4_free_real_t t587 = t346 * t575 - t337 * t556 - t350 * t580 + t356 * t586;
+    ddq_by_q[1] = t587;
+    const ariane4_free_real_t t588 = t358 * t556 - t359 * t575 + t361 * t580 + t363 * t586;
+    ddq_by_q[5] = t588;
+    const ariane4_free_real_t t589 = t365 * t556 - t366 * t575 - t367 * t580 + t369 * t586;
+    ddq_by_q[9] = t589;
+    const ariane4_free_real_t t590 = t371 * t556 - t372 * t575 - t373 * t580 + t375 * t586;
+    ddq_by_q[13] = t590;
+    const ariane4_free_real_t t591 = parameters[ZZ2] - t538;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t592 = t100 * t591 - dq[1] * parameters[YZ2] + (t2 * t495 - t1 * t497);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t593 = t26 * (ARIANE4_FREE_C(2.0) * t592 + (t58 * t536 + t61 * t541));
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t594 = dq[1] * parameters[XZ2] - t106 * t591 + (t1 * t495 + t2 * t497
+        - t88 * t528);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t595 = t27 * (ARIANE4_FREE_C(2.0) * t594 + (t61 * t536 + t59 * t541));
+    const ariane4_free_real_t t596 = t593 + t595 + ARIANE4_FREE_C(0.116) * (t65 * t541 - t63 * t536);
+    const ariane4_free_real_t t597 = t335 * t596;
+    const ariane4_free_real_t t598 = ARIANE4_FREE_C(2.0) * (t533 - t546 + (t532 - (t503 + t531)))
+        - ARIANE4_FREE_C(2.0) * (t106 * t90 - t100 * t89);
+    const ariane4_free_real_t t599 = ARIANE4_FREE_C(83.33333333333333) * (t33 * parameters[FV2]
+        + parameters[IA2] * (t232 * (ARIANE4_FREE_C(2.0) * dq[1])));
+    const ariane4_free_real_t t600 = t599 - t343 * t598;
+    /* link j3: derivatives */
+    const ariane4_free_real_t t601 = t504 - t60 * t581 + ARIANE4_FREE_C(2.0) * (t106 * t85 - t100 * t84);
+    const ariane4_free_real_t t602 = t347 * t601;
+    /* link j4: derivatives */
+    const ariane4_free_real_t t603 = t511 + t583 * t581 + ARIANE4_FREE_C(2.0) * (t106 * t79 - t100 * t78);
+    const ariane4_free_real_t t604 = ARIANE4_FREE_C(0.2) * t603;
+    const ariane4_free_real_t t605 = t600 * t346 - t597 * t337 + t602 * t350 + t604 * t356;
+    ddq_by_dq[1] = t605;
+    const ariane4_free_real_t t606 = t597 * t358 - t600 * t359 - t602 * t361 + t604 * t363;
+    ddq_by_dq[5] = t606;
+    const ariane4_free_real_t t607 = t597 * t365 - t600 * t366 + t602 * t367 + t604 * t369;
+    ddq_by_dq[9] = t607;
+    const ariane4_free_real_t t608 = t597 * t371 - t600 * t372 + t602 * t373 + t604 * t375;
+    ddq_by_dq[13] = t608;
+    ddq_by_input[1] = -t346;
+    ddq_by_input[5] = t359;
+    ddq_by_input[9] = t366;
+    ddq_by_input[13] = t372;
+    const ariane4_free_real_t t609 = parameters[M2] * t272 + (parameters[MX2] * t275 + parameters[MY2] * t521
+        - t189);
+    const ariane4_free_real_t t610 = t27 * t523 - t26 * t545 + ARIANE4_FREE_C(0.116) * (t609 + t518);
+    const ariane4_free_real_t t611 = ariane4_free_select(t71, t71, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t612 = ARIANE4_FREE_C(1.0) / t611;
+    const ariane4_free_real_t t613 = ARIANE4_FREE_C(0.037468) * t69;
+    const ariane4_free_real_t t614 = ARIANE4_FREE_C(1.0) / t69;
+    const ariane4_free_real_t t615 = t614 * (t70 * t335
+        + ARIANE4_FREE_C(0.06434139546481742) * (t613 * (ARIANE4_FREE_C(0.5) * t612)));
+    const ariane4_free_real_t t616 = t72 * (t72 * (t613 * (ARIANE4_FREE_C(0.5) * t72)));
+    const ariane4_free_real_t t617 = t70 * t73 + t69 * (ARIANE4_FREE_C(3885.523436256565) * t616);
+    const ariane4_free_real_t t618 = t194 * (ARIANE4_FREE_C(145.582792109661) * (t72 * t616))
+        + t193 * (ARIANE4_FREE_C(2.0) * (t69 * t70));
+    const ariane4_free_real_t t619 = t97 * (t195 * t616 + t72 * (ARIANE4_FREE_C(-3885.523436256565) * t69
+        + t618));
+    const ariane4_free_real_t t620 = parameters[FV1] * (dq[0] * t617) + parameters[IA1] * (t619
+        + t238 * t617);
+    const ariane4_free_real_t t621 = ARIANE4_FREE_C(250.0) * t620 + t615 * (t610 - parameters[ZZ1] * t238);
+    ddq_by_q[0] = -(t337 * t621);
+    ddq_by_q[4] = t358 * t621;
+    ddq_by_q[8] = t365 * t621;
+    ddq_by_q[12] = t371 * t621;
+    /* link j2: inertia, momentum beyond */
+    const ariane4_free_real_t t622 = t27 * (t27 * (t547 - t535) + t26 * (t540 + t550));
+    const ariane4_free_real_t t623 = ARIANE4_FREE_C(0.116) * (t27 * t554 + t26 * t553)
+        - t543 * (ARIANE4_FREE_C(-0.116) * dq[0]);
+    const ariane4_free_real_t t624 = ARIANE4_FREE_C(250.0) * (t74 * parameters[FV1]
+        + parameters[IA1] * (t196 * (ARIANE4_FREE_C(2.0) * dq[0])));
+    const ariane4_free_real_t t625 = t624 + t335 * (ARIANE4_FREE_C(2.0) * (t535 + t622 + t623));
+    const ariane4_free_real_t t626 = ARIANE4_FREE_C(-0.232) * dq[0];
+    /* link j2: derivatives */
+    const ariane4_free_real_t t627 = t26 * t565 - t27 * t567 - (t27 * t63 + t26 * t65) * t626;
+    const ariane4_free_real_t t628 = t343 * t627;
+    /* link j3: derivatives */
+    const ariane4_free_real_t t629 = t26 * t577 + t27 * t578 - (t27 * t60 + t26 * t38) * t626;
+    const ariane4_free_real_t t630 = t347 * t629;
+    /* link j4: derivatives */
+    const ariane4_free_real_t t631 = t26 * t582 - t27 * t584 - (t26 * t44 - t27 * t583) * t626;
+    const ariane4_free_real_t t632 = ARIANE4_FREE_C(0.2) * t631;
+    const ariane4_free_real_t t633 = t628 * t346 - t625 * t337 + t630 * t350 + t632 * t356;
+    ddq_by_dq[0] = t633;
+    const ariane4_free_real_t t634 = t625 * t358 - t628 * t359 - t630 * t361 + t632 * t363;
+    ddq_by_dq[4] = t634;
+    const ariane4_free_real_t t635 = t625 * t365 - t628 * t366 + t630 * t367 + t632 * t369;
+    ddq_by_dq[8] = t635;
+    const ariane4_free_real_t t636 = t625 * t371 - t628 * t372 + t630 * t373 + t632 * t375;
+    ddq_by_dq[12] = t636;
+    ddq_by_input[0] = -t337;
+    ddq_by_input[4] = t358;
+    ddq_by_input[8] = t365;
+    ddq_by_input[12] = t371;
+    if (!ariane4_free_bounded(ddq, 4)
+        || !ariane4_free_bounded(ddq_by_q, 16)
+        || !ariane4_free_bounded(ddq_by_dq, 16)
+        || !ariane4_free_bounded(ddq_by_input, 16)) {
         ariane4_free_zero(ddq, 4);
         ariane4_free_zero(ddq_by_q, 16);
         ariane4_free_zero(ddq_by_dq, 16);

@@ -6,7 +6,7 @@
  * Arm ariane4_free, description 79391f27012d8ce4.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 611 (340 mul, 271 add, 0 neg), 7 div, 3 sqrt, 8 trig, 4 other calls (sign, select and the like).
+ * Operations: 611 (340 mul, 271 add, 0 neg), 7 div, 3 sqrt, 8 trig, 6 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
@@ -79,7 +79,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
+#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -111,16 +111,15 @@ ariane4_free_status_t ariane4_free_forward_dynamics_standard(
         return status;
     }
 
-    ariane4_free_real_t t60, t61;
-    ARIANE4_FREE_SINCOS(q[0], &t60, &t61);
-    ariane4_free_real_t t26, t27;
-    ARIANE4_FREE_SINCOS(q[1], &t26, &t27);
+    ariane4_free_real_t t58, t59;
+    ARIANE4_FREE_SINCOS(q[0], &t58, &t59);
+    ariane4_free_real_t t25, t26;
+    ARIANE4_FREE_SINCOS(q[1], &t25, &t26);
     ariane4_free_real_t t1, t2;
     ARIANE4_FREE_SINCOS(q[2], &t1, &t2);
     ariane4_free_real_t t8, t9;
     ARIANE4_FREE_SINCOS(q[3], &t8, &t9);
-    const ariane4_free_real_t t0 = ariane4_free_bounded(parameters[ZZ4]
-        + ARIANE4_FREE_C(1.0e4) * parameters[IA4]);
+    const ariane4_free_real_t t0 = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
     if (!(t0 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
@@ -152,289 +151,281 @@ ariane4_free_status_t ariane4_free_forward_dynamics_standard(
         + t9 * parameters[YZ4]);
     const ariane4_free_real_t t22 = ARIANE4_FREE_C(-1.0) / t0;
     const ariane4_free_real_t t23 = t21 * t22;
-    const ariane4_free_real_t t24 = ariane4_free_bounded(t19 + t21 * t23);
+    const ariane4_free_real_t t24 = t19 + t21 * t23;
     if (!(t24 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t25 = t24 + ARIANE4_FREE_C(-1.0e-9) * t19;
-    if (!(t25 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
     /* joint j2: drive */
-    const ariane4_free_real_t t28 = ARIANE4_FREE_C(0.8305958991958126) * t26
-        + ARIANE4_FREE_C(0.5568756164881881) * t27;
-    const ariane4_free_real_t t29 = ARIANE4_FREE_C(-0.8305958991958126) * t27
+    const ariane4_free_real_t t27 = ARIANE4_FREE_C(0.8305958991958126) * t25
         + ARIANE4_FREE_C(0.5568756164881881) * t26;
-    const ariane4_free_real_t t30 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t29
+    const ariane4_free_real_t t28 = ARIANE4_FREE_C(-0.8305958991958126) * t26
+        + ARIANE4_FREE_C(0.5568756164881881) * t25;
+    const ariane4_free_real_t t29 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * t28
         + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t31 = ARIANE4_FREE_C(1.0) / t30;
-    const ariane4_free_real_t t32 = t28 * (ARIANE4_FREE_C(2656.3065671641784) * t31);
-    const ariane4_free_real_t t33 = t10 + t11; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t34 = parameters[MX3] - t33;
-    const ariane4_free_real_t t35 = parameters[MY3] + (parameters[MZ4] + t13);
-    const ariane4_free_real_t t36 = t2 * t34 - t1 * t35; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(1.0) / t29;
+    const ariane4_free_real_t t31 = t27 * (ARIANE4_FREE_C(2656.3065671641784) * t30);
+    const ariane4_free_real_t t32 = t10 + t11; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t33 = parameters[MX3] - t32;
+    const ariane4_free_real_t t34 = parameters[MY3] + (parameters[MZ4] + t13);
+    const ariane4_free_real_t t35 = t2 * t33 - t1 * t34; /* link j3: column of the mass matrix */
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t37 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t38 = ARIANE4_FREE_C(0.443) * t37; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t39 = ARIANE4_FREE_C(0.443) * (t38 + ARIANE4_FREE_C(2.0) * t36);
-    const ariane4_free_real_t t40 = parameters[ZZ2] + (t18 + t39) + t32 * t32 * parameters[IA2];
+    const ariane4_free_real_t t36 = parameters[M3] + parameters[M4];
+    const ariane4_free_real_t t37 = ARIANE4_FREE_C(0.443) * t36; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t38 = ARIANE4_FREE_C(0.443) * (t37 + ARIANE4_FREE_C(2.0) * t35);
+    const ariane4_free_real_t t39 = parameters[ZZ2] + (t18 + t38) + t31 * t31 * parameters[IA2];
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t41 = t21 + ARIANE4_FREE_C(-0.443) * (t1 * t20);
-    const ariane4_free_real_t t42 = t41 * t22;
-    const ariane4_free_real_t t43 = ARIANE4_FREE_C(-1.0) / t24;
-    const ariane4_free_real_t t44 = ARIANE4_FREE_C(-0.443) * t36 - t18 - t41 * t23;
-    const ariane4_free_real_t t45 = t44 * t43;
-    const ariane4_free_real_t t46 = ariane4_free_bounded(t40 + t41 * t42 + t44 * t45);
-    if (!(t46 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
-    const ariane4_free_real_t t47 = t46 + ARIANE4_FREE_C(-1.0e-9) * t40;
-    if (!(t47 > ARIANE4_FREE_C(1.0e-12))) {
+    const ariane4_free_real_t t40 = t21 + ARIANE4_FREE_C(-0.443) * (t1 * t20);
+    const ariane4_free_real_t t41 = t40 * t22;
+    const ariane4_free_real_t t42 = ARIANE4_FREE_C(-1.0) / t24;
+    const ariane4_free_real_t t43 = ARIANE4_FREE_C(-0.443) * t35 - t18 - t40 * t23;
+    const ariane4_free_real_t t44 = t43 * t42;
+    const ariane4_free_real_t t45 = t39 + t40 * t41 + t43 * t44;
+    if (!(t45 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t48 = parameters[XX3] + (parameters[YY4] + t17 + t14);
-    const ariane4_free_real_t t49 = parameters[YY3] + (parameters[ZZ4] + t12);
+    const ariane4_free_real_t t46 = parameters[XX3] + (parameters[YY4] + t17 + t14);
+    const ariane4_free_real_t t47 = parameters[YY3] + (parameters[ZZ4] + t12);
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t50 = t9 * parameters[XZ4] - t8 * parameters[YZ4];
+    const ariane4_free_real_t t48 = t9 * parameters[XZ4] - t8 * parameters[YZ4];
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t51 = parameters[XY3] + (t50 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
-        + ARIANE4_FREE_C(0.436) * t33));
+    const ariane4_free_real_t t49 = parameters[XY3] + (t48 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
+        + ARIANE4_FREE_C(0.436) * t32));
     /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t52 = t2 * (t48 - t49) - t51 * (ARIANE4_FREE_C(2.0) * t1);
-    const ariane4_free_real_t t53 = t2 * t52;
-    const ariane4_free_real_t t54 = parameters[XX2] + (t49 + t53);
-    const ariane4_free_real_t t55 = t2 * t35 + t1 * t34; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t50 = t2 * (t46 - t47) - t49 * (ARIANE4_FREE_C(2.0) * t1);
+    const ariane4_free_real_t t51 = t2 * t50;
+    const ariane4_free_real_t t52 = parameters[XX2] + (t47 + t51);
+    const ariane4_free_real_t t53 = t2 * t34 + t1 * t33; /* link j3: column of the mass matrix */
     /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t56 = (parameters[XY2] + (t51 + t1 * t52
-        + ARIANE4_FREE_C(-0.443) * t55)) * (ARIANE4_FREE_C(2.0) * t26);
-    const ariane4_free_real_t t57 = t27 * (parameters[YY2] + (t48 - t53 + t39) - t54) + t56;
+    const ariane4_free_real_t t54 = (parameters[XY2] + (t49 + t1 * t50
+        + ARIANE4_FREE_C(-0.443) * t53)) * (ARIANE4_FREE_C(2.0) * t25);
+    const ariane4_free_real_t t55 = t26 * (parameters[YY2] + (t46 - t51 + t38) - t52) + t54;
     /* link j2: column of the mass matrix */
-    const ariane4_free_real_t t58 = t27 * (parameters[MX2] + (t36 + t38)) - t26 * (parameters[MY2] + t55);
+    const ariane4_free_real_t t56 = t26 * (parameters[MX2] + (t35 + t37)) - t25 * (parameters[MY2] + t53);
     /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t59 = t54 + t27 * t57
-        + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t37)
-        + ARIANE4_FREE_C(2.0) * t58);
+    const ariane4_free_real_t t57 = t52 + t26 * t55
+        + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t36)
+        + ARIANE4_FREE_C(2.0) * t56);
     /* joint j1: drive */
-    const ariane4_free_real_t t62 = ARIANE4_FREE_C(-0.28217402066925895) * t60
-        + ARIANE4_FREE_C(0.9593632378089879) * t61;
-    const ariane4_free_real_t t63 = ARIANE4_FREE_C(0.28217402066925895) * t61
-        + ARIANE4_FREE_C(0.9593632378089879) * t60;
-    const ariane4_free_real_t t64 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t63
+    const ariane4_free_real_t t60 = ARIANE4_FREE_C(-0.28217402066925895) * t58
+        + ARIANE4_FREE_C(0.9593632378089879) * t59;
+    const ariane4_free_real_t t61 = ARIANE4_FREE_C(0.28217402066925895) * t59
+        + ARIANE4_FREE_C(0.9593632378089879) * t58;
+    const ariane4_free_real_t t62 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * t61
         + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t65 = ARIANE4_FREE_C(-1.0) / t64;
-    const ariane4_free_real_t t66 = t62 * (ARIANE4_FREE_C(3885.523436256565) * t65);
-    const ariane4_free_real_t t67 = parameters[ZZ1] + t59 + t66 * t66 * parameters[IA1];
+    const ariane4_free_real_t t63 = ARIANE4_FREE_C(-1.0) / t62;
+    const ariane4_free_real_t t64 = t60 * (ARIANE4_FREE_C(3885.523436256565) * t63);
+    const ariane4_free_real_t t65 = parameters[ZZ1] + t57 + t64 * t64 * parameters[IA1];
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t68 = ARIANE4_FREE_C(-0.436) * t10 - t50;
-    const ariane4_free_real_t t69 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t10;
-    const ariane4_free_real_t t70 = t27 * (t1 * t68 - t2 * t69 + ARIANE4_FREE_C(0.443) * t10);
-    const ariane4_free_real_t t71 = t26 * (t2 * t68 + t1 * t69) + t70 + ARIANE4_FREE_C(0.116) * t10;
-    const ariane4_free_real_t t72 = t71 * t22;
+    const ariane4_free_real_t t66 = ARIANE4_FREE_C(-0.436) * t10 - t48;
+    const ariane4_free_real_t t67 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t10;
+    const ariane4_free_real_t t68 = t26 * (t1 * t66 - t2 * t67 + ARIANE4_FREE_C(0.443) * t10);
+    const ariane4_free_real_t t69 = t25 * (t2 * t66 + t1 * t67) + t68 + ARIANE4_FREE_C(0.116) * t10;
+    const ariane4_free_real_t t70 = t69 * t22;
     /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t73 = parameters[XY4] + t8 * t16 + ARIANE4_FREE_C(0.1) * t20 - parameters[XZ3];
-    const ariane4_free_real_t t74 = parameters[YZ3] + t21;
-    const ariane4_free_real_t t75 = t2 * t73 + t1 * t74; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t76 = t1 * t73 - t2 * t74;
-    const ariane4_free_real_t t77 = t26 * t75 + t27 * t76 + t71 * t23;
-    const ariane4_free_real_t t78 = t77 * t43;
+    const ariane4_free_real_t t71 = parameters[XY4] + t8 * t16 + ARIANE4_FREE_C(0.1) * t20 - parameters[XZ3];
+    const ariane4_free_real_t t72 = parameters[YZ3] + t21;
+    const ariane4_free_real_t t73 = t2 * t71 + t1 * t72; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t74 = t1 * t71 - t2 * t72;
+    const ariane4_free_real_t t75 = t25 * t73 + t26 * t74 + t69 * t23;
+    const ariane4_free_real_t t76 = t75 * t42;
     /* link j2: column of the mass matrix */
-    const ariane4_free_real_t t79 = t26 * (t75 + ARIANE4_FREE_C(0.443) * (parameters[MZ3] - t20)
-        - parameters[XZ2]) + t27 * (t76 - parameters[YZ2]);
-    const ariane4_free_real_t t80 = t79 + t71 * t42 - t77 * t45;
-    const ariane4_free_real_t t81 = ARIANE4_FREE_C(1.0) / t46;
-    const ariane4_free_real_t t82 = t80 * t81;
-    const ariane4_free_real_t t83 = ariane4_free_bounded(t67 + t71 * t72 + t77 * t78 - t80 * t82);
+    const ariane4_free_real_t t77 = t25 * (t73 + ARIANE4_FREE_C(0.443) * (parameters[MZ3] - t20)
+        - parameters[XZ2]) + t26 * (t74 - parameters[YZ2]);
+    const ariane4_free_real_t t78 = t77 + t69 * t41 - t75 * t44;
+    const ariane4_free_real_t t79 = ARIANE4_FREE_C(1.0) / t45;
+    const ariane4_free_real_t t80 = t78 * t79;
+    const ariane4_free_real_t t81 = t65 + t69 * t70 + t75 * t76 - t78 * t80;
+    if (!(t81 > ARIANE4_FREE_C(1.0e-12))) {
+        ariane4_free_zero(out, 4);
+        return ARIANE4_FREE_STATUS_PIVOT;
+    }
+    const ariane4_free_real_t t82 = ariane4_free_min(t24 + ARIANE4_FREE_C(-1.0e-9) * t19, t45
+        + ARIANE4_FREE_C(-1.0e-9) * t39);
+    const ariane4_free_real_t t83 = ariane4_free_min(t82, t81 + ARIANE4_FREE_C(-1.0e-9) * t65);
     if (!(t83 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }
-    const ariane4_free_real_t t84 = t83 + ARIANE4_FREE_C(-1.0e-9) * t67;
-    if (!(t84 > ARIANE4_FREE_C(1.0e-12))) {
-        ariane4_free_zero(out, 4);
-        return ARIANE4_FREE_STATUS_PIVOT;
-    }
-    const ariane4_free_real_t t85 = dq[0] * dq[0]; /* link j1: motion */
-    const ariane4_free_real_t t86 = ARIANE4_FREE_C(-0.116) * t85; /* link j2: motion */
-    const ariane4_free_real_t t87 = t27 * t86 + ARIANE4_FREE_C(9.81) * t26;
-    const ariane4_free_real_t t88 = t27 * dq[0];
-    const ariane4_free_real_t t89 = t88 * t88;
-    const ariane4_free_real_t t90 = dq[1] * dq[1];
-    const ariane4_free_real_t t91 = t87 + ARIANE4_FREE_C(-0.443) * (t89 + t90); /* link j3: motion */
-    const ariane4_free_real_t t92 = t26 * t86 + ARIANE4_FREE_C(-9.81) * t27; /* link j2: motion */
-    const ariane4_free_real_t t93 = t26 * dq[0];
-    const ariane4_free_real_t t94 = t93 * t88;
-    const ariane4_free_real_t t95 = t92 + ARIANE4_FREE_C(-0.443) * t94; /* link j3: motion */
-    const ariane4_free_real_t t96 = t1 * t91 + t2 * t95;
-    const ariane4_free_real_t t97 = t2 * t93 + t1 * t88;
-    const ariane4_free_real_t t98 = t2 * t88 - t1 * t93;
-    const ariane4_free_real_t t99 = t97 * t98;
-    const ariane4_free_real_t t100 = t97 * t97;
-    const ariane4_free_real_t t101 = dq[1] + dq[2];
-    const ariane4_free_real_t t102 = t101 * t101;
-    const ariane4_free_real_t t103 = t102 + t100; /* link j4: motion */
-    const ariane4_free_real_t t104 = t96 + (ARIANE4_FREE_C(0.1) * t99 + ARIANE4_FREE_C(0.436) * t103);
-    const ariane4_free_real_t t105 = t1 * t95 - t2 * t91; /* link j3: motion */
-    const ariane4_free_real_t t106 = t98 * t98;
-    const ariane4_free_real_t t107 = t102 + t106; /* link j4: motion */
-    const ariane4_free_real_t t108 = t105 - (ARIANE4_FREE_C(0.1) * t107 - ARIANE4_FREE_C(-0.436) * t99);
-    const ariane4_free_real_t t109 = t101 * t97; /* link j3: motion */
-    const ariane4_free_real_t t110 = t101 * t98;
-    const ariane4_free_real_t t111 = dq[1] * t93; /* link j2: motion */
-    const ariane4_free_real_t t112 = ARIANE4_FREE_C(0.886) * t111; /* link j3: motion */
+    const ariane4_free_real_t t84 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane4_free_real_t t85 = ARIANE4_FREE_C(-0.116) * t84; /* link j2: motion */
+    const ariane4_free_real_t t86 = t26 * t85 + ARIANE4_FREE_C(9.81) * t25;
+    const ariane4_free_real_t t87 = t26 * dq[0];
+    const ariane4_free_real_t t88 = t87 * t87;
+    const ariane4_free_real_t t89 = dq[1] * dq[1];
+    const ariane4_free_real_t t90 = t86 + ARIANE4_FREE_C(-0.443) * (t88 + t89); /* link j3: motion */
+    const ariane4_free_real_t t91 = t25 * t85 + ARIANE4_FREE_C(-9.81) * t26; /* link j2: motion */
+    const ariane4_free_real_t t92 = t25 * dq[0];
+    const ariane4_free_real_t t93 = t92 * t87;
+    const ariane4_free_real_t t94 = t91 + ARIANE4_FREE_C(-0.443) * t93; /* link j3: motion */
+    const ariane4_free_real_t t95 = t1 * t90 + t2 * t94;
+    const ariane4_free_real_t t96 = t2 * t92 + t1 * t87;
+    const ariane4_free_real_t t97 = t2 * t87 - t1 * t92;
+    const ariane4_free_real_t t98 = t96 * t97;
+    const ariane4_free_real_t t99 = t96 * t96;
+    const ariane4_free_real_t t100 = dq[1] + dq[2];
+    const ariane4_free_real_t t101 = t100 * t100;
+    const ariane4_free_real_t t102 = t101 + t99; /* link j4: motion */
+    const ariane4_free_real_t t103 = t95 + (ARIANE4_FREE_C(0.1) * t98 + ARIANE4_FREE_C(0.436) * t102);
+    const ariane4_free_real_t t104 = t1 * t94 - t2 * t90; /* link j3: motion */
+    const ariane4_free_real_t t105 = t97 * t97;
+    const ariane4_free_real_t t106 = t101 + t105; /* link j4: motion */
+    const ariane4_free_real_t t107 = t104 - (ARIANE4_FREE_C(0.1) * t106 - ARIANE4_FREE_C(-0.436) * t98);
+    const ariane4_free_real_t t108 = t100 * t96; /* link j3: motion */
+    const ariane4_free_real_t t109 = t100 * t97;
+    const ariane4_free_real_t t110 = dq[1] * t92; /* link j2: motion */
+    const ariane4_free_real_t t111 = ARIANE4_FREE_C(0.886) * t110; /* link j3: motion */
     /* link j4: motion */
-    const ariane4_free_real_t t113 = t112 - (ARIANE4_FREE_C(0.2) * t109 + ARIANE4_FREE_C(-0.872) * t110);
-    const ariane4_free_real_t t114 = t8 * t108 - t9 * t113;
-    const ariane4_free_real_t t115 = ARIANE4_FREE_C(2.0) * t110;
-    const ariane4_free_real_t t116 = t8 * t99 + t9 * t115;
-    const ariane4_free_real_t t117 = t9 * t101 + t8 * t97;
-    const ariane4_free_real_t t118 = dq[3] + t98;
-    const ariane4_free_real_t t119 = t117 * t118;
-    const ariane4_free_real_t t120 = t116 - t119;
-    const ariane4_free_real_t t121 = t8 * t115 - t9 * t99;
-    const ariane4_free_real_t t122 = t9 * t97 - t8 * t101;
-    const ariane4_free_real_t t123 = t122 * t118;
-    const ariane4_free_real_t t124 = t121 + t123;
-    const ariane4_free_real_t t125 = t123 + t124; /* link j4: force and moment */
-    const ariane4_free_real_t t126 = t119 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t120
-        + parameters[XY4] * t125;
-    const ariane4_free_real_t t127 = t122 * t117; /* link j4: motion */
-    const ariane4_free_real_t t128 = t109 + t127; /* link j4: force and moment */
-    const ariane4_free_real_t t129 = t117 * t117; /* link j4: motion */
-    const ariane4_free_real_t t130 = t118 * t118;
+    const ariane4_free_real_t t112 = t111 - (ARIANE4_FREE_C(0.2) * t108 + ARIANE4_FREE_C(-0.872) * t109);
+    const ariane4_free_real_t t113 = t8 * t107 - t9 * t112;
+    const ariane4_free_real_t t114 = ARIANE4_FREE_C(2.0) * t109;
+    const ariane4_free_real_t t115 = t8 * t98 + t9 * t114;
+    const ariane4_free_real_t t116 = t9 * t100 + t8 * t96;
+    const ariane4_free_real_t t117 = dq[3] + t97;
+    const ariane4_free_real_t t118 = t116 * t117;
+    const ariane4_free_real_t t119 = t115 - t118;
+    const ariane4_free_real_t t120 = t8 * t114 - t9 * t98;
+    const ariane4_free_real_t t121 = t9 * t96 - t8 * t100;
+    const ariane4_free_real_t t122 = t121 * t117;
+    const ariane4_free_real_t t123 = t120 + t122;
+    const ariane4_free_real_t t124 = t122 + t123; /* link j4: force and moment */
+    const ariane4_free_real_t t125 = t118 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t119
+        + parameters[XY4] * t124;
+    const ariane4_free_real_t t126 = t121 * t116; /* link j4: motion */
+    const ariane4_free_real_t t127 = t108 + t126; /* link j4: force and moment */
+    const ariane4_free_real_t t128 = t116 * t116; /* link j4: motion */
+    const ariane4_free_real_t t129 = t117 * t117;
     /* link j4: force and moment */
-    const ariane4_free_real_t t131 = t126 + parameters[XZ4] * t128 + parameters[YZ4] * (t130 - t129)
-        + (parameters[MY4] * t104 + parameters[MZ4] * t114);
-    const ariane4_free_real_t t132 = t9 * t108 + t8 * t113; /* link j4: motion */
-    const ariane4_free_real_t t133 = t120 - t119; /* link j4: force and moment */
-    const ariane4_free_real_t t134 = parameters[XY4] * t133 - (parameters[YY4] * t124
-        + t123 * (parameters[ZZ4] - parameters[XX4]));
-    const ariane4_free_real_t t135 = t127 - t109;
-    const ariane4_free_real_t t136 = t122 * t122; /* link j4: motion */
+    const ariane4_free_real_t t130 = t125 + parameters[XZ4] * t127 + parameters[YZ4] * (t129 - t128)
+        + (parameters[MY4] * t103 + parameters[MZ4] * t113);
+    const ariane4_free_real_t t131 = t9 * t107 + t8 * t112; /* link j4: motion */
+    const ariane4_free_real_t t132 = t119 - t118; /* link j4: force and moment */
+    const ariane4_free_real_t t133 = parameters[XY4] * t132 - (parameters[YY4] * t123
+        + t122 * (parameters[ZZ4] - parameters[XX4]));
+    const ariane4_free_real_t t134 = t126 - t108;
+    const ariane4_free_real_t t135 = t121 * t121; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane4_free_real_t t137 = t134 + parameters[YZ4] * t135 + parameters[XZ4] * (t130 - t136)
-        + (parameters[MX4] * t104 - parameters[MZ4] * t132);
-    const ariane4_free_real_t t138 = parameters[MX4] * (t129 + t130) + parameters[MY4] * t135
-        + parameters[MZ4] * t121;
-    const ariane4_free_real_t t139 = parameters[M4] * t132 + t138;
-    const ariane4_free_real_t t140 = parameters[MX4] * t128 + parameters[MY4] * (t136 + t130)
-        + parameters[MZ4] * t116;
-    const ariane4_free_real_t t141 = t140 - parameters[M4] * t114;
-    const ariane4_free_real_t t142 = t8 * t139 + t9 * t141; /* link j4: what it passes on */
-    const ariane4_free_real_t t143 = ARIANE4_FREE_C(2.0) * t109; /* link j4: motion */
+    const ariane4_free_real_t t136 = t133 + parameters[YZ4] * t134 + parameters[XZ4] * (t129 - t135)
+        + (parameters[MX4] * t103 - parameters[MZ4] * t131);
+    const ariane4_free_real_t t137 = parameters[MX4] * (t128 + t129) + parameters[MY4] * t134
+        + parameters[MZ4] * t120;
+    const ariane4_free_real_t t138 = parameters[M4] * t131 + t137;
+    const ariane4_free_real_t t139 = parameters[MX4] * t127 + parameters[MY4] * (t135 + t129)
+        + parameters[MZ4] * t115;
+    const ariane4_free_real_t t140 = t139 - parameters[M4] * t113;
+    const ariane4_free_real_t t141 = t8 * t138 + t9 * t140; /* link j4: what it passes on */
+    const ariane4_free_real_t t142 = ARIANE4_FREE_C(2.0) * t108; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane4_free_real_t t144 = parameters[XY3] * t143 - (parameters[XX3] * t110
-        + t110 * (parameters[ZZ3] - parameters[YY3]));
-    const ariane4_free_real_t t145 = t144 - parameters[XZ3] * t99 + parameters[YZ3] * (t102 - t106)
-        - (parameters[MY3] * t112 + parameters[MZ3] * t96);
+    const ariane4_free_real_t t143 = parameters[XY3] * t142 - (parameters[XX3] * t109
+        + t109 * (parameters[ZZ3] - parameters[YY3]));
+    const ariane4_free_real_t t144 = t143 - parameters[XZ3] * t98 + parameters[YZ3] * (t101 - t105)
+        - (parameters[MY3] * t111 + parameters[MZ3] * t95);
     /* link j4: what it passes on */
-    const ariane4_free_real_t t146 = t145 + (t9 * t131 + t8 * t137 + ARIANE4_FREE_C(-0.436) * t142);
+    const ariane4_free_real_t t145 = t144 + (t9 * t130 + t8 * t136 + ARIANE4_FREE_C(-0.436) * t141);
     /* link j4: force and moment */
-    const ariane4_free_real_t t147 = parameters[ZZ4] * t109 - t15 * t127 + parameters[YZ4] * t121
-        - parameters[XZ4] * t116;
-    const ariane4_free_real_t t148 = t147 - parameters[XY4] * (t136 - t129) - (parameters[MX4] * t114
-        + parameters[MY4] * t132);
+    const ariane4_free_real_t t146 = parameters[ZZ4] * t108 - t15 * t126 + parameters[YZ4] * t120
+        - parameters[XZ4] * t115;
+    const ariane4_free_real_t t147 = t146 - parameters[XY4] * (t135 - t128) - (parameters[MX4] * t113
+        + parameters[MY4] * t131);
     /* link j3: force and moment */
-    const ariane4_free_real_t t149 = parameters[YY3] * t109 - t109 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t115;
-    const ariane4_free_real_t t150 = t149 + parameters[YZ3] * t99 - parameters[XZ3] * (t102 - t100)
-        + (parameters[MZ3] * t105 + parameters[MX3] * t112);
+    const ariane4_free_real_t t148 = parameters[YY3] * t108 - t108 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t114;
+    const ariane4_free_real_t t149 = t148 + parameters[YZ3] * t98 - parameters[XZ3] * (t101 - t99)
+        + (parameters[MZ3] * t104 + parameters[MX3] * t111);
     /* link j4: what it passes on */
-    const ariane4_free_real_t t151 = t150 + (t148 - ARIANE4_FREE_C(0.1) * t142);
-    const ariane4_free_real_t t152 = dq[1] * t88; /* link j2: motion */
-    const ariane4_free_real_t t153 = ARIANE4_FREE_C(2.0) * t111;
+    const ariane4_free_real_t t150 = t149 + (t147 - ARIANE4_FREE_C(0.1) * t141);
+    const ariane4_free_real_t t151 = dq[1] * t87; /* link j2: motion */
+    const ariane4_free_real_t t152 = ARIANE4_FREE_C(2.0) * t110;
     /* link j2: force and moment */
-    const ariane4_free_real_t t154 = t152 * (parameters[YY2] - parameters[ZZ2]) - t152 * parameters[XX2]
-        + t153 * parameters[XY2];
-    const ariane4_free_real_t t155 = t154 - t94 * parameters[XZ2] + (t90 - t89) * parameters[YZ2]
-        - t92 * parameters[MZ2];
+    const ariane4_free_real_t t153 = t151 * (parameters[YY2] - parameters[ZZ2]) - t151 * parameters[XX2]
+        + t152 * parameters[XY2];
+    const ariane4_free_real_t t154 = t153 - t93 * parameters[XZ2] + (t89 - t88) * parameters[YZ2]
+        - t91 * parameters[MZ2];
     /* link j3: force and moment */
-    const ariane4_free_real_t t156 = parameters[MX3] * t143 + parameters[MY3] * t115 - parameters[MZ3] * (t100
-        + t106);
-    const ariane4_free_real_t t157 = parameters[M3] * t112 + t156 + t142; /* link j4: what it passes on */
-    const ariane4_free_real_t t158 = ARIANE4_FREE_C(2.0) * t152; /* link j2: motion */
+    const ariane4_free_real_t t155 = parameters[MX3] * t142 + parameters[MY3] * t114 - parameters[MZ3] * (t99
+        + t105);
+    const ariane4_free_real_t t156 = parameters[M3] * t111 + t155 + t141; /* link j4: what it passes on */
+    const ariane4_free_real_t t157 = ARIANE4_FREE_C(2.0) * t151; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_free_real_t t159 = t111 * parameters[YY2] + t111 * (parameters[ZZ2] - parameters[XX2])
-        - t158 * parameters[XY2];
-    const ariane4_free_real_t t160 = t93 * t93; /* link j2: motion */
+    const ariane4_free_real_t t158 = t110 * parameters[YY2] + t110 * (parameters[ZZ2] - parameters[XX2])
+        - t157 * parameters[XY2];
+    const ariane4_free_real_t t159 = t92 * t92; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane4_free_real_t t161 = t159 + t94 * parameters[YZ2] + (t160 - t90) * parameters[XZ2]
-        - t87 * parameters[MZ2];
+    const ariane4_free_real_t t160 = t158 + t93 * parameters[YZ2] + (t159 - t89) * parameters[XZ2]
+        - t86 * parameters[MZ2];
     /* link j3: what it passes on */
-    const ariane4_free_real_t t162 = t161 + (t1 * t146 + t2 * t151 + ARIANE4_FREE_C(0.443) * t157);
+    const ariane4_free_real_t t161 = t160 + (t1 * t145 + t2 * t150 + ARIANE4_FREE_C(0.443) * t156);
     /* link j2: what it passes on */
-    const ariane4_free_real_t t163 = t26 * (t155 + (t2 * t146 - t1 * t151)) + t27 * t162;
+    const ariane4_free_real_t t162 = t25 * (t154 + (t2 * t145 - t1 * t150)) + t26 * t161;
     /* link j2: force and moment */
-    const ariane4_free_real_t t164 = t153 * parameters[MX2] + t158 * parameters[MY2] - (t160
-        + t89) * parameters[MZ2];
-    const ariane4_free_real_t t165 = t66 * dq[0];
-    const ariane4_free_real_t t166 = ariane4_free_sign(t165); /* joint j1: coulomb_friction */
+    const ariane4_free_real_t t163 = t152 * parameters[MX2] + t157 * parameters[MY2] - (t159
+        + t88) * parameters[MZ2];
+    const ariane4_free_real_t t164 = t64 * dq[0];
+    const ariane4_free_real_t t165 = ariane4_free_sign(t164); /* joint j1: coulomb_friction */
     /* joint j1: drive */
-    const ariane4_free_real_t t167 = ARIANE4_FREE_C(-3885.523436256565) * t63
-        + ARIANE4_FREE_C(-72.7913960548305) * (t65 * t65) * (t62 * t62);
-    const ariane4_free_real_t t168 = t165 * parameters[FV1] + t166 * parameters[FC1]
-        + t65 * t167 * t85 * parameters[IA1];
-    const ariane4_free_real_t t169 = input[0] * (ARIANE4_FREE_C(-0.004) * t66) + (t163
-        + ARIANE4_FREE_C(0.116) * (t164 + t157) - t66 * t168);
-    const ariane4_free_real_t t170 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ariane4_free_real_t t171 = ARIANE4_FREE_C(1.0e2) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]
-        + t170 * parameters[FC4]) - t148;
-    const ariane4_free_real_t t172 = ARIANE4_FREE_C(5.0) * input[3] - t171;
+    const ariane4_free_real_t t166 = ARIANE4_FREE_C(-3885.523436256565) * t61
+        + ARIANE4_FREE_C(-72.7913960548305) * (t63 * t63) * (t60 * t60);
+    const ariane4_free_real_t t167 = t164 * parameters[FV1] + t165 * parameters[FC1]
+        + t63 * t166 * t84 * parameters[IA1];
+    const ariane4_free_real_t t168 = input[0] * (ARIANE4_FREE_C(-0.004) * t64) + (t162
+        + ARIANE4_FREE_C(0.116) * (t163 + t156) - t64 * t167);
+    const ariane4_free_real_t t169 = ariane4_free_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ariane4_free_real_t t170 = ARIANE4_FREE_C(1.0e2) * (ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4]
+        + t169 * parameters[FC4]) - t147;
+    const ariane4_free_real_t t171 = ARIANE4_FREE_C(5.0) * input[3] - t170;
     /* link j4: force and moment */
-    const ariane4_free_real_t t173 = parameters[MZ4] * (t136 + t129) - (parameters[MX4] * t125
-        + parameters[MY4] * t133);
-    const ariane4_free_real_t t174 = parameters[M4] * t104 + t173;
-    const ariane4_free_real_t t175 = t9 * t139 - t8 * t141; /* link j4: what it passes on */
-    const ariane4_free_real_t t176 = t8 * t131 - t9 * t137 - (ARIANE4_FREE_C(-0.1) * t174
-        - ARIANE4_FREE_C(0.436) * t175);
+    const ariane4_free_real_t t172 = parameters[MZ4] * (t135 + t128) - (parameters[MX4] * t124
+        + parameters[MY4] * t132);
+    const ariane4_free_real_t t173 = parameters[M4] * t103 + t172;
+    const ariane4_free_real_t t174 = t9 * t138 - t8 * t140; /* link j4: what it passes on */
+    const ariane4_free_real_t t175 = t8 * t130 - t9 * t136 - (ARIANE4_FREE_C(-0.1) * t173
+        - ARIANE4_FREE_C(0.436) * t174);
     /* link j3: force and moment */
-    const ariane4_free_real_t t177 = parameters[XY3] * (t100 - t106) - t99 * (parameters[XX3]
-        - parameters[YY3]) + (parameters[MY3] * t105 - parameters[MX3] * t96);
-    const ariane4_free_real_t t178 = t177 + t176; /* link j4: what it passes on */
-    const ariane4_free_real_t t179 = t7 * dq[2];
-    const ariane4_free_real_t t180 = ariane4_free_sign(t179); /* joint j3: coulomb_friction */
+    const ariane4_free_real_t t176 = parameters[XY3] * (t99 - t105) - t98 * (parameters[XX3]
+        - parameters[YY3]) + (parameters[MY3] * t104 - parameters[MX3] * t95);
+    const ariane4_free_real_t t177 = t176 + t175; /* link j4: what it passes on */
+    const ariane4_free_real_t t178 = t7 * dq[2];
+    const ariane4_free_real_t t179 = ariane4_free_sign(t178); /* joint j3: coulomb_friction */
     /* joint j3: drive */
-    const ariane4_free_real_t t181 = ARIANE4_FREE_C(7124.375926654358) * t4
+    const ariane4_free_real_t t180 = ARIANE4_FREE_C(7124.375926654358) * t4
         + ARIANE4_FREE_C(188.12627071923498) * (t6 * t6) * (t3 * t3);
-    const ariane4_free_real_t t182 = t179 * parameters[FV3] + t180 * parameters[FC3]
-        + t6 * t181 * (dq[2] * dq[2]) * parameters[IA3];
-    const ariane4_free_real_t t183 = input[2] * (ARIANE4_FREE_C(0.003) * t7) + (t7 * t182 + t178)
-        - t172 * t23;
+    const ariane4_free_real_t t181 = t178 * parameters[FV3] + t179 * parameters[FC3]
+        + t6 * t180 * (dq[2] * dq[2]) * parameters[IA3];
+    const ariane4_free_real_t t182 = input[2] * (ARIANE4_FREE_C(0.003) * t7) + (t7 * t181 + t177)
+        - t171 * t23;
     /* link j4: what it passes on */
-    const ariane4_free_real_t t184 = parameters[M3] * t105 + (parameters[MX3] * t107 - parameters[MY3] * t99)
-        + t175;
-    const ariane4_free_real_t t185 = parameters[M3] * t96 + (parameters[MY3] * t103 - parameters[MX3] * t99)
+    const ariane4_free_real_t t183 = parameters[M3] * t104 + (parameters[MX3] * t106 - parameters[MY3] * t98)
         + t174;
+    const ariane4_free_real_t t184 = parameters[M3] * t95 + (parameters[MY3] * t102 - parameters[MX3] * t98)
+        + t173;
     /* link j2: force and moment */
-    const ariane4_free_real_t t186 = t94 * (parameters[XX2] - parameters[YY2]) - (t160
-        - t89) * parameters[XY2] + (t92 * parameters[MX2] + t87 * parameters[MY2]);
+    const ariane4_free_real_t t185 = t93 * (parameters[XX2] - parameters[YY2]) - (t159
+        - t88) * parameters[XY2] + (t91 * parameters[MX2] + t86 * parameters[MY2]);
     /* link j3: what it passes on */
-    const ariane4_free_real_t t187 = t186 - (t178 - ARIANE4_FREE_C(0.443) * (t1 * t184 + t2 * t185));
-    const ariane4_free_real_t t188 = t32 * dq[1];
-    const ariane4_free_real_t t189 = ariane4_free_sign(t188); /* joint j2: coulomb_friction */
+    const ariane4_free_real_t t186 = t185 - (t177 - ARIANE4_FREE_C(0.443) * (t1 * t183 + t2 * t184));
+    const ariane4_free_real_t t187 = t31 * dq[1];
+    const ariane4_free_real_t t188 = ariane4_free_sign(t187); /* joint j2: coulomb_friction */
     /* joint j2: drive */
-    const ariane4_free_real_t t190 = ARIANE4_FREE_C(-2656.3065671641784) * t29
-        - ARIANE4_FREE_C(104.12987373940295) * (t31 * t31) * (t28 * t28);
-    const ariane4_free_real_t t191 = t188 * parameters[FV2] + t189 * parameters[FC2]
-        + t31 * t190 * t90 * parameters[IA2];
-    const ariane4_free_real_t t192 = ARIANE4_FREE_C(0.012) * t32 * input[1] - (t32 * t191 - t187)
-        + t172 * t42;
-    const ariane4_free_real_t t193 = t192 + t183 * t45;
-    const ariane4_free_real_t t194 = t169 - t172 * t72 + t183 * t78 + t193 * t82;
-    const ariane4_free_real_t t195 = ARIANE4_FREE_C(1.0) / t83;
-    const ariane4_free_real_t t196 = ariane4_free_bounded(t194 * t195);
-    out[0] = t196;
-    const ariane4_free_real_t t197 = ariane4_free_bounded(t193 * t81 + t82 * t196);
-    out[1] = t197;
-    const ariane4_free_real_t t198 = ariane4_free_bounded(t183 * t43 - t78 * t196 - t45 * t197);
-    out[2] = t198;
-    const ariane4_free_real_t t199 = t42 * t197 - (t172 * t22 + t72 * t196) + t23 * t198;
-    out[3] = t199;
-    if (!ariane4_free_all_bounded(out, 4)) {
+    const ariane4_free_real_t t189 = ARIANE4_FREE_C(-2656.3065671641784) * t28
+        - ARIANE4_FREE_C(104.12987373940295) * (t30 * t30) * (t27 * t27);
+    const ariane4_free_real_t t190 = t187 * parameters[FV2] + t188 * parameters[FC2]
+        + t30 * t189 * t89 * parameters[IA2];
+    const ariane4_free_real_t t191 = ARIANE4_FREE_C(0.012) * t31 * input[1] - (t31 * t190 - t186)
+        + t171 * t41;
+    const ariane4_free_real_t t192 = t191 + t182 * t44;
+    const ariane4_free_real_t t193 = t168 - t171 * t70 + t182 * t76 + t192 * t80;
+    const ariane4_free_real_t t194 = ARIANE4_FREE_C(1.0) / t81;
+    const ariane4_free_real_t t195 = ariane4_free_held(t193 * t194);
+    out[0] = t195;
+    const ariane4_free_real_t t196 = ariane4_free_held(t192 * t79 + t80 * t195);
+    out[1] = t196;
+    const ariane4_free_real_t t197 = ariane4_free_held(t182 * t42 - t76 * t195 - t44 * t196);
+    out[2] = t197;
+    const ariane4_free_real_t t198 = t41 * t196 - (t171 * t22 + t70 * t195) + t23 * t197;
+    out[3] = t198;
+    if (!ariane4_free_bounded(out, 4)) {
         ariane4_free_zero(out, 4);
         return ARIANE4_FREE_STATUS_PIVOT;
     }

@@ -64,7 +64,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
+#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -307,376 +307,372 @@ ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives(
     const ariane4_free_real_t t148 = parameters[FV4] * (ARIANE4_FREE_C(1.0e2) * dq[3])
         + parameters[FC4] * t147 + parameters[IA4] * (ARIANE4_FREE_C(1.0e2) * ddq[3]);
     input[3] = ARIANE4_FREE_C(20.0) * t148 + ARIANE4_FREE_C(0.2) * t56;
-    const ariane4_free_real_t t149 = ariane4_free_select(t96, t96, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t150 = ARIANE4_FREE_C(1.0) / t149;
-    const ariane4_free_real_t t151 = ARIANE4_FREE_C(-0.037468) * t97;
-    const ariane4_free_real_t t152 = ARIANE4_FREE_C(-1.0) / t97;
-    const ariane4_free_real_t
-        t153 = t152 * (ARIANE4_FREE_C(0.06434139546481742) * (t151 * (ARIANE4_FREE_C(0.5) * t150))
-        - t95 * t98);
-    const ariane4_free_real_t t154 = t99 * (t99 * (t151 * (ARIANE4_FREE_C(0.5) * t99)));
-    const ariane4_free_real_t t155 = t105 * (ARIANE4_FREE_C(-145.582792109661) * (t99 * t154))
-        - t104 * (ARIANE4_FREE_C(-2.0) * (t97 * t95));
-    const ariane4_free_real_t t156 = t30 * (t106 * t154 + t99 * (ARIANE4_FREE_C(-3885.523436256565) * t97
-        + t155));
-    const ariane4_free_real_t t157 = t95 * t100 + t97 * (ARIANE4_FREE_C(3885.523436256565) * t154);
-    const ariane4_free_real_t t158 = parameters[FV1] * (dq[0] * t157) + parameters[IA1] * (t156
-        + ddq[0] * t157);
-    input_by_q[0] = ARIANE4_FREE_C(-250.0) * t158 + t92 * t153;
+    const ariane4_free_real_t t149 = parameters[MX4] * t55 + parameters[MY4] * t54;
+    const ariane4_free_real_t t150 = t28 + t29; /* link j4: force and moment */
+    /* link j4: derivatives */
+    const ariane4_free_real_t t151 = parameters[XZ4R] * t25 - parameters[YZ4R] * t26 - parameters[ZZ4] * t150;
+    const ariane4_free_real_t t152 = ARIANE4_FREE_C(0.5) * (parameters[XX4R] + parameters[ZZ4]);
+    const ariane4_free_real_t t153 = t152 - parameters[XX4R];
+    const ariane4_free_real_t t154 = parameters[XY4] * t9 + t10 * t153;
+    const ariane4_free_real_t t155 = ARIANE4_FREE_C(2.0) * t154;
+    const ariane4_free_real_t t156 = t9 * t152 + parameters[XY4] * t10;
+    const ariane4_free_real_t t157 = ARIANE4_FREE_C(2.0) * t156;
+    const ariane4_free_real_t t158 = ARIANE4_FREE_C(0.2) * (t149 + (t151 + (t10 * t155 + t9 * t157)));
+    input_by_q[15] = t158;
     const ariane4_free_real_t t159 = parameters[XZ4R] * t10;
     const ariane4_free_real_t t160 = parameters[XY4] * t57;
     const ariane4_free_real_t t161 = t159 + t160;
-    const ariane4_free_real_t t162 = parameters[YZ4R] * t9;
-    const ariane4_free_real_t t163 = t160 + t162;
-    const ariane4_free_real_t t164 = ARIANE4_FREE_C(0.5) * (parameters[XX4R] + parameters[ZZ4]);
-    const ariane4_free_real_t t165 = t164 - parameters[XX4R];
-    const ariane4_free_real_t t166 = parameters[XZ4R] * t9 - t57 * t165;
-    const ariane4_free_real_t t167 = t57 * t164 - parameters[YZ4R] * t10;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t168 = t6 * (t161 + t163) + t8 * (t166 + t167);
-    const ariane4_free_real_t t169 = t6 * t168;
-    const ariane4_free_real_t t170 = parameters[MY4] * t57;
-    const ariane4_free_real_t t171 = parameters[MX4] * t57;
-    const ariane4_free_real_t t172 = t6 * t170 + t8 * t171;
-    const ariane4_free_real_t t173 = ARIANE4_FREE_C(0.1) * t172;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t174 = t6 * parameters[MY4] + t8 * parameters[MX4];
-    const ariane4_free_real_t t175 = ARIANE4_FREE_C(0.1) * t17;
-    const ariane4_free_real_t t176 = t174 * t175; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t177 = t173 - t176;
-    const ariane4_free_real_t t178 = parameters[XZ3] * t17;
-    const ariane4_free_real_t t179 = parameters[XY3R] * t7;
-    const ariane4_free_real_t t180 = t179 - t178 + (t169 - t163 + t173 - t177);
-    const ariane4_free_real_t t181 = t162 - t159;
-    const ariane4_free_real_t t182 = parameters[YZ3] * t5;
-    const ariane4_free_real_t t183 = t179 - t182 + (t177 - t181);
-    const ariane4_free_real_t t184 = t164 - parameters[ZZ4];
-    const ariane4_free_real_t t185 = t10 * t184 - parameters[YZ4R] * t57;
-    const ariane4_free_real_t t186 = parameters[XZ4R] * t57 - t9 * t184;
-    const ariane4_free_real_t t187 = ARIANE4_FREE_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const ariane4_free_real_t t188 = parameters[YZ3] * t17 + t7 * t187 + (t6 * t185 - t8 * t186);
-    const ariane4_free_real_t t189 = parameters[XY4] * t9 + t10 * t165;
-    const ariane4_free_real_t t190 = t9 * t164 + parameters[XY4] * t10;
-    const ariane4_free_real_t t191 = parameters[MY4] * t9 - parameters[MX4] * t10;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t192 = t8 * parameters[MY4] - t6 * parameters[MX4];
-    const ariane4_free_real_t t193 = ARIANE4_FREE_C(0.1) * t7; /* link j4: velocity of its origin */
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t194 = t6 * t189 + t8 * t190 + (ARIANE4_FREE_C(0.1) * t191 + t192 * t193);
-    const ariane4_free_real_t t195 = parameters[XX3R] - t187;
-    const ariane4_free_real_t t196 = t7 * t195 - parameters[XZ3] * t5 - t194;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t197 = t1 * (t180 + t183) + t3 * (t188 + t196);
-    const ariane4_free_real_t t198 = t1 * t197;
-    const ariane4_free_real_t t199 = parameters[MY3R] * t7 + t172; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t200 = t191 - parameters[MX3R] * t7;
-    const ariane4_free_real_t t201 = t1 * t199 - t3 * t200; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t202 = ARIANE4_FREE_C(0.443) * t201;
-    const ariane4_free_real_t t203 = parameters[MX3R] - t192; /* link j4: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t204 = t1 * parameters[MY3R] + t3 * t203;
-    const ariane4_free_real_t t205 = ARIANE4_FREE_C(-0.443) * dq[1]; /* link j3: velocity of its origin */
-    const ariane4_free_real_t t206 = t204 * t205; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t207 = ARIANE4_FREE_C(-0.443) * t33; /* link j3: velocity of its origin */
-    const ariane4_free_real_t t208 = t174 * t207; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t209 = t202 + (t206 + t208);
-    const ariane4_free_real_t t210 = parameters[XZ2R] * t33;
-    const ariane4_free_real_t t211 = parameters[XY2] * dq[1];
-    const ariane4_free_real_t t212 = t211 - t210 + (t209 + (t198 - t183 - t202));
-    const ariane4_free_real_t t213 = parameters[YZ2] * t38;
-    const ariane4_free_real_t t214 = t213 - t211 + (t209 + (t180 - t198 - t206));
-    const ariane4_free_real_t t215 = t3 * t197;
-    const ariane4_free_real_t t216 = ARIANE4_FREE_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const ariane4_free_real_t t217 = t215 - t188 - (parameters[YZ2] * t33 + dq[1] * t216);
-    const ariane4_free_real_t t218 = t3 * t199 + t1 * t200;
-    /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t219 = t1 * t203 - t3 * parameters[MY3R];
-    const ariane4_free_real_t t220 = t216 - parameters[XX2R];
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t221 = parameters[XZ2R] * t38 + dq[1] * t220 + (t215 - t196
-        + (ARIANE4_FREE_C(-0.443) * t218 - t219 * t205));
-    /* link j2: inertia, momentum beyond */
-    const ariane4_free_real_t t222 = t2 * (t2 * (t214 - t212) + t0 * (t217 + t221));
-    const ariane4_free_real_t t223 = parameters[MY2] * dq[1] + t201; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t224 = parameters[MX2R] * dq[1] - t218;
-    /* link j2: inertia, momentum beyond */
-    const ariane4_free_real_t t225 = ARIANE4_FREE_C(0.116) * (t2 * t223 + t0 * t224)
-        + t174 * (ARIANE4_FREE_C(-0.116) * dq[0]);
-    const ariane4_free_real_t
-        t226 = ARIANE4_FREE_C(250.0) * (parameters[IA1] * (t107 * (ARIANE4_FREE_C(-2.0) * dq[0]))
-        - t101 * parameters[FV1]);
-    input_by_dq[0] = t226 + t98 * (ARIANE4_FREE_C(2.0) * (t212 + t222 + t225));
-    const ariane4_free_real_t t227 = t8 * t168; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t228 = t6 * t171 - t8 * t170;
-    const ariane4_free_real_t t229 = parameters[XY3R] * t5 - t17 * t195 - (t166 - t227
-        - (ARIANE4_FREE_C(-0.1) * t228 + t192 * t175));
-    const ariane4_free_real_t t230 = t5 * t187 + parameters[XY3R] * t17 + (t8 * t185 + t6 * t186);
-    const ariane4_free_real_t t231 = parameters[MX3R] * t17 - parameters[MY3R] * t5 + t228;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t232 = t1 * t229 + t3 * t230 + (ARIANE4_FREE_C(0.443) * t231 - t219 * t207);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t233 = ARIANE4_FREE_C(2.0) * (parameters[XY2] * t38 + t33 * t220 + t232);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t234 = parameters[XY2] * t33 + t38 * t216 - (t3 * t229 - t1 * t230
-        - t204 * t207);
-    const ariane4_free_real_t t235 = ARIANE4_FREE_C(2.0) * t234; /* link j2: derivatives */
-    const ariane4_free_real_t t236 = parameters[MY2] + t204; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t237 = parameters[MX2R] + t219;
-    const ariane4_free_real_t t238 = ARIANE4_FREE_C(0.232) * dq[0];
-    /* link j2: derivatives */
-    const ariane4_free_real_t t239 = t0 * t233 - t2 * t235 + (t2 * t236 + t0 * t237) * t238;
-    input_by_dq[4] = t121 * t239;
-    const ariane4_free_real_t t240 = ARIANE4_FREE_C(2.0) * t229; /* link j3: derivatives */
-    const ariane4_free_real_t t241 = ARIANE4_FREE_C(-2.0) * t230;
-    const ariane4_free_real_t t242 = ARIANE4_FREE_C(0.886) * t33; /* link j4: derivatives */
-    const ariane4_free_real_t t243 = t3 * t241 - t1 * t240 - t219 * t242; /* link j3: derivatives */
-    const ariane4_free_real_t t244 = t3 * t240 + t1 * t241 + t204 * t242;
-    const ariane4_free_real_t t245 = t0 * t243 - t2 * t244 - (t2 * t204 + t0 * t219) * t238;
-    input_by_dq[8] = t135 * t245;
-    const ariane4_free_real_t t246 = ARIANE4_FREE_C(2.0) * t189; /* link j4: derivatives */
-    const ariane4_free_real_t t247 = ARIANE4_FREE_C(2.0) * t190;
-    const ariane4_free_real_t t248 = ARIANE4_FREE_C(-0.2) * t7;
-    const ariane4_free_real_t t249 = t6 * t246 + t8 * t247 - t192 * t248;
-    const ariane4_free_real_t t250 = ARIANE4_FREE_C(2.0) * t181;
-    const ariane4_free_real_t t251 = t250 + t174 * (ARIANE4_FREE_C(0.2) * t17);
-    const ariane4_free_real_t t252 = ARIANE4_FREE_C(0.886) * dq[1];
-    const ariane4_free_real_t t253 = t3 * t174; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const ariane4_free_real_t t254 = t3 * t251 - t1 * t249 + (t192 * t252 - t253 * t242);
-    const ariane4_free_real_t t255 = t1 * t174; /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t256 = t3 * t249 + t1 * t251 - t255 * t242; /* link j4: derivatives */
-    const ariane4_free_real_t t257 = t0 * t254 - t2 * t256 + (t2 * t255 - t0 * t253) * t238;
-    input_by_dq[12] = ARIANE4_FREE_C(0.2) * t257;
-    const ariane4_free_real_t t258 = ARIANE4_FREE_C(0.2) * t192; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t259 = parameters[ZZ4] + t258;
-    const ariane4_free_real_t t260 = t6 * parameters[XX4R] - parameters[XY4] * (ARIANE4_FREE_C(2.0) * t8);
-    const ariane4_free_real_t t261 = t6 * t260;
-    const ariane4_free_real_t t262 = parameters[XX3R] + t261;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t263 = t6 * parameters[XZ4R] - t8 * parameters[YZ4R];
-    const ariane4_free_real_t t264 = parameters[XY3R] + t263; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t265 = t1 * (t259 - t262) + t264 * (ARIANE4_FREE_C(2.0) * t3);
-    const ariane4_free_real_t t266 = t1 * t265;
-    const ariane4_free_real_t t267 = ARIANE4_FREE_C(-0.886) * t219;
-    const ariane4_free_real_t t268 = t262 + t266 - t267;
-    const ariane4_free_real_t t269 = t266 - t259 - parameters[XX2R];
-    const ariane4_free_real_t t270 = t3 * t265 - t264 + ARIANE4_FREE_C(0.443) * t204 - parameters[XY2];
-    /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t271 = t2 * (t2 * (t268 + t269) + t270 * (ARIANE4_FREE_C(-2.0) * t0));
-    const ariane4_free_real_t t272 = t269 - t271 + ARIANE4_FREE_C(0.232) * (t0 * t236 - t2 * t237);
-    input_by_ddq[0] = ARIANE4_FREE_C(-250.0) * (t101 * parameters[IA1]) + t98 * (t272 - parameters[ZZ1R]);
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t273 = parameters[XY4] + t8 * t260 + ARIANE4_FREE_C(0.1) * t174
-        - parameters[XZ3];
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t274 = t8 * parameters[XZ4R] + t6 * parameters[YZ4R];
-    const ariane4_free_real_t t275 = parameters[YZ3] - t274; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t276 = t1 * t273 + t3 * t275; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t277 = parameters[XZ2R] + (ARIANE4_FREE_C(0.443) * t174 - t276);
-    const ariane4_free_real_t t278 = t3 * t273 - t1 * t275; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t279 = t278 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t280 = t0 * t277 - t2 * t279; /* link j2: column of the mass matrix */
-    input_by_ddq[4] = t121 * t280;
-    const ariane4_free_real_t t281 = t0 * t276 + t2 * t278; /* link j3: column of the mass matrix */
-    input_by_ddq[8] = t135 * t281;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t282 = ARIANE4_FREE_C(-0.1) * t192 - parameters[ZZ4];
-    const ariane4_free_real_t t283 = t1 * t263 + t3 * t282;
-    const ariane4_free_real_t t284 = t1 * t282 - t3 * t263 + ARIANE4_FREE_C(0.443) * t192;
-    const ariane4_free_real_t t285 = ARIANE4_FREE_C(0.116) * t192 - (t0 * t283 - t2 * t284);
-    input_by_ddq[12] = ARIANE4_FREE_C(-0.2) * t285;
-    const ariane4_free_real_t t286 = ARIANE4_FREE_C(2.0) * t33;
-    const ariane4_free_real_t t287 = ARIANE4_FREE_C(2.0) * t38;
-    const ariane4_free_real_t t288 = t89 + t34; /* link j3: motion */
-    /* link j2: derivatives */
-    const ariane4_free_real_t t289 = t286 * t212 - t287 * t217 + (t269 * t49 - t270 * t82 + t277 * t288);
-    const ariane4_free_real_t t290 = t286 * t221 - t287 * t214 + (t270 * t49 + t268 * t82 - t279 * t288);
-    const ariane4_free_real_t t291 = t0 * (t90 + (t289 + t174 * t32)) + t2 * (t85 + (t290 - t174 * t37));
-    const ariane4_free_real_t t292 = t286 * t224 - t287 * t223 + (t236 * t49 + t237 * t82);
-    input_by_q[1] = t98 * (t291 + ARIANE4_FREE_C(0.116) * t292);
-    const ariane4_free_real_t t293 = ariane4_free_select(t119, t119, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t294 = ARIANE4_FREE_C(1.0) / t293;
-    const ariane4_free_real_t t295 = ARIANE4_FREE_C(0.078402) * t120;
-    const ariane4_free_real_t t296 = ARIANE4_FREE_C(-1.0) / t120;
-    const ariane4_free_real_t t297 = t296 * (t118 * t121
-        + ARIANE4_FREE_C(0.03137188092799786) * (t295 * (ARIANE4_FREE_C(0.5) * t294)));
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t298 = parameters[ZZ3R] + (parameters[XX4R] - t261 + t258);
-    /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t299 = parameters[ZZ2R] + (t298 - t267);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t300 = t277 * t49 + t279 * t82 - t299 * t288 + (t33 * t233 + t38 * t235);
-    const ariane4_free_real_t t301 = t122 * (t122 * (t295 * (ARIANE4_FREE_C(0.5) * t122)));
-    const ariane4_free_real_t t302 = t128 * (ARIANE4_FREE_C(208.2597474788059) * (t122 * t301))
-        - t127 * (ARIANE4_FREE_C(2.0) * (t120 * t118));
-    const ariane4_free_real_t t303 = t35 * (t129 * t301 - t122 * (ARIANE4_FREE_C(-2656.3065671641784) * t120
-        + t302));
-    const ariane4_free_real_t t304 = t120 * (ARIANE4_FREE_C(2656.3065671641784) * t301) - t118 * t123;
-    const ariane4_free_real_t t305 = parameters[FV2] * (dq[1] * t304) + parameters[IA2] * (t303
-        + ddq[1] * t304);
-    const ariane4_free_real_t t306 = ARIANE4_FREE_C(83.33333333333333) * t305 + t121 * (t236 * t37
-        - t237 * t32 + t300);
-    input_by_q[5] = t306 - t117 * t297;
-    /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t307 = t298 + ARIANE4_FREE_C(0.443) * t219;
-    /* link j3: derivatives */
-    const ariane4_free_real_t t308 = t33 * t243 + t38 * t244 + (t276 * t49 - t278 * t82 + t307 * t288);
-    input_by_q[9] = t135 * (t308 + (t219 * t32 - t204 * t37));
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t309 = ARIANE4_FREE_C(-0.443) * t253 - t274;
-    /* link j4: derivatives */
-    const ariane4_free_real_t t310 = t33 * t254 + t38 * t256 + (t283 * t49 + t284 * t82 - t309 * t288);
-    input_by_q[13] = ARIANE4_FREE_C(0.2) * (t310 + (t255 * t37 + t253 * t32));
-    const ariane4_free_real_t t311 = parameters[ZZ3R] - t187;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t312 = parameters[YZ3] * t7 - t17 * t311 + (t167 - t227);
-    const ariane4_free_real_t t313 = parameters[XZ3] * t7 - t5 * t311 + (t8 * t189 - t6 * t190 - t174 * t193);
-    const ariane4_free_real_t t314 = parameters[ZZ2R] - t216;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t315 = parameters[YZ2] * dq[1] - t33 * t314 + (t1 * t312 + t3 * t313);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t316 = t0 * (ARIANE4_FREE_C(2.0) * t315 + (t269 * t286 - t270 * t287));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t317 = t38 * t314 - parameters[XZ2R] * dq[1] + (t3 * t312 - t1 * t313
-        + t174 * t205);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t318 = t2 * (ARIANE4_FREE_C(2.0) * t317 + (t270 * t286 + t268 * t287));
-    const ariane4_free_real_t t319 = t316 + t318 + ARIANE4_FREE_C(0.116) * (t236 * t286 + t237 * t287);
-    input_by_dq[1] = t98 * t319;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t320 = t182 - t178 + (t177 + (t169 - t161 + t176));
-    /* link j2: derivatives */
-    const ariane4_free_real_t t321 = ARIANE4_FREE_C(2.0) * (t213 - t210 + (t320 + t208 - t209))
-        + ARIANE4_FREE_C(2.0) * (t277 * t33 + t279 * t38);
-    const ariane4_free_real_t t322 = ARIANE4_FREE_C(83.33333333333333) * (t124 * parameters[FV2]
-        - parameters[IA2] * (t130 * (ARIANE4_FREE_C(2.0) * dq[1])));
-    input_by_dq[5] = t322 + t121 * t321;
-    const ariane4_free_real_t t323 = ARIANE4_FREE_C(-2.0) * t320; /* link j3: derivatives */
-    const ariane4_free_real_t t324 = t323 - t204 * t252 + ARIANE4_FREE_C(2.0) * (t276 * t33 - t278 * t38);
-    input_by_dq[9] = t135 * t324;
-    const ariane4_free_real_t t325 = t8 * t246 - t6 * t247 + t174 * t248; /* link j4: derivatives */
-    const ariane4_free_real_t t326 = t325 + t255 * t252 + ARIANE4_FREE_C(2.0) * (t283 * t33 + t284 * t38);
-    input_by_dq[13] = ARIANE4_FREE_C(0.2) * t326;
-    input_by_ddq[1] = -(t98 * t280);
-    input_by_ddq[5] = ARIANE4_FREE_C(83.33333333333333) * (t124 * parameters[IA2]) + t121 * t299;
-    input_by_ddq[9] = -(t135 * t307);
-    input_by_ddq[13] = ARIANE4_FREE_C(0.2) * t309;
-    const ariane4_free_real_t t327 = ARIANE4_FREE_C(2.0) * t17;
-    const ariane4_free_real_t t328 = ARIANE4_FREE_C(2.0) * t5;
-    const ariane4_free_real_t t329 = t65 + t43; /* link j4: motion */
-    /* link j3: derivatives */
-    const ariane4_free_real_t t330 = t327 * t180 + t328 * t188 + (t264 * t22 - t262 * t14 - t273 * t329);
-    const ariane4_free_real_t t331 = t66 + (t330 - t174 * t42);
-    const ariane4_free_real_t t332 = t328 * t183 - t327 * t196 + (t259 * t22 - t264 * t14 + t275 * t329);
-    const ariane4_free_real_t t333 = t174 * t72; /* link j4: derivatives */
-    const ariane4_free_real_t t334 = t80 + (t332 - t333); /* link j3: derivatives */
-    const ariane4_free_real_t t335 = parameters[MY3R] * t14 + t203 * t22 - (t327 * t200 + t328 * t199);
-    const ariane4_free_real_t t336 = t2 * (t3 * t331 + t1 * t334 + ARIANE4_FREE_C(0.443) * t335);
-    const ariane4_free_real_t t337 = t0 * (t1 * t331 - t3 * t334) + t336 + ARIANE4_FREE_C(0.116) * t335;
-    input_by_q[2] = t98 * t337;
-    const ariane4_free_real_t t338 = t114 + (t328 * t231 + (t174 * t22 + parameters[MY3R] * t329));
-    const ariane4_free_real_t t339 = t113 + (t327 * t231 + (t174 * t14 - t203 * t329));
-    const ariane4_free_real_t t340 = t273 * t14 + t275 * t22 + t298 * t329;
-    const ariane4_free_real_t t341 = parameters[MY3R] * t72 + t203 * t42;
-    const ariane4_free_real_t t342 = t327 * t229 + t328 * t230 - t340 + t341
-        + ARIANE4_FREE_C(0.443) * (t3 * t338 + t1 * t339);
-    input_by_q[6] = t121 * t342;
-    const ariane4_free_real_t t343 = t135 * (t340 + (t5 * t241 - t17 * t240) - t341);
-    const ariane4_free_real_t t344 = ARIANE4_FREE_C(-0.052812) * t134;
-    const ariane4_free_real_t t345 = t136 * (t136 * (t344 * (ARIANE4_FREE_C(0.5) * t136)));
-    const ariane4_free_real_t t346 = t142 * (ARIANE4_FREE_C(-376.25254143846996) * (t136 * t345))
-        - t141 * (ARIANE4_FREE_C(-2.0) * (t134 * t132));
-    const ariane4_free_real_t t347 = t145 * (t143 * t345 + t136 * (ARIANE4_FREE_C(-7124.375926654358) * t134
-        + t346));
-    const ariane4_free_real_t t348 = t132 * t137 + t134 * (ARIANE4_FREE_C(7124.375926654358) * t345);
-    const ariane4_free_real_t t349 = parameters[FV3] * (dq[2] * t348) + parameters[IA3] * (t347
-        + ddq[2] * t348);
-    const ariane4_free_real_t t350 = ariane4_free_select(t133, t133, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t351 = ARIANE4_FREE_C(1.0) / t350;
-    const ariane4_free_real_t t352 = ARIANE4_FREE_C(-1.0) / t134;
-    const ariane4_free_real_t
-        t353 = t352 * (ARIANE4_FREE_C(0.046787723832235825) * (t344 * (ARIANE4_FREE_C(0.5) * t351))
-        - t132 * t135);
-    input_by_q[10] = ARIANE4_FREE_C(-333.3333333333333) * t349 + t343 + t112 * t353;
-    /* link j4: derivatives */
-    const ariane4_free_real_t t354 = t5 * t251 - t17 * t249 + (t263 * t14 + t282 * t22 + t274 * t329);
-    input_by_q[14] = ARIANE4_FREE_C(0.2) * (t354 + t333);
-    /* link j3: derivatives */
-    const ariane4_free_real_t t355 = ARIANE4_FREE_C(2.0) * t312 + (t264 * t328 - t262 * t327);
-    const ariane4_free_real_t t356 = ARIANE4_FREE_C(2.0) * t313 - (t259 * t328 - t264 * t327);
-    const ariane4_free_real_t t357 = parameters[MY3R] * t327 + t203 * t328;
-    const ariane4_free_real_t t358 = t2 * (t3 * t355 - t1 * t356 + ARIANE4_FREE_C(0.443) * t357);
-    const ariane4_free_real_t t359 = t0 * (t1 * t355 + t3 * t356) + t358 + ARIANE4_FREE_C(0.116) * t357;
-    input_by_dq[2] = t98 * t359;
-    const ariane4_free_real_t t360 = t3 * (ARIANE4_FREE_C(2.0) * t200 + t174 * t328)
-        + t1 * (ARIANE4_FREE_C(-2.0) * t199 + t174 * t327);
-    const ariane4_free_real_t t361 = ARIANE4_FREE_C(0.443) * t360 - (t323 + (t273 * t327 + t275 * t328));
-    input_by_dq[6] = t121 * t361;
-    const ariane4_free_real_t t362 = t135 * (t323 + ARIANE4_FREE_C(2.0) * (t273 * t17 + t275 * t5));
-    const ariane4_free_real_t
-        t363 = ARIANE4_FREE_C(333.3333333333333) * (parameters[IA3] * (t144 * (ARIANE4_FREE_C(-2.0) * dq[2]))
-        - t138 * parameters[FV3]);
-    input_by_dq[10] = t363 + t362;
-    const ariane4_free_real_t t364 = ARIANE4_FREE_C(0.2) * (t325 + ARIANE4_FREE_C(2.0) * (t263 * t17
-        + t282 * t5));
-    input_by_dq[14] = t364;
-    input_by_ddq[2] = t98 * t281;
-    input_by_ddq[6] = t121 * t307;
-    input_by_ddq[10] = ARIANE4_FREE_C(-333.3333333333333) * (t138 * parameters[IA3]) - t135 * t298;
-    input_by_ddq[14] = ARIANE4_FREE_C(-0.2) * t274;
-    const ariane4_free_real_t t365 = t28 + t29; /* link j4: force and moment */
-    const ariane4_free_real_t t366 = ARIANE4_FREE_C(2.0) * t10;
-    const ariane4_free_real_t t367 = ARIANE4_FREE_C(2.0) * t9;
-    /* link j4: derivatives */
-    const ariane4_free_real_t t368 = parameters[XY4] * t26 - parameters[XX4R] * t25 + parameters[XZ4R] * t365
-        - (t366 * t161 + t367 * t167);
-    const ariane4_free_real_t t369 = t78 + t368;
-    const ariane4_free_real_t t370 = t366 * t166 - t367 * t163 + (parameters[YZ4R] * t365
+    const ariane4_free_real_t t162 = ARIANE4_FREE_C(2.0) * t10;
+    const ariane4_free_real_t t163 = t57 * t152 - parameters[YZ4R] * t10;
+    const ariane4_free_real_t t164 = ARIANE4_FREE_C(2.0) * t9;
+    const ariane4_free_real_t t165 = parameters[XY4] * t26 - parameters[XX4R] * t25 + parameters[XZ4R] * t150
+        - (t162 * t161 + t164 * t163);
+    const ariane4_free_real_t t166 = t78 + t165;
+    const ariane4_free_real_t t167 = parameters[XZ4R] * t9 - t57 * t153;
+    const ariane4_free_real_t t168 = parameters[YZ4R] * t9;
+    const ariane4_free_real_t t169 = t160 + t168;
+    const ariane4_free_real_t t170 = t162 * t167 - t164 * t169 + (parameters[YZ4R] * t150
         - parameters[XY4] * t25);
-    const ariane4_free_real_t t371 = t75 - t370;
-    const ariane4_free_real_t t372 = t6 * t369 + t8 * t371;
-    const ariane4_free_real_t t373 = parameters[MX4] * t55 + parameters[MY4] * t54;
-    const ariane4_free_real_t t374 = parameters[XZ4R] * t25 - parameters[YZ4R] * t26 - parameters[ZZ4] * t365;
-    const ariane4_free_real_t t375 = t62 - (t367 * t191 - parameters[MY4] * t365);
-    const ariane4_free_real_t t376 = t60 + (t366 * t191 + parameters[MX4] * t365);
-    const ariane4_free_real_t t377 = t6 * t376 - t8 * t375;
-    const ariane4_free_real_t t378 = ARIANE4_FREE_C(-0.1) * t377 - (t373 + (t366 * t189 + t367 * t190
-        + t374));
-    const ariane4_free_real_t t379 = t2 * (t3 * t372 + t1 * t378 + ARIANE4_FREE_C(0.443) * t377);
-    const ariane4_free_real_t t380 = t0 * (t1 * t372 - t3 * t378) + t379 + ARIANE4_FREE_C(0.116) * t377;
-    input_by_q[3] = t98 * t380;
-    const ariane4_free_real_t t381 = t366 * t171 - t367 * t170 - (parameters[MY4] * t25
+    const ariane4_free_real_t t171 = t75 - t170;
+    const ariane4_free_real_t t172 = parameters[MX4] * t57;
+    const ariane4_free_real_t t173 = parameters[MY4] * t57;
+    const ariane4_free_real_t t174 = t162 * t172 - t164 * t173 - (parameters[MY4] * t25
         + parameters[MX4] * t26);
-    const ariane4_free_real_t t382 = t8 * t369 - t6 * t371 + ARIANE4_FREE_C(0.1) * t381;
-    const ariane4_free_real_t t383 = t3 * (t6 * t375 + t8 * t376) - t1 * t381;
-    input_by_q[7] = t121 * (t382 + ARIANE4_FREE_C(0.443) * t383);
-    input_by_q[11] = -(t135 * t382);
-    const ariane4_free_real_t t384 = ARIANE4_FREE_C(0.2) * (t373 + (t374 + (t10 * t246 + t9 * t247)));
-    input_by_q[15] = t384;
-    const ariane4_free_real_t t385 = ARIANE4_FREE_C(-2.0) * t185 + (parameters[XX4R] * t366
-        - parameters[XY4] * t367);
-    const ariane4_free_real_t t386 = parameters[XY4] * t366 - ARIANE4_FREE_C(2.0) * t186;
-    const ariane4_free_real_t t387 = t6 * t385 - t8 * t386;
-    const ariane4_free_real_t t388 = ARIANE4_FREE_C(2.0) * t171;
-    const ariane4_free_real_t t389 = ARIANE4_FREE_C(2.0) * t170;
-    const ariane4_free_real_t t390 = t8 * t388 + t6 * t389;
-    const ariane4_free_real_t t391 = ARIANE4_FREE_C(0.1) * t390 - (t250 + (parameters[XZ4R] * t366
-        - parameters[YZ4R] * t367));
-    const ariane4_free_real_t t392 = t2 * (t3 * t387 - t1 * t391 + ARIANE4_FREE_C(0.443) * t390);
-    const ariane4_free_real_t t393 = t0 * (t1 * t387 + t3 * t391) + t392 + ARIANE4_FREE_C(0.116) * t390;
-    input_by_dq[3] = t98 * t393;
-    const ariane4_free_real_t t394 = parameters[MX4] * t367 + parameters[MY4] * t366;
-    const ariane4_free_real_t t395 = ARIANE4_FREE_C(0.1) * t394 + (t8 * t385 + t6 * t386);
-    const ariane4_free_real_t t396 = t3 * (t8 * t389 - t6 * t388) - t1 * t394;
-    input_by_dq[7] = t121 * (t395 + ARIANE4_FREE_C(0.443) * t396);
-    input_by_dq[11] = -(t135 * t395);
+    const ariane4_free_real_t t175 = t8 * t166 - t6 * t171 + ARIANE4_FREE_C(0.1) * t174;
+    input_by_q[11] = -(t135 * t175);
+    const ariane4_free_real_t t176 = parameters[MY4] * t9 - parameters[MX4] * t10;
+    const ariane4_free_real_t t177 = t62 - (t164 * t176 - parameters[MY4] * t150);
+    const ariane4_free_real_t t178 = t60 + (t162 * t176 + parameters[MX4] * t150);
+    const ariane4_free_real_t t179 = t3 * (t6 * t177 + t8 * t178) - t1 * t174;
+    input_by_q[7] = t121 * (t175 + ARIANE4_FREE_C(0.443) * t179);
+    const ariane4_free_real_t t180 = t6 * t166 + t8 * t171;
+    const ariane4_free_real_t t181 = t6 * t178 - t8 * t177;
+    const ariane4_free_real_t t182 = ARIANE4_FREE_C(-0.1) * t181 - (t149 + (t162 * t154 + t164 * t156
+        + t151));
+    const ariane4_free_real_t t183 = t2 * (t3 * t180 + t1 * t182 + ARIANE4_FREE_C(0.443) * t181);
+    const ariane4_free_real_t t184 = t0 * (t1 * t180 - t3 * t182) + t183 + ARIANE4_FREE_C(0.116) * t181;
+    input_by_q[3] = t98 * t184;
     input_by_dq[15] = ARIANE4_FREE_C(2.0e3) * parameters[FV4];
-    input_by_ddq[3] = t98 * t285;
-    input_by_ddq[7] = t121 * t309;
-    input_by_ddq[11] = t135 * t274;
+    const ariane4_free_real_t t185 = t152 - parameters[ZZ4];
+    const ariane4_free_real_t t186 = t10 * t185 - parameters[YZ4R] * t57;
+    const ariane4_free_real_t t187 = ARIANE4_FREE_C(-2.0) * t186 + (parameters[XX4R] * t162
+        - parameters[XY4] * t164);
+    const ariane4_free_real_t t188 = parameters[XZ4R] * t57 - t9 * t185;
+    const ariane4_free_real_t t189 = parameters[XY4] * t162 - ARIANE4_FREE_C(2.0) * t188;
+    const ariane4_free_real_t t190 = parameters[MX4] * t164 + parameters[MY4] * t162;
+    const ariane4_free_real_t t191 = ARIANE4_FREE_C(0.1) * t190 + (t8 * t187 + t6 * t189);
+    input_by_dq[11] = -(t135 * t191);
+    const ariane4_free_real_t t192 = ARIANE4_FREE_C(2.0) * t172;
+    const ariane4_free_real_t t193 = ARIANE4_FREE_C(2.0) * t173;
+    const ariane4_free_real_t t194 = t3 * (t8 * t193 - t6 * t192) - t1 * t190;
+    input_by_dq[7] = t121 * (t191 + ARIANE4_FREE_C(0.443) * t194);
+    const ariane4_free_real_t t195 = t6 * t187 - t8 * t189;
+    const ariane4_free_real_t t196 = t168 - t159;
+    const ariane4_free_real_t t197 = ARIANE4_FREE_C(2.0) * t196;
+    const ariane4_free_real_t t198 = t8 * t192 + t6 * t193;
+    const ariane4_free_real_t t199 = ARIANE4_FREE_C(0.1) * t198 - (t197 + (parameters[XZ4R] * t162
+        - parameters[YZ4R] * t164));
+    const ariane4_free_real_t t200 = t2 * (t3 * t195 - t1 * t199 + ARIANE4_FREE_C(0.443) * t198);
+    const ariane4_free_real_t t201 = t0 * (t1 * t195 + t3 * t199) + t200 + ARIANE4_FREE_C(0.116) * t198;
+    input_by_dq[3] = t98 * t201;
     input_by_ddq[15] = ARIANE4_FREE_C(2.0e3) * parameters[IA4] + ARIANE4_FREE_C(0.2) * parameters[ZZ4];
+    /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t202 = t8 * parameters[XZ4R] + t6 * parameters[YZ4R];
+    input_by_ddq[11] = t135 * t202;
+    const ariane4_free_real_t t203 = t6 * parameters[MY4] + t8 * parameters[MX4];
+    const ariane4_free_real_t t204 = t3 * t203;
+    const ariane4_free_real_t t205 = ARIANE4_FREE_C(-0.443) * t204 - t202;
+    input_by_ddq[7] = t121 * t205;
+    const ariane4_free_real_t t206 = t6 * parameters[XZ4R] - t8 * parameters[YZ4R];
+    const ariane4_free_real_t t207 = t8 * parameters[MY4] - t6 * parameters[MX4];
+    const ariane4_free_real_t t208 = ARIANE4_FREE_C(-0.1) * t207 - parameters[ZZ4];
+    const ariane4_free_real_t t209 = t1 * t206 + t3 * t208;
+    const ariane4_free_real_t t210 = t1 * t208 - t3 * t206 + ARIANE4_FREE_C(0.443) * t207;
+    const ariane4_free_real_t t211 = ARIANE4_FREE_C(0.116) * t207 - (t0 * t209 - t2 * t210);
+    input_by_ddq[3] = t98 * t211;
+    const ariane4_free_real_t t212 = ARIANE4_FREE_C(-0.2) * t7;
+    const ariane4_free_real_t t213 = t6 * t155 + t8 * t157 - t207 * t212; /* link j4: derivatives */
+    const ariane4_free_real_t t214 = t197 + t203 * (ARIANE4_FREE_C(0.2) * t17);
+    const ariane4_free_real_t t215 = t65 + t43; /* link j4: motion */
+    /* link j4: derivatives */
+    const ariane4_free_real_t t216 = t5 * t214 - t17 * t213 + (t206 * t14 + t208 * t22 + t202 * t215);
+    const ariane4_free_real_t t217 = t203 * t72;
+    input_by_q[14] = ARIANE4_FREE_C(0.2) * (t216 + t217);
+    const ariane4_free_real_t t218 = ARIANE4_FREE_C(0.886) * dq[1];
+    const ariane4_free_real_t t219 = ARIANE4_FREE_C(0.886) * t33;
+    const ariane4_free_real_t t220 = t3 * t214 - t1 * t213 + (t207 * t218 - t204 * t219);
+    const ariane4_free_real_t t221 = t1 * t203; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t222 = t3 * t213 + t1 * t214 - t221 * t219; /* link j4: derivatives */
+    const ariane4_free_real_t t223 = t89 + t34; /* link j3: motion */
+    /* link j4: derivatives */
+    const ariane4_free_real_t t224 = t33 * t220 + t38 * t222 + (t209 * t49 + t210 * t82 - t205 * t223);
+    input_by_q[13] = ARIANE4_FREE_C(0.2) * (t224 + (t221 * t37 + t204 * t32));
+    const ariane4_free_real_t t225 = t8 * t155 - t6 * t157 + t203 * t212;
+    const ariane4_free_real_t t226 = ARIANE4_FREE_C(0.2) * (t225 + ARIANE4_FREE_C(2.0) * (t206 * t17
+        + t208 * t5));
+    input_by_dq[14] = t226;
+    const ariane4_free_real_t t227 = t225 + t221 * t218 + ARIANE4_FREE_C(2.0) * (t209 * t33 + t210 * t38);
+    input_by_dq[13] = ARIANE4_FREE_C(0.2) * t227;
+    const ariane4_free_real_t t228 = ARIANE4_FREE_C(0.232) * dq[0];
+    const ariane4_free_real_t t229 = t0 * t220 - t2 * t222 + (t2 * t221 - t0 * t204) * t228;
+    input_by_dq[12] = ARIANE4_FREE_C(0.2) * t229;
+    input_by_ddq[14] = ARIANE4_FREE_C(-0.2) * t202;
+    input_by_ddq[13] = ARIANE4_FREE_C(0.2) * t205;
+    input_by_ddq[12] = ARIANE4_FREE_C(-0.2) * t211;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t230 = t6 * parameters[XX4R] - parameters[XY4] * (ARIANE4_FREE_C(2.0) * t8);
+    const ariane4_free_real_t t231 = parameters[XY4] + t8 * t230 + ARIANE4_FREE_C(0.1) * t203
+        - parameters[XZ3];
+    const ariane4_free_real_t t232 = parameters[YZ3] - t202;
+    const ariane4_free_real_t t233 = t6 * t230;
+    const ariane4_free_real_t t234 = ARIANE4_FREE_C(0.2) * t207;
+    const ariane4_free_real_t t235 = parameters[ZZ3R] + (parameters[XX4R] - t233 + t234);
+    const ariane4_free_real_t t236 = t231 * t14 + t232 * t22 + t235 * t215; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t237 = t6 * (t161 + t169) + t8 * (t167 + t163);
+    const ariane4_free_real_t t238 = t8 * t237;
+    const ariane4_free_real_t t239 = t6 * t172 - t8 * t173;
+    const ariane4_free_real_t t240 = ARIANE4_FREE_C(0.1) * t17;
+    const ariane4_free_real_t t241 = ARIANE4_FREE_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const ariane4_free_real_t t242 = parameters[XX3R] - t241;
+    const ariane4_free_real_t t243 = parameters[XY3R] * t5 - t17 * t242 - (t167 - t238
+        - (ARIANE4_FREE_C(-0.1) * t239 + t207 * t240));
+    const ariane4_free_real_t t244 = ARIANE4_FREE_C(2.0) * t243; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t245 = t5 * t241 + parameters[XY3R] * t17 + (t8 * t186 + t6 * t188);
+    const ariane4_free_real_t t246 = ARIANE4_FREE_C(-2.0) * t245; /* link j3: derivatives */
+    const ariane4_free_real_t t247 = parameters[MX3R] - t207; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t248 = parameters[MY3R] * t72 + t247 * t42; /* link j3: derivatives */
+    const ariane4_free_real_t t249 = t135 * (t236 + (t5 * t246 - t17 * t244) - t248);
+    const ariane4_free_real_t t250 = ARIANE4_FREE_C(-0.052812) * t134;
+    const ariane4_free_real_t t251 = t136 * (t136 * (t250 * (ARIANE4_FREE_C(0.5) * t136)));
+    const ariane4_free_real_t t252 = t142 * (ARIANE4_FREE_C(-376.25254143846996) * (t136 * t251))
+        - t141 * (ARIANE4_FREE_C(-2.0) * (t134 * t132));
+    const ariane4_free_real_t t253 = t145 * (t143 * t251 + t136 * (ARIANE4_FREE_C(-7124.375926654358) * t134
+        + t252));
+    const ariane4_free_real_t t254 = t132 * t137 + t134 * (ARIANE4_FREE_C(7124.375926654358) * t251);
+    const ariane4_free_real_t t255 = parameters[FV3] * (dq[2] * t254) + parameters[IA3] * (t253
+        + ddq[2] * t254);
+    const ariane4_free_real_t t256 = ariane4_free_select(t133, t133, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t257 = ARIANE4_FREE_C(1.0) / t256;
+    const ariane4_free_real_t t258 = ARIANE4_FREE_C(-1.0) / t134;
+    const ariane4_free_real_t
+        t259 = t258 * (ARIANE4_FREE_C(0.046787723832235825) * (t250 * (ARIANE4_FREE_C(0.5) * t257))
+        - t132 * t135);
+    input_by_q[10] = ARIANE4_FREE_C(-333.3333333333333) * t255 + t249 + t112 * t259;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t260 = parameters[MX3R] * t17 - parameters[MY3R] * t5 + t239;
+    const ariane4_free_real_t t261 = ARIANE4_FREE_C(2.0) * t5;
+    /* link j3: derivatives */
+    const ariane4_free_real_t t262 = t114 + (t261 * t260 + (t203 * t22 + parameters[MY3R] * t215));
+    const ariane4_free_real_t t263 = ARIANE4_FREE_C(2.0) * t17;
+    const ariane4_free_real_t t264 = t113 + (t263 * t260 + (t203 * t14 - t247 * t215));
+    const ariane4_free_real_t t265 = t263 * t243 + t261 * t245 - t236 + t248
+        + ARIANE4_FREE_C(0.443) * (t3 * t262 + t1 * t264);
+    input_by_q[6] = t121 * t265;
+    const ariane4_free_real_t t266 = t6 * t237; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t267 = t6 * t173 + t8 * t172;
+    const ariane4_free_real_t t268 = ARIANE4_FREE_C(0.1) * t267;
+    const ariane4_free_real_t t269 = t203 * t240;
+    const ariane4_free_real_t t270 = t268 - t269;
+    const ariane4_free_real_t t271 = parameters[XZ3] * t17;
+    const ariane4_free_real_t t272 = parameters[XY3R] * t7;
+    const ariane4_free_real_t t273 = t272 - t271 + (t266 - t169 + t268 - t270);
+    const ariane4_free_real_t t274 = parameters[YZ3] * t17 + t7 * t241 + (t6 * t186 - t8 * t188);
+    const ariane4_free_real_t t275 = parameters[XX3R] + t233; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t276 = parameters[XY3R] + t206;
+    /* link j3: derivatives */
+    const ariane4_free_real_t t277 = t263 * t273 + t261 * t274 + (t276 * t22 - t275 * t14 - t231 * t215);
+    const ariane4_free_real_t t278 = t66 + (t277 - t203 * t42);
+    const ariane4_free_real_t t279 = ARIANE4_FREE_C(0.1) * t7; /* link j4: velocity of its origin */
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t280 = t6 * t154 + t8 * t156 + (ARIANE4_FREE_C(0.1) * t176 + t207 * t279);
+    const ariane4_free_real_t t281 = t7 * t242 - parameters[XZ3] * t5 - t280;
+    const ariane4_free_real_t t282 = parameters[YZ3] * t5;
+    const ariane4_free_real_t t283 = t272 - t282 + (t270 - t196);
+    const ariane4_free_real_t t284 = parameters[ZZ4] + t234; /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const ariane4_free_real_t t285 = t261 * t283 - t263 * t281 + (t284 * t22 - t276 * t14 + t232 * t215);
+    const ariane4_free_real_t t286 = t80 + (t285 - t217);
+    const ariane4_free_real_t t287 = t176 - parameters[MX3R] * t7; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t288 = parameters[MY3R] * t7 + t267;
+    /* link j3: derivatives */
+    const ariane4_free_real_t t289 = parameters[MY3R] * t14 + t247 * t22 - (t263 * t287 + t261 * t288);
+    const ariane4_free_real_t t290 = t2 * (t3 * t278 + t1 * t286 + ARIANE4_FREE_C(0.443) * t289);
+    const ariane4_free_real_t t291 = t0 * (t1 * t278 - t3 * t286) + t290 + ARIANE4_FREE_C(0.116) * t289;
+    input_by_q[2] = t98 * t291;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t292 = t282 - t271 + (t270 + (t266 - t161 + t269));
+    const ariane4_free_real_t t293 = ARIANE4_FREE_C(-2.0) * t292; /* link j3: derivatives */
+    const ariane4_free_real_t t294 = t135 * (t293 + ARIANE4_FREE_C(2.0) * (t231 * t17 + t232 * t5));
+    const ariane4_free_real_t
+        t295 = ARIANE4_FREE_C(333.3333333333333) * (parameters[IA3] * (t144 * (ARIANE4_FREE_C(-2.0) * dq[2]))
+        - t138 * parameters[FV3]);
+    input_by_dq[10] = t295 + t294;
+    const ariane4_free_real_t t296 = t3 * (ARIANE4_FREE_C(2.0) * t287 + t203 * t261)
+        + t1 * (ARIANE4_FREE_C(-2.0) * t288 + t203 * t263);
+    const ariane4_free_real_t t297 = ARIANE4_FREE_C(0.443) * t296 - (t293 + (t231 * t263 + t232 * t261));
+    input_by_dq[6] = t121 * t297;
+    const ariane4_free_real_t t298 = parameters[ZZ3R] - t241;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t299 = parameters[YZ3] * t7 - t17 * t298 + (t163 - t238);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t300 = ARIANE4_FREE_C(2.0) * t299 + (t276 * t261 - t275 * t263);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t301 = parameters[XZ3] * t7 - t5 * t298 + (t8 * t154 - t6 * t156 - t203 * t279);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t302 = ARIANE4_FREE_C(2.0) * t301 - (t284 * t261 - t276 * t263);
+    const ariane4_free_real_t t303 = parameters[MY3R] * t263 + t247 * t261;
+    const ariane4_free_real_t t304 = t2 * (t3 * t300 - t1 * t302 + ARIANE4_FREE_C(0.443) * t303);
+    const ariane4_free_real_t t305 = t0 * (t1 * t300 + t3 * t302) + t304 + ARIANE4_FREE_C(0.116) * t303;
+    input_by_dq[2] = t98 * t305;
+    input_by_ddq[10] = ARIANE4_FREE_C(-333.3333333333333) * (t138 * parameters[IA3]) - t135 * t235;
+    /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t306 = t1 * t247 - t3 * parameters[MY3R];
+    const ariane4_free_real_t t307 = t235 + ARIANE4_FREE_C(0.443) * t306;
+    input_by_ddq[6] = t121 * t307;
+    const ariane4_free_real_t t308 = t1 * t231 + t3 * t232;
+    const ariane4_free_real_t t309 = t3 * t231 - t1 * t232;
+    const ariane4_free_real_t t310 = t0 * t308 + t2 * t309;
+    input_by_ddq[2] = t98 * t310;
+    const ariane4_free_real_t t311 = t3 * t246 - t1 * t244 - t306 * t219; /* link j3: derivatives */
+    /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t312 = t1 * parameters[MY3R] + t3 * t247;
+    const ariane4_free_real_t t313 = t3 * t244 + t1 * t246 + t312 * t219; /* link j3: derivatives */
+    const ariane4_free_real_t t314 = t33 * t311 + t38 * t313 + (t308 * t49 - t309 * t82 + t307 * t223);
+    input_by_q[9] = t135 * (t314 + (t306 * t32 - t312 * t37));
+    const ariane4_free_real_t t315 = t293 - t312 * t218 + ARIANE4_FREE_C(2.0) * (t308 * t33 - t309 * t38);
+    input_by_dq[9] = t135 * t315;
+    const ariane4_free_real_t t316 = t0 * t311 - t2 * t313 - (t2 * t312 + t0 * t306) * t228;
+    input_by_dq[8] = t135 * t316;
+    input_by_ddq[9] = -(t135 * t307);
+    input_by_ddq[8] = t135 * t310;
+    const ariane4_free_real_t t317 = ariane4_free_select(t119, t119, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t318 = ARIANE4_FREE_C(1.0) / t317;
+    const ariane4_free_real_t t319 = ARIANE4_FREE_C(0.078402) * t120;
+    const ariane4_free_real_t t320 = ARIANE4_FREE_C(-1.0) / t120;
+    const ariane4_free_real_t t321 = t320 * (t118 * t121
+        + ARIANE4_FREE_C(0.03137188092799786) * (t319 * (ARIANE4_FREE_C(0.5) * t318)));
+    const ariane4_free_real_t t322 = ARIANE4_FREE_C(-0.443) * t33; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t323 = t1 * t243 + t3 * t245 + (ARIANE4_FREE_C(0.443) * t260 - t306 * t322);
+    const ariane4_free_real_t t324 = ARIANE4_FREE_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const ariane4_free_real_t t325 = t324 - parameters[XX2R];
+    /* link j2: derivatives */
+    const ariane4_free_real_t t326 = ARIANE4_FREE_C(2.0) * (parameters[XY2] * t38 + t33 * t325 + t323);
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t327 = parameters[XY2] * t33 + t38 * t324 - (t3 * t243 - t1 * t245
+        - t312 * t322);
+    const ariane4_free_real_t t328 = ARIANE4_FREE_C(2.0) * t327; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t329 = parameters[XZ2R] + (ARIANE4_FREE_C(0.443) * t203 - t308);
+    const ariane4_free_real_t t330 = t309 - parameters[YZ2];
+    const ariane4_free_real_t t331 = ARIANE4_FREE_C(-0.886) * t306;
+    const ariane4_free_real_t t332 = parameters[ZZ2R] + (t235 - t331);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t333 = t329 * t49 + t330 * t82 - t332 * t223 + (t33 * t326 + t38 * t328);
+    const ariane4_free_real_t t334 = parameters[MX2R] + t306; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t335 = parameters[MY2] + t312;
+    const ariane4_free_real_t t336 = t122 * (t122 * (t319 * (ARIANE4_FREE_C(0.5) * t122)));
+    const ariane4_free_real_t t337 = t128 * (ARIANE4_FREE_C(208.2597474788059) * (t122 * t336))
+        - t127 * (ARIANE4_FREE_C(2.0) * (t120 * t118));
+    const ariane4_free_real_t t338 = t35 * (t129 * t336 - t122 * (ARIANE4_FREE_C(-2656.3065671641784) * t120
+        + t337));
+    const ariane4_free_real_t t339 = t120 * (ARIANE4_FREE_C(2656.3065671641784) * t336) - t118 * t123;
+    const ariane4_free_real_t t340 = parameters[FV2] * (dq[1] * t339) + parameters[IA2] * (t338
+        + ddq[1] * t339);
+    const ariane4_free_real_t t341 = ARIANE4_FREE_C(83.33333333333333) * t340 + t121 * (t335 * t37
+        - t334 * t32 + t333);
+    input_by_q[5] = t341 - t117 * t321;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t342 = t1 * (t273 + t283) + t3 * (t274 + t281);
+    const ariane4_free_real_t t343 = t1 * t342;
+    const ariane4_free_real_t t344 = t1 * t288 - t3 * t287;
+    const ariane4_free_real_t t345 = ARIANE4_FREE_C(0.443) * t344;
+    const ariane4_free_real_t t346 = ARIANE4_FREE_C(-0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t347 = t312 * t346; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t348 = t203 * t322;
+    const ariane4_free_real_t t349 = t345 + (t347 + t348);
+    const ariane4_free_real_t t350 = parameters[XZ2R] * t33;
+    const ariane4_free_real_t t351 = parameters[XY2] * dq[1];
+    const ariane4_free_real_t t352 = t351 - t350 + (t349 + (t343 - t283 - t345));
+    const ariane4_free_real_t t353 = ARIANE4_FREE_C(2.0) * t33;
+    const ariane4_free_real_t t354 = t3 * t342;
+    const ariane4_free_real_t t355 = t354 - t274 - (parameters[YZ2] * t33 + dq[1] * t324);
+    const ariane4_free_real_t t356 = ARIANE4_FREE_C(2.0) * t38;
+    /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t357 = t1 * (t284 - t275) + t276 * (ARIANE4_FREE_C(2.0) * t3);
+    const ariane4_free_real_t t358 = t1 * t357;
+    const ariane4_free_real_t t359 = t358 - t284 - parameters[XX2R];
+    const ariane4_free_real_t t360 = t3 * t357 - t276 + ARIANE4_FREE_C(0.443) * t312 - parameters[XY2];
+    /* link j2: derivatives */
+    const ariane4_free_real_t t361 = t353 * t352 - t356 * t355 + (t359 * t49 - t360 * t82 + t329 * t223);
+    const ariane4_free_real_t t362 = t3 * t288 + t1 * t287; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t363 = parameters[XZ2R] * t38 + dq[1] * t325 + (t354 - t281
+        + (ARIANE4_FREE_C(-0.443) * t362 - t306 * t346));
+    const ariane4_free_real_t t364 = parameters[YZ2] * t38;
+    const ariane4_free_real_t t365 = t364 - t351 + (t349 + (t273 - t343 - t347));
+    const ariane4_free_real_t t366 = t275 + t358 - t331; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
+    const ariane4_free_real_t t367 = t353 * t363 - t356 * t365 + (t360 * t49 + t366 * t82 - t330 * t223);
+    const ariane4_free_real_t t368 = t0 * (t90 + (t361 + t203 * t32)) + t2 * (t85 + (t367 - t203 * t37));
+    const ariane4_free_real_t t369 = parameters[MX2R] * dq[1] - t362; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t370 = parameters[MY2] * dq[1] + t344;
+    /* link j2: derivatives */
+    const ariane4_free_real_t t371 = t353 * t369 - t356 * t370 + (t335 * t49 + t334 * t82);
+    input_by_q[1] = t98 * (t368 + ARIANE4_FREE_C(0.116) * t371);
+    const ariane4_free_real_t t372 = ARIANE4_FREE_C(2.0) * (t364 - t350 + (t292 + t348 - t349))
+        + ARIANE4_FREE_C(2.0) * (t329 * t33 + t330 * t38);
+    const ariane4_free_real_t t373 = ARIANE4_FREE_C(83.33333333333333) * (t124 * parameters[FV2]
+        - parameters[IA2] * (t130 * (ARIANE4_FREE_C(2.0) * dq[1])));
+    input_by_dq[5] = t373 + t121 * t372;
+    const ariane4_free_real_t t374 = parameters[ZZ2R] - t324;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t375 = parameters[YZ2] * dq[1] - t33 * t374 + (t1 * t299 + t3 * t301);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t376 = t0 * (ARIANE4_FREE_C(2.0) * t375 + (t359 * t353 - t360 * t356));
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t377 = t38 * t374 - parameters[XZ2R] * dq[1] + (t3 * t299 - t1 * t301
+        + t203 * t346);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t378 = t2 * (ARIANE4_FREE_C(2.0) * t377 + (t360 * t353 + t366 * t356));
+    const ariane4_free_real_t t379 = t376 + t378 + ARIANE4_FREE_C(0.116) * (t335 * t353 + t334 * t356);
+    input_by_dq[1] = t98 * t379;
+    input_by_ddq[5] = ARIANE4_FREE_C(83.33333333333333) * (t124 * parameters[IA2]) + t121 * t332;
+    const ariane4_free_real_t t380 = t0 * t329 - t2 * t330; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = -(t98 * t380);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t381 = t0 * t326 - t2 * t328 + (t2 * t335 + t0 * t334) * t228;
+    input_by_dq[4] = t121 * t381;
+    input_by_ddq[4] = t121 * t380;
+    const ariane4_free_real_t t382 = ariane4_free_select(t96, t96, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t383 = ARIANE4_FREE_C(1.0) / t382;
+    const ariane4_free_real_t t384 = ARIANE4_FREE_C(-0.037468) * t97;
+    const ariane4_free_real_t t385 = ARIANE4_FREE_C(-1.0) / t97;
+    const ariane4_free_real_t
+        t386 = t385 * (ARIANE4_FREE_C(0.06434139546481742) * (t384 * (ARIANE4_FREE_C(0.5) * t383))
+        - t95 * t98);
+    const ariane4_free_real_t t387 = t99 * (t99 * (t384 * (ARIANE4_FREE_C(0.5) * t99)));
+    const ariane4_free_real_t t388 = t105 * (ARIANE4_FREE_C(-145.582792109661) * (t99 * t387))
+        - t104 * (ARIANE4_FREE_C(-2.0) * (t97 * t95));
+    const ariane4_free_real_t t389 = t30 * (t106 * t387 + t99 * (ARIANE4_FREE_C(-3885.523436256565) * t97
+        + t388));
+    const ariane4_free_real_t t390 = t95 * t100 + t97 * (ARIANE4_FREE_C(3885.523436256565) * t387);
+    const ariane4_free_real_t t391 = parameters[FV1] * (dq[0] * t390) + parameters[IA1] * (t389
+        + ddq[0] * t390);
+    input_by_q[0] = ARIANE4_FREE_C(-250.0) * t391 + t92 * t386;
+    /* link j2: inertia, momentum beyond */
+    const ariane4_free_real_t t392 = t2 * (t2 * (t365 - t352) + t0 * (t355 + t363));
+    const ariane4_free_real_t t393 = ARIANE4_FREE_C(0.116) * (t2 * t370 + t0 * t369)
+        + t203 * (ARIANE4_FREE_C(-0.116) * dq[0]);
+    const ariane4_free_real_t
+        t394 = ARIANE4_FREE_C(250.0) * (parameters[IA1] * (t107 * (ARIANE4_FREE_C(-2.0) * dq[0]))
+        - t101 * parameters[FV1]);
+    input_by_dq[0] = t394 + t98 * (ARIANE4_FREE_C(2.0) * (t352 + t392 + t393));
+    /* link j2: inertia of it and all beyond */
+    const ariane4_free_real_t t395 = t2 * (t2 * (t366 + t359) + t360 * (ARIANE4_FREE_C(-2.0) * t0));
+    const ariane4_free_real_t t396 = t359 - t395 + ARIANE4_FREE_C(0.232) * (t0 * t335 - t2 * t334);
+    input_by_ddq[0] = ARIANE4_FREE_C(-250.0) * (t101 * parameters[IA1]) + t98 * (t396 - parameters[ZZ1R]);
     /* always zero */
     input_by_q[4] = ARIANE4_FREE_C(0.0);
     input_by_q[8] = ARIANE4_FREE_C(0.0);

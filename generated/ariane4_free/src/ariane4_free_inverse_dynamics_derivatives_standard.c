@@ -82,7 +82,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
+#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
 #error "ariane4_free.h and ariane4_free_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -363,413 +363,411 @@ ariane4_free_status_t ariane4_free_inverse_dynamics_derivatives_standard(
     const ariane4_free_real_t t171 = ARIANE4_FREE_C(1.0e2) * dq[3] * parameters[FV4] + t170 * parameters[FC4]
         + ARIANE4_FREE_C(1.0e2) * ddq[3] * parameters[IA4];
     input[3] = ARIANE4_FREE_C(20.0) * t171 + ARIANE4_FREE_C(0.2) * t89;
-    const ariane4_free_real_t t172 = ariane4_free_select(t114, t114, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t173 = ARIANE4_FREE_C(1.0) / t172;
-    const ariane4_free_real_t t174 = ARIANE4_FREE_C(-0.037468) * t115;
-    const ariane4_free_real_t t175 = ARIANE4_FREE_C(-1.0) / t115;
-    const ariane4_free_real_t
-        t176 = t175 * (ARIANE4_FREE_C(0.06434139546481742) * (t174 * (ARIANE4_FREE_C(0.5) * t173))
-        - t113 * t116);
-    const ariane4_free_real_t t177 = t117 * (t117 * (t174 * (ARIANE4_FREE_C(0.5) * t117)));
-    const ariane4_free_real_t t178 = t123 * (ARIANE4_FREE_C(-145.582792109661) * (t117 * t177))
-        - t122 * (ARIANE4_FREE_C(-2.0) * (t115 * t113));
-    const ariane4_free_real_t t179 = t0 * (t124 * t177 + t117 * (ARIANE4_FREE_C(-3885.523436256565) * t115
-        + t178));
-    const ariane4_free_real_t t180 = t113 * t118 + t115 * (ARIANE4_FREE_C(3885.523436256565) * t177);
-    const ariane4_free_real_t t181 = parameters[FV1] * (dq[0] * t180) + parameters[IA1] * (ddq[0] * t180
-        + t179);
-    input_by_q[0] = ARIANE4_FREE_C(-250.0) * t181 + t110 * t176;
-    const ariane4_free_real_t t182 = t54 * parameters[MZ4] + t55 * parameters[MY4];
-    const ariane4_free_real_t t183 = t55 * parameters[MX4] + t59 * parameters[MZ4];
-    const ariane4_free_real_t t184 = t50 * t182 + t34 * t183; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t185 = ARIANE4_FREE_C(0.1) * t184;
-    const ariane4_free_real_t t186 = t59 * parameters[MY4] - t54 * parameters[MX4];
-    const ariane4_free_real_t t187 = ARIANE4_FREE_C(-0.436) * t186;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t188 = t34 * parameters[MY4] - t50 * parameters[MX4];
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t189 = ARIANE4_FREE_C(0.1) * parameters[M4];
-    const ariane4_free_real_t t190 = t188 + t189;
-    const ariane4_free_real_t t191 = ARIANE4_FREE_C(0.436) * t25; /* link j4: velocity of its origin */
-    const ariane4_free_real_t t192 = t190 * t191; /* link j4: inertia, momentum beyond */
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t193 = ARIANE4_FREE_C(0.436) * parameters[M4];
-    const ariane4_free_real_t t194 = parameters[MZ4] + t193;
-    const ariane4_free_real_t t195 = ARIANE4_FREE_C(0.1) * t25; /* link j4: velocity of its origin */
-    const ariane4_free_real_t t196 = t194 * t195; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t197 = ARIANE4_FREE_C(0.436) * t18 + ARIANE4_FREE_C(0.1) * t20;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t198 = t50 * parameters[MY4] + t34 * parameters[MX4];
-    const ariane4_free_real_t t199 = t198 * t197; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t200 = t185 + t187 + (t192 - t196 - t199);
-    const ariane4_free_real_t t201 = t54 * parameters[XZ4];
-    const ariane4_free_real_t t202 = t55 * parameters[XY4];
-    const ariane4_free_real_t t203 = t201 + t202;
-    const ariane4_free_real_t t204 = t59 * parameters[YZ4];
-    const ariane4_free_real_t t205 = t202 + t204;
-    const ariane4_free_real_t t206 = ARIANE4_FREE_C(0.5) * (parameters[ZZ4] + (parameters[XX4]
+    const ariane4_free_real_t t172 = t70 * parameters[MX4] - t51 * parameters[MY4];
+    /* link j4: derivatives */
+    const ariane4_free_real_t t173 = t58 * parameters[XZ4] - t53 * parameters[YZ4] - t128 * parameters[ZZ4];
+    const ariane4_free_real_t t174 = ARIANE4_FREE_C(0.5) * (parameters[ZZ4] + (parameters[XX4]
         + parameters[YY4]));
-    const ariane4_free_real_t t207 = t206 - parameters[XX4];
-    const ariane4_free_real_t t208 = t59 * parameters[XZ4] - t55 * t207;
-    const ariane4_free_real_t t209 = t206 - parameters[YY4];
-    const ariane4_free_real_t t210 = t55 * t209 - t54 * parameters[YZ4];
-    const ariane4_free_real_t t211 = t50 * (t203 + t205) + t34 * (t208 + t210);
-    const ariane4_free_real_t t212 = t50 * t211;
-    const ariane4_free_real_t t213 = t20 * parameters[XZ3];
-    const ariane4_free_real_t t214 = t25 * parameters[XY3];
-    const ariane4_free_real_t t215 = t214 - t213 + (t212 - t205 + (t185 + t192) - t200);
-    const ariane4_free_real_t t216 = t204 - t201;
-    const ariane4_free_real_t t217 = t18 * parameters[YZ3];
-    const ariane4_free_real_t t218 = t214 - t217 + (t200 - (t216 + (t187 - t196)));
-    const ariane4_free_real_t t219 = t206 - parameters[ZZ4];
-    const ariane4_free_real_t t220 = t54 * t219 - t55 * parameters[YZ4];
-    const ariane4_free_real_t t221 = t55 * parameters[XZ4] - t59 * t219;
-    const ariane4_free_real_t t222 = t50 * t220 - t34 * t221 + (ARIANE4_FREE_C(0.436) * t184 + t194 * t191);
-    const ariane4_free_real_t t223 = ARIANE4_FREE_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
-        + parameters[YY3]));
-    const ariane4_free_real_t t224 = t223 - parameters[YY3];
-    const ariane4_free_real_t t225 = t20 * parameters[YZ3] + t25 * t224 + t222;
-    const ariane4_free_real_t t226 = t59 * parameters[XY4] + t54 * t207;
-    const ariane4_free_real_t t227 = t59 * t209 + t54 * parameters[XY4];
-    const ariane4_free_real_t t228 = ARIANE4_FREE_C(-0.1) * t186 - t190 * t195 - (t50 * t226 + t34 * t227);
-    const ariane4_free_real_t t229 = parameters[XX3] - t223;
-    const ariane4_free_real_t t230 = t25 * t229 - t18 * parameters[XZ3] + t228;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t231 = t15 * (t215 + t218) + t9 * (t225 + t230);
-    const ariane4_free_real_t t232 = t15 * t231;
-    const ariane4_free_real_t t233 = parameters[MX3] - t190; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t234 = parameters[MY3] + t194;
-    const ariane4_free_real_t t235 = t15 * t234 + t9 * t233; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t236 = ARIANE4_FREE_C(0.443) * dq[1]; /* link j3: velocity of its origin */
-    const ariane4_free_real_t t237 = t235 * t236; /* link j3: inertia, momentum beyond */
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t238 = t20 * parameters[MZ3] - t25 * parameters[MY3] - (t184
-        + parameters[M4] * t191);
-    const ariane4_free_real_t t239 = t18 * parameters[MZ3] - t25 * parameters[MX3] + (t186
-        + parameters[M4] * t195);
-    const ariane4_free_real_t t240 = t15 * t238 + t9 * t239; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t241 = ARIANE4_FREE_C(-0.443) * t240;
-    const ariane4_free_real_t t242 = parameters[MZ3] - t198; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t243 = ARIANE4_FREE_C(0.443) * t5; /* link j3: velocity of its origin */
-    const ariane4_free_real_t t244 = t242 * t243; /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t245 = t241 + (t244 - t237);
-    const ariane4_free_real_t t246 = dq[1] * parameters[XY2];
-    const ariane4_free_real_t t247 = t11 * parameters[YZ2];
-    const ariane4_free_real_t t248 = t247 - t246 + (t245 + (t215 - t232 + t237));
-    const ariane4_free_real_t t249 = t5 * parameters[XZ2];
-    const ariane4_free_real_t t250 = t246 - t249 + (t245 + (t232 - t218 - t241));
-    const ariane4_free_real_t t251 = t9 * t231;
-    const ariane4_free_real_t t252 = ARIANE4_FREE_C(0.5) * (parameters[ZZ2] + (parameters[XX2]
-        + parameters[YY2]));
-    const ariane4_free_real_t t253 = parameters[YY2] - t252;
-    const ariane4_free_real_t t254 = dq[1] * t253 - t5 * parameters[YZ2] + (t251 - t225);
-    const ariane4_free_real_t t255 = t9 * t238 - t15 * t239;
-    const ariane4_free_real_t t256 = t9 * t234 - t15 * t233; /* link j3: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t257 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t258 = ARIANE4_FREE_C(0.443) * t257; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t259 = t258 - t256;
-    const ariane4_free_real_t t260 = t252 - parameters[XX2];
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t261 = t11 * parameters[XZ2] + dq[1] * t260 + (t251 - t230
-        + (ARIANE4_FREE_C(0.443) * t255 + t259 * t236));
-    /* link j2: inertia, momentum beyond */
-    const ariane4_free_real_t t262 = t2 * (t2 * (t248 - t250) + t3 * (t254 + t261));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t263 = t5 * parameters[MZ2] - dq[1] * parameters[MY2] + t240;
-    const ariane4_free_real_t t264 = dq[1] * parameters[MX2] - t11 * parameters[MZ2] + (t255 + t257 * t236);
-    const ariane4_free_real_t t265 = parameters[MZ2] + t242; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia, momentum beyond */
-    const ariane4_free_real_t t266 = ARIANE4_FREE_C(0.116) * (t3 * t264 - t2 * t263)
-        + t265 * (ARIANE4_FREE_C(0.116) * dq[0]);
-    const ariane4_free_real_t
-        t267 = ARIANE4_FREE_C(250.0) * (parameters[IA1] * (t125 * (ARIANE4_FREE_C(-2.0) * dq[0]))
-        - t119 * parameters[FV1]);
-    input_by_dq[0] = t267 + t116 * (ARIANE4_FREE_C(2.0) * (t250 + t262 + t266));
-    const ariane4_free_real_t t268 = t34 * t211; /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t269 = t50 * t183 - t34 * t182;
-    const ariane4_free_real_t t270 = t18 * parameters[XY3] - t20 * t229 - (t208 - t268
-        - (ARIANE4_FREE_C(-0.1) * t269 + t190 * t197));
-    const ariane4_free_real_t t271 = t34 * t220 + t50 * t221 + (ARIANE4_FREE_C(-0.436) * t269 + t194 * t197);
-    const ariane4_free_real_t t272 = t18 * t224 + t20 * parameters[XY3] + t271;
-    const ariane4_free_real_t t273 = t20 * parameters[MX3] - t18 * parameters[MY3] + (t269
-        - parameters[M4] * t197);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t274 = t15 * t270 + t9 * t272 + (ARIANE4_FREE_C(0.443) * t273 + t259 * t243);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t275 = ARIANE4_FREE_C(2.0) * (t11 * parameters[XY2] + t5 * t260 + t274);
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t276 = t5 * parameters[XY2] - t11 * t253 - (t9 * t270 - t15 * t272
-        + t235 * t243);
-    const ariane4_free_real_t t277 = ARIANE4_FREE_C(2.0) * t276; /* link j2: derivatives */
-    const ariane4_free_real_t t278 = parameters[MY2] + t235; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t279 = parameters[MX2] + t259;
-    const ariane4_free_real_t t280 = ARIANE4_FREE_C(0.232) * dq[0];
-    /* link j2: derivatives */
-    const ariane4_free_real_t t281 = t3 * t275 - t2 * t277 + (t2 * t278 + t3 * t279) * t280;
-    input_by_dq[4] = t144 * t281;
-    const ariane4_free_real_t t282 = ARIANE4_FREE_C(2.0) * t270; /* link j3: derivatives */
-    const ariane4_free_real_t t283 = ARIANE4_FREE_C(-2.0) * t272;
-    const ariane4_free_real_t t284 = ARIANE4_FREE_C(0.886) * t5; /* link j4: derivatives */
-    const ariane4_free_real_t t285 = t9 * t283 - t15 * t282 + t256 * t284; /* link j3: derivatives */
-    const ariane4_free_real_t t286 = t9 * t282 + t15 * t283 + t235 * t284;
-    const ariane4_free_real_t t287 = t3 * t285 - t2 * t286 + (t3 * t256 - t2 * t235) * t280;
-    input_by_dq[8] = t158 * t287;
-    const ariane4_free_real_t t288 = ARIANE4_FREE_C(2.0) * t226; /* link j4: derivatives */
-    const ariane4_free_real_t t289 = ARIANE4_FREE_C(-2.0) * t227;
-    const ariane4_free_real_t t290 = ARIANE4_FREE_C(-0.2) * t25;
-    const ariane4_free_real_t t291 = t34 * t289 - t50 * t288 + t188 * t290;
-    const ariane4_free_real_t t292 = ARIANE4_FREE_C(2.0) * t216;
-    const ariane4_free_real_t t293 = t292 + (t198 * (ARIANE4_FREE_C(2.0) * t197)
-        + t188 * (ARIANE4_FREE_C(-0.872) * t25));
-    const ariane4_free_real_t t294 = ARIANE4_FREE_C(0.886) * dq[1];
-    const ariane4_free_real_t t295 = t9 * t198; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const ariane4_free_real_t t296 = t15 * t291 + t9 * t293 + (t188 * t294 - t295 * t284);
-    const ariane4_free_real_t t297 = t15 * t198; /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t298 = t9 * t291 - t15 * t293 + t297 * t284; /* link j4: derivatives */
-    const ariane4_free_real_t t299 = t3 * t296 + t2 * t298 + (t2 * t297 - t3 * t295) * t280;
-    input_by_dq[12] = ARIANE4_FREE_C(0.2) * t299;
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t300 = t50 * t87 - parameters[XY4] * (ARIANE4_FREE_C(2.0) * t34);
-    const ariane4_free_real_t t301 = t50 * t300;
-    const ariane4_free_real_t t302 = ARIANE4_FREE_C(0.436) * (t193 + ARIANE4_FREE_C(2.0) * parameters[MZ4]);
-    const ariane4_free_real_t t303 = parameters[XX3] + (parameters[YY4] + t301 + t302);
-    const ariane4_free_real_t t304 = ARIANE4_FREE_C(0.1) * (t189 + ARIANE4_FREE_C(2.0) * t188);
-    const ariane4_free_real_t t305 = parameters[YY3] + (parameters[ZZ4] + t304);
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t306 = t50 * parameters[XZ4] - t34 * parameters[YZ4];
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t307 = parameters[XY3] + (t306 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
-        + ARIANE4_FREE_C(0.436) * t190));
-    /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t308 = t15 * (t305 - t303) + t307 * (ARIANE4_FREE_C(2.0) * t9);
-    const ariane4_free_real_t t309 = t15 * t308;
-    const ariane4_free_real_t t310 = t309 - t305 - parameters[XX2];
-    const ariane4_free_real_t t311 = ARIANE4_FREE_C(0.443) * (t258 - ARIANE4_FREE_C(2.0) * t256);
-    const ariane4_free_real_t t312 = parameters[YY2] + (t303 + t309 + t311);
-    const ariane4_free_real_t t313 = t9 * t308 - t307 + ARIANE4_FREE_C(0.443) * t235 - parameters[XY2];
-    /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t314 = t2 * (t2 * (t310 + t312) + t313 * (ARIANE4_FREE_C(-2.0) * t3));
-    const ariane4_free_real_t t315 = ARIANE4_FREE_C(-0.116) * (parameters[M2] + t257)
-        + ARIANE4_FREE_C(2.0) * (t3 * t278 - t2 * t279);
-    const ariane4_free_real_t t316 = ARIANE4_FREE_C(-250.0) * (t119 * parameters[IA1]) + t116 * (t310 - t314
-        + ARIANE4_FREE_C(0.116) * t315 - parameters[ZZ1]);
-    input_by_ddq[0] = t316;
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t317 = parameters[XY4] + t34 * t300 + ARIANE4_FREE_C(0.1) * t198
-        - parameters[XZ3];
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t318 = t34 * parameters[XZ4] + t50 * parameters[YZ4]
-        - ARIANE4_FREE_C(0.436) * t198;
-    const ariane4_free_real_t t319 = parameters[YZ3] - t318; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t320 = t15 * t317 + t9 * t319; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t321 = parameters[XZ2] + (ARIANE4_FREE_C(-0.443) * t242 - t320);
-    const ariane4_free_real_t t322 = t9 * t317 - t15 * t319; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t323 = t322 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t324 = t3 * t321 - t2 * t323; /* link j2: column of the mass matrix */
-    input_by_ddq[4] = t144 * t324;
-    const ariane4_free_real_t t325 = t3 * t320 + t2 * t322; /* link j3: column of the mass matrix */
-    input_by_ddq[8] = t158 * t325;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t326 = ARIANE4_FREE_C(-0.436) * t188 - t306;
-    const ariane4_free_real_t t327 = ARIANE4_FREE_C(-0.1) * t188 - parameters[ZZ4];
-    const ariane4_free_real_t t328 = t9 * t327 - t15 * t326;
-    const ariane4_free_real_t t329 = t9 * t326 + t15 * t327 + ARIANE4_FREE_C(0.443) * t188;
-    const ariane4_free_real_t t330 = ARIANE4_FREE_C(0.116) * t188 - (t3 * t328 - t2 * t329);
-    input_by_ddq[12] = ARIANE4_FREE_C(-0.2) * t330;
-    const ariane4_free_real_t t331 = ARIANE4_FREE_C(2.0) * t5;
-    const ariane4_free_real_t t332 = ARIANE4_FREE_C(2.0) * t11;
-    /* link j2: derivatives */
-    const ariane4_free_real_t t333 = t331 * t250 - t332 * t254 + (t43 * t310 - t94 * t313 + t107 * t321);
-    const ariane4_free_real_t t334 = t331 * t261 - t332 * t248 + (t43 * t313 + t94 * t312 - t107 * t323);
-    const ariane4_free_real_t t335 = t3 * (t106 + (t333 + t4 * t265)) + t2 * (t98 + (t334 + t10 * t265));
-    const ariane4_free_real_t t336 = t331 * t264 + t332 * t263 + (t43 * t278 + t94 * t279);
-    input_by_q[1] = t116 * (t335 + ARIANE4_FREE_C(0.116) * t336);
-    const ariane4_free_real_t t337 = ariane4_free_select(t142, t142, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t338 = ARIANE4_FREE_C(1.0) / t337;
-    const ariane4_free_real_t t339 = ARIANE4_FREE_C(0.078402) * t143;
-    const ariane4_free_real_t t340 = ARIANE4_FREE_C(-1.0) / t143;
-    const ariane4_free_real_t t341 = t340 * (t141 * t144
-        + ARIANE4_FREE_C(0.03137188092799786) * (t339 * (ARIANE4_FREE_C(0.5) * t338)));
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t342 = parameters[ZZ3] + (parameters[XX4] - t301 + (t304 + t302));
-    /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t343 = parameters[ZZ2] + (t342 + t311);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t344 = t43 * t321 + t94 * t323 - t107 * t343 + (t5 * t275 + t11 * t277);
-    const ariane4_free_real_t t345 = t145 * (t145 * (t339 * (ARIANE4_FREE_C(0.5) * t145)));
-    const ariane4_free_real_t t346 = t151 * (ARIANE4_FREE_C(208.2597474788059) * (t145 * t345))
-        - t150 * (ARIANE4_FREE_C(2.0) * (t143 * t141));
-    const ariane4_free_real_t t347 = t7 * (t152 * t345 - t145 * (ARIANE4_FREE_C(-2656.3065671641784) * t143
-        + t346));
-    const ariane4_free_real_t t348 = t143 * (ARIANE4_FREE_C(2656.3065671641784) * t345) - t141 * t146;
-    const ariane4_free_real_t t349 = parameters[FV2] * (dq[1] * t348) + parameters[IA2] * (ddq[1] * t348
-        + t347);
-    const ariane4_free_real_t t350 = ARIANE4_FREE_C(83.33333333333333) * t349 + t144 * (t4 * t279 + t10 * t278
-        + t344);
-    input_by_q[5] = t350 - t140 * t341;
-    /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t351 = t342 + ARIANE4_FREE_C(-0.443) * t256;
-    /* link j3: derivatives */
-    const ariane4_free_real_t t352 = t5 * t285 + t11 * t286 + (t43 * t320 - t94 * t322 + t107 * t351);
-    input_by_q[9] = t158 * (t352 + (t4 * t256 - t10 * t235));
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t353 = ARIANE4_FREE_C(-0.443) * t295 - t318;
-    /* link j4: derivatives */
-    const ariane4_free_real_t t354 = t5 * t296 - t11 * t298 + (t43 * t328 + t94 * t329 - t107 * t353);
-    input_by_q[13] = ARIANE4_FREE_C(0.2) * (t354 + (t10 * t297 - t4 * t295));
-    const ariane4_free_real_t t355 = parameters[ZZ3] - t223;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t356 = t25 * parameters[YZ3] - t20 * t355 + (t210 - t268 + t198 * t191);
-    const ariane4_free_real_t t357 = t25 * parameters[XZ3] - t18 * t355 - (t50 * t227 - t34 * t226
-        + t198 * t195);
-    const ariane4_free_real_t t358 = parameters[ZZ2] - t252;
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t359 = dq[1] * parameters[YZ2] - t5 * t358 + (t15 * t356 + t9 * t357);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t360 = t3 * (ARIANE4_FREE_C(2.0) * t359 + (t310 * t331 - t313 * t332));
-    /* link j3: inertia, momentum beyond */
-    const ariane4_free_real_t t361 = t11 * t358 - dq[1] * parameters[XZ2] + (t9 * t356 - t15 * t357
-        + t242 * t236);
-    /* link j2: derivatives */
-    const ariane4_free_real_t t362 = t2 * (ARIANE4_FREE_C(2.0) * t361 + (t313 * t331 + t312 * t332));
-    const ariane4_free_real_t t363 = t360 + t362 + ARIANE4_FREE_C(0.116) * (t278 * t331 + t279 * t332);
-    input_by_dq[1] = t116 * t363;
-    /* link j4: inertia, momentum beyond */
-    const ariane4_free_real_t t364 = t217 - t213 + (t200 + (t212 - t203 + t199));
-    /* link j2: derivatives */
-    const ariane4_free_real_t t365 = ARIANE4_FREE_C(2.0) * (t247 - t249 + (t364 + t244 - t245))
-        + ARIANE4_FREE_C(2.0) * (t5 * t321 + t11 * t323);
-    const ariane4_free_real_t t366 = ARIANE4_FREE_C(83.33333333333333) * (t147 * parameters[FV2]
-        - parameters[IA2] * (t153 * (ARIANE4_FREE_C(2.0) * dq[1])));
-    input_by_dq[5] = t366 + t144 * t365;
-    const ariane4_free_real_t t367 = ARIANE4_FREE_C(-2.0) * t364; /* link j3: derivatives */
-    const ariane4_free_real_t t368 = t367 - t235 * t294 + ARIANE4_FREE_C(2.0) * (t5 * t320 - t11 * t322);
-    input_by_dq[9] = t158 * t368;
-    const ariane4_free_real_t t369 = t34 * t288 + t50 * t289 + t198 * t290; /* link j4: derivatives */
-    const ariane4_free_real_t t370 = t369 + t297 * t294 + ARIANE4_FREE_C(2.0) * (t5 * t328 + t11 * t329);
-    input_by_dq[13] = ARIANE4_FREE_C(0.2) * t370;
-    input_by_ddq[1] = -(t116 * t324);
-    input_by_ddq[5] = ARIANE4_FREE_C(83.33333333333333) * (t147 * parameters[IA2]) + t144 * t343;
-    input_by_ddq[9] = -(t158 * t351);
-    input_by_ddq[13] = ARIANE4_FREE_C(0.2) * t353;
-    const ariane4_free_real_t t371 = ARIANE4_FREE_C(-2.0) * t18;
-    const ariane4_free_real_t t372 = ARIANE4_FREE_C(2.0) * t20;
-    /* link j3: derivatives */
-    const ariane4_free_real_t t373 = t39 * t305 - t35 * t307 + t99 * t319 - (t372 * t230 + t371 * t218);
-    const ariane4_free_real_t t374 = t86 + (t373 + t16 * t242);
-    const ariane4_free_real_t t375 = t372 * t215 - t371 * t225 + (t39 * t307 - t35 * t303 - t99 * t317);
-    const ariane4_free_real_t t376 = t92 + (t375 + t29 * t242);
-    const ariane4_free_real_t t377 = t35 * t234 + t39 * t233 - (t372 * t239 + t371 * t238);
-    const ariane4_free_real_t t378 = t2 * (t9 * t376 + t15 * t374 + ARIANE4_FREE_C(0.443) * t377);
-    const ariane4_free_real_t t379 = t3 * (t15 * t376 - t9 * t374) + t378 + ARIANE4_FREE_C(0.116) * t377;
-    input_by_q[2] = t116 * t379;
-    const ariane4_free_real_t t380 = t372 * t273 + t29 * t257 - (t99 * t233 + t35 * t242);
-    const ariane4_free_real_t t381 = t99 * t234 - t39 * t242 - (t371 * t273 + t16 * t257);
-    const ariane4_free_real_t t382 = ARIANE4_FREE_C(0.443) * (t9 * (t137 + t381) + t15 * (t135 + t380));
-    const ariane4_free_real_t t383 = t35 * t317 + t39 * t319 + t99 * t342;
-    const ariane4_free_real_t t384 = t29 * t233 + t16 * t234;
-    const ariane4_free_real_t t385 = t372 * t270 - t371 * t272 - t383 + t384 + t382;
-    input_by_q[6] = t144 * t385;
-    const ariane4_free_real_t t386 = ariane4_free_select(t156, t156, ARIANE4_FREE_C(1.0));
-    const ariane4_free_real_t t387 = ARIANE4_FREE_C(1.0) / t386;
-    const ariane4_free_real_t t388 = ARIANE4_FREE_C(-0.052812) * t157;
-    const ariane4_free_real_t t389 = ARIANE4_FREE_C(-1.0) / t157;
-    const ariane4_free_real_t
-        t390 = t389 * (ARIANE4_FREE_C(0.046787723832235825) * (t388 * (ARIANE4_FREE_C(0.5) * t387))
-        - t155 * t158);
-    const ariane4_free_real_t t391 = t158 * (t383 + (t18 * t283 - t20 * t282) - t384);
-    const ariane4_free_real_t t392 = t159 * (t159 * (t388 * (ARIANE4_FREE_C(0.5) * t159)));
-    const ariane4_free_real_t t393 = t165 * (ARIANE4_FREE_C(-376.25254143846996) * (t159 * t392))
-        - t164 * (ARIANE4_FREE_C(-2.0) * (t157 * t155));
-    const ariane4_free_real_t t394 = t168 * (t166 * t392 + t159 * (ARIANE4_FREE_C(-7124.375926654358) * t157
-        + t393));
-    const ariane4_free_real_t t395 = t155 * t160 + t157 * (ARIANE4_FREE_C(7124.375926654358) * t392);
-    const ariane4_free_real_t t396 = parameters[FV3] * (dq[2] * t395) + parameters[IA3] * (ddq[2] * t395
-        + t394);
-    input_by_q[10] = ARIANE4_FREE_C(-333.3333333333333) * t396 + t391 + t133 * t390;
-    /* link j4: derivatives */
-    const ariane4_free_real_t t397 = t20 * t291 + t18 * t293 + (t39 * t327 - t35 * t326 + t99 * t318);
-    input_by_q[14] = ARIANE4_FREE_C(0.2) * (t397 + t16 * t198);
-    /* link j3: derivatives */
-    const ariane4_free_real_t t398 = ARIANE4_FREE_C(2.0) * t356 - (t303 * t372 + t307 * t371);
-    const ariane4_free_real_t t399 = ARIANE4_FREE_C(2.0) * t357 + (t307 * t372 + t305 * t371);
-    const ariane4_free_real_t t400 = t234 * t372 - t233 * t371;
-    const ariane4_free_real_t t401 = t2 * (t9 * t398 - t15 * t399 + ARIANE4_FREE_C(0.443) * t400);
-    const ariane4_free_real_t t402 = t3 * (t15 * t398 + t9 * t399) + t401 + ARIANE4_FREE_C(0.116) * t400;
-    input_by_dq[2] = t116 * t402;
-    const ariane4_free_real_t t403 = t9 * (ARIANE4_FREE_C(2.0) * t239 + t242 * t371)
-        + t15 * (ARIANE4_FREE_C(2.0) * t238 - t242 * t372);
-    const ariane4_free_real_t t404 = t319 * t371 - t317 * t372 - t367 + ARIANE4_FREE_C(0.443) * t403;
-    input_by_dq[6] = t144 * t404;
-    const ariane4_free_real_t t405 = t158 * (t367 + ARIANE4_FREE_C(2.0) * (t20 * t317 + t18 * t319));
-    const ariane4_free_real_t
-        t406 = ARIANE4_FREE_C(333.3333333333333) * (parameters[IA3] * (t167 * (ARIANE4_FREE_C(-2.0) * dq[2]))
-        - t161 * parameters[FV3]);
-    input_by_dq[10] = t406 + t405;
-    const ariane4_free_real_t t407 = ARIANE4_FREE_C(0.2) * (t369 + ARIANE4_FREE_C(2.0) * (t18 * t327
-        - t20 * t326));
-    input_by_dq[14] = t407;
-    input_by_ddq[2] = t116 * t325;
-    input_by_ddq[6] = t144 * t351;
-    input_by_ddq[10] = ARIANE4_FREE_C(-333.3333333333333) * (t161 * parameters[IA3]) - t158 * t342;
-    input_by_ddq[14] = ARIANE4_FREE_C(-0.2) * t318;
-    const ariane4_free_real_t t408 = ARIANE4_FREE_C(-2.0) * t54;
-    const ariane4_free_real_t t409 = ARIANE4_FREE_C(-2.0) * t59;
-    /* link j4: derivatives */
-    const ariane4_free_real_t t410 = t408 * t203 + t409 * t210 + (t53 * parameters[XY4]
+    const ariane4_free_real_t t175 = t174 - parameters[XX4];
+    const ariane4_free_real_t t176 = t59 * parameters[XY4] + t54 * t175;
+    const ariane4_free_real_t t177 = ARIANE4_FREE_C(2.0) * t176;
+    const ariane4_free_real_t t178 = t174 - parameters[YY4];
+    const ariane4_free_real_t t179 = t59 * t178 + t54 * parameters[XY4];
+    const ariane4_free_real_t t180 = ARIANE4_FREE_C(-2.0) * t179;
+    const ariane4_free_real_t t181 = ARIANE4_FREE_C(0.2) * (t172 + (t173 + (t54 * t177 - t59 * t180)));
+    input_by_q[15] = t181;
+    const ariane4_free_real_t t182 = t54 * parameters[XZ4];
+    const ariane4_free_real_t t183 = t55 * parameters[XY4];
+    const ariane4_free_real_t t184 = t182 + t183;
+    const ariane4_free_real_t t185 = ARIANE4_FREE_C(-2.0) * t54;
+    const ariane4_free_real_t t186 = t55 * t178 - t54 * parameters[YZ4];
+    const ariane4_free_real_t t187 = ARIANE4_FREE_C(-2.0) * t59;
+    const ariane4_free_real_t t188 = t185 * t184 + t187 * t186 + (t53 * parameters[XY4]
         - t58 * parameters[XX4] + t128 * parameters[XZ4]);
-    const ariane4_free_real_t t411 = t76 + (t71 + t410);
-    const ariane4_free_real_t t412 = t409 * t205 - t408 * t208 + (t53 * parameters[YY4]
+    const ariane4_free_real_t t189 = t76 + (t71 + t188);
+    const ariane4_free_real_t t190 = t59 * parameters[XZ4] - t55 * t175;
+    const ariane4_free_real_t t191 = t59 * parameters[YZ4];
+    const ariane4_free_real_t t192 = t183 + t191;
+    const ariane4_free_real_t t193 = t187 * t192 - t185 * t190 + (t53 * parameters[YY4]
         - t58 * parameters[XY4] + t128 * parameters[YZ4]);
-    const ariane4_free_real_t t413 = t69 + (t52 - t412);
-    const ariane4_free_real_t t414 = t82 + (t81 - t128 * parameters[MY4] - (t80 + t409 * t186));
-    const ariane4_free_real_t t415 = t79 + (t78 + t128 * parameters[MX4] - (t77 + t408 * t186));
-    const ariane4_free_real_t t416 = t34 * t414 + t50 * t415;
-    const ariane4_free_real_t t417 = t50 * t411 + t34 * t413 + ARIANE4_FREE_C(-0.436) * t416;
-    const ariane4_free_real_t t418 = t70 * parameters[MX4] - t51 * parameters[MY4];
-    const ariane4_free_real_t t419 = t58 * parameters[XZ4] - t53 * parameters[YZ4] - t128 * parameters[ZZ4];
-    const ariane4_free_real_t t420 = t418 - (t408 * t226 + t409 * t227 - t419) + ARIANE4_FREE_C(0.1) * t416;
-    const ariane4_free_real_t t421 = t2 * (t9 * t417 - t15 * t420 + ARIANE4_FREE_C(0.443) * t416);
-    const ariane4_free_real_t t422 = t3 * (t15 * t417 + t9 * t420) + t421 + ARIANE4_FREE_C(0.116) * t416;
-    input_by_q[3] = t116 * t422;
-    const ariane4_free_real_t t423 = t50 * t414 - t34 * t415;
-    const ariane4_free_real_t t424 = t409 * t182 - t408 * t183 - (t58 * parameters[MY4]
+    const ariane4_free_real_t t194 = t69 + (t52 - t193);
+    const ariane4_free_real_t t195 = t59 * parameters[MY4] - t54 * parameters[MX4];
+    const ariane4_free_real_t t196 = t82 + (t81 - t128 * parameters[MY4] - (t80 + t187 * t195));
+    const ariane4_free_real_t t197 = t79 + (t78 + t128 * parameters[MX4] - (t77 + t185 * t195));
+    const ariane4_free_real_t t198 = t50 * t196 - t34 * t197;
+    const ariane4_free_real_t t199 = t55 * parameters[MX4] + t59 * parameters[MZ4];
+    const ariane4_free_real_t t200 = t54 * parameters[MZ4] + t55 * parameters[MY4];
+    const ariane4_free_real_t t201 = t187 * t200 - t185 * t199 - (t58 * parameters[MY4]
         + t53 * parameters[MX4]);
-    const ariane4_free_real_t t425 = t34 * t411 - t50 * t413 + (ARIANE4_FREE_C(0.1) * t424
-        + ARIANE4_FREE_C(0.436) * t423);
-    const ariane4_free_real_t t426 = t144 * (t425 + ARIANE4_FREE_C(-0.443) * (t9 * t423 + t15 * t424));
-    input_by_q[7] = t426;
-    input_by_q[11] = -(t158 * t425);
-    const ariane4_free_real_t t427 = ARIANE4_FREE_C(0.2) * (t418 + (t419 + (t54 * t288 - t59 * t289)));
-    input_by_q[15] = t427;
-    const ariane4_free_real_t t428 = ARIANE4_FREE_C(-2.0) * t220 + (parameters[XY4] * t409
-        - parameters[XX4] * t408);
-    const ariane4_free_real_t t429 = ARIANE4_FREE_C(2.0) * t221 - (parameters[YY4] * t409
-        - parameters[XY4] * t408);
-    const ariane4_free_real_t t430 = ARIANE4_FREE_C(2.0) * t183 + parameters[MZ4] * t409;
-    const ariane4_free_real_t t431 = ARIANE4_FREE_C(2.0) * t182 + parameters[MZ4] * t408;
-    const ariane4_free_real_t t432 = t34 * t430 + t50 * t431;
-    const ariane4_free_real_t t433 = t50 * t428 + t34 * t429 + ARIANE4_FREE_C(-0.436) * t432;
-    const ariane4_free_real_t t434 = ARIANE4_FREE_C(0.1) * t432 - (t292 + (parameters[YZ4] * t409
-        - parameters[XZ4] * t408));
-    const ariane4_free_real_t t435 = t2 * (t9 * t433 - t15 * t434 + ARIANE4_FREE_C(0.443) * t432);
-    const ariane4_free_real_t t436 = t3 * (t15 * t433 + t9 * t434) + t435 + ARIANE4_FREE_C(0.116) * t432;
-    input_by_dq[3] = t116 * t436;
-    const ariane4_free_real_t t437 = t50 * t430 - t34 * t431;
-    const ariane4_free_real_t t438 = parameters[MX4] * t409 + parameters[MY4] * t408;
-    const ariane4_free_real_t t439 = t34 * t428 - t50 * t429 + (ARIANE4_FREE_C(-0.1) * t438
-        + ARIANE4_FREE_C(0.436) * t437);
-    const ariane4_free_real_t t440 = t144 * (t439 + ARIANE4_FREE_C(0.443) * (t15 * t438 - t9 * t437));
-    input_by_dq[7] = t440;
-    input_by_dq[11] = -(t158 * t439);
+    const ariane4_free_real_t t202 = t34 * t189 - t50 * t194 + (ARIANE4_FREE_C(0.1) * t201
+        + ARIANE4_FREE_C(0.436) * t198);
+    input_by_q[11] = -(t158 * t202);
+    const ariane4_free_real_t t203 = t144 * (t202 + ARIANE4_FREE_C(-0.443) * (t9 * t198 + t15 * t201));
+    input_by_q[7] = t203;
+    const ariane4_free_real_t t204 = t34 * t196 + t50 * t197;
+    const ariane4_free_real_t t205 = t50 * t189 + t34 * t194 + ARIANE4_FREE_C(-0.436) * t204;
+    const ariane4_free_real_t t206 = t172 - (t185 * t176 + t187 * t179 - t173) + ARIANE4_FREE_C(0.1) * t204;
+    const ariane4_free_real_t t207 = t2 * (t9 * t205 - t15 * t206 + ARIANE4_FREE_C(0.443) * t204);
+    const ariane4_free_real_t t208 = t3 * (t15 * t205 + t9 * t206) + t207 + ARIANE4_FREE_C(0.116) * t204;
+    input_by_q[3] = t116 * t208;
     input_by_dq[15] = ARIANE4_FREE_C(2.0e3) * parameters[FV4];
-    input_by_ddq[3] = t116 * t330;
-    input_by_ddq[7] = t144 * t353;
-    input_by_ddq[11] = t158 * t318;
+    const ariane4_free_real_t t209 = t174 - parameters[ZZ4];
+    const ariane4_free_real_t t210 = t54 * t209 - t55 * parameters[YZ4];
+    const ariane4_free_real_t t211 = ARIANE4_FREE_C(-2.0) * t210 + (parameters[XY4] * t187
+        - parameters[XX4] * t185);
+    const ariane4_free_real_t t212 = t55 * parameters[XZ4] - t59 * t209;
+    const ariane4_free_real_t t213 = ARIANE4_FREE_C(2.0) * t212 - (parameters[YY4] * t187
+        - parameters[XY4] * t185);
+    const ariane4_free_real_t t214 = ARIANE4_FREE_C(2.0) * t199 + parameters[MZ4] * t187;
+    const ariane4_free_real_t t215 = ARIANE4_FREE_C(2.0) * t200 + parameters[MZ4] * t185;
+    const ariane4_free_real_t t216 = t50 * t214 - t34 * t215;
+    const ariane4_free_real_t t217 = parameters[MX4] * t187 + parameters[MY4] * t185;
+    const ariane4_free_real_t t218 = t34 * t211 - t50 * t213 + (ARIANE4_FREE_C(-0.1) * t217
+        + ARIANE4_FREE_C(0.436) * t216);
+    input_by_dq[11] = -(t158 * t218);
+    const ariane4_free_real_t t219 = t144 * (t218 + ARIANE4_FREE_C(0.443) * (t15 * t217 - t9 * t216));
+    input_by_dq[7] = t219;
+    const ariane4_free_real_t t220 = t34 * t214 + t50 * t215;
+    const ariane4_free_real_t t221 = t50 * t211 + t34 * t213 + ARIANE4_FREE_C(-0.436) * t220;
+    const ariane4_free_real_t t222 = t191 - t182;
+    const ariane4_free_real_t t223 = ARIANE4_FREE_C(2.0) * t222;
+    const ariane4_free_real_t t224 = ARIANE4_FREE_C(0.1) * t220 - (t223 + (parameters[YZ4] * t187
+        - parameters[XZ4] * t185));
+    const ariane4_free_real_t t225 = t2 * (t9 * t221 - t15 * t224 + ARIANE4_FREE_C(0.443) * t220);
+    const ariane4_free_real_t t226 = t3 * (t15 * t221 + t9 * t224) + t225 + ARIANE4_FREE_C(0.116) * t220;
+    input_by_dq[3] = t116 * t226;
     input_by_ddq[15] = ARIANE4_FREE_C(2.0e3) * parameters[IA4] + ARIANE4_FREE_C(0.2) * parameters[ZZ4];
+    /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t227 = t50 * parameters[MY4] + t34 * parameters[MX4];
+    const ariane4_free_real_t t228 = t34 * parameters[XZ4] + t50 * parameters[YZ4]
+        - ARIANE4_FREE_C(0.436) * t227;
+    input_by_ddq[11] = t158 * t228;
+    const ariane4_free_real_t t229 = t9 * t227;
+    const ariane4_free_real_t t230 = ARIANE4_FREE_C(-0.443) * t229 - t228;
+    input_by_ddq[7] = t144 * t230;
+    const ariane4_free_real_t t231 = t50 * parameters[XZ4] - t34 * parameters[YZ4];
+    const ariane4_free_real_t t232 = t34 * parameters[MY4] - t50 * parameters[MX4];
+    const ariane4_free_real_t t233 = ARIANE4_FREE_C(-0.436) * t232 - t231;
+    const ariane4_free_real_t t234 = ARIANE4_FREE_C(-0.1) * t232 - parameters[ZZ4];
+    const ariane4_free_real_t t235 = t9 * t234 - t15 * t233;
+    const ariane4_free_real_t t236 = t9 * t233 + t15 * t234 + ARIANE4_FREE_C(0.443) * t232;
+    const ariane4_free_real_t t237 = ARIANE4_FREE_C(0.116) * t232 - (t3 * t235 - t2 * t236);
+    input_by_ddq[3] = t116 * t237;
+    const ariane4_free_real_t t238 = ARIANE4_FREE_C(-0.2) * t25;
+    const ariane4_free_real_t t239 = t34 * t180 - t50 * t177 + t232 * t238; /* link j4: derivatives */
+    const ariane4_free_real_t t240 = ARIANE4_FREE_C(0.436) * t18 + ARIANE4_FREE_C(0.1) * t20;
+    const ariane4_free_real_t t241 = t223 + (t227 * (ARIANE4_FREE_C(2.0) * t240)
+        + t232 * (ARIANE4_FREE_C(-0.872) * t25));
+    const ariane4_free_real_t t242 = t20 * t239 + t18 * t241 + (t39 * t234 - t35 * t233 + t99 * t228);
+    input_by_q[14] = ARIANE4_FREE_C(0.2) * (t242 + t16 * t227);
+    const ariane4_free_real_t t243 = ARIANE4_FREE_C(0.886) * dq[1];
+    const ariane4_free_real_t t244 = ARIANE4_FREE_C(0.886) * t5;
+    const ariane4_free_real_t t245 = t15 * t239 + t9 * t241 + (t232 * t243 - t229 * t244);
+    const ariane4_free_real_t t246 = t15 * t227; /* link j4: column of the mass matrix */
+    const ariane4_free_real_t t247 = t9 * t239 - t15 * t241 + t246 * t244; /* link j4: derivatives */
+    const ariane4_free_real_t t248 = t5 * t245 - t11 * t247 + (t43 * t235 + t94 * t236 - t107 * t230);
+    input_by_q[13] = ARIANE4_FREE_C(0.2) * (t248 + (t10 * t246 - t4 * t229));
+    const ariane4_free_real_t t249 = t34 * t177 + t50 * t180 + t227 * t238;
+    const ariane4_free_real_t t250 = ARIANE4_FREE_C(0.2) * (t249 + ARIANE4_FREE_C(2.0) * (t18 * t234
+        - t20 * t233));
+    input_by_dq[14] = t250;
+    const ariane4_free_real_t t251 = t249 + t246 * t243 + ARIANE4_FREE_C(2.0) * (t5 * t235 + t11 * t236);
+    input_by_dq[13] = ARIANE4_FREE_C(0.2) * t251;
+    const ariane4_free_real_t t252 = ARIANE4_FREE_C(0.232) * dq[0];
+    const ariane4_free_real_t t253 = t3 * t245 + t2 * t247 + (t2 * t246 - t3 * t229) * t252;
+    input_by_dq[12] = ARIANE4_FREE_C(0.2) * t253;
+    input_by_ddq[14] = ARIANE4_FREE_C(-0.2) * t228;
+    input_by_ddq[13] = ARIANE4_FREE_C(0.2) * t230;
+    input_by_ddq[12] = ARIANE4_FREE_C(-0.2) * t237;
+    const ariane4_free_real_t t254 = ariane4_free_select(t156, t156, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t255 = ARIANE4_FREE_C(1.0) / t254;
+    const ariane4_free_real_t t256 = ARIANE4_FREE_C(-0.052812) * t157;
+    const ariane4_free_real_t t257 = ARIANE4_FREE_C(-1.0) / t157;
+    const ariane4_free_real_t
+        t258 = t257 * (ARIANE4_FREE_C(0.046787723832235825) * (t256 * (ARIANE4_FREE_C(0.5) * t255))
+        - t155 * t158);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t259 = t50 * (t184 + t192) + t34 * (t190 + t186);
+    const ariane4_free_real_t t260 = t34 * t259;
+    const ariane4_free_real_t t261 = t50 * t199 - t34 * t200;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t262 = ARIANE4_FREE_C(0.1) * parameters[M4];
+    const ariane4_free_real_t t263 = t232 + t262;
+    const ariane4_free_real_t t264 = ARIANE4_FREE_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
+        + parameters[YY3]));
+    const ariane4_free_real_t t265 = parameters[XX3] - t264;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t266 = t18 * parameters[XY3] - t20 * t265 - (t190 - t260
+        - (ARIANE4_FREE_C(-0.1) * t261 + t263 * t240));
+    const ariane4_free_real_t t267 = ARIANE4_FREE_C(2.0) * t266; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t268 = ARIANE4_FREE_C(0.436) * parameters[M4];
+    const ariane4_free_real_t t269 = parameters[MZ4] + t268;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t270 = t34 * t210 + t50 * t212 + (ARIANE4_FREE_C(-0.436) * t261 + t269 * t240);
+    const ariane4_free_real_t t271 = t264 - parameters[YY3];
+    const ariane4_free_real_t t272 = t18 * t271 + t20 * parameters[XY3] + t270;
+    const ariane4_free_real_t t273 = ARIANE4_FREE_C(-2.0) * t272; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t274 = t50 * t87 - parameters[XY4] * (ARIANE4_FREE_C(2.0) * t34);
+    const ariane4_free_real_t t275 = parameters[XY4] + t34 * t274 + ARIANE4_FREE_C(0.1) * t227
+        - parameters[XZ3];
+    const ariane4_free_real_t t276 = parameters[YZ3] - t228;
+    const ariane4_free_real_t t277 = ARIANE4_FREE_C(0.1) * (t262 + ARIANE4_FREE_C(2.0) * t232);
+    const ariane4_free_real_t t278 = ARIANE4_FREE_C(0.436) * (t268 + ARIANE4_FREE_C(2.0) * parameters[MZ4]);
+    const ariane4_free_real_t t279 = t50 * t274;
+    const ariane4_free_real_t t280 = parameters[ZZ3] + (parameters[XX4] - t279 + (t277 + t278));
+    const ariane4_free_real_t t281 = t35 * t275 + t39 * t276 + t99 * t280; /* link j3: derivatives */
+    const ariane4_free_real_t t282 = parameters[MX3] - t263; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t283 = parameters[MY3] + t269;
+    const ariane4_free_real_t t284 = t29 * t282 + t16 * t283; /* link j3: derivatives */
+    const ariane4_free_real_t t285 = t158 * (t281 + (t18 * t273 - t20 * t267) - t284);
+    const ariane4_free_real_t t286 = t159 * (t159 * (t256 * (ARIANE4_FREE_C(0.5) * t159)));
+    const ariane4_free_real_t t287 = t165 * (ARIANE4_FREE_C(-376.25254143846996) * (t159 * t286))
+        - t164 * (ARIANE4_FREE_C(-2.0) * (t157 * t155));
+    const ariane4_free_real_t t288 = t168 * (t166 * t286 + t159 * (ARIANE4_FREE_C(-7124.375926654358) * t157
+        + t287));
+    const ariane4_free_real_t t289 = t155 * t160 + t157 * (ARIANE4_FREE_C(7124.375926654358) * t286);
+    const ariane4_free_real_t t290 = parameters[FV3] * (dq[2] * t289) + parameters[IA3] * (ddq[2] * t289
+        + t288);
+    input_by_q[10] = ARIANE4_FREE_C(-333.3333333333333) * t290 + t285 + t133 * t258;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t291 = t20 * parameters[MX3] - t18 * parameters[MY3] + (t261
+        - parameters[M4] * t240);
+    const ariane4_free_real_t t292 = ARIANE4_FREE_C(2.0) * t20;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t293 = parameters[M3] + parameters[M4];
+    const ariane4_free_real_t t294 = parameters[MZ3] - t227;
+    /* link j3: derivatives */
+    const ariane4_free_real_t t295 = t292 * t291 + t29 * t293 - (t99 * t282 + t35 * t294);
+    const ariane4_free_real_t t296 = ARIANE4_FREE_C(-2.0) * t18;
+    const ariane4_free_real_t t297 = t99 * t283 - t39 * t294 - (t296 * t291 + t16 * t293);
+    const ariane4_free_real_t t298 = ARIANE4_FREE_C(0.443) * (t9 * (t137 + t297) + t15 * (t135 + t295));
+    const ariane4_free_real_t t299 = t292 * t266 - t296 * t272 - t281 + t284 + t298;
+    input_by_q[6] = t144 * t299;
+    const ariane4_free_real_t t300 = t50 * t200 + t34 * t199; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t301 = ARIANE4_FREE_C(0.1) * t300;
+    const ariane4_free_real_t t302 = ARIANE4_FREE_C(-0.436) * t195;
+    const ariane4_free_real_t t303 = ARIANE4_FREE_C(0.436) * t25; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t304 = t263 * t303; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t305 = ARIANE4_FREE_C(0.1) * t25; /* link j4: velocity of its origin */
+    const ariane4_free_real_t t306 = t269 * t305; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t307 = t227 * t240;
+    const ariane4_free_real_t t308 = t301 + t302 + (t304 - t306 - t307);
+    const ariane4_free_real_t t309 = t18 * parameters[YZ3];
+    const ariane4_free_real_t t310 = t25 * parameters[XY3];
+    const ariane4_free_real_t t311 = t310 - t309 + (t308 - (t222 + (t302 - t306)));
+    const ariane4_free_real_t t312 = ARIANE4_FREE_C(-0.1) * t195 - t263 * t305 - (t50 * t176 + t34 * t179);
+    const ariane4_free_real_t t313 = t25 * t265 - t18 * parameters[XZ3] + t312;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t314 = parameters[XY3] + (t231 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
+        + ARIANE4_FREE_C(0.436) * t263));
+    const ariane4_free_real_t t315 = parameters[YY3] + (parameters[ZZ4] + t277);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t316 = t39 * t315 - t35 * t314 + t99 * t276 - (t292 * t313 + t296 * t311);
+    const ariane4_free_real_t t317 = t86 + (t316 + t16 * t294);
+    const ariane4_free_real_t t318 = t50 * t259; /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t319 = t20 * parameters[XZ3];
+    const ariane4_free_real_t t320 = t310 - t319 + (t318 - t192 + (t301 + t304) - t308);
+    const ariane4_free_real_t t321 = t50 * t210 - t34 * t212 + (ARIANE4_FREE_C(0.436) * t300 + t269 * t303);
+    const ariane4_free_real_t t322 = t20 * parameters[YZ3] + t25 * t271 + t321;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t323 = parameters[XX3] + (parameters[YY4] + t279 + t278);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t324 = t292 * t320 - t296 * t322 + (t39 * t314 - t35 * t323 - t99 * t275);
+    const ariane4_free_real_t t325 = t92 + (t324 + t29 * t294);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t326 = t20 * parameters[MZ3] - t25 * parameters[MY3] - (t300
+        + parameters[M4] * t303);
+    const ariane4_free_real_t t327 = t18 * parameters[MZ3] - t25 * parameters[MX3] + (t195
+        + parameters[M4] * t305);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t328 = t35 * t283 + t39 * t282 - (t292 * t327 + t296 * t326);
+    const ariane4_free_real_t t329 = t2 * (t9 * t325 + t15 * t317 + ARIANE4_FREE_C(0.443) * t328);
+    const ariane4_free_real_t t330 = t3 * (t15 * t325 - t9 * t317) + t329 + ARIANE4_FREE_C(0.116) * t328;
+    input_by_q[2] = t116 * t330;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t331 = t309 - t319 + (t308 + (t318 - t184 + t307));
+    const ariane4_free_real_t t332 = ARIANE4_FREE_C(-2.0) * t331; /* link j3: derivatives */
+    const ariane4_free_real_t t333 = t158 * (t332 + ARIANE4_FREE_C(2.0) * (t20 * t275 + t18 * t276));
+    const ariane4_free_real_t
+        t334 = ARIANE4_FREE_C(333.3333333333333) * (parameters[IA3] * (t167 * (ARIANE4_FREE_C(-2.0) * dq[2]))
+        - t161 * parameters[FV3]);
+    input_by_dq[10] = t334 + t333;
+    const ariane4_free_real_t t335 = t9 * (ARIANE4_FREE_C(2.0) * t327 + t294 * t296)
+        + t15 * (ARIANE4_FREE_C(2.0) * t326 - t294 * t292);
+    const ariane4_free_real_t t336 = t276 * t296 - t275 * t292 - t332 + ARIANE4_FREE_C(0.443) * t335;
+    input_by_dq[6] = t144 * t336;
+    const ariane4_free_real_t t337 = parameters[ZZ3] - t264;
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t338 = t25 * parameters[YZ3] - t20 * t337 + (t186 - t260 + t227 * t303);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t339 = ARIANE4_FREE_C(2.0) * t338 - (t323 * t292 + t314 * t296);
+    /* link j4: inertia, momentum beyond */
+    const ariane4_free_real_t t340 = t25 * parameters[XZ3] - t18 * t337 - (t50 * t179 - t34 * t176
+        + t227 * t305);
+    /* link j3: derivatives */
+    const ariane4_free_real_t t341 = ARIANE4_FREE_C(2.0) * t340 + (t314 * t292 + t315 * t296);
+    const ariane4_free_real_t t342 = t283 * t292 - t282 * t296;
+    const ariane4_free_real_t t343 = t2 * (t9 * t339 - t15 * t341 + ARIANE4_FREE_C(0.443) * t342);
+    const ariane4_free_real_t t344 = t3 * (t15 * t339 + t9 * t341) + t343 + ARIANE4_FREE_C(0.116) * t342;
+    input_by_dq[2] = t116 * t344;
+    input_by_ddq[10] = ARIANE4_FREE_C(-333.3333333333333) * (t161 * parameters[IA3]) - t158 * t280;
+    const ariane4_free_real_t t345 = t9 * t283 - t15 * t282; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t346 = t280 + ARIANE4_FREE_C(-0.443) * t345;
+    input_by_ddq[6] = t144 * t346;
+    const ariane4_free_real_t t347 = t15 * t275 + t9 * t276;
+    const ariane4_free_real_t t348 = t9 * t275 - t15 * t276;
+    const ariane4_free_real_t t349 = t3 * t347 + t2 * t348;
+    input_by_ddq[2] = t116 * t349;
+    const ariane4_free_real_t t350 = t9 * t273 - t15 * t267 + t345 * t244; /* link j3: derivatives */
+    const ariane4_free_real_t t351 = t15 * t283 + t9 * t282; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t352 = t9 * t267 + t15 * t273 + t351 * t244; /* link j3: derivatives */
+    const ariane4_free_real_t t353 = t5 * t350 + t11 * t352 + (t43 * t347 - t94 * t348 + t107 * t346);
+    input_by_q[9] = t158 * (t353 + (t4 * t345 - t10 * t351));
+    const ariane4_free_real_t t354 = t332 - t351 * t243 + ARIANE4_FREE_C(2.0) * (t5 * t347 - t11 * t348);
+    input_by_dq[9] = t158 * t354;
+    const ariane4_free_real_t t355 = t3 * t350 - t2 * t352 + (t3 * t345 - t2 * t351) * t252;
+    input_by_dq[8] = t158 * t355;
+    input_by_ddq[9] = -(t158 * t346);
+    input_by_ddq[8] = t158 * t349;
+    const ariane4_free_real_t t356 = ariane4_free_select(t142, t142, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t357 = ARIANE4_FREE_C(1.0) / t356;
+    const ariane4_free_real_t t358 = ARIANE4_FREE_C(0.078402) * t143;
+    const ariane4_free_real_t t359 = ARIANE4_FREE_C(-1.0) / t143;
+    const ariane4_free_real_t t360 = t359 * (t141 * t144
+        + ARIANE4_FREE_C(0.03137188092799786) * (t358 * (ARIANE4_FREE_C(0.5) * t357)));
+    const ariane4_free_real_t t361 = ARIANE4_FREE_C(0.443) * t293; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t362 = t361 - t345;
+    const ariane4_free_real_t t363 = ARIANE4_FREE_C(0.443) * t5; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t364 = t15 * t266 + t9 * t272 + (ARIANE4_FREE_C(0.443) * t291 + t362 * t363);
+    const ariane4_free_real_t t365 = ARIANE4_FREE_C(0.5) * (parameters[ZZ2] + (parameters[XX2]
+        + parameters[YY2]));
+    const ariane4_free_real_t t366 = t365 - parameters[XX2];
+    /* link j2: derivatives */
+    const ariane4_free_real_t t367 = ARIANE4_FREE_C(2.0) * (t11 * parameters[XY2] + t5 * t366 + t364);
+    const ariane4_free_real_t t368 = parameters[YY2] - t365;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t369 = t5 * parameters[XY2] - t11 * t368 - (t9 * t266 - t15 * t272
+        + t351 * t363);
+    const ariane4_free_real_t t370 = ARIANE4_FREE_C(2.0) * t369; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t371 = parameters[XZ2] + (ARIANE4_FREE_C(-0.443) * t294 - t347);
+    const ariane4_free_real_t t372 = t348 - parameters[YZ2];
+    const ariane4_free_real_t t373 = ARIANE4_FREE_C(0.443) * (t361 - ARIANE4_FREE_C(2.0) * t345);
+    const ariane4_free_real_t t374 = parameters[ZZ2] + (t280 + t373);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t375 = t43 * t371 + t94 * t372 - t107 * t374 + (t5 * t367 + t11 * t370);
+    const ariane4_free_real_t t376 = parameters[MX2] + t362; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t377 = parameters[MY2] + t351;
+    const ariane4_free_real_t t378 = t145 * (t145 * (t358 * (ARIANE4_FREE_C(0.5) * t145)));
+    const ariane4_free_real_t t379 = t151 * (ARIANE4_FREE_C(208.2597474788059) * (t145 * t378))
+        - t150 * (ARIANE4_FREE_C(2.0) * (t143 * t141));
+    const ariane4_free_real_t t380 = t7 * (t152 * t378 - t145 * (ARIANE4_FREE_C(-2656.3065671641784) * t143
+        + t379));
+    const ariane4_free_real_t t381 = t143 * (ARIANE4_FREE_C(2656.3065671641784) * t378) - t141 * t146;
+    const ariane4_free_real_t t382 = parameters[FV2] * (dq[1] * t381) + parameters[IA2] * (ddq[1] * t381
+        + t380);
+    const ariane4_free_real_t t383 = ARIANE4_FREE_C(83.33333333333333) * t382 + t144 * (t4 * t376 + t10 * t377
+        + t375);
+    input_by_q[5] = t383 - t140 * t360;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t384 = t15 * (t320 + t311) + t9 * (t322 + t313);
+    const ariane4_free_real_t t385 = t15 * t384;
+    const ariane4_free_real_t t386 = t15 * t326 + t9 * t327;
+    const ariane4_free_real_t t387 = ARIANE4_FREE_C(-0.443) * t386;
+    const ariane4_free_real_t t388 = ARIANE4_FREE_C(0.443) * dq[1]; /* link j3: velocity of its origin */
+    const ariane4_free_real_t t389 = t351 * t388; /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t390 = t294 * t363;
+    const ariane4_free_real_t t391 = t387 + (t390 - t389);
+    const ariane4_free_real_t t392 = t5 * parameters[XZ2];
+    const ariane4_free_real_t t393 = dq[1] * parameters[XY2];
+    const ariane4_free_real_t t394 = t393 - t392 + (t391 + (t385 - t311 - t387));
+    const ariane4_free_real_t t395 = ARIANE4_FREE_C(2.0) * t5;
+    const ariane4_free_real_t t396 = t9 * t384;
+    const ariane4_free_real_t t397 = dq[1] * t368 - t5 * parameters[YZ2] + (t396 - t322);
+    const ariane4_free_real_t t398 = ARIANE4_FREE_C(2.0) * t11;
+    /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t399 = t15 * (t315 - t323) + t314 * (ARIANE4_FREE_C(2.0) * t9);
+    const ariane4_free_real_t t400 = t15 * t399;
+    const ariane4_free_real_t t401 = t400 - t315 - parameters[XX2];
+    const ariane4_free_real_t t402 = t9 * t399 - t314 + ARIANE4_FREE_C(0.443) * t351 - parameters[XY2];
+    /* link j2: derivatives */
+    const ariane4_free_real_t t403 = t395 * t394 - t398 * t397 + (t43 * t401 - t94 * t402 + t107 * t371);
+    const ariane4_free_real_t t404 = parameters[MZ2] + t294; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t405 = t11 * parameters[YZ2];
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t406 = t405 - t393 + (t391 + (t320 - t385 + t389));
+    const ariane4_free_real_t t407 = t9 * t326 - t15 * t327;
+    const ariane4_free_real_t t408 = t11 * parameters[XZ2] + dq[1] * t366 + (t396 - t313
+        + (ARIANE4_FREE_C(0.443) * t407 + t362 * t388));
+    /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t409 = parameters[YY2] + (t323 + t400 + t373);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t410 = t395 * t408 - t398 * t406 + (t43 * t402 + t94 * t409 - t107 * t372);
+    const ariane4_free_real_t t411 = t3 * (t106 + (t403 + t4 * t404)) + t2 * (t98 + (t410 + t10 * t404));
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t412 = dq[1] * parameters[MX2] - t11 * parameters[MZ2] + (t407 + t293 * t388);
+    const ariane4_free_real_t t413 = t5 * parameters[MZ2] - dq[1] * parameters[MY2] + t386;
+    /* link j2: derivatives */
+    const ariane4_free_real_t t414 = t395 * t412 + t398 * t413 + (t43 * t377 + t94 * t376);
+    input_by_q[1] = t116 * (t411 + ARIANE4_FREE_C(0.116) * t414);
+    const ariane4_free_real_t t415 = ARIANE4_FREE_C(2.0) * (t405 - t392 + (t331 + t390 - t391))
+        + ARIANE4_FREE_C(2.0) * (t5 * t371 + t11 * t372);
+    const ariane4_free_real_t t416 = ARIANE4_FREE_C(83.33333333333333) * (t147 * parameters[FV2]
+        - parameters[IA2] * (t153 * (ARIANE4_FREE_C(2.0) * dq[1])));
+    input_by_dq[5] = t416 + t144 * t415;
+    const ariane4_free_real_t t417 = parameters[ZZ2] - t365;
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t418 = dq[1] * parameters[YZ2] - t5 * t417 + (t15 * t338 + t9 * t340);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t419 = t3 * (ARIANE4_FREE_C(2.0) * t418 + (t401 * t395 - t402 * t398));
+    /* link j3: inertia, momentum beyond */
+    const ariane4_free_real_t t420 = t11 * t417 - dq[1] * parameters[XZ2] + (t9 * t338 - t15 * t340
+        + t294 * t388);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t421 = t2 * (ARIANE4_FREE_C(2.0) * t420 + (t402 * t395 + t409 * t398));
+    const ariane4_free_real_t t422 = t419 + t421 + ARIANE4_FREE_C(0.116) * (t377 * t395 + t376 * t398);
+    input_by_dq[1] = t116 * t422;
+    input_by_ddq[5] = ARIANE4_FREE_C(83.33333333333333) * (t147 * parameters[IA2]) + t144 * t374;
+    const ariane4_free_real_t t423 = t3 * t371 - t2 * t372; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = -(t116 * t423);
+    /* link j2: derivatives */
+    const ariane4_free_real_t t424 = t3 * t367 - t2 * t370 + (t2 * t377 + t3 * t376) * t252;
+    input_by_dq[4] = t144 * t424;
+    input_by_ddq[4] = t144 * t423;
+    const ariane4_free_real_t t425 = ariane4_free_select(t114, t114, ARIANE4_FREE_C(1.0));
+    const ariane4_free_real_t t426 = ARIANE4_FREE_C(1.0) / t425;
+    const ariane4_free_real_t t427 = ARIANE4_FREE_C(-0.037468) * t115;
+    const ariane4_free_real_t t428 = ARIANE4_FREE_C(-1.0) / t115;
+    const ariane4_free_real_t
+        t429 = t428 * (ARIANE4_FREE_C(0.06434139546481742) * (t427 * (ARIANE4_FREE_C(0.5) * t426))
+        - t113 * t116);
+    const ariane4_free_real_t t430 = t117 * (t117 * (t427 * (ARIANE4_FREE_C(0.5) * t117)));
+    const ariane4_free_real_t t431 = t123 * (ARIANE4_FREE_C(-145.582792109661) * (t117 * t430))
+        - t122 * (ARIANE4_FREE_C(-2.0) * (t115 * t113));
+    const ariane4_free_real_t t432 = t0 * (t124 * t430 + t117 * (ARIANE4_FREE_C(-3885.523436256565) * t115
+        + t431));
+    const ariane4_free_real_t t433 = t113 * t118 + t115 * (ARIANE4_FREE_C(3885.523436256565) * t430);
+    const ariane4_free_real_t t434 = parameters[FV1] * (dq[0] * t433) + parameters[IA1] * (ddq[0] * t433
+        + t432);
+    input_by_q[0] = ARIANE4_FREE_C(-250.0) * t434 + t110 * t429;
+    /* link j2: inertia, momentum beyond */
+    const ariane4_free_real_t t435 = t2 * (t2 * (t406 - t394) + t3 * (t397 + t408));
+    const ariane4_free_real_t t436 = ARIANE4_FREE_C(0.116) * (t3 * t412 - t2 * t413)
+        + t404 * (ARIANE4_FREE_C(0.116) * dq[0]);
+    const ariane4_free_real_t
+        t437 = ARIANE4_FREE_C(250.0) * (parameters[IA1] * (t125 * (ARIANE4_FREE_C(-2.0) * dq[0]))
+        - t119 * parameters[FV1]);
+    input_by_dq[0] = t437 + t116 * (ARIANE4_FREE_C(2.0) * (t394 + t435 + t436));
+    /* link j2: inertia of it and all beyond */
+    const ariane4_free_real_t t438 = t2 * (t2 * (t401 + t409) + t402 * (ARIANE4_FREE_C(-2.0) * t3));
+    const ariane4_free_real_t t439 = ARIANE4_FREE_C(-0.116) * (parameters[M2] + t293)
+        + ARIANE4_FREE_C(2.0) * (t3 * t377 - t2 * t376);
+    const ariane4_free_real_t t440 = ARIANE4_FREE_C(-250.0) * (t119 * parameters[IA1]) + t116 * (t401 - t438
+        + ARIANE4_FREE_C(0.116) * t439 - parameters[ZZ1]);
+    input_by_ddq[0] = t440;
     /* always zero */
     input_by_q[4] = ARIANE4_FREE_C(0.0);
     input_by_q[8] = ARIANE4_FREE_C(0.0);

@@ -58,7 +58,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
+#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
 #error "ariane4_free.h and ariane4_free_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -85,101 +85,93 @@ ariane4_free_status_t ariane4_free_mass_matrix(
         return status;
     }
 
-    ariane4_free_real_t t24, t25;
-    ARIANE4_FREE_SINCOS(q[0], &t24, &t25);
-    ariane4_free_real_t t20, t18;
-    ARIANE4_FREE_SINCOS(q[1], &t20, &t18);
-    ariane4_free_real_t t11, t8;
-    ARIANE4_FREE_SINCOS(q[2], &t11, &t8);
+    ariane4_free_real_t t44, t45;
+    ARIANE4_FREE_SINCOS(q[0], &t44, &t45);
+    ariane4_free_real_t t10, t11;
+    ARIANE4_FREE_SINCOS(q[1], &t10, &t11);
+    ariane4_free_real_t t4, t7;
+    ARIANE4_FREE_SINCOS(q[2], &t4, &t7);
     ariane4_free_real_t t0, t1;
     ARIANE4_FREE_SINCOS(q[3], &t0, &t1);
+    out[15] = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t2 = t1 * parameters[MX4] - t0 * parameters[MY4];
-    const ariane4_free_real_t t3 = ARIANE4_FREE_C(-0.2) * t2; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t4 = parameters[ZZ4] + t3;
-    const ariane4_free_real_t t5 = parameters[XY4] * (ARIANE4_FREE_C(2.0) * t0) - t1 * parameters[XX4R];
-    const ariane4_free_real_t t6 = t1 * t5;
-    const ariane4_free_real_t t7 = parameters[XX3R] - t6;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t9 = t1 * parameters[XZ4R] - t0 * parameters[YZ4R];
-    const ariane4_free_real_t t10 = parameters[XY3R] + t9; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t12 = t8 * (t4 - t7) + t10 * (ARIANE4_FREE_C(2.0) * t11);
-    const ariane4_free_real_t t13 = t8 * t12;
-    const ariane4_free_real_t t14 = parameters[MX3R] + t2; /* link j4: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t15 = t8 * t14 - t11 * parameters[MY3R];
-    const ariane4_free_real_t t16 = ARIANE4_FREE_C(0.886) * t15; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t17 = parameters[XX2R] + (t4 - t13);
-    /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t19 = t8 * parameters[MY3R] + t11 * t14;
-    /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t21 = (parameters[XY2] + (t10 - t11 * t12
-        + ARIANE4_FREE_C(-0.443) * t19)) * (ARIANE4_FREE_C(2.0) * t20);
-    const ariane4_free_real_t t22 = t18 * (t18 * (t7 + t13 + t16 - t17) + t21);
-    const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.232) * (t18 * (parameters[MX2R] + t15)
-        - t20 * (parameters[MY2] + t19));
-    /* joint j1: drive */
-    const ariane4_free_real_t
-        t26 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t25
-        + ARIANE4_FREE_C(0.9593632378089879) * t24) + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t27 = ARIANE4_FREE_C(1.0) / t26;
-    const ariane4_free_real_t t28 = (ARIANE4_FREE_C(0.28217402066925895) * t24
-        + ARIANE4_FREE_C(-0.9593632378089879) * t25) * (ARIANE4_FREE_C(3885.523436256565) * t27);
-    const ariane4_free_real_t t29 = parameters[ZZ1R] + (t17 + t22 + t23) + parameters[IA1] * (t28 * t28);
-    out[0] = t29;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t30 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t31 = parameters[XZ3] + (t0 * t5 - parameters[XY4]
-        + ARIANE4_FREE_C(-0.1) * t30);
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t32 = t0 * parameters[XZ4R] + t1 * parameters[YZ4R];
-    const ariane4_free_real_t t33 = parameters[YZ3] - t32; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t34 = t8 * t31 - t11 * t33; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t35 = t11 * t31 + t8 * t33;
-    /* link j2: column of the mass matrix */
-    const ariane4_free_real_t t36 = t20 * (parameters[XZ2R] + (t34 + ARIANE4_FREE_C(0.443) * t30))
-        + t18 * (parameters[YZ2] + t35);
-    out[1] = t36;
-    const ariane4_free_real_t t37 = t20 * t34 + t18 * t35; /* link j3: column of the mass matrix */
-    out[2] = t37;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t38 = parameters[ZZ4] + ARIANE4_FREE_C(-0.1) * t2;
-    const ariane4_free_real_t t39 = t18 * (t11 * t9 + t8 * t38 + ARIANE4_FREE_C(0.443) * t2);
-    const ariane4_free_real_t t40 = t20 * (t8 * t9 - t11 * t38) + t39 + ARIANE4_FREE_C(0.116) * t2;
-    out[3] = t40;
-    out[4] = t36;
-    /* joint j2: drive */
-    const ariane4_free_real_t
-        t41 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t18
-        + ARIANE4_FREE_C(0.5568756164881881) * t20) + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t42 = ARIANE4_FREE_C(1.0) / t41;
-    const ariane4_free_real_t t43 = (ARIANE4_FREE_C(0.8305958991958126) * t20
-        + ARIANE4_FREE_C(0.5568756164881881) * t18) * (ARIANE4_FREE_C(2656.3065671641784) * t42);
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t44 = parameters[ZZ3R] + (parameters[XX4R] + t6 + t3);
-    out[5] = parameters[ZZ2R] + (t44 + t16) + parameters[IA2] * (t43 * t43);
-    /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t45 = t44 + ARIANE4_FREE_C(0.443) * t15;
-    out[6] = t45;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t46 = ARIANE4_FREE_C(-0.443) * (t11 * t30) - t32;
-    out[7] = t46;
-    out[8] = t37;
-    out[9] = t45;
+    const ariane4_free_real_t t2 = t0 * parameters[XZ4R] + t1 * parameters[YZ4R];
+    out[11] = -t2;
+    const ariane4_free_real_t t3 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const ariane4_free_real_t t5 = ARIANE4_FREE_C(-0.443) * (t4 * t3) - t2;
+    out[7] = t5;
+    const ariane4_free_real_t t6 = t1 * parameters[XZ4R] - t0 * parameters[YZ4R];
+    const ariane4_free_real_t t8 = t1 * parameters[MX4] - t0 * parameters[MY4];
+    const ariane4_free_real_t t9 = parameters[ZZ4] + ARIANE4_FREE_C(-0.1) * t8;
+    const ariane4_free_real_t t12 = t11 * (t4 * t6 + t7 * t9 + ARIANE4_FREE_C(0.443) * t8);
+    const ariane4_free_real_t t13 = t10 * (t7 * t6 - t4 * t9) + t12 + ARIANE4_FREE_C(0.116) * t8;
+    out[3] = t13;
+    out[14] = -t2;
+    out[13] = t5;
+    out[12] = t13;
     /* joint j3: drive */
     const ariane4_free_real_t
-        t47 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t8
-        + ARIANE4_FREE_C(-0.9979715533496006) * t11) + ARIANE4_FREE_C(0.242037));
-    const ariane4_free_real_t t48 = ARIANE4_FREE_C(1.0) / t47;
-    const ariane4_free_real_t t49 = (ARIANE4_FREE_C(0.06366143813161289) * t11
-        + ARIANE4_FREE_C(0.9979715533496006) * t8) * (ARIANE4_FREE_C(7124.375926654358) * t48);
-    out[10] = t44 + parameters[IA3] * (t49 * t49);
-    out[11] = -t32;
-    out[12] = t40;
-    out[13] = t46;
-    out[14] = -t32;
-    out[15] = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
+        t14 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t7
+        + ARIANE4_FREE_C(-0.9979715533496006) * t4) + ARIANE4_FREE_C(0.242037));
+    const ariane4_free_real_t t15 = ARIANE4_FREE_C(1.0) / t14;
+    const ariane4_free_real_t t16 = (ARIANE4_FREE_C(0.06366143813161289) * t4
+        + ARIANE4_FREE_C(0.9979715533496006) * t7) * (ARIANE4_FREE_C(7124.375926654358) * t15);
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t17 = parameters[XY4] * (ARIANE4_FREE_C(2.0) * t0) - t1 * parameters[XX4R];
+    const ariane4_free_real_t t18 = t1 * t17;
+    const ariane4_free_real_t t19 = ARIANE4_FREE_C(-0.2) * t8;
+    const ariane4_free_real_t t20 = parameters[ZZ3R] + (parameters[XX4R] + t18 + t19);
+    out[10] = t20 + parameters[IA3] * (t16 * t16);
+    const ariane4_free_real_t t21 = parameters[MX3R] + t8;
+    const ariane4_free_real_t t22 = t7 * t21 - t4 * parameters[MY3R]; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t23 = t20 + ARIANE4_FREE_C(0.443) * t22;
+    out[6] = t23;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t24 = parameters[XZ3] + (t0 * t17 - parameters[XY4]
+        + ARIANE4_FREE_C(-0.1) * t3);
+    const ariane4_free_real_t t25 = parameters[YZ3] - t2;
+    const ariane4_free_real_t t26 = t7 * t24 - t4 * t25; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t27 = t4 * t24 + t7 * t25;
+    const ariane4_free_real_t t28 = t10 * t26 + t11 * t27;
+    out[2] = t28;
+    out[9] = t23;
+    out[8] = t28;
+    /* joint j2: drive */
+    const ariane4_free_real_t
+        t29 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t11
+        + ARIANE4_FREE_C(0.5568756164881881) * t10) + ARIANE4_FREE_C(0.293698));
+    const ariane4_free_real_t t30 = ARIANE4_FREE_C(1.0) / t29;
+    const ariane4_free_real_t t31 = (ARIANE4_FREE_C(0.8305958991958126) * t10
+        + ARIANE4_FREE_C(0.5568756164881881) * t11) * (ARIANE4_FREE_C(2656.3065671641784) * t30);
+    const ariane4_free_real_t t32 = ARIANE4_FREE_C(0.886) * t22; /* link j3: inertia of it and all beyond */
+    out[5] = parameters[ZZ2R] + (t20 + t32) + parameters[IA2] * (t31 * t31);
+    /* link j2: column of the mass matrix */
+    const ariane4_free_real_t t33 = t10 * (parameters[XZ2R] + (t26 + ARIANE4_FREE_C(0.443) * t3))
+        + t11 * (parameters[YZ2] + t27);
+    out[1] = t33;
+    out[4] = t33;
+    const ariane4_free_real_t t34 = parameters[ZZ4] + t19; /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t35 = parameters[XX3R] - t18;
+    const ariane4_free_real_t t36 = parameters[XY3R] + t6;
+    /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t37 = t7 * (t34 - t35) + t36 * (ARIANE4_FREE_C(2.0) * t4);
+    const ariane4_free_real_t t38 = t7 * t37;
+    const ariane4_free_real_t t39 = parameters[XX2R] + (t34 - t38);
+    const ariane4_free_real_t t40 = t7 * parameters[MY3R] + t4 * t21; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
+    const ariane4_free_real_t t41 = (parameters[XY2] + (t36 - t4 * t37
+        + ARIANE4_FREE_C(-0.443) * t40)) * (ARIANE4_FREE_C(2.0) * t10);
+    const ariane4_free_real_t t42 = t11 * (t11 * (t35 + t38 + t32 - t39) + t41);
+    const ariane4_free_real_t t43 = ARIANE4_FREE_C(0.232) * (t11 * (parameters[MX2R] + t22)
+        - t10 * (parameters[MY2] + t40));
+    /* joint j1: drive */
+    const ariane4_free_real_t
+        t46 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t45
+        + ARIANE4_FREE_C(0.9593632378089879) * t44) + ARIANE4_FREE_C(0.10769300000000001));
+    const ariane4_free_real_t t47 = ARIANE4_FREE_C(1.0) / t46;
+    const ariane4_free_real_t t48 = (ARIANE4_FREE_C(0.28217402066925895) * t44
+        + ARIANE4_FREE_C(-0.9593632378089879) * t45) * (ARIANE4_FREE_C(3885.523436256565) * t47);
+    const ariane4_free_real_t t49 = parameters[ZZ1R] + (t39 + t42 + t43) + parameters[IA1] * (t48 * t48);
+    out[0] = t49;
     return ARIANE4_FREE_STATUS_OK;
 }

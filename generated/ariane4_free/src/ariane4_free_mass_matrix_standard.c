@@ -76,7 +76,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x6EBE5535UL
+#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
 #error "ariane4_free.h and ariane4_free_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -104,115 +104,108 @@ ariane4_free_status_t ariane4_free_mass_matrix_standard(
         return status;
     }
 
-    ariane4_free_real_t t32, t33;
-    ARIANE4_FREE_SINCOS(q[0], &t32, &t33);
-    ariane4_free_real_t t27, t25;
-    ARIANE4_FREE_SINCOS(q[1], &t27, &t25);
-    ariane4_free_real_t t15, t11;
-    ARIANE4_FREE_SINCOS(q[2], &t15, &t11);
-    ariane4_free_real_t t1, t0;
-    ARIANE4_FREE_SINCOS(q[3], &t1, &t0);
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t2 = t0 * (parameters[YY4] - parameters[XX4])
-        + parameters[XY4] * (ARIANE4_FREE_C(2.0) * t1);
-    const ariane4_free_real_t t3 = t0 * t2;
-    const ariane4_free_real_t t4 = ARIANE4_FREE_C(0.436) * parameters[M4];
-    const ariane4_free_real_t t5 = ARIANE4_FREE_C(0.436) * (t4 + ARIANE4_FREE_C(2.0) * parameters[MZ4]);
-    const ariane4_free_real_t t6 = parameters[XX3] + (parameters[YY4] - t3 + t5);
+    ariane4_free_real_t t53, t54;
+    ARIANE4_FREE_SINCOS(q[0], &t53, &t54);
+    ariane4_free_real_t t11, t12;
+    ARIANE4_FREE_SINCOS(q[1], &t11, &t12);
+    ariane4_free_real_t t4, t9;
+    ARIANE4_FREE_SINCOS(q[2], &t4, &t9);
+    ariane4_free_real_t t0, t1;
+    ARIANE4_FREE_SINCOS(q[3], &t0, &t1);
+    out[15] = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
     /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t7 = t1 * parameters[MY4] - t0 * parameters[MX4];
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t8 = ARIANE4_FREE_C(0.1) * parameters[M4];
-    const ariane4_free_real_t t9 = ARIANE4_FREE_C(0.1) * (t8 + ARIANE4_FREE_C(2.0) * t7);
-    const ariane4_free_real_t t10 = parameters[YY3] + (parameters[ZZ4] + t9);
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t12 = t0 * parameters[XZ4] - t1 * parameters[YZ4];
-    const ariane4_free_real_t t13 = t7 + t8; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t14 = parameters[XY3] + (t12 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
-        + ARIANE4_FREE_C(0.436) * t13));
-    /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t16 = t11 * (t6 - t10) - t14 * (ARIANE4_FREE_C(2.0) * t15);
-    const ariane4_free_real_t t17 = t11 * t16;
-    const ariane4_free_real_t t18 = parameters[XX2] + (t10 + t17);
-    const ariane4_free_real_t t19 = parameters[MX3] - t13; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t20 = parameters[MY3] + (parameters[MZ4] + t4);
-    const ariane4_free_real_t t21 = t11 * t19 - t15 * t20; /* link j3: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t22 = parameters[M3] + parameters[M4];
-    const ariane4_free_real_t t23 = ARIANE4_FREE_C(0.443) * t22; /* link j3: inertia of it and all beyond */
-    const ariane4_free_real_t t24 = ARIANE4_FREE_C(0.443) * (t23 + ARIANE4_FREE_C(2.0) * t21);
-    const ariane4_free_real_t t26 = t11 * t20 + t15 * t19; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t28 = (parameters[XY2] + (t14 + t15 * t16
-        + ARIANE4_FREE_C(-0.443) * t26)) * (ARIANE4_FREE_C(2.0) * t27);
-    const ariane4_free_real_t t29 = t25 * (parameters[YY2] + (t6 - t17 + t24) - t18) + t28;
-    /* link j2: column of the mass matrix */
-    const ariane4_free_real_t t30 = t25 * (parameters[MX2] + (t21 + t23)) - t27 * (parameters[MY2] + t26);
-    /* link j2: inertia of it and all beyond */
-    const ariane4_free_real_t t31 = t18 + t25 * t29
-        + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t22)
-        + ARIANE4_FREE_C(2.0) * t30);
-    /* joint j1: drive */
-    const ariane4_free_real_t
-        t34 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t33
-        + ARIANE4_FREE_C(0.9593632378089879) * t32) + ARIANE4_FREE_C(0.10769300000000001));
-    const ariane4_free_real_t t35 = ARIANE4_FREE_C(1.0) / t34;
-    const ariane4_free_real_t t36 = (ARIANE4_FREE_C(0.28217402066925895) * t32
-        + ARIANE4_FREE_C(-0.9593632378089879) * t33) * (ARIANE4_FREE_C(3885.523436256565) * t35);
-    out[0] = parameters[ZZ1] + t31 + t36 * t36 * parameters[IA1];
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t37 = t0 * parameters[MY4] + t1 * parameters[MX4];
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t38 = parameters[XZ3] + (t1 * t2 - parameters[XY4]
-        + ARIANE4_FREE_C(-0.1) * t37);
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t39 = ARIANE4_FREE_C(0.436) * t37 - (t1 * parameters[XZ4]
-        + t0 * parameters[YZ4]);
-    const ariane4_free_real_t t40 = parameters[YZ3] + t39; /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t41 = t11 * t38 - t15 * t40; /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t42 = t15 * t38 + t11 * t40;
-    /* link j2: column of the mass matrix */
-    const ariane4_free_real_t t43 = t27 * (parameters[XZ2] + (t41 + ARIANE4_FREE_C(0.443) * (t37
-        - parameters[MZ3]))) + t25 * (parameters[YZ2] + t42);
-    out[1] = t43;
-    const ariane4_free_real_t t44 = t27 * t41 + t25 * t42; /* link j3: column of the mass matrix */
-    out[2] = t44;
-    const ariane4_free_real_t t45 = t12 + ARIANE4_FREE_C(0.436) * t7; /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t46 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t7;
-    const ariane4_free_real_t t47 = t25 * (t15 * t45 + t11 * t46 + ARIANE4_FREE_C(-0.443) * t7);
-    const ariane4_free_real_t t48 = t27 * (t11 * t45 - t15 * t46) + t47 + ARIANE4_FREE_C(-0.116) * t7;
-    out[3] = t48;
-    out[4] = t43;
-    /* joint j2: drive */
-    const ariane4_free_real_t
-        t49 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t25
-        + ARIANE4_FREE_C(0.5568756164881881) * t27) + ARIANE4_FREE_C(0.293698));
-    const ariane4_free_real_t t50 = ARIANE4_FREE_C(1.0) / t49;
-    const ariane4_free_real_t t51 = (ARIANE4_FREE_C(0.8305958991958126) * t27
-        + ARIANE4_FREE_C(0.5568756164881881) * t25) * (ARIANE4_FREE_C(2656.3065671641784) * t50);
-    /* link j4: inertia of it and all beyond */
-    const ariane4_free_real_t t52 = parameters[ZZ3] + (parameters[XX4] + t3 + (t9 + t5));
-    out[5] = parameters[ZZ2] + (t52 + t24) + t51 * t51 * parameters[IA2];
-    /* link j3: column of the mass matrix */
-    const ariane4_free_real_t t53 = t52 + ARIANE4_FREE_C(0.443) * t21;
-    out[6] = t53;
-    /* link j4: column of the mass matrix */
-    const ariane4_free_real_t t54 = t39 + ARIANE4_FREE_C(-0.443) * (t15 * t37);
-    out[7] = t54;
-    out[8] = t44;
-    out[9] = t53;
+    const ariane4_free_real_t t2 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const ariane4_free_real_t t3 = ARIANE4_FREE_C(0.436) * t2 - (t0 * parameters[XZ4] + t1 * parameters[YZ4]);
+    out[11] = t3;
+    const ariane4_free_real_t t5 = t3 + ARIANE4_FREE_C(-0.443) * (t4 * t2);
+    out[7] = t5;
+    const ariane4_free_real_t t6 = t1 * parameters[XZ4] - t0 * parameters[YZ4];
+    const ariane4_free_real_t t7 = t0 * parameters[MY4] - t1 * parameters[MX4];
+    const ariane4_free_real_t t8 = t6 + ARIANE4_FREE_C(0.436) * t7;
+    const ariane4_free_real_t t10 = parameters[ZZ4] + ARIANE4_FREE_C(0.1) * t7;
+    const ariane4_free_real_t t13 = t12 * (t4 * t8 + t9 * t10 + ARIANE4_FREE_C(-0.443) * t7);
+    const ariane4_free_real_t t14 = t11 * (t9 * t8 - t4 * t10) + t13 + ARIANE4_FREE_C(-0.116) * t7;
+    out[3] = t14;
+    out[14] = t3;
+    out[13] = t5;
+    out[12] = t14;
     /* joint j3: drive */
     const ariane4_free_real_t
-        t55 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t11
-        + ARIANE4_FREE_C(-0.9979715533496006) * t15) + ARIANE4_FREE_C(0.242037));
+        t15 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.052812) * (ARIANE4_FREE_C(0.06366143813161289) * t9
+        + ARIANE4_FREE_C(-0.9979715533496006) * t4) + ARIANE4_FREE_C(0.242037));
+    const ariane4_free_real_t t16 = ARIANE4_FREE_C(1.0) / t15;
+    const ariane4_free_real_t t17 = (ARIANE4_FREE_C(0.06366143813161289) * t4
+        + ARIANE4_FREE_C(0.9979715533496006) * t9) * (ARIANE4_FREE_C(7124.375926654358) * t16);
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t18 = ARIANE4_FREE_C(0.1) * parameters[M4];
+    const ariane4_free_real_t t19 = ARIANE4_FREE_C(0.1) * (t18 + ARIANE4_FREE_C(2.0) * t7);
+    const ariane4_free_real_t t20 = ARIANE4_FREE_C(0.436) * parameters[M4];
+    const ariane4_free_real_t t21 = ARIANE4_FREE_C(0.436) * (t20 + ARIANE4_FREE_C(2.0) * parameters[MZ4]);
+    const ariane4_free_real_t t22 = t1 * (parameters[YY4] - parameters[XX4])
+        + parameters[XY4] * (ARIANE4_FREE_C(2.0) * t0);
+    const ariane4_free_real_t t23 = t1 * t22;
+    const ariane4_free_real_t t24 = parameters[ZZ3] + (parameters[XX4] + t23 + (t19 + t21));
+    out[10] = t24 + t17 * t17 * parameters[IA3];
+    const ariane4_free_real_t t25 = t7 + t18;
+    const ariane4_free_real_t t26 = parameters[MX3] - t25;
+    const ariane4_free_real_t t27 = parameters[MY3] + (parameters[MZ4] + t20);
+    const ariane4_free_real_t t28 = t9 * t26 - t4 * t27; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t29 = t24 + ARIANE4_FREE_C(0.443) * t28;
+    out[6] = t29;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t30 = parameters[XZ3] + (t0 * t22 - parameters[XY4]
+        + ARIANE4_FREE_C(-0.1) * t2);
+    const ariane4_free_real_t t31 = parameters[YZ3] + t3;
+    const ariane4_free_real_t t32 = t9 * t30 - t4 * t31; /* link j3: column of the mass matrix */
+    const ariane4_free_real_t t33 = t4 * t30 + t9 * t31;
+    const ariane4_free_real_t t34 = t11 * t32 + t12 * t33;
+    out[2] = t34;
+    out[9] = t29;
+    out[8] = t34;
+    /* joint j2: drive */
+    const ariane4_free_real_t
+        t35 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.078402) * (ARIANE4_FREE_C(-0.8305958991958126) * t12
+        + ARIANE4_FREE_C(0.5568756164881881) * t11) + ARIANE4_FREE_C(0.293698));
+    const ariane4_free_real_t t36 = ARIANE4_FREE_C(1.0) / t35;
+    const ariane4_free_real_t t37 = (ARIANE4_FREE_C(0.8305958991958126) * t11
+        + ARIANE4_FREE_C(0.5568756164881881) * t12) * (ARIANE4_FREE_C(2656.3065671641784) * t36);
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t38 = parameters[M3] + parameters[M4];
+    const ariane4_free_real_t t39 = ARIANE4_FREE_C(0.443) * t38; /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t40 = ARIANE4_FREE_C(0.443) * (t39 + ARIANE4_FREE_C(2.0) * t28);
+    out[5] = parameters[ZZ2] + (t24 + t40) + t37 * t37 * parameters[IA2];
+    /* link j2: column of the mass matrix */
+    const ariane4_free_real_t t41 = t11 * (parameters[XZ2] + (t32 + ARIANE4_FREE_C(0.443) * (t2
+        - parameters[MZ3]))) + t12 * (parameters[YZ2] + t33);
+    out[1] = t41;
+    out[4] = t41;
+    /* link j4: inertia of it and all beyond */
+    const ariane4_free_real_t t42 = parameters[XX3] + (parameters[YY4] - t23 + t21);
+    const ariane4_free_real_t t43 = parameters[YY3] + (parameters[ZZ4] + t19);
+    const ariane4_free_real_t t44 = parameters[XY3] + (t6 + (ARIANE4_FREE_C(0.1) * parameters[MZ4]
+        + ARIANE4_FREE_C(0.436) * t25));
+    /* link j3: inertia of it and all beyond */
+    const ariane4_free_real_t t45 = t9 * (t42 - t43) - t44 * (ARIANE4_FREE_C(2.0) * t4);
+    const ariane4_free_real_t t46 = t9 * t45;
+    const ariane4_free_real_t t47 = parameters[XX2] + (t43 + t46);
+    const ariane4_free_real_t t48 = t9 * t27 + t4 * t26; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
+    const ariane4_free_real_t t49 = (parameters[XY2] + (t44 + t4 * t45
+        + ARIANE4_FREE_C(-0.443) * t48)) * (ARIANE4_FREE_C(2.0) * t11);
+    const ariane4_free_real_t t50 = t12 * (parameters[YY2] + (t42 - t46 + t40) - t47) + t49;
+    /* link j2: column of the mass matrix */
+    const ariane4_free_real_t t51 = t12 * (parameters[MX2] + (t28 + t39)) - t11 * (parameters[MY2] + t48);
+    /* link j2: inertia of it and all beyond */
+    const ariane4_free_real_t t52 = t47 + t12 * t50
+        + ARIANE4_FREE_C(0.116) * (ARIANE4_FREE_C(0.116) * (parameters[M2] + t38)
+        + ARIANE4_FREE_C(2.0) * t51);
+    /* joint j1: drive */
+    const ariane4_free_real_t
+        t55 = ARIANE4_FREE_SQRT(ARIANE4_FREE_C(0.037468) * (ARIANE4_FREE_C(0.28217402066925895) * t54
+        + ARIANE4_FREE_C(0.9593632378089879) * t53) + ARIANE4_FREE_C(0.10769300000000001));
     const ariane4_free_real_t t56 = ARIANE4_FREE_C(1.0) / t55;
-    const ariane4_free_real_t t57 = (ARIANE4_FREE_C(0.06366143813161289) * t15
-        + ARIANE4_FREE_C(0.9979715533496006) * t11) * (ARIANE4_FREE_C(7124.375926654358) * t56);
-    out[10] = t52 + t57 * t57 * parameters[IA3];
-    out[11] = t39;
-    out[12] = t48;
-    out[13] = t54;
-    out[14] = t39;
-    out[15] = parameters[ZZ4] + ARIANE4_FREE_C(1.0e4) * parameters[IA4];
+    const ariane4_free_real_t t57 = (ARIANE4_FREE_C(0.28217402066925895) * t53
+        + ARIANE4_FREE_C(-0.9593632378089879) * t54) * (ARIANE4_FREE_C(3885.523436256565) * t56);
+    out[0] = parameters[ZZ1] + t52 + t57 * t57 * parameters[IA1];
     return ARIANE4_FREE_STATUS_OK;
 }

@@ -87,7 +87,7 @@
 #define ARIANE6_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE6_GENERATION 0x13CD28B3UL
+#define ARIANE6_GENERATION 0xB9B44F76UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE6_MODEL "ac2a59ce556c2f1c818a485f9d0c6d4da754ef25a07a354dfa818a9b37990eec"
@@ -420,7 +420,7 @@ ariane6_status_t ariane6_mass_matrix(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 1003 (565 mul, 438 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
+ * Operations: 1003 (565 mul, 438 add, 0 neg), 10 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  */
 ariane6_status_t ariane6_forward_dynamics(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
@@ -619,7 +619,7 @@ ariane6_status_t ariane6_mass_matrix_standard(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 1144 (622 mul, 522 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
+ * Operations: 1144 (622 mul, 522 add, 0 neg), 10 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  */
 ariane6_status_t ariane6_forward_dynamics_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
@@ -801,7 +801,7 @@ ariane6_status_t ariane6_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 4123 (2359 mul, 1758 add, 6 neg), 22 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
+ * Operations: 4123 (2359 mul, 1758 add, 6 neg), 22 div, 4 sqrt, 12 trig, 14 other calls (sign, select and the like).
  */
 ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t q[ARIANE6_N_JOINTS],
@@ -854,7 +854,7 @@ ariane6_status_t ariane6_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return ARIANE6_STATUS_OK or status bits
  *
- * Operations: 4468 (2509 mul, 1950 add, 9 neg), 22 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
+ * Operations: 4468 (2509 mul, 1950 add, 9 neg), 22 div, 4 sqrt, 12 trig, 14 other calls (sign, select and the like).
  */
 ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t q[ARIANE6_N_JOINTS],

@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1003 (565 mul, 438 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
+ * Operations: 1003 (565 mul, 438 add, 0 neg), 10 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -83,7 +83,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x13CD28B3UL
+#if ARIANE6_GENERATION != 0xB9B44F76UL
 #error "ariane6.h and ariane6_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -116,19 +116,19 @@ ariane6_status_t ariane6_forward_dynamics(
         return status;
     }
 
-    ariane6_real_t t116, t119;
-    ARIANE6_SINCOS(q[0], &t116, &t119);
-    ariane6_real_t t83, t84;
-    ARIANE6_SINCOS(q[1], &t83, &t84);
-    ariane6_real_t t52, t53;
-    ARIANE6_SINCOS(q[2], &t52, &t53);
-    ariane6_real_t t38, t35;
-    ARIANE6_SINCOS(q[3], &t38, &t35);
+    ariane6_real_t t112, t115;
+    ARIANE6_SINCOS(q[0], &t112, &t115);
+    ariane6_real_t t80, t81;
+    ARIANE6_SINCOS(q[1], &t80, &t81);
+    ariane6_real_t t50, t51;
+    ARIANE6_SINCOS(q[2], &t50, &t51);
+    ariane6_real_t t36, t33;
+    ARIANE6_SINCOS(q[3], &t36, &t33);
     ariane6_real_t t6, t9;
     ARIANE6_SINCOS(q[4], &t6, &t9);
     ariane6_real_t t2, t1;
     ARIANE6_SINCOS(q[5], &t2, &t1);
-    const ariane6_real_t t0 = ariane6_bounded(parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6]);
+    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
     if (!(t0 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -145,454 +145,437 @@ ariane6_status_t ariane6_forward_dynamics(
     const ariane6_real_t t12 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
     const ariane6_real_t t13 = ARIANE6_C(-1.0) / t0;
     const ariane6_real_t t14 = t12 * t13;
-    const ariane6_real_t t15 = ariane6_bounded(t11 + t12 * t14);
+    const ariane6_real_t t15 = t11 + t12 * t14;
     if (!(t15 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t16 = t15 + ARIANE6_C(-1.0e-9) * t11;
-    if (!(t16 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t17 = parameters[XZ5] - (parameters[XY6] - t2 * t3);
-    const ariane6_real_t t18 = parameters[YZ5] - t12;
-    const ariane6_real_t t19 = t6 * t17 + t9 * t18; /* link j5: column of the mass matrix */
+    const ariane6_real_t t16 = parameters[XZ5] - (parameters[XY6] - t2 * t3);
+    const ariane6_real_t t17 = parameters[YZ5] - t12;
+    const ariane6_real_t t18 = t6 * t16 + t9 * t17; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t20 = t2 * parameters[YZ6R] - t1 * parameters[XZ6R];
-    const ariane6_real_t t21 = t9 * parameters[ZZ6] - t6 * t20;
-    const ariane6_real_t t22 = t19 - t21 * t14;
-    const ariane6_real_t t23 = ARIANE6_C(1.0) / t15;
-    const ariane6_real_t t24 = t22 * t23;
-    const ariane6_real_t t25 = parameters[XX5R] - t4; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t26 = t20 - parameters[XY5];
+    const ariane6_real_t t19 = t2 * parameters[YZ6R] - t1 * parameters[XZ6R];
+    const ariane6_real_t t20 = t9 * parameters[ZZ6] - t6 * t19;
+    const ariane6_real_t t21 = t18 - t20 * t14;
+    const ariane6_real_t t22 = ARIANE6_C(1.0) / t15;
+    const ariane6_real_t t23 = t21 * t22;
+    const ariane6_real_t t24 = parameters[XX5R] - t4; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t25 = t19 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t27 = t9 * (parameters[ZZ6] - t25) - t26 * (ARIANE6_C(2.0) * t6);
-    const ariane6_real_t t28 = t9 * t27;
-    const ariane6_real_t t29 = parameters[ZZ4R] + (t25 + t28);
-    const ariane6_real_t t30 = t29 + ARIANE6_C(1.0e4) * parameters[IA4];
-    const ariane6_real_t t31 = t21 * t13;
-    const ariane6_real_t t32 = ariane6_bounded(t30 + t21 * t31 - t22 * t24);
-    if (!(t32 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t26 = t9 * (parameters[ZZ6] - t24) - t25 * (ARIANE6_C(2.0) * t6);
+    const ariane6_real_t t27 = t9 * t26;
+    const ariane6_real_t t28 = parameters[ZZ4R] + (t24 + t27);
+    const ariane6_real_t t29 = t28 + ARIANE6_C(1.0e4) * parameters[IA4];
+    const ariane6_real_t t30 = t20 * t13;
+    const ariane6_real_t t31 = t29 + t20 * t30 - t21 * t23;
+    if (!(t31 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t33 = t32 + ARIANE6_C(-1.0e-9) * t30;
-    if (!(t33 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t34 = parameters[XX4R] + (parameters[ZZ6] - t28);
-    const ariane6_real_t t36 = t6 * t18 - t9 * t17; /* link j5: column of the mass matrix */
-    const ariane6_real_t t37 = parameters[XY4] + t36; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t32 = parameters[XX4R] + (parameters[ZZ6] - t27);
+    const ariane6_real_t t34 = t6 * t17 - t9 * t16; /* link j5: column of the mass matrix */
+    const ariane6_real_t t35 = parameters[XY4] + t34; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t39 = t35 * (t34 - t5) + t37 * (ARIANE6_C(-2.0) * t38);
-    const ariane6_real_t t40 = t35 * t39;
+    const ariane6_real_t t37 = t33 * (t32 - t5) + t35 * (ARIANE6_C(-2.0) * t36);
+    const ariane6_real_t t38 = t33 * t37;
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t41 = t1 * parameters[MY6] + t2 * parameters[MX6];
-    const ariane6_real_t t42 = parameters[MY4R] + t41; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t39 = t1 * parameters[MY6] + t2 * parameters[MX6];
+    const ariane6_real_t t40 = parameters[MY4R] + t39; /* link j5: inertia of it and all beyond */
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t43 = t2 * parameters[MY6] - t1 * parameters[MX6];
-    const ariane6_real_t t44 = parameters[MX5] - t43; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t45 = t6 * parameters[MY5R] - t9 * t44; /* link j5: column of the mass matrix */
-    const ariane6_real_t t46 = t45 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t47 = t38 * t42 + t35 * t46; /* link j4: column of the mass matrix */
-    const ariane6_real_t t48 = ARIANE6_C(0.34) * t47; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t49 = t9 * parameters[MY5R] + t6 * t44; /* link j5: column of the mass matrix */
-    const ariane6_real_t t50 = ARIANE6_C(0.976) * t49; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t51 = parameters[ZZ3R] + (t34 - t40 + (t48 + t50));
+    const ariane6_real_t t41 = t2 * parameters[MY6] - t1 * parameters[MX6];
+    const ariane6_real_t t42 = parameters[MX5] - t41; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t43 = t6 * parameters[MY5R] - t9 * t42; /* link j5: column of the mass matrix */
+    const ariane6_real_t t44 = t43 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t45 = t36 * t40 + t33 * t44; /* link j4: column of the mass matrix */
+    const ariane6_real_t t46 = ARIANE6_C(0.34) * t45; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t47 = t9 * parameters[MY5R] + t6 * t42; /* link j5: column of the mass matrix */
+    const ariane6_real_t t48 = ARIANE6_C(0.976) * t47; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t49 = parameters[ZZ3R] + (t32 - t38 + (t46 + t48));
     /* joint j3: drive */
-    const ariane6_real_t t54 = ARIANE6_C(0.052335956242943966) * t52 + ARIANE6_C(-0.9986295347545738) * t53;
-    const ariane6_real_t t55 = ARIANE6_C(-0.052335956242943966) * t53 + ARIANE6_C(-0.9986295347545738) * t52;
-    const ariane6_real_t t56 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t55 + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t57 = ARIANE6_C(1.0) / t56;
-    const ariane6_real_t t58 = t54 * (ARIANE6_C(8377.600000000002) * t57);
-    const ariane6_real_t t59 = t51 + parameters[IA3] * (t58 * t58);
-    const ariane6_real_t t60 = t9 * t20 + t6 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const ariane6_real_t t61 = t9 * t41;
-    const ariane6_real_t t62 = t35 * t61 - t38 * t43;
-    const ariane6_real_t t63 = t6 * t41;
-    const ariane6_real_t t64 = t35 * t12 - t38 * t60 - (ARIANE6_C(0.17) * t63 + ARIANE6_C(0.488) * t62);
-    const ariane6_real_t t65 = t64 * t13;
-    const ariane6_real_t t66 = t35 * t49; /* link j5: column of the mass matrix */
-    const ariane6_real_t t67 = t38 * t36 + t35 * t5 + (ARIANE6_C(0.17) * t45 + ARIANE6_C(0.488) * t66);
-    const ariane6_real_t t68 = t67 + t64 * t14;
-    const ariane6_real_t t69 = t68 * t23;
-    const ariane6_real_t t70 = t26 + t6 * t27 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t71 = t19 - parameters[YZ4];
-    const ariane6_real_t t72 = t35 * t42 - t38 * t46; /* link j4: column of the mass matrix */
-    const ariane6_real_t t73 = t38 * t70 + t35 * t71 + ARIANE6_C(0.488) * t72;
-    const ariane6_real_t t74 = t73 - t64 * t31 - t68 * t24;
-    const ariane6_real_t t75 = ARIANE6_C(-1.0) / t32;
-    const ariane6_real_t t76 = t74 * t75;
-    const ariane6_real_t t77 = ariane6_bounded(t59 + t64 * t65 - t68 * t69 + t74 * t76);
-    if (!(t77 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t52 = ARIANE6_C(0.052335956242943966) * t50 + ARIANE6_C(-0.9986295347545738) * t51;
+    const ariane6_real_t t53 = ARIANE6_C(-0.052335956242943966) * t51 + ARIANE6_C(-0.9986295347545738) * t50;
+    const ariane6_real_t t54 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t53 + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t55 = ARIANE6_C(1.0) / t54;
+    const ariane6_real_t t56 = t52 * (ARIANE6_C(8377.600000000002) * t55);
+    const ariane6_real_t t57 = t49 + parameters[IA3] * (t56 * t56);
+    const ariane6_real_t t58 = t9 * t19 + t6 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const ariane6_real_t t59 = t9 * t39;
+    const ariane6_real_t t60 = t33 * t59 - t36 * t41;
+    const ariane6_real_t t61 = t6 * t39;
+    const ariane6_real_t t62 = t33 * t12 - t36 * t58 - (ARIANE6_C(0.17) * t61 + ARIANE6_C(0.488) * t60);
+    const ariane6_real_t t63 = t62 * t13;
+    const ariane6_real_t t64 = t33 * t47; /* link j5: column of the mass matrix */
+    const ariane6_real_t t65 = t36 * t34 + t33 * t5 + (ARIANE6_C(0.17) * t43 + ARIANE6_C(0.488) * t64);
+    const ariane6_real_t t66 = t65 + t62 * t14;
+    const ariane6_real_t t67 = t66 * t22;
+    const ariane6_real_t t68 = t25 + t6 * t26 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t69 = t18 - parameters[YZ4];
+    const ariane6_real_t t70 = t33 * t40 - t36 * t44; /* link j4: column of the mass matrix */
+    const ariane6_real_t t71 = t36 * t68 + t33 * t69 + ARIANE6_C(0.488) * t70;
+    const ariane6_real_t t72 = t71 - t62 * t30 - t66 * t23;
+    const ariane6_real_t t73 = ARIANE6_C(-1.0) / t31;
+    const ariane6_real_t t74 = t72 * t73;
+    const ariane6_real_t t75 = t57 + t62 * t63 - t66 * t67 + t72 * t74;
+    if (!(t75 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t78 = t77 + ARIANE6_C(-1.0e-9) * t59;
-    if (!(t78 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t79 = parameters[MX3R] - t47; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t80 = parameters[MY3R] + t49;
-    const ariane6_real_t t81 = t53 * t79 - t52 * t80; /* link j3: column of the mass matrix */
-    const ariane6_real_t t82 = ARIANE6_C(1.37) * t81; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t76 = parameters[MX3R] - t45; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t77 = parameters[MY3R] + t47;
+    const ariane6_real_t t78 = t51 * t76 - t50 * t77; /* link j3: column of the mass matrix */
+    const ariane6_real_t t79 = ARIANE6_C(1.37) * t78; /* link j3: inertia of it and all beyond */
     /* joint j2: drive */
-    const ariane6_real_t t85 = ARIANE6_C(0.766044443118978) * t83 + ARIANE6_C(0.6427876096865393) * t84;
-    const ariane6_real_t t86 = ARIANE6_C(-0.766044443118978) * t84 + ARIANE6_C(0.6427876096865393) * t83;
-    const ariane6_real_t t87 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t86 + ARIANE6_C(0.420682));
-    const ariane6_real_t t88 = ARIANE6_C(1.0) / t87;
-    const ariane6_real_t t89 = t85 * (ARIANE6_C(12691.800000000003) * t88);
-    const ariane6_real_t t90 = parameters[ZZ2R] + (t51 + t82) + parameters[IA2] * (t89 * t89);
+    const ariane6_real_t t82 = ARIANE6_C(0.766044443118978) * t80 + ARIANE6_C(0.6427876096865393) * t81;
+    const ariane6_real_t t83 = ARIANE6_C(-0.766044443118978) * t81 + ARIANE6_C(0.6427876096865393) * t80;
+    const ariane6_real_t t84 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t83 + ARIANE6_C(0.420682));
+    const ariane6_real_t t85 = ARIANE6_C(1.0) / t84;
+    const ariane6_real_t t86 = t82 * (ARIANE6_C(12691.800000000003) * t85);
+    const ariane6_real_t t87 = parameters[ZZ2R] + (t49 + t79) + parameters[IA2] * (t86 * t86);
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t91 = t64 + ARIANE6_C(0.685) * (t52 * t62 + t53 * t63);
-    const ariane6_real_t t92 = t91 * t13;
-    const ariane6_real_t t93 = ARIANE6_C(0.685) * (t52 * t66 + t53 * t45) - t67 - t91 * t14;
-    const ariane6_real_t t94 = t93 * t23;
-    const ariane6_real_t t95 = t73 + ARIANE6_C(-0.685) * (t52 * t72) - t91 * t31 + t93 * t24;
-    const ariane6_real_t t96 = t95 * t75;
-    const ariane6_real_t t97 = t90 + t91 * t92 - t93 * t94 + t95 * t96;
-    const ariane6_real_t t98 = ARIANE6_C(1.0) / t77;
-    const ariane6_real_t t99 = ARIANE6_C(-0.685) * t81 - t51 - t91 * t65 - t93 * t69;
-    const ariane6_real_t t100 = t99 - t95 * t76;
-    const ariane6_real_t t101 = t100 * t98;
-    const ariane6_real_t t102 = ariane6_bounded(t97 - t100 * t101);
-    if (!(t102 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t88 = t62 + ARIANE6_C(0.685) * (t50 * t60 + t51 * t61);
+    const ariane6_real_t t89 = t88 * t13;
+    const ariane6_real_t t90 = ARIANE6_C(0.685) * (t50 * t64 + t51 * t43) - t65 - t88 * t14;
+    const ariane6_real_t t91 = t90 * t22;
+    const ariane6_real_t t92 = t71 + ARIANE6_C(-0.685) * (t50 * t70) - t88 * t30 + t90 * t23;
+    const ariane6_real_t t93 = t92 * t73;
+    const ariane6_real_t t94 = t87 + t88 * t89 - t90 * t91 + t92 * t93;
+    const ariane6_real_t t95 = ARIANE6_C(1.0) / t75;
+    const ariane6_real_t t96 = ARIANE6_C(-0.685) * t78 - t49 - t88 * t63 - t90 * t67;
+    const ariane6_real_t t97 = t96 - t92 * t74;
+    const ariane6_real_t t98 = t97 * t95;
+    const ariane6_real_t t99 = t94 - t97 * t98;
+    if (!(t99 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t103 = t102 + ARIANE6_C(-1.0e-9) * t90;
-    if (!(t103 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t104 = t29 + t48; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t105 = parameters[XX3R] + (t5 + t40 + t50);
-    const ariane6_real_t t106 = t38 * t71 - t35 * t70; /* link j4: column of the mass matrix */
-    const ariane6_real_t t107 = ARIANE6_C(0.488) * t47;
+    const ariane6_real_t t100 = t28 + t46; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t101 = parameters[XX3R] + (t5 + t38 + t48);
+    const ariane6_real_t t102 = t36 * t69 - t33 * t68; /* link j4: column of the mass matrix */
+    const ariane6_real_t t103 = ARIANE6_C(0.488) * t45;
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t108 = parameters[XY3R] + (t106 + (t107 + ARIANE6_C(0.17) * t49));
+    const ariane6_real_t t104 = parameters[XY3R] + (t102 + (t103 + ARIANE6_C(0.17) * t47));
     /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t109 = t53 * (t104 - t105) + t108 * (ARIANE6_C(2.0) * t52);
-    const ariane6_real_t t110 = t53 * t109;
-    const ariane6_real_t t111 = parameters[XX2R] + (t104 - t110);
-    const ariane6_real_t t112 = t53 * t80 + t52 * t79; /* link j3: column of the mass matrix */
+    const ariane6_real_t t105 = t51 * (t100 - t101) + t104 * (ARIANE6_C(2.0) * t50);
+    const ariane6_real_t t106 = t51 * t105;
+    const ariane6_real_t t107 = parameters[XX2R] + (t100 - t106);
+    const ariane6_real_t t108 = t51 * t77 + t50 * t76; /* link j3: column of the mass matrix */
     /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t113 = (parameters[XY2] + (t108 - t52 * t109
-        + ARIANE6_C(-0.685) * t112)) * (ARIANE6_C(2.0) * t83);
-    const ariane6_real_t t114 = t84 * (t84 * (t105 + t110 + t82 - t111) + t113);
-    const ariane6_real_t t115 = ARIANE6_C(0.36) * (t84 * (parameters[MX2R] + t81) - t83 * (parameters[MY2]
-        + t112));
+    const ariane6_real_t t109 = (parameters[XY2] + (t104 - t50 * t105
+        + ARIANE6_C(-0.685) * t108)) * (ARIANE6_C(2.0) * t80);
+    const ariane6_real_t t110 = t81 * (t81 * (t101 + t106 + t79 - t107) + t109);
+    const ariane6_real_t t111 = ARIANE6_C(0.36) * (t81 * (parameters[MX2R] + t78) - t80 * (parameters[MY2]
+        + t108));
     /* joint j1: drive */
-    const ariane6_real_t t117 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t116 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t118 = ARIANE6_C(1.0) / t117;
-    const ariane6_real_t t120 = t119 * (ARIANE6_C(4063.3400000000006) * t118);
-    const ariane6_real_t t121 = parameters[ZZ1R] + (t111 + t114 + t115) + parameters[IA1] * (t120 * t120);
-    const ariane6_real_t t122 = t38 * t61 + t35 * t43; /* link j6: column of the mass matrix */
-    const ariane6_real_t t123 = t35 * t60 + t38 * t12 + ARIANE6_C(-0.488) * t122;
-    const ariane6_real_t t124 = t21 + ARIANE6_C(0.17) * t122;
-    const ariane6_real_t t125 = t84 * (t52 * t123 - t53 * t124 + ARIANE6_C(0.685) * t122);
-    const ariane6_real_t t126 = t83 * (t53 * t123 + t52 * t124) + t125 + ARIANE6_C(0.18) * t122;
-    const ariane6_real_t t127 = t126 * t13;
-    const ariane6_real_t t128 = t38 * t49; /* link j5: column of the mass matrix */
-    const ariane6_real_t t129 = t35 * t36 - t38 * t5 + ARIANE6_C(-0.488) * t128;
-    const ariane6_real_t t130 = t19 + ARIANE6_C(0.17) * t128;
-    const ariane6_real_t t131 = t84 * (t52 * t129 - t53 * t130 + ARIANE6_C(0.685) * t128);
-    const ariane6_real_t t132 = t83 * (t53 * t129 + t52 * t130) + t131 + ARIANE6_C(0.18) * t128;
-    const ariane6_real_t t133 = t132 - t126 * t14;
-    const ariane6_real_t t134 = t133 * t23;
-    const ariane6_real_t t135 = t106 + t107; /* link j4: column of the mass matrix */
-    const ariane6_real_t t136 = t29 + ARIANE6_C(0.17) * t47;
-    const ariane6_real_t t137 = t84 * (ARIANE6_C(0.685) * t47 - (t52 * t135 + t53 * t136));
-    const ariane6_real_t t138 = t83 * (t52 * t136 - t53 * t135) + t137 + ARIANE6_C(0.18) * t47;
-    const ariane6_real_t t139 = t138 + t126 * t31 - t133 * t24;
-    const ariane6_real_t t140 = t139 * t75;
-    const ariane6_real_t t141 = t121 + t126 * t127 - t133 * t134 + t139 * t140;
+    const ariane6_real_t t113 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t112 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t114 = ARIANE6_C(1.0) / t113;
+    const ariane6_real_t t116 = t115 * (ARIANE6_C(4063.3400000000006) * t114);
+    const ariane6_real_t t117 = parameters[ZZ1R] + (t107 + t110 + t111) + parameters[IA1] * (t116 * t116);
+    const ariane6_real_t t118 = t36 * t59 + t33 * t41; /* link j6: column of the mass matrix */
+    const ariane6_real_t t119 = t33 * t58 + t36 * t12 + ARIANE6_C(-0.488) * t118;
+    const ariane6_real_t t120 = t20 + ARIANE6_C(0.17) * t118;
+    const ariane6_real_t t121 = t81 * (t50 * t119 - t51 * t120 + ARIANE6_C(0.685) * t118);
+    const ariane6_real_t t122 = t80 * (t51 * t119 + t50 * t120) + t121 + ARIANE6_C(0.18) * t118;
+    const ariane6_real_t t123 = t122 * t13;
+    const ariane6_real_t t124 = t36 * t47; /* link j5: column of the mass matrix */
+    const ariane6_real_t t125 = t33 * t34 - t36 * t5 + ARIANE6_C(-0.488) * t124;
+    const ariane6_real_t t126 = t18 + ARIANE6_C(0.17) * t124;
+    const ariane6_real_t t127 = t81 * (t50 * t125 - t51 * t126 + ARIANE6_C(0.685) * t124);
+    const ariane6_real_t t128 = t80 * (t51 * t125 + t50 * t126) + t127 + ARIANE6_C(0.18) * t124;
+    const ariane6_real_t t129 = t128 - t122 * t14;
+    const ariane6_real_t t130 = t129 * t22;
+    const ariane6_real_t t131 = t102 + t103; /* link j4: column of the mass matrix */
+    const ariane6_real_t t132 = t28 + ARIANE6_C(0.17) * t45;
+    const ariane6_real_t t133 = t81 * (ARIANE6_C(0.685) * t45 - (t50 * t131 + t51 * t132));
+    const ariane6_real_t t134 = t80 * (t50 * t132 - t51 * t131) + t133 + ARIANE6_C(0.18) * t45;
+    const ariane6_real_t t135 = t134 + t122 * t30 - t129 * t23;
+    const ariane6_real_t t136 = t135 * t73;
+    const ariane6_real_t t137 = t117 + t122 * t123 - t129 * t130 + t135 * t136;
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t142 = t37 + t38 * t39 + ARIANE6_C(0.17) * t72 - parameters[XZ3];
-    const ariane6_real_t t143 = parameters[YZ3] + t73;
-    const ariane6_real_t t144 = t53 * t142 + t52 * t143; /* link j3: column of the mass matrix */
-    const ariane6_real_t t145 = t52 * t142 - t53 * t143;
-    const ariane6_real_t t146 = t83 * t144 + t84 * t145 - t126 * t65 - t133 * t69;
-    const ariane6_real_t t147 = t146 + t139 * t76;
-    const ariane6_real_t t148 = t147 * t98;
+    const ariane6_real_t t138 = t35 + t36 * t37 + ARIANE6_C(0.17) * t70 - parameters[XZ3];
+    const ariane6_real_t t139 = parameters[YZ3] + t71;
+    const ariane6_real_t t140 = t51 * t138 + t50 * t139; /* link j3: column of the mass matrix */
+    const ariane6_real_t t141 = t50 * t138 - t51 * t139;
+    const ariane6_real_t t142 = t80 * t140 + t81 * t141 - t122 * t63 - t129 * t67;
+    const ariane6_real_t t143 = t142 + t135 * t74;
+    const ariane6_real_t t144 = t143 * t95;
     /* link j2: column of the mass matrix */
-    const ariane6_real_t t149 = t83 * (t144 + ARIANE6_C(-0.685) * t72 - parameters[XZ2R]) + t84 * (t145
+    const ariane6_real_t t145 = t80 * (t140 + ARIANE6_C(-0.685) * t70 - parameters[XZ2R]) + t81 * (t141
         - parameters[YZ2]);
-    const ariane6_real_t t150 = t149 - t126 * t92 + t133 * t94 + t139 * t96;
-    const ariane6_real_t t151 = t150 + t147 * t101;
-    const ariane6_real_t t152 = ARIANE6_C(1.0) / t102;
-    const ariane6_real_t t153 = t151 * t152;
-    const ariane6_real_t t154 = ariane6_bounded(t141 - t147 * t148 - t151 * t153);
+    const ariane6_real_t t146 = t145 - t122 * t89 + t129 * t91 + t135 * t93;
+    const ariane6_real_t t147 = t146 + t143 * t98;
+    const ariane6_real_t t148 = ARIANE6_C(1.0) / t99;
+    const ariane6_real_t t149 = t147 * t148;
+    const ariane6_real_t t150 = t137 - t143 * t144 - t147 * t149;
+    if (!(t150 > ARIANE6_C(1.0e-12))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t151 = ariane6_min(t15 + ARIANE6_C(-1.0e-9) * t11, t31 + ARIANE6_C(-1.0e-9) * t29);
+    const ariane6_real_t t152 = ariane6_min(t151, t75 + ARIANE6_C(-1.0e-9) * t57);
+    const ariane6_real_t t153 = ariane6_min(t152, t99 + ARIANE6_C(-1.0e-9) * t87);
+    const ariane6_real_t t154 = ariane6_min(t153, t150 + ARIANE6_C(-1.0e-9) * t117);
     if (!(t154 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t155 = t154 + ARIANE6_C(-1.0e-9) * t121;
-    if (!(t155 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t156 = t83 * dq[0]; /* link j2: motion */
-    const ariane6_real_t t157 = t84 * dq[0];
-    const ariane6_real_t t158 = t53 * t156 + t52 * t157; /* link j3: motion */
-    const ariane6_real_t t159 = t53 * t157 - t52 * t156;
-    const ariane6_real_t t160 = t158 * t159;
-    const ariane6_real_t t161 = dq[1] + dq[2];
-    const ariane6_real_t t162 = t159 * t161;
-    const ariane6_real_t t163 = ARIANE6_C(2.0) * t162; /* link j4: motion */
-    const ariane6_real_t t164 = t38 * t163 - t35 * t160;
-    const ariane6_real_t t165 = t35 * t158 - t38 * t161;
-    const ariane6_real_t t166 = dq[3] + t159;
-    const ariane6_real_t t167 = t165 * t166;
-    const ariane6_real_t t168 = t164 + t167;
-    const ariane6_real_t t169 = t9 * t165 + t6 * t166; /* link j5: motion */
-    const ariane6_real_t t170 = t6 * t165 - t9 * t166;
-    const ariane6_real_t t171 = t169 * t170;
-    const ariane6_real_t t172 = t168 + t171; /* link j6: motion */
-    const ariane6_real_t t173 = t38 * t160 + t35 * t163; /* link j4: motion */
-    const ariane6_real_t t174 = t38 * t158 + t35 * t161;
-    const ariane6_real_t t175 = t174 * t166;
-    const ariane6_real_t t176 = t173 - t175;
-    const ariane6_real_t t177 = t176 - t175; /* link j5: motion */
-    const ariane6_real_t t178 = t165 * t174; /* link j4: motion */
-    const ariane6_real_t t179 = t158 * t161; /* link j3: motion */
-    const ariane6_real_t t180 = t178 - t179; /* link j5: motion */
-    const ariane6_real_t t181 = t6 * t180 + t9 * t177;
-    const ariane6_real_t t182 = dq[4] + t174;
-    const ariane6_real_t t183 = t170 * t182;
-    const ariane6_real_t t184 = t181 - t183;
-    const ariane6_real_t t185 = t184 - t183; /* link j6: motion */
-    const ariane6_real_t t186 = t1 * t185 - t2 * t172;
-    const ariane6_real_t t187 = t2 * t169 + t1 * t182;
-    const ariane6_real_t t188 = dq[5] - t170;
-    const ariane6_real_t t189 = t187 * t188;
-    const ariane6_real_t t190 = t186 - t189;
-    const ariane6_real_t t191 = t1 * t172 + t2 * t185;
-    const ariane6_real_t t192 = t1 * t169 - t2 * t182;
-    const ariane6_real_t t193 = t192 * t188;
-    const ariane6_real_t t194 = t193 + (t191 + t193); /* link j6: force and moment */
-    const ariane6_real_t t195 = t9 * t180 - t6 * t177; /* link j5: motion */
-    const ariane6_real_t t196 = t169 * t182;
-    const ariane6_real_t t197 = t195 - t196;
-    const ariane6_real_t t198 = t192 * t187; /* link j6: motion */
-    const ariane6_real_t t199 = t198 - t197; /* link j6: force and moment */
-    const ariane6_real_t t200 = parameters[ZZ6] * t189 - parameters[XX6R] * t190 + parameters[XY6] * t194
-        + parameters[XZ6R] * t199;
-    const ariane6_real_t t201 = t187 * t187; /* link j6: motion */
-    const ariane6_real_t t202 = t188 * t188;
-    const ariane6_real_t t203 = dq[0] * dq[0];
-    const ariane6_real_t t204 = ARIANE6_C(-0.18) * t203; /* link j2: motion */
-    const ariane6_real_t t205 = t84 * t204 + ARIANE6_C(9.81) * t83;
-    const ariane6_real_t t206 = t157 * t157;
-    const ariane6_real_t t207 = dq[1] * dq[1];
-    const ariane6_real_t t208 = ARIANE6_C(0.685) * (t207 + t206) - t205; /* link j3: motion */
-    const ariane6_real_t t209 = t83 * t204 + ARIANE6_C(-9.81) * t84; /* link j2: motion */
-    const ariane6_real_t t210 = t156 * t157;
-    const ariane6_real_t t211 = t209 + ARIANE6_C(-0.685) * t210; /* link j3: motion */
-    const ariane6_real_t t212 = t53 * t208 + t52 * t211;
-    const ariane6_real_t t213 = t159 * t159;
-    const ariane6_real_t t214 = t161 * t161;
-    const ariane6_real_t t215 = t213 + t214; /* link j4: motion */
-    const ariane6_real_t t216 = t212 + (ARIANE6_C(-0.17) * t215 + ARIANE6_C(-0.488) * t160);
-    const ariane6_real_t t217 = dq[1] * t156; /* link j2: motion */
-    const ariane6_real_t t218 = ARIANE6_C(-1.37) * t217; /* link j3: motion */
+    const ariane6_real_t t155 = t80 * dq[0]; /* link j2: motion */
+    const ariane6_real_t t156 = t81 * dq[0];
+    const ariane6_real_t t157 = t51 * t155 + t50 * t156; /* link j3: motion */
+    const ariane6_real_t t158 = t51 * t156 - t50 * t155;
+    const ariane6_real_t t159 = t157 * t158;
+    const ariane6_real_t t160 = dq[1] + dq[2];
+    const ariane6_real_t t161 = t158 * t160;
+    const ariane6_real_t t162 = ARIANE6_C(2.0) * t161; /* link j4: motion */
+    const ariane6_real_t t163 = t36 * t162 - t33 * t159;
+    const ariane6_real_t t164 = t33 * t157 - t36 * t160;
+    const ariane6_real_t t165 = dq[3] + t158;
+    const ariane6_real_t t166 = t164 * t165;
+    const ariane6_real_t t167 = t163 + t166;
+    const ariane6_real_t t168 = t9 * t164 + t6 * t165; /* link j5: motion */
+    const ariane6_real_t t169 = t6 * t164 - t9 * t165;
+    const ariane6_real_t t170 = t168 * t169;
+    const ariane6_real_t t171 = t167 + t170; /* link j6: motion */
+    const ariane6_real_t t172 = t36 * t159 + t33 * t162; /* link j4: motion */
+    const ariane6_real_t t173 = t36 * t157 + t33 * t160;
+    const ariane6_real_t t174 = t173 * t165;
+    const ariane6_real_t t175 = t172 - t174;
+    const ariane6_real_t t176 = t175 - t174; /* link j5: motion */
+    const ariane6_real_t t177 = t164 * t173; /* link j4: motion */
+    const ariane6_real_t t178 = t157 * t160; /* link j3: motion */
+    const ariane6_real_t t179 = t177 - t178; /* link j5: motion */
+    const ariane6_real_t t180 = t6 * t179 + t9 * t176;
+    const ariane6_real_t t181 = dq[4] + t173;
+    const ariane6_real_t t182 = t169 * t181;
+    const ariane6_real_t t183 = t180 - t182;
+    const ariane6_real_t t184 = t183 - t182; /* link j6: motion */
+    const ariane6_real_t t185 = t1 * t184 - t2 * t171;
+    const ariane6_real_t t186 = t2 * t168 + t1 * t181;
+    const ariane6_real_t t187 = dq[5] - t169;
+    const ariane6_real_t t188 = t186 * t187;
+    const ariane6_real_t t189 = t185 - t188;
+    const ariane6_real_t t190 = t1 * t171 + t2 * t184;
+    const ariane6_real_t t191 = t1 * t168 - t2 * t181;
+    const ariane6_real_t t192 = t191 * t187;
+    const ariane6_real_t t193 = t192 + (t190 + t192); /* link j6: force and moment */
+    const ariane6_real_t t194 = t9 * t179 - t6 * t176; /* link j5: motion */
+    const ariane6_real_t t195 = t168 * t181;
+    const ariane6_real_t t196 = t194 - t195;
+    const ariane6_real_t t197 = t191 * t186; /* link j6: motion */
+    const ariane6_real_t t198 = t197 - t196; /* link j6: force and moment */
+    const ariane6_real_t t199 = parameters[ZZ6] * t188 - parameters[XX6R] * t189 + parameters[XY6] * t193
+        + parameters[XZ6R] * t198;
+    const ariane6_real_t t200 = t186 * t186; /* link j6: motion */
+    const ariane6_real_t t201 = t187 * t187;
+    const ariane6_real_t t202 = dq[0] * dq[0];
+    const ariane6_real_t t203 = ARIANE6_C(-0.18) * t202; /* link j2: motion */
+    const ariane6_real_t t204 = t81 * t203 + ARIANE6_C(9.81) * t80;
+    const ariane6_real_t t205 = t156 * t156;
+    const ariane6_real_t t206 = dq[1] * dq[1];
+    const ariane6_real_t t207 = ARIANE6_C(0.685) * (t206 + t205) - t204; /* link j3: motion */
+    const ariane6_real_t t208 = t80 * t203 + ARIANE6_C(-9.81) * t81; /* link j2: motion */
+    const ariane6_real_t t209 = t155 * t156;
+    const ariane6_real_t t210 = t208 + ARIANE6_C(-0.685) * t209; /* link j3: motion */
+    const ariane6_real_t t211 = t51 * t207 + t50 * t210;
+    const ariane6_real_t t212 = t158 * t158;
+    const ariane6_real_t t213 = t160 * t160;
+    const ariane6_real_t t214 = t212 + t213; /* link j4: motion */
+    const ariane6_real_t t215 = t211 + (ARIANE6_C(-0.17) * t214 + ARIANE6_C(-0.488) * t159);
+    const ariane6_real_t t216 = dq[1] * t155; /* link j2: motion */
+    const ariane6_real_t t217 = ARIANE6_C(-1.37) * t216; /* link j3: motion */
     /* link j4: motion */
-    const ariane6_real_t t219 = t218 + (ARIANE6_C(0.34) * t179 + ARIANE6_C(-0.976) * t162);
-    const ariane6_real_t t220 = t35 * t216 - t38 * t219;
-    const ariane6_real_t t221 = t53 * t211 - t52 * t208; /* link j3: motion */
-    const ariane6_real_t t222 = t158 * t158;
-    const ariane6_real_t t223 = t222 + t214; /* link j4: motion */
-    const ariane6_real_t t224 = t221 + (ARIANE6_C(0.17) * t160 + ARIANE6_C(0.488) * t223);
-    const ariane6_real_t t225 = t9 * t224 - t6 * t220; /* link j5: motion */
+    const ariane6_real_t t218 = t217 + (ARIANE6_C(0.34) * t178 + ARIANE6_C(-0.976) * t161);
+    const ariane6_real_t t219 = t33 * t215 - t36 * t218;
+    const ariane6_real_t t220 = t51 * t210 - t50 * t207; /* link j3: motion */
+    const ariane6_real_t t221 = t157 * t157;
+    const ariane6_real_t t222 = t221 + t213; /* link j4: motion */
+    const ariane6_real_t t223 = t220 + (ARIANE6_C(0.17) * t159 + ARIANE6_C(0.488) * t222);
+    const ariane6_real_t t224 = t9 * t223 - t6 * t219; /* link j5: motion */
     /* link j6: force and moment */
-    const ariane6_real_t t226 = t200 - parameters[YZ6R] * (t201 - t202) + parameters[MY6] * t225;
-    const ariane6_real_t t227 = t190 - t189;
-    const ariane6_real_t t228 = t197 + t198;
-    const ariane6_real_t t229 = t193 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t227
-        + parameters[YZ6R] * t228;
-    const ariane6_real_t t230 = t192 * t192; /* link j6: motion */
+    const ariane6_real_t t225 = t199 - parameters[YZ6R] * (t200 - t201) + parameters[MY6] * t224;
+    const ariane6_real_t t226 = t189 - t188;
+    const ariane6_real_t t227 = t196 + t197;
+    const ariane6_real_t t228 = t192 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t226
+        + parameters[YZ6R] * t227;
+    const ariane6_real_t t229 = t191 * t191; /* link j6: motion */
     /* link j6: force and moment */
-    const ariane6_real_t t231 = t229 + parameters[XZ6R] * (t202 - t230) + parameters[MX6] * t225;
-    const ariane6_real_t t232 = t196 - t197; /* link j6: motion */
-    const ariane6_real_t t233 = t168 - t171;
+    const ariane6_real_t t230 = t228 + parameters[XZ6R] * (t201 - t229) + parameters[MX6] * t224;
+    const ariane6_real_t t231 = t195 - t196; /* link j6: motion */
+    const ariane6_real_t t232 = t167 - t170;
     /* link j5: force and moment */
-    const ariane6_real_t t234 = parameters[ZZ5R] * t183 - parameters[XX5R] * t184 + parameters[XY5] * t232
-        - parameters[XZ5] * t233;
-    const ariane6_real_t t235 = t170 * t170; /* link j5: motion */
-    const ariane6_real_t t236 = t182 * t182;
-    const ariane6_real_t t237 = t38 * t216 + t35 * t219; /* link j4: motion */
+    const ariane6_real_t t233 = parameters[ZZ5R] * t182 - parameters[XX5R] * t183 + parameters[XY5] * t231
+        - parameters[XZ5] * t232;
+    const ariane6_real_t t234 = t169 * t169; /* link j5: motion */
+    const ariane6_real_t t235 = t181 * t181;
+    const ariane6_real_t t236 = t36 * t215 + t33 * t218; /* link j4: motion */
     /* link j6: what it passes on */
-    const ariane6_real_t t238 = t234 + parameters[YZ5] * (t236 - t235) + parameters[MY5R] * t237 + (t1 * t226
-        + t2 * t231);
-    const ariane6_real_t t239 = t9 * t220 + t6 * t224; /* link j5: motion */
+    const ariane6_real_t t237 = t233 + parameters[YZ5] * (t235 - t234) + parameters[MY5R] * t236 + (t1 * t225
+        + t2 * t230);
+    const ariane6_real_t t238 = t9 * t219 + t6 * t223; /* link j5: motion */
     /* link j6: force and moment */
-    const ariane6_real_t t240 = parameters[MX6] * (t2 * t239 + t1 * t237) + parameters[MY6] * (t1 * t239
-        - t2 * t237);
-    const ariane6_real_t t241 = parameters[ZZ6] * t197 + parameters[XX6R] * t198 - parameters[YZ6R] * t191
-        + parameters[XZ6R] * t186;
-    const ariane6_real_t t242 = t241 + parameters[XY6] * (t230 - t201) + t240;
+    const ariane6_real_t t239 = parameters[MX6] * (t2 * t238 + t1 * t236) + parameters[MY6] * (t1 * t238
+        - t2 * t236);
+    const ariane6_real_t t240 = parameters[ZZ6] * t196 + parameters[XX6R] * t197 - parameters[YZ6R] * t190
+        + parameters[XZ6R] * t185;
+    const ariane6_real_t t241 = t240 + parameters[XY6] * (t229 - t200) + t239;
     /* link j5: force and moment */
-    const ariane6_real_t t243 = t196 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t185
-        + parameters[YZ5] * t172;
-    const ariane6_real_t t244 = t169 * t169; /* link j5: motion */
+    const ariane6_real_t t242 = t195 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t184
+        + parameters[YZ5] * t171;
+    const ariane6_real_t t243 = t168 * t168; /* link j5: motion */
     /* link j6: what it passes on */
-    const ariane6_real_t t245 = t243 + parameters[XZ5] * (t236 - t244) + parameters[MX5] * t237 + t242;
-    const ariane6_real_t t246 = t167 + t168; /* link j5: motion */
-    const ariane6_real_t t247 = t179 + t178;
+    const ariane6_real_t t244 = t242 + parameters[XZ5] * (t235 - t243) + parameters[MX5] * t236 + t241;
+    const ariane6_real_t t245 = t166 + t167; /* link j5: motion */
+    const ariane6_real_t t246 = t178 + t177;
     /* link j4: force and moment */
-    const ariane6_real_t t248 = parameters[ZZ4R] * t175 - parameters[XX4R] * t176 + parameters[XY4] * t246
-        + parameters[XZ4] * t247;
-    const ariane6_real_t t249 = t174 * t174; /* link j4: motion */
-    const ariane6_real_t t250 = t166 * t166;
+    const ariane6_real_t t247 = parameters[ZZ4R] * t174 - parameters[XX4R] * t175 + parameters[XY4] * t245
+        + parameters[XZ4] * t246;
+    const ariane6_real_t t248 = t173 * t173; /* link j4: motion */
+    const ariane6_real_t t249 = t165 * t165;
     /* link j5: what it passes on */
-    const ariane6_real_t t251 = t248 + parameters[YZ4] * (t250 - t249) + parameters[MY4R] * t224 + (t9 * t238
-        + t6 * t245);
+    const ariane6_real_t t250 = t247 + parameters[YZ4] * (t249 - t248) + parameters[MY4R] * t223 + (t9 * t237
+        + t6 * t244);
     /* link j5: force and moment */
-    const ariane6_real_t t252 = parameters[ZZ5R] * t168 + parameters[XX5R] * t171 + parameters[YZ5] * t195
-        + parameters[XZ5] * t181;
-    const ariane6_real_t t253 = parameters[XY5] * (t235 - t244) - t252 + (parameters[MX5] * t225
-        - parameters[MY5R] * t239);
-    const ariane6_real_t t254 = t253 + (t1 * t231 - t2 * t226); /* link j6: what it passes on */
+    const ariane6_real_t t251 = parameters[ZZ5R] * t167 + parameters[XX5R] * t170 + parameters[YZ5] * t194
+        + parameters[XZ5] * t180;
+    const ariane6_real_t t252 = parameters[XY5] * (t234 - t243) - t251 + (parameters[MX5] * t224
+        - parameters[MY5R] * t238);
+    const ariane6_real_t t253 = t252 + (t1 * t230 - t2 * t225); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const ariane6_real_t t255 = t167 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t177
-        + parameters[YZ4] * t180;
-    const ariane6_real_t t256 = t165 * t165; /* link j4: motion */
+    const ariane6_real_t t254 = t166 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t176
+        + parameters[YZ4] * t179;
+    const ariane6_real_t t255 = t164 * t164; /* link j4: motion */
     /* link j5: what it passes on */
-    const ariane6_real_t t257 = t255 + parameters[XZ4] * (t250 - t256) + parameters[MX4] * t224 + t254;
+    const ariane6_real_t t256 = t254 + parameters[XZ4] * (t249 - t255) + parameters[MX4] * t223 + t253;
     /* link j6: force and moment */
-    const ariane6_real_t t258 = parameters[MX6] * (t201 + t202) + parameters[MY6] * t228;
-    const ariane6_real_t t259 = parameters[MX6] * t199 + parameters[MY6] * (t230 + t202);
+    const ariane6_real_t t257 = parameters[MX6] * (t200 + t201) + parameters[MY6] * t227;
+    const ariane6_real_t t258 = parameters[MX6] * t198 + parameters[MY6] * (t229 + t201);
     /* link j6: what it passes on */
-    const ariane6_real_t t260 = parameters[MX5] * (t235 + t236) + parameters[MY5R] * t172 + (t1 * t258
-        - t2 * t259);
-    const ariane6_real_t t261 = parameters[MX5] * t233 - parameters[MY5R] * (t244 + t236)
-        + (parameters[MX6] * t194 + parameters[MY6] * t227);
+    const ariane6_real_t t259 = parameters[MX5] * (t234 + t235) + parameters[MY5R] * t171 + (t1 * t257
+        - t2 * t258);
+    const ariane6_real_t t260 = parameters[MX5] * t232 - parameters[MY5R] * (t243 + t235)
+        + (parameters[MX6] * t193 + parameters[MY6] * t226);
     /* link j5: what it passes on */
-    const ariane6_real_t t262 = parameters[MX4] * (t249 + t250) + parameters[MY4R] * t180 + (t9 * t260
-        + t6 * t261);
+    const ariane6_real_t t261 = parameters[MX4] * (t248 + t249) + parameters[MY4R] * t179 + (t9 * t259
+        + t6 * t260);
     /* link j6: what it passes on */
-    const ariane6_real_t t263 = parameters[MX5] * t232 + parameters[MY5R] * t185 + (t2 * t258 + t1 * t259);
+    const ariane6_real_t t262 = parameters[MX5] * t231 + parameters[MY5R] * t184 + (t2 * t257 + t1 * t258);
     /* link j5: what it passes on */
-    const ariane6_real_t t264 = parameters[MX4] * t247 + parameters[MY4R] * (t256 + t250) + t263;
-    const ariane6_real_t t265 = t38 * t262 + t35 * t264; /* link j4: what it passes on */
-    const ariane6_real_t t266 = ARIANE6_C(2.0) * t179; /* link j4: motion */
+    const ariane6_real_t t263 = parameters[MX4] * t246 + parameters[MY4R] * (t255 + t249) + t262;
+    const ariane6_real_t t264 = t36 * t261 + t33 * t263; /* link j4: what it passes on */
+    const ariane6_real_t t265 = ARIANE6_C(2.0) * t178; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane6_real_t t267 = parameters[XY3R] * t266 - (parameters[XX3R] * t162 + parameters[ZZ3R] * t162)
-        - parameters[XZ3] * t160;
+    const ariane6_real_t t266 = parameters[XY3R] * t265 - (parameters[XX3R] * t161 + parameters[ZZ3R] * t161)
+        - parameters[XZ3] * t159;
     /* link j4: what it passes on */
-    const ariane6_real_t t268 = t267 + parameters[YZ3] * (t214 - t213) + parameters[MY3R] * t218 + (t35 * t251
-        + t38 * t257 + ARIANE6_C(-0.488) * t265);
+    const ariane6_real_t t267 = t266 + parameters[YZ3] * (t213 - t212) + parameters[MY3R] * t217 + (t33 * t250
+        + t36 * t256 + ARIANE6_C(-0.488) * t264);
     /* link j4: force and moment */
-    const ariane6_real_t t269 = parameters[ZZ4R] * t179 - parameters[XX4R] * t178 + parameters[YZ4] * t164
-        - parameters[XZ4] * t173;
-    const ariane6_real_t t270 = t269 - parameters[XY4] * (t256 - t249) - (parameters[MX4] * t237
-        + parameters[MY4R] * t220);
-    const ariane6_real_t t271 = t270 + (t6 * t238 - t9 * t245); /* link j5: what it passes on */
+    const ariane6_real_t t268 = parameters[ZZ4R] * t178 - parameters[XX4R] * t177 + parameters[YZ4] * t163
+        - parameters[XZ4] * t172;
+    const ariane6_real_t t269 = t268 - parameters[XY4] * (t255 - t248) - (parameters[MX4] * t236
+        + parameters[MY4R] * t219);
+    const ariane6_real_t t270 = t269 + (t6 * t237 - t9 * t244); /* link j5: what it passes on */
     /* link j3: force and moment */
-    const ariane6_real_t t272 = t179 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t163
-        - parameters[YZ3] * t160;
+    const ariane6_real_t t271 = t178 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t162
+        - parameters[YZ3] * t159;
     /* link j4: what it passes on */
-    const ariane6_real_t t273 = t272 - parameters[XZ3] * (t222 - t214) + parameters[MX3R] * t218 - (t271
-        - ARIANE6_C(0.17) * t265);
-    const ariane6_real_t t274 = dq[1] * t157; /* link j2: motion */
-    const ariane6_real_t t275 = ARIANE6_C(2.0) * t217;
+    const ariane6_real_t t272 = t271 - parameters[XZ3] * (t221 - t213) + parameters[MX3R] * t217 - (t270
+        - ARIANE6_C(0.17) * t264);
+    const ariane6_real_t t273 = dq[1] * t156; /* link j2: motion */
+    const ariane6_real_t t274 = ARIANE6_C(2.0) * t216;
     /* link j2: force and moment */
-    const ariane6_real_t t276 = parameters[XY2] * t275 - (parameters[XX2R] * t274 + parameters[ZZ2R] * t274)
-        - parameters[XZ2R] * t210;
+    const ariane6_real_t t275 = parameters[XY2] * t274 - (parameters[XX2R] * t273 + parameters[ZZ2R] * t273)
+        - parameters[XZ2R] * t209;
     /* link j3: what it passes on */
-    const ariane6_real_t t277 = t276 + parameters[YZ2] * (t207 - t206) + (t53 * t268 + t52 * t273);
+    const ariane6_real_t t276 = t275 + parameters[YZ2] * (t206 - t205) + (t51 * t267 + t50 * t272);
     /* link j4: what it passes on */
-    const ariane6_real_t t278 = parameters[MX3R] * t266 + parameters[MY3R] * t163 + t265;
-    const ariane6_real_t t279 = ARIANE6_C(2.0) * t274; /* link j2: motion */
+    const ariane6_real_t t277 = parameters[MX3R] * t265 + parameters[MY3R] * t162 + t264;
+    const ariane6_real_t t278 = ARIANE6_C(2.0) * t273; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane6_real_t t280 = t217 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t279
-        + parameters[YZ2] * t210;
-    const ariane6_real_t t281 = t156 * t156; /* link j2: motion */
+    const ariane6_real_t t279 = t216 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t278
+        + parameters[YZ2] * t209;
+    const ariane6_real_t t280 = t155 * t155; /* link j2: motion */
     /* link j3: what it passes on */
-    const ariane6_real_t t282 = t280 + parameters[XZ2R] * (t281 - t207) + (t52 * t268 - t53 * t273
-        + ARIANE6_C(0.685) * t278);
+    const ariane6_real_t t281 = t279 + parameters[XZ2R] * (t280 - t206) + (t50 * t267 - t51 * t272
+        + ARIANE6_C(0.685) * t277);
     /* link j2: what it passes on */
-    const ariane6_real_t t283 = t83 * t277 + t84 * t282 + ARIANE6_C(0.18) * (parameters[MX2R] * t275
-        + parameters[MY2] * t279 + t278);
-    const ariane6_real_t t284 = t120 * dq[0];
-    const ariane6_real_t t285 = ariane6_sign(t284); /* joint j1: coulomb_friction */
+    const ariane6_real_t t282 = t80 * t276 + t81 * t281 + ARIANE6_C(0.18) * (parameters[MX2R] * t274
+        + parameters[MY2] * t278 + t277);
+    const ariane6_real_t t283 = t116 * dq[0];
+    const ariane6_real_t t284 = ariane6_sign(t283); /* joint j1: coulomb_friction */
     /* joint j1: drive */
-    const ariane6_real_t t286 = ARIANE6_C(4063.3400000000006) * t116
-        + ARIANE6_C(82.55365977800001) * (t118 * t118) * (t119 * t119);
-    const ariane6_real_t t287 = parameters[IA1] * (t118 * t286 * t203) - (parameters[FV1] * t284
-        + parameters[FC1] * t285);
-    const ariane6_real_t t288 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
-    const ariane6_real_t t289 = ARIANE6_C(1.0e2) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5])
-        + parameters[FC6] * t288) + t242;
-    const ariane6_real_t t290 = ARIANE6_C(5.0) * input[5] - t289;
-    const ariane6_real_t t291 = input[0] * (ARIANE6_C(0.004) * t120) + (t120 * t287 + t283) - t290 * t127;
-    const ariane6_real_t t292 = t10 * dq[4];
-    const ariane6_real_t t293 = ariane6_sign(t292); /* joint j5: coulomb_friction */
+    const ariane6_real_t t285 = ARIANE6_C(4063.3400000000006) * t112
+        + ARIANE6_C(82.55365977800001) * (t114 * t114) * (t115 * t115);
+    const ariane6_real_t t286 = parameters[IA1] * (t114 * t285 * t202) - (parameters[FV1] * t283
+        + parameters[FC1] * t284);
+    const ariane6_real_t t287 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
+    const ariane6_real_t t288 = ARIANE6_C(1.0e2) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5])
+        + parameters[FC6] * t287) + t241;
+    const ariane6_real_t t289 = ARIANE6_C(5.0) * input[5] - t288;
+    const ariane6_real_t t290 = input[0] * (ARIANE6_C(0.004) * t116) + (t116 * t286 + t282) - t289 * t123;
+    const ariane6_real_t t291 = t10 * dq[4];
+    const ariane6_real_t t292 = ariane6_sign(t291); /* joint j5: coulomb_friction */
     /* joint j5: drive */
-    const ariane6_real_t t294 = ARIANE6_C(3549.6000000000004) * t6
+    const ariane6_real_t t293 = ARIANE6_C(3549.6000000000004) * t6
         + ARIANE6_C(62.9983008) * (t8 * t8) * (t9 * t9);
-    const ariane6_real_t t295 = parameters[FV5] * t292 + parameters[FC5] * t293
-        - parameters[IA5] * (t8 * t294 * (dq[4] * dq[4]));
-    const ariane6_real_t t296 = input[4] * (ARIANE6_C(0.004) * t10) - (t10 * t295 - t254) - t290 * t14;
-    const ariane6_real_t t297 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ariane6_real_t t298 = ARIANE6_C(1.0e2) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3])
-        + parameters[FC4] * t297) - t271;
-    const ariane6_real_t t299 = ARIANE6_C(5.0) * input[3] - t298 + t290 * t31 - t296 * t24;
-    const ariane6_real_t t300 = t35 * t262 - t38 * t264; /* link j4: what it passes on */
+    const ariane6_real_t t294 = parameters[FV5] * t291 + parameters[FC5] * t292
+        - parameters[IA5] * (t8 * t293 * (dq[4] * dq[4]));
+    const ariane6_real_t t295 = input[4] * (ARIANE6_C(0.004) * t10) - (t10 * t294 - t253) - t289 * t14;
+    const ariane6_real_t t296 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ariane6_real_t t297 = ARIANE6_C(1.0e2) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3])
+        + parameters[FC4] * t296) - t270;
+    const ariane6_real_t t298 = ARIANE6_C(5.0) * input[3] - t297 + t289 * t30 - t295 * t23;
+    const ariane6_real_t t299 = t33 * t261 - t36 * t263; /* link j4: what it passes on */
     /* link j5: what it passes on */
-    const ariane6_real_t t301 = parameters[MX4] * t246 + parameters[MY4R] * t177 - (t6 * t260 - t9 * t261);
+    const ariane6_real_t t300 = parameters[MX4] * t245 + parameters[MY4R] * t176 - (t6 * t259 - t9 * t260);
     /* link j4: what it passes on */
-    const ariane6_real_t t302 = t38 * t251 - t35 * t257 - (ARIANE6_C(0.17) * t301 - ARIANE6_C(0.488) * t300);
+    const ariane6_real_t t301 = t36 * t250 - t33 * t256 - (ARIANE6_C(0.17) * t300 - ARIANE6_C(0.488) * t299);
     /* link j3: force and moment */
-    const ariane6_real_t t303 = parameters[XY3R] * (t222 - t213) - parameters[XX3R] * t160
-        + (parameters[MY3R] * t212 - parameters[MX3R] * t221);
-    const ariane6_real_t t304 = t303 + t302; /* link j4: what it passes on */
-    const ariane6_real_t t305 = t58 * dq[2];
-    const ariane6_real_t t306 = ariane6_sign(t305); /* joint j3: coulomb_friction */
+    const ariane6_real_t t302 = parameters[XY3R] * (t221 - t212) - parameters[XX3R] * t159
+        + (parameters[MY3R] * t211 - parameters[MX3R] * t220);
+    const ariane6_real_t t303 = t302 + t301; /* link j4: what it passes on */
+    const ariane6_real_t t304 = t56 * dq[2];
+    const ariane6_real_t t305 = ariane6_sign(t304); /* joint j3: coulomb_friction */
     /* joint j3: drive */
-    const ariane6_real_t t307 = ARIANE6_C(-8377.600000000002) * t55
-        - ARIANE6_C(350.9209088000001) * (t57 * t57) * (t54 * t54);
-    const ariane6_real_t t308 = parameters[FV3] * t305 + parameters[FC3] * t306
-        + parameters[IA3] * (t57 * t307 * (dq[2] * dq[2]));
-    const ariane6_real_t t309 = input[2] * (ARIANE6_C(0.004) * t58) - (t58 * t308 + t304) - t290 * t65;
-    const ariane6_real_t t310 = t309 - t296 * t69 + t299 * t76;
-    const ariane6_real_t t311 = t291 + t296 * t134 - t299 * t140 + t310 * t148;
+    const ariane6_real_t t306 = ARIANE6_C(-8377.600000000002) * t53
+        - ARIANE6_C(350.9209088000001) * (t55 * t55) * (t52 * t52);
+    const ariane6_real_t t307 = parameters[FV3] * t304 + parameters[FC3] * t305
+        + parameters[IA3] * (t55 * t306 * (dq[2] * dq[2]));
+    const ariane6_real_t t308 = input[2] * (ARIANE6_C(0.004) * t56) - (t56 * t307 + t303) - t289 * t63;
+    const ariane6_real_t t309 = t308 - t295 * t67 + t298 * t74;
+    const ariane6_real_t t310 = t290 + t295 * t130 - t298 * t136 + t309 * t144;
     /* link j3: what it passes on */
-    const ariane6_real_t t312 = t52 * (parameters[MX3R] * t215 - parameters[MY3R] * t160 + t300)
-        + t53 * (parameters[MY3R] * t223 - parameters[MX3R] * t160 - t301);
+    const ariane6_real_t t311 = t50 * (parameters[MX3R] * t214 - parameters[MY3R] * t159 + t299)
+        + t51 * (parameters[MY3R] * t222 - parameters[MX3R] * t159 - t300);
     /* link j2: force and moment */
-    const ariane6_real_t t313 = parameters[XX2R] * t210 - parameters[XY2] * (t281 - t206)
-        + (parameters[MX2R] * t209 + parameters[MY2] * t205);
-    const ariane6_real_t t314 = t89 * dq[1];
-    const ariane6_real_t t315 = ariane6_sign(t314); /* joint j2: coulomb_friction */
+    const ariane6_real_t t312 = parameters[XX2R] * t209 - parameters[XY2] * (t280 - t205)
+        + (parameters[MX2R] * t208 + parameters[MY2] * t204);
+    const ariane6_real_t t313 = t86 * dq[1];
+    const ariane6_real_t t314 = ariane6_sign(t313); /* joint j2: coulomb_friction */
     /* joint j2: drive */
-    const ariane6_real_t t316 = ARIANE6_C(-12691.800000000003) * t86
-        - ARIANE6_C(805.4089362000002) * (t88 * t88) * (t85 * t85);
-    const ariane6_real_t t317 = parameters[FV2] * t314 + parameters[FC2] * t315
-        + parameters[IA2] * (t88 * t316 * t207);
-    const ariane6_real_t t318 = input[1] * (ARIANE6_C(0.004) * t89) - (t89 * t317 - (t313 - (t304
-        - ARIANE6_C(0.685) * t312)));
-    const ariane6_real_t t319 = t318 - t290 * t92 + t296 * t94 + t299 * t96;
-    const ariane6_real_t t320 = t319 + t310 * t101;
-    const ariane6_real_t t321 = ARIANE6_C(1.0) / t154;
-    const ariane6_real_t t322 = ariane6_bounded((t311 + t320 * t153) * t321);
-    out[0] = t322;
-    const ariane6_real_t t323 = ariane6_bounded(t320 * t152 + t153 * t322);
-    out[1] = t323;
-    const ariane6_real_t t324 = ariane6_bounded(t310 * t98 + t148 * t322 + t101 * t323);
-    out[2] = t324;
-    const ariane6_real_t t325 = ariane6_bounded(t96 * t323 - (t299 * t75 + t140 * t322) + t76 * t324);
-    out[3] = t325;
-    const ariane6_real_t t326 = t296 * t23 + t134 * t322 + t94 * t323 - t69 * t324;
-    const ariane6_real_t t327 = ariane6_bounded(t326 - t24 * t325);
-    out[4] = t327;
-    const ariane6_real_t t328 = t290 * t13 + t127 * t322 + t92 * t323 + t65 * t324;
-    out[5] = t31 * t325 - t328 - t14 * t327;
-    if (!ariane6_all_bounded(out, 6)) {
+    const ariane6_real_t t315 = ARIANE6_C(-12691.800000000003) * t83
+        - ARIANE6_C(805.4089362000002) * (t85 * t85) * (t82 * t82);
+    const ariane6_real_t t316 = parameters[FV2] * t313 + parameters[FC2] * t314
+        + parameters[IA2] * (t85 * t315 * t206);
+    const ariane6_real_t t317 = input[1] * (ARIANE6_C(0.004) * t86) - (t86 * t316 - (t312 - (t303
+        - ARIANE6_C(0.685) * t311)));
+    const ariane6_real_t t318 = t317 - t289 * t89 + t295 * t91 + t298 * t93;
+    const ariane6_real_t t319 = t318 + t309 * t98;
+    const ariane6_real_t t320 = ARIANE6_C(1.0) / t150;
+    const ariane6_real_t t321 = ariane6_held((t310 + t319 * t149) * t320);
+    out[0] = t321;
+    const ariane6_real_t t322 = ariane6_held(t319 * t148 + t149 * t321);
+    out[1] = t322;
+    const ariane6_real_t t323 = ariane6_held(t309 * t95 + t144 * t321 + t98 * t322);
+    out[2] = t323;
+    const ariane6_real_t t324 = ariane6_held(t93 * t322 - (t298 * t73 + t136 * t321) + t74 * t323);
+    out[3] = t324;
+    const ariane6_real_t t325 = t295 * t22 + t130 * t321 + t91 * t322 - t67 * t323;
+    const ariane6_real_t t326 = ariane6_held(t325 - t23 * t324);
+    out[4] = t326;
+    const ariane6_real_t t327 = t289 * t13 + t123 * t321 + t89 * t322 + t63 * t323;
+    out[5] = t30 * t324 - t327 - t14 * t326;
+    if (!ariane6_bounded(out, 6)) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }

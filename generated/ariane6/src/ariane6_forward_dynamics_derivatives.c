@@ -7,7 +7,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4123 (2359 mul, 1758 add, 6 neg), 22 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
+ * Operations: 4123 (2359 mul, 1758 add, 6 neg), 22 div, 4 sqrt, 12 trig, 14 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -87,7 +87,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x13CD28B3UL
+#if ARIANE6_GENERATION != 0xB9B44F76UL
 #error "ariane6.h and ariane6_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -126,19 +126,19 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
         return status;
     }
 
-    ariane6_real_t t128, t132;
-    ARIANE6_SINCOS(q[0], &t128, &t132);
-    ariane6_real_t t86, t87;
-    ARIANE6_SINCOS(q[1], &t86, &t87);
-    ariane6_real_t t53, t54;
-    ARIANE6_SINCOS(q[2], &t53, &t54);
-    ariane6_real_t t39, t36;
-    ARIANE6_SINCOS(q[3], &t39, &t36);
+    ariane6_real_t t124, t128;
+    ARIANE6_SINCOS(q[0], &t124, &t128);
+    ariane6_real_t t83, t84;
+    ARIANE6_SINCOS(q[1], &t83, &t84);
+    ariane6_real_t t51, t52;
+    ARIANE6_SINCOS(q[2], &t51, &t52);
+    ariane6_real_t t37, t34;
+    ARIANE6_SINCOS(q[3], &t37, &t34);
     ariane6_real_t t6, t10;
     ARIANE6_SINCOS(q[4], &t6, &t10);
     ariane6_real_t t2, t1;
     ARIANE6_SINCOS(q[5], &t2, &t1);
-    const ariane6_real_t t0 = ariane6_bounded(parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6]);
+    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
     if (!(t0 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -159,7 +159,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t13 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
     const ariane6_real_t t14 = ARIANE6_C(1.0) / t0;
     const ariane6_real_t t15 = t13 * t14;
-    const ariane6_real_t t16 = ariane6_bounded(t12 - t13 * t15);
+    const ariane6_real_t t16 = t12 - t13 * t15;
     if (!(t16 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -167,217 +167,196 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t17 = t16 + ARIANE6_C(-1.0e-9) * t12;
-    if (!(t17 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
     /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t18 = parameters[XY6] + t2 * t3 - parameters[XZ5];
-    const ariane6_real_t t19 = t13 - parameters[YZ5];
-    const ariane6_real_t t20 = t6 * t18 + t10 * t19; /* link j5: column of the mass matrix */
+    const ariane6_real_t t17 = parameters[XY6] + t2 * t3 - parameters[XZ5];
+    const ariane6_real_t t18 = t13 - parameters[YZ5];
+    const ariane6_real_t t19 = t6 * t17 + t10 * t18; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t21 = t1 * parameters[XZ6R] - t2 * parameters[YZ6R];
-    const ariane6_real_t t22 = t6 * t21 + t10 * parameters[ZZ6];
-    const ariane6_real_t t23 = t20 - t22 * t15;
-    const ariane6_real_t t24 = ARIANE6_C(1.0) / t16;
-    const ariane6_real_t t25 = t23 * t24;
-    const ariane6_real_t t26 = parameters[XX5R] + t4; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t27 = parameters[XY5] + t21;
+    const ariane6_real_t t20 = t1 * parameters[XZ6R] - t2 * parameters[YZ6R];
+    const ariane6_real_t t21 = t6 * t20 + t10 * parameters[ZZ6];
+    const ariane6_real_t t22 = t19 - t21 * t15;
+    const ariane6_real_t t23 = ARIANE6_C(1.0) / t16;
+    const ariane6_real_t t24 = t22 * t23;
+    const ariane6_real_t t25 = parameters[XX5R] + t4; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t26 = parameters[XY5] + t20;
     /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t28 = t10 * (parameters[ZZ6] - t26) + t27 * (ARIANE6_C(2.0) * t6);
-    const ariane6_real_t t29 = t10 * t28;
-    const ariane6_real_t t30 = parameters[ZZ4R] + (t26 + t29);
-    const ariane6_real_t t31 = t30 + ARIANE6_C(1.0e4) * parameters[IA4];
-    const ariane6_real_t t32 = t22 * t14;
-    const ariane6_real_t t33 = ariane6_bounded(t31 - t22 * t32 - t23 * t25);
-    if (!(t33 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t27 = t10 * (parameters[ZZ6] - t25) + t26 * (ARIANE6_C(2.0) * t6);
+    const ariane6_real_t t28 = t10 * t27;
+    const ariane6_real_t t29 = parameters[ZZ4R] + (t25 + t28);
+    const ariane6_real_t t30 = t29 + ARIANE6_C(1.0e4) * parameters[IA4];
+    const ariane6_real_t t31 = t21 * t14;
+    const ariane6_real_t t32 = t30 - t21 * t31 - t22 * t24;
+    if (!(t32 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t34 = t33 + ARIANE6_C(-1.0e-9) * t31;
-    if (!(t34 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t35 = t29 - parameters[ZZ6] - parameters[XX4R];
-    const ariane6_real_t t37 = t6 * t19 - t10 * t18; /* link j5: column of the mass matrix */
-    const ariane6_real_t t38 = parameters[XY4] - t37; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t33 = t28 - parameters[ZZ6] - parameters[XX4R];
+    const ariane6_real_t t35 = t6 * t18 - t10 * t17; /* link j5: column of the mass matrix */
+    const ariane6_real_t t36 = parameters[XY4] - t35; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t40 = t36 * (t5 + t35) + t38 * (ARIANE6_C(2.0) * t39);
-    const ariane6_real_t t41 = t36 * t40;
+    const ariane6_real_t t38 = t34 * (t5 + t33) + t36 * (ARIANE6_C(2.0) * t37);
+    const ariane6_real_t t39 = t34 * t38;
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t42 = t1 * parameters[MY6] + t2 * parameters[MX6];
-    const ariane6_real_t t43 = parameters[MY4R] + t42; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t40 = t1 * parameters[MY6] + t2 * parameters[MX6];
+    const ariane6_real_t t41 = parameters[MY4R] + t40; /* link j5: inertia of it and all beyond */
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t44 = t1 * parameters[MX6] - t2 * parameters[MY6];
-    const ariane6_real_t t45 = parameters[MX5] + t44; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t46 = t6 * parameters[MY5R] - t10 * t45; /* link j5: column of the mass matrix */
-    const ariane6_real_t t47 = t46 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t48 = t39 * t43 + t36 * t47; /* link j4: column of the mass matrix */
-    const ariane6_real_t t49 = ARIANE6_C(0.34) * t48; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t50 = t10 * parameters[MY5R] + t6 * t45; /* link j5: column of the mass matrix */
-    const ariane6_real_t t51 = ARIANE6_C(0.976) * t50; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t52 = parameters[ZZ3R] + (t41 - t35 + (t49 + t51));
+    const ariane6_real_t t42 = t1 * parameters[MX6] - t2 * parameters[MY6];
+    const ariane6_real_t t43 = parameters[MX5] + t42; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t44 = t6 * parameters[MY5R] - t10 * t43; /* link j5: column of the mass matrix */
+    const ariane6_real_t t45 = t44 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t46 = t37 * t41 + t34 * t45; /* link j4: column of the mass matrix */
+    const ariane6_real_t t47 = ARIANE6_C(0.34) * t46; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t48 = t10 * parameters[MY5R] + t6 * t43; /* link j5: column of the mass matrix */
+    const ariane6_real_t t49 = ARIANE6_C(0.976) * t48; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t50 = parameters[ZZ3R] + (t39 - t33 + (t47 + t49));
     /* joint j3: drive */
-    const ariane6_real_t t55 = ARIANE6_C(0.052335956242943966) * t53 + ARIANE6_C(-0.9986295347545738) * t54;
-    const ariane6_real_t t56 = ARIANE6_C(0.052335956242943966) * t54 + ARIANE6_C(0.9986295347545738) * t53;
-    const ariane6_real_t t57 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t56 + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t58 = ARIANE6_C(1.0) / t57;
-    const ariane6_real_t t59 = ARIANE6_C(8377.600000000002) * t58;
-    const ariane6_real_t t60 = t55 * t59;
-    const ariane6_real_t t61 = t52 + parameters[IA3] * (t60 * t60);
-    const ariane6_real_t t62 = t10 * t21 - t6 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const ariane6_real_t t63 = t10 * t42;
-    const ariane6_real_t t64 = t36 * t63 + t39 * t44;
-    const ariane6_real_t t65 = t6 * t42;
-    const ariane6_real_t t66 = ARIANE6_C(0.17) * t65 + ARIANE6_C(0.488) * t64 - (t39 * t62 + t36 * t13);
-    const ariane6_real_t t67 = t66 * t14;
-    const ariane6_real_t t68 = t36 * t50; /* link j5: column of the mass matrix */
-    const ariane6_real_t t69 = t36 * t5 - t39 * t37 + (ARIANE6_C(0.17) * t46 + ARIANE6_C(0.488) * t68);
-    const ariane6_real_t t70 = t69 + t66 * t15;
-    const ariane6_real_t t71 = t70 * t24;
-    const ariane6_real_t t72 = t6 * t28 - t27 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t73 = parameters[YZ4] + t20;
-    const ariane6_real_t t74 = t36 * t43 - t39 * t47; /* link j4: column of the mass matrix */
-    const ariane6_real_t t75 = t36 * t73 - t39 * t72 - ARIANE6_C(0.488) * t74;
-    const ariane6_real_t t76 = t75 + t66 * t32 - t70 * t25;
-    const ariane6_real_t t77 = ARIANE6_C(1.0) / t33;
-    const ariane6_real_t t78 = t76 * t77;
-    const ariane6_real_t t79 = ariane6_bounded(t61 - t66 * t67 - t70 * t71 - t76 * t78);
-    if (!(t79 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t53 = ARIANE6_C(0.052335956242943966) * t51 + ARIANE6_C(-0.9986295347545738) * t52;
+    const ariane6_real_t t54 = ARIANE6_C(0.052335956242943966) * t52 + ARIANE6_C(0.9986295347545738) * t51;
+    const ariane6_real_t t55 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t54 + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t56 = ARIANE6_C(1.0) / t55;
+    const ariane6_real_t t57 = ARIANE6_C(8377.600000000002) * t56;
+    const ariane6_real_t t58 = t53 * t57;
+    const ariane6_real_t t59 = t50 + parameters[IA3] * (t58 * t58);
+    const ariane6_real_t t60 = t10 * t20 - t6 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const ariane6_real_t t61 = t10 * t40;
+    const ariane6_real_t t62 = t34 * t61 + t37 * t42;
+    const ariane6_real_t t63 = t6 * t40;
+    const ariane6_real_t t64 = ARIANE6_C(0.17) * t63 + ARIANE6_C(0.488) * t62 - (t37 * t60 + t34 * t13);
+    const ariane6_real_t t65 = t64 * t14;
+    const ariane6_real_t t66 = t34 * t48; /* link j5: column of the mass matrix */
+    const ariane6_real_t t67 = t34 * t5 - t37 * t35 + (ARIANE6_C(0.17) * t44 + ARIANE6_C(0.488) * t66);
+    const ariane6_real_t t68 = t67 + t64 * t15;
+    const ariane6_real_t t69 = t68 * t23;
+    const ariane6_real_t t70 = t6 * t27 - t26 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t71 = parameters[YZ4] + t19;
+    const ariane6_real_t t72 = t34 * t41 - t37 * t45; /* link j4: column of the mass matrix */
+    const ariane6_real_t t73 = t34 * t71 - t37 * t70 - ARIANE6_C(0.488) * t72;
+    const ariane6_real_t t74 = t73 + t64 * t31 - t68 * t24;
+    const ariane6_real_t t75 = ARIANE6_C(1.0) / t32;
+    const ariane6_real_t t76 = t74 * t75;
+    const ariane6_real_t t77 = t59 - t64 * t65 - t68 * t69 - t74 * t76;
+    if (!(t77 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t80 = t79 + ARIANE6_C(-1.0e-9) * t61;
-    if (!(t80 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t81 = t48 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t82 = parameters[MY3R] + t50;
-    const ariane6_real_t t83 = t53 * t82 + t54 * t81; /* link j3: column of the mass matrix */
-    const ariane6_real_t t84 = ARIANE6_C(-1.37) * t83; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t85 = parameters[ZZ2R] + (t52 + t84);
+    const ariane6_real_t t78 = t46 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t79 = parameters[MY3R] + t48;
+    const ariane6_real_t t80 = t51 * t79 + t52 * t78; /* link j3: column of the mass matrix */
+    const ariane6_real_t t81 = ARIANE6_C(-1.37) * t80; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t82 = parameters[ZZ2R] + (t50 + t81);
     /* joint j2: drive */
-    const ariane6_real_t t88 = ARIANE6_C(0.766044443118978) * t86 + ARIANE6_C(0.6427876096865393) * t87;
-    const ariane6_real_t t89 = ARIANE6_C(0.766044443118978) * t87 - ARIANE6_C(0.6427876096865393) * t86;
-    const ariane6_real_t t90 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t89 + ARIANE6_C(0.420682));
-    const ariane6_real_t t91 = ARIANE6_C(1.0) / t90;
-    const ariane6_real_t t92 = ARIANE6_C(12691.800000000003) * t91;
-    const ariane6_real_t t93 = t88 * t92;
-    const ariane6_real_t t94 = t85 + parameters[IA2] * (t93 * t93);
-    const ariane6_real_t t95 = t53 * t64 + t54 * t65; /* link j6: column of the mass matrix */
-    const ariane6_real_t t96 = t66 + ARIANE6_C(-0.685) * t95;
-    const ariane6_real_t t97 = t96 * t14;
-    const ariane6_real_t t98 = t53 * t68 + t54 * t46; /* link j5: column of the mass matrix */
-    const ariane6_real_t t99 = t69 + ARIANE6_C(-0.685) * t98;
-    const ariane6_real_t t100 = t99 + t96 * t15;
-    const ariane6_real_t t101 = t100 * t24;
-    const ariane6_real_t t102 = t53 * t74; /* link j4: column of the mass matrix */
-    const ariane6_real_t t103 = t75 + ARIANE6_C(0.685) * t102;
-    const ariane6_real_t t104 = t103 + t96 * t32 - t100 * t25;
-    const ariane6_real_t t105 = t104 * t77;
-    const ariane6_real_t t106 = t94 - t96 * t97 - t100 * t101 - t104 * t105;
-    const ariane6_real_t t107 = ARIANE6_C(1.0) / t79;
-    const ariane6_real_t t108 = ARIANE6_C(0.685) * t83 - t52; /* link j3: column of the mass matrix */
-    const ariane6_real_t t109 = t108 + t96 * t67 + t100 * t71 + t104 * t78;
-    const ariane6_real_t t110 = t109 * t107;
-    const ariane6_real_t t111 = ariane6_bounded(t106 - t109 * t110);
-    if (!(t111 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t85 = ARIANE6_C(0.766044443118978) * t83 + ARIANE6_C(0.6427876096865393) * t84;
+    const ariane6_real_t t86 = ARIANE6_C(0.766044443118978) * t84 - ARIANE6_C(0.6427876096865393) * t83;
+    const ariane6_real_t t87 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t86 + ARIANE6_C(0.420682));
+    const ariane6_real_t t88 = ARIANE6_C(1.0) / t87;
+    const ariane6_real_t t89 = ARIANE6_C(12691.800000000003) * t88;
+    const ariane6_real_t t90 = t85 * t89;
+    const ariane6_real_t t91 = t82 + parameters[IA2] * (t90 * t90);
+    const ariane6_real_t t92 = t51 * t62 + t52 * t63; /* link j6: column of the mass matrix */
+    const ariane6_real_t t93 = t64 + ARIANE6_C(-0.685) * t92;
+    const ariane6_real_t t94 = t93 * t14;
+    const ariane6_real_t t95 = t51 * t66 + t52 * t44; /* link j5: column of the mass matrix */
+    const ariane6_real_t t96 = t67 + ARIANE6_C(-0.685) * t95;
+    const ariane6_real_t t97 = t96 + t93 * t15;
+    const ariane6_real_t t98 = t97 * t23;
+    const ariane6_real_t t99 = t51 * t72; /* link j4: column of the mass matrix */
+    const ariane6_real_t t100 = t73 + ARIANE6_C(0.685) * t99;
+    const ariane6_real_t t101 = t100 + t93 * t31 - t97 * t24;
+    const ariane6_real_t t102 = t101 * t75;
+    const ariane6_real_t t103 = t91 - t93 * t94 - t97 * t98 - t101 * t102;
+    const ariane6_real_t t104 = ARIANE6_C(1.0) / t77;
+    const ariane6_real_t t105 = ARIANE6_C(0.685) * t80 - t50; /* link j3: column of the mass matrix */
+    const ariane6_real_t t106 = t105 + t93 * t65 + t97 * t69 + t101 * t76;
+    const ariane6_real_t t107 = t106 * t104;
+    const ariane6_real_t t108 = t103 - t106 * t107;
+    if (!(t108 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t112 = t111 + ARIANE6_C(-1.0e-9) * t94;
-    if (!(t112 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t113 = t30 + t49; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t114 = parameters[XX3R] + (t5 - t41 + t51);
-    const ariane6_real_t t115 = t36 * t72 + t39 * t73; /* link j4: column of the mass matrix */
-    const ariane6_real_t t116 = ARIANE6_C(-0.488) * t48;
+    const ariane6_real_t t109 = t29 + t47; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t110 = parameters[XX3R] + (t5 - t39 + t49);
+    const ariane6_real_t t111 = t34 * t70 + t37 * t71; /* link j4: column of the mass matrix */
+    const ariane6_real_t t112 = ARIANE6_C(-0.488) * t46;
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t117 = t115 + (t116 + ARIANE6_C(-0.17) * t50) - parameters[XY3R];
+    const ariane6_real_t t113 = t111 + (t112 + ARIANE6_C(-0.17) * t48) - parameters[XY3R];
     /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t118 = t54 * (t114 - t113) - t117 * (ARIANE6_C(-2.0) * t53);
-    const ariane6_real_t t119 = t54 * t118;
-    const ariane6_real_t t120 = t114 - t119 + t84;
-    const ariane6_real_t t121 = parameters[XX2R] + (t113 + t119);
-    const ariane6_real_t t122 = t53 * t81 - t54 * t82; /* link j3: column of the mass matrix */
+    const ariane6_real_t t114 = t52 * (t110 - t109) - t113 * (ARIANE6_C(-2.0) * t51);
+    const ariane6_real_t t115 = t52 * t114;
+    const ariane6_real_t t116 = t110 - t115 + t81;
+    const ariane6_real_t t117 = parameters[XX2R] + (t109 + t115);
+    const ariane6_real_t t118 = t51 * t78 - t52 * t79; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t123 = parameters[XY2] + (t53 * t118 - t117 + ARIANE6_C(0.685) * t122);
+    const ariane6_real_t t119 = parameters[XY2] + (t51 * t114 - t113 + ARIANE6_C(0.685) * t118);
     /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t124 = t87 * (t87 * (t120 - t121) + t123 * (ARIANE6_C(2.0) * t86));
-    const ariane6_real_t t125 = t122 - parameters[MY2]; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t126 = t83 - parameters[MX2R];
+    const ariane6_real_t t120 = t84 * (t84 * (t116 - t117) + t119 * (ARIANE6_C(2.0) * t83));
+    const ariane6_real_t t121 = t118 - parameters[MY2]; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t122 = t80 - parameters[MX2R];
     /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t127 = t121 + t124 + ARIANE6_C(0.36) * (t86 * t125 - t87 * t126);
+    const ariane6_real_t t123 = t117 + t120 + ARIANE6_C(0.36) * (t83 * t121 - t84 * t122);
     /* joint j1: drive */
-    const ariane6_real_t t129 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t128 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t130 = ARIANE6_C(1.0) / t129;
-    const ariane6_real_t t131 = ARIANE6_C(-4063.3400000000006) * t130;
-    const ariane6_real_t t133 = t132 * t131;
-    const ariane6_real_t t134 = parameters[ZZ1R] + t127 + parameters[IA1] * (t133 * t133);
-    const ariane6_real_t t135 = t39 * t63 - t36 * t44; /* link j6: column of the mass matrix */
-    const ariane6_real_t t136 = t36 * t62 - t39 * t13 + ARIANE6_C(0.488) * t135;
-    const ariane6_real_t t137 = t22 + ARIANE6_C(0.17) * t135;
-    const ariane6_real_t t138 = t53 * t137 - t54 * t136;
-    const ariane6_real_t t139 = t53 * t136 + t54 * t137 + ARIANE6_C(-0.685) * t135;
-    const ariane6_real_t t140 = t87 * t139 - t86 * t138 + ARIANE6_C(-0.18) * t135;
-    const ariane6_real_t t141 = t140 * t14;
-    const ariane6_real_t t142 = t39 * t50; /* link j5: column of the mass matrix */
-    const ariane6_real_t t143 = t36 * t37 + t39 * t5 + ARIANE6_C(0.488) * t142;
-    const ariane6_real_t t144 = ARIANE6_C(0.17) * t142 - t20;
-    const ariane6_real_t t145 = t53 * t144 - t54 * t143;
-    const ariane6_real_t t146 = t53 * t143 + t54 * t144 + ARIANE6_C(-0.685) * t142;
-    const ariane6_real_t t147 = t87 * t146 - t86 * t145 + ARIANE6_C(-0.18) * t142 + t140 * t15;
-    const ariane6_real_t t148 = t147 * t24;
-    const ariane6_real_t t149 = t115 + t116; /* link j4: column of the mass matrix */
-    const ariane6_real_t t150 = t30 + ARIANE6_C(0.17) * t48;
-    const ariane6_real_t t151 = t54 * t149 + t53 * t150;
-    const ariane6_real_t t152 = t53 * t149 - t54 * t150 + ARIANE6_C(0.685) * t48;
-    const ariane6_real_t t153 = t86 * t151 + t87 * t152 + ARIANE6_C(0.18) * t48 + t140 * t32;
-    const ariane6_real_t t154 = t153 - t147 * t25;
-    const ariane6_real_t t155 = t154 * t77;
-    const ariane6_real_t t156 = t134 - t140 * t141 - t147 * t148 - t154 * t155;
+    const ariane6_real_t t125 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t124 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t126 = ARIANE6_C(1.0) / t125;
+    const ariane6_real_t t127 = ARIANE6_C(-4063.3400000000006) * t126;
+    const ariane6_real_t t129 = t128 * t127;
+    const ariane6_real_t t130 = parameters[ZZ1R] + t123 + parameters[IA1] * (t129 * t129);
+    const ariane6_real_t t131 = t37 * t61 - t34 * t42; /* link j6: column of the mass matrix */
+    const ariane6_real_t t132 = t34 * t60 - t37 * t13 + ARIANE6_C(0.488) * t131;
+    const ariane6_real_t t133 = t21 + ARIANE6_C(0.17) * t131;
+    const ariane6_real_t t134 = t51 * t133 - t52 * t132;
+    const ariane6_real_t t135 = t51 * t132 + t52 * t133 + ARIANE6_C(-0.685) * t131;
+    const ariane6_real_t t136 = t84 * t135 - t83 * t134 + ARIANE6_C(-0.18) * t131;
+    const ariane6_real_t t137 = t136 * t14;
+    const ariane6_real_t t138 = t37 * t48; /* link j5: column of the mass matrix */
+    const ariane6_real_t t139 = t34 * t35 + t37 * t5 + ARIANE6_C(0.488) * t138;
+    const ariane6_real_t t140 = ARIANE6_C(0.17) * t138 - t19;
+    const ariane6_real_t t141 = t51 * t140 - t52 * t139;
+    const ariane6_real_t t142 = t51 * t139 + t52 * t140 + ARIANE6_C(-0.685) * t138;
+    const ariane6_real_t t143 = t84 * t142 - t83 * t141 + ARIANE6_C(-0.18) * t138 + t136 * t15;
+    const ariane6_real_t t144 = t143 * t23;
+    const ariane6_real_t t145 = t111 + t112; /* link j4: column of the mass matrix */
+    const ariane6_real_t t146 = t29 + ARIANE6_C(0.17) * t46;
+    const ariane6_real_t t147 = t52 * t145 + t51 * t146;
+    const ariane6_real_t t148 = t51 * t145 - t52 * t146 + ARIANE6_C(0.685) * t46;
+    const ariane6_real_t t149 = t83 * t147 + t84 * t148 + ARIANE6_C(0.18) * t46 + t136 * t31;
+    const ariane6_real_t t150 = t149 - t143 * t24;
+    const ariane6_real_t t151 = t150 * t75;
+    const ariane6_real_t t152 = t130 - t136 * t137 - t143 * t144 - t150 * t151;
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t157 = parameters[XZ3] + (t39 * t40 - t38 + ARIANE6_C(-0.17) * t74);
-    const ariane6_real_t t158 = parameters[YZ3] - t75;
-    const ariane6_real_t t159 = t53 * t158 - t54 * t157; /* link j3: column of the mass matrix */
-    const ariane6_real_t t160 = t53 * t157 + t54 * t158;
-    const ariane6_real_t t161 = t87 * t160 - t86 * t159 - t140 * t67 - t147 * t71;
-    const ariane6_real_t t162 = t161 - t154 * t78;
-    const ariane6_real_t t163 = t162 * t107;
+    const ariane6_real_t t153 = parameters[XZ3] + (t37 * t38 - t36 + ARIANE6_C(-0.17) * t72);
+    const ariane6_real_t t154 = parameters[YZ3] - t73;
+    const ariane6_real_t t155 = t51 * t154 - t52 * t153; /* link j3: column of the mass matrix */
+    const ariane6_real_t t156 = t51 * t153 + t52 * t154;
+    const ariane6_real_t t157 = t84 * t156 - t83 * t155 - t136 * t65 - t143 * t69;
+    const ariane6_real_t t158 = t157 - t150 * t76;
+    const ariane6_real_t t159 = t158 * t104;
     /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t164 = t159 + ARIANE6_C(-0.685) * t74 - parameters[XZ2R];
-    const ariane6_real_t t165 = parameters[YZ2] + t160;
-    const ariane6_real_t t166 = t87 * t165 - t86 * t164 - t140 * t97 - t147 * t101;
-    const ariane6_real_t t167 = t166 - t154 * t105 + t162 * t110;
-    const ariane6_real_t t168 = ARIANE6_C(1.0) / t111;
-    const ariane6_real_t t169 = t167 * t168;
-    const ariane6_real_t t170 = ariane6_bounded(t156 - t162 * t163 - t167 * t169);
+    const ariane6_real_t t160 = t155 + ARIANE6_C(-0.685) * t72 - parameters[XZ2R];
+    const ariane6_real_t t161 = parameters[YZ2] + t156;
+    const ariane6_real_t t162 = t84 * t161 - t83 * t160 - t136 * t94 - t143 * t98;
+    const ariane6_real_t t163 = t162 - t150 * t102 + t158 * t107;
+    const ariane6_real_t t164 = ARIANE6_C(1.0) / t108;
+    const ariane6_real_t t165 = t163 * t164;
+    const ariane6_real_t t166 = t152 - t158 * t159 - t163 * t165;
+    if (!(t166 > ARIANE6_C(1.0e-12))) {
+        ariane6_zero(ddq, 6);
+        ariane6_zero(ddq_by_q, 36);
+        ariane6_zero(ddq_by_dq, 36);
+        ariane6_zero(ddq_by_input, 36);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t167 = ariane6_min(t16 + ARIANE6_C(-1.0e-9) * t12, t32 + ARIANE6_C(-1.0e-9) * t30);
+    const ariane6_real_t t168 = ariane6_min(t167, t77 + ARIANE6_C(-1.0e-9) * t59);
+    const ariane6_real_t t169 = ariane6_min(t168, t108 + ARIANE6_C(-1.0e-9) * t91);
+    const ariane6_real_t t170 = ariane6_min(t169, t166 + ARIANE6_C(-1.0e-9) * t130);
     if (!(t170 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -385,1221 +364,1223 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t171 = t170 + ARIANE6_C(-1.0e-9) * t134;
-    if (!(t171 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t172 = t86 * dq[0]; /* link j2: motion */
-    const ariane6_real_t t173 = t87 * dq[0];
-    const ariane6_real_t t174 = t54 * t172 + t53 * t173; /* link j3: motion */
-    const ariane6_real_t t175 = t54 * t173 - t53 * t172;
-    const ariane6_real_t t176 = t174 * t175;
-    const ariane6_real_t t177 = dq[1] + dq[2];
-    const ariane6_real_t t178 = t175 * t177;
-    const ariane6_real_t t179 = ARIANE6_C(2.0) * t178; /* link j4: motion */
-    const ariane6_real_t t180 = t39 * t179 - t36 * t176;
-    const ariane6_real_t t181 = t39 * t177;
-    const ariane6_real_t t182 = t36 * t174 - t181;
-    const ariane6_real_t t183 = dq[3] + t175;
-    const ariane6_real_t t184 = t182 * t183;
-    const ariane6_real_t t185 = t180 + t184;
-    const ariane6_real_t t186 = t10 * t182 + t6 * t183; /* link j5: motion */
-    const ariane6_real_t t187 = t6 * t182 - t10 * t183;
-    const ariane6_real_t t188 = t186 * t187;
-    const ariane6_real_t t189 = t185 + t188; /* link j6: motion */
-    const ariane6_real_t t190 = t39 * t176 + t36 * t179; /* link j4: motion */
-    const ariane6_real_t t191 = t36 * t177;
-    const ariane6_real_t t192 = t39 * t174 + t191;
-    const ariane6_real_t t193 = t192 * t183;
-    const ariane6_real_t t194 = t190 - t193;
-    const ariane6_real_t t195 = t194 - t193; /* link j5: motion */
-    const ariane6_real_t t196 = t182 * t192; /* link j4: motion */
-    const ariane6_real_t t197 = t174 * t177; /* link j3: motion */
-    const ariane6_real_t t198 = t196 - t197; /* link j5: motion */
-    const ariane6_real_t t199 = t6 * t198 + t10 * t195;
-    const ariane6_real_t t200 = dq[4] + t192;
-    const ariane6_real_t t201 = t187 * t200;
-    const ariane6_real_t t202 = t199 - t201;
-    const ariane6_real_t t203 = t202 - t201; /* link j6: motion */
-    const ariane6_real_t t204 = t1 * t203 - t2 * t189;
-    const ariane6_real_t t205 = t2 * t186 + t1 * t200;
-    const ariane6_real_t t206 = dq[5] - t187;
-    const ariane6_real_t t207 = t205 * t206;
-    const ariane6_real_t t208 = t204 - t207;
-    const ariane6_real_t t209 = t1 * t189 + t2 * t203;
-    const ariane6_real_t t210 = t1 * t186 - t2 * t200;
-    const ariane6_real_t t211 = t210 * t206;
-    const ariane6_real_t t212 = t211 + (t209 + t211); /* link j6: force and moment */
-    const ariane6_real_t t213 = t10 * t198 - t6 * t195; /* link j5: motion */
-    const ariane6_real_t t214 = t186 * t200;
-    const ariane6_real_t t215 = t213 - t214;
-    const ariane6_real_t t216 = t210 * t205; /* link j6: motion */
-    const ariane6_real_t t217 = t216 - t215; /* link j6: force and moment */
-    const ariane6_real_t t218 = parameters[ZZ6] * t207 - parameters[XX6R] * t208 + parameters[XY6] * t212
-        + parameters[XZ6R] * t217;
-    const ariane6_real_t t219 = t205 * t205; /* link j6: motion */
-    const ariane6_real_t t220 = t206 * t206;
-    const ariane6_real_t t221 = dq[0] * dq[0];
-    const ariane6_real_t t222 = ARIANE6_C(0.18) * t221; /* link j2: motion */
-    const ariane6_real_t t223 = t87 * t222 + ARIANE6_C(-9.81) * t86;
-    const ariane6_real_t t224 = t173 * t173;
-    const ariane6_real_t t225 = dq[1] * dq[1];
-    const ariane6_real_t t226 = t223 + ARIANE6_C(0.685) * (t225 + t224); /* link j3: motion */
-    const ariane6_real_t t227 = t54 * t226;
-    const ariane6_real_t t228 = t86 * t222 + ARIANE6_C(9.81) * t87; /* link j2: motion */
-    const ariane6_real_t t229 = t172 * t173;
-    const ariane6_real_t t230 = ARIANE6_C(-0.685) * t229 - t228; /* link j3: motion */
-    const ariane6_real_t t231 = t227 + t53 * t230;
-    const ariane6_real_t t232 = t175 * t175;
-    const ariane6_real_t t233 = t177 * t177;
-    const ariane6_real_t t234 = t232 + t233; /* link j4: motion */
-    const ariane6_real_t t235 = t231 + (ARIANE6_C(-0.17) * t234 + ARIANE6_C(-0.488) * t176);
-    const ariane6_real_t t236 = dq[1] * t172; /* link j2: motion */
-    const ariane6_real_t t237 = ARIANE6_C(-1.37) * t236; /* link j3: motion */
+    const ariane6_real_t t171 = t83 * dq[0]; /* link j2: motion */
+    const ariane6_real_t t172 = t84 * dq[0];
+    const ariane6_real_t t173 = t52 * t171 + t51 * t172; /* link j3: motion */
+    const ariane6_real_t t174 = t52 * t172 - t51 * t171;
+    const ariane6_real_t t175 = t173 * t174;
+    const ariane6_real_t t176 = dq[1] + dq[2];
+    const ariane6_real_t t177 = t174 * t176;
+    const ariane6_real_t t178 = ARIANE6_C(2.0) * t177; /* link j4: motion */
+    const ariane6_real_t t179 = t37 * t178 - t34 * t175;
+    const ariane6_real_t t180 = t37 * t176;
+    const ariane6_real_t t181 = t34 * t173 - t180;
+    const ariane6_real_t t182 = dq[3] + t174;
+    const ariane6_real_t t183 = t181 * t182;
+    const ariane6_real_t t184 = t179 + t183;
+    const ariane6_real_t t185 = t10 * t181 + t6 * t182; /* link j5: motion */
+    const ariane6_real_t t186 = t6 * t181 - t10 * t182;
+    const ariane6_real_t t187 = t185 * t186;
+    const ariane6_real_t t188 = t184 + t187; /* link j6: motion */
+    const ariane6_real_t t189 = t37 * t175 + t34 * t178; /* link j4: motion */
+    const ariane6_real_t t190 = t34 * t176;
+    const ariane6_real_t t191 = t37 * t173 + t190;
+    const ariane6_real_t t192 = t191 * t182;
+    const ariane6_real_t t193 = t189 - t192;
+    const ariane6_real_t t194 = t193 - t192; /* link j5: motion */
+    const ariane6_real_t t195 = t181 * t191; /* link j4: motion */
+    const ariane6_real_t t196 = t173 * t176; /* link j3: motion */
+    const ariane6_real_t t197 = t195 - t196; /* link j5: motion */
+    const ariane6_real_t t198 = t6 * t197 + t10 * t194;
+    const ariane6_real_t t199 = dq[4] + t191;
+    const ariane6_real_t t200 = t186 * t199;
+    const ariane6_real_t t201 = t198 - t200;
+    const ariane6_real_t t202 = t201 - t200; /* link j6: motion */
+    const ariane6_real_t t203 = t1 * t202 - t2 * t188;
+    const ariane6_real_t t204 = t2 * t185 + t1 * t199;
+    const ariane6_real_t t205 = dq[5] - t186;
+    const ariane6_real_t t206 = t204 * t205;
+    const ariane6_real_t t207 = t203 - t206;
+    const ariane6_real_t t208 = t1 * t188 + t2 * t202;
+    const ariane6_real_t t209 = t1 * t185 - t2 * t199;
+    const ariane6_real_t t210 = t209 * t205;
+    const ariane6_real_t t211 = t210 + (t208 + t210); /* link j6: force and moment */
+    const ariane6_real_t t212 = t10 * t197 - t6 * t194; /* link j5: motion */
+    const ariane6_real_t t213 = t185 * t199;
+    const ariane6_real_t t214 = t212 - t213;
+    const ariane6_real_t t215 = t209 * t204; /* link j6: motion */
+    const ariane6_real_t t216 = t215 - t214; /* link j6: force and moment */
+    const ariane6_real_t t217 = parameters[ZZ6] * t206 - parameters[XX6R] * t207 + parameters[XY6] * t211
+        + parameters[XZ6R] * t216;
+    const ariane6_real_t t218 = t204 * t204; /* link j6: motion */
+    const ariane6_real_t t219 = t205 * t205;
+    const ariane6_real_t t220 = dq[0] * dq[0];
+    const ariane6_real_t t221 = ARIANE6_C(0.18) * t220; /* link j2: motion */
+    const ariane6_real_t t222 = t84 * t221 + ARIANE6_C(-9.81) * t83;
+    const ariane6_real_t t223 = t172 * t172;
+    const ariane6_real_t t224 = dq[1] * dq[1];
+    const ariane6_real_t t225 = t222 + ARIANE6_C(0.685) * (t224 + t223); /* link j3: motion */
+    const ariane6_real_t t226 = t52 * t225;
+    const ariane6_real_t t227 = t83 * t221 + ARIANE6_C(9.81) * t84; /* link j2: motion */
+    const ariane6_real_t t228 = t171 * t172;
+    const ariane6_real_t t229 = ARIANE6_C(-0.685) * t228 - t227; /* link j3: motion */
+    const ariane6_real_t t230 = t226 + t51 * t229;
+    const ariane6_real_t t231 = t174 * t174;
+    const ariane6_real_t t232 = t176 * t176;
+    const ariane6_real_t t233 = t231 + t232; /* link j4: motion */
+    const ariane6_real_t t234 = t230 + (ARIANE6_C(-0.17) * t233 + ARIANE6_C(-0.488) * t175);
+    const ariane6_real_t t235 = dq[1] * t171; /* link j2: motion */
+    const ariane6_real_t t236 = ARIANE6_C(-1.37) * t235; /* link j3: motion */
     /* link j4: motion */
-    const ariane6_real_t t238 = t237 + (ARIANE6_C(0.34) * t197 + ARIANE6_C(-0.976) * t178);
-    const ariane6_real_t t239 = t36 * t235 - t39 * t238;
-    const ariane6_real_t t240 = t53 * t226; /* link j3: motion */
-    const ariane6_real_t t241 = t54 * t230 - t240;
-    const ariane6_real_t t242 = t174 * t174;
-    const ariane6_real_t t243 = t242 + t233; /* link j4: motion */
-    const ariane6_real_t t244 = t241 + (ARIANE6_C(0.17) * t176 + ARIANE6_C(0.488) * t243);
-    const ariane6_real_t t245 = t10 * t244 - t6 * t239; /* link j5: motion */
+    const ariane6_real_t t237 = t236 + (ARIANE6_C(0.34) * t196 + ARIANE6_C(-0.976) * t177);
+    const ariane6_real_t t238 = t34 * t234 - t37 * t237;
+    const ariane6_real_t t239 = t51 * t225; /* link j3: motion */
+    const ariane6_real_t t240 = t52 * t229 - t239;
+    const ariane6_real_t t241 = t173 * t173;
+    const ariane6_real_t t242 = t241 + t232; /* link j4: motion */
+    const ariane6_real_t t243 = t240 + (ARIANE6_C(0.17) * t175 + ARIANE6_C(0.488) * t242);
+    const ariane6_real_t t244 = t10 * t243 - t6 * t238; /* link j5: motion */
     /* link j6: force and moment */
-    const ariane6_real_t t246 = t218 - parameters[YZ6R] * (t219 - t220) + parameters[MY6] * t245;
-    const ariane6_real_t t247 = t208 - t207;
-    const ariane6_real_t t248 = parameters[XX6R] - parameters[ZZ6];
-    const ariane6_real_t t249 = t215 + t216;
-    const ariane6_real_t t250 = t210 * t210; /* link j6: motion */
+    const ariane6_real_t t245 = t217 - parameters[YZ6R] * (t218 - t219) + parameters[MY6] * t244;
+    const ariane6_real_t t246 = t207 - t206;
+    const ariane6_real_t t247 = parameters[XX6R] - parameters[ZZ6];
+    const ariane6_real_t t248 = t214 + t215;
+    const ariane6_real_t t249 = t209 * t209; /* link j6: motion */
     /* link j6: force and moment */
-    const ariane6_real_t t251 = t211 * t248 + parameters[XY6] * t247 + parameters[YZ6R] * t249
-        + parameters[XZ6R] * (t220 - t250);
-    const ariane6_real_t t252 = t251 + parameters[MX6] * t245;
-    const ariane6_real_t t253 = t214 - t215; /* link j6: motion */
-    const ariane6_real_t t254 = t185 - t188;
+    const ariane6_real_t t250 = t210 * t247 + parameters[XY6] * t246 + parameters[YZ6R] * t248
+        + parameters[XZ6R] * (t219 - t249);
+    const ariane6_real_t t251 = t250 + parameters[MX6] * t244;
+    const ariane6_real_t t252 = t213 - t214; /* link j6: motion */
+    const ariane6_real_t t253 = t184 - t187;
     /* link j5: force and moment */
-    const ariane6_real_t t255 = parameters[ZZ5R] * t201 - parameters[XX5R] * t202 + parameters[XY5] * t253
-        - parameters[XZ5] * t254;
-    const ariane6_real_t t256 = t187 * t187; /* link j5: motion */
-    const ariane6_real_t t257 = t200 * t200;
-    const ariane6_real_t t258 = t39 * t235 + t36 * t238; /* link j4: motion */
+    const ariane6_real_t t254 = parameters[ZZ5R] * t200 - parameters[XX5R] * t201 + parameters[XY5] * t252
+        - parameters[XZ5] * t253;
+    const ariane6_real_t t255 = t186 * t186; /* link j5: motion */
+    const ariane6_real_t t256 = t199 * t199;
+    const ariane6_real_t t257 = t37 * t234 + t34 * t237; /* link j4: motion */
     /* link j6: what it passes on */
-    const ariane6_real_t t259 = t255 + parameters[YZ5] * (t257 - t256) + parameters[MY5R] * t258 + (t1 * t246
-        + t2 * t252);
-    const ariane6_real_t t260 = t10 * t239 + t6 * t244; /* link j5: motion */
+    const ariane6_real_t t258 = t254 + parameters[YZ5] * (t256 - t255) + parameters[MY5R] * t257 + (t1 * t245
+        + t2 * t251);
+    const ariane6_real_t t259 = t10 * t238 + t6 * t243; /* link j5: motion */
     /* link j6: force and moment */
-    const ariane6_real_t t261 = parameters[MX6] * (t2 * t260 + t1 * t258) + parameters[MY6] * (t1 * t260
-        - t2 * t258);
-    const ariane6_real_t t262 = parameters[ZZ6] * t215 + parameters[XX6R] * t216 - parameters[YZ6R] * t209
-        + parameters[XZ6R] * t204;
-    const ariane6_real_t t263 = t262 + parameters[XY6] * (t250 - t219) + t261;
-    const ariane6_real_t t264 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
-    const ariane6_real_t t265 = t186 * t186; /* link j5: motion */
+    const ariane6_real_t t260 = parameters[MX6] * (t2 * t259 + t1 * t257) + parameters[MY6] * (t1 * t259
+        - t2 * t257);
+    const ariane6_real_t t261 = parameters[ZZ6] * t214 + parameters[XX6R] * t215 - parameters[YZ6R] * t208
+        + parameters[XZ6R] * t203;
+    const ariane6_real_t t262 = t261 + parameters[XY6] * (t249 - t218) + t260;
+    const ariane6_real_t t263 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
+    const ariane6_real_t t264 = t185 * t185; /* link j5: motion */
     /* link j5: force and moment */
-    const ariane6_real_t t266 = t214 * t264 + parameters[XY5] * t203 + parameters[YZ5] * t189
-        + parameters[XZ5] * (t257 - t265);
-    const ariane6_real_t t267 = t266 + parameters[MX5] * t258 + t263; /* link j6: what it passes on */
-    const ariane6_real_t t268 = t184 + t185; /* link j5: motion */
-    const ariane6_real_t t269 = t197 + t196;
+    const ariane6_real_t t265 = t213 * t263 + parameters[XY5] * t202 + parameters[YZ5] * t188
+        + parameters[XZ5] * (t256 - t264);
+    const ariane6_real_t t266 = t265 + parameters[MX5] * t257 + t262; /* link j6: what it passes on */
+    const ariane6_real_t t267 = t183 + t184; /* link j5: motion */
+    const ariane6_real_t t268 = t196 + t195;
     /* link j4: force and moment */
-    const ariane6_real_t t270 = parameters[ZZ4R] * t193 - parameters[XX4R] * t194 + parameters[XY4] * t268
-        + parameters[XZ4] * t269;
-    const ariane6_real_t t271 = t192 * t192; /* link j4: motion */
-    const ariane6_real_t t272 = t183 * t183;
+    const ariane6_real_t t269 = parameters[ZZ4R] * t192 - parameters[XX4R] * t193 + parameters[XY4] * t267
+        + parameters[XZ4] * t268;
+    const ariane6_real_t t270 = t191 * t191; /* link j4: motion */
+    const ariane6_real_t t271 = t182 * t182;
     /* link j5: what it passes on */
-    const ariane6_real_t t273 = t270 + parameters[YZ4] * (t272 - t271) + parameters[MY4R] * t244 + (t10 * t259
-        + t6 * t267);
+    const ariane6_real_t t272 = t269 + parameters[YZ4] * (t271 - t270) + parameters[MY4R] * t243 + (t10 * t258
+        + t6 * t266);
     /* link j5: force and moment */
-    const ariane6_real_t t274 = parameters[ZZ5R] * t185 + parameters[XX5R] * t188 + parameters[YZ5] * t213
-        + parameters[XZ5] * t199;
-    const ariane6_real_t t275 = parameters[XY5] * (t256 - t265) - t274 + (parameters[MX5] * t245
-        - parameters[MY5R] * t260);
-    const ariane6_real_t t276 = t275 + (t1 * t252 - t2 * t246); /* link j6: what it passes on */
-    const ariane6_real_t t277 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
-    const ariane6_real_t t278 = t182 * t182; /* link j4: motion */
+    const ariane6_real_t t273 = parameters[ZZ5R] * t184 + parameters[XX5R] * t187 + parameters[YZ5] * t212
+        + parameters[XZ5] * t198;
+    const ariane6_real_t t274 = parameters[XY5] * (t255 - t264) - t273 + (parameters[MX5] * t244
+        - parameters[MY5R] * t259);
+    const ariane6_real_t t275 = t274 + (t1 * t251 - t2 * t245); /* link j6: what it passes on */
+    const ariane6_real_t t276 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
+    const ariane6_real_t t277 = t181 * t181; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane6_real_t t279 = t184 * t277 + parameters[XY4] * t195 + parameters[YZ4] * t198
-        + parameters[XZ4] * (t272 - t278);
-    const ariane6_real_t t280 = t279 + parameters[MX4] * t244 + t276; /* link j5: what it passes on */
+    const ariane6_real_t t278 = t183 * t276 + parameters[XY4] * t194 + parameters[YZ4] * t197
+        + parameters[XZ4] * (t271 - t277);
+    const ariane6_real_t t279 = t278 + parameters[MX4] * t243 + t275; /* link j5: what it passes on */
     /* link j6: force and moment */
-    const ariane6_real_t t281 = parameters[MX6] * (t219 + t220) + parameters[MY6] * t249;
-    const ariane6_real_t t282 = parameters[MX6] * t217 + parameters[MY6] * (t250 + t220);
+    const ariane6_real_t t280 = parameters[MX6] * (t218 + t219) + parameters[MY6] * t248;
+    const ariane6_real_t t281 = parameters[MX6] * t216 + parameters[MY6] * (t249 + t219);
     /* link j6: what it passes on */
-    const ariane6_real_t t283 = parameters[MX5] * (t256 + t257) + parameters[MY5R] * t189 + (t1 * t281
-        - t2 * t282);
-    const ariane6_real_t t284 = parameters[MX5] * t254 - parameters[MY5R] * (t265 + t257)
-        + (parameters[MX6] * t212 + parameters[MY6] * t247);
+    const ariane6_real_t t282 = parameters[MX5] * (t255 + t256) + parameters[MY5R] * t188 + (t1 * t280
+        - t2 * t281);
+    const ariane6_real_t t283 = parameters[MX5] * t253 - parameters[MY5R] * (t264 + t256)
+        + (parameters[MX6] * t211 + parameters[MY6] * t246);
     /* link j5: what it passes on */
-    const ariane6_real_t t285 = parameters[MX4] * (t271 + t272) + parameters[MY4R] * t198 + (t10 * t283
-        + t6 * t284);
+    const ariane6_real_t t284 = parameters[MX4] * (t270 + t271) + parameters[MY4R] * t197 + (t10 * t282
+        + t6 * t283);
     /* link j6: what it passes on */
-    const ariane6_real_t t286 = parameters[MX5] * t253 + parameters[MY5R] * t203 + (t2 * t281 + t1 * t282);
+    const ariane6_real_t t285 = parameters[MX5] * t252 + parameters[MY5R] * t202 + (t2 * t280 + t1 * t281);
     /* link j5: what it passes on */
-    const ariane6_real_t t287 = parameters[MX4] * t269 + parameters[MY4R] * (t278 + t272) + t286;
-    const ariane6_real_t t288 = t39 * t285 + t36 * t287; /* link j4: what it passes on */
-    const ariane6_real_t t289 = ARIANE6_C(2.0) * t197; /* link j4: motion */
+    const ariane6_real_t t286 = parameters[MX4] * t268 + parameters[MY4R] * (t277 + t271) + t285;
+    const ariane6_real_t t287 = t37 * t284 + t34 * t286; /* link j4: what it passes on */
+    const ariane6_real_t t288 = ARIANE6_C(2.0) * t196; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane6_real_t t290 = parameters[XY3R] * t289 - (parameters[XX3R] * t178 + parameters[ZZ3R] * t178)
-        - parameters[XZ3] * t176;
+    const ariane6_real_t t289 = parameters[XY3R] * t288 - (parameters[XX3R] * t177 + parameters[ZZ3R] * t177)
+        - parameters[XZ3] * t175;
     /* link j4: what it passes on */
-    const ariane6_real_t t291 = t290 + parameters[YZ3] * (t233 - t232) + parameters[MY3R] * t237 + (t36 * t273
-        + t39 * t280 + ARIANE6_C(-0.488) * t288);
+    const ariane6_real_t t290 = t289 + parameters[YZ3] * (t232 - t231) + parameters[MY3R] * t236 + (t34 * t272
+        + t37 * t279 + ARIANE6_C(-0.488) * t287);
     /* link j4: force and moment */
-    const ariane6_real_t t292 = parameters[ZZ4R] * t197 - parameters[XX4R] * t196 + parameters[YZ4] * t180
-        - parameters[XZ4] * t190;
-    const ariane6_real_t t293 = t292 - parameters[XY4] * (t278 - t271) - (parameters[MX4] * t258
-        + parameters[MY4R] * t239);
-    const ariane6_real_t t294 = t293 + (t6 * t259 - t10 * t267); /* link j5: what it passes on */
-    const ariane6_real_t t295 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
-    const ariane6_real_t t296 = parameters[XY3R] * t179 - t197 * t295 - parameters[YZ3] * t176
-        - parameters[XZ3] * (t242 - t233);
+    const ariane6_real_t t291 = parameters[ZZ4R] * t196 - parameters[XX4R] * t195 + parameters[YZ4] * t179
+        - parameters[XZ4] * t189;
+    const ariane6_real_t t292 = t291 - parameters[XY4] * (t277 - t270) - (parameters[MX4] * t257
+        + parameters[MY4R] * t238);
+    const ariane6_real_t t293 = t292 + (t6 * t258 - t10 * t266); /* link j5: what it passes on */
+    const ariane6_real_t t294 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
+    const ariane6_real_t t295 = parameters[XY3R] * t178 - t196 * t294 - parameters[YZ3] * t175
+        - parameters[XZ3] * (t241 - t232);
     /* link j4: what it passes on */
-    const ariane6_real_t t297 = t296 + parameters[MX3R] * t237 - (t294 - ARIANE6_C(0.17) * t288);
-    const ariane6_real_t t298 = dq[1] * t173; /* link j2: motion */
-    const ariane6_real_t t299 = parameters[ZZ2R] * t298; /* link j2: force and moment */
-    const ariane6_real_t t300 = ARIANE6_C(2.0) * t236; /* link j2: motion */
+    const ariane6_real_t t296 = t295 + parameters[MX3R] * t236 - (t293 - ARIANE6_C(0.17) * t287);
+    const ariane6_real_t t297 = dq[1] * t172; /* link j2: motion */
+    const ariane6_real_t t298 = parameters[ZZ2R] * t297; /* link j2: force and moment */
+    const ariane6_real_t t299 = ARIANE6_C(2.0) * t235; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane6_real_t t301 = parameters[XY2] * t300 - (parameters[XX2R] * t298 + t299)
-        - parameters[XZ2R] * t229;
-    const ariane6_real_t t302 = parameters[YZ2] * (t225 - t224);
+    const ariane6_real_t t300 = parameters[XY2] * t299 - (parameters[XX2R] * t297 + t298)
+        - parameters[XZ2R] * t228;
+    const ariane6_real_t t301 = parameters[YZ2] * (t224 - t223);
     /* link j2: what it passes on */
-    const ariane6_real_t t303 = t86 * (t301 + t302 + (t54 * t291 + t53 * t297));
+    const ariane6_real_t t302 = t83 * (t300 + t301 + (t52 * t290 + t51 * t296));
     /* link j4: what it passes on */
-    const ariane6_real_t t304 = parameters[MX3R] * t289 + parameters[MY3R] * t179 + t288;
-    const ariane6_real_t t305 = t236 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
-    const ariane6_real_t t306 = ARIANE6_C(2.0) * t298; /* link j2: motion */
-    const ariane6_real_t t307 = t172 * t172;
-    const ariane6_real_t t308 = parameters[XZ2R] * (t307 - t225); /* link j2: force and moment */
+    const ariane6_real_t t303 = parameters[MX3R] * t288 + parameters[MY3R] * t178 + t287;
+    const ariane6_real_t t304 = t235 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
+    const ariane6_real_t t305 = ARIANE6_C(2.0) * t297; /* link j2: motion */
+    const ariane6_real_t t306 = t171 * t171;
+    const ariane6_real_t t307 = parameters[XZ2R] * (t306 - t224); /* link j2: force and moment */
     /* link j3: what it passes on */
-    const ariane6_real_t t309 = t305 - parameters[XY2] * t306 + parameters[YZ2] * t229 + t308 + (t53 * t291
-        - t54 * t297 + ARIANE6_C(0.685) * t304);
+    const ariane6_real_t t308 = t304 - parameters[XY2] * t305 + parameters[YZ2] * t228 + t307 + (t51 * t290
+        - t52 * t296 + ARIANE6_C(0.685) * t303);
     /* link j2: what it passes on */
-    const ariane6_real_t t310 = t303 + t87 * t309 + ARIANE6_C(0.18) * (parameters[MX2R] * t300
-        + parameters[MY2] * t306 + t304);
-    const ariane6_real_t t311 = t133 * dq[0];
-    const ariane6_real_t t312 = ariane6_sign(t311); /* joint j1: coulomb_friction */
-    const ariane6_real_t t313 = ARIANE6_C(82.55365977800001) * (t130 * t130); /* joint j1: drive */
-    const ariane6_real_t t314 = t132 * t132;
-    const ariane6_real_t t315 = ARIANE6_C(4063.3400000000006) * t128 + t313 * t314;
-    const ariane6_real_t t316 = t130 * t315;
-    const ariane6_real_t t317 = parameters[FV1] * t311 + parameters[FC1] * t312
-        + parameters[IA1] * (t316 * t221);
-    const ariane6_real_t t318 = ARIANE6_C(0.004) * t133;
-    const ariane6_real_t t319 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
-    const ariane6_real_t t320 = ARIANE6_C(1.0e2) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5])
-        + parameters[FC6] * t319) + t263;
-    const ariane6_real_t t321 = ARIANE6_C(5.0) * input[5] - t320;
-    const ariane6_real_t t322 = t310 - t133 * t317 - input[0] * t318 - t321 * t141;
-    const ariane6_real_t t323 = t11 * dq[4];
-    const ariane6_real_t t324 = ariane6_sign(t323); /* joint j5: coulomb_friction */
-    const ariane6_real_t t325 = ARIANE6_C(-62.9983008) * (t8 * t8); /* joint j5: drive */
-    const ariane6_real_t t326 = t10 * t10;
-    const ariane6_real_t t327 = ARIANE6_C(3549.6000000000004) * t6 - t325 * t326;
-    const ariane6_real_t t328 = t8 * t327;
-    const ariane6_real_t t329 = dq[4] * dq[4];
-    const ariane6_real_t t330 = parameters[FV5] * t323 + parameters[FC5] * t324
-        + parameters[IA5] * (t328 * t329);
-    const ariane6_real_t t331 = ARIANE6_C(0.004) * t11;
-    const ariane6_real_t t332 = input[4] * t331 - (t11 * t330 - t276) + t321 * t15;
-    const ariane6_real_t t333 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ariane6_real_t t334 = ARIANE6_C(1.0e2) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3])
-        + parameters[FC4] * t333) - t294;
-    const ariane6_real_t t335 = ARIANE6_C(5.0) * input[3] - t334 - t321 * t32 + t332 * t25;
-    const ariane6_real_t t336 = t36 * t285 - t39 * t287; /* link j4: what it passes on */
+    const ariane6_real_t t309 = t302 + t84 * t308 + ARIANE6_C(0.18) * (parameters[MX2R] * t299
+        + parameters[MY2] * t305 + t303);
+    const ariane6_real_t t310 = t129 * dq[0];
+    const ariane6_real_t t311 = ariane6_sign(t310); /* joint j1: coulomb_friction */
+    const ariane6_real_t t312 = ARIANE6_C(82.55365977800001) * (t126 * t126); /* joint j1: drive */
+    const ariane6_real_t t313 = t128 * t128;
+    const ariane6_real_t t314 = ARIANE6_C(4063.3400000000006) * t124 + t312 * t313;
+    const ariane6_real_t t315 = t126 * t314;
+    const ariane6_real_t t316 = parameters[FV1] * t310 + parameters[FC1] * t311
+        + parameters[IA1] * (t315 * t220);
+    const ariane6_real_t t317 = ARIANE6_C(0.004) * t129;
+    const ariane6_real_t t318 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
+    const ariane6_real_t t319 = ARIANE6_C(1.0e2) * (parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5])
+        + parameters[FC6] * t318) + t262;
+    const ariane6_real_t t320 = ARIANE6_C(5.0) * input[5] - t319;
+    const ariane6_real_t t321 = t309 - t129 * t316 - input[0] * t317 - t320 * t137;
+    const ariane6_real_t t322 = t11 * dq[4];
+    const ariane6_real_t t323 = ariane6_sign(t322); /* joint j5: coulomb_friction */
+    const ariane6_real_t t324 = ARIANE6_C(-62.9983008) * (t8 * t8); /* joint j5: drive */
+    const ariane6_real_t t325 = t10 * t10;
+    const ariane6_real_t t326 = ARIANE6_C(3549.6000000000004) * t6 - t324 * t325;
+    const ariane6_real_t t327 = t8 * t326;
+    const ariane6_real_t t328 = dq[4] * dq[4];
+    const ariane6_real_t t329 = parameters[FV5] * t322 + parameters[FC5] * t323
+        + parameters[IA5] * (t327 * t328);
+    const ariane6_real_t t330 = ARIANE6_C(0.004) * t11;
+    const ariane6_real_t t331 = input[4] * t330 - (t11 * t329 - t275) + t320 * t15;
+    const ariane6_real_t t332 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ariane6_real_t t333 = ARIANE6_C(1.0e2) * (parameters[FV4] * (ARIANE6_C(1.0e2) * dq[3])
+        + parameters[FC4] * t332) - t293;
+    const ariane6_real_t t334 = ARIANE6_C(5.0) * input[3] - t333 - t320 * t31 + t331 * t24;
+    const ariane6_real_t t335 = t34 * t284 - t37 * t286; /* link j4: what it passes on */
     /* link j5: what it passes on */
-    const ariane6_real_t t337 = parameters[MX4] * t268 + parameters[MY4R] * t195 - (t6 * t283 - t10 * t284);
+    const ariane6_real_t t336 = parameters[MX4] * t267 + parameters[MY4R] * t194 - (t6 * t282 - t10 * t283);
     /* link j4: what it passes on */
-    const ariane6_real_t t338 = t39 * t273 - t36 * t280 - (ARIANE6_C(0.17) * t337 - ARIANE6_C(0.488) * t336);
+    const ariane6_real_t t337 = t37 * t272 - t34 * t279 - (ARIANE6_C(0.17) * t336 - ARIANE6_C(0.488) * t335);
     /* link j3: force and moment */
-    const ariane6_real_t t339 = parameters[XY3R] * (t242 - t232) - parameters[XX3R] * t176
-        + (parameters[MY3R] * t231 - parameters[MX3R] * t241);
-    const ariane6_real_t t340 = t339 + t338; /* link j4: what it passes on */
-    const ariane6_real_t t341 = t60 * dq[2];
-    const ariane6_real_t t342 = ariane6_sign(t341); /* joint j3: coulomb_friction */
-    const ariane6_real_t t343 = ARIANE6_C(350.9209088000001) * (t58 * t58); /* joint j3: drive */
-    const ariane6_real_t t344 = t55 * t55;
-    const ariane6_real_t t345 = ARIANE6_C(8377.600000000002) * t56 - t343 * t344;
-    const ariane6_real_t t346 = t58 * t345;
-    const ariane6_real_t t347 = dq[2] * dq[2];
-    const ariane6_real_t t348 = parameters[FV3] * t341 + parameters[FC3] * t342
-        + parameters[IA3] * (t346 * t347);
-    const ariane6_real_t t349 = ARIANE6_C(0.004) * t60;
-    const ariane6_real_t t350 = input[2] * t349 - (t60 * t348 + t340) - t321 * t67;
-    const ariane6_real_t t351 = t350 - t332 * t71 + t335 * t78;
-    const ariane6_real_t t352 = t322 - t332 * t148 + t335 * t155 - t351 * t163;
+    const ariane6_real_t t338 = parameters[XY3R] * (t241 - t231) - parameters[XX3R] * t175
+        + (parameters[MY3R] * t230 - parameters[MX3R] * t240);
+    const ariane6_real_t t339 = t338 + t337; /* link j4: what it passes on */
+    const ariane6_real_t t340 = t58 * dq[2];
+    const ariane6_real_t t341 = ariane6_sign(t340); /* joint j3: coulomb_friction */
+    const ariane6_real_t t342 = ARIANE6_C(350.9209088000001) * (t56 * t56); /* joint j3: drive */
+    const ariane6_real_t t343 = t53 * t53;
+    const ariane6_real_t t344 = ARIANE6_C(8377.600000000002) * t54 - t342 * t343;
+    const ariane6_real_t t345 = t56 * t344;
+    const ariane6_real_t t346 = dq[2] * dq[2];
+    const ariane6_real_t t347 = parameters[FV3] * t340 + parameters[FC3] * t341
+        + parameters[IA3] * (t345 * t346);
+    const ariane6_real_t t348 = ARIANE6_C(0.004) * t58;
+    const ariane6_real_t t349 = input[2] * t348 - (t58 * t347 + t339) - t320 * t65;
+    const ariane6_real_t t350 = t349 - t331 * t69 + t334 * t76;
+    const ariane6_real_t t351 = t321 - t331 * t144 + t334 * t151 - t350 * t159;
     /* link j3: what it passes on */
-    const ariane6_real_t t353 = t53 * (parameters[MX3R] * t234 - parameters[MY3R] * t176 + t336)
-        + t54 * (parameters[MY3R] * t243 - parameters[MX3R] * t176 - t337);
-    const ariane6_real_t t354 = parameters[XY2] * (t224 - t307); /* link j2: force and moment */
-    const ariane6_real_t t355 = parameters[XX2R] * t229;
-    const ariane6_real_t t356 = parameters[MX2R] * t228 + parameters[MY2] * t223;
-    const ariane6_real_t t357 = t93 * dq[1];
-    const ariane6_real_t t358 = ariane6_sign(t357); /* joint j2: coulomb_friction */
-    const ariane6_real_t t359 = ARIANE6_C(805.4089362000002) * (t91 * t91); /* joint j2: drive */
-    const ariane6_real_t t360 = t88 * t88;
-    const ariane6_real_t t361 = ARIANE6_C(12691.800000000003) * t89 - t359 * t360;
-    const ariane6_real_t t362 = t91 * t361;
-    const ariane6_real_t t363 = parameters[FV2] * t357 + parameters[FC2] * t358
-        + parameters[IA2] * (t362 * t225);
-    const ariane6_real_t t364 = t93 * t363 - (t355 + t354 - t356 - (t340 - ARIANE6_C(0.685) * t353));
-    const ariane6_real_t t365 = ARIANE6_C(0.004) * t93;
-    const ariane6_real_t t366 = input[1] * t365 - t364 - t321 * t97 - t332 * t101;
-    const ariane6_real_t t367 = t366 + t335 * t105 + t351 * t110;
-    const ariane6_real_t t368 = ARIANE6_C(-1.0) / t170;
-    const ariane6_real_t t369 = ariane6_bounded((t367 * t169 - t352) * t368);
-    ddq[0] = t369;
-    const ariane6_real_t t370 = ariane6_bounded(t367 * t168 - t169 * t369);
-    ddq[1] = t370;
-    const ariane6_real_t t371 = ariane6_bounded(t351 * t107 - t163 * t369 + t110 * t370);
-    ddq[2] = t371;
-    const ariane6_real_t t372 = ariane6_bounded(t335 * t77 + t155 * t369 + t105 * t370 + t78 * t371);
-    ddq[3] = t372;
-    const ariane6_real_t t373 = t332 * t24 - t148 * t369 - t101 * t370 - t71 * t371;
-    const ariane6_real_t t374 = ariane6_bounded(t373 + t25 * t372);
-    ddq[4] = t374;
-    const ariane6_real_t t375 = t321 * t14 - t141 * t369 - t97 * t370 - t67 * t371;
-    const ariane6_real_t t376 = ariane6_bounded(t375 - t32 * t372 + t15 * t374);
-    ddq[5] = t376;
-    const ariane6_real_t t377 = t370 + t371;
-    const ariane6_real_t t378 = t86 * t54 + t87 * t53; /* link j3: motion */
+    const ariane6_real_t t352 = t51 * (parameters[MX3R] * t233 - parameters[MY3R] * t175 + t335)
+        + t52 * (parameters[MY3R] * t242 - parameters[MX3R] * t175 - t336);
+    const ariane6_real_t t353 = parameters[XY2] * (t223 - t306); /* link j2: force and moment */
+    const ariane6_real_t t354 = parameters[XX2R] * t228;
+    const ariane6_real_t t355 = parameters[MX2R] * t227 + parameters[MY2] * t222;
+    const ariane6_real_t t356 = t90 * dq[1];
+    const ariane6_real_t t357 = ariane6_sign(t356); /* joint j2: coulomb_friction */
+    const ariane6_real_t t358 = ARIANE6_C(805.4089362000002) * (t88 * t88); /* joint j2: drive */
+    const ariane6_real_t t359 = t85 * t85;
+    const ariane6_real_t t360 = ARIANE6_C(12691.800000000003) * t86 - t358 * t359;
+    const ariane6_real_t t361 = t88 * t360;
+    const ariane6_real_t t362 = parameters[FV2] * t356 + parameters[FC2] * t357
+        + parameters[IA2] * (t361 * t224);
+    const ariane6_real_t t363 = t90 * t362 - (t354 + t353 - t355 - (t339 - ARIANE6_C(0.685) * t352));
+    const ariane6_real_t t364 = ARIANE6_C(0.004) * t90;
+    const ariane6_real_t t365 = input[1] * t364 - t363 - t320 * t94 - t331 * t98;
+    const ariane6_real_t t366 = t365 + t334 * t102 + t350 * t107;
+    const ariane6_real_t t367 = ARIANE6_C(-1.0) / t166;
+    const ariane6_real_t t368 = ariane6_held((t366 * t165 - t351) * t367);
+    ddq[0] = t368;
+    const ariane6_real_t t369 = ariane6_held(t366 * t164 - t165 * t368);
+    ddq[1] = t369;
+    const ariane6_real_t t370 = ariane6_held(t350 * t104 - t159 * t368 + t107 * t369);
+    ddq[2] = t370;
+    const ariane6_real_t t371 = ariane6_held(t334 * t75 + t151 * t368 + t102 * t369 + t76 * t370);
+    ddq[3] = t371;
+    const ariane6_real_t t372 = t331 * t23 - t144 * t368 - t98 * t369 - t69 * t370;
+    const ariane6_real_t t373 = ariane6_held(t372 + t24 * t371);
+    ddq[4] = t373;
+    const ariane6_real_t t374 = t320 * t14 - t137 * t368 - t94 * t369 - t65 * t370;
+    const ariane6_real_t t375 = ariane6_held(t374 - t31 * t371 + t15 * t373);
+    ddq[5] = t375;
+    const ariane6_real_t t376 = t83 * t51 - t84 * t52; /* link j3: motion */
+    const ariane6_real_t t377 = t368 * t376;
+    const ariane6_real_t t378 = t83 * t52 + t84 * t51;
     const ariane6_real_t t379 = dq[0] * t378;
-    const ariane6_real_t t380 = t86 * t53 - t87 * t54;
-    const ariane6_real_t t381 = dq[0] * t380;
-    const ariane6_real_t t382 = t379 * t381;
-    const ariane6_real_t t383 = t382 + t377;
-    const ariane6_real_t t384 = t369 * t378;
-    const ariane6_real_t t385 = t177 * t381;
-    const ariane6_real_t t386 = t385 - t384;
-    const ariane6_real_t t387 = t385 + t386;
-    const ariane6_real_t t388 = t36 * t383 - t39 * t387;
-    const ariane6_real_t t389 = t181 - t36 * t379; /* link j4: motion */
-    const ariane6_real_t t390 = t381 - dq[3];
-    const ariane6_real_t t391 = t389 * t390;
-    const ariane6_real_t t392 = t391 + t388;
-    const ariane6_real_t t393 = t374 + t392;
-    const ariane6_real_t t394 = t10 * t389 + t6 * t390; /* link j5: motion */
-    const ariane6_real_t t395 = t10 * t390 - t6 * t389;
-    const ariane6_real_t t396 = t394 * t395;
-    const ariane6_real_t t397 = t393 - t396;
-    const ariane6_real_t t398 = t369 * t380;
-    const ariane6_real_t t399 = t177 * t379; /* link j3: motion */
-    const ariane6_real_t t400 = t399 + t398;
-    const ariane6_real_t t401 = t400 - t372;
-    const ariane6_real_t t402 = t191 + t39 * t379; /* link j4: motion */
-    const ariane6_real_t t403 = t389 * t402;
-    const ariane6_real_t t404 = t403 + t401;
-    const ariane6_real_t t405 = t39 * t383 + t36 * t387;
-    const ariane6_real_t t406 = t402 * t390;
-    const ariane6_real_t t407 = t406 - t405;
-    const ariane6_real_t t408 = t406 + t407;
-    const ariane6_real_t t409 = t6 * t404 - t10 * t408;
-    const ariane6_real_t t410 = dq[4] + t402; /* link j5: motion */
-    const ariane6_real_t t411 = t395 * t410;
-    const ariane6_real_t t412 = t411 + t409;
-    const ariane6_real_t t413 = t411 + t412;
-    const ariane6_real_t t414 = t2 * t397 + t1 * t413;
-    const ariane6_real_t t415 = t2 * t394 - t1 * t410; /* link j6: motion */
-    const ariane6_real_t t416 = dq[5] - t395;
-    const ariane6_real_t t417 = t415 * t416;
-    const ariane6_real_t t418 = t414 - t417;
-    const ariane6_real_t t419 = t1 * t397 - t2 * t413;
-    const ariane6_real_t t420 = t1 * t394 + t2 * t410;
-    const ariane6_real_t t421 = t420 * t416;
-    const ariane6_real_t t422 = t421 + (t421 - t419);
-    const ariane6_real_t t423 = t10 * t404 + t6 * t408;
-    const ariane6_real_t t424 = t394 * t410; /* link j5: motion */
-    const ariane6_real_t t425 = t423 - t424;
-    const ariane6_real_t t426 = t425 - t376;
-    const ariane6_real_t t427 = t420 * t415; /* link j6: motion */
-    const ariane6_real_t t428 = t427 + t426;
-    const ariane6_real_t t429 = parameters[XX6R] * t418 - parameters[ZZ6] * t417 - parameters[XY6] * t422
-        + parameters[XZ6R] * t428;
-    const ariane6_real_t t430 = t415 * t415;
-    const ariane6_real_t t431 = t416 * t416;
-    const ariane6_real_t t432 = ARIANE6_C(0.18) * t369;
-    const ariane6_real_t t433 = t87 * t369;
-    const ariane6_real_t t434 = t236 + (t236 - t433);
-    const ariane6_real_t t435 = t432 + ARIANE6_C(-0.685) * t434;
-    const ariane6_real_t t436 = t399 + t400;
-    const ariane6_real_t t437 = t435 + (ARIANE6_C(0.17) * t436 + ARIANE6_C(0.488) * t387);
-    const ariane6_real_t t438 = t381 * t381; /* link j3: motion */
-    const ariane6_real_t t439 = t233 + t438; /* link j4: motion */
-    const ariane6_real_t t440 = t229 + t370;
-    const ariane6_real_t t441 = t228 + ARIANE6_C(0.685) * t440;
-    const ariane6_real_t t442 = t227 - t53 * t441;
-    const ariane6_real_t t443 = t442 + (ARIANE6_C(-0.17) * t439 + ARIANE6_C(0.488) * t383);
-    const ariane6_real_t t444 = t36 * t443 - t39 * t437;
-    const ariane6_real_t t445 = t382 - t377;
-    const ariane6_real_t t446 = t379 * t379; /* link j3: motion */
-    const ariane6_real_t t447 = t233 + t446; /* link j4: motion */
-    const ariane6_real_t t448 = t240 + t54 * t441;
-    const ariane6_real_t t449 = t448 + (ARIANE6_C(-0.488) * t447 + ARIANE6_C(0.17) * t445);
-    const ariane6_real_t t450 = t6 * t444 + t10 * t449;
-    const ariane6_real_t t451 = parameters[YZ6R] * (t431 - t430) + t429 - parameters[MY6] * t450;
-    const ariane6_real_t t452 = t426 - t427;
-    const ariane6_real_t t453 = t418 - t417;
-    const ariane6_real_t t454 = t420 * t420; /* link j6: motion */
-    const ariane6_real_t t455 = parameters[XZ6R] * (t454 - t431) + (t248 * t421 + parameters[XY6] * t453
-        + parameters[YZ6R] * t452);
-    const ariane6_real_t t456 = t455 + parameters[MX6] * t450;
-    const ariane6_real_t t457 = t425 - t424;
-    const ariane6_real_t t458 = t396 + t393;
-    const ariane6_real_t t459 = parameters[ZZ5R] * t411 + parameters[XX5R] * t412 + parameters[XY5] * t457
-        - parameters[XZ5] * t458;
-    const ariane6_real_t t460 = t395 * t395; /* link j5: motion */
-    const ariane6_real_t t461 = t410 * t410;
-    const ariane6_real_t t462 = t39 * t443 + t36 * t437;
-    const ariane6_real_t t463 = parameters[YZ5] * (t461 - t460) + t459 + parameters[MY5R] * t462 + (t1 * t451
-        - t2 * t456);
-    const ariane6_real_t t464 = parameters[ZZ6] * t426 - parameters[XX6R] * t427 + parameters[YZ6R] * t419
-        + parameters[XZ6R] * t414;
-    const ariane6_real_t t465 = t10 * t444 - t6 * t449;
-    const ariane6_real_t t466 = t2 * t465 + t1 * t462;
-    const ariane6_real_t t467 = t2 * t462 - t1 * t465;
-    const ariane6_real_t t468 = parameters[XY6] * (t430 - t454) + t464 + (parameters[MY6] * t467
-        - parameters[MX6] * t466);
-    const ariane6_real_t t469 = t394 * t394;
-    const ariane6_real_t t470 = parameters[XZ5] * (t469 - t461) + (t264 * t424 + parameters[XY5] * t413
-        - parameters[YZ5] * t397);
-    const ariane6_real_t t471 = t470 - parameters[MX5] * t462 + t468;
-    const ariane6_real_t t472 = t391 + t392;
-    const ariane6_real_t t473 = t403 - t401;
-    const ariane6_real_t t474 = parameters[ZZ4R] * t406 + parameters[XX4R] * t407 - parameters[XY4] * t472
-        + parameters[XZ4] * t473;
-    const ariane6_real_t t475 = t402 * t402; /* link j4: motion */
-    const ariane6_real_t t476 = t390 * t390;
-    const ariane6_real_t t477 = parameters[YZ4] * (t475 - t476) + t474 + parameters[MY4R] * t449 + (t6 * t471
-        - t10 * t463);
-    const ariane6_real_t t478 = parameters[ZZ5R] * t393 - parameters[XX5R] * t396 - parameters[YZ5] * t423
-        - parameters[XZ5] * t409;
-    const ariane6_real_t t479 = parameters[XY5] * (t469 - t460) + t478 + (parameters[MX5] * t450
-        + parameters[MY5R] * t465);
-    const ariane6_real_t t480 = t479 + (t2 * t451 + t1 * t456);
-    const ariane6_real_t t481 = t389 * t389;
-    const ariane6_real_t t482 = parameters[XZ4] * (t481 - t476) + (parameters[YZ4] * t404 - (t277 * t391
-        + parameters[XY4] * t408));
-    const ariane6_real_t t483 = t482 + parameters[MX4] * t449 + t480;
-    const ariane6_real_t t484 = parameters[MX6] * (t430 + t431) - parameters[MY6] * t452;
-    const ariane6_real_t t485 = parameters[MY6] * (t454 + t431) + parameters[MX6] * t428;
-    const ariane6_real_t t486 = parameters[MX5] * (t460 + t461) + parameters[MY5R] * t397 + (t1 * t484
-        - t2 * t485);
-    const ariane6_real_t t487 = parameters[MY5R] * (t469 + t461) - parameters[MX5] * t458
-        + (parameters[MX6] * t422 + parameters[MY6] * t453);
-    const ariane6_real_t t488 = parameters[MY4R] * t404 - parameters[MX4] * (t475 + t476) + (t6 * t487
-        - t10 * t486);
-    const ariane6_real_t t489 = parameters[MY5R] * t413 - parameters[MX5] * t457 - (t2 * t484 + t1 * t485);
-    const ariane6_real_t t490 = parameters[MY4R] * (t481 + t476) - parameters[MX4] * t473 - t489;
-    const ariane6_real_t t491 = t39 * t488 - t36 * t490;
-    const ariane6_real_t t492 = parameters[ZZ3R] * t385 + parameters[XX3R] * t386 + parameters[XY3R] * t436
-        + parameters[XZ3] * t445;
-    const ariane6_real_t t493 = parameters[MY3R] * t435 + (parameters[YZ3] * (t233 - t438) + t492)
-        - (t36 * t477 + t39 * t483 + ARIANE6_C(-0.488) * t491);
-    const ariane6_real_t t494 = parameters[XX4R] * t403 + parameters[ZZ4R] * t401 + parameters[YZ4] * t388
-        + parameters[XZ4] * t405;
-    const ariane6_real_t t495 = parameters[XY4] * (t475 - t481) + t494 - (parameters[MX4] * t462
-        + parameters[MY4R] * t444);
-    const ariane6_real_t t496 = t495 + (t6 * t463 + t10 * t471) + ARIANE6_C(0.17) * t491;
-    const ariane6_real_t t497 = parameters[XZ3] * (t446 - t233) + (t295 * t399 + parameters[XY3R] * t387
-        - parameters[YZ3] * t383);
-    const ariane6_real_t t498 = t497 - parameters[MX3R] * t435 + t496;
-    const ariane6_real_t t499 = t86 * t369;
-    const ariane6_real_t t500 = t298 + t499;
-    const ariane6_real_t t501 = t299 + parameters[XX2R] * t500 - parameters[XY2] * t434
-        + parameters[XZ2R] * t440;
-    const ariane6_real_t t502 = t501 - t302 - parameters[MY2] * t432 + (t53 * t498 - t54 * t493);
-    const ariane6_real_t t503 = parameters[MY3R] * t387 - parameters[MX3R] * t436 + t491;
-    const ariane6_real_t t504 = t298 + t500;
-    const ariane6_real_t t505 = t308 + (t305 - parameters[XY2] * t504 + parameters[YZ2] * (t229 - t370));
-    const ariane6_real_t t506 = t505 - parameters[MX2R] * t432 + (t53 * t493 + t54 * t498
-        + ARIANE6_C(-0.685) * t503);
-    const ariane6_real_t t507 = t86 * t502 - t87 * t506 + ARIANE6_C(0.18) * (t503 - (parameters[MX2R] * t434
-        + parameters[MY2] * t504));
-    const ariane6_real_t t508 = ariane6_select(t129, t129, ARIANE6_C(1.0));
-    const ariane6_real_t t509 = ARIANE6_C(1.0) / t508;
-    const ariane6_real_t t510 = ARIANE6_C(0.0406334) * t132;
-    const ariane6_real_t t511 = ARIANE6_C(0.061525739908548135) * t129 / t132; /* joint j1: drive */
-    const ariane6_real_t t512 = ARIANE6_C(1.0) / t132;
-    const ariane6_real_t t513 = t512 * (ARIANE6_C(0.061525739908548135) * (t510 * (ARIANE6_C(0.5) * t509))
-        + t128 * t511);
-    const ariane6_real_t t514 = t130 * (t130 * (t510 * (ARIANE6_C(0.5) * t130)));
-    const ariane6_real_t t515 = t128 * t131 + t132 * (ARIANE6_C(-4063.3400000000006) * t514);
-    const ariane6_real_t t516 = t314 * (ARIANE6_C(165.10731955600002) * (t130 * t514))
-        + t313 * (ARIANE6_C(2.0) * (t128 * t132));
-    const ariane6_real_t t517 = t221 * (t315 * t514 + t130 * (ARIANE6_C(-4063.3400000000006) * t132 + t516));
-    const ariane6_real_t t518 = parameters[FV1] * (dq[0] * t515) + parameters[IA1] * (t517 + t369 * t515);
-    const ariane6_real_t t519 = ARIANE6_C(250.0) * t518 + t513 * (parameters[ZZ1R] * t369 + t507);
-    const ariane6_real_t t520 = ariane6_bounded(t318 * t368);
-    ddq_by_q[0] = -(t520 * t519);
-    const ariane6_real_t t521 = t169 * t368;
-    const ariane6_real_t t522 = t318 * t521;
-    ddq_by_q[6] = t522 * t519;
-    const ariane6_real_t t523 = t368 * (t163 + t110 * t169);
-    const ariane6_real_t t524 = t318 * t523;
-    ddq_by_q[12] = t524 * t519;
-    const ariane6_real_t t525 = t105 + t78 * t110;
-    const ariane6_real_t t526 = t368 * (t78 * t163 - t155 + t169 * t525);
-    const ariane6_real_t t527 = t318 * t526;
-    ddq_by_q[18] = t527 * t519;
-    const ariane6_real_t t528 = t25 * t78 - t71;
-    const ariane6_real_t t529 = t25 * t105 - t101 + t110 * t528;
-    const ariane6_real_t t530 = t148 - t25 * t155 + t163 * t528 + t169 * t529;
-    const ariane6_real_t t531 = t368 * t530;
-    const ariane6_real_t t532 = t318 * t531;
-    ddq_by_q[24] = t532 * t519;
-    const ariane6_real_t t533 = t15 * t25 - t32;
-    const ariane6_real_t t534 = t78 * t533 - (t67 + t15 * t71);
-    const ariane6_real_t t535 = t105 * t533 - (t97 + t15 * t101) + t110 * t534;
-    const ariane6_real_t t536 = t141 + t15 * t148 - t155 * t533 + t163 * t534;
-    const ariane6_real_t t537 = t368 * (t536 + t169 * t535);
-    const ariane6_real_t t538 = t318 * t537;
-    ddq_by_q[30] = t538 * t519;
-    const ariane6_real_t t539 = parameters[XZ6R] * t415;
-    const ariane6_real_t t540 = parameters[XY6] * t416;
-    const ariane6_real_t t541 = t539 - t540;
-    const ariane6_real_t t542 = parameters[YZ6R] * t420;
-    const ariane6_real_t t543 = t540 + t542;
-    const ariane6_real_t t544 = ARIANE6_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
-    const ariane6_real_t t545 = parameters[XX6R] + t544;
-    const ariane6_real_t t546 = t416 * t545 + parameters[XZ6R] * t420;
-    const ariane6_real_t t547 = parameters[YZ6R] * t415 - t416 * t544;
+    const ariane6_real_t t380 = t176 * t379;
+    const ariane6_real_t t381 = t380 + t377;
+    const ariane6_real_t t382 = t381 - t371;
+    const ariane6_real_t t383 = t180 - t34 * t379; /* link j4: motion */
+    const ariane6_real_t t384 = t190 + t37 * t379;
+    const ariane6_real_t t385 = t383 * t384;
+    const ariane6_real_t t386 = t385 + t382;
+    const ariane6_real_t t387 = t369 + t370;
+    const ariane6_real_t t388 = dq[0] * t376; /* link j3: motion */
+    const ariane6_real_t t389 = t379 * t388;
+    const ariane6_real_t t390 = t389 + t387;
+    const ariane6_real_t t391 = t368 * t378;
+    const ariane6_real_t t392 = t176 * t388;
+    const ariane6_real_t t393 = t392 - t391;
+    const ariane6_real_t t394 = t392 + t393;
+    const ariane6_real_t t395 = t37 * t390 + t34 * t394;
+    const ariane6_real_t t396 = t388 - dq[3]; /* link j4: motion */
+    const ariane6_real_t t397 = t384 * t396;
+    const ariane6_real_t t398 = t397 - t395;
+    const ariane6_real_t t399 = t397 + t398;
+    const ariane6_real_t t400 = t10 * t386 + t6 * t399;
+    const ariane6_real_t t401 = t10 * t383 + t6 * t396; /* link j5: motion */
+    const ariane6_real_t t402 = dq[4] + t384;
+    const ariane6_real_t t403 = t401 * t402;
+    const ariane6_real_t t404 = t400 - t403;
+    const ariane6_real_t t405 = t404 - t375;
+    const ariane6_real_t t406 = t1 * t401 + t2 * t402; /* link j6: motion */
+    const ariane6_real_t t407 = t2 * t401 - t1 * t402;
+    const ariane6_real_t t408 = t406 * t407;
+    const ariane6_real_t t409 = t405 - t408;
+    const ariane6_real_t t410 = t34 * t390 - t37 * t394;
+    const ariane6_real_t t411 = t383 * t396; /* link j4: motion */
+    const ariane6_real_t t412 = t411 + t410;
+    const ariane6_real_t t413 = t373 + t412;
+    const ariane6_real_t t414 = t10 * t396 - t6 * t383; /* link j5: motion */
+    const ariane6_real_t t415 = t401 * t414;
+    const ariane6_real_t t416 = t413 - t415;
+    const ariane6_real_t t417 = t6 * t386 - t10 * t399;
+    const ariane6_real_t t418 = t414 * t402;
+    const ariane6_real_t t419 = t418 + t417;
+    const ariane6_real_t t420 = t418 + t419;
+    const ariane6_real_t t421 = t2 * t416 + t1 * t420;
+    const ariane6_real_t t422 = dq[5] - t414; /* link j6: motion */
+    const ariane6_real_t t423 = t407 * t422;
+    const ariane6_real_t t424 = t421 - t423;
+    const ariane6_real_t t425 = t424 - t423;
+    const ariane6_real_t t426 = t406 * t422;
+    const ariane6_real_t t427 = t406 * t406;
+    const ariane6_real_t t428 = t422 * t422;
+    const ariane6_real_t t429 = parameters[XZ6R] * (t427 - t428) + (t247 * t426 + parameters[XY6] * t425
+        + parameters[YZ6R] * t409);
+    const ariane6_real_t t430 = ARIANE6_C(0.18) * t368;
+    const ariane6_real_t t431 = t84 * t368;
+    const ariane6_real_t t432 = t235 + (t235 - t431);
+    const ariane6_real_t t433 = t430 + ARIANE6_C(-0.685) * t432;
+    const ariane6_real_t t434 = t380 + t381;
+    const ariane6_real_t t435 = t433 + (ARIANE6_C(0.17) * t434 + ARIANE6_C(0.488) * t394);
+    const ariane6_real_t t436 = t388 * t388; /* link j3: motion */
+    const ariane6_real_t t437 = t232 + t436; /* link j4: motion */
+    const ariane6_real_t t438 = t228 + t369;
+    const ariane6_real_t t439 = t227 + ARIANE6_C(0.685) * t438;
+    const ariane6_real_t t440 = t226 - t51 * t439;
+    const ariane6_real_t t441 = t440 + (ARIANE6_C(-0.17) * t437 + ARIANE6_C(0.488) * t390);
+    const ariane6_real_t t442 = t34 * t441 - t37 * t435;
+    const ariane6_real_t t443 = t389 - t387;
+    const ariane6_real_t t444 = t379 * t379; /* link j3: motion */
+    const ariane6_real_t t445 = t232 + t444; /* link j4: motion */
+    const ariane6_real_t t446 = t239 + t52 * t439;
+    const ariane6_real_t t447 = t446 + (ARIANE6_C(-0.488) * t445 + ARIANE6_C(0.17) * t443);
+    const ariane6_real_t t448 = t6 * t442 + t10 * t447;
+    const ariane6_real_t t449 = t429 + parameters[MX6] * t448;
+    const ariane6_real_t t450 = t1 * t416 - t2 * t420;
+    const ariane6_real_t t451 = t407 * t407; /* link j6: motion */
+    const ariane6_real_t t452 = t427 + t451; /* link j6: force and moment */
+    const ariane6_real_t t453 = parameters[XZ6R] * t407;
+    const ariane6_real_t t454 = parameters[XY6] * t422;
+    const ariane6_real_t t455 = t453 - t454;
+    const ariane6_real_t t456 = ARIANE6_C(2.0) * t407; /* link j6: derivatives */
+    const ariane6_real_t t457 = ARIANE6_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
+    const ariane6_real_t t458 = parameters[YZ6R] * t407 - t422 * t457;
+    const ariane6_real_t t459 = ARIANE6_C(-2.0) * t406;
+    const ariane6_real_t t460 = t455 * t456 - t458 * t459 + (parameters[XY6] * t421 - parameters[XX6R] * t450
+        - parameters[XZ6R] * t452);
+    const ariane6_real_t t461 = t449 + t460;
+    const ariane6_real_t t462 = t426 + (t426 - t450);
+    const ariane6_real_t t463 = t408 + t405;
+    const ariane6_real_t t464 = parameters[XX6R] * t424 - parameters[ZZ6] * t423 - parameters[XY6] * t462
+        + parameters[XZ6R] * t463;
+    const ariane6_real_t t465 = parameters[YZ6R] * (t428 - t451) + t464 - parameters[MY6] * t448;
+    const ariane6_real_t t466 = parameters[XX6R] + t457;
+    const ariane6_real_t t467 = t422 * t466 + parameters[XZ6R] * t406;
+    const ariane6_real_t t468 = parameters[YZ6R] * t406;
+    const ariane6_real_t t469 = t454 + t468;
+    const ariane6_real_t t470 = t467 * t456 - t469 * t459 - (parameters[YZ6R] * t452
+        + parameters[XY6] * t450);
+    const ariane6_real_t t471 = t470 - t465;
+    const ariane6_real_t t472 = t1 * t461 - t2 * t471;
+    const ariane6_real_t t473 = parameters[ZZ6] * t452 + (parameters[XZ6R] * t450 - parameters[YZ6R] * t421);
+    const ariane6_real_t t474 = parameters[XY6] * t406 + t407 * t466;
+    const ariane6_real_t t475 = t406 * t457 + parameters[XY6] * t407;
+    const ariane6_real_t t476 = t10 * t442 - t6 * t447;
+    const ariane6_real_t t477 = t37 * t441 + t34 * t435;
+    const ariane6_real_t t478 = t2 * t477 - t1 * t476;
+    const ariane6_real_t t479 = t2 * t476 + t1 * t477;
+    const ariane6_real_t t480 = parameters[MX6] * t478 + parameters[MY6] * t479;
+    const ariane6_real_t t481 = t474 * t456 - t475 * t459 + t473 + t480;
+    const ariane6_real_t t482 = t10 * t472 + t6 * t481;
+    const ariane6_real_t t483 = t2 * t461 + t1 * t471;
+    const ariane6_real_t t484 = parameters[MY6] * (t427 + t428) + parameters[MX6] * t463;
+    const ariane6_real_t t485 = parameters[MY6] * t406 + parameters[MX6] * t407;
+    const ariane6_real_t t486 = t485 * t459 + parameters[MY6] * t452 + t484;
+    const ariane6_real_t t487 = parameters[MX6] * (t451 + t428) - parameters[MY6] * t409;
+    const ariane6_real_t t488 = t485 * t456 - parameters[MX6] * t452 - t487;
+    const ariane6_real_t t489 = t1 * t486 - t2 * t488;
+    const ariane6_real_t t490 = parameters[MX6] * t422;
+    const ariane6_real_t t491 = parameters[MY6] * t422;
+    const ariane6_real_t t492 = t491 * t459 - t490 * t456 + (parameters[MY6] * t450 + parameters[MX6] * t421);
+    const ariane6_real_t t493 = t10 * t489 + t6 * t492;
+    const ariane6_real_t t494 = t2 * t486 + t1 * t488;
+    const ariane6_real_t t495 = t37 * t493 + t34 * t494;
+    const ariane6_real_t t496 = t34 * t482 - t37 * t483 + ARIANE6_C(-0.488) * t495;
+    const ariane6_real_t t497 = t6 * t472 - t10 * t481;
+    const ariane6_real_t t498 = t497 + ARIANE6_C(-0.17) * t495;
+    const ariane6_real_t t499 = t84 * (t51 * t496 + t52 * t498 + ARIANE6_C(0.685) * t495);
+    const ariane6_real_t t500 = t83 * (t52 * t496 - t51 * t498) + t499 + ARIANE6_C(0.18) * t495;
+    const ariane6_real_t t501 = ARIANE6_C(0.061525739908548135) * t125 / t128; /* joint j1: drive */
+    const ariane6_real_t t502 = t501 * t500;
+    const ariane6_real_t t503 = ariane6_held(t317 * t367);
+    const ariane6_real_t t504 = t37 * t494 - t34 * t493;
+    const ariane6_real_t t505 = t10 * t492 - t6 * t489;
+    const ariane6_real_t t506 = t37 * t482 + t34 * t483 + (ARIANE6_C(-0.17) * t505
+        + ARIANE6_C(-0.488) * t504);
+    const ariane6_real_t t507 = ARIANE6_C(0.019697757607273984) * t87 / t85; /* joint j2: drive */
+    const ariane6_real_t t508 = t507 * (t506 + ARIANE6_C(0.685) * (t51 * t504 + t52 * t505));
+    const ariane6_real_t t509 = t165 * t367;
+    const ariane6_real_t t510 = ariane6_held(t364 * t509);
+    const ariane6_real_t t511 = ARIANE6_C(0.029841482047364396) * t55 / t53; /* joint j3: drive */
+    const ariane6_real_t t512 = t511 * t506;
+    const ariane6_real_t t513 = t367 * (t159 + t107 * t165);
+    const ariane6_real_t t514 = ariane6_held(t348 * t513);
+    const ariane6_real_t t515 = ARIANE6_C(0.2) * t497;
+    const ariane6_real_t t516 = t102 + t76 * t107;
+    const ariane6_real_t t517 = t367 * (t76 * t159 - t151 + t165 * t516);
+    const ariane6_real_t t518 = ariane6_held(ARIANE6_C(5.0) * t517);
+    const ariane6_real_t t519 = t503 * t502 - t510 * t508 - t514 * t512 + t518 * t515;
+    const ariane6_real_t t520 = ARIANE6_C(0.07043047103899029) * t7 / t10; /* joint j5: drive */
+    const ariane6_real_t t521 = t520 * t483;
+    const ariane6_real_t t522 = t24 * t76 - t69;
+    const ariane6_real_t t523 = t24 * t102 - t98 + t107 * t522;
+    const ariane6_real_t t524 = t144 - t24 * t151 + t159 * t522 + t165 * t523;
+    const ariane6_real_t t525 = t367 * t524;
+    const ariane6_real_t t526 = ariane6_held(t330 * t525);
+    const ariane6_real_t t527 = ARIANE6_C(2.0) * t474; /* link j6: derivatives */
+    const ariane6_real_t t528 = ARIANE6_C(-2.0) * t475;
+    const ariane6_real_t t529 = ARIANE6_C(0.2) * (t480 + (t407 * t527 - t406 * t528 + t473));
+    const ariane6_real_t t530 = t15 * t24 - t31;
+    const ariane6_real_t t531 = t76 * t530 - (t65 + t15 * t69);
+    const ariane6_real_t t532 = t102 * t530 - (t94 + t15 * t98) + t107 * t531;
+    const ariane6_real_t t533 = t137 + t15 * t144 - t151 * t530 + t159 * t531;
+    const ariane6_real_t t534 = t367 * (t533 + t165 * t532);
+    const ariane6_real_t t535 = ariane6_held(ARIANE6_C(5.0) * t534);
+    ddq_by_q[5] = t535 * t529 - (t519 - t526 * t521);
+    const ariane6_real_t t536 = t317 * t509;
+    const ariane6_real_t t537 = ariane6_held(t364 * (t164 - t165 * t509));
+    const ariane6_real_t t538 = t107 * t164 - t165 * t513;
+    const ariane6_real_t t539 = ariane6_held(t348 * t538);
+    const ariane6_real_t t540 = t164 * t516 - t165 * t517;
+    const ariane6_real_t t541 = ariane6_held(ARIANE6_C(5.0) * t540);
+    const ariane6_real_t t542 = t536 * t502 + t537 * t508 + t539 * t512 - t541 * t515;
+    const ariane6_real_t t543 = t164 * t523 - t165 * t525;
+    const ariane6_real_t t544 = ariane6_held(t330 * t543);
+    const ariane6_real_t t545 = t164 * t532 - t165 * t534;
+    const ariane6_real_t t546 = ariane6_held(ARIANE6_C(5.0) * t545);
+    ddq_by_q[11] = t542 + t544 * t521 + t546 * t529;
+    const ariane6_real_t t547 = t317 * t513;
+    const ariane6_real_t t548 = ariane6_held(t364 * t538);
+    const ariane6_real_t t549 = ariane6_held(t348 * (t104 - t159 * t513 + t107 * t538));
+    const ariane6_real_t t550 = t76 * t104 - t159 * t517 + t107 * t540;
+    const ariane6_real_t t551 = ariane6_held(ARIANE6_C(5.0) * t550);
+    const ariane6_real_t t552 = t547 * t502 + t548 * t508 + t549 * t512 - t551 * t515;
+    const ariane6_real_t t553 = t104 * t522 - t159 * t525 + t107 * t543;
+    const ariane6_real_t t554 = ariane6_held(t330 * t553);
+    const ariane6_real_t t555 = t104 * t531 - t159 * t534 + t107 * t545;
+    const ariane6_real_t t556 = ariane6_held(ARIANE6_C(5.0) * t555);
+    ddq_by_q[17] = t552 + t554 * t521 + t556 * t529;
+    const ariane6_real_t t557 = t317 * t517;
+    const ariane6_real_t t558 = ariane6_held(t364 * t540);
+    const ariane6_real_t t559 = ariane6_held(t348 * t550);
+    const ariane6_real_t t560 = t75 + t151 * t517 + t102 * t540 + t76 * t550;
+    const ariane6_real_t t561 = ariane6_held(ARIANE6_C(5.0) * t560);
+    const ariane6_real_t t562 = t557 * t502 + t558 * t508 + t559 * t512 - t561 * t515;
+    const ariane6_real_t t563 = t24 * t75 + t151 * t525 + t102 * t543 + t76 * t553;
+    const ariane6_real_t t564 = ariane6_held(t330 * t563);
+    const ariane6_real_t t565 = t75 * t530 + t151 * t534 + t102 * t545 + t76 * t555;
+    const ariane6_real_t t566 = ariane6_held(ARIANE6_C(5.0) * t565);
+    ddq_by_q[23] = t562 + t564 * t521 + t566 * t529;
+    const ariane6_real_t t567 = t317 * t525;
+    const ariane6_real_t t568 = ariane6_held(t364 * t543);
+    const ariane6_real_t t569 = ariane6_held(t348 * t553);
+    const ariane6_real_t t570 = ariane6_held(ARIANE6_C(5.0) * t563);
+    const ariane6_real_t t571 = t567 * t502 + t568 * t508 + t569 * t512 - t570 * t515;
+    const ariane6_real_t t572 = t23 - t144 * t525 - t98 * t543 - t69 * t553;
+    const ariane6_real_t t573 = ariane6_held(t330 * (t572 + t24 * t563));
+    const ariane6_real_t t574 = t15 * t23 - t144 * t534 - t98 * t545 - t69 * t555;
+    const ariane6_real_t t575 = t574 + t24 * t565;
+    const ariane6_real_t t576 = ariane6_held(ARIANE6_C(5.0) * t575);
+    ddq_by_q[29] = t571 + t573 * t521 + t576 * t529;
+    const ariane6_real_t t577 = t317 * t534;
+    const ariane6_real_t t578 = ariane6_held(t364 * t545);
+    const ariane6_real_t t579 = ariane6_held(t348 * t555);
+    const ariane6_real_t t580 = t577 * t502 + t578 * t508 + t579 * t512 - t566 * t515;
+    const ariane6_real_t t581 = ariane6_held(t330 * t575);
+    const ariane6_real_t t582 = t14 - t137 * t534 - t94 * t545 - t65 * t555;
+    const ariane6_real_t t583 = ariane6_held(ARIANE6_C(5.0) * (t582 - t31 * t565 + t15 * t575));
+    ddq_by_q[35] = t580 + t581 * t521 + t583 * t529;
+    const ariane6_real_t t584 = parameters[ZZ6] + t457;
+    const ariane6_real_t t585 = t407 * t584 - parameters[YZ6R] * t422;
+    const ariane6_real_t t586 = ARIANE6_C(2.0) * t585 + (parameters[XX6R] * t456 - parameters[XY6] * t459);
+    const ariane6_real_t t587 = parameters[XZ6R] * t422 + t406 * t584;
+    const ariane6_real_t t588 = ARIANE6_C(2.0) * t587 + parameters[XY6] * t456;
+    const ariane6_real_t t589 = t1 * t586 - t2 * t588;
+    const ariane6_real_t t590 = t453 + t468;
+    const ariane6_real_t t591 = ARIANE6_C(2.0) * t590;
+    const ariane6_real_t t592 = t591 + (parameters[YZ6R] * t459 - parameters[XZ6R] * t456);
+    const ariane6_real_t t593 = t10 * t589 + t6 * t592;
+    const ariane6_real_t t594 = t2 * t586 + t1 * t588;
+    const ariane6_real_t t595 = ARIANE6_C(-2.0) * t490;
+    const ariane6_real_t t596 = ARIANE6_C(2.0) * t491;
+    const ariane6_real_t t597 = t1 * t595 + t2 * t596;
+    const ariane6_real_t t598 = parameters[MY6] * t456 + parameters[MX6] * t459;
+    const ariane6_real_t t599 = t10 * t597 - t6 * t598;
+    const ariane6_real_t t600 = t2 * t595 - t1 * t596;
+    const ariane6_real_t t601 = t37 * t599 + t34 * t600;
+    const ariane6_real_t t602 = t34 * t593 - t37 * t594 + ARIANE6_C(-0.488) * t601;
+    const ariane6_real_t t603 = t6 * t589 - t10 * t592;
+    const ariane6_real_t t604 = t603 + ARIANE6_C(-0.17) * t601;
+    const ariane6_real_t t605 = t84 * (t51 * t602 + t52 * t604 + ARIANE6_C(0.685) * t601);
+    const ariane6_real_t t606 = t83 * (t52 * t602 - t51 * t604) + t605 + ARIANE6_C(0.18) * t601;
+    const ariane6_real_t t607 = t501 * t606;
+    const ariane6_real_t t608 = t6 * t597 + t10 * t598;
+    const ariane6_real_t t609 = t37 * t600 - t34 * t599;
+    const ariane6_real_t t610 = t37 * t593 + t34 * t594 + (ARIANE6_C(0.17) * t608 + ARIANE6_C(-0.488) * t609);
+    const ariane6_real_t t611 = t507 * (t610 + ARIANE6_C(0.685) * (t51 * t609 - t52 * t608));
+    const ariane6_real_t t612 = t511 * t610;
+    const ariane6_real_t t613 = ARIANE6_C(0.2) * t603;
+    const ariane6_real_t t614 = t607 * t503 - t611 * t510 - t612 * t514 + t613 * t518;
+    const ariane6_real_t t615 = t520 * t594;
+    const ariane6_real_t t616 = ARIANE6_C(-2.0e3) * parameters[FV6];
+    ddq_by_dq[5] = t616 * t535 - (t614 - t615 * t526);
+    const ariane6_real_t t617 = t607 * t536 + t611 * t537 + t612 * t539 - t613 * t541;
+    ddq_by_dq[11] = t617 + t615 * t544 + t616 * t546;
+    const ariane6_real_t t618 = t607 * t547 + t611 * t548 + t612 * t549 - t613 * t551;
+    ddq_by_dq[17] = t618 + t615 * t554 + t616 * t556;
+    const ariane6_real_t t619 = t607 * t557 + t611 * t558 + t612 * t559 - t613 * t561;
+    ddq_by_dq[23] = t619 + t615 * t564 + t616 * t566;
+    const ariane6_real_t t620 = t607 * t567 + t611 * t568 + t612 * t569 - t613 * t570;
+    ddq_by_dq[29] = t620 + t615 * t573 + t616 * t576;
+    const ariane6_real_t t621 = t607 * t577 + t611 * t578 + t612 * t579 - t613 * t566;
+    ddq_by_dq[35] = t621 + t615 * t581 + t616 * t583;
+    ddq_by_input[5] = t535;
+    ddq_by_input[11] = t546;
+    ddq_by_input[17] = t556;
+    ddq_by_input[23] = t566;
+    ddq_by_input[29] = t576;
+    ddq_by_input[35] = t583;
+    const ariane6_real_t t622 = parameters[ZZ6] * t405 - parameters[XX6R] * t408 + parameters[YZ6R] * t450
+        + parameters[XZ6R] * t421;
+    const ariane6_real_t t623 = parameters[XY6] * (t451 - t427) + t622 + (parameters[MY6] * t478
+        - parameters[MX6] * t479);
+    const ariane6_real_t t624 = t401 * t401; /* link j5: motion */
+    const ariane6_real_t t625 = t402 * t402;
+    const ariane6_real_t t626 = parameters[XZ5] * (t624 - t625) + (t263 * t403 + parameters[XY5] * t420
+        - parameters[YZ5] * t416);
+    const ariane6_real_t t627 = t626 - parameters[MX5] * t477 + t623;
+    const ariane6_real_t t628 = t414 * t414;
+    const ariane6_real_t t629 = t624 + t628; /* link j6: motion */
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t548 = t1 * (t543 - t541) + t2 * (t546 + t547);
-    const ariane6_real_t t549 = t1 * t548;
-    const ariane6_real_t t550 = parameters[XZ5] * t395;
-    const ariane6_real_t t551 = parameters[XY5] * t410;
-    const ariane6_real_t t552 = t550 + t551 + (t549 - t543);
-    const ariane6_real_t t553 = t539 + t542;
-    const ariane6_real_t t554 = parameters[YZ5] * t394;
-    const ariane6_real_t t555 = t553 - (t551 + t554);
-    const ariane6_real_t t556 = parameters[ZZ6] + t544;
-    const ariane6_real_t t557 = t415 * t556 - parameters[YZ6R] * t416;
-    const ariane6_real_t t558 = parameters[XZ6R] * t416 + t420 * t556;
-    const ariane6_real_t t559 = ARIANE6_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    const ariane6_real_t t560 = t1 * t557 - t2 * t558 - (parameters[YZ5] * t395 + t410 * t559);
-    const ariane6_real_t t561 = parameters[XY6] * t420 + t415 * t545;
-    const ariane6_real_t t562 = t420 * t544 + parameters[XY6] * t415;
-    const ariane6_real_t t563 = parameters[XX5R] + t559;
-    const ariane6_real_t t564 = t410 * t563 + parameters[XZ5] * t394 + (t2 * t562 - t1 * t561);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t565 = t10 * (t552 - t555) + t6 * (t560 + t564);
-    const ariane6_real_t t566 = t10 * t565;
-    const ariane6_real_t t567 = parameters[XZ4] * t402;
-    const ariane6_real_t t568 = parameters[XY4] * t390;
-    const ariane6_real_t t569 = t567 - t568 + (t555 + t566);
-    const ariane6_real_t t570 = t550 - t554 + (t541 + t549); /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t571 = parameters[YZ4] * t389;
-    const ariane6_real_t t572 = t571 - t568 + t570; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t573 = t2 * t548; /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t574 = parameters[ZZ5R] + t559;
-    const ariane6_real_t t575 = t573 - t547 - (t395 * t574 + parameters[YZ5] * t410);
-    const ariane6_real_t t576 = parameters[XZ5] * t410 + t394 * t574 + (t2 * t561 + t1 * t562);
-    const ariane6_real_t t577 = ARIANE6_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t578 = parameters[YZ4] * t402 - t390 * t577 + (t10 * t575 - t6 * t576);
+    const ariane6_real_t t630 = t1 * (t469 - t455) + t2 * (t467 + t458);
+    const ariane6_real_t t631 = t1 * t630;
+    const ariane6_real_t t632 = parameters[XZ5] * t414;
+    const ariane6_real_t t633 = parameters[XY5] * t402;
+    const ariane6_real_t t634 = t632 + t633 + (t631 - t469);
+    const ariane6_real_t t635 = ARIANE6_C(2.0) * t414; /* link j5: derivatives */
+    const ariane6_real_t t636 = ARIANE6_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t579 = parameters[XY5] * t394 - t395 * t563 + (t546 - t573);
-    const ariane6_real_t t580 = t394 * t559 - parameters[XY5] * t395 + (t2 * t557 + t1 * t558);
-    const ariane6_real_t t581 = parameters[XX4R] + t577;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t582 = parameters[XZ4] * t389 - t390 * t581 + (t10 * t579 - t6 * t580);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t583 = t36 * (t569 + t572) - t39 * (t578 - t582);
-    const ariane6_real_t t584 = t36 * t583;
-    const ariane6_real_t t585 = parameters[MY6] * t416;
-    const ariane6_real_t t586 = parameters[MX6] * t416;
+    const ariane6_real_t t637 = t1 * t585 - t2 * t587 - (parameters[YZ5] * t414 + t402 * t636);
+    const ariane6_real_t t638 = ARIANE6_C(-2.0) * t401; /* link j5: derivatives */
+    const ariane6_real_t t639 = t634 * t635 - t637 * t638 + (t17 * t629 + (t26 * t417 - t25 * t400));
+    const ariane6_real_t t640 = t627 + (t639 + t40 * t476);
+    const ariane6_real_t t641 = t404 - t403;
+    const ariane6_real_t t642 = t415 + t413;
+    const ariane6_real_t t643 = parameters[ZZ5R] * t418 + parameters[XX5R] * t419 + parameters[XY5] * t641
+        - parameters[XZ5] * t642;
+    const ariane6_real_t t644 = parameters[YZ5] * (t625 - t628) + t643 + parameters[MY5R] * t477 + (t1 * t465
+        - t2 * t449);
+    const ariane6_real_t t645 = parameters[ZZ6] * t417;
+    const ariane6_real_t t646 = parameters[XX5R] + t636;
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t587 = parameters[MY5R] * t410 + (t1 * t585 + t2 * t586);
-    const ariane6_real_t t588 = parameters[MY6] * t420 + parameters[MX6] * t415;
-    const ariane6_real_t t589 = t588 - parameters[MX5] * t410;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t590 = t10 * t587 - t6 * t589 - parameters[MY4R] * t390;
+    const ariane6_real_t t647 = t402 * t646 + parameters[XZ5] * t401 + (t2 * t475 - t1 * t474);
+    const ariane6_real_t t648 = parameters[YZ5] * t401;
+    const ariane6_real_t t649 = t590 - (t633 + t648);
+    const ariane6_real_t t650 = t647 * t635 - t649 * t638 + (t26 * t400 - t645 - t18 * t629);
+    const ariane6_real_t t651 = t40 * t448;
+    const ariane6_real_t t652 = t644 + (t651 + t650);
+    const ariane6_real_t t653 = t10 * t640 + t6 * t652;
+    const ariane6_real_t t654 = t5 * t629 + (t18 * t417 - t17 * t400);
+    const ariane6_real_t t655 = t2 * t630;
+    const ariane6_real_t t656 = parameters[XY5] * t401 - t414 * t646 + (t467 - t655);
+    const ariane6_real_t t657 = t401 * t636 - parameters[XY5] * t414 + (t2 * t585 + t1 * t587);
+    const ariane6_real_t t658 = parameters[MY5R] * t448 - t43 * t476;
+    const ariane6_real_t t659 = t654 - (t656 * t635 + t657 * t638) + t658;
+    const ariane6_real_t t660 = parameters[MX5] * (t628 + t625) + parameters[MY5R] * t416 + (t1 * t487
+        - t2 * t484);
+    const ariane6_real_t t661 = parameters[MX5] * t414 - parameters[MY5R] * t401 + (t2 * t491 - t1 * t490);
+    const ariane6_real_t t662 = t660 + (t43 * t629 + t40 * t400 - t661 * t635);
+    const ariane6_real_t t663 = parameters[MY5R] * (t624 + t625) - parameters[MX5] * t642
+        + (parameters[MX6] * t462 + parameters[MY6] * t425);
+    const ariane6_real_t t664 = t663 + (parameters[MY5R] * t629 - t40 * t417 - t661 * t638);
+    const ariane6_real_t t665 = t10 * t664 + t6 * t662;
+    const ariane6_real_t t666 = t485 - parameters[MX5] * t402;
+    const ariane6_real_t t667 = parameters[MY5R] * t402 + (t1 * t491 + t2 * t490);
+    const ariane6_real_t t668 = t667 * t638 - t666 * t635 + (parameters[MY5R] * t400 + t43 * t417);
+    const ariane6_real_t t669 = t37 * t665 + t34 * t668;
+    const ariane6_real_t t670 = t34 * t653 - t37 * t659 + ARIANE6_C(-0.488) * t669;
+    const ariane6_real_t t671 = t6 * t640 - t10 * t652;
+    const ariane6_real_t t672 = t671 - ARIANE6_C(0.17) * t669;
+    const ariane6_real_t t673 = t84 * (t51 * t670 + t52 * t672 + ARIANE6_C(0.685) * t669);
+    const ariane6_real_t t674 = t83 * (t52 * t670 - t51 * t672) + t673 + ARIANE6_C(0.18) * t669;
+    const ariane6_real_t t675 = t501 * t674;
+    const ariane6_real_t t676 = t6 * t664 - t10 * t662;
+    const ariane6_real_t t677 = t34 * t665 - t37 * t668;
+    const ariane6_real_t t678 = t37 * t653 + t34 * t659 + (ARIANE6_C(0.17) * t676 + ARIANE6_C(0.488) * t677);
+    const ariane6_real_t t679 = t507 * (t678 + ARIANE6_C(-0.685) * (t51 * t677 + t52 * t676));
+    const ariane6_real_t t680 = t511 * t678;
+    const ariane6_real_t t681 = ARIANE6_C(0.2) * t671;
+    const ariane6_real_t t682 = t503 * t675 - t510 * t679 - t514 * t680 + t518 * t681;
+    const ariane6_real_t t683 = parameters[ZZ5R] * t413 - parameters[XX5R] * t415 - parameters[YZ5] * t400
+        - parameters[XZ5] * t417;
+    const ariane6_real_t t684 = parameters[XY5] * (t624 - t628) + t683 + (parameters[MX5] * t448
+        + parameters[MY5R] * t476);
+    const ariane6_real_t t685 = t684 + (t2 * t465 + t1 * t449);
+    const ariane6_real_t t686 = ariane6_select(t7, t7, ARIANE6_C(1.0));
+    const ariane6_real_t t687 = ARIANE6_C(-1.0) / t686;
+    const ariane6_real_t t688 = ARIANE6_C(-0.035496) * t10;
+    const ariane6_real_t t689 = ARIANE6_C(-1.0) / t10;
+    const ariane6_real_t t690 = t689 * (ARIANE6_C(-0.07043047103899029) * (t688 * (ARIANE6_C(0.5) * t687))
+        - t6 * t520);
+    const ariane6_real_t t691 = ARIANE6_C(2.0) * t656; /* link j5: derivatives */
+    const ariane6_real_t t692 = ARIANE6_C(2.0) * t657;
+    const ariane6_real_t t693 = t520 * (t658 + (t401 * t692 - t414 * t691 + t654));
+    const ariane6_real_t t694 = t8 * (t8 * (t688 * (ARIANE6_C(0.5) * t8)));
+    const ariane6_real_t t695 = t6 * t9 + t10 * (ARIANE6_C(3549.6000000000004) * t694);
+    const ariane6_real_t t696 = t325 * (ARIANE6_C(125.9966016) * (t8 * t694))
+        - t324 * (ARIANE6_C(-2.0) * (t6 * t10));
+    const ariane6_real_t t697 = t328 * (t326 * t694 + t8 * (ARIANE6_C(3549.6000000000004) * t10 + t696));
+    const ariane6_real_t t698 = parameters[FV5] * (dq[4] * t695) + parameters[IA5] * (t373 * t695 - t697);
+    const ariane6_real_t t699 = ARIANE6_C(250.0) * t698 + t693 - t690 * t685;
+    const ariane6_real_t t700 = t1 * t527 + t2 * t528; /* link j6: derivatives */
+    const ariane6_real_t t701 = t401 * t591 - t414 * t700 + (t20 * t400 - t645 - t13 * t629);
+    const ariane6_real_t t702 = ARIANE6_C(0.2) * (t701 + t651);
+    ddq_by_q[4] = t535 * t702 - (t682 - t526 * t699);
+    const ariane6_real_t t703 = t536 * t675 + t537 * t679 + t539 * t680 - t541 * t681;
+    ddq_by_q[10] = t703 + t544 * t699 + t546 * t702;
+    const ariane6_real_t t704 = t547 * t675 + t548 * t679 + t549 * t680 - t551 * t681;
+    ddq_by_q[16] = t704 + t554 * t699 + t556 * t702;
+    const ariane6_real_t t705 = t557 * t675 + t558 * t679 + t559 * t680 - t561 * t681;
+    ddq_by_q[22] = t705 + t564 * t699 + t566 * t702;
+    const ariane6_real_t t706 = t567 * t675 + t568 * t679 + t569 * t680 - t570 * t681;
+    ddq_by_q[28] = t706 + t573 * t699 + t576 * t702;
+    const ariane6_real_t t707 = t577 * t675 + t578 * t679 + t579 * t680 - t566 * t681;
+    ddq_by_q[34] = t707 + t581 * t699 + t583 * t702;
+    const ariane6_real_t t708 = parameters[ZZ5R] + t636;
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t591 = parameters[MX5] * t395 - parameters[MY5R] * t394 + (t2 * t585 - t1 * t586);
-    const ariane6_real_t t592 = parameters[MX4] * t390 + t591; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t593 = t36 * t590 - t39 * t592; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t594 = ARIANE6_C(-0.17) * t593;
-    const ariane6_real_t t595 = ARIANE6_C(-0.488) * t177; /* link j4: velocity of its origin */
-    const ariane6_real_t t596 = t48 * t595; /* link j4: inertia, momentum beyond */
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t597 = parameters[MX4] * t402 - parameters[MY4R] * t389 - (t6 * t587 + t10 * t589);
-    const ariane6_real_t t598 = ARIANE6_C(-0.488) * t597; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t599 = ARIANE6_C(-0.488) * t379 + ARIANE6_C(0.17) * t381;
-    const ariane6_real_t t600 = t74 * t599;
-    const ariane6_real_t t601 = ARIANE6_C(0.17) * t177; /* link j4: velocity of its origin */
-    const ariane6_real_t t602 = t50 * t601; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t603 = t600 - (t596 + t602) - (t594 + t598);
-    const ariane6_real_t t604 = parameters[XZ3] * t381;
-    const ariane6_real_t t605 = parameters[XY3R] * t177;
-    const ariane6_real_t t606 = t603 + (t572 - t584 + (t594 + t596)) - (t604 + t605);
-    const ariane6_real_t t607 = t567 - t571 + (t566 - t552); /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t608 = parameters[YZ3] * t379;
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t609 = t605 - t608 + (t603 + (t607 + (t598 + t602)));
-    const ariane6_real_t t610 = t6 * t565; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t611 = parameters[ZZ4R] + t577;
-    const ariane6_real_t t612 = t402 * t611 - parameters[YZ4] * t390 + (t610 - t560);
-    const ariane6_real_t t613 = t389 * t611 - parameters[XZ4] * t390 + (t6 * t579 + t10 * t580);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t614 = t36 * t612 + t39 * t613 + (ARIANE6_C(-0.488) * t593 + t50 * t595);
-    const ariane6_real_t t615 = ARIANE6_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const ariane6_real_t t616 = parameters[YZ3] * t381 - t177 * t615 + t614;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t617 = parameters[XY4] * t389 - t402 * t581 - (t564 - t610);
-    const ariane6_real_t t618 = parameters[XY4] * t402 - t389 * t577 - (t6 * t575 + t10 * t576);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t619 = t36 * t617 + t39 * t618 + (ARIANE6_C(-0.17) * t597 + t48 * t601);
-    const ariane6_real_t t620 = parameters[XX3R] - t615;
-    const ariane6_real_t t621 = t177 * t620 - parameters[XZ3] * t379 - t619;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t622 = t54 * (t606 - t609) + t53 * (t616 - t621);
-    const ariane6_real_t t623 = t54 * t622;
-    const ariane6_real_t t624 = parameters[MY3R] * t177 + t593; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t625 = parameters[MX3R] * t177 + t597;
-    const ariane6_real_t t626 = t54 * t624 + t53 * t625; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t627 = ARIANE6_C(0.685) * t626;
-    const ariane6_real_t t628 = ARIANE6_C(0.685) * dq[1]; /* link j3: velocity of its origin */
-    const ariane6_real_t t629 = t122 * t628; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t630 = ARIANE6_C(0.685) * t173; /* link j3: velocity of its origin */
-    const ariane6_real_t t631 = t74 * t630; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t632 = t631 - t629 - t627;
-    const ariane6_real_t t633 = parameters[XZ2R] * t173;
-    const ariane6_real_t t634 = parameters[XY2] * dq[1];
-    const ariane6_real_t t635 = t633 - t634 + (t632 + (t609 + t623 + t627));
-    const ariane6_real_t t636 = parameters[YZ2] * t172;
-    const ariane6_real_t t637 = t634 - t636 + (t632 + (t606 - t623 + t629));
-    const ariane6_real_t t638 = t53 * t622;
-    const ariane6_real_t t639 = ARIANE6_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const ariane6_real_t t640 = parameters[YZ2] * t173 - dq[1] * t639 + (t638 - t616);
-    const ariane6_real_t t641 = t53 * t624 - t54 * t625;
-    const ariane6_real_t t642 = parameters[XX2R] + t639;
-    const ariane6_real_t t643 = dq[1] * t642 - parameters[XZ2R] * t172 + (t621 + t638
-        + (ARIANE6_C(0.685) * t641 + t83 * t628));
-    /* link j2: inertia, momentum beyond */
-    const ariane6_real_t t644 = t87 * (t87 * (t637 - t635) + t86 * (t640 + t643));
-    const ariane6_real_t t645 = parameters[MY2] * dq[1] + t626; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t646 = t641 - parameters[MX2R] * dq[1];
-    /* link j2: inertia, momentum beyond */
-    const ariane6_real_t t647 = ARIANE6_C(0.18) * (t86 * t646 - t87 * t645) + t74 * (ARIANE6_C(0.18) * dq[0]);
-    const ariane6_real_t t648 = ARIANE6_C(250.0) * (parameters[IA1] * (t316 * (ARIANE6_C(-2.0) * dq[0]))
-        - t133 * parameters[FV1]);
-    const ariane6_real_t t649 = t648 + t511 * (ARIANE6_C(2.0) * (t635 + t644 + t647));
-    const ariane6_real_t t650 = ariane6_bounded(t365 * t521);
-    const ariane6_real_t t651 = t39 * t583; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t652 = t39 * t590 + t36 * t592;
-    const ariane6_real_t t653 = parameters[XY3R] * t379 + t381 * t620 - (t582 - t651 - (ARIANE6_C(0.17) * t652
-        - t48 * t599));
-    const ariane6_real_t t654 = t39 * t612 - t36 * t613 + (ARIANE6_C(-0.488) * t652 + t50 * t599);
-    const ariane6_real_t t655 = parameters[XY3R] * t381 - t379 * t615 + t654;
-    const ariane6_real_t t656 = parameters[MY3R] * t379 + parameters[MX3R] * t381 + t652;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t657 = t53 * t655 - t54 * t653 + (ARIANE6_C(0.685) * t656 + t83 * t630);
-    /* link j2: derivatives */
-    const ariane6_real_t t658 = ARIANE6_C(2.0) * (t173 * t642 - parameters[XY2] * t172 + t657);
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t659 = parameters[XY2] * t173 - t172 * t639 - (t53 * t653 + t54 * t655
-        - t122 * t630);
-    const ariane6_real_t t660 = ARIANE6_C(2.0) * t659; /* link j2: derivatives */
-    const ariane6_real_t t661 = ARIANE6_C(-0.36) * dq[0]; /* link j6: derivatives */
-    /* link j2: derivatives */
-    const ariane6_real_t t662 = t86 * t658 + t87 * t660 - (t87 * t125 + t86 * t126) * t661;
-    const ariane6_real_t t663 = ARIANE6_C(0.019697757607273984) * t90 / t88; /* joint j2: drive */
-    const ariane6_real_t t664 = t663 * t662;
-    const ariane6_real_t t665 = ariane6_bounded(t349 * t523);
-    const ariane6_real_t t666 = ARIANE6_C(2.0) * t653; /* link j3: derivatives */
-    const ariane6_real_t t667 = ARIANE6_C(2.0) * t655;
-    const ariane6_real_t t668 = ARIANE6_C(1.37) * t173; /* link j6: derivatives */
-    const ariane6_real_t t669 = t53 * t667 - t54 * t666 + t83 * t668; /* link j3: derivatives */
-    const ariane6_real_t t670 = t53 * t666 + t54 * t667 - t122 * t668;
-    const ariane6_real_t t671 = t86 * t669 - t87 * t670 - (t87 * t122 + t86 * t83) * t661;
-    const ariane6_real_t t672 = ARIANE6_C(0.029841482047364396) * t57 / t55; /* joint j3: drive */
-    const ariane6_real_t t673 = t672 * t671;
-    const ariane6_real_t t674 = ariane6_bounded(ARIANE6_C(5.0) * t526);
-    const ariane6_real_t t675 = ARIANE6_C(2.0) * t617; /* link j4: derivatives */
-    const ariane6_real_t t676 = ARIANE6_C(2.0) * t618;
-    const ariane6_real_t t677 = ARIANE6_C(0.34) * t177; /* link j6: derivatives */
-    const ariane6_real_t t678 = t36 * t675 + t39 * t676 + t48 * t677; /* link j4: derivatives */
-    const ariane6_real_t t679 = ARIANE6_C(2.0) * t607;
-    const ariane6_real_t t680 = ARIANE6_C(2.0) * t599; /* link j6: derivatives */
-    const ariane6_real_t t681 = ARIANE6_C(0.976) * t177;
-    const ariane6_real_t t682 = t679 + (t74 * t680 + t48 * t681); /* link j4: derivatives */
-    const ariane6_real_t t683 = ARIANE6_C(-1.37) * dq[1]; /* link j6: derivatives */
-    /* link j4: derivatives */
-    const ariane6_real_t t684 = t54 * t678 + t53 * t682 + (t48 * t683 + t102 * t668);
-    const ariane6_real_t t685 = t54 * t74; /* link j4: column of the mass matrix */
-    const ariane6_real_t t686 = t53 * t678 - t54 * t682 - t685 * t668; /* link j4: derivatives */
-    const ariane6_real_t t687 = t86 * t684 + t87 * t686 + (t87 * t685 - t86 * t102) * t661;
-    const ariane6_real_t t688 = ARIANE6_C(0.2) * t687;
-    const ariane6_real_t t689 = t688 * t674 - (t649 * t520 - t664 * t650 - t673 * t665);
-    const ariane6_real_t t690 = ariane6_bounded(t331 * t531);
-    const ariane6_real_t t691 = ARIANE6_C(2.0) * t579; /* link j5: derivatives */
-    const ariane6_real_t t692 = ARIANE6_C(2.0) * t580;
-    const ariane6_real_t t693 = t6 * t692 - t10 * t691;
-    const ariane6_real_t t694 = ARIANE6_C(-2.0) * t570;
-    const ariane6_real_t t695 = t39 * t694 - t36 * t693 + (t142 * t677 + t46 * t680);
-    const ariane6_real_t t696 = t6 * t691 + t10 * t692;
-    const ariane6_real_t t697 = t68 * t680 + t142 * t681 - t696;
-    const ariane6_real_t t698 = t54 * t695 + t53 * t697 + (t142 * t683 + t98 * t668);
-    const ariane6_real_t t699 = t53 * t46 - t54 * t68; /* link j5: column of the mass matrix */
-    const ariane6_real_t t700 = t53 * t695 - t54 * t697 + t699 * t668; /* link j5: derivatives */
-    const ariane6_real_t t701 = t86 * t698 + t87 * t700 - (t87 * t699 + t86 * t98) * t661;
-    const ariane6_real_t t702 = ARIANE6_C(0.07043047103899029) * t7 / t10; /* joint j5: drive */
-    const ariane6_real_t t703 = t702 * t701;
-    const ariane6_real_t t704 = ARIANE6_C(5.0) * t537;
-    const ariane6_real_t t705 = ARIANE6_C(2.0) * t561; /* link j6: derivatives */
-    const ariane6_real_t t706 = ARIANE6_C(-2.0) * t562;
-    const ariane6_real_t t707 = t1 * t705 + t2 * t706;
-    const ariane6_real_t t708 = ARIANE6_C(2.0) * t553;
-    const ariane6_real_t t709 = t6 * t708 - t10 * t707;
-    const ariane6_real_t t710 = t1 * t706 - t2 * t705;
-    const ariane6_real_t t711 = t39 * t710 - t36 * t709 + (t135 * t677 + t65 * t680);
-    const ariane6_real_t t712 = t6 * t707 + t10 * t708;
-    const ariane6_real_t t713 = t64 * t680 + t135 * t681 - t712;
-    const ariane6_real_t t714 = t54 * t711 + t53 * t713 + (t135 * t683 + t95 * t668);
-    const ariane6_real_t t715 = t53 * t65 - t54 * t64; /* link j6: column of the mass matrix */
-    const ariane6_real_t t716 = t53 * t711 - t54 * t713 + t715 * t668; /* link j6: derivatives */
-    const ariane6_real_t t717 = t86 * t714 + t87 * t716 - (t87 * t715 + t86 * t95) * t661;
-    const ariane6_real_t t718 = ARIANE6_C(0.2) * t717;
-    ddq_by_dq[0] = t689 + t703 * t690 + t718 * t704;
-    const ariane6_real_t t719 = ariane6_bounded(t365 * (t168 - t169 * t521));
-    const ariane6_real_t t720 = t110 * t168 - t169 * t523;
-    const ariane6_real_t t721 = ariane6_bounded(t349 * t720);
-    const ariane6_real_t t722 = t168 * t525 - t169 * t526;
-    const ariane6_real_t t723 = ariane6_bounded(ARIANE6_C(5.0) * t722);
-    const ariane6_real_t t724 = t649 * t522 + t664 * t719 + t673 * t721 + t688 * t723;
-    const ariane6_real_t t725 = t168 * t529 - t169 * t531;
-    const ariane6_real_t t726 = ariane6_bounded(t331 * t725);
-    const ariane6_real_t t727 = t168 * t535 - t169 * t537;
-    const ariane6_real_t t728 = ARIANE6_C(5.0) * t727;
-    ddq_by_dq[6] = t724 + t703 * t726 + t718 * t728;
-    const ariane6_real_t t729 = ariane6_bounded(t365 * t720);
-    const ariane6_real_t t730 = ariane6_bounded(t349 * (t107 - t163 * t523 + t110 * t720));
-    const ariane6_real_t t731 = t78 * t107 - t163 * t526 + t110 * t722;
-    const ariane6_real_t t732 = ariane6_bounded(ARIANE6_C(5.0) * t731);
-    const ariane6_real_t t733 = t649 * t524 + t664 * t729 + t673 * t730 + t688 * t732;
-    const ariane6_real_t t734 = t107 * t528 - t163 * t531 + t110 * t725;
-    const ariane6_real_t t735 = ariane6_bounded(t331 * t734);
-    const ariane6_real_t t736 = t107 * t534 - t163 * t537 + t110 * t727;
-    const ariane6_real_t t737 = ARIANE6_C(5.0) * t736;
-    ddq_by_dq[12] = t733 + t703 * t735 + t718 * t737;
-    const ariane6_real_t t738 = ariane6_bounded(t365 * t722);
-    const ariane6_real_t t739 = ariane6_bounded(t349 * t731);
-    const ariane6_real_t t740 = t77 + t155 * t526 + t105 * t722 + t78 * t731;
-    const ariane6_real_t t741 = ariane6_bounded(ARIANE6_C(5.0) * t740);
-    const ariane6_real_t t742 = t649 * t527 + t664 * t738 + t673 * t739 + t688 * t741;
-    const ariane6_real_t t743 = t25 * t77 + t155 * t531 + t105 * t725 + t78 * t734;
-    const ariane6_real_t t744 = ariane6_bounded(t331 * t743);
-    const ariane6_real_t t745 = t77 * t533 + t155 * t537 + t105 * t727 + t78 * t736;
-    const ariane6_real_t t746 = ariane6_bounded(ARIANE6_C(5.0) * t745);
-    ddq_by_dq[18] = t742 + t703 * t744 + t718 * t746;
-    const ariane6_real_t t747 = ariane6_bounded(t365 * t725);
-    const ariane6_real_t t748 = ariane6_bounded(t349 * t734);
-    const ariane6_real_t t749 = ariane6_bounded(ARIANE6_C(5.0) * t743);
-    const ariane6_real_t t750 = t649 * t532 + t664 * t747 + t673 * t748 + t688 * t749;
-    const ariane6_real_t t751 = t24 - t148 * t531 - t101 * t725 - t71 * t734;
-    const ariane6_real_t t752 = ariane6_bounded(t331 * (t751 + t25 * t743));
-    const ariane6_real_t t753 = t15 * t24 - t148 * t537 - t101 * t727 - t71 * t736;
-    const ariane6_real_t t754 = t753 + t25 * t745;
-    const ariane6_real_t t755 = ARIANE6_C(5.0) * t754;
-    ddq_by_dq[24] = t750 + t703 * t752 + t718 * t755;
-    const ariane6_real_t t756 = ariane6_bounded(t365 * t727);
-    const ariane6_real_t t757 = ariane6_bounded(t349 * t736);
-    const ariane6_real_t t758 = t649 * t538 + t664 * t756 + t673 * t757 + t688 * t746;
-    const ariane6_real_t t759 = ariane6_bounded(t331 * t754);
-    const ariane6_real_t t760 = t14 - t141 * t537 - t97 * t727 - t67 * t736;
-    const ariane6_real_t t761 = ARIANE6_C(5.0) * (t760 - t32 * t745 + t15 * t754);
-    ddq_by_dq[30] = t758 + t703 * t759 + t718 * t761;
-    ddq_by_input[0] = t520;
-    ddq_by_input[6] = -t522;
-    ddq_by_input[12] = -t524;
-    ddq_by_input[18] = -t527;
-    ddq_by_input[24] = -t532;
-    ddq_by_input[30] = -t538;
-    const ariane6_real_t t762 = t307 + t224; /* link j3: motion */
-    const ariane6_real_t t763 = ARIANE6_C(2.0) * t173; /* link j2: derivatives */
-    const ariane6_real_t t764 = ARIANE6_C(-2.0) * t172;
-    const ariane6_real_t t765 = t635 * t763 + t640 * t764 + (t164 * t762 + (t121 * t433 - t123 * t499));
-    const ariane6_real_t t766 = t643 * t763 + t637 * t764 - (t165 * t762 - (t123 * t433 - t120 * t499));
-    const ariane6_real_t t767 = t86 * (t506 + (t74 * t223 + t765)) + t87 * (t502 + (t766 - t74 * t228));
-    const ariane6_real_t t768 = t646 * t763 - t645 * t764 + (t125 * t433 + t126 * t499);
-    const ariane6_real_t t769 = t511 * (t767 + ARIANE6_C(0.18) * t768);
-    const ariane6_real_t t770 = t36 * t488 + t39 * t490;
-    const ariane6_real_t t771 = parameters[MX4] * t472 + parameters[MY4R] * t408 - (t6 * t486 + t10 * t487);
-    const ariane6_real_t t772 = t39 * t477 - t36 * t483 + (ARIANE6_C(0.17) * t771 + ARIANE6_C(0.488) * t770);
-    const ariane6_real_t t773 = parameters[XX3R] * t382 + parameters[ZZ3R] * t377 - parameters[YZ3] * t398
-        + parameters[XZ3] * t384;
-    const ariane6_real_t t774 = parameters[XY3R] * (t438 - t446) - t773 - (parameters[MX3R] * t448
-        + parameters[MY3R] * t442);
-    const ariane6_real_t t775 = t774 + t772;
-    const ariane6_real_t t776 = parameters[MX3R] * t439 + parameters[MY3R] * t383 - t770;
-    const ariane6_real_t t777 = t771 - (parameters[MY3R] * t447 + parameters[MX3R] * t445);
-    const ariane6_real_t t778 = t355 - parameters[ZZ2R] * t370 - parameters[YZ2] * t433
-        - parameters[XZ2R] * t499;
-    const ariane6_real_t t779 = t354 + t778 - t356 + (t775 + ARIANE6_C(0.685) * (t53 * t776 - t54 * t777));
-    const ariane6_real_t t780 = ariane6_select(t90, t90, ARIANE6_C(1.0));
-    const ariane6_real_t t781 = ARIANE6_C(-1.0) / t780;
-    const ariane6_real_t t782 = ARIANE6_C(0.126918) * t88;
-    const ariane6_real_t t783 = ARIANE6_C(-1.0) / t88;
-    const ariane6_real_t t784 = t783 * (ARIANE6_C(0.019697757607273984) * (t782 * (ARIANE6_C(0.5) * t781))
-        + t89 * t663);
-    const ariane6_real_t t785 = t173 * t658 - t172 * t660 + (t85 * t762 + (t164 * t433 + t165 * t499));
-    const ariane6_real_t t786 = t91 * (t91 * (t782 * (ARIANE6_C(0.5) * t91)));
-    const ariane6_real_t t787 = t88 * (ARIANE6_C(12691.800000000003) * t786) - t89 * t92;
-    const ariane6_real_t t788 = t360 * (ARIANE6_C(-1610.8178724000004) * (t91 * t786))
-        + t359 * (ARIANE6_C(2.0) * (t88 * t89));
-    const ariane6_real_t t789 = t225 * (t361 * t786 + t91 * (ARIANE6_C(12691.800000000003) * t88 + t788));
-    const ariane6_real_t t790 = parameters[FV2] * (dq[1] * t787) + parameters[IA2] * (t789 + t370 * t787);
-    const ariane6_real_t t791 = ARIANE6_C(250.0) * t790 + t663 * (t126 * t223 - t125 * t228 + t785);
-    const ariane6_real_t t792 = t791 + t784 * t779;
-    const ariane6_real_t t793 = t173 * t669 + t172 * t670 - (t108 * t762 - (t159 * t433 + t160 * t499));
-    const ariane6_real_t t794 = t672 * (t83 * t223 - t122 * t228 + t793);
-    const ariane6_real_t t795 = t173 * t684 - t172 * t686 - (t103 * t762 - (t151 * t433 - t152 * t499));
-    const ariane6_real_t t796 = ARIANE6_C(0.2) * (t685 * t228 + t102 * t223 + t795);
-    const ariane6_real_t t797 = t674 * t796 - (t520 * t769 - t650 * t792 - t665 * t794);
-    const ariane6_real_t t798 = t173 * t698 - t172 * t700 + (t99 * t762 + (t145 * t433 + t146 * t499));
-    const ariane6_real_t t799 = t702 * (t98 * t223 - t699 * t228 + t798);
-    const ariane6_real_t t800 = t173 * t714 - t172 * t716 + (t96 * t762 + (t138 * t433 + t139 * t499));
-    const ariane6_real_t t801 = ARIANE6_C(0.2) * (t95 * t223 - t715 * t228 + t800);
-    ddq_by_q[1] = t797 + t690 * t799 + t704 * t801;
-    const ariane6_real_t t802 = t522 * t769 + t719 * t792 + t721 * t794 + t723 * t796;
-    ddq_by_q[7] = t802 + t726 * t799 + t728 * t801;
-    const ariane6_real_t t803 = t524 * t769 + t729 * t792 + t730 * t794 + t732 * t796;
-    ddq_by_q[13] = t803 + t735 * t799 + t737 * t801;
-    const ariane6_real_t t804 = t527 * t769 + t738 * t792 + t739 * t794 + t741 * t796;
-    ddq_by_q[19] = t804 + t744 * t799 + t746 * t801;
-    const ariane6_real_t t805 = t532 * t769 + t747 * t792 + t748 * t794 + t749 * t796;
-    ddq_by_q[25] = t805 + t752 * t799 + t755 * t801;
-    const ariane6_real_t t806 = t538 * t769 + t756 * t792 + t757 * t794 + t746 * t796;
-    ddq_by_q[31] = t806 + t759 * t799 + t761 * t801;
-    const ariane6_real_t t807 = t615 - parameters[ZZ3R];
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t808 = t381 * t807 - parameters[YZ3] * t177 + (t578 + t651 + t74 * t595);
-    const ariane6_real_t t809 = parameters[XZ3] * t177 + t379 * t807 + (t39 * t617 - t36 * t618 - t74 * t601);
-    const ariane6_real_t t810 = parameters[ZZ2R] + t639;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t811 = t173 * t810 - parameters[YZ2] * dq[1] + (t54 * t808 - t53 * t809);
-    /* link j2: derivatives */
-    const ariane6_real_t t812 = t86 * (ARIANE6_C(2.0) * t811 + (t121 * t763 + t123 * t764));
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t813 = parameters[XZ2R] * dq[1] - t172 * t810 + (t53 * t808 + t54 * t809
-        + t74 * t628);
-    /* link j2: derivatives */
-    const ariane6_real_t t814 = t87 * (ARIANE6_C(2.0) * t813 + (t123 * t763 + t120 * t764));
-    const ariane6_real_t t815 = t812 + t814 + ARIANE6_C(0.18) * (t125 * t763 - t126 * t764);
-    const ariane6_real_t t816 = t511 * t815;
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t817 = t569 - t584 + t600 - t603 - (t604 + t608);
-    /* link j2: derivatives */
-    const ariane6_real_t t818 = ARIANE6_C(2.0) * (t633 - t636 + (t817 + t631 - t632))
-        + ARIANE6_C(2.0) * (t164 * t173 + t165 * t172);
-    const ariane6_real_t t819 = ARIANE6_C(250.0) * (parameters[IA2] * (t362 * (ARIANE6_C(-2.0) * dq[1]))
-        - t93 * parameters[FV2]);
-    const ariane6_real_t t820 = t819 + t663 * t818;
-    const ariane6_real_t t821 = ARIANE6_C(2.0) * t817; /* link j3: derivatives */
-    const ariane6_real_t t822 = t821 - t122 * t683 + ARIANE6_C(2.0) * (t159 * t173 + t160 * t172);
-    const ariane6_real_t t823 = t672 * t822;
-    const ariane6_real_t t824 = t39 * t675 - t36 * t676 - t74 * t677; /* link j4: derivatives */
-    const ariane6_real_t t825 = t824 - t685 * t683 + ARIANE6_C(2.0) * (t152 * t172 - t151 * t173);
-    const ariane6_real_t t826 = ARIANE6_C(0.2) * t825;
-    const ariane6_real_t t827 = t816 * t520 - t820 * t650 - t823 * t665 + t826 * t674;
+    const ariane6_real_t t709 = t655 - t458 - (t414 * t708 + parameters[YZ5] * t402);
+    const ariane6_real_t t710 = ARIANE6_C(2.0) * t709 - (t25 * t635 + t26 * t638); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t711 = parameters[XZ5] * t402 + t401 * t708 + (t2 * t474 + t1 * t475);
     /* link j5: derivatives */
-    const ariane6_real_t t828 = t39 * t693 + t36 * t694 + (t68 * t677 - t46 * t681);
-    const ariane6_real_t t829 = t828 - t699 * t683 + ARIANE6_C(2.0) * (t145 * t173 + t146 * t172);
-    const ariane6_real_t t830 = t702 * t829;
+    const ariane6_real_t t712 = ARIANE6_C(-2.0) * t711 + (t26 * t635 + parameters[ZZ6] * t638);
+    const ariane6_real_t t713 = t10 * t710 + t6 * t712;
+    const ariane6_real_t t714 = t632 - t648 + (t455 + t631); /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t715 = ARIANE6_C(-2.0) * t714; /* link j5: derivatives */
+    const ariane6_real_t t716 = t715 - (t17 * t635 + t18 * t638);
+    const ariane6_real_t t717 = ARIANE6_C(2.0) * t666 + t40 * t638;
+    const ariane6_real_t t718 = ARIANE6_C(2.0) * t667 + t40 * t635;
+    const ariane6_real_t t719 = t10 * t717 + t6 * t718;
+    const ariane6_real_t t720 = parameters[MY5R] * t635 - t43 * t638;
+    const ariane6_real_t t721 = t37 * t719 + t34 * t720;
+    const ariane6_real_t t722 = t34 * t713 - t37 * t716 + ARIANE6_C(-0.488) * t721;
+    const ariane6_real_t t723 = t6 * t710 - t10 * t712;
+    const ariane6_real_t t724 = t723 + ARIANE6_C(-0.17) * t721;
+    const ariane6_real_t t725 = t84 * (t51 * t722 + t52 * t724 + ARIANE6_C(0.685) * t721);
+    const ariane6_real_t t726 = t83 * (t52 * t722 - t51 * t724) + t725 + ARIANE6_C(0.18) * t721;
+    const ariane6_real_t t727 = t501 * t726;
+    const ariane6_real_t t728 = t10 * t718 - t6 * t717;
+    const ariane6_real_t t729 = t37 * t720 - t34 * t719;
+    const ariane6_real_t t730 = t37 * t713 + t34 * t716 + (ARIANE6_C(-0.17) * t728
+        + ARIANE6_C(-0.488) * t729);
+    const ariane6_real_t t731 = t507 * (t730 + ARIANE6_C(0.685) * (t51 * t729 + t52 * t728));
+    const ariane6_real_t t732 = t511 * t730;
+    const ariane6_real_t t733 = ARIANE6_C(0.2) * t723;
+    const ariane6_real_t t734 = t727 * t503 - t731 * t510 - t732 * t514 + t733 * t518;
+    const ariane6_real_t t735 = t520 * (t715 + ARIANE6_C(2.0) * (t18 * t401 - t17 * t414));
+    const ariane6_real_t t736 = ARIANE6_C(-250.0) * (t11 * parameters[FV5]
+        + parameters[IA5] * (t327 * (ARIANE6_C(2.0) * dq[4])));
+    const ariane6_real_t t737 = t736 + t735;
+    const ariane6_real_t t738 = t1 * t528 - t2 * t527; /* link j6: derivatives */
+    const ariane6_real_t t739 = ARIANE6_C(0.2) * (t738 + ARIANE6_C(2.0) * (t20 * t414
+        - parameters[ZZ6] * t401));
+    ddq_by_dq[4] = t739 * t535 - (t734 - t737 * t526);
+    const ariane6_real_t t740 = t727 * t536 + t731 * t537 + t732 * t539 - t733 * t541;
+    ddq_by_dq[10] = t740 + t737 * t544 + t739 * t546;
+    const ariane6_real_t t741 = t727 * t547 + t731 * t548 + t732 * t549 - t733 * t551;
+    ddq_by_dq[16] = t741 + t737 * t554 + t739 * t556;
+    const ariane6_real_t t742 = t727 * t557 + t731 * t558 + t732 * t559 - t733 * t561;
+    ddq_by_dq[22] = t742 + t737 * t564 + t739 * t566;
+    const ariane6_real_t t743 = t727 * t567 + t731 * t568 + t732 * t569 - t733 * t570;
+    ddq_by_dq[28] = t743 + t737 * t573 + t739 * t576;
+    const ariane6_real_t t744 = t727 * t577 + t731 * t578 + t732 * t579 - t733 * t566;
+    ddq_by_dq[34] = t744 + t737 * t581 + t739 * t583;
+    ddq_by_input[4] = t526;
+    ddq_by_input[10] = t544;
+    ddq_by_input[16] = t554;
+    ddq_by_input[22] = t564;
+    ddq_by_input[28] = t573;
+    ddq_by_input[34] = t581;
+    const ariane6_real_t t745 = t411 + t412;
+    const ariane6_real_t t746 = t385 - t382;
+    const ariane6_real_t t747 = parameters[ZZ4R] * t397 + parameters[XX4R] * t398 - parameters[XY4] * t745
+        + parameters[XZ4] * t746;
+    const ariane6_real_t t748 = t384 * t384; /* link j4: motion */
+    const ariane6_real_t t749 = t396 * t396;
+    const ariane6_real_t t750 = parameters[YZ4] * (t748 - t749) + t747 + parameters[MY4R] * t447 + (t6 * t627
+        - t10 * t644);
+    const ariane6_real_t t751 = t48 * t477;
+    const ariane6_real_t t752 = t5 * t395;
+    const ariane6_real_t t753 = t383 * t383;
+    const ariane6_real_t t754 = t753 + t748; /* link j5: motion */
+    const ariane6_real_t t755 = ARIANE6_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const ariane6_real_t t756 = parameters[XX4R] + t755;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t757 = parameters[XZ4] * t383 - t396 * t756 + (t10 * t656 - t6 * t657);
+    const ariane6_real_t t758 = ARIANE6_C(2.0) * t384; /* link j4: derivatives */
+    const ariane6_real_t t759 = parameters[XY4] * t396;
+    const ariane6_real_t t760 = parameters[YZ4] * t383;
+    const ariane6_real_t t761 = t760 - t759 + t714; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t762 = ARIANE6_C(2.0) * t383; /* link j4: derivatives */
+    const ariane6_real_t t763 = t757 * t758 - t761 * t762 + (t71 * t754 - (t752 - t36 * t410));
+    const ariane6_real_t t764 = t750 + (t751 - t763);
+    const ariane6_real_t t765 = parameters[XZ4] * (t753 - t749) + (parameters[YZ4] * t386 - (t276 * t411
+        + parameters[XY4] * t399));
+    const ariane6_real_t t766 = t765 + parameters[MX4] * t447 + t685;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t767 = t10 * (t634 - t649) + t6 * (t637 + t647);
+    const ariane6_real_t t768 = t10 * t767;
+    const ariane6_real_t t769 = parameters[XZ4] * t384;
+    const ariane6_real_t t770 = t769 - t759 + (t649 + t768);
+    const ariane6_real_t t771 = parameters[YZ4] * t384 - t396 * t755 + (t10 * t709 - t6 * t711);
+    const ariane6_real_t t772 = t770 * t758 - t771 * t762 + (t70 * t754 + (t33 * t410 + t36 * t395));
+    const ariane6_real_t t773 = t766 + (t772 - t48 * t442);
+    const ariane6_real_t t774 = parameters[MY5R] * t420 - parameters[MX5] * t641 - (t2 * t487 + t1 * t484);
+    const ariane6_real_t t775 = parameters[MY4R] * (t753 + t749) - parameters[MX4] * t746 - t774;
+    const ariane6_real_t t776 = parameters[MX4] * t384 - parameters[MY4R] * t383 - (t6 * t667 + t10 * t666);
+    const ariane6_real_t t777 = t775 + (t776 * t762 + (t41 * t754 + t48 * t395));
+    const ariane6_real_t t778 = parameters[MY4R] * t386 - parameters[MX4] * (t748 + t749) + (t6 * t663
+        - t10 * t660);
+    const ariane6_real_t t779 = t778 + (t776 * t758 + (t45 * t754 + t48 * t410));
+    const ariane6_real_t t780 = t37 * t777 + t34 * t779;
+    const ariane6_real_t t781 = t34 * t773 - t37 * t764 + ARIANE6_C(-0.488) * t780;
+    const ariane6_real_t t782 = t45 * t442 + t41 * t477;
+    const ariane6_real_t t783 = t29 * t754 - (t70 * t410 + t71 * t395);
+    const ariane6_real_t t784 = t6 * t767;
+    const ariane6_real_t t785 = parameters[XY4] * t383 - t384 * t756 - (t647 - t784);
+    const ariane6_real_t t786 = parameters[XY4] * t384 - t383 * t755 - (t6 * t709 + t10 * t711);
+    const ariane6_real_t t787 = t785 * t758 + t786 * t762 - t783 - t782 - ARIANE6_C(0.17) * t780;
+    const ariane6_real_t t788 = t84 * (t51 * t781 + t52 * t787 + ARIANE6_C(0.685) * t780);
+    const ariane6_real_t t789 = t83 * (t52 * t781 - t51 * t787) + t788 + ARIANE6_C(0.18) * t780;
+    const ariane6_real_t t790 = t501 * t789;
+    const ariane6_real_t t791 = t34 * t777 - t37 * t779;
+    const ariane6_real_t t792 = parameters[MX4] * t396 + t661;
+    const ariane6_real_t t793 = t10 * t667 - t6 * t666 - parameters[MY4R] * t396;
+    const ariane6_real_t t794 = t41 * t410 - t45 * t395 - (t792 * t758 + t793 * t762);
+    const ariane6_real_t t795 = t37 * t773 + t34 * t764 + (ARIANE6_C(-0.17) * t794 + ARIANE6_C(0.488) * t791);
+    const ariane6_real_t t796 = t507 * (t795 + ARIANE6_C(0.685) * (t52 * t794 - t51 * t791));
+    const ariane6_real_t t797 = t511 * t795;
+    const ariane6_real_t t798 = ARIANE6_C(2.0) * t785; /* link j4: derivatives */
+    const ariane6_real_t t799 = ARIANE6_C(2.0) * t786;
+    const ariane6_real_t t800 = ARIANE6_C(0.2) * (t384 * t798 + t383 * t799 - t783 - t782);
+    const ariane6_real_t t801 = t503 * t790 - t510 * t796 - t514 * t797 + t518 * t800;
+    const ariane6_real_t t802 = t6 * t692 - t10 * t691; /* link j5: derivatives */
+    const ariane6_real_t t803 = t384 * t802 - t383 * t715 + (t35 * t410 + t752 - t19 * t754);
+    const ariane6_real_t t804 = t520 * (t803 + t751);
+    const ariane6_real_t t805 = t6 * t591 - t10 * t700; /* link j6: derivatives */
+    const ariane6_real_t t806 = t384 * t805 - t383 * t738 + (t21 * t754 + (t60 * t410 - t13 * t395));
+    const ariane6_real_t t807 = ARIANE6_C(0.2) * (t806 + (t61 * t477 - t42 * t442));
+    ddq_by_q[3] = t535 * t807 - (t801 - t526 * t804);
+    const ariane6_real_t t808 = t536 * t790 + t537 * t796 + t539 * t797 - t541 * t800;
+    ddq_by_q[9] = t808 + t544 * t804 + t546 * t807;
+    const ariane6_real_t t809 = t547 * t790 + t548 * t796 + t549 * t797 - t551 * t800;
+    ddq_by_q[15] = t809 + t554 * t804 + t556 * t807;
+    const ariane6_real_t t810 = t557 * t790 + t558 * t796 + t559 * t797 - t561 * t800;
+    ddq_by_q[21] = t810 + t564 * t804 + t566 * t807;
+    const ariane6_real_t t811 = t567 * t790 + t568 * t796 + t569 * t797 - t570 * t800;
+    ddq_by_q[27] = t811 + t573 * t804 + t576 * t807;
+    const ariane6_real_t t812 = t577 * t790 + t578 * t796 + t579 * t797 - t566 * t800;
+    ddq_by_q[33] = t812 + t581 * t804 + t583 * t807;
+    const ariane6_real_t t813 = parameters[ZZ4R] + t755;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t814 = t384 * t813 - parameters[YZ4] * t396 + (t784 - t637);
+    const ariane6_real_t t815 = ARIANE6_C(-2.0) * t814 + (t33 * t758 + t36 * t762); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t816 = t383 * t813 - parameters[XZ4] * t396 + (t6 * t656 + t10 * t657);
+    const ariane6_real_t t817 = ARIANE6_C(2.0) * t816 - (t36 * t758 - t5 * t762); /* link j4: derivatives */
+    const ariane6_real_t t818 = ARIANE6_C(2.0) * t792 + t48 * t762;
+    const ariane6_real_t t819 = ARIANE6_C(-2.0) * t793 + t48 * t758;
+    const ariane6_real_t t820 = t37 * t818 + t34 * t819;
+    const ariane6_real_t t821 = t34 * t815 - t37 * t817 + ARIANE6_C(-0.488) * t820;
+    const ariane6_real_t t822 = t769 - t760 + (t768 - t634); /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t823 = ARIANE6_C(2.0) * t822; /* link j4: derivatives */
+    const ariane6_real_t t824 = t823 + (t70 * t758 + t71 * t762) + ARIANE6_C(-0.17) * t820;
+    const ariane6_real_t t825 = t84 * (t51 * t821 + t52 * t824 + ARIANE6_C(0.685) * t820);
+    const ariane6_real_t t826 = t83 * (t52 * t821 - t51 * t824) + t825 + ARIANE6_C(0.18) * t820;
+    const ariane6_real_t t827 = t501 * t826;
+    const ariane6_real_t t828 = t37 * t819 - t34 * t818;
+    const ariane6_real_t t829 = t41 * t758 - t45 * t762;
+    const ariane6_real_t t830 = t37 * t815 + t34 * t817 + (ARIANE6_C(-0.17) * t829
+        + ARIANE6_C(-0.488) * t828);
+    const ariane6_real_t t831 = t507 * (t830 + ARIANE6_C(0.685) * (t51 * t828 + t52 * t829));
+    const ariane6_real_t t832 = t511 * t830;
+    const ariane6_real_t t833 = ARIANE6_C(0.2) * (t823 - ARIANE6_C(-2.0) * (t70 * t384 + t71 * t383));
+    const ariane6_real_t t834 = ARIANE6_C(2.0e3) * parameters[FV4] + t833;
+    const ariane6_real_t t835 = t827 * t503 - t831 * t510 - t832 * t514 + t834 * t518;
+    const ariane6_real_t t836 = t6 * t691 + t10 * t692; /* link j5: derivatives */
+    const ariane6_real_t t837 = t520 * (t836 + ARIANE6_C(2.0) * (t35 * t384 + t5 * t383));
+    const ariane6_real_t t838 = t6 * t700 + t10 * t591; /* link j6: derivatives */
+    const ariane6_real_t t839 = ARIANE6_C(0.2) * (t838 + ARIANE6_C(2.0) * (t60 * t384 - t13 * t383));
+    ddq_by_dq[3] = t839 * t535 - (t835 - t837 * t526);
+    const ariane6_real_t t840 = t827 * t536 + t831 * t537 + t832 * t539 - t834 * t541;
+    ddq_by_dq[9] = t840 + t837 * t544 + t839 * t546;
+    const ariane6_real_t t841 = t827 * t547 + t831 * t548 + t832 * t549 - t834 * t551;
+    ddq_by_dq[15] = t841 + t837 * t554 + t839 * t556;
+    const ariane6_real_t t842 = t827 * t557 + t831 * t558 + t832 * t559 - t834 * t561;
+    ddq_by_dq[21] = t842 + t837 * t564 + t839 * t566;
+    const ariane6_real_t t843 = t827 * t567 + t831 * t568 + t832 * t569 - t834 * t570;
+    ddq_by_dq[27] = t843 + t837 * t573 + t839 * t576;
+    const ariane6_real_t t844 = t827 * t577 + t831 * t578 + t832 * t579 - t834 * t566;
+    ddq_by_dq[33] = t844 + t837 * t581 + t839 * t583;
+    ddq_by_input[3] = t518;
+    ddq_by_input[9] = t541;
+    ddq_by_input[15] = t551;
+    ddq_by_input[21] = t561;
+    ddq_by_input[27] = t570;
+    ddq_by_input[33] = t566;
+    const ariane6_real_t t845 = parameters[XX4R] * t385 + parameters[ZZ4R] * t382 + parameters[YZ4] * t410
+        + parameters[XZ4] * t395;
+    const ariane6_real_t t846 = parameters[XY4] * (t748 - t753) + t845 - (parameters[MX4] * t477
+        + parameters[MY4R] * t442);
+    const ariane6_real_t t847 = t37 * t778 - t34 * t775;
+    const ariane6_real_t t848 = t846 + (t6 * t644 + t10 * t627) + ARIANE6_C(0.17) * t847;
+    const ariane6_real_t t849 = parameters[XZ3] * (t444 - t232) + (t294 * t380 + parameters[XY3R] * t394
+        - parameters[YZ3] * t390);
+    const ariane6_real_t t850 = t849 - parameters[MX3R] * t433 + t848;
+    const ariane6_real_t t851 = t444 + t436; /* link j4: motion */
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t852 = t34 * (t770 + t761) - t37 * (t771 - t757);
+    const ariane6_real_t t853 = t34 * t852;
+    const ariane6_real_t t854 = t34 * t793 - t37 * t792;
+    const ariane6_real_t t855 = ARIANE6_C(-0.17) * t854;
+    const ariane6_real_t t856 = ARIANE6_C(-0.488) * t176; /* link j4: velocity of its origin */
+    const ariane6_real_t t857 = t46 * t856; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t858 = ARIANE6_C(-0.488) * t776;
+    const ariane6_real_t t859 = ARIANE6_C(-0.488) * t379 + ARIANE6_C(0.17) * t388;
+    const ariane6_real_t t860 = t72 * t859;
+    const ariane6_real_t t861 = ARIANE6_C(0.17) * t176; /* link j4: velocity of its origin */
+    const ariane6_real_t t862 = t48 * t861; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t863 = t860 - (t857 + t862) - (t855 + t858);
+    const ariane6_real_t t864 = parameters[XZ3] * t388;
+    const ariane6_real_t t865 = parameters[XY3R] * t176;
+    const ariane6_real_t t866 = t863 + (t761 - t853 + (t855 + t857)) - (t864 + t865);
+    const ariane6_real_t t867 = ARIANE6_C(2.0) * t388; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t868 = t34 * t814 + t37 * t816 + (ARIANE6_C(-0.488) * t854 + t48 * t856);
+    const ariane6_real_t t869 = ARIANE6_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const ariane6_real_t t870 = parameters[YZ3] * t388 - t176 * t869 + t868;
+    const ariane6_real_t t871 = ARIANE6_C(2.0) * t379; /* link j3: derivatives */
+    const ariane6_real_t t872 = t870 * t871 - t866 * t867 - (t153 * t851 - (t113 * t391 - t110 * t377));
+    const ariane6_real_t t873 = t850 + (t872 + t72 * t440);
+    const ariane6_real_t t874 = parameters[ZZ3R] * t392 + parameters[XX3R] * t393 + parameters[XY3R] * t434
+        + parameters[XZ3] * t443;
+    const ariane6_real_t t875 = parameters[MY3R] * t433 + (parameters[YZ3] * (t232 - t436) + t874)
+        - (t34 * t750 + t37 * t766 + ARIANE6_C(-0.488) * t847);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t876 = t34 * t785 + t37 * t786 + (ARIANE6_C(-0.17) * t776 + t46 * t861);
+    const ariane6_real_t t877 = parameters[XX3R] - t869;
+    const ariane6_real_t t878 = t176 * t877 - parameters[XZ3] * t379 - t876;
+    const ariane6_real_t t879 = parameters[YZ3] * t379;
+    const ariane6_real_t t880 = t865 - t879 + (t863 + (t822 + (t858 + t862)));
+    const ariane6_real_t t881 = t878 * t867 + t880 * t871 + (t154 * t851 + (t109 * t391 - t113 * t377));
+    const ariane6_real_t t882 = t72 * t446;
+    const ariane6_real_t t883 = t875 + (t882 + t881);
+    const ariane6_real_t t884 = parameters[MY3R] * t176 + t854;
+    const ariane6_real_t t885 = parameters[MX3R] * t176 + t776;
+    const ariane6_real_t t886 = t885 * t867 + t884 * t871 + (t79 * t377 + t78 * t391);
+    const ariane6_real_t t887 = t84 * (t51 * t873 - t52 * t883 + ARIANE6_C(0.685) * t886);
+    const ariane6_real_t t888 = t83 * (t52 * t873 + t51 * t883) + t887 + ARIANE6_C(0.18) * t886;
+    const ariane6_real_t t889 = t501 * t888;
+    const ariane6_real_t t890 = t34 * t778 + t37 * t775;
+    const ariane6_real_t t891 = parameters[MX3R] * t437 + parameters[MY3R] * t390 - t890;
+    const ariane6_real_t t892 = t37 * t793 + t34 * t792;
+    const ariane6_real_t t893 = parameters[MY3R] * t379 + parameters[MX3R] * t388 + t892;
+    const ariane6_real_t t894 = t891 - (t893 * t867 + (t78 * t851 - t72 * t377));
+    const ariane6_real_t t895 = parameters[MX4] * t745 + parameters[MY4R] * t399 - (t6 * t660 + t10 * t663);
+    const ariane6_real_t t896 = t895 - (parameters[MY3R] * t445 + parameters[MX3R] * t443);
+    const ariane6_real_t t897 = t896 + (t893 * t871 - (t79 * t851 + t72 * t391));
+    const ariane6_real_t t898 = t50 * t851 + (t153 * t377 + t154 * t391);
+    const ariane6_real_t t899 = t37 * t852;
+    const ariane6_real_t t900 = parameters[XY3R] * t379 + t388 * t877 - (t757 - t899 - (ARIANE6_C(0.17) * t892
+        - t46 * t859));
+    const ariane6_real_t t901 = t37 * t814 - t34 * t816 + (ARIANE6_C(-0.488) * t892 + t48 * t859);
+    const ariane6_real_t t902 = parameters[XY3R] * t388 - t379 * t869 + t901;
+    const ariane6_real_t t903 = t78 * t440 + t79 * t446;
+    const ariane6_real_t t904 = t900 * t867 + t902 * t871 + t898 + t903 + ARIANE6_C(0.685) * (t51 * t897
+        + t52 * t894);
+    const ariane6_real_t t905 = t507 * t904;
+    const ariane6_real_t t906 = t37 * t750 - t34 * t766 + (ARIANE6_C(0.17) * t895 + ARIANE6_C(0.488) * t890);
+    const ariane6_real_t t907 = parameters[XX3R] * t389 + parameters[ZZ3R] * t387 - parameters[YZ3] * t377
+        + parameters[XZ3] * t391;
+    const ariane6_real_t t908 = parameters[XY3R] * (t436 - t444) - t907 - (parameters[MX3R] * t446
+        + parameters[MY3R] * t440);
+    const ariane6_real_t t909 = t908 + t906;
+    const ariane6_real_t t910 = ariane6_select(t55, t55, ARIANE6_C(1.0));
+    const ariane6_real_t t911 = ARIANE6_C(-1.0) / t910;
+    const ariane6_real_t t912 = ARIANE6_C(0.083776) * t53;
+    const ariane6_real_t t913 = ARIANE6_C(-1.0) / t53;
+    const ariane6_real_t t914 = t913 * (ARIANE6_C(0.029841482047364396) * (t912 * (ARIANE6_C(0.5) * t911))
+        + t54 * t511);
+    const ariane6_real_t t915 = ARIANE6_C(2.0) * t900; /* link j3: derivatives */
+    const ariane6_real_t t916 = ARIANE6_C(2.0) * t902;
+    const ariane6_real_t t917 = t511 * (t903 + (t388 * t915 + t379 * t916 + t898));
+    const ariane6_real_t t918 = t56 * (t56 * (t912 * (ARIANE6_C(0.5) * t56)));
+    const ariane6_real_t t919 = t53 * (ARIANE6_C(8377.600000000002) * t918) - t54 * t57;
+    const ariane6_real_t t920 = t343 * (ARIANE6_C(-701.8418176000002) * (t56 * t918))
+        + t342 * (ARIANE6_C(2.0) * (t53 * t54));
+    const ariane6_real_t t921 = t346 * (t344 * t918 + t56 * (ARIANE6_C(8377.600000000002) * t53 + t920));
+    const ariane6_real_t t922 = parameters[FV3] * (dq[2] * t919) + parameters[IA3] * (t921 + t370 * t919);
+    const ariane6_real_t t923 = ARIANE6_C(250.0) * t922 + t917 + t914 * t909;
+    const ariane6_real_t t924 = ARIANE6_C(0.34) * t176; /* link j6: derivatives */
+    const ariane6_real_t t925 = t34 * t798 + t37 * t799 + t46 * t924; /* link j4: derivatives */
+    const ariane6_real_t t926 = ARIANE6_C(2.0) * t859; /* link j6: derivatives */
+    const ariane6_real_t t927 = ARIANE6_C(0.976) * t176;
+    const ariane6_real_t t928 = t823 + (t72 * t926 + t46 * t927); /* link j4: derivatives */
+    const ariane6_real_t t929 = t388 * t925 - t379 * t928 + (t73 * t851 - (t146 * t391 - t145 * t377));
+    const ariane6_real_t t930 = ARIANE6_C(0.2) * (t929 - t882);
+    const ariane6_real_t t931 = t503 * t889 - t510 * t905 - t514 * t923 + t518 * t930;
+    /* link j5: derivatives */
+    const ariane6_real_t t932 = t37 * t715 - t34 * t802 + (t138 * t924 + t44 * t926);
+    const ariane6_real_t t933 = t66 * t926 + t138 * t927 - t836;
+    const ariane6_real_t t934 = t379 * t933 - t388 * t932 + (t67 * t851 + (t139 * t377 + t140 * t391));
+    const ariane6_real_t t935 = t520 * (t934 + (t66 * t446 + t44 * t440));
     /* link j6: derivatives */
-    const ariane6_real_t t831 = t39 * t709 + t36 * t710 + (t64 * t677 - t65 * t681);
-    const ariane6_real_t t832 = t831 - t715 * t683 + ARIANE6_C(2.0) * (t138 * t173 + t139 * t172);
-    const ariane6_real_t t833 = ARIANE6_C(0.2) * t832;
-    ddq_by_dq[1] = t833 * t704 - (t827 - t830 * t690);
-    const ariane6_real_t t834 = t816 * t522 + t820 * t719 + t823 * t721 - t826 * t723;
-    ddq_by_dq[7] = t834 + t830 * t726 + t833 * t728;
-    const ariane6_real_t t835 = t816 * t524 + t820 * t729 + t823 * t730 - t826 * t732;
-    ddq_by_dq[13] = t835 + t830 * t735 + t833 * t737;
-    const ariane6_real_t t836 = t816 * t527 + t820 * t738 + t823 * t739 - t826 * t741;
-    ddq_by_dq[19] = t836 + t830 * t744 + t833 * t746;
-    const ariane6_real_t t837 = t816 * t532 + t820 * t747 + t823 * t748 - t826 * t749;
-    ddq_by_dq[25] = t837 + t830 * t752 + t833 * t755;
-    const ariane6_real_t t838 = t816 * t538 + t820 * t756 + t823 * t757 - t826 * t746;
-    ddq_by_dq[31] = t838 + t830 * t759 + t833 * t761;
-    ddq_by_input[1] = t650;
-    ddq_by_input[7] = t719;
-    ddq_by_input[13] = t729;
-    ddq_by_input[19] = t738;
-    ddq_by_input[25] = t747;
-    ddq_by_input[31] = t756;
-    const ariane6_real_t t839 = t446 + t438; /* link j4: motion */
-    const ariane6_real_t t840 = ARIANE6_C(2.0) * t381; /* link j3: derivatives */
-    const ariane6_real_t t841 = ARIANE6_C(2.0) * t379;
-    const ariane6_real_t t842 = t616 * t841 - t606 * t840 - (t157 * t839 - (t117 * t384 - t114 * t398));
-    const ariane6_real_t t843 = t498 + (t842 + t74 * t442);
-    const ariane6_real_t t844 = t621 * t840 + t609 * t841 + (t158 * t839 + (t113 * t384 - t117 * t398));
-    const ariane6_real_t t845 = t74 * t448;
-    const ariane6_real_t t846 = t493 + (t845 + t844);
-    const ariane6_real_t t847 = t625 * t840 + t624 * t841 + (t82 * t398 + t81 * t384);
-    const ariane6_real_t t848 = t87 * (t53 * t843 - t54 * t846 + ARIANE6_C(0.685) * t847);
-    const ariane6_real_t t849 = t86 * (t54 * t843 + t53 * t846) + t848 + ARIANE6_C(0.18) * t847;
-    const ariane6_real_t t850 = t511 * t849;
-    const ariane6_real_t t851 = t776 - (t656 * t840 + (t81 * t839 - t74 * t398));
-    const ariane6_real_t t852 = t777 + (t656 * t841 - (t82 * t839 + t74 * t384));
-    const ariane6_real_t t853 = t52 * t839 + (t157 * t398 + t158 * t384);
-    const ariane6_real_t t854 = t81 * t442 + t82 * t448;
-    const ariane6_real_t t855 = t653 * t840 + t655 * t841 + t853 + t854 + ARIANE6_C(0.685) * (t53 * t852
-        + t54 * t851);
-    const ariane6_real_t t856 = t663 * t855;
-    const ariane6_real_t t857 = ariane6_select(t57, t57, ARIANE6_C(1.0));
-    const ariane6_real_t t858 = ARIANE6_C(-1.0) / t857;
-    const ariane6_real_t t859 = ARIANE6_C(0.083776) * t55;
-    const ariane6_real_t t860 = ARIANE6_C(-1.0) / t55;
-    const ariane6_real_t t861 = t860 * (ARIANE6_C(0.029841482047364396) * (t859 * (ARIANE6_C(0.5) * t858))
-        + t56 * t672);
-    const ariane6_real_t t862 = t672 * (t854 + (t381 * t666 + t379 * t667 + t853));
-    const ariane6_real_t t863 = t58 * (t58 * (t859 * (ARIANE6_C(0.5) * t58)));
-    const ariane6_real_t t864 = t55 * (ARIANE6_C(8377.600000000002) * t863) - t56 * t59;
-    const ariane6_real_t t865 = t344 * (ARIANE6_C(-701.8418176000002) * (t58 * t863))
-        + t343 * (ARIANE6_C(2.0) * (t55 * t56));
-    const ariane6_real_t t866 = t347 * (t345 * t863 + t58 * (ARIANE6_C(8377.600000000002) * t55 + t865));
-    const ariane6_real_t t867 = parameters[FV3] * (dq[2] * t864) + parameters[IA3] * (t866 + t371 * t864);
-    const ariane6_real_t t868 = ARIANE6_C(250.0) * t867 + t862 + t861 * t775;
-    const ariane6_real_t t869 = t381 * t678 - t379 * t682 + (t75 * t839 - (t150 * t384 - t149 * t398));
-    const ariane6_real_t t870 = ARIANE6_C(0.2) * (t869 - t845);
-    const ariane6_real_t t871 = t520 * t850 - t650 * t856 - t665 * t868 + t674 * t870;
-    const ariane6_real_t t872 = t379 * t697 - t381 * t695 + (t69 * t839 + (t143 * t398 + t144 * t384));
-    const ariane6_real_t t873 = t702 * (t872 + (t68 * t448 + t46 * t442));
-    const ariane6_real_t t874 = t379 * t713 - t381 * t711 + (t66 * t839 + (t136 * t398 + t137 * t384));
-    const ariane6_real_t t875 = ARIANE6_C(0.2) * (t874 + (t64 * t448 + t65 * t442));
-    ddq_by_q[2] = t704 * t875 - (t871 - t690 * t873);
-    const ariane6_real_t t876 = t522 * t850 + t719 * t856 + t721 * t868 - t723 * t870;
-    ddq_by_q[8] = t876 + t726 * t873 + t728 * t875;
-    const ariane6_real_t t877 = t524 * t850 + t729 * t856 + t730 * t868 - t732 * t870;
-    ddq_by_q[14] = t877 + t735 * t873 + t737 * t875;
-    const ariane6_real_t t878 = t527 * t850 + t738 * t856 + t739 * t868 - t741 * t870;
-    ddq_by_q[20] = t878 + t744 * t873 + t746 * t875;
-    const ariane6_real_t t879 = t532 * t850 + t747 * t856 + t748 * t868 - t749 * t870;
-    ddq_by_q[26] = t879 + t752 * t873 + t755 * t875;
-    const ariane6_real_t t880 = t538 * t850 + t756 * t856 + t757 * t868 - t746 * t870;
-    ddq_by_q[32] = t880 + t759 * t873 + t761 * t875;
-    const ariane6_real_t t881 = ARIANE6_C(2.0) * t808 + (t117 * t841 - t114 * t840);
-    const ariane6_real_t t882 = ARIANE6_C(2.0) * t809 - (t113 * t841 - t117 * t840);
-    const ariane6_real_t t883 = t82 * t840 + t81 * t841;
-    const ariane6_real_t t884 = t87 * (t53 * t881 + t54 * t882 + ARIANE6_C(0.685) * t883);
-    const ariane6_real_t t885 = t86 * (t54 * t881 - t53 * t882) + t884 + ARIANE6_C(0.18) * t883;
-    const ariane6_real_t t886 = t511 * t885;
-    const ariane6_real_t t887 = t53 * (ARIANE6_C(2.0) * t625 - t74 * t841) + t54 * (ARIANE6_C(2.0) * t624
-        + t74 * t840);
-    const ariane6_real_t t888 = t821 + (t157 * t840 + t158 * t841) + ARIANE6_C(0.685) * t887;
-    const ariane6_real_t t889 = t663 * t888;
-    const ariane6_real_t t890 = t672 * (t821 + ARIANE6_C(2.0) * (t157 * t381 + t158 * t379));
-    const ariane6_real_t t891 = ARIANE6_C(250.0) * (parameters[IA3] * (t346 * (ARIANE6_C(-2.0) * dq[2]))
-        - t60 * parameters[FV3]);
-    const ariane6_real_t t892 = t891 + t890;
-    const ariane6_real_t t893 = ARIANE6_C(0.2) * (t824 - ARIANE6_C(2.0) * (t150 * t379 - t149 * t381));
-    const ariane6_real_t t894 = t886 * t520 - t889 * t650 - t892 * t665 + t893 * t674;
-    const ariane6_real_t t895 = t702 * (t828 + ARIANE6_C(2.0) * (t143 * t381 + t144 * t379));
-    const ariane6_real_t t896 = ARIANE6_C(0.2) * (t831 + ARIANE6_C(2.0) * (t136 * t381 + t137 * t379));
-    ddq_by_dq[2] = t896 * t704 - (t894 - t895 * t690);
-    const ariane6_real_t t897 = t886 * t522 + t889 * t719 + t892 * t721 - t893 * t723;
-    ddq_by_dq[8] = t897 + t895 * t726 + t896 * t728;
-    const ariane6_real_t t898 = t886 * t524 + t889 * t729 + t892 * t730 - t893 * t732;
-    ddq_by_dq[14] = t898 + t895 * t735 + t896 * t737;
-    const ariane6_real_t t899 = t886 * t527 + t889 * t738 + t892 * t739 - t893 * t741;
-    ddq_by_dq[20] = t899 + t895 * t744 + t896 * t746;
-    const ariane6_real_t t900 = t886 * t532 + t889 * t747 + t892 * t748 - t893 * t749;
-    ddq_by_dq[26] = t900 + t895 * t752 + t896 * t755;
-    const ariane6_real_t t901 = t886 * t538 + t889 * t756 + t892 * t757 - t893 * t746;
-    ddq_by_dq[32] = t901 + t895 * t759 + t896 * t761;
-    ddq_by_input[2] = t665;
-    ddq_by_input[8] = t721;
-    ddq_by_input[14] = t730;
-    ddq_by_input[20] = t739;
-    ddq_by_input[26] = t748;
-    ddq_by_input[32] = t757;
-    const ariane6_real_t t902 = t50 * t462;
-    const ariane6_real_t t903 = t5 * t405;
-    const ariane6_real_t t904 = t481 + t475; /* link j5: motion */
-    const ariane6_real_t t905 = ARIANE6_C(2.0) * t402; /* link j4: derivatives */
-    const ariane6_real_t t906 = ARIANE6_C(2.0) * t389;
-    const ariane6_real_t t907 = t582 * t905 - t572 * t906 + (t73 * t904 - (t903 - t38 * t388));
-    const ariane6_real_t t908 = t477 + (t902 - t907);
-    const ariane6_real_t t909 = t569 * t905 - t578 * t906 + (t72 * t904 + (t35 * t388 + t38 * t405));
-    const ariane6_real_t t910 = t483 + (t909 - t50 * t444);
-    const ariane6_real_t t911 = t490 + (t597 * t906 + (t43 * t904 + t50 * t405));
-    const ariane6_real_t t912 = t488 + (t597 * t905 + (t47 * t904 + t50 * t388));
-    const ariane6_real_t t913 = t39 * t911 + t36 * t912;
-    const ariane6_real_t t914 = t36 * t910 - t39 * t908 + ARIANE6_C(-0.488) * t913;
-    const ariane6_real_t t915 = t47 * t444 + t43 * t462;
-    const ariane6_real_t t916 = t30 * t904 - (t72 * t388 + t73 * t405);
-    const ariane6_real_t t917 = t617 * t905 + t618 * t906 - t916 - t915 - ARIANE6_C(0.17) * t913;
-    const ariane6_real_t t918 = t87 * (t53 * t914 + t54 * t917 + ARIANE6_C(0.685) * t913);
-    const ariane6_real_t t919 = t86 * (t54 * t914 - t53 * t917) + t918 + ARIANE6_C(0.18) * t913;
-    const ariane6_real_t t920 = t511 * t919;
-    const ariane6_real_t t921 = t36 * t911 - t39 * t912;
-    const ariane6_real_t t922 = t43 * t388 - t47 * t405 - (t592 * t905 + t590 * t906);
-    const ariane6_real_t t923 = t39 * t910 + t36 * t908 + (ARIANE6_C(-0.17) * t922 + ARIANE6_C(0.488) * t921);
-    const ariane6_real_t t924 = t663 * (t923 + ARIANE6_C(0.685) * (t54 * t922 - t53 * t921));
-    const ariane6_real_t t925 = t672 * t923;
-    const ariane6_real_t t926 = ARIANE6_C(0.2) * (t402 * t675 + t389 * t676 - t916 - t915);
-    const ariane6_real_t t927 = t520 * t920 - t650 * t924 - t665 * t925 + t674 * t926;
-    const ariane6_real_t t928 = t402 * t693 - t389 * t694 + (t37 * t388 + t903 - t20 * t904);
-    const ariane6_real_t t929 = t702 * (t928 + t902);
-    const ariane6_real_t t930 = t402 * t709 - t389 * t710 + (t22 * t904 + (t62 * t388 - t13 * t405));
-    const ariane6_real_t t931 = ARIANE6_C(0.2) * (t930 + (t63 * t462 - t44 * t444));
-    ddq_by_q[3] = t704 * t931 - (t927 - t690 * t929);
-    const ariane6_real_t t932 = t522 * t920 + t719 * t924 + t721 * t925 - t723 * t926;
-    ddq_by_q[9] = t932 + t726 * t929 + t728 * t931;
-    const ariane6_real_t t933 = t524 * t920 + t729 * t924 + t730 * t925 - t732 * t926;
-    ddq_by_q[15] = t933 + t735 * t929 + t737 * t931;
-    const ariane6_real_t t934 = t527 * t920 + t738 * t924 + t739 * t925 - t741 * t926;
-    ddq_by_q[21] = t934 + t744 * t929 + t746 * t931;
-    const ariane6_real_t t935 = t532 * t920 + t747 * t924 + t748 * t925 - t749 * t926;
-    ddq_by_q[27] = t935 + t752 * t929 + t755 * t931;
-    const ariane6_real_t t936 = t538 * t920 + t756 * t924 + t757 * t925 - t746 * t926;
-    ddq_by_q[33] = t936 + t759 * t929 + t761 * t931;
-    const ariane6_real_t t937 = ARIANE6_C(-2.0) * t612 + (t35 * t905 + t38 * t906);
-    const ariane6_real_t t938 = ARIANE6_C(2.0) * t613 - (t38 * t905 - t5 * t906);
-    const ariane6_real_t t939 = ARIANE6_C(2.0) * t592 + t50 * t906;
-    const ariane6_real_t t940 = ARIANE6_C(-2.0) * t590 + t50 * t905;
-    const ariane6_real_t t941 = t39 * t939 + t36 * t940;
-    const ariane6_real_t t942 = t36 * t937 - t39 * t938 + ARIANE6_C(-0.488) * t941;
-    const ariane6_real_t t943 = t679 + (t72 * t905 + t73 * t906) + ARIANE6_C(-0.17) * t941;
-    const ariane6_real_t t944 = t87 * (t53 * t942 + t54 * t943 + ARIANE6_C(0.685) * t941);
-    const ariane6_real_t t945 = t86 * (t54 * t942 - t53 * t943) + t944 + ARIANE6_C(0.18) * t941;
-    const ariane6_real_t t946 = t511 * t945;
-    const ariane6_real_t t947 = t39 * t940 - t36 * t939;
-    const ariane6_real_t t948 = t43 * t905 - t47 * t906;
-    const ariane6_real_t t949 = t39 * t937 + t36 * t938 + (ARIANE6_C(-0.17) * t948
-        + ARIANE6_C(-0.488) * t947);
-    const ariane6_real_t t950 = t663 * (t949 + ARIANE6_C(0.685) * (t53 * t947 + t54 * t948));
-    const ariane6_real_t t951 = t672 * t949;
-    const ariane6_real_t t952 = ARIANE6_C(0.2) * (t679 - ARIANE6_C(-2.0) * (t72 * t402 + t73 * t389));
-    const ariane6_real_t t953 = ARIANE6_C(2.0e3) * parameters[FV4] + t952;
-    const ariane6_real_t t954 = t946 * t520 - t950 * t650 - t951 * t665 + t953 * t674;
-    const ariane6_real_t t955 = t702 * (t696 + ARIANE6_C(2.0) * (t37 * t402 + t5 * t389));
-    const ariane6_real_t t956 = ARIANE6_C(0.2) * (t712 + ARIANE6_C(2.0) * (t62 * t402 - t13 * t389));
-    ddq_by_dq[3] = t956 * t704 - (t954 - t955 * t690);
-    const ariane6_real_t t957 = t946 * t522 + t950 * t719 + t951 * t721 - t953 * t723;
-    ddq_by_dq[9] = t957 + t955 * t726 + t956 * t728;
-    const ariane6_real_t t958 = t946 * t524 + t950 * t729 + t951 * t730 - t953 * t732;
-    ddq_by_dq[15] = t958 + t955 * t735 + t956 * t737;
-    const ariane6_real_t t959 = t946 * t527 + t950 * t738 + t951 * t739 - t953 * t741;
-    ddq_by_dq[21] = t959 + t955 * t744 + t956 * t746;
-    const ariane6_real_t t960 = t946 * t532 + t950 * t747 + t951 * t748 - t953 * t749;
-    ddq_by_dq[27] = t960 + t955 * t752 + t956 * t755;
-    const ariane6_real_t t961 = t946 * t538 + t950 * t756 + t951 * t757 - t953 * t746;
-    ddq_by_dq[33] = t961 + t955 * t759 + t956 * t761;
-    ddq_by_input[3] = t674;
-    ddq_by_input[9] = t723;
-    ddq_by_input[15] = t732;
-    ddq_by_input[21] = t741;
-    ddq_by_input[27] = t749;
-    ddq_by_input[33] = t746;
-    const ariane6_real_t t962 = t469 + t460; /* link j6: motion */
-    const ariane6_real_t t963 = ARIANE6_C(2.0) * t395; /* link j5: derivatives */
-    const ariane6_real_t t964 = ARIANE6_C(-2.0) * t394;
-    const ariane6_real_t t965 = t552 * t963 - t560 * t964 + (t18 * t962 + (t27 * t409 - t26 * t423));
-    const ariane6_real_t t966 = t471 + (t965 + t42 * t465);
-    const ariane6_real_t t967 = parameters[ZZ6] * t409;
-    const ariane6_real_t t968 = t564 * t963 - t555 * t964 + (t27 * t423 - t967 - t19 * t962);
-    const ariane6_real_t t969 = t42 * t450;
-    const ariane6_real_t t970 = t463 + (t969 + t968);
-    const ariane6_real_t t971 = t10 * t966 + t6 * t970;
-    const ariane6_real_t t972 = t5 * t962 + (t19 * t409 - t18 * t423);
-    const ariane6_real_t t973 = parameters[MY5R] * t450 - t45 * t465;
-    const ariane6_real_t t974 = t972 - (t579 * t963 + t580 * t964) + t973;
-    const ariane6_real_t t975 = t486 + (t45 * t962 + t42 * t423 - t591 * t963);
-    const ariane6_real_t t976 = t487 + (parameters[MY5R] * t962 - t42 * t409 - t591 * t964);
-    const ariane6_real_t t977 = t10 * t976 + t6 * t975;
-    const ariane6_real_t t978 = t587 * t964 - t589 * t963 + (parameters[MY5R] * t423 + t45 * t409);
-    const ariane6_real_t t979 = t39 * t977 + t36 * t978;
-    const ariane6_real_t t980 = t36 * t971 - t39 * t974 + ARIANE6_C(-0.488) * t979;
-    const ariane6_real_t t981 = t6 * t966 - t10 * t970;
-    const ariane6_real_t t982 = t981 - ARIANE6_C(0.17) * t979;
-    const ariane6_real_t t983 = t87 * (t53 * t980 + t54 * t982 + ARIANE6_C(0.685) * t979);
-    const ariane6_real_t t984 = t86 * (t54 * t980 - t53 * t982) + t983 + ARIANE6_C(0.18) * t979;
-    const ariane6_real_t t985 = t511 * t984;
-    const ariane6_real_t t986 = t6 * t976 - t10 * t975;
-    const ariane6_real_t t987 = t36 * t977 - t39 * t978;
-    const ariane6_real_t t988 = t39 * t971 + t36 * t974 + (ARIANE6_C(0.17) * t986 + ARIANE6_C(0.488) * t987);
-    const ariane6_real_t t989 = t663 * (t988 + ARIANE6_C(-0.685) * (t53 * t987 + t54 * t986));
-    const ariane6_real_t t990 = t672 * t988;
-    const ariane6_real_t t991 = ARIANE6_C(0.2) * t981;
-    const ariane6_real_t t992 = t520 * t985 - t650 * t989 - t665 * t990 + t674 * t991;
-    const ariane6_real_t t993 = ariane6_select(t7, t7, ARIANE6_C(1.0));
-    const ariane6_real_t t994 = ARIANE6_C(-1.0) / t993;
-    const ariane6_real_t t995 = ARIANE6_C(-0.035496) * t10;
-    const ariane6_real_t t996 = ARIANE6_C(-1.0) / t10;
-    const ariane6_real_t t997 = t996 * (ARIANE6_C(-0.07043047103899029) * (t995 * (ARIANE6_C(0.5) * t994))
-        - t6 * t702);
-    const ariane6_real_t t998 = t702 * (t973 + (t394 * t692 - t395 * t691 + t972));
-    const ariane6_real_t t999 = t8 * (t8 * (t995 * (ARIANE6_C(0.5) * t8)));
-    const ariane6_real_t t1000 = t6 * t9 + t10 * (ARIANE6_C(3549.6000000000004) * t999);
-    const ariane6_real_t t1001 = t326 * (ARIANE6_C(125.9966016) * (t8 * t999))
-        - t325 * (ARIANE6_C(-2.0) * (t6 * t10));
-    const ariane6_real_t t1002 = t329 * (t327 * t999 + t8 * (ARIANE6_C(3549.6000000000004) * t10 + t1001));
-    const ariane6_real_t t1003 = parameters[FV5] * (dq[4] * t1000) + parameters[IA5] * (t374 * t1000 - t1002);
-    const ariane6_real_t t1004 = ARIANE6_C(250.0) * t1003 + t998 - t997 * t480;
-    const ariane6_real_t t1005 = t394 * t708 - t395 * t707 + (t21 * t423 - t967 - t13 * t962);
-    const ariane6_real_t t1006 = ARIANE6_C(0.2) * (t1005 + t969);
-    ddq_by_q[4] = t704 * t1006 - (t992 - t690 * t1004);
-    const ariane6_real_t t1007 = t522 * t985 + t719 * t989 + t721 * t990 - t723 * t991;
-    ddq_by_q[10] = t1007 + t726 * t1004 + t728 * t1006;
-    const ariane6_real_t t1008 = t524 * t985 + t729 * t989 + t730 * t990 - t732 * t991;
-    ddq_by_q[16] = t1008 + t735 * t1004 + t737 * t1006;
-    const ariane6_real_t t1009 = t527 * t985 + t738 * t989 + t739 * t990 - t741 * t991;
-    ddq_by_q[22] = t1009 + t744 * t1004 + t746 * t1006;
-    const ariane6_real_t t1010 = t532 * t985 + t747 * t989 + t748 * t990 - t749 * t991;
-    ddq_by_q[28] = t1010 + t752 * t1004 + t755 * t1006;
-    const ariane6_real_t t1011 = t538 * t985 + t756 * t989 + t757 * t990 - t746 * t991;
-    ddq_by_q[34] = t1011 + t759 * t1004 + t761 * t1006;
-    const ariane6_real_t t1012 = ARIANE6_C(2.0) * t575 - (t26 * t963 + t27 * t964);
-    const ariane6_real_t t1013 = ARIANE6_C(-2.0) * t576 + (t27 * t963 + parameters[ZZ6] * t964);
-    const ariane6_real_t t1014 = t10 * t1012 + t6 * t1013;
-    const ariane6_real_t t1015 = t694 - (t18 * t963 + t19 * t964);
-    const ariane6_real_t t1016 = ARIANE6_C(2.0) * t589 + t42 * t964;
-    const ariane6_real_t t1017 = ARIANE6_C(2.0) * t587 + t42 * t963;
-    const ariane6_real_t t1018 = t10 * t1016 + t6 * t1017;
-    const ariane6_real_t t1019 = parameters[MY5R] * t963 - t45 * t964;
-    const ariane6_real_t t1020 = t39 * t1018 + t36 * t1019;
-    const ariane6_real_t t1021 = t36 * t1014 - t39 * t1015 + ARIANE6_C(-0.488) * t1020;
-    const ariane6_real_t t1022 = t6 * t1012 - t10 * t1013;
-    const ariane6_real_t t1023 = t1022 + ARIANE6_C(-0.17) * t1020;
-    const ariane6_real_t t1024 = t87 * (t53 * t1021 + t54 * t1023 + ARIANE6_C(0.685) * t1020);
-    const ariane6_real_t t1025 = t86 * (t54 * t1021 - t53 * t1023) + t1024 + ARIANE6_C(0.18) * t1020;
-    const ariane6_real_t t1026 = t511 * t1025;
-    const ariane6_real_t t1027 = t10 * t1017 - t6 * t1016;
-    const ariane6_real_t t1028 = t39 * t1019 - t36 * t1018;
-    const ariane6_real_t t1029 = t39 * t1014 + t36 * t1015 + (ARIANE6_C(-0.17) * t1027
-        + ARIANE6_C(-0.488) * t1028);
-    const ariane6_real_t t1030 = t663 * (t1029 + ARIANE6_C(0.685) * (t53 * t1028 + t54 * t1027));
-    const ariane6_real_t t1031 = t672 * t1029;
-    const ariane6_real_t t1032 = ARIANE6_C(0.2) * t1022;
-    const ariane6_real_t t1033 = t1026 * t520 - t1030 * t650 - t1031 * t665 + t1032 * t674;
-    const ariane6_real_t t1034 = t702 * (t694 + ARIANE6_C(2.0) * (t19 * t394 - t18 * t395));
-    const ariane6_real_t t1035 = ARIANE6_C(-250.0) * (t11 * parameters[FV5]
-        + parameters[IA5] * (t328 * (ARIANE6_C(2.0) * dq[4])));
-    const ariane6_real_t t1036 = t1035 + t1034;
-    const ariane6_real_t t1037 = ARIANE6_C(0.2) * (t710 + ARIANE6_C(2.0) * (t21 * t395
-        - parameters[ZZ6] * t394));
-    ddq_by_dq[4] = t1037 * t704 - (t1033 - t1036 * t690);
-    const ariane6_real_t t1038 = t1026 * t522 + t1030 * t719 + t1031 * t721 - t1032 * t723;
-    ddq_by_dq[10] = t1038 + t1036 * t726 + t1037 * t728;
-    const ariane6_real_t t1039 = t1026 * t524 + t1030 * t729 + t1031 * t730 - t1032 * t732;
-    ddq_by_dq[16] = t1039 + t1036 * t735 + t1037 * t737;
-    const ariane6_real_t t1040 = t1026 * t527 + t1030 * t738 + t1031 * t739 - t1032 * t741;
-    ddq_by_dq[22] = t1040 + t1036 * t744 + t1037 * t746;
-    const ariane6_real_t t1041 = t1026 * t532 + t1030 * t747 + t1031 * t748 - t1032 * t749;
-    ddq_by_dq[28] = t1041 + t1036 * t752 + t1037 * t755;
-    const ariane6_real_t t1042 = t1026 * t538 + t1030 * t756 + t1031 * t757 - t1032 * t746;
-    ddq_by_dq[34] = t1042 + t1036 * t759 + t1037 * t761;
-    ddq_by_input[4] = t690;
-    ddq_by_input[10] = t726;
-    ddq_by_input[16] = t735;
-    ddq_by_input[22] = t744;
-    ddq_by_input[28] = t752;
-    ddq_by_input[34] = t759;
-    const ariane6_real_t t1043 = t454 + t430; /* link j6: force and moment */
-    const ariane6_real_t t1044 = ARIANE6_C(2.0) * t415; /* link j6: derivatives */
-    const ariane6_real_t t1045 = ARIANE6_C(-2.0) * t420;
-    const ariane6_real_t t1046 = t541 * t1044 - t547 * t1045 + (parameters[XY6] * t414
-        - parameters[XX6R] * t419 - parameters[XZ6R] * t1043);
-    const ariane6_real_t t1047 = t456 + t1046;
-    const ariane6_real_t t1048 = t546 * t1044 - t543 * t1045 - (parameters[YZ6R] * t1043
-        + parameters[XY6] * t419);
-    const ariane6_real_t t1049 = t1048 - t451;
-    const ariane6_real_t t1050 = t1 * t1047 - t2 * t1049;
-    const ariane6_real_t t1051 = parameters[ZZ6] * t1043 + (parameters[XZ6R] * t419
-        - parameters[YZ6R] * t414);
-    const ariane6_real_t t1052 = parameters[MX6] * t467 + parameters[MY6] * t466;
-    const ariane6_real_t t1053 = t561 * t1044 - t562 * t1045 + t1051 + t1052;
-    const ariane6_real_t t1054 = t10 * t1050 + t6 * t1053;
-    const ariane6_real_t t1055 = t2 * t1047 + t1 * t1049;
-    const ariane6_real_t t1056 = t588 * t1045 + parameters[MY6] * t1043 + t485;
-    const ariane6_real_t t1057 = t588 * t1044 - parameters[MX6] * t1043 - t484;
-    const ariane6_real_t t1058 = t1 * t1056 - t2 * t1057;
-    const ariane6_real_t t1059 = t585 * t1045 - t586 * t1044 + (parameters[MY6] * t419
-        + parameters[MX6] * t414);
-    const ariane6_real_t t1060 = t10 * t1058 + t6 * t1059;
-    const ariane6_real_t t1061 = t2 * t1056 + t1 * t1057;
-    const ariane6_real_t t1062 = t39 * t1060 + t36 * t1061;
-    const ariane6_real_t t1063 = t36 * t1054 - t39 * t1055 + ARIANE6_C(-0.488) * t1062;
-    const ariane6_real_t t1064 = t6 * t1050 - t10 * t1053;
-    const ariane6_real_t t1065 = t1064 + ARIANE6_C(-0.17) * t1062;
-    const ariane6_real_t t1066 = t87 * (t53 * t1063 + t54 * t1065 + ARIANE6_C(0.685) * t1062);
-    const ariane6_real_t t1067 = t86 * (t54 * t1063 - t53 * t1065) + t1066 + ARIANE6_C(0.18) * t1062;
-    const ariane6_real_t t1068 = t511 * t1067;
-    const ariane6_real_t t1069 = t39 * t1061 - t36 * t1060;
-    const ariane6_real_t t1070 = t10 * t1059 - t6 * t1058;
-    const ariane6_real_t t1071 = t39 * t1054 + t36 * t1055 + (ARIANE6_C(-0.17) * t1070
-        + ARIANE6_C(-0.488) * t1069);
-    const ariane6_real_t t1072 = t663 * (t1071 + ARIANE6_C(0.685) * (t53 * t1069 + t54 * t1070));
-    const ariane6_real_t t1073 = t672 * t1071;
-    const ariane6_real_t t1074 = ARIANE6_C(0.2) * t1064;
-    const ariane6_real_t t1075 = t520 * t1068 - t650 * t1072 - t665 * t1073 + t674 * t1074;
-    const ariane6_real_t t1076 = t702 * t1055;
-    const ariane6_real_t t1077 = ARIANE6_C(0.2) * (t1052 + (t415 * t705 - t420 * t706 + t1051));
-    ddq_by_q[5] = t704 * t1077 - (t1075 - t690 * t1076);
-    const ariane6_real_t t1078 = t522 * t1068 + t719 * t1072 + t721 * t1073 - t723 * t1074;
-    ddq_by_q[11] = t1078 + t726 * t1076 + t728 * t1077;
-    const ariane6_real_t t1079 = t524 * t1068 + t729 * t1072 + t730 * t1073 - t732 * t1074;
-    ddq_by_q[17] = t1079 + t735 * t1076 + t737 * t1077;
-    const ariane6_real_t t1080 = t527 * t1068 + t738 * t1072 + t739 * t1073 - t741 * t1074;
-    ddq_by_q[23] = t1080 + t744 * t1076 + t746 * t1077;
-    const ariane6_real_t t1081 = t532 * t1068 + t747 * t1072 + t748 * t1073 - t749 * t1074;
-    ddq_by_q[29] = t1081 + t752 * t1076 + t755 * t1077;
-    const ariane6_real_t t1082 = t538 * t1068 + t756 * t1072 + t757 * t1073 - t746 * t1074;
-    ddq_by_q[35] = t1082 + t759 * t1076 + t761 * t1077;
-    const ariane6_real_t t1083 = ARIANE6_C(2.0) * t557 + (parameters[XX6R] * t1044 - parameters[XY6] * t1045);
-    const ariane6_real_t t1084 = ARIANE6_C(2.0) * t558 + parameters[XY6] * t1044;
-    const ariane6_real_t t1085 = t1 * t1083 - t2 * t1084;
-    const ariane6_real_t t1086 = t708 + (parameters[YZ6R] * t1045 - parameters[XZ6R] * t1044);
-    const ariane6_real_t t1087 = t10 * t1085 + t6 * t1086;
-    const ariane6_real_t t1088 = t2 * t1083 + t1 * t1084;
-    const ariane6_real_t t1089 = ARIANE6_C(-2.0) * t586;
-    const ariane6_real_t t1090 = ARIANE6_C(2.0) * t585;
-    const ariane6_real_t t1091 = t1 * t1089 + t2 * t1090;
-    const ariane6_real_t t1092 = parameters[MY6] * t1044 + parameters[MX6] * t1045;
-    const ariane6_real_t t1093 = t10 * t1091 - t6 * t1092;
-    const ariane6_real_t t1094 = t2 * t1089 - t1 * t1090;
-    const ariane6_real_t t1095 = t39 * t1093 + t36 * t1094;
-    const ariane6_real_t t1096 = t36 * t1087 - t39 * t1088 + ARIANE6_C(-0.488) * t1095;
-    const ariane6_real_t t1097 = t6 * t1085 - t10 * t1086;
-    const ariane6_real_t t1098 = t1097 + ARIANE6_C(-0.17) * t1095;
-    const ariane6_real_t t1099 = t87 * (t53 * t1096 + t54 * t1098 + ARIANE6_C(0.685) * t1095);
-    const ariane6_real_t t1100 = t86 * (t54 * t1096 - t53 * t1098) + t1099 + ARIANE6_C(0.18) * t1095;
-    const ariane6_real_t t1101 = t511 * t1100;
-    const ariane6_real_t t1102 = t6 * t1091 + t10 * t1092;
-    const ariane6_real_t t1103 = t39 * t1094 - t36 * t1093;
-    const ariane6_real_t t1104 = t39 * t1087 + t36 * t1088 + (ARIANE6_C(0.17) * t1102
-        + ARIANE6_C(-0.488) * t1103);
-    const ariane6_real_t t1105 = t663 * (t1104 + ARIANE6_C(0.685) * (t53 * t1103 - t54 * t1102));
-    const ariane6_real_t t1106 = t672 * t1104;
-    const ariane6_real_t t1107 = ARIANE6_C(0.2) * t1097;
-    const ariane6_real_t t1108 = t1101 * t520 - t1105 * t650 - t1106 * t665 + t1107 * t674;
-    const ariane6_real_t t1109 = t702 * t1088;
-    const ariane6_real_t t1110 = ARIANE6_C(-2.0e3) * parameters[FV6];
-    ddq_by_dq[5] = t1110 * t704 - (t1108 - t1109 * t690);
-    const ariane6_real_t t1111 = t1101 * t522 + t1105 * t719 + t1106 * t721 - t1107 * t723;
-    ddq_by_dq[11] = t1111 + t1109 * t726 + t1110 * t728;
-    const ariane6_real_t t1112 = t1101 * t524 + t1105 * t729 + t1106 * t730 - t1107 * t732;
-    ddq_by_dq[17] = t1112 + t1109 * t735 + t1110 * t737;
-    const ariane6_real_t t1113 = t1101 * t527 + t1105 * t738 + t1106 * t739 - t1107 * t741;
-    ddq_by_dq[23] = t1113 + t1109 * t744 + t1110 * t746;
-    const ariane6_real_t t1114 = t1101 * t532 + t1105 * t747 + t1106 * t748 - t1107 * t749;
-    ddq_by_dq[29] = t1114 + t1109 * t752 + t1110 * t755;
-    const ariane6_real_t t1115 = t1101 * t538 + t1105 * t756 + t1106 * t757 - t1107 * t746;
-    ddq_by_dq[35] = t1115 + t1109 * t759 + t1110 * t761;
-    ddq_by_input[5] = t704;
-    ddq_by_input[11] = t728;
-    ddq_by_input[17] = t737;
-    ddq_by_input[23] = t746;
-    ddq_by_input[29] = t755;
-    ddq_by_input[35] = t761;
-    if (!ariane6_all_bounded(ddq, 6)
-        || !ariane6_all_bounded(ddq_by_q, 36)
-        || !ariane6_all_bounded(ddq_by_dq, 36)
-        || !ariane6_all_bounded(ddq_by_input, 36)) {
+    const ariane6_real_t t936 = t37 * t738 - t34 * t805 + (t131 * t924 + t63 * t926);
+    const ariane6_real_t t937 = t62 * t926 + t131 * t927 - t838;
+    const ariane6_real_t t938 = t379 * t937 - t388 * t936 + (t64 * t851 + (t132 * t377 + t133 * t391));
+    const ariane6_real_t t939 = ARIANE6_C(0.2) * (t938 + (t62 * t446 + t63 * t440));
+    ddq_by_q[2] = t535 * t939 - (t931 - t526 * t935);
+    const ariane6_real_t t940 = t536 * t889 + t537 * t905 + t539 * t923 - t541 * t930;
+    ddq_by_q[8] = t940 + t544 * t935 + t546 * t939;
+    const ariane6_real_t t941 = t547 * t889 + t548 * t905 + t549 * t923 - t551 * t930;
+    ddq_by_q[14] = t941 + t554 * t935 + t556 * t939;
+    const ariane6_real_t t942 = t557 * t889 + t558 * t905 + t559 * t923 - t561 * t930;
+    ddq_by_q[20] = t942 + t564 * t935 + t566 * t939;
+    const ariane6_real_t t943 = t567 * t889 + t568 * t905 + t569 * t923 - t570 * t930;
+    ddq_by_q[26] = t943 + t573 * t935 + t576 * t939;
+    const ariane6_real_t t944 = t577 * t889 + t578 * t905 + t579 * t923 - t566 * t930;
+    ddq_by_q[32] = t944 + t581 * t935 + t583 * t939;
+    const ariane6_real_t t945 = t869 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t946 = t388 * t945 - parameters[YZ3] * t176 + (t771 + t899 + t72 * t856);
+    /* link j3: derivatives */
+    const ariane6_real_t t947 = ARIANE6_C(2.0) * t946 + (t113 * t871 - t110 * t867);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t948 = parameters[XZ3] * t176 + t379 * t945 + (t37 * t785 - t34 * t786 - t72 * t861);
+    /* link j3: derivatives */
+    const ariane6_real_t t949 = ARIANE6_C(2.0) * t948 - (t109 * t871 - t113 * t867);
+    const ariane6_real_t t950 = t79 * t867 + t78 * t871;
+    const ariane6_real_t t951 = t84 * (t51 * t947 + t52 * t949 + ARIANE6_C(0.685) * t950);
+    const ariane6_real_t t952 = t83 * (t52 * t947 - t51 * t949) + t951 + ARIANE6_C(0.18) * t950;
+    const ariane6_real_t t953 = t501 * t952;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t954 = t770 - t853 + t860 - t863 - (t864 + t879);
+    const ariane6_real_t t955 = ARIANE6_C(2.0) * t954; /* link j3: derivatives */
+    const ariane6_real_t t956 = t51 * (ARIANE6_C(2.0) * t885 - t72 * t871) + t52 * (ARIANE6_C(2.0) * t884
+        + t72 * t867);
+    const ariane6_real_t t957 = t955 + (t153 * t867 + t154 * t871) + ARIANE6_C(0.685) * t956;
+    const ariane6_real_t t958 = t507 * t957;
+    const ariane6_real_t t959 = t511 * (t955 + ARIANE6_C(2.0) * (t153 * t388 + t154 * t379));
+    const ariane6_real_t t960 = ARIANE6_C(250.0) * (parameters[IA3] * (t345 * (ARIANE6_C(-2.0) * dq[2]))
+        - t58 * parameters[FV3]);
+    const ariane6_real_t t961 = t960 + t959;
+    const ariane6_real_t t962 = t37 * t798 - t34 * t799 - t72 * t924; /* link j4: derivatives */
+    const ariane6_real_t t963 = ARIANE6_C(0.2) * (t962 - ARIANE6_C(2.0) * (t146 * t379 - t145 * t388));
+    const ariane6_real_t t964 = t953 * t503 - t958 * t510 - t961 * t514 + t963 * t518;
+    /* link j5: derivatives */
+    const ariane6_real_t t965 = t37 * t802 + t34 * t715 + (t66 * t924 - t44 * t927);
+    const ariane6_real_t t966 = t520 * (t965 + ARIANE6_C(2.0) * (t139 * t388 + t140 * t379));
+    /* link j6: derivatives */
+    const ariane6_real_t t967 = t37 * t805 + t34 * t738 + (t62 * t924 - t63 * t927);
+    const ariane6_real_t t968 = ARIANE6_C(0.2) * (t967 + ARIANE6_C(2.0) * (t132 * t388 + t133 * t379));
+    ddq_by_dq[2] = t968 * t535 - (t964 - t966 * t526);
+    const ariane6_real_t t969 = t953 * t536 + t958 * t537 + t961 * t539 - t963 * t541;
+    ddq_by_dq[8] = t969 + t966 * t544 + t968 * t546;
+    const ariane6_real_t t970 = t953 * t547 + t958 * t548 + t961 * t549 - t963 * t551;
+    ddq_by_dq[14] = t970 + t966 * t554 + t968 * t556;
+    const ariane6_real_t t971 = t953 * t557 + t958 * t558 + t961 * t559 - t963 * t561;
+    ddq_by_dq[20] = t971 + t966 * t564 + t968 * t566;
+    const ariane6_real_t t972 = t953 * t567 + t958 * t568 + t961 * t569 - t963 * t570;
+    ddq_by_dq[26] = t972 + t966 * t573 + t968 * t576;
+    const ariane6_real_t t973 = t953 * t577 + t958 * t578 + t961 * t579 - t963 * t566;
+    ddq_by_dq[32] = t973 + t966 * t581 + t968 * t583;
+    ddq_by_input[2] = t514;
+    ddq_by_input[8] = t539;
+    ddq_by_input[14] = t549;
+    ddq_by_input[20] = t559;
+    ddq_by_input[26] = t569;
+    ddq_by_input[32] = t579;
+    const ariane6_real_t t974 = parameters[MY3R] * t394 - parameters[MX3R] * t434 + t847;
+    const ariane6_real_t t975 = t83 * t368;
+    const ariane6_real_t t976 = t297 + t975;
+    const ariane6_real_t t977 = t297 + t976;
+    const ariane6_real_t t978 = t307 + (t304 - parameters[XY2] * t977 + parameters[YZ2] * (t228 - t369));
+    const ariane6_real_t t979 = t978 - parameters[MX2R] * t430 + (t51 * t875 + t52 * t850
+        + ARIANE6_C(-0.685) * t974);
+    const ariane6_real_t t980 = t306 + t223; /* link j3: motion */
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t981 = t52 * (t866 - t880) + t51 * (t870 - t878);
+    const ariane6_real_t t982 = t52 * t981;
+    const ariane6_real_t t983 = t52 * t884 + t51 * t885;
+    const ariane6_real_t t984 = ARIANE6_C(0.685) * t983;
+    const ariane6_real_t t985 = ARIANE6_C(0.685) * dq[1]; /* link j3: velocity of its origin */
+    const ariane6_real_t t986 = t118 * t985; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t987 = ARIANE6_C(0.685) * t172; /* link j3: velocity of its origin */
+    const ariane6_real_t t988 = t72 * t987; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t989 = t988 - t986 - t984;
+    const ariane6_real_t t990 = parameters[XZ2R] * t172;
+    const ariane6_real_t t991 = parameters[XY2] * dq[1];
+    const ariane6_real_t t992 = t990 - t991 + (t989 + (t880 + t982 + t984));
+    const ariane6_real_t t993 = ARIANE6_C(2.0) * t172; /* link j2: derivatives */
+    const ariane6_real_t t994 = t51 * t981; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t995 = ARIANE6_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const ariane6_real_t t996 = parameters[YZ2] * t172 - dq[1] * t995 + (t994 - t870);
+    const ariane6_real_t t997 = ARIANE6_C(-2.0) * t171; /* link j2: derivatives */
+    const ariane6_real_t t998 = t992 * t993 + t996 * t997 + (t160 * t980 + (t117 * t431 - t119 * t975));
+    const ariane6_real_t t999 = t298 + parameters[XX2R] * t976 - parameters[XY2] * t432
+        + parameters[XZ2R] * t438;
+    const ariane6_real_t t1000 = t999 - t301 - parameters[MY2] * t430 + (t51 * t850 - t52 * t875);
+    const ariane6_real_t t1001 = t51 * t884 - t52 * t885; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1002 = parameters[XX2R] + t995;
+    const ariane6_real_t t1003 = dq[1] * t1002 - parameters[XZ2R] * t171 + (t878 + t994
+        + (ARIANE6_C(0.685) * t1001 + t80 * t985));
+    const ariane6_real_t t1004 = parameters[YZ2] * t171;
+    const ariane6_real_t t1005 = t991 - t1004 + (t989 + (t866 - t982 + t986));
+    const ariane6_real_t t1006 = t1003 * t993 + t1005 * t997 - (t161 * t980 - (t119 * t431 - t116 * t975));
+    const ariane6_real_t t1007 = t83 * (t979 + (t72 * t222 + t998)) + t84 * (t1000 + (t1006 - t72 * t227));
+    const ariane6_real_t t1008 = t1001 - parameters[MX2R] * dq[1];
+    const ariane6_real_t t1009 = parameters[MY2] * dq[1] + t983;
+    const ariane6_real_t t1010 = t1008 * t993 - t1009 * t997 + (t121 * t431 + t122 * t975);
+    const ariane6_real_t t1011 = t501 * (t1007 + ARIANE6_C(0.18) * t1010);
+    const ariane6_real_t t1012 = t354 - parameters[ZZ2R] * t369 - parameters[YZ2] * t431
+        - parameters[XZ2R] * t975;
+    const ariane6_real_t t1013 = t353 + t1012 - t355 + (t909 + ARIANE6_C(0.685) * (t51 * t891 - t52 * t896));
+    const ariane6_real_t t1014 = ariane6_select(t87, t87, ARIANE6_C(1.0));
+    const ariane6_real_t t1015 = ARIANE6_C(-1.0) / t1014;
+    const ariane6_real_t t1016 = ARIANE6_C(0.126918) * t85;
+    const ariane6_real_t t1017 = ARIANE6_C(-1.0) / t85;
+    const ariane6_real_t t1018 = t1017 * (ARIANE6_C(0.019697757607273984) * (t1016 * (ARIANE6_C(0.5) * t1015))
+        + t86 * t507);
+    const ariane6_real_t t1019 = t51 * t902 - t52 * t900 + (ARIANE6_C(0.685) * t893 + t80 * t987);
+    /* link j2: derivatives */
+    const ariane6_real_t t1020 = ARIANE6_C(2.0) * (t172 * t1002 - parameters[XY2] * t171 + t1019);
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1021 = parameters[XY2] * t172 - t171 * t995 - (t51 * t900 + t52 * t902
+        - t118 * t987);
+    const ariane6_real_t t1022 = ARIANE6_C(2.0) * t1021; /* link j2: derivatives */
+    const ariane6_real_t t1023 = t172 * t1020 - t171 * t1022 + (t82 * t980 + (t160 * t431 + t161 * t975));
+    const ariane6_real_t t1024 = t88 * (t88 * (t1016 * (ARIANE6_C(0.5) * t88)));
+    const ariane6_real_t t1025 = t85 * (ARIANE6_C(12691.800000000003) * t1024) - t86 * t89;
+    const ariane6_real_t t1026 = t359 * (ARIANE6_C(-1610.8178724000004) * (t88 * t1024))
+        + t358 * (ARIANE6_C(2.0) * (t85 * t86));
+    const ariane6_real_t t1027 = t224 * (t360 * t1024 + t88 * (ARIANE6_C(12691.800000000003) * t85 + t1026));
+    const ariane6_real_t t1028 = parameters[FV2] * (dq[1] * t1025) + parameters[IA2] * (t1027 + t369 * t1025);
+    const ariane6_real_t t1029 = ARIANE6_C(250.0) * t1028 + t507 * (t122 * t222 - t121 * t227 + t1023);
+    const ariane6_real_t t1030 = t1029 + t1018 * t1013;
+    const ariane6_real_t t1031 = ARIANE6_C(1.37) * t172; /* link j6: derivatives */
+    const ariane6_real_t t1032 = t51 * t916 - t52 * t915 + t80 * t1031; /* link j3: derivatives */
+    const ariane6_real_t t1033 = t51 * t915 + t52 * t916 - t118 * t1031;
+    const ariane6_real_t t1034 = t172 * t1032 + t171 * t1033 - (t105 * t980 - (t155 * t431 + t156 * t975));
+    const ariane6_real_t t1035 = t511 * (t80 * t222 - t118 * t227 + t1034);
+    const ariane6_real_t t1036 = ARIANE6_C(-1.37) * dq[1]; /* link j6: derivatives */
+    /* link j4: derivatives */
+    const ariane6_real_t t1037 = t52 * t925 + t51 * t928 + (t46 * t1036 + t99 * t1031);
+    const ariane6_real_t t1038 = t52 * t72; /* link j4: column of the mass matrix */
+    const ariane6_real_t t1039 = t51 * t925 - t52 * t928 - t1038 * t1031; /* link j4: derivatives */
+    const ariane6_real_t t1040 = t172 * t1037 - t171 * t1039 - (t100 * t980 - (t147 * t431 - t148 * t975));
+    const ariane6_real_t t1041 = ARIANE6_C(0.2) * (t1038 * t227 + t99 * t222 + t1040);
+    const ariane6_real_t t1042 = t518 * t1041 - (t503 * t1011 - t510 * t1030 - t514 * t1035);
+    /* link j5: derivatives */
+    const ariane6_real_t t1043 = t52 * t932 + t51 * t933 + (t138 * t1036 + t95 * t1031);
+    const ariane6_real_t t1044 = t51 * t44 - t52 * t66; /* link j5: column of the mass matrix */
+    const ariane6_real_t t1045 = t51 * t932 - t52 * t933 + t1044 * t1031; /* link j5: derivatives */
+    const ariane6_real_t t1046 = t172 * t1043 - t171 * t1045 + (t96 * t980 + (t141 * t431 + t142 * t975));
+    const ariane6_real_t t1047 = t520 * (t95 * t222 - t1044 * t227 + t1046);
+    /* link j6: derivatives */
+    const ariane6_real_t t1048 = t52 * t936 + t51 * t937 + (t131 * t1036 + t92 * t1031);
+    const ariane6_real_t t1049 = t51 * t63 - t52 * t62; /* link j6: column of the mass matrix */
+    const ariane6_real_t t1050 = t51 * t936 - t52 * t937 + t1049 * t1031; /* link j6: derivatives */
+    const ariane6_real_t t1051 = t172 * t1048 - t171 * t1050 + (t93 * t980 + (t134 * t431 + t135 * t975));
+    const ariane6_real_t t1052 = ARIANE6_C(0.2) * (t92 * t222 - t1049 * t227 + t1051);
+    ddq_by_q[1] = t1042 + t526 * t1047 + t535 * t1052;
+    const ariane6_real_t t1053 = t536 * t1011 + t537 * t1030 + t539 * t1035 + t541 * t1041;
+    ddq_by_q[7] = t1053 + t544 * t1047 + t546 * t1052;
+    const ariane6_real_t t1054 = t547 * t1011 + t548 * t1030 + t549 * t1035 + t551 * t1041;
+    ddq_by_q[13] = t1054 + t554 * t1047 + t556 * t1052;
+    const ariane6_real_t t1055 = t557 * t1011 + t558 * t1030 + t559 * t1035 + t561 * t1041;
+    ddq_by_q[19] = t1055 + t564 * t1047 + t566 * t1052;
+    const ariane6_real_t t1056 = t567 * t1011 + t568 * t1030 + t569 * t1035 + t570 * t1041;
+    ddq_by_q[25] = t1056 + t573 * t1047 + t576 * t1052;
+    const ariane6_real_t t1057 = t577 * t1011 + t578 * t1030 + t579 * t1035 + t566 * t1041;
+    ddq_by_q[31] = t1057 + t581 * t1047 + t583 * t1052;
+    const ariane6_real_t t1058 = parameters[ZZ2R] + t995;
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1059 = t172 * t1058 - parameters[YZ2] * dq[1] + (t52 * t946 - t51 * t948);
+    /* link j2: derivatives */
+    const ariane6_real_t t1060 = t83 * (ARIANE6_C(2.0) * t1059 + (t117 * t993 + t119 * t997));
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1061 = parameters[XZ2R] * dq[1] - t171 * t1058 + (t51 * t946 + t52 * t948
+        + t72 * t985);
+    /* link j2: derivatives */
+    const ariane6_real_t t1062 = t84 * (ARIANE6_C(2.0) * t1061 + (t119 * t993 + t116 * t997));
+    const ariane6_real_t t1063 = t1060 + t1062 + ARIANE6_C(0.18) * (t121 * t993 - t122 * t997);
+    const ariane6_real_t t1064 = t501 * t1063;
+    const ariane6_real_t t1065 = ARIANE6_C(2.0) * (t990 - t1004 + (t954 + t988 - t989))
+        + ARIANE6_C(2.0) * (t160 * t172 + t161 * t171);
+    const ariane6_real_t t1066 = ARIANE6_C(250.0) * (parameters[IA2] * (t361 * (ARIANE6_C(-2.0) * dq[1]))
+        - t90 * parameters[FV2]);
+    const ariane6_real_t t1067 = t1066 + t507 * t1065;
+    /* link j3: derivatives */
+    const ariane6_real_t t1068 = t955 - t118 * t1036 + ARIANE6_C(2.0) * (t155 * t172 + t156 * t171);
+    const ariane6_real_t t1069 = t511 * t1068;
+    /* link j4: derivatives */
+    const ariane6_real_t t1070 = t962 - t1038 * t1036 + ARIANE6_C(2.0) * (t148 * t171 - t147 * t172);
+    const ariane6_real_t t1071 = ARIANE6_C(0.2) * t1070;
+    const ariane6_real_t t1072 = t1064 * t503 - t1067 * t510 - t1069 * t514 + t1071 * t518;
+    /* link j5: derivatives */
+    const ariane6_real_t t1073 = t965 - t1044 * t1036 + ARIANE6_C(2.0) * (t141 * t172 + t142 * t171);
+    const ariane6_real_t t1074 = t520 * t1073;
+    /* link j6: derivatives */
+    const ariane6_real_t t1075 = t967 - t1049 * t1036 + ARIANE6_C(2.0) * (t134 * t172 + t135 * t171);
+    const ariane6_real_t t1076 = ARIANE6_C(0.2) * t1075;
+    ddq_by_dq[1] = t1076 * t535 - (t1072 - t1074 * t526);
+    const ariane6_real_t t1077 = t1064 * t536 + t1067 * t537 + t1069 * t539 - t1071 * t541;
+    ddq_by_dq[7] = t1077 + t1074 * t544 + t1076 * t546;
+    const ariane6_real_t t1078 = t1064 * t547 + t1067 * t548 + t1069 * t549 - t1071 * t551;
+    ddq_by_dq[13] = t1078 + t1074 * t554 + t1076 * t556;
+    const ariane6_real_t t1079 = t1064 * t557 + t1067 * t558 + t1069 * t559 - t1071 * t561;
+    ddq_by_dq[19] = t1079 + t1074 * t564 + t1076 * t566;
+    const ariane6_real_t t1080 = t1064 * t567 + t1067 * t568 + t1069 * t569 - t1071 * t570;
+    ddq_by_dq[25] = t1080 + t1074 * t573 + t1076 * t576;
+    const ariane6_real_t t1081 = t1064 * t577 + t1067 * t578 + t1069 * t579 - t1071 * t566;
+    ddq_by_dq[31] = t1081 + t1074 * t581 + t1076 * t583;
+    ddq_by_input[1] = t510;
+    ddq_by_input[7] = t537;
+    ddq_by_input[13] = t548;
+    ddq_by_input[19] = t558;
+    ddq_by_input[25] = t568;
+    ddq_by_input[31] = t578;
+    const ariane6_real_t t1082 = t83 * t1000 - t84 * t979 + ARIANE6_C(0.18) * (t974 - (parameters[MX2R] * t432
+        + parameters[MY2] * t977));
+    const ariane6_real_t t1083 = ariane6_select(t125, t125, ARIANE6_C(1.0));
+    const ariane6_real_t t1084 = ARIANE6_C(1.0) / t1083;
+    const ariane6_real_t t1085 = ARIANE6_C(0.0406334) * t128;
+    const ariane6_real_t t1086 = ARIANE6_C(1.0) / t128;
+    const ariane6_real_t t1087 = t1086 * (ARIANE6_C(0.061525739908548135) * (t1085 * (ARIANE6_C(0.5) * t1084))
+        + t124 * t501);
+    const ariane6_real_t t1088 = t126 * (t126 * (t1085 * (ARIANE6_C(0.5) * t126)));
+    const ariane6_real_t t1089 = t124 * t127 + t128 * (ARIANE6_C(-4063.3400000000006) * t1088);
+    const ariane6_real_t t1090 = t313 * (ARIANE6_C(165.10731955600002) * (t126 * t1088))
+        + t312 * (ARIANE6_C(2.0) * (t124 * t128));
+    const ariane6_real_t t1091 = t220 * (t314 * t1088 + t126 * (ARIANE6_C(-4063.3400000000006) * t128
+        + t1090));
+    const ariane6_real_t t1092 = parameters[FV1] * (dq[0] * t1089) + parameters[IA1] * (t1091 + t368 * t1089);
+    const ariane6_real_t t1093 = ARIANE6_C(250.0) * t1092 + t1087 * (parameters[ZZ1R] * t368 + t1082);
+    ddq_by_q[0] = -(t503 * t1093);
+    ddq_by_q[6] = t536 * t1093;
+    ddq_by_q[12] = t547 * t1093;
+    ddq_by_q[18] = t557 * t1093;
+    ddq_by_q[24] = t567 * t1093;
+    ddq_by_q[30] = t577 * t1093;
+    /* link j2: inertia, momentum beyond */
+    const ariane6_real_t t1094 = t84 * (t84 * (t1005 - t992) + t83 * (t996 + t1003));
+    const ariane6_real_t t1095 = ARIANE6_C(0.18) * (t83 * t1008 - t84 * t1009)
+        + t72 * (ARIANE6_C(0.18) * dq[0]);
+    const ariane6_real_t t1096 = ARIANE6_C(250.0) * (parameters[IA1] * (t315 * (ARIANE6_C(-2.0) * dq[0]))
+        - t129 * parameters[FV1]);
+    const ariane6_real_t t1097 = t1096 + t501 * (ARIANE6_C(2.0) * (t992 + t1094 + t1095));
+    const ariane6_real_t t1098 = ARIANE6_C(-0.36) * dq[0]; /* link j6: derivatives */
+    /* link j2: derivatives */
+    const ariane6_real_t t1099 = t83 * t1020 + t84 * t1022 - (t84 * t121 + t83 * t122) * t1098;
+    const ariane6_real_t t1100 = t507 * t1099;
+    /* link j3: derivatives */
+    const ariane6_real_t t1101 = t83 * t1032 - t84 * t1033 - (t84 * t118 + t83 * t80) * t1098;
+    const ariane6_real_t t1102 = t511 * t1101;
+    /* link j4: derivatives */
+    const ariane6_real_t t1103 = t83 * t1037 + t84 * t1039 + (t84 * t1038 - t83 * t99) * t1098;
+    const ariane6_real_t t1104 = ARIANE6_C(0.2) * t1103;
+    const ariane6_real_t t1105 = t1104 * t518 - (t1097 * t503 - t1100 * t510 - t1102 * t514);
+    /* link j5: derivatives */
+    const ariane6_real_t t1106 = t83 * t1043 + t84 * t1045 - (t84 * t1044 + t83 * t95) * t1098;
+    const ariane6_real_t t1107 = t520 * t1106;
+    /* link j6: derivatives */
+    const ariane6_real_t t1108 = t83 * t1048 + t84 * t1050 - (t84 * t1049 + t83 * t92) * t1098;
+    const ariane6_real_t t1109 = ARIANE6_C(0.2) * t1108;
+    ddq_by_dq[0] = t1105 + t1107 * t526 + t1109 * t535;
+    const ariane6_real_t t1110 = t1097 * t536 + t1100 * t537 + t1102 * t539 + t1104 * t541;
+    ddq_by_dq[6] = t1110 + t1107 * t544 + t1109 * t546;
+    const ariane6_real_t t1111 = t1097 * t547 + t1100 * t548 + t1102 * t549 + t1104 * t551;
+    ddq_by_dq[12] = t1111 + t1107 * t554 + t1109 * t556;
+    const ariane6_real_t t1112 = t1097 * t557 + t1100 * t558 + t1102 * t559 + t1104 * t561;
+    ddq_by_dq[18] = t1112 + t1107 * t564 + t1109 * t566;
+    const ariane6_real_t t1113 = t1097 * t567 + t1100 * t568 + t1102 * t569 + t1104 * t570;
+    ddq_by_dq[24] = t1113 + t1107 * t573 + t1109 * t576;
+    const ariane6_real_t t1114 = t1097 * t577 + t1100 * t578 + t1102 * t579 + t1104 * t566;
+    ddq_by_dq[30] = t1114 + t1107 * t581 + t1109 * t583;
+    ddq_by_input[0] = t503;
+    ddq_by_input[6] = -t536;
+    ddq_by_input[12] = -t547;
+    ddq_by_input[18] = -t557;
+    ddq_by_input[24] = -t567;
+    ddq_by_input[30] = -t577;
+    if (!ariane6_bounded(ddq, 6)
+        || !ariane6_bounded(ddq_by_q, 36)
+        || !ariane6_bounded(ddq_by_dq, 36)
+        || !ariane6_bounded(ddq_by_input, 36)) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);

@@ -7,7 +7,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4468 (2509 mul, 1950 add, 9 neg), 22 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
+ * Operations: 4468 (2509 mul, 1950 add, 9 neg), 22 div, 4 sqrt, 12 trig, 14 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -111,7 +111,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x13CD28B3UL
+#if ARIANE6_GENERATION != 0xB9B44F76UL
 #error "ariane6.h and ariane6_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -151,19 +151,19 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    ariane6_real_t t152, t156;
-    ARIANE6_SINCOS(q[0], &t152, &t156);
-    ariane6_real_t t115, t116;
-    ARIANE6_SINCOS(q[1], &t115, &t116);
-    ariane6_real_t t66, t67;
-    ARIANE6_SINCOS(q[2], &t66, &t67);
-    ariane6_real_t t46, t43;
-    ARIANE6_SINCOS(q[3], &t46, &t43);
+    ariane6_real_t t148, t152;
+    ARIANE6_SINCOS(q[0], &t148, &t152);
+    ariane6_real_t t112, t113;
+    ARIANE6_SINCOS(q[1], &t112, &t113);
+    ariane6_real_t t64, t65;
+    ARIANE6_SINCOS(q[2], &t64, &t65);
+    ariane6_real_t t44, t41;
+    ARIANE6_SINCOS(q[3], &t44, &t41);
     ariane6_real_t t13, t17;
     ARIANE6_SINCOS(q[4], &t13, &t17);
     ariane6_real_t t1, t2;
     ARIANE6_SINCOS(q[5], &t1, &t2);
-    const ariane6_real_t t0 = ariane6_bounded(parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6]);
+    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
     if (!(t0 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -188,7 +188,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t16 = ARIANE6_C(-3549.6000000000004) * t15;
     const ariane6_real_t t18 = t17 * t16;
     const ariane6_real_t t19 = t12 + t18 * t18 * parameters[IA5];
-    const ariane6_real_t t20 = ariane6_bounded(t19 - t4 * t6);
+    const ariane6_real_t t20 = t19 - t4 * t6;
     if (!(t20 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -196,232 +196,211 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t21 = t20 + ARIANE6_C(-1.0e-9) * t19;
-    if (!(t21 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
     /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t22 = parameters[XX5] + (parameters[YY6] + t9 + t11);
-    const ariane6_real_t t23 = parameters[YY5] + parameters[ZZ6];
+    const ariane6_real_t t21 = parameters[XX5] + (parameters[YY6] + t9 + t11);
+    const ariane6_real_t t22 = parameters[YY5] + parameters[ZZ6];
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t24 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const ariane6_real_t t25 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + ARIANE6_C(-0.3) * t24;
-    const ariane6_real_t t26 = t25 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t23 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const ariane6_real_t t24 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + ARIANE6_C(-0.3) * t23;
+    const ariane6_real_t t25 = t24 - parameters[XY5]; /* link j6: inertia of it and all beyond */
     /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t27 = t17 * (t23 - t22) - t26 * (ARIANE6_C(2.0) * t13);
-    const ariane6_real_t t28 = t17 * t27;
-    const ariane6_real_t t29 = parameters[ZZ4] + (t22 + t28);
-    const ariane6_real_t t30 = t29 + ARIANE6_C(1.0e4) * parameters[IA4];
-    const ariane6_real_t t31 = t17 * parameters[ZZ6] - t13 * t25; /* link j6: column of the mass matrix */
-    const ariane6_real_t t32 = t31 * t5;
-    const ariane6_real_t t33 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t34 = parameters[XY6] + t1 * t8 - parameters[XZ5];
-    const ariane6_real_t t35 = t13 * t34 - t17 * t33; /* link j5: column of the mass matrix */
-    const ariane6_real_t t36 = t35 + t31 * t6;
-    const ariane6_real_t t37 = ARIANE6_C(1.0) / t20;
-    const ariane6_real_t t38 = t36 * t37;
-    const ariane6_real_t t39 = ariane6_bounded(t30 - t31 * t32 - t36 * t38);
-    if (!(t39 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t26 = t17 * (t22 - t21) - t25 * (ARIANE6_C(2.0) * t13);
+    const ariane6_real_t t27 = t17 * t26;
+    const ariane6_real_t t28 = parameters[ZZ4] + (t21 + t27);
+    const ariane6_real_t t29 = t28 + ARIANE6_C(1.0e4) * parameters[IA4];
+    const ariane6_real_t t30 = t17 * parameters[ZZ6] - t13 * t24; /* link j6: column of the mass matrix */
+    const ariane6_real_t t31 = t30 * t5;
+    const ariane6_real_t t32 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t33 = parameters[XY6] + t1 * t8 - parameters[XZ5];
+    const ariane6_real_t t34 = t13 * t33 - t17 * t32; /* link j5: column of the mass matrix */
+    const ariane6_real_t t35 = t34 + t30 * t6;
+    const ariane6_real_t t36 = ARIANE6_C(1.0) / t20;
+    const ariane6_real_t t37 = t35 * t36;
+    const ariane6_real_t t38 = t29 - t30 * t31 - t35 * t37;
+    if (!(t38 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t40 = t39 + ARIANE6_C(-1.0e-9) * t30;
-    if (!(t40 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t41 = t28 - t23 - parameters[XX4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t42 = parameters[YY4] + t12;
-    const ariane6_real_t t44 = t17 * t34 + t13 * t33; /* link j5: column of the mass matrix */
-    const ariane6_real_t t45 = parameters[XY4] + t44; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t39 = t27 - t22 - parameters[XX4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t40 = parameters[YY4] + t12;
+    const ariane6_real_t t42 = t17 * t33 + t13 * t32; /* link j5: column of the mass matrix */
+    const ariane6_real_t t43 = parameters[XY4] + t42; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t47 = t43 * (t41 + t42) + t45 * (ARIANE6_C(2.0) * t46);
-    const ariane6_real_t t48 = t43 * t47;
-    const ariane6_real_t t49 = t3 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t50 = parameters[MY4] + t49; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t51 = t24 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t52 = parameters[MZ6] + t10;
-    const ariane6_real_t t53 = parameters[MY5] + t52;
-    const ariane6_real_t t54 = t13 * t53 + t17 * t51; /* link j5: column of the mass matrix */
-    const ariane6_real_t t55 = t54 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t56 = t46 * t50 + t43 * t55; /* link j4: column of the mass matrix */
-    const ariane6_real_t t57 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t58 = parameters[M4] + t57; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t59 = ARIANE6_C(0.17) * t58; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t60 = ARIANE6_C(0.17) * (t59 + ARIANE6_C(2.0) * t56);
-    const ariane6_real_t t61 = t17 * t53 - t13 * t51; /* link j5: column of the mass matrix */
-    const ariane6_real_t t62 = parameters[MZ4] + t61; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t63 = ARIANE6_C(0.488) * t58; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t64 = ARIANE6_C(0.488) * (t63 + ARIANE6_C(2.0) * t62);
-    const ariane6_real_t t65 = parameters[ZZ3] + (t48 - t41 + (t60 + t64));
+    const ariane6_real_t t45 = t41 * (t39 + t40) + t43 * (ARIANE6_C(2.0) * t44);
+    const ariane6_real_t t46 = t41 * t45;
+    const ariane6_real_t t47 = t3 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t48 = parameters[MY4] + t47; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t49 = t23 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t50 = parameters[MZ6] + t10;
+    const ariane6_real_t t51 = parameters[MY5] + t50;
+    const ariane6_real_t t52 = t13 * t51 + t17 * t49; /* link j5: column of the mass matrix */
+    const ariane6_real_t t53 = t52 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t54 = t44 * t48 + t41 * t53; /* link j4: column of the mass matrix */
+    const ariane6_real_t t55 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t56 = parameters[M4] + t55; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t57 = ARIANE6_C(0.17) * t56; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t58 = ARIANE6_C(0.17) * (t57 + ARIANE6_C(2.0) * t54);
+    const ariane6_real_t t59 = t17 * t51 - t13 * t49; /* link j5: column of the mass matrix */
+    const ariane6_real_t t60 = parameters[MZ4] + t59; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t61 = ARIANE6_C(0.488) * t56; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t62 = ARIANE6_C(0.488) * (t61 + ARIANE6_C(2.0) * t60);
+    const ariane6_real_t t63 = parameters[ZZ3] + (t46 - t39 + (t58 + t62));
     /* joint j3: drive */
-    const ariane6_real_t t68 = ARIANE6_C(0.052335956242943966) * t66 - ARIANE6_C(0.9986295347545738) * t67;
-    const ariane6_real_t t69 = ARIANE6_C(0.052335956242943966) * t67 + ARIANE6_C(0.9986295347545738) * t66;
-    const ariane6_real_t t70 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t69 + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t71 = ARIANE6_C(1.0) / t70;
-    const ariane6_real_t t72 = ARIANE6_C(8377.600000000002) * t71;
-    const ariane6_real_t t73 = t68 * t72;
-    const ariane6_real_t t74 = t65 + t73 * t73 * parameters[IA3];
-    const ariane6_real_t t75 = t17 * t25 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const ariane6_real_t t76 = t17 * t3;
-    const ariane6_real_t t77 = t43 * t76 - t46 * t24;
-    const ariane6_real_t t78 = t13 * t3;
-    const ariane6_real_t t79 = t46 * t75 + t43 * t4 + (ARIANE6_C(0.17) * t78 + ARIANE6_C(0.488) * t77);
-    const ariane6_real_t t80 = t79 * t5;
-    const ariane6_real_t t81 = t43 * t61; /* link j5: column of the mass matrix */
-    const ariane6_real_t t82 = t46 * t44 + t43 * t12 + (ARIANE6_C(0.17) * t54 + ARIANE6_C(0.488) * t81);
-    const ariane6_real_t t83 = t79 * t6 - t82;
-    const ariane6_real_t t84 = t83 * t37;
-    const ariane6_real_t t85 = t26 + t13 * t27 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t86 = parameters[YZ4] + t35;
-    const ariane6_real_t t87 = t43 * t50 - t46 * t55; /* link j4: column of the mass matrix */
-    const ariane6_real_t t88 = t43 * t86 - t46 * t85 - ARIANE6_C(0.488) * t87;
-    const ariane6_real_t t89 = t88 + t79 * t32 + t83 * t38;
-    const ariane6_real_t t90 = ARIANE6_C(1.0) / t39;
-    const ariane6_real_t t91 = t89 * t90;
-    const ariane6_real_t t92 = ariane6_bounded(t74 - t79 * t80 - t83 * t84 - t89 * t91);
-    if (!(t92 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t66 = ARIANE6_C(0.052335956242943966) * t64 - ARIANE6_C(0.9986295347545738) * t65;
+    const ariane6_real_t t67 = ARIANE6_C(0.052335956242943966) * t65 + ARIANE6_C(0.9986295347545738) * t64;
+    const ariane6_real_t t68 = ARIANE6_SQRT(ARIANE6_C(-0.083776) * t67 + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t69 = ARIANE6_C(1.0) / t68;
+    const ariane6_real_t t70 = ARIANE6_C(8377.600000000002) * t69;
+    const ariane6_real_t t71 = t66 * t70;
+    const ariane6_real_t t72 = t63 + t71 * t71 * parameters[IA3];
+    const ariane6_real_t t73 = t17 * t24 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const ariane6_real_t t74 = t17 * t3;
+    const ariane6_real_t t75 = t41 * t74 - t44 * t23;
+    const ariane6_real_t t76 = t13 * t3;
+    const ariane6_real_t t77 = t44 * t73 + t41 * t4 + (ARIANE6_C(0.17) * t76 + ARIANE6_C(0.488) * t75);
+    const ariane6_real_t t78 = t77 * t5;
+    const ariane6_real_t t79 = t41 * t59; /* link j5: column of the mass matrix */
+    const ariane6_real_t t80 = t44 * t42 + t41 * t12 + (ARIANE6_C(0.17) * t52 + ARIANE6_C(0.488) * t79);
+    const ariane6_real_t t81 = t77 * t6 - t80;
+    const ariane6_real_t t82 = t81 * t36;
+    const ariane6_real_t t83 = t25 + t13 * t26 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t84 = parameters[YZ4] + t34;
+    const ariane6_real_t t85 = t41 * t48 - t44 * t53; /* link j4: column of the mass matrix */
+    const ariane6_real_t t86 = t41 * t84 - t44 * t83 - ARIANE6_C(0.488) * t85;
+    const ariane6_real_t t87 = t86 + t77 * t31 + t81 * t37;
+    const ariane6_real_t t88 = ARIANE6_C(1.0) / t38;
+    const ariane6_real_t t89 = t87 * t88;
+    const ariane6_real_t t90 = t72 - t77 * t78 - t81 * t82 - t87 * t89;
+    if (!(t90 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t93 = t92 + ARIANE6_C(-1.0e-9) * t74;
-    if (!(t93 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t94 = t56 + t59; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t95 = t94 - parameters[MX3];
-    const ariane6_real_t t96 = t62 + t63;
-    const ariane6_real_t t97 = parameters[MY3] + t96;
-    const ariane6_real_t t98 = t66 * t97 + t67 * t95; /* link j3: column of the mass matrix */
-    const ariane6_real_t t99 = ARIANE6_C(0.685) * t98 - t65;
-    const ariane6_real_t t100 = t66 * t77 + t67 * t78; /* link j6: column of the mass matrix */
-    const ariane6_real_t t101 = t79 + ARIANE6_C(-0.685) * t100;
-    const ariane6_real_t t102 = t66 * t81 + t67 * t54; /* link j5: column of the mass matrix */
-    const ariane6_real_t t103 = t82 + ARIANE6_C(-0.685) * t102;
-    const ariane6_real_t t104 = t101 * t6 - t103;
-    const ariane6_real_t t105 = t66 * t87; /* link j4: column of the mass matrix */
-    const ariane6_real_t t106 = t88 + ARIANE6_C(0.685) * t105;
-    const ariane6_real_t t107 = t106 + t101 * t32 + t104 * t38;
-    const ariane6_real_t t108 = t99 + t101 * t80 + t104 * t84 + t107 * t91;
-    const ariane6_real_t t109 = ARIANE6_C(1.0) / t92;
-    const ariane6_real_t t110 = t108 * t109;
-    const ariane6_real_t t111 = parameters[M3] + t58; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t112 = ARIANE6_C(0.685) * t111; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t113 = ARIANE6_C(0.685) * (t112 + ARIANE6_C(-2.0) * t98);
-    const ariane6_real_t t114 = parameters[ZZ2] + (t65 + t113);
+    const ariane6_real_t t91 = t54 + t57; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t92 = t91 - parameters[MX3];
+    const ariane6_real_t t93 = t60 + t61;
+    const ariane6_real_t t94 = parameters[MY3] + t93;
+    const ariane6_real_t t95 = t64 * t94 + t65 * t92; /* link j3: column of the mass matrix */
+    const ariane6_real_t t96 = ARIANE6_C(0.685) * t95 - t63;
+    const ariane6_real_t t97 = t64 * t75 + t65 * t76; /* link j6: column of the mass matrix */
+    const ariane6_real_t t98 = t77 + ARIANE6_C(-0.685) * t97;
+    const ariane6_real_t t99 = t64 * t79 + t65 * t52; /* link j5: column of the mass matrix */
+    const ariane6_real_t t100 = t80 + ARIANE6_C(-0.685) * t99;
+    const ariane6_real_t t101 = t98 * t6 - t100;
+    const ariane6_real_t t102 = t64 * t85; /* link j4: column of the mass matrix */
+    const ariane6_real_t t103 = t86 + ARIANE6_C(0.685) * t102;
+    const ariane6_real_t t104 = t103 + t98 * t31 + t101 * t37;
+    const ariane6_real_t t105 = t96 + t98 * t78 + t101 * t82 + t104 * t89;
+    const ariane6_real_t t106 = ARIANE6_C(1.0) / t90;
+    const ariane6_real_t t107 = t105 * t106;
+    const ariane6_real_t t108 = parameters[M3] + t56; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t109 = ARIANE6_C(0.685) * t108; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t110 = ARIANE6_C(0.685) * (t109 + ARIANE6_C(-2.0) * t95);
+    const ariane6_real_t t111 = parameters[ZZ2] + (t63 + t110);
     /* joint j2: drive */
-    const ariane6_real_t t117 = ARIANE6_C(0.766044443118978) * t115 + ARIANE6_C(0.6427876096865393) * t116;
-    const ariane6_real_t t118 = ARIANE6_C(0.766044443118978) * t116 - ARIANE6_C(0.6427876096865393) * t115;
-    const ariane6_real_t t119 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t118 + ARIANE6_C(0.420682));
-    const ariane6_real_t t120 = ARIANE6_C(1.0) / t119;
-    const ariane6_real_t t121 = ARIANE6_C(12691.800000000003) * t120;
-    const ariane6_real_t t122 = t117 * t121;
-    const ariane6_real_t t123 = t114 + t122 * t122 * parameters[IA2];
-    const ariane6_real_t t124 = t101 * t5;
-    const ariane6_real_t t125 = t104 * t37;
-    const ariane6_real_t t126 = t107 * t90;
-    const ariane6_real_t t127 = t123 - t101 * t124 - t104 * t125 - t107 * t126;
-    const ariane6_real_t t128 = ariane6_bounded(t127 - t108 * t110);
-    if (!(t128 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t114 = ARIANE6_C(0.766044443118978) * t112 + ARIANE6_C(0.6427876096865393) * t113;
+    const ariane6_real_t t115 = ARIANE6_C(0.766044443118978) * t113 - ARIANE6_C(0.6427876096865393) * t112;
+    const ariane6_real_t t116 = ARIANE6_SQRT(ARIANE6_C(-0.126918) * t115 + ARIANE6_C(0.420682));
+    const ariane6_real_t t117 = ARIANE6_C(1.0) / t116;
+    const ariane6_real_t t118 = ARIANE6_C(12691.800000000003) * t117;
+    const ariane6_real_t t119 = t114 * t118;
+    const ariane6_real_t t120 = t111 + t119 * t119 * parameters[IA2];
+    const ariane6_real_t t121 = t98 * t5;
+    const ariane6_real_t t122 = t101 * t36;
+    const ariane6_real_t t123 = t104 * t88;
+    const ariane6_real_t t124 = t120 - t98 * t121 - t101 * t122 - t104 * t123;
+    const ariane6_real_t t125 = t124 - t105 * t107;
+    if (!(t125 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t129 = t128 + ARIANE6_C(-1.0e-9) * t123;
-    if (!(t129 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t130 = t46 * t76 + t43 * t24; /* link j6: column of the mass matrix */
-    const ariane6_real_t t131 = t46 * t4 - t43 * t75 + ARIANE6_C(0.488) * t130;
-    const ariane6_real_t t132 = t31 + ARIANE6_C(0.17) * t130;
-    const ariane6_real_t t133 = t66 * t132 - t67 * t131;
-    const ariane6_real_t t134 = t66 * t131 + t67 * t132 + ARIANE6_C(-0.685) * t130;
-    const ariane6_real_t t135 = t116 * t134 - t115 * t133 + ARIANE6_C(-0.18) * t130;
-    const ariane6_real_t t136 = t135 * t5;
+    const ariane6_real_t t126 = t44 * t74 + t41 * t23; /* link j6: column of the mass matrix */
+    const ariane6_real_t t127 = t44 * t4 - t41 * t73 + ARIANE6_C(0.488) * t126;
+    const ariane6_real_t t128 = t30 + ARIANE6_C(0.17) * t126;
+    const ariane6_real_t t129 = t64 * t128 - t65 * t127;
+    const ariane6_real_t t130 = t64 * t127 + t65 * t128 + ARIANE6_C(-0.685) * t126;
+    const ariane6_real_t t131 = t113 * t130 - t112 * t129 + ARIANE6_C(-0.18) * t126;
+    const ariane6_real_t t132 = t131 * t5;
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t137 = parameters[XX3] + (t42 - t48 + t64);
-    const ariane6_real_t t138 = parameters[YY3] + (t29 + t60);
-    const ariane6_real_t t139 = t43 * t85 + t46 * t86; /* link j4: column of the mass matrix */
+    const ariane6_real_t t133 = parameters[XX3] + (t40 - t46 + t62);
+    const ariane6_real_t t134 = parameters[YY3] + (t28 + t58);
+    const ariane6_real_t t135 = t41 * t83 + t44 * t84; /* link j4: column of the mass matrix */
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t140 = t139 + (ARIANE6_C(-0.17) * t62 + ARIANE6_C(-0.488) * t94) - parameters[XY3];
+    const ariane6_real_t t136 = t135 + (ARIANE6_C(-0.17) * t60 + ARIANE6_C(-0.488) * t91) - parameters[XY3];
     /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t141 = t67 * (t137 - t138) - t140 * (ARIANE6_C(-2.0) * t66);
-    const ariane6_real_t t142 = t67 * t141;
-    const ariane6_real_t t143 = parameters[XX2] + (t138 + t142);
-    const ariane6_real_t t144 = parameters[YY2] + (t137 - t142 + t113);
-    const ariane6_real_t t145 = t66 * t95 - t67 * t97; /* link j3: column of the mass matrix */
+    const ariane6_real_t t137 = t65 * (t133 - t134) - t136 * (ARIANE6_C(-2.0) * t64);
+    const ariane6_real_t t138 = t65 * t137;
+    const ariane6_real_t t139 = parameters[XX2] + (t134 + t138);
+    const ariane6_real_t t140 = parameters[YY2] + (t133 - t138 + t110);
+    const ariane6_real_t t141 = t64 * t92 - t65 * t94; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t146 = parameters[XY2] + (t66 * t141 - t140 + ARIANE6_C(0.685) * t145);
+    const ariane6_real_t t142 = parameters[XY2] + (t64 * t137 - t136 + ARIANE6_C(0.685) * t141);
     /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t147 = t116 * (t116 * (t144 - t143) + t146 * (ARIANE6_C(2.0) * t115));
-    const ariane6_real_t t148 = t145 - parameters[MY2]; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t149 = t98 - t112;
-    const ariane6_real_t t150 = t149 - parameters[MX2];
+    const ariane6_real_t t143 = t113 * (t113 * (t140 - t139) + t142 * (ARIANE6_C(2.0) * t112));
+    const ariane6_real_t t144 = t141 - parameters[MY2]; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t145 = t95 - t109;
+    const ariane6_real_t t146 = t145 - parameters[MX2];
     /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t151 = ARIANE6_C(0.18) * (parameters[M2] + t111) + ARIANE6_C(2.0) * (t115 * t148
-        - t116 * t150);
+    const ariane6_real_t t147 = ARIANE6_C(0.18) * (parameters[M2] + t108) + ARIANE6_C(2.0) * (t112 * t144
+        - t113 * t146);
     /* joint j1: drive */
-    const ariane6_real_t t153 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t152 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t154 = ARIANE6_C(1.0) / t153;
-    const ariane6_real_t t155 = ARIANE6_C(-4063.3400000000006) * t154;
-    const ariane6_real_t t157 = t156 * t155;
-    const ariane6_real_t t158 = parameters[ZZ1] + (t143 + t147 + ARIANE6_C(0.18) * t151)
-        + t157 * t157 * parameters[IA1];
-    const ariane6_real_t t159 = t46 * t61; /* link j5: column of the mass matrix */
-    const ariane6_real_t t160 = t46 * t12 - t43 * t44 + ARIANE6_C(0.488) * t159;
-    const ariane6_real_t t161 = ARIANE6_C(0.17) * t159 - t35;
-    const ariane6_real_t t162 = t66 * t161 - t67 * t160;
-    const ariane6_real_t t163 = t66 * t160 + t67 * t161 + ARIANE6_C(-0.685) * t159;
-    const ariane6_real_t t164 = t116 * t163 - t115 * t162 + ARIANE6_C(-0.18) * t159 - t135 * t6;
-    const ariane6_real_t t165 = t164 * t37;
-    const ariane6_real_t t166 = t139 + ARIANE6_C(-0.488) * t56; /* link j4: column of the mass matrix */
-    const ariane6_real_t t167 = t29 + ARIANE6_C(0.17) * t56;
-    const ariane6_real_t t168 = t67 * t166 + t66 * t167;
-    const ariane6_real_t t169 = t66 * t166 - t67 * t167 + ARIANE6_C(0.685) * t56;
-    const ariane6_real_t t170 = t115 * t168 + t116 * t169 + ARIANE6_C(0.18) * t56 + t135 * t32;
-    const ariane6_real_t t171 = t170 - t164 * t38;
-    const ariane6_real_t t172 = t171 * t90;
-    const ariane6_real_t t173 = t158 - t135 * t136 - t164 * t165 - t171 * t172;
+    const ariane6_real_t t149 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t148 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t150 = ARIANE6_C(1.0) / t149;
+    const ariane6_real_t t151 = ARIANE6_C(-4063.3400000000006) * t150;
+    const ariane6_real_t t153 = t152 * t151;
+    const ariane6_real_t t154 = parameters[ZZ1] + (t139 + t143 + ARIANE6_C(0.18) * t147)
+        + t153 * t153 * parameters[IA1];
+    const ariane6_real_t t155 = t44 * t59; /* link j5: column of the mass matrix */
+    const ariane6_real_t t156 = t44 * t12 - t41 * t42 + ARIANE6_C(0.488) * t155;
+    const ariane6_real_t t157 = ARIANE6_C(0.17) * t155 - t34;
+    const ariane6_real_t t158 = t64 * t157 - t65 * t156;
+    const ariane6_real_t t159 = t64 * t156 + t65 * t157 + ARIANE6_C(-0.685) * t155;
+    const ariane6_real_t t160 = t113 * t159 - t112 * t158 + ARIANE6_C(-0.18) * t155 - t131 * t6;
+    const ariane6_real_t t161 = t160 * t36;
+    const ariane6_real_t t162 = t135 + ARIANE6_C(-0.488) * t54; /* link j4: column of the mass matrix */
+    const ariane6_real_t t163 = t28 + ARIANE6_C(0.17) * t54;
+    const ariane6_real_t t164 = t65 * t162 + t64 * t163;
+    const ariane6_real_t t165 = t64 * t162 - t65 * t163 + ARIANE6_C(0.685) * t54;
+    const ariane6_real_t t166 = t112 * t164 + t113 * t165 + ARIANE6_C(0.18) * t54 + t131 * t31;
+    const ariane6_real_t t167 = t166 - t160 * t37;
+    const ariane6_real_t t168 = t167 * t88;
+    const ariane6_real_t t169 = t154 - t131 * t132 - t160 * t161 - t167 * t168;
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t174 = parameters[XZ3] + (t46 * t47 - t45 + ARIANE6_C(-0.17) * t87);
-    const ariane6_real_t t175 = parameters[YZ3] - t88;
-    const ariane6_real_t t176 = t66 * t175 - t67 * t174; /* link j3: column of the mass matrix */
-    const ariane6_real_t t177 = t66 * t174 + t67 * t175;
-    const ariane6_real_t t178 = t116 * t177 - t115 * t176 - t135 * t80 + t164 * t84;
-    const ariane6_real_t t179 = t178 - t171 * t91;
-    const ariane6_real_t t180 = t179 * t109;
-    const ariane6_real_t t181 = t87 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t170 = parameters[XZ3] + (t44 * t45 - t43 + ARIANE6_C(-0.17) * t85);
+    const ariane6_real_t t171 = parameters[YZ3] - t86;
+    const ariane6_real_t t172 = t64 * t171 - t65 * t170; /* link j3: column of the mass matrix */
+    const ariane6_real_t t173 = t64 * t170 + t65 * t171;
+    const ariane6_real_t t174 = t113 * t173 - t112 * t172 - t131 * t78 + t160 * t82;
+    const ariane6_real_t t175 = t174 - t167 * t89;
+    const ariane6_real_t t176 = t175 * t106;
+    const ariane6_real_t t177 = t85 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t182 = t176 + ARIANE6_C(-0.685) * t181 - parameters[XZ2];
-    const ariane6_real_t t183 = parameters[YZ2] + t177;
-    const ariane6_real_t t184 = t116 * t183 - t115 * t182 - t135 * t124 + t164 * t125;
-    const ariane6_real_t t185 = t184 - t171 * t126 + t179 * t110;
-    const ariane6_real_t t186 = ARIANE6_C(1.0) / t128;
-    const ariane6_real_t t187 = t185 * t186;
-    const ariane6_real_t t188 = ariane6_bounded(t173 - t179 * t180 - t185 * t187);
+    const ariane6_real_t t178 = t172 + ARIANE6_C(-0.685) * t177 - parameters[XZ2];
+    const ariane6_real_t t179 = parameters[YZ2] + t173;
+    const ariane6_real_t t180 = t113 * t179 - t112 * t178 - t131 * t121 + t160 * t122;
+    const ariane6_real_t t181 = t180 - t167 * t123 + t175 * t107;
+    const ariane6_real_t t182 = ARIANE6_C(1.0) / t125;
+    const ariane6_real_t t183 = t181 * t182;
+    const ariane6_real_t t184 = t169 - t175 * t176 - t181 * t183;
+    if (!(t184 > ARIANE6_C(1.0e-12))) {
+        ariane6_zero(ddq, 6);
+        ariane6_zero(ddq_by_q, 36);
+        ariane6_zero(ddq_by_dq, 36);
+        ariane6_zero(ddq_by_input, 36);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t185 = ariane6_min(t20 + ARIANE6_C(-1.0e-9) * t19, t38 + ARIANE6_C(-1.0e-9) * t29);
+    const ariane6_real_t t186 = ariane6_min(t185, t90 + ARIANE6_C(-1.0e-9) * t72);
+    const ariane6_real_t t187 = ariane6_min(t186, t125 + ARIANE6_C(-1.0e-9) * t120);
+    const ariane6_real_t t188 = ariane6_min(t187, t184 + ARIANE6_C(-1.0e-9) * t154);
     if (!(t188 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
@@ -429,1340 +408,1341 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
         ariane6_zero(ddq_by_input, 36);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t189 = t188 + ARIANE6_C(-1.0e-9) * t158;
-    if (!(t189 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(ddq, 6);
-        ariane6_zero(ddq_by_q, 36);
-        ariane6_zero(ddq_by_dq, 36);
-        ariane6_zero(ddq_by_input, 36);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t190 = dq[0] * dq[0]; /* link j1: motion */
-    const ariane6_real_t t191 = ARIANE6_C(0.18) * t190; /* link j2: motion */
-    const ariane6_real_t t192 = t116 * t191 + ARIANE6_C(-9.81) * t115;
-    const ariane6_real_t t193 = t116 * dq[0];
-    const ariane6_real_t t194 = t193 * t193;
-    const ariane6_real_t t195 = dq[1] * dq[1];
-    const ariane6_real_t t196 = t192 + ARIANE6_C(0.685) * (t194 + t195); /* link j3: motion */
-    const ariane6_real_t t197 = t67 * t196;
-    const ariane6_real_t t198 = t115 * t191 + ARIANE6_C(9.81) * t116; /* link j2: motion */
-    const ariane6_real_t t199 = t115 * dq[0];
-    const ariane6_real_t t200 = t199 * t193;
-    const ariane6_real_t t201 = ARIANE6_C(-0.685) * t200 - t198; /* link j3: motion */
-    const ariane6_real_t t202 = t197 + t66 * t201;
-    const ariane6_real_t t203 = t67 * t193 - t66 * t199;
-    const ariane6_real_t t204 = t203 * t203;
-    const ariane6_real_t t205 = dq[1] + dq[2];
-    const ariane6_real_t t206 = t205 * t205;
-    const ariane6_real_t t207 = t206 + t204; /* link j4: motion */
-    const ariane6_real_t t208 = t67 * t199 + t66 * t193; /* link j3: motion */
-    const ariane6_real_t t209 = t208 * t203;
+    const ariane6_real_t t189 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane6_real_t t190 = ARIANE6_C(0.18) * t189; /* link j2: motion */
+    const ariane6_real_t t191 = t113 * t190 + ARIANE6_C(-9.81) * t112;
+    const ariane6_real_t t192 = t113 * dq[0];
+    const ariane6_real_t t193 = t192 * t192;
+    const ariane6_real_t t194 = dq[1] * dq[1];
+    const ariane6_real_t t195 = t191 + ARIANE6_C(0.685) * (t193 + t194); /* link j3: motion */
+    const ariane6_real_t t196 = t65 * t195;
+    const ariane6_real_t t197 = t112 * t190 + ARIANE6_C(9.81) * t113; /* link j2: motion */
+    const ariane6_real_t t198 = t112 * dq[0];
+    const ariane6_real_t t199 = t198 * t192;
+    const ariane6_real_t t200 = ARIANE6_C(-0.685) * t199 - t197; /* link j3: motion */
+    const ariane6_real_t t201 = t196 + t64 * t200;
+    const ariane6_real_t t202 = t65 * t192 - t64 * t198;
+    const ariane6_real_t t203 = t202 * t202;
+    const ariane6_real_t t204 = dq[1] + dq[2];
+    const ariane6_real_t t205 = t204 * t204;
+    const ariane6_real_t t206 = t205 + t203; /* link j4: motion */
+    const ariane6_real_t t207 = t65 * t198 + t64 * t192; /* link j3: motion */
+    const ariane6_real_t t208 = t207 * t202;
     /* link j4: motion */
-    const ariane6_real_t t210 = t202 + (ARIANE6_C(-0.17) * t207 + ARIANE6_C(-0.488) * t209);
-    const ariane6_real_t t211 = t205 * t208; /* link j3: motion */
-    const ariane6_real_t t212 = t205 * t203;
-    const ariane6_real_t t213 = dq[1] * t199; /* link j2: motion */
-    const ariane6_real_t t214 = ARIANE6_C(1.37) * t213; /* link j3: motion */
+    const ariane6_real_t t209 = t201 + (ARIANE6_C(-0.17) * t206 + ARIANE6_C(-0.488) * t208);
+    const ariane6_real_t t210 = t204 * t207; /* link j3: motion */
+    const ariane6_real_t t211 = t204 * t202;
+    const ariane6_real_t t212 = dq[1] * t198; /* link j2: motion */
+    const ariane6_real_t t213 = ARIANE6_C(1.37) * t212; /* link j3: motion */
     /* link j4: motion */
-    const ariane6_real_t t215 = t214 - (ARIANE6_C(0.34) * t211 + ARIANE6_C(-0.976) * t212);
-    const ariane6_real_t t216 = t43 * t210 + t46 * t215;
-    const ariane6_real_t t217 = t66 * t196; /* link j3: motion */
-    const ariane6_real_t t218 = t67 * t201 - t217;
-    const ariane6_real_t t219 = t208 * t208;
-    const ariane6_real_t t220 = t206 + t219; /* link j4: motion */
-    const ariane6_real_t t221 = t218 + (ARIANE6_C(0.17) * t209 + ARIANE6_C(0.488) * t220);
-    const ariane6_real_t t222 = t13 * t216 - t17 * t221; /* link j5: motion */
-    const ariane6_real_t t223 = t46 * t205; /* link j4: motion */
-    const ariane6_real_t t224 = t43 * t208 - t223;
-    const ariane6_real_t t225 = dq[3] + t203;
-    const ariane6_real_t t226 = t17 * t224 + t13 * t225; /* link j5: motion */
-    const ariane6_real_t t227 = t226 * t226;
-    const ariane6_real_t t228 = t43 * t205; /* link j4: motion */
-    const ariane6_real_t t229 = t228 + t46 * t208;
-    const ariane6_real_t t230 = dq[4] + t229; /* link j5: motion */
-    const ariane6_real_t t231 = t230 * t230;
-    const ariane6_real_t t232 = t227 + t231; /* link j6: motion */
-    const ariane6_real_t t233 = t222 - ARIANE6_C(0.3) * t232;
-    const ariane6_real_t t234 = t17 * t216 + t13 * t221; /* link j5: motion */
-    const ariane6_real_t t235 = ARIANE6_C(2.0) * t212; /* link j4: motion */
-    const ariane6_real_t t236 = t46 * t235 - t43 * t209;
-    const ariane6_real_t t237 = t224 * t225;
-    const ariane6_real_t t238 = t236 + t237;
-    const ariane6_real_t t239 = t17 * t225 - t13 * t224; /* link j5: motion */
-    const ariane6_real_t t240 = t226 * t239;
-    const ariane6_real_t t241 = t238 - t240; /* link j6: motion */
-    const ariane6_real_t t242 = t234 + ARIANE6_C(0.3) * t241;
-    const ariane6_real_t t243 = t46 * t210 - t43 * t215; /* link j4: motion */
-    const ariane6_real_t t244 = t46 * t209 + t43 * t235;
-    const ariane6_real_t t245 = t229 * t225;
-    const ariane6_real_t t246 = t244 - t245;
-    const ariane6_real_t t247 = t246 - t245; /* link j5: motion */
-    const ariane6_real_t t248 = t224 * t229; /* link j4: motion */
-    const ariane6_real_t t249 = t248 - t211; /* link j5: motion */
-    const ariane6_real_t t250 = t13 * t249 + t17 * t247;
-    const ariane6_real_t t251 = t239 * t230;
-    const ariane6_real_t t252 = t250 + t251;
-    const ariane6_real_t t253 = t251 + t252; /* link j6: motion */
-    const ariane6_real_t t254 = t243 - ARIANE6_C(0.3) * t253;
-    const ariane6_real_t t255 = t1 * t242 + t2 * t254;
-    const ariane6_real_t t256 = t2 * t253 - t1 * t241;
-    const ariane6_real_t t257 = t1 * t226 + t2 * t230;
-    const ariane6_real_t t258 = dq[5] + t239;
-    const ariane6_real_t t259 = t257 * t258;
-    const ariane6_real_t t260 = t256 - t259;
-    const ariane6_real_t t261 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
-    const ariane6_real_t t262 = t2 * t241 + t1 * t253; /* link j6: motion */
-    const ariane6_real_t t263 = t2 * t226 - t1 * t230;
-    const ariane6_real_t t264 = t263 * t258;
-    const ariane6_real_t t265 = t262 + t264;
-    const ariane6_real_t t266 = t264 + t265; /* link j6: force and moment */
-    const ariane6_real_t t267 = t13 * t247 - t17 * t249; /* link j5: motion */
-    const ariane6_real_t t268 = t226 * t230;
-    const ariane6_real_t t269 = t267 + t268;
-    const ariane6_real_t t270 = t263 * t257; /* link j6: motion */
-    const ariane6_real_t t271 = t269 + t270; /* link j6: force and moment */
-    const ariane6_real_t t272 = t259 * t261 - parameters[XX6] * t260 + parameters[XY6] * t266
-        + parameters[XZ6] * t271;
-    const ariane6_real_t t273 = t257 * t257; /* link j6: motion */
-    const ariane6_real_t t274 = t258 * t258;
+    const ariane6_real_t t214 = t213 - (ARIANE6_C(0.34) * t210 + ARIANE6_C(-0.976) * t211);
+    const ariane6_real_t t215 = t41 * t209 + t44 * t214;
+    const ariane6_real_t t216 = t64 * t195; /* link j3: motion */
+    const ariane6_real_t t217 = t65 * t200 - t216;
+    const ariane6_real_t t218 = t207 * t207;
+    const ariane6_real_t t219 = t205 + t218; /* link j4: motion */
+    const ariane6_real_t t220 = t217 + (ARIANE6_C(0.17) * t208 + ARIANE6_C(0.488) * t219);
+    const ariane6_real_t t221 = t13 * t215 - t17 * t220; /* link j5: motion */
+    const ariane6_real_t t222 = t44 * t204; /* link j4: motion */
+    const ariane6_real_t t223 = t41 * t207 - t222;
+    const ariane6_real_t t224 = dq[3] + t202;
+    const ariane6_real_t t225 = t17 * t223 + t13 * t224; /* link j5: motion */
+    const ariane6_real_t t226 = t225 * t225;
+    const ariane6_real_t t227 = t41 * t204; /* link j4: motion */
+    const ariane6_real_t t228 = t227 + t44 * t207;
+    const ariane6_real_t t229 = dq[4] + t228; /* link j5: motion */
+    const ariane6_real_t t230 = t229 * t229;
+    const ariane6_real_t t231 = t226 + t230; /* link j6: motion */
+    const ariane6_real_t t232 = t221 - ARIANE6_C(0.3) * t231;
+    const ariane6_real_t t233 = t17 * t215 + t13 * t220; /* link j5: motion */
+    const ariane6_real_t t234 = ARIANE6_C(2.0) * t211; /* link j4: motion */
+    const ariane6_real_t t235 = t44 * t234 - t41 * t208;
+    const ariane6_real_t t236 = t223 * t224;
+    const ariane6_real_t t237 = t235 + t236;
+    const ariane6_real_t t238 = t17 * t224 - t13 * t223; /* link j5: motion */
+    const ariane6_real_t t239 = t225 * t238;
+    const ariane6_real_t t240 = t237 - t239; /* link j6: motion */
+    const ariane6_real_t t241 = t233 + ARIANE6_C(0.3) * t240;
+    const ariane6_real_t t242 = t44 * t209 - t41 * t214; /* link j4: motion */
+    const ariane6_real_t t243 = t44 * t208 + t41 * t234;
+    const ariane6_real_t t244 = t228 * t224;
+    const ariane6_real_t t245 = t243 - t244;
+    const ariane6_real_t t246 = t245 - t244; /* link j5: motion */
+    const ariane6_real_t t247 = t223 * t228; /* link j4: motion */
+    const ariane6_real_t t248 = t247 - t210; /* link j5: motion */
+    const ariane6_real_t t249 = t13 * t248 + t17 * t246;
+    const ariane6_real_t t250 = t238 * t229;
+    const ariane6_real_t t251 = t249 + t250;
+    const ariane6_real_t t252 = t250 + t251; /* link j6: motion */
+    const ariane6_real_t t253 = t242 - ARIANE6_C(0.3) * t252;
+    const ariane6_real_t t254 = t1 * t241 + t2 * t253;
+    const ariane6_real_t t255 = t2 * t252 - t1 * t240;
+    const ariane6_real_t t256 = t1 * t225 + t2 * t229;
+    const ariane6_real_t t257 = dq[5] + t238;
+    const ariane6_real_t t258 = t256 * t257;
+    const ariane6_real_t t259 = t255 - t258;
+    const ariane6_real_t t260 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
+    const ariane6_real_t t261 = t2 * t240 + t1 * t252; /* link j6: motion */
+    const ariane6_real_t t262 = t2 * t225 - t1 * t229;
+    const ariane6_real_t t263 = t262 * t257;
+    const ariane6_real_t t264 = t261 + t263;
+    const ariane6_real_t t265 = t263 + t264; /* link j6: force and moment */
+    const ariane6_real_t t266 = t13 * t246 - t17 * t248; /* link j5: motion */
+    const ariane6_real_t t267 = t225 * t229;
+    const ariane6_real_t t268 = t266 + t267;
+    const ariane6_real_t t269 = t262 * t256; /* link j6: motion */
+    const ariane6_real_t t270 = t268 + t269; /* link j6: force and moment */
+    const ariane6_real_t t271 = t258 * t260 - parameters[XX6] * t259 + parameters[XY6] * t265
+        + parameters[XZ6] * t270;
+    const ariane6_real_t t272 = t256 * t256; /* link j6: motion */
+    const ariane6_real_t t273 = t257 * t257;
     /* link j6: force and moment */
-    const ariane6_real_t t275 = t272 - parameters[YZ6] * (t273 - t274) - (parameters[MY6] * t233
-        - parameters[MZ6] * t255);
-    const ariane6_real_t t276 = t2 * t242 - t1 * t254; /* link j6: motion */
-    const ariane6_real_t t277 = parameters[ZZ6] - parameters[XX6]; /* link j6: force and moment */
-    const ariane6_real_t t278 = t260 - t259;
-    const ariane6_real_t t279 = t270 - t269;
-    const ariane6_real_t t280 = parameters[XY6] * t278 - (parameters[YY6] * t265 + t264 * t277)
-        + parameters[YZ6] * t279;
-    const ariane6_real_t t281 = t263 * t263; /* link j6: motion */
+    const ariane6_real_t t274 = t271 - parameters[YZ6] * (t272 - t273) - (parameters[MY6] * t232
+        - parameters[MZ6] * t254);
+    const ariane6_real_t t275 = t2 * t241 - t1 * t253; /* link j6: motion */
+    const ariane6_real_t t276 = parameters[ZZ6] - parameters[XX6]; /* link j6: force and moment */
+    const ariane6_real_t t277 = t259 - t258;
+    const ariane6_real_t t278 = t269 - t268;
+    const ariane6_real_t t279 = parameters[XY6] * t277 - (parameters[YY6] * t264 + t263 * t276)
+        + parameters[YZ6] * t278;
+    const ariane6_real_t t280 = t262 * t262; /* link j6: motion */
     /* link j6: force and moment */
-    const ariane6_real_t t282 = t280 + parameters[XZ6] * (t274 - t281) - (parameters[MZ6] * t276
-        + parameters[MX6] * t233);
-    const ariane6_real_t t283 = parameters[MX6] * (t273 + t274) + parameters[MY6] * t279
-        + parameters[MZ6] * t262;
-    const ariane6_real_t t284 = parameters[M6] * t276 + t283;
-    const ariane6_real_t t285 = parameters[MX6] * t271 + parameters[MY6] * (t281 + t274)
-        + parameters[MZ6] * t256;
-    const ariane6_real_t t286 = parameters[M6] * t255 - t285;
-    const ariane6_real_t t287 = t1 * t284 - t2 * t286; /* link j6: what it passes on */
-    const ariane6_real_t t288 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
-    const ariane6_real_t t289 = t268 + t269; /* link j6: motion */
-    const ariane6_real_t t290 = t238 + t240;
+    const ariane6_real_t t281 = t279 + parameters[XZ6] * (t273 - t280) - (parameters[MZ6] * t275
+        + parameters[MX6] * t232);
+    const ariane6_real_t t282 = parameters[MX6] * (t272 + t273) + parameters[MY6] * t278
+        + parameters[MZ6] * t261;
+    const ariane6_real_t t283 = parameters[M6] * t275 + t282;
+    const ariane6_real_t t284 = parameters[MX6] * t270 + parameters[MY6] * (t280 + t273)
+        + parameters[MZ6] * t255;
+    const ariane6_real_t t285 = parameters[M6] * t254 - t284;
+    const ariane6_real_t t286 = t1 * t283 - t2 * t285; /* link j6: what it passes on */
+    const ariane6_real_t t287 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
+    const ariane6_real_t t288 = t267 + t268; /* link j6: motion */
+    const ariane6_real_t t289 = t237 + t239;
     /* link j5: force and moment */
-    const ariane6_real_t t291 = t251 * t288 - parameters[XX5] * t252 + parameters[XY5] * t289
-        - parameters[XZ5] * t290;
-    const ariane6_real_t t292 = t239 * t239; /* link j5: motion */
+    const ariane6_real_t t290 = t250 * t287 - parameters[XX5] * t251 + parameters[XY5] * t288
+        - parameters[XZ5] * t289;
+    const ariane6_real_t t291 = t238 * t238; /* link j5: motion */
     /* link j5: force and moment */
-    const ariane6_real_t t293 = t291 + parameters[YZ5] * (t231 - t292) + (parameters[MY5] * t243
-        + parameters[MZ5] * t222);
+    const ariane6_real_t t292 = t290 + parameters[YZ5] * (t230 - t291) + (parameters[MY5] * t242
+        + parameters[MZ5] * t221);
     /* link j6: what it passes on */
-    const ariane6_real_t t294 = t293 + (t2 * t275 + t1 * t282 + ARIANE6_C(-0.3) * t287);
-    const ariane6_real_t t295 = parameters[ZZ5] - parameters[XX5]; /* link j5: force and moment */
-    const ariane6_real_t t296 = parameters[XY5] * t253 - (parameters[YY5] * t269 + t268 * t295)
-        + parameters[YZ5] * t241;
-    const ariane6_real_t t297 = t296 + parameters[XZ5] * (t231 - t227) + (parameters[MX5] * t243
-        - parameters[MZ5] * t234);
+    const ariane6_real_t t293 = t292 + (t2 * t274 + t1 * t281 + ARIANE6_C(-0.3) * t286);
+    const ariane6_real_t t294 = parameters[ZZ5] - parameters[XX5]; /* link j5: force and moment */
+    const ariane6_real_t t295 = parameters[XY5] * t252 - (parameters[YY5] * t268 + t267 * t294)
+        + parameters[YZ5] * t240;
+    const ariane6_real_t t296 = t295 + parameters[XZ5] * (t230 - t226) + (parameters[MX5] * t242
+        - parameters[MZ5] * t233);
     /* link j6: force and moment */
-    const ariane6_real_t t298 = t7 * t270 - parameters[ZZ6] * t269 - parameters[YZ6] * t262
-        + parameters[XZ6] * t256;
-    const ariane6_real_t t299 = t298 + parameters[XY6] * (t281 - t273) + (parameters[MX6] * t255
-        + parameters[MY6] * t276);
-    const ariane6_real_t t300 = t297 + t299; /* link j6: what it passes on */
-    const ariane6_real_t t301 = parameters[YY4] - parameters[ZZ4]; /* link j4: force and moment */
-    const ariane6_real_t t302 = t237 + t238; /* link j5: motion */
-    const ariane6_real_t t303 = t211 + t248;
+    const ariane6_real_t t297 = t7 * t269 - parameters[ZZ6] * t268 - parameters[YZ6] * t261
+        + parameters[XZ6] * t255;
+    const ariane6_real_t t298 = t297 + parameters[XY6] * (t280 - t272) + (parameters[MX6] * t254
+        + parameters[MY6] * t275);
+    const ariane6_real_t t299 = t296 + t298; /* link j6: what it passes on */
+    const ariane6_real_t t300 = parameters[YY4] - parameters[ZZ4]; /* link j4: force and moment */
+    const ariane6_real_t t301 = t236 + t237; /* link j5: motion */
+    const ariane6_real_t t302 = t210 + t247;
     /* link j4: force and moment */
-    const ariane6_real_t t304 = parameters[XY4] * t302 - (parameters[XX4] * t246 + t245 * t301)
-        + parameters[XZ4] * t303;
-    const ariane6_real_t t305 = t229 * t229; /* link j4: motion */
-    const ariane6_real_t t306 = t225 * t225;
+    const ariane6_real_t t303 = parameters[XY4] * t301 - (parameters[XX4] * t245 + t244 * t300)
+        + parameters[XZ4] * t302;
+    const ariane6_real_t t304 = t228 * t228; /* link j4: motion */
+    const ariane6_real_t t305 = t224 * t224;
     /* link j4: force and moment */
-    const ariane6_real_t t307 = t304 + parameters[YZ4] * (t306 - t305) + (parameters[MY4] * t221
-        + parameters[MZ4] * t243);
-    const ariane6_real_t t308 = t307 + (t17 * t294 + t13 * t300); /* link j5: what it passes on */
-    const ariane6_real_t t309 = t2 * t284 + t1 * t286; /* link j6: what it passes on */
-    const ariane6_real_t t310 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
-    const ariane6_real_t t311 = t240 * t310 - parameters[ZZ5] * t238 + parameters[YZ5] * t267
-        - parameters[XZ5] * t250;
-    const ariane6_real_t t312 = t311 + parameters[XY5] * (t292 - t227) - (parameters[MX5] * t222
-        + parameters[MY5] * t234);
+    const ariane6_real_t t306 = t303 + parameters[YZ4] * (t305 - t304) + (parameters[MY4] * t220
+        + parameters[MZ4] * t242);
+    const ariane6_real_t t307 = t306 + (t17 * t293 + t13 * t299); /* link j5: what it passes on */
+    const ariane6_real_t t308 = t2 * t283 + t1 * t285; /* link j6: what it passes on */
+    const ariane6_real_t t309 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
+    const ariane6_real_t t310 = t239 * t309 - parameters[ZZ5] * t237 + parameters[YZ5] * t266
+        - parameters[XZ5] * t249;
+    const ariane6_real_t t311 = t310 + parameters[XY5] * (t291 - t226) - (parameters[MX5] * t221
+        + parameters[MY5] * t233);
     /* link j6: what it passes on */
-    const ariane6_real_t t313 = t312 + (t2 * t282 - t1 * t275 + ARIANE6_C(-0.3) * t309);
-    const ariane6_real_t t314 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
-    const ariane6_real_t t315 = parameters[XY4] * t247 - (parameters[YY4] * t238 + t237 * t314)
-        + parameters[YZ4] * t249;
-    const ariane6_real_t t316 = t224 * t224; /* link j4: motion */
+    const ariane6_real_t t312 = t311 + (t2 * t281 - t1 * t274 + ARIANE6_C(-0.3) * t308);
+    const ariane6_real_t t313 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
+    const ariane6_real_t t314 = parameters[XY4] * t246 - (parameters[YY4] * t237 + t236 * t313)
+        + parameters[YZ4] * t248;
+    const ariane6_real_t t315 = t223 * t223; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane6_real_t t317 = t315 + parameters[XZ4] * (t306 - t316) + (parameters[MX4] * t221
-        - parameters[MZ4] * t216);
-    const ariane6_real_t t318 = t317 + t313; /* link j5: what it passes on */
+    const ariane6_real_t t316 = t314 + parameters[XZ4] * (t305 - t315) + (parameters[MX4] * t220
+        - parameters[MZ4] * t215);
+    const ariane6_real_t t317 = t316 + t312; /* link j5: what it passes on */
     /* link j5: force and moment */
-    const ariane6_real_t t319 = parameters[MX5] * (t292 + t231) + parameters[MY5] * t241
-        + parameters[MZ5] * t267;
-    const ariane6_real_t t320 = parameters[M5] * t234 + t319 + t309; /* link j6: what it passes on */
+    const ariane6_real_t t318 = parameters[MX5] * (t291 + t230) + parameters[MY5] * t240
+        + parameters[MZ5] * t266;
+    const ariane6_real_t t319 = parameters[M5] * t233 + t318 + t308; /* link j6: what it passes on */
     /* link j6: force and moment */
-    const ariane6_real_t t321 = parameters[MX6] * t266 + parameters[MY6] * t278 - parameters[MZ6] * (t281
-        + t273);
+    const ariane6_real_t t320 = parameters[MX6] * t265 + parameters[MY6] * t277 - parameters[MZ6] * (t280
+        + t272);
     /* link j5: force and moment */
-    const ariane6_real_t t322 = parameters[M5] * t222 + (parameters[MX5] * t290 - parameters[MY5] * t232
-        - parameters[MZ5] * t250);
-    const ariane6_real_t t323 = t322 + (parameters[M6] * t233 + t321); /* link j6: what it passes on */
+    const ariane6_real_t t321 = parameters[M5] * t221 + (parameters[MX5] * t289 - parameters[MY5] * t231
+        - parameters[MZ5] * t249);
+    const ariane6_real_t t322 = t321 + (parameters[M6] * t232 + t320); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const ariane6_real_t t324 = parameters[MX4] * (t305 + t306) + parameters[MY4] * t249
-        + parameters[MZ4] * t236;
+    const ariane6_real_t t323 = parameters[MX4] * (t304 + t305) + parameters[MY4] * t248
+        + parameters[MZ4] * t235;
     /* link j5: what it passes on */
-    const ariane6_real_t t325 = parameters[M4] * t216 + t324 + (t17 * t320 + t13 * t323);
+    const ariane6_real_t t324 = parameters[M4] * t215 + t323 + (t17 * t319 + t13 * t322);
     /* link j5: force and moment */
-    const ariane6_real_t t326 = parameters[MX5] * t289 + parameters[MY5] * t253 - parameters[MZ5] * (t227
-        + t292);
+    const ariane6_real_t t325 = parameters[MX5] * t288 + parameters[MY5] * t252 - parameters[MZ5] * (t226
+        + t291);
     /* link j4: force and moment */
-    const ariane6_real_t t327 = parameters[MX4] * t303 + parameters[MY4] * (t316 + t306)
-        + parameters[MZ4] * t244;
+    const ariane6_real_t t326 = parameters[MX4] * t302 + parameters[MY4] * (t315 + t305)
+        + parameters[MZ4] * t243;
     /* link j5: what it passes on */
-    const ariane6_real_t t328 = t327 - parameters[M4] * t243 + (t326 - parameters[M5] * t243 + t287);
-    const ariane6_real_t t329 = t46 * t325 + t43 * t328; /* link j4: what it passes on */
-    const ariane6_real_t t330 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
-    const ariane6_real_t t331 = ARIANE6_C(2.0) * t211; /* link j4: motion */
+    const ariane6_real_t t327 = t326 - parameters[M4] * t242 + (t325 - parameters[M5] * t242 + t286);
+    const ariane6_real_t t328 = t44 * t324 + t41 * t327; /* link j4: what it passes on */
+    const ariane6_real_t t329 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const ariane6_real_t t330 = ARIANE6_C(2.0) * t210; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane6_real_t t332 = parameters[XY3] * t331 - (parameters[XX3] * t212 + t212 * t330)
-        - parameters[XZ3] * t209;
-    const ariane6_real_t t333 = t332 + parameters[YZ3] * (t206 - t204) - (parameters[MY3] * t214
-        + parameters[MZ3] * t218);
+    const ariane6_real_t t331 = parameters[XY3] * t330 - (parameters[XX3] * t211 + t211 * t329)
+        - parameters[XZ3] * t208;
+    const ariane6_real_t t332 = t331 + parameters[YZ3] * (t205 - t203) - (parameters[MY3] * t213
+        + parameters[MZ3] * t217);
     /* link j4: what it passes on */
-    const ariane6_real_t t334 = t333 + (t43 * t308 + t46 * t318 + ARIANE6_C(-0.488) * t329);
-    const ariane6_real_t t335 = parameters[YY4] - parameters[XX4]; /* link j4: force and moment */
-    const ariane6_real_t t336 = parameters[ZZ4] * t211 + t248 * t335 + parameters[YZ4] * t236
-        - parameters[XZ4] * t244;
-    const ariane6_real_t t337 = t336 - parameters[XY4] * (t316 - t305) - (parameters[MX4] * t243
-        + parameters[MY4] * t216);
-    const ariane6_real_t t338 = t337 + (t13 * t294 - t17 * t300); /* link j5: what it passes on */
-    const ariane6_real_t t339 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
-    const ariane6_real_t t340 = parameters[YY3] * t211 + t211 * t339 - parameters[XY3] * t235
-        + parameters[YZ3] * t209;
-    const ariane6_real_t t341 = t340 - parameters[XZ3] * (t206 - t219) + (parameters[MZ3] * t202
-        + parameters[MX3] * t214);
-    const ariane6_real_t t342 = t341 + (t338 - ARIANE6_C(0.17) * t329); /* link j4: what it passes on */
-    const ariane6_real_t t343 = dq[1] * t193; /* link j2: motion */
-    const ariane6_real_t t344 = t343 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
-    const ariane6_real_t t345 = ARIANE6_C(2.0) * t213; /* link j2: motion */
+    const ariane6_real_t t333 = t332 + (t41 * t307 + t44 * t317 + ARIANE6_C(-0.488) * t328);
+    const ariane6_real_t t334 = parameters[YY4] - parameters[XX4]; /* link j4: force and moment */
+    const ariane6_real_t t335 = parameters[ZZ4] * t210 + t247 * t334 + parameters[YZ4] * t235
+        - parameters[XZ4] * t243;
+    const ariane6_real_t t336 = t335 - parameters[XY4] * (t315 - t304) - (parameters[MX4] * t242
+        + parameters[MY4] * t215);
+    const ariane6_real_t t337 = t336 + (t13 * t293 - t17 * t299); /* link j5: what it passes on */
+    const ariane6_real_t t338 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
+    const ariane6_real_t t339 = parameters[YY3] * t210 + t210 * t338 - parameters[XY3] * t234
+        + parameters[YZ3] * t208;
+    const ariane6_real_t t340 = t339 - parameters[XZ3] * (t205 - t218) + (parameters[MZ3] * t201
+        + parameters[MX3] * t213);
+    const ariane6_real_t t341 = t340 + (t337 - ARIANE6_C(0.17) * t328); /* link j4: what it passes on */
+    const ariane6_real_t t342 = dq[1] * t192; /* link j2: motion */
+    const ariane6_real_t t343 = t342 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const ariane6_real_t t344 = ARIANE6_C(2.0) * t212; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane6_real_t t346 = t344 - t343 * parameters[XX2] + t345 * parameters[XY2]
-        - t200 * parameters[XZ2];
-    const ariane6_real_t t347 = (t194 - t195) * parameters[YZ2];
-    const ariane6_real_t t348 = t198 * parameters[MZ2];
+    const ariane6_real_t t345 = t343 - t342 * parameters[XX2] + t344 * parameters[XY2]
+        - t199 * parameters[XZ2];
+    const ariane6_real_t t346 = (t193 - t194) * parameters[YZ2];
+    const ariane6_real_t t347 = t197 * parameters[MZ2];
     /* link j3: what it passes on */
-    const ariane6_real_t t349 = t346 - t347 + t348 + (t67 * t334 - t66 * t342);
+    const ariane6_real_t t348 = t345 - t346 + t347 + (t65 * t333 - t64 * t341);
     /* link j3: force and moment */
-    const ariane6_real_t t350 = parameters[MX3] * t331 + parameters[MY3] * t235 - parameters[MZ3] * (t219
-        + t204);
-    const ariane6_real_t t351 = parameters[M3] * t214 + t350 + t329; /* link j4: what it passes on */
-    const ariane6_real_t t352 = t213 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
-    const ariane6_real_t t353 = ARIANE6_C(2.0) * t343; /* link j2: motion */
+    const ariane6_real_t t349 = parameters[MX3] * t330 + parameters[MY3] * t234 - parameters[MZ3] * (t218
+        + t203);
+    const ariane6_real_t t350 = parameters[M3] * t213 + t349 + t328; /* link j4: what it passes on */
+    const ariane6_real_t t351 = t212 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
+    const ariane6_real_t t352 = ARIANE6_C(2.0) * t342; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane6_real_t t354 = t213 * parameters[YY2] + t352 - t353 * parameters[XY2]
-        + t200 * parameters[YZ2];
-    const ariane6_real_t t355 = t199 * t199; /* link j2: motion */
-    const ariane6_real_t t356 = (t355 - t195) * parameters[XZ2]; /* link j2: force and moment */
-    const ariane6_real_t t357 = t192 * parameters[MZ2];
+    const ariane6_real_t t353 = t212 * parameters[YY2] + t351 - t352 * parameters[XY2]
+        + t199 * parameters[YZ2];
+    const ariane6_real_t t354 = t198 * t198; /* link j2: motion */
+    const ariane6_real_t t355 = (t354 - t194) * parameters[XZ2]; /* link j2: force and moment */
+    const ariane6_real_t t356 = t191 * parameters[MZ2];
     /* link j3: what it passes on */
-    const ariane6_real_t t358 = t354 + t356 + t357 + (t66 * t334 + t67 * t342 + ARIANE6_C(0.685) * t351);
-    const ariane6_real_t t359 = t355 + t194; /* link j3: motion */
-    const ariane6_real_t t360 = t359 * parameters[MZ2]; /* link j2: force and moment */
+    const ariane6_real_t t357 = t353 + t355 + t356 + (t64 * t333 + t65 * t341 + ARIANE6_C(0.685) * t350);
+    const ariane6_real_t t358 = t354 + t193; /* link j3: motion */
+    const ariane6_real_t t359 = t358 * parameters[MZ2]; /* link j2: force and moment */
     /* link j2: what it passes on */
-    const ariane6_real_t t361 = ARIANE6_C(0.18) * (t345 * parameters[MX2] + t353 * parameters[MY2] - t360
-        + t351);
-    const ariane6_real_t t362 = t157 * dq[0];
-    const ariane6_real_t t363 = ariane6_sign(t362); /* joint j1: coulomb_friction */
-    const ariane6_real_t t364 = ARIANE6_C(82.55365977800001) * (t154 * t154); /* joint j1: drive */
-    const ariane6_real_t t365 = t156 * t156;
-    const ariane6_real_t t366 = ARIANE6_C(4063.3400000000006) * t152 + t364 * t365;
-    const ariane6_real_t t367 = t154 * t366;
-    const ariane6_real_t t368 = t362 * parameters[FV1] + t363 * parameters[FC1]
-        + t367 * t190 * parameters[IA1];
-    const ariane6_real_t t369 = t115 * t349 + t116 * t358 + t361 - t157 * t368;
-    const ariane6_real_t t370 = ARIANE6_C(0.004) * t157;
-    const ariane6_real_t t371 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
-    const ariane6_real_t t372 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6]
-        + t371 * parameters[FC6]) + t299;
-    const ariane6_real_t t373 = ARIANE6_C(5.0) * input[5] - t372;
-    const ariane6_real_t t374 = t18 * dq[4];
-    const ariane6_real_t t375 = ariane6_sign(t374); /* joint j5: coulomb_friction */
-    const ariane6_real_t t376 = ARIANE6_C(-62.9983008) * (t15 * t15); /* joint j5: drive */
-    const ariane6_real_t t377 = t17 * t17;
-    const ariane6_real_t t378 = ARIANE6_C(3549.6000000000004) * t13 - t376 * t377;
-    const ariane6_real_t t379 = t15 * t378;
-    const ariane6_real_t t380 = dq[4] * dq[4];
-    const ariane6_real_t t381 = t374 * parameters[FV5] + t375 * parameters[FC5]
-        + t379 * t380 * parameters[IA5];
-    const ariane6_real_t t382 = ARIANE6_C(0.004) * t18;
-    const ariane6_real_t t383 = input[4] * t382 - (t18 * t381 - t313) - t373 * t6;
-    const ariane6_real_t t384 = t369 - input[0] * t370 - t373 * t136 - t383 * t165;
-    const ariane6_real_t t385 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ariane6_real_t t386 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4]
-        + t385 * parameters[FC4]) - t338;
-    const ariane6_real_t t387 = ARIANE6_C(5.0) * input[3] - t386 - t373 * t32 + t383 * t38;
-    const ariane6_real_t t388 = t43 * t325 - t46 * t328; /* link j4: what it passes on */
+    const ariane6_real_t t360 = ARIANE6_C(0.18) * (t344 * parameters[MX2] + t352 * parameters[MY2] - t359
+        + t350);
+    const ariane6_real_t t361 = t153 * dq[0];
+    const ariane6_real_t t362 = ariane6_sign(t361); /* joint j1: coulomb_friction */
+    const ariane6_real_t t363 = ARIANE6_C(82.55365977800001) * (t150 * t150); /* joint j1: drive */
+    const ariane6_real_t t364 = t152 * t152;
+    const ariane6_real_t t365 = ARIANE6_C(4063.3400000000006) * t148 + t363 * t364;
+    const ariane6_real_t t366 = t150 * t365;
+    const ariane6_real_t t367 = t361 * parameters[FV1] + t362 * parameters[FC1]
+        + t366 * t189 * parameters[IA1];
+    const ariane6_real_t t368 = t112 * t348 + t113 * t357 + t360 - t153 * t367;
+    const ariane6_real_t t369 = ARIANE6_C(0.004) * t153;
+    const ariane6_real_t t370 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
+    const ariane6_real_t t371 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6]
+        + t370 * parameters[FC6]) + t298;
+    const ariane6_real_t t372 = ARIANE6_C(5.0) * input[5] - t371;
+    const ariane6_real_t t373 = t18 * dq[4];
+    const ariane6_real_t t374 = ariane6_sign(t373); /* joint j5: coulomb_friction */
+    const ariane6_real_t t375 = ARIANE6_C(-62.9983008) * (t15 * t15); /* joint j5: drive */
+    const ariane6_real_t t376 = t17 * t17;
+    const ariane6_real_t t377 = ARIANE6_C(3549.6000000000004) * t13 - t375 * t376;
+    const ariane6_real_t t378 = t15 * t377;
+    const ariane6_real_t t379 = dq[4] * dq[4];
+    const ariane6_real_t t380 = t373 * parameters[FV5] + t374 * parameters[FC5]
+        + t378 * t379 * parameters[IA5];
+    const ariane6_real_t t381 = ARIANE6_C(0.004) * t18;
+    const ariane6_real_t t382 = input[4] * t381 - (t18 * t380 - t312) - t372 * t6;
+    const ariane6_real_t t383 = t368 - input[0] * t369 - t372 * t132 - t382 * t161;
+    const ariane6_real_t t384 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ariane6_real_t t385 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4]
+        + t384 * parameters[FC4]) - t337;
+    const ariane6_real_t t386 = ARIANE6_C(5.0) * input[3] - t385 - t372 * t31 + t382 * t37;
+    const ariane6_real_t t387 = t41 * t324 - t44 * t327; /* link j4: what it passes on */
     /* link j4: force and moment */
-    const ariane6_real_t t389 = parameters[MZ4] * (t316 + t305) - (parameters[MX4] * t302
-        + parameters[MY4] * t247);
+    const ariane6_real_t t388 = parameters[MZ4] * (t315 + t304) - (parameters[MX4] * t301
+        + parameters[MY4] * t246);
     /* link j5: what it passes on */
-    const ariane6_real_t t390 = parameters[M4] * t221 + t389 + (t13 * t320 - t17 * t323);
+    const ariane6_real_t t389 = parameters[M4] * t220 + t388 + (t13 * t319 - t17 * t322);
     /* link j4: what it passes on */
-    const ariane6_real_t t391 = t46 * t308 - t43 * t318 - (ARIANE6_C(-0.17) * t390 - ARIANE6_C(0.488) * t388);
-    const ariane6_real_t t392 = parameters[YY3] - parameters[XX3]; /* link j3: force and moment */
-    const ariane6_real_t t393 = t209 * t392 + parameters[XY3] * (t219 - t204) + (parameters[MY3] * t202
-        - parameters[MX3] * t218);
-    const ariane6_real_t t394 = t393 + t391; /* link j4: what it passes on */
-    const ariane6_real_t t395 = t73 * dq[2];
-    const ariane6_real_t t396 = ariane6_sign(t395); /* joint j3: coulomb_friction */
-    const ariane6_real_t t397 = ARIANE6_C(350.9209088000001) * (t71 * t71); /* joint j3: drive */
-    const ariane6_real_t t398 = t68 * t68;
-    const ariane6_real_t t399 = ARIANE6_C(8377.600000000002) * t69 - t397 * t398;
-    const ariane6_real_t t400 = t71 * t399;
-    const ariane6_real_t t401 = dq[2] * dq[2];
-    const ariane6_real_t t402 = t395 * parameters[FV3] + t396 * parameters[FC3]
-        + t400 * t401 * parameters[IA3];
-    const ariane6_real_t t403 = ARIANE6_C(0.004) * t73;
-    const ariane6_real_t t404 = input[2] * t403 - (t73 * t402 + t394) - t373 * t80;
-    const ariane6_real_t t405 = t404 + t383 * t84 + t387 * t91;
+    const ariane6_real_t t390 = t44 * t307 - t41 * t317 - (ARIANE6_C(-0.17) * t389 - ARIANE6_C(0.488) * t387);
+    const ariane6_real_t t391 = parameters[YY3] - parameters[XX3]; /* link j3: force and moment */
+    const ariane6_real_t t392 = t208 * t391 + parameters[XY3] * (t218 - t203) + (parameters[MY3] * t201
+        - parameters[MX3] * t217);
+    const ariane6_real_t t393 = t392 + t390; /* link j4: what it passes on */
+    const ariane6_real_t t394 = t71 * dq[2];
+    const ariane6_real_t t395 = ariane6_sign(t394); /* joint j3: coulomb_friction */
+    const ariane6_real_t t396 = ARIANE6_C(350.9209088000001) * (t69 * t69); /* joint j3: drive */
+    const ariane6_real_t t397 = t66 * t66;
+    const ariane6_real_t t398 = ARIANE6_C(8377.600000000002) * t67 - t396 * t397;
+    const ariane6_real_t t399 = t69 * t398;
+    const ariane6_real_t t400 = dq[2] * dq[2];
+    const ariane6_real_t t401 = t394 * parameters[FV3] + t395 * parameters[FC3]
+        + t399 * t400 * parameters[IA3];
+    const ariane6_real_t t402 = ARIANE6_C(0.004) * t71;
+    const ariane6_real_t t403 = input[2] * t402 - (t71 * t401 + t393) - t372 * t78;
+    const ariane6_real_t t404 = t403 + t382 * t82 + t386 * t89;
     /* link j4: what it passes on */
-    const ariane6_real_t t406 = parameters[M3] * t202 + (parameters[MX3] * t207 - parameters[MY3] * t209)
-        + t388;
-    const ariane6_real_t t407 = parameters[M3] * t218 + (parameters[MY3] * t220 - parameters[MX3] * t209)
-        + t390;
-    const ariane6_real_t t408 = (t194 - t355) * parameters[XY2]; /* link j2: force and moment */
-    const ariane6_real_t t409 = t200 * (parameters[XX2] - parameters[YY2]);
-    const ariane6_real_t t410 = t198 * parameters[MX2] + t192 * parameters[MY2];
+    const ariane6_real_t t405 = parameters[M3] * t201 + (parameters[MX3] * t206 - parameters[MY3] * t208)
+        + t387;
+    const ariane6_real_t t406 = parameters[M3] * t217 + (parameters[MY3] * t219 - parameters[MX3] * t208)
+        + t389;
+    const ariane6_real_t t407 = (t193 - t354) * parameters[XY2]; /* link j2: force and moment */
+    const ariane6_real_t t408 = t199 * (parameters[XX2] - parameters[YY2]);
+    const ariane6_real_t t409 = t197 * parameters[MX2] + t191 * parameters[MY2];
     /* link j3: what it passes on */
-    const ariane6_real_t t411 = t409 + t408 - t410 - (t394 - ARIANE6_C(0.685) * (t66 * t406 + t67 * t407));
-    const ariane6_real_t t412 = t122 * dq[1];
-    const ariane6_real_t t413 = ariane6_sign(t412); /* joint j2: coulomb_friction */
-    const ariane6_real_t t414 = ARIANE6_C(805.4089362000002) * (t120 * t120); /* joint j2: drive */
-    const ariane6_real_t t415 = t117 * t117;
-    const ariane6_real_t t416 = ARIANE6_C(12691.800000000003) * t118 - t414 * t415;
-    const ariane6_real_t t417 = t120 * t416;
-    const ariane6_real_t t418 = t412 * parameters[FV2] + t413 * parameters[FC2]
-        + t417 * t195 * parameters[IA2];
-    const ariane6_real_t t419 = ARIANE6_C(0.004) * t122;
-    const ariane6_real_t t420 = t419 * input[1] - (t122 * t418 - t411) - t373 * t124;
-    const ariane6_real_t t421 = t420 + t383 * t125 + t387 * t126 + t405 * t110;
-    const ariane6_real_t t422 = t384 + t387 * t172 - t405 * t180 - t421 * t187;
-    const ariane6_real_t t423 = ARIANE6_C(1.0) / t188;
-    const ariane6_real_t t424 = ariane6_bounded(t422 * t423);
-    ddq[0] = t424;
-    const ariane6_real_t t425 = ariane6_bounded(t421 * t186 - t187 * t424);
-    ddq[1] = t425;
-    const ariane6_real_t t426 = ariane6_bounded(t405 * t109 - t180 * t424 + t110 * t425);
-    ddq[2] = t426;
-    const ariane6_real_t t427 = ariane6_bounded(t387 * t90 + t172 * t424 + t126 * t425 + t91 * t426);
-    ddq[3] = t427;
-    const ariane6_real_t t428 = t383 * t37 - t165 * t424 + t125 * t425 + t84 * t426;
-    const ariane6_real_t t429 = ariane6_bounded(t428 + t38 * t427);
-    ddq[4] = t429;
-    const ariane6_real_t t430 = t373 * t5 - t136 * t424 - t124 * t425 - t80 * t426;
-    const ariane6_real_t t431 = ariane6_bounded(t430 - t32 * t427 - t6 * t429);
-    ddq[5] = t431;
-    const ariane6_real_t t432 = t425 + t426;
-    const ariane6_real_t t433 = t115 * t67 + t116 * t66; /* link j3: motion */
-    const ariane6_real_t t434 = dq[0] * t433;
-    const ariane6_real_t t435 = t115 * t66 - t116 * t67;
-    const ariane6_real_t t436 = dq[0] * t435;
-    const ariane6_real_t t437 = t434 * t436;
-    const ariane6_real_t t438 = t437 + t432;
-    const ariane6_real_t t439 = t433 * t424;
-    const ariane6_real_t t440 = t436 * t205;
-    const ariane6_real_t t441 = t440 - t439;
-    const ariane6_real_t t442 = t440 + t441;
-    const ariane6_real_t t443 = t43 * t438 - t46 * t442;
-    const ariane6_real_t t444 = t43 * t434 - t223; /* link j4: motion */
-    const ariane6_real_t t445 = dq[3] - t436;
-    const ariane6_real_t t446 = t444 * t445;
-    const ariane6_real_t t447 = t446 + t443;
-    const ariane6_real_t t448 = t429 + t447;
-    const ariane6_real_t t449 = t17 * t444 + t13 * t445; /* link j5: motion */
-    const ariane6_real_t t450 = t13 * t444 - t17 * t445;
-    const ariane6_real_t t451 = t449 * t450;
-    const ariane6_real_t t452 = t451 + t448;
-    const ariane6_real_t t453 = t435 * t424;
-    const ariane6_real_t t454 = t434 * t205; /* link j3: motion */
-    const ariane6_real_t t455 = t454 + t453;
-    const ariane6_real_t t456 = t455 - t427;
-    const ariane6_real_t t457 = t46 * t434 + t228; /* link j4: motion */
-    const ariane6_real_t t458 = t444 * t457;
-    const ariane6_real_t t459 = t456 - t458;
-    const ariane6_real_t t460 = t46 * t438 + t43 * t442;
-    const ariane6_real_t t461 = t457 * t445;
-    const ariane6_real_t t462 = t461 + t460;
-    const ariane6_real_t t463 = t461 + t462;
-    const ariane6_real_t t464 = t13 * t459 + t17 * t463;
-    const ariane6_real_t t465 = dq[4] + t457; /* link j5: motion */
-    const ariane6_real_t t466 = t450 * t465;
-    const ariane6_real_t t467 = t466 + t464;
-    const ariane6_real_t t468 = t466 + t467;
-    const ariane6_real_t t469 = t1 * t452 + t2 * t468;
-    const ariane6_real_t t470 = t1 * t449 + t2 * t465; /* link j6: motion */
-    const ariane6_real_t t471 = dq[5] - t450;
-    const ariane6_real_t t472 = t470 * t471;
-    const ariane6_real_t t473 = t472 + t469;
-    const ariane6_real_t t474 = t2 * t452 - t1 * t468;
-    const ariane6_real_t t475 = t2 * t449 - t1 * t465;
-    const ariane6_real_t t476 = t475 * t471;
-    const ariane6_real_t t477 = t476 + t474;
-    const ariane6_real_t t478 = t476 + t477;
-    const ariane6_real_t t479 = t17 * t459 - t13 * t463;
-    const ariane6_real_t t480 = t449 * t465; /* link j5: motion */
-    const ariane6_real_t t481 = t480 + t479;
-    const ariane6_real_t t482 = t481 - t431;
-    const ariane6_real_t t483 = t475 * t470; /* link j6: motion */
-    const ariane6_real_t t484 = t483 + t482;
-    const ariane6_real_t t485 = t472 * t261 + parameters[XX6] * t473 + parameters[XY6] * t478
-        + parameters[XZ6] * t484;
+    const ariane6_real_t t410 = t408 + t407 - t409 - (t393 - ARIANE6_C(0.685) * (t64 * t405 + t65 * t406));
+    const ariane6_real_t t411 = t119 * dq[1];
+    const ariane6_real_t t412 = ariane6_sign(t411); /* joint j2: coulomb_friction */
+    const ariane6_real_t t413 = ARIANE6_C(805.4089362000002) * (t117 * t117); /* joint j2: drive */
+    const ariane6_real_t t414 = t114 * t114;
+    const ariane6_real_t t415 = ARIANE6_C(12691.800000000003) * t115 - t413 * t414;
+    const ariane6_real_t t416 = t117 * t415;
+    const ariane6_real_t t417 = t411 * parameters[FV2] + t412 * parameters[FC2]
+        + t416 * t194 * parameters[IA2];
+    const ariane6_real_t t418 = ARIANE6_C(0.004) * t119;
+    const ariane6_real_t t419 = t418 * input[1] - (t119 * t417 - t410) - t372 * t121;
+    const ariane6_real_t t420 = t419 + t382 * t122 + t386 * t123 + t404 * t107;
+    const ariane6_real_t t421 = t383 + t386 * t168 - t404 * t176 - t420 * t183;
+    const ariane6_real_t t422 = ARIANE6_C(1.0) / t184;
+    const ariane6_real_t t423 = ariane6_held(t421 * t422);
+    ddq[0] = t423;
+    const ariane6_real_t t424 = ariane6_held(t420 * t182 - t183 * t423);
+    ddq[1] = t424;
+    const ariane6_real_t t425 = ariane6_held(t404 * t106 - t176 * t423 + t107 * t424);
+    ddq[2] = t425;
+    const ariane6_real_t t426 = ariane6_held(t386 * t88 + t168 * t423 + t123 * t424 + t89 * t425);
+    ddq[3] = t426;
+    const ariane6_real_t t427 = t382 * t36 - t161 * t423 + t122 * t424 + t82 * t425;
+    const ariane6_real_t t428 = ariane6_held(t427 + t37 * t426);
+    ddq[4] = t428;
+    const ariane6_real_t t429 = t372 * t5 - t132 * t423 - t121 * t424 - t78 * t425;
+    const ariane6_real_t t430 = ariane6_held(t429 - t31 * t426 - t6 * t428);
+    ddq[5] = t430;
+    const ariane6_real_t t431 = t424 + t425;
+    const ariane6_real_t t432 = t112 * t65 + t113 * t64; /* link j3: motion */
+    const ariane6_real_t t433 = dq[0] * t432;
+    const ariane6_real_t t434 = t112 * t64 - t113 * t65;
+    const ariane6_real_t t435 = dq[0] * t434;
+    const ariane6_real_t t436 = t433 * t435;
+    const ariane6_real_t t437 = t436 + t431;
+    const ariane6_real_t t438 = t432 * t423;
+    const ariane6_real_t t439 = t435 * t204;
+    const ariane6_real_t t440 = t439 - t438;
+    const ariane6_real_t t441 = t439 + t440;
+    const ariane6_real_t t442 = t41 * t437 - t44 * t441;
+    const ariane6_real_t t443 = t41 * t433 - t222; /* link j4: motion */
+    const ariane6_real_t t444 = dq[3] - t435;
+    const ariane6_real_t t445 = t443 * t444;
+    const ariane6_real_t t446 = t445 + t442;
+    const ariane6_real_t t447 = t428 + t446;
+    const ariane6_real_t t448 = t17 * t443 + t13 * t444; /* link j5: motion */
+    const ariane6_real_t t449 = t13 * t443 - t17 * t444;
+    const ariane6_real_t t450 = t448 * t449;
+    const ariane6_real_t t451 = t450 + t447;
+    const ariane6_real_t t452 = t434 * t423;
+    const ariane6_real_t t453 = t433 * t204; /* link j3: motion */
+    const ariane6_real_t t454 = t453 + t452;
+    const ariane6_real_t t455 = t454 - t426;
+    const ariane6_real_t t456 = t44 * t433 + t227; /* link j4: motion */
+    const ariane6_real_t t457 = t443 * t456;
+    const ariane6_real_t t458 = t455 - t457;
+    const ariane6_real_t t459 = t44 * t437 + t41 * t441;
+    const ariane6_real_t t460 = t456 * t444;
+    const ariane6_real_t t461 = t460 + t459;
+    const ariane6_real_t t462 = t460 + t461;
+    const ariane6_real_t t463 = t13 * t458 + t17 * t462;
+    const ariane6_real_t t464 = dq[4] + t456; /* link j5: motion */
+    const ariane6_real_t t465 = t449 * t464;
+    const ariane6_real_t t466 = t465 + t463;
+    const ariane6_real_t t467 = t465 + t466;
+    const ariane6_real_t t468 = t2 * t451 - t1 * t467;
+    const ariane6_real_t t469 = t2 * t448 - t1 * t464; /* link j6: motion */
+    const ariane6_real_t t470 = dq[5] - t449;
+    const ariane6_real_t t471 = t469 * t470;
+    const ariane6_real_t t472 = t471 + t468;
+    const ariane6_real_t t473 = t1 * t451 + t2 * t467;
+    const ariane6_real_t t474 = t1 * t448 + t2 * t464;
+    const ariane6_real_t t475 = t474 * t470;
+    const ariane6_real_t t476 = t475 + t473;
+    const ariane6_real_t t477 = t475 + t476;
+    const ariane6_real_t t478 = t17 * t458 - t13 * t462;
+    const ariane6_real_t t479 = t448 * t464; /* link j5: motion */
+    const ariane6_real_t t480 = t479 + t478;
+    const ariane6_real_t t481 = t480 - t430;
+    const ariane6_real_t t482 = t469 * t474; /* link j6: motion */
+    const ariane6_real_t t483 = t482 - t481;
+    const ariane6_real_t t484 = t471 * t276 + parameters[YY6] * t472 + parameters[XY6] * t477
+        - parameters[YZ6] * t483;
+    const ariane6_real_t t485 = t469 * t469;
     const ariane6_real_t t486 = t470 * t470;
-    const ariane6_real_t t487 = t471 * t471;
-    const ariane6_real_t t488 = ARIANE6_C(0.18) * t424;
-    const ariane6_real_t t489 = t116 * t424;
-    const ariane6_real_t t490 = t489 - t213;
-    const ariane6_real_t t491 = t490 - t213;
-    const ariane6_real_t t492 = t488 + ARIANE6_C(0.685) * t491;
-    const ariane6_real_t t493 = t454 + t455;
-    const ariane6_real_t t494 = t492 + (ARIANE6_C(0.17) * t493 + ARIANE6_C(0.488) * t442);
-    const ariane6_real_t t495 = t436 * t436; /* link j3: motion */
-    const ariane6_real_t t496 = t495 + t206; /* link j4: motion */
-    const ariane6_real_t t497 = t200 + t425;
-    const ariane6_real_t t498 = t198 + ARIANE6_C(0.685) * t497;
-    const ariane6_real_t t499 = t197 - t66 * t498;
-    const ariane6_real_t t500 = t499 + (ARIANE6_C(-0.17) * t496 + ARIANE6_C(0.488) * t438);
-    const ariane6_real_t t501 = t43 * t500 - t46 * t494;
-    const ariane6_real_t t502 = t437 - t432;
-    const ariane6_real_t t503 = t434 * t434; /* link j3: motion */
-    const ariane6_real_t t504 = t503 + t206; /* link j4: motion */
-    const ariane6_real_t t505 = t217 + t67 * t498;
-    const ariane6_real_t t506 = t505 + (ARIANE6_C(-0.488) * t504 + ARIANE6_C(0.17) * t502);
-    const ariane6_real_t t507 = t13 * t506 - t17 * t501;
-    const ariane6_real_t t508 = ARIANE6_C(0.3) * t452 - t507;
-    const ariane6_real_t t509 = t46 * t500 + t43 * t494;
-    const ariane6_real_t t510 = t509 + ARIANE6_C(0.3) * t468;
-    const ariane6_real_t t511 = t1 * t508 + t2 * t510;
-    const ariane6_real_t t512 = parameters[MZ6] * t511;
-    const ariane6_real_t t513 = t13 * t501 + t17 * t506;
-    const ariane6_real_t t514 = t449 * t449; /* link j5: motion */
-    const ariane6_real_t t515 = t465 * t465;
-    const ariane6_real_t t516 = t514 + t515; /* link j6: motion */
-    const ariane6_real_t t517 = ARIANE6_C(0.3) * t516 - t513;
-    const ariane6_real_t t518 = (t487 - t486) * parameters[YZ6] + t485 + (parameters[MY6] * t517 + t512);
-    const ariane6_real_t t519 = t472 + t473;
-    const ariane6_real_t t520 = t483 - t482;
-    const ariane6_real_t t521 = t476 * t277 + parameters[YY6] * t477 + parameters[XY6] * t519
-        - parameters[YZ6] * t520;
-    const ariane6_real_t t522 = t475 * t475;
-    const ariane6_real_t t523 = t1 * t510 - t2 * t508;
-    const ariane6_real_t t524 = parameters[MZ6] * t523;
-    const ariane6_real_t t525 = (t522 - t487) * parameters[XZ6] + t521 - (t524 + parameters[MX6] * t517);
-    const ariane6_real_t t526 = parameters[M6] * t523;
-    const ariane6_real_t t527 = parameters[MZ6] * t474;
-    const ariane6_real_t t528 = (t486 + t487) * parameters[MX6] + parameters[MY6] * t520 + t527 - t526;
-    const ariane6_real_t t529 = parameters[M6] * t511;
-    const ariane6_real_t t530 = parameters[MZ6] * t469;
-    const ariane6_real_t t531 = t529 - ((t522 + t487) * parameters[MY6] + parameters[MX6] * t484 - t530);
-    const ariane6_real_t t532 = t2 * t531 - t1 * t528;
-    const ariane6_real_t t533 = t480 + t481;
-    const ariane6_real_t t534 = t451 - t448;
-    const ariane6_real_t t535 = parameters[XX5] * t467 - t466 * t288 + parameters[XY5] * t533
-        + parameters[XZ5] * t534;
-    const ariane6_real_t t536 = t450 * t450; /* link j5: motion */
-    const ariane6_real_t t537 = (t515 - t536) * parameters[YZ5] + t535 + (parameters[MY5] * t509
-        + parameters[MZ5] * t513);
-    const ariane6_real_t t538 = t537 + (t2 * t518 - t1 * t525 + ARIANE6_C(0.3) * t532);
-    const ariane6_real_t t539 = parameters[ZZ6] * t482 - t483 * t7 + parameters[YZ6] * t474
-        + parameters[XZ6] * t469;
-    const ariane6_real_t t540 = (t486 - t522) * parameters[XY6] + t539 + (parameters[MY6] * t523
-        - parameters[MX6] * t511);
-    const ariane6_real_t t541 = t480 * t295 + parameters[YY5] * t481 + parameters[XY5] * t468
-        - parameters[YZ5] * t452;
-    const ariane6_real_t t542 = (t514 - t515) * parameters[XZ5] + t541 - (parameters[MZ5] * t507
-        + parameters[MX5] * t509);
-    const ariane6_real_t t543 = t542 + t540;
-    const ariane6_real_t t544 = t446 + t447;
-    const ariane6_real_t t545 = t458 + t456;
-    const ariane6_real_t t546 = t461 * t301 - parameters[XX4] * t462 - parameters[XY4] * t544
-        - parameters[XZ4] * t545;
-    const ariane6_real_t t547 = t457 * t457; /* link j4: motion */
-    const ariane6_real_t t548 = t445 * t445;
-    const ariane6_real_t t549 = (t547 - t548) * parameters[YZ4] + t546 + (parameters[MY4] * t506
-        - parameters[MZ4] * t509);
-    const ariane6_real_t t550 = t549 + (t13 * t543 - t17 * t538);
-    const ariane6_real_t t551 = t2 * t528 + t1 * t531;
-    const ariane6_real_t t552 = t451 * t310 + parameters[ZZ5] * t448 - parameters[YZ5] * t479
-        - parameters[XZ5] * t464;
-    const ariane6_real_t t553 = (t514 - t536) * parameters[XY5] + t552 + (parameters[MX5] * t513
-        - parameters[MY5] * t507);
-    const ariane6_real_t t554 = t553 + (t1 * t518 + t2 * t525 + ARIANE6_C(0.3) * t551);
-    const ariane6_real_t t555 = t446 * t314 + parameters[YY4] * t447 + parameters[XY4] * t463
-        + parameters[YZ4] * t459;
-    const ariane6_real_t t556 = t444 * t444;
-    const ariane6_real_t t557 = (t556 - t548) * parameters[XZ4] + t555 + (parameters[MZ4] * t501
-        + parameters[MX4] * t506);
-    const ariane6_real_t t558 = t557 + t554;
-    const ariane6_real_t t559 = (t536 + t515) * parameters[MX5] + parameters[MY5] * t452
-        + parameters[MZ5] * t479;
-    const ariane6_real_t t560 = t559 - parameters[M5] * t507 + t551;
-    const ariane6_real_t t561 = t522 + t486; /* link j6: columns */
-    const ariane6_real_t t562 = parameters[M6] * t517 + (t561 * parameters[MZ6] + (parameters[MY6] * t519
-        - parameters[MX6] * t478));
-    const ariane6_real_t t563 = t516 * parameters[MY5] + parameters[MX5] * t534 - parameters[MZ5] * t464
-        - parameters[M5] * t513;
-    const ariane6_real_t t564 = t563 + t562;
-    const ariane6_real_t t565 = parameters[MY4] * t459 - (t547 + t548) * parameters[MX4]
-        - parameters[MZ4] * t443;
-    const ariane6_real_t t566 = t565 - parameters[M4] * t501 + (t13 * t564 - t17 * t560);
-    const ariane6_real_t t567 = t514 + t536; /* link j6: motion */
-    const ariane6_real_t t568 = parameters[M5] * t509 + (t567 * parameters[MZ5] - (parameters[MX5] * t533
-        - parameters[MY5] * t468));
-    const ariane6_real_t t569 = (t556 + t548) * parameters[MY4] + parameters[MX4] * t545
-        - parameters[MZ4] * t460;
-    const ariane6_real_t t570 = parameters[M4] * t509 - t569 + (t568 + t532);
-    const ariane6_real_t t571 = t46 * t566 + t43 * t570;
-    const ariane6_real_t t572 = t440 * t330 + parameters[XX3] * t441 + parameters[XY3] * t493
-        + parameters[XZ3] * t502;
-    const ariane6_real_t t573 = parameters[MY3] * t492 + parameters[MZ3] * t505 - ((t495
-        - t206) * parameters[YZ3] - t572);
-    const ariane6_real_t t574 = t573 - (t43 * t550 + t46 * t558 + ARIANE6_C(-0.488) * t571);
-    const ariane6_real_t t575 = t458 * t335 + parameters[ZZ4] * t456 + parameters[YZ4] * t443
-        + parameters[XZ4] * t460;
-    const ariane6_real_t t576 = (t547 - t556) * parameters[XY4] + t575 - (parameters[MX4] * t509
-        + parameters[MY4] * t501);
-    const ariane6_real_t t577 = t576 + (t13 * t538 + t17 * t543) + ARIANE6_C(0.17) * t571;
-    const ariane6_real_t t578 = t454 * t339 + parameters[YY3] * t455 + parameters[XY3] * t442
-        - parameters[YZ3] * t438;
-    const ariane6_real_t t579 = parameters[MZ3] * t499 - parameters[MX3] * t492 + ((t503
-        - t206) * parameters[XZ3] + t578);
-    const ariane6_real_t t580 = t579 + t577;
-    const ariane6_real_t t581 = t115 * t424;
-    const ariane6_real_t t582 = t343 + t581;
-    const ariane6_real_t t583 = parameters[XX2] * t582 - t344 + parameters[XY2] * t491
-        + parameters[XZ2] * t497;
-    const ariane6_real_t t584 = t347 + t583 - (t348 + parameters[MY2] * t488) + (t66 * t580 - t67 * t574);
-    const ariane6_real_t t585 = t503 + t495; /* link j4: motion */
-    const ariane6_real_t t586 = parameters[M3] * t492 + (t585 * parameters[MZ3] + (parameters[MY3] * t442
-        - parameters[MX3] * t493));
-    const ariane6_real_t t587 = t586 + t571;
-    const ariane6_real_t t588 = t343 + t582;
-    const ariane6_real_t t589 = t352 - parameters[YY2] * t490 - parameters[XY2] * t588
-        + parameters[YZ2] * (t200 - t425);
-    const ariane6_real_t t590 = t356 + t589 + (t357 - parameters[MX2] * t488) + (t66 * t574 + t67 * t580
-        + ARIANE6_C(-0.685) * t587);
-    const ariane6_real_t t591 = parameters[M2] * t488 + (t360 + (parameters[MX2] * t491
-        - parameters[MY2] * t588));
-    const ariane6_real_t t592 = t115 * t584 - t116 * t590 + ARIANE6_C(0.18) * (t591 + t587);
-    const ariane6_real_t t593 = ariane6_select(t153, t153, ARIANE6_C(1.0));
-    const ariane6_real_t t594 = ARIANE6_C(1.0) / t593;
-    const ariane6_real_t t595 = ARIANE6_C(0.0406334) * t156;
-    const ariane6_real_t t596 = ARIANE6_C(0.061525739908548135) * t153 / t156; /* joint j1: drive */
-    const ariane6_real_t t597 = ARIANE6_C(1.0) / t156;
-    const ariane6_real_t t598 = t597 * (ARIANE6_C(0.061525739908548135) * (t595 * (ARIANE6_C(0.5) * t594))
-        + t152 * t596);
-    const ariane6_real_t t599 = t154 * (t154 * (t595 * (ARIANE6_C(0.5) * t154)));
-    const ariane6_real_t t600 = t152 * t155 + t156 * (ARIANE6_C(-4063.3400000000006) * t599);
-    const ariane6_real_t t601 = t365 * (ARIANE6_C(165.10731955600002) * (t154 * t599))
-        + t364 * (ARIANE6_C(2.0) * (t152 * t156));
-    const ariane6_real_t t602 = t190 * (t366 * t599 + t154 * (ARIANE6_C(-4063.3400000000006) * t156 + t601));
-    const ariane6_real_t t603 = parameters[FV1] * (dq[0] * t600) + parameters[IA1] * (t602 + t424 * t600);
-    const ariane6_real_t t604 = ARIANE6_C(250.0) * t603 + t598 * (parameters[ZZ1] * t424 + t592);
-    const ariane6_real_t t605 = t370 * t423;
-    ddq_by_q[0] = t605 * t604;
-    const ariane6_real_t t606 = t187 * t423;
-    const ariane6_real_t t607 = ariane6_bounded(t370 * t606);
-    ddq_by_q[6] = -(t607 * t604);
-    const ariane6_real_t t608 = t423 * (t180 + t110 * t187);
-    const ariane6_real_t t609 = ariane6_bounded(t370 * t608);
-    ddq_by_q[12] = -(t609 * t604);
-    const ariane6_real_t t610 = t126 + t91 * t110;
-    const ariane6_real_t t611 = t423 * (t91 * t180 - t172 + t187 * t610);
-    const ariane6_real_t t612 = ariane6_bounded(t370 * t611);
-    ddq_by_q[18] = -(t612 * t604);
-    const ariane6_real_t t613 = t84 + t38 * t91;
-    const ariane6_real_t t614 = t125 + t38 * t126 + t110 * t613;
-    const ariane6_real_t t615 = t165 - t38 * t172 + t180 * t613 + t187 * t614;
-    const ariane6_real_t t616 = t423 * t615;
-    const ariane6_real_t t617 = ariane6_bounded(t370 * t616);
-    ddq_by_q[24] = -(t617 * t604);
-    const ariane6_real_t t618 = t32 + t6 * t38;
-    const ariane6_real_t t619 = t80 + t6 * t84 + t91 * t618;
-    const ariane6_real_t t620 = t124 + t6 * t125 + t126 * t618 + t110 * t619;
-    const ariane6_real_t t621 = t136 - t6 * t165 + t172 * t618 - t180 * t619;
-    const ariane6_real_t t622 = t423 * (t621 - t187 * t620);
-    const ariane6_real_t t623 = ariane6_bounded(t370 * t622);
-    ddq_by_q[30] = -(t623 * t604);
-    const ariane6_real_t t624 = t470 * parameters[XZ6];
-    const ariane6_real_t t625 = t471 * parameters[XY6];
-    const ariane6_real_t t626 = t624 + t625;
-    const ariane6_real_t t627 = t475 * parameters[YZ6];
-    const ariane6_real_t t628 = t625 - t627;
-    const ariane6_real_t t629 = ARIANE6_C(-0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const ariane6_real_t t630 = parameters[XX6] + t629;
-    const ariane6_real_t t631 = t471 * t630 - t475 * parameters[XZ6];
-    const ariane6_real_t t632 = parameters[YY6] + t629;
-    const ariane6_real_t t633 = t470 * parameters[YZ6] + t471 * t632;
+    const ariane6_real_t t487 = ARIANE6_C(0.18) * t423;
+    const ariane6_real_t t488 = t113 * t423;
+    const ariane6_real_t t489 = t488 - t212;
+    const ariane6_real_t t490 = t489 - t212;
+    const ariane6_real_t t491 = t487 + ARIANE6_C(0.685) * t490;
+    const ariane6_real_t t492 = t453 + t454;
+    const ariane6_real_t t493 = t491 + (ARIANE6_C(0.17) * t492 + ARIANE6_C(0.488) * t441);
+    const ariane6_real_t t494 = t435 * t435; /* link j3: motion */
+    const ariane6_real_t t495 = t494 + t205; /* link j4: motion */
+    const ariane6_real_t t496 = t199 + t424;
+    const ariane6_real_t t497 = t197 + ARIANE6_C(0.685) * t496;
+    const ariane6_real_t t498 = t196 - t64 * t497;
+    const ariane6_real_t t499 = t498 + (ARIANE6_C(-0.17) * t495 + ARIANE6_C(0.488) * t437);
+    const ariane6_real_t t500 = t41 * t499 - t44 * t493;
+    const ariane6_real_t t501 = t436 - t431;
+    const ariane6_real_t t502 = t433 * t433; /* link j3: motion */
+    const ariane6_real_t t503 = t502 + t205; /* link j4: motion */
+    const ariane6_real_t t504 = t216 + t65 * t497;
+    const ariane6_real_t t505 = t504 + (ARIANE6_C(-0.488) * t503 + ARIANE6_C(0.17) * t501);
+    const ariane6_real_t t506 = t13 * t505 - t17 * t500;
+    const ariane6_real_t t507 = ARIANE6_C(0.3) * t451 - t506;
+    const ariane6_real_t t508 = t44 * t499 + t41 * t493;
+    const ariane6_real_t t509 = t508 + ARIANE6_C(0.3) * t467;
+    const ariane6_real_t t510 = t1 * t509 - t2 * t507;
+    const ariane6_real_t t511 = parameters[MZ6] * t510;
+    const ariane6_real_t t512 = t13 * t500 + t17 * t505;
+    const ariane6_real_t t513 = t448 * t448; /* link j5: motion */
+    const ariane6_real_t t514 = t464 * t464;
+    const ariane6_real_t t515 = t513 + t514; /* link j6: motion */
+    const ariane6_real_t t516 = ARIANE6_C(0.3) * t515 - t512;
+    const ariane6_real_t t517 = (t485 - t486) * parameters[XZ6] + t484 - (t511 + parameters[MX6] * t516);
+    const ariane6_real_t t518 = t474 * t474;
+    const ariane6_real_t t519 = t485 + t518; /* link j6: columns */
+    const ariane6_real_t t520 = t474 * parameters[XZ6];
+    const ariane6_real_t t521 = t470 * parameters[XY6];
+    const ariane6_real_t t522 = t520 + t521;
+    const ariane6_real_t t523 = ARIANE6_C(2.0) * t474; /* link j6: derivatives */
+    const ariane6_real_t t524 = ARIANE6_C(-0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const ariane6_real_t t525 = parameters[YY6] + t524;
+    const ariane6_real_t t526 = t474 * parameters[YZ6] + t470 * t525;
+    const ariane6_real_t t527 = ARIANE6_C(2.0) * t469;
+    const ariane6_real_t t528 = t522 * t523 + t526 * t527 + (parameters[XY6] * t473 - parameters[XX6] * t468
+        - t519 * parameters[XZ6]);
+    const ariane6_real_t t529 = t517 + (t511 + t528);
+    const ariane6_real_t t530 = t471 + t472;
+    const ariane6_real_t t531 = t482 + t481;
+    const ariane6_real_t t532 = t475 * t260 + parameters[XX6] * t476 + parameters[XY6] * t530
+        + parameters[XZ6] * t531;
+    const ariane6_real_t t533 = t1 * t507 + t2 * t509;
+    const ariane6_real_t t534 = parameters[MZ6] * t533;
+    const ariane6_real_t t535 = (t486 - t518) * parameters[YZ6] + t532 + (parameters[MY6] * t516 + t534);
+    const ariane6_real_t t536 = parameters[XX6] + t524;
+    const ariane6_real_t t537 = t470 * t536 - t469 * parameters[XZ6];
+    const ariane6_real_t t538 = t469 * parameters[YZ6];
+    const ariane6_real_t t539 = t521 - t538;
+    const ariane6_real_t t540 = t537 * t523 + t539 * t527 + (t519 * parameters[YZ6] + (parameters[XY6] * t468
+        - parameters[YY6] * t473));
+    const ariane6_real_t t541 = t534 - t540 - t535;
+    const ariane6_real_t t542 = parameters[M6] * t533;
+    const ariane6_real_t t543 = parameters[MZ6] * t473;
+    const ariane6_real_t t544 = t542 - ((t485 + t486) * parameters[MY6] + parameters[MX6] * t531 - t543);
+    const ariane6_real_t t545 = t469 * parameters[MY6] + t474 * parameters[MX6];
+    const ariane6_real_t t546 = t542 - t545 * t527 + (t519 * parameters[MY6] + t543) - t544;
+    const ariane6_real_t t547 = parameters[M6] * t510;
+    const ariane6_real_t t548 = parameters[MZ6] * t468;
+    const ariane6_real_t t549 = (t518 + t486) * parameters[MX6] + parameters[MY6] * t483 + t548 - t547;
+    const ariane6_real_t t550 = t549 + (t547 - t545 * t523 + (t519 * parameters[MX6] - t548));
+    const ariane6_real_t t551 = t2 * t550 - t1 * t546;
+    const ariane6_real_t t552 = t2 * t529 - t1 * t541 + ARIANE6_C(0.3) * t551;
+    const ariane6_real_t t553 = parameters[MX6] * t510 + parameters[MY6] * t533;
+    const ariane6_real_t t554 = t519 * parameters[ZZ6] + (parameters[XZ6] * t468 - parameters[YZ6] * t473);
+    const ariane6_real_t t555 = t469 * parameters[XY6] + t474 * t536;
+    const ariane6_real_t t556 = t469 * t525 + t474 * parameters[XY6];
+    const ariane6_real_t t557 = t555 * t523 + t556 * t527 + t554 + t553;
+    const ariane6_real_t t558 = t17 * t552 + t13 * t557;
+    const ariane6_real_t t559 = t2 * t546 + t1 * t550;
+    const ariane6_real_t t560 = t1 * t529 + t2 * t541 + ARIANE6_C(0.3) * t559;
+    const ariane6_real_t t561 = t470 * parameters[MX6] - t469 * parameters[MZ6];
+    const ariane6_real_t t562 = t474 * parameters[MZ6] + t470 * parameters[MY6];
+    const ariane6_real_t t563 = t561 * t523 + t562 * t527 + (parameters[MY6] * t468 + parameters[MX6] * t473);
+    const ariane6_real_t t564 = t17 * t559 + t13 * t563;
+    const ariane6_real_t t565 = t44 * t564 - t41 * t551;
+    const ariane6_real_t t566 = t41 * t558 - t44 * t560 + ARIANE6_C(-0.488) * t565;
+    const ariane6_real_t t567 = t13 * t552 - t17 * t557;
+    const ariane6_real_t t568 = t567 + ARIANE6_C(-0.17) * t565;
+    const ariane6_real_t t569 = t113 * (t64 * t566 + t65 * t568 + ARIANE6_C(0.685) * t565);
+    const ariane6_real_t t570 = t112 * (t65 * t566 - t64 * t568) + t569 + ARIANE6_C(0.18) * t565;
+    const ariane6_real_t t571 = ARIANE6_C(0.061525739908548135) * t149 / t152; /* joint j1: drive */
+    const ariane6_real_t t572 = t571 * t570;
+    const ariane6_real_t t573 = t369 * t422;
+    const ariane6_real_t t574 = t41 * t564 + t44 * t551;
+    const ariane6_real_t t575 = t17 * t563 - t13 * t559;
+    const ariane6_real_t t576 = t44 * t558 + t41 * t560 + (ARIANE6_C(-0.17) * t575 + ARIANE6_C(0.488) * t574);
+    const ariane6_real_t t577 = ARIANE6_C(0.019697757607273984) * t116 / t114; /* joint j2: drive */
+    const ariane6_real_t t578 = t577 * (t576 + ARIANE6_C(0.685) * (t65 * t575 - t64 * t574));
+    const ariane6_real_t t579 = t183 * t422;
+    const ariane6_real_t t580 = t418 * t579;
+    const ariane6_real_t t581 = ARIANE6_C(-0.029841482047364396) * t68 / t66; /* joint j3: drive */
+    const ariane6_real_t t582 = t581 * t576;
+    const ariane6_real_t t583 = t422 * (t176 + t107 * t183);
+    const ariane6_real_t t584 = t402 * t583;
+    const ariane6_real_t t585 = ARIANE6_C(0.2) * t567;
+    const ariane6_real_t t586 = t123 + t89 * t107;
+    const ariane6_real_t t587 = t422 * (t89 * t176 - t168 + t183 * t586);
+    const ariane6_real_t t588 = ariane6_held(ARIANE6_C(-5.0) * t587);
+    const ariane6_real_t t589 = t573 * t572 - t580 * t578 + t584 * t582 - t588 * t585;
+    const ariane6_real_t t590 = ARIANE6_C(0.07043047103899029) * t14 / t17; /* joint j5: drive */
+    const ariane6_real_t t591 = t590 * t560;
+    const ariane6_real_t t592 = t82 + t37 * t89;
+    const ariane6_real_t t593 = t122 + t37 * t123 + t107 * t592;
+    const ariane6_real_t t594 = t161 - t37 * t168 + t176 * t592 + t183 * t593;
+    const ariane6_real_t t595 = t422 * t594;
+    const ariane6_real_t t596 = t381 * t595;
+    const ariane6_real_t t597 = ARIANE6_C(2.0) * t555; /* link j6: derivatives */
+    const ariane6_real_t t598 = ARIANE6_C(2.0) * t556;
+    const ariane6_real_t t599 = ARIANE6_C(0.2) * (t553 + (t474 * t597 + t469 * t598 + t554));
+    const ariane6_real_t t600 = t31 + t6 * t37;
+    const ariane6_real_t t601 = t78 + t6 * t82 + t89 * t600;
+    const ariane6_real_t t602 = t121 + t6 * t122 + t123 * t600 + t107 * t601;
+    const ariane6_real_t t603 = t132 - t6 * t161 + t168 * t600 - t176 * t601;
+    const ariane6_real_t t604 = t422 * (t603 - t183 * t602);
+    const ariane6_real_t t605 = ariane6_held(ARIANE6_C(-5.0) * t604);
+    ddq_by_q[5] = t589 - t596 * t591 + t605 * t599;
+    const ariane6_real_t t606 = ariane6_held(t369 * t579);
+    const ariane6_real_t t607 = ariane6_held(t418 * (t182 + t183 * t579));
+    const ariane6_real_t t608 = t107 * t182 + t183 * t583;
+    const ariane6_real_t t609 = ariane6_held(t402 * t608);
+    const ariane6_real_t t610 = t182 * t586 + t183 * t587;
+    const ariane6_real_t t611 = ariane6_held(ARIANE6_C(5.0) * t610);
+    const ariane6_real_t t612 = t607 * t578 - t606 * t572 - t609 * t582 - t611 * t585;
+    const ariane6_real_t t613 = t182 * t593 + t183 * t595;
+    const ariane6_real_t t614 = ariane6_held(t381 * t613);
+    const ariane6_real_t t615 = t183 * t604 - t182 * t602;
+    const ariane6_real_t t616 = ariane6_held(ARIANE6_C(5.0) * t615);
+    ddq_by_q[11] = t612 + t614 * t591 + t616 * t599;
+    const ariane6_real_t t617 = ariane6_held(t369 * t583);
+    const ariane6_real_t t618 = ariane6_held(t418 * t608);
+    const ariane6_real_t t619 = ariane6_held(t402 * (t106 + t176 * t583 + t107 * t608));
+    const ariane6_real_t t620 = t89 * t106 + t176 * t587 + t107 * t610;
+    const ariane6_real_t t621 = ariane6_held(ARIANE6_C(5.0) * t620);
+    const ariane6_real_t t622 = t618 * t578 - t617 * t572 - t619 * t582 - t621 * t585;
+    const ariane6_real_t t623 = t106 * t592 + t176 * t595 + t107 * t613;
+    const ariane6_real_t t624 = ariane6_held(t381 * t623);
+    const ariane6_real_t t625 = t176 * t604 - t106 * t601 + t107 * t615;
+    const ariane6_real_t t626 = ariane6_held(ARIANE6_C(5.0) * t625);
+    ddq_by_q[17] = t622 + t624 * t591 + t626 * t599;
+    const ariane6_real_t t627 = ariane6_held(t369 * t587);
+    const ariane6_real_t t628 = ariane6_held(t418 * t610);
+    const ariane6_real_t t629 = ariane6_held(t402 * t620);
+    const ariane6_real_t t630 = t88 - t168 * t587 + t123 * t610 + t89 * t620;
+    const ariane6_real_t t631 = ariane6_held(ARIANE6_C(5.0) * t630);
+    const ariane6_real_t t632 = t628 * t578 - t627 * t572 - t629 * t582 - t631 * t585;
+    const ariane6_real_t t633 = t37 * t88 - t168 * t595 + t123 * t613 + t89 * t623;
+    const ariane6_real_t t634 = ariane6_held(t381 * t633);
+    const ariane6_real_t t635 = t88 * t600 + t168 * t604 - t123 * t615 - t89 * t625;
+    const ariane6_real_t t636 = ariane6_held(ARIANE6_C(-5.0) * t635);
+    ddq_by_q[23] = t632 + t634 * t591 + t636 * t599;
+    const ariane6_real_t t637 = ariane6_held(t369 * t595);
+    const ariane6_real_t t638 = ariane6_held(t418 * t613);
+    const ariane6_real_t t639 = ariane6_held(t402 * t623);
+    const ariane6_real_t t640 = ariane6_held(ARIANE6_C(5.0) * t633);
+    const ariane6_real_t t641 = t638 * t578 - t637 * t572 - t639 * t582 - t640 * t585;
+    const ariane6_real_t t642 = t36 + t161 * t595 + t122 * t613 + t82 * t623;
+    const ariane6_real_t t643 = ariane6_held(t381 * (t642 + t37 * t633));
+    const ariane6_real_t t644 = t161 * t604 - t6 * t36 + t122 * t615 + t82 * t625;
+    const ariane6_real_t t645 = t644 - t37 * t635;
+    const ariane6_real_t t646 = ariane6_held(ARIANE6_C(5.0) * t645);
+    ddq_by_q[29] = t641 + t643 * t591 + t646 * t599;
+    const ariane6_real_t t647 = ariane6_held(t369 * t604);
+    const ariane6_real_t t648 = ariane6_held(t418 * t615);
+    const ariane6_real_t t649 = ariane6_held(t402 * t625);
+    const ariane6_real_t t650 = t648 * t578 - t647 * t572 - t649 * t582 - t636 * t585;
+    const ariane6_real_t t651 = ariane6_held(t381 * t645);
+    const ariane6_real_t t652 = t5 + t132 * t604 - t121 * t615 - t78 * t625;
+    const ariane6_real_t t653 = ariane6_held(ARIANE6_C(5.0) * (t652 + t31 * t635 - t6 * t645));
+    ddq_by_q[35] = t650 + t651 * t591 + t653 * t599;
+    const ariane6_real_t t654 = parameters[ZZ6] + t524;
+    const ariane6_real_t t655 = t474 * t654 + t470 * parameters[YZ6];
+    const ariane6_real_t t656 = ARIANE6_C(-2.0) * t655 - (parameters[XX6] * t523 + parameters[XY6] * t527);
+    const ariane6_real_t t657 = t470 * parameters[XZ6] - t469 * t654;
+    const ariane6_real_t t658 = ARIANE6_C(2.0) * t657 - (parameters[XY6] * t523 + parameters[YY6] * t527);
+    const ariane6_real_t t659 = ARIANE6_C(-2.0) * t561 - parameters[MZ6] * t527;
+    const ariane6_real_t t660 = ARIANE6_C(2.0) * t562 - parameters[MZ6] * t523;
+    const ariane6_real_t t661 = t2 * t660 - t1 * t659;
+    const ariane6_real_t t662 = t2 * t656 - t1 * t658 + ARIANE6_C(0.3) * t661;
+    const ariane6_real_t t663 = t520 + t538;
+    const ariane6_real_t t664 = ARIANE6_C(-2.0) * t663;
+    const ariane6_real_t t665 = t664 + (parameters[XZ6] * t523 + parameters[YZ6] * t527);
+    const ariane6_real_t t666 = t17 * t662 + t13 * t665;
+    const ariane6_real_t t667 = t2 * t659 + t1 * t660;
+    const ariane6_real_t t668 = t1 * t656 + t2 * t658 + ARIANE6_C(0.3) * t667;
+    const ariane6_real_t t669 = parameters[MY6] * t523 - parameters[MX6] * t527;
+    const ariane6_real_t t670 = t17 * t667 + t13 * t669;
+    const ariane6_real_t t671 = t44 * t670 - t41 * t661;
+    const ariane6_real_t t672 = t41 * t666 - t44 * t668 + ARIANE6_C(-0.488) * t671;
+    const ariane6_real_t t673 = t17 * t665 - t13 * t662;
+    const ariane6_real_t t674 = t673 - ARIANE6_C(-0.17) * t671;
+    const ariane6_real_t t675 = t113 * (t64 * t672 - t65 * t674 + ARIANE6_C(0.685) * t671);
+    const ariane6_real_t t676 = t112 * (t65 * t672 + t64 * t674) + t675 + ARIANE6_C(0.18) * t671;
+    const ariane6_real_t t677 = t571 * t676;
+    const ariane6_real_t t678 = t41 * t670 + t44 * t661;
+    const ariane6_real_t t679 = t17 * t669 - t13 * t667;
+    const ariane6_real_t t680 = t44 * t666 + t41 * t668 + (ARIANE6_C(-0.17) * t679 + ARIANE6_C(0.488) * t678);
+    const ariane6_real_t t681 = t577 * (t680 + ARIANE6_C(0.685) * (t65 * t679 - t64 * t678));
+    const ariane6_real_t t682 = t581 * t680;
+    const ariane6_real_t t683 = ARIANE6_C(0.2) * t673;
+    const ariane6_real_t t684 = t677 * t573 - t681 * t580 + t682 * t584 + t683 * t588;
+    const ariane6_real_t t685 = t590 * t668;
+    const ariane6_real_t t686 = ARIANE6_C(-2.0e3) * parameters[FV6];
+    ddq_by_dq[5] = t684 - t685 * t596 + t686 * t605;
+    const ariane6_real_t t687 = t681 * t607 - t677 * t606 - t682 * t609 + t683 * t611;
+    ddq_by_dq[11] = t687 + t685 * t614 + t686 * t616;
+    const ariane6_real_t t688 = t681 * t618 - t677 * t617 - t682 * t619 + t683 * t621;
+    ddq_by_dq[17] = t688 + t685 * t624 + t686 * t626;
+    const ariane6_real_t t689 = t681 * t628 - t677 * t627 - t682 * t629 + t683 * t631;
+    ddq_by_dq[23] = t689 + t685 * t634 + t686 * t636;
+    const ariane6_real_t t690 = t681 * t638 - t677 * t637 - t682 * t639 + t683 * t640;
+    ddq_by_dq[29] = t690 + t685 * t643 + t686 * t646;
+    const ariane6_real_t t691 = t681 * t648 - t677 * t647 - t682 * t649 + t683 * t636;
+    ddq_by_dq[35] = t691 + t685 * t651 + t686 * t653;
+    ddq_by_input[5] = t605;
+    ddq_by_input[11] = t616;
+    ddq_by_input[17] = t626;
+    ddq_by_input[23] = t636;
+    ddq_by_input[29] = t646;
+    ddq_by_input[35] = t653;
+    const ariane6_real_t t692 = t2 * t544 - t1 * t549;
+    const ariane6_real_t t693 = t479 + t480;
+    const ariane6_real_t t694 = t450 - t447;
+    const ariane6_real_t t695 = parameters[XX5] * t466 - t465 * t287 + parameters[XY5] * t693
+        + parameters[XZ5] * t694;
+    const ariane6_real_t t696 = t449 * t449; /* link j5: motion */
+    const ariane6_real_t t697 = (t514 - t696) * parameters[YZ5] + t695 + (parameters[MY5] * t508
+        + parameters[MZ5] * t512);
+    const ariane6_real_t t698 = t697 + (t2 * t535 - t1 * t517 + ARIANE6_C(0.3) * t692);
+    const ariane6_real_t t699 = t513 + t696; /* link j6: motion */
+    const ariane6_real_t t700 = ARIANE6_C(0.3) * t545; /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t701 = ARIANE6_C(0.3) * t464;
+    const ariane6_real_t t702 = t23 * t701;
+    const ariane6_real_t t703 = ARIANE6_C(0.3) * t448;
+    const ariane6_real_t t704 = t3 * t703;
+    const ariane6_real_t t705 = t700 + (t702 - t704);
+    const ariane6_real_t t706 = t448 * parameters[YZ5];
+    const ariane6_real_t t707 = t464 * parameters[XY5];
+    const ariane6_real_t t708 = t707 - t706 + (t705 + (t663 - t700));
+    const ariane6_real_t t709 = ARIANE6_C(2.0) * t448; /* link j5: derivatives */
+    const ariane6_real_t t710 = ARIANE6_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const ariane6_real_t t711 = parameters[XX5] + t710;
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t634 = t2 * (t626 + t628) + t1 * (t631 - t633);
-    const ariane6_real_t t635 = t2 * t634;
-    const ariane6_real_t t636 = ARIANE6_C(0.3) * t465;
-    const ariane6_real_t t637 = t24 * t636;
-    const ariane6_real_t t638 = t475 * parameters[MY6] + t470 * parameters[MX6];
-    const ariane6_real_t t639 = ARIANE6_C(0.3) * t638;
-    const ariane6_real_t t640 = ARIANE6_C(0.3) * t449;
-    const ariane6_real_t t641 = t3 * t640;
-    const ariane6_real_t t642 = t639 + (t637 - t641);
-    const ariane6_real_t t643 = t450 * parameters[XZ5];
-    const ariane6_real_t t644 = t465 * parameters[XY5];
-    const ariane6_real_t t645 = t643 + t644 + (t635 - t628 + t637 - t642);
-    const ariane6_real_t t646 = t624 + t627;
-    const ariane6_real_t t647 = t449 * parameters[YZ5];
-    const ariane6_real_t t648 = t644 - t647 + (t642 + (t646 - t639));
-    const ariane6_real_t t649 = parameters[ZZ6] + t629;
-    const ariane6_real_t t650 = t470 * t649 + t471 * parameters[YZ6];
-    const ariane6_real_t t651 = t471 * parameters[XZ6] - t475 * t649;
-    const ariane6_real_t t652 = t470 * parameters[MZ6] + t471 * parameters[MY6];
-    const ariane6_real_t t653 = t471 * parameters[MX6] - t475 * parameters[MZ6];
-    const ariane6_real_t t654 = t2 * t652 + t1 * t653;
-    const ariane6_real_t t655 = t2 * t650 + t1 * t651 + (ARIANE6_C(-0.3) * t654 - t52 * t636);
-    const ariane6_real_t t656 = ARIANE6_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const ariane6_real_t t657 = parameters[YY5] + t656;
-    const ariane6_real_t t658 = t450 * parameters[YZ5] + t465 * t657 + t655;
-    const ariane6_real_t t659 = t475 * parameters[XY6] + t470 * t630;
-    const ariane6_real_t t660 = t475 * t632 + t470 * parameters[XY6];
-    const ariane6_real_t t661 = parameters[XX5] + t656;
-    const ariane6_real_t t662 = t465 * t661 - t449 * parameters[XZ5] + (t2 * t659 - t1 * t660);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t663 = t17 * (t645 + t648) + t13 * (t662 - t658);
-    const ariane6_real_t t664 = t17 * t663;
-    const ariane6_real_t t665 = t457 * parameters[XZ4];
-    const ariane6_real_t t666 = t445 * parameters[XY4];
-    const ariane6_real_t t667 = t665 + t666 + (t664 - t648);
+    const ariane6_real_t t712 = t464 * t711 - t448 * parameters[XZ5] + (t2 * t555 - t1 * t556);
+    const ariane6_real_t t713 = ARIANE6_C(2.0) * t449; /* link j5: derivatives */
+    const ariane6_real_t t714 = t712 * t713 + t708 * t709 + (t699 * t32 - (t25 * t478 + t22 * t463));
+    const ariane6_real_t t715 = t698 + (t714 + t47 * t512);
+    const ariane6_real_t t716 = parameters[ZZ6] * t481 - t482 * t7 + parameters[YZ6] * t468
+        + parameters[XZ6] * t473;
+    const ariane6_real_t t717 = (t518 - t485) * parameters[XY6] + t716 + (parameters[MY6] * t510
+        - parameters[MX6] * t533);
+    const ariane6_real_t t718 = t479 * t294 + parameters[YY5] * t480 + parameters[XY5] * t467
+        - parameters[YZ5] * t451;
+    const ariane6_real_t t719 = (t513 - t514) * parameters[XZ5] + t718 - (parameters[MZ5] * t506
+        + parameters[MX5] * t508);
+    const ariane6_real_t t720 = t719 + t717;
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t668 = t643 + t647 + (t642 + (t635 - t626 + t641));
-    const ariane6_real_t t669 = t444 * parameters[YZ4];
-    const ariane6_real_t t670 = t666 - t669 + t668; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t671 = t1 * t634; /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t672 = t449 * parameters[XY5] + t450 * t661 + (t671 - t631 + t24 * t640);
-    const ariane6_real_t t673 = t1 * t652 - t2 * t653;
-    const ariane6_real_t t674 = t1 * t650 - t2 * t651 - (ARIANE6_C(0.3) * t673 + t52 * t640);
-    const ariane6_real_t t675 = t449 * t657 + t450 * parameters[XY5] + t674;
-    const ariane6_real_t t676 = ARIANE6_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const ariane6_real_t t677 = parameters[XX4] + t676;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t678 = t445 * t677 - t444 * parameters[XZ4] - (t17 * t672 - t13 * t675);
-    const ariane6_real_t t679 = parameters[ZZ5] + t656;
+    const ariane6_real_t t721 = t2 * (t522 + t539) + t1 * (t537 - t526);
+    const ariane6_real_t t722 = t2 * t721;
+    const ariane6_real_t t723 = t449 * parameters[XZ5];
+    const ariane6_real_t t724 = t723 + t707 + (t722 - t539 + t702 - t705);
+    const ariane6_real_t t725 = t2 * t562 + t1 * t561;
+    const ariane6_real_t t726 = t2 * t655 + t1 * t657 + (ARIANE6_C(-0.3) * t725 - t50 * t701);
+    const ariane6_real_t t727 = parameters[YY5] + t710;
+    const ariane6_real_t t728 = t449 * parameters[YZ5] + t464 * t727 + t726;
+    const ariane6_real_t t729 = t724 * t713 + t728 * t709 + (t699 * t33 - (t21 * t478 + t25 * t463));
+    const ariane6_real_t t730 = t720 + (t729 - t47 * t506);
+    const ariane6_real_t t731 = t17 * t730 + t13 * t715;
+    const ariane6_real_t t732 = t699 * t12 - (t33 * t478 + t32 * t463);
+    const ariane6_real_t t733 = t1 * t721;
+    const ariane6_real_t t734 = t448 * parameters[XY5] + t449 * t711 + (t733 - t537 + t23 * t703);
+    const ariane6_real_t t735 = t1 * t562 - t2 * t561;
+    const ariane6_real_t t736 = t1 * t655 - t2 * t657 - (ARIANE6_C(0.3) * t735 + t50 * t703);
+    const ariane6_real_t t737 = t448 * t727 + t449 * parameters[XY5] + t736;
+    const ariane6_real_t t738 = t51 * t512 - t49 * t506;
+    const ariane6_real_t t739 = t734 * t713 + t737 * t709 + t732 + t738;
+    const ariane6_real_t t740 = t2 * t549 + t1 * t544;
+    const ariane6_real_t t741 = (t696 + t514) * parameters[MX5] + parameters[MY5] * t451
+        + parameters[MZ5] * t478;
+    const ariane6_real_t t742 = t741 - parameters[M5] * t506 + t740;
+    const ariane6_real_t t743 = t448 * parameters[MY5] + t449 * parameters[MX5] + (t735
+        + parameters[M6] * t703);
+    const ariane6_real_t t744 = t55 * t506 - t743 * t713 + (t47 * t478 - t699 * t49);
+    const ariane6_real_t t745 = t742 + t744;
+    const ariane6_real_t t746 = parameters[M6] * t516 + (t519 * parameters[MZ6] + (parameters[MY6] * t477
+        - parameters[MX6] * t530));
+    const ariane6_real_t t747 = t515 * parameters[MY5] + parameters[MX5] * t694 - parameters[MZ5] * t463
+        - parameters[M5] * t512;
+    const ariane6_real_t t748 = t747 + t746;
+    const ariane6_real_t t749 = t55 * t512 - t743 * t709 + (t699 * t51 - t47 * t463);
+    const ariane6_real_t t750 = t748 + t749;
+    const ariane6_real_t t751 = t17 * t750 + t13 * t745;
+    const ariane6_real_t t752 = t449 * parameters[MZ5] + t464 * parameters[MY5] + (t725
+        + parameters[M6] * t701);
+    const ariane6_real_t t753 = t464 * parameters[MX5] - t448 * parameters[MZ5] + t545;
+    const ariane6_real_t t754 = t753 * t713 + t752 * t709 + (t51 * t478 - t49 * t463);
+    const ariane6_real_t t755 = t44 * t751 + t41 * t754;
+    const ariane6_real_t t756 = t41 * t731 - t44 * t739 + ARIANE6_C(-0.488) * t755;
+    const ariane6_real_t t757 = t13 * t730 - t17 * t715;
+    const ariane6_real_t t758 = t757 + ARIANE6_C(-0.17) * t755;
+    const ariane6_real_t t759 = t113 * (t64 * t756 + t65 * t758 + ARIANE6_C(0.685) * t755);
+    const ariane6_real_t t760 = t112 * (t65 * t756 - t64 * t758) + t759 + ARIANE6_C(0.18) * t755;
+    const ariane6_real_t t761 = t571 * t760;
+    const ariane6_real_t t762 = t17 * t745 - t13 * t750;
+    const ariane6_real_t t763 = t44 * t754 - t41 * t751;
+    const ariane6_real_t t764 = t44 * t731 + t41 * t739 + (ARIANE6_C(-0.17) * t762
+        + ARIANE6_C(-0.488) * t763);
+    const ariane6_real_t t765 = t577 * (t764 + ARIANE6_C(0.685) * (t64 * t763 + t65 * t762));
+    const ariane6_real_t t766 = t581 * t764;
+    const ariane6_real_t t767 = ARIANE6_C(0.2) * t757;
+    const ariane6_real_t t768 = t573 * t761 - t580 * t765 + t584 * t766 - t588 * t767;
+    const ariane6_real_t t769 = t450 * t309 + parameters[ZZ5] * t447 - parameters[YZ5] * t478
+        - parameters[XZ5] * t463;
+    const ariane6_real_t t770 = (t513 - t696) * parameters[XY5] + t769 + (parameters[MX5] * t512
+        - parameters[MY5] * t506);
+    const ariane6_real_t t771 = t770 + (t1 * t535 + t2 * t517 + ARIANE6_C(0.3) * t740);
+    const ariane6_real_t t772 = ariane6_select(t14, t14, ARIANE6_C(1.0));
+    const ariane6_real_t t773 = ARIANE6_C(-1.0) / t772;
+    const ariane6_real_t t774 = ARIANE6_C(-0.035496) * t17;
+    const ariane6_real_t t775 = ARIANE6_C(-1.0) / t17;
+    const ariane6_real_t t776 = t775 * (ARIANE6_C(-0.07043047103899029) * (t774 * (ARIANE6_C(0.5) * t773))
+        - t13 * t590);
+    const ariane6_real_t t777 = ARIANE6_C(2.0) * t734; /* link j5: derivatives */
+    const ariane6_real_t t778 = ARIANE6_C(2.0) * t737;
+    const ariane6_real_t t779 = t590 * (t738 + (t449 * t777 + t448 * t778 + t732));
+    const ariane6_real_t t780 = t15 * (t15 * (t774 * (ARIANE6_C(0.5) * t15)));
+    const ariane6_real_t t781 = t13 * t16 + t17 * (ARIANE6_C(3549.6000000000004) * t780);
+    const ariane6_real_t t782 = t376 * (ARIANE6_C(125.9966016) * (t15 * t780))
+        - t375 * (ARIANE6_C(-2.0) * (t13 * t17));
+    const ariane6_real_t t783 = t379 * (t377 * t780 + t15 * (ARIANE6_C(3549.6000000000004) * t17 + t782));
+    const ariane6_real_t t784 = parameters[FV5] * (dq[4] * t781) + parameters[IA5] * (t428 * t781 - t783);
+    const ariane6_real_t t785 = ARIANE6_C(250.0) * t784 + t779 - t776 * t771;
+    const ariane6_real_t t786 = t2 * t597 - t1 * t598; /* link j6: derivatives */
+    const ariane6_real_t t787 = t664 + (t3 * (ARIANE6_C(0.6) * t448) - t23 * (ARIANE6_C(0.6) * t464));
+    const ariane6_real_t t788 = t449 * t786 - t448 * t787 + (t699 * t4 - (t24 * t478
+        + parameters[ZZ6] * t463));
+    const ariane6_real_t t789 = ARIANE6_C(0.2) * (t788 + t3 * t512);
+    ddq_by_q[4] = t768 - t596 * t785 + t605 * t789;
+    const ariane6_real_t t790 = t607 * t765 - t606 * t761 - t609 * t766 - t611 * t767;
+    ddq_by_q[10] = t790 + t614 * t785 + t616 * t789;
+    const ariane6_real_t t791 = t618 * t765 - t617 * t761 - t619 * t766 - t621 * t767;
+    ddq_by_q[16] = t791 + t624 * t785 + t626 * t789;
+    const ariane6_real_t t792 = t628 * t765 - t627 * t761 - t629 * t766 - t631 * t767;
+    ddq_by_q[22] = t792 + t634 * t785 + t636 * t789;
+    const ariane6_real_t t793 = t638 * t765 - t637 * t761 - t639 * t766 - t640 * t767;
+    ddq_by_q[28] = t793 + t643 * t785 + t646 * t789;
+    const ariane6_real_t t794 = t648 * t765 - t647 * t761 - t649 * t766 - t636 * t767;
+    ddq_by_q[34] = t794 + t651 * t785 + t653 * t789;
+    const ariane6_real_t t795 = parameters[ZZ5] + t710;
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t680 = t633 + t671 - t3 * t636 - (t450 * t679 + t465 * parameters[YZ5]);
-    const ariane6_real_t t681 = t449 * t679 - t465 * parameters[XZ5] + (t1 * t659 + t2 * t660);
-    const ariane6_real_t t682 = parameters[YY4] + t676;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t683 = t457 * parameters[YZ4] + t445 * t682 + (t17 * t680 + t13 * t681);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t684 = t43 * (t667 + t670) - t46 * (t683 - t678);
-    const ariane6_real_t t685 = t43 * t684;
+    const ariane6_real_t t796 = t526 + t733 - t3 * t701 - (t449 * t795 + t464 * parameters[YZ5]);
+    const ariane6_real_t t797 = ARIANE6_C(2.0) * t796 + (t25 * t709 - t21 * t713); /* link j5: derivatives */
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t686 = t450 * parameters[MZ5] + t465 * parameters[MY5] + (t654
-        + parameters[M6] * t636);
-    const ariane6_real_t t687 = t465 * parameters[MX5] - t449 * parameters[MZ5] + t638;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t688 = t457 * parameters[MZ4] + t445 * parameters[MY4] + (t17 * t686 + t13 * t687);
+    const ariane6_real_t t798 = t448 * t795 - t464 * parameters[XZ5] + (t1 * t555 + t2 * t556);
+    const ariane6_real_t t799 = ARIANE6_C(2.0) * t798 + (t22 * t709 - t25 * t713); /* link j5: derivatives */
+    const ariane6_real_t t800 = t17 * t797 + t13 * t799;
     /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t689 = t449 * parameters[MY5] + t450 * parameters[MX5] + (t673
-        + parameters[M6] * t640);
+    const ariane6_real_t t801 = t723 + t706 + (t705 + (t722 - t522 + t704));
+    const ariane6_real_t t802 = ARIANE6_C(-2.0) * t801; /* link j5: derivatives */
+    const ariane6_real_t t803 = t802 + (t32 * t709 - t33 * t713);
+    const ariane6_real_t t804 = ARIANE6_C(2.0) * t752 + t47 * t713;
+    const ariane6_real_t t805 = ARIANE6_C(-2.0) * t753 + t47 * t709;
+    const ariane6_real_t t806 = t17 * t805 + t13 * t804;
+    const ariane6_real_t t807 = t51 * t713 + t49 * t709;
+    const ariane6_real_t t808 = t44 * t806 + t41 * t807;
+    const ariane6_real_t t809 = t41 * t800 - t44 * t803 + ARIANE6_C(-0.488) * t808;
+    const ariane6_real_t t810 = t17 * t799 - t13 * t797;
+    const ariane6_real_t t811 = t810 - ARIANE6_C(-0.17) * t808;
+    const ariane6_real_t t812 = t113 * (t64 * t809 - t65 * t811 + ARIANE6_C(0.685) * t808);
+    const ariane6_real_t t813 = t112 * (t65 * t809 + t64 * t811) + t812 + ARIANE6_C(0.18) * t808;
+    const ariane6_real_t t814 = t571 * t813;
+    const ariane6_real_t t815 = t17 * t804 - t13 * t805;
+    const ariane6_real_t t816 = t44 * t807 - t41 * t806;
+    const ariane6_real_t t817 = t44 * t800 + t41 * t803 + (ARIANE6_C(-0.17) * t815
+        + ARIANE6_C(-0.488) * t816);
+    const ariane6_real_t t818 = t577 * (t817 + ARIANE6_C(0.685) * (t64 * t816 + t65 * t815));
+    const ariane6_real_t t819 = t581 * t817;
+    const ariane6_real_t t820 = ARIANE6_C(0.2) * t810;
+    const ariane6_real_t t821 = t814 * t573 - t818 * t580 + t819 * t584 + t820 * t588;
+    const ariane6_real_t t822 = t590 * (t802 + ARIANE6_C(2.0) * (t448 * t32 - t449 * t33));
+    const ariane6_real_t t823 = ARIANE6_C(-250.0) * (t18 * parameters[FV5]
+        + parameters[IA5] * (t378 * (ARIANE6_C(2.0) * dq[4])));
+    const ariane6_real_t t824 = t823 + t822;
+    const ariane6_real_t t825 = t1 * t597 + t2 * t598; /* link j6: derivatives */
+    const ariane6_real_t t826 = ARIANE6_C(0.2) * (t825 + ARIANE6_C(2.0) * (t448 * parameters[ZZ6]
+        - t449 * t24));
+    ddq_by_dq[4] = t821 - t824 * t596 + t826 * t605;
+    const ariane6_real_t t827 = t818 * t607 - t814 * t606 - t819 * t609 + t820 * t611;
+    ddq_by_dq[10] = t827 + t824 * t614 + t826 * t616;
+    const ariane6_real_t t828 = t818 * t618 - t814 * t617 - t819 * t619 + t820 * t621;
+    ddq_by_dq[16] = t828 + t824 * t624 + t826 * t626;
+    const ariane6_real_t t829 = t818 * t628 - t814 * t627 - t819 * t629 + t820 * t631;
+    ddq_by_dq[22] = t829 + t824 * t634 + t826 * t636;
+    const ariane6_real_t t830 = t818 * t638 - t814 * t637 - t819 * t639 + t820 * t640;
+    ddq_by_dq[28] = t830 + t824 * t643 + t826 * t646;
+    const ariane6_real_t t831 = t818 * t648 - t814 * t647 - t819 * t649 + t820 * t636;
+    ddq_by_dq[34] = t831 + t824 * t651 + t826 * t653;
+    ddq_by_input[4] = -t596;
+    ddq_by_input[10] = t614;
+    ddq_by_input[16] = t624;
+    ddq_by_input[22] = t634;
+    ddq_by_input[28] = t643;
+    ddq_by_input[34] = t651;
+    const ariane6_real_t t832 = t445 * t313 + parameters[YY4] * t446 + parameters[XY4] * t462
+        + parameters[YZ4] * t458;
+    const ariane6_real_t t833 = t443 * t443; /* link j4: motion */
+    const ariane6_real_t t834 = t444 * t444;
+    const ariane6_real_t t835 = (t833 - t834) * parameters[XZ4] + t832 + (parameters[MZ4] * t500
+        + parameters[MX4] * t505);
+    const ariane6_real_t t836 = t835 + t771;
+    const ariane6_real_t t837 = t456 * t456;
+    const ariane6_real_t t838 = t833 + t837; /* link j5: motion */
     /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t690 = t444 * parameters[MZ4] - t445 * parameters[MX4] + t689;
-    const ariane6_real_t t691 = t43 * t688 - t46 * t690; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t692 = ARIANE6_C(-0.17) * t691;
-    const ariane6_real_t t693 = ARIANE6_C(-0.488) * t205; /* link j4: velocity of its origin */
-    const ariane6_real_t t694 = t94 * t693; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t839 = t17 * (t724 + t708) + t13 * (t712 - t728);
+    const ariane6_real_t t840 = t17 * t839;
+    const ariane6_real_t t841 = t456 * parameters[XZ4];
+    const ariane6_real_t t842 = t444 * parameters[XY4];
+    const ariane6_real_t t843 = t841 + t842 + (t840 - t708);
+    const ariane6_real_t t844 = ARIANE6_C(2.0) * t456; /* link j4: derivatives */
+    const ariane6_real_t t845 = ARIANE6_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const ariane6_real_t t846 = parameters[YY4] + t845;
     /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t695 = t444 * parameters[MY4] + t457 * parameters[MX4] + (t17 * t687 - t13 * t686);
-    const ariane6_real_t t696 = ARIANE6_C(0.488) * t695; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t697 = ARIANE6_C(-0.488) * t434 + ARIANE6_C(0.17) * t436;
-    const ariane6_real_t t698 = t87 * t697;
-    const ariane6_real_t t699 = ARIANE6_C(-0.17) * t205; /* link j4: velocity of its origin */
-    const ariane6_real_t t700 = t96 * t699; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t701 = t696 - t692 + (t700 - t694 + t698);
-    const ariane6_real_t t702 = t436 * parameters[XZ3];
-    const ariane6_real_t t703 = t205 * parameters[XY3];
-    const ariane6_real_t t704 = t701 + (t670 - t685 + (t692 + t694)) - (t702 + t703);
-    const ariane6_real_t t705 = t665 + t669 - (t645 - t664); /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t706 = t434 * parameters[YZ3];
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t707 = t703 - t706 + (t701 + (t705 - (t696 + t700)));
-    const ariane6_real_t t708 = t13 * t663; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t709 = parameters[ZZ4] + t676;
-    const ariane6_real_t t710 = t457 * t709 + t445 * parameters[YZ4] + (t658 + t708);
-    const ariane6_real_t t711 = t445 * parameters[XZ4] - t444 * t709 - (t13 * t672 + t17 * t675);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t712 = t43 * t710 + t46 * t711 + (ARIANE6_C(-0.488) * t691 + t96 * t693);
-    const ariane6_real_t t713 = ARIANE6_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const ariane6_real_t t714 = parameters[YY3] - t713;
-    const ariane6_real_t t715 = t436 * parameters[YZ3] + t205 * t714 + t712;
+    const ariane6_real_t t847 = t456 * parameters[YZ4] + t444 * t846 + (t17 * t796 + t13 * t798);
+    const ariane6_real_t t848 = ARIANE6_C(-2.0) * t443; /* link j4: derivatives */
+    const ariane6_real_t t849 = t843 * t844 - t847 * t848 + (t838 * t83 + (t39 * t442 + t43 * t459));
+    const ariane6_real_t t850 = t836 + (t849 - t60 * t500);
+    const ariane6_real_t t851 = t445 + t446;
+    const ariane6_real_t t852 = t457 + t455;
+    const ariane6_real_t t853 = t460 * t300 - parameters[XX4] * t461 - parameters[XY4] * t851
+        - parameters[XZ4] * t852;
+    const ariane6_real_t t854 = (t837 - t834) * parameters[YZ4] + t853 + (parameters[MY4] * t505
+        - parameters[MZ4] * t508);
+    const ariane6_real_t t855 = t854 + (t13 * t720 - t17 * t698);
+    const ariane6_real_t t856 = parameters[XX4] + t845;
     /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t716 = t444 * parameters[XY4] + t457 * t677 + (t662 - t708);
-    const ariane6_real_t t717 = t444 * t682 + t457 * parameters[XY4] + (t17 * t681 - t13 * t680);
+    const ariane6_real_t t857 = t444 * t856 - t443 * parameters[XZ4] - (t17 * t734 - t13 * t737);
+    const ariane6_real_t t858 = t443 * parameters[YZ4];
+    const ariane6_real_t t859 = t842 - t858 + t801;
+    const ariane6_real_t t860 = t857 * t844 - t859 * t848 + (t838 * t84 + (t43 * t442 - t40 * t459));
+    const ariane6_real_t t861 = t855 - (t860 - t60 * t508);
+    const ariane6_real_t t862 = parameters[M5] * t508 + (t699 * parameters[MZ5] - (parameters[MX5] * t693
+        - parameters[MY5] * t467));
+    const ariane6_real_t t863 = (t833 + t834) * parameters[MY4] + parameters[MX4] * t852
+        - parameters[MZ4] * t459;
+    const ariane6_real_t t864 = parameters[M4] * t508 - t863 + (t862 + t692);
+    const ariane6_real_t t865 = t443 * parameters[MY4] + t456 * parameters[MX4] + (t17 * t753 - t13 * t752);
+    const ariane6_real_t t866 = t865 * t848 + t56 * t508 + (t838 * t48 + t60 * t459);
+    const ariane6_real_t t867 = t866 - t864;
+    const ariane6_real_t t868 = parameters[MY4] * t458 - (t837 + t834) * parameters[MX4]
+        - parameters[MZ4] * t442;
+    const ariane6_real_t t869 = t868 - parameters[M4] * t500 + (t13 * t748 - t17 * t742);
+    const ariane6_real_t t870 = t865 * t844 + t56 * t500 + (t838 * t53 + t60 * t442);
+    const ariane6_real_t t871 = t869 + t870;
+    const ariane6_real_t t872 = t44 * t867 + t41 * t871;
+    const ariane6_real_t t873 = t41 * t850 - t44 * t861 + ARIANE6_C(-0.488) * t872;
+    const ariane6_real_t t874 = t53 * t500 + t48 * t508;
+    const ariane6_real_t t875 = t838 * t28 - (t83 * t442 + t84 * t459);
+    const ariane6_real_t t876 = t13 * t839;
+    const ariane6_real_t t877 = t443 * parameters[XY4] + t456 * t856 + (t712 - t876);
+    const ariane6_real_t t878 = t443 * t846 + t456 * parameters[XY4] + (t17 * t798 - t13 * t796);
+    const ariane6_real_t t879 = t877 * t844 - t878 * t848 + t875 + t874 - ARIANE6_C(-0.17) * t872;
+    const ariane6_real_t t880 = t113 * (t64 * t873 - t65 * t879 + ARIANE6_C(0.685) * t872);
+    const ariane6_real_t t881 = t112 * (t65 * t873 + t64 * t879) + t880 + ARIANE6_C(0.18) * t872;
+    const ariane6_real_t t882 = t571 * t881;
+    const ariane6_real_t t883 = t44 * t871 - t41 * t867;
+    const ariane6_real_t t884 = t443 * parameters[MZ4] - t444 * parameters[MX4] + t743;
+    const ariane6_real_t t885 = t456 * parameters[MZ4] + t444 * parameters[MY4] + (t17 * t752 + t13 * t753);
+    const ariane6_real_t t886 = t48 * t442 - t53 * t459 - (t884 * t844 + t885 * t848);
+    const ariane6_real_t t887 = t44 * t850 + t41 * t861 + (ARIANE6_C(-0.17) * t886
+        + ARIANE6_C(-0.488) * t883);
+    const ariane6_real_t t888 = t577 * (t887 + ARIANE6_C(0.685) * (t64 * t883 + t65 * t886));
+    const ariane6_real_t t889 = t581 * t887;
+    const ariane6_real_t t890 = ARIANE6_C(2.0) * t877; /* link j4: derivatives */
+    const ariane6_real_t t891 = ARIANE6_C(2.0) * t878;
+    const ariane6_real_t t892 = ARIANE6_C(-0.2) * (t874 + (t456 * t890 + t443 * t891 + t875));
+    const ariane6_real_t t893 = t573 * t882 - t580 * t888 + t584 * t889 - t588 * t892;
+    const ariane6_real_t t894 = t17 * t777 - t13 * t778; /* link j5: derivatives */
+    const ariane6_real_t t895 = t456 * t894 + t443 * t802 + (t12 * t459 - t42 * t442 - t838 * t34);
+    const ariane6_real_t t896 = t590 * (t895 + t59 * t508);
+    const ariane6_real_t t897 = t17 * t786 + t13 * t787; /* link j6: derivatives */
+    const ariane6_real_t t898 = t456 * t897 + t443 * t825 + (t838 * t30 + (t4 * t459 - t73 * t442));
+    const ariane6_real_t t899 = ARIANE6_C(0.2) * (t898 + (t74 * t508 + t23 * t500));
+    ddq_by_q[3] = t893 - t596 * t896 + t605 * t899;
+    const ariane6_real_t t900 = t607 * t888 - t606 * t882 - t609 * t889 - t611 * t892;
+    ddq_by_q[9] = t900 + t614 * t896 + t616 * t899;
+    const ariane6_real_t t901 = t618 * t888 - t617 * t882 - t619 * t889 - t621 * t892;
+    ddq_by_q[15] = t901 + t624 * t896 + t626 * t899;
+    const ariane6_real_t t902 = t628 * t888 - t627 * t882 - t629 * t889 - t631 * t892;
+    ddq_by_q[21] = t902 + t634 * t896 + t636 * t899;
+    const ariane6_real_t t903 = t638 * t888 - t637 * t882 - t639 * t889 - t640 * t892;
+    ddq_by_q[27] = t903 + t643 * t896 + t646 * t899;
+    const ariane6_real_t t904 = t648 * t888 - t647 * t882 - t649 * t889 - t636 * t892;
+    ddq_by_q[33] = t904 + t651 * t896 + t653 * t899;
+    const ariane6_real_t t905 = parameters[ZZ4] + t845;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t906 = t456 * t905 + t444 * parameters[YZ4] + (t728 + t876);
+    const ariane6_real_t t907 = ARIANE6_C(-2.0) * t906 + (t39 * t844 + t43 * t848); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t908 = t444 * parameters[XZ4] - t443 * t905 - (t13 * t734 + t17 * t737);
+    const ariane6_real_t t909 = ARIANE6_C(2.0) * t908 - (t43 * t844 - t40 * t848); /* link j4: derivatives */
+    const ariane6_real_t t910 = ARIANE6_C(2.0) * t884 + t60 * t848;
+    const ariane6_real_t t911 = ARIANE6_C(-2.0) * t885 + t60 * t844;
+    const ariane6_real_t t912 = t44 * t910 + t41 * t911;
+    const ariane6_real_t t913 = t41 * t907 - t44 * t909 + ARIANE6_C(-0.488) * t912;
+    const ariane6_real_t t914 = t841 + t858 - (t724 - t840); /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t915 = ARIANE6_C(2.0) * t914; /* link j4: derivatives */
+    const ariane6_real_t t916 = t915 + (t83 * t844 + t84 * t848) + ARIANE6_C(-0.17) * t912;
+    const ariane6_real_t t917 = t113 * (t64 * t913 + t65 * t916 + ARIANE6_C(0.685) * t912);
+    const ariane6_real_t t918 = t112 * (t65 * t913 - t64 * t916) + t917 + ARIANE6_C(0.18) * t912;
+    const ariane6_real_t t919 = t571 * t918;
+    const ariane6_real_t t920 = t44 * t911 - t41 * t910;
+    const ariane6_real_t t921 = t48 * t844 - t53 * t848;
+    const ariane6_real_t t922 = t44 * t907 + t41 * t909 + (ARIANE6_C(-0.17) * t921
+        + ARIANE6_C(-0.488) * t920);
+    const ariane6_real_t t923 = t577 * (t922 + ARIANE6_C(0.685) * (t64 * t920 + t65 * t921));
+    const ariane6_real_t t924 = t581 * t922;
+    const ariane6_real_t t925 = ARIANE6_C(0.2) * (t915 - ARIANE6_C(2.0) * (t443 * t84 - t456 * t83));
+    const ariane6_real_t t926 = ARIANE6_C(2.0e3) * parameters[FV4] + t925;
+    const ariane6_real_t t927 = t919 * t573 - t923 * t580 + t924 * t584 - t926 * t588;
+    const ariane6_real_t t928 = t13 * t777 + t17 * t778; /* link j5: derivatives */
+    const ariane6_real_t t929 = t590 * (ARIANE6_C(-2.0) * (t456 * t42 + t443 * t12) - t928);
+    const ariane6_real_t t930 = t13 * t786 - t17 * t787; /* link j6: derivatives */
+    const ariane6_real_t t931 = ARIANE6_C(0.2) * (ARIANE6_C(-2.0) * (t456 * t73 + t443 * t4) - t930);
+    ddq_by_dq[3] = t927 - t929 * t596 + t931 * t605;
+    const ariane6_real_t t932 = t923 * t607 - t919 * t606 - t924 * t609 - t926 * t611;
+    ddq_by_dq[9] = t932 + t929 * t614 + t931 * t616;
+    const ariane6_real_t t933 = t923 * t618 - t919 * t617 - t924 * t619 - t926 * t621;
+    ddq_by_dq[15] = t933 + t929 * t624 + t931 * t626;
+    const ariane6_real_t t934 = t923 * t628 - t919 * t627 - t924 * t629 - t926 * t631;
+    ddq_by_dq[21] = t934 + t929 * t634 + t931 * t636;
+    const ariane6_real_t t935 = t923 * t638 - t919 * t637 - t924 * t639 - t926 * t640;
+    ddq_by_dq[27] = t935 + t929 * t643 + t931 * t646;
+    const ariane6_real_t t936 = t923 * t648 - t919 * t647 - t924 * t649 - t926 * t636;
+    ddq_by_dq[33] = t936 + t929 * t651 + t931 * t653;
+    ddq_by_input[3] = t588;
+    ddq_by_input[9] = t611;
+    ddq_by_input[15] = t621;
+    ddq_by_input[21] = t631;
+    ddq_by_input[27] = t640;
+    ddq_by_input[33] = t636;
+    const ariane6_real_t t937 = t457 * t334 + parameters[ZZ4] * t455 + parameters[YZ4] * t442
+        + parameters[XZ4] * t459;
+    const ariane6_real_t t938 = (t837 - t833) * parameters[XY4] + t937 - (parameters[MX4] * t508
+        + parameters[MY4] * t500);
+    const ariane6_real_t t939 = t44 * t869 + t41 * t864;
+    const ariane6_real_t t940 = t938 + (t13 * t698 + t17 * t720) + ARIANE6_C(0.17) * t939;
+    const ariane6_real_t t941 = t453 * t338 + parameters[YY3] * t454 + parameters[XY3] * t441
+        - parameters[YZ3] * t437;
+    const ariane6_real_t t942 = parameters[MZ3] * t498 - parameters[MX3] * t491 + ((t502
+        - t205) * parameters[XZ3] + t941);
+    const ariane6_real_t t943 = t942 + t940;
+    const ariane6_real_t t944 = t502 + t494; /* link j4: motion */
     /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t718 = t43 * t716 - t46 * t717 + (ARIANE6_C(0.17) * t695 + t94 * t699);
-    const ariane6_real_t t719 = parameters[XX3] - t713;
-    const ariane6_real_t t720 = t205 * t719 - t434 * parameters[XZ3] + t718;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t721 = t67 * (t704 - t707) + t66 * (t715 - t720);
-    const ariane6_real_t t722 = t67 * t721;
+    const ariane6_real_t t945 = t41 * (t843 + t859) - t44 * (t847 - t857);
+    const ariane6_real_t t946 = t41 * t945;
+    const ariane6_real_t t947 = t41 * t885 - t44 * t884;
+    const ariane6_real_t t948 = ARIANE6_C(-0.17) * t947;
+    const ariane6_real_t t949 = ARIANE6_C(-0.488) * t204; /* link j4: velocity of its origin */
+    const ariane6_real_t t950 = t91 * t949; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t951 = ARIANE6_C(0.488) * t865;
+    const ariane6_real_t t952 = ARIANE6_C(-0.488) * t433 + ARIANE6_C(0.17) * t435;
+    const ariane6_real_t t953 = t85 * t952;
+    const ariane6_real_t t954 = ARIANE6_C(-0.17) * t204; /* link j4: velocity of its origin */
+    const ariane6_real_t t955 = t93 * t954; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t956 = t951 - t948 + (t955 - t950 + t953);
+    const ariane6_real_t t957 = t435 * parameters[XZ3];
+    const ariane6_real_t t958 = t204 * parameters[XY3];
+    const ariane6_real_t t959 = t956 + (t859 - t946 + (t948 + t950)) - (t957 + t958);
+    const ariane6_real_t t960 = ARIANE6_C(2.0) * t435; /* link j3: derivatives */
     /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t723 = t436 * parameters[MZ3] + t205 * parameters[MY3] + (t691 - t58 * t693);
-    const ariane6_real_t t724 = t205 * parameters[MX3] - t434 * parameters[MZ3] + (t695 + t58 * t699);
-    const ariane6_real_t t725 = t67 * t723 + t66 * t724; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t726 = ARIANE6_C(0.685) * t725;
-    const ariane6_real_t t727 = ARIANE6_C(-0.685) * dq[1]; /* link j3: velocity of its origin */
-    const ariane6_real_t t728 = t145 * t727; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t729 = ARIANE6_C(0.685) * t193; /* link j3: velocity of its origin */
-    const ariane6_real_t t730 = t181 * t729; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t731 = t728 + t730 - t726;
-    const ariane6_real_t t732 = t193 * parameters[XZ2];
-    const ariane6_real_t t733 = dq[1] * parameters[XY2];
-    const ariane6_real_t t734 = t732 - t733 + (t731 + (t707 + t722 + t726));
-    const ariane6_real_t t735 = t199 * parameters[YZ2];
-    const ariane6_real_t t736 = t733 - t735 + (t731 + (t704 - t722 - t728));
-    const ariane6_real_t t737 = t66 * t721;
-    const ariane6_real_t t738 = ARIANE6_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const ariane6_real_t t739 = t738 - parameters[YY2];
-    const ariane6_real_t t740 = t193 * parameters[YZ2] + dq[1] * t739 + (t737 - t715);
-    const ariane6_real_t t741 = t66 * t723 - t67 * t724;
-    const ariane6_real_t t742 = parameters[XX2] - t738;
-    const ariane6_real_t t743 = dq[1] * t742 - t199 * parameters[XZ2] + (t720 + t737
-        + (ARIANE6_C(0.685) * t741 - t149 * t727));
-    /* link j2: inertia, momentum beyond */
-    const ariane6_real_t t744 = t116 * (t116 * (t736 - t734) + t115 * (t740 + t743));
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t745 = t193 * parameters[MZ2] - dq[1] * parameters[MY2] - t725;
-    const ariane6_real_t t746 = t199 * parameters[MZ2] - dq[1] * parameters[MX2] + (t741 + t111 * t727);
-    const ariane6_real_t t747 = t181 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia, momentum beyond */
-    const ariane6_real_t t748 = ARIANE6_C(0.18) * (t116 * t745 + t115 * t746)
-        - t747 * (ARIANE6_C(-0.18) * dq[0]);
-    const ariane6_real_t t749 = ARIANE6_C(250.0) * (parameters[IA1] * (t367 * (ARIANE6_C(-2.0) * dq[0]))
-        - t157 * parameters[FV1]);
-    const ariane6_real_t t750 = t749 + t596 * (ARIANE6_C(2.0) * (t734 + t744 + t748));
-    const ariane6_real_t t751 = t419 * t606;
-    const ariane6_real_t t752 = t46 * t684; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t753 = t46 * t688 + t43 * t690;
-    const ariane6_real_t t754 = t434 * parameters[XY3] + t436 * t719 - (t678 - t752 - (ARIANE6_C(0.17) * t753
-        - t94 * t697));
-    const ariane6_real_t t755 = t46 * t710 - t43 * t711 + (ARIANE6_C(-0.488) * t753 + t96 * t697);
-    const ariane6_real_t t756 = t434 * t714 + t436 * parameters[XY3] + t755;
-    const ariane6_real_t t757 = t434 * parameters[MY3] + t436 * parameters[MX3] + (t753 - t58 * t697);
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t758 = t66 * t756 - t67 * t754 + (ARIANE6_C(0.685) * t757 + t149 * t729);
-    /* link j2: derivatives */
-    const ariane6_real_t t759 = ARIANE6_C(2.0) * (t193 * t742 - t199 * parameters[XY2] + t758);
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t760 = t193 * parameters[XY2] + t199 * t739 - (t66 * t754 + t67 * t756
-        - t145 * t729);
-    const ariane6_real_t t761 = ARIANE6_C(2.0) * t760; /* link j2: derivatives */
-    const ariane6_real_t t762 = ARIANE6_C(-0.36) * dq[0]; /* link j6: derivatives */
-    /* link j2: derivatives */
-    const ariane6_real_t t763 = t115 * t759 + t116 * t761 - (t116 * t148 + t115 * t150) * t762;
-    const ariane6_real_t t764 = ARIANE6_C(0.019697757607273984) * t119 / t117; /* joint j2: drive */
-    const ariane6_real_t t765 = t764 * t763;
-    const ariane6_real_t t766 = t403 * t608;
-    const ariane6_real_t t767 = ARIANE6_C(2.0) * t754; /* link j3: derivatives */
-    const ariane6_real_t t768 = ARIANE6_C(2.0) * t756;
-    const ariane6_real_t t769 = ARIANE6_C(1.37) * t193; /* link j6: derivatives */
-    const ariane6_real_t t770 = t66 * t768 - t67 * t767 + t98 * t769; /* link j3: derivatives */
-    const ariane6_real_t t771 = t66 * t767 + t67 * t768 - t145 * t769;
-    const ariane6_real_t t772 = t115 * t770 - t116 * t771 - (t116 * t145 + t115 * t98) * t762;
-    const ariane6_real_t t773 = ARIANE6_C(-0.029841482047364396) * t70 / t68; /* joint j3: drive */
-    const ariane6_real_t t774 = t773 * t772;
-    const ariane6_real_t t775 = ariane6_bounded(ARIANE6_C(-5.0) * t611);
-    const ariane6_real_t t776 = ARIANE6_C(2.0) * t716; /* link j4: derivatives */
-    const ariane6_real_t t777 = ARIANE6_C(2.0) * t717;
-    const ariane6_real_t t778 = ARIANE6_C(0.34) * t205; /* link j6: derivatives */
-    const ariane6_real_t t779 = t43 * t776 - t46 * t777 - t56 * t778; /* link j4: derivatives */
-    const ariane6_real_t t780 = ARIANE6_C(2.0) * t705;
-    const ariane6_real_t t781 = ARIANE6_C(2.0) * t697; /* link j6: derivatives */
-    const ariane6_real_t t782 = ARIANE6_C(0.976) * t205;
-    const ariane6_real_t t783 = t780 + (t87 * t781 + t56 * t782); /* link j4: derivatives */
-    const ariane6_real_t t784 = ARIANE6_C(-1.37) * dq[1]; /* link j6: derivatives */
-    /* link j4: derivatives */
-    const ariane6_real_t t785 = t67 * t779 - t66 * t783 - (t56 * t784 + t105 * t769);
-    const ariane6_real_t t786 = t67 * t87; /* link j4: column of the mass matrix */
-    const ariane6_real_t t787 = t66 * t779 + t67 * t783 + t786 * t769; /* link j4: derivatives */
-    const ariane6_real_t t788 = t115 * t785 + t116 * t787 - (t116 * t786 - t115 * t105) * t762;
-    const ariane6_real_t t789 = ARIANE6_C(0.2) * t788;
-    const ariane6_real_t t790 = t750 * t605 - t765 * t751 + t774 * t766 - t789 * t775;
-    const ariane6_real_t t791 = t382 * t616;
-    const ariane6_real_t t792 = ARIANE6_C(2.0) * t672; /* link j5: derivatives */
-    const ariane6_real_t t793 = ARIANE6_C(2.0) * t675;
-    const ariane6_real_t t794 = t17 * t792 - t13 * t793;
-    const ariane6_real_t t795 = ARIANE6_C(-2.0) * t668;
-    const ariane6_real_t t796 = t43 * t794 - t46 * t795 - (t159 * t778 + t54 * t781);
-    const ariane6_real_t t797 = t13 * t792 + t17 * t793;
-    const ariane6_real_t t798 = t797 + (t81 * t781 + t159 * t782);
-    const ariane6_real_t t799 = t66 * t798 - t67 * t796 + (t159 * t784 + t102 * t769);
-    const ariane6_real_t t800 = t66 * t54 - t67 * t81; /* link j5: column of the mass matrix */
-    const ariane6_real_t t801 = t66 * t796 + t67 * t798 - t800 * t769; /* link j5: derivatives */
-    const ariane6_real_t t802 = t115 * t799 - t116 * t801 - (t116 * t800 + t115 * t102) * t762;
-    const ariane6_real_t t803 = ARIANE6_C(0.07043047103899029) * t14 / t17; /* joint j5: drive */
-    const ariane6_real_t t804 = t803 * t802;
-    const ariane6_real_t t805 = ARIANE6_C(-5.0) * t622;
-    const ariane6_real_t t806 = ARIANE6_C(2.0) * t659; /* link j6: derivatives */
-    const ariane6_real_t t807 = ARIANE6_C(2.0) * t660;
-    const ariane6_real_t t808 = t2 * t806 - t1 * t807;
-    const ariane6_real_t t809 = ARIANE6_C(-2.0) * t646;
-    const ariane6_real_t t810 = t809 + (t3 * (ARIANE6_C(0.6) * t449) - t24 * (ARIANE6_C(0.6) * t465));
-    const ariane6_real_t t811 = t17 * t808 + t13 * t810;
-    const ariane6_real_t t812 = t1 * t806 + t2 * t807;
-    const ariane6_real_t t813 = t43 * t811 - t46 * t812 - (t130 * t778 + t78 * t781);
-    const ariane6_real_t t814 = t13 * t808 - t17 * t810;
-    const ariane6_real_t t815 = t814 + (t77 * t781 + t130 * t782);
-    const ariane6_real_t t816 = t66 * t815 - t67 * t813 + (t130 * t784 + t100 * t769);
-    const ariane6_real_t t817 = t66 * t78 - t67 * t77; /* link j6: column of the mass matrix */
-    const ariane6_real_t t818 = t66 * t813 + t67 * t815 - t817 * t769; /* link j6: derivatives */
-    const ariane6_real_t t819 = t115 * t816 - t116 * t818 - (t116 * t817 + t115 * t100) * t762;
-    const ariane6_real_t t820 = ARIANE6_C(0.2) * t819;
-    ddq_by_dq[0] = t790 - t804 * t791 + t820 * t805;
-    const ariane6_real_t t821 = ariane6_bounded(t419 * (t186 + t187 * t606));
-    const ariane6_real_t t822 = t110 * t186 + t187 * t608;
-    const ariane6_real_t t823 = ariane6_bounded(t403 * t822);
-    const ariane6_real_t t824 = t186 * t610 + t187 * t611;
-    const ariane6_real_t t825 = ariane6_bounded(ARIANE6_C(5.0) * t824);
-    const ariane6_real_t t826 = t765 * t821 - t750 * t607 - t774 * t823 - t789 * t825;
-    const ariane6_real_t t827 = t186 * t614 + t187 * t616;
-    const ariane6_real_t t828 = ariane6_bounded(t382 * t827);
-    const ariane6_real_t t829 = t187 * t622 - t186 * t620;
-    const ariane6_real_t t830 = ARIANE6_C(5.0) * t829;
-    ddq_by_dq[6] = t826 + t804 * t828 + t820 * t830;
-    const ariane6_real_t t831 = ariane6_bounded(t419 * t822);
-    const ariane6_real_t t832 = ariane6_bounded(t403 * (t109 + t180 * t608 + t110 * t822));
-    const ariane6_real_t t833 = t91 * t109 + t180 * t611 + t110 * t824;
-    const ariane6_real_t t834 = ariane6_bounded(ARIANE6_C(5.0) * t833);
-    const ariane6_real_t t835 = t765 * t831 - t750 * t609 - t774 * t832 - t789 * t834;
-    const ariane6_real_t t836 = t109 * t613 + t180 * t616 + t110 * t827;
-    const ariane6_real_t t837 = ariane6_bounded(t382 * t836);
-    const ariane6_real_t t838 = t180 * t622 - t109 * t619 + t110 * t829;
-    const ariane6_real_t t839 = ARIANE6_C(5.0) * t838;
-    ddq_by_dq[12] = t835 + t804 * t837 + t820 * t839;
-    const ariane6_real_t t840 = ariane6_bounded(t419 * t824);
-    const ariane6_real_t t841 = ariane6_bounded(t403 * t833);
-    const ariane6_real_t t842 = t90 - t172 * t611 + t126 * t824 + t91 * t833;
-    const ariane6_real_t t843 = ariane6_bounded(ARIANE6_C(5.0) * t842);
-    const ariane6_real_t t844 = t765 * t840 - t750 * t612 - t774 * t841 - t789 * t843;
-    const ariane6_real_t t845 = t38 * t90 - t172 * t616 + t126 * t827 + t91 * t836;
-    const ariane6_real_t t846 = ariane6_bounded(t382 * t845);
-    const ariane6_real_t t847 = t90 * t618 + t172 * t622 - t126 * t829 - t91 * t838;
-    const ariane6_real_t t848 = ariane6_bounded(ARIANE6_C(-5.0) * t847);
-    ddq_by_dq[18] = t844 + t804 * t846 + t820 * t848;
-    const ariane6_real_t t849 = ariane6_bounded(t419 * t827);
-    const ariane6_real_t t850 = ariane6_bounded(t403 * t836);
-    const ariane6_real_t t851 = ariane6_bounded(ARIANE6_C(5.0) * t845);
-    const ariane6_real_t t852 = t765 * t849 - t750 * t617 - t774 * t850 - t789 * t851;
-    const ariane6_real_t t853 = t37 + t165 * t616 + t125 * t827 + t84 * t836;
-    const ariane6_real_t t854 = ariane6_bounded(t382 * (t853 + t38 * t845));
-    const ariane6_real_t t855 = t165 * t622 - t6 * t37 + t125 * t829 + t84 * t838;
-    const ariane6_real_t t856 = t855 - t38 * t847;
-    const ariane6_real_t t857 = ARIANE6_C(5.0) * t856;
-    ddq_by_dq[24] = t852 + t804 * t854 + t820 * t857;
-    const ariane6_real_t t858 = ariane6_bounded(t419 * t829);
-    const ariane6_real_t t859 = ariane6_bounded(t403 * t838);
-    const ariane6_real_t t860 = t765 * t858 - t750 * t623 - t774 * t859 - t789 * t848;
-    const ariane6_real_t t861 = ariane6_bounded(t382 * t856);
-    const ariane6_real_t t862 = t5 + t136 * t622 - t124 * t829 - t80 * t838;
-    const ariane6_real_t t863 = ARIANE6_C(5.0) * (t862 + t32 * t847 - t6 * t856);
-    ddq_by_dq[30] = t860 + t804 * t861 + t820 * t863;
-    ddq_by_input[0] = -t605;
-    ddq_by_input[6] = t607;
-    ddq_by_input[12] = t609;
-    ddq_by_input[18] = t612;
-    ddq_by_input[24] = t617;
-    ddq_by_input[30] = t623;
-    const ariane6_real_t t864 = ARIANE6_C(2.0) * t193; /* link j2: derivatives */
-    const ariane6_real_t t865 = ARIANE6_C(-2.0) * t199;
-    const ariane6_real_t t866 = t734 * t864 + t740 * t865 + (t359 * t182 + (t143 * t489 - t146 * t581));
-    const ariane6_real_t t867 = t743 * t864 + t736 * t865 + (t146 * t489 - t144 * t581 - t359 * t183);
-    const ariane6_real_t t868 = t115 * (t590 + (t192 * t747 + t866)) + t116 * (t584 + (t867 - t198 * t747));
-    const ariane6_real_t t869 = t746 * t864 + t745 * t865 + (t148 * t489 + t150 * t581);
-    const ariane6_real_t t870 = t596 * (t868 + ARIANE6_C(0.18) * t869);
-    const ariane6_real_t t871 = t46 * t570 - t43 * t566;
-    const ariane6_real_t t872 = t556 + t547; /* link j5: motion */
-    const ariane6_real_t t873 = parameters[M4] * t506 + (parameters[MX4] * t544 - parameters[MY4] * t463
-        - t872 * parameters[MZ4]);
-    const ariane6_real_t t874 = t873 - (t13 * t560 + t17 * t564);
-    const ariane6_real_t t875 = t46 * t550 - t43 * t558 + (ARIANE6_C(0.17) * t874 + ARIANE6_C(-0.488) * t871);
-    const ariane6_real_t t876 = t437 * t392 - parameters[ZZ3] * t432 + parameters[YZ3] * t453
-        - parameters[XZ3] * t439;
-    const ariane6_real_t t877 = (t495 - t503) * parameters[XY3] + t876 - (parameters[MX3] * t505
-        + parameters[MY3] * t499);
-    const ariane6_real_t t878 = t877 + t875;
-    const ariane6_real_t t879 = parameters[M3] * t499 + (t496 * parameters[MX3] + parameters[MY3] * t438
-        + parameters[MZ3] * t453);
-    const ariane6_real_t t880 = t879 + t871;
-    const ariane6_real_t t881 = parameters[M3] * t505 - (t504 * parameters[MY3] + parameters[MX3] * t502
-        + parameters[MZ3] * t439);
-    const ariane6_real_t t882 = t881 + t874;
-    const ariane6_real_t t883 = t409 - parameters[ZZ2] * t425 - parameters[YZ2] * t489
-        - parameters[XZ2] * t581;
-    const ariane6_real_t t884 = t408 + t883 - t410 + (t878 + ARIANE6_C(0.685) * (t66 * t880 - t67 * t882));
-    const ariane6_real_t t885 = ariane6_select(t119, t119, ARIANE6_C(1.0));
-    const ariane6_real_t t886 = ARIANE6_C(-1.0) / t885;
-    const ariane6_real_t t887 = ARIANE6_C(0.126918) * t117;
-    const ariane6_real_t t888 = ARIANE6_C(-1.0) / t117;
-    const ariane6_real_t t889 = t888 * (ARIANE6_C(0.019697757607273984) * (t887 * (ARIANE6_C(0.5) * t886))
-        + t118 * t764);
-    const ariane6_real_t t890 = t193 * t759 - t199 * t761 + (t359 * t114 + (t182 * t489 + t183 * t581));
-    const ariane6_real_t t891 = t120 * (t120 * (t887 * (ARIANE6_C(0.5) * t120)));
-    const ariane6_real_t t892 = t117 * (ARIANE6_C(12691.800000000003) * t891) - t118 * t121;
-    const ariane6_real_t t893 = t415 * (ARIANE6_C(-1610.8178724000004) * (t120 * t891))
-        + t414 * (ARIANE6_C(2.0) * (t117 * t118));
-    const ariane6_real_t t894 = t195 * (t416 * t891 + t120 * (ARIANE6_C(12691.800000000003) * t117 + t893));
-    const ariane6_real_t t895 = parameters[FV2] * (dq[1] * t892) + parameters[IA2] * (t894 + t425 * t892);
-    const ariane6_real_t t896 = ARIANE6_C(250.0) * t895 + t764 * (t192 * t150 - t198 * t148 + t890);
-    const ariane6_real_t t897 = t896 + t889 * t884;
-    const ariane6_real_t t898 = t193 * t770 + t199 * t771 + (t176 * t489 + t177 * t581 - t359 * t99);
-    const ariane6_real_t t899 = t773 * (t192 * t98 - t198 * t145 + t898);
-    const ariane6_real_t t900 = t193 * t785 - t199 * t787 + (t359 * t106 + (t169 * t581 - t168 * t489));
-    const ariane6_real_t t901 = ARIANE6_C(0.2) * (t198 * t786 + t192 * t105 - t900);
-    const ariane6_real_t t902 = t605 * t870 - t751 * t897 + t766 * t899 + t775 * t901;
-    const ariane6_real_t t903 = t193 * t799 + t199 * t801 + (t359 * t103 + (t162 * t489 + t163 * t581));
-    const ariane6_real_t t904 = t803 * (t192 * t102 - t198 * t800 + t903);
-    const ariane6_real_t t905 = t193 * t816 + t199 * t818 + (t359 * t101 + (t133 * t489 + t134 * t581));
-    const ariane6_real_t t906 = ARIANE6_C(0.2) * (t192 * t100 - t198 * t817 + t905);
-    ddq_by_q[1] = t902 - t791 * t904 + t805 * t906;
-    const ariane6_real_t t907 = t821 * t897 - t607 * t870 - t823 * t899 + t825 * t901;
-    ddq_by_q[7] = t907 + t828 * t904 + t830 * t906;
-    const ariane6_real_t t908 = t831 * t897 - t609 * t870 - t832 * t899 + t834 * t901;
-    ddq_by_q[13] = t908 + t837 * t904 + t839 * t906;
-    const ariane6_real_t t909 = t840 * t897 - t612 * t870 - t841 * t899 + t843 * t901;
-    ddq_by_q[19] = t909 + t846 * t904 + t848 * t906;
-    const ariane6_real_t t910 = t849 * t897 - t617 * t870 - t850 * t899 + t851 * t901;
-    ddq_by_q[25] = t910 + t854 * t904 + t857 * t906;
-    const ariane6_real_t t911 = t858 * t897 - t623 * t870 - t859 * t899 + t848 * t901;
-    ddq_by_q[31] = t911 + t861 * t904 + t863 * t906;
-    const ariane6_real_t t912 = t713 - parameters[ZZ3];
+    const ariane6_real_t t961 = t41 * t906 + t44 * t908 + (ARIANE6_C(-0.488) * t947 + t93 * t949);
+    const ariane6_real_t t962 = ARIANE6_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const ariane6_real_t t963 = parameters[YY3] - t962;
+    const ariane6_real_t t964 = t435 * parameters[YZ3] + t204 * t963 + t961;
+    const ariane6_real_t t965 = ARIANE6_C(2.0) * t433; /* link j3: derivatives */
+    const ariane6_real_t t966 = t964 * t965 - t959 * t960 + (t136 * t438 - t133 * t452 - t944 * t170);
+    const ariane6_real_t t967 = t943 + (t966 + t177 * t498);
+    const ariane6_real_t t968 = t439 * t329 + parameters[XX3] * t440 + parameters[XY3] * t492
+        + parameters[XZ3] * t501;
+    const ariane6_real_t t969 = parameters[MY3] * t491 + parameters[MZ3] * t504 - ((t494
+        - t205) * parameters[YZ3] - t968);
+    const ariane6_real_t t970 = t969 - (t41 * t855 + t44 * t836 + ARIANE6_C(-0.488) * t939);
     /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t913 = t436 * t912 - t205 * parameters[YZ3] + (t683 + t752 + t87 * t693);
-    const ariane6_real_t t914 = t205 * parameters[XZ3] + t434 * t912 - (t46 * t716 + t43 * t717 - t87 * t699);
-    const ariane6_real_t t915 = parameters[ZZ2] - t738;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t916 = t193 * t915 - dq[1] * parameters[YZ2] + (t67 * t913 - t66 * t914);
-    /* link j2: derivatives */
-    const ariane6_real_t t917 = t115 * (ARIANE6_C(2.0) * t916 + (t143 * t864 + t146 * t865));
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t918 = dq[1] * parameters[XZ2] - t199 * t915 + (t66 * t913 + t67 * t914
-        - t181 * t727);
-    /* link j2: derivatives */
-    const ariane6_real_t t919 = t116 * (ARIANE6_C(2.0) * t918 + (t146 * t864 + t144 * t865));
-    const ariane6_real_t t920 = t917 + t919 + ARIANE6_C(0.18) * (t148 * t864 - t150 * t865);
-    const ariane6_real_t t921 = t596 * t920;
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t922 = t667 - t685 + t698 - t701 - (t702 + t706);
-    /* link j2: derivatives */
-    const ariane6_real_t t923 = ARIANE6_C(2.0) * (t732 - t735 + (t922 + t730 - t731))
-        + ARIANE6_C(2.0) * (t193 * t182 + t199 * t183);
-    const ariane6_real_t t924 = ARIANE6_C(250.0) * (parameters[IA2] * (t417 * (ARIANE6_C(-2.0) * dq[1]))
-        - t122 * parameters[FV2]);
-    const ariane6_real_t t925 = t924 + t764 * t923;
-    const ariane6_real_t t926 = ARIANE6_C(2.0) * t922; /* link j3: derivatives */
-    const ariane6_real_t t927 = t926 - t145 * t784 + ARIANE6_C(2.0) * (t193 * t176 + t199 * t177);
-    const ariane6_real_t t928 = t773 * t927;
-    const ariane6_real_t t929 = t46 * t776 + t43 * t777 + t87 * t778; /* link j4: derivatives */
-    const ariane6_real_t t930 = t929 + t786 * t784 - ARIANE6_C(2.0) * (t199 * t169 - t193 * t168);
-    const ariane6_real_t t931 = ARIANE6_C(0.2) * t930;
-    const ariane6_real_t t932 = t921 * t605 - t925 * t751 + t928 * t766 + t931 * t775;
+    const ariane6_real_t t971 = t41 * t877 - t44 * t878 + (ARIANE6_C(0.17) * t865 + t91 * t954);
+    const ariane6_real_t t972 = parameters[XX3] - t962;
+    const ariane6_real_t t973 = t204 * t972 - t433 * parameters[XZ3] + t971;
+    const ariane6_real_t t974 = t433 * parameters[YZ3];
+    const ariane6_real_t t975 = t958 - t974 + (t956 + (t914 - (t951 + t955)));
+    const ariane6_real_t t976 = t973 * t960 + t975 * t965 + (t944 * t171 + (t134 * t438 - t136 * t452));
+    const ariane6_real_t t977 = t970 + (t976 + t177 * t504);
+    const ariane6_real_t t978 = t435 * parameters[MZ3] + t204 * parameters[MY3] + (t947 - t56 * t949);
+    const ariane6_real_t t979 = t204 * parameters[MX3] - t433 * parameters[MZ3] + (t865 + t56 * t954);
+    const ariane6_real_t t980 = t979 * t960 + t978 * t965 + (t94 * t452 + t92 * t438);
+    const ariane6_real_t t981 = t113 * (t64 * t967 - t65 * t977 + ARIANE6_C(0.685) * t980);
+    const ariane6_real_t t982 = t112 * (t65 * t967 + t64 * t977) + t981 + ARIANE6_C(0.18) * t980;
+    const ariane6_real_t t983 = t571 * t982;
+    const ariane6_real_t t984 = t44 * t864 - t41 * t869;
+    const ariane6_real_t t985 = parameters[M3] * t498 + (t495 * parameters[MX3] + parameters[MY3] * t437
+        + parameters[MZ3] * t452);
+    const ariane6_real_t t986 = t985 + t984;
+    const ariane6_real_t t987 = t44 * t885 + t41 * t884;
+    const ariane6_real_t t988 = t433 * parameters[MY3] + t435 * parameters[MX3] + (t987 - t56 * t952);
+    const ariane6_real_t t989 = t177 * t452 - t944 * t92 - (t988 * t960 + t108 * t498);
+    const ariane6_real_t t990 = parameters[M4] * t505 + (parameters[MX4] * t851 - parameters[MY4] * t462
+        - t838 * parameters[MZ4]);
+    const ariane6_real_t t991 = t990 - (t13 * t742 + t17 * t748);
+    const ariane6_real_t t992 = parameters[M3] * t504 - (t503 * parameters[MY3] + parameters[MX3] * t501
+        + parameters[MZ3] * t438);
+    const ariane6_real_t t993 = t992 + t991;
+    const ariane6_real_t t994 = t988 * t965 - t108 * t504 - (t944 * t94 + t177 * t438);
+    const ariane6_real_t t995 = ARIANE6_C(0.685) * (t64 * (t993 + t994) + t65 * (t986 + t989));
+    const ariane6_real_t t996 = t944 * t63 + (t170 * t452 + t171 * t438);
+    const ariane6_real_t t997 = t44 * t945;
+    const ariane6_real_t t998 = t433 * parameters[XY3] + t435 * t972 - (t857 - t997 - (ARIANE6_C(0.17) * t987
+        - t91 * t952));
+    const ariane6_real_t t999 = t44 * t906 - t41 * t908 + (ARIANE6_C(-0.488) * t987 + t93 * t952);
+    const ariane6_real_t t1000 = t433 * t963 + t435 * parameters[XY3] + t999;
+    const ariane6_real_t t1001 = t92 * t498 + t94 * t504;
+    const ariane6_real_t t1002 = t998 * t960 + t1000 * t965 + t996 + t1001 + t995;
+    const ariane6_real_t t1003 = t577 * t1002;
+    const ariane6_real_t t1004 = t44 * t855 - t41 * t836 + (ARIANE6_C(0.17) * t991
+        + ARIANE6_C(-0.488) * t984);
+    const ariane6_real_t t1005 = t436 * t391 - parameters[ZZ3] * t431 + parameters[YZ3] * t452
+        - parameters[XZ3] * t438;
+    const ariane6_real_t t1006 = (t494 - t502) * parameters[XY3] + t1005 - (parameters[MX3] * t504
+        + parameters[MY3] * t498);
+    const ariane6_real_t t1007 = t1006 + t1004;
+    const ariane6_real_t t1008 = ariane6_select(t68, t68, ARIANE6_C(1.0));
+    const ariane6_real_t t1009 = ARIANE6_C(-1.0) / t1008;
+    const ariane6_real_t t1010 = ARIANE6_C(0.083776) * t66;
+    const ariane6_real_t t1011 = ARIANE6_C(-1.0) / t66;
+    const ariane6_real_t t1012 = t1011 * (ARIANE6_C(0.029841482047364396) * (t1010 * (ARIANE6_C(0.5) * t1009))
+        - t67 * t581);
+    const ariane6_real_t t1013 = ARIANE6_C(2.0) * t998; /* link j3: derivatives */
+    const ariane6_real_t t1014 = ARIANE6_C(2.0) * t1000;
+    const ariane6_real_t t1015 = t581 * (t1001 + (t435 * t1013 + t433 * t1014 + t996));
+    const ariane6_real_t t1016 = t69 * (t69 * (t1010 * (ARIANE6_C(0.5) * t69)));
+    const ariane6_real_t t1017 = t66 * (ARIANE6_C(8377.600000000002) * t1016) - t67 * t70;
+    const ariane6_real_t t1018 = t397 * (ARIANE6_C(-701.8418176000002) * (t69 * t1016))
+        + t396 * (ARIANE6_C(2.0) * (t66 * t67));
+    const ariane6_real_t t1019 = t400 * (t398 * t1016 + t69 * (ARIANE6_C(8377.600000000002) * t66 + t1018));
+    const ariane6_real_t t1020 = parameters[FV3] * (dq[2] * t1017) + parameters[IA3] * (t1019 + t425 * t1017);
+    const ariane6_real_t t1021 = ARIANE6_C(250.0) * t1020 - t1015 + t1012 * t1007;
+    const ariane6_real_t t1022 = ARIANE6_C(0.34) * t204; /* link j6: derivatives */
+    const ariane6_real_t t1023 = t41 * t890 - t44 * t891 - t54 * t1022; /* link j4: derivatives */
+    const ariane6_real_t t1024 = ARIANE6_C(2.0) * t952; /* link j6: derivatives */
+    const ariane6_real_t t1025 = ARIANE6_C(0.976) * t204;
+    const ariane6_real_t t1026 = t915 + (t85 * t1024 + t54 * t1025); /* link j4: derivatives */
+    const ariane6_real_t t1027 = t435 * t1023 + t433 * t1026 - (t944 * t86 - (t163 * t438 - t162 * t452));
+    const ariane6_real_t t1028 = ARIANE6_C(0.2) * (t1027 + t85 * t504);
+    const ariane6_real_t t1029 = t573 * t983 - t580 * t1003 - t584 * t1021 + t588 * t1028;
     /* link j5: derivatives */
-    const ariane6_real_t t933 = t46 * t794 + t43 * t795 + (t81 * t778 - t54 * t782);
-    const ariane6_real_t t934 = t933 - t800 * t784 + ARIANE6_C(2.0) * (t193 * t162 + t199 * t163);
-    const ariane6_real_t t935 = t803 * t934;
+    const ariane6_real_t t1030 = t41 * t894 - t44 * t802 - (t155 * t1022 + t52 * t1024);
+    const ariane6_real_t t1031 = t928 + (t79 * t1024 + t155 * t1025);
+    const ariane6_real_t t1032 = t435 * t1030 + t433 * t1031 + (t944 * t80 + (t156 * t452 + t157 * t438));
+    const ariane6_real_t t1033 = t590 * (t1032 + (t79 * t504 + t52 * t498));
     /* link j6: derivatives */
-    const ariane6_real_t t936 = t46 * t811 + t43 * t812 + (t77 * t778 - t78 * t782);
-    const ariane6_real_t t937 = t936 - t817 * t784 + ARIANE6_C(2.0) * (t193 * t133 + t199 * t134);
-    const ariane6_real_t t938 = ARIANE6_C(0.2) * t937;
-    ddq_by_dq[1] = t932 - t935 * t791 + t938 * t805;
-    const ariane6_real_t t939 = t925 * t821 - t921 * t607 - t928 * t823 + t931 * t825;
-    ddq_by_dq[7] = t939 + t935 * t828 + t938 * t830;
-    const ariane6_real_t t940 = t925 * t831 - t921 * t609 - t928 * t832 + t931 * t834;
-    ddq_by_dq[13] = t940 + t935 * t837 + t938 * t839;
-    const ariane6_real_t t941 = t925 * t840 - t921 * t612 - t928 * t841 + t931 * t843;
-    ddq_by_dq[19] = t941 + t935 * t846 + t938 * t848;
-    const ariane6_real_t t942 = t925 * t849 - t921 * t617 - t928 * t850 + t931 * t851;
-    ddq_by_dq[25] = t942 + t935 * t854 + t938 * t857;
-    const ariane6_real_t t943 = t925 * t858 - t921 * t623 - t928 * t859 + t931 * t848;
-    ddq_by_dq[31] = t943 + t935 * t861 + t938 * t863;
-    ddq_by_input[1] = -t751;
-    ddq_by_input[7] = t821;
-    ddq_by_input[13] = t831;
-    ddq_by_input[19] = t840;
-    ddq_by_input[25] = t849;
-    ddq_by_input[31] = t858;
-    const ariane6_real_t t944 = ARIANE6_C(2.0) * t436; /* link j3: derivatives */
-    const ariane6_real_t t945 = ARIANE6_C(2.0) * t434;
-    const ariane6_real_t t946 = t715 * t945 - t704 * t944 + (t140 * t439 - t137 * t453 - t585 * t174);
-    const ariane6_real_t t947 = t580 + (t946 + t181 * t499);
-    const ariane6_real_t t948 = t720 * t944 + t707 * t945 + (t585 * t175 + (t138 * t439 - t140 * t453));
-    const ariane6_real_t t949 = t574 + (t948 + t181 * t505);
-    const ariane6_real_t t950 = t724 * t944 + t723 * t945 + (t97 * t453 + t95 * t439);
-    const ariane6_real_t t951 = t116 * (t66 * t947 - t67 * t949 + ARIANE6_C(0.685) * t950);
-    const ariane6_real_t t952 = t115 * (t67 * t947 + t66 * t949) + t951 + ARIANE6_C(0.18) * t950;
-    const ariane6_real_t t953 = t596 * t952;
-    const ariane6_real_t t954 = t181 * t453 - t585 * t95 - (t757 * t944 + t111 * t499);
-    const ariane6_real_t t955 = t757 * t945 - t111 * t505 - (t585 * t97 + t181 * t439);
-    const ariane6_real_t t956 = ARIANE6_C(0.685) * (t66 * (t882 + t955) + t67 * (t880 + t954));
-    const ariane6_real_t t957 = t585 * t65 + (t174 * t453 + t175 * t439);
-    const ariane6_real_t t958 = t95 * t499 + t97 * t505;
-    const ariane6_real_t t959 = t754 * t944 + t756 * t945 + t957 + t958 + t956;
-    const ariane6_real_t t960 = t764 * t959;
-    const ariane6_real_t t961 = ariane6_select(t70, t70, ARIANE6_C(1.0));
-    const ariane6_real_t t962 = ARIANE6_C(-1.0) / t961;
-    const ariane6_real_t t963 = ARIANE6_C(0.083776) * t68;
-    const ariane6_real_t t964 = ARIANE6_C(-1.0) / t68;
-    const ariane6_real_t t965 = t964 * (ARIANE6_C(0.029841482047364396) * (t963 * (ARIANE6_C(0.5) * t962))
-        - t69 * t773);
-    const ariane6_real_t t966 = t773 * (t958 + (t436 * t767 + t434 * t768 + t957));
-    const ariane6_real_t t967 = t71 * (t71 * (t963 * (ARIANE6_C(0.5) * t71)));
-    const ariane6_real_t t968 = t68 * (ARIANE6_C(8377.600000000002) * t967) - t69 * t72;
-    const ariane6_real_t t969 = t398 * (ARIANE6_C(-701.8418176000002) * (t71 * t967))
-        + t397 * (ARIANE6_C(2.0) * (t68 * t69));
-    const ariane6_real_t t970 = t401 * (t399 * t967 + t71 * (ARIANE6_C(8377.600000000002) * t68 + t969));
-    const ariane6_real_t t971 = parameters[FV3] * (dq[2] * t968) + parameters[IA3] * (t970 + t426 * t968);
-    const ariane6_real_t t972 = ARIANE6_C(250.0) * t971 - t966 + t965 * t878;
-    const ariane6_real_t t973 = t436 * t779 + t434 * t783 - (t585 * t88 - (t167 * t439 - t166 * t453));
-    const ariane6_real_t t974 = ARIANE6_C(0.2) * (t973 + t87 * t505);
-    const ariane6_real_t t975 = t605 * t953 - t751 * t960 - t766 * t972 + t775 * t974;
-    const ariane6_real_t t976 = t436 * t796 + t434 * t798 + (t585 * t82 + (t160 * t453 + t161 * t439));
-    const ariane6_real_t t977 = t803 * (t976 + (t81 * t505 + t54 * t499));
-    const ariane6_real_t t978 = t436 * t813 + t434 * t815 + (t585 * t79 + (t131 * t453 + t132 * t439));
-    const ariane6_real_t t979 = ARIANE6_C(0.2) * (t978 + (t77 * t505 + t78 * t499));
-    ddq_by_q[2] = t975 - t791 * t977 + t805 * t979;
-    const ariane6_real_t t980 = t821 * t960 - t607 * t953 + t823 * t972 + t825 * t974;
-    ddq_by_q[8] = t980 + t828 * t977 + t830 * t979;
-    const ariane6_real_t t981 = t831 * t960 - t609 * t953 + t832 * t972 + t834 * t974;
-    ddq_by_q[14] = t981 + t837 * t977 + t839 * t979;
-    const ariane6_real_t t982 = t840 * t960 - t612 * t953 + t841 * t972 + t843 * t974;
-    ddq_by_q[20] = t982 + t846 * t977 + t848 * t979;
-    const ariane6_real_t t983 = t849 * t960 - t617 * t953 + t850 * t972 + t851 * t974;
-    ddq_by_q[26] = t983 + t854 * t977 + t857 * t979;
-    const ariane6_real_t t984 = t858 * t960 - t623 * t953 + t859 * t972 + t848 * t974;
-    ddq_by_q[32] = t984 + t861 * t977 + t863 * t979;
-    const ariane6_real_t t985 = ARIANE6_C(2.0) * t913 + (t140 * t945 - t137 * t944);
-    const ariane6_real_t t986 = ARIANE6_C(2.0) * t914 - (t138 * t945 - t140 * t944);
-    const ariane6_real_t t987 = t97 * t944 + t95 * t945;
-    const ariane6_real_t t988 = t116 * (t66 * t985 + t67 * t986 + ARIANE6_C(0.685) * t987);
-    const ariane6_real_t t989 = t115 * (t67 * t985 - t66 * t986) + t988 + ARIANE6_C(0.18) * t987;
-    const ariane6_real_t t990 = t596 * t989;
-    const ariane6_real_t t991 = t66 * (ARIANE6_C(2.0) * t724 - t181 * t945) + t67 * (ARIANE6_C(2.0) * t723
-        + t181 * t944);
-    const ariane6_real_t t992 = t926 + (t174 * t944 + t175 * t945) + ARIANE6_C(0.685) * t991;
-    const ariane6_real_t t993 = t764 * t992;
-    const ariane6_real_t t994 = t773 * (t926 + ARIANE6_C(2.0) * (t436 * t174 + t434 * t175));
-    const ariane6_real_t t995 = ARIANE6_C(250.0) * (parameters[IA3] * (t400 * (ARIANE6_C(-2.0) * dq[2]))
-        - t73 * parameters[FV3]);
-    const ariane6_real_t t996 = t995 - t994;
-    const ariane6_real_t t997 = ARIANE6_C(0.2) * (t929 + ARIANE6_C(2.0) * (t434 * t167 - t436 * t166));
-    const ariane6_real_t t998 = t990 * t605 - t993 * t751 - t996 * t766 + t997 * t775;
-    const ariane6_real_t t999 = t803 * (t933 + ARIANE6_C(2.0) * (t436 * t160 + t434 * t161));
-    const ariane6_real_t t1000 = ARIANE6_C(0.2) * (t936 + ARIANE6_C(2.0) * (t436 * t131 + t434 * t132));
-    ddq_by_dq[2] = t998 - t999 * t791 + t1000 * t805;
-    const ariane6_real_t t1001 = t993 * t821 - t990 * t607 + t996 * t823 + t997 * t825;
-    ddq_by_dq[8] = t1001 + t999 * t828 + t1000 * t830;
-    const ariane6_real_t t1002 = t993 * t831 - t990 * t609 + t996 * t832 + t997 * t834;
-    ddq_by_dq[14] = t1002 + t999 * t837 + t1000 * t839;
-    const ariane6_real_t t1003 = t993 * t840 - t990 * t612 + t996 * t841 + t997 * t843;
-    ddq_by_dq[20] = t1003 + t999 * t846 + t1000 * t848;
-    const ariane6_real_t t1004 = t993 * t849 - t990 * t617 + t996 * t850 + t997 * t851;
-    ddq_by_dq[26] = t1004 + t999 * t854 + t1000 * t857;
-    const ariane6_real_t t1005 = t993 * t858 - t990 * t623 + t996 * t859 + t997 * t848;
-    ddq_by_dq[32] = t1005 + t999 * t861 + t1000 * t863;
-    ddq_by_input[2] = -t766;
-    ddq_by_input[8] = t823;
-    ddq_by_input[14] = t832;
-    ddq_by_input[20] = t841;
-    ddq_by_input[26] = t850;
-    ddq_by_input[32] = t859;
-    const ariane6_real_t t1006 = ARIANE6_C(2.0) * t457; /* link j4: derivatives */
-    const ariane6_real_t t1007 = ARIANE6_C(-2.0) * t444;
-    const ariane6_real_t t1008 = t667 * t1006 - t683 * t1007 + (t872 * t85 + (t41 * t443 + t45 * t460));
-    const ariane6_real_t t1009 = t558 + (t1008 - t62 * t501);
-    const ariane6_real_t t1010 = t678 * t1006 - t670 * t1007 + (t872 * t86 + (t45 * t443 - t42 * t460));
-    const ariane6_real_t t1011 = t550 - (t1010 - t62 * t509);
-    const ariane6_real_t t1012 = t695 * t1007 + t58 * t509 + (t872 * t50 + t62 * t460);
-    const ariane6_real_t t1013 = t1012 - t570;
-    const ariane6_real_t t1014 = t695 * t1006 + t58 * t501 + (t872 * t55 + t62 * t443);
-    const ariane6_real_t t1015 = t566 + t1014;
-    const ariane6_real_t t1016 = t46 * t1013 + t43 * t1015;
-    const ariane6_real_t t1017 = t43 * t1009 - t46 * t1011 + ARIANE6_C(-0.488) * t1016;
-    const ariane6_real_t t1018 = t55 * t501 + t50 * t509;
-    const ariane6_real_t t1019 = t872 * t29 - (t85 * t443 + t86 * t460);
-    const ariane6_real_t t1020 = t716 * t1006 - t717 * t1007 + t1019 + t1018 - ARIANE6_C(-0.17) * t1016;
-    const ariane6_real_t t1021 = t116 * (t66 * t1017 - t67 * t1020 + ARIANE6_C(0.685) * t1016);
-    const ariane6_real_t t1022 = t115 * (t67 * t1017 + t66 * t1020) + t1021 + ARIANE6_C(0.18) * t1016;
-    const ariane6_real_t t1023 = t596 * t1022;
-    const ariane6_real_t t1024 = t46 * t1015 - t43 * t1013;
-    const ariane6_real_t t1025 = t50 * t443 - t55 * t460 - (t690 * t1006 + t688 * t1007);
-    const ariane6_real_t t1026 = t46 * t1009 + t43 * t1011 + (ARIANE6_C(-0.17) * t1025
-        + ARIANE6_C(-0.488) * t1024);
-    const ariane6_real_t t1027 = t764 * (t1026 + ARIANE6_C(0.685) * (t66 * t1024 + t67 * t1025));
-    const ariane6_real_t t1028 = t773 * t1026;
-    const ariane6_real_t t1029 = ARIANE6_C(-0.2) * (t1018 + (t457 * t776 + t444 * t777 + t1019));
-    const ariane6_real_t t1030 = t605 * t1023 - t751 * t1027 + t766 * t1028 - t775 * t1029;
-    const ariane6_real_t t1031 = t457 * t794 + t444 * t795 + (t12 * t460 - t44 * t443 - t872 * t35);
-    const ariane6_real_t t1032 = t803 * (t1031 + t61 * t509);
-    const ariane6_real_t t1033 = t457 * t811 + t444 * t812 + (t872 * t31 + (t4 * t460 - t75 * t443));
-    const ariane6_real_t t1034 = ARIANE6_C(0.2) * (t1033 + (t76 * t509 + t24 * t501));
-    ddq_by_q[3] = t1030 - t791 * t1032 + t805 * t1034;
-    const ariane6_real_t t1035 = t821 * t1027 - t607 * t1023 - t823 * t1028 - t825 * t1029;
-    ddq_by_q[9] = t1035 + t828 * t1032 + t830 * t1034;
-    const ariane6_real_t t1036 = t831 * t1027 - t609 * t1023 - t832 * t1028 - t834 * t1029;
-    ddq_by_q[15] = t1036 + t837 * t1032 + t839 * t1034;
-    const ariane6_real_t t1037 = t840 * t1027 - t612 * t1023 - t841 * t1028 - t843 * t1029;
-    ddq_by_q[21] = t1037 + t846 * t1032 + t848 * t1034;
-    const ariane6_real_t t1038 = t849 * t1027 - t617 * t1023 - t850 * t1028 - t851 * t1029;
-    ddq_by_q[27] = t1038 + t854 * t1032 + t857 * t1034;
-    const ariane6_real_t t1039 = t858 * t1027 - t623 * t1023 - t859 * t1028 - t848 * t1029;
-    ddq_by_q[33] = t1039 + t861 * t1032 + t863 * t1034;
-    const ariane6_real_t t1040 = ARIANE6_C(-2.0) * t710 + (t41 * t1006 + t45 * t1007);
-    const ariane6_real_t t1041 = ARIANE6_C(2.0) * t711 - (t45 * t1006 - t42 * t1007);
-    const ariane6_real_t t1042 = ARIANE6_C(2.0) * t690 + t62 * t1007;
-    const ariane6_real_t t1043 = ARIANE6_C(-2.0) * t688 + t62 * t1006;
-    const ariane6_real_t t1044 = t46 * t1042 + t43 * t1043;
-    const ariane6_real_t t1045 = t43 * t1040 - t46 * t1041 + ARIANE6_C(-0.488) * t1044;
-    const ariane6_real_t t1046 = t780 + (t85 * t1006 + t86 * t1007) + ARIANE6_C(-0.17) * t1044;
-    const ariane6_real_t t1047 = t116 * (t66 * t1045 + t67 * t1046 + ARIANE6_C(0.685) * t1044);
-    const ariane6_real_t t1048 = t115 * (t67 * t1045 - t66 * t1046) + t1047 + ARIANE6_C(0.18) * t1044;
-    const ariane6_real_t t1049 = t596 * t1048;
-    const ariane6_real_t t1050 = t46 * t1043 - t43 * t1042;
-    const ariane6_real_t t1051 = t50 * t1006 - t55 * t1007;
-    const ariane6_real_t t1052 = t46 * t1040 + t43 * t1041 + (ARIANE6_C(-0.17) * t1051
-        + ARIANE6_C(-0.488) * t1050);
-    const ariane6_real_t t1053 = t764 * (t1052 + ARIANE6_C(0.685) * (t66 * t1050 + t67 * t1051));
-    const ariane6_real_t t1054 = t773 * t1052;
-    const ariane6_real_t t1055 = ARIANE6_C(0.2) * (t780 - ARIANE6_C(2.0) * (t444 * t86 - t457 * t85));
-    const ariane6_real_t t1056 = ARIANE6_C(2.0e3) * parameters[FV4] + t1055;
-    const ariane6_real_t t1057 = t1049 * t605 - t1053 * t751 + t1054 * t766 - t1056 * t775;
-    const ariane6_real_t t1058 = t803 * (ARIANE6_C(-2.0) * (t457 * t44 + t444 * t12) - t797);
-    const ariane6_real_t t1059 = ARIANE6_C(0.2) * (ARIANE6_C(-2.0) * (t457 * t75 + t444 * t4) - t814);
-    ddq_by_dq[3] = t1057 - t1058 * t791 + t1059 * t805;
-    const ariane6_real_t t1060 = t1053 * t821 - t1049 * t607 - t1054 * t823 - t1056 * t825;
-    ddq_by_dq[9] = t1060 + t1058 * t828 + t1059 * t830;
-    const ariane6_real_t t1061 = t1053 * t831 - t1049 * t609 - t1054 * t832 - t1056 * t834;
-    ddq_by_dq[15] = t1061 + t1058 * t837 + t1059 * t839;
-    const ariane6_real_t t1062 = t1053 * t840 - t1049 * t612 - t1054 * t841 - t1056 * t843;
-    ddq_by_dq[21] = t1062 + t1058 * t846 + t1059 * t848;
-    const ariane6_real_t t1063 = t1053 * t849 - t1049 * t617 - t1054 * t850 - t1056 * t851;
-    ddq_by_dq[27] = t1063 + t1058 * t854 + t1059 * t857;
-    const ariane6_real_t t1064 = t1053 * t858 - t1049 * t623 - t1054 * t859 - t1056 * t848;
-    ddq_by_dq[33] = t1064 + t1058 * t861 + t1059 * t863;
-    ddq_by_input[3] = t775;
-    ddq_by_input[9] = t825;
-    ddq_by_input[15] = t834;
-    ddq_by_input[21] = t843;
-    ddq_by_input[27] = t851;
-    ddq_by_input[33] = t848;
-    const ariane6_real_t t1065 = ARIANE6_C(2.0) * t449; /* link j5: derivatives */
-    const ariane6_real_t t1066 = ARIANE6_C(2.0) * t450;
-    const ariane6_real_t t1067 = t662 * t1066 + t648 * t1065 + (t567 * t33 - (t26 * t479 + t23 * t464));
-    const ariane6_real_t t1068 = t538 + (t1067 + t49 * t513);
-    const ariane6_real_t t1069 = t645 * t1066 + t658 * t1065 + (t567 * t34 - (t22 * t479 + t26 * t464));
-    const ariane6_real_t t1070 = t543 + (t1069 - t49 * t507);
-    const ariane6_real_t t1071 = t17 * t1070 + t13 * t1068;
-    const ariane6_real_t t1072 = t567 * t12 - (t34 * t479 + t33 * t464);
-    const ariane6_real_t t1073 = t53 * t513 - t51 * t507;
-    const ariane6_real_t t1074 = t672 * t1066 + t675 * t1065 + t1072 + t1073;
-    const ariane6_real_t t1075 = t57 * t507 - t689 * t1066 + (t49 * t479 - t567 * t51);
-    const ariane6_real_t t1076 = t560 + t1075;
-    const ariane6_real_t t1077 = t57 * t513 - t689 * t1065 + (t567 * t53 - t49 * t464);
-    const ariane6_real_t t1078 = t564 + t1077;
-    const ariane6_real_t t1079 = t17 * t1078 + t13 * t1076;
-    const ariane6_real_t t1080 = t687 * t1066 + t686 * t1065 + (t53 * t479 - t51 * t464);
-    const ariane6_real_t t1081 = t46 * t1079 + t43 * t1080;
-    const ariane6_real_t t1082 = t43 * t1071 - t46 * t1074 + ARIANE6_C(-0.488) * t1081;
-    const ariane6_real_t t1083 = t13 * t1070 - t17 * t1068;
-    const ariane6_real_t t1084 = t1083 + ARIANE6_C(-0.17) * t1081;
-    const ariane6_real_t t1085 = t116 * (t66 * t1082 + t67 * t1084 + ARIANE6_C(0.685) * t1081);
-    const ariane6_real_t t1086 = t115 * (t67 * t1082 - t66 * t1084) + t1085 + ARIANE6_C(0.18) * t1081;
-    const ariane6_real_t t1087 = t596 * t1086;
-    const ariane6_real_t t1088 = t17 * t1076 - t13 * t1078;
-    const ariane6_real_t t1089 = t46 * t1080 - t43 * t1079;
-    const ariane6_real_t t1090 = t46 * t1071 + t43 * t1074 + (ARIANE6_C(-0.17) * t1088
-        + ARIANE6_C(-0.488) * t1089);
-    const ariane6_real_t t1091 = t764 * (t1090 + ARIANE6_C(0.685) * (t66 * t1089 + t67 * t1088));
-    const ariane6_real_t t1092 = t773 * t1090;
-    const ariane6_real_t t1093 = ARIANE6_C(0.2) * t1083;
-    const ariane6_real_t t1094 = t605 * t1087 - t751 * t1091 + t766 * t1092 - t775 * t1093;
-    const ariane6_real_t t1095 = ariane6_select(t14, t14, ARIANE6_C(1.0));
-    const ariane6_real_t t1096 = ARIANE6_C(-1.0) / t1095;
-    const ariane6_real_t t1097 = ARIANE6_C(-0.035496) * t17;
-    const ariane6_real_t t1098 = ARIANE6_C(-1.0) / t17;
-    const ariane6_real_t t1099 = t1098 * (ARIANE6_C(-0.07043047103899029) * (t1097 * (ARIANE6_C(0.5) * t1096))
-        - t13 * t803);
-    const ariane6_real_t t1100 = t803 * (t1073 + (t450 * t792 + t449 * t793 + t1072));
-    const ariane6_real_t t1101 = t15 * (t15 * (t1097 * (ARIANE6_C(0.5) * t15)));
-    const ariane6_real_t t1102 = t13 * t16 + t17 * (ARIANE6_C(3549.6000000000004) * t1101);
-    const ariane6_real_t t1103 = t377 * (ARIANE6_C(125.9966016) * (t15 * t1101))
-        - t376 * (ARIANE6_C(-2.0) * (t13 * t17));
-    const ariane6_real_t t1104 = t380 * (t378 * t1101 + t15 * (ARIANE6_C(3549.6000000000004) * t17 + t1103));
-    const ariane6_real_t t1105 = parameters[FV5] * (dq[4] * t1102) + parameters[IA5] * (t429 * t1102 - t1104);
-    const ariane6_real_t t1106 = ARIANE6_C(250.0) * t1105 + t1100 - t1099 * t554;
-    const ariane6_real_t t1107 = t450 * t808 - t449 * t810 + (t567 * t4 - (t25 * t479
-        + parameters[ZZ6] * t464));
-    const ariane6_real_t t1108 = ARIANE6_C(0.2) * (t1107 + t3 * t513);
-    ddq_by_q[4] = t1094 - t791 * t1106 + t805 * t1108;
-    const ariane6_real_t t1109 = t821 * t1091 - t607 * t1087 - t823 * t1092 - t825 * t1093;
-    ddq_by_q[10] = t1109 + t828 * t1106 + t830 * t1108;
-    const ariane6_real_t t1110 = t831 * t1091 - t609 * t1087 - t832 * t1092 - t834 * t1093;
-    ddq_by_q[16] = t1110 + t837 * t1106 + t839 * t1108;
-    const ariane6_real_t t1111 = t840 * t1091 - t612 * t1087 - t841 * t1092 - t843 * t1093;
-    ddq_by_q[22] = t1111 + t846 * t1106 + t848 * t1108;
-    const ariane6_real_t t1112 = t849 * t1091 - t617 * t1087 - t850 * t1092 - t851 * t1093;
-    ddq_by_q[28] = t1112 + t854 * t1106 + t857 * t1108;
-    const ariane6_real_t t1113 = t858 * t1091 - t623 * t1087 - t859 * t1092 - t848 * t1093;
-    ddq_by_q[34] = t1113 + t861 * t1106 + t863 * t1108;
-    const ariane6_real_t t1114 = ARIANE6_C(2.0) * t680 + (t26 * t1065 - t22 * t1066);
-    const ariane6_real_t t1115 = ARIANE6_C(2.0) * t681 + (t23 * t1065 - t26 * t1066);
-    const ariane6_real_t t1116 = t17 * t1114 + t13 * t1115;
-    const ariane6_real_t t1117 = t795 + (t33 * t1065 - t34 * t1066);
-    const ariane6_real_t t1118 = ARIANE6_C(2.0) * t686 + t49 * t1066;
-    const ariane6_real_t t1119 = ARIANE6_C(-2.0) * t687 + t49 * t1065;
-    const ariane6_real_t t1120 = t17 * t1119 + t13 * t1118;
-    const ariane6_real_t t1121 = t53 * t1066 + t51 * t1065;
-    const ariane6_real_t t1122 = t46 * t1120 + t43 * t1121;
-    const ariane6_real_t t1123 = t43 * t1116 - t46 * t1117 + ARIANE6_C(-0.488) * t1122;
-    const ariane6_real_t t1124 = t17 * t1115 - t13 * t1114;
-    const ariane6_real_t t1125 = t1124 - ARIANE6_C(-0.17) * t1122;
-    const ariane6_real_t t1126 = t116 * (t66 * t1123 - t67 * t1125 + ARIANE6_C(0.685) * t1122);
-    const ariane6_real_t t1127 = t115 * (t67 * t1123 + t66 * t1125) + t1126 + ARIANE6_C(0.18) * t1122;
-    const ariane6_real_t t1128 = t596 * t1127;
-    const ariane6_real_t t1129 = t17 * t1118 - t13 * t1119;
-    const ariane6_real_t t1130 = t46 * t1121 - t43 * t1120;
-    const ariane6_real_t t1131 = t46 * t1116 + t43 * t1117 + (ARIANE6_C(-0.17) * t1129
-        + ARIANE6_C(-0.488) * t1130);
-    const ariane6_real_t t1132 = t764 * (t1131 + ARIANE6_C(0.685) * (t66 * t1130 + t67 * t1129));
-    const ariane6_real_t t1133 = t773 * t1131;
-    const ariane6_real_t t1134 = ARIANE6_C(0.2) * t1124;
-    const ariane6_real_t t1135 = t1128 * t605 - t1132 * t751 + t1133 * t766 + t1134 * t775;
-    const ariane6_real_t t1136 = t803 * (t795 + ARIANE6_C(2.0) * (t449 * t33 - t450 * t34));
-    const ariane6_real_t t1137 = ARIANE6_C(-250.0) * (t18 * parameters[FV5]
-        + parameters[IA5] * (t379 * (ARIANE6_C(2.0) * dq[4])));
-    const ariane6_real_t t1138 = t1137 + t1136;
-    const ariane6_real_t t1139 = ARIANE6_C(0.2) * (t812 + ARIANE6_C(2.0) * (t449 * parameters[ZZ6]
-        - t450 * t25));
-    ddq_by_dq[4] = t1135 - t1138 * t791 + t1139 * t805;
-    const ariane6_real_t t1140 = t1132 * t821 - t1128 * t607 - t1133 * t823 + t1134 * t825;
-    ddq_by_dq[10] = t1140 + t1138 * t828 + t1139 * t830;
-    const ariane6_real_t t1141 = t1132 * t831 - t1128 * t609 - t1133 * t832 + t1134 * t834;
-    ddq_by_dq[16] = t1141 + t1138 * t837 + t1139 * t839;
-    const ariane6_real_t t1142 = t1132 * t840 - t1128 * t612 - t1133 * t841 + t1134 * t843;
-    ddq_by_dq[22] = t1142 + t1138 * t846 + t1139 * t848;
-    const ariane6_real_t t1143 = t1132 * t849 - t1128 * t617 - t1133 * t850 + t1134 * t851;
-    ddq_by_dq[28] = t1143 + t1138 * t854 + t1139 * t857;
-    const ariane6_real_t t1144 = t1132 * t858 - t1128 * t623 - t1133 * t859 + t1134 * t848;
-    ddq_by_dq[34] = t1144 + t1138 * t861 + t1139 * t863;
-    ddq_by_input[4] = -t791;
-    ddq_by_input[10] = t828;
-    ddq_by_input[16] = t837;
-    ddq_by_input[22] = t846;
-    ddq_by_input[28] = t854;
-    ddq_by_input[34] = t861;
-    const ariane6_real_t t1145 = ARIANE6_C(2.0) * t470; /* link j6: derivatives */
-    const ariane6_real_t t1146 = ARIANE6_C(2.0) * t475;
-    const ariane6_real_t t1147 = t626 * t1145 + t633 * t1146 + (parameters[XY6] * t469
-        - parameters[XX6] * t474 - t561 * parameters[XZ6]);
-    const ariane6_real_t t1148 = t525 + (t524 + t1147);
-    const ariane6_real_t t1149 = t631 * t1145 + t628 * t1146 + (t561 * parameters[YZ6]
-        + (parameters[XY6] * t474 - parameters[YY6] * t469));
-    const ariane6_real_t t1150 = t512 - t1149 - t518;
-    const ariane6_real_t t1151 = t529 - t638 * t1146 + (t561 * parameters[MY6] + t530) - t531;
-    const ariane6_real_t t1152 = t528 + (t526 - t638 * t1145 + (t561 * parameters[MX6] - t527));
-    const ariane6_real_t t1153 = t2 * t1152 - t1 * t1151;
-    const ariane6_real_t t1154 = t2 * t1148 - t1 * t1150 + ARIANE6_C(0.3) * t1153;
-    const ariane6_real_t t1155 = parameters[MX6] * t523 + parameters[MY6] * t511;
-    const ariane6_real_t t1156 = t561 * parameters[ZZ6] + (parameters[XZ6] * t474 - parameters[YZ6] * t469);
-    const ariane6_real_t t1157 = t659 * t1145 + t660 * t1146 + t1156 + t1155;
-    const ariane6_real_t t1158 = t17 * t1154 + t13 * t1157;
-    const ariane6_real_t t1159 = t2 * t1151 + t1 * t1152;
-    const ariane6_real_t t1160 = t1 * t1148 + t2 * t1150 + ARIANE6_C(0.3) * t1159;
-    const ariane6_real_t t1161 = t653 * t1145 + t652 * t1146 + (parameters[MY6] * t474
-        + parameters[MX6] * t469);
-    const ariane6_real_t t1162 = t17 * t1159 + t13 * t1161;
-    const ariane6_real_t t1163 = t46 * t1162 - t43 * t1153;
-    const ariane6_real_t t1164 = t43 * t1158 - t46 * t1160 + ARIANE6_C(-0.488) * t1163;
-    const ariane6_real_t t1165 = t13 * t1154 - t17 * t1157;
-    const ariane6_real_t t1166 = t1165 + ARIANE6_C(-0.17) * t1163;
-    const ariane6_real_t t1167 = t116 * (t66 * t1164 + t67 * t1166 + ARIANE6_C(0.685) * t1163);
-    const ariane6_real_t t1168 = t115 * (t67 * t1164 - t66 * t1166) + t1167 + ARIANE6_C(0.18) * t1163;
-    const ariane6_real_t t1169 = t596 * t1168;
-    const ariane6_real_t t1170 = t43 * t1162 + t46 * t1153;
-    const ariane6_real_t t1171 = t17 * t1161 - t13 * t1159;
-    const ariane6_real_t t1172 = t46 * t1158 + t43 * t1160 + (ARIANE6_C(-0.17) * t1171
-        + ARIANE6_C(0.488) * t1170);
-    const ariane6_real_t t1173 = t764 * (t1172 + ARIANE6_C(0.685) * (t67 * t1171 - t66 * t1170));
-    const ariane6_real_t t1174 = t773 * t1172;
-    const ariane6_real_t t1175 = ARIANE6_C(0.2) * t1165;
-    const ariane6_real_t t1176 = t605 * t1169 - t751 * t1173 + t766 * t1174 - t775 * t1175;
-    const ariane6_real_t t1177 = t803 * t1160;
-    const ariane6_real_t t1178 = ARIANE6_C(0.2) * (t1155 + (t470 * t806 + t475 * t807 + t1156));
-    ddq_by_q[5] = t1176 - t791 * t1177 + t805 * t1178;
-    const ariane6_real_t t1179 = t821 * t1173 - t607 * t1169 - t823 * t1174 - t825 * t1175;
-    ddq_by_q[11] = t1179 + t828 * t1177 + t830 * t1178;
-    const ariane6_real_t t1180 = t831 * t1173 - t609 * t1169 - t832 * t1174 - t834 * t1175;
-    ddq_by_q[17] = t1180 + t837 * t1177 + t839 * t1178;
-    const ariane6_real_t t1181 = t840 * t1173 - t612 * t1169 - t841 * t1174 - t843 * t1175;
-    ddq_by_q[23] = t1181 + t846 * t1177 + t848 * t1178;
-    const ariane6_real_t t1182 = t849 * t1173 - t617 * t1169 - t850 * t1174 - t851 * t1175;
-    ddq_by_q[29] = t1182 + t854 * t1177 + t857 * t1178;
-    const ariane6_real_t t1183 = t858 * t1173 - t623 * t1169 - t859 * t1174 - t848 * t1175;
-    ddq_by_q[35] = t1183 + t861 * t1177 + t863 * t1178;
-    const ariane6_real_t t1184 = ARIANE6_C(-2.0) * t650 - (parameters[XX6] * t1145 + parameters[XY6] * t1146);
-    const ariane6_real_t t1185 = ARIANE6_C(2.0) * t651 - (parameters[XY6] * t1145 + parameters[YY6] * t1146);
-    const ariane6_real_t t1186 = ARIANE6_C(-2.0) * t653 - parameters[MZ6] * t1146;
-    const ariane6_real_t t1187 = ARIANE6_C(2.0) * t652 - parameters[MZ6] * t1145;
-    const ariane6_real_t t1188 = t2 * t1187 - t1 * t1186;
-    const ariane6_real_t t1189 = t2 * t1184 - t1 * t1185 + ARIANE6_C(0.3) * t1188;
-    const ariane6_real_t t1190 = t809 + (parameters[XZ6] * t1145 + parameters[YZ6] * t1146);
-    const ariane6_real_t t1191 = t17 * t1189 + t13 * t1190;
-    const ariane6_real_t t1192 = t2 * t1186 + t1 * t1187;
-    const ariane6_real_t t1193 = t1 * t1184 + t2 * t1185 + ARIANE6_C(0.3) * t1192;
-    const ariane6_real_t t1194 = parameters[MY6] * t1145 - parameters[MX6] * t1146;
-    const ariane6_real_t t1195 = t17 * t1192 + t13 * t1194;
-    const ariane6_real_t t1196 = t46 * t1195 - t43 * t1188;
-    const ariane6_real_t t1197 = t43 * t1191 - t46 * t1193 + ARIANE6_C(-0.488) * t1196;
-    const ariane6_real_t t1198 = t17 * t1190 - t13 * t1189;
-    const ariane6_real_t t1199 = t1198 - ARIANE6_C(-0.17) * t1196;
-    const ariane6_real_t t1200 = t116 * (t66 * t1197 - t67 * t1199 + ARIANE6_C(0.685) * t1196);
-    const ariane6_real_t t1201 = t115 * (t67 * t1197 + t66 * t1199) + t1200 + ARIANE6_C(0.18) * t1196;
-    const ariane6_real_t t1202 = t596 * t1201;
-    const ariane6_real_t t1203 = t43 * t1195 + t46 * t1188;
-    const ariane6_real_t t1204 = t17 * t1194 - t13 * t1192;
-    const ariane6_real_t t1205 = t46 * t1191 + t43 * t1193 + (ARIANE6_C(-0.17) * t1204
-        + ARIANE6_C(0.488) * t1203);
-    const ariane6_real_t t1206 = t764 * (t1205 + ARIANE6_C(0.685) * (t67 * t1204 - t66 * t1203));
-    const ariane6_real_t t1207 = t773 * t1205;
-    const ariane6_real_t t1208 = ARIANE6_C(0.2) * t1198;
-    const ariane6_real_t t1209 = t1202 * t605 - t1206 * t751 + t1207 * t766 + t1208 * t775;
-    const ariane6_real_t t1210 = t803 * t1193;
-    const ariane6_real_t t1211 = ARIANE6_C(-2.0e3) * parameters[FV6];
-    ddq_by_dq[5] = t1209 - t1210 * t791 + t1211 * t805;
-    const ariane6_real_t t1212 = t1206 * t821 - t1202 * t607 - t1207 * t823 + t1208 * t825;
-    ddq_by_dq[11] = t1212 + t1210 * t828 + t1211 * t830;
-    const ariane6_real_t t1213 = t1206 * t831 - t1202 * t609 - t1207 * t832 + t1208 * t834;
-    ddq_by_dq[17] = t1213 + t1210 * t837 + t1211 * t839;
-    const ariane6_real_t t1214 = t1206 * t840 - t1202 * t612 - t1207 * t841 + t1208 * t843;
-    ddq_by_dq[23] = t1214 + t1210 * t846 + t1211 * t848;
-    const ariane6_real_t t1215 = t1206 * t849 - t1202 * t617 - t1207 * t850 + t1208 * t851;
-    ddq_by_dq[29] = t1215 + t1210 * t854 + t1211 * t857;
-    const ariane6_real_t t1216 = t1206 * t858 - t1202 * t623 - t1207 * t859 + t1208 * t848;
-    ddq_by_dq[35] = t1216 + t1210 * t861 + t1211 * t863;
-    ddq_by_input[5] = t805;
-    ddq_by_input[11] = t830;
-    ddq_by_input[17] = t839;
-    ddq_by_input[23] = t848;
-    ddq_by_input[29] = t857;
-    ddq_by_input[35] = t863;
-    if (!ariane6_all_bounded(ddq, 6)
-        || !ariane6_all_bounded(ddq_by_q, 36)
-        || !ariane6_all_bounded(ddq_by_dq, 36)
-        || !ariane6_all_bounded(ddq_by_input, 36)) {
+    const ariane6_real_t t1034 = t41 * t897 - t44 * t825 - (t126 * t1022 + t76 * t1024);
+    const ariane6_real_t t1035 = t930 + (t75 * t1024 + t126 * t1025);
+    const ariane6_real_t t1036 = t435 * t1034 + t433 * t1035 + (t944 * t77 + (t127 * t452 + t128 * t438));
+    const ariane6_real_t t1037 = ARIANE6_C(0.2) * (t1036 + (t75 * t504 + t76 * t498));
+    ddq_by_q[2] = t1029 - t596 * t1033 + t605 * t1037;
+    const ariane6_real_t t1038 = t607 * t1003 - t606 * t983 + t609 * t1021 + t611 * t1028;
+    ddq_by_q[8] = t1038 + t614 * t1033 + t616 * t1037;
+    const ariane6_real_t t1039 = t618 * t1003 - t617 * t983 + t619 * t1021 + t621 * t1028;
+    ddq_by_q[14] = t1039 + t624 * t1033 + t626 * t1037;
+    const ariane6_real_t t1040 = t628 * t1003 - t627 * t983 + t629 * t1021 + t631 * t1028;
+    ddq_by_q[20] = t1040 + t634 * t1033 + t636 * t1037;
+    const ariane6_real_t t1041 = t638 * t1003 - t637 * t983 + t639 * t1021 + t640 * t1028;
+    ddq_by_q[26] = t1041 + t643 * t1033 + t646 * t1037;
+    const ariane6_real_t t1042 = t648 * t1003 - t647 * t983 + t649 * t1021 + t636 * t1028;
+    ddq_by_q[32] = t1042 + t651 * t1033 + t653 * t1037;
+    const ariane6_real_t t1043 = t962 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t1044 = t435 * t1043 - t204 * parameters[YZ3] + (t847 + t997 + t85 * t949);
+    /* link j3: derivatives */
+    const ariane6_real_t t1045 = ARIANE6_C(2.0) * t1044 + (t136 * t965 - t133 * t960);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t1046 = t204 * parameters[XZ3] + t433 * t1043 - (t44 * t877 + t41 * t878
+        - t85 * t954);
+    /* link j3: derivatives */
+    const ariane6_real_t t1047 = ARIANE6_C(2.0) * t1046 - (t134 * t965 - t136 * t960);
+    const ariane6_real_t t1048 = t94 * t960 + t92 * t965;
+    const ariane6_real_t t1049 = t113 * (t64 * t1045 + t65 * t1047 + ARIANE6_C(0.685) * t1048);
+    const ariane6_real_t t1050 = t112 * (t65 * t1045 - t64 * t1047) + t1049 + ARIANE6_C(0.18) * t1048;
+    const ariane6_real_t t1051 = t571 * t1050;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t1052 = t843 - t946 + t953 - t956 - (t957 + t974);
+    const ariane6_real_t t1053 = ARIANE6_C(2.0) * t1052; /* link j3: derivatives */
+    const ariane6_real_t t1054 = t64 * (ARIANE6_C(2.0) * t979 - t177 * t965) + t65 * (ARIANE6_C(2.0) * t978
+        + t177 * t960);
+    const ariane6_real_t t1055 = t1053 + (t170 * t960 + t171 * t965) + ARIANE6_C(0.685) * t1054;
+    const ariane6_real_t t1056 = t577 * t1055;
+    const ariane6_real_t t1057 = t581 * (t1053 + ARIANE6_C(2.0) * (t435 * t170 + t433 * t171));
+    const ariane6_real_t t1058 = ARIANE6_C(250.0) * (parameters[IA3] * (t399 * (ARIANE6_C(-2.0) * dq[2]))
+        - t71 * parameters[FV3]);
+    const ariane6_real_t t1059 = t1058 - t1057;
+    const ariane6_real_t t1060 = t44 * t890 + t41 * t891 + t85 * t1022; /* link j4: derivatives */
+    const ariane6_real_t t1061 = ARIANE6_C(0.2) * (t1060 + ARIANE6_C(2.0) * (t433 * t163 - t435 * t162));
+    const ariane6_real_t t1062 = t1051 * t573 - t1056 * t580 - t1059 * t584 + t1061 * t588;
+    /* link j5: derivatives */
+    const ariane6_real_t t1063 = t44 * t894 + t41 * t802 + (t79 * t1022 - t52 * t1025);
+    const ariane6_real_t t1064 = t590 * (t1063 + ARIANE6_C(2.0) * (t435 * t156 + t433 * t157));
+    /* link j6: derivatives */
+    const ariane6_real_t t1065 = t44 * t897 + t41 * t825 + (t75 * t1022 - t76 * t1025);
+    const ariane6_real_t t1066 = ARIANE6_C(0.2) * (t1065 + ARIANE6_C(2.0) * (t435 * t127 + t433 * t128));
+    ddq_by_dq[2] = t1062 - t1064 * t596 + t1066 * t605;
+    const ariane6_real_t t1067 = t1056 * t607 - t1051 * t606 + t1059 * t609 + t1061 * t611;
+    ddq_by_dq[8] = t1067 + t1064 * t614 + t1066 * t616;
+    const ariane6_real_t t1068 = t1056 * t618 - t1051 * t617 + t1059 * t619 + t1061 * t621;
+    ddq_by_dq[14] = t1068 + t1064 * t624 + t1066 * t626;
+    const ariane6_real_t t1069 = t1056 * t628 - t1051 * t627 + t1059 * t629 + t1061 * t631;
+    ddq_by_dq[20] = t1069 + t1064 * t634 + t1066 * t636;
+    const ariane6_real_t t1070 = t1056 * t638 - t1051 * t637 + t1059 * t639 + t1061 * t640;
+    ddq_by_dq[26] = t1070 + t1064 * t643 + t1066 * t646;
+    const ariane6_real_t t1071 = t1056 * t648 - t1051 * t647 + t1059 * t649 + t1061 * t636;
+    ddq_by_dq[32] = t1071 + t1064 * t651 + t1066 * t653;
+    ddq_by_input[2] = -t584;
+    ddq_by_input[8] = t609;
+    ddq_by_input[14] = t619;
+    ddq_by_input[20] = t629;
+    ddq_by_input[26] = t639;
+    ddq_by_input[32] = t649;
+    const ariane6_real_t t1072 = parameters[M3] * t491 + (t944 * parameters[MZ3] + (parameters[MY3] * t441
+        - parameters[MX3] * t492));
+    const ariane6_real_t t1073 = t1072 + t939;
+    const ariane6_real_t t1074 = t112 * t423;
+    const ariane6_real_t t1075 = t342 + t1074;
+    const ariane6_real_t t1076 = t342 + t1075;
+    const ariane6_real_t t1077 = t351 - parameters[YY2] * t489 - parameters[XY2] * t1076
+        + parameters[YZ2] * (t199 - t424);
+    const ariane6_real_t t1078 = t355 + t1077 + (t356 - parameters[MX2] * t487) + (t64 * t970 + t65 * t943
+        + ARIANE6_C(-0.685) * t1073);
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1079 = t65 * (t959 - t975) + t64 * (t964 - t973);
+    const ariane6_real_t t1080 = t65 * t1079;
+    const ariane6_real_t t1081 = t65 * t978 + t64 * t979;
+    const ariane6_real_t t1082 = ARIANE6_C(0.685) * t1081;
+    const ariane6_real_t t1083 = ARIANE6_C(-0.685) * dq[1]; /* link j3: velocity of its origin */
+    const ariane6_real_t t1084 = t141 * t1083; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1085 = ARIANE6_C(0.685) * t192; /* link j3: velocity of its origin */
+    const ariane6_real_t t1086 = t177 * t1085; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1087 = t1084 + t1086 - t1082;
+    const ariane6_real_t t1088 = t192 * parameters[XZ2];
+    const ariane6_real_t t1089 = dq[1] * parameters[XY2];
+    const ariane6_real_t t1090 = t1088 - t1089 + (t1087 + (t975 + t1080 + t1082));
+    const ariane6_real_t t1091 = ARIANE6_C(2.0) * t192; /* link j2: derivatives */
+    const ariane6_real_t t1092 = t64 * t1079; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1093 = ARIANE6_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const ariane6_real_t t1094 = t1093 - parameters[YY2];
+    const ariane6_real_t t1095 = t192 * parameters[YZ2] + dq[1] * t1094 + (t1092 - t964);
+    const ariane6_real_t t1096 = ARIANE6_C(-2.0) * t198; /* link j2: derivatives */
+    const ariane6_real_t t1097 = t1090 * t1091 + t1095 * t1096 + (t358 * t178 + (t139 * t488 - t142 * t1074));
+    const ariane6_real_t t1098 = t177 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t1099 = parameters[XX2] * t1075 - t343 + parameters[XY2] * t490
+        + parameters[XZ2] * t496;
+    const ariane6_real_t t1100 = t346 + t1099 - (t347 + parameters[MY2] * t487) + (t64 * t943 - t65 * t970);
+    const ariane6_real_t t1101 = t64 * t978 - t65 * t979; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1102 = parameters[XX2] - t1093;
+    const ariane6_real_t t1103 = dq[1] * t1102 - t198 * parameters[XZ2] + (t973 + t1092
+        + (ARIANE6_C(0.685) * t1101 - t145 * t1083));
+    const ariane6_real_t t1104 = t198 * parameters[YZ2];
+    const ariane6_real_t t1105 = t1089 - t1104 + (t1087 + (t959 - t1080 - t1084));
+    const ariane6_real_t t1106 = t1103 * t1091 + t1105 * t1096 + (t142 * t488 - t140 * t1074 - t358 * t179);
+    const ariane6_real_t t1107 = t112 * (t1078 + (t191 * t1098 + t1097)) + t113 * (t1100 + (t1106
+        - t197 * t1098));
+    const ariane6_real_t t1108 = t198 * parameters[MZ2] - dq[1] * parameters[MX2] + (t1101 + t108 * t1083);
+    const ariane6_real_t t1109 = t192 * parameters[MZ2] - dq[1] * parameters[MY2] - t1081;
+    const ariane6_real_t t1110 = t1108 * t1091 + t1109 * t1096 + (t144 * t488 + t146 * t1074);
+    const ariane6_real_t t1111 = t571 * (t1107 + ARIANE6_C(0.18) * t1110);
+    const ariane6_real_t t1112 = t408 - parameters[ZZ2] * t424 - parameters[YZ2] * t488
+        - parameters[XZ2] * t1074;
+    const ariane6_real_t t1113 = t407 + t1112 - t409 + (t1007 + ARIANE6_C(0.685) * (t64 * t986 - t65 * t993));
+    const ariane6_real_t t1114 = ariane6_select(t116, t116, ARIANE6_C(1.0));
+    const ariane6_real_t t1115 = ARIANE6_C(-1.0) / t1114;
+    const ariane6_real_t t1116 = ARIANE6_C(0.126918) * t114;
+    const ariane6_real_t t1117 = ARIANE6_C(-1.0) / t114;
+    const ariane6_real_t t1118 = t1117 * (ARIANE6_C(0.019697757607273984) * (t1116 * (ARIANE6_C(0.5) * t1115))
+        + t115 * t577);
+    const ariane6_real_t t1119 = t64 * t1000 - t65 * t998 + (ARIANE6_C(0.685) * t988 + t145 * t1085);
+    /* link j2: derivatives */
+    const ariane6_real_t t1120 = ARIANE6_C(2.0) * (t192 * t1102 - t198 * parameters[XY2] + t1119);
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1121 = t192 * parameters[XY2] + t198 * t1094 - (t64 * t998 + t65 * t1000
+        - t141 * t1085);
+    const ariane6_real_t t1122 = ARIANE6_C(2.0) * t1121; /* link j2: derivatives */
+    const ariane6_real_t t1123 = t192 * t1120 - t198 * t1122 + (t358 * t111 + (t178 * t488 + t179 * t1074));
+    const ariane6_real_t t1124 = t117 * (t117 * (t1116 * (ARIANE6_C(0.5) * t117)));
+    const ariane6_real_t t1125 = t114 * (ARIANE6_C(12691.800000000003) * t1124) - t115 * t118;
+    const ariane6_real_t t1126 = t414 * (ARIANE6_C(-1610.8178724000004) * (t117 * t1124))
+        + t413 * (ARIANE6_C(2.0) * (t114 * t115));
+    const ariane6_real_t t1127 = t194 * (t415 * t1124 + t117 * (ARIANE6_C(12691.800000000003) * t114
+        + t1126));
+    const ariane6_real_t t1128 = parameters[FV2] * (dq[1] * t1125) + parameters[IA2] * (t1127 + t424 * t1125);
+    const ariane6_real_t t1129 = ARIANE6_C(250.0) * t1128 + t577 * (t191 * t146 - t197 * t144 + t1123);
+    const ariane6_real_t t1130 = t1129 + t1118 * t1113;
+    const ariane6_real_t t1131 = ARIANE6_C(1.37) * t192; /* link j6: derivatives */
+    const ariane6_real_t t1132 = t64 * t1014 - t65 * t1013 + t95 * t1131; /* link j3: derivatives */
+    const ariane6_real_t t1133 = t64 * t1013 + t65 * t1014 - t141 * t1131;
+    const ariane6_real_t t1134 = t192 * t1132 + t198 * t1133 + (t172 * t488 + t173 * t1074 - t358 * t96);
+    const ariane6_real_t t1135 = t581 * (t191 * t95 - t197 * t141 + t1134);
+    const ariane6_real_t t1136 = ARIANE6_C(-1.37) * dq[1]; /* link j6: derivatives */
+    /* link j4: derivatives */
+    const ariane6_real_t t1137 = t65 * t1023 - t64 * t1026 - (t54 * t1136 + t102 * t1131);
+    const ariane6_real_t t1138 = t65 * t85; /* link j4: column of the mass matrix */
+    const ariane6_real_t t1139 = t64 * t1023 + t65 * t1026 + t1138 * t1131; /* link j4: derivatives */
+    const ariane6_real_t t1140 = t192 * t1137 - t198 * t1139 + (t358 * t103 + (t165 * t1074 - t164 * t488));
+    const ariane6_real_t t1141 = ARIANE6_C(0.2) * (t197 * t1138 + t191 * t102 - t1140);
+    const ariane6_real_t t1142 = t573 * t1111 - t580 * t1130 + t584 * t1135 + t588 * t1141;
+    /* link j5: derivatives */
+    const ariane6_real_t t1143 = t64 * t1031 - t65 * t1030 + (t155 * t1136 + t99 * t1131);
+    const ariane6_real_t t1144 = t64 * t52 - t65 * t79; /* link j5: column of the mass matrix */
+    const ariane6_real_t t1145 = t64 * t1030 + t65 * t1031 - t1144 * t1131; /* link j5: derivatives */
+    const ariane6_real_t t1146 = t192 * t1143 + t198 * t1145 + (t358 * t100 + (t158 * t488 + t159 * t1074));
+    const ariane6_real_t t1147 = t590 * (t191 * t99 - t197 * t1144 + t1146);
+    /* link j6: derivatives */
+    const ariane6_real_t t1148 = t64 * t1035 - t65 * t1034 + (t126 * t1136 + t97 * t1131);
+    const ariane6_real_t t1149 = t64 * t76 - t65 * t75; /* link j6: column of the mass matrix */
+    const ariane6_real_t t1150 = t64 * t1034 + t65 * t1035 - t1149 * t1131; /* link j6: derivatives */
+    const ariane6_real_t t1151 = t192 * t1148 + t198 * t1150 + (t358 * t98 + (t129 * t488 + t130 * t1074));
+    const ariane6_real_t t1152 = ARIANE6_C(0.2) * (t191 * t97 - t197 * t1149 + t1151);
+    ddq_by_q[1] = t1142 - t596 * t1147 + t605 * t1152;
+    const ariane6_real_t t1153 = t607 * t1130 - t606 * t1111 - t609 * t1135 + t611 * t1141;
+    ddq_by_q[7] = t1153 + t614 * t1147 + t616 * t1152;
+    const ariane6_real_t t1154 = t618 * t1130 - t617 * t1111 - t619 * t1135 + t621 * t1141;
+    ddq_by_q[13] = t1154 + t624 * t1147 + t626 * t1152;
+    const ariane6_real_t t1155 = t628 * t1130 - t627 * t1111 - t629 * t1135 + t631 * t1141;
+    ddq_by_q[19] = t1155 + t634 * t1147 + t636 * t1152;
+    const ariane6_real_t t1156 = t638 * t1130 - t637 * t1111 - t639 * t1135 + t640 * t1141;
+    ddq_by_q[25] = t1156 + t643 * t1147 + t646 * t1152;
+    const ariane6_real_t t1157 = t648 * t1130 - t647 * t1111 - t649 * t1135 + t636 * t1141;
+    ddq_by_q[31] = t1157 + t651 * t1147 + t653 * t1152;
+    const ariane6_real_t t1158 = parameters[ZZ2] - t1093;
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1159 = t192 * t1158 - dq[1] * parameters[YZ2] + (t65 * t1044 - t64 * t1046);
+    /* link j2: derivatives */
+    const ariane6_real_t t1160 = t112 * (ARIANE6_C(2.0) * t1159 + (t139 * t1091 + t142 * t1096));
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t1161 = dq[1] * parameters[XZ2] - t198 * t1158 + (t64 * t1044 + t65 * t1046
+        - t177 * t1083);
+    /* link j2: derivatives */
+    const ariane6_real_t t1162 = t113 * (ARIANE6_C(2.0) * t1161 + (t142 * t1091 + t140 * t1096));
+    const ariane6_real_t t1163 = t1160 + t1162 + ARIANE6_C(0.18) * (t144 * t1091 - t146 * t1096);
+    const ariane6_real_t t1164 = t571 * t1163;
+    const ariane6_real_t t1165 = ARIANE6_C(2.0) * (t1088 - t1104 + (t1052 + t1086 - t1087))
+        + ARIANE6_C(2.0) * (t192 * t178 + t198 * t179);
+    const ariane6_real_t t1166 = ARIANE6_C(250.0) * (parameters[IA2] * (t416 * (ARIANE6_C(-2.0) * dq[1]))
+        - t119 * parameters[FV2]);
+    const ariane6_real_t t1167 = t1166 + t577 * t1165;
+    /* link j3: derivatives */
+    const ariane6_real_t t1168 = t1053 - t141 * t1136 + ARIANE6_C(2.0) * (t192 * t172 + t198 * t173);
+    const ariane6_real_t t1169 = t581 * t1168;
+    /* link j4: derivatives */
+    const ariane6_real_t t1170 = t1060 + t1138 * t1136 - ARIANE6_C(2.0) * (t198 * t165 - t192 * t164);
+    const ariane6_real_t t1171 = ARIANE6_C(0.2) * t1170;
+    const ariane6_real_t t1172 = t1164 * t573 - t1167 * t580 + t1169 * t584 + t1171 * t588;
+    /* link j5: derivatives */
+    const ariane6_real_t t1173 = t1063 - t1144 * t1136 + ARIANE6_C(2.0) * (t192 * t158 + t198 * t159);
+    const ariane6_real_t t1174 = t590 * t1173;
+    /* link j6: derivatives */
+    const ariane6_real_t t1175 = t1065 - t1149 * t1136 + ARIANE6_C(2.0) * (t192 * t129 + t198 * t130);
+    const ariane6_real_t t1176 = ARIANE6_C(0.2) * t1175;
+    ddq_by_dq[1] = t1172 - t1174 * t596 + t1176 * t605;
+    const ariane6_real_t t1177 = t1167 * t607 - t1164 * t606 - t1169 * t609 + t1171 * t611;
+    ddq_by_dq[7] = t1177 + t1174 * t614 + t1176 * t616;
+    const ariane6_real_t t1178 = t1167 * t618 - t1164 * t617 - t1169 * t619 + t1171 * t621;
+    ddq_by_dq[13] = t1178 + t1174 * t624 + t1176 * t626;
+    const ariane6_real_t t1179 = t1167 * t628 - t1164 * t627 - t1169 * t629 + t1171 * t631;
+    ddq_by_dq[19] = t1179 + t1174 * t634 + t1176 * t636;
+    const ariane6_real_t t1180 = t1167 * t638 - t1164 * t637 - t1169 * t639 + t1171 * t640;
+    ddq_by_dq[25] = t1180 + t1174 * t643 + t1176 * t646;
+    const ariane6_real_t t1181 = t1167 * t648 - t1164 * t647 - t1169 * t649 + t1171 * t636;
+    ddq_by_dq[31] = t1181 + t1174 * t651 + t1176 * t653;
+    ddq_by_input[1] = -t580;
+    ddq_by_input[7] = t607;
+    ddq_by_input[13] = t618;
+    ddq_by_input[19] = t628;
+    ddq_by_input[25] = t638;
+    ddq_by_input[31] = t648;
+    const ariane6_real_t t1182 = parameters[M2] * t487 + (t359 + (parameters[MX2] * t490
+        - parameters[MY2] * t1076));
+    const ariane6_real_t t1183 = t112 * t1100 - t113 * t1078 + ARIANE6_C(0.18) * (t1182 + t1073);
+    const ariane6_real_t t1184 = ariane6_select(t149, t149, ARIANE6_C(1.0));
+    const ariane6_real_t t1185 = ARIANE6_C(1.0) / t1184;
+    const ariane6_real_t t1186 = ARIANE6_C(0.0406334) * t152;
+    const ariane6_real_t t1187 = ARIANE6_C(1.0) / t152;
+    const ariane6_real_t t1188 = t1187 * (ARIANE6_C(0.061525739908548135) * (t1186 * (ARIANE6_C(0.5) * t1185))
+        + t148 * t571);
+    const ariane6_real_t t1189 = t150 * (t150 * (t1186 * (ARIANE6_C(0.5) * t150)));
+    const ariane6_real_t t1190 = t148 * t151 + t152 * (ARIANE6_C(-4063.3400000000006) * t1189);
+    const ariane6_real_t t1191 = t364 * (ARIANE6_C(165.10731955600002) * (t150 * t1189))
+        + t363 * (ARIANE6_C(2.0) * (t148 * t152));
+    const ariane6_real_t t1192 = t189 * (t365 * t1189 + t150 * (ARIANE6_C(-4063.3400000000006) * t152
+        + t1191));
+    const ariane6_real_t t1193 = parameters[FV1] * (dq[0] * t1190) + parameters[IA1] * (t1192 + t423 * t1190);
+    const ariane6_real_t t1194 = ARIANE6_C(250.0) * t1193 + t1188 * (parameters[ZZ1] * t423 + t1183);
+    ddq_by_q[0] = t573 * t1194;
+    ddq_by_q[6] = -(t606 * t1194);
+    ddq_by_q[12] = -(t617 * t1194);
+    ddq_by_q[18] = -(t627 * t1194);
+    ddq_by_q[24] = -(t637 * t1194);
+    ddq_by_q[30] = -(t647 * t1194);
+    /* link j2: inertia, momentum beyond */
+    const ariane6_real_t t1195 = t113 * (t113 * (t1105 - t1090) + t112 * (t1095 + t1103));
+    const ariane6_real_t t1196 = ARIANE6_C(0.18) * (t113 * t1109 + t112 * t1108)
+        - t1098 * (ARIANE6_C(-0.18) * dq[0]);
+    const ariane6_real_t t1197 = ARIANE6_C(250.0) * (parameters[IA1] * (t366 * (ARIANE6_C(-2.0) * dq[0]))
+        - t153 * parameters[FV1]);
+    const ariane6_real_t t1198 = t1197 + t571 * (ARIANE6_C(2.0) * (t1090 + t1195 + t1196));
+    const ariane6_real_t t1199 = ARIANE6_C(-0.36) * dq[0]; /* link j6: derivatives */
+    /* link j2: derivatives */
+    const ariane6_real_t t1200 = t112 * t1120 + t113 * t1122 - (t113 * t144 + t112 * t146) * t1199;
+    const ariane6_real_t t1201 = t577 * t1200;
+    /* link j3: derivatives */
+    const ariane6_real_t t1202 = t112 * t1132 - t113 * t1133 - (t113 * t141 + t112 * t95) * t1199;
+    const ariane6_real_t t1203 = t581 * t1202;
+    /* link j4: derivatives */
+    const ariane6_real_t t1204 = t112 * t1137 + t113 * t1139 - (t113 * t1138 - t112 * t102) * t1199;
+    const ariane6_real_t t1205 = ARIANE6_C(0.2) * t1204;
+    const ariane6_real_t t1206 = t1198 * t573 - t1201 * t580 + t1203 * t584 - t1205 * t588;
+    /* link j5: derivatives */
+    const ariane6_real_t t1207 = t112 * t1143 - t113 * t1145 - (t113 * t1144 + t112 * t99) * t1199;
+    const ariane6_real_t t1208 = t590 * t1207;
+    /* link j6: derivatives */
+    const ariane6_real_t t1209 = t112 * t1148 - t113 * t1150 - (t113 * t1149 + t112 * t97) * t1199;
+    const ariane6_real_t t1210 = ARIANE6_C(0.2) * t1209;
+    ddq_by_dq[0] = t1206 - t1208 * t596 + t1210 * t605;
+    const ariane6_real_t t1211 = t1201 * t607 - t1198 * t606 - t1203 * t609 - t1205 * t611;
+    ddq_by_dq[6] = t1211 + t1208 * t614 + t1210 * t616;
+    const ariane6_real_t t1212 = t1201 * t618 - t1198 * t617 - t1203 * t619 - t1205 * t621;
+    ddq_by_dq[12] = t1212 + t1208 * t624 + t1210 * t626;
+    const ariane6_real_t t1213 = t1201 * t628 - t1198 * t627 - t1203 * t629 - t1205 * t631;
+    ddq_by_dq[18] = t1213 + t1208 * t634 + t1210 * t636;
+    const ariane6_real_t t1214 = t1201 * t638 - t1198 * t637 - t1203 * t639 - t1205 * t640;
+    ddq_by_dq[24] = t1214 + t1208 * t643 + t1210 * t646;
+    const ariane6_real_t t1215 = t1201 * t648 - t1198 * t647 - t1203 * t649 - t1205 * t636;
+    ddq_by_dq[30] = t1215 + t1208 * t651 + t1210 * t653;
+    ddq_by_input[0] = -t573;
+    ddq_by_input[6] = t606;
+    ddq_by_input[12] = t617;
+    ddq_by_input[18] = t627;
+    ddq_by_input[24] = t637;
+    ddq_by_input[30] = t647;
+    if (!ariane6_bounded(ddq, 6)
+        || !ariane6_bounded(ddq_by_q, 36)
+        || !ariane6_bounded(ddq_by_dq, 36)
+        || !ariane6_bounded(ddq_by_input, 36)) {
         ariane6_zero(ddq, 6);
         ariane6_zero(ddq_by_q, 36);
         ariane6_zero(ddq_by_dq, 36);

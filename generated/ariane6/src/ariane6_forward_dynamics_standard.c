@@ -6,7 +6,7 @@
  * Arm ariane6, description ac2a59ce556c2f1c.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1144 (622 mul, 522 add, 0 neg), 10 div, 4 sqrt, 12 trig, 6 other calls (sign, select and the like).
+ * Operations: 1144 (622 mul, 522 add, 0 neg), 10 div, 4 sqrt, 12 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -107,7 +107,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x13CD28B3UL
+#if ARIANE6_GENERATION != 0xB9B44F76UL
 #error "ariane6.h and ariane6_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -141,19 +141,19 @@ ariane6_status_t ariane6_forward_dynamics_standard(
         return status;
     }
 
-    ariane6_real_t t135, t138;
-    ARIANE6_SINCOS(q[0], &t135, &t138);
-    ariane6_real_t t103, t104;
-    ARIANE6_SINCOS(q[1], &t103, &t104);
-    ariane6_real_t t62, t63;
-    ARIANE6_SINCOS(q[2], &t62, &t63);
-    ariane6_real_t t45, t42;
-    ARIANE6_SINCOS(q[3], &t45, &t42);
+    ariane6_real_t t131, t134;
+    ARIANE6_SINCOS(q[0], &t131, &t134);
+    ariane6_real_t t100, t101;
+    ARIANE6_SINCOS(q[1], &t100, &t101);
+    ariane6_real_t t60, t61;
+    ARIANE6_SINCOS(q[2], &t60, &t61);
+    ariane6_real_t t43, t40;
+    ARIANE6_SINCOS(q[3], &t43, &t40);
     ariane6_real_t t13, t16;
     ARIANE6_SINCOS(q[4], &t13, &t16);
     ariane6_real_t t1, t2;
     ARIANE6_SINCOS(q[5], &t1, &t2);
-    const ariane6_real_t t0 = ariane6_bounded(parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6]);
+    const ariane6_real_t t0 = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
     if (!(t0 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
@@ -174,512 +174,495 @@ ariane6_status_t ariane6_forward_dynamics_standard(
     const ariane6_real_t t15 = ARIANE6_C(1.0) / t14;
     const ariane6_real_t t17 = t16 * (ARIANE6_C(3549.6000000000004) * t15);
     const ariane6_real_t t18 = t12 + t17 * t17 * parameters[IA5];
-    const ariane6_real_t t19 = ariane6_bounded(t18 + t4 * t6);
+    const ariane6_real_t t19 = t18 + t4 * t6;
     if (!(t19 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t20 = t19 + ARIANE6_C(-1.0e-9) * t18;
-    if (!(t20 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
     /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t21 = parameters[XX5] + (parameters[YY6] - t9 + t11);
-    const ariane6_real_t t22 = parameters[YY5] + parameters[ZZ6];
+    const ariane6_real_t t20 = parameters[XX5] + (parameters[YY6] - t9 + t11);
+    const ariane6_real_t t21 = parameters[YY5] + parameters[ZZ6];
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t23 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const ariane6_real_t t24 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + ARIANE6_C(-0.3) * t23;
-    const ariane6_real_t t25 = t24 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t22 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const ariane6_real_t t23 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + ARIANE6_C(-0.3) * t22;
+    const ariane6_real_t t24 = t23 - parameters[XY5]; /* link j6: inertia of it and all beyond */
     /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t26 = t16 * (t22 - t21) - t25 * (ARIANE6_C(2.0) * t13);
-    const ariane6_real_t t27 = t16 * t26;
-    const ariane6_real_t t28 = parameters[ZZ4] + (t21 + t27);
-    const ariane6_real_t t29 = t28 + ARIANE6_C(1.0e4) * parameters[IA4];
-    const ariane6_real_t t30 = t16 * parameters[ZZ6] - t13 * t24; /* link j6: column of the mass matrix */
-    const ariane6_real_t t31 = t30 * t5;
-    const ariane6_real_t t32 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t33 = parameters[XZ5] - (parameters[XY6] - t1 * t8);
-    const ariane6_real_t t34 = t13 * t33 + t16 * t32; /* link j5: column of the mass matrix */
-    const ariane6_real_t t35 = t34 + t30 * t6;
-    const ariane6_real_t t36 = ARIANE6_C(1.0) / t19;
-    const ariane6_real_t t37 = t35 * t36;
-    const ariane6_real_t t38 = ariane6_bounded(t29 + t30 * t31 - t35 * t37);
-    if (!(t38 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t25 = t16 * (t21 - t20) - t24 * (ARIANE6_C(2.0) * t13);
+    const ariane6_real_t t26 = t16 * t25;
+    const ariane6_real_t t27 = parameters[ZZ4] + (t20 + t26);
+    const ariane6_real_t t28 = t27 + ARIANE6_C(1.0e4) * parameters[IA4];
+    const ariane6_real_t t29 = t16 * parameters[ZZ6] - t13 * t23; /* link j6: column of the mass matrix */
+    const ariane6_real_t t30 = t29 * t5;
+    const ariane6_real_t t31 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t32 = parameters[XZ5] - (parameters[XY6] - t1 * t8);
+    const ariane6_real_t t33 = t13 * t32 + t16 * t31; /* link j5: column of the mass matrix */
+    const ariane6_real_t t34 = t33 + t29 * t6;
+    const ariane6_real_t t35 = ARIANE6_C(1.0) / t19;
+    const ariane6_real_t t36 = t34 * t35;
+    const ariane6_real_t t37 = t28 + t29 * t30 - t34 * t36;
+    if (!(t37 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t39 = t38 + ARIANE6_C(-1.0e-9) * t29;
-    if (!(t39 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t40 = parameters[XX4] + (t22 - t27); /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t41 = parameters[YY4] + t12;
-    const ariane6_real_t t43 = t13 * t32 - t16 * t33; /* link j5: column of the mass matrix */
-    const ariane6_real_t t44 = parameters[XY4] + t43; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t38 = parameters[XX4] + (t21 - t26); /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t39 = parameters[YY4] + t12;
+    const ariane6_real_t t41 = t13 * t31 - t16 * t32; /* link j5: column of the mass matrix */
+    const ariane6_real_t t42 = parameters[XY4] + t41; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t46 = t42 * (t40 - t41) + t44 * (ARIANE6_C(-2.0) * t45);
-    const ariane6_real_t t47 = t42 * t46;
+    const ariane6_real_t t44 = t40 * (t38 - t39) + t42 * (ARIANE6_C(-2.0) * t43);
+    const ariane6_real_t t45 = t40 * t44;
     /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t48 = parameters[MY4] - (parameters[MZ5] - t3);
-    const ariane6_real_t t49 = parameters[MX5] - t23; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t50 = parameters[MY5] + (parameters[MZ6] + t10);
-    const ariane6_real_t t51 = t13 * t50 - t16 * t49; /* link j5: column of the mass matrix */
-    const ariane6_real_t t52 = t51 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t53 = t45 * t48 + t42 * t52; /* link j4: column of the mass matrix */
+    const ariane6_real_t t46 = parameters[MY4] - (parameters[MZ5] - t3);
+    const ariane6_real_t t47 = parameters[MX5] - t22; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t48 = parameters[MY5] + (parameters[MZ6] + t10);
+    const ariane6_real_t t49 = t13 * t48 - t16 * t47; /* link j5: column of the mass matrix */
+    const ariane6_real_t t50 = t49 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t51 = t43 * t46 + t40 * t50; /* link j4: column of the mass matrix */
     /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t54 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const ariane6_real_t t55 = ARIANE6_C(0.17) * t54; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t56 = ARIANE6_C(0.17) * (t55 + ARIANE6_C(2.0) * t53);
-    const ariane6_real_t t57 = t16 * t50 + t13 * t49; /* link j5: column of the mass matrix */
-    const ariane6_real_t t58 = parameters[MZ4] + t57; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t59 = ARIANE6_C(0.488) * t54; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t60 = ARIANE6_C(0.488) * (t59 + ARIANE6_C(2.0) * t58);
-    const ariane6_real_t t61 = parameters[ZZ3] + (t40 - t47 + (t56 + t60));
+    const ariane6_real_t t52 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const ariane6_real_t t53 = ARIANE6_C(0.17) * t52; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t54 = ARIANE6_C(0.17) * (t53 + ARIANE6_C(2.0) * t51);
+    const ariane6_real_t t55 = t16 * t48 + t13 * t47; /* link j5: column of the mass matrix */
+    const ariane6_real_t t56 = parameters[MZ4] + t55; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t57 = ARIANE6_C(0.488) * t52; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t58 = ARIANE6_C(0.488) * (t57 + ARIANE6_C(2.0) * t56);
+    const ariane6_real_t t59 = parameters[ZZ3] + (t38 - t45 + (t54 + t58));
     /* joint j3: drive */
-    const ariane6_real_t t64 = ARIANE6_C(0.052335956242943966) * t62 + ARIANE6_C(-0.9986295347545738) * t63;
-    const ariane6_real_t t65 = ARIANE6_C(-0.052335956242943966) * t63 + ARIANE6_C(-0.9986295347545738) * t62;
-    const ariane6_real_t t66 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t65 + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t67 = ARIANE6_C(1.0) / t66;
-    const ariane6_real_t t68 = t64 * (ARIANE6_C(8377.600000000002) * t67);
-    const ariane6_real_t t69 = t61 + t68 * t68 * parameters[IA3];
-    const ariane6_real_t t70 = t16 * t24 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const ariane6_real_t t71 = t16 * t3;
-    const ariane6_real_t t72 = t42 * t71 - t45 * t23;
-    const ariane6_real_t t73 = t13 * t3;
-    const ariane6_real_t t74 = t45 * t70 + t42 * t4 + (ARIANE6_C(0.17) * t73 + ARIANE6_C(0.488) * t72);
-    const ariane6_real_t t75 = t74 * t5;
-    const ariane6_real_t t76 = t42 * t57; /* link j5: column of the mass matrix */
-    const ariane6_real_t t77 = t45 * t43 + t42 * t12 + (ARIANE6_C(0.17) * t51 + ARIANE6_C(0.488) * t76);
-    const ariane6_real_t t78 = t77 + t74 * t6;
-    const ariane6_real_t t79 = t78 * t36;
-    const ariane6_real_t t80 = t25 + t13 * t26 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t81 = t34 - parameters[YZ4];
-    const ariane6_real_t t82 = t45 * t52 - t42 * t48; /* link j4: column of the mass matrix */
-    const ariane6_real_t t83 = t45 * t80 + t42 * t81 + ARIANE6_C(-0.488) * t82;
-    const ariane6_real_t t84 = t83 + t74 * t31 - t78 * t37;
-    const ariane6_real_t t85 = ARIANE6_C(-1.0) / t38;
-    const ariane6_real_t t86 = t84 * t85;
-    const ariane6_real_t t87 = ariane6_bounded(t69 + t74 * t75 - t78 * t79 + t84 * t86);
-    if (!(t87 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t62 = ARIANE6_C(0.052335956242943966) * t60 + ARIANE6_C(-0.9986295347545738) * t61;
+    const ariane6_real_t t63 = ARIANE6_C(-0.052335956242943966) * t61 + ARIANE6_C(-0.9986295347545738) * t60;
+    const ariane6_real_t t64 = ARIANE6_SQRT(ARIANE6_C(0.083776) * t63 + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t65 = ARIANE6_C(1.0) / t64;
+    const ariane6_real_t t66 = t62 * (ARIANE6_C(8377.600000000002) * t65);
+    const ariane6_real_t t67 = t59 + t66 * t66 * parameters[IA3];
+    const ariane6_real_t t68 = t16 * t23 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const ariane6_real_t t69 = t16 * t3;
+    const ariane6_real_t t70 = t40 * t69 - t43 * t22;
+    const ariane6_real_t t71 = t13 * t3;
+    const ariane6_real_t t72 = t43 * t68 + t40 * t4 + (ARIANE6_C(0.17) * t71 + ARIANE6_C(0.488) * t70);
+    const ariane6_real_t t73 = t72 * t5;
+    const ariane6_real_t t74 = t40 * t55; /* link j5: column of the mass matrix */
+    const ariane6_real_t t75 = t43 * t41 + t40 * t12 + (ARIANE6_C(0.17) * t49 + ARIANE6_C(0.488) * t74);
+    const ariane6_real_t t76 = t75 + t72 * t6;
+    const ariane6_real_t t77 = t76 * t35;
+    const ariane6_real_t t78 = t24 + t13 * t25 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t79 = t33 - parameters[YZ4];
+    const ariane6_real_t t80 = t43 * t50 - t40 * t46; /* link j4: column of the mass matrix */
+    const ariane6_real_t t81 = t43 * t78 + t40 * t79 + ARIANE6_C(-0.488) * t80;
+    const ariane6_real_t t82 = t81 + t72 * t30 - t76 * t36;
+    const ariane6_real_t t83 = ARIANE6_C(-1.0) / t37;
+    const ariane6_real_t t84 = t82 * t83;
+    const ariane6_real_t t85 = t67 + t72 * t73 - t76 * t77 + t82 * t84;
+    if (!(t85 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t88 = t87 + ARIANE6_C(-1.0e-9) * t69;
-    if (!(t88 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t89 = t53 + t55; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t90 = parameters[MX3] - t89;
-    const ariane6_real_t t91 = parameters[MY3] + (t58 + t59);
-    const ariane6_real_t t92 = t63 * t90 - t62 * t91; /* link j3: column of the mass matrix */
+    const ariane6_real_t t86 = t51 + t53; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t87 = parameters[MX3] - t86;
+    const ariane6_real_t t88 = parameters[MY3] + (t56 + t57);
+    const ariane6_real_t t89 = t61 * t87 - t60 * t88; /* link j3: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const ariane6_real_t t93 = ARIANE6_C(0.685) * (t62 * t72 + t63 * t73) - t74;
-    const ariane6_real_t t94 = ARIANE6_C(0.685) * (t62 * t76 + t63 * t51) - t77 + t93 * t6;
-    const ariane6_real_t t95 = ARIANE6_C(-0.685) * t92 - t61 + t93 * t75 - t94 * t79;
-    const ariane6_real_t t96 = t83 + ARIANE6_C(0.685) * (t62 * t82) - t93 * t31 + t94 * t37;
-    const ariane6_real_t t97 = t95 - t96 * t86;
-    const ariane6_real_t t98 = ARIANE6_C(1.0) / t87;
-    const ariane6_real_t t99 = t97 * t98;
-    const ariane6_real_t t100 = parameters[M3] + t54; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t101 = ARIANE6_C(0.685) * t100; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t102 = ARIANE6_C(0.685) * (t101 + ARIANE6_C(2.0) * t92);
+    const ariane6_real_t t90 = ARIANE6_C(0.685) * (t60 * t70 + t61 * t71) - t72;
+    const ariane6_real_t t91 = ARIANE6_C(0.685) * (t60 * t74 + t61 * t49) - t75 + t90 * t6;
+    const ariane6_real_t t92 = ARIANE6_C(-0.685) * t89 - t59 + t90 * t73 - t91 * t77;
+    const ariane6_real_t t93 = t81 + ARIANE6_C(0.685) * (t60 * t80) - t90 * t30 + t91 * t36;
+    const ariane6_real_t t94 = t92 - t93 * t84;
+    const ariane6_real_t t95 = ARIANE6_C(1.0) / t85;
+    const ariane6_real_t t96 = t94 * t95;
+    const ariane6_real_t t97 = parameters[M3] + t52; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t98 = ARIANE6_C(0.685) * t97; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t99 = ARIANE6_C(0.685) * (t98 + ARIANE6_C(2.0) * t89);
     /* joint j2: drive */
-    const ariane6_real_t t105 = ARIANE6_C(0.766044443118978) * t103 + ARIANE6_C(0.6427876096865393) * t104;
-    const ariane6_real_t t106 = ARIANE6_C(-0.766044443118978) * t104 + ARIANE6_C(0.6427876096865393) * t103;
-    const ariane6_real_t t107 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t106 + ARIANE6_C(0.420682));
-    const ariane6_real_t t108 = ARIANE6_C(1.0) / t107;
-    const ariane6_real_t t109 = t105 * (ARIANE6_C(12691.800000000003) * t108);
-    const ariane6_real_t t110 = parameters[ZZ2] + (t61 + t102) + t109 * t109 * parameters[IA2];
-    const ariane6_real_t t111 = t93 * t5;
-    const ariane6_real_t t112 = t94 * t36;
-    const ariane6_real_t t113 = t96 * t85;
-    const ariane6_real_t t114 = t110 + t93 * t111 - t94 * t112 + t96 * t113;
-    const ariane6_real_t t115 = ariane6_bounded(t114 - t97 * t99);
-    if (!(t115 > ARIANE6_C(1.0e-12))) {
+    const ariane6_real_t t102 = ARIANE6_C(0.766044443118978) * t100 + ARIANE6_C(0.6427876096865393) * t101;
+    const ariane6_real_t t103 = ARIANE6_C(-0.766044443118978) * t101 + ARIANE6_C(0.6427876096865393) * t100;
+    const ariane6_real_t t104 = ARIANE6_SQRT(ARIANE6_C(0.126918) * t103 + ARIANE6_C(0.420682));
+    const ariane6_real_t t105 = ARIANE6_C(1.0) / t104;
+    const ariane6_real_t t106 = t102 * (ARIANE6_C(12691.800000000003) * t105);
+    const ariane6_real_t t107 = parameters[ZZ2] + (t59 + t99) + t106 * t106 * parameters[IA2];
+    const ariane6_real_t t108 = t90 * t5;
+    const ariane6_real_t t109 = t91 * t35;
+    const ariane6_real_t t110 = t93 * t83;
+    const ariane6_real_t t111 = t107 + t90 * t108 - t91 * t109 + t93 * t110;
+    const ariane6_real_t t112 = t111 - t94 * t96;
+    if (!(t112 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t116 = t115 + ARIANE6_C(-1.0e-9) * t110;
-    if (!(t116 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t117 = t45 * t71 + t42 * t23; /* link j6: column of the mass matrix */
-    const ariane6_real_t t118 = t42 * t70 - t45 * t4 + ARIANE6_C(-0.488) * t117;
-    const ariane6_real_t t119 = t30 + ARIANE6_C(0.17) * t117;
-    const ariane6_real_t t120 = t104 * (t62 * t118 - t63 * t119 + ARIANE6_C(0.685) * t117);
-    const ariane6_real_t t121 = t103 * (t63 * t118 + t62 * t119) + t120 + ARIANE6_C(0.18) * t117;
-    const ariane6_real_t t122 = t121 * t5;
+    const ariane6_real_t t113 = t43 * t69 + t40 * t22; /* link j6: column of the mass matrix */
+    const ariane6_real_t t114 = t40 * t68 - t43 * t4 + ARIANE6_C(-0.488) * t113;
+    const ariane6_real_t t115 = t29 + ARIANE6_C(0.17) * t113;
+    const ariane6_real_t t116 = t101 * (t60 * t114 - t61 * t115 + ARIANE6_C(0.685) * t113);
+    const ariane6_real_t t117 = t100 * (t61 * t114 + t60 * t115) + t116 + ARIANE6_C(0.18) * t113;
+    const ariane6_real_t t118 = t117 * t5;
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t123 = parameters[XX3] + (t41 + t47 + t60);
-    const ariane6_real_t t124 = parameters[YY3] + (t28 + t56);
-    const ariane6_real_t t125 = t45 * t81 - t42 * t80; /* link j4: column of the mass matrix */
+    const ariane6_real_t t119 = parameters[XX3] + (t39 + t45 + t58);
+    const ariane6_real_t t120 = parameters[YY3] + (t27 + t54);
+    const ariane6_real_t t121 = t43 * t79 - t40 * t78; /* link j4: column of the mass matrix */
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t126 = parameters[XY3] + (t125 + (ARIANE6_C(0.17) * t58 + ARIANE6_C(0.488) * t89));
+    const ariane6_real_t t122 = parameters[XY3] + (t121 + (ARIANE6_C(0.17) * t56 + ARIANE6_C(0.488) * t86));
     /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t127 = t63 * (t123 - t124) - t126 * (ARIANE6_C(2.0) * t62);
-    const ariane6_real_t t128 = t63 * t127;
-    const ariane6_real_t t129 = parameters[XX2] + (t124 + t128);
-    const ariane6_real_t t130 = t63 * t91 + t62 * t90; /* link j3: column of the mass matrix */
+    const ariane6_real_t t123 = t61 * (t119 - t120) - t122 * (ARIANE6_C(2.0) * t60);
+    const ariane6_real_t t124 = t61 * t123;
+    const ariane6_real_t t125 = parameters[XX2] + (t120 + t124);
+    const ariane6_real_t t126 = t61 * t88 + t60 * t87; /* link j3: column of the mass matrix */
     /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t131 = (parameters[XY2] + (t126 + t62 * t127
-        + ARIANE6_C(-0.685) * t130)) * (ARIANE6_C(2.0) * t103);
-    const ariane6_real_t t132 = t104 * (parameters[YY2] + (t123 - t128 + t102) - t129) + t131;
+    const ariane6_real_t t127 = (parameters[XY2] + (t122 + t60 * t123
+        + ARIANE6_C(-0.685) * t126)) * (ARIANE6_C(2.0) * t100);
+    const ariane6_real_t t128 = t101 * (parameters[YY2] + (t119 - t124 + t99) - t125) + t127;
     /* link j2: column of the mass matrix */
-    const ariane6_real_t t133 = t104 * (parameters[MX2] + (t92 + t101)) - t103 * (parameters[MY2] + t130);
+    const ariane6_real_t t129 = t101 * (parameters[MX2] + (t89 + t98)) - t100 * (parameters[MY2] + t126);
     /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t134 = t129 + t104 * t132 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2]
-        + t100) + ARIANE6_C(2.0) * t133);
+    const ariane6_real_t t130 = t125 + t101 * t128 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2]
+        + t97) + ARIANE6_C(2.0) * t129);
     /* joint j1: drive */
-    const ariane6_real_t t136 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t135 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t137 = ARIANE6_C(1.0) / t136;
-    const ariane6_real_t t139 = t138 * (ARIANE6_C(4063.3400000000006) * t137);
-    const ariane6_real_t t140 = parameters[ZZ1] + t134 + t139 * t139 * parameters[IA1];
-    const ariane6_real_t t141 = t45 * t57; /* link j5: column of the mass matrix */
-    const ariane6_real_t t142 = t42 * t43 - t45 * t12 + ARIANE6_C(-0.488) * t141;
-    const ariane6_real_t t143 = t34 + ARIANE6_C(0.17) * t141;
-    const ariane6_real_t t144 = t104 * (t62 * t142 - t63 * t143 + ARIANE6_C(0.685) * t141);
-    const ariane6_real_t t145 = t103 * (t63 * t142 + t62 * t143) + t144 + ARIANE6_C(0.18) * t141;
-    const ariane6_real_t t146 = t145 + t121 * t6;
-    const ariane6_real_t t147 = t146 * t36;
-    const ariane6_real_t t148 = ARIANE6_C(-0.488) * t53 - t125; /* link j4: column of the mass matrix */
-    const ariane6_real_t t149 = t28 + ARIANE6_C(0.17) * t53;
-    const ariane6_real_t t150 = t104 * (t62 * t148 - t63 * t149 + ARIANE6_C(0.685) * t53);
-    const ariane6_real_t t151 = t103 * (t63 * t148 + t62 * t149) + t150 + ARIANE6_C(0.18) * t53;
-    const ariane6_real_t t152 = t151 + t121 * t31 - t146 * t37;
-    const ariane6_real_t t153 = t152 * t85;
-    const ariane6_real_t t154 = t140 + t121 * t122 - t146 * t147 + t152 * t153;
+    const ariane6_real_t t132 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t131 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t133 = ARIANE6_C(1.0) / t132;
+    const ariane6_real_t t135 = t134 * (ARIANE6_C(4063.3400000000006) * t133);
+    const ariane6_real_t t136 = parameters[ZZ1] + t130 + t135 * t135 * parameters[IA1];
+    const ariane6_real_t t137 = t43 * t55; /* link j5: column of the mass matrix */
+    const ariane6_real_t t138 = t40 * t41 - t43 * t12 + ARIANE6_C(-0.488) * t137;
+    const ariane6_real_t t139 = t33 + ARIANE6_C(0.17) * t137;
+    const ariane6_real_t t140 = t101 * (t60 * t138 - t61 * t139 + ARIANE6_C(0.685) * t137);
+    const ariane6_real_t t141 = t100 * (t61 * t138 + t60 * t139) + t140 + ARIANE6_C(0.18) * t137;
+    const ariane6_real_t t142 = t141 + t117 * t6;
+    const ariane6_real_t t143 = t142 * t35;
+    const ariane6_real_t t144 = ARIANE6_C(-0.488) * t51 - t121; /* link j4: column of the mass matrix */
+    const ariane6_real_t t145 = t27 + ARIANE6_C(0.17) * t51;
+    const ariane6_real_t t146 = t101 * (t60 * t144 - t61 * t145 + ARIANE6_C(0.685) * t51);
+    const ariane6_real_t t147 = t100 * (t61 * t144 + t60 * t145) + t146 + ARIANE6_C(0.18) * t51;
+    const ariane6_real_t t148 = t147 + t117 * t30 - t142 * t36;
+    const ariane6_real_t t149 = t148 * t83;
+    const ariane6_real_t t150 = t136 + t117 * t118 - t142 * t143 + t148 * t149;
     /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t155 = t44 + t45 * t46 + ARIANE6_C(-0.17) * t82 - parameters[XZ3];
-    const ariane6_real_t t156 = parameters[YZ3] + t83;
-    const ariane6_real_t t157 = t63 * t155 + t62 * t156; /* link j3: column of the mass matrix */
-    const ariane6_real_t t158 = t62 * t155 - t63 * t156;
-    const ariane6_real_t t159 = t103 * t157 + t104 * t158 + t121 * t75 - t146 * t79;
-    const ariane6_real_t t160 = t159 + t152 * t86;
-    const ariane6_real_t t161 = t160 * t98;
+    const ariane6_real_t t151 = t42 + t43 * t44 + ARIANE6_C(-0.17) * t80 - parameters[XZ3];
+    const ariane6_real_t t152 = parameters[YZ3] + t81;
+    const ariane6_real_t t153 = t61 * t151 + t60 * t152; /* link j3: column of the mass matrix */
+    const ariane6_real_t t154 = t60 * t151 - t61 * t152;
+    const ariane6_real_t t155 = t100 * t153 + t101 * t154 + t117 * t73 - t142 * t77;
+    const ariane6_real_t t156 = t155 + t148 * t84;
+    const ariane6_real_t t157 = t156 * t95;
     /* link j2: column of the mass matrix */
-    const ariane6_real_t t162 = t103 * (t157 + ARIANE6_C(0.685) * (parameters[MZ3] + t82) - parameters[XZ2])
-        + t104 * (t158 - parameters[YZ2]);
-    const ariane6_real_t t163 = t162 - t121 * t111 + t146 * t112 + t152 * t113;
-    const ariane6_real_t t164 = t163 + t160 * t99;
-    const ariane6_real_t t165 = ARIANE6_C(1.0) / t115;
-    const ariane6_real_t t166 = t164 * t165;
-    const ariane6_real_t t167 = ariane6_bounded(t154 - t160 * t161 - t164 * t166);
+    const ariane6_real_t t158 = t100 * (t153 + ARIANE6_C(0.685) * (parameters[MZ3] + t80) - parameters[XZ2])
+        + t101 * (t154 - parameters[YZ2]);
+    const ariane6_real_t t159 = t158 - t117 * t108 + t142 * t109 + t148 * t110;
+    const ariane6_real_t t160 = t159 + t156 * t96;
+    const ariane6_real_t t161 = ARIANE6_C(1.0) / t112;
+    const ariane6_real_t t162 = t160 * t161;
+    const ariane6_real_t t163 = t150 - t156 * t157 - t160 * t162;
+    if (!(t163 > ARIANE6_C(1.0e-12))) {
+        ariane6_zero(out, 6);
+        return ARIANE6_STATUS_PIVOT;
+    }
+    const ariane6_real_t t164 = ariane6_min(t19 + ARIANE6_C(-1.0e-9) * t18, t37 + ARIANE6_C(-1.0e-9) * t28);
+    const ariane6_real_t t165 = ariane6_min(t164, t85 + ARIANE6_C(-1.0e-9) * t67);
+    const ariane6_real_t t166 = ariane6_min(t165, t112 + ARIANE6_C(-1.0e-9) * t107);
+    const ariane6_real_t t167 = ariane6_min(t166, t163 + ARIANE6_C(-1.0e-9) * t136);
     if (!(t167 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }
-    const ariane6_real_t t168 = t167 + ARIANE6_C(-1.0e-9) * t140;
-    if (!(t168 > ARIANE6_C(1.0e-12))) {
-        ariane6_zero(out, 6);
-        return ARIANE6_STATUS_PIVOT;
-    }
-    const ariane6_real_t t169 = dq[0] * dq[0]; /* link j1: motion */
-    const ariane6_real_t t170 = ARIANE6_C(0.18) * t169; /* link j2: motion */
-    const ariane6_real_t t171 = t104 * t170 + ARIANE6_C(-9.81) * t103;
-    const ariane6_real_t t172 = t104 * dq[0];
-    const ariane6_real_t t173 = t172 * t172;
-    const ariane6_real_t t174 = dq[1] * dq[1];
-    const ariane6_real_t t175 = t171 + ARIANE6_C(0.685) * (t173 + t174); /* link j3: motion */
-    const ariane6_real_t t176 = ARIANE6_C(-9.81) * t104 - t103 * t170; /* link j2: motion */
-    const ariane6_real_t t177 = t103 * dq[0];
-    const ariane6_real_t t178 = t177 * t172;
-    const ariane6_real_t t179 = t176 + ARIANE6_C(-0.685) * t178; /* link j3: motion */
-    const ariane6_real_t t180 = t63 * t175 + t62 * t179;
-    const ariane6_real_t t181 = t63 * t172 - t62 * t177;
-    const ariane6_real_t t182 = t181 * t181;
-    const ariane6_real_t t183 = dq[1] + dq[2];
-    const ariane6_real_t t184 = t183 * t183;
-    const ariane6_real_t t185 = t184 + t182; /* link j4: motion */
-    const ariane6_real_t t186 = t63 * t177 + t62 * t172; /* link j3: motion */
-    const ariane6_real_t t187 = t186 * t181;
+    const ariane6_real_t t168 = dq[0] * dq[0]; /* link j1: motion */
+    const ariane6_real_t t169 = ARIANE6_C(0.18) * t168; /* link j2: motion */
+    const ariane6_real_t t170 = t101 * t169 + ARIANE6_C(-9.81) * t100;
+    const ariane6_real_t t171 = t101 * dq[0];
+    const ariane6_real_t t172 = t171 * t171;
+    const ariane6_real_t t173 = dq[1] * dq[1];
+    const ariane6_real_t t174 = t170 + ARIANE6_C(0.685) * (t172 + t173); /* link j3: motion */
+    const ariane6_real_t t175 = ARIANE6_C(-9.81) * t101 - t100 * t169; /* link j2: motion */
+    const ariane6_real_t t176 = t100 * dq[0];
+    const ariane6_real_t t177 = t176 * t171;
+    const ariane6_real_t t178 = t175 + ARIANE6_C(-0.685) * t177; /* link j3: motion */
+    const ariane6_real_t t179 = t61 * t174 + t60 * t178;
+    const ariane6_real_t t180 = t61 * t171 - t60 * t176;
+    const ariane6_real_t t181 = t180 * t180;
+    const ariane6_real_t t182 = dq[1] + dq[2];
+    const ariane6_real_t t183 = t182 * t182;
+    const ariane6_real_t t184 = t183 + t181; /* link j4: motion */
+    const ariane6_real_t t185 = t61 * t176 + t60 * t171; /* link j3: motion */
+    const ariane6_real_t t186 = t185 * t180;
     /* link j4: motion */
-    const ariane6_real_t t188 = t180 + (ARIANE6_C(-0.17) * t185 + ARIANE6_C(-0.488) * t187);
-    const ariane6_real_t t189 = t183 * t186; /* link j3: motion */
-    const ariane6_real_t t190 = t183 * t181;
-    const ariane6_real_t t191 = dq[1] * t177; /* link j2: motion */
-    const ariane6_real_t t192 = ARIANE6_C(1.37) * t191; /* link j3: motion */
+    const ariane6_real_t t187 = t179 + (ARIANE6_C(-0.17) * t184 + ARIANE6_C(-0.488) * t186);
+    const ariane6_real_t t188 = t182 * t185; /* link j3: motion */
+    const ariane6_real_t t189 = t182 * t180;
+    const ariane6_real_t t190 = dq[1] * t176; /* link j2: motion */
+    const ariane6_real_t t191 = ARIANE6_C(1.37) * t190; /* link j3: motion */
     /* link j4: motion */
-    const ariane6_real_t t193 = t192 - (ARIANE6_C(0.34) * t189 + ARIANE6_C(-0.976) * t190);
-    const ariane6_real_t t194 = t42 * t188 + t45 * t193;
-    const ariane6_real_t t195 = t63 * t179 - t62 * t175; /* link j3: motion */
-    const ariane6_real_t t196 = t186 * t186;
-    const ariane6_real_t t197 = t184 + t196; /* link j4: motion */
-    const ariane6_real_t t198 = t195 + (ARIANE6_C(0.17) * t187 + ARIANE6_C(0.488) * t197);
-    const ariane6_real_t t199 = t13 * t194 - t16 * t198; /* link j5: motion */
-    const ariane6_real_t t200 = t42 * t186 - t45 * t183; /* link j4: motion */
-    const ariane6_real_t t201 = dq[3] + t181;
-    const ariane6_real_t t202 = t16 * t200 + t13 * t201; /* link j5: motion */
-    const ariane6_real_t t203 = t202 * t202;
-    const ariane6_real_t t204 = t42 * t183 + t45 * t186; /* link j4: motion */
-    const ariane6_real_t t205 = dq[4] + t204; /* link j5: motion */
-    const ariane6_real_t t206 = t205 * t205;
-    const ariane6_real_t t207 = t203 + t206; /* link j6: motion */
-    const ariane6_real_t t208 = t199 - ARIANE6_C(0.3) * t207;
-    const ariane6_real_t t209 = t16 * t194 + t13 * t198; /* link j5: motion */
-    const ariane6_real_t t210 = ARIANE6_C(2.0) * t190; /* link j4: motion */
-    const ariane6_real_t t211 = t45 * t210 - t42 * t187;
-    const ariane6_real_t t212 = t200 * t201;
-    const ariane6_real_t t213 = t211 + t212;
-    const ariane6_real_t t214 = t16 * t201 - t13 * t200; /* link j5: motion */
-    const ariane6_real_t t215 = t202 * t214;
-    const ariane6_real_t t216 = t213 - t215; /* link j6: motion */
-    const ariane6_real_t t217 = t209 + ARIANE6_C(0.3) * t216;
-    const ariane6_real_t t218 = t45 * t188 - t42 * t193; /* link j4: motion */
-    const ariane6_real_t t219 = t45 * t187 + t42 * t210;
-    const ariane6_real_t t220 = t204 * t201;
-    const ariane6_real_t t221 = t219 - t220;
-    const ariane6_real_t t222 = t221 - t220; /* link j5: motion */
-    const ariane6_real_t t223 = t200 * t204; /* link j4: motion */
-    const ariane6_real_t t224 = t223 - t189; /* link j5: motion */
-    const ariane6_real_t t225 = t13 * t224 + t16 * t222;
-    const ariane6_real_t t226 = t214 * t205;
-    const ariane6_real_t t227 = t225 + t226;
-    const ariane6_real_t t228 = t226 + t227; /* link j6: motion */
-    const ariane6_real_t t229 = t218 - ARIANE6_C(0.3) * t228;
-    const ariane6_real_t t230 = t1 * t217 + t2 * t229;
-    const ariane6_real_t t231 = t2 * t228 - t1 * t216;
-    const ariane6_real_t t232 = t1 * t202 + t2 * t205;
-    const ariane6_real_t t233 = dq[5] + t214;
-    const ariane6_real_t t234 = t232 * t233;
-    const ariane6_real_t t235 = t231 - t234;
-    const ariane6_real_t t236 = t2 * t216 + t1 * t228;
-    const ariane6_real_t t237 = t2 * t202 - t1 * t205;
-    const ariane6_real_t t238 = t237 * t233;
-    const ariane6_real_t t239 = t236 + t238;
-    const ariane6_real_t t240 = t238 + t239; /* link j6: force and moment */
-    const ariane6_real_t t241 = parameters[XY6] * t240 - (parameters[XX6] * t235 + t234 * (parameters[YY6]
+    const ariane6_real_t t192 = t191 - (ARIANE6_C(0.34) * t188 + ARIANE6_C(-0.976) * t189);
+    const ariane6_real_t t193 = t40 * t187 + t43 * t192;
+    const ariane6_real_t t194 = t61 * t178 - t60 * t174; /* link j3: motion */
+    const ariane6_real_t t195 = t185 * t185;
+    const ariane6_real_t t196 = t183 + t195; /* link j4: motion */
+    const ariane6_real_t t197 = t194 + (ARIANE6_C(0.17) * t186 + ARIANE6_C(0.488) * t196);
+    const ariane6_real_t t198 = t13 * t193 - t16 * t197; /* link j5: motion */
+    const ariane6_real_t t199 = t40 * t185 - t43 * t182; /* link j4: motion */
+    const ariane6_real_t t200 = dq[3] + t180;
+    const ariane6_real_t t201 = t16 * t199 + t13 * t200; /* link j5: motion */
+    const ariane6_real_t t202 = t201 * t201;
+    const ariane6_real_t t203 = t40 * t182 + t43 * t185; /* link j4: motion */
+    const ariane6_real_t t204 = dq[4] + t203; /* link j5: motion */
+    const ariane6_real_t t205 = t204 * t204;
+    const ariane6_real_t t206 = t202 + t205; /* link j6: motion */
+    const ariane6_real_t t207 = t198 - ARIANE6_C(0.3) * t206;
+    const ariane6_real_t t208 = t16 * t193 + t13 * t197; /* link j5: motion */
+    const ariane6_real_t t209 = ARIANE6_C(2.0) * t189; /* link j4: motion */
+    const ariane6_real_t t210 = t43 * t209 - t40 * t186;
+    const ariane6_real_t t211 = t199 * t200;
+    const ariane6_real_t t212 = t210 + t211;
+    const ariane6_real_t t213 = t16 * t200 - t13 * t199; /* link j5: motion */
+    const ariane6_real_t t214 = t201 * t213;
+    const ariane6_real_t t215 = t212 - t214; /* link j6: motion */
+    const ariane6_real_t t216 = t208 + ARIANE6_C(0.3) * t215;
+    const ariane6_real_t t217 = t43 * t187 - t40 * t192; /* link j4: motion */
+    const ariane6_real_t t218 = t43 * t186 + t40 * t209;
+    const ariane6_real_t t219 = t203 * t200;
+    const ariane6_real_t t220 = t218 - t219;
+    const ariane6_real_t t221 = t220 - t219; /* link j5: motion */
+    const ariane6_real_t t222 = t199 * t203; /* link j4: motion */
+    const ariane6_real_t t223 = t222 - t188; /* link j5: motion */
+    const ariane6_real_t t224 = t13 * t223 + t16 * t221;
+    const ariane6_real_t t225 = t213 * t204;
+    const ariane6_real_t t226 = t224 + t225;
+    const ariane6_real_t t227 = t225 + t226; /* link j6: motion */
+    const ariane6_real_t t228 = t217 - ARIANE6_C(0.3) * t227;
+    const ariane6_real_t t229 = t1 * t216 + t2 * t228;
+    const ariane6_real_t t230 = t2 * t227 - t1 * t215;
+    const ariane6_real_t t231 = t1 * t201 + t2 * t204;
+    const ariane6_real_t t232 = dq[5] + t213;
+    const ariane6_real_t t233 = t231 * t232;
+    const ariane6_real_t t234 = t230 - t233;
+    const ariane6_real_t t235 = t2 * t215 + t1 * t227;
+    const ariane6_real_t t236 = t2 * t201 - t1 * t204;
+    const ariane6_real_t t237 = t236 * t232;
+    const ariane6_real_t t238 = t235 + t237;
+    const ariane6_real_t t239 = t237 + t238; /* link j6: force and moment */
+    const ariane6_real_t t240 = parameters[XY6] * t239 - (parameters[XX6] * t234 + t233 * (parameters[YY6]
         - parameters[ZZ6]));
-    const ariane6_real_t t242 = t13 * t222 - t16 * t224; /* link j5: motion */
-    const ariane6_real_t t243 = t202 * t205;
-    const ariane6_real_t t244 = t242 + t243;
-    const ariane6_real_t t245 = t237 * t232; /* link j6: motion */
-    const ariane6_real_t t246 = t244 + t245; /* link j6: force and moment */
-    const ariane6_real_t t247 = t232 * t232; /* link j6: motion */
-    const ariane6_real_t t248 = t233 * t233;
+    const ariane6_real_t t241 = t13 * t221 - t16 * t223; /* link j5: motion */
+    const ariane6_real_t t242 = t201 * t204;
+    const ariane6_real_t t243 = t241 + t242;
+    const ariane6_real_t t244 = t236 * t231; /* link j6: motion */
+    const ariane6_real_t t245 = t243 + t244; /* link j6: force and moment */
+    const ariane6_real_t t246 = t231 * t231; /* link j6: motion */
+    const ariane6_real_t t247 = t232 * t232;
     /* link j6: force and moment */
-    const ariane6_real_t t249 = t241 + parameters[XZ6] * t246 - parameters[YZ6] * (t247 - t248)
-        - (parameters[MY6] * t208 - parameters[MZ6] * t230);
-    const ariane6_real_t t250 = t2 * t217 - t1 * t229; /* link j6: motion */
-    const ariane6_real_t t251 = t235 - t234; /* link j6: force and moment */
-    const ariane6_real_t t252 = parameters[XY6] * t251 - (parameters[YY6] * t239 + t238 * (parameters[ZZ6]
+    const ariane6_real_t t248 = t240 + parameters[XZ6] * t245 - parameters[YZ6] * (t246 - t247)
+        - (parameters[MY6] * t207 - parameters[MZ6] * t229);
+    const ariane6_real_t t249 = t2 * t216 - t1 * t228; /* link j6: motion */
+    const ariane6_real_t t250 = t234 - t233; /* link j6: force and moment */
+    const ariane6_real_t t251 = parameters[XY6] * t250 - (parameters[YY6] * t238 + t237 * (parameters[ZZ6]
         - parameters[XX6]));
-    const ariane6_real_t t253 = t245 - t244;
-    const ariane6_real_t t254 = t237 * t237; /* link j6: motion */
+    const ariane6_real_t t252 = t244 - t243;
+    const ariane6_real_t t253 = t236 * t236; /* link j6: motion */
     /* link j6: force and moment */
-    const ariane6_real_t t255 = t252 + parameters[YZ6] * t253 + parameters[XZ6] * (t248 - t254)
-        - (parameters[MZ6] * t250 + parameters[MX6] * t208);
-    const ariane6_real_t t256 = parameters[MX6] * (t247 + t248) + parameters[MY6] * t253
-        + parameters[MZ6] * t236;
-    const ariane6_real_t t257 = parameters[M6] * t250 + t256;
-    const ariane6_real_t t258 = parameters[MX6] * t246 + parameters[MY6] * (t254 + t248)
-        + parameters[MZ6] * t231;
-    const ariane6_real_t t259 = parameters[M6] * t230 - t258;
-    const ariane6_real_t t260 = t1 * t257 - t2 * t259; /* link j6: what it passes on */
-    const ariane6_real_t t261 = t243 + t244; /* link j6: motion */
+    const ariane6_real_t t254 = t251 + parameters[YZ6] * t252 + parameters[XZ6] * (t247 - t253)
+        - (parameters[MZ6] * t249 + parameters[MX6] * t207);
+    const ariane6_real_t t255 = parameters[MX6] * (t246 + t247) + parameters[MY6] * t252
+        + parameters[MZ6] * t235;
+    const ariane6_real_t t256 = parameters[M6] * t249 + t255;
+    const ariane6_real_t t257 = parameters[MX6] * t245 + parameters[MY6] * (t253 + t247)
+        + parameters[MZ6] * t230;
+    const ariane6_real_t t258 = parameters[M6] * t229 - t257;
+    const ariane6_real_t t259 = t1 * t256 - t2 * t258; /* link j6: what it passes on */
+    const ariane6_real_t t260 = t242 + t243; /* link j6: motion */
     /* link j5: force and moment */
-    const ariane6_real_t t262 = t226 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t227
-        + parameters[XY5] * t261;
-    const ariane6_real_t t263 = t213 + t215; /* link j6: motion */
-    const ariane6_real_t t264 = t214 * t214; /* link j5: motion */
+    const ariane6_real_t t261 = t225 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t226
+        + parameters[XY5] * t260;
+    const ariane6_real_t t262 = t212 + t214; /* link j6: motion */
+    const ariane6_real_t t263 = t213 * t213; /* link j5: motion */
     /* link j5: force and moment */
-    const ariane6_real_t t265 = t262 - parameters[XZ5] * t263 + parameters[YZ5] * (t206 - t264)
-        + (parameters[MY5] * t218 + parameters[MZ5] * t199);
+    const ariane6_real_t t264 = t261 - parameters[XZ5] * t262 + parameters[YZ5] * (t205 - t263)
+        + (parameters[MY5] * t217 + parameters[MZ5] * t198);
     /* link j6: what it passes on */
-    const ariane6_real_t t266 = t265 + (t2 * t249 + t1 * t255 + ARIANE6_C(-0.3) * t260);
+    const ariane6_real_t t265 = t264 + (t2 * t248 + t1 * t254 + ARIANE6_C(-0.3) * t259);
     /* link j5: force and moment */
-    const ariane6_real_t t267 = parameters[XY5] * t228 - (parameters[YY5] * t244 + t243 * (parameters[ZZ5]
+    const ariane6_real_t t266 = parameters[XY5] * t227 - (parameters[YY5] * t243 + t242 * (parameters[ZZ5]
         - parameters[XX5]));
-    const ariane6_real_t t268 = t267 + parameters[YZ5] * t216 + parameters[XZ5] * (t206 - t203)
-        + (parameters[MX5] * t218 - parameters[MZ5] * t209);
+    const ariane6_real_t t267 = t266 + parameters[YZ5] * t215 + parameters[XZ5] * (t205 - t202)
+        + (parameters[MX5] * t217 - parameters[MZ5] * t208);
     /* link j6: force and moment */
-    const ariane6_real_t t269 = t7 * t245 - parameters[ZZ6] * t244 - parameters[YZ6] * t236
-        + parameters[XZ6] * t231;
-    const ariane6_real_t t270 = t269 + parameters[XY6] * (t254 - t247) + (parameters[MX6] * t230
-        + parameters[MY6] * t250);
-    const ariane6_real_t t271 = t268 + t270; /* link j6: what it passes on */
-    const ariane6_real_t t272 = t212 + t213; /* link j5: motion */
+    const ariane6_real_t t268 = t7 * t244 - parameters[ZZ6] * t243 - parameters[YZ6] * t235
+        + parameters[XZ6] * t230;
+    const ariane6_real_t t269 = t268 + parameters[XY6] * (t253 - t246) + (parameters[MX6] * t229
+        + parameters[MY6] * t249);
+    const ariane6_real_t t270 = t267 + t269; /* link j6: what it passes on */
+    const ariane6_real_t t271 = t211 + t212; /* link j5: motion */
     /* link j4: force and moment */
-    const ariane6_real_t t273 = t220 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t221
-        + parameters[XY4] * t272;
-    const ariane6_real_t t274 = t189 + t223; /* link j5: motion */
-    const ariane6_real_t t275 = t204 * t204; /* link j4: motion */
-    const ariane6_real_t t276 = t201 * t201;
+    const ariane6_real_t t272 = t219 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t220
+        + parameters[XY4] * t271;
+    const ariane6_real_t t273 = t188 + t222; /* link j5: motion */
+    const ariane6_real_t t274 = t203 * t203; /* link j4: motion */
+    const ariane6_real_t t275 = t200 * t200;
     /* link j4: force and moment */
-    const ariane6_real_t t277 = t273 + parameters[XZ4] * t274 + parameters[YZ4] * (t276 - t275)
-        + (parameters[MY4] * t198 + parameters[MZ4] * t218);
-    const ariane6_real_t t278 = t277 + (t16 * t266 + t13 * t271); /* link j5: what it passes on */
-    const ariane6_real_t t279 = t2 * t257 + t1 * t259; /* link j6: what it passes on */
+    const ariane6_real_t t276 = t272 + parameters[XZ4] * t273 + parameters[YZ4] * (t275 - t274)
+        + (parameters[MY4] * t197 + parameters[MZ4] * t217);
+    const ariane6_real_t t277 = t276 + (t16 * t265 + t13 * t270); /* link j5: what it passes on */
+    const ariane6_real_t t278 = t2 * t256 + t1 * t258; /* link j6: what it passes on */
     /* link j5: force and moment */
-    const ariane6_real_t t280 = parameters[YZ5] * t242 - (parameters[ZZ5] * t213 + t215 * (parameters[YY5]
+    const ariane6_real_t t279 = parameters[YZ5] * t241 - (parameters[ZZ5] * t212 + t214 * (parameters[YY5]
         - parameters[XX5]));
-    const ariane6_real_t t281 = t280 - parameters[XZ5] * t225 + parameters[XY5] * (t264 - t203)
-        - (parameters[MX5] * t199 + parameters[MY5] * t209);
+    const ariane6_real_t t280 = t279 - parameters[XZ5] * t224 + parameters[XY5] * (t263 - t202)
+        - (parameters[MX5] * t198 + parameters[MY5] * t208);
     /* link j6: what it passes on */
-    const ariane6_real_t t282 = t281 + (t2 * t255 - t1 * t249 + ARIANE6_C(-0.3) * t279);
+    const ariane6_real_t t281 = t280 + (t2 * t254 - t1 * t248 + ARIANE6_C(-0.3) * t278);
     /* link j4: force and moment */
-    const ariane6_real_t t283 = parameters[XY4] * t222 - (parameters[YY4] * t213 + t212 * (parameters[ZZ4]
+    const ariane6_real_t t282 = parameters[XY4] * t221 - (parameters[YY4] * t212 + t211 * (parameters[ZZ4]
         - parameters[XX4]));
-    const ariane6_real_t t284 = t200 * t200; /* link j4: motion */
+    const ariane6_real_t t283 = t199 * t199; /* link j4: motion */
     /* link j4: force and moment */
-    const ariane6_real_t t285 = t283 + parameters[YZ4] * t224 + parameters[XZ4] * (t276 - t284)
-        + (parameters[MX4] * t198 - parameters[MZ4] * t194);
-    const ariane6_real_t t286 = t285 + t282; /* link j5: what it passes on */
+    const ariane6_real_t t284 = t282 + parameters[YZ4] * t223 + parameters[XZ4] * (t275 - t283)
+        + (parameters[MX4] * t197 - parameters[MZ4] * t193);
+    const ariane6_real_t t285 = t284 + t281; /* link j5: what it passes on */
     /* link j5: force and moment */
-    const ariane6_real_t t287 = parameters[MX5] * (t264 + t206) + parameters[MY5] * t216
-        + parameters[MZ5] * t242;
-    const ariane6_real_t t288 = parameters[M5] * t209 + t287 + t279; /* link j6: what it passes on */
+    const ariane6_real_t t286 = parameters[MX5] * (t263 + t205) + parameters[MY5] * t215
+        + parameters[MZ5] * t241;
+    const ariane6_real_t t287 = parameters[M5] * t208 + t286 + t278; /* link j6: what it passes on */
     /* link j6: force and moment */
-    const ariane6_real_t t289 = parameters[MX6] * t240 + parameters[MY6] * t251 - parameters[MZ6] * (t254
-        + t247);
+    const ariane6_real_t t288 = parameters[MX6] * t239 + parameters[MY6] * t250 - parameters[MZ6] * (t253
+        + t246);
     /* link j5: force and moment */
-    const ariane6_real_t t290 = parameters[M5] * t199 + (parameters[MX5] * t263 - parameters[MY5] * t207
-        - parameters[MZ5] * t225);
-    const ariane6_real_t t291 = t290 + (parameters[M6] * t208 + t289); /* link j6: what it passes on */
+    const ariane6_real_t t289 = parameters[M5] * t198 + (parameters[MX5] * t262 - parameters[MY5] * t206
+        - parameters[MZ5] * t224);
+    const ariane6_real_t t290 = t289 + (parameters[M6] * t207 + t288); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const ariane6_real_t t292 = parameters[MX4] * (t275 + t276) + parameters[MY4] * t224
-        + parameters[MZ4] * t211;
+    const ariane6_real_t t291 = parameters[MX4] * (t274 + t275) + parameters[MY4] * t223
+        + parameters[MZ4] * t210;
     /* link j5: what it passes on */
-    const ariane6_real_t t293 = parameters[M4] * t194 + t292 + (t16 * t288 + t13 * t291);
+    const ariane6_real_t t292 = parameters[M4] * t193 + t291 + (t16 * t287 + t13 * t290);
     /* link j5: force and moment */
-    const ariane6_real_t t294 = parameters[MX5] * t261 + parameters[MY5] * t228 - parameters[MZ5] * (t203
-        + t264);
+    const ariane6_real_t t293 = parameters[MX5] * t260 + parameters[MY5] * t227 - parameters[MZ5] * (t202
+        + t263);
     /* link j4: force and moment */
-    const ariane6_real_t t295 = parameters[MX4] * t274 + parameters[MY4] * (t284 + t276)
-        + parameters[MZ4] * t219;
+    const ariane6_real_t t294 = parameters[MX4] * t273 + parameters[MY4] * (t283 + t275)
+        + parameters[MZ4] * t218;
     /* link j5: what it passes on */
-    const ariane6_real_t t296 = t295 - parameters[M4] * t218 + (t294 - parameters[M5] * t218 + t260);
-    const ariane6_real_t t297 = t45 * t293 + t42 * t296; /* link j4: what it passes on */
-    const ariane6_real_t t298 = ARIANE6_C(2.0) * t189; /* link j4: motion */
+    const ariane6_real_t t295 = t294 - parameters[M4] * t217 + (t293 - parameters[M5] * t217 + t259);
+    const ariane6_real_t t296 = t43 * t292 + t40 * t295; /* link j4: what it passes on */
+    const ariane6_real_t t297 = ARIANE6_C(2.0) * t188; /* link j4: motion */
     /* link j3: force and moment */
-    const ariane6_real_t t299 = parameters[XY3] * t298 - (parameters[XX3] * t190 + t190 * (parameters[ZZ3]
+    const ariane6_real_t t298 = parameters[XY3] * t297 - (parameters[XX3] * t189 + t189 * (parameters[ZZ3]
         - parameters[YY3]));
-    const ariane6_real_t t300 = t299 - parameters[XZ3] * t187 + parameters[YZ3] * (t184 - t182)
-        - (parameters[MY3] * t192 + parameters[MZ3] * t195);
+    const ariane6_real_t t299 = t298 - parameters[XZ3] * t186 + parameters[YZ3] * (t183 - t181)
+        - (parameters[MY3] * t191 + parameters[MZ3] * t194);
     /* link j4: what it passes on */
-    const ariane6_real_t t301 = t300 + (t42 * t278 + t45 * t286 + ARIANE6_C(-0.488) * t297);
+    const ariane6_real_t t300 = t299 + (t40 * t277 + t43 * t285 + ARIANE6_C(-0.488) * t296);
     /* link j4: force and moment */
-    const ariane6_real_t t302 = parameters[ZZ4] * t189 - t223 * (parameters[XX4] - parameters[YY4])
-        + parameters[YZ4] * t211;
-    const ariane6_real_t t303 = t302 - parameters[XZ4] * t219 - parameters[XY4] * (t284 - t275)
-        - (parameters[MX4] * t218 + parameters[MY4] * t194);
-    const ariane6_real_t t304 = t303 + (t13 * t266 - t16 * t271); /* link j5: what it passes on */
+    const ariane6_real_t t301 = parameters[ZZ4] * t188 - t222 * (parameters[XX4] - parameters[YY4])
+        + parameters[YZ4] * t210;
+    const ariane6_real_t t302 = t301 - parameters[XZ4] * t218 - parameters[XY4] * (t283 - t274)
+        - (parameters[MX4] * t217 + parameters[MY4] * t193);
+    const ariane6_real_t t303 = t302 + (t13 * t265 - t16 * t270); /* link j5: what it passes on */
     /* link j3: force and moment */
-    const ariane6_real_t t305 = parameters[YY3] * t189 - t189 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t210;
-    const ariane6_real_t t306 = t305 + parameters[YZ3] * t187 - parameters[XZ3] * (t184 - t196)
-        + (parameters[MZ3] * t180 + parameters[MX3] * t192);
-    const ariane6_real_t t307 = t306 + (t304 - ARIANE6_C(0.17) * t297); /* link j4: what it passes on */
-    const ariane6_real_t t308 = dq[1] * t172; /* link j2: motion */
-    const ariane6_real_t t309 = ARIANE6_C(2.0) * t191;
+    const ariane6_real_t t304 = parameters[YY3] * t188 - t188 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t209;
+    const ariane6_real_t t305 = t304 + parameters[YZ3] * t186 - parameters[XZ3] * (t183 - t195)
+        + (parameters[MZ3] * t179 + parameters[MX3] * t191);
+    const ariane6_real_t t306 = t305 + (t303 - ARIANE6_C(0.17) * t296); /* link j4: what it passes on */
+    const ariane6_real_t t307 = dq[1] * t171; /* link j2: motion */
+    const ariane6_real_t t308 = ARIANE6_C(2.0) * t190;
     /* link j2: force and moment */
-    const ariane6_real_t t310 = t308 * (parameters[YY2] - parameters[ZZ2]) - t308 * parameters[XX2]
-        + t309 * parameters[XY2];
-    const ariane6_real_t t311 = t310 - t178 * parameters[XZ2] + (t174 - t173) * parameters[YZ2]
-        - t176 * parameters[MZ2];
+    const ariane6_real_t t309 = t307 * (parameters[YY2] - parameters[ZZ2]) - t307 * parameters[XX2]
+        + t308 * parameters[XY2];
+    const ariane6_real_t t310 = t309 - t177 * parameters[XZ2] + (t173 - t172) * parameters[YZ2]
+        - t175 * parameters[MZ2];
     /* link j3: force and moment */
-    const ariane6_real_t t312 = parameters[MX3] * t298 + parameters[MY3] * t210 - parameters[MZ3] * (t196
-        + t182);
-    const ariane6_real_t t313 = parameters[M3] * t192 + t312 + t297; /* link j4: what it passes on */
-    const ariane6_real_t t314 = ARIANE6_C(2.0) * t308; /* link j2: motion */
+    const ariane6_real_t t311 = parameters[MX3] * t297 + parameters[MY3] * t209 - parameters[MZ3] * (t195
+        + t181);
+    const ariane6_real_t t312 = parameters[M3] * t191 + t311 + t296; /* link j4: what it passes on */
+    const ariane6_real_t t313 = ARIANE6_C(2.0) * t307; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane6_real_t t315 = t191 * parameters[YY2] + t191 * (parameters[ZZ2] - parameters[XX2])
-        - t314 * parameters[XY2];
-    const ariane6_real_t t316 = t177 * t177; /* link j2: motion */
+    const ariane6_real_t t314 = t190 * parameters[YY2] + t190 * (parameters[ZZ2] - parameters[XX2])
+        - t313 * parameters[XY2];
+    const ariane6_real_t t315 = t176 * t176; /* link j2: motion */
     /* link j2: force and moment */
-    const ariane6_real_t t317 = t315 + t178 * parameters[YZ2] + (t316 - t174) * parameters[XZ2]
-        + t171 * parameters[MZ2];
+    const ariane6_real_t t316 = t314 + t177 * parameters[YZ2] + (t315 - t173) * parameters[XZ2]
+        + t170 * parameters[MZ2];
     /* link j3: what it passes on */
-    const ariane6_real_t t318 = t317 + (t62 * t301 + t63 * t307 + ARIANE6_C(0.685) * t313);
+    const ariane6_real_t t317 = t316 + (t60 * t300 + t61 * t306 + ARIANE6_C(0.685) * t312);
     /* link j2: what it passes on */
-    const ariane6_real_t t319 = t103 * (t311 + (t63 * t301 - t62 * t307)) + t104 * t318;
+    const ariane6_real_t t318 = t100 * (t310 + (t61 * t300 - t60 * t306)) + t101 * t317;
     /* link j2: force and moment */
-    const ariane6_real_t t320 = t309 * parameters[MX2] + t314 * parameters[MY2] - (t316
-        + t173) * parameters[MZ2];
-    const ariane6_real_t t321 = t139 * dq[0];
-    const ariane6_real_t t322 = ariane6_sign(t321); /* joint j1: coulomb_friction */
+    const ariane6_real_t t319 = t308 * parameters[MX2] + t313 * parameters[MY2] - (t315
+        + t172) * parameters[MZ2];
+    const ariane6_real_t t320 = t135 * dq[0];
+    const ariane6_real_t t321 = ariane6_sign(t320); /* joint j1: coulomb_friction */
     /* joint j1: drive */
-    const ariane6_real_t t323 = ARIANE6_C(4063.3400000000006) * t135
-        + ARIANE6_C(82.55365977800001) * (t137 * t137) * (t138 * t138);
-    const ariane6_real_t t324 = t137 * t323 * t169 * parameters[IA1] - (t321 * parameters[FV1]
-        + t322 * parameters[FC1]);
-    const ariane6_real_t t325 = input[0] * (ARIANE6_C(0.004) * t139) + (t139 * t324 + (t319
-        + ARIANE6_C(0.18) * (t320 + t313)));
-    const ariane6_real_t t326 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
-    const ariane6_real_t t327 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6]
-        + t326 * parameters[FC6]) + t270;
-    const ariane6_real_t t328 = ARIANE6_C(5.0) * input[5] - t327;
-    const ariane6_real_t t329 = t17 * dq[4];
-    const ariane6_real_t t330 = ariane6_sign(t329); /* joint j5: coulomb_friction */
+    const ariane6_real_t t322 = ARIANE6_C(4063.3400000000006) * t131
+        + ARIANE6_C(82.55365977800001) * (t133 * t133) * (t134 * t134);
+    const ariane6_real_t t323 = t133 * t322 * t168 * parameters[IA1] - (t320 * parameters[FV1]
+        + t321 * parameters[FC1]);
+    const ariane6_real_t t324 = input[0] * (ARIANE6_C(0.004) * t135) + (t135 * t323 + (t318
+        + ARIANE6_C(0.18) * (t319 + t312)));
+    const ariane6_real_t t325 = ariane6_sign(dq[5]); /* joint j6: coulomb_friction */
+    const ariane6_real_t t326 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[5] * parameters[FV6]
+        + t325 * parameters[FC6]) + t269;
+    const ariane6_real_t t327 = ARIANE6_C(5.0) * input[5] - t326;
+    const ariane6_real_t t328 = t17 * dq[4];
+    const ariane6_real_t t329 = ariane6_sign(t328); /* joint j5: coulomb_friction */
     /* joint j5: drive */
-    const ariane6_real_t t331 = ARIANE6_C(3549.6000000000004) * t13
+    const ariane6_real_t t330 = ARIANE6_C(3549.6000000000004) * t13
         + ARIANE6_C(62.9983008) * (t15 * t15) * (t16 * t16);
-    const ariane6_real_t t332 = t329 * parameters[FV5] + t330 * parameters[FC5]
-        - t15 * t331 * (dq[4] * dq[4]) * parameters[IA5];
-    const ariane6_real_t t333 = input[4] * (ARIANE6_C(0.004) * t17) - (t17 * t332 - t282) + t328 * t6;
-    const ariane6_real_t t334 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ariane6_real_t t335 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4]
-        + t334 * parameters[FC4]) - t304;
-    const ariane6_real_t t336 = ARIANE6_C(5.0) * input[3] - t335 + t328 * t31 - t333 * t37;
-    const ariane6_real_t t337 = t325 - t328 * t122 + t333 * t147 - t336 * t153;
-    const ariane6_real_t t338 = t42 * t293 - t45 * t296; /* link j4: what it passes on */
+    const ariane6_real_t t331 = t328 * parameters[FV5] + t329 * parameters[FC5]
+        - t15 * t330 * (dq[4] * dq[4]) * parameters[IA5];
+    const ariane6_real_t t332 = input[4] * (ARIANE6_C(0.004) * t17) - (t17 * t331 - t281) + t327 * t6;
+    const ariane6_real_t t333 = ariane6_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ariane6_real_t t334 = ARIANE6_C(1.0e2) * (ARIANE6_C(1.0e2) * dq[3] * parameters[FV4]
+        + t333 * parameters[FC4]) - t303;
+    const ariane6_real_t t335 = ARIANE6_C(5.0) * input[3] - t334 + t327 * t30 - t332 * t36;
+    const ariane6_real_t t336 = t324 - t327 * t118 + t332 * t143 - t335 * t149;
+    const ariane6_real_t t337 = t40 * t292 - t43 * t295; /* link j4: what it passes on */
     /* link j4: force and moment */
-    const ariane6_real_t t339 = parameters[MZ4] * (t284 + t275) - (parameters[MX4] * t272
-        + parameters[MY4] * t222);
+    const ariane6_real_t t338 = parameters[MZ4] * (t283 + t274) - (parameters[MX4] * t271
+        + parameters[MY4] * t221);
     /* link j5: what it passes on */
-    const ariane6_real_t t340 = parameters[M4] * t198 + t339 + (t13 * t288 - t16 * t291);
+    const ariane6_real_t t339 = parameters[M4] * t197 + t338 + (t13 * t287 - t16 * t290);
     /* link j4: what it passes on */
-    const ariane6_real_t t341 = t45 * t278 - t42 * t286 - (ARIANE6_C(-0.17) * t340 - ARIANE6_C(0.488) * t338);
+    const ariane6_real_t t340 = t43 * t277 - t40 * t285 - (ARIANE6_C(-0.17) * t339 - ARIANE6_C(0.488) * t337);
     /* link j3: force and moment */
-    const ariane6_real_t t342 = parameters[XY3] * (t196 - t182) - t187 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MY3] * t180 - parameters[MX3] * t195);
-    const ariane6_real_t t343 = t342 + t341; /* link j4: what it passes on */
-    const ariane6_real_t t344 = t68 * dq[2];
-    const ariane6_real_t t345 = ariane6_sign(t344); /* joint j3: coulomb_friction */
+    const ariane6_real_t t341 = parameters[XY3] * (t195 - t181) - t186 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MY3] * t179 - parameters[MX3] * t194);
+    const ariane6_real_t t342 = t341 + t340; /* link j4: what it passes on */
+    const ariane6_real_t t343 = t66 * dq[2];
+    const ariane6_real_t t344 = ariane6_sign(t343); /* joint j3: coulomb_friction */
     /* joint j3: drive */
-    const ariane6_real_t t346 = ARIANE6_C(-8377.600000000002) * t65
-        - ARIANE6_C(350.9209088000001) * (t67 * t67) * (t64 * t64);
-    const ariane6_real_t t347 = t344 * parameters[FV3] + t345 * parameters[FC3]
-        + t67 * t346 * (dq[2] * dq[2]) * parameters[IA3];
-    const ariane6_real_t t348 = input[2] * (ARIANE6_C(0.004) * t68) - (t68 * t347 + t343) + t328 * t75;
-    const ariane6_real_t t349 = t348 - t333 * t79 + t336 * t86;
+    const ariane6_real_t t345 = ARIANE6_C(-8377.600000000002) * t63
+        - ARIANE6_C(350.9209088000001) * (t65 * t65) * (t62 * t62);
+    const ariane6_real_t t346 = t343 * parameters[FV3] + t344 * parameters[FC3]
+        + t65 * t345 * (dq[2] * dq[2]) * parameters[IA3];
+    const ariane6_real_t t347 = input[2] * (ARIANE6_C(0.004) * t66) - (t66 * t346 + t342) + t327 * t73;
+    const ariane6_real_t t348 = t347 - t332 * t77 + t335 * t84;
     /* link j4: what it passes on */
-    const ariane6_real_t t350 = parameters[M3] * t180 + (parameters[MX3] * t185 - parameters[MY3] * t187)
-        + t338;
-    const ariane6_real_t t351 = parameters[M3] * t195 + (parameters[MY3] * t197 - parameters[MX3] * t187)
-        + t340;
+    const ariane6_real_t t349 = parameters[M3] * t179 + (parameters[MX3] * t184 - parameters[MY3] * t186)
+        + t337;
+    const ariane6_real_t t350 = parameters[M3] * t194 + (parameters[MY3] * t196 - parameters[MX3] * t186)
+        + t339;
     /* link j2: force and moment */
-    const ariane6_real_t t352 = t178 * (parameters[XX2] - parameters[YY2]) - (t316 - t173) * parameters[XY2]
-        - (t171 * parameters[MY2] - t176 * parameters[MX2]);
+    const ariane6_real_t t351 = t177 * (parameters[XX2] - parameters[YY2]) - (t315 - t172) * parameters[XY2]
+        - (t170 * parameters[MY2] - t175 * parameters[MX2]);
     /* link j3: what it passes on */
-    const ariane6_real_t t353 = t352 - (t343 - ARIANE6_C(0.685) * (t62 * t350 + t63 * t351));
-    const ariane6_real_t t354 = t109 * dq[1];
-    const ariane6_real_t t355 = ariane6_sign(t354); /* joint j2: coulomb_friction */
+    const ariane6_real_t t352 = t351 - (t342 - ARIANE6_C(0.685) * (t60 * t349 + t61 * t350));
+    const ariane6_real_t t353 = t106 * dq[1];
+    const ariane6_real_t t354 = ariane6_sign(t353); /* joint j2: coulomb_friction */
     /* joint j2: drive */
-    const ariane6_real_t t356 = ARIANE6_C(-12691.800000000003) * t106
-        - ARIANE6_C(805.4089362000002) * (t108 * t108) * (t105 * t105);
-    const ariane6_real_t t357 = t354 * parameters[FV2] + t355 * parameters[FC2]
-        + t108 * t356 * t174 * parameters[IA2];
-    const ariane6_real_t t358 = ARIANE6_C(0.004) * t109 * input[1] - (t109 * t357 - t353) - t328 * t111;
-    const ariane6_real_t t359 = t358 + t333 * t112 + t336 * t113 + t349 * t99;
-    const ariane6_real_t t360 = ARIANE6_C(1.0) / t167;
-    const ariane6_real_t t361 = ariane6_bounded((t337 + t349 * t161 + t359 * t166) * t360);
-    out[0] = t361;
-    const ariane6_real_t t362 = ariane6_bounded(t359 * t165 + t166 * t361);
-    out[1] = t362;
-    const ariane6_real_t t363 = ariane6_bounded(t349 * t98 + t161 * t361 + t99 * t362);
-    out[2] = t363;
-    const ariane6_real_t t364 = ariane6_bounded(t113 * t362 - (t336 * t85 + t153 * t361) + t86 * t363);
-    out[3] = t364;
-    const ariane6_real_t t365 = t333 * t36 + t147 * t361 + t112 * t362 - t79 * t363;
-    const ariane6_real_t t366 = ariane6_bounded(t365 - t37 * t364);
-    out[4] = t366;
-    const ariane6_real_t t367 = t328 * t5 + t122 * t361 + t111 * t362 - t75 * t363;
-    out[5] = t31 * t364 - t367 + t6 * t366;
-    if (!ariane6_all_bounded(out, 6)) {
+    const ariane6_real_t t355 = ARIANE6_C(-12691.800000000003) * t103
+        - ARIANE6_C(805.4089362000002) * (t105 * t105) * (t102 * t102);
+    const ariane6_real_t t356 = t353 * parameters[FV2] + t354 * parameters[FC2]
+        + t105 * t355 * t173 * parameters[IA2];
+    const ariane6_real_t t357 = ARIANE6_C(0.004) * t106 * input[1] - (t106 * t356 - t352) - t327 * t108;
+    const ariane6_real_t t358 = t357 + t332 * t109 + t335 * t110 + t348 * t96;
+    const ariane6_real_t t359 = ARIANE6_C(1.0) / t163;
+    const ariane6_real_t t360 = ariane6_held((t336 + t348 * t157 + t358 * t162) * t359);
+    out[0] = t360;
+    const ariane6_real_t t361 = ariane6_held(t358 * t161 + t162 * t360);
+    out[1] = t361;
+    const ariane6_real_t t362 = ariane6_held(t348 * t95 + t157 * t360 + t96 * t361);
+    out[2] = t362;
+    const ariane6_real_t t363 = ariane6_held(t110 * t361 - (t335 * t83 + t149 * t360) + t84 * t362);
+    out[3] = t363;
+    const ariane6_real_t t364 = t332 * t35 + t143 * t360 + t109 * t361 - t77 * t362;
+    const ariane6_real_t t365 = ariane6_held(t364 - t36 * t363);
+    out[4] = t365;
+    const ariane6_real_t t366 = t327 * t5 + t118 * t360 + t108 * t361 - t73 * t362;
+    out[5] = t30 * t363 - t366 + t6 * t365;
+    if (!ariane6_bounded(out, 6)) {
         ariane6_zero(out, 6);
         return ARIANE6_STATUS_PIVOT;
     }

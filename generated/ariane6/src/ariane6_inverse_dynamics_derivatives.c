@@ -86,7 +86,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x13CD28B3UL
+#if ARIANE6_GENERATION != 0xB9B44F76UL
 #error "ariane6.h and ariane6_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -432,710 +432,698 @@ ariane6_status_t ariane6_inverse_dynamics_derivatives(
     const ariane6_real_t t227 = parameters[FV6] * (ARIANE6_C(1.0e2) * dq[5]) + parameters[FC6] * t226
         + parameters[IA6] * (ARIANE6_C(1.0e2) * ddq[5]);
     input[5] = ARIANE6_C(20.0) * t227 + ARIANE6_C(-0.2) * t114;
-    const ariane6_real_t t228 = ariane6_select(t158, t158, ARIANE6_C(1.0));
-    const ariane6_real_t t229 = ARIANE6_C(1.0) / t228;
-    const ariane6_real_t t230 = ARIANE6_C(0.0406334) * t159;
-    const ariane6_real_t t231 = ARIANE6_C(1.0) / t159;
-    const ariane6_real_t t232 = t231 * (ARIANE6_C(0.061525739908548135) * (t230 * (ARIANE6_C(0.5) * t229))
-        + t157 * t160);
-    const ariane6_real_t t233 = t161 * (t161 * (t230 * (ARIANE6_C(0.5) * t161)));
-    const ariane6_real_t t234 = t167 * (ARIANE6_C(165.10731955600002) * (t161 * t233))
-        + t166 * (ARIANE6_C(2.0) * (t157 * t159));
-    const ariane6_real_t t235 = t66 * (t168 * t233 + t161 * (ARIANE6_C(-4063.3400000000006) * t159 + t234));
-    const ariane6_real_t t236 = t159 * (ARIANE6_C(-4063.3400000000006) * t233) - t157 * t162;
-    const ariane6_real_t t237 = parameters[FV1] * (dq[0] * t236) + parameters[IA1] * (t235 + ddq[0] * t236);
-    input_by_q[0] = ARIANE6_C(250.0) * t237 + t156 * t232;
+    const ariane6_real_t t228 = parameters[MX6] * t113 + parameters[MY6] * t112; /* link j6: derivatives */
+    const ariane6_real_t t229 = t101 + t64; /* link j6: force and moment */
+    /* link j6: derivatives */
+    const ariane6_real_t t230 = parameters[YZ6R] * t48 - parameters[XZ6R] * t53 - parameters[ZZ6] * t229;
+    const ariane6_real_t t231 = ARIANE6_C(0.5) * (parameters[XX6R] + parameters[ZZ6]);
+    const ariane6_real_t t232 = parameters[XX6R] - t231;
+    const ariane6_real_t t233 = parameters[XY6] * t54 + t49 * t232;
+    const ariane6_real_t t234 = ARIANE6_C(2.0) * t233;
+    const ariane6_real_t t235 = parameters[XY6] * t49 - t54 * t231;
+    const ariane6_real_t t236 = ARIANE6_C(-2.0) * t235;
+    const ariane6_real_t t237 = ARIANE6_C(0.2) * (t228 + (t230 + (t54 * t236 - t49 * t234)));
+    input_by_q[35] = t237;
     const ariane6_real_t t238 = parameters[XZ6R] * t49;
     const ariane6_real_t t239 = parameters[XY6] * t50;
     const ariane6_real_t t240 = t238 - t239;
-    const ariane6_real_t t241 = parameters[YZ6R] * t54;
-    const ariane6_real_t t242 = t239 + t241;
-    const ariane6_real_t t243 = ARIANE6_C(0.5) * (parameters[XX6R] + parameters[ZZ6]);
-    const ariane6_real_t t244 = parameters[XX6R] - t243;
-    const ariane6_real_t t245 = t50 * t244 + parameters[XZ6R] * t54;
-    const ariane6_real_t t246 = parameters[YZ6R] * t49 + t50 * t243;
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t247 = t47 * (t242 - t240) + t30 * (t245 + t246);
-    const ariane6_real_t t248 = t47 * t247;
-    const ariane6_real_t t249 = parameters[XZ5] * t16;
-    const ariane6_real_t t250 = parameters[XY5] * t43;
-    const ariane6_real_t t251 = t250 - t249 + (t248 - t242);
-    const ariane6_real_t t252 = t238 + t241;
-    const ariane6_real_t t253 = parameters[YZ5] * t15;
-    const ariane6_real_t t254 = t250 + t253 - t252;
-    const ariane6_real_t t255 = t243 - parameters[ZZ6];
-    const ariane6_real_t t256 = t49 * t255 + parameters[YZ6R] * t50;
-    const ariane6_real_t t257 = t54 * t255 - parameters[XZ6R] * t50;
-    const ariane6_real_t t258 = ARIANE6_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    const ariane6_real_t t259 = parameters[YZ5] * t16 - t43 * t258 + (t30 * t257 - t47 * t256);
-    const ariane6_real_t t260 = parameters[XY6] * t54 + t49 * t244;
-    const ariane6_real_t t261 = parameters[XY6] * t49 - t54 * t243;
-    const ariane6_real_t t262 = parameters[XX5R] + t258;
-    const ariane6_real_t t263 = t43 * t262 + parameters[XZ5] * t15 + (t30 * t261 - t47 * t260);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t264 = t10 * (t251 + t254) + t14 * (t259 + t263);
-    const ariane6_real_t t265 = t10 * t264;
-    const ariane6_real_t t266 = parameters[XZ4] * t31;
-    const ariane6_real_t t267 = parameters[XY4] * t13;
-    const ariane6_real_t t268 = t266 + t267 - (t254 - t265);
-    const ariane6_real_t t269 = t240 + t248 - (t249 + t253); /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t270 = parameters[YZ4] * t9;
-    const ariane6_real_t t271 = t267 + t270 + t269; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t272 = t30 * t247; /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t273 = parameters[ZZ5R] + t258;
-    const ariane6_real_t t274 = t16 * t273 - parameters[YZ5] * t43 + (t272 - t246);
-    const ariane6_real_t t275 = parameters[XZ5] * t43 + t15 * t273 + (t30 * t260 + t47 * t261);
-    const ariane6_real_t t276 = ARIANE6_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t277 = parameters[YZ4] * t31 + t13 * t276 + (t10 * t274 - t14 * t275);
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t278 = parameters[XY5] * t15 + t16 * t262 + (t245 - t272);
-    const ariane6_real_t t279 = t30 * t256 + t47 * t257 - (t15 * t258 + parameters[XY5] * t16);
-    const ariane6_real_t t280 = parameters[XX4R] + t276;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t281 = t13 * t280 + parameters[XZ4] * t9 + (t10 * t278 + t14 * t279);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t282 = t6 * (t268 + t271) + t8 * (t281 - t277);
-    const ariane6_real_t t283 = t6 * t282;
-    const ariane6_real_t t284 = parameters[MY6] * t50;
-    const ariane6_real_t t285 = parameters[MX6] * t50;
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t286 = parameters[MY5R] * t43 + (t47 * t284 + t30 * t285);
-    const ariane6_real_t t287 = parameters[MY6] * t54 + parameters[MX6] * t49;
-    const ariane6_real_t t288 = t287 - parameters[MX5] * t43;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t289 = t14 * t288 - t10 * t286 - parameters[MY4R] * t13;
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t290 = parameters[MY5R] * t15 + parameters[MX5] * t16 - (t30 * t284 - t47 * t285);
-    const ariane6_real_t t291 = parameters[MX4] * t13 + t290; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t292 = t8 * t291 - t6 * t289; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t293 = ARIANE6_C(0.17) * t292;
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t294 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const ariane6_real_t t295 = parameters[MY4R] + t294; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t296 = t47 * parameters[MX6] - t30 * parameters[MY6];
-    const ariane6_real_t t297 = parameters[MX5] + t296; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t298 = t10 * t297 - t14 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const ariane6_real_t t299 = parameters[MX4] + t298; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t300 = t8 * t295 - t6 * t299; /* link j4: column of the mass matrix */
-    const ariane6_real_t t301 = ARIANE6_C(-0.488) * t7; /* link j4: velocity of its origin */
-    const ariane6_real_t t302 = t300 * t301; /* link j4: inertia, momentum beyond */
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t303 = parameters[MX4] * t31 - parameters[MY4R] * t9 - (t14 * t286 + t10 * t288);
-    const ariane6_real_t t304 = ARIANE6_C(0.488) * t303; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t305 = t6 * t295 + t8 * t299; /* link j4: column of the mass matrix */
-    const ariane6_real_t t306 = ARIANE6_C(0.488) * t5 + ARIANE6_C(0.17) * t12;
-    const ariane6_real_t t307 = t305 * t306; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t308 = t10 * parameters[MY5R] + t14 * t297; /* link j5: column of the mass matrix */
-    const ariane6_real_t t309 = ARIANE6_C(-0.17) * t7; /* link j4: velocity of its origin */
-    const ariane6_real_t t310 = t308 * t309; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t311 = t293 + t304 + (t310 - t302 - t307);
-    const ariane6_real_t t312 = parameters[XZ3] * t12;
-    const ariane6_real_t t313 = parameters[XY3R] * t7;
-    const ariane6_real_t t314 = t312 - t313 + (t311 + (t271 - t283 + (t302 - t293)));
-    const ariane6_real_t t315 = t266 - t270 + (t265 - t251); /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t316 = parameters[YZ3] * t5;
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t317 = t313 - t316 + (t311 + (t315 - (t304 + t310)));
-    const ariane6_real_t t318 = t14 * t264; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t319 = parameters[ZZ4R] + t276;
-    const ariane6_real_t t320 = t31 * t319 + parameters[YZ4] * t13 - (t259 - t318);
-    const ariane6_real_t t321 = parameters[XZ4] * t13 + t9 * t319 + (t14 * t278 - t10 * t279);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t322 = t6 * t320 + t8 * t321 + (ARIANE6_C(-0.488) * t292 + t308 * t301);
-    const ariane6_real_t t323 = ARIANE6_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const ariane6_real_t t324 = t322 - (parameters[YZ3] * t12 + t7 * t323);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t325 = parameters[XY4] * t9 - t31 * t280 + (t318 - t263);
-    const ariane6_real_t t326 = parameters[XY4] * t31 - t9 * t276 - (t14 * t274 + t10 * t275);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t327 = t6 * t325 + t8 * t326 + (ARIANE6_C(-0.17) * t303 - t300 * t309);
-    const ariane6_real_t t328 = parameters[XX3R] - t323;
-    const ariane6_real_t t329 = t7 * t328 - parameters[XZ3] * t5 - t327;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t330 = t1 * (t314 - t317) + t3 * (t324 - t329);
-    const ariane6_real_t t331 = t1 * t330;
-    const ariane6_real_t t332 = parameters[MY3R] * t7 + t292; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t333 = parameters[MX3R] * t7 + t303;
-    const ariane6_real_t t334 = t1 * t332 + t3 * t333; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t335 = ARIANE6_C(0.685) * t334;
-    const ariane6_real_t t336 = t300 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t337 = parameters[MY3R] + t308;
-    const ariane6_real_t t338 = t3 * t336 - t1 * t337; /* link j3: column of the mass matrix */
-    const ariane6_real_t t339 = ARIANE6_C(0.685) * dq[1]; /* link j3: velocity of its origin */
-    const ariane6_real_t t340 = t338 * t339; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t341 = ARIANE6_C(-0.685) * t69; /* link j3: velocity of its origin */
-    const ariane6_real_t t342 = t305 * t341; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t343 = t335 + (t340 + t342);
-    const ariane6_real_t t344 = parameters[XZ2R] * t69;
-    const ariane6_real_t t345 = parameters[XY2] * dq[1];
-    const ariane6_real_t t346 = t344 - t345 + (t317 + t331 + t335 - t343);
-    const ariane6_real_t t347 = parameters[YZ2] * t74;
-    const ariane6_real_t t348 = t345 - t347 + (t314 - t331 + t340 - t343);
-    const ariane6_real_t t349 = t3 * t330;
-    const ariane6_real_t t350 = ARIANE6_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const ariane6_real_t t351 = parameters[YZ2] * t69 + dq[1] * t350 + (t349 - t324);
-    const ariane6_real_t t352 = t3 * t332 - t1 * t333;
-    const ariane6_real_t t353 = t3 * t337 + t1 * t336; /* link j3: column of the mass matrix */
-    const ariane6_real_t t354 = parameters[XX2R] - t350;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t355 = dq[1] * t354 - parameters[XZ2R] * t74 + (t329 + t349
-        + (ARIANE6_C(0.685) * t352 + t353 * t339));
-    /* link j2: inertia, momentum beyond */
-    const ariane6_real_t t356 = t2 * (t2 * (t348 - t346) + t0 * (t351 + t355));
-    const ariane6_real_t t357 = parameters[MY2] * dq[1] + t334; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t358 = t352 - parameters[MX2R] * dq[1];
-    /* link j2: inertia, momentum beyond */
-    const ariane6_real_t t359 = ARIANE6_C(0.18) * (t0 * t358 - t2 * t357) + t305 * (ARIANE6_C(0.18) * dq[0]);
-    const ariane6_real_t t360 = ARIANE6_C(250.0) * (t163 * parameters[FV1]
-        + parameters[IA1] * (t169 * (ARIANE6_C(-2.0) * dq[0])));
-    input_by_dq[0] = t360 + t160 * (ARIANE6_C(2.0) * (t346 + t356 + t359));
-    const ariane6_real_t t361 = t8 * t282; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t362 = t8 * t289 + t6 * t291;
-    const ariane6_real_t t363 = parameters[XY3R] * t5 - t12 * t328 - (t281 - t361 - (ARIANE6_C(-0.17) * t362
-        + t300 * t306));
-    const ariane6_real_t t364 = t6 * t321 - t8 * t320 + (ARIANE6_C(-0.488) * t362 + t308 * t306);
-    const ariane6_real_t t365 = t5 * t323 + parameters[XY3R] * t12 + t364;
-    const ariane6_real_t t366 = parameters[MX3R] * t12 - parameters[MY3R] * t5 + t362;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t367 = t1 * t363 + t3 * t365 + (ARIANE6_C(0.685) * t366 + t353 * t341);
-    /* link j2: derivatives */
-    const ariane6_real_t t368 = ARIANE6_C(2.0) * (parameters[XY2] * t74 - t69 * t354 + t367);
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t369 = parameters[XY2] * t69 + t74 * t350 - (t3 * t363 - t1 * t365 + t338 * t341);
-    const ariane6_real_t t370 = ARIANE6_C(2.0) * t369; /* link j2: derivatives */
-    const ariane6_real_t t371 = t338 - parameters[MY2]; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t372 = parameters[MX2R] - t353;
-    const ariane6_real_t t373 = ARIANE6_C(0.36) * dq[0]; /* link j6: derivatives */
-    /* link j2: derivatives */
-    const ariane6_real_t t374 = t0 * t368 - t2 * t370 + (t0 * t372 - t2 * t371) * t373;
-    input_by_dq[6] = t185 * t374;
-    const ariane6_real_t t375 = ARIANE6_C(2.0) * t363; /* link j3: derivatives */
-    const ariane6_real_t t376 = ARIANE6_C(2.0) * t365;
-    const ariane6_real_t t377 = ARIANE6_C(-1.37) * t69; /* link j6: derivatives */
-    const ariane6_real_t t378 = t1 * t375 + t3 * t376 + t353 * t377; /* link j3: derivatives */
-    const ariane6_real_t t379 = t3 * t375 - t1 * t376 + t338 * t377;
-    const ariane6_real_t t380 = t0 * t378 + t2 * t379 - (t2 * t338 + t0 * t353) * t373;
-    input_by_dq[12] = t199 * t380;
-    const ariane6_real_t t381 = ARIANE6_C(2.0) * t325; /* link j4: derivatives */
-    const ariane6_real_t t382 = ARIANE6_C(2.0) * t326;
-    const ariane6_real_t t383 = ARIANE6_C(-0.34) * t7; /* link j6: derivatives */
-    const ariane6_real_t t384 = t6 * t381 + t8 * t382 - t300 * t383; /* link j4: derivatives */
-    const ariane6_real_t t385 = ARIANE6_C(2.0) * t315;
-    const ariane6_real_t t386 = ARIANE6_C(2.0) * t306; /* link j6: derivatives */
-    const ariane6_real_t t387 = ARIANE6_C(-0.976) * t7;
-    const ariane6_real_t t388 = t305 * t386 + t300 * t387 - t385; /* link j4: derivatives */
-    const ariane6_real_t t389 = ARIANE6_C(1.37) * dq[1]; /* link j6: derivatives */
-    const ariane6_real_t t390 = t3 * t305; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const ariane6_real_t t391 = t3 * t388 - t1 * t384 + (t300 * t389 + t390 * t377);
-    const ariane6_real_t t392 = t1 * t305; /* link j4: column of the mass matrix */
-    const ariane6_real_t t393 = t3 * t384 + t1 * t388 + t392 * t377; /* link j4: derivatives */
-    const ariane6_real_t t394 = t0 * t391 - t2 * t393 + (t2 * t392 - t0 * t390) * t373;
-    input_by_dq[18] = ARIANE6_C(0.2) * t394;
-    const ariane6_real_t t395 = ARIANE6_C(2.0) * t278; /* link j5: derivatives */
-    const ariane6_real_t t396 = ARIANE6_C(2.0) * t279;
-    const ariane6_real_t t397 = t10 * t395 + t14 * t396;
-    const ariane6_real_t t398 = ARIANE6_C(2.0) * t269;
-    const ariane6_real_t t399 = t8 * t308; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const ariane6_real_t t400 = t6 * t397 - t8 * t398 + (t298 * t386 - t399 * t383);
-    const ariane6_real_t t401 = t14 * t395 - t10 * t396;
-    const ariane6_real_t t402 = t6 * t308; /* link j5: column of the mass matrix */
-    const ariane6_real_t t403 = t401 + (t402 * t386 + t399 * t387); /* link j5: derivatives */
-    const ariane6_real_t t404 = t1 * t298 - t3 * t402; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const ariane6_real_t t405 = t3 * t403 - t1 * t400 + (t399 * t389 - t404 * t377);
-    const ariane6_real_t t406 = t1 * t402 + t3 * t298; /* link j5: column of the mass matrix */
-    const ariane6_real_t t407 = t3 * t400 + t1 * t403 + t406 * t377; /* link j5: derivatives */
-    const ariane6_real_t t408 = t0 * t405 - t2 * t407 + (t2 * t406 + t0 * t404) * t373;
-    input_by_dq[24] = t214 * t408;
-    const ariane6_real_t t409 = ARIANE6_C(2.0) * t260; /* link j6: derivatives */
-    const ariane6_real_t t410 = ARIANE6_C(-2.0) * t261;
-    const ariane6_real_t t411 = t47 * t409 + t30 * t410;
-    const ariane6_real_t t412 = ARIANE6_C(-2.0) * t252;
-    const ariane6_real_t t413 = t10 * t411 + t14 * t412;
-    const ariane6_real_t t414 = t30 * t409 - t47 * t410;
-    const ariane6_real_t t415 = t10 * t294; /* link j6: column of the mass matrix */
-    const ariane6_real_t t416 = t6 * t296 - t8 * t415;
-    const ariane6_real_t t417 = t14 * t294;
-    /* link j6: derivatives */
-    const ariane6_real_t t418 = t6 * t413 - t8 * t414 + (t416 * t383 - t417 * t386);
-    const ariane6_real_t t419 = t14 * t411 - t10 * t412;
-    const ariane6_real_t t420 = t6 * t415 + t8 * t296; /* link j6: column of the mass matrix */
-    const ariane6_real_t t421 = t419 + (t420 * t386 - t416 * t387); /* link j6: derivatives */
-    const ariane6_real_t t422 = t3 * t420 + t1 * t417; /* link j6: column of the mass matrix */
-    /* link j6: derivatives */
-    const ariane6_real_t t423 = t3 * t421 - t1 * t418 + (t422 * t377 - t416 * t389);
-    const ariane6_real_t t424 = t1 * t420 - t3 * t417; /* link j6: column of the mass matrix */
-    const ariane6_real_t t425 = t3 * t418 + t1 * t421 + t424 * t377; /* link j6: derivatives */
-    const ariane6_real_t t426 = t0 * t423 - t2 * t425 + (t2 * t424 - t0 * t422) * t373;
-    input_by_dq[30] = ARIANE6_C(0.2) * t426;
-    /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t427 = t47 * parameters[XX6R] + parameters[XY6] * (ARIANE6_C(-2.0) * t30);
-    const ariane6_real_t t428 = t47 * t427;
-    const ariane6_real_t t429 = parameters[XX5R] + t428;
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t430 = t30 * parameters[YZ6R] - t47 * parameters[XZ6R];
-    const ariane6_real_t t431 = parameters[XY5] - t430; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t432 = t10 * (parameters[ZZ6] - t429) + t431 * (ARIANE6_C(2.0) * t14);
-    const ariane6_real_t t433 = t10 * t432;
-    const ariane6_real_t t434 = parameters[ZZ4R] + (t429 + t433);
-    const ariane6_real_t t435 = ARIANE6_C(0.34) * t300; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t436 = t434 + t435;
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t437 = parameters[XX4R] + (parameters[ZZ6] - t433);
-    /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t438 = t428 - parameters[XX6R] - parameters[ZZ5R];
-    const ariane6_real_t t439 = parameters[XY6] + t30 * t427 - parameters[XZ5];
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t440 = t30 * parameters[XZ6R] + t47 * parameters[YZ6R];
-    const ariane6_real_t t441 = parameters[YZ5] - t440; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t442 = t10 * t439 + t14 * t441; /* link j5: column of the mass matrix */
-    const ariane6_real_t t443 = parameters[XY4] + t442; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t444 = t443 * (ARIANE6_C(2.0) * t8) - t6 * (t438 + t437);
-    const ariane6_real_t t445 = t6 * t444;
-    const ariane6_real_t t446 = ARIANE6_C(0.976) * t308;
-    const ariane6_real_t t447 = parameters[XX3R] + (t446 - (t438 + t445));
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t448 = t14 * t432 - t431 - parameters[XZ4];
-    const ariane6_real_t t449 = t10 * t441 - t14 * t439; /* link j5: column of the mass matrix */
-    const ariane6_real_t t450 = parameters[YZ4] - t449; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t451 = t6 * t448 + t8 * t450; /* link j4: column of the mass matrix */
-    const ariane6_real_t t452 = ARIANE6_C(-0.488) * t300;
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t453 = t451 + (t452 + ARIANE6_C(-0.17) * t308) - parameters[XY3R];
-    /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t454 = t1 * (t447 - t436) - t453 * (ARIANE6_C(-2.0) * t3);
-    const ariane6_real_t t455 = t1 * t454;
-    const ariane6_real_t t456 = ARIANE6_C(1.37) * t353;
-    const ariane6_real_t t457 = t447 - t455 - t456;
-    const ariane6_real_t t458 = parameters[XX2R] + (t436 + t455);
-    const ariane6_real_t t459 = parameters[XY2] + (t3 * t454 - t453 + ARIANE6_C(0.685) * t338);
-    /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t460 = t2 * (t2 * (t457 - t458) + t459 * (ARIANE6_C(2.0) * t0));
-    const ariane6_real_t t461 = t458 + t460 + ARIANE6_C(0.36) * (t0 * t371 + t2 * t372);
-    input_by_ddq[0] = ARIANE6_C(250.0) * (t163 * parameters[IA1]) + t160 * (parameters[ZZ1R] + t461);
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t462 = t443 - t8 * t444 + ARIANE6_C(0.17) * t305 - parameters[XZ3];
-    /* link j4: column of the mass matrix */
-    const ariane6_real_t t463 = t8 * t448 - t6 * t450 + ARIANE6_C(0.488) * t305;
-    const ariane6_real_t t464 = parameters[YZ3] + t463; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t465 = t1 * t462 + t3 * t464; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t466 = parameters[XZ2R] + (ARIANE6_C(0.685) * t305 - t465);
-    const ariane6_real_t t467 = t3 * t462 - t1 * t464; /* link j3: column of the mass matrix */
-    const ariane6_real_t t468 = t467 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t469 = t0 * t466 - t2 * t468; /* link j2: column of the mass matrix */
-    input_by_ddq[6] = t185 * t469;
-    const ariane6_real_t t470 = t0 * t465 + t2 * t467; /* link j3: column of the mass matrix */
-    input_by_ddq[12] = -(t199 * t470);
-    const ariane6_real_t t471 = t451 + t452; /* link j4: column of the mass matrix */
-    const ariane6_real_t t472 = ARIANE6_C(-0.17) * t300 - t434;
-    const ariane6_real_t t473 = t3 * t472 - t1 * t471;
-    const ariane6_real_t t474 = t3 * t471 + t1 * t472 + ARIANE6_C(0.685) * t300;
-    const ariane6_real_t t475 = t0 * t473 - t2 * t474 + ARIANE6_C(-0.18) * t300;
-    input_by_ddq[18] = ARIANE6_C(0.2) * t475;
-    /* link j5: column of the mass matrix */
-    const ariane6_real_t t476 = t6 * t442 + t8 * t438 + ARIANE6_C(-0.488) * t399;
-    const ariane6_real_t t477 = ARIANE6_C(-0.17) * t399 - t449;
-    const ariane6_real_t t478 = t3 * t477 - t1 * t476;
-    const ariane6_real_t t479 = t3 * t476 + t1 * t477 + ARIANE6_C(0.685) * t399;
-    const ariane6_real_t t480 = t0 * t478 - t2 * t479 + ARIANE6_C(-0.18) * t399;
-    input_by_ddq[24] = t214 * t480;
-    const ariane6_real_t t481 = t10 * t430 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const ariane6_real_t t482 = t6 * t481 + t8 * t440 + ARIANE6_C(0.488) * t416;
-    const ariane6_real_t t483 = t14 * t430 - t10 * parameters[ZZ6];
-    const ariane6_real_t t484 = t483 + ARIANE6_C(0.17) * t416;
-    const ariane6_real_t t485 = t3 * t484 - t1 * t482;
-    const ariane6_real_t t486 = t3 * t482 + t1 * t484 + ARIANE6_C(-0.685) * t416;
-    const ariane6_real_t t487 = t0 * t485 - t2 * t486 + ARIANE6_C(0.18) * t416;
-    input_by_ddq[30] = ARIANE6_C(0.2) * t487;
-    const ariane6_real_t t488 = ARIANE6_C(2.0) * t69; /* link j2: derivatives */
-    const ariane6_real_t t489 = ARIANE6_C(-2.0) * t74;
-    const ariane6_real_t t490 = t153 + t70; /* link j3: motion */
-    /* link j2: derivatives */
-    const ariane6_real_t t491 = t346 * t488 + t351 * t489 + (t458 * t85 - t459 * t146 - t466 * t490);
-    const ariane6_real_t t492 = t355 * t488 + t348 * t489 + (t459 * t85 - t457 * t146 + t468 * t490);
-    const ariane6_real_t t493 = t0 * (t154 + (t491 - t305 * t68)) + t2 * (t149 + (t492 + t305 * t73));
-    const ariane6_real_t t494 = t358 * t488 - t357 * t489 + (t371 * t85 - t372 * t146);
-    input_by_q[1] = t160 * (t493 + ARIANE6_C(0.18) * t494);
-    const ariane6_real_t t495 = ariane6_select(t183, t183, ARIANE6_C(1.0));
-    const ariane6_real_t t496 = ARIANE6_C(1.0) / t495;
-    const ariane6_real_t t497 = ARIANE6_C(0.126918) * t184;
-    const ariane6_real_t t498 = ARIANE6_C(1.0) / t184;
-    const ariane6_real_t t499 = t498 * (ARIANE6_C(0.019697757607273984) * (t497 * (ARIANE6_C(0.5) * t496))
-        + t182 * t185);
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t500 = parameters[ZZ3R] + (t437 + t445 + (t435 + t446));
-    const ariane6_real_t t501 = parameters[ZZ2R] + (t500 - t456); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const ariane6_real_t t502 = t466 * t85 + t468 * t146 - t501 * t490 + (t69 * t368 + t74 * t370);
-    const ariane6_real_t t503 = t186 * (t186 * (t497 * (ARIANE6_C(0.5) * t186)));
-    const ariane6_real_t t504 = t192 * (ARIANE6_C(1610.8178724000004) * (t186 * t503))
-        - t191 * (ARIANE6_C(2.0) * (t184 * t182));
-    const ariane6_real_t t505 = t71 * (t193 * t503 - t186 * (ARIANE6_C(-12691.800000000003) * t184 + t504));
-    const ariane6_real_t t506 = t184 * (ARIANE6_C(12691.800000000003) * t503) - t182 * t187;
-    const ariane6_real_t t507 = parameters[FV2] * (dq[1] * t506) + parameters[IA2] * (t505 + ddq[1] * t506);
-    const ariane6_real_t t508 = ARIANE6_C(250.0) * t507 + t185 * (t502 - (t372 * t68 + t371 * t73));
-    input_by_q[7] = t508 + t181 * t499;
-    const ariane6_real_t t509 = t500 + ARIANE6_C(-0.685) * t353; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const ariane6_real_t t510 = t69 * t378 - t74 * t379 + (t467 * t146 - t465 * t85 - t509 * t490);
-    input_by_q[13] = t199 * (t510 + (t353 * t68 - t338 * t73));
-    const ariane6_real_t t511 = t463 + ARIANE6_C(-0.685) * t390; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const ariane6_real_t t512 = t69 * t391 + t74 * t393 + (t473 * t85 + t474 * t146 - t511 * t490);
-    input_by_q[19] = ARIANE6_C(0.2) * (t512 + (t392 * t73 + t390 * t68));
-    /* link j5: column of the mass matrix */
-    const ariane6_real_t t513 = t8 * t442 - t6 * t438 + (ARIANE6_C(-0.17) * t298 + ARIANE6_C(0.488) * t402);
-    const ariane6_real_t t514 = t513 + ARIANE6_C(0.685) * t404;
-    /* link j5: derivatives */
-    const ariane6_real_t t515 = t69 * t405 + t74 * t407 + (t478 * t85 + t479 * t146 - t514 * t490);
-    input_by_q[25] = t214 * (t515 + (t406 * t73 - t404 * t68));
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t516 = t8 * t481 - t6 * t440 + (ARIANE6_C(0.17) * t417 + ARIANE6_C(0.488) * t420);
-    const ariane6_real_t t517 = t516 + ARIANE6_C(-0.685) * t422;
-    /* link j6: derivatives */
-    const ariane6_real_t t518 = t69 * t423 + t74 * t425 + (t485 * t85 + t486 * t146 - t517 * t490);
-    input_by_q[31] = ARIANE6_C(0.2) * (t518 + (t424 * t73 + t422 * t68));
-    const ariane6_real_t t519 = t323 - parameters[ZZ3R];
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t520 = t277 + t361 + t305 * t301 - (parameters[YZ3] * t7 + t12 * t519);
-    const ariane6_real_t t521 = parameters[XZ3] * t7 + t5 * t519 + (t8 * t325 - t6 * t326 + t305 * t309);
-    const ariane6_real_t t522 = parameters[ZZ2R] - t350;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t523 = t69 * t522 - parameters[YZ2] * dq[1] + (t1 * t520 - t3 * t521);
-    /* link j2: derivatives */
-    const ariane6_real_t t524 = t0 * (ARIANE6_C(2.0) * t523 + (t458 * t488 + t459 * t489));
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t525 = parameters[XZ2R] * dq[1] - t74 * t522 + (t3 * t520 + t1 * t521 + t305 * t339);
-    /* link j2: derivatives */
-    const ariane6_real_t t526 = t2 * (ARIANE6_C(2.0) * t525 + (t459 * t488 + t457 * t489));
-    const ariane6_real_t t527 = t524 + t526 + ARIANE6_C(0.18) * (t371 * t488 + t372 * t489);
-    input_by_dq[1] = t160 * t527;
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t528 = t316 - t312 + (t311 + (t283 - t268 + t307));
-    /* link j2: derivatives */
-    const ariane6_real_t t529 = ARIANE6_C(2.0) * (t347 - t344 + (t528 + t342 - t343))
-        + ARIANE6_C(2.0) * (t466 * t69 + t468 * t74);
-    const ariane6_real_t t530 = ARIANE6_C(250.0) * (t188 * parameters[FV2]
-        - parameters[IA2] * (t194 * (ARIANE6_C(2.0) * dq[1])));
-    input_by_dq[7] = t530 + t185 * t529;
-    const ariane6_real_t t531 = ARIANE6_C(2.0) * t528; /* link j3: derivatives */
-    const ariane6_real_t t532 = t531 - t338 * t389 + ARIANE6_C(2.0) * (t467 * t74 - t465 * t69);
-    input_by_dq[13] = t199 * t532;
-    const ariane6_real_t t533 = t8 * t381 - t6 * t382 + t305 * t383; /* link j4: derivatives */
-    const ariane6_real_t t534 = t533 + t392 * t389 + ARIANE6_C(2.0) * (t473 * t69 + t474 * t74);
-    input_by_dq[19] = ARIANE6_C(0.2) * t534;
-    /* link j5: derivatives */
-    const ariane6_real_t t535 = t8 * t397 + t6 * t398 + (t298 * t387 + t402 * t383);
-    const ariane6_real_t t536 = t535 + t406 * t389 + ARIANE6_C(2.0) * (t478 * t69 + t479 * t74);
-    input_by_dq[25] = t214 * t536;
-    /* link j6: derivatives */
-    const ariane6_real_t t537 = t8 * t413 + t6 * t414 + (t420 * t383 - t417 * t387);
-    const ariane6_real_t t538 = t537 + t424 * t389 + ARIANE6_C(2.0) * (t485 * t69 + t486 * t74);
-    input_by_dq[31] = ARIANE6_C(0.2) * t538;
-    input_by_ddq[1] = t160 * t469;
-    input_by_ddq[7] = ARIANE6_C(250.0) * (t188 * parameters[IA2]) + t185 * t501;
-    input_by_ddq[13] = t199 * t509;
-    input_by_ddq[19] = ARIANE6_C(0.2) * t511;
-    input_by_ddq[25] = t214 * t514;
-    input_by_ddq[31] = ARIANE6_C(0.2) * t517;
-    const ariane6_real_t t539 = ARIANE6_C(-2.0) * t12; /* link j3: derivatives */
-    const ariane6_real_t t540 = ARIANE6_C(2.0) * t5;
-    const ariane6_real_t t541 = t92 + t79; /* link j4: motion */
-    /* link j3: derivatives */
-    const ariane6_real_t t542 = t324 * t540 - t314 * t539 + (t447 * t34 + t453 * t22 + t462 * t541);
-    const ariane6_real_t t543 = t144 + (t542 - t305 * t78);
-    const ariane6_real_t t544 = t329 * t539 + t317 * t540 + (t453 * t34 + t436 * t22 + t464 * t541);
-    const ariane6_real_t t545 = t305 * t91; /* link j4: derivatives */
-    const ariane6_real_t t546 = t139 + (t544 - t545); /* link j3: derivatives */
-    const ariane6_real_t t547 = t333 * t539 + t332 * t540 + (t336 * t22 - t337 * t34);
-    const ariane6_real_t t548 = t2 * (t3 * t543 - t1 * t546 + ARIANE6_C(0.685) * t547);
-    const ariane6_real_t t549 = t0 * (t1 * t543 + t3 * t546) + t548 + ARIANE6_C(0.18) * t547;
-    input_by_q[2] = t160 * t549;
-    const ariane6_real_t t550 = t178 + (t366 * t540 + (t305 * t22 + t337 * t541));
-    const ariane6_real_t t551 = t177 + (t336 * t541 + t305 * t34 - t366 * t539);
-    const ariane6_real_t t552 = t462 * t34 + t464 * t22 + t500 * t541;
-    const ariane6_real_t t553 = t336 * t78 + t337 * t91;
-    const ariane6_real_t t554 = t365 * t540 - t363 * t539 - t552 + t553 + ARIANE6_C(0.685) * (t3 * t550
-        + t1 * t551);
-    input_by_q[8] = t185 * t554;
-    const ariane6_real_t t555 = ariane6_select(t197, t197, ARIANE6_C(1.0));
-    const ariane6_real_t t556 = ARIANE6_C(1.0) / t555;
-    const ariane6_real_t t557 = ARIANE6_C(0.083776) * t198;
-    const ariane6_real_t t558 = ARIANE6_C(1.0) / t198;
-    const ariane6_real_t t559 = t558 * (ARIANE6_C(0.029841482047364396) * (t557 * (ARIANE6_C(0.5) * t556))
-        + t196 * t199);
-    const ariane6_real_t t560 = t199 * (t553 + (t12 * t375 + t5 * t376 - t552));
-    const ariane6_real_t t561 = t200 * (t200 * (t557 * (ARIANE6_C(0.5) * t200)));
-    const ariane6_real_t t562 = t206 * (ARIANE6_C(701.8418176000002) * (t200 * t561))
-        - t205 * (ARIANE6_C(2.0) * (t198 * t196));
-    const ariane6_real_t t563 = t209 * (t207 * t561 - t200 * (ARIANE6_C(-8377.600000000002) * t198 + t562));
-    const ariane6_real_t t564 = t198 * (ARIANE6_C(8377.600000000002) * t561) - t196 * t201;
-    const ariane6_real_t t565 = parameters[FV3] * (dq[2] * t564) + parameters[IA3] * (t563 + ddq[2] * t564);
-    input_by_q[14] = ARIANE6_C(250.0) * t565 + t560 + t176 * t559;
-    /* link j4: derivatives */
-    const ariane6_real_t t566 = t5 * t388 - t12 * t384 + (t472 * t22 - t471 * t34 - t463 * t541);
-    input_by_q[20] = ARIANE6_C(0.2) * (t566 + t545);
-    /* link j5: derivatives */
-    const ariane6_real_t t567 = t5 * t403 - t12 * t400 + (t477 * t22 - t476 * t34 - t513 * t541);
-    input_by_q[26] = t214 * (t567 + (t402 * t91 - t298 * t78));
-    /* link j6: derivatives */
-    const ariane6_real_t t568 = t5 * t421 - t12 * t418 + (t484 * t22 - t482 * t34 - t516 * t541);
-    input_by_q[32] = ARIANE6_C(0.2) * (t568 + (t420 * t91 + t417 * t78));
-    /* link j3: derivatives */
-    const ariane6_real_t t569 = ARIANE6_C(2.0) * t520 + (t453 * t540 - t447 * t539);
-    const ariane6_real_t t570 = ARIANE6_C(2.0) * t521 - (t436 * t540 - t453 * t539);
-    const ariane6_real_t t571 = t337 * t539 + t336 * t540;
-    const ariane6_real_t t572 = t2 * (t3 * t569 + t1 * t570 + ARIANE6_C(0.685) * t571);
-    const ariane6_real_t t573 = t0 * (t1 * t569 - t3 * t570) + t572 + ARIANE6_C(0.18) * t571;
-    input_by_dq[2] = t160 * t573;
-    const ariane6_real_t t574 = t3 * (ARIANE6_C(-2.0) * t333 + t305 * t540) + t1 * (ARIANE6_C(-2.0) * t332
-        - t305 * t539);
-    const ariane6_real_t t575 = t531 + (t462 * t539 - t464 * t540) + ARIANE6_C(0.685) * t574;
-    input_by_dq[8] = t185 * t575;
-    const ariane6_real_t t576 = t199 * (t531 + ARIANE6_C(-2.0) * (t462 * t12 + t464 * t5));
-    const ariane6_real_t t577 = ARIANE6_C(250.0) * (t202 * parameters[FV3]
-        - parameters[IA3] * (t208 * (ARIANE6_C(2.0) * dq[2])));
-    input_by_dq[14] = t577 + t576;
-    const ariane6_real_t t578 = ARIANE6_C(0.2) * (t533 + ARIANE6_C(2.0) * (t472 * t5 - t471 * t12));
-    input_by_dq[20] = t578;
-    const ariane6_real_t t579 = t214 * (t535 + ARIANE6_C(2.0) * (t477 * t5 - t476 * t12));
-    input_by_dq[26] = t579;
-    const ariane6_real_t t580 = ARIANE6_C(0.2) * (t537 + ARIANE6_C(2.0) * (t484 * t5 - t482 * t12));
-    input_by_dq[32] = t580;
-    input_by_ddq[2] = -(t160 * t470);
-    input_by_ddq[8] = t185 * t509;
-    input_by_ddq[14] = ARIANE6_C(250.0) * (t202 * parameters[IA3]) + t199 * t500;
-    input_by_ddq[20] = ARIANE6_C(0.2) * t463;
-    input_by_ddq[26] = t214 * t513;
-    input_by_ddq[32] = ARIANE6_C(0.2) * t516;
-    const ariane6_real_t t581 = ARIANE6_C(2.0) * t31; /* link j4: derivatives */
-    const ariane6_real_t t582 = ARIANE6_C(-2.0) * t9;
-    const ariane6_real_t t583 = t438 * t38; /* link j5: derivatives */
-    const ariane6_real_t t584 = t128 + t121; /* link j5: motion */
-    /* link j4: derivatives */
-    const ariane6_real_t t585 = t281 * t581 + t271 * t582 + (t443 * t25 - t583 + t450 * t584);
-    const ariane6_real_t t586 = t308 * t108; /* link j5: derivatives */
-    const ariane6_real_t t587 = t123 + (t586 + t585); /* link j4: derivatives */
-    const ariane6_real_t t588 = t268 * t581 + t277 * t582 - (t437 * t25 + t443 * t38 - t448 * t584);
-    const ariane6_real_t t589 = t129 + (t588 + t308 * t90);
-    const ariane6_real_t t590 = t134 + (t303 * t581 + (t308 * t25 - t299 * t584));
-    const ariane6_real_t t591 = t136 + (t295 * t584 - t308 * t38 - t303 * t582);
-    const ariane6_real_t t592 = t8 * t591 + t6 * t590;
-    const ariane6_real_t t593 = t6 * t589 + t8 * t587 + ARIANE6_C(-0.488) * t592;
-    const ariane6_real_t t594 = t448 * t25 - t450 * t38 - t434 * t584;
-    const ariane6_real_t t595 = t295 * t108 - t299 * t90;
-    const ariane6_real_t t596 = t325 * t581 - t326 * t582 + t594 + t595 - ARIANE6_C(0.17) * t592;
-    const ariane6_real_t t597 = t2 * (t3 * t593 + t1 * t596 + ARIANE6_C(0.685) * t592);
-    const ariane6_real_t t598 = t0 * (t1 * t593 - t3 * t596) + t597 + ARIANE6_C(0.18) * t592;
-    input_by_q[3] = t160 * t598;
-    const ariane6_real_t t599 = t6 * t591 - t8 * t590;
-    const ariane6_real_t t600 = t291 * t581 - t289 * t582 + (t295 * t25 - t299 * t38);
-    const ariane6_real_t t601 = t6 * t587 - t8 * t589 + (ARIANE6_C(0.17) * t600 + ARIANE6_C(-0.488) * t599);
-    const ariane6_real_t t602 = t185 * (t601 + ARIANE6_C(0.685) * (t3 * t599 - t1 * t600));
-    input_by_q[9] = t602;
-    input_by_q[15] = t199 * t601;
-    const ariane6_real_t t603 = ARIANE6_C(0.2) * (t595 + (t594 + (t31 * t381 + t9 * t382)));
-    input_by_q[21] = t603;
-    /* link j5: derivatives */
-    const ariane6_real_t t604 = t31 * t397 - t9 * t398 + (t442 * t25 - t583 - t449 * t584);
-    input_by_q[27] = t214 * (t604 + t586);
-    /* link j6: derivatives */
-    const ariane6_real_t t605 = t31 * t413 - t9 * t414 + (t481 * t25 - t440 * t38 + t483 * t584);
-    input_by_q[33] = ARIANE6_C(0.2) * (t605 + (t415 * t108 - t296 * t90));
-    /* link j4: derivatives */
-    const ariane6_real_t t606 = ARIANE6_C(2.0) * t320 + (t437 * t581 + t443 * t582);
-    const ariane6_real_t t607 = ARIANE6_C(-2.0) * t321 + (t443 * t581 - t438 * t582);
-    const ariane6_real_t t608 = ARIANE6_C(-2.0) * t291 - t308 * t582;
-    const ariane6_real_t t609 = ARIANE6_C(2.0) * t289 + t308 * t581;
-    const ariane6_real_t t610 = t8 * t608 + t6 * t609;
-    const ariane6_real_t t611 = t8 * t607 - t6 * t606 + ARIANE6_C(-0.488) * t610;
-    const ariane6_real_t t612 = t385 - (t450 * t582 - t448 * t581) + ARIANE6_C(-0.17) * t610;
-    const ariane6_real_t t613 = t2 * (t3 * t611 + t1 * t612 + ARIANE6_C(0.685) * t610);
-    const ariane6_real_t t614 = t0 * (t1 * t611 - t3 * t612) + t613 + ARIANE6_C(0.18) * t610;
-    input_by_dq[3] = t160 * t614;
-    const ariane6_real_t t615 = t8 * t609 - t6 * t608;
-    const ariane6_real_t t616 = t295 * t581 - t299 * t582;
-    const ariane6_real_t t617 = t8 * t606 + t6 * t607 + (ARIANE6_C(0.17) * t616 + ARIANE6_C(0.488) * t615);
-    const ariane6_real_t t618 = t185 * (t617 + ARIANE6_C(-0.685) * (t3 * t615 + t1 * t616));
-    input_by_dq[9] = t618;
-    input_by_dq[15] = t199 * t617;
-    const ariane6_real_t t619 = ARIANE6_C(0.2) * (t385 + ARIANE6_C(2.0) * (t448 * t31 + t450 * t9));
-    input_by_dq[21] = ARIANE6_C(2.0e3) * parameters[FV4] + t619;
-    const ariane6_real_t t620 = t214 * (ARIANE6_C(2.0) * (t442 * t31 + t438 * t9) - t401);
-    input_by_dq[27] = t620;
-    const ariane6_real_t t621 = ARIANE6_C(0.2) * (ARIANE6_C(2.0) * (t481 * t31 + t440 * t9) - t419);
-    input_by_dq[33] = t621;
-    input_by_ddq[3] = t160 * t475;
-    input_by_ddq[9] = t185 * t511;
-    input_by_ddq[15] = t199 * t463;
-    input_by_ddq[21] = ARIANE6_C(2.0e3) * parameters[IA4] + ARIANE6_C(0.2) * t434;
-    input_by_ddq[27] = t214 * t449;
-    const ariane6_real_t t622 = ARIANE6_C(-0.2) * t483;
-    input_by_ddq[33] = t622;
-    const ariane6_real_t t623 = ARIANE6_C(2.0) * t16; /* link j5: derivatives */
-    const ariane6_real_t t624 = ARIANE6_C(2.0) * t15;
-    const ariane6_real_t t625 = t116 + t106; /* link j6: motion */
-    /* link j5: derivatives */
-    const ariane6_real_t t626 = t259 * t624 - t251 * t623 + (t429 * t57 + t431 * t42 + t439 * t625);
-    const ariane6_real_t t627 = t117 + (t626 + t294 * t111);
-    const ariane6_real_t t628 = t294 * t96; /* link j6: derivatives */
-    const ariane6_real_t t629 = parameters[ZZ6] * t42;
-    /* link j5: derivatives */
-    const ariane6_real_t t630 = t263 * t623 + t254 * t624 + (t629 + t431 * t57 - t441 * t625);
-    const ariane6_real_t t631 = t109 + (t628 + t630);
-    const ariane6_real_t t632 = t10 * t627 - t14 * t631;
-    const ariane6_real_t t633 = t441 * t42 - t439 * t57 + t438 * t625;
-    const ariane6_real_t t634 = t297 * t111 + parameters[MY5R] * t96;
-    const ariane6_real_t t635 = t279 * t624 - t278 * t623 + t633 + t634;
-    const ariane6_real_t t636 = t133 + (parameters[MY5R] * t625 - t294 * t42 - t290 * t624);
-    const ariane6_real_t t637 = t132 + (t297 * t625 - t294 * t57 - t290 * t623);
-    const ariane6_real_t t638 = t10 * t636 + t14 * t637;
-    const ariane6_real_t t639 = t288 * t623 - t286 * t624 + (t297 * t42 - parameters[MY5R] * t57);
-    const ariane6_real_t t640 = t8 * t638 + t6 * t639;
-    const ariane6_real_t t641 = t6 * t632 + t8 * t635 + ARIANE6_C(-0.488) * t640;
-    const ariane6_real_t t642 = t14 * t627 + t10 * t631;
-    const ariane6_real_t t643 = t642 - ARIANE6_C(0.17) * t640;
-    const ariane6_real_t t644 = t2 * (t3 * t641 + t1 * t643 + ARIANE6_C(0.685) * t640);
-    const ariane6_real_t t645 = t0 * (t1 * t641 - t3 * t643) + t644 + ARIANE6_C(0.18) * t640;
-    input_by_q[4] = t160 * t645;
-    const ariane6_real_t t646 = t14 * t636 - t10 * t637;
-    const ariane6_real_t t647 = t6 * t638 - t8 * t639;
-    const ariane6_real_t t648 = t6 * t635 - t8 * t632 + (ARIANE6_C(-0.17) * t646 + ARIANE6_C(-0.488) * t647);
-    const ariane6_real_t t649 = t185 * (t648 + ARIANE6_C(0.685) * (t3 * t647 + t1 * t646));
-    input_by_q[10] = t649;
-    input_by_q[16] = t199 * t648;
-    input_by_q[22] = ARIANE6_C(0.2) * t642;
-    const ariane6_real_t t650 = t214 * (t634 + (t633 + (t15 * t396 - t16 * t395)));
-    const ariane6_real_t t651 = ARIANE6_C(0.035496) * t10;
-    const ariane6_real_t t652 = t215 * (t215 * (t651 * (ARIANE6_C(0.5) * t215)));
-    const ariane6_real_t t653 = t221 * (ARIANE6_C(125.9966016) * (t215 * t652))
-        + t220 * (ARIANE6_C(2.0) * (t14 * t10));
-    const ariane6_real_t t654 = t224 * (t222 * t652 + t215 * (ARIANE6_C(-3549.6000000000004) * t10 + t653));
-    const ariane6_real_t t655 = t10 * (ARIANE6_C(-3549.6000000000004) * t652) - t14 * t216;
-    const ariane6_real_t t656 = parameters[FV5] * (dq[4] * t655) + parameters[IA5] * (t654 + ddq[4] * t655);
-    const ariane6_real_t t657 = ariane6_select(t213, t213, ARIANE6_C(1.0));
-    const ariane6_real_t t658 = ARIANE6_C(1.0) / t657;
-    const ariane6_real_t t659 = ARIANE6_C(1.0) / t10;
-    const ariane6_real_t t660 = t659 * (ARIANE6_C(0.07043047103899029) * (t651 * (ARIANE6_C(0.5) * t658))
-        + t14 * t214);
-    input_by_q[28] = ARIANE6_C(250.0) * t656 + t650 + t126 * t660;
-    /* link j6: derivatives */
-    const ariane6_real_t t661 = t15 * t412 - t16 * t411 + (t629 - t430 * t57 + t440 * t625);
-    input_by_q[34] = ARIANE6_C(0.2) * (t661 + t628);
-    /* link j5: derivatives */
-    const ariane6_real_t t662 = ARIANE6_C(2.0) * t274 + (t429 * t623 + t431 * t624);
-    const ariane6_real_t t663 = ARIANE6_C(2.0) * t275 + (t431 * t623 + parameters[ZZ6] * t624);
-    const ariane6_real_t t664 = t10 * t662 - t14 * t663;
-    const ariane6_real_t t665 = t398 + (t441 * t624 - t439 * t623);
-    const ariane6_real_t t666 = ARIANE6_C(2.0) * t288 - t294 * t624;
-    const ariane6_real_t t667 = ARIANE6_C(2.0) * t286 - t294 * t623;
-    const ariane6_real_t t668 = t10 * t666 + t14 * t667;
-    const ariane6_real_t t669 = t297 * t624 - parameters[MY5R] * t623;
-    const ariane6_real_t t670 = t8 * t668 + t6 * t669;
-    const ariane6_real_t t671 = t6 * t664 + t8 * t665 + ARIANE6_C(-0.488) * t670;
-    const ariane6_real_t t672 = t14 * t662 + t10 * t663;
-    const ariane6_real_t t673 = t672 + ARIANE6_C(-0.17) * t670;
-    const ariane6_real_t t674 = t2 * (t3 * t671 + t1 * t673 + ARIANE6_C(0.685) * t670);
-    const ariane6_real_t t675 = t0 * (t1 * t671 - t3 * t673) + t674 + ARIANE6_C(0.18) * t670;
-    input_by_dq[4] = t160 * t675;
-    const ariane6_real_t t676 = t10 * t667 - t14 * t666;
-    const ariane6_real_t t677 = t8 * t669 - t6 * t668;
-    const ariane6_real_t t678 = t6 * t665 - t8 * t664 + (ARIANE6_C(0.17) * t676 + ARIANE6_C(0.488) * t677);
-    const ariane6_real_t t679 = t185 * (t678 + ARIANE6_C(-0.685) * (t3 * t677 + t1 * t676));
-    input_by_dq[10] = t679;
-    input_by_dq[16] = t199 * t678;
-    input_by_dq[22] = ARIANE6_C(0.2) * t672;
-    const ariane6_real_t t680 = t214 * (t398 + ARIANE6_C(2.0) * (t441 * t15 - t439 * t16));
-    const ariane6_real_t t681 = ARIANE6_C(250.0) * (t217 * parameters[FV5]
-        + parameters[IA5] * (t223 * (ARIANE6_C(-2.0) * dq[4])));
-    input_by_dq[28] = t681 + t680;
-    const ariane6_real_t t682 = ARIANE6_C(0.2) * (t414 + ARIANE6_C(2.0) * (parameters[ZZ6] * t15
-        - t430 * t16));
-    input_by_dq[34] = t682;
-    input_by_ddq[4] = t160 * t480;
-    input_by_ddq[10] = t185 * t514;
-    input_by_ddq[16] = t199 * t513;
-    input_by_ddq[22] = ARIANE6_C(0.2) * t449;
-    input_by_ddq[28] = ARIANE6_C(250.0) * (t217 * parameters[IA5]) - t214 * t438;
-    input_by_ddq[34] = ARIANE6_C(-0.2) * t440;
-    const ariane6_real_t t683 = t101 + t64; /* link j6: force and moment */
-    const ariane6_real_t t684 = ARIANE6_C(-2.0) * t49; /* link j6: derivatives */
-    const ariane6_real_t t685 = ARIANE6_C(2.0) * t54;
-    const ariane6_real_t t686 = t246 * t685 - t240 * t684 - (parameters[XX6R] * t53 - parameters[XY6] * t48
-        + parameters[XZ6R] * t683);
-    const ariane6_real_t t687 = t102 + t686;
-    const ariane6_real_t t688 = t245 * t684 - t242 * t685 + (parameters[XY6] * t53 + parameters[YZ6R] * t683);
-    const ariane6_real_t t689 = t97 + t688;
-    const ariane6_real_t t690 = t47 * t687 + t30 * t689;
-    const ariane6_real_t t691 = parameters[YZ6R] * t48 - parameters[XZ6R] * t53 - parameters[ZZ6] * t683;
-    const ariane6_real_t t692 = parameters[MX6] * t113 + parameters[MY6] * t112;
-    const ariane6_real_t t693 = t260 * t684 - t261 * t685 + t691 + t692;
-    const ariane6_real_t t694 = t10 * t690 - t14 * t693;
-    const ariane6_real_t t695 = t47 * t689 - t30 * t687;
-    const ariane6_real_t t696 = t131 + (parameters[MY6] * t683 - t287 * t685);
-    const ariane6_real_t t697 = t130 + (t287 * t684 + parameters[MX6] * t683);
-    const ariane6_real_t t698 = t47 * t696 + t30 * t697;
-    const ariane6_real_t t699 = t285 * t684 - t284 * t685 + (parameters[MY6] * t53 + parameters[MX6] * t48);
-    const ariane6_real_t t700 = t10 * t698 + t14 * t699;
-    const ariane6_real_t t701 = t30 * t696 - t47 * t697;
-    const ariane6_real_t t702 = t8 * t700 + t6 * t701;
-    const ariane6_real_t t703 = t6 * t694 + t8 * t695 + ARIANE6_C(-0.488) * t702;
-    const ariane6_real_t t704 = t14 * t690 + t10 * t693;
-    const ariane6_real_t t705 = t704 - ARIANE6_C(0.17) * t702;
-    const ariane6_real_t t706 = t2 * (t3 * t703 + t1 * t705 + ARIANE6_C(0.685) * t702);
-    const ariane6_real_t t707 = t0 * (t1 * t703 - t3 * t705) + t706 + ARIANE6_C(0.18) * t702;
-    input_by_q[5] = t160 * t707;
-    const ariane6_real_t t708 = t14 * t698 - t10 * t699;
-    const ariane6_real_t t709 = t6 * t700 - t8 * t701;
-    const ariane6_real_t t710 = t6 * t695 - t8 * t694 + (ARIANE6_C(-0.17) * t708 + ARIANE6_C(-0.488) * t709);
-    const ariane6_real_t t711 = t185 * (t710 + ARIANE6_C(0.685) * (t3 * t709 + t1 * t708));
-    input_by_q[11] = t711;
-    input_by_q[17] = t199 * t710;
-    input_by_q[23] = ARIANE6_C(0.2) * t704;
-    input_by_q[29] = t214 * t695;
-    const ariane6_real_t t712 = ARIANE6_C(0.2) * (t692 + (t691 + (t54 * t410 - t49 * t409)));
-    input_by_q[35] = t712;
-    const ariane6_real_t t713 = ARIANE6_C(-2.0) * t256 + (parameters[XY6] * t685 - parameters[XX6R] * t684);
-    const ariane6_real_t t714 = ARIANE6_C(2.0) * t257 + parameters[XY6] * t684;
-    const ariane6_real_t t715 = t47 * t713 + t30 * t714;
-    const ariane6_real_t t716 = t412 + (parameters[YZ6R] * t685 - parameters[XZ6R] * t684);
-    const ariane6_real_t t717 = t10 * t715 - t14 * t716;
-    const ariane6_real_t t718 = t47 * t714 - t30 * t713;
-    const ariane6_real_t t719 = ARIANE6_C(-2.0) * t285;
-    const ariane6_real_t t720 = ARIANE6_C(2.0) * t284;
-    const ariane6_real_t t721 = t47 * t719 + t30 * t720;
-    const ariane6_real_t t722 = parameters[MY6] * t684 + parameters[MX6] * t685;
-    const ariane6_real_t t723 = t10 * t721 + t14 * t722;
-    const ariane6_real_t t724 = t30 * t719 - t47 * t720;
-    const ariane6_real_t t725 = t8 * t723 + t6 * t724;
-    const ariane6_real_t t726 = t6 * t717 + t8 * t718 + ARIANE6_C(-0.488) * t725;
-    const ariane6_real_t t727 = t14 * t715 + t10 * t716;
-    const ariane6_real_t t728 = t727 + ARIANE6_C(-0.17) * t725;
-    const ariane6_real_t t729 = t2 * (t3 * t726 + t1 * t728 + ARIANE6_C(0.685) * t725);
-    const ariane6_real_t t730 = t0 * (t1 * t726 - t3 * t728) + t729 + ARIANE6_C(0.18) * t725;
-    input_by_dq[5] = t160 * t730;
-    const ariane6_real_t t731 = t10 * t722 - t14 * t721;
-    const ariane6_real_t t732 = t8 * t724 - t6 * t723;
-    const ariane6_real_t t733 = t6 * t718 - t8 * t717 + (ARIANE6_C(0.17) * t731 + ARIANE6_C(0.488) * t732);
-    const ariane6_real_t t734 = t185 * (t733 + ARIANE6_C(-0.685) * (t3 * t732 + t1 * t731));
-    input_by_dq[11] = t734;
-    input_by_dq[17] = t199 * t733;
-    input_by_dq[23] = ARIANE6_C(0.2) * t727;
-    input_by_dq[29] = t214 * t718;
+    const ariane6_real_t t241 = ARIANE6_C(-2.0) * t49;
+    const ariane6_real_t t242 = parameters[YZ6R] * t49 + t50 * t231;
+    const ariane6_real_t t243 = ARIANE6_C(2.0) * t54;
+    const ariane6_real_t t244 = t242 * t243 - t240 * t241 - (parameters[XX6R] * t53 - parameters[XY6] * t48
+        + parameters[XZ6R] * t229);
+    const ariane6_real_t t245 = t102 + t244;
+    const ariane6_real_t t246 = t50 * t232 + parameters[XZ6R] * t54;
+    const ariane6_real_t t247 = parameters[YZ6R] * t54;
+    const ariane6_real_t t248 = t239 + t247;
+    const ariane6_real_t t249 = t246 * t241 - t248 * t243 + (parameters[XY6] * t53 + parameters[YZ6R] * t229);
+    const ariane6_real_t t250 = t97 + t249;
+    const ariane6_real_t t251 = t47 * t250 - t30 * t245;
+    input_by_q[29] = t214 * t251;
+    const ariane6_real_t t252 = t47 * t245 + t30 * t250;
+    const ariane6_real_t t253 = t233 * t241 - t235 * t243 + t230 + t228;
+    const ariane6_real_t t254 = t14 * t252 + t10 * t253;
+    input_by_q[23] = ARIANE6_C(0.2) * t254;
+    const ariane6_real_t t255 = t10 * t252 - t14 * t253;
+    const ariane6_real_t t256 = parameters[MY6] * t54 + parameters[MX6] * t49;
+    const ariane6_real_t t257 = t131 + (parameters[MY6] * t229 - t256 * t243);
+    const ariane6_real_t t258 = t130 + (t256 * t241 + parameters[MX6] * t229);
+    const ariane6_real_t t259 = t47 * t257 + t30 * t258;
+    const ariane6_real_t t260 = parameters[MX6] * t50;
+    const ariane6_real_t t261 = parameters[MY6] * t50;
+    const ariane6_real_t t262 = t260 * t241 - t261 * t243 + (parameters[MY6] * t53 + parameters[MX6] * t48);
+    const ariane6_real_t t263 = t14 * t259 - t10 * t262;
+    const ariane6_real_t t264 = t10 * t259 + t14 * t262;
+    const ariane6_real_t t265 = t30 * t257 - t47 * t258;
+    const ariane6_real_t t266 = t6 * t264 - t8 * t265;
+    const ariane6_real_t t267 = t6 * t251 - t8 * t255 + (ARIANE6_C(-0.17) * t263 + ARIANE6_C(-0.488) * t266);
+    input_by_q[17] = t199 * t267;
+    const ariane6_real_t t268 = t185 * (t267 + ARIANE6_C(0.685) * (t3 * t266 + t1 * t263));
+    input_by_q[11] = t268;
+    const ariane6_real_t t269 = t8 * t264 + t6 * t265;
+    const ariane6_real_t t270 = t6 * t255 + t8 * t251 + ARIANE6_C(-0.488) * t269;
+    const ariane6_real_t t271 = t254 - ARIANE6_C(0.17) * t269;
+    const ariane6_real_t t272 = t2 * (t3 * t270 + t1 * t271 + ARIANE6_C(0.685) * t269);
+    const ariane6_real_t t273 = t0 * (t1 * t270 - t3 * t271) + t272 + ARIANE6_C(0.18) * t269;
+    input_by_q[5] = t160 * t273;
     input_by_dq[35] = ARIANE6_C(2.0e3) * parameters[FV6];
-    input_by_ddq[5] = t160 * t487;
-    input_by_ddq[11] = t185 * t517;
-    input_by_ddq[17] = t199 * t516;
-    input_by_ddq[23] = t622;
-    input_by_ddq[29] = -(t214 * t440);
+    const ariane6_real_t t274 = t231 - parameters[ZZ6];
+    const ariane6_real_t t275 = t49 * t274 + parameters[YZ6R] * t50;
+    const ariane6_real_t t276 = ARIANE6_C(-2.0) * t275 + (parameters[XY6] * t243 - parameters[XX6R] * t241);
+    const ariane6_real_t t277 = t54 * t274 - parameters[XZ6R] * t50;
+    const ariane6_real_t t278 = ARIANE6_C(2.0) * t277 + parameters[XY6] * t241;
+    const ariane6_real_t t279 = t47 * t278 - t30 * t276;
+    input_by_dq[29] = t214 * t279;
+    const ariane6_real_t t280 = t47 * t276 + t30 * t278;
+    const ariane6_real_t t281 = t238 + t247;
+    const ariane6_real_t t282 = ARIANE6_C(-2.0) * t281;
+    const ariane6_real_t t283 = t282 + (parameters[YZ6R] * t243 - parameters[XZ6R] * t241);
+    const ariane6_real_t t284 = t14 * t280 + t10 * t283;
+    input_by_dq[23] = ARIANE6_C(0.2) * t284;
+    const ariane6_real_t t285 = t10 * t280 - t14 * t283;
+    const ariane6_real_t t286 = ARIANE6_C(-2.0) * t260;
+    const ariane6_real_t t287 = ARIANE6_C(2.0) * t261;
+    const ariane6_real_t t288 = t47 * t286 + t30 * t287;
+    const ariane6_real_t t289 = parameters[MY6] * t241 + parameters[MX6] * t243;
+    const ariane6_real_t t290 = t10 * t289 - t14 * t288;
+    const ariane6_real_t t291 = t10 * t288 + t14 * t289;
+    const ariane6_real_t t292 = t30 * t286 - t47 * t287;
+    const ariane6_real_t t293 = t8 * t292 - t6 * t291;
+    const ariane6_real_t t294 = t6 * t279 - t8 * t285 + (ARIANE6_C(0.17) * t290 + ARIANE6_C(0.488) * t293);
+    input_by_dq[17] = t199 * t294;
+    const ariane6_real_t t295 = t185 * (t294 + ARIANE6_C(-0.685) * (t3 * t293 + t1 * t290));
+    input_by_dq[11] = t295;
+    const ariane6_real_t t296 = t8 * t291 + t6 * t292;
+    const ariane6_real_t t297 = t6 * t285 + t8 * t279 + ARIANE6_C(-0.488) * t296;
+    const ariane6_real_t t298 = t284 + ARIANE6_C(-0.17) * t296;
+    const ariane6_real_t t299 = t2 * (t3 * t297 + t1 * t298 + ARIANE6_C(0.685) * t296);
+    const ariane6_real_t t300 = t0 * (t1 * t297 - t3 * t298) + t299 + ARIANE6_C(0.18) * t296;
+    input_by_dq[5] = t160 * t300;
     input_by_ddq[35] = ARIANE6_C(2.0e3) * parameters[IA6] + ARIANE6_C(0.2) * parameters[ZZ6];
+    /* link j6: column of the mass matrix */
+    const ariane6_real_t t301 = t30 * parameters[XZ6R] + t47 * parameters[YZ6R];
+    input_by_ddq[29] = -(t214 * t301);
+    const ariane6_real_t t302 = t30 * parameters[YZ6R] - t47 * parameters[XZ6R];
+    const ariane6_real_t t303 = t14 * t302 - t10 * parameters[ZZ6];
+    const ariane6_real_t t304 = ARIANE6_C(-0.2) * t303;
+    input_by_ddq[23] = t304;
+    const ariane6_real_t t305 = t10 * t302 + t14 * parameters[ZZ6];
+    const ariane6_real_t t306 = t47 * parameters[MY6] + t30 * parameters[MX6];
+    const ariane6_real_t t307 = t10 * t306;
+    const ariane6_real_t t308 = t47 * parameters[MX6] - t30 * parameters[MY6];
+    const ariane6_real_t t309 = t6 * t307 + t8 * t308;
+    const ariane6_real_t t310 = t14 * t306;
+    const ariane6_real_t t311 = t8 * t305 - t6 * t301 + (ARIANE6_C(0.17) * t310 + ARIANE6_C(0.488) * t309);
+    input_by_ddq[17] = t199 * t311;
+    const ariane6_real_t t312 = t3 * t309 + t1 * t310;
+    const ariane6_real_t t313 = t311 + ARIANE6_C(-0.685) * t312;
+    input_by_ddq[11] = t185 * t313;
+    const ariane6_real_t t314 = t6 * t308 - t8 * t307;
+    const ariane6_real_t t315 = t6 * t305 + t8 * t301 + ARIANE6_C(0.488) * t314;
+    const ariane6_real_t t316 = t303 + ARIANE6_C(0.17) * t314;
+    const ariane6_real_t t317 = t3 * t316 - t1 * t315;
+    const ariane6_real_t t318 = t3 * t315 + t1 * t316 + ARIANE6_C(-0.685) * t314;
+    const ariane6_real_t t319 = t0 * t317 - t2 * t318 + ARIANE6_C(0.18) * t314;
+    input_by_ddq[5] = t160 * t319;
+    const ariane6_real_t t320 = parameters[ZZ6] * t42; /* link j6: derivatives */
+    const ariane6_real_t t321 = t116 + t106; /* link j6: motion */
+    const ariane6_real_t t322 = t47 * t234 + t30 * t236; /* link j6: derivatives */
+    const ariane6_real_t t323 = t15 * t282 - t16 * t322 + (t320 - t302 * t57 + t301 * t321);
+    const ariane6_real_t t324 = t306 * t96;
+    input_by_q[34] = ARIANE6_C(0.2) * (t323 + t324);
+    const ariane6_real_t t325 = t10 * t322 + t14 * t282;
+    const ariane6_real_t t326 = t30 * t234 - t47 * t236;
+    const ariane6_real_t t327 = t128 + t121; /* link j5: motion */
+    /* link j6: derivatives */
+    const ariane6_real_t t328 = t31 * t325 - t9 * t326 + (t305 * t25 - t301 * t38 + t303 * t327);
+    input_by_q[33] = ARIANE6_C(0.2) * (t328 + (t307 * t108 - t308 * t90));
+    const ariane6_real_t t329 = ARIANE6_C(-0.34) * t7;
+    const ariane6_real_t t330 = ARIANE6_C(0.488) * t5 + ARIANE6_C(0.17) * t12;
+    const ariane6_real_t t331 = ARIANE6_C(2.0) * t330;
+    const ariane6_real_t t332 = t6 * t325 - t8 * t326 + (t314 * t329 - t310 * t331);
+    const ariane6_real_t t333 = t14 * t322 - t10 * t282;
+    const ariane6_real_t t334 = ARIANE6_C(-0.976) * t7;
+    const ariane6_real_t t335 = t333 + (t309 * t331 - t314 * t334);
+    const ariane6_real_t t336 = t92 + t79; /* link j4: motion */
+    /* link j6: derivatives */
+    const ariane6_real_t t337 = t5 * t335 - t12 * t332 + (t316 * t22 - t315 * t34 - t311 * t336);
+    input_by_q[32] = ARIANE6_C(0.2) * (t337 + (t309 * t91 + t310 * t78));
+    const ariane6_real_t t338 = ARIANE6_C(1.37) * dq[1];
+    const ariane6_real_t t339 = ARIANE6_C(-1.37) * t69;
+    const ariane6_real_t t340 = t3 * t335 - t1 * t332 + (t312 * t339 - t314 * t338);
+    const ariane6_real_t t341 = t1 * t309 - t3 * t310; /* link j6: column of the mass matrix */
+    const ariane6_real_t t342 = t3 * t332 + t1 * t335 + t341 * t339; /* link j6: derivatives */
+    const ariane6_real_t t343 = t153 + t70; /* link j3: motion */
+    /* link j6: derivatives */
+    const ariane6_real_t t344 = t69 * t340 + t74 * t342 + (t317 * t85 + t318 * t146 - t313 * t343);
+    input_by_q[31] = ARIANE6_C(0.2) * (t344 + (t341 * t73 + t312 * t68));
+    const ariane6_real_t t345 = ARIANE6_C(0.2) * (t326 + ARIANE6_C(2.0) * (parameters[ZZ6] * t15
+        - t302 * t16));
+    input_by_dq[34] = t345;
+    const ariane6_real_t t346 = ARIANE6_C(0.2) * (ARIANE6_C(2.0) * (t305 * t31 + t301 * t9) - t333);
+    input_by_dq[33] = t346;
+    const ariane6_real_t t347 = t8 * t325 + t6 * t326 + (t309 * t329 - t310 * t334);
+    const ariane6_real_t t348 = ARIANE6_C(0.2) * (t347 + ARIANE6_C(2.0) * (t316 * t5 - t315 * t12));
+    input_by_dq[32] = t348;
+    const ariane6_real_t t349 = t347 + t341 * t338 + ARIANE6_C(2.0) * (t317 * t69 + t318 * t74);
+    input_by_dq[31] = ARIANE6_C(0.2) * t349;
+    const ariane6_real_t t350 = ARIANE6_C(0.36) * dq[0];
+    const ariane6_real_t t351 = t0 * t340 - t2 * t342 + (t2 * t341 - t0 * t312) * t350;
+    input_by_dq[30] = ARIANE6_C(0.2) * t351;
+    input_by_ddq[34] = ARIANE6_C(-0.2) * t301;
+    input_by_ddq[33] = t304;
+    input_by_ddq[32] = ARIANE6_C(0.2) * t311;
+    input_by_ddq[31] = ARIANE6_C(0.2) * t313;
+    input_by_ddq[30] = ARIANE6_C(0.2) * t319;
+    const ariane6_real_t t352 = parameters[MX5] + t308; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t353 = t352 * t111 + parameters[MY5R] * t96; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t354 = t47 * parameters[XX6R] + parameters[XY6] * (ARIANE6_C(-2.0) * t30);
+    const ariane6_real_t t355 = parameters[XY6] + t30 * t354 - parameters[XZ5];
+    const ariane6_real_t t356 = parameters[YZ5] - t301;
+    const ariane6_real_t t357 = t47 * t354;
+    const ariane6_real_t t358 = t357 - parameters[XX6R] - parameters[ZZ5R];
+    const ariane6_real_t t359 = t356 * t42 - t355 * t57 + t358 * t321; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t360 = t47 * (t248 - t240) + t30 * (t246 + t242);
+    const ariane6_real_t t361 = t30 * t360;
+    const ariane6_real_t t362 = ARIANE6_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    const ariane6_real_t t363 = parameters[XX5R] + t362;
+    const ariane6_real_t t364 = parameters[XY5] * t15 + t16 * t363 + (t246 - t361);
+    const ariane6_real_t t365 = ARIANE6_C(2.0) * t364; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t366 = t30 * t275 + t47 * t277 - (t15 * t362 + parameters[XY5] * t16);
+    const ariane6_real_t t367 = ARIANE6_C(2.0) * t366; /* link j5: derivatives */
+    const ariane6_real_t t368 = t214 * (t353 + (t359 + (t15 * t367 - t16 * t365)));
+    const ariane6_real_t t369 = ARIANE6_C(0.035496) * t10;
+    const ariane6_real_t t370 = t215 * (t215 * (t369 * (ARIANE6_C(0.5) * t215)));
+    const ariane6_real_t t371 = t221 * (ARIANE6_C(125.9966016) * (t215 * t370))
+        + t220 * (ARIANE6_C(2.0) * (t14 * t10));
+    const ariane6_real_t t372 = t224 * (t222 * t370 + t215 * (ARIANE6_C(-3549.6000000000004) * t10 + t371));
+    const ariane6_real_t t373 = t10 * (ARIANE6_C(-3549.6000000000004) * t370) - t14 * t216;
+    const ariane6_real_t t374 = parameters[FV5] * (dq[4] * t373) + parameters[IA5] * (t372 + ddq[4] * t373);
+    const ariane6_real_t t375 = ariane6_select(t213, t213, ARIANE6_C(1.0));
+    const ariane6_real_t t376 = ARIANE6_C(1.0) / t375;
+    const ariane6_real_t t377 = ARIANE6_C(1.0) / t10;
+    const ariane6_real_t t378 = t377 * (ARIANE6_C(0.07043047103899029) * (t369 * (ARIANE6_C(0.5) * t376))
+        + t14 * t214);
+    input_by_q[28] = ARIANE6_C(250.0) * t374 + t368 + t126 * t378;
+    const ariane6_real_t t379 = t47 * t360; /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t380 = parameters[XZ5] * t16;
+    const ariane6_real_t t381 = parameters[XY5] * t43;
+    const ariane6_real_t t382 = t381 - t380 + (t379 - t248);
+    const ariane6_real_t t383 = ARIANE6_C(2.0) * t16; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t384 = parameters[YZ5] * t16 - t43 * t362 + (t30 * t277 - t47 * t275);
+    const ariane6_real_t t385 = ARIANE6_C(2.0) * t15; /* link j5: derivatives */
+    const ariane6_real_t t386 = parameters[XX5R] + t357; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t387 = parameters[XY5] - t302;
+    /* link j5: derivatives */
+    const ariane6_real_t t388 = t384 * t385 - t382 * t383 + (t386 * t57 + t387 * t42 + t355 * t321);
+    const ariane6_real_t t389 = t117 + (t388 + t306 * t111);
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t390 = t43 * t363 + parameters[XZ5] * t15 + (t30 * t235 - t47 * t233);
+    const ariane6_real_t t391 = parameters[YZ5] * t15;
+    const ariane6_real_t t392 = t381 + t391 - t281;
+    /* link j5: derivatives */
+    const ariane6_real_t t393 = t390 * t383 + t392 * t385 + (t320 + t387 * t57 - t356 * t321);
+    const ariane6_real_t t394 = t109 + (t324 + t393);
+    const ariane6_real_t t395 = t14 * t389 + t10 * t394;
+    input_by_q[22] = ARIANE6_C(0.2) * t395;
+    const ariane6_real_t t396 = t10 * t389 - t14 * t394;
+    const ariane6_real_t t397 = t366 * t385 - t364 * t383 + t359 + t353;
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t398 = parameters[MY5R] * t15 + parameters[MX5] * t16 - (t30 * t261 - t47 * t260);
+    /* link j5: derivatives */
+    const ariane6_real_t t399 = t133 + (parameters[MY5R] * t321 - t306 * t42 - t398 * t385);
+    const ariane6_real_t t400 = t132 + (t352 * t321 - t306 * t57 - t398 * t383);
+    const ariane6_real_t t401 = t14 * t399 - t10 * t400;
+    const ariane6_real_t t402 = t10 * t399 + t14 * t400;
+    const ariane6_real_t t403 = t256 - parameters[MX5] * t43; /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t404 = parameters[MY5R] * t43 + (t47 * t261 + t30 * t260);
+    /* link j5: derivatives */
+    const ariane6_real_t t405 = t403 * t383 - t404 * t385 + (t352 * t42 - parameters[MY5R] * t57);
+    const ariane6_real_t t406 = t6 * t402 - t8 * t405;
+    const ariane6_real_t t407 = t6 * t397 - t8 * t396 + (ARIANE6_C(-0.17) * t401 + ARIANE6_C(-0.488) * t406);
+    input_by_q[16] = t199 * t407;
+    const ariane6_real_t t408 = t185 * (t407 + ARIANE6_C(0.685) * (t3 * t406 + t1 * t401));
+    input_by_q[10] = t408;
+    const ariane6_real_t t409 = t8 * t402 + t6 * t405;
+    const ariane6_real_t t410 = t6 * t396 + t8 * t397 + ARIANE6_C(-0.488) * t409;
+    const ariane6_real_t t411 = t395 - ARIANE6_C(0.17) * t409;
+    const ariane6_real_t t412 = t2 * (t3 * t410 + t1 * t411 + ARIANE6_C(0.685) * t409);
+    const ariane6_real_t t413 = t0 * (t1 * t410 - t3 * t411) + t412 + ARIANE6_C(0.18) * t409;
+    input_by_q[4] = t160 * t413;
+    const ariane6_real_t t414 = t240 + t379 - (t380 + t391); /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t415 = ARIANE6_C(2.0) * t414; /* link j5: derivatives */
+    const ariane6_real_t t416 = t214 * (t415 + ARIANE6_C(2.0) * (t356 * t15 - t355 * t16));
+    const ariane6_real_t t417 = ARIANE6_C(250.0) * (t217 * parameters[FV5]
+        + parameters[IA5] * (t223 * (ARIANE6_C(-2.0) * dq[4])));
+    input_by_dq[28] = t417 + t416;
+    const ariane6_real_t t418 = parameters[ZZ5R] + t362;
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t419 = t16 * t418 - parameters[YZ5] * t43 + (t361 - t242);
+    /* link j5: derivatives */
+    const ariane6_real_t t420 = ARIANE6_C(2.0) * t419 + (t386 * t383 + t387 * t385);
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t421 = parameters[XZ5] * t43 + t15 * t418 + (t30 * t233 + t47 * t235);
+    /* link j5: derivatives */
+    const ariane6_real_t t422 = ARIANE6_C(2.0) * t421 + (t387 * t383 + parameters[ZZ6] * t385);
+    const ariane6_real_t t423 = t14 * t420 + t10 * t422;
+    input_by_dq[22] = ARIANE6_C(0.2) * t423;
+    const ariane6_real_t t424 = t10 * t420 - t14 * t422;
+    const ariane6_real_t t425 = t415 + (t356 * t385 - t355 * t383);
+    const ariane6_real_t t426 = ARIANE6_C(2.0) * t403 - t306 * t385;
+    const ariane6_real_t t427 = ARIANE6_C(2.0) * t404 - t306 * t383;
+    const ariane6_real_t t428 = t10 * t427 - t14 * t426;
+    const ariane6_real_t t429 = t10 * t426 + t14 * t427;
+    const ariane6_real_t t430 = t352 * t385 - parameters[MY5R] * t383;
+    const ariane6_real_t t431 = t8 * t430 - t6 * t429;
+    const ariane6_real_t t432 = t6 * t425 - t8 * t424 + (ARIANE6_C(0.17) * t428 + ARIANE6_C(0.488) * t431);
+    input_by_dq[16] = t199 * t432;
+    const ariane6_real_t t433 = t185 * (t432 + ARIANE6_C(-0.685) * (t3 * t431 + t1 * t428));
+    input_by_dq[10] = t433;
+    const ariane6_real_t t434 = t8 * t429 + t6 * t430;
+    const ariane6_real_t t435 = t6 * t424 + t8 * t425 + ARIANE6_C(-0.488) * t434;
+    const ariane6_real_t t436 = t423 + ARIANE6_C(-0.17) * t434;
+    const ariane6_real_t t437 = t2 * (t3 * t435 + t1 * t436 + ARIANE6_C(0.685) * t434);
+    const ariane6_real_t t438 = t0 * (t1 * t435 - t3 * t436) + t437 + ARIANE6_C(0.18) * t434;
+    input_by_dq[4] = t160 * t438;
+    input_by_ddq[28] = ARIANE6_C(250.0) * (t217 * parameters[IA5]) - t214 * t358;
+    const ariane6_real_t t439 = t10 * t356 - t14 * t355; /* link j5: column of the mass matrix */
+    input_by_ddq[22] = ARIANE6_C(0.2) * t439;
+    const ariane6_real_t t440 = t10 * t355 + t14 * t356;
+    const ariane6_real_t t441 = t10 * t352 - t14 * parameters[MY5R];
+    const ariane6_real_t t442 = t10 * parameters[MY5R] + t14 * t352;
+    const ariane6_real_t t443 = t6 * t442;
+    const ariane6_real_t t444 = t8 * t440 - t6 * t358 + (ARIANE6_C(-0.17) * t441 + ARIANE6_C(0.488) * t443);
+    input_by_ddq[16] = t199 * t444;
+    const ariane6_real_t t445 = t1 * t441 - t3 * t443;
+    const ariane6_real_t t446 = t444 + ARIANE6_C(0.685) * t445;
+    input_by_ddq[10] = t185 * t446;
+    const ariane6_real_t t447 = t8 * t442;
+    const ariane6_real_t t448 = t6 * t440 + t8 * t358 + ARIANE6_C(-0.488) * t447;
+    const ariane6_real_t t449 = ARIANE6_C(-0.17) * t447 - t439;
+    const ariane6_real_t t450 = t3 * t449 - t1 * t448;
+    const ariane6_real_t t451 = t3 * t448 + t1 * t449 + ARIANE6_C(0.685) * t447;
+    const ariane6_real_t t452 = t0 * t450 - t2 * t451 + ARIANE6_C(-0.18) * t447;
+    input_by_ddq[4] = t160 * t452;
+    const ariane6_real_t t453 = t10 * t365 + t14 * t367; /* link j5: derivatives */
+    const ariane6_real_t t454 = t358 * t38;
+    const ariane6_real_t t455 = t31 * t453 - t9 * t415 + (t440 * t25 - t454 - t439 * t327);
+    const ariane6_real_t t456 = t442 * t108;
+    input_by_q[27] = t214 * (t455 + t456);
+    const ariane6_real_t t457 = t6 * t453 - t8 * t415 + (t441 * t331 - t447 * t329);
+    const ariane6_real_t t458 = t14 * t365 - t10 * t367;
+    const ariane6_real_t t459 = t458 + (t443 * t331 + t447 * t334);
+    const ariane6_real_t t460 = t5 * t459 - t12 * t457 + (t449 * t22 - t448 * t34 - t444 * t336);
+    input_by_q[26] = t214 * (t460 + (t443 * t91 - t441 * t78));
+    const ariane6_real_t t461 = t3 * t459 - t1 * t457 + (t447 * t338 - t445 * t339);
+    const ariane6_real_t t462 = t1 * t443 + t3 * t441; /* link j5: column of the mass matrix */
+    const ariane6_real_t t463 = t3 * t457 + t1 * t459 + t462 * t339; /* link j5: derivatives */
+    const ariane6_real_t t464 = t69 * t461 + t74 * t463 + (t450 * t85 + t451 * t146 - t446 * t343);
+    input_by_q[25] = t214 * (t464 + (t462 * t73 - t445 * t68));
+    const ariane6_real_t t465 = t214 * (ARIANE6_C(2.0) * (t440 * t31 + t358 * t9) - t458);
+    input_by_dq[27] = t465;
+    const ariane6_real_t t466 = t8 * t453 + t6 * t415 + (t441 * t334 + t443 * t329);
+    const ariane6_real_t t467 = t214 * (t466 + ARIANE6_C(2.0) * (t449 * t5 - t448 * t12));
+    input_by_dq[26] = t467;
+    const ariane6_real_t t468 = t466 + t462 * t338 + ARIANE6_C(2.0) * (t450 * t69 + t451 * t74);
+    input_by_dq[25] = t214 * t468;
+    const ariane6_real_t t469 = t0 * t461 - t2 * t463 + (t2 * t462 + t0 * t445) * t350;
+    input_by_dq[24] = t214 * t469;
+    input_by_ddq[27] = t214 * t439;
+    input_by_ddq[26] = t214 * t444;
+    input_by_ddq[25] = t214 * t446;
+    input_by_ddq[24] = t214 * t452;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t470 = t10 * (t382 + t392) + t14 * (t384 + t390);
+    const ariane6_real_t t471 = t14 * t470;
+    const ariane6_real_t t472 = ARIANE6_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const ariane6_real_t t473 = parameters[XX4R] + t472;
+    const ariane6_real_t t474 = parameters[XY4] * t9 - t31 * t473 + (t471 - t390);
+    const ariane6_real_t t475 = ARIANE6_C(2.0) * t474; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t476 = parameters[XY4] * t31 - t9 * t472 - (t14 * t419 + t10 * t421);
+    const ariane6_real_t t477 = ARIANE6_C(2.0) * t476; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t478 = t10 * (parameters[ZZ6] - t386) + t387 * (ARIANE6_C(2.0) * t14);
+    const ariane6_real_t t479 = t14 * t478 - t387 - parameters[XZ4];
+    const ariane6_real_t t480 = parameters[YZ4] - t439;
+    const ariane6_real_t t481 = t10 * t478;
+    const ariane6_real_t t482 = parameters[ZZ4R] + (t386 + t481);
+    const ariane6_real_t t483 = t479 * t25 - t480 * t38 - t482 * t327; /* link j4: derivatives */
+    const ariane6_real_t t484 = parameters[MX4] + t441; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t485 = parameters[MY4R] + t306;
+    const ariane6_real_t t486 = t485 * t108 - t484 * t90; /* link j4: derivatives */
+    const ariane6_real_t t487 = ARIANE6_C(0.2) * (t486 + (t483 + (t31 * t475 + t9 * t477)));
+    input_by_q[21] = t487;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t488 = t13 * t473 + parameters[XZ4] * t9 + (t10 * t364 + t14 * t366);
+    const ariane6_real_t t489 = ARIANE6_C(2.0) * t31; /* link j4: derivatives */
+    const ariane6_real_t t490 = parameters[XY4] * t13;
+    const ariane6_real_t t491 = parameters[YZ4] * t9;
+    const ariane6_real_t t492 = t490 + t491 + t414; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t493 = ARIANE6_C(-2.0) * t9; /* link j4: derivatives */
+    const ariane6_real_t t494 = parameters[XY4] + t440; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const ariane6_real_t t495 = t488 * t489 + t492 * t493 + (t494 * t25 - t454 + t480 * t327);
+    const ariane6_real_t t496 = t123 + (t456 + t495);
+    const ariane6_real_t t497 = t10 * t470; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t498 = parameters[XZ4] * t31;
+    const ariane6_real_t t499 = t498 + t490 - (t392 - t497);
+    const ariane6_real_t t500 = parameters[YZ4] * t31 + t13 * t472 + (t10 * t419 - t14 * t421);
+    /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t501 = parameters[XX4R] + (parameters[ZZ6] - t481);
+    /* link j4: derivatives */
+    const ariane6_real_t t502 = t499 * t489 + t500 * t493 - (t501 * t25 + t494 * t38 - t479 * t327);
+    const ariane6_real_t t503 = t129 + (t502 + t442 * t90);
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t504 = parameters[MX4] * t31 - parameters[MY4R] * t9 - (t14 * t404 + t10 * t403);
+    const ariane6_real_t t505 = t134 + (t504 * t489 + (t442 * t25 - t484 * t327)); /* link j4: derivatives */
+    const ariane6_real_t t506 = t136 + (t485 * t327 - t442 * t38 - t504 * t493);
+    const ariane6_real_t t507 = t6 * t506 - t8 * t505;
+    const ariane6_real_t t508 = parameters[MX4] * t13 + t398; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t509 = t14 * t403 - t10 * t404 - parameters[MY4R] * t13;
+    /* link j4: derivatives */
+    const ariane6_real_t t510 = t508 * t489 - t509 * t493 + (t485 * t25 - t484 * t38);
+    const ariane6_real_t t511 = t6 * t496 - t8 * t503 + (ARIANE6_C(0.17) * t510 + ARIANE6_C(-0.488) * t507);
+    input_by_q[15] = t199 * t511;
+    const ariane6_real_t t512 = t185 * (t511 + ARIANE6_C(0.685) * (t3 * t507 - t1 * t510));
+    input_by_q[9] = t512;
+    const ariane6_real_t t513 = t8 * t506 + t6 * t505;
+    const ariane6_real_t t514 = t6 * t503 + t8 * t496 + ARIANE6_C(-0.488) * t513;
+    const ariane6_real_t t515 = t474 * t489 - t476 * t493 + t483 + t486 - ARIANE6_C(0.17) * t513;
+    const ariane6_real_t t516 = t2 * (t3 * t514 + t1 * t515 + ARIANE6_C(0.685) * t513);
+    const ariane6_real_t t517 = t0 * (t1 * t514 - t3 * t515) + t516 + ARIANE6_C(0.18) * t513;
+    input_by_q[3] = t160 * t517;
+    const ariane6_real_t t518 = t498 - t491 + (t497 - t382); /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t519 = ARIANE6_C(2.0) * t518; /* link j4: derivatives */
+    const ariane6_real_t t520 = ARIANE6_C(0.2) * (t519 + ARIANE6_C(2.0) * (t479 * t31 + t480 * t9));
+    input_by_dq[21] = ARIANE6_C(2.0e3) * parameters[FV4] + t520;
+    const ariane6_real_t t521 = parameters[ZZ4R] + t472;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t522 = t31 * t521 + parameters[YZ4] * t13 - (t384 - t471);
+    /* link j4: derivatives */
+    const ariane6_real_t t523 = ARIANE6_C(2.0) * t522 + (t501 * t489 + t494 * t493);
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t524 = parameters[XZ4] * t13 + t9 * t521 + (t14 * t364 - t10 * t366);
+    /* link j4: derivatives */
+    const ariane6_real_t t525 = ARIANE6_C(-2.0) * t524 + (t494 * t489 - t358 * t493);
+    const ariane6_real_t t526 = ARIANE6_C(-2.0) * t508 - t442 * t493;
+    const ariane6_real_t t527 = ARIANE6_C(2.0) * t509 + t442 * t489;
+    const ariane6_real_t t528 = t8 * t527 - t6 * t526;
+    const ariane6_real_t t529 = t485 * t489 - t484 * t493;
+    const ariane6_real_t t530 = t8 * t523 + t6 * t525 + (ARIANE6_C(0.17) * t529 + ARIANE6_C(0.488) * t528);
+    input_by_dq[15] = t199 * t530;
+    const ariane6_real_t t531 = t185 * (t530 + ARIANE6_C(-0.685) * (t3 * t528 + t1 * t529));
+    input_by_dq[9] = t531;
+    const ariane6_real_t t532 = t8 * t526 + t6 * t527;
+    const ariane6_real_t t533 = t8 * t525 - t6 * t523 + ARIANE6_C(-0.488) * t532;
+    const ariane6_real_t t534 = t519 - (t480 * t493 - t479 * t489) + ARIANE6_C(-0.17) * t532;
+    const ariane6_real_t t535 = t2 * (t3 * t533 + t1 * t534 + ARIANE6_C(0.685) * t532);
+    const ariane6_real_t t536 = t0 * (t1 * t533 - t3 * t534) + t535 + ARIANE6_C(0.18) * t532;
+    input_by_dq[3] = t160 * t536;
+    input_by_ddq[21] = ARIANE6_C(2.0e3) * parameters[IA4] + ARIANE6_C(0.2) * t482;
+    const ariane6_real_t t537 = t6 * t485 + t8 * t484; /* link j4: column of the mass matrix */
+    const ariane6_real_t t538 = t8 * t479 - t6 * t480 + ARIANE6_C(0.488) * t537;
+    input_by_ddq[15] = t199 * t538;
+    const ariane6_real_t t539 = t3 * t537;
+    const ariane6_real_t t540 = t538 + ARIANE6_C(-0.685) * t539;
+    input_by_ddq[9] = t185 * t540;
+    const ariane6_real_t t541 = t6 * t479 + t8 * t480;
+    const ariane6_real_t t542 = t8 * t485 - t6 * t484;
+    const ariane6_real_t t543 = ARIANE6_C(-0.488) * t542;
+    const ariane6_real_t t544 = t541 + t543;
+    const ariane6_real_t t545 = ARIANE6_C(-0.17) * t542 - t482;
+    const ariane6_real_t t546 = t3 * t545 - t1 * t544;
+    const ariane6_real_t t547 = t3 * t544 + t1 * t545 + ARIANE6_C(0.685) * t542;
+    const ariane6_real_t t548 = t0 * t546 - t2 * t547 + ARIANE6_C(-0.18) * t542;
+    input_by_ddq[3] = t160 * t548;
+    const ariane6_real_t t549 = t6 * t475 + t8 * t477 - t542 * t329; /* link j4: derivatives */
+    const ariane6_real_t t550 = t537 * t331 + t542 * t334 - t519;
+    const ariane6_real_t t551 = t5 * t550 - t12 * t549 + (t545 * t22 - t544 * t34 - t538 * t336);
+    const ariane6_real_t t552 = t537 * t91;
+    input_by_q[20] = ARIANE6_C(0.2) * (t551 + t552);
+    const ariane6_real_t t553 = t3 * t550 - t1 * t549 + (t542 * t338 + t539 * t339);
+    const ariane6_real_t t554 = t1 * t537; /* link j4: column of the mass matrix */
+    const ariane6_real_t t555 = t3 * t549 + t1 * t550 + t554 * t339; /* link j4: derivatives */
+    const ariane6_real_t t556 = t69 * t553 + t74 * t555 + (t546 * t85 + t547 * t146 - t540 * t343);
+    input_by_q[19] = ARIANE6_C(0.2) * (t556 + (t554 * t73 + t539 * t68));
+    const ariane6_real_t t557 = t8 * t475 - t6 * t477 + t537 * t329;
+    const ariane6_real_t t558 = ARIANE6_C(0.2) * (t557 + ARIANE6_C(2.0) * (t545 * t5 - t544 * t12));
+    input_by_dq[20] = t558;
+    const ariane6_real_t t559 = t557 + t554 * t338 + ARIANE6_C(2.0) * (t546 * t69 + t547 * t74);
+    input_by_dq[19] = ARIANE6_C(0.2) * t559;
+    const ariane6_real_t t560 = t0 * t553 - t2 * t555 + (t2 * t554 - t0 * t539) * t350;
+    input_by_dq[18] = ARIANE6_C(0.2) * t560;
+    input_by_ddq[20] = ARIANE6_C(0.2) * t538;
+    input_by_ddq[19] = ARIANE6_C(0.2) * t540;
+    input_by_ddq[18] = ARIANE6_C(0.2) * t548;
+    const ariane6_real_t t561 = ariane6_select(t197, t197, ARIANE6_C(1.0));
+    const ariane6_real_t t562 = ARIANE6_C(1.0) / t561;
+    const ariane6_real_t t563 = ARIANE6_C(0.083776) * t198;
+    const ariane6_real_t t564 = ARIANE6_C(1.0) / t198;
+    const ariane6_real_t t565 = t564 * (ARIANE6_C(0.029841482047364396) * (t563 * (ARIANE6_C(0.5) * t562))
+        + t196 * t199);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t566 = t6 * (t499 + t492) + t8 * (t488 - t500);
+    const ariane6_real_t t567 = t8 * t566;
+    const ariane6_real_t t568 = t8 * t509 + t6 * t508;
+    const ariane6_real_t t569 = ARIANE6_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const ariane6_real_t t570 = parameters[XX3R] - t569;
+    const ariane6_real_t t571 = parameters[XY3R] * t5 - t12 * t570 - (t488 - t567 - (ARIANE6_C(-0.17) * t568
+        + t542 * t330));
+    const ariane6_real_t t572 = ARIANE6_C(2.0) * t571; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t573 = t6 * t524 - t8 * t522 + (ARIANE6_C(-0.488) * t568 + t442 * t330);
+    const ariane6_real_t t574 = t5 * t569 + parameters[XY3R] * t12 + t573;
+    const ariane6_real_t t575 = ARIANE6_C(2.0) * t574; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t576 = t494 * (ARIANE6_C(2.0) * t8) - t6 * (t358 + t501);
+    const ariane6_real_t t577 = t494 - t8 * t576 + ARIANE6_C(0.17) * t537 - parameters[XZ3];
+    const ariane6_real_t t578 = parameters[YZ3] + t538;
+    const ariane6_real_t t579 = t6 * t576;
+    const ariane6_real_t t580 = ARIANE6_C(0.34) * t542;
+    const ariane6_real_t t581 = ARIANE6_C(0.976) * t442;
+    const ariane6_real_t t582 = parameters[ZZ3R] + (t501 + t579 + (t580 + t581));
+    const ariane6_real_t t583 = t577 * t34 + t578 * t22 + t582 * t336; /* link j3: derivatives */
+    const ariane6_real_t t584 = t542 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t585 = parameters[MY3R] + t442;
+    const ariane6_real_t t586 = t584 * t78 + t585 * t91; /* link j3: derivatives */
+    const ariane6_real_t t587 = t199 * (t586 + (t12 * t572 + t5 * t575 - t583));
+    const ariane6_real_t t588 = t200 * (t200 * (t563 * (ARIANE6_C(0.5) * t200)));
+    const ariane6_real_t t589 = t206 * (ARIANE6_C(701.8418176000002) * (t200 * t588))
+        - t205 * (ARIANE6_C(2.0) * (t198 * t196));
+    const ariane6_real_t t590 = t209 * (t207 * t588 - t200 * (ARIANE6_C(-8377.600000000002) * t198 + t589));
+    const ariane6_real_t t591 = t198 * (ARIANE6_C(8377.600000000002) * t588) - t196 * t201;
+    const ariane6_real_t t592 = parameters[FV3] * (dq[2] * t591) + parameters[IA3] * (t590 + ddq[2] * t591);
+    input_by_q[14] = ARIANE6_C(250.0) * t592 + t587 + t176 * t565;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t593 = parameters[MX3R] * t12 - parameters[MY3R] * t5 + t568;
+    const ariane6_real_t t594 = ARIANE6_C(2.0) * t5; /* link j3: derivatives */
+    const ariane6_real_t t595 = t178 + (t593 * t594 + (t537 * t22 + t585 * t336));
+    const ariane6_real_t t596 = ARIANE6_C(-2.0) * t12;
+    const ariane6_real_t t597 = t177 + (t584 * t336 + t537 * t34 - t593 * t596);
+    const ariane6_real_t t598 = t574 * t594 - t571 * t596 - t583 + t586 + ARIANE6_C(0.685) * (t3 * t595
+        + t1 * t597);
+    input_by_q[8] = t185 * t598;
+    const ariane6_real_t t599 = t6 * t566; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t600 = t8 * t508 - t6 * t509;
+    const ariane6_real_t t601 = ARIANE6_C(0.17) * t600;
+    const ariane6_real_t t602 = ARIANE6_C(-0.488) * t7; /* link j4: velocity of its origin */
+    const ariane6_real_t t603 = t542 * t602; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t604 = ARIANE6_C(0.488) * t504;
+    const ariane6_real_t t605 = t537 * t330;
+    const ariane6_real_t t606 = ARIANE6_C(-0.17) * t7; /* link j4: velocity of its origin */
+    const ariane6_real_t t607 = t442 * t606; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t608 = t601 + t604 + (t607 - t603 - t605);
+    const ariane6_real_t t609 = parameters[XZ3] * t12;
+    const ariane6_real_t t610 = parameters[XY3R] * t7;
+    const ariane6_real_t t611 = t609 - t610 + (t608 + (t492 - t599 + (t603 - t601)));
+    const ariane6_real_t t612 = t6 * t522 + t8 * t524 + (ARIANE6_C(-0.488) * t600 + t442 * t602);
+    const ariane6_real_t t613 = t612 - (parameters[YZ3] * t12 + t7 * t569);
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t614 = parameters[XX3R] + (t581 - (t358 + t579));
+    const ariane6_real_t t615 = t541 + (t543 + ARIANE6_C(-0.17) * t442) - parameters[XY3R];
+    /* link j3: derivatives */
+    const ariane6_real_t t616 = t613 * t594 - t611 * t596 + (t614 * t34 + t615 * t22 + t577 * t336);
+    const ariane6_real_t t617 = t144 + (t616 - t537 * t78);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t618 = t6 * t474 + t8 * t476 + (ARIANE6_C(-0.17) * t504 - t542 * t606);
+    const ariane6_real_t t619 = t7 * t570 - parameters[XZ3] * t5 - t618;
+    const ariane6_real_t t620 = parameters[YZ3] * t5;
+    const ariane6_real_t t621 = t610 - t620 + (t608 + (t518 - (t604 + t607)));
+    const ariane6_real_t t622 = t482 + t580; /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const ariane6_real_t t623 = t619 * t596 + t621 * t594 + (t615 * t34 + t622 * t22 + t578 * t336);
+    const ariane6_real_t t624 = t139 + (t623 - t552);
+    const ariane6_real_t t625 = parameters[MY3R] * t7 + t600; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t626 = parameters[MX3R] * t7 + t504;
+    /* link j3: derivatives */
+    const ariane6_real_t t627 = t626 * t596 + t625 * t594 + (t584 * t22 - t585 * t34);
+    const ariane6_real_t t628 = t2 * (t3 * t617 - t1 * t624 + ARIANE6_C(0.685) * t627);
+    const ariane6_real_t t629 = t0 * (t1 * t617 + t3 * t624) + t628 + ARIANE6_C(0.18) * t627;
+    input_by_q[2] = t160 * t629;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t630 = t620 - t609 + (t608 + (t599 - t499 + t605));
+    const ariane6_real_t t631 = ARIANE6_C(2.0) * t630; /* link j3: derivatives */
+    const ariane6_real_t t632 = t199 * (t631 + ARIANE6_C(-2.0) * (t577 * t12 + t578 * t5));
+    const ariane6_real_t t633 = ARIANE6_C(250.0) * (t202 * parameters[FV3]
+        - parameters[IA3] * (t208 * (ARIANE6_C(2.0) * dq[2])));
+    input_by_dq[14] = t633 + t632;
+    const ariane6_real_t t634 = t3 * (ARIANE6_C(-2.0) * t626 + t537 * t594) + t1 * (ARIANE6_C(-2.0) * t625
+        - t537 * t596);
+    const ariane6_real_t t635 = t631 + (t577 * t596 - t578 * t594) + ARIANE6_C(0.685) * t634;
+    input_by_dq[8] = t185 * t635;
+    const ariane6_real_t t636 = t569 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t637 = t500 + t567 + t537 * t602 - (parameters[YZ3] * t7 + t12 * t636);
+    /* link j3: derivatives */
+    const ariane6_real_t t638 = ARIANE6_C(2.0) * t637 + (t615 * t594 - t614 * t596);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t639 = parameters[XZ3] * t7 + t5 * t636 + (t8 * t474 - t6 * t476 + t537 * t606);
+    /* link j3: derivatives */
+    const ariane6_real_t t640 = ARIANE6_C(2.0) * t639 - (t622 * t594 - t615 * t596);
+    const ariane6_real_t t641 = t585 * t596 + t584 * t594;
+    const ariane6_real_t t642 = t2 * (t3 * t638 + t1 * t640 + ARIANE6_C(0.685) * t641);
+    const ariane6_real_t t643 = t0 * (t1 * t638 - t3 * t640) + t642 + ARIANE6_C(0.18) * t641;
+    input_by_dq[2] = t160 * t643;
+    input_by_ddq[14] = ARIANE6_C(250.0) * (t202 * parameters[IA3]) + t199 * t582;
+    const ariane6_real_t t644 = t3 * t585 + t1 * t584; /* link j3: column of the mass matrix */
+    const ariane6_real_t t645 = t582 + ARIANE6_C(-0.685) * t644;
+    input_by_ddq[8] = t185 * t645;
+    const ariane6_real_t t646 = t1 * t577 + t3 * t578;
+    const ariane6_real_t t647 = t3 * t577 - t1 * t578;
+    const ariane6_real_t t648 = t0 * t646 + t2 * t647;
+    input_by_ddq[2] = -(t160 * t648);
+    const ariane6_real_t t649 = t1 * t572 + t3 * t575 + t644 * t339; /* link j3: derivatives */
+    const ariane6_real_t t650 = t3 * t584 - t1 * t585; /* link j3: column of the mass matrix */
+    const ariane6_real_t t651 = t3 * t572 - t1 * t575 + t650 * t339; /* link j3: derivatives */
+    const ariane6_real_t t652 = t69 * t649 - t74 * t651 + (t647 * t146 - t646 * t85 - t645 * t343);
+    input_by_q[13] = t199 * (t652 + (t644 * t68 - t650 * t73));
+    const ariane6_real_t t653 = t631 - t650 * t338 + ARIANE6_C(2.0) * (t647 * t74 - t646 * t69);
+    input_by_dq[13] = t199 * t653;
+    const ariane6_real_t t654 = t0 * t649 + t2 * t651 - (t2 * t650 + t0 * t644) * t350;
+    input_by_dq[12] = t199 * t654;
+    input_by_ddq[13] = t199 * t645;
+    input_by_ddq[12] = -(t199 * t648);
+    const ariane6_real_t t655 = ariane6_select(t183, t183, ARIANE6_C(1.0));
+    const ariane6_real_t t656 = ARIANE6_C(1.0) / t655;
+    const ariane6_real_t t657 = ARIANE6_C(0.126918) * t184;
+    const ariane6_real_t t658 = ARIANE6_C(1.0) / t184;
+    const ariane6_real_t t659 = t658 * (ARIANE6_C(0.019697757607273984) * (t657 * (ARIANE6_C(0.5) * t656))
+        + t182 * t185);
+    const ariane6_real_t t660 = ARIANE6_C(-0.685) * t69; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t661 = t1 * t571 + t3 * t574 + (ARIANE6_C(0.685) * t593 + t644 * t660);
+    const ariane6_real_t t662 = ARIANE6_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const ariane6_real_t t663 = parameters[XX2R] - t662;
+    /* link j2: derivatives */
+    const ariane6_real_t t664 = ARIANE6_C(2.0) * (parameters[XY2] * t74 - t69 * t663 + t661);
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t665 = parameters[XY2] * t69 + t74 * t662 - (t3 * t571 - t1 * t574 + t650 * t660);
+    const ariane6_real_t t666 = ARIANE6_C(2.0) * t665; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t667 = parameters[XZ2R] + (ARIANE6_C(0.685) * t537 - t646);
+    const ariane6_real_t t668 = t647 - parameters[YZ2];
+    const ariane6_real_t t669 = ARIANE6_C(1.37) * t644;
+    const ariane6_real_t t670 = parameters[ZZ2R] + (t582 - t669);
+    /* link j2: derivatives */
+    const ariane6_real_t t671 = t667 * t85 + t668 * t146 - t670 * t343 + (t69 * t664 + t74 * t666);
+    const ariane6_real_t t672 = parameters[MX2R] - t644; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t673 = t650 - parameters[MY2];
+    const ariane6_real_t t674 = t186 * (t186 * (t657 * (ARIANE6_C(0.5) * t186)));
+    const ariane6_real_t t675 = t192 * (ARIANE6_C(1610.8178724000004) * (t186 * t674))
+        - t191 * (ARIANE6_C(2.0) * (t184 * t182));
+    const ariane6_real_t t676 = t71 * (t193 * t674 - t186 * (ARIANE6_C(-12691.800000000003) * t184 + t675));
+    const ariane6_real_t t677 = t184 * (ARIANE6_C(12691.800000000003) * t674) - t182 * t187;
+    const ariane6_real_t t678 = parameters[FV2] * (dq[1] * t677) + parameters[IA2] * (t676 + ddq[1] * t677);
+    const ariane6_real_t t679 = ARIANE6_C(250.0) * t678 + t185 * (t671 - (t672 * t68 + t673 * t73));
+    input_by_q[7] = t679 + t181 * t659;
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t680 = t1 * (t611 - t621) + t3 * (t613 - t619);
+    const ariane6_real_t t681 = t1 * t680;
+    const ariane6_real_t t682 = t1 * t625 + t3 * t626;
+    const ariane6_real_t t683 = ARIANE6_C(0.685) * t682;
+    const ariane6_real_t t684 = ARIANE6_C(0.685) * dq[1]; /* link j3: velocity of its origin */
+    const ariane6_real_t t685 = t650 * t684; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t686 = t537 * t660;
+    const ariane6_real_t t687 = t683 + (t685 + t686);
+    const ariane6_real_t t688 = parameters[XZ2R] * t69;
+    const ariane6_real_t t689 = parameters[XY2] * dq[1];
+    const ariane6_real_t t690 = t688 - t689 + (t621 + t681 + t683 - t687);
+    const ariane6_real_t t691 = ARIANE6_C(2.0) * t69; /* link j2: derivatives */
+    const ariane6_real_t t692 = t3 * t680; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t693 = parameters[YZ2] * t69 + dq[1] * t662 + (t692 - t613);
+    const ariane6_real_t t694 = ARIANE6_C(-2.0) * t74; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t695 = t1 * (t614 - t622) - t615 * (ARIANE6_C(-2.0) * t3);
+    const ariane6_real_t t696 = t1 * t695;
+    const ariane6_real_t t697 = parameters[XX2R] + (t622 + t696);
+    const ariane6_real_t t698 = parameters[XY2] + (t3 * t695 - t615 + ARIANE6_C(0.685) * t650);
+    /* link j2: derivatives */
+    const ariane6_real_t t699 = t690 * t691 + t693 * t694 + (t697 * t85 - t698 * t146 - t667 * t343);
+    const ariane6_real_t t700 = t3 * t625 - t1 * t626; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t701 = dq[1] * t663 - parameters[XZ2R] * t74 + (t619 + t692
+        + (ARIANE6_C(0.685) * t700 + t644 * t684));
+    const ariane6_real_t t702 = parameters[YZ2] * t74;
+    const ariane6_real_t t703 = t689 - t702 + (t611 - t681 + t685 - t687);
+    const ariane6_real_t t704 = t614 - t696 - t669; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
+    const ariane6_real_t t705 = t701 * t691 + t703 * t694 + (t698 * t85 - t704 * t146 + t668 * t343);
+    const ariane6_real_t t706 = t0 * (t154 + (t699 - t537 * t68)) + t2 * (t149 + (t705 + t537 * t73));
+    const ariane6_real_t t707 = t700 - parameters[MX2R] * dq[1]; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t708 = parameters[MY2] * dq[1] + t682;
+    /* link j2: derivatives */
+    const ariane6_real_t t709 = t707 * t691 - t708 * t694 + (t673 * t85 - t672 * t146);
+    input_by_q[1] = t160 * (t706 + ARIANE6_C(0.18) * t709);
+    const ariane6_real_t t710 = ARIANE6_C(2.0) * (t702 - t688 + (t630 + t686 - t687))
+        + ARIANE6_C(2.0) * (t667 * t69 + t668 * t74);
+    const ariane6_real_t t711 = ARIANE6_C(250.0) * (t188 * parameters[FV2]
+        - parameters[IA2] * (t194 * (ARIANE6_C(2.0) * dq[1])));
+    input_by_dq[7] = t711 + t185 * t710;
+    const ariane6_real_t t712 = parameters[ZZ2R] - t662;
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t713 = t69 * t712 - parameters[YZ2] * dq[1] + (t1 * t637 - t3 * t639);
+    /* link j2: derivatives */
+    const ariane6_real_t t714 = t0 * (ARIANE6_C(2.0) * t713 + (t697 * t691 + t698 * t694));
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t715 = parameters[XZ2R] * dq[1] - t74 * t712 + (t3 * t637 + t1 * t639 + t537 * t684);
+    /* link j2: derivatives */
+    const ariane6_real_t t716 = t2 * (ARIANE6_C(2.0) * t715 + (t698 * t691 + t704 * t694));
+    const ariane6_real_t t717 = t714 + t716 + ARIANE6_C(0.18) * (t673 * t691 + t672 * t694);
+    input_by_dq[1] = t160 * t717;
+    input_by_ddq[7] = ARIANE6_C(250.0) * (t188 * parameters[IA2]) + t185 * t670;
+    const ariane6_real_t t718 = t0 * t667 - t2 * t668; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = t160 * t718;
+    /* link j2: derivatives */
+    const ariane6_real_t t719 = t0 * t664 - t2 * t666 + (t0 * t672 - t2 * t673) * t350;
+    input_by_dq[6] = t185 * t719;
+    input_by_ddq[6] = t185 * t718;
+    const ariane6_real_t t720 = ariane6_select(t158, t158, ARIANE6_C(1.0));
+    const ariane6_real_t t721 = ARIANE6_C(1.0) / t720;
+    const ariane6_real_t t722 = ARIANE6_C(0.0406334) * t159;
+    const ariane6_real_t t723 = ARIANE6_C(1.0) / t159;
+    const ariane6_real_t t724 = t723 * (ARIANE6_C(0.061525739908548135) * (t722 * (ARIANE6_C(0.5) * t721))
+        + t157 * t160);
+    const ariane6_real_t t725 = t161 * (t161 * (t722 * (ARIANE6_C(0.5) * t161)));
+    const ariane6_real_t t726 = t167 * (ARIANE6_C(165.10731955600002) * (t161 * t725))
+        + t166 * (ARIANE6_C(2.0) * (t157 * t159));
+    const ariane6_real_t t727 = t66 * (t168 * t725 + t161 * (ARIANE6_C(-4063.3400000000006) * t159 + t726));
+    const ariane6_real_t t728 = t159 * (ARIANE6_C(-4063.3400000000006) * t725) - t157 * t162;
+    const ariane6_real_t t729 = parameters[FV1] * (dq[0] * t728) + parameters[IA1] * (t727 + ddq[0] * t728);
+    input_by_q[0] = ARIANE6_C(250.0) * t729 + t156 * t724;
+    /* link j2: inertia, momentum beyond */
+    const ariane6_real_t t730 = t2 * (t2 * (t703 - t690) + t0 * (t693 + t701));
+    const ariane6_real_t t731 = ARIANE6_C(0.18) * (t0 * t707 - t2 * t708) + t537 * (ARIANE6_C(0.18) * dq[0]);
+    const ariane6_real_t t732 = ARIANE6_C(250.0) * (t163 * parameters[FV1]
+        + parameters[IA1] * (t169 * (ARIANE6_C(-2.0) * dq[0])));
+    input_by_dq[0] = t732 + t160 * (ARIANE6_C(2.0) * (t690 + t730 + t731));
+    /* link j2: inertia of it and all beyond */
+    const ariane6_real_t t733 = t2 * (t2 * (t704 - t697) + t698 * (ARIANE6_C(2.0) * t0));
+    const ariane6_real_t t734 = t697 + t733 + ARIANE6_C(0.36) * (t0 * t673 + t2 * t672);
+    input_by_ddq[0] = ARIANE6_C(250.0) * (t163 * parameters[IA1]) + t160 * (parameters[ZZ1R] + t734);
     /* always zero */
     input_by_q[6] = ARIANE6_C(0.0);
     input_by_q[12] = ARIANE6_C(0.0);

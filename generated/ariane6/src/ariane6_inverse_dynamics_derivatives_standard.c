@@ -110,7 +110,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x13CD28B3UL
+#if ARIANE6_GENERATION != 0xB9B44F76UL
 #error "ariane6.h and ariane6_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -512,744 +512,736 @@ ariane6_status_t ariane6_inverse_dynamics_derivatives_standard(
     const ariane6_real_t t265 = ARIANE6_C(1.0e2) * dq[5] * parameters[FV6] + t264 * parameters[FC6]
         + ARIANE6_C(1.0e2) * ddq[5] * parameters[IA6];
     input[5] = ARIANE6_C(20.0) * t265 + ARIANE6_C(-0.2) * t132;
-    const ariane6_real_t t266 = ariane6_select(t192, t192, ARIANE6_C(1.0));
-    const ariane6_real_t t267 = ARIANE6_C(1.0) / t266;
-    const ariane6_real_t t268 = ARIANE6_C(0.0406334) * t193;
-    const ariane6_real_t t269 = ARIANE6_C(1.0) / t193;
-    const ariane6_real_t t270 = t269 * (ARIANE6_C(0.061525739908548135) * (t268 * (ARIANE6_C(0.5) * t267))
-        + t191 * t194);
-    const ariane6_real_t t271 = t195 * (t195 * (t268 * (ARIANE6_C(0.5) * t195)));
-    const ariane6_real_t t272 = t201 * (ARIANE6_C(165.10731955600002) * (t195 * t271))
-        + t200 * (ARIANE6_C(2.0) * (t191 * t193));
-    const ariane6_real_t t273 = t67 * (t202 * t271 + t195 * (ARIANE6_C(-4063.3400000000006) * t193 + t272));
-    const ariane6_real_t t274 = t193 * (ARIANE6_C(-4063.3400000000006) * t271) - t191 * t196;
-    const ariane6_real_t t275 = parameters[FV1] * (dq[0] * t274) + parameters[IA1] * (ddq[0] * t274 + t273);
-    input_by_q[0] = ARIANE6_C(250.0) * t275 + t190 * t270;
+    const ariane6_real_t t266 = t114 * parameters[MX6] + t102 * parameters[MY6]; /* link j6: derivatives */
+    const ariane6_real_t t267 = t48 * parameters[YZ6] - t53 * parameters[XZ6] - t154 * parameters[ZZ6];
+    const ariane6_real_t t268 = ARIANE6_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const ariane6_real_t t269 = parameters[XX6] - t268;
+    const ariane6_real_t t270 = t54 * parameters[XY6] - t49 * t269;
+    const ariane6_real_t t271 = ARIANE6_C(2.0) * t270;
+    const ariane6_real_t t272 = t268 - parameters[YY6];
+    const ariane6_real_t t273 = t54 * t272 + t49 * parameters[XY6];
+    const ariane6_real_t t274 = ARIANE6_C(-2.0) * t273;
+    const ariane6_real_t t275 = ARIANE6_C(0.2) * (t266 + (t267 + (t49 * t271 - t54 * t274)));
+    input_by_q[35] = t275;
     const ariane6_real_t t276 = t49 * parameters[XZ6];
     const ariane6_real_t t277 = t50 * parameters[XY6];
     const ariane6_real_t t278 = t276 + t277;
-    const ariane6_real_t t279 = t54 * parameters[YZ6];
-    const ariane6_real_t t280 = t277 + t279;
-    const ariane6_real_t t281 = ARIANE6_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const ariane6_real_t t282 = parameters[XX6] - t281;
-    const ariane6_real_t t283 = t50 * t282 + t54 * parameters[XZ6];
-    const ariane6_real_t t284 = t281 - parameters[YY6];
-    const ariane6_real_t t285 = t49 * parameters[YZ6] - t50 * t284;
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t286 = t47 * (t278 + t280) + t30 * (t283 - t285);
-    const ariane6_real_t t287 = t47 * t286;
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t288 = t47 * parameters[MX6] - t30 * parameters[MY6];
-    const ariane6_real_t t289 = ARIANE6_C(0.3) * t43;
-    const ariane6_real_t t290 = t288 * t289; /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t291 = t54 * parameters[MY6] - t49 * parameters[MX6];
-    const ariane6_real_t t292 = ARIANE6_C(-0.3) * t291;
-    const ariane6_real_t t293 = ARIANE6_C(0.3) * t26;
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t294 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const ariane6_real_t t295 = t294 * t293; /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t296 = t292 + (t295 - t290);
-    const ariane6_real_t t297 = t27 * parameters[XZ5];
-    const ariane6_real_t t298 = t43 * parameters[XY5];
-    const ariane6_real_t t299 = t298 - t297 + (t287 - t280 - t290 - t296);
-    const ariane6_real_t t300 = t276 - t279;
-    const ariane6_real_t t301 = t26 * parameters[YZ5];
-    const ariane6_real_t t302 = t298 + t301 + (t296 + (t300 - t292));
-    const ariane6_real_t t303 = parameters[ZZ6] - t281;
-    const ariane6_real_t t304 = t49 * t303 + t50 * parameters[YZ6];
-    const ariane6_real_t t305 = t50 * parameters[XZ6] + t54 * t303;
-    const ariane6_real_t t306 = t49 * parameters[MZ6] + t50 * parameters[MY6];
-    const ariane6_real_t t307 = t50 * parameters[MX6] + t54 * parameters[MZ6];
-    const ariane6_real_t t308 = t47 * t306 + t30 * t307;
-    const ariane6_real_t t309 = ARIANE6_C(-0.3) * parameters[M6]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t310 = parameters[MZ6] - t309;
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t311 = ARIANE6_C(0.3) * t308 + t310 * t289 - (t47 * t304 + t30 * t305);
-    const ariane6_real_t t312 = ARIANE6_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const ariane6_real_t t313 = t312 - parameters[YY5];
-    const ariane6_real_t t314 = t27 * parameters[YZ5] + t43 * t313 + t311;
-    const ariane6_real_t t315 = t54 * parameters[XY6] - t49 * t282;
-    const ariane6_real_t t316 = t54 * t284 + t49 * parameters[XY6];
-    const ariane6_real_t t317 = t312 - parameters[XX5];
-    const ariane6_real_t t318 = t43 * t317 - t26 * parameters[XZ5] + (t47 * t315 + t30 * t316);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t319 = t24 * (t299 + t302) + t25 * (t314 - t318);
-    const ariane6_real_t t320 = t24 * t319;
-    const ariane6_real_t t321 = t35 * parameters[XZ4];
-    const ariane6_real_t t322 = t20 * parameters[XY4];
-    const ariane6_real_t t323 = t321 + t322 - (t302 - t320);
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t324 = t296 + (t287 - t278 - t295) - (t297 + t301);
-    const ariane6_real_t t325 = t19 * parameters[YZ4];
-    const ariane6_real_t t326 = t322 + t325 + t324; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t327 = t30 * t286; /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t328 = t26 * parameters[XY5] - t27 * t317 + (t283 - t327 - t288 * t293);
-    const ariane6_real_t t329 = t47 * t307 - t30 * t306;
-    const ariane6_real_t t330 = t47 * t305 - t30 * t304 + (ARIANE6_C(-0.3) * t329 - t310 * t293);
-    const ariane6_real_t t331 = t27 * parameters[XY5] - t26 * t313 + t330;
-    const ariane6_real_t t332 = ARIANE6_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const ariane6_real_t t333 = parameters[XX4] - t332;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t334 = t20 * t333 + t19 * parameters[XZ4] + (t24 * t328 - t25 * t331);
-    const ariane6_real_t t335 = t312 - parameters[ZZ5];
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t336 = t285 + t327 - t294 * t289 - (t27 * t335 + t43 * parameters[YZ5]);
-    const ariane6_real_t t337 = t43 * parameters[XZ5] - t26 * t335 + (t30 * t315 - t47 * t316);
-    const ariane6_real_t t338 = t332 - parameters[YY4];
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t339 = t35 * parameters[YZ4] - t20 * t338 - (t25 * t337 - t24 * t336);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t340 = t11 * (t323 + t326) + t17 * (t334 - t339);
-    const ariane6_real_t t341 = t11 * t340;
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t342 = t43 * parameters[MY5] - t27 * parameters[MZ5] + (t308
-        + parameters[M6] * t289);
-    const ariane6_real_t t343 = t291 - (t43 * parameters[MX5] + t26 * parameters[MZ5]);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t344 = t25 * t343 - t24 * t342 - (t35 * parameters[MZ4] + t20 * parameters[MY4]);
-    /* link j6: inertia, momentum beyond */
-    const ariane6_real_t t345 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t329
-        + parameters[M6] * t293);
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t346 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t345;
-    const ariane6_real_t t347 = t17 * t346 - t11 * t344; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t348 = ARIANE6_C(0.17) * t347;
-    const ariane6_real_t t349 = t294 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t350 = parameters[MY4] + t349; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t351 = parameters[MX5] + t288; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t352 = parameters[MY5] + t310;
-    const ariane6_real_t t353 = t24 * t351 - t25 * t352; /* link j5: column of the mass matrix */
-    const ariane6_real_t t354 = parameters[MX4] + t353; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t355 = t17 * t350 - t11 * t354; /* link j4: column of the mass matrix */
-    const ariane6_real_t t356 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t357 = parameters[M4] + t356; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t358 = ARIANE6_C(0.17) * t357; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t359 = t355 + t358;
-    const ariane6_real_t t360 = ARIANE6_C(-0.488) * t13; /* link j4: velocity of its origin */
-    const ariane6_real_t t361 = t359 * t360; /* link j4: inertia, momentum beyond */
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t362 = t19 * parameters[MY4] - t35 * parameters[MX4] + (t25 * t342 + t24 * t343);
-    const ariane6_real_t t363 = ARIANE6_C(-0.488) * t362; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t364 = t11 * t350 + t17 * t354; /* link j4: column of the mass matrix */
-    const ariane6_real_t t365 = ARIANE6_C(0.488) * t5 + ARIANE6_C(0.17) * t7;
-    const ariane6_real_t t366 = t364 * t365; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t367 = t24 * t352 + t25 * t351; /* link j5: column of the mass matrix */
-    const ariane6_real_t t368 = parameters[MZ4] + t367; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t369 = ARIANE6_C(0.488) * t357; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t370 = t368 + t369;
-    const ariane6_real_t t371 = ARIANE6_C(0.17) * t13; /* link j4: velocity of its origin */
-    const ariane6_real_t t372 = t370 * t371; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t373 = t348 + t363 - (t361 + t372 + t366);
-    const ariane6_real_t t374 = t7 * parameters[XZ3];
-    const ariane6_real_t t375 = t13 * parameters[XY3];
-    const ariane6_real_t t376 = t374 - t375 + (t373 + (t326 - t341 + (t361 - t348)));
-    const ariane6_real_t t377 = t321 - t325 - (t299 - t320); /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t378 = t5 * parameters[YZ3];
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t379 = t375 - t378 + (t373 + (t377 - (t363 - t372)));
-    const ariane6_real_t t380 = t25 * t319; /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t381 = t332 - parameters[ZZ4];
-    const ariane6_real_t t382 = t20 * parameters[YZ4] - t35 * t381 + (t380 - t314);
-    const ariane6_real_t t383 = t20 * parameters[XZ4] - t19 * t381 + (t25 * t328 + t24 * t331);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t384 = t11 * t382 + t17 * t383 + (ARIANE6_C(-0.488) * t347 + t370 * t360);
-    const ariane6_real_t t385 = ARIANE6_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const ariane6_real_t t386 = parameters[YY3] - t385;
-    const ariane6_real_t t387 = t13 * t386 - t7 * parameters[YZ3] + t384;
-    /* link j5: inertia, momentum beyond */
-    const ariane6_real_t t388 = t19 * parameters[XY4] - t35 * t333 + (t318 + t380);
-    const ariane6_real_t t389 = t25 * t336 + t24 * t337 - (t19 * t338 + t35 * parameters[XY4]);
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t390 = t17 * t389 - t11 * t388 + (ARIANE6_C(-0.17) * t362 - t359 * t371);
-    const ariane6_real_t t391 = parameters[XX3] - t385;
-    const ariane6_real_t t392 = t13 * t391 - t5 * parameters[XZ3] + t390;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t393 = t1 * (t376 - t379) + t3 * (t387 - t392);
-    const ariane6_real_t t394 = t1 * t393;
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t395 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t347 - t357 * t360);
-    const ariane6_real_t t396 = t5 * parameters[MZ3] - t13 * parameters[MX3] + (t362 + t357 * t371);
-    const ariane6_real_t t397 = t1 * t395 - t3 * t396; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t398 = ARIANE6_C(0.685) * t397;
-    const ariane6_real_t t399 = t359 - parameters[MX3]; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t400 = parameters[MY3] + t370;
-    const ariane6_real_t t401 = t3 * t399 - t1 * t400; /* link j3: column of the mass matrix */
-    const ariane6_real_t t402 = ARIANE6_C(-0.685) * dq[1]; /* link j3: velocity of its origin */
-    const ariane6_real_t t403 = t401 * t402; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t404 = t364 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t405 = ARIANE6_C(-0.685) * t70; /* link j3: velocity of its origin */
-    const ariane6_real_t t406 = t404 * t405; /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t407 = t403 - t406 - t398;
-    const ariane6_real_t t408 = t70 * parameters[XZ2];
-    const ariane6_real_t t409 = dq[1] * parameters[XY2];
-    const ariane6_real_t t410 = t408 - t409 + (t407 + (t379 + t394 + t398));
-    const ariane6_real_t t411 = t75 * parameters[YZ2];
-    const ariane6_real_t t412 = t409 - t411 + (t407 + (t376 - t394 - t403));
-    const ariane6_real_t t413 = t3 * t393;
-    const ariane6_real_t t414 = ARIANE6_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const ariane6_real_t t415 = t414 - parameters[YY2];
-    const ariane6_real_t t416 = t70 * parameters[YZ2] + dq[1] * t415 + (t413 - t387);
-    const ariane6_real_t t417 = t3 * t395 + t1 * t396;
-    const ariane6_real_t t418 = t3 * t400 + t1 * t399; /* link j3: column of the mass matrix */
-    const ariane6_real_t t419 = parameters[M3] + t357; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t420 = ARIANE6_C(0.685) * t419; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t421 = t420 - t418;
-    const ariane6_real_t t422 = parameters[XX2] - t414;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t423 = dq[1] * t422 - t75 * parameters[XZ2] + (t392 + t413 + (ARIANE6_C(0.685) * t417
-        + t421 * t402));
-    /* link j2: inertia, momentum beyond */
-    const ariane6_real_t t424 = t2 * (t2 * (t412 - t410) + t0 * (t416 + t423));
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t425 = t70 * parameters[MZ2] - dq[1] * parameters[MY2] - t397;
-    const ariane6_real_t t426 = t75 * parameters[MZ2] - dq[1] * parameters[MX2] + (t417 + t419 * t402);
-    const ariane6_real_t t427 = t404 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia, momentum beyond */
-    const ariane6_real_t t428 = ARIANE6_C(0.18) * (t2 * t425 + t0 * t426) - t427 * (ARIANE6_C(-0.18) * dq[0]);
-    const ariane6_real_t t429 = ARIANE6_C(250.0) * (t197 * parameters[FV1]
-        + parameters[IA1] * (t203 * (ARIANE6_C(-2.0) * dq[0])));
-    input_by_dq[0] = t429 + t194 * (ARIANE6_C(2.0) * (t410 + t424 + t428));
-    const ariane6_real_t t430 = t17 * t340; /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t431 = t17 * t344 + t11 * t346;
-    const ariane6_real_t t432 = t5 * parameters[XY3] - t7 * t391 - (t334 - t430 - (ARIANE6_C(-0.17) * t431
-        + t359 * t365));
-    const ariane6_real_t t433 = t11 * t383 - t17 * t382 + (ARIANE6_C(-0.488) * t431 + t370 * t365);
-    const ariane6_real_t t434 = t7 * parameters[XY3] - t5 * t386 + t433;
-    const ariane6_real_t t435 = t7 * parameters[MX3] - t5 * parameters[MY3] + (t431 - t357 * t365);
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t436 = t1 * t432 + t3 * t434 + (ARIANE6_C(0.685) * t435 - t421 * t405);
-    /* link j2: derivatives */
-    const ariane6_real_t t437 = ARIANE6_C(2.0) * (t75 * parameters[XY2] - t70 * t422 + t436);
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t438 = t70 * parameters[XY2] + t75 * t415 - (t3 * t432 - t1 * t434 + t401 * t405);
-    const ariane6_real_t t439 = ARIANE6_C(2.0) * t438; /* link j2: derivatives */
-    const ariane6_real_t t440 = t401 - parameters[MY2]; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t441 = parameters[MX2] + t421;
-    const ariane6_real_t t442 = ARIANE6_C(0.36) * dq[0]; /* link j6: derivatives */
-    /* link j2: derivatives */
-    const ariane6_real_t t443 = t0 * t437 - t2 * t439 + (t0 * t441 - t2 * t440) * t442;
-    input_by_dq[6] = t223 * t443;
-    const ariane6_real_t t444 = ARIANE6_C(2.0) * t432; /* link j3: derivatives */
-    const ariane6_real_t t445 = ARIANE6_C(2.0) * t434;
-    const ariane6_real_t t446 = ARIANE6_C(-1.37) * t70; /* link j6: derivatives */
-    const ariane6_real_t t447 = t1 * t444 + t3 * t445 + t418 * t446; /* link j3: derivatives */
-    const ariane6_real_t t448 = t3 * t444 - t1 * t445 + t401 * t446;
-    const ariane6_real_t t449 = t0 * t447 + t2 * t448 - (t2 * t401 + t0 * t418) * t442;
-    input_by_dq[12] = t237 * t449;
-    const ariane6_real_t t450 = ARIANE6_C(2.0) * t388; /* link j4: derivatives */
-    const ariane6_real_t t451 = ARIANE6_C(2.0) * t389;
-    const ariane6_real_t t452 = ARIANE6_C(-0.34) * t13; /* link j6: derivatives */
-    const ariane6_real_t t453 = t17 * t451 - t11 * t450 + t355 * t452; /* link j4: derivatives */
-    const ariane6_real_t t454 = ARIANE6_C(2.0) * t377;
-    const ariane6_real_t t455 = ARIANE6_C(2.0) * t365; /* link j6: derivatives */
-    const ariane6_real_t t456 = ARIANE6_C(-0.976) * t13;
-    const ariane6_real_t t457 = t364 * t455 + t355 * t456 - t454; /* link j4: derivatives */
-    const ariane6_real_t t458 = ARIANE6_C(1.37) * dq[1]; /* link j6: derivatives */
-    const ariane6_real_t t459 = t3 * t364; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const ariane6_real_t t460 = t1 * t453 + t3 * t457 + (t355 * t458 + t459 * t446);
-    const ariane6_real_t t461 = t1 * t364; /* link j4: column of the mass matrix */
-    const ariane6_real_t t462 = t3 * t453 - t1 * t457 - t461 * t446; /* link j4: derivatives */
-    const ariane6_real_t t463 = t0 * t460 + t2 * t462 + (t2 * t461 - t0 * t459) * t442;
-    input_by_dq[18] = ARIANE6_C(0.2) * t463;
-    const ariane6_real_t t464 = ARIANE6_C(2.0) * t328; /* link j5: derivatives */
-    const ariane6_real_t t465 = ARIANE6_C(-2.0) * t331;
-    const ariane6_real_t t466 = t24 * t464 + t25 * t465;
-    const ariane6_real_t t467 = ARIANE6_C(2.0) * t324;
-    const ariane6_real_t t468 = t17 * t367; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const ariane6_real_t t469 = t17 * t467 - t11 * t466 - (t353 * t455 - t468 * t452);
-    const ariane6_real_t t470 = t24 * t465 - t25 * t464;
-    const ariane6_real_t t471 = t11 * t367; /* link j5: column of the mass matrix */
-    const ariane6_real_t t472 = t471 * t455 + t468 * t456 - t470; /* link j5: derivatives */
-    const ariane6_real_t t473 = t1 * t353 - t3 * t471; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const ariane6_real_t t474 = t1 * t469 + t3 * t472 + (t468 * t458 - t473 * t446);
-    const ariane6_real_t t475 = t1 * t471 + t3 * t353; /* link j5: column of the mass matrix */
-    const ariane6_real_t t476 = t3 * t469 - t1 * t472 - t475 * t446; /* link j5: derivatives */
-    const ariane6_real_t t477 = t0 * t474 + t2 * t476 + (t2 * t475 + t0 * t473) * t442;
-    input_by_dq[24] = t252 * t477;
-    const ariane6_real_t t478 = ARIANE6_C(2.0) * t315; /* link j6: derivatives */
-    const ariane6_real_t t479 = ARIANE6_C(-2.0) * t316;
-    const ariane6_real_t t480 = t47 * t478 - t30 * t479;
-    const ariane6_real_t t481 = ARIANE6_C(2.0) * t300;
-    const ariane6_real_t t482 = t481 - (t294 * (ARIANE6_C(-0.6) * t26) + t288 * (ARIANE6_C(0.6) * t43));
-    const ariane6_real_t t483 = t24 * t480 + t25 * t482;
-    const ariane6_real_t t484 = t30 * t478 + t47 * t479;
-    const ariane6_real_t t485 = t24 * t294; /* link j6: column of the mass matrix */
-    const ariane6_real_t t486 = t11 * t288 - t17 * t485;
-    const ariane6_real_t t487 = t25 * t294;
-    /* link j6: derivatives */
-    const ariane6_real_t t488 = t17 * t484 - t11 * t483 - (t486 * t452 - t487 * t455);
-    const ariane6_real_t t489 = t24 * t482 - t25 * t480;
-    const ariane6_real_t t490 = t11 * t485 + t17 * t288; /* link j6: column of the mass matrix */
-    const ariane6_real_t t491 = t490 * t455 - t486 * t456 - t489; /* link j6: derivatives */
-    const ariane6_real_t t492 = t3 * t490 + t1 * t487; /* link j6: column of the mass matrix */
-    /* link j6: derivatives */
-    const ariane6_real_t t493 = t1 * t488 + t3 * t491 + (t492 * t446 - t486 * t458);
-    const ariane6_real_t t494 = t1 * t490 - t3 * t487; /* link j6: column of the mass matrix */
-    const ariane6_real_t t495 = t3 * t488 - t1 * t491 - t494 * t446; /* link j6: derivatives */
-    const ariane6_real_t t496 = t0 * t493 + t2 * t495 + (t2 * t494 - t0 * t492) * t442;
-    input_by_dq[30] = ARIANE6_C(0.2) * t496;
-    /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t497 = t47 * t130 + parameters[XY6] * (ARIANE6_C(2.0) * t30);
-    const ariane6_real_t t498 = t47 * t497;
-    const ariane6_real_t t499 = ARIANE6_C(0.3) * (t309 + ARIANE6_C(-2.0) * parameters[MZ6]);
-    const ariane6_real_t t500 = t498 - parameters[YY6] + t499 - parameters[XX5];
-    const ariane6_real_t t501 = parameters[YY5] + parameters[ZZ6];
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t502 = t30 * parameters[YZ6] - t47 * parameters[XZ6] + ARIANE6_C(0.3) * t288;
-    const ariane6_real_t t503 = t502 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t504 = t503 * (ARIANE6_C(2.0) * t25) - t24 * (t500 + t501);
-    const ariane6_real_t t505 = t24 * t504;
-    const ariane6_real_t t506 = parameters[XX4] + (t501 + t505);
-    /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t507 = parameters[ZZ5] + (parameters[XX6] + t498 - t499);
-    const ariane6_real_t t508 = parameters[YY4] + t507; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t509 = t30 * parameters[XZ6] + t47 * parameters[YZ6] + ARIANE6_C(-0.3) * t294;
-    const ariane6_real_t t510 = t509 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t511 = parameters[XY6] - t30 * t497 - parameters[XZ5];
-    const ariane6_real_t t512 = t24 * t511 - t25 * t510; /* link j5: column of the mass matrix */
-    const ariane6_real_t t513 = parameters[XY4] + t512; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t514 = t11 * (t506 - t508) - t513 * (ARIANE6_C(2.0) * t17);
-    const ariane6_real_t t515 = t11 * t514;
-    const ariane6_real_t t516 = ARIANE6_C(0.488) * (t369 + ARIANE6_C(2.0) * t368);
-    const ariane6_real_t t517 = parameters[XX3] + (t508 + t515 + t516);
-    const ariane6_real_t t518 = t500 + t505 - parameters[ZZ4]; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t519 = ARIANE6_C(0.17) * (t358 + ARIANE6_C(2.0) * t355);
-    const ariane6_real_t t520 = parameters[YY3] + (t519 - t518);
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t521 = t503 - t25 * t504 - parameters[XZ4];
-    const ariane6_real_t t522 = t25 * t511 + t24 * t510; /* link j5: column of the mass matrix */
-    const ariane6_real_t t523 = parameters[YZ4] + t522; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t524 = t11 * t521 + t17 * t523; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t525 = t524 + (ARIANE6_C(-0.17) * t368 + ARIANE6_C(-0.488) * t359) - parameters[XY3];
-    /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t526 = t1 * (t517 - t520) - t525 * (ARIANE6_C(-2.0) * t3);
-    const ariane6_real_t t527 = t1 * t526;
-    const ariane6_real_t t528 = parameters[XX2] + (t520 + t527);
-    const ariane6_real_t t529 = ARIANE6_C(0.685) * (t420 - ARIANE6_C(2.0) * t418);
-    const ariane6_real_t t530 = parameters[YY2] + (t517 - t527 + t529);
-    const ariane6_real_t t531 = parameters[XY2] + (t3 * t526 - t525 + ARIANE6_C(0.685) * t401);
-    /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t532 = t2 * (t2 * (t530 - t528) + t531 * (ARIANE6_C(2.0) * t0));
-    const ariane6_real_t t533 = ARIANE6_C(0.18) * (parameters[M2] + t419) + ARIANE6_C(2.0) * (t0 * t440
-        + t2 * t441);
-    const ariane6_real_t t534 = ARIANE6_C(250.0) * (t197 * parameters[IA1]) + t194 * (parameters[ZZ1] + (t528
-        + t532 + ARIANE6_C(0.18) * t533));
-    input_by_ddq[0] = t534;
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t535 = t513 + t17 * t514 + ARIANE6_C(0.17) * t364 - parameters[XZ3];
-    /* link j4: column of the mass matrix */
-    const ariane6_real_t t536 = t17 * t521 - t11 * t523 + ARIANE6_C(0.488) * t364;
-    const ariane6_real_t t537 = parameters[YZ3] + t536; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t538 = t1 * t535 + t3 * t537; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t539 = parameters[XZ2] + (ARIANE6_C(0.685) * t404 - t538);
-    const ariane6_real_t t540 = t3 * t535 - t1 * t537; /* link j3: column of the mass matrix */
-    const ariane6_real_t t541 = t540 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t542 = t0 * t539 - t2 * t541; /* link j2: column of the mass matrix */
-    input_by_ddq[6] = t223 * t542;
-    const ariane6_real_t t543 = t0 * t538 + t2 * t540; /* link j3: column of the mass matrix */
-    input_by_ddq[12] = -(t237 * t543);
-    const ariane6_real_t t544 = t524 + ARIANE6_C(-0.488) * t355; /* link j4: column of the mass matrix */
-    const ariane6_real_t t545 = t518 + ARIANE6_C(-0.17) * t355;
-    const ariane6_real_t t546 = t3 * t545 - t1 * t544;
-    const ariane6_real_t t547 = t3 * t544 + t1 * t545 + ARIANE6_C(0.685) * t355;
-    const ariane6_real_t t548 = t0 * t546 - t2 * t547 + ARIANE6_C(-0.18) * t355;
-    input_by_ddq[18] = ARIANE6_C(0.2) * t548;
-    /* link j5: column of the mass matrix */
-    const ariane6_real_t t549 = t11 * t512 - t17 * t507 + ARIANE6_C(-0.488) * t468;
-    const ariane6_real_t t550 = t522 + ARIANE6_C(-0.17) * t468;
-    const ariane6_real_t t551 = t3 * t550 - t1 * t549;
-    const ariane6_real_t t552 = t3 * t549 + t1 * t550 + ARIANE6_C(0.685) * t468;
-    const ariane6_real_t t553 = t0 * t551 - t2 * t552 + ARIANE6_C(-0.18) * t468;
-    input_by_ddq[24] = t252 * t553;
-    const ariane6_real_t t554 = t24 * t502 + t25 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const ariane6_real_t t555 = t11 * t554 + t17 * t509 + ARIANE6_C(0.488) * t486;
-    const ariane6_real_t t556 = t25 * t502 - t24 * parameters[ZZ6];
-    const ariane6_real_t t557 = t556 + ARIANE6_C(0.17) * t486;
-    const ariane6_real_t t558 = t3 * t557 - t1 * t555;
-    const ariane6_real_t t559 = t3 * t555 + t1 * t557 + ARIANE6_C(-0.685) * t486;
-    const ariane6_real_t t560 = t0 * t558 - t2 * t559 + ARIANE6_C(0.18) * t486;
-    input_by_ddq[30] = ARIANE6_C(0.2) * t560;
-    const ariane6_real_t t561 = ARIANE6_C(2.0) * t70; /* link j2: derivatives */
-    const ariane6_real_t t562 = ARIANE6_C(-2.0) * t75;
-    const ariane6_real_t t563 = t410 * t561 + t416 * t562 + (t85 * t528 - t174 * t531 - t187 * t539);
-    const ariane6_real_t t564 = t423 * t561 + t412 * t562 + (t85 * t531 - t174 * t530 + t187 * t541);
-    const ariane6_real_t t565 = t0 * (t186 + (t563 - t69 * t427)) + t2 * (t178 + (t564 + t74 * t427));
-    const ariane6_real_t t566 = t426 * t561 + t425 * t562 + (t85 * t440 - t174 * t441);
-    input_by_q[1] = t194 * (t565 + ARIANE6_C(0.18) * t566);
-    const ariane6_real_t t567 = ariane6_select(t221, t221, ARIANE6_C(1.0));
-    const ariane6_real_t t568 = ARIANE6_C(1.0) / t567;
-    const ariane6_real_t t569 = ARIANE6_C(0.126918) * t222;
-    const ariane6_real_t t570 = ARIANE6_C(1.0) / t222;
-    const ariane6_real_t t571 = t570 * (ARIANE6_C(0.019697757607273984) * (t569 * (ARIANE6_C(0.5) * t568))
-        + t220 * t223);
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t572 = parameters[ZZ3] + (t506 - t515 + (t519 + t516));
-    const ariane6_real_t t573 = parameters[ZZ2] + (t572 + t529); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const ariane6_real_t t574 = t85 * t539 + t174 * t541 - t187 * t573 + (t70 * t437 + t75 * t439);
-    const ariane6_real_t t575 = t224 * (t224 * (t569 * (ARIANE6_C(0.5) * t224)));
-    const ariane6_real_t t576 = t230 * (ARIANE6_C(1610.8178724000004) * (t224 * t575))
-        - t229 * (ARIANE6_C(2.0) * (t222 * t220));
-    const ariane6_real_t t577 = t72 * (t231 * t575 - t224 * (ARIANE6_C(-12691.800000000003) * t222 + t576));
-    const ariane6_real_t t578 = t222 * (ARIANE6_C(12691.800000000003) * t575) - t220 * t225;
-    const ariane6_real_t t579 = parameters[FV2] * (dq[1] * t578) + parameters[IA2] * (ddq[1] * t578 + t577);
-    const ariane6_real_t t580 = ARIANE6_C(250.0) * t579 + t223 * (t574 - (t69 * t441 + t74 * t440));
-    input_by_q[7] = t580 + t219 * t571;
-    const ariane6_real_t t581 = t572 + ARIANE6_C(-0.685) * t418; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const ariane6_real_t t582 = t70 * t447 - t75 * t448 + (t174 * t540 - t85 * t538 - t187 * t581);
-    input_by_q[13] = t237 * (t582 + (t69 * t418 - t74 * t401));
-    const ariane6_real_t t583 = t536 + ARIANE6_C(-0.685) * t459; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const ariane6_real_t t584 = t70 * t460 - t75 * t462 + (t85 * t546 + t174 * t547 - t187 * t583);
-    input_by_q[19] = ARIANE6_C(0.2) * (t584 + (t74 * t461 + t69 * t459));
-    /* link j5: column of the mass matrix */
-    const ariane6_real_t t585 = t17 * t512 + t11 * t507 + (ARIANE6_C(-0.17) * t353 + ARIANE6_C(0.488) * t471);
-    const ariane6_real_t t586 = t585 + ARIANE6_C(0.685) * t473;
-    /* link j5: derivatives */
-    const ariane6_real_t t587 = t70 * t474 - t75 * t476 + (t85 * t551 + t174 * t552 - t187 * t586);
-    input_by_q[25] = t252 * (t587 + (t74 * t475 - t69 * t473));
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t588 = t17 * t554 - t11 * t509 + (ARIANE6_C(0.17) * t487 + ARIANE6_C(0.488) * t490);
-    const ariane6_real_t t589 = t588 + ARIANE6_C(-0.685) * t492;
-    /* link j6: derivatives */
-    const ariane6_real_t t590 = t70 * t493 - t75 * t495 + (t85 * t558 + t174 * t559 - t187 * t589);
-    input_by_q[31] = ARIANE6_C(0.2) * (t590 + (t74 * t494 + t69 * t492));
-    const ariane6_real_t t591 = t385 - parameters[ZZ3];
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t592 = t339 + t430 + t364 * t360 - (t13 * parameters[YZ3] + t7 * t591);
-    const ariane6_real_t t593 = t13 * parameters[XZ3] + t5 * t591 - (t364 * t371 - (t17 * t388 + t11 * t389));
-    const ariane6_real_t t594 = parameters[ZZ2] - t414;
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t595 = t70 * t594 - dq[1] * parameters[YZ2] + (t1 * t592 - t3 * t593);
-    /* link j2: derivatives */
-    const ariane6_real_t t596 = t0 * (ARIANE6_C(2.0) * t595 + (t528 * t561 + t531 * t562));
-    /* link j3: inertia, momentum beyond */
-    const ariane6_real_t t597 = dq[1] * parameters[XZ2] - t75 * t594 + (t3 * t592 + t1 * t593 - t404 * t402);
-    /* link j2: derivatives */
-    const ariane6_real_t t598 = t2 * (ARIANE6_C(2.0) * t597 + (t531 * t561 + t530 * t562));
-    const ariane6_real_t t599 = t596 + t598 + ARIANE6_C(0.18) * (t440 * t561 + t441 * t562);
-    input_by_dq[1] = t194 * t599;
-    /* link j4: inertia, momentum beyond */
-    const ariane6_real_t t600 = t378 - t374 + (t373 + (t341 - t323 + t366));
-    /* link j2: derivatives */
-    const ariane6_real_t t601 = ARIANE6_C(2.0) * (t411 - t408 + (t407 + (t600 + t406)))
-        + ARIANE6_C(2.0) * (t70 * t539 + t75 * t541);
-    const ariane6_real_t t602 = ARIANE6_C(250.0) * (t226 * parameters[FV2]
-        - parameters[IA2] * (t232 * (ARIANE6_C(2.0) * dq[1])));
-    input_by_dq[7] = t602 + t223 * t601;
-    const ariane6_real_t t603 = ARIANE6_C(2.0) * t600; /* link j3: derivatives */
-    const ariane6_real_t t604 = t603 - t401 * t458 + ARIANE6_C(2.0) * (t75 * t540 - t70 * t538);
-    input_by_dq[13] = t237 * t604;
-    const ariane6_real_t t605 = t17 * t450 + t11 * t451 + t364 * t452; /* link j4: derivatives */
-    const ariane6_real_t t606 = t605 + t461 * t458 + ARIANE6_C(2.0) * (t70 * t546 + t75 * t547);
-    input_by_dq[19] = ARIANE6_C(0.2) * t606;
-    /* link j5: derivatives */
-    const ariane6_real_t t607 = t17 * t466 + t11 * t467 + (t353 * t456 + t471 * t452);
-    const ariane6_real_t t608 = t607 + t475 * t458 + ARIANE6_C(2.0) * (t70 * t551 + t75 * t552);
-    input_by_dq[25] = t252 * t608;
-    /* link j6: derivatives */
-    const ariane6_real_t t609 = t17 * t483 + t11 * t484 + (t490 * t452 - t487 * t456);
-    const ariane6_real_t t610 = t609 + t494 * t458 + ARIANE6_C(2.0) * (t70 * t558 + t75 * t559);
-    input_by_dq[31] = ARIANE6_C(0.2) * t610;
-    input_by_ddq[1] = t194 * t542;
-    input_by_ddq[7] = ARIANE6_C(250.0) * (t226 * parameters[IA2]) + t223 * t573;
-    input_by_ddq[13] = t237 * t581;
-    input_by_ddq[19] = ARIANE6_C(0.2) * t583;
-    input_by_ddq[25] = t252 * t586;
-    input_by_ddq[31] = ARIANE6_C(0.2) * t589;
-    const ariane6_real_t t611 = ARIANE6_C(-2.0) * t7; /* link j3: derivatives */
-    const ariane6_real_t t612 = ARIANE6_C(-2.0) * t5;
-    const ariane6_real_t t613 = t31 * t517 + t12 * t525 + t179 * t535 - (t376 * t611 + t387 * t612);
-    const ariane6_real_t t614 = t172 + (t613 - t79 * t404);
-    const ariane6_real_t t615 = t392 * t611 - t379 * t612 + (t31 * t525 + t12 * t520 + t179 * t537);
-    const ariane6_real_t t616 = t615 - t93 * t404 - t166;
-    const ariane6_real_t t617 = t12 * t399 - t31 * t400 - (t396 * t611 + t395 * t612);
-    const ariane6_real_t t618 = t2 * (t3 * t614 - t1 * t616 + ARIANE6_C(0.685) * t617);
-    const ariane6_real_t t619 = t0 * (t1 * t614 + t3 * t616) + t618 + ARIANE6_C(0.18) * t617;
-    input_by_q[2] = t194 * t619;
-    const ariane6_real_t t620 = t179 * t399 + t31 * t404 - (t435 * t611 + t79 * t419);
-    const ariane6_real_t t621 = t12 * t404 + t179 * t400 - (t435 * t612 + t93 * t419);
-    const ariane6_real_t t622 = ARIANE6_C(0.685) * (t3 * (t216 + t621) + t1 * (t214 + t620));
-    const ariane6_real_t t623 = t31 * t535 + t12 * t537 + t179 * t572;
-    const ariane6_real_t t624 = t79 * t399 + t93 * t400;
-    const ariane6_real_t t625 = t624 - (t432 * t611 + t434 * t612 + t623) + t622;
-    input_by_q[8] = t223 * t625;
-    const ariane6_real_t t626 = ariane6_select(t235, t235, ARIANE6_C(1.0));
-    const ariane6_real_t t627 = ARIANE6_C(1.0) / t626;
-    const ariane6_real_t t628 = ARIANE6_C(0.083776) * t236;
-    const ariane6_real_t t629 = ARIANE6_C(1.0) / t236;
-    const ariane6_real_t t630 = t629 * (ARIANE6_C(0.029841482047364396) * (t628 * (ARIANE6_C(0.5) * t627))
-        + t234 * t237);
-    const ariane6_real_t t631 = t237 * (t624 + (t7 * t444 + t5 * t445 - t623));
-    const ariane6_real_t t632 = t238 * (t238 * (t628 * (ARIANE6_C(0.5) * t238)));
-    const ariane6_real_t t633 = t244 * (ARIANE6_C(701.8418176000002) * (t238 * t632))
-        - t243 * (ARIANE6_C(2.0) * (t236 * t234));
-    const ariane6_real_t t634 = t247 * (t245 * t632 - t238 * (ARIANE6_C(-8377.600000000002) * t236 + t633));
-    const ariane6_real_t t635 = t236 * (ARIANE6_C(8377.600000000002) * t632) - t234 * t239;
-    const ariane6_real_t t636 = parameters[FV3] * (dq[2] * t635) + parameters[IA3] * (ddq[2] * t635 + t634);
-    input_by_q[14] = ARIANE6_C(250.0) * t636 + t631 + t212 * t630;
-    /* link j4: derivatives */
-    const ariane6_real_t t637 = t7 * t453 + t5 * t457 + (t12 * t545 - t31 * t544 - t179 * t536);
-    input_by_q[20] = ARIANE6_C(0.2) * (t637 + t93 * t364);
-    /* link j5: derivatives */
-    const ariane6_real_t t638 = t7 * t469 + t5 * t472 + (t12 * t550 - t31 * t549 - t179 * t585);
-    input_by_q[26] = t252 * (t638 + (t93 * t471 - t79 * t353));
-    /* link j6: derivatives */
-    const ariane6_real_t t639 = t7 * t488 + t5 * t491 + (t12 * t557 - t31 * t555 - t179 * t588);
-    input_by_q[32] = ARIANE6_C(0.2) * (t639 + (t93 * t490 + t79 * t487));
-    /* link j3: derivatives */
-    const ariane6_real_t t640 = ARIANE6_C(2.0) * t592 - (t517 * t611 + t525 * t612);
-    const ariane6_real_t t641 = ARIANE6_C(2.0) * t593 + (t525 * t611 + t520 * t612);
-    const ariane6_real_t t642 = t400 * t611 - t399 * t612;
-    const ariane6_real_t t643 = t2 * (t3 * t640 + t1 * t641 + ARIANE6_C(0.685) * t642);
-    const ariane6_real_t t644 = t0 * (t1 * t640 - t3 * t641) + t643 + ARIANE6_C(0.18) * t642;
-    input_by_dq[2] = t194 * t644;
-    const ariane6_real_t t645 = t3 * (ARIANE6_C(2.0) * t396 - t404 * t612) + t1 * (ARIANE6_C(-2.0) * t395
-        - t404 * t611);
-    const ariane6_real_t t646 = t603 + (t535 * t611 + t537 * t612) + ARIANE6_C(0.685) * t645;
-    input_by_dq[8] = t223 * t646;
-    const ariane6_real_t t647 = t237 * (t603 + ARIANE6_C(-2.0) * (t7 * t535 + t5 * t537));
-    const ariane6_real_t t648 = ARIANE6_C(250.0) * (t240 * parameters[FV3]
-        - parameters[IA3] * (t246 * (ARIANE6_C(2.0) * dq[2])));
-    input_by_dq[14] = t648 + t647;
-    const ariane6_real_t t649 = ARIANE6_C(0.2) * (t605 + ARIANE6_C(2.0) * (t5 * t545 - t7 * t544));
-    input_by_dq[20] = t649;
-    const ariane6_real_t t650 = t252 * (t607 + ARIANE6_C(2.0) * (t5 * t550 - t7 * t549));
-    input_by_dq[26] = t650;
-    const ariane6_real_t t651 = ARIANE6_C(0.2) * (t609 + ARIANE6_C(2.0) * (t5 * t557 - t7 * t555));
-    input_by_dq[32] = t651;
-    input_by_ddq[2] = -(t194 * t543);
-    input_by_ddq[8] = t223 * t581;
-    input_by_ddq[14] = ARIANE6_C(250.0) * (t240 * parameters[IA3]) + t237 * t572;
-    input_by_ddq[20] = ARIANE6_C(0.2) * t536;
-    input_by_ddq[26] = t252 * t585;
-    input_by_ddq[32] = ARIANE6_C(0.2) * t588;
-    const ariane6_real_t t652 = ARIANE6_C(2.0) * t35; /* link j4: derivatives */
-    const ariane6_real_t t653 = ARIANE6_C(-2.0) * t19;
-    const ariane6_real_t t654 = t323 * t652 + t339 * t653 - (t18 * t506 + t38 * t513 - t206 * t521);
-    const ariane6_real_t t655 = t150 + (t654 - t92 * t368);
-    const ariane6_real_t t656 = t334 * t652 + t326 * t653 + (t18 * t513 + t38 * t508 + t206 * t523);
-    const ariane6_real_t t657 = t142 + (t656 + t100 * t368);
-    const ariane6_real_t t658 = t362 * t653 - t100 * t357 + (t206 * t350 - t38 * t368);
-    const ariane6_real_t t659 = t162 + t658;
-    const ariane6_real_t t660 = t92 * t357 - t362 * t652 + (t18 * t368 - t206 * t354);
-    const ariane6_real_t t661 = t158 + t660;
-    const ariane6_real_t t662 = t17 * t659 + t11 * t661;
-    const ariane6_real_t t663 = t11 * t655 + t17 * t657 + ARIANE6_C(-0.488) * t662;
-    const ariane6_real_t t664 = t18 * t521 - t38 * t523 + t206 * t518;
-    const ariane6_real_t t665 = t92 * t354 + t100 * t350;
-    const ariane6_real_t t666 = t388 * t652 + t389 * t653 + t664 + t665 + ARIANE6_C(-0.17) * t662;
-    const ariane6_real_t t667 = t2 * (t3 * t663 + t1 * t666 + ARIANE6_C(0.685) * t662);
-    const ariane6_real_t t668 = t0 * (t1 * t663 - t3 * t666) + t667 + ARIANE6_C(0.18) * t662;
-    input_by_q[3] = t194 * t668;
-    const ariane6_real_t t669 = t17 * t661 - t11 * t659;
-    const ariane6_real_t t670 = t346 * t652 - t344 * t653 + (t18 * t350 - t38 * t354);
-    const ariane6_real_t t671 = t11 * t657 - t17 * t655 + (ARIANE6_C(0.17) * t670 + ARIANE6_C(0.488) * t669);
-    const ariane6_real_t t672 = t223 * (t671 + ARIANE6_C(-0.685) * (t3 * t669 + t1 * t670));
-    input_by_q[9] = t672;
-    input_by_q[15] = t237 * t671;
-    const ariane6_real_t t673 = ARIANE6_C(0.2) * (t665 + (t664 + (t35 * t450 - t19 * t451)));
-    input_by_q[21] = t673;
-    /* link j5: derivatives */
-    const ariane6_real_t t674 = t35 * t466 - t19 * t467 + (t18 * t512 + t38 * t507 + t206 * t522);
-    input_by_q[27] = t252 * (t674 + t100 * t367);
-    /* link j6: derivatives */
-    const ariane6_real_t t675 = t35 * t483 - t19 * t484 + (t18 * t554 - t38 * t509 + t206 * t556);
-    input_by_q[33] = ARIANE6_C(0.2) * (t675 + (t100 * t485 + t92 * t288));
-    /* link j4: derivatives */
-    const ariane6_real_t t676 = ARIANE6_C(2.0) * t382 + (t506 * t652 + t513 * t653);
-    const ariane6_real_t t677 = ARIANE6_C(-2.0) * t383 + (t513 * t652 + t508 * t653);
-    const ariane6_real_t t678 = ARIANE6_C(-2.0) * t346 - t368 * t653;
-    const ariane6_real_t t679 = ARIANE6_C(2.0) * t344 + t368 * t652;
-    const ariane6_real_t t680 = t17 * t678 + t11 * t679;
-    const ariane6_real_t t681 = t17 * t677 - t11 * t676 + ARIANE6_C(-0.488) * t680;
-    const ariane6_real_t t682 = t454 - (t523 * t653 - t521 * t652) + ARIANE6_C(-0.17) * t680;
-    const ariane6_real_t t683 = t2 * (t3 * t681 + t1 * t682 + ARIANE6_C(0.685) * t680);
-    const ariane6_real_t t684 = t0 * (t1 * t681 - t3 * t682) + t683 + ARIANE6_C(0.18) * t680;
-    input_by_dq[3] = t194 * t684;
-    const ariane6_real_t t685 = t17 * t679 - t11 * t678;
-    const ariane6_real_t t686 = t350 * t652 - t354 * t653;
-    const ariane6_real_t t687 = t17 * t676 + t11 * t677 + (ARIANE6_C(0.17) * t686 + ARIANE6_C(0.488) * t685);
-    const ariane6_real_t t688 = t223 * (t687 + ARIANE6_C(-0.685) * (t3 * t685 + t1 * t686));
-    input_by_dq[9] = t688;
-    input_by_dq[15] = t237 * t687;
-    const ariane6_real_t t689 = ARIANE6_C(0.2) * (t454 + ARIANE6_C(2.0) * (t35 * t521 + t19 * t523));
-    input_by_dq[21] = ARIANE6_C(2.0e3) * parameters[FV4] + t689;
-    const ariane6_real_t t690 = t252 * (t470 + ARIANE6_C(2.0) * (t35 * t512 - t19 * t507));
-    input_by_dq[27] = t690;
-    const ariane6_real_t t691 = ARIANE6_C(0.2) * (t489 + ARIANE6_C(2.0) * (t35 * t554 + t19 * t509));
-    input_by_dq[33] = t691;
-    input_by_ddq[3] = t194 * t548;
-    input_by_ddq[9] = t223 * t583;
-    input_by_ddq[15] = t237 * t536;
-    input_by_ddq[21] = ARIANE6_C(2.0e3) * parameters[IA4] + ARIANE6_C(-0.2) * t518;
-    input_by_ddq[27] = -(t252 * t522);
-    const ariane6_real_t t692 = ARIANE6_C(-0.2) * t556;
-    input_by_ddq[33] = t692;
-    const ariane6_real_t t693 = ARIANE6_C(2.0) * t26; /* link j5: derivatives */
-    const ariane6_real_t t694 = ARIANE6_C(2.0) * t27;
-    const ariane6_real_t t695 = t302 * t693 - t318 * t694 + (t42 * t501 - t59 * t503 + t159 * t510);
-    const ariane6_real_t t696 = t129 + (t695 + t104 * t349);
-    const ariane6_real_t t697 = t314 * t693 - t299 * t694 + (t159 * t511 - (t59 * t500 + t42 * t503));
-    const ariane6_real_t t698 = t135 + (t697 + t98 * t349);
-    const ariane6_real_t t699 = t24 * t698 - t25 * t696;
-    const ariane6_real_t t700 = t59 * t511 + t42 * t510 + t159 * t507;
-    const ariane6_real_t t701 = t98 * t351 + t104 * t352;
-    const ariane6_real_t t702 = t701 - (t328 * t694 + t331 * t693 + t700);
-    const ariane6_real_t t703 = t159 * t351 - t59 * t349 - (t345 * t694 + t98 * t356);
-    const ariane6_real_t t704 = t152 + t703;
-    const ariane6_real_t t705 = t159 * t352 - t42 * t349 - (t345 * t693 + t104 * t356);
-    const ariane6_real_t t706 = t156 + t705;
-    const ariane6_real_t t707 = t24 * t706 + t25 * t704;
-    const ariane6_real_t t708 = t343 * t694 - t342 * t693 + (t42 * t351 - t59 * t352);
-    const ariane6_real_t t709 = t17 * t707 + t11 * t708;
-    const ariane6_real_t t710 = t11 * t699 + t17 * t702 + ARIANE6_C(-0.488) * t709;
-    const ariane6_real_t t711 = t25 * t698 + t24 * t696;
-    const ariane6_real_t t712 = t711 + ARIANE6_C(-0.17) * t709;
-    const ariane6_real_t t713 = t2 * (t3 * t710 + t1 * t712 + ARIANE6_C(0.685) * t709);
-    const ariane6_real_t t714 = t0 * (t1 * t710 - t3 * t712) + t713 + ARIANE6_C(0.18) * t709;
-    input_by_q[4] = t194 * t714;
-    const ariane6_real_t t715 = t24 * t704 - t25 * t706;
-    const ariane6_real_t t716 = t17 * t708 - t11 * t707;
-    const ariane6_real_t t717 = t11 * t702 - t17 * t699 + (ARIANE6_C(0.17) * t715 + ARIANE6_C(0.488) * t716);
-    const ariane6_real_t t718 = t223 * (t717 + ARIANE6_C(-0.685) * (t3 * t716 + t1 * t715));
-    input_by_q[10] = t718;
-    input_by_q[16] = t237 * t717;
-    input_by_q[22] = ARIANE6_C(0.2) * t711;
-    const ariane6_real_t t719 = ariane6_select(t251, t251, ARIANE6_C(1.0));
-    const ariane6_real_t t720 = ARIANE6_C(1.0) / t719;
-    const ariane6_real_t t721 = ARIANE6_C(0.035496) * t24;
-    const ariane6_real_t t722 = ARIANE6_C(1.0) / t24;
-    const ariane6_real_t t723 = t722 * (ARIANE6_C(0.07043047103899029) * (t721 * (ARIANE6_C(0.5) * t720))
-        + t25 * t252);
-    const ariane6_real_t t724 = t252 * (t701 + (t26 * t465 - t27 * t464 - t700));
-    const ariane6_real_t t725 = t253 * (t253 * (t721 * (ARIANE6_C(0.5) * t253)));
-    const ariane6_real_t t726 = t259 * (ARIANE6_C(125.9966016) * (t253 * t725))
-        + t258 * (ARIANE6_C(2.0) * (t25 * t24));
-    const ariane6_real_t t727 = t262 * (t260 * t725 + t253 * (ARIANE6_C(-3549.6000000000004) * t24 + t726));
-    const ariane6_real_t t728 = t24 * (ARIANE6_C(-3549.6000000000004) * t725) - t25 * t254;
-    const ariane6_real_t t729 = parameters[FV5] * (dq[4] * t728) + parameters[IA5] * (ddq[4] * t728 + t727);
-    input_by_q[28] = ARIANE6_C(250.0) * t729 + t724 + t146 * t723;
-    /* link j6: derivatives */
-    const ariane6_real_t t730 = t26 * t482 - t27 * t480 + (t42 * parameters[ZZ6] - t59 * t502 + t159 * t509);
-    input_by_q[34] = ARIANE6_C(0.2) * (t730 + t104 * t294);
-    /* link j5: derivatives */
-    const ariane6_real_t t731 = ARIANE6_C(2.0) * t336 - (t500 * t694 + t503 * t693);
-    const ariane6_real_t t732 = ARIANE6_C(2.0) * t337 + (t501 * t693 - t503 * t694);
-    const ariane6_real_t t733 = t25 * t732 - t24 * t731;
-    const ariane6_real_t t734 = t467 - (t511 * t694 + t510 * t693);
-    const ariane6_real_t t735 = ARIANE6_C(2.0) * t342 - t349 * t694;
-    const ariane6_real_t t736 = ARIANE6_C(2.0) * t343 - t349 * t693;
-    const ariane6_real_t t737 = t24 * t736 + t25 * t735;
-    const ariane6_real_t t738 = t351 * t693 - t352 * t694;
-    const ariane6_real_t t739 = t17 * t737 + t11 * t738;
-    const ariane6_real_t t740 = t17 * t734 - t11 * t733 + ARIANE6_C(-0.488) * t739;
-    const ariane6_real_t t741 = t25 * t731 + t24 * t732;
-    const ariane6_real_t t742 = t741 + ARIANE6_C(-0.17) * t739;
-    const ariane6_real_t t743 = t2 * (t3 * t740 + t1 * t742 + ARIANE6_C(0.685) * t739);
-    const ariane6_real_t t744 = t0 * (t1 * t740 - t3 * t742) + t743 + ARIANE6_C(0.18) * t739;
-    input_by_dq[4] = t194 * t744;
-    const ariane6_real_t t745 = t24 * t735 - t25 * t736;
-    const ariane6_real_t t746 = t17 * t738 - t11 * t737;
-    const ariane6_real_t t747 = t17 * t733 + t11 * t734 + (ARIANE6_C(0.17) * t745 + ARIANE6_C(0.488) * t746);
-    const ariane6_real_t t748 = t223 * (t747 + ARIANE6_C(-0.685) * (t3 * t746 + t1 * t745));
-    input_by_dq[10] = t748;
-    input_by_dq[16] = t237 * t747;
-    input_by_dq[22] = ARIANE6_C(0.2) * t741;
-    const ariane6_real_t t749 = t252 * (t467 + ARIANE6_C(-2.0) * (t27 * t511 + t26 * t510));
-    const ariane6_real_t t750 = ARIANE6_C(250.0) * (t255 * parameters[FV5]
-        + parameters[IA5] * (t261 * (ARIANE6_C(-2.0) * dq[4])));
-    input_by_dq[28] = t750 + t749;
-    const ariane6_real_t t751 = ARIANE6_C(0.2) * (t484 + ARIANE6_C(2.0) * (t26 * parameters[ZZ6]
-        - t27 * t502));
-    input_by_dq[34] = t751;
-    input_by_ddq[4] = t194 * t553;
-    input_by_ddq[10] = t223 * t586;
-    input_by_ddq[16] = t237 * t585;
-    input_by_ddq[22] = ARIANE6_C(-0.2) * t522;
-    input_by_ddq[28] = ARIANE6_C(250.0) * (t255 * parameters[IA5]) + t252 * t507;
-    input_by_ddq[34] = ARIANE6_C(-0.2) * t509;
-    const ariane6_real_t t752 = ARIANE6_C(2.0) * t49; /* link j6: derivatives */
-    const ariane6_real_t t753 = ARIANE6_C(-2.0) * t54;
-    const ariane6_real_t t754 = t278 * t752 + t285 * t753 - (t53 * parameters[XX6] - t48 * parameters[XY6]
+    const ariane6_real_t t279 = ARIANE6_C(2.0) * t49;
+    const ariane6_real_t t280 = t49 * parameters[YZ6] - t50 * t272;
+    const ariane6_real_t t281 = ARIANE6_C(-2.0) * t54;
+    const ariane6_real_t t282 = t278 * t279 + t280 * t281 - (t53 * parameters[XX6] - t48 * parameters[XY6]
         + t154 * parameters[XZ6]);
-    const ariane6_real_t t755 = t116 - (t115 - t754);
-    const ariane6_real_t t756 = t283 * t752 + t280 * t753 + (t53 * parameters[XY6] - t48 * parameters[YY6]
+    const ariane6_real_t t283 = t116 - (t115 - t282);
+    const ariane6_real_t t284 = t50 * t269 + t54 * parameters[XZ6];
+    const ariane6_real_t t285 = t54 * parameters[YZ6];
+    const ariane6_real_t t286 = t277 + t285;
+    const ariane6_real_t t287 = t284 * t279 + t286 * t281 + (t53 * parameters[XY6] - t48 * parameters[YY6]
         + t154 * parameters[YZ6]);
-    const ariane6_real_t t757 = t109 + (t103 + t756);
-    const ariane6_real_t t758 = t122 + (t291 * t753 - t120 + (t121 + t154 * parameters[MY6]));
-    const ariane6_real_t t759 = t119 - (t117 - t291 * t752 + (t118 - t154 * parameters[MX6]));
-    const ariane6_real_t t760 = t47 * t759 - t30 * t758;
-    const ariane6_real_t t761 = t47 * t755 + t30 * t757 + ARIANE6_C(0.3) * t760;
-    const ariane6_real_t t762 = t114 * parameters[MX6] + t102 * parameters[MY6];
-    const ariane6_real_t t763 = t48 * parameters[YZ6] - t53 * parameters[XZ6] - t154 * parameters[ZZ6];
-    const ariane6_real_t t764 = t315 * t752 - t316 * t753 + t763 + t762;
-    const ariane6_real_t t765 = t24 * t761 - t25 * t764;
-    const ariane6_real_t t766 = t47 * t758 + t30 * t759;
-    const ariane6_real_t t767 = t47 * t757 - t30 * t755 + ARIANE6_C(-0.3) * t766;
-    const ariane6_real_t t768 = t307 * t752 + t306 * t753 + (t53 * parameters[MY6] + t48 * parameters[MX6]);
-    const ariane6_real_t t769 = t24 * t766 + t25 * t768;
-    const ariane6_real_t t770 = t17 * t769 - t11 * t760;
-    const ariane6_real_t t771 = t11 * t765 + t17 * t767 + ARIANE6_C(-0.488) * t770;
-    const ariane6_real_t t772 = t25 * t761 + t24 * t764;
-    const ariane6_real_t t773 = t772 + ARIANE6_C(-0.17) * t770;
-    const ariane6_real_t t774 = t2 * (t3 * t771 + t1 * t773 + ARIANE6_C(0.685) * t770);
-    const ariane6_real_t t775 = t0 * (t1 * t771 - t3 * t773) + t774 + ARIANE6_C(0.18) * t770;
-    input_by_q[5] = t194 * t775;
-    const ariane6_real_t t776 = t11 * t769 + t17 * t760;
-    const ariane6_real_t t777 = t24 * t768 - t25 * t766;
-    const ariane6_real_t t778 = t11 * t767 - t17 * t765 + (ARIANE6_C(0.17) * t777 + ARIANE6_C(-0.488) * t776);
-    const ariane6_real_t t779 = t223 * (t778 + ARIANE6_C(0.685) * (t3 * t776 - t1 * t777));
-    input_by_q[11] = t779;
-    input_by_q[17] = t237 * t778;
-    input_by_q[23] = ARIANE6_C(0.2) * t772;
-    input_by_q[29] = t252 * t767;
-    const ariane6_real_t t780 = ARIANE6_C(0.2) * (t762 + (t763 + (t49 * t478 - t54 * t479)));
-    input_by_q[35] = t780;
-    const ariane6_real_t t781 = ARIANE6_C(2.0) * t304 + (parameters[XX6] * t752 + parameters[XY6] * t753);
-    const ariane6_real_t t782 = ARIANE6_C(-2.0) * t305 + (parameters[XY6] * t752 + parameters[YY6] * t753);
-    const ariane6_real_t t783 = ARIANE6_C(2.0) * t307 + parameters[MZ6] * t753;
-    const ariane6_real_t t784 = ARIANE6_C(2.0) * t306 - parameters[MZ6] * t752;
-    const ariane6_real_t t785 = t30 * t783 + t47 * t784;
-    const ariane6_real_t t786 = t30 * t782 - t47 * t781 + ARIANE6_C(0.3) * t785;
-    const ariane6_real_t t787 = t481 - (parameters[XZ6] * t752 + parameters[YZ6] * t753);
-    const ariane6_real_t t788 = t25 * t787 - t24 * t786;
-    const ariane6_real_t t789 = t47 * t783 - t30 * t784;
-    const ariane6_real_t t790 = t30 * t781 + t47 * t782 + ARIANE6_C(0.3) * t789;
-    const ariane6_real_t t791 = parameters[MY6] * t752 - parameters[MX6] * t753;
-    const ariane6_real_t t792 = t25 * t791 - t24 * t789;
-    const ariane6_real_t t793 = t17 * t792 - t11 * t785;
-    const ariane6_real_t t794 = t17 * t790 - t11 * t788 + ARIANE6_C(-0.488) * t793;
-    const ariane6_real_t t795 = t25 * t786 + t24 * t787;
-    const ariane6_real_t t796 = t795 + ARIANE6_C(-0.17) * t793;
-    const ariane6_real_t t797 = t2 * (t3 * t794 + t1 * t796 + ARIANE6_C(0.685) * t793);
-    const ariane6_real_t t798 = t0 * (t1 * t794 - t3 * t796) + t797 + ARIANE6_C(0.18) * t793;
-    input_by_dq[5] = t194 * t798;
-    const ariane6_real_t t799 = t11 * t792 + t17 * t785;
-    const ariane6_real_t t800 = t25 * t789 + t24 * t791;
-    const ariane6_real_t t801 = t17 * t788 + t11 * t790 + (ARIANE6_C(0.17) * t800 + ARIANE6_C(-0.488) * t799);
-    const ariane6_real_t t802 = t223 * (t801 + ARIANE6_C(0.685) * (t3 * t799 - t1 * t800));
-    input_by_dq[11] = t802;
-    input_by_dq[17] = t237 * t801;
-    input_by_dq[23] = ARIANE6_C(0.2) * t795;
-    input_by_dq[29] = t252 * t790;
+    const ariane6_real_t t288 = t109 + (t103 + t287);
+    const ariane6_real_t t289 = t54 * parameters[MY6] - t49 * parameters[MX6];
+    const ariane6_real_t t290 = t122 + (t289 * t281 - t120 + (t121 + t154 * parameters[MY6]));
+    const ariane6_real_t t291 = t119 - (t117 - t289 * t279 + (t118 - t154 * parameters[MX6]));
+    const ariane6_real_t t292 = t47 * t290 + t30 * t291;
+    const ariane6_real_t t293 = t47 * t288 - t30 * t283 + ARIANE6_C(-0.3) * t292;
+    input_by_q[29] = t252 * t293;
+    const ariane6_real_t t294 = t47 * t291 - t30 * t290;
+    const ariane6_real_t t295 = t47 * t283 + t30 * t288 + ARIANE6_C(0.3) * t294;
+    const ariane6_real_t t296 = t270 * t279 - t273 * t281 + t267 + t266;
+    const ariane6_real_t t297 = t25 * t295 + t24 * t296;
+    input_by_q[23] = ARIANE6_C(0.2) * t297;
+    const ariane6_real_t t298 = t24 * t295 - t25 * t296;
+    const ariane6_real_t t299 = t50 * parameters[MX6] + t54 * parameters[MZ6];
+    const ariane6_real_t t300 = t49 * parameters[MZ6] + t50 * parameters[MY6];
+    const ariane6_real_t t301 = t299 * t279 + t300 * t281 + (t53 * parameters[MY6] + t48 * parameters[MX6]);
+    const ariane6_real_t t302 = t24 * t292 + t25 * t301;
+    const ariane6_real_t t303 = t11 * t302 + t17 * t294;
+    const ariane6_real_t t304 = t24 * t301 - t25 * t292;
+    const ariane6_real_t t305 = t11 * t293 - t17 * t298 + (ARIANE6_C(0.17) * t304 + ARIANE6_C(-0.488) * t303);
+    input_by_q[17] = t237 * t305;
+    const ariane6_real_t t306 = t223 * (t305 + ARIANE6_C(0.685) * (t3 * t303 - t1 * t304));
+    input_by_q[11] = t306;
+    const ariane6_real_t t307 = t17 * t302 - t11 * t294;
+    const ariane6_real_t t308 = t11 * t298 + t17 * t293 + ARIANE6_C(-0.488) * t307;
+    const ariane6_real_t t309 = t297 + ARIANE6_C(-0.17) * t307;
+    const ariane6_real_t t310 = t2 * (t3 * t308 + t1 * t309 + ARIANE6_C(0.685) * t307);
+    const ariane6_real_t t311 = t0 * (t1 * t308 - t3 * t309) + t310 + ARIANE6_C(0.18) * t307;
+    input_by_q[5] = t194 * t311;
     input_by_dq[35] = ARIANE6_C(2.0e3) * parameters[FV6];
-    input_by_ddq[5] = t194 * t560;
-    input_by_ddq[11] = t223 * t589;
-    input_by_ddq[17] = t237 * t588;
-    input_by_ddq[23] = t692;
-    input_by_ddq[29] = -(t252 * t509);
+    const ariane6_real_t t312 = parameters[ZZ6] - t268;
+    const ariane6_real_t t313 = t49 * t312 + t50 * parameters[YZ6];
+    const ariane6_real_t t314 = ARIANE6_C(2.0) * t313 + (parameters[XX6] * t279 + parameters[XY6] * t281);
+    const ariane6_real_t t315 = t50 * parameters[XZ6] + t54 * t312;
+    const ariane6_real_t t316 = ARIANE6_C(-2.0) * t315 + (parameters[XY6] * t279 + parameters[YY6] * t281);
+    const ariane6_real_t t317 = ARIANE6_C(2.0) * t299 + parameters[MZ6] * t281;
+    const ariane6_real_t t318 = ARIANE6_C(2.0) * t300 - parameters[MZ6] * t279;
+    const ariane6_real_t t319 = t47 * t317 - t30 * t318;
+    const ariane6_real_t t320 = t30 * t314 + t47 * t316 + ARIANE6_C(0.3) * t319;
+    input_by_dq[29] = t252 * t320;
+    const ariane6_real_t t321 = t30 * t317 + t47 * t318;
+    const ariane6_real_t t322 = t30 * t316 - t47 * t314 + ARIANE6_C(0.3) * t321;
+    const ariane6_real_t t323 = t276 - t285;
+    const ariane6_real_t t324 = ARIANE6_C(2.0) * t323;
+    const ariane6_real_t t325 = t324 - (parameters[XZ6] * t279 + parameters[YZ6] * t281);
+    const ariane6_real_t t326 = t25 * t322 + t24 * t325;
+    input_by_dq[23] = ARIANE6_C(0.2) * t326;
+    const ariane6_real_t t327 = t25 * t325 - t24 * t322;
+    const ariane6_real_t t328 = parameters[MY6] * t279 - parameters[MX6] * t281;
+    const ariane6_real_t t329 = t25 * t328 - t24 * t319;
+    const ariane6_real_t t330 = t11 * t329 + t17 * t321;
+    const ariane6_real_t t331 = t25 * t319 + t24 * t328;
+    const ariane6_real_t t332 = t17 * t327 + t11 * t320 + (ARIANE6_C(0.17) * t331 + ARIANE6_C(-0.488) * t330);
+    input_by_dq[17] = t237 * t332;
+    const ariane6_real_t t333 = t223 * (t332 + ARIANE6_C(0.685) * (t3 * t330 - t1 * t331));
+    input_by_dq[11] = t333;
+    const ariane6_real_t t334 = t17 * t329 - t11 * t321;
+    const ariane6_real_t t335 = t17 * t320 - t11 * t327 + ARIANE6_C(-0.488) * t334;
+    const ariane6_real_t t336 = t326 + ARIANE6_C(-0.17) * t334;
+    const ariane6_real_t t337 = t2 * (t3 * t335 + t1 * t336 + ARIANE6_C(0.685) * t334);
+    const ariane6_real_t t338 = t0 * (t1 * t335 - t3 * t336) + t337 + ARIANE6_C(0.18) * t334;
+    input_by_dq[5] = t194 * t338;
     input_by_ddq[35] = ARIANE6_C(2.0e3) * parameters[IA6] + ARIANE6_C(0.2) * parameters[ZZ6];
+    /* link j6: column of the mass matrix */
+    const ariane6_real_t t339 = t47 * parameters[MY6] + t30 * parameters[MX6];
+    const ariane6_real_t t340 = t30 * parameters[XZ6] + t47 * parameters[YZ6] + ARIANE6_C(-0.3) * t339;
+    input_by_ddq[29] = -(t252 * t340);
+    const ariane6_real_t t341 = t47 * parameters[MX6] - t30 * parameters[MY6];
+    const ariane6_real_t t342 = t30 * parameters[YZ6] - t47 * parameters[XZ6] + ARIANE6_C(0.3) * t341;
+    const ariane6_real_t t343 = t25 * t342 - t24 * parameters[ZZ6];
+    const ariane6_real_t t344 = ARIANE6_C(-0.2) * t343;
+    input_by_ddq[23] = t344;
+    const ariane6_real_t t345 = t24 * t342 + t25 * parameters[ZZ6];
+    const ariane6_real_t t346 = t24 * t339;
+    const ariane6_real_t t347 = t11 * t346 + t17 * t341;
+    const ariane6_real_t t348 = t25 * t339;
+    const ariane6_real_t t349 = t17 * t345 - t11 * t340 + (ARIANE6_C(0.17) * t348 + ARIANE6_C(0.488) * t347);
+    input_by_ddq[17] = t237 * t349;
+    const ariane6_real_t t350 = t3 * t347 + t1 * t348;
+    const ariane6_real_t t351 = t349 + ARIANE6_C(-0.685) * t350;
+    input_by_ddq[11] = t223 * t351;
+    const ariane6_real_t t352 = t11 * t341 - t17 * t346;
+    const ariane6_real_t t353 = t11 * t345 + t17 * t340 + ARIANE6_C(0.488) * t352;
+    const ariane6_real_t t354 = t343 + ARIANE6_C(0.17) * t352;
+    const ariane6_real_t t355 = t3 * t354 - t1 * t353;
+    const ariane6_real_t t356 = t3 * t353 + t1 * t354 + ARIANE6_C(-0.685) * t352;
+    const ariane6_real_t t357 = t0 * t355 - t2 * t356 + ARIANE6_C(0.18) * t352;
+    input_by_ddq[5] = t194 * t357;
+    const ariane6_real_t t358 = t47 * t271 - t30 * t274; /* link j6: derivatives */
+    const ariane6_real_t t359 = t324 - (t339 * (ARIANE6_C(-0.6) * t26) + t341 * (ARIANE6_C(0.6) * t43));
+    const ariane6_real_t t360 = t26 * t359 - t27 * t358 + (t42 * parameters[ZZ6] - t59 * t342 + t159 * t340);
+    input_by_q[34] = ARIANE6_C(0.2) * (t360 + t104 * t339);
+    const ariane6_real_t t361 = t24 * t358 + t25 * t359;
+    const ariane6_real_t t362 = t30 * t271 + t47 * t274;
+    const ariane6_real_t t363 = t35 * t361 - t19 * t362 + (t18 * t345 - t38 * t340 + t206 * t343);
+    input_by_q[33] = ARIANE6_C(0.2) * (t363 + (t100 * t346 + t92 * t341));
+    const ariane6_real_t t364 = ARIANE6_C(-0.34) * t13;
+    const ariane6_real_t t365 = ARIANE6_C(0.488) * t5 + ARIANE6_C(0.17) * t7;
+    const ariane6_real_t t366 = ARIANE6_C(2.0) * t365;
+    const ariane6_real_t t367 = t17 * t362 - t11 * t361 - (t352 * t364 - t348 * t366);
+    const ariane6_real_t t368 = t24 * t359 - t25 * t358;
+    const ariane6_real_t t369 = ARIANE6_C(-0.976) * t13;
+    const ariane6_real_t t370 = t347 * t366 - t352 * t369 - t368;
+    const ariane6_real_t t371 = t7 * t367 + t5 * t370 + (t12 * t354 - t31 * t353 - t179 * t349);
+    input_by_q[32] = ARIANE6_C(0.2) * (t371 + (t93 * t347 + t79 * t348));
+    const ariane6_real_t t372 = ARIANE6_C(1.37) * dq[1];
+    const ariane6_real_t t373 = ARIANE6_C(-1.37) * t70;
+    const ariane6_real_t t374 = t1 * t367 + t3 * t370 + (t350 * t373 - t352 * t372);
+    const ariane6_real_t t375 = t1 * t347 - t3 * t348; /* link j6: column of the mass matrix */
+    const ariane6_real_t t376 = t3 * t367 - t1 * t370 - t375 * t373; /* link j6: derivatives */
+    const ariane6_real_t t377 = t70 * t374 - t75 * t376 + (t85 * t355 + t174 * t356 - t187 * t351);
+    input_by_q[31] = ARIANE6_C(0.2) * (t377 + (t74 * t375 + t69 * t350));
+    const ariane6_real_t t378 = ARIANE6_C(0.2) * (t362 + ARIANE6_C(2.0) * (t26 * parameters[ZZ6]
+        - t27 * t342));
+    input_by_dq[34] = t378;
+    const ariane6_real_t t379 = ARIANE6_C(0.2) * (t368 + ARIANE6_C(2.0) * (t35 * t345 + t19 * t340));
+    input_by_dq[33] = t379;
+    const ariane6_real_t t380 = t17 * t361 + t11 * t362 + (t347 * t364 - t348 * t369);
+    const ariane6_real_t t381 = ARIANE6_C(0.2) * (t380 + ARIANE6_C(2.0) * (t5 * t354 - t7 * t353));
+    input_by_dq[32] = t381;
+    const ariane6_real_t t382 = t380 + t375 * t372 + ARIANE6_C(2.0) * (t70 * t355 + t75 * t356);
+    input_by_dq[31] = ARIANE6_C(0.2) * t382;
+    const ariane6_real_t t383 = ARIANE6_C(0.36) * dq[0];
+    const ariane6_real_t t384 = t0 * t374 + t2 * t376 + (t2 * t375 - t0 * t350) * t383;
+    input_by_dq[30] = ARIANE6_C(0.2) * t384;
+    input_by_ddq[34] = ARIANE6_C(-0.2) * t340;
+    input_by_ddq[33] = t344;
+    input_by_ddq[32] = ARIANE6_C(0.2) * t349;
+    input_by_ddq[31] = ARIANE6_C(0.2) * t351;
+    input_by_ddq[30] = ARIANE6_C(0.2) * t357;
+    const ariane6_real_t t385 = ariane6_select(t251, t251, ARIANE6_C(1.0));
+    const ariane6_real_t t386 = ARIANE6_C(1.0) / t385;
+    const ariane6_real_t t387 = ARIANE6_C(0.035496) * t24;
+    const ariane6_real_t t388 = ARIANE6_C(1.0) / t24;
+    const ariane6_real_t t389 = t388 * (ARIANE6_C(0.07043047103899029) * (t387 * (ARIANE6_C(0.5) * t386))
+        + t25 * t252);
+    const ariane6_real_t t390 = parameters[MX5] + t341; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t391 = ARIANE6_C(-0.3) * parameters[M6];
+    const ariane6_real_t t392 = parameters[MZ6] - t391;
+    const ariane6_real_t t393 = parameters[MY5] + t392;
+    const ariane6_real_t t394 = t98 * t390 + t104 * t393; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t395 = t47 * (t278 + t286) + t30 * (t284 - t280);
+    const ariane6_real_t t396 = t30 * t395;
+    const ariane6_real_t t397 = ARIANE6_C(0.3) * t26;
+    const ariane6_real_t t398 = ARIANE6_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const ariane6_real_t t399 = t398 - parameters[XX5];
+    const ariane6_real_t t400 = t26 * parameters[XY5] - t27 * t399 + (t284 - t396 - t341 * t397);
+    const ariane6_real_t t401 = ARIANE6_C(2.0) * t400; /* link j5: derivatives */
+    const ariane6_real_t t402 = t47 * t299 - t30 * t300; /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t403 = t47 * t315 - t30 * t313 + (ARIANE6_C(-0.3) * t402 - t392 * t397);
+    const ariane6_real_t t404 = t398 - parameters[YY5];
+    const ariane6_real_t t405 = t27 * parameters[XY5] - t26 * t404 + t403;
+    const ariane6_real_t t406 = ARIANE6_C(-2.0) * t405; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t407 = t47 * t130 + parameters[XY6] * (ARIANE6_C(2.0) * t30);
+    const ariane6_real_t t408 = parameters[XY6] - t30 * t407 - parameters[XZ5];
+    const ariane6_real_t t409 = t340 - parameters[YZ5];
+    const ariane6_real_t t410 = t47 * t407;
+    const ariane6_real_t t411 = ARIANE6_C(0.3) * (t391 + ARIANE6_C(-2.0) * parameters[MZ6]);
+    const ariane6_real_t t412 = parameters[ZZ5] + (parameters[XX6] + t410 - t411);
+    const ariane6_real_t t413 = t59 * t408 + t42 * t409 + t159 * t412; /* link j5: derivatives */
+    const ariane6_real_t t414 = t252 * (t394 + (t26 * t406 - t27 * t401 - t413));
+    const ariane6_real_t t415 = t253 * (t253 * (t387 * (ARIANE6_C(0.5) * t253)));
+    const ariane6_real_t t416 = t259 * (ARIANE6_C(125.9966016) * (t253 * t415))
+        + t258 * (ARIANE6_C(2.0) * (t25 * t24));
+    const ariane6_real_t t417 = t262 * (t260 * t415 + t253 * (ARIANE6_C(-3549.6000000000004) * t24 + t416));
+    const ariane6_real_t t418 = t24 * (ARIANE6_C(-3549.6000000000004) * t415) - t25 * t254;
+    const ariane6_real_t t419 = parameters[FV5] * (dq[4] * t418) + parameters[IA5] * (ddq[4] * t418 + t417);
+    input_by_q[28] = ARIANE6_C(250.0) * t419 + t414 + t146 * t389;
+    const ariane6_real_t t420 = ARIANE6_C(-0.3) * t289; /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t421 = ARIANE6_C(0.3) * t43;
+    const ariane6_real_t t422 = t341 * t421;
+    const ariane6_real_t t423 = t339 * t397;
+    const ariane6_real_t t424 = t420 + (t423 - t422);
+    const ariane6_real_t t425 = t26 * parameters[YZ5];
+    const ariane6_real_t t426 = t43 * parameters[XY5];
+    const ariane6_real_t t427 = t426 + t425 + (t424 + (t323 - t420));
+    const ariane6_real_t t428 = ARIANE6_C(2.0) * t26; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t429 = t43 * t399 - t26 * parameters[XZ5] + (t47 * t270 + t30 * t273);
+    const ariane6_real_t t430 = ARIANE6_C(2.0) * t27; /* link j5: derivatives */
+    const ariane6_real_t t431 = t342 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t432 = parameters[YY5] + parameters[ZZ6];
+    /* link j5: derivatives */
+    const ariane6_real_t t433 = t427 * t428 - t429 * t430 + (t42 * t432 - t59 * t431 + t159 * t409);
+    const ariane6_real_t t434 = t339 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t435 = t129 + (t433 + t104 * t434); /* link j5: derivatives */
+    const ariane6_real_t t436 = t47 * t395; /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t437 = t27 * parameters[XZ5];
+    const ariane6_real_t t438 = t426 - t437 + (t436 - t286 - t422 - t424);
+    const ariane6_real_t t439 = t47 * t300 + t30 * t299;
+    const ariane6_real_t t440 = ARIANE6_C(0.3) * t439 + t392 * t421 - (t47 * t313 + t30 * t315);
+    const ariane6_real_t t441 = t27 * parameters[YZ5] + t43 * t404 + t440;
+    /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t442 = t410 - parameters[YY6] + t411 - parameters[XX5];
+    /* link j5: derivatives */
+    const ariane6_real_t t443 = t441 * t428 - t438 * t430 + (t159 * t408 - (t59 * t442 + t42 * t431));
+    const ariane6_real_t t444 = t135 + (t443 + t98 * t434);
+    const ariane6_real_t t445 = t25 * t444 + t24 * t435;
+    input_by_q[22] = ARIANE6_C(0.2) * t445;
+    const ariane6_real_t t446 = t24 * t444 - t25 * t435;
+    const ariane6_real_t t447 = t394 - (t400 * t430 + t405 * t428 + t413);
+    const ariane6_real_t t448 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t449 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t402
+        + parameters[M6] * t397);
+    /* link j5: derivatives */
+    const ariane6_real_t t450 = t159 * t390 - t59 * t434 - (t449 * t430 + t98 * t448);
+    const ariane6_real_t t451 = t152 + t450;
+    const ariane6_real_t t452 = t159 * t393 - t42 * t434 - (t449 * t428 + t104 * t448);
+    const ariane6_real_t t453 = t156 + t452;
+    const ariane6_real_t t454 = t24 * t451 - t25 * t453;
+    const ariane6_real_t t455 = t24 * t453 + t25 * t451;
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t456 = t43 * parameters[MY5] - t27 * parameters[MZ5] + (t439
+        + parameters[M6] * t421);
+    const ariane6_real_t t457 = t289 - (t43 * parameters[MX5] + t26 * parameters[MZ5]);
+    /* link j5: derivatives */
+    const ariane6_real_t t458 = t457 * t430 - t456 * t428 + (t42 * t390 - t59 * t393);
+    const ariane6_real_t t459 = t17 * t458 - t11 * t455;
+    const ariane6_real_t t460 = t11 * t447 - t17 * t446 + (ARIANE6_C(0.17) * t454 + ARIANE6_C(0.488) * t459);
+    input_by_q[16] = t237 * t460;
+    const ariane6_real_t t461 = t223 * (t460 + ARIANE6_C(-0.685) * (t3 * t459 + t1 * t454));
+    input_by_q[10] = t461;
+    const ariane6_real_t t462 = t17 * t455 + t11 * t458;
+    const ariane6_real_t t463 = t11 * t446 + t17 * t447 + ARIANE6_C(-0.488) * t462;
+    const ariane6_real_t t464 = t445 + ARIANE6_C(-0.17) * t462;
+    const ariane6_real_t t465 = t2 * (t3 * t463 + t1 * t464 + ARIANE6_C(0.685) * t462);
+    const ariane6_real_t t466 = t0 * (t1 * t463 - t3 * t464) + t465 + ARIANE6_C(0.18) * t462;
+    input_by_q[4] = t194 * t466;
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t467 = t424 + (t436 - t278 - t423) - (t437 + t425);
+    const ariane6_real_t t468 = ARIANE6_C(2.0) * t467; /* link j5: derivatives */
+    const ariane6_real_t t469 = t252 * (t468 + ARIANE6_C(-2.0) * (t27 * t408 + t26 * t409));
+    const ariane6_real_t t470 = ARIANE6_C(250.0) * (t255 * parameters[FV5]
+        + parameters[IA5] * (t261 * (ARIANE6_C(-2.0) * dq[4])));
+    input_by_dq[28] = t470 + t469;
+    const ariane6_real_t t471 = t398 - parameters[ZZ5];
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t472 = t280 + t396 - t339 * t421 - (t27 * t471 + t43 * parameters[YZ5]);
+    /* link j5: derivatives */
+    const ariane6_real_t t473 = ARIANE6_C(2.0) * t472 - (t442 * t430 + t431 * t428);
+    /* link j6: inertia, momentum beyond */
+    const ariane6_real_t t474 = t43 * parameters[XZ5] - t26 * t471 + (t30 * t270 - t47 * t273);
+    /* link j5: derivatives */
+    const ariane6_real_t t475 = ARIANE6_C(2.0) * t474 + (t432 * t428 - t431 * t430);
+    const ariane6_real_t t476 = t25 * t473 + t24 * t475;
+    input_by_dq[22] = ARIANE6_C(0.2) * t476;
+    const ariane6_real_t t477 = t25 * t475 - t24 * t473;
+    const ariane6_real_t t478 = t468 - (t408 * t430 + t409 * t428);
+    const ariane6_real_t t479 = ARIANE6_C(2.0) * t456 - t434 * t430;
+    const ariane6_real_t t480 = ARIANE6_C(2.0) * t457 - t434 * t428;
+    const ariane6_real_t t481 = t24 * t479 - t25 * t480;
+    const ariane6_real_t t482 = t24 * t480 + t25 * t479;
+    const ariane6_real_t t483 = t390 * t428 - t393 * t430;
+    const ariane6_real_t t484 = t17 * t483 - t11 * t482;
+    const ariane6_real_t t485 = t17 * t477 + t11 * t478 + (ARIANE6_C(0.17) * t481 + ARIANE6_C(0.488) * t484);
+    input_by_dq[16] = t237 * t485;
+    const ariane6_real_t t486 = t223 * (t485 + ARIANE6_C(-0.685) * (t3 * t484 + t1 * t481));
+    input_by_dq[10] = t486;
+    const ariane6_real_t t487 = t17 * t482 + t11 * t483;
+    const ariane6_real_t t488 = t17 * t478 - t11 * t477 + ARIANE6_C(-0.488) * t487;
+    const ariane6_real_t t489 = t476 + ARIANE6_C(-0.17) * t487;
+    const ariane6_real_t t490 = t2 * (t3 * t488 + t1 * t489 + ARIANE6_C(0.685) * t487);
+    const ariane6_real_t t491 = t0 * (t1 * t488 - t3 * t489) + t490 + ARIANE6_C(0.18) * t487;
+    input_by_dq[4] = t194 * t491;
+    input_by_ddq[28] = ARIANE6_C(250.0) * (t255 * parameters[IA5]) + t252 * t412;
+    const ariane6_real_t t492 = t25 * t408 + t24 * t409; /* link j5: column of the mass matrix */
+    input_by_ddq[22] = ARIANE6_C(-0.2) * t492;
+    const ariane6_real_t t493 = t24 * t408 - t25 * t409;
+    const ariane6_real_t t494 = t24 * t390 - t25 * t393;
+    const ariane6_real_t t495 = t24 * t393 + t25 * t390;
+    const ariane6_real_t t496 = t11 * t495;
+    const ariane6_real_t t497 = t17 * t493 + t11 * t412 + (ARIANE6_C(-0.17) * t494 + ARIANE6_C(0.488) * t496);
+    input_by_ddq[16] = t237 * t497;
+    const ariane6_real_t t498 = t1 * t494 - t3 * t496;
+    const ariane6_real_t t499 = t497 + ARIANE6_C(0.685) * t498;
+    input_by_ddq[10] = t223 * t499;
+    const ariane6_real_t t500 = t17 * t495;
+    const ariane6_real_t t501 = t11 * t493 - t17 * t412 + ARIANE6_C(-0.488) * t500;
+    const ariane6_real_t t502 = t492 + ARIANE6_C(-0.17) * t500;
+    const ariane6_real_t t503 = t3 * t502 - t1 * t501;
+    const ariane6_real_t t504 = t3 * t501 + t1 * t502 + ARIANE6_C(0.685) * t500;
+    const ariane6_real_t t505 = t0 * t503 - t2 * t504 + ARIANE6_C(-0.18) * t500;
+    input_by_ddq[4] = t194 * t505;
+    const ariane6_real_t t506 = t24 * t401 + t25 * t406; /* link j5: derivatives */
+    const ariane6_real_t t507 = t35 * t506 - t19 * t468 + (t18 * t493 + t38 * t412 + t206 * t492);
+    input_by_q[27] = t252 * (t507 + t100 * t495);
+    const ariane6_real_t t508 = t17 * t468 - t11 * t506 - (t494 * t366 - t500 * t364);
+    const ariane6_real_t t509 = t24 * t406 - t25 * t401;
+    const ariane6_real_t t510 = t496 * t366 + t500 * t369 - t509;
+    const ariane6_real_t t511 = t7 * t508 + t5 * t510 + (t12 * t502 - t31 * t501 - t179 * t497);
+    input_by_q[26] = t252 * (t511 + (t93 * t496 - t79 * t494));
+    const ariane6_real_t t512 = t1 * t508 + t3 * t510 + (t500 * t372 - t498 * t373);
+    const ariane6_real_t t513 = t1 * t496 + t3 * t494; /* link j5: column of the mass matrix */
+    const ariane6_real_t t514 = t3 * t508 - t1 * t510 - t513 * t373; /* link j5: derivatives */
+    const ariane6_real_t t515 = t70 * t512 - t75 * t514 + (t85 * t503 + t174 * t504 - t187 * t499);
+    input_by_q[25] = t252 * (t515 + (t74 * t513 - t69 * t498));
+    const ariane6_real_t t516 = t252 * (t509 + ARIANE6_C(2.0) * (t35 * t493 - t19 * t412));
+    input_by_dq[27] = t516;
+    const ariane6_real_t t517 = t17 * t506 + t11 * t468 + (t494 * t369 + t496 * t364);
+    const ariane6_real_t t518 = t252 * (t517 + ARIANE6_C(2.0) * (t5 * t502 - t7 * t501));
+    input_by_dq[26] = t518;
+    const ariane6_real_t t519 = t517 + t513 * t372 + ARIANE6_C(2.0) * (t70 * t503 + t75 * t504);
+    input_by_dq[25] = t252 * t519;
+    const ariane6_real_t t520 = t0 * t512 + t2 * t514 + (t2 * t513 + t0 * t498) * t383;
+    input_by_dq[24] = t252 * t520;
+    input_by_ddq[27] = -(t252 * t492);
+    input_by_ddq[26] = t252 * t497;
+    input_by_ddq[25] = t252 * t499;
+    input_by_ddq[24] = t252 * t505;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t521 = t24 * (t438 + t427) + t25 * (t441 - t429);
+    const ariane6_real_t t522 = t25 * t521;
+    const ariane6_real_t t523 = ARIANE6_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const ariane6_real_t t524 = parameters[XX4] - t523;
+    const ariane6_real_t t525 = t19 * parameters[XY4] - t35 * t524 + (t429 + t522);
+    const ariane6_real_t t526 = ARIANE6_C(2.0) * t525; /* link j4: derivatives */
+    const ariane6_real_t t527 = t523 - parameters[YY4];
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t528 = t25 * t472 + t24 * t474 - (t19 * t527 + t35 * parameters[XY4]);
+    const ariane6_real_t t529 = ARIANE6_C(2.0) * t528; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t530 = t431 * (ARIANE6_C(2.0) * t25) - t24 * (t442 + t432);
+    const ariane6_real_t t531 = t431 - t25 * t530 - parameters[XZ4];
+    const ariane6_real_t t532 = parameters[YZ4] + t492;
+    const ariane6_real_t t533 = t24 * t530;
+    const ariane6_real_t t534 = t442 + t533 - parameters[ZZ4];
+    const ariane6_real_t t535 = t18 * t531 - t38 * t532 + t206 * t534; /* link j4: derivatives */
+    const ariane6_real_t t536 = parameters[MX4] + t494; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t537 = parameters[MY4] + t434;
+    const ariane6_real_t t538 = t92 * t536 + t100 * t537; /* link j4: derivatives */
+    const ariane6_real_t t539 = ARIANE6_C(0.2) * (t538 + (t535 + (t35 * t526 - t19 * t529)));
+    input_by_q[21] = t539;
+    const ariane6_real_t t540 = t24 * t521; /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t541 = t35 * parameters[XZ4];
+    const ariane6_real_t t542 = t20 * parameters[XY4];
+    const ariane6_real_t t543 = t541 + t542 - (t427 - t540);
+    const ariane6_real_t t544 = ARIANE6_C(2.0) * t35; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t545 = t35 * parameters[YZ4] - t20 * t527 - (t25 * t474 - t24 * t472);
+    const ariane6_real_t t546 = ARIANE6_C(-2.0) * t19; /* link j4: derivatives */
+    const ariane6_real_t t547 = parameters[XX4] + (t432 + t533); /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t548 = parameters[XY4] + t493;
+    /* link j4: derivatives */
+    const ariane6_real_t t549 = t543 * t544 + t545 * t546 - (t18 * t547 + t38 * t548 - t206 * t531);
+    const ariane6_real_t t550 = parameters[MZ4] + t495; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t551 = t150 + (t549 - t92 * t550); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t552 = t20 * t524 + t19 * parameters[XZ4] + (t24 * t400 - t25 * t405);
+    const ariane6_real_t t553 = t19 * parameters[YZ4];
+    const ariane6_real_t t554 = t542 + t553 + t467;
+    const ariane6_real_t t555 = parameters[YY4] + t412; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const ariane6_real_t t556 = t552 * t544 + t554 * t546 + (t18 * t548 + t38 * t555 + t206 * t532);
+    const ariane6_real_t t557 = t142 + (t556 + t100 * t550);
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t558 = t19 * parameters[MY4] - t35 * parameters[MX4] + (t25 * t456 + t24 * t457);
+    const ariane6_real_t t559 = parameters[M4] + t448; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const ariane6_real_t t560 = t558 * t546 - t100 * t559 + (t206 * t537 - t38 * t550);
+    const ariane6_real_t t561 = t162 + t560;
+    const ariane6_real_t t562 = t92 * t559 - t558 * t544 + (t18 * t550 - t206 * t536);
+    const ariane6_real_t t563 = t158 + t562;
+    const ariane6_real_t t564 = t17 * t563 - t11 * t561;
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t565 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t449;
+    const ariane6_real_t t566 = t25 * t457 - t24 * t456 - (t35 * parameters[MZ4] + t20 * parameters[MY4]);
+    /* link j4: derivatives */
+    const ariane6_real_t t567 = t565 * t544 - t566 * t546 + (t18 * t537 - t38 * t536);
+    const ariane6_real_t t568 = t11 * t557 - t17 * t551 + (ARIANE6_C(0.17) * t567 + ARIANE6_C(0.488) * t564);
+    input_by_q[15] = t237 * t568;
+    const ariane6_real_t t569 = t223 * (t568 + ARIANE6_C(-0.685) * (t3 * t564 + t1 * t567));
+    input_by_q[9] = t569;
+    const ariane6_real_t t570 = t17 * t561 + t11 * t563;
+    const ariane6_real_t t571 = t11 * t551 + t17 * t557 + ARIANE6_C(-0.488) * t570;
+    const ariane6_real_t t572 = t525 * t544 + t528 * t546 + t535 + t538 + ARIANE6_C(-0.17) * t570;
+    const ariane6_real_t t573 = t2 * (t3 * t571 + t1 * t572 + ARIANE6_C(0.685) * t570);
+    const ariane6_real_t t574 = t0 * (t1 * t571 - t3 * t572) + t573 + ARIANE6_C(0.18) * t570;
+    input_by_q[3] = t194 * t574;
+    const ariane6_real_t t575 = t541 - t553 - (t438 - t540); /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t576 = ARIANE6_C(2.0) * t575; /* link j4: derivatives */
+    const ariane6_real_t t577 = ARIANE6_C(0.2) * (t576 + ARIANE6_C(2.0) * (t35 * t531 + t19 * t532));
+    input_by_dq[21] = ARIANE6_C(2.0e3) * parameters[FV4] + t577;
+    const ariane6_real_t t578 = t523 - parameters[ZZ4];
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t579 = t20 * parameters[YZ4] - t35 * t578 + (t522 - t441);
+    /* link j4: derivatives */
+    const ariane6_real_t t580 = ARIANE6_C(2.0) * t579 + (t547 * t544 + t548 * t546);
+    /* link j5: inertia, momentum beyond */
+    const ariane6_real_t t581 = t20 * parameters[XZ4] - t19 * t578 + (t25 * t400 + t24 * t405);
+    /* link j4: derivatives */
+    const ariane6_real_t t582 = ARIANE6_C(-2.0) * t581 + (t548 * t544 + t555 * t546);
+    const ariane6_real_t t583 = ARIANE6_C(-2.0) * t565 - t550 * t546;
+    const ariane6_real_t t584 = ARIANE6_C(2.0) * t566 + t550 * t544;
+    const ariane6_real_t t585 = t17 * t584 - t11 * t583;
+    const ariane6_real_t t586 = t537 * t544 - t536 * t546;
+    const ariane6_real_t t587 = t17 * t580 + t11 * t582 + (ARIANE6_C(0.17) * t586 + ARIANE6_C(0.488) * t585);
+    input_by_dq[15] = t237 * t587;
+    const ariane6_real_t t588 = t223 * (t587 + ARIANE6_C(-0.685) * (t3 * t585 + t1 * t586));
+    input_by_dq[9] = t588;
+    const ariane6_real_t t589 = t17 * t583 + t11 * t584;
+    const ariane6_real_t t590 = t17 * t582 - t11 * t580 + ARIANE6_C(-0.488) * t589;
+    const ariane6_real_t t591 = t576 - (t532 * t546 - t531 * t544) + ARIANE6_C(-0.17) * t589;
+    const ariane6_real_t t592 = t2 * (t3 * t590 + t1 * t591 + ARIANE6_C(0.685) * t589);
+    const ariane6_real_t t593 = t0 * (t1 * t590 - t3 * t591) + t592 + ARIANE6_C(0.18) * t589;
+    input_by_dq[3] = t194 * t593;
+    input_by_ddq[21] = ARIANE6_C(2.0e3) * parameters[IA4] + ARIANE6_C(-0.2) * t534;
+    const ariane6_real_t t594 = t11 * t537 + t17 * t536; /* link j4: column of the mass matrix */
+    const ariane6_real_t t595 = t17 * t531 - t11 * t532 + ARIANE6_C(0.488) * t594;
+    input_by_ddq[15] = t237 * t595;
+    const ariane6_real_t t596 = t3 * t594;
+    const ariane6_real_t t597 = t595 + ARIANE6_C(-0.685) * t596;
+    input_by_ddq[9] = t223 * t597;
+    const ariane6_real_t t598 = t11 * t531 + t17 * t532;
+    const ariane6_real_t t599 = t17 * t537 - t11 * t536;
+    const ariane6_real_t t600 = t598 + ARIANE6_C(-0.488) * t599;
+    const ariane6_real_t t601 = t534 + ARIANE6_C(-0.17) * t599;
+    const ariane6_real_t t602 = t3 * t601 - t1 * t600;
+    const ariane6_real_t t603 = t3 * t600 + t1 * t601 + ARIANE6_C(0.685) * t599;
+    const ariane6_real_t t604 = t0 * t602 - t2 * t603 + ARIANE6_C(-0.18) * t599;
+    input_by_ddq[3] = t194 * t604;
+    const ariane6_real_t t605 = t17 * t529 - t11 * t526 + t599 * t364; /* link j4: derivatives */
+    const ariane6_real_t t606 = t594 * t366 + t599 * t369 - t576;
+    const ariane6_real_t t607 = t7 * t605 + t5 * t606 + (t12 * t601 - t31 * t600 - t179 * t595);
+    input_by_q[20] = ARIANE6_C(0.2) * (t607 + t93 * t594);
+    const ariane6_real_t t608 = t1 * t605 + t3 * t606 + (t599 * t372 + t596 * t373);
+    const ariane6_real_t t609 = t1 * t594; /* link j4: column of the mass matrix */
+    const ariane6_real_t t610 = t3 * t605 - t1 * t606 - t609 * t373; /* link j4: derivatives */
+    const ariane6_real_t t611 = t70 * t608 - t75 * t610 + (t85 * t602 + t174 * t603 - t187 * t597);
+    input_by_q[19] = ARIANE6_C(0.2) * (t611 + (t74 * t609 + t69 * t596));
+    const ariane6_real_t t612 = t17 * t526 + t11 * t529 + t594 * t364;
+    const ariane6_real_t t613 = ARIANE6_C(0.2) * (t612 + ARIANE6_C(2.0) * (t5 * t601 - t7 * t600));
+    input_by_dq[20] = t613;
+    const ariane6_real_t t614 = t612 + t609 * t372 + ARIANE6_C(2.0) * (t70 * t602 + t75 * t603);
+    input_by_dq[19] = ARIANE6_C(0.2) * t614;
+    const ariane6_real_t t615 = t0 * t608 + t2 * t610 + (t2 * t609 - t0 * t596) * t383;
+    input_by_dq[18] = ARIANE6_C(0.2) * t615;
+    input_by_ddq[20] = ARIANE6_C(0.2) * t595;
+    input_by_ddq[19] = ARIANE6_C(0.2) * t597;
+    input_by_ddq[18] = ARIANE6_C(0.2) * t604;
+    const ariane6_real_t t616 = ariane6_select(t235, t235, ARIANE6_C(1.0));
+    const ariane6_real_t t617 = ARIANE6_C(1.0) / t616;
+    const ariane6_real_t t618 = ARIANE6_C(0.083776) * t236;
+    const ariane6_real_t t619 = ARIANE6_C(1.0) / t236;
+    const ariane6_real_t t620 = t619 * (ARIANE6_C(0.029841482047364396) * (t618 * (ARIANE6_C(0.5) * t617))
+        + t234 * t237);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t621 = t11 * (t543 + t554) + t17 * (t552 - t545);
+    const ariane6_real_t t622 = t17 * t621;
+    const ariane6_real_t t623 = t17 * t566 + t11 * t565;
+    const ariane6_real_t t624 = ARIANE6_C(0.17) * t559; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t625 = t599 + t624;
+    const ariane6_real_t t626 = ARIANE6_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const ariane6_real_t t627 = parameters[XX3] - t626;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t628 = t5 * parameters[XY3] - t7 * t627 - (t552 - t622 - (ARIANE6_C(-0.17) * t623
+        + t625 * t365));
+    const ariane6_real_t t629 = ARIANE6_C(2.0) * t628; /* link j3: derivatives */
+    const ariane6_real_t t630 = ARIANE6_C(0.488) * t559; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t631 = t550 + t630;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t632 = t11 * t581 - t17 * t579 + (ARIANE6_C(-0.488) * t623 + t631 * t365);
+    const ariane6_real_t t633 = parameters[YY3] - t626;
+    const ariane6_real_t t634 = t7 * parameters[XY3] - t5 * t633 + t632;
+    const ariane6_real_t t635 = ARIANE6_C(2.0) * t634; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t636 = t11 * (t547 - t555) - t548 * (ARIANE6_C(2.0) * t17);
+    const ariane6_real_t t637 = t548 + t17 * t636 + ARIANE6_C(0.17) * t594 - parameters[XZ3];
+    const ariane6_real_t t638 = parameters[YZ3] + t595;
+    const ariane6_real_t t639 = t11 * t636;
+    const ariane6_real_t t640 = ARIANE6_C(0.17) * (t624 + ARIANE6_C(2.0) * t599);
+    const ariane6_real_t t641 = ARIANE6_C(0.488) * (t630 + ARIANE6_C(2.0) * t550);
+    const ariane6_real_t t642 = parameters[ZZ3] + (t547 - t639 + (t640 + t641));
+    const ariane6_real_t t643 = t31 * t637 + t12 * t638 + t179 * t642; /* link j3: derivatives */
+    const ariane6_real_t t644 = t625 - parameters[MX3]; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t645 = parameters[MY3] + t631;
+    const ariane6_real_t t646 = t79 * t644 + t93 * t645; /* link j3: derivatives */
+    const ariane6_real_t t647 = t237 * (t646 + (t7 * t629 + t5 * t635 - t643));
+    const ariane6_real_t t648 = t238 * (t238 * (t618 * (ARIANE6_C(0.5) * t238)));
+    const ariane6_real_t t649 = t244 * (ARIANE6_C(701.8418176000002) * (t238 * t648))
+        - t243 * (ARIANE6_C(2.0) * (t236 * t234));
+    const ariane6_real_t t650 = t247 * (t245 * t648 - t238 * (ARIANE6_C(-8377.600000000002) * t236 + t649));
+    const ariane6_real_t t651 = t236 * (ARIANE6_C(8377.600000000002) * t648) - t234 * t239;
+    const ariane6_real_t t652 = parameters[FV3] * (dq[2] * t651) + parameters[IA3] * (ddq[2] * t651 + t650);
+    input_by_q[14] = ARIANE6_C(250.0) * t652 + t647 + t212 * t620;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t653 = t7 * parameters[MX3] - t5 * parameters[MY3] + (t623 - t559 * t365);
+    const ariane6_real_t t654 = ARIANE6_C(-2.0) * t7; /* link j3: derivatives */
+    const ariane6_real_t t655 = parameters[M3] + t559; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t656 = t594 - parameters[MZ3];
+    /* link j3: derivatives */
+    const ariane6_real_t t657 = t179 * t644 + t31 * t656 - (t653 * t654 + t79 * t655);
+    const ariane6_real_t t658 = ARIANE6_C(-2.0) * t5;
+    const ariane6_real_t t659 = t12 * t656 + t179 * t645 - (t653 * t658 + t93 * t655);
+    const ariane6_real_t t660 = ARIANE6_C(0.685) * (t3 * (t216 + t659) + t1 * (t214 + t657));
+    const ariane6_real_t t661 = t646 - (t628 * t654 + t634 * t658 + t643) + t660;
+    input_by_q[8] = t223 * t661;
+    const ariane6_real_t t662 = t11 * t621; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t663 = t17 * t565 - t11 * t566;
+    const ariane6_real_t t664 = ARIANE6_C(0.17) * t663;
+    const ariane6_real_t t665 = ARIANE6_C(-0.488) * t13; /* link j4: velocity of its origin */
+    const ariane6_real_t t666 = t625 * t665; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t667 = ARIANE6_C(-0.488) * t558;
+    const ariane6_real_t t668 = t594 * t365;
+    const ariane6_real_t t669 = ARIANE6_C(0.17) * t13; /* link j4: velocity of its origin */
+    const ariane6_real_t t670 = t631 * t669; /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t671 = t664 + t667 - (t666 + t670 + t668);
+    const ariane6_real_t t672 = t7 * parameters[XZ3];
+    const ariane6_real_t t673 = t13 * parameters[XY3];
+    const ariane6_real_t t674 = t672 - t673 + (t671 + (t554 - t662 + (t666 - t664)));
+    const ariane6_real_t t675 = t11 * t579 + t17 * t581 + (ARIANE6_C(-0.488) * t663 + t631 * t665);
+    const ariane6_real_t t676 = t13 * t633 - t7 * parameters[YZ3] + t675;
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t677 = parameters[XX3] + (t555 + t639 + t641);
+    const ariane6_real_t t678 = t598 + (ARIANE6_C(-0.17) * t550 + ARIANE6_C(-0.488) * t625) - parameters[XY3];
+    /* link j3: derivatives */
+    const ariane6_real_t t679 = t31 * t677 + t12 * t678 + t179 * t637 - (t674 * t654 + t676 * t658);
+    const ariane6_real_t t680 = t172 + (t679 - t79 * t656);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t681 = t17 * t528 - t11 * t525 + (ARIANE6_C(-0.17) * t558 - t625 * t669);
+    const ariane6_real_t t682 = t13 * t627 - t5 * parameters[XZ3] + t681;
+    const ariane6_real_t t683 = t5 * parameters[YZ3];
+    const ariane6_real_t t684 = t673 - t683 + (t671 + (t575 - (t667 - t670)));
+    const ariane6_real_t t685 = parameters[YY3] + (t640 - t534); /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const ariane6_real_t t686 = t682 * t654 - t684 * t658 + (t31 * t678 + t12 * t685 + t179 * t638);
+    const ariane6_real_t t687 = t686 - t93 * t656 - t166;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t688 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t663 - t559 * t665);
+    const ariane6_real_t t689 = t5 * parameters[MZ3] - t13 * parameters[MX3] + (t558 + t559 * t669);
+    /* link j3: derivatives */
+    const ariane6_real_t t690 = t12 * t644 - t31 * t645 - (t689 * t654 + t688 * t658);
+    const ariane6_real_t t691 = t2 * (t3 * t680 - t1 * t687 + ARIANE6_C(0.685) * t690);
+    const ariane6_real_t t692 = t0 * (t1 * t680 + t3 * t687) + t691 + ARIANE6_C(0.18) * t690;
+    input_by_q[2] = t194 * t692;
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t693 = t683 - t672 + (t671 + (t662 - t543 + t668));
+    const ariane6_real_t t694 = ARIANE6_C(2.0) * t693; /* link j3: derivatives */
+    const ariane6_real_t t695 = t237 * (t694 + ARIANE6_C(-2.0) * (t7 * t637 + t5 * t638));
+    const ariane6_real_t t696 = ARIANE6_C(250.0) * (t240 * parameters[FV3]
+        - parameters[IA3] * (t246 * (ARIANE6_C(2.0) * dq[2])));
+    input_by_dq[14] = t696 + t695;
+    const ariane6_real_t t697 = t3 * (ARIANE6_C(2.0) * t689 - t656 * t658) + t1 * (ARIANE6_C(-2.0) * t688
+        - t656 * t654);
+    const ariane6_real_t t698 = t694 + (t637 * t654 + t638 * t658) + ARIANE6_C(0.685) * t697;
+    input_by_dq[8] = t223 * t698;
+    const ariane6_real_t t699 = t626 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t700 = t545 + t622 + t594 * t665 - (t13 * parameters[YZ3] + t7 * t699);
+    /* link j3: derivatives */
+    const ariane6_real_t t701 = ARIANE6_C(2.0) * t700 - (t677 * t654 + t678 * t658);
+    /* link j4: inertia, momentum beyond */
+    const ariane6_real_t t702 = t13 * parameters[XZ3] + t5 * t699 - (t594 * t669 - (t17 * t525 + t11 * t528));
+    /* link j3: derivatives */
+    const ariane6_real_t t703 = ARIANE6_C(2.0) * t702 + (t678 * t654 + t685 * t658);
+    const ariane6_real_t t704 = t645 * t654 - t644 * t658;
+    const ariane6_real_t t705 = t2 * (t3 * t701 + t1 * t703 + ARIANE6_C(0.685) * t704);
+    const ariane6_real_t t706 = t0 * (t1 * t701 - t3 * t703) + t705 + ARIANE6_C(0.18) * t704;
+    input_by_dq[2] = t194 * t706;
+    input_by_ddq[14] = ARIANE6_C(250.0) * (t240 * parameters[IA3]) + t237 * t642;
+    const ariane6_real_t t707 = t3 * t645 + t1 * t644; /* link j3: column of the mass matrix */
+    const ariane6_real_t t708 = t642 + ARIANE6_C(-0.685) * t707;
+    input_by_ddq[8] = t223 * t708;
+    const ariane6_real_t t709 = t1 * t637 + t3 * t638;
+    const ariane6_real_t t710 = t3 * t637 - t1 * t638;
+    const ariane6_real_t t711 = t0 * t709 + t2 * t710;
+    input_by_ddq[2] = -(t194 * t711);
+    const ariane6_real_t t712 = t1 * t629 + t3 * t635 + t707 * t373; /* link j3: derivatives */
+    const ariane6_real_t t713 = t3 * t644 - t1 * t645; /* link j3: column of the mass matrix */
+    const ariane6_real_t t714 = t3 * t629 - t1 * t635 + t713 * t373; /* link j3: derivatives */
+    const ariane6_real_t t715 = t70 * t712 - t75 * t714 + (t174 * t710 - t85 * t709 - t187 * t708);
+    input_by_q[13] = t237 * (t715 + (t69 * t707 - t74 * t713));
+    const ariane6_real_t t716 = t694 - t713 * t372 + ARIANE6_C(2.0) * (t75 * t710 - t70 * t709);
+    input_by_dq[13] = t237 * t716;
+    const ariane6_real_t t717 = t0 * t712 + t2 * t714 - (t2 * t713 + t0 * t707) * t383;
+    input_by_dq[12] = t237 * t717;
+    input_by_ddq[13] = t237 * t708;
+    input_by_ddq[12] = -(t237 * t711);
+    const ariane6_real_t t718 = ariane6_select(t221, t221, ARIANE6_C(1.0));
+    const ariane6_real_t t719 = ARIANE6_C(1.0) / t718;
+    const ariane6_real_t t720 = ARIANE6_C(0.126918) * t222;
+    const ariane6_real_t t721 = ARIANE6_C(1.0) / t222;
+    const ariane6_real_t t722 = t721 * (ARIANE6_C(0.019697757607273984) * (t720 * (ARIANE6_C(0.5) * t719))
+        + t220 * t223);
+    const ariane6_real_t t723 = ARIANE6_C(0.685) * t655; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t724 = t723 - t707;
+    const ariane6_real_t t725 = ARIANE6_C(-0.685) * t70; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t726 = t1 * t628 + t3 * t634 + (ARIANE6_C(0.685) * t653 - t724 * t725);
+    const ariane6_real_t t727 = ARIANE6_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const ariane6_real_t t728 = parameters[XX2] - t727;
+    /* link j2: derivatives */
+    const ariane6_real_t t729 = ARIANE6_C(2.0) * (t75 * parameters[XY2] - t70 * t728 + t726);
+    const ariane6_real_t t730 = t727 - parameters[YY2];
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t731 = t70 * parameters[XY2] + t75 * t730 - (t3 * t628 - t1 * t634 + t713 * t725);
+    const ariane6_real_t t732 = ARIANE6_C(2.0) * t731; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t733 = parameters[XZ2] + (ARIANE6_C(0.685) * t656 - t709);
+    const ariane6_real_t t734 = t710 - parameters[YZ2];
+    const ariane6_real_t t735 = ARIANE6_C(0.685) * (t723 - ARIANE6_C(2.0) * t707);
+    const ariane6_real_t t736 = parameters[ZZ2] + (t642 + t735);
+    /* link j2: derivatives */
+    const ariane6_real_t t737 = t85 * t733 + t174 * t734 - t187 * t736 + (t70 * t729 + t75 * t732);
+    const ariane6_real_t t738 = parameters[MX2] + t724; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t739 = t713 - parameters[MY2];
+    const ariane6_real_t t740 = t224 * (t224 * (t720 * (ARIANE6_C(0.5) * t224)));
+    const ariane6_real_t t741 = t230 * (ARIANE6_C(1610.8178724000004) * (t224 * t740))
+        - t229 * (ARIANE6_C(2.0) * (t222 * t220));
+    const ariane6_real_t t742 = t72 * (t231 * t740 - t224 * (ARIANE6_C(-12691.800000000003) * t222 + t741));
+    const ariane6_real_t t743 = t222 * (ARIANE6_C(12691.800000000003) * t740) - t220 * t225;
+    const ariane6_real_t t744 = parameters[FV2] * (dq[1] * t743) + parameters[IA2] * (ddq[1] * t743 + t742);
+    const ariane6_real_t t745 = ARIANE6_C(250.0) * t744 + t223 * (t737 - (t69 * t738 + t74 * t739));
+    input_by_q[7] = t745 + t219 * t722;
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t746 = t1 * (t674 - t684) + t3 * (t676 - t682);
+    const ariane6_real_t t747 = t1 * t746;
+    const ariane6_real_t t748 = t1 * t688 - t3 * t689;
+    const ariane6_real_t t749 = ARIANE6_C(0.685) * t748;
+    const ariane6_real_t t750 = ARIANE6_C(-0.685) * dq[1]; /* link j3: velocity of its origin */
+    const ariane6_real_t t751 = t713 * t750; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t752 = t656 * t725;
+    const ariane6_real_t t753 = t751 - t752 - t749;
+    const ariane6_real_t t754 = t70 * parameters[XZ2];
+    const ariane6_real_t t755 = dq[1] * parameters[XY2];
+    const ariane6_real_t t756 = t754 - t755 + (t753 + (t684 + t747 + t749));
+    const ariane6_real_t t757 = ARIANE6_C(2.0) * t70; /* link j2: derivatives */
+    const ariane6_real_t t758 = t3 * t746; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t759 = t70 * parameters[YZ2] + dq[1] * t730 + (t758 - t676);
+    const ariane6_real_t t760 = ARIANE6_C(-2.0) * t75; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t761 = t1 * (t677 - t685) - t678 * (ARIANE6_C(-2.0) * t3);
+    const ariane6_real_t t762 = t1 * t761;
+    const ariane6_real_t t763 = parameters[XX2] + (t685 + t762);
+    const ariane6_real_t t764 = parameters[XY2] + (t3 * t761 - t678 + ARIANE6_C(0.685) * t713);
+    /* link j2: derivatives */
+    const ariane6_real_t t765 = t756 * t757 + t759 * t760 + (t85 * t763 - t174 * t764 - t187 * t733);
+    const ariane6_real_t t766 = t656 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t767 = t3 * t688 + t1 * t689; /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t768 = dq[1] * t728 - t75 * parameters[XZ2] + (t682 + t758 + (ARIANE6_C(0.685) * t767
+        + t724 * t750));
+    const ariane6_real_t t769 = t75 * parameters[YZ2];
+    const ariane6_real_t t770 = t755 - t769 + (t753 + (t674 - t747 - t751));
+    /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t771 = parameters[YY2] + (t677 - t762 + t735);
+    /* link j2: derivatives */
+    const ariane6_real_t t772 = t768 * t757 + t770 * t760 + (t85 * t764 - t174 * t771 + t187 * t734);
+    const ariane6_real_t t773 = t0 * (t186 + (t765 - t69 * t766)) + t2 * (t178 + (t772 + t74 * t766));
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t774 = t75 * parameters[MZ2] - dq[1] * parameters[MX2] + (t767 + t655 * t750);
+    const ariane6_real_t t775 = t70 * parameters[MZ2] - dq[1] * parameters[MY2] - t748;
+    /* link j2: derivatives */
+    const ariane6_real_t t776 = t774 * t757 + t775 * t760 + (t85 * t739 - t174 * t738);
+    input_by_q[1] = t194 * (t773 + ARIANE6_C(0.18) * t776);
+    const ariane6_real_t t777 = ARIANE6_C(2.0) * (t769 - t754 + (t753 + (t693 + t752)))
+        + ARIANE6_C(2.0) * (t70 * t733 + t75 * t734);
+    const ariane6_real_t t778 = ARIANE6_C(250.0) * (t226 * parameters[FV2]
+        - parameters[IA2] * (t232 * (ARIANE6_C(2.0) * dq[1])));
+    input_by_dq[7] = t778 + t223 * t777;
+    const ariane6_real_t t779 = parameters[ZZ2] - t727;
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t780 = t70 * t779 - dq[1] * parameters[YZ2] + (t1 * t700 - t3 * t702);
+    /* link j2: derivatives */
+    const ariane6_real_t t781 = t0 * (ARIANE6_C(2.0) * t780 + (t763 * t757 + t764 * t760));
+    /* link j3: inertia, momentum beyond */
+    const ariane6_real_t t782 = dq[1] * parameters[XZ2] - t75 * t779 + (t3 * t700 + t1 * t702 - t656 * t750);
+    /* link j2: derivatives */
+    const ariane6_real_t t783 = t2 * (ARIANE6_C(2.0) * t782 + (t764 * t757 + t771 * t760));
+    const ariane6_real_t t784 = t781 + t783 + ARIANE6_C(0.18) * (t739 * t757 + t738 * t760);
+    input_by_dq[1] = t194 * t784;
+    input_by_ddq[7] = ARIANE6_C(250.0) * (t226 * parameters[IA2]) + t223 * t736;
+    const ariane6_real_t t785 = t0 * t733 - t2 * t734; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = t194 * t785;
+    /* link j2: derivatives */
+    const ariane6_real_t t786 = t0 * t729 - t2 * t732 + (t0 * t738 - t2 * t739) * t383;
+    input_by_dq[6] = t223 * t786;
+    input_by_ddq[6] = t223 * t785;
+    const ariane6_real_t t787 = ariane6_select(t192, t192, ARIANE6_C(1.0));
+    const ariane6_real_t t788 = ARIANE6_C(1.0) / t787;
+    const ariane6_real_t t789 = ARIANE6_C(0.0406334) * t193;
+    const ariane6_real_t t790 = ARIANE6_C(1.0) / t193;
+    const ariane6_real_t t791 = t790 * (ARIANE6_C(0.061525739908548135) * (t789 * (ARIANE6_C(0.5) * t788))
+        + t191 * t194);
+    const ariane6_real_t t792 = t195 * (t195 * (t789 * (ARIANE6_C(0.5) * t195)));
+    const ariane6_real_t t793 = t201 * (ARIANE6_C(165.10731955600002) * (t195 * t792))
+        + t200 * (ARIANE6_C(2.0) * (t191 * t193));
+    const ariane6_real_t t794 = t67 * (t202 * t792 + t195 * (ARIANE6_C(-4063.3400000000006) * t193 + t793));
+    const ariane6_real_t t795 = t193 * (ARIANE6_C(-4063.3400000000006) * t792) - t191 * t196;
+    const ariane6_real_t t796 = parameters[FV1] * (dq[0] * t795) + parameters[IA1] * (ddq[0] * t795 + t794);
+    input_by_q[0] = ARIANE6_C(250.0) * t796 + t190 * t791;
+    /* link j2: inertia, momentum beyond */
+    const ariane6_real_t t797 = t2 * (t2 * (t770 - t756) + t0 * (t759 + t768));
+    const ariane6_real_t t798 = ARIANE6_C(0.18) * (t2 * t775 + t0 * t774) - t766 * (ARIANE6_C(-0.18) * dq[0]);
+    const ariane6_real_t t799 = ARIANE6_C(250.0) * (t197 * parameters[FV1]
+        + parameters[IA1] * (t203 * (ARIANE6_C(-2.0) * dq[0])));
+    input_by_dq[0] = t799 + t194 * (ARIANE6_C(2.0) * (t756 + t797 + t798));
+    /* link j2: inertia of it and all beyond */
+    const ariane6_real_t t800 = t2 * (t2 * (t771 - t763) + t764 * (ARIANE6_C(2.0) * t0));
+    const ariane6_real_t t801 = ARIANE6_C(0.18) * (parameters[M2] + t655) + ARIANE6_C(2.0) * (t0 * t739
+        + t2 * t738);
+    const ariane6_real_t t802 = ARIANE6_C(250.0) * (t197 * parameters[IA1]) + t194 * (parameters[ZZ1] + (t763
+        + t800 + ARIANE6_C(0.18) * t801));
+    input_by_ddq[0] = t802;
     /* always zero */
     input_by_q[6] = ARIANE6_C(0.0);
     input_by_q[12] = ARIANE6_C(0.0);

@@ -80,7 +80,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x13CD28B3UL
+#if ARIANE6_GENERATION != 0xB9B44F76UL
 #error "ariane6.h and ariane6_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -109,174 +109,168 @@ ariane6_status_t ariane6_mass_matrix(
         return status;
     }
 
-    ariane6_real_t t56, t59;
-    ARIANE6_SINCOS(q[0], &t56, &t59);
-    ariane6_real_t t52, t50;
-    ARIANE6_SINCOS(q[1], &t52, &t50);
-    ariane6_real_t t42, t35;
-    ARIANE6_SINCOS(q[2], &t42, &t35);
-    ariane6_real_t t14, t19;
-    ARIANE6_SINCOS(q[3], &t14, &t19);
-    ariane6_real_t t8, t5;
-    ARIANE6_SINCOS(q[4], &t8, &t5);
-    ariane6_real_t t1, t0;
-    ARIANE6_SINCOS(q[5], &t1, &t0);
-    /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t2 = parameters[XY6] * (ARIANE6_C(2.0) * t1) - t0 * parameters[XX6R];
-    const ariane6_real_t t3 = t0 * t2;
-    const ariane6_real_t t4 = parameters[XX5R] - t3;
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t6 = t0 * parameters[XZ6R] - t1 * parameters[YZ6R];
-    const ariane6_real_t t7 = parameters[XY5] + t6; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t9 = t5 * (parameters[ZZ6] - t4) + t7 * (ARIANE6_C(2.0) * t8);
-    const ariane6_real_t t10 = t5 * t9;
-    const ariane6_real_t t11 = parameters[ZZ4R] + (t4 + t10);
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t12 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const ariane6_real_t t13 = parameters[MY4R] + t12; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t15 = t1 * parameters[MY6] - t0 * parameters[MX6];
-    const ariane6_real_t t16 = t15 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t17 = t8 * parameters[MY5R] + t5 * t16; /* link j5: column of the mass matrix */
-    const ariane6_real_t t18 = parameters[MX4] - t17; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t20 = t14 * t13 - t19 * t18; /* link j4: column of the mass matrix */
-    const ariane6_real_t t21 = ARIANE6_C(0.34) * t20; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t22 = t11 + t21;
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t23 = parameters[XX4R] + (parameters[ZZ6] - t10);
-    /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t24 = parameters[ZZ5R] + (parameters[XX6R] + t3);
-    const ariane6_real_t t25 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t26 = t1 * parameters[XZ6R] + t0 * parameters[YZ6R];
-    const ariane6_real_t t27 = parameters[YZ5] - t26; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t28 = t5 * t25 - t8 * t27; /* link j5: column of the mass matrix */
-    const ariane6_real_t t29 = t28 - parameters[XY4]; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t30 = t19 * (t24 - t23) - t29 * (ARIANE6_C(2.0) * t14);
-    const ariane6_real_t t31 = t19 * t30;
-    const ariane6_real_t t32 = t8 * t16 - t5 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const ariane6_real_t t33 = ARIANE6_C(-0.976) * t32; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t34 = parameters[XX3R] + (t24 - t31 + t33);
-    const ariane6_real_t t36 = parameters[XZ4] + (t7 - t8 * t9); /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t37 = t8 * t25 + t5 * t27; /* link j5: column of the mass matrix */
-    const ariane6_real_t t38 = t37 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t39 = t19 * t36 + t14 * t38; /* link j4: column of the mass matrix */
-    const ariane6_real_t t40 = ARIANE6_C(0.488) * t20;
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t41 = parameters[XY3R] + (t39 + (t40 + ARIANE6_C(-0.17) * t32));
-    /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t43 = t35 * (t22 - t34) + t41 * (ARIANE6_C(2.0) * t42);
-    const ariane6_real_t t44 = t35 * t43;
-    const ariane6_real_t t45 = parameters[MX3R] - t20; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t46 = t32 - parameters[MY3R];
-    const ariane6_real_t t47 = t42 * t46 + t35 * t45; /* link j3: column of the mass matrix */
-    const ariane6_real_t t48 = ARIANE6_C(1.37) * t47; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t49 = parameters[XX2R] + (t22 - t44);
-    const ariane6_real_t t51 = t35 * t46 - t42 * t45; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t53 = (parameters[XY2] + (t41 - t42 * t43
-        + ARIANE6_C(0.685) * t51)) * (ARIANE6_C(2.0) * t52);
-    const ariane6_real_t t54 = t50 * (t50 * (t34 + t44 + t48 - t49) + t53);
-    const ariane6_real_t t55 = ARIANE6_C(0.36) * (t52 * (t51 - parameters[MY2]) + t50 * (parameters[MX2R]
-        + t47));
-    /* joint j1: drive */
-    const ariane6_real_t t57 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t56 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t58 = ARIANE6_C(1.0) / t57;
-    const ariane6_real_t t60 = t59 * (ARIANE6_C(4063.3400000000006) * t58);
-    const ariane6_real_t t61 = parameters[ZZ1R] + (t49 + t54 + t55) + parameters[IA1] * (t60 * t60);
-    out[0] = t61;
-    const ariane6_real_t t62 = t19 * t13 + t14 * t18; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t63 = parameters[XZ3] + (t29 + t14 * t30 + ARIANE6_C(-0.17) * t62);
-    /* link j4: column of the mass matrix */
-    const ariane6_real_t t64 = t19 * t38 - t14 * t36 + ARIANE6_C(0.488) * t62;
-    const ariane6_real_t t65 = parameters[YZ3] + t64; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t66 = t35 * t63 - t42 * t65; /* link j3: column of the mass matrix */
-    const ariane6_real_t t67 = t42 * t63 + t35 * t65;
-    /* link j2: column of the mass matrix */
-    const ariane6_real_t t68 = t52 * (parameters[XZ2R] + (t66 + ARIANE6_C(0.685) * t62))
-        + t50 * (parameters[YZ2] + t67);
-    out[1] = t68;
-    const ariane6_real_t t69 = t52 * t66 + t50 * t67; /* link j3: column of the mass matrix */
-    out[2] = t69;
-    const ariane6_real_t t70 = t39 + t40; /* link j4: column of the mass matrix */
-    const ariane6_real_t t71 = t11 + ARIANE6_C(0.17) * t20;
-    const ariane6_real_t t72 = t50 * (t42 * t70 + t35 * t71 + ARIANE6_C(-0.685) * t20);
-    const ariane6_real_t t73 = t52 * (t35 * t70 - t42 * t71) + t72 + ARIANE6_C(-0.18) * t20;
-    out[3] = t73;
-    const ariane6_real_t t74 = t14 * t32; /* link j5: column of the mass matrix */
-    const ariane6_real_t t75 = t19 * t28 + t14 * t24 + ARIANE6_C(-0.488) * t74;
-    const ariane6_real_t t76 = t37 + ARIANE6_C(-0.17) * t74;
-    const ariane6_real_t t77 = t50 * (t42 * t75 + t35 * t76 + ARIANE6_C(0.685) * t74);
-    const ariane6_real_t t78 = t52 * (t35 * t75 - t42 * t76) + t77 + ARIANE6_C(0.18) * t74;
-    out[4] = t78;
-    const ariane6_real_t t79 = t5 * t6 - t8 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const ariane6_real_t t80 = t5 * t12;
-    const ariane6_real_t t81 = t14 * t80 + t19 * t15;
-    const ariane6_real_t t82 = t19 * t79 - t14 * t26 + ARIANE6_C(0.488) * t81;
-    const ariane6_real_t t83 = t8 * t6 + t5 * parameters[ZZ6];
-    const ariane6_real_t t84 = t83 + ARIANE6_C(0.17) * t81;
-    const ariane6_real_t t85 = t50 * (t42 * t82 + t35 * t84 + ARIANE6_C(-0.685) * t81);
-    const ariane6_real_t t86 = t52 * (t35 * t82 - t42 * t84) + t85 + ARIANE6_C(-0.18) * t81;
-    out[5] = t86;
-    out[6] = t68;
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t87 = parameters[ZZ3R] + (t23 + t31 + (t21 + t33));
-    /* joint j2: drive */
-    const ariane6_real_t t88 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t50
-        + ARIANE6_C(0.6427876096865393) * t52) + ARIANE6_C(0.420682));
-    const ariane6_real_t t89 = ARIANE6_C(1.0) / t88;
-    const ariane6_real_t t90 = (ARIANE6_C(0.766044443118978) * t52
-        + ARIANE6_C(0.6427876096865393) * t50) * (ARIANE6_C(12691.800000000003) * t89);
-    out[7] = parameters[ZZ2R] + (t87 + t48) + parameters[IA2] * (t90 * t90);
-    const ariane6_real_t t91 = t87 + ARIANE6_C(0.685) * t47; /* link j3: column of the mass matrix */
-    out[8] = t91;
-    const ariane6_real_t t92 = t64 + ARIANE6_C(-0.685) * (t42 * t62); /* link j4: column of the mass matrix */
-    out[9] = t92;
-    const ariane6_real_t t93 = t19 * t32; /* link j5: column of the mass matrix */
-    const ariane6_real_t t94 = t19 * t24 - t14 * t28 + (ARIANE6_C(0.17) * t17 + ARIANE6_C(-0.488) * t93);
-    const ariane6_real_t t95 = t94 + ARIANE6_C(0.685) * (t42 * t93 - t35 * t17);
-    out[10] = t95;
-    const ariane6_real_t t96 = t19 * t80 - t14 * t15; /* link j6: column of the mass matrix */
-    const ariane6_real_t t97 = t8 * t12;
-    const ariane6_real_t t98 = ARIANE6_C(0.17) * t97 + ARIANE6_C(0.488) * t96 - (t14 * t79 + t19 * t26);
-    const ariane6_real_t t99 = t98 + ARIANE6_C(-0.685) * (t42 * t96 + t35 * t97);
-    out[11] = t99;
-    out[12] = t69;
-    out[13] = t91;
-    /* joint j3: drive */
-    const ariane6_real_t t100 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t35
-        + ARIANE6_C(-0.9986295347545738) * t42) + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t101 = ARIANE6_C(1.0) / t100;
-    const ariane6_real_t t102 = (ARIANE6_C(0.052335956242943966) * t42
-        + ARIANE6_C(-0.9986295347545738) * t35) * (ARIANE6_C(8377.600000000002) * t101);
-    out[14] = t87 + parameters[IA3] * (t102 * t102);
-    out[15] = t64;
-    out[16] = t94;
-    out[17] = t98;
-    out[18] = t73;
-    out[19] = t92;
-    out[20] = t64;
-    out[21] = t11 + ARIANE6_C(1.0e4) * parameters[IA4];
-    out[22] = t37;
-    out[23] = t83;
-    out[24] = t78;
-    out[25] = t95;
-    out[26] = t94;
-    out[27] = t37;
-    /* joint j5: drive */
-    const ariane6_real_t t103 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t8 + ARIANE6_C(0.097));
-    const ariane6_real_t t104 = ARIANE6_C(1.0) / t103;
-    const ariane6_real_t t105 = t5 * (ARIANE6_C(3549.6000000000004) * t104);
-    out[28] = t24 + parameters[IA5] * (t105 * t105);
-    out[29] = -t26;
-    out[30] = t86;
-    out[31] = t99;
-    out[32] = t98;
-    out[33] = t83;
-    out[34] = -t26;
+    ariane6_real_t t100, t103;
+    ARIANE6_SINCOS(q[0], &t100, &t103);
+    ariane6_real_t t22, t23;
+    ARIANE6_SINCOS(q[1], &t22, &t23);
+    ariane6_real_t t16, t17;
+    ARIANE6_SINCOS(q[2], &t16, &t17);
+    ariane6_real_t t8, t9;
+    ARIANE6_SINCOS(q[3], &t8, &t9);
+    ariane6_real_t t4, t5;
+    ARIANE6_SINCOS(q[4], &t4, &t5);
+    ariane6_real_t t0, t1;
+    ARIANE6_SINCOS(q[5], &t0, &t1);
     out[35] = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
+    /* link j6: column of the mass matrix */
+    const ariane6_real_t t2 = t0 * parameters[XZ6R] + t1 * parameters[YZ6R];
+    out[29] = -t2;
+    const ariane6_real_t t3 = t1 * parameters[XZ6R] - t0 * parameters[YZ6R];
+    const ariane6_real_t t6 = t4 * t3 + t5 * parameters[ZZ6];
+    out[23] = t6;
+    const ariane6_real_t t7 = t5 * t3 - t4 * parameters[ZZ6];
+    const ariane6_real_t t10 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const ariane6_real_t t11 = t5 * t10;
+    const ariane6_real_t t12 = t0 * parameters[MY6] - t1 * parameters[MX6];
+    const ariane6_real_t t13 = t9 * t11 - t8 * t12;
+    const ariane6_real_t t14 = t4 * t10;
+    const ariane6_real_t t15 = ARIANE6_C(0.17) * t14 + ARIANE6_C(0.488) * t13 - (t8 * t7 + t9 * t2);
+    out[17] = t15;
+    const ariane6_real_t t18 = t15 + ARIANE6_C(-0.685) * (t16 * t13 + t17 * t14);
+    out[11] = t18;
+    const ariane6_real_t t19 = t8 * t11 + t9 * t12;
+    const ariane6_real_t t20 = t9 * t7 - t8 * t2 + ARIANE6_C(0.488) * t19;
+    const ariane6_real_t t21 = t6 + ARIANE6_C(0.17) * t19;
+    const ariane6_real_t t24 = t23 * (t16 * t20 + t17 * t21 + ARIANE6_C(-0.685) * t19);
+    const ariane6_real_t t25 = t22 * (t17 * t20 - t16 * t21) + t24 + ARIANE6_C(-0.18) * t19;
+    out[5] = t25;
+    out[34] = -t2;
+    out[33] = t6;
+    out[32] = t15;
+    out[31] = t18;
+    out[30] = t25;
+    /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t26 = parameters[XY6] * (ARIANE6_C(2.0) * t0) - t1 * parameters[XX6R];
+    const ariane6_real_t t27 = t1 * t26;
+    const ariane6_real_t t28 = parameters[ZZ5R] + (parameters[XX6R] + t27);
+    /* joint j5: drive */
+    const ariane6_real_t t29 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t4 + ARIANE6_C(0.097));
+    const ariane6_real_t t30 = ARIANE6_C(1.0) / t29;
+    const ariane6_real_t t31 = t5 * (ARIANE6_C(3549.6000000000004) * t30);
+    out[28] = t28 + parameters[IA5] * (t31 * t31);
+    /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t32 = parameters[XZ5] + (t0 * t26 - parameters[XY6]);
+    const ariane6_real_t t33 = parameters[YZ5] - t2;
+    const ariane6_real_t t34 = t4 * t32 + t5 * t33; /* link j5: column of the mass matrix */
+    out[22] = t34;
+    const ariane6_real_t t35 = t5 * t32 - t4 * t33;
+    const ariane6_real_t t36 = t12 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t37 = t4 * parameters[MY5R] + t5 * t36; /* link j5: column of the mass matrix */
+    const ariane6_real_t t38 = t4 * t36 - t5 * parameters[MY5R];
+    const ariane6_real_t t39 = t9 * t38;
+    const ariane6_real_t t40 = t9 * t28 - t8 * t35 + (ARIANE6_C(0.17) * t37 + ARIANE6_C(-0.488) * t39);
+    out[16] = t40;
+    const ariane6_real_t t41 = t40 + ARIANE6_C(0.685) * (t16 * t39 - t17 * t37);
+    out[10] = t41;
+    const ariane6_real_t t42 = t8 * t38;
+    const ariane6_real_t t43 = t9 * t35 + t8 * t28 + ARIANE6_C(-0.488) * t42;
+    const ariane6_real_t t44 = t34 + ARIANE6_C(-0.17) * t42;
+    const ariane6_real_t t45 = t23 * (t16 * t43 + t17 * t44 + ARIANE6_C(0.685) * t42);
+    const ariane6_real_t t46 = t22 * (t17 * t43 - t16 * t44) + t45 + ARIANE6_C(0.18) * t42;
+    out[4] = t46;
+    out[27] = t34;
+    out[26] = t40;
+    out[25] = t41;
+    out[24] = t46;
+    const ariane6_real_t t47 = parameters[XX5R] - t27; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t48 = parameters[XY5] + t3;
+    /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t49 = t5 * (parameters[ZZ6] - t47) + t48 * (ARIANE6_C(2.0) * t4);
+    const ariane6_real_t t50 = t5 * t49;
+    const ariane6_real_t t51 = parameters[ZZ4R] + (t47 + t50);
+    out[21] = t51 + ARIANE6_C(1.0e4) * parameters[IA4];
+    const ariane6_real_t t52 = parameters[XZ4] + (t48 - t4 * t49);
+    const ariane6_real_t t53 = t34 - parameters[YZ4];
+    const ariane6_real_t t54 = parameters[MY4R] + t10;
+    const ariane6_real_t t55 = parameters[MX4] - t37;
+    const ariane6_real_t t56 = t9 * t54 + t8 * t55; /* link j4: column of the mass matrix */
+    const ariane6_real_t t57 = t9 * t53 - t8 * t52 + ARIANE6_C(0.488) * t56;
+    out[15] = t57;
+    const ariane6_real_t t58 = t57 + ARIANE6_C(-0.685) * (t16 * t56);
+    out[9] = t58;
+    const ariane6_real_t t59 = t9 * t52 + t8 * t53;
+    const ariane6_real_t t60 = t8 * t54 - t9 * t55;
+    const ariane6_real_t t61 = ARIANE6_C(0.488) * t60;
+    const ariane6_real_t t62 = t59 + t61;
+    const ariane6_real_t t63 = t51 + ARIANE6_C(0.17) * t60;
+    const ariane6_real_t t64 = t23 * (t16 * t62 + t17 * t63 + ARIANE6_C(-0.685) * t60);
+    const ariane6_real_t t65 = t22 * (t17 * t62 - t16 * t63) + t64 + ARIANE6_C(-0.18) * t60;
+    out[3] = t65;
+    out[20] = t57;
+    out[19] = t58;
+    out[18] = t65;
+    /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t66 = parameters[XX4R] + (parameters[ZZ6] - t50);
+    const ariane6_real_t t67 = t35 - parameters[XY4];
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t68 = t9 * (t28 - t66) - t67 * (ARIANE6_C(2.0) * t8);
+    const ariane6_real_t t69 = t9 * t68;
+    const ariane6_real_t t70 = ARIANE6_C(0.34) * t60;
+    const ariane6_real_t t71 = ARIANE6_C(-0.976) * t38;
+    const ariane6_real_t t72 = parameters[ZZ3R] + (t66 + t69 + (t70 + t71));
+    /* joint j3: drive */
+    const ariane6_real_t t73 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t17
+        + ARIANE6_C(-0.9986295347545738) * t16) + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t74 = ARIANE6_C(1.0) / t73;
+    const ariane6_real_t t75 = (ARIANE6_C(0.052335956242943966) * t16
+        + ARIANE6_C(-0.9986295347545738) * t17) * (ARIANE6_C(8377.600000000002) * t74);
+    out[14] = t72 + parameters[IA3] * (t75 * t75);
+    const ariane6_real_t t76 = parameters[MX3R] - t60; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t77 = t38 - parameters[MY3R];
+    const ariane6_real_t t78 = t16 * t77 + t17 * t76; /* link j3: column of the mass matrix */
+    const ariane6_real_t t79 = t72 + ARIANE6_C(0.685) * t78;
+    out[8] = t79;
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t80 = parameters[XZ3] + (t67 + t8 * t68 + ARIANE6_C(-0.17) * t56);
+    const ariane6_real_t t81 = parameters[YZ3] + t57;
+    const ariane6_real_t t82 = t17 * t80 - t16 * t81; /* link j3: column of the mass matrix */
+    const ariane6_real_t t83 = t16 * t80 + t17 * t81;
+    const ariane6_real_t t84 = t22 * t82 + t23 * t83;
+    out[2] = t84;
+    out[13] = t79;
+    out[12] = t84;
+    const ariane6_real_t t85 = ARIANE6_C(1.37) * t78; /* link j3: inertia of it and all beyond */
+    /* joint j2: drive */
+    const ariane6_real_t t86 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t23
+        + ARIANE6_C(0.6427876096865393) * t22) + ARIANE6_C(0.420682));
+    const ariane6_real_t t87 = ARIANE6_C(1.0) / t86;
+    const ariane6_real_t t88 = (ARIANE6_C(0.766044443118978) * t22
+        + ARIANE6_C(0.6427876096865393) * t23) * (ARIANE6_C(12691.800000000003) * t87);
+    out[7] = parameters[ZZ2R] + (t72 + t85) + parameters[IA2] * (t88 * t88);
+    /* link j2: column of the mass matrix */
+    const ariane6_real_t t89 = t22 * (parameters[XZ2R] + (t82 + ARIANE6_C(0.685) * t56))
+        + t23 * (parameters[YZ2] + t83);
+    out[1] = t89;
+    out[6] = t89;
+    const ariane6_real_t t90 = t51 + t70; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t91 = parameters[XX3R] + (t28 - t69 + t71);
+    const ariane6_real_t t92 = parameters[XY3R] + (t59 + (t61 + ARIANE6_C(-0.17) * t38));
+    /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t93 = t17 * (t90 - t91) + t92 * (ARIANE6_C(2.0) * t16);
+    const ariane6_real_t t94 = t17 * t93;
+    const ariane6_real_t t95 = parameters[XX2R] + (t90 - t94);
+    const ariane6_real_t t96 = t17 * t77 - t16 * t76; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
+    const ariane6_real_t t97 = (parameters[XY2] + (t92 - t16 * t93
+        + ARIANE6_C(0.685) * t96)) * (ARIANE6_C(2.0) * t22);
+    const ariane6_real_t t98 = t23 * (t23 * (t91 + t94 + t85 - t95) + t97);
+    const ariane6_real_t t99 = ARIANE6_C(0.36) * (t22 * (t96 - parameters[MY2]) + t23 * (parameters[MX2R]
+        + t78));
+    /* joint j1: drive */
+    const ariane6_real_t t101 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t100 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t102 = ARIANE6_C(1.0) / t101;
+    const ariane6_real_t t104 = t103 * (ARIANE6_C(4063.3400000000006) * t102);
+    const ariane6_real_t t105 = parameters[ZZ1R] + (t95 + t98 + t99) + parameters[IA1] * (t104 * t104);
+    out[0] = t105;
     return ARIANE6_STATUS_OK;
 }

@@ -104,7 +104,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x13CD28B3UL
+#if ARIANE6_GENERATION != 0xB9B44F76UL
 #error "ariane6.h and ariane6_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -134,186 +134,183 @@ ariane6_status_t ariane6_mass_matrix_standard(
         return status;
     }
 
-    ariane6_real_t t68, t71;
-    ARIANE6_SINCOS(q[0], &t68, &t71);
-    ariane6_real_t t63, t61;
-    ARIANE6_SINCOS(q[1], &t63, &t61);
-    ariane6_real_t t51, t44;
-    ARIANE6_SINCOS(q[2], &t51, &t44);
-    ariane6_real_t t25, t18;
-    ARIANE6_SINCOS(q[3], &t25, &t18);
-    ariane6_real_t t12, t8;
-    ARIANE6_SINCOS(q[4], &t12, &t8);
-    ariane6_real_t t1, t0;
-    ARIANE6_SINCOS(q[5], &t1, &t0);
-    /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t2 = t0 * (parameters[YY6] - parameters[XX6])
-        + parameters[XY6] * (ARIANE6_C(2.0) * t1);
-    const ariane6_real_t t3 = t0 * t2;
-    const ariane6_real_t t4 = ARIANE6_C(0.3) * parameters[M6];
-    const ariane6_real_t t5 = ARIANE6_C(0.3) * (t4 + ARIANE6_C(2.0) * parameters[MZ6]);
-    const ariane6_real_t t6 = parameters[XX5] + (parameters[YY6] - t3 + t5);
-    const ariane6_real_t t7 = parameters[YY5] + parameters[ZZ6];
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t9 = t1 * parameters[MY6] - t0 * parameters[MX6];
-    const ariane6_real_t t10 = t0 * parameters[XZ6] - t1 * parameters[YZ6] + ARIANE6_C(0.3) * t9;
-    const ariane6_real_t t11 = parameters[XY5] + t10; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t13 = t8 * (t7 - t6) + t11 * (ARIANE6_C(2.0) * t12);
-    const ariane6_real_t t14 = t8 * t13;
-    const ariane6_real_t t15 = parameters[XX4] + (t7 - t14);
-    /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t16 = parameters[ZZ5] + (parameters[XX6] + t3 + t5);
-    const ariane6_real_t t17 = parameters[YY4] + t16; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const ariane6_real_t t19 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const ariane6_real_t t20 = ARIANE6_C(0.3) * t19 - (t1 * parameters[XZ6] + t0 * parameters[YZ6]);
-    const ariane6_real_t t21 = parameters[YZ5] + t20; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t22 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
-    const ariane6_real_t t23 = t8 * t22 - t12 * t21; /* link j5: column of the mass matrix */
-    const ariane6_real_t t24 = t23 - parameters[XY4]; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t26 = t18 * (t17 - t15) - t24 * (ARIANE6_C(2.0) * t25);
-    const ariane6_real_t t27 = t18 * t26;
-    const ariane6_real_t t28 = t9 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const ariane6_real_t t29 = parameters[MY5] + (parameters[MZ6] + t4);
-    const ariane6_real_t t30 = t12 * t28 - t8 * t29; /* link j5: column of the mass matrix */
-    const ariane6_real_t t31 = parameters[MZ4] - t30; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t32 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const ariane6_real_t t33 = ARIANE6_C(0.488) * t32; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t34 = ARIANE6_C(0.488) * (t33 + ARIANE6_C(2.0) * t31);
-    const ariane6_real_t t35 = parameters[XX3] + (t17 - t27 + t34);
-    const ariane6_real_t t36 = parameters[ZZ4] + (t6 + t14); /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t37 = parameters[MY4] + (t19 - parameters[MZ5]);
-    const ariane6_real_t t38 = t12 * t29 + t8 * t28; /* link j5: column of the mass matrix */
-    const ariane6_real_t t39 = parameters[MX4] - t38; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t40 = t25 * t37 - t18 * t39; /* link j4: column of the mass matrix */
-    const ariane6_real_t t41 = ARIANE6_C(0.17) * t32; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t42 = ARIANE6_C(0.17) * (t41 + ARIANE6_C(2.0) * t40);
-    const ariane6_real_t t43 = parameters[YY3] + (t36 + t42);
-    /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t45 = parameters[XZ4] + (t11 - t12 * t13);
-    const ariane6_real_t t46 = t12 * t22 + t8 * t21; /* link j5: column of the mass matrix */
-    const ariane6_real_t t47 = t46 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const ariane6_real_t t48 = t18 * t45 + t25 * t47; /* link j4: column of the mass matrix */
-    const ariane6_real_t t49 = t40 + t41; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t50 = parameters[XY3] + (t48 + (ARIANE6_C(0.17) * t31 + ARIANE6_C(0.488) * t49));
-    /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t52 = t44 * (t35 - t43) - t50 * (ARIANE6_C(2.0) * t51);
-    const ariane6_real_t t53 = t44 * t52;
-    const ariane6_real_t t54 = parameters[XX2] + (t43 + t53);
-    const ariane6_real_t t55 = parameters[MX3] - t49; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t56 = parameters[MY3] + (t31 + t33);
-    const ariane6_real_t t57 = t44 * t55 - t51 * t56; /* link j3: column of the mass matrix */
-    const ariane6_real_t t58 = parameters[M3] + t32; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t59 = ARIANE6_C(0.685) * t58; /* link j3: inertia of it and all beyond */
-    const ariane6_real_t t60 = ARIANE6_C(0.685) * (t59 + ARIANE6_C(2.0) * t57);
-    const ariane6_real_t t62 = t44 * t56 + t51 * t55; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t64 = (parameters[XY2] + (t50 + t51 * t52
-        + ARIANE6_C(-0.685) * t62)) * (ARIANE6_C(2.0) * t63);
-    const ariane6_real_t t65 = t61 * (parameters[YY2] + (t35 - t53 + t60) - t54) + t64;
-    /* link j2: column of the mass matrix */
-    const ariane6_real_t t66 = t61 * (parameters[MX2] + (t57 + t59)) - t63 * (parameters[MY2] + t62);
-    /* link j2: inertia of it and all beyond */
-    const ariane6_real_t t67 = t54 + t61 * t65 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2] + t58)
-        + ARIANE6_C(2.0) * t66);
-    /* joint j1: drive */
-    const ariane6_real_t t69 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t68 + ARIANE6_C(0.10828541));
-    const ariane6_real_t t70 = ARIANE6_C(1.0) / t69;
-    const ariane6_real_t t72 = t71 * (ARIANE6_C(4063.3400000000006) * t70);
-    out[0] = parameters[ZZ1] + t67 + t72 * t72 * parameters[IA1];
-    const ariane6_real_t t73 = t18 * t37 + t25 * t39; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t74 = parameters[XZ3] + (t24 + t25 * t26 + ARIANE6_C(-0.17) * t73);
-    /* link j4: column of the mass matrix */
-    const ariane6_real_t t75 = t18 * t47 - t25 * t45 + ARIANE6_C(0.488) * t73;
-    const ariane6_real_t t76 = parameters[YZ3] + t75; /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t77 = t44 * t74 - t51 * t76; /* link j3: column of the mass matrix */
-    const ariane6_real_t t78 = t51 * t74 + t44 * t76;
-    /* link j2: column of the mass matrix */
-    const ariane6_real_t t79 = t63 * (parameters[XZ2] + (t77 + ARIANE6_C(0.685) * (t73 - parameters[MZ3])))
-        + t61 * (parameters[YZ2] + t78);
-    out[1] = t79;
-    const ariane6_real_t t80 = t63 * t77 + t61 * t78; /* link j3: column of the mass matrix */
-    out[2] = t80;
-    const ariane6_real_t t81 = t48 + ARIANE6_C(0.488) * t40; /* link j4: column of the mass matrix */
-    const ariane6_real_t t82 = t36 + ARIANE6_C(0.17) * t40;
-    const ariane6_real_t t83 = t61 * (t51 * t81 + t44 * t82 + ARIANE6_C(-0.685) * t40);
-    const ariane6_real_t t84 = t63 * (t44 * t81 - t51 * t82) + t83 + ARIANE6_C(-0.18) * t40;
-    out[3] = t84;
-    const ariane6_real_t t85 = t25 * t30; /* link j5: column of the mass matrix */
-    const ariane6_real_t t86 = t18 * t23 + t25 * t16 + ARIANE6_C(-0.488) * t85;
-    const ariane6_real_t t87 = t46 + ARIANE6_C(-0.17) * t85;
-    const ariane6_real_t t88 = t61 * (t51 * t86 + t44 * t87 + ARIANE6_C(0.685) * t85);
-    const ariane6_real_t t89 = t63 * (t44 * t86 - t51 * t87) + t88 + ARIANE6_C(0.18) * t85;
-    out[4] = t89;
-    const ariane6_real_t t90 = t8 * t10 - t12 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const ariane6_real_t t91 = t8 * t19;
-    const ariane6_real_t t92 = t25 * t91 + t18 * t9;
-    const ariane6_real_t t93 = t18 * t90 + t25 * t20 + ARIANE6_C(0.488) * t92;
-    const ariane6_real_t t94 = t12 * t10 + t8 * parameters[ZZ6];
-    const ariane6_real_t t95 = t94 + ARIANE6_C(0.17) * t92;
-    const ariane6_real_t t96 = t61 * (t51 * t93 + t44 * t95 + ARIANE6_C(-0.685) * t92);
-    const ariane6_real_t t97 = t63 * (t44 * t93 - t51 * t95) + t96 + ARIANE6_C(-0.18) * t92;
-    out[5] = t97;
-    out[6] = t79;
-    /* link j4: inertia of it and all beyond */
-    const ariane6_real_t t98 = parameters[ZZ3] + (t15 + t27 + (t42 + t34));
-    /* joint j2: drive */
-    const ariane6_real_t t99 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t61
-        + ARIANE6_C(0.6427876096865393) * t63) + ARIANE6_C(0.420682));
-    const ariane6_real_t t100 = ARIANE6_C(1.0) / t99;
-    const ariane6_real_t t101 = (ARIANE6_C(0.766044443118978) * t63
-        + ARIANE6_C(0.6427876096865393) * t61) * (ARIANE6_C(12691.800000000003) * t100);
-    out[7] = parameters[ZZ2] + (t98 + t60) + t101 * t101 * parameters[IA2];
-    const ariane6_real_t t102 = t98 + ARIANE6_C(0.685) * t57; /* link j3: column of the mass matrix */
-    out[8] = t102;
-    /* link j4: column of the mass matrix */
-    const ariane6_real_t t103 = t75 + ARIANE6_C(-0.685) * (t51 * t73);
-    out[9] = t103;
-    const ariane6_real_t t104 = t18 * t30; /* link j5: column of the mass matrix */
-    const ariane6_real_t t105 = t18 * t16 - t25 * t23 + (ARIANE6_C(0.17) * t38 + ARIANE6_C(-0.488) * t104);
-    const ariane6_real_t t106 = t105 + ARIANE6_C(0.685) * (t51 * t104 - t44 * t38);
-    out[10] = t106;
-    const ariane6_real_t t107 = t18 * t91 - t25 * t9; /* link j6: column of the mass matrix */
-    const ariane6_real_t t108 = t12 * t19;
-    const ariane6_real_t t109 = t18 * t20 - t25 * t90 + (ARIANE6_C(0.17) * t108 + ARIANE6_C(0.488) * t107);
-    const ariane6_real_t t110 = t109 + ARIANE6_C(-0.685) * (t51 * t107 + t44 * t108);
-    out[11] = t110;
-    out[12] = t80;
-    out[13] = t102;
-    /* joint j3: drive */
-    const ariane6_real_t t111 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t44
-        + ARIANE6_C(-0.9986295347545738) * t51) + ARIANE6_C(0.38408000000000003));
-    const ariane6_real_t t112 = ARIANE6_C(1.0) / t111;
-    const ariane6_real_t t113 = (ARIANE6_C(0.052335956242943966) * t51
-        + ARIANE6_C(-0.9986295347545738) * t44) * (ARIANE6_C(8377.600000000002) * t112);
-    out[14] = t98 + t113 * t113 * parameters[IA3];
-    out[15] = t75;
-    out[16] = t105;
-    out[17] = t109;
-    out[18] = t84;
-    out[19] = t103;
-    out[20] = t75;
-    out[21] = t36 + ARIANE6_C(1.0e4) * parameters[IA4];
-    out[22] = t46;
-    out[23] = t94;
-    out[24] = t89;
-    out[25] = t106;
-    out[26] = t105;
-    out[27] = t46;
-    /* joint j5: drive */
-    const ariane6_real_t t114 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t12 + ARIANE6_C(0.097));
-    const ariane6_real_t t115 = ARIANE6_C(1.0) / t114;
-    const ariane6_real_t t116 = t8 * (ARIANE6_C(3549.6000000000004) * t115);
-    out[28] = t16 + t116 * t116 * parameters[IA5];
-    out[29] = t20;
-    out[30] = t97;
-    out[31] = t110;
-    out[32] = t109;
-    out[33] = t94;
-    out[34] = t20;
+    ariane6_real_t t112, t115;
+    ARIANE6_SINCOS(q[0], &t112, &t115);
+    ariane6_real_t t22, t23;
+    ARIANE6_SINCOS(q[1], &t22, &t23);
+    ariane6_real_t t16, t17;
+    ARIANE6_SINCOS(q[2], &t16, &t17);
+    ariane6_real_t t10, t11;
+    ARIANE6_SINCOS(q[3], &t10, &t11);
+    ariane6_real_t t6, t7;
+    ARIANE6_SINCOS(q[4], &t6, &t7);
+    ariane6_real_t t0, t1;
+    ARIANE6_SINCOS(q[5], &t0, &t1);
     out[35] = parameters[ZZ6] + ARIANE6_C(1.0e4) * parameters[IA6];
+    /* link j6: column of the mass matrix */
+    const ariane6_real_t t2 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const ariane6_real_t t3 = ARIANE6_C(0.3) * t2 - (t0 * parameters[XZ6] + t1 * parameters[YZ6]);
+    out[29] = t3;
+    const ariane6_real_t t4 = t0 * parameters[MY6] - t1 * parameters[MX6];
+    const ariane6_real_t t5 = t1 * parameters[XZ6] - t0 * parameters[YZ6] + ARIANE6_C(0.3) * t4;
+    const ariane6_real_t t8 = t6 * t5 + t7 * parameters[ZZ6];
+    out[23] = t8;
+    const ariane6_real_t t9 = t7 * t5 - t6 * parameters[ZZ6];
+    const ariane6_real_t t12 = t7 * t2;
+    const ariane6_real_t t13 = t11 * t12 - t10 * t4;
+    const ariane6_real_t t14 = t6 * t2;
+    const ariane6_real_t t15 = t11 * t3 - t10 * t9 + (ARIANE6_C(0.17) * t14 + ARIANE6_C(0.488) * t13);
+    out[17] = t15;
+    const ariane6_real_t t18 = t15 + ARIANE6_C(-0.685) * (t16 * t13 + t17 * t14);
+    out[11] = t18;
+    const ariane6_real_t t19 = t10 * t12 + t11 * t4;
+    const ariane6_real_t t20 = t11 * t9 + t10 * t3 + ARIANE6_C(0.488) * t19;
+    const ariane6_real_t t21 = t8 + ARIANE6_C(0.17) * t19;
+    const ariane6_real_t t24 = t23 * (t16 * t20 + t17 * t21 + ARIANE6_C(-0.685) * t19);
+    const ariane6_real_t t25 = t22 * (t17 * t20 - t16 * t21) + t24 + ARIANE6_C(-0.18) * t19;
+    out[5] = t25;
+    out[34] = t3;
+    out[33] = t8;
+    out[32] = t15;
+    out[31] = t18;
+    out[30] = t25;
+    /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t26 = t1 * (parameters[YY6] - parameters[XX6])
+        + parameters[XY6] * (ARIANE6_C(2.0) * t0);
+    const ariane6_real_t t27 = t1 * t26;
+    const ariane6_real_t t28 = ARIANE6_C(0.3) * parameters[M6];
+    const ariane6_real_t t29 = ARIANE6_C(0.3) * (t28 + ARIANE6_C(2.0) * parameters[MZ6]);
+    const ariane6_real_t t30 = parameters[ZZ5] + (parameters[XX6] + t27 + t29);
+    /* joint j5: drive */
+    const ariane6_real_t t31 = ARIANE6_SQRT(ARIANE6_C(0.035496) * t6 + ARIANE6_C(0.097));
+    const ariane6_real_t t32 = ARIANE6_C(1.0) / t31;
+    const ariane6_real_t t33 = t7 * (ARIANE6_C(3549.6000000000004) * t32);
+    out[28] = t30 + t33 * t33 * parameters[IA5];
+    const ariane6_real_t t34 = parameters[YZ5] + t3; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t35 = parameters[XZ5] + (t0 * t26 - parameters[XY6]);
+    const ariane6_real_t t36 = t6 * t35 + t7 * t34; /* link j5: column of the mass matrix */
+    out[22] = t36;
+    const ariane6_real_t t37 = t7 * t35 - t6 * t34;
+    const ariane6_real_t t38 = t4 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t39 = parameters[MY5] + (parameters[MZ6] + t28);
+    const ariane6_real_t t40 = t6 * t39 + t7 * t38; /* link j5: column of the mass matrix */
+    const ariane6_real_t t41 = t6 * t38 - t7 * t39;
+    const ariane6_real_t t42 = t11 * t41;
+    const ariane6_real_t t43 = t11 * t30 - t10 * t37 + (ARIANE6_C(0.17) * t40 + ARIANE6_C(-0.488) * t42);
+    out[16] = t43;
+    const ariane6_real_t t44 = t43 + ARIANE6_C(0.685) * (t16 * t42 - t17 * t40);
+    out[10] = t44;
+    const ariane6_real_t t45 = t10 * t41;
+    const ariane6_real_t t46 = t11 * t37 + t10 * t30 + ARIANE6_C(-0.488) * t45;
+    const ariane6_real_t t47 = t36 + ARIANE6_C(-0.17) * t45;
+    const ariane6_real_t t48 = t23 * (t16 * t46 + t17 * t47 + ARIANE6_C(0.685) * t45);
+    const ariane6_real_t t49 = t22 * (t17 * t46 - t16 * t47) + t48 + ARIANE6_C(0.18) * t45;
+    out[4] = t49;
+    out[27] = t36;
+    out[26] = t43;
+    out[25] = t44;
+    out[24] = t49;
+    /* link j6: inertia of it and all beyond */
+    const ariane6_real_t t50 = parameters[XX5] + (parameters[YY6] - t27 + t29);
+    const ariane6_real_t t51 = parameters[YY5] + parameters[ZZ6];
+    const ariane6_real_t t52 = parameters[XY5] + t5;
+    /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t53 = t7 * (t51 - t50) + t52 * (ARIANE6_C(2.0) * t6);
+    const ariane6_real_t t54 = t7 * t53;
+    const ariane6_real_t t55 = parameters[ZZ4] + (t50 + t54);
+    out[21] = t55 + ARIANE6_C(1.0e4) * parameters[IA4];
+    const ariane6_real_t t56 = parameters[XZ4] + (t52 - t6 * t53);
+    const ariane6_real_t t57 = t36 - parameters[YZ4];
+    const ariane6_real_t t58 = parameters[MY4] + (t2 - parameters[MZ5]);
+    const ariane6_real_t t59 = parameters[MX4] - t40;
+    const ariane6_real_t t60 = t11 * t58 + t10 * t59; /* link j4: column of the mass matrix */
+    const ariane6_real_t t61 = t11 * t57 - t10 * t56 + ARIANE6_C(0.488) * t60;
+    out[15] = t61;
+    const ariane6_real_t t62 = t61 + ARIANE6_C(-0.685) * (t16 * t60);
+    out[9] = t62;
+    const ariane6_real_t t63 = t11 * t56 + t10 * t57;
+    const ariane6_real_t t64 = t10 * t58 - t11 * t59;
+    const ariane6_real_t t65 = t63 + ARIANE6_C(0.488) * t64;
+    const ariane6_real_t t66 = t55 + ARIANE6_C(0.17) * t64;
+    const ariane6_real_t t67 = t23 * (t16 * t65 + t17 * t66 + ARIANE6_C(-0.685) * t64);
+    const ariane6_real_t t68 = t22 * (t17 * t65 - t16 * t66) + t67 + ARIANE6_C(-0.18) * t64;
+    out[3] = t68;
+    out[20] = t61;
+    out[19] = t62;
+    out[18] = t68;
+    const ariane6_real_t t69 = parameters[XX4] + (t51 - t54); /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t70 = parameters[YY4] + t30;
+    const ariane6_real_t t71 = t37 - parameters[XY4];
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t72 = t11 * (t70 - t69) - t71 * (ARIANE6_C(2.0) * t10);
+    const ariane6_real_t t73 = t11 * t72;
+    /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t74 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const ariane6_real_t t75 = ARIANE6_C(0.17) * t74; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t76 = ARIANE6_C(0.17) * (t75 + ARIANE6_C(2.0) * t64);
+    const ariane6_real_t t77 = parameters[MZ4] - t41; /* link j5: inertia of it and all beyond */
+    const ariane6_real_t t78 = ARIANE6_C(0.488) * t74; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t79 = ARIANE6_C(0.488) * (t78 + ARIANE6_C(2.0) * t77);
+    const ariane6_real_t t80 = parameters[ZZ3] + (t69 + t73 + (t76 + t79));
+    /* joint j3: drive */
+    const ariane6_real_t t81 = ARIANE6_SQRT(ARIANE6_C(0.083776) * (ARIANE6_C(-0.052335956242943966) * t17
+        + ARIANE6_C(-0.9986295347545738) * t16) + ARIANE6_C(0.38408000000000003));
+    const ariane6_real_t t82 = ARIANE6_C(1.0) / t81;
+    const ariane6_real_t t83 = (ARIANE6_C(0.052335956242943966) * t16
+        + ARIANE6_C(-0.9986295347545738) * t17) * (ARIANE6_C(8377.600000000002) * t82);
+    out[14] = t80 + t83 * t83 * parameters[IA3];
+    const ariane6_real_t t84 = t64 + t75; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t85 = parameters[MX3] - t84;
+    const ariane6_real_t t86 = parameters[MY3] + (t77 + t78);
+    const ariane6_real_t t87 = t17 * t85 - t16 * t86; /* link j3: column of the mass matrix */
+    const ariane6_real_t t88 = t80 + ARIANE6_C(0.685) * t87;
+    out[8] = t88;
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t89 = parameters[XZ3] + (t71 + t10 * t72 + ARIANE6_C(-0.17) * t60);
+    const ariane6_real_t t90 = parameters[YZ3] + t61;
+    const ariane6_real_t t91 = t17 * t89 - t16 * t90; /* link j3: column of the mass matrix */
+    const ariane6_real_t t92 = t16 * t89 + t17 * t90;
+    const ariane6_real_t t93 = t22 * t91 + t23 * t92;
+    out[2] = t93;
+    out[13] = t88;
+    out[12] = t93;
+    const ariane6_real_t t94 = parameters[M3] + t74; /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t95 = ARIANE6_C(0.685) * t94; /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t96 = ARIANE6_C(0.685) * (t95 + ARIANE6_C(2.0) * t87);
+    /* joint j2: drive */
+    const ariane6_real_t t97 = ARIANE6_SQRT(ARIANE6_C(0.126918) * (ARIANE6_C(-0.766044443118978) * t23
+        + ARIANE6_C(0.6427876096865393) * t22) + ARIANE6_C(0.420682));
+    const ariane6_real_t t98 = ARIANE6_C(1.0) / t97;
+    const ariane6_real_t t99 = (ARIANE6_C(0.766044443118978) * t22
+        + ARIANE6_C(0.6427876096865393) * t23) * (ARIANE6_C(12691.800000000003) * t98);
+    out[7] = parameters[ZZ2] + (t80 + t96) + t99 * t99 * parameters[IA2];
+    /* link j2: column of the mass matrix */
+    const ariane6_real_t t100 = t22 * (parameters[XZ2] + (t91 + ARIANE6_C(0.685) * (t60 - parameters[MZ3])))
+        + t23 * (parameters[YZ2] + t92);
+    out[1] = t100;
+    out[6] = t100;
+    /* link j4: inertia of it and all beyond */
+    const ariane6_real_t t101 = parameters[XX3] + (t70 - t73 + t79);
+    const ariane6_real_t t102 = parameters[YY3] + (t55 + t76);
+    const ariane6_real_t t103 = parameters[XY3] + (t63 + (ARIANE6_C(0.17) * t77 + ARIANE6_C(0.488) * t84));
+    /* link j3: inertia of it and all beyond */
+    const ariane6_real_t t104 = t17 * (t101 - t102) - t103 * (ARIANE6_C(2.0) * t16);
+    const ariane6_real_t t105 = t17 * t104;
+    const ariane6_real_t t106 = parameters[XX2] + (t102 + t105);
+    const ariane6_real_t t107 = t17 * t86 + t16 * t85; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
+    const ariane6_real_t t108 = (parameters[XY2] + (t103 + t16 * t104
+        + ARIANE6_C(-0.685) * t107)) * (ARIANE6_C(2.0) * t22);
+    const ariane6_real_t t109 = t23 * (parameters[YY2] + (t101 - t105 + t96) - t106) + t108;
+    /* link j2: column of the mass matrix */
+    const ariane6_real_t t110 = t23 * (parameters[MX2] + (t87 + t95)) - t22 * (parameters[MY2] + t107);
+    /* link j2: inertia of it and all beyond */
+    const ariane6_real_t t111 = t106 + t23 * t109 + ARIANE6_C(0.18) * (ARIANE6_C(0.18) * (parameters[M2]
+        + t94) + ARIANE6_C(2.0) * t110);
+    /* joint j1: drive */
+    const ariane6_real_t t113 = ARIANE6_SQRT(ARIANE6_C(0.0406334) * t112 + ARIANE6_C(0.10828541));
+    const ariane6_real_t t114 = ARIANE6_C(1.0) / t113;
+    const ariane6_real_t t116 = t115 * (ARIANE6_C(4063.3400000000006) * t114);
+    out[0] = parameters[ZZ1] + t111 + t116 * t116 * parameters[IA1];
     return ARIANE6_STATUS_OK;
 }

@@ -35,7 +35,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
+#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
 #error "gravity_arm.h and gravity_arm_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -75,7 +75,7 @@ gravity_arm_status_t gravity_arm_forward_dynamics(
     const gravity_arm_real_t t5 = t3 * t4;
     /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t6 = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(-1.077068) * t2);
-    const gravity_arm_real_t t7 = gravity_arm_bounded(t6 - t3 * t5);
+    const gravity_arm_real_t t7 = t6 - t3 * t5;
     if (!(t7 > GRAVITY_ARM_C(1.0e-12))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
@@ -102,10 +102,10 @@ gravity_arm_status_t gravity_arm_forward_dynamics(
     const gravity_arm_real_t t20 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     const gravity_arm_real_t t21 = input[1] - (parameters[FV2] * dq[1] + parameters[FC2] * t20 - t14);
     const gravity_arm_real_t t22 = GRAVITY_ARM_C(1.0) / t7;
-    const gravity_arm_real_t t23 = gravity_arm_bounded((input[0] + t19 + t21 * t5) * t22);
+    const gravity_arm_real_t t23 = gravity_arm_held((input[0] + t19 + t21 * t5) * t22);
     out[0] = t23;
     out[1] = t21 * t4 + t5 * t23;
-    if (!gravity_arm_all_bounded(out, 2)) {
+    if (!gravity_arm_bounded(out, 2)) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }

@@ -39,7 +39,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
+#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -88,7 +88,7 @@ gravity_arm_status_t gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t t5 = t3 * t4;
     /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t6 = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(-1.077068) * t2);
-    const gravity_arm_real_t t7 = gravity_arm_bounded(t6 - t3 * t5);
+    const gravity_arm_real_t t7 = t6 - t3 * t5;
     if (!(t7 > GRAVITY_ARM_C(1.0e-12))) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
@@ -123,48 +123,49 @@ gravity_arm_status_t gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t t24 = input[1] - (parameters[FV2] * dq[1] + parameters[FC2] * t23 - t16);
     const gravity_arm_real_t t25 = input[0] + (t21 - (parameters[FV1] * dq[0] + parameters[FC1] * t22))
         + t24 * t5;
-    const gravity_arm_real_t t26 = gravity_arm_bounded(GRAVITY_ARM_C(1.0) / t7);
-    const gravity_arm_real_t t27 = gravity_arm_bounded(t25 * t26);
+    const gravity_arm_real_t t26 = gravity_arm_held(GRAVITY_ARM_C(1.0) / t7);
+    const gravity_arm_real_t t27 = gravity_arm_held(t25 * t26);
     ddq[0] = t27;
-    const gravity_arm_real_t t28 = gravity_arm_bounded(t24 * t4 + t5 * t27);
+    const gravity_arm_real_t t28 = gravity_arm_held(t24 * t4 + t5 * t27);
     ddq[1] = t28;
+    const gravity_arm_real_t t29 = t27 + t28;
+    const gravity_arm_real_t t30 = t1 * (t19 + parameters[MY2] * t29) - t0 * (t20 - parameters[MX2] * t29);
+    const gravity_arm_real_t t31 = GRAVITY_ARM_C(0.538534) * t27 - t14;
+    const gravity_arm_real_t t32 = parameters[MX2] * (t15 + t0 * t31) + parameters[MY2] * (t1 * t31 - t12);
+    const gravity_arm_real_t t33 = t32 + GRAVITY_ARM_C(0.538534) * t30;
+    const gravity_arm_real_t t34 = gravity_arm_held(t5 * t26);
+    ddq_by_q[1] = t26 * t33 + t34 * t32;
+    const gravity_arm_real_t t35 = gravity_arm_held(t4 + t5 * t34);
+    ddq_by_q[3] = t34 * t33 + t35 * t32;
+    const gravity_arm_real_t t36 = parameters[MX2] * t17;
+    const gravity_arm_real_t t37 = parameters[MY2] * t17;
+    /* link j2: derivatives */
+    const gravity_arm_real_t t38 = GRAVITY_ARM_C(0.538534) * (t0 * (GRAVITY_ARM_C(2.0) * t36)
+        + t1 * (GRAVITY_ARM_C(2.0) * t37));
+    ddq_by_dq[1] = t26 * t38 - parameters[FV2] * t34;
+    ddq_by_dq[3] = t38 * t34 - parameters[FV2] * t35;
+    ddq_by_input[1] = t34;
+    ddq_by_input[3] = t35;
     /* link j2: column of the mass matrix */
-    const gravity_arm_real_t t29 = t1 * parameters[MY2] + t0 * parameters[MX2];
+    const gravity_arm_real_t t39 = t1 * parameters[MY2] + t0 * parameters[MX2];
     /* link j1: derivatives */
-    const gravity_arm_real_t t30 = (parameters[MX1R] - t2) * t10 - (parameters[MY1] + t29) * t14;
-    const gravity_arm_real_t t31 = t29 * t14 + t2 * t10; /* link j2: derivatives */
-    const gravity_arm_real_t t32 = gravity_arm_bounded(t5 * t26);
-    ddq_by_q[0] = t26 * t30 - t31 * t32;
-    const gravity_arm_real_t t33 = t4 + t5 * t32;
-    ddq_by_q[2] = t30 * t32 - t31 * t33;
-    const gravity_arm_real_t t34 = parameters[MY2] * t17;
-    const gravity_arm_real_t t35 = parameters[MX2] * t17;
+    const gravity_arm_real_t t40 = (parameters[MX1R] - t2) * t10 - (parameters[MY1] + t39) * t14;
+    const gravity_arm_real_t t41 = t39 * t14 + t2 * t10; /* link j2: derivatives */
+    ddq_by_q[0] = t26 * t40 - t41 * t34;
+    ddq_by_q[2] = t40 * t34 - t41 * t35;
     /* link j2: inertia, momentum beyond */
-    const gravity_arm_real_t t36 = GRAVITY_ARM_C(0.538534) * (t1 * t34 + t0 * t35)
-        - t29 * (GRAVITY_ARM_C(0.538534) * dq[0]);
-    const gravity_arm_real_t t37 = GRAVITY_ARM_C(2.0) * t36 - parameters[FV1];
-    const gravity_arm_real_t t38 = t29 * (GRAVITY_ARM_C(1.077068) * dq[0]); /* link j2: derivatives */
-    ddq_by_dq[0] = t26 * t37 - t38 * t32;
-    ddq_by_dq[2] = t37 * t32 - t38 * t33;
+    const gravity_arm_real_t t42 = GRAVITY_ARM_C(0.538534) * (t1 * t37 + t0 * t36)
+        - t39 * (GRAVITY_ARM_C(0.538534) * dq[0]);
+    const gravity_arm_real_t t43 = GRAVITY_ARM_C(2.0) * t42 - parameters[FV1];
+    const gravity_arm_real_t t44 = t39 * (GRAVITY_ARM_C(1.077068) * dq[0]); /* link j2: derivatives */
+    ddq_by_dq[0] = t26 * t43 - t44 * t34;
+    ddq_by_dq[2] = t43 * t34 - t44 * t35;
     ddq_by_input[0] = t26;
-    ddq_by_input[2] = t32;
-    const gravity_arm_real_t t39 = t27 + t28;
-    const gravity_arm_real_t t40 = t1 * (t19 + parameters[MY2] * t39) - t0 * (t20 - parameters[MX2] * t39);
-    const gravity_arm_real_t t41 = GRAVITY_ARM_C(0.538534) * t27 - t14;
-    const gravity_arm_real_t t42 = parameters[MX2] * (t15 + t0 * t41) + parameters[MY2] * (t1 * t41 - t12);
-    const gravity_arm_real_t t43 = t42 + GRAVITY_ARM_C(0.538534) * t40;
-    ddq_by_q[1] = t26 * t43 + t32 * t42;
-    ddq_by_q[3] = t32 * t43 + t33 * t42;
-    const gravity_arm_real_t t44 = GRAVITY_ARM_C(0.538534) * (t0 * (GRAVITY_ARM_C(2.0) * t35)
-        + t1 * (GRAVITY_ARM_C(2.0) * t34));
-    ddq_by_dq[1] = t26 * t44 - parameters[FV2] * t32;
-    ddq_by_dq[3] = t44 * t32 - parameters[FV2] * t33;
-    ddq_by_input[1] = t32;
-    ddq_by_input[3] = t33;
-    if (!gravity_arm_all_bounded(ddq, 2)
-        || !gravity_arm_all_bounded(ddq_by_q, 4)
-        || !gravity_arm_all_bounded(ddq_by_dq, 4)
-        || !gravity_arm_all_bounded(ddq_by_input, 4)) {
+    ddq_by_input[2] = t34;
+    if (!gravity_arm_bounded(ddq, 2)
+        || !gravity_arm_bounded(ddq_by_q, 4)
+        || !gravity_arm_bounded(ddq_by_dq, 4)
+        || !gravity_arm_bounded(ddq_by_input, 4)) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
         gravity_arm_zero(ddq_by_dq, 4);

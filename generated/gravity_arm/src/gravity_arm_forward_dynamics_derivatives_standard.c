@@ -53,7 +53,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
+#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -105,7 +105,7 @@ gravity_arm_status_t gravity_arm_forward_dynamics_derivatives_standard(
     const gravity_arm_real_t t6 = GRAVITY_ARM_C(0.538534) * parameters[M2];
     const gravity_arm_real_t t7 = parameters[ZZ1] + (parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * (t6
         + GRAVITY_ARM_C(-2.0) * t2));
-    const gravity_arm_real_t t8 = gravity_arm_bounded(t7 - t3 * t5);
+    const gravity_arm_real_t t8 = t7 - t3 * t5;
     if (!(t8 > GRAVITY_ARM_C(1.0e-12))) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
@@ -144,48 +144,49 @@ gravity_arm_status_t gravity_arm_forward_dynamics_derivatives_standard(
     const gravity_arm_real_t t28 = input[1] - (dq[1] * parameters[FV2] + t27 * parameters[FC2] - t24);
     const gravity_arm_real_t t29 = input[0] + (t25 - (dq[0] * parameters[FV1] + t26 * parameters[FC1]))
         + t28 * t5;
-    const gravity_arm_real_t t30 = gravity_arm_bounded(GRAVITY_ARM_C(1.0) / t8);
-    const gravity_arm_real_t t31 = gravity_arm_bounded(t29 * t30);
+    const gravity_arm_real_t t30 = gravity_arm_held(GRAVITY_ARM_C(1.0) / t8);
+    const gravity_arm_real_t t31 = gravity_arm_held(t29 * t30);
     ddq[0] = t31;
-    const gravity_arm_real_t t32 = gravity_arm_bounded(t28 * t4 + t5 * t31);
+    const gravity_arm_real_t t32 = gravity_arm_held(t28 * t4 + t5 * t31);
     ddq[1] = t32;
+    const gravity_arm_real_t t33 = t31 + t32;
+    const gravity_arm_real_t t34 = t0 * (t22 - parameters[MX2] * t33) - t1 * (t19 + parameters[MY2] * t33);
+    const gravity_arm_real_t t35 = GRAVITY_ARM_C(0.538534) * t31 - t15;
+    const gravity_arm_real_t t36 = parameters[MX2] * (t13 + t0 * t35) + parameters[MY2] * (t1 * t35 - t20);
+    const gravity_arm_real_t t37 = GRAVITY_ARM_C(0.538534) * t34 - t36;
+    const gravity_arm_real_t t38 = gravity_arm_held(t5 * t30);
+    ddq_by_q[1] = t38 * t36 - t30 * t37;
+    const gravity_arm_real_t t39 = gravity_arm_held(t4 + t5 * t38);
+    ddq_by_q[3] = t39 * t36 - t38 * t37;
+    const gravity_arm_real_t t40 = t17 * parameters[MX2];
+    const gravity_arm_real_t t41 = t17 * parameters[MY2];
+    /* link j2: derivatives */
+    const gravity_arm_real_t t42 = GRAVITY_ARM_C(0.538534) * (t0 * (GRAVITY_ARM_C(2.0) * t40)
+        + t1 * (GRAVITY_ARM_C(2.0) * t41));
+    ddq_by_dq[1] = t30 * t42 - parameters[FV2] * t38;
+    ddq_by_dq[3] = t42 * t38 - parameters[FV2] * t39;
+    ddq_by_input[1] = t38;
+    ddq_by_input[3] = t39;
     /* link j2: column of the mass matrix */
-    const gravity_arm_real_t t33 = t1 * parameters[MY2] + t0 * parameters[MX2];
+    const gravity_arm_real_t t43 = t1 * parameters[MY2] + t0 * parameters[MX2];
     /* link j1: derivatives */
-    const gravity_arm_real_t t34 = t11 * (parameters[MX1] - (t2 - t6)) - t15 * (parameters[MY1] + t33);
-    const gravity_arm_real_t t35 = t15 * t33 + t11 * t2; /* link j2: derivatives */
-    const gravity_arm_real_t t36 = gravity_arm_bounded(t5 * t30);
-    ddq_by_q[0] = t30 * t34 - t35 * t36;
-    const gravity_arm_real_t t37 = t4 + t5 * t36;
-    ddq_by_q[2] = t34 * t36 - t35 * t37;
-    const gravity_arm_real_t t38 = t17 * parameters[MY2];
-    const gravity_arm_real_t t39 = t17 * parameters[MX2];
+    const gravity_arm_real_t t44 = t11 * (parameters[MX1] - (t2 - t6)) - t15 * (parameters[MY1] + t43);
+    const gravity_arm_real_t t45 = t15 * t43 + t11 * t2; /* link j2: derivatives */
+    ddq_by_q[0] = t30 * t44 - t45 * t38;
+    ddq_by_q[2] = t44 * t38 - t45 * t39;
     /* link j2: inertia, momentum beyond */
-    const gravity_arm_real_t t40 = GRAVITY_ARM_C(0.538534) * (t1 * t38 + t0 * t39)
-        - t33 * (GRAVITY_ARM_C(0.538534) * dq[0]);
-    const gravity_arm_real_t t41 = GRAVITY_ARM_C(2.0) * t40 - parameters[FV1];
-    const gravity_arm_real_t t42 = t33 * (GRAVITY_ARM_C(1.077068) * dq[0]); /* link j2: derivatives */
-    ddq_by_dq[0] = t30 * t41 - t42 * t36;
-    ddq_by_dq[2] = t41 * t36 - t42 * t37;
+    const gravity_arm_real_t t46 = GRAVITY_ARM_C(0.538534) * (t1 * t41 + t0 * t40)
+        - t43 * (GRAVITY_ARM_C(0.538534) * dq[0]);
+    const gravity_arm_real_t t47 = GRAVITY_ARM_C(2.0) * t46 - parameters[FV1];
+    const gravity_arm_real_t t48 = t43 * (GRAVITY_ARM_C(1.077068) * dq[0]); /* link j2: derivatives */
+    ddq_by_dq[0] = t30 * t47 - t48 * t38;
+    ddq_by_dq[2] = t47 * t38 - t48 * t39;
     ddq_by_input[0] = t30;
-    ddq_by_input[2] = t36;
-    const gravity_arm_real_t t43 = t31 + t32;
-    const gravity_arm_real_t t44 = t0 * (t22 - parameters[MX2] * t43) - t1 * (t19 + parameters[MY2] * t43);
-    const gravity_arm_real_t t45 = GRAVITY_ARM_C(0.538534) * t31 - t15;
-    const gravity_arm_real_t t46 = parameters[MX2] * (t13 + t0 * t45) + parameters[MY2] * (t1 * t45 - t20);
-    const gravity_arm_real_t t47 = GRAVITY_ARM_C(0.538534) * t44 - t46;
-    ddq_by_q[1] = t36 * t46 - t30 * t47;
-    ddq_by_q[3] = t37 * t46 - t36 * t47;
-    const gravity_arm_real_t t48 = GRAVITY_ARM_C(0.538534) * (t0 * (GRAVITY_ARM_C(2.0) * t39)
-        + t1 * (GRAVITY_ARM_C(2.0) * t38));
-    ddq_by_dq[1] = t30 * t48 - parameters[FV2] * t36;
-    ddq_by_dq[3] = t48 * t36 - parameters[FV2] * t37;
-    ddq_by_input[1] = t36;
-    ddq_by_input[3] = t37;
-    if (!gravity_arm_all_bounded(ddq, 2)
-        || !gravity_arm_all_bounded(ddq_by_q, 4)
-        || !gravity_arm_all_bounded(ddq_by_dq, 4)
-        || !gravity_arm_all_bounded(ddq_by_input, 4)) {
+    ddq_by_input[2] = t38;
+    if (!gravity_arm_bounded(ddq, 2)
+        || !gravity_arm_bounded(ddq_by_q, 4)
+        || !gravity_arm_bounded(ddq_by_dq, 4)
+        || !gravity_arm_bounded(ddq_by_input, 4)) {
         gravity_arm_zero(ddq, 2);
         gravity_arm_zero(ddq_by_q, 4);
         gravity_arm_zero(ddq_by_dq, 4);

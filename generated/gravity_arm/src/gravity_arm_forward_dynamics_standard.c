@@ -49,7 +49,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
+#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -91,7 +91,7 @@ gravity_arm_status_t gravity_arm_forward_dynamics_standard(
     /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t6 = parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_ARM_C(0.538534) * (GRAVITY_ARM_C(0.538534) * parameters[M2] + GRAVITY_ARM_C(-2.0) * t2));
-    const gravity_arm_real_t t7 = gravity_arm_bounded(t6 - t3 * t5);
+    const gravity_arm_real_t t7 = t6 - t3 * t5;
     if (!(t7 > GRAVITY_ARM_C(1.0e-12))) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
@@ -122,10 +122,10 @@ gravity_arm_status_t gravity_arm_forward_dynamics_standard(
     const gravity_arm_real_t t24 = input[0] + (t20 - (dq[0] * parameters[FV1] + t21 * parameters[FC1]))
         + t23 * t5;
     const gravity_arm_real_t t25 = GRAVITY_ARM_C(1.0) / t7;
-    const gravity_arm_real_t t26 = gravity_arm_bounded(t24 * t25);
+    const gravity_arm_real_t t26 = gravity_arm_held(t24 * t25);
     out[0] = t26;
     out[1] = t23 * t4 + t5 * t26;
-    if (!gravity_arm_all_bounded(out, 2)) {
+    if (!gravity_arm_bounded(out, 2)) {
         gravity_arm_zero(out, 2);
         return GRAVITY_ARM_STATUS_PIVOT;
     }

@@ -38,7 +38,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
+#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -94,31 +94,30 @@ gravity_arm_status_t gravity_arm_inverse_dynamics_derivatives(
     input[0] = parameters[FV1] * dq[0] + parameters[FC1] * t17 + t16;
     const gravity_arm_real_t t18 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     input[1] = parameters[FV2] * dq[1] + parameters[FC2] * t18 + t11;
-    /* link j2: column of the mass matrix */
-    const gravity_arm_real_t t19 = t7 * parameters[MX2] - t3 * parameters[MY2];
-    const gravity_arm_real_t t20 = t7 * parameters[MY2] + t3 * parameters[MX2];
-    input_by_q[0] = (parameters[MX1R] + t19) * t1 + (parameters[MY1] + t20) * t5;
-    input_by_q[2] = t20 * t5 + t19 * t1;
-    const gravity_arm_real_t t21 = parameters[MY2] * t12;
-    const gravity_arm_real_t t22 = parameters[MX2] * t12;
-    /* link j2: inertia, momentum beyond */
-    const gravity_arm_real_t t23 = GRAVITY_ARM_C(-0.538534) * (t7 * t21 + t3 * t22)
-        + t20 * (GRAVITY_ARM_C(0.538534) * dq[0]);
-    input_by_dq[0] = parameters[FV1] + GRAVITY_ARM_C(2.0) * t23;
-    input_by_dq[2] = t20 * (GRAVITY_ARM_C(1.077068) * dq[0]);
-    input_by_ddq[0] = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(1.077068) * t19);
-    /* link j2: column of the mass matrix */
-    const gravity_arm_real_t t24 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t19;
-    input_by_ddq[2] = t24;
-    const gravity_arm_real_t t25 = parameters[MX2] * t9 - parameters[MY2] * t8;
-    input_by_q[1] = t25 + GRAVITY_ARM_C(0.538534) * (t3 * t15 - t7 * t14);
-    input_by_q[3] = t25;
-    /* link j2: derivatives */
-    const gravity_arm_real_t t26 = GRAVITY_ARM_C(0.538534) * (t3 * (GRAVITY_ARM_C(-2.0) * t22)
-        + t7 * (GRAVITY_ARM_C(-2.0) * t21));
-    input_by_dq[1] = t26;
+    const gravity_arm_real_t t19 = parameters[MX2] * t9 - parameters[MY2] * t8;
+    input_by_q[3] = t19;
+    input_by_q[1] = t19 + GRAVITY_ARM_C(0.538534) * (t3 * t15 - t7 * t14);
     input_by_dq[3] = parameters[FV2];
-    input_by_ddq[1] = t24;
+    const gravity_arm_real_t t20 = parameters[MX2] * t12;
+    const gravity_arm_real_t t21 = parameters[MY2] * t12;
+    /* link j2: derivatives */
+    const gravity_arm_real_t t22 = GRAVITY_ARM_C(0.538534) * (t3 * (GRAVITY_ARM_C(-2.0) * t20)
+        + t7 * (GRAVITY_ARM_C(-2.0) * t21));
+    input_by_dq[1] = t22;
     input_by_ddq[3] = parameters[ZZ2];
+    /* link j2: column of the mass matrix */
+    const gravity_arm_real_t t23 = t7 * parameters[MX2] - t3 * parameters[MY2];
+    const gravity_arm_real_t t24 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t23;
+    input_by_ddq[1] = t24;
+    const gravity_arm_real_t t25 = t7 * parameters[MY2] + t3 * parameters[MX2];
+    input_by_q[2] = t25 * t5 + t23 * t1;
+    input_by_dq[2] = t25 * (GRAVITY_ARM_C(1.077068) * dq[0]);
+    input_by_ddq[2] = t24;
+    input_by_q[0] = (parameters[MX1R] + t23) * t1 + (parameters[MY1] + t25) * t5;
+    /* link j2: inertia, momentum beyond */
+    const gravity_arm_real_t t26 = GRAVITY_ARM_C(-0.538534) * (t7 * t21 + t3 * t20)
+        + t25 * (GRAVITY_ARM_C(0.538534) * dq[0]);
+    input_by_dq[0] = parameters[FV1] + GRAVITY_ARM_C(2.0) * t26;
+    input_by_ddq[0] = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(1.077068) * t23);
     return GRAVITY_ARM_STATUS_OK;
 }

@@ -52,7 +52,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
+#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
 #error "gravity_arm.h and gravity_arm_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -110,37 +110,35 @@ gravity_arm_status_t gravity_arm_inverse_dynamics_derivatives_standard(
     input[0] = dq[0] * parameters[FV1] + t18 * parameters[FC1] + t17;
     const gravity_arm_real_t t19 = gravity_arm_sign(dq[1]); /* joint j2: coulomb_friction */
     input[1] = dq[1] * parameters[FV2] + t19 * parameters[FC2] + t11;
-    /* link j2: column of the mass matrix */
-    const gravity_arm_real_t t20 = t7 * parameters[MX2] - t3 * parameters[MY2];
-    /* link j2: inertia of it and all beyond */
-    const gravity_arm_real_t t21 = GRAVITY_ARM_C(0.538534) * parameters[M2];
-    /* link j2: column of the mass matrix */
-    const gravity_arm_real_t t22 = t7 * parameters[MY2] + t3 * parameters[MX2];
-    /* link j1: derivatives */
-    const gravity_arm_real_t t23 = t1 * (parameters[MX1] + (t20 + t21)) + t5 * (parameters[MY1] + t22);
-    input_by_q[0] = t23;
-    input_by_q[2] = t5 * t22 + t1 * t20;
-    const gravity_arm_real_t t24 = t12 * parameters[MY2];
-    const gravity_arm_real_t t25 = t12 * parameters[MX2];
-    /* link j2: inertia, momentum beyond */
-    const gravity_arm_real_t t26 = GRAVITY_ARM_C(-0.538534) * (t7 * t24 + t3 * t25)
-        + t22 * (GRAVITY_ARM_C(0.538534) * dq[0]);
-    input_by_dq[0] = parameters[FV1] + GRAVITY_ARM_C(2.0) * t26;
-    input_by_dq[2] = t22 * (GRAVITY_ARM_C(1.077068) * dq[0]);
-    input_by_ddq[0] = parameters[ZZ1] + (parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * (t21
-        + GRAVITY_ARM_C(2.0) * t20));
-    /* link j2: column of the mass matrix */
-    const gravity_arm_real_t t27 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t20;
-    input_by_ddq[2] = t27;
-    const gravity_arm_real_t t28 = t9 * parameters[MX2] - t8 * parameters[MY2];
-    input_by_q[1] = t28 + GRAVITY_ARM_C(-0.538534) * (t3 * t15 + t7 * t14);
-    input_by_q[3] = t28;
-    /* link j2: derivatives */
-    const gravity_arm_real_t t29 = GRAVITY_ARM_C(0.538534) * (t3 * (GRAVITY_ARM_C(-2.0) * t25)
-        + t7 * (GRAVITY_ARM_C(-2.0) * t24));
-    input_by_dq[1] = t29;
+    const gravity_arm_real_t t20 = t9 * parameters[MX2] - t8 * parameters[MY2];
+    input_by_q[3] = t20;
+    input_by_q[1] = t20 + GRAVITY_ARM_C(-0.538534) * (t3 * t15 + t7 * t14);
     input_by_dq[3] = parameters[FV2];
-    input_by_ddq[1] = t27;
+    const gravity_arm_real_t t21 = t12 * parameters[MX2];
+    const gravity_arm_real_t t22 = t12 * parameters[MY2];
+    /* link j2: derivatives */
+    const gravity_arm_real_t t23 = GRAVITY_ARM_C(0.538534) * (t3 * (GRAVITY_ARM_C(-2.0) * t21)
+        + t7 * (GRAVITY_ARM_C(-2.0) * t22));
+    input_by_dq[1] = t23;
     input_by_ddq[3] = parameters[ZZ2];
+    /* link j2: column of the mass matrix */
+    const gravity_arm_real_t t24 = t7 * parameters[MX2] - t3 * parameters[MY2];
+    const gravity_arm_real_t t25 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t24;
+    input_by_ddq[1] = t25;
+    const gravity_arm_real_t t26 = t7 * parameters[MY2] + t3 * parameters[MX2];
+    input_by_q[2] = t5 * t26 + t1 * t24;
+    input_by_dq[2] = t26 * (GRAVITY_ARM_C(1.077068) * dq[0]);
+    input_by_ddq[2] = t25;
+    /* link j2: inertia of it and all beyond */
+    const gravity_arm_real_t t27 = GRAVITY_ARM_C(0.538534) * parameters[M2];
+    /* link j1: derivatives */
+    const gravity_arm_real_t t28 = t1 * (parameters[MX1] + (t24 + t27)) + t5 * (parameters[MY1] + t26);
+    input_by_q[0] = t28;
+    /* link j2: inertia, momentum beyond */
+    const gravity_arm_real_t t29 = GRAVITY_ARM_C(-0.538534) * (t7 * t22 + t3 * t21)
+        + t26 * (GRAVITY_ARM_C(0.538534) * dq[0]);
+    input_by_dq[0] = parameters[FV1] + GRAVITY_ARM_C(2.0) * t29;
+    input_by_ddq[0] = parameters[ZZ1] + (parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * (t27
+        + GRAVITY_ARM_C(2.0) * t24));
     return GRAVITY_ARM_STATUS_OK;
 }

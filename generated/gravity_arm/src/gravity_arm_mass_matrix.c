@@ -32,7 +32,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
+#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
 #error "gravity_arm.h and gravity_arm_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -55,12 +55,12 @@ gravity_arm_status_t gravity_arm_mass_matrix(
 
     gravity_arm_real_t t0, t1;
     GRAVITY_ARM_SINCOS(q[1], &t0, &t1);
+    out[3] = parameters[ZZ2];
     /* link j2: column of the mass matrix */
     const gravity_arm_real_t t2 = t1 * parameters[MX2] - t0 * parameters[MY2];
-    out[0] = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(1.077068) * t2);
     const gravity_arm_real_t t3 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t2;
     out[1] = t3;
     out[2] = t3;
-    out[3] = parameters[ZZ2];
+    out[0] = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(1.077068) * t2);
     return GRAVITY_ARM_STATUS_OK;
 }

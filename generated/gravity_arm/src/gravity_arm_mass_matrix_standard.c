@@ -46,7 +46,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0xB6EDED96UL
+#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
 #error "gravity_arm.h and gravity_arm_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -70,16 +70,15 @@ gravity_arm_status_t gravity_arm_mass_matrix_standard(
 
     gravity_arm_real_t t0, t1;
     GRAVITY_ARM_SINCOS(q[1], &t0, &t1);
+    out[3] = parameters[ZZ2];
     /* link j2: column of the mass matrix */
     const gravity_arm_real_t t2 = t1 * parameters[MX2] - t0 * parameters[MY2];
+    const gravity_arm_real_t t3 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t2;
+    out[1] = t3;
+    out[2] = t3;
     /* link j2: inertia of it and all beyond */
-    const gravity_arm_real_t t3 = parameters[ZZ1] + (parameters[ZZ2]
+    const gravity_arm_real_t t4 = parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_ARM_C(0.538534) * (GRAVITY_ARM_C(0.538534) * parameters[M2] + GRAVITY_ARM_C(2.0) * t2));
-    out[0] = t3;
-    /* link j2: column of the mass matrix */
-    const gravity_arm_real_t t4 = parameters[ZZ2] + GRAVITY_ARM_C(0.538534) * t2;
-    out[1] = t4;
-    out[2] = t4;
-    out[3] = parameters[ZZ2];
+    out[0] = t4;
     return GRAVITY_ARM_STATUS_OK;
 }

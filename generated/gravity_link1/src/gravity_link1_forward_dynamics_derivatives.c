@@ -33,7 +33,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x0A001FB0UL
+#if GRAVITY_LINK1_GENERATION != 0x08652BC1UL
 #error "gravity_link1.h and gravity_link1_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -78,15 +78,15 @@ gravity_link1_status_t gravity_link1_forward_dynamics_derivatives(
     const gravity_link1_real_t t4 = GRAVITY_LINK1_C(-9.81) * t3;
     const gravity_link1_real_t t5 = parameters[MY1] * t4 - parameters[MX1] * t2 - (parameters[FV1] * dq[0]
         + parameters[FC1] * t0);
-    const gravity_link1_real_t t6 = GRAVITY_LINK1_C(1.0) / parameters[ZZ1];
+    const gravity_link1_real_t t6 = gravity_link1_held(GRAVITY_LINK1_C(1.0) / parameters[ZZ1]);
     ddq[0] = (input[0] + t5) * t6;
     ddq_by_q[0] = t6 * (parameters[MX1] * t4 + parameters[MY1] * t2);
     ddq_by_dq[0] = -(parameters[FV1] * t6);
     ddq_by_input[0] = t6;
-    if (!gravity_link1_all_bounded(ddq, 1)
-        || !gravity_link1_all_bounded(ddq_by_q, 1)
-        || !gravity_link1_all_bounded(ddq_by_dq, 1)
-        || !gravity_link1_all_bounded(ddq_by_input, 1)) {
+    if (!gravity_link1_bounded(ddq, 1)
+        || !gravity_link1_bounded(ddq_by_q, 1)
+        || !gravity_link1_bounded(ddq_by_dq, 1)
+        || !gravity_link1_bounded(ddq_by_input, 1)) {
         gravity_link1_zero(ddq, 1);
         gravity_link1_zero(ddq_by_q, 1);
         gravity_link1_zero(ddq_by_dq, 1);

@@ -36,7 +36,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x0A001FB0UL
+#if GRAVITY_LINK1_GENERATION != 0x08652BC1UL
 #error "gravity_link1.h and gravity_link1_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -72,7 +72,7 @@ gravity_link1_status_t gravity_link1_forward_dynamics_standard(
         + GRAVITY_LINK1_C(-9.81) * t2 * parameters[MY1] - (dq[0] * parameters[FV1] + t0 * parameters[FC1]);
     const gravity_link1_real_t t4 = GRAVITY_LINK1_C(1.0) / parameters[ZZ1];
     out[0] = (input[0] + t3) * t4;
-    if (!gravity_link1_all_bounded(out, 1)) {
+    if (!gravity_link1_bounded(out, 1)) {
         gravity_link1_zero(out, 1);
         return GRAVITY_LINK1_STATUS_PIVOT;
     }

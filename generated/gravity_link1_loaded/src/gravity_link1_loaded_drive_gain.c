@@ -17,7 +17,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x24948438UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_drive_gain.c are of different generations: generate the arm again"
 #endif
 

@@ -28,7 +28,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x24948438UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -65,7 +65,7 @@ gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics(
         + parameters[FC1] * t0);
     const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(1.0) / parameters[ZZ1R];
     out[0] = (input[0] + t3) * t4;
-    if (!gravity_link1_loaded_all_bounded(out, 1)) {
+    if (!gravity_link1_loaded_bounded(out, 1)) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }

@@ -33,7 +33,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x24948438UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -78,15 +78,16 @@ gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_derivatives(
     const gravity_link1_loaded_real_t t4 = GRAVITY_LINK1_LOADED_C(-9.81) * t3;
     const gravity_link1_loaded_real_t t5 = parameters[MY1R] * t4 - parameters[MX1R] * t2
         - (parameters[FV1] * dq[0] + parameters[FC1] * t0);
-    const gravity_link1_loaded_real_t t6 = GRAVITY_LINK1_LOADED_C(1.0) / parameters[ZZ1R];
+    const gravity_link1_loaded_real_t
+        t6 = gravity_link1_loaded_held(GRAVITY_LINK1_LOADED_C(1.0) / parameters[ZZ1R]);
     ddq[0] = (input[0] + t5) * t6;
     ddq_by_q[0] = t6 * (parameters[MX1R] * t4 + parameters[MY1R] * t2);
     ddq_by_dq[0] = -(parameters[FV1] * t6);
     ddq_by_input[0] = t6;
-    if (!gravity_link1_loaded_all_bounded(ddq, 1)
-        || !gravity_link1_loaded_all_bounded(ddq_by_q, 1)
-        || !gravity_link1_loaded_all_bounded(ddq_by_dq, 1)
-        || !gravity_link1_loaded_all_bounded(ddq_by_input, 1)) {
+    if (!gravity_link1_loaded_bounded(ddq, 1)
+        || !gravity_link1_loaded_bounded(ddq_by_q, 1)
+        || !gravity_link1_loaded_bounded(ddq_by_dq, 1)
+        || !gravity_link1_loaded_bounded(ddq_by_input, 1)) {
         gravity_link1_loaded_zero(ddq, 1);
         gravity_link1_loaded_zero(ddq_by_q, 1);
         gravity_link1_loaded_zero(ddq_by_dq, 1);

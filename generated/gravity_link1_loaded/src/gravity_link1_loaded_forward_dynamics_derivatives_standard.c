@@ -50,7 +50,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x24948438UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -86,8 +86,8 @@ gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_derivatives_
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t5, &t2);
     /* link j2: inertia of it and all beyond */
     const gravity_link1_loaded_real_t t0 = GRAVITY_LINK1_LOADED_C(0.538534) * parameters[M2];
-    const gravity_link1_loaded_real_t t1 = gravity_link1_loaded_bounded(parameters[ZZ1] + (parameters[ZZ2]
-        + GRAVITY_LINK1_LOADED_C(0.538534) * (t0 + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2])));
+    const gravity_link1_loaded_real_t t1 = parameters[ZZ1] + (parameters[ZZ2]
+        + GRAVITY_LINK1_LOADED_C(0.538534) * (t0 + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2]));
     if (!(t1 > GRAVITY_LINK1_LOADED_C(1.0e-12))) {
         gravity_link1_loaded_zero(ddq, 1);
         gravity_link1_loaded_zero(ddq_by_q, 1);
@@ -105,7 +105,7 @@ gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_derivatives_
     const gravity_link1_loaded_real_t t8 = gravity_link1_loaded_sign(dq[0]); /* joint j1: coulomb_friction */
     const gravity_link1_loaded_real_t t9 = t6 * parameters[MX1] + t3 * parameters[MY1] + t7
         - (dq[0] * parameters[FV1] + t8 * parameters[FC1]);
-    const gravity_link1_loaded_real_t t10 = GRAVITY_LINK1_LOADED_C(1.0) / t1;
+    const gravity_link1_loaded_real_t t10 = gravity_link1_loaded_held(GRAVITY_LINK1_LOADED_C(1.0) / t1);
     ddq[0] = (input[0] + t9) * t10;
     /* link j1: derivatives */
     const gravity_link1_loaded_real_t t11 = t3 * (parameters[MX1] + (parameters[MX2] + t0))
@@ -116,10 +116,10 @@ gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_derivatives_
         + parameters[MY2] * (GRAVITY_LINK1_LOADED_C(-0.538534) * dq[0]));
     ddq_by_dq[0] = t10 * (t12 - parameters[FV1]);
     ddq_by_input[0] = t10;
-    if (!gravity_link1_loaded_all_bounded(ddq, 1)
-        || !gravity_link1_loaded_all_bounded(ddq_by_q, 1)
-        || !gravity_link1_loaded_all_bounded(ddq_by_dq, 1)
-        || !gravity_link1_loaded_all_bounded(ddq_by_input, 1)) {
+    if (!gravity_link1_loaded_bounded(ddq, 1)
+        || !gravity_link1_loaded_bounded(ddq_by_q, 1)
+        || !gravity_link1_loaded_bounded(ddq_by_dq, 1)
+        || !gravity_link1_loaded_bounded(ddq_by_input, 1)) {
         gravity_link1_loaded_zero(ddq, 1);
         gravity_link1_loaded_zero(ddq_by_q, 1);
         gravity_link1_loaded_zero(ddq_by_dq, 1);

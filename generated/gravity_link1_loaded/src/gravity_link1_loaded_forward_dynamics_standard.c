@@ -46,7 +46,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x53FE3FFFUL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0x24948438UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -75,9 +75,9 @@ gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_standard(
     gravity_link1_loaded_real_t t4, t1;
     GRAVITY_LINK1_LOADED_SINCOS(q[0], &t4, &t1);
     /* link j2: inertia of it and all beyond */
-    const gravity_link1_loaded_real_t t0 = gravity_link1_loaded_bounded(parameters[ZZ1] + (parameters[ZZ2]
+    const gravity_link1_loaded_real_t t0 = parameters[ZZ1] + (parameters[ZZ2]
         + GRAVITY_LINK1_LOADED_C(0.538534) * (GRAVITY_LINK1_LOADED_C(0.538534) * parameters[M2]
-        + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2])));
+        + GRAVITY_LINK1_LOADED_C(2.0) * parameters[MX2]));
     if (!(t0 > GRAVITY_LINK1_LOADED_C(1.0e-12))) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
@@ -94,7 +94,7 @@ gravity_link1_loaded_status_t gravity_link1_loaded_forward_dynamics_standard(
         - (dq[0] * parameters[FV1] + t7 * parameters[FC1]);
     const gravity_link1_loaded_real_t t9 = GRAVITY_LINK1_LOADED_C(1.0) / t0;
     out[0] = (input[0] + t8) * t9;
-    if (!gravity_link1_loaded_all_bounded(out, 1)) {
+    if (!gravity_link1_loaded_bounded(out, 1)) {
         gravity_link1_loaded_zero(out, 1);
         return GRAVITY_LINK1_LOADED_STATUS_PIVOT;
     }

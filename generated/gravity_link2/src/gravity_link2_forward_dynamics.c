@@ -28,7 +28,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
+#if GRAVITY_LINK2_GENERATION != 0xE7DA1B03UL
 #error "gravity_link2.h and gravity_link2_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -64,7 +64,7 @@ gravity_link2_status_t gravity_link2_forward_dynamics(
         + parameters[MY1] * (GRAVITY_LINK2_C(-9.81) * t2) - (parameters[FV1] * dq[0] + parameters[FC1] * t0);
     const gravity_link2_real_t t4 = GRAVITY_LINK2_C(1.0) / parameters[ZZ1];
     out[0] = (input[0] + t3) * t4;
-    if (!gravity_link2_all_bounded(out, 1)) {
+    if (!gravity_link2_bounded(out, 1)) {
         gravity_link2_zero(out, 1);
         return GRAVITY_LINK2_STATUS_PIVOT;
     }

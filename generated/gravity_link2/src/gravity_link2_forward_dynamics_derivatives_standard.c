@@ -40,7 +40,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
+#if GRAVITY_LINK2_GENERATION != 0xE7DA1B03UL
 #error "gravity_link2.h and gravity_link2_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -85,15 +85,15 @@ gravity_link2_status_t gravity_link2_forward_dynamics_derivatives_standard(
     const gravity_link2_real_t t4 = GRAVITY_LINK2_C(-9.81) * t3;
     const gravity_link2_real_t t5 = t4 * parameters[MY1] - t2 * parameters[MX1] - (dq[0] * parameters[FV1]
         + t0 * parameters[FC1]);
-    const gravity_link2_real_t t6 = GRAVITY_LINK2_C(1.0) / parameters[ZZ1];
+    const gravity_link2_real_t t6 = gravity_link2_held(GRAVITY_LINK2_C(1.0) / parameters[ZZ1]);
     ddq[0] = (input[0] + t5) * t6;
     ddq_by_q[0] = t6 * (t4 * parameters[MX1] + t2 * parameters[MY1]);
     ddq_by_dq[0] = -(parameters[FV1] * t6);
     ddq_by_input[0] = t6;
-    if (!gravity_link2_all_bounded(ddq, 1)
-        || !gravity_link2_all_bounded(ddq_by_q, 1)
-        || !gravity_link2_all_bounded(ddq_by_dq, 1)
-        || !gravity_link2_all_bounded(ddq_by_input, 1)) {
+    if (!gravity_link2_bounded(ddq, 1)
+        || !gravity_link2_bounded(ddq_by_q, 1)
+        || !gravity_link2_bounded(ddq_by_dq, 1)
+        || !gravity_link2_bounded(ddq_by_input, 1)) {
         gravity_link2_zero(ddq, 1);
         gravity_link2_zero(ddq_by_q, 1);
         gravity_link2_zero(ddq_by_dq, 1);

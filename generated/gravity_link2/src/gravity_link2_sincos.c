@@ -13,11 +13,16 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xAD4108EDUL
+#if GRAVITY_LINK2_GENERATION != 0xE7DA1B03UL
 #error "gravity_link2.h and gravity_link2_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if GRAVITY_LINK2_OWN_SINCOS
+/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
+static const gravity_link2_real_t gravity_link2_turns[5] = {
+    GRAVITY_LINK2_C(0.0), GRAVITY_LINK2_C(1.0), GRAVITY_LINK2_C(0.0), GRAVITY_LINK2_C(-1.0), GRAVITY_LINK2_C(0.0)
+};
+
 gravity_link2_pair_t gravity_link2_sincos(gravity_link2_real_t x)
 {
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
@@ -32,24 +37,21 @@ gravity_link2_pair_t gravity_link2_sincos(gravity_link2_real_t x)
     const gravity_link2_real_t c = GRAVITY_LINK2_C(1.0) + z * (GRAVITY_LINK2_C(-0.499998927)
         + z * (GRAVITY_LINK2_C(0.0416561365) - z * GRAVITY_LINK2_C(0.00135954493)));
 #else
-    const gravity_link2_real_t r = x - k * GRAVITY_LINK2_C(1.57079632673412561417) - k * GRAVITY_LINK2_C(6.07710050630396597660e-11)
-        - k * GRAVITY_LINK2_C(2.02226624879595063154e-21);
+    const gravity_link2_real_t r = x - k * GRAVITY_LINK2_C(1.57079632673412561417) - k * GRAVITY_LINK2_C(6.07710050650619224932e-11);
     const gravity_link2_real_t z = r * r;
     const gravity_link2_real_t s = r + r * z * (GRAVITY_LINK2_C(-1.66666666666666324348e-1)
         + z * (GRAVITY_LINK2_C(8.33333333332248946124e-3) + z * (GRAVITY_LINK2_C(-1.98412698298579493134e-4)
         + z * (GRAVITY_LINK2_C(2.75573137070700676789e-6) + z * (GRAVITY_LINK2_C(-2.50507602534068634195e-8)
         + z * GRAVITY_LINK2_C(1.58969099521155010221e-10))))));
-    const gravity_link2_real_t c = GRAVITY_LINK2_C(1.0) - GRAVITY_LINK2_C(0.5) * z + z * z * (GRAVITY_LINK2_C(4.16666666666666019037e-2)
+    const gravity_link2_real_t c = GRAVITY_LINK2_C(1.0) + z * (GRAVITY_LINK2_C(-0.5) + z * (GRAVITY_LINK2_C(4.16666666666666019037e-2)
         + z * (GRAVITY_LINK2_C(-1.38888888888741095749e-3) + z * (GRAVITY_LINK2_C(2.48015872894767294178e-5)
         + z * (GRAVITY_LINK2_C(-2.75573143513906633035e-7) + z * (GRAVITY_LINK2_C(2.08757232129817482790e-9)
-        - z * GRAVITY_LINK2_C(1.13596475577881948265e-11))))));
+        - z * GRAVITY_LINK2_C(1.13596475577881948265e-11)))))));
 #endif
-    const unsigned quadrant = (unsigned)quarter & 3U;
-    const gravity_link2_real_t sine = (quadrant & 1U) != 0U ? c : s;
-    const gravity_link2_real_t cosine = (quadrant & 1U) != 0U ? s : c;
+    const gravity_link2_real_t *const turn = &gravity_link2_turns[(unsigned)quarter & 3U];
     gravity_link2_pair_t pair;
-    pair.sine = (quadrant & 2U) != 0U ? -sine : sine;
-    pair.cosine = ((quadrant + 1U) & 2U) != 0U ? -cosine : cosine;
+    pair.sine = s * turn[1] + c * turn[0];
+    pair.cosine = c * turn[1] - s * turn[0];
     return pair;
 }
 #endif

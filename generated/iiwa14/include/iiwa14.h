@@ -95,7 +95,7 @@
 #define IIWA14_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_GENERATION 0x1E31C9F2UL
+#define IIWA14_GENERATION 0xF4E95A26UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define IIWA14_MODEL "4f01a5afe35e97fd79f71d51c6869d227bc33b1f7e6bd5668229ee16abfa0d3e"
@@ -447,7 +447,7 @@ iiwa14_status_t iiwa14_mass_matrix(
  * @param[out]  out         [7]   [rad/s^2]  joint accelerations
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 1140 (621 mul, 519 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 1140 (621 mul, 519 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  */
 iiwa14_status_t iiwa14_forward_dynamics(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
@@ -646,7 +646,7 @@ iiwa14_status_t iiwa14_mass_matrix_standard(
  * @param[out]  out         [7]   [rad/s^2]  joint accelerations
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 1295 (683 mul, 612 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 1295 (683 mul, 612 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  */
 iiwa14_status_t iiwa14_forward_dynamics_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
@@ -823,7 +823,7 @@ iiwa14_status_t iiwa14_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 4854 (2695 mul, 2159 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 4854 (2695 mul, 2159 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  */
 iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t q[IIWA14_N_JOINTS],
@@ -876,7 +876,7 @@ iiwa14_status_t iiwa14_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  * @return IIWA14_STATUS_OK or status bits
  *
- * Operations: 5221 (2856 mul, 2365 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 5221 (2856 mul, 2365 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  */
 iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t q[IIWA14_N_JOINTS],

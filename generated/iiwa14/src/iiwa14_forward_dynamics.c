@@ -6,7 +6,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1140 (621 mul, 519 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 1140 (621 mul, 519 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -92,7 +92,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x1E31C9F2UL
+#if IIWA14_GENERATION != 0xF4E95A26UL
 #error "iiwa14.h and iiwa14_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -120,19 +120,19 @@ iiwa14_status_t iiwa14_forward_dynamics(
         return status;
     }
 
-    iiwa14_real_t t141, t139;
-    IIWA14_SINCOS(q[1], &t141, &t139);
-    iiwa14_real_t t98, t100;
-    IIWA14_SINCOS(q[2], &t98, &t100);
-    iiwa14_real_t t71, t67;
-    IIWA14_SINCOS(q[3], &t71, &t67);
-    iiwa14_real_t t32, t34;
-    IIWA14_SINCOS(q[4], &t32, &t34);
-    iiwa14_real_t t13, t15;
-    IIWA14_SINCOS(q[5], &t13, &t15);
+    iiwa14_real_t t136, t134;
+    IIWA14_SINCOS(q[1], &t136, &t134);
+    iiwa14_real_t t94, t96;
+    IIWA14_SINCOS(q[2], &t94, &t96);
+    iiwa14_real_t t68, t64;
+    IIWA14_SINCOS(q[3], &t68, &t64);
+    iiwa14_real_t t30, t32;
+    IIWA14_SINCOS(q[4], &t30, &t32);
+    iiwa14_real_t t12, t14;
+    IIWA14_SINCOS(q[5], &t12, &t14);
     iiwa14_real_t t1, t2;
     IIWA14_SINCOS(q[6], &t1, &t2);
-    const iiwa14_real_t t0 = iiwa14_bounded(parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7]);
+    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
     if (!(t0 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -146,507 +146,486 @@ iiwa14_status_t iiwa14_forward_dynamics(
     const iiwa14_real_t t7 = t2 * t6;
     const iiwa14_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
     const iiwa14_real_t t9 = t8 + IIWA14_C(2.56e4) * parameters[IA6];
-    const iiwa14_real_t t10 = iiwa14_bounded(t9 + t3 * t5);
+    const iiwa14_real_t t10 = t9 + t3 * t5;
     if (!(t10 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t11 = t10 + IIWA14_C(-1.0e-9) * t9;
-    if (!(t11 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t12 = t1 * t6 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t14 = t3 - parameters[YZ6];
-    const iiwa14_real_t t16 = t13 * t12 + t15 * t14; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t11 = t1 * t6 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_real_t t13 = t3 - parameters[YZ6];
+    const iiwa14_real_t t15 = t12 * t11 + t14 * t13; /* link j6: column of the mass matrix */
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t17 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
-    const iiwa14_real_t t18 = t13 * t17 + t15 * parameters[ZZ7];
-    const iiwa14_real_t t19 = t16 + t18 * t5;
-    const iiwa14_real_t t20 = IIWA14_C(-1.0) / t10;
-    const iiwa14_real_t t21 = t19 * t20;
-    const iiwa14_real_t t22 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t23 = parameters[XY6] + t17;
+    const iiwa14_real_t t16 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
+    const iiwa14_real_t t17 = t12 * t16 + t14 * parameters[ZZ7];
+    const iiwa14_real_t t18 = t15 + t17 * t5;
+    const iiwa14_real_t t19 = IIWA14_C(-1.0) / t10;
+    const iiwa14_real_t t20 = t18 * t19;
+    const iiwa14_real_t t21 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t22 = parameters[XY6] + t16;
     /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t24 = t15 * (t22 - parameters[ZZ7]) + t23 * (IIWA14_C(-2.0) * t13);
-    const iiwa14_real_t t25 = t15 * t24;
-    const iiwa14_real_t t26 = parameters[ZZ5R] + (t22 - t25);
-    const iiwa14_real_t t27 = t26 + IIWA14_C(1.0e4) * parameters[IA5];
-    const iiwa14_real_t t28 = t18 * t4;
-    const iiwa14_real_t t29 = iiwa14_bounded(t27 + t18 * t28 + t19 * t21);
-    if (!(t29 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t23 = t14 * (t21 - parameters[ZZ7]) + t22 * (IIWA14_C(-2.0) * t12);
+    const iiwa14_real_t t24 = t14 * t23;
+    const iiwa14_real_t t25 = parameters[ZZ5R] + (t21 - t24);
+    const iiwa14_real_t t26 = t25 + IIWA14_C(1.0e4) * parameters[IA5];
+    const iiwa14_real_t t27 = t17 * t4;
+    const iiwa14_real_t t28 = t26 + t17 * t27 + t18 * t20;
+    if (!(t28 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t30 = t29 + IIWA14_C(-1.0e-9) * t27;
-    if (!(t30 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t31 = t23 + t13 * t24 - parameters[XZ5];
-    const iiwa14_real_t t33 = parameters[YZ5] + t16;
+    const iiwa14_real_t t29 = t22 + t12 * t23 - parameters[XZ5];
+    const iiwa14_real_t t31 = parameters[YZ5] + t15;
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t35 = t2 * parameters[MY7] + t1 * parameters[MX7];
-    const iiwa14_real_t t36 = parameters[MY5R] + t35; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t33 = t2 * parameters[MY7] + t1 * parameters[MX7];
+    const iiwa14_real_t t34 = parameters[MY5R] + t33; /* link j6: inertia of it and all beyond */
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t37 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const iiwa14_real_t t38 = parameters[MX6] + t37; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t39 = t15 * t38 - t13 * parameters[MY6R]; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t40 = parameters[MX5] + t39; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t41 = t34 * t36 + t32 * t40; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t42 = t32 * t31 - t34 * t33 + IIWA14_C(0.4) * t41;
-    const iiwa14_real_t t43 = t15 * t17 - t13 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t44 = t15 * t35;
-    const iiwa14_real_t t45 = t34 * t44 + t32 * t37;
-    const iiwa14_real_t t46 = t32 * t43 - t34 * t3 + IIWA14_C(0.4) * t45;
-    const iiwa14_real_t t47 = t13 * t14 - t15 * t12; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t48 = t15 * parameters[MY6R] + t13 * t38;
-    const iiwa14_real_t t49 = t34 * t48;
-    const iiwa14_real_t t50 = IIWA14_C(0.4) * t49 - (t32 * t47 + t34 * t8);
-    const iiwa14_real_t t51 = t50 + t46 * t5;
-    const iiwa14_real_t t52 = t42 + t46 * t28 + t51 * t21;
-    const iiwa14_real_t t53 = IIWA14_C(-1.0) / t29;
-    const iiwa14_real_t t54 = t52 * t53;
-    const iiwa14_real_t t55 = t46 * t4;
+    const iiwa14_real_t t35 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const iiwa14_real_t t36 = parameters[MX6] + t35; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t37 = t14 * t36 - t12 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t38 = parameters[MX5] + t37; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t39 = t32 * t34 + t30 * t38; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t40 = t30 * t29 - t32 * t31 + IIWA14_C(0.4) * t39;
+    const iiwa14_real_t t41 = t14 * t16 - t12 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t42 = t14 * t33;
+    const iiwa14_real_t t43 = t32 * t42 + t30 * t35;
+    const iiwa14_real_t t44 = t30 * t41 - t32 * t3 + IIWA14_C(0.4) * t43;
+    const iiwa14_real_t t45 = t12 * t13 - t14 * t11; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t46 = t14 * parameters[MY6R] + t12 * t36;
+    const iiwa14_real_t t47 = t32 * t46;
+    const iiwa14_real_t t48 = IIWA14_C(0.4) * t47 - (t30 * t45 + t32 * t8);
+    const iiwa14_real_t t49 = t48 + t44 * t5;
+    const iiwa14_real_t t50 = t40 + t44 * t27 + t49 * t20;
+    const iiwa14_real_t t51 = IIWA14_C(-1.0) / t28;
+    const iiwa14_real_t t52 = t50 * t51;
+    const iiwa14_real_t t53 = t44 * t4;
     /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t56 = parameters[XX5R] + (parameters[ZZ7] + t25);
-    const iiwa14_real_t t57 = parameters[XY5] + t47;
+    const iiwa14_real_t t54 = parameters[XX5R] + (parameters[ZZ7] + t24);
+    const iiwa14_real_t t55 = parameters[XY5] + t45;
     /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t58 = t34 * (t8 - t56) + t57 * (IIWA14_C(2.0) * t32);
-    const iiwa14_real_t t59 = t34 * t58;
-    const iiwa14_real_t t60 = IIWA14_C(-0.8) * t48;
-    const iiwa14_real_t t61 = parameters[ZZ4R] + (t56 + t59 + t60);
-    const iiwa14_real_t t62 = t61 + IIWA14_C(2.56e4) * parameters[IA4];
-    const iiwa14_real_t t63 = t51 * t20;
-    const iiwa14_real_t t64 = iiwa14_bounded(t62 + t46 * t55 + t51 * t63 + t52 * t54);
-    if (!(t64 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t56 = t32 * (t8 - t54) + t55 * (IIWA14_C(2.0) * t30);
+    const iiwa14_real_t t57 = t32 * t56;
+    const iiwa14_real_t t58 = IIWA14_C(-0.8) * t46;
+    const iiwa14_real_t t59 = parameters[ZZ4R] + (t54 + t57 + t58);
+    const iiwa14_real_t t60 = t59 + IIWA14_C(2.56e4) * parameters[IA4];
+    const iiwa14_real_t t61 = t49 * t19;
+    const iiwa14_real_t t62 = t60 + t44 * t53 + t49 * t61 + t50 * t52;
+    if (!(t62 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t65 = t64 + IIWA14_C(-1.0e-9) * t62;
-    if (!(t65 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t66 = parameters[XX4R] + (t8 - t59 + t60);
-    const iiwa14_real_t t68 = t34 * t40 - t32 * t36; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t69 = t34 * t31 + t32 * t33 + IIWA14_C(0.4) * t68;
-    const iiwa14_real_t t70 = t69 - parameters[XY4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t63 = parameters[XX4R] + (t8 - t57 + t58);
+    const iiwa14_real_t t65 = t32 * t38 - t30 * t34; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t66 = t32 * t29 + t30 * t31 + IIWA14_C(0.4) * t65;
+    const iiwa14_real_t t67 = t66 - parameters[XY4]; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t72 = t67 * (t26 - t66) - t70 * (IIWA14_C(2.0) * t71);
-    const iiwa14_real_t t73 = t67 * t72;
-    const iiwa14_real_t t74 = parameters[ZZ3R] + (t66 + t73);
-    const iiwa14_real_t t75 = t74 + IIWA14_C(2.56e4) * parameters[IA3];
-    const iiwa14_real_t t76 = t34 * t37 - t32 * t44; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t77 = t34 * t43 + t32 * t3 + IIWA14_C(0.4) * t76;
-    const iiwa14_real_t t78 = t71 * t77 - t67 * t18;
-    const iiwa14_real_t t79 = t78 * t4;
-    const iiwa14_real_t t80 = t32 * t48; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t81 = t32 * t8 - t34 * t47 + IIWA14_C(-0.4) * t80;
-    const iiwa14_real_t t82 = t71 * t81 - t67 * t16;
-    const iiwa14_real_t t83 = t82 + t78 * t5;
-    const iiwa14_real_t t84 = t83 * t20;
-    const iiwa14_real_t t85 = t71 * t69 - t67 * t26; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t86 = t85 + t78 * t28 + t83 * t21;
-    const iiwa14_real_t t87 = t86 * t53;
-    const iiwa14_real_t t88 = t75 + t78 * t79 + t83 * t84 + t86 * t87;
-    const iiwa14_real_t t89 = t57 - t32 * t58 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t90 = parameters[YZ4] + t42;
-    const iiwa14_real_t t91 = t71 * t89 - t67 * t90; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t92 = t91 + t78 * t55 + t83 * t63 + t86 * t54;
-    const iiwa14_real_t t93 = IIWA14_C(1.0) / t64;
-    const iiwa14_real_t t94 = t92 * t93;
-    const iiwa14_real_t t95 = iiwa14_bounded(t88 - t92 * t94);
-    if (!(t95 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t69 = t64 * (t25 - t63) - t67 * (IIWA14_C(2.0) * t68);
+    const iiwa14_real_t t70 = t64 * t69;
+    const iiwa14_real_t t71 = parameters[ZZ3R] + (t63 + t70);
+    const iiwa14_real_t t72 = t71 + IIWA14_C(2.56e4) * parameters[IA3];
+    const iiwa14_real_t t73 = t32 * t35 - t30 * t42; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t74 = t32 * t41 + t30 * t3 + IIWA14_C(0.4) * t73;
+    const iiwa14_real_t t75 = t68 * t74 - t64 * t17;
+    const iiwa14_real_t t76 = t75 * t4;
+    const iiwa14_real_t t77 = t30 * t46; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t78 = t30 * t8 - t32 * t45 + IIWA14_C(-0.4) * t77;
+    const iiwa14_real_t t79 = t68 * t78 - t64 * t15;
+    const iiwa14_real_t t80 = t79 + t75 * t5;
+    const iiwa14_real_t t81 = t80 * t19;
+    const iiwa14_real_t t82 = t68 * t66 - t64 * t25; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t83 = t82 + t75 * t27 + t80 * t20;
+    const iiwa14_real_t t84 = t83 * t51;
+    const iiwa14_real_t t85 = t72 + t75 * t76 + t80 * t81 + t83 * t84;
+    const iiwa14_real_t t86 = t55 - t30 * t56 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t87 = parameters[YZ4] + t40;
+    const iiwa14_real_t t88 = t68 * t86 - t64 * t87; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t89 = t88 + t75 * t53 + t80 * t61 + t83 * t52;
+    const iiwa14_real_t t90 = IIWA14_C(1.0) / t62;
+    const iiwa14_real_t t91 = t89 * t90;
+    const iiwa14_real_t t92 = t85 - t89 * t91;
+    if (!(t92 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t96 = t95 + IIWA14_C(-1.0e-9) * t75;
-    if (!(t96 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t97 = t70 + t71 * t72 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t99 = parameters[YZ3] + t91;
-    const iiwa14_real_t t101 = parameters[MY3R] + t41;
-    const iiwa14_real_t t102 = parameters[MX4] + t68; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t103 = parameters[MY4R] - t48;
+    const iiwa14_real_t t93 = t67 + t68 * t69 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t95 = parameters[YZ3] + t88;
+    const iiwa14_real_t t97 = parameters[MY3R] + t39;
+    const iiwa14_real_t t98 = parameters[MX4] + t65; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t99 = parameters[MY4R] - t46;
     /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t104 = parameters[MX3] + (t67 * t102 - t71 * t103);
+    const iiwa14_real_t t100 = parameters[MX3] + (t64 * t98 - t68 * t99);
     /* link j3: column of the mass matrix */
-    const iiwa14_real_t t105 = t98 * t97 - t100 * t99 + IIWA14_C(0.42) * (t100 * t101 + t98 * t104);
-    const iiwa14_real_t t106 = t67 * t77 + t71 * t18; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t107 = t67 * t45 + t71 * (t13 * t35);
-    const iiwa14_real_t t108 = t98 * t106 + t100 * t46 + IIWA14_C(0.42) * (t100 * t107 + t98 * t76);
-    const iiwa14_real_t t109 = t67 * t81 + t71 * t16; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t110 = t67 * t49 - t71 * t39;
-    const iiwa14_real_t t111 = t98 * t109 + t100 * t50 + IIWA14_C(0.42) * (t100 * t110 - t98 * t80);
-    const iiwa14_real_t t112 = t111 + t108 * t5;
-    const iiwa14_real_t t113 = t67 * t69 + t71 * t26; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t114 = t67 * t41;
-    const iiwa14_real_t t115 = t98 * t113 + t100 * t42 + IIWA14_C(0.42) * (t100 * t114 + t98 * t68);
-    const iiwa14_real_t t116 = t115 + t108 * t28 + t112 * t21;
-    const iiwa14_real_t t117 = t105 - t108 * t79 - t112 * t84 - t116 * t87;
-    const iiwa14_real_t t118 = t67 * t89 + t71 * t90; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t119 = t67 * t103 + t71 * t102;
-    const iiwa14_real_t t120 = t98 * t118 + t100 * t61 + IIWA14_C(0.42) * (t100 * t119);
-    const iiwa14_real_t t121 = t120 + t108 * t55 + t112 * t63 + t116 * t54;
-    const iiwa14_real_t t122 = t117 + t121 * t94;
-    const iiwa14_real_t t123 = IIWA14_C(1.0) / t95;
-    const iiwa14_real_t t124 = t122 * t123;
-    const iiwa14_real_t t125 = parameters[XX3R] + (t26 - t73); /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t126 = parameters[XY3] + t118;
+    const iiwa14_real_t t101 = t94 * t93 - t96 * t95 + IIWA14_C(0.42) * (t96 * t97 + t94 * t100);
+    const iiwa14_real_t t102 = t64 * t74 + t68 * t17; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t103 = t64 * t43 + t68 * (t12 * t33);
+    const iiwa14_real_t t104 = t94 * t102 + t96 * t44 + IIWA14_C(0.42) * (t96 * t103 + t94 * t73);
+    const iiwa14_real_t t105 = t64 * t78 + t68 * t15; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t106 = t64 * t47 - t68 * t37;
+    const iiwa14_real_t t107 = t94 * t105 + t96 * t48 + IIWA14_C(0.42) * (t96 * t106 - t94 * t77);
+    const iiwa14_real_t t108 = t107 + t104 * t5;
+    const iiwa14_real_t t109 = t64 * t66 + t68 * t25; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t110 = t64 * t39;
+    const iiwa14_real_t t111 = t94 * t109 + t96 * t40 + IIWA14_C(0.42) * (t96 * t110 + t94 * t65);
+    const iiwa14_real_t t112 = t111 + t104 * t27 + t108 * t20;
+    const iiwa14_real_t t113 = t101 - t104 * t76 - t108 * t81 - t112 * t84;
+    const iiwa14_real_t t114 = t64 * t86 + t68 * t87; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t115 = t64 * t99 + t68 * t98;
+    const iiwa14_real_t t116 = t94 * t114 + t96 * t59 + IIWA14_C(0.42) * (t96 * t115);
+    const iiwa14_real_t t117 = t116 + t104 * t53 + t108 * t61 + t112 * t52;
+    const iiwa14_real_t t118 = t113 + t117 * t91;
+    const iiwa14_real_t t119 = IIWA14_C(1.0) / t92;
+    const iiwa14_real_t t120 = t118 * t119;
+    const iiwa14_real_t t121 = parameters[XX3R] + (t25 - t70); /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t122 = parameters[XY3] + t114;
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t127 = t100 * (t61 - t125) + t126 * (IIWA14_C(2.0) * t98);
-    const iiwa14_real_t t128 = t100 * t127;
-    const iiwa14_real_t t129 = IIWA14_C(0.84) * t119;
-    const iiwa14_real_t t130 = parameters[ZZ2R] + (t125 + t128 + t129);
-    const iiwa14_real_t t131 = t108 * t4;
-    const iiwa14_real_t t132 = t112 * t20;
-    const iiwa14_real_t t133 = t116 * t53;
-    const iiwa14_real_t t134 = t130 + t108 * t131 + t112 * t132 + t116 * t133;
-    const iiwa14_real_t t135 = t121 * t93;
-    const iiwa14_real_t t136 = iiwa14_bounded(t134 - t121 * t135 - t122 * t124);
-    if (!(t136 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t123 = t96 * (t59 - t121) + t122 * (IIWA14_C(2.0) * t94);
+    const iiwa14_real_t t124 = t96 * t123;
+    const iiwa14_real_t t125 = IIWA14_C(0.84) * t115;
+    const iiwa14_real_t t126 = parameters[ZZ2R] + (t121 + t124 + t125);
+    const iiwa14_real_t t127 = t104 * t4;
+    const iiwa14_real_t t128 = t108 * t19;
+    const iiwa14_real_t t129 = t112 * t51;
+    const iiwa14_real_t t130 = t126 + t104 * t127 + t108 * t128 + t112 * t129;
+    const iiwa14_real_t t131 = t117 * t90;
+    const iiwa14_real_t t132 = t130 - t117 * t131 - t118 * t120;
+    if (!(t132 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t137 = t136 + IIWA14_C(-1.0e-9) * t130;
-    if (!(t137 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t138 = parameters[XX2R] + (t61 - t128 + t129);
+    const iiwa14_real_t t133 = parameters[XX2R] + (t59 - t124 + t125);
     /* link j3: column of the mass matrix */
-    const iiwa14_real_t t140 = t100 * t97 + t98 * t99 + IIWA14_C(0.42) * (t100 * t104 - t98 * t101);
+    const iiwa14_real_t t135 = t96 * t93 + t94 * t95 + IIWA14_C(0.42) * (t96 * t100 - t94 * t97);
     /* link j2: inertia of it and all beyond */
-    const iiwa14_real_t t142 = t139 * (t74 - t138) + (parameters[XY2] + t140) * (IIWA14_C(2.0) * t141);
-    const iiwa14_real_t t143 = parameters[ZZ1R] + (t138 + t139 * t142);
+    const iiwa14_real_t t137 = t134 * (t71 - t133) + (parameters[XY2] + t135) * (IIWA14_C(2.0) * t136);
+    const iiwa14_real_t t138 = parameters[ZZ1R] + (t133 + t134 * t137);
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t144 = t98 * t46 - t100 * t106 + IIWA14_C(0.42) * (t98 * t107 - t100 * t76);
-    const iiwa14_real_t t145 = t141 * t144 + t139 * t78;
-    const iiwa14_real_t t146 = t145 * t4;
+    const iiwa14_real_t t139 = t94 * t44 - t96 * t102 + IIWA14_C(0.42) * (t94 * t103 - t96 * t73);
+    const iiwa14_real_t t140 = t136 * t139 + t134 * t75;
+    const iiwa14_real_t t141 = t140 * t4;
     /* link j6: column of the mass matrix */
-    const iiwa14_real_t t147 = t98 * t50 - t100 * t109 + IIWA14_C(0.42) * (t98 * t110 + t100 * t80);
-    const iiwa14_real_t t148 = t141 * t147 + t139 * t82 + t145 * t5;
-    const iiwa14_real_t t149 = t148 * t20;
+    const iiwa14_real_t t142 = t94 * t48 - t96 * t105 + IIWA14_C(0.42) * (t94 * t106 + t96 * t77);
+    const iiwa14_real_t t143 = t136 * t142 + t134 * t79 + t140 * t5;
+    const iiwa14_real_t t144 = t143 * t19;
     /* link j5: column of the mass matrix */
-    const iiwa14_real_t t150 = t98 * t42 - t100 * t113 + IIWA14_C(0.42) * (t98 * t114 - t100 * t68);
-    const iiwa14_real_t t151 = t141 * t150 + t139 * t85 + t145 * t28 + t148 * t21;
-    const iiwa14_real_t t152 = t151 * t53;
-    const iiwa14_real_t t153 = t143 + t145 * t146 + t148 * t149 + t151 * t152;
+    const iiwa14_real_t t145 = t94 * t40 - t96 * t109 + IIWA14_C(0.42) * (t94 * t110 - t96 * t65);
+    const iiwa14_real_t t146 = t136 * t145 + t134 * t82 + t140 * t27 + t143 * t20;
+    const iiwa14_real_t t147 = t146 * t51;
+    const iiwa14_real_t t148 = t138 + t140 * t141 + t143 * t144 + t146 * t147;
     /* link j4: column of the mass matrix */
-    const iiwa14_real_t t154 = t98 * t61 - t100 * t118 + IIWA14_C(0.42) * (t98 * t119);
-    const iiwa14_real_t t155 = t141 * t154 + t139 * t91 + t145 * t55 + t148 * t63;
-    const iiwa14_real_t t156 = t155 + t151 * t54;
-    const iiwa14_real_t t157 = t156 * t93;
-    const iiwa14_real_t t158 = t141 * t140 + t139 * t74 + t145 * t79 + t148 * t84;
-    const iiwa14_real_t t159 = t156 * t94 - (t158 + t151 * t87);
-    const iiwa14_real_t t160 = t159 * t123;
+    const iiwa14_real_t t149 = t94 * t59 - t96 * t114 + IIWA14_C(0.42) * (t94 * t115);
+    const iiwa14_real_t t150 = t136 * t149 + t134 * t88 + t140 * t53 + t143 * t61;
+    const iiwa14_real_t t151 = t150 + t146 * t52;
+    const iiwa14_real_t t152 = t151 * t90;
+    const iiwa14_real_t t153 = t136 * t135 + t134 * t71 + t140 * t76 + t143 * t81;
+    const iiwa14_real_t t154 = t151 * t91 - (t153 + t146 * t84);
+    const iiwa14_real_t t155 = t154 * t119;
     /* link j2: column of the mass matrix */
-    const iiwa14_real_t t161 = t141 * (parameters[XZ2] + (t126 - t98 * t127)) + t139 * (parameters[YZ2]
-        + t105);
-    const iiwa14_real_t t162 = t161 - t145 * t131 - t148 * t132 - t151 * t133;
-    const iiwa14_real_t t163 = t162 + t156 * t135 + t159 * t124;
-    const iiwa14_real_t t164 = IIWA14_C(1.0) / t136;
-    const iiwa14_real_t t165 = t163 * t164;
-    const iiwa14_real_t t166 = iiwa14_bounded(t153 - t156 * t157 - t159 * t160 - t163 * t165);
+    const iiwa14_real_t t156 = t136 * (parameters[XZ2] + (t122 - t94 * t123)) + t134 * (parameters[YZ2]
+        + t101);
+    const iiwa14_real_t t157 = t156 - t140 * t127 - t143 * t128 - t146 * t129;
+    const iiwa14_real_t t158 = t157 + t151 * t131 + t154 * t120;
+    const iiwa14_real_t t159 = IIWA14_C(1.0) / t132;
+    const iiwa14_real_t t160 = t158 * t159;
+    const iiwa14_real_t t161 = t148 - t151 * t152 - t154 * t155 - t158 * t160;
+    if (!(t161 > IIWA14_C(1.0e-12))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t162 = iiwa14_min(t10 + IIWA14_C(-1.0e-9) * t9, t28 + IIWA14_C(-1.0e-9) * t26);
+    const iiwa14_real_t t163 = iiwa14_min(t162, t62 + IIWA14_C(-1.0e-9) * t60);
+    const iiwa14_real_t t164 = iiwa14_min(t163, t92 + IIWA14_C(-1.0e-9) * t72);
+    const iiwa14_real_t t165 = iiwa14_min(t164, t132 + IIWA14_C(-1.0e-9) * t126);
+    const iiwa14_real_t t166 = iiwa14_min(t165, t161 + IIWA14_C(-1.0e-9) * t138);
     if (!(t166 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t167 = t166 + IIWA14_C(-1.0e-9) * t143;
-    if (!(t167 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t168 = t141 * dq[0]; /* link j2: motion */
-    const iiwa14_real_t t169 = t98 * dq[1] - t100 * t168; /* link j3: motion */
-    const iiwa14_real_t t170 = t98 * t168 + t100 * dq[1];
-    const iiwa14_real_t t171 = t169 * t170;
-    const iiwa14_real_t t172 = dq[1] * t168; /* link j2: motion */
-    const iiwa14_real_t t173 = t172 + t171; /* link j4: motion */
-    const iiwa14_real_t t174 = t139 * dq[0]; /* link j2: motion */
-    const iiwa14_real_t t175 = t168 * t174;
-    const iiwa14_real_t t176 = dq[1] * t174;
-    const iiwa14_real_t t177 = IIWA14_C(-2.0) * t176;
-    const iiwa14_real_t t178 = t100 * t177 - t98 * t175; /* link j3: motion */
-    const iiwa14_real_t t179 = dq[2] + t174;
-    const iiwa14_real_t t180 = t170 * t179;
-    const iiwa14_real_t t181 = t178 + t180;
-    const iiwa14_real_t t182 = t180 + t181; /* link j4: motion */
-    const iiwa14_real_t t183 = t67 * t173 + t71 * t182;
-    const iiwa14_real_t t184 = t67 * t169 + t71 * t179;
-    const iiwa14_real_t t185 = dq[3] - t170;
-    const iiwa14_real_t t186 = t184 * t185;
-    const iiwa14_real_t t187 = t183 + t186;
-    const iiwa14_real_t t188 = t34 * t184 - t32 * t185; /* link j5: motion */
-    const iiwa14_real_t t189 = t32 * t184 + t34 * t185;
-    const iiwa14_real_t t190 = t188 * t189;
-    const iiwa14_real_t t191 = t187 - t190; /* link j6: motion */
-    const iiwa14_real_t t192 = t100 * t175 + t98 * t177; /* link j3: motion */
-    const iiwa14_real_t t193 = t169 * t179;
-    const iiwa14_real_t t194 = t192 + t193;
-    const iiwa14_real_t t195 = t71 * t169 - t67 * t179; /* link j4: motion */
-    const iiwa14_real_t t196 = t184 * t195;
-    const iiwa14_real_t t197 = t194 + t196; /* link j5: motion */
-    const iiwa14_real_t t198 = t67 * t182 - t71 * t173; /* link j4: motion */
-    const iiwa14_real_t t199 = t195 * t185;
-    const iiwa14_real_t t200 = t198 - t199;
-    const iiwa14_real_t t201 = t200 - t199; /* link j5: motion */
-    const iiwa14_real_t t202 = t34 * t201 - t32 * t197;
-    const iiwa14_real_t t203 = t195 - dq[4];
-    const iiwa14_real_t t204 = t189 * t203;
-    const iiwa14_real_t t205 = t202 + t204;
-    const iiwa14_real_t t206 = t204 + t205; /* link j6: motion */
-    const iiwa14_real_t t207 = t13 * t191 + t15 * t206;
-    const iiwa14_real_t t208 = t15 * t203 - t13 * t188;
-    const iiwa14_real_t t209 = dq[5] - t189;
-    const iiwa14_real_t t210 = t208 * t209;
-    const iiwa14_real_t t211 = t207 + t210;
-    const iiwa14_real_t t212 = t210 + t211; /* link j7: motion */
-    const iiwa14_real_t t213 = t34 * t197 + t32 * t201; /* link j5: motion */
-    const iiwa14_real_t t214 = t188 * t203;
-    const iiwa14_real_t t215 = t213 - t214;
-    const iiwa14_real_t t216 = t15 * t188 + t13 * t203; /* link j6: motion */
-    const iiwa14_real_t t217 = t216 * t208;
-    const iiwa14_real_t t218 = t215 + t217; /* link j7: motion */
-    const iiwa14_real_t t219 = t2 * t212 - t1 * t218;
-    const iiwa14_real_t t220 = t2 * t209 - t1 * t216;
-    const iiwa14_real_t t221 = t208 - dq[6];
-    const iiwa14_real_t t222 = t220 * t221;
-    const iiwa14_real_t t223 = t219 - t222;
-    const iiwa14_real_t t224 = t2 * t218 + t1 * t212;
-    const iiwa14_real_t t225 = t2 * t216 + t1 * t209;
-    const iiwa14_real_t t226 = t225 * t221;
-    const iiwa14_real_t t227 = t224 - t226 - t226; /* link j7: force and moment */
-    const iiwa14_real_t t228 = t13 * t206 - t15 * t191; /* link j6: motion */
-    const iiwa14_real_t t229 = t216 * t209;
-    const iiwa14_real_t t230 = t228 + t229;
-    const iiwa14_real_t t231 = t225 * t220; /* link j7: motion */
-    const iiwa14_real_t t232 = t230 + t231; /* link j7: force and moment */
-    const iiwa14_real_t t233 = parameters[ZZ7] * t222 - parameters[XX7R] * t223 + parameters[XY7] * t227
-        - parameters[XZ7R] * t232;
-    const iiwa14_real_t t234 = t220 * t220; /* link j7: motion */
-    const iiwa14_real_t t235 = t221 * t221;
-    const iiwa14_real_t t236 = IIWA14_C(-9.81) * t141; /* link j2: motion */
-    const iiwa14_real_t t237 = t236 + IIWA14_C(-0.42) * t175; /* link j3: motion */
-    const iiwa14_real_t t238 = IIWA14_C(0.84) * t176;
-    const iiwa14_real_t t239 = t100 * t237 + t98 * t238;
-    const iiwa14_real_t t240 = t168 * t168; /* link j2: motion */
-    const iiwa14_real_t t241 = dq[1] * dq[1];
-    const iiwa14_real_t t242 = IIWA14_C(9.81) * t139;
-    const iiwa14_real_t t243 = t242 + IIWA14_C(-0.42) * (t241 + t240); /* link j3: motion */
-    const iiwa14_real_t t244 = t67 * t239 + t71 * t243; /* link j4: motion */
-    const iiwa14_real_t t245 = t244 + IIWA14_C(-0.4) * t197; /* link j5: motion */
-    const iiwa14_real_t t246 = t98 * t237 - t100 * t238; /* link j3: motion */
-    const iiwa14_real_t t247 = t246 + IIWA14_C(0.4) * t201; /* link j5: motion */
-    const iiwa14_real_t t248 = t34 * t245 - t32 * t247;
-    const iiwa14_real_t t249 = t184 * t184; /* link j4: motion */
-    const iiwa14_real_t t250 = t185 * t185;
-    const iiwa14_real_t t251 = t249 + t250; /* link j5: motion */
-    const iiwa14_real_t t252 = t71 * t239 - t67 * t243; /* link j4: motion */
-    const iiwa14_real_t t253 = t252 + IIWA14_C(0.4) * t251; /* link j5: motion */
-    const iiwa14_real_t t254 = t15 * t253 - t13 * t248; /* link j6: motion */
+    const iiwa14_real_t t167 = t136 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t168 = t94 * dq[1] - t96 * t167; /* link j3: motion */
+    const iiwa14_real_t t169 = t94 * t167 + t96 * dq[1];
+    const iiwa14_real_t t170 = t168 * t169;
+    const iiwa14_real_t t171 = dq[1] * t167; /* link j2: motion */
+    const iiwa14_real_t t172 = t171 + t170; /* link j4: motion */
+    const iiwa14_real_t t173 = t134 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t174 = t167 * t173;
+    const iiwa14_real_t t175 = dq[1] * t173;
+    const iiwa14_real_t t176 = IIWA14_C(-2.0) * t175;
+    const iiwa14_real_t t177 = t96 * t176 - t94 * t174; /* link j3: motion */
+    const iiwa14_real_t t178 = dq[2] + t173;
+    const iiwa14_real_t t179 = t169 * t178;
+    const iiwa14_real_t t180 = t177 + t179;
+    const iiwa14_real_t t181 = t179 + t180; /* link j4: motion */
+    const iiwa14_real_t t182 = t64 * t172 + t68 * t181;
+    const iiwa14_real_t t183 = t64 * t168 + t68 * t178;
+    const iiwa14_real_t t184 = dq[3] - t169;
+    const iiwa14_real_t t185 = t183 * t184;
+    const iiwa14_real_t t186 = t182 + t185;
+    const iiwa14_real_t t187 = t32 * t183 - t30 * t184; /* link j5: motion */
+    const iiwa14_real_t t188 = t30 * t183 + t32 * t184;
+    const iiwa14_real_t t189 = t187 * t188;
+    const iiwa14_real_t t190 = t186 - t189; /* link j6: motion */
+    const iiwa14_real_t t191 = t96 * t174 + t94 * t176; /* link j3: motion */
+    const iiwa14_real_t t192 = t168 * t178;
+    const iiwa14_real_t t193 = t191 + t192;
+    const iiwa14_real_t t194 = t68 * t168 - t64 * t178; /* link j4: motion */
+    const iiwa14_real_t t195 = t183 * t194;
+    const iiwa14_real_t t196 = t193 + t195; /* link j5: motion */
+    const iiwa14_real_t t197 = t64 * t181 - t68 * t172; /* link j4: motion */
+    const iiwa14_real_t t198 = t194 * t184;
+    const iiwa14_real_t t199 = t197 - t198;
+    const iiwa14_real_t t200 = t199 - t198; /* link j5: motion */
+    const iiwa14_real_t t201 = t32 * t200 - t30 * t196;
+    const iiwa14_real_t t202 = t194 - dq[4];
+    const iiwa14_real_t t203 = t188 * t202;
+    const iiwa14_real_t t204 = t201 + t203;
+    const iiwa14_real_t t205 = t203 + t204; /* link j6: motion */
+    const iiwa14_real_t t206 = t12 * t190 + t14 * t205;
+    const iiwa14_real_t t207 = t14 * t202 - t12 * t187;
+    const iiwa14_real_t t208 = dq[5] - t188;
+    const iiwa14_real_t t209 = t207 * t208;
+    const iiwa14_real_t t210 = t206 + t209;
+    const iiwa14_real_t t211 = t209 + t210; /* link j7: motion */
+    const iiwa14_real_t t212 = t32 * t196 + t30 * t200; /* link j5: motion */
+    const iiwa14_real_t t213 = t187 * t202;
+    const iiwa14_real_t t214 = t212 - t213;
+    const iiwa14_real_t t215 = t14 * t187 + t12 * t202; /* link j6: motion */
+    const iiwa14_real_t t216 = t215 * t207;
+    const iiwa14_real_t t217 = t214 + t216; /* link j7: motion */
+    const iiwa14_real_t t218 = t2 * t211 - t1 * t217;
+    const iiwa14_real_t t219 = t2 * t208 - t1 * t215;
+    const iiwa14_real_t t220 = t207 - dq[6];
+    const iiwa14_real_t t221 = t219 * t220;
+    const iiwa14_real_t t222 = t218 - t221;
+    const iiwa14_real_t t223 = t2 * t217 + t1 * t211;
+    const iiwa14_real_t t224 = t2 * t215 + t1 * t208;
+    const iiwa14_real_t t225 = t224 * t220;
+    const iiwa14_real_t t226 = t223 - t225 - t225; /* link j7: force and moment */
+    const iiwa14_real_t t227 = t12 * t205 - t14 * t190; /* link j6: motion */
+    const iiwa14_real_t t228 = t215 * t208;
+    const iiwa14_real_t t229 = t227 + t228;
+    const iiwa14_real_t t230 = t224 * t219; /* link j7: motion */
+    const iiwa14_real_t t231 = t229 + t230; /* link j7: force and moment */
+    const iiwa14_real_t t232 = parameters[ZZ7] * t221 - parameters[XX7R] * t222 + parameters[XY7] * t226
+        - parameters[XZ7R] * t231;
+    const iiwa14_real_t t233 = t219 * t219; /* link j7: motion */
+    const iiwa14_real_t t234 = t220 * t220;
+    const iiwa14_real_t t235 = IIWA14_C(-9.81) * t136; /* link j2: motion */
+    const iiwa14_real_t t236 = t235 + IIWA14_C(-0.42) * t174; /* link j3: motion */
+    const iiwa14_real_t t237 = IIWA14_C(0.84) * t175;
+    const iiwa14_real_t t238 = t96 * t236 + t94 * t237;
+    const iiwa14_real_t t239 = t167 * t167; /* link j2: motion */
+    const iiwa14_real_t t240 = dq[1] * dq[1];
+    const iiwa14_real_t t241 = IIWA14_C(9.81) * t134;
+    const iiwa14_real_t t242 = t241 + IIWA14_C(-0.42) * (t240 + t239); /* link j3: motion */
+    const iiwa14_real_t t243 = t64 * t238 + t68 * t242; /* link j4: motion */
+    const iiwa14_real_t t244 = t243 + IIWA14_C(-0.4) * t196; /* link j5: motion */
+    const iiwa14_real_t t245 = t94 * t236 - t96 * t237; /* link j3: motion */
+    const iiwa14_real_t t246 = t245 + IIWA14_C(0.4) * t200; /* link j5: motion */
+    const iiwa14_real_t t247 = t32 * t244 - t30 * t246;
+    const iiwa14_real_t t248 = t183 * t183; /* link j4: motion */
+    const iiwa14_real_t t249 = t184 * t184;
+    const iiwa14_real_t t250 = t248 + t249; /* link j5: motion */
+    const iiwa14_real_t t251 = t68 * t238 - t64 * t242; /* link j4: motion */
+    const iiwa14_real_t t252 = t251 + IIWA14_C(0.4) * t250; /* link j5: motion */
+    const iiwa14_real_t t253 = t14 * t252 - t12 * t247; /* link j6: motion */
     /* link j7: force and moment */
-    const iiwa14_real_t t255 = t233 - parameters[YZ7R] * (t234 - t235) + parameters[MY7] * t254;
-    const iiwa14_real_t t256 = t223 - t222;
-    const iiwa14_real_t t257 = t231 - t230;
-    const iiwa14_real_t t258 = t226 * (parameters[XX7R] - parameters[ZZ7]) - parameters[XY7] * t256
-        + parameters[YZ7R] * t257;
-    const iiwa14_real_t t259 = t225 * t225; /* link j7: motion */
+    const iiwa14_real_t t254 = t232 - parameters[YZ7R] * (t233 - t234) + parameters[MY7] * t253;
+    const iiwa14_real_t t255 = t222 - t221;
+    const iiwa14_real_t t256 = t230 - t229;
+    const iiwa14_real_t t257 = t225 * (parameters[XX7R] - parameters[ZZ7]) - parameters[XY7] * t255
+        + parameters[YZ7R] * t256;
+    const iiwa14_real_t t258 = t224 * t224; /* link j7: motion */
     /* link j7: force and moment */
-    const iiwa14_real_t t260 = t258 + parameters[XZ7R] * (t259 - t235) - parameters[MX7] * t254;
-    const iiwa14_real_t t261 = t229 + t230; /* link j7: motion */
-    const iiwa14_real_t t262 = t215 - t217;
+    const iiwa14_real_t t259 = t257 + parameters[XZ7R] * (t258 - t234) - parameters[MX7] * t253;
+    const iiwa14_real_t t260 = t228 + t229; /* link j7: motion */
+    const iiwa14_real_t t261 = t214 - t216;
     /* link j6: force and moment */
-    const iiwa14_real_t t263 = parameters[XX6R] * t211 + parameters[ZZ6R] * t210 - parameters[XY6] * t261
-        - parameters[XZ6] * t262;
-    const iiwa14_real_t t264 = t208 * t208; /* link j6: motion */
-    const iiwa14_real_t t265 = t209 * t209;
-    const iiwa14_real_t t266 = t32 * t245 + t34 * t247; /* link j5: motion */
+    const iiwa14_real_t t262 = parameters[XX6R] * t210 + parameters[ZZ6R] * t209 - parameters[XY6] * t260
+        - parameters[XZ6] * t261;
+    const iiwa14_real_t t263 = t207 * t207; /* link j6: motion */
+    const iiwa14_real_t t264 = t208 * t208;
+    const iiwa14_real_t t265 = t30 * t244 + t32 * t246; /* link j5: motion */
     /* link j7: what it passes on */
-    const iiwa14_real_t t267 = t263 + parameters[YZ6] * (t264 - t265) - parameters[MY6R] * t266 - (t2 * t255
-        - t1 * t260);
+    const iiwa14_real_t t266 = t262 + parameters[YZ6] * (t263 - t264) - parameters[MY6R] * t265 - (t2 * t254
+        - t1 * t259);
     /* link j7: force and moment */
-    const iiwa14_real_t t268 = parameters[XX7R] * t231 - parameters[ZZ7] * t230 + parameters[YZ7R] * t224
-        - parameters[XZ7R] * t219;
-    const iiwa14_real_t t269 = t15 * t248 + t13 * t253; /* link j6: motion */
+    const iiwa14_real_t t267 = parameters[XX7R] * t230 - parameters[ZZ7] * t229 + parameters[YZ7R] * t223
+        - parameters[XZ7R] * t218;
+    const iiwa14_real_t t268 = t14 * t247 + t12 * t252; /* link j6: motion */
     /* link j7: force and moment */
-    const iiwa14_real_t t270 = parameters[MX7] * (t1 * t269 + t2 * t266) + parameters[MY7] * (t2 * t269
-        - t1 * t266);
-    const iiwa14_real_t t271 = t268 + parameters[XY7] * (t234 - t259) + t270;
+    const iiwa14_real_t t269 = parameters[MX7] * (t1 * t268 + t2 * t265) + parameters[MY7] * (t2 * t268
+        - t1 * t265);
+    const iiwa14_real_t t270 = t267 + parameters[XY7] * (t233 - t258) + t269;
     /* link j6: force and moment */
-    const iiwa14_real_t t272 = parameters[XY6] * t212 - t229 * (parameters[ZZ6R] - parameters[XX6R])
-        - parameters[YZ6] * t218;
-    const iiwa14_real_t t273 = t216 * t216; /* link j6: motion */
+    const iiwa14_real_t t271 = parameters[XY6] * t211 - t228 * (parameters[ZZ6R] - parameters[XX6R])
+        - parameters[YZ6] * t217;
+    const iiwa14_real_t t272 = t215 * t215; /* link j6: motion */
     /* link j7: what it passes on */
-    const iiwa14_real_t t274 = t272 + parameters[XZ6] * (t265 - t273) + parameters[MX6] * t266 + t271;
-    const iiwa14_real_t t275 = t215 - t214; /* link j6: motion */
-    const iiwa14_real_t t276 = t187 + t190;
+    const iiwa14_real_t t273 = t271 + parameters[XZ6] * (t264 - t272) + parameters[MX6] * t265 + t270;
+    const iiwa14_real_t t274 = t214 - t213; /* link j6: motion */
+    const iiwa14_real_t t275 = t186 + t189;
     /* link j5: force and moment */
-    const iiwa14_real_t t277 = parameters[XY5] * t275 - (parameters[XX5R] * t205 + parameters[ZZ5R] * t204)
-        + parameters[XZ5] * t276;
-    const iiwa14_real_t t278 = t189 * t189; /* link j5: motion */
-    const iiwa14_real_t t279 = t203 * t203;
+    const iiwa14_real_t t276 = parameters[XY5] * t274 - (parameters[XX5R] * t204 + parameters[ZZ5R] * t203)
+        + parameters[XZ5] * t275;
+    const iiwa14_real_t t277 = t188 * t188; /* link j5: motion */
+    const iiwa14_real_t t278 = t202 * t202;
     /* link j6: what it passes on */
-    const iiwa14_real_t t280 = t277 + parameters[YZ5] * (t279 - t278) + parameters[MY5R] * t253 + (t13 * t274
-        - t15 * t267);
+    const iiwa14_real_t t279 = t276 + parameters[YZ5] * (t278 - t277) + parameters[MY5R] * t252 + (t12 * t273
+        - t14 * t266);
     /* link j6: force and moment */
-    const iiwa14_real_t t281 = parameters[ZZ6R] * t215 + parameters[XX6R] * t217 + parameters[YZ6] * t228
-        - parameters[XZ6] * t207;
-    const iiwa14_real_t t282 = t281 - parameters[XY6] * (t273 - t264) - (parameters[MX6] * t254
-        - parameters[MY6R] * t269);
-    const iiwa14_real_t t283 = t282 + (t1 * t255 + t2 * t260); /* link j7: what it passes on */
+    const iiwa14_real_t t280 = parameters[ZZ6R] * t214 + parameters[XX6R] * t216 + parameters[YZ6] * t227
+        - parameters[XZ6] * t206;
+    const iiwa14_real_t t281 = t280 - parameters[XY6] * (t272 - t263) - (parameters[MX6] * t253
+        - parameters[MY6R] * t268);
+    const iiwa14_real_t t282 = t281 + (t1 * t254 + t2 * t259); /* link j7: what it passes on */
     /* link j5: force and moment */
-    const iiwa14_real_t t284 = t214 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t206
-        + parameters[YZ5] * t191;
-    const iiwa14_real_t t285 = t188 * t188; /* link j5: motion */
+    const iiwa14_real_t t283 = t213 * (parameters[XX5R] - parameters[ZZ5R]) - parameters[XY5] * t205
+        + parameters[YZ5] * t190;
+    const iiwa14_real_t t284 = t187 * t187; /* link j5: motion */
     /* link j6: what it passes on */
-    const iiwa14_real_t t286 = t284 + parameters[XZ5] * (t285 - t279) - parameters[MX5] * t253 + t283;
+    const iiwa14_real_t t285 = t283 + parameters[XZ5] * (t284 - t278) - parameters[MX5] * t252 + t282;
     /* link j7: force and moment */
-    const iiwa14_real_t t287 = parameters[MX7] * (t234 + t235) - parameters[MY7] * t257;
-    const iiwa14_real_t t288 = parameters[MX7] * t232 - parameters[MY7] * (t259 + t235);
+    const iiwa14_real_t t286 = parameters[MX7] * (t233 + t234) - parameters[MY7] * t256;
+    const iiwa14_real_t t287 = parameters[MX7] * t231 - parameters[MY7] * (t258 + t234);
     /* link j7: what it passes on */
-    const iiwa14_real_t t289 = parameters[MX6] * (t264 + t265) - parameters[MY6R] * t218 + (t2 * t287
-        + t1 * t288);
-    const iiwa14_real_t t290 = parameters[MX6] * t262 + parameters[MY6R] * (t273 + t265)
-        + (parameters[MX7] * t227 + parameters[MY7] * t256);
+    const iiwa14_real_t t288 = parameters[MX6] * (t263 + t264) - parameters[MY6R] * t217 + (t2 * t286
+        + t1 * t287);
+    const iiwa14_real_t t289 = parameters[MX6] * t261 + parameters[MY6R] * (t272 + t264)
+        + (parameters[MX7] * t226 + parameters[MY7] * t255);
     /* link j6: what it passes on */
-    const iiwa14_real_t t291 = parameters[MX5] * (t278 + t279) - parameters[MY5R] * t191 + (t15 * t289
-        - t13 * t290);
+    const iiwa14_real_t t290 = parameters[MX5] * (t277 + t278) - parameters[MY5R] * t190 + (t14 * t288
+        - t12 * t289);
     /* link j7: what it passes on */
-    const iiwa14_real_t t292 = parameters[MX6] * t261 + parameters[MY6R] * t212 + (t2 * t288 - t1 * t287);
+    const iiwa14_real_t t291 = parameters[MX6] * t260 + parameters[MY6R] * t211 + (t2 * t287 - t1 * t286);
     /* link j6: what it passes on */
-    const iiwa14_real_t t293 = t292 - (parameters[MX5] * t276 + parameters[MY5R] * (t285 + t279));
-    const iiwa14_real_t t294 = t34 * t293 - t32 * t291; /* link j5: what it passes on */
-    const iiwa14_real_t t295 = t186 + t187; /* link j5: motion */
-    const iiwa14_real_t t296 = t194 - t196;
+    const iiwa14_real_t t292 = t291 - (parameters[MX5] * t275 + parameters[MY5R] * (t284 + t278));
+    const iiwa14_real_t t293 = t32 * t292 - t30 * t290; /* link j5: what it passes on */
+    const iiwa14_real_t t294 = t185 + t186; /* link j5: motion */
+    const iiwa14_real_t t295 = t193 - t195;
     /* link j4: force and moment */
-    const iiwa14_real_t t297 = parameters[ZZ4R] * t199 - parameters[XX4R] * t200 + parameters[XY4] * t295
-        - parameters[XZ4] * t296;
-    const iiwa14_real_t t298 = t195 * t195; /* link j4: motion */
+    const iiwa14_real_t t296 = parameters[ZZ4R] * t198 - parameters[XX4R] * t199 + parameters[XY4] * t294
+        - parameters[XZ4] * t295;
+    const iiwa14_real_t t297 = t194 * t194; /* link j4: motion */
     /* link j5: what it passes on */
-    const iiwa14_real_t t299 = t297 + parameters[YZ4] * (t250 - t298) - parameters[MY4R] * t246 + (t34 * t280
-        - t32 * t286 + IIWA14_C(0.4) * t294);
+    const iiwa14_real_t t298 = t296 + parameters[YZ4] * (t249 - t297) - parameters[MY4R] * t245 + (t32 * t279
+        - t30 * t285 + IIWA14_C(0.4) * t293);
     /* link j5: force and moment */
-    const iiwa14_real_t t300 = parameters[ZZ5R] * t187 - parameters[XX5R] * t190 + parameters[YZ5] * t213
-        - parameters[XZ5] * t202;
-    const iiwa14_real_t t301 = t300 + parameters[XY5] * (t278 - t285) + (parameters[MX5] * t266
-        + parameters[MY5R] * t248);
-    const iiwa14_real_t t302 = t301 + (t13 * t267 + t15 * t274); /* link j6: what it passes on */
+    const iiwa14_real_t t299 = parameters[ZZ5R] * t186 - parameters[XX5R] * t189 + parameters[YZ5] * t212
+        - parameters[XZ5] * t201;
+    const iiwa14_real_t t300 = t299 + parameters[XY5] * (t277 - t284) + (parameters[MX5] * t265
+        + parameters[MY5R] * t247);
+    const iiwa14_real_t t301 = t300 + (t12 * t266 + t14 * t273); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const iiwa14_real_t t303 = t186 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t201
-        + parameters[YZ4] * t197;
+    const iiwa14_real_t t302 = t185 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t200
+        + parameters[YZ4] * t196;
     /* link j5: what it passes on */
-    const iiwa14_real_t t304 = parameters[XZ4] * (t249 - t250) - t303 + parameters[MX4] * t246 + t302;
+    const iiwa14_real_t t303 = parameters[XZ4] * (t248 - t249) - t302 + parameters[MX4] * t245 + t301;
     /* link j3: force and moment */
-    const iiwa14_real_t t305 = parameters[XY3] * (t193 + t194) - (parameters[XX3R] * t181
-        + parameters[ZZ3R] * t180);
-    const iiwa14_real_t t306 = t172 - t171; /* link j4: motion */
-    const iiwa14_real_t t307 = t170 * t170; /* link j3: motion */
-    const iiwa14_real_t t308 = t179 * t179;
+    const iiwa14_real_t t304 = parameters[XY3] * (t192 + t193) - (parameters[XX3R] * t180
+        + parameters[ZZ3R] * t179);
+    const iiwa14_real_t t305 = t171 - t170; /* link j4: motion */
+    const iiwa14_real_t t306 = t169 * t169; /* link j3: motion */
+    const iiwa14_real_t t307 = t178 * t178;
     /* link j3: force and moment */
-    const iiwa14_real_t t309 = t305 + parameters[XZ3] * t306 - parameters[YZ3] * (t307 - t308)
-        - parameters[MY3R] * t243;
-    const iiwa14_real_t t310 = t309 + (t67 * t299 - t71 * t304); /* link j4: what it passes on */
-    const iiwa14_real_t t311 = t34 * t291 + t32 * t293; /* link j5: what it passes on */
+    const iiwa14_real_t t308 = t304 + parameters[XZ3] * t305 - parameters[YZ3] * (t306 - t307)
+        - parameters[MY3R] * t242;
+    const iiwa14_real_t t309 = t308 + (t64 * t298 - t68 * t303); /* link j4: what it passes on */
+    const iiwa14_real_t t310 = t32 * t290 + t30 * t292; /* link j5: what it passes on */
     /* link j4: force and moment */
-    const iiwa14_real_t t312 = parameters[ZZ4R] * t194 + parameters[XX4R] * t196 - parameters[YZ4] * t183
-        + parameters[XZ4] * t198;
-    const iiwa14_real_t t313 = t312 + parameters[XY4] * (t249 - t298) - (parameters[MX4] * t252
-        + parameters[MY4R] * t244);
+    const iiwa14_real_t t311 = parameters[ZZ4R] * t193 + parameters[XX4R] * t195 - parameters[YZ4] * t182
+        + parameters[XZ4] * t197;
+    const iiwa14_real_t t312 = t311 + parameters[XY4] * (t248 - t297) - (parameters[MX4] * t251
+        + parameters[MY4R] * t243);
     /* link j5: what it passes on */
-    const iiwa14_real_t t314 = t313 + (t32 * t280 + t34 * t286 + IIWA14_C(0.4) * t311);
+    const iiwa14_real_t t313 = t312 + (t30 * t279 + t32 * t285 + IIWA14_C(0.4) * t310);
     /* link j3: force and moment */
-    const iiwa14_real_t t315 = parameters[YZ3] * t173 - (t193 * (parameters[XX3R] - parameters[ZZ3R])
-        + parameters[XY3] * t182);
-    const iiwa14_real_t t316 = t169 * t169; /* link j3: motion */
+    const iiwa14_real_t t314 = parameters[YZ3] * t172 - (t192 * (parameters[XX3R] - parameters[ZZ3R])
+        + parameters[XY3] * t181);
+    const iiwa14_real_t t315 = t168 * t168; /* link j3: motion */
     /* link j4: what it passes on */
-    const iiwa14_real_t t317 = t315 + parameters[XZ3] * (t316 - t308) + parameters[MX3] * t243 + t314;
-    const iiwa14_real_t t318 = t67 * (parameters[MX4] * (t298 + t250) + parameters[MY4R] * t197 + t311);
+    const iiwa14_real_t t316 = t314 + parameters[XZ3] * (t315 - t307) + parameters[MX3] * t242 + t313;
+    const iiwa14_real_t t317 = t64 * (parameters[MX4] * (t297 + t249) + parameters[MY4R] * t196 + t310);
     /* link j6: what it passes on */
-    const iiwa14_real_t t319 = parameters[MX5] * t275 + parameters[MY5R] * t206 + (t13 * t289 + t15 * t290);
+    const iiwa14_real_t t318 = parameters[MX5] * t274 + parameters[MY5R] * t205 + (t12 * t288 + t14 * t289);
     /* link j4: what it passes on */
-    const iiwa14_real_t t320 = t318 + t71 * (parameters[MX4] * t296 - parameters[MY4R] * t251 + t319);
-    const iiwa14_real_t t321 = parameters[MX3] * (t307 + t308) - parameters[MY3R] * t173 + t320;
-    const iiwa14_real_t t322 = parameters[MX3] * t306 + parameters[MY3R] * (t316 + t308) - (t294
-        - (parameters[MX4] * t295 + parameters[MY4R] * t201));
+    const iiwa14_real_t t319 = t317 + t68 * (parameters[MX4] * t295 - parameters[MY4R] * t250 + t318);
+    const iiwa14_real_t t320 = parameters[MX3] * (t306 + t307) - parameters[MY3R] * t172 + t319;
+    const iiwa14_real_t t321 = parameters[MX3] * t305 + parameters[MY3R] * (t315 + t307) - (t293
+        - (parameters[MX4] * t294 + parameters[MY4R] * t200));
     /* link j3: what it passes on */
-    const iiwa14_real_t t323 = t98 * t317 - t100 * t310 + IIWA14_C(0.42) * (t98 * t321 + t100 * t322);
+    const iiwa14_real_t t322 = t94 * t316 - t96 * t309 + IIWA14_C(0.42) * (t94 * t320 + t96 * t321);
     /* link j2: force and moment */
-    const iiwa14_real_t t324 = parameters[XY2] * (IIWA14_C(2.0) * t172) - (parameters[XX2R] * t176
-        + parameters[ZZ2R] * t176);
-    const iiwa14_real_t t325 = t174 * t174; /* link j2: motion */
+    const iiwa14_real_t t323 = parameters[XY2] * (IIWA14_C(2.0) * t171) - (parameters[XX2R] * t175
+        + parameters[ZZ2R] * t175);
+    const iiwa14_real_t t324 = t173 * t173; /* link j2: motion */
     /* link j3: what it passes on */
-    const iiwa14_real_t t326 = t324 + parameters[XZ2] * t175 + parameters[YZ2] * (t325 - t241) + t323;
+    const iiwa14_real_t t325 = t323 + parameters[XZ2] * t174 + parameters[YZ2] * (t324 - t240) + t322;
     /* link j3: force and moment */
-    const iiwa14_real_t t327 = parameters[ZZ3R] * t172 + parameters[XX3R] * t171 + parameters[YZ3] * t192
-        - parameters[XZ3] * t178;
-    const iiwa14_real_t t328 = t327 + parameters[XY3] * (t307 - t316) + (parameters[MX3] * t246
-        + parameters[MY3R] * t239);
-    const iiwa14_real_t t329 = t328 + (t71 * t299 + t67 * t304); /* link j4: what it passes on */
+    const iiwa14_real_t t326 = parameters[ZZ3R] * t171 + parameters[XX3R] * t170 + parameters[YZ3] * t191
+        - parameters[XZ3] * t177;
+    const iiwa14_real_t t327 = t326 + parameters[XY3] * (t306 - t315) + (parameters[MX3] * t245
+        + parameters[MY3R] * t238);
+    const iiwa14_real_t t328 = t327 + (t68 * t298 + t64 * t303); /* link j4: what it passes on */
     /* link j2: force and moment */
-    const iiwa14_real_t t330 = t172 * (parameters[ZZ2R] - parameters[XX2R]) + parameters[XY2] * t177
-        - parameters[YZ2] * t175;
+    const iiwa14_real_t t329 = t171 * (parameters[ZZ2R] - parameters[XX2R]) + parameters[XY2] * t176
+        - parameters[YZ2] * t174;
     /* link j2: what it passes on */
-    const iiwa14_real_t t331 = t141 * t326 + t139 * (t330 + parameters[XZ2] * (t241 - t240) + t329);
-    const iiwa14_real_t t332 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
-    const iiwa14_real_t t333 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0])
-        - parameters[FC1] * t332) + t331;
-    const iiwa14_real_t t334 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
-    const iiwa14_real_t t335 = IIWA14_C(160.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6])
-        + parameters[FC7] * t334) - t271;
-    const iiwa14_real_t t336 = IIWA14_C(8.0) * input[6] - t335;
-    const iiwa14_real_t t337 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
-    const iiwa14_real_t t338 = IIWA14_C(160.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5])
-        + parameters[FC6] * t337) - t283;
-    const iiwa14_real_t t339 = IIWA14_C(8.0) * input[5] - t338 + t336 * t5;
-    const iiwa14_real_t t340 = IIWA14_C(16.0) * input[0] + t333 - t336 * t146 - t339 * t149;
-    const iiwa14_real_t t341 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
-    const iiwa14_real_t t342 = IIWA14_C(1.0e2) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4])
-        + parameters[FC5] * t341) - t302;
-    const iiwa14_real_t t343 = IIWA14_C(8.0) * input[4] - t342 + t336 * t28 + t339 * t21;
-    const iiwa14_real_t t344 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
-    const iiwa14_real_t t345 = IIWA14_C(160.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3])
-        + parameters[FC4] * t344) + t314;
-    const iiwa14_real_t t346 = IIWA14_C(16.0) * input[3] - t345 + t336 * t55 + t339 * t63;
-    const iiwa14_real_t t347 = t346 + t343 * t54;
-    const iiwa14_real_t t348 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
-    const iiwa14_real_t t349 = IIWA14_C(160.0) * (parameters[FV3] * (IIWA14_C(-160.0) * dq[2])
-        - parameters[FC3] * t348) + t329;
-    const iiwa14_real_t t350 = IIWA14_C(16.0) * input[2] + t349 - t336 * t79 - t339 * t84;
-    const iiwa14_real_t t351 = t350 - t343 * t87 + t347 * t94;
-    const iiwa14_real_t t352 = t340 - t343 * t152 + t347 * t157 + t351 * t160;
+    const iiwa14_real_t t330 = t136 * t325 + t134 * (t329 + parameters[XZ2] * (t240 - t239) + t328);
+    const iiwa14_real_t t331 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
+    const iiwa14_real_t t332 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0])
+        - parameters[FC1] * t331) + t330;
+    const iiwa14_real_t t333 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
+    const iiwa14_real_t t334 = IIWA14_C(160.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6])
+        + parameters[FC7] * t333) - t270;
+    const iiwa14_real_t t335 = IIWA14_C(8.0) * input[6] - t334;
+    const iiwa14_real_t t336 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
+    const iiwa14_real_t t337 = IIWA14_C(160.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5])
+        + parameters[FC6] * t336) - t282;
+    const iiwa14_real_t t338 = IIWA14_C(8.0) * input[5] - t337 + t335 * t5;
+    const iiwa14_real_t t339 = IIWA14_C(16.0) * input[0] + t332 - t335 * t141 - t338 * t144;
+    const iiwa14_real_t t340 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
+    const iiwa14_real_t t341 = IIWA14_C(1.0e2) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4])
+        + parameters[FC5] * t340) - t301;
+    const iiwa14_real_t t342 = IIWA14_C(8.0) * input[4] - t341 + t335 * t27 + t338 * t20;
+    const iiwa14_real_t t343 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
+    const iiwa14_real_t t344 = IIWA14_C(160.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3])
+        + parameters[FC4] * t343) + t313;
+    const iiwa14_real_t t345 = IIWA14_C(16.0) * input[3] - t344 + t335 * t53 + t338 * t61;
+    const iiwa14_real_t t346 = t345 + t342 * t52;
+    const iiwa14_real_t t347 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
+    const iiwa14_real_t t348 = IIWA14_C(160.0) * (parameters[FV3] * (IIWA14_C(-160.0) * dq[2])
+        - parameters[FC3] * t347) + t328;
+    const iiwa14_real_t t349 = IIWA14_C(16.0) * input[2] + t348 - t335 * t76 - t338 * t81;
+    const iiwa14_real_t t350 = t349 - t342 * t84 + t346 * t91;
+    const iiwa14_real_t t351 = t339 - t342 * t147 + t346 * t152 + t350 * t155;
     /* link j3: what it passes on */
-    const iiwa14_real_t t353 = t98 * t310 + t100 * t317 + IIWA14_C(0.42) * (t100 * t321 - t98 * t322);
+    const iiwa14_real_t t352 = t94 * t309 + t96 * t316 + IIWA14_C(0.42) * (t96 * t320 - t94 * t321);
     /* link j2: force and moment */
-    const iiwa14_real_t t354 = parameters[XX2R] * t175 + parameters[XY2] * (t325 - t240)
-        + (parameters[MX2] * t242 + parameters[MY2R] * t236);
-    const iiwa14_real_t t355 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
-    const iiwa14_real_t t356 = IIWA14_C(160.0) * (parameters[FV2] * (IIWA14_C(-160.0) * dq[1])
-        - parameters[FC2] * t355) + (t354 + t353);
-    const iiwa14_real_t t357 = IIWA14_C(16.0) * input[1] + t356 - t336 * t131 - t339 * t132;
-    const iiwa14_real_t t358 = t357 - t343 * t133 + t347 * t135 + t351 * t124;
-    const iiwa14_real_t t359 = IIWA14_C(1.0) / t166;
-    const iiwa14_real_t t360 = iiwa14_bounded((t352 + t358 * t165) * t359);
-    out[0] = t360;
-    const iiwa14_real_t t361 = iiwa14_bounded(t358 * t164 + t165 * t360);
-    out[1] = t361;
-    const iiwa14_real_t t362 = iiwa14_bounded(t351 * t123 + t160 * t360 + t124 * t361);
-    out[2] = t362;
-    const iiwa14_real_t t363 = iiwa14_bounded(t347 * t93 + t157 * t360 + t135 * t361 + t94 * t362);
-    out[3] = t363;
-    const iiwa14_real_t t364 = t343 * t53 + t152 * t360 + t133 * t361 + t87 * t362;
-    const iiwa14_real_t t365 = iiwa14_bounded(t54 * t363 - t364);
-    out[4] = t365;
-    const iiwa14_real_t t366 = t339 * t20 + t149 * t360 + t132 * t361 + t84 * t362;
-    const iiwa14_real_t t367 = iiwa14_bounded(t63 * t363 - t366 + t21 * t365);
-    out[5] = t367;
-    const iiwa14_real_t t368 = t336 * t4 + t146 * t360 + t131 * t361 + t79 * t362;
-    const iiwa14_real_t t369 = t55 * t363 - t368 + t28 * t365 + t5 * t367;
-    out[6] = t369;
-    if (!iiwa14_all_bounded(out, 7)) {
+    const iiwa14_real_t t353 = parameters[XX2R] * t174 + parameters[XY2] * (t324 - t239)
+        + (parameters[MX2] * t241 + parameters[MY2R] * t235);
+    const iiwa14_real_t t354 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
+    const iiwa14_real_t t355 = IIWA14_C(160.0) * (parameters[FV2] * (IIWA14_C(-160.0) * dq[1])
+        - parameters[FC2] * t354) + (t353 + t352);
+    const iiwa14_real_t t356 = IIWA14_C(16.0) * input[1] + t355 - t335 * t127 - t338 * t128;
+    const iiwa14_real_t t357 = t356 - t342 * t129 + t346 * t131 + t350 * t120;
+    const iiwa14_real_t t358 = IIWA14_C(1.0) / t161;
+    const iiwa14_real_t t359 = iiwa14_held((t351 + t357 * t160) * t358);
+    out[0] = t359;
+    const iiwa14_real_t t360 = iiwa14_held(t357 * t159 + t160 * t359);
+    out[1] = t360;
+    const iiwa14_real_t t361 = iiwa14_held(t350 * t119 + t155 * t359 + t120 * t360);
+    out[2] = t361;
+    const iiwa14_real_t t362 = iiwa14_held(t346 * t90 + t152 * t359 + t131 * t360 + t91 * t361);
+    out[3] = t362;
+    const iiwa14_real_t t363 = t342 * t51 + t147 * t359 + t129 * t360 + t84 * t361;
+    const iiwa14_real_t t364 = iiwa14_held(t52 * t362 - t363);
+    out[4] = t364;
+    const iiwa14_real_t t365 = t338 * t19 + t144 * t359 + t128 * t360 + t81 * t361;
+    const iiwa14_real_t t366 = iiwa14_held(t61 * t362 - t365 + t20 * t364);
+    out[5] = t366;
+    const iiwa14_real_t t367 = t335 * t4 + t141 * t359 + t127 * t360 + t76 * t361;
+    const iiwa14_real_t t368 = t53 * t362 - t367 + t27 * t364 + t5 * t366;
+    out[6] = t368;
+    if (!iiwa14_bounded(out, 7)) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }

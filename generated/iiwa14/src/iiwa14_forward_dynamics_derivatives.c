@@ -7,7 +7,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4854 (2695 mul, 2159 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 4854 (2695 mul, 2159 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  *
  * @param[in]   q             [7]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [7]   [rad/s]                  joint velocities; norm at most 100000
@@ -96,7 +96,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x1E31C9F2UL
+#if IIWA14_GENERATION != 0xF4E95A26UL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -130,19 +130,19 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
         return status;
     }
 
-    iiwa14_real_t t150, t146;
-    IIWA14_SINCOS(q[1], &t150, &t146);
-    iiwa14_real_t t98, t100;
-    IIWA14_SINCOS(q[2], &t98, &t100);
-    iiwa14_real_t t71, t67;
-    IIWA14_SINCOS(q[3], &t71, &t67);
-    iiwa14_real_t t32, t34;
-    IIWA14_SINCOS(q[4], &t32, &t34);
-    iiwa14_real_t t13, t15;
-    IIWA14_SINCOS(q[5], &t13, &t15);
+    iiwa14_real_t t145, t141;
+    IIWA14_SINCOS(q[1], &t145, &t141);
+    iiwa14_real_t t94, t96;
+    IIWA14_SINCOS(q[2], &t94, &t96);
+    iiwa14_real_t t68, t64;
+    IIWA14_SINCOS(q[3], &t68, &t64);
+    iiwa14_real_t t30, t32;
+    IIWA14_SINCOS(q[4], &t30, &t32);
+    iiwa14_real_t t12, t14;
+    IIWA14_SINCOS(q[5], &t12, &t14);
     iiwa14_real_t t1, t2;
     IIWA14_SINCOS(q[6], &t1, &t2);
-    const iiwa14_real_t t0 = iiwa14_bounded(parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7]);
+    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
     if (!(t0 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -159,7 +159,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t7 = t2 * t6;
     const iiwa14_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
     const iiwa14_real_t t9 = t8 + IIWA14_C(2.56e4) * parameters[IA6];
-    const iiwa14_real_t t10 = iiwa14_bounded(t9 - t3 * t5);
+    const iiwa14_real_t t10 = t9 - t3 * t5;
     if (!(t10 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -167,239 +167,211 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t11 = t10 + IIWA14_C(-1.0e-9) * t9;
-    if (!(t11 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t12 = t1 * t6 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t14 = t3 - parameters[YZ6];
-    const iiwa14_real_t t16 = t13 * t12 + t15 * t14; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t11 = t1 * t6 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_real_t t13 = t3 - parameters[YZ6];
+    const iiwa14_real_t t15 = t12 * t11 + t14 * t13; /* link j6: column of the mass matrix */
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t17 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
-    const iiwa14_real_t t18 = t13 * t17 + t15 * parameters[ZZ7];
-    const iiwa14_real_t t19 = t18 * t5 - t16;
-    const iiwa14_real_t t20 = IIWA14_C(1.0) / t10;
-    const iiwa14_real_t t21 = t19 * t20;
-    const iiwa14_real_t t22 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t23 = parameters[XY6] + t17;
+    const iiwa14_real_t t16 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
+    const iiwa14_real_t t17 = t12 * t16 + t14 * parameters[ZZ7];
+    const iiwa14_real_t t18 = t17 * t5 - t15;
+    const iiwa14_real_t t19 = IIWA14_C(1.0) / t10;
+    const iiwa14_real_t t20 = t18 * t19;
+    const iiwa14_real_t t21 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t22 = parameters[XY6] + t16;
     /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t24 = t15 * (t22 - parameters[ZZ7]) + t23 * (IIWA14_C(-2.0) * t13);
-    const iiwa14_real_t t25 = t15 * t24;
-    const iiwa14_real_t t26 = parameters[ZZ5R] + (t22 - t25);
-    const iiwa14_real_t t27 = t26 + IIWA14_C(1.0e4) * parameters[IA5];
-    const iiwa14_real_t t28 = t18 * t4;
-    const iiwa14_real_t t29 = iiwa14_bounded(t27 - t18 * t28 - t19 * t21);
-    if (!(t29 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t23 = t14 * (t21 - parameters[ZZ7]) + t22 * (IIWA14_C(-2.0) * t12);
+    const iiwa14_real_t t24 = t14 * t23;
+    const iiwa14_real_t t25 = parameters[ZZ5R] + (t21 - t24);
+    const iiwa14_real_t t26 = t25 + IIWA14_C(1.0e4) * parameters[IA5];
+    const iiwa14_real_t t27 = t17 * t4;
+    const iiwa14_real_t t28 = t26 - t17 * t27 - t18 * t20;
+    if (!(t28 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t30 = t29 + IIWA14_C(-1.0e-9) * t27;
-    if (!(t30 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t31 = t23 + t13 * t24 - parameters[XZ5];
-    const iiwa14_real_t t33 = parameters[YZ5] + t16;
+    const iiwa14_real_t t29 = t22 + t12 * t23 - parameters[XZ5];
+    const iiwa14_real_t t31 = parameters[YZ5] + t15;
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t35 = t2 * parameters[MY7] + t1 * parameters[MX7];
-    const iiwa14_real_t t36 = parameters[MY5R] + t35; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t33 = t2 * parameters[MY7] + t1 * parameters[MX7];
+    const iiwa14_real_t t34 = parameters[MY5R] + t33; /* link j6: inertia of it and all beyond */
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t37 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const iiwa14_real_t t38 = parameters[MX6] + t37; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t39 = t15 * t38 - t13 * parameters[MY6R]; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t40 = parameters[MX5] + t39; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t41 = t34 * t36 + t32 * t40; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t42 = t32 * t31 - t34 * t33 + IIWA14_C(0.4) * t41;
-    const iiwa14_real_t t43 = t15 * t17 - t13 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t44 = t15 * t35;
-    const iiwa14_real_t t45 = t34 * t44 + t32 * t37;
-    const iiwa14_real_t t46 = t32 * t43 - t34 * t3 + IIWA14_C(0.4) * t45;
-    const iiwa14_real_t t47 = t13 * t14 - t15 * t12; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t48 = t15 * parameters[MY6R] + t13 * t38;
-    const iiwa14_real_t t49 = t34 * t48;
-    const iiwa14_real_t t50 = IIWA14_C(0.4) * t49 - (t32 * t47 + t34 * t8);
-    const iiwa14_real_t t51 = t46 * t5 - t50;
-    const iiwa14_real_t t52 = t46 * t28 - t42 + t51 * t21;
-    const iiwa14_real_t t53 = IIWA14_C(1.0) / t29;
-    const iiwa14_real_t t54 = t52 * t53;
-    const iiwa14_real_t t55 = t46 * t4;
+    const iiwa14_real_t t35 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const iiwa14_real_t t36 = parameters[MX6] + t35; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t37 = t14 * t36 - t12 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t38 = parameters[MX5] + t37; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t39 = t32 * t34 + t30 * t38; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t40 = t30 * t29 - t32 * t31 + IIWA14_C(0.4) * t39;
+    const iiwa14_real_t t41 = t14 * t16 - t12 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t42 = t14 * t33;
+    const iiwa14_real_t t43 = t32 * t42 + t30 * t35;
+    const iiwa14_real_t t44 = t30 * t41 - t32 * t3 + IIWA14_C(0.4) * t43;
+    const iiwa14_real_t t45 = t12 * t13 - t14 * t11; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t46 = t14 * parameters[MY6R] + t12 * t36;
+    const iiwa14_real_t t47 = t32 * t46;
+    const iiwa14_real_t t48 = IIWA14_C(0.4) * t47 - (t30 * t45 + t32 * t8);
+    const iiwa14_real_t t49 = t44 * t5 - t48;
+    const iiwa14_real_t t50 = t44 * t27 - t40 + t49 * t20;
+    const iiwa14_real_t t51 = IIWA14_C(1.0) / t28;
+    const iiwa14_real_t t52 = t50 * t51;
+    const iiwa14_real_t t53 = t44 * t4;
     /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t56 = parameters[XX5R] + (parameters[ZZ7] + t25);
-    const iiwa14_real_t t57 = parameters[XY5] + t47;
+    const iiwa14_real_t t54 = parameters[XX5R] + (parameters[ZZ7] + t24);
+    const iiwa14_real_t t55 = parameters[XY5] + t45;
     /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t58 = t34 * (t56 - t8) + t57 * (IIWA14_C(-2.0) * t32);
-    const iiwa14_real_t t59 = t34 * t58;
-    const iiwa14_real_t t60 = IIWA14_C(-0.8) * t48;
-    const iiwa14_real_t t61 = parameters[ZZ4R] + (t56 - t59 + t60);
-    const iiwa14_real_t t62 = t61 + IIWA14_C(2.56e4) * parameters[IA4];
-    const iiwa14_real_t t63 = t51 * t20;
-    const iiwa14_real_t t64 = iiwa14_bounded(t62 - t46 * t55 - t51 * t63 - t52 * t54);
-    if (!(t64 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t56 = t32 * (t54 - t8) + t55 * (IIWA14_C(-2.0) * t30);
+    const iiwa14_real_t t57 = t32 * t56;
+    const iiwa14_real_t t58 = IIWA14_C(-0.8) * t46;
+    const iiwa14_real_t t59 = parameters[ZZ4R] + (t54 - t57 + t58);
+    const iiwa14_real_t t60 = t59 + IIWA14_C(2.56e4) * parameters[IA4];
+    const iiwa14_real_t t61 = t49 * t19;
+    const iiwa14_real_t t62 = t60 - t44 * t53 - t49 * t61 - t50 * t52;
+    if (!(t62 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t65 = t64 + IIWA14_C(-1.0e-9) * t62;
-    if (!(t65 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t66 = parameters[XX4R] + (t8 + t59 + t60);
-    const iiwa14_real_t t68 = t34 * t40 - t32 * t36; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t69 = t34 * t31 + t32 * t33 + IIWA14_C(0.4) * t68;
-    const iiwa14_real_t t70 = t69 - parameters[XY4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t63 = parameters[XX4R] + (t8 + t57 + t58);
+    const iiwa14_real_t t65 = t32 * t38 - t30 * t34; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t66 = t32 * t29 + t30 * t31 + IIWA14_C(0.4) * t65;
+    const iiwa14_real_t t67 = t66 - parameters[XY4]; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t72 = t67 * (t26 - t66) - t70 * (IIWA14_C(2.0) * t71);
-    const iiwa14_real_t t73 = t67 * t72;
-    const iiwa14_real_t t74 = parameters[ZZ3R] + (t66 + t73);
-    const iiwa14_real_t t75 = t74 + IIWA14_C(2.56e4) * parameters[IA3];
-    const iiwa14_real_t t76 = t32 * t44 - t34 * t37; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t77 = t34 * t43 + t32 * t3 + IIWA14_C(-0.4) * t76;
-    const iiwa14_real_t t78 = t67 * t18 - t71 * t77;
-    const iiwa14_real_t t79 = t78 * t4;
-    const iiwa14_real_t t80 = t32 * t48; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t81 = t32 * t8 - t34 * t47 + IIWA14_C(-0.4) * t80;
-    const iiwa14_real_t t82 = t67 * t16 - t71 * t81;
-    const iiwa14_real_t t83 = t82 - t78 * t5;
-    const iiwa14_real_t t84 = t83 * t20;
-    const iiwa14_real_t t85 = t67 * t26 - t71 * t69; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t86 = t85 - t78 * t28 + t83 * t21;
-    const iiwa14_real_t t87 = t86 * t53;
-    const iiwa14_real_t t88 = t75 - t78 * t79 - t83 * t84 - t86 * t87;
-    const iiwa14_real_t t89 = t57 + t32 * t58 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t90 = parameters[YZ4] + t42;
-    const iiwa14_real_t t91 = t67 * t90 - t71 * t89; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t92 = t91 - t78 * t55 + t83 * t63 + t86 * t54;
-    const iiwa14_real_t t93 = IIWA14_C(1.0) / t64;
-    const iiwa14_real_t t94 = t92 * t93;
-    const iiwa14_real_t t95 = iiwa14_bounded(t88 - t92 * t94);
-    if (!(t95 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t69 = t64 * (t25 - t63) - t67 * (IIWA14_C(2.0) * t68);
+    const iiwa14_real_t t70 = t64 * t69;
+    const iiwa14_real_t t71 = parameters[ZZ3R] + (t63 + t70);
+    const iiwa14_real_t t72 = t71 + IIWA14_C(2.56e4) * parameters[IA3];
+    const iiwa14_real_t t73 = t30 * t42 - t32 * t35; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t74 = t32 * t41 + t30 * t3 + IIWA14_C(-0.4) * t73;
+    const iiwa14_real_t t75 = t64 * t17 - t68 * t74;
+    const iiwa14_real_t t76 = t75 * t4;
+    const iiwa14_real_t t77 = t30 * t46; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t78 = t30 * t8 - t32 * t45 + IIWA14_C(-0.4) * t77;
+    const iiwa14_real_t t79 = t64 * t15 - t68 * t78;
+    const iiwa14_real_t t80 = t79 - t75 * t5;
+    const iiwa14_real_t t81 = t80 * t19;
+    const iiwa14_real_t t82 = t64 * t25 - t68 * t66; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t83 = t82 - t75 * t27 + t80 * t20;
+    const iiwa14_real_t t84 = t83 * t51;
+    const iiwa14_real_t t85 = t72 - t75 * t76 - t80 * t81 - t83 * t84;
+    const iiwa14_real_t t86 = t55 + t30 * t56 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t87 = parameters[YZ4] + t40;
+    const iiwa14_real_t t88 = t64 * t87 - t68 * t86; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t89 = t88 - t75 * t53 + t80 * t61 + t83 * t52;
+    const iiwa14_real_t t90 = IIWA14_C(1.0) / t62;
+    const iiwa14_real_t t91 = t89 * t90;
+    const iiwa14_real_t t92 = t85 - t89 * t91;
+    if (!(t92 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t96 = t95 + IIWA14_C(-1.0e-9) * t75;
-    if (!(t96 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t97 = t70 + t71 * t72 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t99 = parameters[YZ3] - t91;
-    const iiwa14_real_t t101 = parameters[MY3R] + t41;
-    const iiwa14_real_t t102 = parameters[MX4] + t68; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t103 = parameters[MY4R] - t48;
-    const iiwa14_real_t t104 = t67 * t102 - t71 * t103; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t105 = parameters[MX3] + t104; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t106 = t100 * t101 + t98 * t105; /* link j3: column of the mass matrix */
-    const iiwa14_real_t t107 = t98 * t97 - t100 * t99 + IIWA14_C(0.42) * t106;
-    const iiwa14_real_t t108 = t67 * t77 + t71 * t18; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t109 = t13 * t35;
-    const iiwa14_real_t t110 = t67 * t45 + t71 * t109;
-    const iiwa14_real_t t111 = t100 * t110 - t98 * t76;
-    const iiwa14_real_t t112 = t98 * t108 + t100 * t46 + IIWA14_C(0.42) * t111;
-    const iiwa14_real_t t113 = t67 * t81 + t71 * t16; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t114 = t67 * t49 - t71 * t39;
-    const iiwa14_real_t t115 = t100 * t114 - t98 * t80;
-    const iiwa14_real_t t116 = t98 * t113 + t100 * t50 + IIWA14_C(0.42) * t115;
-    const iiwa14_real_t t117 = t116 - t112 * t5;
-    const iiwa14_real_t t118 = t67 * t69 + t71 * t26; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t119 = t67 * t41;
-    const iiwa14_real_t t120 = t100 * t119 + t98 * t68;
-    const iiwa14_real_t t121 = t98 * t118 + t100 * t42 + IIWA14_C(0.42) * t120;
-    const iiwa14_real_t t122 = t121 - t112 * t28 + t117 * t21;
-    const iiwa14_real_t t123 = t107 - t112 * t79 - t117 * t84 - t122 * t87;
-    const iiwa14_real_t t124 = t67 * t89 + t71 * t90; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t125 = t67 * t103 + t71 * t102;
-    const iiwa14_real_t t126 = t100 * t125;
-    const iiwa14_real_t t127 = t98 * t124 + t100 * t61 + IIWA14_C(0.42) * t126;
-    const iiwa14_real_t t128 = t127 - t112 * t55 + t117 * t63 + t122 * t54;
-    const iiwa14_real_t t129 = t123 - t128 * t94;
-    const iiwa14_real_t t130 = IIWA14_C(1.0) / t95;
-    const iiwa14_real_t t131 = t129 * t130;
-    const iiwa14_real_t t132 = t73 - t26 - parameters[XX3R]; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t133 = parameters[XY3] + t124;
+    const iiwa14_real_t t93 = t67 + t68 * t69 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t95 = parameters[YZ3] - t88;
+    const iiwa14_real_t t97 = parameters[MY3R] + t39;
+    const iiwa14_real_t t98 = parameters[MX4] + t65; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t99 = parameters[MY4R] - t46;
+    const iiwa14_real_t t100 = t64 * t98 - t68 * t99; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t101 = parameters[MX3] + t100; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t102 = t96 * t97 + t94 * t101; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t103 = t94 * t93 - t96 * t95 + IIWA14_C(0.42) * t102;
+    const iiwa14_real_t t104 = t64 * t74 + t68 * t17; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t105 = t12 * t33;
+    const iiwa14_real_t t106 = t64 * t43 + t68 * t105;
+    const iiwa14_real_t t107 = t96 * t106 - t94 * t73;
+    const iiwa14_real_t t108 = t94 * t104 + t96 * t44 + IIWA14_C(0.42) * t107;
+    const iiwa14_real_t t109 = t64 * t78 + t68 * t15; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t110 = t64 * t47 - t68 * t37;
+    const iiwa14_real_t t111 = t96 * t110 - t94 * t77;
+    const iiwa14_real_t t112 = t94 * t109 + t96 * t48 + IIWA14_C(0.42) * t111;
+    const iiwa14_real_t t113 = t112 - t108 * t5;
+    const iiwa14_real_t t114 = t64 * t66 + t68 * t25; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t115 = t64 * t39;
+    const iiwa14_real_t t116 = t96 * t115 + t94 * t65;
+    const iiwa14_real_t t117 = t94 * t114 + t96 * t40 + IIWA14_C(0.42) * t116;
+    const iiwa14_real_t t118 = t117 - t108 * t27 + t113 * t20;
+    const iiwa14_real_t t119 = t103 - t108 * t76 - t113 * t81 - t118 * t84;
+    const iiwa14_real_t t120 = t64 * t86 + t68 * t87; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t121 = t64 * t99 + t68 * t98;
+    const iiwa14_real_t t122 = t96 * t121;
+    const iiwa14_real_t t123 = t94 * t120 + t96 * t59 + IIWA14_C(0.42) * t122;
+    const iiwa14_real_t t124 = t123 - t108 * t53 + t113 * t61 + t118 * t52;
+    const iiwa14_real_t t125 = t119 - t124 * t91;
+    const iiwa14_real_t t126 = IIWA14_C(1.0) / t92;
+    const iiwa14_real_t t127 = t125 * t126;
+    const iiwa14_real_t t128 = t70 - t25 - parameters[XX3R]; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t129 = parameters[XY3] + t120;
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t134 = t100 * (t61 + t132) + t133 * (IIWA14_C(2.0) * t98);
-    const iiwa14_real_t t135 = t100 * t134;
-    const iiwa14_real_t t136 = IIWA14_C(-0.84) * t125;
-    const iiwa14_real_t t137 = parameters[ZZ2R] + (t135 - t132 - t136);
-    const iiwa14_real_t t138 = t112 * t4;
-    const iiwa14_real_t t139 = t117 * t20;
-    const iiwa14_real_t t140 = t122 * t53;
-    const iiwa14_real_t t141 = t137 - t112 * t138 - t117 * t139 - t122 * t140;
-    const iiwa14_real_t t142 = t128 * t93;
-    const iiwa14_real_t t143 = iiwa14_bounded(t141 - t128 * t142 - t129 * t131);
-    if (!(t143 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t130 = t96 * (t59 + t128) + t129 * (IIWA14_C(2.0) * t94);
+    const iiwa14_real_t t131 = t96 * t130;
+    const iiwa14_real_t t132 = IIWA14_C(-0.84) * t121;
+    const iiwa14_real_t t133 = parameters[ZZ2R] + (t131 - t128 - t132);
+    const iiwa14_real_t t134 = t108 * t4;
+    const iiwa14_real_t t135 = t113 * t19;
+    const iiwa14_real_t t136 = t118 * t51;
+    const iiwa14_real_t t137 = t133 - t108 * t134 - t113 * t135 - t118 * t136;
+    const iiwa14_real_t t138 = t124 * t90;
+    const iiwa14_real_t t139 = t137 - t124 * t138 - t125 * t127;
+    if (!(t139 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t144 = t143 + IIWA14_C(-1.0e-9) * t137;
-    if (!(t144 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t145 = t135 - t61 + t136 - parameters[XX2R];
-    const iiwa14_real_t t147 = t100 * t105 - t98 * t101; /* link j3: column of the mass matrix */
-    const iiwa14_real_t t148 = t100 * t97 + t98 * t99 + IIWA14_C(0.42) * t147;
-    const iiwa14_real_t t149 = parameters[XY2] + t148; /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t140 = t131 - t59 + t132 - parameters[XX2R];
+    const iiwa14_real_t t142 = t96 * t101 - t94 * t97; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t143 = t96 * t93 + t94 * t95 + IIWA14_C(0.42) * t142;
+    const iiwa14_real_t t144 = parameters[XY2] + t143; /* link j3: inertia of it and all beyond */
     /* link j2: inertia of it and all beyond */
-    const iiwa14_real_t t151 = t146 * (t146 * (t74 + t145) + t149 * (IIWA14_C(2.0) * t150));
-    const iiwa14_real_t t152 = parameters[ZZ1R] + (t151 - t145);
-    const iiwa14_real_t t153 = t98 * t110 + t100 * t76; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t154 = t98 * t46 - t100 * t108 + IIWA14_C(0.42) * t153;
-    const iiwa14_real_t t155 = t150 * t154 - t146 * t78;
-    const iiwa14_real_t t156 = t155 * t4;
-    const iiwa14_real_t t157 = t98 * t114 + t100 * t80; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t158 = t98 * t50 - t100 * t113 + IIWA14_C(0.42) * t157;
-    const iiwa14_real_t t159 = t150 * t158 - t146 * t82 - t155 * t5;
-    const iiwa14_real_t t160 = t159 * t20;
-    const iiwa14_real_t t161 = t98 * t119 - t100 * t68; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t162 = t98 * t42 - t100 * t118 + IIWA14_C(0.42) * t161;
-    const iiwa14_real_t t163 = t150 * t162 - t146 * t85 - t155 * t28 + t159 * t21;
-    const iiwa14_real_t t164 = t163 * t53;
-    const iiwa14_real_t t165 = t152 - t155 * t156 - t159 * t160 - t163 * t164;
-    const iiwa14_real_t t166 = t98 * t125; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t167 = t98 * t61 - t100 * t124 + IIWA14_C(0.42) * t166;
-    const iiwa14_real_t t168 = t150 * t167 - t146 * t91 - t155 * t55 + t159 * t63;
-    const iiwa14_real_t t169 = t168 + t163 * t54;
-    const iiwa14_real_t t170 = t169 * t93;
-    const iiwa14_real_t t171 = t150 * t148 + t146 * t74 + t155 * t79 + t159 * t84;
-    const iiwa14_real_t t172 = t171 + t163 * t87 + t169 * t94;
-    const iiwa14_real_t t173 = t172 * t130;
+    const iiwa14_real_t t146 = t141 * (t141 * (t71 + t140) + t144 * (IIWA14_C(2.0) * t145));
+    const iiwa14_real_t t147 = parameters[ZZ1R] + (t146 - t140);
+    const iiwa14_real_t t148 = t94 * t106 + t96 * t73; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t149 = t94 * t44 - t96 * t104 + IIWA14_C(0.42) * t148;
+    const iiwa14_real_t t150 = t145 * t149 - t141 * t75;
+    const iiwa14_real_t t151 = t150 * t4;
+    const iiwa14_real_t t152 = t94 * t110 + t96 * t77; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t153 = t94 * t48 - t96 * t109 + IIWA14_C(0.42) * t152;
+    const iiwa14_real_t t154 = t145 * t153 - t141 * t79 - t150 * t5;
+    const iiwa14_real_t t155 = t154 * t19;
+    const iiwa14_real_t t156 = t94 * t115 - t96 * t65; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t157 = t94 * t40 - t96 * t114 + IIWA14_C(0.42) * t156;
+    const iiwa14_real_t t158 = t145 * t157 - t141 * t82 - t150 * t27 + t154 * t20;
+    const iiwa14_real_t t159 = t158 * t51;
+    const iiwa14_real_t t160 = t147 - t150 * t151 - t154 * t155 - t158 * t159;
+    const iiwa14_real_t t161 = t94 * t121; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t162 = t94 * t59 - t96 * t120 + IIWA14_C(0.42) * t161;
+    const iiwa14_real_t t163 = t145 * t162 - t141 * t88 - t150 * t53 + t154 * t61;
+    const iiwa14_real_t t164 = t163 + t158 * t52;
+    const iiwa14_real_t t165 = t164 * t90;
+    const iiwa14_real_t t166 = t145 * t143 + t141 * t71 + t150 * t76 + t154 * t81;
+    const iiwa14_real_t t167 = t166 + t158 * t84 + t164 * t91;
+    const iiwa14_real_t t168 = t167 * t126;
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t174 = t98 * t134 - t133 - parameters[XZ2];
-    const iiwa14_real_t t175 = parameters[YZ2] + t107;
-    const iiwa14_real_t t176 = t150 * t174 - t146 * t175 - t155 * t138 - t159 * t139;
-    const iiwa14_real_t t177 = t176 - t163 * t140 - t169 * t142 + t172 * t131;
-    const iiwa14_real_t t178 = IIWA14_C(1.0) / t143;
-    const iiwa14_real_t t179 = t177 * t178;
-    const iiwa14_real_t t180 = iiwa14_bounded(t165 - t169 * t170 - t172 * t173 - t177 * t179);
+    const iiwa14_real_t t169 = t94 * t130 - t129 - parameters[XZ2];
+    const iiwa14_real_t t170 = parameters[YZ2] + t103;
+    const iiwa14_real_t t171 = t145 * t169 - t141 * t170 - t150 * t134 - t154 * t135;
+    const iiwa14_real_t t172 = t171 - t158 * t136 - t164 * t138 + t167 * t127;
+    const iiwa14_real_t t173 = IIWA14_C(1.0) / t139;
+    const iiwa14_real_t t174 = t172 * t173;
+    const iiwa14_real_t t175 = t160 - t164 * t165 - t167 * t168 - t172 * t174;
+    if (!(t175 > IIWA14_C(1.0e-12))) {
+        iiwa14_zero(ddq, 7);
+        iiwa14_zero(ddq_by_q, 49);
+        iiwa14_zero(ddq_by_dq, 49);
+        iiwa14_zero(ddq_by_input, 49);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t176 = iiwa14_min(t10 + IIWA14_C(-1.0e-9) * t9, t28 + IIWA14_C(-1.0e-9) * t26);
+    const iiwa14_real_t t177 = iiwa14_min(t176, t62 + IIWA14_C(-1.0e-9) * t60);
+    const iiwa14_real_t t178 = iiwa14_min(t177, t92 + IIWA14_C(-1.0e-9) * t72);
+    const iiwa14_real_t t179 = iiwa14_min(t178, t139 + IIWA14_C(-1.0e-9) * t133);
+    const iiwa14_real_t t180 = iiwa14_min(t179, t175 + IIWA14_C(-1.0e-9) * t147);
     if (!(t180 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -407,1407 +379,1401 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t181 = t180 + IIWA14_C(-1.0e-9) * t152;
-    if (!(t181 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t182 = t150 * dq[0]; /* link j2: motion */
-    const iiwa14_real_t t183 = t100 * t182 - t98 * dq[1]; /* link j3: motion */
-    const iiwa14_real_t t184 = t98 * t182 + t100 * dq[1];
-    const iiwa14_real_t t185 = t183 * t184;
-    const iiwa14_real_t t186 = dq[1] * t182; /* link j2: motion */
-    const iiwa14_real_t t187 = t186 - t185; /* link j4: motion */
-    const iiwa14_real_t t188 = t146 * dq[0]; /* link j2: motion */
-    const iiwa14_real_t t189 = t182 * t188;
-    const iiwa14_real_t t190 = dq[1] * t188;
-    const iiwa14_real_t t191 = IIWA14_C(-2.0) * t190;
-    const iiwa14_real_t t192 = t100 * t191 - t98 * t189; /* link j3: motion */
-    const iiwa14_real_t t193 = dq[2] + t188;
-    const iiwa14_real_t t194 = t184 * t193;
-    const iiwa14_real_t t195 = t192 + t194;
-    const iiwa14_real_t t196 = t194 + t195; /* link j4: motion */
-    const iiwa14_real_t t197 = t67 * t187 + t71 * t196;
-    const iiwa14_real_t t198 = t71 * t193 - t67 * t183;
-    const iiwa14_real_t t199 = t184 - dq[3];
-    const iiwa14_real_t t200 = t198 * t199;
-    const iiwa14_real_t t201 = t197 - t200;
-    const iiwa14_real_t t202 = t34 * t198 + t32 * t199; /* link j5: motion */
-    const iiwa14_real_t t203 = t34 * t199 - t32 * t198;
-    const iiwa14_real_t t204 = t202 * t203;
-    const iiwa14_real_t t205 = t201 + t204; /* link j6: motion */
-    const iiwa14_real_t t206 = t100 * t189 + t98 * t191; /* link j3: motion */
-    const iiwa14_real_t t207 = t183 * t193;
-    const iiwa14_real_t t208 = t207 - t206;
-    const iiwa14_real_t t209 = t71 * t183 + t67 * t193; /* link j4: motion */
-    const iiwa14_real_t t210 = t198 * t209;
-    const iiwa14_real_t t211 = t208 + t210; /* link j5: motion */
-    const iiwa14_real_t t212 = t67 * t196 - t71 * t187; /* link j4: motion */
-    const iiwa14_real_t t213 = t209 * t199;
-    const iiwa14_real_t t214 = t212 - t213;
-    const iiwa14_real_t t215 = t214 - t213; /* link j5: motion */
-    const iiwa14_real_t t216 = t32 * t211 + t34 * t215;
-    const iiwa14_real_t t217 = dq[4] + t209;
-    const iiwa14_real_t t218 = t203 * t217;
-    const iiwa14_real_t t219 = t216 + t218;
-    const iiwa14_real_t t220 = t218 + t219; /* link j6: motion */
-    const iiwa14_real_t t221 = t13 * t205 + t15 * t220;
-    const iiwa14_real_t t222 = t13 * t202 + t15 * t217;
-    const iiwa14_real_t t223 = dq[5] + t203;
-    const iiwa14_real_t t224 = t222 * t223;
-    const iiwa14_real_t t225 = t221 - t224;
-    const iiwa14_real_t t226 = t225 - t224; /* link j7: motion */
-    const iiwa14_real_t t227 = t32 * t215 - t34 * t211; /* link j5: motion */
-    const iiwa14_real_t t228 = t202 * t217;
-    const iiwa14_real_t t229 = t227 + t228;
-    const iiwa14_real_t t230 = t15 * t202 - t13 * t217; /* link j6: motion */
-    const iiwa14_real_t t231 = t230 * t222;
-    const iiwa14_real_t t232 = t231 - t229; /* link j7: motion */
-    const iiwa14_real_t t233 = t1 * t232 + t2 * t226;
-    const iiwa14_real_t t234 = t2 * t223 - t1 * t230;
-    const iiwa14_real_t t235 = dq[6] + t222;
-    const iiwa14_real_t t236 = t234 * t235;
-    const iiwa14_real_t t237 = t233 + t236;
-    const iiwa14_real_t t238 = parameters[ZZ7] * t236; /* link j7: force and moment */
-    const iiwa14_real_t t239 = t1 * t226 - t2 * t232; /* link j7: motion */
-    const iiwa14_real_t t240 = t2 * t230 + t1 * t223;
-    const iiwa14_real_t t241 = t240 * t235;
-    const iiwa14_real_t t242 = t241 + (t239 + t241); /* link j7: force and moment */
-    const iiwa14_real_t t243 = t13 * t220 - t15 * t205; /* link j6: motion */
-    const iiwa14_real_t t244 = t230 * t223;
-    const iiwa14_real_t t245 = t243 + t244;
-    const iiwa14_real_t t246 = t240 * t234; /* link j7: motion */
-    const iiwa14_real_t t247 = t245 + t246; /* link j7: force and moment */
-    const iiwa14_real_t t248 = parameters[XY7] * t242 - (parameters[XX7R] * t237 + t238)
-        - parameters[XZ7R] * t247;
-    const iiwa14_real_t t249 = t234 * t234; /* link j7: motion */
-    const iiwa14_real_t t250 = t235 * t235;
-    const iiwa14_real_t t251 = parameters[YZ7R] * (t250 - t249); /* link j7: force and moment */
-    const iiwa14_real_t t252 = IIWA14_C(-9.81) * t150; /* link j2: motion */
-    const iiwa14_real_t t253 = t252 + IIWA14_C(-0.42) * t189; /* link j3: motion */
-    const iiwa14_real_t t254 = IIWA14_C(0.84) * t190;
-    const iiwa14_real_t t255 = t100 * t253 + t98 * t254;
-    const iiwa14_real_t t256 = t182 * t182; /* link j2: motion */
-    const iiwa14_real_t t257 = dq[1] * dq[1];
-    const iiwa14_real_t t258 = IIWA14_C(9.81) * t146;
-    const iiwa14_real_t t259 = t258 + IIWA14_C(-0.42) * (t257 + t256); /* link j3: motion */
-    const iiwa14_real_t t260 = t71 * t259; /* link j4: motion */
-    const iiwa14_real_t t261 = t67 * t255 + t260;
-    const iiwa14_real_t t262 = t261 + IIWA14_C(0.4) * t211; /* link j5: motion */
-    const iiwa14_real_t t263 = t98 * t253 - t100 * t254; /* link j3: motion */
-    const iiwa14_real_t t264 = t263 + IIWA14_C(0.4) * t215; /* link j5: motion */
-    const iiwa14_real_t t265 = t34 * t262 - t32 * t264;
-    const iiwa14_real_t t266 = t198 * t198; /* link j4: motion */
-    const iiwa14_real_t t267 = t199 * t199;
-    const iiwa14_real_t t268 = t266 + t267; /* link j5: motion */
-    const iiwa14_real_t t269 = IIWA14_C(0.4) * t268;
-    const iiwa14_real_t t270 = t67 * t259; /* link j4: motion */
-    const iiwa14_real_t t271 = t71 * t255 - t270;
-    const iiwa14_real_t t272 = t271 + t269; /* link j5: motion */
-    const iiwa14_real_t t273 = t15 * t272 - t13 * t265; /* link j6: motion */
-    const iiwa14_real_t t274 = t248 + t251 + parameters[MY7] * t273; /* link j7: force and moment */
-    const iiwa14_real_t t275 = t236 + t237;
-    const iiwa14_real_t t276 = t241 * (parameters[XX7R] - parameters[ZZ7]);
-    const iiwa14_real_t t277 = t246 - t245;
-    const iiwa14_real_t t278 = t240 * t240; /* link j7: motion */
-    const iiwa14_real_t t279 = parameters[XZ7R] * (t278 - t250); /* link j7: force and moment */
-    const iiwa14_real_t t280 = parameters[YZ7R] * t277 - (t276 + parameters[XY7] * t275) + t279
-        - parameters[MX7] * t273;
-    const iiwa14_real_t t281 = parameters[ZZ6R] * t224; /* link j6: force and moment */
-    const iiwa14_real_t t282 = t244 + t245; /* link j7: motion */
-    const iiwa14_real_t t283 = t229 + t231;
+    const iiwa14_real_t t181 = t145 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t182 = t96 * t181 - t94 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t183 = t94 * t181 + t96 * dq[1];
+    const iiwa14_real_t t184 = t182 * t183;
+    const iiwa14_real_t t185 = dq[1] * t181; /* link j2: motion */
+    const iiwa14_real_t t186 = t185 - t184; /* link j4: motion */
+    const iiwa14_real_t t187 = t141 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t188 = t181 * t187;
+    const iiwa14_real_t t189 = dq[1] * t187;
+    const iiwa14_real_t t190 = IIWA14_C(-2.0) * t189;
+    const iiwa14_real_t t191 = t96 * t190 - t94 * t188; /* link j3: motion */
+    const iiwa14_real_t t192 = dq[2] + t187;
+    const iiwa14_real_t t193 = t183 * t192;
+    const iiwa14_real_t t194 = t191 + t193;
+    const iiwa14_real_t t195 = t193 + t194; /* link j4: motion */
+    const iiwa14_real_t t196 = t64 * t186 + t68 * t195;
+    const iiwa14_real_t t197 = t68 * t192 - t64 * t182;
+    const iiwa14_real_t t198 = t183 - dq[3];
+    const iiwa14_real_t t199 = t197 * t198;
+    const iiwa14_real_t t200 = t196 - t199;
+    const iiwa14_real_t t201 = t32 * t197 + t30 * t198; /* link j5: motion */
+    const iiwa14_real_t t202 = t32 * t198 - t30 * t197;
+    const iiwa14_real_t t203 = t201 * t202;
+    const iiwa14_real_t t204 = t200 + t203; /* link j6: motion */
+    const iiwa14_real_t t205 = t96 * t188 + t94 * t190; /* link j3: motion */
+    const iiwa14_real_t t206 = t182 * t192;
+    const iiwa14_real_t t207 = t206 - t205;
+    const iiwa14_real_t t208 = t68 * t182 + t64 * t192; /* link j4: motion */
+    const iiwa14_real_t t209 = t197 * t208;
+    const iiwa14_real_t t210 = t207 + t209; /* link j5: motion */
+    const iiwa14_real_t t211 = t64 * t195 - t68 * t186; /* link j4: motion */
+    const iiwa14_real_t t212 = t208 * t198;
+    const iiwa14_real_t t213 = t211 - t212;
+    const iiwa14_real_t t214 = t213 - t212; /* link j5: motion */
+    const iiwa14_real_t t215 = t30 * t210 + t32 * t214;
+    const iiwa14_real_t t216 = dq[4] + t208;
+    const iiwa14_real_t t217 = t202 * t216;
+    const iiwa14_real_t t218 = t215 + t217;
+    const iiwa14_real_t t219 = t217 + t218; /* link j6: motion */
+    const iiwa14_real_t t220 = t12 * t204 + t14 * t219;
+    const iiwa14_real_t t221 = t12 * t201 + t14 * t216;
+    const iiwa14_real_t t222 = dq[5] + t202;
+    const iiwa14_real_t t223 = t221 * t222;
+    const iiwa14_real_t t224 = t220 - t223;
+    const iiwa14_real_t t225 = t224 - t223; /* link j7: motion */
+    const iiwa14_real_t t226 = t30 * t214 - t32 * t210; /* link j5: motion */
+    const iiwa14_real_t t227 = t201 * t216;
+    const iiwa14_real_t t228 = t226 + t227;
+    const iiwa14_real_t t229 = t14 * t201 - t12 * t216; /* link j6: motion */
+    const iiwa14_real_t t230 = t229 * t221;
+    const iiwa14_real_t t231 = t230 - t228; /* link j7: motion */
+    const iiwa14_real_t t232 = t1 * t231 + t2 * t225;
+    const iiwa14_real_t t233 = t2 * t222 - t1 * t229;
+    const iiwa14_real_t t234 = dq[6] + t221;
+    const iiwa14_real_t t235 = t233 * t234;
+    const iiwa14_real_t t236 = t232 + t235;
+    const iiwa14_real_t t237 = parameters[ZZ7] * t235; /* link j7: force and moment */
+    const iiwa14_real_t t238 = t1 * t225 - t2 * t231; /* link j7: motion */
+    const iiwa14_real_t t239 = t2 * t229 + t1 * t222;
+    const iiwa14_real_t t240 = t239 * t234;
+    const iiwa14_real_t t241 = t240 + (t238 + t240); /* link j7: force and moment */
+    const iiwa14_real_t t242 = t12 * t219 - t14 * t204; /* link j6: motion */
+    const iiwa14_real_t t243 = t229 * t222;
+    const iiwa14_real_t t244 = t242 + t243;
+    const iiwa14_real_t t245 = t239 * t233; /* link j7: motion */
+    const iiwa14_real_t t246 = t244 + t245; /* link j7: force and moment */
+    const iiwa14_real_t t247 = parameters[XY7] * t241 - (parameters[XX7R] * t236 + t237)
+        - parameters[XZ7R] * t246;
+    const iiwa14_real_t t248 = t233 * t233; /* link j7: motion */
+    const iiwa14_real_t t249 = t234 * t234;
+    const iiwa14_real_t t250 = parameters[YZ7R] * (t249 - t248); /* link j7: force and moment */
+    const iiwa14_real_t t251 = IIWA14_C(-9.81) * t145; /* link j2: motion */
+    const iiwa14_real_t t252 = t251 + IIWA14_C(-0.42) * t188; /* link j3: motion */
+    const iiwa14_real_t t253 = IIWA14_C(0.84) * t189;
+    const iiwa14_real_t t254 = t96 * t252 + t94 * t253;
+    const iiwa14_real_t t255 = t181 * t181; /* link j2: motion */
+    const iiwa14_real_t t256 = dq[1] * dq[1];
+    const iiwa14_real_t t257 = IIWA14_C(9.81) * t141;
+    const iiwa14_real_t t258 = t257 + IIWA14_C(-0.42) * (t256 + t255); /* link j3: motion */
+    const iiwa14_real_t t259 = t68 * t258; /* link j4: motion */
+    const iiwa14_real_t t260 = t64 * t254 + t259;
+    const iiwa14_real_t t261 = t260 + IIWA14_C(0.4) * t210; /* link j5: motion */
+    const iiwa14_real_t t262 = t94 * t252 - t96 * t253; /* link j3: motion */
+    const iiwa14_real_t t263 = t262 + IIWA14_C(0.4) * t214; /* link j5: motion */
+    const iiwa14_real_t t264 = t32 * t261 - t30 * t263;
+    const iiwa14_real_t t265 = t197 * t197; /* link j4: motion */
+    const iiwa14_real_t t266 = t198 * t198;
+    const iiwa14_real_t t267 = t265 + t266; /* link j5: motion */
+    const iiwa14_real_t t268 = IIWA14_C(0.4) * t267;
+    const iiwa14_real_t t269 = t64 * t258; /* link j4: motion */
+    const iiwa14_real_t t270 = t68 * t254 - t269;
+    const iiwa14_real_t t271 = t270 + t268; /* link j5: motion */
+    const iiwa14_real_t t272 = t14 * t271 - t12 * t264; /* link j6: motion */
+    const iiwa14_real_t t273 = t247 + t250 + parameters[MY7] * t272; /* link j7: force and moment */
+    const iiwa14_real_t t274 = t235 + t236;
+    const iiwa14_real_t t275 = t240 * (parameters[XX7R] - parameters[ZZ7]);
+    const iiwa14_real_t t276 = t245 - t244;
+    const iiwa14_real_t t277 = t239 * t239; /* link j7: motion */
+    const iiwa14_real_t t278 = parameters[XZ7R] * (t277 - t249); /* link j7: force and moment */
+    const iiwa14_real_t t279 = parameters[YZ7R] * t276 - (t275 + parameters[XY7] * t274) + t278
+        - parameters[MX7] * t272;
+    const iiwa14_real_t t280 = parameters[ZZ6R] * t223; /* link j6: force and moment */
+    const iiwa14_real_t t281 = t243 + t244; /* link j7: motion */
+    const iiwa14_real_t t282 = t228 + t230;
     /* link j6: force and moment */
-    const iiwa14_real_t t284 = parameters[XX6R] * t225 - t281 - parameters[XY6] * t282
-        - parameters[XZ6] * t283;
-    const iiwa14_real_t t285 = t222 * t222; /* link j6: motion */
-    const iiwa14_real_t t286 = t223 * t223;
-    const iiwa14_real_t t287 = parameters[YZ6] * (t285 - t286); /* link j6: force and moment */
-    const iiwa14_real_t t288 = t32 * t262 + t34 * t264; /* link j5: motion */
+    const iiwa14_real_t t283 = parameters[XX6R] * t224 - t280 - parameters[XY6] * t281
+        - parameters[XZ6] * t282;
+    const iiwa14_real_t t284 = t221 * t221; /* link j6: motion */
+    const iiwa14_real_t t285 = t222 * t222;
+    const iiwa14_real_t t286 = parameters[YZ6] * (t284 - t285); /* link j6: force and moment */
+    const iiwa14_real_t t287 = t30 * t261 + t32 * t263; /* link j5: motion */
     /* link j7: what it passes on */
-    const iiwa14_real_t t289 = t284 + t287 - parameters[MY6R] * t288 - (t2 * t274 - t1 * t280);
-    const iiwa14_real_t t290 = parameters[XX7R] * t246; /* link j7: force and moment */
-    const iiwa14_real_t t291 = t290 - parameters[ZZ7] * t245 + parameters[YZ7R] * t239
-        - parameters[XZ7R] * t233;
-    const iiwa14_real_t t292 = parameters[XY7] * (t249 - t278);
-    const iiwa14_real_t t293 = t15 * t265 + t13 * t272; /* link j6: motion */
+    const iiwa14_real_t t288 = t283 + t286 - parameters[MY6R] * t287 - (t2 * t273 - t1 * t279);
+    const iiwa14_real_t t289 = parameters[XX7R] * t245; /* link j7: force and moment */
+    const iiwa14_real_t t290 = t289 - parameters[ZZ7] * t244 + parameters[YZ7R] * t238
+        - parameters[XZ7R] * t232;
+    const iiwa14_real_t t291 = parameters[XY7] * (t248 - t277);
+    const iiwa14_real_t t292 = t14 * t264 + t12 * t271; /* link j6: motion */
     /* link j7: force and moment */
-    const iiwa14_real_t t294 = parameters[MX7] * (t1 * t293 + t2 * t288) + parameters[MY7] * (t2 * t293
-        - t1 * t288);
-    const iiwa14_real_t t295 = t291 + t292 + t294;
-    const iiwa14_real_t t296 = t244 * (parameters[ZZ6R] - parameters[XX6R]); /* link j6: force and moment */
-    const iiwa14_real_t t297 = t230 * t230; /* link j6: motion */
-    const iiwa14_real_t t298 = parameters[XZ6] * (t286 - t297); /* link j6: force and moment */
-    const iiwa14_real_t t299 = parameters[XY6] * t226 - t296 + parameters[YZ6] * t232 + t298
-        + parameters[MX6] * t288;
-    const iiwa14_real_t t300 = t299 + t295; /* link j7: what it passes on */
-    const iiwa14_real_t t301 = parameters[ZZ5R] * t218; /* link j5: force and moment */
-    const iiwa14_real_t t302 = t228 + t229; /* link j6: motion */
-    const iiwa14_real_t t303 = t201 - t204;
+    const iiwa14_real_t t293 = parameters[MX7] * (t1 * t292 + t2 * t287) + parameters[MY7] * (t2 * t292
+        - t1 * t287);
+    const iiwa14_real_t t294 = t290 + t291 + t293;
+    const iiwa14_real_t t295 = t243 * (parameters[ZZ6R] - parameters[XX6R]); /* link j6: force and moment */
+    const iiwa14_real_t t296 = t229 * t229; /* link j6: motion */
+    const iiwa14_real_t t297 = parameters[XZ6] * (t285 - t296); /* link j6: force and moment */
+    const iiwa14_real_t t298 = parameters[XY6] * t225 - t295 + parameters[YZ6] * t231 + t297
+        + parameters[MX6] * t287;
+    const iiwa14_real_t t299 = t298 + t294; /* link j7: what it passes on */
+    const iiwa14_real_t t300 = parameters[ZZ5R] * t217; /* link j5: force and moment */
+    const iiwa14_real_t t301 = t227 + t228; /* link j6: motion */
+    const iiwa14_real_t t302 = t200 - t203;
     /* link j5: force and moment */
-    const iiwa14_real_t t304 = parameters[XY5] * t302 - (parameters[XX5R] * t219 + t301)
-        + parameters[XZ5] * t303;
-    const iiwa14_real_t t305 = t203 * t203; /* link j5: motion */
-    const iiwa14_real_t t306 = t217 * t217;
-    const iiwa14_real_t t307 = parameters[YZ5] * (t306 - t305); /* link j5: force and moment */
+    const iiwa14_real_t t303 = parameters[XY5] * t301 - (parameters[XX5R] * t218 + t300)
+        + parameters[XZ5] * t302;
+    const iiwa14_real_t t304 = t202 * t202; /* link j5: motion */
+    const iiwa14_real_t t305 = t216 * t216;
+    const iiwa14_real_t t306 = parameters[YZ5] * (t305 - t304); /* link j5: force and moment */
     /* link j6: what it passes on */
-    const iiwa14_real_t t308 = t304 + t307 + parameters[MY5R] * t272 + (t13 * t300 - t15 * t289);
-    const iiwa14_real_t t309 = parameters[XX6R] * t231; /* link j6: force and moment */
-    const iiwa14_real_t t310 = parameters[ZZ6R] * t229 - t309 + parameters[YZ6] * t243
-        - parameters[XZ6] * t221;
-    const iiwa14_real_t t311 = parameters[XY6] * (t285 - t297);
+    const iiwa14_real_t t307 = t303 + t306 + parameters[MY5R] * t271 + (t12 * t299 - t14 * t288);
+    const iiwa14_real_t t308 = parameters[XX6R] * t230; /* link j6: force and moment */
+    const iiwa14_real_t t309 = parameters[ZZ6R] * t228 - t308 + parameters[YZ6] * t242
+        - parameters[XZ6] * t220;
+    const iiwa14_real_t t310 = parameters[XY6] * (t284 - t296);
     /* link j7: what it passes on */
-    const iiwa14_real_t t312 = t310 + t311 - (parameters[MX6] * t273 - parameters[MY6R] * t293) + (t1 * t274
-        + t2 * t280);
-    const iiwa14_real_t t313 = t228 * (parameters[XX5R] - parameters[ZZ5R]); /* link j5: force and moment */
-    const iiwa14_real_t t314 = t202 * t202; /* link j5: motion */
-    const iiwa14_real_t t315 = parameters[XZ5] * (t314 - t306); /* link j5: force and moment */
-    const iiwa14_real_t t316 = parameters[YZ5] * t205 - (t313 + parameters[XY5] * t220) + t315
-        - parameters[MX5] * t272;
-    const iiwa14_real_t t317 = t316 + t312; /* link j6: what it passes on */
-    const iiwa14_real_t t318 = parameters[MX7] * (t249 + t250); /* link j7: force and moment */
-    const iiwa14_real_t t319 = t318 - parameters[MY7] * t277;
-    const iiwa14_real_t t320 = parameters[MY7] * (t278 + t250);
-    const iiwa14_real_t t321 = parameters[MX7] * t247 - t320;
-    const iiwa14_real_t t322 = parameters[MX6] * (t285 + t286); /* link j6: force and moment */
+    const iiwa14_real_t t311 = t309 + t310 - (parameters[MX6] * t272 - parameters[MY6R] * t292) + (t1 * t273
+        + t2 * t279);
+    const iiwa14_real_t t312 = t227 * (parameters[XX5R] - parameters[ZZ5R]); /* link j5: force and moment */
+    const iiwa14_real_t t313 = t201 * t201; /* link j5: motion */
+    const iiwa14_real_t t314 = parameters[XZ5] * (t313 - t305); /* link j5: force and moment */
+    const iiwa14_real_t t315 = parameters[YZ5] * t204 - (t312 + parameters[XY5] * t219) + t314
+        - parameters[MX5] * t271;
+    const iiwa14_real_t t316 = t315 + t311; /* link j6: what it passes on */
+    const iiwa14_real_t t317 = parameters[MX7] * (t248 + t249); /* link j7: force and moment */
+    const iiwa14_real_t t318 = t317 - parameters[MY7] * t276;
+    const iiwa14_real_t t319 = parameters[MY7] * (t277 + t249);
+    const iiwa14_real_t t320 = parameters[MX7] * t246 - t319;
+    const iiwa14_real_t t321 = parameters[MX6] * (t284 + t285); /* link j6: force and moment */
     /* link j7: what it passes on */
-    const iiwa14_real_t t323 = t322 + parameters[MY6R] * t232 + (t2 * t319 + t1 * t321);
-    const iiwa14_real_t t324 = parameters[MY6R] * (t297 + t286); /* link j6: force and moment */
+    const iiwa14_real_t t322 = t321 + parameters[MY6R] * t231 + (t2 * t318 + t1 * t320);
+    const iiwa14_real_t t323 = parameters[MY6R] * (t296 + t285); /* link j6: force and moment */
     /* link j7: what it passes on */
-    const iiwa14_real_t t325 = parameters[MX6] * t283 + t324 + (parameters[MX7] * t242
-        + parameters[MY7] * t275);
-    const iiwa14_real_t t326 = parameters[MX5] * (t305 + t306); /* link j5: force and moment */
+    const iiwa14_real_t t324 = parameters[MX6] * t282 + t323 + (parameters[MX7] * t241
+        + parameters[MY7] * t274);
+    const iiwa14_real_t t325 = parameters[MX5] * (t304 + t305); /* link j5: force and moment */
     /* link j6: what it passes on */
-    const iiwa14_real_t t327 = t326 - parameters[MY5R] * t205 + (t15 * t323 - t13 * t325);
+    const iiwa14_real_t t326 = t325 - parameters[MY5R] * t204 + (t14 * t322 - t12 * t324);
     /* link j7: what it passes on */
-    const iiwa14_real_t t328 = parameters[MX6] * t282 + parameters[MY6R] * t226 + (t2 * t321 - t1 * t319);
-    const iiwa14_real_t t329 = parameters[MY5R] * (t314 + t306); /* link j5: force and moment */
-    const iiwa14_real_t t330 = t328 - (parameters[MX5] * t303 + t329); /* link j6: what it passes on */
-    const iiwa14_real_t t331 = t34 * t330 - t32 * t327; /* link j5: what it passes on */
-    const iiwa14_real_t t332 = parameters[ZZ4R] * t213; /* link j4: force and moment */
-    const iiwa14_real_t t333 = t201 - t200; /* link j5: motion */
-    const iiwa14_real_t t334 = t210 - t208;
+    const iiwa14_real_t t327 = parameters[MX6] * t281 + parameters[MY6R] * t225 + (t2 * t320 - t1 * t318);
+    const iiwa14_real_t t328 = parameters[MY5R] * (t313 + t305); /* link j5: force and moment */
+    const iiwa14_real_t t329 = t327 - (parameters[MX5] * t302 + t328); /* link j6: what it passes on */
+    const iiwa14_real_t t330 = t32 * t329 - t30 * t326; /* link j5: what it passes on */
+    const iiwa14_real_t t331 = parameters[ZZ4R] * t212; /* link j4: force and moment */
+    const iiwa14_real_t t332 = t200 - t199; /* link j5: motion */
+    const iiwa14_real_t t333 = t209 - t207;
     /* link j4: force and moment */
-    const iiwa14_real_t t335 = t332 - parameters[XX4R] * t214 + parameters[XY4] * t333
-        - parameters[XZ4] * t334;
-    const iiwa14_real_t t336 = t209 * t209; /* link j4: motion */
-    const iiwa14_real_t t337 = parameters[YZ4] * (t267 - t336); /* link j4: force and moment */
+    const iiwa14_real_t t334 = t331 - parameters[XX4R] * t213 + parameters[XY4] * t332
+        - parameters[XZ4] * t333;
+    const iiwa14_real_t t335 = t208 * t208; /* link j4: motion */
+    const iiwa14_real_t t336 = parameters[YZ4] * (t266 - t335); /* link j4: force and moment */
     /* link j5: what it passes on */
-    const iiwa14_real_t t338 = t335 + t337 - parameters[MY4R] * t263 + (t34 * t308 - t32 * t317
-        + IIWA14_C(0.4) * t331);
-    const iiwa14_real_t t339 = parameters[XX5R] * t204; /* link j5: force and moment */
-    const iiwa14_real_t t340 = parameters[ZZ5R] * t201 + t339 + parameters[YZ5] * t227
-        - parameters[XZ5] * t216;
-    const iiwa14_real_t t341 = parameters[XY5] * (t305 - t314);
+    const iiwa14_real_t t337 = t334 + t336 - parameters[MY4R] * t262 + (t32 * t307 - t30 * t316
+        + IIWA14_C(0.4) * t330);
+    const iiwa14_real_t t338 = parameters[XX5R] * t203; /* link j5: force and moment */
+    const iiwa14_real_t t339 = parameters[ZZ5R] * t200 + t338 + parameters[YZ5] * t226
+        - parameters[XZ5] * t215;
+    const iiwa14_real_t t340 = parameters[XY5] * (t304 - t313);
     /* link j6: what it passes on */
-    const iiwa14_real_t t342 = t340 + t341 + (parameters[MX5] * t288 + parameters[MY5R] * t265) + (t13 * t289
-        + t15 * t300);
-    const iiwa14_real_t t343 = t200 * (parameters[XX4R] - parameters[ZZ4R]); /* link j4: force and moment */
-    const iiwa14_real_t t344 = parameters[XZ4] * (t266 - t267);
-    const iiwa14_real_t t345 = t343 - parameters[XY4] * t215 + parameters[YZ4] * t211 + t344
-        + parameters[MX4] * t263;
-    const iiwa14_real_t t346 = t345 + t342; /* link j5: what it passes on */
-    const iiwa14_real_t t347 = parameters[ZZ3R] * t194; /* link j3: force and moment */
-    const iiwa14_real_t t348 = t186 + t185; /* link j4: motion */
+    const iiwa14_real_t t341 = t339 + t340 + (parameters[MX5] * t287 + parameters[MY5R] * t264) + (t12 * t288
+        + t14 * t299);
+    const iiwa14_real_t t342 = t199 * (parameters[XX4R] - parameters[ZZ4R]); /* link j4: force and moment */
+    const iiwa14_real_t t343 = parameters[XZ4] * (t265 - t266);
+    const iiwa14_real_t t344 = t342 - parameters[XY4] * t214 + parameters[YZ4] * t210 + t343
+        + parameters[MX4] * t262;
+    const iiwa14_real_t t345 = t344 + t341; /* link j5: what it passes on */
+    const iiwa14_real_t t346 = parameters[ZZ3R] * t193; /* link j3: force and moment */
+    const iiwa14_real_t t347 = t185 + t184; /* link j4: motion */
     /* link j3: force and moment */
-    const iiwa14_real_t t349 = parameters[XZ3] * t348 - (parameters[XX3R] * t195 + t347
-        + parameters[XY3] * (t207 + t208));
-    const iiwa14_real_t t350 = t184 * t184; /* link j3: motion */
-    const iiwa14_real_t t351 = t193 * t193;
-    const iiwa14_real_t t352 = parameters[YZ3] * (t350 - t351); /* link j3: force and moment */
-    const iiwa14_real_t t353 = parameters[MY3R] * t259;
+    const iiwa14_real_t t348 = parameters[XZ3] * t347 - (parameters[XX3R] * t194 + t346
+        + parameters[XY3] * (t206 + t207));
+    const iiwa14_real_t t349 = t183 * t183; /* link j3: motion */
+    const iiwa14_real_t t350 = t192 * t192;
+    const iiwa14_real_t t351 = parameters[YZ3] * (t349 - t350); /* link j3: force and moment */
+    const iiwa14_real_t t352 = parameters[MY3R] * t258;
     /* link j4: what it passes on */
-    const iiwa14_real_t t354 = t349 - t352 - t353 + (t67 * t338 - t71 * t346);
-    const iiwa14_real_t t355 = t34 * t327 + t32 * t330; /* link j5: what it passes on */
-    const iiwa14_real_t t356 = parameters[XX4R] * t210; /* link j4: force and moment */
-    const iiwa14_real_t t357 = parameters[XZ4] * t212 - (parameters[ZZ4R] * t208 + t356
-        + parameters[YZ4] * t197);
-    const iiwa14_real_t t358 = parameters[XY4] * (t266 - t336);
+    const iiwa14_real_t t353 = t348 - t351 - t352 + (t64 * t337 - t68 * t345);
+    const iiwa14_real_t t354 = t32 * t326 + t30 * t329; /* link j5: what it passes on */
+    const iiwa14_real_t t355 = parameters[XX4R] * t209; /* link j4: force and moment */
+    const iiwa14_real_t t356 = parameters[XZ4] * t211 - (parameters[ZZ4R] * t207 + t355
+        + parameters[YZ4] * t196);
+    const iiwa14_real_t t357 = parameters[XY4] * (t265 - t335);
     /* link j5: what it passes on */
-    const iiwa14_real_t t359 = t357 + t358 - (parameters[MX4] * t271 + parameters[MY4R] * t261) + (t32 * t308
-        + t34 * t317 + IIWA14_C(0.4) * t355);
-    const iiwa14_real_t t360 = t207 * (parameters[XX3R] - parameters[ZZ3R]); /* link j3: force and moment */
-    const iiwa14_real_t t361 = t183 * t183; /* link j3: motion */
-    const iiwa14_real_t t362 = parameters[XZ3] * (t361 - t351); /* link j3: force and moment */
-    const iiwa14_real_t t363 = parameters[MX3] * t259;
-    const iiwa14_real_t t364 = t360 - parameters[XY3] * t196 + parameters[YZ3] * t187 + t362 + t363;
-    const iiwa14_real_t t365 = t364 + t359; /* link j4: what it passes on */
-    const iiwa14_real_t t366 = parameters[MX4] * (t336 + t267); /* link j4: force and moment */
+    const iiwa14_real_t t358 = t356 + t357 - (parameters[MX4] * t270 + parameters[MY4R] * t260) + (t30 * t307
+        + t32 * t316 + IIWA14_C(0.4) * t354);
+    const iiwa14_real_t t359 = t206 * (parameters[XX3R] - parameters[ZZ3R]); /* link j3: force and moment */
+    const iiwa14_real_t t360 = t182 * t182; /* link j3: motion */
+    const iiwa14_real_t t361 = parameters[XZ3] * (t360 - t350); /* link j3: force and moment */
+    const iiwa14_real_t t362 = parameters[MX3] * t258;
+    const iiwa14_real_t t363 = t359 - parameters[XY3] * t195 + parameters[YZ3] * t186 + t361 + t362;
+    const iiwa14_real_t t364 = t363 + t358; /* link j4: what it passes on */
+    const iiwa14_real_t t365 = parameters[MX4] * (t335 + t266); /* link j4: force and moment */
     /* link j6: what it passes on */
-    const iiwa14_real_t t367 = parameters[MX5] * t302 + parameters[MY5R] * t220 + (t13 * t323 + t15 * t325);
-    const iiwa14_real_t t368 = parameters[MY4R] * t268; /* link j4: force and moment */
+    const iiwa14_real_t t366 = parameters[MX5] * t301 + parameters[MY5R] * t219 + (t12 * t322 + t14 * t324);
+    const iiwa14_real_t t367 = parameters[MY4R] * t267; /* link j4: force and moment */
     /* link j4: what it passes on */
-    const iiwa14_real_t t369 = t67 * (t366 - parameters[MY4R] * t211 + t355) + t71 * (parameters[MX4] * t334
-        - t368 + t367);
-    const iiwa14_real_t t370 = parameters[MX3] * (t350 + t351); /* link j3: force and moment */
-    const iiwa14_real_t t371 = t370 - parameters[MY3R] * t187 + t369; /* link j4: what it passes on */
-    const iiwa14_real_t t372 = parameters[MY3R] * (t361 + t351); /* link j3: force and moment */
+    const iiwa14_real_t t368 = t64 * (t365 - parameters[MY4R] * t210 + t354) + t68 * (parameters[MX4] * t333
+        - t367 + t366);
+    const iiwa14_real_t t369 = parameters[MX3] * (t349 + t350); /* link j3: force and moment */
+    const iiwa14_real_t t370 = t369 - parameters[MY3R] * t186 + t368; /* link j4: what it passes on */
+    const iiwa14_real_t t371 = parameters[MY3R] * (t360 + t350); /* link j3: force and moment */
     /* link j4: what it passes on */
-    const iiwa14_real_t t373 = parameters[MX3] * t348 + t372 - (t331 - (parameters[MX4] * t333
-        + parameters[MY4R] * t215));
+    const iiwa14_real_t t372 = parameters[MX3] * t347 + t371 - (t330 - (parameters[MX4] * t332
+        + parameters[MY4R] * t214));
     /* link j3: what it passes on */
-    const iiwa14_real_t t374 = t98 * t365 - t100 * t354 + IIWA14_C(0.42) * (t98 * t371 + t100 * t373);
-    const iiwa14_real_t t375 = parameters[ZZ2R] * t190; /* link j2: force and moment */
-    const iiwa14_real_t t376 = parameters[XY2] * (IIWA14_C(2.0) * t186) - (parameters[XX2R] * t190 + t375)
-        + parameters[XZ2] * t189;
-    const iiwa14_real_t t377 = t188 * t188; /* link j2: motion */
-    const iiwa14_real_t t378 = parameters[YZ2] * (t377 - t257); /* link j2: force and moment */
-    const iiwa14_real_t t379 = parameters[XY3] * (t361 - t350); /* link j3: force and moment */
-    const iiwa14_real_t t380 = parameters[XX3R] * t185;
-    const iiwa14_real_t t381 = parameters[ZZ3R] * t186 - t380 + parameters[YZ3] * t206
-        - parameters[XZ3] * t192;
+    const iiwa14_real_t t373 = t94 * t364 - t96 * t353 + IIWA14_C(0.42) * (t94 * t370 + t96 * t372);
+    const iiwa14_real_t t374 = parameters[ZZ2R] * t189; /* link j2: force and moment */
+    const iiwa14_real_t t375 = parameters[XY2] * (IIWA14_C(2.0) * t185) - (parameters[XX2R] * t189 + t374)
+        + parameters[XZ2] * t188;
+    const iiwa14_real_t t376 = t187 * t187; /* link j2: motion */
+    const iiwa14_real_t t377 = parameters[YZ2] * (t376 - t256); /* link j2: force and moment */
+    const iiwa14_real_t t378 = parameters[XY3] * (t360 - t349); /* link j3: force and moment */
+    const iiwa14_real_t t379 = parameters[XX3R] * t184;
+    const iiwa14_real_t t380 = parameters[ZZ3R] * t185 - t379 + parameters[YZ3] * t205
+        - parameters[XZ3] * t191;
     /* link j4: what it passes on */
-    const iiwa14_real_t t382 = t381 - t379 + (parameters[MX3] * t263 + parameters[MY3R] * t255) + (t71 * t338
-        + t67 * t346);
-    const iiwa14_real_t t383 = t186 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
-    const iiwa14_real_t t384 = parameters[XZ2] * (t257 - t256);
+    const iiwa14_real_t t381 = t380 - t378 + (parameters[MX3] * t262 + parameters[MY3R] * t254) + (t68 * t337
+        + t64 * t345);
+    const iiwa14_real_t t382 = t185 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
+    const iiwa14_real_t t383 = parameters[XZ2] * (t256 - t255);
     /* link j3: what it passes on */
-    const iiwa14_real_t t385 = parameters[XY2] * t191 - t383 - parameters[YZ2] * t189 + t384 + t382;
-    const iiwa14_real_t t386 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
-    const iiwa14_real_t t387 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0])
-        - parameters[FC1] * t386) + (t150 * (t376 + t378 + t374) + t146 * t385);
-    const iiwa14_real_t t388 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
-    const iiwa14_real_t t389 = IIWA14_C(160.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6])
-        + parameters[FC7] * t388) - t295;
-    const iiwa14_real_t t390 = IIWA14_C(8.0) * input[6] - t389;
-    const iiwa14_real_t t391 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
-    const iiwa14_real_t t392 = IIWA14_C(160.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5])
-        + parameters[FC6] * t391) - t312;
-    const iiwa14_real_t t393 = IIWA14_C(8.0) * input[5] - t392 - t390 * t5;
-    const iiwa14_real_t t394 = IIWA14_C(16.0) * input[0] + t387 + t390 * t156 + t393 * t160;
-    const iiwa14_real_t t395 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
-    const iiwa14_real_t t396 = IIWA14_C(1.0e2) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4])
-        + parameters[FC5] * t395) - t342;
-    const iiwa14_real_t t397 = IIWA14_C(8.0) * input[4] - t396 - t390 * t28 + t393 * t21;
-    const iiwa14_real_t t398 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
-    const iiwa14_real_t t399 = IIWA14_C(160.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3])
-        + parameters[FC4] * t398) + t359;
-    const iiwa14_real_t t400 = IIWA14_C(16.0) * input[3] - t399 - t390 * t55 + t393 * t63;
-    const iiwa14_real_t t401 = t400 + t397 * t54;
-    const iiwa14_real_t t402 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
-    const iiwa14_real_t t403 = IIWA14_C(160.0) * (parameters[FV3] * (IIWA14_C(-160.0) * dq[2])
-        - parameters[FC3] * t402) + t382;
-    const iiwa14_real_t t404 = IIWA14_C(16.0) * input[2] + t403 - t390 * t79 - t393 * t84;
-    const iiwa14_real_t t405 = t404 - t397 * t87 - t401 * t94;
-    const iiwa14_real_t t406 = t394 + t397 * t164 + t401 * t170 - t405 * t173;
+    const iiwa14_real_t t384 = parameters[XY2] * t190 - t382 - parameters[YZ2] * t188 + t383 + t381;
+    const iiwa14_real_t t385 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
+    const iiwa14_real_t t386 = IIWA14_C(160.0) * (parameters[FV1] * (IIWA14_C(-160.0) * dq[0])
+        - parameters[FC1] * t385) + (t145 * (t375 + t377 + t373) + t141 * t384);
+    const iiwa14_real_t t387 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
+    const iiwa14_real_t t388 = IIWA14_C(160.0) * (parameters[FV7] * (IIWA14_C(160.0) * dq[6])
+        + parameters[FC7] * t387) - t294;
+    const iiwa14_real_t t389 = IIWA14_C(8.0) * input[6] - t388;
+    const iiwa14_real_t t390 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
+    const iiwa14_real_t t391 = IIWA14_C(160.0) * (parameters[FV6] * (IIWA14_C(160.0) * dq[5])
+        + parameters[FC6] * t390) - t311;
+    const iiwa14_real_t t392 = IIWA14_C(8.0) * input[5] - t391 - t389 * t5;
+    const iiwa14_real_t t393 = IIWA14_C(16.0) * input[0] + t386 + t389 * t151 + t392 * t155;
+    const iiwa14_real_t t394 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
+    const iiwa14_real_t t395 = IIWA14_C(1.0e2) * (parameters[FV5] * (IIWA14_C(1.0e2) * dq[4])
+        + parameters[FC5] * t394) - t341;
+    const iiwa14_real_t t396 = IIWA14_C(8.0) * input[4] - t395 - t389 * t27 + t392 * t20;
+    const iiwa14_real_t t397 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
+    const iiwa14_real_t t398 = IIWA14_C(160.0) * (parameters[FV4] * (IIWA14_C(160.0) * dq[3])
+        + parameters[FC4] * t397) + t358;
+    const iiwa14_real_t t399 = IIWA14_C(16.0) * input[3] - t398 - t389 * t53 + t392 * t61;
+    const iiwa14_real_t t400 = t399 + t396 * t52;
+    const iiwa14_real_t t401 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
+    const iiwa14_real_t t402 = IIWA14_C(160.0) * (parameters[FV3] * (IIWA14_C(-160.0) * dq[2])
+        - parameters[FC3] * t401) + t381;
+    const iiwa14_real_t t403 = IIWA14_C(16.0) * input[2] + t402 - t389 * t76 - t392 * t81;
+    const iiwa14_real_t t404 = t403 - t396 * t84 - t400 * t91;
+    const iiwa14_real_t t405 = t393 + t396 * t159 + t400 * t165 - t404 * t168;
     /* link j3: what it passes on */
-    const iiwa14_real_t t407 = t98 * t354 + t100 * t365 + IIWA14_C(0.42) * (t100 * t371 - t98 * t373);
+    const iiwa14_real_t t406 = t94 * t353 + t96 * t364 + IIWA14_C(0.42) * (t96 * t370 - t94 * t372);
     /* link j2: force and moment */
-    const iiwa14_real_t t408 = parameters[XX2R] * t189 + parameters[XY2] * (t377 - t256)
-        + (parameters[MX2] * t258 + parameters[MY2R] * t252);
-    const iiwa14_real_t t409 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
-    const iiwa14_real_t t410 = IIWA14_C(160.0) * (parameters[FV2] * (IIWA14_C(-160.0) * dq[1])
-        - parameters[FC2] * t409) + (t408 + t407);
-    const iiwa14_real_t t411 = IIWA14_C(16.0) * input[1] + t410 + t390 * t138 + t393 * t139;
-    const iiwa14_real_t t412 = t411 + t397 * t140 + t401 * t142 + t405 * t131;
-    const iiwa14_real_t t413 = IIWA14_C(1.0) / t180;
-    const iiwa14_real_t t414 = iiwa14_bounded((t406 - t412 * t179) * t413);
-    ddq[0] = t414;
-    const iiwa14_real_t t415 = iiwa14_bounded(t412 * t178 - t179 * t414);
-    ddq[1] = t415;
-    const iiwa14_real_t t416 = iiwa14_bounded(t405 * t130 - t173 * t414 + t131 * t415);
-    ddq[2] = t416;
-    const iiwa14_real_t t417 = iiwa14_bounded(t401 * t93 + t170 * t414 + t142 * t415 - t94 * t416);
-    ddq[3] = t417;
-    const iiwa14_real_t t418 = t397 * t53 + t164 * t414 + t140 * t415 - t87 * t416;
-    const iiwa14_real_t t419 = iiwa14_bounded(t418 + t54 * t417);
-    ddq[4] = t419;
-    const iiwa14_real_t t420 = t393 * t20 + t160 * t414 + t139 * t415 - t84 * t416;
-    const iiwa14_real_t t421 = iiwa14_bounded(t420 + t63 * t417 + t21 * t419);
-    ddq[5] = t421;
-    const iiwa14_real_t t422 = t390 * t4 + t156 * t414 + t138 * t415 - t79 * t416;
-    const iiwa14_real_t t423 = iiwa14_bounded(t422 - t55 * t417 - t28 * t419 - t5 * t421);
-    ddq[6] = t423;
-    const iiwa14_real_t t424 = iiwa14_bounded(IIWA14_C(16.0) * t413);
-    const iiwa14_real_t t425 = parameters[XZ7R] * t234;
-    const iiwa14_real_t t426 = parameters[XY7] * t235;
-    const iiwa14_real_t t427 = t425 - t426;
-    const iiwa14_real_t t428 = parameters[YZ7R] * t240;
-    const iiwa14_real_t t429 = t428 - t426;
-    const iiwa14_real_t t430 = IIWA14_C(0.5) * (parameters[XX7R] + parameters[ZZ7]);
-    const iiwa14_real_t t431 = parameters[XX7R] - t430;
-    const iiwa14_real_t t432 = parameters[XZ7R] * t240 - t235 * t431;
-    const iiwa14_real_t t433 = parameters[YZ7R] * t234 + t235 * t430;
+    const iiwa14_real_t t407 = parameters[XX2R] * t188 + parameters[XY2] * (t376 - t255)
+        + (parameters[MX2] * t257 + parameters[MY2R] * t251);
+    const iiwa14_real_t t408 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
+    const iiwa14_real_t t409 = IIWA14_C(160.0) * (parameters[FV2] * (IIWA14_C(-160.0) * dq[1])
+        - parameters[FC2] * t408) + (t407 + t406);
+    const iiwa14_real_t t410 = IIWA14_C(16.0) * input[1] + t409 + t389 * t134 + t392 * t135;
+    const iiwa14_real_t t411 = t410 + t396 * t136 + t400 * t138 + t404 * t127;
+    const iiwa14_real_t t412 = IIWA14_C(1.0) / t175;
+    const iiwa14_real_t t413 = iiwa14_held((t405 - t411 * t174) * t412);
+    ddq[0] = t413;
+    const iiwa14_real_t t414 = iiwa14_held(t411 * t173 - t174 * t413);
+    ddq[1] = t414;
+    const iiwa14_real_t t415 = iiwa14_held(t404 * t126 - t168 * t413 + t127 * t414);
+    ddq[2] = t415;
+    const iiwa14_real_t t416 = iiwa14_held(t400 * t90 + t165 * t413 + t138 * t414 - t91 * t415);
+    ddq[3] = t416;
+    const iiwa14_real_t t417 = t396 * t51 + t159 * t413 + t136 * t414 - t84 * t415;
+    const iiwa14_real_t t418 = iiwa14_held(t417 + t52 * t416);
+    ddq[4] = t418;
+    const iiwa14_real_t t419 = t392 * t19 + t155 * t413 + t135 * t414 - t81 * t415;
+    const iiwa14_real_t t420 = iiwa14_held(t419 + t61 * t416 + t20 * t418);
+    ddq[5] = t420;
+    const iiwa14_real_t t421 = t389 * t4 + t151 * t413 + t134 * t414 - t76 * t415;
+    const iiwa14_real_t t422 = iiwa14_held(t421 - t53 * t416 - t27 * t418 - t5 * t420);
+    ddq[6] = t422;
+    const iiwa14_real_t t423 = t188 - t414;
+    const iiwa14_real_t t424 = t145 * t413;
+    const iiwa14_real_t t425 = t189 + t424;
+    const iiwa14_real_t t426 = t189 + t425;
+    const iiwa14_real_t t427 = t96 * t423 - t94 * t426;
+    const iiwa14_real_t t428 = t206 - t427;
+    const iiwa14_real_t t429 = t416 - t428;
+    const iiwa14_real_t t430 = t429 - t209;
+    const iiwa14_real_t t431 = t141 * t413;
+    const iiwa14_real_t t432 = t185 - t431;
+    const iiwa14_real_t t433 = t432 - t415;
+    const iiwa14_real_t t434 = t433 - t184;
+    const iiwa14_real_t t435 = t94 * t423 + t96 * t426;
+    const iiwa14_real_t t436 = t435 - t193;
+    const iiwa14_real_t t437 = t436 - t193;
+    const iiwa14_real_t t438 = t68 * t434 + t64 * t437;
+    const iiwa14_real_t t439 = t212 + t438;
+    const iiwa14_real_t t440 = t212 + t439;
+    const iiwa14_real_t t441 = t32 * t430 - t30 * t440;
+    const iiwa14_real_t t442 = t227 + t441;
+    const iiwa14_real_t t443 = t442 - t420;
+    const iiwa14_real_t t444 = t443 - t230;
+    const iiwa14_real_t t445 = t64 * t434 - t68 * t437;
+    const iiwa14_real_t t446 = t445 - t199;
+    const iiwa14_real_t t447 = t446 - t418;
+    const iiwa14_real_t t448 = t203 + t447;
+    const iiwa14_real_t t449 = t30 * t430 + t32 * t440;
+    const iiwa14_real_t t450 = t449 - t217;
+    const iiwa14_real_t t451 = t217 - t450;
+    const iiwa14_real_t t452 = t12 * t448 + t14 * t451;
+    const iiwa14_real_t t453 = t452 - t223;
+    const iiwa14_real_t t454 = t453 - t223;
+    const iiwa14_real_t t455 = t1 * t444 - t2 * t454;
+    const iiwa14_real_t t456 = t455 - t235;
+    const iiwa14_real_t t457 = t456 - t235;
+    const iiwa14_real_t t458 = t12 * t451 - t14 * t448;
+    const iiwa14_real_t t459 = t243 + t458;
+    const iiwa14_real_t t460 = t422 + t459;
+    const iiwa14_real_t t461 = t460 - t245;
+    const iiwa14_real_t t462 = IIWA14_C(0.42) * t423 - t251;
+    const iiwa14_real_t t463 = IIWA14_C(0.42) * t426;
+    const iiwa14_real_t t464 = t96 * t462 - t94 * t463;
+    const iiwa14_real_t t465 = t64 * t464 - t259;
+    const iiwa14_real_t t466 = t465 + IIWA14_C(0.4) * t430;
+    const iiwa14_real_t t467 = t94 * t462 + t96 * t463;
+    const iiwa14_real_t t468 = t467 + IIWA14_C(0.4) * t440;
+    const iiwa14_real_t t469 = t30 * t468 - t32 * t466;
+    const iiwa14_real_t t470 = t269 + t68 * t464;
+    const iiwa14_real_t t471 = t268 - t470;
+    const iiwa14_real_t t472 = t14 * t471 - t12 * t469;
+    const iiwa14_real_t t473 = t278 + (parameters[XY7] * t457 - t275 - parameters[YZ7R] * t461)
+        - parameters[MX7] * t472;
+    const iiwa14_real_t t474 = t2 * t444 + t1 * t454;
+    const iiwa14_real_t t475 = t277 + t248; /* link j7: force and moment */
+    const iiwa14_real_t t476 = parameters[XZ7R] * t233;
+    const iiwa14_real_t t477 = parameters[XY7] * t234;
+    const iiwa14_real_t t478 = t476 - t477;
+    const iiwa14_real_t t479 = IIWA14_C(-2.0) * t233; /* link j7: derivatives */
+    const iiwa14_real_t t480 = IIWA14_C(0.5) * (parameters[XX7R] + parameters[ZZ7]);
+    const iiwa14_real_t t481 = parameters[YZ7R] * t233 + t234 * t480;
+    const iiwa14_real_t t482 = IIWA14_C(-2.0) * t239;
+    const iiwa14_real_t t483 = t481 * t482 - t478 * t479 - (parameters[XZ7R] * t475 - (parameters[XY7] * t455
+        - parameters[XX7R] * t474));
+    const iiwa14_real_t t484 = t473 + t483;
+    const iiwa14_real_t t485 = t240 + (t240 + t474);
+    const iiwa14_real_t t486 = t245 + t460;
+    const iiwa14_real_t t487 = parameters[XX7R] * t456 - t237 + parameters[XY7] * t485
+        - parameters[XZ7R] * t486;
+    const iiwa14_real_t t488 = t250 + t487 + parameters[MY7] * t472;
+    const iiwa14_real_t t489 = parameters[XX7R] - t480;
+    const iiwa14_real_t t490 = parameters[XZ7R] * t239 - t234 * t489;
+    const iiwa14_real_t t491 = parameters[YZ7R] * t239;
+    const iiwa14_real_t t492 = t491 - t477;
+    const iiwa14_real_t t493 = t492 * t482 - t490 * t479 + (parameters[YZ7R] * t475 + parameters[XY7] * t474);
+    const iiwa14_real_t t494 = t488 + t493;
+    const iiwa14_real_t t495 = t2 * t484 + t1 * t494;
+    const iiwa14_real_t t496 = parameters[ZZ7] * t475 + (parameters[XZ7R] * t474 - parameters[YZ7R] * t455);
+    const iiwa14_real_t t497 = t233 * t489 - parameters[XY7] * t239;
+    const iiwa14_real_t t498 = parameters[XY7] * t233 + t239 * t480;
+    const iiwa14_real_t t499 = t14 * t469 + t12 * t471;
+    const iiwa14_real_t t500 = t30 * t466 + t32 * t468;
+    const iiwa14_real_t t501 = t2 * t499 + t1 * t500;
+    const iiwa14_real_t t502 = t2 * t500 - t1 * t499;
+    const iiwa14_real_t t503 = parameters[MX7] * t501 + parameters[MY7] * t502;
+    const iiwa14_real_t t504 = t498 * t482 - t497 * t479 + t496 + t503;
+    const iiwa14_real_t t505 = t14 * t495 - t12 * t504;
+    const iiwa14_real_t t506 = t2 * t494 - t1 * t484;
+    const iiwa14_real_t t507 = parameters[MX7] * t486 - t319;
+    const iiwa14_real_t t508 = parameters[MY7] * t239 - parameters[MX7] * t233;
+    const iiwa14_real_t t509 = t507 - (t508 * t482 + parameters[MY7] * t475);
+    const iiwa14_real_t t510 = t317 + parameters[MY7] * t461;
+    const iiwa14_real_t t511 = parameters[MX7] * t475 - t508 * t479 + t510;
+    const iiwa14_real_t t512 = t2 * t509 - t1 * t511;
+    const iiwa14_real_t t513 = parameters[MX7] * t234;
+    const iiwa14_real_t t514 = parameters[MY7] * t234;
+    const iiwa14_real_t t515 = t514 * t482 - t513 * t479 - (parameters[MY7] * t474 + parameters[MX7] * t455);
+    const iiwa14_real_t t516 = t14 * t512 - t12 * t515;
+    const iiwa14_real_t t517 = t1 * t509 + t2 * t511;
+    const iiwa14_real_t t518 = t30 * t516 + t32 * t517;
+    const iiwa14_real_t t519 = t32 * t505 + t30 * t506 + IIWA14_C(0.4) * t518;
+    const iiwa14_real_t t520 = t12 * t495 + t14 * t504;
+    const iiwa14_real_t t521 = t64 * t519 + t68 * t520;
+    const iiwa14_real_t t522 = t30 * t517 - t32 * t516;
+    const iiwa14_real_t t523 = t30 * t505 - t32 * t506 + IIWA14_C(0.4) * t522;
+    const iiwa14_real_t t524 = t68 * (t12 * t512 + t14 * t515) - t64 * t522;
+    const iiwa14_real_t t525 = t96 * t521 - t94 * t523 + IIWA14_C(0.42) * (t94 * t524 + t96 * t518);
+    const iiwa14_real_t t526 = t68 * t519 - t64 * t520;
+    const iiwa14_real_t t527 = IIWA14_C(0.0625) * (t145 * t525 - t141 * t526);
+    const iiwa14_real_t t528 = iiwa14_held(IIWA14_C(16.0) * t412);
+    const iiwa14_real_t t529 = t94 * t521 + t96 * t523 + IIWA14_C(0.42) * (t94 * t518 - t96 * t524);
+    const iiwa14_real_t t530 = IIWA14_C(0.0625) * t529;
+    const iiwa14_real_t t531 = t174 * t412;
+    const iiwa14_real_t t532 = iiwa14_held(IIWA14_C(-16.0) * t531);
+    const iiwa14_real_t t533 = IIWA14_C(0.0625) * t526;
+    const iiwa14_real_t t534 = t412 * (t168 + t127 * t174);
+    const iiwa14_real_t t535 = iiwa14_held(IIWA14_C(-16.0) * t534);
+    const iiwa14_real_t t536 = IIWA14_C(0.0625) * t523;
+    const iiwa14_real_t t537 = t138 - t91 * t127;
+    const iiwa14_real_t t538 = t412 * (t165 + t91 * t168 - t174 * t537);
+    const iiwa14_real_t t539 = iiwa14_held(IIWA14_C(16.0) * t538);
+    const iiwa14_real_t t540 = t528 * t527 - t532 * t530 - t535 * t533 + t539 * t536;
+    const iiwa14_real_t t541 = IIWA14_C(0.125) * t520;
+    const iiwa14_real_t t542 = t84 + t52 * t91;
+    const iiwa14_real_t t543 = t136 + t52 * t138 - t127 * t542;
+    const iiwa14_real_t t544 = t159 + t52 * t165 + t168 * t542 - t174 * t543;
+    const iiwa14_real_t t545 = t412 * t544;
+    const iiwa14_real_t t546 = iiwa14_held(IIWA14_C(8.0) * t545);
+    const iiwa14_real_t t547 = IIWA14_C(0.125) * t506;
+    const iiwa14_real_t t548 = t61 + t20 * t52;
+    const iiwa14_real_t t549 = t81 + t20 * t84 + t91 * t548;
+    const iiwa14_real_t t550 = t135 + t20 * t136 + t138 * t548 - t127 * t549;
+    const iiwa14_real_t t551 = t155 + t20 * t159 + t165 * t548 + t168 * t549;
+    const iiwa14_real_t t552 = t412 * (t551 - t174 * t550);
+    const iiwa14_real_t t553 = iiwa14_held(IIWA14_C(8.0) * t552);
+    const iiwa14_real_t t554 = IIWA14_C(2.0) * t497;
+    const iiwa14_real_t t555 = IIWA14_C(2.0) * t498;
+    const iiwa14_real_t t556 = IIWA14_C(0.125) * (t503 + (t233 * t554 - t239 * t555 + t496));
+    const iiwa14_real_t t557 = t27 + t5 * t20;
+    const iiwa14_real_t t558 = t53 + t5 * t61 + t52 * t557;
+    const iiwa14_real_t t559 = t76 - t5 * t81 - t84 * t557 - t91 * t558;
+    const iiwa14_real_t t560 = t134 - t5 * t135 - t136 * t557 - t138 * t558;
+    const iiwa14_real_t t561 = t560 - t127 * t559;
+    const iiwa14_real_t t562 = t151 - t5 * t155 - t159 * t557 - t165 * t558;
+    const iiwa14_real_t t563 = t412 * (t562 + t168 * t559 - t174 * t561);
+    const iiwa14_real_t t564 = iiwa14_held(IIWA14_C(8.0) * t563);
+    const iiwa14_real_t t565 = t540 + t546 * t541 + t553 * t547 + t564 * t556;
+    ddq_by_q[6] = t565;
+    const iiwa14_real_t t566 = iiwa14_held(IIWA14_C(16.0) * (t173 + t174 * t531));
+    const iiwa14_real_t t567 = t127 * t173 + t174 * t534;
+    const iiwa14_real_t t568 = iiwa14_held(IIWA14_C(16.0) * t567);
+    const iiwa14_real_t t569 = t174 * t538 - t173 * t537;
+    const iiwa14_real_t t570 = iiwa14_held(IIWA14_C(-16.0) * t569);
+    const iiwa14_real_t t571 = t532 * t527 - t566 * t530 - t568 * t533 + t570 * t536;
+    const iiwa14_real_t t572 = t174 * t545 - t173 * t543;
+    const iiwa14_real_t t573 = iiwa14_held(IIWA14_C(-8.0) * t572);
+    const iiwa14_real_t t574 = t174 * t552 - t173 * t550;
+    const iiwa14_real_t t575 = iiwa14_held(IIWA14_C(-8.0) * t574);
+    const iiwa14_real_t t576 = t174 * t563 - t173 * t561;
+    const iiwa14_real_t t577 = iiwa14_held(IIWA14_C(-8.0) * t576);
+    const iiwa14_real_t t578 = t571 + t573 * t541 + t575 * t547 + t577 * t556;
+    ddq_by_q[13] = t578;
+    const iiwa14_real_t t579 = iiwa14_held(IIWA14_C(16.0) * (t126 + t168 * t534 + t127 * t567));
+    const iiwa14_real_t t580 = t91 * t126 + t168 * t538 + t127 * t569;
+    const iiwa14_real_t t581 = iiwa14_held(IIWA14_C(-16.0) * t580);
+    const iiwa14_real_t t582 = t535 * t527 - t568 * t530 - t579 * t533 + t581 * t536;
+    const iiwa14_real_t t583 = t126 * t542 + t168 * t545 + t127 * t572;
+    const iiwa14_real_t t584 = iiwa14_held(IIWA14_C(-8.0) * t583);
+    const iiwa14_real_t t585 = t126 * t549 + t168 * t552 + t127 * t574;
+    const iiwa14_real_t t586 = iiwa14_held(IIWA14_C(-8.0) * t585);
+    const iiwa14_real_t t587 = t126 * t559 + t168 * t563 + t127 * t576;
+    const iiwa14_real_t t588 = iiwa14_held(IIWA14_C(-8.0) * t587);
+    const iiwa14_real_t t589 = t582 + t584 * t541 + t586 * t547 + t588 * t556;
+    ddq_by_q[20] = t589;
+    const iiwa14_real_t t590 = t90 + t165 * t538 - t138 * t569 + t91 * t580;
+    const iiwa14_real_t t591 = iiwa14_held(IIWA14_C(16.0) * t590);
+    const iiwa14_real_t t592 = t539 * t527 - t570 * t530 - t581 * t533 + t591 * t536;
+    const iiwa14_real_t t593 = t52 * t90 + t165 * t545 - t138 * t572 + t91 * t583;
+    const iiwa14_real_t t594 = iiwa14_held(IIWA14_C(8.0) * t593);
+    const iiwa14_real_t t595 = t90 * t548 + t165 * t552 - t138 * t574 + t91 * t585;
+    const iiwa14_real_t t596 = iiwa14_held(IIWA14_C(8.0) * t595);
+    const iiwa14_real_t t597 = t165 * t563 - t90 * t558 - t138 * t576 + t91 * t587;
+    const iiwa14_real_t t598 = iiwa14_held(IIWA14_C(8.0) * t597);
+    const iiwa14_real_t t599 = t592 + t594 * t541 + t596 * t547 + t598 * t556;
+    ddq_by_q[27] = t599;
+    const iiwa14_real_t t600 = iiwa14_held(IIWA14_C(16.0) * t545);
+    const iiwa14_real_t t601 = iiwa14_held(IIWA14_C(-16.0) * t572);
+    const iiwa14_real_t t602 = iiwa14_held(IIWA14_C(-16.0) * t583);
+    const iiwa14_real_t t603 = iiwa14_held(IIWA14_C(16.0) * t593);
+    const iiwa14_real_t t604 = t600 * t527 - t601 * t530 - t602 * t533 + t603 * t536;
+    const iiwa14_real_t t605 = t51 + t159 * t545 - t136 * t572 + t84 * t583;
+    const iiwa14_real_t t606 = iiwa14_held(IIWA14_C(8.0) * (t605 + t52 * t593));
+    const iiwa14_real_t t607 = t20 * t51 + t159 * t552 - t136 * t574 + t84 * t585;
+    const iiwa14_real_t t608 = t607 + t52 * t595;
+    const iiwa14_real_t t609 = iiwa14_held(IIWA14_C(8.0) * t608);
+    const iiwa14_real_t t610 = t159 * t563 - t51 * t557 - t136 * t576 + t84 * t587;
+    const iiwa14_real_t t611 = t610 + t52 * t597;
+    const iiwa14_real_t t612 = iiwa14_held(IIWA14_C(8.0) * t611);
+    const iiwa14_real_t t613 = t604 + t606 * t541 + t609 * t547 + t612 * t556;
+    ddq_by_q[34] = t613;
+    const iiwa14_real_t t614 = iiwa14_held(IIWA14_C(16.0) * t552);
+    const iiwa14_real_t t615 = iiwa14_held(IIWA14_C(-16.0) * t574);
+    const iiwa14_real_t t616 = iiwa14_held(IIWA14_C(-16.0) * t585);
+    const iiwa14_real_t t617 = iiwa14_held(IIWA14_C(16.0) * t595);
+    const iiwa14_real_t t618 = t614 * t527 - t615 * t530 - t616 * t533 + t617 * t536;
+    const iiwa14_real_t t619 = t19 + t155 * t552 - t135 * t574 + t81 * t585;
+    const iiwa14_real_t t620 = iiwa14_held(IIWA14_C(8.0) * (t619 + t61 * t595 + t20 * t608));
+    const iiwa14_real_t t621 = t5 * t19 - t155 * t563 + t135 * t576 - t81 * t587;
+    const iiwa14_real_t t622 = t621 - t61 * t597 - t20 * t611;
+    const iiwa14_real_t t623 = iiwa14_held(IIWA14_C(-8.0) * t622);
+    const iiwa14_real_t t624 = t618 + t609 * t541 + t620 * t547 + t623 * t556;
+    ddq_by_q[41] = t624;
+    const iiwa14_real_t t625 = iiwa14_held(IIWA14_C(16.0) * t563);
+    const iiwa14_real_t t626 = iiwa14_held(IIWA14_C(-16.0) * t576);
+    const iiwa14_real_t t627 = iiwa14_held(IIWA14_C(-16.0) * t587);
+    const iiwa14_real_t t628 = iiwa14_held(IIWA14_C(16.0) * t597);
+    const iiwa14_real_t t629 = t625 * t527 - t626 * t530 - t627 * t533 + t628 * t536;
+    const iiwa14_real_t t630 = t4 + t151 * t563 - t134 * t576 + t76 * t587;
+    const iiwa14_real_t t631 = t630 - t53 * t597 - t27 * t611 + t5 * t622;
+    const iiwa14_real_t t632 = iiwa14_held(IIWA14_C(8.0) * t631);
+    const iiwa14_real_t t633 = t629 + t612 * t541 + t623 * t547 + t632 * t556;
+    ddq_by_q[48] = t633;
+    const iiwa14_real_t t634 = t480 - parameters[ZZ7];
+    const iiwa14_real_t t635 = parameters[YZ7R] * t234 + t233 * t634;
+    const iiwa14_real_t t636 = IIWA14_C(2.0) * t635 - (parameters[XY7] * t482 - parameters[XX7R] * t479);
+    const iiwa14_real_t t637 = parameters[XZ7R] * t234 + t239 * t634;
+    const iiwa14_real_t t638 = IIWA14_C(-2.0) * t637 + parameters[XY7] * t479;
+    const iiwa14_real_t t639 = t1 * t638 - t2 * t636;
+    const iiwa14_real_t t640 = t476 - t491;
+    const iiwa14_real_t t641 = IIWA14_C(2.0) * t640;
+    const iiwa14_real_t t642 = t641 - (parameters[YZ7R] * t482 - parameters[XZ7R] * t479);
+    const iiwa14_real_t t643 = t14 * t639 - t12 * t642;
+    const iiwa14_real_t t644 = t1 * t636 + t2 * t638;
+    const iiwa14_real_t t645 = parameters[MY7] * t479 + parameters[MX7] * t482;
+    const iiwa14_real_t t646 = IIWA14_C(2.0) * t513;
+    const iiwa14_real_t t647 = IIWA14_C(2.0) * t514;
+    const iiwa14_real_t t648 = t2 * t646 - t1 * t647;
+    const iiwa14_real_t t649 = t14 * t648 + t12 * t645;
+    const iiwa14_real_t t650 = t1 * t646 + t2 * t647;
+    const iiwa14_real_t t651 = t30 * t649 + t32 * t650;
+    const iiwa14_real_t t652 = t32 * t643 + t30 * t644 + IIWA14_C(0.4) * t651;
+    const iiwa14_real_t t653 = t12 * t639 + t14 * t642;
+    const iiwa14_real_t t654 = t64 * t652 + t68 * t653;
+    const iiwa14_real_t t655 = t30 * t650 - t32 * t649;
+    const iiwa14_real_t t656 = t30 * t643 - t32 * t644 + IIWA14_C(0.4) * t655;
+    const iiwa14_real_t t657 = t68 * (t12 * t648 - t14 * t645) - t64 * t655;
+    const iiwa14_real_t t658 = t96 * t654 - t94 * t656 + IIWA14_C(0.42) * (t94 * t657 + t96 * t651);
+    const iiwa14_real_t t659 = t64 * t653 - t68 * t652;
+    const iiwa14_real_t t660 = IIWA14_C(0.0625) * (t145 * t658 + t141 * t659);
+    const iiwa14_real_t t661 = t94 * t654 + t96 * t656 + IIWA14_C(0.42) * (t94 * t651 - t96 * t657);
+    const iiwa14_real_t t662 = IIWA14_C(0.0625) * t661;
+    const iiwa14_real_t t663 = IIWA14_C(-0.0625) * t659;
+    const iiwa14_real_t t664 = IIWA14_C(0.0625) * t656;
+    const iiwa14_real_t t665 = t660 * t528 - t662 * t532 - t663 * t535 + t664 * t539;
+    const iiwa14_real_t t666 = IIWA14_C(0.125) * t653;
+    const iiwa14_real_t t667 = IIWA14_C(0.125) * t644;
+    const iiwa14_real_t t668 = IIWA14_C(-3.2e3) * parameters[FV7];
+    const iiwa14_real_t t669 = t665 + t666 * t546 + t667 * t553 + t668 * t564;
+    ddq_by_dq[6] = t669;
+    const iiwa14_real_t t670 = t660 * t532 - t662 * t566 - t663 * t568 + t664 * t570;
+    const iiwa14_real_t t671 = t670 + t666 * t573 + t667 * t575 + t668 * t577;
+    ddq_by_dq[13] = t671;
+    const iiwa14_real_t t672 = t660 * t535 - t662 * t568 - t663 * t579 + t664 * t581;
+    const iiwa14_real_t t673 = t672 + t666 * t584 + t667 * t586 + t668 * t588;
+    ddq_by_dq[20] = t673;
+    const iiwa14_real_t t674 = t660 * t539 - t662 * t570 - t663 * t581 + t664 * t591;
+    const iiwa14_real_t t675 = t674 + t666 * t594 + t667 * t596 + t668 * t598;
+    ddq_by_dq[27] = t675;
+    const iiwa14_real_t t676 = t660 * t600 - t662 * t601 - t663 * t602 + t664 * t603;
+    const iiwa14_real_t t677 = t676 + t666 * t606 + t667 * t609 + t668 * t612;
+    ddq_by_dq[34] = t677;
+    const iiwa14_real_t t678 = t660 * t614 - t662 * t615 - t663 * t616 + t664 * t617;
+    const iiwa14_real_t t679 = t678 + t666 * t609 + t667 * t620 + t668 * t623;
+    ddq_by_dq[41] = t679;
+    const iiwa14_real_t t680 = t660 * t625 - t662 * t626 - t663 * t627 + t664 * t628;
+    const iiwa14_real_t t681 = t680 + t666 * t612 + t667 * t623 + t668 * t632;
+    ddq_by_dq[48] = t681;
+    ddq_by_input[6] = t564;
+    ddq_by_input[13] = t577;
+    ddq_by_input[20] = t588;
+    ddq_by_input[27] = t598;
+    ddq_by_input[34] = t612;
+    ddq_by_input[41] = t623;
+    ddq_by_input[48] = t632;
+    const iiwa14_real_t t682 = t243 + t459;
+    const iiwa14_real_t t683 = t230 + t443;
+    const iiwa14_real_t t684 = parameters[XX6R] * t453 - t280 - parameters[XY6] * t682
+        - parameters[XZ6] * t683;
+    const iiwa14_real_t t685 = t286 + t684 + parameters[MY6R] * t500 + (t1 * t473 - t2 * t488);
+    const iiwa14_real_t t686 = parameters[ZZ7] * t452;
+    const iiwa14_real_t t687 = t296 + t284; /* link j7: motion */
+    const iiwa14_real_t t688 = IIWA14_C(0.5) * (parameters[XX6R] + parameters[ZZ6R]);
+    const iiwa14_real_t t689 = t688 - parameters[XX6R];
     /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t434 = t2 * (t427 + t429) + t1 * (t432 - t433);
-    const iiwa14_real_t t435 = t2 * t434;
-    const iiwa14_real_t t436 = parameters[XZ6] * t222;
-    const iiwa14_real_t t437 = parameters[XY6] * t223;
-    const iiwa14_real_t t438 = t435 - t429 - (t436 + t437);
-    const iiwa14_real_t t439 = t425 - t428;
-    const iiwa14_real_t t440 = parameters[YZ6] * t230;
-    const iiwa14_real_t t441 = t437 - t440 - t439;
-    const iiwa14_real_t t442 = t234 * t431 - parameters[XY7] * t240;
-    const iiwa14_real_t t443 = parameters[XY7] * t234 + t240 * t430;
-    const iiwa14_real_t t444 = IIWA14_C(0.5) * (parameters[XX6R] + parameters[ZZ6R]);
-    const iiwa14_real_t t445 = t444 - parameters[XX6R];
-    const iiwa14_real_t t446 = t2 * t442 - t1 * t443 - (parameters[XZ6] * t230 + t223 * t445);
-    const iiwa14_real_t t447 = t430 - parameters[ZZ7];
-    const iiwa14_real_t t448 = parameters[YZ7R] * t235 + t234 * t447;
-    const iiwa14_real_t t449 = parameters[XZ7R] * t235 + t240 * t447;
-    const iiwa14_real_t t450 = parameters[YZ6] * t222 - t223 * t444 - (t2 * t448 + t1 * t449);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t451 = t15 * (t438 - t441) + t13 * (t450 - t446);
-    const iiwa14_real_t t452 = t15 * t451;
-    const iiwa14_real_t t453 = parameters[XZ5] * t203;
-    const iiwa14_real_t t454 = parameters[XY5] * t217;
-    const iiwa14_real_t t455 = t453 - t454 + (t441 + t452);
-    const iiwa14_real_t t456 = t436 + t440 + (t427 - t435); /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t457 = parameters[YZ5] * t202;
-    const iiwa14_real_t t458 = t454 - t457 + t456; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t459 = t1 * t434; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t460 = parameters[ZZ6R] - t444;
-    const iiwa14_real_t t461 = t433 + t459 - (parameters[YZ6] * t223 + t222 * t460);
-    const iiwa14_real_t t462 = parameters[XZ6] * t223 - t230 * t460 + (t1 * t442 + t2 * t443);
-    const iiwa14_real_t t463 = IIWA14_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t464 = parameters[YZ5] * t203 - t217 * t463 + (t15 * t461 - t13 * t462);
+    const iiwa14_real_t t690 = t2 * t497 - t1 * t498 - (parameters[XZ6] * t229 + t222 * t689);
+    const iiwa14_real_t t691 = IIWA14_C(-2.0) * t221; /* link j6: derivatives */
+    const iiwa14_real_t t692 = parameters[XY6] * t222;
+    const iiwa14_real_t t693 = parameters[YZ6] * t229;
+    const iiwa14_real_t t694 = t692 - t693 - t640; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t695 = IIWA14_C(-2.0) * t229; /* link j6: derivatives */
+    const iiwa14_real_t t696 = t690 * t691 + t694 * t695 - (t686 + t22 * t458 - t13 * t687);
+    const iiwa14_real_t t697 = t33 * t472;
+    const iiwa14_real_t t698 = t685 + (t697 + t696);
+    const iiwa14_real_t t699 = parameters[ZZ7] * t460 - t289 - parameters[YZ7R] * t474
+        - parameters[XZ7R] * t455;
+    const iiwa14_real_t t700 = t295 - parameters[XY6] * t454 + parameters[YZ6] * t444 - t297
+        + parameters[MX6] * t500;
+    const iiwa14_real_t t701 = t700 + (t699 - t291 - (parameters[MY7] * t501 - parameters[MX7] * t502));
     /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t465 = parameters[XY6] * t230 - t222 * t445 + (t459 - t432);
-    const iiwa14_real_t t466 = parameters[XY6] * t222 - t230 * t444 + (t1 * t448 - t2 * t449);
-    const iiwa14_real_t t467 = parameters[XX5R] + t463;
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t468 = t217 * t467 - parameters[XZ5] * t202 + (t15 * t465 - t13 * t466);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t469 = t34 * (t458 - t455) + t32 * (t464 + t468);
-    const iiwa14_real_t t470 = t34 * t469;
-    const iiwa14_real_t t471 = IIWA14_C(0.4) * t199; /* link j5: velocity of its origin */
-    const iiwa14_real_t t472 = t68 * t471; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t473 = parameters[MY7] * t240 - parameters[MX7] * t234;
-    const iiwa14_real_t t474 = t473 - parameters[MX6] * t223; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t475 = parameters[MY7] * t235;
-    const iiwa14_real_t t476 = parameters[MX7] * t235;
-    const iiwa14_real_t t477 = parameters[MY6R] * t223 + (t2 * t475 + t1 * t476);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t478 = parameters[MY5R] * t202 - parameters[MX5] * t203 + (t13 * t477 + t15 * t474);
-    const iiwa14_real_t t479 = IIWA14_C(0.4) * t478; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t480 = IIWA14_C(-0.4) * t198; /* link j5: velocity of its origin */
-    const iiwa14_real_t t481 = t41 * t480; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t482 = t479 + (t472 + t481);
-    const iiwa14_real_t t483 = parameters[XZ4] * t209;
-    const iiwa14_real_t t484 = parameters[XY4] * t199;
-    const iiwa14_real_t t485 = t483 + t484 + (t482 + (t458 - t470 - t472));
-    const iiwa14_real_t t486 = t453 - t457 + (t452 - t438); /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t487 = parameters[YZ4] * t198;
-    const iiwa14_real_t t488 = t484 + t487 + (t486 + t479 - t482); /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t489 = t13 * t451; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t490 = t203 * t467 - parameters[XY5] * t202 + (t446 + t489);
-    const iiwa14_real_t t491 = parameters[XY5] * t203 - t202 * t463 + (t13 * t461 + t15 * t462);
-    const iiwa14_real_t t492 = IIWA14_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    const iiwa14_real_t t493 = t492 - parameters[XX4R];
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t494 = parameters[XZ4] * t198 - t199 * t493 + (t34 * t490 - t32 * t491);
-    const iiwa14_real_t t495 = parameters[ZZ5R] + t463;
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t496 = t203 * t495 - parameters[YZ5] * t217 + (t450 - t489);
-    const iiwa14_real_t t497 = t202 * t495 - parameters[XZ5] * t217 + (t13 * t465 + t15 * t466);
-    const iiwa14_real_t t498 = parameters[MY5R] * t217 + (t15 * t477 - t13 * t474);
+    const iiwa14_real_t t702 = t2 * (t478 + t492) + t1 * (t490 - t481);
+    const iiwa14_real_t t703 = t2 * t702;
+    const iiwa14_real_t t704 = parameters[XZ6] * t221;
+    const iiwa14_real_t t705 = t703 - t492 - (t704 + t692);
+    const iiwa14_real_t t706 = parameters[YZ6] * t221 - t222 * t688 - (t2 * t635 + t1 * t637);
+    const iiwa14_real_t t707 = t705 * t691 - t706 * t695 + (t11 * t687 - (t21 * t458 + t22 * t452));
+    const iiwa14_real_t t708 = t701 + (t707 + t33 * t499);
+    const iiwa14_real_t t709 = t14 * t708 - t12 * t698;
+    const iiwa14_real_t t710 = t8 * t687 - (t11 * t458 + t13 * t452);
+    const iiwa14_real_t t711 = t1 * t702;
+    const iiwa14_real_t t712 = parameters[XY6] * t229 - t221 * t689 + (t711 - t490);
+    const iiwa14_real_t t713 = parameters[XY6] * t221 - t229 * t688 + (t1 * t635 - t2 * t637);
+    const iiwa14_real_t t714 = t36 * t499 + parameters[MY6R] * t472;
+    const iiwa14_real_t t715 = t710 - (t712 * t691 + t713 * t695) + t714;
+    const iiwa14_real_t t716 = t323 + parameters[MX6] * t683 - (parameters[MY7] * t457
+        - parameters[MX7] * t485);
+    const iiwa14_real_t t717 = parameters[MY6R] * t229 + parameters[MX6] * t221 + (t2 * t513 - t1 * t514);
+    const iiwa14_real_t t718 = t716 + (t717 * t695 + (parameters[MY6R] * t687 - t33 * t452));
+    const iiwa14_real_t t719 = t321 - parameters[MY6R] * t444 + (t2 * t510 + t1 * t507);
+    const iiwa14_real_t t720 = t719 + (t717 * t691 + (t36 * t687 - t33 * t458));
+    const iiwa14_real_t t721 = t14 * t718 + t12 * t720;
+    const iiwa14_real_t t722 = t508 - parameters[MX6] * t222;
+    const iiwa14_real_t t723 = parameters[MY6R] * t222 + (t2 * t514 + t1 * t513);
+    const iiwa14_real_t t724 = t722 * t691 - t723 * t695 + (parameters[MY6R] * t458 - t36 * t452);
+    const iiwa14_real_t t725 = t32 * t724 - t30 * t721;
+    const iiwa14_real_t t726 = t32 * t709 + t30 * t715 + IIWA14_C(0.4) * t725;
+    const iiwa14_real_t t727 = t12 * t708 + t14 * t698;
+    const iiwa14_real_t t728 = t64 * t726 + t68 * t727;
+    const iiwa14_real_t t729 = t32 * t721 + t30 * t724;
+    const iiwa14_real_t t730 = t30 * t709 - t32 * t715 + IIWA14_C(0.4) * t729;
+    const iiwa14_real_t t731 = t64 * t729 + t68 * (t12 * t718 - t14 * t720);
+    const iiwa14_real_t t732 = t96 * t728 - t94 * t730 + IIWA14_C(0.42) * (t96 * t725 - t94 * t731);
+    const iiwa14_real_t t733 = t68 * t726 - t64 * t727;
+    const iiwa14_real_t t734 = IIWA14_C(0.0625) * (t145 * t732 - t141 * t733);
+    const iiwa14_real_t t735 = t94 * t728 + t96 * t730 + IIWA14_C(0.42) * (t96 * t731 + t94 * t725);
+    const iiwa14_real_t t736 = IIWA14_C(0.0625) * t735;
+    const iiwa14_real_t t737 = IIWA14_C(0.0625) * t733;
+    const iiwa14_real_t t738 = IIWA14_C(0.0625) * t730;
+    const iiwa14_real_t t739 = t528 * t734 - t532 * t736 - t535 * t737 + t539 * t738;
+    const iiwa14_real_t t740 = IIWA14_C(0.125) * t727;
+    const iiwa14_real_t t741 = IIWA14_C(-2.0) * t712; /* link j6: derivatives */
+    const iiwa14_real_t t742 = IIWA14_C(2.0) * t713;
+    const iiwa14_real_t t743 = IIWA14_C(0.125) * (t714 + (t229 * t742 - t221 * t741 + t710));
+    const iiwa14_real_t t744 = t2 * t554 - t1 * t555; /* link j7: derivatives */
+    const iiwa14_real_t t745 = t229 * t641 - t221 * t744 + (t3 * t687 - (t16 * t458 + t686));
+    const iiwa14_real_t t746 = IIWA14_C(0.125) * (t745 + t697);
+    const iiwa14_real_t t747 = t739 + t546 * t740 + t553 * t743 + t564 * t746;
+    ddq_by_q[5] = t747;
+    const iiwa14_real_t t748 = t532 * t734 - t566 * t736 - t568 * t737 + t570 * t738;
+    const iiwa14_real_t t749 = t748 + t573 * t740 + t575 * t743 + t577 * t746;
+    ddq_by_q[12] = t749;
+    const iiwa14_real_t t750 = t535 * t734 - t568 * t736 - t579 * t737 + t581 * t738;
+    const iiwa14_real_t t751 = t750 + t584 * t740 + t586 * t743 + t588 * t746;
+    ddq_by_q[19] = t751;
+    const iiwa14_real_t t752 = t539 * t734 - t570 * t736 - t581 * t737 + t591 * t738;
+    const iiwa14_real_t t753 = t752 + t594 * t740 + t596 * t743 + t598 * t746;
+    ddq_by_q[26] = t753;
+    const iiwa14_real_t t754 = t600 * t734 - t601 * t736 - t602 * t737 + t603 * t738;
+    const iiwa14_real_t t755 = t754 + t606 * t740 + t609 * t743 + t612 * t746;
+    ddq_by_q[33] = t755;
+    const iiwa14_real_t t756 = t614 * t734 - t615 * t736 - t616 * t737 + t617 * t738;
+    const iiwa14_real_t t757 = t756 + t609 * t740 + t620 * t743 + t623 * t746;
+    ddq_by_q[40] = t757;
+    const iiwa14_real_t t758 = t625 * t734 - t626 * t736 - t627 * t737 + t628 * t738;
+    const iiwa14_real_t t759 = t758 + t612 * t740 + t623 * t743 + t632 * t746;
+    ddq_by_q[47] = t759;
+    const iiwa14_real_t t760 = parameters[ZZ6R] - t688;
     /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t499 = parameters[MY6R] * t230 + parameters[MX6] * t222 + (t2 * t476 - t1 * t475);
-    const iiwa14_real_t t500 = parameters[MX5] * t217 + t499; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t501 = t34 * t498 + t32 * t500; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t502 = t34 * t496 + t32 * t497 + (IIWA14_C(0.4) * t501 + t48 * t471);
-    const iiwa14_real_t t503 = parameters[YZ4] * t209 - t199 * t492 + t502;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t504 = t67 * (t485 + t488) + t71 * (t494 - t503);
-    const iiwa14_real_t t505 = t67 * t504;
-    const iiwa14_real_t t506 = parameters[XZ3] * t184;
-    const iiwa14_real_t t507 = parameters[XY3] * t193;
-    const iiwa14_real_t t508 = t506 - t507 + (t505 - t488);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t509 = t487 - t483 + (t482 + (t455 + t470 - t481));
-    const iiwa14_real_t t510 = parameters[YZ3] * t183;
-    const iiwa14_real_t t511 = t507 + t510 + t509; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t512 = t32 * t469; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t513 = parameters[ZZ4R] - t492;
-    const iiwa14_real_t t514 = parameters[YZ4] * t199 + t209 * t513 + (t512 - t464 + t41 * t471);
-    const iiwa14_real_t t515 = t32 * t490 + t34 * t491 - (parameters[XZ4] * t199 + t198 * t513);
-    const iiwa14_real_t t516 = IIWA14_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t517 = parameters[YZ3] * t184 + t193 * t516 + (t71 * t515 - t67 * t514);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t518 = t468 - t512 - t68 * t480 - (parameters[XY4] * t198 + t209 * t493);
-    const iiwa14_real_t t519 = t34 * t500 - t32 * t498;
-    const iiwa14_real_t t520 = t34 * t497 - t32 * t496 - (IIWA14_C(-0.4) * t519 + t48 * t480);
-    const iiwa14_real_t t521 = parameters[XY4] * t209 + t198 * t492 - t520;
-    const iiwa14_real_t t522 = parameters[XX3R] - t516;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t523 = parameters[XZ3] * t183 + t193 * t522 + (t67 * t518 - t71 * t521);
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t524 = t100 * (t511 - t508) + t98 * (t517 + t523);
-    const iiwa14_real_t t525 = t100 * t524;
-    const iiwa14_real_t t526 = IIWA14_C(-0.42) * dq[1]; /* link j3: velocity of its origin */
-    const iiwa14_real_t t527 = t147 * t526; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t528 = t501 - parameters[MY4R] * t199; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t529 = t478 - parameters[MX4] * t199;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t530 = t67 * t529 - t71 * t528 - (parameters[MY3R] * t183 + parameters[MX3] * t184);
-    const iiwa14_real_t t531 = IIWA14_C(-0.42) * t530; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t532 = IIWA14_C(-0.42) * t182; /* link j3: velocity of its origin */
-    const iiwa14_real_t t533 = t106 * t532; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t534 = t531 + (t527 + t533);
-    const iiwa14_real_t t535 = parameters[XZ2] * t188;
-    const iiwa14_real_t t536 = parameters[XY2] * dq[1];
-    const iiwa14_real_t t537 = t535 + t536 + (t534 + (t525 - t511 - t527));
-    const iiwa14_real_t t538 = t506 + t510 + (t505 - t485); /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t539 = parameters[YZ2] * t182;
-    const iiwa14_real_t t540 = t534 + (t538 - t531) - (t536 + t539); /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t541 = t71 * t504; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t542 = parameters[XY3] * t183 + t184 * t522 - (t541 - t494);
-    const iiwa14_real_t t543 = parameters[XY3] * t184 - t183 * t516 + (t71 * t514 + t67 * t515);
-    const iiwa14_real_t t544 = IIWA14_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const iiwa14_real_t t545 = t544 - parameters[XX2R];
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t546 = dq[1] * t545 - parameters[XZ2] * t182 + (t98 * t543 - t100 * t542);
-    const iiwa14_real_t t547 = parameters[ZZ3R] - t516;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t548 = t184 * t547 - parameters[YZ3] * t193 + (t503 + t541);
-    const iiwa14_real_t t549 = parameters[XZ3] * t193 + t183 * t547 + (t71 * t518 + t67 * t521);
-    const iiwa14_real_t t550 = parameters[MY3R] * t193 + (t67 * t528 + t71 * t529);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t551 = parameters[MX4] * t209 - parameters[MY4R] * t198 + t519;
-    const iiwa14_real_t t552 = parameters[MX3] * t193 + t551; /* link j4: inertia, momentum beyond */
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t553 = IIWA14_C(0.42) * (t100 * t550 + t98 * t552) + t125 * t526;
-    const iiwa14_real_t t554 = parameters[YZ2] * t188 - dq[1] * t544 + (t100 * t548 - t98 * t549 + t553);
-    /* link j2: inertia, momentum beyond */
-    const iiwa14_real_t t555 = t146 * (t146 * (t540 - t537) + t150 * (t554 + t546));
-    const iiwa14_real_t t556 = IIWA14_C(-1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t537 + t555);
-    const iiwa14_real_t t557 = t179 * t413;
-    const iiwa14_real_t t558 = iiwa14_bounded(IIWA14_C(-16.0) * t557);
-    const iiwa14_real_t t559 = t98 * t524; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t560 = parameters[XY2] * t182 + t188 * t545 + (t559 - t523 - t147 * t532);
-    const iiwa14_real_t t561 = IIWA14_C(2.0) * t560; /* link j2: derivatives */
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t562 = IIWA14_C(0.42) * (t98 * t550 - t100 * t552) + t125 * t532;
-    const iiwa14_real_t t563 = parameters[XY2] * t188 + t182 * t544 - (t98 * t548 + t100 * t549 + t562);
-    const iiwa14_real_t t564 = IIWA14_C(2.0) * t563; /* link j2: derivatives */
-    const iiwa14_real_t t565 = IIWA14_C(0.0625) * (t150 * t561 - t146 * t564);
-    const iiwa14_real_t t566 = t413 * (t173 + t131 * t179);
-    const iiwa14_real_t t567 = iiwa14_bounded(IIWA14_C(-16.0) * t566);
-    const iiwa14_real_t t568 = IIWA14_C(-2.0) * t542; /* link j3: derivatives */
-    const iiwa14_real_t t569 = IIWA14_C(-2.0) * t543;
-    const iiwa14_real_t t570 = t98 * t569 - t100 * t568;
-    const iiwa14_real_t t571 = IIWA14_C(2.0) * t538;
-    const iiwa14_real_t t572 = IIWA14_C(-0.84) * t182; /* link j7: derivatives */
-    const iiwa14_real_t t573 = IIWA14_C(-0.84) * dq[1];
-    const iiwa14_real_t t574 = t571 + (t106 * t572 + t147 * t573); /* link j3: derivatives */
-    const iiwa14_real_t t575 = IIWA14_C(0.0625) * (t150 * t570 - t146 * t574);
-    const iiwa14_real_t t576 = t142 - t94 * t131;
-    const iiwa14_real_t t577 = t413 * (t170 + t94 * t173 - t179 * t576);
-    const iiwa14_real_t t578 = iiwa14_bounded(IIWA14_C(16.0) * t577);
-    const iiwa14_real_t t579 = IIWA14_C(2.0) * t518; /* link j4: derivatives */
-    const iiwa14_real_t t580 = IIWA14_C(2.0) * t521;
-    const iiwa14_real_t t581 = t67 * t579 - t71 * t580;
-    const iiwa14_real_t t582 = IIWA14_C(2.0) * t509;
-    const iiwa14_real_t t583 = t98 * t582 - t100 * t581 - t104 * t572;
-    const iiwa14_real_t t584 = t71 * t579 + t67 * t580;
-    const iiwa14_real_t t585 = t584 - (t166 * t573 - t126 * t572);
-    const iiwa14_real_t t586 = IIWA14_C(0.0625) * (t150 * t583 + t146 * t585);
-    const iiwa14_real_t t587 = t556 * t424 - t565 * t558 - t575 * t567 + t586 * t578;
-    const iiwa14_real_t t588 = t87 + t54 * t94;
-    const iiwa14_real_t t589 = t140 + t54 * t142 - t131 * t588;
-    const iiwa14_real_t t590 = t164 + t54 * t170 + t173 * t588 - t179 * t589;
-    const iiwa14_real_t t591 = t413 * t590;
-    const iiwa14_real_t t592 = iiwa14_bounded(IIWA14_C(8.0) * t591);
-    const iiwa14_real_t t593 = IIWA14_C(2.0) * t490; /* link j5: derivatives */
-    const iiwa14_real_t t594 = IIWA14_C(2.0) * t491;
-    const iiwa14_real_t t595 = t34 * t593 - t32 * t594;
-    const iiwa14_real_t t596 = IIWA14_C(2.0) * t486;
-    const iiwa14_real_t t597 = IIWA14_C(0.8) * t198; /* link j7: derivatives */
-    const iiwa14_real_t t598 = IIWA14_C(0.8) * t199;
-    const iiwa14_real_t t599 = t596 + (t41 * t597 - t68 * t598); /* link j5: derivatives */
-    const iiwa14_real_t t600 = t67 * t595 - t71 * t599;
-    const iiwa14_real_t t601 = t32 * t593 + t34 * t594;
-    const iiwa14_real_t t602 = t71 * t41; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t603 = t98 * t601 - t100 * t600 + t602 * t572; /* link j5: derivatives */
-    const iiwa14_real_t t604 = t71 * t595 + t67 * t599;
-    const iiwa14_real_t t605 = t604 - (t161 * t573 - t120 * t572);
-    const iiwa14_real_t t606 = IIWA14_C(0.125) * (t150 * t603 + t146 * t605);
-    const iiwa14_real_t t607 = t63 + t21 * t54;
-    const iiwa14_real_t t608 = t84 + t21 * t87 + t94 * t607;
-    const iiwa14_real_t t609 = t139 + t21 * t140 + t142 * t607 - t131 * t608;
-    const iiwa14_real_t t610 = t160 + t21 * t164 + t170 * t607 + t173 * t608;
-    const iiwa14_real_t t611 = t413 * (t610 - t179 * t609);
-    const iiwa14_real_t t612 = iiwa14_bounded(IIWA14_C(8.0) * t611);
-    const iiwa14_real_t t613 = IIWA14_C(-2.0) * t465; /* link j6: derivatives */
-    const iiwa14_real_t t614 = IIWA14_C(2.0) * t466;
-    const iiwa14_real_t t615 = t15 * t613 + t13 * t614;
-    const iiwa14_real_t t616 = IIWA14_C(-2.0) * t456;
-    const iiwa14_real_t t617 = t34 * t615 - t32 * t616 - t39 * t597;
-    const iiwa14_real_t t618 = t15 * t614 - t13 * t613;
-    const iiwa14_real_t t619 = t618 + (t49 * t597 + t80 * t598);
-    const iiwa14_real_t t620 = t67 * t617 - t71 * t619;
-    const iiwa14_real_t t621 = t32 * t615 + t34 * t616 - t39 * t598;
-    const iiwa14_real_t t622 = t71 * t49 + t67 * t39; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t623 = t98 * t621 - t100 * t620 + t622 * t572; /* link j6: derivatives */
-    const iiwa14_real_t t624 = t71 * t617 + t67 * t619;
-    const iiwa14_real_t t625 = t624 - (t157 * t573 - t115 * t572);
-    const iiwa14_real_t t626 = IIWA14_C(0.125) * (t150 * t623 + t146 * t625);
-    const iiwa14_real_t t627 = t28 + t5 * t21;
-    const iiwa14_real_t t628 = t55 + t5 * t63 + t54 * t627;
-    const iiwa14_real_t t629 = t79 - t5 * t84 - t87 * t627 - t94 * t628;
-    const iiwa14_real_t t630 = t138 - t5 * t139 - t140 * t627 - t142 * t628;
-    const iiwa14_real_t t631 = t630 - t131 * t629;
-    const iiwa14_real_t t632 = t156 - t5 * t160 - t164 * t627 - t170 * t628;
-    const iiwa14_real_t t633 = t413 * (t632 + t173 * t629 - t179 * t631);
-    const iiwa14_real_t t634 = IIWA14_C(8.0) * t633;
-    const iiwa14_real_t t635 = IIWA14_C(2.0) * t442; /* link j7: derivatives */
-    const iiwa14_real_t t636 = IIWA14_C(2.0) * t443;
-    const iiwa14_real_t t637 = t2 * t635 - t1 * t636;
-    const iiwa14_real_t t638 = IIWA14_C(2.0) * t439;
-    const iiwa14_real_t t639 = t15 * t637 + t13 * t638;
-    const iiwa14_real_t t640 = t1 * t635 + t2 * t636;
-    const iiwa14_real_t t641 = t34 * t639 - t32 * t640 + t109 * t597;
-    const iiwa14_real_t t642 = t15 * t638 - t13 * t637;
-    const iiwa14_real_t t643 = t642 + (t45 * t597 + t76 * t598);
-    const iiwa14_real_t t644 = t67 * t641 - t71 * t643;
-    const iiwa14_real_t t645 = t32 * t639 + t34 * t640 + t109 * t598;
-    const iiwa14_real_t t646 = t67 * t109 - t71 * t45; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t647 = t98 * t645 - t100 * t644 - t646 * t572; /* link j7: derivatives */
-    const iiwa14_real_t t648 = t71 * t641 + t67 * t643;
-    const iiwa14_real_t t649 = t648 - (t153 * t573 - t111 * t572);
-    const iiwa14_real_t t650 = IIWA14_C(0.125) * (t150 * t647 + t146 * t649);
-    const iiwa14_real_t t651 = t587 + t606 * t592 + t626 * t612 + t650 * t634;
-    ddq_by_dq[0] = t651;
-    const iiwa14_real_t t652 = iiwa14_bounded(IIWA14_C(16.0) * (t178 + t179 * t557));
-    const iiwa14_real_t t653 = t131 * t178 + t179 * t566;
-    const iiwa14_real_t t654 = iiwa14_bounded(IIWA14_C(16.0) * t653);
-    const iiwa14_real_t t655 = t179 * t577 - t178 * t576;
-    const iiwa14_real_t t656 = iiwa14_bounded(IIWA14_C(-16.0) * t655);
-    const iiwa14_real_t t657 = t556 * t558 - t565 * t652 - t575 * t654 + t586 * t656;
-    const iiwa14_real_t t658 = t179 * t591 - t178 * t589;
-    const iiwa14_real_t t659 = iiwa14_bounded(IIWA14_C(-8.0) * t658);
-    const iiwa14_real_t t660 = t179 * t611 - t178 * t609;
-    const iiwa14_real_t t661 = iiwa14_bounded(IIWA14_C(-8.0) * t660);
-    const iiwa14_real_t t662 = t179 * t633 - t178 * t631;
-    const iiwa14_real_t t663 = IIWA14_C(-8.0) * t662;
-    const iiwa14_real_t t664 = t657 + t606 * t659 + t626 * t661 + t650 * t663;
-    ddq_by_dq[7] = t664;
-    const iiwa14_real_t t665 = iiwa14_bounded(IIWA14_C(16.0) * (t130 + t173 * t566 + t131 * t653));
-    const iiwa14_real_t t666 = t94 * t130 + t173 * t577 + t131 * t655;
-    const iiwa14_real_t t667 = iiwa14_bounded(IIWA14_C(-16.0) * t666);
-    const iiwa14_real_t t668 = t556 * t567 - t565 * t654 - t575 * t665 + t586 * t667;
-    const iiwa14_real_t t669 = t130 * t588 + t173 * t591 + t131 * t658;
-    const iiwa14_real_t t670 = iiwa14_bounded(IIWA14_C(-8.0) * t669);
-    const iiwa14_real_t t671 = t130 * t608 + t173 * t611 + t131 * t660;
-    const iiwa14_real_t t672 = iiwa14_bounded(IIWA14_C(-8.0) * t671);
-    const iiwa14_real_t t673 = t130 * t629 + t173 * t633 + t131 * t662;
-    const iiwa14_real_t t674 = IIWA14_C(-8.0) * t673;
-    const iiwa14_real_t t675 = t668 + t606 * t670 + t626 * t672 + t650 * t674;
-    ddq_by_dq[14] = t675;
-    const iiwa14_real_t t676 = t93 + t170 * t577 - t142 * t655 + t94 * t666;
-    const iiwa14_real_t t677 = iiwa14_bounded(IIWA14_C(16.0) * t676);
-    const iiwa14_real_t t678 = t556 * t578 - t565 * t656 - t575 * t667 + t586 * t677;
-    const iiwa14_real_t t679 = t54 * t93 + t170 * t591 - t142 * t658 + t94 * t669;
-    const iiwa14_real_t t680 = iiwa14_bounded(IIWA14_C(8.0) * t679);
-    const iiwa14_real_t t681 = t93 * t607 + t170 * t611 - t142 * t660 + t94 * t671;
-    const iiwa14_real_t t682 = iiwa14_bounded(IIWA14_C(8.0) * t681);
-    const iiwa14_real_t t683 = t170 * t633 - t93 * t628 - t142 * t662 + t94 * t673;
-    const iiwa14_real_t t684 = IIWA14_C(8.0) * t683;
-    const iiwa14_real_t t685 = t678 + t606 * t680 + t626 * t682 + t650 * t684;
-    ddq_by_dq[21] = t685;
-    const iiwa14_real_t t686 = iiwa14_bounded(IIWA14_C(16.0) * t591);
-    const iiwa14_real_t t687 = iiwa14_bounded(IIWA14_C(-16.0) * t658);
-    const iiwa14_real_t t688 = iiwa14_bounded(IIWA14_C(-16.0) * t669);
-    const iiwa14_real_t t689 = iiwa14_bounded(IIWA14_C(16.0) * t679);
-    const iiwa14_real_t t690 = t556 * t686 - t565 * t687 - t575 * t688 + t586 * t689;
-    const iiwa14_real_t t691 = t53 + t164 * t591 - t140 * t658 + t87 * t669;
-    const iiwa14_real_t t692 = iiwa14_bounded(IIWA14_C(8.0) * (t691 + t54 * t679));
-    const iiwa14_real_t t693 = t21 * t53 + t164 * t611 - t140 * t660 + t87 * t671;
-    const iiwa14_real_t t694 = t693 + t54 * t681;
-    const iiwa14_real_t t695 = iiwa14_bounded(IIWA14_C(8.0) * t694);
-    const iiwa14_real_t t696 = t164 * t633 - t53 * t627 - t140 * t662 + t87 * t673;
-    const iiwa14_real_t t697 = t696 + t54 * t683;
-    const iiwa14_real_t t698 = iiwa14_bounded(IIWA14_C(8.0) * t697);
-    const iiwa14_real_t t699 = t690 + t606 * t692 + t626 * t695 + t650 * t698;
-    ddq_by_dq[28] = t699;
-    const iiwa14_real_t t700 = iiwa14_bounded(IIWA14_C(16.0) * t611);
-    const iiwa14_real_t t701 = iiwa14_bounded(IIWA14_C(-16.0) * t660);
-    const iiwa14_real_t t702 = iiwa14_bounded(IIWA14_C(-16.0) * t671);
-    const iiwa14_real_t t703 = iiwa14_bounded(IIWA14_C(16.0) * t681);
-    const iiwa14_real_t t704 = t556 * t700 - t565 * t701 - t575 * t702 + t586 * t703;
-    const iiwa14_real_t t705 = t20 + t160 * t611 - t139 * t660 + t84 * t671;
-    const iiwa14_real_t t706 = iiwa14_bounded(IIWA14_C(8.0) * (t705 + t63 * t681 + t21 * t694));
-    const iiwa14_real_t t707 = t5 * t20 - t160 * t633 + t139 * t662 - t84 * t673;
-    const iiwa14_real_t t708 = t707 - t63 * t683 - t21 * t697;
-    const iiwa14_real_t t709 = iiwa14_bounded(IIWA14_C(-8.0) * t708);
-    const iiwa14_real_t t710 = t704 + t606 * t695 + t626 * t706 + t650 * t709;
-    ddq_by_dq[35] = t710;
-    const iiwa14_real_t t711 = iiwa14_bounded(IIWA14_C(16.0) * t633);
-    const iiwa14_real_t t712 = iiwa14_bounded(IIWA14_C(-16.0) * t662);
-    const iiwa14_real_t t713 = iiwa14_bounded(IIWA14_C(-16.0) * t673);
-    const iiwa14_real_t t714 = iiwa14_bounded(IIWA14_C(16.0) * t683);
-    const iiwa14_real_t t715 = t556 * t711 - t565 * t712 - t575 * t713 + t586 * t714;
-    const iiwa14_real_t t716 = t4 + t156 * t633 - t138 * t662 + t79 * t673;
-    const iiwa14_real_t t717 = t716 - t55 * t683 - t28 * t697 + t5 * t708;
-    const iiwa14_real_t t718 = IIWA14_C(8.0) * t717;
-    const iiwa14_real_t t719 = t715 + t606 * t698 + t626 * t709 + t650 * t718;
-    ddq_by_dq[42] = t719;
-    ddq_by_input[0] = t424;
-    ddq_by_input[7] = t558;
-    ddq_by_input[14] = t567;
-    ddq_by_input[21] = t578;
-    ddq_by_input[28] = t686;
-    ddq_by_input[35] = t700;
-    ddq_by_input[42] = t711;
-    const iiwa14_real_t t720 = t189 - t415;
-    const iiwa14_real_t t721 = t150 * t414;
-    const iiwa14_real_t t722 = t190 + t721;
-    const iiwa14_real_t t723 = t190 + t722;
-    const iiwa14_real_t t724 = t100 * t720 - t98 * t723;
-    const iiwa14_real_t t725 = t207 - t724;
-    const iiwa14_real_t t726 = t417 - t725;
-    const iiwa14_real_t t727 = t726 - t210;
-    const iiwa14_real_t t728 = t146 * t414;
-    const iiwa14_real_t t729 = t186 - t728;
-    const iiwa14_real_t t730 = t729 - t416;
-    const iiwa14_real_t t731 = t730 - t185;
-    const iiwa14_real_t t732 = t98 * t720 + t100 * t723;
-    const iiwa14_real_t t733 = t732 - t194;
-    const iiwa14_real_t t734 = t733 - t194;
-    const iiwa14_real_t t735 = t71 * t731 + t67 * t734;
-    const iiwa14_real_t t736 = t213 + t735;
-    const iiwa14_real_t t737 = t213 + t736;
-    const iiwa14_real_t t738 = t34 * t727 - t32 * t737;
-    const iiwa14_real_t t739 = t228 + t738;
-    const iiwa14_real_t t740 = t739 - t421;
-    const iiwa14_real_t t741 = t740 - t231;
-    const iiwa14_real_t t742 = t67 * t731 - t71 * t734;
-    const iiwa14_real_t t743 = t742 - t200;
-    const iiwa14_real_t t744 = t743 - t419;
-    const iiwa14_real_t t745 = t204 + t744;
-    const iiwa14_real_t t746 = t32 * t727 + t34 * t737;
-    const iiwa14_real_t t747 = t746 - t218;
-    const iiwa14_real_t t748 = t218 - t747;
-    const iiwa14_real_t t749 = t13 * t745 + t15 * t748;
-    const iiwa14_real_t t750 = t749 - t224;
-    const iiwa14_real_t t751 = t750 - t224;
-    const iiwa14_real_t t752 = t1 * t741 - t2 * t751;
-    const iiwa14_real_t t753 = t752 - t236;
-    const iiwa14_real_t t754 = t2 * t741 + t1 * t751;
-    const iiwa14_real_t t755 = t241 + (t241 + t754);
-    const iiwa14_real_t t756 = t13 * t748 - t15 * t745;
-    const iiwa14_real_t t757 = t244 + t756;
-    const iiwa14_real_t t758 = t423 + t757;
-    const iiwa14_real_t t759 = t246 + t758;
-    const iiwa14_real_t t760 = parameters[XX7R] * t753 - t238 + parameters[XY7] * t755
-        - parameters[XZ7R] * t759;
-    const iiwa14_real_t t761 = IIWA14_C(0.42) * t720 - t252;
-    const iiwa14_real_t t762 = IIWA14_C(0.42) * t723;
-    const iiwa14_real_t t763 = t100 * t761 - t98 * t762;
-    const iiwa14_real_t t764 = t67 * t763 - t260;
-    const iiwa14_real_t t765 = t764 + IIWA14_C(0.4) * t727;
-    const iiwa14_real_t t766 = t98 * t761 + t100 * t762;
-    const iiwa14_real_t t767 = t766 + IIWA14_C(0.4) * t737;
-    const iiwa14_real_t t768 = t32 * t767 - t34 * t765;
-    const iiwa14_real_t t769 = t270 + t71 * t763;
-    const iiwa14_real_t t770 = t269 - t769;
-    const iiwa14_real_t t771 = t15 * t770 - t13 * t768;
-    const iiwa14_real_t t772 = t251 + t760 + parameters[MY7] * t771;
-    const iiwa14_real_t t773 = t753 - t236;
-    const iiwa14_real_t t774 = t758 - t246;
-    const iiwa14_real_t t775 = t279 + (parameters[XY7] * t773 - t276 - parameters[YZ7R] * t774)
-        - parameters[MX7] * t771;
-    const iiwa14_real_t t776 = t244 + t757;
-    const iiwa14_real_t t777 = t231 + t740;
-    const iiwa14_real_t t778 = parameters[XX6R] * t750 - t281 - parameters[XY6] * t776
-        - parameters[XZ6] * t777;
-    const iiwa14_real_t t779 = t32 * t765 + t34 * t767;
-    const iiwa14_real_t t780 = t287 + t778 + parameters[MY6R] * t779 + (t1 * t775 - t2 * t772);
-    const iiwa14_real_t t781 = parameters[ZZ7] * t758 - t290 - parameters[YZ7R] * t754
-        - parameters[XZ7R] * t752;
-    const iiwa14_real_t t782 = t15 * t768 + t13 * t770;
-    const iiwa14_real_t t783 = t2 * t779 - t1 * t782;
-    const iiwa14_real_t t784 = t2 * t782 + t1 * t779;
-    const iiwa14_real_t t785 = t296 - parameters[XY6] * t751 + parameters[YZ6] * t741 - t298
-        + parameters[MX6] * t779;
-    const iiwa14_real_t t786 = t785 + (t781 - t292 - (parameters[MY7] * t784 - parameters[MX7] * t783));
-    const iiwa14_real_t t787 = t228 + t739;
-    const iiwa14_real_t t788 = t744 - t204;
-    const iiwa14_real_t t789 = parameters[XX5R] * t747 - t301 + parameters[XY5] * t787
-        + parameters[XZ5] * t788;
-    const iiwa14_real_t t790 = t307 + t789 + parameters[MY5R] * t770 - (t15 * t780 + t13 * t786);
-    const iiwa14_real_t t791 = parameters[ZZ6R] * t740 - t309 + parameters[YZ6] * t756
-        - parameters[XZ6] * t749;
-    const iiwa14_real_t t792 = t311 + t791 + (parameters[MY6R] * t782 - parameters[MX6] * t771) + (t1 * t772
-        + t2 * t775);
-    const iiwa14_real_t t793 = t315 + (parameters[YZ5] * t745 - (t313 + parameters[XY5] * t748))
-        - parameters[MX5] * t770;
-    const iiwa14_real_t t794 = t793 + t792;
-    const iiwa14_real_t t795 = t318 + parameters[MY7] * t774;
-    const iiwa14_real_t t796 = parameters[MX7] * t759 - t320;
-    const iiwa14_real_t t797 = t322 - parameters[MY6R] * t741 + (t2 * t795 + t1 * t796);
-    const iiwa14_real_t t798 = t324 + parameters[MX6] * t777 - (parameters[MY7] * t773
-        - parameters[MX7] * t755);
-    const iiwa14_real_t t799 = t326 - parameters[MY5R] * t745 + (t15 * t797 - t13 * t798);
-    const iiwa14_real_t t800 = t1 * t795 - t2 * t796 - (parameters[MX6] * t776 + parameters[MY6R] * t751);
-    const iiwa14_real_t t801 = t329 + parameters[MX5] * t788 + t800;
-    const iiwa14_real_t t802 = t32 * t799 + t34 * t801;
-    const iiwa14_real_t t803 = t743 - t200;
-    const iiwa14_real_t t804 = t210 + t726;
-    const iiwa14_real_t t805 = parameters[XZ4] * t804 - (t332 + parameters[XX4R] * t736
-        + parameters[XY4] * t803);
-    const iiwa14_real_t t806 = t805 - t337 - parameters[MY4R] * t766 + (t32 * t794 - t34 * t790
-        + IIWA14_C(0.4) * t802);
-    const iiwa14_real_t t807 = t339 + parameters[ZZ5R] * t744 + parameters[YZ5] * t738
-        + parameters[XZ5] * t746;
-    const iiwa14_real_t t808 = t341 + t807 + (parameters[MY5R] * t768 - parameters[MX5] * t779) + (t13 * t780
-        - t15 * t786);
-    const iiwa14_real_t t809 = t344 + (t343 + parameters[XY4] * t737 - parameters[YZ4] * t727)
-        - parameters[MX4] * t766;
-    const iiwa14_real_t t810 = t809 + t808;
-    const iiwa14_real_t t811 = t185 + t730;
-    const iiwa14_real_t t812 = t347 - parameters[XX3R] * t733 + parameters[XY3] * (t207 + t725)
-        - parameters[XZ3] * t811;
-    const iiwa14_real_t t813 = t353 + (t352 + t812) + (t67 * t806 + t71 * t810);
-    const iiwa14_real_t t814 = t34 * t799 - t32 * t801;
-    const iiwa14_real_t t815 = parameters[ZZ4R] * t726 - t356 - parameters[YZ4] * t742
-        - parameters[XZ4] * t735;
-    const iiwa14_real_t t816 = t358 + t815 + (parameters[MX4] * t769 + parameters[MY4R] * t764) + (t32 * t790
-        + t34 * t794 + IIWA14_C(0.4) * t814);
-    const iiwa14_real_t t817 = t363 + (t362 + (t360 + parameters[XY3] * t734 + parameters[YZ3] * t731));
-    const iiwa14_real_t t818 = t817 + t816;
-    const iiwa14_real_t t819 = t366 + parameters[MY4R] * t727 + t814;
-    const iiwa14_real_t t820 = parameters[MX5] * t787 + parameters[MY5R] * t748 + (t13 * t797 + t15 * t798);
-    const iiwa14_real_t t821 = parameters[MX4] * t804 - t368 + t820;
-    const iiwa14_real_t t822 = t370 - parameters[MY3R] * t731 + (t67 * t819 + t71 * t821);
-    const iiwa14_real_t t823 = t372 + parameters[MX3] * t811 + (parameters[MX4] * t803
-        - parameters[MY4R] * t737 + t802);
-    const iiwa14_real_t t824 = t100 * t813 + t98 * t818 + IIWA14_C(0.42) * (t98 * t822 + t100 * t823);
-    const iiwa14_real_t t825 = parameters[XY2] * (t186 + t729) - (t375 + parameters[XX2R] * t722)
-        + parameters[XZ2] * (t189 + t415);
-    const iiwa14_real_t t826 = t74 * t721;
-    const iiwa14_real_t t827 = t256 + t377; /* link j3: motion */
-    const iiwa14_real_t t828 = IIWA14_C(-2.0) * t188; /* link j2: derivatives */
-    const iiwa14_real_t t829 = IIWA14_C(2.0) * t182;
-    const iiwa14_real_t t830 = t826 - t149 * t728 - t175 * t827 - (t546 * t828 + t540 * t829);
-    const iiwa14_real_t t831 = t106 * t258; /* link j3: derivatives */
-    const iiwa14_real_t t832 = t380 - parameters[ZZ3R] * t730 - parameters[YZ3] * t724
-        - parameters[XZ3] * t732;
-    const iiwa14_real_t t833 = t379 + t832 + (parameters[MX3] * t766 + parameters[MY3R] * t763) + (t71 * t806
-        - t67 * t810);
-    const iiwa14_real_t t834 = t383 + parameters[XY2] * t723 + parameters[YZ2] * t720 - t384 + t833;
-    const iiwa14_real_t t835 = t174 * t827 + (t145 * t728 + t149 * t721) - (t537 * t828 + t554 * t829);
-    const iiwa14_real_t t836 = t150 * (t834 + (t106 * t252 + t835)) + t146 * (t378 + t825 + t824 + (t830
-        - t831));
-    const iiwa14_real_t t837 = IIWA14_C(0.0625) * t836;
-    const iiwa14_real_t t838 = t188 * t561 + t182 * t564 + (t174 * t728 + t175 * t721 - t137 * t827);
-    const iiwa14_real_t t839 = (parameters[MY2R] - t125) * t258 - (parameters[MX2] + t147) * t252 + t838;
-    const iiwa14_real_t t840 = IIWA14_C(0.0625) * t839;
-    const iiwa14_real_t t841 = t188 * t570 + t182 * t574 + (t107 * t827 + (t148 * t728 - t826));
-    const iiwa14_real_t t842 = IIWA14_C(0.0625) * (t831 + t841);
-    const iiwa14_real_t t843 = t188 * t583 - t182 * t585 + (t167 * t728 + t91 * t721 - t127 * t827);
-    const iiwa14_real_t t844 = IIWA14_C(0.0625) * (t843 - (t126 * t258 + t104 * t252));
-    const iiwa14_real_t t845 = t424 * t837 - t558 * t840 - t567 * t842 + t578 * t844;
-    const iiwa14_real_t t846 = t188 * t603 - t182 * t605 + (t162 * t728 + t85 * t721 - t121 * t827);
-    const iiwa14_real_t t847 = IIWA14_C(0.125) * (t602 * t252 - t120 * t258 + t846);
-    const iiwa14_real_t t848 = t188 * t623 - t182 * t625 + (t158 * t728 + t82 * t721 - t116 * t827);
-    const iiwa14_real_t t849 = IIWA14_C(0.125) * (t622 * t252 - t115 * t258 + t848);
-    const iiwa14_real_t t850 = t188 * t647 - t182 * t649 + (t154 * t728 + t78 * t721 - t112 * t827);
-    const iiwa14_real_t t851 = IIWA14_C(0.125) * (t850 - (t111 * t258 + t646 * t252));
-    const iiwa14_real_t t852 = t845 + t592 * t847 + t612 * t849 + t634 * t851;
-    ddq_by_q[1] = t852;
-    const iiwa14_real_t t853 = t558 * t837 - t652 * t840 - t654 * t842 + t656 * t844;
-    const iiwa14_real_t t854 = t853 + t659 * t847 + t661 * t849 + t663 * t851;
-    ddq_by_q[8] = t854;
-    const iiwa14_real_t t855 = t567 * t837 - t654 * t840 - t665 * t842 + t667 * t844;
-    const iiwa14_real_t t856 = t855 + t670 * t847 + t672 * t849 + t674 * t851;
-    ddq_by_q[15] = t856;
-    const iiwa14_real_t t857 = t578 * t837 - t656 * t840 - t667 * t842 + t677 * t844;
-    const iiwa14_real_t t858 = t857 + t680 * t847 + t682 * t849 + t684 * t851;
-    ddq_by_q[22] = t858;
-    const iiwa14_real_t t859 = t686 * t837 - t687 * t840 - t688 * t842 + t689 * t844;
-    const iiwa14_real_t t860 = t859 + t692 * t847 + t695 * t849 + t698 * t851;
-    ddq_by_q[29] = t860;
-    const iiwa14_real_t t861 = t700 * t837 - t701 * t840 - t702 * t842 + t703 * t844;
-    const iiwa14_real_t t862 = t861 + t695 * t847 + t706 * t849 + t709 * t851;
-    ddq_by_q[36] = t862;
-    const iiwa14_real_t t863 = t711 * t837 - t712 * t840 - t713 * t842 + t714 * t844;
-    const iiwa14_real_t t864 = t863 + t698 * t847 + t709 * t849 + t718 * t851;
-    ddq_by_q[43] = t864;
-    const iiwa14_real_t t865 = parameters[ZZ2R] - t544;
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t866 = t517 - t559 + t106 * t526 - (parameters[YZ2] * dq[1] + t188 * t865);
-    /* link j2: derivatives */
-    const iiwa14_real_t t867 = t150 * (IIWA14_C(2.0) * t866 + (t149 * t829 - t145 * t828));
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t868 = parameters[XZ2] * dq[1] + t182 * t865 + (t98 * t542 + t100 * t543);
-    /* link j2: derivatives */
-    const iiwa14_real_t t869 = t146 * (IIWA14_C(2.0) * t868 + (t149 * t828 + t74 * t829));
-    const iiwa14_real_t t870 = IIWA14_C(0.0625) * (t867 + t869);
-    const iiwa14_real_t t871 = IIWA14_C(2.0) * (t535 - t539 + (t508 + t525 + t533 - t534));
-    const iiwa14_real_t t872 = IIWA14_C(0.0625) * (t871 + IIWA14_C(2.0) * (t174 * t188 + t175 * t182));
-    const iiwa14_real_t t873 = IIWA14_C(1.6e3) * parameters[FV2] + t872;
-    /* link j3: derivatives */
-    const iiwa14_real_t t874 = t98 * t568 + t100 * t569 + IIWA14_C(2.0) * (t148 * t188 - t74 * t182);
-    const iiwa14_real_t t875 = IIWA14_C(0.0625) * t874;
-    /* link j4: derivatives */
-    const iiwa14_real_t t876 = t98 * t581 + t100 * t582 - t104 * t573 + IIWA14_C(2.0) * (t167 * t188
-        + t91 * t182);
-    const iiwa14_real_t t877 = IIWA14_C(0.0625) * t876;
-    const iiwa14_real_t t878 = t870 * t424 - t873 * t558 - t875 * t567 + t877 * t578;
-    /* link j5: derivatives */
-    const iiwa14_real_t t879 = t98 * t600 + t100 * t601 + t602 * t573 + IIWA14_C(2.0) * (t162 * t188
-        + t85 * t182);
-    const iiwa14_real_t t880 = IIWA14_C(0.125) * t879;
+    const iiwa14_real_t t761 = t481 + t711 - (parameters[YZ6] * t222 + t221 * t760);
+    const iiwa14_real_t t762 = IIWA14_C(2.0) * t761 + (t21 * t691 + t22 * t695); /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t763 = parameters[XZ6] * t222 - t229 * t760 + (t1 * t497 + t2 * t498);
     /* link j6: derivatives */
-    const iiwa14_real_t t881 = t98 * t620 + t100 * t621 + t622 * t573 + IIWA14_C(2.0) * (t158 * t188
-        + t82 * t182);
-    const iiwa14_real_t t882 = IIWA14_C(0.125) * t881;
-    /* link j7: derivatives */
-    const iiwa14_real_t t883 = t98 * t644 + t100 * t645 - t646 * t573 + IIWA14_C(2.0) * (t154 * t188
-        + t78 * t182);
-    const iiwa14_real_t t884 = IIWA14_C(0.125) * t883;
-    const iiwa14_real_t t885 = t878 + t880 * t592 + t882 * t612 + t884 * t634;
-    ddq_by_dq[1] = t885;
-    const iiwa14_real_t t886 = t870 * t558 - t873 * t652 - t875 * t654 + t877 * t656;
-    const iiwa14_real_t t887 = t886 + t880 * t659 + t882 * t661 + t884 * t663;
-    ddq_by_dq[8] = t887;
-    const iiwa14_real_t t888 = t870 * t567 - t873 * t654 - t875 * t665 + t877 * t667;
-    const iiwa14_real_t t889 = t888 + t880 * t670 + t882 * t672 + t884 * t674;
-    ddq_by_dq[15] = t889;
-    const iiwa14_real_t t890 = t870 * t578 - t873 * t656 - t875 * t667 + t877 * t677;
-    const iiwa14_real_t t891 = t890 + t880 * t680 + t882 * t682 + t884 * t684;
-    ddq_by_dq[22] = t891;
-    const iiwa14_real_t t892 = t870 * t686 - t873 * t687 - t875 * t688 + t877 * t689;
-    const iiwa14_real_t t893 = t892 + t880 * t692 + t882 * t695 + t884 * t698;
-    ddq_by_dq[29] = t893;
-    const iiwa14_real_t t894 = t870 * t700 - t873 * t701 - t875 * t702 + t877 * t703;
-    const iiwa14_real_t t895 = t894 + t880 * t695 + t882 * t706 + t884 * t709;
-    ddq_by_dq[36] = t895;
-    const iiwa14_real_t t896 = t870 * t711 - t873 * t712 - t875 * t713 + t877 * t714;
-    const iiwa14_real_t t897 = t896 + t880 * t698 + t882 * t709 + t884 * t718;
-    ddq_by_dq[43] = t897;
-    ddq_by_input[1] = t558;
-    ddq_by_input[8] = t652;
-    ddq_by_input[15] = t654;
-    ddq_by_input[22] = t656;
-    ddq_by_input[29] = t687;
-    ddq_by_input[36] = t701;
-    ddq_by_input[43] = t712;
-    const iiwa14_real_t t898 = t361 + t350; /* link j4: motion */
-    const iiwa14_real_t t899 = IIWA14_C(2.0) * t184; /* link j3: derivatives */
-    const iiwa14_real_t t900 = IIWA14_C(2.0) * t183;
-    const iiwa14_real_t t901 = t508 * t899 + t517 * t900 + (t97 * t898 + (t132 * t724 + t133 * t732));
-    const iiwa14_real_t t902 = t818 + (t901 - t125 * t763);
-    const iiwa14_real_t t903 = t61 * t732;
-    const iiwa14_real_t t904 = t523 * t899 + t511 * t900 - (t99 * t898 - (t903 - t133 * t724));
-    const iiwa14_real_t t905 = t125 * t766;
-    const iiwa14_real_t t906 = t813 + (t905 + t904);
-    const iiwa14_real_t t907 = t822 + (t530 * t899 + (t105 * t898 - t125 * t724));
-    const iiwa14_real_t t908 = t823 + (t530 * t900 + (t101 * t898 + t125 * t732));
-    const iiwa14_real_t t909 = t100 * t902 - t98 * t906 + IIWA14_C(0.42) * (t100 * t907 - t98 * t908);
-    const iiwa14_real_t t910 = t74 * t898 - (t97 * t724 + t99 * t732);
-    const iiwa14_real_t t911 = t105 * t763 - t101 * t766;
-    const iiwa14_real_t t912 = t146 * (t542 * t899 + t543 * t900 + t910 - t911);
-    const iiwa14_real_t t913 = IIWA14_C(0.0625) * (t150 * t909 + t912);
-    const iiwa14_real_t t914 = t98 * t902 + t100 * t906 + IIWA14_C(0.42) * (t100 * t908 + t98 * t907);
-    const iiwa14_real_t t915 = IIWA14_C(0.0625) * t914;
-    const iiwa14_real_t t916 = IIWA14_C(0.0625) * (t911 + (t184 * t568 + t183 * t569 - t910));
-    const iiwa14_real_t t917 = t184 * t581 + t183 * t582 + (t91 * t898 + (t903 - t124 * t724));
-    const iiwa14_real_t t918 = IIWA14_C(0.0625) * (t917 + t905);
-    const iiwa14_real_t t919 = t424 * t913 - t558 * t915 - t567 * t916 + t578 * t918;
-    const iiwa14_real_t t920 = t184 * t600 + t183 * t601 + (t85 * t898 + (t42 * t732 - t118 * t724));
-    const iiwa14_real_t t921 = IIWA14_C(0.125) * (t920 + (t119 * t766 - t68 * t763));
-    const iiwa14_real_t t922 = t184 * t620 + t183 * t621 + (t82 * t898 + (t50 * t732 - t113 * t724));
-    const iiwa14_real_t t923 = IIWA14_C(0.125) * (t922 + (t114 * t766 + t80 * t763));
-    const iiwa14_real_t t924 = t184 * t644 + t183 * t645 + (t78 * t898 + (t46 * t732 - t108 * t724));
-    const iiwa14_real_t t925 = IIWA14_C(0.125) * (t924 + (t110 * t766 + t76 * t763));
-    const iiwa14_real_t t926 = t919 + t592 * t921 + t612 * t923 + t634 * t925;
-    ddq_by_q[2] = t926;
-    const iiwa14_real_t t927 = t558 * t913 - t652 * t915 - t654 * t916 + t656 * t918;
-    const iiwa14_real_t t928 = t927 + t659 * t921 + t661 * t923 + t663 * t925;
-    ddq_by_q[9] = t928;
-    const iiwa14_real_t t929 = t567 * t913 - t654 * t915 - t665 * t916 + t667 * t918;
-    const iiwa14_real_t t930 = t929 + t670 * t921 + t672 * t923 + t674 * t925;
-    ddq_by_q[16] = t930;
-    const iiwa14_real_t t931 = t578 * t913 - t656 * t915 - t667 * t916 + t677 * t918;
-    const iiwa14_real_t t932 = t931 + t680 * t921 + t682 * t923 + t684 * t925;
-    ddq_by_q[23] = t932;
-    const iiwa14_real_t t933 = t686 * t913 - t687 * t915 - t688 * t916 + t689 * t918;
-    const iiwa14_real_t t934 = t933 + t692 * t921 + t695 * t923 + t698 * t925;
-    ddq_by_q[30] = t934;
-    const iiwa14_real_t t935 = t700 * t913 - t701 * t915 - t702 * t916 + t703 * t918;
-    const iiwa14_real_t t936 = t935 + t695 * t921 + t706 * t923 + t709 * t925;
-    ddq_by_q[37] = t936;
-    const iiwa14_real_t t937 = t711 * t913 - t712 * t915 - t713 * t916 + t714 * t918;
-    const iiwa14_real_t t938 = t937 + t698 * t921 + t709 * t923 + t718 * t925;
-    ddq_by_q[44] = t938;
-    const iiwa14_real_t t939 = IIWA14_C(2.0) * t548 + (t133 * t900 - t132 * t899);
-    const iiwa14_real_t t940 = IIWA14_C(2.0) * t549 + (t133 * t899 + t61 * t900);
-    const iiwa14_real_t t941 = IIWA14_C(2.0) * t552 - t125 * t900;
-    const iiwa14_real_t t942 = IIWA14_C(2.0) * t550 + t125 * t899;
-    const iiwa14_real_t t943 = t100 * t939 - t98 * t940 + IIWA14_C(0.42) * (t98 * t941 + t100 * t942);
-    const iiwa14_real_t t944 = t150 * t943 + t146 * (t571 + (t97 * t899 - t99 * t900));
-    const iiwa14_real_t t945 = IIWA14_C(0.0625) * t944;
-    const iiwa14_real_t t946 = t98 * t939 + t100 * t940 + IIWA14_C(0.42) * (t98 * t942 - t100 * t941);
-    const iiwa14_real_t t947 = IIWA14_C(0.0625) * t946;
-    const iiwa14_real_t t948 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t99 * t183 - t97 * t184) - t571);
-    const iiwa14_real_t t949 = IIWA14_C(1.6e3) * parameters[FV3] + t948;
-    const iiwa14_real_t t950 = IIWA14_C(0.0625) * (t584 + IIWA14_C(2.0) * (t124 * t184 + t61 * t183));
-    const iiwa14_real_t t951 = t945 * t424 - t947 * t558 - t949 * t567 + t950 * t578;
-    const iiwa14_real_t t952 = IIWA14_C(0.125) * (t604 + IIWA14_C(2.0) * (t118 * t184 + t42 * t183));
-    const iiwa14_real_t t953 = IIWA14_C(0.125) * (t624 + IIWA14_C(2.0) * (t113 * t184 + t50 * t183));
-    const iiwa14_real_t t954 = IIWA14_C(0.125) * (t648 + IIWA14_C(2.0) * (t108 * t184 + t46 * t183));
-    const iiwa14_real_t t955 = t951 + t952 * t592 + t953 * t612 + t954 * t634;
-    ddq_by_dq[2] = t955;
-    const iiwa14_real_t t956 = t945 * t558 - t947 * t652 - t949 * t654 + t950 * t656;
-    const iiwa14_real_t t957 = t956 + t952 * t659 + t953 * t661 + t954 * t663;
-    ddq_by_dq[9] = t957;
-    const iiwa14_real_t t958 = t945 * t567 - t947 * t654 - t949 * t665 + t950 * t667;
-    const iiwa14_real_t t959 = t958 + t952 * t670 + t953 * t672 + t954 * t674;
-    ddq_by_dq[16] = t959;
-    const iiwa14_real_t t960 = t945 * t578 - t947 * t656 - t949 * t667 + t950 * t677;
-    const iiwa14_real_t t961 = t960 + t952 * t680 + t953 * t682 + t954 * t684;
-    ddq_by_dq[23] = t961;
-    const iiwa14_real_t t962 = t945 * t686 - t947 * t687 - t949 * t688 + t950 * t689;
-    const iiwa14_real_t t963 = t962 + t952 * t692 + t953 * t695 + t954 * t698;
-    ddq_by_dq[30] = t963;
-    const iiwa14_real_t t964 = t945 * t700 - t947 * t701 - t949 * t702 + t950 * t703;
-    const iiwa14_real_t t965 = t964 + t952 * t695 + t953 * t706 + t954 * t709;
-    ddq_by_dq[37] = t965;
-    const iiwa14_real_t t966 = t945 * t711 - t947 * t712 - t949 * t713 + t950 * t714;
-    const iiwa14_real_t t967 = t966 + t952 * t698 + t953 * t709 + t954 * t718;
-    ddq_by_dq[44] = t967;
-    ddq_by_input[2] = t567;
-    ddq_by_input[9] = t654;
-    ddq_by_input[16] = t665;
-    ddq_by_input[23] = t667;
-    ddq_by_input[30] = t688;
-    ddq_by_input[37] = t702;
-    ddq_by_input[44] = t713;
-    const iiwa14_real_t t968 = t26 * t735;
-    const iiwa14_real_t t969 = t266 + t336; /* link j5: motion */
-    const iiwa14_real_t t970 = IIWA14_C(2.0) * t209; /* link j4: derivatives */
-    const iiwa14_real_t t971 = IIWA14_C(-2.0) * t198;
-    const iiwa14_real_t t972 = t494 * t970 + t488 * t971 + (t90 * t969 - (t968 + t70 * t742));
-    const iiwa14_real_t t973 = t41 * t769;
-    const iiwa14_real_t t974 = t973 + t972 - t806;
-    const iiwa14_real_t t975 = t485 * t970 + t503 * t971 + (t89 * t969 - (t66 * t742 + t70 * t735));
-    const iiwa14_real_t t976 = t810 + (t975 + t41 * t764);
-    const iiwa14_real_t t977 = t67 * t976 + t71 * t974;
-    const iiwa14_real_t t978 = t61 * t969 - (t89 * t742 + t90 * t735);
-    const iiwa14_real_t t979 = t103 * t769 - t102 * t764;
-    const iiwa14_real_t t980 = t518 * t970 + t521 * t971 + t978 + t979;
-    const iiwa14_real_t t981 = t821 + (t551 * t971 - (t103 * t969 - t41 * t735));
-    const iiwa14_real_t t982 = t819 - (t551 * t970 - (t102 * t969 + t41 * t742));
-    const iiwa14_real_t t983 = t71 * t982 - t67 * t981;
-    const iiwa14_real_t t984 = t529 * t970 + t528 * t971 - (t103 * t742 + t102 * t735);
-    const iiwa14_real_t t985 = t100 * t977 - t98 * t980 + IIWA14_C(0.42) * (t100 * t984 - t98 * t983);
-    const iiwa14_real_t t986 = t71 * t976 - t67 * t974;
-    const iiwa14_real_t t987 = IIWA14_C(0.0625) * (t150 * t985 - t146 * t986);
-    const iiwa14_real_t t988 = t98 * t977 + t100 * t980 + IIWA14_C(0.42) * (t100 * t983 + t98 * t984);
+    const iiwa14_real_t t764 = IIWA14_C(2.0) * t763 + (t22 * t691 + parameters[ZZ7] * t695);
+    const iiwa14_real_t t765 = t14 * t762 - t12 * t764;
+    const iiwa14_real_t t766 = t704 + t693 + (t478 - t703); /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t767 = IIWA14_C(-2.0) * t766; /* link j6: derivatives */
+    const iiwa14_real_t t768 = t767 + (t11 * t691 + t13 * t695);
+    const iiwa14_real_t t769 = IIWA14_C(-2.0) * t722 - t33 * t695;
+    const iiwa14_real_t t770 = IIWA14_C(2.0) * t723 + t33 * t691;
+    const iiwa14_real_t t771 = t14 * t769 - t12 * t770;
+    const iiwa14_real_t t772 = t36 * t695 - parameters[MY6R] * t691;
+    const iiwa14_real_t t773 = t30 * t771 + t32 * t772;
+    const iiwa14_real_t t774 = t32 * t765 + t30 * t768 + IIWA14_C(0.4) * t773;
+    const iiwa14_real_t t775 = t12 * t762 + t14 * t764;
+    const iiwa14_real_t t776 = t64 * t774 + t68 * t775;
+    const iiwa14_real_t t777 = t30 * t772 - t32 * t771;
+    const iiwa14_real_t t778 = t30 * t765 - t32 * t768 + IIWA14_C(0.4) * t777;
+    const iiwa14_real_t t779 = t68 * (t12 * t769 + t14 * t770) - t64 * t777;
+    const iiwa14_real_t t780 = t96 * t776 - t94 * t778 + IIWA14_C(0.42) * (t94 * t779 + t96 * t773);
+    const iiwa14_real_t t781 = t64 * t775 - t68 * t774;
+    const iiwa14_real_t t782 = IIWA14_C(0.0625) * (t145 * t780 + t141 * t781);
+    const iiwa14_real_t t783 = t94 * t776 + t96 * t778 + IIWA14_C(0.42) * (t94 * t773 - t96 * t779);
+    const iiwa14_real_t t784 = IIWA14_C(0.0625) * t783;
+    const iiwa14_real_t t785 = IIWA14_C(-0.0625) * t781;
+    const iiwa14_real_t t786 = IIWA14_C(0.0625) * t778;
+    const iiwa14_real_t t787 = t782 * t528 - t784 * t532 - t785 * t535 + t786 * t539;
+    const iiwa14_real_t t788 = IIWA14_C(0.125) * t775;
+    const iiwa14_real_t t789 = IIWA14_C(0.125) * (t767 + IIWA14_C(-2.0) * (t11 * t221 + t13 * t229));
+    const iiwa14_real_t t790 = IIWA14_C(-3.2e3) * parameters[FV6] + t789;
+    const iiwa14_real_t t791 = t1 * t554 + t2 * t555; /* link j7: derivatives */
+    const iiwa14_real_t t792 = IIWA14_C(0.125) * (t791 + IIWA14_C(-2.0) * (t16 * t221
+        + parameters[ZZ7] * t229));
+    const iiwa14_real_t t793 = t787 + t788 * t546 + t790 * t553 + t792 * t564;
+    ddq_by_dq[5] = t793;
+    const iiwa14_real_t t794 = t782 * t532 - t784 * t566 - t785 * t568 + t786 * t570;
+    const iiwa14_real_t t795 = t794 + t788 * t573 + t790 * t575 + t792 * t577;
+    ddq_by_dq[12] = t795;
+    const iiwa14_real_t t796 = t782 * t535 - t784 * t568 - t785 * t579 + t786 * t581;
+    const iiwa14_real_t t797 = t796 + t788 * t584 + t790 * t586 + t792 * t588;
+    ddq_by_dq[19] = t797;
+    const iiwa14_real_t t798 = t782 * t539 - t784 * t570 - t785 * t581 + t786 * t591;
+    const iiwa14_real_t t799 = t798 + t788 * t594 + t790 * t596 + t792 * t598;
+    ddq_by_dq[26] = t799;
+    const iiwa14_real_t t800 = t782 * t600 - t784 * t601 - t785 * t602 + t786 * t603;
+    const iiwa14_real_t t801 = t800 + t788 * t606 + t790 * t609 + t792 * t612;
+    ddq_by_dq[33] = t801;
+    const iiwa14_real_t t802 = t782 * t614 - t784 * t615 - t785 * t616 + t786 * t617;
+    const iiwa14_real_t t803 = t802 + t788 * t609 + t790 * t620 + t792 * t623;
+    ddq_by_dq[40] = t803;
+    const iiwa14_real_t t804 = t782 * t625 - t784 * t626 - t785 * t627 + t786 * t628;
+    const iiwa14_real_t t805 = t804 + t788 * t612 + t790 * t623 + t792 * t632;
+    ddq_by_dq[47] = t805;
+    ddq_by_input[5] = t553;
+    ddq_by_input[12] = t575;
+    ddq_by_input[19] = t586;
+    ddq_by_input[26] = t596;
+    ddq_by_input[33] = t609;
+    ddq_by_input[40] = t620;
+    ddq_by_input[47] = t623;
+    const iiwa14_real_t t806 = parameters[ZZ6R] * t443 - t308 + parameters[YZ6] * t458
+        - parameters[XZ6] * t452;
+    const iiwa14_real_t t807 = t310 + t806 + (parameters[MY6R] * t499 - parameters[MX6] * t472) + (t1 * t488
+        + t2 * t473);
+    const iiwa14_real_t t808 = t314 + (parameters[YZ5] * t448 - (t312 + parameters[XY5] * t451))
+        - parameters[MX5] * t471;
+    const iiwa14_real_t t809 = t808 + t807;
+    const iiwa14_real_t t810 = t313 + t304; /* link j6: motion */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t811 = t14 * (t705 - t694) + t12 * (t706 - t690);
+    const iiwa14_real_t t812 = t14 * t811;
+    const iiwa14_real_t t813 = parameters[XZ5] * t202;
+    const iiwa14_real_t t814 = parameters[XY5] * t216;
+    const iiwa14_real_t t815 = t813 - t814 + (t694 + t812);
+    const iiwa14_real_t t816 = IIWA14_C(2.0) * t202; /* link j5: derivatives */
+    const iiwa14_real_t t817 = IIWA14_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t818 = parameters[YZ5] * t202 - t216 * t817 + (t14 * t761 - t12 * t763);
+    const iiwa14_real_t t819 = IIWA14_C(-2.0) * t201; /* link j5: derivatives */
+    const iiwa14_real_t t820 = t815 * t816 + t818 * t819 + (t29 * t810 + (t55 * t449 - t54 * t441));
+    const iiwa14_real_t t821 = t809 + (t820 - t46 * t469);
+    const iiwa14_real_t t822 = t227 + t442;
+    const iiwa14_real_t t823 = t447 - t203;
+    const iiwa14_real_t t824 = parameters[XX5R] * t450 - t300 + parameters[XY5] * t822
+        + parameters[XZ5] * t823;
+    const iiwa14_real_t t825 = t306 + t824 + parameters[MY5R] * t471 - (t14 * t685 + t12 * t701);
+    const iiwa14_real_t t826 = t8 * t449;
+    const iiwa14_real_t t827 = parameters[XX5R] + t817;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t828 = t216 * t827 - parameters[XZ5] * t201 + (t14 * t712 - t12 * t713);
+    const iiwa14_real_t t829 = parameters[YZ5] * t201;
+    const iiwa14_real_t t830 = t814 - t829 + t766;
+    const iiwa14_real_t t831 = t828 * t816 + t830 * t819 - (t31 * t810 - (t826 - t55 * t441));
+    const iiwa14_real_t t832 = t46 * t500;
+    const iiwa14_real_t t833 = t831 - t832 - t825;
+    const iiwa14_real_t t834 = t325 - parameters[MY5R] * t448 + (t14 * t719 - t12 * t716);
+    const iiwa14_real_t t835 = parameters[MY5R] * t201 - parameters[MX5] * t202 + (t12 * t723 + t14 * t722);
+    const iiwa14_real_t t836 = t834 + (t835 * t816 + (t38 * t810 + t46 * t441));
+    const iiwa14_real_t t837 = t1 * t510 - t2 * t507 - (parameters[MX6] * t682 + parameters[MY6R] * t454);
+    const iiwa14_real_t t838 = t328 + parameters[MX5] * t823 + t837;
+    const iiwa14_real_t t839 = t838 + (t835 * t819 + (t34 * t810 - t46 * t449));
+    const iiwa14_real_t t840 = t32 * t836 - t30 * t839;
+    const iiwa14_real_t t841 = t32 * t821 - t30 * t833 + IIWA14_C(0.4) * t840;
+    const iiwa14_real_t t842 = t25 * t810 - (t29 * t441 + t31 * t449);
+    const iiwa14_real_t t843 = t12 * t811;
+    const iiwa14_real_t t844 = t202 * t827 - parameters[XY5] * t201 + (t690 + t843);
+    const iiwa14_real_t t845 = parameters[XY5] * t202 - t201 * t817 + (t12 * t761 + t14 * t763);
+    const iiwa14_real_t t846 = t38 * t469 + t34 * t500;
+    const iiwa14_real_t t847 = t844 * t816 + t845 * t819 + t842 + t846;
+    const iiwa14_real_t t848 = t64 * t841 + t68 * t847;
+    const iiwa14_real_t t849 = t32 * t839 + t30 * t836;
+    const iiwa14_real_t t850 = t30 * t821 + t32 * t833 + IIWA14_C(0.4) * t849;
+    const iiwa14_real_t t851 = parameters[MX5] * t216 + t717;
+    const iiwa14_real_t t852 = parameters[MY5R] * t216 + (t14 * t723 - t12 * t722);
+    const iiwa14_real_t t853 = t851 * t816 + t852 * t819 - (t34 * t441 + t38 * t449);
+    const iiwa14_real_t t854 = t64 * t849 - t68 * t853;
+    const iiwa14_real_t t855 = t96 * t848 - t94 * t850 + IIWA14_C(0.42) * (t96 * t840 - t94 * t854);
+    const iiwa14_real_t t856 = t68 * t841 - t64 * t847;
+    const iiwa14_real_t t857 = IIWA14_C(0.0625) * (t145 * t855 - t141 * t856);
+    const iiwa14_real_t t858 = t94 * t848 + t96 * t850 + IIWA14_C(0.42) * (t96 * t854 + t94 * t840);
+    const iiwa14_real_t t859 = IIWA14_C(0.0625) * t858;
+    const iiwa14_real_t t860 = IIWA14_C(0.0625) * t856;
+    const iiwa14_real_t t861 = IIWA14_C(0.0625) * t850;
+    const iiwa14_real_t t862 = t528 * t857 - t532 * t859 - t535 * t860 + t539 * t861;
+    const iiwa14_real_t t863 = IIWA14_C(2.0) * t844; /* link j5: derivatives */
+    const iiwa14_real_t t864 = IIWA14_C(2.0) * t845;
+    const iiwa14_real_t t865 = IIWA14_C(0.125) * (t846 + (t202 * t863 - t201 * t864 + t842));
+    const iiwa14_real_t t866 = t14 * t741 + t12 * t742; /* link j6: derivatives */
+    const iiwa14_real_t t867 = t202 * t866 - t201 * t767 + (t15 * t810 + (t45 * t441 - t826));
+    const iiwa14_real_t t868 = IIWA14_C(0.125) * (t867 + t832);
+    const iiwa14_real_t t869 = t14 * t744 + t12 * t641; /* link j7: derivatives */
+    const iiwa14_real_t t870 = t202 * t869 - t201 * t791 + (t17 * t810 - (t41 * t441 + t3 * t449));
+    const iiwa14_real_t t871 = IIWA14_C(0.125) * (t870 + (t42 * t500 + t35 * t469));
+    const iiwa14_real_t t872 = t862 + t546 * t865 + t553 * t868 + t564 * t871;
+    ddq_by_q[4] = t872;
+    const iiwa14_real_t t873 = t532 * t857 - t566 * t859 - t568 * t860 + t570 * t861;
+    const iiwa14_real_t t874 = t873 + t573 * t865 + t575 * t868 + t577 * t871;
+    ddq_by_q[11] = t874;
+    const iiwa14_real_t t875 = t535 * t857 - t568 * t859 - t579 * t860 + t581 * t861;
+    const iiwa14_real_t t876 = t875 + t584 * t865 + t586 * t868 + t588 * t871;
+    ddq_by_q[18] = t876;
+    const iiwa14_real_t t877 = t539 * t857 - t570 * t859 - t581 * t860 + t591 * t861;
+    const iiwa14_real_t t878 = t877 + t594 * t865 + t596 * t868 + t598 * t871;
+    ddq_by_q[25] = t878;
+    const iiwa14_real_t t879 = t600 * t857 - t601 * t859 - t602 * t860 + t603 * t861;
+    const iiwa14_real_t t880 = t879 + t606 * t865 + t609 * t868 + t612 * t871;
+    ddq_by_q[32] = t880;
+    const iiwa14_real_t t881 = t614 * t857 - t615 * t859 - t616 * t860 + t617 * t861;
+    const iiwa14_real_t t882 = t881 + t609 * t865 + t620 * t868 + t623 * t871;
+    ddq_by_q[39] = t882;
+    const iiwa14_real_t t883 = t625 * t857 - t626 * t859 - t627 * t860 + t628 * t861;
+    const iiwa14_real_t t884 = t883 + t612 * t865 + t623 * t868 + t632 * t871;
+    ddq_by_q[46] = t884;
+    const iiwa14_real_t t885 = parameters[ZZ5R] + t817;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t886 = t202 * t885 - parameters[YZ5] * t216 + (t706 - t843);
+    const iiwa14_real_t t887 = IIWA14_C(2.0) * t886 + (t54 * t816 + t55 * t819); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t888 = t201 * t885 - parameters[XZ5] * t216 + (t12 * t712 + t14 * t713);
+    const iiwa14_real_t t889 = IIWA14_C(-2.0) * t888 + (t55 * t816 + t8 * t819); /* link j5: derivatives */
+    const iiwa14_real_t t890 = IIWA14_C(2.0) * t851 + t46 * t819;
+    const iiwa14_real_t t891 = IIWA14_C(2.0) * t852 - t46 * t816;
+    const iiwa14_real_t t892 = t30 * t890 + t32 * t891;
+    const iiwa14_real_t t893 = t32 * t887 - t30 * t889 + IIWA14_C(0.4) * t892;
+    const iiwa14_real_t t894 = t813 - t829 + (t812 - t705); /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t895 = IIWA14_C(2.0) * t894; /* link j5: derivatives */
+    const iiwa14_real_t t896 = t895 + (t29 * t816 - t31 * t819);
+    const iiwa14_real_t t897 = t64 * t893 + t68 * t896;
+    const iiwa14_real_t t898 = t30 * t891 - t32 * t890;
+    const iiwa14_real_t t899 = t30 * t887 + t32 * t889 + IIWA14_C(0.4) * t898;
+    const iiwa14_real_t t900 = t68 * (t34 * t816 - t38 * t819) - t64 * t898;
+    const iiwa14_real_t t901 = t96 * t897 - t94 * t899 + IIWA14_C(0.42) * (t94 * t900 + t96 * t892);
+    const iiwa14_real_t t902 = t64 * t896 - t68 * t893;
+    const iiwa14_real_t t903 = IIWA14_C(0.0625) * (t145 * t901 + t141 * t902);
+    const iiwa14_real_t t904 = t94 * t897 + t96 * t899 + IIWA14_C(0.42) * (t94 * t892 - t96 * t900);
+    const iiwa14_real_t t905 = IIWA14_C(0.0625) * t904;
+    const iiwa14_real_t t906 = IIWA14_C(-0.0625) * t902;
+    const iiwa14_real_t t907 = IIWA14_C(0.0625) * t899;
+    const iiwa14_real_t t908 = t903 * t528 - t905 * t532 - t906 * t535 + t907 * t539;
+    const iiwa14_real_t t909 = IIWA14_C(0.125) * (t895 + IIWA14_C(2.0) * (t29 * t202 + t31 * t201));
+    const iiwa14_real_t t910 = IIWA14_C(-1250.0) * parameters[FV5] + t909;
+    const iiwa14_real_t t911 = t14 * t742 - t12 * t741; /* link j6: derivatives */
+    const iiwa14_real_t t912 = IIWA14_C(0.125) * (t911 + IIWA14_C(2.0) * (t8 * t201 - t45 * t202));
+    const iiwa14_real_t t913 = t14 * t641 - t12 * t744; /* link j7: derivatives */
+    const iiwa14_real_t t914 = IIWA14_C(0.125) * (t913 + IIWA14_C(2.0) * (t41 * t202 + t3 * t201));
+    const iiwa14_real_t t915 = t908 + t910 * t546 + t912 * t553 + t914 * t564;
+    ddq_by_dq[4] = t915;
+    const iiwa14_real_t t916 = t903 * t532 - t905 * t566 - t906 * t568 + t907 * t570;
+    const iiwa14_real_t t917 = t916 + t910 * t573 + t912 * t575 + t914 * t577;
+    ddq_by_dq[11] = t917;
+    const iiwa14_real_t t918 = t903 * t535 - t905 * t568 - t906 * t579 + t907 * t581;
+    const iiwa14_real_t t919 = t918 + t910 * t584 + t912 * t586 + t914 * t588;
+    ddq_by_dq[18] = t919;
+    const iiwa14_real_t t920 = t903 * t539 - t905 * t570 - t906 * t581 + t907 * t591;
+    const iiwa14_real_t t921 = t920 + t910 * t594 + t912 * t596 + t914 * t598;
+    ddq_by_dq[25] = t921;
+    const iiwa14_real_t t922 = t903 * t600 - t905 * t601 - t906 * t602 + t907 * t603;
+    const iiwa14_real_t t923 = t922 + t910 * t606 + t912 * t609 + t914 * t612;
+    ddq_by_dq[32] = t923;
+    const iiwa14_real_t t924 = t903 * t614 - t905 * t615 - t906 * t616 + t907 * t617;
+    const iiwa14_real_t t925 = t924 + t910 * t609 + t912 * t620 + t914 * t623;
+    ddq_by_dq[39] = t925;
+    const iiwa14_real_t t926 = t903 * t625 - t905 * t626 - t906 * t627 + t907 * t628;
+    const iiwa14_real_t t927 = t926 + t910 * t612 + t912 * t623 + t914 * t632;
+    ddq_by_dq[46] = t927;
+    ddq_by_input[4] = t546;
+    ddq_by_input[11] = t573;
+    ddq_by_input[18] = t584;
+    ddq_by_input[25] = t594;
+    ddq_by_input[32] = t606;
+    ddq_by_input[39] = t609;
+    ddq_by_input[46] = t612;
+    const iiwa14_real_t t928 = t30 * t834 + t32 * t838;
+    const iiwa14_real_t t929 = t446 - t199;
+    const iiwa14_real_t t930 = t209 + t429;
+    const iiwa14_real_t t931 = parameters[XZ4] * t930 - (t331 + parameters[XX4R] * t439
+        + parameters[XY4] * t929);
+    const iiwa14_real_t t932 = t931 - t336 - parameters[MY4R] * t467 + (t30 * t809 - t32 * t825
+        + IIWA14_C(0.4) * t928);
+    const iiwa14_real_t t933 = t25 * t438;
+    const iiwa14_real_t t934 = t265 + t335; /* link j5: motion */
+    const iiwa14_real_t t935 = IIWA14_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const iiwa14_real_t t936 = t935 - parameters[XX4R];
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t937 = parameters[XZ4] * t197 - t198 * t936 + (t32 * t844 - t30 * t845);
+    const iiwa14_real_t t938 = IIWA14_C(2.0) * t208; /* link j4: derivatives */
+    const iiwa14_real_t t939 = IIWA14_C(0.4) * t835; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t940 = IIWA14_C(0.4) * t198; /* link j5: velocity of its origin */
+    const iiwa14_real_t t941 = t65 * t940; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t942 = IIWA14_C(-0.4) * t197; /* link j5: velocity of its origin */
+    const iiwa14_real_t t943 = t39 * t942; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t944 = t939 + (t941 + t943);
+    const iiwa14_real_t t945 = parameters[XY4] * t198;
+    const iiwa14_real_t t946 = parameters[YZ4] * t197;
+    const iiwa14_real_t t947 = t945 + t946 + (t894 + t939 - t944);
+    const iiwa14_real_t t948 = IIWA14_C(-2.0) * t197; /* link j4: derivatives */
+    const iiwa14_real_t t949 = t937 * t938 + t947 * t948 + (t87 * t934 - (t933 + t67 * t445));
+    const iiwa14_real_t t950 = t39 * t470;
+    const iiwa14_real_t t951 = t950 + t949 - t932;
+    const iiwa14_real_t t952 = t338 + parameters[ZZ5R] * t447 + parameters[YZ5] * t441
+        + parameters[XZ5] * t449;
+    const iiwa14_real_t t953 = t340 + t952 + (parameters[MY5R] * t469 - parameters[MX5] * t500) + (t12 * t685
+        - t14 * t701);
+    const iiwa14_real_t t954 = t343 + (t342 + parameters[XY4] * t440 - parameters[YZ4] * t430)
+        - parameters[MX4] * t467;
+    const iiwa14_real_t t955 = t954 + t953;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t956 = t32 * (t830 - t815) + t30 * (t818 + t828);
+    const iiwa14_real_t t957 = t32 * t956;
+    const iiwa14_real_t t958 = parameters[XZ4] * t208;
+    const iiwa14_real_t t959 = t958 + t945 + (t944 + (t830 - t957 - t941));
+    const iiwa14_real_t t960 = t32 * t852 + t30 * t851;
+    const iiwa14_real_t t961 = t32 * t886 + t30 * t888 + (IIWA14_C(0.4) * t960 + t46 * t940);
+    const iiwa14_real_t t962 = parameters[YZ4] * t208 - t198 * t935 + t961;
+    const iiwa14_real_t t963 = t959 * t938 + t962 * t948 + (t86 * t934 - (t63 * t445 + t67 * t438));
+    const iiwa14_real_t t964 = t955 + (t963 + t39 * t465);
+    const iiwa14_real_t t965 = t64 * t964 + t68 * t951;
+    const iiwa14_real_t t966 = t59 * t934 - (t86 * t445 + t87 * t438);
+    const iiwa14_real_t t967 = t30 * t956;
+    const iiwa14_real_t t968 = t828 - t967 - t65 * t942 - (parameters[XY4] * t197 + t208 * t936);
+    const iiwa14_real_t t969 = t32 * t851 - t30 * t852;
+    const iiwa14_real_t t970 = t32 * t888 - t30 * t886 - (IIWA14_C(-0.4) * t969 + t46 * t942);
+    const iiwa14_real_t t971 = parameters[XY4] * t208 + t197 * t935 - t970;
+    const iiwa14_real_t t972 = t99 * t470 - t98 * t465;
+    const iiwa14_real_t t973 = t968 * t938 + t971 * t948 + t966 + t972;
+    const iiwa14_real_t t974 = parameters[MX5] * t822 + parameters[MY5R] * t451 + (t12 * t719 + t14 * t716);
+    const iiwa14_real_t t975 = parameters[MX4] * t930 - t367 + t974;
+    const iiwa14_real_t t976 = parameters[MX4] * t208 - parameters[MY4R] * t197 + t969;
+    const iiwa14_real_t t977 = t975 + (t976 * t948 - (t99 * t934 - t39 * t438));
+    const iiwa14_real_t t978 = t32 * t834 - t30 * t838;
+    const iiwa14_real_t t979 = t365 + parameters[MY4R] * t430 + t978;
+    const iiwa14_real_t t980 = t979 - (t976 * t938 - (t98 * t934 + t39 * t445));
+    const iiwa14_real_t t981 = t68 * t980 - t64 * t977;
+    const iiwa14_real_t t982 = t960 - parameters[MY4R] * t198;
+    const iiwa14_real_t t983 = t835 - parameters[MX4] * t198;
+    const iiwa14_real_t t984 = t983 * t938 + t982 * t948 - (t99 * t445 + t98 * t438);
+    const iiwa14_real_t t985 = t96 * t965 - t94 * t973 + IIWA14_C(0.42) * (t96 * t984 - t94 * t981);
+    const iiwa14_real_t t986 = t68 * t964 - t64 * t951;
+    const iiwa14_real_t t987 = IIWA14_C(0.0625) * (t145 * t985 - t141 * t986);
+    const iiwa14_real_t t988 = t94 * t965 + t96 * t973 + IIWA14_C(0.42) * (t96 * t981 + t94 * t984);
     const iiwa14_real_t t989 = IIWA14_C(0.0625) * t988;
     const iiwa14_real_t t990 = IIWA14_C(0.0625) * t986;
-    const iiwa14_real_t t991 = IIWA14_C(0.0625) * (t979 + (t209 * t579 - t198 * t580 + t978));
-    const iiwa14_real_t t992 = t424 * t987 - t558 * t989 - t567 * t990 + t578 * t991;
-    const iiwa14_real_t t993 = t209 * t595 - t198 * t599 + (t42 * t969 - (t69 * t742 + t968));
-    const iiwa14_real_t t994 = IIWA14_C(0.125) * (t993 + t973);
-    const iiwa14_real_t t995 = t209 * t617 - t198 * t619 + (t50 * t969 - (t81 * t742 + t16 * t735));
-    const iiwa14_real_t t996 = IIWA14_C(0.125) * (t995 + (t49 * t769 + t39 * t764));
-    const iiwa14_real_t t997 = t209 * t641 - t198 * t643 + (t46 * t969 - (t77 * t742 + t18 * t735));
-    const iiwa14_real_t t998 = IIWA14_C(0.125) * (t997 + (t45 * t769 - t109 * t764));
-    const iiwa14_real_t t999 = t992 + t592 * t994 + t612 * t996 + t634 * t998;
-    ddq_by_q[3] = t999;
-    const iiwa14_real_t t1000 = t558 * t987 - t652 * t989 - t654 * t990 + t656 * t991;
-    const iiwa14_real_t t1001 = t1000 + t659 * t994 + t661 * t996 + t663 * t998;
-    ddq_by_q[10] = t1001;
-    const iiwa14_real_t t1002 = t567 * t987 - t654 * t989 - t665 * t990 + t667 * t991;
-    const iiwa14_real_t t1003 = t1002 + t670 * t994 + t672 * t996 + t674 * t998;
-    ddq_by_q[17] = t1003;
-    const iiwa14_real_t t1004 = t578 * t987 - t656 * t989 - t667 * t990 + t677 * t991;
-    const iiwa14_real_t t1005 = t1004 + t680 * t994 + t682 * t996 + t684 * t998;
-    ddq_by_q[24] = t1005;
-    const iiwa14_real_t t1006 = t686 * t987 - t687 * t989 - t688 * t990 + t689 * t991;
-    const iiwa14_real_t t1007 = t1006 + t692 * t994 + t695 * t996 + t698 * t998;
-    ddq_by_q[31] = t1007;
-    const iiwa14_real_t t1008 = t700 * t987 - t701 * t989 - t702 * t990 + t703 * t991;
-    const iiwa14_real_t t1009 = t1008 + t695 * t994 + t706 * t996 + t709 * t998;
-    ddq_by_q[38] = t1009;
-    const iiwa14_real_t t1010 = t711 * t987 - t712 * t989 - t713 * t990 + t714 * t991;
-    const iiwa14_real_t t1011 = t1010 + t698 * t994 + t709 * t996 + t718 * t998;
-    ddq_by_q[45] = t1011;
-    const iiwa14_real_t t1012 = IIWA14_C(2.0) * t514 + (t66 * t970 - t70 * t971);
-    const iiwa14_real_t t1013 = IIWA14_C(-2.0) * t515 + (t70 * t970 - t26 * t971);
-    const iiwa14_real_t t1014 = t67 * t1012 + t71 * t1013;
-    const iiwa14_real_t t1015 = t582 + (t90 * t971 - t89 * t970);
-    const iiwa14_real_t t1016 = t67 * (IIWA14_C(2.0) * t529 + t41 * t971) - t71 * (IIWA14_C(2.0) * t528
-        - t41 * t970);
-    const iiwa14_real_t t1017 = t103 * t970 - t102 * t971;
-    const iiwa14_real_t t1018 = t100 * t1014 + t98 * t1015 + IIWA14_C(0.42) * (t98 * t1016 + t100 * t1017);
-    const iiwa14_real_t t1019 = t67 * t1013 - t71 * t1012;
-    const iiwa14_real_t t1020 = IIWA14_C(0.0625) * (t150 * t1018 + t146 * t1019);
-    const iiwa14_real_t t1021 = t98 * t1014 - t100 * t1015 + IIWA14_C(0.42) * (t98 * t1017 - t100 * t1016);
-    const iiwa14_real_t t1022 = IIWA14_C(0.0625) * t1021;
-    const iiwa14_real_t t1023 = IIWA14_C(-0.0625) * t1019;
-    const iiwa14_real_t t1024 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t89 * t209 + t90 * t198) - t582);
-    const iiwa14_real_t t1025 = IIWA14_C(-1.6e3) * parameters[FV4] + t1024;
-    const iiwa14_real_t t1026 = t1020 * t424 - t1022 * t558 - t1023 * t567 + t1025 * t578;
-    const iiwa14_real_t t1027 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t69 * t209 + t26 * t198) - t601);
-    const iiwa14_real_t t1028 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t81 * t209 + t16 * t198) - t621);
-    const iiwa14_real_t t1029 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t77 * t209 + t18 * t198) - t645);
-    const iiwa14_real_t t1030 = t1026 + t1027 * t592 + t1028 * t612 + t1029 * t634;
-    ddq_by_dq[3] = t1030;
-    const iiwa14_real_t t1031 = t1020 * t558 - t1022 * t652 - t1023 * t654 + t1025 * t656;
-    const iiwa14_real_t t1032 = t1031 + t1027 * t659 + t1028 * t661 + t1029 * t663;
-    ddq_by_dq[10] = t1032;
-    const iiwa14_real_t t1033 = t1020 * t567 - t1022 * t654 - t1023 * t665 + t1025 * t667;
-    const iiwa14_real_t t1034 = t1033 + t1027 * t670 + t1028 * t672 + t1029 * t674;
-    ddq_by_dq[17] = t1034;
-    const iiwa14_real_t t1035 = t1020 * t578 - t1022 * t656 - t1023 * t667 + t1025 * t677;
-    const iiwa14_real_t t1036 = t1035 + t1027 * t680 + t1028 * t682 + t1029 * t684;
-    ddq_by_dq[24] = t1036;
-    const iiwa14_real_t t1037 = t1020 * t686 - t1022 * t687 - t1023 * t688 + t1025 * t689;
-    const iiwa14_real_t t1038 = t1037 + t1027 * t692 + t1028 * t695 + t1029 * t698;
-    ddq_by_dq[31] = t1038;
-    const iiwa14_real_t t1039 = t1020 * t700 - t1022 * t701 - t1023 * t702 + t1025 * t703;
-    const iiwa14_real_t t1040 = t1039 + t1027 * t695 + t1028 * t706 + t1029 * t709;
-    ddq_by_dq[38] = t1040;
-    const iiwa14_real_t t1041 = t1020 * t711 - t1022 * t712 - t1023 * t713 + t1025 * t714;
-    const iiwa14_real_t t1042 = t1041 + t1027 * t698 + t1028 * t709 + t1029 * t718;
-    ddq_by_dq[45] = t1042;
-    ddq_by_input[3] = t578;
-    ddq_by_input[10] = t656;
-    ddq_by_input[17] = t667;
-    ddq_by_input[24] = t677;
-    ddq_by_input[31] = t689;
-    ddq_by_input[38] = t703;
-    ddq_by_input[45] = t714;
-    const iiwa14_real_t t1043 = t314 + t305; /* link j6: motion */
-    const iiwa14_real_t t1044 = IIWA14_C(2.0) * t203; /* link j5: derivatives */
-    const iiwa14_real_t t1045 = IIWA14_C(-2.0) * t202;
-    const iiwa14_real_t t1046 = t455 * t1044 + t464 * t1045 + (t31 * t1043 + (t57 * t746 - t56 * t738));
-    const iiwa14_real_t t1047 = t794 + (t1046 - t48 * t768);
-    const iiwa14_real_t t1048 = t8 * t746;
-    const iiwa14_real_t t1049 = t468 * t1044 + t458 * t1045 - (t33 * t1043 - (t1048 - t57 * t738));
-    const iiwa14_real_t t1050 = t48 * t779;
-    const iiwa14_real_t t1051 = t1049 - t1050 - t790;
-    const iiwa14_real_t t1052 = t799 + (t478 * t1044 + (t40 * t1043 + t48 * t738));
-    const iiwa14_real_t t1053 = t801 + (t478 * t1045 + (t36 * t1043 - t48 * t746));
-    const iiwa14_real_t t1054 = t34 * t1052 - t32 * t1053;
-    const iiwa14_real_t t1055 = t34 * t1047 - t32 * t1051 + IIWA14_C(0.4) * t1054;
-    const iiwa14_real_t t1056 = t26 * t1043 - (t31 * t738 + t33 * t746);
-    const iiwa14_real_t t1057 = t40 * t768 + t36 * t779;
-    const iiwa14_real_t t1058 = t490 * t1044 + t491 * t1045 + t1056 + t1057;
-    const iiwa14_real_t t1059 = t67 * t1055 + t71 * t1058;
-    const iiwa14_real_t t1060 = t34 * t1053 + t32 * t1052;
-    const iiwa14_real_t t1061 = t32 * t1047 + t34 * t1051 + IIWA14_C(0.4) * t1060;
-    const iiwa14_real_t t1062 = t500 * t1044 + t498 * t1045 - (t36 * t738 + t40 * t746);
-    const iiwa14_real_t t1063 = t67 * t1060 - t71 * t1062;
-    const iiwa14_real_t t1064 = t100 * t1059 - t98 * t1061 + IIWA14_C(0.42) * (t100 * t1054 - t98 * t1063);
-    const iiwa14_real_t t1065 = t71 * t1055 - t67 * t1058;
-    const iiwa14_real_t t1066 = IIWA14_C(0.0625) * (t150 * t1064 - t146 * t1065);
-    const iiwa14_real_t t1067 = t98 * t1059 + t100 * t1061 + IIWA14_C(0.42) * (t100 * t1063 + t98 * t1054);
-    const iiwa14_real_t t1068 = IIWA14_C(0.0625) * t1067;
-    const iiwa14_real_t t1069 = IIWA14_C(0.0625) * t1065;
-    const iiwa14_real_t t1070 = IIWA14_C(0.0625) * t1061;
-    const iiwa14_real_t t1071 = t424 * t1066 - t558 * t1068 - t567 * t1069 + t578 * t1070;
-    const iiwa14_real_t t1072 = IIWA14_C(0.125) * (t1057 + (t203 * t593 - t202 * t594 + t1056));
-    const iiwa14_real_t t1073 = t203 * t615 - t202 * t616 + (t16 * t1043 + (t47 * t738 - t1048));
-    const iiwa14_real_t t1074 = IIWA14_C(0.125) * (t1073 + t1050);
-    const iiwa14_real_t t1075 = t203 * t639 - t202 * t640 + (t18 * t1043 - (t43 * t738 + t3 * t746));
-    const iiwa14_real_t t1076 = IIWA14_C(0.125) * (t1075 + (t44 * t779 + t37 * t768));
-    const iiwa14_real_t t1077 = t1071 + t592 * t1072 + t612 * t1074 + t634 * t1076;
-    ddq_by_q[4] = t1077;
-    const iiwa14_real_t t1078 = t558 * t1066 - t652 * t1068 - t654 * t1069 + t656 * t1070;
-    const iiwa14_real_t t1079 = t1078 + t659 * t1072 + t661 * t1074 + t663 * t1076;
-    ddq_by_q[11] = t1079;
-    const iiwa14_real_t t1080 = t567 * t1066 - t654 * t1068 - t665 * t1069 + t667 * t1070;
-    const iiwa14_real_t t1081 = t1080 + t670 * t1072 + t672 * t1074 + t674 * t1076;
-    ddq_by_q[18] = t1081;
-    const iiwa14_real_t t1082 = t578 * t1066 - t656 * t1068 - t667 * t1069 + t677 * t1070;
-    const iiwa14_real_t t1083 = t1082 + t680 * t1072 + t682 * t1074 + t684 * t1076;
-    ddq_by_q[25] = t1083;
-    const iiwa14_real_t t1084 = t686 * t1066 - t687 * t1068 - t688 * t1069 + t689 * t1070;
-    const iiwa14_real_t t1085 = t1084 + t692 * t1072 + t695 * t1074 + t698 * t1076;
-    ddq_by_q[32] = t1085;
-    const iiwa14_real_t t1086 = t700 * t1066 - t701 * t1068 - t702 * t1069 + t703 * t1070;
-    const iiwa14_real_t t1087 = t1086 + t695 * t1072 + t706 * t1074 + t709 * t1076;
-    ddq_by_q[39] = t1087;
-    const iiwa14_real_t t1088 = t711 * t1066 - t712 * t1068 - t713 * t1069 + t714 * t1070;
-    const iiwa14_real_t t1089 = t1088 + t698 * t1072 + t709 * t1074 + t718 * t1076;
-    ddq_by_q[46] = t1089;
-    const iiwa14_real_t t1090 = IIWA14_C(2.0) * t496 + (t56 * t1044 + t57 * t1045);
-    const iiwa14_real_t t1091 = IIWA14_C(-2.0) * t497 + (t57 * t1044 + t8 * t1045);
-    const iiwa14_real_t t1092 = IIWA14_C(2.0) * t500 + t48 * t1045;
-    const iiwa14_real_t t1093 = IIWA14_C(2.0) * t498 - t48 * t1044;
-    const iiwa14_real_t t1094 = t32 * t1092 + t34 * t1093;
-    const iiwa14_real_t t1095 = t34 * t1090 - t32 * t1091 + IIWA14_C(0.4) * t1094;
-    const iiwa14_real_t t1096 = t596 + (t31 * t1044 - t33 * t1045);
-    const iiwa14_real_t t1097 = t67 * t1095 + t71 * t1096;
-    const iiwa14_real_t t1098 = t32 * t1093 - t34 * t1092;
-    const iiwa14_real_t t1099 = t32 * t1090 + t34 * t1091 + IIWA14_C(0.4) * t1098;
-    const iiwa14_real_t t1100 = t71 * (t36 * t1044 - t40 * t1045) - t67 * t1098;
-    const iiwa14_real_t t1101 = t100 * t1097 - t98 * t1099 + IIWA14_C(0.42) * (t98 * t1100 + t100 * t1094);
-    const iiwa14_real_t t1102 = t67 * t1096 - t71 * t1095;
-    const iiwa14_real_t t1103 = IIWA14_C(0.0625) * (t150 * t1101 + t146 * t1102);
-    const iiwa14_real_t t1104 = t98 * t1097 + t100 * t1099 + IIWA14_C(0.42) * (t98 * t1094 - t100 * t1100);
-    const iiwa14_real_t t1105 = IIWA14_C(0.0625) * t1104;
-    const iiwa14_real_t t1106 = IIWA14_C(-0.0625) * t1102;
-    const iiwa14_real_t t1107 = IIWA14_C(0.0625) * t1099;
-    const iiwa14_real_t t1108 = t1103 * t424 - t1105 * t558 - t1106 * t567 + t1107 * t578;
-    const iiwa14_real_t t1109 = IIWA14_C(0.125) * (t596 + IIWA14_C(2.0) * (t31 * t203 + t33 * t202));
-    const iiwa14_real_t t1110 = IIWA14_C(-1250.0) * parameters[FV5] + t1109;
-    const iiwa14_real_t t1111 = IIWA14_C(0.125) * (t618 + IIWA14_C(2.0) * (t8 * t202 - t47 * t203));
-    const iiwa14_real_t t1112 = IIWA14_C(0.125) * (t642 + IIWA14_C(2.0) * (t43 * t203 + t3 * t202));
-    const iiwa14_real_t t1113 = t1108 + t1110 * t592 + t1111 * t612 + t1112 * t634;
-    ddq_by_dq[4] = t1113;
-    const iiwa14_real_t t1114 = t1103 * t558 - t1105 * t652 - t1106 * t654 + t1107 * t656;
-    const iiwa14_real_t t1115 = t1114 + t1110 * t659 + t1111 * t661 + t1112 * t663;
-    ddq_by_dq[11] = t1115;
-    const iiwa14_real_t t1116 = t1103 * t567 - t1105 * t654 - t1106 * t665 + t1107 * t667;
-    const iiwa14_real_t t1117 = t1116 + t1110 * t670 + t1111 * t672 + t1112 * t674;
-    ddq_by_dq[18] = t1117;
-    const iiwa14_real_t t1118 = t1103 * t578 - t1105 * t656 - t1106 * t667 + t1107 * t677;
-    const iiwa14_real_t t1119 = t1118 + t1110 * t680 + t1111 * t682 + t1112 * t684;
-    ddq_by_dq[25] = t1119;
-    const iiwa14_real_t t1120 = t1103 * t686 - t1105 * t687 - t1106 * t688 + t1107 * t689;
-    const iiwa14_real_t t1121 = t1120 + t1110 * t692 + t1111 * t695 + t1112 * t698;
-    ddq_by_dq[32] = t1121;
-    const iiwa14_real_t t1122 = t1103 * t700 - t1105 * t701 - t1106 * t702 + t1107 * t703;
-    const iiwa14_real_t t1123 = t1122 + t1110 * t695 + t1111 * t706 + t1112 * t709;
-    ddq_by_dq[39] = t1123;
-    const iiwa14_real_t t1124 = t1103 * t711 - t1105 * t712 - t1106 * t713 + t1107 * t714;
-    const iiwa14_real_t t1125 = t1124 + t1110 * t698 + t1111 * t709 + t1112 * t718;
-    ddq_by_dq[46] = t1125;
-    ddq_by_input[4] = t592;
-    ddq_by_input[11] = t659;
-    ddq_by_input[18] = t670;
-    ddq_by_input[25] = t680;
-    ddq_by_input[32] = t692;
-    ddq_by_input[39] = t695;
-    ddq_by_input[46] = t698;
-    const iiwa14_real_t t1126 = parameters[ZZ7] * t749;
-    const iiwa14_real_t t1127 = t297 + t285; /* link j7: motion */
-    const iiwa14_real_t t1128 = IIWA14_C(-2.0) * t222; /* link j6: derivatives */
-    const iiwa14_real_t t1129 = IIWA14_C(-2.0) * t230;
-    const iiwa14_real_t t1130 = t446 * t1128 + t441 * t1129 - (t1126 + t23 * t756 - t14 * t1127);
-    const iiwa14_real_t t1131 = t35 * t771;
-    const iiwa14_real_t t1132 = t780 + (t1131 + t1130);
-    const iiwa14_real_t t1133 = t438 * t1128 - t450 * t1129 + (t12 * t1127 - (t22 * t756 + t23 * t749));
-    const iiwa14_real_t t1134 = t786 + (t1133 + t35 * t782);
-    const iiwa14_real_t t1135 = t15 * t1134 - t13 * t1132;
-    const iiwa14_real_t t1136 = t8 * t1127 - (t12 * t756 + t14 * t749);
-    const iiwa14_real_t t1137 = t38 * t782 + parameters[MY6R] * t771;
-    const iiwa14_real_t t1138 = t1136 - (t465 * t1128 + t466 * t1129) + t1137;
-    const iiwa14_real_t t1139 = t798 + (t499 * t1129 + (parameters[MY6R] * t1127 - t35 * t749));
-    const iiwa14_real_t t1140 = t797 + (t499 * t1128 + (t38 * t1127 - t35 * t756));
-    const iiwa14_real_t t1141 = t15 * t1139 + t13 * t1140;
-    const iiwa14_real_t t1142 = t474 * t1128 - t477 * t1129 + (parameters[MY6R] * t756 - t38 * t749);
-    const iiwa14_real_t t1143 = t34 * t1142 - t32 * t1141;
-    const iiwa14_real_t t1144 = t34 * t1135 + t32 * t1138 + IIWA14_C(0.4) * t1143;
-    const iiwa14_real_t t1145 = t13 * t1134 + t15 * t1132;
-    const iiwa14_real_t t1146 = t67 * t1144 + t71 * t1145;
-    const iiwa14_real_t t1147 = t34 * t1141 + t32 * t1142;
-    const iiwa14_real_t t1148 = t32 * t1135 - t34 * t1138 + IIWA14_C(0.4) * t1147;
-    const iiwa14_real_t t1149 = t67 * t1147 + t71 * (t13 * t1139 - t15 * t1140);
-    const iiwa14_real_t t1150 = t100 * t1146 - t98 * t1148 + IIWA14_C(0.42) * (t100 * t1143 - t98 * t1149);
-    const iiwa14_real_t t1151 = t71 * t1144 - t67 * t1145;
-    const iiwa14_real_t t1152 = IIWA14_C(0.0625) * (t150 * t1150 - t146 * t1151);
-    const iiwa14_real_t t1153 = t98 * t1146 + t100 * t1148 + IIWA14_C(0.42) * (t100 * t1149 + t98 * t1143);
-    const iiwa14_real_t t1154 = IIWA14_C(0.0625) * t1153;
-    const iiwa14_real_t t1155 = IIWA14_C(0.0625) * t1151;
-    const iiwa14_real_t t1156 = IIWA14_C(0.0625) * t1148;
-    const iiwa14_real_t t1157 = t424 * t1152 - t558 * t1154 - t567 * t1155 + t578 * t1156;
-    const iiwa14_real_t t1158 = IIWA14_C(0.125) * t1145;
-    const iiwa14_real_t t1159 = IIWA14_C(0.125) * (t1137 + (t230 * t614 - t222 * t613 + t1136));
-    const iiwa14_real_t t1160 = t230 * t638 - t222 * t637 + (t3 * t1127 - (t17 * t756 + t1126));
-    const iiwa14_real_t t1161 = IIWA14_C(0.125) * (t1160 + t1131);
-    const iiwa14_real_t t1162 = t1157 + t592 * t1158 + t612 * t1159 + t634 * t1161;
-    ddq_by_q[5] = t1162;
-    const iiwa14_real_t t1163 = t558 * t1152 - t652 * t1154 - t654 * t1155 + t656 * t1156;
-    const iiwa14_real_t t1164 = t1163 + t659 * t1158 + t661 * t1159 + t663 * t1161;
-    ddq_by_q[12] = t1164;
-    const iiwa14_real_t t1165 = t567 * t1152 - t654 * t1154 - t665 * t1155 + t667 * t1156;
-    const iiwa14_real_t t1166 = t1165 + t670 * t1158 + t672 * t1159 + t674 * t1161;
-    ddq_by_q[19] = t1166;
-    const iiwa14_real_t t1167 = t578 * t1152 - t656 * t1154 - t667 * t1155 + t677 * t1156;
-    const iiwa14_real_t t1168 = t1167 + t680 * t1158 + t682 * t1159 + t684 * t1161;
-    ddq_by_q[26] = t1168;
-    const iiwa14_real_t t1169 = t686 * t1152 - t687 * t1154 - t688 * t1155 + t689 * t1156;
-    const iiwa14_real_t t1170 = t1169 + t692 * t1158 + t695 * t1159 + t698 * t1161;
-    ddq_by_q[33] = t1170;
-    const iiwa14_real_t t1171 = t700 * t1152 - t701 * t1154 - t702 * t1155 + t703 * t1156;
-    const iiwa14_real_t t1172 = t1171 + t695 * t1158 + t706 * t1159 + t709 * t1161;
-    ddq_by_q[40] = t1172;
-    const iiwa14_real_t t1173 = t711 * t1152 - t712 * t1154 - t713 * t1155 + t714 * t1156;
-    const iiwa14_real_t t1174 = t1173 + t698 * t1158 + t709 * t1159 + t718 * t1161;
-    ddq_by_q[47] = t1174;
-    const iiwa14_real_t t1175 = IIWA14_C(2.0) * t461 + (t22 * t1128 + t23 * t1129);
-    const iiwa14_real_t t1176 = IIWA14_C(2.0) * t462 + (t23 * t1128 + parameters[ZZ7] * t1129);
-    const iiwa14_real_t t1177 = t15 * t1175 - t13 * t1176;
-    const iiwa14_real_t t1178 = t616 + (t12 * t1128 + t14 * t1129);
-    const iiwa14_real_t t1179 = IIWA14_C(-2.0) * t474 - t35 * t1129;
-    const iiwa14_real_t t1180 = IIWA14_C(2.0) * t477 + t35 * t1128;
-    const iiwa14_real_t t1181 = t15 * t1179 - t13 * t1180;
-    const iiwa14_real_t t1182 = t38 * t1129 - parameters[MY6R] * t1128;
-    const iiwa14_real_t t1183 = t32 * t1181 + t34 * t1182;
-    const iiwa14_real_t t1184 = t34 * t1177 + t32 * t1178 + IIWA14_C(0.4) * t1183;
-    const iiwa14_real_t t1185 = t13 * t1175 + t15 * t1176;
-    const iiwa14_real_t t1186 = t67 * t1184 + t71 * t1185;
-    const iiwa14_real_t t1187 = t32 * t1182 - t34 * t1181;
-    const iiwa14_real_t t1188 = t32 * t1177 - t34 * t1178 + IIWA14_C(0.4) * t1187;
-    const iiwa14_real_t t1189 = t71 * (t13 * t1179 + t15 * t1180) - t67 * t1187;
-    const iiwa14_real_t t1190 = t100 * t1186 - t98 * t1188 + IIWA14_C(0.42) * (t98 * t1189 + t100 * t1183);
-    const iiwa14_real_t t1191 = t67 * t1185 - t71 * t1184;
-    const iiwa14_real_t t1192 = IIWA14_C(0.0625) * (t150 * t1190 + t146 * t1191);
-    const iiwa14_real_t t1193 = t98 * t1186 + t100 * t1188 + IIWA14_C(0.42) * (t98 * t1183 - t100 * t1189);
-    const iiwa14_real_t t1194 = IIWA14_C(0.0625) * t1193;
-    const iiwa14_real_t t1195 = IIWA14_C(-0.0625) * t1191;
-    const iiwa14_real_t t1196 = IIWA14_C(0.0625) * t1188;
-    const iiwa14_real_t t1197 = t1192 * t424 - t1194 * t558 - t1195 * t567 + t1196 * t578;
-    const iiwa14_real_t t1198 = IIWA14_C(0.125) * t1185;
-    const iiwa14_real_t t1199 = IIWA14_C(0.125) * (t616 + IIWA14_C(-2.0) * (t12 * t222 + t14 * t230));
-    const iiwa14_real_t t1200 = IIWA14_C(-3.2e3) * parameters[FV6] + t1199;
-    const iiwa14_real_t t1201 = IIWA14_C(0.125) * (t640 + IIWA14_C(-2.0) * (t17 * t222
-        + parameters[ZZ7] * t230));
-    const iiwa14_real_t t1202 = t1197 + t1198 * t592 + t1200 * t612 + t1201 * t634;
-    ddq_by_dq[5] = t1202;
-    const iiwa14_real_t t1203 = t1192 * t558 - t1194 * t652 - t1195 * t654 + t1196 * t656;
-    const iiwa14_real_t t1204 = t1203 + t1198 * t659 + t1200 * t661 + t1201 * t663;
-    ddq_by_dq[12] = t1204;
-    const iiwa14_real_t t1205 = t1192 * t567 - t1194 * t654 - t1195 * t665 + t1196 * t667;
-    const iiwa14_real_t t1206 = t1205 + t1198 * t670 + t1200 * t672 + t1201 * t674;
-    ddq_by_dq[19] = t1206;
-    const iiwa14_real_t t1207 = t1192 * t578 - t1194 * t656 - t1195 * t667 + t1196 * t677;
-    const iiwa14_real_t t1208 = t1207 + t1198 * t680 + t1200 * t682 + t1201 * t684;
-    ddq_by_dq[26] = t1208;
-    const iiwa14_real_t t1209 = t1192 * t686 - t1194 * t687 - t1195 * t688 + t1196 * t689;
-    const iiwa14_real_t t1210 = t1209 + t1198 * t692 + t1200 * t695 + t1201 * t698;
-    ddq_by_dq[33] = t1210;
-    const iiwa14_real_t t1211 = t1192 * t700 - t1194 * t701 - t1195 * t702 + t1196 * t703;
-    const iiwa14_real_t t1212 = t1211 + t1198 * t695 + t1200 * t706 + t1201 * t709;
-    ddq_by_dq[40] = t1212;
-    const iiwa14_real_t t1213 = t1192 * t711 - t1194 * t712 - t1195 * t713 + t1196 * t714;
-    const iiwa14_real_t t1214 = t1213 + t1198 * t698 + t1200 * t709 + t1201 * t718;
-    ddq_by_dq[47] = t1214;
-    ddq_by_input[5] = t612;
-    ddq_by_input[12] = t661;
-    ddq_by_input[19] = t672;
-    ddq_by_input[26] = t682;
-    ddq_by_input[33] = t695;
-    ddq_by_input[40] = t706;
-    ddq_by_input[47] = t709;
-    const iiwa14_real_t t1215 = t278 + t249; /* link j7: force and moment */
-    const iiwa14_real_t t1216 = IIWA14_C(-2.0) * t234; /* link j7: derivatives */
-    const iiwa14_real_t t1217 = IIWA14_C(-2.0) * t240;
-    const iiwa14_real_t t1218 = t433 * t1217 - t427 * t1216 - (parameters[XZ7R] * t1215
-        - (parameters[XY7] * t752 - parameters[XX7R] * t754));
-    const iiwa14_real_t t1219 = t775 + t1218;
-    const iiwa14_real_t t1220 = t429 * t1217 - t432 * t1216 + (parameters[YZ7R] * t1215
-        + parameters[XY7] * t754);
-    const iiwa14_real_t t1221 = t772 + t1220;
-    const iiwa14_real_t t1222 = t2 * t1219 + t1 * t1221;
-    const iiwa14_real_t t1223 = parameters[ZZ7] * t1215 + (parameters[XZ7R] * t754 - parameters[YZ7R] * t752);
-    const iiwa14_real_t t1224 = parameters[MX7] * t784 + parameters[MY7] * t783;
-    const iiwa14_real_t t1225 = t443 * t1217 - t442 * t1216 + t1223 + t1224;
-    const iiwa14_real_t t1226 = t15 * t1222 - t13 * t1225;
-    const iiwa14_real_t t1227 = t2 * t1221 - t1 * t1219;
-    const iiwa14_real_t t1228 = t796 - (t473 * t1217 + parameters[MY7] * t1215);
-    const iiwa14_real_t t1229 = parameters[MX7] * t1215 - t473 * t1216 + t795;
-    const iiwa14_real_t t1230 = t2 * t1228 - t1 * t1229;
-    const iiwa14_real_t t1231 = t475 * t1217 - t476 * t1216 - (parameters[MY7] * t754
-        + parameters[MX7] * t752);
-    const iiwa14_real_t t1232 = t15 * t1230 - t13 * t1231;
-    const iiwa14_real_t t1233 = t1 * t1228 + t2 * t1229;
-    const iiwa14_real_t t1234 = t32 * t1232 + t34 * t1233;
-    const iiwa14_real_t t1235 = t34 * t1226 + t32 * t1227 + IIWA14_C(0.4) * t1234;
-    const iiwa14_real_t t1236 = t13 * t1222 + t15 * t1225;
-    const iiwa14_real_t t1237 = t67 * t1235 + t71 * t1236;
-    const iiwa14_real_t t1238 = t32 * t1233 - t34 * t1232;
-    const iiwa14_real_t t1239 = t32 * t1226 - t34 * t1227 + IIWA14_C(0.4) * t1238;
-    const iiwa14_real_t t1240 = t71 * (t13 * t1230 + t15 * t1231) - t67 * t1238;
-    const iiwa14_real_t t1241 = t100 * t1237 - t98 * t1239 + IIWA14_C(0.42) * (t98 * t1240 + t100 * t1234);
-    const iiwa14_real_t t1242 = t71 * t1235 - t67 * t1236;
-    const iiwa14_real_t t1243 = IIWA14_C(0.0625) * (t150 * t1241 - t146 * t1242);
-    const iiwa14_real_t t1244 = t98 * t1237 + t100 * t1239 + IIWA14_C(0.42) * (t98 * t1234 - t100 * t1240);
-    const iiwa14_real_t t1245 = IIWA14_C(0.0625) * t1244;
-    const iiwa14_real_t t1246 = IIWA14_C(0.0625) * t1242;
-    const iiwa14_real_t t1247 = IIWA14_C(0.0625) * t1239;
-    const iiwa14_real_t t1248 = t424 * t1243 - t558 * t1245 - t567 * t1246 + t578 * t1247;
-    const iiwa14_real_t t1249 = IIWA14_C(0.125) * t1236;
-    const iiwa14_real_t t1250 = IIWA14_C(0.125) * t1227;
-    const iiwa14_real_t t1251 = IIWA14_C(0.125) * (t1224 + (t234 * t635 - t240 * t636 + t1223));
-    const iiwa14_real_t t1252 = t1248 + t592 * t1249 + t612 * t1250 + t634 * t1251;
-    ddq_by_q[6] = t1252;
-    const iiwa14_real_t t1253 = t558 * t1243 - t652 * t1245 - t654 * t1246 + t656 * t1247;
-    const iiwa14_real_t t1254 = t1253 + t659 * t1249 + t661 * t1250 + t663 * t1251;
-    ddq_by_q[13] = t1254;
-    const iiwa14_real_t t1255 = t567 * t1243 - t654 * t1245 - t665 * t1246 + t667 * t1247;
-    const iiwa14_real_t t1256 = t1255 + t670 * t1249 + t672 * t1250 + t674 * t1251;
-    ddq_by_q[20] = t1256;
-    const iiwa14_real_t t1257 = t578 * t1243 - t656 * t1245 - t667 * t1246 + t677 * t1247;
-    const iiwa14_real_t t1258 = t1257 + t680 * t1249 + t682 * t1250 + t684 * t1251;
-    ddq_by_q[27] = t1258;
-    const iiwa14_real_t t1259 = t686 * t1243 - t687 * t1245 - t688 * t1246 + t689 * t1247;
-    const iiwa14_real_t t1260 = t1259 + t692 * t1249 + t695 * t1250 + t698 * t1251;
-    ddq_by_q[34] = t1260;
-    const iiwa14_real_t t1261 = t700 * t1243 - t701 * t1245 - t702 * t1246 + t703 * t1247;
-    const iiwa14_real_t t1262 = t1261 + t695 * t1249 + t706 * t1250 + t709 * t1251;
-    ddq_by_q[41] = t1262;
-    const iiwa14_real_t t1263 = t711 * t1243 - t712 * t1245 - t713 * t1246 + t714 * t1247;
-    const iiwa14_real_t t1264 = t1263 + t698 * t1249 + t709 * t1250 + t718 * t1251;
-    ddq_by_q[48] = t1264;
-    const iiwa14_real_t t1265 = IIWA14_C(2.0) * t448 - (parameters[XY7] * t1217 - parameters[XX7R] * t1216);
-    const iiwa14_real_t t1266 = IIWA14_C(-2.0) * t449 + parameters[XY7] * t1216;
-    const iiwa14_real_t t1267 = t1 * t1266 - t2 * t1265;
-    const iiwa14_real_t t1268 = t638 - (parameters[YZ7R] * t1217 - parameters[XZ7R] * t1216);
-    const iiwa14_real_t t1269 = t15 * t1267 - t13 * t1268;
-    const iiwa14_real_t t1270 = t1 * t1265 + t2 * t1266;
-    const iiwa14_real_t t1271 = parameters[MY7] * t1216 + parameters[MX7] * t1217;
-    const iiwa14_real_t t1272 = IIWA14_C(2.0) * t476;
-    const iiwa14_real_t t1273 = IIWA14_C(2.0) * t475;
-    const iiwa14_real_t t1274 = t2 * t1272 - t1 * t1273;
-    const iiwa14_real_t t1275 = t15 * t1274 + t13 * t1271;
-    const iiwa14_real_t t1276 = t1 * t1272 + t2 * t1273;
-    const iiwa14_real_t t1277 = t32 * t1275 + t34 * t1276;
-    const iiwa14_real_t t1278 = t34 * t1269 + t32 * t1270 + IIWA14_C(0.4) * t1277;
-    const iiwa14_real_t t1279 = t13 * t1267 + t15 * t1268;
-    const iiwa14_real_t t1280 = t67 * t1278 + t71 * t1279;
-    const iiwa14_real_t t1281 = t32 * t1276 - t34 * t1275;
-    const iiwa14_real_t t1282 = t32 * t1269 - t34 * t1270 + IIWA14_C(0.4) * t1281;
-    const iiwa14_real_t t1283 = t71 * (t13 * t1274 - t15 * t1271) - t67 * t1281;
-    const iiwa14_real_t t1284 = t100 * t1280 - t98 * t1282 + IIWA14_C(0.42) * (t98 * t1283 + t100 * t1277);
-    const iiwa14_real_t t1285 = t67 * t1279 - t71 * t1278;
-    const iiwa14_real_t t1286 = IIWA14_C(0.0625) * (t150 * t1284 + t146 * t1285);
-    const iiwa14_real_t t1287 = t98 * t1280 + t100 * t1282 + IIWA14_C(0.42) * (t98 * t1277 - t100 * t1283);
-    const iiwa14_real_t t1288 = IIWA14_C(0.0625) * t1287;
-    const iiwa14_real_t t1289 = IIWA14_C(-0.0625) * t1285;
-    const iiwa14_real_t t1290 = IIWA14_C(0.0625) * t1282;
-    const iiwa14_real_t t1291 = t1286 * t424 - t1288 * t558 - t1289 * t567 + t1290 * t578;
-    const iiwa14_real_t t1292 = IIWA14_C(0.125) * t1279;
-    const iiwa14_real_t t1293 = IIWA14_C(0.125) * t1270;
-    const iiwa14_real_t t1294 = IIWA14_C(-3.2e3) * parameters[FV7];
-    const iiwa14_real_t t1295 = t1291 + t1292 * t592 + t1293 * t612 + t1294 * t634;
-    ddq_by_dq[6] = t1295;
-    const iiwa14_real_t t1296 = t1286 * t558 - t1288 * t652 - t1289 * t654 + t1290 * t656;
-    const iiwa14_real_t t1297 = t1296 + t1292 * t659 + t1293 * t661 + t1294 * t663;
-    ddq_by_dq[13] = t1297;
-    const iiwa14_real_t t1298 = t1286 * t567 - t1288 * t654 - t1289 * t665 + t1290 * t667;
-    const iiwa14_real_t t1299 = t1298 + t1292 * t670 + t1293 * t672 + t1294 * t674;
-    ddq_by_dq[20] = t1299;
-    const iiwa14_real_t t1300 = t1286 * t578 - t1288 * t656 - t1289 * t667 + t1290 * t677;
-    const iiwa14_real_t t1301 = t1300 + t1292 * t680 + t1293 * t682 + t1294 * t684;
-    ddq_by_dq[27] = t1301;
-    const iiwa14_real_t t1302 = t1286 * t686 - t1288 * t687 - t1289 * t688 + t1290 * t689;
-    const iiwa14_real_t t1303 = t1302 + t1292 * t692 + t1293 * t695 + t1294 * t698;
-    ddq_by_dq[34] = t1303;
-    const iiwa14_real_t t1304 = t1286 * t700 - t1288 * t701 - t1289 * t702 + t1290 * t703;
-    const iiwa14_real_t t1305 = t1304 + t1292 * t695 + t1293 * t706 + t1294 * t709;
-    ddq_by_dq[41] = t1305;
-    const iiwa14_real_t t1306 = t1286 * t711 - t1288 * t712 - t1289 * t713 + t1290 * t714;
-    const iiwa14_real_t t1307 = t1306 + t1292 * t698 + t1293 * t709 + t1294 * t718;
-    ddq_by_dq[48] = t1307;
-    ddq_by_input[6] = t634;
-    ddq_by_input[13] = t663;
-    ddq_by_input[20] = t674;
-    ddq_by_input[27] = t684;
-    ddq_by_input[34] = t698;
-    ddq_by_input[41] = t709;
-    ddq_by_input[48] = t718;
+    const iiwa14_real_t t991 = IIWA14_C(2.0) * t968; /* link j4: derivatives */
+    const iiwa14_real_t t992 = IIWA14_C(2.0) * t971;
+    const iiwa14_real_t t993 = IIWA14_C(0.0625) * (t972 + (t208 * t991 - t197 * t992 + t966));
+    const iiwa14_real_t t994 = t528 * t987 - t532 * t989 - t535 * t990 + t539 * t993;
+    const iiwa14_real_t t995 = t32 * t863 - t30 * t864; /* link j5: derivatives */
+    const iiwa14_real_t t996 = IIWA14_C(0.8) * t197; /* link j7: derivatives */
+    const iiwa14_real_t t997 = IIWA14_C(0.8) * t198;
+    const iiwa14_real_t t998 = t895 + (t39 * t996 - t65 * t997); /* link j5: derivatives */
+    const iiwa14_real_t t999 = t208 * t995 - t197 * t998 + (t40 * t934 - (t66 * t445 + t933));
+    const iiwa14_real_t t1000 = IIWA14_C(0.125) * (t999 + t950);
+    const iiwa14_real_t t1001 = t32 * t866 - t30 * t767 - t37 * t996; /* link j6: derivatives */
+    const iiwa14_real_t t1002 = t911 + (t47 * t996 + t77 * t997);
+    const iiwa14_real_t t1003 = t208 * t1001 - t197 * t1002 + (t48 * t934 - (t78 * t445 + t15 * t438));
+    const iiwa14_real_t t1004 = IIWA14_C(0.125) * (t1003 + (t47 * t470 + t37 * t465));
+    const iiwa14_real_t t1005 = t32 * t869 - t30 * t791 + t105 * t996; /* link j7: derivatives */
+    const iiwa14_real_t t1006 = t913 + (t43 * t996 + t73 * t997);
+    const iiwa14_real_t t1007 = t208 * t1005 - t197 * t1006 + (t44 * t934 - (t74 * t445 + t17 * t438));
+    const iiwa14_real_t t1008 = IIWA14_C(0.125) * (t1007 + (t43 * t470 - t105 * t465));
+    const iiwa14_real_t t1009 = t994 + t546 * t1000 + t553 * t1004 + t564 * t1008;
+    ddq_by_q[3] = t1009;
+    const iiwa14_real_t t1010 = t532 * t987 - t566 * t989 - t568 * t990 + t570 * t993;
+    const iiwa14_real_t t1011 = t1010 + t573 * t1000 + t575 * t1004 + t577 * t1008;
+    ddq_by_q[10] = t1011;
+    const iiwa14_real_t t1012 = t535 * t987 - t568 * t989 - t579 * t990 + t581 * t993;
+    const iiwa14_real_t t1013 = t1012 + t584 * t1000 + t586 * t1004 + t588 * t1008;
+    ddq_by_q[17] = t1013;
+    const iiwa14_real_t t1014 = t539 * t987 - t570 * t989 - t581 * t990 + t591 * t993;
+    const iiwa14_real_t t1015 = t1014 + t594 * t1000 + t596 * t1004 + t598 * t1008;
+    ddq_by_q[24] = t1015;
+    const iiwa14_real_t t1016 = t600 * t987 - t601 * t989 - t602 * t990 + t603 * t993;
+    const iiwa14_real_t t1017 = t1016 + t606 * t1000 + t609 * t1004 + t612 * t1008;
+    ddq_by_q[31] = t1017;
+    const iiwa14_real_t t1018 = t614 * t987 - t615 * t989 - t616 * t990 + t617 * t993;
+    const iiwa14_real_t t1019 = t1018 + t609 * t1000 + t620 * t1004 + t623 * t1008;
+    ddq_by_q[38] = t1019;
+    const iiwa14_real_t t1020 = t625 * t987 - t626 * t989 - t627 * t990 + t628 * t993;
+    const iiwa14_real_t t1021 = t1020 + t612 * t1000 + t623 * t1004 + t632 * t1008;
+    ddq_by_q[45] = t1021;
+    const iiwa14_real_t t1022 = parameters[ZZ4R] - t935;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t1023 = parameters[YZ4] * t198 + t208 * t1022 + (t967 - t818 + t39 * t940);
+    const iiwa14_real_t t1024 = IIWA14_C(2.0) * t1023 + (t63 * t938 - t67 * t948); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t1025 = t30 * t844 + t32 * t845 - (parameters[XZ4] * t198 + t197 * t1022);
+    const iiwa14_real_t t1026 = IIWA14_C(-2.0) * t1025 + (t67 * t938 - t25 * t948); /* link j4: derivatives */
+    const iiwa14_real_t t1027 = t64 * t1024 + t68 * t1026;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t1028 = t946 - t958 + (t944 + (t815 + t957 - t943));
+    const iiwa14_real_t t1029 = IIWA14_C(2.0) * t1028; /* link j4: derivatives */
+    const iiwa14_real_t t1030 = t1029 + (t87 * t948 - t86 * t938);
+    const iiwa14_real_t t1031 = t64 * (IIWA14_C(2.0) * t983 + t39 * t948) - t68 * (IIWA14_C(2.0) * t982
+        - t39 * t938);
+    const iiwa14_real_t t1032 = t99 * t938 - t98 * t948;
+    const iiwa14_real_t t1033 = t96 * t1027 + t94 * t1030 + IIWA14_C(0.42) * (t94 * t1031 + t96 * t1032);
+    const iiwa14_real_t t1034 = t64 * t1026 - t68 * t1024;
+    const iiwa14_real_t t1035 = IIWA14_C(0.0625) * (t145 * t1033 + t141 * t1034);
+    const iiwa14_real_t t1036 = t94 * t1027 - t96 * t1030 + IIWA14_C(0.42) * (t94 * t1032 - t96 * t1031);
+    const iiwa14_real_t t1037 = IIWA14_C(0.0625) * t1036;
+    const iiwa14_real_t t1038 = IIWA14_C(-0.0625) * t1034;
+    const iiwa14_real_t t1039 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t86 * t208 + t87 * t197) - t1029);
+    const iiwa14_real_t t1040 = IIWA14_C(-1.6e3) * parameters[FV4] + t1039;
+    const iiwa14_real_t t1041 = t1035 * t528 - t1037 * t532 - t1038 * t535 + t1040 * t539;
+    const iiwa14_real_t t1042 = t30 * t863 + t32 * t864; /* link j5: derivatives */
+    const iiwa14_real_t t1043 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t66 * t208 + t25 * t197) - t1042);
+    const iiwa14_real_t t1044 = t30 * t866 + t32 * t767 - t37 * t997; /* link j6: derivatives */
+    const iiwa14_real_t t1045 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t78 * t208 + t15 * t197) - t1044);
+    const iiwa14_real_t t1046 = t30 * t869 + t32 * t791 + t105 * t997; /* link j7: derivatives */
+    const iiwa14_real_t t1047 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t74 * t208 + t17 * t197) - t1046);
+    const iiwa14_real_t t1048 = t1041 + t1043 * t546 + t1045 * t553 + t1047 * t564;
+    ddq_by_dq[3] = t1048;
+    const iiwa14_real_t t1049 = t1035 * t532 - t1037 * t566 - t1038 * t568 + t1040 * t570;
+    const iiwa14_real_t t1050 = t1049 + t1043 * t573 + t1045 * t575 + t1047 * t577;
+    ddq_by_dq[10] = t1050;
+    const iiwa14_real_t t1051 = t1035 * t535 - t1037 * t568 - t1038 * t579 + t1040 * t581;
+    const iiwa14_real_t t1052 = t1051 + t1043 * t584 + t1045 * t586 + t1047 * t588;
+    ddq_by_dq[17] = t1052;
+    const iiwa14_real_t t1053 = t1035 * t539 - t1037 * t570 - t1038 * t581 + t1040 * t591;
+    const iiwa14_real_t t1054 = t1053 + t1043 * t594 + t1045 * t596 + t1047 * t598;
+    ddq_by_dq[24] = t1054;
+    const iiwa14_real_t t1055 = t1035 * t600 - t1037 * t601 - t1038 * t602 + t1040 * t603;
+    const iiwa14_real_t t1056 = t1055 + t1043 * t606 + t1045 * t609 + t1047 * t612;
+    ddq_by_dq[31] = t1056;
+    const iiwa14_real_t t1057 = t1035 * t614 - t1037 * t615 - t1038 * t616 + t1040 * t617;
+    const iiwa14_real_t t1058 = t1057 + t1043 * t609 + t1045 * t620 + t1047 * t623;
+    ddq_by_dq[38] = t1058;
+    const iiwa14_real_t t1059 = t1035 * t625 - t1037 * t626 - t1038 * t627 + t1040 * t628;
+    const iiwa14_real_t t1060 = t1059 + t1043 * t612 + t1045 * t623 + t1047 * t632;
+    ddq_by_dq[45] = t1060;
+    ddq_by_input[3] = t539;
+    ddq_by_input[10] = t570;
+    ddq_by_input[17] = t581;
+    ddq_by_input[24] = t591;
+    ddq_by_input[31] = t603;
+    ddq_by_input[38] = t617;
+    ddq_by_input[45] = t628;
+    const iiwa14_real_t t1061 = parameters[ZZ4R] * t429 - t355 - parameters[YZ4] * t445
+        - parameters[XZ4] * t438;
+    const iiwa14_real_t t1062 = t357 + t1061 + (parameters[MX4] * t470 + parameters[MY4R] * t465)
+        + (t30 * t825 + t32 * t809 + IIWA14_C(0.4) * t978);
+    const iiwa14_real_t t1063 = t362 + (t361 + (t359 + parameters[XY3] * t437 + parameters[YZ3] * t434));
+    const iiwa14_real_t t1064 = t1063 + t1062;
+    const iiwa14_real_t t1065 = t360 + t349; /* link j4: motion */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1066 = t64 * (t959 + t947) + t68 * (t937 - t962);
+    const iiwa14_real_t t1067 = t64 * t1066;
+    const iiwa14_real_t t1068 = parameters[XZ3] * t183;
+    const iiwa14_real_t t1069 = parameters[XY3] * t192;
+    const iiwa14_real_t t1070 = t1068 - t1069 + (t1067 - t947);
+    const iiwa14_real_t t1071 = IIWA14_C(2.0) * t183; /* link j3: derivatives */
+    const iiwa14_real_t t1072 = IIWA14_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1073 = parameters[YZ3] * t183 + t192 * t1072 + (t68 * t1025 - t64 * t1023);
+    const iiwa14_real_t t1074 = IIWA14_C(2.0) * t182; /* link j3: derivatives */
+    const iiwa14_real_t t1075 = t1070 * t1071 + t1073 * t1074 + (t93 * t1065 + (t128 * t427 + t129 * t435));
+    const iiwa14_real_t t1076 = t1064 + (t1075 - t121 * t464);
+    const iiwa14_real_t t1077 = t184 + t433;
+    const iiwa14_real_t t1078 = t346 - parameters[XX3R] * t436 + parameters[XY3] * (t206 + t428)
+        - parameters[XZ3] * t1077;
+    const iiwa14_real_t t1079 = t352 + (t351 + t1078) + (t64 * t932 + t68 * t955);
+    const iiwa14_real_t t1080 = t59 * t435;
+    const iiwa14_real_t t1081 = parameters[XX3R] - t1072;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1082 = parameters[XZ3] * t182 + t192 * t1081 + (t64 * t968 - t68 * t971);
+    const iiwa14_real_t t1083 = parameters[YZ3] * t182;
+    const iiwa14_real_t t1084 = t1069 + t1083 + t1028;
+    const iiwa14_real_t t1085 = t1082 * t1071 + t1084 * t1074 - (t95 * t1065 - (t1080 - t129 * t427));
+    const iiwa14_real_t t1086 = t121 * t467;
+    const iiwa14_real_t t1087 = t1079 + (t1086 + t1085);
+    const iiwa14_real_t t1088 = t369 - parameters[MY3R] * t434 + (t64 * t979 + t68 * t975);
+    const iiwa14_real_t t1089 = t64 * t983 - t68 * t982 - (parameters[MY3R] * t182 + parameters[MX3] * t183);
+    const iiwa14_real_t t1090 = t1088 + (t1089 * t1071 + (t101 * t1065 - t121 * t427));
+    const iiwa14_real_t t1091 = t371 + parameters[MX3] * t1077 + (parameters[MX4] * t929
+        - parameters[MY4R] * t440 + t928);
+    const iiwa14_real_t t1092 = t1091 + (t1089 * t1074 + (t97 * t1065 + t121 * t435));
+    const iiwa14_real_t t1093 = t96 * t1076 - t94 * t1087 + IIWA14_C(0.42) * (t96 * t1090 - t94 * t1092);
+    const iiwa14_real_t t1094 = t71 * t1065 - (t93 * t427 + t95 * t435);
+    const iiwa14_real_t t1095 = t68 * t1066;
+    const iiwa14_real_t t1096 = parameters[XY3] * t182 + t183 * t1081 - (t1095 - t937);
+    const iiwa14_real_t t1097 = parameters[XY3] * t183 - t182 * t1072 + (t68 * t1023 + t64 * t1025);
+    const iiwa14_real_t t1098 = t101 * t464 - t97 * t467;
+    const iiwa14_real_t t1099 = t141 * (t1096 * t1071 + t1097 * t1074 + t1094 - t1098);
+    const iiwa14_real_t t1100 = IIWA14_C(0.0625) * (t145 * t1093 + t1099);
+    const iiwa14_real_t t1101 = t94 * t1076 + t96 * t1087 + IIWA14_C(0.42) * (t96 * t1092 + t94 * t1090);
+    const iiwa14_real_t t1102 = IIWA14_C(0.0625) * t1101;
+    const iiwa14_real_t t1103 = IIWA14_C(-2.0) * t1096; /* link j3: derivatives */
+    const iiwa14_real_t t1104 = IIWA14_C(-2.0) * t1097;
+    const iiwa14_real_t t1105 = IIWA14_C(0.0625) * (t1098 + (t183 * t1103 + t182 * t1104 - t1094));
+    const iiwa14_real_t t1106 = t64 * t991 - t68 * t992; /* link j4: derivatives */
+    const iiwa14_real_t t1107 = t183 * t1106 + t182 * t1029 + (t88 * t1065 + (t1080 - t120 * t427));
+    const iiwa14_real_t t1108 = IIWA14_C(0.0625) * (t1107 + t1086);
+    const iiwa14_real_t t1109 = t528 * t1100 - t532 * t1102 - t535 * t1105 + t539 * t1108;
+    const iiwa14_real_t t1110 = t64 * t995 - t68 * t998; /* link j5: derivatives */
+    const iiwa14_real_t t1111 = t183 * t1110 + t182 * t1042 + (t82 * t1065 + (t40 * t435 - t114 * t427));
+    const iiwa14_real_t t1112 = IIWA14_C(0.125) * (t1111 + (t115 * t467 - t65 * t464));
+    const iiwa14_real_t t1113 = t64 * t1001 - t68 * t1002; /* link j6: derivatives */
+    const iiwa14_real_t t1114 = t183 * t1113 + t182 * t1044 + (t79 * t1065 + (t48 * t435 - t109 * t427));
+    const iiwa14_real_t t1115 = IIWA14_C(0.125) * (t1114 + (t110 * t467 + t77 * t464));
+    const iiwa14_real_t t1116 = t64 * t1005 - t68 * t1006; /* link j7: derivatives */
+    const iiwa14_real_t t1117 = t183 * t1116 + t182 * t1046 + (t75 * t1065 + (t44 * t435 - t104 * t427));
+    const iiwa14_real_t t1118 = IIWA14_C(0.125) * (t1117 + (t106 * t467 + t73 * t464));
+    const iiwa14_real_t t1119 = t1109 + t546 * t1112 + t553 * t1115 + t564 * t1118;
+    ddq_by_q[2] = t1119;
+    const iiwa14_real_t t1120 = t532 * t1100 - t566 * t1102 - t568 * t1105 + t570 * t1108;
+    const iiwa14_real_t t1121 = t1120 + t573 * t1112 + t575 * t1115 + t577 * t1118;
+    ddq_by_q[9] = t1121;
+    const iiwa14_real_t t1122 = t535 * t1100 - t568 * t1102 - t579 * t1105 + t581 * t1108;
+    const iiwa14_real_t t1123 = t1122 + t584 * t1112 + t586 * t1115 + t588 * t1118;
+    ddq_by_q[16] = t1123;
+    const iiwa14_real_t t1124 = t539 * t1100 - t570 * t1102 - t581 * t1105 + t591 * t1108;
+    const iiwa14_real_t t1125 = t1124 + t594 * t1112 + t596 * t1115 + t598 * t1118;
+    ddq_by_q[23] = t1125;
+    const iiwa14_real_t t1126 = t600 * t1100 - t601 * t1102 - t602 * t1105 + t603 * t1108;
+    const iiwa14_real_t t1127 = t1126 + t606 * t1112 + t609 * t1115 + t612 * t1118;
+    ddq_by_q[30] = t1127;
+    const iiwa14_real_t t1128 = t614 * t1100 - t615 * t1102 - t616 * t1105 + t617 * t1108;
+    const iiwa14_real_t t1129 = t1128 + t609 * t1112 + t620 * t1115 + t623 * t1118;
+    ddq_by_q[37] = t1129;
+    const iiwa14_real_t t1130 = t625 * t1100 - t626 * t1102 - t627 * t1105 + t628 * t1108;
+    const iiwa14_real_t t1131 = t1130 + t612 * t1112 + t623 * t1115 + t632 * t1118;
+    ddq_by_q[44] = t1131;
+    const iiwa14_real_t t1132 = parameters[ZZ3R] - t1072;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1133 = t183 * t1132 - parameters[YZ3] * t192 + (t962 + t1095);
+    /* link j3: derivatives */
+    const iiwa14_real_t t1134 = IIWA14_C(2.0) * t1133 + (t129 * t1074 - t128 * t1071);
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1135 = parameters[XZ3] * t192 + t182 * t1132 + (t68 * t968 + t64 * t971);
+    /* link j3: derivatives */
+    const iiwa14_real_t t1136 = IIWA14_C(2.0) * t1135 + (t129 * t1071 + t59 * t1074);
+    const iiwa14_real_t t1137 = parameters[MX3] * t192 + t976; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1138 = IIWA14_C(2.0) * t1137 - t121 * t1074; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1139 = parameters[MY3R] * t192 + (t64 * t982 + t68 * t983);
+    const iiwa14_real_t t1140 = IIWA14_C(2.0) * t1139 + t121 * t1071; /* link j3: derivatives */
+    const iiwa14_real_t t1141 = t96 * t1134 - t94 * t1136 + IIWA14_C(0.42) * (t94 * t1138 + t96 * t1140);
+    const iiwa14_real_t t1142 = t1068 + t1083 + (t1067 - t959); /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1143 = IIWA14_C(2.0) * t1142; /* link j3: derivatives */
+    const iiwa14_real_t t1144 = t145 * t1141 + t141 * (t1143 + (t93 * t1071 - t95 * t1074));
+    const iiwa14_real_t t1145 = IIWA14_C(0.0625) * t1144;
+    const iiwa14_real_t t1146 = t94 * t1134 + t96 * t1136 + IIWA14_C(0.42) * (t94 * t1140 - t96 * t1138);
+    const iiwa14_real_t t1147 = IIWA14_C(0.0625) * t1146;
+    const iiwa14_real_t t1148 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t95 * t182 - t93 * t183) - t1143);
+    const iiwa14_real_t t1149 = IIWA14_C(1.6e3) * parameters[FV3] + t1148;
+    const iiwa14_real_t t1150 = t68 * t991 + t64 * t992; /* link j4: derivatives */
+    const iiwa14_real_t t1151 = IIWA14_C(0.0625) * (t1150 + IIWA14_C(2.0) * (t120 * t183 + t59 * t182));
+    const iiwa14_real_t t1152 = t1145 * t528 - t1147 * t532 - t1149 * t535 + t1151 * t539;
+    const iiwa14_real_t t1153 = t68 * t995 + t64 * t998; /* link j5: derivatives */
+    const iiwa14_real_t t1154 = IIWA14_C(0.125) * (t1153 + IIWA14_C(2.0) * (t114 * t183 + t40 * t182));
+    const iiwa14_real_t t1155 = t68 * t1001 + t64 * t1002; /* link j6: derivatives */
+    const iiwa14_real_t t1156 = IIWA14_C(0.125) * (t1155 + IIWA14_C(2.0) * (t109 * t183 + t48 * t182));
+    const iiwa14_real_t t1157 = t68 * t1005 + t64 * t1006; /* link j7: derivatives */
+    const iiwa14_real_t t1158 = IIWA14_C(0.125) * (t1157 + IIWA14_C(2.0) * (t104 * t183 + t44 * t182));
+    const iiwa14_real_t t1159 = t1152 + t1154 * t546 + t1156 * t553 + t1158 * t564;
+    ddq_by_dq[2] = t1159;
+    const iiwa14_real_t t1160 = t1145 * t532 - t1147 * t566 - t1149 * t568 + t1151 * t570;
+    const iiwa14_real_t t1161 = t1160 + t1154 * t573 + t1156 * t575 + t1158 * t577;
+    ddq_by_dq[9] = t1161;
+    const iiwa14_real_t t1162 = t1145 * t535 - t1147 * t568 - t1149 * t579 + t1151 * t581;
+    const iiwa14_real_t t1163 = t1162 + t1154 * t584 + t1156 * t586 + t1158 * t588;
+    ddq_by_dq[16] = t1163;
+    const iiwa14_real_t t1164 = t1145 * t539 - t1147 * t570 - t1149 * t581 + t1151 * t591;
+    const iiwa14_real_t t1165 = t1164 + t1154 * t594 + t1156 * t596 + t1158 * t598;
+    ddq_by_dq[23] = t1165;
+    const iiwa14_real_t t1166 = t1145 * t600 - t1147 * t601 - t1149 * t602 + t1151 * t603;
+    const iiwa14_real_t t1167 = t1166 + t1154 * t606 + t1156 * t609 + t1158 * t612;
+    ddq_by_dq[30] = t1167;
+    const iiwa14_real_t t1168 = t1145 * t614 - t1147 * t615 - t1149 * t616 + t1151 * t617;
+    const iiwa14_real_t t1169 = t1168 + t1154 * t609 + t1156 * t620 + t1158 * t623;
+    ddq_by_dq[37] = t1169;
+    const iiwa14_real_t t1170 = t1145 * t625 - t1147 * t626 - t1149 * t627 + t1151 * t628;
+    const iiwa14_real_t t1171 = t1170 + t1154 * t612 + t1156 * t623 + t1158 * t632;
+    ddq_by_dq[44] = t1171;
+    ddq_by_input[2] = t535;
+    ddq_by_input[9] = t568;
+    ddq_by_input[16] = t579;
+    ddq_by_input[23] = t581;
+    ddq_by_input[30] = t602;
+    ddq_by_input[37] = t616;
+    ddq_by_input[44] = t627;
+    const iiwa14_real_t t1172 = t96 * t1079 + t94 * t1064 + IIWA14_C(0.42) * (t94 * t1088 + t96 * t1091);
+    const iiwa14_real_t t1173 = parameters[XY2] * (t185 + t432) - (t374 + parameters[XX2R] * t425)
+        + parameters[XZ2] * (t188 + t414);
+    const iiwa14_real_t t1174 = t71 * t424;
+    const iiwa14_real_t t1175 = t255 + t376; /* link j3: motion */
+    const iiwa14_real_t t1176 = IIWA14_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const iiwa14_real_t t1177 = t1176 - parameters[XX2R];
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1178 = dq[1] * t1177 - parameters[XZ2] * t181 + (t94 * t1097 - t96 * t1096);
+    const iiwa14_real_t t1179 = IIWA14_C(-2.0) * t187; /* link j2: derivatives */
+    const iiwa14_real_t t1180 = IIWA14_C(-0.42) * t1089; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1181 = IIWA14_C(-0.42) * dq[1]; /* link j3: velocity of its origin */
+    const iiwa14_real_t t1182 = t142 * t1181; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1183 = IIWA14_C(-0.42) * t181; /* link j3: velocity of its origin */
+    const iiwa14_real_t t1184 = t102 * t1183; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1185 = t1180 + (t1182 + t1184);
+    const iiwa14_real_t t1186 = parameters[XY2] * dq[1];
+    const iiwa14_real_t t1187 = parameters[YZ2] * t181;
+    const iiwa14_real_t t1188 = t1185 + (t1142 - t1180) - (t1186 + t1187);
+    const iiwa14_real_t t1189 = IIWA14_C(2.0) * t181; /* link j2: derivatives */
+    const iiwa14_real_t t1190 = t1174 - t144 * t431 - t170 * t1175 - (t1178 * t1179 + t1188 * t1189);
+    const iiwa14_real_t t1191 = t102 * t257; /* link j3: derivatives */
+    const iiwa14_real_t t1192 = t379 - parameters[ZZ3R] * t433 - parameters[YZ3] * t427
+        - parameters[XZ3] * t435;
+    const iiwa14_real_t t1193 = t378 + t1192 + (parameters[MX3] * t467 + parameters[MY3R] * t464)
+        + (t68 * t932 - t64 * t955);
+    const iiwa14_real_t t1194 = t382 + parameters[XY2] * t426 + parameters[YZ2] * t423 - t383 + t1193;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1195 = t96 * (t1084 - t1070) + t94 * (t1073 + t1082);
+    const iiwa14_real_t t1196 = t96 * t1195;
+    const iiwa14_real_t t1197 = parameters[XZ2] * t187;
+    const iiwa14_real_t t1198 = t1197 + t1186 + (t1185 + (t1196 - t1084 - t1182));
+    const iiwa14_real_t t1199 = IIWA14_C(0.42) * (t96 * t1139 + t94 * t1137) + t121 * t1181;
+    const iiwa14_real_t t1200 = parameters[YZ2] * t187 - dq[1] * t1176 + (t96 * t1133 - t94 * t1135 + t1199);
+    const iiwa14_real_t t1201 = t169 * t1175 + (t140 * t431 + t144 * t424) - (t1198 * t1179 + t1200 * t1189);
+    const iiwa14_real_t t1202 = t145 * (t1194 + (t102 * t251 + t1201)) + t141 * (t377 + t1173 + t1172 + (t1190
+        - t1191));
+    const iiwa14_real_t t1203 = IIWA14_C(0.0625) * t1202;
+    const iiwa14_real_t t1204 = t94 * t1195;
+    const iiwa14_real_t t1205 = parameters[XY2] * t181 + t187 * t1177 + (t1204 - t1082 - t142 * t1183);
+    const iiwa14_real_t t1206 = IIWA14_C(2.0) * t1205; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1207 = IIWA14_C(0.42) * (t94 * t1139 - t96 * t1137) + t121 * t1183;
+    const iiwa14_real_t t1208 = parameters[XY2] * t187 + t181 * t1176 - (t94 * t1133 + t96 * t1135 + t1207);
+    const iiwa14_real_t t1209 = IIWA14_C(2.0) * t1208; /* link j2: derivatives */
+    const iiwa14_real_t t1210 = t187 * t1206 + t181 * t1209 + (t169 * t431 + t170 * t424 - t133 * t1175);
+    const iiwa14_real_t t1211 = (parameters[MY2R] - t121) * t257 - (parameters[MX2] + t142) * t251 + t1210;
+    const iiwa14_real_t t1212 = IIWA14_C(0.0625) * t1211;
+    const iiwa14_real_t t1213 = t94 * t1104 - t96 * t1103; /* link j3: derivatives */
+    const iiwa14_real_t t1214 = IIWA14_C(-0.84) * t181; /* link j7: derivatives */
+    const iiwa14_real_t t1215 = IIWA14_C(-0.84) * dq[1];
+    const iiwa14_real_t t1216 = t1143 + (t102 * t1214 + t142 * t1215); /* link j3: derivatives */
+    const iiwa14_real_t t1217 = t187 * t1213 + t181 * t1216 + (t103 * t1175 + (t143 * t431 - t1174));
+    const iiwa14_real_t t1218 = IIWA14_C(0.0625) * (t1191 + t1217);
+    const iiwa14_real_t t1219 = t94 * t1029 - t96 * t1106 - t100 * t1214; /* link j4: derivatives */
+    const iiwa14_real_t t1220 = t1150 - (t161 * t1215 - t122 * t1214);
+    const iiwa14_real_t t1221 = t187 * t1219 - t181 * t1220 + (t162 * t431 + t88 * t424 - t123 * t1175);
+    const iiwa14_real_t t1222 = IIWA14_C(0.0625) * (t1221 - (t122 * t257 + t100 * t251));
+    const iiwa14_real_t t1223 = t528 * t1203 - t532 * t1212 - t535 * t1218 + t539 * t1222;
+    const iiwa14_real_t t1224 = t68 * t39; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t1225 = t94 * t1042 - t96 * t1110 + t1224 * t1214; /* link j5: derivatives */
+    const iiwa14_real_t t1226 = t1153 - (t156 * t1215 - t116 * t1214);
+    const iiwa14_real_t t1227 = t187 * t1225 - t181 * t1226 + (t157 * t431 + t82 * t424 - t117 * t1175);
+    const iiwa14_real_t t1228 = IIWA14_C(0.125) * (t1224 * t251 - t116 * t257 + t1227);
+    const iiwa14_real_t t1229 = t68 * t47 + t64 * t37; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t1230 = t94 * t1044 - t96 * t1113 + t1229 * t1214; /* link j6: derivatives */
+    const iiwa14_real_t t1231 = t1155 - (t152 * t1215 - t111 * t1214);
+    const iiwa14_real_t t1232 = t187 * t1230 - t181 * t1231 + (t153 * t431 + t79 * t424 - t112 * t1175);
+    const iiwa14_real_t t1233 = IIWA14_C(0.125) * (t1229 * t251 - t111 * t257 + t1232);
+    const iiwa14_real_t t1234 = t64 * t105 - t68 * t43; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t1235 = t94 * t1046 - t96 * t1116 - t1234 * t1214; /* link j7: derivatives */
+    const iiwa14_real_t t1236 = t1157 - (t148 * t1215 - t107 * t1214);
+    const iiwa14_real_t t1237 = t187 * t1235 - t181 * t1236 + (t149 * t431 + t75 * t424 - t108 * t1175);
+    const iiwa14_real_t t1238 = IIWA14_C(0.125) * (t1237 - (t107 * t257 + t1234 * t251));
+    const iiwa14_real_t t1239 = t1223 + t546 * t1228 + t553 * t1233 + t564 * t1238;
+    ddq_by_q[1] = t1239;
+    const iiwa14_real_t t1240 = t532 * t1203 - t566 * t1212 - t568 * t1218 + t570 * t1222;
+    const iiwa14_real_t t1241 = t1240 + t573 * t1228 + t575 * t1233 + t577 * t1238;
+    ddq_by_q[8] = t1241;
+    const iiwa14_real_t t1242 = t535 * t1203 - t568 * t1212 - t579 * t1218 + t581 * t1222;
+    const iiwa14_real_t t1243 = t1242 + t584 * t1228 + t586 * t1233 + t588 * t1238;
+    ddq_by_q[15] = t1243;
+    const iiwa14_real_t t1244 = t539 * t1203 - t570 * t1212 - t581 * t1218 + t591 * t1222;
+    const iiwa14_real_t t1245 = t1244 + t594 * t1228 + t596 * t1233 + t598 * t1238;
+    ddq_by_q[22] = t1245;
+    const iiwa14_real_t t1246 = t600 * t1203 - t601 * t1212 - t602 * t1218 + t603 * t1222;
+    const iiwa14_real_t t1247 = t1246 + t606 * t1228 + t609 * t1233 + t612 * t1238;
+    ddq_by_q[29] = t1247;
+    const iiwa14_real_t t1248 = t614 * t1203 - t615 * t1212 - t616 * t1218 + t617 * t1222;
+    const iiwa14_real_t t1249 = t1248 + t609 * t1228 + t620 * t1233 + t623 * t1238;
+    ddq_by_q[36] = t1249;
+    const iiwa14_real_t t1250 = t625 * t1203 - t626 * t1212 - t627 * t1218 + t628 * t1222;
+    const iiwa14_real_t t1251 = t1250 + t612 * t1228 + t623 * t1233 + t632 * t1238;
+    ddq_by_q[43] = t1251;
+    const iiwa14_real_t t1252 = parameters[ZZ2R] - t1176;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1253 = t1073 - t1204 + t102 * t1181 - (parameters[YZ2] * dq[1] + t187 * t1252);
+    /* link j2: derivatives */
+    const iiwa14_real_t t1254 = t145 * (IIWA14_C(2.0) * t1253 + (t144 * t1189 - t140 * t1179));
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1255 = parameters[XZ2] * dq[1] + t181 * t1252 + (t94 * t1096 + t96 * t1097);
+    /* link j2: derivatives */
+    const iiwa14_real_t t1256 = t141 * (IIWA14_C(2.0) * t1255 + (t144 * t1179 + t71 * t1189));
+    const iiwa14_real_t t1257 = IIWA14_C(0.0625) * (t1254 + t1256);
+    const iiwa14_real_t t1258 = IIWA14_C(2.0) * (t1197 - t1187 + (t1070 + t1196 + t1184 - t1185));
+    const iiwa14_real_t t1259 = IIWA14_C(0.0625) * (t1258 + IIWA14_C(2.0) * (t169 * t187 + t170 * t181));
+    const iiwa14_real_t t1260 = IIWA14_C(1.6e3) * parameters[FV2] + t1259;
+    /* link j3: derivatives */
+    const iiwa14_real_t t1261 = t94 * t1103 + t96 * t1104 + IIWA14_C(2.0) * (t143 * t187 - t71 * t181);
+    const iiwa14_real_t t1262 = IIWA14_C(0.0625) * t1261;
+    /* link j4: derivatives */
+    const iiwa14_real_t t1263 = t94 * t1106 + t96 * t1029 - t100 * t1215 + IIWA14_C(2.0) * (t162 * t187
+        + t88 * t181);
+    const iiwa14_real_t t1264 = IIWA14_C(0.0625) * t1263;
+    const iiwa14_real_t t1265 = t1257 * t528 - t1260 * t532 - t1262 * t535 + t1264 * t539;
+    /* link j5: derivatives */
+    const iiwa14_real_t t1266 = t94 * t1110 + t96 * t1042 + t1224 * t1215 + IIWA14_C(2.0) * (t157 * t187
+        + t82 * t181);
+    const iiwa14_real_t t1267 = IIWA14_C(0.125) * t1266;
+    /* link j6: derivatives */
+    const iiwa14_real_t t1268 = t94 * t1113 + t96 * t1044 + t1229 * t1215 + IIWA14_C(2.0) * (t153 * t187
+        + t79 * t181);
+    const iiwa14_real_t t1269 = IIWA14_C(0.125) * t1268;
+    /* link j7: derivatives */
+    const iiwa14_real_t t1270 = t94 * t1116 + t96 * t1046 - t1234 * t1215 + IIWA14_C(2.0) * (t149 * t187
+        + t75 * t181);
+    const iiwa14_real_t t1271 = IIWA14_C(0.125) * t1270;
+    const iiwa14_real_t t1272 = t1265 + t1267 * t546 + t1269 * t553 + t1271 * t564;
+    ddq_by_dq[1] = t1272;
+    const iiwa14_real_t t1273 = t1257 * t532 - t1260 * t566 - t1262 * t568 + t1264 * t570;
+    const iiwa14_real_t t1274 = t1273 + t1267 * t573 + t1269 * t575 + t1271 * t577;
+    ddq_by_dq[8] = t1274;
+    const iiwa14_real_t t1275 = t1257 * t535 - t1260 * t568 - t1262 * t579 + t1264 * t581;
+    const iiwa14_real_t t1276 = t1275 + t1267 * t584 + t1269 * t586 + t1271 * t588;
+    ddq_by_dq[15] = t1276;
+    const iiwa14_real_t t1277 = t1257 * t539 - t1260 * t570 - t1262 * t581 + t1264 * t591;
+    const iiwa14_real_t t1278 = t1277 + t1267 * t594 + t1269 * t596 + t1271 * t598;
+    ddq_by_dq[22] = t1278;
+    const iiwa14_real_t t1279 = t1257 * t600 - t1260 * t601 - t1262 * t602 + t1264 * t603;
+    const iiwa14_real_t t1280 = t1279 + t1267 * t606 + t1269 * t609 + t1271 * t612;
+    ddq_by_dq[29] = t1280;
+    const iiwa14_real_t t1281 = t1257 * t614 - t1260 * t615 - t1262 * t616 + t1264 * t617;
+    const iiwa14_real_t t1282 = t1281 + t1267 * t609 + t1269 * t620 + t1271 * t623;
+    ddq_by_dq[36] = t1282;
+    const iiwa14_real_t t1283 = t1257 * t625 - t1260 * t626 - t1262 * t627 + t1264 * t628;
+    const iiwa14_real_t t1284 = t1283 + t1267 * t612 + t1269 * t623 + t1271 * t632;
+    ddq_by_dq[43] = t1284;
+    ddq_by_input[1] = t532;
+    ddq_by_input[8] = t566;
+    ddq_by_input[15] = t568;
+    ddq_by_input[22] = t570;
+    ddq_by_input[29] = t601;
+    ddq_by_input[36] = t615;
+    ddq_by_input[43] = t626;
+    /* link j2: inertia, momentum beyond */
+    const iiwa14_real_t t1285 = t141 * (t141 * (t1188 - t1198) + t145 * (t1200 + t1178));
+    const iiwa14_real_t t1286 = IIWA14_C(-1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t1198 + t1285);
+    const iiwa14_real_t t1287 = IIWA14_C(0.0625) * (t145 * t1206 - t141 * t1209);
+    const iiwa14_real_t t1288 = IIWA14_C(0.0625) * (t145 * t1213 - t141 * t1216);
+    const iiwa14_real_t t1289 = IIWA14_C(0.0625) * (t145 * t1219 + t141 * t1220);
+    const iiwa14_real_t t1290 = t1286 * t528 - t1287 * t532 - t1288 * t535 + t1289 * t539;
+    const iiwa14_real_t t1291 = IIWA14_C(0.125) * (t145 * t1225 + t141 * t1226);
+    const iiwa14_real_t t1292 = IIWA14_C(0.125) * (t145 * t1230 + t141 * t1231);
+    const iiwa14_real_t t1293 = IIWA14_C(0.125) * (t145 * t1235 + t141 * t1236);
+    const iiwa14_real_t t1294 = t1290 + t1291 * t546 + t1292 * t553 + t1293 * t564;
+    ddq_by_dq[0] = t1294;
+    const iiwa14_real_t t1295 = t1286 * t532 - t1287 * t566 - t1288 * t568 + t1289 * t570;
+    const iiwa14_real_t t1296 = t1295 + t1291 * t573 + t1292 * t575 + t1293 * t577;
+    ddq_by_dq[7] = t1296;
+    const iiwa14_real_t t1297 = t1286 * t535 - t1287 * t568 - t1288 * t579 + t1289 * t581;
+    const iiwa14_real_t t1298 = t1297 + t1291 * t584 + t1292 * t586 + t1293 * t588;
+    ddq_by_dq[14] = t1298;
+    const iiwa14_real_t t1299 = t1286 * t539 - t1287 * t570 - t1288 * t581 + t1289 * t591;
+    const iiwa14_real_t t1300 = t1299 + t1291 * t594 + t1292 * t596 + t1293 * t598;
+    ddq_by_dq[21] = t1300;
+    const iiwa14_real_t t1301 = t1286 * t600 - t1287 * t601 - t1288 * t602 + t1289 * t603;
+    const iiwa14_real_t t1302 = t1301 + t1291 * t606 + t1292 * t609 + t1293 * t612;
+    ddq_by_dq[28] = t1302;
+    const iiwa14_real_t t1303 = t1286 * t614 - t1287 * t615 - t1288 * t616 + t1289 * t617;
+    const iiwa14_real_t t1304 = t1303 + t1291 * t609 + t1292 * t620 + t1293 * t623;
+    ddq_by_dq[35] = t1304;
+    const iiwa14_real_t t1305 = t1286 * t625 - t1287 * t626 - t1288 * t627 + t1289 * t628;
+    const iiwa14_real_t t1306 = t1305 + t1291 * t612 + t1292 * t623 + t1293 * t632;
+    ddq_by_dq[42] = t1306;
+    ddq_by_input[0] = t528;
+    ddq_by_input[7] = t532;
+    ddq_by_input[14] = t535;
+    ddq_by_input[21] = t539;
+    ddq_by_input[28] = t600;
+    ddq_by_input[35] = t614;
+    ddq_by_input[42] = t625;
     /* always zero */
     ddq_by_q[0] = IIWA14_C(0.0);
     ddq_by_q[7] = IIWA14_C(0.0);
@@ -1816,10 +1782,10 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     ddq_by_q[28] = IIWA14_C(0.0);
     ddq_by_q[35] = IIWA14_C(0.0);
     ddq_by_q[42] = IIWA14_C(0.0);
-    if (!iiwa14_all_bounded(ddq, 7)
-        || !iiwa14_all_bounded(ddq_by_q, 49)
-        || !iiwa14_all_bounded(ddq_by_dq, 49)
-        || !iiwa14_all_bounded(ddq_by_input, 49)) {
+    if (!iiwa14_bounded(ddq, 7)
+        || !iiwa14_bounded(ddq_by_q, 49)
+        || !iiwa14_bounded(ddq_by_dq, 49)
+        || !iiwa14_bounded(ddq_by_input, 49)) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);

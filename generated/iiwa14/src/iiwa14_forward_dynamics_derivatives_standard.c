@@ -7,7 +7,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 5221 (2856 mul, 2365 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 5221 (2856 mul, 2365 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  *
  * @param[in]   q             [7]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [7]   [rad/s]                  joint velocities; norm at most 100000
@@ -125,7 +125,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x1E31C9F2UL
+#if IIWA14_GENERATION != 0xF4E95A26UL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -160,19 +160,19 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    iiwa14_real_t t167, t169;
-    IIWA14_SINCOS(q[1], &t167, &t169);
-    iiwa14_real_t t115, t112;
-    IIWA14_SINCOS(q[2], &t115, &t112);
-    iiwa14_real_t t79, t81;
-    IIWA14_SINCOS(q[3], &t79, &t81);
-    iiwa14_real_t t42, t39;
-    IIWA14_SINCOS(q[4], &t42, &t39);
-    iiwa14_real_t t22, t18;
-    IIWA14_SINCOS(q[5], &t22, &t18);
+    iiwa14_real_t t162, t164;
+    IIWA14_SINCOS(q[1], &t162, &t164);
+    iiwa14_real_t t111, t108;
+    IIWA14_SINCOS(q[2], &t111, &t108);
+    iiwa14_real_t t76, t78;
+    IIWA14_SINCOS(q[3], &t76, &t78);
+    iiwa14_real_t t40, t37;
+    IIWA14_SINCOS(q[4], &t40, &t37);
+    iiwa14_real_t t21, t17;
+    IIWA14_SINCOS(q[5], &t21, &t17);
     iiwa14_real_t t1, t2;
     IIWA14_SINCOS(q[6], &t1, &t2);
-    const iiwa14_real_t t0 = iiwa14_bounded(parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7]);
+    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
     if (!(t0 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -192,7 +192,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t11 = IIWA14_C(0.126) * (t10 + IIWA14_C(2.0) * parameters[MZ7]);
     const iiwa14_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
     const iiwa14_real_t t13 = t12 + IIWA14_C(2.56e4) * parameters[IA6];
-    const iiwa14_real_t t14 = iiwa14_bounded(t13 - t4 * t6);
+    const iiwa14_real_t t14 = t13 - t4 * t6;
     if (!(t14 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -200,211 +200,171 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t15 = t14 + IIWA14_C(-1.0e-9) * t13;
-    if (!(t15 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t16 = parameters[XX6] + (parameters[YY7] - t9 + t11);
-    const iiwa14_real_t t17 = parameters[YY6] + parameters[ZZ7];
+    const iiwa14_real_t t15 = parameters[XX6] + (parameters[YY7] - t9 + t11);
+    const iiwa14_real_t t16 = parameters[YY6] + parameters[ZZ7];
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t19 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const iiwa14_real_t t20 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + IIWA14_C(0.126) * t19;
-    const iiwa14_real_t t21 = parameters[XY6] + t20; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t18 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const iiwa14_real_t t19 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + IIWA14_C(0.126) * t18;
+    const iiwa14_real_t t20 = parameters[XY6] + t19; /* link j7: inertia of it and all beyond */
     /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t23 = t18 * (t16 - t17) + t21 * (IIWA14_C(-2.0) * t22);
-    const iiwa14_real_t t24 = t18 * t23;
-    const iiwa14_real_t t25 = parameters[ZZ5] + (t16 - t24);
-    const iiwa14_real_t t26 = t25 + IIWA14_C(1.0e4) * parameters[IA5];
-    const iiwa14_real_t t27 = t22 * t20 + t18 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t28 = t27 * t5;
-    const iiwa14_real_t t29 = parameters[YZ6] + t4; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t30 = t1 * t8 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t31 = t18 * t29 - t22 * t30; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t32 = t31 - t27 * t6;
-    const iiwa14_real_t t33 = IIWA14_C(1.0) / t14;
-    const iiwa14_real_t t34 = t32 * t33;
-    const iiwa14_real_t t35 = iiwa14_bounded(t26 - t27 * t28 - t32 * t34);
-    if (!(t35 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t22 = t17 * (t15 - t16) + t20 * (IIWA14_C(-2.0) * t21);
+    const iiwa14_real_t t23 = t17 * t22;
+    const iiwa14_real_t t24 = parameters[ZZ5] + (t15 - t23);
+    const iiwa14_real_t t25 = t24 + IIWA14_C(1.0e4) * parameters[IA5];
+    const iiwa14_real_t t26 = t21 * t19 + t17 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t27 = t26 * t5;
+    const iiwa14_real_t t28 = parameters[YZ6] + t4; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t29 = t1 * t8 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_real_t t30 = t17 * t28 - t21 * t29; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t31 = t30 - t26 * t6;
+    const iiwa14_real_t t32 = IIWA14_C(1.0) / t14;
+    const iiwa14_real_t t33 = t31 * t32;
+    const iiwa14_real_t t34 = t25 - t26 * t27 - t31 * t33;
+    if (!(t34 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t36 = t35 + IIWA14_C(-1.0e-9) * t26;
-    if (!(t36 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t37 = parameters[XX5] + (t17 + t24); /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t38 = parameters[YY5] + t12;
-    const iiwa14_real_t t40 = t18 * t30 + t22 * t29; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t41 = parameters[XY5] - t40; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t35 = parameters[XX5] + (t16 + t23); /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t36 = parameters[YY5] + t12;
+    const iiwa14_real_t t38 = t17 * t29 + t21 * t28; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t39 = parameters[XY5] - t38; /* link j6: inertia of it and all beyond */
     /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t43 = t39 * (t37 - t38) + t41 * (IIWA14_C(-2.0) * t42);
-    const iiwa14_real_t t44 = t39 * t43;
-    const iiwa14_real_t t45 = parameters[MX6] + t19; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t46 = parameters[MZ7] + t10;
-    const iiwa14_real_t t47 = t46 - parameters[MY6];
-    const iiwa14_real_t t48 = t18 * t47 - t22 * t45; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t49 = parameters[MZ5] + t48; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t50 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t51 = parameters[M5] + t50; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t52 = IIWA14_C(0.4) * t51; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t53 = IIWA14_C(0.4) * (t52 + IIWA14_C(2.0) * t49);
-    const iiwa14_real_t t54 = parameters[ZZ4] + (t37 - t44 + t53);
-    const iiwa14_real_t t55 = t54 + IIWA14_C(2.56e4) * parameters[IA4];
-    const iiwa14_real_t t56 = t18 * t20 - t22 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t57 = t18 * t3;
-    const iiwa14_real_t t58 = t39 * t57 + t42 * t19;
-    const iiwa14_real_t t59 = t42 * t56 + t39 * t4 + IIWA14_C(0.4) * t58;
-    const iiwa14_real_t t60 = t59 * t5;
-    const iiwa14_real_t t61 = t39 * t48; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t62 = t42 * t40 - t39 * t12 + IIWA14_C(-0.4) * t61;
-    const iiwa14_real_t t63 = t62 + t59 * t6;
-    const iiwa14_real_t t64 = t63 * t33;
-    const iiwa14_real_t t65 = t21 + t22 * t23 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t66 = t31 - parameters[YZ5];
-    const iiwa14_real_t t67 = parameters[MZ6] + t3; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t68 = parameters[MY5] + t67; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t69 = t22 * t47 + t18 * t45; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t70 = parameters[MX5] + t69; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t71 = t39 * t68 + t42 * t70; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t72 = t42 * t65 + t39 * t66 + IIWA14_C(0.4) * t71;
-    const iiwa14_real_t t73 = t59 * t28 - t72 - t63 * t34;
-    const iiwa14_real_t t74 = IIWA14_C(1.0) / t35;
-    const iiwa14_real_t t75 = t73 * t74;
-    const iiwa14_real_t t76 = iiwa14_bounded(t55 - t59 * t60 - t63 * t64 - t73 * t75);
-    if (!(t76 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t41 = t37 * (t35 - t36) + t39 * (IIWA14_C(-2.0) * t40);
+    const iiwa14_real_t t42 = t37 * t41;
+    const iiwa14_real_t t43 = parameters[MX6] + t18; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t44 = parameters[MZ7] + t10;
+    const iiwa14_real_t t45 = t44 - parameters[MY6];
+    const iiwa14_real_t t46 = t17 * t45 - t21 * t43; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t47 = parameters[MZ5] + t46; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t48 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t49 = parameters[M5] + t48; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t50 = IIWA14_C(0.4) * t49; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t51 = IIWA14_C(0.4) * (t50 + IIWA14_C(2.0) * t47);
+    const iiwa14_real_t t52 = parameters[ZZ4] + (t35 - t42 + t51);
+    const iiwa14_real_t t53 = t52 + IIWA14_C(2.56e4) * parameters[IA4];
+    const iiwa14_real_t t54 = t17 * t19 - t21 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t55 = t17 * t3;
+    const iiwa14_real_t t56 = t37 * t55 + t40 * t18;
+    const iiwa14_real_t t57 = t40 * t54 + t37 * t4 + IIWA14_C(0.4) * t56;
+    const iiwa14_real_t t58 = t57 * t5;
+    const iiwa14_real_t t59 = t37 * t46; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t60 = t40 * t38 - t37 * t12 + IIWA14_C(-0.4) * t59;
+    const iiwa14_real_t t61 = t60 + t57 * t6;
+    const iiwa14_real_t t62 = t61 * t32;
+    const iiwa14_real_t t63 = t20 + t21 * t22 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t64 = t30 - parameters[YZ5];
+    const iiwa14_real_t t65 = parameters[MZ6] + t3; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t66 = parameters[MY5] + t65; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t67 = t21 * t45 + t17 * t43; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t68 = parameters[MX5] + t67; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t69 = t37 * t66 + t40 * t68; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t70 = t40 * t63 + t37 * t64 + IIWA14_C(0.4) * t69;
+    const iiwa14_real_t t71 = t57 * t27 - t70 - t61 * t33;
+    const iiwa14_real_t t72 = IIWA14_C(1.0) / t34;
+    const iiwa14_real_t t73 = t71 * t72;
+    const iiwa14_real_t t74 = t53 - t57 * t58 - t61 * t62 - t71 * t73;
+    if (!(t74 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t77 = t76 + IIWA14_C(-1.0e-9) * t55;
-    if (!(t77 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t78 = t41 + t42 * t43 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t80 = parameters[YZ4] + t72;
-    const iiwa14_real_t t82 = t81 * t80 - t79 * t78; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t83 = t42 * t57 - t39 * t19; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t84 = t39 * t56 - t42 * t4 + IIWA14_C(-0.4) * t83;
-    const iiwa14_real_t t85 = t81 * t27 - t79 * t84;
-    const iiwa14_real_t t86 = t42 * t48; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t87 = t39 * t40 + t42 * t12 + IIWA14_C(0.4) * t86;
-    const iiwa14_real_t t88 = t79 * t87 + t81 * t31;
-    const iiwa14_real_t t89 = t85 * t6 - t88;
-    const iiwa14_real_t t90 = t39 * t70 - t42 * t68; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t91 = t39 * t65 - t42 * t66 + IIWA14_C(0.4) * t90;
-    const iiwa14_real_t t92 = t81 * t25 - t79 * t91;
-    const iiwa14_real_t t93 = t92 - t85 * t28 + t89 * t34;
-    const iiwa14_real_t t94 = t82 - t85 * t60 - t89 * t64 + t93 * t75;
-    const iiwa14_real_t t95 = IIWA14_C(1.0) / t76;
-    const iiwa14_real_t t96 = t94 * t95;
-    const iiwa14_real_t t97 = parameters[XX4] + (t38 + t44 + t53); /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t98 = parameters[YY4] + t25;
-    const iiwa14_real_t t99 = t91 - parameters[XY4];
+    const iiwa14_real_t t75 = t39 + t40 * t41 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t77 = parameters[YZ4] + t70;
+    const iiwa14_real_t t79 = t78 * t77 - t76 * t75; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t80 = t40 * t55 - t37 * t18; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t81 = t37 * t54 - t40 * t4 + IIWA14_C(-0.4) * t80;
+    const iiwa14_real_t t82 = t78 * t26 - t76 * t81;
+    const iiwa14_real_t t83 = t40 * t46; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t84 = t37 * t38 + t40 * t12 + IIWA14_C(0.4) * t83;
+    const iiwa14_real_t t85 = t76 * t84 + t78 * t30;
+    const iiwa14_real_t t86 = t82 * t6 - t85;
+    const iiwa14_real_t t87 = t37 * t68 - t40 * t66; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t88 = t37 * t63 - t40 * t64 + IIWA14_C(0.4) * t87;
+    const iiwa14_real_t t89 = t78 * t24 - t76 * t88;
+    const iiwa14_real_t t90 = t89 - t82 * t27 + t86 * t33;
+    const iiwa14_real_t t91 = t79 - t82 * t58 - t86 * t62 + t90 * t73;
+    const iiwa14_real_t t92 = IIWA14_C(1.0) / t74;
+    const iiwa14_real_t t93 = t91 * t92;
+    const iiwa14_real_t t94 = parameters[XX4] + (t36 + t42 + t51); /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t95 = parameters[YY4] + t24;
+    const iiwa14_real_t t96 = t88 - parameters[XY4];
     /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t100 = t81 * (t98 - t97) - t99 * (IIWA14_C(2.0) * t79);
-    const iiwa14_real_t t101 = t81 * t100;
-    const iiwa14_real_t t102 = parameters[ZZ3] + (t97 + t101);
-    const iiwa14_real_t t103 = t102 + IIWA14_C(2.56e4) * parameters[IA3];
-    const iiwa14_real_t t104 = t85 * t5;
-    const iiwa14_real_t t105 = t89 * t33;
-    const iiwa14_real_t t106 = t93 * t74;
-    const iiwa14_real_t t107 = t103 - t85 * t104 - t89 * t105 - t93 * t106;
-    const iiwa14_real_t t108 = iiwa14_bounded(t107 - t94 * t96);
-    if (!(t108 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t97 = t78 * (t95 - t94) - t96 * (IIWA14_C(2.0) * t76);
+    const iiwa14_real_t t98 = t78 * t97;
+    const iiwa14_real_t t99 = parameters[ZZ3] + (t94 + t98);
+    const iiwa14_real_t t100 = t99 + IIWA14_C(2.56e4) * parameters[IA3];
+    const iiwa14_real_t t101 = t82 * t5;
+    const iiwa14_real_t t102 = t86 * t32;
+    const iiwa14_real_t t103 = t90 * t72;
+    const iiwa14_real_t t104 = t100 - t82 * t101 - t86 * t102 - t90 * t103;
+    const iiwa14_real_t t105 = t104 - t91 * t93;
+    if (!(t105 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t109 = t108 + IIWA14_C(-1.0e-9) * t103;
-    if (!(t109 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t110 = parameters[XX3] + (t98 - t101);
-    const iiwa14_real_t t111 = parameters[YY3] + t54;
-    const iiwa14_real_t t113 = t81 * t78 + t79 * t80; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t114 = parameters[XY3] + t113; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t106 = parameters[XX3] + (t95 - t98);
+    const iiwa14_real_t t107 = parameters[YY3] + t52;
+    const iiwa14_real_t t109 = t78 * t75 + t76 * t77; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t110 = parameters[XY3] + t109; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t116 = t112 * (t111 - t110) + t114 * (IIWA14_C(2.0) * t115);
-    const iiwa14_real_t t117 = t112 * t116;
-    const iiwa14_real_t t118 = parameters[MX4] + t90; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t119 = t49 + t52;
-    const iiwa14_real_t t120 = parameters[MY4] + t119;
-    const iiwa14_real_t t121 = t81 * t120 + t79 * t118; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t122 = parameters[MZ3] + t121; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t123 = parameters[M4] + t51; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t124 = parameters[M3] + t123; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t125 = IIWA14_C(-0.42) * t124; /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t126 = IIWA14_C(0.42) * (IIWA14_C(2.0) * t122 - t125);
-    const iiwa14_real_t t127 = parameters[ZZ2] + (t110 + t117 + t126);
-    const iiwa14_real_t t128 = t127 + IIWA14_C(2.56e4) * parameters[IA2];
-    const iiwa14_real_t t129 = t81 * t84 + t79 * t27; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t130 = t22 * t3;
-    const iiwa14_real_t t131 = t81 * t58 + t79 * t130;
-    const iiwa14_real_t t132 = t112 * t131 - t115 * t83;
-    const iiwa14_real_t t133 = t115 * t129 + t112 * t59 + IIWA14_C(0.42) * t132;
-    const iiwa14_real_t t134 = t133 * t5;
-    const iiwa14_real_t t135 = t79 * t31 - t81 * t87; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t136 = t81 * t61 + t79 * t69;
-    const iiwa14_real_t t137 = t115 * t86 - t112 * t136;
-    const iiwa14_real_t t138 = t112 * t62 - t115 * t135 + IIWA14_C(0.42) * t137;
-    const iiwa14_real_t t139 = t138 + t133 * t6;
-    const iiwa14_real_t t140 = t139 * t33;
-    const iiwa14_real_t t141 = t81 * t91 + t79 * t25; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t142 = t81 * t71;
-    const iiwa14_real_t t143 = t112 * t142 + t115 * t90;
-    const iiwa14_real_t t144 = t115 * t141 + t112 * t72 + IIWA14_C(0.42) * t143;
-    const iiwa14_real_t t145 = t144 - t133 * t28 + t139 * t34;
-    const iiwa14_real_t t146 = t145 * t74;
-    const iiwa14_real_t t147 = t128 - t133 * t134 - t139 * t140 - t145 * t146;
-    const iiwa14_real_t t148 = t112 * t121; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t149 = t115 * t113 + t112 * t54 + IIWA14_C(0.42) * t148;
-    const iiwa14_real_t t150 = t149 - t133 * t60 - t139 * t64 + t145 * t75;
-    const iiwa14_real_t t151 = t150 * t95;
-    const iiwa14_real_t t152 = t99 + t79 * t100 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t153 = parameters[YZ3] - t82;
-    const iiwa14_real_t t154 = parameters[MZ4] - t71; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t155 = t154 - parameters[MY3]; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t156 = t81 * t118 - t79 * t120; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t157 = parameters[MX3] + t156; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t158 = t112 * t155 - t115 * t157; /* link j3: column of the mass matrix */
-    const iiwa14_real_t t159 = t115 * t152 - t112 * t153 + IIWA14_C(-0.42) * t158;
-    const iiwa14_real_t t160 = t159 - t133 * t104 - t139 * t105 - t145 * t106;
-    const iiwa14_real_t t161 = t160 - t150 * t96;
-    const iiwa14_real_t t162 = IIWA14_C(1.0) / t108;
-    const iiwa14_real_t t163 = t161 * t162;
-    const iiwa14_real_t t164 = iiwa14_bounded(t147 - t150 * t151 - t161 * t163);
-    if (!(t164 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t165 = t164 + IIWA14_C(-1.0e-9) * t128;
-    if (!(t165 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t112 = t108 * (t107 - t106) + t110 * (IIWA14_C(2.0) * t111);
+    const iiwa14_real_t t113 = t108 * t112;
+    const iiwa14_real_t t114 = parameters[MX4] + t87; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t115 = t47 + t50;
+    const iiwa14_real_t t116 = parameters[MY4] + t115;
+    const iiwa14_real_t t117 = t78 * t116 + t76 * t114; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t118 = parameters[MZ3] + t117; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t119 = parameters[M4] + t49; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t120 = parameters[M3] + t119; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t121 = IIWA14_C(-0.42) * t120; /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t122 = IIWA14_C(0.42) * (IIWA14_C(2.0) * t118 - t121);
+    const iiwa14_real_t t123 = parameters[ZZ2] + (t106 + t113 + t122);
+    const iiwa14_real_t t124 = t123 + IIWA14_C(2.56e4) * parameters[IA2];
+    const iiwa14_real_t t125 = t78 * t81 + t76 * t26; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t126 = t21 * t3;
+    const iiwa14_real_t t127 = t78 * t56 + t76 * t126;
+    const iiwa14_real_t t128 = t108 * t127 - t111 * t80;
+    const iiwa14_real_t t129 = t111 * t125 + t108 * t57 + IIWA14_C(0.42) * t128;
+    const iiwa14_real_t t130 = t129 * t5;
+    const iiwa14_real_t t131 = t76 * t30 - t78 * t84; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t132 = t78 * t59 + t76 * t67;
+    const iiwa14_real_t t133 = t111 * t83 - t108 * t132;
+    const iiwa14_real_t t134 = t108 * t60 - t111 * t131 + IIWA14_C(0.42) * t133;
+    const iiwa14_real_t t135 = t134 + t129 * t6;
+    const iiwa14_real_t t136 = t135 * t32;
+    const iiwa14_real_t t137 = t78 * t88 + t76 * t24; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t138 = t78 * t69;
+    const iiwa14_real_t t139 = t108 * t138 + t111 * t87;
+    const iiwa14_real_t t140 = t111 * t137 + t108 * t70 + IIWA14_C(0.42) * t139;
+    const iiwa14_real_t t141 = t140 - t129 * t27 + t135 * t33;
+    const iiwa14_real_t t142 = t141 * t72;
+    const iiwa14_real_t t143 = t124 - t129 * t130 - t135 * t136 - t141 * t142;
+    const iiwa14_real_t t144 = t108 * t117; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t145 = t111 * t109 + t108 * t52 + IIWA14_C(0.42) * t144;
+    const iiwa14_real_t t146 = t145 - t129 * t58 - t135 * t62 + t141 * t73;
+    const iiwa14_real_t t147 = t146 * t92;
+    const iiwa14_real_t t148 = t96 + t76 * t97 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t149 = parameters[YZ3] - t79;
+    const iiwa14_real_t t150 = parameters[MZ4] - t69; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t151 = t150 - parameters[MY3]; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t152 = t78 * t114 - t76 * t116; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t153 = parameters[MX3] + t152; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t154 = t108 * t151 - t111 * t153; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t155 = t111 * t148 - t108 * t149 + IIWA14_C(-0.42) * t154;
+    const iiwa14_real_t t156 = t155 - t129 * t101 - t135 * t102 - t141 * t103;
+    const iiwa14_real_t t157 = t156 - t146 * t93;
+    const iiwa14_real_t t158 = IIWA14_C(1.0) / t105;
+    const iiwa14_real_t t159 = t157 * t158;
+    const iiwa14_real_t t160 = t143 - t146 * t147 - t157 * t159;
+    if (!(t160 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);
@@ -412,43 +372,55 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
         return IIWA14_STATUS_PIVOT;
     }
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t166 = t115 * t116 - t114 - parameters[XZ2];
-    const iiwa14_real_t t168 = parameters[YZ2] + t159;
-    const iiwa14_real_t t170 = t115 * t131 + t112 * t83; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t171 = t115 * t59 - t112 * t129 + IIWA14_C(0.42) * t170;
-    const iiwa14_real_t t172 = t167 * t171 - t169 * t85;
-    const iiwa14_real_t t173 = t115 * t136 + t112 * t86; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t174 = t112 * t135 + t115 * t62 + IIWA14_C(-0.42) * t173;
-    const iiwa14_real_t t175 = t167 * t174 + t169 * t88 + t172 * t6;
-    const iiwa14_real_t t176 = t167 * t166 - t169 * t168 - t172 * t134 - t175 * t140;
-    const iiwa14_real_t t177 = t115 * t142 - t112 * t90; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t178 = t115 * t72 - t112 * t141 + IIWA14_C(0.42) * t177;
-    const iiwa14_real_t t179 = t167 * t178 - t169 * t92 - t172 * t28 + t175 * t34;
-    const iiwa14_real_t t180 = t115 * t121; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t181 = t115 * t54 - t112 * t113 + IIWA14_C(0.42) * t180;
-    const iiwa14_real_t t182 = t167 * t181 - t169 * t82 - t172 * t60 - t175 * t64;
-    const iiwa14_real_t t183 = t182 + t179 * t75;
-    const iiwa14_real_t t184 = t115 * t155 + t112 * t157; /* link j3: column of the mass matrix */
-    const iiwa14_real_t t185 = t112 * t152 + t115 * t153 + IIWA14_C(0.42) * t184;
-    const iiwa14_real_t t186 = t167 * t185 + t169 * t102 + t172 * t104 + t175 * t105;
-    const iiwa14_real_t t187 = t186 + t179 * t106 + t183 * t96;
-    const iiwa14_real_t t188 = t176 - t179 * t146 - t183 * t151 + t187 * t163;
-    const iiwa14_real_t t189 = IIWA14_C(1.0) / t164;
-    const iiwa14_real_t t190 = t188 * t189;
+    const iiwa14_real_t t161 = t111 * t112 - t110 - parameters[XZ2];
+    const iiwa14_real_t t163 = parameters[YZ2] + t155;
+    const iiwa14_real_t t165 = t111 * t127 + t108 * t80; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t166 = t111 * t57 - t108 * t125 + IIWA14_C(0.42) * t165;
+    const iiwa14_real_t t167 = t162 * t166 - t164 * t82;
+    const iiwa14_real_t t168 = t111 * t132 + t108 * t83; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t169 = t108 * t131 + t111 * t60 + IIWA14_C(-0.42) * t168;
+    const iiwa14_real_t t170 = t162 * t169 + t164 * t85 + t167 * t6;
+    const iiwa14_real_t t171 = t162 * t161 - t164 * t163 - t167 * t130 - t170 * t136;
+    const iiwa14_real_t t172 = t111 * t138 - t108 * t87; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t173 = t111 * t70 - t108 * t137 + IIWA14_C(0.42) * t172;
+    const iiwa14_real_t t174 = t162 * t173 - t164 * t89 - t167 * t27 + t170 * t33;
+    const iiwa14_real_t t175 = t111 * t117; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t176 = t111 * t52 - t108 * t109 + IIWA14_C(0.42) * t175;
+    const iiwa14_real_t t177 = t162 * t176 - t164 * t79 - t167 * t58 - t170 * t62;
+    const iiwa14_real_t t178 = t177 + t174 * t73;
+    const iiwa14_real_t t179 = t111 * t151 + t108 * t153; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t180 = t108 * t148 + t111 * t149 + IIWA14_C(0.42) * t179;
+    const iiwa14_real_t t181 = t162 * t180 + t164 * t99 + t167 * t101 + t170 * t102;
+    const iiwa14_real_t t182 = t181 + t174 * t103 + t178 * t93;
+    const iiwa14_real_t t183 = t171 - t174 * t142 - t178 * t147 + t182 * t159;
+    const iiwa14_real_t t184 = IIWA14_C(1.0) / t160;
+    const iiwa14_real_t t185 = t183 * t184;
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t191 = t117 - t111 - t126 - parameters[XX2];
-    const iiwa14_real_t t192 = parameters[YY2] + t102;
-    const iiwa14_real_t t193 = parameters[XY2] + t185;
+    const iiwa14_real_t t186 = t113 - t107 - t122 - parameters[XX2];
+    const iiwa14_real_t t187 = parameters[YY2] + t99;
+    const iiwa14_real_t t188 = parameters[XY2] + t180;
     /* link j2: inertia of it and all beyond */
-    const iiwa14_real_t t194 = t169 * (t169 * (t191 + t192) + t193 * (IIWA14_C(2.0) * t167));
-    const iiwa14_real_t t195 = parameters[ZZ1] + (t194 - t191) + IIWA14_C(2.56e4) * parameters[IA1];
-    const iiwa14_real_t t196 = t172 * t5;
-    const iiwa14_real_t t197 = t175 * t33;
-    const iiwa14_real_t t198 = t179 * t74;
-    const iiwa14_real_t t199 = t195 - t172 * t196 - t175 * t197 - t179 * t198;
-    const iiwa14_real_t t200 = t183 * t95;
-    const iiwa14_real_t t201 = t187 * t162;
-    const iiwa14_real_t t202 = iiwa14_bounded(t199 - t183 * t200 - t187 * t201 - t188 * t190);
+    const iiwa14_real_t t189 = t164 * (t164 * (t186 + t187) + t188 * (IIWA14_C(2.0) * t162));
+    const iiwa14_real_t t190 = parameters[ZZ1] + (t189 - t186) + IIWA14_C(2.56e4) * parameters[IA1];
+    const iiwa14_real_t t191 = t167 * t5;
+    const iiwa14_real_t t192 = t170 * t32;
+    const iiwa14_real_t t193 = t174 * t72;
+    const iiwa14_real_t t194 = t190 - t167 * t191 - t170 * t192 - t174 * t193;
+    const iiwa14_real_t t195 = t178 * t92;
+    const iiwa14_real_t t196 = t182 * t158;
+    const iiwa14_real_t t197 = t194 - t178 * t195 - t182 * t196 - t183 * t185;
+    if (!(t197 > IIWA14_C(1.0e-12))) {
+        iiwa14_zero(ddq, 7);
+        iiwa14_zero(ddq_by_q, 49);
+        iiwa14_zero(ddq_by_dq, 49);
+        iiwa14_zero(ddq_by_input, 49);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t198 = iiwa14_min(t14 + IIWA14_C(-1.0e-9) * t13, t34 + IIWA14_C(-1.0e-9) * t25);
+    const iiwa14_real_t t199 = iiwa14_min(t198, t74 + IIWA14_C(-1.0e-9) * t53);
+    const iiwa14_real_t t200 = iiwa14_min(t199, t105 + IIWA14_C(-1.0e-9) * t100);
+    const iiwa14_real_t t201 = iiwa14_min(t200, t160 + IIWA14_C(-1.0e-9) * t124);
+    const iiwa14_real_t t202 = iiwa14_min(t201, t197 + IIWA14_C(-1.0e-9) * t190);
     if (!(t202 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
@@ -456,1498 +428,1497 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
         iiwa14_zero(ddq_by_input, 49);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t203 = t202 + IIWA14_C(-1.0e-9) * t195;
-    if (!(t203 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(ddq, 7);
-        iiwa14_zero(ddq_by_q, 49);
-        iiwa14_zero(ddq_by_dq, 49);
-        iiwa14_zero(ddq_by_input, 49);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t204 = t167 * dq[0]; /* link j2: motion */
-    const iiwa14_real_t t205 = t112 * t204 - t115 * dq[1]; /* link j3: motion */
-    const iiwa14_real_t t206 = t169 * dq[0]; /* link j2: motion */
-    const iiwa14_real_t t207 = dq[2] + t206; /* link j3: motion */
-    const iiwa14_real_t t208 = t81 * t205 - t79 * t207; /* link j4: motion */
-    const iiwa14_real_t t209 = t115 * t204 + t112 * dq[1]; /* link j3: motion */
-    const iiwa14_real_t t210 = t209 - dq[3]; /* link j4: motion */
-    const iiwa14_real_t t211 = t39 * t208 - t42 * t210; /* link j5: motion */
-    const iiwa14_real_t t212 = t42 * t208 + t39 * t210;
-    const iiwa14_real_t t213 = t211 * t212;
-    const iiwa14_real_t t214 = t205 * t209; /* link j3: motion */
-    const iiwa14_real_t t215 = dq[1] * t204; /* link j2: motion */
-    const iiwa14_real_t t216 = t215 - t214; /* link j4: motion */
-    const iiwa14_real_t t217 = t209 * t207; /* link j3: motion */
-    const iiwa14_real_t t218 = t204 * t206; /* link j2: motion */
-    const iiwa14_real_t t219 = dq[1] * t206;
-    const iiwa14_real_t t220 = IIWA14_C(-2.0) * t219;
-    const iiwa14_real_t t221 = t115 * t218 - t112 * t220; /* link j3: motion */
-    const iiwa14_real_t t222 = t221 - t217;
-    const iiwa14_real_t t223 = t222 - t217; /* link j4: motion */
-    const iiwa14_real_t t224 = t81 * t216 - t79 * t223;
-    const iiwa14_real_t t225 = t208 * t210;
-    const iiwa14_real_t t226 = t225 + t224;
-    const iiwa14_real_t t227 = t213 - t226; /* link j6: motion */
-    const iiwa14_real_t t228 = t79 * t205 + t81 * t207; /* link j4: motion */
-    const iiwa14_real_t t229 = t208 * t228;
-    const iiwa14_real_t t230 = t205 * t207; /* link j3: motion */
-    const iiwa14_real_t t231 = t112 * t218 + t115 * t220;
-    const iiwa14_real_t t232 = t231 - t230;
-    const iiwa14_real_t t233 = t229 + t232; /* link j5: motion */
-    const iiwa14_real_t t234 = t79 * t216 + t81 * t223; /* link j4: motion */
-    const iiwa14_real_t t235 = t228 * t210;
-    const iiwa14_real_t t236 = t235 + t234;
-    const iiwa14_real_t t237 = t235 + t236; /* link j5: motion */
-    const iiwa14_real_t t238 = t42 * t233 + t39 * t237;
-    const iiwa14_real_t t239 = dq[4] + t228;
-    const iiwa14_real_t t240 = t212 * t239;
-    const iiwa14_real_t t241 = t240 - t238;
-    const iiwa14_real_t t242 = t240 + t241; /* link j6: motion */
-    const iiwa14_real_t t243 = t18 * t242 - t22 * t227;
-    const iiwa14_real_t t244 = t22 * t211 - t18 * t239;
-    const iiwa14_real_t t245 = dq[5] + t212;
-    const iiwa14_real_t t246 = t244 * t245;
-    const iiwa14_real_t t247 = t246 + t243;
-    const iiwa14_real_t t248 = t246 + t247; /* link j7: motion */
-    const iiwa14_real_t t249 = t39 * t233 - t42 * t237; /* link j5: motion */
-    const iiwa14_real_t t250 = t211 * t239;
-    const iiwa14_real_t t251 = t249 - t250;
-    const iiwa14_real_t t252 = t18 * t211 + t22 * t239; /* link j6: motion */
-    const iiwa14_real_t t253 = t252 * t244;
-    const iiwa14_real_t t254 = t253 - t251; /* link j7: motion */
-    const iiwa14_real_t t255 = t1 * t254 + t2 * t248;
-    const iiwa14_real_t t256 = t1 * t252 + t2 * t245;
-    const iiwa14_real_t t257 = t244 - dq[6];
-    const iiwa14_real_t t258 = t256 * t257;
-    const iiwa14_real_t t259 = t255 - t258;
-    const iiwa14_real_t t260 = t258 * (parameters[YY7] - parameters[ZZ7]); /* link j7: force and moment */
-    const iiwa14_real_t t261 = t1 * t248 - t2 * t254; /* link j7: motion */
-    const iiwa14_real_t t262 = t1 * t245 - t2 * t252;
-    const iiwa14_real_t t263 = t262 * t257;
-    const iiwa14_real_t t264 = t261 - t263;
-    const iiwa14_real_t t265 = t264 - t263; /* link j7: force and moment */
-    const iiwa14_real_t t266 = t18 * t227 + t22 * t242; /* link j6: motion */
-    const iiwa14_real_t t267 = t252 * t245;
-    const iiwa14_real_t t268 = t266 - t267;
-    const iiwa14_real_t t269 = t262 * t256; /* link j7: motion */
-    const iiwa14_real_t t270 = t269 + t268; /* link j7: force and moment */
-    const iiwa14_real_t t271 = parameters[XX7] * t259 + t260 - parameters[XY7] * t265
-        + parameters[XZ7] * t270;
-    const iiwa14_real_t t272 = t256 * t256; /* link j7: motion */
-    const iiwa14_real_t t273 = t257 * t257;
-    const iiwa14_real_t t274 = (t273 - t272) * parameters[YZ7]; /* link j7: force and moment */
-    const iiwa14_real_t t275 = t204 * t204; /* link j2: motion */
-    const iiwa14_real_t t276 = dq[1] * dq[1];
-    const iiwa14_real_t t277 = IIWA14_C(9.81) * t169;
-    const iiwa14_real_t t278 = t277 + IIWA14_C(-0.42) * (t275 + t276); /* link j3: motion */
-    const iiwa14_real_t t279 = t79 * t278; /* link j4: motion */
-    const iiwa14_real_t t280 = IIWA14_C(-9.81) * t167; /* link j2: motion */
-    const iiwa14_real_t t281 = IIWA14_C(0.42) * t218 - t280; /* link j3: motion */
-    const iiwa14_real_t t282 = IIWA14_C(0.84) * t219;
-    const iiwa14_real_t t283 = t112 * t281 - t115 * t282;
-    const iiwa14_real_t t284 = t81 * t283 - t279; /* link j4: motion */
-    const iiwa14_real_t t285 = t284 + IIWA14_C(0.4) * t233; /* link j5: motion */
-    const iiwa14_real_t t286 = t115 * t281 + t112 * t282; /* link j3: motion */
-    const iiwa14_real_t t287 = t286 + IIWA14_C(0.4) * t237; /* link j5: motion */
-    const iiwa14_real_t t288 = t42 * t287 - t39 * t285;
-    const iiwa14_real_t t289 = t208 * t208; /* link j4: motion */
-    const iiwa14_real_t t290 = t210 * t210;
-    const iiwa14_real_t t291 = t289 + t290; /* link j5: motion */
-    const iiwa14_real_t t292 = IIWA14_C(0.4) * t291;
-    const iiwa14_real_t t293 = t81 * t278; /* link j4: motion */
-    const iiwa14_real_t t294 = t293 + t79 * t283;
-    const iiwa14_real_t t295 = t292 - t294; /* link j5: motion */
-    const iiwa14_real_t t296 = t18 * t288 + t22 * t295; /* link j6: motion */
-    const iiwa14_real_t t297 = t296 + IIWA14_C(0.126) * t254; /* link j7: motion */
-    const iiwa14_real_t t298 = t42 * t285 + t39 * t287; /* link j5: motion */
-    const iiwa14_real_t t299 = t298 + IIWA14_C(-0.126) * t248; /* link j7: motion */
-    const iiwa14_real_t t300 = t1 * t297 - t2 * t299;
-    const iiwa14_real_t t301 = t252 * t252; /* link j6: motion */
-    const iiwa14_real_t t302 = t245 * t245;
-    const iiwa14_real_t t303 = t301 + t302; /* link j7: motion */
-    const iiwa14_real_t t304 = IIWA14_C(-0.126) * t303;
-    const iiwa14_real_t t305 = t22 * t288 - t18 * t295; /* link j6: motion */
-    const iiwa14_real_t t306 = t304 + t305; /* link j7: motion */
+    const iiwa14_real_t t203 = t162 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t204 = t108 * t203 - t111 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t205 = t164 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t206 = dq[2] + t205; /* link j3: motion */
+    const iiwa14_real_t t207 = t78 * t204 - t76 * t206; /* link j4: motion */
+    const iiwa14_real_t t208 = t111 * t203 + t108 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t209 = t208 - dq[3]; /* link j4: motion */
+    const iiwa14_real_t t210 = t37 * t207 - t40 * t209; /* link j5: motion */
+    const iiwa14_real_t t211 = t40 * t207 + t37 * t209;
+    const iiwa14_real_t t212 = t210 * t211;
+    const iiwa14_real_t t213 = t204 * t208; /* link j3: motion */
+    const iiwa14_real_t t214 = dq[1] * t203; /* link j2: motion */
+    const iiwa14_real_t t215 = t214 - t213; /* link j4: motion */
+    const iiwa14_real_t t216 = t208 * t206; /* link j3: motion */
+    const iiwa14_real_t t217 = t203 * t205; /* link j2: motion */
+    const iiwa14_real_t t218 = dq[1] * t205;
+    const iiwa14_real_t t219 = IIWA14_C(-2.0) * t218;
+    const iiwa14_real_t t220 = t111 * t217 - t108 * t219; /* link j3: motion */
+    const iiwa14_real_t t221 = t220 - t216;
+    const iiwa14_real_t t222 = t221 - t216; /* link j4: motion */
+    const iiwa14_real_t t223 = t78 * t215 - t76 * t222;
+    const iiwa14_real_t t224 = t207 * t209;
+    const iiwa14_real_t t225 = t224 + t223;
+    const iiwa14_real_t t226 = t212 - t225; /* link j6: motion */
+    const iiwa14_real_t t227 = t76 * t204 + t78 * t206; /* link j4: motion */
+    const iiwa14_real_t t228 = t207 * t227;
+    const iiwa14_real_t t229 = t204 * t206; /* link j3: motion */
+    const iiwa14_real_t t230 = t108 * t217 + t111 * t219;
+    const iiwa14_real_t t231 = t230 - t229;
+    const iiwa14_real_t t232 = t228 + t231; /* link j5: motion */
+    const iiwa14_real_t t233 = t76 * t215 + t78 * t222; /* link j4: motion */
+    const iiwa14_real_t t234 = t227 * t209;
+    const iiwa14_real_t t235 = t234 + t233;
+    const iiwa14_real_t t236 = t234 + t235; /* link j5: motion */
+    const iiwa14_real_t t237 = t40 * t232 + t37 * t236;
+    const iiwa14_real_t t238 = dq[4] + t227;
+    const iiwa14_real_t t239 = t211 * t238;
+    const iiwa14_real_t t240 = t239 - t237;
+    const iiwa14_real_t t241 = t239 + t240; /* link j6: motion */
+    const iiwa14_real_t t242 = t17 * t241 - t21 * t226;
+    const iiwa14_real_t t243 = t21 * t210 - t17 * t238;
+    const iiwa14_real_t t244 = dq[5] + t211;
+    const iiwa14_real_t t245 = t243 * t244;
+    const iiwa14_real_t t246 = t245 + t242;
+    const iiwa14_real_t t247 = t245 + t246; /* link j7: motion */
+    const iiwa14_real_t t248 = t37 * t232 - t40 * t236; /* link j5: motion */
+    const iiwa14_real_t t249 = t210 * t238;
+    const iiwa14_real_t t250 = t248 - t249;
+    const iiwa14_real_t t251 = t17 * t210 + t21 * t238; /* link j6: motion */
+    const iiwa14_real_t t252 = t251 * t243;
+    const iiwa14_real_t t253 = t252 - t250; /* link j7: motion */
+    const iiwa14_real_t t254 = t1 * t253 + t2 * t247;
+    const iiwa14_real_t t255 = t1 * t251 + t2 * t244;
+    const iiwa14_real_t t256 = t243 - dq[6];
+    const iiwa14_real_t t257 = t255 * t256;
+    const iiwa14_real_t t258 = t254 - t257;
+    const iiwa14_real_t t259 = t257 * (parameters[YY7] - parameters[ZZ7]); /* link j7: force and moment */
+    const iiwa14_real_t t260 = t1 * t247 - t2 * t253; /* link j7: motion */
+    const iiwa14_real_t t261 = t1 * t244 - t2 * t251;
+    const iiwa14_real_t t262 = t261 * t256;
+    const iiwa14_real_t t263 = t260 - t262;
+    const iiwa14_real_t t264 = t263 - t262; /* link j7: force and moment */
+    const iiwa14_real_t t265 = t17 * t226 + t21 * t241; /* link j6: motion */
+    const iiwa14_real_t t266 = t251 * t244;
+    const iiwa14_real_t t267 = t265 - t266;
+    const iiwa14_real_t t268 = t261 * t255; /* link j7: motion */
+    const iiwa14_real_t t269 = t268 + t267; /* link j7: force and moment */
+    const iiwa14_real_t t270 = parameters[XX7] * t258 + t259 - parameters[XY7] * t264
+        + parameters[XZ7] * t269;
+    const iiwa14_real_t t271 = t255 * t255; /* link j7: motion */
+    const iiwa14_real_t t272 = t256 * t256;
+    const iiwa14_real_t t273 = (t272 - t271) * parameters[YZ7]; /* link j7: force and moment */
+    const iiwa14_real_t t274 = t203 * t203; /* link j2: motion */
+    const iiwa14_real_t t275 = dq[1] * dq[1];
+    const iiwa14_real_t t276 = IIWA14_C(9.81) * t164;
+    const iiwa14_real_t t277 = t276 + IIWA14_C(-0.42) * (t274 + t275); /* link j3: motion */
+    const iiwa14_real_t t278 = t76 * t277; /* link j4: motion */
+    const iiwa14_real_t t279 = IIWA14_C(-9.81) * t162; /* link j2: motion */
+    const iiwa14_real_t t280 = IIWA14_C(0.42) * t217 - t279; /* link j3: motion */
+    const iiwa14_real_t t281 = IIWA14_C(0.84) * t218;
+    const iiwa14_real_t t282 = t108 * t280 - t111 * t281;
+    const iiwa14_real_t t283 = t78 * t282 - t278; /* link j4: motion */
+    const iiwa14_real_t t284 = t283 + IIWA14_C(0.4) * t232; /* link j5: motion */
+    const iiwa14_real_t t285 = t111 * t280 + t108 * t281; /* link j3: motion */
+    const iiwa14_real_t t286 = t285 + IIWA14_C(0.4) * t236; /* link j5: motion */
+    const iiwa14_real_t t287 = t40 * t286 - t37 * t284;
+    const iiwa14_real_t t288 = t207 * t207; /* link j4: motion */
+    const iiwa14_real_t t289 = t209 * t209;
+    const iiwa14_real_t t290 = t288 + t289; /* link j5: motion */
+    const iiwa14_real_t t291 = IIWA14_C(0.4) * t290;
+    const iiwa14_real_t t292 = t78 * t277; /* link j4: motion */
+    const iiwa14_real_t t293 = t292 + t76 * t282;
+    const iiwa14_real_t t294 = t291 - t293; /* link j5: motion */
+    const iiwa14_real_t t295 = t17 * t287 + t21 * t294; /* link j6: motion */
+    const iiwa14_real_t t296 = t295 + IIWA14_C(0.126) * t253; /* link j7: motion */
+    const iiwa14_real_t t297 = t40 * t284 + t37 * t286; /* link j5: motion */
+    const iiwa14_real_t t298 = t297 + IIWA14_C(-0.126) * t247; /* link j7: motion */
+    const iiwa14_real_t t299 = t1 * t296 - t2 * t298;
+    const iiwa14_real_t t300 = t251 * t251; /* link j6: motion */
+    const iiwa14_real_t t301 = t244 * t244;
+    const iiwa14_real_t t302 = t300 + t301; /* link j7: motion */
+    const iiwa14_real_t t303 = IIWA14_C(-0.126) * t302;
+    const iiwa14_real_t t304 = t21 * t287 - t17 * t294; /* link j6: motion */
+    const iiwa14_real_t t305 = t303 + t304; /* link j7: motion */
     /* link j7: force and moment */
-    const iiwa14_real_t t307 = t271 - t274 + (parameters[MY7] * t306 + parameters[MZ7] * t300);
-    const iiwa14_real_t t308 = t263 * (parameters[XX7] - parameters[ZZ7]);
-    const iiwa14_real_t t309 = t259 - t258;
-    const iiwa14_real_t t310 = t268 - t269;
-    const iiwa14_real_t t311 = parameters[XY7] * t309 - (parameters[YY7] * t264 + t308)
-        + parameters[YZ7] * t310;
-    const iiwa14_real_t t312 = t262 * t262; /* link j7: motion */
-    const iiwa14_real_t t313 = (t312 - t273) * parameters[XZ7]; /* link j7: force and moment */
-    const iiwa14_real_t t314 = t2 * t297 + t1 * t299; /* link j7: motion */
+    const iiwa14_real_t t306 = t270 - t273 + (parameters[MY7] * t305 + parameters[MZ7] * t299);
+    const iiwa14_real_t t307 = t262 * (parameters[XX7] - parameters[ZZ7]);
+    const iiwa14_real_t t308 = t258 - t257;
+    const iiwa14_real_t t309 = t267 - t268;
+    const iiwa14_real_t t310 = parameters[XY7] * t308 - (parameters[YY7] * t263 + t307)
+        + parameters[YZ7] * t309;
+    const iiwa14_real_t t311 = t261 * t261; /* link j7: motion */
+    const iiwa14_real_t t312 = (t311 - t272) * parameters[XZ7]; /* link j7: force and moment */
+    const iiwa14_real_t t313 = t2 * t296 + t1 * t298; /* link j7: motion */
     /* link j7: force and moment */
-    const iiwa14_real_t t315 = t311 - t313 + (parameters[MZ7] * t314 - parameters[MX7] * t306);
-    const iiwa14_real_t t316 = (t272 + t273) * parameters[MX7];
-    const iiwa14_real_t t317 = parameters[M7] * t314 - (t316 + parameters[MY7] * t310
-        + parameters[MZ7] * t261);
-    const iiwa14_real_t t318 = (t312 + t273) * parameters[MY7];
-    const iiwa14_real_t t319 = parameters[MX7] * t270 - t318 - parameters[MZ7] * t255 - parameters[M7] * t300;
-    const iiwa14_real_t t320 = t1 * t317 + t2 * t319; /* link j7: what it passes on */
-    const iiwa14_real_t t321 = t246 * (parameters[YY6] - parameters[ZZ6]); /* link j6: force and moment */
-    const iiwa14_real_t t322 = t268 - t267; /* link j7: motion */
-    const iiwa14_real_t t323 = t253 + t251;
+    const iiwa14_real_t t314 = t310 - t312 + (parameters[MZ7] * t313 - parameters[MX7] * t305);
+    const iiwa14_real_t t315 = (t271 + t272) * parameters[MX7];
+    const iiwa14_real_t t316 = parameters[M7] * t313 - (t315 + parameters[MY7] * t309
+        + parameters[MZ7] * t260);
+    const iiwa14_real_t t317 = (t311 + t272) * parameters[MY7];
+    const iiwa14_real_t t318 = parameters[MX7] * t269 - t317 - parameters[MZ7] * t254 - parameters[M7] * t299;
+    const iiwa14_real_t t319 = t1 * t316 + t2 * t318; /* link j7: what it passes on */
+    const iiwa14_real_t t320 = t245 * (parameters[YY6] - parameters[ZZ6]); /* link j6: force and moment */
+    const iiwa14_real_t t321 = t267 - t266; /* link j7: motion */
+    const iiwa14_real_t t322 = t252 + t250;
     /* link j6: force and moment */
-    const iiwa14_real_t t324 = parameters[XX6] * t247 - t321 - parameters[XY6] * t322
-        - parameters[XZ6] * t323;
-    const iiwa14_real_t t325 = t244 * t244; /* link j6: motion */
-    const iiwa14_real_t t326 = (t325 - t302) * parameters[YZ6]; /* link j6: force and moment */
+    const iiwa14_real_t t323 = parameters[XX6] * t246 - t320 - parameters[XY6] * t321
+        - parameters[XZ6] * t322;
+    const iiwa14_real_t t324 = t243 * t243; /* link j6: motion */
+    const iiwa14_real_t t325 = (t324 - t301) * parameters[YZ6]; /* link j6: force and moment */
     /* link j7: what it passes on */
-    const iiwa14_real_t t327 = t324 + t326 + (parameters[MY6] * t298 + parameters[MZ6] * t305) + (t2 * t307
-        - t1 * t315 - IIWA14_C(0.126) * t320);
-    const iiwa14_real_t t328 = t269 * t7; /* link j7: force and moment */
-    const iiwa14_real_t t329 = parameters[YZ7] * t261 - (parameters[ZZ7] * t268 + t328)
-        - parameters[XZ7] * t255;
-    const iiwa14_real_t t330 = (t272 - t312) * parameters[XY7];
-    const iiwa14_real_t t331 = t329 + t330 + (parameters[MX7] * t300 + parameters[MY7] * t314);
-    const iiwa14_real_t t332 = t267 * (parameters[ZZ6] - parameters[XX6]); /* link j6: force and moment */
-    const iiwa14_real_t t333 = t332 - parameters[YY6] * t268 + parameters[XY6] * t248
-        + parameters[YZ6] * t254;
-    const iiwa14_real_t t334 = (t302 - t301) * parameters[XZ6];
+    const iiwa14_real_t t326 = t323 + t325 + (parameters[MY6] * t297 + parameters[MZ6] * t304) + (t2 * t306
+        - t1 * t314 - IIWA14_C(0.126) * t319);
+    const iiwa14_real_t t327 = t268 * t7; /* link j7: force and moment */
+    const iiwa14_real_t t328 = parameters[YZ7] * t260 - (parameters[ZZ7] * t267 + t327)
+        - parameters[XZ7] * t254;
+    const iiwa14_real_t t329 = (t271 - t311) * parameters[XY7];
+    const iiwa14_real_t t330 = t328 + t329 + (parameters[MX7] * t299 + parameters[MY7] * t313);
+    const iiwa14_real_t t331 = t266 * (parameters[ZZ6] - parameters[XX6]); /* link j6: force and moment */
+    const iiwa14_real_t t332 = t331 - parameters[YY6] * t267 + parameters[XY6] * t247
+        + parameters[YZ6] * t253;
+    const iiwa14_real_t t333 = (t301 - t300) * parameters[XZ6];
     /* link j7: what it passes on */
-    const iiwa14_real_t t335 = t333 + t334 + (parameters[MZ6] * t296 - parameters[MX6] * t298) + t331;
-    const iiwa14_real_t t336 = t240 * (parameters[YY5] - parameters[ZZ5]); /* link j5: force and moment */
-    const iiwa14_real_t t337 = t251 - t250; /* link j6: motion */
-    const iiwa14_real_t t338 = t213 + t226;
+    const iiwa14_real_t t334 = t332 + t333 + (parameters[MZ6] * t295 - parameters[MX6] * t297) + t330;
+    const iiwa14_real_t t335 = t239 * (parameters[YY5] - parameters[ZZ5]); /* link j5: force and moment */
+    const iiwa14_real_t t336 = t250 - t249; /* link j6: motion */
+    const iiwa14_real_t t337 = t212 + t225;
     /* link j5: force and moment */
-    const iiwa14_real_t t339 = t336 - parameters[XX5] * t241 + parameters[XY5] * t337
-        + parameters[XZ5] * t338;
-    const iiwa14_real_t t340 = t212 * t212; /* link j5: motion */
-    const iiwa14_real_t t341 = t239 * t239;
-    const iiwa14_real_t t342 = (t341 - t340) * parameters[YZ5]; /* link j5: force and moment */
+    const iiwa14_real_t t338 = t335 - parameters[XX5] * t240 + parameters[XY5] * t336
+        + parameters[XZ5] * t337;
+    const iiwa14_real_t t339 = t211 * t211; /* link j5: motion */
+    const iiwa14_real_t t340 = t238 * t238;
+    const iiwa14_real_t t341 = (t340 - t339) * parameters[YZ5]; /* link j5: force and moment */
     /* link j6: what it passes on */
-    const iiwa14_real_t t343 = t339 + t342 + (parameters[MY5] * t295 + parameters[MZ5] * t298) + (t22 * t335
-        - t18 * t327);
-    const iiwa14_real_t t344 = t1 * t319 - t2 * t317; /* link j7: what it passes on */
-    const iiwa14_real_t t345 = t253 * (parameters[YY6] - parameters[XX6]); /* link j6: force and moment */
-    const iiwa14_real_t t346 = parameters[XZ6] * t243 - (parameters[ZZ6] * t251 + t345
-        + parameters[YZ6] * t266);
-    const iiwa14_real_t t347 = (t325 - t301) * parameters[XY6];
+    const iiwa14_real_t t342 = t338 + t341 + (parameters[MY5] * t294 + parameters[MZ5] * t297) + (t21 * t334
+        - t17 * t326);
+    const iiwa14_real_t t343 = t1 * t318 - t2 * t316; /* link j7: what it passes on */
+    const iiwa14_real_t t344 = t252 * (parameters[YY6] - parameters[XX6]); /* link j6: force and moment */
+    const iiwa14_real_t t345 = parameters[XZ6] * t242 - (parameters[ZZ6] * t250 + t344
+        + parameters[YZ6] * t265);
+    const iiwa14_real_t t346 = (t324 - t300) * parameters[XY6];
     /* link j7: what it passes on */
-    const iiwa14_real_t t348 = t346 - t347 - (parameters[MX6] * t305 + parameters[MY6] * t296) + (t1 * t307
-        + t2 * t315 + IIWA14_C(-0.126) * t344);
-    const iiwa14_real_t t349 = t250 * (parameters[XX5] - parameters[ZZ5]); /* link j5: force and moment */
-    const iiwa14_real_t t350 = parameters[XY5] * t242 - (parameters[YY5] * t251 + t349)
-        + parameters[YZ5] * t227;
-    const iiwa14_real_t t351 = t211 * t211; /* link j5: motion */
-    const iiwa14_real_t t352 = (t351 - t341) * parameters[XZ5]; /* link j5: force and moment */
+    const iiwa14_real_t t347 = t345 - t346 - (parameters[MX6] * t304 + parameters[MY6] * t295) + (t1 * t306
+        + t2 * t314 + IIWA14_C(-0.126) * t343);
+    const iiwa14_real_t t348 = t249 * (parameters[XX5] - parameters[ZZ5]); /* link j5: force and moment */
+    const iiwa14_real_t t349 = parameters[XY5] * t241 - (parameters[YY5] * t250 + t348)
+        + parameters[YZ5] * t226;
+    const iiwa14_real_t t350 = t210 * t210; /* link j5: motion */
+    const iiwa14_real_t t351 = (t350 - t340) * parameters[XZ5]; /* link j5: force and moment */
     /* link j6: what it passes on */
-    const iiwa14_real_t t353 = t350 - t352 + (parameters[MZ5] * t288 + parameters[MX5] * t295) + t348;
-    const iiwa14_real_t t354 = (t325 + t302) * parameters[MX6]; /* link j6: force and moment */
-    const iiwa14_real_t t355 = t354 + parameters[MY6] * t254 + parameters[MZ6] * t266 - parameters[M6] * t296;
-    const iiwa14_real_t t356 = t355 + t344; /* link j7: what it passes on */
-    const iiwa14_real_t t357 = t303 * parameters[MY6]; /* link j6: force and moment */
-    const iiwa14_real_t t358 = parameters[M6] * t305 + (parameters[MX6] * t323 + t357
-        + parameters[MZ6] * t243);
-    const iiwa14_real_t t359 = t312 + t272; /* link j7: columns */
-    const iiwa14_real_t t360 = t359 * parameters[MZ7]; /* link j7: force and moment */
-    const iiwa14_real_t t361 = parameters[M7] * t306 + (parameters[MX7] * t265 + parameters[MY7] * t309
-        - t360);
-    const iiwa14_real_t t362 = t358 + t361; /* link j7: what it passes on */
-    const iiwa14_real_t t363 = (t340 + t341) * parameters[MX5]; /* link j5: force and moment */
-    const iiwa14_real_t t364 = parameters[M5] * t288 - (t363 + parameters[MY5] * t227
-        + parameters[MZ5] * t249);
-    const iiwa14_real_t t365 = t364 + (t22 * t362 - t18 * t356); /* link j6: what it passes on */
-    const iiwa14_real_t t366 = t301 + t325; /* link j7: motion */
-    const iiwa14_real_t t367 = t366 * parameters[MZ6]; /* link j6: force and moment */
-    const iiwa14_real_t t368 = parameters[M6] * t298 + (parameters[MX6] * t322 + parameters[MY6] * t248
-        - t367);
-    const iiwa14_real_t t369 = (t351 + t341) * parameters[MY5]; /* link j5: force and moment */
-    const iiwa14_real_t t370 = parameters[M5] * t298 + (parameters[MZ5] * t238 - (parameters[MX5] * t338
-        + t369));
-    const iiwa14_real_t t371 = t370 + (t368 + t320); /* link j6: what it passes on */
-    const iiwa14_real_t t372 = t42 * t365 + t39 * t371; /* link j5: what it passes on */
-    const iiwa14_real_t t373 = t235 * (parameters[YY4] - parameters[ZZ4]); /* link j4: force and moment */
-    const iiwa14_real_t t374 = t225 + t226; /* link j5: motion */
-    const iiwa14_real_t t375 = t229 - t232;
+    const iiwa14_real_t t352 = t349 - t351 + (parameters[MZ5] * t287 + parameters[MX5] * t294) + t347;
+    const iiwa14_real_t t353 = (t324 + t301) * parameters[MX6]; /* link j6: force and moment */
+    const iiwa14_real_t t354 = t353 + parameters[MY6] * t253 + parameters[MZ6] * t265 - parameters[M6] * t295;
+    const iiwa14_real_t t355 = t354 + t343; /* link j7: what it passes on */
+    const iiwa14_real_t t356 = t302 * parameters[MY6]; /* link j6: force and moment */
+    const iiwa14_real_t t357 = parameters[M6] * t304 + (parameters[MX6] * t322 + t356
+        + parameters[MZ6] * t242);
+    const iiwa14_real_t t358 = t311 + t271; /* link j7: columns */
+    const iiwa14_real_t t359 = t358 * parameters[MZ7]; /* link j7: force and moment */
+    const iiwa14_real_t t360 = parameters[M7] * t305 + (parameters[MX7] * t264 + parameters[MY7] * t308
+        - t359);
+    const iiwa14_real_t t361 = t357 + t360; /* link j7: what it passes on */
+    const iiwa14_real_t t362 = (t339 + t340) * parameters[MX5]; /* link j5: force and moment */
+    const iiwa14_real_t t363 = parameters[M5] * t287 - (t362 + parameters[MY5] * t226
+        + parameters[MZ5] * t248);
+    const iiwa14_real_t t364 = t363 + (t21 * t361 - t17 * t355); /* link j6: what it passes on */
+    const iiwa14_real_t t365 = t300 + t324; /* link j7: motion */
+    const iiwa14_real_t t366 = t365 * parameters[MZ6]; /* link j6: force and moment */
+    const iiwa14_real_t t367 = parameters[M6] * t297 + (parameters[MX6] * t321 + parameters[MY6] * t247
+        - t366);
+    const iiwa14_real_t t368 = (t350 + t340) * parameters[MY5]; /* link j5: force and moment */
+    const iiwa14_real_t t369 = parameters[M5] * t297 + (parameters[MZ5] * t237 - (parameters[MX5] * t337
+        + t368));
+    const iiwa14_real_t t370 = t369 + (t367 + t319); /* link j6: what it passes on */
+    const iiwa14_real_t t371 = t40 * t364 + t37 * t370; /* link j5: what it passes on */
+    const iiwa14_real_t t372 = t234 * (parameters[YY4] - parameters[ZZ4]); /* link j4: force and moment */
+    const iiwa14_real_t t373 = t224 + t225; /* link j5: motion */
+    const iiwa14_real_t t374 = t228 - t231;
     /* link j4: force and moment */
-    const iiwa14_real_t t376 = parameters[XX4] * t236 - t373 + parameters[XY4] * t374
-        + parameters[XZ4] * t375;
-    const iiwa14_real_t t377 = t228 * t228; /* link j4: motion */
-    const iiwa14_real_t t378 = (t290 - t377) * parameters[YZ4]; /* link j4: force and moment */
+    const iiwa14_real_t t375 = parameters[XX4] * t235 - t372 + parameters[XY4] * t373
+        + parameters[XZ4] * t374;
+    const iiwa14_real_t t376 = t227 * t227; /* link j4: motion */
+    const iiwa14_real_t t377 = (t289 - t376) * parameters[YZ4]; /* link j4: force and moment */
     /* link j5: what it passes on */
-    const iiwa14_real_t t379 = t376 + t378 + (parameters[MY4] * t286 + parameters[MZ4] * t294) + (t39 * t343
-        + t42 * t353 + IIWA14_C(0.4) * t372);
-    const iiwa14_real_t t380 = t213 * (parameters[YY5] - parameters[XX5]); /* link j5: force and moment */
-    const iiwa14_real_t t381 = parameters[ZZ5] * t226 + t380 + parameters[YZ5] * t249
-        + parameters[XZ5] * t238;
-    const iiwa14_real_t t382 = (t340 - t351) * parameters[XY5];
+    const iiwa14_real_t t378 = t375 + t377 + (parameters[MY4] * t285 + parameters[MZ4] * t293) + (t37 * t342
+        + t40 * t352 + IIWA14_C(0.4) * t371);
+    const iiwa14_real_t t379 = t212 * (parameters[YY5] - parameters[XX5]); /* link j5: force and moment */
+    const iiwa14_real_t t380 = parameters[ZZ5] * t225 + t379 + parameters[YZ5] * t248
+        + parameters[XZ5] * t237;
+    const iiwa14_real_t t381 = (t339 - t350) * parameters[XY5];
     /* link j6: what it passes on */
-    const iiwa14_real_t t383 = t381 + t382 + (parameters[MY5] * t288 - parameters[MX5] * t298) + (t22 * t327
-        + t18 * t335);
-    const iiwa14_real_t t384 = t225 * (parameters[XX4] - parameters[ZZ4]); /* link j4: force and moment */
-    const iiwa14_real_t t385 = parameters[YY4] * t226 - t384 + parameters[XY4] * t237
-        - parameters[YZ4] * t233;
-    const iiwa14_real_t t386 = (t289 - t290) * parameters[XZ4];
+    const iiwa14_real_t t382 = t380 + t381 + (parameters[MY5] * t287 - parameters[MX5] * t297) + (t21 * t326
+        + t17 * t334);
+    const iiwa14_real_t t383 = t224 * (parameters[XX4] - parameters[ZZ4]); /* link j4: force and moment */
+    const iiwa14_real_t t384 = parameters[YY4] * t225 - t383 + parameters[XY4] * t236
+        - parameters[YZ4] * t232;
+    const iiwa14_real_t t385 = (t288 - t289) * parameters[XZ4];
     /* link j5: what it passes on */
-    const iiwa14_real_t t387 = t385 + t386 + (parameters[MZ4] * t284 - parameters[MX4] * t286) + t383;
-    const iiwa14_real_t t388 = t217 * (parameters[ZZ3] - parameters[YY3]); /* link j3: force and moment */
-    const iiwa14_real_t t389 = t215 + t214; /* link j4: motion */
+    const iiwa14_real_t t386 = t384 + t385 + (parameters[MZ4] * t283 - parameters[MX4] * t285) + t382;
+    const iiwa14_real_t t387 = t216 * (parameters[ZZ3] - parameters[YY3]); /* link j3: force and moment */
+    const iiwa14_real_t t388 = t214 + t213; /* link j4: motion */
     /* link j3: force and moment */
-    const iiwa14_real_t t390 = t388 - parameters[XX3] * t222 + parameters[XY3] * (t230 - t232)
-        - parameters[XZ3] * t389;
-    const iiwa14_real_t t391 = t209 * t209; /* link j3: motion */
-    const iiwa14_real_t t392 = t207 * t207;
-    const iiwa14_real_t t393 = (t391 - t392) * parameters[YZ3]; /* link j3: force and moment */
-    const iiwa14_real_t t394 = t278 * parameters[MY3];
+    const iiwa14_real_t t389 = t387 - parameters[XX3] * t221 + parameters[XY3] * (t229 - t231)
+        - parameters[XZ3] * t388;
+    const iiwa14_real_t t390 = t208 * t208; /* link j3: motion */
+    const iiwa14_real_t t391 = t206 * t206;
+    const iiwa14_real_t t392 = (t390 - t391) * parameters[YZ3]; /* link j3: force and moment */
+    const iiwa14_real_t t393 = t277 * parameters[MY3];
     /* link j4: what it passes on */
-    const iiwa14_real_t t395 = t390 + t393 + (t394 - parameters[MZ3] * t286) + (t79 * t387 - t81 * t379);
-    const iiwa14_real_t t396 = t42 * t371 - t39 * t365; /* link j5: what it passes on */
-    const iiwa14_real_t t397 = t229 * (parameters[XX4] - parameters[YY4]); /* link j4: force and moment */
-    const iiwa14_real_t t398 = parameters[ZZ4] * t232 + t397 - parameters[YZ4] * t224
-        - parameters[XZ4] * t234;
-    const iiwa14_real_t t399 = (t289 - t377) * parameters[XY4];
+    const iiwa14_real_t t394 = t389 + t392 + (t393 - parameters[MZ3] * t285) + (t76 * t386 - t78 * t378);
+    const iiwa14_real_t t395 = t40 * t370 - t37 * t364; /* link j5: what it passes on */
+    const iiwa14_real_t t396 = t228 * (parameters[XX4] - parameters[YY4]); /* link j4: force and moment */
+    const iiwa14_real_t t397 = parameters[ZZ4] * t231 + t396 - parameters[YZ4] * t223
+        - parameters[XZ4] * t233;
+    const iiwa14_real_t t398 = (t288 - t376) * parameters[XY4];
     /* link j5: what it passes on */
-    const iiwa14_real_t t400 = t398 + t399 + (parameters[MX4] * t294 + parameters[MY4] * t284) + (t42 * t343
-        - t39 * t353 + IIWA14_C(0.4) * t396);
-    const iiwa14_real_t t401 = t230 * (parameters[XX3] - parameters[ZZ3]); /* link j3: force and moment */
-    const iiwa14_real_t t402 = parameters[YY3] * t232 + t401 + parameters[XY3] * t223
-        + parameters[YZ3] * t216;
-    const iiwa14_real_t t403 = t205 * t205; /* link j3: motion */
-    const iiwa14_real_t t404 = (t403 - t392) * parameters[XZ3]; /* link j3: force and moment */
-    const iiwa14_real_t t405 = t278 * parameters[MX3];
+    const iiwa14_real_t t399 = t397 + t398 + (parameters[MX4] * t293 + parameters[MY4] * t283) + (t40 * t342
+        - t37 * t352 + IIWA14_C(0.4) * t395);
+    const iiwa14_real_t t400 = t229 * (parameters[XX3] - parameters[ZZ3]); /* link j3: force and moment */
+    const iiwa14_real_t t401 = parameters[YY3] * t231 + t400 + parameters[XY3] * t222
+        + parameters[YZ3] * t215;
+    const iiwa14_real_t t402 = t204 * t204; /* link j3: motion */
+    const iiwa14_real_t t403 = (t402 - t391) * parameters[XZ3]; /* link j3: force and moment */
+    const iiwa14_real_t t404 = t277 * parameters[MX3];
     /* link j4: what it passes on */
-    const iiwa14_real_t t406 = t402 + t404 + (parameters[MZ3] * t283 + t405) + t400;
-    const iiwa14_real_t t407 = (t377 + t290) * parameters[MX4]; /* link j4: force and moment */
-    const iiwa14_real_t t408 = parameters[M4] * t284 + (t407 + parameters[MY4] * t233
-        + parameters[MZ4] * t224);
-    const iiwa14_real_t t409 = t351 + t340; /* link j6: motion */
-    const iiwa14_real_t t410 = t409 * parameters[MZ5]; /* link j5: force and moment */
-    const iiwa14_real_t t411 = parameters[MX5] * t337 + parameters[MY5] * t242 - t410 - parameters[M5] * t295;
-    const iiwa14_real_t t412 = t291 * parameters[MY4]; /* link j4: force and moment */
-    const iiwa14_real_t t413 = parameters[M4] * t294 + (parameters[MZ4] * t234 - (parameters[MX4] * t375
-        + t412));
+    const iiwa14_real_t t405 = t401 + t403 + (parameters[MZ3] * t282 + t404) + t399;
+    const iiwa14_real_t t406 = (t376 + t289) * parameters[MX4]; /* link j4: force and moment */
+    const iiwa14_real_t t407 = parameters[M4] * t283 + (t406 + parameters[MY4] * t232
+        + parameters[MZ4] * t223);
+    const iiwa14_real_t t408 = t350 + t339; /* link j6: motion */
+    const iiwa14_real_t t409 = t408 * parameters[MZ5]; /* link j5: force and moment */
+    const iiwa14_real_t t410 = parameters[MX5] * t336 + parameters[MY5] * t241 - t409 - parameters[M5] * t294;
+    const iiwa14_real_t t411 = t290 * parameters[MY4]; /* link j4: force and moment */
+    const iiwa14_real_t t412 = parameters[M4] * t293 + (parameters[MZ4] * t233 - (parameters[MX4] * t374
+        + t411));
     /* link j4: what it passes on */
-    const iiwa14_real_t t414 = t79 * (t413 + (t411 + (t22 * t356 + t18 * t362)));
-    const iiwa14_real_t t415 = (t391 + t392) * parameters[MX3]; /* link j3: force and moment */
-    const iiwa14_real_t t416 = parameters[M3] * t283 + (t415 - parameters[MY3] * t216
-        + parameters[MZ3] * t231);
-    const iiwa14_real_t t417 = t416 + (t81 * (t408 + t396) + t414); /* link j4: what it passes on */
-    const iiwa14_real_t t418 = t289 + t377; /* link j5: motion */
-    const iiwa14_real_t t419 = t418 * parameters[MZ4]; /* link j4: force and moment */
-    const iiwa14_real_t t420 = parameters[M4] * t286 + (parameters[MY4] * t237 - parameters[MX4] * t374
-        + t419);
-    const iiwa14_real_t t421 = (t403 + t392) * parameters[MY3]; /* link j3: force and moment */
-    const iiwa14_real_t t422 = parameters[M3] * t286 - (parameters[MX3] * t389 + t421
-        - parameters[MZ3] * t221);
-    const iiwa14_real_t t423 = t422 + (t420 + t372); /* link j4: what it passes on */
+    const iiwa14_real_t t413 = t76 * (t412 + (t410 + (t21 * t355 + t17 * t361)));
+    const iiwa14_real_t t414 = (t390 + t391) * parameters[MX3]; /* link j3: force and moment */
+    const iiwa14_real_t t415 = parameters[M3] * t282 + (t414 - parameters[MY3] * t215
+        + parameters[MZ3] * t230);
+    const iiwa14_real_t t416 = t415 + (t78 * (t407 + t395) + t413); /* link j4: what it passes on */
+    const iiwa14_real_t t417 = t288 + t376; /* link j5: motion */
+    const iiwa14_real_t t418 = t417 * parameters[MZ4]; /* link j4: force and moment */
+    const iiwa14_real_t t419 = parameters[M4] * t285 + (parameters[MY4] * t236 - parameters[MX4] * t373
+        + t418);
+    const iiwa14_real_t t420 = (t402 + t391) * parameters[MY3]; /* link j3: force and moment */
+    const iiwa14_real_t t421 = parameters[M3] * t285 - (parameters[MX3] * t388 + t420
+        - parameters[MZ3] * t220);
+    const iiwa14_real_t t422 = t421 + (t419 + t371); /* link j4: what it passes on */
     /* link j3: what it passes on */
-    const iiwa14_real_t t424 = t112 * t395 + t115 * t406 + IIWA14_C(0.42) * (t115 * t417 - t112 * t423);
-    const iiwa14_real_t t425 = t219 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
-    const iiwa14_real_t t426 = t425 - t219 * parameters[XX2] + IIWA14_C(2.0) * t215 * parameters[XY2]
-        + t218 * parameters[XZ2];
-    const iiwa14_real_t t427 = t206 * t206; /* link j2: motion */
-    const iiwa14_real_t t428 = (t427 - t276) * parameters[YZ2]; /* link j2: force and moment */
-    const iiwa14_real_t t429 = t277 * parameters[MZ2];
-    const iiwa14_real_t t430 = (t403 - t391) * parameters[XY3]; /* link j3: force and moment */
-    const iiwa14_real_t t431 = t214 * (parameters[XX3] - parameters[YY3]);
-    const iiwa14_real_t t432 = t215 * parameters[ZZ3] - t431 + parameters[YZ3] * t231
-        + parameters[XZ3] * t221;
+    const iiwa14_real_t t423 = t108 * t394 + t111 * t405 + IIWA14_C(0.42) * (t111 * t416 - t108 * t422);
+    const iiwa14_real_t t424 = t218 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const iiwa14_real_t t425 = t424 - t218 * parameters[XX2] + IIWA14_C(2.0) * t214 * parameters[XY2]
+        + t217 * parameters[XZ2];
+    const iiwa14_real_t t426 = t205 * t205; /* link j2: motion */
+    const iiwa14_real_t t427 = (t426 - t275) * parameters[YZ2]; /* link j2: force and moment */
+    const iiwa14_real_t t428 = t276 * parameters[MZ2];
+    const iiwa14_real_t t429 = (t402 - t390) * parameters[XY3]; /* link j3: force and moment */
+    const iiwa14_real_t t430 = t213 * (parameters[XX3] - parameters[YY3]);
+    const iiwa14_real_t t431 = t214 * parameters[ZZ3] - t430 + parameters[YZ3] * t230
+        + parameters[XZ3] * t220;
     /* link j4: what it passes on */
-    const iiwa14_real_t t433 = t432 - t430 - (parameters[MX3] * t286 + parameters[MY3] * t283) + (t79 * t379
-        + t81 * t387);
-    const iiwa14_real_t t434 = t215 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
-    const iiwa14_real_t t435 = t215 * parameters[YY2] - t434 + t220 * parameters[XY2]
-        - t218 * parameters[YZ2];
-    const iiwa14_real_t t436 = (t275 - t276) * parameters[XZ2];
-    const iiwa14_real_t t437 = t280 * parameters[MZ2];
+    const iiwa14_real_t t432 = t431 - t429 - (parameters[MX3] * t285 + parameters[MY3] * t282) + (t76 * t378
+        + t78 * t386);
+    const iiwa14_real_t t433 = t214 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
+    const iiwa14_real_t t434 = t214 * parameters[YY2] - t433 + t219 * parameters[XY2]
+        - t217 * parameters[YZ2];
+    const iiwa14_real_t t435 = (t274 - t275) * parameters[XZ2];
+    const iiwa14_real_t t436 = t279 * parameters[MZ2];
     /* link j2: what it passes on */
-    const iiwa14_real_t t438 = t167 * (t426 + t428 + t429 + t424) + t169 * (t435 - t436 + t437 + t433);
-    const iiwa14_real_t t439 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
-    const iiwa14_real_t t440 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1]
-        - t439 * parameters[FC1]) + t438;
-    const iiwa14_real_t t441 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
-    const iiwa14_real_t t442 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7]
-        + t441 * parameters[FC7]) - t331;
-    const iiwa14_real_t t443 = IIWA14_C(8.0) * input[6] - t442;
-    const iiwa14_real_t t444 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
-    const iiwa14_real_t t445 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6]
-        + t444 * parameters[FC6]) + t348;
-    const iiwa14_real_t t446 = IIWA14_C(8.0) * input[5] - t445 + t443 * t6;
-    const iiwa14_real_t t447 = IIWA14_C(16.0) * input[0] + t440 + t443 * t196 + t446 * t197;
-    const iiwa14_real_t t448 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
-    const iiwa14_real_t t449 = IIWA14_C(1.0e2) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5]
-        + t448 * parameters[FC5]) - t383;
-    const iiwa14_real_t t450 = IIWA14_C(8.0) * input[4] - t449 - t443 * t28 + t446 * t34;
-    const iiwa14_real_t t451 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
-    const iiwa14_real_t t452 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4]
-        + t451 * parameters[FC4]) + t400;
-    const iiwa14_real_t t453 = IIWA14_C(16.0) * input[3] - t452 - t443 * t60 - t446 * t64;
-    const iiwa14_real_t t454 = t453 + t450 * t75;
-    const iiwa14_real_t t455 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
-    const iiwa14_real_t t456 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[2] * parameters[FV3]
-        - t455 * parameters[FC3]) + t433;
-    const iiwa14_real_t t457 = IIWA14_C(16.0) * input[2] + t456 - t443 * t104 - t446 * t105;
-    const iiwa14_real_t t458 = t457 - t450 * t106 - t454 * t96;
-    const iiwa14_real_t t459 = t447 + t450 * t198 + t454 * t200 - t458 * t201;
+    const iiwa14_real_t t437 = t162 * (t425 + t427 + t428 + t423) + t164 * (t434 - t435 + t436 + t432);
+    const iiwa14_real_t t438 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
+    const iiwa14_real_t t439 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1]
+        - t438 * parameters[FC1]) + t437;
+    const iiwa14_real_t t440 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
+    const iiwa14_real_t t441 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7]
+        + t440 * parameters[FC7]) - t330;
+    const iiwa14_real_t t442 = IIWA14_C(8.0) * input[6] - t441;
+    const iiwa14_real_t t443 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
+    const iiwa14_real_t t444 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6]
+        + t443 * parameters[FC6]) + t347;
+    const iiwa14_real_t t445 = IIWA14_C(8.0) * input[5] - t444 + t442 * t6;
+    const iiwa14_real_t t446 = IIWA14_C(16.0) * input[0] + t439 + t442 * t191 + t445 * t192;
+    const iiwa14_real_t t447 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
+    const iiwa14_real_t t448 = IIWA14_C(1.0e2) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5]
+        + t447 * parameters[FC5]) - t382;
+    const iiwa14_real_t t449 = IIWA14_C(8.0) * input[4] - t448 - t442 * t27 + t445 * t33;
+    const iiwa14_real_t t450 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
+    const iiwa14_real_t t451 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4]
+        + t450 * parameters[FC4]) + t399;
+    const iiwa14_real_t t452 = IIWA14_C(16.0) * input[3] - t451 - t442 * t58 - t445 * t62;
+    const iiwa14_real_t t453 = t452 + t449 * t73;
+    const iiwa14_real_t t454 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
+    const iiwa14_real_t t455 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[2] * parameters[FV3]
+        - t454 * parameters[FC3]) + t432;
+    const iiwa14_real_t t456 = IIWA14_C(16.0) * input[2] + t455 - t442 * t101 - t445 * t102;
+    const iiwa14_real_t t457 = t456 - t449 * t103 - t453 * t93;
+    const iiwa14_real_t t458 = t446 + t449 * t193 + t453 * t195 - t457 * t196;
     /* link j3: what it passes on */
-    const iiwa14_real_t t460 = t112 * t406 - t115 * t395 + IIWA14_C(0.42) * (t112 * t417 + t115 * t423);
+    const iiwa14_real_t t459 = t108 * t405 - t111 * t394 + IIWA14_C(0.42) * (t108 * t416 + t111 * t422);
     /* link j2: force and moment */
-    const iiwa14_real_t t461 = t218 * (parameters[XX2] - parameters[YY2]) + (t427 - t275) * parameters[XY2]
-        + (t277 * parameters[MX2] + t280 * parameters[MY2]);
-    const iiwa14_real_t t462 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
-    const iiwa14_real_t t463 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[1] * parameters[FV2]
-        - t462 * parameters[FC2]) + (t461 + t460);
-    const iiwa14_real_t t464 = IIWA14_C(16.0) * input[1] + t463 + t443 * t134 + t446 * t140;
-    const iiwa14_real_t t465 = t464 + t450 * t146 + t454 * t151 + t458 * t163;
-    const iiwa14_real_t t466 = IIWA14_C(1.0) / t202;
-    const iiwa14_real_t t467 = iiwa14_bounded((t459 - t465 * t190) * t466);
-    ddq[0] = t467;
-    const iiwa14_real_t t468 = iiwa14_bounded(t465 * t189 - t190 * t467);
-    ddq[1] = t468;
-    const iiwa14_real_t t469 = iiwa14_bounded(t458 * t162 - t201 * t467 + t163 * t468);
-    ddq[2] = t469;
-    const iiwa14_real_t t470 = iiwa14_bounded(t454 * t95 + t200 * t467 + t151 * t468 - t96 * t469);
-    ddq[3] = t470;
-    const iiwa14_real_t t471 = t450 * t74 + t198 * t467 + t146 * t468 - t106 * t469;
-    const iiwa14_real_t t472 = iiwa14_bounded(t471 + t75 * t470);
-    ddq[4] = t472;
-    const iiwa14_real_t t473 = t446 * t33 + t197 * t467 + t140 * t468 - t105 * t469;
-    const iiwa14_real_t t474 = iiwa14_bounded(t473 - t64 * t470 + t34 * t472);
-    ddq[5] = t474;
-    const iiwa14_real_t t475 = t443 * t5 + t196 * t467 + t134 * t468 - t104 * t469;
-    const iiwa14_real_t t476 = iiwa14_bounded(t475 - t60 * t470 - t28 * t472 + t6 * t474);
-    ddq[6] = t476;
-    const iiwa14_real_t t477 = t256 * parameters[XZ7];
-    const iiwa14_real_t t478 = t257 * parameters[XY7];
-    const iiwa14_real_t t479 = t477 + t478;
-    const iiwa14_real_t t480 = t262 * parameters[YZ7];
-    const iiwa14_real_t t481 = t478 + t480;
-    const iiwa14_real_t t482 = IIWA14_C(0.5) * (parameters[ZZ7] + (parameters[XX7] + parameters[YY7]));
-    const iiwa14_real_t t483 = parameters[XX7] - t482;
-    const iiwa14_real_t t484 = t262 * parameters[XZ7] + t257 * t483;
-    const iiwa14_real_t t485 = parameters[YY7] - t482;
-    const iiwa14_real_t t486 = t256 * parameters[YZ7] + t257 * t485;
+    const iiwa14_real_t t460 = t217 * (parameters[XX2] - parameters[YY2]) + (t426 - t274) * parameters[XY2]
+        + (t276 * parameters[MX2] + t279 * parameters[MY2]);
+    const iiwa14_real_t t461 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
+    const iiwa14_real_t t462 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[1] * parameters[FV2]
+        - t461 * parameters[FC2]) + (t460 + t459);
+    const iiwa14_real_t t463 = IIWA14_C(16.0) * input[1] + t462 + t442 * t130 + t445 * t136;
+    const iiwa14_real_t t464 = t463 + t449 * t142 + t453 * t147 + t457 * t159;
+    const iiwa14_real_t t465 = IIWA14_C(1.0) / t197;
+    const iiwa14_real_t t466 = iiwa14_held((t458 - t464 * t185) * t465);
+    ddq[0] = t466;
+    const iiwa14_real_t t467 = iiwa14_held(t464 * t184 - t185 * t466);
+    ddq[1] = t467;
+    const iiwa14_real_t t468 = iiwa14_held(t457 * t158 - t196 * t466 + t159 * t467);
+    ddq[2] = t468;
+    const iiwa14_real_t t469 = iiwa14_held(t453 * t92 + t195 * t466 + t147 * t467 - t93 * t468);
+    ddq[3] = t469;
+    const iiwa14_real_t t470 = t449 * t72 + t193 * t466 + t142 * t467 - t103 * t468;
+    const iiwa14_real_t t471 = iiwa14_held(t470 + t73 * t469);
+    ddq[4] = t471;
+    const iiwa14_real_t t472 = t445 * t32 + t192 * t466 + t136 * t467 - t102 * t468;
+    const iiwa14_real_t t473 = iiwa14_held(t472 - t62 * t469 + t33 * t471);
+    ddq[5] = t473;
+    const iiwa14_real_t t474 = t442 * t5 + t191 * t466 + t130 * t467 - t101 * t468;
+    const iiwa14_real_t t475 = iiwa14_held(t474 - t58 * t469 - t27 * t471 + t6 * t473);
+    ddq[6] = t475;
+    const iiwa14_real_t t476 = t217 - t467;
+    const iiwa14_real_t t477 = t162 * t466;
+    const iiwa14_real_t t478 = t218 + t477;
+    const iiwa14_real_t t479 = t218 + t478;
+    const iiwa14_real_t t480 = t108 * t476 - t111 * t479;
+    const iiwa14_real_t t481 = t480 - t229;
+    const iiwa14_real_t t482 = t469 + t481;
+    const iiwa14_real_t t483 = t228 + t482;
+    const iiwa14_real_t t484 = t164 * t466;
+    const iiwa14_real_t t485 = t214 - t484;
+    const iiwa14_real_t t486 = t485 - t468;
+    const iiwa14_real_t t487 = t486 - t213;
+    const iiwa14_real_t t488 = t111 * t476 + t108 * t479;
+    const iiwa14_real_t t489 = t488 - t216;
+    const iiwa14_real_t t490 = t489 - t216;
+    const iiwa14_real_t t491 = t76 * t487 + t78 * t490;
+    const iiwa14_real_t t492 = t234 + t491;
+    const iiwa14_real_t t493 = t234 + t492;
+    const iiwa14_real_t t494 = t37 * t483 - t40 * t493;
+    const iiwa14_real_t t495 = t494 - t249;
+    const iiwa14_real_t t496 = t495 - t473;
+    const iiwa14_real_t t497 = t496 - t252;
+    const iiwa14_real_t t498 = t78 * t487 - t76 * t490;
+    const iiwa14_real_t t499 = t224 + t498;
+    const iiwa14_real_t t500 = t499 - t471;
+    const iiwa14_real_t t501 = t212 - t500;
+    const iiwa14_real_t t502 = t40 * t483 + t37 * t493;
+    const iiwa14_real_t t503 = t502 - t239;
+    const iiwa14_real_t t504 = t239 - t503;
+    const iiwa14_real_t t505 = t21 * t501 - t17 * t504;
+    const iiwa14_real_t t506 = t245 - t505;
+    const iiwa14_real_t t507 = t245 + t506;
+    const iiwa14_real_t t508 = t2 * t497 + t1 * t507;
+    const iiwa14_real_t t509 = t508 - t262;
+    const iiwa14_real_t t510 = t2 * t507 - t1 * t497;
+    const iiwa14_real_t t511 = t257 - t510;
+    const iiwa14_real_t t512 = t257 + t511;
+    const iiwa14_real_t t513 = t17 * t501 + t21 * t504;
+    const iiwa14_real_t t514 = t266 - t513;
+    const iiwa14_real_t t515 = t475 - t514;
+    const iiwa14_real_t t516 = t515 - t268;
+    const iiwa14_real_t t517 = t307 + parameters[YY7] * t509 + parameters[XY7] * t512
+        - parameters[YZ7] * t516;
+    const iiwa14_real_t t518 = IIWA14_C(0.42) * t476 - t279;
+    const iiwa14_real_t t519 = IIWA14_C(0.42) * t479;
+    const iiwa14_real_t t520 = t108 * t518 - t111 * t519;
+    const iiwa14_real_t t521 = t78 * t520 - t278;
+    const iiwa14_real_t t522 = t521 + IIWA14_C(0.4) * t483;
+    const iiwa14_real_t t523 = t111 * t518 + t108 * t519;
+    const iiwa14_real_t t524 = t523 + IIWA14_C(0.4) * t493;
+    const iiwa14_real_t t525 = t40 * t524 - t37 * t522;
+    const iiwa14_real_t t526 = t292 + t76 * t520;
+    const iiwa14_real_t t527 = t291 - t526;
+    const iiwa14_real_t t528 = t17 * t525 + t21 * t527;
+    const iiwa14_real_t t529 = IIWA14_C(0.126) * t497 - t528;
+    const iiwa14_real_t t530 = t40 * t522 + t37 * t524;
+    const iiwa14_real_t t531 = IIWA14_C(0.126) * t507 - t530;
+    const iiwa14_real_t t532 = t2 * t529 + t1 * t531;
+    const iiwa14_real_t t533 = parameters[MZ7] * t532;
+    const iiwa14_real_t t534 = t17 * t527 - t21 * t525;
+    const iiwa14_real_t t535 = t534 - t303;
+    const iiwa14_real_t t536 = t312 + t517 + (t533 - parameters[MX7] * t535);
+    const iiwa14_real_t t537 = t255 * parameters[XZ7];
+    const iiwa14_real_t t538 = t256 * parameters[XY7];
+    const iiwa14_real_t t539 = t537 + t538;
+    const iiwa14_real_t t540 = IIWA14_C(-2.0) * t255; /* link j7: derivatives */
+    const iiwa14_real_t t541 = IIWA14_C(0.5) * (parameters[ZZ7] + (parameters[XX7] + parameters[YY7]));
+    const iiwa14_real_t t542 = parameters[YY7] - t541;
+    const iiwa14_real_t t543 = t255 * parameters[YZ7] + t256 * t542;
+    const iiwa14_real_t t544 = IIWA14_C(2.0) * t261;
+    const iiwa14_real_t t545 = t539 * t540 + t543 * t544 + (t358 * parameters[XZ7] + (parameters[XX7] * t508
+        + parameters[XY7] * t510));
+    const iiwa14_real_t t546 = t536 - (t533 + t545);
+    const iiwa14_real_t t547 = t509 - t262;
+    const iiwa14_real_t t548 = t268 + t515;
+    const iiwa14_real_t t549 = parameters[XX7] * t511 - t259 + parameters[XY7] * t547
+        - parameters[XZ7] * t548;
+    const iiwa14_real_t t550 = t1 * t529 - t2 * t531;
+    const iiwa14_real_t t551 = parameters[MZ7] * t550;
+    const iiwa14_real_t t552 = t273 + t549 + (parameters[MY7] * t535 + t551);
+    const iiwa14_real_t t553 = parameters[XX7] - t541;
+    const iiwa14_real_t t554 = t261 * parameters[XZ7] + t256 * t553;
+    const iiwa14_real_t t555 = t261 * parameters[YZ7];
+    const iiwa14_real_t t556 = t538 + t555;
+    const iiwa14_real_t t557 = t358 * parameters[YZ7] + (parameters[XY7] * t508 + parameters[YY7] * t510)
+        - (t554 * t540 + t556 * t544);
+    const iiwa14_real_t t558 = t552 + (t557 - t551);
+    const iiwa14_real_t t559 = parameters[MZ7] * t510;
+    const iiwa14_real_t t560 = parameters[M7] * t550;
+    const iiwa14_real_t t561 = t560 + (parameters[MX7] * t548 - t317 - t559);
+    const iiwa14_real_t t562 = t261 * parameters[MY7] - t255 * parameters[MX7];
+    const iiwa14_real_t t563 = t561 + (t562 * t544 - t560 + (t559 - t358 * parameters[MY7]));
+    const iiwa14_real_t t564 = parameters[MZ7] * t508;
+    const iiwa14_real_t t565 = parameters[M7] * t532;
+    const iiwa14_real_t t566 = t565 + (t315 + parameters[MY7] * t516 + t564);
+    const iiwa14_real_t t567 = t562 * t540 + t565 - (t358 * parameters[MX7] - t564) - t566;
+    const iiwa14_real_t t568 = t1 * t563 - t2 * t567;
+    const iiwa14_real_t t569 = t2 * t546 + t1 * t558 + IIWA14_C(0.126) * t568;
+    const iiwa14_real_t t570 = t358 * parameters[ZZ7] + (parameters[XZ7] * t508 + parameters[YZ7] * t510);
+    const iiwa14_real_t t571 = t255 * t553 - t261 * parameters[XY7];
+    const iiwa14_real_t t572 = t255 * parameters[XY7] - t261 * t542;
+    const iiwa14_real_t t573 = parameters[MY7] * t550 - parameters[MX7] * t532;
+    const iiwa14_real_t t574 = t570 - (t571 * t540 + t572 * t544) + t573;
+    const iiwa14_real_t t575 = t17 * t569 - t21 * t574;
+    const iiwa14_real_t t576 = t2 * t563 + t1 * t567;
+    const iiwa14_real_t t577 = t2 * t558 - t1 * t546 + IIWA14_C(0.126) * t576;
+    const iiwa14_real_t t578 = t256 * parameters[MX7] + t261 * parameters[MZ7];
+    const iiwa14_real_t t579 = t255 * parameters[MZ7] + t256 * parameters[MY7];
+    const iiwa14_real_t t580 = t578 * t540 + t579 * t544 + (parameters[MX7] * t510 - parameters[MY7] * t508);
+    const iiwa14_real_t t581 = t21 * t580 - t17 * t576;
+    const iiwa14_real_t t582 = t37 * t568 - t40 * t581;
+    const iiwa14_real_t t583 = t37 * t575 + t40 * t577 + IIWA14_C(0.4) * t582;
+    const iiwa14_real_t t584 = t21 * t569 + t17 * t574;
+    const iiwa14_real_t t585 = t78 * t583 + t76 * t584;
+    const iiwa14_real_t t586 = t37 * t581 + t40 * t568;
+    const iiwa14_real_t t587 = t40 * t575 - t37 * t577 + IIWA14_C(0.4) * t586;
+    const iiwa14_real_t t588 = t78 * t586 - t76 * (t21 * t576 + t17 * t580);
+    const iiwa14_real_t t589 = t108 * t585 - t111 * t587 + IIWA14_C(0.42) * (t108 * t582 - t111 * t588);
+    const iiwa14_real_t t590 = t76 * t583 - t78 * t584;
+    const iiwa14_real_t t591 = IIWA14_C(0.0625) * (t162 * t589 - t164 * t590);
+    const iiwa14_real_t t592 = iiwa14_held(IIWA14_C(16.0) * t465);
+    const iiwa14_real_t t593 = t111 * t585 + t108 * t587 + IIWA14_C(0.42) * (t108 * t588 + t111 * t582);
+    const iiwa14_real_t t594 = IIWA14_C(0.0625) * t593;
+    const iiwa14_real_t t595 = t185 * t465;
+    const iiwa14_real_t t596 = iiwa14_held(IIWA14_C(-16.0) * t595);
+    const iiwa14_real_t t597 = IIWA14_C(0.0625) * t590;
+    const iiwa14_real_t t598 = t465 * (t196 + t159 * t185);
+    const iiwa14_real_t t599 = iiwa14_held(IIWA14_C(-16.0) * t598);
+    const iiwa14_real_t t600 = IIWA14_C(0.0625) * t587;
+    const iiwa14_real_t t601 = t147 - t93 * t159;
+    const iiwa14_real_t t602 = t465 * (t195 + t93 * t196 - t185 * t601);
+    const iiwa14_real_t t603 = iiwa14_held(IIWA14_C(16.0) * t602);
+    const iiwa14_real_t t604 = t592 * t591 - t596 * t594 - t599 * t597 + t603 * t600;
+    const iiwa14_real_t t605 = IIWA14_C(0.125) * t584;
+    const iiwa14_real_t t606 = t103 + t73 * t93;
+    const iiwa14_real_t t607 = t142 + t73 * t147 - t159 * t606;
+    const iiwa14_real_t t608 = t193 + t73 * t195 + t196 * t606 - t185 * t607;
+    const iiwa14_real_t t609 = t465 * t608;
+    const iiwa14_real_t t610 = iiwa14_held(IIWA14_C(8.0) * t609);
+    const iiwa14_real_t t611 = IIWA14_C(0.125) * t577;
+    const iiwa14_real_t t612 = t33 * t73 - t62;
+    const iiwa14_real_t t613 = t102 + t33 * t103 + t93 * t612;
+    const iiwa14_real_t t614 = t136 + t33 * t142 + t147 * t612 - t159 * t613;
+    const iiwa14_real_t t615 = t192 + t33 * t193 + t195 * t612 + t196 * t613;
+    const iiwa14_real_t t616 = t465 * (t615 - t185 * t614);
+    const iiwa14_real_t t617 = iiwa14_held(IIWA14_C(8.0) * t616);
+    const iiwa14_real_t t618 = IIWA14_C(2.0) * t571;
+    const iiwa14_real_t t619 = IIWA14_C(2.0) * t572;
+    const iiwa14_real_t t620 = IIWA14_C(0.125) * (t573 + (t255 * t618 - t261 * t619 + t570));
+    const iiwa14_real_t t621 = t6 * t33 - t27;
+    const iiwa14_real_t t622 = t73 * t621 - (t58 + t6 * t62);
+    const iiwa14_real_t t623 = t101 + t6 * t102 + t103 * t621 + t93 * t622;
+    const iiwa14_real_t t624 = t130 + t6 * t136 + t142 * t621 + t147 * t622;
+    const iiwa14_real_t t625 = t624 - t159 * t623;
+    const iiwa14_real_t t626 = t191 + t6 * t192 + t193 * t621 + t195 * t622;
+    const iiwa14_real_t t627 = t465 * (t626 + t196 * t623 - t185 * t625);
+    const iiwa14_real_t t628 = iiwa14_held(IIWA14_C(8.0) * t627);
+    const iiwa14_real_t t629 = t604 + t610 * t605 + t617 * t611 + t628 * t620;
+    ddq_by_q[6] = t629;
+    const iiwa14_real_t t630 = iiwa14_held(IIWA14_C(16.0) * (t184 + t185 * t595));
+    const iiwa14_real_t t631 = t159 * t184 + t185 * t598;
+    const iiwa14_real_t t632 = iiwa14_held(IIWA14_C(16.0) * t631);
+    const iiwa14_real_t t633 = t185 * t602 - t184 * t601;
+    const iiwa14_real_t t634 = iiwa14_held(IIWA14_C(-16.0) * t633);
+    const iiwa14_real_t t635 = t596 * t591 - t630 * t594 - t632 * t597 + t634 * t600;
+    const iiwa14_real_t t636 = t185 * t609 - t184 * t607;
+    const iiwa14_real_t t637 = iiwa14_held(IIWA14_C(-8.0) * t636);
+    const iiwa14_real_t t638 = t185 * t616 - t184 * t614;
+    const iiwa14_real_t t639 = iiwa14_held(IIWA14_C(-8.0) * t638);
+    const iiwa14_real_t t640 = t185 * t627 - t184 * t625;
+    const iiwa14_real_t t641 = iiwa14_held(IIWA14_C(-8.0) * t640);
+    const iiwa14_real_t t642 = t635 + t637 * t605 + t639 * t611 + t641 * t620;
+    ddq_by_q[13] = t642;
+    const iiwa14_real_t t643 = iiwa14_held(IIWA14_C(16.0) * (t158 + t196 * t598 + t159 * t631));
+    const iiwa14_real_t t644 = t93 * t158 + t196 * t602 + t159 * t633;
+    const iiwa14_real_t t645 = iiwa14_held(IIWA14_C(-16.0) * t644);
+    const iiwa14_real_t t646 = t599 * t591 - t632 * t594 - t643 * t597 + t645 * t600;
+    const iiwa14_real_t t647 = t158 * t606 + t196 * t609 + t159 * t636;
+    const iiwa14_real_t t648 = iiwa14_held(IIWA14_C(-8.0) * t647);
+    const iiwa14_real_t t649 = t158 * t613 + t196 * t616 + t159 * t638;
+    const iiwa14_real_t t650 = iiwa14_held(IIWA14_C(-8.0) * t649);
+    const iiwa14_real_t t651 = t158 * t623 + t196 * t627 + t159 * t640;
+    const iiwa14_real_t t652 = iiwa14_held(IIWA14_C(-8.0) * t651);
+    const iiwa14_real_t t653 = t646 + t648 * t605 + t650 * t611 + t652 * t620;
+    ddq_by_q[20] = t653;
+    const iiwa14_real_t t654 = t92 + t195 * t602 - t147 * t633 + t93 * t644;
+    const iiwa14_real_t t655 = iiwa14_held(IIWA14_C(16.0) * t654);
+    const iiwa14_real_t t656 = t603 * t591 - t634 * t594 - t645 * t597 + t655 * t600;
+    const iiwa14_real_t t657 = t73 * t92 + t195 * t609 - t147 * t636 + t93 * t647;
+    const iiwa14_real_t t658 = iiwa14_held(IIWA14_C(8.0) * t657);
+    const iiwa14_real_t t659 = t92 * t612 + t195 * t616 - t147 * t638 + t93 * t649;
+    const iiwa14_real_t t660 = iiwa14_held(IIWA14_C(8.0) * t659);
+    const iiwa14_real_t t661 = t92 * t622 + t195 * t627 - t147 * t640 + t93 * t651;
+    const iiwa14_real_t t662 = iiwa14_held(IIWA14_C(8.0) * t661);
+    const iiwa14_real_t t663 = t656 + t658 * t605 + t660 * t611 + t662 * t620;
+    ddq_by_q[27] = t663;
+    const iiwa14_real_t t664 = iiwa14_held(IIWA14_C(16.0) * t609);
+    const iiwa14_real_t t665 = iiwa14_held(IIWA14_C(-16.0) * t636);
+    const iiwa14_real_t t666 = iiwa14_held(IIWA14_C(-16.0) * t647);
+    const iiwa14_real_t t667 = iiwa14_held(IIWA14_C(16.0) * t657);
+    const iiwa14_real_t t668 = t664 * t591 - t665 * t594 - t666 * t597 + t667 * t600;
+    const iiwa14_real_t t669 = t72 + t193 * t609 - t142 * t636 + t103 * t647;
+    const iiwa14_real_t t670 = iiwa14_held(IIWA14_C(8.0) * (t669 + t73 * t657));
+    const iiwa14_real_t t671 = t33 * t72 + t193 * t616 - t142 * t638 + t103 * t649;
+    const iiwa14_real_t t672 = t671 + t73 * t659;
+    const iiwa14_real_t t673 = iiwa14_held(IIWA14_C(8.0) * t672);
+    const iiwa14_real_t t674 = t72 * t621 + t193 * t627 - t142 * t640 + t103 * t651;
+    const iiwa14_real_t t675 = t674 + t73 * t661;
+    const iiwa14_real_t t676 = iiwa14_held(IIWA14_C(8.0) * t675);
+    const iiwa14_real_t t677 = t668 + t670 * t605 + t673 * t611 + t676 * t620;
+    ddq_by_q[34] = t677;
+    const iiwa14_real_t t678 = iiwa14_held(IIWA14_C(16.0) * t616);
+    const iiwa14_real_t t679 = iiwa14_held(IIWA14_C(-16.0) * t638);
+    const iiwa14_real_t t680 = iiwa14_held(IIWA14_C(-16.0) * t649);
+    const iiwa14_real_t t681 = iiwa14_held(IIWA14_C(16.0) * t659);
+    const iiwa14_real_t t682 = t678 * t591 - t679 * t594 - t680 * t597 + t681 * t600;
+    const iiwa14_real_t t683 = t32 + t192 * t616 - t136 * t638 + t102 * t649;
+    const iiwa14_real_t t684 = iiwa14_held(IIWA14_C(8.0) * (t683 - t62 * t659 + t33 * t672));
+    const iiwa14_real_t t685 = t136 * t640 - (t6 * t32 + t192 * t627) - t102 * t651;
+    const iiwa14_real_t t686 = t685 + t62 * t661 - t33 * t675;
+    const iiwa14_real_t t687 = iiwa14_held(IIWA14_C(-8.0) * t686);
+    const iiwa14_real_t t688 = t682 + t673 * t605 + t684 * t611 + t687 * t620;
+    ddq_by_q[41] = t688;
+    const iiwa14_real_t t689 = iiwa14_held(IIWA14_C(16.0) * t627);
+    const iiwa14_real_t t690 = iiwa14_held(IIWA14_C(-16.0) * t640);
+    const iiwa14_real_t t691 = iiwa14_held(IIWA14_C(-16.0) * t651);
+    const iiwa14_real_t t692 = iiwa14_held(IIWA14_C(16.0) * t661);
+    const iiwa14_real_t t693 = t689 * t591 - t690 * t594 - t691 * t597 + t692 * t600;
+    const iiwa14_real_t t694 = t5 + t191 * t627 - t130 * t640 + t101 * t651;
+    const iiwa14_real_t t695 = t694 - t58 * t661 - t27 * t675 - t6 * t686;
+    const iiwa14_real_t t696 = iiwa14_held(IIWA14_C(8.0) * t695);
+    const iiwa14_real_t t697 = t693 + t676 * t605 + t687 * t611 + t696 * t620;
+    ddq_by_q[48] = t697;
+    const iiwa14_real_t t698 = t541 - parameters[ZZ7];
+    const iiwa14_real_t t699 = t255 * t698 - t256 * parameters[YZ7];
+    const iiwa14_real_t t700 = IIWA14_C(2.0) * t699 + (parameters[XX7] * t540 + parameters[XY7] * t544);
+    const iiwa14_real_t t701 = t256 * parameters[XZ7] - t261 * t698;
+    const iiwa14_real_t t702 = IIWA14_C(2.0) * t701 + (parameters[XY7] * t540 + parameters[YY7] * t544);
+    const iiwa14_real_t t703 = IIWA14_C(-2.0) * t578 + parameters[MZ7] * t544;
+    const iiwa14_real_t t704 = IIWA14_C(2.0) * t579 + parameters[MZ7] * t540;
+    const iiwa14_real_t t705 = t1 * t703 - t2 * t704;
+    const iiwa14_real_t t706 = t1 * t702 - t2 * t700 + IIWA14_C(0.126) * t705;
+    const iiwa14_real_t t707 = t537 - t555;
+    const iiwa14_real_t t708 = IIWA14_C(2.0) * t707;
+    const iiwa14_real_t t709 = t708 + (parameters[XZ7] * t540 + parameters[YZ7] * t544);
+    const iiwa14_real_t t710 = t17 * t706 - t21 * t709;
+    const iiwa14_real_t t711 = t2 * t703 + t1 * t704;
+    const iiwa14_real_t t712 = t1 * t700 + t2 * t702 + IIWA14_C(0.126) * t711;
+    const iiwa14_real_t t713 = parameters[MX7] * t544 - parameters[MY7] * t540;
+    const iiwa14_real_t t714 = t17 * t711 - t21 * t713;
+    const iiwa14_real_t t715 = t40 * t714 + t37 * t705;
+    const iiwa14_real_t t716 = t37 * t710 + t40 * t712 + IIWA14_C(0.4) * t715;
+    const iiwa14_real_t t717 = t21 * t706 + t17 * t709;
+    const iiwa14_real_t t718 = t78 * t716 + t76 * t717;
+    const iiwa14_real_t t719 = t40 * t705 - t37 * t714;
+    const iiwa14_real_t t720 = t40 * t710 - t37 * t712 + IIWA14_C(0.4) * t719;
+    const iiwa14_real_t t721 = t76 * (t21 * t711 + t17 * t713) - t78 * t719;
+    const iiwa14_real_t t722 = t111 * t718 + t108 * t720 + IIWA14_C(0.42) * (t111 * t715 - t108 * t721);
+    const iiwa14_real_t t723 = IIWA14_C(0.0625) * t722;
+    const iiwa14_real_t t724 = t108 * t718 - t111 * t720 + IIWA14_C(0.42) * (t111 * t721 + t108 * t715);
+    const iiwa14_real_t t725 = t78 * t717 - t76 * t716;
+    const iiwa14_real_t t726 = IIWA14_C(0.0625) * (t162 * t724 + t164 * t725);
+    const iiwa14_real_t t727 = IIWA14_C(-0.0625) * t725;
+    const iiwa14_real_t t728 = IIWA14_C(0.0625) * t720;
+    const iiwa14_real_t t729 = t726 * t592 - t723 * t596 - t727 * t599 + t728 * t603;
+    const iiwa14_real_t t730 = IIWA14_C(0.125) * t717;
+    const iiwa14_real_t t731 = IIWA14_C(0.125) * t712;
+    const iiwa14_real_t t732 = IIWA14_C(-3.2e3) * parameters[FV7];
+    const iiwa14_real_t t733 = t729 + t730 * t610 + t731 * t617 + t732 * t628;
+    ddq_by_dq[6] = t733;
+    const iiwa14_real_t t734 = t726 * t596 - t723 * t630 - t727 * t632 + t728 * t634;
+    const iiwa14_real_t t735 = t734 + t730 * t637 + t731 * t639 + t732 * t641;
+    ddq_by_dq[13] = t735;
+    const iiwa14_real_t t736 = t726 * t599 - t723 * t632 - t727 * t643 + t728 * t645;
+    const iiwa14_real_t t737 = t736 + t730 * t648 + t731 * t650 + t732 * t652;
+    ddq_by_dq[20] = t737;
+    const iiwa14_real_t t738 = t726 * t603 - t723 * t634 - t727 * t645 + t728 * t655;
+    const iiwa14_real_t t739 = t738 + t730 * t658 + t731 * t660 + t732 * t662;
+    ddq_by_dq[27] = t739;
+    const iiwa14_real_t t740 = t726 * t664 - t723 * t665 - t727 * t666 + t728 * t667;
+    const iiwa14_real_t t741 = t740 + t730 * t670 + t731 * t673 + t732 * t676;
+    ddq_by_dq[34] = t741;
+    const iiwa14_real_t t742 = t726 * t678 - t723 * t679 - t727 * t680 + t728 * t681;
+    const iiwa14_real_t t743 = t742 + t730 * t673 + t731 * t684 + t732 * t687;
+    ddq_by_dq[41] = t743;
+    const iiwa14_real_t t744 = t726 * t689 - t723 * t690 - t727 * t691 + t728 * t692;
+    const iiwa14_real_t t745 = t744 + t730 * t676 + t731 * t687 + t732 * t696;
+    ddq_by_dq[48] = t745;
+    ddq_by_input[6] = t628;
+    ddq_by_input[13] = t641;
+    ddq_by_input[20] = t652;
+    ddq_by_input[27] = t662;
+    ddq_by_input[34] = t676;
+    ddq_by_input[41] = t687;
+    ddq_by_input[48] = t696;
+    const iiwa14_real_t t746 = t2 * t561 - t1 * t566;
+    const iiwa14_real_t t747 = t266 + t514;
+    const iiwa14_real_t t748 = t252 + t496;
+    const iiwa14_real_t t749 = t320 - parameters[XX6] * t506 - parameters[XY6] * t747
+        + parameters[XZ6] * t748;
+    const iiwa14_real_t t750 = t325 - t749 - (parameters[MZ6] * t534 - parameters[MY6] * t530) + (t1 * t536
+        - t2 * t552 - IIWA14_C(0.126) * t746);
+    const iiwa14_real_t t751 = IIWA14_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const iiwa14_real_t t752 = t751 - parameters[XX6];
     /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t487 = t2 * (t479 + t481) + t1 * (t484 - t486);
-    const iiwa14_real_t t488 = t2 * t487;
-    const iiwa14_real_t t489 = IIWA14_C(-0.126) * t245; /* link j7: velocity of its origin */
-    const iiwa14_real_t t490 = t19 * t489; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t491 = t262 * parameters[MY7] - t256 * parameters[MX7];
-    const iiwa14_real_t t492 = IIWA14_C(0.126) * t491;
-    const iiwa14_real_t t493 = IIWA14_C(0.126) * t252; /* link j7: velocity of its origin */
-    const iiwa14_real_t t494 = t3 * t493; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t495 = t492 + (t494 - t490);
-    const iiwa14_real_t t496 = t244 * parameters[XZ6];
-    const iiwa14_real_t t497 = t245 * parameters[XY6];
-    const iiwa14_real_t t498 = t496 - t497 + (t495 + (t488 - t481 + t490));
-    const iiwa14_real_t t499 = t477 - t480;
-    const iiwa14_real_t t500 = t252 * parameters[YZ6];
-    const iiwa14_real_t t501 = t497 + t500 - (t499 + t492 - t495);
-    const iiwa14_real_t t502 = t482 - parameters[ZZ7];
-    const iiwa14_real_t t503 = t256 * t502 - t257 * parameters[YZ7];
-    const iiwa14_real_t t504 = t257 * parameters[XZ7] - t262 * t502;
-    const iiwa14_real_t t505 = t256 * parameters[MZ7] + t257 * parameters[MY7];
-    const iiwa14_real_t t506 = t257 * parameters[MX7] + t262 * parameters[MZ7];
-    const iiwa14_real_t t507 = t2 * t505 + t1 * t506;
-    const iiwa14_real_t t508 = t1 * t504 - t2 * t503 + (IIWA14_C(-0.126) * t507 + t46 * t489);
-    const iiwa14_real_t t509 = IIWA14_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const iiwa14_real_t t510 = parameters[YY6] - t509;
-    const iiwa14_real_t t511 = t245 * t510 - t244 * parameters[YZ6] + t508;
-    const iiwa14_real_t t512 = t256 * t483 - t262 * parameters[XY7];
-    const iiwa14_real_t t513 = t256 * parameters[XY7] - t262 * t485;
-    const iiwa14_real_t t514 = t509 - parameters[XX6];
-    const iiwa14_real_t t515 = t252 * parameters[XZ6] - t245 * t514 + (t2 * t512 - t1 * t513);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t516 = t18 * (t498 - t501) + t22 * (t511 - t515);
-    const iiwa14_real_t t517 = t18 * t516;
-    const iiwa14_real_t t518 = t212 * parameters[XZ5];
-    const iiwa14_real_t t519 = t239 * parameters[XY5];
-    const iiwa14_real_t t520 = t518 - t519 + (t501 + t517);
+    const iiwa14_real_t t753 = t251 * parameters[XZ6] - t244 * t752 + (t2 * t571 - t1 * t572);
+    const iiwa14_real_t t754 = IIWA14_C(2.0) * t243; /* link j6: derivatives */
+    const iiwa14_real_t t755 = IIWA14_C(0.126) * t562; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t756 = IIWA14_C(-0.126) * t244; /* link j7: velocity of its origin */
+    const iiwa14_real_t t757 = t18 * t756; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t758 = IIWA14_C(0.126) * t251; /* link j7: velocity of its origin */
+    const iiwa14_real_t t759 = t3 * t758; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t760 = t755 + (t759 - t757);
+    const iiwa14_real_t t761 = t244 * parameters[XY6];
+    const iiwa14_real_t t762 = t251 * parameters[YZ6];
+    const iiwa14_real_t t763 = t761 + t762 - (t707 + t755 - t760);
+    const iiwa14_real_t t764 = IIWA14_C(2.0) * t251; /* link j6: derivatives */
+    const iiwa14_real_t t765 = t753 * t754 + t763 * t764 - (t365 * t28 + (t20 * t513 - t16 * t505));
+    const iiwa14_real_t t766 = t750 + (t765 + t65 * t534);
+    const iiwa14_real_t t767 = t327 + parameters[ZZ7] * t515 - parameters[YZ7] * t508
+        + parameters[XZ7] * t510;
+    const iiwa14_real_t t768 = parameters[YZ6] * t497 - (t331 + parameters[YY6] * t514
+        + parameters[XY6] * t507);
+    const iiwa14_real_t t769 = t768 - t333 - (parameters[MZ6] * t528 - parameters[MX6] * t530) + (t767 - t329
+        + (parameters[MX7] * t550 + parameters[MY7] * t532));
     /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t521 = t495 + (t479 - t488 - t494) - (t496 + t500);
-    const iiwa14_real_t t522 = t211 * parameters[YZ5];
-    const iiwa14_real_t t523 = t519 + t522 + t521; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t524 = t1 * t487; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t525 = parameters[ZZ6] - t509;
-    const iiwa14_real_t t526 = t244 * t525 - t245 * parameters[YZ6] + (t486 + t524 + t3 * t489);
-    const iiwa14_real_t t527 = t245 * parameters[XZ6] + t252 * t525 + (t1 * t512 + t2 * t513);
-    const iiwa14_real_t t528 = IIWA14_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const iiwa14_real_t t529 = parameters[YY5] + t528;
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t530 = t212 * parameters[YZ5] - t239 * t529 + (t18 * t526 - t22 * t527);
+    const iiwa14_real_t t770 = t2 * (t539 + t556) + t1 * (t554 - t543);
+    const iiwa14_real_t t771 = t2 * t770;
+    const iiwa14_real_t t772 = t243 * parameters[XZ6];
+    const iiwa14_real_t t773 = t772 - t761 + (t760 + (t771 - t556 + t757));
+    const iiwa14_real_t t774 = t2 * t579 + t1 * t578;
+    const iiwa14_real_t t775 = t1 * t701 - t2 * t699 + (IIWA14_C(-0.126) * t774 + t44 * t756);
+    const iiwa14_real_t t776 = parameters[YY6] - t751;
+    const iiwa14_real_t t777 = t244 * t776 - t243 * parameters[YZ6] + t775;
+    const iiwa14_real_t t778 = t773 * t754 - t777 * t764 + (t365 * t29 + (t20 * t505 - t15 * t513));
+    const iiwa14_real_t t779 = t769 + (t778 + t65 * t528);
+    const iiwa14_real_t t780 = t17 * t779 - t21 * t766;
+    const iiwa14_real_t t781 = t365 * t12 - (t29 * t513 + t28 * t505);
+    const iiwa14_real_t t782 = t1 * t770;
+    const iiwa14_real_t t783 = t243 * t752 - t251 * parameters[XY6] + (t782 - t554 - t18 * t758);
+    const iiwa14_real_t t784 = t1 * t579 - t2 * t578;
+    const iiwa14_real_t t785 = t1 * t699 + t2 * t701 + (IIWA14_C(0.126) * t784 + t44 * t758);
+    const iiwa14_real_t t786 = t785 - (t243 * parameters[XY6] + t251 * t776);
+    const iiwa14_real_t t787 = t43 * t528 - t45 * t534;
+    const iiwa14_real_t t788 = t781 - (t783 * t754 + t786 * t764) + t787;
+    const iiwa14_real_t t789 = t2 * t566 + t1 * t561;
+    const iiwa14_real_t t790 = t353 - parameters[MY6] * t497 + parameters[MZ6] * t513 - parameters[M6] * t528;
+    const iiwa14_real_t t791 = t790 + t789;
+    const iiwa14_real_t t792 = t784 + parameters[M7] * t758 - (t251 * parameters[MY6]
+        + t243 * parameters[MX6]);
+    const iiwa14_real_t t793 = t792 * t754 + t48 * t528 + (t365 * t43 - t65 * t513);
+    const iiwa14_real_t t794 = t791 + t793;
+    const iiwa14_real_t t795 = parameters[M7] * t535 + (t359 + (parameters[MY7] * t512
+        - parameters[MX7] * t547));
+    const iiwa14_real_t t796 = t356 + parameters[MX6] * t748 - parameters[MZ6] * t505 - parameters[M6] * t534;
+    const iiwa14_real_t t797 = t796 - t795;
+    const iiwa14_real_t t798 = t792 * t764 + t48 * t534 + (t65 * t505 - t365 * t45);
+    const iiwa14_real_t t799 = t797 + t798;
+    const iiwa14_real_t t800 = t17 * t799 + t21 * t794;
+    const iiwa14_real_t t801 = t562 - (t244 * parameters[MX6] + t251 * parameters[MZ6]);
+    const iiwa14_real_t t802 = t244 * parameters[MY6] - t243 * parameters[MZ6] + (parameters[M7] * t756
+        - t774);
+    const iiwa14_real_t t803 = t801 * t754 - t802 * t764 + (t43 * t505 - t45 * t513);
+    const iiwa14_real_t t804 = t37 * t803 - t40 * t800;
+    const iiwa14_real_t t805 = t37 * t780 + t40 * t788 + IIWA14_C(0.4) * t804;
+    const iiwa14_real_t t806 = t21 * t779 + t17 * t766;
+    const iiwa14_real_t t807 = t78 * t805 + t76 * t806;
+    const iiwa14_real_t t808 = t37 * t800 + t40 * t803;
+    const iiwa14_real_t t809 = t40 * t780 - t37 * t788 + IIWA14_C(0.4) * t808;
+    const iiwa14_real_t t810 = t78 * t808 + t76 * (t21 * t799 - t17 * t794);
+    const iiwa14_real_t t811 = t108 * t807 - t111 * t809 + IIWA14_C(0.42) * (t108 * t804 - t111 * t810);
+    const iiwa14_real_t t812 = t76 * t805 - t78 * t806;
+    const iiwa14_real_t t813 = IIWA14_C(0.0625) * (t162 * t811 - t164 * t812);
+    const iiwa14_real_t t814 = t111 * t807 + t108 * t809 + IIWA14_C(0.42) * (t108 * t810 + t111 * t804);
+    const iiwa14_real_t t815 = IIWA14_C(0.0625) * t814;
+    const iiwa14_real_t t816 = IIWA14_C(0.0625) * t812;
+    const iiwa14_real_t t817 = IIWA14_C(0.0625) * t809;
+    const iiwa14_real_t t818 = t592 * t813 - t596 * t815 - t599 * t816 + t603 * t817;
+    const iiwa14_real_t t819 = IIWA14_C(0.125) * t806;
+    const iiwa14_real_t t820 = IIWA14_C(-2.0) * t783; /* link j6: derivatives */
+    const iiwa14_real_t t821 = IIWA14_C(2.0) * t786;
+    const iiwa14_real_t t822 = IIWA14_C(0.125) * (t787 + (t243 * t820 - t251 * t821 + t781));
+    const iiwa14_real_t t823 = t2 * t618 - t1 * t619; /* link j7: derivatives */
+    const iiwa14_real_t t824 = t708 + (t3 * (IIWA14_C(-0.252) * t251) - t18 * (IIWA14_C(0.252) * t244));
+    const iiwa14_real_t t825 = t243 * t823 - t251 * t824 + (parameters[ZZ7] * t505 - t19 * t513 - t365 * t4);
+    const iiwa14_real_t t826 = IIWA14_C(0.125) * (t825 + t3 * t534);
+    const iiwa14_real_t t827 = t818 + t610 * t819 + t617 * t822 + t628 * t826;
+    ddq_by_q[5] = t827;
+    const iiwa14_real_t t828 = t596 * t813 - t630 * t815 - t632 * t816 + t634 * t817;
+    const iiwa14_real_t t829 = t828 + t637 * t819 + t639 * t822 + t641 * t826;
+    ddq_by_q[12] = t829;
+    const iiwa14_real_t t830 = t599 * t813 - t632 * t815 - t643 * t816 + t645 * t817;
+    const iiwa14_real_t t831 = t830 + t648 * t819 + t650 * t822 + t652 * t826;
+    ddq_by_q[19] = t831;
+    const iiwa14_real_t t832 = t603 * t813 - t634 * t815 - t645 * t816 + t655 * t817;
+    const iiwa14_real_t t833 = t832 + t658 * t819 + t660 * t822 + t662 * t826;
+    ddq_by_q[26] = t833;
+    const iiwa14_real_t t834 = t664 * t813 - t665 * t815 - t666 * t816 + t667 * t817;
+    const iiwa14_real_t t835 = t834 + t670 * t819 + t673 * t822 + t676 * t826;
+    ddq_by_q[33] = t835;
+    const iiwa14_real_t t836 = t678 * t813 - t679 * t815 - t680 * t816 + t681 * t817;
+    const iiwa14_real_t t837 = t836 + t673 * t819 + t684 * t822 + t687 * t826;
+    ddq_by_q[40] = t837;
+    const iiwa14_real_t t838 = t689 * t813 - t690 * t815 - t691 * t816 + t692 * t817;
+    const iiwa14_real_t t839 = t838 + t676 * t819 + t687 * t822 + t696 * t826;
+    ddq_by_q[47] = t839;
+    const iiwa14_real_t t840 = parameters[ZZ6] - t751;
     /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t531 = t244 * t514 - t252 * parameters[XY6] + (t524 - t484 - t19 * t493);
-    const iiwa14_real_t t532 = t1 * t505 - t2 * t506;
-    const iiwa14_real_t t533 = t1 * t503 + t2 * t504 + (IIWA14_C(0.126) * t532 + t46 * t493);
-    const iiwa14_real_t t534 = t533 - (t244 * parameters[XY6] + t252 * t510);
-    const iiwa14_real_t t535 = parameters[XX5] + t528;
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t536 = t211 * parameters[XZ5] + t239 * t535 + (t18 * t531 - t22 * t534);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t537 = t39 * (t523 - t520) + t42 * (t530 + t536);
-    const iiwa14_real_t t538 = t39 * t537;
-    const iiwa14_real_t t539 = IIWA14_C(-0.4) * t210; /* link j5: velocity of its origin */
-    const iiwa14_real_t t540 = t90 * t539; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t841 = t243 * t840 - t244 * parameters[YZ6] + (t543 + t782 + t3 * t756);
+    const iiwa14_real_t t842 = IIWA14_C(2.0) * t841 + (t15 * t754 + t20 * t764); /* link j6: derivatives */
     /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t541 = t245 * parameters[MY6] - t244 * parameters[MZ6] + (parameters[M7] * t489
-        - t507);
-    const iiwa14_real_t t542 = t491 - (t245 * parameters[MX6] + t252 * parameters[MZ6]);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t543 = t22 * t541 + t18 * t542 - (t211 * parameters[MY5] + t212 * parameters[MX5]);
-    const iiwa14_real_t t544 = IIWA14_C(0.4) * t543; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t545 = IIWA14_C(0.4) * t208; /* link j5: velocity of its origin */
-    const iiwa14_real_t t546 = t71 * t545; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t547 = t544 + (t546 - t540);
-    const iiwa14_real_t t548 = t228 * parameters[XZ4];
-    const iiwa14_real_t t549 = t210 * parameters[XY4];
-    const iiwa14_real_t t550 = t548 + t549 + (t547 + (t523 - t538 + t540));
-    const iiwa14_real_t t551 = t518 + t522 + (t517 - t498); /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t552 = t208 * parameters[YZ4];
-    const iiwa14_real_t t553 = t549 - t552 + (t551 + t544 - t547); /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t554 = t22 * t516; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t555 = parameters[ZZ5] + t528;
-    const iiwa14_real_t t556 = t212 * t555 - t239 * parameters[YZ5] + (t511 - t554);
-    const iiwa14_real_t t557 = t22 * t531 + t18 * t534 - (t239 * parameters[XZ5] + t211 * t555);
-    const iiwa14_real_t t558 = t239 * parameters[MY5] - t212 * parameters[MZ5] + (t18 * t541 - t22 * t542);
+    const iiwa14_real_t t843 = t244 * parameters[XZ6] + t251 * t840 + (t1 * t571 + t2 * t572);
+    const iiwa14_real_t t844 = IIWA14_C(2.0) * t843 + (t20 * t754 + t16 * t764); /* link j6: derivatives */
+    const iiwa14_real_t t845 = t17 * t842 - t21 * t844;
     /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t559 = t532 + parameters[M7] * t493 - (t252 * parameters[MY6]
-        + t244 * parameters[MX6]);
+    const iiwa14_real_t t846 = t760 + (t539 - t771 - t759) - (t772 + t762);
+    const iiwa14_real_t t847 = IIWA14_C(-2.0) * t846; /* link j6: derivatives */
+    const iiwa14_real_t t848 = t847 - (t28 * t764 - t29 * t754);
+    const iiwa14_real_t t849 = IIWA14_C(-2.0) * t801 - t65 * t764;
+    const iiwa14_real_t t850 = IIWA14_C(-2.0) * t802 - t65 * t754;
+    const iiwa14_real_t t851 = t17 * t849 + t21 * t850;
+    const iiwa14_real_t t852 = t45 * t754 + t43 * t764;
+    const iiwa14_real_t t853 = t40 * t851 + t37 * t852;
+    const iiwa14_real_t t854 = t37 * t845 + t40 * t848 + IIWA14_C(0.4) * t853;
+    const iiwa14_real_t t855 = t21 * t842 + t17 * t844;
+    const iiwa14_real_t t856 = t78 * t854 + t76 * t855;
+    const iiwa14_real_t t857 = t40 * t852 - t37 * t851;
+    const iiwa14_real_t t858 = t40 * t845 - t37 * t848 + IIWA14_C(0.4) * t857;
+    const iiwa14_real_t t859 = t76 * (t21 * t849 - t17 * t850) - t78 * t857;
+    const iiwa14_real_t t860 = t111 * t856 + t108 * t858 + IIWA14_C(0.42) * (t111 * t853 - t108 * t859);
+    const iiwa14_real_t t861 = IIWA14_C(0.0625) * t860;
+    const iiwa14_real_t t862 = t108 * t856 - t111 * t858 + IIWA14_C(0.42) * (t111 * t859 + t108 * t853);
+    const iiwa14_real_t t863 = t78 * t855 - t76 * t854;
+    const iiwa14_real_t t864 = IIWA14_C(0.0625) * (t162 * t862 + t164 * t863);
+    const iiwa14_real_t t865 = IIWA14_C(-0.0625) * t863;
+    const iiwa14_real_t t866 = IIWA14_C(0.0625) * t858;
+    const iiwa14_real_t t867 = t864 * t592 - t861 * t596 - t865 * t599 + t866 * t603;
+    const iiwa14_real_t t868 = IIWA14_C(0.125) * t855;
+    const iiwa14_real_t t869 = IIWA14_C(0.125) * (t847 + IIWA14_C(2.0) * (t243 * t29 - t251 * t28));
+    const iiwa14_real_t t870 = IIWA14_C(-3.2e3) * parameters[FV6] + t869;
+    const iiwa14_real_t t871 = t1 * t618 + t2 * t619; /* link j7: derivatives */
+    const iiwa14_real_t t872 = IIWA14_C(0.125) * (t871 + IIWA14_C(2.0) * (t243 * t19
+        + t251 * parameters[ZZ7]));
+    const iiwa14_real_t t873 = t867 + t868 * t610 + t870 * t617 + t872 * t628;
+    ddq_by_dq[5] = t873;
+    const iiwa14_real_t t874 = t864 * t596 - t861 * t630 - t865 * t632 + t866 * t634;
+    const iiwa14_real_t t875 = t874 + t868 * t637 + t870 * t639 + t872 * t641;
+    ddq_by_dq[12] = t875;
+    const iiwa14_real_t t876 = t864 * t599 - t861 * t632 - t865 * t643 + t866 * t645;
+    const iiwa14_real_t t877 = t876 + t868 * t648 + t870 * t650 + t872 * t652;
+    ddq_by_dq[19] = t877;
+    const iiwa14_real_t t878 = t864 * t603 - t861 * t634 - t865 * t645 + t866 * t655;
+    const iiwa14_real_t t879 = t878 + t868 * t658 + t870 * t660 + t872 * t662;
+    ddq_by_dq[26] = t879;
+    const iiwa14_real_t t880 = t864 * t664 - t861 * t665 - t865 * t666 + t866 * t667;
+    const iiwa14_real_t t881 = t880 + t868 * t670 + t870 * t673 + t872 * t676;
+    ddq_by_dq[33] = t881;
+    const iiwa14_real_t t882 = t864 * t678 - t861 * t679 - t865 * t680 + t866 * t681;
+    const iiwa14_real_t t883 = t882 + t868 * t673 + t870 * t684 + t872 * t687;
+    ddq_by_dq[40] = t883;
+    const iiwa14_real_t t884 = t864 * t689 - t861 * t690 - t865 * t691 + t866 * t692;
+    const iiwa14_real_t t885 = t884 + t868 * t676 + t870 * t687 + t872 * t696;
+    ddq_by_dq[47] = t885;
+    ddq_by_input[5] = t617;
+    ddq_by_input[12] = t639;
+    ddq_by_input[19] = t650;
+    ddq_by_input[26] = t660;
+    ddq_by_input[33] = t673;
+    ddq_by_input[40] = t684;
+    ddq_by_input[47] = t687;
+    const iiwa14_real_t t886 = t344 + parameters[ZZ6] * t496 + parameters[YZ6] * t513
+        + parameters[XZ6] * t505;
+    const iiwa14_real_t t887 = t346 + t886 + (parameters[MY6] * t528 - parameters[MX6] * t534) + (t1 * t552
+        + t2 * t536 + IIWA14_C(0.126) * t789);
+    const iiwa14_real_t t888 = t348 + parameters[YY5] * t495 - parameters[XY5] * t504
+        - parameters[YZ5] * t501;
+    const iiwa14_real_t t889 = t351 + t888 - (parameters[MZ5] * t525 + parameters[MX5] * t527) + t887;
     /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t560 = t239 * parameters[MX5] + t211 * parameters[MZ5] + t559;
-    const iiwa14_real_t t561 = t39 * t558 + t42 * t560; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t562 = t39 * t556 + t42 * t557 + (IIWA14_C(0.4) * t561 + t119 * t539);
-    const iiwa14_real_t t563 = IIWA14_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const iiwa14_real_t t564 = t563 - parameters[YY4];
-    const iiwa14_real_t t565 = t228 * parameters[YZ4] - t210 * t564 + t562;
+    const iiwa14_real_t t890 = t17 * (t773 - t763) + t21 * (t777 - t753);
+    const iiwa14_real_t t891 = t17 * t890;
+    const iiwa14_real_t t892 = t211 * parameters[XZ5];
+    const iiwa14_real_t t893 = t238 * parameters[XY5];
+    const iiwa14_real_t t894 = t892 - t893 + (t763 + t891);
+    const iiwa14_real_t t895 = IIWA14_C(2.0) * t211; /* link j5: derivatives */
+    const iiwa14_real_t t896 = IIWA14_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const iiwa14_real_t t897 = parameters[YY5] + t896;
     /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t566 = t211 * parameters[XY5] + t212 * t535 + (t515 + t554);
-    const iiwa14_real_t t567 = t212 * parameters[XY5] + t211 * t529 + (t22 * t526 + t18 * t527);
-    const iiwa14_real_t t568 = t563 - parameters[XX4];
+    const iiwa14_real_t t898 = t211 * parameters[YZ5] - t238 * t897 + (t17 * t841 - t21 * t843);
+    const iiwa14_real_t t899 = IIWA14_C(2.0) * t210; /* link j5: derivatives */
+    const iiwa14_real_t t900 = t894 * t895 + t898 * t899 + (t408 * t63 + (t39 * t502 - t35 * t494));
+    const iiwa14_real_t t901 = t889 + (t900 + t47 * t525);
+    const iiwa14_real_t t902 = t495 - t249;
+    const iiwa14_real_t t903 = t212 + t500;
+    const iiwa14_real_t t904 = t335 + parameters[XX5] * t503 + parameters[XY5] * t902
+        + parameters[XZ5] * t903;
+    const iiwa14_real_t t905 = t341 + t904 + (parameters[MY5] * t527 + parameters[MZ5] * t530) - (t17 * t750
+        + t21 * t769);
+    const iiwa14_real_t t906 = parameters[XX5] + t896;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t907 = t210 * parameters[XZ5] + t238 * t906 + (t17 * t783 - t21 * t786);
+    const iiwa14_real_t t908 = t210 * parameters[YZ5];
+    const iiwa14_real_t t909 = t893 + t908 + t846;
+    const iiwa14_real_t t910 = t907 * t895 + t909 * t899 - (t39 * t494 - t36 * t502 - t408 * t64);
+    const iiwa14_real_t t911 = t910 + t47 * t530 - t905;
+    const iiwa14_real_t t912 = t366 + (parameters[MX6] * t747 - parameters[MY6] * t507)
+        - parameters[M6] * t530;
+    const iiwa14_real_t t913 = t368 + parameters[MX5] * t903 - parameters[MZ5] * t502 - parameters[M5] * t530;
+    const iiwa14_real_t t914 = t913 + (t912 - t746);
+    const iiwa14_real_t t915 = t21 * t802 + t17 * t801 - (t210 * parameters[MY5] + t211 * parameters[MX5]);
+    const iiwa14_real_t t916 = t915 * t899 + t49 * t530 + (t408 * t66 + t47 * t502);
+    const iiwa14_real_t t917 = t914 + t916;
+    const iiwa14_real_t t918 = t362 + parameters[MY5] * t501 + parameters[MZ5] * t494 - parameters[M5] * t525;
+    const iiwa14_real_t t919 = t918 + (t17 * t791 - t21 * t797);
+    const iiwa14_real_t t920 = t915 * t895 + t49 * t525 + (t408 * t68 - t47 * t494);
+    const iiwa14_real_t t921 = t919 + t920;
+    const iiwa14_real_t t922 = t37 * t921 - t40 * t917;
+    const iiwa14_real_t t923 = t37 * t901 - t40 * t911 + IIWA14_C(0.4) * t922;
+    const iiwa14_real_t t924 = t408 * t24 + (t64 * t502 - t63 * t494);
+    const iiwa14_real_t t925 = t21 * t890;
+    const iiwa14_real_t t926 = t210 * parameters[XY5] + t211 * t906 + (t753 + t925);
+    const iiwa14_real_t t927 = t211 * parameters[XY5] + t210 * t897 + (t21 * t841 + t17 * t843);
+    const iiwa14_real_t t928 = t68 * t525 + t66 * t530;
+    const iiwa14_real_t t929 = t926 * t895 + t927 * t899 + t924 + t928;
+    const iiwa14_real_t t930 = t78 * t923 + t76 * t929;
+    const iiwa14_real_t t931 = t37 * t917 + t40 * t921;
+    const iiwa14_real_t t932 = t40 * t901 + t37 * t911 + IIWA14_C(0.4) * t931;
+    const iiwa14_real_t t933 = t238 * parameters[MY5] - t211 * parameters[MZ5] + (t17 * t802 - t21 * t801);
+    const iiwa14_real_t t934 = t238 * parameters[MX5] + t210 * parameters[MZ5] + t792;
+    const iiwa14_real_t t935 = t934 * t895 + t933 * t899 - (t66 * t494 + t68 * t502);
+    const iiwa14_real_t t936 = t78 * t931 - t76 * t935;
+    const iiwa14_real_t t937 = t108 * t930 - t111 * t932 + IIWA14_C(0.42) * (t108 * t922 - t111 * t936);
+    const iiwa14_real_t t938 = t76 * t923 - t78 * t929;
+    const iiwa14_real_t t939 = IIWA14_C(0.0625) * (t162 * t937 - t164 * t938);
+    const iiwa14_real_t t940 = t111 * t930 + t108 * t932 + IIWA14_C(0.42) * (t108 * t936 + t111 * t922);
+    const iiwa14_real_t t941 = IIWA14_C(0.0625) * t940;
+    const iiwa14_real_t t942 = IIWA14_C(0.0625) * t938;
+    const iiwa14_real_t t943 = IIWA14_C(0.0625) * t932;
+    const iiwa14_real_t t944 = t592 * t939 - t596 * t941 - t599 * t942 + t603 * t943;
+    const iiwa14_real_t t945 = IIWA14_C(2.0) * t926; /* link j5: derivatives */
+    const iiwa14_real_t t946 = IIWA14_C(2.0) * t927;
+    const iiwa14_real_t t947 = IIWA14_C(0.125) * (t928 + (t211 * t945 + t210 * t946 + t924));
+    const iiwa14_real_t t948 = t17 * t820 + t21 * t821; /* link j6: derivatives */
+    const iiwa14_real_t t949 = t211 * t948 + t210 * t847 - (t408 * t30 + (t38 * t494 + t12 * t502));
+    const iiwa14_real_t t950 = IIWA14_C(0.125) * (t949 - t46 * t530);
+    const iiwa14_real_t t951 = t17 * t823 + t21 * t824; /* link j7: derivatives */
+    const iiwa14_real_t t952 = t211 * t951 + t210 * t871 + (t408 * t26 + (t4 * t502 - t54 * t494));
+    const iiwa14_real_t t953 = IIWA14_C(0.125) * (t952 + (t55 * t530 + t18 * t525));
+    const iiwa14_real_t t954 = t944 + t610 * t947 + t617 * t950 + t628 * t953;
+    ddq_by_q[4] = t954;
+    const iiwa14_real_t t955 = t596 * t939 - t630 * t941 - t632 * t942 + t634 * t943;
+    const iiwa14_real_t t956 = t955 + t637 * t947 + t639 * t950 + t641 * t953;
+    ddq_by_q[11] = t956;
+    const iiwa14_real_t t957 = t599 * t939 - t632 * t941 - t643 * t942 + t645 * t943;
+    const iiwa14_real_t t958 = t957 + t648 * t947 + t650 * t950 + t652 * t953;
+    ddq_by_q[18] = t958;
+    const iiwa14_real_t t959 = t603 * t939 - t634 * t941 - t645 * t942 + t655 * t943;
+    const iiwa14_real_t t960 = t959 + t658 * t947 + t660 * t950 + t662 * t953;
+    ddq_by_q[25] = t960;
+    const iiwa14_real_t t961 = t664 * t939 - t665 * t941 - t666 * t942 + t667 * t943;
+    const iiwa14_real_t t962 = t961 + t670 * t947 + t673 * t950 + t676 * t953;
+    ddq_by_q[32] = t962;
+    const iiwa14_real_t t963 = t678 * t939 - t679 * t941 - t680 * t942 + t681 * t943;
+    const iiwa14_real_t t964 = t963 + t673 * t947 + t684 * t950 + t687 * t953;
+    ddq_by_q[39] = t964;
+    const iiwa14_real_t t965 = t689 * t939 - t690 * t941 - t691 * t942 + t692 * t943;
+    const iiwa14_real_t t966 = t965 + t676 * t947 + t687 * t950 + t696 * t953;
+    ddq_by_q[46] = t966;
+    const iiwa14_real_t t967 = parameters[ZZ5] + t896;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t968 = t211 * t967 - t238 * parameters[YZ5] + (t777 - t925);
+    const iiwa14_real_t t969 = IIWA14_C(2.0) * t968 + (t35 * t895 + t39 * t899); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t970 = t21 * t783 + t17 * t786 - (t238 * parameters[XZ5] + t210 * t967);
+    const iiwa14_real_t t971 = IIWA14_C(-2.0) * t970 + (t39 * t895 + t36 * t899); /* link j5: derivatives */
+    const iiwa14_real_t t972 = IIWA14_C(2.0) * t933 + t47 * t895;
+    const iiwa14_real_t t973 = IIWA14_C(2.0) * t934 - t47 * t899;
+    const iiwa14_real_t t974 = t40 * t973 + t37 * t972;
+    const iiwa14_real_t t975 = t37 * t969 - t40 * t971 + IIWA14_C(0.4) * t974;
+    const iiwa14_real_t t976 = t892 + t908 + (t891 - t773); /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t977 = IIWA14_C(2.0) * t976; /* link j5: derivatives */
+    const iiwa14_real_t t978 = t977 + (t63 * t895 + t64 * t899);
+    const iiwa14_real_t t979 = t78 * t975 + t76 * t978;
+    const iiwa14_real_t t980 = t40 * t972 - t37 * t973;
+    const iiwa14_real_t t981 = t40 * t969 + t37 * t971 + IIWA14_C(0.4) * t980;
+    const iiwa14_real_t t982 = t76 * (t66 * t895 - t68 * t899) - t78 * t980;
+    const iiwa14_real_t t983 = t111 * t979 + t108 * t981 + IIWA14_C(0.42) * (t111 * t974 - t108 * t982);
+    const iiwa14_real_t t984 = IIWA14_C(0.0625) * t983;
+    const iiwa14_real_t t985 = t108 * t979 - t111 * t981 + IIWA14_C(0.42) * (t111 * t982 + t108 * t974);
+    const iiwa14_real_t t986 = t78 * t978 - t76 * t975;
+    const iiwa14_real_t t987 = IIWA14_C(0.0625) * (t162 * t985 + t164 * t986);
+    const iiwa14_real_t t988 = IIWA14_C(-0.0625) * t986;
+    const iiwa14_real_t t989 = IIWA14_C(0.0625) * t981;
+    const iiwa14_real_t t990 = t987 * t592 - t984 * t596 - t988 * t599 + t989 * t603;
+    const iiwa14_real_t t991 = IIWA14_C(0.125) * (t977 + IIWA14_C(2.0) * (t211 * t63 + t210 * t64));
+    const iiwa14_real_t t992 = IIWA14_C(-1250.0) * parameters[FV5] + t991;
+    const iiwa14_real_t t993 = t17 * t821 - t21 * t820; /* link j6: derivatives */
+    const iiwa14_real_t t994 = IIWA14_C(0.125) * (t993 + IIWA14_C(2.0) * (t211 * t38 - t210 * t12));
+    const iiwa14_real_t t995 = t17 * t824 - t21 * t823; /* link j7: derivatives */
+    const iiwa14_real_t t996 = IIWA14_C(0.125) * (t995 + IIWA14_C(2.0) * (t211 * t54 + t210 * t4));
+    const iiwa14_real_t t997 = t990 + t992 * t610 + t994 * t617 + t996 * t628;
+    ddq_by_dq[4] = t997;
+    const iiwa14_real_t t998 = t987 * t596 - t984 * t630 - t988 * t632 + t989 * t634;
+    const iiwa14_real_t t999 = t998 + t992 * t637 + t994 * t639 + t996 * t641;
+    ddq_by_dq[11] = t999;
+    const iiwa14_real_t t1000 = t987 * t599 - t984 * t632 - t988 * t643 + t989 * t645;
+    const iiwa14_real_t t1001 = t1000 + t992 * t648 + t994 * t650 + t996 * t652;
+    ddq_by_dq[18] = t1001;
+    const iiwa14_real_t t1002 = t987 * t603 - t984 * t634 - t988 * t645 + t989 * t655;
+    const iiwa14_real_t t1003 = t1002 + t992 * t658 + t994 * t660 + t996 * t662;
+    ddq_by_dq[25] = t1003;
+    const iiwa14_real_t t1004 = t987 * t664 - t984 * t665 - t988 * t666 + t989 * t667;
+    const iiwa14_real_t t1005 = t1004 + t992 * t670 + t994 * t673 + t996 * t676;
+    ddq_by_dq[32] = t1005;
+    const iiwa14_real_t t1006 = t987 * t678 - t984 * t679 - t988 * t680 + t989 * t681;
+    const iiwa14_real_t t1007 = t1006 + t992 * t673 + t994 * t684 + t996 * t687;
+    ddq_by_dq[39] = t1007;
+    const iiwa14_real_t t1008 = t987 * t689 - t984 * t690 - t988 * t691 + t989 * t692;
+    const iiwa14_real_t t1009 = t1008 + t992 * t676 + t994 * t687 + t996 * t696;
+    ddq_by_dq[46] = t1009;
+    ddq_by_input[4] = t610;
+    ddq_by_input[11] = t637;
+    ddq_by_input[18] = t648;
+    ddq_by_input[25] = t658;
+    ddq_by_input[32] = t670;
+    ddq_by_input[39] = t673;
+    ddq_by_input[46] = t676;
+    const iiwa14_real_t t1010 = t40 * t919 + t37 * t914;
+    const iiwa14_real_t t1011 = t224 + t499;
+    const iiwa14_real_t t1012 = t482 - t228;
+    const iiwa14_real_t t1013 = parameters[XX4] * t492 - t372 + parameters[XY4] * t1011
+        - parameters[XZ4] * t1012;
+    const iiwa14_real_t t1014 = t40 * t889 - t37 * t905 - IIWA14_C(-0.4) * t1010 - (t377 + t1013
+        + (parameters[MY4] * t523 + parameters[MZ4] * t526));
+    const iiwa14_real_t t1015 = IIWA14_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const iiwa14_real_t t1016 = t1015 - parameters[XX4];
     /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t569 = t39 * t566 - t42 * t567 - (t208 * parameters[XZ4] + t210 * t568);
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t570 = t81 * (t550 + t553) + t79 * (t569 - t565);
-    const iiwa14_real_t t571 = t81 * t570;
-    const iiwa14_real_t t572 = t209 * parameters[XZ3];
-    const iiwa14_real_t t573 = t207 * parameters[XY3];
-    const iiwa14_real_t t574 = t572 - t573 + (t571 - t553);
+    const iiwa14_real_t t1017 = t37 * t926 - t40 * t927 - (t207 * parameters[XZ4] + t209 * t1016);
+    const iiwa14_real_t t1018 = IIWA14_C(2.0) * t227; /* link j4: derivatives */
+    const iiwa14_real_t t1019 = IIWA14_C(0.4) * t915; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t1020 = IIWA14_C(-0.4) * t209; /* link j5: velocity of its origin */
+    const iiwa14_real_t t1021 = t87 * t1020; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t1022 = IIWA14_C(0.4) * t207; /* link j5: velocity of its origin */
+    const iiwa14_real_t t1023 = t69 * t1022; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t1024 = t1019 + (t1023 - t1021);
+    const iiwa14_real_t t1025 = t209 * parameters[XY4];
+    const iiwa14_real_t t1026 = t207 * parameters[YZ4];
+    const iiwa14_real_t t1027 = t1025 - t1026 + (t976 + t1019 - t1024);
+    const iiwa14_real_t t1028 = IIWA14_C(-2.0) * t207; /* link j4: derivatives */
+    const iiwa14_real_t t1029 = t1017 * t1018 - t1027 * t1028 + (t417 * t77 - (t96 * t498 + t95 * t491));
+    const iiwa14_real_t t1030 = t1029 - t150 * t526 - t1014;
+    const iiwa14_real_t t1031 = t379 + parameters[ZZ5] * t500 + parameters[YZ5] * t494
+        + parameters[XZ5] * t502;
+    const iiwa14_real_t t1032 = t381 + t1031 + (parameters[MY5] * t525 - parameters[MX5] * t530) + (t21 * t750
+        - t17 * t769);
+    const iiwa14_real_t t1033 = parameters[YY4] * t499 - t383 + parameters[XY4] * t493
+        - parameters[YZ4] * t483;
+    const iiwa14_real_t t1034 = t385 + t1033 + (parameters[MZ4] * t521 - parameters[MX4] * t523) + t1032;
     /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t575 = t547 + (t520 + t538 - t546) - (t548 + t552);
-    const iiwa14_real_t t576 = t205 * parameters[YZ3];
-    const iiwa14_real_t t577 = t573 + t576 + t575; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t578 = t42 * t537; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t579 = parameters[ZZ4] - t563;
-    const iiwa14_real_t t580 = t210 * parameters[YZ4] + t228 * t579 + (t578 - t530 - t71 * t539);
-    const iiwa14_real_t t581 = t208 * t579 - t210 * parameters[XZ4] + (t42 * t566 + t39 * t567);
-    const iiwa14_real_t t582 = IIWA14_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const iiwa14_real_t t583 = parameters[YY3] - t582;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t584 = t209 * parameters[YZ3] - t207 * t583 + (t79 * t581 - t81 * t580);
+    const iiwa14_real_t t1035 = t37 * (t909 - t894) + t40 * (t898 + t907);
+    const iiwa14_real_t t1036 = t37 * t1035;
+    const iiwa14_real_t t1037 = t227 * parameters[XZ4];
+    const iiwa14_real_t t1038 = t1037 + t1025 + (t1024 + (t909 - t1036 + t1021));
+    const iiwa14_real_t t1039 = t37 * t933 + t40 * t934;
+    const iiwa14_real_t t1040 = t37 * t968 + t40 * t970 + (IIWA14_C(0.4) * t1039 + t115 * t1020);
+    const iiwa14_real_t t1041 = t1015 - parameters[YY4];
+    const iiwa14_real_t t1042 = t227 * parameters[YZ4] - t209 * t1041 + t1040;
+    const iiwa14_real_t t1043 = t1038 * t1018 - t1042 * t1028 + (t417 * t75 - (t94 * t498 + t96 * t491));
+    const iiwa14_real_t t1044 = t1034 + (t1043 - t150 * t521);
+    const iiwa14_real_t t1045 = t78 * t1044 + t76 * t1030;
+    const iiwa14_real_t t1046 = t417 * t52 - (t75 * t498 + t77 * t491);
+    const iiwa14_real_t t1047 = t40 * t1035;
+    const iiwa14_real_t t1048 = t207 * parameters[XY4] - t227 * t1016 + (t907 - t1047 - t87 * t1022);
+    const iiwa14_real_t t1049 = t37 * t934 - t40 * t933;
+    const iiwa14_real_t t1050 = t37 * t970 - t40 * t968 + (IIWA14_C(0.4) * t1049 + t115 * t1022);
+    const iiwa14_real_t t1051 = t227 * parameters[XY4] - t207 * t1041 - t1050;
+    const iiwa14_real_t t1052 = t116 * t526 - t114 * t521;
+    const iiwa14_real_t t1053 = t1048 * t1018 - t1051 * t1028 + t1046 + t1052;
+    const iiwa14_real_t t1054 = t37 * t919 - t40 * t914;
+    const iiwa14_real_t t1055 = parameters[M4] * t521 + (t406 + parameters[MY4] * t483
+        + parameters[MZ4] * t498);
+    const iiwa14_real_t t1056 = t1055 + t1054;
+    const iiwa14_real_t t1057 = t207 * parameters[MY4] + t227 * parameters[MX4] + (t1049 + t49 * t1022);
+    const iiwa14_real_t t1058 = t1057 * t1018 + t119 * t521 - (t417 * t114 - t150 * t498);
+    const iiwa14_real_t t1059 = parameters[MX5] * t902 + parameters[MY5] * t504 - t409
+        - parameters[M5] * t527;
+    const iiwa14_real_t t1060 = parameters[M4] * t526 + (parameters[MX4] * t1012 - t411
+        + parameters[MZ4] * t491);
+    const iiwa14_real_t t1061 = t1060 + (t1059 + (t21 * t791 + t17 * t797));
+    const iiwa14_real_t t1062 = t1057 * t1028 + t119 * t526 + (t417 * t116 + t150 * t491);
+    const iiwa14_real_t t1063 = t78 * (t1061 - t1062) + t76 * (t1058 - t1056);
+    const iiwa14_real_t t1064 = t207 * parameters[MZ4] - t209 * parameters[MX4] + t915;
+    const iiwa14_real_t t1065 = t1039 + t49 * t1020 - (t227 * parameters[MZ4] + t209 * parameters[MY4]);
+    const iiwa14_real_t t1066 = t1064 * t1018 - t1065 * t1028 - (t116 * t498 + t114 * t491);
+    const iiwa14_real_t t1067 = t108 * t1045 - t111 * t1053 + IIWA14_C(0.42) * (t111 * t1063 + t108 * t1066);
+    const iiwa14_real_t t1068 = t76 * t1044 - t78 * t1030;
+    const iiwa14_real_t t1069 = IIWA14_C(0.0625) * (t162 * t1067 - t164 * t1068);
+    const iiwa14_real_t t1070 = t111 * t1045 + t108 * t1053 + IIWA14_C(0.42) * (t111 * t1066 - t108 * t1063);
+    const iiwa14_real_t t1071 = IIWA14_C(0.0625) * t1070;
+    const iiwa14_real_t t1072 = IIWA14_C(0.0625) * t1068;
+    const iiwa14_real_t t1073 = IIWA14_C(2.0) * t1048; /* link j4: derivatives */
+    const iiwa14_real_t t1074 = IIWA14_C(2.0) * t1051;
+    const iiwa14_real_t t1075 = IIWA14_C(0.0625) * (t1052 + (t227 * t1073 + t207 * t1074 + t1046));
+    const iiwa14_real_t t1076 = t592 * t1069 - t596 * t1071 - t599 * t1072 + t603 * t1075;
+    const iiwa14_real_t t1077 = t37 * t945 - t40 * t946; /* link j5: derivatives */
+    const iiwa14_real_t t1078 = IIWA14_C(-0.8) * t207; /* link j7: derivatives */
+    const iiwa14_real_t t1079 = IIWA14_C(0.8) * t209;
+    const iiwa14_real_t t1080 = t977 + (t69 * t1078 - t87 * t1079); /* link j5: derivatives */
+    const iiwa14_real_t t1081 = t227 * t1077 + t207 * t1080 + (t417 * t70 - (t88 * t498 + t24 * t491));
+    const iiwa14_real_t t1082 = IIWA14_C(0.125) * (t1081 + t69 * t526);
+    const iiwa14_real_t t1083 = t37 * t948 - t40 * t847 - t67 * t1078; /* link j6: derivatives */
+    const iiwa14_real_t t1084 = t993 - (t59 * t1078 + t83 * t1079);
+    const iiwa14_real_t t1085 = t227 * t1083 + t207 * t1084 + (t417 * t60 + (t30 * t491 - t84 * t498));
+    const iiwa14_real_t t1086 = IIWA14_C(0.125) * (t1085 + (t67 * t521 - t59 * t526));
+    const iiwa14_real_t t1087 = t37 * t951 - t40 * t871 + t126 * t1078; /* link j7: derivatives */
+    const iiwa14_real_t t1088 = t995 + (t56 * t1078 + t80 * t1079);
+    const iiwa14_real_t t1089 = t227 * t1087 + t207 * t1088 + (t417 * t57 - (t81 * t498 + t26 * t491));
+    const iiwa14_real_t t1090 = IIWA14_C(0.125) * (t1089 + (t56 * t526 - t126 * t521));
+    const iiwa14_real_t t1091 = t1076 + t610 * t1082 + t617 * t1086 + t628 * t1090;
+    ddq_by_q[3] = t1091;
+    const iiwa14_real_t t1092 = t596 * t1069 - t630 * t1071 - t632 * t1072 + t634 * t1075;
+    const iiwa14_real_t t1093 = t1092 + t637 * t1082 + t639 * t1086 + t641 * t1090;
+    ddq_by_q[10] = t1093;
+    const iiwa14_real_t t1094 = t599 * t1069 - t632 * t1071 - t643 * t1072 + t645 * t1075;
+    const iiwa14_real_t t1095 = t1094 + t648 * t1082 + t650 * t1086 + t652 * t1090;
+    ddq_by_q[17] = t1095;
+    const iiwa14_real_t t1096 = t603 * t1069 - t634 * t1071 - t645 * t1072 + t655 * t1075;
+    const iiwa14_real_t t1097 = t1096 + t658 * t1082 + t660 * t1086 + t662 * t1090;
+    ddq_by_q[24] = t1097;
+    const iiwa14_real_t t1098 = t664 * t1069 - t665 * t1071 - t666 * t1072 + t667 * t1075;
+    const iiwa14_real_t t1099 = t1098 + t670 * t1082 + t673 * t1086 + t676 * t1090;
+    ddq_by_q[31] = t1099;
+    const iiwa14_real_t t1100 = t678 * t1069 - t679 * t1071 - t680 * t1072 + t681 * t1075;
+    const iiwa14_real_t t1101 = t1100 + t673 * t1082 + t684 * t1086 + t687 * t1090;
+    ddq_by_q[38] = t1101;
+    const iiwa14_real_t t1102 = t689 * t1069 - t690 * t1071 - t691 * t1072 + t692 * t1075;
+    const iiwa14_real_t t1103 = t1102 + t676 * t1082 + t687 * t1086 + t696 * t1090;
+    ddq_by_q[45] = t1103;
+    const iiwa14_real_t t1104 = parameters[ZZ4] - t1015;
     /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t585 = t208 * parameters[XY4] - t228 * t568 + (t536 - t578 - t90 * t545);
-    const iiwa14_real_t t586 = t39 * t560 - t42 * t558;
-    const iiwa14_real_t t587 = t39 * t557 - t42 * t556 + (IIWA14_C(0.4) * t586 + t119 * t545);
-    const iiwa14_real_t t588 = t228 * parameters[XY4] - t208 * t564 - t587;
-    const iiwa14_real_t t589 = parameters[XX3] - t582;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t590 = t205 * parameters[XZ3] + t207 * t589 + (t81 * t585 - t79 * t588);
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t591 = t112 * (t577 - t574) + t115 * (t584 + t590);
-    const iiwa14_real_t t592 = t112 * t591;
-    const iiwa14_real_t t593 = IIWA14_C(-0.42) * dq[1]; /* link j3: velocity of its origin */
-    const iiwa14_real_t t594 = t184 * t593; /* link j3: inertia, momentum beyond */
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t595 = t561 + t51 * t539 - (t228 * parameters[MZ4] + t210 * parameters[MY4]);
-    const iiwa14_real_t t596 = t208 * parameters[MZ4] - t210 * parameters[MX4] + t543;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t597 = t81 * t596 - t79 * t595 - (t205 * parameters[MY3] + t209 * parameters[MX3]);
-    const iiwa14_real_t t598 = IIWA14_C(-0.42) * t597; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t599 = IIWA14_C(-0.42) * t204; /* link j3: velocity of its origin */
-    const iiwa14_real_t t600 = t158 * t599; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t601 = t598 + (t594 - t600);
-    const iiwa14_real_t t602 = t206 * parameters[XZ2];
-    const iiwa14_real_t t603 = dq[1] * parameters[XY2];
-    const iiwa14_real_t t604 = t602 + t603 + (t601 + (t592 - t577 - t594));
-    const iiwa14_real_t t605 = t572 + t576 + (t571 - t550); /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t606 = t204 * parameters[YZ2];
-    const iiwa14_real_t t607 = t601 + (t605 - t598) - (t603 + t606); /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t608 = t79 * t570; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t609 = parameters[ZZ3] - t582;
-    const iiwa14_real_t t610 = t209 * t609 - t207 * parameters[YZ3] + (t565 + t608);
-    const iiwa14_real_t t611 = t207 * parameters[XZ3] + t205 * t609 + (t79 * t585 + t81 * t588);
-    const iiwa14_real_t t612 = t207 * parameters[MY3] - t209 * parameters[MZ3] + (t81 * t595 + t79 * t596);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t613 = t208 * parameters[MY4] + t228 * parameters[MX4] + (t586 + t51 * t545);
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t614 = t207 * parameters[MX3] + t205 * parameters[MZ3] + t613;
-    const iiwa14_real_t t615 = t125 - t122; /* link j3: inertia of it and all beyond */
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t616 = IIWA14_C(0.42) * (t112 * t612 + t115 * t614) - t615 * t593;
-    const iiwa14_real_t t617 = IIWA14_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const iiwa14_real_t t618 = parameters[YY2] - t617;
-    const iiwa14_real_t t619 = t206 * parameters[YZ2] + dq[1] * t618 + (t112 * t610 - t115 * t611 + t616);
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t620 = t205 * parameters[XY3] + t209 * t589 - (t608 - t569);
-    const iiwa14_real_t t621 = t209 * parameters[XY3] + t205 * t583 + (t79 * t580 + t81 * t581);
-    const iiwa14_real_t t622 = t617 - parameters[XX2];
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t623 = dq[1] * t622 - t204 * parameters[XZ2] + (t115 * t621 - t112 * t620);
-    /* link j2: inertia, momentum beyond */
-    const iiwa14_real_t t624 = t169 * (t169 * (t607 - t604) + t167 * (t619 + t623));
-    const iiwa14_real_t t625 = IIWA14_C(-1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t604 + t624);
-    const iiwa14_real_t t626 = iiwa14_bounded(IIWA14_C(16.0) * t466);
-    const iiwa14_real_t t627 = t190 * t466;
-    const iiwa14_real_t t628 = iiwa14_bounded(IIWA14_C(-16.0) * t627);
-    const iiwa14_real_t t629 = t115 * t591; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t630 = t204 * parameters[XY2] + t206 * t622 + (t629 - t590 - t184 * t599);
-    const iiwa14_real_t t631 = IIWA14_C(2.0) * t630; /* link j2: derivatives */
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t632 = IIWA14_C(0.42) * (t112 * t614 - t115 * t612) + t615 * t599;
-    const iiwa14_real_t t633 = t206 * parameters[XY2] - t204 * t618 + (t632 - (t115 * t610 + t112 * t611));
-    const iiwa14_real_t t634 = IIWA14_C(2.0) * t633; /* link j2: derivatives */
-    const iiwa14_real_t t635 = IIWA14_C(0.0625) * (t167 * t631 - t169 * t634);
-    const iiwa14_real_t t636 = t466 * (t201 + t163 * t190);
-    const iiwa14_real_t t637 = iiwa14_bounded(IIWA14_C(-16.0) * t636);
-    const iiwa14_real_t t638 = IIWA14_C(-2.0) * t620; /* link j3: derivatives */
-    const iiwa14_real_t t639 = IIWA14_C(-2.0) * t621;
-    const iiwa14_real_t t640 = t115 * t639 - t112 * t638;
-    const iiwa14_real_t t641 = IIWA14_C(2.0) * t605;
-    const iiwa14_real_t t642 = IIWA14_C(-0.84) * t204; /* link j7: derivatives */
-    const iiwa14_real_t t643 = IIWA14_C(-0.84) * dq[1];
-    const iiwa14_real_t t644 = t641 - (t158 * t642 - t184 * t643); /* link j3: derivatives */
-    const iiwa14_real_t t645 = IIWA14_C(0.0625) * (t167 * t640 - t169 * t644);
-    const iiwa14_real_t t646 = t151 - t96 * t163;
-    const iiwa14_real_t t647 = t466 * (t200 + t96 * t201 - t190 * t646);
-    const iiwa14_real_t t648 = iiwa14_bounded(IIWA14_C(16.0) * t647);
-    const iiwa14_real_t t649 = IIWA14_C(2.0) * t585; /* link j4: derivatives */
-    const iiwa14_real_t t650 = IIWA14_C(2.0) * t588;
-    const iiwa14_real_t t651 = t81 * t649 - t79 * t650;
-    const iiwa14_real_t t652 = IIWA14_C(2.0) * t575;
-    const iiwa14_real_t t653 = t115 * t652 - t112 * t651 - t156 * t642;
-    const iiwa14_real_t t654 = t79 * t649 + t81 * t650;
-    const iiwa14_real_t t655 = t654 - (t180 * t643 - t148 * t642);
-    const iiwa14_real_t t656 = IIWA14_C(0.0625) * (t167 * t653 + t169 * t655);
-    const iiwa14_real_t t657 = t625 * t626 - t635 * t628 - t645 * t637 + t656 * t648;
-    const iiwa14_real_t t658 = t106 + t75 * t96;
-    const iiwa14_real_t t659 = t146 + t75 * t151 - t163 * t658;
-    const iiwa14_real_t t660 = t198 + t75 * t200 + t201 * t658 - t190 * t659;
-    const iiwa14_real_t t661 = t466 * t660;
-    const iiwa14_real_t t662 = iiwa14_bounded(IIWA14_C(8.0) * t661);
-    const iiwa14_real_t t663 = IIWA14_C(2.0) * t566; /* link j5: derivatives */
-    const iiwa14_real_t t664 = IIWA14_C(2.0) * t567;
-    const iiwa14_real_t t665 = t39 * t663 - t42 * t664;
-    const iiwa14_real_t t666 = IIWA14_C(2.0) * t551;
-    const iiwa14_real_t t667 = IIWA14_C(-0.8) * t208; /* link j7: derivatives */
-    const iiwa14_real_t t668 = IIWA14_C(0.8) * t210;
-    const iiwa14_real_t t669 = t666 + (t71 * t667 - t90 * t668); /* link j5: derivatives */
-    const iiwa14_real_t t670 = t81 * t665 - t79 * t669;
-    const iiwa14_real_t t671 = t42 * t663 + t39 * t664;
-    const iiwa14_real_t t672 = t79 * t71; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t673 = t115 * t671 - t112 * t670 + t672 * t642; /* link j5: derivatives */
-    const iiwa14_real_t t674 = t79 * t665 + t81 * t669;
-    const iiwa14_real_t t675 = t674 - (t177 * t643 - t143 * t642);
-    const iiwa14_real_t t676 = IIWA14_C(0.125) * (t167 * t673 + t169 * t675);
-    const iiwa14_real_t t677 = t34 * t75 - t64;
-    const iiwa14_real_t t678 = t105 + t34 * t106 + t96 * t677;
-    const iiwa14_real_t t679 = t140 + t34 * t146 + t151 * t677 - t163 * t678;
-    const iiwa14_real_t t680 = t197 + t34 * t198 + t200 * t677 + t201 * t678;
-    const iiwa14_real_t t681 = t466 * (t680 - t190 * t679);
-    const iiwa14_real_t t682 = iiwa14_bounded(IIWA14_C(8.0) * t681);
-    const iiwa14_real_t t683 = IIWA14_C(-2.0) * t531; /* link j6: derivatives */
-    const iiwa14_real_t t684 = IIWA14_C(2.0) * t534;
-    const iiwa14_real_t t685 = t18 * t683 + t22 * t684;
-    const iiwa14_real_t t686 = IIWA14_C(-2.0) * t521;
-    const iiwa14_real_t t687 = t39 * t685 - t42 * t686 - t69 * t667;
-    const iiwa14_real_t t688 = t18 * t684 - t22 * t683;
-    const iiwa14_real_t t689 = t688 - (t61 * t667 + t86 * t668);
-    const iiwa14_real_t t690 = t81 * t687 - t79 * t689;
-    const iiwa14_real_t t691 = t42 * t685 + t39 * t686 - t69 * t668;
-    const iiwa14_real_t t692 = t79 * t61 - t81 * t69; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t693 = t115 * t691 - t112 * t690 - t692 * t642; /* link j6: derivatives */
-    const iiwa14_real_t t694 = t79 * t687 + t81 * t689;
-    const iiwa14_real_t t695 = t694 + (t137 * t642 + t173 * t643);
-    const iiwa14_real_t t696 = IIWA14_C(0.125) * (t167 * t693 + t169 * t695);
-    const iiwa14_real_t t697 = t6 * t34 - t28;
-    const iiwa14_real_t t698 = t75 * t697 - (t60 + t6 * t64);
-    const iiwa14_real_t t699 = t104 + t6 * t105 + t106 * t697 + t96 * t698;
-    const iiwa14_real_t t700 = t134 + t6 * t140 + t146 * t697 + t151 * t698;
-    const iiwa14_real_t t701 = t700 - t163 * t699;
-    const iiwa14_real_t t702 = t196 + t6 * t197 + t198 * t697 + t200 * t698;
-    const iiwa14_real_t t703 = t466 * (t702 + t201 * t699 - t190 * t701);
-    const iiwa14_real_t t704 = IIWA14_C(8.0) * t703;
-    const iiwa14_real_t t705 = IIWA14_C(2.0) * t512; /* link j7: derivatives */
-    const iiwa14_real_t t706 = IIWA14_C(2.0) * t513;
-    const iiwa14_real_t t707 = t2 * t705 - t1 * t706;
-    const iiwa14_real_t t708 = IIWA14_C(2.0) * t499;
-    const iiwa14_real_t t709 = t708 + (t3 * (IIWA14_C(-0.252) * t252) - t19 * (IIWA14_C(0.252) * t245));
-    const iiwa14_real_t t710 = t18 * t707 + t22 * t709;
-    const iiwa14_real_t t711 = t1 * t705 + t2 * t706;
-    const iiwa14_real_t t712 = t39 * t710 - t42 * t711 + t130 * t667;
-    const iiwa14_real_t t713 = t18 * t709 - t22 * t707;
-    const iiwa14_real_t t714 = t713 + (t58 * t667 + t83 * t668);
-    const iiwa14_real_t t715 = t81 * t712 - t79 * t714;
-    const iiwa14_real_t t716 = t42 * t710 + t39 * t711 + t130 * t668;
-    const iiwa14_real_t t717 = t81 * t130 - t79 * t58; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t718 = t115 * t716 - t112 * t715 - t717 * t642; /* link j7: derivatives */
-    const iiwa14_real_t t719 = t79 * t712 + t81 * t714;
-    const iiwa14_real_t t720 = t719 - (t170 * t643 - t132 * t642);
-    const iiwa14_real_t t721 = IIWA14_C(0.125) * (t167 * t718 + t169 * t720);
-    const iiwa14_real_t t722 = t657 + t676 * t662 + t696 * t682 + t721 * t704;
-    ddq_by_dq[0] = t722;
-    const iiwa14_real_t t723 = iiwa14_bounded(IIWA14_C(16.0) * (t189 + t190 * t627));
-    const iiwa14_real_t t724 = t163 * t189 + t190 * t636;
-    const iiwa14_real_t t725 = iiwa14_bounded(IIWA14_C(16.0) * t724);
-    const iiwa14_real_t t726 = t190 * t647 - t189 * t646;
-    const iiwa14_real_t t727 = iiwa14_bounded(IIWA14_C(-16.0) * t726);
-    const iiwa14_real_t t728 = t625 * t628 - t635 * t723 - t645 * t725 + t656 * t727;
-    const iiwa14_real_t t729 = t190 * t661 - t189 * t659;
-    const iiwa14_real_t t730 = iiwa14_bounded(IIWA14_C(-8.0) * t729);
-    const iiwa14_real_t t731 = t190 * t681 - t189 * t679;
-    const iiwa14_real_t t732 = iiwa14_bounded(IIWA14_C(-8.0) * t731);
-    const iiwa14_real_t t733 = t190 * t703 - t189 * t701;
-    const iiwa14_real_t t734 = IIWA14_C(-8.0) * t733;
-    const iiwa14_real_t t735 = t728 + t676 * t730 + t696 * t732 + t721 * t734;
-    ddq_by_dq[7] = t735;
-    const iiwa14_real_t t736 = iiwa14_bounded(IIWA14_C(16.0) * (t162 + t201 * t636 + t163 * t724));
-    const iiwa14_real_t t737 = t96 * t162 + t201 * t647 + t163 * t726;
-    const iiwa14_real_t t738 = iiwa14_bounded(IIWA14_C(-16.0) * t737);
-    const iiwa14_real_t t739 = t625 * t637 - t635 * t725 - t645 * t736 + t656 * t738;
-    const iiwa14_real_t t740 = t162 * t658 + t201 * t661 + t163 * t729;
-    const iiwa14_real_t t741 = iiwa14_bounded(IIWA14_C(-8.0) * t740);
-    const iiwa14_real_t t742 = t162 * t678 + t201 * t681 + t163 * t731;
-    const iiwa14_real_t t743 = iiwa14_bounded(IIWA14_C(-8.0) * t742);
-    const iiwa14_real_t t744 = t162 * t699 + t201 * t703 + t163 * t733;
-    const iiwa14_real_t t745 = IIWA14_C(-8.0) * t744;
-    const iiwa14_real_t t746 = t739 + t676 * t741 + t696 * t743 + t721 * t745;
-    ddq_by_dq[14] = t746;
-    const iiwa14_real_t t747 = t95 + t200 * t647 - t151 * t726 + t96 * t737;
-    const iiwa14_real_t t748 = iiwa14_bounded(IIWA14_C(16.0) * t747);
-    const iiwa14_real_t t749 = t625 * t648 - t635 * t727 - t645 * t738 + t656 * t748;
-    const iiwa14_real_t t750 = t75 * t95 + t200 * t661 - t151 * t729 + t96 * t740;
-    const iiwa14_real_t t751 = iiwa14_bounded(IIWA14_C(8.0) * t750);
-    const iiwa14_real_t t752 = t95 * t677 + t200 * t681 - t151 * t731 + t96 * t742;
-    const iiwa14_real_t t753 = iiwa14_bounded(IIWA14_C(8.0) * t752);
-    const iiwa14_real_t t754 = t95 * t698 + t200 * t703 - t151 * t733 + t96 * t744;
-    const iiwa14_real_t t755 = IIWA14_C(8.0) * t754;
-    const iiwa14_real_t t756 = t749 + t676 * t751 + t696 * t753 + t721 * t755;
-    ddq_by_dq[21] = t756;
-    const iiwa14_real_t t757 = iiwa14_bounded(IIWA14_C(16.0) * t661);
-    const iiwa14_real_t t758 = iiwa14_bounded(IIWA14_C(-16.0) * t729);
-    const iiwa14_real_t t759 = iiwa14_bounded(IIWA14_C(-16.0) * t740);
-    const iiwa14_real_t t760 = iiwa14_bounded(IIWA14_C(16.0) * t750);
-    const iiwa14_real_t t761 = t625 * t757 - t635 * t758 - t645 * t759 + t656 * t760;
-    const iiwa14_real_t t762 = t74 + t198 * t661 - t146 * t729 + t106 * t740;
-    const iiwa14_real_t t763 = iiwa14_bounded(IIWA14_C(8.0) * (t762 + t75 * t750));
-    const iiwa14_real_t t764 = t34 * t74 + t198 * t681 - t146 * t731 + t106 * t742;
-    const iiwa14_real_t t765 = t764 + t75 * t752;
-    const iiwa14_real_t t766 = iiwa14_bounded(IIWA14_C(8.0) * t765);
-    const iiwa14_real_t t767 = t74 * t697 + t198 * t703 - t146 * t733 + t106 * t744;
-    const iiwa14_real_t t768 = t767 + t75 * t754;
-    const iiwa14_real_t t769 = iiwa14_bounded(IIWA14_C(8.0) * t768);
-    const iiwa14_real_t t770 = t761 + t676 * t763 + t696 * t766 + t721 * t769;
-    ddq_by_dq[28] = t770;
-    const iiwa14_real_t t771 = iiwa14_bounded(IIWA14_C(16.0) * t681);
-    const iiwa14_real_t t772 = iiwa14_bounded(IIWA14_C(-16.0) * t731);
-    const iiwa14_real_t t773 = iiwa14_bounded(IIWA14_C(-16.0) * t742);
-    const iiwa14_real_t t774 = iiwa14_bounded(IIWA14_C(16.0) * t752);
-    const iiwa14_real_t t775 = t625 * t771 - t635 * t772 - t645 * t773 + t656 * t774;
-    const iiwa14_real_t t776 = t33 + t197 * t681 - t140 * t731 + t105 * t742;
-    const iiwa14_real_t t777 = iiwa14_bounded(IIWA14_C(8.0) * (t776 - t64 * t752 + t34 * t765));
-    const iiwa14_real_t t778 = t140 * t733 - (t6 * t33 + t197 * t703) - t105 * t744;
-    const iiwa14_real_t t779 = t778 + t64 * t754 - t34 * t768;
-    const iiwa14_real_t t780 = iiwa14_bounded(IIWA14_C(-8.0) * t779);
-    const iiwa14_real_t t781 = t775 + t676 * t766 + t696 * t777 + t721 * t780;
-    ddq_by_dq[35] = t781;
-    const iiwa14_real_t t782 = iiwa14_bounded(IIWA14_C(16.0) * t703);
-    const iiwa14_real_t t783 = iiwa14_bounded(IIWA14_C(-16.0) * t733);
-    const iiwa14_real_t t784 = iiwa14_bounded(IIWA14_C(-16.0) * t744);
-    const iiwa14_real_t t785 = iiwa14_bounded(IIWA14_C(16.0) * t754);
-    const iiwa14_real_t t786 = t625 * t782 - t635 * t783 - t645 * t784 + t656 * t785;
-    const iiwa14_real_t t787 = t5 + t196 * t703 - t134 * t733 + t104 * t744;
-    const iiwa14_real_t t788 = t787 - t60 * t754 - t28 * t768 - t6 * t779;
-    const iiwa14_real_t t789 = IIWA14_C(8.0) * t788;
-    const iiwa14_real_t t790 = t786 + t676 * t769 + t696 * t780 + t721 * t789;
-    ddq_by_dq[42] = t790;
-    ddq_by_input[0] = t626;
-    ddq_by_input[7] = t628;
-    ddq_by_input[14] = t637;
-    ddq_by_input[21] = t648;
-    ddq_by_input[28] = t757;
-    ddq_by_input[35] = t771;
-    ddq_by_input[42] = t782;
-    const iiwa14_real_t t791 = t218 - t468;
-    const iiwa14_real_t t792 = t167 * t467;
-    const iiwa14_real_t t793 = t219 + t792;
-    const iiwa14_real_t t794 = t219 + t793;
-    const iiwa14_real_t t795 = t112 * t791 - t115 * t794;
-    const iiwa14_real_t t796 = t795 - t230;
-    const iiwa14_real_t t797 = t470 + t796;
-    const iiwa14_real_t t798 = t229 + t797;
-    const iiwa14_real_t t799 = t169 * t467;
-    const iiwa14_real_t t800 = t215 - t799;
-    const iiwa14_real_t t801 = t800 - t469;
-    const iiwa14_real_t t802 = t801 - t214;
-    const iiwa14_real_t t803 = t115 * t791 + t112 * t794;
-    const iiwa14_real_t t804 = t803 - t217;
-    const iiwa14_real_t t805 = t804 - t217;
-    const iiwa14_real_t t806 = t79 * t802 + t81 * t805;
-    const iiwa14_real_t t807 = t235 + t806;
-    const iiwa14_real_t t808 = t235 + t807;
-    const iiwa14_real_t t809 = t39 * t798 - t42 * t808;
-    const iiwa14_real_t t810 = t809 - t250;
-    const iiwa14_real_t t811 = t810 - t474;
-    const iiwa14_real_t t812 = t811 - t253;
-    const iiwa14_real_t t813 = t81 * t802 - t79 * t805;
-    const iiwa14_real_t t814 = t225 + t813;
-    const iiwa14_real_t t815 = t814 - t472;
-    const iiwa14_real_t t816 = t213 - t815;
-    const iiwa14_real_t t817 = t42 * t798 + t39 * t808;
-    const iiwa14_real_t t818 = t817 - t240;
-    const iiwa14_real_t t819 = t240 - t818;
-    const iiwa14_real_t t820 = t22 * t816 - t18 * t819;
-    const iiwa14_real_t t821 = t246 - t820;
-    const iiwa14_real_t t822 = t246 + t821;
-    const iiwa14_real_t t823 = t2 * t822 - t1 * t812;
-    const iiwa14_real_t t824 = t258 - t823;
-    const iiwa14_real_t t825 = t2 * t812 + t1 * t822;
-    const iiwa14_real_t t826 = t825 - t263;
-    const iiwa14_real_t t827 = t826 - t263;
-    const iiwa14_real_t t828 = t18 * t816 + t22 * t819;
-    const iiwa14_real_t t829 = t267 - t828;
-    const iiwa14_real_t t830 = t476 - t829;
-    const iiwa14_real_t t831 = t269 + t830;
-    const iiwa14_real_t t832 = parameters[XX7] * t824 - t260 + parameters[XY7] * t827
-        - parameters[XZ7] * t831;
-    const iiwa14_real_t t833 = IIWA14_C(0.42) * t791 - t280;
-    const iiwa14_real_t t834 = IIWA14_C(0.42) * t794;
-    const iiwa14_real_t t835 = t112 * t833 - t115 * t834;
-    const iiwa14_real_t t836 = t81 * t835 - t279;
-    const iiwa14_real_t t837 = t836 + IIWA14_C(0.4) * t798;
-    const iiwa14_real_t t838 = t115 * t833 + t112 * t834;
-    const iiwa14_real_t t839 = t838 + IIWA14_C(0.4) * t808;
-    const iiwa14_real_t t840 = t42 * t839 - t39 * t837;
-    const iiwa14_real_t t841 = t293 + t79 * t835;
-    const iiwa14_real_t t842 = t292 - t841;
-    const iiwa14_real_t t843 = t18 * t840 + t22 * t842;
-    const iiwa14_real_t t844 = IIWA14_C(0.126) * t812 - t843;
-    const iiwa14_real_t t845 = t42 * t837 + t39 * t839;
-    const iiwa14_real_t t846 = IIWA14_C(0.126) * t822 - t845;
-    const iiwa14_real_t t847 = t1 * t844 - t2 * t846;
-    const iiwa14_real_t t848 = parameters[MZ7] * t847;
-    const iiwa14_real_t t849 = t18 * t842 - t22 * t840;
-    const iiwa14_real_t t850 = t849 - t304;
-    const iiwa14_real_t t851 = t274 + t832 + (parameters[MY7] * t850 + t848);
-    const iiwa14_real_t t852 = t258 + t824;
-    const iiwa14_real_t t853 = t830 - t269;
-    const iiwa14_real_t t854 = t308 + parameters[YY7] * t826 + parameters[XY7] * t852
-        - parameters[YZ7] * t853;
-    const iiwa14_real_t t855 = t2 * t844 + t1 * t846;
-    const iiwa14_real_t t856 = parameters[MZ7] * t855;
-    const iiwa14_real_t t857 = t313 + t854 + (t856 - parameters[MX7] * t850);
-    const iiwa14_real_t t858 = parameters[MZ7] * t825;
-    const iiwa14_real_t t859 = parameters[M7] * t855;
-    const iiwa14_real_t t860 = t859 + (t316 + parameters[MY7] * t853 + t858);
-    const iiwa14_real_t t861 = parameters[MZ7] * t823;
-    const iiwa14_real_t t862 = parameters[M7] * t847;
-    const iiwa14_real_t t863 = t862 + (parameters[MX7] * t831 - t318 - t861);
-    const iiwa14_real_t t864 = t2 * t863 - t1 * t860;
-    const iiwa14_real_t t865 = t267 + t829;
-    const iiwa14_real_t t866 = t253 + t811;
-    const iiwa14_real_t t867 = t321 - parameters[XX6] * t821 - parameters[XY6] * t865
-        + parameters[XZ6] * t866;
-    const iiwa14_real_t t868 = t326 - t867 - (parameters[MZ6] * t849 - parameters[MY6] * t845) + (t1 * t857
-        - t2 * t851 - IIWA14_C(0.126) * t864);
-    const iiwa14_real_t t869 = t328 + parameters[ZZ7] * t830 - parameters[YZ7] * t825
-        + parameters[XZ7] * t823;
-    const iiwa14_real_t t870 = parameters[YZ6] * t812 - (t332 + parameters[YY6] * t829
-        + parameters[XY6] * t822);
-    const iiwa14_real_t t871 = t870 - t334 - (parameters[MZ6] * t843 - parameters[MX6] * t845) + (t869 - t330
-        + (parameters[MX7] * t847 + parameters[MY7] * t855));
-    const iiwa14_real_t t872 = t810 - t250;
-    const iiwa14_real_t t873 = t213 + t815;
-    const iiwa14_real_t t874 = t336 + parameters[XX5] * t818 + parameters[XY5] * t872
-        + parameters[XZ5] * t873;
-    const iiwa14_real_t t875 = t342 + t874 + (parameters[MY5] * t842 + parameters[MZ5] * t845) - (t18 * t868
-        + t22 * t871);
-    const iiwa14_real_t t876 = t2 * t860 + t1 * t863;
-    const iiwa14_real_t t877 = t345 + parameters[ZZ6] * t811 + parameters[YZ6] * t828
-        + parameters[XZ6] * t820;
-    const iiwa14_real_t t878 = t347 + t877 + (parameters[MY6] * t843 - parameters[MX6] * t849) + (t1 * t851
-        + t2 * t857 + IIWA14_C(0.126) * t876);
-    const iiwa14_real_t t879 = t349 + parameters[YY5] * t810 - parameters[XY5] * t819
-        - parameters[YZ5] * t816;
-    const iiwa14_real_t t880 = t352 + t879 - (parameters[MZ5] * t840 + parameters[MX5] * t842) + t878;
-    const iiwa14_real_t t881 = t354 - parameters[MY6] * t812 + parameters[MZ6] * t828 - parameters[M6] * t843;
-    const iiwa14_real_t t882 = t881 + t876;
-    const iiwa14_real_t t883 = parameters[M7] * t850 + (t360 + (parameters[MY7] * t852
-        - parameters[MX7] * t827));
-    const iiwa14_real_t t884 = t357 + parameters[MX6] * t866 - parameters[MZ6] * t820 - parameters[M6] * t849;
-    const iiwa14_real_t t885 = t884 - t883;
-    const iiwa14_real_t t886 = t363 + parameters[MY5] * t816 + parameters[MZ5] * t809 - parameters[M5] * t840;
-    const iiwa14_real_t t887 = t886 + (t18 * t882 - t22 * t885);
-    const iiwa14_real_t t888 = t367 + (parameters[MX6] * t865 - parameters[MY6] * t822)
-        - parameters[M6] * t845;
-    const iiwa14_real_t t889 = t369 + parameters[MX5] * t873 - parameters[MZ5] * t817 - parameters[M5] * t845;
-    const iiwa14_real_t t890 = t889 + (t888 - t864);
-    const iiwa14_real_t t891 = t42 * t887 + t39 * t890;
-    const iiwa14_real_t t892 = t225 + t814;
-    const iiwa14_real_t t893 = t797 - t229;
-    const iiwa14_real_t t894 = parameters[XX4] * t807 - t373 + parameters[XY4] * t892
-        - parameters[XZ4] * t893;
-    const iiwa14_real_t t895 = t42 * t880 - t39 * t875 - IIWA14_C(-0.4) * t891 - (t378 + t894
-        + (parameters[MY4] * t838 + parameters[MZ4] * t841));
-    const iiwa14_real_t t896 = t380 + parameters[ZZ5] * t815 + parameters[YZ5] * t809
-        + parameters[XZ5] * t817;
-    const iiwa14_real_t t897 = t382 + t896 + (parameters[MY5] * t840 - parameters[MX5] * t845) + (t22 * t868
-        - t18 * t871);
-    const iiwa14_real_t t898 = parameters[YY4] * t814 - t384 + parameters[XY4] * t808
-        - parameters[YZ4] * t798;
-    const iiwa14_real_t t899 = t386 + t898 + (parameters[MZ4] * t836 - parameters[MX4] * t838) + t897;
-    const iiwa14_real_t t900 = t214 + t801;
-    const iiwa14_real_t t901 = t388 - parameters[XX3] * t804 + parameters[XY3] * (t230 - t796)
-        - parameters[XZ3] * t900;
-    const iiwa14_real_t t902 = t393 + t901 + (t394 - parameters[MZ3] * t838) + (t81 * t895 + t79 * t899);
-    const iiwa14_real_t t903 = t39 * t887 - t42 * t890;
-    const iiwa14_real_t t904 = t397 + parameters[ZZ4] * t797 - parameters[YZ4] * t813
-        - parameters[XZ4] * t806;
-    const iiwa14_real_t t905 = t399 + t904 + (parameters[MX4] * t841 + parameters[MY4] * t836) + (t42 * t875
-        + t39 * t880 + IIWA14_C(0.4) * t903);
-    const iiwa14_real_t t906 = t401 + parameters[YY3] * t796 + parameters[XY3] * t805
-        + parameters[YZ3] * t802;
-    const iiwa14_real_t t907 = t404 + t906 + (t405 + parameters[MZ3] * t835) + t905;
-    const iiwa14_real_t t908 = parameters[M4] * t836 + (t407 + parameters[MY4] * t798
-        + parameters[MZ4] * t813);
-    const iiwa14_real_t t909 = t908 + t903;
-    const iiwa14_real_t t910 = parameters[MX5] * t872 + parameters[MY5] * t819 - t410 - parameters[M5] * t842;
-    const iiwa14_real_t t911 = parameters[M4] * t841 + (parameters[MX4] * t893 - t412
-        + parameters[MZ4] * t806);
-    const iiwa14_real_t t912 = t911 + (t910 + (t22 * t882 + t18 * t885));
-    const iiwa14_real_t t913 = parameters[M3] * t835 + (t415 - parameters[MY3] * t802
-        + parameters[MZ3] * t795);
-    const iiwa14_real_t t914 = t913 + (t81 * t909 + t79 * t912);
-    const iiwa14_real_t t915 = parameters[MX4] * t892 - parameters[MY4] * t808 - t419 - parameters[M4] * t838;
-    const iiwa14_real_t t916 = t421 + parameters[MX3] * t900 - parameters[MZ3] * t803 - parameters[M3] * t838;
-    const iiwa14_real_t t917 = t916 + (t915 + t891);
-    const iiwa14_real_t t918 = t112 * t902 + t115 * t907 + IIWA14_C(0.42) * (t115 * t914 + t112 * t917);
-    const iiwa14_real_t t919 = t425 - parameters[XX2] * t793 + parameters[XY2] * (t215 + t800)
-        + parameters[XZ2] * (t218 + t468);
-    const iiwa14_real_t t920 = t275 + t427; /* link j3: motion */
-    const iiwa14_real_t t921 = IIWA14_C(-2.0) * t206; /* link j2: derivatives */
-    const iiwa14_real_t t922 = IIWA14_C(2.0) * t204;
-    const iiwa14_real_t t923 = t192 * t792 - t193 * t799 - t920 * t168 - (t623 * t921 + t607 * t922);
-    const iiwa14_real_t t924 = t158 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t925 = t429 + (t428 + t919) + t918 + (t277 * t924 + t923);
-    const iiwa14_real_t t926 = t431 - parameters[ZZ3] * t801 - parameters[YZ3] * t795
-        - parameters[XZ3] * t803;
-    const iiwa14_real_t t927 = t430 + t926 + (parameters[MX3] * t838 + parameters[MY3] * t835) + (t79 * t895
-        - t81 * t899);
-    const iiwa14_real_t t928 = t434 - parameters[YY2] * t800 + parameters[XY2] * t794
-        + parameters[YZ2] * t791;
-    const iiwa14_real_t t929 = t920 * t166 + (t191 * t799 + t193 * t792) - (t604 * t921 + t619 * t922);
-    const iiwa14_real_t t930 = t436 + t928 - t437 + t927 + (t929 - t280 * t924);
-    const iiwa14_real_t t931 = IIWA14_C(0.0625) * (t167 * t930 + t169 * t925);
-    const iiwa14_real_t t932 = t206 * t631 + t204 * t634 + (t166 * t799 + t168 * t792 - t920 * t127);
-    const iiwa14_real_t t933 = t277 * (parameters[MY2] + t615) - t280 * (parameters[MX2] + t184) + t932;
-    const iiwa14_real_t t934 = IIWA14_C(0.0625) * t933;
-    const iiwa14_real_t t935 = t206 * t640 + t204 * t644 + (t920 * t159 + (t185 * t799 - t102 * t792));
-    const iiwa14_real_t t936 = IIWA14_C(0.0625) * (t935 - t277 * t158);
-    const iiwa14_real_t t937 = t206 * t653 - t204 * t655 + (t181 * t799 + t82 * t792 - t920 * t149);
-    const iiwa14_real_t t938 = IIWA14_C(0.0625) * (t937 - (t277 * t148 + t280 * t156));
-    const iiwa14_real_t t939 = t626 * t931 - t628 * t934 - t637 * t936 + t648 * t938;
-    const iiwa14_real_t t940 = t206 * t673 - t204 * t675 + (t178 * t799 + t92 * t792 - t920 * t144);
-    const iiwa14_real_t t941 = IIWA14_C(0.125) * (t280 * t672 - t277 * t143 + t940);
-    const iiwa14_real_t t942 = t206 * t693 - t204 * t695 + (t174 * t799 - t88 * t792 - t920 * t138);
-    const iiwa14_real_t t943 = IIWA14_C(0.125) * (t942 - (t277 * t137 + t280 * t692));
-    const iiwa14_real_t t944 = t206 * t718 - t204 * t720 + (t171 * t799 + t85 * t792 - t920 * t133);
-    const iiwa14_real_t t945 = IIWA14_C(0.125) * (t944 - (t277 * t132 + t280 * t717));
-    const iiwa14_real_t t946 = t939 + t662 * t941 + t682 * t943 + t704 * t945;
-    ddq_by_q[1] = t946;
-    const iiwa14_real_t t947 = t628 * t931 - t723 * t934 - t725 * t936 + t727 * t938;
-    const iiwa14_real_t t948 = t947 + t730 * t941 + t732 * t943 + t734 * t945;
-    ddq_by_q[8] = t948;
-    const iiwa14_real_t t949 = t637 * t931 - t725 * t934 - t736 * t936 + t738 * t938;
-    const iiwa14_real_t t950 = t949 + t741 * t941 + t743 * t943 + t745 * t945;
-    ddq_by_q[15] = t950;
-    const iiwa14_real_t t951 = t648 * t931 - t727 * t934 - t738 * t936 + t748 * t938;
-    const iiwa14_real_t t952 = t951 + t751 * t941 + t753 * t943 + t755 * t945;
-    ddq_by_q[22] = t952;
-    const iiwa14_real_t t953 = t757 * t931 - t758 * t934 - t759 * t936 + t760 * t938;
-    const iiwa14_real_t t954 = t953 + t763 * t941 + t766 * t943 + t769 * t945;
-    ddq_by_q[29] = t954;
-    const iiwa14_real_t t955 = t771 * t931 - t772 * t934 - t773 * t936 + t774 * t938;
-    const iiwa14_real_t t956 = t955 + t766 * t941 + t777 * t943 + t780 * t945;
-    ddq_by_q[36] = t956;
-    const iiwa14_real_t t957 = t782 * t931 - t783 * t934 - t784 * t936 + t785 * t938;
-    const iiwa14_real_t t958 = t957 + t769 * t941 + t780 * t943 + t789 * t945;
-    ddq_by_q[43] = t958;
-    /* link j2: derivatives */
-    const iiwa14_real_t t959 = IIWA14_C(2.0) * (t602 - t606 + (t574 + t592 - t600 - t601));
-    const iiwa14_real_t t960 = IIWA14_C(0.0625) * (t959 + IIWA14_C(2.0) * (t206 * t166 + t204 * t168));
-    const iiwa14_real_t t961 = IIWA14_C(1.6e3) * parameters[FV2] + t960;
-    const iiwa14_real_t t962 = parameters[ZZ2] - t617;
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t963 = t584 - t629 - t158 * t593 - (dq[1] * parameters[YZ2] + t206 * t962);
-    /* link j2: derivatives */
-    const iiwa14_real_t t964 = t167 * (IIWA14_C(2.0) * t963 + (t193 * t922 - t191 * t921));
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t965 = dq[1] * parameters[XZ2] + t204 * t962 + (t115 * t620 + t112 * t621);
-    /* link j2: derivatives */
-    const iiwa14_real_t t966 = t169 * (IIWA14_C(2.0) * t965 + (t193 * t921 + t192 * t922));
-    const iiwa14_real_t t967 = IIWA14_C(0.0625) * (t964 + t966);
-    /* link j3: derivatives */
-    const iiwa14_real_t t968 = t115 * t638 + t112 * t639 + IIWA14_C(2.0) * (t206 * t185 - t204 * t102);
-    const iiwa14_real_t t969 = IIWA14_C(0.0625) * t968;
+    const iiwa14_real_t t1105 = t209 * parameters[YZ4] + t227 * t1104 + (t1047 - t898 - t69 * t1020);
     /* link j4: derivatives */
-    const iiwa14_real_t t970 = t115 * t651 + t112 * t652 - t156 * t643 + IIWA14_C(2.0) * (t206 * t181
-        + t204 * t82);
-    const iiwa14_real_t t971 = IIWA14_C(0.0625) * t970;
-    const iiwa14_real_t t972 = t967 * t626 - t961 * t628 - t969 * t637 + t971 * t648;
+    const iiwa14_real_t t1106 = IIWA14_C(2.0) * t1105 + (t94 * t1018 + t96 * t1028);
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t1107 = t207 * t1104 - t209 * parameters[XZ4] + (t40 * t926 + t37 * t927);
+    /* link j4: derivatives */
+    const iiwa14_real_t t1108 = IIWA14_C(-2.0) * t1107 + (t96 * t1018 + t95 * t1028);
+    const iiwa14_real_t t1109 = t78 * t1106 + t76 * t1108;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t1110 = t1024 + (t894 + t1036 - t1023) - (t1037 + t1026);
+    const iiwa14_real_t t1111 = IIWA14_C(2.0) * t1110; /* link j4: derivatives */
+    const iiwa14_real_t t1112 = t75 * t1018 + t77 * t1028 - t1111;
+    const iiwa14_real_t t1113 = t78 * (IIWA14_C(2.0) * t1064 + t150 * t1028) + t76 * (IIWA14_C(-2.0) * t1065
+        - t150 * t1018);
+    const iiwa14_real_t t1114 = t116 * t1018 + t114 * t1028;
+    const iiwa14_real_t t1115 = t111 * t1109 + t108 * t1112 + IIWA14_C(0.42) * (t111 * t1114 - t108 * t1113);
+    const iiwa14_real_t t1116 = IIWA14_C(0.0625) * t1115;
+    const iiwa14_real_t t1117 = t108 * t1109 - t111 * t1112 + IIWA14_C(0.42) * (t111 * t1113 + t108 * t1114);
+    const iiwa14_real_t t1118 = t78 * t1108 - t76 * t1106;
+    const iiwa14_real_t t1119 = IIWA14_C(0.0625) * (t162 * t1117 + t164 * t1118);
+    const iiwa14_real_t t1120 = IIWA14_C(-0.0625) * t1118;
+    const iiwa14_real_t t1121 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t227 * t75 - t207 * t77) - t1111);
+    const iiwa14_real_t t1122 = IIWA14_C(-1.6e3) * parameters[FV4] + t1121;
+    const iiwa14_real_t t1123 = t1119 * t592 - t1116 * t596 - t1120 * t599 + t1122 * t603;
+    const iiwa14_real_t t1124 = t40 * t945 + t37 * t946; /* link j5: derivatives */
+    const iiwa14_real_t t1125 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t227 * t88 - t207 * t24) - t1124);
+    const iiwa14_real_t t1126 = t40 * t948 + t37 * t847 - t67 * t1079; /* link j6: derivatives */
+    const iiwa14_real_t t1127 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t227 * t84 + t207 * t30) - t1126);
+    const iiwa14_real_t t1128 = t40 * t951 + t37 * t871 + t126 * t1079; /* link j7: derivatives */
+    const iiwa14_real_t t1129 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t227 * t81 - t207 * t26) - t1128);
+    const iiwa14_real_t t1130 = t1123 + t1125 * t610 + t1127 * t617 + t1129 * t628;
+    ddq_by_dq[3] = t1130;
+    const iiwa14_real_t t1131 = t1119 * t596 - t1116 * t630 - t1120 * t632 + t1122 * t634;
+    const iiwa14_real_t t1132 = t1131 + t1125 * t637 + t1127 * t639 + t1129 * t641;
+    ddq_by_dq[10] = t1132;
+    const iiwa14_real_t t1133 = t1119 * t599 - t1116 * t632 - t1120 * t643 + t1122 * t645;
+    const iiwa14_real_t t1134 = t1133 + t1125 * t648 + t1127 * t650 + t1129 * t652;
+    ddq_by_dq[17] = t1134;
+    const iiwa14_real_t t1135 = t1119 * t603 - t1116 * t634 - t1120 * t645 + t1122 * t655;
+    const iiwa14_real_t t1136 = t1135 + t1125 * t658 + t1127 * t660 + t1129 * t662;
+    ddq_by_dq[24] = t1136;
+    const iiwa14_real_t t1137 = t1119 * t664 - t1116 * t665 - t1120 * t666 + t1122 * t667;
+    const iiwa14_real_t t1138 = t1137 + t1125 * t670 + t1127 * t673 + t1129 * t676;
+    ddq_by_dq[31] = t1138;
+    const iiwa14_real_t t1139 = t1119 * t678 - t1116 * t679 - t1120 * t680 + t1122 * t681;
+    const iiwa14_real_t t1140 = t1139 + t1125 * t673 + t1127 * t684 + t1129 * t687;
+    ddq_by_dq[38] = t1140;
+    const iiwa14_real_t t1141 = t1119 * t689 - t1116 * t690 - t1120 * t691 + t1122 * t692;
+    const iiwa14_real_t t1142 = t1141 + t1125 * t676 + t1127 * t687 + t1129 * t696;
+    ddq_by_dq[45] = t1142;
+    ddq_by_input[3] = t603;
+    ddq_by_input[10] = t634;
+    ddq_by_input[17] = t645;
+    ddq_by_input[24] = t655;
+    ddq_by_input[31] = t667;
+    ddq_by_input[38] = t681;
+    ddq_by_input[45] = t692;
+    const iiwa14_real_t t1143 = t396 + parameters[ZZ4] * t482 - parameters[YZ4] * t498
+        - parameters[XZ4] * t491;
+    const iiwa14_real_t t1144 = t398 + t1143 + (parameters[MX4] * t526 + parameters[MY4] * t521) + (t40 * t905
+        + t37 * t889 + IIWA14_C(0.4) * t1054);
+    const iiwa14_real_t t1145 = t400 + parameters[YY3] * t481 + parameters[XY3] * t490
+        + parameters[YZ3] * t487;
+    const iiwa14_real_t t1146 = t403 + t1145 + (t404 + parameters[MZ3] * t520) + t1144;
+    const iiwa14_real_t t1147 = t402 + t390; /* link j4: motion */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1148 = t78 * (t1038 + t1027) + t76 * (t1017 - t1042);
+    const iiwa14_real_t t1149 = t78 * t1148;
+    const iiwa14_real_t t1150 = t208 * parameters[XZ3];
+    const iiwa14_real_t t1151 = t206 * parameters[XY3];
+    const iiwa14_real_t t1152 = t1150 - t1151 + (t1149 - t1027);
+    const iiwa14_real_t t1153 = IIWA14_C(2.0) * t208; /* link j3: derivatives */
+    const iiwa14_real_t t1154 = IIWA14_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const iiwa14_real_t t1155 = parameters[YY3] - t1154;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1156 = t208 * parameters[YZ3] - t206 * t1155 + (t76 * t1107 - t78 * t1105);
+    const iiwa14_real_t t1157 = IIWA14_C(2.0) * t204; /* link j3: derivatives */
+    const iiwa14_real_t t1158 = t1152 * t1153 + t1156 * t1157 + (t1147 * t148 + (t110 * t488 - t106 * t480));
+    const iiwa14_real_t t1159 = t1146 + (t1158 - t118 * t520);
+    const iiwa14_real_t t1160 = t213 + t486;
+    const iiwa14_real_t t1161 = t387 - parameters[XX3] * t489 + parameters[XY3] * (t229 - t481)
+        - parameters[XZ3] * t1160;
+    const iiwa14_real_t t1162 = t392 + t1161 + (t393 - parameters[MZ3] * t523) + (t78 * t1014 + t76 * t1034);
+    const iiwa14_real_t t1163 = parameters[XX3] - t1154;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1164 = t204 * parameters[XZ3] + t206 * t1163 + (t78 * t1048 - t76 * t1051);
+    const iiwa14_real_t t1165 = t204 * parameters[YZ3];
+    const iiwa14_real_t t1166 = t1151 + t1165 + t1110;
+    const iiwa14_real_t t1167 = t1164 * t1153 + t1166 * t1157 - (t1147 * t149 + (t110 * t480 - t107 * t488));
+    const iiwa14_real_t t1168 = t1162 + (t1167 + t118 * t523);
+    const iiwa14_real_t t1169 = parameters[MX4] * t1011 - parameters[MY4] * t493 - t418
+        - parameters[M4] * t523;
+    const iiwa14_real_t t1170 = t420 + parameters[MX3] * t1160 - parameters[MZ3] * t488
+        - parameters[M3] * t523;
+    const iiwa14_real_t t1171 = t1170 + (t1169 + t1010);
+    const iiwa14_real_t t1172 = t78 * t1064 - t76 * t1065 - (t204 * parameters[MY3] + t208 * parameters[MX3]);
+    const iiwa14_real_t t1173 = t1172 * t1157 + t120 * t523 + (t118 * t488 - t1147 * t151);
+    const iiwa14_real_t t1174 = t1171 + t1173;
+    const iiwa14_real_t t1175 = parameters[M3] * t520 + (t414 - parameters[MY3] * t487
+        + parameters[MZ3] * t480);
+    const iiwa14_real_t t1176 = t1175 + (t78 * t1056 + t76 * t1061);
+    const iiwa14_real_t t1177 = t1172 * t1153 - t120 * t520 + (t1147 * t153 - t118 * t480);
+    const iiwa14_real_t t1178 = t1176 + t1177;
+    const iiwa14_real_t t1179 = t108 * t1159 - t111 * t1168 + IIWA14_C(0.42) * (t108 * t1178 - t111 * t1174);
+    const iiwa14_real_t t1180 = t1147 * t99 - (t148 * t480 + t149 * t488);
+    const iiwa14_real_t t1181 = t76 * t1148;
+    const iiwa14_real_t t1182 = t204 * parameters[XY3] + t208 * t1163 - (t1181 - t1017);
+    const iiwa14_real_t t1183 = t208 * parameters[XY3] + t204 * t1155 + (t76 * t1105 + t78 * t1107);
+    const iiwa14_real_t t1184 = t153 * t520 + t151 * t523;
+    const iiwa14_real_t t1185 = t164 * (t1182 * t1153 + t1183 * t1157 + t1180 - t1184);
+    const iiwa14_real_t t1186 = IIWA14_C(0.0625) * (t162 * t1179 + t1185);
+    const iiwa14_real_t t1187 = t111 * t1159 + t108 * t1168 + IIWA14_C(0.42) * (t108 * t1174 + t111 * t1178);
+    const iiwa14_real_t t1188 = IIWA14_C(0.0625) * t1187;
+    const iiwa14_real_t t1189 = IIWA14_C(-2.0) * t1182; /* link j3: derivatives */
+    const iiwa14_real_t t1190 = IIWA14_C(-2.0) * t1183;
+    const iiwa14_real_t t1191 = IIWA14_C(0.0625) * (t1184 + (t208 * t1189 + t204 * t1190 - t1180));
+    const iiwa14_real_t t1192 = t78 * t1073 - t76 * t1074; /* link j4: derivatives */
+    const iiwa14_real_t t1193 = t208 * t1192 + t204 * t1111 + (t1147 * t79 + (t52 * t488 - t109 * t480));
+    const iiwa14_real_t t1194 = IIWA14_C(0.0625) * (t1193 + t117 * t523);
+    const iiwa14_real_t t1195 = t592 * t1186 - t596 * t1188 - t599 * t1191 + t603 * t1194;
+    const iiwa14_real_t t1196 = t78 * t1077 - t76 * t1080; /* link j5: derivatives */
+    const iiwa14_real_t t1197 = t208 * t1196 + t204 * t1124 + (t1147 * t89 + (t70 * t488 - t137 * t480));
+    const iiwa14_real_t t1198 = IIWA14_C(0.125) * (t1197 + (t138 * t523 - t87 * t520));
+    const iiwa14_real_t t1199 = t78 * t1083 - t76 * t1084; /* link j6: derivatives */
+    const iiwa14_real_t t1200 = t208 * t1199 + t204 * t1126 + (t131 * t480 + t60 * t488 - t1147 * t85);
+    const iiwa14_real_t t1201 = IIWA14_C(0.125) * (t1200 - (t132 * t523 + t83 * t520));
+    const iiwa14_real_t t1202 = t78 * t1087 - t76 * t1088; /* link j7: derivatives */
+    const iiwa14_real_t t1203 = t208 * t1202 + t204 * t1128 + (t1147 * t82 + (t57 * t488 - t125 * t480));
+    const iiwa14_real_t t1204 = IIWA14_C(0.125) * (t1203 + (t127 * t523 + t80 * t520));
+    const iiwa14_real_t t1205 = t1195 + t610 * t1198 + t617 * t1201 + t628 * t1204;
+    ddq_by_q[2] = t1205;
+    const iiwa14_real_t t1206 = t596 * t1186 - t630 * t1188 - t632 * t1191 + t634 * t1194;
+    const iiwa14_real_t t1207 = t1206 + t637 * t1198 + t639 * t1201 + t641 * t1204;
+    ddq_by_q[9] = t1207;
+    const iiwa14_real_t t1208 = t599 * t1186 - t632 * t1188 - t643 * t1191 + t645 * t1194;
+    const iiwa14_real_t t1209 = t1208 + t648 * t1198 + t650 * t1201 + t652 * t1204;
+    ddq_by_q[16] = t1209;
+    const iiwa14_real_t t1210 = t603 * t1186 - t634 * t1188 - t645 * t1191 + t655 * t1194;
+    const iiwa14_real_t t1211 = t1210 + t658 * t1198 + t660 * t1201 + t662 * t1204;
+    ddq_by_q[23] = t1211;
+    const iiwa14_real_t t1212 = t664 * t1186 - t665 * t1188 - t666 * t1191 + t667 * t1194;
+    const iiwa14_real_t t1213 = t1212 + t670 * t1198 + t673 * t1201 + t676 * t1204;
+    ddq_by_q[30] = t1213;
+    const iiwa14_real_t t1214 = t678 * t1186 - t679 * t1188 - t680 * t1191 + t681 * t1194;
+    const iiwa14_real_t t1215 = t1214 + t673 * t1198 + t684 * t1201 + t687 * t1204;
+    ddq_by_q[37] = t1215;
+    const iiwa14_real_t t1216 = t689 * t1186 - t690 * t1188 - t691 * t1191 + t692 * t1194;
+    const iiwa14_real_t t1217 = t1216 + t676 * t1198 + t687 * t1201 + t696 * t1204;
+    ddq_by_q[44] = t1217;
+    const iiwa14_real_t t1218 = parameters[ZZ3] - t1154;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1219 = t208 * t1218 - t206 * parameters[YZ3] + (t1042 + t1181);
+    /* link j3: derivatives */
+    const iiwa14_real_t t1220 = IIWA14_C(2.0) * t1219 + (t106 * t1153 + t110 * t1157);
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1221 = t206 * parameters[XZ3] + t204 * t1218 + (t76 * t1048 + t78 * t1051);
+    /* link j3: derivatives */
+    const iiwa14_real_t t1222 = IIWA14_C(2.0) * t1221 + (t110 * t1153 + t107 * t1157);
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1223 = t206 * parameters[MY3] - t208 * parameters[MZ3] + (t78 * t1065 + t76 * t1064);
+    const iiwa14_real_t t1224 = IIWA14_C(2.0) * t1223 + t118 * t1153; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1225 = t206 * parameters[MX3] + t204 * parameters[MZ3] + t1057;
+    const iiwa14_real_t t1226 = IIWA14_C(2.0) * t1225 - t118 * t1157; /* link j3: derivatives */
+    const iiwa14_real_t t1227 = t111 * t1220 + t108 * t1222 + IIWA14_C(0.42) * (t111 * t1224 - t108 * t1226);
+    const iiwa14_real_t t1228 = IIWA14_C(0.0625) * t1227;
+    const iiwa14_real_t t1229 = t108 * t1220 - t111 * t1222 + IIWA14_C(0.42) * (t111 * t1226 + t108 * t1224);
+    const iiwa14_real_t t1230 = t1150 + t1165 + (t1149 - t1038); /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t1231 = IIWA14_C(2.0) * t1230; /* link j3: derivatives */
+    const iiwa14_real_t t1232 = t162 * t1229 + t164 * (t1231 + (t148 * t1153 - t149 * t1157));
+    const iiwa14_real_t t1233 = IIWA14_C(0.0625) * t1232;
+    const iiwa14_real_t t1234 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t204 * t149 - t208 * t148) - t1231);
+    const iiwa14_real_t t1235 = IIWA14_C(1.6e3) * parameters[FV3] + t1234;
+    const iiwa14_real_t t1236 = t76 * t1073 + t78 * t1074; /* link j4: derivatives */
+    const iiwa14_real_t t1237 = IIWA14_C(0.0625) * (t1236 + IIWA14_C(2.0) * (t208 * t109 + t204 * t52));
+    const iiwa14_real_t t1238 = t1233 * t592 - t1228 * t596 - t1235 * t599 + t1237 * t603;
+    const iiwa14_real_t t1239 = t76 * t1077 + t78 * t1080; /* link j5: derivatives */
+    const iiwa14_real_t t1240 = IIWA14_C(0.125) * (t1239 + IIWA14_C(2.0) * (t208 * t137 + t204 * t70));
+    const iiwa14_real_t t1241 = t76 * t1083 + t78 * t1084; /* link j6: derivatives */
+    const iiwa14_real_t t1242 = IIWA14_C(0.125) * (t1241 + IIWA14_C(2.0) * (t204 * t60 - t208 * t131));
+    const iiwa14_real_t t1243 = t76 * t1087 + t78 * t1088; /* link j7: derivatives */
+    const iiwa14_real_t t1244 = IIWA14_C(0.125) * (t1243 + IIWA14_C(2.0) * (t208 * t125 + t204 * t57));
+    const iiwa14_real_t t1245 = t1238 + t1240 * t610 + t1242 * t617 + t1244 * t628;
+    ddq_by_dq[2] = t1245;
+    const iiwa14_real_t t1246 = t1233 * t596 - t1228 * t630 - t1235 * t632 + t1237 * t634;
+    const iiwa14_real_t t1247 = t1246 + t1240 * t637 + t1242 * t639 + t1244 * t641;
+    ddq_by_dq[9] = t1247;
+    const iiwa14_real_t t1248 = t1233 * t599 - t1228 * t632 - t1235 * t643 + t1237 * t645;
+    const iiwa14_real_t t1249 = t1248 + t1240 * t648 + t1242 * t650 + t1244 * t652;
+    ddq_by_dq[16] = t1249;
+    const iiwa14_real_t t1250 = t1233 * t603 - t1228 * t634 - t1235 * t645 + t1237 * t655;
+    const iiwa14_real_t t1251 = t1250 + t1240 * t658 + t1242 * t660 + t1244 * t662;
+    ddq_by_dq[23] = t1251;
+    const iiwa14_real_t t1252 = t1233 * t664 - t1228 * t665 - t1235 * t666 + t1237 * t667;
+    const iiwa14_real_t t1253 = t1252 + t1240 * t670 + t1242 * t673 + t1244 * t676;
+    ddq_by_dq[30] = t1253;
+    const iiwa14_real_t t1254 = t1233 * t678 - t1228 * t679 - t1235 * t680 + t1237 * t681;
+    const iiwa14_real_t t1255 = t1254 + t1240 * t673 + t1242 * t684 + t1244 * t687;
+    ddq_by_dq[37] = t1255;
+    const iiwa14_real_t t1256 = t1233 * t689 - t1228 * t690 - t1235 * t691 + t1237 * t692;
+    const iiwa14_real_t t1257 = t1256 + t1240 * t676 + t1242 * t687 + t1244 * t696;
+    ddq_by_dq[44] = t1257;
+    ddq_by_input[2] = t599;
+    ddq_by_input[9] = t632;
+    ddq_by_input[16] = t643;
+    ddq_by_input[23] = t645;
+    ddq_by_input[30] = t666;
+    ddq_by_input[37] = t680;
+    ddq_by_input[44] = t691;
+    const iiwa14_real_t t1258 = t108 * t1162 + t111 * t1146 + IIWA14_C(0.42) * (t111 * t1176 + t108 * t1171);
+    const iiwa14_real_t t1259 = t424 - parameters[XX2] * t478 + parameters[XY2] * (t214 + t485)
+        + parameters[XZ2] * (t217 + t467);
+    const iiwa14_real_t t1260 = t274 + t426; /* link j3: motion */
+    const iiwa14_real_t t1261 = IIWA14_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const iiwa14_real_t t1262 = t1261 - parameters[XX2];
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1263 = dq[1] * t1262 - t203 * parameters[XZ2] + (t111 * t1183 - t108 * t1182);
+    const iiwa14_real_t t1264 = IIWA14_C(-2.0) * t205; /* link j2: derivatives */
+    const iiwa14_real_t t1265 = IIWA14_C(-0.42) * t1172; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1266 = IIWA14_C(-0.42) * dq[1]; /* link j3: velocity of its origin */
+    const iiwa14_real_t t1267 = t179 * t1266; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1268 = IIWA14_C(-0.42) * t203; /* link j3: velocity of its origin */
+    const iiwa14_real_t t1269 = t154 * t1268; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1270 = t1265 + (t1267 - t1269);
+    const iiwa14_real_t t1271 = dq[1] * parameters[XY2];
+    const iiwa14_real_t t1272 = t203 * parameters[YZ2];
+    const iiwa14_real_t t1273 = t1270 + (t1230 - t1265) - (t1271 + t1272);
+    const iiwa14_real_t t1274 = IIWA14_C(2.0) * t203; /* link j2: derivatives */
+    const iiwa14_real_t t1275 = t187 * t477 - t188 * t484 - t1260 * t163 - (t1263 * t1264 + t1273 * t1274);
+    const iiwa14_real_t t1276 = t154 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t1277 = t428 + (t427 + t1259) + t1258 + (t276 * t1276 + t1275);
+    const iiwa14_real_t t1278 = t430 - parameters[ZZ3] * t486 - parameters[YZ3] * t480
+        - parameters[XZ3] * t488;
+    const iiwa14_real_t t1279 = t429 + t1278 + (parameters[MX3] * t523 + parameters[MY3] * t520)
+        + (t76 * t1014 - t78 * t1034);
+    const iiwa14_real_t t1280 = t433 - parameters[YY2] * t485 + parameters[XY2] * t479
+        + parameters[YZ2] * t476;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1281 = t108 * (t1166 - t1152) + t111 * (t1156 + t1164);
+    const iiwa14_real_t t1282 = t108 * t1281;
+    const iiwa14_real_t t1283 = t205 * parameters[XZ2];
+    const iiwa14_real_t t1284 = t1283 + t1271 + (t1270 + (t1282 - t1166 - t1267));
+    const iiwa14_real_t t1285 = t121 - t118; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1286 = IIWA14_C(0.42) * (t108 * t1223 + t111 * t1225) - t1285 * t1266;
+    const iiwa14_real_t t1287 = parameters[YY2] - t1261;
+    const iiwa14_real_t t1288 = t205 * parameters[YZ2] + dq[1] * t1287 + (t108 * t1219 - t111 * t1221
+        + t1286);
+    const iiwa14_real_t t1289 = t1260 * t161 + (t186 * t484 + t188 * t477) - (t1284 * t1264 + t1288 * t1274);
+    const iiwa14_real_t t1290 = t435 + t1280 - t436 + t1279 + (t1289 - t279 * t1276);
+    const iiwa14_real_t t1291 = IIWA14_C(0.0625) * (t162 * t1290 + t164 * t1277);
+    const iiwa14_real_t t1292 = t111 * t1281;
+    const iiwa14_real_t t1293 = t203 * parameters[XY2] + t205 * t1262 + (t1292 - t1164 - t179 * t1268);
+    const iiwa14_real_t t1294 = IIWA14_C(2.0) * t1293; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1295 = IIWA14_C(0.42) * (t108 * t1225 - t111 * t1223) + t1285 * t1268;
+    const iiwa14_real_t t1296 = t205 * parameters[XY2] - t203 * t1287 + (t1295 - (t111 * t1219
+        + t108 * t1221));
+    const iiwa14_real_t t1297 = IIWA14_C(2.0) * t1296; /* link j2: derivatives */
+    const iiwa14_real_t t1298 = t205 * t1294 + t203 * t1297 + (t161 * t484 + t163 * t477 - t1260 * t123);
+    const iiwa14_real_t t1299 = t276 * (parameters[MY2] + t1285) - t279 * (parameters[MX2] + t179) + t1298;
+    const iiwa14_real_t t1300 = IIWA14_C(0.0625) * t1299;
+    const iiwa14_real_t t1301 = t111 * t1190 - t108 * t1189; /* link j3: derivatives */
+    const iiwa14_real_t t1302 = IIWA14_C(-0.84) * t203; /* link j7: derivatives */
+    const iiwa14_real_t t1303 = IIWA14_C(-0.84) * dq[1];
+    const iiwa14_real_t t1304 = t1231 - (t154 * t1302 - t179 * t1303); /* link j3: derivatives */
+    const iiwa14_real_t t1305 = t205 * t1301 + t203 * t1304 + (t1260 * t155 + (t180 * t484 - t99 * t477));
+    const iiwa14_real_t t1306 = IIWA14_C(0.0625) * (t1305 - t276 * t154);
+    const iiwa14_real_t t1307 = t111 * t1111 - t108 * t1192 - t152 * t1302; /* link j4: derivatives */
+    const iiwa14_real_t t1308 = t1236 - (t175 * t1303 - t144 * t1302);
+    const iiwa14_real_t t1309 = t205 * t1307 - t203 * t1308 + (t176 * t484 + t79 * t477 - t1260 * t145);
+    const iiwa14_real_t t1310 = IIWA14_C(0.0625) * (t1309 - (t276 * t144 + t279 * t152));
+    const iiwa14_real_t t1311 = t592 * t1291 - t596 * t1300 - t599 * t1306 + t603 * t1310;
+    const iiwa14_real_t t1312 = t76 * t69; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t1313 = t111 * t1124 - t108 * t1196 + t1312 * t1302; /* link j5: derivatives */
+    const iiwa14_real_t t1314 = t1239 - (t172 * t1303 - t139 * t1302);
+    const iiwa14_real_t t1315 = t205 * t1313 - t203 * t1314 + (t173 * t484 + t89 * t477 - t1260 * t140);
+    const iiwa14_real_t t1316 = IIWA14_C(0.125) * (t279 * t1312 - t276 * t139 + t1315);
+    const iiwa14_real_t t1317 = t76 * t59 - t78 * t67; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t1318 = t111 * t1126 - t108 * t1199 - t1317 * t1302; /* link j6: derivatives */
+    const iiwa14_real_t t1319 = t1241 + (t133 * t1302 + t168 * t1303);
+    const iiwa14_real_t t1320 = t205 * t1318 - t203 * t1319 + (t169 * t484 - t85 * t477 - t1260 * t134);
+    const iiwa14_real_t t1321 = IIWA14_C(0.125) * (t1320 - (t276 * t133 + t279 * t1317));
+    const iiwa14_real_t t1322 = t78 * t126 - t76 * t56; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t1323 = t111 * t1128 - t108 * t1202 - t1322 * t1302; /* link j7: derivatives */
+    const iiwa14_real_t t1324 = t1243 - (t165 * t1303 - t128 * t1302);
+    const iiwa14_real_t t1325 = t205 * t1323 - t203 * t1324 + (t166 * t484 + t82 * t477 - t1260 * t129);
+    const iiwa14_real_t t1326 = IIWA14_C(0.125) * (t1325 - (t276 * t128 + t279 * t1322));
+    const iiwa14_real_t t1327 = t1311 + t610 * t1316 + t617 * t1321 + t628 * t1326;
+    ddq_by_q[1] = t1327;
+    const iiwa14_real_t t1328 = t596 * t1291 - t630 * t1300 - t632 * t1306 + t634 * t1310;
+    const iiwa14_real_t t1329 = t1328 + t637 * t1316 + t639 * t1321 + t641 * t1326;
+    ddq_by_q[8] = t1329;
+    const iiwa14_real_t t1330 = t599 * t1291 - t632 * t1300 - t643 * t1306 + t645 * t1310;
+    const iiwa14_real_t t1331 = t1330 + t648 * t1316 + t650 * t1321 + t652 * t1326;
+    ddq_by_q[15] = t1331;
+    const iiwa14_real_t t1332 = t603 * t1291 - t634 * t1300 - t645 * t1306 + t655 * t1310;
+    const iiwa14_real_t t1333 = t1332 + t658 * t1316 + t660 * t1321 + t662 * t1326;
+    ddq_by_q[22] = t1333;
+    const iiwa14_real_t t1334 = t664 * t1291 - t665 * t1300 - t666 * t1306 + t667 * t1310;
+    const iiwa14_real_t t1335 = t1334 + t670 * t1316 + t673 * t1321 + t676 * t1326;
+    ddq_by_q[29] = t1335;
+    const iiwa14_real_t t1336 = t678 * t1291 - t679 * t1300 - t680 * t1306 + t681 * t1310;
+    const iiwa14_real_t t1337 = t1336 + t673 * t1316 + t684 * t1321 + t687 * t1326;
+    ddq_by_q[36] = t1337;
+    const iiwa14_real_t t1338 = t689 * t1291 - t690 * t1300 - t691 * t1306 + t692 * t1310;
+    const iiwa14_real_t t1339 = t1338 + t676 * t1316 + t687 * t1321 + t696 * t1326;
+    ddq_by_q[43] = t1339;
+    /* link j2: derivatives */
+    const iiwa14_real_t t1340 = IIWA14_C(2.0) * (t1283 - t1272 + (t1152 + t1282 - t1269 - t1270));
+    const iiwa14_real_t t1341 = IIWA14_C(0.0625) * (t1340 + IIWA14_C(2.0) * (t205 * t161 + t203 * t163));
+    const iiwa14_real_t t1342 = IIWA14_C(1.6e3) * parameters[FV2] + t1341;
+    const iiwa14_real_t t1343 = parameters[ZZ2] - t1261;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1344 = t1156 - t1292 - t154 * t1266 - (dq[1] * parameters[YZ2] + t205 * t1343);
+    /* link j2: derivatives */
+    const iiwa14_real_t t1345 = t162 * (IIWA14_C(2.0) * t1344 + (t188 * t1274 - t186 * t1264));
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t1346 = dq[1] * parameters[XZ2] + t203 * t1343 + (t111 * t1182 + t108 * t1183);
+    /* link j2: derivatives */
+    const iiwa14_real_t t1347 = t164 * (IIWA14_C(2.0) * t1346 + (t188 * t1264 + t187 * t1274));
+    const iiwa14_real_t t1348 = IIWA14_C(0.0625) * (t1345 + t1347);
+    /* link j3: derivatives */
+    const iiwa14_real_t t1349 = t111 * t1189 + t108 * t1190 + IIWA14_C(2.0) * (t205 * t180 - t203 * t99);
+    const iiwa14_real_t t1350 = IIWA14_C(0.0625) * t1349;
+    /* link j4: derivatives */
+    const iiwa14_real_t t1351 = t111 * t1192 + t108 * t1111 - t152 * t1303 + IIWA14_C(2.0) * (t205 * t176
+        + t203 * t79);
+    const iiwa14_real_t t1352 = IIWA14_C(0.0625) * t1351;
+    const iiwa14_real_t t1353 = t1348 * t592 - t1342 * t596 - t1350 * t599 + t1352 * t603;
     /* link j5: derivatives */
-    const iiwa14_real_t t973 = t115 * t670 + t112 * t671 + t672 * t643 + IIWA14_C(2.0) * (t206 * t178
-        + t204 * t92);
-    const iiwa14_real_t t974 = IIWA14_C(0.125) * t973;
+    const iiwa14_real_t t1354 = t111 * t1196 + t108 * t1124 + t1312 * t1303 + IIWA14_C(2.0) * (t205 * t173
+        + t203 * t89);
+    const iiwa14_real_t t1355 = IIWA14_C(0.125) * t1354;
     /* link j6: derivatives */
-    const iiwa14_real_t t975 = t115 * t690 + t112 * t691 - t692 * t643 + IIWA14_C(2.0) * (t206 * t174
-        - t204 * t88);
-    const iiwa14_real_t t976 = IIWA14_C(0.125) * t975;
+    const iiwa14_real_t t1356 = t111 * t1199 + t108 * t1126 - t1317 * t1303 + IIWA14_C(2.0) * (t205 * t169
+        - t203 * t85);
+    const iiwa14_real_t t1357 = IIWA14_C(0.125) * t1356;
     /* link j7: derivatives */
-    const iiwa14_real_t t977 = t115 * t715 + t112 * t716 - t717 * t643 + IIWA14_C(2.0) * (t206 * t171
-        + t204 * t85);
-    const iiwa14_real_t t978 = IIWA14_C(0.125) * t977;
-    const iiwa14_real_t t979 = t972 + t974 * t662 + t976 * t682 + t978 * t704;
-    ddq_by_dq[1] = t979;
-    const iiwa14_real_t t980 = t967 * t628 - t961 * t723 - t969 * t725 + t971 * t727;
-    const iiwa14_real_t t981 = t980 + t974 * t730 + t976 * t732 + t978 * t734;
-    ddq_by_dq[8] = t981;
-    const iiwa14_real_t t982 = t967 * t637 - t961 * t725 - t969 * t736 + t971 * t738;
-    const iiwa14_real_t t983 = t982 + t974 * t741 + t976 * t743 + t978 * t745;
-    ddq_by_dq[15] = t983;
-    const iiwa14_real_t t984 = t967 * t648 - t961 * t727 - t969 * t738 + t971 * t748;
-    const iiwa14_real_t t985 = t984 + t974 * t751 + t976 * t753 + t978 * t755;
-    ddq_by_dq[22] = t985;
-    const iiwa14_real_t t986 = t967 * t757 - t961 * t758 - t969 * t759 + t971 * t760;
-    const iiwa14_real_t t987 = t986 + t974 * t763 + t976 * t766 + t978 * t769;
-    ddq_by_dq[29] = t987;
-    const iiwa14_real_t t988 = t967 * t771 - t961 * t772 - t969 * t773 + t971 * t774;
-    const iiwa14_real_t t989 = t988 + t974 * t766 + t976 * t777 + t978 * t780;
-    ddq_by_dq[36] = t989;
-    const iiwa14_real_t t990 = t967 * t782 - t961 * t783 - t969 * t784 + t971 * t785;
-    const iiwa14_real_t t991 = t990 + t974 * t769 + t976 * t780 + t978 * t789;
-    ddq_by_dq[43] = t991;
-    ddq_by_input[1] = t628;
-    ddq_by_input[8] = t723;
-    ddq_by_input[15] = t725;
-    ddq_by_input[22] = t727;
-    ddq_by_input[29] = t758;
-    ddq_by_input[36] = t772;
-    ddq_by_input[43] = t783;
-    const iiwa14_real_t t992 = t403 + t391; /* link j4: motion */
-    const iiwa14_real_t t993 = IIWA14_C(2.0) * t209; /* link j3: derivatives */
-    const iiwa14_real_t t994 = IIWA14_C(2.0) * t205;
-    const iiwa14_real_t t995 = t574 * t993 + t584 * t994 + (t992 * t152 + (t114 * t803 - t110 * t795));
-    const iiwa14_real_t t996 = t907 + (t995 - t122 * t835);
-    const iiwa14_real_t t997 = t590 * t993 + t577 * t994 - (t992 * t153 + (t114 * t795 - t111 * t803));
-    const iiwa14_real_t t998 = t902 + (t997 + t122 * t838);
-    const iiwa14_real_t t999 = t597 * t994 + t124 * t838 + (t122 * t803 - t992 * t155);
-    const iiwa14_real_t t1000 = t917 + t999;
-    const iiwa14_real_t t1001 = t597 * t993 - t124 * t835 + (t992 * t157 - t122 * t795);
-    const iiwa14_real_t t1002 = t914 + t1001;
-    const iiwa14_real_t t1003 = t112 * t996 - t115 * t998 + IIWA14_C(0.42) * (t112 * t1002 - t115 * t1000);
-    const iiwa14_real_t t1004 = t992 * t102 - (t152 * t795 + t153 * t803);
-    const iiwa14_real_t t1005 = t157 * t835 + t155 * t838;
-    const iiwa14_real_t t1006 = t169 * (t620 * t993 + t621 * t994 + t1004 - t1005);
-    const iiwa14_real_t t1007 = IIWA14_C(0.0625) * (t167 * t1003 + t1006);
-    const iiwa14_real_t t1008 = t115 * t996 + t112 * t998 + IIWA14_C(0.42) * (t112 * t1000 + t115 * t1002);
-    const iiwa14_real_t t1009 = IIWA14_C(0.0625) * t1008;
-    const iiwa14_real_t t1010 = IIWA14_C(0.0625) * (t1005 + (t209 * t638 + t205 * t639 - t1004));
-    const iiwa14_real_t t1011 = t209 * t651 + t205 * t652 + (t992 * t82 + (t54 * t803 - t113 * t795));
-    const iiwa14_real_t t1012 = IIWA14_C(0.0625) * (t1011 + t121 * t838);
-    const iiwa14_real_t t1013 = t626 * t1007 - t628 * t1009 - t637 * t1010 + t648 * t1012;
-    const iiwa14_real_t t1014 = t209 * t670 + t205 * t671 + (t992 * t92 + (t72 * t803 - t141 * t795));
-    const iiwa14_real_t t1015 = IIWA14_C(0.125) * (t1014 + (t142 * t838 - t90 * t835));
-    const iiwa14_real_t t1016 = t209 * t690 + t205 * t691 + (t135 * t795 + t62 * t803 - t992 * t88);
-    const iiwa14_real_t t1017 = IIWA14_C(0.125) * (t1016 - (t136 * t838 + t86 * t835));
-    const iiwa14_real_t t1018 = t209 * t715 + t205 * t716 + (t992 * t85 + (t59 * t803 - t129 * t795));
-    const iiwa14_real_t t1019 = IIWA14_C(0.125) * (t1018 + (t131 * t838 + t83 * t835));
-    const iiwa14_real_t t1020 = t1013 + t662 * t1015 + t682 * t1017 + t704 * t1019;
-    ddq_by_q[2] = t1020;
-    const iiwa14_real_t t1021 = t628 * t1007 - t723 * t1009 - t725 * t1010 + t727 * t1012;
-    const iiwa14_real_t t1022 = t1021 + t730 * t1015 + t732 * t1017 + t734 * t1019;
-    ddq_by_q[9] = t1022;
-    const iiwa14_real_t t1023 = t637 * t1007 - t725 * t1009 - t736 * t1010 + t738 * t1012;
-    const iiwa14_real_t t1024 = t1023 + t741 * t1015 + t743 * t1017 + t745 * t1019;
-    ddq_by_q[16] = t1024;
-    const iiwa14_real_t t1025 = t648 * t1007 - t727 * t1009 - t738 * t1010 + t748 * t1012;
-    const iiwa14_real_t t1026 = t1025 + t751 * t1015 + t753 * t1017 + t755 * t1019;
-    ddq_by_q[23] = t1026;
-    const iiwa14_real_t t1027 = t757 * t1007 - t758 * t1009 - t759 * t1010 + t760 * t1012;
-    const iiwa14_real_t t1028 = t1027 + t763 * t1015 + t766 * t1017 + t769 * t1019;
-    ddq_by_q[30] = t1028;
-    const iiwa14_real_t t1029 = t771 * t1007 - t772 * t1009 - t773 * t1010 + t774 * t1012;
-    const iiwa14_real_t t1030 = t1029 + t766 * t1015 + t777 * t1017 + t780 * t1019;
-    ddq_by_q[37] = t1030;
-    const iiwa14_real_t t1031 = t782 * t1007 - t783 * t1009 - t784 * t1010 + t785 * t1012;
-    const iiwa14_real_t t1032 = t1031 + t769 * t1015 + t780 * t1017 + t789 * t1019;
-    ddq_by_q[44] = t1032;
-    const iiwa14_real_t t1033 = IIWA14_C(2.0) * t610 + (t110 * t993 + t114 * t994);
-    const iiwa14_real_t t1034 = IIWA14_C(2.0) * t611 + (t114 * t993 + t111 * t994);
-    const iiwa14_real_t t1035 = IIWA14_C(2.0) * t612 + t122 * t993;
-    const iiwa14_real_t t1036 = IIWA14_C(2.0) * t614 - t122 * t994;
-    const iiwa14_real_t t1037 = t115 * t1033 + t112 * t1034 + IIWA14_C(0.42) * (t115 * t1035 - t112 * t1036);
-    const iiwa14_real_t t1038 = IIWA14_C(0.0625) * t1037;
-    const iiwa14_real_t t1039 = t112 * t1033 - t115 * t1034 + IIWA14_C(0.42) * (t115 * t1036 + t112 * t1035);
-    const iiwa14_real_t t1040 = t167 * t1039 + t169 * (t641 + (t152 * t993 - t153 * t994));
-    const iiwa14_real_t t1041 = IIWA14_C(0.0625) * t1040;
-    const iiwa14_real_t t1042 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t205 * t153 - t209 * t152) - t641);
-    const iiwa14_real_t t1043 = IIWA14_C(1.6e3) * parameters[FV3] + t1042;
-    const iiwa14_real_t t1044 = IIWA14_C(0.0625) * (t654 + IIWA14_C(2.0) * (t209 * t113 + t205 * t54));
-    const iiwa14_real_t t1045 = t1041 * t626 - t1038 * t628 - t1043 * t637 + t1044 * t648;
-    const iiwa14_real_t t1046 = IIWA14_C(0.125) * (t674 + IIWA14_C(2.0) * (t209 * t141 + t205 * t72));
-    const iiwa14_real_t t1047 = IIWA14_C(0.125) * (t694 + IIWA14_C(2.0) * (t205 * t62 - t209 * t135));
-    const iiwa14_real_t t1048 = IIWA14_C(0.125) * (t719 + IIWA14_C(2.0) * (t209 * t129 + t205 * t59));
-    const iiwa14_real_t t1049 = t1045 + t1046 * t662 + t1047 * t682 + t1048 * t704;
-    ddq_by_dq[2] = t1049;
-    const iiwa14_real_t t1050 = t1041 * t628 - t1038 * t723 - t1043 * t725 + t1044 * t727;
-    const iiwa14_real_t t1051 = t1050 + t1046 * t730 + t1047 * t732 + t1048 * t734;
-    ddq_by_dq[9] = t1051;
-    const iiwa14_real_t t1052 = t1041 * t637 - t1038 * t725 - t1043 * t736 + t1044 * t738;
-    const iiwa14_real_t t1053 = t1052 + t1046 * t741 + t1047 * t743 + t1048 * t745;
-    ddq_by_dq[16] = t1053;
-    const iiwa14_real_t t1054 = t1041 * t648 - t1038 * t727 - t1043 * t738 + t1044 * t748;
-    const iiwa14_real_t t1055 = t1054 + t1046 * t751 + t1047 * t753 + t1048 * t755;
-    ddq_by_dq[23] = t1055;
-    const iiwa14_real_t t1056 = t1041 * t757 - t1038 * t758 - t1043 * t759 + t1044 * t760;
-    const iiwa14_real_t t1057 = t1056 + t1046 * t763 + t1047 * t766 + t1048 * t769;
-    ddq_by_dq[30] = t1057;
-    const iiwa14_real_t t1058 = t1041 * t771 - t1038 * t772 - t1043 * t773 + t1044 * t774;
-    const iiwa14_real_t t1059 = t1058 + t1046 * t766 + t1047 * t777 + t1048 * t780;
-    ddq_by_dq[37] = t1059;
-    const iiwa14_real_t t1060 = t1041 * t782 - t1038 * t783 - t1043 * t784 + t1044 * t785;
-    const iiwa14_real_t t1061 = t1060 + t1046 * t769 + t1047 * t780 + t1048 * t789;
-    ddq_by_dq[44] = t1061;
-    ddq_by_input[2] = t637;
-    ddq_by_input[9] = t725;
-    ddq_by_input[16] = t736;
-    ddq_by_input[23] = t738;
-    ddq_by_input[30] = t759;
-    ddq_by_input[37] = t773;
-    ddq_by_input[44] = t784;
-    const iiwa14_real_t t1062 = IIWA14_C(2.0) * t228; /* link j4: derivatives */
-    const iiwa14_real_t t1063 = IIWA14_C(-2.0) * t208;
-    const iiwa14_real_t t1064 = t569 * t1062 - t553 * t1063 + (t418 * t80 - (t99 * t813 + t98 * t806));
-    const iiwa14_real_t t1065 = t1064 - t154 * t841 - t895;
-    const iiwa14_real_t t1066 = t550 * t1062 - t565 * t1063 + (t418 * t78 - (t97 * t813 + t99 * t806));
-    const iiwa14_real_t t1067 = t899 + (t1066 - t154 * t836);
-    const iiwa14_real_t t1068 = t81 * t1067 + t79 * t1065;
-    const iiwa14_real_t t1069 = t418 * t54 - (t78 * t813 + t80 * t806);
-    const iiwa14_real_t t1070 = t120 * t841 - t118 * t836;
-    const iiwa14_real_t t1071 = t585 * t1062 - t588 * t1063 + t1069 + t1070;
-    const iiwa14_real_t t1072 = t613 * t1062 + t123 * t836 - (t418 * t118 - t154 * t813);
-    const iiwa14_real_t t1073 = t613 * t1063 + t123 * t841 + (t418 * t120 + t154 * t806);
-    const iiwa14_real_t t1074 = t81 * (t912 - t1073) + t79 * (t1072 - t909);
-    const iiwa14_real_t t1075 = t596 * t1062 - t595 * t1063 - (t120 * t813 + t118 * t806);
-    const iiwa14_real_t t1076 = t112 * t1068 - t115 * t1071 + IIWA14_C(0.42) * (t115 * t1074 + t112 * t1075);
-    const iiwa14_real_t t1077 = t79 * t1067 - t81 * t1065;
-    const iiwa14_real_t t1078 = IIWA14_C(0.0625) * (t167 * t1076 - t169 * t1077);
-    const iiwa14_real_t t1079 = t115 * t1068 + t112 * t1071 + IIWA14_C(0.42) * (t115 * t1075 - t112 * t1074);
-    const iiwa14_real_t t1080 = IIWA14_C(0.0625) * t1079;
-    const iiwa14_real_t t1081 = IIWA14_C(0.0625) * t1077;
-    const iiwa14_real_t t1082 = IIWA14_C(0.0625) * (t1070 + (t228 * t649 + t208 * t650 + t1069));
-    const iiwa14_real_t t1083 = t626 * t1078 - t628 * t1080 - t637 * t1081 + t648 * t1082;
-    const iiwa14_real_t t1084 = t228 * t665 + t208 * t669 + (t418 * t72 - (t91 * t813 + t25 * t806));
-    const iiwa14_real_t t1085 = IIWA14_C(0.125) * (t1084 + t71 * t841);
-    const iiwa14_real_t t1086 = t228 * t687 + t208 * t689 + (t418 * t62 + (t31 * t806 - t87 * t813));
-    const iiwa14_real_t t1087 = IIWA14_C(0.125) * (t1086 + (t69 * t836 - t61 * t841));
-    const iiwa14_real_t t1088 = t228 * t712 + t208 * t714 + (t418 * t59 - (t84 * t813 + t27 * t806));
-    const iiwa14_real_t t1089 = IIWA14_C(0.125) * (t1088 + (t58 * t841 - t130 * t836));
-    const iiwa14_real_t t1090 = t1083 + t662 * t1085 + t682 * t1087 + t704 * t1089;
-    ddq_by_q[3] = t1090;
-    const iiwa14_real_t t1091 = t628 * t1078 - t723 * t1080 - t725 * t1081 + t727 * t1082;
-    const iiwa14_real_t t1092 = t1091 + t730 * t1085 + t732 * t1087 + t734 * t1089;
-    ddq_by_q[10] = t1092;
-    const iiwa14_real_t t1093 = t637 * t1078 - t725 * t1080 - t736 * t1081 + t738 * t1082;
-    const iiwa14_real_t t1094 = t1093 + t741 * t1085 + t743 * t1087 + t745 * t1089;
-    ddq_by_q[17] = t1094;
-    const iiwa14_real_t t1095 = t648 * t1078 - t727 * t1080 - t738 * t1081 + t748 * t1082;
-    const iiwa14_real_t t1096 = t1095 + t751 * t1085 + t753 * t1087 + t755 * t1089;
-    ddq_by_q[24] = t1096;
-    const iiwa14_real_t t1097 = t757 * t1078 - t758 * t1080 - t759 * t1081 + t760 * t1082;
-    const iiwa14_real_t t1098 = t1097 + t763 * t1085 + t766 * t1087 + t769 * t1089;
-    ddq_by_q[31] = t1098;
-    const iiwa14_real_t t1099 = t771 * t1078 - t772 * t1080 - t773 * t1081 + t774 * t1082;
-    const iiwa14_real_t t1100 = t1099 + t766 * t1085 + t777 * t1087 + t780 * t1089;
-    ddq_by_q[38] = t1100;
-    const iiwa14_real_t t1101 = t782 * t1078 - t783 * t1080 - t784 * t1081 + t785 * t1082;
-    const iiwa14_real_t t1102 = t1101 + t769 * t1085 + t780 * t1087 + t789 * t1089;
-    ddq_by_q[45] = t1102;
-    const iiwa14_real_t t1103 = IIWA14_C(2.0) * t580 + (t97 * t1062 + t99 * t1063);
-    const iiwa14_real_t t1104 = IIWA14_C(-2.0) * t581 + (t99 * t1062 + t98 * t1063);
-    const iiwa14_real_t t1105 = t81 * t1103 + t79 * t1104;
-    const iiwa14_real_t t1106 = t78 * t1062 + t80 * t1063 - t652;
-    const iiwa14_real_t t1107 = t81 * (IIWA14_C(2.0) * t596 + t154 * t1063) + t79 * (IIWA14_C(-2.0) * t595
-        - t154 * t1062);
-    const iiwa14_real_t t1108 = t120 * t1062 + t118 * t1063;
-    const iiwa14_real_t t1109 = t115 * t1105 + t112 * t1106 + IIWA14_C(0.42) * (t115 * t1108 - t112 * t1107);
-    const iiwa14_real_t t1110 = IIWA14_C(0.0625) * t1109;
-    const iiwa14_real_t t1111 = t112 * t1105 - t115 * t1106 + IIWA14_C(0.42) * (t115 * t1107 + t112 * t1108);
-    const iiwa14_real_t t1112 = t81 * t1104 - t79 * t1103;
-    const iiwa14_real_t t1113 = IIWA14_C(0.0625) * (t167 * t1111 + t169 * t1112);
-    const iiwa14_real_t t1114 = IIWA14_C(-0.0625) * t1112;
-    const iiwa14_real_t t1115 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t228 * t78 - t208 * t80) - t652);
-    const iiwa14_real_t t1116 = IIWA14_C(-1.6e3) * parameters[FV4] + t1115;
-    const iiwa14_real_t t1117 = t1113 * t626 - t1110 * t628 - t1114 * t637 + t1116 * t648;
-    const iiwa14_real_t t1118 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t228 * t91 - t208 * t25) - t671);
-    const iiwa14_real_t t1119 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t228 * t87 + t208 * t31) - t691);
-    const iiwa14_real_t t1120 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t228 * t84 - t208 * t27) - t716);
-    const iiwa14_real_t t1121 = t1117 + t1118 * t662 + t1119 * t682 + t1120 * t704;
-    ddq_by_dq[3] = t1121;
-    const iiwa14_real_t t1122 = t1113 * t628 - t1110 * t723 - t1114 * t725 + t1116 * t727;
-    const iiwa14_real_t t1123 = t1122 + t1118 * t730 + t1119 * t732 + t1120 * t734;
-    ddq_by_dq[10] = t1123;
-    const iiwa14_real_t t1124 = t1113 * t637 - t1110 * t725 - t1114 * t736 + t1116 * t738;
-    const iiwa14_real_t t1125 = t1124 + t1118 * t741 + t1119 * t743 + t1120 * t745;
-    ddq_by_dq[17] = t1125;
-    const iiwa14_real_t t1126 = t1113 * t648 - t1110 * t727 - t1114 * t738 + t1116 * t748;
-    const iiwa14_real_t t1127 = t1126 + t1118 * t751 + t1119 * t753 + t1120 * t755;
-    ddq_by_dq[24] = t1127;
-    const iiwa14_real_t t1128 = t1113 * t757 - t1110 * t758 - t1114 * t759 + t1116 * t760;
-    const iiwa14_real_t t1129 = t1128 + t1118 * t763 + t1119 * t766 + t1120 * t769;
-    ddq_by_dq[31] = t1129;
-    const iiwa14_real_t t1130 = t1113 * t771 - t1110 * t772 - t1114 * t773 + t1116 * t774;
-    const iiwa14_real_t t1131 = t1130 + t1118 * t766 + t1119 * t777 + t1120 * t780;
-    ddq_by_dq[38] = t1131;
-    const iiwa14_real_t t1132 = t1113 * t782 - t1110 * t783 - t1114 * t784 + t1116 * t785;
-    const iiwa14_real_t t1133 = t1132 + t1118 * t769 + t1119 * t780 + t1120 * t789;
-    ddq_by_dq[45] = t1133;
-    ddq_by_input[3] = t648;
-    ddq_by_input[10] = t727;
-    ddq_by_input[17] = t738;
-    ddq_by_input[24] = t748;
-    ddq_by_input[31] = t760;
-    ddq_by_input[38] = t774;
-    ddq_by_input[45] = t785;
-    const iiwa14_real_t t1134 = IIWA14_C(2.0) * t212; /* link j5: derivatives */
-    const iiwa14_real_t t1135 = IIWA14_C(2.0) * t211;
-    const iiwa14_real_t t1136 = t520 * t1134 + t530 * t1135 + (t409 * t65 + (t41 * t817 - t37 * t809));
-    const iiwa14_real_t t1137 = t880 + (t1136 + t49 * t840);
-    const iiwa14_real_t t1138 = t536 * t1134 + t523 * t1135 - (t41 * t809 - t38 * t817 - t409 * t66);
-    const iiwa14_real_t t1139 = t1138 + t49 * t845 - t875;
-    const iiwa14_real_t t1140 = t543 * t1135 + t51 * t845 + (t409 * t68 + t49 * t817);
-    const iiwa14_real_t t1141 = t890 + t1140;
-    const iiwa14_real_t t1142 = t543 * t1134 + t51 * t840 + (t409 * t70 - t49 * t809);
-    const iiwa14_real_t t1143 = t887 + t1142;
-    const iiwa14_real_t t1144 = t39 * t1143 - t42 * t1141;
-    const iiwa14_real_t t1145 = t39 * t1137 - t42 * t1139 + IIWA14_C(0.4) * t1144;
-    const iiwa14_real_t t1146 = t409 * t25 + (t66 * t817 - t65 * t809);
-    const iiwa14_real_t t1147 = t70 * t840 + t68 * t845;
-    const iiwa14_real_t t1148 = t566 * t1134 + t567 * t1135 + t1146 + t1147;
-    const iiwa14_real_t t1149 = t81 * t1145 + t79 * t1148;
-    const iiwa14_real_t t1150 = t39 * t1141 + t42 * t1143;
-    const iiwa14_real_t t1151 = t42 * t1137 + t39 * t1139 + IIWA14_C(0.4) * t1150;
-    const iiwa14_real_t t1152 = t560 * t1134 + t558 * t1135 - (t68 * t809 + t70 * t817);
-    const iiwa14_real_t t1153 = t81 * t1150 - t79 * t1152;
-    const iiwa14_real_t t1154 = t112 * t1149 - t115 * t1151 + IIWA14_C(0.42) * (t112 * t1144 - t115 * t1153);
-    const iiwa14_real_t t1155 = t79 * t1145 - t81 * t1148;
-    const iiwa14_real_t t1156 = IIWA14_C(0.0625) * (t167 * t1154 - t169 * t1155);
-    const iiwa14_real_t t1157 = t115 * t1149 + t112 * t1151 + IIWA14_C(0.42) * (t112 * t1153 + t115 * t1144);
-    const iiwa14_real_t t1158 = IIWA14_C(0.0625) * t1157;
-    const iiwa14_real_t t1159 = IIWA14_C(0.0625) * t1155;
-    const iiwa14_real_t t1160 = IIWA14_C(0.0625) * t1151;
-    const iiwa14_real_t t1161 = t626 * t1156 - t628 * t1158 - t637 * t1159 + t648 * t1160;
-    const iiwa14_real_t t1162 = IIWA14_C(0.125) * (t1147 + (t212 * t663 + t211 * t664 + t1146));
-    const iiwa14_real_t t1163 = t212 * t685 + t211 * t686 - (t409 * t31 + (t40 * t809 + t12 * t817));
-    const iiwa14_real_t t1164 = IIWA14_C(0.125) * (t1163 - t48 * t845);
-    const iiwa14_real_t t1165 = t212 * t710 + t211 * t711 + (t409 * t27 + (t4 * t817 - t56 * t809));
-    const iiwa14_real_t t1166 = IIWA14_C(0.125) * (t1165 + (t57 * t845 + t19 * t840));
-    const iiwa14_real_t t1167 = t1161 + t662 * t1162 + t682 * t1164 + t704 * t1166;
-    ddq_by_q[4] = t1167;
-    const iiwa14_real_t t1168 = t628 * t1156 - t723 * t1158 - t725 * t1159 + t727 * t1160;
-    const iiwa14_real_t t1169 = t1168 + t730 * t1162 + t732 * t1164 + t734 * t1166;
-    ddq_by_q[11] = t1169;
-    const iiwa14_real_t t1170 = t637 * t1156 - t725 * t1158 - t736 * t1159 + t738 * t1160;
-    const iiwa14_real_t t1171 = t1170 + t741 * t1162 + t743 * t1164 + t745 * t1166;
-    ddq_by_q[18] = t1171;
-    const iiwa14_real_t t1172 = t648 * t1156 - t727 * t1158 - t738 * t1159 + t748 * t1160;
-    const iiwa14_real_t t1173 = t1172 + t751 * t1162 + t753 * t1164 + t755 * t1166;
-    ddq_by_q[25] = t1173;
-    const iiwa14_real_t t1174 = t757 * t1156 - t758 * t1158 - t759 * t1159 + t760 * t1160;
-    const iiwa14_real_t t1175 = t1174 + t763 * t1162 + t766 * t1164 + t769 * t1166;
-    ddq_by_q[32] = t1175;
-    const iiwa14_real_t t1176 = t771 * t1156 - t772 * t1158 - t773 * t1159 + t774 * t1160;
-    const iiwa14_real_t t1177 = t1176 + t766 * t1162 + t777 * t1164 + t780 * t1166;
-    ddq_by_q[39] = t1177;
-    const iiwa14_real_t t1178 = t782 * t1156 - t783 * t1158 - t784 * t1159 + t785 * t1160;
-    const iiwa14_real_t t1179 = t1178 + t769 * t1162 + t780 * t1164 + t789 * t1166;
-    ddq_by_q[46] = t1179;
-    const iiwa14_real_t t1180 = IIWA14_C(2.0) * t556 + (t37 * t1134 + t41 * t1135);
-    const iiwa14_real_t t1181 = IIWA14_C(-2.0) * t557 + (t41 * t1134 + t38 * t1135);
-    const iiwa14_real_t t1182 = IIWA14_C(2.0) * t558 + t49 * t1134;
-    const iiwa14_real_t t1183 = IIWA14_C(2.0) * t560 - t49 * t1135;
-    const iiwa14_real_t t1184 = t42 * t1183 + t39 * t1182;
-    const iiwa14_real_t t1185 = t39 * t1180 - t42 * t1181 + IIWA14_C(0.4) * t1184;
-    const iiwa14_real_t t1186 = t666 + (t65 * t1134 + t66 * t1135);
-    const iiwa14_real_t t1187 = t81 * t1185 + t79 * t1186;
-    const iiwa14_real_t t1188 = t42 * t1182 - t39 * t1183;
-    const iiwa14_real_t t1189 = t42 * t1180 + t39 * t1181 + IIWA14_C(0.4) * t1188;
-    const iiwa14_real_t t1190 = t79 * (t68 * t1134 - t70 * t1135) - t81 * t1188;
-    const iiwa14_real_t t1191 = t115 * t1187 + t112 * t1189 + IIWA14_C(0.42) * (t115 * t1184 - t112 * t1190);
-    const iiwa14_real_t t1192 = IIWA14_C(0.0625) * t1191;
-    const iiwa14_real_t t1193 = t112 * t1187 - t115 * t1189 + IIWA14_C(0.42) * (t115 * t1190 + t112 * t1184);
-    const iiwa14_real_t t1194 = t81 * t1186 - t79 * t1185;
-    const iiwa14_real_t t1195 = IIWA14_C(0.0625) * (t167 * t1193 + t169 * t1194);
-    const iiwa14_real_t t1196 = IIWA14_C(-0.0625) * t1194;
-    const iiwa14_real_t t1197 = IIWA14_C(0.0625) * t1189;
-    const iiwa14_real_t t1198 = t1195 * t626 - t1192 * t628 - t1196 * t637 + t1197 * t648;
-    const iiwa14_real_t t1199 = IIWA14_C(0.125) * (t666 + IIWA14_C(2.0) * (t212 * t65 + t211 * t66));
-    const iiwa14_real_t t1200 = IIWA14_C(-1250.0) * parameters[FV5] + t1199;
-    const iiwa14_real_t t1201 = IIWA14_C(0.125) * (t688 + IIWA14_C(2.0) * (t212 * t40 - t211 * t12));
-    const iiwa14_real_t t1202 = IIWA14_C(0.125) * (t713 + IIWA14_C(2.0) * (t212 * t56 + t211 * t4));
-    const iiwa14_real_t t1203 = t1198 + t1200 * t662 + t1201 * t682 + t1202 * t704;
-    ddq_by_dq[4] = t1203;
-    const iiwa14_real_t t1204 = t1195 * t628 - t1192 * t723 - t1196 * t725 + t1197 * t727;
-    const iiwa14_real_t t1205 = t1204 + t1200 * t730 + t1201 * t732 + t1202 * t734;
-    ddq_by_dq[11] = t1205;
-    const iiwa14_real_t t1206 = t1195 * t637 - t1192 * t725 - t1196 * t736 + t1197 * t738;
-    const iiwa14_real_t t1207 = t1206 + t1200 * t741 + t1201 * t743 + t1202 * t745;
-    ddq_by_dq[18] = t1207;
-    const iiwa14_real_t t1208 = t1195 * t648 - t1192 * t727 - t1196 * t738 + t1197 * t748;
-    const iiwa14_real_t t1209 = t1208 + t1200 * t751 + t1201 * t753 + t1202 * t755;
-    ddq_by_dq[25] = t1209;
-    const iiwa14_real_t t1210 = t1195 * t757 - t1192 * t758 - t1196 * t759 + t1197 * t760;
-    const iiwa14_real_t t1211 = t1210 + t1200 * t763 + t1201 * t766 + t1202 * t769;
-    ddq_by_dq[32] = t1211;
-    const iiwa14_real_t t1212 = t1195 * t771 - t1192 * t772 - t1196 * t773 + t1197 * t774;
-    const iiwa14_real_t t1213 = t1212 + t1200 * t766 + t1201 * t777 + t1202 * t780;
-    ddq_by_dq[39] = t1213;
-    const iiwa14_real_t t1214 = t1195 * t782 - t1192 * t783 - t1196 * t784 + t1197 * t785;
-    const iiwa14_real_t t1215 = t1214 + t1200 * t769 + t1201 * t780 + t1202 * t789;
-    ddq_by_dq[46] = t1215;
-    ddq_by_input[4] = t662;
-    ddq_by_input[11] = t730;
-    ddq_by_input[18] = t741;
-    ddq_by_input[25] = t751;
-    ddq_by_input[32] = t763;
-    ddq_by_input[39] = t766;
-    ddq_by_input[46] = t769;
-    const iiwa14_real_t t1216 = IIWA14_C(2.0) * t244; /* link j6: derivatives */
-    const iiwa14_real_t t1217 = IIWA14_C(2.0) * t252;
-    const iiwa14_real_t t1218 = t515 * t1216 + t501 * t1217 - (t366 * t29 + (t21 * t828 - t17 * t820));
-    const iiwa14_real_t t1219 = t868 + (t1218 + t67 * t849);
-    const iiwa14_real_t t1220 = t498 * t1216 - t511 * t1217 + (t366 * t30 + (t21 * t820 - t16 * t828));
-    const iiwa14_real_t t1221 = t871 + (t1220 + t67 * t843);
-    const iiwa14_real_t t1222 = t18 * t1221 - t22 * t1219;
-    const iiwa14_real_t t1223 = t366 * t12 - (t30 * t828 + t29 * t820);
-    const iiwa14_real_t t1224 = t45 * t843 - t47 * t849;
-    const iiwa14_real_t t1225 = t1223 - (t531 * t1216 + t534 * t1217) + t1224;
-    const iiwa14_real_t t1226 = t559 * t1216 + t50 * t843 + (t366 * t45 - t67 * t828);
-    const iiwa14_real_t t1227 = t882 + t1226;
-    const iiwa14_real_t t1228 = t559 * t1217 + t50 * t849 + (t67 * t820 - t366 * t47);
-    const iiwa14_real_t t1229 = t885 + t1228;
-    const iiwa14_real_t t1230 = t18 * t1229 + t22 * t1227;
-    const iiwa14_real_t t1231 = t542 * t1216 - t541 * t1217 + (t45 * t820 - t47 * t828);
-    const iiwa14_real_t t1232 = t39 * t1231 - t42 * t1230;
-    const iiwa14_real_t t1233 = t39 * t1222 + t42 * t1225 + IIWA14_C(0.4) * t1232;
-    const iiwa14_real_t t1234 = t22 * t1221 + t18 * t1219;
-    const iiwa14_real_t t1235 = t81 * t1233 + t79 * t1234;
-    const iiwa14_real_t t1236 = t39 * t1230 + t42 * t1231;
-    const iiwa14_real_t t1237 = t42 * t1222 - t39 * t1225 + IIWA14_C(0.4) * t1236;
-    const iiwa14_real_t t1238 = t81 * t1236 + t79 * (t22 * t1229 - t18 * t1227);
-    const iiwa14_real_t t1239 = t112 * t1235 - t115 * t1237 + IIWA14_C(0.42) * (t112 * t1232 - t115 * t1238);
-    const iiwa14_real_t t1240 = t79 * t1233 - t81 * t1234;
-    const iiwa14_real_t t1241 = IIWA14_C(0.0625) * (t167 * t1239 - t169 * t1240);
-    const iiwa14_real_t t1242 = t115 * t1235 + t112 * t1237 + IIWA14_C(0.42) * (t112 * t1238 + t115 * t1232);
-    const iiwa14_real_t t1243 = IIWA14_C(0.0625) * t1242;
-    const iiwa14_real_t t1244 = IIWA14_C(0.0625) * t1240;
-    const iiwa14_real_t t1245 = IIWA14_C(0.0625) * t1237;
-    const iiwa14_real_t t1246 = t626 * t1241 - t628 * t1243 - t637 * t1244 + t648 * t1245;
-    const iiwa14_real_t t1247 = IIWA14_C(0.125) * t1234;
-    const iiwa14_real_t t1248 = IIWA14_C(0.125) * (t1224 + (t244 * t683 - t252 * t684 + t1223));
-    const iiwa14_real_t t1249 = t244 * t707 - t252 * t709 + (parameters[ZZ7] * t820 - t20 * t828 - t366 * t4);
-    const iiwa14_real_t t1250 = IIWA14_C(0.125) * (t1249 + t3 * t849);
-    const iiwa14_real_t t1251 = t1246 + t662 * t1247 + t682 * t1248 + t704 * t1250;
-    ddq_by_q[5] = t1251;
-    const iiwa14_real_t t1252 = t628 * t1241 - t723 * t1243 - t725 * t1244 + t727 * t1245;
-    const iiwa14_real_t t1253 = t1252 + t730 * t1247 + t732 * t1248 + t734 * t1250;
-    ddq_by_q[12] = t1253;
-    const iiwa14_real_t t1254 = t637 * t1241 - t725 * t1243 - t736 * t1244 + t738 * t1245;
-    const iiwa14_real_t t1255 = t1254 + t741 * t1247 + t743 * t1248 + t745 * t1250;
-    ddq_by_q[19] = t1255;
-    const iiwa14_real_t t1256 = t648 * t1241 - t727 * t1243 - t738 * t1244 + t748 * t1245;
-    const iiwa14_real_t t1257 = t1256 + t751 * t1247 + t753 * t1248 + t755 * t1250;
-    ddq_by_q[26] = t1257;
-    const iiwa14_real_t t1258 = t757 * t1241 - t758 * t1243 - t759 * t1244 + t760 * t1245;
-    const iiwa14_real_t t1259 = t1258 + t763 * t1247 + t766 * t1248 + t769 * t1250;
-    ddq_by_q[33] = t1259;
-    const iiwa14_real_t t1260 = t771 * t1241 - t772 * t1243 - t773 * t1244 + t774 * t1245;
-    const iiwa14_real_t t1261 = t1260 + t766 * t1247 + t777 * t1248 + t780 * t1250;
-    ddq_by_q[40] = t1261;
-    const iiwa14_real_t t1262 = t782 * t1241 - t783 * t1243 - t784 * t1244 + t785 * t1245;
-    const iiwa14_real_t t1263 = t1262 + t769 * t1247 + t780 * t1248 + t789 * t1250;
-    ddq_by_q[47] = t1263;
-    const iiwa14_real_t t1264 = IIWA14_C(2.0) * t526 + (t16 * t1216 + t21 * t1217);
-    const iiwa14_real_t t1265 = IIWA14_C(2.0) * t527 + (t21 * t1216 + t17 * t1217);
-    const iiwa14_real_t t1266 = t18 * t1264 - t22 * t1265;
-    const iiwa14_real_t t1267 = t686 - (t29 * t1217 - t30 * t1216);
-    const iiwa14_real_t t1268 = IIWA14_C(-2.0) * t542 - t67 * t1217;
-    const iiwa14_real_t t1269 = IIWA14_C(-2.0) * t541 - t67 * t1216;
-    const iiwa14_real_t t1270 = t18 * t1268 + t22 * t1269;
-    const iiwa14_real_t t1271 = t47 * t1216 + t45 * t1217;
-    const iiwa14_real_t t1272 = t42 * t1270 + t39 * t1271;
-    const iiwa14_real_t t1273 = t39 * t1266 + t42 * t1267 + IIWA14_C(0.4) * t1272;
-    const iiwa14_real_t t1274 = t22 * t1264 + t18 * t1265;
-    const iiwa14_real_t t1275 = t81 * t1273 + t79 * t1274;
-    const iiwa14_real_t t1276 = t42 * t1271 - t39 * t1270;
-    const iiwa14_real_t t1277 = t42 * t1266 - t39 * t1267 + IIWA14_C(0.4) * t1276;
-    const iiwa14_real_t t1278 = t79 * (t22 * t1268 - t18 * t1269) - t81 * t1276;
-    const iiwa14_real_t t1279 = t115 * t1275 + t112 * t1277 + IIWA14_C(0.42) * (t115 * t1272 - t112 * t1278);
-    const iiwa14_real_t t1280 = IIWA14_C(0.0625) * t1279;
-    const iiwa14_real_t t1281 = t112 * t1275 - t115 * t1277 + IIWA14_C(0.42) * (t115 * t1278 + t112 * t1272);
-    const iiwa14_real_t t1282 = t81 * t1274 - t79 * t1273;
-    const iiwa14_real_t t1283 = IIWA14_C(0.0625) * (t167 * t1281 + t169 * t1282);
-    const iiwa14_real_t t1284 = IIWA14_C(-0.0625) * t1282;
-    const iiwa14_real_t t1285 = IIWA14_C(0.0625) * t1277;
-    const iiwa14_real_t t1286 = t1283 * t626 - t1280 * t628 - t1284 * t637 + t1285 * t648;
-    const iiwa14_real_t t1287 = IIWA14_C(0.125) * t1274;
-    const iiwa14_real_t t1288 = IIWA14_C(0.125) * (t686 + IIWA14_C(2.0) * (t244 * t30 - t252 * t29));
-    const iiwa14_real_t t1289 = IIWA14_C(-3.2e3) * parameters[FV6] + t1288;
-    const iiwa14_real_t t1290 = IIWA14_C(0.125) * (t711 + IIWA14_C(2.0) * (t244 * t20
-        + t252 * parameters[ZZ7]));
-    const iiwa14_real_t t1291 = t1286 + t1287 * t662 + t1289 * t682 + t1290 * t704;
-    ddq_by_dq[5] = t1291;
-    const iiwa14_real_t t1292 = t1283 * t628 - t1280 * t723 - t1284 * t725 + t1285 * t727;
-    const iiwa14_real_t t1293 = t1292 + t1287 * t730 + t1289 * t732 + t1290 * t734;
-    ddq_by_dq[12] = t1293;
-    const iiwa14_real_t t1294 = t1283 * t637 - t1280 * t725 - t1284 * t736 + t1285 * t738;
-    const iiwa14_real_t t1295 = t1294 + t1287 * t741 + t1289 * t743 + t1290 * t745;
-    ddq_by_dq[19] = t1295;
-    const iiwa14_real_t t1296 = t1283 * t648 - t1280 * t727 - t1284 * t738 + t1285 * t748;
-    const iiwa14_real_t t1297 = t1296 + t1287 * t751 + t1289 * t753 + t1290 * t755;
-    ddq_by_dq[26] = t1297;
-    const iiwa14_real_t t1298 = t1283 * t757 - t1280 * t758 - t1284 * t759 + t1285 * t760;
-    const iiwa14_real_t t1299 = t1298 + t1287 * t763 + t1289 * t766 + t1290 * t769;
-    ddq_by_dq[33] = t1299;
-    const iiwa14_real_t t1300 = t1283 * t771 - t1280 * t772 - t1284 * t773 + t1285 * t774;
-    const iiwa14_real_t t1301 = t1300 + t1287 * t766 + t1289 * t777 + t1290 * t780;
-    ddq_by_dq[40] = t1301;
-    const iiwa14_real_t t1302 = t1283 * t782 - t1280 * t783 - t1284 * t784 + t1285 * t785;
-    const iiwa14_real_t t1303 = t1302 + t1287 * t769 + t1289 * t780 + t1290 * t789;
-    ddq_by_dq[47] = t1303;
-    ddq_by_input[5] = t682;
-    ddq_by_input[12] = t732;
-    ddq_by_input[19] = t743;
-    ddq_by_input[26] = t753;
-    ddq_by_input[33] = t766;
-    ddq_by_input[40] = t777;
-    ddq_by_input[47] = t780;
-    const iiwa14_real_t t1304 = IIWA14_C(-2.0) * t256; /* link j7: derivatives */
-    const iiwa14_real_t t1305 = IIWA14_C(2.0) * t262;
-    const iiwa14_real_t t1306 = t479 * t1304 + t486 * t1305 + (t359 * parameters[XZ7]
-        + (parameters[XX7] * t825 + parameters[XY7] * t823));
-    const iiwa14_real_t t1307 = t857 - (t856 + t1306);
-    const iiwa14_real_t t1308 = t359 * parameters[YZ7] + (parameters[XY7] * t825 + parameters[YY7] * t823)
-        - (t484 * t1304 + t481 * t1305);
-    const iiwa14_real_t t1309 = t851 + (t1308 - t848);
-    const iiwa14_real_t t1310 = t863 + (t491 * t1305 - t862 + (t861 - t359 * parameters[MY7]));
-    const iiwa14_real_t t1311 = t491 * t1304 + t859 - (t359 * parameters[MX7] - t858) - t860;
-    const iiwa14_real_t t1312 = t1 * t1310 - t2 * t1311;
-    const iiwa14_real_t t1313 = t2 * t1307 + t1 * t1309 + IIWA14_C(0.126) * t1312;
-    const iiwa14_real_t t1314 = t359 * parameters[ZZ7] + (parameters[XZ7] * t825 + parameters[YZ7] * t823);
-    const iiwa14_real_t t1315 = parameters[MY7] * t847 - parameters[MX7] * t855;
-    const iiwa14_real_t t1316 = t1314 - (t512 * t1304 + t513 * t1305) + t1315;
-    const iiwa14_real_t t1317 = t18 * t1313 - t22 * t1316;
-    const iiwa14_real_t t1318 = t2 * t1310 + t1 * t1311;
-    const iiwa14_real_t t1319 = t2 * t1309 - t1 * t1307 + IIWA14_C(0.126) * t1318;
-    const iiwa14_real_t t1320 = t506 * t1304 + t505 * t1305 + (parameters[MX7] * t823
-        - parameters[MY7] * t825);
-    const iiwa14_real_t t1321 = t22 * t1320 - t18 * t1318;
-    const iiwa14_real_t t1322 = t39 * t1312 - t42 * t1321;
-    const iiwa14_real_t t1323 = t39 * t1317 + t42 * t1319 + IIWA14_C(0.4) * t1322;
-    const iiwa14_real_t t1324 = t22 * t1313 + t18 * t1316;
-    const iiwa14_real_t t1325 = t81 * t1323 + t79 * t1324;
-    const iiwa14_real_t t1326 = t39 * t1321 + t42 * t1312;
-    const iiwa14_real_t t1327 = t42 * t1317 - t39 * t1319 + IIWA14_C(0.4) * t1326;
-    const iiwa14_real_t t1328 = t81 * t1326 - t79 * (t22 * t1318 + t18 * t1320);
-    const iiwa14_real_t t1329 = t112 * t1325 - t115 * t1327 + IIWA14_C(0.42) * (t112 * t1322 - t115 * t1328);
-    const iiwa14_real_t t1330 = t79 * t1323 - t81 * t1324;
-    const iiwa14_real_t t1331 = IIWA14_C(0.0625) * (t167 * t1329 - t169 * t1330);
-    const iiwa14_real_t t1332 = t115 * t1325 + t112 * t1327 + IIWA14_C(0.42) * (t112 * t1328 + t115 * t1322);
-    const iiwa14_real_t t1333 = IIWA14_C(0.0625) * t1332;
-    const iiwa14_real_t t1334 = IIWA14_C(0.0625) * t1330;
-    const iiwa14_real_t t1335 = IIWA14_C(0.0625) * t1327;
-    const iiwa14_real_t t1336 = t626 * t1331 - t628 * t1333 - t637 * t1334 + t648 * t1335;
-    const iiwa14_real_t t1337 = IIWA14_C(0.125) * t1324;
-    const iiwa14_real_t t1338 = IIWA14_C(0.125) * t1319;
-    const iiwa14_real_t t1339 = IIWA14_C(0.125) * (t1315 + (t256 * t705 - t262 * t706 + t1314));
-    const iiwa14_real_t t1340 = t1336 + t662 * t1337 + t682 * t1338 + t704 * t1339;
-    ddq_by_q[6] = t1340;
-    const iiwa14_real_t t1341 = t628 * t1331 - t723 * t1333 - t725 * t1334 + t727 * t1335;
-    const iiwa14_real_t t1342 = t1341 + t730 * t1337 + t732 * t1338 + t734 * t1339;
-    ddq_by_q[13] = t1342;
-    const iiwa14_real_t t1343 = t637 * t1331 - t725 * t1333 - t736 * t1334 + t738 * t1335;
-    const iiwa14_real_t t1344 = t1343 + t741 * t1337 + t743 * t1338 + t745 * t1339;
-    ddq_by_q[20] = t1344;
-    const iiwa14_real_t t1345 = t648 * t1331 - t727 * t1333 - t738 * t1334 + t748 * t1335;
-    const iiwa14_real_t t1346 = t1345 + t751 * t1337 + t753 * t1338 + t755 * t1339;
-    ddq_by_q[27] = t1346;
-    const iiwa14_real_t t1347 = t757 * t1331 - t758 * t1333 - t759 * t1334 + t760 * t1335;
-    const iiwa14_real_t t1348 = t1347 + t763 * t1337 + t766 * t1338 + t769 * t1339;
-    ddq_by_q[34] = t1348;
-    const iiwa14_real_t t1349 = t771 * t1331 - t772 * t1333 - t773 * t1334 + t774 * t1335;
-    const iiwa14_real_t t1350 = t1349 + t766 * t1337 + t777 * t1338 + t780 * t1339;
-    ddq_by_q[41] = t1350;
-    const iiwa14_real_t t1351 = t782 * t1331 - t783 * t1333 - t784 * t1334 + t785 * t1335;
-    const iiwa14_real_t t1352 = t1351 + t769 * t1337 + t780 * t1338 + t789 * t1339;
-    ddq_by_q[48] = t1352;
-    const iiwa14_real_t t1353 = IIWA14_C(2.0) * t503 + (parameters[XX7] * t1304 + parameters[XY7] * t1305);
-    const iiwa14_real_t t1354 = IIWA14_C(2.0) * t504 + (parameters[XY7] * t1304 + parameters[YY7] * t1305);
-    const iiwa14_real_t t1355 = IIWA14_C(-2.0) * t506 + parameters[MZ7] * t1305;
-    const iiwa14_real_t t1356 = IIWA14_C(2.0) * t505 + parameters[MZ7] * t1304;
-    const iiwa14_real_t t1357 = t1 * t1355 - t2 * t1356;
-    const iiwa14_real_t t1358 = t1 * t1354 - t2 * t1353 + IIWA14_C(0.126) * t1357;
-    const iiwa14_real_t t1359 = t708 + (parameters[XZ7] * t1304 + parameters[YZ7] * t1305);
-    const iiwa14_real_t t1360 = t18 * t1358 - t22 * t1359;
-    const iiwa14_real_t t1361 = t2 * t1355 + t1 * t1356;
-    const iiwa14_real_t t1362 = t1 * t1353 + t2 * t1354 + IIWA14_C(0.126) * t1361;
-    const iiwa14_real_t t1363 = parameters[MX7] * t1305 - parameters[MY7] * t1304;
-    const iiwa14_real_t t1364 = t18 * t1361 - t22 * t1363;
-    const iiwa14_real_t t1365 = t42 * t1364 + t39 * t1357;
-    const iiwa14_real_t t1366 = t39 * t1360 + t42 * t1362 + IIWA14_C(0.4) * t1365;
-    const iiwa14_real_t t1367 = t22 * t1358 + t18 * t1359;
-    const iiwa14_real_t t1368 = t81 * t1366 + t79 * t1367;
-    const iiwa14_real_t t1369 = t42 * t1357 - t39 * t1364;
-    const iiwa14_real_t t1370 = t42 * t1360 - t39 * t1362 + IIWA14_C(0.4) * t1369;
-    const iiwa14_real_t t1371 = t79 * (t22 * t1361 + t18 * t1363) - t81 * t1369;
-    const iiwa14_real_t t1372 = t115 * t1368 + t112 * t1370 + IIWA14_C(0.42) * (t115 * t1365 - t112 * t1371);
-    const iiwa14_real_t t1373 = IIWA14_C(0.0625) * t1372;
-    const iiwa14_real_t t1374 = t112 * t1368 - t115 * t1370 + IIWA14_C(0.42) * (t115 * t1371 + t112 * t1365);
-    const iiwa14_real_t t1375 = t81 * t1367 - t79 * t1366;
-    const iiwa14_real_t t1376 = IIWA14_C(0.0625) * (t167 * t1374 + t169 * t1375);
-    const iiwa14_real_t t1377 = IIWA14_C(-0.0625) * t1375;
-    const iiwa14_real_t t1378 = IIWA14_C(0.0625) * t1370;
-    const iiwa14_real_t t1379 = t1376 * t626 - t1373 * t628 - t1377 * t637 + t1378 * t648;
-    const iiwa14_real_t t1380 = IIWA14_C(0.125) * t1367;
-    const iiwa14_real_t t1381 = IIWA14_C(0.125) * t1362;
-    const iiwa14_real_t t1382 = IIWA14_C(-3.2e3) * parameters[FV7];
-    const iiwa14_real_t t1383 = t1379 + t1380 * t662 + t1381 * t682 + t1382 * t704;
-    ddq_by_dq[6] = t1383;
-    const iiwa14_real_t t1384 = t1376 * t628 - t1373 * t723 - t1377 * t725 + t1378 * t727;
-    const iiwa14_real_t t1385 = t1384 + t1380 * t730 + t1381 * t732 + t1382 * t734;
-    ddq_by_dq[13] = t1385;
-    const iiwa14_real_t t1386 = t1376 * t637 - t1373 * t725 - t1377 * t736 + t1378 * t738;
-    const iiwa14_real_t t1387 = t1386 + t1380 * t741 + t1381 * t743 + t1382 * t745;
-    ddq_by_dq[20] = t1387;
-    const iiwa14_real_t t1388 = t1376 * t648 - t1373 * t727 - t1377 * t738 + t1378 * t748;
-    const iiwa14_real_t t1389 = t1388 + t1380 * t751 + t1381 * t753 + t1382 * t755;
-    ddq_by_dq[27] = t1389;
-    const iiwa14_real_t t1390 = t1376 * t757 - t1373 * t758 - t1377 * t759 + t1378 * t760;
-    const iiwa14_real_t t1391 = t1390 + t1380 * t763 + t1381 * t766 + t1382 * t769;
-    ddq_by_dq[34] = t1391;
-    const iiwa14_real_t t1392 = t1376 * t771 - t1373 * t772 - t1377 * t773 + t1378 * t774;
-    const iiwa14_real_t t1393 = t1392 + t1380 * t766 + t1381 * t777 + t1382 * t780;
-    ddq_by_dq[41] = t1393;
-    const iiwa14_real_t t1394 = t1376 * t782 - t1373 * t783 - t1377 * t784 + t1378 * t785;
-    const iiwa14_real_t t1395 = t1394 + t1380 * t769 + t1381 * t780 + t1382 * t789;
-    ddq_by_dq[48] = t1395;
-    ddq_by_input[6] = t704;
-    ddq_by_input[13] = t734;
-    ddq_by_input[20] = t745;
-    ddq_by_input[27] = t755;
-    ddq_by_input[34] = t769;
-    ddq_by_input[41] = t780;
-    ddq_by_input[48] = t789;
+    const iiwa14_real_t t1358 = t111 * t1202 + t108 * t1128 - t1322 * t1303 + IIWA14_C(2.0) * (t205 * t166
+        + t203 * t82);
+    const iiwa14_real_t t1359 = IIWA14_C(0.125) * t1358;
+    const iiwa14_real_t t1360 = t1353 + t1355 * t610 + t1357 * t617 + t1359 * t628;
+    ddq_by_dq[1] = t1360;
+    const iiwa14_real_t t1361 = t1348 * t596 - t1342 * t630 - t1350 * t632 + t1352 * t634;
+    const iiwa14_real_t t1362 = t1361 + t1355 * t637 + t1357 * t639 + t1359 * t641;
+    ddq_by_dq[8] = t1362;
+    const iiwa14_real_t t1363 = t1348 * t599 - t1342 * t632 - t1350 * t643 + t1352 * t645;
+    const iiwa14_real_t t1364 = t1363 + t1355 * t648 + t1357 * t650 + t1359 * t652;
+    ddq_by_dq[15] = t1364;
+    const iiwa14_real_t t1365 = t1348 * t603 - t1342 * t634 - t1350 * t645 + t1352 * t655;
+    const iiwa14_real_t t1366 = t1365 + t1355 * t658 + t1357 * t660 + t1359 * t662;
+    ddq_by_dq[22] = t1366;
+    const iiwa14_real_t t1367 = t1348 * t664 - t1342 * t665 - t1350 * t666 + t1352 * t667;
+    const iiwa14_real_t t1368 = t1367 + t1355 * t670 + t1357 * t673 + t1359 * t676;
+    ddq_by_dq[29] = t1368;
+    const iiwa14_real_t t1369 = t1348 * t678 - t1342 * t679 - t1350 * t680 + t1352 * t681;
+    const iiwa14_real_t t1370 = t1369 + t1355 * t673 + t1357 * t684 + t1359 * t687;
+    ddq_by_dq[36] = t1370;
+    const iiwa14_real_t t1371 = t1348 * t689 - t1342 * t690 - t1350 * t691 + t1352 * t692;
+    const iiwa14_real_t t1372 = t1371 + t1355 * t676 + t1357 * t687 + t1359 * t696;
+    ddq_by_dq[43] = t1372;
+    ddq_by_input[1] = t596;
+    ddq_by_input[8] = t630;
+    ddq_by_input[15] = t632;
+    ddq_by_input[22] = t634;
+    ddq_by_input[29] = t665;
+    ddq_by_input[36] = t679;
+    ddq_by_input[43] = t690;
+    /* link j2: inertia, momentum beyond */
+    const iiwa14_real_t t1373 = t164 * (t164 * (t1273 - t1284) + t162 * (t1288 + t1263));
+    const iiwa14_real_t t1374 = IIWA14_C(-1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t1284 + t1373);
+    const iiwa14_real_t t1375 = IIWA14_C(0.0625) * (t162 * t1294 - t164 * t1297);
+    const iiwa14_real_t t1376 = IIWA14_C(0.0625) * (t162 * t1301 - t164 * t1304);
+    const iiwa14_real_t t1377 = IIWA14_C(0.0625) * (t162 * t1307 + t164 * t1308);
+    const iiwa14_real_t t1378 = t1374 * t592 - t1375 * t596 - t1376 * t599 + t1377 * t603;
+    const iiwa14_real_t t1379 = IIWA14_C(0.125) * (t162 * t1313 + t164 * t1314);
+    const iiwa14_real_t t1380 = IIWA14_C(0.125) * (t162 * t1318 + t164 * t1319);
+    const iiwa14_real_t t1381 = IIWA14_C(0.125) * (t162 * t1323 + t164 * t1324);
+    const iiwa14_real_t t1382 = t1378 + t1379 * t610 + t1380 * t617 + t1381 * t628;
+    ddq_by_dq[0] = t1382;
+    const iiwa14_real_t t1383 = t1374 * t596 - t1375 * t630 - t1376 * t632 + t1377 * t634;
+    const iiwa14_real_t t1384 = t1383 + t1379 * t637 + t1380 * t639 + t1381 * t641;
+    ddq_by_dq[7] = t1384;
+    const iiwa14_real_t t1385 = t1374 * t599 - t1375 * t632 - t1376 * t643 + t1377 * t645;
+    const iiwa14_real_t t1386 = t1385 + t1379 * t648 + t1380 * t650 + t1381 * t652;
+    ddq_by_dq[14] = t1386;
+    const iiwa14_real_t t1387 = t1374 * t603 - t1375 * t634 - t1376 * t645 + t1377 * t655;
+    const iiwa14_real_t t1388 = t1387 + t1379 * t658 + t1380 * t660 + t1381 * t662;
+    ddq_by_dq[21] = t1388;
+    const iiwa14_real_t t1389 = t1374 * t664 - t1375 * t665 - t1376 * t666 + t1377 * t667;
+    const iiwa14_real_t t1390 = t1389 + t1379 * t670 + t1380 * t673 + t1381 * t676;
+    ddq_by_dq[28] = t1390;
+    const iiwa14_real_t t1391 = t1374 * t678 - t1375 * t679 - t1376 * t680 + t1377 * t681;
+    const iiwa14_real_t t1392 = t1391 + t1379 * t673 + t1380 * t684 + t1381 * t687;
+    ddq_by_dq[35] = t1392;
+    const iiwa14_real_t t1393 = t1374 * t689 - t1375 * t690 - t1376 * t691 + t1377 * t692;
+    const iiwa14_real_t t1394 = t1393 + t1379 * t676 + t1380 * t687 + t1381 * t696;
+    ddq_by_dq[42] = t1394;
+    ddq_by_input[0] = t592;
+    ddq_by_input[7] = t596;
+    ddq_by_input[14] = t599;
+    ddq_by_input[21] = t603;
+    ddq_by_input[28] = t664;
+    ddq_by_input[35] = t678;
+    ddq_by_input[42] = t689;
     /* always zero */
     ddq_by_q[0] = IIWA14_C(0.0);
     ddq_by_q[7] = IIWA14_C(0.0);
@@ -1956,10 +1927,10 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     ddq_by_q[28] = IIWA14_C(0.0);
     ddq_by_q[35] = IIWA14_C(0.0);
     ddq_by_q[42] = IIWA14_C(0.0);
-    if (!iiwa14_all_bounded(ddq, 7)
-        || !iiwa14_all_bounded(ddq_by_q, 49)
-        || !iiwa14_all_bounded(ddq_by_dq, 49)
-        || !iiwa14_all_bounded(ddq_by_input, 49)) {
+    if (!iiwa14_bounded(ddq, 7)
+        || !iiwa14_bounded(ddq_by_q, 49)
+        || !iiwa14_bounded(ddq_by_dq, 49)
+        || !iiwa14_bounded(ddq_by_input, 49)) {
         iiwa14_zero(ddq, 7);
         iiwa14_zero(ddq_by_q, 49);
         iiwa14_zero(ddq_by_dq, 49);

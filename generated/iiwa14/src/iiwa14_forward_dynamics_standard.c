@@ -6,7 +6,7 @@
  * Arm iiwa14, description 4f01a5afe35e97fd.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1295 (683 mul, 612 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 1295 (683 mul, 612 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -121,7 +121,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x1E31C9F2UL
+#if IIWA14_GENERATION != 0xF4E95A26UL
 #error "iiwa14.h and iiwa14_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -150,19 +150,19 @@ iiwa14_status_t iiwa14_forward_dynamics_standard(
         return status;
     }
 
-    iiwa14_real_t t150, t151;
-    IIWA14_SINCOS(q[1], &t150, &t151);
-    iiwa14_real_t t112, t109;
-    IIWA14_SINCOS(q[2], &t112, &t109);
-    iiwa14_real_t t76, t78;
-    IIWA14_SINCOS(q[3], &t76, &t78);
-    iiwa14_real_t t42, t39;
-    IIWA14_SINCOS(q[4], &t42, &t39);
-    iiwa14_real_t t22, t18;
-    IIWA14_SINCOS(q[5], &t22, &t18);
+    iiwa14_real_t t145, t146;
+    IIWA14_SINCOS(q[1], &t145, &t146);
+    iiwa14_real_t t108, t105;
+    IIWA14_SINCOS(q[2], &t108, &t105);
+    iiwa14_real_t t73, t75;
+    IIWA14_SINCOS(q[3], &t73, &t75);
+    iiwa14_real_t t40, t37;
+    IIWA14_SINCOS(q[4], &t40, &t37);
+    iiwa14_real_t t21, t17;
+    IIWA14_SINCOS(q[5], &t21, &t17);
     iiwa14_real_t t1, t2;
     IIWA14_SINCOS(q[6], &t1, &t2);
-    const iiwa14_real_t t0 = iiwa14_bounded(parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7]);
+    const iiwa14_real_t t0 = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
     if (!(t0 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
@@ -179,570 +179,549 @@ iiwa14_status_t iiwa14_forward_dynamics_standard(
     const iiwa14_real_t t11 = IIWA14_C(0.126) * (t10 + IIWA14_C(2.0) * parameters[MZ7]);
     const iiwa14_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
     const iiwa14_real_t t13 = t12 + IIWA14_C(2.56e4) * parameters[IA6];
-    const iiwa14_real_t t14 = iiwa14_bounded(t13 + t4 * t6);
+    const iiwa14_real_t t14 = t13 + t4 * t6;
     if (!(t14 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t15 = t14 + IIWA14_C(-1.0e-9) * t13;
-    if (!(t15 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t16 = parameters[XX6] + (parameters[YY7] - t9 + t11);
-    const iiwa14_real_t t17 = parameters[YY6] + parameters[ZZ7];
+    const iiwa14_real_t t15 = parameters[XX6] + (parameters[YY7] - t9 + t11);
+    const iiwa14_real_t t16 = parameters[YY6] + parameters[ZZ7];
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t19 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const iiwa14_real_t t20 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + IIWA14_C(0.126) * t19;
-    const iiwa14_real_t t21 = parameters[XY6] + t20; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t18 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const iiwa14_real_t t19 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + IIWA14_C(0.126) * t18;
+    const iiwa14_real_t t20 = parameters[XY6] + t19; /* link j7: inertia of it and all beyond */
     /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t23 = t18 * (t16 - t17) + t21 * (IIWA14_C(-2.0) * t22);
-    const iiwa14_real_t t24 = t18 * t23;
-    const iiwa14_real_t t25 = parameters[ZZ5] + (t16 - t24);
-    const iiwa14_real_t t26 = t25 + IIWA14_C(1.0e4) * parameters[IA5];
-    const iiwa14_real_t t27 = t22 * t20 + t18 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t28 = t27 * t5;
-    const iiwa14_real_t t29 = t4 - parameters[YZ6]; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t30 = t1 * t8 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t31 = t22 * t30 + t18 * t29; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t32 = t31 + t27 * t6;
-    const iiwa14_real_t t33 = IIWA14_C(-1.0) / t14;
-    const iiwa14_real_t t34 = t32 * t33;
-    const iiwa14_real_t t35 = iiwa14_bounded(t26 + t27 * t28 + t32 * t34);
-    if (!(t35 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t22 = t17 * (t15 - t16) + t20 * (IIWA14_C(-2.0) * t21);
+    const iiwa14_real_t t23 = t17 * t22;
+    const iiwa14_real_t t24 = parameters[ZZ5] + (t15 - t23);
+    const iiwa14_real_t t25 = t24 + IIWA14_C(1.0e4) * parameters[IA5];
+    const iiwa14_real_t t26 = t21 * t19 + t17 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t27 = t26 * t5;
+    const iiwa14_real_t t28 = t4 - parameters[YZ6]; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t29 = t1 * t8 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_real_t t30 = t21 * t29 + t17 * t28; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t31 = t30 + t26 * t6;
+    const iiwa14_real_t t32 = IIWA14_C(-1.0) / t14;
+    const iiwa14_real_t t33 = t31 * t32;
+    const iiwa14_real_t t34 = t25 + t26 * t27 + t31 * t33;
+    if (!(t34 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t36 = t35 + IIWA14_C(-1.0e-9) * t26;
-    if (!(t36 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t37 = parameters[XX5] + (t17 + t24); /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t38 = parameters[YY5] + t12;
-    const iiwa14_real_t t40 = t22 * t29 - t18 * t30; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t41 = parameters[XY5] + t40; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t35 = parameters[XX5] + (t16 + t23); /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t36 = parameters[YY5] + t12;
+    const iiwa14_real_t t38 = t21 * t28 - t17 * t29; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t39 = parameters[XY5] + t38; /* link j6: inertia of it and all beyond */
     /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t43 = t39 * (t37 - t38) - t41 * (IIWA14_C(2.0) * t42);
-    const iiwa14_real_t t44 = t39 * t43;
-    const iiwa14_real_t t45 = parameters[MX6] + t19; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t46 = parameters[MZ7] + t10 - parameters[MY6];
-    const iiwa14_real_t t47 = t18 * t46 - t22 * t45; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t48 = parameters[MZ5] + t47; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t49 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const iiwa14_real_t t50 = IIWA14_C(0.4) * t49; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t51 = IIWA14_C(0.4) * (t50 + IIWA14_C(2.0) * t48);
-    const iiwa14_real_t t52 = parameters[ZZ4] + (t37 - t44 + t51);
-    const iiwa14_real_t t53 = t52 + IIWA14_C(2.56e4) * parameters[IA4];
-    const iiwa14_real_t t54 = t18 * t20 - t22 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t55 = t18 * t3;
-    const iiwa14_real_t t56 = t39 * t55 + t42 * t19;
-    const iiwa14_real_t t57 = t42 * t54 - t39 * t4 + IIWA14_C(0.4) * t56;
-    const iiwa14_real_t t58 = t57 * t5;
-    const iiwa14_real_t t59 = t39 * t47; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t60 = IIWA14_C(-0.4) * t59 - (t42 * t40 + t39 * t12);
-    const iiwa14_real_t t61 = t60 + t57 * t6;
-    const iiwa14_real_t t62 = t61 * t33;
-    const iiwa14_real_t t63 = t21 + t22 * t23 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t64 = parameters[YZ5] + t31;
-    const iiwa14_real_t t65 = parameters[MY5] + (parameters[MZ6] + t3);
-    const iiwa14_real_t t66 = t22 * t46 + t18 * t45; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t67 = parameters[MX5] + t66; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t68 = t39 * t65 + t42 * t67; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t69 = t42 * t63 - t39 * t64 + IIWA14_C(0.4) * t68;
-    const iiwa14_real_t t70 = t69 + t57 * t28 + t61 * t34;
-    const iiwa14_real_t t71 = IIWA14_C(-1.0) / t35;
-    const iiwa14_real_t t72 = t70 * t71;
-    const iiwa14_real_t t73 = iiwa14_bounded(t53 + t57 * t58 + t61 * t62 + t70 * t72);
-    if (!(t73 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t41 = t37 * (t35 - t36) - t39 * (IIWA14_C(2.0) * t40);
+    const iiwa14_real_t t42 = t37 * t41;
+    const iiwa14_real_t t43 = parameters[MX6] + t18; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t44 = parameters[MZ7] + t10 - parameters[MY6];
+    const iiwa14_real_t t45 = t17 * t44 - t21 * t43; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t46 = parameters[MZ5] + t45; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t47 = parameters[M5] + (parameters[M6] + parameters[M7]);
+    const iiwa14_real_t t48 = IIWA14_C(0.4) * t47; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t49 = IIWA14_C(0.4) * (t48 + IIWA14_C(2.0) * t46);
+    const iiwa14_real_t t50 = parameters[ZZ4] + (t35 - t42 + t49);
+    const iiwa14_real_t t51 = t50 + IIWA14_C(2.56e4) * parameters[IA4];
+    const iiwa14_real_t t52 = t17 * t19 - t21 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t53 = t17 * t3;
+    const iiwa14_real_t t54 = t37 * t53 + t40 * t18;
+    const iiwa14_real_t t55 = t40 * t52 - t37 * t4 + IIWA14_C(0.4) * t54;
+    const iiwa14_real_t t56 = t55 * t5;
+    const iiwa14_real_t t57 = t37 * t45; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t58 = IIWA14_C(-0.4) * t57 - (t40 * t38 + t37 * t12);
+    const iiwa14_real_t t59 = t58 + t55 * t6;
+    const iiwa14_real_t t60 = t59 * t32;
+    const iiwa14_real_t t61 = t20 + t21 * t22 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t62 = parameters[YZ5] + t30;
+    const iiwa14_real_t t63 = parameters[MY5] + (parameters[MZ6] + t3);
+    const iiwa14_real_t t64 = t21 * t44 + t17 * t43; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t65 = parameters[MX5] + t64; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t66 = t37 * t63 + t40 * t65; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t67 = t40 * t61 - t37 * t62 + IIWA14_C(0.4) * t66;
+    const iiwa14_real_t t68 = t67 + t55 * t27 + t59 * t33;
+    const iiwa14_real_t t69 = IIWA14_C(-1.0) / t34;
+    const iiwa14_real_t t70 = t68 * t69;
+    const iiwa14_real_t t71 = t51 + t55 * t56 + t59 * t60 + t68 * t70;
+    if (!(t71 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t74 = t73 + IIWA14_C(-1.0e-9) * t53;
-    if (!(t74 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t75 = t41 + t42 * t43 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t77 = parameters[YZ4] + t69;
-    const iiwa14_real_t t79 = t76 * t75 - t78 * t77; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t80 = t39 * t19 - t42 * t55; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t81 = t39 * t54 + t42 * t4 + IIWA14_C(0.4) * t80;
-    const iiwa14_real_t t82 = t76 * t81 - t78 * t27;
-    const iiwa14_real_t t83 = t42 * t47; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t84 = t42 * t12 - t39 * t40 + IIWA14_C(0.4) * t83;
-    const iiwa14_real_t t85 = t76 * t84 - t78 * t31;
-    const iiwa14_real_t t86 = t85 + t82 * t6;
-    const iiwa14_real_t t87 = t39 * t67 - t42 * t65; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t88 = t39 * t63 + t42 * t64 + IIWA14_C(0.4) * t87;
-    const iiwa14_real_t t89 = t76 * t88 - t78 * t25;
-    const iiwa14_real_t t90 = t89 + t82 * t28 + t86 * t34;
-    const iiwa14_real_t t91 = t79 + t82 * t58 + t86 * t62 + t90 * t72;
-    const iiwa14_real_t t92 = IIWA14_C(1.0) / t73;
-    const iiwa14_real_t t93 = t91 * t92;
-    const iiwa14_real_t t94 = parameters[XX4] + (t38 + t44 + t51); /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t95 = parameters[YY4] + t25;
-    const iiwa14_real_t t96 = t88 - parameters[XY4];
+    const iiwa14_real_t t72 = t39 + t40 * t41 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t74 = parameters[YZ4] + t67;
+    const iiwa14_real_t t76 = t73 * t72 - t75 * t74; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t77 = t37 * t18 - t40 * t53; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t78 = t37 * t52 + t40 * t4 + IIWA14_C(0.4) * t77;
+    const iiwa14_real_t t79 = t73 * t78 - t75 * t26;
+    const iiwa14_real_t t80 = t40 * t45; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t81 = t40 * t12 - t37 * t38 + IIWA14_C(0.4) * t80;
+    const iiwa14_real_t t82 = t73 * t81 - t75 * t30;
+    const iiwa14_real_t t83 = t82 + t79 * t6;
+    const iiwa14_real_t t84 = t37 * t65 - t40 * t63; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t85 = t37 * t61 + t40 * t62 + IIWA14_C(0.4) * t84;
+    const iiwa14_real_t t86 = t73 * t85 - t75 * t24;
+    const iiwa14_real_t t87 = t86 + t79 * t27 + t83 * t33;
+    const iiwa14_real_t t88 = t76 + t79 * t56 + t83 * t60 + t87 * t70;
+    const iiwa14_real_t t89 = IIWA14_C(1.0) / t71;
+    const iiwa14_real_t t90 = t88 * t89;
+    const iiwa14_real_t t91 = parameters[XX4] + (t36 + t42 + t49); /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t92 = parameters[YY4] + t24;
+    const iiwa14_real_t t93 = t85 - parameters[XY4];
     /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t97 = t78 * (t95 - t94) - t96 * (IIWA14_C(2.0) * t76);
-    const iiwa14_real_t t98 = t78 * t97;
-    const iiwa14_real_t t99 = parameters[ZZ3] + (t94 + t98);
-    const iiwa14_real_t t100 = t99 + IIWA14_C(2.56e4) * parameters[IA3];
-    const iiwa14_real_t t101 = t82 * t5;
-    const iiwa14_real_t t102 = t86 * t33;
-    const iiwa14_real_t t103 = t90 * t71;
-    const iiwa14_real_t t104 = t100 + t82 * t101 + t86 * t102 + t90 * t103;
-    const iiwa14_real_t t105 = iiwa14_bounded(t104 - t91 * t93);
-    if (!(t105 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t94 = t75 * (t92 - t91) - t93 * (IIWA14_C(2.0) * t73);
+    const iiwa14_real_t t95 = t75 * t94;
+    const iiwa14_real_t t96 = parameters[ZZ3] + (t91 + t95);
+    const iiwa14_real_t t97 = t96 + IIWA14_C(2.56e4) * parameters[IA3];
+    const iiwa14_real_t t98 = t79 * t5;
+    const iiwa14_real_t t99 = t83 * t32;
+    const iiwa14_real_t t100 = t87 * t69;
+    const iiwa14_real_t t101 = t97 + t79 * t98 + t83 * t99 + t87 * t100;
+    const iiwa14_real_t t102 = t101 - t88 * t90;
+    if (!(t102 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t106 = t105 + IIWA14_C(-1.0e-9) * t100;
-    if (!(t106 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t107 = parameters[XX3] + (t95 - t98);
-    const iiwa14_real_t t108 = parameters[YY3] + t52;
-    const iiwa14_real_t t110 = t78 * t75 + t76 * t77; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t111 = parameters[XY3] + t110; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t103 = parameters[XX3] + (t92 - t95);
+    const iiwa14_real_t t104 = parameters[YY3] + t50;
+    const iiwa14_real_t t106 = t75 * t72 + t73 * t74; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t107 = parameters[XY3] + t106; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t113 = t109 * (t108 - t107) + t111 * (IIWA14_C(2.0) * t112);
-    const iiwa14_real_t t114 = t109 * t113;
-    const iiwa14_real_t t115 = parameters[MX4] + t87; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t116 = parameters[MY4] + (t48 + t50);
-    const iiwa14_real_t t117 = t78 * t116 + t76 * t115; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t109 = t105 * (t104 - t103) + t107 * (IIWA14_C(2.0) * t108);
+    const iiwa14_real_t t110 = t105 * t109;
+    const iiwa14_real_t t111 = parameters[MX4] + t84; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t112 = parameters[MY4] + (t46 + t48);
+    const iiwa14_real_t t113 = t75 * t112 + t73 * t111; /* link j4: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t118 = IIWA14_C(0.42) * (parameters[M3] + (parameters[M4] + t49))
-        + IIWA14_C(2.0) * (parameters[MZ3] + t117);
-    const iiwa14_real_t t119 = IIWA14_C(0.42) * t118;
-    const iiwa14_real_t t120 = parameters[ZZ2] + (t107 + t114 + t119) + IIWA14_C(2.56e4) * parameters[IA2];
-    const iiwa14_real_t t121 = t78 * t81 + t76 * t27; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t122 = t78 * t56 + t76 * (t22 * t3);
-    const iiwa14_real_t t123 = t112 * t121 + t109 * t57 + IIWA14_C(0.42) * (t109 * t122 + t112 * t80);
-    const iiwa14_real_t t124 = t123 * t5;
-    const iiwa14_real_t t125 = t78 * t84 + t76 * t31; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t126 = t78 * t59 + t76 * t66;
-    const iiwa14_real_t t127 = t112 * t125 + t109 * t60 + IIWA14_C(0.42) * (t112 * t83 - t109 * t126);
-    const iiwa14_real_t t128 = t127 + t123 * t6;
-    const iiwa14_real_t t129 = t128 * t33;
-    const iiwa14_real_t t130 = t78 * t88 + t76 * t25; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t131 = t78 * t68;
-    const iiwa14_real_t t132 = t112 * t130 + t109 * t69 + IIWA14_C(0.42) * (t109 * t131 + t112 * t87);
-    const iiwa14_real_t t133 = t132 + t123 * t28 + t128 * t34;
-    const iiwa14_real_t t134 = t133 * t71;
-    const iiwa14_real_t t135 = t120 + t123 * t124 + t128 * t129 + t133 * t134;
+    const iiwa14_real_t t114 = IIWA14_C(0.42) * (parameters[M3] + (parameters[M4] + t47))
+        + IIWA14_C(2.0) * (parameters[MZ3] + t113);
+    const iiwa14_real_t t115 = IIWA14_C(0.42) * t114;
+    const iiwa14_real_t t116 = parameters[ZZ2] + (t103 + t110 + t115) + IIWA14_C(2.56e4) * parameters[IA2];
+    const iiwa14_real_t t117 = t75 * t78 + t73 * t26; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t118 = t75 * t54 + t73 * (t21 * t3);
+    const iiwa14_real_t t119 = t108 * t117 + t105 * t55 + IIWA14_C(0.42) * (t105 * t118 + t108 * t77);
+    const iiwa14_real_t t120 = t119 * t5;
+    const iiwa14_real_t t121 = t75 * t81 + t73 * t30; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t122 = t75 * t57 + t73 * t64;
+    const iiwa14_real_t t123 = t108 * t121 + t105 * t58 + IIWA14_C(0.42) * (t108 * t80 - t105 * t122);
+    const iiwa14_real_t t124 = t123 + t119 * t6;
+    const iiwa14_real_t t125 = t124 * t32;
+    const iiwa14_real_t t126 = t75 * t85 + t73 * t24; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t127 = t75 * t66;
+    const iiwa14_real_t t128 = t108 * t126 + t105 * t67 + IIWA14_C(0.42) * (t105 * t127 + t108 * t84);
+    const iiwa14_real_t t129 = t128 + t119 * t27 + t124 * t33;
+    const iiwa14_real_t t130 = t129 * t69;
+    const iiwa14_real_t t131 = t116 + t119 * t120 + t124 * t125 + t129 * t130;
     /* link j4: column of the mass matrix */
-    const iiwa14_real_t t136 = t112 * t110 + t109 * t52 + IIWA14_C(0.42) * (t109 * t117);
-    const iiwa14_real_t t137 = t136 + t123 * t58 + t128 * t62 + t133 * t72;
-    const iiwa14_real_t t138 = t137 * t92;
-    const iiwa14_real_t t139 = t96 + t76 * t97 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t140 = parameters[YZ3] + t79;
-    const iiwa14_real_t t141 = parameters[MY3] - (parameters[MZ4] - t68);
-    const iiwa14_real_t t142 = parameters[MX3] + (t78 * t115 - t76 * t116);
+    const iiwa14_real_t t132 = t108 * t106 + t105 * t50 + IIWA14_C(0.42) * (t105 * t113);
+    const iiwa14_real_t t133 = t132 + t119 * t56 + t124 * t60 + t129 * t70;
+    const iiwa14_real_t t134 = t133 * t89;
+    const iiwa14_real_t t135 = t93 + t73 * t94 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t136 = parameters[YZ3] + t76;
+    const iiwa14_real_t t137 = parameters[MY3] - (parameters[MZ4] - t66);
+    const iiwa14_real_t t138 = parameters[MX3] + (t75 * t111 - t73 * t112);
     /* link j3: column of the mass matrix */
-    const iiwa14_real_t t143 = t112 * t139 - t109 * t140 + IIWA14_C(0.42) * (t109 * t141 + t112 * t142);
-    const iiwa14_real_t t144 = t143 - t123 * t101 - t128 * t102 - t133 * t103;
-    const iiwa14_real_t t145 = t144 + t137 * t93;
-    const iiwa14_real_t t146 = IIWA14_C(1.0) / t105;
-    const iiwa14_real_t t147 = t145 * t146;
-    const iiwa14_real_t t148 = iiwa14_bounded(t135 - t137 * t138 - t145 * t147);
-    if (!(t148 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t149 = t148 + IIWA14_C(-1.0e-9) * t120;
-    if (!(t149 > IIWA14_C(1.0e-12))) {
+    const iiwa14_real_t t139 = t108 * t135 - t105 * t136 + IIWA14_C(0.42) * (t105 * t137 + t108 * t138);
+    const iiwa14_real_t t140 = t139 - t119 * t98 - t124 * t99 - t129 * t100;
+    const iiwa14_real_t t141 = t140 + t133 * t90;
+    const iiwa14_real_t t142 = IIWA14_C(1.0) / t102;
+    const iiwa14_real_t t143 = t141 * t142;
+    const iiwa14_real_t t144 = t131 - t133 * t134 - t141 * t143;
+    if (!(t144 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
     /* link j2: column of the mass matrix */
-    const iiwa14_real_t t152 = t150 * (parameters[XZ2] + (t111 - t112 * t113)) + t151 * (parameters[YZ2]
-        + t143);
+    const iiwa14_real_t t147 = t145 * (parameters[XZ2] + (t107 - t108 * t109)) + t146 * (parameters[YZ2]
+        + t139);
     /* link j7: column of the mass matrix */
-    const iiwa14_real_t t153 = t112 * t57 - t109 * t121 + IIWA14_C(0.42) * (t112 * t122 - t109 * t80);
-    const iiwa14_real_t t154 = t150 * t153 + t151 * t82;
+    const iiwa14_real_t t148 = t108 * t55 - t105 * t117 + IIWA14_C(0.42) * (t108 * t118 - t105 * t77);
+    const iiwa14_real_t t149 = t145 * t148 + t146 * t79;
     /* link j6: column of the mass matrix */
-    const iiwa14_real_t t155 = t112 * t60 - t109 * t125 + IIWA14_C(-0.42) * (t112 * t126 + t109 * t83);
-    const iiwa14_real_t t156 = t150 * t155 + t151 * t85 + t154 * t6;
+    const iiwa14_real_t t150 = t108 * t58 - t105 * t121 + IIWA14_C(-0.42) * (t108 * t122 + t105 * t80);
+    const iiwa14_real_t t151 = t145 * t150 + t146 * t82 + t149 * t6;
     /* link j5: column of the mass matrix */
-    const iiwa14_real_t t157 = t112 * t69 - t109 * t130 + IIWA14_C(0.42) * (t112 * t131 - t109 * t87);
-    const iiwa14_real_t t158 = t150 * t157 + t151 * t89 + t154 * t28 + t156 * t34;
-    const iiwa14_real_t t159 = t152 - t154 * t124 - t156 * t129 - t158 * t134;
+    const iiwa14_real_t t152 = t108 * t67 - t105 * t126 + IIWA14_C(0.42) * (t108 * t127 - t105 * t84);
+    const iiwa14_real_t t153 = t145 * t152 + t146 * t86 + t149 * t27 + t151 * t33;
+    const iiwa14_real_t t154 = t147 - t149 * t120 - t151 * t125 - t153 * t130;
     /* link j4: column of the mass matrix */
-    const iiwa14_real_t t160 = t112 * t52 - t109 * t110 + IIWA14_C(0.42) * (t112 * t117);
-    const iiwa14_real_t t161 = t150 * t160 + t151 * t79 + t154 * t58 + t156 * t62;
-    const iiwa14_real_t t162 = t161 + t158 * t72;
+    const iiwa14_real_t t155 = t108 * t50 - t105 * t106 + IIWA14_C(0.42) * (t108 * t113);
+    const iiwa14_real_t t156 = t145 * t155 + t146 * t76 + t149 * t56 + t151 * t60;
+    const iiwa14_real_t t157 = t156 + t153 * t70;
     /* link j3: column of the mass matrix */
-    const iiwa14_real_t t163 = t109 * t139 + t112 * t140 + IIWA14_C(0.42) * (t109 * t142 - t112 * t141);
-    const iiwa14_real_t t164 = t150 * t163 + t151 * t99 + t154 * t101 + t156 * t102;
-    const iiwa14_real_t t165 = t162 * t93 - (t164 + t158 * t103);
-    const iiwa14_real_t t166 = t159 + t162 * t138 + t165 * t147;
-    const iiwa14_real_t t167 = IIWA14_C(1.0) / t148;
-    const iiwa14_real_t t168 = t166 * t167;
+    const iiwa14_real_t t158 = t105 * t135 + t108 * t136 + IIWA14_C(0.42) * (t105 * t138 - t108 * t137);
+    const iiwa14_real_t t159 = t145 * t158 + t146 * t96 + t149 * t98 + t151 * t99;
+    const iiwa14_real_t t160 = t157 * t90 - (t159 + t153 * t100);
+    const iiwa14_real_t t161 = t154 + t157 * t134 + t160 * t143;
+    const iiwa14_real_t t162 = IIWA14_C(1.0) / t144;
+    const iiwa14_real_t t163 = t161 * t162;
     /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t169 = parameters[XX2] + (t108 - t114 + t119);
+    const iiwa14_real_t t164 = parameters[XX2] + (t104 - t110 + t115);
     /* link j2: inertia of it and all beyond */
-    const iiwa14_real_t t170 = t151 * (parameters[YY2] + t99 - t169) + (parameters[XY2]
-        + t163) * (IIWA14_C(2.0) * t150);
-    const iiwa14_real_t t171 = parameters[ZZ1] + (t169 + t151 * t170) + IIWA14_C(2.56e4) * parameters[IA1];
-    const iiwa14_real_t t172 = t154 * t5;
-    const iiwa14_real_t t173 = t156 * t33;
-    const iiwa14_real_t t174 = t158 * t71;
-    const iiwa14_real_t t175 = t171 + t154 * t172 + t156 * t173 + t158 * t174;
-    const iiwa14_real_t t176 = t162 * t92;
-    const iiwa14_real_t t177 = t165 * t146;
-    const iiwa14_real_t t178 = iiwa14_bounded(t175 - t162 * t176 - t165 * t177 - t166 * t168);
+    const iiwa14_real_t t165 = t146 * (parameters[YY2] + t96 - t164) + (parameters[XY2]
+        + t158) * (IIWA14_C(2.0) * t145);
+    const iiwa14_real_t t166 = parameters[ZZ1] + (t164 + t146 * t165) + IIWA14_C(2.56e4) * parameters[IA1];
+    const iiwa14_real_t t167 = t149 * t5;
+    const iiwa14_real_t t168 = t151 * t32;
+    const iiwa14_real_t t169 = t153 * t69;
+    const iiwa14_real_t t170 = t166 + t149 * t167 + t151 * t168 + t153 * t169;
+    const iiwa14_real_t t171 = t157 * t89;
+    const iiwa14_real_t t172 = t160 * t142;
+    const iiwa14_real_t t173 = t170 - t157 * t171 - t160 * t172 - t161 * t163;
+    if (!(t173 > IIWA14_C(1.0e-12))) {
+        iiwa14_zero(out, 7);
+        return IIWA14_STATUS_PIVOT;
+    }
+    const iiwa14_real_t t174 = iiwa14_min(t14 + IIWA14_C(-1.0e-9) * t13, t34 + IIWA14_C(-1.0e-9) * t25);
+    const iiwa14_real_t t175 = iiwa14_min(t174, t71 + IIWA14_C(-1.0e-9) * t51);
+    const iiwa14_real_t t176 = iiwa14_min(t175, t102 + IIWA14_C(-1.0e-9) * t97);
+    const iiwa14_real_t t177 = iiwa14_min(t176, t144 + IIWA14_C(-1.0e-9) * t116);
+    const iiwa14_real_t t178 = iiwa14_min(t177, t173 + IIWA14_C(-1.0e-9) * t166);
     if (!(t178 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }
-    const iiwa14_real_t t179 = t178 + IIWA14_C(-1.0e-9) * t171;
-    if (!(t179 > IIWA14_C(1.0e-12))) {
-        iiwa14_zero(out, 7);
-        return IIWA14_STATUS_PIVOT;
-    }
-    const iiwa14_real_t t180 = t150 * dq[0]; /* link j2: motion */
-    const iiwa14_real_t t181 = t112 * dq[1] - t109 * t180; /* link j3: motion */
-    const iiwa14_real_t t182 = t151 * dq[0]; /* link j2: motion */
-    const iiwa14_real_t t183 = dq[2] + t182; /* link j3: motion */
-    const iiwa14_real_t t184 = t78 * t181 + t76 * t183; /* link j4: motion */
-    const iiwa14_real_t t185 = t112 * t180 + t109 * dq[1]; /* link j3: motion */
-    const iiwa14_real_t t186 = t185 - dq[3]; /* link j4: motion */
-    const iiwa14_real_t t187 = t39 * t184 + t42 * t186; /* link j5: motion */
-    const iiwa14_real_t t188 = t39 * t186 - t42 * t184;
-    const iiwa14_real_t t189 = t187 * t188;
-    const iiwa14_real_t t190 = t181 * t185; /* link j3: motion */
-    const iiwa14_real_t t191 = dq[1] * t180; /* link j2: motion */
-    const iiwa14_real_t t192 = t191 + t190; /* link j4: motion */
-    const iiwa14_real_t t193 = t185 * t183; /* link j3: motion */
-    const iiwa14_real_t t194 = t180 * t182; /* link j2: motion */
-    const iiwa14_real_t t195 = dq[1] * t182;
-    const iiwa14_real_t t196 = IIWA14_C(-2.0) * t195;
-    const iiwa14_real_t t197 = t112 * t194 - t109 * t196; /* link j3: motion */
-    const iiwa14_real_t t198 = t197 - t193;
-    const iiwa14_real_t t199 = t198 - t193; /* link j4: motion */
-    const iiwa14_real_t t200 = t78 * t192 - t76 * t199;
-    const iiwa14_real_t t201 = t184 * t186;
-    const iiwa14_real_t t202 = t200 - t201;
-    const iiwa14_real_t t203 = t189 + t202; /* link j6: motion */
-    const iiwa14_real_t t204 = t76 * t181 - t78 * t183; /* link j4: motion */
-    const iiwa14_real_t t205 = t184 * t204;
-    const iiwa14_real_t t206 = t181 * t183; /* link j3: motion */
-    const iiwa14_real_t t207 = t109 * t194 + t112 * t196;
-    const iiwa14_real_t t208 = t206 + t207;
-    const iiwa14_real_t t209 = t205 + t208; /* link j5: motion */
-    const iiwa14_real_t t210 = t76 * t192 + t78 * t199; /* link j4: motion */
-    const iiwa14_real_t t211 = t204 * t186;
-    const iiwa14_real_t t212 = t210 - t211;
-    const iiwa14_real_t t213 = t212 - t211; /* link j5: motion */
-    const iiwa14_real_t t214 = t42 * t209 + t39 * t213;
-    const iiwa14_real_t t215 = t204 - dq[4];
-    const iiwa14_real_t t216 = t188 * t215;
-    const iiwa14_real_t t217 = t216 + t214;
-    const iiwa14_real_t t218 = t216 + t217; /* link j6: motion */
-    const iiwa14_real_t t219 = t22 * t203 - t18 * t218;
-    const iiwa14_real_t t220 = t18 * t215 - t22 * t187;
-    const iiwa14_real_t t221 = dq[5] + t188;
-    const iiwa14_real_t t222 = t220 * t221;
-    const iiwa14_real_t t223 = t222 + t219;
-    const iiwa14_real_t t224 = t222 + t223; /* link j7: motion */
-    const iiwa14_real_t t225 = t39 * t209 - t42 * t213; /* link j5: motion */
-    const iiwa14_real_t t226 = t187 * t215;
-    const iiwa14_real_t t227 = t225 - t226;
-    const iiwa14_real_t t228 = t18 * t187 + t22 * t215; /* link j6: motion */
-    const iiwa14_real_t t229 = t228 * t220;
-    const iiwa14_real_t t230 = t229 + t227; /* link j7: motion */
-    const iiwa14_real_t t231 = t2 * t224 - t1 * t230;
-    const iiwa14_real_t t232 = t2 * t221 - t1 * t228;
-    const iiwa14_real_t t233 = t220 - dq[6];
-    const iiwa14_real_t t234 = t232 * t233;
-    const iiwa14_real_t t235 = t231 - t234;
-    const iiwa14_real_t t236 = t2 * t230 + t1 * t224;
-    const iiwa14_real_t t237 = t2 * t228 + t1 * t221;
-    const iiwa14_real_t t238 = t237 * t233;
-    const iiwa14_real_t t239 = t236 - t238;
-    const iiwa14_real_t t240 = t239 - t238; /* link j7: force and moment */
-    const iiwa14_real_t t241 = parameters[XX7] * t235 + t234 * (parameters[YY7] - parameters[ZZ7])
-        - parameters[XY7] * t240;
-    const iiwa14_real_t t242 = t18 * t203 + t22 * t218; /* link j6: motion */
-    const iiwa14_real_t t243 = t228 * t221;
-    const iiwa14_real_t t244 = t243 - t242;
-    const iiwa14_real_t t245 = t237 * t232; /* link j7: motion */
-    const iiwa14_real_t t246 = t245 + t244; /* link j7: force and moment */
-    const iiwa14_real_t t247 = t232 * t232; /* link j7: motion */
-    const iiwa14_real_t t248 = t233 * t233;
-    const iiwa14_real_t t249 = t180 * t180; /* link j2: motion */
-    const iiwa14_real_t t250 = dq[1] * dq[1];
-    const iiwa14_real_t t251 = IIWA14_C(9.81) * t151;
-    const iiwa14_real_t t252 = t251 + IIWA14_C(-0.42) * (t249 + t250); /* link j3: motion */
-    const iiwa14_real_t t253 = IIWA14_C(9.81) * t150; /* link j2: motion */
-    const iiwa14_real_t t254 = t253 + IIWA14_C(0.42) * t194; /* link j3: motion */
-    const iiwa14_real_t t255 = IIWA14_C(0.84) * t195;
-    const iiwa14_real_t t256 = t109 * t254 - t112 * t255;
-    const iiwa14_real_t t257 = t78 * t256 - t76 * t252; /* link j4: motion */
-    const iiwa14_real_t t258 = t257 + IIWA14_C(0.4) * t209; /* link j5: motion */
-    const iiwa14_real_t t259 = t112 * t254 + t109 * t255; /* link j3: motion */
-    const iiwa14_real_t t260 = t259 + IIWA14_C(0.4) * t213; /* link j5: motion */
-    const iiwa14_real_t t261 = t42 * t260 - t39 * t258;
-    const iiwa14_real_t t262 = t184 * t184; /* link j4: motion */
-    const iiwa14_real_t t263 = t186 * t186;
-    const iiwa14_real_t t264 = t262 + t263; /* link j5: motion */
-    const iiwa14_real_t t265 = t78 * t252 + t76 * t256; /* link j4: motion */
-    const iiwa14_real_t t266 = IIWA14_C(0.4) * t264 - t265; /* link j5: motion */
-    const iiwa14_real_t t267 = t18 * t261 + t22 * t266; /* link j6: motion */
-    const iiwa14_real_t t268 = t267 + IIWA14_C(-0.126) * t230; /* link j7: motion */
-    const iiwa14_real_t t269 = t42 * t258 + t39 * t260; /* link j5: motion */
-    const iiwa14_real_t t270 = t269 + IIWA14_C(-0.126) * t224; /* link j7: motion */
-    const iiwa14_real_t t271 = t1 * t268 - t2 * t270;
-    const iiwa14_real_t t272 = t228 * t228; /* link j6: motion */
-    const iiwa14_real_t t273 = t221 * t221;
-    const iiwa14_real_t t274 = t272 + t273; /* link j7: motion */
-    const iiwa14_real_t t275 = t22 * t261 - t18 * t266; /* link j6: motion */
-    const iiwa14_real_t t276 = IIWA14_C(-0.126) * t274 + t275; /* link j7: motion */
+    const iiwa14_real_t t179 = t145 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t180 = t108 * dq[1] - t105 * t179; /* link j3: motion */
+    const iiwa14_real_t t181 = t146 * dq[0]; /* link j2: motion */
+    const iiwa14_real_t t182 = dq[2] + t181; /* link j3: motion */
+    const iiwa14_real_t t183 = t75 * t180 + t73 * t182; /* link j4: motion */
+    const iiwa14_real_t t184 = t108 * t179 + t105 * dq[1]; /* link j3: motion */
+    const iiwa14_real_t t185 = t184 - dq[3]; /* link j4: motion */
+    const iiwa14_real_t t186 = t37 * t183 + t40 * t185; /* link j5: motion */
+    const iiwa14_real_t t187 = t37 * t185 - t40 * t183;
+    const iiwa14_real_t t188 = t186 * t187;
+    const iiwa14_real_t t189 = t180 * t184; /* link j3: motion */
+    const iiwa14_real_t t190 = dq[1] * t179; /* link j2: motion */
+    const iiwa14_real_t t191 = t190 + t189; /* link j4: motion */
+    const iiwa14_real_t t192 = t184 * t182; /* link j3: motion */
+    const iiwa14_real_t t193 = t179 * t181; /* link j2: motion */
+    const iiwa14_real_t t194 = dq[1] * t181;
+    const iiwa14_real_t t195 = IIWA14_C(-2.0) * t194;
+    const iiwa14_real_t t196 = t108 * t193 - t105 * t195; /* link j3: motion */
+    const iiwa14_real_t t197 = t196 - t192;
+    const iiwa14_real_t t198 = t197 - t192; /* link j4: motion */
+    const iiwa14_real_t t199 = t75 * t191 - t73 * t198;
+    const iiwa14_real_t t200 = t183 * t185;
+    const iiwa14_real_t t201 = t199 - t200;
+    const iiwa14_real_t t202 = t188 + t201; /* link j6: motion */
+    const iiwa14_real_t t203 = t73 * t180 - t75 * t182; /* link j4: motion */
+    const iiwa14_real_t t204 = t183 * t203;
+    const iiwa14_real_t t205 = t180 * t182; /* link j3: motion */
+    const iiwa14_real_t t206 = t105 * t193 + t108 * t195;
+    const iiwa14_real_t t207 = t205 + t206;
+    const iiwa14_real_t t208 = t204 + t207; /* link j5: motion */
+    const iiwa14_real_t t209 = t73 * t191 + t75 * t198; /* link j4: motion */
+    const iiwa14_real_t t210 = t203 * t185;
+    const iiwa14_real_t t211 = t209 - t210;
+    const iiwa14_real_t t212 = t211 - t210; /* link j5: motion */
+    const iiwa14_real_t t213 = t40 * t208 + t37 * t212;
+    const iiwa14_real_t t214 = t203 - dq[4];
+    const iiwa14_real_t t215 = t187 * t214;
+    const iiwa14_real_t t216 = t215 + t213;
+    const iiwa14_real_t t217 = t215 + t216; /* link j6: motion */
+    const iiwa14_real_t t218 = t21 * t202 - t17 * t217;
+    const iiwa14_real_t t219 = t17 * t214 - t21 * t186;
+    const iiwa14_real_t t220 = dq[5] + t187;
+    const iiwa14_real_t t221 = t219 * t220;
+    const iiwa14_real_t t222 = t221 + t218;
+    const iiwa14_real_t t223 = t221 + t222; /* link j7: motion */
+    const iiwa14_real_t t224 = t37 * t208 - t40 * t212; /* link j5: motion */
+    const iiwa14_real_t t225 = t186 * t214;
+    const iiwa14_real_t t226 = t224 - t225;
+    const iiwa14_real_t t227 = t17 * t186 + t21 * t214; /* link j6: motion */
+    const iiwa14_real_t t228 = t227 * t219;
+    const iiwa14_real_t t229 = t228 + t226; /* link j7: motion */
+    const iiwa14_real_t t230 = t2 * t223 - t1 * t229;
+    const iiwa14_real_t t231 = t2 * t220 - t1 * t227;
+    const iiwa14_real_t t232 = t219 - dq[6];
+    const iiwa14_real_t t233 = t231 * t232;
+    const iiwa14_real_t t234 = t230 - t233;
+    const iiwa14_real_t t235 = t2 * t229 + t1 * t223;
+    const iiwa14_real_t t236 = t2 * t227 + t1 * t220;
+    const iiwa14_real_t t237 = t236 * t232;
+    const iiwa14_real_t t238 = t235 - t237;
+    const iiwa14_real_t t239 = t238 - t237; /* link j7: force and moment */
+    const iiwa14_real_t t240 = parameters[XX7] * t234 + t233 * (parameters[YY7] - parameters[ZZ7])
+        - parameters[XY7] * t239;
+    const iiwa14_real_t t241 = t17 * t202 + t21 * t217; /* link j6: motion */
+    const iiwa14_real_t t242 = t227 * t220;
+    const iiwa14_real_t t243 = t242 - t241;
+    const iiwa14_real_t t244 = t236 * t231; /* link j7: motion */
+    const iiwa14_real_t t245 = t244 + t243; /* link j7: force and moment */
+    const iiwa14_real_t t246 = t231 * t231; /* link j7: motion */
+    const iiwa14_real_t t247 = t232 * t232;
+    const iiwa14_real_t t248 = t179 * t179; /* link j2: motion */
+    const iiwa14_real_t t249 = dq[1] * dq[1];
+    const iiwa14_real_t t250 = IIWA14_C(9.81) * t146;
+    const iiwa14_real_t t251 = t250 + IIWA14_C(-0.42) * (t248 + t249); /* link j3: motion */
+    const iiwa14_real_t t252 = IIWA14_C(9.81) * t145; /* link j2: motion */
+    const iiwa14_real_t t253 = t252 + IIWA14_C(0.42) * t193; /* link j3: motion */
+    const iiwa14_real_t t254 = IIWA14_C(0.84) * t194;
+    const iiwa14_real_t t255 = t105 * t253 - t108 * t254;
+    const iiwa14_real_t t256 = t75 * t255 - t73 * t251; /* link j4: motion */
+    const iiwa14_real_t t257 = t256 + IIWA14_C(0.4) * t208; /* link j5: motion */
+    const iiwa14_real_t t258 = t108 * t253 + t105 * t254; /* link j3: motion */
+    const iiwa14_real_t t259 = t258 + IIWA14_C(0.4) * t212; /* link j5: motion */
+    const iiwa14_real_t t260 = t40 * t259 - t37 * t257;
+    const iiwa14_real_t t261 = t183 * t183; /* link j4: motion */
+    const iiwa14_real_t t262 = t185 * t185;
+    const iiwa14_real_t t263 = t261 + t262; /* link j5: motion */
+    const iiwa14_real_t t264 = t75 * t251 + t73 * t255; /* link j4: motion */
+    const iiwa14_real_t t265 = IIWA14_C(0.4) * t263 - t264; /* link j5: motion */
+    const iiwa14_real_t t266 = t17 * t260 + t21 * t265; /* link j6: motion */
+    const iiwa14_real_t t267 = t266 + IIWA14_C(-0.126) * t229; /* link j7: motion */
+    const iiwa14_real_t t268 = t40 * t257 + t37 * t259; /* link j5: motion */
+    const iiwa14_real_t t269 = t268 + IIWA14_C(-0.126) * t223; /* link j7: motion */
+    const iiwa14_real_t t270 = t1 * t267 - t2 * t269;
+    const iiwa14_real_t t271 = t227 * t227; /* link j6: motion */
+    const iiwa14_real_t t272 = t220 * t220;
+    const iiwa14_real_t t273 = t271 + t272; /* link j7: motion */
+    const iiwa14_real_t t274 = t21 * t260 - t17 * t265; /* link j6: motion */
+    const iiwa14_real_t t275 = IIWA14_C(-0.126) * t273 + t274; /* link j7: motion */
     /* link j7: force and moment */
-    const iiwa14_real_t t277 = t241 + parameters[XZ7] * t246 + (t247 - t248) * parameters[YZ7]
-        + (parameters[MY7] * t276 + parameters[MZ7] * t271);
-    const iiwa14_real_t t278 = t235 - t234;
-    const iiwa14_real_t t279 = parameters[XY7] * t278 - (parameters[YY7] * t239 + t238 * (parameters[XX7]
+    const iiwa14_real_t t276 = t240 + parameters[XZ7] * t245 + (t246 - t247) * parameters[YZ7]
+        + (parameters[MY7] * t275 + parameters[MZ7] * t270);
+    const iiwa14_real_t t277 = t234 - t233;
+    const iiwa14_real_t t278 = parameters[XY7] * t277 - (parameters[YY7] * t238 + t237 * (parameters[XX7]
         - parameters[ZZ7]));
-    const iiwa14_real_t t280 = t244 - t245;
-    const iiwa14_real_t t281 = t237 * t237; /* link j7: motion */
-    const iiwa14_real_t t282 = t2 * t268 + t1 * t270;
+    const iiwa14_real_t t279 = t243 - t244;
+    const iiwa14_real_t t280 = t236 * t236; /* link j7: motion */
+    const iiwa14_real_t t281 = t2 * t267 + t1 * t269;
     /* link j7: force and moment */
-    const iiwa14_real_t t283 = t279 + parameters[YZ7] * t280 - (t281 - t248) * parameters[XZ7]
-        + (parameters[MZ7] * t282 - parameters[MX7] * t276);
-    const iiwa14_real_t t284 = (t247 + t248) * parameters[MX7] + parameters[MY7] * t280
-        + parameters[MZ7] * t236;
-    const iiwa14_real_t t285 = parameters[M7] * t282 - t284;
-    const iiwa14_real_t t286 = parameters[MX7] * t246 - (t281 + t248) * parameters[MY7]
-        - parameters[MZ7] * t231;
-    const iiwa14_real_t t287 = t286 - parameters[M7] * t271;
-    const iiwa14_real_t t288 = t1 * t285 + t2 * t287; /* link j7: what it passes on */
-    const iiwa14_real_t t289 = t243 + t244; /* link j7: motion */
+    const iiwa14_real_t t282 = t278 + parameters[YZ7] * t279 - (t280 - t247) * parameters[XZ7]
+        + (parameters[MZ7] * t281 - parameters[MX7] * t275);
+    const iiwa14_real_t t283 = (t246 + t247) * parameters[MX7] + parameters[MY7] * t279
+        + parameters[MZ7] * t235;
+    const iiwa14_real_t t284 = parameters[M7] * t281 - t283;
+    const iiwa14_real_t t285 = parameters[MX7] * t245 - (t280 + t247) * parameters[MY7]
+        - parameters[MZ7] * t230;
+    const iiwa14_real_t t286 = t285 - parameters[M7] * t270;
+    const iiwa14_real_t t287 = t1 * t284 + t2 * t286; /* link j7: what it passes on */
+    const iiwa14_real_t t288 = t242 + t243; /* link j7: motion */
     /* link j6: force and moment */
-    const iiwa14_real_t t290 = parameters[XX6] * t223 - t222 * (parameters[YY6] - parameters[ZZ6])
-        - parameters[XY6] * t289;
-    const iiwa14_real_t t291 = t227 - t229; /* link j7: motion */
-    const iiwa14_real_t t292 = t220 * t220; /* link j6: motion */
+    const iiwa14_real_t t289 = parameters[XX6] * t222 - t221 * (parameters[YY6] - parameters[ZZ6])
+        - parameters[XY6] * t288;
+    const iiwa14_real_t t290 = t226 - t228; /* link j7: motion */
+    const iiwa14_real_t t291 = t219 * t219; /* link j6: motion */
     /* link j6: force and moment */
-    const iiwa14_real_t t293 = t290 - parameters[XZ6] * t291 + (t292 - t273) * parameters[YZ6]
-        + (parameters[MY6] * t269 + parameters[MZ6] * t275);
+    const iiwa14_real_t t292 = t289 - parameters[XZ6] * t290 + (t291 - t272) * parameters[YZ6]
+        + (parameters[MY6] * t268 + parameters[MZ6] * t274);
     /* link j7: what it passes on */
-    const iiwa14_real_t t294 = t293 + (t2 * t277 - t1 * t283 - IIWA14_C(0.126) * t288);
+    const iiwa14_real_t t293 = t292 + (t2 * t276 - t1 * t282 - IIWA14_C(0.126) * t287);
     /* link j7: force and moment */
-    const iiwa14_real_t t295 = parameters[YZ7] * t236 - (parameters[ZZ7] * t244 + t245 * t7)
-        - parameters[XZ7] * t231;
-    const iiwa14_real_t t296 = t295 + (t247 - t281) * parameters[XY7] + (parameters[MX7] * t271
-        + parameters[MY7] * t282);
+    const iiwa14_real_t t294 = parameters[YZ7] * t235 - (parameters[ZZ7] * t243 + t244 * t7)
+        - parameters[XZ7] * t230;
+    const iiwa14_real_t t295 = t294 + (t246 - t280) * parameters[XY7] + (parameters[MX7] * t270
+        + parameters[MY7] * t281);
     /* link j6: force and moment */
-    const iiwa14_real_t t297 = parameters[XY6] * t224 - (parameters[YY6] * t244 + t243 * (parameters[ZZ6]
+    const iiwa14_real_t t296 = parameters[XY6] * t223 - (parameters[YY6] * t243 + t242 * (parameters[ZZ6]
         - parameters[XX6]));
-    const iiwa14_real_t t298 = t297 - parameters[YZ6] * t230 + (t273 - t272) * parameters[XZ6]
-        + (parameters[MZ6] * t267 - parameters[MX6] * t269);
-    const iiwa14_real_t t299 = t298 + t296; /* link j7: what it passes on */
-    const iiwa14_real_t t300 = t227 - t226; /* link j6: motion */
+    const iiwa14_real_t t297 = t296 - parameters[YZ6] * t229 + (t272 - t271) * parameters[XZ6]
+        + (parameters[MZ6] * t266 - parameters[MX6] * t268);
+    const iiwa14_real_t t298 = t297 + t295; /* link j7: what it passes on */
+    const iiwa14_real_t t299 = t226 - t225; /* link j6: motion */
     /* link j5: force and moment */
-    const iiwa14_real_t t301 = parameters[XX5] * t217 - t216 * (parameters[YY5] - parameters[ZZ5])
-        + parameters[XY5] * t300;
-    const iiwa14_real_t t302 = t202 - t189; /* link j6: motion */
-    const iiwa14_real_t t303 = t188 * t188; /* link j5: motion */
-    const iiwa14_real_t t304 = t215 * t215;
+    const iiwa14_real_t t300 = parameters[XX5] * t216 - t215 * (parameters[YY5] - parameters[ZZ5])
+        + parameters[XY5] * t299;
+    const iiwa14_real_t t301 = t201 - t188; /* link j6: motion */
+    const iiwa14_real_t t302 = t187 * t187; /* link j5: motion */
+    const iiwa14_real_t t303 = t214 * t214;
     /* link j5: force and moment */
-    const iiwa14_real_t t305 = t301 + parameters[XZ5] * t302 + (t304 - t303) * parameters[YZ5]
-        + (parameters[MY5] * t266 + parameters[MZ5] * t269);
-    const iiwa14_real_t t306 = t305 + (t22 * t299 - t18 * t294); /* link j6: what it passes on */
-    const iiwa14_real_t t307 = t1 * t287 - t2 * t285; /* link j7: what it passes on */
+    const iiwa14_real_t t304 = t300 + parameters[XZ5] * t301 + (t303 - t302) * parameters[YZ5]
+        + (parameters[MY5] * t265 + parameters[MZ5] * t268);
+    const iiwa14_real_t t305 = t304 + (t21 * t298 - t17 * t293); /* link j6: what it passes on */
+    const iiwa14_real_t t306 = t1 * t286 - t2 * t284; /* link j7: what it passes on */
     /* link j6: force and moment */
-    const iiwa14_real_t t308 = parameters[YZ6] * t242 - (parameters[ZZ6] * t227 + t229 * (parameters[XX6]
+    const iiwa14_real_t t307 = parameters[YZ6] * t241 - (parameters[ZZ6] * t226 + t228 * (parameters[XX6]
         - parameters[YY6]));
-    const iiwa14_real_t t309 = t308 + parameters[XZ6] * t219 + (t272 - t292) * parameters[XY6]
-        - (parameters[MX6] * t275 + parameters[MY6] * t267);
+    const iiwa14_real_t t308 = t307 + parameters[XZ6] * t218 + (t271 - t291) * parameters[XY6]
+        - (parameters[MX6] * t274 + parameters[MY6] * t266);
     /* link j7: what it passes on */
-    const iiwa14_real_t t310 = t309 + (t1 * t277 + t2 * t283 + IIWA14_C(-0.126) * t307);
+    const iiwa14_real_t t309 = t308 + (t1 * t276 + t2 * t282 + IIWA14_C(-0.126) * t306);
     /* link j5: force and moment */
-    const iiwa14_real_t t311 = parameters[YY5] * t227 + t226 * (parameters[XX5] - parameters[ZZ5])
-        + parameters[XY5] * t218;
-    const iiwa14_real_t t312 = t187 * t187; /* link j5: motion */
+    const iiwa14_real_t t310 = parameters[YY5] * t226 + t225 * (parameters[XX5] - parameters[ZZ5])
+        + parameters[XY5] * t217;
+    const iiwa14_real_t t311 = t186 * t186; /* link j5: motion */
     /* link j5: force and moment */
-    const iiwa14_real_t t313 = parameters[MZ5] * t261 + parameters[MX5] * t266 - (t311
-        + parameters[YZ5] * t203 + (t312 - t304) * parameters[XZ5]);
-    const iiwa14_real_t t314 = t313 + t310; /* link j6: what it passes on */
+    const iiwa14_real_t t312 = parameters[MZ5] * t260 + parameters[MX5] * t265 - (t310
+        + parameters[YZ5] * t202 + (t311 - t303) * parameters[XZ5]);
+    const iiwa14_real_t t313 = t312 + t309; /* link j6: what it passes on */
     /* link j6: force and moment */
-    const iiwa14_real_t t315 = (t292 + t273) * parameters[MX6] - parameters[MY6] * t230
-        - parameters[MZ6] * t242;
-    const iiwa14_real_t t316 = t315 - parameters[M6] * t267 + t307; /* link j7: what it passes on */
+    const iiwa14_real_t t314 = (t291 + t272) * parameters[MX6] - parameters[MY6] * t229
+        - parameters[MZ6] * t241;
+    const iiwa14_real_t t315 = t314 - parameters[M6] * t266 + t306; /* link j7: what it passes on */
     /* link j6: force and moment */
-    const iiwa14_real_t t317 = parameters[M6] * t275 + (parameters[MX6] * t291 + t274 * parameters[MY6]
-        + parameters[MZ6] * t219);
+    const iiwa14_real_t t316 = parameters[M6] * t274 + (parameters[MX6] * t290 + t273 * parameters[MY6]
+        + parameters[MZ6] * t218);
     /* link j7: force and moment */
-    const iiwa14_real_t t318 = parameters[MX7] * t240 + parameters[MY7] * t278 - (t281
-        + t247) * parameters[MZ7];
-    const iiwa14_real_t t319 = t317 + (parameters[M7] * t276 + t318); /* link j7: what it passes on */
+    const iiwa14_real_t t317 = parameters[MX7] * t239 + parameters[MY7] * t277 - (t280
+        + t246) * parameters[MZ7];
+    const iiwa14_real_t t318 = t316 + (parameters[M7] * t275 + t317); /* link j7: what it passes on */
     /* link j5: force and moment */
-    const iiwa14_real_t t320 = (t303 + t304) * parameters[MX5] - parameters[MY5] * t203
-        + parameters[MZ5] * t225;
+    const iiwa14_real_t t319 = (t302 + t303) * parameters[MX5] - parameters[MY5] * t202
+        + parameters[MZ5] * t224;
     /* link j6: what it passes on */
-    const iiwa14_real_t t321 = parameters[M5] * t261 - t320 + (t22 * t319 - t18 * t316);
+    const iiwa14_real_t t320 = parameters[M5] * t260 - t319 + (t21 * t318 - t17 * t315);
     /* link j6: force and moment */
-    const iiwa14_real_t t322 = parameters[MX6] * t289 + parameters[MY6] * t224 - (t272
-        + t292) * parameters[MZ6];
+    const iiwa14_real_t t321 = parameters[MX6] * t288 + parameters[MY6] * t223 - (t271
+        + t291) * parameters[MZ6];
     /* link j5: force and moment */
-    const iiwa14_real_t t323 = parameters[MZ5] * t214 - (parameters[MX5] * t302 + (t312
-        + t304) * parameters[MY5]);
+    const iiwa14_real_t t322 = parameters[MZ5] * t213 - (parameters[MX5] * t301 + (t311
+        + t303) * parameters[MY5]);
     /* link j6: what it passes on */
-    const iiwa14_real_t t324 = parameters[M5] * t269 + t323 + (parameters[M6] * t269 + t322 + t288);
-    const iiwa14_real_t t325 = t42 * t321 + t39 * t324; /* link j5: what it passes on */
-    const iiwa14_real_t t326 = t202 - t201; /* link j5: motion */
+    const iiwa14_real_t t323 = parameters[M5] * t268 + t322 + (parameters[M6] * t268 + t321 + t287);
+    const iiwa14_real_t t324 = t40 * t320 + t37 * t323; /* link j5: what it passes on */
+    const iiwa14_real_t t325 = t201 - t200; /* link j5: motion */
     /* link j4: force and moment */
-    const iiwa14_real_t t327 = parameters[XX4] * t212 + t211 * (parameters[YY4] - parameters[ZZ4])
-        + parameters[XY4] * t326;
-    const iiwa14_real_t t328 = t205 - t208; /* link j5: motion */
-    const iiwa14_real_t t329 = t204 * t204; /* link j4: motion */
+    const iiwa14_real_t t326 = parameters[XX4] * t211 + t210 * (parameters[YY4] - parameters[ZZ4])
+        + parameters[XY4] * t325;
+    const iiwa14_real_t t327 = t204 - t207; /* link j5: motion */
+    const iiwa14_real_t t328 = t203 * t203; /* link j4: motion */
     /* link j4: force and moment */
-    const iiwa14_real_t t330 = t327 + parameters[XZ4] * t328 + (t263 - t329) * parameters[YZ4]
-        + (parameters[MY4] * t259 + parameters[MZ4] * t265);
+    const iiwa14_real_t t329 = t326 + parameters[XZ4] * t327 + (t262 - t328) * parameters[YZ4]
+        + (parameters[MY4] * t258 + parameters[MZ4] * t264);
     /* link j5: what it passes on */
-    const iiwa14_real_t t331 = t330 + (t39 * t306 + t42 * t314 + IIWA14_C(0.4) * t325);
+    const iiwa14_real_t t330 = t329 + (t37 * t305 + t40 * t313 + IIWA14_C(0.4) * t324);
     /* link j5: force and moment */
-    const iiwa14_real_t t332 = parameters[ZZ5] * t202 - t189 * (parameters[YY5] - parameters[XX5])
-        + parameters[YZ5] * t225;
-    const iiwa14_real_t t333 = t332 + parameters[XZ5] * t214 + (t303 - t312) * parameters[XY5]
-        + (parameters[MY5] * t261 - parameters[MX5] * t269);
-    const iiwa14_real_t t334 = t333 + (t22 * t294 + t18 * t299); /* link j6: what it passes on */
+    const iiwa14_real_t t331 = parameters[ZZ5] * t201 - t188 * (parameters[YY5] - parameters[XX5])
+        + parameters[YZ5] * t224;
+    const iiwa14_real_t t332 = t331 + parameters[XZ5] * t213 + (t302 - t311) * parameters[XY5]
+        + (parameters[MY5] * t260 - parameters[MX5] * t268);
+    const iiwa14_real_t t333 = t332 + (t21 * t293 + t17 * t298); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const iiwa14_real_t t335 = parameters[YY4] * t202 + t201 * (parameters[XX4] - parameters[ZZ4])
-        + parameters[XY4] * t213;
-    const iiwa14_real_t t336 = t335 - parameters[YZ4] * t209 + (t262 - t263) * parameters[XZ4]
-        + (parameters[MZ4] * t257 - parameters[MX4] * t259);
-    const iiwa14_real_t t337 = t336 + t334; /* link j5: what it passes on */
+    const iiwa14_real_t t334 = parameters[YY4] * t201 + t200 * (parameters[XX4] - parameters[ZZ4])
+        + parameters[XY4] * t212;
+    const iiwa14_real_t t335 = t334 - parameters[YZ4] * t208 + (t261 - t262) * parameters[XZ4]
+        + (parameters[MZ4] * t256 - parameters[MX4] * t258);
+    const iiwa14_real_t t336 = t335 + t333; /* link j5: what it passes on */
     /* link j3: force and moment */
-    const iiwa14_real_t t338 = parameters[XX3] * t198 + t193 * (parameters[YY3] - parameters[ZZ3])
-        + parameters[XY3] * (t206 + t208);
-    const iiwa14_real_t t339 = t191 - t190; /* link j4: motion */
-    const iiwa14_real_t t340 = t185 * t185; /* link j3: motion */
-    const iiwa14_real_t t341 = t183 * t183;
+    const iiwa14_real_t t337 = parameters[XX3] * t197 + t192 * (parameters[YY3] - parameters[ZZ3])
+        + parameters[XY3] * (t205 + t207);
+    const iiwa14_real_t t338 = t190 - t189; /* link j4: motion */
+    const iiwa14_real_t t339 = t184 * t184; /* link j3: motion */
+    const iiwa14_real_t t340 = t182 * t182;
     /* link j3: force and moment */
-    const iiwa14_real_t t342 = (t340 - t341) * parameters[YZ3] - (t338 + parameters[XZ3] * t339)
-        + (t252 * parameters[MY3] - parameters[MZ3] * t259);
-    const iiwa14_real_t t343 = t342 + (t76 * t337 - t78 * t331); /* link j4: what it passes on */
-    const iiwa14_real_t t344 = t42 * t324 - t39 * t321; /* link j5: what it passes on */
+    const iiwa14_real_t t341 = (t339 - t340) * parameters[YZ3] - (t337 + parameters[XZ3] * t338)
+        + (t251 * parameters[MY3] - parameters[MZ3] * t258);
+    const iiwa14_real_t t342 = t341 + (t73 * t336 - t75 * t330); /* link j4: what it passes on */
+    const iiwa14_real_t t343 = t40 * t323 - t37 * t320; /* link j5: what it passes on */
     /* link j4: force and moment */
-    const iiwa14_real_t t345 = parameters[ZZ4] * t208 + t205 * (parameters[XX4] - parameters[YY4])
-        - parameters[YZ4] * t200;
-    const iiwa14_real_t t346 = t345 - parameters[XZ4] * t210 + (t262 - t329) * parameters[XY4]
-        + (parameters[MX4] * t265 + parameters[MY4] * t257);
+    const iiwa14_real_t t344 = parameters[ZZ4] * t207 + t204 * (parameters[XX4] - parameters[YY4])
+        - parameters[YZ4] * t199;
+    const iiwa14_real_t t345 = t344 - parameters[XZ4] * t209 + (t261 - t328) * parameters[XY4]
+        + (parameters[MX4] * t264 + parameters[MY4] * t256);
     /* link j5: what it passes on */
-    const iiwa14_real_t t347 = t346 + (t42 * t306 - t39 * t314 + IIWA14_C(0.4) * t344);
+    const iiwa14_real_t t346 = t345 + (t40 * t305 - t37 * t313 + IIWA14_C(0.4) * t343);
     /* link j3: force and moment */
-    const iiwa14_real_t t348 = parameters[YY3] * t208 - t206 * (parameters[XX3] - parameters[ZZ3])
-        + parameters[XY3] * t199;
-    const iiwa14_real_t t349 = t181 * t181; /* link j3: motion */
+    const iiwa14_real_t t347 = parameters[YY3] * t207 - t205 * (parameters[XX3] - parameters[ZZ3])
+        + parameters[XY3] * t198;
+    const iiwa14_real_t t348 = t180 * t180; /* link j3: motion */
     /* link j3: force and moment */
-    const iiwa14_real_t t350 = t348 + parameters[YZ3] * t192 + (t349 - t341) * parameters[XZ3]
-        + (parameters[MZ3] * t256 + t252 * parameters[MX3]);
-    const iiwa14_real_t t351 = t350 + t347; /* link j4: what it passes on */
+    const iiwa14_real_t t349 = t347 + parameters[YZ3] * t191 + (t348 - t340) * parameters[XZ3]
+        + (parameters[MZ3] * t255 + t251 * parameters[MX3]);
+    const iiwa14_real_t t350 = t349 + t346; /* link j4: what it passes on */
     /* link j4: force and moment */
-    const iiwa14_real_t t352 = (t329 + t263) * parameters[MX4] + parameters[MY4] * t209
-        + parameters[MZ4] * t200;
+    const iiwa14_real_t t351 = (t328 + t262) * parameters[MX4] + parameters[MY4] * t208
+        + parameters[MZ4] * t199;
     /* link j5: force and moment */
-    const iiwa14_real_t t353 = parameters[MX5] * t300 - parameters[MY5] * t218 - (t312
-        + t303) * parameters[MZ5];
+    const iiwa14_real_t t352 = parameters[MX5] * t299 - parameters[MY5] * t217 - (t311
+        + t302) * parameters[MZ5];
     /* link j6: what it passes on */
-    const iiwa14_real_t t354 = t353 - parameters[M5] * t266 + (t22 * t316 + t18 * t319);
+    const iiwa14_real_t t353 = t352 - parameters[M5] * t265 + (t21 * t315 + t17 * t318);
     /* link j4: force and moment */
-    const iiwa14_real_t t355 = parameters[M4] * t265 + (parameters[MZ4] * t210 - (parameters[MX4] * t328
-        + t264 * parameters[MY4]));
+    const iiwa14_real_t t354 = parameters[M4] * t264 + (parameters[MZ4] * t209 - (parameters[MX4] * t327
+        + t263 * parameters[MY4]));
     /* link j4: what it passes on */
-    const iiwa14_real_t t356 = t78 * (parameters[M4] * t257 + t352 + t344) + t76 * (t355 + t354);
+    const iiwa14_real_t t355 = t75 * (parameters[M4] * t256 + t351 + t343) + t73 * (t354 + t353);
     /* link j3: force and moment */
-    const iiwa14_real_t t357 = (t340 + t341) * parameters[MX3] - parameters[MY3] * t192
-        + parameters[MZ3] * t207;
-    const iiwa14_real_t t358 = parameters[M3] * t256 + t357 + t356; /* link j4: what it passes on */
+    const iiwa14_real_t t356 = (t339 + t340) * parameters[MX3] - parameters[MY3] * t191
+        + parameters[MZ3] * t206;
+    const iiwa14_real_t t357 = parameters[M3] * t255 + t356 + t355; /* link j4: what it passes on */
     /* link j4: force and moment */
-    const iiwa14_real_t t359 = parameters[MY4] * t213 - parameters[MX4] * t326 + (t262
-        + t329) * parameters[MZ4];
+    const iiwa14_real_t t358 = parameters[MY4] * t212 - parameters[MX4] * t325 + (t261
+        + t328) * parameters[MZ4];
     /* link j3: force and moment */
-    const iiwa14_real_t t360 = parameters[MX3] * t339 + (t349 + t341) * parameters[MY3]
-        - parameters[MZ3] * t197;
+    const iiwa14_real_t t359 = parameters[MX3] * t338 + (t348 + t340) * parameters[MY3]
+        - parameters[MZ3] * t196;
     /* link j4: what it passes on */
-    const iiwa14_real_t t361 = parameters[M3] * t259 - t360 + (parameters[M4] * t259 + t359 + t325);
+    const iiwa14_real_t t360 = parameters[M3] * t258 - t359 + (parameters[M4] * t258 + t358 + t324);
     /* link j3: what it passes on */
-    const iiwa14_real_t t362 = t109 * t343 + t112 * t351 + IIWA14_C(0.42) * (t112 * t358 - t109 * t361);
+    const iiwa14_real_t t361 = t105 * t342 + t108 * t350 + IIWA14_C(0.42) * (t108 * t357 - t105 * t360);
     /* link j2: force and moment */
-    const iiwa14_real_t t363 = t195 * (parameters[YY2] - parameters[ZZ2]) - t195 * parameters[XX2]
-        + IIWA14_C(2.0) * t191 * parameters[XY2];
-    const iiwa14_real_t t364 = t182 * t182; /* link j2: motion */
+    const iiwa14_real_t t362 = t194 * (parameters[YY2] - parameters[ZZ2]) - t194 * parameters[XX2]
+        + IIWA14_C(2.0) * t190 * parameters[XY2];
+    const iiwa14_real_t t363 = t181 * t181; /* link j2: motion */
     /* link j2: force and moment */
-    const iiwa14_real_t t365 = t363 + t194 * parameters[XZ2] + (t364 - t250) * parameters[YZ2]
-        + t251 * parameters[MZ2];
+    const iiwa14_real_t t364 = t362 + t193 * parameters[XZ2] + (t363 - t249) * parameters[YZ2]
+        + t250 * parameters[MZ2];
     /* link j3: force and moment */
-    const iiwa14_real_t t366 = t191 * parameters[ZZ3] - t190 * (parameters[YY3] - parameters[XX3])
-        + parameters[YZ3] * t207;
-    const iiwa14_real_t t367 = t366 + parameters[XZ3] * t197 + (t340 - t349) * parameters[XY3]
-        - (parameters[MX3] * t259 + parameters[MY3] * t256);
-    const iiwa14_real_t t368 = t367 + (t76 * t331 + t78 * t337); /* link j4: what it passes on */
+    const iiwa14_real_t t365 = t190 * parameters[ZZ3] - t189 * (parameters[YY3] - parameters[XX3])
+        + parameters[YZ3] * t206;
+    const iiwa14_real_t t366 = t365 + parameters[XZ3] * t196 + (t339 - t348) * parameters[XY3]
+        - (parameters[MX3] * t258 + parameters[MY3] * t255);
+    const iiwa14_real_t t367 = t366 + (t73 * t330 + t75 * t336); /* link j4: what it passes on */
     /* link j2: force and moment */
-    const iiwa14_real_t t369 = t191 * parameters[YY2] + t191 * (parameters[ZZ2] - parameters[XX2])
-        + t196 * parameters[XY2];
-    const iiwa14_real_t t370 = t369 - t194 * parameters[YZ2] + (t250 - t249) * parameters[XZ2]
-        - t253 * parameters[MZ2];
-    const iiwa14_real_t t371 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
-    const iiwa14_real_t t372 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1]
-        - t371 * parameters[FC1]) + (t150 * (t365 + t362) + t151 * (t370 + t368));
-    const iiwa14_real_t t373 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
-    const iiwa14_real_t t374 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7]
-        + t373 * parameters[FC7]) - t296;
-    const iiwa14_real_t t375 = IIWA14_C(8.0) * input[6] - t374;
-    const iiwa14_real_t t376 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
-    const iiwa14_real_t t377 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6]
-        + t376 * parameters[FC6]) + t310;
-    const iiwa14_real_t t378 = IIWA14_C(8.0) * input[5] - t377 + t375 * t6;
-    const iiwa14_real_t t379 = IIWA14_C(16.0) * input[0] + t372 - t375 * t172 - t378 * t173;
-    const iiwa14_real_t t380 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
-    const iiwa14_real_t t381 = IIWA14_C(1.0e2) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5]
-        + t380 * parameters[FC5]) - t334;
-    const iiwa14_real_t t382 = IIWA14_C(8.0) * input[4] - t381 + t375 * t28 + t378 * t34;
-    const iiwa14_real_t t383 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
-    const iiwa14_real_t t384 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4]
-        + t383 * parameters[FC4]) + t347;
-    const iiwa14_real_t t385 = IIWA14_C(16.0) * input[3] - t384 + t375 * t58 + t378 * t62;
-    const iiwa14_real_t t386 = t385 + t382 * t72;
-    const iiwa14_real_t t387 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
-    const iiwa14_real_t t388 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[2] * parameters[FV3]
-        - t387 * parameters[FC3]) + t368;
-    const iiwa14_real_t t389 = IIWA14_C(16.0) * input[2] + t388 - t375 * t101 - t378 * t102;
-    const iiwa14_real_t t390 = t389 - t382 * t103 + t386 * t93;
-    const iiwa14_real_t t391 = t379 - t382 * t174 + t386 * t176 + t390 * t177;
+    const iiwa14_real_t t368 = t190 * parameters[YY2] + t190 * (parameters[ZZ2] - parameters[XX2])
+        + t195 * parameters[XY2];
+    const iiwa14_real_t t369 = t368 - t193 * parameters[YZ2] + (t249 - t248) * parameters[XZ2]
+        - t252 * parameters[MZ2];
+    const iiwa14_real_t t370 = iiwa14_sign(dq[0]); /* joint j1: coulomb_friction */
+    const iiwa14_real_t t371 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[0] * parameters[FV1]
+        - t370 * parameters[FC1]) + (t145 * (t364 + t361) + t146 * (t369 + t367));
+    const iiwa14_real_t t372 = iiwa14_sign(dq[6]); /* joint j7: coulomb_friction */
+    const iiwa14_real_t t373 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[6] * parameters[FV7]
+        + t372 * parameters[FC7]) - t295;
+    const iiwa14_real_t t374 = IIWA14_C(8.0) * input[6] - t373;
+    const iiwa14_real_t t375 = iiwa14_sign(dq[5]); /* joint j6: coulomb_friction */
+    const iiwa14_real_t t376 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[5] * parameters[FV6]
+        + t375 * parameters[FC6]) + t309;
+    const iiwa14_real_t t377 = IIWA14_C(8.0) * input[5] - t376 + t374 * t6;
+    const iiwa14_real_t t378 = IIWA14_C(16.0) * input[0] + t371 - t374 * t167 - t377 * t168;
+    const iiwa14_real_t t379 = iiwa14_sign(dq[4]); /* joint j5: coulomb_friction */
+    const iiwa14_real_t t380 = IIWA14_C(1.0e2) * (IIWA14_C(1.0e2) * dq[4] * parameters[FV5]
+        + t379 * parameters[FC5]) - t333;
+    const iiwa14_real_t t381 = IIWA14_C(8.0) * input[4] - t380 + t374 * t27 + t377 * t33;
+    const iiwa14_real_t t382 = iiwa14_sign(dq[3]); /* joint j4: coulomb_friction */
+    const iiwa14_real_t t383 = IIWA14_C(160.0) * (IIWA14_C(160.0) * dq[3] * parameters[FV4]
+        + t382 * parameters[FC4]) + t346;
+    const iiwa14_real_t t384 = IIWA14_C(16.0) * input[3] - t383 + t374 * t56 + t377 * t60;
+    const iiwa14_real_t t385 = t384 + t381 * t70;
+    const iiwa14_real_t t386 = iiwa14_sign(dq[2]); /* joint j3: coulomb_friction */
+    const iiwa14_real_t t387 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[2] * parameters[FV3]
+        - t386 * parameters[FC3]) + t367;
+    const iiwa14_real_t t388 = IIWA14_C(16.0) * input[2] + t387 - t374 * t98 - t377 * t99;
+    const iiwa14_real_t t389 = t388 - t381 * t100 + t385 * t90;
+    const iiwa14_real_t t390 = t378 - t381 * t169 + t385 * t171 + t389 * t172;
     /* link j3: what it passes on */
-    const iiwa14_real_t t392 = t109 * t351 - t112 * t343 + IIWA14_C(0.42) * (t109 * t358 + t112 * t361);
+    const iiwa14_real_t t391 = t105 * t350 - t108 * t342 + IIWA14_C(0.42) * (t105 * t357 + t108 * t360);
     /* link j2: force and moment */
-    const iiwa14_real_t t393 = t194 * (parameters[XX2] - parameters[YY2]) + (t364 - t249) * parameters[XY2]
-        + (t251 * parameters[MX2] - t253 * parameters[MY2]);
-    const iiwa14_real_t t394 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
-    const iiwa14_real_t t395 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[1] * parameters[FV2]
-        - t394 * parameters[FC2]) + (t393 + t392);
-    const iiwa14_real_t t396 = IIWA14_C(16.0) * input[1] + t395 - t375 * t124 - t378 * t129;
-    const iiwa14_real_t t397 = t396 - t382 * t134 + t386 * t138 + t390 * t147;
-    const iiwa14_real_t t398 = IIWA14_C(1.0) / t178;
-    const iiwa14_real_t t399 = iiwa14_bounded((t391 + t397 * t168) * t398);
-    out[0] = t399;
-    const iiwa14_real_t t400 = iiwa14_bounded(t397 * t167 + t168 * t399);
-    out[1] = t400;
-    const iiwa14_real_t t401 = iiwa14_bounded(t390 * t146 + t177 * t399 + t147 * t400);
-    out[2] = t401;
-    const iiwa14_real_t t402 = iiwa14_bounded(t386 * t92 + t176 * t399 + t138 * t400 + t93 * t401);
-    out[3] = t402;
-    const iiwa14_real_t t403 = t382 * t71 + t174 * t399 + t134 * t400 + t103 * t401;
-    const iiwa14_real_t t404 = iiwa14_bounded(t72 * t402 - t403);
-    out[4] = t404;
-    const iiwa14_real_t t405 = t378 * t33 + t173 * t399 + t129 * t400 + t102 * t401;
-    const iiwa14_real_t t406 = iiwa14_bounded(t62 * t402 - t405 + t34 * t404);
-    out[5] = t406;
-    const iiwa14_real_t t407 = t375 * t5 + t172 * t399 + t124 * t400 + t101 * t401;
-    const iiwa14_real_t t408 = t58 * t402 - t407 + t28 * t404 + t6 * t406;
-    out[6] = t408;
-    if (!iiwa14_all_bounded(out, 7)) {
+    const iiwa14_real_t t392 = t193 * (parameters[XX2] - parameters[YY2]) + (t363 - t248) * parameters[XY2]
+        + (t250 * parameters[MX2] - t252 * parameters[MY2]);
+    const iiwa14_real_t t393 = iiwa14_sign(dq[1]); /* joint j2: coulomb_friction */
+    const iiwa14_real_t t394 = IIWA14_C(160.0) * (IIWA14_C(-160.0) * dq[1] * parameters[FV2]
+        - t393 * parameters[FC2]) + (t392 + t391);
+    const iiwa14_real_t t395 = IIWA14_C(16.0) * input[1] + t394 - t374 * t120 - t377 * t125;
+    const iiwa14_real_t t396 = t395 - t381 * t130 + t385 * t134 + t389 * t143;
+    const iiwa14_real_t t397 = IIWA14_C(1.0) / t173;
+    const iiwa14_real_t t398 = iiwa14_held((t390 + t396 * t163) * t397);
+    out[0] = t398;
+    const iiwa14_real_t t399 = iiwa14_held(t396 * t162 + t163 * t398);
+    out[1] = t399;
+    const iiwa14_real_t t400 = iiwa14_held(t389 * t142 + t172 * t398 + t143 * t399);
+    out[2] = t400;
+    const iiwa14_real_t t401 = iiwa14_held(t385 * t89 + t171 * t398 + t134 * t399 + t90 * t400);
+    out[3] = t401;
+    const iiwa14_real_t t402 = t381 * t69 + t169 * t398 + t130 * t399 + t100 * t400;
+    const iiwa14_real_t t403 = iiwa14_held(t70 * t401 - t402);
+    out[4] = t403;
+    const iiwa14_real_t t404 = t377 * t32 + t168 * t398 + t125 * t399 + t99 * t400;
+    const iiwa14_real_t t405 = iiwa14_held(t60 * t401 - t404 + t33 * t403);
+    out[5] = t405;
+    const iiwa14_real_t t406 = t374 * t5 + t167 * t398 + t120 * t399 + t98 * t400;
+    const iiwa14_real_t t407 = t56 * t401 - t406 + t27 * t403 + t6 * t405;
+    out[6] = t407;
+    if (!iiwa14_bounded(out, 7)) {
         iiwa14_zero(out, 7);
         return IIWA14_STATUS_PIVOT;
     }

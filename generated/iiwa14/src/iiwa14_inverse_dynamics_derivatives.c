@@ -95,7 +95,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x1E31C9F2UL
+#if IIWA14_GENERATION != 0xF4E95A26UL
 #error "iiwa14.h and iiwa14_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -422,778 +422,766 @@ iiwa14_status_t iiwa14_inverse_dynamics_derivatives(
     const iiwa14_real_t t205 = parameters[FV7] * (IIWA14_C(160.0) * dq[6]) + parameters[FC7] * t204
         + parameters[IA7] * (IIWA14_C(160.0) * ddq[6]);
     input[6] = IIWA14_C(20.0) * t205 + IIWA14_C(0.125) * t126;
-    const iiwa14_real_t t206 = parameters[XZ7R] * t73;
-    const iiwa14_real_t t207 = parameters[XY7] * t74;
-    const iiwa14_real_t t208 = t206 - t207;
-    const iiwa14_real_t t209 = parameters[YZ7R] * t78;
-    const iiwa14_real_t t210 = t207 + t209;
-    const iiwa14_real_t t211 = IIWA14_C(0.5) * (parameters[XX7R] + parameters[ZZ7]);
-    const iiwa14_real_t t212 = parameters[XX7R] - t211;
-    const iiwa14_real_t t213 = parameters[XZ7R] * t78 + t74 * t212;
-    const iiwa14_real_t t214 = parameters[YZ7R] * t73 + t74 * t211;
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t215 = t63 * (t210 - t208) + t71 * (t213 + t214);
-    const iiwa14_real_t t216 = t63 * t215;
-    const iiwa14_real_t t217 = parameters[XZ6] * t58;
-    const iiwa14_real_t t218 = parameters[XY6] * t59;
-    const iiwa14_real_t t219 = t210 - t216 - (t217 + t218);
-    const iiwa14_real_t t220 = t206 + t209;
-    const iiwa14_real_t t221 = parameters[YZ6] * t68;
-    const iiwa14_real_t t222 = t218 + t221 - t220;
-    const iiwa14_real_t t223 = parameters[XY7] * t78 + t73 * t212;
-    const iiwa14_real_t t224 = t78 * t211 - parameters[XY7] * t73;
-    const iiwa14_real_t t225 = IIWA14_C(0.5) * (parameters[XX6R] + parameters[ZZ6R]);
-    const iiwa14_real_t t226 = t225 - parameters[XX6R];
-    const iiwa14_real_t t227 = t59 * t226 - parameters[XZ6] * t68 - (t63 * t223 + t71 * t224);
-    const iiwa14_real_t t228 = parameters[ZZ7] - t211;
-    const iiwa14_real_t t229 = t73 * t228 - parameters[YZ7R] * t74;
-    const iiwa14_real_t t230 = parameters[XZ7R] * t74 + t78 * t228;
-    const iiwa14_real_t t231 = t59 * t225 - parameters[YZ6] * t58 + (t71 * t230 - t63 * t229);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t232 = t56 * (t222 - t219) + t39 * (t231 - t227);
-    const iiwa14_real_t t233 = t56 * t232;
-    const iiwa14_real_t t234 = parameters[XZ5] * t16;
-    const iiwa14_real_t t235 = parameters[XY5] * t52;
-    const iiwa14_real_t t236 = t234 - t235 + (t222 - t233);
-    const iiwa14_real_t t237 = t217 - t221 + (t208 + t216); /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t238 = parameters[YZ5] * t15;
-    const iiwa14_real_t t239 = t235 + t238 + t237; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t240 = t71 * t215; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t241 = t225 - parameters[ZZ6R];
-    const iiwa14_real_t t242 = parameters[YZ6] * t59 - t58 * t241 + (t240 - t214);
-    const iiwa14_real_t t243 = t68 * t241 - parameters[XZ6] * t59 + (t63 * t224 - t71 * t223);
-    const iiwa14_real_t t244 = IIWA14_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t245 = t56 * t242 - t39 * t243 - (parameters[YZ5] * t16 + t52 * t244);
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t246 = t213 - t240 - (parameters[XY6] * t68 + t58 * t226);
-    const iiwa14_real_t t247 = t71 * t229 + t63 * t230 - (parameters[XY6] * t58 + t68 * t225);
-    const iiwa14_real_t t248 = t244 - parameters[XX5R];
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t249 = parameters[XZ5] * t15 - t52 * t248 + (t56 * t246 + t39 * t247);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t250 = t11 * (t236 - t239) + t14 * (t245 - t249);
-    const iiwa14_real_t t251 = t11 * t250;
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t252 = t63 * parameters[MY7] + t71 * parameters[MX7];
-    const iiwa14_real_t t253 = parameters[MY5R] + t252; /* link j6: inertia of it and all beyond */
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t254 = t71 * parameters[MY7] - t63 * parameters[MX7];
-    const iiwa14_real_t t255 = parameters[MX6] - t254; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t256 = t56 * t255 - t39 * parameters[MY6R]; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t257 = parameters[MX5] + t256; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t258 = t14 * t253 - t11 * t257; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t259 = IIWA14_C(0.4) * t13; /* link j5: velocity of its origin */
-    const iiwa14_real_t t260 = t258 * t259; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t261 = parameters[MY7] * t78 + parameters[MX7] * t73;
-    const iiwa14_real_t t262 = parameters[MX6] * t59 + t261; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t263 = parameters[MY7] * t74;
-    const iiwa14_real_t t264 = parameters[MX7] * t74;
-    const iiwa14_real_t t265 = parameters[MY6R] * t59 + (t63 * t263 + t71 * t264);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t266 = parameters[MY5R] * t15 + parameters[MX5] * t16 + (t56 * t262 - t39 * t265);
-    const iiwa14_real_t t267 = IIWA14_C(0.4) * t266; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t268 = t11 * t253 + t14 * t257; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t269 = IIWA14_C(0.4) * t10; /* link j5: velocity of its origin */
-    const iiwa14_real_t t270 = t268 * t269; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t271 = t270 - t260 - t267;
-    const iiwa14_real_t t272 = parameters[XZ4] * t40;
-    const iiwa14_real_t t273 = parameters[XY4] * t13;
-    const iiwa14_real_t t274 = t272 + t273 + (t271 + (t239 + t251 + t260));
-    const iiwa14_real_t t275 = t219 + t233 - (t234 + t238); /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t276 = parameters[YZ4] * t10;
-    const iiwa14_real_t t277 = t276 - t273 + (t271 + (t275 + t267)); /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t278 = t39 * t232; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t279 = t16 * t248 - parameters[XY5] * t15 + (t227 + t278);
-    const iiwa14_real_t t280 = t15 * t244 - parameters[XY5] * t16 + (t39 * t242 + t56 * t243);
-    const iiwa14_real_t t281 = IIWA14_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    const iiwa14_real_t t282 = parameters[XX4R] + t281;
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t283 = parameters[XZ4] * t10 - t13 * t282 + (t11 * t279 - t14 * t280);
-    const iiwa14_real_t t284 = parameters[ZZ5R] - t244;
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t285 = t16 * t284 - parameters[YZ5] * t52 + (t278 - t231);
-    const iiwa14_real_t t286 = t39 * t246 - t56 * t247 - (parameters[XZ5] * t52 + t15 * t284);
-    const iiwa14_real_t t287 = parameters[MY5R] * t52 + (t56 * t265 + t39 * t262);
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t288 = parameters[MY6R] * t68 - parameters[MX6] * t58 + (t71 * t263 - t63 * t264);
-    const iiwa14_real_t t289 = t288 - parameters[MX5] * t52; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t290 = t14 * t289 - t11 * t287; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t291 = t56 * parameters[MY6R] + t39 * t255; /* link j6: column of the mass matrix */
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t292 = t11 * t285 + t14 * t286 + (IIWA14_C(-0.4) * t290 + t291 * t259);
-    const iiwa14_real_t t293 = parameters[YZ4] * t40 + t13 * t281 + t292;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t294 = t5 * (t277 - t274) + t9 * (t293 + t283);
-    const iiwa14_real_t t295 = t5 * t294;
-    const iiwa14_real_t t296 = parameters[XZ3] * t12;
-    const iiwa14_real_t t297 = parameters[XY3] * t8;
-    const iiwa14_real_t t298 = t296 - t297 + (t277 - t295);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t299 = t271 + (t236 - t251 - t270) - (t272 + t276);
-    const iiwa14_real_t t300 = parameters[YZ3] * t4;
-    const iiwa14_real_t t301 = t297 + t300 + t299; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t302 = t14 * t250; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t303 = parameters[ZZ4R] + t281;
-    const iiwa14_real_t t304 = t302 - t245 - t268 * t259 - (parameters[YZ4] * t13 + t40 * t303);
-    const iiwa14_real_t t305 = t10 * t303 - parameters[XZ4] * t13 - (t14 * t279 + t11 * t280);
-    const iiwa14_real_t t306 = IIWA14_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t307 = parameters[YZ3] * t12 + t8 * t306 + (t5 * t304 + t9 * t305);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t308 = parameters[XY4] * t10 + t40 * t282 + (t249 + t302 + t258 * t269);
-    const iiwa14_real_t t309 = t14 * t287 + t11 * t289;
-    const iiwa14_real_t t310 = t11 * t286 - t14 * t285 - (IIWA14_C(0.4) * t309 + t291 * t269);
-    const iiwa14_real_t t311 = parameters[XY4] * t40 + t10 * t281 - t310;
-    const iiwa14_real_t t312 = parameters[XX3R] - t306;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t313 = parameters[XZ3] * t4 + t8 * t312 + (t5 * t308 - t9 * t311);
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t314 = t2 * (t301 - t298) + t3 * (t307 + t313);
-    const iiwa14_real_t t315 = t2 * t314;
-    const iiwa14_real_t t316 = parameters[MY3R] + t268; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t317 = parameters[MX4] - t258; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t318 = parameters[MY4R] - t291;
-    const iiwa14_real_t t319 = t9 * t318 - t5 * t317; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t320 = parameters[MX3] - t319; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t321 = t2 * t320 - t3 * t316; /* link j3: column of the mass matrix */
-    const iiwa14_real_t t322 = IIWA14_C(0.42) * dq[1]; /* link j3: velocity of its origin */
-    const iiwa14_real_t t323 = t321 * t322; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t324 = parameters[MY4R] * t13 + t290; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t325 = parameters[MX4] * t13 + t266;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t326 = t9 * t324 - t5 * t325 - (parameters[MY3R] * t4 + parameters[MX3] * t12);
-    const iiwa14_real_t t327 = IIWA14_C(-0.42) * t326; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t328 = t2 * t316 + t3 * t320; /* link j3: column of the mass matrix */
-    const iiwa14_real_t t329 = IIWA14_C(-0.42) * t1; /* link j3: velocity of its origin */
-    const iiwa14_real_t t330 = t328 * t329; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t331 = t323 - t330 - t327;
-    const iiwa14_real_t t332 = parameters[XZ2] * t7;
-    const iiwa14_real_t t333 = parameters[XY2] * dq[1];
-    const iiwa14_real_t t334 = t331 + (t301 - t315 - t323) - (t332 + t333);
-    const iiwa14_real_t t335 = t274 + t295 - (t296 + t300); /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t336 = parameters[YZ2] * t1;
-    const iiwa14_real_t t337 = t333 + t336 + (t331 + (t335 + t327)); /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t338 = t9 * t294; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t339 = t283 - t338 - (parameters[XY3] * t4 + t12 * t312);
-    const iiwa14_real_t t340 = t4 * t306 - parameters[XY3] * t12 + (t9 * t304 - t5 * t305);
-    const iiwa14_real_t t341 = IIWA14_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const iiwa14_real_t t342 = parameters[XX2R] - t341;
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t343 = parameters[XZ2] * t1 + dq[1] * t342 + (t3 * t340 - t2 * t339);
-    const iiwa14_real_t t344 = parameters[ZZ3R] - t306;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t345 = parameters[YZ3] * t8 - t12 * t344 + (t338 - t293);
-    const iiwa14_real_t t346 = parameters[XZ3] * t8 + t4 * t344 + (t9 * t308 + t5 * t311);
-    const iiwa14_real_t t347 = t5 * t324 + t9 * t325 - parameters[MY3R] * t8;
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t348 = t309 - (parameters[MY4R] * t10 + parameters[MX4] * t40);
-    const iiwa14_real_t t349 = t348 - parameters[MX3] * t8; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t350 = t5 * t318 + t9 * t317; /* link j4: column of the mass matrix */
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t351 = IIWA14_C(0.42) * (t2 * t347 + t3 * t349) + t350 * t322;
-    const iiwa14_real_t t352 = dq[1] * t341 - parameters[YZ2] * t7 + (t2 * t345 + t3 * t346 + t351);
-    /* link j2: inertia, momentum beyond */
-    const iiwa14_real_t t353 = t6 * (t6 * (t337 - t334) + t0 * (t352 + t343));
-    input_by_dq[0] = IIWA14_C(1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t334 + t353);
-    const iiwa14_real_t t354 = t3 * t314; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t355 = parameters[XY2] * t1 - t7 * t342 + (t354 - t313 - t321 * t329);
-    const iiwa14_real_t t356 = IIWA14_C(2.0) * t355; /* link j2: derivatives */
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t357 = IIWA14_C(0.42) * (t2 * t349 - t3 * t347) + t350 * t329;
-    const iiwa14_real_t t358 = parameters[XY2] * t7 + t1 * t341 + (t3 * t345 - t2 * t346 - t357);
-    const iiwa14_real_t t359 = IIWA14_C(2.0) * t358; /* link j2: derivatives */
-    input_by_dq[7] = IIWA14_C(0.0625) * (t0 * t356 - t6 * t359);
-    const iiwa14_real_t t360 = IIWA14_C(2.0) * t339; /* link j3: derivatives */
-    const iiwa14_real_t t361 = IIWA14_C(2.0) * t340;
-    const iiwa14_real_t t362 = t3 * t361 - t2 * t360;
-    const iiwa14_real_t t363 = IIWA14_C(2.0) * t335;
-    const iiwa14_real_t t364 = IIWA14_C(0.84) * t1; /* link j7: derivatives */
-    const iiwa14_real_t t365 = IIWA14_C(0.84) * dq[1];
-    const iiwa14_real_t t366 = t363 + (t328 * t364 + t321 * t365); /* link j3: derivatives */
-    input_by_dq[14] = IIWA14_C(0.0625) * (t0 * t362 + t6 * t366);
-    const iiwa14_real_t t367 = IIWA14_C(-2.0) * t308; /* link j4: derivatives */
-    const iiwa14_real_t t368 = IIWA14_C(-2.0) * t311;
-    const iiwa14_real_t t369 = t5 * t367 - t9 * t368;
-    const iiwa14_real_t t370 = IIWA14_C(-2.0) * t299;
-    const iiwa14_real_t t371 = t3 * t370 - t2 * t369 + t319 * t364;
-    const iiwa14_real_t t372 = t9 * t367 + t5 * t368;
-    const iiwa14_real_t t373 = t2 * t350; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t374 = t3 * t350;
-    const iiwa14_real_t t375 = t372 + (t373 * t364 - t374 * t365); /* link j4: derivatives */
-    input_by_dq[21] = IIWA14_C(0.0625) * (t0 * t371 + t6 * t375);
-    const iiwa14_real_t t376 = IIWA14_C(2.0) * t279; /* link j5: derivatives */
-    const iiwa14_real_t t377 = IIWA14_C(2.0) * t280;
-    const iiwa14_real_t t378 = t11 * t376 - t14 * t377;
-    const iiwa14_real_t t379 = IIWA14_C(2.0) * t275;
-    const iiwa14_real_t t380 = IIWA14_C(0.8) * t10; /* link j7: derivatives */
-    const iiwa14_real_t t381 = IIWA14_C(-0.8) * t13;
-    const iiwa14_real_t t382 = t379 + (t268 * t380 + t258 * t381); /* link j5: derivatives */
-    const iiwa14_real_t t383 = t5 * t378 - t9 * t382;
-    const iiwa14_real_t t384 = t14 * t376 + t11 * t377;
-    const iiwa14_real_t t385 = t9 * t268; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t386 = t3 * t384 - t2 * t383 + t385 * t364; /* link j5: derivatives */
-    const iiwa14_real_t t387 = t9 * t378 + t5 * t382;
-    const iiwa14_real_t t388 = t5 * t268; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t389 = t2 * t388 - t3 * t258;
-    const iiwa14_real_t t390 = t3 * t388 + t2 * t258;
-    const iiwa14_real_t t391 = t387 + (t389 * t364 - t390 * t365); /* link j5: derivatives */
-    input_by_dq[28] = IIWA14_C(0.125) * (t0 * t386 + t6 * t391);
-    const iiwa14_real_t t392 = IIWA14_C(2.0) * t246; /* link j6: derivatives */
-    const iiwa14_real_t t393 = IIWA14_C(2.0) * t247;
-    const iiwa14_real_t t394 = t56 * t392 + t39 * t393;
-    const iiwa14_real_t t395 = IIWA14_C(2.0) * t237;
-    const iiwa14_real_t t396 = t11 * t394 - t14 * t395 - t256 * t380;
-    const iiwa14_real_t t397 = t56 * t393 - t39 * t392;
-    const iiwa14_real_t t398 = t11 * t291; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t399 = t14 * t291;
-    const iiwa14_real_t t400 = t397 + (t398 * t380 + t399 * t381); /* link j6: derivatives */
-    const iiwa14_real_t t401 = t5 * t396 - t9 * t400;
-    const iiwa14_real_t t402 = t14 * t394 + t11 * t395 - t256 * t381;
-    const iiwa14_real_t t403 = t9 * t398 + t5 * t256; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t404 = t3 * t402 - t2 * t401 + t403 * t364; /* link j6: derivatives */
-    const iiwa14_real_t t405 = t9 * t396 + t5 * t400;
-    const iiwa14_real_t t406 = t9 * t256 - t5 * t398; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t407 = t2 * t406 + t3 * t399;
-    const iiwa14_real_t t408 = t3 * t406 - t2 * t399;
-    const iiwa14_real_t t409 = t405 + (t408 * t365 - t407 * t364); /* link j6: derivatives */
-    input_by_dq[35] = IIWA14_C(0.125) * (t0 * t404 + t6 * t409);
-    const iiwa14_real_t t410 = IIWA14_C(-2.0) * t223; /* link j7: derivatives */
-    const iiwa14_real_t t411 = IIWA14_C(2.0) * t224;
-    const iiwa14_real_t t412 = t63 * t410 - t71 * t411;
-    const iiwa14_real_t t413 = IIWA14_C(-2.0) * t220;
-    const iiwa14_real_t t414 = t56 * t412 + t39 * t413;
-    const iiwa14_real_t t415 = t71 * t410 + t63 * t411;
-    const iiwa14_real_t t416 = t39 * t252; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t417 = t11 * t414 - t14 * t415 + t416 * t380; /* link j7: derivatives */
-    const iiwa14_real_t t418 = t56 * t413 - t39 * t412;
-    const iiwa14_real_t t419 = t56 * t252; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t420 = t14 * t254 - t11 * t419;
-    const iiwa14_real_t t421 = t14 * t419 + t11 * t254;
-    const iiwa14_real_t t422 = t418 + (t421 * t381 - t420 * t380); /* link j7: derivatives */
-    const iiwa14_real_t t423 = t5 * t417 - t9 * t422;
-    const iiwa14_real_t t424 = t14 * t414 + t11 * t415 + t416 * t381;
-    const iiwa14_real_t t425 = t9 * t420 + t5 * t416; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t426 = t3 * t424 - t2 * t423 - t425 * t364; /* link j7: derivatives */
-    const iiwa14_real_t t427 = t9 * t417 + t5 * t422;
-    const iiwa14_real_t t428 = t5 * t420 - t9 * t416; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t429 = t2 * t428 + t3 * t421;
-    const iiwa14_real_t t430 = t3 * t428 - t2 * t421;
-    const iiwa14_real_t t431 = t427 + (t430 * t365 - t429 * t364); /* link j7: derivatives */
-    input_by_dq[42] = IIWA14_C(0.125) * (t0 * t426 + t6 * t431);
-    /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t432 = parameters[XY7] * (IIWA14_C(2.0) * t71) - t63 * parameters[XX7R];
-    const iiwa14_real_t t433 = t63 * t432;
-    const iiwa14_real_t t434 = t433 - parameters[XX6R];
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t435 = t63 * parameters[XZ7R] - t71 * parameters[YZ7R];
-    const iiwa14_real_t t436 = t435 - parameters[XY6]; /* link j7: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t437 = t56 * (parameters[ZZ7] + t434) - t436 * (IIWA14_C(2.0) * t39);
-    const iiwa14_real_t t438 = t56 * t437;
-    const iiwa14_real_t t439 = parameters[XX5R] + (parameters[ZZ7] - t438);
-    /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t440 = parameters[ZZ6R] + (parameters[XX7R] + t433);
-    const iiwa14_real_t t441 = parameters[XZ6] + (parameters[XY7] - t71 * t432);
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t442 = t71 * parameters[XZ7R] + t63 * parameters[YZ7R];
-    const iiwa14_real_t t443 = parameters[YZ6] - t442; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t444 = t56 * t441 - t39 * t443; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t445 = parameters[XY5] + t444; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t446 = t11 * (t439 - t440) + t445 * (IIWA14_C(-2.0) * t14);
-    const iiwa14_real_t t447 = t11 * t446;
-    const iiwa14_real_t t448 = IIWA14_C(-0.8) * t291;
-    const iiwa14_real_t t449 = parameters[XX4R] + (t440 + t447 + t448);
-    const iiwa14_real_t t450 = t434 - t438 - parameters[ZZ5R]; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t451 = parameters[XZ5] + (t436 + t39 * t437);
-    const iiwa14_real_t t452 = t39 * t441 + t56 * t443; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t453 = parameters[YZ5] - t452; /* link j6: inertia of it and all beyond */
-    /* link j5: column of the mass matrix */
-    const iiwa14_real_t t454 = t11 * t451 - t14 * t453 + IIWA14_C(0.4) * t258;
-    const iiwa14_real_t t455 = parameters[XY4] + t454; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t456 = t5 * (t450 + t449) + t455 * (IIWA14_C(-2.0) * t9);
-    const iiwa14_real_t t457 = t5 * t456;
-    const iiwa14_real_t t458 = parameters[XX3R] + (t457 - t450);
-    /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t459 = parameters[ZZ4R] + (t439 - t447 + t448);
-    const iiwa14_real_t t460 = t445 + t14 * t446 - parameters[XZ4];
-    /* link j5: column of the mass matrix */
-    const iiwa14_real_t t461 = t14 * t451 + t11 * t453 + IIWA14_C(-0.4) * t268;
-    const iiwa14_real_t t462 = t461 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t463 = t9 * t462 - t5 * t460; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t464 = parameters[XY3] - t463; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t465 = t2 * (t459 - t458) + t464 * (IIWA14_C(2.0) * t3);
-    const iiwa14_real_t t466 = t2 * t465;
-    const iiwa14_real_t t467 = IIWA14_C(0.84) * t350;
-    const iiwa14_real_t t468 = parameters[XX2R] + (t459 - t466 + t467);
-    const iiwa14_real_t t469 = parameters[ZZ3R] + (t449 - t457); /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t470 = parameters[XZ3] + (t455 + t9 * t456);
-    const iiwa14_real_t t471 = t9 * t460 + t5 * t462; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t472 = parameters[YZ3] + t471; /* link j4: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const iiwa14_real_t t473 = t3 * t472 - t2 * t470 + IIWA14_C(0.42) * t321;
-    const iiwa14_real_t t474 = parameters[XY2] + t473; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia of it and all beyond */
-    const iiwa14_real_t t475 = t6 * (t6 * (t469 - t468) + t474 * (IIWA14_C(2.0) * t0));
-    input_by_ddq[0] = IIWA14_C(0.0625) * (parameters[ZZ1R] + (t468 + t475));
-    const iiwa14_real_t t476 = t3 * t465 - t464 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const iiwa14_real_t t477 = IIWA14_C(0.42) * t328 - (t3 * t470 + t2 * t472);
-    const iiwa14_real_t t478 = parameters[YZ2] + t477; /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t479 = IIWA14_C(0.0625) * (t0 * t476 - t6 * t478);
-    input_by_ddq[7] = t479;
-    const iiwa14_real_t t480 = IIWA14_C(0.0625) * (t0 * t473 + t6 * t469);
-    input_by_ddq[14] = t480;
-    /* link j4: column of the mass matrix */
-    const iiwa14_real_t t481 = IIWA14_C(-0.42) * t374 - (t2 * t463 + t3 * t459);
-    const iiwa14_real_t t482 = IIWA14_C(0.0625) * (t0 * t481 - t6 * t471);
-    input_by_ddq[21] = t482;
-    const iiwa14_real_t t483 = t5 * t454 + t9 * t450; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t484 = t3 * t461 - t2 * t483 + IIWA14_C(-0.42) * t390;
-    const iiwa14_real_t t485 = t9 * t454 - t5 * t450;
-    const iiwa14_real_t t486 = t0 * t484 + t6 * t485;
-    input_by_ddq[28] = IIWA14_C(0.125) * t486;
-    /* link j6: column of the mass matrix */
-    const iiwa14_real_t t487 = t11 * t444 - t14 * t440 + IIWA14_C(0.4) * t399;
-    const iiwa14_real_t t488 = t5 * t487 + t9 * t452;
-    const iiwa14_real_t t489 = t14 * t444 + t11 * t440 + IIWA14_C(-0.4) * t398;
-    const iiwa14_real_t t490 = t3 * t489 - t2 * t488 + IIWA14_C(0.42) * t408;
-    const iiwa14_real_t t491 = t9 * t487 - t5 * t452;
-    const iiwa14_real_t t492 = t0 * t490 + t6 * t491;
-    input_by_ddq[35] = IIWA14_C(0.125) * t492;
-    const iiwa14_real_t t493 = t56 * t435 + t39 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t494 = t11 * t493 - t14 * t442 + IIWA14_C(0.4) * t421;
-    const iiwa14_real_t t495 = t39 * t435 - t56 * parameters[ZZ7];
-    const iiwa14_real_t t496 = t5 * t494 + t9 * t495;
-    const iiwa14_real_t t497 = t14 * t493 + t11 * t442 + IIWA14_C(0.4) * t420;
-    const iiwa14_real_t t498 = t3 * t497 - t2 * t496 + IIWA14_C(0.42) * t430;
-    const iiwa14_real_t t499 = t9 * t494 - t5 * t495;
-    const iiwa14_real_t t500 = t0 * t498 + t6 * t499;
-    input_by_ddq[42] = IIWA14_C(0.125) * t500;
-    const iiwa14_real_t t501 = IIWA14_C(2.0) * t7; /* link j2: derivatives */
-    const iiwa14_real_t t502 = IIWA14_C(-2.0) * t1;
-    const iiwa14_real_t t503 = t94 + t180; /* link j3: motion */
-    /* link j2: derivatives */
-    const iiwa14_real_t t504 = t334 * t501 + t352 * t502 + (t468 * t20 - t474 * t27 - t476 * t503);
-    const iiwa14_real_t t505 = t469 * t27; /* link j3: derivatives */
-    /* link j2: derivatives */
-    const iiwa14_real_t t506 = t343 * t501 + t337 * t502 + (t474 * t20 - t505 + t478 * t503);
-    const iiwa14_real_t t507 = t328 * t96; /* link j3: derivatives */
-    /* link j2: derivatives */
-    const iiwa14_real_t t508 = t0 * (t187 + (t504 + t328 * t90)) + t6 * (t182 + (t507 + t506));
-    input_by_q[1] = IIWA14_C(0.0625) * t508;
-    /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t509 = parameters[ZZ2R] + (t458 + t466 + t467);
-    /* link j2: derivatives */
-    const iiwa14_real_t t510 = t476 * t20 + t478 * t27 - t509 * t503 + (t7 * t356 + t1 * t359);
-    const iiwa14_real_t t511 = (parameters[MX2] + t321) * t90 + (parameters[MY2R] - t350) * t96 + t510;
-    input_by_q[8] = IIWA14_C(0.0625) * t511;
-    /* link j3: derivatives */
-    const iiwa14_real_t t512 = t7 * t362 - t1 * t366 + (t473 * t20 - t505 + t477 * t503);
-    input_by_q[15] = IIWA14_C(0.0625) * (t512 + t507);
-    /* link j4: column of the mass matrix */
-    const iiwa14_real_t t513 = t3 * t463 - t2 * t459 - IIWA14_C(0.42) * t373;
-    /* link j4: derivatives */
-    const iiwa14_real_t t514 = t7 * t371 - t1 * t375 + (t481 * t20 + t471 * t27 - t513 * t503);
-    input_by_q[22] = IIWA14_C(0.0625) * (t514 + (t373 * t96 + t319 * t90));
-    /* link j5: column of the mass matrix */
-    const iiwa14_real_t t515 = t3 * t483 + t2 * t461 + IIWA14_C(-0.42) * t389;
-    /* link j5: derivatives */
-    const iiwa14_real_t t516 = t7 * t386 - t1 * t391 + (t484 * t20 - t485 * t27 - t515 * t503);
-    input_by_q[29] = IIWA14_C(0.125) * (t516 + (t389 * t96 + t385 * t90));
-    /* link j6: column of the mass matrix */
-    const iiwa14_real_t t517 = t3 * t488 + t2 * t489 + IIWA14_C(0.42) * t407;
-    /* link j6: derivatives */
-    const iiwa14_real_t t518 = t7 * t404 - t1 * t409 + (t490 * t20 - t491 * t27 - t517 * t503);
-    input_by_q[36] = IIWA14_C(0.125) * (t518 + (t403 * t90 - t407 * t96));
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t519 = t3 * t496 + t2 * t497 + IIWA14_C(0.42) * t429;
+    const iiwa14_real_t t206 = parameters[MX7] * t125 + parameters[MY7] * t124; /* link j7: derivatives */
+    const iiwa14_real_t t207 = t113 + t88; /* link j7: force and moment */
     /* link j7: derivatives */
-    const iiwa14_real_t t520 = t7 * t426 - t1 * t431 + (t498 * t20 - t499 * t27 - t519 * t503);
-    input_by_q[43] = IIWA14_C(0.125) * (t520 - (t429 * t96 + t425 * t90));
-    const iiwa14_real_t t521 = parameters[ZZ2R] - t341;
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t522 = parameters[YZ2] * dq[1] + t7 * t521 + (t354 - t307 + t328 * t322);
-    /* link j2: derivatives */
-    const iiwa14_real_t t523 = t0 * (IIWA14_C(2.0) * t522 + (t468 * t501 + t474 * t502));
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t524 = t3 * t339 + t2 * t340 - (parameters[XZ2] * dq[1] + t1 * t521);
-    /* link j2: derivatives */
-    const iiwa14_real_t t525 = t6 * (IIWA14_C(2.0) * t524 + (t474 * t501 + t469 * t502));
-    input_by_dq[1] = IIWA14_C(0.0625) * (t523 + t525);
-    const iiwa14_real_t t526 = IIWA14_C(2.0) * (t332 - t336 + (t331 + (t298 + t315 + t330)));
-    const iiwa14_real_t t527 = IIWA14_C(0.0625) * (t526 + IIWA14_C(2.0) * (t476 * t7 + t478 * t1));
-    input_by_dq[8] = IIWA14_C(1.6e3) * parameters[FV2] + t527;
-    /* link j3: derivatives */
-    const iiwa14_real_t t528 = t3 * t360 + t2 * t361 + IIWA14_C(2.0) * (t473 * t7 - t469 * t1);
-    input_by_dq[15] = IIWA14_C(0.0625) * t528;
-    /* link j4: derivatives */
-    const iiwa14_real_t t529 = t3 * t369 + t2 * t370 + t319 * t365 + IIWA14_C(2.0) * (t481 * t7 + t471 * t1);
-    input_by_dq[22] = IIWA14_C(0.0625) * t529;
-    /* link j5: derivatives */
-    const iiwa14_real_t t530 = t3 * t383 + t2 * t384 + t385 * t365 + IIWA14_C(2.0) * (t484 * t7 - t485 * t1);
-    input_by_dq[29] = IIWA14_C(0.125) * t530;
-    /* link j6: derivatives */
-    const iiwa14_real_t t531 = t3 * t401 + t2 * t402 + t403 * t365 + IIWA14_C(2.0) * (t490 * t7 - t491 * t1);
-    input_by_dq[36] = IIWA14_C(0.125) * t531;
-    /* link j7: derivatives */
-    const iiwa14_real_t t532 = t3 * t423 + t2 * t424 - t425 * t365 + IIWA14_C(2.0) * (t498 * t7 - t499 * t1);
-    input_by_dq[43] = IIWA14_C(0.125) * t532;
-    input_by_ddq[1] = t479;
-    input_by_ddq[8] = IIWA14_C(0.0625) * t509;
-    const iiwa14_real_t t533 = IIWA14_C(-0.0625) * t477;
-    input_by_ddq[15] = t533;
-    const iiwa14_real_t t534 = IIWA14_C(0.0625) * t513;
-    input_by_ddq[22] = t534;
-    input_by_ddq[29] = IIWA14_C(0.125) * t515;
-    input_by_ddq[36] = IIWA14_C(0.125) * t517;
-    input_by_ddq[43] = IIWA14_C(0.125) * t519;
-    const iiwa14_real_t t535 = IIWA14_C(2.0) * t12; /* link j3: derivatives */
-    const iiwa14_real_t t536 = IIWA14_C(2.0) * t4;
-    const iiwa14_real_t t537 = t171 + t162; /* link j4: motion */
-    /* link j3: derivatives */
-    const iiwa14_real_t t538 = t298 * t535 + t307 * t536 + (t458 * t42 + t464 * t30 - t470 * t537);
-    const iiwa14_real_t t539 = t538 + t350 * t93 - t172;
-    const iiwa14_real_t t540 = t459 * t30; /* link j4: derivatives */
-    /* link j3: derivatives */
-    const iiwa14_real_t t541 = t313 * t535 + t301 * t536 + (t540 + t464 * t42 - t472 * t537);
-    const iiwa14_real_t t542 = t350 * t100; /* link j4: derivatives */
-    const iiwa14_real_t t543 = t165 + (t541 - t542); /* link j3: derivatives */
-    const iiwa14_real_t t544 = t177 + (t326 * t536 + (t350 * t30 + t316 * t537));
-    const iiwa14_real_t t545 = t326 * t535 + (t320 * t537 + t350 * t42) - t176;
-    const iiwa14_real_t t546 = t3 * t543 - t2 * t539 + IIWA14_C(0.42) * (t3 * t544 - t2 * t545);
-    const iiwa14_real_t t547 = t470 * t42 + t472 * t30 - t469 * t537;
-    const iiwa14_real_t t548 = t316 * t100 - t320 * t93;
-    const iiwa14_real_t t549 = t6 * (t339 * t535 + t340 * t536 + t547 + t548);
-    input_by_q[2] = IIWA14_C(0.0625) * (t0 * t546 + t549);
-    const iiwa14_real_t t550 = t3 * t539 + t2 * t543 + IIWA14_C(0.42) * (t2 * t544 + t3 * t545);
-    input_by_q[9] = IIWA14_C(0.0625) * t550;
-    const iiwa14_real_t t551 = IIWA14_C(0.0625) * (t548 + (t547 + (t12 * t360 + t4 * t361)));
-    input_by_q[16] = t551;
-    /* link j4: derivatives */
-    const iiwa14_real_t t552 = t12 * t369 + t4 * t370 + (t463 * t42 - t540 + t471 * t537);
-    input_by_q[23] = IIWA14_C(0.0625) * (t552 + t542);
-    /* link j5: derivatives */
-    const iiwa14_real_t t553 = t12 * t383 + t4 * t384 + (t483 * t42 + t461 * t30 - t485 * t537);
-    input_by_q[30] = IIWA14_C(0.125) * (t553 + (t388 * t100 + t258 * t93));
-    /* link j6: derivatives */
-    const iiwa14_real_t t554 = t12 * t401 + t4 * t402 + (t488 * t42 + t489 * t30 - t491 * t537);
-    input_by_q[37] = IIWA14_C(0.125) * (t554 + (t399 * t93 - t406 * t100));
-    /* link j7: derivatives */
-    const iiwa14_real_t t555 = t12 * t423 + t4 * t424 + (t496 * t42 + t497 * t30 - t499 * t537);
-    input_by_q[44] = IIWA14_C(0.125) * (t555 + (t421 * t93 - t428 * t100));
-    const iiwa14_real_t t556 = IIWA14_C(2.0) * t345 - (t458 * t535 + t464 * t536); /* link j3: derivatives */
-    const iiwa14_real_t t557 = IIWA14_C(2.0) * t346 + (t464 * t535 + t459 * t536);
-    const iiwa14_real_t t558 = IIWA14_C(2.0) * t349 + t350 * t536;
-    const iiwa14_real_t t559 = IIWA14_C(-2.0) * t347 + t350 * t535;
-    const iiwa14_real_t t560 = t2 * t556 + t3 * t557 + IIWA14_C(0.42) * (t3 * t558 - t2 * t559);
-    const iiwa14_real_t t561 = t0 * t560 + t6 * (t363 + (t470 * t535 + t472 * t536));
-    input_by_dq[2] = IIWA14_C(0.0625) * t561;
-    const iiwa14_real_t t562 = t2 * t557 - t3 * t556 + IIWA14_C(0.42) * (t2 * t558 + t3 * t559);
-    input_by_dq[9] = IIWA14_C(0.0625) * t562;
-    const iiwa14_real_t t563 = IIWA14_C(0.0625) * (t363 + IIWA14_C(2.0) * (t470 * t12 + t472 * t4));
-    input_by_dq[16] = IIWA14_C(1.6e3) * parameters[FV3] + t563;
-    const iiwa14_real_t t564 = IIWA14_C(0.0625) * (t372 + IIWA14_C(2.0) * (t463 * t12 - t459 * t4));
-    input_by_dq[23] = t564;
-    const iiwa14_real_t t565 = IIWA14_C(0.125) * (t387 + IIWA14_C(2.0) * (t483 * t12 + t461 * t4));
-    input_by_dq[30] = t565;
-    const iiwa14_real_t t566 = IIWA14_C(0.125) * (t405 + IIWA14_C(2.0) * (t488 * t12 + t489 * t4));
-    input_by_dq[37] = t566;
-    const iiwa14_real_t t567 = IIWA14_C(0.125) * (t427 + IIWA14_C(2.0) * (t496 * t12 + t497 * t4));
-    input_by_dq[44] = t567;
-    input_by_ddq[2] = t480;
-    input_by_ddq[9] = t533;
-    input_by_ddq[16] = IIWA14_C(1.6e3) * parameters[IA3] + IIWA14_C(0.0625) * t469;
-    const iiwa14_real_t t568 = IIWA14_C(-0.0625) * t471;
-    input_by_ddq[23] = t568;
-    input_by_ddq[30] = IIWA14_C(0.125) * t485;
-    input_by_ddq[37] = IIWA14_C(0.125) * t491;
-    input_by_ddq[44] = IIWA14_C(0.125) * t499;
-    const iiwa14_real_t t569 = IIWA14_C(2.0) * t40; /* link j4: derivatives */
-    const iiwa14_real_t t570 = IIWA14_C(2.0) * t10;
-    const iiwa14_real_t t571 = t450 * t47; /* link j5: derivatives */
-    const iiwa14_real_t t572 = t103 + t153; /* link j5: motion */
-    /* link j4: derivatives */
-    const iiwa14_real_t t573 = t283 * t569 + t277 * t570 + (t455 * t34 - t571 + t462 * t572);
-    const iiwa14_real_t t574 = t268 * t106; /* link j5: derivatives */
-    const iiwa14_real_t t575 = t154 + (t574 + t573); /* link j4: derivatives */
-    const iiwa14_real_t t576 = t274 * t569 + t293 * t570 + (t449 * t34 + t455 * t47 + t460 * t572);
-    const iiwa14_real_t t577 = t159 + (t576 - t268 * t98);
-    const iiwa14_real_t t578 = t5 * t577 - t9 * t575;
-    const iiwa14_real_t t579 = t460 * t34 + t462 * t47 + t459 * t572;
-    const iiwa14_real_t t580 = t317 * t98 - t318 * t106;
-    const iiwa14_real_t t581 = t308 * t569 + t311 * t570 + t579 + t580;
-    const iiwa14_real_t t582 = t173 + (t348 * t569 + (t317 * t572 - t268 * t34));
-    const iiwa14_real_t t583 = t175 + (t348 * t570 + (t318 * t572 - t268 * t47));
-    const iiwa14_real_t t584 = t5 * t583 + t9 * t582;
-    const iiwa14_real_t t585 = t318 * t34 - t317 * t47 - (t325 * t569 + t324 * t570);
-    const iiwa14_real_t t586 = t3 * t581 - t2 * t578 + IIWA14_C(0.42) * (t3 * t584 - t2 * t585);
-    const iiwa14_real_t t587 = t9 * t577 + t5 * t575;
-    input_by_q[3] = IIWA14_C(0.0625) * (t0 * t586 + t6 * t587);
-    const iiwa14_real_t t588 = t3 * t578 + t2 * t581 + IIWA14_C(0.42) * (t2 * t584 + t3 * t585);
-    input_by_q[10] = IIWA14_C(0.0625) * t588;
-    input_by_q[17] = IIWA14_C(0.0625) * t587;
-    const iiwa14_real_t t589 = IIWA14_C(0.0625) * (t40 * t367 + t10 * t368 - t579 - t580);
-    input_by_q[24] = t589;
-    /* link j5: derivatives */
-    const iiwa14_real_t t590 = t40 * t378 + t10 * t382 + (t454 * t34 - t571 + t461 * t572);
-    input_by_q[31] = IIWA14_C(0.125) * (t590 + t574);
-    /* link j6: derivatives */
-    const iiwa14_real_t t591 = t40 * t396 + t10 * t400 + (t487 * t34 - t452 * t47 + t489 * t572);
-    input_by_q[38] = IIWA14_C(0.125) * (t591 + (t398 * t106 + t256 * t98));
-    /* link j7: derivatives */
-    const iiwa14_real_t t592 = t40 * t417 + t10 * t422 + (t494 * t34 - t495 * t47 + t497 * t572);
-    input_by_q[45] = IIWA14_C(0.125) * (t592 - (t420 * t106 + t416 * t98));
-    const iiwa14_real_t t593 = IIWA14_C(-2.0) * t304 + (t449 * t569 + t455 * t570); /* link j4: derivatives */
-    const iiwa14_real_t t594 = IIWA14_C(2.0) * t305 + (t455 * t569 - t450 * t570);
-    const iiwa14_real_t t595 = t9 * t594 - t5 * t593;
-    const iiwa14_real_t t596 = t370 + (t460 * t569 + t462 * t570);
-    const iiwa14_real_t t597 = t5 * (IIWA14_C(2.0) * t325 - t268 * t570) + t9 * (IIWA14_C(-2.0) * t324
-        - t268 * t569);
-    const iiwa14_real_t t598 = t318 * t569 - t317 * t570;
-    const iiwa14_real_t t599 = t2 * t595 + t3 * t596 + IIWA14_C(0.42) * (t3 * t597 - t2 * t598);
-    const iiwa14_real_t t600 = t9 * t593 + t5 * t594;
-    input_by_dq[3] = IIWA14_C(0.0625) * (t0 * t599 + t6 * t600);
-    const iiwa14_real_t t601 = t2 * t596 - t3 * t595 + IIWA14_C(0.42) * (t2 * t597 + t3 * t598);
-    input_by_dq[10] = IIWA14_C(0.0625) * t601;
-    input_by_dq[17] = IIWA14_C(0.0625) * t600;
-    const iiwa14_real_t t602 = IIWA14_C(0.0625) * (IIWA14_C(-2.0) * (t460 * t40 + t462 * t10) - t370);
-    input_by_dq[24] = IIWA14_C(1.6e3) * parameters[FV4] + t602;
-    const iiwa14_real_t t603 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t454 * t40 - t450 * t10) - t384);
-    input_by_dq[31] = t603;
-    const iiwa14_real_t t604 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t487 * t40 - t452 * t10) - t402);
-    input_by_dq[38] = t604;
-    const iiwa14_real_t t605 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t494 * t40 - t495 * t10) - t424);
-    input_by_dq[45] = t605;
-    input_by_ddq[3] = t482;
-    input_by_ddq[10] = t534;
-    input_by_ddq[17] = t568;
-    input_by_ddq[24] = IIWA14_C(1.6e3) * parameters[IA4] + IIWA14_C(0.0625) * t459;
-    input_by_ddq[31] = IIWA14_C(-0.125) * t461;
-    input_by_ddq[38] = IIWA14_C(-0.125) * t489;
-    input_by_ddq[45] = IIWA14_C(-0.125) * t497;
-    const iiwa14_real_t t606 = IIWA14_C(-2.0) * t16; /* link j5: derivatives */
-    const iiwa14_real_t t607 = IIWA14_C(2.0) * t15;
-    const iiwa14_real_t t608 = t140 + t133; /* link j6: motion */
-    /* link j5: derivatives */
-    const iiwa14_real_t t609 = t439 * t64 + t445 * t51 - t451 * t608 - (t236 * t606 + t245 * t607);
-    const iiwa14_real_t t610 = t141 + (t609 - t291 * t102);
-    const iiwa14_real_t t611 = t440 * t51; /* link j6: derivatives */
-    /* link j5: derivatives */
-    const iiwa14_real_t t612 = t239 * t607 - t249 * t606 + (t611 + t445 * t64 - t453 * t608);
-    const iiwa14_real_t t613 = t291 * t120; /* link j6: derivatives */
-    const iiwa14_real_t t614 = t135 + (t613 + t612); /* link j5: derivatives */
-    const iiwa14_real_t t615 = t148 - (t266 * t607 + (t291 * t51 - t253 * t608));
-    const iiwa14_real_t t616 = t146 + (t266 * t606 + (t257 * t608 - t291 * t64));
-    const iiwa14_real_t t617 = t11 * t616 - t14 * t615;
-    const iiwa14_real_t t618 = t11 * t610 - t14 * t614 + IIWA14_C(0.4) * t617;
-    const iiwa14_real_t t619 = t451 * t64 + t453 * t51 + t450 * t608;
-    const iiwa14_real_t t620 = t253 * t120 - t257 * t102;
-    const iiwa14_real_t t621 = t280 * t607 - t279 * t606 + t619 + t620;
-    const iiwa14_real_t t622 = t5 * t618 - t9 * t621;
-    const iiwa14_real_t t623 = t11 * t615 + t14 * t616;
-    const iiwa14_real_t t624 = t14 * t610 + t11 * t614 + IIWA14_C(0.4) * t623;
-    const iiwa14_real_t t625 = t257 * t51 - t253 * t64 - (t289 * t606 + t287 * t607);
-    const iiwa14_real_t t626 = t5 * t623 + t9 * t625;
-    const iiwa14_real_t t627 = t3 * t624 - t2 * t622 + IIWA14_C(0.42) * (t3 * t626 - t2 * t617);
-    const iiwa14_real_t t628 = t9 * t618 + t5 * t621;
-    input_by_q[4] = IIWA14_C(0.0625) * (t0 * t627 + t6 * t628);
-    const iiwa14_real_t t629 = t3 * t622 + t2 * t624 + IIWA14_C(0.42) * (t2 * t626 + t3 * t617);
-    input_by_q[11] = IIWA14_C(0.0625) * t629;
-    input_by_q[18] = IIWA14_C(0.0625) * t628;
-    input_by_q[25] = IIWA14_C(-0.0625) * t624;
-    const iiwa14_real_t t630 = IIWA14_C(0.125) * (t620 + (t619 + (t16 * t376 + t15 * t377)));
-    input_by_q[32] = t630;
-    /* link j6: derivatives */
-    const iiwa14_real_t t631 = t16 * t394 + t15 * t395 + (t444 * t64 + t611 + t452 * t608);
-    input_by_q[39] = IIWA14_C(0.125) * (t631 + t613);
-    /* link j7: derivatives */
-    const iiwa14_real_t t632 = t16 * t414 + t15 * t415 + (t493 * t64 + t442 * t51 + t495 * t608);
-    input_by_q[46] = IIWA14_C(0.125) * (t632 + (t419 * t120 + t254 * t102));
-    const iiwa14_real_t t633 = IIWA14_C(2.0) * t285 + (t445 * t607 - t439 * t606); /* link j5: derivatives */
-    const iiwa14_real_t t634 = IIWA14_C(-2.0) * t286 + (t440 * t607 - t445 * t606);
-    const iiwa14_real_t t635 = IIWA14_C(-2.0) * t289 + t291 * t607;
-    const iiwa14_real_t t636 = IIWA14_C(2.0) * t287 + t291 * t606;
-    const iiwa14_real_t t637 = t14 * t635 + t11 * t636;
-    const iiwa14_real_t t638 = t11 * t633 - t14 * t634 + IIWA14_C(0.4) * t637;
-    const iiwa14_real_t t639 = t379 + (t453 * t607 - t451 * t606);
-    const iiwa14_real_t t640 = t9 * t639 - t5 * t638;
-    const iiwa14_real_t t641 = t14 * t636 - t11 * t635;
-    const iiwa14_real_t t642 = t14 * t633 + t11 * t634 + IIWA14_C(0.4) * t641;
-    const iiwa14_real_t t643 = t5 * t641 + t9 * (t253 * t606 + t257 * t607);
-    const iiwa14_real_t t644 = t2 * t640 + t3 * t642 + IIWA14_C(0.42) * (t3 * t643 - t2 * t637);
-    const iiwa14_real_t t645 = t9 * t638 + t5 * t639;
-    input_by_dq[4] = IIWA14_C(0.0625) * (t0 * t644 + t6 * t645);
-    const iiwa14_real_t t646 = t2 * t642 - t3 * t640 + IIWA14_C(0.42) * (t2 * t643 + t3 * t637);
-    input_by_dq[11] = IIWA14_C(0.0625) * t646;
-    input_by_dq[18] = IIWA14_C(0.0625) * t645;
-    input_by_dq[25] = IIWA14_C(-0.0625) * t642;
-    const iiwa14_real_t t647 = IIWA14_C(0.125) * (t379 + IIWA14_C(2.0) * (t451 * t16 + t453 * t15));
-    input_by_dq[32] = IIWA14_C(1250.0) * parameters[FV5] + t647;
-    const iiwa14_real_t t648 = IIWA14_C(0.125) * (t397 + IIWA14_C(2.0) * (t444 * t16 + t440 * t15));
-    input_by_dq[39] = t648;
-    const iiwa14_real_t t649 = IIWA14_C(0.125) * (t418 + IIWA14_C(2.0) * (t493 * t16 + t442 * t15));
-    input_by_dq[46] = t649;
-    input_by_ddq[4] = IIWA14_C(0.0625) * t486;
-    input_by_ddq[11] = IIWA14_C(0.0625) * t515;
-    input_by_ddq[18] = IIWA14_C(0.0625) * t485;
-    input_by_ddq[25] = IIWA14_C(-0.0625) * t461;
-    input_by_ddq[32] = IIWA14_C(1250.0) * parameters[IA5] + IIWA14_C(-0.125) * t450;
-    const iiwa14_real_t t650 = IIWA14_C(-0.125) * t452;
-    input_by_ddq[39] = t650;
-    const iiwa14_real_t t651 = IIWA14_C(-0.125) * t495;
-    input_by_ddq[46] = t651;
-    const iiwa14_real_t t652 = t128 + t118; /* link j7: motion */
-    const iiwa14_real_t t653 = IIWA14_C(2.0) * t58; /* link j6: derivatives */
-    const iiwa14_real_t t654 = IIWA14_C(-2.0) * t68;
-    const iiwa14_real_t t655 = t219 * t653 + t231 * t654 + (t436 * t57 - t434 * t81 + t441 * t652);
-    const iiwa14_real_t t656 = t129 - (t655 + t252 * t123);
-    const iiwa14_real_t t657 = parameters[ZZ7] * t57; /* link j7: derivatives */
-    /* link j6: derivatives */
-    const iiwa14_real_t t658 = t222 * t654 - t227 * t653 + (t443 * t652 - (t657 + t436 * t81));
-    const iiwa14_real_t t659 = t252 * t108; /* link j7: derivatives */
-    const iiwa14_real_t t660 = t659 + t658 - t121; /* link j6: derivatives */
-    const iiwa14_real_t t661 = t56 * t656 + t39 * t660;
-    const iiwa14_real_t t662 = t443 * t57 - t441 * t81 - t440 * t652;
-    const iiwa14_real_t t663 = t255 * t123 + parameters[MY6R] * t108;
-    const iiwa14_real_t t664 = t246 * t653 - t247 * t654 - t662 - t663;
-    const iiwa14_real_t t665 = t145 + (t288 * t654 + (t252 * t57 + parameters[MY6R] * t652));
-    const iiwa14_real_t t666 = t144 + (t252 * t81 - t255 * t652 - t288 * t653);
-    const iiwa14_real_t t667 = t56 * t665 - t39 * t666;
-    const iiwa14_real_t t668 = t262 * t653 + t265 * t654 + (parameters[MY6R] * t81 + t255 * t57);
-    const iiwa14_real_t t669 = t11 * t668 - t14 * t667;
-    const iiwa14_real_t t670 = t11 * t661 + t14 * t664 + IIWA14_C(0.4) * t669;
-    const iiwa14_real_t t671 = t56 * t660 - t39 * t656;
-    const iiwa14_real_t t672 = t5 * t670 - t9 * t671;
-    const iiwa14_real_t t673 = t11 * t667 + t14 * t668;
-    const iiwa14_real_t t674 = t14 * t661 - t11 * t664 + IIWA14_C(0.4) * t673;
-    const iiwa14_real_t t675 = t5 * t673 + t9 * (t39 * t665 + t56 * t666);
-    const iiwa14_real_t t676 = t3 * t674 - t2 * t672 + IIWA14_C(0.42) * (t3 * t675 - t2 * t669);
-    const iiwa14_real_t t677 = t9 * t670 + t5 * t671;
-    input_by_q[5] = IIWA14_C(0.0625) * (t0 * t676 + t6 * t677);
-    const iiwa14_real_t t678 = t3 * t672 + t2 * t674 + IIWA14_C(0.42) * (t2 * t675 + t3 * t669);
-    input_by_q[12] = IIWA14_C(0.0625) * t678;
-    input_by_q[19] = IIWA14_C(0.0625) * t677;
-    input_by_q[26] = IIWA14_C(-0.0625) * t674;
-    input_by_q[33] = IIWA14_C(0.125) * t671;
-    const iiwa14_real_t t679 = IIWA14_C(0.125) * (t663 + (t662 - (t58 * t392 + t68 * t393)));
-    input_by_q[40] = t679;
-    /* link j7: derivatives */
-    const iiwa14_real_t t680 = t58 * t412 + t68 * t413 + (t435 * t81 + t657 + t442 * t652);
-    input_by_q[47] = IIWA14_C(0.125) * (t659 - t680);
-    const iiwa14_real_t t681 = IIWA14_C(2.0) * t242 - (t434 * t653 + t436 * t654); /* link j6: derivatives */
-    const iiwa14_real_t t682 = IIWA14_C(2.0) * t243 + (parameters[ZZ7] * t654 - t436 * t653);
-    const iiwa14_real_t t683 = t39 * t682 - t56 * t681;
-    const iiwa14_real_t t684 = t441 * t653 + t443 * t654 - t395;
-    const iiwa14_real_t t685 = IIWA14_C(-2.0) * t262 - t252 * t654;
-    const iiwa14_real_t t686 = IIWA14_C(-2.0) * t265 + t252 * t653;
-    const iiwa14_real_t t687 = t39 * t686 - t56 * t685;
-    const iiwa14_real_t t688 = parameters[MY6R] * t653 - t255 * t654;
-    const iiwa14_real_t t689 = t14 * t687 + t11 * t688;
-    const iiwa14_real_t t690 = t11 * t683 + t14 * t684 + IIWA14_C(0.4) * t689;
-    const iiwa14_real_t t691 = t39 * t681 + t56 * t682;
-    const iiwa14_real_t t692 = t9 * t691 - t5 * t690;
-    const iiwa14_real_t t693 = t14 * t688 - t11 * t687;
-    const iiwa14_real_t t694 = t14 * t683 - t11 * t684 + IIWA14_C(0.4) * t693;
-    const iiwa14_real_t t695 = t5 * t693 + t9 * (t39 * t685 + t56 * t686);
-    const iiwa14_real_t t696 = t2 * t692 + t3 * t694 + IIWA14_C(0.42) * (t3 * t695 - t2 * t689);
-    const iiwa14_real_t t697 = t9 * t690 + t5 * t691;
-    input_by_dq[5] = IIWA14_C(0.0625) * (t0 * t696 + t6 * t697);
-    const iiwa14_real_t t698 = t2 * t694 - t3 * t692 + IIWA14_C(0.42) * (t2 * t695 + t3 * t689);
-    input_by_dq[12] = IIWA14_C(0.0625) * t698;
-    input_by_dq[19] = IIWA14_C(0.0625) * t697;
-    input_by_dq[26] = IIWA14_C(-0.0625) * t694;
-    input_by_dq[33] = IIWA14_C(0.125) * t691;
-    const iiwa14_real_t t699 = IIWA14_C(0.125) * (t395 + IIWA14_C(2.0) * (t443 * t68 - t441 * t58));
-    input_by_dq[40] = IIWA14_C(3.2e3) * parameters[FV6] + t699;
-    const iiwa14_real_t t700 = IIWA14_C(0.125) * (t415 + IIWA14_C(-2.0) * (t435 * t58
-        + parameters[ZZ7] * t68));
-    input_by_dq[47] = t700;
-    input_by_ddq[5] = IIWA14_C(0.0625) * t492;
-    input_by_ddq[12] = IIWA14_C(0.0625) * t517;
-    input_by_ddq[19] = IIWA14_C(0.0625) * t491;
-    input_by_ddq[26] = IIWA14_C(-0.0625) * t489;
-    input_by_ddq[33] = t650;
-    input_by_ddq[40] = IIWA14_C(3.2e3) * parameters[IA6] + IIWA14_C(0.125) * t440;
-    const iiwa14_real_t t701 = IIWA14_C(0.125) * t442;
-    input_by_ddq[47] = t701;
-    const iiwa14_real_t t702 = t113 + t88; /* link j7: force and moment */
-    const iiwa14_real_t t703 = IIWA14_C(2.0) * t73; /* link j7: derivatives */
-    const iiwa14_real_t t704 = IIWA14_C(2.0) * t78;
-    const iiwa14_real_t t705 = t208 * t703 + t214 * t704 + (parameters[XX7R] * t77 + parameters[XY7] * t72
-        - parameters[XZ7R] * t702);
-    const iiwa14_real_t t706 = t114 + t705;
-    const iiwa14_real_t t707 = t213 * t703 + t210 * t704 + (parameters[XY7] * t77 - parameters[YZ7R] * t702);
-    const iiwa14_real_t t708 = t109 + t707;
-    const iiwa14_real_t t709 = t63 * t706 - t71 * t708;
-    const iiwa14_real_t t710 = parameters[XZ7R] * t77 + parameters[YZ7R] * t72 - parameters[ZZ7] * t702;
-    const iiwa14_real_t t711 = parameters[MX7] * t125 + parameters[MY7] * t124;
-    const iiwa14_real_t t712 = t224 * t704 - t223 * t703 + t710 + t711;
-    const iiwa14_real_t t713 = t56 * t709 + t39 * t712;
-    const iiwa14_real_t t714 = t71 * t706 + t63 * t708;
-    const iiwa14_real_t t715 = t143 - (t261 * t704 - parameters[MY7] * t702);
-    const iiwa14_real_t t716 = t142 + (parameters[MX7] * t702 - t261 * t703);
-    const iiwa14_real_t t717 = t63 * t715 + t71 * t716;
-    const iiwa14_real_t t718 = parameters[MX7] * t72 - parameters[MY7] * t77 - (t264 * t703 + t263 * t704);
-    const iiwa14_real_t t719 = t56 * t717 - t39 * t718;
-    const iiwa14_real_t t720 = t63 * t716 - t71 * t715;
-    const iiwa14_real_t t721 = t11 * t720 - t14 * t719;
-    const iiwa14_real_t t722 = t11 * t713 - t14 * t714 + IIWA14_C(0.4) * t721;
-    const iiwa14_real_t t723 = t56 * t712 - t39 * t709;
-    const iiwa14_real_t t724 = t5 * t722 - t9 * t723;
-    const iiwa14_real_t t725 = t11 * t719 + t14 * t720;
-    const iiwa14_real_t t726 = t14 * t713 + t11 * t714 + IIWA14_C(0.4) * t725;
-    const iiwa14_real_t t727 = t5 * t725 + t9 * (t39 * t717 + t56 * t718);
-    const iiwa14_real_t t728 = t3 * t726 - t2 * t724 + IIWA14_C(0.42) * (t3 * t727 - t2 * t721);
-    const iiwa14_real_t t729 = t9 * t722 + t5 * t723;
-    input_by_q[6] = IIWA14_C(0.0625) * (t0 * t728 + t6 * t729);
-    const iiwa14_real_t t730 = t3 * t724 + t2 * t726 + IIWA14_C(0.42) * (t2 * t727 + t3 * t721);
-    input_by_q[13] = IIWA14_C(0.0625) * t730;
-    input_by_q[20] = IIWA14_C(0.0625) * t729;
-    input_by_q[27] = IIWA14_C(-0.0625) * t726;
-    input_by_q[34] = IIWA14_C(0.125) * t723;
-    input_by_q[41] = IIWA14_C(0.125) * t714;
-    const iiwa14_real_t t731 = IIWA14_C(0.125) * (t711 + (t710 + (t73 * t410 + t78 * t411)));
-    input_by_q[48] = t731;
-    const iiwa14_real_t t732 = IIWA14_C(2.0) * t229 + (parameters[XX7R] * t703 + parameters[XY7] * t704);
-    const iiwa14_real_t t733 = IIWA14_C(2.0) * t230 + parameters[XY7] * t703;
-    const iiwa14_real_t t734 = t71 * t733 - t63 * t732;
-    const iiwa14_real_t t735 = t413 + (parameters[XZ7R] * t703 + parameters[YZ7R] * t704);
-    const iiwa14_real_t t736 = t39 * t735 - t56 * t734;
-    const iiwa14_real_t t737 = t71 * t732 + t63 * t733;
-    const iiwa14_real_t t738 = parameters[MX7] * t704 - parameters[MY7] * t703;
-    const iiwa14_real_t t739 = IIWA14_C(2.0) * t264;
-    const iiwa14_real_t t740 = IIWA14_C(2.0) * t263;
-    const iiwa14_real_t t741 = t71 * t740 - t63 * t739;
-    const iiwa14_real_t t742 = t39 * t738 - t56 * t741;
-    const iiwa14_real_t t743 = t71 * t739 + t63 * t740;
-    const iiwa14_real_t t744 = t14 * t742 + t11 * t743;
-    const iiwa14_real_t t745 = t11 * t736 - t14 * t737 + IIWA14_C(0.4) * t744;
-    const iiwa14_real_t t746 = t39 * t734 + t56 * t735;
-    const iiwa14_real_t t747 = t9 * t746 - t5 * t745;
-    const iiwa14_real_t t748 = t14 * t743 - t11 * t742;
-    const iiwa14_real_t t749 = t14 * t736 + t11 * t737 + IIWA14_C(0.4) * t748;
-    const iiwa14_real_t t750 = t5 * t748 + t9 * (t39 * t741 + t56 * t738);
-    const iiwa14_real_t t751 = t2 * t747 + t3 * t749 + IIWA14_C(0.42) * (t3 * t750 - t2 * t744);
-    const iiwa14_real_t t752 = t9 * t745 + t5 * t746;
-    input_by_dq[6] = IIWA14_C(0.0625) * (t0 * t751 + t6 * t752);
-    const iiwa14_real_t t753 = t2 * t749 - t3 * t747 + IIWA14_C(0.42) * (t2 * t750 + t3 * t744);
-    input_by_dq[13] = IIWA14_C(0.0625) * t753;
-    input_by_dq[20] = IIWA14_C(0.0625) * t752;
-    input_by_dq[27] = IIWA14_C(-0.0625) * t749;
-    input_by_dq[34] = IIWA14_C(0.125) * t746;
-    input_by_dq[41] = IIWA14_C(0.125) * t737;
+    const iiwa14_real_t t208 = parameters[XZ7R] * t77 + parameters[YZ7R] * t72 - parameters[ZZ7] * t207;
+    const iiwa14_real_t t209 = IIWA14_C(0.5) * (parameters[XX7R] + parameters[ZZ7]);
+    const iiwa14_real_t t210 = parameters[XX7R] - t209;
+    const iiwa14_real_t t211 = parameters[XY7] * t78 + t73 * t210;
+    const iiwa14_real_t t212 = IIWA14_C(-2.0) * t211;
+    const iiwa14_real_t t213 = t78 * t209 - parameters[XY7] * t73;
+    const iiwa14_real_t t214 = IIWA14_C(2.0) * t213;
+    const iiwa14_real_t t215 = IIWA14_C(0.125) * (t206 + (t208 + (t73 * t212 + t78 * t214)));
+    input_by_q[48] = t215;
+    const iiwa14_real_t t216 = parameters[XZ7R] * t73;
+    const iiwa14_real_t t217 = parameters[XY7] * t74;
+    const iiwa14_real_t t218 = t216 - t217;
+    const iiwa14_real_t t219 = IIWA14_C(2.0) * t73;
+    const iiwa14_real_t t220 = parameters[YZ7R] * t73 + t74 * t209;
+    const iiwa14_real_t t221 = IIWA14_C(2.0) * t78;
+    const iiwa14_real_t t222 = t218 * t219 + t220 * t221 + (parameters[XX7R] * t77 + parameters[XY7] * t72
+        - parameters[XZ7R] * t207);
+    const iiwa14_real_t t223 = t114 + t222;
+    const iiwa14_real_t t224 = parameters[XZ7R] * t78 + t74 * t210;
+    const iiwa14_real_t t225 = parameters[YZ7R] * t78;
+    const iiwa14_real_t t226 = t217 + t225;
+    const iiwa14_real_t t227 = t224 * t219 + t226 * t221 + (parameters[XY7] * t77 - parameters[YZ7R] * t207);
+    const iiwa14_real_t t228 = t109 + t227;
+    const iiwa14_real_t t229 = t71 * t223 + t63 * t228;
+    input_by_q[41] = IIWA14_C(0.125) * t229;
+    const iiwa14_real_t t230 = t63 * t223 - t71 * t228;
+    const iiwa14_real_t t231 = t213 * t221 - t211 * t219 + t208 + t206;
+    const iiwa14_real_t t232 = t56 * t231 - t39 * t230;
+    input_by_q[34] = IIWA14_C(0.125) * t232;
+    const iiwa14_real_t t233 = t56 * t230 + t39 * t231;
+    const iiwa14_real_t t234 = parameters[MY7] * t78 + parameters[MX7] * t73;
+    const iiwa14_real_t t235 = t143 - (t234 * t221 - parameters[MY7] * t207);
+    const iiwa14_real_t t236 = t142 + (parameters[MX7] * t207 - t234 * t219);
+    const iiwa14_real_t t237 = t63 * t235 + t71 * t236;
+    const iiwa14_real_t t238 = parameters[MX7] * t74;
+    const iiwa14_real_t t239 = parameters[MY7] * t74;
+    const iiwa14_real_t t240 = parameters[MX7] * t72 - parameters[MY7] * t77 - (t238 * t219 + t239 * t221);
+    const iiwa14_real_t t241 = t56 * t237 - t39 * t240;
+    const iiwa14_real_t t242 = t63 * t236 - t71 * t235;
+    const iiwa14_real_t t243 = t11 * t241 + t14 * t242;
+    const iiwa14_real_t t244 = t14 * t233 + t11 * t229 + IIWA14_C(0.4) * t243;
+    input_by_q[27] = IIWA14_C(-0.0625) * t244;
+    const iiwa14_real_t t245 = t11 * t242 - t14 * t241;
+    const iiwa14_real_t t246 = t11 * t233 - t14 * t229 + IIWA14_C(0.4) * t245;
+    const iiwa14_real_t t247 = t9 * t246 + t5 * t232;
+    input_by_q[20] = IIWA14_C(0.0625) * t247;
+    const iiwa14_real_t t248 = t5 * t246 - t9 * t232;
+    const iiwa14_real_t t249 = t5 * t243 + t9 * (t39 * t237 + t56 * t240);
+    const iiwa14_real_t t250 = t3 * t248 + t2 * t244 + IIWA14_C(0.42) * (t2 * t249 + t3 * t245);
+    input_by_q[13] = IIWA14_C(0.0625) * t250;
+    const iiwa14_real_t t251 = t3 * t244 - t2 * t248 + IIWA14_C(0.42) * (t3 * t249 - t2 * t245);
+    input_by_q[6] = IIWA14_C(0.0625) * (t0 * t251 + t6 * t247);
     input_by_dq[48] = IIWA14_C(3.2e3) * parameters[FV7];
-    input_by_ddq[6] = IIWA14_C(0.0625) * t500;
-    input_by_ddq[13] = IIWA14_C(0.0625) * t519;
-    input_by_ddq[20] = IIWA14_C(0.0625) * t499;
-    input_by_ddq[27] = IIWA14_C(-0.0625) * t497;
-    input_by_ddq[34] = t651;
-    input_by_ddq[41] = t701;
+    const iiwa14_real_t t252 = parameters[ZZ7] - t209;
+    const iiwa14_real_t t253 = t73 * t252 - parameters[YZ7R] * t74;
+    const iiwa14_real_t t254 = IIWA14_C(2.0) * t253 + (parameters[XX7R] * t219 + parameters[XY7] * t221);
+    const iiwa14_real_t t255 = parameters[XZ7R] * t74 + t78 * t252;
+    const iiwa14_real_t t256 = IIWA14_C(2.0) * t255 + parameters[XY7] * t219;
+    const iiwa14_real_t t257 = t71 * t254 + t63 * t256;
+    input_by_dq[41] = IIWA14_C(0.125) * t257;
+    const iiwa14_real_t t258 = t71 * t256 - t63 * t254;
+    const iiwa14_real_t t259 = t216 + t225;
+    const iiwa14_real_t t260 = IIWA14_C(-2.0) * t259;
+    const iiwa14_real_t t261 = t260 + (parameters[XZ7R] * t219 + parameters[YZ7R] * t221);
+    const iiwa14_real_t t262 = t39 * t258 + t56 * t261;
+    input_by_dq[34] = IIWA14_C(0.125) * t262;
+    const iiwa14_real_t t263 = t39 * t261 - t56 * t258;
+    const iiwa14_real_t t264 = parameters[MX7] * t221 - parameters[MY7] * t219;
+    const iiwa14_real_t t265 = IIWA14_C(2.0) * t238;
+    const iiwa14_real_t t266 = IIWA14_C(2.0) * t239;
+    const iiwa14_real_t t267 = t71 * t266 - t63 * t265;
+    const iiwa14_real_t t268 = t39 * t264 - t56 * t267;
+    const iiwa14_real_t t269 = t71 * t265 + t63 * t266;
+    const iiwa14_real_t t270 = t14 * t269 - t11 * t268;
+    const iiwa14_real_t t271 = t14 * t263 + t11 * t257 + IIWA14_C(0.4) * t270;
+    input_by_dq[27] = IIWA14_C(-0.0625) * t271;
+    const iiwa14_real_t t272 = t14 * t268 + t11 * t269;
+    const iiwa14_real_t t273 = t11 * t263 - t14 * t257 + IIWA14_C(0.4) * t272;
+    const iiwa14_real_t t274 = t9 * t273 + t5 * t262;
+    input_by_dq[20] = IIWA14_C(0.0625) * t274;
+    const iiwa14_real_t t275 = t9 * t262 - t5 * t273;
+    const iiwa14_real_t t276 = t5 * t270 + t9 * (t39 * t267 + t56 * t264);
+    const iiwa14_real_t t277 = t2 * t271 - t3 * t275 + IIWA14_C(0.42) * (t2 * t276 + t3 * t272);
+    input_by_dq[13] = IIWA14_C(0.0625) * t277;
+    const iiwa14_real_t t278 = t2 * t275 + t3 * t271 + IIWA14_C(0.42) * (t3 * t276 - t2 * t272);
+    input_by_dq[6] = IIWA14_C(0.0625) * (t0 * t278 + t6 * t274);
     input_by_ddq[48] = IIWA14_C(3.2e3) * parameters[IA7] + IIWA14_C(0.125) * parameters[ZZ7];
+    /* link j7: column of the mass matrix */
+    const iiwa14_real_t t279 = t71 * parameters[XZ7R] + t63 * parameters[YZ7R];
+    const iiwa14_real_t t280 = IIWA14_C(0.125) * t279;
+    input_by_ddq[41] = t280;
+    const iiwa14_real_t t281 = t63 * parameters[XZ7R] - t71 * parameters[YZ7R];
+    const iiwa14_real_t t282 = t39 * t281 - t56 * parameters[ZZ7];
+    const iiwa14_real_t t283 = IIWA14_C(-0.125) * t282;
+    input_by_ddq[34] = t283;
+    const iiwa14_real_t t284 = t56 * t281 + t39 * parameters[ZZ7];
+    const iiwa14_real_t t285 = t63 * parameters[MY7] + t71 * parameters[MX7];
+    const iiwa14_real_t t286 = t56 * t285;
+    const iiwa14_real_t t287 = t71 * parameters[MY7] - t63 * parameters[MX7];
+    const iiwa14_real_t t288 = t14 * t287 - t11 * t286;
+    const iiwa14_real_t t289 = t14 * t284 + t11 * t279 + IIWA14_C(0.4) * t288;
+    input_by_ddq[27] = IIWA14_C(-0.0625) * t289;
+    const iiwa14_real_t t290 = t14 * t286 + t11 * t287;
+    const iiwa14_real_t t291 = t11 * t284 - t14 * t279 + IIWA14_C(0.4) * t290;
+    const iiwa14_real_t t292 = t9 * t291 - t5 * t282;
+    input_by_ddq[20] = IIWA14_C(0.0625) * t292;
+    const iiwa14_real_t t293 = t5 * t291 + t9 * t282;
+    const iiwa14_real_t t294 = t39 * t285;
+    const iiwa14_real_t t295 = t5 * t288 - t9 * t294;
+    const iiwa14_real_t t296 = t2 * t295 + t3 * t290;
+    const iiwa14_real_t t297 = t3 * t293 + t2 * t289 + IIWA14_C(0.42) * t296;
+    input_by_ddq[13] = IIWA14_C(0.0625) * t297;
+    const iiwa14_real_t t298 = t3 * t295 - t2 * t290;
+    const iiwa14_real_t t299 = t3 * t289 - t2 * t293 + IIWA14_C(0.42) * t298;
+    const iiwa14_real_t t300 = t0 * t299 + t6 * t292;
+    input_by_ddq[6] = IIWA14_C(0.0625) * t300;
+    const iiwa14_real_t t301 = parameters[ZZ7] * t57; /* link j7: derivatives */
+    const iiwa14_real_t t302 = t128 + t118; /* link j7: motion */
+    const iiwa14_real_t t303 = t63 * t212 - t71 * t214; /* link j7: derivatives */
+    const iiwa14_real_t t304 = t58 * t303 + t68 * t260 + (t281 * t81 + t301 + t279 * t302);
+    const iiwa14_real_t t305 = t285 * t108;
+    input_by_q[47] = IIWA14_C(0.125) * (t305 - t304);
+    const iiwa14_real_t t306 = t56 * t303 + t39 * t260;
+    const iiwa14_real_t t307 = t71 * t212 + t63 * t214;
+    const iiwa14_real_t t308 = t140 + t133; /* link j6: motion */
+    /* link j7: derivatives */
+    const iiwa14_real_t t309 = t16 * t306 + t15 * t307 + (t284 * t64 + t279 * t51 + t282 * t308);
+    input_by_q[46] = IIWA14_C(0.125) * (t309 + (t286 * t120 + t287 * t102));
+    const iiwa14_real_t t310 = IIWA14_C(0.8) * t10;
+    const iiwa14_real_t t311 = t11 * t306 - t14 * t307 + t294 * t310;
+    const iiwa14_real_t t312 = t56 * t260 - t39 * t303;
+    const iiwa14_real_t t313 = IIWA14_C(-0.8) * t13;
+    const iiwa14_real_t t314 = t312 + (t290 * t313 - t288 * t310);
+    const iiwa14_real_t t315 = t103 + t153; /* link j5: motion */
+    /* link j7: derivatives */
+    const iiwa14_real_t t316 = t40 * t311 + t10 * t314 + (t291 * t34 - t282 * t47 + t289 * t315);
+    input_by_q[45] = IIWA14_C(0.125) * (t316 - (t288 * t106 + t294 * t98));
+    const iiwa14_real_t t317 = t5 * t311 - t9 * t314;
+    const iiwa14_real_t t318 = t14 * t306 + t11 * t307 + t294 * t313;
+    const iiwa14_real_t t319 = t171 + t162; /* link j4: motion */
+    /* link j7: derivatives */
+    const iiwa14_real_t t320 = t12 * t317 + t4 * t318 + (t293 * t42 + t289 * t30 - t292 * t319);
+    input_by_q[44] = IIWA14_C(0.125) * (t320 + (t290 * t93 - t295 * t100));
+    const iiwa14_real_t t321 = t9 * t288 + t5 * t294; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t322 = IIWA14_C(0.84) * t1; /* link j7: derivatives */
+    const iiwa14_real_t t323 = t3 * t318 - t2 * t317 - t321 * t322;
+    const iiwa14_real_t t324 = t9 * t311 + t5 * t314;
+    const iiwa14_real_t t325 = IIWA14_C(0.84) * dq[1];
+    const iiwa14_real_t t326 = t324 + (t298 * t325 - t296 * t322);
+    const iiwa14_real_t t327 = t94 + t180; /* link j3: motion */
+    /* link j7: derivatives */
+    const iiwa14_real_t t328 = t7 * t323 - t1 * t326 + (t299 * t20 - t292 * t27 - t297 * t327);
+    input_by_q[43] = IIWA14_C(0.125) * (t328 - (t296 * t96 + t321 * t90));
+    const iiwa14_real_t t329 = IIWA14_C(0.125) * (t307 + IIWA14_C(-2.0) * (t281 * t58
+        + parameters[ZZ7] * t68));
+    input_by_dq[47] = t329;
+    const iiwa14_real_t t330 = IIWA14_C(0.125) * (t312 + IIWA14_C(2.0) * (t284 * t16 + t279 * t15));
+    input_by_dq[46] = t330;
+    const iiwa14_real_t t331 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t291 * t40 - t282 * t10) - t318);
+    input_by_dq[45] = t331;
+    const iiwa14_real_t t332 = IIWA14_C(0.125) * (t324 + IIWA14_C(2.0) * (t293 * t12 + t289 * t4));
+    input_by_dq[44] = t332;
+    const iiwa14_real_t t333 = t3 * t317 + t2 * t318 - t321 * t325 + IIWA14_C(2.0) * (t299 * t7 - t292 * t1);
+    input_by_dq[43] = IIWA14_C(0.125) * t333;
+    input_by_dq[42] = IIWA14_C(0.125) * (t0 * t323 + t6 * t326);
+    input_by_ddq[47] = t280;
+    input_by_ddq[46] = t283;
+    input_by_ddq[45] = IIWA14_C(-0.125) * t289;
+    input_by_ddq[44] = IIWA14_C(0.125) * t292;
+    input_by_ddq[43] = IIWA14_C(0.125) * t297;
+    input_by_ddq[42] = IIWA14_C(0.125) * t300;
+    /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t334 = parameters[XY7] * (IIWA14_C(2.0) * t71) - t63 * parameters[XX7R];
+    const iiwa14_real_t t335 = parameters[XZ6] + (parameters[XY7] - t71 * t334);
+    const iiwa14_real_t t336 = parameters[YZ6] - t279;
+    const iiwa14_real_t t337 = t63 * t334;
+    const iiwa14_real_t t338 = parameters[ZZ6R] + (parameters[XX7R] + t337);
+    const iiwa14_real_t t339 = t336 * t57 - t335 * t81 - t338 * t302; /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t340 = t63 * (t226 - t218) + t71 * (t224 + t220);
+    const iiwa14_real_t t341 = t71 * t340;
+    const iiwa14_real_t t342 = IIWA14_C(0.5) * (parameters[XX6R] + parameters[ZZ6R]);
+    const iiwa14_real_t t343 = t342 - parameters[XX6R];
+    const iiwa14_real_t t344 = t224 - t341 - (parameters[XY6] * t68 + t58 * t343);
+    const iiwa14_real_t t345 = IIWA14_C(2.0) * t344; /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t346 = t71 * t253 + t63 * t255 - (parameters[XY6] * t58 + t68 * t342);
+    const iiwa14_real_t t347 = IIWA14_C(2.0) * t346; /* link j6: derivatives */
+    const iiwa14_real_t t348 = parameters[MX6] - t287; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t349 = t348 * t123 + parameters[MY6R] * t108; /* link j6: derivatives */
+    const iiwa14_real_t t350 = IIWA14_C(0.125) * (t349 + (t339 - (t58 * t345 + t68 * t347)));
+    input_by_q[40] = t350;
+    const iiwa14_real_t t351 = t337 - parameters[XX6R]; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t352 = t281 - parameters[XY6];
+    const iiwa14_real_t t353 = t63 * t340; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t354 = parameters[XZ6] * t58;
+    const iiwa14_real_t t355 = parameters[XY6] * t59;
+    const iiwa14_real_t t356 = t226 - t353 - (t354 + t355);
+    const iiwa14_real_t t357 = IIWA14_C(2.0) * t58; /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t358 = t59 * t342 - parameters[YZ6] * t58 + (t71 * t255 - t63 * t253);
+    const iiwa14_real_t t359 = IIWA14_C(-2.0) * t68; /* link j6: derivatives */
+    const iiwa14_real_t t360 = t356 * t357 + t358 * t359 + (t352 * t57 - t351 * t81 + t335 * t302);
+    const iiwa14_real_t t361 = t129 - (t360 + t285 * t123);
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t362 = t59 * t343 - parameters[XZ6] * t68 - (t63 * t211 + t71 * t213);
+    const iiwa14_real_t t363 = parameters[YZ6] * t68;
+    const iiwa14_real_t t364 = t355 + t363 - t259;
+    /* link j6: derivatives */
+    const iiwa14_real_t t365 = t364 * t359 - t362 * t357 + (t336 * t302 - (t301 + t352 * t81));
+    const iiwa14_real_t t366 = t305 + t365 - t121;
+    const iiwa14_real_t t367 = t56 * t366 - t39 * t361;
+    input_by_q[33] = IIWA14_C(0.125) * t367;
+    const iiwa14_real_t t368 = t56 * t361 + t39 * t366;
+    const iiwa14_real_t t369 = t344 * t357 - t346 * t359 - t339 - t349;
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t370 = parameters[MY6R] * t68 - parameters[MX6] * t58 + (t71 * t239 - t63 * t238);
+    /* link j6: derivatives */
+    const iiwa14_real_t t371 = t145 + (t370 * t359 + (t285 * t57 + parameters[MY6R] * t302));
+    const iiwa14_real_t t372 = t144 + (t285 * t81 - t348 * t302 - t370 * t357);
+    const iiwa14_real_t t373 = t56 * t371 - t39 * t372;
+    const iiwa14_real_t t374 = parameters[MX6] * t59 + t234; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t375 = parameters[MY6R] * t59 + (t63 * t239 + t71 * t238);
+    /* link j6: derivatives */
+    const iiwa14_real_t t376 = t374 * t357 + t375 * t359 + (parameters[MY6R] * t81 + t348 * t57);
+    const iiwa14_real_t t377 = t11 * t373 + t14 * t376;
+    const iiwa14_real_t t378 = t14 * t368 - t11 * t369 + IIWA14_C(0.4) * t377;
+    input_by_q[26] = IIWA14_C(-0.0625) * t378;
+    const iiwa14_real_t t379 = t11 * t376 - t14 * t373;
+    const iiwa14_real_t t380 = t11 * t368 + t14 * t369 + IIWA14_C(0.4) * t379;
+    const iiwa14_real_t t381 = t9 * t380 + t5 * t367;
+    input_by_q[19] = IIWA14_C(0.0625) * t381;
+    const iiwa14_real_t t382 = t5 * t380 - t9 * t367;
+    const iiwa14_real_t t383 = t5 * t377 + t9 * (t39 * t371 + t56 * t372);
+    const iiwa14_real_t t384 = t3 * t382 + t2 * t378 + IIWA14_C(0.42) * (t2 * t383 + t3 * t379);
+    input_by_q[12] = IIWA14_C(0.0625) * t384;
+    const iiwa14_real_t t385 = t3 * t378 - t2 * t382 + IIWA14_C(0.42) * (t3 * t383 - t2 * t379);
+    input_by_q[5] = IIWA14_C(0.0625) * (t0 * t385 + t6 * t381);
+    const iiwa14_real_t t386 = t354 - t363 + (t218 + t353); /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t387 = IIWA14_C(2.0) * t386; /* link j6: derivatives */
+    const iiwa14_real_t t388 = IIWA14_C(0.125) * (t387 + IIWA14_C(2.0) * (t336 * t68 - t335 * t58));
+    input_by_dq[40] = IIWA14_C(3.2e3) * parameters[FV6] + t388;
+    const iiwa14_real_t t389 = t342 - parameters[ZZ6R];
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t390 = parameters[YZ6] * t59 - t58 * t389 + (t341 - t220);
+    const iiwa14_real_t t391 = IIWA14_C(2.0) * t390 - (t351 * t357 + t352 * t359); /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t392 = t68 * t389 - parameters[XZ6] * t59 + (t63 * t213 - t71 * t211);
+    /* link j6: derivatives */
+    const iiwa14_real_t t393 = IIWA14_C(2.0) * t392 + (parameters[ZZ7] * t359 - t352 * t357);
+    const iiwa14_real_t t394 = t39 * t391 + t56 * t393;
+    input_by_dq[33] = IIWA14_C(0.125) * t394;
+    const iiwa14_real_t t395 = t39 * t393 - t56 * t391;
+    const iiwa14_real_t t396 = t335 * t357 + t336 * t359 - t387;
+    const iiwa14_real_t t397 = IIWA14_C(-2.0) * t374 - t285 * t359;
+    const iiwa14_real_t t398 = IIWA14_C(-2.0) * t375 + t285 * t357;
+    const iiwa14_real_t t399 = t39 * t398 - t56 * t397;
+    const iiwa14_real_t t400 = parameters[MY6R] * t357 - t348 * t359;
+    const iiwa14_real_t t401 = t14 * t400 - t11 * t399;
+    const iiwa14_real_t t402 = t14 * t395 - t11 * t396 + IIWA14_C(0.4) * t401;
+    input_by_dq[26] = IIWA14_C(-0.0625) * t402;
+    const iiwa14_real_t t403 = t14 * t399 + t11 * t400;
+    const iiwa14_real_t t404 = t11 * t395 + t14 * t396 + IIWA14_C(0.4) * t403;
+    const iiwa14_real_t t405 = t9 * t404 + t5 * t394;
+    input_by_dq[19] = IIWA14_C(0.0625) * t405;
+    const iiwa14_real_t t406 = t9 * t394 - t5 * t404;
+    const iiwa14_real_t t407 = t5 * t401 + t9 * (t39 * t397 + t56 * t398);
+    const iiwa14_real_t t408 = t2 * t402 - t3 * t406 + IIWA14_C(0.42) * (t2 * t407 + t3 * t403);
+    input_by_dq[12] = IIWA14_C(0.0625) * t408;
+    const iiwa14_real_t t409 = t2 * t406 + t3 * t402 + IIWA14_C(0.42) * (t3 * t407 - t2 * t403);
+    input_by_dq[5] = IIWA14_C(0.0625) * (t0 * t409 + t6 * t405);
+    input_by_ddq[40] = IIWA14_C(3.2e3) * parameters[IA6] + IIWA14_C(0.125) * t338;
+    const iiwa14_real_t t410 = t39 * t335 + t56 * t336; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t411 = IIWA14_C(-0.125) * t410;
+    input_by_ddq[33] = t411;
+    const iiwa14_real_t t412 = t56 * t335 - t39 * t336;
+    const iiwa14_real_t t413 = t56 * parameters[MY6R] + t39 * t348;
+    const iiwa14_real_t t414 = t11 * t413;
+    const iiwa14_real_t t415 = t14 * t412 + t11 * t338 + IIWA14_C(-0.4) * t414;
+    input_by_ddq[26] = IIWA14_C(-0.0625) * t415;
+    const iiwa14_real_t t416 = t14 * t413;
+    const iiwa14_real_t t417 = t11 * t412 - t14 * t338 + IIWA14_C(0.4) * t416;
+    const iiwa14_real_t t418 = t9 * t417 - t5 * t410;
+    input_by_ddq[19] = IIWA14_C(0.0625) * t418;
+    const iiwa14_real_t t419 = t5 * t417 + t9 * t410;
+    const iiwa14_real_t t420 = t56 * t348 - t39 * parameters[MY6R];
+    const iiwa14_real_t t421 = t9 * t420 - t5 * t414;
+    const iiwa14_real_t t422 = t2 * t421 + t3 * t416;
+    const iiwa14_real_t t423 = t3 * t419 + t2 * t415 + IIWA14_C(0.42) * t422;
+    input_by_ddq[12] = IIWA14_C(0.0625) * t423;
+    const iiwa14_real_t t424 = t3 * t421 - t2 * t416;
+    const iiwa14_real_t t425 = t3 * t415 - t2 * t419 + IIWA14_C(0.42) * t424;
+    const iiwa14_real_t t426 = t0 * t425 + t6 * t418;
+    input_by_ddq[5] = IIWA14_C(0.0625) * t426;
+    const iiwa14_real_t t427 = t56 * t345 + t39 * t347; /* link j6: derivatives */
+    const iiwa14_real_t t428 = t338 * t51;
+    const iiwa14_real_t t429 = t16 * t427 + t15 * t387 + (t412 * t64 + t428 + t410 * t308);
+    const iiwa14_real_t t430 = t413 * t120;
+    input_by_q[39] = IIWA14_C(0.125) * (t429 + t430);
+    const iiwa14_real_t t431 = t11 * t427 - t14 * t387 - t420 * t310;
+    const iiwa14_real_t t432 = t56 * t347 - t39 * t345;
+    const iiwa14_real_t t433 = t432 + (t414 * t310 + t416 * t313);
+    const iiwa14_real_t t434 = t40 * t431 + t10 * t433 + (t417 * t34 - t410 * t47 + t415 * t315);
+    input_by_q[38] = IIWA14_C(0.125) * (t434 + (t414 * t106 + t420 * t98));
+    const iiwa14_real_t t435 = t5 * t431 - t9 * t433;
+    const iiwa14_real_t t436 = t14 * t427 + t11 * t387 - t420 * t313;
+    const iiwa14_real_t t437 = t12 * t435 + t4 * t436 + (t419 * t42 + t415 * t30 - t418 * t319);
+    input_by_q[37] = IIWA14_C(0.125) * (t437 + (t416 * t93 - t421 * t100));
+    const iiwa14_real_t t438 = t9 * t414 + t5 * t420; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t439 = t3 * t436 - t2 * t435 + t438 * t322; /* link j6: derivatives */
+    const iiwa14_real_t t440 = t9 * t431 + t5 * t433;
+    const iiwa14_real_t t441 = t440 + (t424 * t325 - t422 * t322);
+    const iiwa14_real_t t442 = t7 * t439 - t1 * t441 + (t425 * t20 - t418 * t27 - t423 * t327);
+    input_by_q[36] = IIWA14_C(0.125) * (t442 + (t438 * t90 - t422 * t96));
+    const iiwa14_real_t t443 = IIWA14_C(0.125) * (t432 + IIWA14_C(2.0) * (t412 * t16 + t338 * t15));
+    input_by_dq[39] = t443;
+    const iiwa14_real_t t444 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t417 * t40 - t410 * t10) - t436);
+    input_by_dq[38] = t444;
+    const iiwa14_real_t t445 = IIWA14_C(0.125) * (t440 + IIWA14_C(2.0) * (t419 * t12 + t415 * t4));
+    input_by_dq[37] = t445;
+    const iiwa14_real_t t446 = t3 * t435 + t2 * t436 + t438 * t325 + IIWA14_C(2.0) * (t425 * t7 - t418 * t1);
+    input_by_dq[36] = IIWA14_C(0.125) * t446;
+    input_by_dq[35] = IIWA14_C(0.125) * (t0 * t439 + t6 * t441);
+    input_by_ddq[39] = t411;
+    input_by_ddq[38] = IIWA14_C(-0.125) * t415;
+    input_by_ddq[37] = IIWA14_C(0.125) * t418;
+    input_by_ddq[36] = IIWA14_C(0.125) * t423;
+    input_by_ddq[35] = IIWA14_C(0.125) * t426;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t447 = t56 * (t364 - t356) + t39 * (t358 - t362);
+    const iiwa14_real_t t448 = t39 * t447;
+    const iiwa14_real_t t449 = IIWA14_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    const iiwa14_real_t t450 = t449 - parameters[XX5R];
+    const iiwa14_real_t t451 = t16 * t450 - parameters[XY5] * t15 + (t362 + t448);
+    const iiwa14_real_t t452 = IIWA14_C(2.0) * t451; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t453 = t15 * t449 - parameters[XY5] * t16 + (t39 * t390 + t56 * t392);
+    const iiwa14_real_t t454 = IIWA14_C(2.0) * t453; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t455 = t56 * (parameters[ZZ7] + t351) - t352 * (IIWA14_C(2.0) * t39);
+    const iiwa14_real_t t456 = parameters[XZ5] + (t352 + t39 * t455);
+    const iiwa14_real_t t457 = parameters[YZ5] - t410;
+    const iiwa14_real_t t458 = t56 * t455;
+    const iiwa14_real_t t459 = t351 - t458 - parameters[ZZ5R];
+    const iiwa14_real_t t460 = t456 * t64 + t457 * t51 + t459 * t308; /* link j5: derivatives */
+    const iiwa14_real_t t461 = parameters[MX5] + t420; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t462 = parameters[MY5R] + t285;
+    const iiwa14_real_t t463 = t462 * t120 - t461 * t102; /* link j5: derivatives */
+    const iiwa14_real_t t464 = IIWA14_C(0.125) * (t463 + (t460 + (t16 * t452 + t15 * t454)));
+    input_by_q[32] = t464;
+    const iiwa14_real_t t465 = t56 * t447; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t466 = parameters[XZ5] * t16;
+    const iiwa14_real_t t467 = parameters[XY5] * t52;
+    const iiwa14_real_t t468 = t466 - t467 + (t364 - t465);
+    const iiwa14_real_t t469 = IIWA14_C(-2.0) * t16; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t470 = t56 * t390 - t39 * t392 - (parameters[YZ5] * t16 + t52 * t449);
+    const iiwa14_real_t t471 = IIWA14_C(2.0) * t15; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t472 = parameters[XX5R] + (parameters[ZZ7] - t458);
+    const iiwa14_real_t t473 = parameters[XY5] + t412;
+    /* link j5: derivatives */
+    const iiwa14_real_t t474 = t472 * t64 + t473 * t51 - t456 * t308 - (t468 * t469 + t470 * t471);
+    const iiwa14_real_t t475 = t141 + (t474 - t413 * t102);
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t476 = parameters[XZ5] * t15 - t52 * t450 + (t56 * t344 + t39 * t346);
+    const iiwa14_real_t t477 = parameters[YZ5] * t15;
+    const iiwa14_real_t t478 = t467 + t477 + t386;
+    /* link j5: derivatives */
+    const iiwa14_real_t t479 = t478 * t471 - t476 * t469 + (t428 + t473 * t64 - t457 * t308);
+    const iiwa14_real_t t480 = t135 + (t430 + t479);
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t481 = parameters[MY5R] * t15 + parameters[MX5] * t16 + (t56 * t374 - t39 * t375);
+    const iiwa14_real_t t482 = t148 - (t481 * t471 + (t413 * t51 - t462 * t308)); /* link j5: derivatives */
+    const iiwa14_real_t t483 = t146 + (t481 * t469 + (t461 * t308 - t413 * t64));
+    const iiwa14_real_t t484 = t11 * t482 + t14 * t483;
+    const iiwa14_real_t t485 = t14 * t475 + t11 * t480 + IIWA14_C(0.4) * t484;
+    input_by_q[25] = IIWA14_C(-0.0625) * t485;
+    const iiwa14_real_t t486 = t11 * t483 - t14 * t482;
+    const iiwa14_real_t t487 = t11 * t475 - t14 * t480 + IIWA14_C(0.4) * t486;
+    const iiwa14_real_t t488 = t453 * t471 - t451 * t469 + t460 + t463;
+    const iiwa14_real_t t489 = t9 * t487 + t5 * t488;
+    input_by_q[18] = IIWA14_C(0.0625) * t489;
+    const iiwa14_real_t t490 = t5 * t487 - t9 * t488;
+    const iiwa14_real_t t491 = t370 - parameters[MX5] * t52; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t492 = parameters[MY5R] * t52 + (t56 * t375 + t39 * t374);
+    /* link j5: derivatives */
+    const iiwa14_real_t t493 = t461 * t51 - t462 * t64 - (t491 * t469 + t492 * t471);
+    const iiwa14_real_t t494 = t5 * t484 + t9 * t493;
+    const iiwa14_real_t t495 = t3 * t490 + t2 * t485 + IIWA14_C(0.42) * (t2 * t494 + t3 * t486);
+    input_by_q[11] = IIWA14_C(0.0625) * t495;
+    const iiwa14_real_t t496 = t3 * t485 - t2 * t490 + IIWA14_C(0.42) * (t3 * t494 - t2 * t486);
+    input_by_q[4] = IIWA14_C(0.0625) * (t0 * t496 + t6 * t489);
+    const iiwa14_real_t t497 = t356 + t465 - (t466 + t477); /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t498 = IIWA14_C(2.0) * t497; /* link j5: derivatives */
+    const iiwa14_real_t t499 = IIWA14_C(0.125) * (t498 + IIWA14_C(2.0) * (t456 * t16 + t457 * t15));
+    input_by_dq[32] = IIWA14_C(1250.0) * parameters[FV5] + t499;
+    const iiwa14_real_t t500 = parameters[ZZ5R] - t449;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t501 = t16 * t500 - parameters[YZ5] * t52 + (t448 - t358);
+    const iiwa14_real_t t502 = IIWA14_C(2.0) * t501 + (t473 * t471 - t472 * t469); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t503 = t39 * t344 - t56 * t346 - (parameters[XZ5] * t52 + t15 * t500);
+    const iiwa14_real_t t504 = IIWA14_C(-2.0) * t503 + (t338 * t471 - t473 * t469); /* link j5: derivatives */
+    const iiwa14_real_t t505 = IIWA14_C(-2.0) * t491 + t413 * t471;
+    const iiwa14_real_t t506 = IIWA14_C(2.0) * t492 + t413 * t469;
+    const iiwa14_real_t t507 = t14 * t506 - t11 * t505;
+    const iiwa14_real_t t508 = t14 * t502 + t11 * t504 + IIWA14_C(0.4) * t507;
+    input_by_dq[25] = IIWA14_C(-0.0625) * t508;
+    const iiwa14_real_t t509 = t14 * t505 + t11 * t506;
+    const iiwa14_real_t t510 = t11 * t502 - t14 * t504 + IIWA14_C(0.4) * t509;
+    const iiwa14_real_t t511 = t498 + (t457 * t471 - t456 * t469);
+    const iiwa14_real_t t512 = t9 * t510 + t5 * t511;
+    input_by_dq[18] = IIWA14_C(0.0625) * t512;
+    const iiwa14_real_t t513 = t9 * t511 - t5 * t510;
+    const iiwa14_real_t t514 = t5 * t507 + t9 * (t462 * t469 + t461 * t471);
+    const iiwa14_real_t t515 = t2 * t508 - t3 * t513 + IIWA14_C(0.42) * (t2 * t514 + t3 * t509);
+    input_by_dq[11] = IIWA14_C(0.0625) * t515;
+    const iiwa14_real_t t516 = t2 * t513 + t3 * t508 + IIWA14_C(0.42) * (t3 * t514 - t2 * t509);
+    input_by_dq[4] = IIWA14_C(0.0625) * (t0 * t516 + t6 * t512);
+    input_by_ddq[32] = IIWA14_C(1250.0) * parameters[IA5] + IIWA14_C(-0.125) * t459;
+    const iiwa14_real_t t517 = t11 * t462 + t14 * t461; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t518 = t14 * t456 + t11 * t457 + IIWA14_C(-0.4) * t517;
+    input_by_ddq[25] = IIWA14_C(-0.0625) * t518;
+    const iiwa14_real_t t519 = t14 * t462 - t11 * t461;
+    const iiwa14_real_t t520 = t11 * t456 - t14 * t457 + IIWA14_C(0.4) * t519;
+    const iiwa14_real_t t521 = t9 * t520 - t5 * t459;
+    input_by_ddq[18] = IIWA14_C(0.0625) * t521;
+    const iiwa14_real_t t522 = t5 * t520 + t9 * t459;
+    const iiwa14_real_t t523 = t5 * t517;
+    const iiwa14_real_t t524 = t2 * t523 - t3 * t519;
+    const iiwa14_real_t t525 = t3 * t522 + t2 * t518 + IIWA14_C(-0.42) * t524;
+    input_by_ddq[11] = IIWA14_C(0.0625) * t525;
+    const iiwa14_real_t t526 = t3 * t523 + t2 * t519;
+    const iiwa14_real_t t527 = t3 * t518 - t2 * t522 + IIWA14_C(-0.42) * t526;
+    const iiwa14_real_t t528 = t0 * t527 + t6 * t521;
+    input_by_ddq[4] = IIWA14_C(0.0625) * t528;
+    const iiwa14_real_t t529 = t11 * t452 - t14 * t454; /* link j5: derivatives */
+    const iiwa14_real_t t530 = t498 + (t517 * t310 + t519 * t313);
+    const iiwa14_real_t t531 = t459 * t47;
+    const iiwa14_real_t t532 = t40 * t529 + t10 * t530 + (t520 * t34 - t531 + t518 * t315);
+    const iiwa14_real_t t533 = t517 * t106;
+    input_by_q[31] = IIWA14_C(0.125) * (t532 + t533);
+    const iiwa14_real_t t534 = t5 * t529 - t9 * t530;
+    const iiwa14_real_t t535 = t14 * t452 + t11 * t454;
+    const iiwa14_real_t t536 = t12 * t534 + t4 * t535 + (t522 * t42 + t518 * t30 - t521 * t319);
+    input_by_q[30] = IIWA14_C(0.125) * (t536 + (t523 * t100 + t519 * t93));
+    const iiwa14_real_t t537 = t9 * t517; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t538 = t3 * t535 - t2 * t534 + t537 * t322; /* link j5: derivatives */
+    const iiwa14_real_t t539 = t9 * t529 + t5 * t530;
+    const iiwa14_real_t t540 = t539 + (t524 * t322 - t526 * t325);
+    const iiwa14_real_t t541 = t7 * t538 - t1 * t540 + (t527 * t20 - t521 * t27 - t525 * t327);
+    input_by_q[29] = IIWA14_C(0.125) * (t541 + (t524 * t96 + t537 * t90));
+    const iiwa14_real_t t542 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t520 * t40 - t459 * t10) - t535);
+    input_by_dq[31] = t542;
+    const iiwa14_real_t t543 = IIWA14_C(0.125) * (t539 + IIWA14_C(2.0) * (t522 * t12 + t518 * t4));
+    input_by_dq[30] = t543;
+    const iiwa14_real_t t544 = t3 * t534 + t2 * t535 + t537 * t325 + IIWA14_C(2.0) * (t527 * t7 - t521 * t1);
+    input_by_dq[29] = IIWA14_C(0.125) * t544;
+    input_by_dq[28] = IIWA14_C(0.125) * (t0 * t538 + t6 * t540);
+    input_by_ddq[31] = IIWA14_C(-0.125) * t518;
+    input_by_ddq[30] = IIWA14_C(0.125) * t521;
+    input_by_ddq[29] = IIWA14_C(0.125) * t525;
+    input_by_ddq[28] = IIWA14_C(0.125) * t528;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t545 = t11 * (t468 - t478) + t14 * (t470 - t476);
+    const iiwa14_real_t t546 = t14 * t545;
+    const iiwa14_real_t t547 = IIWA14_C(0.4) * t10; /* link j5: velocity of its origin */
+    const iiwa14_real_t t548 = IIWA14_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const iiwa14_real_t t549 = parameters[XX4R] + t548;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t550 = parameters[XY4] * t10 + t40 * t549 + (t476 + t546 + t519 * t547);
+    const iiwa14_real_t t551 = IIWA14_C(-2.0) * t550; /* link j4: derivatives */
+    const iiwa14_real_t t552 = t14 * t492 + t11 * t491; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t553 = t11 * t503 - t14 * t501 - (IIWA14_C(0.4) * t552 + t413 * t547);
+    const iiwa14_real_t t554 = parameters[XY4] * t40 + t10 * t548 - t553;
+    const iiwa14_real_t t555 = IIWA14_C(-2.0) * t554; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t556 = t11 * (t472 - t338) + t473 * (IIWA14_C(-2.0) * t14);
+    const iiwa14_real_t t557 = t473 + t14 * t556 - parameters[XZ4];
+    const iiwa14_real_t t558 = t518 - parameters[YZ4];
+    const iiwa14_real_t t559 = t11 * t556;
+    const iiwa14_real_t t560 = IIWA14_C(-0.8) * t413;
+    const iiwa14_real_t t561 = parameters[ZZ4R] + (t472 - t559 + t560);
+    const iiwa14_real_t t562 = t557 * t34 + t558 * t47 + t561 * t315; /* link j4: derivatives */
+    const iiwa14_real_t t563 = parameters[MX4] - t519; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t564 = parameters[MY4R] - t413;
+    const iiwa14_real_t t565 = t563 * t98 - t564 * t106; /* link j4: derivatives */
+    const iiwa14_real_t t566 = IIWA14_C(0.0625) * (t40 * t551 + t10 * t555 - t562 - t565);
+    input_by_q[24] = t566;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t567 = parameters[XZ4] * t10 - t13 * t549 + (t11 * t451 - t14 * t453);
+    const iiwa14_real_t t568 = IIWA14_C(2.0) * t40; /* link j4: derivatives */
+    const iiwa14_real_t t569 = IIWA14_C(0.4) * t481; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t570 = IIWA14_C(0.4) * t13; /* link j5: velocity of its origin */
+    const iiwa14_real_t t571 = t519 * t570; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t572 = t517 * t547;
+    const iiwa14_real_t t573 = t572 - t571 - t569;
+    const iiwa14_real_t t574 = parameters[XY4] * t13;
+    const iiwa14_real_t t575 = parameters[YZ4] * t10;
+    const iiwa14_real_t t576 = t575 - t574 + (t573 + (t497 + t569));
+    const iiwa14_real_t t577 = IIWA14_C(2.0) * t10; /* link j4: derivatives */
+    const iiwa14_real_t t578 = parameters[XY4] + t520; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const iiwa14_real_t t579 = t567 * t568 + t576 * t577 + (t578 * t34 - t531 + t558 * t315);
+    const iiwa14_real_t t580 = t154 + (t533 + t579);
+    const iiwa14_real_t t581 = t11 * t545; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t582 = parameters[XZ4] * t40;
+    const iiwa14_real_t t583 = t582 + t574 + (t573 + (t478 + t581 + t571));
+    const iiwa14_real_t t584 = t14 * t491 - t11 * t492;
+    const iiwa14_real_t t585 = t11 * t501 + t14 * t503 + (IIWA14_C(-0.4) * t584 + t413 * t570);
+    const iiwa14_real_t t586 = parameters[YZ4] * t40 + t13 * t548 + t585;
+    /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t587 = parameters[XX4R] + (t338 + t559 + t560);
+    /* link j4: derivatives */
+    const iiwa14_real_t t588 = t583 * t568 + t586 * t577 + (t587 * t34 + t578 * t47 + t557 * t315);
+    const iiwa14_real_t t589 = t159 + (t588 - t517 * t98);
+    const iiwa14_real_t t590 = t9 * t589 + t5 * t580;
+    input_by_q[17] = IIWA14_C(0.0625) * t590;
+    const iiwa14_real_t t591 = t5 * t589 - t9 * t580;
+    const iiwa14_real_t t592 = t550 * t568 + t554 * t577 + t562 + t565;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t593 = t552 - (parameters[MY4R] * t10 + parameters[MX4] * t40);
+    const iiwa14_real_t t594 = t173 + (t593 * t568 + (t563 * t315 - t517 * t34)); /* link j4: derivatives */
+    const iiwa14_real_t t595 = t175 + (t593 * t577 + (t564 * t315 - t517 * t47));
+    const iiwa14_real_t t596 = t5 * t595 + t9 * t594;
+    const iiwa14_real_t t597 = parameters[MY4R] * t13 + t584; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t598 = parameters[MX4] * t13 + t481;
+    /* link j4: derivatives */
+    const iiwa14_real_t t599 = t564 * t34 - t563 * t47 - (t598 * t568 + t597 * t577);
+    const iiwa14_real_t t600 = t3 * t591 + t2 * t592 + IIWA14_C(0.42) * (t2 * t596 + t3 * t599);
+    input_by_q[10] = IIWA14_C(0.0625) * t600;
+    const iiwa14_real_t t601 = t3 * t592 - t2 * t591 + IIWA14_C(0.42) * (t3 * t596 - t2 * t599);
+    input_by_q[3] = IIWA14_C(0.0625) * (t0 * t601 + t6 * t590);
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t602 = t573 + (t468 - t581 - t572) - (t582 + t575);
+    const iiwa14_real_t t603 = IIWA14_C(-2.0) * t602; /* link j4: derivatives */
+    const iiwa14_real_t t604 = IIWA14_C(0.0625) * (IIWA14_C(-2.0) * (t557 * t40 + t558 * t10) - t603);
+    input_by_dq[24] = IIWA14_C(1.6e3) * parameters[FV4] + t604;
+    const iiwa14_real_t t605 = parameters[ZZ4R] + t548;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t606 = t546 - t470 - t517 * t570 - (parameters[YZ4] * t13 + t40 * t605);
+    const iiwa14_real_t t607 = IIWA14_C(-2.0) * t606 + (t587 * t568 + t578 * t577); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t608 = t10 * t605 - parameters[XZ4] * t13 - (t14 * t451 + t11 * t453);
+    const iiwa14_real_t t609 = IIWA14_C(2.0) * t608 + (t578 * t568 - t459 * t577); /* link j4: derivatives */
+    const iiwa14_real_t t610 = t9 * t607 + t5 * t609;
+    input_by_dq[17] = IIWA14_C(0.0625) * t610;
+    const iiwa14_real_t t611 = t9 * t609 - t5 * t607;
+    const iiwa14_real_t t612 = t603 + (t557 * t568 + t558 * t577);
+    const iiwa14_real_t t613 = t5 * (IIWA14_C(2.0) * t598 - t517 * t577) + t9 * (IIWA14_C(-2.0) * t597
+        - t517 * t568);
+    const iiwa14_real_t t614 = t564 * t568 - t563 * t577;
+    const iiwa14_real_t t615 = t2 * t612 - t3 * t611 + IIWA14_C(0.42) * (t2 * t613 + t3 * t614);
+    input_by_dq[10] = IIWA14_C(0.0625) * t615;
+    const iiwa14_real_t t616 = t2 * t611 + t3 * t612 + IIWA14_C(0.42) * (t3 * t613 - t2 * t614);
+    input_by_dq[3] = IIWA14_C(0.0625) * (t0 * t616 + t6 * t610);
+    input_by_ddq[24] = IIWA14_C(1.6e3) * parameters[IA4] + IIWA14_C(0.0625) * t561;
+    const iiwa14_real_t t617 = t9 * t557 + t5 * t558; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t618 = IIWA14_C(-0.0625) * t617;
+    input_by_ddq[17] = t618;
+    const iiwa14_real_t t619 = t9 * t558 - t5 * t557;
+    const iiwa14_real_t t620 = t5 * t564 + t9 * t563;
+    const iiwa14_real_t t621 = t2 * t620;
+    const iiwa14_real_t t622 = t3 * t619 - t2 * t561 - IIWA14_C(0.42) * t621;
+    const iiwa14_real_t t623 = IIWA14_C(0.0625) * t622;
+    input_by_ddq[10] = t623;
+    const iiwa14_real_t t624 = t3 * t620;
+    const iiwa14_real_t t625 = IIWA14_C(-0.42) * t624 - (t2 * t619 + t3 * t561);
+    const iiwa14_real_t t626 = IIWA14_C(0.0625) * (t0 * t625 - t6 * t617);
+    input_by_ddq[3] = t626;
+    const iiwa14_real_t t627 = t5 * t551 - t9 * t555; /* link j4: derivatives */
+    const iiwa14_real_t t628 = t561 * t30;
+    const iiwa14_real_t t629 = t12 * t627 + t4 * t603 + (t619 * t42 - t628 + t617 * t319);
+    const iiwa14_real_t t630 = t620 * t100;
+    input_by_q[23] = IIWA14_C(0.0625) * (t629 + t630);
+    const iiwa14_real_t t631 = t9 * t564 - t5 * t563; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t632 = t3 * t603 - t2 * t627 + t631 * t322; /* link j4: derivatives */
+    const iiwa14_real_t t633 = t9 * t551 + t5 * t555;
+    const iiwa14_real_t t634 = t633 + (t621 * t322 - t624 * t325);
+    const iiwa14_real_t t635 = t7 * t632 - t1 * t634 + (t625 * t20 + t617 * t27 - t622 * t327);
+    input_by_q[22] = IIWA14_C(0.0625) * (t635 + (t621 * t96 + t631 * t90));
+    const iiwa14_real_t t636 = IIWA14_C(0.0625) * (t633 + IIWA14_C(2.0) * (t619 * t12 - t561 * t4));
+    input_by_dq[23] = t636;
+    const iiwa14_real_t t637 = t3 * t627 + t2 * t603 + t631 * t325 + IIWA14_C(2.0) * (t625 * t7 + t617 * t1);
+    input_by_dq[22] = IIWA14_C(0.0625) * t637;
+    input_by_dq[21] = IIWA14_C(0.0625) * (t0 * t632 + t6 * t634);
+    input_by_ddq[23] = t618;
+    input_by_ddq[22] = t623;
+    input_by_ddq[21] = t626;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t638 = t5 * (t576 - t583) + t9 * (t586 + t567);
+    const iiwa14_real_t t639 = t9 * t638;
+    const iiwa14_real_t t640 = IIWA14_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const iiwa14_real_t t641 = parameters[XX3R] - t640;
+    const iiwa14_real_t t642 = t567 - t639 - (parameters[XY3] * t4 + t12 * t641);
+    const iiwa14_real_t t643 = IIWA14_C(2.0) * t642; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t644 = t4 * t640 - parameters[XY3] * t12 + (t9 * t606 - t5 * t608);
+    const iiwa14_real_t t645 = IIWA14_C(2.0) * t644; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t646 = t5 * (t459 + t587) + t578 * (IIWA14_C(-2.0) * t9);
+    const iiwa14_real_t t647 = parameters[XZ3] + (t578 + t9 * t646);
+    const iiwa14_real_t t648 = parameters[YZ3] + t617;
+    const iiwa14_real_t t649 = t5 * t646;
+    const iiwa14_real_t t650 = parameters[ZZ3R] + (t587 - t649);
+    const iiwa14_real_t t651 = t647 * t42 + t648 * t30 - t650 * t319; /* link j3: derivatives */
+    const iiwa14_real_t t652 = parameters[MX3] - t631; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t653 = parameters[MY3R] + t517;
+    const iiwa14_real_t t654 = t653 * t100 - t652 * t93; /* link j3: derivatives */
+    const iiwa14_real_t t655 = IIWA14_C(0.0625) * (t654 + (t651 + (t12 * t643 + t4 * t645)));
+    input_by_q[16] = t655;
+    const iiwa14_real_t t656 = t5 * t638; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t657 = parameters[XZ3] * t12;
+    const iiwa14_real_t t658 = parameters[XY3] * t8;
+    const iiwa14_real_t t659 = t657 - t658 + (t576 - t656);
+    const iiwa14_real_t t660 = IIWA14_C(2.0) * t12; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t661 = parameters[YZ3] * t12 + t8 * t640 + (t5 * t606 + t9 * t608);
+    const iiwa14_real_t t662 = IIWA14_C(2.0) * t4; /* link j3: derivatives */
+    const iiwa14_real_t t663 = parameters[XX3R] + (t649 - t459); /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t664 = parameters[XY3] - t619;
+    /* link j3: derivatives */
+    const iiwa14_real_t t665 = t659 * t660 + t661 * t662 + (t663 * t42 + t664 * t30 - t647 * t319);
+    const iiwa14_real_t t666 = t665 + t620 * t93 - t172;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t667 = parameters[XZ3] * t4 + t8 * t641 + (t5 * t550 - t9 * t554);
+    const iiwa14_real_t t668 = parameters[YZ3] * t4;
+    const iiwa14_real_t t669 = t658 + t668 + t602;
+    /* link j3: derivatives */
+    const iiwa14_real_t t670 = t667 * t660 + t669 * t662 + (t628 + t664 * t42 - t648 * t319);
+    const iiwa14_real_t t671 = t165 + (t670 - t630);
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t672 = t9 * t597 - t5 * t598 - (parameters[MY3R] * t4 + parameters[MX3] * t12);
+    const iiwa14_real_t t673 = t177 + (t672 * t662 + (t620 * t30 + t653 * t319)); /* link j3: derivatives */
+    const iiwa14_real_t t674 = t672 * t660 + (t652 * t319 + t620 * t42) - t176;
+    const iiwa14_real_t t675 = t3 * t666 + t2 * t671 + IIWA14_C(0.42) * (t2 * t673 + t3 * t674);
+    input_by_q[9] = IIWA14_C(0.0625) * t675;
+    const iiwa14_real_t t676 = t3 * t671 - t2 * t666 + IIWA14_C(0.42) * (t3 * t673 - t2 * t674);
+    const iiwa14_real_t t677 = t6 * (t642 * t660 + t644 * t662 + t651 + t654);
+    input_by_q[2] = IIWA14_C(0.0625) * (t0 * t676 + t677);
+    const iiwa14_real_t t678 = t583 + t656 - (t657 + t668); /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t679 = IIWA14_C(2.0) * t678; /* link j3: derivatives */
+    const iiwa14_real_t t680 = IIWA14_C(0.0625) * (t679 + IIWA14_C(2.0) * (t647 * t12 + t648 * t4));
+    input_by_dq[16] = IIWA14_C(1.6e3) * parameters[FV3] + t680;
+    const iiwa14_real_t t681 = parameters[ZZ3R] - t640;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t682 = parameters[YZ3] * t8 - t12 * t681 + (t639 - t586);
+    const iiwa14_real_t t683 = IIWA14_C(2.0) * t682 - (t663 * t660 + t664 * t662); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t684 = parameters[XZ3] * t8 + t4 * t681 + (t9 * t550 + t5 * t554);
+    const iiwa14_real_t t685 = IIWA14_C(2.0) * t684 + (t664 * t660 + t561 * t662); /* link j3: derivatives */
+    const iiwa14_real_t t686 = t593 - parameters[MX3] * t8; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t687 = IIWA14_C(2.0) * t686 + t620 * t662; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t688 = t5 * t597 + t9 * t598 - parameters[MY3R] * t8;
+    const iiwa14_real_t t689 = IIWA14_C(-2.0) * t688 + t620 * t660; /* link j3: derivatives */
+    const iiwa14_real_t t690 = t2 * t685 - t3 * t683 + IIWA14_C(0.42) * (t2 * t687 + t3 * t689);
+    input_by_dq[9] = IIWA14_C(0.0625) * t690;
+    const iiwa14_real_t t691 = t2 * t683 + t3 * t685 + IIWA14_C(0.42) * (t3 * t687 - t2 * t689);
+    const iiwa14_real_t t692 = t0 * t691 + t6 * (t679 + (t647 * t660 + t648 * t662));
+    input_by_dq[2] = IIWA14_C(0.0625) * t692;
+    input_by_ddq[16] = IIWA14_C(1.6e3) * parameters[IA3] + IIWA14_C(0.0625) * t650;
+    const iiwa14_real_t t693 = t2 * t653 + t3 * t652; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t694 = IIWA14_C(0.42) * t693 - (t3 * t647 + t2 * t648);
+    const iiwa14_real_t t695 = IIWA14_C(-0.0625) * t694;
+    input_by_ddq[9] = t695;
+    const iiwa14_real_t t696 = t2 * t652 - t3 * t653;
+    const iiwa14_real_t t697 = t3 * t648 - t2 * t647 + IIWA14_C(0.42) * t696;
+    const iiwa14_real_t t698 = IIWA14_C(0.0625) * (t0 * t697 + t6 * t650);
+    input_by_ddq[2] = t698;
+    const iiwa14_real_t t699 = t3 * t645 - t2 * t643; /* link j3: derivatives */
+    const iiwa14_real_t t700 = t679 + (t693 * t322 + t696 * t325);
+    const iiwa14_real_t t701 = t650 * t27;
+    const iiwa14_real_t t702 = t7 * t699 - t1 * t700 + (t697 * t20 - t701 + t694 * t327);
+    const iiwa14_real_t t703 = t693 * t96;
+    input_by_q[15] = IIWA14_C(0.0625) * (t702 + t703);
+    const iiwa14_real_t t704 = t3 * t643 + t2 * t645 + IIWA14_C(2.0) * (t697 * t7 - t650 * t1);
+    input_by_dq[15] = IIWA14_C(0.0625) * t704;
+    input_by_dq[14] = IIWA14_C(0.0625) * (t0 * t699 + t6 * t700);
+    input_by_ddq[15] = t695;
+    input_by_ddq[14] = t698;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t705 = t2 * (t669 - t659) + t3 * (t661 + t667);
+    const iiwa14_real_t t706 = t3 * t705;
+    const iiwa14_real_t t707 = IIWA14_C(-0.42) * t1; /* link j3: velocity of its origin */
+    const iiwa14_real_t t708 = IIWA14_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const iiwa14_real_t t709 = parameters[XX2R] - t708;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t710 = parameters[XY2] * t1 - t7 * t709 + (t706 - t667 - t696 * t707);
+    const iiwa14_real_t t711 = IIWA14_C(2.0) * t710; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t712 = IIWA14_C(0.42) * (t2 * t686 - t3 * t688) + t620 * t707;
+    const iiwa14_real_t t713 = parameters[XY2] * t7 + t1 * t708 + (t3 * t682 - t2 * t684 - t712);
+    const iiwa14_real_t t714 = IIWA14_C(2.0) * t713; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t715 = t2 * (t561 - t663) + t664 * (IIWA14_C(2.0) * t3);
+    const iiwa14_real_t t716 = t3 * t715 - t664 - parameters[XZ2];
+    const iiwa14_real_t t717 = parameters[YZ2] + t694;
+    const iiwa14_real_t t718 = t2 * t715;
+    const iiwa14_real_t t719 = IIWA14_C(0.84) * t620;
+    const iiwa14_real_t t720 = parameters[ZZ2R] + (t663 + t718 + t719);
+    /* link j2: derivatives */
+    const iiwa14_real_t t721 = t716 * t20 + t717 * t27 - t720 * t327 + (t7 * t711 + t1 * t714);
+    const iiwa14_real_t t722 = (parameters[MX2] + t696) * t90 + (parameters[MY2R] - t620) * t96 + t721;
+    input_by_q[8] = IIWA14_C(0.0625) * t722;
+    const iiwa14_real_t t723 = t2 * t705; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t724 = IIWA14_C(0.42) * dq[1]; /* link j3: velocity of its origin */
+    const iiwa14_real_t t725 = t696 * t724; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t726 = IIWA14_C(-0.42) * t672;
+    const iiwa14_real_t t727 = t693 * t707;
+    const iiwa14_real_t t728 = t725 - t727 - t726;
+    const iiwa14_real_t t729 = parameters[XZ2] * t7;
+    const iiwa14_real_t t730 = parameters[XY2] * dq[1];
+    const iiwa14_real_t t731 = t728 + (t669 - t723 - t725) - (t729 + t730);
+    const iiwa14_real_t t732 = IIWA14_C(2.0) * t7; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t733 = IIWA14_C(0.42) * (t2 * t688 + t3 * t686) + t620 * t724;
+    const iiwa14_real_t t734 = dq[1] * t708 - parameters[YZ2] * t7 + (t2 * t682 + t3 * t684 + t733);
+    const iiwa14_real_t t735 = IIWA14_C(-2.0) * t1; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t736 = parameters[XX2R] + (t561 - t718 + t719);
+    const iiwa14_real_t t737 = parameters[XY2] + t697;
+    /* link j2: derivatives */
+    const iiwa14_real_t t738 = t731 * t732 + t734 * t735 + (t736 * t20 - t737 * t27 - t716 * t327);
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t739 = parameters[XZ2] * t1 + dq[1] * t709 + (t3 * t644 - t2 * t642);
+    const iiwa14_real_t t740 = parameters[YZ2] * t1;
+    const iiwa14_real_t t741 = t730 + t740 + (t728 + (t678 + t726));
+    /* link j2: derivatives */
+    const iiwa14_real_t t742 = t739 * t732 + t741 * t735 + (t737 * t20 - t701 + t717 * t327);
+    const iiwa14_real_t t743 = t0 * (t187 + (t738 + t693 * t90)) + t6 * (t182 + (t703 + t742));
+    input_by_q[1] = IIWA14_C(0.0625) * t743;
+    const iiwa14_real_t t744 = IIWA14_C(2.0) * (t729 - t740 + (t728 + (t659 + t723 + t727)));
+    const iiwa14_real_t t745 = IIWA14_C(0.0625) * (t744 + IIWA14_C(2.0) * (t716 * t7 + t717 * t1));
+    input_by_dq[8] = IIWA14_C(1.6e3) * parameters[FV2] + t745;
+    const iiwa14_real_t t746 = parameters[ZZ2R] - t708;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t747 = parameters[YZ2] * dq[1] + t7 * t746 + (t706 - t661 + t693 * t724);
+    /* link j2: derivatives */
+    const iiwa14_real_t t748 = t0 * (IIWA14_C(2.0) * t747 + (t736 * t732 + t737 * t735));
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t749 = t3 * t642 + t2 * t644 - (parameters[XZ2] * dq[1] + t1 * t746);
+    /* link j2: derivatives */
+    const iiwa14_real_t t750 = t6 * (IIWA14_C(2.0) * t749 + (t737 * t732 + t650 * t735));
+    input_by_dq[1] = IIWA14_C(0.0625) * (t748 + t750);
+    input_by_ddq[8] = IIWA14_C(0.0625) * t720;
+    const iiwa14_real_t t751 = IIWA14_C(0.0625) * (t0 * t716 - t6 * t717);
+    input_by_ddq[1] = t751;
+    input_by_dq[7] = IIWA14_C(0.0625) * (t0 * t711 - t6 * t714);
+    input_by_ddq[7] = t751;
+    /* link j2: inertia, momentum beyond */
+    const iiwa14_real_t t752 = t6 * (t6 * (t741 - t731) + t0 * (t734 + t739));
+    input_by_dq[0] = IIWA14_C(1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t731 + t752);
+    /* link j2: inertia of it and all beyond */
+    const iiwa14_real_t t753 = t6 * (t6 * (t650 - t736) + t737 * (IIWA14_C(2.0) * t0));
+    input_by_ddq[0] = IIWA14_C(0.0625) * (parameters[ZZ1R] + (t736 + t753));
     /* always zero */
     input_by_q[0] = IIWA14_C(0.0);
     input_by_q[7] = IIWA14_C(0.0);

@@ -124,7 +124,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x1E31C9F2UL
+#if IIWA14_GENERATION != 0xF4E95A26UL
 #error "iiwa14.h and iiwa14_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -508,815 +508,805 @@ iiwa14_status_t iiwa14_inverse_dynamics_derivatives_standard(
     const iiwa14_real_t t241 = IIWA14_C(160.0) * dq[6] * parameters[FV7] + t240 * parameters[FC7]
         + IIWA14_C(160.0) * ddq[6] * parameters[IA7];
     input[6] = IIWA14_C(20.0) * t241 + IIWA14_C(0.125) * t143;
-    const iiwa14_real_t t242 = t73 * parameters[XZ7];
-    const iiwa14_real_t t243 = t74 * parameters[XY7];
-    const iiwa14_real_t t244 = t242 + t243;
-    const iiwa14_real_t t245 = t78 * parameters[YZ7];
-    const iiwa14_real_t t246 = t243 + t245;
-    const iiwa14_real_t t247 = IIWA14_C(0.5) * (parameters[ZZ7] + (parameters[XX7] + parameters[YY7]));
-    const iiwa14_real_t t248 = parameters[XX7] - t247;
-    const iiwa14_real_t t249 = t78 * parameters[XZ7] + t74 * t248;
-    const iiwa14_real_t t250 = t247 - parameters[YY7];
-    const iiwa14_real_t t251 = t74 * t250 - t73 * parameters[YZ7];
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t252 = t63 * (t244 + t246) + t71 * (t249 + t251);
-    const iiwa14_real_t t253 = t63 * t252;
-    const iiwa14_real_t t254 = IIWA14_C(-0.126) * t59; /* link j7: velocity of its origin */
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t255 = t63 * parameters[MX7] - t71 * parameters[MY7];
-    const iiwa14_real_t t256 = t255 * t254; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t257 = t73 * parameters[MX7] - t78 * parameters[MY7];
-    const iiwa14_real_t t258 = IIWA14_C(-0.126) * t257;
-    const iiwa14_real_t t259 = IIWA14_C(-0.126) * t68; /* link j7: velocity of its origin */
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t260 = t63 * parameters[MY7] + t71 * parameters[MX7];
-    const iiwa14_real_t t261 = t260 * t259; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t262 = t256 + t261 - t258;
-    const iiwa14_real_t t263 = t58 * parameters[XZ6];
-    const iiwa14_real_t t264 = t59 * parameters[XY6];
-    const iiwa14_real_t t265 = t264 - t263 + (t262 + (t246 - t253 - t256));
-    const iiwa14_real_t t266 = t242 - t245;
-    const iiwa14_real_t t267 = t68 * parameters[YZ6];
-    const iiwa14_real_t t268 = t262 + (t266 + t258) - (t264 + t267);
-    const iiwa14_real_t t269 = parameters[ZZ7] - t247;
-    const iiwa14_real_t t270 = t74 * parameters[YZ7] + t73 * t269;
-    const iiwa14_real_t t271 = t74 * parameters[XZ7] + t78 * t269;
-    const iiwa14_real_t t272 = t73 * parameters[MZ7] + t74 * parameters[MY7];
-    const iiwa14_real_t t273 = t74 * parameters[MX7] + t78 * parameters[MZ7];
-    const iiwa14_real_t t274 = t63 * t272 + t71 * t273;
-    const iiwa14_real_t t275 = IIWA14_C(0.126) * parameters[M7]; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t276 = parameters[MZ7] + t275;
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t277 = t63 * t270 + t71 * t271 + (IIWA14_C(-0.126) * t274 + t276 * t254);
-    const iiwa14_real_t t278 = IIWA14_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const iiwa14_real_t t279 = parameters[YY6] - t278;
-    const iiwa14_real_t t280 = t59 * t279 - t58 * parameters[YZ6] + t277;
-    const iiwa14_real_t t281 = t73 * t248 - t78 * parameters[XY7];
-    const iiwa14_real_t t282 = t73 * parameters[XY7] + t78 * t250;
-    const iiwa14_real_t t283 = t278 - parameters[XX6];
-    const iiwa14_real_t t284 = t68 * parameters[XZ6] - t59 * t283 + (t63 * t281 - t71 * t282);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t285 = t56 * (t268 - t265) + t39 * (t280 - t284);
-    const iiwa14_real_t t286 = t56 * t285;
-    const iiwa14_real_t t287 = t36 * parameters[XZ5];
-    const iiwa14_real_t t288 = t52 * parameters[XY5];
-    const iiwa14_real_t t289 = t268 - t286 - (t287 + t288);
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t290 = t263 + t267 + (t262 + (t253 - t244 - t261));
-    const iiwa14_real_t t291 = t35 * parameters[YZ5];
-    const iiwa14_real_t t292 = t288 - t291 + t290; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t293 = t71 * t252; /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t294 = t278 - parameters[ZZ6];
-    const iiwa14_real_t t295 = t293 - t251 + t260 * t254 - (t59 * parameters[YZ6] + t58 * t294);
-    const iiwa14_real_t t296 = t59 * parameters[XZ6] - t68 * t294 + (t71 * t281 + t63 * t282);
-    const iiwa14_real_t t297 = IIWA14_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const iiwa14_real_t t298 = parameters[YY5] - t297;
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t299 = t36 * parameters[YZ5] + t52 * t298 + (t56 * t295 - t39 * t296);
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t300 = t68 * parameters[XY6] - t58 * t283 + (t249 - t293 - t255 * t259);
-    const iiwa14_real_t t301 = t71 * t272 - t63 * t273;
-    const iiwa14_real_t t302 = t71 * t270 - t63 * t271 + (IIWA14_C(-0.126) * t301 + t276 * t259);
-    const iiwa14_real_t t303 = t58 * parameters[XY6] + t68 * t279 + t302;
-    const iiwa14_real_t t304 = t297 - parameters[XX5];
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t305 = t35 * parameters[XZ5] + t52 * t304 + (t39 * t303 - t56 * t300);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t306 = t33 * (t289 - t292) + t34 * (t299 + t305);
-    const iiwa14_real_t t307 = t33 * t306;
-    const iiwa14_real_t t308 = parameters[MZ6] + t260; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t309 = parameters[MY5] + t308; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t310 = parameters[MX6] + t255; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t311 = t276 - parameters[MY6];
-    const iiwa14_real_t t312 = t39 * t311 + t56 * t310; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t313 = parameters[MX5] + t312; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t314 = t34 * t309 - t33 * t313; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t315 = IIWA14_C(-0.4) * t29; /* link j5: velocity of its origin */
-    const iiwa14_real_t t316 = t314 * t315; /* link j5: inertia, momentum beyond */
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t317 = t59 * parameters[MY6] - t58 * parameters[MZ6] + (parameters[M7] * t254 - t274);
-    const iiwa14_real_t t318 = t59 * parameters[MX6] + t68 * parameters[MZ6] + t257;
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t319 = t39 * t317 - t56 * t318 - (t35 * parameters[MY5] + t36 * parameters[MX5]);
-    const iiwa14_real_t t320 = IIWA14_C(0.4) * t319; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t321 = t33 * t309 + t34 * t313; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t322 = IIWA14_C(-0.4) * t28; /* link j5: velocity of its origin */
-    const iiwa14_real_t t323 = t321 * t322; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t324 = t316 + t323 - t320;
-    const iiwa14_real_t t325 = t44 * parameters[XZ4];
-    const iiwa14_real_t t326 = t29 * parameters[XY4];
-    const iiwa14_real_t t327 = t325 + t326 + (t324 + (t292 + t307 - t316));
-    const iiwa14_real_t t328 = t287 + t291 + (t265 + t286); /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t329 = t28 * parameters[YZ4];
-    const iiwa14_real_t t330 = t324 + (t328 + t320) - (t326 + t329); /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t331 = t39 * t285; /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t332 = parameters[ZZ5] - t297;
-    const iiwa14_real_t t333 = t331 - t280 - (t52 * parameters[YZ5] + t36 * t332);
-    const iiwa14_real_t t334 = t35 * t332 - t52 * parameters[XZ5] + (t39 * t300 + t56 * t303);
-    const iiwa14_real_t t335 = t56 * t317 + t39 * t318 - (t36 * parameters[MZ5] + t52 * parameters[MY5]);
-    /* link j7: inertia, momentum beyond */
-    const iiwa14_real_t t336 = t301 - parameters[M7] * t259 - (t68 * parameters[MY6] + t58 * parameters[MX6]);
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t337 = t35 * parameters[MZ5] - t52 * parameters[MX5] + t336;
-    const iiwa14_real_t t338 = t33 * t335 + t34 * t337; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t339 = t56 * t311 - t39 * t310; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t340 = parameters[MZ5] + t339; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t341 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t342 = parameters[M5] + t341; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t343 = IIWA14_C(0.4) * t342; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t344 = t340 + t343;
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t345 = t33 * t333 + t34 * t334 + (IIWA14_C(-0.4) * t338 + t344 * t315);
-    const iiwa14_real_t t346 = IIWA14_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const iiwa14_real_t t347 = t346 - parameters[YY4];
-    const iiwa14_real_t t348 = t44 * parameters[YZ4] - t29 * t347 + t345;
-    /* link j6: inertia, momentum beyond */
-    const iiwa14_real_t t349 = t35 * parameters[XY5] - t36 * t304 + (t284 + t331);
-    const iiwa14_real_t t350 = t36 * parameters[XY5] + t35 * t298 + (t39 * t295 + t56 * t296);
-    const iiwa14_real_t t351 = parameters[XX4] - t346;
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t352 = t33 * t349 - t34 * t350 - (t28 * parameters[XZ4] + t29 * t351);
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t353 = t13 * (t330 - t327) + t26 * (t348 + t352);
-    const iiwa14_real_t t354 = t13 * t353;
-    const iiwa14_real_t t355 = t5 * parameters[XZ3];
-    const iiwa14_real_t t356 = t22 * parameters[XY3];
-    const iiwa14_real_t t357 = t355 - t356 + (t330 - t354);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t358 = t329 - t325 + (t324 + (t289 - t307 - t323));
-    const iiwa14_real_t t359 = t4 * parameters[YZ3];
-    const iiwa14_real_t t360 = t356 - t359 + t358; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t361 = t34 * t306; /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t362 = parameters[ZZ4] - t346;
-    const iiwa14_real_t t363 = t361 - t299 + t321 * t315 - (t29 * parameters[YZ4] + t44 * t362);
-    const iiwa14_real_t t364 = t29 * parameters[XZ4] + t28 * t362 + (t34 * t349 + t33 * t350);
-    const iiwa14_real_t t365 = IIWA14_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const iiwa14_real_t t366 = t365 - parameters[YY3];
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t367 = t5 * parameters[YZ3] + t22 * t366 + (t13 * t363 - t26 * t364);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t368 = t44 * t351 - t28 * parameters[XY4] + (t361 - t305 + t314 * t322);
-    const iiwa14_real_t t369 = t33 * t337 - t34 * t335;
-    const iiwa14_real_t t370 = t33 * t334 - t34 * t333 + (IIWA14_C(-0.4) * t369 + t344 * t322);
-    const iiwa14_real_t t371 = t44 * parameters[XY4] + t28 * t347 - t370;
-    const iiwa14_real_t t372 = parameters[XX3] - t365;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t373 = t22 * t372 - t4 * parameters[XZ3] + (t13 * t368 - t26 * t371);
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t374 = t2 * (t360 - t357) + t3 * (t367 + t373);
-    const iiwa14_real_t t375 = t2 * t374;
-    const iiwa14_real_t t376 = parameters[MZ4] - t321; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t377 = parameters[MY3] - t376; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t378 = t314 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t379 = parameters[MY4] + t344;
-    const iiwa14_real_t t380 = t26 * t379 + t13 * t378; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t381 = parameters[MX3] - t380; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t382 = t2 * t381 - t3 * t377; /* link j3: column of the mass matrix */
-    const iiwa14_real_t t383 = IIWA14_C(0.42) * dq[1]; /* link j3: velocity of its origin */
-    const iiwa14_real_t t384 = t382 * t383; /* link j3: inertia, momentum beyond */
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t385 = t44 * parameters[MZ4] + t29 * parameters[MY4] + (t338 - t342 * t315);
-    const iiwa14_real_t t386 = t29 * parameters[MX4] + t28 * parameters[MZ4] + t319;
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t387 = t4 * parameters[MY3] - t5 * parameters[MX3] + (t26 * t385 - t13 * t386);
-    const iiwa14_real_t t388 = IIWA14_C(-0.42) * t387; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t389 = t2 * t377 + t3 * t381; /* link j3: column of the mass matrix */
-    const iiwa14_real_t t390 = IIWA14_C(-0.42) * t1; /* link j3: velocity of its origin */
-    const iiwa14_real_t t391 = t389 * t390; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t392 = t384 - t391 - t388;
-    const iiwa14_real_t t393 = t14 * parameters[XZ2];
-    const iiwa14_real_t t394 = dq[1] * parameters[XY2];
-    const iiwa14_real_t t395 = t392 + (t360 - t375 - t384) - (t393 + t394);
-    const iiwa14_real_t t396 = t359 - t355 + (t327 + t354); /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t397 = t1 * parameters[YZ2];
-    const iiwa14_real_t t398 = t394 + t397 + (t392 + (t396 + t388)); /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t399 = t26 * t353; /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t400 = parameters[ZZ3] - t365;
-    const iiwa14_real_t t401 = t22 * parameters[YZ3] - t5 * t400 + (t399 - t348);
-    const iiwa14_real_t t402 = t22 * parameters[XZ3] - t4 * t400 + (t26 * t368 + t13 * t371);
-    const iiwa14_real_t t403 = t5 * parameters[MZ3] - t22 * parameters[MY3] + (t13 * t385 + t26 * t386);
-    /* link j5: inertia, momentum beyond */
-    const iiwa14_real_t t404 = t28 * parameters[MY4] - t44 * parameters[MX4] + (t369 - t342 * t322);
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t405 = t4 * parameters[MZ3] - t22 * parameters[MX3] + t404;
-    const iiwa14_real_t t406 = t26 * t378 - t13 * t379; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t407 = parameters[MZ3] - t406; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t408 = parameters[M4] + t342; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t409 = parameters[M3] + t408; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t410 = IIWA14_C(0.42) * t409; /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t411 = t407 + t410;
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t412 = IIWA14_C(0.42) * (t2 * t403 + t3 * t405) + t411 * t383;
-    const iiwa14_real_t t413 = IIWA14_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const iiwa14_real_t t414 = t413 - parameters[YY2];
-    const iiwa14_real_t t415 = dq[1] * t414 - t14 * parameters[YZ2] + (t2 * t401 + t3 * t402 + t412);
-    /* link j4: inertia, momentum beyond */
-    const iiwa14_real_t t416 = t4 * parameters[XY3] - t5 * t372 + (t352 - t399);
-    const iiwa14_real_t t417 = t26 * t363 + t13 * t364 - (t5 * parameters[XY3] + t4 * t366);
-    const iiwa14_real_t t418 = parameters[XX2] - t413;
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t419 = t1 * parameters[XZ2] + dq[1] * t418 + (t3 * t417 - t2 * t416);
-    /* link j2: inertia, momentum beyond */
-    const iiwa14_real_t t420 = t7 * (t7 * (t398 - t395) + t0 * (t415 + t419));
-    input_by_dq[0] = IIWA14_C(1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t395 + t420);
-    const iiwa14_real_t t421 = t3 * t374; /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t422 = t1 * parameters[XY2] - t14 * t418 + (t421 - t373 - t382 * t390);
-    const iiwa14_real_t t423 = IIWA14_C(2.0) * t422; /* link j2: derivatives */
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t424 = IIWA14_C(0.42) * (t3 * t403 - t2 * t405) - t411 * t390;
-    const iiwa14_real_t t425 = t14 * parameters[XY2] + t1 * t414 + (t3 * t401 - t2 * t402 + t424);
-    const iiwa14_real_t t426 = IIWA14_C(2.0) * t425; /* link j2: derivatives */
-    input_by_dq[7] = IIWA14_C(0.0625) * (t0 * t423 - t7 * t426);
-    const iiwa14_real_t t427 = IIWA14_C(2.0) * t416; /* link j3: derivatives */
-    const iiwa14_real_t t428 = IIWA14_C(2.0) * t417;
-    const iiwa14_real_t t429 = t3 * t428 - t2 * t427;
-    const iiwa14_real_t t430 = IIWA14_C(2.0) * t396;
-    const iiwa14_real_t t431 = IIWA14_C(0.84) * t1; /* link j7: derivatives */
-    const iiwa14_real_t t432 = IIWA14_C(0.84) * dq[1];
-    const iiwa14_real_t t433 = t430 + (t389 * t431 + t382 * t432); /* link j3: derivatives */
-    input_by_dq[14] = IIWA14_C(0.0625) * (t0 * t429 + t7 * t433);
-    const iiwa14_real_t t434 = IIWA14_C(-2.0) * t368; /* link j4: derivatives */
-    const iiwa14_real_t t435 = IIWA14_C(-2.0) * t371;
-    const iiwa14_real_t t436 = t13 * t434 - t26 * t435;
-    const iiwa14_real_t t437 = IIWA14_C(-2.0) * t358;
-    const iiwa14_real_t t438 = t3 * t437 - t2 * t436 + t380 * t431;
-    const iiwa14_real_t t439 = t26 * t434 + t13 * t435;
-    const iiwa14_real_t t440 = t2 * t406; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t441 = t3 * t406;
-    const iiwa14_real_t t442 = t439 + (t441 * t432 - t440 * t431); /* link j4: derivatives */
-    input_by_dq[21] = IIWA14_C(0.0625) * (t0 * t438 + t7 * t442);
-    const iiwa14_real_t t443 = IIWA14_C(2.0) * t349; /* link j5: derivatives */
-    const iiwa14_real_t t444 = IIWA14_C(2.0) * t350;
-    const iiwa14_real_t t445 = t33 * t443 - t34 * t444;
-    const iiwa14_real_t t446 = IIWA14_C(2.0) * t328;
-    const iiwa14_real_t t447 = IIWA14_C(-0.8) * t28; /* link j7: derivatives */
-    const iiwa14_real_t t448 = IIWA14_C(-0.8) * t29;
-    const iiwa14_real_t t449 = t446 + (t321 * t447 + t314 * t448); /* link j5: derivatives */
-    const iiwa14_real_t t450 = t13 * t445 - t26 * t449;
-    const iiwa14_real_t t451 = t34 * t443 + t33 * t444;
-    const iiwa14_real_t t452 = t26 * t321; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t453 = t3 * t451 - t2 * t450 + t452 * t431; /* link j5: derivatives */
-    const iiwa14_real_t t454 = t26 * t445 + t13 * t449;
-    const iiwa14_real_t t455 = t13 * t321; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t456 = t2 * t455 - t3 * t314;
-    const iiwa14_real_t t457 = t3 * t455 + t2 * t314;
-    const iiwa14_real_t t458 = t454 + (t456 * t431 - t457 * t432); /* link j5: derivatives */
-    input_by_dq[28] = IIWA14_C(0.125) * (t0 * t453 + t7 * t458);
-    const iiwa14_real_t t459 = IIWA14_C(2.0) * t300; /* link j6: derivatives */
-    const iiwa14_real_t t460 = IIWA14_C(-2.0) * t303;
-    const iiwa14_real_t t461 = t56 * t459 + t39 * t460;
-    const iiwa14_real_t t462 = IIWA14_C(2.0) * t290;
-    const iiwa14_real_t t463 = t33 * t461 - t34 * t462 - t312 * t447;
-    const iiwa14_real_t t464 = t56 * t460 - t39 * t459;
-    const iiwa14_real_t t465 = t33 * t339; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t466 = t34 * t339;
-    const iiwa14_real_t t467 = t464 - (t465 * t447 + t466 * t448); /* link j6: derivatives */
-    const iiwa14_real_t t468 = t13 * t463 - t26 * t467;
-    const iiwa14_real_t t469 = t34 * t461 + t33 * t462 - t312 * t448;
-    const iiwa14_real_t t470 = t13 * t312 - t26 * t465; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t471 = t3 * t469 - t2 * t468 + t470 * t431; /* link j6: derivatives */
-    const iiwa14_real_t t472 = t26 * t463 + t13 * t467;
-    const iiwa14_real_t t473 = t13 * t465 + t26 * t312; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t474 = t3 * t466 - t2 * t473;
-    const iiwa14_real_t t475 = t3 * t473 + t2 * t466;
-    const iiwa14_real_t t476 = t472 + (t474 * t431 + t475 * t432); /* link j6: derivatives */
-    input_by_dq[35] = IIWA14_C(0.125) * (t0 * t471 + t7 * t476);
-    const iiwa14_real_t t477 = IIWA14_C(2.0) * t281; /* link j7: derivatives */
-    const iiwa14_real_t t478 = IIWA14_C(2.0) * t282;
-    const iiwa14_real_t t479 = t63 * t477 - t71 * t478;
-    const iiwa14_real_t t480 = IIWA14_C(2.0) * t266;
-    const iiwa14_real_t t481 = t480 + (t260 * (IIWA14_C(-0.252) * t68) - t255 * (IIWA14_C(0.252) * t59));
-    const iiwa14_real_t t482 = t56 * t479 + t39 * t481;
-    const iiwa14_real_t t483 = t71 * t477 + t63 * t478;
-    const iiwa14_real_t t484 = t39 * t260; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t485 = t33 * t482 - t34 * t483 + t484 * t447; /* link j7: derivatives */
-    const iiwa14_real_t t486 = t56 * t481 - t39 * t479;
-    const iiwa14_real_t t487 = t56 * t260; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t488 = t33 * t487 + t34 * t255;
-    const iiwa14_real_t t489 = t34 * t487 - t33 * t255;
-    const iiwa14_real_t t490 = t486 + (t488 * t447 + t489 * t448); /* link j7: derivatives */
-    const iiwa14_real_t t491 = t13 * t485 - t26 * t490;
-    const iiwa14_real_t t492 = t34 * t482 + t33 * t483 + t484 * t448;
-    const iiwa14_real_t t493 = t26 * t488 - t13 * t484; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t494 = t3 * t492 - t2 * t491 + t493 * t431; /* link j7: derivatives */
-    const iiwa14_real_t t495 = t26 * t485 + t13 * t490;
-    const iiwa14_real_t t496 = t13 * t488 + t26 * t484; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t497 = t2 * t496 - t3 * t489;
-    const iiwa14_real_t t498 = t3 * t496 + t2 * t489;
-    const iiwa14_real_t t499 = t495 + (t497 * t431 - t498 * t432); /* link j7: derivatives */
-    input_by_dq[42] = IIWA14_C(0.125) * (t0 * t494 + t7 * t499);
-    /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t500 = parameters[XY7] * (IIWA14_C(2.0) * t71) - t63 * t141;
-    const iiwa14_real_t t501 = t63 * t500;
-    const iiwa14_real_t t502 = IIWA14_C(0.126) * (t275 + IIWA14_C(2.0) * parameters[MZ7]);
-    const iiwa14_real_t t503 = t501 - parameters[YY7] - t502 - parameters[XX6];
-    const iiwa14_real_t t504 = parameters[YY6] + parameters[ZZ7];
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t505 = t63 * parameters[XZ7] - t71 * parameters[YZ7] + IIWA14_C(-0.126) * t255;
-    const iiwa14_real_t t506 = t505 - parameters[XY6]; /* link j7: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t507 = t506 * (IIWA14_C(2.0) * t39) - t56 * (t503 + t504);
-    const iiwa14_real_t t508 = t56 * t507;
-    const iiwa14_real_t t509 = parameters[XX5] + (t504 + t508);
-    /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t510 = parameters[ZZ6] + (parameters[XX7] + t501 + t502);
-    const iiwa14_real_t t511 = parameters[YY5] + t510; /* link j6: inertia of it and all beyond */
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t512 = t71 * parameters[XZ7] + t63 * parameters[YZ7] - IIWA14_C(0.126) * t260;
-    const iiwa14_real_t t513 = parameters[YZ6] - t512; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t514 = parameters[XZ6] + (parameters[XY7] - t71 * t500);
-    const iiwa14_real_t t515 = t56 * t514 - t39 * t513; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t516 = parameters[XY5] + t515; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t517 = t33 * (t509 - t511) + t516 * (IIWA14_C(-2.0) * t34);
-    const iiwa14_real_t t518 = t33 * t517;
-    const iiwa14_real_t t519 = IIWA14_C(0.4) * (t343 + IIWA14_C(2.0) * t340);
-    const iiwa14_real_t t520 = parameters[XX4] + (t511 + t518 + t519);
-    const iiwa14_real_t t521 = t503 + t508 - parameters[ZZ5]; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t522 = t521 - parameters[YY4]; /* link j5: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t523 = parameters[XZ5] + (t506 - t39 * t507);
-    const iiwa14_real_t t524 = t39 * t514 + t56 * t513; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t525 = parameters[YZ5] - t524; /* link j6: inertia of it and all beyond */
-    /* link j5: column of the mass matrix */
-    const iiwa14_real_t t526 = t33 * t523 - t34 * t525 + IIWA14_C(0.4) * t314;
-    const iiwa14_real_t t527 = parameters[XY4] + t526; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t528 = t13 * (t520 + t522) + t527 * (IIWA14_C(-2.0) * t26);
-    const iiwa14_real_t t529 = t13 * t528;
-    const iiwa14_real_t t530 = parameters[XX3] + (t529 - t522);
-    /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t531 = parameters[ZZ4] + (t509 - t518 + t519);
-    const iiwa14_real_t t532 = parameters[YY3] + t531; /* link j4: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t533 = t516 + t34 * t517 - parameters[XZ4];
-    /* link j5: column of the mass matrix */
-    const iiwa14_real_t t534 = t34 * t523 + t33 * t525 + IIWA14_C(-0.4) * t321;
-    const iiwa14_real_t t535 = t534 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t536 = t26 * t535 - t13 * t533; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t537 = parameters[XY3] - t536; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t538 = t2 * (t530 - t532) - t537 * (IIWA14_C(2.0) * t3);
-    const iiwa14_real_t t539 = t2 * t538;
-    const iiwa14_real_t t540 = IIWA14_C(0.42) * (t410 + IIWA14_C(2.0) * t407);
-    const iiwa14_real_t t541 = parameters[XX2] + (t532 + t539 + t540);
-    const iiwa14_real_t t542 = t529 - t520 - parameters[ZZ3]; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t543 = parameters[YY2] - t542; /* link j3: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t544 = parameters[XZ3] + (t527 + t26 * t528);
-    const iiwa14_real_t t545 = t26 * t533 + t13 * t535; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t546 = parameters[YZ3] + t545; /* link j4: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const iiwa14_real_t t547 = t3 * t546 - t2 * t544 + IIWA14_C(0.42) * t382;
-    const iiwa14_real_t t548 = parameters[XY2] + t547; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia of it and all beyond */
-    const iiwa14_real_t t549 = t7 * (t7 * (t543 - t541) + t548 * (IIWA14_C(2.0) * t0));
-    input_by_ddq[0] = IIWA14_C(1.6e3) * parameters[IA1] + IIWA14_C(0.0625) * (parameters[ZZ1] + (t541
-        + t549));
-    /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t550 = parameters[XZ2] + (t537 + t3 * t538);
-    /* link j3: column of the mass matrix */
-    const iiwa14_real_t t551 = IIWA14_C(0.42) * t389 - (t3 * t544 + t2 * t546);
-    const iiwa14_real_t t552 = parameters[YZ2] + t551; /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t553 = IIWA14_C(-0.0625) * (t0 * t550 + t7 * t552);
-    input_by_ddq[7] = t553;
-    const iiwa14_real_t t554 = IIWA14_C(0.0625) * (t0 * t547 - t7 * t542);
-    input_by_ddq[14] = t554;
-    /* link j4: column of the mass matrix */
-    const iiwa14_real_t t555 = IIWA14_C(0.42) * t441 - (t2 * t536 + t3 * t531);
-    const iiwa14_real_t t556 = IIWA14_C(0.0625) * (t0 * t555 - t7 * t545);
-    input_by_ddq[21] = t556;
-    const iiwa14_real_t t557 = t13 * t526 + t26 * t521; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t558 = t3 * t534 - t2 * t557 + IIWA14_C(-0.42) * t457;
-    const iiwa14_real_t t559 = t26 * t526 - t13 * t521;
-    const iiwa14_real_t t560 = t0 * t558 + t7 * t559;
-    input_by_ddq[28] = IIWA14_C(0.125) * t560;
-    /* link j6: column of the mass matrix */
-    const iiwa14_real_t t561 = t33 * t515 - t34 * t510 + IIWA14_C(-0.4) * t466;
-    const iiwa14_real_t t562 = t13 * t561 + t26 * t524;
-    const iiwa14_real_t t563 = t34 * t515 + t33 * t510 + IIWA14_C(0.4) * t465;
-    const iiwa14_real_t t564 = t3 * t563 - t2 * t562 + IIWA14_C(0.42) * t475;
-    const iiwa14_real_t t565 = t26 * t561 - t13 * t524;
-    const iiwa14_real_t t566 = t0 * t564 + t7 * t565;
-    input_by_ddq[35] = IIWA14_C(0.125) * t566;
-    const iiwa14_real_t t567 = t56 * t505 + t39 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t568 = t33 * t567 - t34 * t512 + IIWA14_C(0.4) * t489;
-    const iiwa14_real_t t569 = t39 * t505 - t56 * parameters[ZZ7];
-    const iiwa14_real_t t570 = t13 * t568 + t26 * t569;
-    const iiwa14_real_t t571 = t34 * t567 + t33 * t512 + IIWA14_C(-0.4) * t488;
-    const iiwa14_real_t t572 = t3 * t571 - t2 * t570 + IIWA14_C(-0.42) * t498;
-    const iiwa14_real_t t573 = t26 * t568 - t13 * t569;
-    const iiwa14_real_t t574 = t0 * t572 + t7 * t573;
-    input_by_ddq[42] = IIWA14_C(0.125) * t574;
-    const iiwa14_real_t t575 = IIWA14_C(2.0) * t14; /* link j2: derivatives */
-    const iiwa14_real_t t576 = IIWA14_C(-2.0) * t1;
-    const iiwa14_real_t t577 = t95 + t215; /* link j3: motion */
-    /* link j2: derivatives */
-    const iiwa14_real_t t578 = t395 * t575 + t415 * t576 + (t8 * t541 - t17 * t548 + t577 * t550);
-    const iiwa14_real_t t579 = parameters[MZ2] + t389; /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const iiwa14_real_t t580 = t419 * t575 + t398 * t576 + (t8 * t548 - t17 * t543 + t577 * t552);
-    const iiwa14_real_t t581 = t0 * (t223 + (t578 + t91 * t579)) + t7 * (t217 + (t580 + t97 * t579));
-    input_by_q[1] = IIWA14_C(0.0625) * t581;
-    /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t582 = parameters[ZZ2] + (t530 - t539 + t540);
-    /* link j2: derivatives */
-    const iiwa14_real_t t583 = t17 * t552 - t8 * t550 - t577 * t582 + (t14 * t423 + t1 * t426);
-    const iiwa14_real_t t584 = t91 * (parameters[MX2] + t382) + t97 * (parameters[MY2] - t411) + t583;
-    input_by_q[8] = IIWA14_C(0.0625) * t584;
-    /* link j3: derivatives */
-    const iiwa14_real_t t585 = t14 * t429 - t1 * t433 + (t8 * t547 + t17 * t542 + t577 * t551);
-    input_by_q[15] = IIWA14_C(0.0625) * (t585 + t97 * t389);
-    /* link j4: column of the mass matrix */
-    const iiwa14_real_t t586 = t3 * t536 - t2 * t531 - IIWA14_C(-0.42) * t440;
-    /* link j4: derivatives */
-    const iiwa14_real_t t587 = t14 * t438 - t1 * t442 + (t8 * t555 + t17 * t545 - t577 * t586);
-    input_by_q[22] = IIWA14_C(0.0625) * (t587 + (t91 * t380 - t97 * t440));
-    /* link j5: column of the mass matrix */
-    const iiwa14_real_t t588 = t3 * t557 + t2 * t534 + IIWA14_C(-0.42) * t456;
-    /* link j5: derivatives */
-    const iiwa14_real_t t589 = t14 * t453 - t1 * t458 + (t8 * t558 - t17 * t559 - t577 * t588);
-    input_by_q[29] = IIWA14_C(0.125) * (t589 + (t97 * t456 + t91 * t452));
-    /* link j6: column of the mass matrix */
-    const iiwa14_real_t t590 = t3 * t562 + t2 * t563 + IIWA14_C(-0.42) * t474;
-    /* link j6: derivatives */
-    const iiwa14_real_t t591 = t14 * t471 - t1 * t476 + (t8 * t564 - t17 * t565 - t577 * t590);
-    input_by_q[36] = IIWA14_C(0.125) * (t591 + (t97 * t474 + t91 * t470));
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t592 = t3 * t570 + t2 * t571 + IIWA14_C(-0.42) * t497;
-    /* link j7: derivatives */
-    const iiwa14_real_t t593 = t14 * t494 - t1 * t499 + (t8 * t572 - t17 * t573 - t577 * t592);
-    input_by_q[43] = IIWA14_C(0.125) * (t593 + (t97 * t497 + t91 * t493));
-    const iiwa14_real_t t594 = parameters[ZZ2] - t413;
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t595 = dq[1] * parameters[YZ2] + t14 * t594 + (t421 - t367 + t389 * t383);
-    /* link j2: derivatives */
-    const iiwa14_real_t t596 = t0 * (IIWA14_C(2.0) * t595 + (t541 * t575 + t548 * t576));
-    /* link j3: inertia, momentum beyond */
-    const iiwa14_real_t t597 = t3 * t416 + t2 * t417 - (dq[1] * parameters[XZ2] + t1 * t594);
-    /* link j2: derivatives */
-    const iiwa14_real_t t598 = t7 * (IIWA14_C(2.0) * t597 + (t548 * t575 + t543 * t576));
-    input_by_dq[1] = IIWA14_C(0.0625) * (t596 + t598);
-    const iiwa14_real_t t599 = IIWA14_C(2.0) * (t393 - t397 + (t392 + (t357 + t375 + t391)));
-    const iiwa14_real_t t600 = IIWA14_C(0.0625) * (t599 + IIWA14_C(2.0) * (t1 * t552 - t14 * t550));
-    input_by_dq[8] = IIWA14_C(1.6e3) * parameters[FV2] + t600;
-    /* link j3: derivatives */
-    const iiwa14_real_t t601 = t3 * t427 + t2 * t428 + IIWA14_C(2.0) * (t14 * t547 + t1 * t542);
-    input_by_dq[15] = IIWA14_C(0.0625) * t601;
-    /* link j4: derivatives */
-    const iiwa14_real_t t602 = t3 * t436 + t2 * t437 + t380 * t432 + IIWA14_C(2.0) * (t14 * t555 + t1 * t545);
-    input_by_dq[22] = IIWA14_C(0.0625) * t602;
-    /* link j5: derivatives */
-    const iiwa14_real_t t603 = t3 * t450 + t2 * t451 + t452 * t432 + IIWA14_C(2.0) * (t14 * t558 - t1 * t559);
-    input_by_dq[29] = IIWA14_C(0.125) * t603;
-    /* link j6: derivatives */
-    const iiwa14_real_t t604 = t3 * t468 + t2 * t469 + t470 * t432 + IIWA14_C(2.0) * (t14 * t564 - t1 * t565);
-    input_by_dq[36] = IIWA14_C(0.125) * t604;
-    /* link j7: derivatives */
-    const iiwa14_real_t t605 = t3 * t491 + t2 * t492 + t493 * t432 + IIWA14_C(2.0) * (t14 * t572 - t1 * t573);
-    input_by_dq[43] = IIWA14_C(0.125) * t605;
-    input_by_ddq[1] = t553;
-    input_by_ddq[8] = IIWA14_C(1.6e3) * parameters[IA2] + IIWA14_C(0.0625) * t582;
-    const iiwa14_real_t t606 = IIWA14_C(-0.0625) * t551;
-    input_by_ddq[15] = t606;
-    const iiwa14_real_t t607 = IIWA14_C(0.0625) * t586;
-    input_by_ddq[22] = t607;
-    input_by_ddq[29] = IIWA14_C(0.125) * t588;
-    input_by_ddq[36] = IIWA14_C(0.125) * t590;
-    input_by_ddq[43] = IIWA14_C(0.125) * t592;
-    const iiwa14_real_t t608 = IIWA14_C(2.0) * t5; /* link j3: derivatives */
-    const iiwa14_real_t t609 = IIWA14_C(-2.0) * t4;
-    const iiwa14_real_t t610 = t198 + t189; /* link j4: motion */
-    /* link j3: derivatives */
-    const iiwa14_real_t t611 = t357 * t608 + t367 * t609 + (t40 * t530 + t21 * t537 - t610 * t544);
-    const iiwa14_real_t t612 = t611 + t94 * t407 - t200;
-    const iiwa14_real_t t613 = t373 * t608 + t360 * t609 + (t40 * t537 + t21 * t532 - t610 * t546);
-    const iiwa14_real_t t614 = t192 + (t613 - t101 * t407);
-    const iiwa14_real_t t615 = t387 * t609 - t101 * t409 + (t21 * t407 + t610 * t377);
-    const iiwa14_real_t t616 = t212 + t615;
-    const iiwa14_real_t t617 = t387 * t608 + t94 * t409 + (t610 * t381 + t40 * t407);
-    const iiwa14_real_t t618 = t617 - t208;
-    const iiwa14_real_t t619 = t3 * t614 - t2 * t612 + IIWA14_C(0.42) * (t3 * t616 - t2 * t618);
-    const iiwa14_real_t t620 = t40 * t544 + t21 * t546 + t610 * t542;
-    const iiwa14_real_t t621 = t101 * t377 - t94 * t381;
-    const iiwa14_real_t t622 = t7 * (t416 * t608 + t417 * t609 + t620 + t621);
-    input_by_q[2] = IIWA14_C(0.0625) * (t0 * t619 + t622);
-    const iiwa14_real_t t623 = t3 * t612 + t2 * t614 + IIWA14_C(0.42) * (t2 * t616 + t3 * t618);
-    input_by_q[9] = IIWA14_C(0.0625) * t623;
-    const iiwa14_real_t t624 = IIWA14_C(0.0625) * (t621 + (t620 + (t5 * t427 - t4 * t428)));
-    input_by_q[16] = t624;
-    /* link j4: derivatives */
-    const iiwa14_real_t t625 = t5 * t436 - t4 * t437 + (t40 * t536 - t21 * t531 + t610 * t545);
-    input_by_q[23] = IIWA14_C(0.0625) * (t625 - t101 * t406);
-    /* link j5: derivatives */
-    const iiwa14_real_t t626 = t5 * t450 - t4 * t451 + (t40 * t557 + t21 * t534 - t610 * t559);
-    input_by_q[30] = IIWA14_C(0.125) * (t626 + (t101 * t455 + t94 * t314));
-    /* link j6: derivatives */
-    const iiwa14_real_t t627 = t5 * t468 - t4 * t469 + (t40 * t562 + t21 * t563 - t610 * t565);
-    input_by_q[37] = IIWA14_C(0.125) * (t627 - (t101 * t473 + t94 * t466));
-    /* link j7: derivatives */
-    const iiwa14_real_t t628 = t5 * t491 - t4 * t492 + (t40 * t570 + t21 * t571 - t610 * t573);
-    input_by_q[44] = IIWA14_C(0.125) * (t628 + (t101 * t496 + t94 * t489));
-    const iiwa14_real_t t629 = IIWA14_C(2.0) * t401 - (t530 * t608 + t537 * t609); /* link j3: derivatives */
-    const iiwa14_real_t t630 = IIWA14_C(2.0) * t402 + (t537 * t608 + t532 * t609);
-    const iiwa14_real_t t631 = IIWA14_C(2.0) * t403 - t407 * t608;
-    const iiwa14_real_t t632 = IIWA14_C(2.0) * t405 + t407 * t609;
-    const iiwa14_real_t t633 = t2 * t629 + t3 * t630 + IIWA14_C(0.42) * (t3 * t632 + t2 * t631);
-    const iiwa14_real_t t634 = t0 * t633 + t7 * (t430 + (t544 * t608 + t546 * t609));
-    input_by_dq[2] = IIWA14_C(0.0625) * t634;
-    const iiwa14_real_t t635 = t2 * t630 - t3 * t629 + IIWA14_C(0.42) * (t2 * t632 - t3 * t631);
-    input_by_dq[9] = IIWA14_C(0.0625) * t635;
-    const iiwa14_real_t t636 = IIWA14_C(0.0625) * (t430 + IIWA14_C(2.0) * (t5 * t544 - t4 * t546));
-    input_by_dq[16] = IIWA14_C(1.6e3) * parameters[FV3] + t636;
-    const iiwa14_real_t t637 = IIWA14_C(0.0625) * (t439 + IIWA14_C(2.0) * (t5 * t536 + t4 * t531));
-    input_by_dq[23] = t637;
-    const iiwa14_real_t t638 = IIWA14_C(0.125) * (t454 + IIWA14_C(2.0) * (t5 * t557 - t4 * t534));
-    input_by_dq[30] = t638;
-    const iiwa14_real_t t639 = IIWA14_C(0.125) * (t472 + IIWA14_C(2.0) * (t5 * t562 - t4 * t563));
-    input_by_dq[37] = t639;
-    const iiwa14_real_t t640 = IIWA14_C(0.125) * (t495 + IIWA14_C(2.0) * (t5 * t570 - t4 * t571));
-    input_by_dq[44] = t640;
-    input_by_ddq[2] = t554;
-    input_by_ddq[9] = t606;
-    input_by_ddq[16] = IIWA14_C(1.6e3) * parameters[IA3] + IIWA14_C(-0.0625) * t542;
-    const iiwa14_real_t t641 = IIWA14_C(-0.0625) * t545;
-    input_by_ddq[23] = t641;
-    input_by_ddq[30] = IIWA14_C(0.125) * t559;
-    input_by_ddq[37] = IIWA14_C(0.125) * t565;
-    input_by_ddq[44] = IIWA14_C(0.125) * t573;
-    const iiwa14_real_t t642 = IIWA14_C(2.0) * t44; /* link j4: derivatives */
-    const iiwa14_real_t t643 = IIWA14_C(-2.0) * t28;
-    const iiwa14_real_t t644 = t352 * t642 + t330 * t643 + (t27 * t527 - t47 * t522 + t209 * t535);
-    const iiwa14_real_t t645 = t180 + (t644 - t107 * t376);
-    const iiwa14_real_t t646 = t327 * t642 + t348 * t643 + (t27 * t520 + t47 * t527 + t209 * t533);
-    const iiwa14_real_t t647 = t186 + (t646 + t99 * t376);
-    const iiwa14_real_t t648 = t13 * t647 - t26 * t645;
-    const iiwa14_real_t t649 = t27 * t533 + t47 * t535 + t209 * t531;
-    const iiwa14_real_t t650 = t99 * t378 + t107 * t379;
-    const iiwa14_real_t t651 = t368 * t642 + t371 * t643 + t649 - t650;
-    const iiwa14_real_t t652 = t404 * t642 + t99 * t408 + (t27 * t376 - t209 * t378);
-    const iiwa14_real_t t653 = t404 * t643 - t107 * t408 + (t47 * t376 + t209 * t379);
-    const iiwa14_real_t t654 = t13 * (t206 + t653) + t26 * (t202 + t652);
-    const iiwa14_real_t t655 = t27 * t379 + t47 * t378 - (t386 * t642 + t385 * t643);
-    const iiwa14_real_t t656 = t3 * t651 - t2 * t648 + IIWA14_C(0.42) * (t3 * t654 - t2 * t655);
-    const iiwa14_real_t t657 = t26 * t647 + t13 * t645;
-    input_by_q[3] = IIWA14_C(0.0625) * (t0 * t656 + t7 * t657);
-    const iiwa14_real_t t658 = t3 * t648 + t2 * t651 + IIWA14_C(0.42) * (t2 * t654 + t3 * t655);
-    input_by_q[10] = IIWA14_C(0.0625) * t658;
-    input_by_q[17] = IIWA14_C(0.0625) * t657;
-    const iiwa14_real_t t659 = IIWA14_C(0.0625) * (t650 + (t44 * t434 - t28 * t435 - t649));
-    input_by_q[24] = t659;
-    /* link j5: derivatives */
-    const iiwa14_real_t t660 = t44 * t445 - t28 * t449 + (t27 * t526 - t47 * t521 + t209 * t534);
-    input_by_q[31] = IIWA14_C(0.125) * (t660 + t107 * t321);
-    /* link j6: derivatives */
-    const iiwa14_real_t t661 = t44 * t463 - t28 * t467 + (t27 * t561 - t47 * t524 + t209 * t563);
-    input_by_q[38] = IIWA14_C(0.125) * (t661 + (t99 * t312 - t107 * t465));
-    /* link j7: derivatives */
-    const iiwa14_real_t t662 = t44 * t485 - t28 * t490 + (t27 * t568 - t47 * t569 + t209 * t571);
-    input_by_q[45] = IIWA14_C(0.125) * (t662 + (t107 * t488 - t99 * t484));
-    const iiwa14_real_t t663 = IIWA14_C(-2.0) * t363 + (t520 * t642 + t527 * t643); /* link j4: derivatives */
-    const iiwa14_real_t t664 = IIWA14_C(-2.0) * t364 + (t527 * t642 - t522 * t643);
-    const iiwa14_real_t t665 = t26 * t664 - t13 * t663;
-    const iiwa14_real_t t666 = t437 + (t533 * t642 + t535 * t643);
-    const iiwa14_real_t t667 = t13 * (IIWA14_C(2.0) * t386 + t376 * t643) + t26 * (IIWA14_C(-2.0) * t385
-        + t376 * t642);
-    const iiwa14_real_t t668 = t379 * t642 + t378 * t643;
-    const iiwa14_real_t t669 = t2 * t665 + t3 * t666 + IIWA14_C(0.42) * (t3 * t667 - t2 * t668);
-    const iiwa14_real_t t670 = t26 * t663 + t13 * t664;
-    input_by_dq[3] = IIWA14_C(0.0625) * (t0 * t669 + t7 * t670);
-    const iiwa14_real_t t671 = t2 * t666 - t3 * t665 + IIWA14_C(0.42) * (t2 * t667 + t3 * t668);
-    input_by_dq[10] = IIWA14_C(0.0625) * t671;
-    input_by_dq[17] = IIWA14_C(0.0625) * t670;
-    const iiwa14_real_t t672 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t28 * t535 - t44 * t533) - t437);
-    input_by_dq[24] = IIWA14_C(1.6e3) * parameters[FV4] + t672;
-    const iiwa14_real_t t673 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t44 * t526 + t28 * t521) - t451);
-    input_by_dq[31] = t673;
-    const iiwa14_real_t t674 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t44 * t561 + t28 * t524) - t469);
-    input_by_dq[38] = t674;
-    const iiwa14_real_t t675 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t44 * t568 + t28 * t569) - t492);
-    input_by_dq[45] = t675;
-    input_by_ddq[3] = t556;
-    input_by_ddq[10] = t607;
-    input_by_ddq[17] = t641;
-    input_by_ddq[24] = IIWA14_C(1.6e3) * parameters[IA4] + IIWA14_C(0.0625) * t531;
-    input_by_ddq[31] = IIWA14_C(-0.125) * t534;
-    input_by_ddq[38] = IIWA14_C(-0.125) * t563;
-    input_by_ddq[45] = IIWA14_C(-0.125) * t571;
-    const iiwa14_real_t t676 = IIWA14_C(-2.0) * t36; /* link j5: derivatives */
-    const iiwa14_real_t t677 = IIWA14_C(-2.0) * t35;
-    const iiwa14_real_t t678 = t289 * t676 - t299 * t677 + (t64 * t509 + t51 * t516 - t203 * t523);
-    const iiwa14_real_t t679 = t161 + (t678 + t103 * t340);
-    const iiwa14_real_t t680 = t292 * t677 - t305 * t676 - (t203 * t525 - (t64 * t516 + t51 * t511));
-    const iiwa14_real_t t681 = t153 + (t680 - t111 * t340);
-    const iiwa14_real_t t682 = t319 * t677 + t111 * t342 - (t51 * t340 + t203 * t309);
-    const iiwa14_real_t t683 = t682 - t173;
-    const iiwa14_real_t t684 = t103 * t342 - t319 * t676 + (t203 * t313 + t64 * t340);
-    const iiwa14_real_t t685 = t169 + t684;
-    const iiwa14_real_t t686 = t34 * t683 + t33 * t685;
-    const iiwa14_real_t t687 = t33 * t679 - t34 * t681 + IIWA14_C(0.4) * t686;
-    const iiwa14_real_t t688 = t64 * t523 + t51 * t525 + t203 * t521;
-    const iiwa14_real_t t689 = t111 * t309 - t103 * t313;
-    const iiwa14_real_t t690 = t349 * t676 + t350 * t677 + t688 + t689;
-    const iiwa14_real_t t691 = t13 * t687 - t26 * t690;
-    const iiwa14_real_t t692 = t34 * t685 - t33 * t683;
-    const iiwa14_real_t t693 = t34 * t679 + t33 * t681 + IIWA14_C(0.4) * t692;
-    const iiwa14_real_t t694 = t337 * t676 + t335 * t677 + (t51 * t313 - t64 * t309);
-    const iiwa14_real_t t695 = t13 * t692 + t26 * t694;
-    const iiwa14_real_t t696 = t3 * t693 - t2 * t691 + IIWA14_C(0.42) * (t3 * t695 - t2 * t686);
-    const iiwa14_real_t t697 = t26 * t687 + t13 * t690;
-    input_by_q[4] = IIWA14_C(0.0625) * (t0 * t696 + t7 * t697);
-    const iiwa14_real_t t698 = t3 * t691 + t2 * t693 + IIWA14_C(0.42) * (t2 * t695 + t3 * t686);
-    input_by_q[11] = IIWA14_C(0.0625) * t698;
-    input_by_q[18] = IIWA14_C(0.0625) * t697;
-    input_by_q[25] = IIWA14_C(-0.0625) * t693;
-    const iiwa14_real_t t699 = IIWA14_C(0.125) * (t689 + (t688 - (t36 * t443 + t35 * t444)));
-    input_by_q[32] = t699;
-    /* link j6: derivatives */
-    const iiwa14_real_t t700 = t64 * t515 + t51 * t510 + t203 * t524 - (t36 * t461 + t35 * t462);
-    input_by_q[39] = IIWA14_C(0.125) * (t700 - t111 * t339);
-    /* link j7: derivatives */
-    const iiwa14_real_t t701 = t64 * t567 + t51 * t512 + t203 * t569 - (t36 * t482 + t35 * t483);
-    input_by_q[46] = IIWA14_C(0.125) * (t701 + (t111 * t487 - t103 * t255));
-    const iiwa14_real_t t702 = IIWA14_C(2.0) * t333 + (t509 * t676 + t516 * t677); /* link j5: derivatives */
-    const iiwa14_real_t t703 = IIWA14_C(-2.0) * t334 + (t516 * t676 + t511 * t677);
-    const iiwa14_real_t t704 = IIWA14_C(-2.0) * t335 + t340 * t676;
-    const iiwa14_real_t t705 = IIWA14_C(-2.0) * t337 - t340 * t677;
-    const iiwa14_real_t t706 = t34 * t705 + t33 * t704;
-    const iiwa14_real_t t707 = t33 * t702 - t34 * t703 + IIWA14_C(0.4) * t706;
-    const iiwa14_real_t t708 = t446 + (t523 * t676 + t525 * t677);
-    const iiwa14_real_t t709 = t26 * t708 - t13 * t707;
-    const iiwa14_real_t t710 = t34 * t704 - t33 * t705;
-    const iiwa14_real_t t711 = t34 * t702 + t33 * t703 + IIWA14_C(0.4) * t710;
-    const iiwa14_real_t t712 = t13 * t710 + t26 * (t313 * t677 - t309 * t676);
-    const iiwa14_real_t t713 = t2 * t709 + t3 * t711 + IIWA14_C(0.42) * (t3 * t712 - t2 * t706);
-    const iiwa14_real_t t714 = t26 * t707 + t13 * t708;
-    input_by_dq[4] = IIWA14_C(0.0625) * (t0 * t713 + t7 * t714);
-    const iiwa14_real_t t715 = t2 * t711 - t3 * t709 + IIWA14_C(0.42) * (t2 * t712 + t3 * t706);
-    input_by_dq[11] = IIWA14_C(0.0625) * t715;
-    input_by_dq[18] = IIWA14_C(0.0625) * t714;
-    input_by_dq[25] = IIWA14_C(-0.0625) * t711;
-    const iiwa14_real_t t716 = IIWA14_C(0.125) * (t446 + IIWA14_C(-2.0) * (t36 * t523 + t35 * t525));
-    input_by_dq[32] = IIWA14_C(1250.0) * parameters[FV5] + t716;
-    const iiwa14_real_t t717 = IIWA14_C(0.125) * (t464 + IIWA14_C(-2.0) * (t36 * t515 + t35 * t510));
-    input_by_dq[39] = t717;
-    const iiwa14_real_t t718 = IIWA14_C(0.125) * (t486 + IIWA14_C(-2.0) * (t36 * t567 + t35 * t512));
-    input_by_dq[46] = t718;
-    input_by_ddq[4] = IIWA14_C(0.0625) * t560;
-    input_by_ddq[11] = IIWA14_C(0.0625) * t588;
-    input_by_ddq[18] = IIWA14_C(0.0625) * t559;
-    input_by_ddq[25] = IIWA14_C(-0.0625) * t534;
-    input_by_ddq[32] = IIWA14_C(1250.0) * parameters[IA5] + IIWA14_C(-0.125) * t521;
-    const iiwa14_real_t t719 = IIWA14_C(-0.125) * t524;
-    input_by_ddq[39] = t719;
-    const iiwa14_real_t t720 = IIWA14_C(-0.125) * t569;
-    input_by_ddq[46] = t720;
-    const iiwa14_real_t t721 = IIWA14_C(2.0) * t58; /* link j6: derivatives */
-    const iiwa14_real_t t722 = IIWA14_C(-2.0) * t68;
-    const iiwa14_real_t t723 = t170 * t513 - (t83 * t506 + t57 * t504) - (t284 * t721 + t268 * t722);
-    const iiwa14_real_t t724 = t723 + t115 * t308 - t140;
-    const iiwa14_real_t t725 = t280 * t722 - t265 * t721 - (t57 * t506 - t83 * t503 + t170 * t514);
-    const iiwa14_real_t t726 = t146 + (t725 - t109 * t308);
-    const iiwa14_real_t t727 = t56 * t726 + t39 * t724;
-    const iiwa14_real_t t728 = t57 * t513 - t83 * t514 - t170 * t510;
-    const iiwa14_real_t t729 = t109 * t310 - t115 * t311;
-    const iiwa14_real_t t730 = t300 * t721 - t303 * t722 - t728 - t729;
-    const iiwa14_real_t t731 = t109 * t341 - t336 * t721 + (t83 * t308 - t170 * t310);
-    const iiwa14_real_t t732 = t163 + t731;
-    const iiwa14_real_t t733 = t57 * t308 - t170 * t311 - (t336 * t722 + t115 * t341);
-    const iiwa14_real_t t734 = t733 - t167;
-    const iiwa14_real_t t735 = t39 * t732 - t56 * t734;
-    const iiwa14_real_t t736 = t317 * t722 - t318 * t721 + (t57 * t310 - t83 * t311);
-    const iiwa14_real_t t737 = t34 * t735 + t33 * t736;
-    const iiwa14_real_t t738 = t33 * t727 + t34 * t730 + IIWA14_C(0.4) * t737;
-    const iiwa14_real_t t739 = t56 * t724 - t39 * t726;
-    const iiwa14_real_t t740 = t13 * t738 - t26 * t739;
-    const iiwa14_real_t t741 = t34 * t736 - t33 * t735;
-    const iiwa14_real_t t742 = t34 * t727 - t33 * t730 + IIWA14_C(0.4) * t741;
-    const iiwa14_real_t t743 = t13 * t741 + t26 * (t39 * t734 + t56 * t732);
-    const iiwa14_real_t t744 = t3 * t742 - t2 * t740 + IIWA14_C(0.42) * (t3 * t743 - t2 * t737);
-    const iiwa14_real_t t745 = t26 * t738 + t13 * t739;
-    input_by_q[5] = IIWA14_C(0.0625) * (t0 * t744 + t7 * t745);
-    const iiwa14_real_t t746 = t3 * t740 + t2 * t742 + IIWA14_C(0.42) * (t2 * t743 + t3 * t737);
-    input_by_q[12] = IIWA14_C(0.0625) * t746;
-    input_by_q[19] = IIWA14_C(0.0625) * t745;
-    input_by_q[26] = IIWA14_C(-0.0625) * t742;
-    input_by_q[33] = IIWA14_C(0.125) * t739;
-    const iiwa14_real_t t747 = IIWA14_C(0.125) * (t729 + (t728 + (t68 * t460 - t58 * t459)));
-    input_by_q[40] = t747;
-    /* link j7: derivatives */
-    const iiwa14_real_t t748 = t68 * t481 - t58 * t479 - (t83 * t505 + t57 * parameters[ZZ7] + t170 * t512);
-    input_by_q[47] = IIWA14_C(0.125) * (t748 + t115 * t260);
-    const iiwa14_real_t t749 = IIWA14_C(2.0) * t295 - (t503 * t721 - t506 * t722); /* link j6: derivatives */
-    const iiwa14_real_t t750 = IIWA14_C(2.0) * t296 - (t506 * t721 + t504 * t722);
-    const iiwa14_real_t t751 = t39 * t750 - t56 * t749;
-    const iiwa14_real_t t752 = t462 + (t513 * t722 - t514 * t721);
-    const iiwa14_real_t t753 = IIWA14_C(2.0) * t318 + t308 * t722;
-    const iiwa14_real_t t754 = IIWA14_C(2.0) * t317 + t308 * t721;
-    const iiwa14_real_t t755 = t39 * t754 - t56 * t753;
-    const iiwa14_real_t t756 = t310 * t722 - t311 * t721;
-    const iiwa14_real_t t757 = t34 * t755 + t33 * t756;
-    const iiwa14_real_t t758 = t33 * t751 - t34 * t752 + IIWA14_C(0.4) * t757;
-    const iiwa14_real_t t759 = t39 * t749 + t56 * t750;
-    const iiwa14_real_t t760 = t26 * t759 - t13 * t758;
-    const iiwa14_real_t t761 = t34 * t756 - t33 * t755;
-    const iiwa14_real_t t762 = t34 * t751 + t33 * t752 + IIWA14_C(0.4) * t761;
-    const iiwa14_real_t t763 = t13 * t761 + t26 * (t39 * t753 + t56 * t754);
-    const iiwa14_real_t t764 = t2 * t760 + t3 * t762 + IIWA14_C(0.42) * (t3 * t763 - t2 * t757);
-    const iiwa14_real_t t765 = t26 * t758 + t13 * t759;
-    input_by_dq[5] = IIWA14_C(0.0625) * (t0 * t764 + t7 * t765);
-    const iiwa14_real_t t766 = t2 * t762 - t3 * t760 + IIWA14_C(0.42) * (t2 * t763 + t3 * t757);
-    input_by_dq[12] = IIWA14_C(0.0625) * t766;
-    input_by_dq[19] = IIWA14_C(0.0625) * t765;
-    input_by_dq[26] = IIWA14_C(-0.0625) * t762;
-    input_by_dq[33] = IIWA14_C(0.125) * t759;
-    const iiwa14_real_t t767 = IIWA14_C(0.125) * (t462 + IIWA14_C(-2.0) * (t58 * t514 + t68 * t513));
-    input_by_dq[40] = IIWA14_C(3.2e3) * parameters[FV6] + t767;
-    const iiwa14_real_t t768 = IIWA14_C(0.125) * (t483 + IIWA14_C(2.0) * (t68 * parameters[ZZ7]
-        - t58 * t505));
-    input_by_dq[47] = t768;
-    input_by_ddq[5] = IIWA14_C(0.0625) * t566;
-    input_by_ddq[12] = IIWA14_C(0.0625) * t590;
-    input_by_ddq[19] = IIWA14_C(0.0625) * t565;
-    input_by_ddq[26] = IIWA14_C(-0.0625) * t563;
-    input_by_ddq[33] = t719;
-    input_by_ddq[40] = IIWA14_C(3.2e3) * parameters[IA6] + IIWA14_C(0.125) * t510;
-    const iiwa14_real_t t769 = IIWA14_C(0.125) * t512;
-    input_by_ddq[47] = t769;
-    const iiwa14_real_t t770 = IIWA14_C(-2.0) * t73; /* link j7: derivatives */
-    const iiwa14_real_t t771 = IIWA14_C(2.0) * t78;
-    const iiwa14_real_t t772 = t251 * t771 - t244 * t770 + (t77 * parameters[XX7] + t72 * parameters[XY7]
+    const iiwa14_real_t t242 = t125 * parameters[MX7] + t113 * parameters[MY7]; /* link j7: derivatives */
+    const iiwa14_real_t t243 = t77 * parameters[XZ7] + t72 * parameters[YZ7] - t165 * parameters[ZZ7];
+    const iiwa14_real_t t244 = IIWA14_C(0.5) * (parameters[ZZ7] + (parameters[XX7] + parameters[YY7]));
+    const iiwa14_real_t t245 = parameters[XX7] - t244;
+    const iiwa14_real_t t246 = t73 * t245 - t78 * parameters[XY7];
+    const iiwa14_real_t t247 = IIWA14_C(2.0) * t246;
+    const iiwa14_real_t t248 = t244 - parameters[YY7];
+    const iiwa14_real_t t249 = t73 * parameters[XY7] + t78 * t248;
+    const iiwa14_real_t t250 = IIWA14_C(2.0) * t249;
+    const iiwa14_real_t t251 = IIWA14_C(0.125) * (t242 + (t243 + (t78 * t250 - t73 * t247)));
+    input_by_q[48] = t251;
+    const iiwa14_real_t t252 = t73 * parameters[XZ7];
+    const iiwa14_real_t t253 = t74 * parameters[XY7];
+    const iiwa14_real_t t254 = t252 + t253;
+    const iiwa14_real_t t255 = IIWA14_C(-2.0) * t73;
+    const iiwa14_real_t t256 = t74 * t248 - t73 * parameters[YZ7];
+    const iiwa14_real_t t257 = IIWA14_C(2.0) * t78;
+    const iiwa14_real_t t258 = t256 * t257 - t254 * t255 + (t77 * parameters[XX7] + t72 * parameters[XY7]
         - t165 * parameters[XZ7]);
-    const iiwa14_real_t t773 = t127 + (t772 - t126);
-    const iiwa14_real_t t774 = t249 * t770 + t246 * t771 + (t77 * parameters[XY7] + t72 * parameters[YY7]
+    const iiwa14_real_t t259 = t127 + (t258 - t126);
+    const iiwa14_real_t t260 = t78 * parameters[XZ7] + t74 * t245;
+    const iiwa14_real_t t261 = t78 * parameters[YZ7];
+    const iiwa14_real_t t262 = t253 + t261;
+    const iiwa14_real_t t263 = t260 * t255 + t262 * t257 + (t77 * parameters[XY7] + t72 * parameters[YY7]
         - t165 * parameters[YZ7]);
-    const iiwa14_real_t t775 = t120 + (t774 - t114);
-    const iiwa14_real_t t776 = t133 + (t257 * t771 - t131 + (t132 + t165 * parameters[MY7]));
-    const iiwa14_real_t t777 = t130 + (t257 * t770 - t128 + (t129 + t165 * parameters[MX7]));
-    const iiwa14_real_t t778 = t63 * t777 - t71 * t776;
-    const iiwa14_real_t t779 = t63 * t773 - t71 * t775 + IIWA14_C(0.126) * t778;
-    const iiwa14_real_t t780 = t125 * parameters[MX7] + t113 * parameters[MY7];
-    const iiwa14_real_t t781 = t77 * parameters[XZ7] + t72 * parameters[YZ7] - t165 * parameters[ZZ7];
-    const iiwa14_real_t t782 = t281 * t770 + t282 * t771 + t781 + t780;
-    const iiwa14_real_t t783 = t56 * t779 + t39 * t782;
-    const iiwa14_real_t t784 = t63 * t776 + t71 * t777;
-    const iiwa14_real_t t785 = t71 * t773 + t63 * t775 + IIWA14_C(0.126) * t784;
-    const iiwa14_real_t t786 = t72 * parameters[MX7] - t77 * parameters[MY7] - (t273 * t770 + t272 * t771);
-    const iiwa14_real_t t787 = t39 * t786 - t56 * t784;
-    const iiwa14_real_t t788 = t34 * t787 + t33 * t778;
-    const iiwa14_real_t t789 = t33 * t783 - t34 * t785 + IIWA14_C(0.4) * t788;
-    const iiwa14_real_t t790 = t56 * t782 - t39 * t779;
-    const iiwa14_real_t t791 = t13 * t789 - t26 * t790;
-    const iiwa14_real_t t792 = t34 * t778 - t33 * t787;
-    const iiwa14_real_t t793 = t34 * t783 + t33 * t785 + IIWA14_C(0.4) * t792;
-    const iiwa14_real_t t794 = t13 * t792 + t26 * (t39 * t784 + t56 * t786);
-    const iiwa14_real_t t795 = t3 * t793 - t2 * t791 + IIWA14_C(0.42) * (t3 * t794 - t2 * t788);
-    const iiwa14_real_t t796 = t26 * t789 + t13 * t790;
-    input_by_q[6] = IIWA14_C(0.0625) * (t0 * t795 + t7 * t796);
-    const iiwa14_real_t t797 = t3 * t791 + t2 * t793 + IIWA14_C(0.42) * (t2 * t794 + t3 * t788);
-    input_by_q[13] = IIWA14_C(0.0625) * t797;
-    input_by_q[20] = IIWA14_C(0.0625) * t796;
-    input_by_q[27] = IIWA14_C(-0.0625) * t793;
-    input_by_q[34] = IIWA14_C(0.125) * t790;
-    input_by_q[41] = IIWA14_C(0.125) * t785;
-    const iiwa14_real_t t798 = IIWA14_C(0.125) * (t780 + (t781 + (t78 * t478 - t73 * t477)));
-    input_by_q[48] = t798;
-    const iiwa14_real_t t799 = IIWA14_C(-2.0) * t270 + (parameters[XX7] * t770 + parameters[XY7] * t771);
-    const iiwa14_real_t t800 = IIWA14_C(2.0) * t271 + (parameters[XY7] * t770 + parameters[YY7] * t771);
-    const iiwa14_real_t t801 = IIWA14_C(2.0) * t273 - parameters[MZ7] * t771;
-    const iiwa14_real_t t802 = IIWA14_C(2.0) * t272 + parameters[MZ7] * t770;
-    const iiwa14_real_t t803 = t71 * t801 + t63 * t802;
-    const iiwa14_real_t t804 = t71 * t800 - t63 * t799 - IIWA14_C(0.126) * t803;
-    const iiwa14_real_t t805 = t480 + (parameters[XZ7] * t770 + parameters[YZ7] * t771);
-    const iiwa14_real_t t806 = t39 * t805 - t56 * t804;
-    const iiwa14_real_t t807 = t71 * t802 - t63 * t801;
-    const iiwa14_real_t t808 = t71 * t799 + t63 * t800 + IIWA14_C(0.126) * t807;
-    const iiwa14_real_t t809 = parameters[MX7] * t771 - parameters[MY7] * t770;
-    const iiwa14_real_t t810 = t39 * t809 - t56 * t807;
-    const iiwa14_real_t t811 = t34 * t810 + t33 * t803;
-    const iiwa14_real_t t812 = t33 * t806 - t34 * t808 + IIWA14_C(0.4) * t811;
-    const iiwa14_real_t t813 = t39 * t804 + t56 * t805;
-    const iiwa14_real_t t814 = t26 * t813 - t13 * t812;
-    const iiwa14_real_t t815 = t34 * t803 - t33 * t810;
-    const iiwa14_real_t t816 = t34 * t806 + t33 * t808 + IIWA14_C(0.4) * t815;
-    const iiwa14_real_t t817 = t13 * t815 + t26 * (t39 * t807 + t56 * t809);
-    const iiwa14_real_t t818 = t2 * t814 + t3 * t816 + IIWA14_C(0.42) * (t3 * t817 - t2 * t811);
-    const iiwa14_real_t t819 = t26 * t812 + t13 * t813;
-    input_by_dq[6] = IIWA14_C(0.0625) * (t0 * t818 + t7 * t819);
-    const iiwa14_real_t t820 = t2 * t816 - t3 * t814 + IIWA14_C(0.42) * (t2 * t817 + t3 * t811);
-    input_by_dq[13] = IIWA14_C(0.0625) * t820;
-    input_by_dq[20] = IIWA14_C(0.0625) * t819;
-    input_by_dq[27] = IIWA14_C(-0.0625) * t816;
-    input_by_dq[34] = IIWA14_C(0.125) * t813;
-    input_by_dq[41] = IIWA14_C(0.125) * t808;
+    const iiwa14_real_t t264 = t120 + (t263 - t114);
+    const iiwa14_real_t t265 = t73 * parameters[MX7] - t78 * parameters[MY7];
+    const iiwa14_real_t t266 = t133 + (t265 * t257 - t131 + (t132 + t165 * parameters[MY7]));
+    const iiwa14_real_t t267 = t130 + (t265 * t255 - t128 + (t129 + t165 * parameters[MX7]));
+    const iiwa14_real_t t268 = t63 * t266 + t71 * t267;
+    const iiwa14_real_t t269 = t71 * t259 + t63 * t264 + IIWA14_C(0.126) * t268;
+    input_by_q[41] = IIWA14_C(0.125) * t269;
+    const iiwa14_real_t t270 = t63 * t267 - t71 * t266;
+    const iiwa14_real_t t271 = t63 * t259 - t71 * t264 + IIWA14_C(0.126) * t270;
+    const iiwa14_real_t t272 = t246 * t255 + t249 * t257 + t243 + t242;
+    const iiwa14_real_t t273 = t56 * t272 - t39 * t271;
+    input_by_q[34] = IIWA14_C(0.125) * t273;
+    const iiwa14_real_t t274 = t56 * t271 + t39 * t272;
+    const iiwa14_real_t t275 = t74 * parameters[MX7] + t78 * parameters[MZ7];
+    const iiwa14_real_t t276 = t73 * parameters[MZ7] + t74 * parameters[MY7];
+    const iiwa14_real_t t277 = t72 * parameters[MX7] - t77 * parameters[MY7] - (t275 * t255 + t276 * t257);
+    const iiwa14_real_t t278 = t39 * t277 - t56 * t268;
+    const iiwa14_real_t t279 = t34 * t270 - t33 * t278;
+    const iiwa14_real_t t280 = t34 * t274 + t33 * t269 + IIWA14_C(0.4) * t279;
+    input_by_q[27] = IIWA14_C(-0.0625) * t280;
+    const iiwa14_real_t t281 = t34 * t278 + t33 * t270;
+    const iiwa14_real_t t282 = t33 * t274 - t34 * t269 + IIWA14_C(0.4) * t281;
+    const iiwa14_real_t t283 = t26 * t282 + t13 * t273;
+    input_by_q[20] = IIWA14_C(0.0625) * t283;
+    const iiwa14_real_t t284 = t13 * t282 - t26 * t273;
+    const iiwa14_real_t t285 = t13 * t279 + t26 * (t39 * t268 + t56 * t277);
+    const iiwa14_real_t t286 = t3 * t284 + t2 * t280 + IIWA14_C(0.42) * (t2 * t285 + t3 * t281);
+    input_by_q[13] = IIWA14_C(0.0625) * t286;
+    const iiwa14_real_t t287 = t3 * t280 - t2 * t284 + IIWA14_C(0.42) * (t3 * t285 - t2 * t281);
+    input_by_q[6] = IIWA14_C(0.0625) * (t0 * t287 + t7 * t283);
     input_by_dq[48] = IIWA14_C(3.2e3) * parameters[FV7];
-    input_by_ddq[6] = IIWA14_C(0.0625) * t574;
-    input_by_ddq[13] = IIWA14_C(0.0625) * t592;
-    input_by_ddq[20] = IIWA14_C(0.0625) * t573;
-    input_by_ddq[27] = IIWA14_C(-0.0625) * t571;
-    input_by_ddq[34] = t720;
-    input_by_ddq[41] = t769;
+    const iiwa14_real_t t288 = parameters[ZZ7] - t244;
+    const iiwa14_real_t t289 = t74 * parameters[YZ7] + t73 * t288;
+    const iiwa14_real_t t290 = IIWA14_C(-2.0) * t289 + (parameters[XX7] * t255 + parameters[XY7] * t257);
+    const iiwa14_real_t t291 = t74 * parameters[XZ7] + t78 * t288;
+    const iiwa14_real_t t292 = IIWA14_C(2.0) * t291 + (parameters[XY7] * t255 + parameters[YY7] * t257);
+    const iiwa14_real_t t293 = IIWA14_C(2.0) * t275 - parameters[MZ7] * t257;
+    const iiwa14_real_t t294 = IIWA14_C(2.0) * t276 + parameters[MZ7] * t255;
+    const iiwa14_real_t t295 = t71 * t294 - t63 * t293;
+    const iiwa14_real_t t296 = t71 * t290 + t63 * t292 + IIWA14_C(0.126) * t295;
+    input_by_dq[41] = IIWA14_C(0.125) * t296;
+    const iiwa14_real_t t297 = t71 * t293 + t63 * t294;
+    const iiwa14_real_t t298 = t71 * t292 - t63 * t290 - IIWA14_C(0.126) * t297;
+    const iiwa14_real_t t299 = t252 - t261;
+    const iiwa14_real_t t300 = IIWA14_C(2.0) * t299;
+    const iiwa14_real_t t301 = t300 + (parameters[XZ7] * t255 + parameters[YZ7] * t257);
+    const iiwa14_real_t t302 = t39 * t298 + t56 * t301;
+    input_by_dq[34] = IIWA14_C(0.125) * t302;
+    const iiwa14_real_t t303 = t39 * t301 - t56 * t298;
+    const iiwa14_real_t t304 = parameters[MX7] * t257 - parameters[MY7] * t255;
+    const iiwa14_real_t t305 = t39 * t304 - t56 * t295;
+    const iiwa14_real_t t306 = t34 * t297 - t33 * t305;
+    const iiwa14_real_t t307 = t34 * t303 + t33 * t296 + IIWA14_C(0.4) * t306;
+    input_by_dq[27] = IIWA14_C(-0.0625) * t307;
+    const iiwa14_real_t t308 = t34 * t305 + t33 * t297;
+    const iiwa14_real_t t309 = t33 * t303 - t34 * t296 + IIWA14_C(0.4) * t308;
+    const iiwa14_real_t t310 = t26 * t309 + t13 * t302;
+    input_by_dq[20] = IIWA14_C(0.0625) * t310;
+    const iiwa14_real_t t311 = t26 * t302 - t13 * t309;
+    const iiwa14_real_t t312 = t13 * t306 + t26 * (t39 * t295 + t56 * t304);
+    const iiwa14_real_t t313 = t2 * t307 - t3 * t311 + IIWA14_C(0.42) * (t2 * t312 + t3 * t308);
+    input_by_dq[13] = IIWA14_C(0.0625) * t313;
+    const iiwa14_real_t t314 = t2 * t311 + t3 * t307 + IIWA14_C(0.42) * (t3 * t312 - t2 * t308);
+    input_by_dq[6] = IIWA14_C(0.0625) * (t0 * t314 + t7 * t310);
     input_by_ddq[48] = IIWA14_C(3.2e3) * parameters[IA7] + IIWA14_C(0.125) * parameters[ZZ7];
+    /* link j7: column of the mass matrix */
+    const iiwa14_real_t t315 = t63 * parameters[MY7] + t71 * parameters[MX7];
+    const iiwa14_real_t t316 = t71 * parameters[XZ7] + t63 * parameters[YZ7] - IIWA14_C(0.126) * t315;
+    const iiwa14_real_t t317 = IIWA14_C(0.125) * t316;
+    input_by_ddq[41] = t317;
+    const iiwa14_real_t t318 = t63 * parameters[MX7] - t71 * parameters[MY7];
+    const iiwa14_real_t t319 = t63 * parameters[XZ7] - t71 * parameters[YZ7] + IIWA14_C(-0.126) * t318;
+    const iiwa14_real_t t320 = t39 * t319 - t56 * parameters[ZZ7];
+    const iiwa14_real_t t321 = IIWA14_C(-0.125) * t320;
+    input_by_ddq[34] = t321;
+    const iiwa14_real_t t322 = t56 * t319 + t39 * parameters[ZZ7];
+    const iiwa14_real_t t323 = t56 * t315;
+    const iiwa14_real_t t324 = t33 * t323 + t34 * t318;
+    const iiwa14_real_t t325 = t34 * t322 + t33 * t316 + IIWA14_C(-0.4) * t324;
+    input_by_ddq[27] = IIWA14_C(-0.0625) * t325;
+    const iiwa14_real_t t326 = t34 * t323 - t33 * t318;
+    const iiwa14_real_t t327 = t33 * t322 - t34 * t316 + IIWA14_C(0.4) * t326;
+    const iiwa14_real_t t328 = t26 * t327 - t13 * t320;
+    input_by_ddq[20] = IIWA14_C(0.0625) * t328;
+    const iiwa14_real_t t329 = t13 * t327 + t26 * t320;
+    const iiwa14_real_t t330 = t39 * t315;
+    const iiwa14_real_t t331 = t13 * t324 + t26 * t330;
+    const iiwa14_real_t t332 = t2 * t331 - t3 * t326;
+    const iiwa14_real_t t333 = t3 * t329 + t2 * t325 + IIWA14_C(-0.42) * t332;
+    input_by_ddq[13] = IIWA14_C(0.0625) * t333;
+    const iiwa14_real_t t334 = t3 * t331 + t2 * t326;
+    const iiwa14_real_t t335 = t3 * t325 - t2 * t329 + IIWA14_C(-0.42) * t334;
+    const iiwa14_real_t t336 = t0 * t335 + t7 * t328;
+    input_by_ddq[6] = IIWA14_C(0.0625) * t336;
+    const iiwa14_real_t t337 = t63 * t247 - t71 * t250; /* link j7: derivatives */
+    const iiwa14_real_t t338 = t300 + (t315 * (IIWA14_C(-0.252) * t68) - t318 * (IIWA14_C(0.252) * t59));
+    const iiwa14_real_t t339 = t68 * t338 - t58 * t337 - (t83 * t319 + t57 * parameters[ZZ7] + t170 * t316);
+    input_by_q[47] = IIWA14_C(0.125) * (t339 + t115 * t315);
+    const iiwa14_real_t t340 = t56 * t337 + t39 * t338;
+    const iiwa14_real_t t341 = t71 * t247 + t63 * t250;
+    const iiwa14_real_t t342 = t64 * t322 + t51 * t316 + t203 * t320 - (t36 * t340 + t35 * t341);
+    input_by_q[46] = IIWA14_C(0.125) * (t342 + (t111 * t323 - t103 * t318));
+    const iiwa14_real_t t343 = IIWA14_C(-0.8) * t28;
+    const iiwa14_real_t t344 = t33 * t340 - t34 * t341 + t330 * t343;
+    const iiwa14_real_t t345 = t56 * t338 - t39 * t337;
+    const iiwa14_real_t t346 = IIWA14_C(-0.8) * t29;
+    const iiwa14_real_t t347 = t345 + (t324 * t343 + t326 * t346);
+    const iiwa14_real_t t348 = t44 * t344 - t28 * t347 + (t27 * t327 - t47 * t320 + t209 * t325);
+    input_by_q[45] = IIWA14_C(0.125) * (t348 + (t107 * t324 - t99 * t330));
+    const iiwa14_real_t t349 = t13 * t344 - t26 * t347;
+    const iiwa14_real_t t350 = t34 * t340 + t33 * t341 + t330 * t346;
+    const iiwa14_real_t t351 = t198 + t189; /* link j4: motion */
+    /* link j7: derivatives */
+    const iiwa14_real_t t352 = t5 * t349 - t4 * t350 + (t40 * t329 + t21 * t325 - t351 * t328);
+    input_by_q[44] = IIWA14_C(0.125) * (t352 + (t101 * t331 + t94 * t326));
+    const iiwa14_real_t t353 = t26 * t324 - t13 * t330; /* link j7: column of the mass matrix */
+    const iiwa14_real_t t354 = IIWA14_C(0.84) * t1; /* link j7: derivatives */
+    const iiwa14_real_t t355 = t3 * t350 - t2 * t349 + t353 * t354;
+    const iiwa14_real_t t356 = t26 * t344 + t13 * t347;
+    const iiwa14_real_t t357 = IIWA14_C(0.84) * dq[1];
+    const iiwa14_real_t t358 = t356 + (t332 * t354 - t334 * t357);
+    const iiwa14_real_t t359 = t95 + t215; /* link j3: motion */
+    /* link j7: derivatives */
+    const iiwa14_real_t t360 = t14 * t355 - t1 * t358 + (t8 * t335 - t17 * t328 - t359 * t333);
+    input_by_q[43] = IIWA14_C(0.125) * (t360 + (t97 * t332 + t91 * t353));
+    const iiwa14_real_t t361 = IIWA14_C(0.125) * (t341 + IIWA14_C(2.0) * (t68 * parameters[ZZ7]
+        - t58 * t319));
+    input_by_dq[47] = t361;
+    const iiwa14_real_t t362 = IIWA14_C(0.125) * (t345 + IIWA14_C(-2.0) * (t36 * t322 + t35 * t316));
+    input_by_dq[46] = t362;
+    const iiwa14_real_t t363 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t44 * t327 + t28 * t320) - t350);
+    input_by_dq[45] = t363;
+    const iiwa14_real_t t364 = IIWA14_C(0.125) * (t356 + IIWA14_C(2.0) * (t5 * t329 - t4 * t325));
+    input_by_dq[44] = t364;
+    const iiwa14_real_t t365 = t3 * t349 + t2 * t350 + t353 * t357 + IIWA14_C(2.0) * (t14 * t335 - t1 * t328);
+    input_by_dq[43] = IIWA14_C(0.125) * t365;
+    input_by_dq[42] = IIWA14_C(0.125) * (t0 * t355 + t7 * t358);
+    input_by_ddq[47] = t317;
+    input_by_ddq[46] = t321;
+    input_by_ddq[45] = IIWA14_C(-0.125) * t325;
+    input_by_ddq[44] = IIWA14_C(0.125) * t328;
+    input_by_ddq[43] = IIWA14_C(0.125) * t333;
+    input_by_ddq[42] = IIWA14_C(0.125) * t336;
+    /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t366 = parameters[XY7] * (IIWA14_C(2.0) * t71) - t63 * t141;
+    const iiwa14_real_t t367 = parameters[XZ6] + (parameters[XY7] - t71 * t366);
+    const iiwa14_real_t t368 = parameters[YZ6] - t316;
+    const iiwa14_real_t t369 = t63 * t366;
+    const iiwa14_real_t t370 = IIWA14_C(0.126) * parameters[M7];
+    const iiwa14_real_t t371 = IIWA14_C(0.126) * (t370 + IIWA14_C(2.0) * parameters[MZ7]);
+    const iiwa14_real_t t372 = parameters[ZZ6] + (parameters[XX7] + t369 + t371);
+    const iiwa14_real_t t373 = t57 * t368 - t83 * t367 - t170 * t372; /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t374 = t63 * (t254 + t262) + t71 * (t260 + t256);
+    const iiwa14_real_t t375 = t71 * t374;
+    const iiwa14_real_t t376 = IIWA14_C(-0.126) * t68; /* link j7: velocity of its origin */
+    const iiwa14_real_t t377 = IIWA14_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const iiwa14_real_t t378 = t377 - parameters[XX6];
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t379 = t68 * parameters[XY6] - t58 * t378 + (t260 - t375 - t318 * t376);
+    const iiwa14_real_t t380 = IIWA14_C(2.0) * t379; /* link j6: derivatives */
+    const iiwa14_real_t t381 = t71 * t276 - t63 * t275; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t382 = parameters[MZ7] + t370; /* link j7: inertia of it and all beyond */
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t383 = t71 * t289 - t63 * t291 + (IIWA14_C(-0.126) * t381 + t382 * t376);
+    const iiwa14_real_t t384 = parameters[YY6] - t377;
+    const iiwa14_real_t t385 = t58 * parameters[XY6] + t68 * t384 + t383;
+    const iiwa14_real_t t386 = IIWA14_C(-2.0) * t385; /* link j6: derivatives */
+    const iiwa14_real_t t387 = parameters[MX6] + t318; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t388 = t382 - parameters[MY6];
+    const iiwa14_real_t t389 = t109 * t387 - t115 * t388; /* link j6: derivatives */
+    const iiwa14_real_t t390 = IIWA14_C(0.125) * (t389 + (t373 + (t68 * t386 - t58 * t380)));
+    input_by_q[40] = t390;
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t391 = t68 * parameters[XZ6] - t59 * t378 + (t63 * t246 - t71 * t249);
+    const iiwa14_real_t t392 = IIWA14_C(2.0) * t58; /* link j6: derivatives */
+    const iiwa14_real_t t393 = IIWA14_C(-0.126) * t265; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t394 = IIWA14_C(-0.126) * t59; /* link j7: velocity of its origin */
+    const iiwa14_real_t t395 = t318 * t394; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t396 = t315 * t376;
+    const iiwa14_real_t t397 = t395 + t396 - t393;
+    const iiwa14_real_t t398 = t59 * parameters[XY6];
+    const iiwa14_real_t t399 = t68 * parameters[YZ6];
+    const iiwa14_real_t t400 = t397 + (t299 + t393) - (t398 + t399);
+    const iiwa14_real_t t401 = IIWA14_C(-2.0) * t68; /* link j6: derivatives */
+    const iiwa14_real_t t402 = t319 - parameters[XY6]; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t403 = parameters[YY6] + parameters[ZZ7];
+    /* link j6: derivatives */
+    const iiwa14_real_t t404 = t170 * t368 - (t83 * t402 + t57 * t403) - (t391 * t392 + t400 * t401);
+    const iiwa14_real_t t405 = parameters[MZ6] + t315; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t406 = t404 + t115 * t405 - t140; /* link j6: derivatives */
+    const iiwa14_real_t t407 = t63 * t374; /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t408 = t58 * parameters[XZ6];
+    const iiwa14_real_t t409 = t398 - t408 + (t397 + (t262 - t407 - t395));
+    const iiwa14_real_t t410 = t63 * t276 + t71 * t275;
+    const iiwa14_real_t t411 = t63 * t289 + t71 * t291 + (IIWA14_C(-0.126) * t410 + t382 * t394);
+    const iiwa14_real_t t412 = t59 * t384 - t58 * parameters[YZ6] + t411;
+    /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t413 = t369 - parameters[YY7] - t371 - parameters[XX6];
+    /* link j6: derivatives */
+    const iiwa14_real_t t414 = t412 * t401 - t409 * t392 - (t57 * t402 - t83 * t413 + t170 * t367);
+    const iiwa14_real_t t415 = t146 + (t414 - t109 * t405);
+    const iiwa14_real_t t416 = t56 * t406 - t39 * t415;
+    input_by_q[33] = IIWA14_C(0.125) * t416;
+    const iiwa14_real_t t417 = t56 * t415 + t39 * t406;
+    const iiwa14_real_t t418 = t379 * t392 - t385 * t401 - t373 - t389;
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t419 = t381 - parameters[M7] * t376 - (t68 * parameters[MY6] + t58 * parameters[MX6]);
+    const iiwa14_real_t t420 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
+    /* link j6: derivatives */
+    const iiwa14_real_t t421 = t109 * t420 - t419 * t392 + (t83 * t405 - t170 * t387);
+    const iiwa14_real_t t422 = t163 + t421;
+    const iiwa14_real_t t423 = t57 * t405 - t170 * t388 - (t419 * t401 + t115 * t420);
+    const iiwa14_real_t t424 = t423 - t167;
+    const iiwa14_real_t t425 = t39 * t422 - t56 * t424;
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t426 = t59 * parameters[MX6] + t68 * parameters[MZ6] + t265;
+    const iiwa14_real_t t427 = t59 * parameters[MY6] - t58 * parameters[MZ6] + (parameters[M7] * t394 - t410);
+    /* link j6: derivatives */
+    const iiwa14_real_t t428 = t427 * t401 - t426 * t392 + (t57 * t387 - t83 * t388);
+    const iiwa14_real_t t429 = t34 * t428 - t33 * t425;
+    const iiwa14_real_t t430 = t34 * t417 - t33 * t418 + IIWA14_C(0.4) * t429;
+    input_by_q[26] = IIWA14_C(-0.0625) * t430;
+    const iiwa14_real_t t431 = t34 * t425 + t33 * t428;
+    const iiwa14_real_t t432 = t33 * t417 + t34 * t418 + IIWA14_C(0.4) * t431;
+    const iiwa14_real_t t433 = t26 * t432 + t13 * t416;
+    input_by_q[19] = IIWA14_C(0.0625) * t433;
+    const iiwa14_real_t t434 = t13 * t432 - t26 * t416;
+    const iiwa14_real_t t435 = t13 * t429 + t26 * (t39 * t424 + t56 * t422);
+    const iiwa14_real_t t436 = t3 * t434 + t2 * t430 + IIWA14_C(0.42) * (t2 * t435 + t3 * t431);
+    input_by_q[12] = IIWA14_C(0.0625) * t436;
+    const iiwa14_real_t t437 = t3 * t430 - t2 * t434 + IIWA14_C(0.42) * (t3 * t435 - t2 * t431);
+    input_by_q[5] = IIWA14_C(0.0625) * (t0 * t437 + t7 * t433);
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t438 = t408 + t399 + (t397 + (t407 - t254 - t396));
+    const iiwa14_real_t t439 = IIWA14_C(2.0) * t438; /* link j6: derivatives */
+    const iiwa14_real_t t440 = IIWA14_C(0.125) * (t439 + IIWA14_C(-2.0) * (t58 * t367 + t68 * t368));
+    input_by_dq[40] = IIWA14_C(3.2e3) * parameters[FV6] + t440;
+    const iiwa14_real_t t441 = t377 - parameters[ZZ6];
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t442 = t375 - t256 + t315 * t394 - (t59 * parameters[YZ6] + t58 * t441);
+    const iiwa14_real_t t443 = IIWA14_C(2.0) * t442 - (t413 * t392 - t402 * t401); /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const iiwa14_real_t t444 = t59 * parameters[XZ6] - t68 * t441 + (t71 * t246 + t63 * t249);
+    const iiwa14_real_t t445 = IIWA14_C(2.0) * t444 - (t402 * t392 + t403 * t401); /* link j6: derivatives */
+    const iiwa14_real_t t446 = t39 * t443 + t56 * t445;
+    input_by_dq[33] = IIWA14_C(0.125) * t446;
+    const iiwa14_real_t t447 = t39 * t445 - t56 * t443;
+    const iiwa14_real_t t448 = t439 + (t368 * t401 - t367 * t392);
+    const iiwa14_real_t t449 = IIWA14_C(2.0) * t426 + t405 * t401;
+    const iiwa14_real_t t450 = IIWA14_C(2.0) * t427 + t405 * t392;
+    const iiwa14_real_t t451 = t39 * t450 - t56 * t449;
+    const iiwa14_real_t t452 = t387 * t401 - t388 * t392;
+    const iiwa14_real_t t453 = t34 * t452 - t33 * t451;
+    const iiwa14_real_t t454 = t34 * t447 + t33 * t448 + IIWA14_C(0.4) * t453;
+    input_by_dq[26] = IIWA14_C(-0.0625) * t454;
+    const iiwa14_real_t t455 = t34 * t451 + t33 * t452;
+    const iiwa14_real_t t456 = t33 * t447 - t34 * t448 + IIWA14_C(0.4) * t455;
+    const iiwa14_real_t t457 = t26 * t456 + t13 * t446;
+    input_by_dq[19] = IIWA14_C(0.0625) * t457;
+    const iiwa14_real_t t458 = t26 * t446 - t13 * t456;
+    const iiwa14_real_t t459 = t13 * t453 + t26 * (t39 * t449 + t56 * t450);
+    const iiwa14_real_t t460 = t2 * t454 - t3 * t458 + IIWA14_C(0.42) * (t2 * t459 + t3 * t455);
+    input_by_dq[12] = IIWA14_C(0.0625) * t460;
+    const iiwa14_real_t t461 = t2 * t458 + t3 * t454 + IIWA14_C(0.42) * (t3 * t459 - t2 * t455);
+    input_by_dq[5] = IIWA14_C(0.0625) * (t0 * t461 + t7 * t457);
+    input_by_ddq[40] = IIWA14_C(3.2e3) * parameters[IA6] + IIWA14_C(0.125) * t372;
+    const iiwa14_real_t t462 = t39 * t367 + t56 * t368; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t463 = IIWA14_C(-0.125) * t462;
+    input_by_ddq[33] = t463;
+    const iiwa14_real_t t464 = t56 * t367 - t39 * t368;
+    const iiwa14_real_t t465 = t56 * t388 - t39 * t387;
+    const iiwa14_real_t t466 = t33 * t465;
+    const iiwa14_real_t t467 = t34 * t464 + t33 * t372 + IIWA14_C(0.4) * t466;
+    input_by_ddq[26] = IIWA14_C(-0.0625) * t467;
+    const iiwa14_real_t t468 = t34 * t465;
+    const iiwa14_real_t t469 = t33 * t464 - t34 * t372 + IIWA14_C(-0.4) * t468;
+    const iiwa14_real_t t470 = t26 * t469 - t13 * t462;
+    input_by_ddq[19] = IIWA14_C(0.0625) * t470;
+    const iiwa14_real_t t471 = t13 * t469 + t26 * t462;
+    const iiwa14_real_t t472 = t39 * t388 + t56 * t387;
+    const iiwa14_real_t t473 = t13 * t466 + t26 * t472;
+    const iiwa14_real_t t474 = t3 * t468 - t2 * t473;
+    const iiwa14_real_t t475 = t3 * t471 + t2 * t467 + IIWA14_C(-0.42) * t474;
+    input_by_ddq[12] = IIWA14_C(0.0625) * t475;
+    const iiwa14_real_t t476 = t3 * t473 + t2 * t468;
+    const iiwa14_real_t t477 = t3 * t467 - t2 * t471 + IIWA14_C(0.42) * t476;
+    const iiwa14_real_t t478 = t0 * t477 + t7 * t470;
+    input_by_ddq[5] = IIWA14_C(0.0625) * t478;
+    const iiwa14_real_t t479 = t56 * t380 + t39 * t386; /* link j6: derivatives */
+    const iiwa14_real_t t480 = t64 * t464 + t51 * t372 + t203 * t462 - (t36 * t479 + t35 * t439);
+    input_by_q[39] = IIWA14_C(0.125) * (t480 - t111 * t465);
+    const iiwa14_real_t t481 = t33 * t479 - t34 * t439 - t472 * t343;
+    const iiwa14_real_t t482 = t56 * t386 - t39 * t380;
+    const iiwa14_real_t t483 = t482 - (t466 * t343 + t468 * t346);
+    const iiwa14_real_t t484 = t44 * t481 - t28 * t483 + (t27 * t469 - t47 * t462 + t209 * t467);
+    input_by_q[38] = IIWA14_C(0.125) * (t484 + (t99 * t472 - t107 * t466));
+    const iiwa14_real_t t485 = t13 * t481 - t26 * t483;
+    const iiwa14_real_t t486 = t34 * t479 + t33 * t439 - t472 * t346;
+    const iiwa14_real_t t487 = t5 * t485 - t4 * t486 + (t40 * t471 + t21 * t467 - t351 * t470);
+    input_by_q[37] = IIWA14_C(0.125) * (t487 - (t101 * t473 + t94 * t468));
+    const iiwa14_real_t t488 = t13 * t472 - t26 * t466; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t489 = t3 * t486 - t2 * t485 + t488 * t354; /* link j6: derivatives */
+    const iiwa14_real_t t490 = t26 * t481 + t13 * t483;
+    const iiwa14_real_t t491 = t490 + (t474 * t354 + t476 * t357);
+    const iiwa14_real_t t492 = t14 * t489 - t1 * t491 + (t8 * t477 - t17 * t470 - t359 * t475);
+    input_by_q[36] = IIWA14_C(0.125) * (t492 + (t97 * t474 + t91 * t488));
+    const iiwa14_real_t t493 = IIWA14_C(0.125) * (t482 + IIWA14_C(-2.0) * (t36 * t464 + t35 * t372));
+    input_by_dq[39] = t493;
+    const iiwa14_real_t t494 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t44 * t469 + t28 * t462) - t486);
+    input_by_dq[38] = t494;
+    const iiwa14_real_t t495 = IIWA14_C(0.125) * (t490 + IIWA14_C(2.0) * (t5 * t471 - t4 * t467));
+    input_by_dq[37] = t495;
+    const iiwa14_real_t t496 = t3 * t485 + t2 * t486 + t488 * t357 + IIWA14_C(2.0) * (t14 * t477 - t1 * t470);
+    input_by_dq[36] = IIWA14_C(0.125) * t496;
+    input_by_dq[35] = IIWA14_C(0.125) * (t0 * t489 + t7 * t491);
+    input_by_ddq[39] = t463;
+    input_by_ddq[38] = IIWA14_C(-0.125) * t467;
+    input_by_ddq[37] = IIWA14_C(0.125) * t470;
+    input_by_ddq[36] = IIWA14_C(0.125) * t475;
+    input_by_ddq[35] = IIWA14_C(0.125) * t478;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t497 = t56 * (t400 - t409) + t39 * (t412 - t391);
+    const iiwa14_real_t t498 = t39 * t497;
+    const iiwa14_real_t t499 = IIWA14_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const iiwa14_real_t t500 = t499 - parameters[XX5];
+    const iiwa14_real_t t501 = t35 * parameters[XY5] - t36 * t500 + (t391 + t498);
+    const iiwa14_real_t t502 = IIWA14_C(2.0) * t501; /* link j5: derivatives */
+    const iiwa14_real_t t503 = parameters[YY5] - t499;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t504 = t36 * parameters[XY5] + t35 * t503 + (t39 * t442 + t56 * t444);
+    const iiwa14_real_t t505 = IIWA14_C(2.0) * t504; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t506 = t402 * (IIWA14_C(2.0) * t39) - t56 * (t413 + t403);
+    const iiwa14_real_t t507 = parameters[XZ5] + (t402 - t39 * t506);
+    const iiwa14_real_t t508 = parameters[YZ5] - t462;
+    const iiwa14_real_t t509 = t56 * t506;
+    const iiwa14_real_t t510 = t413 + t509 - parameters[ZZ5];
+    const iiwa14_real_t t511 = t64 * t507 + t51 * t508 + t203 * t510; /* link j5: derivatives */
+    const iiwa14_real_t t512 = parameters[MX5] + t472; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t513 = parameters[MY5] + t405;
+    const iiwa14_real_t t514 = t111 * t513 - t103 * t512; /* link j5: derivatives */
+    const iiwa14_real_t t515 = IIWA14_C(0.125) * (t514 + (t511 - (t36 * t502 + t35 * t505)));
+    input_by_q[32] = t515;
+    const iiwa14_real_t t516 = t56 * t497; /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t517 = t36 * parameters[XZ5];
+    const iiwa14_real_t t518 = t52 * parameters[XY5];
+    const iiwa14_real_t t519 = t400 - t516 - (t517 + t518);
+    const iiwa14_real_t t520 = IIWA14_C(-2.0) * t36; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t521 = t36 * parameters[YZ5] + t52 * t503 + (t56 * t442 - t39 * t444);
+    const iiwa14_real_t t522 = IIWA14_C(-2.0) * t35; /* link j5: derivatives */
+    const iiwa14_real_t t523 = parameters[XX5] + (t403 + t509); /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t524 = parameters[XY5] + t464;
+    /* link j5: derivatives */
+    const iiwa14_real_t t525 = t519 * t520 - t521 * t522 + (t64 * t523 + t51 * t524 - t203 * t507);
+    const iiwa14_real_t t526 = parameters[MZ5] + t465; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t527 = t161 + (t525 + t103 * t526); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t528 = t35 * parameters[XZ5] + t52 * t500 + (t39 * t385 - t56 * t379);
+    const iiwa14_real_t t529 = t35 * parameters[YZ5];
+    const iiwa14_real_t t530 = t518 - t529 + t438;
+    const iiwa14_real_t t531 = parameters[YY5] + t372; /* link j6: inertia of it and all beyond */
+    /* link j5: derivatives */
+    const iiwa14_real_t t532 = t530 * t522 - t528 * t520 - (t203 * t508 - (t64 * t524 + t51 * t531));
+    const iiwa14_real_t t533 = t153 + (t532 - t111 * t526);
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t534 = t39 * t427 - t56 * t426 - (t35 * parameters[MY5] + t36 * parameters[MX5]);
+    const iiwa14_real_t t535 = parameters[M5] + t420; /* link j6: inertia of it and all beyond */
+    /* link j5: derivatives */
+    const iiwa14_real_t t536 = t534 * t522 + t111 * t535 - (t51 * t526 + t203 * t513);
+    const iiwa14_real_t t537 = t536 - t173;
+    const iiwa14_real_t t538 = t103 * t535 - t534 * t520 + (t203 * t512 + t64 * t526);
+    const iiwa14_real_t t539 = t169 + t538;
+    const iiwa14_real_t t540 = t34 * t539 - t33 * t537;
+    const iiwa14_real_t t541 = t34 * t527 + t33 * t533 + IIWA14_C(0.4) * t540;
+    input_by_q[25] = IIWA14_C(-0.0625) * t541;
+    const iiwa14_real_t t542 = t34 * t537 + t33 * t539;
+    const iiwa14_real_t t543 = t33 * t527 - t34 * t533 + IIWA14_C(0.4) * t542;
+    const iiwa14_real_t t544 = t501 * t520 + t504 * t522 + t511 + t514;
+    const iiwa14_real_t t545 = t26 * t543 + t13 * t544;
+    input_by_q[18] = IIWA14_C(0.0625) * t545;
+    const iiwa14_real_t t546 = t13 * t543 - t26 * t544;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t547 = t56 * t427 + t39 * t426 - (t36 * parameters[MZ5] + t52 * parameters[MY5]);
+    const iiwa14_real_t t548 = t35 * parameters[MZ5] - t52 * parameters[MX5] + t419;
+    /* link j5: derivatives */
+    const iiwa14_real_t t549 = t548 * t520 + t547 * t522 + (t51 * t512 - t64 * t513);
+    const iiwa14_real_t t550 = t13 * t540 + t26 * t549;
+    const iiwa14_real_t t551 = t3 * t546 + t2 * t541 + IIWA14_C(0.42) * (t2 * t550 + t3 * t542);
+    input_by_q[11] = IIWA14_C(0.0625) * t551;
+    const iiwa14_real_t t552 = t3 * t541 - t2 * t546 + IIWA14_C(0.42) * (t3 * t550 - t2 * t542);
+    input_by_q[4] = IIWA14_C(0.0625) * (t0 * t552 + t7 * t545);
+    const iiwa14_real_t t553 = t517 + t529 + (t409 + t516); /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t554 = IIWA14_C(2.0) * t553; /* link j5: derivatives */
+    const iiwa14_real_t t555 = IIWA14_C(0.125) * (t554 + IIWA14_C(-2.0) * (t36 * t507 + t35 * t508));
+    input_by_dq[32] = IIWA14_C(1250.0) * parameters[FV5] + t555;
+    const iiwa14_real_t t556 = parameters[ZZ5] - t499;
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t557 = t498 - t412 - (t52 * parameters[YZ5] + t36 * t556);
+    const iiwa14_real_t t558 = IIWA14_C(2.0) * t557 + (t523 * t520 + t524 * t522); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const iiwa14_real_t t559 = t35 * t556 - t52 * parameters[XZ5] + (t39 * t379 + t56 * t385);
+    const iiwa14_real_t t560 = IIWA14_C(-2.0) * t559 + (t524 * t520 + t531 * t522); /* link j5: derivatives */
+    const iiwa14_real_t t561 = IIWA14_C(-2.0) * t547 + t526 * t520;
+    const iiwa14_real_t t562 = IIWA14_C(-2.0) * t548 - t526 * t522;
+    const iiwa14_real_t t563 = t34 * t561 - t33 * t562;
+    const iiwa14_real_t t564 = t34 * t558 + t33 * t560 + IIWA14_C(0.4) * t563;
+    input_by_dq[25] = IIWA14_C(-0.0625) * t564;
+    const iiwa14_real_t t565 = t34 * t562 + t33 * t561;
+    const iiwa14_real_t t566 = t33 * t558 - t34 * t560 + IIWA14_C(0.4) * t565;
+    const iiwa14_real_t t567 = t554 + (t507 * t520 + t508 * t522);
+    const iiwa14_real_t t568 = t26 * t566 + t13 * t567;
+    input_by_dq[18] = IIWA14_C(0.0625) * t568;
+    const iiwa14_real_t t569 = t26 * t567 - t13 * t566;
+    const iiwa14_real_t t570 = t13 * t563 + t26 * (t512 * t522 - t513 * t520);
+    const iiwa14_real_t t571 = t2 * t564 - t3 * t569 + IIWA14_C(0.42) * (t2 * t570 + t3 * t565);
+    input_by_dq[11] = IIWA14_C(0.0625) * t571;
+    const iiwa14_real_t t572 = t2 * t569 + t3 * t564 + IIWA14_C(0.42) * (t3 * t570 - t2 * t565);
+    input_by_dq[4] = IIWA14_C(0.0625) * (t0 * t572 + t7 * t568);
+    input_by_ddq[32] = IIWA14_C(1250.0) * parameters[IA5] + IIWA14_C(-0.125) * t510;
+    const iiwa14_real_t t573 = t33 * t513 + t34 * t512; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t574 = t34 * t507 + t33 * t508 + IIWA14_C(-0.4) * t573;
+    input_by_ddq[25] = IIWA14_C(-0.0625) * t574;
+    const iiwa14_real_t t575 = t34 * t513 - t33 * t512;
+    const iiwa14_real_t t576 = t33 * t507 - t34 * t508 + IIWA14_C(0.4) * t575;
+    const iiwa14_real_t t577 = t26 * t576 - t13 * t510;
+    input_by_ddq[18] = IIWA14_C(0.0625) * t577;
+    const iiwa14_real_t t578 = t13 * t576 + t26 * t510;
+    const iiwa14_real_t t579 = t13 * t573;
+    const iiwa14_real_t t580 = t2 * t579 - t3 * t575;
+    const iiwa14_real_t t581 = t3 * t578 + t2 * t574 + IIWA14_C(-0.42) * t580;
+    input_by_ddq[11] = IIWA14_C(0.0625) * t581;
+    const iiwa14_real_t t582 = t3 * t579 + t2 * t575;
+    const iiwa14_real_t t583 = t3 * t574 - t2 * t578 + IIWA14_C(-0.42) * t582;
+    const iiwa14_real_t t584 = t0 * t583 + t7 * t577;
+    input_by_ddq[4] = IIWA14_C(0.0625) * t584;
+    const iiwa14_real_t t585 = t33 * t502 - t34 * t505; /* link j5: derivatives */
+    const iiwa14_real_t t586 = t554 + (t573 * t343 + t575 * t346);
+    const iiwa14_real_t t587 = t44 * t585 - t28 * t586 + (t27 * t576 - t47 * t510 + t209 * t574);
+    input_by_q[31] = IIWA14_C(0.125) * (t587 + t107 * t573);
+    const iiwa14_real_t t588 = t13 * t585 - t26 * t586;
+    const iiwa14_real_t t589 = t34 * t502 + t33 * t505;
+    const iiwa14_real_t t590 = t5 * t588 - t4 * t589 + (t40 * t578 + t21 * t574 - t351 * t577);
+    input_by_q[30] = IIWA14_C(0.125) * (t590 + (t101 * t579 + t94 * t575));
+    const iiwa14_real_t t591 = t26 * t573; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t592 = t3 * t589 - t2 * t588 + t591 * t354; /* link j5: derivatives */
+    const iiwa14_real_t t593 = t26 * t585 + t13 * t586;
+    const iiwa14_real_t t594 = t593 + (t580 * t354 - t582 * t357);
+    const iiwa14_real_t t595 = t14 * t592 - t1 * t594 + (t8 * t583 - t17 * t577 - t359 * t581);
+    input_by_q[29] = IIWA14_C(0.125) * (t595 + (t97 * t580 + t91 * t591));
+    const iiwa14_real_t t596 = IIWA14_C(0.125) * (IIWA14_C(2.0) * (t44 * t576 + t28 * t510) - t589);
+    input_by_dq[31] = t596;
+    const iiwa14_real_t t597 = IIWA14_C(0.125) * (t593 + IIWA14_C(2.0) * (t5 * t578 - t4 * t574));
+    input_by_dq[30] = t597;
+    const iiwa14_real_t t598 = t3 * t588 + t2 * t589 + t591 * t357 + IIWA14_C(2.0) * (t14 * t583 - t1 * t577);
+    input_by_dq[29] = IIWA14_C(0.125) * t598;
+    input_by_dq[28] = IIWA14_C(0.125) * (t0 * t592 + t7 * t594);
+    input_by_ddq[31] = IIWA14_C(-0.125) * t574;
+    input_by_ddq[30] = IIWA14_C(0.125) * t577;
+    input_by_ddq[29] = IIWA14_C(0.125) * t581;
+    input_by_ddq[28] = IIWA14_C(0.125) * t584;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t599 = t33 * (t519 - t530) + t34 * (t521 + t528);
+    const iiwa14_real_t t600 = t34 * t599;
+    const iiwa14_real_t t601 = IIWA14_C(-0.4) * t28; /* link j5: velocity of its origin */
+    const iiwa14_real_t t602 = IIWA14_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const iiwa14_real_t t603 = parameters[XX4] - t602;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t604 = t44 * t603 - t28 * parameters[XY4] + (t600 - t528 + t575 * t601);
+    const iiwa14_real_t t605 = IIWA14_C(-2.0) * t604; /* link j4: derivatives */
+    const iiwa14_real_t t606 = t33 * t548 - t34 * t547; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t607 = IIWA14_C(0.4) * t535; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t608 = t526 + t607;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t609 = t33 * t559 - t34 * t557 + (IIWA14_C(-0.4) * t606 + t608 * t601);
+    const iiwa14_real_t t610 = t602 - parameters[YY4];
+    const iiwa14_real_t t611 = t44 * parameters[XY4] + t28 * t610 - t609;
+    const iiwa14_real_t t612 = IIWA14_C(-2.0) * t611; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t613 = t33 * (t523 - t531) + t524 * (IIWA14_C(-2.0) * t34);
+    const iiwa14_real_t t614 = t524 + t34 * t613 - parameters[XZ4];
+    const iiwa14_real_t t615 = t574 - parameters[YZ4];
+    const iiwa14_real_t t616 = t33 * t613;
+    const iiwa14_real_t t617 = IIWA14_C(0.4) * (t607 + IIWA14_C(2.0) * t526);
+    const iiwa14_real_t t618 = parameters[ZZ4] + (t523 - t616 + t617);
+    const iiwa14_real_t t619 = t27 * t614 + t47 * t615 + t209 * t618; /* link j4: derivatives */
+    const iiwa14_real_t t620 = t575 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t621 = parameters[MY4] + t608;
+    const iiwa14_real_t t622 = t99 * t620 + t107 * t621; /* link j4: derivatives */
+    const iiwa14_real_t t623 = IIWA14_C(0.0625) * (t622 + (t44 * t605 - t28 * t612 - t619));
+    input_by_q[24] = t623;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t624 = t33 * t501 - t34 * t504 - (t28 * parameters[XZ4] + t29 * t603);
+    const iiwa14_real_t t625 = IIWA14_C(2.0) * t44; /* link j4: derivatives */
+    const iiwa14_real_t t626 = IIWA14_C(0.4) * t534; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t627 = IIWA14_C(-0.4) * t29; /* link j5: velocity of its origin */
+    const iiwa14_real_t t628 = t575 * t627; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t629 = t573 * t601;
+    const iiwa14_real_t t630 = t628 + t629 - t626;
+    const iiwa14_real_t t631 = t29 * parameters[XY4];
+    const iiwa14_real_t t632 = t28 * parameters[YZ4];
+    const iiwa14_real_t t633 = t630 + (t553 + t626) - (t631 + t632);
+    const iiwa14_real_t t634 = IIWA14_C(-2.0) * t28; /* link j4: derivatives */
+    const iiwa14_real_t t635 = parameters[XY4] + t576; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t636 = t510 - parameters[YY4];
+    /* link j4: derivatives */
+    const iiwa14_real_t t637 = t624 * t625 + t633 * t634 + (t27 * t635 - t47 * t636 + t209 * t615);
+    const iiwa14_real_t t638 = parameters[MZ4] - t573; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t639 = t180 + (t637 - t107 * t638); /* link j4: derivatives */
+    const iiwa14_real_t t640 = t33 * t599; /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t641 = t44 * parameters[XZ4];
+    const iiwa14_real_t t642 = t641 + t631 + (t630 + (t530 + t640 - t628));
+    const iiwa14_real_t t643 = t33 * t547 + t34 * t548;
+    const iiwa14_real_t t644 = t33 * t557 + t34 * t559 + (IIWA14_C(-0.4) * t643 + t608 * t627);
+    const iiwa14_real_t t645 = t44 * parameters[YZ4] - t29 * t610 + t644;
+    /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t646 = parameters[XX4] + (t531 + t616 + t617);
+    /* link j4: derivatives */
+    const iiwa14_real_t t647 = t642 * t625 + t645 * t634 + (t27 * t646 + t47 * t635 + t209 * t614);
+    const iiwa14_real_t t648 = t186 + (t647 + t99 * t638);
+    const iiwa14_real_t t649 = t26 * t648 + t13 * t639;
+    input_by_q[17] = IIWA14_C(0.0625) * t649;
+    const iiwa14_real_t t650 = t13 * t648 - t26 * t639;
+    const iiwa14_real_t t651 = t604 * t625 + t611 * t634 + t619 - t622;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t652 = t28 * parameters[MY4] - t44 * parameters[MX4] + (t606 - t535 * t601);
+    const iiwa14_real_t t653 = parameters[M4] + t535; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const iiwa14_real_t t654 = t652 * t625 + t99 * t653 + (t27 * t638 - t209 * t620);
+    const iiwa14_real_t t655 = t652 * t634 - t107 * t653 + (t47 * t638 + t209 * t621);
+    const iiwa14_real_t t656 = t13 * (t206 + t655) + t26 * (t202 + t654);
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t657 = t29 * parameters[MX4] + t28 * parameters[MZ4] + t534;
+    const iiwa14_real_t t658 = t44 * parameters[MZ4] + t29 * parameters[MY4] + (t643 - t535 * t627);
+    /* link j4: derivatives */
+    const iiwa14_real_t t659 = t27 * t621 + t47 * t620 - (t657 * t625 + t658 * t634);
+    const iiwa14_real_t t660 = t3 * t650 + t2 * t651 + IIWA14_C(0.42) * (t2 * t656 + t3 * t659);
+    input_by_q[10] = IIWA14_C(0.0625) * t660;
+    const iiwa14_real_t t661 = t3 * t651 - t2 * t650 + IIWA14_C(0.42) * (t3 * t656 - t2 * t659);
+    input_by_q[3] = IIWA14_C(0.0625) * (t0 * t661 + t7 * t649);
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t662 = t632 - t641 + (t630 + (t519 - t640 - t629));
+    const iiwa14_real_t t663 = IIWA14_C(-2.0) * t662; /* link j4: derivatives */
+    const iiwa14_real_t t664 = IIWA14_C(0.0625) * (IIWA14_C(2.0) * (t28 * t615 - t44 * t614) - t663);
+    input_by_dq[24] = IIWA14_C(1.6e3) * parameters[FV4] + t664;
+    const iiwa14_real_t t665 = parameters[ZZ4] - t602;
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t666 = t600 - t521 + t573 * t627 - (t29 * parameters[YZ4] + t44 * t665);
+    const iiwa14_real_t t667 = IIWA14_C(-2.0) * t666 + (t646 * t625 + t635 * t634); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const iiwa14_real_t t668 = t29 * parameters[XZ4] + t28 * t665 + (t34 * t501 + t33 * t504);
+    const iiwa14_real_t t669 = IIWA14_C(-2.0) * t668 + (t635 * t625 - t636 * t634); /* link j4: derivatives */
+    const iiwa14_real_t t670 = t26 * t667 + t13 * t669;
+    input_by_dq[17] = IIWA14_C(0.0625) * t670;
+    const iiwa14_real_t t671 = t26 * t669 - t13 * t667;
+    const iiwa14_real_t t672 = t663 + (t614 * t625 + t615 * t634);
+    const iiwa14_real_t t673 = t13 * (IIWA14_C(2.0) * t657 + t638 * t634) + t26 * (IIWA14_C(-2.0) * t658
+        + t638 * t625);
+    const iiwa14_real_t t674 = t621 * t625 + t620 * t634;
+    const iiwa14_real_t t675 = t2 * t672 - t3 * t671 + IIWA14_C(0.42) * (t2 * t673 + t3 * t674);
+    input_by_dq[10] = IIWA14_C(0.0625) * t675;
+    const iiwa14_real_t t676 = t2 * t671 + t3 * t672 + IIWA14_C(0.42) * (t3 * t673 - t2 * t674);
+    input_by_dq[3] = IIWA14_C(0.0625) * (t0 * t676 + t7 * t670);
+    input_by_ddq[24] = IIWA14_C(1.6e3) * parameters[IA4] + IIWA14_C(0.0625) * t618;
+    const iiwa14_real_t t677 = t26 * t614 + t13 * t615; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t678 = IIWA14_C(-0.0625) * t677;
+    input_by_ddq[17] = t678;
+    const iiwa14_real_t t679 = t26 * t615 - t13 * t614;
+    const iiwa14_real_t t680 = t26 * t620 - t13 * t621;
+    const iiwa14_real_t t681 = t2 * t680;
+    const iiwa14_real_t t682 = t3 * t679 - t2 * t618 - IIWA14_C(-0.42) * t681;
+    const iiwa14_real_t t683 = IIWA14_C(0.0625) * t682;
+    input_by_ddq[10] = t683;
+    const iiwa14_real_t t684 = t3 * t680;
+    const iiwa14_real_t t685 = IIWA14_C(0.42) * t684 - (t2 * t679 + t3 * t618);
+    const iiwa14_real_t t686 = IIWA14_C(0.0625) * (t0 * t685 - t7 * t677);
+    input_by_ddq[3] = t686;
+    const iiwa14_real_t t687 = t13 * t605 - t26 * t612; /* link j4: derivatives */
+    const iiwa14_real_t t688 = t5 * t687 - t4 * t663 + (t40 * t679 - t21 * t618 + t351 * t677);
+    input_by_q[23] = IIWA14_C(0.0625) * (t688 - t101 * t680);
+    const iiwa14_real_t t689 = t26 * t621 + t13 * t620; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t690 = t3 * t663 - t2 * t687 + t689 * t354; /* link j4: derivatives */
+    const iiwa14_real_t t691 = t26 * t605 + t13 * t612;
+    const iiwa14_real_t t692 = t691 + (t684 * t357 - t681 * t354);
+    const iiwa14_real_t t693 = t14 * t690 - t1 * t692 + (t8 * t685 + t17 * t677 - t359 * t682);
+    input_by_q[22] = IIWA14_C(0.0625) * (t693 + (t91 * t689 - t97 * t681));
+    const iiwa14_real_t t694 = IIWA14_C(0.0625) * (t691 + IIWA14_C(2.0) * (t5 * t679 + t4 * t618));
+    input_by_dq[23] = t694;
+    const iiwa14_real_t t695 = t3 * t687 + t2 * t663 + t689 * t357 + IIWA14_C(2.0) * (t14 * t685 + t1 * t677);
+    input_by_dq[22] = IIWA14_C(0.0625) * t695;
+    input_by_dq[21] = IIWA14_C(0.0625) * (t0 * t690 + t7 * t692);
+    input_by_ddq[23] = t678;
+    input_by_ddq[22] = t683;
+    input_by_ddq[21] = t686;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t696 = t13 * (t633 - t642) + t26 * (t645 + t624);
+    const iiwa14_real_t t697 = t26 * t696;
+    const iiwa14_real_t t698 = IIWA14_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const iiwa14_real_t t699 = parameters[XX3] - t698;
+    const iiwa14_real_t t700 = t4 * parameters[XY3] - t5 * t699 + (t624 - t697);
+    const iiwa14_real_t t701 = IIWA14_C(2.0) * t700; /* link j3: derivatives */
+    const iiwa14_real_t t702 = t698 - parameters[YY3];
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t703 = t26 * t666 + t13 * t668 - (t5 * parameters[XY3] + t4 * t702);
+    const iiwa14_real_t t704 = IIWA14_C(2.0) * t703; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t705 = t13 * (t646 + t636) + t635 * (IIWA14_C(-2.0) * t26);
+    const iiwa14_real_t t706 = parameters[XZ3] + (t635 + t26 * t705);
+    const iiwa14_real_t t707 = parameters[YZ3] + t677;
+    const iiwa14_real_t t708 = t13 * t705;
+    const iiwa14_real_t t709 = t708 - t646 - parameters[ZZ3];
+    const iiwa14_real_t t710 = t40 * t706 + t21 * t707 + t351 * t709; /* link j3: derivatives */
+    const iiwa14_real_t t711 = parameters[MX3] - t689; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t712 = parameters[MY3] - t638;
+    const iiwa14_real_t t713 = t101 * t712 - t94 * t711; /* link j3: derivatives */
+    const iiwa14_real_t t714 = IIWA14_C(0.0625) * (t713 + (t710 + (t5 * t701 - t4 * t704)));
+    input_by_q[16] = t714;
+    const iiwa14_real_t t715 = t13 * t696; /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t716 = t5 * parameters[XZ3];
+    const iiwa14_real_t t717 = t22 * parameters[XY3];
+    const iiwa14_real_t t718 = t716 - t717 + (t633 - t715);
+    const iiwa14_real_t t719 = IIWA14_C(2.0) * t5; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t720 = t5 * parameters[YZ3] + t22 * t702 + (t13 * t666 - t26 * t668);
+    const iiwa14_real_t t721 = IIWA14_C(-2.0) * t4; /* link j3: derivatives */
+    const iiwa14_real_t t722 = parameters[XX3] + (t708 - t636); /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t723 = parameters[XY3] - t679;
+    /* link j3: derivatives */
+    const iiwa14_real_t t724 = t718 * t719 + t720 * t721 + (t40 * t722 + t21 * t723 - t351 * t706);
+    const iiwa14_real_t t725 = parameters[MZ3] - t680; /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t726 = t724 + t94 * t725 - t200; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t727 = t22 * t699 - t4 * parameters[XZ3] + (t13 * t604 - t26 * t611);
+    const iiwa14_real_t t728 = t4 * parameters[YZ3];
+    const iiwa14_real_t t729 = t717 - t728 + t662;
+    const iiwa14_real_t t730 = parameters[YY3] + t618; /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const iiwa14_real_t t731 = t727 * t719 + t729 * t721 + (t40 * t723 + t21 * t730 - t351 * t707);
+    const iiwa14_real_t t732 = t192 + (t731 - t101 * t725);
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t733 = t4 * parameters[MY3] - t5 * parameters[MX3] + (t26 * t658 - t13 * t657);
+    const iiwa14_real_t t734 = parameters[M3] + t653; /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const iiwa14_real_t t735 = t733 * t721 - t101 * t734 + (t21 * t725 + t351 * t712);
+    const iiwa14_real_t t736 = t212 + t735;
+    const iiwa14_real_t t737 = t733 * t719 + t94 * t734 + (t351 * t711 + t40 * t725);
+    const iiwa14_real_t t738 = t737 - t208;
+    const iiwa14_real_t t739 = t3 * t726 + t2 * t732 + IIWA14_C(0.42) * (t2 * t736 + t3 * t738);
+    input_by_q[9] = IIWA14_C(0.0625) * t739;
+    const iiwa14_real_t t740 = t3 * t732 - t2 * t726 + IIWA14_C(0.42) * (t3 * t736 - t2 * t738);
+    const iiwa14_real_t t741 = t7 * (t700 * t719 + t703 * t721 + t710 + t713);
+    input_by_q[2] = IIWA14_C(0.0625) * (t0 * t740 + t741);
+    const iiwa14_real_t t742 = t728 - t716 + (t642 + t715); /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t743 = IIWA14_C(2.0) * t742; /* link j3: derivatives */
+    const iiwa14_real_t t744 = IIWA14_C(0.0625) * (t743 + IIWA14_C(2.0) * (t5 * t706 - t4 * t707));
+    input_by_dq[16] = IIWA14_C(1.6e3) * parameters[FV3] + t744;
+    const iiwa14_real_t t745 = parameters[ZZ3] - t698;
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t746 = t22 * parameters[YZ3] - t5 * t745 + (t697 - t645);
+    const iiwa14_real_t t747 = IIWA14_C(2.0) * t746 - (t722 * t719 + t723 * t721); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t748 = t22 * parameters[XZ3] - t4 * t745 + (t26 * t604 + t13 * t611);
+    const iiwa14_real_t t749 = IIWA14_C(2.0) * t748 + (t723 * t719 + t730 * t721); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t750 = t5 * parameters[MZ3] - t22 * parameters[MY3] + (t13 * t658 + t26 * t657);
+    const iiwa14_real_t t751 = IIWA14_C(2.0) * t750 - t725 * t719; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const iiwa14_real_t t752 = t4 * parameters[MZ3] - t22 * parameters[MX3] + t652;
+    const iiwa14_real_t t753 = IIWA14_C(2.0) * t752 + t725 * t721; /* link j3: derivatives */
+    const iiwa14_real_t t754 = t2 * t749 - t3 * t747 + IIWA14_C(0.42) * (t2 * t753 - t3 * t751);
+    input_by_dq[9] = IIWA14_C(0.0625) * t754;
+    const iiwa14_real_t t755 = t2 * t747 + t3 * t749 + IIWA14_C(0.42) * (t3 * t753 + t2 * t751);
+    const iiwa14_real_t t756 = t0 * t755 + t7 * (t743 + (t706 * t719 + t707 * t721));
+    input_by_dq[2] = IIWA14_C(0.0625) * t756;
+    input_by_ddq[16] = IIWA14_C(1.6e3) * parameters[IA3] + IIWA14_C(-0.0625) * t709;
+    const iiwa14_real_t t757 = t2 * t712 + t3 * t711; /* link j3: column of the mass matrix */
+    const iiwa14_real_t t758 = IIWA14_C(0.42) * t757 - (t3 * t706 + t2 * t707);
+    const iiwa14_real_t t759 = IIWA14_C(-0.0625) * t758;
+    input_by_ddq[9] = t759;
+    const iiwa14_real_t t760 = t2 * t711 - t3 * t712;
+    const iiwa14_real_t t761 = t3 * t707 - t2 * t706 + IIWA14_C(0.42) * t760;
+    const iiwa14_real_t t762 = IIWA14_C(0.0625) * (t0 * t761 - t7 * t709);
+    input_by_ddq[2] = t762;
+    const iiwa14_real_t t763 = t3 * t704 - t2 * t701; /* link j3: derivatives */
+    const iiwa14_real_t t764 = t743 + (t757 * t354 + t760 * t357);
+    const iiwa14_real_t t765 = t14 * t763 - t1 * t764 + (t8 * t761 + t17 * t709 + t359 * t758);
+    input_by_q[15] = IIWA14_C(0.0625) * (t765 + t97 * t757);
+    const iiwa14_real_t t766 = t3 * t701 + t2 * t704 + IIWA14_C(2.0) * (t14 * t761 + t1 * t709);
+    input_by_dq[15] = IIWA14_C(0.0625) * t766;
+    input_by_dq[14] = IIWA14_C(0.0625) * (t0 * t763 + t7 * t764);
+    input_by_ddq[15] = t759;
+    input_by_ddq[14] = t762;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t767 = t2 * (t729 - t718) + t3 * (t720 + t727);
+    const iiwa14_real_t t768 = t3 * t767;
+    const iiwa14_real_t t769 = IIWA14_C(-0.42) * t1; /* link j3: velocity of its origin */
+    const iiwa14_real_t t770 = IIWA14_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const iiwa14_real_t t771 = parameters[XX2] - t770;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t772 = t1 * parameters[XY2] - t14 * t771 + (t768 - t727 - t760 * t769);
+    const iiwa14_real_t t773 = IIWA14_C(2.0) * t772; /* link j2: derivatives */
+    const iiwa14_real_t t774 = IIWA14_C(0.42) * t734; /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t775 = t725 + t774;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t776 = IIWA14_C(0.42) * (t3 * t750 - t2 * t752) - t775 * t769;
+    const iiwa14_real_t t777 = t770 - parameters[YY2];
+    const iiwa14_real_t t778 = t14 * parameters[XY2] + t1 * t777 + (t3 * t746 - t2 * t748 + t776);
+    const iiwa14_real_t t779 = IIWA14_C(2.0) * t778; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t780 = t2 * (t722 - t730) - t723 * (IIWA14_C(2.0) * t3);
+    const iiwa14_real_t t781 = parameters[XZ2] + (t723 + t3 * t780);
+    const iiwa14_real_t t782 = parameters[YZ2] + t758;
+    const iiwa14_real_t t783 = t2 * t780;
+    const iiwa14_real_t t784 = IIWA14_C(0.42) * (t774 + IIWA14_C(2.0) * t725);
+    const iiwa14_real_t t785 = parameters[ZZ2] + (t722 - t783 + t784);
+    /* link j2: derivatives */
+    const iiwa14_real_t t786 = t17 * t782 - t8 * t781 - t359 * t785 + (t14 * t773 + t1 * t779);
+    const iiwa14_real_t t787 = t91 * (parameters[MX2] + t760) + t97 * (parameters[MY2] - t775) + t786;
+    input_by_q[8] = IIWA14_C(0.0625) * t787;
+    const iiwa14_real_t t788 = t2 * t767; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t789 = IIWA14_C(0.42) * dq[1]; /* link j3: velocity of its origin */
+    const iiwa14_real_t t790 = t760 * t789; /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t791 = IIWA14_C(-0.42) * t733;
+    const iiwa14_real_t t792 = t757 * t769;
+    const iiwa14_real_t t793 = t790 - t792 - t791;
+    const iiwa14_real_t t794 = t14 * parameters[XZ2];
+    const iiwa14_real_t t795 = dq[1] * parameters[XY2];
+    const iiwa14_real_t t796 = t793 + (t729 - t788 - t790) - (t794 + t795);
+    const iiwa14_real_t t797 = IIWA14_C(2.0) * t14; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t798 = IIWA14_C(0.42) * (t2 * t750 + t3 * t752) + t775 * t789;
+    const iiwa14_real_t t799 = dq[1] * t777 - t14 * parameters[YZ2] + (t2 * t746 + t3 * t748 + t798);
+    const iiwa14_real_t t800 = IIWA14_C(-2.0) * t1; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t801 = parameters[XX2] + (t730 + t783 + t784);
+    const iiwa14_real_t t802 = parameters[XY2] + t761;
+    /* link j2: derivatives */
+    const iiwa14_real_t t803 = t796 * t797 + t799 * t800 + (t8 * t801 - t17 * t802 + t359 * t781);
+    const iiwa14_real_t t804 = parameters[MZ2] + t757; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t805 = t1 * parameters[XZ2] + dq[1] * t771 + (t3 * t703 - t2 * t700);
+    const iiwa14_real_t t806 = t1 * parameters[YZ2];
+    const iiwa14_real_t t807 = t795 + t806 + (t793 + (t742 + t791));
+    const iiwa14_real_t t808 = parameters[YY2] - t709; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
+    const iiwa14_real_t t809 = t805 * t797 + t807 * t800 + (t8 * t802 - t17 * t808 + t359 * t782);
+    const iiwa14_real_t t810 = t0 * (t223 + (t803 + t91 * t804)) + t7 * (t217 + (t809 + t97 * t804));
+    input_by_q[1] = IIWA14_C(0.0625) * t810;
+    const iiwa14_real_t t811 = IIWA14_C(2.0) * (t794 - t806 + (t793 + (t718 + t788 + t792)));
+    const iiwa14_real_t t812 = IIWA14_C(0.0625) * (t811 + IIWA14_C(2.0) * (t1 * t782 - t14 * t781));
+    input_by_dq[8] = IIWA14_C(1.6e3) * parameters[FV2] + t812;
+    const iiwa14_real_t t813 = parameters[ZZ2] - t770;
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t814 = dq[1] * parameters[YZ2] + t14 * t813 + (t768 - t720 + t757 * t789);
+    /* link j2: derivatives */
+    const iiwa14_real_t t815 = t0 * (IIWA14_C(2.0) * t814 + (t801 * t797 + t802 * t800));
+    /* link j3: inertia, momentum beyond */
+    const iiwa14_real_t t816 = t3 * t700 + t2 * t703 - (dq[1] * parameters[XZ2] + t1 * t813);
+    /* link j2: derivatives */
+    const iiwa14_real_t t817 = t7 * (IIWA14_C(2.0) * t816 + (t802 * t797 + t808 * t800));
+    input_by_dq[1] = IIWA14_C(0.0625) * (t815 + t817);
+    input_by_ddq[8] = IIWA14_C(1.6e3) * parameters[IA2] + IIWA14_C(0.0625) * t785;
+    const iiwa14_real_t t818 = IIWA14_C(-0.0625) * (t0 * t781 + t7 * t782);
+    input_by_ddq[1] = t818;
+    input_by_dq[7] = IIWA14_C(0.0625) * (t0 * t773 - t7 * t779);
+    input_by_ddq[7] = t818;
+    /* link j2: inertia, momentum beyond */
+    const iiwa14_real_t t819 = t7 * (t7 * (t807 - t796) + t0 * (t799 + t805));
+    input_by_dq[0] = IIWA14_C(1.6e3) * parameters[FV1] + IIWA14_C(0.125) * (t796 + t819);
+    /* link j2: inertia of it and all beyond */
+    const iiwa14_real_t t820 = t7 * (t7 * (t808 - t801) + t802 * (IIWA14_C(2.0) * t0));
+    input_by_ddq[0] = IIWA14_C(1.6e3) * parameters[IA1] + IIWA14_C(0.0625) * (parameters[ZZ1] + (t801
+        + t820));
     /* always zero */
     input_by_q[0] = IIWA14_C(0.0);
     input_by_q[7] = IIWA14_C(0.0);

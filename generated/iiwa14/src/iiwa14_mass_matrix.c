@@ -89,7 +89,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x1E31C9F2UL
+#if IIWA14_GENERATION != 0xF4E95A26UL
 #error "iiwa14.h and iiwa14_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -113,178 +113,170 @@ iiwa14_status_t iiwa14_mass_matrix(
         return status;
     }
 
-    iiwa14_real_t t67, t60;
-    IIWA14_SINCOS(q[1], &t67, &t60);
-    iiwa14_real_t t51, t44;
-    IIWA14_SINCOS(q[2], &t51, &t44);
-    iiwa14_real_t t39, t28;
-    IIWA14_SINCOS(q[3], &t39, &t28);
-    iiwa14_real_t t19, t13;
-    IIWA14_SINCOS(q[4], &t19, &t13);
-    iiwa14_real_t t8, t5;
-    IIWA14_SINCOS(q[5], &t8, &t5);
-    iiwa14_real_t t1, t0;
-    IIWA14_SINCOS(q[6], &t1, &t0);
-    /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t2 = parameters[XY7] * (IIWA14_C(2.0) * t1) - t0 * parameters[XX7R];
-    const iiwa14_real_t t3 = t0 * t2;
-    const iiwa14_real_t t4 = parameters[XX6R] - t3;
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t6 = t1 * parameters[YZ7R] - t0 * parameters[XZ7R];
-    const iiwa14_real_t t7 = parameters[XY6] + t6; /* link j7: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t9 = t5 * (parameters[ZZ7] - t4) + t7 * (IIWA14_C(2.0) * t8);
-    const iiwa14_real_t t10 = t5 * t9;
-    const iiwa14_real_t t11 = parameters[XX5R] + (parameters[ZZ7] - t10);
-    /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t12 = parameters[ZZ6R] + (parameters[XX7R] + t3);
-    const iiwa14_real_t t14 = t1 * t2 - parameters[XY7] - parameters[XZ6];
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t15 = t1 * parameters[XZ7R] + t0 * parameters[YZ7R];
-    const iiwa14_real_t t16 = parameters[YZ6] - t15; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t17 = t5 * t14 + t8 * t16; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t18 = t17 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t20 = t13 * (t12 - t11) - t18 * (IIWA14_C(2.0) * t19);
-    const iiwa14_real_t t21 = t13 * t20;
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t22 = t1 * parameters[MY7] - t0 * parameters[MX7];
-    const iiwa14_real_t t23 = parameters[MX6] - t22; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t24 = t5 * parameters[MY6R] + t8 * t23; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t25 = IIWA14_C(-0.8) * t24; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t26 = parameters[XX4R] + (t12 - t21 + t25);
-    const iiwa14_real_t t27 = parameters[ZZ5R] + (t4 + t10); /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t29 = parameters[XZ5] - (t7 - t8 * t9);
-    const iiwa14_real_t t30 = t8 * t14 - t5 * t16; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t31 = parameters[YZ5] + t30; /* link j6: inertia of it and all beyond */
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t32 = t0 * parameters[MY7] + t1 * parameters[MX7];
-    const iiwa14_real_t t33 = parameters[MY5R] + t32; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t34 = t8 * parameters[MY6R] - t5 * t23; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t35 = t34 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t36 = t19 * t33 + t13 * t35; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t37 = t13 * t29 - t19 * t31 + IIWA14_C(0.4) * t36;
-    const iiwa14_real_t t38 = parameters[XY4] + t37; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t40 = t28 * (t27 - t26) + t38 * (IIWA14_C(2.0) * t39);
-    const iiwa14_real_t t41 = t28 * t40;
-    const iiwa14_real_t t42 = parameters[XX3R] + (t27 - t41);
-    /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t43 = parameters[ZZ4R] + (t11 + t21 + t25);
-    const iiwa14_real_t t45 = parameters[XZ4] + (t18 + t19 * t20);
-    const iiwa14_real_t t46 = t19 * t35 - t13 * t33; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t47 = IIWA14_C(-0.4) * t46 - (t19 * t29 + t13 * t31);
-    const iiwa14_real_t t48 = parameters[YZ4] + t47; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t49 = t28 * t45 - t39 * t48; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t50 = t49 - parameters[XY3]; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t52 = t44 * (t43 - t42) - t50 * (IIWA14_C(2.0) * t51);
-    const iiwa14_real_t t53 = t44 * t52;
-    const iiwa14_real_t t54 = t36 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t55 = t24 - parameters[MY4R];
-    const iiwa14_real_t t56 = t28 * t55 + t39 * t54; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t57 = IIWA14_C(-0.84) * t56; /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t58 = parameters[XX2R] + (t43 - t53 + t57);
-    const iiwa14_real_t t59 = parameters[ZZ3R] + (t26 + t41); /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t61 = parameters[XZ3] + (t38 - t39 * t40);
-    const iiwa14_real_t t62 = t39 * t45 + t28 * t48; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t63 = parameters[YZ3] - t62; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t64 = t46 - parameters[MY3R];
-    const iiwa14_real_t t65 = parameters[MX3] - (t28 * t54 - t39 * t55);
-    /* link j3: column of the mass matrix */
-    const iiwa14_real_t t66 = t51 * t63 - t44 * t61 + IIWA14_C(0.42) * (t51 * t64 + t44 * t65);
-    /* link j2: inertia of it and all beyond */
-    const iiwa14_real_t t68 = t60 * (t59 - t58) + (parameters[XY2] + t66) * (IIWA14_C(2.0) * t67);
-    out[0] = parameters[ZZ1R] + (t58 + t60 * t68);
-    /* link j3: column of the mass matrix */
-    const iiwa14_real_t t69 = t51 * t61 + t44 * t63 + IIWA14_C(0.42) * (t44 * t64 - t51 * t65);
-    /* link j2: column of the mass matrix */
-    const iiwa14_real_t t70 = t67 * (t50 + t51 * t52 - parameters[XZ2]) + t60 * (t69 - parameters[YZ2]);
-    out[1] = t70;
-    const iiwa14_real_t t71 = t67 * t66 + t60 * t59; /* link j3: column of the mass matrix */
-    out[2] = t71;
-    /* link j4: column of the mass matrix */
-    const iiwa14_real_t t72 = IIWA14_C(0.42) * (t51 * t56) - (t44 * t49 + t51 * t43);
-    const iiwa14_real_t t73 = t67 * t72 + t60 * t62;
-    out[3] = t73;
-    const iiwa14_real_t t74 = t28 * t37 - t39 * t27; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t75 = t28 * t46;
-    const iiwa14_real_t t76 = IIWA14_C(0.42) * (t51 * t75 - t44 * t36) - (t44 * t74 + t51 * t47);
-    const iiwa14_real_t t77 = t39 * t37 + t28 * t27;
-    const iiwa14_real_t t78 = t67 * t76 + t60 * t77;
-    out[4] = t78;
-    const iiwa14_real_t t79 = t19 * t24; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t80 = IIWA14_C(0.4) * t79 - (t13 * t17 + t19 * t12);
-    const iiwa14_real_t t81 = t28 * t80 - t39 * t30;
-    const iiwa14_real_t t82 = t13 * t24;
-    const iiwa14_real_t t83 = t19 * t17 - t13 * t12 + IIWA14_C(0.4) * t82;
-    const iiwa14_real_t t84 = t28 * t82 + t39 * t34;
-    const iiwa14_real_t t85 = IIWA14_C(-0.42) * (t51 * t84 + t44 * t79) - (t44 * t81 + t51 * t83);
-    const iiwa14_real_t t86 = t39 * t80 + t28 * t30;
-    const iiwa14_real_t t87 = t67 * t85 + t60 * t86;
-    out[5] = t87;
-    const iiwa14_real_t t88 = t8 * parameters[ZZ7] - t5 * t6; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t89 = t5 * t32;
-    const iiwa14_real_t t90 = t19 * t89 + t13 * t22;
-    const iiwa14_real_t t91 = t13 * t88 - t19 * t15 + IIWA14_C(0.4) * t90;
-    const iiwa14_real_t t92 = t8 * t6 + t5 * parameters[ZZ7];
-    const iiwa14_real_t t93 = t28 * t91 - t39 * t92;
-    const iiwa14_real_t t94 = t13 * t89 - t19 * t22;
-    const iiwa14_real_t t95 = IIWA14_C(0.4) * t94 - (t19 * t88 + t13 * t15);
-    const iiwa14_real_t t96 = t28 * t94 + t39 * (t8 * t32);
-    const iiwa14_real_t t97 = IIWA14_C(-0.42) * (t51 * t96 + t44 * t90) - (t44 * t93 + t51 * t95);
-    const iiwa14_real_t t98 = t39 * t91 + t28 * t92;
-    const iiwa14_real_t t99 = t67 * t97 + t60 * t98;
-    out[6] = t99;
-    out[7] = t70;
-    out[8] = parameters[ZZ2R] + (t42 + t53 + t57);
-    out[9] = t69;
-    /* link j4: column of the mass matrix */
-    const iiwa14_real_t t100 = t51 * t49 - t44 * t43 + IIWA14_C(0.42) * (t44 * t56);
-    out[10] = t100;
-    /* link j5: column of the mass matrix */
-    const iiwa14_real_t t101 = t51 * t74 - t44 * t47 + IIWA14_C(0.42) * (t44 * t75 + t51 * t36);
-    out[11] = t101;
-    /* link j6: column of the mass matrix */
-    const iiwa14_real_t t102 = t51 * t81 - t44 * t83 + IIWA14_C(0.42) * (t51 * t79 - t44 * t84);
-    out[12] = t102;
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t103 = t51 * t93 - t44 * t95 + IIWA14_C(0.42) * (t51 * t90 - t44 * t96);
-    out[13] = t103;
-    out[14] = t71;
-    out[15] = t69;
-    out[16] = t59 + IIWA14_C(2.56e4) * parameters[IA3];
-    out[17] = t62;
-    out[18] = t77;
-    out[19] = t86;
-    out[20] = t98;
-    out[21] = t73;
-    out[22] = t100;
-    out[23] = t62;
-    out[24] = t43 + IIWA14_C(2.56e4) * parameters[IA4];
-    out[25] = t47;
-    out[26] = t83;
-    out[27] = t95;
-    out[28] = t78;
-    out[29] = t101;
-    out[30] = t77;
-    out[31] = t47;
-    out[32] = t27 + IIWA14_C(1.0e4) * parameters[IA5];
-    out[33] = t30;
-    out[34] = t92;
-    out[35] = t87;
-    out[36] = t102;
-    out[37] = t86;
-    out[38] = t83;
-    out[39] = t30;
-    out[40] = t12 + IIWA14_C(2.56e4) * parameters[IA6];
-    out[41] = t15;
-    out[42] = t99;
-    out[43] = t103;
-    out[44] = t98;
-    out[45] = t95;
-    out[46] = t92;
-    out[47] = t15;
+    iiwa14_real_t t26, t27;
+    IIWA14_SINCOS(q[1], &t26, &t27);
+    iiwa14_real_t t21, t22;
+    IIWA14_SINCOS(q[2], &t21, &t22);
+    iiwa14_real_t t17, t18;
+    IIWA14_SINCOS(q[3], &t17, &t18);
+    iiwa14_real_t t8, t9;
+    IIWA14_SINCOS(q[4], &t8, &t9);
+    iiwa14_real_t t4, t5;
+    IIWA14_SINCOS(q[5], &t4, &t5);
+    iiwa14_real_t t0, t1;
+    IIWA14_SINCOS(q[6], &t0, &t1);
     out[48] = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
+    /* link j7: column of the mass matrix */
+    const iiwa14_real_t t2 = t0 * parameters[XZ7R] + t1 * parameters[YZ7R];
+    out[41] = t2;
+    const iiwa14_real_t t3 = t0 * parameters[YZ7R] - t1 * parameters[XZ7R];
+    const iiwa14_real_t t6 = t4 * t3 + t5 * parameters[ZZ7];
+    out[34] = t6;
+    const iiwa14_real_t t7 = t4 * parameters[ZZ7] - t5 * t3;
+    const iiwa14_real_t t10 = t1 * parameters[MY7] + t0 * parameters[MX7];
+    const iiwa14_real_t t11 = t5 * t10;
+    const iiwa14_real_t t12 = t0 * parameters[MY7] - t1 * parameters[MX7];
+    const iiwa14_real_t t13 = t9 * t11 - t8 * t12;
+    const iiwa14_real_t t14 = IIWA14_C(0.4) * t13 - (t8 * t7 + t9 * t2);
+    out[27] = t14;
+    const iiwa14_real_t t15 = t8 * t11 + t9 * t12;
+    const iiwa14_real_t t16 = t9 * t7 - t8 * t2 + IIWA14_C(0.4) * t15;
+    const iiwa14_real_t t19 = t17 * t16 + t18 * t6;
+    out[20] = t19;
+    const iiwa14_real_t t20 = t18 * t16 - t17 * t6;
+    const iiwa14_real_t t23 = t18 * t13 + t17 * (t4 * t10);
+    const iiwa14_real_t t24 = t21 * t20 - t22 * t14 + IIWA14_C(0.42) * (t21 * t15 - t22 * t23);
+    out[13] = t24;
+    const iiwa14_real_t t25 = IIWA14_C(-0.42) * (t21 * t23 + t22 * t15) - (t22 * t20 + t21 * t14);
+    const iiwa14_real_t t28 = t26 * t25 + t27 * t19;
+    out[6] = t28;
+    out[47] = t2;
+    out[46] = t6;
+    out[45] = t14;
+    out[44] = t19;
+    out[43] = t24;
+    out[42] = t28;
+    /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t29 = parameters[XY7] * (IIWA14_C(2.0) * t0) - t1 * parameters[XX7R];
+    const iiwa14_real_t t30 = t1 * t29;
+    const iiwa14_real_t t31 = parameters[ZZ6R] + (parameters[XX7R] + t30);
+    out[40] = t31 + IIWA14_C(2.56e4) * parameters[IA6];
+    const iiwa14_real_t t32 = t0 * t29 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_real_t t33 = parameters[YZ6] - t2;
+    const iiwa14_real_t t34 = t4 * t32 - t5 * t33; /* link j6: column of the mass matrix */
+    out[33] = t34;
+    const iiwa14_real_t t35 = t5 * t32 + t4 * t33;
+    const iiwa14_real_t t36 = parameters[MX6] - t12; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t37 = t5 * parameters[MY6R] + t4 * t36; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t38 = t9 * t37;
+    const iiwa14_real_t t39 = t8 * t35 - t9 * t31 + IIWA14_C(0.4) * t38;
+    out[26] = t39;
+    const iiwa14_real_t t40 = t8 * t37;
+    const iiwa14_real_t t41 = IIWA14_C(0.4) * t40 - (t9 * t35 + t8 * t31);
+    const iiwa14_real_t t42 = t17 * t41 + t18 * t34;
+    out[19] = t42;
+    const iiwa14_real_t t43 = t18 * t41 - t17 * t34;
+    const iiwa14_real_t t44 = t4 * parameters[MY6R] - t5 * t36;
+    const iiwa14_real_t t45 = t18 * t38 + t17 * t44;
+    const iiwa14_real_t t46 = t21 * t43 - t22 * t39 + IIWA14_C(0.42) * (t21 * t40 - t22 * t45);
+    out[12] = t46;
+    const iiwa14_real_t t47 = IIWA14_C(-0.42) * (t21 * t45 + t22 * t40) - (t22 * t43 + t21 * t39);
+    const iiwa14_real_t t48 = t26 * t47 + t27 * t42;
+    out[5] = t48;
+    out[39] = t34;
+    out[38] = t39;
+    out[37] = t42;
+    out[36] = t46;
+    out[35] = t48;
+    const iiwa14_real_t t49 = parameters[XX6R] - t30; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t50 = parameters[XY6] + t3;
+    /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t51 = t5 * (parameters[ZZ7] - t49) + t50 * (IIWA14_C(2.0) * t4);
+    const iiwa14_real_t t52 = t5 * t51;
+    const iiwa14_real_t t53 = parameters[ZZ5R] + (t49 + t52);
+    out[32] = t53 + IIWA14_C(1.0e4) * parameters[IA5];
+    const iiwa14_real_t t54 = parameters[XZ5] - (t50 - t4 * t51);
+    const iiwa14_real_t t55 = parameters[YZ5] + t34;
+    const iiwa14_real_t t56 = parameters[MY5R] + t10;
+    const iiwa14_real_t t57 = t44 - parameters[MX5];
+    const iiwa14_real_t t58 = t8 * t57 - t9 * t56; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t59 = IIWA14_C(-0.4) * t58 - (t8 * t54 + t9 * t55);
+    out[25] = t59;
+    const iiwa14_real_t t60 = t8 * t56 + t9 * t57;
+    const iiwa14_real_t t61 = t9 * t54 - t8 * t55 + IIWA14_C(0.4) * t60;
+    const iiwa14_real_t t62 = t17 * t61 + t18 * t53;
+    out[18] = t62;
+    const iiwa14_real_t t63 = t18 * t61 - t17 * t53;
+    const iiwa14_real_t t64 = t18 * t58;
+    const iiwa14_real_t t65 = t21 * t63 - t22 * t59 + IIWA14_C(0.42) * (t22 * t64 + t21 * t60);
+    out[11] = t65;
+    const iiwa14_real_t t66 = IIWA14_C(0.42) * (t21 * t64 - t22 * t60) - (t22 * t63 + t21 * t59);
+    const iiwa14_real_t t67 = t26 * t66 + t27 * t62;
+    out[4] = t67;
+    out[31] = t59;
+    out[30] = t62;
+    out[29] = t65;
+    out[28] = t67;
+    /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t68 = parameters[XX5R] + (parameters[ZZ7] - t52);
+    const iiwa14_real_t t69 = t35 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t70 = t9 * (t31 - t68) - t69 * (IIWA14_C(2.0) * t8);
+    const iiwa14_real_t t71 = t9 * t70;
+    const iiwa14_real_t t72 = IIWA14_C(-0.8) * t37;
+    const iiwa14_real_t t73 = parameters[ZZ4R] + (t68 + t71 + t72);
+    out[24] = t73 + IIWA14_C(2.56e4) * parameters[IA4];
+    const iiwa14_real_t t74 = parameters[XZ4] + (t69 + t8 * t70);
+    const iiwa14_real_t t75 = parameters[YZ4] + t59;
+    const iiwa14_real_t t76 = t17 * t74 + t18 * t75; /* link j4: column of the mass matrix */
+    out[17] = t76;
+    const iiwa14_real_t t77 = t18 * t74 - t17 * t75;
+    const iiwa14_real_t t78 = t60 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t79 = t37 - parameters[MY4R];
+    const iiwa14_real_t t80 = t18 * t79 + t17 * t78; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t81 = t21 * t77 - t22 * t73 + IIWA14_C(0.42) * (t22 * t80);
+    out[10] = t81;
+    const iiwa14_real_t t82 = IIWA14_C(0.42) * (t21 * t80) - (t22 * t77 + t21 * t73);
+    const iiwa14_real_t t83 = t26 * t82 + t27 * t76;
+    out[3] = t83;
+    out[23] = t76;
+    out[22] = t81;
+    out[21] = t83;
+    /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t84 = parameters[XX4R] + (t31 - t71 + t72);
+    const iiwa14_real_t t85 = parameters[XY4] + t61;
+    /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t86 = t18 * (t53 - t84) + t85 * (IIWA14_C(2.0) * t17);
+    const iiwa14_real_t t87 = t18 * t86;
+    const iiwa14_real_t t88 = parameters[ZZ3R] + (t84 + t87);
+    out[16] = t88 + IIWA14_C(2.56e4) * parameters[IA3];
+    const iiwa14_real_t t89 = parameters[XZ3] + (t85 - t17 * t86);
+    const iiwa14_real_t t90 = parameters[YZ3] - t76;
+    const iiwa14_real_t t91 = t58 - parameters[MY3R];
+    const iiwa14_real_t t92 = parameters[MX3] - (t18 * t78 - t17 * t79);
+    /* link j3: column of the mass matrix */
+    const iiwa14_real_t t93 = t21 * t89 + t22 * t90 + IIWA14_C(0.42) * (t22 * t91 - t21 * t92);
+    out[9] = t93;
+    const iiwa14_real_t t94 = t21 * t90 - t22 * t89 + IIWA14_C(0.42) * (t21 * t91 + t22 * t92);
+    const iiwa14_real_t t95 = t26 * t94 + t27 * t88;
+    out[2] = t95;
+    out[15] = t93;
+    out[14] = t95;
+    const iiwa14_real_t t96 = parameters[XX3R] + (t53 - t87); /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t97 = t77 - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t98 = t22 * (t73 - t96) - t97 * (IIWA14_C(2.0) * t21);
+    const iiwa14_real_t t99 = t22 * t98;
+    const iiwa14_real_t t100 = IIWA14_C(-0.84) * t80;
+    out[8] = parameters[ZZ2R] + (t96 + t99 + t100);
+    /* link j2: column of the mass matrix */
+    const iiwa14_real_t t101 = t26 * (t97 + t21 * t98 - parameters[XZ2]) + t27 * (t93 - parameters[YZ2]);
+    out[1] = t101;
+    out[7] = t101;
+    /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t102 = parameters[XX2R] + (t73 - t99 + t100);
+    /* link j2: inertia of it and all beyond */
+    const iiwa14_real_t t103 = t27 * (t88 - t102) + (parameters[XY2] + t94) * (IIWA14_C(2.0) * t26);
+    out[0] = parameters[ZZ1R] + (t102 + t27 * t103);
     return IIWA14_STATUS_OK;
 }

@@ -118,7 +118,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0x1E31C9F2UL
+#if IIWA14_GENERATION != 0xF4E95A26UL
 #error "iiwa14.h and iiwa14_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -143,190 +143,183 @@ iiwa14_status_t iiwa14_mass_matrix_standard(
         return status;
     }
 
-    iiwa14_real_t t78, t71;
-    IIWA14_SINCOS(q[1], &t78, &t71);
-    iiwa14_real_t t61, t54;
-    IIWA14_SINCOS(q[2], &t61, &t54);
-    iiwa14_real_t t48, t38;
-    IIWA14_SINCOS(q[3], &t48, &t38);
-    iiwa14_real_t t25, t18;
-    IIWA14_SINCOS(q[4], &t25, &t18);
-    iiwa14_real_t t12, t8;
-    IIWA14_SINCOS(q[5], &t12, &t8);
-    iiwa14_real_t t1, t0;
-    IIWA14_SINCOS(q[6], &t1, &t0);
-    /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t2 = t0 * (parameters[YY7] - parameters[XX7])
-        + parameters[XY7] * (IIWA14_C(2.0) * t1);
-    const iiwa14_real_t t3 = t0 * t2;
-    const iiwa14_real_t t4 = IIWA14_C(0.126) * parameters[M7];
-    const iiwa14_real_t t5 = IIWA14_C(0.126) * (t4 + IIWA14_C(2.0) * parameters[MZ7]);
-    const iiwa14_real_t t6 = parameters[XX6] + (parameters[YY7] - t3 + t5);
-    const iiwa14_real_t t7 = parameters[YY6] + parameters[ZZ7];
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t9 = t1 * parameters[MY7] - t0 * parameters[MX7];
-    const iiwa14_real_t t10 = t1 * parameters[YZ7] - t0 * parameters[XZ7] + IIWA14_C(-0.126) * t9;
-    const iiwa14_real_t t11 = parameters[XY6] + t10; /* link j7: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t13 = t8 * (t7 - t6) + t11 * (IIWA14_C(2.0) * t12);
-    const iiwa14_real_t t14 = t8 * t13;
-    const iiwa14_real_t t15 = parameters[XX5] + (t7 - t14);
-    /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t16 = parameters[ZZ6] + (parameters[XX7] + t3 + t5);
-    const iiwa14_real_t t17 = parameters[YY5] + t16; /* link j6: inertia of it and all beyond */
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t19 = t0 * parameters[MY7] + t1 * parameters[MX7];
-    const iiwa14_real_t t20 = t1 * parameters[XZ7] + t0 * parameters[YZ7] + IIWA14_C(-0.126) * t19;
-    const iiwa14_real_t t21 = parameters[YZ6] - t20; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t22 = t1 * t2 - parameters[XY7] - parameters[XZ6];
-    const iiwa14_real_t t23 = t8 * t22 + t12 * t21; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t24 = t23 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t26 = t18 * (t17 - t15) - t24 * (IIWA14_C(2.0) * t25);
-    const iiwa14_real_t t27 = t18 * t26;
-    const iiwa14_real_t t28 = t9 - parameters[MX6]; /* link j7: inertia of it and all beyond */
-    const iiwa14_real_t t29 = parameters[MY6] - (parameters[MZ7] + t4);
-    const iiwa14_real_t t30 = t12 * t28 - t8 * t29; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t31 = parameters[MZ5] + t30; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t32 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const iiwa14_real_t t33 = IIWA14_C(0.4) * t32; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t34 = IIWA14_C(0.4) * (t33 + IIWA14_C(2.0) * t31);
-    const iiwa14_real_t t35 = parameters[XX4] + (t17 - t27 + t34);
-    const iiwa14_real_t t36 = parameters[ZZ5] + (t6 + t14); /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t37 = parameters[YY4] + t36; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t39 = parameters[XZ5] - (t11 - t12 * t13); /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t40 = t12 * t22 - t8 * t21; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t41 = parameters[YZ5] + t40; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t42 = parameters[MY5] + (parameters[MZ6] + t19);
-    const iiwa14_real_t t43 = t12 * t29 + t8 * t28; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t44 = t43 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const iiwa14_real_t t45 = t25 * t42 + t18 * t44; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t46 = t18 * t39 - t25 * t41 + IIWA14_C(0.4) * t45;
-    const iiwa14_real_t t47 = parameters[XY4] + t46; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t49 = t38 * (t37 - t35) + t47 * (IIWA14_C(2.0) * t48);
-    const iiwa14_real_t t50 = t38 * t49;
-    const iiwa14_real_t t51 = parameters[XX3] + (t37 - t50);
-    const iiwa14_real_t t52 = parameters[ZZ4] + (t15 + t27 + t34); /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t53 = parameters[YY3] + t52; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t55 = parameters[XZ4] + (t24 + t25 * t26); /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t56 = t25 * t44 - t18 * t42; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t57 = IIWA14_C(-0.4) * t56 - (t25 * t39 + t18 * t41);
-    const iiwa14_real_t t58 = parameters[YZ4] + t57; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t59 = t38 * t55 - t48 * t58; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t60 = t59 - parameters[XY3]; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t62 = t54 * (t53 - t51) - t60 * (IIWA14_C(2.0) * t61);
-    const iiwa14_real_t t63 = t54 * t62;
-    const iiwa14_real_t t64 = parameters[MX4] - t45; /* link j5: inertia of it and all beyond */
-    const iiwa14_real_t t65 = parameters[MY4] + (t31 + t33);
-    const iiwa14_real_t t66 = t38 * t65 + t48 * t64; /* link j4: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const iiwa14_real_t t67 = IIWA14_C(0.42) * (parameters[M3] + (parameters[M4] + t32))
-        + IIWA14_C(2.0) * (parameters[MZ3] + t66);
-    const iiwa14_real_t t68 = IIWA14_C(0.42) * t67;
-    const iiwa14_real_t t69 = parameters[XX2] + (t53 - t63 + t68);
-    const iiwa14_real_t t70 = parameters[ZZ3] + (t35 + t50); /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t72 = parameters[XZ3] + (t47 - t48 * t49);
-    const iiwa14_real_t t73 = t48 * t55 + t38 * t58; /* link j4: column of the mass matrix */
-    const iiwa14_real_t t74 = parameters[YZ3] - t73; /* link j4: inertia of it and all beyond */
-    const iiwa14_real_t t75 = parameters[MZ4] + t56 - parameters[MY3];
-    const iiwa14_real_t t76 = parameters[MX3] - (t48 * t65 - t38 * t64);
-    /* link j3: column of the mass matrix */
-    const iiwa14_real_t t77 = t61 * t74 - t54 * t72 + IIWA14_C(0.42) * (t61 * t75 + t54 * t76);
-    /* link j2: inertia of it and all beyond */
-    const iiwa14_real_t t79 = t71 * (parameters[YY2] + t70 - t69) + (parameters[XY2]
-        + t77) * (IIWA14_C(2.0) * t78);
-    out[0] = parameters[ZZ1] + (t69 + t71 * t79) + IIWA14_C(2.56e4) * parameters[IA1];
-    /* link j3: column of the mass matrix */
-    const iiwa14_real_t t80 = t61 * t72 + t54 * t74 + IIWA14_C(0.42) * (t54 * t75 - t61 * t76);
-    /* link j2: column of the mass matrix */
-    const iiwa14_real_t t81 = t78 * (t60 + t61 * t62 - parameters[XZ2]) + t71 * (t80 - parameters[YZ2]);
-    out[1] = t81;
-    const iiwa14_real_t t82 = t78 * t77 + t71 * t70; /* link j3: column of the mass matrix */
-    out[2] = t82;
-    /* link j4: column of the mass matrix */
-    const iiwa14_real_t t83 = IIWA14_C(-0.42) * (t61 * t66) - (t54 * t59 + t61 * t52);
-    const iiwa14_real_t t84 = t78 * t83 + t71 * t73;
-    out[3] = t84;
-    const iiwa14_real_t t85 = t38 * t46 - t48 * t36; /* link j5: column of the mass matrix */
-    const iiwa14_real_t t86 = t38 * t56;
-    const iiwa14_real_t t87 = IIWA14_C(0.42) * (t61 * t86 - t54 * t45) - (t54 * t85 + t61 * t57);
-    const iiwa14_real_t t88 = t48 * t46 + t38 * t36;
-    const iiwa14_real_t t89 = t78 * t87 + t71 * t88;
-    out[4] = t89;
-    const iiwa14_real_t t90 = t25 * t30; /* link j6: column of the mass matrix */
-    const iiwa14_real_t t91 = IIWA14_C(-0.4) * t90 - (t18 * t23 + t25 * t16);
-    const iiwa14_real_t t92 = t38 * t91 - t48 * t40;
-    const iiwa14_real_t t93 = t18 * t30;
-    const iiwa14_real_t t94 = t25 * t23 - t18 * t16 + IIWA14_C(-0.4) * t93;
-    const iiwa14_real_t t95 = t38 * t93 - t48 * t43;
-    const iiwa14_real_t t96 = IIWA14_C(0.42) * (t61 * t95 + t54 * t90) - (t54 * t92 + t61 * t94);
-    const iiwa14_real_t t97 = t48 * t91 + t38 * t40;
-    const iiwa14_real_t t98 = t78 * t96 + t71 * t97;
-    out[5] = t98;
-    const iiwa14_real_t t99 = t12 * parameters[ZZ7] - t8 * t10; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t100 = t8 * t19;
-    const iiwa14_real_t t101 = t25 * t100 + t18 * t9;
-    const iiwa14_real_t t102 = t18 * t99 - t25 * t20 + IIWA14_C(0.4) * t101;
-    const iiwa14_real_t t103 = t12 * t10 + t8 * parameters[ZZ7];
-    const iiwa14_real_t t104 = t38 * t102 - t48 * t103;
-    const iiwa14_real_t t105 = t18 * t100 - t25 * t9;
-    const iiwa14_real_t t106 = IIWA14_C(0.4) * t105 - (t25 * t99 + t18 * t20);
-    const iiwa14_real_t t107 = t38 * t105 + t48 * (t12 * t19);
-    const iiwa14_real_t t108 = IIWA14_C(-0.42) * (t61 * t107 + t54 * t101) - (t54 * t104 + t61 * t106);
-    const iiwa14_real_t t109 = t48 * t102 + t38 * t103;
-    const iiwa14_real_t t110 = t78 * t108 + t71 * t109;
-    out[6] = t110;
-    out[7] = t81;
-    out[8] = parameters[ZZ2] + (t51 + t63 + t68) + IIWA14_C(2.56e4) * parameters[IA2];
-    out[9] = t80;
-    /* link j4: column of the mass matrix */
-    const iiwa14_real_t t111 = t61 * t59 - t54 * t52 + IIWA14_C(-0.42) * (t54 * t66);
-    out[10] = t111;
-    /* link j5: column of the mass matrix */
-    const iiwa14_real_t t112 = t61 * t85 - t54 * t57 + IIWA14_C(0.42) * (t54 * t86 + t61 * t45);
-    out[11] = t112;
-    /* link j6: column of the mass matrix */
-    const iiwa14_real_t t113 = t61 * t92 - t54 * t94 + IIWA14_C(0.42) * (t54 * t95 - t61 * t90);
-    out[12] = t113;
-    /* link j7: column of the mass matrix */
-    const iiwa14_real_t t114 = t61 * t104 - t54 * t106 + IIWA14_C(0.42) * (t61 * t101 - t54 * t107);
-    out[13] = t114;
-    out[14] = t82;
-    out[15] = t80;
-    out[16] = t70 + IIWA14_C(2.56e4) * parameters[IA3];
-    out[17] = t73;
-    out[18] = t88;
-    out[19] = t97;
-    out[20] = t109;
-    out[21] = t84;
-    out[22] = t111;
-    out[23] = t73;
-    out[24] = t52 + IIWA14_C(2.56e4) * parameters[IA4];
-    out[25] = t57;
-    out[26] = t94;
-    out[27] = t106;
-    out[28] = t89;
-    out[29] = t112;
-    out[30] = t88;
-    out[31] = t57;
-    out[32] = t36 + IIWA14_C(1.0e4) * parameters[IA5];
-    out[33] = t40;
-    out[34] = t103;
-    out[35] = t98;
-    out[36] = t113;
-    out[37] = t97;
-    out[38] = t94;
-    out[39] = t40;
-    out[40] = t16 + IIWA14_C(2.56e4) * parameters[IA6];
-    out[41] = t20;
-    out[42] = t110;
-    out[43] = t114;
-    out[44] = t109;
-    out[45] = t106;
-    out[46] = t103;
-    out[47] = t20;
+    iiwa14_real_t t26, t27;
+    IIWA14_SINCOS(q[1], &t26, &t27);
+    iiwa14_real_t t21, t22;
+    IIWA14_SINCOS(q[2], &t21, &t22);
+    iiwa14_real_t t17, t18;
+    IIWA14_SINCOS(q[3], &t17, &t18);
+    iiwa14_real_t t10, t11;
+    IIWA14_SINCOS(q[4], &t10, &t11);
+    iiwa14_real_t t6, t7;
+    IIWA14_SINCOS(q[5], &t6, &t7);
+    iiwa14_real_t t0, t1;
+    IIWA14_SINCOS(q[6], &t0, &t1);
     out[48] = parameters[ZZ7] + IIWA14_C(2.56e4) * parameters[IA7];
+    /* link j7: column of the mass matrix */
+    const iiwa14_real_t t2 = t1 * parameters[MY7] + t0 * parameters[MX7];
+    const iiwa14_real_t t3 = t0 * parameters[XZ7] + t1 * parameters[YZ7] + IIWA14_C(-0.126) * t2;
+    out[41] = t3;
+    const iiwa14_real_t t4 = t0 * parameters[MY7] - t1 * parameters[MX7];
+    const iiwa14_real_t t5 = t0 * parameters[YZ7] - t1 * parameters[XZ7] + IIWA14_C(-0.126) * t4;
+    const iiwa14_real_t t8 = t6 * t5 + t7 * parameters[ZZ7];
+    out[34] = t8;
+    const iiwa14_real_t t9 = t6 * parameters[ZZ7] - t7 * t5;
+    const iiwa14_real_t t12 = t7 * t2;
+    const iiwa14_real_t t13 = t11 * t12 - t10 * t4;
+    const iiwa14_real_t t14 = IIWA14_C(0.4) * t13 - (t10 * t9 + t11 * t3);
+    out[27] = t14;
+    const iiwa14_real_t t15 = t10 * t12 + t11 * t4;
+    const iiwa14_real_t t16 = t11 * t9 - t10 * t3 + IIWA14_C(0.4) * t15;
+    const iiwa14_real_t t19 = t17 * t16 + t18 * t8;
+    out[20] = t19;
+    const iiwa14_real_t t20 = t18 * t16 - t17 * t8;
+    const iiwa14_real_t t23 = t18 * t13 + t17 * (t6 * t2);
+    const iiwa14_real_t t24 = t21 * t20 - t22 * t14 + IIWA14_C(0.42) * (t21 * t15 - t22 * t23);
+    out[13] = t24;
+    const iiwa14_real_t t25 = IIWA14_C(-0.42) * (t21 * t23 + t22 * t15) - (t22 * t20 + t21 * t14);
+    const iiwa14_real_t t28 = t26 * t25 + t27 * t19;
+    out[6] = t28;
+    out[47] = t3;
+    out[46] = t8;
+    out[45] = t14;
+    out[44] = t19;
+    out[43] = t24;
+    out[42] = t28;
+    /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t29 = t1 * (parameters[YY7] - parameters[XX7])
+        + parameters[XY7] * (IIWA14_C(2.0) * t0);
+    const iiwa14_real_t t30 = t1 * t29;
+    const iiwa14_real_t t31 = IIWA14_C(0.126) * parameters[M7];
+    const iiwa14_real_t t32 = IIWA14_C(0.126) * (t31 + IIWA14_C(2.0) * parameters[MZ7]);
+    const iiwa14_real_t t33 = parameters[ZZ6] + (parameters[XX7] + t30 + t32);
+    out[40] = t33 + IIWA14_C(2.56e4) * parameters[IA6];
+    const iiwa14_real_t t34 = parameters[YZ6] - t3;
+    const iiwa14_real_t t35 = t0 * t29 - parameters[XY7] - parameters[XZ6];
+    const iiwa14_real_t t36 = t6 * t35 - t7 * t34; /* link j6: column of the mass matrix */
+    out[33] = t36;
+    const iiwa14_real_t t37 = t7 * t35 + t6 * t34;
+    const iiwa14_real_t t38 = t4 - parameters[MX6]; /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t39 = parameters[MY6] - (parameters[MZ7] + t31);
+    const iiwa14_real_t t40 = t6 * t38 - t7 * t39; /* link j6: column of the mass matrix */
+    const iiwa14_real_t t41 = t11 * t40;
+    const iiwa14_real_t t42 = t10 * t37 - t11 * t33 + IIWA14_C(-0.4) * t41;
+    out[26] = t42;
+    const iiwa14_real_t t43 = t10 * t40;
+    const iiwa14_real_t t44 = IIWA14_C(-0.4) * t43 - (t11 * t37 + t10 * t33);
+    const iiwa14_real_t t45 = t17 * t44 + t18 * t36;
+    out[19] = t45;
+    const iiwa14_real_t t46 = t18 * t44 - t17 * t36;
+    const iiwa14_real_t t47 = t6 * t39 + t7 * t38;
+    const iiwa14_real_t t48 = t18 * t41 - t17 * t47;
+    const iiwa14_real_t t49 = t21 * t46 - t22 * t42 + IIWA14_C(0.42) * (t22 * t48 - t21 * t43);
+    out[12] = t49;
+    const iiwa14_real_t t50 = IIWA14_C(0.42) * (t21 * t48 + t22 * t43) - (t22 * t46 + t21 * t42);
+    const iiwa14_real_t t51 = t26 * t50 + t27 * t45;
+    out[5] = t51;
+    out[39] = t36;
+    out[38] = t42;
+    out[37] = t45;
+    out[36] = t49;
+    out[35] = t51;
+    /* link j7: inertia of it and all beyond */
+    const iiwa14_real_t t52 = parameters[XX6] + (parameters[YY7] - t30 + t32);
+    const iiwa14_real_t t53 = parameters[YY6] + parameters[ZZ7];
+    const iiwa14_real_t t54 = parameters[XY6] + t5;
+    /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t55 = t7 * (t53 - t52) + t54 * (IIWA14_C(2.0) * t6);
+    const iiwa14_real_t t56 = t7 * t55;
+    const iiwa14_real_t t57 = parameters[ZZ5] + (t52 + t56);
+    out[32] = t57 + IIWA14_C(1.0e4) * parameters[IA5];
+    const iiwa14_real_t t58 = parameters[XZ5] - (t54 - t6 * t55);
+    const iiwa14_real_t t59 = parameters[YZ5] + t36;
+    const iiwa14_real_t t60 = parameters[MY5] + (parameters[MZ6] + t2);
+    const iiwa14_real_t t61 = t47 - parameters[MX5];
+    const iiwa14_real_t t62 = t10 * t61 - t11 * t60; /* link j5: column of the mass matrix */
+    const iiwa14_real_t t63 = IIWA14_C(-0.4) * t62 - (t10 * t58 + t11 * t59);
+    out[25] = t63;
+    const iiwa14_real_t t64 = t10 * t60 + t11 * t61;
+    const iiwa14_real_t t65 = t11 * t58 - t10 * t59 + IIWA14_C(0.4) * t64;
+    const iiwa14_real_t t66 = t17 * t65 + t18 * t57;
+    out[18] = t66;
+    const iiwa14_real_t t67 = t18 * t65 - t17 * t57;
+    const iiwa14_real_t t68 = t18 * t62;
+    const iiwa14_real_t t69 = t21 * t67 - t22 * t63 + IIWA14_C(0.42) * (t22 * t68 + t21 * t64);
+    out[11] = t69;
+    const iiwa14_real_t t70 = IIWA14_C(0.42) * (t21 * t68 - t22 * t64) - (t22 * t67 + t21 * t63);
+    const iiwa14_real_t t71 = t26 * t70 + t27 * t66;
+    out[4] = t71;
+    out[31] = t63;
+    out[30] = t66;
+    out[29] = t69;
+    out[28] = t71;
+    const iiwa14_real_t t72 = parameters[XX5] + (t53 - t56); /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t73 = parameters[YY5] + t33;
+    const iiwa14_real_t t74 = t37 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t75 = t11 * (t73 - t72) - t74 * (IIWA14_C(2.0) * t10);
+    const iiwa14_real_t t76 = t11 * t75;
+    const iiwa14_real_t t77 = parameters[MZ5] + t40; /* link j6: inertia of it and all beyond */
+    const iiwa14_real_t t78 = parameters[M5] + (parameters[M6] + parameters[M7]);
+    const iiwa14_real_t t79 = IIWA14_C(0.4) * t78; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t80 = IIWA14_C(0.4) * (t79 + IIWA14_C(2.0) * t77);
+    const iiwa14_real_t t81 = parameters[ZZ4] + (t72 + t76 + t80);
+    out[24] = t81 + IIWA14_C(2.56e4) * parameters[IA4];
+    const iiwa14_real_t t82 = parameters[XZ4] + (t74 + t10 * t75);
+    const iiwa14_real_t t83 = parameters[YZ4] + t63;
+    const iiwa14_real_t t84 = t17 * t82 + t18 * t83; /* link j4: column of the mass matrix */
+    out[17] = t84;
+    const iiwa14_real_t t85 = t18 * t82 - t17 * t83;
+    const iiwa14_real_t t86 = parameters[MX4] - t64; /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t87 = parameters[MY4] + (t77 + t79);
+    const iiwa14_real_t t88 = t18 * t87 + t17 * t86; /* link j4: column of the mass matrix */
+    const iiwa14_real_t t89 = t21 * t85 - t22 * t81 + IIWA14_C(-0.42) * (t22 * t88);
+    out[10] = t89;
+    const iiwa14_real_t t90 = IIWA14_C(-0.42) * (t21 * t88) - (t22 * t85 + t21 * t81);
+    const iiwa14_real_t t91 = t26 * t90 + t27 * t84;
+    out[3] = t91;
+    out[23] = t84;
+    out[22] = t89;
+    out[21] = t91;
+    const iiwa14_real_t t92 = parameters[XX4] + (t73 - t76 + t80); /* link j5: inertia of it and all beyond */
+    const iiwa14_real_t t93 = parameters[YY4] + t57;
+    const iiwa14_real_t t94 = parameters[XY4] + t65;
+    /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t95 = t18 * (t93 - t92) + t94 * (IIWA14_C(2.0) * t17);
+    const iiwa14_real_t t96 = t18 * t95;
+    const iiwa14_real_t t97 = parameters[ZZ3] + (t92 + t96);
+    out[16] = t97 + IIWA14_C(2.56e4) * parameters[IA3];
+    const iiwa14_real_t t98 = parameters[XZ3] + (t94 - t17 * t95);
+    const iiwa14_real_t t99 = parameters[YZ3] - t84;
+    const iiwa14_real_t t100 = parameters[MZ4] + t62 - parameters[MY3];
+    const iiwa14_real_t t101 = parameters[MX3] - (t17 * t87 - t18 * t86);
+    /* link j3: column of the mass matrix */
+    const iiwa14_real_t t102 = t21 * t98 + t22 * t99 + IIWA14_C(0.42) * (t22 * t100 - t21 * t101);
+    out[9] = t102;
+    const iiwa14_real_t t103 = t21 * t99 - t22 * t98 + IIWA14_C(0.42) * (t21 * t100 + t22 * t101);
+    const iiwa14_real_t t104 = t26 * t103 + t27 * t97;
+    out[2] = t104;
+    out[15] = t102;
+    out[14] = t104;
+    const iiwa14_real_t t105 = parameters[XX3] + (t93 - t96); /* link j4: inertia of it and all beyond */
+    const iiwa14_real_t t106 = parameters[YY3] + t81;
+    const iiwa14_real_t t107 = t85 - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t108 = t22 * (t106 - t105) - t107 * (IIWA14_C(2.0) * t21);
+    const iiwa14_real_t t109 = t22 * t108;
+    const iiwa14_real_t t110 = IIWA14_C(0.42) * (parameters[M3] + (parameters[M4] + t78))
+        + IIWA14_C(2.0) * (parameters[MZ3] + t88);
+    const iiwa14_real_t t111 = IIWA14_C(0.42) * t110;
+    out[8] = parameters[ZZ2] + (t105 + t109 + t111) + IIWA14_C(2.56e4) * parameters[IA2];
+    /* link j2: column of the mass matrix */
+    const iiwa14_real_t t112 = t26 * (t107 + t21 * t108 - parameters[XZ2]) + t27 * (t102 - parameters[YZ2]);
+    out[1] = t112;
+    out[7] = t112;
+    /* link j3: inertia of it and all beyond */
+    const iiwa14_real_t t113 = parameters[XX2] + (t106 - t109 + t111);
+    /* link j2: inertia of it and all beyond */
+    const iiwa14_real_t t114 = t27 * (parameters[YY2] + t97 - t113) + (parameters[XY2]
+        + t103) * (IIWA14_C(2.0) * t26);
+    out[0] = parameters[ZZ1] + (t113 + t27 * t114) + IIWA14_C(2.56e4) * parameters[IA1];
     return IIWA14_STATUS_OK;
 }

@@ -86,7 +86,7 @@
 #define PUMA560_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define PUMA560_GENERATION 0x0486C622UL
+#define PUMA560_GENERATION 0xB20AC45DUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define PUMA560_MODEL "e8eb13fe224405b26bd20c4ed5e9d26e90682bc514ecddfa30f598ec8b9ba255"
@@ -415,7 +415,7 @@ puma560_status_t puma560_mass_matrix(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 929 (503 mul, 426 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 929 (503 mul, 426 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 puma560_status_t puma560_forward_dynamics(
     const puma560_real_t q[PUMA560_N_JOINTS],
@@ -614,7 +614,7 @@ puma560_status_t puma560_mass_matrix_standard(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 1051 (553 mul, 498 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 1051 (553 mul, 498 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 puma560_status_t puma560_forward_dynamics_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],
@@ -790,7 +790,7 @@ puma560_status_t puma560_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 3835 (2137 mul, 1698 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 3835 (2137 mul, 1698 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t q[PUMA560_N_JOINTS],
@@ -843,7 +843,7 @@ puma560_status_t puma560_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return PUMA560_STATUS_OK or status bits
  *
- * Operations: 4098 (2250 mul, 1848 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 4098 (2250 mul, 1848 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t q[PUMA560_N_JOINTS],

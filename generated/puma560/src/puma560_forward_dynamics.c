@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 929 (503 mul, 426 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 929 (503 mul, 426 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -82,7 +82,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -109,18 +109,17 @@ puma560_status_t puma560_forward_dynamics(
         return status;
     }
 
-    puma560_real_t t104, t102;
-    PUMA560_SINCOS(q[1], &t104, &t102);
-    puma560_real_t t70, t72;
-    PUMA560_SINCOS(q[2], &t70, &t72);
-    puma560_real_t t32, t34;
-    PUMA560_SINCOS(q[3], &t32, &t34);
-    puma560_real_t t13, t15;
-    PUMA560_SINCOS(q[4], &t13, &t15);
+    puma560_real_t t100, t98;
+    PUMA560_SINCOS(q[1], &t100, &t98);
+    puma560_real_t t67, t69;
+    PUMA560_SINCOS(q[2], &t67, &t69);
+    puma560_real_t t30, t32;
+    PUMA560_SINCOS(q[3], &t30, &t32);
+    puma560_real_t t12, t14;
+    PUMA560_SINCOS(q[4], &t12, &t14);
     puma560_real_t t1, t2;
     PUMA560_SINCOS(q[5], &t1, &t2);
-    const puma560_real_t t0 = puma560_bounded(parameters[ZZ6]
-        + PUMA560_C(5880.742596000001) * parameters[IA6]);
+    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
     if (!(t0 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -134,426 +133,409 @@ puma560_status_t puma560_forward_dynamics(
     const puma560_real_t t7 = t2 * t6;
     const puma560_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
     const puma560_real_t t9 = t8 + PUMA560_C(5172.917929) * parameters[IA5];
-    const puma560_real_t t10 = puma560_bounded(t9 - t3 * t5);
+    const puma560_real_t t10 = t9 - t3 * t5;
     if (!(t10 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t11 = t10 + PUMA560_C(-1.0e-9) * t9;
-    if (!(t11 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t12 = parameters[XY6] + t1 * t6 - parameters[XZ5];
-    const puma560_real_t t14 = parameters[YZ5] - t3;
-    const puma560_real_t t16 = t15 * t14 - t13 * t12; /* link j5: column of the mass matrix */
+    const puma560_real_t t11 = parameters[XY6] + t1 * t6 - parameters[XZ5];
+    const puma560_real_t t13 = parameters[YZ5] - t3;
+    const puma560_real_t t15 = t14 * t13 - t12 * t11; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const puma560_real_t t17 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
-    const puma560_real_t t18 = t13 * t17 - t15 * parameters[ZZ6];
-    const puma560_real_t t19 = t16 - t18 * t5;
-    const puma560_real_t t20 = PUMA560_C(-1.0) / t10;
-    const puma560_real_t t21 = t19 * t20;
-    const puma560_real_t t22 = parameters[XX5R] + t7; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t23 = t17 - parameters[XY5];
+    const puma560_real_t t16 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const puma560_real_t t17 = t12 * t16 - t14 * parameters[ZZ6];
+    const puma560_real_t t18 = t15 - t17 * t5;
+    const puma560_real_t t19 = PUMA560_C(-1.0) / t10;
+    const puma560_real_t t20 = t18 * t19;
+    const puma560_real_t t21 = parameters[XX5R] + t7; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t22 = t16 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
-    const puma560_real_t t24 = t15 * (parameters[ZZ6] - t22) - t23 * (PUMA560_C(2.0) * t13);
-    const puma560_real_t t25 = t15 * t24;
-    const puma560_real_t t26 = parameters[ZZ4R] + (t22 + t25);
-    const puma560_real_t t27 = t26 + PUMA560_C(5781.53412496) * parameters[IA4];
-    const puma560_real_t t28 = t18 * t4;
-    const puma560_real_t t29 = puma560_bounded(t27 - t18 * t28 + t19 * t21);
-    if (!(t29 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t23 = t14 * (parameters[ZZ6] - t21) - t22 * (PUMA560_C(2.0) * t12);
+    const puma560_real_t t24 = t14 * t23;
+    const puma560_real_t t25 = parameters[ZZ4R] + (t21 + t24);
+    const puma560_real_t t26 = t25 + PUMA560_C(5781.53412496) * parameters[IA4];
+    const puma560_real_t t27 = t17 * t4;
+    const puma560_real_t t28 = t26 - t17 * t27 + t18 * t20;
+    if (!(t28 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t30 = t29 + PUMA560_C(-1.0e-9) * t27;
-    if (!(t30 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t31 = t23 + t13 * t24 - parameters[XZ4];
-    const puma560_real_t t33 = t16 - parameters[YZ4];
+    const puma560_real_t t29 = t22 + t12 * t23 - parameters[XZ4];
+    const puma560_real_t t31 = t15 - parameters[YZ4];
     /* link j6: column of the mass matrix */
-    const puma560_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const puma560_real_t t36 = parameters[MY4R] + t35; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t33 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const puma560_real_t t34 = parameters[MY4R] + t33; /* link j5: inertia of it and all beyond */
     /* link j6: column of the mass matrix */
-    const puma560_real_t t37 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const puma560_real_t t38 = parameters[MX5] + t37; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t39 = t15 * t38 - t13 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const puma560_real_t t40 = parameters[MX4] + t39; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t41 = t34 * t36 + t32 * t40; /* link j4: column of the mass matrix */
-    const puma560_real_t t42 = PUMA560_C(0.4318) * t41;
-    const puma560_real_t t43 = t32 * t31 + t34 * t33 + t42;
-    const puma560_real_t t44 = t15 * t17 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const puma560_real_t t45 = t15 * t35;
-    const puma560_real_t t46 = t34 * t45 + t32 * t37;
-    const puma560_real_t t47 = t13 * t35;
-    const puma560_real_t t48 = t32 * t44 - t34 * t3 + (PUMA560_C(-0.0203) * t47 + PUMA560_C(0.4318) * t46);
-    const puma560_real_t t49 = t15 * t12 + t13 * t14; /* link j5: column of the mass matrix */
-    const puma560_real_t t50 = t15 * parameters[MY5R] + t13 * t38;
-    const puma560_real_t t51 = t34 * t50;
-    const puma560_real_t t52 = t32 * t49 + t34 * t8 + (PUMA560_C(0.0203) * t39 + PUMA560_C(0.4318) * t51);
-    const puma560_real_t t53 = t52 + t48 * t5;
-    const puma560_real_t t54 = t43 + t48 * t28 + t53 * t21;
-    const puma560_real_t t55 = PUMA560_C(-1.0) / t29;
-    const puma560_real_t t56 = t54 * t55;
-    const puma560_real_t t57 = t53 * t20;
-    const puma560_real_t t58 = t48 * t4;
+    const puma560_real_t t35 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const puma560_real_t t36 = parameters[MX5] + t35; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t37 = t14 * t36 - t12 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const puma560_real_t t38 = parameters[MX4] + t37; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t39 = t32 * t34 + t30 * t38; /* link j4: column of the mass matrix */
+    const puma560_real_t t40 = PUMA560_C(0.4318) * t39;
+    const puma560_real_t t41 = t30 * t29 + t32 * t31 + t40;
+    const puma560_real_t t42 = t14 * t16 + t12 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const puma560_real_t t43 = t14 * t33;
+    const puma560_real_t t44 = t32 * t43 + t30 * t35;
+    const puma560_real_t t45 = t12 * t33;
+    const puma560_real_t t46 = t30 * t42 - t32 * t3 + (PUMA560_C(-0.0203) * t45 + PUMA560_C(0.4318) * t44);
+    const puma560_real_t t47 = t14 * t11 + t12 * t13; /* link j5: column of the mass matrix */
+    const puma560_real_t t48 = t14 * parameters[MY5R] + t12 * t36;
+    const puma560_real_t t49 = t32 * t48;
+    const puma560_real_t t50 = t30 * t47 + t32 * t8 + (PUMA560_C(0.0203) * t37 + PUMA560_C(0.4318) * t49);
+    const puma560_real_t t51 = t50 + t46 * t5;
+    const puma560_real_t t52 = t41 + t46 * t27 + t51 * t20;
+    const puma560_real_t t53 = PUMA560_C(-1.0) / t28;
+    const puma560_real_t t54 = t52 * t53;
+    const puma560_real_t t55 = t51 * t19;
+    const puma560_real_t t56 = t46 * t4;
     /* link j5: inertia of it and all beyond */
-    const puma560_real_t t59 = parameters[XX4R] + (parameters[ZZ6] - t25);
-    const puma560_real_t t60 = parameters[XY4] + t49;
+    const puma560_real_t t57 = parameters[XX4R] + (parameters[ZZ6] - t24);
+    const puma560_real_t t58 = parameters[XY4] + t47;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t61 = t34 * (t59 - t8) + t60 * (PUMA560_C(-2.0) * t32);
-    const puma560_real_t t62 = t34 * t61;
-    const puma560_real_t t63 = t34 * t40 - t32 * t36; /* link j4: column of the mass matrix */
-    const puma560_real_t t64 = PUMA560_C(0.0406) * t63; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t65 = PUMA560_C(0.8636) * t50;
-    const puma560_real_t t66 = parameters[ZZ3R] + (t59 - t62 + (t64 + t65));
-    const puma560_real_t t67 = t66 + PUMA560_C(2884.36665969) * parameters[IA3];
-    const puma560_real_t t68 = puma560_bounded(t67 - t48 * t58 + t53 * t57 + t54 * t56);
-    if (!(t68 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t59 = t32 * (t57 - t8) + t58 * (PUMA560_C(-2.0) * t30);
+    const puma560_real_t t60 = t32 * t59;
+    const puma560_real_t t61 = t32 * t38 - t30 * t34; /* link j4: column of the mass matrix */
+    const puma560_real_t t62 = PUMA560_C(0.0406) * t61; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t63 = PUMA560_C(0.8636) * t48;
+    const puma560_real_t t64 = parameters[ZZ3R] + (t57 - t60 + (t62 + t63));
+    const puma560_real_t t65 = t64 + PUMA560_C(2884.36665969) * parameters[IA3];
+    const puma560_real_t t66 = t65 - t46 * t56 + t51 * t55 + t52 * t54;
+    if (!(t66 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t69 = t68 + PUMA560_C(-1.0e-9) * t67;
-    if (!(t69 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t68 = t67 * t39; /* link j4: column of the mass matrix */
+    const puma560_real_t t70 = t67 * t44 + t69 * t45; /* link j6: column of the mass matrix */
+    const puma560_real_t t71 = PUMA560_C(0.4318) * t70 - t46;
+    const puma560_real_t t72 = t69 * t37 - t67 * t49; /* link j5: column of the mass matrix */
+    const puma560_real_t t73 = PUMA560_C(-0.4318) * t72 - t50 + t71 * t5;
+    const puma560_real_t t74 = PUMA560_C(0.4318) * t68 - t41 + t71 * t27 + t73 * t20;
+    const puma560_real_t t75 = parameters[MX3R] + t61; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t76 = parameters[MY3R] + t48;
+    const puma560_real_t t77 = t69 * t75 - t67 * t76; /* link j3: column of the mass matrix */
+    const puma560_real_t t78 = PUMA560_C(-0.4318) * t77 - t64 - t71 * t56 + t73 * t55;
+    const puma560_real_t t79 = t78 + t74 * t54;
+    const puma560_real_t t80 = PUMA560_C(-1.0) / t66;
+    const puma560_real_t t81 = t79 * t80;
+    const puma560_real_t t82 = t74 * t53;
+    const puma560_real_t t83 = t73 * t19;
+    const puma560_real_t t84 = t71 * t4;
+    const puma560_real_t t85 = PUMA560_C(0.8636) * t77; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t86 = parameters[ZZ2R] + (t64 + t85);
+    const puma560_real_t t87 = t86 - t71 * t84 + t73 * t83 + t74 * t82;
+    const puma560_real_t t88 = t87 + t79 * t81;
+    if (!(t88 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t71 = t70 * t41; /* link j4: column of the mass matrix */
-    const puma560_real_t t73 = t70 * t46 + t72 * t47; /* link j6: column of the mass matrix */
-    const puma560_real_t t74 = PUMA560_C(0.4318) * t73 - t48;
-    const puma560_real_t t75 = t72 * t39 - t70 * t51; /* link j5: column of the mass matrix */
-    const puma560_real_t t76 = PUMA560_C(-0.4318) * t75 - t52 + t74 * t5;
-    const puma560_real_t t77 = PUMA560_C(0.4318) * t71 - t43 + t74 * t28 + t76 * t21;
-    const puma560_real_t t78 = parameters[MX3R] + t63; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t79 = parameters[MY3R] + t50;
-    const puma560_real_t t80 = t72 * t78 - t70 * t79; /* link j3: column of the mass matrix */
-    const puma560_real_t t81 = PUMA560_C(-0.4318) * t80 - t66 - t74 * t58 + t76 * t57;
-    const puma560_real_t t82 = t81 + t77 * t56;
-    const puma560_real_t t83 = PUMA560_C(-1.0) / t68;
-    const puma560_real_t t84 = t82 * t83;
-    const puma560_real_t t85 = t77 * t55;
-    const puma560_real_t t86 = t76 * t20;
-    const puma560_real_t t87 = t74 * t4;
-    const puma560_real_t t88 = PUMA560_C(0.8636) * t80; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t89 = parameters[ZZ2R] + (t66 + t88);
-    const puma560_real_t t90 = t89 - t74 * t87 + t76 * t86 + t77 * t85;
-    const puma560_real_t t91 = puma560_bounded(t90 + t82 * t84);
-    if (!(t91 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t92 = t91 + PUMA560_C(-1.0e-9) * t89;
-    if (!(t92 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t93 = t26 + t64; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t94 = parameters[XX3R] + (t8 + t62 + t65);
-    const puma560_real_t t95 = t32 * t33 - t34 * t31; /* link j4: column of the mass matrix */
-    const puma560_real_t t96 = PUMA560_C(-0.4318) * t63;
+    const puma560_real_t t89 = t25 + t62; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t90 = parameters[XX3R] + (t8 + t60 + t63);
+    const puma560_real_t t91 = t30 * t31 - t32 * t29; /* link j4: column of the mass matrix */
+    const puma560_real_t t92 = PUMA560_C(-0.4318) * t61;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t97 = parameters[XY3R] + (t95 + (t96 + PUMA560_C(-0.0203) * t50));
+    const puma560_real_t t93 = parameters[XY3R] + (t91 + (t92 + PUMA560_C(-0.0203) * t48));
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t98 = t72 * (t93 - t94) + t97 * (PUMA560_C(2.0) * t70);
-    const puma560_real_t t99 = t72 * t98;
-    const puma560_real_t t100 = PUMA560_C(-0.2508) * t41;
-    const puma560_real_t t101 = parameters[XX2R] + (t93 - t99 + t100);
-    const puma560_real_t t103 = t72 * t79 + t70 * t78; /* link j3: column of the mass matrix */
+    const puma560_real_t t94 = t69 * (t89 - t90) + t93 * (PUMA560_C(2.0) * t67);
+    const puma560_real_t t95 = t69 * t94;
+    const puma560_real_t t96 = PUMA560_C(-0.2508) * t39;
+    const puma560_real_t t97 = parameters[XX2R] + (t89 - t95 + t96);
+    const puma560_real_t t99 = t69 * t76 + t67 * t75; /* link j3: column of the mass matrix */
     /* link j2: inertia of it and all beyond */
-    const puma560_real_t t105 = (parameters[XY2] + (t97 - t70 * t98
-        + PUMA560_C(-0.4318) * t103)) * (PUMA560_C(2.0) * t104);
-    const puma560_real_t t106 = t102 * (t94 + t99 + (t88 + t100) - t101) + t105;
-    const puma560_real_t t107 = parameters[ZZ1R] + (t101 + t102 * t106);
-    const puma560_real_t t108 = t32 * t45 - t34 * t37; /* link j6: column of the mass matrix */
-    const puma560_real_t t109 = PUMA560_C(0.4318) * t108;
-    const puma560_real_t t110 = t34 * t44 + t32 * t3 - t109;
-    const puma560_real_t t111 = t18 + PUMA560_C(0.0203) * t108;
-    const puma560_real_t t112 = t70 * t110 + t72 * t111 + (t109 + PUMA560_C(0.1254) * (t72 * t46
-        - t70 * t47));
-    const puma560_real_t t113 = t104 * (t72 * t110 - t70 * t111 + PUMA560_C(-0.1254) * t73);
-    const puma560_real_t t114 = t113 + t102 * t112;
-    const puma560_real_t t115 = t114 * t4;
-    const puma560_real_t t116 = t32 * t50; /* link j5: column of the mass matrix */
-    const puma560_real_t t117 = PUMA560_C(0.4318) * t116;
-    const puma560_real_t t118 = t34 * t49 - t32 * t8 - t117;
-    const puma560_real_t t119 = t16 - PUMA560_C(0.0203) * t116;
-    const puma560_real_t t120 = t104 * (t72 * t118 + t70 * t119 + PUMA560_C(0.1254) * t75);
-    const puma560_real_t t121 = t70 * t118 - t72 * t119 + (t117 + PUMA560_C(0.1254) * (t72 * t51
-        + t70 * t39));
-    const puma560_real_t t122 = t120 + t102 * t121 + t114 * t5;
-    const puma560_real_t t123 = t122 * t20;
-    const puma560_real_t t124 = t95 + t96; /* link j4: column of the mass matrix */
-    const puma560_real_t t125 = t26 - PUMA560_C(-0.0203) * t63;
-    const puma560_real_t t126 = t104 * (t70 * t125 - t72 * t124 + PUMA560_C(-0.1254) * t71);
-    const puma560_real_t t127 = t96 + PUMA560_C(0.1254) * (t72 * t41) - (t70 * t124 + t72 * t125);
-    const puma560_real_t t128 = t126 + t102 * t127 + t114 * t28 + t122 * t21;
-    const puma560_real_t t129 = t128 * t55;
-    const puma560_real_t t130 = t107 - t114 * t115 + t122 * t123 + t128 * t129;
+    const puma560_real_t t101 = (parameters[XY2] + (t93 - t67 * t94
+        + PUMA560_C(-0.4318) * t99)) * (PUMA560_C(2.0) * t100);
+    const puma560_real_t t102 = t98 * (t90 + t95 + (t85 + t96) - t97) + t101;
+    const puma560_real_t t103 = parameters[ZZ1R] + (t97 + t98 * t102);
+    const puma560_real_t t104 = t30 * t43 - t32 * t35; /* link j6: column of the mass matrix */
+    const puma560_real_t t105 = PUMA560_C(0.4318) * t104;
+    const puma560_real_t t106 = t32 * t42 + t30 * t3 - t105;
+    const puma560_real_t t107 = t17 + PUMA560_C(0.0203) * t104;
+    const puma560_real_t t108 = t67 * t106 + t69 * t107 + (t105 + PUMA560_C(0.1254) * (t69 * t44
+        - t67 * t45));
+    const puma560_real_t t109 = t100 * (t69 * t106 - t67 * t107 + PUMA560_C(-0.1254) * t70);
+    const puma560_real_t t110 = t109 + t98 * t108;
+    const puma560_real_t t111 = t110 * t4;
+    const puma560_real_t t112 = t30 * t48; /* link j5: column of the mass matrix */
+    const puma560_real_t t113 = PUMA560_C(0.4318) * t112;
+    const puma560_real_t t114 = t32 * t47 - t30 * t8 - t113;
+    const puma560_real_t t115 = t15 - PUMA560_C(0.0203) * t112;
+    const puma560_real_t t116 = t100 * (t69 * t114 + t67 * t115 + PUMA560_C(0.1254) * t72);
+    const puma560_real_t t117 = t67 * t114 - t69 * t115 + (t113 + PUMA560_C(0.1254) * (t69 * t49
+        + t67 * t37));
+    const puma560_real_t t118 = t116 + t98 * t117 + t110 * t5;
+    const puma560_real_t t119 = t118 * t19;
+    const puma560_real_t t120 = t91 + t92; /* link j4: column of the mass matrix */
+    const puma560_real_t t121 = t25 - PUMA560_C(-0.0203) * t61;
+    const puma560_real_t t122 = t100 * (t67 * t121 - t69 * t120 + PUMA560_C(-0.1254) * t68);
+    const puma560_real_t t123 = t92 + PUMA560_C(0.1254) * (t69 * t39) - (t67 * t120 + t69 * t121);
+    const puma560_real_t t124 = t122 + t98 * t123 + t110 * t27 + t118 * t20;
+    const puma560_real_t t125 = t124 * t53;
+    const puma560_real_t t126 = t103 - t110 * t111 + t118 * t119 + t124 * t125;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t131 = t60 + t32 * t61 + PUMA560_C(-0.0203) * t41 - parameters[XZ3];
-    const puma560_real_t t132 = parameters[YZ3] + t43;
-    const puma560_real_t t133 = t72 * t131 + t70 * t132; /* link j3: column of the mass matrix */
-    const puma560_real_t t134 = PUMA560_C(0.1254) * t80;
-    const puma560_real_t t135 = t70 * t131 - t72 * t132 + PUMA560_C(0.1254) * t103;
-    const puma560_real_t t136 = t104 * (t133 + t134) + t102 * t135 - t114 * t58;
-    const puma560_real_t t137 = t136 + t122 * t57 + t128 * t56;
-    const puma560_real_t t138 = t137 * t83;
+    const puma560_real_t t127 = t58 + t30 * t59 + PUMA560_C(-0.0203) * t39 - parameters[XZ3];
+    const puma560_real_t t128 = parameters[YZ3] + t41;
+    const puma560_real_t t129 = t69 * t127 + t67 * t128; /* link j3: column of the mass matrix */
+    const puma560_real_t t130 = PUMA560_C(0.1254) * t77;
+    const puma560_real_t t131 = t67 * t127 - t69 * t128 + PUMA560_C(0.1254) * t99;
+    const puma560_real_t t132 = t100 * (t129 + t130) + t98 * t131 - t110 * t56;
+    const puma560_real_t t133 = t132 + t118 * t55 + t124 * t54;
+    const puma560_real_t t134 = t133 * t80;
     /* link j2: column of the mass matrix */
-    const puma560_real_t t139 = t104 * (t133 + (t134 - t42) - parameters[XZ2R]) + t102 * (t135
+    const puma560_real_t t135 = t100 * (t129 + (t130 - t40) - parameters[XZ2R]) + t98 * (t131
         - parameters[YZ2]);
-    const puma560_real_t t140 = t139 + t114 * t87 - t122 * t86 - t128 * t85;
-    const puma560_real_t t141 = t140 - t137 * t84;
-    const puma560_real_t t142 = PUMA560_C(1.0) / t91;
-    const puma560_real_t t143 = t141 * t142;
-    const puma560_real_t t144 = puma560_bounded(t130 + t137 * t138 - t141 * t143);
+    const puma560_real_t t136 = t135 + t110 * t84 - t118 * t83 - t124 * t82;
+    const puma560_real_t t137 = t136 - t133 * t81;
+    const puma560_real_t t138 = PUMA560_C(1.0) / t88;
+    const puma560_real_t t139 = t137 * t138;
+    const puma560_real_t t140 = t126 + t133 * t134 - t137 * t139;
+    if (!(t140 > PUMA560_C(1.0e-12))) {
+        puma560_zero(out, 6);
+        return PUMA560_STATUS_PIVOT;
+    }
+    const puma560_real_t t141 = puma560_min(t10 + PUMA560_C(-1.0e-9) * t9, t28 + PUMA560_C(-1.0e-9) * t26);
+    const puma560_real_t t142 = puma560_min(t141, t66 + PUMA560_C(-1.0e-9) * t65);
+    const puma560_real_t t143 = puma560_min(t142, t88 + PUMA560_C(-1.0e-9) * t86);
+    const puma560_real_t t144 = puma560_min(t143, t140 + PUMA560_C(-1.0e-9) * t103);
     if (!(t144 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t145 = t144 + PUMA560_C(-1.0e-9) * t107;
-    if (!(t145 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t146 = t104 * dq[0]; /* link j2: motion */
-    const puma560_real_t t147 = t102 * dq[0];
-    const puma560_real_t t148 = t72 * t146 + t70 * t147; /* link j3: motion */
-    const puma560_real_t t149 = t70 * t146 - t72 * t147;
-    const puma560_real_t t150 = t148 * t149;
-    const puma560_real_t t151 = dq[1] + dq[2];
-    const puma560_real_t t152 = t149 * t151;
-    const puma560_real_t t153 = PUMA560_C(-2.0) * t152; /* link j4: motion */
-    const puma560_real_t t154 = t32 * t153 - t34 * t150;
-    const puma560_real_t t155 = t34 * t148 + t32 * t151;
-    const puma560_real_t t156 = dq[3] + t149;
-    const puma560_real_t t157 = t155 * t156;
-    const puma560_real_t t158 = t154 + t157;
-    const puma560_real_t t159 = t15 * t155 - t13 * t156; /* link j5: motion */
-    const puma560_real_t t160 = t13 * t155 + t15 * t156;
-    const puma560_real_t t161 = t159 * t160;
-    const puma560_real_t t162 = t158 - t161; /* link j6: motion */
-    const puma560_real_t t163 = t32 * t150 + t34 * t153; /* link j4: motion */
-    const puma560_real_t t164 = t32 * t148 - t34 * t151;
-    const puma560_real_t t165 = t164 * t156;
-    const puma560_real_t t166 = t163 - t165;
-    const puma560_real_t t167 = t166 - t165; /* link j5: motion */
-    const puma560_real_t t168 = t155 * t164; /* link j4: motion */
-    const puma560_real_t t169 = t148 * t151; /* link j3: motion */
-    const puma560_real_t t170 = t169 + t168; /* link j5: motion */
-    const puma560_real_t t171 = t15 * t167 - t13 * t170;
-    const puma560_real_t t172 = t164 - dq[4];
-    const puma560_real_t t173 = t160 * t172;
-    const puma560_real_t t174 = t171 + t173;
-    const puma560_real_t t175 = t173 + t174; /* link j6: motion */
-    const puma560_real_t t176 = t1 * t162 - t2 * t175;
-    const puma560_real_t t177 = t1 * t159 + t2 * t172;
-    const puma560_real_t t178 = dq[5] + t160;
-    const puma560_real_t t179 = t177 * t178;
-    const puma560_real_t t180 = t176 + t179;
-    const puma560_real_t t181 = t2 * t162 + t1 * t175;
-    const puma560_real_t t182 = t1 * t172 - t2 * t159;
-    const puma560_real_t t183 = t182 * t178;
-    const puma560_real_t t184 = t181 - t183 - t183; /* link j6: force and moment */
-    const puma560_real_t t185 = t15 * t170 + t13 * t167; /* link j5: motion */
-    const puma560_real_t t186 = t159 * t172;
-    const puma560_real_t t187 = t185 - t186;
-    const puma560_real_t t188 = t182 * t177; /* link j6: motion */
-    const puma560_real_t t189 = t187 + t188; /* link j6: force and moment */
-    const puma560_real_t t190 = parameters[XX6R] * t180 + parameters[ZZ6] * t179 + parameters[XY6] * t184
-        + parameters[XZ6] * t189;
-    const puma560_real_t t191 = t177 * t177; /* link j6: motion */
-    const puma560_real_t t192 = t178 * t178;
-    const puma560_real_t t193 = t149 * t149; /* link j3: motion */
-    const puma560_real_t t194 = t151 * t151;
-    const puma560_real_t t195 = t193 + t194; /* link j4: motion */
-    const puma560_real_t t196 = t147 * t147; /* link j2: motion */
-    const puma560_real_t t197 = dq[1] * dq[1];
-    const puma560_real_t t198 = PUMA560_C(-9.81) * t104;
-    const puma560_real_t t199 = PUMA560_C(0.4318) * (t197 + t196) - t198; /* link j3: motion */
-    const puma560_real_t t200 = t146 * t147; /* link j2: motion */
-    const puma560_real_t t201 = PUMA560_C(-9.81) * t102;
-    const puma560_real_t t202 = t201 + PUMA560_C(0.4318) * t200; /* link j3: motion */
-    const puma560_real_t t203 = t70 * t202 - t72 * t199;
+    const puma560_real_t t145 = t100 * dq[0]; /* link j2: motion */
+    const puma560_real_t t146 = t98 * dq[0];
+    const puma560_real_t t147 = t69 * t145 + t67 * t146; /* link j3: motion */
+    const puma560_real_t t148 = t67 * t145 - t69 * t146;
+    const puma560_real_t t149 = t147 * t148;
+    const puma560_real_t t150 = dq[1] + dq[2];
+    const puma560_real_t t151 = t148 * t150;
+    const puma560_real_t t152 = PUMA560_C(-2.0) * t151; /* link j4: motion */
+    const puma560_real_t t153 = t30 * t152 - t32 * t149;
+    const puma560_real_t t154 = t32 * t147 + t30 * t150;
+    const puma560_real_t t155 = dq[3] + t148;
+    const puma560_real_t t156 = t154 * t155;
+    const puma560_real_t t157 = t153 + t156;
+    const puma560_real_t t158 = t14 * t154 - t12 * t155; /* link j5: motion */
+    const puma560_real_t t159 = t12 * t154 + t14 * t155;
+    const puma560_real_t t160 = t158 * t159;
+    const puma560_real_t t161 = t157 - t160; /* link j6: motion */
+    const puma560_real_t t162 = t30 * t149 + t32 * t152; /* link j4: motion */
+    const puma560_real_t t163 = t30 * t147 - t32 * t150;
+    const puma560_real_t t164 = t163 * t155;
+    const puma560_real_t t165 = t162 - t164;
+    const puma560_real_t t166 = t165 - t164; /* link j5: motion */
+    const puma560_real_t t167 = t154 * t163; /* link j4: motion */
+    const puma560_real_t t168 = t147 * t150; /* link j3: motion */
+    const puma560_real_t t169 = t168 + t167; /* link j5: motion */
+    const puma560_real_t t170 = t14 * t166 - t12 * t169;
+    const puma560_real_t t171 = t163 - dq[4];
+    const puma560_real_t t172 = t159 * t171;
+    const puma560_real_t t173 = t170 + t172;
+    const puma560_real_t t174 = t172 + t173; /* link j6: motion */
+    const puma560_real_t t175 = t1 * t161 - t2 * t174;
+    const puma560_real_t t176 = t1 * t158 + t2 * t171;
+    const puma560_real_t t177 = dq[5] + t159;
+    const puma560_real_t t178 = t176 * t177;
+    const puma560_real_t t179 = t175 + t178;
+    const puma560_real_t t180 = t2 * t161 + t1 * t174;
+    const puma560_real_t t181 = t1 * t171 - t2 * t158;
+    const puma560_real_t t182 = t181 * t177;
+    const puma560_real_t t183 = t180 - t182 - t182; /* link j6: force and moment */
+    const puma560_real_t t184 = t14 * t169 + t12 * t166; /* link j5: motion */
+    const puma560_real_t t185 = t158 * t171;
+    const puma560_real_t t186 = t184 - t185;
+    const puma560_real_t t187 = t181 * t176; /* link j6: motion */
+    const puma560_real_t t188 = t186 + t187; /* link j6: force and moment */
+    const puma560_real_t t189 = parameters[XX6R] * t179 + parameters[ZZ6] * t178 + parameters[XY6] * t183
+        + parameters[XZ6] * t188;
+    const puma560_real_t t190 = t176 * t176; /* link j6: motion */
+    const puma560_real_t t191 = t177 * t177;
+    const puma560_real_t t192 = t148 * t148; /* link j3: motion */
+    const puma560_real_t t193 = t150 * t150;
+    const puma560_real_t t194 = t192 + t193; /* link j4: motion */
+    const puma560_real_t t195 = t146 * t146; /* link j2: motion */
+    const puma560_real_t t196 = dq[1] * dq[1];
+    const puma560_real_t t197 = PUMA560_C(-9.81) * t100;
+    const puma560_real_t t198 = PUMA560_C(0.4318) * (t196 + t195) - t197; /* link j3: motion */
+    const puma560_real_t t199 = t145 * t146; /* link j2: motion */
+    const puma560_real_t t200 = PUMA560_C(-9.81) * t98;
+    const puma560_real_t t201 = t200 + PUMA560_C(0.4318) * t199; /* link j3: motion */
+    const puma560_real_t t202 = t67 * t201 - t69 * t198;
     /* link j4: motion */
-    const puma560_real_t t204 = t203 + (PUMA560_C(-0.0203) * t195 + PUMA560_C(-0.4318) * t150);
-    const puma560_real_t t205 = t146 * t146; /* link j2: motion */
-    const puma560_real_t t206 = dq[1] * t146;
+    const puma560_real_t t203 = t202 + (PUMA560_C(-0.0203) * t194 + PUMA560_C(-0.4318) * t149);
+    const puma560_real_t t204 = t145 * t145; /* link j2: motion */
+    const puma560_real_t t205 = dq[1] * t145;
     /* link j3: motion */
-    const puma560_real_t t207 = PUMA560_C(-0.8636) * t206 + PUMA560_C(-0.1254) * (t205 + t196);
+    const puma560_real_t t206 = PUMA560_C(-0.8636) * t205 + PUMA560_C(-0.1254) * (t204 + t195);
     /* link j4: motion */
-    const puma560_real_t t208 = PUMA560_C(0.0406) * t169 - PUMA560_C(0.8636) * t152 - t207;
-    const puma560_real_t t209 = t34 * t204 + t32 * t208;
-    const puma560_real_t t210 = t148 * t148; /* link j3: motion */
-    const puma560_real_t t211 = t210 + t194; /* link j4: motion */
-    const puma560_real_t t212 = t70 * t199 + t72 * t202; /* link j3: motion */
+    const puma560_real_t t207 = PUMA560_C(0.0406) * t168 - PUMA560_C(0.8636) * t151 - t206;
+    const puma560_real_t t208 = t32 * t203 + t30 * t207;
+    const puma560_real_t t209 = t147 * t147; /* link j3: motion */
+    const puma560_real_t t210 = t209 + t193; /* link j4: motion */
+    const puma560_real_t t211 = t67 * t198 + t69 * t201; /* link j3: motion */
     /* link j4: motion */
-    const puma560_real_t t213 = t212 + (PUMA560_C(-0.0203) * t150 + PUMA560_C(-0.4318) * t211);
-    const puma560_real_t t214 = t13 * t209 - t15 * t213; /* link j5: motion */
+    const puma560_real_t t212 = t211 + (PUMA560_C(-0.0203) * t149 + PUMA560_C(-0.4318) * t210);
+    const puma560_real_t t213 = t12 * t208 - t14 * t212; /* link j5: motion */
     /* link j6: force and moment */
-    const puma560_real_t t215 = t190 + parameters[YZ6] * (t191 - t192) - parameters[MY6] * t214;
-    const puma560_real_t t216 = t179 + t180;
-    const puma560_real_t t217 = t187 - t188;
-    const puma560_real_t t218 = parameters[XY6] * t216 - t183 * (parameters[ZZ6] - parameters[XX6R])
-        + parameters[YZ6] * t217;
-    const puma560_real_t t219 = t182 * t182; /* link j6: motion */
+    const puma560_real_t t214 = t189 + parameters[YZ6] * (t190 - t191) - parameters[MY6] * t213;
+    const puma560_real_t t215 = t178 + t179;
+    const puma560_real_t t216 = t186 - t187;
+    const puma560_real_t t217 = parameters[XY6] * t215 - t182 * (parameters[ZZ6] - parameters[XX6R])
+        + parameters[YZ6] * t216;
+    const puma560_real_t t218 = t181 * t181; /* link j6: motion */
     /* link j6: force and moment */
-    const puma560_real_t t220 = t218 + parameters[XZ6] * (t192 - t219) + parameters[MX6] * t214;
-    const puma560_real_t t221 = t187 - t186; /* link j6: motion */
-    const puma560_real_t t222 = t158 + t161;
+    const puma560_real_t t219 = t217 + parameters[XZ6] * (t191 - t218) + parameters[MX6] * t213;
+    const puma560_real_t t220 = t186 - t185; /* link j6: motion */
+    const puma560_real_t t221 = t157 + t160;
     /* link j5: force and moment */
-    const puma560_real_t t223 = parameters[XY5] * t221 - (parameters[XX5R] * t174 + parameters[ZZ5R] * t173)
-        - parameters[XZ5] * t222;
-    const puma560_real_t t224 = t160 * t160; /* link j5: motion */
-    const puma560_real_t t225 = t172 * t172;
-    const puma560_real_t t226 = t32 * t204 - t34 * t208; /* link j4: motion */
+    const puma560_real_t t222 = parameters[XY5] * t220 - (parameters[XX5R] * t173 + parameters[ZZ5R] * t172)
+        - parameters[XZ5] * t221;
+    const puma560_real_t t223 = t159 * t159; /* link j5: motion */
+    const puma560_real_t t224 = t171 * t171;
+    const puma560_real_t t225 = t30 * t203 - t32 * t207; /* link j4: motion */
     /* link j6: what it passes on */
-    const puma560_real_t t227 = t223 + parameters[YZ5] * (t224 - t225) + parameters[MY5R] * t226 - (t1 * t220
-        - t2 * t215);
-    const puma560_real_t t228 = t15 * t209 + t13 * t213; /* link j5: motion */
+    const puma560_real_t t226 = t222 + parameters[YZ5] * (t223 - t224) + parameters[MY5R] * t225 - (t1 * t219
+        - t2 * t214);
+    const puma560_real_t t227 = t14 * t208 + t12 * t212; /* link j5: motion */
     /* link j6: force and moment */
-    const puma560_real_t t229 = parameters[MX6] * (t1 * t228 + t2 * t226) + parameters[MY6] * (t2 * t228
-        - t1 * t226);
-    const puma560_real_t t230 = parameters[XX6R] * t188 - parameters[ZZ6] * t187 - parameters[YZ6] * t181
-        - parameters[XZ6] * t176;
-    const puma560_real_t t231 = t230 + parameters[XY6] * (t191 - t219) + t229;
+    const puma560_real_t t228 = parameters[MX6] * (t1 * t227 + t2 * t225) + parameters[MY6] * (t2 * t227
+        - t1 * t225);
+    const puma560_real_t t229 = parameters[XX6R] * t187 - parameters[ZZ6] * t186 - parameters[YZ6] * t180
+        - parameters[XZ6] * t175;
+    const puma560_real_t t230 = t229 + parameters[XY6] * (t190 - t218) + t228;
     /* link j5: force and moment */
-    const puma560_real_t t232 = parameters[XY5] * t175 - t186 * (parameters[XX5R] - parameters[ZZ5R])
-        + parameters[YZ5] * t162;
-    const puma560_real_t t233 = t159 * t159; /* link j5: motion */
+    const puma560_real_t t231 = parameters[XY5] * t174 - t185 * (parameters[XX5R] - parameters[ZZ5R])
+        + parameters[YZ5] * t161;
+    const puma560_real_t t232 = t158 * t158; /* link j5: motion */
     /* link j6: what it passes on */
-    const puma560_real_t t234 = t232 + parameters[XZ5] * (t233 - t225) + parameters[MX5] * t226 + t231;
-    const puma560_real_t t235 = t157 + t158; /* link j5: motion */
-    const puma560_real_t t236 = t169 - t168;
+    const puma560_real_t t233 = t231 + parameters[XZ5] * (t232 - t224) + parameters[MX5] * t225 + t230;
+    const puma560_real_t t234 = t156 + t157; /* link j5: motion */
+    const puma560_real_t t235 = t168 - t167;
     /* link j4: force and moment */
-    const puma560_real_t t237 = parameters[ZZ4R] * t165 - parameters[XX4R] * t166 + parameters[XY4] * t235
-        + parameters[XZ4] * t236;
-    const puma560_real_t t238 = t164 * t164; /* link j4: motion */
-    const puma560_real_t t239 = t156 * t156;
+    const puma560_real_t t236 = parameters[ZZ4R] * t164 - parameters[XX4R] * t165 + parameters[XY4] * t234
+        + parameters[XZ4] * t235;
+    const puma560_real_t t237 = t163 * t163; /* link j4: motion */
+    const puma560_real_t t238 = t155 * t155;
     /* link j5: what it passes on */
-    const puma560_real_t t240 = t237 + parameters[YZ4] * (t238 - t239) + parameters[MY4R] * t213 + (t15 * t227
-        + t13 * t234);
+    const puma560_real_t t239 = t236 + parameters[YZ4] * (t237 - t238) + parameters[MY4R] * t212 + (t14 * t226
+        + t12 * t233);
     /* link j5: force and moment */
-    const puma560_real_t t241 = parameters[ZZ5R] * t158 - parameters[XX5R] * t161 - parameters[YZ5] * t185
-        + parameters[XZ5] * t171;
-    const puma560_real_t t242 = t241 + parameters[XY5] * (t224 - t233) + (parameters[MX5] * t214
-        + parameters[MY5R] * t228);
-    const puma560_real_t t243 = t242 + (t1 * t215 + t2 * t220); /* link j6: what it passes on */
+    const puma560_real_t t240 = parameters[ZZ5R] * t157 - parameters[XX5R] * t160 - parameters[YZ5] * t184
+        + parameters[XZ5] * t170;
+    const puma560_real_t t241 = t240 + parameters[XY5] * (t223 - t232) + (parameters[MX5] * t213
+        + parameters[MY5R] * t227);
+    const puma560_real_t t242 = t241 + (t1 * t214 + t2 * t219); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const puma560_real_t t244 = t157 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t167
-        - parameters[YZ4] * t170;
-    const puma560_real_t t245 = t155 * t155; /* link j4: motion */
+    const puma560_real_t t243 = t156 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t166
+        - parameters[YZ4] * t169;
+    const puma560_real_t t244 = t154 * t154; /* link j4: motion */
     /* link j5: what it passes on */
-    const puma560_real_t t246 = t244 + parameters[XZ4] * (t245 - t239) + parameters[MX4] * t213 - t243;
+    const puma560_real_t t245 = t243 + parameters[XZ4] * (t244 - t238) + parameters[MX4] * t212 - t242;
     /* link j6: force and moment */
-    const puma560_real_t t247 = parameters[MX6] * (t191 + t192) + parameters[MY6] * t217;
-    const puma560_real_t t248 = parameters[MX6] * t189 - parameters[MY6] * (t219 + t192);
+    const puma560_real_t t246 = parameters[MX6] * (t190 + t191) + parameters[MY6] * t216;
+    const puma560_real_t t247 = parameters[MX6] * t188 - parameters[MY6] * (t218 + t191);
     /* link j6: what it passes on */
-    const puma560_real_t t249 = parameters[MX5] * (t224 + t225) - parameters[MY5R] * t162 + (t2 * t247
-        + t1 * t248);
-    const puma560_real_t t250 = parameters[MX5] * t222 + parameters[MY5R] * (t233 + t225)
-        + (parameters[MX6] * t184 - parameters[MY6] * t216);
+    const puma560_real_t t248 = parameters[MX5] * (t223 + t224) - parameters[MY5R] * t161 + (t2 * t246
+        + t1 * t247);
+    const puma560_real_t t249 = parameters[MX5] * t221 + parameters[MY5R] * (t232 + t224)
+        + (parameters[MX6] * t183 - parameters[MY6] * t215);
     /* link j5: what it passes on */
-    const puma560_real_t t251 = t13 * t250 - t15 * t249 - (parameters[MX4] * (t238 + t239)
-        + parameters[MY4R] * t170);
+    const puma560_real_t t250 = t12 * t249 - t14 * t248 - (parameters[MX4] * (t237 + t238)
+        + parameters[MY4R] * t169);
     /* link j6: what it passes on */
-    const puma560_real_t t252 = parameters[MX5] * t221 + parameters[MY5R] * t175 - (t1 * t247 - t2 * t248);
+    const puma560_real_t t251 = parameters[MX5] * t220 + parameters[MY5R] * t174 - (t1 * t246 - t2 * t247);
     /* link j5: what it passes on */
-    const puma560_real_t t253 = parameters[MX4] * t236 - parameters[MY4R] * (t245 + t239) + t252;
-    const puma560_real_t t254 = t32 * t251 + t34 * t253; /* link j4: what it passes on */
-    const puma560_real_t t255 = PUMA560_C(2.0) * t169; /* link j4: motion */
+    const puma560_real_t t252 = parameters[MX4] * t235 - parameters[MY4R] * (t244 + t238) + t251;
+    const puma560_real_t t253 = t30 * t250 + t32 * t252; /* link j4: what it passes on */
+    const puma560_real_t t254 = PUMA560_C(2.0) * t168; /* link j4: motion */
     /* link j3: force and moment */
-    const puma560_real_t t256 = parameters[XX3R] * t152 + parameters[ZZ3R] * t152 + parameters[XY3R] * t255
-        - parameters[XZ3] * t150;
+    const puma560_real_t t255 = parameters[XX3R] * t151 + parameters[ZZ3R] * t151 + parameters[XY3R] * t254
+        - parameters[XZ3] * t149;
     /* link j4: what it passes on */
-    const puma560_real_t t257 = t256 + parameters[YZ3] * (t193 - t194) + parameters[MY3R] * t207 + (t34 * t240
-        + t32 * t246 + PUMA560_C(-0.4318) * t254);
+    const puma560_real_t t256 = t255 + parameters[YZ3] * (t192 - t193) + parameters[MY3R] * t206 + (t32 * t239
+        + t30 * t245 + PUMA560_C(-0.4318) * t253);
     /* link j4: force and moment */
-    const puma560_real_t t258 = parameters[XZ4] * t163 - (parameters[ZZ4R] * t169 + parameters[XX4R] * t168
-        + parameters[YZ4] * t154);
-    const puma560_real_t t259 = t258 + parameters[XY4] * (t238 - t245) + (parameters[MX4] * t226
-        + parameters[MY4R] * t209);
-    const puma560_real_t t260 = t259 + (t15 * t234 - t13 * t227); /* link j5: what it passes on */
+    const puma560_real_t t257 = parameters[XZ4] * t162 - (parameters[ZZ4R] * t168 + parameters[XX4R] * t167
+        + parameters[YZ4] * t153);
+    const puma560_real_t t258 = t257 + parameters[XY4] * (t237 - t244) + (parameters[MX4] * t225
+        + parameters[MY4R] * t208);
+    const puma560_real_t t259 = t258 + (t14 * t233 - t12 * t226); /* link j5: what it passes on */
     /* link j3: force and moment */
-    const puma560_real_t t261 = t169 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t153
-        - parameters[YZ3] * t150;
+    const puma560_real_t t260 = t168 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t152
+        - parameters[YZ3] * t149;
     /* link j4: what it passes on */
-    const puma560_real_t t262 = t261 + parameters[XZ3] * (t210 - t194) + parameters[MX3R] * t207 + (t260
-        + PUMA560_C(-0.0203) * t254);
-    const puma560_real_t t263 = t34 * t251 - t32 * t253;
-    const puma560_real_t t264 = parameters[MX3R] * t195 + parameters[MY3R] * t150 - t263;
+    const puma560_real_t t261 = t260 + parameters[XZ3] * (t209 - t193) + parameters[MX3R] * t206 + (t259
+        + PUMA560_C(-0.0203) * t253);
+    const puma560_real_t t262 = t32 * t250 - t30 * t252;
+    const puma560_real_t t263 = parameters[MX3R] * t194 + parameters[MY3R] * t149 - t262;
     /* link j5: what it passes on */
-    const puma560_real_t t265 = parameters[MX4] * t235 + parameters[MY4R] * t167 + (t13 * t249 + t15 * t250);
+    const puma560_real_t t264 = parameters[MX4] * t234 + parameters[MY4R] * t166 + (t12 * t248 + t14 * t249);
     /* link j4: what it passes on */
-    const puma560_real_t t266 = parameters[MX3R] * t150 + parameters[MY3R] * t211 + t265;
-    const puma560_real_t t267 = t70 * t264 + t72 * t266; /* link j3: what it passes on */
-    const puma560_real_t t268 = dq[1] * t147; /* link j2: motion */
+    const puma560_real_t t265 = parameters[MX3R] * t149 + parameters[MY3R] * t210 + t264;
+    const puma560_real_t t266 = t67 * t263 + t69 * t265; /* link j3: what it passes on */
+    const puma560_real_t t267 = dq[1] * t146; /* link j2: motion */
     /* link j2: force and moment */
-    const puma560_real_t t269 = parameters[XY2] * (PUMA560_C(2.0) * t206) - (parameters[XX2R] * t268
-        + parameters[ZZ2R] * t268);
+    const puma560_real_t t268 = parameters[XY2] * (PUMA560_C(2.0) * t205) - (parameters[XX2R] * t267
+        + parameters[ZZ2R] * t267);
     /* link j3: what it passes on */
-    const puma560_real_t t270 = t269 + parameters[XZ2R] * t200 + parameters[YZ2] * (t196 - t197) + (t72 * t257
-        + t70 * t262 + PUMA560_C(0.1254) * t267);
-    const puma560_real_t t271 = PUMA560_C(0.1254) * (t70 * t266 - t72 * t264)
-        + PUMA560_C(0.4318) * (parameters[MX3R] * t255 + parameters[MY3R] * t153 + t254);
+    const puma560_real_t t269 = t268 + parameters[XZ2R] * t199 + parameters[YZ2] * (t195 - t196) + (t69 * t256
+        + t67 * t261 + PUMA560_C(0.1254) * t266);
+    const puma560_real_t t270 = PUMA560_C(0.1254) * (t67 * t265 - t69 * t263)
+        + PUMA560_C(0.4318) * (parameters[MX3R] * t254 + parameters[MY3R] * t152 + t253);
     /* link j2: force and moment */
-    const puma560_real_t t272 = t206 * (parameters[ZZ2R] - parameters[XX2R])
-        + parameters[XY2] * (PUMA560_C(-2.0) * t268) - parameters[YZ2] * t200;
+    const puma560_real_t t271 = t205 * (parameters[ZZ2R] - parameters[XX2R])
+        + parameters[XY2] * (PUMA560_C(-2.0) * t267) - parameters[YZ2] * t199;
     /* link j3: what it passes on */
-    const puma560_real_t t273 = t272 + parameters[XZ2R] * (t197 - t205) + (t70 * t257 - t72 * t262 + t271);
-    const puma560_real_t t274 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
-    const puma560_real_t t275 = PUMA560_C(62.6111) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
-        - parameters[FC1] * t274) + (t104 * t270 + t102 * t273);
-    const puma560_real_t t276 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
-    const puma560_real_t t277 = PUMA560_C(76.686) * (parameters[FV6] * (PUMA560_C(-76.686) * dq[5])
-        - parameters[FC6] * t276) + t231;
-    const puma560_real_t t278 = PUMA560_C(5.368020000000001) * input[5] + t277;
-    const puma560_real_t t279 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
-    const puma560_real_t t280 = PUMA560_C(71.923) * (parameters[FV5] * (PUMA560_C(-71.923) * dq[4])
-        - parameters[FC5] * t279) + t243;
-    const puma560_real_t t281 = PUMA560_C(5.034610000000001) * input[4] + t280 + t278 * t5;
-    const puma560_real_t t282 = PUMA560_C(-14.400553) * input[0] + t275 - t278 * t115 + t281 * t123;
-    const puma560_real_t t283 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
-    const puma560_real_t t284 = PUMA560_C(76.0364) * (parameters[FV4] * (PUMA560_C(-76.0364) * dq[3])
-        - parameters[FC4] * t283) + t260;
-    const puma560_real_t t285 = PUMA560_C(5.322548) * input[3] + t284 + t278 * t28 + t281 * t21;
+    const puma560_real_t t272 = t271 + parameters[XZ2R] * (t196 - t204) + (t67 * t256 - t69 * t261 + t270);
+    const puma560_real_t t273 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
+    const puma560_real_t t274 = PUMA560_C(62.6111) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
+        - parameters[FC1] * t273) + (t100 * t269 + t98 * t272);
+    const puma560_real_t t275 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
+    const puma560_real_t t276 = PUMA560_C(76.686) * (parameters[FV6] * (PUMA560_C(-76.686) * dq[5])
+        - parameters[FC6] * t275) + t230;
+    const puma560_real_t t277 = PUMA560_C(5.368020000000001) * input[5] + t276;
+    const puma560_real_t t278 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
+    const puma560_real_t t279 = PUMA560_C(71.923) * (parameters[FV5] * (PUMA560_C(-71.923) * dq[4])
+        - parameters[FC5] * t278) + t242;
+    const puma560_real_t t280 = PUMA560_C(5.034610000000001) * input[4] + t279 + t277 * t5;
+    const puma560_real_t t281 = PUMA560_C(-14.400553) * input[0] + t274 - t277 * t111 + t280 * t119;
+    const puma560_real_t t282 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
+    const puma560_real_t t283 = PUMA560_C(76.0364) * (parameters[FV4] * (PUMA560_C(-76.0364) * dq[3])
+        - parameters[FC4] * t282) + t259;
+    const puma560_real_t t284 = PUMA560_C(5.322548) * input[3] + t283 + t277 * t27 + t280 * t20;
     /* link j4: what it passes on */
-    const puma560_real_t t286 = t32 * t240 - t34 * t246 + (PUMA560_C(0.0203) * t265
-        + PUMA560_C(0.4318) * t263);
+    const puma560_real_t t285 = t30 * t239 - t32 * t245 + (PUMA560_C(0.0203) * t264
+        + PUMA560_C(0.4318) * t262);
     /* link j3: force and moment */
-    const puma560_real_t t287 = parameters[XY3R] * (t193 - t210) - parameters[XX3R] * t150
-        + (parameters[MY3R] * t203 - parameters[MX3R] * t212);
-    const puma560_real_t t288 = t287 + t286; /* link j4: what it passes on */
-    const puma560_real_t t289 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
-    const puma560_real_t t290 = PUMA560_C(53.7063) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2])
-        - parameters[FC3] * t289) + t288;
-    const puma560_real_t t291 = PUMA560_C(-12.352449) * input[2] + t290 - t278 * t58 + t281 * t57;
-    const puma560_real_t t292 = t291 + t285 * t56;
+    const puma560_real_t t286 = parameters[XY3R] * (t192 - t209) - parameters[XX3R] * t149
+        + (parameters[MY3R] * t202 - parameters[MX3R] * t211);
+    const puma560_real_t t287 = t286 + t285; /* link j4: what it passes on */
+    const puma560_real_t t288 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
+    const puma560_real_t t289 = PUMA560_C(53.7063) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2])
+        - parameters[FC3] * t288) + t287;
+    const puma560_real_t t290 = PUMA560_C(-12.352449) * input[2] + t289 - t277 * t56 + t280 * t55;
+    const puma560_real_t t291 = t290 + t284 * t54;
     /* link j2: force and moment */
-    const puma560_real_t t293 = parameters[XX2R] * t200 + parameters[XY2] * (t196 - t205)
-        + (parameters[MY2] * t198 - parameters[MX2R] * t201);
-    const puma560_real_t t294 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
-    const puma560_real_t t295 = PUMA560_C(107.815) * (parameters[FV2] * (PUMA560_C(-107.815) * dq[1])
-        - parameters[FC2] * t294) + (t293 + (t288 + PUMA560_C(0.4318) * t267));
-    const puma560_real_t t296 = PUMA560_C(24.79745) * input[1] + t295 + t278 * t87 - t281 * t86;
-    const puma560_real_t t297 = t296 - t285 * t85 - t292 * t84;
-    const puma560_real_t t298 = t297 * t143 - (t282 + t285 * t129 + t292 * t138);
-    const puma560_real_t t299 = PUMA560_C(-1.0) / t144;
-    const puma560_real_t t300 = puma560_bounded(t298 * t299);
-    out[0] = t300;
-    const puma560_real_t t301 = puma560_bounded(t297 * t142 - t143 * t300);
-    out[1] = t301;
-    const puma560_real_t t302 = puma560_bounded(t138 * t300 - t292 * t83 - t84 * t301);
-    out[2] = t302;
-    const puma560_real_t t303 = puma560_bounded(t56 * t302 - (t285 * t55 - t129 * t300 + t85 * t301));
-    out[3] = t303;
-    const puma560_real_t t304 = t281 * t20 - t123 * t300 + t86 * t301 - t57 * t302;
-    const puma560_real_t t305 = puma560_bounded(t21 * t303 - t304);
-    out[4] = t305;
-    const puma560_real_t t306 = t278 * t4 - t115 * t300 + t87 * t301 - t58 * t302;
-    out[5] = t306 + t28 * t303 + t5 * t305;
-    if (!puma560_all_bounded(out, 6)) {
+    const puma560_real_t t292 = parameters[XX2R] * t199 + parameters[XY2] * (t195 - t204)
+        + (parameters[MY2] * t197 - parameters[MX2R] * t200);
+    const puma560_real_t t293 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
+    const puma560_real_t t294 = PUMA560_C(107.815) * (parameters[FV2] * (PUMA560_C(-107.815) * dq[1])
+        - parameters[FC2] * t293) + (t292 + (t287 + PUMA560_C(0.4318) * t266));
+    const puma560_real_t t295 = PUMA560_C(24.79745) * input[1] + t294 + t277 * t84 - t280 * t83;
+    const puma560_real_t t296 = t295 - t284 * t82 - t291 * t81;
+    const puma560_real_t t297 = t296 * t139 - (t281 + t284 * t125 + t291 * t134);
+    const puma560_real_t t298 = PUMA560_C(-1.0) / t140;
+    const puma560_real_t t299 = puma560_held(t297 * t298);
+    out[0] = t299;
+    const puma560_real_t t300 = puma560_held(t296 * t138 - t139 * t299);
+    out[1] = t300;
+    const puma560_real_t t301 = puma560_held(t134 * t299 - t291 * t80 - t81 * t300);
+    out[2] = t301;
+    const puma560_real_t t302 = puma560_held(t54 * t301 - (t284 * t53 - t125 * t299 + t82 * t300));
+    out[3] = t302;
+    const puma560_real_t t303 = t280 * t19 - t119 * t299 + t83 * t300 - t55 * t301;
+    const puma560_real_t t304 = puma560_held(t20 * t302 - t303);
+    out[4] = t304;
+    const puma560_real_t t305 = t277 * t4 - t111 * t299 + t84 * t300 - t56 * t301;
+    out[5] = t305 + t27 * t302 + t5 * t304;
+    if (!puma560_bounded(out, 6)) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }

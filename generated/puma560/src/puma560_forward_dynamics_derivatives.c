@@ -7,7 +7,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3835 (2137 mul, 1698 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 3835 (2137 mul, 1698 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -86,7 +86,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -119,18 +119,17 @@ puma560_status_t puma560_forward_dynamics_derivatives(
         return status;
     }
 
-    puma560_real_t t108, t105;
-    PUMA560_SINCOS(q[1], &t108, &t105);
-    puma560_real_t t70, t73;
-    PUMA560_SINCOS(q[2], &t70, &t73);
-    puma560_real_t t32, t34;
-    PUMA560_SINCOS(q[3], &t32, &t34);
-    puma560_real_t t13, t15;
-    PUMA560_SINCOS(q[4], &t13, &t15);
+    puma560_real_t t104, t101;
+    PUMA560_SINCOS(q[1], &t104, &t101);
+    puma560_real_t t67, t70;
+    PUMA560_SINCOS(q[2], &t67, &t70);
+    puma560_real_t t30, t32;
+    PUMA560_SINCOS(q[3], &t30, &t32);
+    puma560_real_t t12, t14;
+    PUMA560_SINCOS(q[4], &t12, &t14);
     puma560_real_t t1, t2;
     PUMA560_SINCOS(q[5], &t1, &t2);
-    const puma560_real_t t0 = puma560_bounded(parameters[ZZ6]
-        + PUMA560_C(5880.742596000001) * parameters[IA6]);
+    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
     if (!(t0 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -147,7 +146,7 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t t7 = t2 * t6;
     const puma560_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
     const puma560_real_t t9 = t8 + PUMA560_C(5172.917929) * parameters[IA5];
-    const puma560_real_t t10 = puma560_bounded(t9 - t3 * t5);
+    const puma560_real_t t10 = t9 - t3 * t5;
     if (!(t10 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -155,201 +154,180 @@ puma560_status_t puma560_forward_dynamics_derivatives(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t11 = t10 + PUMA560_C(-1.0e-9) * t9;
-    if (!(t11 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t12 = parameters[XZ5] - (parameters[XY6] + t1 * t6);
-    const puma560_real_t t14 = parameters[YZ5] - t3;
-    const puma560_real_t t16 = t13 * t12 + t15 * t14; /* link j5: column of the mass matrix */
+    const puma560_real_t t11 = parameters[XZ5] - (parameters[XY6] + t1 * t6);
+    const puma560_real_t t13 = parameters[YZ5] - t3;
+    const puma560_real_t t15 = t12 * t11 + t14 * t13; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const puma560_real_t t17 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
-    const puma560_real_t t18 = t13 * t17 + t15 * parameters[ZZ6];
-    const puma560_real_t t19 = t16 + t18 * t5;
-    const puma560_real_t t20 = PUMA560_C(1.0) / t10;
-    const puma560_real_t t21 = t19 * t20;
-    const puma560_real_t t22 = parameters[XX5R] + t7; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t23 = parameters[XY5] + t17;
+    const puma560_real_t t16 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
+    const puma560_real_t t17 = t12 * t16 + t14 * parameters[ZZ6];
+    const puma560_real_t t18 = t15 + t17 * t5;
+    const puma560_real_t t19 = PUMA560_C(1.0) / t10;
+    const puma560_real_t t20 = t18 * t19;
+    const puma560_real_t t21 = parameters[XX5R] + t7; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t22 = parameters[XY5] + t16;
     /* link j5: inertia of it and all beyond */
-    const puma560_real_t t24 = t15 * (t22 - parameters[ZZ6]) + t23 * (PUMA560_C(-2.0) * t13);
-    const puma560_real_t t25 = t15 * t24;
-    const puma560_real_t t26 = parameters[ZZ4R] + (t22 - t25);
-    const puma560_real_t t27 = t26 + PUMA560_C(5781.53412496) * parameters[IA4];
-    const puma560_real_t t28 = t18 * t4;
-    const puma560_real_t t29 = puma560_bounded(t27 - t18 * t28 - t19 * t21);
-    if (!(t29 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t23 = t14 * (t21 - parameters[ZZ6]) + t22 * (PUMA560_C(-2.0) * t12);
+    const puma560_real_t t24 = t14 * t23;
+    const puma560_real_t t25 = parameters[ZZ4R] + (t21 - t24);
+    const puma560_real_t t26 = t25 + PUMA560_C(5781.53412496) * parameters[IA4];
+    const puma560_real_t t27 = t17 * t4;
+    const puma560_real_t t28 = t26 - t17 * t27 - t18 * t20;
+    if (!(t28 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t30 = t29 + PUMA560_C(-1.0e-9) * t27;
-    if (!(t30 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t31 = parameters[XZ4] + (t23 + t13 * t24);
-    const puma560_real_t t33 = t16 - parameters[YZ4];
+    const puma560_real_t t29 = parameters[XZ4] + (t22 + t12 * t23);
+    const puma560_real_t t31 = t15 - parameters[YZ4];
     /* link j6: column of the mass matrix */
-    const puma560_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const puma560_real_t t36 = parameters[MY4R] + t35; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t33 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const puma560_real_t t34 = parameters[MY4R] + t33; /* link j5: inertia of it and all beyond */
     /* link j6: column of the mass matrix */
-    const puma560_real_t t37 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const puma560_real_t t38 = t37 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t39 = t13 * parameters[MY5R] + t15 * t38; /* link j5: column of the mass matrix */
-    const puma560_real_t t40 = parameters[MX4] - t39; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t41 = t34 * t36 + t32 * t40; /* link j4: column of the mass matrix */
-    const puma560_real_t t42 = PUMA560_C(-0.4318) * t41;
-    const puma560_real_t t43 = t32 * t31 - t34 * t33 + t42;
-    const puma560_real_t t44 = t15 * t17 - t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const puma560_real_t t45 = t15 * t35;
-    const puma560_real_t t46 = t32 * t37 - t34 * t45;
-    const puma560_real_t t47 = t13 * t35;
-    const puma560_real_t t48 = PUMA560_C(-0.0203) * t47 + PUMA560_C(-0.4318) * t46 - (t32 * t44 + t34 * t3);
-    const puma560_real_t t49 = t13 * t14 - t15 * t12; /* link j5: column of the mass matrix */
-    const puma560_real_t t50 = t15 * parameters[MY5R] - t13 * t38;
-    const puma560_real_t t51 = t34 * t50;
-    const puma560_real_t t52 = t32 * t49 + t34 * t8 + (PUMA560_C(-0.0203) * t39 + PUMA560_C(0.4318) * t51);
-    const puma560_real_t t53 = t52 + t48 * t5;
-    const puma560_real_t t54 = t43 + t48 * t28 + t53 * t21;
-    const puma560_real_t t55 = PUMA560_C(1.0) / t29;
-    const puma560_real_t t56 = t54 * t55;
-    const puma560_real_t t57 = t53 * t20;
-    const puma560_real_t t58 = t48 * t4;
+    const puma560_real_t t35 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const puma560_real_t t36 = t35 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t37 = t12 * parameters[MY5R] + t14 * t36; /* link j5: column of the mass matrix */
+    const puma560_real_t t38 = parameters[MX4] - t37; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t39 = t32 * t34 + t30 * t38; /* link j4: column of the mass matrix */
+    const puma560_real_t t40 = PUMA560_C(-0.4318) * t39;
+    const puma560_real_t t41 = t30 * t29 - t32 * t31 + t40;
+    const puma560_real_t t42 = t14 * t16 - t12 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const puma560_real_t t43 = t14 * t33;
+    const puma560_real_t t44 = t30 * t35 - t32 * t43;
+    const puma560_real_t t45 = t12 * t33;
+    const puma560_real_t t46 = PUMA560_C(-0.0203) * t45 + PUMA560_C(-0.4318) * t44 - (t30 * t42 + t32 * t3);
+    const puma560_real_t t47 = t12 * t13 - t14 * t11; /* link j5: column of the mass matrix */
+    const puma560_real_t t48 = t14 * parameters[MY5R] - t12 * t36;
+    const puma560_real_t t49 = t32 * t48;
+    const puma560_real_t t50 = t30 * t47 + t32 * t8 + (PUMA560_C(-0.0203) * t37 + PUMA560_C(0.4318) * t49);
+    const puma560_real_t t51 = t50 + t46 * t5;
+    const puma560_real_t t52 = t41 + t46 * t27 + t51 * t20;
+    const puma560_real_t t53 = PUMA560_C(1.0) / t28;
+    const puma560_real_t t54 = t52 * t53;
+    const puma560_real_t t55 = t51 * t19;
+    const puma560_real_t t56 = t46 * t4;
     /* link j5: inertia of it and all beyond */
-    const puma560_real_t t59 = parameters[XX4R] + (parameters[ZZ6] + t25);
-    const puma560_real_t t60 = parameters[XY4] + t49;
+    const puma560_real_t t57 = parameters[XX4R] + (parameters[ZZ6] + t24);
+    const puma560_real_t t58 = parameters[XY4] + t47;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t61 = t34 * (t59 - t8) + t60 * (PUMA560_C(-2.0) * t32);
-    const puma560_real_t t62 = t34 * t61;
-    const puma560_real_t t63 = t32 * t36 - t34 * t40; /* link j4: column of the mass matrix */
-    const puma560_real_t t64 = PUMA560_C(-0.0406) * t63; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t65 = PUMA560_C(0.8636) * t50;
-    const puma560_real_t t66 = parameters[ZZ3R] + (t59 - t62 + (t64 + t65));
-    const puma560_real_t t67 = t66 + PUMA560_C(2884.36665969) * parameters[IA3];
-    const puma560_real_t t68 = puma560_bounded(t67 - t48 * t58 - t53 * t57 - t54 * t56);
-    if (!(t68 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t59 = t32 * (t57 - t8) + t58 * (PUMA560_C(-2.0) * t30);
+    const puma560_real_t t60 = t32 * t59;
+    const puma560_real_t t61 = t30 * t34 - t32 * t38; /* link j4: column of the mass matrix */
+    const puma560_real_t t62 = PUMA560_C(-0.0406) * t61; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t63 = PUMA560_C(0.8636) * t48;
+    const puma560_real_t t64 = parameters[ZZ3R] + (t57 - t60 + (t62 + t63));
+    const puma560_real_t t65 = t64 + PUMA560_C(2884.36665969) * parameters[IA3];
+    const puma560_real_t t66 = t65 - t46 * t56 - t51 * t55 - t52 * t54;
+    if (!(t66 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t69 = t68 + PUMA560_C(-1.0e-9) * t67;
-    if (!(t69 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t68 = t67 * t39; /* link j4: column of the mass matrix */
+    const puma560_real_t t69 = t41 + PUMA560_C(0.4318) * t68;
+    const puma560_real_t t71 = t70 * t45 - t67 * t44; /* link j6: column of the mass matrix */
+    const puma560_real_t t72 = t46 + PUMA560_C(-0.4318) * t71;
+    const puma560_real_t t73 = t67 * t49 + t70 * t37; /* link j5: column of the mass matrix */
+    const puma560_real_t t74 = t50 + PUMA560_C(-0.4318) * t73;
+    const puma560_real_t t75 = t74 + t72 * t5;
+    const puma560_real_t t76 = t69 + t72 * t27 + t75 * t20;
+    const puma560_real_t t77 = t61 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t78 = parameters[MY3R] + t48;
+    const puma560_real_t t79 = t67 * t78 + t70 * t77; /* link j3: column of the mass matrix */
+    const puma560_real_t t80 = PUMA560_C(0.4318) * t79 - t64;
+    const puma560_real_t t81 = t80 + t72 * t56 + t75 * t55 + t76 * t54;
+    const puma560_real_t t82 = PUMA560_C(-1.0) / t66;
+    const puma560_real_t t83 = t81 * t82;
+    const puma560_real_t t84 = t76 * t53;
+    const puma560_real_t t85 = t75 * t19;
+    const puma560_real_t t86 = t72 * t4;
+    const puma560_real_t t87 = PUMA560_C(-0.8636) * t79; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t88 = parameters[ZZ2R] + (t64 + t87);
+    const puma560_real_t t89 = t88 - t72 * t86 - t75 * t85 - t76 * t84;
+    const puma560_real_t t90 = t89 + t81 * t83;
+    if (!(t90 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t71 = t70 * t41; /* link j4: column of the mass matrix */
-    const puma560_real_t t72 = t43 + PUMA560_C(0.4318) * t71;
-    const puma560_real_t t74 = t73 * t47 - t70 * t46; /* link j6: column of the mass matrix */
-    const puma560_real_t t75 = t48 + PUMA560_C(-0.4318) * t74;
-    const puma560_real_t t76 = t70 * t51 + t73 * t39; /* link j5: column of the mass matrix */
-    const puma560_real_t t77 = t52 + PUMA560_C(-0.4318) * t76;
-    const puma560_real_t t78 = t77 + t75 * t5;
-    const puma560_real_t t79 = t72 + t75 * t28 + t78 * t21;
-    const puma560_real_t t80 = t63 - parameters[MX3R]; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t81 = parameters[MY3R] + t50;
-    const puma560_real_t t82 = t70 * t81 + t73 * t80; /* link j3: column of the mass matrix */
-    const puma560_real_t t83 = PUMA560_C(0.4318) * t82 - t66;
-    const puma560_real_t t84 = t83 + t75 * t58 + t78 * t57 + t79 * t56;
-    const puma560_real_t t85 = PUMA560_C(-1.0) / t68;
-    const puma560_real_t t86 = t84 * t85;
-    const puma560_real_t t87 = t79 * t55;
-    const puma560_real_t t88 = t78 * t20;
-    const puma560_real_t t89 = t75 * t4;
-    const puma560_real_t t90 = PUMA560_C(-0.8636) * t82; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t91 = parameters[ZZ2R] + (t66 + t90);
-    const puma560_real_t t92 = t91 - t75 * t89 - t78 * t88 - t79 * t87;
-    const puma560_real_t t93 = puma560_bounded(t92 + t84 * t86);
-    if (!(t93 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t94 = t93 + PUMA560_C(-1.0e-9) * t91;
-    if (!(t94 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t95 = t26 + t64; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t96 = parameters[XX3R] + (t8 + t62 + t65);
-    const puma560_real_t t97 = t34 * t31 + t32 * t33; /* link j4: column of the mass matrix */
-    const puma560_real_t t98 = PUMA560_C(0.4318) * t63;
+    const puma560_real_t t91 = t25 + t62; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t92 = parameters[XX3R] + (t8 + t60 + t63);
+    const puma560_real_t t93 = t32 * t29 + t30 * t31; /* link j4: column of the mass matrix */
+    const puma560_real_t t94 = PUMA560_C(0.4318) * t61;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t99 = parameters[XY3R] + (t97 + (t98 + PUMA560_C(-0.0203) * t50));
+    const puma560_real_t t95 = parameters[XY3R] + (t93 + (t94 + PUMA560_C(-0.0203) * t48));
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t100 = t73 * (t95 - t96) + t99 * (PUMA560_C(2.0) * t70);
-    const puma560_real_t t101 = t73 * t100;
-    const puma560_real_t t102 = PUMA560_C(-0.2508) * t41;
-    const puma560_real_t t103 = t96 + t101 + (t90 + t102);
-    const puma560_real_t t104 = parameters[XX2R] + (t95 - t101 + t102);
-    const puma560_real_t t106 = t70 * t80 - t73 * t81; /* link j3: column of the mass matrix */
+    const puma560_real_t t96 = t70 * (t91 - t92) + t95 * (PUMA560_C(2.0) * t67);
+    const puma560_real_t t97 = t70 * t96;
+    const puma560_real_t t98 = PUMA560_C(-0.2508) * t39;
+    const puma560_real_t t99 = t92 + t97 + (t87 + t98);
+    const puma560_real_t t100 = parameters[XX2R] + (t91 - t97 + t98);
+    const puma560_real_t t102 = t67 * t77 - t70 * t78; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t107 = parameters[XY2] + (t99 - t70 * t100 + PUMA560_C(0.4318) * t106);
+    const puma560_real_t t103 = parameters[XY2] + (t95 - t67 * t96 + PUMA560_C(0.4318) * t102);
     /* link j2: inertia of it and all beyond */
-    const puma560_real_t t109 = t105 * (t105 * (t103 - t104) + t107 * (PUMA560_C(2.0) * t108));
-    const puma560_real_t t110 = parameters[ZZ1R] + (t104 + t109);
-    const puma560_real_t t111 = t32 * t45 + t34 * t37; /* link j6: column of the mass matrix */
-    const puma560_real_t t112 = PUMA560_C(0.4318) * t111;
-    const puma560_real_t t113 = t34 * t44 - t32 * t3 + t112;
-    const puma560_real_t t114 = t18 - PUMA560_C(0.0203) * t111;
-    const puma560_real_t t115 = t73 * t46 + t70 * t47;
-    const puma560_real_t t116 = t70 * t113 + t73 * t114 - (t112 + PUMA560_C(-0.1254) * t115);
-    const puma560_real_t t117 = t73 * t113 - t70 * t114 + PUMA560_C(0.1254) * t74;
-    const puma560_real_t t118 = t108 * t117 + t105 * t116;
-    const puma560_real_t t119 = t118 * t4;
-    const puma560_real_t t120 = t32 * t50; /* link j5: column of the mass matrix */
-    const puma560_real_t t121 = PUMA560_C(0.4318) * t120;
-    const puma560_real_t t122 = t32 * t8 - t34 * t49 + t121;
-    const puma560_real_t t123 = t16 - PUMA560_C(0.0203) * t120;
-    const puma560_real_t t124 = t73 * t122 - t70 * t123 + PUMA560_C(0.1254) * t76;
-    const puma560_real_t t125 = t70 * t39 - t73 * t51;
-    const puma560_real_t t126 = t70 * t122 + t73 * t123 - (t121 + PUMA560_C(-0.1254) * t125);
-    const puma560_real_t t127 = t108 * t124 + t105 * t126 + t118 * t5;
-    const puma560_real_t t128 = t127 * t20;
-    const puma560_real_t t129 = t97 + t98; /* link j4: column of the mass matrix */
-    const puma560_real_t t130 = t26 - PUMA560_C(0.0203) * t63;
-    const puma560_real_t t131 = t70 * t130 - t73 * t129 + PUMA560_C(-0.1254) * t71;
-    const puma560_real_t t132 = t73 * t41;
-    const puma560_real_t t133 = t98 + PUMA560_C(0.1254) * t132 - (t70 * t129 + t73 * t130);
-    const puma560_real_t t134 = t108 * t131 + t105 * t133 + t118 * t28 + t127 * t21;
-    const puma560_real_t t135 = t134 * t55;
-    const puma560_real_t t136 = t110 - t118 * t119 - t127 * t128 - t134 * t135;
+    const puma560_real_t t105 = t101 * (t101 * (t99 - t100) + t103 * (PUMA560_C(2.0) * t104));
+    const puma560_real_t t106 = parameters[ZZ1R] + (t100 + t105);
+    const puma560_real_t t107 = t30 * t43 + t32 * t35; /* link j6: column of the mass matrix */
+    const puma560_real_t t108 = PUMA560_C(0.4318) * t107;
+    const puma560_real_t t109 = t32 * t42 - t30 * t3 + t108;
+    const puma560_real_t t110 = t17 - PUMA560_C(0.0203) * t107;
+    const puma560_real_t t111 = t70 * t44 + t67 * t45;
+    const puma560_real_t t112 = t67 * t109 + t70 * t110 - (t108 + PUMA560_C(-0.1254) * t111);
+    const puma560_real_t t113 = t70 * t109 - t67 * t110 + PUMA560_C(0.1254) * t71;
+    const puma560_real_t t114 = t104 * t113 + t101 * t112;
+    const puma560_real_t t115 = t114 * t4;
+    const puma560_real_t t116 = t30 * t48; /* link j5: column of the mass matrix */
+    const puma560_real_t t117 = PUMA560_C(0.4318) * t116;
+    const puma560_real_t t118 = t30 * t8 - t32 * t47 + t117;
+    const puma560_real_t t119 = t15 - PUMA560_C(0.0203) * t116;
+    const puma560_real_t t120 = t70 * t118 - t67 * t119 + PUMA560_C(0.1254) * t73;
+    const puma560_real_t t121 = t67 * t37 - t70 * t49;
+    const puma560_real_t t122 = t67 * t118 + t70 * t119 - (t117 + PUMA560_C(-0.1254) * t121);
+    const puma560_real_t t123 = t104 * t120 + t101 * t122 + t114 * t5;
+    const puma560_real_t t124 = t123 * t19;
+    const puma560_real_t t125 = t93 + t94; /* link j4: column of the mass matrix */
+    const puma560_real_t t126 = t25 - PUMA560_C(0.0203) * t61;
+    const puma560_real_t t127 = t67 * t126 - t70 * t125 + PUMA560_C(-0.1254) * t68;
+    const puma560_real_t t128 = t70 * t39;
+    const puma560_real_t t129 = t94 + PUMA560_C(0.1254) * t128 - (t67 * t125 + t70 * t126);
+    const puma560_real_t t130 = t104 * t127 + t101 * t129 + t114 * t27 + t123 * t20;
+    const puma560_real_t t131 = t130 * t53;
+    const puma560_real_t t132 = t106 - t114 * t115 - t123 * t124 - t130 * t131;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t137 = t60 + t32 * t61 + PUMA560_C(-0.0203) * t41 - parameters[XZ3];
-    const puma560_real_t t138 = t43 - parameters[YZ3];
-    const puma560_real_t t139 = t73 * t137 - t70 * t138; /* link j3: column of the mass matrix */
-    const puma560_real_t t140 = PUMA560_C(-0.1254) * t82;
-    const puma560_real_t t141 = t139 + t140;
-    const puma560_real_t t142 = t70 * t137 + t73 * t138 + PUMA560_C(-0.1254) * t106;
-    const puma560_real_t t143 = t108 * t141 + t105 * t142 + t118 * t58 + t127 * t57;
-    const puma560_real_t t144 = t143 + t134 * t56;
-    const puma560_real_t t145 = t144 * t85;
+    const puma560_real_t t133 = t58 + t30 * t59 + PUMA560_C(-0.0203) * t39 - parameters[XZ3];
+    const puma560_real_t t134 = t41 - parameters[YZ3];
+    const puma560_real_t t135 = t70 * t133 - t67 * t134; /* link j3: column of the mass matrix */
+    const puma560_real_t t136 = PUMA560_C(-0.1254) * t79;
+    const puma560_real_t t137 = t135 + t136;
+    const puma560_real_t t138 = t67 * t133 + t70 * t134 + PUMA560_C(-0.1254) * t102;
+    const puma560_real_t t139 = t104 * t137 + t101 * t138 + t114 * t56 + t123 * t55;
+    const puma560_real_t t140 = t139 + t130 * t54;
+    const puma560_real_t t141 = t140 * t82;
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t146 = t139 + (t42 + t140) - parameters[XZ2R];
-    const puma560_real_t t147 = t142 - parameters[YZ2];
-    const puma560_real_t t148 = t108 * t146 + t105 * t147 + t118 * t89 + t127 * t88;
-    const puma560_real_t t149 = t144 * t86 - (t148 + t134 * t87);
-    const puma560_real_t t150 = PUMA560_C(1.0) / t93;
-    const puma560_real_t t151 = t149 * t150;
-    const puma560_real_t t152 = puma560_bounded(t136 + t144 * t145 - t149 * t151);
+    const puma560_real_t t142 = t135 + (t40 + t136) - parameters[XZ2R];
+    const puma560_real_t t143 = t138 - parameters[YZ2];
+    const puma560_real_t t144 = t104 * t142 + t101 * t143 + t114 * t86 + t123 * t85;
+    const puma560_real_t t145 = t140 * t83 - (t144 + t130 * t84);
+    const puma560_real_t t146 = PUMA560_C(1.0) / t90;
+    const puma560_real_t t147 = t145 * t146;
+    const puma560_real_t t148 = t132 + t140 * t141 - t145 * t147;
+    if (!(t148 > PUMA560_C(1.0e-12))) {
+        puma560_zero(ddq, 6);
+        puma560_zero(ddq_by_q, 36);
+        puma560_zero(ddq_by_dq, 36);
+        puma560_zero(ddq_by_input, 36);
+        return PUMA560_STATUS_PIVOT;
+    }
+    const puma560_real_t t149 = puma560_min(t10 + PUMA560_C(-1.0e-9) * t9, t28 + PUMA560_C(-1.0e-9) * t26);
+    const puma560_real_t t150 = puma560_min(t149, t66 + PUMA560_C(-1.0e-9) * t65);
+    const puma560_real_t t151 = puma560_min(t150, t90 + PUMA560_C(-1.0e-9) * t88);
+    const puma560_real_t t152 = puma560_min(t151, t148 + PUMA560_C(-1.0e-9) * t106);
     if (!(t152 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -357,1131 +335,1129 @@ puma560_status_t puma560_forward_dynamics_derivatives(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t153 = t152 + PUMA560_C(-1.0e-9) * t110;
-    if (!(t153 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t154 = t108 * dq[0]; /* link j2: motion */
-    const puma560_real_t t155 = t105 * dq[0];
-    const puma560_real_t t156 = t73 * t154 + t70 * t155; /* link j3: motion */
-    const puma560_real_t t157 = t70 * t154 - t73 * t155;
-    const puma560_real_t t158 = t156 * t157;
-    const puma560_real_t t159 = dq[1] + dq[2];
-    const puma560_real_t t160 = t157 * t159;
-    const puma560_real_t t161 = PUMA560_C(-2.0) * t160; /* link j4: motion */
-    const puma560_real_t t162 = t32 * t161 - t34 * t158;
-    const puma560_real_t t163 = t32 * t159;
-    const puma560_real_t t164 = t34 * t156 + t163;
-    const puma560_real_t t165 = dq[3] + t157;
-    const puma560_real_t t166 = t164 * t165;
-    const puma560_real_t t167 = t162 + t166;
-    const puma560_real_t t168 = t15 * t164 - t13 * t165; /* link j5: motion */
-    const puma560_real_t t169 = t13 * t164 + t15 * t165;
-    const puma560_real_t t170 = t168 * t169;
-    const puma560_real_t t171 = t167 - t170; /* link j6: motion */
-    const puma560_real_t t172 = t32 * t158 + t34 * t161; /* link j4: motion */
-    const puma560_real_t t173 = t34 * t159;
-    const puma560_real_t t174 = t32 * t156 - t173;
-    const puma560_real_t t175 = t174 * t165;
-    const puma560_real_t t176 = t172 - t175;
-    const puma560_real_t t177 = t176 - t175; /* link j5: motion */
-    const puma560_real_t t178 = t164 * t174; /* link j4: motion */
-    const puma560_real_t t179 = t156 * t159; /* link j3: motion */
-    const puma560_real_t t180 = t179 + t178; /* link j5: motion */
-    const puma560_real_t t181 = t15 * t177 - t13 * t180;
-    const puma560_real_t t182 = t174 - dq[4];
-    const puma560_real_t t183 = t169 * t182;
-    const puma560_real_t t184 = t181 + t183;
-    const puma560_real_t t185 = t183 + t184; /* link j6: motion */
-    const puma560_real_t t186 = t1 * t171 - t2 * t185;
-    const puma560_real_t t187 = t1 * t168 + t2 * t182;
-    const puma560_real_t t188 = dq[5] + t169;
-    const puma560_real_t t189 = t187 * t188;
-    const puma560_real_t t190 = t186 + t189;
-    const puma560_real_t t191 = t2 * t171 + t1 * t185;
-    const puma560_real_t t192 = t1 * t182 - t2 * t168;
-    const puma560_real_t t193 = t192 * t188;
-    const puma560_real_t t194 = t191 - t193 - t193; /* link j6: force and moment */
-    const puma560_real_t t195 = t15 * t180 + t13 * t177; /* link j5: motion */
-    const puma560_real_t t196 = t168 * t182;
-    const puma560_real_t t197 = t195 - t196;
-    const puma560_real_t t198 = t192 * t187; /* link j6: motion */
-    const puma560_real_t t199 = t197 + t198; /* link j6: force and moment */
-    const puma560_real_t t200 = parameters[XX6R] * t190 + parameters[ZZ6] * t189 + parameters[XY6] * t194
-        + parameters[XZ6] * t199;
-    const puma560_real_t t201 = t187 * t187; /* link j6: motion */
-    const puma560_real_t t202 = t188 * t188;
-    const puma560_real_t t203 = t157 * t157; /* link j3: motion */
-    const puma560_real_t t204 = t159 * t159;
-    const puma560_real_t t205 = t203 + t204; /* link j4: motion */
-    const puma560_real_t t206 = t155 * t155; /* link j2: motion */
-    const puma560_real_t t207 = dq[1] * dq[1];
-    const puma560_real_t t208 = PUMA560_C(0.4318) * (t207 + t206); /* link j3: motion */
-    const puma560_real_t t209 = PUMA560_C(9.81) * t108; /* link j2: motion */
-    const puma560_real_t t210 = t209 + t208; /* link j3: motion */
-    const puma560_real_t t211 = t154 * t155; /* link j2: motion */
-    const puma560_real_t t212 = PUMA560_C(-9.81) * t105;
-    const puma560_real_t t213 = t212 + PUMA560_C(0.4318) * t211; /* link j3: motion */
-    const puma560_real_t t214 = t70 * t213 - t73 * t210;
+    const puma560_real_t t153 = t104 * dq[0]; /* link j2: motion */
+    const puma560_real_t t154 = t101 * dq[0];
+    const puma560_real_t t155 = t70 * t153 + t67 * t154; /* link j3: motion */
+    const puma560_real_t t156 = t67 * t153 - t70 * t154;
+    const puma560_real_t t157 = t155 * t156;
+    const puma560_real_t t158 = dq[1] + dq[2];
+    const puma560_real_t t159 = t156 * t158;
+    const puma560_real_t t160 = PUMA560_C(-2.0) * t159; /* link j4: motion */
+    const puma560_real_t t161 = t30 * t160 - t32 * t157;
+    const puma560_real_t t162 = t30 * t158;
+    const puma560_real_t t163 = t32 * t155 + t162;
+    const puma560_real_t t164 = dq[3] + t156;
+    const puma560_real_t t165 = t163 * t164;
+    const puma560_real_t t166 = t161 + t165;
+    const puma560_real_t t167 = t14 * t163 - t12 * t164; /* link j5: motion */
+    const puma560_real_t t168 = t12 * t163 + t14 * t164;
+    const puma560_real_t t169 = t167 * t168;
+    const puma560_real_t t170 = t166 - t169; /* link j6: motion */
+    const puma560_real_t t171 = t30 * t157 + t32 * t160; /* link j4: motion */
+    const puma560_real_t t172 = t32 * t158;
+    const puma560_real_t t173 = t30 * t155 - t172;
+    const puma560_real_t t174 = t173 * t164;
+    const puma560_real_t t175 = t171 - t174;
+    const puma560_real_t t176 = t175 - t174; /* link j5: motion */
+    const puma560_real_t t177 = t163 * t173; /* link j4: motion */
+    const puma560_real_t t178 = t155 * t158; /* link j3: motion */
+    const puma560_real_t t179 = t178 + t177; /* link j5: motion */
+    const puma560_real_t t180 = t14 * t176 - t12 * t179;
+    const puma560_real_t t181 = t173 - dq[4];
+    const puma560_real_t t182 = t168 * t181;
+    const puma560_real_t t183 = t180 + t182;
+    const puma560_real_t t184 = t182 + t183; /* link j6: motion */
+    const puma560_real_t t185 = t1 * t170 - t2 * t184;
+    const puma560_real_t t186 = t1 * t167 + t2 * t181;
+    const puma560_real_t t187 = dq[5] + t168;
+    const puma560_real_t t188 = t186 * t187;
+    const puma560_real_t t189 = t185 + t188;
+    const puma560_real_t t190 = t2 * t170 + t1 * t184;
+    const puma560_real_t t191 = t1 * t181 - t2 * t167;
+    const puma560_real_t t192 = t191 * t187;
+    const puma560_real_t t193 = t190 - t192 - t192; /* link j6: force and moment */
+    const puma560_real_t t194 = t14 * t179 + t12 * t176; /* link j5: motion */
+    const puma560_real_t t195 = t167 * t181;
+    const puma560_real_t t196 = t194 - t195;
+    const puma560_real_t t197 = t191 * t186; /* link j6: motion */
+    const puma560_real_t t198 = t196 + t197; /* link j6: force and moment */
+    const puma560_real_t t199 = parameters[XX6R] * t189 + parameters[ZZ6] * t188 + parameters[XY6] * t193
+        + parameters[XZ6] * t198;
+    const puma560_real_t t200 = t186 * t186; /* link j6: motion */
+    const puma560_real_t t201 = t187 * t187;
+    const puma560_real_t t202 = t156 * t156; /* link j3: motion */
+    const puma560_real_t t203 = t158 * t158;
+    const puma560_real_t t204 = t202 + t203; /* link j4: motion */
+    const puma560_real_t t205 = t154 * t154; /* link j2: motion */
+    const puma560_real_t t206 = dq[1] * dq[1];
+    const puma560_real_t t207 = PUMA560_C(0.4318) * (t206 + t205); /* link j3: motion */
+    const puma560_real_t t208 = PUMA560_C(9.81) * t104; /* link j2: motion */
+    const puma560_real_t t209 = t208 + t207; /* link j3: motion */
+    const puma560_real_t t210 = t153 * t154; /* link j2: motion */
+    const puma560_real_t t211 = PUMA560_C(-9.81) * t101;
+    const puma560_real_t t212 = t211 + PUMA560_C(0.4318) * t210; /* link j3: motion */
+    const puma560_real_t t213 = t67 * t212 - t70 * t209;
     /* link j4: motion */
-    const puma560_real_t t215 = t214 + (PUMA560_C(-0.0203) * t205 + PUMA560_C(-0.4318) * t158);
-    const puma560_real_t t216 = t154 * t154; /* link j2: motion */
-    const puma560_real_t t217 = t216 + t206; /* link j3: motion */
-    const puma560_real_t t218 = PUMA560_C(0.1254) * t217;
-    const puma560_real_t t219 = dq[1] * t154; /* link j2: motion */
-    const puma560_real_t t220 = PUMA560_C(-0.8636) * t219 - t218; /* link j3: motion */
+    const puma560_real_t t214 = t213 + (PUMA560_C(-0.0203) * t204 + PUMA560_C(-0.4318) * t157);
+    const puma560_real_t t215 = t153 * t153; /* link j2: motion */
+    const puma560_real_t t216 = t215 + t205; /* link j3: motion */
+    const puma560_real_t t217 = PUMA560_C(0.1254) * t216;
+    const puma560_real_t t218 = dq[1] * t153; /* link j2: motion */
+    const puma560_real_t t219 = PUMA560_C(-0.8636) * t218 - t217; /* link j3: motion */
     /* link j4: motion */
-    const puma560_real_t t221 = PUMA560_C(0.0406) * t179 - PUMA560_C(0.8636) * t160 - t220;
-    const puma560_real_t t222 = t34 * t215 + t32 * t221;
-    const puma560_real_t t223 = t156 * t156; /* link j3: motion */
-    const puma560_real_t t224 = t223 + t204; /* link j4: motion */
-    const puma560_real_t t225 = t70 * t210 + t73 * t213; /* link j3: motion */
+    const puma560_real_t t220 = PUMA560_C(0.0406) * t178 - PUMA560_C(0.8636) * t159 - t219;
+    const puma560_real_t t221 = t32 * t214 + t30 * t220;
+    const puma560_real_t t222 = t155 * t155; /* link j3: motion */
+    const puma560_real_t t223 = t222 + t203; /* link j4: motion */
+    const puma560_real_t t224 = t67 * t209 + t70 * t212; /* link j3: motion */
     /* link j4: motion */
-    const puma560_real_t t226 = t225 + (PUMA560_C(-0.0203) * t158 + PUMA560_C(-0.4318) * t224);
-    const puma560_real_t t227 = t13 * t222 - t15 * t226; /* link j5: motion */
+    const puma560_real_t t225 = t224 + (PUMA560_C(-0.0203) * t157 + PUMA560_C(-0.4318) * t223);
+    const puma560_real_t t226 = t12 * t221 - t14 * t225; /* link j5: motion */
     /* link j6: force and moment */
-    const puma560_real_t t228 = t200 + parameters[YZ6] * (t201 - t202) - parameters[MY6] * t227;
-    const puma560_real_t t229 = t189 + t190;
-    const puma560_real_t t230 = parameters[XX6R] - parameters[ZZ6];
-    const puma560_real_t t231 = t197 - t198;
-    const puma560_real_t t232 = t192 * t192; /* link j6: motion */
+    const puma560_real_t t227 = t199 + parameters[YZ6] * (t200 - t201) - parameters[MY6] * t226;
+    const puma560_real_t t228 = t188 + t189;
+    const puma560_real_t t229 = parameters[XX6R] - parameters[ZZ6];
+    const puma560_real_t t230 = t196 - t197;
+    const puma560_real_t t231 = t191 * t191; /* link j6: motion */
     /* link j6: force and moment */
-    const puma560_real_t t233 = t193 * t230 + parameters[XY6] * t229 + parameters[YZ6] * t231
-        + parameters[XZ6] * (t202 - t232);
-    const puma560_real_t t234 = t233 + parameters[MX6] * t227;
-    const puma560_real_t t235 = t197 - t196; /* link j6: motion */
-    const puma560_real_t t236 = t167 + t170;
+    const puma560_real_t t232 = t192 * t229 + parameters[XY6] * t228 + parameters[YZ6] * t230
+        + parameters[XZ6] * (t201 - t231);
+    const puma560_real_t t233 = t232 + parameters[MX6] * t226;
+    const puma560_real_t t234 = t196 - t195; /* link j6: motion */
+    const puma560_real_t t235 = t166 + t169;
     /* link j5: force and moment */
-    const puma560_real_t t237 = parameters[XY5] * t235 - (parameters[XX5R] * t184 + parameters[ZZ5R] * t183)
-        - parameters[XZ5] * t236;
-    const puma560_real_t t238 = t169 * t169; /* link j5: motion */
-    const puma560_real_t t239 = t182 * t182;
-    const puma560_real_t t240 = t32 * t215 - t34 * t221; /* link j4: motion */
+    const puma560_real_t t236 = parameters[XY5] * t234 - (parameters[XX5R] * t183 + parameters[ZZ5R] * t182)
+        - parameters[XZ5] * t235;
+    const puma560_real_t t237 = t168 * t168; /* link j5: motion */
+    const puma560_real_t t238 = t181 * t181;
+    const puma560_real_t t239 = t30 * t214 - t32 * t220; /* link j4: motion */
     /* link j6: what it passes on */
-    const puma560_real_t t241 = t237 + parameters[YZ5] * (t238 - t239) + parameters[MY5R] * t240 - (t1 * t234
-        - t2 * t228);
-    const puma560_real_t t242 = t15 * t222 + t13 * t226; /* link j5: motion */
+    const puma560_real_t t240 = t236 + parameters[YZ5] * (t237 - t238) + parameters[MY5R] * t239 - (t1 * t233
+        - t2 * t227);
+    const puma560_real_t t241 = t14 * t221 + t12 * t225; /* link j5: motion */
     /* link j6: force and moment */
-    const puma560_real_t t243 = parameters[MX6] * (t1 * t242 + t2 * t240) + parameters[MY6] * (t2 * t242
-        - t1 * t240);
-    const puma560_real_t t244 = parameters[XX6R] * t198 - parameters[ZZ6] * t197 - parameters[YZ6] * t191
-        - parameters[XZ6] * t186;
-    const puma560_real_t t245 = t244 + parameters[XY6] * (t201 - t232) + t243;
-    const puma560_real_t t246 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
-    const puma560_real_t t247 = t168 * t168; /* link j5: motion */
+    const puma560_real_t t242 = parameters[MX6] * (t1 * t241 + t2 * t239) + parameters[MY6] * (t2 * t241
+        - t1 * t239);
+    const puma560_real_t t243 = parameters[XX6R] * t197 - parameters[ZZ6] * t196 - parameters[YZ6] * t190
+        - parameters[XZ6] * t185;
+    const puma560_real_t t244 = t243 + parameters[XY6] * (t200 - t231) + t242;
+    const puma560_real_t t245 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
+    const puma560_real_t t246 = t167 * t167; /* link j5: motion */
     /* link j5: force and moment */
-    const puma560_real_t t248 = parameters[XY5] * t185 - t196 * t246 + parameters[YZ5] * t171
-        + parameters[XZ5] * (t247 - t239);
-    const puma560_real_t t249 = t248 + parameters[MX5] * t240 + t245; /* link j6: what it passes on */
-    const puma560_real_t t250 = t166 + t167; /* link j5: motion */
-    const puma560_real_t t251 = t179 - t178;
+    const puma560_real_t t247 = parameters[XY5] * t184 - t195 * t245 + parameters[YZ5] * t170
+        + parameters[XZ5] * (t246 - t238);
+    const puma560_real_t t248 = t247 + parameters[MX5] * t239 + t244; /* link j6: what it passes on */
+    const puma560_real_t t249 = t165 + t166; /* link j5: motion */
+    const puma560_real_t t250 = t178 - t177;
     /* link j4: force and moment */
-    const puma560_real_t t252 = parameters[ZZ4R] * t175 - parameters[XX4R] * t176 + parameters[XY4] * t250
-        + parameters[XZ4] * t251;
-    const puma560_real_t t253 = t174 * t174; /* link j4: motion */
-    const puma560_real_t t254 = t165 * t165;
+    const puma560_real_t t251 = parameters[ZZ4R] * t174 - parameters[XX4R] * t175 + parameters[XY4] * t249
+        + parameters[XZ4] * t250;
+    const puma560_real_t t252 = t173 * t173; /* link j4: motion */
+    const puma560_real_t t253 = t164 * t164;
     /* link j5: what it passes on */
-    const puma560_real_t t255 = t252 + parameters[YZ4] * (t253 - t254) + parameters[MY4R] * t226 + (t15 * t241
-        + t13 * t249);
+    const puma560_real_t t254 = t251 + parameters[YZ4] * (t252 - t253) + parameters[MY4R] * t225 + (t14 * t240
+        + t12 * t248);
     /* link j5: force and moment */
-    const puma560_real_t t256 = parameters[ZZ5R] * t167 - parameters[XX5R] * t170 - parameters[YZ5] * t195
-        + parameters[XZ5] * t181;
-    const puma560_real_t t257 = t256 + parameters[XY5] * (t238 - t247) + (parameters[MX5] * t227
-        + parameters[MY5R] * t242);
-    const puma560_real_t t258 = t257 + (t1 * t228 + t2 * t234); /* link j6: what it passes on */
-    const puma560_real_t t259 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
-    const puma560_real_t t260 = t164 * t164; /* link j4: motion */
+    const puma560_real_t t255 = parameters[ZZ5R] * t166 - parameters[XX5R] * t169 - parameters[YZ5] * t194
+        + parameters[XZ5] * t180;
+    const puma560_real_t t256 = t255 + parameters[XY5] * (t237 - t246) + (parameters[MX5] * t226
+        + parameters[MY5R] * t241);
+    const puma560_real_t t257 = t256 + (t1 * t227 + t2 * t233); /* link j6: what it passes on */
+    const puma560_real_t t258 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
+    const puma560_real_t t259 = t163 * t163; /* link j4: motion */
     /* link j4: force and moment */
-    const puma560_real_t t261 = t166 * t259 + parameters[XY4] * t177 - parameters[YZ4] * t180
-        + parameters[XZ4] * (t260 - t254);
-    const puma560_real_t t262 = t261 + parameters[MX4] * t226 - t258; /* link j5: what it passes on */
+    const puma560_real_t t260 = t165 * t258 + parameters[XY4] * t176 - parameters[YZ4] * t179
+        + parameters[XZ4] * (t259 - t253);
+    const puma560_real_t t261 = t260 + parameters[MX4] * t225 - t257; /* link j5: what it passes on */
     /* link j6: force and moment */
-    const puma560_real_t t263 = parameters[MX6] * (t201 + t202) + parameters[MY6] * t231;
-    const puma560_real_t t264 = parameters[MX6] * t199 - parameters[MY6] * (t232 + t202);
+    const puma560_real_t t262 = parameters[MX6] * (t200 + t201) + parameters[MY6] * t230;
+    const puma560_real_t t263 = parameters[MX6] * t198 - parameters[MY6] * (t231 + t201);
     /* link j6: what it passes on */
-    const puma560_real_t t265 = parameters[MX5] * (t238 + t239) - parameters[MY5R] * t171 + (t2 * t263
-        + t1 * t264);
-    const puma560_real_t t266 = parameters[MX5] * t236 + parameters[MY5R] * (t247 + t239)
-        + (parameters[MX6] * t194 - parameters[MY6] * t229);
+    const puma560_real_t t264 = parameters[MX5] * (t237 + t238) - parameters[MY5R] * t170 + (t2 * t262
+        + t1 * t263);
+    const puma560_real_t t265 = parameters[MX5] * t235 + parameters[MY5R] * (t246 + t238)
+        + (parameters[MX6] * t193 - parameters[MY6] * t228);
     /* link j5: what it passes on */
-    const puma560_real_t t267 = t13 * t266 - t15 * t265 - (parameters[MX4] * (t253 + t254)
-        + parameters[MY4R] * t180);
+    const puma560_real_t t266 = t12 * t265 - t14 * t264 - (parameters[MX4] * (t252 + t253)
+        + parameters[MY4R] * t179);
     /* link j6: what it passes on */
-    const puma560_real_t t268 = parameters[MX5] * t235 + parameters[MY5R] * t185 - (t1 * t263 - t2 * t264);
+    const puma560_real_t t267 = parameters[MX5] * t234 + parameters[MY5R] * t184 - (t1 * t262 - t2 * t263);
     /* link j5: what it passes on */
-    const puma560_real_t t269 = parameters[MX4] * t251 - parameters[MY4R] * (t260 + t254) + t268;
-    const puma560_real_t t270 = t32 * t267 + t34 * t269; /* link j4: what it passes on */
-    const puma560_real_t t271 = PUMA560_C(2.0) * t179; /* link j4: motion */
+    const puma560_real_t t268 = parameters[MX4] * t250 - parameters[MY4R] * (t259 + t253) + t267;
+    const puma560_real_t t269 = t30 * t266 + t32 * t268; /* link j4: what it passes on */
+    const puma560_real_t t270 = PUMA560_C(2.0) * t178; /* link j4: motion */
     /* link j3: force and moment */
-    const puma560_real_t t272 = parameters[XX3R] * t160 + parameters[ZZ3R] * t160 + parameters[XY3R] * t271
-        - parameters[XZ3] * t158;
+    const puma560_real_t t271 = parameters[XX3R] * t159 + parameters[ZZ3R] * t159 + parameters[XY3R] * t270
+        - parameters[XZ3] * t157;
     /* link j4: what it passes on */
-    const puma560_real_t t273 = t272 + parameters[YZ3] * (t203 - t204) + parameters[MY3R] * t220 + (t34 * t255
-        + t32 * t262 + PUMA560_C(-0.4318) * t270);
+    const puma560_real_t t272 = t271 + parameters[YZ3] * (t202 - t203) + parameters[MY3R] * t219 + (t32 * t254
+        + t30 * t261 + PUMA560_C(-0.4318) * t269);
     /* link j4: force and moment */
-    const puma560_real_t t274 = parameters[XZ4] * t172 - (parameters[ZZ4R] * t179 + parameters[XX4R] * t178
-        + parameters[YZ4] * t162);
-    const puma560_real_t t275 = t274 + parameters[XY4] * (t253 - t260) + (parameters[MX4] * t240
-        + parameters[MY4R] * t222);
-    const puma560_real_t t276 = t275 + (t15 * t249 - t13 * t241); /* link j5: what it passes on */
-    const puma560_real_t t277 = parameters[XX3R] - parameters[ZZ3R]; /* link j3: force and moment */
-    const puma560_real_t t278 = t179 * t277 + parameters[XY3R] * t161 - parameters[YZ3] * t158
-        + parameters[XZ3] * (t223 - t204);
+    const puma560_real_t t273 = parameters[XZ4] * t171 - (parameters[ZZ4R] * t178 + parameters[XX4R] * t177
+        + parameters[YZ4] * t161);
+    const puma560_real_t t274 = t273 + parameters[XY4] * (t252 - t259) + (parameters[MX4] * t239
+        + parameters[MY4R] * t221);
+    const puma560_real_t t275 = t274 + (t14 * t248 - t12 * t240); /* link j5: what it passes on */
+    const puma560_real_t t276 = parameters[XX3R] - parameters[ZZ3R]; /* link j3: force and moment */
+    const puma560_real_t t277 = t178 * t276 + parameters[XY3R] * t160 - parameters[YZ3] * t157
+        + parameters[XZ3] * (t222 - t203);
     /* link j4: what it passes on */
-    const puma560_real_t t279 = t278 + parameters[MX3R] * t220 + (t276 + PUMA560_C(-0.0203) * t270);
-    const puma560_real_t t280 = t34 * t267 - t32 * t269;
-    const puma560_real_t t281 = parameters[MX3R] * t205 + parameters[MY3R] * t158 - t280;
+    const puma560_real_t t278 = t277 + parameters[MX3R] * t219 + (t275 + PUMA560_C(-0.0203) * t269);
+    const puma560_real_t t279 = t32 * t266 - t30 * t268;
+    const puma560_real_t t280 = parameters[MX3R] * t204 + parameters[MY3R] * t157 - t279;
     /* link j5: what it passes on */
-    const puma560_real_t t282 = parameters[MX4] * t250 + parameters[MY4R] * t177 + (t13 * t265 + t15 * t266);
+    const puma560_real_t t281 = parameters[MX4] * t249 + parameters[MY4R] * t176 + (t12 * t264 + t14 * t265);
     /* link j4: what it passes on */
-    const puma560_real_t t283 = parameters[MX3R] * t158 + parameters[MY3R] * t224 + t282;
-    const puma560_real_t t284 = t70 * t281 + t73 * t283; /* link j3: what it passes on */
-    const puma560_real_t t285 = dq[1] * t155; /* link j2: motion */
-    const puma560_real_t t286 = parameters[ZZ2R] * t285; /* link j2: force and moment */
-    const puma560_real_t t287 = parameters[XY2] * (PUMA560_C(2.0) * t219) - (parameters[XX2R] * t285 + t286)
-        + parameters[XZ2R] * t211;
-    const puma560_real_t t288 = parameters[YZ2] * (t206 - t207);
+    const puma560_real_t t282 = parameters[MX3R] * t157 + parameters[MY3R] * t223 + t281;
+    const puma560_real_t t283 = t67 * t280 + t70 * t282; /* link j3: what it passes on */
+    const puma560_real_t t284 = dq[1] * t154; /* link j2: motion */
+    const puma560_real_t t285 = parameters[ZZ2R] * t284; /* link j2: force and moment */
+    const puma560_real_t t286 = parameters[XY2] * (PUMA560_C(2.0) * t218) - (parameters[XX2R] * t284 + t285)
+        + parameters[XZ2R] * t210;
+    const puma560_real_t t287 = parameters[YZ2] * (t205 - t206);
     /* link j3: what it passes on */
-    const puma560_real_t t289 = t287 + t288 + (t73 * t273 + t70 * t279 + PUMA560_C(0.1254) * t284);
-    const puma560_real_t t290 = PUMA560_C(0.1254) * (t70 * t283 - t73 * t281)
-        + PUMA560_C(0.4318) * (parameters[MX3R] * t271 + parameters[MY3R] * t161 + t270);
-    const puma560_real_t t291 = t219 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
-    const puma560_real_t t292 = parameters[XZ2R] * (t207 - t216);
-    const puma560_real_t t293 = parameters[XY2] * (PUMA560_C(-2.0) * t285) - t291 - parameters[YZ2] * t211
-        + t292;
+    const puma560_real_t t288 = t286 + t287 + (t70 * t272 + t67 * t278 + PUMA560_C(0.1254) * t283);
+    const puma560_real_t t289 = PUMA560_C(0.1254) * (t67 * t282 - t70 * t280)
+        + PUMA560_C(0.4318) * (parameters[MX3R] * t270 + parameters[MY3R] * t160 + t269);
+    const puma560_real_t t290 = t218 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
+    const puma560_real_t t291 = parameters[XZ2R] * (t206 - t215);
+    const puma560_real_t t292 = parameters[XY2] * (PUMA560_C(-2.0) * t284) - t290 - parameters[YZ2] * t210
+        + t291;
     /* link j2: what it passes on */
-    const puma560_real_t t294 = t105 * (t293 + (t70 * t273 - t73 * t279 + t290));
-    const puma560_real_t t295 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
-    const puma560_real_t t296 = PUMA560_C(62.6111) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
-        - parameters[FC1] * t295) + (t108 * t289 + t294);
-    const puma560_real_t t297 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
-    const puma560_real_t t298 = PUMA560_C(76.686) * (parameters[FV6] * (PUMA560_C(-76.686) * dq[5])
-        - parameters[FC6] * t297) + t245;
-    const puma560_real_t t299 = PUMA560_C(5.368020000000001) * input[5] + t298;
-    const puma560_real_t t300 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
-    const puma560_real_t t301 = PUMA560_C(71.923) * (parameters[FV5] * (PUMA560_C(-71.923) * dq[4])
-        - parameters[FC5] * t300) + t258;
-    const puma560_real_t t302 = PUMA560_C(5.034610000000001) * input[4] + t301 + t299 * t5;
-    const puma560_real_t t303 = PUMA560_C(-14.400553) * input[0] + t296 + t299 * t119 + t302 * t128;
-    const puma560_real_t t304 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
-    const puma560_real_t t305 = PUMA560_C(76.0364) * (parameters[FV4] * (PUMA560_C(-76.0364) * dq[3])
-        - parameters[FC4] * t304) + t276;
-    const puma560_real_t t306 = PUMA560_C(5.322548) * input[3] + t305 - t299 * t28 - t302 * t21;
+    const puma560_real_t t293 = t101 * (t292 + (t67 * t272 - t70 * t278 + t289));
+    const puma560_real_t t294 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
+    const puma560_real_t t295 = PUMA560_C(62.6111) * (parameters[FV1] * (PUMA560_C(-62.6111) * dq[0])
+        - parameters[FC1] * t294) + (t104 * t288 + t293);
+    const puma560_real_t t296 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
+    const puma560_real_t t297 = PUMA560_C(76.686) * (parameters[FV6] * (PUMA560_C(-76.686) * dq[5])
+        - parameters[FC6] * t296) + t244;
+    const puma560_real_t t298 = PUMA560_C(5.368020000000001) * input[5] + t297;
+    const puma560_real_t t299 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
+    const puma560_real_t t300 = PUMA560_C(71.923) * (parameters[FV5] * (PUMA560_C(-71.923) * dq[4])
+        - parameters[FC5] * t299) + t257;
+    const puma560_real_t t301 = PUMA560_C(5.034610000000001) * input[4] + t300 + t298 * t5;
+    const puma560_real_t t302 = PUMA560_C(-14.400553) * input[0] + t295 + t298 * t115 + t301 * t124;
+    const puma560_real_t t303 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
+    const puma560_real_t t304 = PUMA560_C(76.0364) * (parameters[FV4] * (PUMA560_C(-76.0364) * dq[3])
+        - parameters[FC4] * t303) + t275;
+    const puma560_real_t t305 = PUMA560_C(5.322548) * input[3] + t304 - t298 * t27 - t301 * t20;
     /* link j4: what it passes on */
-    const puma560_real_t t307 = t32 * t255 - t34 * t262 + (PUMA560_C(0.0203) * t282
-        + PUMA560_C(0.4318) * t280);
+    const puma560_real_t t306 = t30 * t254 - t32 * t261 + (PUMA560_C(0.0203) * t281
+        + PUMA560_C(0.4318) * t279);
     /* link j3: force and moment */
-    const puma560_real_t t308 = parameters[XY3R] * (t203 - t223) - parameters[XX3R] * t158
-        + (parameters[MY3R] * t214 - parameters[MX3R] * t225);
-    const puma560_real_t t309 = t308 + t307; /* link j4: what it passes on */
-    const puma560_real_t t310 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
-    const puma560_real_t t311 = PUMA560_C(53.7063) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2])
-        - parameters[FC3] * t310) + t309;
-    const puma560_real_t t312 = PUMA560_C(-12.352449) * input[2] + t311 - t299 * t58 - t302 * t57;
-    const puma560_real_t t313 = t312 + t306 * t56;
+    const puma560_real_t t307 = parameters[XY3R] * (t202 - t222) - parameters[XX3R] * t157
+        + (parameters[MY3R] * t213 - parameters[MX3R] * t224);
+    const puma560_real_t t308 = t307 + t306; /* link j4: what it passes on */
+    const puma560_real_t t309 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
+    const puma560_real_t t310 = PUMA560_C(53.7063) * (parameters[FV3] * (PUMA560_C(-53.7063) * dq[2])
+        - parameters[FC3] * t309) + t308;
+    const puma560_real_t t311 = PUMA560_C(-12.352449) * input[2] + t310 - t298 * t56 - t301 * t55;
+    const puma560_real_t t312 = t311 + t305 * t54;
     /* link j2: force and moment */
-    const puma560_real_t t314 = parameters[XX2R] * t211 + parameters[XY2] * (t206 - t216)
-        - (parameters[MX2R] * t212 + parameters[MY2] * t209);
-    const puma560_real_t t315 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
-    const puma560_real_t t316 = PUMA560_C(107.815) * (parameters[FV2] * (PUMA560_C(-107.815) * dq[1])
-        - parameters[FC2] * t315) + (t314 + (t309 + PUMA560_C(0.4318) * t284));
-    const puma560_real_t t317 = PUMA560_C(24.79745) * input[1] + t316 - t299 * t89 - t302 * t88;
-    const puma560_real_t t318 = t317 + t306 * t87 - t313 * t86;
-    const puma560_real_t t319 = t303 - t306 * t135 + t313 * t145 + t318 * t151;
-    const puma560_real_t t320 = PUMA560_C(1.0) / t152;
-    const puma560_real_t t321 = puma560_bounded(t319 * t320);
-    ddq[0] = t321;
-    const puma560_real_t t322 = puma560_bounded(t318 * t150 + t151 * t321);
-    ddq[1] = t322;
-    const puma560_real_t t323 = puma560_bounded(t145 * t321 - t313 * t85 - t86 * t322);
-    ddq[2] = t323;
-    const puma560_real_t t324 = puma560_bounded(t306 * t55 - t135 * t321 + t87 * t322 + t56 * t323);
-    ddq[3] = t324;
-    const puma560_real_t t325 = t302 * t20 + t128 * t321 - t88 * t322 - t57 * t323;
-    const puma560_real_t t326 = puma560_bounded(t325 - t21 * t324);
-    ddq[4] = t326;
-    const puma560_real_t t327 = t299 * t4 + t119 * t321 - t89 * t322 - t58 * t323;
-    const puma560_real_t t328 = puma560_bounded(t327 - t28 * t324 + t5 * t326);
-    ddq[5] = t328;
-    const puma560_real_t t329 = t108 * t73 + t105 * t70; /* link j3: motion */
-    const puma560_real_t t330 = dq[0] * t329;
-    const puma560_real_t t331 = t163 + t34 * t330; /* link j4: motion */
-    const puma560_real_t t332 = t108 * t70 - t105 * t73; /* link j3: motion */
-    const puma560_real_t t333 = dq[0] * t332;
-    const puma560_real_t t334 = dq[3] + t333; /* link j4: motion */
-    const puma560_real_t t335 = t13 * t334 - t15 * t331; /* link j5: motion */
-    const puma560_real_t t336 = t32 * t330 - t173; /* link j4: motion */
-    const puma560_real_t t337 = t336 - dq[4]; /* link j5: motion */
-    const puma560_real_t t338 = t2 * t337 - t1 * t335; /* link j6: motion */
-    const puma560_real_t t339 = parameters[XZ6] * t338;
-    const puma560_real_t t340 = t13 * t331 + t15 * t334; /* link j5: motion */
-    const puma560_real_t t341 = dq[5] + t340; /* link j6: motion */
-    const puma560_real_t t342 = parameters[XY6] * t341;
-    const puma560_real_t t343 = t339 - t342;
-    const puma560_real_t t344 = t2 * t335 + t1 * t337;
-    const puma560_real_t t345 = parameters[YZ6] * t344;
-    const puma560_real_t t346 = t345 - t342;
-    const puma560_real_t t347 = PUMA560_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
-    const puma560_real_t t348 = parameters[XX6R] + t347;
-    const puma560_real_t t349 = t341 * t348 - parameters[XZ6] * t344;
-    const puma560_real_t t350 = parameters[YZ6] * t338 - t341 * t347;
+    const puma560_real_t t313 = parameters[XX2R] * t210 + parameters[XY2] * (t205 - t215)
+        - (parameters[MX2R] * t211 + parameters[MY2] * t208);
+    const puma560_real_t t314 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
+    const puma560_real_t t315 = PUMA560_C(107.815) * (parameters[FV2] * (PUMA560_C(-107.815) * dq[1])
+        - parameters[FC2] * t314) + (t313 + (t308 + PUMA560_C(0.4318) * t283));
+    const puma560_real_t t316 = PUMA560_C(24.79745) * input[1] + t315 - t298 * t86 - t301 * t85;
+    const puma560_real_t t317 = t316 + t305 * t84 - t312 * t83;
+    const puma560_real_t t318 = t302 - t305 * t131 + t312 * t141 + t317 * t147;
+    const puma560_real_t t319 = PUMA560_C(1.0) / t148;
+    const puma560_real_t t320 = puma560_held(t318 * t319);
+    ddq[0] = t320;
+    const puma560_real_t t321 = puma560_held(t317 * t146 + t147 * t320);
+    ddq[1] = t321;
+    const puma560_real_t t322 = puma560_held(t141 * t320 - t312 * t82 - t83 * t321);
+    ddq[2] = t322;
+    const puma560_real_t t323 = puma560_held(t305 * t53 - t131 * t320 + t84 * t321 + t54 * t322);
+    ddq[3] = t323;
+    const puma560_real_t t324 = t301 * t19 + t124 * t320 - t85 * t321 - t55 * t322;
+    const puma560_real_t t325 = puma560_held(t324 - t20 * t323);
+    ddq[4] = t325;
+    const puma560_real_t t326 = t298 * t4 + t115 * t320 - t86 * t321 - t56 * t322;
+    const puma560_real_t t327 = puma560_held(t326 - t27 * t323 + t5 * t325);
+    ddq[5] = t327;
+    const puma560_real_t t328 = t104 * t67 - t101 * t70; /* link j3: motion */
+    const puma560_real_t t329 = t320 * t328;
+    const puma560_real_t t330 = t104 * t70 + t101 * t67;
+    const puma560_real_t t331 = dq[0] * t330;
+    const puma560_real_t t332 = t158 * t331;
+    const puma560_real_t t333 = t332 + t329;
+    const puma560_real_t t334 = t323 + t333;
+    const puma560_real_t t335 = t162 + t32 * t331; /* link j4: motion */
+    const puma560_real_t t336 = t30 * t331 - t172;
+    const puma560_real_t t337 = t335 * t336;
+    const puma560_real_t t338 = t337 + t334;
+    const puma560_real_t t339 = t321 + t322;
+    const puma560_real_t t340 = dq[0] * t328; /* link j3: motion */
+    const puma560_real_t t341 = t331 * t340;
+    const puma560_real_t t342 = t341 + t339;
+    const puma560_real_t t343 = t320 * t330;
+    const puma560_real_t t344 = t158 * t340;
+    const puma560_real_t t345 = t343 - t344;
+    const puma560_real_t t346 = t345 - t344;
+    const puma560_real_t t347 = t30 * t342 + t32 * t346;
+    const puma560_real_t t348 = dq[3] + t340; /* link j4: motion */
+    const puma560_real_t t349 = t336 * t348;
+    const puma560_real_t t350 = t349 - t347;
+    const puma560_real_t t351 = t349 + t350;
+    const puma560_real_t t352 = t12 * t351 - t14 * t338;
+    const puma560_real_t t353 = t12 * t348 - t14 * t335; /* link j5: motion */
+    const puma560_real_t t354 = t336 - dq[4];
+    const puma560_real_t t355 = t353 * t354;
+    const puma560_real_t t356 = t355 - t352;
+    const puma560_real_t t357 = t327 + t356;
+    const puma560_real_t t358 = t2 * t353 + t1 * t354; /* link j6: motion */
+    const puma560_real_t t359 = t2 * t354 - t1 * t353;
+    const puma560_real_t t360 = t358 * t359;
+    const puma560_real_t t361 = t357 - t360;
+    const puma560_real_t t362 = t32 * t342 - t30 * t346;
+    const puma560_real_t t363 = t335 * t348; /* link j4: motion */
+    const puma560_real_t t364 = t362 - t363;
+    const puma560_real_t t365 = t325 + t364;
+    const puma560_real_t t366 = t12 * t335 + t14 * t348; /* link j5: motion */
+    const puma560_real_t t367 = t353 * t366;
+    const puma560_real_t t368 = t365 - t367;
+    const puma560_real_t t369 = t12 * t338 + t14 * t351;
+    const puma560_real_t t370 = t366 * t354;
+    const puma560_real_t t371 = t370 - t369;
+    const puma560_real_t t372 = t370 + t371;
+    const puma560_real_t t373 = t1 * t368 + t2 * t372;
+    const puma560_real_t t374 = dq[5] + t366; /* link j6: motion */
+    const puma560_real_t t375 = t359 * t374;
+    const puma560_real_t t376 = t375 - t373;
+    const puma560_real_t t377 = t375 + t376;
+    const puma560_real_t t378 = t358 * t374;
+    const puma560_real_t t379 = t358 * t358;
+    const puma560_real_t t380 = t374 * t374;
+    const puma560_real_t t381 = parameters[XZ6] * (t379 - t380) - (t229 * t378 + parameters[XY6] * t377
+        + parameters[YZ6] * t361);
+    const puma560_real_t t382 = t210 + t321;
+    const puma560_real_t t383 = t104 * t320;
+    const puma560_real_t t384 = t211 + (PUMA560_C(0.4318) * t382 - PUMA560_C(-0.1254) * t383);
+    const puma560_real_t t385 = t101 * t320;
+    const puma560_real_t t386 = t208 + (t207 + PUMA560_C(0.1254) * t385);
+    const puma560_real_t t387 = t70 * t386 - t67 * t384;
+    const puma560_real_t t388 = t340 * t340; /* link j3: motion */
+    const puma560_real_t t389 = t203 + t388; /* link j4: motion */
+    const puma560_real_t t390 = t387 + (PUMA560_C(0.0203) * t389 + PUMA560_C(0.4318) * t342);
+    const puma560_real_t t391 = t332 + t333;
+    const puma560_real_t t392 = t218 + (t218 - t385);
+    const puma560_real_t t393 = t217 + PUMA560_C(0.4318) * t392;
+    const puma560_real_t t394 = t393 + (PUMA560_C(0.0203) * t391 + PUMA560_C(0.4318) * t346);
+    const puma560_real_t t395 = t30 * t394 - t32 * t390;
+    const puma560_real_t t396 = t67 * t386 + t70 * t384;
+    const puma560_real_t t397 = t339 - t341;
+    const puma560_real_t t398 = t331 * t331; /* link j3: motion */
+    const puma560_real_t t399 = t203 + t398; /* link j4: motion */
+    const puma560_real_t t400 = t396 + (PUMA560_C(-0.4318) * t399 + PUMA560_C(0.0203) * t397);
+    const puma560_real_t t401 = t14 * t400 - t12 * t395;
+    const puma560_real_t t402 = t381 + parameters[MX6] * t401;
+    const puma560_real_t t403 = t2 * t368 - t1 * t372;
+    const puma560_real_t t404 = t359 * t359; /* link j6: motion */
+    const puma560_real_t t405 = t379 + t404; /* link j6: force and moment */
+    const puma560_real_t t406 = parameters[XZ6] * t359;
+    const puma560_real_t t407 = parameters[XY6] * t374;
+    const puma560_real_t t408 = t406 - t407;
+    const puma560_real_t t409 = PUMA560_C(2.0) * t359; /* link j6: derivatives */
+    const puma560_real_t t410 = PUMA560_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
+    const puma560_real_t t411 = parameters[YZ6] * t359 - t374 * t410;
+    const puma560_real_t t412 = PUMA560_C(-2.0) * t358;
+    const puma560_real_t t413 = t408 * t409 + t411 * t412 + (parameters[XY6] * t373 - parameters[XX6R] * t403
+        - parameters[XZ6] * t405);
+    const puma560_real_t t414 = t402 + t413;
+    const puma560_real_t t415 = t378 + (t378 + t403);
+    const puma560_real_t t416 = t360 + t357;
+    const puma560_real_t t417 = parameters[ZZ6] * t375 + parameters[XX6R] * t376 - parameters[XY6] * t415
+        + parameters[XZ6] * t416;
+    const puma560_real_t t418 = parameters[YZ6] * (t404 - t380) + t417 + parameters[MY6] * t401;
+    const puma560_real_t t419 = parameters[XX6R] + t410;
+    const puma560_real_t t420 = t374 * t419 - parameters[XZ6] * t358;
+    const puma560_real_t t421 = parameters[YZ6] * t358;
+    const puma560_real_t t422 = t421 - t407;
+    const puma560_real_t t423 = t420 * t409 - t422 * t412 - (parameters[YZ6] * t405 + parameters[XY6] * t403);
+    const puma560_real_t t424 = t418 + t423;
+    const puma560_real_t t425 = t2 * t414 - t1 * t424;
+    const puma560_real_t t426 = parameters[ZZ6] * t405 + (parameters[XZ6] * t403 - parameters[YZ6] * t373);
+    const puma560_real_t t427 = t359 * t419 - parameters[XY6] * t358;
+    const puma560_real_t t428 = t358 * t410 - parameters[XY6] * t359;
+    const puma560_real_t t429 = t14 * t395 + t12 * t400;
+    const puma560_real_t t430 = t30 * t390 + t32 * t394;
+    const puma560_real_t t431 = t2 * t429 + t1 * t430;
+    const puma560_real_t t432 = t2 * t430 - t1 * t429;
+    const puma560_real_t t433 = parameters[MX6] * t431 + parameters[MY6] * t432;
+    const puma560_real_t t434 = t427 * t409 - t428 * t412 + t426 + t433;
+    const puma560_real_t t435 = t14 * t425 + t12 * t434;
+    const puma560_real_t t436 = t1 * t414 + t2 * t424;
+    const puma560_real_t t437 = parameters[MX6] * t416 - parameters[MY6] * (t379 + t380);
+    const puma560_real_t t438 = parameters[MY6] * t358 - parameters[MX6] * t359;
+    const puma560_real_t t439 = t437 - (t438 * t412 + parameters[MY6] * t405);
+    const puma560_real_t t440 = parameters[MX6] * (t404 + t380) + parameters[MY6] * t361;
+    const puma560_real_t t441 = t438 * t409 + parameters[MX6] * t405 + t440;
+    const puma560_real_t t442 = t2 * t439 - t1 * t441;
+    const puma560_real_t t443 = parameters[MX6] * t374;
+    const puma560_real_t t444 = parameters[MY6] * t374;
+    const puma560_real_t t445 = parameters[MY6] * t403 + parameters[MX6] * t373 - (t443 * t409 + t444 * t412);
+    const puma560_real_t t446 = t12 * t445 - t14 * t442;
+    const puma560_real_t t447 = t1 * t439 + t2 * t441;
+    const puma560_real_t t448 = t32 * t447 - t30 * t446;
+    const puma560_real_t t449 = PUMA560_C(0.4318) * t448;
+    const puma560_real_t t450 = t32 * t435 - t30 * t436 + t449;
+    const puma560_real_t t451 = t14 * t434 - t12 * t425;
+    const puma560_real_t t452 = t451 + PUMA560_C(0.0203) * t448;
+    const puma560_real_t t453 = t32 * t446 + t30 * t447;
+    const puma560_real_t t454 = t12 * t442 + t14 * t445;
+    const puma560_real_t t455 = t70 * t454 - t67 * t453;
+    const puma560_real_t t456 = t104 * (t70 * t450 + t67 * t452 + PUMA560_C(0.1254) * t455);
+    const puma560_real_t t457 = t67 * t450 - t70 * t452 + (PUMA560_C(0.1254) * (t70 * t453 + t67 * t454)
+        - t449);
+    const puma560_real_t t458 = PUMA560_C(0.06944177768728742) * (t456 + t101 * t457);
+    const puma560_real_t t459 = puma560_held(PUMA560_C(-14.400553) * t319);
+    const puma560_real_t t460 = t30 * t435 + t32 * t436 + (PUMA560_C(0.0203) * t454
+        + PUMA560_C(0.4318) * t453);
+    const puma560_real_t t461 = PUMA560_C(0.04032672714331514) * (t460 + PUMA560_C(0.4318) * t455);
+    const puma560_real_t t462 = t147 * t319;
+    const puma560_real_t t463 = puma560_held(PUMA560_C(24.79745) * t462);
+    const puma560_real_t t464 = PUMA560_C(0.08095560645504385) * t460;
+    const puma560_real_t t465 = t319 * (t83 * t147 - t141);
+    const puma560_real_t t466 = puma560_held(PUMA560_C(12.352449) * t465);
+    const puma560_real_t t467 = PUMA560_C(0.18787994020908783) * t451;
+    const puma560_real_t t468 = t84 - t54 * t83;
+    const puma560_real_t t469 = t319 * (t54 * t141 - t131 + t147 * t468);
+    const puma560_real_t t470 = puma560_held(PUMA560_C(5.322548) * t469);
+    const puma560_real_t t471 = t463 * t461 - t459 * t458 - t466 * t464 + t470 * t467;
+    const puma560_real_t t472 = PUMA560_C(0.19862511694053758) * t436;
+    const puma560_real_t t473 = t55 + t20 * t54;
+    const puma560_real_t t474 = t83 * t473 - (t85 + t20 * t84);
+    const puma560_real_t t475 = t124 + t20 * t131 - t141 * t473 + t147 * t474;
+    const puma560_real_t t476 = t319 * t475;
+    const puma560_real_t t477 = puma560_held(PUMA560_C(5.034610000000001) * t476);
+    const puma560_real_t t478 = PUMA560_C(2.0) * t427;
+    const puma560_real_t t479 = PUMA560_C(2.0) * t428;
+    const puma560_real_t t480 = PUMA560_C(0.1862884266452062) * (t433 + (t359 * t478 + t358 * t479 + t426));
+    const puma560_real_t t481 = t27 + t5 * t20;
+    const puma560_real_t t482 = t56 + t5 * t55 + t54 * t481;
+    const puma560_real_t t483 = t83 * t482 - (t86 + t5 * t85 + t84 * t481);
+    const puma560_real_t t484 = t115 + t5 * t124 + t131 * t481 - t141 * t482;
+    const puma560_real_t t485 = t319 * (t484 + t147 * t483);
+    const puma560_real_t t486 = puma560_held(PUMA560_C(5.368020000000001) * t485);
+    ddq_by_q[5] = t471 + t477 * t472 + t486 * t480;
+    const puma560_real_t t487 = puma560_held(PUMA560_C(-14.400553) * t462);
+    const puma560_real_t t488 = puma560_held(PUMA560_C(24.79745) * (t146 + t147 * t462));
+    const puma560_real_t t489 = t83 * t146 + t147 * t465;
+    const puma560_real_t t490 = puma560_held(PUMA560_C(12.352449) * t489);
+    const puma560_real_t t491 = t146 * t468 + t147 * t469;
+    const puma560_real_t t492 = puma560_held(PUMA560_C(5.322548) * t491);
+    const puma560_real_t t493 = t488 * t461 - t487 * t458 - t490 * t464 + t492 * t467;
+    const puma560_real_t t494 = t146 * t474 + t147 * t476;
+    const puma560_real_t t495 = puma560_held(PUMA560_C(5.034610000000001) * t494);
+    const puma560_real_t t496 = t146 * t483 + t147 * t485;
+    const puma560_real_t t497 = puma560_held(PUMA560_C(5.368020000000001) * t496);
+    ddq_by_q[11] = t493 + t495 * t472 + t497 * t480;
+    const puma560_real_t t498 = puma560_held(PUMA560_C(14.400553) * t465);
+    const puma560_real_t t499 = puma560_held(PUMA560_C(-24.79745) * t489);
+    const puma560_real_t t500 = puma560_held(PUMA560_C(12.352449) * (t82 + t141 * t465 - t83 * t489));
+    const puma560_real_t t501 = t141 * t469 - t54 * t82 - t83 * t491;
+    const puma560_real_t t502 = puma560_held(PUMA560_C(5.322548) * t501);
+    const puma560_real_t t503 = t499 * t461 - t498 * t458 - t500 * t464 + t502 * t467;
+    const puma560_real_t t504 = t82 * t473 + t141 * t476 - t83 * t494;
+    const puma560_real_t t505 = puma560_held(PUMA560_C(5.034610000000001) * t504);
+    const puma560_real_t t506 = t82 * t482 + t141 * t485 - t83 * t496;
+    const puma560_real_t t507 = puma560_held(PUMA560_C(5.368020000000001) * t506);
+    ddq_by_q[17] = t503 + t505 * t472 + t507 * t480;
+    const puma560_real_t t508 = puma560_held(PUMA560_C(-14.400553) * t469);
+    const puma560_real_t t509 = puma560_held(PUMA560_C(24.79745) * t491);
+    const puma560_real_t t510 = puma560_held(PUMA560_C(-12.352449) * t501);
+    const puma560_real_t t511 = t53 - t131 * t469 + t84 * t491 + t54 * t501;
+    const puma560_real_t t512 = puma560_held(PUMA560_C(5.322548) * t511);
+    const puma560_real_t t513 = t509 * t461 - t508 * t458 - t510 * t464 + t512 * t467;
+    const puma560_real_t t514 = t84 * t494 - (t20 * t53 + t131 * t476) + t54 * t504;
+    const puma560_real_t t515 = puma560_held(PUMA560_C(5.034610000000001) * t514);
+    const puma560_real_t t516 = t53 * t481 + t131 * t485 - t84 * t496 - t54 * t506;
+    const puma560_real_t t517 = puma560_held(PUMA560_C(-5.368020000000001) * t516);
+    ddq_by_q[23] = t513 + t515 * t472 + t517 * t480;
+    const puma560_real_t t518 = puma560_held(PUMA560_C(-14.400553) * t476);
+    const puma560_real_t t519 = puma560_held(PUMA560_C(24.79745) * t494);
+    const puma560_real_t t520 = puma560_held(PUMA560_C(-12.352449) * t504);
+    const puma560_real_t t521 = puma560_held(PUMA560_C(5.322548) * t514);
+    const puma560_real_t t522 = t519 * t461 - t518 * t458 - t520 * t464 + t521 * t467;
+    const puma560_real_t t523 = t19 + t124 * t476 - t85 * t494 - t55 * t504;
+    const puma560_real_t t524 = puma560_held(PUMA560_C(5.034610000000001) * (t523 - t20 * t514));
+    const puma560_real_t t525 = t5 * t19 + t124 * t485 - t85 * t496 - t55 * t506;
+    const puma560_real_t t526 = t525 + t20 * t516;
+    const puma560_real_t t527 = puma560_held(PUMA560_C(5.368020000000001) * t526);
+    ddq_by_q[29] = t522 + t524 * t472 + t527 * t480;
+    const puma560_real_t t528 = puma560_held(PUMA560_C(-14.400553) * t485);
+    const puma560_real_t t529 = puma560_held(PUMA560_C(24.79745) * t496);
+    const puma560_real_t t530 = puma560_held(PUMA560_C(-12.352449) * t506);
+    const puma560_real_t t531 = puma560_held(PUMA560_C(-5.322548) * t516);
+    const puma560_real_t t532 = t529 * t461 - t528 * t458 - t530 * t464 + t531 * t467;
+    const puma560_real_t t533 = puma560_held(PUMA560_C(5.034610000000001) * t526);
+    const puma560_real_t t534 = t4 + t115 * t485 - t86 * t496 - t56 * t506;
+    const puma560_real_t t535 = puma560_held(PUMA560_C(5.368020000000001) * (t534 + t27 * t516 + t5 * t526));
+    ddq_by_q[35] = t532 + t533 * t472 + t535 * t480;
+    const puma560_real_t t536 = parameters[ZZ6] + t410;
+    const puma560_real_t t537 = t359 * t536 - parameters[YZ6] * t374;
+    const puma560_real_t t538 = PUMA560_C(2.0) * t537 + (parameters[XX6R] * t409 + parameters[XY6] * t412);
+    const puma560_real_t t539 = parameters[XZ6] * t374 - t358 * t536;
+    const puma560_real_t t540 = PUMA560_C(2.0) * t539 + parameters[XY6] * t409;
+    const puma560_real_t t541 = t2 * t538 - t1 * t540;
+    const puma560_real_t t542 = t406 - t421;
+    const puma560_real_t t543 = PUMA560_C(2.0) * t542;
+    const puma560_real_t t544 = t543 - (parameters[XZ6] * t409 + parameters[YZ6] * t412);
+    const puma560_real_t t545 = t14 * t541 + t12 * t544;
+    const puma560_real_t t546 = t1 * t538 + t2 * t540;
+    const puma560_real_t t547 = PUMA560_C(2.0) * t443;
+    const puma560_real_t t548 = PUMA560_C(2.0) * t444;
+    const puma560_real_t t549 = t2 * t547 - t1 * t548;
+    const puma560_real_t t550 = parameters[MX6] * t412 - parameters[MY6] * t409;
+    const puma560_real_t t551 = t12 * t550 - t14 * t549;
+    const puma560_real_t t552 = t1 * t547 + t2 * t548;
+    const puma560_real_t t553 = t32 * t552 - t30 * t551;
+    const puma560_real_t t554 = PUMA560_C(0.4318) * t553;
+    const puma560_real_t t555 = t32 * t545 - t30 * t546 + t554;
+    const puma560_real_t t556 = t14 * t544 - t12 * t541;
+    const puma560_real_t t557 = t556 + PUMA560_C(0.0203) * t553;
+    const puma560_real_t t558 = t32 * t551 + t30 * t552;
+    const puma560_real_t t559 = t12 * t549 + t14 * t550;
+    const puma560_real_t t560 = t70 * t559 - t67 * t558;
+    const puma560_real_t t561 = t104 * (t70 * t555 + t67 * t557 + PUMA560_C(0.1254) * t560);
+    const puma560_real_t t562 = t67 * t555 - t70 * t557 + (PUMA560_C(0.1254) * (t70 * t558 + t67 * t559)
+        - t554);
+    const puma560_real_t t563 = PUMA560_C(0.06944177768728742) * (t561 + t101 * t562);
+    const puma560_real_t t564 = t30 * t545 + t32 * t546 + (PUMA560_C(0.0203) * t559
+        + PUMA560_C(0.4318) * t558);
+    const puma560_real_t t565 = PUMA560_C(0.04032672714331514) * (t564 + PUMA560_C(0.4318) * t560);
+    const puma560_real_t t566 = PUMA560_C(0.08095560645504385) * t564;
+    const puma560_real_t t567 = PUMA560_C(0.18787994020908783) * t556;
+    const puma560_real_t t568 = t565 * t463 - t563 * t459 - t566 * t466 + t567 * t470;
+    const puma560_real_t t569 = PUMA560_C(0.19862511694053758) * t546;
+    const puma560_real_t t570 = PUMA560_C(-1095.5142857142857) * parameters[FV6];
+    ddq_by_dq[5] = t568 + t569 * t477 + t570 * t486;
+    const puma560_real_t t571 = t565 * t488 - t563 * t487 - t566 * t490 + t567 * t492;
+    ddq_by_dq[11] = t571 + t569 * t495 + t570 * t497;
+    const puma560_real_t t572 = t565 * t499 - t563 * t498 - t566 * t500 + t567 * t502;
+    ddq_by_dq[17] = t572 + t569 * t505 + t570 * t507;
+    const puma560_real_t t573 = t565 * t509 - t563 * t508 - t566 * t510 + t567 * t512;
+    ddq_by_dq[23] = t573 + t569 * t515 + t570 * t517;
+    const puma560_real_t t574 = t565 * t519 - t563 * t518 - t566 * t520 + t567 * t521;
+    ddq_by_dq[29] = t574 + t569 * t524 + t570 * t527;
+    const puma560_real_t t575 = t565 * t529 - t563 * t528 - t566 * t530 + t567 * t531;
+    ddq_by_dq[35] = t575 + t569 * t533 + t570 * t535;
+    ddq_by_input[5] = t486;
+    ddq_by_input[11] = t497;
+    ddq_by_input[17] = t507;
+    ddq_by_input[23] = t517;
+    ddq_by_input[29] = t527;
+    ddq_by_input[35] = t535;
+    const puma560_real_t t576 = parameters[XX6R] * t360 - parameters[ZZ6] * t357 + parameters[YZ6] * t403
+        + parameters[XZ6] * t373;
+    const puma560_real_t t577 = parameters[XY6] * (t404 - t379) + t576 + (parameters[MY6] * t431
+        - parameters[MX6] * t432);
+    const puma560_real_t t578 = t353 * t353; /* link j5: motion */
+    const puma560_real_t t579 = t354 * t354;
+    const puma560_real_t t580 = parameters[XZ5] * (t578 - t579) + (t245 * t355 + parameters[XY5] * t372
+        - parameters[YZ5] * t368);
+    const puma560_real_t t581 = t580 - parameters[MX5] * t430 + t577;
+    const puma560_real_t t582 = t366 * t366;
+    const puma560_real_t t583 = t578 + t582; /* link j6: motion */
     /* link j6: inertia, momentum beyond */
-    const puma560_real_t t351 = t2 * (t343 + t346) - t1 * (t349 + t350);
-    const puma560_real_t t352 = t2 * t351;
-    const puma560_real_t t353 = parameters[XZ5] * t340;
-    const puma560_real_t t354 = parameters[XY5] * t337;
-    const puma560_real_t t355 = t353 + t354 + (t352 - t346);
-    const puma560_real_t t356 = t339 - t345;
-    const puma560_real_t t357 = parameters[YZ5] * t335;
-    const puma560_real_t t358 = t354 + t357 + t356;
-    const puma560_real_t t359 = parameters[ZZ6] + t347;
-    const puma560_real_t t360 = t338 * t359 - parameters[YZ6] * t341;
-    const puma560_real_t t361 = parameters[XZ6] * t341 - t344 * t359;
-    const puma560_real_t t362 = PUMA560_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    const puma560_real_t t363 = parameters[YZ5] * t340 - t337 * t362 + (t2 * t360 - t1 * t361);
-    const puma560_real_t t364 = t338 * t348 - parameters[XY6] * t344;
-    const puma560_real_t t365 = t344 * t347 - parameters[XY6] * t338;
-    const puma560_real_t t366 = parameters[XX5R] - t362;
-    const puma560_real_t t367 = t337 * t366 + parameters[XZ5] * t335 + (t2 * t364 + t1 * t365);
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t368 = t15 * (t355 + t358) + t13 * (t367 - t363);
-    const puma560_real_t t369 = t15 * t368;
-    const puma560_real_t t370 = parameters[XZ4] * t336;
-    const puma560_real_t t371 = parameters[XY4] * t334;
-    const puma560_real_t t372 = t371 - t370 + (t358 - t369);
-    const puma560_real_t t373 = t353 - t357 + (t352 - t343); /* link j6: inertia, momentum beyond */
-    const puma560_real_t t374 = parameters[YZ4] * t331;
-    const puma560_real_t t375 = t371 + t374 - t373; /* link j5: inertia, momentum beyond */
-    const puma560_real_t t376 = t1 * t351; /* link j6: inertia, momentum beyond */
-    const puma560_real_t t377 = t362 - parameters[ZZ5R];
-    const puma560_real_t t378 = t340 * t377 - parameters[YZ5] * t337 + (t350 + t376);
-    const puma560_real_t t379 = t335 * t377 - parameters[XZ5] * t337 + (t1 * t364 - t2 * t365);
-    const puma560_real_t t380 = PUMA560_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t381 = parameters[YZ4] * t336 + t334 * t380 + (t15 * t378 + t13 * t379);
+    const puma560_real_t t584 = t2 * (t408 + t422) - t1 * (t420 + t411);
+    const puma560_real_t t585 = t2 * t584;
+    const puma560_real_t t586 = parameters[XZ5] * t366;
+    const puma560_real_t t587 = parameters[XY5] * t354;
+    const puma560_real_t t588 = t586 + t587 + (t585 - t422);
+    const puma560_real_t t589 = PUMA560_C(-2.0) * t366; /* link j5: derivatives */
+    const puma560_real_t t590 = PUMA560_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
     /* link j6: inertia, momentum beyond */
-    const puma560_real_t t382 = t340 * t366 - parameters[XY5] * t335 + (t349 + t376);
-    const puma560_real_t t383 = t335 * t362 + parameters[XY5] * t340 + (t1 * t360 + t2 * t361);
-    const puma560_real_t t384 = parameters[XX4R] - t380;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t385 = t334 * t384 + parameters[XZ4] * t331 + (t15 * t382 - t13 * t383);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t386 = t34 * (t372 + t375) + t32 * (t381 + t385);
-    const puma560_real_t t387 = t34 * t386;
-    const puma560_real_t t388 = parameters[MY6] * t341;
-    const puma560_real_t t389 = parameters[MX6] * t341;
+    const puma560_real_t t591 = parameters[YZ5] * t366 - t354 * t590 + (t2 * t537 - t1 * t539);
+    const puma560_real_t t592 = PUMA560_C(2.0) * t353; /* link j5: derivatives */
+    const puma560_real_t t593 = t588 * t589 + t591 * t592 + (t11 * t583 + (t21 * t352 + t22 * t369));
+    const puma560_real_t t594 = t581 - (t593 + t33 * t429);
+    const puma560_real_t t595 = t355 + t356;
+    const puma560_real_t t596 = t367 + t365;
+    const puma560_real_t t597 = parameters[ZZ5R] * t370 + parameters[XX5R] * t371 - parameters[XY5] * t595
+        - parameters[XZ5] * t596;
+    const puma560_real_t t598 = parameters[YZ5] * (t579 - t582) + t597 + parameters[MY5R] * t430 - (t2 * t418
+        + t1 * t402);
+    const puma560_real_t t599 = t33 * t401;
+    const puma560_real_t t600 = parameters[ZZ6] * t369;
+    const puma560_real_t t601 = parameters[XX5R] - t590;
     /* link j6: inertia, momentum beyond */
-    const puma560_real_t t390 = t2 * t388 + t1 * t389 - parameters[MY5R] * t337;
-    const puma560_real_t t391 = parameters[MY6] * t344 - parameters[MX6] * t338;
-    const puma560_real_t t392 = t391 - parameters[MX5] * t337;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t393 = parameters[MY4R] * t334 + (t15 * t390 + t13 * t392);
+    const puma560_real_t t602 = t354 * t601 + parameters[XZ5] * t353 + (t2 * t427 + t1 * t428);
+    const puma560_real_t t603 = parameters[YZ5] * t353;
+    const puma560_real_t t604 = t587 + t603 + t542;
+    const puma560_real_t t605 = t13 * t583 + (t600 + t22 * t352) - (t602 * t589 + t604 * t592);
+    const puma560_real_t t606 = t598 + (t599 + t605);
+    const puma560_real_t t607 = t14 * t594 + t12 * t606;
+    const puma560_real_t t608 = parameters[MY5R] * t401 - t36 * t429;
+    const puma560_real_t t609 = t8 * t583 + (t11 * t352 + t13 * t369);
+    const puma560_real_t t610 = t1 * t584;
+    const puma560_real_t t611 = t366 * t601 - parameters[XY5] * t353 + (t420 + t610);
+    const puma560_real_t t612 = t353 * t590 + parameters[XY5] * t366 + (t1 * t537 + t2 * t539);
+    const puma560_real_t t613 = t609 - (t611 * t589 + t612 * t592) + t608;
+    const puma560_real_t t614 = parameters[MX5] * (t582 + t579) + parameters[MY5R] * t368 + (t2 * t440
+        + t1 * t437);
+    const puma560_real_t t615 = parameters[MY5R] * t353 - parameters[MX5] * t366 + (t1 * t444 - t2 * t443);
+    const puma560_real_t t616 = t614 + (t33 * t352 - t36 * t583 - t615 * t589);
+    const puma560_real_t t617 = parameters[MX5] * t596 - parameters[MY5R] * (t578 + t579)
+        + (parameters[MX6] * t415 + parameters[MY6] * t377);
+    const puma560_real_t t618 = t617 + (t615 * t592 - (parameters[MY5R] * t583 + t33 * t369));
+    const puma560_real_t t619 = t12 * t616 - t14 * t618;
+    const puma560_real_t t620 = t438 - parameters[MX5] * t354;
+    const puma560_real_t t621 = t2 * t444 + t1 * t443 - parameters[MY5R] * t354;
+    const puma560_real_t t622 = t620 * t589 + t621 * t592 + (parameters[MY5R] * t352 + t36 * t369);
+    const puma560_real_t t623 = t30 * t619 + t32 * t622;
+    const puma560_real_t t624 = PUMA560_C(0.4318) * t623;
+    const puma560_real_t t625 = t32 * t607 - t30 * t613 - t624;
+    const puma560_real_t t626 = t14 * t606 - t12 * t594;
+    const puma560_real_t t627 = PUMA560_C(0.0203) * t623 - t626;
+    const puma560_real_t t628 = t32 * t619 - t30 * t622;
+    const puma560_real_t t629 = t12 * t618 + t14 * t616;
+    const puma560_real_t t630 = t70 * t629 - t67 * t628;
+    const puma560_real_t t631 = t104 * (t70 * t625 - t67 * t627 + PUMA560_C(0.1254) * t630);
+    const puma560_real_t t632 = t67 * t625 + t70 * t627 + (t624 + PUMA560_C(0.1254) * (t70 * t628
+        + t67 * t629));
+    const puma560_real_t t633 = PUMA560_C(0.06944177768728742) * (t631 + t101 * t632);
+    const puma560_real_t t634 = t30 * t607 + t32 * t613 + (PUMA560_C(0.0203) * t629
+        + PUMA560_C(0.4318) * t628);
+    const puma560_real_t t635 = PUMA560_C(0.04032672714331514) * (t634 + PUMA560_C(0.4318) * t630);
+    const puma560_real_t t636 = PUMA560_C(0.08095560645504385) * t634;
+    const puma560_real_t t637 = PUMA560_C(0.18787994020908783) * t626;
+    const puma560_real_t t638 = t463 * t635 - t459 * t633 - t466 * t636 + t470 * t637;
+    const puma560_real_t t639 = PUMA560_C(2.0) * t611; /* link j5: derivatives */
+    const puma560_real_t t640 = PUMA560_C(2.0) * t612;
+    const puma560_real_t t641 = PUMA560_C(0.19862511694053758) * (t608 + (t366 * t639 - t353 * t640 + t609));
+    const puma560_real_t t642 = t2 * t478 + t1 * t479; /* link j6: derivatives */
+    const puma560_real_t t643 = t366 * t642 - t353 * t543 + (t16 * t352 + t600 - t3 * t583);
+    const puma560_real_t t644 = PUMA560_C(0.1862884266452062) * (t643 + t599);
+    ddq_by_q[4] = t638 + t477 * t641 + t486 * t644;
+    const puma560_real_t t645 = t488 * t635 - t487 * t633 - t490 * t636 + t492 * t637;
+    ddq_by_q[10] = t645 + t495 * t641 + t497 * t644;
+    const puma560_real_t t646 = t499 * t635 - t498 * t633 - t500 * t636 + t502 * t637;
+    ddq_by_q[16] = t646 + t505 * t641 + t507 * t644;
+    const puma560_real_t t647 = t509 * t635 - t508 * t633 - t510 * t636 + t512 * t637;
+    ddq_by_q[22] = t647 + t515 * t641 + t517 * t644;
+    const puma560_real_t t648 = t519 * t635 - t518 * t633 - t520 * t636 + t521 * t637;
+    ddq_by_q[28] = t648 + t524 * t641 + t527 * t644;
+    const puma560_real_t t649 = t529 * t635 - t528 * t633 - t530 * t636 + t531 * t637;
+    ddq_by_q[34] = t649 + t533 * t641 + t535 * t644;
+    const puma560_real_t t650 = t590 - parameters[ZZ5R];
     /* link j6: inertia, momentum beyond */
-    const puma560_real_t t394 = parameters[MY5R] * t335 - parameters[MX5] * t340 + (t1 * t388 - t2 * t389);
-    const puma560_real_t t395 = parameters[MX4] * t334 - t394; /* link j5: inertia, momentum beyond */
-    const puma560_real_t t396 = t34 * t393 + t32 * t395; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t397 = PUMA560_C(0.0203) * t396;
-    const puma560_real_t t398 = PUMA560_C(0.4318) * t159; /* link j4: velocity of its origin */
-    const puma560_real_t t399 = t63 * t398; /* link j4: inertia, momentum beyond */
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t400 = parameters[MY4R] * t331 + parameters[MX4] * t336 + (t13 * t390 - t15 * t392);
-    const puma560_real_t t401 = PUMA560_C(0.4318) * t400; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t402 = PUMA560_C(-0.4318) * t330 + PUMA560_C(-0.0203) * t333;
-    const puma560_real_t t403 = t41 * t402;
-    const puma560_real_t t404 = PUMA560_C(-0.0203) * t159; /* link j4: velocity of its origin */
-    const puma560_real_t t405 = t50 * t404; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t406 = t397 + t401 + (t405 - t399 + t403);
-    const puma560_real_t t407 = parameters[XZ3] * t333;
-    const puma560_real_t t408 = parameters[XY3R] * t159;
-    const puma560_real_t t409 = t408 - t407 + (t406 + (t387 - t375 + (t399 - t397)));
-    const puma560_real_t t410 = t370 + t374 + (t369 - t355); /* link j5: inertia, momentum beyond */
-    const puma560_real_t t411 = parameters[YZ3] * t330;
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t412 = t408 + t411 - (t406 - (t401 + t405 - t410));
-    const puma560_real_t t413 = t13 * t368; /* link j5: inertia, momentum beyond */
-    const puma560_real_t t414 = t380 - parameters[ZZ4R];
-    const puma560_real_t t415 = t363 + t413 - (t336 * t414 + parameters[YZ4] * t334);
-    const puma560_real_t t416 = parameters[XZ4] * t334 - t331 * t414 + (t13 * t382 + t15 * t383);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t417 = t34 * t415 - t32 * t416 + (PUMA560_C(0.4318) * t396 + t50 * t398);
-    const puma560_real_t t418 = PUMA560_C(-0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const puma560_real_t t419 = parameters[YZ3] * t333 - t159 * t418 + t417;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t420 = t413 - t367 - (parameters[XY4] * t331 + t336 * t384);
-    const puma560_real_t t421 = t331 * t380 - parameters[XY4] * t336 - (t15 * t379 - t13 * t378);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t422 = t32 * t421 - t34 * t420 - (PUMA560_C(0.0203) * t400 - t63 * t404);
-    const puma560_real_t t423 = parameters[XX3R] + t418;
-    const puma560_real_t t424 = t159 * t423 + parameters[XZ3] * t330 - t422;
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t425 = t73 * (t409 + t412) + t70 * (t419 + t424);
-    const puma560_real_t t426 = t73 * t425;
-    const puma560_real_t t427 = parameters[MY3R] * t159 + t396; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t428 = parameters[MX3R] * t159 - t400;
-    const puma560_real_t t429 = t73 * t427 + t70 * t428; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t430 = PUMA560_C(0.4318) * t429;
-    const puma560_real_t t431 = PUMA560_C(-0.1254) * t155; /* link j3: velocity of its origin */
-    const puma560_real_t t432 = t82 * t431; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t433 = t32 * t393 - t34 * t395; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t434 = parameters[MY3R] * t330 + parameters[MX3R] * t333 - t433;
-    const puma560_real_t t435 = PUMA560_C(0.1254) * t434; /* link j3: inertia, momentum beyond */
-    /* link j3: velocity of its origin */
-    const puma560_real_t t436 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t154;
-    const puma560_real_t t437 = t106 * t436; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t438 = PUMA560_C(0.4318) * t155; /* link j3: velocity of its origin */
-    const puma560_real_t t439 = t41 * t438; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t440 = t430 + t435 + (t432 - t437 + t439);
-    const puma560_real_t t441 = parameters[XZ2R] * t155;
-    const puma560_real_t t442 = parameters[XY2] * dq[1];
-    const puma560_real_t t443 = t441 + t442 + (t440 + (t426 - t412 - (t430 + t432)));
-    const puma560_real_t t444 = parameters[YZ2] * t154;
-    const puma560_real_t t445 = t440 + (t409 - t426 + t437) - (t442 + t444);
-    const puma560_real_t t446 = t70 * t425;
-    const puma560_real_t t447 = PUMA560_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const puma560_real_t t448 = parameters[YZ2] * t155 + dq[1] * t447 + (t446 - t419 - t106 * t431);
-    const puma560_real_t t449 = t70 * t427 - t73 * t428;
-    const puma560_real_t t450 = parameters[XX2R] + t447;
-    const puma560_real_t t451 = t446 - t424 + (PUMA560_C(-0.4318) * t449 + t82 * t436)
-        - (parameters[XZ2R] * t154 + dq[1] * t450);
-    /* link j2: inertia, momentum beyond */
-    const puma560_real_t t452 = t105 * (t105 * (t445 - t443) + t108 * (t448 + t451));
-    const puma560_real_t t453 = PUMA560_C(-272.2221739130435) * parameters[FV1]
-        + PUMA560_C(0.13888355537457484) * (t443 + t452);
-    const puma560_real_t t454 = puma560_bounded(PUMA560_C(-14.400553) * t320);
-    const puma560_real_t t455 = t151 * t320;
-    const puma560_real_t t456 = puma560_bounded(PUMA560_C(24.79745) * t455);
-    const puma560_real_t t457 = t32 * t386; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t458 = parameters[XY3R] * t330 + t333 * t423 + (t385 - t457
-        + (PUMA560_C(0.0203) * t433 - t63 * t402));
-    const puma560_real_t t459 = t32 * t415 + t34 * t416 + (PUMA560_C(0.4318) * t433 + t50 * t402);
-    const puma560_real_t t460 = t330 * t418 + parameters[XY3R] * t333 + t459;
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t461 = t70 * t460 - t73 * t458 + (PUMA560_C(0.4318) * t434 + t82 * t438);
-    /* link j2: derivatives */
-    const puma560_real_t t462 = PUMA560_C(2.0) * (t155 * t450 - parameters[XY2] * t154 + t461);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t463 = parameters[XY2] * t155 - t154 * t447 - (t70 * t458 + t73 * t460
-        - t106 * t438);
-    const puma560_real_t t464 = PUMA560_C(2.0) * t463; /* link j2: derivatives */
-    const puma560_real_t t465 = PUMA560_C(0.04032672714331514) * (t108 * t462 + t105 * t464);
-    const puma560_real_t t466 = t320 * (t86 * t151 - t145);
-    const puma560_real_t t467 = puma560_bounded(PUMA560_C(12.352449) * t466);
-    const puma560_real_t t468 = PUMA560_C(2.0) * t458; /* link j3: derivatives */
-    const puma560_real_t t469 = PUMA560_C(2.0) * t460;
-    const puma560_real_t t470 = PUMA560_C(0.8636) * t155; /* link j6: derivatives */
-    const puma560_real_t t471 = t70 * t469 - t73 * t468 + t82 * t470; /* link j3: derivatives */
-    const puma560_real_t t472 = t70 * t468 + t73 * t469 - t106 * t470;
-    const puma560_real_t t473 = PUMA560_C(0.08095560645504385) * (t108 * t471 - t105 * t472);
-    const puma560_real_t t474 = t87 - t56 * t86;
-    const puma560_real_t t475 = t320 * (t56 * t145 - t135 + t151 * t474);
-    const puma560_real_t t476 = puma560_bounded(PUMA560_C(5.322548) * t475);
-    const puma560_real_t t477 = PUMA560_C(2.0) * t420; /* link j4: derivatives */
-    const puma560_real_t t478 = PUMA560_C(2.0) * t421;
-    const puma560_real_t t479 = PUMA560_C(-0.0406) * t159; /* link j6: derivatives */
-    const puma560_real_t t480 = t32 * t478 - t34 * t477 + t63 * t479; /* link j4: derivatives */
-    const puma560_real_t t481 = PUMA560_C(2.0) * t410;
-    const puma560_real_t t482 = PUMA560_C(2.0) * t402; /* link j6: derivatives */
-    const puma560_real_t t483 = PUMA560_C(-0.8636) * t159;
-    const puma560_real_t t484 = t481 + (t41 * t482 + t63 * t483); /* link j4: derivatives */
-    const puma560_real_t t485 = PUMA560_C(2.0) * t436; /* link j6: derivatives */
-    /* link j4: derivatives */
-    const puma560_real_t t486 = t70 * t484 - t73 * t480 + (t71 * t470 - t63 * t485);
-    const puma560_real_t t487 = PUMA560_C(-0.2508) * t155; /* link j6: derivatives */
-    /* link j4: derivatives */
-    const puma560_real_t t488 = t70 * t480 + t73 * t484 + (t132 * t470 + t63 * t487);
-    const puma560_real_t t489 = PUMA560_C(0.18787994020908783) * (t108 * t486 - t105 * t488);
-    const puma560_real_t t490 = t465 * t456 - t453 * t454 - t473 * t467 + t489 * t476;
-    const puma560_real_t t491 = t57 + t21 * t56;
-    const puma560_real_t t492 = t86 * t491 - (t88 + t21 * t87);
-    const puma560_real_t t493 = t128 + t21 * t135 - t145 * t491 + t151 * t492;
-    const puma560_real_t t494 = t320 * t493;
-    const puma560_real_t t495 = puma560_bounded(PUMA560_C(5.034610000000001) * t494);
-    const puma560_real_t t496 = PUMA560_C(2.0) * t382; /* link j5: derivatives */
-    const puma560_real_t t497 = PUMA560_C(2.0) * t383;
-    const puma560_real_t t498 = t13 * t497 - t15 * t496;
-    const puma560_real_t t499 = PUMA560_C(2.0) * t373;
-    const puma560_real_t t500 = t32 * t499 - t34 * t498 - (t39 * t482 - t120 * t479);
-    const puma560_real_t t501 = t13 * t496 + t15 * t497;
-    const puma560_real_t t502 = t501 + (t51 * t482 + t120 * t483);
-    const puma560_real_t t503 = t70 * t502 - t73 * t500 + (t76 * t470 - t120 * t485);
-    const puma560_real_t t504 = t70 * t500 + t73 * t502 + (t120 * t487 - t125 * t470);
-    const puma560_real_t t505 = PUMA560_C(0.19862511694053758) * (t108 * t503 - t105 * t504);
-    const puma560_real_t t506 = t28 + t5 * t21;
-    const puma560_real_t t507 = t58 + t5 * t57 + t56 * t506;
-    const puma560_real_t t508 = t86 * t507 - (t89 + t5 * t88 + t87 * t506);
-    const puma560_real_t t509 = t119 + t5 * t128 + t135 * t506 - t145 * t507;
-    const puma560_real_t t510 = t320 * (t509 + t151 * t508);
-    const puma560_real_t t511 = PUMA560_C(5.368020000000001) * t510;
-    const puma560_real_t t512 = PUMA560_C(2.0) * t364; /* link j6: derivatives */
-    const puma560_real_t t513 = PUMA560_C(2.0) * t365;
-    const puma560_real_t t514 = t2 * t512 + t1 * t513;
-    const puma560_real_t t515 = PUMA560_C(2.0) * t356;
-    const puma560_real_t t516 = t13 * t515 - t15 * t514;
-    const puma560_real_t t517 = t2 * t513 - t1 * t512;
-    const puma560_real_t t518 = t32 * t517 - t34 * t516 - (t47 * t482 - t111 * t479);
-    const puma560_real_t t519 = t13 * t514 + t15 * t515;
-    const puma560_real_t t520 = t519 + (t111 * t483 - t46 * t482);
-    const puma560_real_t t521 = t70 * t520 - t73 * t518 + (t74 * t470 - t111 * t485);
-    const puma560_real_t t522 = t70 * t518 + t73 * t520 + (t111 * t487 - t115 * t470);
-    const puma560_real_t t523 = PUMA560_C(0.1862884266452062) * (t108 * t521 - t105 * t522);
-    ddq_by_dq[0] = t490 + t505 * t495 + t523 * t511;
-    const puma560_real_t t524 = puma560_bounded(PUMA560_C(-14.400553) * t455);
-    const puma560_real_t t525 = puma560_bounded(PUMA560_C(24.79745) * (t150 + t151 * t455));
-    const puma560_real_t t526 = t86 * t150 + t151 * t466;
-    const puma560_real_t t527 = puma560_bounded(PUMA560_C(12.352449) * t526);
-    const puma560_real_t t528 = t150 * t474 + t151 * t475;
-    const puma560_real_t t529 = puma560_bounded(PUMA560_C(5.322548) * t528);
-    const puma560_real_t t530 = t465 * t525 - t453 * t524 - t473 * t527 + t489 * t529;
-    const puma560_real_t t531 = t150 * t492 + t151 * t494;
-    const puma560_real_t t532 = puma560_bounded(PUMA560_C(5.034610000000001) * t531);
-    const puma560_real_t t533 = t150 * t508 + t151 * t510;
-    const puma560_real_t t534 = PUMA560_C(5.368020000000001) * t533;
-    ddq_by_dq[6] = t530 + t505 * t532 + t523 * t534;
-    const puma560_real_t t535 = puma560_bounded(PUMA560_C(14.400553) * t466);
-    const puma560_real_t t536 = puma560_bounded(PUMA560_C(-24.79745) * t526);
-    const puma560_real_t t537 = puma560_bounded(PUMA560_C(12.352449) * (t85 + t145 * t466 - t86 * t526));
-    const puma560_real_t t538 = t145 * t475 - t56 * t85 - t86 * t528;
-    const puma560_real_t t539 = puma560_bounded(PUMA560_C(5.322548) * t538);
-    const puma560_real_t t540 = t465 * t536 - t453 * t535 - t473 * t537 + t489 * t539;
-    const puma560_real_t t541 = t85 * t491 + t145 * t494 - t86 * t531;
-    const puma560_real_t t542 = puma560_bounded(PUMA560_C(5.034610000000001) * t541);
-    const puma560_real_t t543 = t85 * t507 + t145 * t510 - t86 * t533;
-    const puma560_real_t t544 = PUMA560_C(5.368020000000001) * t543;
-    ddq_by_dq[12] = t540 + t505 * t542 + t523 * t544;
-    const puma560_real_t t545 = puma560_bounded(PUMA560_C(-14.400553) * t475);
-    const puma560_real_t t546 = puma560_bounded(PUMA560_C(24.79745) * t528);
-    const puma560_real_t t547 = puma560_bounded(PUMA560_C(-12.352449) * t538);
-    const puma560_real_t t548 = t55 - t135 * t475 + t87 * t528 + t56 * t538;
-    const puma560_real_t t549 = puma560_bounded(PUMA560_C(5.322548) * t548);
-    const puma560_real_t t550 = t465 * t546 - t453 * t545 - t473 * t547 + t489 * t549;
-    const puma560_real_t t551 = t87 * t531 - (t21 * t55 + t135 * t494) + t56 * t541;
-    const puma560_real_t t552 = puma560_bounded(PUMA560_C(5.034610000000001) * t551);
-    const puma560_real_t t553 = t55 * t506 + t135 * t510 - t87 * t533 - t56 * t543;
-    const puma560_real_t t554 = PUMA560_C(-5.368020000000001) * t553;
-    ddq_by_dq[18] = t550 + t505 * t552 + t523 * t554;
-    const puma560_real_t t555 = puma560_bounded(PUMA560_C(-14.400553) * t494);
-    const puma560_real_t t556 = puma560_bounded(PUMA560_C(24.79745) * t531);
-    const puma560_real_t t557 = puma560_bounded(PUMA560_C(-12.352449) * t541);
-    const puma560_real_t t558 = puma560_bounded(PUMA560_C(5.322548) * t551);
-    const puma560_real_t t559 = t465 * t556 - t453 * t555 - t473 * t557 + t489 * t558;
-    const puma560_real_t t560 = t20 + t128 * t494 - t88 * t531 - t57 * t541;
-    const puma560_real_t t561 = puma560_bounded(PUMA560_C(5.034610000000001) * (t560 - t21 * t551));
-    const puma560_real_t t562 = t5 * t20 + t128 * t510 - t88 * t533 - t57 * t543;
-    const puma560_real_t t563 = t562 + t21 * t553;
-    const puma560_real_t t564 = PUMA560_C(5.368020000000001) * t563;
-    ddq_by_dq[24] = t559 + t505 * t561 + t523 * t564;
-    const puma560_real_t t565 = puma560_bounded(PUMA560_C(-14.400553) * t510);
-    const puma560_real_t t566 = puma560_bounded(PUMA560_C(24.79745) * t533);
-    const puma560_real_t t567 = puma560_bounded(PUMA560_C(-12.352449) * t543);
-    const puma560_real_t t568 = puma560_bounded(PUMA560_C(-5.322548) * t553);
-    const puma560_real_t t569 = t465 * t566 - t453 * t565 - t473 * t567 + t489 * t568;
-    const puma560_real_t t570 = puma560_bounded(PUMA560_C(5.034610000000001) * t563);
-    const puma560_real_t t571 = t4 + t119 * t510 - t89 * t533 - t58 * t543;
-    const puma560_real_t t572 = PUMA560_C(5.368020000000001) * (t571 + t28 * t553 + t5 * t563);
-    ddq_by_dq[30] = t569 + t505 * t570 + t523 * t572;
-    ddq_by_input[0] = t454;
-    ddq_by_input[6] = t524;
-    ddq_by_input[12] = t535;
-    ddq_by_input[18] = t545;
-    ddq_by_input[24] = t555;
-    ddq_by_input[30] = t565;
-    const puma560_real_t t573 = t322 + t323;
-    const puma560_real_t t574 = t330 * t333; /* link j3: motion */
-    const puma560_real_t t575 = t574 + t573;
-    const puma560_real_t t576 = t321 * t329;
-    const puma560_real_t t577 = t159 * t333;
-    const puma560_real_t t578 = t576 - t577;
-    const puma560_real_t t579 = t578 - t577;
-    const puma560_real_t t580 = t34 * t575 - t32 * t579;
-    const puma560_real_t t581 = t331 * t334; /* link j4: motion */
-    const puma560_real_t t582 = t580 - t581;
-    const puma560_real_t t583 = t326 + t582;
-    const puma560_real_t t584 = t335 * t340; /* link j5: motion */
-    const puma560_real_t t585 = t583 - t584;
-    const puma560_real_t t586 = t321 * t332;
-    const puma560_real_t t587 = t159 * t330; /* link j3: motion */
-    const puma560_real_t t588 = t587 + t586;
-    const puma560_real_t t589 = t324 + t588;
-    const puma560_real_t t590 = t331 * t336; /* link j4: motion */
-    const puma560_real_t t591 = t590 + t589;
-    const puma560_real_t t592 = t32 * t575 + t34 * t579;
-    const puma560_real_t t593 = t336 * t334;
-    const puma560_real_t t594 = t593 - t592;
-    const puma560_real_t t595 = t593 + t594;
-    const puma560_real_t t596 = t13 * t591 + t15 * t595;
-    const puma560_real_t t597 = t340 * t337; /* link j5: motion */
-    const puma560_real_t t598 = t597 - t596;
-    const puma560_real_t t599 = t597 + t598;
-    const puma560_real_t t600 = t1 * t585 + t2 * t599;
-    const puma560_real_t t601 = t338 * t341; /* link j6: motion */
-    const puma560_real_t t602 = t601 - t600;
-    const puma560_real_t t603 = t2 * t585 - t1 * t599;
-    const puma560_real_t t604 = t344 * t341;
-    const puma560_real_t t605 = t604 + (t604 + t603);
-    const puma560_real_t t606 = t13 * t595 - t15 * t591;
-    const puma560_real_t t607 = t335 * t337; /* link j5: motion */
-    const puma560_real_t t608 = t607 - t606;
-    const puma560_real_t t609 = t328 + t608;
-    const puma560_real_t t610 = t344 * t338; /* link j6: motion */
-    const puma560_real_t t611 = t610 + t609;
-    const puma560_real_t t612 = parameters[ZZ6] * t601 + parameters[XX6R] * t602 - parameters[XY6] * t605
-        + parameters[XZ6] * t611;
-    const puma560_real_t t613 = t338 * t338;
-    const puma560_real_t t614 = t341 * t341;
-    const puma560_real_t t615 = t211 + t322;
-    const puma560_real_t t616 = t108 * t321;
-    const puma560_real_t t617 = t212 + (PUMA560_C(0.4318) * t615 - PUMA560_C(-0.1254) * t616);
-    const puma560_real_t t618 = t105 * t321;
-    const puma560_real_t t619 = t209 + (t208 + PUMA560_C(0.1254) * t618);
-    const puma560_real_t t620 = t73 * t619 - t70 * t617;
-    const puma560_real_t t621 = t333 * t333; /* link j3: motion */
-    const puma560_real_t t622 = t204 + t621; /* link j4: motion */
-    const puma560_real_t t623 = t620 + (PUMA560_C(0.0203) * t622 + PUMA560_C(0.4318) * t575);
-    const puma560_real_t t624 = t587 + t588;
-    const puma560_real_t t625 = t219 + (t219 - t618);
-    const puma560_real_t t626 = t218 + PUMA560_C(0.4318) * t625;
-    const puma560_real_t t627 = t626 + (PUMA560_C(0.0203) * t624 + PUMA560_C(0.4318) * t579);
-    const puma560_real_t t628 = t32 * t627 - t34 * t623;
-    const puma560_real_t t629 = t70 * t619 + t73 * t617;
-    const puma560_real_t t630 = t573 - t574;
-    const puma560_real_t t631 = t330 * t330; /* link j3: motion */
-    const puma560_real_t t632 = t204 + t631; /* link j4: motion */
-    const puma560_real_t t633 = t629 + (PUMA560_C(-0.4318) * t632 + PUMA560_C(0.0203) * t630);
-    const puma560_real_t t634 = t15 * t633 - t13 * t628;
-    const puma560_real_t t635 = parameters[YZ6] * (t613 - t614) + t612 + parameters[MY6] * t634;
-    const puma560_real_t t636 = t609 - t610;
-    const puma560_real_t t637 = t601 + t602;
-    const puma560_real_t t638 = t344 * t344; /* link j6: motion */
-    const puma560_real_t t639 = parameters[XZ6] * (t638 - t614) - (t230 * t604 + parameters[XY6] * t637
-        + parameters[YZ6] * t636);
-    const puma560_real_t t640 = t639 + parameters[MX6] * t634;
-    const puma560_real_t t641 = t607 + t608;
-    const puma560_real_t t642 = t584 + t583;
-    const puma560_real_t t643 = parameters[ZZ5R] * t597 + parameters[XX5R] * t598 - parameters[XY5] * t641
-        - parameters[XZ5] * t642;
-    const puma560_real_t t644 = t340 * t340; /* link j5: motion */
-    const puma560_real_t t645 = t337 * t337;
-    const puma560_real_t t646 = t32 * t623 + t34 * t627;
-    const puma560_real_t t647 = parameters[YZ5] * (t645 - t644) + t643 + parameters[MY5R] * t646 - (t2 * t635
-        + t1 * t640);
-    const puma560_real_t t648 = parameters[XX6R] * t610 - parameters[ZZ6] * t609 + parameters[YZ6] * t603
-        + parameters[XZ6] * t600;
-    const puma560_real_t t649 = t15 * t628 + t13 * t633;
-    const puma560_real_t t650 = t2 * t646 - t1 * t649;
-    const puma560_real_t t651 = t2 * t649 + t1 * t646;
-    const puma560_real_t t652 = parameters[XY6] * (t613 - t638) + t648 + (parameters[MY6] * t651
-        - parameters[MX6] * t650);
-    const puma560_real_t t653 = t335 * t335;
-    const puma560_real_t t654 = parameters[XZ5] * (t653 - t645) + (t246 * t607 + parameters[XY5] * t599
-        - parameters[YZ5] * t585);
-    const puma560_real_t t655 = t654 - parameters[MX5] * t646 + t652;
-    const puma560_real_t t656 = t581 - t582;
-    const puma560_real_t t657 = t590 - t589;
-    const puma560_real_t t658 = parameters[XZ4] * t657 - (parameters[ZZ4R] * t593 + parameters[XX4R] * t594
-        + parameters[XY4] * t656);
-    const puma560_real_t t659 = t336 * t336; /* link j4: motion */
-    const puma560_real_t t660 = t334 * t334;
-    const puma560_real_t t661 = parameters[YZ4] * (t659 - t660) - t658 + parameters[MY4R] * t633 + (t13 * t655
-        - t15 * t647);
-    const puma560_real_t t662 = parameters[ZZ5R] * t583 - parameters[XX5R] * t584 - parameters[YZ5] * t606
-        + parameters[XZ5] * t596;
-    const puma560_real_t t663 = parameters[XY5] * (t653 - t644) + t662 + (parameters[MX5] * t634
-        - parameters[MY5R] * t649);
-    const puma560_real_t t664 = t331 * t331;
-    const puma560_real_t t665 = parameters[XZ4] * (t664 - t660) + (t259 * t581 - parameters[XY4] * t595
-        - parameters[YZ4] * t591);
-    const puma560_real_t t666 = t665 + parameters[MX4] * t633 + (t663 + (t2 * t640 - t1 * t635));
-    const puma560_real_t t667 = parameters[MX6] * (t613 + t614) + parameters[MY6] * t636;
-    const puma560_real_t t668 = parameters[MX6] * t611 - parameters[MY6] * (t638 + t614);
-    const puma560_real_t t669 = parameters[MX5] * (t644 + t645) + parameters[MY5R] * t585 + (t2 * t667
-        + t1 * t668);
-    const puma560_real_t t670 = parameters[MX5] * t642 - parameters[MY5R] * (t653 + t645)
-        + (parameters[MX6] * t605 + parameters[MY6] * t637);
-    const puma560_real_t t671 = parameters[MX4] * (t659 + t660) + parameters[MY4R] * t591 + (t15 * t669
-        + t13 * t670);
-    const puma560_real_t t672 = t1 * t667 - t2 * t668 - (parameters[MX5] * t641 + parameters[MY5R] * t599);
-    const puma560_real_t t673 = parameters[MY4R] * (t664 + t660) + parameters[MX4] * t657 + t672;
-    const puma560_real_t t674 = t32 * t671 + t34 * t673;
-    const puma560_real_t t675 = parameters[ZZ3R] * t577 - parameters[XX3R] * t578 + parameters[XY3R] * t624
-        + parameters[XZ3] * t630;
-    const puma560_real_t t676 = parameters[MY3R] * t626 + (parameters[YZ3] * (t204 - t621) - t675)
-        - (t34 * t661 + t32 * t666 + PUMA560_C(0.4318) * t674);
-    const puma560_real_t t677 = parameters[YZ4] * t580 - (parameters[XX4R] * t590 + parameters[ZZ4R] * t589)
-        + parameters[XZ4] * t592;
-    const puma560_real_t t678 = parameters[XY4] * (t659 - t664) + t677 + (parameters[MY4R] * t628
-        - parameters[MX4] * t646);
-    const puma560_real_t t679 = t678 + (t13 * t647 + t15 * t655) + PUMA560_C(0.0203) * t674;
-    const puma560_real_t t680 = parameters[XZ3] * (t631 - t204) + (t277 * t587 + parameters[XY3R] * t579
-        - parameters[YZ3] * t575);
-    const puma560_real_t t681 = t680 - parameters[MX3R] * t626 + t679;
-    const puma560_real_t t682 = parameters[MX3R] * t622 + parameters[MY3R] * t575 + (t34 * t671 - t32 * t673);
-    const puma560_real_t t683 = parameters[MX4] * t656 - parameters[MY4R] * t595 + (t13 * t669 - t15 * t670);
-    const puma560_real_t t684 = parameters[MY3R] * t632 - parameters[MX3R] * t630 + t683;
-    const puma560_real_t t685 = PUMA560_C(0.1254) * (t73 * t682 - t70 * t684) + PUMA560_C(0.4318) * (t674
-        - (parameters[MX3R] * t624 + parameters[MY3R] * t579));
-    const puma560_real_t t686 = t285 + t616;
-    const puma560_real_t t687 = t291 + parameters[XY2] * (t285 + t686) + parameters[YZ2] * (t211 - t322);
-    const puma560_real_t t688 = t687 - t292 + (t70 * t676 + t73 * t681 + t685);
-    const puma560_real_t t689 = PUMA560_C(-2.0) * t155; /* link j2: derivatives */
-    const puma560_real_t t690 = PUMA560_C(2.0) * t154;
-    const puma560_real_t t691 = t146 * t217 + (t107 * t616 - t104 * t618) - (t443 * t689 + t448 * t690);
-    const puma560_real_t t692 = t70 * t681 - t73 * t676 + PUMA560_C(0.1254) * (t70 * t682 + t73 * t684);
-    const puma560_real_t t693 = parameters[XY2] * t625 - (t286 + parameters[XX2R] * t686)
-        + parameters[XZ2R] * t615;
-    const puma560_real_t t694 = t147 * t217 + (t103 * t616 - t107 * t618) - (t451 * t689 + t445 * t690);
-    const puma560_real_t t695 = t105 * (t288 + t693 + t692 + (t694 - t41 * t212));
-    const puma560_real_t t696 = PUMA560_C(0.06944177768728742) * (t108 * (t688 + (t41 * t209 + t691)) + t695);
-    const puma560_real_t t697 = t155 * t462 - t154 * t464 + (t91 * t217 + (t147 * t616 - t146 * t618));
-    const puma560_real_t t698 = (t82 - parameters[MX2R]) * t209 - (t106 - parameters[MY2]) * t212 + t697;
-    const puma560_real_t t699 = PUMA560_C(0.04032672714331514) * t698;
-    const puma560_real_t t700 = t155 * t471 + t154 * t472 + (t142 * t616 - t141 * t618 - t83 * t217);
-    const puma560_real_t t701 = PUMA560_C(0.08095560645504385) * (t82 * t209 - t106 * t212 + t700);
-    const puma560_real_t t702 = t155 * t486 + t154 * t488 + (t133 * t616 - t131 * t618 - t72 * t217);
-    const puma560_real_t t703 = PUMA560_C(0.18787994020908783) * (t132 * t212 + t71 * t209 + t702);
-    const puma560_real_t t704 = t456 * t699 - t454 * t696 - t467 * t701 + t476 * t703;
-    const puma560_real_t t705 = t155 * t503 + t154 * t504 + (t77 * t217 + (t124 * t618 - t126 * t616));
-    const puma560_real_t t706 = PUMA560_C(0.19862511694053758) * (t76 * t209 - t125 * t212 + t705);
-    const puma560_real_t t707 = t155 * t521 + t154 * t522 + (t75 * t217 + (t117 * t618 - t116 * t616));
-    const puma560_real_t t708 = PUMA560_C(0.1862884266452062) * (t74 * t209 - t115 * t212 + t707);
-    ddq_by_q[1] = t704 + t495 * t706 + t511 * t708;
-    const puma560_real_t t709 = t525 * t699 - t524 * t696 - t527 * t701 + t529 * t703;
-    ddq_by_q[7] = t709 + t532 * t706 + t534 * t708;
-    const puma560_real_t t710 = t536 * t699 - t535 * t696 - t537 * t701 + t539 * t703;
-    ddq_by_q[13] = t710 + t542 * t706 + t544 * t708;
-    const puma560_real_t t711 = t546 * t699 - t545 * t696 - t547 * t701 + t549 * t703;
-    ddq_by_q[19] = t711 + t552 * t706 + t554 * t708;
-    const puma560_real_t t712 = t556 * t699 - t555 * t696 - t557 * t701 + t558 * t703;
-    ddq_by_q[25] = t712 + t561 * t706 + t564 * t708;
-    const puma560_real_t t713 = t566 * t699 - t565 * t696 - t567 * t701 + t568 * t703;
-    ddq_by_q[31] = t713 + t570 * t706 + t572 * t708;
-    const puma560_real_t t714 = parameters[ZZ3R] + t418;
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t715 = t333 * t714 - parameters[YZ3] * t159 + (t457 - t381 - t41 * t398);
-    const puma560_real_t t716 = parameters[XZ3] * t159 + t330 * t714 - (t32 * t420 + t34 * t421 + t41 * t404);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t717 = t73 * t715 - t70 * t716 + (PUMA560_C(0.1254) * t429 + t41 * t431);
-    const puma560_real_t t718 = parameters[ZZ2R] + t447;
-    /* link j2: derivatives */
-    const puma560_real_t t719 = PUMA560_C(2.0) * (t717 - (parameters[YZ2] * dq[1] + t155 * t718))
-        + (t104 * t689 + t107 * t690);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t720 = t70 * t715 + t73 * t716 + (PUMA560_C(0.1254) * t449 - t41 * t436);
-    /* link j2: derivatives */
-    const puma560_real_t t721 = PUMA560_C(2.0) * (parameters[XZ2R] * dq[1] + t154 * t718 + t720)
-        + (t107 * t689 + t103 * t690);
-    const puma560_real_t t722 = PUMA560_C(0.06944177768728742) * (t108 * t719 + t105 * t721);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t723 = t407 + t411 + (t406 + (t372 - t387 - t403));
-    /* link j2: derivatives */
-    const puma560_real_t t724 = PUMA560_C(2.0) * (t444 - t441 + (t440 + (t723 - (t435 + t439))));
-    const puma560_real_t t725 = PUMA560_C(0.04032672714331514) * (t724 + PUMA560_C(2.0) * (t147 * t154
-        - t146 * t155));
-    const puma560_real_t t726 = PUMA560_C(-468.7608695652174) * parameters[FV2] + t725;
-    const puma560_real_t t727 = PUMA560_C(2.0) * t723; /* link j3: derivatives */
-    const puma560_real_t t728 = t727 + (t82 * t487 - t106 * t485) + PUMA560_C(2.0) * (t142 * t154
-        - t141 * t155);
-    const puma560_real_t t729 = PUMA560_C(0.08095560645504385) * t728;
-    const puma560_real_t t730 = t32 * t477 + t34 * t478 + t41 * t479; /* link j4: derivatives */
-    const puma560_real_t t731 = t730 + (t71 * t487 + t132 * t485) + PUMA560_C(2.0) * (t133 * t154
-        - t131 * t155);
-    const puma560_real_t t732 = PUMA560_C(0.18787994020908783) * t731;
-    const puma560_real_t t733 = t726 * t456 - t722 * t454 - t729 * t467 + t732 * t476;
+    const puma560_real_t t651 = t366 * t650 - parameters[YZ5] * t354 + (t411 + t610);
+    const puma560_real_t t652 = PUMA560_C(-2.0) * t651 - (t21 * t589 + t22 * t592); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t653 = t353 * t650 - parameters[XZ5] * t354 + (t1 * t427 - t2 * t428);
     /* link j5: derivatives */
-    const puma560_real_t t734 = t32 * t498 + t34 * t499 + (t39 * t483 + t51 * t479);
-    const puma560_real_t t735 = t734 + (t76 * t487 - t125 * t485) + PUMA560_C(2.0) * (t124 * t155
-        - t126 * t154);
-    const puma560_real_t t736 = PUMA560_C(0.19862511694053758) * t735;
+    const puma560_real_t t654 = PUMA560_C(-2.0) * t653 + (t22 * t589 + parameters[ZZ6] * t592);
+    const puma560_real_t t655 = t14 * t652 + t12 * t654;
+    const puma560_real_t t656 = t586 - t603 + (t585 - t408); /* link j6: inertia, momentum beyond */
+    const puma560_real_t t657 = PUMA560_C(2.0) * t656; /* link j5: derivatives */
+    const puma560_real_t t658 = t657 + (t11 * t589 + t13 * t592);
+    const puma560_real_t t659 = PUMA560_C(2.0) * t620 - t33 * t592;
+    const puma560_real_t t660 = PUMA560_C(2.0) * t621 + t33 * t589;
+    const puma560_real_t t661 = t12 * t660 - t14 * t659;
+    const puma560_real_t t662 = parameters[MY5R] * t589 + t36 * t592;
+    const puma560_real_t t663 = t30 * t661 + t32 * t662;
+    const puma560_real_t t664 = PUMA560_C(-0.4318) * t663;
+    const puma560_real_t t665 = t32 * t655 - t30 * t658 + t664;
+    const puma560_real_t t666 = t14 * t654 - t12 * t652;
+    const puma560_real_t t667 = t666 + PUMA560_C(-0.0203) * t663;
+    const puma560_real_t t668 = t32 * t661 - t30 * t662;
+    const puma560_real_t t669 = t12 * t659 + t14 * t660;
+    const puma560_real_t t670 = t70 * t669 - t67 * t668;
+    const puma560_real_t t671 = t104 * (t70 * t665 + t67 * t667 + PUMA560_C(0.1254) * t670);
+    const puma560_real_t t672 = t67 * t665 - t70 * t667 + (PUMA560_C(0.1254) * (t70 * t668 + t67 * t669)
+        - t664);
+    const puma560_real_t t673 = PUMA560_C(0.06944177768728742) * (t671 + t101 * t672);
+    const puma560_real_t t674 = t30 * t655 + t32 * t658 + (PUMA560_C(0.0203) * t669
+        + PUMA560_C(0.4318) * t668);
+    const puma560_real_t t675 = PUMA560_C(0.04032672714331514) * (t674 + PUMA560_C(0.4318) * t670);
+    const puma560_real_t t676 = PUMA560_C(0.08095560645504385) * t674;
+    const puma560_real_t t677 = PUMA560_C(0.18787994020908783) * t666;
+    const puma560_real_t t678 = t675 * t463 - t673 * t459 - t676 * t466 + t677 * t470;
+    const puma560_real_t t679 = PUMA560_C(0.19862511694053758) * (t657 + PUMA560_C(2.0) * (t13 * t353
+        - t11 * t366));
+    const puma560_real_t t680 = PUMA560_C(-1027.4714285714285) * parameters[FV5] + t679;
+    const puma560_real_t t681 = t2 * t479 - t1 * t478; /* link j6: derivatives */
+    const puma560_real_t t682 = PUMA560_C(0.1862884266452062) * (t681
+        + PUMA560_C(2.0) * (parameters[ZZ6] * t353 - t16 * t366));
+    ddq_by_dq[4] = t678 + t680 * t477 + t682 * t486;
+    const puma560_real_t t683 = t675 * t488 - t673 * t487 - t676 * t490 + t677 * t492;
+    ddq_by_dq[10] = t683 + t680 * t495 + t682 * t497;
+    const puma560_real_t t684 = t675 * t499 - t673 * t498 - t676 * t500 + t677 * t502;
+    ddq_by_dq[16] = t684 + t680 * t505 + t682 * t507;
+    const puma560_real_t t685 = t675 * t509 - t673 * t508 - t676 * t510 + t677 * t512;
+    ddq_by_dq[22] = t685 + t680 * t515 + t682 * t517;
+    const puma560_real_t t686 = t675 * t519 - t673 * t518 - t676 * t520 + t677 * t521;
+    ddq_by_dq[28] = t686 + t680 * t524 + t682 * t527;
+    const puma560_real_t t687 = t675 * t529 - t673 * t528 - t676 * t530 + t677 * t531;
+    ddq_by_dq[34] = t687 + t680 * t533 + t682 * t535;
+    ddq_by_input[4] = t477;
+    ddq_by_input[10] = t495;
+    ddq_by_input[16] = t505;
+    ddq_by_input[22] = t515;
+    ddq_by_input[28] = t524;
+    ddq_by_input[34] = t533;
+    const puma560_real_t t688 = t363 - t364;
+    const puma560_real_t t689 = t337 - t334;
+    const puma560_real_t t690 = parameters[XZ4] * t689 - (parameters[ZZ4R] * t349 + parameters[XX4R] * t350
+        + parameters[XY4] * t688);
+    const puma560_real_t t691 = t336 * t336; /* link j4: motion */
+    const puma560_real_t t692 = t348 * t348;
+    const puma560_real_t t693 = parameters[YZ4] * (t691 - t692) - t690 + parameters[MY4R] * t400 + (t12 * t581
+        - t14 * t598);
+    const puma560_real_t t694 = t48 * t430;
+    const puma560_real_t t695 = t8 * t347;
+    const puma560_real_t t696 = t335 * t335;
+    const puma560_real_t t697 = t696 + t691; /* link j5: motion */
+    const puma560_real_t t698 = PUMA560_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const puma560_real_t t699 = parameters[XX4R] - t698;
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t700 = t348 * t699 + parameters[XZ4] * t335 + (t14 * t611 - t12 * t612);
+    const puma560_real_t t701 = PUMA560_C(-2.0) * t336; /* link j4: derivatives */
+    const puma560_real_t t702 = parameters[XY4] * t348;
+    const puma560_real_t t703 = parameters[YZ4] * t335;
+    const puma560_real_t t704 = t702 + t703 - t656; /* link j5: inertia, momentum beyond */
+    const puma560_real_t t705 = PUMA560_C(2.0) * t335; /* link j4: derivatives */
+    const puma560_real_t t706 = t700 * t701 - t704 * t705 - (t31 * t697 + (t695 - t58 * t362));
+    const puma560_real_t t707 = t693 + (t694 - t706);
+    const puma560_real_t t708 = parameters[ZZ5R] * t365 - parameters[XX5R] * t367 - parameters[YZ5] * t352
+        + parameters[XZ5] * t369;
+    const puma560_real_t t709 = parameters[XY5] * (t578 - t582) + t708 + (parameters[MX5] * t401
+        - parameters[MY5R] * t429);
+    const puma560_real_t t710 = parameters[XZ4] * (t696 - t692) + (t258 * t363 - parameters[XY4] * t351
+        - parameters[YZ4] * t338);
+    const puma560_real_t t711 = t710 + parameters[MX4] * t400 + (t709 + (t2 * t402 - t1 * t418));
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t712 = t14 * (t588 + t604) + t12 * (t602 - t591);
+    const puma560_real_t t713 = t14 * t712;
+    const puma560_real_t t714 = parameters[XZ4] * t336;
+    const puma560_real_t t715 = t702 - t714 + (t604 - t713);
+    const puma560_real_t t716 = parameters[YZ4] * t336 + t348 * t698 + (t14 * t651 + t12 * t653);
+    const puma560_real_t t717 = t715 * t701 + t716 * t705 + (t58 * t347 - t57 * t362 - t29 * t697);
+    const puma560_real_t t718 = t711 + (t717 + t48 * t395);
+    const puma560_real_t t719 = t1 * t440 - t2 * t437 - (parameters[MX5] * t595 + parameters[MY5R] * t372);
+    const puma560_real_t t720 = parameters[MY4R] * (t696 + t692) + parameters[MX4] * t689 + t719;
+    const puma560_real_t t721 = parameters[MY4R] * t335 + parameters[MX4] * t336 + (t12 * t621 - t14 * t620);
+    const puma560_real_t t722 = t720 + (t34 * t697 + t48 * t347 - t721 * t705);
+    const puma560_real_t t723 = parameters[MX4] * (t691 + t692) + parameters[MY4R] * t338 + (t14 * t614
+        + t12 * t617);
+    const puma560_real_t t724 = t723 + (t721 * t701 + (t38 * t697 - t48 * t362));
+    const puma560_real_t t725 = t30 * t722 - t32 * t724;
+    const puma560_real_t t726 = PUMA560_C(0.4318) * t725;
+    const puma560_real_t t727 = t32 * t718 - t30 * t707 - t726;
+    const puma560_real_t t728 = t38 * t395 + t34 * t430;
+    const puma560_real_t t729 = t25 * t697 + (t29 * t362 + t31 * t347);
+    const puma560_real_t t730 = t12 * t712;
+    const puma560_real_t t731 = t730 - t602 - (parameters[XY4] * t335 + t336 * t699);
+    const puma560_real_t t732 = t335 * t698 - parameters[XY4] * t336 - (t14 * t653 - t12 * t651);
+    const puma560_real_t t733 = t732 * t705 - t731 * t701 - t729 - t728 + PUMA560_C(0.0203) * t725;
+    const puma560_real_t t734 = t32 * t722 + t30 * t724;
+    const puma560_real_t t735 = parameters[MX4] * t348 - t615;
+    const puma560_real_t t736 = parameters[MY4R] * t348 + (t14 * t621 + t12 * t620);
+    const puma560_real_t t737 = t735 * t701 - t736 * t705 + (t34 * t362 + t38 * t347);
+    const puma560_real_t t738 = t67 * t727 + t70 * t733 + (t726 + PUMA560_C(0.1254) * (t70 * t734
+        + t67 * t737));
+    const puma560_real_t t739 = t70 * t737 - t67 * t734;
+    const puma560_real_t t740 = t104 * (t70 * t727 - t67 * t733 + PUMA560_C(0.1254) * t739);
+    const puma560_real_t t741 = PUMA560_C(0.06944177768728742) * (t740 + t101 * t738);
+    const puma560_real_t t742 = t30 * t718 + t32 * t707 + (PUMA560_C(0.0203) * t737
+        + PUMA560_C(0.4318) * t734);
+    const puma560_real_t t743 = PUMA560_C(0.04032672714331514) * (t742 + PUMA560_C(0.4318) * t739);
+    const puma560_real_t t744 = PUMA560_C(0.08095560645504385) * t742;
+    const puma560_real_t t745 = PUMA560_C(2.0) * t731; /* link j4: derivatives */
+    const puma560_real_t t746 = PUMA560_C(2.0) * t732;
+    const puma560_real_t t747 = PUMA560_C(0.18787994020908783) * (t728 + (t729 - (t336 * t745
+        + t335 * t746)));
+    const puma560_real_t t748 = t463 * t743 - t459 * t741 - t466 * t744 + t470 * t747;
+    const puma560_real_t t749 = t12 * t640 - t14 * t639; /* link j5: derivatives */
+    const puma560_real_t t750 = t15 * t697 + (t695 - t47 * t362) - (t336 * t749 + t335 * t657);
+    const puma560_real_t t751 = PUMA560_C(0.19862511694053758) * (t750 + t694);
+    const puma560_real_t t752 = t12 * t543 - t14 * t642; /* link j6: derivatives */
+    const puma560_real_t t753 = t17 * t697 + (t42 * t362 - t3 * t347) - (t336 * t752 + t335 * t681);
+    const puma560_real_t t754 = PUMA560_C(0.1862884266452062) * (t753 + (t43 * t430 - t35 * t395));
+    ddq_by_q[3] = t748 + t477 * t751 + t486 * t754;
+    const puma560_real_t t755 = t488 * t743 - t487 * t741 - t490 * t744 + t492 * t747;
+    ddq_by_q[9] = t755 + t495 * t751 + t497 * t754;
+    const puma560_real_t t756 = t499 * t743 - t498 * t741 - t500 * t744 + t502 * t747;
+    ddq_by_q[15] = t756 + t505 * t751 + t507 * t754;
+    const puma560_real_t t757 = t509 * t743 - t508 * t741 - t510 * t744 + t512 * t747;
+    ddq_by_q[21] = t757 + t515 * t751 + t517 * t754;
+    const puma560_real_t t758 = t519 * t743 - t518 * t741 - t520 * t744 + t521 * t747;
+    ddq_by_q[27] = t758 + t524 * t751 + t527 * t754;
+    const puma560_real_t t759 = t529 * t743 - t528 * t741 - t530 * t744 + t531 * t747;
+    ddq_by_q[33] = t759 + t533 * t751 + t535 * t754;
+    const puma560_real_t t760 = t698 - parameters[ZZ4R];
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t761 = t591 + t730 - (t336 * t760 + parameters[YZ4] * t348);
+    const puma560_real_t t762 = PUMA560_C(2.0) * t761 + (t58 * t705 - t57 * t701); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t763 = parameters[XZ4] * t348 - t335 * t760 + (t12 * t611 + t14 * t612);
+    const puma560_real_t t764 = PUMA560_C(2.0) * t763 - (t58 * t701 - t8 * t705); /* link j4: derivatives */
+    const puma560_real_t t765 = PUMA560_C(-2.0) * t735 + t48 * t705;
+    const puma560_real_t t766 = PUMA560_C(2.0) * t736 - t48 * t701;
+    const puma560_real_t t767 = t32 * t766 - t30 * t765;
+    const puma560_real_t t768 = PUMA560_C(0.4318) * t767;
+    const puma560_real_t t769 = t32 * t762 - t30 * t764 + t768;
+    const puma560_real_t t770 = t714 + t703 + (t713 - t588); /* link j5: inertia, momentum beyond */
+    const puma560_real_t t771 = PUMA560_C(2.0) * t770; /* link j4: derivatives */
+    const puma560_real_t t772 = t771 + (t29 * t701 + t31 * t705) + PUMA560_C(0.0203) * t767;
+    const puma560_real_t t773 = t32 * t765 + t30 * t766;
+    const puma560_real_t t774 = t34 * t701 + t38 * t705;
+    const puma560_real_t t775 = t70 * t774 - t67 * t773;
+    const puma560_real_t t776 = t104 * (t70 * t769 + t67 * t772 + PUMA560_C(0.1254) * t775);
+    const puma560_real_t t777 = t67 * t769 - t70 * t772 + (PUMA560_C(0.1254) * (t70 * t773 + t67 * t774)
+        - t768);
+    const puma560_real_t t778 = PUMA560_C(0.06944177768728742) * (t776 + t101 * t777);
+    const puma560_real_t t779 = t30 * t762 + t32 * t764 + (PUMA560_C(0.0203) * t774
+        + PUMA560_C(0.4318) * t773);
+    const puma560_real_t t780 = PUMA560_C(0.04032672714331514) * (t779 + PUMA560_C(0.4318) * t775);
+    const puma560_real_t t781 = PUMA560_C(0.08095560645504385) * t779;
+    const puma560_real_t t782 = PUMA560_C(0.18787994020908783) * (t771 + PUMA560_C(2.0) * (t31 * t335
+        - t29 * t336));
+    const puma560_real_t t783 = PUMA560_C(-1086.2342857142855) * parameters[FV4] + t782;
+    const puma560_real_t t784 = t780 * t463 - t778 * t459 - t781 * t466 + t783 * t470;
+    const puma560_real_t t785 = t12 * t639 + t14 * t640; /* link j5: derivatives */
+    const puma560_real_t t786 = PUMA560_C(0.19862511694053758) * (t785 + PUMA560_C(2.0) * (t47 * t336
+        + t8 * t335));
+    const puma560_real_t t787 = t12 * t642 + t14 * t543; /* link j6: derivatives */
+    const puma560_real_t t788 = PUMA560_C(0.1862884266452062) * (t787 + PUMA560_C(-2.0) * (t42 * t336
+        + t3 * t335));
+    ddq_by_dq[3] = t784 + t786 * t477 + t788 * t486;
+    const puma560_real_t t789 = t780 * t488 - t778 * t487 - t781 * t490 + t783 * t492;
+    ddq_by_dq[9] = t789 + t786 * t495 + t788 * t497;
+    const puma560_real_t t790 = t780 * t499 - t778 * t498 - t781 * t500 + t783 * t502;
+    ddq_by_dq[15] = t790 + t786 * t505 + t788 * t507;
+    const puma560_real_t t791 = t780 * t509 - t778 * t508 - t781 * t510 + t783 * t512;
+    ddq_by_dq[21] = t791 + t786 * t515 + t788 * t517;
+    const puma560_real_t t792 = t780 * t519 - t778 * t518 - t781 * t520 + t783 * t521;
+    ddq_by_dq[27] = t792 + t786 * t524 + t788 * t527;
+    const puma560_real_t t793 = t780 * t529 - t778 * t528 - t781 * t530 + t783 * t531;
+    ddq_by_dq[33] = t793 + t786 * t533 + t788 * t535;
+    ddq_by_input[3] = t470;
+    ddq_by_input[9] = t492;
+    ddq_by_input[15] = t502;
+    ddq_by_input[21] = t512;
+    ddq_by_input[27] = t521;
+    ddq_by_input[33] = t531;
+    const puma560_real_t t794 = parameters[YZ4] * t362 - (parameters[XX4R] * t337 + parameters[ZZ4R] * t334)
+        + parameters[XZ4] * t347;
+    const puma560_real_t t795 = parameters[XY4] * (t691 - t696) + t794 + (parameters[MY4R] * t395
+        - parameters[MX4] * t430);
+    const puma560_real_t t796 = t30 * t723 + t32 * t720;
+    const puma560_real_t t797 = t795 + (t12 * t598 + t14 * t581) + PUMA560_C(0.0203) * t796;
+    const puma560_real_t t798 = parameters[XZ3] * (t398 - t203) + (t276 * t332 + parameters[XY3R] * t346
+        - parameters[YZ3] * t342);
+    const puma560_real_t t799 = t798 - parameters[MX3R] * t393 + t797;
+    const puma560_real_t t800 = t398 + t388; /* link j4: motion */
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t801 = t32 * (t715 + t704) + t30 * (t716 + t700);
+    const puma560_real_t t802 = t32 * t801;
+    const puma560_real_t t803 = t32 * t736 + t30 * t735;
+    const puma560_real_t t804 = PUMA560_C(0.0203) * t803;
+    const puma560_real_t t805 = PUMA560_C(0.4318) * t158; /* link j4: velocity of its origin */
+    const puma560_real_t t806 = t61 * t805; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t807 = PUMA560_C(0.4318) * t721;
+    const puma560_real_t t808 = PUMA560_C(-0.4318) * t331 + PUMA560_C(-0.0203) * t340;
+    const puma560_real_t t809 = t39 * t808;
+    const puma560_real_t t810 = PUMA560_C(-0.0203) * t158; /* link j4: velocity of its origin */
+    const puma560_real_t t811 = t48 * t810; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t812 = t804 + t807 + (t811 - t806 + t809);
+    const puma560_real_t t813 = parameters[XZ3] * t340;
+    const puma560_real_t t814 = parameters[XY3R] * t158;
+    const puma560_real_t t815 = t814 - t813 + (t812 + (t802 - t704 + (t806 - t804)));
+    const puma560_real_t t816 = PUMA560_C(-2.0) * t340; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t817 = t32 * t761 - t30 * t763 + (PUMA560_C(0.4318) * t803 + t48 * t805);
+    const puma560_real_t t818 = PUMA560_C(-0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const puma560_real_t t819 = parameters[YZ3] * t340 - t158 * t818 + t817;
+    const puma560_real_t t820 = PUMA560_C(2.0) * t331; /* link j3: derivatives */
+    const puma560_real_t t821 = t815 * t816 + t819 * t820 + (t133 * t800 + (t92 * t329 + t95 * t343));
+    const puma560_real_t t822 = t799 + (t821 + t39 * t387);
+    const puma560_real_t t823 = parameters[ZZ3R] * t344 - parameters[XX3R] * t345 + parameters[XY3R] * t391
+        + parameters[XZ3] * t397;
+    const puma560_real_t t824 = parameters[MY3R] * t393 + (parameters[YZ3] * (t203 - t388) - t823)
+        - (t32 * t693 + t30 * t711 + PUMA560_C(0.4318) * t796);
+    const puma560_real_t t825 = t39 * t396;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t826 = t30 * t732 - t32 * t731 - (PUMA560_C(0.0203) * t721 - t61 * t810);
+    const puma560_real_t t827 = parameters[XX3R] + t818;
+    const puma560_real_t t828 = t158 * t827 + parameters[XZ3] * t331 - t826;
+    const puma560_real_t t829 = parameters[YZ3] * t331;
+    const puma560_real_t t830 = t814 + t829 - (t812 - (t807 + t811 - t770));
+    const puma560_real_t t831 = t830 * t820 - t828 * t816 + (t134 * t800 + (t95 * t329 + t91 * t343));
+    const puma560_real_t t832 = t824 + (t825 - t831);
+    const puma560_real_t t833 = parameters[MX3R] * t389 + parameters[MY3R] * t342 + (t32 * t723 - t30 * t720);
+    const puma560_real_t t834 = t30 * t736 - t32 * t735;
+    const puma560_real_t t835 = parameters[MY3R] * t331 + parameters[MX3R] * t340 - t834;
+    const puma560_real_t t836 = t833 + (t835 * t816 - (t77 * t800 + t39 * t329));
+    const puma560_real_t t837 = parameters[MX4] * t688 - parameters[MY4R] * t351 + (t12 * t614 - t14 * t617);
+    const puma560_real_t t838 = parameters[MY3R] * t399 - parameters[MX3R] * t397 + t837;
+    const puma560_real_t t839 = t838 - (t835 * t820 - (t78 * t800 - t39 * t343));
+    const puma560_real_t t840 = t70 * t836 - t67 * t839;
+    const puma560_real_t t841 = t104 * (t70 * t822 + t67 * t832 + PUMA560_C(0.1254) * t840);
+    const puma560_real_t t842 = parameters[MY3R] * t158 + t803;
+    const puma560_real_t t843 = parameters[MX3R] * t158 - t721;
+    const puma560_real_t t844 = t843 * t816 - t842 * t820 - (t78 * t329 + t77 * t343);
+    const puma560_real_t t845 = PUMA560_C(0.1254) * (t70 * t839 + t67 * t836) + PUMA560_C(0.4318) * t844;
+    const puma560_real_t t846 = t841 + t101 * (t67 * t822 - t70 * t832 + t845);
+    const puma560_real_t t847 = PUMA560_C(0.06944177768728742) * t846;
+    const puma560_real_t t848 = t77 * t387 + t78 * t396;
+    const puma560_real_t t849 = t64 * t800 + (t133 * t329 + t134 * t343);
+    const puma560_real_t t850 = t30 * t801;
+    const puma560_real_t t851 = parameters[XY3R] * t331 + t340 * t827 + (t700 - t850
+        + (PUMA560_C(0.0203) * t834 - t61 * t808));
+    const puma560_real_t t852 = t30 * t761 + t32 * t763 + (PUMA560_C(0.4318) * t834 + t48 * t808);
+    const puma560_real_t t853 = t331 * t818 + parameters[XY3R] * t340 + t852;
+    const puma560_real_t t854 = t853 * t820 - t851 * t816 + t849 + t848 + PUMA560_C(0.4318) * t840;
+    const puma560_real_t t855 = PUMA560_C(0.04032672714331514) * t854;
+    const puma560_real_t t856 = PUMA560_C(2.0) * t851; /* link j3: derivatives */
+    const puma560_real_t t857 = PUMA560_C(2.0) * t853;
+    const puma560_real_t t858 = PUMA560_C(0.08095560645504385) * (t848 + (t340 * t856 + t331 * t857 + t849));
+    const puma560_real_t t859 = PUMA560_C(-0.0406) * t158; /* link j6: derivatives */
+    const puma560_real_t t860 = t30 * t746 - t32 * t745 + t61 * t859; /* link j4: derivatives */
+    const puma560_real_t t861 = PUMA560_C(2.0) * t808; /* link j6: derivatives */
+    const puma560_real_t t862 = PUMA560_C(-0.8636) * t158;
+    const puma560_real_t t863 = t771 + (t39 * t861 + t61 * t862); /* link j4: derivatives */
+    const puma560_real_t t864 = t340 * t860 + t331 * t863 - (t41 * t800 + (t125 * t329 + t126 * t343));
+    const puma560_real_t t865 = PUMA560_C(0.18787994020908783) * (t864 + t825);
+    const puma560_real_t t866 = t463 * t855 - t459 * t847 - t466 * t858 + t470 * t865;
+    /* link j5: derivatives */
+    const puma560_real_t t867 = t30 * t657 - t32 * t749 - (t37 * t861 - t116 * t859);
+    const puma560_real_t t868 = t785 + (t49 * t861 + t116 * t862);
+    const puma560_real_t t869 = t340 * t867 + t331 * t868 + (t50 * t800 - (t118 * t329 + t119 * t343));
+    const puma560_real_t t870 = PUMA560_C(0.19862511694053758) * (t869 + (t49 * t396 + t37 * t387));
     /* link j6: derivatives */
-    const puma560_real_t t737 = t32 * t516 + t34 * t517 + (t47 * t483 - t46 * t479);
-    const puma560_real_t t738 = t737 + (t74 * t487 - t115 * t485) + PUMA560_C(2.0) * (t117 * t155
-        - t116 * t154);
-    const puma560_real_t t739 = PUMA560_C(0.1862884266452062) * t738;
-    ddq_by_dq[1] = t733 + t736 * t495 + t739 * t511;
-    const puma560_real_t t740 = t726 * t525 - t722 * t524 - t729 * t527 + t732 * t529;
-    ddq_by_dq[7] = t740 + t736 * t532 + t739 * t534;
-    const puma560_real_t t741 = t726 * t536 - t722 * t535 - t729 * t537 + t732 * t539;
-    ddq_by_dq[13] = t741 + t736 * t542 + t739 * t544;
-    const puma560_real_t t742 = t726 * t546 - t722 * t545 - t729 * t547 + t732 * t549;
-    ddq_by_dq[19] = t742 + t736 * t552 + t739 * t554;
-    const puma560_real_t t743 = t726 * t556 - t722 * t555 - t729 * t557 + t732 * t558;
-    ddq_by_dq[25] = t743 + t736 * t561 + t739 * t564;
-    const puma560_real_t t744 = t726 * t566 - t722 * t565 - t729 * t567 + t732 * t568;
-    ddq_by_dq[31] = t744 + t736 * t570 + t739 * t572;
-    ddq_by_input[1] = t456;
-    ddq_by_input[7] = t525;
-    ddq_by_input[13] = t536;
-    ddq_by_input[19] = t546;
-    ddq_by_input[25] = t556;
-    ddq_by_input[31] = t566;
-    const puma560_real_t t745 = t631 + t621; /* link j4: motion */
-    const puma560_real_t t746 = PUMA560_C(-2.0) * t333; /* link j3: derivatives */
-    const puma560_real_t t747 = PUMA560_C(2.0) * t330;
-    const puma560_real_t t748 = t409 * t746 + t419 * t747 + (t137 * t745 + (t96 * t586 + t99 * t576));
-    const puma560_real_t t749 = t681 + (t748 + t41 * t620);
-    const puma560_real_t t750 = t41 * t629;
-    const puma560_real_t t751 = t412 * t747 - t424 * t746 + (t138 * t745 + (t99 * t586 + t95 * t576));
-    const puma560_real_t t752 = t676 + (t750 - t751);
-    const puma560_real_t t753 = t682 + (t434 * t746 - (t80 * t745 + t41 * t586));
-    const puma560_real_t t754 = t684 - (t434 * t747 - (t81 * t745 - t41 * t576));
-    const puma560_real_t t755 = t73 * t753 - t70 * t754;
-    const puma560_real_t t756 = t108 * (t73 * t749 + t70 * t752 + PUMA560_C(0.1254) * t755);
-    const puma560_real_t t757 = t428 * t746 - t427 * t747 - (t81 * t586 + t80 * t576);
-    const puma560_real_t t758 = PUMA560_C(0.1254) * (t73 * t754 + t70 * t753) + PUMA560_C(0.4318) * t757;
-    const puma560_real_t t759 = t756 + t105 * (t70 * t749 - t73 * t752 + t758);
-    const puma560_real_t t760 = PUMA560_C(0.06944177768728742) * t759;
-    const puma560_real_t t761 = t80 * t620 + t81 * t629;
-    const puma560_real_t t762 = t66 * t745 + (t137 * t586 + t138 * t576);
-    const puma560_real_t t763 = t460 * t747 - t458 * t746 + t762 + t761 + PUMA560_C(0.4318) * t755;
-    const puma560_real_t t764 = PUMA560_C(0.04032672714331514) * t763;
-    const puma560_real_t t765 = PUMA560_C(0.08095560645504385) * (t761 + (t333 * t468 + t330 * t469 + t762));
-    const puma560_real_t t766 = t333 * t480 + t330 * t484 - (t43 * t745 + (t129 * t586 + t130 * t576));
-    const puma560_real_t t767 = PUMA560_C(0.18787994020908783) * (t766 + t750);
-    const puma560_real_t t768 = t456 * t764 - t454 * t760 - t467 * t765 + t476 * t767;
-    const puma560_real_t t769 = t333 * t500 + t330 * t502 + (t52 * t745 - (t122 * t586 + t123 * t576));
-    const puma560_real_t t770 = PUMA560_C(0.19862511694053758) * (t769 + (t51 * t629 + t39 * t620));
-    const puma560_real_t t771 = t333 * t518 + t330 * t520 + (t48 * t745 - (t113 * t586 + t114 * t576));
-    const puma560_real_t t772 = PUMA560_C(0.1862884266452062) * (t771 + (t47 * t620 - t46 * t629));
-    ddq_by_q[2] = t768 + t495 * t770 + t511 * t772;
-    const puma560_real_t t773 = t525 * t764 - t524 * t760 - t527 * t765 + t529 * t767;
-    ddq_by_q[8] = t773 + t532 * t770 + t534 * t772;
-    const puma560_real_t t774 = t536 * t764 - t535 * t760 - t537 * t765 + t539 * t767;
-    ddq_by_q[14] = t774 + t542 * t770 + t544 * t772;
-    const puma560_real_t t775 = t546 * t764 - t545 * t760 - t547 * t765 + t549 * t767;
-    ddq_by_q[20] = t775 + t552 * t770 + t554 * t772;
-    const puma560_real_t t776 = t556 * t764 - t555 * t760 - t557 * t765 + t558 * t767;
-    ddq_by_q[26] = t776 + t561 * t770 + t564 * t772;
-    const puma560_real_t t777 = t566 * t764 - t565 * t760 - t567 * t765 + t568 * t767;
-    ddq_by_q[32] = t777 + t570 * t770 + t572 * t772;
-    const puma560_real_t t778 = PUMA560_C(2.0) * t715 + (t99 * t747 - t96 * t746);
-    const puma560_real_t t779 = PUMA560_C(2.0) * t716 + (t95 * t747 - t99 * t746);
-    const puma560_real_t t780 = PUMA560_C(2.0) * t427 + t41 * t746;
-    const puma560_real_t t781 = PUMA560_C(2.0) * t428 + t41 * t747;
-    const puma560_real_t t782 = t70 * t781 + t73 * t780;
-    const puma560_real_t t783 = t108 * (t73 * t778 - t70 * t779 + PUMA560_C(0.1254) * t782);
-    const puma560_real_t t784 = PUMA560_C(0.1254) * (t70 * t780 - t73 * t781)
-        + PUMA560_C(0.4318) * (t81 * t746 - t80 * t747);
-    const puma560_real_t t785 = t783 + t105 * (t70 * t778 + t73 * t779 + t784);
-    const puma560_real_t t786 = PUMA560_C(0.06944177768728742) * t785;
-    const puma560_real_t t787 = t727 + (t138 * t747 - t137 * t746) + PUMA560_C(0.4318) * t782;
-    const puma560_real_t t788 = PUMA560_C(0.04032672714331514) * t787;
-    const puma560_real_t t789 = PUMA560_C(0.08095560645504385) * (t727 + PUMA560_C(2.0) * (t137 * t333
-        + t138 * t330));
-    const puma560_real_t t790 = PUMA560_C(-233.50565217391303) * parameters[FV3] + t789;
-    const puma560_real_t t791 = PUMA560_C(0.18787994020908783) * (t730 + PUMA560_C(-2.0) * (t129 * t333
-        + t130 * t330));
-    const puma560_real_t t792 = t788 * t456 - t786 * t454 - t790 * t467 + t791 * t476;
-    const puma560_real_t t793 = PUMA560_C(0.19862511694053758) * (t734 + PUMA560_C(-2.0) * (t122 * t333
-        + t123 * t330));
-    const puma560_real_t t794 = PUMA560_C(0.1862884266452062) * (t737 + PUMA560_C(-2.0) * (t113 * t333
-        + t114 * t330));
-    ddq_by_dq[2] = t792 + t793 * t495 + t794 * t511;
-    const puma560_real_t t795 = t788 * t525 - t786 * t524 - t790 * t527 + t791 * t529;
-    ddq_by_dq[8] = t795 + t793 * t532 + t794 * t534;
-    const puma560_real_t t796 = t788 * t536 - t786 * t535 - t790 * t537 + t791 * t539;
-    ddq_by_dq[14] = t796 + t793 * t542 + t794 * t544;
-    const puma560_real_t t797 = t788 * t546 - t786 * t545 - t790 * t547 + t791 * t549;
-    ddq_by_dq[20] = t797 + t793 * t552 + t794 * t554;
-    const puma560_real_t t798 = t788 * t556 - t786 * t555 - t790 * t557 + t791 * t558;
-    ddq_by_dq[26] = t798 + t793 * t561 + t794 * t564;
-    const puma560_real_t t799 = t788 * t566 - t786 * t565 - t790 * t567 + t791 * t568;
-    ddq_by_dq[32] = t799 + t793 * t570 + t794 * t572;
-    ddq_by_input[2] = t467;
-    ddq_by_input[8] = t527;
-    ddq_by_input[14] = t537;
-    ddq_by_input[20] = t547;
-    ddq_by_input[26] = t557;
-    ddq_by_input[32] = t567;
-    const puma560_real_t t800 = t50 * t646;
-    const puma560_real_t t801 = t8 * t592;
-    const puma560_real_t t802 = t664 + t659; /* link j5: motion */
-    const puma560_real_t t803 = PUMA560_C(-2.0) * t336; /* link j4: derivatives */
-    const puma560_real_t t804 = PUMA560_C(2.0) * t331;
-    const puma560_real_t t805 = t385 * t803 - t375 * t804 - (t33 * t802 + (t801 - t60 * t580));
-    const puma560_real_t t806 = t661 + (t800 - t805);
-    const puma560_real_t t807 = t372 * t803 + t381 * t804 + (t60 * t592 - t59 * t580 - t31 * t802);
-    const puma560_real_t t808 = t666 + (t807 + t50 * t628);
-    const puma560_real_t t809 = t673 + (t36 * t802 + t50 * t592 - t400 * t804);
-    const puma560_real_t t810 = t671 + (t400 * t803 + (t40 * t802 - t50 * t580));
-    const puma560_real_t t811 = t32 * t809 - t34 * t810;
-    const puma560_real_t t812 = PUMA560_C(0.4318) * t811;
-    const puma560_real_t t813 = t34 * t808 - t32 * t806 - t812;
-    const puma560_real_t t814 = t40 * t628 + t36 * t646;
-    const puma560_real_t t815 = t26 * t802 + (t31 * t580 + t33 * t592);
-    const puma560_real_t t816 = t421 * t804 - t420 * t803 - t815 - t814 + PUMA560_C(0.0203) * t811;
-    const puma560_real_t t817 = t34 * t809 + t32 * t810;
-    const puma560_real_t t818 = t395 * t803 - t393 * t804 + (t36 * t580 + t40 * t592);
-    const puma560_real_t t819 = t70 * t813 + t73 * t816 + (t812 + PUMA560_C(0.1254) * (t73 * t817
-        + t70 * t818));
-    const puma560_real_t t820 = t73 * t818 - t70 * t817;
-    const puma560_real_t t821 = t108 * (t73 * t813 - t70 * t816 + PUMA560_C(0.1254) * t820);
-    const puma560_real_t t822 = PUMA560_C(0.06944177768728742) * (t821 + t105 * t819);
-    const puma560_real_t t823 = t32 * t808 + t34 * t806 + (PUMA560_C(0.0203) * t818
-        + PUMA560_C(0.4318) * t817);
-    const puma560_real_t t824 = PUMA560_C(0.04032672714331514) * (t823 + PUMA560_C(0.4318) * t820);
-    const puma560_real_t t825 = PUMA560_C(0.08095560645504385) * t823;
-    const puma560_real_t t826 = PUMA560_C(0.18787994020908783) * (t814 + (t815 - (t336 * t477
-        + t331 * t478)));
-    const puma560_real_t t827 = t456 * t824 - t454 * t822 - t467 * t825 + t476 * t826;
-    const puma560_real_t t828 = t16 * t802 + (t801 - t49 * t580) - (t336 * t498 + t331 * t499);
-    const puma560_real_t t829 = PUMA560_C(0.19862511694053758) * (t828 + t800);
-    const puma560_real_t t830 = t18 * t802 + (t44 * t580 - t3 * t592) - (t336 * t516 + t331 * t517);
-    const puma560_real_t t831 = PUMA560_C(0.1862884266452062) * (t830 + (t45 * t646 - t37 * t628));
-    ddq_by_q[3] = t827 + t495 * t829 + t511 * t831;
-    const puma560_real_t t832 = t525 * t824 - t524 * t822 - t527 * t825 + t529 * t826;
-    ddq_by_q[9] = t832 + t532 * t829 + t534 * t831;
-    const puma560_real_t t833 = t536 * t824 - t535 * t822 - t537 * t825 + t539 * t826;
-    ddq_by_q[15] = t833 + t542 * t829 + t544 * t831;
-    const puma560_real_t t834 = t546 * t824 - t545 * t822 - t547 * t825 + t549 * t826;
-    ddq_by_q[21] = t834 + t552 * t829 + t554 * t831;
-    const puma560_real_t t835 = t556 * t824 - t555 * t822 - t557 * t825 + t558 * t826;
-    ddq_by_q[27] = t835 + t561 * t829 + t564 * t831;
-    const puma560_real_t t836 = t566 * t824 - t565 * t822 - t567 * t825 + t568 * t826;
-    ddq_by_q[33] = t836 + t570 * t829 + t572 * t831;
-    const puma560_real_t t837 = PUMA560_C(2.0) * t415 + (t60 * t804 - t59 * t803);
-    const puma560_real_t t838 = PUMA560_C(2.0) * t416 - (t60 * t803 - t8 * t804);
-    const puma560_real_t t839 = PUMA560_C(-2.0) * t395 + t50 * t804;
-    const puma560_real_t t840 = PUMA560_C(2.0) * t393 - t50 * t803;
-    const puma560_real_t t841 = t34 * t840 - t32 * t839;
-    const puma560_real_t t842 = PUMA560_C(0.4318) * t841;
-    const puma560_real_t t843 = t34 * t837 - t32 * t838 + t842;
-    const puma560_real_t t844 = t481 + (t31 * t803 + t33 * t804) + PUMA560_C(0.0203) * t841;
-    const puma560_real_t t845 = t34 * t839 + t32 * t840;
-    const puma560_real_t t846 = t36 * t803 + t40 * t804;
-    const puma560_real_t t847 = t73 * t846 - t70 * t845;
-    const puma560_real_t t848 = t108 * (t73 * t843 + t70 * t844 + PUMA560_C(0.1254) * t847);
-    const puma560_real_t t849 = t70 * t843 - t73 * t844 + (PUMA560_C(0.1254) * (t73 * t845 + t70 * t846)
-        - t842);
-    const puma560_real_t t850 = PUMA560_C(0.06944177768728742) * (t848 + t105 * t849);
-    const puma560_real_t t851 = t32 * t837 + t34 * t838 + (PUMA560_C(0.0203) * t846
-        + PUMA560_C(0.4318) * t845);
-    const puma560_real_t t852 = PUMA560_C(0.04032672714331514) * (t851 + PUMA560_C(0.4318) * t847);
-    const puma560_real_t t853 = PUMA560_C(0.08095560645504385) * t851;
-    const puma560_real_t t854 = PUMA560_C(0.18787994020908783) * (t481 + PUMA560_C(2.0) * (t33 * t331
-        - t31 * t336));
-    const puma560_real_t t855 = PUMA560_C(-1086.2342857142855) * parameters[FV4] + t854;
-    const puma560_real_t t856 = t852 * t456 - t850 * t454 - t853 * t467 + t855 * t476;
-    const puma560_real_t t857 = PUMA560_C(0.19862511694053758) * (t501 + PUMA560_C(2.0) * (t49 * t336
-        + t8 * t331));
-    const puma560_real_t t858 = PUMA560_C(0.1862884266452062) * (t519 + PUMA560_C(-2.0) * (t44 * t336
-        + t3 * t331));
-    ddq_by_dq[3] = t856 + t857 * t495 + t858 * t511;
-    const puma560_real_t t859 = t852 * t525 - t850 * t524 - t853 * t527 + t855 * t529;
-    ddq_by_dq[9] = t859 + t857 * t532 + t858 * t534;
-    const puma560_real_t t860 = t852 * t536 - t850 * t535 - t853 * t537 + t855 * t539;
-    ddq_by_dq[15] = t860 + t857 * t542 + t858 * t544;
-    const puma560_real_t t861 = t852 * t546 - t850 * t545 - t853 * t547 + t855 * t549;
-    ddq_by_dq[21] = t861 + t857 * t552 + t858 * t554;
-    const puma560_real_t t862 = t852 * t556 - t850 * t555 - t853 * t557 + t855 * t558;
-    ddq_by_dq[27] = t862 + t857 * t561 + t858 * t564;
-    const puma560_real_t t863 = t852 * t566 - t850 * t565 - t853 * t567 + t855 * t568;
-    ddq_by_dq[33] = t863 + t857 * t570 + t858 * t572;
-    ddq_by_input[3] = t476;
-    ddq_by_input[9] = t529;
-    ddq_by_input[15] = t539;
-    ddq_by_input[21] = t549;
-    ddq_by_input[27] = t558;
-    ddq_by_input[33] = t568;
-    const puma560_real_t t864 = t653 + t644; /* link j6: motion */
-    const puma560_real_t t865 = PUMA560_C(-2.0) * t340; /* link j5: derivatives */
-    const puma560_real_t t866 = PUMA560_C(2.0) * t335;
-    const puma560_real_t t867 = t355 * t865 + t363 * t866 + (t12 * t864 + (t22 * t606 + t23 * t596));
-    const puma560_real_t t868 = t655 - (t867 + t35 * t649);
-    const puma560_real_t t869 = t35 * t634;
-    const puma560_real_t t870 = parameters[ZZ6] * t596;
-    const puma560_real_t t871 = t14 * t864 + (t870 + t23 * t606) - (t367 * t865 + t358 * t866);
-    const puma560_real_t t872 = t647 + (t869 + t871);
-    const puma560_real_t t873 = t15 * t868 + t13 * t872;
-    const puma560_real_t t874 = parameters[MY5R] * t634 - t38 * t649;
-    const puma560_real_t t875 = t8 * t864 + (t12 * t606 + t14 * t596);
-    const puma560_real_t t876 = t875 - (t382 * t865 + t383 * t866) + t874;
-    const puma560_real_t t877 = t669 + (t35 * t606 - t38 * t864 - t394 * t865);
-    const puma560_real_t t878 = t670 + (t394 * t866 - (parameters[MY5R] * t864 + t35 * t596));
-    const puma560_real_t t879 = t13 * t877 - t15 * t878;
-    const puma560_real_t t880 = t392 * t865 + t390 * t866 + (parameters[MY5R] * t606 + t38 * t596);
-    const puma560_real_t t881 = t32 * t879 + t34 * t880;
-    const puma560_real_t t882 = PUMA560_C(0.4318) * t881;
-    const puma560_real_t t883 = t34 * t873 - t32 * t876 - t882;
-    const puma560_real_t t884 = t15 * t872 - t13 * t868;
-    const puma560_real_t t885 = PUMA560_C(0.0203) * t881 - t884;
-    const puma560_real_t t886 = t34 * t879 - t32 * t880;
-    const puma560_real_t t887 = t13 * t878 + t15 * t877;
-    const puma560_real_t t888 = t73 * t887 - t70 * t886;
-    const puma560_real_t t889 = t108 * (t73 * t883 - t70 * t885 + PUMA560_C(0.1254) * t888);
-    const puma560_real_t t890 = t70 * t883 + t73 * t885 + (t882 + PUMA560_C(0.1254) * (t73 * t886
-        + t70 * t887));
-    const puma560_real_t t891 = PUMA560_C(0.06944177768728742) * (t889 + t105 * t890);
-    const puma560_real_t t892 = t32 * t873 + t34 * t876 + (PUMA560_C(0.0203) * t887
-        + PUMA560_C(0.4318) * t886);
-    const puma560_real_t t893 = PUMA560_C(0.04032672714331514) * (t892 + PUMA560_C(0.4318) * t888);
-    const puma560_real_t t894 = PUMA560_C(0.08095560645504385) * t892;
-    const puma560_real_t t895 = PUMA560_C(0.18787994020908783) * t884;
-    const puma560_real_t t896 = t456 * t893 - t454 * t891 - t467 * t894 + t476 * t895;
-    const puma560_real_t t897 = PUMA560_C(0.19862511694053758) * (t874 + (t340 * t496 - t335 * t497 + t875));
-    const puma560_real_t t898 = t340 * t514 - t335 * t515 + (t17 * t606 + t870 - t3 * t864);
-    const puma560_real_t t899 = PUMA560_C(0.1862884266452062) * (t898 + t869);
-    ddq_by_q[4] = t896 + t495 * t897 + t511 * t899;
-    const puma560_real_t t900 = t525 * t893 - t524 * t891 - t527 * t894 + t529 * t895;
-    ddq_by_q[10] = t900 + t532 * t897 + t534 * t899;
-    const puma560_real_t t901 = t536 * t893 - t535 * t891 - t537 * t894 + t539 * t895;
-    ddq_by_q[16] = t901 + t542 * t897 + t544 * t899;
-    const puma560_real_t t902 = t546 * t893 - t545 * t891 - t547 * t894 + t549 * t895;
-    ddq_by_q[22] = t902 + t552 * t897 + t554 * t899;
-    const puma560_real_t t903 = t556 * t893 - t555 * t891 - t557 * t894 + t558 * t895;
-    ddq_by_q[28] = t903 + t561 * t897 + t564 * t899;
-    const puma560_real_t t904 = t566 * t893 - t565 * t891 - t567 * t894 + t568 * t895;
-    ddq_by_q[34] = t904 + t570 * t897 + t572 * t899;
-    const puma560_real_t t905 = PUMA560_C(-2.0) * t378 - (t22 * t865 + t23 * t866);
-    const puma560_real_t t906 = PUMA560_C(-2.0) * t379 + (t23 * t865 + parameters[ZZ6] * t866);
-    const puma560_real_t t907 = t15 * t905 + t13 * t906;
-    const puma560_real_t t908 = t499 + (t12 * t865 + t14 * t866);
-    const puma560_real_t t909 = PUMA560_C(2.0) * t392 - t35 * t866;
-    const puma560_real_t t910 = PUMA560_C(2.0) * t390 + t35 * t865;
-    const puma560_real_t t911 = t13 * t910 - t15 * t909;
-    const puma560_real_t t912 = parameters[MY5R] * t865 + t38 * t866;
-    const puma560_real_t t913 = t32 * t911 + t34 * t912;
-    const puma560_real_t t914 = PUMA560_C(-0.4318) * t913;
-    const puma560_real_t t915 = t34 * t907 - t32 * t908 + t914;
-    const puma560_real_t t916 = t15 * t906 - t13 * t905;
-    const puma560_real_t t917 = t916 + PUMA560_C(-0.0203) * t913;
-    const puma560_real_t t918 = t34 * t911 - t32 * t912;
-    const puma560_real_t t919 = t13 * t909 + t15 * t910;
-    const puma560_real_t t920 = t73 * t919 - t70 * t918;
-    const puma560_real_t t921 = t108 * (t73 * t915 + t70 * t917 + PUMA560_C(0.1254) * t920);
-    const puma560_real_t t922 = t70 * t915 - t73 * t917 + (PUMA560_C(0.1254) * (t73 * t918 + t70 * t919)
-        - t914);
-    const puma560_real_t t923 = PUMA560_C(0.06944177768728742) * (t921 + t105 * t922);
-    const puma560_real_t t924 = t32 * t907 + t34 * t908 + (PUMA560_C(0.0203) * t919
-        + PUMA560_C(0.4318) * t918);
-    const puma560_real_t t925 = PUMA560_C(0.04032672714331514) * (t924 + PUMA560_C(0.4318) * t920);
-    const puma560_real_t t926 = PUMA560_C(0.08095560645504385) * t924;
-    const puma560_real_t t927 = PUMA560_C(0.18787994020908783) * t916;
-    const puma560_real_t t928 = t925 * t456 - t923 * t454 - t926 * t467 + t927 * t476;
-    const puma560_real_t t929 = PUMA560_C(0.19862511694053758) * (t499 + PUMA560_C(2.0) * (t14 * t335
-        - t12 * t340));
-    const puma560_real_t t930 = PUMA560_C(-1027.4714285714285) * parameters[FV5] + t929;
-    const puma560_real_t t931 = PUMA560_C(0.1862884266452062) * (t517
-        + PUMA560_C(2.0) * (parameters[ZZ6] * t335 - t17 * t340));
-    ddq_by_dq[4] = t928 + t930 * t495 + t931 * t511;
-    const puma560_real_t t932 = t925 * t525 - t923 * t524 - t926 * t527 + t927 * t529;
-    ddq_by_dq[10] = t932 + t930 * t532 + t931 * t534;
-    const puma560_real_t t933 = t925 * t536 - t923 * t535 - t926 * t537 + t927 * t539;
-    ddq_by_dq[16] = t933 + t930 * t542 + t931 * t544;
-    const puma560_real_t t934 = t925 * t546 - t923 * t545 - t926 * t547 + t927 * t549;
-    ddq_by_dq[22] = t934 + t930 * t552 + t931 * t554;
-    const puma560_real_t t935 = t925 * t556 - t923 * t555 - t926 * t557 + t927 * t558;
-    ddq_by_dq[28] = t935 + t930 * t561 + t931 * t564;
-    const puma560_real_t t936 = t925 * t566 - t923 * t565 - t926 * t567 + t927 * t568;
-    ddq_by_dq[34] = t936 + t930 * t570 + t931 * t572;
-    ddq_by_input[4] = t495;
-    ddq_by_input[10] = t532;
-    ddq_by_input[16] = t542;
-    ddq_by_input[22] = t552;
-    ddq_by_input[28] = t561;
-    ddq_by_input[34] = t570;
-    const puma560_real_t t937 = t638 + t613; /* link j6: force and moment */
-    const puma560_real_t t938 = PUMA560_C(2.0) * t338; /* link j6: derivatives */
-    const puma560_real_t t939 = PUMA560_C(-2.0) * t344;
-    const puma560_real_t t940 = t343 * t938 + t350 * t939 + (parameters[XY6] * t600 - parameters[XX6R] * t603
-        - parameters[XZ6] * t937);
-    const puma560_real_t t941 = t640 + t940;
-    const puma560_real_t t942 = t349 * t938 - t346 * t939 - (parameters[YZ6] * t937 + parameters[XY6] * t603);
-    const puma560_real_t t943 = t635 + t942;
-    const puma560_real_t t944 = t2 * t941 - t1 * t943;
-    const puma560_real_t t945 = parameters[ZZ6] * t937 + (parameters[XZ6] * t603 - parameters[YZ6] * t600);
-    const puma560_real_t t946 = parameters[MX6] * t651 + parameters[MY6] * t650;
-    const puma560_real_t t947 = t364 * t938 - t365 * t939 + t945 + t946;
-    const puma560_real_t t948 = t15 * t944 + t13 * t947;
-    const puma560_real_t t949 = t1 * t941 + t2 * t943;
-    const puma560_real_t t950 = t668 - (t391 * t939 + parameters[MY6] * t937);
-    const puma560_real_t t951 = t391 * t938 + parameters[MX6] * t937 + t667;
-    const puma560_real_t t952 = t2 * t950 - t1 * t951;
-    const puma560_real_t t953 = parameters[MY6] * t603 + parameters[MX6] * t600 - (t389 * t938 + t388 * t939);
-    const puma560_real_t t954 = t13 * t953 - t15 * t952;
-    const puma560_real_t t955 = t1 * t950 + t2 * t951;
-    const puma560_real_t t956 = t34 * t955 - t32 * t954;
-    const puma560_real_t t957 = PUMA560_C(0.4318) * t956;
-    const puma560_real_t t958 = t34 * t948 - t32 * t949 + t957;
-    const puma560_real_t t959 = t15 * t947 - t13 * t944;
-    const puma560_real_t t960 = t959 + PUMA560_C(0.0203) * t956;
-    const puma560_real_t t961 = t34 * t954 + t32 * t955;
-    const puma560_real_t t962 = t13 * t952 + t15 * t953;
-    const puma560_real_t t963 = t73 * t962 - t70 * t961;
-    const puma560_real_t t964 = t108 * (t73 * t958 + t70 * t960 + PUMA560_C(0.1254) * t963);
-    const puma560_real_t t965 = t70 * t958 - t73 * t960 + (PUMA560_C(0.1254) * (t73 * t961 + t70 * t962)
-        - t957);
-    const puma560_real_t t966 = PUMA560_C(0.06944177768728742) * (t964 + t105 * t965);
-    const puma560_real_t t967 = t32 * t948 + t34 * t949 + (PUMA560_C(0.0203) * t962
-        + PUMA560_C(0.4318) * t961);
-    const puma560_real_t t968 = PUMA560_C(0.04032672714331514) * (t967 + PUMA560_C(0.4318) * t963);
-    const puma560_real_t t969 = PUMA560_C(0.08095560645504385) * t967;
-    const puma560_real_t t970 = PUMA560_C(0.18787994020908783) * t959;
-    const puma560_real_t t971 = t456 * t968 - t454 * t966 - t467 * t969 + t476 * t970;
-    const puma560_real_t t972 = PUMA560_C(0.19862511694053758) * t949;
-    const puma560_real_t t973 = PUMA560_C(0.1862884266452062) * (t946 + (t338 * t512 + t344 * t513 + t945));
-    ddq_by_q[5] = t971 + t495 * t972 + t511 * t973;
-    const puma560_real_t t974 = t525 * t968 - t524 * t966 - t527 * t969 + t529 * t970;
-    ddq_by_q[11] = t974 + t532 * t972 + t534 * t973;
-    const puma560_real_t t975 = t536 * t968 - t535 * t966 - t537 * t969 + t539 * t970;
-    ddq_by_q[17] = t975 + t542 * t972 + t544 * t973;
-    const puma560_real_t t976 = t546 * t968 - t545 * t966 - t547 * t969 + t549 * t970;
-    ddq_by_q[23] = t976 + t552 * t972 + t554 * t973;
-    const puma560_real_t t977 = t556 * t968 - t555 * t966 - t557 * t969 + t558 * t970;
-    ddq_by_q[29] = t977 + t561 * t972 + t564 * t973;
-    const puma560_real_t t978 = t566 * t968 - t565 * t966 - t567 * t969 + t568 * t970;
-    ddq_by_q[35] = t978 + t570 * t972 + t572 * t973;
-    const puma560_real_t t979 = PUMA560_C(2.0) * t360 + (parameters[XX6R] * t938 + parameters[XY6] * t939);
-    const puma560_real_t t980 = PUMA560_C(2.0) * t361 + parameters[XY6] * t938;
-    const puma560_real_t t981 = t2 * t979 - t1 * t980;
-    const puma560_real_t t982 = t515 - (parameters[XZ6] * t938 + parameters[YZ6] * t939);
-    const puma560_real_t t983 = t15 * t981 + t13 * t982;
-    const puma560_real_t t984 = t1 * t979 + t2 * t980;
-    const puma560_real_t t985 = PUMA560_C(2.0) * t389;
-    const puma560_real_t t986 = PUMA560_C(2.0) * t388;
-    const puma560_real_t t987 = t2 * t985 - t1 * t986;
-    const puma560_real_t t988 = parameters[MX6] * t939 - parameters[MY6] * t938;
-    const puma560_real_t t989 = t13 * t988 - t15 * t987;
-    const puma560_real_t t990 = t1 * t985 + t2 * t986;
-    const puma560_real_t t991 = t34 * t990 - t32 * t989;
-    const puma560_real_t t992 = PUMA560_C(0.4318) * t991;
-    const puma560_real_t t993 = t34 * t983 - t32 * t984 + t992;
-    const puma560_real_t t994 = t15 * t982 - t13 * t981;
-    const puma560_real_t t995 = t994 + PUMA560_C(0.0203) * t991;
-    const puma560_real_t t996 = t34 * t989 + t32 * t990;
-    const puma560_real_t t997 = t13 * t987 + t15 * t988;
-    const puma560_real_t t998 = t73 * t997 - t70 * t996;
-    const puma560_real_t t999 = t108 * (t73 * t993 + t70 * t995 + PUMA560_C(0.1254) * t998);
-    const puma560_real_t t1000 = t70 * t993 - t73 * t995 + (PUMA560_C(0.1254) * (t73 * t996 + t70 * t997)
-        - t992);
-    const puma560_real_t t1001 = PUMA560_C(0.06944177768728742) * (t999 + t105 * t1000);
-    const puma560_real_t t1002 = t32 * t983 + t34 * t984 + (PUMA560_C(0.0203) * t997
-        + PUMA560_C(0.4318) * t996);
-    const puma560_real_t t1003 = PUMA560_C(0.04032672714331514) * (t1002 + PUMA560_C(0.4318) * t998);
-    const puma560_real_t t1004 = PUMA560_C(0.08095560645504385) * t1002;
-    const puma560_real_t t1005 = PUMA560_C(0.18787994020908783) * t994;
-    const puma560_real_t t1006 = t1003 * t456 - t1001 * t454 - t1004 * t467 + t1005 * t476;
-    const puma560_real_t t1007 = PUMA560_C(0.19862511694053758) * t984;
-    const puma560_real_t t1008 = PUMA560_C(-1095.5142857142857) * parameters[FV6];
-    ddq_by_dq[5] = t1006 + t1007 * t495 + t1008 * t511;
-    const puma560_real_t t1009 = t1003 * t525 - t1001 * t524 - t1004 * t527 + t1005 * t529;
-    ddq_by_dq[11] = t1009 + t1007 * t532 + t1008 * t534;
-    const puma560_real_t t1010 = t1003 * t536 - t1001 * t535 - t1004 * t537 + t1005 * t539;
-    ddq_by_dq[17] = t1010 + t1007 * t542 + t1008 * t544;
-    const puma560_real_t t1011 = t1003 * t546 - t1001 * t545 - t1004 * t547 + t1005 * t549;
-    ddq_by_dq[23] = t1011 + t1007 * t552 + t1008 * t554;
-    const puma560_real_t t1012 = t1003 * t556 - t1001 * t555 - t1004 * t557 + t1005 * t558;
-    ddq_by_dq[29] = t1012 + t1007 * t561 + t1008 * t564;
-    const puma560_real_t t1013 = t1003 * t566 - t1001 * t565 - t1004 * t567 + t1005 * t568;
-    ddq_by_dq[35] = t1013 + t1007 * t570 + t1008 * t572;
-    ddq_by_input[5] = t511;
-    ddq_by_input[11] = t534;
-    ddq_by_input[17] = t544;
-    ddq_by_input[23] = t554;
-    ddq_by_input[29] = t564;
-    ddq_by_input[35] = t572;
+    const puma560_real_t t871 = t30 * t681 - t32 * t752 - (t45 * t861 - t107 * t859);
+    const puma560_real_t t872 = t787 + (t107 * t862 - t44 * t861);
+    const puma560_real_t t873 = t340 * t871 + t331 * t872 + (t46 * t800 - (t109 * t329 + t110 * t343));
+    const puma560_real_t t874 = PUMA560_C(0.1862884266452062) * (t873 + (t45 * t387 - t44 * t396));
+    ddq_by_q[2] = t866 + t477 * t870 + t486 * t874;
+    const puma560_real_t t875 = t488 * t855 - t487 * t847 - t490 * t858 + t492 * t865;
+    ddq_by_q[8] = t875 + t495 * t870 + t497 * t874;
+    const puma560_real_t t876 = t499 * t855 - t498 * t847 - t500 * t858 + t502 * t865;
+    ddq_by_q[14] = t876 + t505 * t870 + t507 * t874;
+    const puma560_real_t t877 = t509 * t855 - t508 * t847 - t510 * t858 + t512 * t865;
+    ddq_by_q[20] = t877 + t515 * t870 + t517 * t874;
+    const puma560_real_t t878 = t519 * t855 - t518 * t847 - t520 * t858 + t521 * t865;
+    ddq_by_q[26] = t878 + t524 * t870 + t527 * t874;
+    const puma560_real_t t879 = t529 * t855 - t528 * t847 - t530 * t858 + t531 * t865;
+    ddq_by_q[32] = t879 + t533 * t870 + t535 * t874;
+    const puma560_real_t t880 = parameters[ZZ3R] + t818;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t881 = t340 * t880 - parameters[YZ3] * t158 + (t850 - t716 - t39 * t805);
+    const puma560_real_t t882 = PUMA560_C(2.0) * t881 + (t95 * t820 - t92 * t816); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t883 = parameters[XZ3] * t158 + t331 * t880 - (t30 * t731 + t32 * t732 + t39 * t810);
+    const puma560_real_t t884 = PUMA560_C(2.0) * t883 + (t91 * t820 - t95 * t816); /* link j3: derivatives */
+    const puma560_real_t t885 = PUMA560_C(2.0) * t842 + t39 * t816;
+    const puma560_real_t t886 = PUMA560_C(2.0) * t843 + t39 * t820;
+    const puma560_real_t t887 = t67 * t886 + t70 * t885;
+    const puma560_real_t t888 = t104 * (t70 * t882 - t67 * t884 + PUMA560_C(0.1254) * t887);
+    const puma560_real_t t889 = PUMA560_C(0.1254) * (t67 * t885 - t70 * t886)
+        + PUMA560_C(0.4318) * (t78 * t816 - t77 * t820);
+    const puma560_real_t t890 = t888 + t101 * (t67 * t882 + t70 * t884 + t889);
+    const puma560_real_t t891 = PUMA560_C(0.06944177768728742) * t890;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t892 = t813 + t829 + (t812 + (t715 - t802 - t809));
+    const puma560_real_t t893 = PUMA560_C(2.0) * t892; /* link j3: derivatives */
+    const puma560_real_t t894 = t893 + (t134 * t820 - t133 * t816) + PUMA560_C(0.4318) * t887;
+    const puma560_real_t t895 = PUMA560_C(0.04032672714331514) * t894;
+    const puma560_real_t t896 = PUMA560_C(0.08095560645504385) * (t893 + PUMA560_C(2.0) * (t133 * t340
+        + t134 * t331));
+    const puma560_real_t t897 = PUMA560_C(-233.50565217391303) * parameters[FV3] + t896;
+    const puma560_real_t t898 = t30 * t745 + t32 * t746 + t39 * t859; /* link j4: derivatives */
+    const puma560_real_t t899 = PUMA560_C(0.18787994020908783) * (t898 + PUMA560_C(-2.0) * (t125 * t340
+        + t126 * t331));
+    const puma560_real_t t900 = t895 * t463 - t891 * t459 - t897 * t466 + t899 * t470;
+    /* link j5: derivatives */
+    const puma560_real_t t901 = t30 * t749 + t32 * t657 + (t37 * t862 + t49 * t859);
+    const puma560_real_t t902 = PUMA560_C(0.19862511694053758) * (t901 + PUMA560_C(-2.0) * (t118 * t340
+        + t119 * t331));
+    /* link j6: derivatives */
+    const puma560_real_t t903 = t30 * t752 + t32 * t681 + (t45 * t862 - t44 * t859);
+    const puma560_real_t t904 = PUMA560_C(0.1862884266452062) * (t903 + PUMA560_C(-2.0) * (t109 * t340
+        + t110 * t331));
+    ddq_by_dq[2] = t900 + t902 * t477 + t904 * t486;
+    const puma560_real_t t905 = t895 * t488 - t891 * t487 - t897 * t490 + t899 * t492;
+    ddq_by_dq[8] = t905 + t902 * t495 + t904 * t497;
+    const puma560_real_t t906 = t895 * t499 - t891 * t498 - t897 * t500 + t899 * t502;
+    ddq_by_dq[14] = t906 + t902 * t505 + t904 * t507;
+    const puma560_real_t t907 = t895 * t509 - t891 * t508 - t897 * t510 + t899 * t512;
+    ddq_by_dq[20] = t907 + t902 * t515 + t904 * t517;
+    const puma560_real_t t908 = t895 * t519 - t891 * t518 - t897 * t520 + t899 * t521;
+    ddq_by_dq[26] = t908 + t902 * t524 + t904 * t527;
+    const puma560_real_t t909 = t895 * t529 - t891 * t528 - t897 * t530 + t899 * t531;
+    ddq_by_dq[32] = t909 + t902 * t533 + t904 * t535;
+    ddq_by_input[2] = t466;
+    ddq_by_input[8] = t490;
+    ddq_by_input[14] = t500;
+    ddq_by_input[20] = t510;
+    ddq_by_input[26] = t520;
+    ddq_by_input[32] = t530;
+    const puma560_real_t t910 = PUMA560_C(0.1254) * (t70 * t833 - t67 * t838) + PUMA560_C(0.4318) * (t796
+        - (parameters[MX3R] * t391 + parameters[MY3R] * t346));
+    const puma560_real_t t911 = t284 + t383;
+    const puma560_real_t t912 = t290 + parameters[XY2] * (t284 + t911) + parameters[YZ2] * (t210 - t321);
+    const puma560_real_t t913 = t912 - t291 + (t67 * t824 + t70 * t799 + t910);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t914 = t70 * (t815 + t830) + t67 * (t819 + t828);
+    const puma560_real_t t915 = t70 * t914;
+    const puma560_real_t t916 = t70 * t842 + t67 * t843;
+    const puma560_real_t t917 = PUMA560_C(0.4318) * t916;
+    const puma560_real_t t918 = PUMA560_C(-0.1254) * t154; /* link j3: velocity of its origin */
+    const puma560_real_t t919 = t79 * t918; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t920 = PUMA560_C(0.1254) * t835;
+    /* link j3: velocity of its origin */
+    const puma560_real_t t921 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t153;
+    const puma560_real_t t922 = t102 * t921; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t923 = PUMA560_C(0.4318) * t154; /* link j3: velocity of its origin */
+    const puma560_real_t t924 = t39 * t923; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t925 = t917 + t920 + (t919 - t922 + t924);
+    const puma560_real_t t926 = parameters[XZ2R] * t154;
+    const puma560_real_t t927 = parameters[XY2] * dq[1];
+    const puma560_real_t t928 = t926 + t927 + (t925 + (t915 - t830 - (t917 + t919)));
+    const puma560_real_t t929 = PUMA560_C(-2.0) * t154; /* link j2: derivatives */
+    const puma560_real_t t930 = t67 * t914; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t931 = PUMA560_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const puma560_real_t t932 = parameters[YZ2] * t154 + dq[1] * t931 + (t930 - t819 - t102 * t918);
+    const puma560_real_t t933 = PUMA560_C(2.0) * t153; /* link j2: derivatives */
+    const puma560_real_t t934 = t142 * t216 + (t103 * t383 - t100 * t385) - (t928 * t929 + t932 * t933);
+    const puma560_real_t t935 = t67 * t799 - t70 * t824 + PUMA560_C(0.1254) * (t67 * t833 + t70 * t838);
+    const puma560_real_t t936 = parameters[XY2] * t392 - (t285 + parameters[XX2R] * t911)
+        + parameters[XZ2R] * t382;
+    const puma560_real_t t937 = t67 * t842 - t70 * t843; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t938 = parameters[XX2R] + t931;
+    const puma560_real_t t939 = t930 - t828 + (PUMA560_C(-0.4318) * t937 + t79 * t921)
+        - (parameters[XZ2R] * t153 + dq[1] * t938);
+    const puma560_real_t t940 = parameters[YZ2] * t153;
+    const puma560_real_t t941 = t925 + (t815 - t915 + t922) - (t927 + t940);
+    const puma560_real_t t942 = t143 * t216 + (t99 * t383 - t103 * t385) - (t939 * t929 + t941 * t933);
+    const puma560_real_t t943 = t101 * (t287 + t936 + t935 + (t942 - t39 * t211));
+    const puma560_real_t t944 = PUMA560_C(0.06944177768728742) * (t104 * (t913 + (t39 * t208 + t934)) + t943);
+    const puma560_real_t t945 = t67 * t853 - t70 * t851 + (PUMA560_C(0.4318) * t835 + t79 * t923);
+    /* link j2: derivatives */
+    const puma560_real_t t946 = PUMA560_C(2.0) * (t154 * t938 - parameters[XY2] * t153 + t945);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t947 = parameters[XY2] * t154 - t153 * t931 - (t67 * t851 + t70 * t853
+        - t102 * t923);
+    const puma560_real_t t948 = PUMA560_C(2.0) * t947; /* link j2: derivatives */
+    const puma560_real_t t949 = t154 * t946 - t153 * t948 + (t88 * t216 + (t143 * t383 - t142 * t385));
+    const puma560_real_t t950 = (t79 - parameters[MX2R]) * t208 - (t102 - parameters[MY2]) * t211 + t949;
+    const puma560_real_t t951 = PUMA560_C(0.04032672714331514) * t950;
+    const puma560_real_t t952 = PUMA560_C(0.8636) * t154; /* link j6: derivatives */
+    const puma560_real_t t953 = t67 * t857 - t70 * t856 + t79 * t952; /* link j3: derivatives */
+    const puma560_real_t t954 = t67 * t856 + t70 * t857 - t102 * t952;
+    const puma560_real_t t955 = t154 * t953 + t153 * t954 + (t138 * t383 - t137 * t385 - t80 * t216);
+    const puma560_real_t t956 = PUMA560_C(0.08095560645504385) * (t79 * t208 - t102 * t211 + t955);
+    const puma560_real_t t957 = PUMA560_C(2.0) * t921; /* link j6: derivatives */
+    /* link j4: derivatives */
+    const puma560_real_t t958 = t67 * t863 - t70 * t860 + (t68 * t952 - t61 * t957);
+    const puma560_real_t t959 = PUMA560_C(-0.2508) * t154; /* link j6: derivatives */
+    /* link j4: derivatives */
+    const puma560_real_t t960 = t67 * t860 + t70 * t863 + (t128 * t952 + t61 * t959);
+    const puma560_real_t t961 = t154 * t958 + t153 * t960 + (t129 * t383 - t127 * t385 - t69 * t216);
+    const puma560_real_t t962 = PUMA560_C(0.18787994020908783) * (t128 * t211 + t68 * t208 + t961);
+    const puma560_real_t t963 = t463 * t951 - t459 * t944 - t466 * t956 + t470 * t962;
+    /* link j5: derivatives */
+    const puma560_real_t t964 = t67 * t868 - t70 * t867 + (t73 * t952 - t116 * t957);
+    const puma560_real_t t965 = t67 * t867 + t70 * t868 + (t116 * t959 - t121 * t952);
+    const puma560_real_t t966 = t154 * t964 + t153 * t965 + (t74 * t216 + (t120 * t385 - t122 * t383));
+    const puma560_real_t t967 = PUMA560_C(0.19862511694053758) * (t73 * t208 - t121 * t211 + t966);
+    /* link j6: derivatives */
+    const puma560_real_t t968 = t67 * t872 - t70 * t871 + (t71 * t952 - t107 * t957);
+    const puma560_real_t t969 = t67 * t871 + t70 * t872 + (t107 * t959 - t111 * t952);
+    const puma560_real_t t970 = t154 * t968 + t153 * t969 + (t72 * t216 + (t113 * t385 - t112 * t383));
+    const puma560_real_t t971 = PUMA560_C(0.1862884266452062) * (t71 * t208 - t111 * t211 + t970);
+    ddq_by_q[1] = t963 + t477 * t967 + t486 * t971;
+    const puma560_real_t t972 = t488 * t951 - t487 * t944 - t490 * t956 + t492 * t962;
+    ddq_by_q[7] = t972 + t495 * t967 + t497 * t971;
+    const puma560_real_t t973 = t499 * t951 - t498 * t944 - t500 * t956 + t502 * t962;
+    ddq_by_q[13] = t973 + t505 * t967 + t507 * t971;
+    const puma560_real_t t974 = t509 * t951 - t508 * t944 - t510 * t956 + t512 * t962;
+    ddq_by_q[19] = t974 + t515 * t967 + t517 * t971;
+    const puma560_real_t t975 = t519 * t951 - t518 * t944 - t520 * t956 + t521 * t962;
+    ddq_by_q[25] = t975 + t524 * t967 + t527 * t971;
+    const puma560_real_t t976 = t529 * t951 - t528 * t944 - t530 * t956 + t531 * t962;
+    ddq_by_q[31] = t976 + t533 * t967 + t535 * t971;
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t977 = t70 * t881 - t67 * t883 + (PUMA560_C(0.1254) * t916 + t39 * t918);
+    const puma560_real_t t978 = parameters[ZZ2R] + t931;
+    /* link j2: derivatives */
+    const puma560_real_t t979 = PUMA560_C(2.0) * (t977 - (parameters[YZ2] * dq[1] + t154 * t978))
+        + (t100 * t929 + t103 * t933);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t980 = t67 * t881 + t70 * t883 + (PUMA560_C(0.1254) * t937 - t39 * t921);
+    /* link j2: derivatives */
+    const puma560_real_t t981 = PUMA560_C(2.0) * (parameters[XZ2R] * dq[1] + t153 * t978 + t980)
+        + (t103 * t929 + t99 * t933);
+    const puma560_real_t t982 = PUMA560_C(0.06944177768728742) * (t104 * t979 + t101 * t981);
+    const puma560_real_t t983 = PUMA560_C(2.0) * (t940 - t926 + (t925 + (t892 - (t920 + t924))));
+    const puma560_real_t t984 = PUMA560_C(0.04032672714331514) * (t983 + PUMA560_C(2.0) * (t143 * t153
+        - t142 * t154));
+    const puma560_real_t t985 = PUMA560_C(-468.7608695652174) * parameters[FV2] + t984;
+    /* link j3: derivatives */
+    const puma560_real_t t986 = t893 + (t79 * t959 - t102 * t957) + PUMA560_C(2.0) * (t138 * t153
+        - t137 * t154);
+    const puma560_real_t t987 = PUMA560_C(0.08095560645504385) * t986;
+    /* link j4: derivatives */
+    const puma560_real_t t988 = t898 + (t68 * t959 + t128 * t957) + PUMA560_C(2.0) * (t129 * t153
+        - t127 * t154);
+    const puma560_real_t t989 = PUMA560_C(0.18787994020908783) * t988;
+    const puma560_real_t t990 = t985 * t463 - t982 * t459 - t987 * t466 + t989 * t470;
+    /* link j5: derivatives */
+    const puma560_real_t t991 = t901 + (t73 * t959 - t121 * t957) + PUMA560_C(2.0) * (t120 * t154
+        - t122 * t153);
+    const puma560_real_t t992 = PUMA560_C(0.19862511694053758) * t991;
+    /* link j6: derivatives */
+    const puma560_real_t t993 = t903 + (t71 * t959 - t111 * t957) + PUMA560_C(2.0) * (t113 * t154
+        - t112 * t153);
+    const puma560_real_t t994 = PUMA560_C(0.1862884266452062) * t993;
+    ddq_by_dq[1] = t990 + t992 * t477 + t994 * t486;
+    const puma560_real_t t995 = t985 * t488 - t982 * t487 - t987 * t490 + t989 * t492;
+    ddq_by_dq[7] = t995 + t992 * t495 + t994 * t497;
+    const puma560_real_t t996 = t985 * t499 - t982 * t498 - t987 * t500 + t989 * t502;
+    ddq_by_dq[13] = t996 + t992 * t505 + t994 * t507;
+    const puma560_real_t t997 = t985 * t509 - t982 * t508 - t987 * t510 + t989 * t512;
+    ddq_by_dq[19] = t997 + t992 * t515 + t994 * t517;
+    const puma560_real_t t998 = t985 * t519 - t982 * t518 - t987 * t520 + t989 * t521;
+    ddq_by_dq[25] = t998 + t992 * t524 + t994 * t527;
+    const puma560_real_t t999 = t985 * t529 - t982 * t528 - t987 * t530 + t989 * t531;
+    ddq_by_dq[31] = t999 + t992 * t533 + t994 * t535;
+    ddq_by_input[1] = t463;
+    ddq_by_input[7] = t488;
+    ddq_by_input[13] = t499;
+    ddq_by_input[19] = t509;
+    ddq_by_input[25] = t519;
+    ddq_by_input[31] = t529;
+    /* link j2: inertia, momentum beyond */
+    const puma560_real_t t1000 = t101 * (t101 * (t941 - t928) + t104 * (t932 + t939));
+    const puma560_real_t t1001 = PUMA560_C(-272.2221739130435) * parameters[FV1]
+        + PUMA560_C(0.13888355537457484) * (t928 + t1000);
+    const puma560_real_t t1002 = PUMA560_C(0.04032672714331514) * (t104 * t946 + t101 * t948);
+    const puma560_real_t t1003 = PUMA560_C(0.08095560645504385) * (t104 * t953 - t101 * t954);
+    const puma560_real_t t1004 = PUMA560_C(0.18787994020908783) * (t104 * t958 - t101 * t960);
+    const puma560_real_t t1005 = t1002 * t463 - t1001 * t459 - t1003 * t466 + t1004 * t470;
+    const puma560_real_t t1006 = PUMA560_C(0.19862511694053758) * (t104 * t964 - t101 * t965);
+    const puma560_real_t t1007 = PUMA560_C(0.1862884266452062) * (t104 * t968 - t101 * t969);
+    ddq_by_dq[0] = t1005 + t1006 * t477 + t1007 * t486;
+    const puma560_real_t t1008 = t1002 * t488 - t1001 * t487 - t1003 * t490 + t1004 * t492;
+    ddq_by_dq[6] = t1008 + t1006 * t495 + t1007 * t497;
+    const puma560_real_t t1009 = t1002 * t499 - t1001 * t498 - t1003 * t500 + t1004 * t502;
+    ddq_by_dq[12] = t1009 + t1006 * t505 + t1007 * t507;
+    const puma560_real_t t1010 = t1002 * t509 - t1001 * t508 - t1003 * t510 + t1004 * t512;
+    ddq_by_dq[18] = t1010 + t1006 * t515 + t1007 * t517;
+    const puma560_real_t t1011 = t1002 * t519 - t1001 * t518 - t1003 * t520 + t1004 * t521;
+    ddq_by_dq[24] = t1011 + t1006 * t524 + t1007 * t527;
+    const puma560_real_t t1012 = t1002 * t529 - t1001 * t528 - t1003 * t530 + t1004 * t531;
+    ddq_by_dq[30] = t1012 + t1006 * t533 + t1007 * t535;
+    ddq_by_input[0] = t459;
+    ddq_by_input[6] = t487;
+    ddq_by_input[12] = t498;
+    ddq_by_input[18] = t508;
+    ddq_by_input[24] = t518;
+    ddq_by_input[30] = t528;
     /* always zero */
     ddq_by_q[0] = PUMA560_C(0.0);
     ddq_by_q[6] = PUMA560_C(0.0);
@@ -1489,10 +1465,10 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     ddq_by_q[18] = PUMA560_C(0.0);
     ddq_by_q[24] = PUMA560_C(0.0);
     ddq_by_q[30] = PUMA560_C(0.0);
-    if (!puma560_all_bounded(ddq, 6)
-        || !puma560_all_bounded(ddq_by_q, 36)
-        || !puma560_all_bounded(ddq_by_dq, 36)
-        || !puma560_all_bounded(ddq_by_input, 36)) {
+    if (!puma560_bounded(ddq, 6)
+        || !puma560_bounded(ddq_by_q, 36)
+        || !puma560_bounded(ddq_by_dq, 36)
+        || !puma560_bounded(ddq_by_input, 36)) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);

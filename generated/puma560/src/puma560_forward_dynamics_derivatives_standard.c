@@ -7,7 +7,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4098 (2250 mul, 1848 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 4098 (2250 mul, 1848 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -111,7 +111,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -145,18 +145,17 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    puma560_real_t t123, t120;
-    PUMA560_SINCOS(q[1], &t123, &t120);
-    puma560_real_t t79, t82;
-    PUMA560_SINCOS(q[2], &t79, &t82);
-    puma560_real_t t34, t36;
-    PUMA560_SINCOS(q[3], &t34, &t36);
-    puma560_real_t t14, t16;
-    PUMA560_SINCOS(q[4], &t14, &t16);
+    puma560_real_t t119, t116;
+    PUMA560_SINCOS(q[1], &t119, &t116);
+    puma560_real_t t76, t79;
+    PUMA560_SINCOS(q[2], &t76, &t79);
+    puma560_real_t t32, t34;
+    PUMA560_SINCOS(q[3], &t32, &t34);
+    puma560_real_t t13, t15;
+    PUMA560_SINCOS(q[4], &t13, &t15);
     puma560_real_t t1, t2;
     PUMA560_SINCOS(q[5], &t1, &t2);
-    const puma560_real_t t0 = puma560_bounded(parameters[ZZ6]
-        + PUMA560_C(5880.742596000001) * parameters[IA6]);
+    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
     if (!(t0 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -173,7 +172,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t8 = t2 * t7;
     const puma560_real_t t9 = parameters[ZZ5] + (parameters[XX6] - t8);
     const puma560_real_t t10 = t9 + PUMA560_C(5172.917929) * parameters[IA5];
-    const puma560_real_t t11 = puma560_bounded(t10 - t3 * t5);
+    const puma560_real_t t11 = t10 - t3 * t5;
     if (!(t11 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -181,146 +180,114 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t12 = t11 + PUMA560_C(-1.0e-9) * t10;
-    if (!(t12 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t13 = parameters[XY6] + t1 * t7 - parameters[XZ5];
-    const puma560_real_t t15 = parameters[YZ5] - t3;
-    const puma560_real_t t17 = t16 * t15 - t14 * t13; /* link j5: column of the mass matrix */
+    const puma560_real_t t12 = parameters[XY6] + t1 * t7 - parameters[XZ5];
+    const puma560_real_t t14 = parameters[YZ5] - t3;
+    const puma560_real_t t16 = t15 * t14 - t13 * t12; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const puma560_real_t t18 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
-    const puma560_real_t t19 = t14 * t18 - t16 * parameters[ZZ6];
-    const puma560_real_t t20 = t19 * t5 - t17;
-    const puma560_real_t t21 = PUMA560_C(1.0) / t11;
-    const puma560_real_t t22 = t20 * t21;
+    const puma560_real_t t17 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const puma560_real_t t18 = t13 * t17 - t15 * parameters[ZZ6];
+    const puma560_real_t t19 = t18 * t5 - t16;
+    const puma560_real_t t20 = PUMA560_C(1.0) / t11;
+    const puma560_real_t t21 = t19 * t20;
     /* link j6: inertia of it and all beyond */
-    const puma560_real_t t23 = parameters[XX5] + (parameters[YY6] + t8);
-    const puma560_real_t t24 = parameters[YY5] + parameters[ZZ6];
-    const puma560_real_t t25 = t18 - parameters[XY5];
+    const puma560_real_t t22 = parameters[XX5] + (parameters[YY6] + t8);
+    const puma560_real_t t23 = parameters[YY5] + parameters[ZZ6];
+    const puma560_real_t t24 = t17 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
-    const puma560_real_t t26 = t16 * (t23 - t24) + t25 * (PUMA560_C(2.0) * t14);
-    const puma560_real_t t27 = t16 * t26;
-    const puma560_real_t t28 = parameters[ZZ4] + (t23 - t27);
-    const puma560_real_t t29 = t28 + PUMA560_C(5781.53412496) * parameters[IA4];
-    const puma560_real_t t30 = t19 * t4;
-    const puma560_real_t t31 = puma560_bounded(t29 - t19 * t30 - t20 * t22);
-    if (!(t31 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t25 = t15 * (t22 - t23) + t24 * (PUMA560_C(2.0) * t13);
+    const puma560_real_t t26 = t15 * t25;
+    const puma560_real_t t27 = parameters[ZZ4] + (t22 - t26);
+    const puma560_real_t t28 = t27 + PUMA560_C(5781.53412496) * parameters[IA4];
+    const puma560_real_t t29 = t18 * t4;
+    const puma560_real_t t30 = t28 - t18 * t29 - t19 * t21;
+    if (!(t30 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t32 = t31 + PUMA560_C(-1.0e-9) * t29;
-    if (!(t32 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t33 = parameters[XZ4] + (t14 * t26 - t25);
-    const puma560_real_t t35 = t17 - parameters[YZ4];
+    const puma560_real_t t31 = parameters[XZ4] + (t13 * t25 - t24);
+    const puma560_real_t t33 = t16 - parameters[YZ4];
     /* link j6: column of the mass matrix */
-    const puma560_real_t t37 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const puma560_real_t t38 = t37 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t39 = parameters[MY4] + t38; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const puma560_real_t t36 = t35 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t37 = parameters[MY4] + t36; /* link j5: inertia of it and all beyond */
     /* link j6: column of the mass matrix */
-    const puma560_real_t t40 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const puma560_real_t t41 = parameters[MX5] - t40; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t42 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t43 = t14 * t42 - t16 * t41; /* link j5: column of the mass matrix */
-    const puma560_real_t t44 = parameters[MX4] - t43; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t45 = t36 * t39 + t34 * t44; /* link j4: column of the mass matrix */
-    const puma560_real_t t46 = t34 * t33 - t36 * t35 + PUMA560_C(-0.4318) * t45;
-    const puma560_real_t t47 = t16 * t18 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const puma560_real_t t48 = t16 * t37;
-    const puma560_real_t t49 = t34 * t40 - t36 * t48;
-    const puma560_real_t t50 = t14 * t37;
-    const puma560_real_t t51 = t34 * t47 - t36 * t3 + (PUMA560_C(-0.0203) * t50 + PUMA560_C(-0.4318) * t49);
-    const puma560_real_t t52 = t16 * t13 + t14 * t15; /* link j5: column of the mass matrix */
-    const puma560_real_t t53 = t16 * t42 + t14 * t41;
-    const puma560_real_t t54 = t36 * t53;
-    const puma560_real_t t55 = t34 * t52 + t36 * t9 + (PUMA560_C(-0.0203) * t43 + PUMA560_C(0.4318) * t54);
-    const puma560_real_t t56 = t55 + t51 * t5;
-    const puma560_real_t t57 = t51 * t30 - t46 + t56 * t22;
-    const puma560_real_t t58 = PUMA560_C(1.0) / t31;
-    const puma560_real_t t59 = t57 * t58;
-    const puma560_real_t t60 = t56 * t21;
-    const puma560_real_t t61 = t51 * t4;
-    const puma560_real_t t62 = parameters[XX4] + (t24 + t27); /* link j5: inertia of it and all beyond */
-    const puma560_real_t t63 = parameters[YY4] + t9;
-    const puma560_real_t t64 = parameters[XY4] + t52;
+    const puma560_real_t t38 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const puma560_real_t t39 = parameters[MX5] - t38; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t40 = parameters[MY5] + parameters[MZ6];
+    const puma560_real_t t41 = t13 * t40 - t15 * t39; /* link j5: column of the mass matrix */
+    const puma560_real_t t42 = parameters[MX4] - t41; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t43 = t34 * t37 + t32 * t42; /* link j4: column of the mass matrix */
+    const puma560_real_t t44 = t32 * t31 - t34 * t33 + PUMA560_C(-0.4318) * t43;
+    const puma560_real_t t45 = t15 * t17 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const puma560_real_t t46 = t15 * t35;
+    const puma560_real_t t47 = t32 * t38 - t34 * t46;
+    const puma560_real_t t48 = t13 * t35;
+    const puma560_real_t t49 = t32 * t45 - t34 * t3 + (PUMA560_C(-0.0203) * t48 + PUMA560_C(-0.4318) * t47);
+    const puma560_real_t t50 = t15 * t12 + t13 * t14; /* link j5: column of the mass matrix */
+    const puma560_real_t t51 = t15 * t40 + t13 * t39;
+    const puma560_real_t t52 = t34 * t51;
+    const puma560_real_t t53 = t32 * t50 + t34 * t9 + (PUMA560_C(-0.0203) * t41 + PUMA560_C(0.4318) * t52);
+    const puma560_real_t t54 = t53 + t49 * t5;
+    const puma560_real_t t55 = t49 * t29 - t44 + t54 * t21;
+    const puma560_real_t t56 = PUMA560_C(1.0) / t30;
+    const puma560_real_t t57 = t55 * t56;
+    const puma560_real_t t58 = t54 * t20;
+    const puma560_real_t t59 = t49 * t4;
+    const puma560_real_t t60 = parameters[XX4] + (t23 + t26); /* link j5: inertia of it and all beyond */
+    const puma560_real_t t61 = parameters[YY4] + t9;
+    const puma560_real_t t62 = parameters[XY4] + t50;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t65 = t36 * (t62 - t63) + t64 * (PUMA560_C(-2.0) * t34);
-    const puma560_real_t t66 = t36 * t65;
-    const puma560_real_t t67 = t34 * t39 - t36 * t44; /* link j4: column of the mass matrix */
-    const puma560_real_t t68 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t69 = parameters[M4] + t68; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t70 = PUMA560_C(0.0203) * t69; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t71 = PUMA560_C(0.0203) * (t70 + PUMA560_C(-2.0) * t67);
-    const puma560_real_t t72 = parameters[MZ4] + t53; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t73 = PUMA560_C(0.4318) * t69; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t74 = PUMA560_C(0.4318) * (t73 + PUMA560_C(2.0) * t72);
-    const puma560_real_t t75 = parameters[ZZ3] + (t62 - t66 + (t71 + t74));
-    const puma560_real_t t76 = t75 + PUMA560_C(2884.36665969) * parameters[IA3];
-    const puma560_real_t t77 = puma560_bounded(t76 - t51 * t61 - t56 * t60 - t57 * t59);
-    if (!(t77 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t63 = t34 * (t60 - t61) + t62 * (PUMA560_C(-2.0) * t32);
+    const puma560_real_t t64 = t34 * t63;
+    const puma560_real_t t65 = t32 * t37 - t34 * t42; /* link j4: column of the mass matrix */
+    const puma560_real_t t66 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t67 = parameters[M4] + t66; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t68 = PUMA560_C(0.0203) * t67; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t69 = PUMA560_C(0.0203) * (t68 + PUMA560_C(-2.0) * t65);
+    const puma560_real_t t70 = parameters[MZ4] + t51; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t71 = PUMA560_C(0.4318) * t67; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t72 = PUMA560_C(0.4318) * (t71 + PUMA560_C(2.0) * t70);
+    const puma560_real_t t73 = parameters[ZZ3] + (t60 - t64 + (t69 + t72));
+    const puma560_real_t t74 = t73 + PUMA560_C(2884.36665969) * parameters[IA3];
+    const puma560_real_t t75 = t74 - t49 * t59 - t54 * t58 - t55 * t57;
+    if (!(t75 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t78 = t77 + PUMA560_C(-1.0e-9) * t76;
-    if (!(t78 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t80 = t79 * t45; /* link j4: column of the mass matrix */
-    const puma560_real_t t81 = t46 + PUMA560_C(0.4318) * t80;
-    const puma560_real_t t83 = t82 * t50 - t79 * t49; /* link j6: column of the mass matrix */
-    const puma560_real_t t84 = t51 + PUMA560_C(-0.4318) * t83;
-    const puma560_real_t t85 = t79 * t54 + t82 * t43; /* link j5: column of the mass matrix */
-    const puma560_real_t t86 = t55 + PUMA560_C(-0.4318) * t85;
-    const puma560_real_t t87 = t86 + t84 * t5;
-    const puma560_real_t t88 = t81 - t84 * t30 - t87 * t22;
-    const puma560_real_t t89 = t67 - t70; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t90 = t89 - parameters[MX3];
-    const puma560_real_t t91 = t72 + t73;
-    const puma560_real_t t92 = parameters[MY3] + t91;
-    const puma560_real_t t93 = t79 * t92 + t82 * t90; /* link j3: column of the mass matrix */
-    const puma560_real_t t94 = PUMA560_C(0.4318) * t93 - t75;
-    const puma560_real_t t95 = t94 + t84 * t61 + t87 * t60 - t88 * t59;
-    const puma560_real_t t96 = PUMA560_C(-1.0) / t77;
-    const puma560_real_t t97 = t95 * t96;
-    const puma560_real_t t98 = t88 * t58;
-    const puma560_real_t t99 = t87 * t21;
-    const puma560_real_t t100 = t84 * t4;
-    const puma560_real_t t101 = parameters[M3] + t69; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t102 = PUMA560_C(0.4318) * t101; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t103 = PUMA560_C(0.4318) * (t102 + PUMA560_C(-2.0) * t93);
-    const puma560_real_t t104 = parameters[ZZ2] + (t75 + t103);
-    const puma560_real_t t105 = t104 + PUMA560_C(11624.074225) * parameters[IA2];
-    const puma560_real_t t106 = t105 - t84 * t100 - t87 * t99 - t88 * t98;
-    const puma560_real_t t107 = puma560_bounded(t106 + t95 * t97);
-    if (!(t107 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t108 = t107 + PUMA560_C(-1.0e-9) * t105;
-    if (!(t108 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t77 = t76 * t43; /* link j4: column of the mass matrix */
+    const puma560_real_t t78 = t44 + PUMA560_C(0.4318) * t77;
+    const puma560_real_t t80 = t79 * t48 - t76 * t47; /* link j6: column of the mass matrix */
+    const puma560_real_t t81 = t49 + PUMA560_C(-0.4318) * t80;
+    const puma560_real_t t82 = t76 * t52 + t79 * t41; /* link j5: column of the mass matrix */
+    const puma560_real_t t83 = t53 + PUMA560_C(-0.4318) * t82;
+    const puma560_real_t t84 = t83 + t81 * t5;
+    const puma560_real_t t85 = t78 - t81 * t29 - t84 * t21;
+    const puma560_real_t t86 = t65 - t68; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t87 = t86 - parameters[MX3];
+    const puma560_real_t t88 = t70 + t71;
+    const puma560_real_t t89 = parameters[MY3] + t88;
+    const puma560_real_t t90 = t76 * t89 + t79 * t87; /* link j3: column of the mass matrix */
+    const puma560_real_t t91 = PUMA560_C(0.4318) * t90 - t73;
+    const puma560_real_t t92 = t91 + t81 * t59 + t84 * t58 - t85 * t57;
+    const puma560_real_t t93 = PUMA560_C(-1.0) / t75;
+    const puma560_real_t t94 = t92 * t93;
+    const puma560_real_t t95 = t85 * t56;
+    const puma560_real_t t96 = t84 * t20;
+    const puma560_real_t t97 = t81 * t4;
+    const puma560_real_t t98 = parameters[M3] + t67; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t99 = PUMA560_C(0.4318) * t98; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t100 = PUMA560_C(0.4318) * (t99 + PUMA560_C(-2.0) * t90);
+    const puma560_real_t t101 = parameters[ZZ2] + (t73 + t100);
+    const puma560_real_t t102 = t101 + PUMA560_C(11624.074225) * parameters[IA2];
+    const puma560_real_t t103 = t102 - t81 * t97 - t84 * t96 - t85 * t95;
+    const puma560_real_t t104 = t103 + t92 * t94;
+    if (!(t104 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);
@@ -328,71 +295,82 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
         return PUMA560_STATUS_PIVOT;
     }
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t109 = parameters[XX3] + (t63 + t66 + t74);
-    const puma560_real_t t110 = parameters[YY3] + (t28 + t71);
-    const puma560_real_t t111 = t36 * t33 + t34 * t35; /* link j4: column of the mass matrix */
+    const puma560_real_t t105 = parameters[XX3] + (t61 + t64 + t72);
+    const puma560_real_t t106 = parameters[YY3] + (t27 + t69);
+    const puma560_real_t t107 = t34 * t31 + t32 * t33; /* link j4: column of the mass matrix */
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t112 = parameters[XY3] + (t111 + (PUMA560_C(-0.0203) * t72
-        + PUMA560_C(0.4318) * t89));
+    const puma560_real_t t108 = parameters[XY3] + (t107 + (PUMA560_C(-0.0203) * t70
+        + PUMA560_C(0.4318) * t86));
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t113 = t82 * (t109 - t110) - t112 * (PUMA560_C(2.0) * t79);
-    const puma560_real_t t114 = t82 * t113;
-    const puma560_real_t t115 = t45 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t116 = PUMA560_C(0.1254) * t101; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t117 = PUMA560_C(0.1254) * (t116 + PUMA560_C(-2.0) * t115);
-    const puma560_real_t t118 = parameters[XX2] + (t110 + t114 + t117);
-    const puma560_real_t t119 = parameters[YY2] + (t109 - t114 + (t103 + t117));
-    const puma560_real_t t121 = t79 * t90 - t82 * t92; /* link j3: column of the mass matrix */
+    const puma560_real_t t109 = t79 * (t105 - t106) - t108 * (PUMA560_C(2.0) * t76);
+    const puma560_real_t t110 = t79 * t109;
+    const puma560_real_t t111 = t43 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t112 = PUMA560_C(0.1254) * t98; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t113 = PUMA560_C(0.1254) * (t112 + PUMA560_C(-2.0) * t111);
+    const puma560_real_t t114 = parameters[XX2] + (t106 + t110 + t113);
+    const puma560_real_t t115 = parameters[YY2] + (t105 - t110 + (t100 + t113));
+    const puma560_real_t t117 = t76 * t87 - t79 * t89; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t122 = parameters[XY2] + (t112 + t79 * t113 + PUMA560_C(0.4318) * t121);
+    const puma560_real_t t118 = parameters[XY2] + (t108 + t76 * t109 + PUMA560_C(0.4318) * t117);
     /* link j2: inertia of it and all beyond */
-    const puma560_real_t t124 = t120 * (t120 * (t119 - t118) + t122 * (PUMA560_C(2.0) * t123));
-    const puma560_real_t t125 = parameters[ZZ1] + (t118 + t124) + PUMA560_C(3920.14984321) * parameters[IA1];
-    const puma560_real_t t126 = t34 * t48 + t36 * t40; /* link j6: column of the mass matrix */
-    const puma560_real_t t127 = PUMA560_C(0.4318) * t126;
-    const puma560_real_t t128 = t127 - (t36 * t47 + t34 * t3);
-    const puma560_real_t t129 = t19 + PUMA560_C(0.0203) * t126;
-    const puma560_real_t t130 = t82 * t49 + t79 * t50;
-    const puma560_real_t t131 = t79 * t128 - t82 * t129 - (t127 + PUMA560_C(-0.1254) * t130);
-    const puma560_real_t t132 = t82 * t128 + t79 * t129 + PUMA560_C(0.1254) * t83;
-    const puma560_real_t t133 = t123 * t132 + t120 * t131;
-    const puma560_real_t t134 = t133 * t4;
-    const puma560_real_t t135 = t34 * t53; /* link j5: column of the mass matrix */
-    const puma560_real_t t136 = PUMA560_C(0.4318) * t135;
-    const puma560_real_t t137 = t34 * t9 - t36 * t52 + t136;
-    const puma560_real_t t138 = t17 - PUMA560_C(0.0203) * t135;
-    const puma560_real_t t139 = t82 * t137 - t79 * t138 + PUMA560_C(0.1254) * t85;
-    const puma560_real_t t140 = t79 * t43 - t82 * t54;
-    const puma560_real_t t141 = t79 * t137 + t82 * t138 - (t136 + PUMA560_C(-0.1254) * t140);
-    const puma560_real_t t142 = t123 * t139 + t120 * t141 + t133 * t5;
-    const puma560_real_t t143 = t142 * t21;
-    const puma560_real_t t144 = PUMA560_C(0.4318) * t67; /* link j4: column of the mass matrix */
-    const puma560_real_t t145 = t111 + t144;
-    const puma560_real_t t146 = t28 - PUMA560_C(0.0203) * t67;
-    const puma560_real_t t147 = t79 * t146 - t82 * t145 + PUMA560_C(-0.1254) * t80;
-    const puma560_real_t t148 = t82 * t45;
-    const puma560_real_t t149 = t144 + PUMA560_C(0.1254) * t148 - (t79 * t145 + t82 * t146);
-    const puma560_real_t t150 = t123 * t147 + t120 * t149 - t133 * t30 - t142 * t22;
-    const puma560_real_t t151 = t150 * t58;
-    const puma560_real_t t152 = t125 - t133 * t134 - t142 * t143 - t150 * t151;
+    const puma560_real_t t120 = t116 * (t116 * (t115 - t114) + t118 * (PUMA560_C(2.0) * t119));
+    const puma560_real_t t121 = parameters[ZZ1] + (t114 + t120) + PUMA560_C(3920.14984321) * parameters[IA1];
+    const puma560_real_t t122 = t32 * t46 + t34 * t38; /* link j6: column of the mass matrix */
+    const puma560_real_t t123 = PUMA560_C(0.4318) * t122;
+    const puma560_real_t t124 = t123 - (t34 * t45 + t32 * t3);
+    const puma560_real_t t125 = t18 + PUMA560_C(0.0203) * t122;
+    const puma560_real_t t126 = t79 * t47 + t76 * t48;
+    const puma560_real_t t127 = t76 * t124 - t79 * t125 - (t123 + PUMA560_C(-0.1254) * t126);
+    const puma560_real_t t128 = t79 * t124 + t76 * t125 + PUMA560_C(0.1254) * t80;
+    const puma560_real_t t129 = t119 * t128 + t116 * t127;
+    const puma560_real_t t130 = t129 * t4;
+    const puma560_real_t t131 = t32 * t51; /* link j5: column of the mass matrix */
+    const puma560_real_t t132 = PUMA560_C(0.4318) * t131;
+    const puma560_real_t t133 = t32 * t9 - t34 * t50 + t132;
+    const puma560_real_t t134 = t16 - PUMA560_C(0.0203) * t131;
+    const puma560_real_t t135 = t79 * t133 - t76 * t134 + PUMA560_C(0.1254) * t82;
+    const puma560_real_t t136 = t76 * t41 - t79 * t52;
+    const puma560_real_t t137 = t76 * t133 + t79 * t134 - (t132 + PUMA560_C(-0.1254) * t136);
+    const puma560_real_t t138 = t119 * t135 + t116 * t137 + t129 * t5;
+    const puma560_real_t t139 = t138 * t20;
+    const puma560_real_t t140 = PUMA560_C(0.4318) * t65; /* link j4: column of the mass matrix */
+    const puma560_real_t t141 = t107 + t140;
+    const puma560_real_t t142 = t27 - PUMA560_C(0.0203) * t65;
+    const puma560_real_t t143 = t76 * t142 - t79 * t141 + PUMA560_C(-0.1254) * t77;
+    const puma560_real_t t144 = t79 * t43;
+    const puma560_real_t t145 = t140 + PUMA560_C(0.1254) * t144 - (t76 * t141 + t79 * t142);
+    const puma560_real_t t146 = t119 * t143 + t116 * t145 - t129 * t29 - t138 * t21;
+    const puma560_real_t t147 = t146 * t56;
+    const puma560_real_t t148 = t121 - t129 * t130 - t138 * t139 - t146 * t147;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t153 = t64 + t34 * t65 + PUMA560_C(-0.0203) * t45 - parameters[XZ3];
-    const puma560_real_t t154 = t46 - parameters[YZ3];
-    const puma560_real_t t155 = t82 * t153 - t79 * t154; /* link j3: column of the mass matrix */
-    const puma560_real_t t156 = t155 + PUMA560_C(-0.1254) * t93;
-    const puma560_real_t t157 = t79 * t153 + t82 * t154 + PUMA560_C(-0.1254) * t121;
-    const puma560_real_t t158 = t123 * t156 + t120 * t157 + t133 * t61 + t142 * t60;
-    const puma560_real_t t159 = t158 - t150 * t59;
-    const puma560_real_t t160 = t159 * t96;
-    const puma560_real_t t161 = t93 - t102; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t162 = t155 + (PUMA560_C(-0.4318) * t115 + PUMA560_C(-0.1254) * t161)
+    const puma560_real_t t149 = t62 + t32 * t63 + PUMA560_C(-0.0203) * t43 - parameters[XZ3];
+    const puma560_real_t t150 = t44 - parameters[YZ3];
+    const puma560_real_t t151 = t79 * t149 - t76 * t150; /* link j3: column of the mass matrix */
+    const puma560_real_t t152 = t151 + PUMA560_C(-0.1254) * t90;
+    const puma560_real_t t153 = t76 * t149 + t79 * t150 + PUMA560_C(-0.1254) * t117;
+    const puma560_real_t t154 = t119 * t152 + t116 * t153 + t129 * t59 + t138 * t58;
+    const puma560_real_t t155 = t154 - t146 * t57;
+    const puma560_real_t t156 = t155 * t93;
+    const puma560_real_t t157 = t90 - t99; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t158 = t151 + (PUMA560_C(-0.4318) * t111 + PUMA560_C(-0.1254) * t157)
         - parameters[XZ2];
-    const puma560_real_t t163 = t157 - parameters[YZ2];
-    const puma560_real_t t164 = t123 * t162 + t120 * t163 + t133 * t100 + t142 * t99;
-    const puma560_real_t t165 = t159 * t97 - (t164 + t150 * t98);
-    const puma560_real_t t166 = PUMA560_C(1.0) / t107;
-    const puma560_real_t t167 = t165 * t166;
-    const puma560_real_t t168 = puma560_bounded(t152 + t159 * t160 - t165 * t167);
+    const puma560_real_t t159 = t153 - parameters[YZ2];
+    const puma560_real_t t160 = t119 * t158 + t116 * t159 + t129 * t97 + t138 * t96;
+    const puma560_real_t t161 = t155 * t94 - (t160 + t146 * t95);
+    const puma560_real_t t162 = PUMA560_C(1.0) / t104;
+    const puma560_real_t t163 = t161 * t162;
+    const puma560_real_t t164 = t148 + t155 * t156 - t161 * t163;
+    if (!(t164 > PUMA560_C(1.0e-12))) {
+        puma560_zero(ddq, 6);
+        puma560_zero(ddq_by_q, 36);
+        puma560_zero(ddq_by_dq, 36);
+        puma560_zero(ddq_by_input, 36);
+        return PUMA560_STATUS_PIVOT;
+    }
+    const puma560_real_t t165 = puma560_min(t11 + PUMA560_C(-1.0e-9) * t10, t30 + PUMA560_C(-1.0e-9) * t28);
+    const puma560_real_t t166 = puma560_min(t165, t75 + PUMA560_C(-1.0e-9) * t74);
+    const puma560_real_t t167 = puma560_min(t166, t104 + PUMA560_C(-1.0e-9) * t102);
+    const puma560_real_t t168 = puma560_min(t167, t164 + PUMA560_C(-1.0e-9) * t121);
     if (!(t168 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
@@ -400,1223 +378,1218 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
         puma560_zero(ddq_by_input, 36);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t169 = t168 + PUMA560_C(-1.0e-9) * t125;
-    if (!(t169 > PUMA560_C(1.0e-12))) {
-        puma560_zero(ddq, 6);
-        puma560_zero(ddq_by_q, 36);
-        puma560_zero(ddq_by_dq, 36);
-        puma560_zero(ddq_by_input, 36);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t170 = t123 * dq[0]; /* link j2: motion */
-    const puma560_real_t t171 = t120 * dq[0];
-    const puma560_real_t t172 = t82 * t170 + t79 * t171; /* link j3: motion */
-    const puma560_real_t t173 = t79 * t170 - t82 * t171;
-    const puma560_real_t t174 = t172 * t173;
-    const puma560_real_t t175 = dq[1] + dq[2];
-    const puma560_real_t t176 = t175 * t173;
-    const puma560_real_t t177 = PUMA560_C(-2.0) * t176; /* link j4: motion */
-    const puma560_real_t t178 = t34 * t177 - t36 * t174;
-    const puma560_real_t t179 = t34 * t175;
-    const puma560_real_t t180 = t179 + t36 * t172;
-    const puma560_real_t t181 = dq[3] + t173;
-    const puma560_real_t t182 = t180 * t181;
-    const puma560_real_t t183 = t178 + t182;
-    const puma560_real_t t184 = t16 * t180 - t14 * t181; /* link j5: motion */
-    const puma560_real_t t185 = t14 * t180 + t16 * t181;
-    const puma560_real_t t186 = t184 * t185;
-    const puma560_real_t t187 = t183 - t186; /* link j6: motion */
-    const puma560_real_t t188 = t34 * t174 + t36 * t177; /* link j4: motion */
-    const puma560_real_t t189 = t36 * t175;
-    const puma560_real_t t190 = t189 - t34 * t172;
-    const puma560_real_t t191 = t190 * t181;
-    const puma560_real_t t192 = t188 + t191;
-    const puma560_real_t t193 = t191 + t192; /* link j5: motion */
-    const puma560_real_t t194 = t180 * t190; /* link j4: motion */
-    const puma560_real_t t195 = t175 * t172; /* link j3: motion */
-    const puma560_real_t t196 = t194 - t195; /* link j5: motion */
-    const puma560_real_t t197 = t14 * t196 + t16 * t193;
-    const puma560_real_t t198 = dq[4] + t190;
-    const puma560_real_t t199 = t185 * t198;
-    const puma560_real_t t200 = t197 - t199;
-    const puma560_real_t t201 = t200 - t199; /* link j6: motion */
-    const puma560_real_t t202 = t1 * t187 - t2 * t201;
-    const puma560_real_t t203 = t1 * t184 - t2 * t198;
-    const puma560_real_t t204 = dq[5] + t185;
-    const puma560_real_t t205 = t203 * t204;
-    const puma560_real_t t206 = t202 + t205;
-    const puma560_real_t t207 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
-    const puma560_real_t t208 = t2 * t187 + t1 * t201; /* link j6: motion */
-    const puma560_real_t t209 = t2 * t184 + t1 * t198;
-    const puma560_real_t t210 = t209 * t204;
-    const puma560_real_t t211 = t208 + t210;
-    const puma560_real_t t212 = t210 + t211; /* link j6: force and moment */
-    const puma560_real_t t213 = t14 * t193 - t16 * t196; /* link j5: motion */
-    const puma560_real_t t214 = t184 * t198;
-    const puma560_real_t t215 = t213 + t214;
-    const puma560_real_t t216 = t209 * t203; /* link j6: motion */
-    const puma560_real_t t217 = t215 - t216; /* link j6: force and moment */
-    const puma560_real_t t218 = parameters[XX6] * t206 + t205 * t207 + parameters[XY6] * t212
-        + parameters[XZ6] * t217;
-    const puma560_real_t t219 = t203 * t203; /* link j6: motion */
-    const puma560_real_t t220 = t204 * t204;
-    const puma560_real_t t221 = t173 * t173; /* link j3: motion */
-    const puma560_real_t t222 = t175 * t175;
-    const puma560_real_t t223 = t222 + t221; /* link j4: motion */
-    const puma560_real_t t224 = t171 * t171; /* link j2: motion */
-    const puma560_real_t t225 = dq[1] * dq[1];
-    const puma560_real_t t226 = PUMA560_C(0.4318) * (t224 + t225); /* link j3: motion */
-    const puma560_real_t t227 = PUMA560_C(9.81) * t123; /* link j2: motion */
-    const puma560_real_t t228 = t227 + t226; /* link j3: columns */
-    const puma560_real_t t229 = t170 * t171; /* link j2: motion */
-    const puma560_real_t t230 = PUMA560_C(-9.81) * t120;
-    const puma560_real_t t231 = t230 + PUMA560_C(0.4318) * t229; /* link j3: motion */
-    const puma560_real_t t232 = t79 * t231 - t82 * t228;
+    const puma560_real_t t169 = t119 * dq[0]; /* link j2: motion */
+    const puma560_real_t t170 = t116 * dq[0];
+    const puma560_real_t t171 = t79 * t169 + t76 * t170; /* link j3: motion */
+    const puma560_real_t t172 = t76 * t169 - t79 * t170;
+    const puma560_real_t t173 = t171 * t172;
+    const puma560_real_t t174 = dq[1] + dq[2];
+    const puma560_real_t t175 = t174 * t172;
+    const puma560_real_t t176 = PUMA560_C(-2.0) * t175; /* link j4: motion */
+    const puma560_real_t t177 = t32 * t176 - t34 * t173;
+    const puma560_real_t t178 = t32 * t174;
+    const puma560_real_t t179 = t178 + t34 * t171;
+    const puma560_real_t t180 = dq[3] + t172;
+    const puma560_real_t t181 = t179 * t180;
+    const puma560_real_t t182 = t177 + t181;
+    const puma560_real_t t183 = t15 * t179 - t13 * t180; /* link j5: motion */
+    const puma560_real_t t184 = t13 * t179 + t15 * t180;
+    const puma560_real_t t185 = t183 * t184;
+    const puma560_real_t t186 = t182 - t185; /* link j6: motion */
+    const puma560_real_t t187 = t32 * t173 + t34 * t176; /* link j4: motion */
+    const puma560_real_t t188 = t34 * t174;
+    const puma560_real_t t189 = t188 - t32 * t171;
+    const puma560_real_t t190 = t189 * t180;
+    const puma560_real_t t191 = t187 + t190;
+    const puma560_real_t t192 = t190 + t191; /* link j5: motion */
+    const puma560_real_t t193 = t179 * t189; /* link j4: motion */
+    const puma560_real_t t194 = t174 * t171; /* link j3: motion */
+    const puma560_real_t t195 = t193 - t194; /* link j5: motion */
+    const puma560_real_t t196 = t13 * t195 + t15 * t192;
+    const puma560_real_t t197 = dq[4] + t189;
+    const puma560_real_t t198 = t184 * t197;
+    const puma560_real_t t199 = t196 - t198;
+    const puma560_real_t t200 = t199 - t198; /* link j6: motion */
+    const puma560_real_t t201 = t1 * t186 - t2 * t200;
+    const puma560_real_t t202 = t1 * t183 - t2 * t197;
+    const puma560_real_t t203 = dq[5] + t184;
+    const puma560_real_t t204 = t202 * t203;
+    const puma560_real_t t205 = t201 + t204;
+    const puma560_real_t t206 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
+    const puma560_real_t t207 = t2 * t186 + t1 * t200; /* link j6: motion */
+    const puma560_real_t t208 = t2 * t183 + t1 * t197;
+    const puma560_real_t t209 = t208 * t203;
+    const puma560_real_t t210 = t207 + t209;
+    const puma560_real_t t211 = t209 + t210; /* link j6: force and moment */
+    const puma560_real_t t212 = t13 * t192 - t15 * t195; /* link j5: motion */
+    const puma560_real_t t213 = t183 * t197;
+    const puma560_real_t t214 = t212 + t213;
+    const puma560_real_t t215 = t208 * t202; /* link j6: motion */
+    const puma560_real_t t216 = t214 - t215; /* link j6: force and moment */
+    const puma560_real_t t217 = parameters[XX6] * t205 + t204 * t206 + parameters[XY6] * t211
+        + parameters[XZ6] * t216;
+    const puma560_real_t t218 = t202 * t202; /* link j6: motion */
+    const puma560_real_t t219 = t203 * t203;
+    const puma560_real_t t220 = t172 * t172; /* link j3: motion */
+    const puma560_real_t t221 = t174 * t174;
+    const puma560_real_t t222 = t221 + t220; /* link j4: motion */
+    const puma560_real_t t223 = t170 * t170; /* link j2: motion */
+    const puma560_real_t t224 = dq[1] * dq[1];
+    const puma560_real_t t225 = PUMA560_C(0.4318) * (t223 + t224); /* link j3: motion */
+    const puma560_real_t t226 = PUMA560_C(9.81) * t119; /* link j2: motion */
+    const puma560_real_t t227 = t226 + t225; /* link j3: columns */
+    const puma560_real_t t228 = t169 * t170; /* link j2: motion */
+    const puma560_real_t t229 = PUMA560_C(-9.81) * t116;
+    const puma560_real_t t230 = t229 + PUMA560_C(0.4318) * t228; /* link j3: motion */
+    const puma560_real_t t231 = t76 * t230 - t79 * t227;
     /* link j4: motion */
-    const puma560_real_t t233 = t232 + (PUMA560_C(-0.0203) * t223 + PUMA560_C(-0.4318) * t174);
-    const puma560_real_t t234 = t170 * t170; /* link j2: motion */
-    const puma560_real_t t235 = t234 + t224; /* link j3: motion */
-    const puma560_real_t t236 = PUMA560_C(-0.1254) * t235;
-    const puma560_real_t t237 = dq[1] * t170; /* link j2: motion */
-    const puma560_real_t t238 = PUMA560_C(0.8636) * t237 - t236; /* link j3: motion */
+    const puma560_real_t t232 = t231 + (PUMA560_C(-0.0203) * t222 + PUMA560_C(-0.4318) * t173);
+    const puma560_real_t t233 = t169 * t169; /* link j2: motion */
+    const puma560_real_t t234 = t233 + t223; /* link j3: motion */
+    const puma560_real_t t235 = PUMA560_C(-0.1254) * t234;
+    const puma560_real_t t236 = dq[1] * t169; /* link j2: motion */
+    const puma560_real_t t237 = PUMA560_C(0.8636) * t236 - t235; /* link j3: motion */
     /* link j4: motion */
-    const puma560_real_t t239 = t238 + (PUMA560_C(0.0406) * t195 - PUMA560_C(0.8636) * t176);
-    const puma560_real_t t240 = t36 * t233 + t34 * t239;
-    const puma560_real_t t241 = t172 * t172; /* link j3: motion */
-    const puma560_real_t t242 = t222 + t241; /* link j4: motion */
-    const puma560_real_t t243 = t79 * t228 + t82 * t231; /* link j3: motion */
+    const puma560_real_t t238 = t237 + (PUMA560_C(0.0406) * t194 - PUMA560_C(0.8636) * t175);
+    const puma560_real_t t239 = t34 * t232 + t32 * t238;
+    const puma560_real_t t240 = t171 * t171; /* link j3: motion */
+    const puma560_real_t t241 = t221 + t240; /* link j4: motion */
+    const puma560_real_t t242 = t76 * t227 + t79 * t230; /* link j3: motion */
     /* link j4: motion */
-    const puma560_real_t t244 = t243 - (PUMA560_C(0.0203) * t174 + PUMA560_C(0.4318) * t242);
-    const puma560_real_t t245 = t16 * t240 + t14 * t244; /* link j5: motion */
-    const puma560_real_t t246 = t34 * t233 - t36 * t239; /* link j4: motion */
-    const puma560_real_t t247 = t1 * t245 + t2 * t246; /* link j6: motion */
-    const puma560_real_t t248 = t14 * t240 - t16 * t244; /* link j5: motion */
+    const puma560_real_t t243 = t242 - (PUMA560_C(0.0203) * t173 + PUMA560_C(0.4318) * t241);
+    const puma560_real_t t244 = t15 * t239 + t13 * t243; /* link j5: motion */
+    const puma560_real_t t245 = t32 * t232 - t34 * t238; /* link j4: motion */
+    const puma560_real_t t246 = t1 * t244 + t2 * t245; /* link j6: motion */
+    const puma560_real_t t247 = t13 * t239 - t15 * t243; /* link j5: motion */
     /* link j6: force and moment */
-    const puma560_real_t t249 = t218 + parameters[YZ6] * (t219 - t220) + (parameters[MZ6] * t247
-        - parameters[MY6] * t248);
-    const puma560_real_t t250 = parameters[XX6] - parameters[ZZ6];
-    const puma560_real_t t251 = t205 + t206;
-    const puma560_real_t t252 = t215 + t216;
-    const puma560_real_t t253 = parameters[YY6] * t211 - t210 * t250 + parameters[XY6] * t251
-        + parameters[YZ6] * t252;
-    const puma560_real_t t254 = t209 * t209; /* link j6: motion */
-    const puma560_real_t t255 = t2 * t245 - t1 * t246;
+    const puma560_real_t t248 = t217 + parameters[YZ6] * (t218 - t219) + (parameters[MZ6] * t246
+        - parameters[MY6] * t247);
+    const puma560_real_t t249 = parameters[XX6] - parameters[ZZ6];
+    const puma560_real_t t250 = t204 + t205;
+    const puma560_real_t t251 = t214 + t215;
+    const puma560_real_t t252 = parameters[YY6] * t210 - t209 * t249 + parameters[XY6] * t250
+        + parameters[YZ6] * t251;
+    const puma560_real_t t253 = t208 * t208; /* link j6: motion */
+    const puma560_real_t t254 = t2 * t244 - t1 * t245;
     /* link j6: force and moment */
-    const puma560_real_t t256 = t253 + parameters[XZ6] * (t220 - t254) + (parameters[MZ6] * t255
-        + parameters[MX6] * t248);
-    const puma560_real_t t257 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
-    const puma560_real_t t258 = t214 + t215; /* link j6: motion */
-    const puma560_real_t t259 = t183 + t186;
+    const puma560_real_t t255 = t252 + parameters[XZ6] * (t219 - t253) + (parameters[MZ6] * t254
+        + parameters[MX6] * t247);
+    const puma560_real_t t256 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
+    const puma560_real_t t257 = t213 + t214; /* link j6: motion */
+    const puma560_real_t t258 = t182 + t185;
     /* link j5: force and moment */
-    const puma560_real_t t260 = parameters[XY5] * t258 - (parameters[XX5] * t200 + t199 * t257)
-        - parameters[XZ5] * t259;
-    const puma560_real_t t261 = t185 * t185; /* link j5: motion */
-    const puma560_real_t t262 = t198 * t198;
+    const puma560_real_t t259 = parameters[XY5] * t257 - (parameters[XX5] * t199 + t198 * t256)
+        - parameters[XZ5] * t258;
+    const puma560_real_t t260 = t184 * t184; /* link j5: motion */
+    const puma560_real_t t261 = t197 * t197;
     /* link j5: force and moment */
-    const puma560_real_t t263 = t260 + parameters[YZ5] * (t261 - t262) + (parameters[MY5] * t246
-        + parameters[MZ5] * t248);
-    const puma560_real_t t264 = t263 - (t1 * t256 - t2 * t249); /* link j6: what it passes on */
-    const puma560_real_t t265 = parameters[XX5] - parameters[ZZ5]; /* link j5: force and moment */
-    const puma560_real_t t266 = t214 * t265 - parameters[YY5] * t215 + parameters[XY5] * t201
-        + parameters[YZ5] * t187;
-    const puma560_real_t t267 = t184 * t184; /* link j5: motion */
+    const puma560_real_t t262 = t259 + parameters[YZ5] * (t260 - t261) + (parameters[MY5] * t245
+        + parameters[MZ5] * t247);
+    const puma560_real_t t263 = t262 - (t1 * t255 - t2 * t248); /* link j6: what it passes on */
+    const puma560_real_t t264 = parameters[XX5] - parameters[ZZ5]; /* link j5: force and moment */
+    const puma560_real_t t265 = t213 * t264 - parameters[YY5] * t214 + parameters[XY5] * t200
+        + parameters[YZ5] * t186;
+    const puma560_real_t t266 = t183 * t183; /* link j5: motion */
     /* link j5: force and moment */
-    const puma560_real_t t268 = t266 + parameters[XZ5] * (t267 - t262) + (parameters[MX5] * t246
-        - parameters[MZ5] * t245);
+    const puma560_real_t t267 = t265 + parameters[XZ5] * (t266 - t261) + (parameters[MX5] * t245
+        - parameters[MZ5] * t244);
     /* link j6: force and moment */
-    const puma560_real_t t269 = t6 * t216 - parameters[ZZ6] * t215 - parameters[YZ6] * t208
-        - parameters[XZ6] * t202;
-    const puma560_real_t t270 = t269 + parameters[XY6] * (t219 - t254) + (parameters[MX6] * t247
-        + parameters[MY6] * t255);
-    const puma560_real_t t271 = t268 + t270; /* link j6: what it passes on */
-    const puma560_real_t t272 = parameters[YY4] - parameters[ZZ4]; /* link j4: force and moment */
-    const puma560_real_t t273 = t182 + t183; /* link j5: motion */
-    const puma560_real_t t274 = t195 + t194;
+    const puma560_real_t t268 = t6 * t215 - parameters[ZZ6] * t214 - parameters[YZ6] * t207
+        - parameters[XZ6] * t201;
+    const puma560_real_t t269 = t268 + parameters[XY6] * (t218 - t253) + (parameters[MX6] * t246
+        + parameters[MY6] * t254);
+    const puma560_real_t t270 = t267 + t269; /* link j6: what it passes on */
+    const puma560_real_t t271 = parameters[YY4] - parameters[ZZ4]; /* link j4: force and moment */
+    const puma560_real_t t272 = t181 + t182; /* link j5: motion */
+    const puma560_real_t t273 = t194 + t193;
     /* link j4: force and moment */
-    const puma560_real_t t275 = t191 * t272 - parameters[XX4] * t192 + parameters[XY4] * t273
-        + parameters[XZ4] * t274;
-    const puma560_real_t t276 = t190 * t190; /* link j4: motion */
-    const puma560_real_t t277 = t181 * t181;
+    const puma560_real_t t274 = t190 * t271 - parameters[XX4] * t191 + parameters[XY4] * t272
+        + parameters[XZ4] * t273;
+    const puma560_real_t t275 = t189 * t189; /* link j4: motion */
+    const puma560_real_t t276 = t180 * t180;
     /* link j4: force and moment */
-    const puma560_real_t t278 = t275 + parameters[YZ4] * (t276 - t277) + (parameters[MY4] * t244
-        + parameters[MZ4] * t246);
-    const puma560_real_t t279 = t278 + (t16 * t264 + t14 * t271); /* link j5: what it passes on */
-    const puma560_real_t t280 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
-    const puma560_real_t t281 = parameters[ZZ5] * t183 - t186 * t280 - parameters[YZ5] * t213
-        + parameters[XZ5] * t197;
-    const puma560_real_t t282 = t281 + parameters[XY5] * (t261 - t267) + (parameters[MX5] * t248
-        + parameters[MY5] * t245);
-    const puma560_real_t t283 = t282 + (t1 * t249 + t2 * t256); /* link j6: what it passes on */
-    const puma560_real_t t284 = parameters[XX4] - parameters[ZZ4]; /* link j4: force and moment */
-    const puma560_real_t t285 = t182 * t284 - parameters[YY4] * t183 + parameters[XY4] * t193
-        + parameters[YZ4] * t196;
-    const puma560_real_t t286 = t180 * t180; /* link j4: motion */
+    const puma560_real_t t277 = t274 + parameters[YZ4] * (t275 - t276) + (parameters[MY4] * t243
+        + parameters[MZ4] * t245);
+    const puma560_real_t t278 = t277 + (t15 * t263 + t13 * t270); /* link j5: what it passes on */
+    const puma560_real_t t279 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
+    const puma560_real_t t280 = parameters[ZZ5] * t182 - t185 * t279 - parameters[YZ5] * t212
+        + parameters[XZ5] * t196;
+    const puma560_real_t t281 = t280 + parameters[XY5] * (t260 - t266) + (parameters[MX5] * t247
+        + parameters[MY5] * t244);
+    const puma560_real_t t282 = t281 + (t1 * t248 + t2 * t255); /* link j6: what it passes on */
+    const puma560_real_t t283 = parameters[XX4] - parameters[ZZ4]; /* link j4: force and moment */
+    const puma560_real_t t284 = t181 * t283 - parameters[YY4] * t182 + parameters[XY4] * t192
+        + parameters[YZ4] * t195;
+    const puma560_real_t t285 = t179 * t179; /* link j4: motion */
     /* link j4: force and moment */
-    const puma560_real_t t287 = t285 + parameters[XZ4] * (t286 - t277) + (parameters[MX4] * t244
-        - parameters[MZ4] * t240);
-    const puma560_real_t t288 = t287 - t283; /* link j5: what it passes on */
+    const puma560_real_t t286 = t284 + parameters[XZ4] * (t285 - t276) + (parameters[MX4] * t243
+        - parameters[MZ4] * t239);
+    const puma560_real_t t287 = t286 - t282; /* link j5: what it passes on */
     /* link j6: force and moment */
-    const puma560_real_t t289 = parameters[MX6] * (t219 + t220) + parameters[MY6] * t252
-        - parameters[MZ6] * t208;
-    const puma560_real_t t290 = t289 - parameters[M6] * t255;
-    const puma560_real_t t291 = parameters[MX6] * t217 - parameters[MY6] * (t254 + t220)
-        - parameters[MZ6] * t202;
-    const puma560_real_t t292 = t291 - parameters[M6] * t247;
+    const puma560_real_t t288 = parameters[MX6] * (t218 + t219) + parameters[MY6] * t251
+        - parameters[MZ6] * t207;
+    const puma560_real_t t289 = t288 - parameters[M6] * t254;
+    const puma560_real_t t290 = parameters[MX6] * t216 - parameters[MY6] * (t253 + t219)
+        - parameters[MZ6] * t201;
+    const puma560_real_t t291 = t290 - parameters[M6] * t246;
     /* link j5: force and moment */
-    const puma560_real_t t293 = parameters[MX5] * (t261 + t262) - parameters[MY5] * t187
-        - parameters[MZ5] * t213;
+    const puma560_real_t t292 = parameters[MX5] * (t260 + t261) - parameters[MY5] * t186
+        - parameters[MZ5] * t212;
     /* link j6: what it passes on */
-    const puma560_real_t t294 = t293 - parameters[M5] * t245 + (t2 * t290 + t1 * t292);
+    const puma560_real_t t293 = t292 - parameters[M5] * t244 + (t2 * t289 + t1 * t291);
     /* link j5: force and moment */
-    const puma560_real_t t295 = parameters[MX5] * t259 + parameters[MY5] * (t267 + t262)
-        - parameters[MZ5] * t197;
+    const puma560_real_t t294 = parameters[MX5] * t258 + parameters[MY5] * (t266 + t261)
+        - parameters[MZ5] * t196;
     /* link j6: force and moment */
-    const puma560_real_t t296 = parameters[MX6] * t212 - parameters[MY6] * t251 + parameters[MZ6] * (t254
-        + t219);
+    const puma560_real_t t295 = parameters[MX6] * t211 - parameters[MY6] * t250 + parameters[MZ6] * (t253
+        + t218);
     /* link j6: what it passes on */
-    const puma560_real_t t297 = parameters[M5] * t248 + t295 + (parameters[M6] * t248 + t296);
+    const puma560_real_t t296 = parameters[M5] * t247 + t294 + (parameters[M6] * t247 + t295);
     /* link j4: force and moment */
-    const puma560_real_t t298 = parameters[MY4] * t196 - parameters[MX4] * (t276 + t277)
-        + parameters[MZ4] * t178;
+    const puma560_real_t t297 = parameters[MY4] * t195 - parameters[MX4] * (t275 + t276)
+        + parameters[MZ4] * t177;
     /* link j5: what it passes on */
-    const puma560_real_t t299 = parameters[M4] * t240 + t298 + (t14 * t297 - t16 * t294);
+    const puma560_real_t t298 = parameters[M4] * t239 + t297 + (t13 * t296 - t15 * t293);
     /* link j5: force and moment */
-    const puma560_real_t t300 = parameters[MX5] * t258 + parameters[MY5] * t201 + parameters[MZ5] * (t267
-        + t261);
+    const puma560_real_t t299 = parameters[MX5] * t257 + parameters[MY5] * t200 + parameters[MZ5] * (t266
+        + t260);
     /* link j6: what it passes on */
-    const puma560_real_t t301 = t300 - parameters[M5] * t246 - (t1 * t290 - t2 * t292);
+    const puma560_real_t t300 = t299 - parameters[M5] * t245 - (t1 * t289 - t2 * t291);
     /* link j4: force and moment */
-    const puma560_real_t t302 = parameters[MX4] * t274 - parameters[MY4] * (t286 + t277)
-        + parameters[MZ4] * t188;
-    const puma560_real_t t303 = t302 - parameters[M4] * t246 + t301; /* link j5: what it passes on */
-    const puma560_real_t t304 = t34 * t299 + t36 * t303; /* link j4: what it passes on */
-    const puma560_real_t t305 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
-    const puma560_real_t t306 = PUMA560_C(2.0) * t195; /* link j4: motion */
+    const puma560_real_t t301 = parameters[MX4] * t273 - parameters[MY4] * (t285 + t276)
+        + parameters[MZ4] * t187;
+    const puma560_real_t t302 = t301 - parameters[M4] * t245 + t300; /* link j5: what it passes on */
+    const puma560_real_t t303 = t32 * t298 + t34 * t302; /* link j4: what it passes on */
+    const puma560_real_t t304 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const puma560_real_t t305 = PUMA560_C(2.0) * t194; /* link j4: motion */
     /* link j3: force and moment */
-    const puma560_real_t t307 = parameters[XX3] * t176 + t176 * t305 + parameters[XY3] * t306
-        - parameters[XZ3] * t174;
-    const puma560_real_t t308 = t307 + parameters[YZ3] * (t221 - t222) - (parameters[MY3] * t238
-        + parameters[MZ3] * t243);
+    const puma560_real_t t306 = parameters[XX3] * t175 + t175 * t304 + parameters[XY3] * t305
+        - parameters[XZ3] * t173;
+    const puma560_real_t t307 = t306 + parameters[YZ3] * (t220 - t221) - (parameters[MY3] * t237
+        + parameters[MZ3] * t242);
     /* link j4: what it passes on */
-    const puma560_real_t t309 = t308 + (t36 * t279 + t34 * t288 + PUMA560_C(-0.4318) * t304);
-    const puma560_real_t t310 = parameters[XX4] - parameters[YY4]; /* link j4: force and moment */
-    const puma560_real_t t311 = t194 * t310 - parameters[ZZ4] * t195 - parameters[YZ4] * t178
-        + parameters[XZ4] * t188;
-    const puma560_real_t t312 = t311 + parameters[XY4] * (t276 - t286) + (parameters[MX4] * t246
-        + parameters[MY4] * t240);
-    const puma560_real_t t313 = t312 + (t16 * t271 - t14 * t264); /* link j5: what it passes on */
-    const puma560_real_t t314 = parameters[XX3] - parameters[ZZ3]; /* link j3: force and moment */
-    const puma560_real_t t315 = parameters[YY3] * t195 - t195 * t314 - parameters[XY3] * t177
-        + parameters[YZ3] * t174;
-    const puma560_real_t t316 = t315 + parameters[XZ3] * (t222 - t241) + (parameters[MZ3] * t232
-        + parameters[MX3] * t238);
-    const puma560_real_t t317 = t316 - (t313 + PUMA560_C(-0.0203) * t304); /* link j4: what it passes on */
-    const puma560_real_t t318 = t36 * t299 - t34 * t303;
-    const puma560_real_t t319 = parameters[MX3] * t223 + parameters[MY3] * t174 - parameters[M3] * t232
-        - t318;
+    const puma560_real_t t308 = t307 + (t34 * t278 + t32 * t287 + PUMA560_C(-0.4318) * t303);
+    const puma560_real_t t309 = parameters[XX4] - parameters[YY4]; /* link j4: force and moment */
+    const puma560_real_t t310 = t193 * t309 - parameters[ZZ4] * t194 - parameters[YZ4] * t177
+        + parameters[XZ4] * t187;
+    const puma560_real_t t311 = t310 + parameters[XY4] * (t275 - t285) + (parameters[MX4] * t245
+        + parameters[MY4] * t239);
+    const puma560_real_t t312 = t311 + (t15 * t270 - t13 * t263); /* link j5: what it passes on */
+    const puma560_real_t t313 = parameters[XX3] - parameters[ZZ3]; /* link j3: force and moment */
+    const puma560_real_t t314 = parameters[YY3] * t194 - t194 * t313 - parameters[XY3] * t176
+        + parameters[YZ3] * t173;
+    const puma560_real_t t315 = t314 + parameters[XZ3] * (t221 - t240) + (parameters[MZ3] * t231
+        + parameters[MX3] * t237);
+    const puma560_real_t t316 = t315 - (t312 + PUMA560_C(-0.0203) * t303); /* link j4: what it passes on */
+    const puma560_real_t t317 = t34 * t298 - t32 * t302;
+    const puma560_real_t t318 = parameters[MX3] * t222 + parameters[MY3] * t173 - parameters[M3] * t231
+        - t317;
     /* link j4: force and moment */
-    const puma560_real_t t320 = parameters[MX4] * t273 + parameters[MY4] * t193 + parameters[MZ4] * (t286
-        + t276);
+    const puma560_real_t t319 = parameters[MX4] * t272 + parameters[MY4] * t192 + parameters[MZ4] * (t285
+        + t275);
     /* link j5: what it passes on */
-    const puma560_real_t t321 = t320 - parameters[M4] * t244 + (t14 * t294 + t16 * t297);
+    const puma560_real_t t320 = t319 - parameters[M4] * t243 + (t13 * t293 + t15 * t296);
     /* link j4: what it passes on */
-    const puma560_real_t t322 = parameters[MX3] * t174 + parameters[MY3] * t242 - parameters[M3] * t243
-        + t321;
-    const puma560_real_t t323 = t79 * t319 + t82 * t322; /* link j3: what it passes on */
-    const puma560_real_t t324 = dq[1] * t171; /* link j2: motion */
-    const puma560_real_t t325 = t324 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
-    const puma560_real_t t326 = t325 - t324 * parameters[XX2] + PUMA560_C(2.0) * t237 * parameters[XY2]
-        + t229 * parameters[XZ2];
-    const puma560_real_t t327 = (t224 - t225) * parameters[YZ2];
-    const puma560_real_t t328 = t230 * parameters[MZ2];
+    const puma560_real_t t321 = parameters[MX3] * t173 + parameters[MY3] * t241 - parameters[M3] * t242
+        + t320;
+    const puma560_real_t t322 = t76 * t318 + t79 * t321; /* link j3: what it passes on */
+    const puma560_real_t t323 = dq[1] * t170; /* link j2: motion */
+    const puma560_real_t t324 = t323 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const puma560_real_t t325 = t324 - t323 * parameters[XX2] + PUMA560_C(2.0) * t236 * parameters[XY2]
+        + t228 * parameters[XZ2];
+    const puma560_real_t t326 = (t223 - t224) * parameters[YZ2];
+    const puma560_real_t t327 = t229 * parameters[MZ2];
     /* link j3: what it passes on */
-    const puma560_real_t t329 = t326 + t327 - t328 + (t82 * t309 - t79 * t317 + PUMA560_C(0.1254) * t323);
+    const puma560_real_t t328 = t325 + t326 - t327 + (t79 * t308 - t76 * t316 + PUMA560_C(0.1254) * t322);
     /* link j3: force and moment */
-    const puma560_real_t t330 = parameters[MX3] * t306 + parameters[MY3] * t177 + parameters[MZ3] * (t241
-        + t221);
+    const puma560_real_t t329 = parameters[MX3] * t305 + parameters[MY3] * t176 + parameters[MZ3] * (t240
+        + t220);
     /* link j3: what it passes on */
-    const puma560_real_t t331 = PUMA560_C(0.1254) * (t79 * t322 - t82 * t319)
-        + PUMA560_C(0.4318) * (parameters[M3] * t238 + t330 + t304);
-    const puma560_real_t t332 = t237 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
-    const puma560_real_t t333 = t237 * parameters[YY2] - t332 + PUMA560_C(-2.0) * t324 * parameters[XY2]
-        - t229 * parameters[YZ2];
-    const puma560_real_t t334 = (t234 - t225) * parameters[XZ2];
-    const puma560_real_t t335 = t227 * parameters[MZ2];
+    const puma560_real_t t330 = PUMA560_C(0.1254) * (t76 * t321 - t79 * t318)
+        + PUMA560_C(0.4318) * (parameters[M3] * t237 + t329 + t303);
+    const puma560_real_t t331 = t236 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
+    const puma560_real_t t332 = t236 * parameters[YY2] - t331 + PUMA560_C(-2.0) * t323 * parameters[XY2]
+        - t228 * parameters[YZ2];
+    const puma560_real_t t333 = (t233 - t224) * parameters[XZ2];
+    const puma560_real_t t334 = t226 * parameters[MZ2];
     /* link j3: what it passes on */
-    const puma560_real_t t336 = t333 - t334 - t335 + (t79 * t309 + t82 * t317 + t331);
-    const puma560_real_t t337 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
-    const puma560_real_t t338 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1]
-        - t337 * parameters[FC1]) + (t123 * t329 + t120 * t336);
-    const puma560_real_t t339 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
-    const puma560_real_t t340 = PUMA560_C(76.686) * (PUMA560_C(-76.686) * dq[5] * parameters[FV6]
-        - t339 * parameters[FC6]) + t270;
-    const puma560_real_t t341 = PUMA560_C(5.368020000000001) * input[5] + t340;
-    const puma560_real_t t342 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
-    const puma560_real_t t343 = PUMA560_C(71.923) * (PUMA560_C(-71.923) * dq[4] * parameters[FV5]
-        - t342 * parameters[FC5]) + t283;
-    const puma560_real_t t344 = PUMA560_C(5.034610000000001) * input[4] + t343 + t341 * t5;
-    const puma560_real_t t345 = PUMA560_C(-14.400553) * input[0] + t338 + t341 * t134 + t344 * t143;
-    const puma560_real_t t346 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
-    const puma560_real_t t347 = PUMA560_C(76.0364) * (PUMA560_C(-76.0364) * dq[3] * parameters[FV4]
-        - t346 * parameters[FC4]) + t313;
-    const puma560_real_t t348 = PUMA560_C(5.322548) * input[3] + t347 + t341 * t30 + t344 * t22;
+    const puma560_real_t t335 = t332 - t333 - t334 + (t76 * t308 + t79 * t316 + t330);
+    const puma560_real_t t336 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
+    const puma560_real_t t337 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1]
+        - t336 * parameters[FC1]) + (t119 * t328 + t116 * t335);
+    const puma560_real_t t338 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
+    const puma560_real_t t339 = PUMA560_C(76.686) * (PUMA560_C(-76.686) * dq[5] * parameters[FV6]
+        - t338 * parameters[FC6]) + t269;
+    const puma560_real_t t340 = PUMA560_C(5.368020000000001) * input[5] + t339;
+    const puma560_real_t t341 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
+    const puma560_real_t t342 = PUMA560_C(71.923) * (PUMA560_C(-71.923) * dq[4] * parameters[FV5]
+        - t341 * parameters[FC5]) + t282;
+    const puma560_real_t t343 = PUMA560_C(5.034610000000001) * input[4] + t342 + t340 * t5;
+    const puma560_real_t t344 = PUMA560_C(-14.400553) * input[0] + t337 + t340 * t130 + t343 * t139;
+    const puma560_real_t t345 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
+    const puma560_real_t t346 = PUMA560_C(76.0364) * (PUMA560_C(-76.0364) * dq[3] * parameters[FV4]
+        - t345 * parameters[FC4]) + t312;
+    const puma560_real_t t347 = PUMA560_C(5.322548) * input[3] + t346 + t340 * t29 + t343 * t21;
     /* link j4: what it passes on */
-    const puma560_real_t t349 = t34 * t279 - t36 * t288 + (PUMA560_C(0.0203) * t321
-        + PUMA560_C(0.4318) * t318);
+    const puma560_real_t t348 = t32 * t278 - t34 * t287 + (PUMA560_C(0.0203) * t320
+        + PUMA560_C(0.4318) * t317);
     /* link j3: force and moment */
-    const puma560_real_t t350 = t174 * (parameters[YY3] - parameters[XX3]) + parameters[XY3] * (t221 - t241)
-        + (parameters[MY3] * t232 - parameters[MX3] * t243);
-    const puma560_real_t t351 = t350 + t349; /* link j4: what it passes on */
-    const puma560_real_t t352 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
-    const puma560_real_t t353 = PUMA560_C(53.7063) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3]
-        - t352 * parameters[FC3]) + t351;
-    const puma560_real_t t354 = PUMA560_C(-12.352449) * input[2] + t353 - t341 * t61 - t344 * t60;
-    const puma560_real_t t355 = t354 - t348 * t59;
+    const puma560_real_t t349 = t173 * (parameters[YY3] - parameters[XX3]) + parameters[XY3] * (t220 - t240)
+        + (parameters[MY3] * t231 - parameters[MX3] * t242);
+    const puma560_real_t t350 = t349 + t348; /* link j4: what it passes on */
+    const puma560_real_t t351 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
+    const puma560_real_t t352 = PUMA560_C(53.7063) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3]
+        - t351 * parameters[FC3]) + t350;
+    const puma560_real_t t353 = PUMA560_C(-12.352449) * input[2] + t352 - t340 * t59 - t343 * t58;
+    const puma560_real_t t354 = t353 - t347 * t57;
     /* link j2: force and moment */
-    const puma560_real_t t356 = t229 * (parameters[XX2] - parameters[YY2]) + (t224 - t234) * parameters[XY2]
-        - (t230 * parameters[MX2] + t227 * parameters[MY2]);
-    const puma560_real_t t357 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
-    const puma560_real_t t358 = PUMA560_C(107.815) * (PUMA560_C(-107.815) * dq[1] * parameters[FV2]
-        - t357 * parameters[FC2]) + (t356 + (t351 + PUMA560_C(0.4318) * t323));
-    const puma560_real_t t359 = PUMA560_C(24.79745) * input[1] + t358 - t341 * t100 - t344 * t99;
-    const puma560_real_t t360 = t359 + t348 * t98 - t355 * t97;
-    const puma560_real_t t361 = t345 - t348 * t151 + t355 * t160 + t360 * t167;
-    const puma560_real_t t362 = PUMA560_C(1.0) / t168;
-    const puma560_real_t t363 = puma560_bounded(t361 * t362);
-    ddq[0] = t363;
-    const puma560_real_t t364 = puma560_bounded(t360 * t166 + t167 * t363);
-    ddq[1] = t364;
-    const puma560_real_t t365 = puma560_bounded(t160 * t363 - t355 * t96 - t97 * t364);
-    ddq[2] = t365;
-    const puma560_real_t t366 = puma560_bounded(t348 * t58 - t151 * t363 + t98 * t364 - t59 * t365);
-    ddq[3] = t366;
-    const puma560_real_t t367 = t344 * t21 + t143 * t363 - t99 * t364 - t60 * t365;
-    const puma560_real_t t368 = puma560_bounded(t367 + t22 * t366);
-    ddq[4] = t368;
-    const puma560_real_t t369 = t341 * t4 + t134 * t363 - t100 * t364 - t61 * t365;
-    const puma560_real_t t370 = puma560_bounded(t369 + t30 * t366 + t5 * t368);
-    ddq[5] = t370;
-    const puma560_real_t t371 = t123 * t82 + t120 * t79; /* link j3: motion */
+    const puma560_real_t t355 = t228 * (parameters[XX2] - parameters[YY2]) + (t223 - t233) * parameters[XY2]
+        - (t229 * parameters[MX2] + t226 * parameters[MY2]);
+    const puma560_real_t t356 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
+    const puma560_real_t t357 = PUMA560_C(107.815) * (PUMA560_C(-107.815) * dq[1] * parameters[FV2]
+        - t356 * parameters[FC2]) + (t355 + (t350 + PUMA560_C(0.4318) * t322));
+    const puma560_real_t t358 = PUMA560_C(24.79745) * input[1] + t357 - t340 * t97 - t343 * t96;
+    const puma560_real_t t359 = t358 + t347 * t95 - t354 * t94;
+    const puma560_real_t t360 = t344 - t347 * t147 + t354 * t156 + t359 * t163;
+    const puma560_real_t t361 = PUMA560_C(1.0) / t164;
+    const puma560_real_t t362 = puma560_held(t360 * t361);
+    ddq[0] = t362;
+    const puma560_real_t t363 = puma560_held(t359 * t162 + t163 * t362);
+    ddq[1] = t363;
+    const puma560_real_t t364 = puma560_held(t156 * t362 - t354 * t93 - t94 * t363);
+    ddq[2] = t364;
+    const puma560_real_t t365 = puma560_held(t347 * t56 - t147 * t362 + t95 * t363 - t57 * t364);
+    ddq[3] = t365;
+    const puma560_real_t t366 = t343 * t20 + t139 * t362 - t96 * t363 - t58 * t364;
+    const puma560_real_t t367 = puma560_held(t366 + t21 * t365);
+    ddq[4] = t367;
+    const puma560_real_t t368 = t340 * t4 + t130 * t362 - t97 * t363 - t59 * t364;
+    const puma560_real_t t369 = puma560_held(t368 + t29 * t365 + t5 * t367);
+    ddq[5] = t369;
+    const puma560_real_t t370 = t363 + t364;
+    const puma560_real_t t371 = t119 * t79 + t116 * t76; /* link j3: motion */
     const puma560_real_t t372 = dq[0] * t371;
-    const puma560_real_t t373 = t36 * t372 + t179; /* link j4: motion */
-    const puma560_real_t t374 = t123 * t79 - t120 * t82; /* link j3: motion */
-    const puma560_real_t t375 = dq[0] * t374;
-    const puma560_real_t t376 = dq[3] + t375; /* link j4: motion */
-    const puma560_real_t t377 = t16 * t373 - t14 * t376; /* link j5: motion */
-    const puma560_real_t t378 = t34 * t372 - t189; /* link j4: motion */
-    const puma560_real_t t379 = t378 - dq[4]; /* link j5: motion */
-    const puma560_real_t t380 = t1 * t377 + t2 * t379; /* link j6: motion */
-    const puma560_real_t t381 = t380 * parameters[XZ6];
-    const puma560_real_t t382 = t14 * t373 + t16 * t376; /* link j5: motion */
-    const puma560_real_t t383 = dq[5] + t382; /* link j6: motion */
-    const puma560_real_t t384 = t383 * parameters[XY6];
+    const puma560_real_t t373 = t119 * t76 - t116 * t79;
+    const puma560_real_t t374 = dq[0] * t373;
+    const puma560_real_t t375 = t372 * t374;
+    const puma560_real_t t376 = t375 + t370;
+    const puma560_real_t t377 = t371 * t362;
+    const puma560_real_t t378 = t374 * t174;
+    const puma560_real_t t379 = t378 - t377;
+    const puma560_real_t t380 = t378 + t379;
+    const puma560_real_t t381 = t34 * t376 + t32 * t380;
+    const puma560_real_t t382 = t34 * t372 + t178; /* link j4: motion */
+    const puma560_real_t t383 = dq[3] + t374;
+    const puma560_real_t t384 = t382 * t383;
     const puma560_real_t t385 = t381 - t384;
-    const puma560_real_t t386 = t1 * t379 - t2 * t377;
-    const puma560_real_t t387 = t386 * parameters[YZ6];
-    const puma560_real_t t388 = t387 - t384;
-    const puma560_real_t t389 = PUMA560_C(-0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const puma560_real_t t390 = parameters[XX6] + t389;
-    const puma560_real_t t391 = t383 * t390 - t386 * parameters[XZ6];
-    const puma560_real_t t392 = parameters[YY6] + t389;
-    const puma560_real_t t393 = t380 * parameters[YZ6] - t383 * t392;
+    const puma560_real_t t386 = t367 + t385;
+    const puma560_real_t t387 = t15 * t382 - t13 * t383; /* link j5: motion */
+    const puma560_real_t t388 = t13 * t382 + t15 * t383;
+    const puma560_real_t t389 = t387 * t388;
+    const puma560_real_t t390 = t389 + t386;
+    const puma560_real_t t391 = t373 * t362;
+    const puma560_real_t t392 = t372 * t174; /* link j3: motion */
+    const puma560_real_t t393 = t392 + t391;
+    const puma560_real_t t394 = t365 + t393;
+    const puma560_real_t t395 = t32 * t372 - t188; /* link j4: motion */
+    const puma560_real_t t396 = t382 * t395;
+    const puma560_real_t t397 = t396 + t394;
+    const puma560_real_t t398 = t32 * t376 - t34 * t380;
+    const puma560_real_t t399 = t395 * t383;
+    const puma560_real_t t400 = t399 - t398;
+    const puma560_real_t t401 = t399 + t400;
+    const puma560_real_t t402 = t13 * t397 + t15 * t401;
+    const puma560_real_t t403 = t395 - dq[4]; /* link j5: motion */
+    const puma560_real_t t404 = t388 * t403;
+    const puma560_real_t t405 = t404 - t402;
+    const puma560_real_t t406 = t404 + t405;
+    const puma560_real_t t407 = t2 * t390 - t1 * t406;
+    const puma560_real_t t408 = t1 * t403 - t2 * t387; /* link j6: motion */
+    const puma560_real_t t409 = dq[5] + t388;
+    const puma560_real_t t410 = t408 * t409;
+    const puma560_real_t t411 = t410 + t407;
+    const puma560_real_t t412 = t1 * t390 + t2 * t406;
+    const puma560_real_t t413 = t1 * t387 + t2 * t403;
+    const puma560_real_t t414 = t413 * t409;
+    const puma560_real_t t415 = t414 - t412;
+    const puma560_real_t t416 = t414 + t415;
+    const puma560_real_t t417 = t13 * t401 - t15 * t397;
+    const puma560_real_t t418 = t387 * t403; /* link j5: motion */
+    const puma560_real_t t419 = t418 + t417;
+    const puma560_real_t t420 = t369 - t419;
+    const puma560_real_t t421 = t408 * t413; /* link j6: motion */
+    const puma560_real_t t422 = t420 - t421;
+    const puma560_real_t t423 = parameters[YY6] * t411 - t410 * t249 - parameters[XY6] * t416
+        - parameters[YZ6] * t422;
+    const puma560_real_t t424 = t408 * t408;
+    const puma560_real_t t425 = t409 * t409;
+    const puma560_real_t t426 = t228 + t363;
+    const puma560_real_t t427 = t119 * t362;
+    const puma560_real_t t428 = t229 + (PUMA560_C(0.4318) * t426 - PUMA560_C(-0.1254) * t427);
+    const puma560_real_t t429 = t116 * t362;
+    const puma560_real_t t430 = t226 + (t225 + PUMA560_C(0.1254) * t429);
+    const puma560_real_t t431 = t79 * t430 - t76 * t428;
+    const puma560_real_t t432 = t374 * t374; /* link j3: motion */
+    const puma560_real_t t433 = t432 + t221; /* link j4: motion */
+    const puma560_real_t t434 = t431 + (PUMA560_C(0.0203) * t433 + PUMA560_C(0.4318) * t376);
+    const puma560_real_t t435 = t392 + t393;
+    const puma560_real_t t436 = t429 - t236;
+    const puma560_real_t t437 = t236 - t436;
+    const puma560_real_t t438 = t235 + PUMA560_C(-0.4318) * t437;
+    const puma560_real_t t439 = PUMA560_C(0.0203) * t435 - PUMA560_C(0.4318) * t380 - t438;
+    const puma560_real_t t440 = t34 * t434 - t32 * t439;
+    const puma560_real_t t441 = t76 * t430 + t79 * t428;
+    const puma560_real_t t442 = t370 - t375;
+    const puma560_real_t t443 = t372 * t372; /* link j3: motion */
+    const puma560_real_t t444 = t443 + t221; /* link j4: motion */
+    const puma560_real_t t445 = t441 + (PUMA560_C(-0.4318) * t444 + PUMA560_C(0.0203) * t442);
+    const puma560_real_t t446 = t15 * t440 - t13 * t445;
+    const puma560_real_t t447 = t32 * t434 + t34 * t439;
+    const puma560_real_t t448 = t1 * t447 - t2 * t446;
+    const puma560_real_t t449 = parameters[MZ6] * t448;
+    const puma560_real_t t450 = t13 * t440 + t15 * t445;
+    const puma560_real_t t451 = (t424 - t425) * parameters[XZ6] + t423 + (parameters[MX6] * t450 - t449);
+    const puma560_real_t t452 = t413 * t413; /* link j6: motion */
+    const puma560_real_t t453 = t424 + t452; /* link j6: columns */
+    const puma560_real_t t454 = t413 * parameters[XZ6];
+    const puma560_real_t t455 = t409 * parameters[XY6];
+    const puma560_real_t t456 = t454 - t455;
+    const puma560_real_t t457 = PUMA560_C(2.0) * t413; /* link j6: derivatives */
+    const puma560_real_t t458 = PUMA560_C(-0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const puma560_real_t t459 = parameters[YY6] + t458;
+    const puma560_real_t t460 = t413 * parameters[YZ6] - t409 * t459;
+    const puma560_real_t t461 = PUMA560_C(-2.0) * t408;
+    const puma560_real_t t462 = t456 * t457 + t460 * t461 + (parameters[XY6] * t412 - parameters[XX6] * t407
+        - t453 * parameters[XZ6]);
+    const puma560_real_t t463 = t451 + (t449 + t462);
+    const puma560_real_t t464 = t410 + t411;
+    const puma560_real_t t465 = t421 + t420;
+    const puma560_real_t t466 = parameters[XY6] * t464 - (t414 * t206 + parameters[XX6] * t415)
+        - parameters[XZ6] * t465;
+    const puma560_real_t t467 = t1 * t446 + t2 * t447;
+    const puma560_real_t t468 = parameters[MZ6] * t467;
+    const puma560_real_t t469 = (t452 - t425) * parameters[YZ6] - t466 + (parameters[MY6] * t450 - t468);
+    const puma560_real_t t470 = parameters[XX6] + t458;
+    const puma560_real_t t471 = t409 * t470 - t408 * parameters[XZ6];
+    const puma560_real_t t472 = t408 * parameters[YZ6];
+    const puma560_real_t t473 = t472 - t455;
+    const puma560_real_t t474 = t471 * t457 - t473 * t461 + (parameters[YY6] * t412 - parameters[XY6] * t407
+        - t453 * parameters[YZ6]);
+    const puma560_real_t t475 = t469 + (t468 + t474);
+    const puma560_real_t t476 = t2 * t463 - t1 * t475;
+    const puma560_real_t t477 = t453 * parameters[ZZ6] + (parameters[XZ6] * t407 - parameters[YZ6] * t412);
+    const puma560_real_t t478 = t413 * t470 - t408 * parameters[XY6];
+    const puma560_real_t t479 = t408 * t459 - t413 * parameters[XY6];
+    const puma560_real_t t480 = parameters[MX6] * t448 + parameters[MY6] * t467;
+    const puma560_real_t t481 = t478 * t457 - t479 * t461 + t477 + t480;
+    const puma560_real_t t482 = t15 * t476 + t13 * t481;
+    const puma560_real_t t483 = t1 * t463 + t2 * t475;
+    const puma560_real_t t484 = parameters[MZ6] * t412;
+    const puma560_real_t t485 = parameters[M6] * t467;
+    const puma560_real_t t486 = t485 + (parameters[MX6] * t465 - (t424 + t425) * parameters[MY6] + t484);
+    const puma560_real_t t487 = t408 * parameters[MY6] - t413 * parameters[MX6];
+    const puma560_real_t t488 = t486 - (t487 * t461 + t485 + (t453 * parameters[MY6] + t484));
+    const puma560_real_t t489 = parameters[MZ6] * t407;
+    const puma560_real_t t490 = parameters[M6] * t448;
+    const puma560_real_t t491 = (t452 + t425) * parameters[MX6] + parameters[MY6] * t422 + t489 - t490;
+    const puma560_real_t t492 = t491 + (t487 * t457 + t490 + (t453 * parameters[MX6] - t489));
+    const puma560_real_t t493 = t2 * t488 - t1 * t492;
+    const puma560_real_t t494 = t409 * parameters[MX6] - t408 * parameters[MZ6];
+    const puma560_real_t t495 = t409 * parameters[MY6] - t413 * parameters[MZ6];
+    const puma560_real_t t496 = parameters[MY6] * t407 + parameters[MX6] * t412 - (t494 * t457 + t495 * t461);
+    const puma560_real_t t497 = t13 * t496 - t15 * t493;
+    const puma560_real_t t498 = t1 * t488 + t2 * t492;
+    const puma560_real_t t499 = t34 * t498 - t32 * t497;
+    const puma560_real_t t500 = PUMA560_C(0.4318) * t499;
+    const puma560_real_t t501 = t34 * t482 - t32 * t483 + t500;
+    const puma560_real_t t502 = t15 * t481 - t13 * t476;
+    const puma560_real_t t503 = t502 + PUMA560_C(0.0203) * t499;
+    const puma560_real_t t504 = t34 * t497 + t32 * t498;
+    const puma560_real_t t505 = t13 * t493 + t15 * t496;
+    const puma560_real_t t506 = t76 * t501 - t79 * t503 + (PUMA560_C(0.1254) * (t79 * t504 + t76 * t505)
+        - t500);
+    const puma560_real_t t507 = t79 * t505 - t76 * t504;
+    const puma560_real_t t508 = t119 * (t79 * t501 + t76 * t503 + PUMA560_C(0.1254) * t507);
+    const puma560_real_t t509 = PUMA560_C(0.06944177768728742) * (t508 + t116 * t506);
+    const puma560_real_t t510 = puma560_held(PUMA560_C(-14.400553) * t361);
+    const puma560_real_t t511 = t32 * t482 + t34 * t483 + (PUMA560_C(0.0203) * t505
+        + PUMA560_C(0.4318) * t504);
+    const puma560_real_t t512 = PUMA560_C(0.04032672714331514) * (t511 + PUMA560_C(0.4318) * t507);
+    const puma560_real_t t513 = t163 * t361;
+    const puma560_real_t t514 = puma560_held(PUMA560_C(24.79745) * t513);
+    const puma560_real_t t515 = PUMA560_C(0.08095560645504385) * t511;
+    const puma560_real_t t516 = t361 * (t94 * t163 - t156);
+    const puma560_real_t t517 = puma560_held(PUMA560_C(12.352449) * t516);
+    const puma560_real_t t518 = PUMA560_C(0.18787994020908783) * t502;
+    const puma560_real_t t519 = t95 + t57 * t94;
+    const puma560_real_t t520 = t361 * (t163 * t519 - (t147 + t57 * t156));
+    const puma560_real_t t521 = puma560_held(PUMA560_C(5.322548) * t520);
+    const puma560_real_t t522 = t514 * t512 - t510 * t509 - t517 * t515 + t521 * t518;
+    const puma560_real_t t523 = PUMA560_C(0.19862511694053758) * t483;
+    const puma560_real_t t524 = t58 + t21 * t57;
+    const puma560_real_t t525 = t21 * t95 - t96 + t94 * t524;
+    const puma560_real_t t526 = t139 - t21 * t147 - t156 * t524 + t163 * t525;
+    const puma560_real_t t527 = t361 * t526;
+    const puma560_real_t t528 = puma560_held(PUMA560_C(5.034610000000001) * t527);
+    const puma560_real_t t529 = PUMA560_C(2.0) * t478;
+    const puma560_real_t t530 = PUMA560_C(2.0) * t479;
+    const puma560_real_t t531 = PUMA560_C(0.1862884266452062) * (t480 + (t413 * t529 + t408 * t530 + t477));
+    const puma560_real_t t532 = t29 + t5 * t21;
+    const puma560_real_t t533 = t59 + t5 * t58 + t57 * t532;
+    const puma560_real_t t534 = t95 * t532 - (t97 + t5 * t96) + t94 * t533;
+    const puma560_real_t t535 = t130 + t5 * t139 - t147 * t532 - t156 * t533;
+    const puma560_real_t t536 = t361 * (t535 + t163 * t534);
+    const puma560_real_t t537 = puma560_held(PUMA560_C(5.368020000000001) * t536);
+    ddq_by_q[5] = t522 + t528 * t523 + t537 * t531;
+    const puma560_real_t t538 = puma560_held(PUMA560_C(-14.400553) * t513);
+    const puma560_real_t t539 = puma560_held(PUMA560_C(24.79745) * (t162 + t163 * t513));
+    const puma560_real_t t540 = t94 * t162 + t163 * t516;
+    const puma560_real_t t541 = puma560_held(PUMA560_C(12.352449) * t540);
+    const puma560_real_t t542 = t162 * t519 + t163 * t520;
+    const puma560_real_t t543 = puma560_held(PUMA560_C(5.322548) * t542);
+    const puma560_real_t t544 = t539 * t512 - t538 * t509 - t541 * t515 + t543 * t518;
+    const puma560_real_t t545 = t162 * t525 + t163 * t527;
+    const puma560_real_t t546 = puma560_held(PUMA560_C(5.034610000000001) * t545);
+    const puma560_real_t t547 = t162 * t534 + t163 * t536;
+    const puma560_real_t t548 = puma560_held(PUMA560_C(5.368020000000001) * t547);
+    ddq_by_q[11] = t544 + t546 * t523 + t548 * t531;
+    const puma560_real_t t549 = puma560_held(PUMA560_C(14.400553) * t516);
+    const puma560_real_t t550 = puma560_held(PUMA560_C(-24.79745) * t540);
+    const puma560_real_t t551 = puma560_held(PUMA560_C(12.352449) * (t93 + t156 * t516 - t94 * t540));
+    const puma560_real_t t552 = t57 * t93 + t156 * t520 - t94 * t542;
+    const puma560_real_t t553 = puma560_held(PUMA560_C(5.322548) * t552);
+    const puma560_real_t t554 = t550 * t512 - t549 * t509 - t551 * t515 + t553 * t518;
+    const puma560_real_t t555 = t93 * t524 + t156 * t527 - t94 * t545;
+    const puma560_real_t t556 = puma560_held(PUMA560_C(5.034610000000001) * t555);
+    const puma560_real_t t557 = t93 * t533 + t156 * t536 - t94 * t547;
+    const puma560_real_t t558 = puma560_held(PUMA560_C(5.368020000000001) * t557);
+    ddq_by_q[17] = t554 + t556 * t523 + t558 * t531;
+    const puma560_real_t t559 = puma560_held(PUMA560_C(-14.400553) * t520);
+    const puma560_real_t t560 = puma560_held(PUMA560_C(24.79745) * t542);
+    const puma560_real_t t561 = puma560_held(PUMA560_C(-12.352449) * t552);
+    const puma560_real_t t562 = t56 - t147 * t520 + t95 * t542 - t57 * t552;
+    const puma560_real_t t563 = puma560_held(PUMA560_C(5.322548) * t562);
+    const puma560_real_t t564 = t560 * t512 - t559 * t509 - t561 * t515 + t563 * t518;
+    const puma560_real_t t565 = t21 * t56 - t147 * t527 + t95 * t545 - t57 * t555;
+    const puma560_real_t t566 = puma560_held(PUMA560_C(5.034610000000001) * t565);
+    const puma560_real_t t567 = t147 * t536 - t56 * t532 - t95 * t547 + t57 * t557;
+    const puma560_real_t t568 = puma560_held(PUMA560_C(-5.368020000000001) * t567);
+    ddq_by_q[23] = t564 + t566 * t523 + t568 * t531;
+    const puma560_real_t t569 = puma560_held(PUMA560_C(-14.400553) * t527);
+    const puma560_real_t t570 = puma560_held(PUMA560_C(24.79745) * t545);
+    const puma560_real_t t571 = puma560_held(PUMA560_C(-12.352449) * t555);
+    const puma560_real_t t572 = puma560_held(PUMA560_C(5.322548) * t565);
+    const puma560_real_t t573 = t570 * t512 - t569 * t509 - t571 * t515 + t572 * t518;
+    const puma560_real_t t574 = t20 + t139 * t527 - t96 * t545 - t58 * t555;
+    const puma560_real_t t575 = puma560_held(PUMA560_C(5.034610000000001) * (t574 + t21 * t565));
+    const puma560_real_t t576 = t5 * t20 + t139 * t536 - t96 * t547 - t58 * t557;
+    const puma560_real_t t577 = t576 - t21 * t567;
+    const puma560_real_t t578 = puma560_held(PUMA560_C(5.368020000000001) * t577);
+    ddq_by_q[29] = t573 + t575 * t523 + t578 * t531;
+    const puma560_real_t t579 = puma560_held(PUMA560_C(-14.400553) * t536);
+    const puma560_real_t t580 = puma560_held(PUMA560_C(24.79745) * t547);
+    const puma560_real_t t581 = puma560_held(PUMA560_C(-12.352449) * t557);
+    const puma560_real_t t582 = puma560_held(PUMA560_C(-5.322548) * t567);
+    const puma560_real_t t583 = t580 * t512 - t579 * t509 - t581 * t515 + t582 * t518;
+    const puma560_real_t t584 = puma560_held(PUMA560_C(5.034610000000001) * t577);
+    const puma560_real_t t585 = t4 + t130 * t536 - t97 * t547 - t59 * t557;
+    const puma560_real_t t586 = puma560_held(PUMA560_C(5.368020000000001) * (t585 - t29 * t567 + t5 * t577));
+    ddq_by_q[35] = t583 + t584 * t523 + t586 * t531;
+    const puma560_real_t t587 = parameters[ZZ6] + t458;
+    const puma560_real_t t588 = t413 * t587 - t409 * parameters[YZ6];
+    const puma560_real_t t589 = PUMA560_C(2.0) * t588 + (parameters[XX6] * t457 + parameters[XY6] * t461);
+    const puma560_real_t t590 = t409 * parameters[XZ6] - t408 * t587;
+    const puma560_real_t t591 = PUMA560_C(2.0) * t590 + (parameters[XY6] * t457 + parameters[YY6] * t461);
+    const puma560_real_t t592 = t2 * t589 - t1 * t591;
+    const puma560_real_t t593 = t454 - t472;
+    const puma560_real_t t594 = PUMA560_C(2.0) * t593;
+    const puma560_real_t t595 = t594 - (parameters[XZ6] * t457 + parameters[YZ6] * t461);
+    const puma560_real_t t596 = t15 * t592 + t13 * t595;
+    const puma560_real_t t597 = t1 * t589 + t2 * t591;
+    const puma560_real_t t598 = PUMA560_C(2.0) * t494 - parameters[MZ6] * t461;
+    const puma560_real_t t599 = PUMA560_C(2.0) * t495 + parameters[MZ6] * t457;
+    const puma560_real_t t600 = t2 * t598 - t1 * t599;
+    const puma560_real_t t601 = parameters[MX6] * t461 - parameters[MY6] * t457;
+    const puma560_real_t t602 = t13 * t601 - t15 * t600;
+    const puma560_real_t t603 = t1 * t598 + t2 * t599;
+    const puma560_real_t t604 = t34 * t603 - t32 * t602;
+    const puma560_real_t t605 = PUMA560_C(0.4318) * t604;
+    const puma560_real_t t606 = t34 * t596 - t32 * t597 + t605;
+    const puma560_real_t t607 = t15 * t595 - t13 * t592;
+    const puma560_real_t t608 = t607 + PUMA560_C(0.0203) * t604;
+    const puma560_real_t t609 = t34 * t602 + t32 * t603;
+    const puma560_real_t t610 = t13 * t600 + t15 * t601;
+    const puma560_real_t t611 = t79 * t610 - t76 * t609;
+    const puma560_real_t t612 = t119 * (t79 * t606 + t76 * t608 + PUMA560_C(0.1254) * t611);
+    const puma560_real_t t613 = t76 * t606 - t79 * t608 + (PUMA560_C(0.1254) * (t79 * t609 + t76 * t610)
+        - t605);
+    const puma560_real_t t614 = PUMA560_C(0.06944177768728742) * (t612 + t116 * t613);
+    const puma560_real_t t615 = t32 * t596 + t34 * t597 + (PUMA560_C(0.0203) * t610
+        + PUMA560_C(0.4318) * t609);
+    const puma560_real_t t616 = PUMA560_C(0.04032672714331514) * (t615 + PUMA560_C(0.4318) * t611);
+    const puma560_real_t t617 = PUMA560_C(0.08095560645504385) * t615;
+    const puma560_real_t t618 = PUMA560_C(0.18787994020908783) * t607;
+    const puma560_real_t t619 = t616 * t514 - t614 * t510 - t617 * t517 + t618 * t521;
+    const puma560_real_t t620 = PUMA560_C(0.19862511694053758) * t597;
+    const puma560_real_t t621 = PUMA560_C(-1095.5142857142857) * parameters[FV6];
+    ddq_by_dq[5] = t619 + t620 * t528 + t621 * t537;
+    const puma560_real_t t622 = t616 * t539 - t614 * t538 - t617 * t541 + t618 * t543;
+    ddq_by_dq[11] = t622 + t620 * t546 + t621 * t548;
+    const puma560_real_t t623 = t616 * t550 - t614 * t549 - t617 * t551 + t618 * t553;
+    ddq_by_dq[17] = t623 + t620 * t556 + t621 * t558;
+    const puma560_real_t t624 = t616 * t560 - t614 * t559 - t617 * t561 + t618 * t563;
+    ddq_by_dq[23] = t624 + t620 * t566 + t621 * t568;
+    const puma560_real_t t625 = t616 * t570 - t614 * t569 - t617 * t571 + t618 * t572;
+    ddq_by_dq[29] = t625 + t620 * t575 + t621 * t578;
+    const puma560_real_t t626 = t616 * t580 - t614 * t579 - t617 * t581 + t618 * t582;
+    ddq_by_dq[35] = t626 + t620 * t584 + t621 * t586;
+    ddq_by_input[5] = t537;
+    ddq_by_input[11] = t548;
+    ddq_by_input[17] = t558;
+    ddq_by_input[23] = t568;
+    ddq_by_input[29] = t578;
+    ddq_by_input[35] = t586;
+    const puma560_real_t t627 = t418 + t419;
+    const puma560_real_t t628 = t389 - t386;
+    const puma560_real_t t629 = parameters[XX5] * t405 - t404 * t256 + parameters[XY5] * t627
+        + parameters[XZ5] * t628;
+    const puma560_real_t t630 = t388 * t388; /* link j5: motion */
+    const puma560_real_t t631 = t403 * t403;
+    const puma560_real_t t632 = (t631 - t630) * parameters[YZ5] + t629 + (parameters[MY5] * t447
+        + parameters[MZ5] * t450);
+    const puma560_real_t t633 = t632 - (t2 * t469 + t1 * t451);
+    const puma560_real_t t634 = t387 * t387;
+    const puma560_real_t t635 = t634 + t630; /* link j6: motion */
+    const puma560_real_t t636 = PUMA560_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const puma560_real_t t637 = parameters[XX5] - t636;
     /* link j6: inertia, momentum beyond */
-    const puma560_real_t t394 = t2 * (t385 + t388) - t1 * (t391 + t393);
-    const puma560_real_t t395 = t2 * t394;
-    const puma560_real_t t396 = t382 * parameters[XZ5];
-    const puma560_real_t t397 = t379 * parameters[XY5];
-    const puma560_real_t t398 = t396 + t397 + (t395 - t388);
-    const puma560_real_t t399 = t381 - t387;
-    const puma560_real_t t400 = t377 * parameters[YZ5];
-    const puma560_real_t t401 = t397 - t400 + t399;
-    const puma560_real_t t402 = parameters[ZZ6] + t389;
-    const puma560_real_t t403 = t380 * t402 - t383 * parameters[YZ6];
-    const puma560_real_t t404 = t383 * parameters[XZ6] - t386 * t402;
-    const puma560_real_t t405 = PUMA560_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const puma560_real_t t406 = parameters[YY5] - t405;
-    const puma560_real_t t407 = t382 * parameters[YZ5] + t379 * t406 + (t2 * t403 - t1 * t404);
-    const puma560_real_t t408 = t380 * t390 - t386 * parameters[XY6];
-    const puma560_real_t t409 = t386 * t392 - t380 * parameters[XY6];
-    const puma560_real_t t410 = parameters[XX5] - t405;
-    const puma560_real_t t411 = t379 * t410 - t377 * parameters[XZ5] + (t2 * t408 + t1 * t409);
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t412 = t16 * (t398 + t401) + t14 * (t411 - t407);
-    const puma560_real_t t413 = t16 * t412;
-    const puma560_real_t t414 = t378 * parameters[XZ4];
-    const puma560_real_t t415 = t376 * parameters[XY4];
-    const puma560_real_t t416 = t415 - t414 + (t401 - t413);
-    const puma560_real_t t417 = t396 + t400 + (t395 - t385); /* link j6: inertia, momentum beyond */
-    const puma560_real_t t418 = t373 * parameters[YZ4];
-    const puma560_real_t t419 = t415 + t418 - t417; /* link j5: inertia, momentum beyond */
-    const puma560_real_t t420 = t1 * t394; /* link j6: inertia, momentum beyond */
-    const puma560_real_t t421 = t405 - parameters[ZZ5];
-    const puma560_real_t t422 = t382 * t421 - t379 * parameters[YZ5] + (t393 + t420);
-    const puma560_real_t t423 = t1 * t408 - t2 * t409 - (t379 * parameters[XZ5] + t377 * t421);
-    const puma560_real_t t424 = PUMA560_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const puma560_real_t t425 = parameters[YY4] + t424;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t426 = t378 * parameters[YZ4] - t376 * t425 + (t16 * t422 + t14 * t423);
+    const puma560_real_t t638 = t403 * t637 - t387 * parameters[XZ5] + (t2 * t478 + t1 * t479);
+    const puma560_real_t t639 = PUMA560_C(2.0) * t388; /* link j5: derivatives */
+    const puma560_real_t t640 = t387 * parameters[YZ5];
+    const puma560_real_t t641 = t403 * parameters[XY5];
+    const puma560_real_t t642 = t641 - t640 + t593; /* link j6: inertia, momentum beyond */
+    const puma560_real_t t643 = PUMA560_C(-2.0) * t387; /* link j5: derivatives */
+    const puma560_real_t t644 = t638 * t639 - t642 * t643 + (t635 * t14 + (t23 * t402 - t24 * t417));
+    const puma560_real_t t645 = t633 + (t644 + t36 * t450);
+    const puma560_real_t t646 = parameters[YZ6] * t407 - (t421 * t6 + parameters[ZZ6] * t420)
+        + parameters[XZ6] * t412;
+    const puma560_real_t t647 = (t452 - t424) * parameters[XY6] + t646 + (parameters[MY6] * t448
+        - parameters[MX6] * t467);
+    const puma560_real_t t648 = parameters[YY5] * t419 - t418 * t264 + parameters[XY5] * t406
+        - parameters[YZ5] * t390;
+    const puma560_real_t t649 = (t634 - t631) * parameters[XZ5] + t648 + (parameters[MZ5] * t446
+        - parameters[MX5] * t447);
+    const puma560_real_t t650 = t649 + t647;
     /* link j6: inertia, momentum beyond */
-    const puma560_real_t t427 = t377 * parameters[XY5] + t382 * t410 + (t391 + t420);
-    const puma560_real_t t428 = t377 * t406 + t382 * parameters[XY5] + (t1 * t403 + t2 * t404);
-    const puma560_real_t t429 = parameters[XX4] + t424;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t430 = t376 * t429 + t373 * parameters[XZ4] + (t16 * t427 - t14 * t428);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t431 = t36 * (t416 + t419) + t34 * (t426 + t430);
-    const puma560_real_t t432 = t36 * t431;
-    const puma560_real_t t433 = t383 * parameters[MY6] - t380 * parameters[MZ6];
-    const puma560_real_t t434 = t383 * parameters[MX6] - t386 * parameters[MZ6];
+    const puma560_real_t t651 = t2 * (t456 + t473) - t1 * (t471 + t460);
+    const puma560_real_t t652 = t2 * t651;
+    const puma560_real_t t653 = t388 * parameters[XZ5];
+    const puma560_real_t t654 = t653 + t641 + (t652 - t473);
+    const puma560_real_t t655 = parameters[YY5] - t636;
+    const puma560_real_t t656 = t388 * parameters[YZ5] + t403 * t655 + (t2 * t588 - t1 * t590);
+    const puma560_real_t t657 = t654 * t639 - t656 * t643 + (t635 * t12 + (t24 * t402 - t22 * t417));
+    const puma560_real_t t658 = t650 + (t657 + t36 * t446);
+    const puma560_real_t t659 = t15 * t658 + t13 * t645;
+    const puma560_real_t t660 = t40 * t450 - t39 * t446;
+    const puma560_real_t t661 = t635 * t9 + (t14 * t402 - t12 * t417);
+    const puma560_real_t t662 = t1 * t651;
+    const puma560_real_t t663 = t387 * parameters[XY5] + t388 * t637 + (t471 + t662);
+    const puma560_real_t t664 = t387 * t655 + t388 * parameters[XY5] + (t1 * t588 + t2 * t590);
+    const puma560_real_t t665 = t663 * t639 - t664 * t643 + t661 + t660;
+    const puma560_real_t t666 = (t634 + t631) * parameters[MY5] + parameters[MX5] * t628
+        + parameters[MZ5] * t402;
+    const puma560_real_t t667 = parameters[M6] * t450 + (parameters[MX6] * t464 + parameters[MY6] * t416
+        - t453 * parameters[MZ6]);
+    const puma560_real_t t668 = parameters[M5] * t450 - t666 + t667;
+    const puma560_real_t t669 = t1 * t495 - t2 * t494 - (t387 * parameters[MY5] + t388 * parameters[MX5]);
+    const puma560_real_t t670 = t669 * t643 - t66 * t450 - (t635 * t40 + t36 * t402);
+    const puma560_real_t t671 = t668 + t670;
+    const puma560_real_t t672 = (t630 + t631) * parameters[MX5] + parameters[MY5] * t390
+        + parameters[MZ5] * t417;
+    const puma560_real_t t673 = parameters[M5] * t446 + t672 + (t2 * t491 + t1 * t486);
+    const puma560_real_t t674 = t669 * t639 - t66 * t446 + (t635 * t39 + t36 * t417);
+    const puma560_real_t t675 = t673 + t674;
+    const puma560_real_t t676 = t13 * t675 - t15 * t671;
+    const puma560_real_t t677 = t2 * t495 + t1 * t494 - (t388 * parameters[MZ5] + t403 * parameters[MY5]);
+    const puma560_real_t t678 = t387 * parameters[MZ5] - t403 * parameters[MX5] + t487;
+    const puma560_real_t t679 = t678 * t639 - t677 * t643 + (t39 * t402 - t40 * t417);
+    const puma560_real_t t680 = t34 * t679 - t32 * t676;
+    const puma560_real_t t681 = PUMA560_C(0.4318) * t680;
+    const puma560_real_t t682 = t34 * t659 - t32 * t665 + t681;
+    const puma560_real_t t683 = t15 * t645 - t13 * t658;
+    const puma560_real_t t684 = t683 + PUMA560_C(0.0203) * t680;
+    const puma560_real_t t685 = t34 * t676 + t32 * t679;
+    const puma560_real_t t686 = t13 * t671 + t15 * t675;
+    const puma560_real_t t687 = t79 * t686 - t76 * t685;
+    const puma560_real_t t688 = t119 * (t79 * t682 + t76 * t684 + PUMA560_C(0.1254) * t687);
+    const puma560_real_t t689 = t76 * t682 - t79 * t684 + (PUMA560_C(0.1254) * (t79 * t685 + t76 * t686)
+        - t681);
+    const puma560_real_t t690 = PUMA560_C(0.06944177768728742) * (t688 + t116 * t689);
+    const puma560_real_t t691 = t32 * t659 + t34 * t665 + (PUMA560_C(0.0203) * t686
+        + PUMA560_C(0.4318) * t685);
+    const puma560_real_t t692 = PUMA560_C(0.04032672714331514) * (t691 + PUMA560_C(0.4318) * t687);
+    const puma560_real_t t693 = PUMA560_C(0.08095560645504385) * t691;
+    const puma560_real_t t694 = PUMA560_C(0.18787994020908783) * t683;
+    const puma560_real_t t695 = t514 * t692 - t510 * t690 - t517 * t693 + t521 * t694;
+    const puma560_real_t t696 = PUMA560_C(2.0) * t663; /* link j5: derivatives */
+    const puma560_real_t t697 = PUMA560_C(2.0) * t664;
+    const puma560_real_t t698 = PUMA560_C(0.19862511694053758) * (t660 + (t388 * t696 + t387 * t697 + t661));
+    const puma560_real_t t699 = t2 * t529 + t1 * t530; /* link j6: derivatives */
+    const puma560_real_t t700 = t388 * t699 + t387 * t594 + (parameters[ZZ6] * t402 - t17 * t417 - t635 * t3);
+    const puma560_real_t t701 = PUMA560_C(0.1862884266452062) * (t700 + t35 * t450);
+    ddq_by_q[4] = t695 + t528 * t698 + t537 * t701;
+    const puma560_real_t t702 = t539 * t692 - t538 * t690 - t541 * t693 + t543 * t694;
+    ddq_by_q[10] = t702 + t546 * t698 + t548 * t701;
+    const puma560_real_t t703 = t550 * t692 - t549 * t690 - t551 * t693 + t553 * t694;
+    ddq_by_q[16] = t703 + t556 * t698 + t558 * t701;
+    const puma560_real_t t704 = t560 * t692 - t559 * t690 - t561 * t693 + t563 * t694;
+    ddq_by_q[22] = t704 + t566 * t698 + t568 * t701;
+    const puma560_real_t t705 = t570 * t692 - t569 * t690 - t571 * t693 + t572 * t694;
+    ddq_by_q[28] = t705 + t575 * t698 + t578 * t701;
+    const puma560_real_t t706 = t580 * t692 - t579 * t690 - t581 * t693 + t582 * t694;
+    ddq_by_q[34] = t706 + t584 * t698 + t586 * t701;
+    const puma560_real_t t707 = t636 - parameters[ZZ5];
     /* link j6: inertia, momentum beyond */
-    const puma560_real_t t435 = t2 * t433 + t1 * t434 - (t382 * parameters[MZ5] + t379 * parameters[MY5]);
-    const puma560_real_t t436 = t386 * parameters[MY6] - t380 * parameters[MX6];
-    const puma560_real_t t437 = t377 * parameters[MZ5] - t379 * parameters[MX5] + t436;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t438 = t376 * parameters[MY4] - t378 * parameters[MZ4] + (t16 * t435 + t14 * t437);
+    const puma560_real_t t708 = t388 * t707 - t403 * parameters[YZ5] + (t460 + t662);
+    const puma560_real_t t709 = PUMA560_C(-2.0) * t708 + (t22 * t639 + t24 * t643); /* link j5: derivatives */
     /* link j6: inertia, momentum beyond */
-    const puma560_real_t t439 = t1 * t433 - t2 * t434 - (t377 * parameters[MY5] + t382 * parameters[MX5]);
+    const puma560_real_t t710 = t1 * t478 - t2 * t479 - (t403 * parameters[XZ5] + t387 * t707);
+    const puma560_real_t t711 = PUMA560_C(-2.0) * t710 + (t24 * t639 + t23 * t643); /* link j5: derivatives */
+    const puma560_real_t t712 = t15 * t709 + t13 * t711;
+    const puma560_real_t t713 = t653 + t640 + (t652 - t456); /* link j6: inertia, momentum beyond */
+    const puma560_real_t t714 = PUMA560_C(2.0) * t713; /* link j5: derivatives */
+    const puma560_real_t t715 = t714 + (t12 * t639 + t14 * t643);
+    const puma560_real_t t716 = PUMA560_C(2.0) * t677 - t36 * t639;
+    const puma560_real_t t717 = PUMA560_C(2.0) * t678 - t36 * t643;
+    const puma560_real_t t718 = t13 * t716 - t15 * t717;
+    const puma560_real_t t719 = t40 * t639 + t39 * t643;
+    const puma560_real_t t720 = t34 * t719 - t32 * t718;
+    const puma560_real_t t721 = PUMA560_C(0.4318) * t720;
+    const puma560_real_t t722 = t34 * t712 - t32 * t715 + t721;
+    const puma560_real_t t723 = t15 * t711 - t13 * t709;
+    const puma560_real_t t724 = t723 + PUMA560_C(0.0203) * t720;
+    const puma560_real_t t725 = t34 * t718 + t32 * t719;
+    const puma560_real_t t726 = t13 * t717 + t15 * t716;
+    const puma560_real_t t727 = t79 * t726 - t76 * t725;
+    const puma560_real_t t728 = t119 * (t79 * t722 + t76 * t724 + PUMA560_C(0.1254) * t727);
+    const puma560_real_t t729 = t76 * t722 - t79 * t724 + (PUMA560_C(0.1254) * (t79 * t725 + t76 * t726)
+        - t721);
+    const puma560_real_t t730 = PUMA560_C(0.06944177768728742) * (t728 + t116 * t729);
+    const puma560_real_t t731 = t32 * t712 + t34 * t715 + (PUMA560_C(0.0203) * t726
+        + PUMA560_C(0.4318) * t725);
+    const puma560_real_t t732 = PUMA560_C(0.04032672714331514) * (t731 + PUMA560_C(0.4318) * t727);
+    const puma560_real_t t733 = PUMA560_C(0.08095560645504385) * t731;
+    const puma560_real_t t734 = PUMA560_C(0.18787994020908783) * t723;
+    const puma560_real_t t735 = t732 * t514 - t730 * t510 - t733 * t517 + t734 * t521;
+    const puma560_real_t t736 = PUMA560_C(0.19862511694053758) * (t714 + PUMA560_C(2.0) * (t388 * t12
+        - t387 * t14));
+    const puma560_real_t t737 = PUMA560_C(-1027.4714285714285) * parameters[FV5] + t736;
+    const puma560_real_t t738 = t2 * t530 - t1 * t529; /* link j6: derivatives */
+    const puma560_real_t t739 = PUMA560_C(0.1862884266452062) * (t738 + PUMA560_C(2.0) * (t388 * t17
+        - t387 * parameters[ZZ6]));
+    ddq_by_dq[4] = t735 + t737 * t528 + t739 * t537;
+    const puma560_real_t t740 = t732 * t539 - t730 * t538 - t733 * t541 + t734 * t543;
+    ddq_by_dq[10] = t740 + t737 * t546 + t739 * t548;
+    const puma560_real_t t741 = t732 * t550 - t730 * t549 - t733 * t551 + t734 * t553;
+    ddq_by_dq[16] = t741 + t737 * t556 + t739 * t558;
+    const puma560_real_t t742 = t732 * t560 - t730 * t559 - t733 * t561 + t734 * t563;
+    ddq_by_dq[22] = t742 + t737 * t566 + t739 * t568;
+    const puma560_real_t t743 = t732 * t570 - t730 * t569 - t733 * t571 + t734 * t572;
+    ddq_by_dq[28] = t743 + t737 * t575 + t739 * t578;
+    const puma560_real_t t744 = t732 * t580 - t730 * t579 - t733 * t581 + t734 * t582;
+    ddq_by_dq[34] = t744 + t737 * t584 + t739 * t586;
+    ddq_by_input[4] = t528;
+    ddq_by_input[10] = t546;
+    ddq_by_input[16] = t556;
+    ddq_by_input[22] = t566;
+    ddq_by_input[28] = t575;
+    ddq_by_input[34] = t584;
+    const puma560_real_t t745 = t389 * t279 + parameters[ZZ5] * t386 - parameters[YZ5] * t417
+        + parameters[XZ5] * t402;
+    const puma560_real_t t746 = (t634 - t630) * parameters[XY5] + t745 + (parameters[MX5] * t450
+        + parameters[MY5] * t446);
+    const puma560_real_t t747 = t384 * t283 + parameters[YY4] * t385 - parameters[XY4] * t401
+        - parameters[YZ4] * t397;
+    const puma560_real_t t748 = t382 * t382; /* link j4: motion */
+    const puma560_real_t t749 = t383 * t383;
+    const puma560_real_t t750 = (t748 - t749) * parameters[XZ4] + t747 + (parameters[MZ4] * t440
+        + parameters[MX4] * t445);
+    const puma560_real_t t751 = t750 + (t746 + (t2 * t451 - t1 * t469));
+    const puma560_real_t t752 = t395 * t395;
+    const puma560_real_t t753 = t748 + t752; /* link j5: motion */
     /* link j5: inertia, momentum beyond */
-    const puma560_real_t t440 = t439 - (t376 * parameters[MX4] + t373 * parameters[MZ4]);
-    const puma560_real_t t441 = t36 * t438 - t34 * t440; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t442 = PUMA560_C(-0.0203) * t441;
-    const puma560_real_t t443 = PUMA560_C(0.4318) * t175; /* link j4: velocity of its origin */
-    const puma560_real_t t444 = t89 * t443; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t754 = t15 * (t654 + t642) + t13 * (t638 - t656);
+    const puma560_real_t t755 = t15 * t754;
+    const puma560_real_t t756 = t395 * parameters[XZ4];
+    const puma560_real_t t757 = t383 * parameters[XY4];
+    const puma560_real_t t758 = t757 - t756 + (t642 - t755);
+    const puma560_real_t t759 = PUMA560_C(2.0) * t395; /* link j4: derivatives */
+    const puma560_real_t t760 = PUMA560_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const puma560_real_t t761 = parameters[YY4] + t760;
     /* link j5: inertia, momentum beyond */
-    const puma560_real_t t445 = t16 * t437 - t14 * t435 - (t373 * parameters[MY4] + t378 * parameters[MX4]);
-    const puma560_real_t t446 = PUMA560_C(-0.4318) * t445; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t447 = PUMA560_C(-0.4318) * t372 + PUMA560_C(-0.0203) * t375;
-    const puma560_real_t t448 = t45 * t447;
-    const puma560_real_t t449 = PUMA560_C(-0.0203) * t175; /* link j4: velocity of its origin */
-    const puma560_real_t t450 = t91 * t449; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t451 = t446 - t442 + (t450 - t444 + t448);
-    const puma560_real_t t452 = t375 * parameters[XZ3];
-    const puma560_real_t t453 = t175 * parameters[XY3];
-    const puma560_real_t t454 = t453 - t452 + (t451 + (t432 - t419 + (t442 + t444)));
-    const puma560_real_t t455 = t414 + t418 + (t413 - t398); /* link j5: inertia, momentum beyond */
-    const puma560_real_t t456 = t372 * parameters[YZ3];
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t457 = t453 + t456 - (t451 + (t455 - (t446 + t450)));
-    const puma560_real_t t458 = t14 * t412; /* link j5: inertia, momentum beyond */
-    const puma560_real_t t459 = parameters[ZZ4] + t424;
-    const puma560_real_t t460 = t378 * t459 - t376 * parameters[YZ4] + (t407 + t458);
-    const puma560_real_t t461 = t376 * parameters[XZ4] + t373 * t459 + (t14 * t427 + t16 * t428);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t462 = t36 * t460 - t34 * t461 + (PUMA560_C(0.4318) * t441 + t91 * t443);
-    const puma560_real_t t463 = PUMA560_C(-0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const puma560_real_t t464 = parameters[YY3] + t463;
-    const puma560_real_t t465 = t375 * parameters[YZ3] - t175 * t464 + t462;
+    const puma560_real_t t762 = t395 * parameters[YZ4] - t383 * t761 + (t15 * t708 + t13 * t710);
+    const puma560_real_t t763 = PUMA560_C(2.0) * t382; /* link j4: derivatives */
+    const puma560_real_t t764 = t762 * t763 - t758 * t759 + (t62 * t398 - t60 * t381 - t753 * t31);
+    const puma560_real_t t765 = t751 + (t764 - t70 * t440);
+    const puma560_real_t t766 = t384 - t385;
+    const puma560_real_t t767 = t396 - t394;
+    const puma560_real_t t768 = t399 * t271 - parameters[XX4] * t400 - parameters[XY4] * t766
+        + parameters[XZ4] * t767;
+    const puma560_real_t t769 = (t752 - t749) * parameters[YZ4] - t768 + (parameters[MY4] * t445
+        - parameters[MZ4] * t447);
+    const puma560_real_t t770 = t769 + (t13 * t650 - t15 * t633);
+    const puma560_real_t t771 = parameters[XX4] + t760;
     /* link j5: inertia, momentum beyond */
-    const puma560_real_t t466 = t373 * parameters[XY4] + t378 * t429 - (t458 - t411);
-    const puma560_real_t t467 = t373 * t425 + t378 * parameters[XY4] + (t16 * t423 - t14 * t422);
+    const puma560_real_t t772 = t383 * t771 + t382 * parameters[XZ4] + (t15 * t663 - t13 * t664);
+    const puma560_real_t t773 = t382 * parameters[YZ4];
+    const puma560_real_t t774 = t757 + t773 - t713;
+    const puma560_real_t t775 = t772 * t759 + t774 * t763 - (t62 * t381 - t61 * t398 - t753 * t33);
+    const puma560_real_t t776 = t770 + (t775 + t70 * t447);
+    const puma560_real_t t777 = (t752 + t749) * parameters[MX4] + parameters[MY4] * t397
+        + parameters[MZ4] * t381;
+    const puma560_real_t t778 = parameters[M4] * t440 + t777 + (t15 * t673 + t13 * t668);
+    const puma560_real_t t779 = t15 * t678 - t13 * t677 - (t382 * parameters[MY4] + t395 * parameters[MX4]);
+    const puma560_real_t t780 = t779 * t759 - t67 * t440 + (t753 * t42 - t70 * t381);
+    const puma560_real_t t781 = t778 + t780;
+    const puma560_real_t t782 = parameters[MX5] * t627 - parameters[MY5] * t406 - t635 * parameters[MZ5]
+        - parameters[M5] * t447;
+    const puma560_real_t t783 = (t748 + t749) * parameters[MY4] + parameters[MX4] * t767
+        - parameters[MZ4] * t398;
+    const puma560_real_t t784 = t783 - parameters[M4] * t447 + (t782 + (t1 * t491 - t2 * t486));
+    const puma560_real_t t785 = t779 * t763 + t67 * t447 + (t753 * t37 + t70 * t398);
+    const puma560_real_t t786 = t784 + t785;
+    const puma560_real_t t787 = t34 * t781 - t32 * t786;
+    const puma560_real_t t788 = PUMA560_C(0.4318) * t787;
+    const puma560_real_t t789 = t34 * t765 - t32 * t776 + t788;
+    const puma560_real_t t790 = t37 * t447 - t42 * t440;
+    const puma560_real_t t791 = t753 * t27 + (t31 * t381 + t33 * t398);
+    const puma560_real_t t792 = t13 * t754;
+    const puma560_real_t t793 = t382 * parameters[XY4] + t395 * t771 - (t792 - t638);
+    const puma560_real_t t794 = t382 * t761 + t395 * parameters[XY4] + (t15 * t710 - t13 * t708);
+    const puma560_real_t t795 = t793 * t759 + t794 * t763 + t791 + t790 + PUMA560_C(0.0203) * t787;
+    const puma560_real_t t796 = t34 * t786 + t32 * t781;
+    const puma560_real_t t797 = t669 - (t383 * parameters[MX4] + t382 * parameters[MZ4]);
+    const puma560_real_t t798 = t383 * parameters[MY4] - t395 * parameters[MZ4] + (t15 * t677 + t13 * t678);
+    const puma560_real_t t799 = t797 * t759 - t798 * t763 + (t37 * t381 + t42 * t398);
+    const puma560_real_t t800 = t76 * t789 - t79 * t795 + (PUMA560_C(0.1254) * (t79 * t796 + t76 * t799)
+        - t788);
+    const puma560_real_t t801 = t79 * t799 - t76 * t796;
+    const puma560_real_t t802 = t119 * (t79 * t789 + t76 * t795 + PUMA560_C(0.1254) * t801);
+    const puma560_real_t t803 = PUMA560_C(0.06944177768728742) * (t802 + t116 * t800);
+    const puma560_real_t t804 = t32 * t765 + t34 * t776 + (PUMA560_C(0.0203) * t799
+        + PUMA560_C(0.4318) * t796);
+    const puma560_real_t t805 = PUMA560_C(0.04032672714331514) * (t804 + PUMA560_C(0.4318) * t801);
+    const puma560_real_t t806 = PUMA560_C(0.08095560645504385) * t804;
+    const puma560_real_t t807 = PUMA560_C(2.0) * t793; /* link j4: derivatives */
+    const puma560_real_t t808 = PUMA560_C(2.0) * t794;
+    const puma560_real_t t809 = PUMA560_C(0.18787994020908783) * (t790 + (t395 * t807 + t382 * t808 + t791));
+    const puma560_real_t t810 = t514 * t805 - t510 * t803 - t517 * t806 + t521 * t809;
+    const puma560_real_t t811 = t15 * t696 - t13 * t697; /* link j5: derivatives */
+    const puma560_real_t t812 = t395 * t811 - t382 * t714 + (t753 * t16 + (t9 * t398 - t50 * t381));
+    const puma560_real_t t813 = PUMA560_C(0.19862511694053758) * (t812 + t51 * t447);
+    const puma560_real_t t814 = t15 * t699 - t13 * t594; /* link j6: derivatives */
+    const puma560_real_t t815 = t395 * t814 - t382 * t738 - (t753 * t18 + (t45 * t381 + t3 * t398));
+    const puma560_real_t t816 = PUMA560_C(0.1862884266452062) * (t815 + (t46 * t447 + t38 * t440));
+    ddq_by_q[3] = t810 + t528 * t813 + t537 * t816;
+    const puma560_real_t t817 = t539 * t805 - t538 * t803 - t541 * t806 + t543 * t809;
+    ddq_by_q[9] = t817 + t546 * t813 + t548 * t816;
+    const puma560_real_t t818 = t550 * t805 - t549 * t803 - t551 * t806 + t553 * t809;
+    ddq_by_q[15] = t818 + t556 * t813 + t558 * t816;
+    const puma560_real_t t819 = t560 * t805 - t559 * t803 - t561 * t806 + t563 * t809;
+    ddq_by_q[21] = t819 + t566 * t813 + t568 * t816;
+    const puma560_real_t t820 = t570 * t805 - t569 * t803 - t571 * t806 + t572 * t809;
+    ddq_by_q[27] = t820 + t575 * t813 + t578 * t816;
+    const puma560_real_t t821 = t580 * t805 - t579 * t803 - t581 * t806 + t582 * t809;
+    ddq_by_q[33] = t821 + t584 * t813 + t586 * t816;
+    const puma560_real_t t822 = parameters[ZZ4] + t760;
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t823 = t395 * t822 - t383 * parameters[YZ4] + (t656 + t792);
+    const puma560_real_t t824 = PUMA560_C(2.0) * t823 + (t60 * t759 + t62 * t763); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t825 = t383 * parameters[XZ4] + t382 * t822 + (t13 * t663 + t15 * t664);
+    const puma560_real_t t826 = PUMA560_C(2.0) * t825 + (t62 * t759 + t61 * t763); /* link j4: derivatives */
+    const puma560_real_t t827 = PUMA560_C(2.0) * t797 + t70 * t763;
+    const puma560_real_t t828 = PUMA560_C(2.0) * t798 + t70 * t759;
+    const puma560_real_t t829 = t34 * t828 - t32 * t827;
+    const puma560_real_t t830 = PUMA560_C(0.4318) * t829;
+    const puma560_real_t t831 = t34 * t824 - t32 * t826 + t830;
+    const puma560_real_t t832 = t756 + t773 + (t755 - t654); /* link j5: inertia, momentum beyond */
+    const puma560_real_t t833 = PUMA560_C(2.0) * t832; /* link j4: derivatives */
+    const puma560_real_t t834 = t833 - (t31 * t759 - t33 * t763) + PUMA560_C(0.0203) * t829;
+    const puma560_real_t t835 = t34 * t827 + t32 * t828;
+    const puma560_real_t t836 = t42 * t763 - t37 * t759;
+    const puma560_real_t t837 = t79 * t836 - t76 * t835;
+    const puma560_real_t t838 = t119 * (t79 * t831 + t76 * t834 + PUMA560_C(0.1254) * t837);
+    const puma560_real_t t839 = t76 * t831 - t79 * t834 + (PUMA560_C(0.1254) * (t79 * t835 + t76 * t836)
+        - t830);
+    const puma560_real_t t840 = PUMA560_C(0.06944177768728742) * (t838 + t116 * t839);
+    const puma560_real_t t841 = t32 * t824 + t34 * t826 + (PUMA560_C(0.0203) * t836
+        + PUMA560_C(0.4318) * t835);
+    const puma560_real_t t842 = PUMA560_C(0.04032672714331514) * (t841 + PUMA560_C(0.4318) * t837);
+    const puma560_real_t t843 = PUMA560_C(0.08095560645504385) * t841;
+    const puma560_real_t t844 = PUMA560_C(0.18787994020908783) * (t833 + PUMA560_C(2.0) * (t382 * t33
+        - t395 * t31));
+    const puma560_real_t t845 = PUMA560_C(-1086.2342857142855) * parameters[FV4] + t844;
+    const puma560_real_t t846 = t842 * t514 - t840 * t510 - t843 * t517 + t845 * t521;
+    const puma560_real_t t847 = t13 * t696 + t15 * t697; /* link j5: derivatives */
+    const puma560_real_t t848 = PUMA560_C(0.19862511694053758) * (t847 + PUMA560_C(2.0) * (t395 * t50
+        + t382 * t9));
+    const puma560_real_t t849 = t13 * t699 + t15 * t594; /* link j6: derivatives */
+    const puma560_real_t t850 = PUMA560_C(0.1862884266452062) * (t849 + PUMA560_C(2.0) * (t395 * t45
+        - t382 * t3));
+    ddq_by_dq[3] = t846 + t848 * t528 + t850 * t537;
+    const puma560_real_t t851 = t842 * t539 - t840 * t538 - t843 * t541 + t845 * t543;
+    ddq_by_dq[9] = t851 + t848 * t546 + t850 * t548;
+    const puma560_real_t t852 = t842 * t550 - t840 * t549 - t843 * t551 + t845 * t553;
+    ddq_by_dq[15] = t852 + t848 * t556 + t850 * t558;
+    const puma560_real_t t853 = t842 * t560 - t840 * t559 - t843 * t561 + t845 * t563;
+    ddq_by_dq[21] = t853 + t848 * t566 + t850 * t568;
+    const puma560_real_t t854 = t842 * t570 - t840 * t569 - t843 * t571 + t845 * t572;
+    ddq_by_dq[27] = t854 + t848 * t575 + t850 * t578;
+    const puma560_real_t t855 = t842 * t580 - t840 * t579 - t843 * t581 + t845 * t582;
+    ddq_by_dq[33] = t855 + t848 * t584 + t850 * t586;
+    ddq_by_input[3] = t521;
+    ddq_by_input[9] = t543;
+    ddq_by_input[15] = t553;
+    ddq_by_input[21] = t563;
+    ddq_by_input[27] = t572;
+    ddq_by_input[33] = t582;
+    const puma560_real_t t856 = parameters[YZ4] * t381 - (t396 * t309 + parameters[ZZ4] * t394)
+        + parameters[XZ4] * t398;
+    const puma560_real_t t857 = (t752 - t748) * parameters[XY4] + t856 - (parameters[MX4] * t447
+        + parameters[MY4] * t440);
+    const puma560_real_t t858 = t32 * t778 + t34 * t784;
+    const puma560_real_t t859 = t857 + (t13 * t633 + t15 * t650) + PUMA560_C(0.0203) * t858;
+    const puma560_real_t t860 = t392 * t313 - parameters[YY3] * t393 - parameters[XY3] * t380
+        - parameters[YZ3] * t376;
+    const puma560_real_t t861 = parameters[MZ3] * t431 + parameters[MX3] * t438 + ((t443
+        - t221) * parameters[XZ3] + t860);
+    const puma560_real_t t862 = t861 + t859;
+    const puma560_real_t t863 = t443 + t432; /* link j4: motion */
     /* link j4: inertia, momentum beyond */
-    const puma560_real_t t468 = t36 * t466 - t34 * t467 - (PUMA560_C(-0.0203) * t445 - t89 * t449);
-    const puma560_real_t t469 = parameters[XX3] + t463;
-    const puma560_real_t t470 = t175 * t469 + t372 * parameters[XZ3] - t468;
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t471 = t82 * (t454 + t457) + t79 * (t465 + t470);
-    const puma560_real_t t472 = t82 * t471;
+    const puma560_real_t t864 = t34 * (t758 + t774) + t32 * (t762 + t772);
+    const puma560_real_t t865 = t34 * t864;
+    const puma560_real_t t866 = t34 * t798 - t32 * t797;
+    const puma560_real_t t867 = PUMA560_C(-0.0203) * t866;
+    const puma560_real_t t868 = PUMA560_C(0.4318) * t174; /* link j4: velocity of its origin */
+    const puma560_real_t t869 = t86 * t868; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t870 = PUMA560_C(-0.4318) * t779;
+    const puma560_real_t t871 = PUMA560_C(-0.4318) * t372 + PUMA560_C(-0.0203) * t374;
+    const puma560_real_t t872 = t43 * t871;
+    const puma560_real_t t873 = PUMA560_C(-0.0203) * t174; /* link j4: velocity of its origin */
+    const puma560_real_t t874 = t88 * t873; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t875 = t870 - t867 + (t874 - t869 + t872);
+    const puma560_real_t t876 = t374 * parameters[XZ3];
+    const puma560_real_t t877 = t174 * parameters[XY3];
+    const puma560_real_t t878 = t877 - t876 + (t875 + (t865 - t774 + (t867 + t869)));
+    const puma560_real_t t879 = PUMA560_C(2.0) * t374; /* link j3: derivatives */
     /* link j4: inertia, momentum beyond */
-    const puma560_real_t t473 = t175 * parameters[MY3] - t375 * parameters[MZ3] + (t441 + t69 * t443);
-    const puma560_real_t t474 = t175 * parameters[MX3] + t372 * parameters[MZ3] - (t69 * t449 - t445);
-    const puma560_real_t t475 = t82 * t473 + t79 * t474; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t476 = PUMA560_C(-0.4318) * t475;
-    const puma560_real_t t477 = PUMA560_C(0.1254) * t171; /* link j3: velocity of its origin */
-    const puma560_real_t t478 = t161 * t477; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t479 = t34 * t438 + t36 * t440; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t480 = t372 * parameters[MY3] + t375 * parameters[MX3] - (t479 + t69 * t447);
-    const puma560_real_t t481 = PUMA560_C(0.1254) * t480; /* link j3: inertia, momentum beyond */
-    /* link j3: velocity of its origin */
-    const puma560_real_t t482 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t170;
-    const puma560_real_t t483 = t121 * t482; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t484 = t115 - t116; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t485 = PUMA560_C(0.4318) * t171; /* link j3: velocity of its origin */
-    const puma560_real_t t486 = t484 * t485; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t487 = t481 - t476 + (t486 - (t478 + t483));
-    const puma560_real_t t488 = t171 * parameters[XZ2];
-    const puma560_real_t t489 = dq[1] * parameters[XY2];
-    const puma560_real_t t490 = t488 + t489 + (t487 + (t472 - t457 + (t476 + t478)));
-    const puma560_real_t t491 = t170 * parameters[YZ2];
-    const puma560_real_t t492 = t487 + (t454 - t472 + t483) - (t489 + t491);
-    const puma560_real_t t493 = t79 * t471;
-    const puma560_real_t t494 = PUMA560_C(-0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const puma560_real_t t495 = parameters[YY2] + t494;
-    const puma560_real_t t496 = t171 * parameters[YZ2] + dq[1] * t495 + (t493 - t465 + t121 * t477);
-    const puma560_real_t t497 = t82 * t474 - t79 * t473;
-    const puma560_real_t t498 = parameters[XX2] + t494;
-    const puma560_real_t t499 = t493 - t470 + (PUMA560_C(0.4318) * t497 + t161 * t482)
-        - (t170 * parameters[XZ2] + dq[1] * t498);
-    /* link j2: inertia, momentum beyond */
-    const puma560_real_t t500 = t120 * (t120 * (t492 - t490) + t123 * (t496 + t499));
-    const puma560_real_t t501 = PUMA560_C(-272.2221739130435) * parameters[FV1]
-        + PUMA560_C(0.13888355537457484) * (t490 + t500);
-    const puma560_real_t t502 = puma560_bounded(PUMA560_C(-14.400553) * t362);
-    const puma560_real_t t503 = t167 * t362;
-    const puma560_real_t t504 = puma560_bounded(PUMA560_C(24.79745) * t503);
-    const puma560_real_t t505 = t34 * t431; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t506 = t372 * parameters[XY3] + t375 * t469 + (t430 - t505
-        - (PUMA560_C(-0.0203) * t479 + t89 * t447));
-    const puma560_real_t t507 = t34 * t460 + t36 * t461 + (PUMA560_C(0.4318) * t479 + t91 * t447);
-    const puma560_real_t t508 = t372 * t464 + t375 * parameters[XY3] + t507;
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t509 = t79 * t508 - t82 * t506 + (PUMA560_C(0.4318) * t480 + t161 * t485);
-    /* link j2: derivatives */
-    const puma560_real_t t510 = PUMA560_C(2.0) * (t171 * t498 - t170 * parameters[XY2] + t509);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t511 = t171 * parameters[XY2] - t170 * t495 - (t79 * t506 + t82 * t508
-        - t121 * t485);
-    const puma560_real_t t512 = PUMA560_C(2.0) * t511; /* link j2: derivatives */
-    const puma560_real_t t513 = PUMA560_C(0.04032672714331514) * (t123 * t510 + t120 * t512);
-    const puma560_real_t t514 = t362 * (t97 * t167 - t160);
-    const puma560_real_t t515 = puma560_bounded(PUMA560_C(12.352449) * t514);
-    const puma560_real_t t516 = PUMA560_C(2.0) * t506; /* link j3: derivatives */
-    const puma560_real_t t517 = PUMA560_C(2.0) * t508;
-    const puma560_real_t t518 = PUMA560_C(0.8636) * t171; /* link j6: derivatives */
-    const puma560_real_t t519 = t79 * t517 - t82 * t516 + t93 * t518; /* link j3: derivatives */
-    const puma560_real_t t520 = t79 * t516 + t82 * t517 - t121 * t518;
-    const puma560_real_t t521 = PUMA560_C(0.08095560645504385) * (t123 * t519 - t120 * t520);
-    const puma560_real_t t522 = t98 + t59 * t97;
-    const puma560_real_t t523 = t362 * (t167 * t522 - (t151 + t59 * t160));
-    const puma560_real_t t524 = puma560_bounded(PUMA560_C(5.322548) * t523);
-    const puma560_real_t t525 = PUMA560_C(2.0) * t466; /* link j4: derivatives */
-    const puma560_real_t t526 = PUMA560_C(2.0) * t467;
-    const puma560_real_t t527 = PUMA560_C(-0.0406) * t175; /* link j6: derivatives */
-    const puma560_real_t t528 = t36 * t525 - t34 * t526 + t67 * t527; /* link j4: derivatives */
-    const puma560_real_t t529 = PUMA560_C(2.0) * t455;
-    const puma560_real_t t530 = PUMA560_C(2.0) * t447; /* link j6: derivatives */
-    const puma560_real_t t531 = PUMA560_C(-0.8636) * t175;
-    const puma560_real_t t532 = t529 + (t45 * t530 + t67 * t531); /* link j4: derivatives */
-    const puma560_real_t t533 = PUMA560_C(2.0) * t482; /* link j6: derivatives */
-    /* link j4: derivatives */
-    const puma560_real_t t534 = t79 * t532 - t82 * t528 + (t80 * t518 - t67 * t533);
-    const puma560_real_t t535 = PUMA560_C(-0.2508) * t171; /* link j6: derivatives */
-    /* link j4: derivatives */
-    const puma560_real_t t536 = t79 * t528 + t82 * t532 + (t148 * t518 + t67 * t535);
-    const puma560_real_t t537 = PUMA560_C(0.18787994020908783) * (t123 * t534 - t120 * t536);
-    const puma560_real_t t538 = t513 * t504 - t501 * t502 - t521 * t515 + t537 * t524;
-    const puma560_real_t t539 = t60 + t22 * t59;
-    const puma560_real_t t540 = t22 * t98 - t99 + t97 * t539;
-    const puma560_real_t t541 = t143 - t22 * t151 - t160 * t539 + t167 * t540;
-    const puma560_real_t t542 = t362 * t541;
-    const puma560_real_t t543 = puma560_bounded(PUMA560_C(5.034610000000001) * t542);
-    const puma560_real_t t544 = PUMA560_C(2.0) * t427; /* link j5: derivatives */
-    const puma560_real_t t545 = PUMA560_C(2.0) * t428;
-    const puma560_real_t t546 = t16 * t544 - t14 * t545;
-    const puma560_real_t t547 = PUMA560_C(2.0) * t417;
-    const puma560_real_t t548 = t36 * t546 + t34 * t547 - (t43 * t530 - t135 * t527);
-    const puma560_real_t t549 = t14 * t544 + t16 * t545;
-    const puma560_real_t t550 = t549 + (t54 * t530 + t135 * t531);
-    const puma560_real_t t551 = t79 * t550 - t82 * t548 + (t85 * t518 - t135 * t533);
-    const puma560_real_t t552 = t79 * t548 + t82 * t550 + (t135 * t535 - t140 * t518);
-    const puma560_real_t t553 = PUMA560_C(0.19862511694053758) * (t123 * t551 - t120 * t552);
-    const puma560_real_t t554 = t30 + t5 * t22;
-    const puma560_real_t t555 = t61 + t5 * t60 + t59 * t554;
-    const puma560_real_t t556 = t98 * t554 - (t100 + t5 * t99) + t97 * t555;
-    const puma560_real_t t557 = t134 + t5 * t143 - t151 * t554 - t160 * t555;
-    const puma560_real_t t558 = t362 * (t557 + t167 * t556);
-    const puma560_real_t t559 = PUMA560_C(5.368020000000001) * t558;
-    const puma560_real_t t560 = PUMA560_C(2.0) * t408; /* link j6: derivatives */
-    const puma560_real_t t561 = PUMA560_C(2.0) * t409;
-    const puma560_real_t t562 = t2 * t560 + t1 * t561;
-    const puma560_real_t t563 = PUMA560_C(2.0) * t399;
-    const puma560_real_t t564 = t16 * t562 - t14 * t563;
-    const puma560_real_t t565 = t2 * t561 - t1 * t560;
-    const puma560_real_t t566 = t36 * t564 + t34 * t565 - (t50 * t530 - t126 * t527);
-    const puma560_real_t t567 = t14 * t562 + t16 * t563;
-    const puma560_real_t t568 = t567 + (t126 * t531 - t49 * t530);
-    const puma560_real_t t569 = t79 * t568 - t82 * t566 + (t83 * t518 - t126 * t533);
-    const puma560_real_t t570 = t79 * t566 + t82 * t568 + (t126 * t535 - t130 * t518);
-    const puma560_real_t t571 = PUMA560_C(0.1862884266452062) * (t123 * t569 - t120 * t570);
-    ddq_by_dq[0] = t538 + t553 * t543 + t571 * t559;
-    const puma560_real_t t572 = puma560_bounded(PUMA560_C(-14.400553) * t503);
-    const puma560_real_t t573 = puma560_bounded(PUMA560_C(24.79745) * (t166 + t167 * t503));
-    const puma560_real_t t574 = t97 * t166 + t167 * t514;
-    const puma560_real_t t575 = puma560_bounded(PUMA560_C(12.352449) * t574);
-    const puma560_real_t t576 = t166 * t522 + t167 * t523;
-    const puma560_real_t t577 = puma560_bounded(PUMA560_C(5.322548) * t576);
-    const puma560_real_t t578 = t513 * t573 - t501 * t572 - t521 * t575 + t537 * t577;
-    const puma560_real_t t579 = t166 * t540 + t167 * t542;
-    const puma560_real_t t580 = puma560_bounded(PUMA560_C(5.034610000000001) * t579);
-    const puma560_real_t t581 = t166 * t556 + t167 * t558;
-    const puma560_real_t t582 = PUMA560_C(5.368020000000001) * t581;
-    ddq_by_dq[6] = t578 + t553 * t580 + t571 * t582;
-    const puma560_real_t t583 = puma560_bounded(PUMA560_C(14.400553) * t514);
-    const puma560_real_t t584 = puma560_bounded(PUMA560_C(-24.79745) * t574);
-    const puma560_real_t t585 = puma560_bounded(PUMA560_C(12.352449) * (t96 + t160 * t514 - t97 * t574));
-    const puma560_real_t t586 = t59 * t96 + t160 * t523 - t97 * t576;
-    const puma560_real_t t587 = puma560_bounded(PUMA560_C(5.322548) * t586);
-    const puma560_real_t t588 = t513 * t584 - t501 * t583 - t521 * t585 + t537 * t587;
-    const puma560_real_t t589 = t96 * t539 + t160 * t542 - t97 * t579;
-    const puma560_real_t t590 = puma560_bounded(PUMA560_C(5.034610000000001) * t589);
-    const puma560_real_t t591 = t96 * t555 + t160 * t558 - t97 * t581;
-    const puma560_real_t t592 = PUMA560_C(5.368020000000001) * t591;
-    ddq_by_dq[12] = t588 + t553 * t590 + t571 * t592;
-    const puma560_real_t t593 = puma560_bounded(PUMA560_C(-14.400553) * t523);
-    const puma560_real_t t594 = puma560_bounded(PUMA560_C(24.79745) * t576);
-    const puma560_real_t t595 = puma560_bounded(PUMA560_C(-12.352449) * t586);
-    const puma560_real_t t596 = t58 - t151 * t523 + t98 * t576 - t59 * t586;
-    const puma560_real_t t597 = puma560_bounded(PUMA560_C(5.322548) * t596);
-    const puma560_real_t t598 = t513 * t594 - t501 * t593 - t521 * t595 + t537 * t597;
-    const puma560_real_t t599 = t22 * t58 - t151 * t542 + t98 * t579 - t59 * t589;
-    const puma560_real_t t600 = puma560_bounded(PUMA560_C(5.034610000000001) * t599);
-    const puma560_real_t t601 = t151 * t558 - t58 * t554 - t98 * t581 + t59 * t591;
-    const puma560_real_t t602 = PUMA560_C(-5.368020000000001) * t601;
-    ddq_by_dq[18] = t598 + t553 * t600 + t571 * t602;
-    const puma560_real_t t603 = puma560_bounded(PUMA560_C(-14.400553) * t542);
-    const puma560_real_t t604 = puma560_bounded(PUMA560_C(24.79745) * t579);
-    const puma560_real_t t605 = puma560_bounded(PUMA560_C(-12.352449) * t589);
-    const puma560_real_t t606 = puma560_bounded(PUMA560_C(5.322548) * t599);
-    const puma560_real_t t607 = t513 * t604 - t501 * t603 - t521 * t605 + t537 * t606;
-    const puma560_real_t t608 = t21 + t143 * t542 - t99 * t579 - t60 * t589;
-    const puma560_real_t t609 = puma560_bounded(PUMA560_C(5.034610000000001) * (t608 + t22 * t599));
-    const puma560_real_t t610 = t5 * t21 + t143 * t558 - t99 * t581 - t60 * t591;
-    const puma560_real_t t611 = t610 - t22 * t601;
-    const puma560_real_t t612 = PUMA560_C(5.368020000000001) * t611;
-    ddq_by_dq[24] = t607 + t553 * t609 + t571 * t612;
-    const puma560_real_t t613 = puma560_bounded(PUMA560_C(-14.400553) * t558);
-    const puma560_real_t t614 = puma560_bounded(PUMA560_C(24.79745) * t581);
-    const puma560_real_t t615 = puma560_bounded(PUMA560_C(-12.352449) * t591);
-    const puma560_real_t t616 = puma560_bounded(PUMA560_C(-5.322548) * t601);
-    const puma560_real_t t617 = t513 * t614 - t501 * t613 - t521 * t615 + t537 * t616;
-    const puma560_real_t t618 = puma560_bounded(PUMA560_C(5.034610000000001) * t611);
-    const puma560_real_t t619 = t4 + t134 * t558 - t100 * t581 - t61 * t591;
-    const puma560_real_t t620 = PUMA560_C(5.368020000000001) * (t619 - t30 * t601 + t5 * t611);
-    ddq_by_dq[30] = t617 + t553 * t618 + t571 * t620;
-    ddq_by_input[0] = t502;
-    ddq_by_input[6] = t572;
-    ddq_by_input[12] = t583;
-    ddq_by_input[18] = t593;
-    ddq_by_input[24] = t603;
-    ddq_by_input[30] = t613;
-    const puma560_real_t t621 = t364 + t365;
-    const puma560_real_t t622 = t372 * t375; /* link j3: motion */
-    const puma560_real_t t623 = t622 + t621;
-    const puma560_real_t t624 = t371 * t363;
-    const puma560_real_t t625 = t375 * t175;
-    const puma560_real_t t626 = t625 - t624;
-    const puma560_real_t t627 = t625 + t626;
-    const puma560_real_t t628 = t36 * t623 + t34 * t627;
-    const puma560_real_t t629 = t373 * t376; /* link j4: motion */
-    const puma560_real_t t630 = t628 - t629;
-    const puma560_real_t t631 = t368 + t630;
-    const puma560_real_t t632 = t377 * t382; /* link j5: motion */
-    const puma560_real_t t633 = t632 + t631;
-    const puma560_real_t t634 = t374 * t363;
-    const puma560_real_t t635 = t372 * t175; /* link j3: motion */
-    const puma560_real_t t636 = t635 + t634;
-    const puma560_real_t t637 = t366 + t636;
-    const puma560_real_t t638 = t373 * t378; /* link j4: motion */
-    const puma560_real_t t639 = t638 + t637;
-    const puma560_real_t t640 = t34 * t623 - t36 * t627;
-    const puma560_real_t t641 = t378 * t376;
-    const puma560_real_t t642 = t641 - t640;
-    const puma560_real_t t643 = t641 + t642;
-    const puma560_real_t t644 = t14 * t639 + t16 * t643;
-    const puma560_real_t t645 = t382 * t379; /* link j5: motion */
-    const puma560_real_t t646 = t645 - t644;
-    const puma560_real_t t647 = t645 + t646;
-    const puma560_real_t t648 = t1 * t633 + t2 * t647;
-    const puma560_real_t t649 = t380 * t383; /* link j6: motion */
-    const puma560_real_t t650 = t649 - t648;
-    const puma560_real_t t651 = t2 * t633 - t1 * t647;
-    const puma560_real_t t652 = t386 * t383;
-    const puma560_real_t t653 = t652 + t651;
-    const puma560_real_t t654 = t652 + t653;
-    const puma560_real_t t655 = t14 * t643 - t16 * t639;
-    const puma560_real_t t656 = t377 * t379; /* link j5: motion */
-    const puma560_real_t t657 = t656 + t655;
-    const puma560_real_t t658 = t370 - t657;
-    const puma560_real_t t659 = t386 * t380; /* link j6: motion */
-    const puma560_real_t t660 = t659 + t658;
-    const puma560_real_t t661 = parameters[XY6] * t654 - (t649 * t207 + parameters[XX6] * t650)
-        - parameters[XZ6] * t660;
-    const puma560_real_t t662 = t380 * t380;
-    const puma560_real_t t663 = t383 * t383;
-    const puma560_real_t t664 = t229 + t364;
-    const puma560_real_t t665 = t123 * t363;
-    const puma560_real_t t666 = t230 + (PUMA560_C(0.4318) * t664 - PUMA560_C(-0.1254) * t665);
-    const puma560_real_t t667 = t120 * t363;
-    const puma560_real_t t668 = t227 + (t226 + PUMA560_C(0.1254) * t667);
-    const puma560_real_t t669 = t82 * t668 - t79 * t666;
-    const puma560_real_t t670 = t375 * t375; /* link j3: motion */
-    const puma560_real_t t671 = t670 + t222; /* link j4: motion */
-    const puma560_real_t t672 = t669 + (PUMA560_C(0.0203) * t671 + PUMA560_C(0.4318) * t623);
-    const puma560_real_t t673 = t635 + t636;
-    const puma560_real_t t674 = t667 - t237;
-    const puma560_real_t t675 = t237 - t674;
-    const puma560_real_t t676 = t236 + PUMA560_C(-0.4318) * t675;
-    const puma560_real_t t677 = PUMA560_C(0.0203) * t673 - PUMA560_C(0.4318) * t627 - t676;
-    const puma560_real_t t678 = t36 * t672 - t34 * t677;
-    const puma560_real_t t679 = t79 * t668 + t82 * t666;
-    const puma560_real_t t680 = t621 - t622;
-    const puma560_real_t t681 = t372 * t372; /* link j3: motion */
-    const puma560_real_t t682 = t681 + t222; /* link j4: motion */
-    const puma560_real_t t683 = t679 + (PUMA560_C(-0.4318) * t682 + PUMA560_C(0.0203) * t680);
-    const puma560_real_t t684 = t14 * t678 + t16 * t683;
-    const puma560_real_t t685 = t16 * t678 - t14 * t683;
-    const puma560_real_t t686 = t34 * t672 + t36 * t677;
-    const puma560_real_t t687 = t1 * t685 + t2 * t686;
-    const puma560_real_t t688 = parameters[MZ6] * t687;
-    const puma560_real_t t689 = (t662 - t663) * parameters[YZ6] - t661 + (parameters[MY6] * t684 - t688);
-    const puma560_real_t t690 = t649 + t650;
-    const puma560_real_t t691 = t658 - t659;
-    const puma560_real_t t692 = parameters[YY6] * t653 - t652 * t250 - parameters[XY6] * t690
-        - parameters[YZ6] * t691;
-    const puma560_real_t t693 = t386 * t386; /* link j6: motion */
-    const puma560_real_t t694 = t1 * t686 - t2 * t685;
-    const puma560_real_t t695 = parameters[MZ6] * t694;
-    const puma560_real_t t696 = (t693 - t663) * parameters[XZ6] + t692 + (parameters[MX6] * t684 - t695);
-    const puma560_real_t t697 = t656 + t657;
-    const puma560_real_t t698 = t632 - t631;
-    const puma560_real_t t699 = parameters[XX5] * t646 - t645 * t257 + parameters[XY5] * t697
-        + parameters[XZ5] * t698;
-    const puma560_real_t t700 = t382 * t382; /* link j5: motion */
-    const puma560_real_t t701 = t379 * t379;
-    const puma560_real_t t702 = (t701 - t700) * parameters[YZ5] + t699 + (parameters[MY5] * t686
-        + parameters[MZ5] * t684);
-    const puma560_real_t t703 = t702 - (t2 * t689 + t1 * t696);
-    const puma560_real_t t704 = parameters[YZ6] * t651 - (t659 * t6 + parameters[ZZ6] * t658)
-        + parameters[XZ6] * t648;
-    const puma560_real_t t705 = (t662 - t693) * parameters[XY6] + t704 + (parameters[MY6] * t694
-        - parameters[MX6] * t687);
-    const puma560_real_t t706 = parameters[YY5] * t657 - t656 * t265 + parameters[XY5] * t647
-        - parameters[YZ5] * t633;
-    const puma560_real_t t707 = t377 * t377;
-    const puma560_real_t t708 = (t707 - t701) * parameters[XZ5] + t706 + (parameters[MZ5] * t685
-        - parameters[MX5] * t686);
-    const puma560_real_t t709 = t708 + t705;
-    const puma560_real_t t710 = t629 - t630;
-    const puma560_real_t t711 = t638 - t637;
-    const puma560_real_t t712 = t641 * t272 - parameters[XX4] * t642 - parameters[XY4] * t710
-        + parameters[XZ4] * t711;
-    const puma560_real_t t713 = t378 * t378; /* link j4: motion */
-    const puma560_real_t t714 = t376 * t376;
-    const puma560_real_t t715 = (t713 - t714) * parameters[YZ4] - t712 + (parameters[MY4] * t683
-        - parameters[MZ4] * t686);
-    const puma560_real_t t716 = t715 + (t14 * t709 - t16 * t703);
-    const puma560_real_t t717 = t632 * t280 + parameters[ZZ5] * t631 - parameters[YZ5] * t655
-        + parameters[XZ5] * t644;
-    const puma560_real_t t718 = (t707 - t700) * parameters[XY5] + t717 + (parameters[MX5] * t684
-        + parameters[MY5] * t685);
-    const puma560_real_t t719 = t629 * t284 + parameters[YY4] * t630 - parameters[XY4] * t643
-        - parameters[YZ4] * t639;
-    const puma560_real_t t720 = t373 * t373;
-    const puma560_real_t t721 = (t720 - t714) * parameters[XZ4] + t719 + (parameters[MZ4] * t678
-        + parameters[MX4] * t683);
-    const puma560_real_t t722 = t721 + (t718 + (t2 * t696 - t1 * t689));
-    const puma560_real_t t723 = parameters[MZ6] * t651;
-    const puma560_real_t t724 = parameters[M6] * t694;
-    const puma560_real_t t725 = (t662 + t663) * parameters[MX6] + parameters[MY6] * t691 + t723 - t724;
-    const puma560_real_t t726 = parameters[MZ6] * t648;
-    const puma560_real_t t727 = parameters[M6] * t687;
-    const puma560_real_t t728 = t727 + (parameters[MX6] * t660 - (t693 + t663) * parameters[MY6] + t726);
-    const puma560_real_t t729 = (t700 + t701) * parameters[MX5] + parameters[MY5] * t633
-        + parameters[MZ5] * t655;
-    const puma560_real_t t730 = parameters[M5] * t685 + t729 + (t2 * t725 + t1 * t728);
-    const puma560_real_t t731 = (t707 + t701) * parameters[MY5] + parameters[MX5] * t698
-        + parameters[MZ5] * t644;
-    const puma560_real_t t732 = t693 + t662; /* link j6: columns */
-    const puma560_real_t t733 = parameters[M6] * t684 + (parameters[MX6] * t654 + parameters[MY6] * t690
-        - t732 * parameters[MZ6]);
-    const puma560_real_t t734 = parameters[M5] * t684 - t731 + t733;
-    const puma560_real_t t735 = (t713 + t714) * parameters[MX4] + parameters[MY4] * t639
-        + parameters[MZ4] * t628;
-    const puma560_real_t t736 = parameters[M4] * t678 + t735 + (t16 * t730 + t14 * t734);
-    const puma560_real_t t737 = t707 + t700; /* link j6: motion */
-    const puma560_real_t t738 = parameters[MX5] * t697 - parameters[MY5] * t647 - t737 * parameters[MZ5]
-        - parameters[M5] * t686;
-    const puma560_real_t t739 = (t720 + t714) * parameters[MY4] + parameters[MX4] * t711
-        - parameters[MZ4] * t640;
-    const puma560_real_t t740 = t739 - parameters[M4] * t686 + (t738 + (t1 * t725 - t2 * t728));
-    const puma560_real_t t741 = t34 * t736 + t36 * t740;
-    const puma560_real_t t742 = t625 * t305 + parameters[XX3] * t626 + parameters[XY3] * t673
-        + parameters[XZ3] * t680;
-    const puma560_real_t t743 = parameters[MZ3] * t679 - parameters[MY3] * t676 - ((t670
-        - t222) * parameters[YZ3] + t742);
-    const puma560_real_t t744 = t743 - (t36 * t716 + t34 * t722 + PUMA560_C(0.4318) * t741);
-    const puma560_real_t t745 = parameters[YZ4] * t628 - (t638 * t310 + parameters[ZZ4] * t637)
-        + parameters[XZ4] * t640;
-    const puma560_real_t t746 = (t713 - t720) * parameters[XY4] + t745 - (parameters[MX4] * t686
-        + parameters[MY4] * t678);
-    const puma560_real_t t747 = t746 + (t14 * t703 + t16 * t709) + PUMA560_C(0.0203) * t741;
-    const puma560_real_t t748 = t635 * t314 - parameters[YY3] * t636 - parameters[XY3] * t627
-        - parameters[YZ3] * t623;
-    const puma560_real_t t749 = parameters[MZ3] * t669 + parameters[MX3] * t676 + ((t681
-        - t222) * parameters[XZ3] + t748);
-    const puma560_real_t t750 = t749 + t747;
-    const puma560_real_t t751 = parameters[M3] * t669 + (t671 * parameters[MX3] + parameters[MY3] * t623
-        - parameters[MZ3] * t634);
-    const puma560_real_t t752 = t751 + (t36 * t736 - t34 * t740);
-    const puma560_real_t t753 = t720 + t713; /* link j5: motion */
-    const puma560_real_t t754 = parameters[M4] * t683 - (t753 * parameters[MZ4] + (parameters[MX4] * t710
-        - parameters[MY4] * t643));
-    const puma560_real_t t755 = parameters[M3] * t679 - (t682 * parameters[MY3] - parameters[MX3] * t680
-        - parameters[MZ3] * t624);
-    const puma560_real_t t756 = t755 + (t754 - (t14 * t730 - t16 * t734));
-    const puma560_real_t t757 = t681 + t670; /* link j4: motion */
-    const puma560_real_t t758 = parameters[M3] * t676 + (parameters[MY3] * t627 - parameters[MX3] * t673
-        - t757 * parameters[MZ3]);
-    const puma560_real_t t759 = PUMA560_C(0.1254) * (t82 * t752 + t79 * t756) + PUMA560_C(0.4318) * (t758
-        + t741);
-    const puma560_real_t t760 = t324 + t665;
-    const puma560_real_t t761 = t332 + parameters[YY2] * t674 + parameters[XY2] * (t324 + t760)
-        + parameters[YZ2] * (t229 - t364);
-    const puma560_real_t t762 = t335 + (t334 + t761) + (t79 * t744 + t82 * t750 + t759);
-    const puma560_real_t t763 = PUMA560_C(-2.0) * t171; /* link j2: derivatives */
-    const puma560_real_t t764 = PUMA560_C(2.0) * t170;
-    const puma560_real_t t765 = t235 * t162 + (t122 * t665 - t118 * t667) - (t490 * t763 + t496 * t764);
-    const puma560_real_t t766 = t484 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t767 = t79 * t750 - t82 * t744 + PUMA560_C(0.1254) * (t79 * t752 - t82 * t756);
-    const puma560_real_t t768 = t325 - parameters[XX2] * t760 + parameters[XY2] * t675
-        + parameters[XZ2] * t664;
-    const puma560_real_t t769 = t235 * t163 + (t119 * t665 - t122 * t667) - (t499 * t763 + t492 * t764);
-    const puma560_real_t t770 = t327 + t768 - t328 + t767 + (t769 - t230 * t766);
-    const puma560_real_t t771 = t123 * (t762 + (t227 * t766 + t765)) + t120 * t770;
-    const puma560_real_t t772 = PUMA560_C(0.06944177768728742) * t771;
-    const puma560_real_t t773 = t171 * t510 - t170 * t512 + (t235 * t104 + (t163 * t665 - t162 * t667));
-    const puma560_real_t t774 = t227 * (t161 - parameters[MX2]) - t230 * (t121 - parameters[MY2]) + t773;
-    const puma560_real_t t775 = PUMA560_C(0.04032672714331514) * t774;
-    const puma560_real_t t776 = t171 * t519 + t170 * t520 + (t157 * t665 - t156 * t667 - t235 * t94);
-    const puma560_real_t t777 = PUMA560_C(0.08095560645504385) * (t227 * t93 - t230 * t121 + t776);
-    const puma560_real_t t778 = t171 * t534 + t170 * t536 + (t149 * t665 - t147 * t667 - t235 * t81);
-    const puma560_real_t t779 = PUMA560_C(0.18787994020908783) * (t230 * t148 + t227 * t80 + t778);
-    const puma560_real_t t780 = t504 * t775 - t502 * t772 - t515 * t777 + t524 * t779;
-    const puma560_real_t t781 = t171 * t551 + t170 * t552 + (t235 * t86 + (t139 * t667 - t141 * t665));
-    const puma560_real_t t782 = PUMA560_C(0.19862511694053758) * (t227 * t85 - t230 * t140 + t781);
-    const puma560_real_t t783 = t171 * t569 + t170 * t570 + (t235 * t84 + (t132 * t667 - t131 * t665));
-    const puma560_real_t t784 = PUMA560_C(0.1862884266452062) * (t227 * t83 - t230 * t130 + t783);
-    ddq_by_q[1] = t780 + t543 * t782 + t559 * t784;
-    const puma560_real_t t785 = t573 * t775 - t572 * t772 - t575 * t777 + t577 * t779;
-    ddq_by_q[7] = t785 + t580 * t782 + t582 * t784;
-    const puma560_real_t t786 = t584 * t775 - t583 * t772 - t585 * t777 + t587 * t779;
-    ddq_by_q[13] = t786 + t590 * t782 + t592 * t784;
-    const puma560_real_t t787 = t594 * t775 - t593 * t772 - t595 * t777 + t597 * t779;
-    ddq_by_q[19] = t787 + t600 * t782 + t602 * t784;
-    const puma560_real_t t788 = t604 * t775 - t603 * t772 - t605 * t777 + t606 * t779;
-    ddq_by_q[25] = t788 + t609 * t782 + t612 * t784;
-    const puma560_real_t t789 = t614 * t775 - t613 * t772 - t615 * t777 + t616 * t779;
-    ddq_by_q[31] = t789 + t618 * t782 + t620 * t784;
-    const puma560_real_t t790 = parameters[ZZ3] + t463;
+    const puma560_real_t t880 = t34 * t823 - t32 * t825 + (PUMA560_C(0.4318) * t866 + t88 * t868);
+    const puma560_real_t t881 = PUMA560_C(-0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const puma560_real_t t882 = parameters[YY3] + t881;
+    const puma560_real_t t883 = t374 * parameters[YZ3] - t174 * t882 + t880;
+    const puma560_real_t t884 = PUMA560_C(2.0) * t372; /* link j3: derivatives */
+    const puma560_real_t t885 = t883 * t884 - t878 * t879 + (t863 * t149 + (t105 * t391 + t108 * t377));
+    const puma560_real_t t886 = t862 + (t885 + t111 * t431);
+    const puma560_real_t t887 = t378 * t304 + parameters[XX3] * t379 + parameters[XY3] * t435
+        + parameters[XZ3] * t442;
+    const puma560_real_t t888 = parameters[MZ3] * t441 - parameters[MY3] * t438 - ((t432
+        - t221) * parameters[YZ3] + t887);
+    const puma560_real_t t889 = t888 - (t34 * t770 + t32 * t751 + PUMA560_C(0.4318) * t858);
     /* link j4: inertia, momentum beyond */
-    const puma560_real_t t791 = t375 * t790 - t175 * parameters[YZ3] + (t505 - t426 - t45 * t443);
-    const puma560_real_t t792 = t175 * parameters[XZ3] + t372 * t790 + (t34 * t466 + t36 * t467 - t45 * t449);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t793 = t82 * t791 - t79 * t792 + (PUMA560_C(0.1254) * t475 - t484 * t477);
-    const puma560_real_t t794 = parameters[ZZ2] + t494;
-    /* link j2: derivatives */
-    const puma560_real_t t795 = PUMA560_C(2.0) * (t793 - (dq[1] * parameters[YZ2] + t171 * t794))
-        + (t118 * t763 + t122 * t764);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t796 = t79 * t791 + t82 * t792 + (PUMA560_C(-0.1254) * t497 - t484 * t482);
-    /* link j2: derivatives */
-    const puma560_real_t t797 = PUMA560_C(2.0) * (dq[1] * parameters[XZ2] + t170 * t794 + t796) + (t122 * t763
-        + t119 * t764);
-    const puma560_real_t t798 = PUMA560_C(0.06944177768728742) * (t123 * t795 + t120 * t797);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t799 = t452 + t456 + (t451 + (t416 - t432 - t448));
-    /* link j2: derivatives */
-    const puma560_real_t t800 = PUMA560_C(2.0) * (t491 - t488 + (t487 + (t799 - (t481 + t486))));
-    const puma560_real_t t801 = PUMA560_C(0.04032672714331514) * (t800 + PUMA560_C(2.0) * (t170 * t163
-        - t171 * t162));
-    const puma560_real_t t802 = PUMA560_C(-468.7608695652174) * parameters[FV2] + t801;
-    const puma560_real_t t803 = PUMA560_C(2.0) * t799; /* link j3: derivatives */
-    const puma560_real_t t804 = t803 + (t93 * t535 - t121 * t533) + PUMA560_C(2.0) * (t170 * t157
-        - t171 * t156);
-    const puma560_real_t t805 = PUMA560_C(0.08095560645504385) * t804;
-    const puma560_real_t t806 = t45 * t527 - (t34 * t525 + t36 * t526); /* link j4: derivatives */
-    const puma560_real_t t807 = t806 + (t80 * t535 + t148 * t533) + PUMA560_C(2.0) * (t170 * t149
-        - t171 * t147);
-    const puma560_real_t t808 = PUMA560_C(0.18787994020908783) * t807;
-    const puma560_real_t t809 = t802 * t504 - t798 * t502 - t805 * t515 + t808 * t524;
+    const puma560_real_t t890 = t34 * t793 - t32 * t794 - (PUMA560_C(-0.0203) * t779 - t86 * t873);
+    const puma560_real_t t891 = parameters[XX3] + t881;
+    const puma560_real_t t892 = t174 * t891 + t372 * parameters[XZ3] - t890;
+    const puma560_real_t t893 = t372 * parameters[YZ3];
+    const puma560_real_t t894 = t877 + t893 - (t875 + (t832 - (t870 + t874)));
+    const puma560_real_t t895 = t892 * t879 + t894 * t884 + (t863 * t150 + (t108 * t391 + t106 * t377));
+    const puma560_real_t t896 = t889 - (t895 - t111 * t441);
+    const puma560_real_t t897 = parameters[M4] * t445 - (t753 * parameters[MZ4] + (parameters[MX4] * t766
+        - parameters[MY4] * t401));
+    const puma560_real_t t898 = parameters[M3] * t441 - (t444 * parameters[MY3] - parameters[MX3] * t442
+        - parameters[MZ3] * t377);
+    const puma560_real_t t899 = t898 + (t897 - (t13 * t673 - t15 * t668));
+    const puma560_real_t t900 = t32 * t798 + t34 * t797;
+    const puma560_real_t t901 = t372 * parameters[MY3] + t374 * parameters[MX3] - (t900 + t67 * t871);
+    const puma560_real_t t902 = t901 * t884 - t98 * t441 - (t863 * t89 - t111 * t377);
+    const puma560_real_t t903 = t899 + t902;
+    const puma560_real_t t904 = parameters[M3] * t431 + (t433 * parameters[MX3] + parameters[MY3] * t376
+        - parameters[MZ3] * t391);
+    const puma560_real_t t905 = t904 + (t34 * t778 - t32 * t784);
+    const puma560_real_t t906 = t901 * t879 + t98 * t431 + (t863 * t87 + t111 * t391);
+    const puma560_real_t t907 = t905 - t906;
+    const puma560_real_t t908 = t76 * t903 + t79 * t907;
+    const puma560_real_t t909 = t119 * (t79 * t886 + t76 * t896 + PUMA560_C(0.1254) * t908);
+    const puma560_real_t t910 = t174 * parameters[MY3] - t374 * parameters[MZ3] + (t866 + t67 * t868);
+    const puma560_real_t t911 = t174 * parameters[MX3] + t372 * parameters[MZ3] - (t67 * t873 - t779);
+    const puma560_real_t t912 = t911 * t879 + t910 * t884 + (t89 * t391 + t87 * t377);
+    const puma560_real_t t913 = PUMA560_C(0.1254) * (t76 * t907 - t79 * t903) + PUMA560_C(-0.4318) * t912;
+    const puma560_real_t t914 = t909 + t116 * (t76 * t886 - t79 * t896 + t913);
+    const puma560_real_t t915 = PUMA560_C(0.06944177768728742) * t914;
+    const puma560_real_t t916 = t87 * t431 + t89 * t441;
+    const puma560_real_t t917 = t863 * t73 + (t149 * t391 + t150 * t377);
+    const puma560_real_t t918 = t32 * t864;
+    const puma560_real_t t919 = t372 * parameters[XY3] + t374 * t891 + (t772 - t918
+        - (PUMA560_C(-0.0203) * t900 + t86 * t871));
+    const puma560_real_t t920 = t32 * t823 + t34 * t825 + (PUMA560_C(0.4318) * t900 + t88 * t871);
+    const puma560_real_t t921 = t372 * t882 + t374 * parameters[XY3] + t920;
+    const puma560_real_t t922 = t919 * t879 + t921 * t884 + t917 + t916 + PUMA560_C(0.4318) * t908;
+    const puma560_real_t t923 = PUMA560_C(0.04032672714331514) * t922;
+    const puma560_real_t t924 = PUMA560_C(2.0) * t919; /* link j3: derivatives */
+    const puma560_real_t t925 = PUMA560_C(2.0) * t921;
+    const puma560_real_t t926 = PUMA560_C(0.08095560645504385) * (t916 + (t374 * t924 + t372 * t925 + t917));
+    const puma560_real_t t927 = PUMA560_C(-0.0406) * t174; /* link j6: derivatives */
+    const puma560_real_t t928 = t34 * t807 - t32 * t808 + t65 * t927; /* link j4: derivatives */
+    const puma560_real_t t929 = PUMA560_C(2.0) * t871; /* link j6: derivatives */
+    const puma560_real_t t930 = PUMA560_C(-0.8636) * t174;
+    const puma560_real_t t931 = t833 + (t43 * t929 + t65 * t930); /* link j4: derivatives */
+    const puma560_real_t t932 = t374 * t928 + t372 * t931 - (t863 * t44 + (t141 * t391 + t142 * t377));
+    const puma560_real_t t933 = PUMA560_C(0.18787994020908783) * (t932 + t43 * t441);
+    const puma560_real_t t934 = t514 * t923 - t510 * t915 - t517 * t926 + t521 * t933;
     /* link j5: derivatives */
-    const puma560_real_t t810 = t36 * t547 - t34 * t546 + (t43 * t531 + t54 * t527);
-    const puma560_real_t t811 = t810 + (t85 * t535 - t140 * t533) + PUMA560_C(2.0) * (t171 * t139
-        - t170 * t141);
-    const puma560_real_t t812 = PUMA560_C(0.19862511694053758) * t811;
+    const puma560_real_t t935 = t34 * t811 + t32 * t714 - (t41 * t929 - t131 * t927);
+    const puma560_real_t t936 = t847 + (t52 * t929 + t131 * t930);
+    const puma560_real_t t937 = t374 * t935 + t372 * t936 + (t863 * t53 - (t133 * t391 + t134 * t377));
+    const puma560_real_t t938 = PUMA560_C(0.19862511694053758) * (t937 + (t52 * t441 + t41 * t431));
     /* link j6: derivatives */
-    const puma560_real_t t813 = t36 * t565 - t34 * t564 + (t50 * t531 - t49 * t527);
-    const puma560_real_t t814 = t813 + (t83 * t535 - t130 * t533) + PUMA560_C(2.0) * (t171 * t132
-        - t170 * t131);
-    const puma560_real_t t815 = PUMA560_C(0.1862884266452062) * t814;
-    ddq_by_dq[1] = t809 + t812 * t543 + t815 * t559;
-    const puma560_real_t t816 = t802 * t573 - t798 * t572 - t805 * t575 + t808 * t577;
-    ddq_by_dq[7] = t816 + t812 * t580 + t815 * t582;
-    const puma560_real_t t817 = t802 * t584 - t798 * t583 - t805 * t585 + t808 * t587;
-    ddq_by_dq[13] = t817 + t812 * t590 + t815 * t592;
-    const puma560_real_t t818 = t802 * t594 - t798 * t593 - t805 * t595 + t808 * t597;
-    ddq_by_dq[19] = t818 + t812 * t600 + t815 * t602;
-    const puma560_real_t t819 = t802 * t604 - t798 * t603 - t805 * t605 + t808 * t606;
-    ddq_by_dq[25] = t819 + t812 * t609 + t815 * t612;
-    const puma560_real_t t820 = t802 * t614 - t798 * t613 - t805 * t615 + t808 * t616;
-    ddq_by_dq[31] = t820 + t812 * t618 + t815 * t620;
-    ddq_by_input[1] = t504;
-    ddq_by_input[7] = t573;
-    ddq_by_input[13] = t584;
-    ddq_by_input[19] = t594;
-    ddq_by_input[25] = t604;
-    ddq_by_input[31] = t614;
-    const puma560_real_t t821 = PUMA560_C(2.0) * t375; /* link j3: derivatives */
-    const puma560_real_t t822 = PUMA560_C(2.0) * t372;
-    const puma560_real_t t823 = t465 * t822 - t454 * t821 + (t757 * t153 + (t109 * t634 + t112 * t624));
-    const puma560_real_t t824 = t750 + (t823 + t115 * t669);
-    const puma560_real_t t825 = t470 * t821 + t457 * t822 + (t757 * t154 + (t112 * t634 + t110 * t624));
-    const puma560_real_t t826 = t744 - (t825 - t115 * t679);
-    const puma560_real_t t827 = t480 * t822 - t101 * t679 - (t757 * t92 - t115 * t624);
-    const puma560_real_t t828 = t756 + t827;
-    const puma560_real_t t829 = t480 * t821 + t101 * t669 + (t757 * t90 + t115 * t634);
-    const puma560_real_t t830 = t752 - t829;
-    const puma560_real_t t831 = t79 * t828 + t82 * t830;
-    const puma560_real_t t832 = t123 * (t82 * t824 + t79 * t826 + PUMA560_C(0.1254) * t831);
-    const puma560_real_t t833 = t474 * t821 + t473 * t822 + (t92 * t634 + t90 * t624);
-    const puma560_real_t t834 = PUMA560_C(0.1254) * (t79 * t830 - t82 * t828) + PUMA560_C(-0.4318) * t833;
-    const puma560_real_t t835 = t832 + t120 * (t79 * t824 - t82 * t826 + t834);
-    const puma560_real_t t836 = PUMA560_C(0.06944177768728742) * t835;
-    const puma560_real_t t837 = t90 * t669 + t92 * t679;
-    const puma560_real_t t838 = t757 * t75 + (t153 * t634 + t154 * t624);
-    const puma560_real_t t839 = t506 * t821 + t508 * t822 + t838 + t837 + PUMA560_C(0.4318) * t831;
-    const puma560_real_t t840 = PUMA560_C(0.04032672714331514) * t839;
-    const puma560_real_t t841 = PUMA560_C(0.08095560645504385) * (t837 + (t375 * t516 + t372 * t517 + t838));
-    const puma560_real_t t842 = t375 * t528 + t372 * t532 - (t757 * t46 + (t145 * t634 + t146 * t624));
-    const puma560_real_t t843 = PUMA560_C(0.18787994020908783) * (t842 + t45 * t679);
-    const puma560_real_t t844 = t504 * t840 - t502 * t836 - t515 * t841 + t524 * t843;
-    const puma560_real_t t845 = t375 * t548 + t372 * t550 + (t757 * t55 - (t137 * t634 + t138 * t624));
-    const puma560_real_t t846 = PUMA560_C(0.19862511694053758) * (t845 + (t54 * t679 + t43 * t669));
-    const puma560_real_t t847 = t375 * t566 + t372 * t568 + (t757 * t51 + (t129 * t624 - t128 * t634));
-    const puma560_real_t t848 = PUMA560_C(0.1862884266452062) * (t847 + (t50 * t669 - t49 * t679));
-    ddq_by_q[2] = t844 + t543 * t846 + t559 * t848;
-    const puma560_real_t t849 = t573 * t840 - t572 * t836 - t575 * t841 + t577 * t843;
-    ddq_by_q[8] = t849 + t580 * t846 + t582 * t848;
-    const puma560_real_t t850 = t584 * t840 - t583 * t836 - t585 * t841 + t587 * t843;
-    ddq_by_q[14] = t850 + t590 * t846 + t592 * t848;
-    const puma560_real_t t851 = t594 * t840 - t593 * t836 - t595 * t841 + t597 * t843;
-    ddq_by_q[20] = t851 + t600 * t846 + t602 * t848;
-    const puma560_real_t t852 = t604 * t840 - t603 * t836 - t605 * t841 + t606 * t843;
-    ddq_by_q[26] = t852 + t609 * t846 + t612 * t848;
-    const puma560_real_t t853 = t614 * t840 - t613 * t836 - t615 * t841 + t616 * t843;
-    ddq_by_q[32] = t853 + t618 * t846 + t620 * t848;
-    const puma560_real_t t854 = PUMA560_C(2.0) * t791 + (t109 * t821 + t112 * t822);
-    const puma560_real_t t855 = PUMA560_C(2.0) * t792 + (t112 * t821 + t110 * t822);
-    const puma560_real_t t856 = PUMA560_C(2.0) * t473 - t115 * t821;
-    const puma560_real_t t857 = PUMA560_C(2.0) * t474 + t115 * t822;
-    const puma560_real_t t858 = t79 * t857 + t82 * t856;
-    const puma560_real_t t859 = t123 * (t82 * t854 - t79 * t855 + PUMA560_C(0.1254) * t858);
-    const puma560_real_t t860 = PUMA560_C(0.1254) * (t79 * t856 - t82 * t857)
-        + PUMA560_C(-0.4318) * (t92 * t821 + t90 * t822);
-    const puma560_real_t t861 = t859 + t120 * (t79 * t854 + t82 * t855 + t860);
-    const puma560_real_t t862 = PUMA560_C(0.06944177768728742) * t861;
-    const puma560_real_t t863 = t803 + (t153 * t821 + t154 * t822) + PUMA560_C(0.4318) * t858;
-    const puma560_real_t t864 = PUMA560_C(0.04032672714331514) * t863;
-    const puma560_real_t t865 = PUMA560_C(0.08095560645504385) * (t803 + PUMA560_C(2.0) * (t375 * t153
-        + t372 * t154));
-    const puma560_real_t t866 = PUMA560_C(-233.50565217391303) * parameters[FV3] + t865;
-    const puma560_real_t t867 = PUMA560_C(0.18787994020908783) * (t806 + PUMA560_C(-2.0) * (t375 * t145
-        + t372 * t146));
-    const puma560_real_t t868 = t864 * t504 - t862 * t502 - t866 * t515 + t867 * t524;
-    const puma560_real_t t869 = PUMA560_C(0.19862511694053758) * (t810 + PUMA560_C(-2.0) * (t375 * t137
-        + t372 * t138));
-    const puma560_real_t t870 = PUMA560_C(0.1862884266452062) * (t813 + PUMA560_C(2.0) * (t372 * t129
-        - t375 * t128));
-    ddq_by_dq[2] = t868 + t869 * t543 + t870 * t559;
-    const puma560_real_t t871 = t864 * t573 - t862 * t572 - t866 * t575 + t867 * t577;
-    ddq_by_dq[8] = t871 + t869 * t580 + t870 * t582;
-    const puma560_real_t t872 = t864 * t584 - t862 * t583 - t866 * t585 + t867 * t587;
-    ddq_by_dq[14] = t872 + t869 * t590 + t870 * t592;
-    const puma560_real_t t873 = t864 * t594 - t862 * t593 - t866 * t595 + t867 * t597;
-    ddq_by_dq[20] = t873 + t869 * t600 + t870 * t602;
-    const puma560_real_t t874 = t864 * t604 - t862 * t603 - t866 * t605 + t867 * t606;
-    ddq_by_dq[26] = t874 + t869 * t609 + t870 * t612;
-    const puma560_real_t t875 = t864 * t614 - t862 * t613 - t866 * t615 + t867 * t616;
-    ddq_by_dq[32] = t875 + t869 * t618 + t870 * t620;
-    ddq_by_input[2] = t515;
-    ddq_by_input[8] = t575;
-    ddq_by_input[14] = t585;
-    ddq_by_input[20] = t595;
-    ddq_by_input[26] = t605;
-    ddq_by_input[32] = t615;
-    const puma560_real_t t876 = PUMA560_C(2.0) * t378; /* link j4: derivatives */
-    const puma560_real_t t877 = PUMA560_C(2.0) * t373;
-    const puma560_real_t t878 = t426 * t877 - t416 * t876 + (t64 * t640 - t62 * t628 - t753 * t33);
-    const puma560_real_t t879 = t722 + (t878 - t72 * t678);
-    const puma560_real_t t880 = t430 * t876 + t419 * t877 - (t64 * t628 - t63 * t640 - t753 * t35);
-    const puma560_real_t t881 = t716 + (t880 + t72 * t686);
-    const puma560_real_t t882 = t445 * t876 - t69 * t678 + (t753 * t44 - t72 * t628);
-    const puma560_real_t t883 = t736 + t882;
-    const puma560_real_t t884 = t445 * t877 + t69 * t686 + (t753 * t39 + t72 * t640);
-    const puma560_real_t t885 = t740 + t884;
-    const puma560_real_t t886 = t36 * t883 - t34 * t885;
-    const puma560_real_t t887 = PUMA560_C(0.4318) * t886;
-    const puma560_real_t t888 = t36 * t879 - t34 * t881 + t887;
-    const puma560_real_t t889 = t39 * t686 - t44 * t678;
-    const puma560_real_t t890 = t753 * t28 + (t33 * t628 + t35 * t640);
-    const puma560_real_t t891 = t466 * t876 + t467 * t877 + t890 + t889 + PUMA560_C(0.0203) * t886;
-    const puma560_real_t t892 = t36 * t885 + t34 * t883;
-    const puma560_real_t t893 = t440 * t876 - t438 * t877 + (t39 * t628 + t44 * t640);
-    const puma560_real_t t894 = t79 * t888 - t82 * t891 + (PUMA560_C(0.1254) * (t82 * t892 + t79 * t893)
-        - t887);
-    const puma560_real_t t895 = t82 * t893 - t79 * t892;
-    const puma560_real_t t896 = t123 * (t82 * t888 + t79 * t891 + PUMA560_C(0.1254) * t895);
-    const puma560_real_t t897 = PUMA560_C(0.06944177768728742) * (t896 + t120 * t894);
-    const puma560_real_t t898 = t34 * t879 + t36 * t881 + (PUMA560_C(0.0203) * t893
-        + PUMA560_C(0.4318) * t892);
-    const puma560_real_t t899 = PUMA560_C(0.04032672714331514) * (t898 + PUMA560_C(0.4318) * t895);
-    const puma560_real_t t900 = PUMA560_C(0.08095560645504385) * t898;
-    const puma560_real_t t901 = PUMA560_C(0.18787994020908783) * (t889 + (t378 * t525 + t373 * t526 + t890));
-    const puma560_real_t t902 = t504 * t899 - t502 * t897 - t515 * t900 + t524 * t901;
-    const puma560_real_t t903 = t378 * t546 - t373 * t547 + (t753 * t17 + (t9 * t640 - t52 * t628));
-    const puma560_real_t t904 = PUMA560_C(0.19862511694053758) * (t903 + t53 * t686);
-    const puma560_real_t t905 = t378 * t564 - t373 * t565 - (t753 * t19 + (t47 * t628 + t3 * t640));
-    const puma560_real_t t906 = PUMA560_C(0.1862884266452062) * (t905 + (t48 * t686 + t40 * t678));
-    ddq_by_q[3] = t902 + t543 * t904 + t559 * t906;
-    const puma560_real_t t907 = t573 * t899 - t572 * t897 - t575 * t900 + t577 * t901;
-    ddq_by_q[9] = t907 + t580 * t904 + t582 * t906;
-    const puma560_real_t t908 = t584 * t899 - t583 * t897 - t585 * t900 + t587 * t901;
-    ddq_by_q[15] = t908 + t590 * t904 + t592 * t906;
-    const puma560_real_t t909 = t594 * t899 - t593 * t897 - t595 * t900 + t597 * t901;
-    ddq_by_q[21] = t909 + t600 * t904 + t602 * t906;
-    const puma560_real_t t910 = t604 * t899 - t603 * t897 - t605 * t900 + t606 * t901;
-    ddq_by_q[27] = t910 + t609 * t904 + t612 * t906;
-    const puma560_real_t t911 = t614 * t899 - t613 * t897 - t615 * t900 + t616 * t901;
-    ddq_by_q[33] = t911 + t618 * t904 + t620 * t906;
-    const puma560_real_t t912 = PUMA560_C(2.0) * t460 + (t62 * t876 + t64 * t877);
-    const puma560_real_t t913 = PUMA560_C(2.0) * t461 + (t64 * t876 + t63 * t877);
-    const puma560_real_t t914 = PUMA560_C(2.0) * t440 + t72 * t877;
-    const puma560_real_t t915 = PUMA560_C(2.0) * t438 + t72 * t876;
-    const puma560_real_t t916 = t36 * t915 - t34 * t914;
-    const puma560_real_t t917 = PUMA560_C(0.4318) * t916;
-    const puma560_real_t t918 = t36 * t912 - t34 * t913 + t917;
-    const puma560_real_t t919 = t529 - (t33 * t876 - t35 * t877) + PUMA560_C(0.0203) * t916;
-    const puma560_real_t t920 = t36 * t914 + t34 * t915;
-    const puma560_real_t t921 = t44 * t877 - t39 * t876;
-    const puma560_real_t t922 = t82 * t921 - t79 * t920;
-    const puma560_real_t t923 = t123 * (t82 * t918 + t79 * t919 + PUMA560_C(0.1254) * t922);
-    const puma560_real_t t924 = t79 * t918 - t82 * t919 + (PUMA560_C(0.1254) * (t82 * t920 + t79 * t921)
-        - t917);
-    const puma560_real_t t925 = PUMA560_C(0.06944177768728742) * (t923 + t120 * t924);
-    const puma560_real_t t926 = t34 * t912 + t36 * t913 + (PUMA560_C(0.0203) * t921
-        + PUMA560_C(0.4318) * t920);
-    const puma560_real_t t927 = PUMA560_C(0.04032672714331514) * (t926 + PUMA560_C(0.4318) * t922);
-    const puma560_real_t t928 = PUMA560_C(0.08095560645504385) * t926;
-    const puma560_real_t t929 = PUMA560_C(0.18787994020908783) * (t529 + PUMA560_C(2.0) * (t373 * t35
-        - t378 * t33));
-    const puma560_real_t t930 = PUMA560_C(-1086.2342857142855) * parameters[FV4] + t929;
-    const puma560_real_t t931 = t927 * t504 - t925 * t502 - t928 * t515 + t930 * t524;
-    const puma560_real_t t932 = PUMA560_C(0.19862511694053758) * (t549 + PUMA560_C(2.0) * (t378 * t52
-        + t373 * t9));
-    const puma560_real_t t933 = PUMA560_C(0.1862884266452062) * (t567 + PUMA560_C(2.0) * (t378 * t47
-        - t373 * t3));
-    ddq_by_dq[3] = t931 + t932 * t543 + t933 * t559;
-    const puma560_real_t t934 = t927 * t573 - t925 * t572 - t928 * t575 + t930 * t577;
-    ddq_by_dq[9] = t934 + t932 * t580 + t933 * t582;
-    const puma560_real_t t935 = t927 * t584 - t925 * t583 - t928 * t585 + t930 * t587;
-    ddq_by_dq[15] = t935 + t932 * t590 + t933 * t592;
-    const puma560_real_t t936 = t927 * t594 - t925 * t593 - t928 * t595 + t930 * t597;
-    ddq_by_dq[21] = t936 + t932 * t600 + t933 * t602;
-    const puma560_real_t t937 = t927 * t604 - t925 * t603 - t928 * t605 + t930 * t606;
-    ddq_by_dq[27] = t937 + t932 * t609 + t933 * t612;
-    const puma560_real_t t938 = t927 * t614 - t925 * t613 - t928 * t615 + t930 * t616;
-    ddq_by_dq[33] = t938 + t932 * t618 + t933 * t620;
-    ddq_by_input[3] = t524;
-    ddq_by_input[9] = t577;
-    ddq_by_input[15] = t587;
-    ddq_by_input[21] = t597;
-    ddq_by_input[27] = t606;
-    ddq_by_input[33] = t616;
-    const puma560_real_t t939 = PUMA560_C(2.0) * t382; /* link j5: derivatives */
-    const puma560_real_t t940 = PUMA560_C(-2.0) * t377;
-    const puma560_real_t t941 = t411 * t939 - t401 * t940 + (t737 * t15 + (t24 * t644 - t25 * t655));
-    const puma560_real_t t942 = t703 + (t941 + t38 * t684);
-    const puma560_real_t t943 = t398 * t939 - t407 * t940 + (t737 * t13 + (t25 * t644 - t23 * t655));
-    const puma560_real_t t944 = t709 + (t943 + t38 * t685);
-    const puma560_real_t t945 = t16 * t944 + t14 * t942;
-    const puma560_real_t t946 = t42 * t684 - t41 * t685;
-    const puma560_real_t t947 = t737 * t9 + (t15 * t644 - t13 * t655);
-    const puma560_real_t t948 = t427 * t939 - t428 * t940 + t947 + t946;
-    const puma560_real_t t949 = t439 * t940 - t68 * t684 - (t737 * t42 + t38 * t644);
-    const puma560_real_t t950 = t734 + t949;
-    const puma560_real_t t951 = t439 * t939 - t68 * t685 + (t737 * t41 + t38 * t655);
-    const puma560_real_t t952 = t730 + t951;
-    const puma560_real_t t953 = t14 * t952 - t16 * t950;
-    const puma560_real_t t954 = t437 * t939 - t435 * t940 + (t41 * t644 - t42 * t655);
-    const puma560_real_t t955 = t36 * t954 - t34 * t953;
-    const puma560_real_t t956 = PUMA560_C(0.4318) * t955;
-    const puma560_real_t t957 = t36 * t945 - t34 * t948 + t956;
-    const puma560_real_t t958 = t16 * t942 - t14 * t944;
-    const puma560_real_t t959 = t958 + PUMA560_C(0.0203) * t955;
-    const puma560_real_t t960 = t36 * t953 + t34 * t954;
-    const puma560_real_t t961 = t14 * t950 + t16 * t952;
-    const puma560_real_t t962 = t82 * t961 - t79 * t960;
-    const puma560_real_t t963 = t123 * (t82 * t957 + t79 * t959 + PUMA560_C(0.1254) * t962);
-    const puma560_real_t t964 = t79 * t957 - t82 * t959 + (PUMA560_C(0.1254) * (t82 * t960 + t79 * t961)
-        - t956);
-    const puma560_real_t t965 = PUMA560_C(0.06944177768728742) * (t963 + t120 * t964);
-    const puma560_real_t t966 = t34 * t945 + t36 * t948 + (PUMA560_C(0.0203) * t961
-        + PUMA560_C(0.4318) * t960);
-    const puma560_real_t t967 = PUMA560_C(0.04032672714331514) * (t966 + PUMA560_C(0.4318) * t962);
-    const puma560_real_t t968 = PUMA560_C(0.08095560645504385) * t966;
-    const puma560_real_t t969 = PUMA560_C(0.18787994020908783) * t958;
-    const puma560_real_t t970 = t504 * t967 - t502 * t965 - t515 * t968 + t524 * t969;
-    const puma560_real_t t971 = PUMA560_C(0.19862511694053758) * (t946 + (t382 * t544 + t377 * t545 + t947));
-    const puma560_real_t t972 = t382 * t562 + t377 * t563 + (parameters[ZZ6] * t644 - t18 * t655 - t737 * t3);
-    const puma560_real_t t973 = PUMA560_C(0.1862884266452062) * (t972 + t37 * t684);
-    ddq_by_q[4] = t970 + t543 * t971 + t559 * t973;
-    const puma560_real_t t974 = t573 * t967 - t572 * t965 - t575 * t968 + t577 * t969;
-    ddq_by_q[10] = t974 + t580 * t971 + t582 * t973;
-    const puma560_real_t t975 = t584 * t967 - t583 * t965 - t585 * t968 + t587 * t969;
-    ddq_by_q[16] = t975 + t590 * t971 + t592 * t973;
-    const puma560_real_t t976 = t594 * t967 - t593 * t965 - t595 * t968 + t597 * t969;
-    ddq_by_q[22] = t976 + t600 * t971 + t602 * t973;
-    const puma560_real_t t977 = t604 * t967 - t603 * t965 - t605 * t968 + t606 * t969;
-    ddq_by_q[28] = t977 + t609 * t971 + t612 * t973;
-    const puma560_real_t t978 = t614 * t967 - t613 * t965 - t615 * t968 + t616 * t969;
-    ddq_by_q[34] = t978 + t618 * t971 + t620 * t973;
-    const puma560_real_t t979 = PUMA560_C(-2.0) * t422 + (t23 * t939 + t25 * t940);
-    const puma560_real_t t980 = PUMA560_C(-2.0) * t423 + (t25 * t939 + t24 * t940);
-    const puma560_real_t t981 = t16 * t979 + t14 * t980;
-    const puma560_real_t t982 = t547 + (t13 * t939 + t15 * t940);
-    const puma560_real_t t983 = PUMA560_C(2.0) * t435 - t38 * t939;
-    const puma560_real_t t984 = PUMA560_C(2.0) * t437 - t38 * t940;
-    const puma560_real_t t985 = t14 * t983 - t16 * t984;
-    const puma560_real_t t986 = t42 * t939 + t41 * t940;
-    const puma560_real_t t987 = t36 * t986 - t34 * t985;
-    const puma560_real_t t988 = PUMA560_C(0.4318) * t987;
-    const puma560_real_t t989 = t36 * t981 - t34 * t982 + t988;
-    const puma560_real_t t990 = t16 * t980 - t14 * t979;
-    const puma560_real_t t991 = t990 + PUMA560_C(0.0203) * t987;
-    const puma560_real_t t992 = t36 * t985 + t34 * t986;
-    const puma560_real_t t993 = t14 * t984 + t16 * t983;
-    const puma560_real_t t994 = t82 * t993 - t79 * t992;
-    const puma560_real_t t995 = t123 * (t82 * t989 + t79 * t991 + PUMA560_C(0.1254) * t994);
-    const puma560_real_t t996 = t79 * t989 - t82 * t991 + (PUMA560_C(0.1254) * (t82 * t992 + t79 * t993)
-        - t988);
-    const puma560_real_t t997 = PUMA560_C(0.06944177768728742) * (t995 + t120 * t996);
-    const puma560_real_t t998 = t34 * t981 + t36 * t982 + (PUMA560_C(0.0203) * t993
-        + PUMA560_C(0.4318) * t992);
-    const puma560_real_t t999 = PUMA560_C(0.04032672714331514) * (t998 + PUMA560_C(0.4318) * t994);
-    const puma560_real_t t1000 = PUMA560_C(0.08095560645504385) * t998;
-    const puma560_real_t t1001 = PUMA560_C(0.18787994020908783) * t990;
-    const puma560_real_t t1002 = t999 * t504 - t997 * t502 - t1000 * t515 + t1001 * t524;
-    const puma560_real_t t1003 = PUMA560_C(0.19862511694053758) * (t547 + PUMA560_C(2.0) * (t382 * t13
-        - t377 * t15));
-    const puma560_real_t t1004 = PUMA560_C(-1027.4714285714285) * parameters[FV5] + t1003;
-    const puma560_real_t t1005 = PUMA560_C(0.1862884266452062) * (t565 + PUMA560_C(2.0) * (t382 * t18
-        - t377 * parameters[ZZ6]));
-    ddq_by_dq[4] = t1002 + t1004 * t543 + t1005 * t559;
-    const puma560_real_t t1006 = t999 * t573 - t997 * t572 - t1000 * t575 + t1001 * t577;
-    ddq_by_dq[10] = t1006 + t1004 * t580 + t1005 * t582;
-    const puma560_real_t t1007 = t999 * t584 - t997 * t583 - t1000 * t585 + t1001 * t587;
-    ddq_by_dq[16] = t1007 + t1004 * t590 + t1005 * t592;
-    const puma560_real_t t1008 = t999 * t594 - t997 * t593 - t1000 * t595 + t1001 * t597;
-    ddq_by_dq[22] = t1008 + t1004 * t600 + t1005 * t602;
-    const puma560_real_t t1009 = t999 * t604 - t997 * t603 - t1000 * t605 + t1001 * t606;
-    ddq_by_dq[28] = t1009 + t1004 * t609 + t1005 * t612;
-    const puma560_real_t t1010 = t999 * t614 - t997 * t613 - t1000 * t615 + t1001 * t616;
-    ddq_by_dq[34] = t1010 + t1004 * t618 + t1005 * t620;
-    ddq_by_input[4] = t543;
-    ddq_by_input[10] = t580;
-    ddq_by_input[16] = t590;
-    ddq_by_input[22] = t600;
-    ddq_by_input[28] = t609;
-    ddq_by_input[34] = t618;
-    const puma560_real_t t1011 = PUMA560_C(2.0) * t380; /* link j6: derivatives */
-    const puma560_real_t t1012 = PUMA560_C(-2.0) * t386;
-    const puma560_real_t t1013 = t385 * t1011 + t393 * t1012 + (parameters[XY6] * t648
-        - parameters[XX6] * t651 - t732 * parameters[XZ6]);
-    const puma560_real_t t1014 = t696 + (t695 + t1013);
-    const puma560_real_t t1015 = t391 * t1011 - t388 * t1012 + (parameters[YY6] * t648
-        - parameters[XY6] * t651 - t732 * parameters[YZ6]);
-    const puma560_real_t t1016 = t689 + (t688 + t1015);
-    const puma560_real_t t1017 = t2 * t1014 - t1 * t1016;
-    const puma560_real_t t1018 = t732 * parameters[ZZ6] + (parameters[XZ6] * t651 - parameters[YZ6] * t648);
-    const puma560_real_t t1019 = parameters[MX6] * t694 + parameters[MY6] * t687;
-    const puma560_real_t t1020 = t408 * t1011 - t409 * t1012 + t1018 + t1019;
-    const puma560_real_t t1021 = t16 * t1017 + t14 * t1020;
-    const puma560_real_t t1022 = t1 * t1014 + t2 * t1016;
-    const puma560_real_t t1023 = t728 - (t436 * t1012 + t727 + (t732 * parameters[MY6] + t726));
-    const puma560_real_t t1024 = t725 + (t436 * t1011 + t724 + (t732 * parameters[MX6] - t723));
-    const puma560_real_t t1025 = t2 * t1023 - t1 * t1024;
-    const puma560_real_t t1026 = parameters[MY6] * t651 + parameters[MX6] * t648 - (t434 * t1011
-        + t433 * t1012);
-    const puma560_real_t t1027 = t14 * t1026 - t16 * t1025;
-    const puma560_real_t t1028 = t1 * t1023 + t2 * t1024;
-    const puma560_real_t t1029 = t36 * t1028 - t34 * t1027;
-    const puma560_real_t t1030 = PUMA560_C(0.4318) * t1029;
-    const puma560_real_t t1031 = t36 * t1021 - t34 * t1022 + t1030;
-    const puma560_real_t t1032 = t16 * t1020 - t14 * t1017;
-    const puma560_real_t t1033 = t1032 + PUMA560_C(0.0203) * t1029;
-    const puma560_real_t t1034 = t36 * t1027 + t34 * t1028;
-    const puma560_real_t t1035 = t14 * t1025 + t16 * t1026;
-    const puma560_real_t t1036 = t79 * t1031 - t82 * t1033 + (PUMA560_C(0.1254) * (t82 * t1034 + t79 * t1035)
-        - t1030);
-    const puma560_real_t t1037 = t82 * t1035 - t79 * t1034;
-    const puma560_real_t t1038 = t123 * (t82 * t1031 + t79 * t1033 + PUMA560_C(0.1254) * t1037);
-    const puma560_real_t t1039 = PUMA560_C(0.06944177768728742) * (t1038 + t120 * t1036);
-    const puma560_real_t t1040 = t34 * t1021 + t36 * t1022 + (PUMA560_C(0.0203) * t1035
-        + PUMA560_C(0.4318) * t1034);
-    const puma560_real_t t1041 = PUMA560_C(0.04032672714331514) * (t1040 + PUMA560_C(0.4318) * t1037);
-    const puma560_real_t t1042 = PUMA560_C(0.08095560645504385) * t1040;
-    const puma560_real_t t1043 = PUMA560_C(0.18787994020908783) * t1032;
-    const puma560_real_t t1044 = t504 * t1041 - t502 * t1039 - t515 * t1042 + t524 * t1043;
-    const puma560_real_t t1045 = PUMA560_C(0.19862511694053758) * t1022;
-    const puma560_real_t t1046 = PUMA560_C(0.1862884266452062) * (t1019 + (t380 * t560 + t386 * t561
-        + t1018));
-    ddq_by_q[5] = t1044 + t543 * t1045 + t559 * t1046;
-    const puma560_real_t t1047 = t573 * t1041 - t572 * t1039 - t575 * t1042 + t577 * t1043;
-    ddq_by_q[11] = t1047 + t580 * t1045 + t582 * t1046;
-    const puma560_real_t t1048 = t584 * t1041 - t583 * t1039 - t585 * t1042 + t587 * t1043;
-    ddq_by_q[17] = t1048 + t590 * t1045 + t592 * t1046;
-    const puma560_real_t t1049 = t594 * t1041 - t593 * t1039 - t595 * t1042 + t597 * t1043;
-    ddq_by_q[23] = t1049 + t600 * t1045 + t602 * t1046;
-    const puma560_real_t t1050 = t604 * t1041 - t603 * t1039 - t605 * t1042 + t606 * t1043;
-    ddq_by_q[29] = t1050 + t609 * t1045 + t612 * t1046;
-    const puma560_real_t t1051 = t614 * t1041 - t613 * t1039 - t615 * t1042 + t616 * t1043;
-    ddq_by_q[35] = t1051 + t618 * t1045 + t620 * t1046;
-    const puma560_real_t t1052 = PUMA560_C(2.0) * t403 + (parameters[XX6] * t1011 + parameters[XY6] * t1012);
-    const puma560_real_t t1053 = PUMA560_C(2.0) * t404 + (parameters[XY6] * t1011 + parameters[YY6] * t1012);
-    const puma560_real_t t1054 = t2 * t1052 - t1 * t1053;
-    const puma560_real_t t1055 = t563 - (parameters[XZ6] * t1011 + parameters[YZ6] * t1012);
-    const puma560_real_t t1056 = t16 * t1054 + t14 * t1055;
-    const puma560_real_t t1057 = t1 * t1052 + t2 * t1053;
-    const puma560_real_t t1058 = PUMA560_C(2.0) * t434 - parameters[MZ6] * t1012;
-    const puma560_real_t t1059 = PUMA560_C(2.0) * t433 + parameters[MZ6] * t1011;
-    const puma560_real_t t1060 = t2 * t1058 - t1 * t1059;
-    const puma560_real_t t1061 = parameters[MX6] * t1012 - parameters[MY6] * t1011;
-    const puma560_real_t t1062 = t14 * t1061 - t16 * t1060;
-    const puma560_real_t t1063 = t1 * t1058 + t2 * t1059;
-    const puma560_real_t t1064 = t36 * t1063 - t34 * t1062;
-    const puma560_real_t t1065 = PUMA560_C(0.4318) * t1064;
-    const puma560_real_t t1066 = t36 * t1056 - t34 * t1057 + t1065;
-    const puma560_real_t t1067 = t16 * t1055 - t14 * t1054;
-    const puma560_real_t t1068 = t1067 + PUMA560_C(0.0203) * t1064;
-    const puma560_real_t t1069 = t36 * t1062 + t34 * t1063;
-    const puma560_real_t t1070 = t14 * t1060 + t16 * t1061;
-    const puma560_real_t t1071 = t82 * t1070 - t79 * t1069;
-    const puma560_real_t t1072 = t123 * (t82 * t1066 + t79 * t1068 + PUMA560_C(0.1254) * t1071);
-    const puma560_real_t t1073 = t79 * t1066 - t82 * t1068 + (PUMA560_C(0.1254) * (t82 * t1069 + t79 * t1070)
-        - t1065);
-    const puma560_real_t t1074 = PUMA560_C(0.06944177768728742) * (t1072 + t120 * t1073);
-    const puma560_real_t t1075 = t34 * t1056 + t36 * t1057 + (PUMA560_C(0.0203) * t1070
-        + PUMA560_C(0.4318) * t1069);
-    const puma560_real_t t1076 = PUMA560_C(0.04032672714331514) * (t1075 + PUMA560_C(0.4318) * t1071);
-    const puma560_real_t t1077 = PUMA560_C(0.08095560645504385) * t1075;
-    const puma560_real_t t1078 = PUMA560_C(0.18787994020908783) * t1067;
-    const puma560_real_t t1079 = t1076 * t504 - t1074 * t502 - t1077 * t515 + t1078 * t524;
-    const puma560_real_t t1080 = PUMA560_C(0.19862511694053758) * t1057;
-    const puma560_real_t t1081 = PUMA560_C(-1095.5142857142857) * parameters[FV6];
-    ddq_by_dq[5] = t1079 + t1080 * t543 + t1081 * t559;
-    const puma560_real_t t1082 = t1076 * t573 - t1074 * t572 - t1077 * t575 + t1078 * t577;
-    ddq_by_dq[11] = t1082 + t1080 * t580 + t1081 * t582;
-    const puma560_real_t t1083 = t1076 * t584 - t1074 * t583 - t1077 * t585 + t1078 * t587;
-    ddq_by_dq[17] = t1083 + t1080 * t590 + t1081 * t592;
-    const puma560_real_t t1084 = t1076 * t594 - t1074 * t593 - t1077 * t595 + t1078 * t597;
-    ddq_by_dq[23] = t1084 + t1080 * t600 + t1081 * t602;
-    const puma560_real_t t1085 = t1076 * t604 - t1074 * t603 - t1077 * t605 + t1078 * t606;
-    ddq_by_dq[29] = t1085 + t1080 * t609 + t1081 * t612;
-    const puma560_real_t t1086 = t1076 * t614 - t1074 * t613 - t1077 * t615 + t1078 * t616;
-    ddq_by_dq[35] = t1086 + t1080 * t618 + t1081 * t620;
-    ddq_by_input[5] = t559;
-    ddq_by_input[11] = t582;
-    ddq_by_input[17] = t592;
-    ddq_by_input[23] = t602;
-    ddq_by_input[29] = t612;
-    ddq_by_input[35] = t620;
+    const puma560_real_t t939 = t34 * t814 + t32 * t738 - (t48 * t929 - t122 * t927);
+    const puma560_real_t t940 = t849 + (t122 * t930 - t47 * t929);
+    const puma560_real_t t941 = t374 * t939 + t372 * t940 + (t863 * t49 + (t125 * t377 - t124 * t391));
+    const puma560_real_t t942 = PUMA560_C(0.1862884266452062) * (t941 + (t48 * t431 - t47 * t441));
+    ddq_by_q[2] = t934 + t528 * t938 + t537 * t942;
+    const puma560_real_t t943 = t539 * t923 - t538 * t915 - t541 * t926 + t543 * t933;
+    ddq_by_q[8] = t943 + t546 * t938 + t548 * t942;
+    const puma560_real_t t944 = t550 * t923 - t549 * t915 - t551 * t926 + t553 * t933;
+    ddq_by_q[14] = t944 + t556 * t938 + t558 * t942;
+    const puma560_real_t t945 = t560 * t923 - t559 * t915 - t561 * t926 + t563 * t933;
+    ddq_by_q[20] = t945 + t566 * t938 + t568 * t942;
+    const puma560_real_t t946 = t570 * t923 - t569 * t915 - t571 * t926 + t572 * t933;
+    ddq_by_q[26] = t946 + t575 * t938 + t578 * t942;
+    const puma560_real_t t947 = t580 * t923 - t579 * t915 - t581 * t926 + t582 * t933;
+    ddq_by_q[32] = t947 + t584 * t938 + t586 * t942;
+    const puma560_real_t t948 = parameters[ZZ3] + t881;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t949 = t374 * t948 - t174 * parameters[YZ3] + (t918 - t762 - t43 * t868);
+    /* link j3: derivatives */
+    const puma560_real_t t950 = PUMA560_C(2.0) * t949 + (t105 * t879 + t108 * t884);
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t951 = t174 * parameters[XZ3] + t372 * t948 + (t32 * t793 + t34 * t794 - t43 * t873);
+    /* link j3: derivatives */
+    const puma560_real_t t952 = PUMA560_C(2.0) * t951 + (t108 * t879 + t106 * t884);
+    const puma560_real_t t953 = PUMA560_C(2.0) * t910 - t111 * t879;
+    const puma560_real_t t954 = PUMA560_C(2.0) * t911 + t111 * t884;
+    const puma560_real_t t955 = t76 * t954 + t79 * t953;
+    const puma560_real_t t956 = t119 * (t79 * t950 - t76 * t952 + PUMA560_C(0.1254) * t955);
+    const puma560_real_t t957 = PUMA560_C(0.1254) * (t76 * t953 - t79 * t954)
+        + PUMA560_C(-0.4318) * (t89 * t879 + t87 * t884);
+    const puma560_real_t t958 = t956 + t116 * (t76 * t950 + t79 * t952 + t957);
+    const puma560_real_t t959 = PUMA560_C(0.06944177768728742) * t958;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t960 = t876 + t893 + (t875 + (t758 - t865 - t872));
+    const puma560_real_t t961 = PUMA560_C(2.0) * t960; /* link j3: derivatives */
+    const puma560_real_t t962 = t961 + (t149 * t879 + t150 * t884) + PUMA560_C(0.4318) * t955;
+    const puma560_real_t t963 = PUMA560_C(0.04032672714331514) * t962;
+    const puma560_real_t t964 = PUMA560_C(0.08095560645504385) * (t961 + PUMA560_C(2.0) * (t374 * t149
+        + t372 * t150));
+    const puma560_real_t t965 = PUMA560_C(-233.50565217391303) * parameters[FV3] + t964;
+    const puma560_real_t t966 = t43 * t927 - (t32 * t807 + t34 * t808); /* link j4: derivatives */
+    const puma560_real_t t967 = PUMA560_C(0.18787994020908783) * (t966 + PUMA560_C(-2.0) * (t374 * t141
+        + t372 * t142));
+    const puma560_real_t t968 = t963 * t514 - t959 * t510 - t965 * t517 + t967 * t521;
+    /* link j5: derivatives */
+    const puma560_real_t t969 = t34 * t714 - t32 * t811 + (t41 * t930 + t52 * t927);
+    const puma560_real_t t970 = PUMA560_C(0.19862511694053758) * (t969 + PUMA560_C(-2.0) * (t374 * t133
+        + t372 * t134));
+    /* link j6: derivatives */
+    const puma560_real_t t971 = t34 * t738 - t32 * t814 + (t48 * t930 - t47 * t927);
+    const puma560_real_t t972 = PUMA560_C(0.1862884266452062) * (t971 + PUMA560_C(2.0) * (t372 * t125
+        - t374 * t124));
+    ddq_by_dq[2] = t968 + t970 * t528 + t972 * t537;
+    const puma560_real_t t973 = t963 * t539 - t959 * t538 - t965 * t541 + t967 * t543;
+    ddq_by_dq[8] = t973 + t970 * t546 + t972 * t548;
+    const puma560_real_t t974 = t963 * t550 - t959 * t549 - t965 * t551 + t967 * t553;
+    ddq_by_dq[14] = t974 + t970 * t556 + t972 * t558;
+    const puma560_real_t t975 = t963 * t560 - t959 * t559 - t965 * t561 + t967 * t563;
+    ddq_by_dq[20] = t975 + t970 * t566 + t972 * t568;
+    const puma560_real_t t976 = t963 * t570 - t959 * t569 - t965 * t571 + t967 * t572;
+    ddq_by_dq[26] = t976 + t970 * t575 + t972 * t578;
+    const puma560_real_t t977 = t963 * t580 - t959 * t579 - t965 * t581 + t967 * t582;
+    ddq_by_dq[32] = t977 + t970 * t584 + t972 * t586;
+    ddq_by_input[2] = t517;
+    ddq_by_input[8] = t541;
+    ddq_by_input[14] = t551;
+    ddq_by_input[20] = t561;
+    ddq_by_input[26] = t571;
+    ddq_by_input[32] = t581;
+    const puma560_real_t t978 = parameters[M3] * t438 + (parameters[MY3] * t380 - parameters[MX3] * t435
+        - t863 * parameters[MZ3]);
+    const puma560_real_t t979 = PUMA560_C(0.1254) * (t79 * t905 + t76 * t899) + PUMA560_C(0.4318) * (t978
+        + t858);
+    const puma560_real_t t980 = t323 + t427;
+    const puma560_real_t t981 = t331 + parameters[YY2] * t436 + parameters[XY2] * (t323 + t980)
+        + parameters[YZ2] * (t228 - t363);
+    const puma560_real_t t982 = t334 + (t333 + t981) + (t76 * t889 + t79 * t862 + t979);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t983 = t79 * (t878 + t894) + t76 * (t883 + t892);
+    const puma560_real_t t984 = t79 * t983;
+    const puma560_real_t t985 = t79 * t910 + t76 * t911;
+    const puma560_real_t t986 = PUMA560_C(-0.4318) * t985;
+    const puma560_real_t t987 = PUMA560_C(0.1254) * t170; /* link j3: velocity of its origin */
+    const puma560_real_t t988 = t157 * t987; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t989 = PUMA560_C(0.1254) * t901;
+    /* link j3: velocity of its origin */
+    const puma560_real_t t990 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t169;
+    const puma560_real_t t991 = t117 * t990; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t992 = t111 - t112; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t993 = PUMA560_C(0.4318) * t170; /* link j3: velocity of its origin */
+    const puma560_real_t t994 = t992 * t993; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t995 = t989 - t986 + (t994 - (t988 + t991));
+    const puma560_real_t t996 = t170 * parameters[XZ2];
+    const puma560_real_t t997 = dq[1] * parameters[XY2];
+    const puma560_real_t t998 = t996 + t997 + (t995 + (t984 - t894 + (t986 + t988)));
+    const puma560_real_t t999 = PUMA560_C(-2.0) * t170; /* link j2: derivatives */
+    const puma560_real_t t1000 = t76 * t983; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t1001 = PUMA560_C(-0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const puma560_real_t t1002 = parameters[YY2] + t1001;
+    const puma560_real_t t1003 = t170 * parameters[YZ2] + dq[1] * t1002 + (t1000 - t883 + t117 * t987);
+    const puma560_real_t t1004 = PUMA560_C(2.0) * t169; /* link j2: derivatives */
+    const puma560_real_t t1005 = t234 * t158 + (t118 * t427 - t114 * t429) - (t998 * t999 + t1003 * t1004);
+    const puma560_real_t t1006 = t992 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t1007 = t76 * t862 - t79 * t889 + PUMA560_C(0.1254) * (t76 * t905 - t79 * t899);
+    const puma560_real_t t1008 = t324 - parameters[XX2] * t980 + parameters[XY2] * t437
+        + parameters[XZ2] * t426;
+    const puma560_real_t t1009 = t79 * t911 - t76 * t910; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t1010 = parameters[XX2] + t1001;
+    const puma560_real_t t1011 = t1000 - t892 + (PUMA560_C(0.4318) * t1009 + t157 * t990)
+        - (t169 * parameters[XZ2] + dq[1] * t1010);
+    const puma560_real_t t1012 = t169 * parameters[YZ2];
+    const puma560_real_t t1013 = t995 + (t878 - t984 + t991) - (t997 + t1012);
+    const puma560_real_t t1014 = t234 * t159 + (t115 * t427 - t118 * t429) - (t1011 * t999 + t1013 * t1004);
+    const puma560_real_t t1015 = t326 + t1008 - t327 + t1007 + (t1014 - t229 * t1006);
+    const puma560_real_t t1016 = t119 * (t982 + (t226 * t1006 + t1005)) + t116 * t1015;
+    const puma560_real_t t1017 = PUMA560_C(0.06944177768728742) * t1016;
+    const puma560_real_t t1018 = t76 * t921 - t79 * t919 + (PUMA560_C(0.4318) * t901 + t157 * t993);
+    /* link j2: derivatives */
+    const puma560_real_t t1019 = PUMA560_C(2.0) * (t170 * t1010 - t169 * parameters[XY2] + t1018);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t1020 = t170 * parameters[XY2] - t169 * t1002 - (t76 * t919 + t79 * t921
+        - t117 * t993);
+    const puma560_real_t t1021 = PUMA560_C(2.0) * t1020; /* link j2: derivatives */
+    const puma560_real_t t1022 = t170 * t1019 - t169 * t1021 + (t234 * t101 + (t159 * t427 - t158 * t429));
+    const puma560_real_t t1023 = t226 * (t157 - parameters[MX2]) - t229 * (t117 - parameters[MY2]) + t1022;
+    const puma560_real_t t1024 = PUMA560_C(0.04032672714331514) * t1023;
+    const puma560_real_t t1025 = PUMA560_C(0.8636) * t170; /* link j6: derivatives */
+    const puma560_real_t t1026 = t76 * t925 - t79 * t924 + t90 * t1025; /* link j3: derivatives */
+    const puma560_real_t t1027 = t76 * t924 + t79 * t925 - t117 * t1025;
+    const puma560_real_t t1028 = t170 * t1026 + t169 * t1027 + (t153 * t427 - t152 * t429 - t234 * t91);
+    const puma560_real_t t1029 = PUMA560_C(0.08095560645504385) * (t226 * t90 - t229 * t117 + t1028);
+    const puma560_real_t t1030 = PUMA560_C(2.0) * t990; /* link j6: derivatives */
+    /* link j4: derivatives */
+    const puma560_real_t t1031 = t76 * t931 - t79 * t928 + (t77 * t1025 - t65 * t1030);
+    const puma560_real_t t1032 = PUMA560_C(-0.2508) * t170; /* link j6: derivatives */
+    /* link j4: derivatives */
+    const puma560_real_t t1033 = t76 * t928 + t79 * t931 + (t144 * t1025 + t65 * t1032);
+    const puma560_real_t t1034 = t170 * t1031 + t169 * t1033 + (t145 * t427 - t143 * t429 - t234 * t78);
+    const puma560_real_t t1035 = PUMA560_C(0.18787994020908783) * (t229 * t144 + t226 * t77 + t1034);
+    const puma560_real_t t1036 = t514 * t1024 - t510 * t1017 - t517 * t1029 + t521 * t1035;
+    /* link j5: derivatives */
+    const puma560_real_t t1037 = t76 * t936 - t79 * t935 + (t82 * t1025 - t131 * t1030);
+    const puma560_real_t t1038 = t76 * t935 + t79 * t936 + (t131 * t1032 - t136 * t1025);
+    const puma560_real_t t1039 = t170 * t1037 + t169 * t1038 + (t234 * t83 + (t135 * t429 - t137 * t427));
+    const puma560_real_t t1040 = PUMA560_C(0.19862511694053758) * (t226 * t82 - t229 * t136 + t1039);
+    /* link j6: derivatives */
+    const puma560_real_t t1041 = t76 * t940 - t79 * t939 + (t80 * t1025 - t122 * t1030);
+    const puma560_real_t t1042 = t76 * t939 + t79 * t940 + (t122 * t1032 - t126 * t1025);
+    const puma560_real_t t1043 = t170 * t1041 + t169 * t1042 + (t234 * t81 + (t128 * t429 - t127 * t427));
+    const puma560_real_t t1044 = PUMA560_C(0.1862884266452062) * (t226 * t80 - t229 * t126 + t1043);
+    ddq_by_q[1] = t1036 + t528 * t1040 + t537 * t1044;
+    const puma560_real_t t1045 = t539 * t1024 - t538 * t1017 - t541 * t1029 + t543 * t1035;
+    ddq_by_q[7] = t1045 + t546 * t1040 + t548 * t1044;
+    const puma560_real_t t1046 = t550 * t1024 - t549 * t1017 - t551 * t1029 + t553 * t1035;
+    ddq_by_q[13] = t1046 + t556 * t1040 + t558 * t1044;
+    const puma560_real_t t1047 = t560 * t1024 - t559 * t1017 - t561 * t1029 + t563 * t1035;
+    ddq_by_q[19] = t1047 + t566 * t1040 + t568 * t1044;
+    const puma560_real_t t1048 = t570 * t1024 - t569 * t1017 - t571 * t1029 + t572 * t1035;
+    ddq_by_q[25] = t1048 + t575 * t1040 + t578 * t1044;
+    const puma560_real_t t1049 = t580 * t1024 - t579 * t1017 - t581 * t1029 + t582 * t1035;
+    ddq_by_q[31] = t1049 + t584 * t1040 + t586 * t1044;
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t1050 = t79 * t949 - t76 * t951 + (PUMA560_C(0.1254) * t985 - t992 * t987);
+    const puma560_real_t t1051 = parameters[ZZ2] + t1001;
+    /* link j2: derivatives */
+    const puma560_real_t t1052 = PUMA560_C(2.0) * (t1050 - (dq[1] * parameters[YZ2] + t170 * t1051))
+        + (t114 * t999 + t118 * t1004);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t1053 = t76 * t949 + t79 * t951 + (PUMA560_C(-0.1254) * t1009 - t992 * t990);
+    /* link j2: derivatives */
+    const puma560_real_t t1054 = PUMA560_C(2.0) * (dq[1] * parameters[XZ2] + t169 * t1051 + t1053)
+        + (t118 * t999 + t115 * t1004);
+    const puma560_real_t t1055 = PUMA560_C(0.06944177768728742) * (t119 * t1052 + t116 * t1054);
+    const puma560_real_t t1056 = PUMA560_C(2.0) * (t1012 - t996 + (t995 + (t960 - (t989 + t994))));
+    const puma560_real_t t1057 = PUMA560_C(0.04032672714331514) * (t1056 + PUMA560_C(2.0) * (t169 * t159
+        - t170 * t158));
+    const puma560_real_t t1058 = PUMA560_C(-468.7608695652174) * parameters[FV2] + t1057;
+    /* link j3: derivatives */
+    const puma560_real_t t1059 = t961 + (t90 * t1032 - t117 * t1030) + PUMA560_C(2.0) * (t169 * t153
+        - t170 * t152);
+    const puma560_real_t t1060 = PUMA560_C(0.08095560645504385) * t1059;
+    /* link j4: derivatives */
+    const puma560_real_t t1061 = t966 + (t77 * t1032 + t144 * t1030) + PUMA560_C(2.0) * (t169 * t145
+        - t170 * t143);
+    const puma560_real_t t1062 = PUMA560_C(0.18787994020908783) * t1061;
+    const puma560_real_t t1063 = t1058 * t514 - t1055 * t510 - t1060 * t517 + t1062 * t521;
+    /* link j5: derivatives */
+    const puma560_real_t t1064 = t969 + (t82 * t1032 - t136 * t1030) + PUMA560_C(2.0) * (t170 * t135
+        - t169 * t137);
+    const puma560_real_t t1065 = PUMA560_C(0.19862511694053758) * t1064;
+    /* link j6: derivatives */
+    const puma560_real_t t1066 = t971 + (t80 * t1032 - t126 * t1030) + PUMA560_C(2.0) * (t170 * t128
+        - t169 * t127);
+    const puma560_real_t t1067 = PUMA560_C(0.1862884266452062) * t1066;
+    ddq_by_dq[1] = t1063 + t1065 * t528 + t1067 * t537;
+    const puma560_real_t t1068 = t1058 * t539 - t1055 * t538 - t1060 * t541 + t1062 * t543;
+    ddq_by_dq[7] = t1068 + t1065 * t546 + t1067 * t548;
+    const puma560_real_t t1069 = t1058 * t550 - t1055 * t549 - t1060 * t551 + t1062 * t553;
+    ddq_by_dq[13] = t1069 + t1065 * t556 + t1067 * t558;
+    const puma560_real_t t1070 = t1058 * t560 - t1055 * t559 - t1060 * t561 + t1062 * t563;
+    ddq_by_dq[19] = t1070 + t1065 * t566 + t1067 * t568;
+    const puma560_real_t t1071 = t1058 * t570 - t1055 * t569 - t1060 * t571 + t1062 * t572;
+    ddq_by_dq[25] = t1071 + t1065 * t575 + t1067 * t578;
+    const puma560_real_t t1072 = t1058 * t580 - t1055 * t579 - t1060 * t581 + t1062 * t582;
+    ddq_by_dq[31] = t1072 + t1065 * t584 + t1067 * t586;
+    ddq_by_input[1] = t514;
+    ddq_by_input[7] = t539;
+    ddq_by_input[13] = t550;
+    ddq_by_input[19] = t560;
+    ddq_by_input[25] = t570;
+    ddq_by_input[31] = t580;
+    /* link j2: inertia, momentum beyond */
+    const puma560_real_t t1073 = t116 * (t116 * (t1013 - t998) + t119 * (t1003 + t1011));
+    const puma560_real_t t1074 = PUMA560_C(-272.2221739130435) * parameters[FV1]
+        + PUMA560_C(0.13888355537457484) * (t998 + t1073);
+    const puma560_real_t t1075 = PUMA560_C(0.04032672714331514) * (t119 * t1019 + t116 * t1021);
+    const puma560_real_t t1076 = PUMA560_C(0.08095560645504385) * (t119 * t1026 - t116 * t1027);
+    const puma560_real_t t1077 = PUMA560_C(0.18787994020908783) * (t119 * t1031 - t116 * t1033);
+    const puma560_real_t t1078 = t1075 * t514 - t1074 * t510 - t1076 * t517 + t1077 * t521;
+    const puma560_real_t t1079 = PUMA560_C(0.19862511694053758) * (t119 * t1037 - t116 * t1038);
+    const puma560_real_t t1080 = PUMA560_C(0.1862884266452062) * (t119 * t1041 - t116 * t1042);
+    ddq_by_dq[0] = t1078 + t1079 * t528 + t1080 * t537;
+    const puma560_real_t t1081 = t1075 * t539 - t1074 * t538 - t1076 * t541 + t1077 * t543;
+    ddq_by_dq[6] = t1081 + t1079 * t546 + t1080 * t548;
+    const puma560_real_t t1082 = t1075 * t550 - t1074 * t549 - t1076 * t551 + t1077 * t553;
+    ddq_by_dq[12] = t1082 + t1079 * t556 + t1080 * t558;
+    const puma560_real_t t1083 = t1075 * t560 - t1074 * t559 - t1076 * t561 + t1077 * t563;
+    ddq_by_dq[18] = t1083 + t1079 * t566 + t1080 * t568;
+    const puma560_real_t t1084 = t1075 * t570 - t1074 * t569 - t1076 * t571 + t1077 * t572;
+    ddq_by_dq[24] = t1084 + t1079 * t575 + t1080 * t578;
+    const puma560_real_t t1085 = t1075 * t580 - t1074 * t579 - t1076 * t581 + t1077 * t582;
+    ddq_by_dq[30] = t1085 + t1079 * t584 + t1080 * t586;
+    ddq_by_input[0] = t510;
+    ddq_by_input[6] = t538;
+    ddq_by_input[12] = t549;
+    ddq_by_input[18] = t559;
+    ddq_by_input[24] = t569;
+    ddq_by_input[30] = t579;
     /* always zero */
     ddq_by_q[0] = PUMA560_C(0.0);
     ddq_by_q[6] = PUMA560_C(0.0);
@@ -1624,10 +1597,10 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = PUMA560_C(0.0);
     ddq_by_q[24] = PUMA560_C(0.0);
     ddq_by_q[30] = PUMA560_C(0.0);
-    if (!puma560_all_bounded(ddq, 6)
-        || !puma560_all_bounded(ddq_by_q, 36)
-        || !puma560_all_bounded(ddq_by_dq, 36)
-        || !puma560_all_bounded(ddq_by_input, 36)) {
+    if (!puma560_bounded(ddq, 6)
+        || !puma560_bounded(ddq_by_q, 36)
+        || !puma560_bounded(ddq_by_dq, 36)
+        || !puma560_bounded(ddq_by_input, 36)) {
         puma560_zero(ddq, 6);
         puma560_zero(ddq_by_q, 36);
         puma560_zero(ddq_by_dq, 36);

@@ -6,7 +6,7 @@
  * Arm puma560, description e8eb13fe224405b2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1051 (553 mul, 498 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 1051 (553 mul, 498 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -107,7 +107,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -135,18 +135,17 @@ puma560_status_t puma560_forward_dynamics_standard(
         return status;
     }
 
-    puma560_real_t t115, t112;
-    PUMA560_SINCOS(q[1], &t115, &t112);
-    puma560_real_t t77, t79;
-    PUMA560_SINCOS(q[2], &t77, &t79);
-    puma560_real_t t34, t36;
-    PUMA560_SINCOS(q[3], &t34, &t36);
-    puma560_real_t t14, t16;
-    PUMA560_SINCOS(q[4], &t14, &t16);
+    puma560_real_t t111, t108;
+    PUMA560_SINCOS(q[1], &t111, &t108);
+    puma560_real_t t74, t76;
+    PUMA560_SINCOS(q[2], &t74, &t76);
+    puma560_real_t t32, t34;
+    PUMA560_SINCOS(q[3], &t32, &t34);
+    puma560_real_t t13, t15;
+    PUMA560_SINCOS(q[4], &t13, &t15);
     puma560_real_t t1, t2;
     PUMA560_SINCOS(q[5], &t1, &t2);
-    const puma560_real_t t0 = puma560_bounded(parameters[ZZ6]
-        + PUMA560_C(5880.742596000001) * parameters[IA6]);
+    const puma560_real_t t0 = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
     if (!(t0 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
@@ -160,484 +159,467 @@ puma560_status_t puma560_forward_dynamics_standard(
     const puma560_real_t t8 = t2 * t7;
     const puma560_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
     const puma560_real_t t10 = t9 + PUMA560_C(5172.917929) * parameters[IA5];
-    const puma560_real_t t11 = puma560_bounded(t10 - t3 * t5);
+    const puma560_real_t t11 = t10 - t3 * t5;
     if (!(t11 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t12 = t11 + PUMA560_C(-1.0e-9) * t10;
-    if (!(t12 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t13 = parameters[XY6] - t1 * t7 - parameters[XZ5];
-    const puma560_real_t t15 = parameters[YZ5] - t3;
-    const puma560_real_t t17 = t16 * t15 - t14 * t13; /* link j5: column of the mass matrix */
+    const puma560_real_t t12 = parameters[XY6] - t1 * t7 - parameters[XZ5];
+    const puma560_real_t t14 = parameters[YZ5] - t3;
+    const puma560_real_t t16 = t15 * t14 - t13 * t12; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const puma560_real_t t18 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
-    const puma560_real_t t19 = t14 * t18 - t16 * parameters[ZZ6];
-    const puma560_real_t t20 = t17 - t19 * t5;
-    const puma560_real_t t21 = PUMA560_C(-1.0) / t11;
-    const puma560_real_t t22 = t20 * t21;
+    const puma560_real_t t17 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const puma560_real_t t18 = t13 * t17 - t15 * parameters[ZZ6];
+    const puma560_real_t t19 = t16 - t18 * t5;
+    const puma560_real_t t20 = PUMA560_C(-1.0) / t11;
+    const puma560_real_t t21 = t19 * t20;
     /* link j6: inertia of it and all beyond */
-    const puma560_real_t t23 = parameters[XX5] + (parameters[YY6] - t8);
-    const puma560_real_t t24 = parameters[YY5] + parameters[ZZ6];
-    const puma560_real_t t25 = t18 - parameters[XY5];
+    const puma560_real_t t22 = parameters[XX5] + (parameters[YY6] - t8);
+    const puma560_real_t t23 = parameters[YY5] + parameters[ZZ6];
+    const puma560_real_t t24 = t17 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
-    const puma560_real_t t26 = t16 * (t24 - t23) - t25 * (PUMA560_C(2.0) * t14);
-    const puma560_real_t t27 = t16 * t26;
-    const puma560_real_t t28 = parameters[ZZ4] + (t23 + t27);
-    const puma560_real_t t29 = t28 + PUMA560_C(5781.53412496) * parameters[IA4];
-    const puma560_real_t t30 = t19 * t4;
-    const puma560_real_t t31 = puma560_bounded(t29 - t19 * t30 + t20 * t22);
-    if (!(t31 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t25 = t15 * (t23 - t22) - t24 * (PUMA560_C(2.0) * t13);
+    const puma560_real_t t26 = t15 * t25;
+    const puma560_real_t t27 = parameters[ZZ4] + (t22 + t26);
+    const puma560_real_t t28 = t27 + PUMA560_C(5781.53412496) * parameters[IA4];
+    const puma560_real_t t29 = t18 * t4;
+    const puma560_real_t t30 = t28 - t18 * t29 + t19 * t21;
+    if (!(t30 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t32 = t31 + PUMA560_C(-1.0e-9) * t29;
-    if (!(t32 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t33 = t25 + t14 * t26 - parameters[XZ4];
-    const puma560_real_t t35 = t17 - parameters[YZ4];
+    const puma560_real_t t31 = t24 + t13 * t25 - parameters[XZ4];
+    const puma560_real_t t33 = t16 - parameters[YZ4];
     /* link j6: column of the mass matrix */
-    const puma560_real_t t37 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const puma560_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
     /* link j5: inertia of it and all beyond */
-    const puma560_real_t t38 = parameters[MZ5] - t37 - parameters[MY4];
+    const puma560_real_t t36 = parameters[MZ5] - t35 - parameters[MY4];
     /* link j6: column of the mass matrix */
-    const puma560_real_t t39 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const puma560_real_t t40 = parameters[MX5] + t39; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t41 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t42 = t16 * t40 - t14 * t41; /* link j5: column of the mass matrix */
-    const puma560_real_t t43 = parameters[MX4] + t42; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t44 = t36 * t38 - t34 * t43; /* link j4: column of the mass matrix */
-    const puma560_real_t t45 = t34 * t33 + t36 * t35 + PUMA560_C(-0.4318) * t44;
-    const puma560_real_t t46 = t16 * t18 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const puma560_real_t t47 = t16 * t37;
-    const puma560_real_t t48 = t36 * t47 + t34 * t39;
-    const puma560_real_t t49 = t14 * t37;
-    const puma560_real_t t50 = t34 * t46 - t36 * t3 + (PUMA560_C(-0.0203) * t49 + PUMA560_C(0.4318) * t48);
-    const puma560_real_t t51 = t16 * t13 + t14 * t15; /* link j5: column of the mass matrix */
-    const puma560_real_t t52 = t16 * t41 + t14 * t40;
-    const puma560_real_t t53 = t36 * t52;
-    const puma560_real_t t54 = t34 * t51 + t36 * t9 + (PUMA560_C(0.0203) * t42 + PUMA560_C(0.4318) * t53);
-    const puma560_real_t t55 = t54 + t50 * t5;
-    const puma560_real_t t56 = t45 + t50 * t30 + t55 * t22;
-    const puma560_real_t t57 = PUMA560_C(-1.0) / t31;
-    const puma560_real_t t58 = t56 * t57;
-    const puma560_real_t t59 = t55 * t21;
-    const puma560_real_t t60 = t50 * t4;
-    const puma560_real_t t61 = parameters[XX4] + (t24 - t27); /* link j5: inertia of it and all beyond */
-    const puma560_real_t t62 = parameters[YY4] + t9;
-    const puma560_real_t t63 = parameters[XY4] + t51;
+    const puma560_real_t t37 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const puma560_real_t t38 = parameters[MX5] + t37; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t39 = parameters[MY5] + parameters[MZ6];
+    const puma560_real_t t40 = t15 * t38 - t13 * t39; /* link j5: column of the mass matrix */
+    const puma560_real_t t41 = parameters[MX4] + t40; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t42 = t34 * t36 - t32 * t41; /* link j4: column of the mass matrix */
+    const puma560_real_t t43 = t32 * t31 + t34 * t33 + PUMA560_C(-0.4318) * t42;
+    const puma560_real_t t44 = t15 * t17 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const puma560_real_t t45 = t15 * t35;
+    const puma560_real_t t46 = t34 * t45 + t32 * t37;
+    const puma560_real_t t47 = t13 * t35;
+    const puma560_real_t t48 = t32 * t44 - t34 * t3 + (PUMA560_C(-0.0203) * t47 + PUMA560_C(0.4318) * t46);
+    const puma560_real_t t49 = t15 * t12 + t13 * t14; /* link j5: column of the mass matrix */
+    const puma560_real_t t50 = t15 * t39 + t13 * t38;
+    const puma560_real_t t51 = t34 * t50;
+    const puma560_real_t t52 = t32 * t49 + t34 * t9 + (PUMA560_C(0.0203) * t40 + PUMA560_C(0.4318) * t51);
+    const puma560_real_t t53 = t52 + t48 * t5;
+    const puma560_real_t t54 = t43 + t48 * t29 + t53 * t21;
+    const puma560_real_t t55 = PUMA560_C(-1.0) / t30;
+    const puma560_real_t t56 = t54 * t55;
+    const puma560_real_t t57 = t53 * t20;
+    const puma560_real_t t58 = t48 * t4;
+    const puma560_real_t t59 = parameters[XX4] + (t23 - t26); /* link j5: inertia of it and all beyond */
+    const puma560_real_t t60 = parameters[YY4] + t9;
+    const puma560_real_t t61 = parameters[XY4] + t49;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t64 = t36 * (t61 - t62) + t63 * (PUMA560_C(-2.0) * t34);
-    const puma560_real_t t65 = t36 * t64;
-    const puma560_real_t t66 = t34 * t38 + t36 * t43; /* link j4: column of the mass matrix */
+    const puma560_real_t t62 = t34 * (t59 - t60) + t61 * (PUMA560_C(-2.0) * t32);
+    const puma560_real_t t63 = t34 * t62;
+    const puma560_real_t t64 = t32 * t36 + t34 * t41; /* link j4: column of the mass matrix */
     /* link j5: inertia of it and all beyond */
-    const puma560_real_t t67 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const puma560_real_t t68 = PUMA560_C(0.0203) * t67; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t69 = PUMA560_C(0.0203) * (t68 + PUMA560_C(2.0) * t66);
-    const puma560_real_t t70 = parameters[MZ4] + t52; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t71 = PUMA560_C(0.4318) * t67; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t72 = PUMA560_C(0.4318) * (t71 + PUMA560_C(2.0) * t70);
-    const puma560_real_t t73 = parameters[ZZ3] + (t61 - t65 + (t69 + t72));
-    const puma560_real_t t74 = t73 + PUMA560_C(2884.36665969) * parameters[IA3];
-    const puma560_real_t t75 = puma560_bounded(t74 - t50 * t60 + t55 * t59 + t56 * t58);
-    if (!(t75 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t65 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const puma560_real_t t66 = PUMA560_C(0.0203) * t65; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t67 = PUMA560_C(0.0203) * (t66 + PUMA560_C(2.0) * t64);
+    const puma560_real_t t68 = parameters[MZ4] + t50; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t69 = PUMA560_C(0.4318) * t65; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t70 = PUMA560_C(0.4318) * (t69 + PUMA560_C(2.0) * t68);
+    const puma560_real_t t71 = parameters[ZZ3] + (t59 - t63 + (t67 + t70));
+    const puma560_real_t t72 = t71 + PUMA560_C(2884.36665969) * parameters[IA3];
+    const puma560_real_t t73 = t72 - t48 * t58 + t53 * t57 + t54 * t56;
+    if (!(t73 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t76 = t75 + PUMA560_C(-1.0e-9) * t74;
-    if (!(t76 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t78 = t77 * t44; /* link j4: column of the mass matrix */
-    const puma560_real_t t80 = t77 * t48 + t79 * t49; /* link j6: column of the mass matrix */
-    const puma560_real_t t81 = PUMA560_C(0.4318) * t80 - t50;
-    const puma560_real_t t82 = t79 * t42 - t77 * t53; /* link j5: column of the mass matrix */
-    const puma560_real_t t83 = PUMA560_C(-0.4318) * t82 - t54 + t81 * t5;
-    const puma560_real_t t84 = PUMA560_C(-0.4318) * t78 - t45 + t81 * t30 + t83 * t22;
-    const puma560_real_t t85 = t66 + t68; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t86 = parameters[MX3] + t85;
-    const puma560_real_t t87 = parameters[MY3] + (t70 + t71);
-    const puma560_real_t t88 = t79 * t86 - t77 * t87; /* link j3: column of the mass matrix */
-    const puma560_real_t t89 = PUMA560_C(-0.4318) * t88 - t73 - t81 * t60 + t83 * t59;
-    const puma560_real_t t90 = t89 + t84 * t58;
-    const puma560_real_t t91 = PUMA560_C(-1.0) / t75;
-    const puma560_real_t t92 = t90 * t91;
-    const puma560_real_t t93 = t84 * t57;
-    const puma560_real_t t94 = t83 * t21;
-    const puma560_real_t t95 = t81 * t4;
-    const puma560_real_t t96 = parameters[M3] + t67; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t97 = PUMA560_C(0.4318) * t96; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t98 = PUMA560_C(0.4318) * (t97 + PUMA560_C(2.0) * t88);
-    const puma560_real_t t99 = parameters[ZZ2] + (t73 + t98) + PUMA560_C(11624.074225) * parameters[IA2];
-    const puma560_real_t t100 = t99 - t81 * t95 + t83 * t94 + t84 * t93;
-    const puma560_real_t t101 = puma560_bounded(t100 + t90 * t92);
-    if (!(t101 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t102 = t101 + PUMA560_C(-1.0e-9) * t99;
-    if (!(t102 > PUMA560_C(1.0e-12))) {
+    const puma560_real_t t75 = t74 * t42; /* link j4: column of the mass matrix */
+    const puma560_real_t t77 = t74 * t46 + t76 * t47; /* link j6: column of the mass matrix */
+    const puma560_real_t t78 = PUMA560_C(0.4318) * t77 - t48;
+    const puma560_real_t t79 = t76 * t40 - t74 * t51; /* link j5: column of the mass matrix */
+    const puma560_real_t t80 = PUMA560_C(-0.4318) * t79 - t52 + t78 * t5;
+    const puma560_real_t t81 = PUMA560_C(-0.4318) * t75 - t43 + t78 * t29 + t80 * t21;
+    const puma560_real_t t82 = t64 + t66; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t83 = parameters[MX3] + t82;
+    const puma560_real_t t84 = parameters[MY3] + (t68 + t69);
+    const puma560_real_t t85 = t76 * t83 - t74 * t84; /* link j3: column of the mass matrix */
+    const puma560_real_t t86 = PUMA560_C(-0.4318) * t85 - t71 - t78 * t58 + t80 * t57;
+    const puma560_real_t t87 = t86 + t81 * t56;
+    const puma560_real_t t88 = PUMA560_C(-1.0) / t73;
+    const puma560_real_t t89 = t87 * t88;
+    const puma560_real_t t90 = t81 * t55;
+    const puma560_real_t t91 = t80 * t20;
+    const puma560_real_t t92 = t78 * t4;
+    const puma560_real_t t93 = parameters[M3] + t65; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t94 = PUMA560_C(0.4318) * t93; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t95 = PUMA560_C(0.4318) * (t94 + PUMA560_C(2.0) * t85);
+    const puma560_real_t t96 = parameters[ZZ2] + (t71 + t95) + PUMA560_C(11624.074225) * parameters[IA2];
+    const puma560_real_t t97 = t96 - t78 * t92 + t80 * t91 + t81 * t90;
+    const puma560_real_t t98 = t97 + t87 * t89;
+    if (!(t98 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t103 = parameters[XX3] + (t62 + t65 + t72);
-    const puma560_real_t t104 = parameters[YY3] + (t28 + t69);
-    const puma560_real_t t105 = t34 * t35 - t36 * t33; /* link j4: column of the mass matrix */
+    const puma560_real_t t99 = parameters[XX3] + (t60 + t63 + t70);
+    const puma560_real_t t100 = parameters[YY3] + (t27 + t67);
+    const puma560_real_t t101 = t32 * t33 - t34 * t31; /* link j4: column of the mass matrix */
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t106 = parameters[XY3] + (t105 + (PUMA560_C(-0.0203) * t70
-        + PUMA560_C(-0.4318) * t85));
+    const puma560_real_t t102 = parameters[XY3] + (t101 + (PUMA560_C(-0.0203) * t68
+        + PUMA560_C(-0.4318) * t82));
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t107 = t79 * (t103 - t104) - t106 * (PUMA560_C(2.0) * t77);
-    const puma560_real_t t108 = t79 * t107;
-    const puma560_real_t t109 = parameters[MZ3] + t44; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t103 = t76 * (t99 - t100) - t102 * (PUMA560_C(2.0) * t74);
+    const puma560_real_t t104 = t76 * t103;
+    const puma560_real_t t105 = parameters[MZ3] + t42; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t110 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t96 + PUMA560_C(2.0) * t109);
-    const puma560_real_t t111 = parameters[XX2] + (t104 + t108 + t110);
+    const puma560_real_t t106 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t93 + PUMA560_C(2.0) * t105);
+    const puma560_real_t t107 = parameters[XX2] + (t100 + t104 + t106);
     /* link j2: inertia of it and all beyond */
-    const puma560_real_t t113 = t112 * (parameters[YY2] + (t103 - t108 + (t98 + t110)) - t111);
-    const puma560_real_t t114 = t79 * t87 + t77 * t86; /* link j3: column of the mass matrix */
+    const puma560_real_t t109 = t108 * (parameters[YY2] + (t99 - t104 + (t95 + t106)) - t107);
+    const puma560_real_t t110 = t76 * t84 + t74 * t83; /* link j3: column of the mass matrix */
     /* link j2: inertia of it and all beyond */
-    const puma560_real_t t116 = (parameters[XY2] + (t106 + t77 * t107
-        + PUMA560_C(-0.4318) * t114)) * (PUMA560_C(2.0) * t115);
-    const puma560_real_t t117 = parameters[ZZ1] + (t111 + t112 * (t113 + t116))
+    const puma560_real_t t112 = (parameters[XY2] + (t102 + t74 * t103
+        + PUMA560_C(-0.4318) * t110)) * (PUMA560_C(2.0) * t111);
+    const puma560_real_t t113 = parameters[ZZ1] + (t107 + t108 * (t109 + t112))
         + PUMA560_C(3920.14984321) * parameters[IA1];
-    const puma560_real_t t118 = t34 * t47 - t36 * t39; /* link j6: column of the mass matrix */
-    const puma560_real_t t119 = PUMA560_C(0.4318) * t118;
-    const puma560_real_t t120 = t36 * t46 + t34 * t3 - t119;
-    const puma560_real_t t121 = t19 + PUMA560_C(0.0203) * t118;
-    const puma560_real_t t122 = t77 * t120 + t79 * t121 + (t119 + PUMA560_C(0.1254) * (t79 * t48
-        - t77 * t49));
-    const puma560_real_t t123 = t115 * (t79 * t120 - t77 * t121 + PUMA560_C(-0.1254) * t80);
-    const puma560_real_t t124 = t123 + t112 * t122;
-    const puma560_real_t t125 = t124 * t4;
-    const puma560_real_t t126 = t34 * t52; /* link j5: column of the mass matrix */
-    const puma560_real_t t127 = PUMA560_C(0.4318) * t126;
-    const puma560_real_t t128 = t36 * t51 - t34 * t9 - t127;
-    const puma560_real_t t129 = t17 - PUMA560_C(0.0203) * t126;
-    const puma560_real_t t130 = t115 * (t79 * t128 + t77 * t129 + PUMA560_C(0.1254) * t82);
-    const puma560_real_t t131 = t77 * t128 - t79 * t129 + (t127 + PUMA560_C(0.1254) * (t79 * t53
-        + t77 * t42));
-    const puma560_real_t t132 = t130 + t112 * t131 + t124 * t5;
-    const puma560_real_t t133 = t132 * t21;
-    const puma560_real_t t134 = PUMA560_C(-0.4318) * t66; /* link j4: column of the mass matrix */
-    const puma560_real_t t135 = t105 + t134;
-    const puma560_real_t t136 = t28 - PUMA560_C(-0.0203) * t66;
-    const puma560_real_t t137 = t115 * (t77 * t136 - t79 * t135 + PUMA560_C(0.1254) * t78);
-    const puma560_real_t t138 = t134 + PUMA560_C(-0.1254) * (t79 * t44) - (t77 * t135 + t79 * t136);
-    const puma560_real_t t139 = t137 + t112 * t138 + t124 * t30 + t132 * t22;
-    const puma560_real_t t140 = t139 * t57;
-    const puma560_real_t t141 = t117 - t124 * t125 + t132 * t133 + t139 * t140;
+    const puma560_real_t t114 = t32 * t45 - t34 * t37; /* link j6: column of the mass matrix */
+    const puma560_real_t t115 = PUMA560_C(0.4318) * t114;
+    const puma560_real_t t116 = t34 * t44 + t32 * t3 - t115;
+    const puma560_real_t t117 = t18 + PUMA560_C(0.0203) * t114;
+    const puma560_real_t t118 = t74 * t116 + t76 * t117 + (t115 + PUMA560_C(0.1254) * (t76 * t46
+        - t74 * t47));
+    const puma560_real_t t119 = t111 * (t76 * t116 - t74 * t117 + PUMA560_C(-0.1254) * t77);
+    const puma560_real_t t120 = t119 + t108 * t118;
+    const puma560_real_t t121 = t120 * t4;
+    const puma560_real_t t122 = t32 * t50; /* link j5: column of the mass matrix */
+    const puma560_real_t t123 = PUMA560_C(0.4318) * t122;
+    const puma560_real_t t124 = t34 * t49 - t32 * t9 - t123;
+    const puma560_real_t t125 = t16 - PUMA560_C(0.0203) * t122;
+    const puma560_real_t t126 = t111 * (t76 * t124 + t74 * t125 + PUMA560_C(0.1254) * t79);
+    const puma560_real_t t127 = t74 * t124 - t76 * t125 + (t123 + PUMA560_C(0.1254) * (t76 * t51
+        + t74 * t40));
+    const puma560_real_t t128 = t126 + t108 * t127 + t120 * t5;
+    const puma560_real_t t129 = t128 * t20;
+    const puma560_real_t t130 = PUMA560_C(-0.4318) * t64; /* link j4: column of the mass matrix */
+    const puma560_real_t t131 = t101 + t130;
+    const puma560_real_t t132 = t27 - PUMA560_C(-0.0203) * t64;
+    const puma560_real_t t133 = t111 * (t74 * t132 - t76 * t131 + PUMA560_C(0.1254) * t75);
+    const puma560_real_t t134 = t130 + PUMA560_C(-0.1254) * (t76 * t42) - (t74 * t131 + t76 * t132);
+    const puma560_real_t t135 = t133 + t108 * t134 + t120 * t29 + t128 * t21;
+    const puma560_real_t t136 = t135 * t55;
+    const puma560_real_t t137 = t113 - t120 * t121 + t128 * t129 + t135 * t136;
     /* link j4: inertia of it and all beyond */
-    const puma560_real_t t142 = t63 + t34 * t64 + PUMA560_C(0.0203) * t44 - parameters[XZ3];
-    const puma560_real_t t143 = parameters[YZ3] + t45;
-    const puma560_real_t t144 = t79 * t142 + t77 * t143; /* link j3: column of the mass matrix */
-    const puma560_real_t t145 = t77 * t142 - t79 * t143 + PUMA560_C(0.1254) * t114;
-    const puma560_real_t t146 = t115 * (t144 + PUMA560_C(0.1254) * t88) + t112 * t145 - t124 * t60;
-    const puma560_real_t t147 = t146 + t132 * t59 + t139 * t58;
-    const puma560_real_t t148 = t147 * t91;
+    const puma560_real_t t138 = t61 + t32 * t62 + PUMA560_C(0.0203) * t42 - parameters[XZ3];
+    const puma560_real_t t139 = parameters[YZ3] + t43;
+    const puma560_real_t t140 = t76 * t138 + t74 * t139; /* link j3: column of the mass matrix */
+    const puma560_real_t t141 = t74 * t138 - t76 * t139 + PUMA560_C(0.1254) * t110;
+    const puma560_real_t t142 = t111 * (t140 + PUMA560_C(0.1254) * t85) + t108 * t141 - t120 * t58;
+    const puma560_real_t t143 = t142 + t128 * t57 + t135 * t56;
+    const puma560_real_t t144 = t143 * t88;
     /* link j3: inertia of it and all beyond */
-    const puma560_real_t t149 = t144 + (PUMA560_C(0.4318) * t109 + PUMA560_C(0.1254) * (t88 + t97))
+    const puma560_real_t t145 = t140 + (PUMA560_C(0.4318) * t105 + PUMA560_C(0.1254) * (t85 + t94))
         - parameters[XZ2];
-    const puma560_real_t t150 = t115 * t149 + t112 * (t145 - parameters[YZ2]) + t124 * t95;
-    const puma560_real_t t151 = t150 - t132 * t94 - t139 * t93 - t147 * t92;
-    const puma560_real_t t152 = PUMA560_C(1.0) / t101;
-    const puma560_real_t t153 = t151 * t152;
-    const puma560_real_t t154 = puma560_bounded(t141 + t147 * t148 - t151 * t153);
+    const puma560_real_t t146 = t111 * t145 + t108 * (t141 - parameters[YZ2]) + t120 * t92;
+    const puma560_real_t t147 = t146 - t128 * t91 - t135 * t90 - t143 * t89;
+    const puma560_real_t t148 = PUMA560_C(1.0) / t98;
+    const puma560_real_t t149 = t147 * t148;
+    const puma560_real_t t150 = t137 + t143 * t144 - t147 * t149;
+    if (!(t150 > PUMA560_C(1.0e-12))) {
+        puma560_zero(out, 6);
+        return PUMA560_STATUS_PIVOT;
+    }
+    const puma560_real_t t151 = puma560_min(t11 + PUMA560_C(-1.0e-9) * t10, t30 + PUMA560_C(-1.0e-9) * t28);
+    const puma560_real_t t152 = puma560_min(t151, t73 + PUMA560_C(-1.0e-9) * t72);
+    const puma560_real_t t153 = puma560_min(t152, t98 + PUMA560_C(-1.0e-9) * t96);
+    const puma560_real_t t154 = puma560_min(t153, t150 + PUMA560_C(-1.0e-9) * t113);
     if (!(t154 > PUMA560_C(1.0e-12))) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }
-    const puma560_real_t t155 = t154 + PUMA560_C(-1.0e-9) * t117;
-    if (!(t155 > PUMA560_C(1.0e-12))) {
-        puma560_zero(out, 6);
-        return PUMA560_STATUS_PIVOT;
-    }
-    const puma560_real_t t156 = t115 * dq[0]; /* link j2: motion */
-    const puma560_real_t t157 = t112 * dq[0];
-    const puma560_real_t t158 = t79 * t156 + t77 * t157; /* link j3: motion */
-    const puma560_real_t t159 = t77 * t156 - t79 * t157;
-    const puma560_real_t t160 = t158 * t159;
-    const puma560_real_t t161 = dq[1] + dq[2];
-    const puma560_real_t t162 = t161 * t159;
-    const puma560_real_t t163 = PUMA560_C(-2.0) * t162; /* link j4: motion */
-    const puma560_real_t t164 = t34 * t163 - t36 * t160;
-    const puma560_real_t t165 = t34 * t161 + t36 * t158;
-    const puma560_real_t t166 = dq[3] + t159;
-    const puma560_real_t t167 = t165 * t166;
-    const puma560_real_t t168 = t164 + t167;
-    const puma560_real_t t169 = t16 * t165 - t14 * t166; /* link j5: motion */
-    const puma560_real_t t170 = t14 * t165 + t16 * t166;
-    const puma560_real_t t171 = t169 * t170;
-    const puma560_real_t t172 = t168 - t171; /* link j6: motion */
-    const puma560_real_t t173 = t34 * t160 + t36 * t163; /* link j4: motion */
-    const puma560_real_t t174 = t36 * t161 - t34 * t158;
-    const puma560_real_t t175 = t174 * t166;
-    const puma560_real_t t176 = t173 + t175;
-    const puma560_real_t t177 = t175 + t176; /* link j5: motion */
-    const puma560_real_t t178 = t165 * t174; /* link j4: motion */
-    const puma560_real_t t179 = t161 * t158; /* link j3: motion */
-    const puma560_real_t t180 = t178 - t179; /* link j5: motion */
-    const puma560_real_t t181 = t14 * t180 + t16 * t177;
-    const puma560_real_t t182 = dq[4] + t174;
-    const puma560_real_t t183 = t170 * t182;
-    const puma560_real_t t184 = t181 - t183;
-    const puma560_real_t t185 = t184 - t183; /* link j6: motion */
-    const puma560_real_t t186 = t1 * t172 - t2 * t185;
-    const puma560_real_t t187 = t1 * t169 - t2 * t182;
-    const puma560_real_t t188 = dq[5] + t170;
-    const puma560_real_t t189 = t187 * t188;
-    const puma560_real_t t190 = t186 + t189;
-    const puma560_real_t t191 = t2 * t172 + t1 * t185;
-    const puma560_real_t t192 = t2 * t169 + t1 * t182;
-    const puma560_real_t t193 = t192 * t188;
-    const puma560_real_t t194 = t191 + t193;
-    const puma560_real_t t195 = t193 + t194; /* link j6: force and moment */
-    const puma560_real_t t196 = parameters[XX6] * t190 + t189 * (parameters[ZZ6] - parameters[YY6])
-        + parameters[XY6] * t195;
-    const puma560_real_t t197 = t14 * t177 - t16 * t180; /* link j5: motion */
-    const puma560_real_t t198 = t169 * t182;
-    const puma560_real_t t199 = t197 + t198;
-    const puma560_real_t t200 = t192 * t187; /* link j6: motion */
-    const puma560_real_t t201 = t199 - t200; /* link j6: force and moment */
-    const puma560_real_t t202 = t187 * t187; /* link j6: motion */
-    const puma560_real_t t203 = t188 * t188;
-    const puma560_real_t t204 = t159 * t159; /* link j3: motion */
-    const puma560_real_t t205 = t161 * t161;
-    const puma560_real_t t206 = t205 + t204; /* link j4: motion */
-    const puma560_real_t t207 = t157 * t157; /* link j2: motion */
-    const puma560_real_t t208 = dq[1] * dq[1];
-    const puma560_real_t t209 = PUMA560_C(-9.81) * t115;
-    const puma560_real_t t210 = t209 + PUMA560_C(-0.4318) * (t207 + t208); /* link j3: columns */
-    const puma560_real_t t211 = t156 * t157; /* link j2: motion */
-    const puma560_real_t t212 = PUMA560_C(9.81) * t112;
-    const puma560_real_t t213 = t212 - PUMA560_C(0.4318) * t211; /* link j3: motion */
-    const puma560_real_t t214 = t79 * t210 - t77 * t213;
+    const puma560_real_t t155 = t111 * dq[0]; /* link j2: motion */
+    const puma560_real_t t156 = t108 * dq[0];
+    const puma560_real_t t157 = t76 * t155 + t74 * t156; /* link j3: motion */
+    const puma560_real_t t158 = t74 * t155 - t76 * t156;
+    const puma560_real_t t159 = t157 * t158;
+    const puma560_real_t t160 = dq[1] + dq[2];
+    const puma560_real_t t161 = t160 * t158;
+    const puma560_real_t t162 = PUMA560_C(-2.0) * t161; /* link j4: motion */
+    const puma560_real_t t163 = t32 * t162 - t34 * t159;
+    const puma560_real_t t164 = t32 * t160 + t34 * t157;
+    const puma560_real_t t165 = dq[3] + t158;
+    const puma560_real_t t166 = t164 * t165;
+    const puma560_real_t t167 = t163 + t166;
+    const puma560_real_t t168 = t15 * t164 - t13 * t165; /* link j5: motion */
+    const puma560_real_t t169 = t13 * t164 + t15 * t165;
+    const puma560_real_t t170 = t168 * t169;
+    const puma560_real_t t171 = t167 - t170; /* link j6: motion */
+    const puma560_real_t t172 = t32 * t159 + t34 * t162; /* link j4: motion */
+    const puma560_real_t t173 = t34 * t160 - t32 * t157;
+    const puma560_real_t t174 = t173 * t165;
+    const puma560_real_t t175 = t172 + t174;
+    const puma560_real_t t176 = t174 + t175; /* link j5: motion */
+    const puma560_real_t t177 = t164 * t173; /* link j4: motion */
+    const puma560_real_t t178 = t160 * t157; /* link j3: motion */
+    const puma560_real_t t179 = t177 - t178; /* link j5: motion */
+    const puma560_real_t t180 = t13 * t179 + t15 * t176;
+    const puma560_real_t t181 = dq[4] + t173;
+    const puma560_real_t t182 = t169 * t181;
+    const puma560_real_t t183 = t180 - t182;
+    const puma560_real_t t184 = t183 - t182; /* link j6: motion */
+    const puma560_real_t t185 = t1 * t171 - t2 * t184;
+    const puma560_real_t t186 = t1 * t168 - t2 * t181;
+    const puma560_real_t t187 = dq[5] + t169;
+    const puma560_real_t t188 = t186 * t187;
+    const puma560_real_t t189 = t185 + t188;
+    const puma560_real_t t190 = t2 * t171 + t1 * t184;
+    const puma560_real_t t191 = t2 * t168 + t1 * t181;
+    const puma560_real_t t192 = t191 * t187;
+    const puma560_real_t t193 = t190 + t192;
+    const puma560_real_t t194 = t192 + t193; /* link j6: force and moment */
+    const puma560_real_t t195 = parameters[XX6] * t189 + t188 * (parameters[ZZ6] - parameters[YY6])
+        + parameters[XY6] * t194;
+    const puma560_real_t t196 = t13 * t176 - t15 * t179; /* link j5: motion */
+    const puma560_real_t t197 = t168 * t181;
+    const puma560_real_t t198 = t196 + t197;
+    const puma560_real_t t199 = t191 * t186; /* link j6: motion */
+    const puma560_real_t t200 = t198 - t199; /* link j6: force and moment */
+    const puma560_real_t t201 = t186 * t186; /* link j6: motion */
+    const puma560_real_t t202 = t187 * t187;
+    const puma560_real_t t203 = t158 * t158; /* link j3: motion */
+    const puma560_real_t t204 = t160 * t160;
+    const puma560_real_t t205 = t204 + t203; /* link j4: motion */
+    const puma560_real_t t206 = t156 * t156; /* link j2: motion */
+    const puma560_real_t t207 = dq[1] * dq[1];
+    const puma560_real_t t208 = PUMA560_C(-9.81) * t111;
+    const puma560_real_t t209 = t208 + PUMA560_C(-0.4318) * (t206 + t207); /* link j3: columns */
+    const puma560_real_t t210 = t155 * t156; /* link j2: motion */
+    const puma560_real_t t211 = PUMA560_C(9.81) * t108;
+    const puma560_real_t t212 = t211 - PUMA560_C(0.4318) * t210; /* link j3: motion */
+    const puma560_real_t t213 = t76 * t209 - t74 * t212;
     /* link j4: motion */
-    const puma560_real_t t215 = t214 + (PUMA560_C(-0.0203) * t206 + PUMA560_C(-0.4318) * t160);
-    const puma560_real_t t216 = t156 * t156; /* link j2: motion */
-    const puma560_real_t t217 = dq[1] * t156;
+    const puma560_real_t t214 = t213 + (PUMA560_C(-0.0203) * t205 + PUMA560_C(-0.4318) * t159);
+    const puma560_real_t t215 = t155 * t155; /* link j2: motion */
+    const puma560_real_t t216 = dq[1] * t155;
     /* link j3: motion */
-    const puma560_real_t t218 = PUMA560_C(0.1254) * (t216 + t207) + PUMA560_C(0.8636) * t217;
+    const puma560_real_t t217 = PUMA560_C(0.1254) * (t215 + t206) + PUMA560_C(0.8636) * t216;
     /* link j4: motion */
-    const puma560_real_t t219 = t218 + (PUMA560_C(0.0406) * t179 - PUMA560_C(0.8636) * t162);
-    const puma560_real_t t220 = t36 * t215 + t34 * t219;
-    const puma560_real_t t221 = t158 * t158; /* link j3: motion */
-    const puma560_real_t t222 = t205 + t221; /* link j4: motion */
-    const puma560_real_t t223 = t77 * t210 + t79 * t213; /* link j3: motion */
+    const puma560_real_t t218 = t217 + (PUMA560_C(0.0406) * t178 - PUMA560_C(0.8636) * t161);
+    const puma560_real_t t219 = t34 * t214 + t32 * t218;
+    const puma560_real_t t220 = t157 * t157; /* link j3: motion */
+    const puma560_real_t t221 = t204 + t220; /* link j4: motion */
+    const puma560_real_t t222 = t74 * t209 + t76 * t212; /* link j3: motion */
     /* link j4: motion */
-    const puma560_real_t t224 = t223 + (PUMA560_C(0.0203) * t160 + PUMA560_C(0.4318) * t222);
-    const puma560_real_t t225 = t16 * t220 - t14 * t224; /* link j5: motion */
-    const puma560_real_t t226 = t34 * t215 - t36 * t219; /* link j4: motion */
-    const puma560_real_t t227 = t1 * t225 + t2 * t226; /* link j6: motion */
-    const puma560_real_t t228 = t14 * t220 + t16 * t224; /* link j5: motion */
+    const puma560_real_t t223 = t222 + (PUMA560_C(0.0203) * t159 + PUMA560_C(0.4318) * t221);
+    const puma560_real_t t224 = t15 * t219 - t13 * t223; /* link j5: motion */
+    const puma560_real_t t225 = t32 * t214 - t34 * t218; /* link j4: motion */
+    const puma560_real_t t226 = t1 * t224 + t2 * t225; /* link j6: motion */
+    const puma560_real_t t227 = t13 * t219 + t15 * t223; /* link j5: motion */
     /* link j6: force and moment */
-    const puma560_real_t t229 = t196 + parameters[XZ6] * t201 + parameters[YZ6] * (t202 - t203)
-        + (parameters[MZ6] * t227 - parameters[MY6] * t228);
-    const puma560_real_t t230 = t189 + t190;
-    const puma560_real_t t231 = parameters[YY6] * t194 + t193 * (parameters[ZZ6] - parameters[XX6])
-        + parameters[XY6] * t230;
-    const puma560_real_t t232 = t199 + t200;
-    const puma560_real_t t233 = t192 * t192; /* link j6: motion */
-    const puma560_real_t t234 = t2 * t225 - t1 * t226;
+    const puma560_real_t t228 = t195 + parameters[XZ6] * t200 + parameters[YZ6] * (t201 - t202)
+        + (parameters[MZ6] * t226 - parameters[MY6] * t227);
+    const puma560_real_t t229 = t188 + t189;
+    const puma560_real_t t230 = parameters[YY6] * t193 + t192 * (parameters[ZZ6] - parameters[XX6])
+        + parameters[XY6] * t229;
+    const puma560_real_t t231 = t198 + t199;
+    const puma560_real_t t232 = t191 * t191; /* link j6: motion */
+    const puma560_real_t t233 = t2 * t224 - t1 * t225;
     /* link j6: force and moment */
-    const puma560_real_t t235 = t231 + parameters[YZ6] * t232 + parameters[XZ6] * (t203 - t233)
-        + (parameters[MZ6] * t234 + parameters[MX6] * t228);
-    const puma560_real_t t236 = t198 + t199; /* link j6: motion */
+    const puma560_real_t t234 = t230 + parameters[YZ6] * t231 + parameters[XZ6] * (t202 - t232)
+        + (parameters[MZ6] * t233 + parameters[MX6] * t227);
+    const puma560_real_t t235 = t197 + t198; /* link j6: motion */
     /* link j5: force and moment */
-    const puma560_real_t t237 = parameters[XY5] * t236 - (parameters[XX5] * t184 + t183 * (parameters[YY5]
+    const puma560_real_t t236 = parameters[XY5] * t235 - (parameters[XX5] * t183 + t182 * (parameters[YY5]
         - parameters[ZZ5]));
-    const puma560_real_t t238 = t168 + t171; /* link j6: motion */
-    const puma560_real_t t239 = t170 * t170; /* link j5: motion */
-    const puma560_real_t t240 = t182 * t182;
+    const puma560_real_t t237 = t167 + t170; /* link j6: motion */
+    const puma560_real_t t238 = t169 * t169; /* link j5: motion */
+    const puma560_real_t t239 = t181 * t181;
     /* link j5: force and moment */
-    const puma560_real_t t241 = t237 - parameters[XZ5] * t238 + parameters[YZ5] * (t239 - t240)
-        + (parameters[MY5] * t226 + parameters[MZ5] * t228);
-    const puma560_real_t t242 = t241 - (t1 * t235 - t2 * t229); /* link j6: what it passes on */
+    const puma560_real_t t240 = t236 - parameters[XZ5] * t237 + parameters[YZ5] * (t238 - t239)
+        + (parameters[MY5] * t225 + parameters[MZ5] * t227);
+    const puma560_real_t t241 = t240 - (t1 * t234 - t2 * t228); /* link j6: what it passes on */
     /* link j5: force and moment */
-    const puma560_real_t t243 = t198 * (parameters[XX5] - parameters[ZZ5]) - parameters[YY5] * t199
-        + parameters[XY5] * t185;
-    const puma560_real_t t244 = t169 * t169; /* link j5: motion */
+    const puma560_real_t t242 = t197 * (parameters[XX5] - parameters[ZZ5]) - parameters[YY5] * t198
+        + parameters[XY5] * t184;
+    const puma560_real_t t243 = t168 * t168; /* link j5: motion */
     /* link j5: force and moment */
-    const puma560_real_t t245 = t243 + parameters[YZ5] * t172 + parameters[XZ5] * (t244 - t240)
-        + (parameters[MX5] * t226 - parameters[MZ5] * t225);
+    const puma560_real_t t244 = t242 + parameters[YZ5] * t171 + parameters[XZ5] * (t243 - t239)
+        + (parameters[MX5] * t225 - parameters[MZ5] * t224);
     /* link j6: force and moment */
-    const puma560_real_t t246 = t6 * t200 - parameters[ZZ6] * t199 - parameters[YZ6] * t191
-        - parameters[XZ6] * t186;
-    const puma560_real_t t247 = t246 + parameters[XY6] * (t202 - t233) + (parameters[MX6] * t227
-        + parameters[MY6] * t234);
-    const puma560_real_t t248 = t245 + t247; /* link j6: what it passes on */
-    const puma560_real_t t249 = t167 + t168; /* link j5: motion */
+    const puma560_real_t t245 = t6 * t199 - parameters[ZZ6] * t198 - parameters[YZ6] * t190
+        - parameters[XZ6] * t185;
+    const puma560_real_t t246 = t245 + parameters[XY6] * (t201 - t232) + (parameters[MX6] * t226
+        + parameters[MY6] * t233);
+    const puma560_real_t t247 = t244 + t246; /* link j6: what it passes on */
+    const puma560_real_t t248 = t166 + t167; /* link j5: motion */
     /* link j4: force and moment */
-    const puma560_real_t t250 = t175 * (parameters[YY4] - parameters[ZZ4]) - parameters[XX4] * t176
-        + parameters[XY4] * t249;
-    const puma560_real_t t251 = t179 + t178; /* link j5: motion */
-    const puma560_real_t t252 = t174 * t174; /* link j4: motion */
-    const puma560_real_t t253 = t166 * t166;
+    const puma560_real_t t249 = t174 * (parameters[YY4] - parameters[ZZ4]) - parameters[XX4] * t175
+        + parameters[XY4] * t248;
+    const puma560_real_t t250 = t178 + t177; /* link j5: motion */
+    const puma560_real_t t251 = t173 * t173; /* link j4: motion */
+    const puma560_real_t t252 = t165 * t165;
     /* link j4: force and moment */
-    const puma560_real_t t254 = t250 + parameters[XZ4] * t251 + parameters[YZ4] * (t252 - t253)
-        + (parameters[MZ4] * t226 - parameters[MY4] * t224);
-    const puma560_real_t t255 = t254 + (t16 * t242 + t14 * t248); /* link j5: what it passes on */
+    const puma560_real_t t253 = t249 + parameters[XZ4] * t250 + parameters[YZ4] * (t251 - t252)
+        + (parameters[MZ4] * t225 - parameters[MY4] * t223);
+    const puma560_real_t t254 = t253 + (t15 * t241 + t13 * t247); /* link j5: what it passes on */
     /* link j5: force and moment */
-    const puma560_real_t t256 = parameters[ZZ5] * t168 + t171 * (parameters[YY5] - parameters[XX5])
-        - parameters[YZ5] * t197;
-    const puma560_real_t t257 = t256 + parameters[XZ5] * t181 + parameters[XY5] * (t239 - t244)
-        + (parameters[MX5] * t228 + parameters[MY5] * t225);
-    const puma560_real_t t258 = t257 + (t1 * t229 + t2 * t235); /* link j6: what it passes on */
+    const puma560_real_t t255 = parameters[ZZ5] * t167 + t170 * (parameters[YY5] - parameters[XX5])
+        - parameters[YZ5] * t196;
+    const puma560_real_t t256 = t255 + parameters[XZ5] * t180 + parameters[XY5] * (t238 - t243)
+        + (parameters[MX5] * t227 + parameters[MY5] * t224);
+    const puma560_real_t t257 = t256 + (t1 * t228 + t2 * t234); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const puma560_real_t t259 = t167 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t168
-        + parameters[XY4] * t177;
-    const puma560_real_t t260 = t165 * t165; /* link j4: motion */
+    const puma560_real_t t258 = t166 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t167
+        + parameters[XY4] * t176;
+    const puma560_real_t t259 = t164 * t164; /* link j4: motion */
     /* link j4: force and moment */
-    const puma560_real_t t261 = t259 + parameters[YZ4] * t180 + parameters[XZ4] * (t260 - t253)
-        - (parameters[MZ4] * t220 + parameters[MX4] * t224);
-    const puma560_real_t t262 = t261 - t258; /* link j5: what it passes on */
+    const puma560_real_t t260 = t258 + parameters[YZ4] * t179 + parameters[XZ4] * (t259 - t252)
+        - (parameters[MZ4] * t219 + parameters[MX4] * t223);
+    const puma560_real_t t261 = t260 - t257; /* link j5: what it passes on */
     /* link j6: force and moment */
-    const puma560_real_t t263 = parameters[MX6] * (t202 + t203) + parameters[MY6] * t232
-        - parameters[MZ6] * t191;
-    const puma560_real_t t264 = t263 - parameters[M6] * t234;
-    const puma560_real_t t265 = parameters[MX6] * t201 - parameters[MY6] * (t233 + t203)
-        - parameters[MZ6] * t186;
-    const puma560_real_t t266 = t265 - parameters[M6] * t227;
+    const puma560_real_t t262 = parameters[MX6] * (t201 + t202) + parameters[MY6] * t231
+        - parameters[MZ6] * t190;
+    const puma560_real_t t263 = t262 - parameters[M6] * t233;
+    const puma560_real_t t264 = parameters[MX6] * t200 - parameters[MY6] * (t232 + t202)
+        - parameters[MZ6] * t185;
+    const puma560_real_t t265 = t264 - parameters[M6] * t226;
     /* link j5: force and moment */
-    const puma560_real_t t267 = parameters[MX5] * (t239 + t240) - parameters[MY5] * t172
-        - parameters[MZ5] * t197;
+    const puma560_real_t t266 = parameters[MX5] * (t238 + t239) - parameters[MY5] * t171
+        - parameters[MZ5] * t196;
     /* link j6: what it passes on */
-    const puma560_real_t t268 = t267 - parameters[M5] * t225 + (t2 * t264 + t1 * t266);
+    const puma560_real_t t267 = t266 - parameters[M5] * t224 + (t2 * t263 + t1 * t265);
     /* link j5: force and moment */
-    const puma560_real_t t269 = parameters[MX5] * t238 + parameters[MY5] * (t244 + t240)
-        - parameters[MZ5] * t181;
+    const puma560_real_t t268 = parameters[MX5] * t237 + parameters[MY5] * (t243 + t239)
+        - parameters[MZ5] * t180;
     /* link j6: force and moment */
-    const puma560_real_t t270 = parameters[MX6] * t195 - parameters[MY6] * t230 + parameters[MZ6] * (t233
-        + t202);
+    const puma560_real_t t269 = parameters[MX6] * t194 - parameters[MY6] * t229 + parameters[MZ6] * (t232
+        + t201);
     /* link j6: what it passes on */
-    const puma560_real_t t271 = parameters[M5] * t228 + t269 + (parameters[M6] * t228 + t270);
+    const puma560_real_t t270 = parameters[M5] * t227 + t268 + (parameters[M6] * t227 + t269);
     /* link j4: force and moment */
-    const puma560_real_t t272 = parameters[MY4] * t180 - parameters[MX4] * (t252 + t253)
-        + parameters[MZ4] * t164;
+    const puma560_real_t t271 = parameters[MY4] * t179 - parameters[MX4] * (t251 + t252)
+        + parameters[MZ4] * t163;
     /* link j5: what it passes on */
-    const puma560_real_t t273 = parameters[M4] * t220 + t272 + (t14 * t271 - t16 * t268);
+    const puma560_real_t t272 = parameters[M4] * t219 + t271 + (t13 * t270 - t15 * t267);
     /* link j5: force and moment */
-    const puma560_real_t t274 = parameters[MX5] * t236 + parameters[MY5] * t185 + parameters[MZ5] * (t244
-        + t239);
+    const puma560_real_t t273 = parameters[MX5] * t235 + parameters[MY5] * t184 + parameters[MZ5] * (t243
+        + t238);
     /* link j6: what it passes on */
-    const puma560_real_t t275 = t274 - parameters[M5] * t226 - (t1 * t264 - t2 * t266);
+    const puma560_real_t t274 = t273 - parameters[M5] * t225 - (t1 * t263 - t2 * t265);
     /* link j4: force and moment */
-    const puma560_real_t t276 = parameters[MX4] * t251 - parameters[MY4] * (t260 + t253)
-        + parameters[MZ4] * t173;
-    const puma560_real_t t277 = t276 - parameters[M4] * t226 + t275; /* link j5: what it passes on */
-    const puma560_real_t t278 = t34 * t273 + t36 * t277; /* link j4: what it passes on */
-    const puma560_real_t t279 = PUMA560_C(2.0) * t179; /* link j4: motion */
+    const puma560_real_t t275 = parameters[MX4] * t250 - parameters[MY4] * (t259 + t252)
+        + parameters[MZ4] * t172;
+    const puma560_real_t t276 = t275 - parameters[M4] * t225 + t274; /* link j5: what it passes on */
+    const puma560_real_t t277 = t32 * t272 + t34 * t276; /* link j4: what it passes on */
+    const puma560_real_t t278 = PUMA560_C(2.0) * t178; /* link j4: motion */
     /* link j3: force and moment */
-    const puma560_real_t t280 = parameters[XX3] * t162 + t162 * (parameters[ZZ3] - parameters[YY3])
-        + parameters[XY3] * t279;
-    const puma560_real_t t281 = t280 - parameters[XZ3] * t160 + parameters[YZ3] * (t204 - t205)
-        + (parameters[MZ3] * t223 - parameters[MY3] * t218);
+    const puma560_real_t t279 = parameters[XX3] * t161 + t161 * (parameters[ZZ3] - parameters[YY3])
+        + parameters[XY3] * t278;
+    const puma560_real_t t280 = t279 - parameters[XZ3] * t159 + parameters[YZ3] * (t203 - t204)
+        + (parameters[MZ3] * t222 - parameters[MY3] * t217);
     /* link j4: what it passes on */
-    const puma560_real_t t282 = t281 + (t36 * t255 + t34 * t262 + PUMA560_C(-0.4318) * t278);
+    const puma560_real_t t281 = t280 + (t34 * t254 + t32 * t261 + PUMA560_C(-0.4318) * t277);
     /* link j4: force and moment */
-    const puma560_real_t t283 = t178 * (parameters[XX4] - parameters[YY4]) - parameters[ZZ4] * t179
-        - parameters[YZ4] * t164;
-    const puma560_real_t t284 = t283 + parameters[XZ4] * t173 + parameters[XY4] * (t252 - t260)
-        + (parameters[MX4] * t226 + parameters[MY4] * t220);
-    const puma560_real_t t285 = t284 + (t16 * t248 - t14 * t242); /* link j5: what it passes on */
+    const puma560_real_t t282 = t177 * (parameters[XX4] - parameters[YY4]) - parameters[ZZ4] * t178
+        - parameters[YZ4] * t163;
+    const puma560_real_t t283 = t282 + parameters[XZ4] * t172 + parameters[XY4] * (t251 - t259)
+        + (parameters[MX4] * t225 + parameters[MY4] * t219);
+    const puma560_real_t t284 = t283 + (t15 * t247 - t13 * t241); /* link j5: what it passes on */
     /* link j3: force and moment */
-    const puma560_real_t t286 = parameters[YY3] * t179 - t179 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t163;
-    const puma560_real_t t287 = t286 + parameters[YZ3] * t160 + parameters[XZ3] * (t205 - t221)
-        + (parameters[MZ3] * t214 + parameters[MX3] * t218);
-    const puma560_real_t t288 = t287 - (t285 + PUMA560_C(-0.0203) * t278); /* link j4: what it passes on */
-    const puma560_real_t t289 = t36 * t273 - t34 * t277;
-    const puma560_real_t t290 = parameters[MX3] * t206 + parameters[MY3] * t160 - parameters[M3] * t214
-        - t289;
+    const puma560_real_t t285 = parameters[YY3] * t178 - t178 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t162;
+    const puma560_real_t t286 = t285 + parameters[YZ3] * t159 + parameters[XZ3] * (t204 - t220)
+        + (parameters[MZ3] * t213 + parameters[MX3] * t217);
+    const puma560_real_t t287 = t286 - (t284 + PUMA560_C(-0.0203) * t277); /* link j4: what it passes on */
+    const puma560_real_t t288 = t34 * t272 - t32 * t276;
+    const puma560_real_t t289 = parameters[MX3] * t205 + parameters[MY3] * t159 - parameters[M3] * t213
+        - t288;
     /* link j4: force and moment */
-    const puma560_real_t t291 = parameters[MX4] * t249 + parameters[MY4] * t177 + parameters[MZ4] * (t260
-        + t252);
+    const puma560_real_t t290 = parameters[MX4] * t248 + parameters[MY4] * t176 + parameters[MZ4] * (t259
+        + t251);
     /* link j5: what it passes on */
-    const puma560_real_t t292 = parameters[M4] * t224 + t291 + (t14 * t268 + t16 * t271);
+    const puma560_real_t t291 = parameters[M4] * t223 + t290 + (t13 * t267 + t15 * t270);
     /* link j4: what it passes on */
-    const puma560_real_t t293 = parameters[M3] * t223 + (parameters[MX3] * t160 + parameters[MY3] * t222)
-        + t292;
-    const puma560_real_t t294 = t77 * t290 + t79 * t293; /* link j3: what it passes on */
-    const puma560_real_t t295 = dq[1] * t157; /* link j2: motion */
+    const puma560_real_t t292 = parameters[M3] * t222 + (parameters[MX3] * t159 + parameters[MY3] * t221)
+        + t291;
+    const puma560_real_t t293 = t74 * t289 + t76 * t292; /* link j3: what it passes on */
+    const puma560_real_t t294 = dq[1] * t156; /* link j2: motion */
     /* link j2: force and moment */
-    const puma560_real_t t296 = t295 * (parameters[YY2] - parameters[ZZ2]) - t295 * parameters[XX2]
-        + PUMA560_C(2.0) * t217 * parameters[XY2];
-    const puma560_real_t t297 = t296 + t211 * parameters[XZ2] + (t207 - t208) * parameters[YZ2]
-        + t212 * parameters[MZ2];
+    const puma560_real_t t295 = t294 * (parameters[YY2] - parameters[ZZ2]) - t294 * parameters[XX2]
+        + PUMA560_C(2.0) * t216 * parameters[XY2];
+    const puma560_real_t t296 = t295 + t210 * parameters[XZ2] + (t206 - t207) * parameters[YZ2]
+        + t211 * parameters[MZ2];
     /* link j3: what it passes on */
-    const puma560_real_t t298 = t297 + (t79 * t282 - t77 * t288 + PUMA560_C(0.1254) * t294);
+    const puma560_real_t t297 = t296 + (t76 * t281 - t74 * t287 + PUMA560_C(0.1254) * t293);
     /* link j3: force and moment */
-    const puma560_real_t t299 = parameters[MX3] * t279 + parameters[MY3] * t163 + parameters[MZ3] * (t221
-        + t204);
+    const puma560_real_t t298 = parameters[MX3] * t278 + parameters[MY3] * t162 + parameters[MZ3] * (t220
+        + t203);
     /* link j3: what it passes on */
-    const puma560_real_t t300 = PUMA560_C(0.1254) * (t77 * t293 - t79 * t290)
-        + PUMA560_C(0.4318) * (parameters[M3] * t218 + t299 + t278);
+    const puma560_real_t t299 = PUMA560_C(0.1254) * (t74 * t292 - t76 * t289)
+        + PUMA560_C(0.4318) * (parameters[M3] * t217 + t298 + t277);
     /* link j2: force and moment */
-    const puma560_real_t t301 = t217 * parameters[YY2] + t217 * (parameters[ZZ2] - parameters[XX2])
-        + PUMA560_C(-2.0) * t295 * parameters[XY2];
-    const puma560_real_t t302 = t301 - t211 * parameters[YZ2] + (t208 - t216) * parameters[XZ2]
-        + t209 * parameters[MZ2];
+    const puma560_real_t t300 = t216 * parameters[YY2] + t216 * (parameters[ZZ2] - parameters[XX2])
+        + PUMA560_C(-2.0) * t294 * parameters[XY2];
+    const puma560_real_t t301 = t300 - t210 * parameters[YZ2] + (t207 - t215) * parameters[XZ2]
+        + t208 * parameters[MZ2];
     /* link j2: what it passes on */
-    const puma560_real_t t303 = t112 * (t302 + (t77 * t282 + t79 * t288 + t300));
-    const puma560_real_t t304 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
-    const puma560_real_t t305 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1]
-        - t304 * parameters[FC1]) + (t115 * t298 + t303);
-    const puma560_real_t t306 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
-    const puma560_real_t t307 = PUMA560_C(76.686) * (PUMA560_C(-76.686) * dq[5] * parameters[FV6]
-        - t306 * parameters[FC6]) + t247;
-    const puma560_real_t t308 = PUMA560_C(5.368020000000001) * input[5] + t307;
-    const puma560_real_t t309 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
-    const puma560_real_t t310 = PUMA560_C(71.923) * (PUMA560_C(-71.923) * dq[4] * parameters[FV5]
-        - t309 * parameters[FC5]) + t258;
-    const puma560_real_t t311 = PUMA560_C(5.034610000000001) * input[4] + t310 + t308 * t5;
-    const puma560_real_t t312 = PUMA560_C(-14.400553) * input[0] + t305 - t308 * t125 + t311 * t133;
-    const puma560_real_t t313 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
-    const puma560_real_t t314 = PUMA560_C(76.0364) * (PUMA560_C(-76.0364) * dq[3] * parameters[FV4]
-        - t313 * parameters[FC4]) + t285;
-    const puma560_real_t t315 = PUMA560_C(5.322548) * input[3] + t314 + t308 * t30 + t311 * t22;
+    const puma560_real_t t302 = t108 * (t301 + (t74 * t281 + t76 * t287 + t299));
+    const puma560_real_t t303 = puma560_sign(dq[0]); /* joint j1: coulomb_friction */
+    const puma560_real_t t304 = PUMA560_C(62.6111) * (PUMA560_C(-62.6111) * dq[0] * parameters[FV1]
+        - t303 * parameters[FC1]) + (t111 * t297 + t302);
+    const puma560_real_t t305 = puma560_sign(dq[5]); /* joint j6: coulomb_friction */
+    const puma560_real_t t306 = PUMA560_C(76.686) * (PUMA560_C(-76.686) * dq[5] * parameters[FV6]
+        - t305 * parameters[FC6]) + t246;
+    const puma560_real_t t307 = PUMA560_C(5.368020000000001) * input[5] + t306;
+    const puma560_real_t t308 = puma560_sign(dq[4]); /* joint j5: coulomb_friction */
+    const puma560_real_t t309 = PUMA560_C(71.923) * (PUMA560_C(-71.923) * dq[4] * parameters[FV5]
+        - t308 * parameters[FC5]) + t257;
+    const puma560_real_t t310 = PUMA560_C(5.034610000000001) * input[4] + t309 + t307 * t5;
+    const puma560_real_t t311 = PUMA560_C(-14.400553) * input[0] + t304 - t307 * t121 + t310 * t129;
+    const puma560_real_t t312 = puma560_sign(dq[3]); /* joint j4: coulomb_friction */
+    const puma560_real_t t313 = PUMA560_C(76.0364) * (PUMA560_C(-76.0364) * dq[3] * parameters[FV4]
+        - t312 * parameters[FC4]) + t284;
+    const puma560_real_t t314 = PUMA560_C(5.322548) * input[3] + t313 + t307 * t29 + t310 * t21;
     /* link j4: what it passes on */
-    const puma560_real_t t316 = t34 * t255 - t36 * t262 + (PUMA560_C(0.0203) * t292
-        + PUMA560_C(0.4318) * t289);
+    const puma560_real_t t315 = t32 * t254 - t34 * t261 + (PUMA560_C(0.0203) * t291
+        + PUMA560_C(0.4318) * t288);
     /* link j3: force and moment */
-    const puma560_real_t t317 = t160 * (parameters[YY3] - parameters[XX3]) + parameters[XY3] * (t204 - t221)
-        + (parameters[MX3] * t223 + parameters[MY3] * t214);
-    const puma560_real_t t318 = t317 + t316; /* link j4: what it passes on */
-    const puma560_real_t t319 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
-    const puma560_real_t t320 = PUMA560_C(53.7063) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3]
-        - t319 * parameters[FC3]) + t318;
-    const puma560_real_t t321 = PUMA560_C(-12.352449) * input[2] + t320 - t308 * t60 + t311 * t59;
-    const puma560_real_t t322 = t321 + t315 * t58;
+    const puma560_real_t t316 = t159 * (parameters[YY3] - parameters[XX3]) + parameters[XY3] * (t203 - t220)
+        + (parameters[MX3] * t222 + parameters[MY3] * t213);
+    const puma560_real_t t317 = t316 + t315; /* link j4: what it passes on */
+    const puma560_real_t t318 = puma560_sign(dq[2]); /* joint j3: coulomb_friction */
+    const puma560_real_t t319 = PUMA560_C(53.7063) * (PUMA560_C(-53.7063) * dq[2] * parameters[FV3]
+        - t318 * parameters[FC3]) + t317;
+    const puma560_real_t t320 = PUMA560_C(-12.352449) * input[2] + t319 - t307 * t58 + t310 * t57;
+    const puma560_real_t t321 = t320 + t314 * t56;
     /* link j2: force and moment */
-    const puma560_real_t t323 = t211 * (parameters[XX2] - parameters[YY2]) + (t207 - t216) * parameters[XY2]
-        + (t212 * parameters[MX2] + t209 * parameters[MY2]);
-    const puma560_real_t t324 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
-    const puma560_real_t t325 = PUMA560_C(107.815) * (PUMA560_C(-107.815) * dq[1] * parameters[FV2]
-        - t324 * parameters[FC2]) + (t323 + (t318 + PUMA560_C(0.4318) * t294));
-    const puma560_real_t t326 = PUMA560_C(24.79745) * input[1] + t325 + t308 * t95 - t311 * t94;
-    const puma560_real_t t327 = t326 - t315 * t93 - t322 * t92;
-    const puma560_real_t t328 = t327 * t153 - (t312 + t315 * t140 + t322 * t148);
-    const puma560_real_t t329 = PUMA560_C(-1.0) / t154;
-    const puma560_real_t t330 = puma560_bounded(t328 * t329);
-    out[0] = t330;
-    const puma560_real_t t331 = puma560_bounded(t327 * t152 - t153 * t330);
-    out[1] = t331;
-    const puma560_real_t t332 = puma560_bounded(t148 * t330 - t322 * t91 - t92 * t331);
-    out[2] = t332;
-    const puma560_real_t t333 = puma560_bounded(t58 * t332 - (t315 * t57 - t140 * t330 + t93 * t331));
-    out[3] = t333;
-    const puma560_real_t t334 = t311 * t21 - t133 * t330 + t94 * t331 - t59 * t332;
-    const puma560_real_t t335 = puma560_bounded(t22 * t333 - t334);
-    out[4] = t335;
-    const puma560_real_t t336 = t308 * t4 - t125 * t330 + t95 * t331 - t60 * t332;
-    out[5] = t336 + t30 * t333 + t5 * t335;
-    if (!puma560_all_bounded(out, 6)) {
+    const puma560_real_t t322 = t210 * (parameters[XX2] - parameters[YY2]) + (t206 - t215) * parameters[XY2]
+        + (t211 * parameters[MX2] + t208 * parameters[MY2]);
+    const puma560_real_t t323 = puma560_sign(dq[1]); /* joint j2: coulomb_friction */
+    const puma560_real_t t324 = PUMA560_C(107.815) * (PUMA560_C(-107.815) * dq[1] * parameters[FV2]
+        - t323 * parameters[FC2]) + (t322 + (t317 + PUMA560_C(0.4318) * t293));
+    const puma560_real_t t325 = PUMA560_C(24.79745) * input[1] + t324 + t307 * t92 - t310 * t91;
+    const puma560_real_t t326 = t325 - t314 * t90 - t321 * t89;
+    const puma560_real_t t327 = t326 * t149 - (t311 + t314 * t136 + t321 * t144);
+    const puma560_real_t t328 = PUMA560_C(-1.0) / t150;
+    const puma560_real_t t329 = puma560_held(t327 * t328);
+    out[0] = t329;
+    const puma560_real_t t330 = puma560_held(t326 * t148 - t149 * t329);
+    out[1] = t330;
+    const puma560_real_t t331 = puma560_held(t144 * t329 - t321 * t88 - t89 * t330);
+    out[2] = t331;
+    const puma560_real_t t332 = puma560_held(t56 * t331 - (t314 * t55 - t136 * t329 + t90 * t330));
+    out[3] = t332;
+    const puma560_real_t t333 = t310 * t20 - t129 * t329 + t91 * t330 - t57 * t331;
+    const puma560_real_t t334 = puma560_held(t21 * t332 - t333);
+    out[4] = t334;
+    const puma560_real_t t335 = t307 * t4 - t121 * t329 + t92 * t330 - t58 * t331;
+    out[5] = t335 + t29 * t332 + t5 * t334;
+    if (!puma560_bounded(out, 6)) {
         puma560_zero(out, 6);
         return PUMA560_STATUS_PIVOT;
     }

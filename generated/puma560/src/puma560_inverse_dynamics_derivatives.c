@@ -85,7 +85,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -375,683 +375,670 @@ puma560_status_t puma560_inverse_dynamics_derivatives(
     const puma560_real_t t175 = parameters[FV6] * (PUMA560_C(76.686) * dq[5]) + parameters[FC6] * t174
         + parameters[IA6] * (PUMA560_C(76.686) * ddq[5]);
     input[5] = PUMA560_C(14.285714285714285) * t175 + PUMA560_C(-0.1862884266452062) * t94;
-    const puma560_real_t t176 = parameters[XZ6] * t54;
-    const puma560_real_t t177 = parameters[XY6] * t99;
-    const puma560_real_t t178 = t176 + t177;
-    const puma560_real_t t179 = parameters[YZ6] * t53;
-    const puma560_real_t t180 = t177 + t179;
-    const puma560_real_t t181 = PUMA560_C(0.5) * (parameters[XX6R] + parameters[ZZ6]);
-    const puma560_real_t t182 = t181 - parameters[XX6R];
-    const puma560_real_t t183 = t99 * t182 - parameters[XZ6] * t53;
-    const puma560_real_t t184 = parameters[YZ6] * t54 - t99 * t181;
-    /* link j6: inertia, momentum beyond */
-    const puma560_real_t t185 = t47 * (t183 + t184) - t30 * (t178 + t180);
-    const puma560_real_t t186 = t30 * t185;
-    const puma560_real_t t187 = parameters[XZ5] * t16;
-    const puma560_real_t t188 = parameters[XY5] * t43;
-    const puma560_real_t t189 = t187 - t188 + (t180 + t186);
-    const puma560_real_t t190 = t176 - t179;
-    const puma560_real_t t191 = parameters[YZ5] * t15;
-    const puma560_real_t t192 = t188 + t191 + t190;
-    const puma560_real_t t193 = t181 - parameters[ZZ6];
-    const puma560_real_t t194 = t54 * t193 - parameters[YZ6] * t99;
-    const puma560_real_t t195 = t53 * t193 - parameters[XZ6] * t99;
-    const puma560_real_t t196 = PUMA560_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    const puma560_real_t t197 = parameters[YZ5] * t16 + t43 * t196 + (t30 * t194 + t47 * t195);
-    const puma560_real_t t198 = parameters[XY6] * t53 + t54 * t182;
-    const puma560_real_t t199 = t53 * t181 + parameters[XY6] * t54;
-    const puma560_real_t t200 = parameters[XX5R] - t196;
-    const puma560_real_t t201 = t43 * t200 + parameters[XZ5] * t15 - (t30 * t198 + t47 * t199);
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t202 = t10 * (t192 - t189) + t14 * (t197 + t201);
-    const puma560_real_t t203 = t10 * t202;
-    const puma560_real_t t204 = parameters[XZ4] * t31;
-    const puma560_real_t t205 = parameters[XY4] * t13;
-    const puma560_real_t t206 = t204 + t205 - (t192 - t203);
-    const puma560_real_t t207 = t187 + t191 + (t178 + t186); /* link j6: inertia, momentum beyond */
-    const puma560_real_t t208 = parameters[YZ4] * t9;
-    const puma560_real_t t209 = t207 - (t205 + t208); /* link j5: inertia, momentum beyond */
-    const puma560_real_t t210 = t47 * t185; /* link j6: inertia, momentum beyond */
-    const puma560_real_t t211 = parameters[ZZ5R] - t196;
-    const puma560_real_t t212 = t16 * t211 - parameters[YZ5] * t43 + (t184 - t210);
-    const puma560_real_t t213 = parameters[XZ5] * t43 + t15 * t211 + (t47 * t198 - t30 * t199);
-    const puma560_real_t t214 = PUMA560_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t215 = parameters[YZ4] * t31 - t13 * t214 + (t10 * t212 - t14 * t213);
-    /* link j6: inertia, momentum beyond */
-    const puma560_real_t t216 = t183 - t210 - (parameters[XY5] * t15 + t16 * t200);
-    const puma560_real_t t217 = t15 * t196 - parameters[XY5] * t16 + (t30 * t195 - t47 * t194);
-    const puma560_real_t t218 = parameters[XX4R] - t214;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t219 = t13 * t218 + parameters[XZ4] * t9 + (t14 * t217 - t10 * t216);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t220 = t6 * (t206 - t209) + t8 * (t219 - t215);
-    const puma560_real_t t221 = t6 * t220;
-    const puma560_real_t t222 = parameters[MY6] * t99;
-    const puma560_real_t t223 = parameters[MX6] * t99;
-    /* link j6: inertia, momentum beyond */
-    const puma560_real_t t224 = parameters[MY5R] * t43 + (t30 * t222 + t47 * t223);
-    const puma560_real_t t225 = parameters[MY6] * t53 - parameters[MX6] * t54;
-    const puma560_real_t t226 = parameters[MX5] * t43 - t225;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t227 = parameters[MY4R] * t13 + (t10 * t224 + t14 * t226);
-    /* link j6: inertia, momentum beyond */
-    const puma560_real_t t228 = parameters[MY5R] * t15 + parameters[MX5] * t16 - (t47 * t222 - t30 * t223);
-    const puma560_real_t t229 = parameters[MX4] * t13 + t228; /* link j5: inertia, momentum beyond */
-    const puma560_real_t t230 = t6 * t227 + t8 * t229; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t231 = PUMA560_C(-0.0203) * t230;
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t232 = t30 * parameters[MY6] + t47 * parameters[MX6];
-    const puma560_real_t t233 = parameters[MY4R] + t232; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t234 = t30 * parameters[MX6] - t47 * parameters[MY6];
-    const puma560_real_t t235 = parameters[MX5] + t234; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t236 = t10 * t235 - t14 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const puma560_real_t t237 = parameters[MX4] + t236; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t238 = t6 * t237 - t8 * t233; /* link j4: column of the mass matrix */
-    const puma560_real_t t239 = PUMA560_C(0.4318) * t7; /* link j4: velocity of its origin */
-    const puma560_real_t t240 = t238 * t239; /* link j4: inertia, momentum beyond */
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t241 = parameters[MY4R] * t9 - parameters[MX4] * t31 + (t14 * t224 - t10 * t226);
-    const puma560_real_t t242 = PUMA560_C(0.4318) * t241; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t243 = t6 * t233 + t8 * t237; /* link j4: column of the mass matrix */
-    const puma560_real_t t244 = PUMA560_C(0.4318) * t5 + PUMA560_C(0.0203) * t12;
-    const puma560_real_t t245 = t243 * t244; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t246 = t10 * parameters[MY5R] + t14 * t235; /* link j5: column of the mass matrix */
-    const puma560_real_t t247 = PUMA560_C(0.0203) * t7; /* link j4: velocity of its origin */
-    const puma560_real_t t248 = t246 * t247; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t249 = t242 - t231 - (t248 - t240 + t245);
-    const puma560_real_t t250 = parameters[XZ3] * t12;
-    const puma560_real_t t251 = parameters[XY3R] * t7;
-    const puma560_real_t t252 = t251 - t250 + (t249 + (t209 + t221 + (t231 - t240)));
-    const puma560_real_t t253 = t204 - t208 + (t189 + t203); /* link j5: inertia, momentum beyond */
-    const puma560_real_t t254 = parameters[YZ3] * t5;
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t255 = t251 + t254 - (t249 - (t253 + (t242 - t248)));
-    const puma560_real_t t256 = t14 * t202; /* link j5: inertia, momentum beyond */
-    const puma560_real_t t257 = t214 - parameters[ZZ4R];
-    const puma560_real_t t258 = parameters[YZ4] * t13 - t31 * t257 - (t197 - t256);
-    const puma560_real_t t259 = t9 * t257 - parameters[XZ4] * t13 + (t14 * t216 + t10 * t217);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t260 = t8 * t259 - t6 * t258 + (PUMA560_C(0.4318) * t230 + t246 * t239);
-    const puma560_real_t t261 = PUMA560_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const puma560_real_t t262 = parameters[YZ3] * t12 + t7 * t261 + t260;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t263 = parameters[XY4] * t9 - t31 * t218 + (t256 - t201);
-    const puma560_real_t t264 = t9 * t214 + parameters[XY4] * t31 - (t14 * t212 + t10 * t213);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t265 = t6 * t263 + t8 * t264 - (PUMA560_C(0.0203) * t241 - t238 * t247);
-    const puma560_real_t t266 = parameters[XX3R] - t261;
-    const puma560_real_t t267 = t7 * t266 + parameters[XZ3] * t5 - t265;
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t268 = t1 * (t252 + t255) + t3 * (t262 + t267);
-    const puma560_real_t t269 = t1 * t268;
-    const puma560_real_t t270 = parameters[MY3R] * t7 + t230; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t271 = t241 - parameters[MX3R] * t7;
-    const puma560_real_t t272 = t1 * t270 - t3 * t271; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t273 = PUMA560_C(0.4318) * t272;
-    const puma560_real_t t274 = parameters[MX3R] + t238; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t275 = parameters[MY3R] + t246;
-    const puma560_real_t t276 = t1 * t274 - t3 * t275; /* link j3: column of the mass matrix */
-    const puma560_real_t t277 = PUMA560_C(-0.1254) * t63; /* link j3: velocity of its origin */
-    const puma560_real_t t278 = t276 * t277; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t279 = t8 * t227 - t6 * t229; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t280 = t279 - (parameters[MY3R] * t5 + parameters[MX3R] * t12);
-    const puma560_real_t t281 = PUMA560_C(-0.1254) * t280; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t282 = t1 * t275 + t3 * t274; /* link j3: column of the mass matrix */
-    /* link j3: velocity of its origin */
-    const puma560_real_t t283 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t69;
-    const puma560_real_t t284 = t282 * t283; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t285 = PUMA560_C(0.4318) * t63; /* link j3: velocity of its origin */
-    const puma560_real_t t286 = t243 * t285; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t287 = t273 + t281 + (t284 - t278 + t286);
-    const puma560_real_t t288 = parameters[XZ2R] * t63;
-    const puma560_real_t t289 = parameters[XY2] * dq[1];
-    const puma560_real_t t290 = t288 + t289 + (t287 + (t269 - t255 + (t278 - t273)));
-    const puma560_real_t t291 = parameters[YZ2] * t69;
-    const puma560_real_t t292 = t287 + (t252 - t269 - t284) - (t289 + t291);
-    const puma560_real_t t293 = t3 * t268;
-    const puma560_real_t t294 = PUMA560_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const puma560_real_t t295 = parameters[YZ2] * t63 - dq[1] * t294 + (t293 - t262 + t282 * t277);
-    const puma560_real_t t296 = t3 * t270 + t1 * t271;
-    const puma560_real_t t297 = t294 - parameters[XX2R];
-    const puma560_real_t t298 = dq[1] * t297 - parameters[XZ2R] * t69 + (t293 - t267
-        + (PUMA560_C(-0.4318) * t296 - t276 * t283));
-    /* link j2: inertia, momentum beyond */
-    const puma560_real_t t299 = t2 * (t2 * (t292 - t290) + t0 * (t295 + t298));
-    input_by_dq[0] = PUMA560_C(-272.2221739130435) * parameters[FV1] + PUMA560_C(0.13888355537457484) * (t290
-        + t299);
-    const puma560_real_t t300 = t8 * t220; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t301 = parameters[XY3R] * t5 + t12 * t266 + (t219 - t300 + (PUMA560_C(0.0203) * t279
-        - t238 * t244));
-    const puma560_real_t t302 = t8 * t258 + t6 * t259 + (PUMA560_C(-0.4318) * t279 + t246 * t244);
-    const puma560_real_t t303 = t5 * t261 - parameters[XY3R] * t12 + t302;
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t304 = t1 * t301 + t3 * t303 + (PUMA560_C(0.4318) * t280 + t276 * t285);
-    /* link j2: derivatives */
-    const puma560_real_t t305 = PUMA560_C(2.0) * (parameters[XY2] * t69 + t63 * t297 + t304);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t306 = parameters[XY2] * t63 + t69 * t294 - (t3 * t301 - t1 * t303 + t282 * t285);
-    const puma560_real_t t307 = PUMA560_C(2.0) * t306; /* link j2: derivatives */
-    input_by_dq[6] = PUMA560_C(0.04032672714331514) * (t0 * t305 - t2 * t307);
-    const puma560_real_t t308 = PUMA560_C(2.0) * t301; /* link j3: derivatives */
-    const puma560_real_t t309 = PUMA560_C(-2.0) * t303;
-    const puma560_real_t t310 = PUMA560_C(-0.8636) * t63; /* link j6: derivatives */
-    const puma560_real_t t311 = t3 * t309 - t1 * t308 + t276 * t310; /* link j3: derivatives */
-    const puma560_real_t t312 = t3 * t308 + t1 * t309 - t282 * t310;
-    input_by_dq[12] = PUMA560_C(0.08095560645504385) * (t0 * t311 - t2 * t312);
-    const puma560_real_t t313 = PUMA560_C(2.0) * t263; /* link j4: derivatives */
-    const puma560_real_t t314 = PUMA560_C(2.0) * t264;
-    const puma560_real_t t315 = PUMA560_C(0.0406) * t7; /* link j6: derivatives */
-    const puma560_real_t t316 = t6 * t313 + t8 * t314 + t238 * t315; /* link j4: derivatives */
-    const puma560_real_t t317 = PUMA560_C(2.0) * t253;
-    const puma560_real_t t318 = PUMA560_C(2.0) * t244; /* link j6: derivatives */
-    const puma560_real_t t319 = PUMA560_C(0.8636) * t7;
-    const puma560_real_t t320 = t317 + (t243 * t318 - t238 * t319); /* link j4: derivatives */
-    const puma560_real_t t321 = PUMA560_C(2.0) * t283; /* link j6: derivatives */
-    const puma560_real_t t322 = t3 * t243; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const puma560_real_t t323 = t1 * t316 + t3 * t320 + (t322 * t310 - t238 * t321);
-    const puma560_real_t t324 = t1 * t243; /* link j4: column of the mass matrix */
-    const puma560_real_t t325 = PUMA560_C(0.2508) * t63; /* link j6: derivatives */
-    /* link j4: derivatives */
-    const puma560_real_t t326 = t3 * t316 - t1 * t320 + (t238 * t325 - t324 * t310);
-    input_by_dq[18] = PUMA560_C(0.18787994020908783) * (t0 * t323 + t2 * t326);
-    const puma560_real_t t327 = PUMA560_C(2.0) * t216; /* link j5: derivatives */
-    const puma560_real_t t328 = PUMA560_C(2.0) * t217;
-    const puma560_real_t t329 = t14 * t328 - t10 * t327;
-    const puma560_real_t t330 = PUMA560_C(-2.0) * t207;
-    const puma560_real_t t331 = t8 * t246; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const puma560_real_t t332 = t6 * t329 - t8 * t330 - (t331 * t315 + t236 * t318);
-    const puma560_real_t t333 = t14 * t327 + t10 * t328;
-    const puma560_real_t t334 = t6 * t246; /* link j5: column of the mass matrix */
-    const puma560_real_t t335 = t333 + (t334 * t318 + t331 * t319); /* link j5: derivatives */
-    const puma560_real_t t336 = t1 * t236 - t3 * t334; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const puma560_real_t t337 = t1 * t332 + t3 * t335 + (t331 * t321 - t336 * t310);
-    const puma560_real_t t338 = t1 * t334 + t3 * t236; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const puma560_real_t t339 = t3 * t332 - t1 * t335 - (t338 * t310 + t331 * t325);
-    input_by_dq[24] = PUMA560_C(0.19862511694053758) * (t0 * t337 + t2 * t339);
-    const puma560_real_t t340 = PUMA560_C(-2.0) * t198; /* link j6: derivatives */
-    const puma560_real_t t341 = PUMA560_C(-2.0) * t199;
-    const puma560_real_t t342 = t30 * t340 + t47 * t341;
-    const puma560_real_t t343 = PUMA560_C(2.0) * t190;
-    const puma560_real_t t344 = t14 * t343 - t10 * t342;
-    const puma560_real_t t345 = t30 * t341 - t47 * t340;
-    const puma560_real_t t346 = t10 * t232; /* link j6: column of the mass matrix */
-    const puma560_real_t t347 = t6 * t234 - t8 * t346;
-    const puma560_real_t t348 = t14 * t232;
+    const puma560_real_t t176 = parameters[MX6] * t93 + parameters[MY6] * t92; /* link j6: derivatives */
+    const puma560_real_t t177 = t58 + t59; /* link j6: force and moment */
     /* link j6: derivatives */
-    const puma560_real_t t349 = t6 * t344 - t8 * t345 + (t347 * t315 + t348 * t318);
-    const puma560_real_t t350 = t14 * t342 + t10 * t343;
-    const puma560_real_t t351 = t6 * t346 + t8 * t234; /* link j6: column of the mass matrix */
-    const puma560_real_t t352 = t350 + (t351 * t318 - t347 * t319); /* link j6: derivatives */
-    const puma560_real_t t353 = t3 * t351 + t1 * t348; /* link j6: column of the mass matrix */
-    /* link j6: derivatives */
-    const puma560_real_t t354 = t1 * t349 + t3 * t352 + (t353 * t310 - t347 * t321);
-    const puma560_real_t t355 = t1 * t351 - t3 * t348; /* link j6: column of the mass matrix */
-    /* link j6: derivatives */
-    const puma560_real_t t356 = t3 * t349 - t1 * t352 + (t347 * t325 - t355 * t310);
-    input_by_dq[30] = PUMA560_C(0.1862884266452062) * (t0 * t354 + t2 * t356);
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t357 = parameters[XY6] * (PUMA560_C(2.0) * t47) - t30 * parameters[XX6R];
-    const puma560_real_t t358 = t30 * t357;
-    const puma560_real_t t359 = parameters[XX5R] - t358;
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t360 = t30 * parameters[XZ6] - t47 * parameters[YZ6];
-    const puma560_real_t t361 = parameters[XY5] + t360; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t362 = t10 * (parameters[ZZ6] - t359) + t361 * (PUMA560_C(2.0) * t14);
-    const puma560_real_t t363 = t10 * t362;
-    const puma560_real_t t364 = parameters[ZZ4R] + (t359 + t363);
-    const puma560_real_t t365 = PUMA560_C(0.0406) * t238; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t366 = t364 + t365;
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t367 = parameters[XX4R] + (parameters[ZZ6] - t363);
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t368 = parameters[ZZ5R] + (parameters[XX6R] + t358);
-    const puma560_real_t t369 = parameters[XZ5] - (parameters[XY6] - t47 * t357);
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t370 = t47 * parameters[XZ6] + t30 * parameters[YZ6];
-    const puma560_real_t t371 = parameters[YZ5] - t370; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t372 = t14 * t371 - t10 * t369; /* link j5: column of the mass matrix */
-    const puma560_real_t t373 = parameters[XY4] + t372; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t374 = t6 * (t368 - t367) + t373 * (PUMA560_C(2.0) * t8);
-    const puma560_real_t t375 = t6 * t374;
-    const puma560_real_t t376 = PUMA560_C(0.8636) * t246;
-    const puma560_real_t t377 = parameters[XX3R] + (t368 - t375 + t376);
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t378 = t14 * t362 - t361 - parameters[XZ4];
-    const puma560_real_t t379 = t14 * t369 + t10 * t371; /* link j5: column of the mass matrix */
-    const puma560_real_t t380 = parameters[YZ4] - t379; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t381 = t6 * t378 + t8 * t380; /* link j4: column of the mass matrix */
-    const puma560_real_t t382 = PUMA560_C(-0.4318) * t238;
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t383 = parameters[XY3R] + (t382 + PUMA560_C(-0.0203) * t246 - t381);
-    /* link j3: inertia of it and all beyond */
-    const puma560_real_t t384 = t1 * (t366 - t377) + t383 * (PUMA560_C(2.0) * t3);
-    const puma560_real_t t385 = t1 * t384;
-    const puma560_real_t t386 = PUMA560_C(-0.8636) * t276;
-    const puma560_real_t t387 = PUMA560_C(0.2508) * t243;
-    const puma560_real_t t388 = t377 + t385 - (t386 + t387);
-    const puma560_real_t t389 = t385 - t366 + t387 - parameters[XX2R];
-    const puma560_real_t t390 = t3 * t384 - t383 + PUMA560_C(0.4318) * t282 - parameters[XY2];
-    /* link j2: inertia of it and all beyond */
-    const puma560_real_t t391 = t2 * (t2 * (t388 + t389) + t390 * (PUMA560_C(-2.0) * t0));
-    input_by_ddq[0] = PUMA560_C(0.06944177768728742) * (t389 - t391 - parameters[ZZ1R]);
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t392 = parameters[XZ3] - (t373 - t8 * t374 - PUMA560_C(0.0203) * t243);
-    const puma560_real_t t393 = PUMA560_C(0.4318) * t243; /* link j4: column of the mass matrix */
-    const puma560_real_t t394 = t8 * t378 - t6 * t380 + t393;
-    const puma560_real_t t395 = parameters[YZ3] + t394; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t396 = t1 * t392 - t3 * t395; /* link j3: column of the mass matrix */
-    const puma560_real_t t397 = PUMA560_C(-0.1254) * t276;
-    /* link j3: inertia of it and all beyond */
-    const puma560_real_t t398 = parameters[XZ2R] + (t396 + (t393 + t397));
-    /* link j3: column of the mass matrix */
-    const puma560_real_t t399 = t3 * t392 + t1 * t395 + PUMA560_C(-0.1254) * t282;
-    const puma560_real_t t400 = parameters[YZ2] + t399; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t401 = t0 * t398 + t2 * t400; /* link j2: column of the mass matrix */
-    input_by_ddq[6] = PUMA560_C(-0.04032672714331514) * t401;
-    const puma560_real_t t402 = t396 + t397; /* link j3: column of the mass matrix */
-    const puma560_real_t t403 = t0 * t402 + t2 * t399;
-    input_by_ddq[12] = PUMA560_C(0.08095560645504385) * t403;
-    const puma560_real_t t404 = t382 - t381; /* link j4: column of the mass matrix */
-    const puma560_real_t t405 = t364 + PUMA560_C(0.0203) * t238;
-    const puma560_real_t t406 = t3 * t405 - t1 * t404 + PUMA560_C(-0.1254) * t322;
-    const puma560_real_t t407 = t3 * t404 + t1 * t405 + (PUMA560_C(-0.1254) * t324 - t382);
-    const puma560_real_t t408 = t2 * t407 - t0 * t406;
-    input_by_ddq[18] = PUMA560_C(-0.18787994020908783) * t408;
-    const puma560_real_t t409 = PUMA560_C(0.4318) * t331; /* link j5: column of the mass matrix */
-    const puma560_real_t t410 = t8 * t368 - t6 * t372 + t409;
-    const puma560_real_t t411 = t379 + PUMA560_C(-0.0203) * t331;
-    const puma560_real_t t412 = t3 * t411 - t1 * t410 + PUMA560_C(0.1254) * t336;
-    const puma560_real_t t413 = t3 * t410 + t1 * t411 + (PUMA560_C(-0.1254) * t338 - t409);
-    const puma560_real_t t414 = t2 * t413 - t0 * t412;
-    input_by_ddq[24] = PUMA560_C(-0.19862511694053758) * t414;
-    const puma560_real_t t415 = t14 * parameters[ZZ6] - t10 * t360; /* link j6: column of the mass matrix */
-    const puma560_real_t t416 = PUMA560_C(-0.4318) * t347;
-    const puma560_real_t t417 = t416 - (t6 * t415 + t8 * t370);
-    const puma560_real_t t418 = t14 * t360 + t10 * parameters[ZZ6];
-    const puma560_real_t t419 = t418 + PUMA560_C(0.0203) * t347;
-    const puma560_real_t t420 = t3 * t417 + t1 * t419 + (PUMA560_C(-0.1254) * t355 - t416);
-    const puma560_real_t t421 = t3 * t419 - t1 * t417 + PUMA560_C(-0.1254) * t353;
-    const puma560_real_t t422 = t2 * t420 - t0 * t421;
-    input_by_ddq[30] = PUMA560_C(-0.1862884266452062) * t422;
-    const puma560_real_t t423 = PUMA560_C(-2.0) * t63; /* link j2: derivatives */
-    const puma560_real_t t424 = PUMA560_C(2.0) * t69;
-    const puma560_real_t t425 = t389 * t66 - t390 * t72 - t398 * t79 - (t290 * t423 + t295 * t424);
-    const puma560_real_t t426 = t390 * t66 + t388 * t72 - t400 * t79 - (t298 * t423 + t292 * t424);
-    const puma560_real_t t427 = t0 * (t156 + (t425 - t243 * t67)) + t2 * (t153 + (t426 + t243 * t73));
-    input_by_q[1] = PUMA560_C(0.06944177768728742) * t427;
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t428 = parameters[ZZ3R] + (t367 + t375 + (t365 + t376));
-    const puma560_real_t t429 = parameters[ZZ2R] + (t428 - t386); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const puma560_real_t t430 = t400 * t72 - t398 * t66 - t429 * t79 + (t63 * t305 + t69 * t307);
-    const puma560_real_t t431 = (parameters[MY2] + t282) * t73 - (parameters[MX2R] + t276) * t67 + t430;
-    input_by_q[7] = PUMA560_C(0.04032672714331514) * t431;
-    const puma560_real_t t432 = t428 + PUMA560_C(0.4318) * t276; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const puma560_real_t t433 = t63 * t311 + t69 * t312 + (t402 * t66 - t399 * t72 + t432 * t79);
-    input_by_q[13] = PUMA560_C(0.08095560645504385) * (t433 + (t276 * t67 - t282 * t73));
-    const puma560_real_t t434 = t394 + PUMA560_C(-0.4318) * t322; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const puma560_real_t t435 = t63 * t323 - t69 * t326 + (t406 * t66 + t407 * t72 - t434 * t79);
-    input_by_q[19] = PUMA560_C(0.18787994020908783) * (t435 + (t324 * t73 + t322 * t67));
-    /* link j5: column of the mass matrix */
-    const puma560_real_t t436 = t8 * t372 + t6 * t368 + (PUMA560_C(0.0203) * t236 + PUMA560_C(0.4318) * t334);
-    const puma560_real_t t437 = t436 + PUMA560_C(0.4318) * t336;
-    /* link j5: derivatives */
-    const puma560_real_t t438 = t63 * t337 - t69 * t339 + (t412 * t66 + t413 * t72 - t437 * t79);
-    input_by_q[25] = PUMA560_C(0.19862511694053758) * (t438 + (t338 * t73 - t336 * t67));
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t439 = t8 * t415 - t6 * t370 + (PUMA560_C(-0.0203) * t348
-        + PUMA560_C(0.4318) * t351);
-    const puma560_real_t t440 = t439 + PUMA560_C(-0.4318) * t353;
-    /* link j6: derivatives */
-    const puma560_real_t t441 = t63 * t354 - t69 * t356 + (t421 * t66 + t420 * t72 - t440 * t79);
-    input_by_q[31] = PUMA560_C(0.1862884266452062) * (t441 + (t355 * t73 + t353 * t67));
-    const puma560_real_t t442 = parameters[ZZ3R] - t261;
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t443 = t12 * t442 - parameters[YZ3] * t7 + (t215 + t300 - t243 * t239);
-    const puma560_real_t t444 = parameters[XZ3] * t7 + t5 * t442 + (t8 * t263 - t6 * t264 + t243 * t247);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t445 = t1 * t443 - t3 * t444 + (PUMA560_C(0.1254) * t272 + t243 * t277);
-    const puma560_real_t t446 = parameters[ZZ2R] - t294;
-    /* link j2: derivatives */
-    const puma560_real_t t447 = PUMA560_C(2.0) * (t445 - (parameters[YZ2] * dq[1] + t63 * t446))
-        - (t389 * t423 + t390 * t424);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t448 = t3 * t443 + t1 * t444 + (PUMA560_C(0.1254) * t296 - t243 * t283);
-    /* link j2: derivatives */
-    const puma560_real_t t449 = PUMA560_C(2.0) * (parameters[XZ2R] * dq[1] + t69 * t446 + t448) + (t388 * t424
-        - t390 * t423);
-    input_by_dq[1] = PUMA560_C(0.06944177768728742) * (t0 * t447 + t2 * t449);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t450 = t221 - t206 - t245 - t249 - (t250 + t254);
-    /* link j2: derivatives */
-    const puma560_real_t t451 = PUMA560_C(2.0) * (t288 - t291 + (t450 + (t281 + t286) - t287));
-    const puma560_real_t t452 = PUMA560_C(0.04032672714331514) * (t451 + PUMA560_C(2.0) * (t400 * t69
-        - t398 * t63));
-    input_by_dq[7] = PUMA560_C(468.7608695652174) * parameters[FV2] + t452;
-    const puma560_real_t t453 = PUMA560_C(-2.0) * t450; /* link j3: derivatives */
-    const puma560_real_t t454 = t453 + (t276 * t325 + t282 * t321) + PUMA560_C(2.0) * (t402 * t63
-        - t399 * t69);
-    input_by_dq[13] = PUMA560_C(0.08095560645504385) * t454;
-    const puma560_real_t t455 = t8 * t313 - t6 * t314 + t243 * t315; /* link j4: derivatives */
-    const puma560_real_t t456 = t455 + (t322 * t325 - t324 * t321) + PUMA560_C(2.0) * (t406 * t63
-        + t407 * t69);
-    input_by_dq[19] = PUMA560_C(0.18787994020908783) * t456;
-    /* link j5: derivatives */
-    const puma560_real_t t457 = t8 * t329 + t6 * t330 + (t334 * t315 - t236 * t319);
-    const puma560_real_t t458 = t457 - (t336 * t325 + t338 * t321) + PUMA560_C(2.0) * (t412 * t63
-        + t413 * t69);
-    input_by_dq[25] = PUMA560_C(0.19862511694053758) * t458;
-    /* link j6: derivatives */
-    const puma560_real_t t459 = t8 * t344 + t6 * t345 + (t348 * t319 + t351 * t315);
-    const puma560_real_t t460 = t459 + (t353 * t325 - t355 * t321) + PUMA560_C(2.0) * (t421 * t63
-        + t420 * t69);
-    input_by_dq[31] = PUMA560_C(0.1862884266452062) * t460;
-    input_by_ddq[1] = PUMA560_C(0.06944177768728742) * t401;
-    input_by_ddq[7] = PUMA560_C(0.04032672714331514) * t429;
-    input_by_ddq[13] = PUMA560_C(-0.08095560645504385) * t432;
-    input_by_ddq[19] = PUMA560_C(0.18787994020908783) * t434;
-    input_by_ddq[25] = PUMA560_C(0.19862511694053758) * t437;
-    input_by_ddq[31] = PUMA560_C(0.1862884266452062) * t440;
-    const puma560_real_t t461 = PUMA560_C(-2.0) * t12; /* link j3: derivatives */
-    const puma560_real_t t462 = PUMA560_C(2.0) * t5;
-    const puma560_real_t t463 = t85 + t60; /* link j4: motion */
-    /* link j3: derivatives */
-    const puma560_real_t t464 = t252 * t461 + t262 * t462 + (t377 * t34 + t383 * t22 - t392 * t463);
-    const puma560_real_t t465 = t144 + (t464 - t243 * t75);
-    const puma560_real_t t466 = t255 * t462 - t267 * t461 + (t383 * t34 + t366 * t22 - t395 * t463);
-    const puma560_real_t t467 = t243 * t88; /* link j4: derivatives */
-    const puma560_real_t t468 = t139 - (t467 + t466); /* link j3: derivatives */
-    const puma560_real_t t469 = t148 + (t280 * t462 + (t275 * t463 - t243 * t22));
-    const puma560_real_t t470 = t146 + (t274 * t463 - t243 * t34 - t280 * t461);
-    const puma560_real_t t471 = t3 * t469 - t1 * t470;
-    const puma560_real_t t472 = t0 * (t1 * t465 + t3 * t468 + PUMA560_C(-0.1254) * t471);
-    const puma560_real_t t473 = t274 * t22 - t275 * t34 - (t271 * t461 + t270 * t462);
-    const puma560_real_t t474 = PUMA560_C(0.1254) * (t1 * t469 + t3 * t470) + PUMA560_C(0.4318) * t473;
-    const puma560_real_t t475 = t472 + t2 * (t3 * t465 - t1 * t468 + t474);
-    input_by_q[2] = PUMA560_C(0.06944177768728742) * t475;
-    const puma560_real_t t476 = t392 * t34 + t395 * t22 - t428 * t463;
-    const puma560_real_t t477 = t275 * t88 - t274 * t75;
-    const puma560_real_t t478 = t301 * t461 + t303 * t462 + t476 + t477 + PUMA560_C(0.4318) * t471;
-    input_by_q[8] = PUMA560_C(0.04032672714331514) * t478;
-    const puma560_real_t t479 = PUMA560_C(0.08095560645504385) * (t12 * t308 + t5 * t309 - t476 - t477);
-    input_by_q[14] = t479;
-    /* link j4: derivatives */
-    const puma560_real_t t480 = t5 * t320 - t12 * t316 + (t404 * t34 + t405 * t22 - t394 * t463);
-    input_by_q[20] = PUMA560_C(0.18787994020908783) * (t480 + t467);
-    /* link j5: derivatives */
-    const puma560_real_t t481 = t5 * t335 - t12 * t332 + (t410 * t34 + t411 * t22 - t436 * t463);
-    input_by_q[26] = PUMA560_C(0.19862511694053758) * (t481 + (t334 * t88 - t236 * t75));
-    /* link j6: derivatives */
-    const puma560_real_t t482 = t5 * t352 - t12 * t349 + (t417 * t34 + t419 * t22 - t439 * t463);
-    input_by_q[32] = PUMA560_C(0.1862884266452062) * (t482 + (t351 * t88 + t348 * t75));
-    /* link j3: derivatives */
-    const puma560_real_t t483 = PUMA560_C(2.0) * t443 + (t383 * t462 - t377 * t461);
-    const puma560_real_t t484 = PUMA560_C(2.0) * t444 + (t366 * t462 - t383 * t461);
-    const puma560_real_t t485 = PUMA560_C(2.0) * t270 + t243 * t461;
-    const puma560_real_t t486 = PUMA560_C(2.0) * t271 - t243 * t462;
-    const puma560_real_t t487 = t1 * t485 - t3 * t486;
-    const puma560_real_t t488 = t0 * (t1 * t483 - t3 * t484 + PUMA560_C(0.1254) * t487);
-    const puma560_real_t t489 = PUMA560_C(0.1254) * (t1 * t486 + t3 * t485) + PUMA560_C(0.4318) * (t275 * t461
-        + t274 * t462);
-    const puma560_real_t t490 = t488 + t2 * (t3 * t483 + t1 * t484 + t489);
-    input_by_dq[2] = PUMA560_C(0.06944177768728742) * t490;
-    const puma560_real_t t491 = t395 * t462 - t392 * t461 - t453 + PUMA560_C(-0.4318) * t487;
-    input_by_dq[8] = PUMA560_C(0.04032672714331514) * t491;
-    const puma560_real_t t492 = PUMA560_C(0.08095560645504385) * (t453 + PUMA560_C(-2.0) * (t392 * t12
-        + t395 * t5));
-    input_by_dq[14] = PUMA560_C(-233.50565217391303) * parameters[FV3] + t492;
-    const puma560_real_t t493 = PUMA560_C(0.18787994020908783) * (t455 + PUMA560_C(2.0) * (t404 * t12
-        + t405 * t5));
-    input_by_dq[20] = t493;
-    const puma560_real_t t494 = PUMA560_C(0.19862511694053758) * (t457 + PUMA560_C(2.0) * (t410 * t12
-        + t411 * t5));
-    input_by_dq[26] = t494;
-    const puma560_real_t t495 = PUMA560_C(0.1862884266452062) * (t459 + PUMA560_C(2.0) * (t417 * t12
-        + t419 * t5));
-    input_by_dq[32] = t495;
-    input_by_ddq[2] = PUMA560_C(0.06944177768728742) * t403;
-    input_by_ddq[8] = PUMA560_C(0.04032672714331514) * t432;
-    input_by_ddq[14] = PUMA560_C(-233.50565217391303) * parameters[IA3]
-        + PUMA560_C(-0.08095560645504385) * t428;
-    input_by_ddq[20] = PUMA560_C(0.18787994020908783) * t394;
-    input_by_ddq[26] = PUMA560_C(0.19862511694053758) * t436;
-    input_by_ddq[32] = PUMA560_C(0.1862884266452062) * t439;
-    const puma560_real_t t496 = PUMA560_C(2.0) * t31; /* link j4: derivatives */
-    const puma560_real_t t497 = PUMA560_C(-2.0) * t9;
-    const puma560_real_t t498 = t128 + t121; /* link j5: motion */
-    /* link j4: derivatives */
-    const puma560_real_t t499 = t206 * t496 + t215 * t497 - (t367 * t25 - t373 * t38 - t378 * t498);
-    const puma560_real_t t500 = t129 + (t499 + t246 * t84);
-    const puma560_real_t t501 = t368 * t38; /* link j5: derivatives */
-    /* link j4: derivatives */
-    const puma560_real_t t502 = t219 * t496 - t209 * t497 + (t373 * t25 - t501 + t380 * t498);
-    const puma560_real_t t503 = t246 * t91; /* link j5: derivatives */
-    const puma560_real_t t504 = t123 + (t503 + t502); /* link j4: derivatives */
-    const puma560_real_t t505 = t134 + (t241 * t496 + (t237 * t498 - t246 * t25));
-    const puma560_real_t t506 = t136 + (t241 * t497 + (t246 * t38 + t233 * t498));
-    const puma560_real_t t507 = t8 * t506 - t6 * t505;
-    const puma560_real_t t508 = PUMA560_C(0.4318) * t507;
-    const puma560_real_t t509 = t6 * t500 + t8 * t504 - t508;
-    const puma560_real_t t510 = t378 * t25 + t380 * t38 - t364 * t498;
-    const puma560_real_t t511 = t233 * t91 - t237 * t84;
-    const puma560_real_t t512 = t263 * t496 - t264 * t497 + t510 + t511 + PUMA560_C(0.0203) * t507;
-    const puma560_real_t t513 = t6 * t506 + t8 * t505;
-    const puma560_real_t t514 = t229 * t496 + t227 * t497 + (t233 * t25 + t237 * t38);
-    const puma560_real_t t515 = t3 * t509 + t1 * t512 + (t508 + PUMA560_C(0.1254) * (t1 * t513 + t3 * t514));
-    const puma560_real_t t516 = t3 * t513 - t1 * t514;
-    const puma560_real_t t517 = t0 * (t1 * t509 - t3 * t512 + PUMA560_C(-0.1254) * t516);
-    input_by_q[3] = PUMA560_C(0.06944177768728742) * (t517 + t2 * t515);
-    const puma560_real_t t518 = t6 * t504 - t8 * t500 + (PUMA560_C(-0.0203) * t514
-        + PUMA560_C(-0.4318) * t513);
-    input_by_q[9] = PUMA560_C(0.04032672714331514) * (t518 + PUMA560_C(0.4318) * t516);
-    input_by_q[15] = PUMA560_C(-0.08095560645504385) * t518;
-    const puma560_real_t t519 = PUMA560_C(0.18787994020908783) * (t511 + (t510 + (t31 * t313 + t9 * t314)));
-    input_by_q[21] = t519;
-    /* link j5: derivatives */
-    const puma560_real_t t520 = t31 * t329 - t9 * t330 + (t372 * t25 - t501 - t379 * t498);
-    input_by_q[27] = PUMA560_C(0.19862511694053758) * (t520 + t503);
-    /* link j6: derivatives */
-    const puma560_real_t t521 = t31 * t344 - t9 * t345 + (t415 * t25 + t370 * t38 - t418 * t498);
-    input_by_q[33] = PUMA560_C(0.1862884266452062) * (t521 + (t346 * t91 - t234 * t84));
-    /* link j4: derivatives */
-    const puma560_real_t t522 = PUMA560_C(2.0) * t258 + (t367 * t496 + t373 * t497);
-    const puma560_real_t t523 = PUMA560_C(2.0) * t259 + (t373 * t496 + t368 * t497);
-    const puma560_real_t t524 = PUMA560_C(2.0) * t229 + t246 * t497;
-    const puma560_real_t t525 = PUMA560_C(2.0) * t227 - t246 * t496;
-    const puma560_real_t t526 = t8 * t524 + t6 * t525;
-    const puma560_real_t t527 = PUMA560_C(0.4318) * t526;
-    const puma560_real_t t528 = t8 * t523 - t6 * t522 + t527;
-    const puma560_real_t t529 = t317 - (t380 * t497 - t378 * t496) - PUMA560_C(0.0203) * t526;
-    const puma560_real_t t530 = t6 * t524 - t8 * t525;
-    const puma560_real_t t531 = t233 * t496 - t237 * t497;
-    const puma560_real_t t532 = t3 * t530 + t1 * t531;
-    const puma560_real_t t533 = t0 * (t1 * t528 - t3 * t529 + PUMA560_C(0.1254) * t532);
-    const puma560_real_t t534 = t3 * t528 + t1 * t529 + (PUMA560_C(0.1254) * (t3 * t531 - t1 * t530) - t527);
-    input_by_dq[3] = PUMA560_C(0.06944177768728742) * (t533 + t2 * t534);
-    const puma560_real_t t535 = t8 * t522 + t6 * t523 + (PUMA560_C(-0.0203) * t531
-        + PUMA560_C(0.4318) * t530);
-    input_by_dq[9] = PUMA560_C(0.04032672714331514) * (t535 + PUMA560_C(-0.4318) * t532);
-    input_by_dq[15] = PUMA560_C(-0.08095560645504385) * t535;
-    const puma560_real_t t536 = PUMA560_C(0.18787994020908783) * (t317 + PUMA560_C(2.0) * (t378 * t31
-        + t380 * t9));
-    input_by_dq[21] = PUMA560_C(1086.2342857142855) * parameters[FV4] + t536;
-    const puma560_real_t t537 = PUMA560_C(0.19862511694053758) * (t333 + PUMA560_C(2.0) * (t372 * t31
-        - t368 * t9));
-    input_by_dq[27] = t537;
-    const puma560_real_t t538 = PUMA560_C(0.1862884266452062) * (t350 + PUMA560_C(2.0) * (t415 * t31
-        + t370 * t9));
-    input_by_dq[33] = t538;
-    input_by_ddq[3] = PUMA560_C(0.06944177768728742) * t408;
-    input_by_ddq[9] = PUMA560_C(0.04032672714331514) * t434;
-    input_by_ddq[15] = PUMA560_C(-0.08095560645504385) * t394;
-    input_by_ddq[21] = PUMA560_C(1086.2342857142855) * parameters[IA4]
-        + PUMA560_C(0.18787994020908783) * t364;
-    input_by_ddq[27] = PUMA560_C(0.19862511694053758) * t379;
-    input_by_ddq[33] = PUMA560_C(0.1862884266452062) * t418;
-    const puma560_real_t t539 = PUMA560_C(2.0) * t16; /* link j5: derivatives */
-    const puma560_real_t t540 = PUMA560_C(2.0) * t15;
-    const puma560_real_t t541 = t96 + t116; /* link j6: motion */
-    /* link j5: derivatives */
-    const puma560_real_t t542 = t189 * t539 + t197 * t540 + (t359 * t49 + t361 * t42 - t369 * t541);
-    const puma560_real_t t543 = t98 + (t542 + t232 * t90);
-    const puma560_real_t t544 = parameters[ZZ6] * t42; /* link j6: derivatives */
-    /* link j5: derivatives */
-    const puma560_real_t t545 = t201 * t539 + t192 * t540 + (t544 + t361 * t49 - t371 * t541);
-    const puma560_real_t t546 = t232 * t107; /* link j6: derivatives */
-    const puma560_real_t t547 = t117 + (t546 + t545); /* link j5: derivatives */
-    const puma560_real_t t548 = t10 * t543 - t14 * t547;
-    const puma560_real_t t549 = t369 * t49 + t371 * t42 - t368 * t541;
-    const puma560_real_t t550 = t235 * t90 + parameters[MY5R] * t107;
-    const puma560_real_t t551 = t216 * t539 + t217 * t540 + t549 + t550;
-    const puma560_real_t t552 = t133 - (t228 * t540 + (t232 * t42 - parameters[MY5R] * t541));
-    const puma560_real_t t553 = t132 - (t228 * t539 - (t235 * t541 - t232 * t49));
-    const puma560_real_t t554 = t10 * t552 + t14 * t553;
-    const puma560_real_t t555 = t226 * t539 + t224 * t540 - (t235 * t42 - parameters[MY5R] * t49);
-    const puma560_real_t t556 = t8 * t554 - t6 * t555;
-    const puma560_real_t t557 = PUMA560_C(0.4318) * t556;
-    const puma560_real_t t558 = t6 * t548 + t8 * t551 - t557;
-    const puma560_real_t t559 = t14 * t543 + t10 * t547;
-    const puma560_real_t t560 = t559 + PUMA560_C(0.0203) * t556;
-    const puma560_real_t t561 = t6 * t554 + t8 * t555;
-    const puma560_real_t t562 = t14 * t552 - t10 * t553;
-    const puma560_real_t t563 = t3 * t561 + t1 * t562;
-    const puma560_real_t t564 = t0 * (t1 * t558 - t3 * t560 + PUMA560_C(-0.1254) * t563);
-    const puma560_real_t t565 = t3 * t558 + t1 * t560 + (t557 + PUMA560_C(0.1254) * (t1 * t561 - t3 * t562));
-    input_by_q[4] = PUMA560_C(0.06944177768728742) * (t564 + t2 * t565);
-    const puma560_real_t t566 = t6 * t551 - t8 * t548 + (PUMA560_C(0.0203) * t562
-        + PUMA560_C(-0.4318) * t561);
-    input_by_q[10] = PUMA560_C(0.04032672714331514) * (t566 + PUMA560_C(0.4318) * t563);
-    input_by_q[16] = PUMA560_C(-0.08095560645504385) * t566;
-    input_by_q[22] = PUMA560_C(0.18787994020908783) * t559;
-    const puma560_real_t t567 = PUMA560_C(0.19862511694053758) * (t550 + (t549 + (t16 * t327 + t15 * t328)));
-    input_by_q[28] = t567;
-    /* link j6: derivatives */
-    const puma560_real_t t568 = t16 * t342 + t15 * t343 + (t360 * t49 + t544 + t370 * t541);
-    input_by_q[34] = PUMA560_C(0.1862884266452062) * (t568 + t546);
-    /* link j5: derivatives */
-    const puma560_real_t t569 = PUMA560_C(2.0) * t212 + (t359 * t539 + t361 * t540);
-    const puma560_real_t t570 = PUMA560_C(2.0) * t213 + (t361 * t539 + parameters[ZZ6] * t540);
-    const puma560_real_t t571 = t10 * t569 - t14 * t570;
-    const puma560_real_t t572 = t330 + (t369 * t539 + t371 * t540);
-    const puma560_real_t t573 = PUMA560_C(2.0) * t226 + t232 * t540;
-    const puma560_real_t t574 = PUMA560_C(2.0) * t224 - t232 * t539;
-    const puma560_real_t t575 = t10 * t573 - t14 * t574;
-    const puma560_real_t t576 = parameters[MY5R] * t539 - t235 * t540;
-    const puma560_real_t t577 = t8 * t575 + t6 * t576;
-    const puma560_real_t t578 = PUMA560_C(0.4318) * t577;
-    const puma560_real_t t579 = t6 * t571 + t8 * t572 + t578;
-    const puma560_real_t t580 = t14 * t569 + t10 * t570;
-    const puma560_real_t t581 = t580 - PUMA560_C(0.0203) * t577;
-    const puma560_real_t t582 = t6 * t575 - t8 * t576;
-    const puma560_real_t t583 = t14 * t573 + t10 * t574;
-    const puma560_real_t t584 = t3 * t582 + t1 * t583;
-    const puma560_real_t t585 = t0 * (t1 * t579 - t3 * t581 + PUMA560_C(0.1254) * t584);
-    const puma560_real_t t586 = t3 * t579 + t1 * t581 + (PUMA560_C(0.1254) * (t3 * t583 - t1 * t582) - t578);
-    input_by_dq[4] = PUMA560_C(0.06944177768728742) * (t585 + t2 * t586);
-    const puma560_real_t t587 = t6 * t572 - t8 * t571 + (PUMA560_C(-0.0203) * t583
-        + PUMA560_C(0.4318) * t582);
-    input_by_dq[10] = PUMA560_C(0.04032672714331514) * (t587 + PUMA560_C(-0.4318) * t584);
-    input_by_dq[16] = PUMA560_C(-0.08095560645504385) * t587;
-    input_by_dq[22] = PUMA560_C(0.18787994020908783) * t580;
-    const puma560_real_t t588 = PUMA560_C(0.19862511694053758) * (t330 + PUMA560_C(2.0) * (t369 * t16
-        + t371 * t15));
-    input_by_dq[28] = PUMA560_C(1027.4714285714285) * parameters[FV5] + t588;
-    const puma560_real_t t589 = PUMA560_C(0.1862884266452062) * (t345 + PUMA560_C(2.0) * (t360 * t16
-        + parameters[ZZ6] * t15));
-    input_by_dq[34] = t589;
-    input_by_ddq[4] = PUMA560_C(0.06944177768728742) * t414;
-    input_by_ddq[10] = PUMA560_C(0.04032672714331514) * t437;
-    input_by_ddq[16] = PUMA560_C(-0.08095560645504385) * t436;
-    input_by_ddq[22] = PUMA560_C(0.18787994020908783) * t379;
-    input_by_ddq[28] = PUMA560_C(1027.4714285714285) * parameters[IA5]
-        + PUMA560_C(0.19862511694053758) * t368;
-    input_by_ddq[34] = PUMA560_C(-0.1862884266452062) * t370;
-    const puma560_real_t t590 = t58 + t59; /* link j6: force and moment */
-    const puma560_real_t t591 = PUMA560_C(2.0) * t54; /* link j6: derivatives */
-    const puma560_real_t t592 = PUMA560_C(2.0) * t53;
-    const puma560_real_t t593 = t178 * t591 - t184 * t592 - (parameters[XX6R] * t48 - parameters[XY6] * t56
-        + parameters[XZ6] * t590);
-    const puma560_real_t t594 = t112 + t593;
-    const puma560_real_t t595 = parameters[XY6] * t48 + parameters[YZ6] * t590 - (t183 * t591 + t180 * t592);
-    const puma560_real_t t596 = t108 + t595;
-    const puma560_real_t t597 = t30 * t594 + t47 * t596;
-    const puma560_real_t t598 = parameters[YZ6] * t56 - parameters[XZ6] * t48 - parameters[ZZ6] * t590;
-    const puma560_real_t t599 = parameters[MX6] * t93 + parameters[MY6] * t92;
-    const puma560_real_t t600 = t198 * t591 + t199 * t592 + t598 + t599;
-    const puma560_real_t t601 = t10 * t597 - t14 * t600;
-    const puma560_real_t t602 = t30 * t596 - t47 * t594;
-    const puma560_real_t t603 = t131 + (t225 * t592 - parameters[MY6] * t590);
-    const puma560_real_t t604 = t130 + (t225 * t591 + parameters[MX6] * t590);
-    const puma560_real_t t605 = t47 * t604 - t30 * t603;
-    const puma560_real_t t606 = t222 * t592 - t223 * t591 - (parameters[MY6] * t48 + parameters[MX6] * t56);
-    const puma560_real_t t607 = t10 * t605 - t14 * t606;
-    const puma560_real_t t608 = t47 * t603 + t30 * t604;
-    const puma560_real_t t609 = t8 * t607 - t6 * t608;
-    const puma560_real_t t610 = PUMA560_C(0.4318) * t609;
-    const puma560_real_t t611 = t6 * t601 + t8 * t602 - t610;
-    const puma560_real_t t612 = t14 * t597 + t10 * t600;
-    const puma560_real_t t613 = t612 + PUMA560_C(0.0203) * t609;
-    const puma560_real_t t614 = t6 * t607 + t8 * t608;
-    const puma560_real_t t615 = t14 * t605 + t10 * t606;
-    const puma560_real_t t616 = t3 * t614 + t1 * t615;
-    const puma560_real_t t617 = t0 * (t1 * t611 - t3 * t613 + PUMA560_C(-0.1254) * t616);
-    const puma560_real_t t618 = t3 * t611 + t1 * t613 + (t610 + PUMA560_C(0.1254) * (t1 * t614 - t3 * t615));
-    input_by_q[5] = PUMA560_C(0.06944177768728742) * (t617 + t2 * t618);
-    const puma560_real_t t619 = t6 * t602 - t8 * t601 + (PUMA560_C(0.0203) * t615
-        + PUMA560_C(-0.4318) * t614);
-    input_by_q[11] = PUMA560_C(0.04032672714331514) * (t619 + PUMA560_C(0.4318) * t616);
-    input_by_q[17] = PUMA560_C(-0.08095560645504385) * t619;
-    input_by_q[23] = PUMA560_C(0.18787994020908783) * t612;
-    input_by_q[29] = PUMA560_C(0.19862511694053758) * t602;
-    const puma560_real_t t620 = PUMA560_C(0.1862884266452062) * (t599 + (t598 - (t54 * t340 + t53 * t341)));
-    input_by_q[35] = t620;
-    const puma560_real_t t621 = PUMA560_C(2.0) * t194 + (parameters[XY6] * t592 - parameters[XX6R] * t591);
-    const puma560_real_t t622 = PUMA560_C(2.0) * t195 + parameters[XY6] * t591;
-    const puma560_real_t t623 = t30 * t621 + t47 * t622;
-    const puma560_real_t t624 = t343 + (parameters[YZ6] * t592 - parameters[XZ6] * t591);
-    const puma560_real_t t625 = t10 * t623 - t14 * t624;
-    const puma560_real_t t626 = t30 * t622 - t47 * t621;
-    const puma560_real_t t627 = PUMA560_C(2.0) * t223;
-    const puma560_real_t t628 = PUMA560_C(2.0) * t222;
-    const puma560_real_t t629 = t30 * t627 - t47 * t628;
-    const puma560_real_t t630 = parameters[MY6] * t591 + parameters[MX6] * t592;
-    const puma560_real_t t631 = t10 * t629 - t14 * t630;
-    const puma560_real_t t632 = t47 * t627 + t30 * t628;
-    const puma560_real_t t633 = t8 * t631 + t6 * t632;
-    const puma560_real_t t634 = PUMA560_C(0.4318) * t633;
-    const puma560_real_t t635 = t6 * t625 + t8 * t626 + t634;
-    const puma560_real_t t636 = t14 * t623 + t10 * t624;
-    const puma560_real_t t637 = t636 - PUMA560_C(0.0203) * t633;
-    const puma560_real_t t638 = t6 * t631 - t8 * t632;
-    const puma560_real_t t639 = t14 * t629 + t10 * t630;
-    const puma560_real_t t640 = t3 * t638 + t1 * t639;
-    const puma560_real_t t641 = t0 * (t1 * t635 - t3 * t637 + PUMA560_C(0.1254) * t640);
-    const puma560_real_t t642 = t3 * t635 + t1 * t637 + (PUMA560_C(0.1254) * (t3 * t639 - t1 * t638) - t634);
-    input_by_dq[5] = PUMA560_C(0.06944177768728742) * (t641 + t2 * t642);
-    const puma560_real_t t643 = t6 * t626 - t8 * t625 + (PUMA560_C(-0.0203) * t639
-        + PUMA560_C(0.4318) * t638);
-    input_by_dq[11] = PUMA560_C(0.04032672714331514) * (t643 + PUMA560_C(-0.4318) * t640);
-    input_by_dq[17] = PUMA560_C(-0.08095560645504385) * t643;
-    input_by_dq[23] = PUMA560_C(0.18787994020908783) * t636;
-    input_by_dq[29] = PUMA560_C(0.19862511694053758) * t626;
+    const puma560_real_t t178 = parameters[YZ6] * t56 - parameters[XZ6] * t48 - parameters[ZZ6] * t177;
+    const puma560_real_t t179 = PUMA560_C(0.5) * (parameters[XX6R] + parameters[ZZ6]);
+    const puma560_real_t t180 = t179 - parameters[XX6R];
+    const puma560_real_t t181 = parameters[XY6] * t53 + t54 * t180;
+    const puma560_real_t t182 = PUMA560_C(-2.0) * t181;
+    const puma560_real_t t183 = t53 * t179 + parameters[XY6] * t54;
+    const puma560_real_t t184 = PUMA560_C(-2.0) * t183;
+    const puma560_real_t t185 = PUMA560_C(0.1862884266452062) * (t176 + (t178 - (t54 * t182 + t53 * t184)));
+    input_by_q[35] = t185;
+    const puma560_real_t t186 = parameters[XZ6] * t54;
+    const puma560_real_t t187 = parameters[XY6] * t99;
+    const puma560_real_t t188 = t186 + t187;
+    const puma560_real_t t189 = PUMA560_C(2.0) * t54;
+    const puma560_real_t t190 = parameters[YZ6] * t54 - t99 * t179;
+    const puma560_real_t t191 = PUMA560_C(2.0) * t53;
+    const puma560_real_t t192 = t188 * t189 - t190 * t191 - (parameters[XX6R] * t48 - parameters[XY6] * t56
+        + parameters[XZ6] * t177);
+    const puma560_real_t t193 = t112 + t192;
+    const puma560_real_t t194 = t99 * t180 - parameters[XZ6] * t53;
+    const puma560_real_t t195 = parameters[YZ6] * t53;
+    const puma560_real_t t196 = t187 + t195;
+    const puma560_real_t t197 = parameters[XY6] * t48 + parameters[YZ6] * t177 - (t194 * t189 + t196 * t191);
+    const puma560_real_t t198 = t108 + t197;
+    const puma560_real_t t199 = t30 * t198 - t47 * t193;
+    input_by_q[29] = PUMA560_C(0.19862511694053758) * t199;
+    const puma560_real_t t200 = t30 * t193 + t47 * t198;
+    const puma560_real_t t201 = t181 * t189 + t183 * t191 + t178 + t176;
+    const puma560_real_t t202 = t14 * t200 + t10 * t201;
+    input_by_q[23] = PUMA560_C(0.18787994020908783) * t202;
+    const puma560_real_t t203 = t10 * t200 - t14 * t201;
+    const puma560_real_t t204 = parameters[MY6] * t53 - parameters[MX6] * t54;
+    const puma560_real_t t205 = t131 + (t204 * t191 - parameters[MY6] * t177);
+    const puma560_real_t t206 = t130 + (t204 * t189 + parameters[MX6] * t177);
+    const puma560_real_t t207 = t47 * t206 - t30 * t205;
+    const puma560_real_t t208 = parameters[MX6] * t99;
+    const puma560_real_t t209 = parameters[MY6] * t99;
+    const puma560_real_t t210 = t209 * t191 - t208 * t189 - (parameters[MY6] * t48 + parameters[MX6] * t56);
+    const puma560_real_t t211 = t14 * t207 + t10 * t210;
+    const puma560_real_t t212 = t10 * t207 - t14 * t210;
+    const puma560_real_t t213 = t47 * t205 + t30 * t206;
+    const puma560_real_t t214 = t6 * t212 + t8 * t213;
+    const puma560_real_t t215 = t6 * t199 - t8 * t203 + (PUMA560_C(0.0203) * t211
+        + PUMA560_C(-0.4318) * t214);
+    input_by_q[17] = PUMA560_C(-0.08095560645504385) * t215;
+    const puma560_real_t t216 = t3 * t214 + t1 * t211;
+    input_by_q[11] = PUMA560_C(0.04032672714331514) * (t215 + PUMA560_C(0.4318) * t216);
+    const puma560_real_t t217 = t8 * t212 - t6 * t213;
+    const puma560_real_t t218 = PUMA560_C(0.4318) * t217;
+    const puma560_real_t t219 = t6 * t203 + t8 * t199 - t218;
+    const puma560_real_t t220 = t202 + PUMA560_C(0.0203) * t217;
+    const puma560_real_t t221 = t0 * (t1 * t219 - t3 * t220 + PUMA560_C(-0.1254) * t216);
+    const puma560_real_t t222 = t3 * t219 + t1 * t220 + (t218 + PUMA560_C(0.1254) * (t1 * t214 - t3 * t211));
+    input_by_q[5] = PUMA560_C(0.06944177768728742) * (t221 + t2 * t222);
     input_by_dq[35] = PUMA560_C(1095.5142857142857) * parameters[FV6];
-    input_by_ddq[5] = PUMA560_C(0.06944177768728742) * t422;
-    input_by_ddq[11] = PUMA560_C(0.04032672714331514) * t440;
-    input_by_ddq[17] = PUMA560_C(-0.08095560645504385) * t439;
-    input_by_ddq[23] = PUMA560_C(0.18787994020908783) * t418;
-    input_by_ddq[29] = PUMA560_C(-0.19862511694053758) * t370;
+    const puma560_real_t t223 = t179 - parameters[ZZ6];
+    const puma560_real_t t224 = t54 * t223 - parameters[YZ6] * t99;
+    const puma560_real_t t225 = PUMA560_C(2.0) * t224 + (parameters[XY6] * t191 - parameters[XX6R] * t189);
+    const puma560_real_t t226 = t53 * t223 - parameters[XZ6] * t99;
+    const puma560_real_t t227 = PUMA560_C(2.0) * t226 + parameters[XY6] * t189;
+    const puma560_real_t t228 = t30 * t227 - t47 * t225;
+    input_by_dq[29] = PUMA560_C(0.19862511694053758) * t228;
+    const puma560_real_t t229 = t30 * t225 + t47 * t227;
+    const puma560_real_t t230 = t186 - t195;
+    const puma560_real_t t231 = PUMA560_C(2.0) * t230;
+    const puma560_real_t t232 = t231 + (parameters[YZ6] * t191 - parameters[XZ6] * t189);
+    const puma560_real_t t233 = t14 * t229 + t10 * t232;
+    input_by_dq[23] = PUMA560_C(0.18787994020908783) * t233;
+    const puma560_real_t t234 = t10 * t229 - t14 * t232;
+    const puma560_real_t t235 = PUMA560_C(2.0) * t208;
+    const puma560_real_t t236 = PUMA560_C(2.0) * t209;
+    const puma560_real_t t237 = t30 * t235 - t47 * t236;
+    const puma560_real_t t238 = parameters[MY6] * t189 + parameters[MX6] * t191;
+    const puma560_real_t t239 = t14 * t237 + t10 * t238;
+    const puma560_real_t t240 = t10 * t237 - t14 * t238;
+    const puma560_real_t t241 = t47 * t235 + t30 * t236;
+    const puma560_real_t t242 = t6 * t240 - t8 * t241;
+    const puma560_real_t t243 = t6 * t228 - t8 * t234 + (PUMA560_C(-0.0203) * t239
+        + PUMA560_C(0.4318) * t242);
+    input_by_dq[17] = PUMA560_C(-0.08095560645504385) * t243;
+    const puma560_real_t t244 = t3 * t242 + t1 * t239;
+    input_by_dq[11] = PUMA560_C(0.04032672714331514) * (t243 + PUMA560_C(-0.4318) * t244);
+    const puma560_real_t t245 = t8 * t240 + t6 * t241;
+    const puma560_real_t t246 = PUMA560_C(0.4318) * t245;
+    const puma560_real_t t247 = t6 * t234 + t8 * t228 + t246;
+    const puma560_real_t t248 = t233 - PUMA560_C(0.0203) * t245;
+    const puma560_real_t t249 = t0 * (t1 * t247 - t3 * t248 + PUMA560_C(0.1254) * t244);
+    const puma560_real_t t250 = t3 * t247 + t1 * t248 + (PUMA560_C(0.1254) * (t3 * t239 - t1 * t242) - t246);
+    input_by_dq[5] = PUMA560_C(0.06944177768728742) * (t249 + t2 * t250);
     input_by_ddq[35] = PUMA560_C(1095.5142857142857) * parameters[IA6]
         + PUMA560_C(0.1862884266452062) * parameters[ZZ6];
+    /* link j6: column of the mass matrix */
+    const puma560_real_t t251 = t47 * parameters[XZ6] + t30 * parameters[YZ6];
+    input_by_ddq[29] = PUMA560_C(-0.19862511694053758) * t251;
+    const puma560_real_t t252 = t30 * parameters[XZ6] - t47 * parameters[YZ6];
+    const puma560_real_t t253 = t14 * t252 + t10 * parameters[ZZ6];
+    input_by_ddq[23] = PUMA560_C(0.18787994020908783) * t253;
+    const puma560_real_t t254 = t14 * parameters[ZZ6] - t10 * t252;
+    const puma560_real_t t255 = t30 * parameters[MY6] + t47 * parameters[MX6];
+    const puma560_real_t t256 = t10 * t255;
+    const puma560_real_t t257 = t30 * parameters[MX6] - t47 * parameters[MY6];
+    const puma560_real_t t258 = t6 * t256 + t8 * t257;
+    const puma560_real_t t259 = t14 * t255;
+    const puma560_real_t t260 = t8 * t254 - t6 * t251 + (PUMA560_C(-0.0203) * t259
+        + PUMA560_C(0.4318) * t258);
+    input_by_ddq[17] = PUMA560_C(-0.08095560645504385) * t260;
+    const puma560_real_t t261 = t3 * t258 + t1 * t259;
+    const puma560_real_t t262 = t260 + PUMA560_C(-0.4318) * t261;
+    input_by_ddq[11] = PUMA560_C(0.04032672714331514) * t262;
+    const puma560_real_t t263 = t6 * t257 - t8 * t256;
+    const puma560_real_t t264 = PUMA560_C(-0.4318) * t263;
+    const puma560_real_t t265 = t264 - (t6 * t254 + t8 * t251);
+    const puma560_real_t t266 = t253 + PUMA560_C(0.0203) * t263;
+    const puma560_real_t t267 = t1 * t258 - t3 * t259;
+    const puma560_real_t t268 = t3 * t265 + t1 * t266 + (PUMA560_C(-0.1254) * t267 - t264);
+    const puma560_real_t t269 = t3 * t266 - t1 * t265 + PUMA560_C(-0.1254) * t261;
+    const puma560_real_t t270 = t2 * t268 - t0 * t269;
+    input_by_ddq[5] = PUMA560_C(0.06944177768728742) * t270;
+    const puma560_real_t t271 = parameters[ZZ6] * t42; /* link j6: derivatives */
+    const puma560_real_t t272 = t96 + t116; /* link j6: motion */
+    const puma560_real_t t273 = t30 * t182 + t47 * t184; /* link j6: derivatives */
+    const puma560_real_t t274 = t16 * t273 + t15 * t231 + (t252 * t49 + t271 + t251 * t272);
+    const puma560_real_t t275 = t255 * t107;
+    input_by_q[34] = PUMA560_C(0.1862884266452062) * (t274 + t275);
+    const puma560_real_t t276 = t14 * t231 - t10 * t273;
+    const puma560_real_t t277 = t30 * t184 - t47 * t182;
+    const puma560_real_t t278 = t128 + t121; /* link j5: motion */
+    /* link j6: derivatives */
+    const puma560_real_t t279 = t31 * t276 - t9 * t277 + (t254 * t25 + t251 * t38 - t253 * t278);
+    input_by_q[33] = PUMA560_C(0.1862884266452062) * (t279 + (t256 * t91 - t257 * t84));
+    const puma560_real_t t280 = PUMA560_C(0.0406) * t7;
+    const puma560_real_t t281 = PUMA560_C(0.4318) * t5 + PUMA560_C(0.0203) * t12;
+    const puma560_real_t t282 = PUMA560_C(2.0) * t281;
+    const puma560_real_t t283 = t6 * t276 - t8 * t277 + (t263 * t280 + t259 * t282);
+    const puma560_real_t t284 = t14 * t273 + t10 * t231;
+    const puma560_real_t t285 = PUMA560_C(0.8636) * t7;
+    const puma560_real_t t286 = t284 + (t258 * t282 - t263 * t285);
+    const puma560_real_t t287 = t85 + t60; /* link j4: motion */
+    /* link j6: derivatives */
+    const puma560_real_t t288 = t5 * t286 - t12 * t283 + (t265 * t34 + t266 * t22 - t260 * t287);
+    input_by_q[32] = PUMA560_C(0.1862884266452062) * (t288 + (t258 * t88 + t259 * t75));
+    /* link j3: velocity of its origin */
+    const puma560_real_t t289 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t69;
+    const puma560_real_t t290 = PUMA560_C(2.0) * t289; /* link j6: derivatives */
+    const puma560_real_t t291 = PUMA560_C(-0.8636) * t63;
+    const puma560_real_t t292 = t1 * t283 + t3 * t286 + (t261 * t291 - t263 * t290);
+    const puma560_real_t t293 = PUMA560_C(0.2508) * t63;
+    const puma560_real_t t294 = t3 * t283 - t1 * t286 + (t263 * t293 - t267 * t291);
+    const puma560_real_t t295 = t63 * t292 - t69 * t294 + (t269 * t66 + t268 * t72 - t262 * t79);
+    input_by_q[31] = PUMA560_C(0.1862884266452062) * (t295 + (t267 * t73 + t261 * t67));
+    const puma560_real_t t296 = PUMA560_C(0.1862884266452062) * (t277 + PUMA560_C(2.0) * (t252 * t16
+        + parameters[ZZ6] * t15));
+    input_by_dq[34] = t296;
+    const puma560_real_t t297 = PUMA560_C(0.1862884266452062) * (t284 + PUMA560_C(2.0) * (t254 * t31
+        + t251 * t9));
+    input_by_dq[33] = t297;
+    const puma560_real_t t298 = t8 * t276 + t6 * t277 + (t259 * t285 + t258 * t280);
+    const puma560_real_t t299 = PUMA560_C(0.1862884266452062) * (t298 + PUMA560_C(2.0) * (t265 * t12
+        + t266 * t5));
+    input_by_dq[32] = t299;
+    const puma560_real_t t300 = t298 + (t261 * t293 - t267 * t290) + PUMA560_C(2.0) * (t269 * t63
+        + t268 * t69);
+    input_by_dq[31] = PUMA560_C(0.1862884266452062) * t300;
+    input_by_dq[30] = PUMA560_C(0.1862884266452062) * (t0 * t292 + t2 * t294);
+    input_by_ddq[34] = PUMA560_C(-0.1862884266452062) * t251;
+    input_by_ddq[33] = PUMA560_C(0.1862884266452062) * t253;
+    input_by_ddq[32] = PUMA560_C(0.1862884266452062) * t260;
+    input_by_ddq[31] = PUMA560_C(0.1862884266452062) * t262;
+    input_by_ddq[30] = PUMA560_C(-0.1862884266452062) * t270;
+    /* link j6: inertia of it and all beyond */
+    const puma560_real_t t301 = parameters[XY6] * (PUMA560_C(2.0) * t47) - t30 * parameters[XX6R];
+    const puma560_real_t t302 = parameters[XZ5] - (parameters[XY6] - t47 * t301);
+    const puma560_real_t t303 = parameters[YZ5] - t251;
+    const puma560_real_t t304 = t30 * t301;
+    const puma560_real_t t305 = parameters[ZZ5R] + (parameters[XX6R] + t304);
+    const puma560_real_t t306 = t302 * t49 + t303 * t42 - t305 * t272; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t307 = t47 * (t194 + t190) - t30 * (t188 + t196);
+    const puma560_real_t t308 = t47 * t307;
+    const puma560_real_t t309 = PUMA560_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    const puma560_real_t t310 = parameters[XX5R] - t309;
+    const puma560_real_t t311 = t194 - t308 - (parameters[XY5] * t15 + t16 * t310);
+    const puma560_real_t t312 = PUMA560_C(2.0) * t311; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t313 = t15 * t309 - parameters[XY5] * t16 + (t30 * t226 - t47 * t224);
+    const puma560_real_t t314 = PUMA560_C(2.0) * t313; /* link j5: derivatives */
+    const puma560_real_t t315 = parameters[MX5] + t257; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t316 = t315 * t90 + parameters[MY5R] * t107; /* link j5: derivatives */
+    const puma560_real_t t317 = PUMA560_C(0.19862511694053758) * (t316 + (t306 + (t16 * t312 + t15 * t314)));
+    input_by_q[28] = t317;
+    const puma560_real_t t318 = t30 * t307; /* link j6: inertia, momentum beyond */
+    const puma560_real_t t319 = parameters[XZ5] * t16;
+    const puma560_real_t t320 = parameters[XY5] * t43;
+    const puma560_real_t t321 = t319 - t320 + (t196 + t318);
+    const puma560_real_t t322 = PUMA560_C(2.0) * t16; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t323 = parameters[YZ5] * t16 + t43 * t309 + (t30 * t224 + t47 * t226);
+    const puma560_real_t t324 = PUMA560_C(2.0) * t15; /* link j5: derivatives */
+    const puma560_real_t t325 = parameters[XX5R] - t304; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t326 = parameters[XY5] + t252;
+    /* link j5: derivatives */
+    const puma560_real_t t327 = t321 * t322 + t323 * t324 + (t325 * t49 + t326 * t42 - t302 * t272);
+    const puma560_real_t t328 = t98 + (t327 + t255 * t90);
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t329 = t43 * t310 + parameters[XZ5] * t15 - (t30 * t181 + t47 * t183);
+    const puma560_real_t t330 = parameters[YZ5] * t15;
+    const puma560_real_t t331 = t320 + t330 + t230;
+    /* link j5: derivatives */
+    const puma560_real_t t332 = t329 * t322 + t331 * t324 + (t271 + t326 * t49 - t303 * t272);
+    const puma560_real_t t333 = t117 + (t275 + t332);
+    const puma560_real_t t334 = t14 * t328 + t10 * t333;
+    input_by_q[22] = PUMA560_C(0.18787994020908783) * t334;
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t335 = parameters[MY5R] * t15 + parameters[MX5] * t16 - (t47 * t209 - t30 * t208);
+    /* link j5: derivatives */
+    const puma560_real_t t336 = t133 - (t335 * t324 + (t255 * t42 - parameters[MY5R] * t272));
+    const puma560_real_t t337 = t132 - (t335 * t322 - (t315 * t272 - t255 * t49));
+    const puma560_real_t t338 = t14 * t336 - t10 * t337;
+    const puma560_real_t t339 = t10 * t336 + t14 * t337;
+    const puma560_real_t t340 = parameters[MX5] * t43 - t204; /* link j6: inertia, momentum beyond */
+    const puma560_real_t t341 = parameters[MY5R] * t43 + (t30 * t209 + t47 * t208);
+    /* link j5: derivatives */
+    const puma560_real_t t342 = t340 * t322 + t341 * t324 - (t315 * t42 - parameters[MY5R] * t49);
+    const puma560_real_t t343 = t6 * t339 + t8 * t342;
+    const puma560_real_t t344 = t10 * t328 - t14 * t333;
+    const puma560_real_t t345 = t311 * t322 + t313 * t324 + t306 + t316;
+    const puma560_real_t t346 = t6 * t345 - t8 * t344 + (PUMA560_C(0.0203) * t338
+        + PUMA560_C(-0.4318) * t343);
+    input_by_q[16] = PUMA560_C(-0.08095560645504385) * t346;
+    const puma560_real_t t347 = t3 * t343 + t1 * t338;
+    input_by_q[10] = PUMA560_C(0.04032672714331514) * (t346 + PUMA560_C(0.4318) * t347);
+    const puma560_real_t t348 = t8 * t339 - t6 * t342;
+    const puma560_real_t t349 = PUMA560_C(0.4318) * t348;
+    const puma560_real_t t350 = t6 * t344 + t8 * t345 - t349;
+    const puma560_real_t t351 = t334 + PUMA560_C(0.0203) * t348;
+    const puma560_real_t t352 = t0 * (t1 * t350 - t3 * t351 + PUMA560_C(-0.1254) * t347);
+    const puma560_real_t t353 = t3 * t350 + t1 * t351 + (t349 + PUMA560_C(0.1254) * (t1 * t343 - t3 * t338));
+    input_by_q[4] = PUMA560_C(0.06944177768728742) * (t352 + t2 * t353);
+    const puma560_real_t t354 = t319 + t330 + (t188 + t318); /* link j6: inertia, momentum beyond */
+    const puma560_real_t t355 = PUMA560_C(-2.0) * t354; /* link j5: derivatives */
+    const puma560_real_t t356 = PUMA560_C(0.19862511694053758) * (t355 + PUMA560_C(2.0) * (t302 * t16
+        + t303 * t15));
+    input_by_dq[28] = PUMA560_C(1027.4714285714285) * parameters[FV5] + t356;
+    const puma560_real_t t357 = parameters[ZZ5R] - t309;
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t358 = t16 * t357 - parameters[YZ5] * t43 + (t190 - t308);
+    /* link j5: derivatives */
+    const puma560_real_t t359 = PUMA560_C(2.0) * t358 + (t325 * t322 + t326 * t324);
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t360 = parameters[XZ5] * t43 + t15 * t357 + (t47 * t181 - t30 * t183);
+    /* link j5: derivatives */
+    const puma560_real_t t361 = PUMA560_C(2.0) * t360 + (t326 * t322 + parameters[ZZ6] * t324);
+    const puma560_real_t t362 = t14 * t359 + t10 * t361;
+    input_by_dq[22] = PUMA560_C(0.18787994020908783) * t362;
+    const puma560_real_t t363 = t10 * t359 - t14 * t361;
+    const puma560_real_t t364 = t355 + (t302 * t322 + t303 * t324);
+    const puma560_real_t t365 = PUMA560_C(2.0) * t340 + t255 * t324;
+    const puma560_real_t t366 = PUMA560_C(2.0) * t341 - t255 * t322;
+    const puma560_real_t t367 = t14 * t365 + t10 * t366;
+    const puma560_real_t t368 = t10 * t365 - t14 * t366;
+    const puma560_real_t t369 = parameters[MY5R] * t322 - t315 * t324;
+    const puma560_real_t t370 = t6 * t368 - t8 * t369;
+    const puma560_real_t t371 = t6 * t364 - t8 * t363 + (PUMA560_C(-0.0203) * t367
+        + PUMA560_C(0.4318) * t370);
+    input_by_dq[16] = PUMA560_C(-0.08095560645504385) * t371;
+    const puma560_real_t t372 = t3 * t370 + t1 * t367;
+    input_by_dq[10] = PUMA560_C(0.04032672714331514) * (t371 + PUMA560_C(-0.4318) * t372);
+    const puma560_real_t t373 = t8 * t368 + t6 * t369;
+    const puma560_real_t t374 = PUMA560_C(0.4318) * t373;
+    const puma560_real_t t375 = t6 * t363 + t8 * t364 + t374;
+    const puma560_real_t t376 = t362 - PUMA560_C(0.0203) * t373;
+    const puma560_real_t t377 = t0 * (t1 * t375 - t3 * t376 + PUMA560_C(0.1254) * t372);
+    const puma560_real_t t378 = t3 * t375 + t1 * t376 + (PUMA560_C(0.1254) * (t3 * t367 - t1 * t370) - t374);
+    input_by_dq[4] = PUMA560_C(0.06944177768728742) * (t377 + t2 * t378);
+    input_by_ddq[28] = PUMA560_C(1027.4714285714285) * parameters[IA5]
+        + PUMA560_C(0.19862511694053758) * t305;
+    const puma560_real_t t379 = t14 * t302 + t10 * t303; /* link j5: column of the mass matrix */
+    input_by_ddq[22] = PUMA560_C(0.18787994020908783) * t379;
+    const puma560_real_t t380 = t14 * t303 - t10 * t302;
+    const puma560_real_t t381 = t10 * t315 - t14 * parameters[MY5R];
+    const puma560_real_t t382 = t10 * parameters[MY5R] + t14 * t315;
+    const puma560_real_t t383 = t6 * t382;
+    const puma560_real_t t384 = t8 * t380 + t6 * t305 + (PUMA560_C(0.0203) * t381 + PUMA560_C(0.4318) * t383);
+    input_by_ddq[16] = PUMA560_C(-0.08095560645504385) * t384;
+    const puma560_real_t t385 = t1 * t381 - t3 * t383;
+    const puma560_real_t t386 = t384 + PUMA560_C(0.4318) * t385;
+    input_by_ddq[10] = PUMA560_C(0.04032672714331514) * t386;
+    const puma560_real_t t387 = t8 * t382;
+    const puma560_real_t t388 = PUMA560_C(0.4318) * t387;
+    const puma560_real_t t389 = t8 * t305 - t6 * t380 + t388;
+    const puma560_real_t t390 = t379 + PUMA560_C(-0.0203) * t387;
+    const puma560_real_t t391 = t3 * t390 - t1 * t389 + PUMA560_C(0.1254) * t385;
+    const puma560_real_t t392 = t1 * t383 + t3 * t381;
+    const puma560_real_t t393 = t3 * t389 + t1 * t390 + (PUMA560_C(-0.1254) * t392 - t388);
+    const puma560_real_t t394 = t2 * t393 - t0 * t391;
+    input_by_ddq[4] = PUMA560_C(0.06944177768728742) * t394;
+    const puma560_real_t t395 = t14 * t314 - t10 * t312; /* link j5: derivatives */
+    const puma560_real_t t396 = t305 * t38;
+    const puma560_real_t t397 = t31 * t395 - t9 * t355 + (t380 * t25 - t396 - t379 * t278);
+    const puma560_real_t t398 = t382 * t91;
+    input_by_q[27] = PUMA560_C(0.19862511694053758) * (t397 + t398);
+    const puma560_real_t t399 = t6 * t395 - t8 * t355 - (t387 * t280 + t381 * t282);
+    const puma560_real_t t400 = t14 * t312 + t10 * t314;
+    const puma560_real_t t401 = t400 + (t383 * t282 + t387 * t285);
+    const puma560_real_t t402 = t5 * t401 - t12 * t399 + (t389 * t34 + t390 * t22 - t384 * t287);
+    input_by_q[26] = PUMA560_C(0.19862511694053758) * (t402 + (t383 * t88 - t381 * t75));
+    const puma560_real_t t403 = t1 * t399 + t3 * t401 + (t387 * t290 - t385 * t291);
+    const puma560_real_t t404 = t3 * t399 - t1 * t401 - (t392 * t291 + t387 * t293);
+    const puma560_real_t t405 = t63 * t403 - t69 * t404 + (t391 * t66 + t393 * t72 - t386 * t79);
+    input_by_q[25] = PUMA560_C(0.19862511694053758) * (t405 + (t392 * t73 - t385 * t67));
+    const puma560_real_t t406 = PUMA560_C(0.19862511694053758) * (t400 + PUMA560_C(2.0) * (t380 * t31
+        - t305 * t9));
+    input_by_dq[27] = t406;
+    const puma560_real_t t407 = t8 * t395 + t6 * t355 + (t383 * t280 - t381 * t285);
+    const puma560_real_t t408 = PUMA560_C(0.19862511694053758) * (t407 + PUMA560_C(2.0) * (t389 * t12
+        + t390 * t5));
+    input_by_dq[26] = t408;
+    const puma560_real_t t409 = t407 - (t385 * t293 + t392 * t290) + PUMA560_C(2.0) * (t391 * t63
+        + t393 * t69);
+    input_by_dq[25] = PUMA560_C(0.19862511694053758) * t409;
+    input_by_dq[24] = PUMA560_C(0.19862511694053758) * (t0 * t403 + t2 * t404);
+    input_by_ddq[27] = PUMA560_C(0.19862511694053758) * t379;
+    input_by_ddq[26] = PUMA560_C(0.19862511694053758) * t384;
+    input_by_ddq[25] = PUMA560_C(0.19862511694053758) * t386;
+    input_by_ddq[24] = PUMA560_C(-0.19862511694053758) * t394;
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t410 = t10 * (t331 - t321) + t14 * (t323 + t329);
+    const puma560_real_t t411 = t14 * t410;
+    const puma560_real_t t412 = PUMA560_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const puma560_real_t t413 = parameters[XX4R] - t412;
+    const puma560_real_t t414 = parameters[XY4] * t9 - t31 * t413 + (t411 - t329);
+    const puma560_real_t t415 = PUMA560_C(2.0) * t414; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t416 = t9 * t412 + parameters[XY4] * t31 - (t14 * t358 + t10 * t360);
+    const puma560_real_t t417 = PUMA560_C(2.0) * t416; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const puma560_real_t t418 = t10 * (parameters[ZZ6] - t325) + t326 * (PUMA560_C(2.0) * t14);
+    const puma560_real_t t419 = t14 * t418 - t326 - parameters[XZ4];
+    const puma560_real_t t420 = parameters[YZ4] - t379;
+    const puma560_real_t t421 = t10 * t418;
+    const puma560_real_t t422 = parameters[ZZ4R] + (t325 + t421);
+    const puma560_real_t t423 = t419 * t25 + t420 * t38 - t422 * t278; /* link j4: derivatives */
+    const puma560_real_t t424 = parameters[MX4] + t381; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t425 = parameters[MY4R] + t255;
+    const puma560_real_t t426 = t425 * t91 - t424 * t84; /* link j4: derivatives */
+    const puma560_real_t t427 = PUMA560_C(0.18787994020908783) * (t426 + (t423 + (t31 * t415 + t9 * t417)));
+    input_by_q[21] = t427;
+    const puma560_real_t t428 = t10 * t410; /* link j5: inertia, momentum beyond */
+    const puma560_real_t t429 = parameters[XZ4] * t31;
+    const puma560_real_t t430 = parameters[XY4] * t13;
+    const puma560_real_t t431 = t429 + t430 - (t331 - t428);
+    const puma560_real_t t432 = PUMA560_C(2.0) * t31; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t433 = parameters[YZ4] * t31 - t13 * t412 + (t10 * t358 - t14 * t360);
+    const puma560_real_t t434 = PUMA560_C(-2.0) * t9; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const puma560_real_t t435 = parameters[XX4R] + (parameters[ZZ6] - t421);
+    const puma560_real_t t436 = parameters[XY4] + t380;
+    /* link j4: derivatives */
+    const puma560_real_t t437 = t431 * t432 + t433 * t434 - (t435 * t25 - t436 * t38 - t419 * t278);
+    const puma560_real_t t438 = t129 + (t437 + t382 * t84);
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t439 = t13 * t413 + parameters[XZ4] * t9 + (t14 * t313 - t10 * t311);
+    const puma560_real_t t440 = parameters[YZ4] * t9;
+    const puma560_real_t t441 = t354 - (t430 + t440);
+    /* link j4: derivatives */
+    const puma560_real_t t442 = t439 * t432 - t441 * t434 + (t436 * t25 - t396 + t420 * t278);
+    const puma560_real_t t443 = t123 + (t398 + t442);
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t444 = parameters[MY4R] * t9 - parameters[MX4] * t31 + (t14 * t341 - t10 * t340);
+    const puma560_real_t t445 = t134 + (t444 * t432 + (t424 * t278 - t382 * t25)); /* link j4: derivatives */
+    const puma560_real_t t446 = t136 + (t444 * t434 + (t382 * t38 + t425 * t278));
+    const puma560_real_t t447 = t6 * t446 + t8 * t445;
+    const puma560_real_t t448 = parameters[MX4] * t13 + t335; /* link j5: inertia, momentum beyond */
+    const puma560_real_t t449 = parameters[MY4R] * t13 + (t10 * t341 + t14 * t340);
+    /* link j4: derivatives */
+    const puma560_real_t t450 = t448 * t432 + t449 * t434 + (t425 * t25 + t424 * t38);
+    const puma560_real_t t451 = t6 * t443 - t8 * t438 + (PUMA560_C(-0.0203) * t450
+        + PUMA560_C(-0.4318) * t447);
+    input_by_q[15] = PUMA560_C(-0.08095560645504385) * t451;
+    const puma560_real_t t452 = t3 * t447 - t1 * t450;
+    input_by_q[9] = PUMA560_C(0.04032672714331514) * (t451 + PUMA560_C(0.4318) * t452);
+    const puma560_real_t t453 = t8 * t446 - t6 * t445;
+    const puma560_real_t t454 = PUMA560_C(0.4318) * t453;
+    const puma560_real_t t455 = t6 * t438 + t8 * t443 - t454;
+    const puma560_real_t t456 = t414 * t432 - t416 * t434 + t423 + t426 + PUMA560_C(0.0203) * t453;
+    const puma560_real_t t457 = t3 * t455 + t1 * t456 + (t454 + PUMA560_C(0.1254) * (t1 * t447 + t3 * t450));
+    const puma560_real_t t458 = t0 * (t1 * t455 - t3 * t456 + PUMA560_C(-0.1254) * t452);
+    input_by_q[3] = PUMA560_C(0.06944177768728742) * (t458 + t2 * t457);
+    const puma560_real_t t459 = t429 - t440 + (t321 + t428); /* link j5: inertia, momentum beyond */
+    const puma560_real_t t460 = PUMA560_C(2.0) * t459; /* link j4: derivatives */
+    const puma560_real_t t461 = PUMA560_C(0.18787994020908783) * (t460 + PUMA560_C(2.0) * (t419 * t31
+        + t420 * t9));
+    input_by_dq[21] = PUMA560_C(1086.2342857142855) * parameters[FV4] + t461;
+    const puma560_real_t t462 = t412 - parameters[ZZ4R];
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t463 = parameters[YZ4] * t13 - t31 * t462 - (t323 - t411);
+    /* link j4: derivatives */
+    const puma560_real_t t464 = PUMA560_C(2.0) * t463 + (t435 * t432 + t436 * t434);
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t465 = t9 * t462 - parameters[XZ4] * t13 + (t14 * t311 + t10 * t313);
+    /* link j4: derivatives */
+    const puma560_real_t t466 = PUMA560_C(2.0) * t465 + (t436 * t432 + t305 * t434);
+    const puma560_real_t t467 = PUMA560_C(2.0) * t448 + t382 * t434;
+    const puma560_real_t t468 = PUMA560_C(2.0) * t449 - t382 * t432;
+    const puma560_real_t t469 = t6 * t467 - t8 * t468;
+    const puma560_real_t t470 = t425 * t432 - t424 * t434;
+    const puma560_real_t t471 = t8 * t464 + t6 * t466 + (PUMA560_C(-0.0203) * t470
+        + PUMA560_C(0.4318) * t469);
+    input_by_dq[15] = PUMA560_C(-0.08095560645504385) * t471;
+    const puma560_real_t t472 = t3 * t469 + t1 * t470;
+    input_by_dq[9] = PUMA560_C(0.04032672714331514) * (t471 + PUMA560_C(-0.4318) * t472);
+    const puma560_real_t t473 = t8 * t467 + t6 * t468;
+    const puma560_real_t t474 = PUMA560_C(0.4318) * t473;
+    const puma560_real_t t475 = t8 * t466 - t6 * t464 + t474;
+    const puma560_real_t t476 = t460 - (t420 * t434 - t419 * t432) - PUMA560_C(0.0203) * t473;
+    const puma560_real_t t477 = t0 * (t1 * t475 - t3 * t476 + PUMA560_C(0.1254) * t472);
+    const puma560_real_t t478 = t3 * t475 + t1 * t476 + (PUMA560_C(0.1254) * (t3 * t470 - t1 * t469) - t474);
+    input_by_dq[3] = PUMA560_C(0.06944177768728742) * (t477 + t2 * t478);
+    input_by_ddq[21] = PUMA560_C(1086.2342857142855) * parameters[IA4]
+        + PUMA560_C(0.18787994020908783) * t422;
+    const puma560_real_t t479 = t6 * t425 + t8 * t424; /* link j4: column of the mass matrix */
+    const puma560_real_t t480 = PUMA560_C(0.4318) * t479;
+    const puma560_real_t t481 = t8 * t419 - t6 * t420 + t480;
+    input_by_ddq[15] = PUMA560_C(-0.08095560645504385) * t481;
+    const puma560_real_t t482 = t3 * t479;
+    const puma560_real_t t483 = t481 + PUMA560_C(-0.4318) * t482;
+    input_by_ddq[9] = PUMA560_C(0.04032672714331514) * t483;
+    const puma560_real_t t484 = t6 * t419 + t8 * t420;
+    const puma560_real_t t485 = t6 * t424 - t8 * t425;
+    const puma560_real_t t486 = PUMA560_C(-0.4318) * t485;
+    const puma560_real_t t487 = t486 - t484;
+    const puma560_real_t t488 = t422 + PUMA560_C(0.0203) * t485;
+    const puma560_real_t t489 = t3 * t488 - t1 * t487 + PUMA560_C(-0.1254) * t482;
+    const puma560_real_t t490 = t1 * t479;
+    const puma560_real_t t491 = t3 * t487 + t1 * t488 + (PUMA560_C(-0.1254) * t490 - t486);
+    const puma560_real_t t492 = t2 * t491 - t0 * t489;
+    input_by_ddq[3] = PUMA560_C(0.06944177768728742) * t492;
+    const puma560_real_t t493 = t6 * t415 + t8 * t417 + t485 * t280; /* link j4: derivatives */
+    const puma560_real_t t494 = t460 + (t479 * t282 - t485 * t285);
+    const puma560_real_t t495 = t5 * t494 - t12 * t493 + (t487 * t34 + t488 * t22 - t481 * t287);
+    const puma560_real_t t496 = t479 * t88;
+    input_by_q[20] = PUMA560_C(0.18787994020908783) * (t495 + t496);
+    const puma560_real_t t497 = t1 * t493 + t3 * t494 + (t482 * t291 - t485 * t290);
+    const puma560_real_t t498 = t3 * t493 - t1 * t494 + (t485 * t293 - t490 * t291);
+    const puma560_real_t t499 = t63 * t497 - t69 * t498 + (t489 * t66 + t491 * t72 - t483 * t79);
+    input_by_q[19] = PUMA560_C(0.18787994020908783) * (t499 + (t490 * t73 + t482 * t67));
+    const puma560_real_t t500 = t8 * t415 - t6 * t417 + t479 * t280;
+    const puma560_real_t t501 = PUMA560_C(0.18787994020908783) * (t500 + PUMA560_C(2.0) * (t487 * t12
+        + t488 * t5));
+    input_by_dq[20] = t501;
+    const puma560_real_t t502 = t500 + (t482 * t293 - t490 * t290) + PUMA560_C(2.0) * (t489 * t63
+        + t491 * t69);
+    input_by_dq[19] = PUMA560_C(0.18787994020908783) * t502;
+    input_by_dq[18] = PUMA560_C(0.18787994020908783) * (t0 * t497 + t2 * t498);
+    input_by_ddq[20] = PUMA560_C(0.18787994020908783) * t481;
+    input_by_ddq[19] = PUMA560_C(0.18787994020908783) * t483;
+    input_by_ddq[18] = PUMA560_C(-0.18787994020908783) * t492;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t503 = t6 * (t431 - t441) + t8 * (t439 - t433);
+    const puma560_real_t t504 = t8 * t503;
+    const puma560_real_t t505 = t8 * t449 - t6 * t448;
+    const puma560_real_t t506 = PUMA560_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const puma560_real_t t507 = parameters[XX3R] - t506;
+    const puma560_real_t t508 = parameters[XY3R] * t5 + t12 * t507 + (t439 - t504 + (PUMA560_C(0.0203) * t505
+        - t485 * t281));
+    const puma560_real_t t509 = PUMA560_C(2.0) * t508; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t510 = t8 * t463 + t6 * t465 + (PUMA560_C(-0.4318) * t505 + t382 * t281);
+    const puma560_real_t t511 = t5 * t506 - parameters[XY3R] * t12 + t510;
+    const puma560_real_t t512 = PUMA560_C(-2.0) * t511; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t513 = t6 * (t305 - t435) + t436 * (PUMA560_C(2.0) * t8);
+    const puma560_real_t t514 = parameters[XZ3] - (t436 - t8 * t513 - PUMA560_C(0.0203) * t479);
+    const puma560_real_t t515 = parameters[YZ3] + t481;
+    const puma560_real_t t516 = t6 * t513;
+    const puma560_real_t t517 = PUMA560_C(0.0406) * t485;
+    const puma560_real_t t518 = PUMA560_C(0.8636) * t382;
+    const puma560_real_t t519 = parameters[ZZ3R] + (t435 + t516 + (t517 + t518));
+    const puma560_real_t t520 = t514 * t34 + t515 * t22 - t519 * t287; /* link j3: derivatives */
+    const puma560_real_t t521 = parameters[MX3R] + t485; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t522 = parameters[MY3R] + t382;
+    const puma560_real_t t523 = t522 * t88 - t521 * t75; /* link j3: derivatives */
+    const puma560_real_t t524 = PUMA560_C(0.08095560645504385) * (t12 * t509 + t5 * t512 - t520 - t523);
+    input_by_q[14] = t524;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t525 = t505 - (parameters[MY3R] * t5 + parameters[MX3R] * t12);
+    const puma560_real_t t526 = PUMA560_C(2.0) * t5; /* link j3: derivatives */
+    const puma560_real_t t527 = t148 + (t525 * t526 + (t522 * t287 - t479 * t22));
+    const puma560_real_t t528 = PUMA560_C(-2.0) * t12;
+    const puma560_real_t t529 = t146 + (t521 * t287 - t479 * t34 - t525 * t528);
+    const puma560_real_t t530 = t3 * t527 - t1 * t529;
+    const puma560_real_t t531 = t508 * t528 + t511 * t526 + t520 + t523 + PUMA560_C(0.4318) * t530;
+    input_by_q[8] = PUMA560_C(0.04032672714331514) * t531;
+    const puma560_real_t t532 = t6 * t503; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t533 = t6 * t449 + t8 * t448;
+    const puma560_real_t t534 = PUMA560_C(-0.0203) * t533;
+    const puma560_real_t t535 = PUMA560_C(0.4318) * t7; /* link j4: velocity of its origin */
+    const puma560_real_t t536 = t485 * t535; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t537 = PUMA560_C(0.4318) * t444;
+    const puma560_real_t t538 = t479 * t281;
+    const puma560_real_t t539 = PUMA560_C(0.0203) * t7; /* link j4: velocity of its origin */
+    const puma560_real_t t540 = t382 * t539; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t541 = t537 - t534 - (t540 - t536 + t538);
+    const puma560_real_t t542 = parameters[XZ3] * t12;
+    const puma560_real_t t543 = parameters[XY3R] * t7;
+    const puma560_real_t t544 = t543 - t542 + (t541 + (t441 + t532 + (t534 - t536)));
+    const puma560_real_t t545 = t8 * t465 - t6 * t463 + (PUMA560_C(0.4318) * t533 + t382 * t535);
+    const puma560_real_t t546 = parameters[YZ3] * t12 + t7 * t506 + t545;
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t547 = parameters[XX3R] + (t305 - t516 + t518);
+    const puma560_real_t t548 = parameters[XY3R] + (t486 + PUMA560_C(-0.0203) * t382 - t484);
+    /* link j3: derivatives */
+    const puma560_real_t t549 = t544 * t528 + t546 * t526 + (t547 * t34 + t548 * t22 - t514 * t287);
+    const puma560_real_t t550 = t144 + (t549 - t479 * t75);
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t551 = t6 * t414 + t8 * t416 - (PUMA560_C(0.0203) * t444 - t485 * t539);
+    const puma560_real_t t552 = t7 * t507 + parameters[XZ3] * t5 - t551;
+    const puma560_real_t t553 = parameters[YZ3] * t5;
+    const puma560_real_t t554 = t543 + t553 - (t541 - (t459 + (t537 - t540)));
+    const puma560_real_t t555 = t422 + t517; /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const puma560_real_t t556 = t554 * t526 - t552 * t528 + (t548 * t34 + t555 * t22 - t515 * t287);
+    const puma560_real_t t557 = t139 - (t496 + t556);
+    const puma560_real_t t558 = t0 * (t1 * t550 + t3 * t557 + PUMA560_C(-0.1254) * t530);
+    const puma560_real_t t559 = parameters[MY3R] * t7 + t533; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t560 = t444 - parameters[MX3R] * t7;
+    /* link j3: derivatives */
+    const puma560_real_t t561 = t521 * t22 - t522 * t34 - (t560 * t528 + t559 * t526);
+    const puma560_real_t t562 = PUMA560_C(0.1254) * (t1 * t527 + t3 * t529) + PUMA560_C(0.4318) * t561;
+    const puma560_real_t t563 = t558 + t2 * (t3 * t550 - t1 * t557 + t562);
+    input_by_q[2] = PUMA560_C(0.06944177768728742) * t563;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t564 = t532 - t431 - t538 - t541 - (t542 + t553);
+    const puma560_real_t t565 = PUMA560_C(-2.0) * t564; /* link j3: derivatives */
+    const puma560_real_t t566 = PUMA560_C(0.08095560645504385) * (t565 + PUMA560_C(-2.0) * (t514 * t12
+        + t515 * t5));
+    input_by_dq[14] = PUMA560_C(-233.50565217391303) * parameters[FV3] + t566;
+    const puma560_real_t t567 = PUMA560_C(2.0) * t559 + t479 * t528;
+    const puma560_real_t t568 = PUMA560_C(2.0) * t560 - t479 * t526;
+    const puma560_real_t t569 = t1 * t567 - t3 * t568;
+    const puma560_real_t t570 = t515 * t526 - t514 * t528 - t565 + PUMA560_C(-0.4318) * t569;
+    input_by_dq[8] = PUMA560_C(0.04032672714331514) * t570;
+    const puma560_real_t t571 = parameters[ZZ3R] - t506;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t572 = t12 * t571 - parameters[YZ3] * t7 + (t433 + t504 - t479 * t535);
+    /* link j3: derivatives */
+    const puma560_real_t t573 = PUMA560_C(2.0) * t572 + (t548 * t526 - t547 * t528);
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t574 = parameters[XZ3] * t7 + t5 * t571 + (t8 * t414 - t6 * t416 + t479 * t539);
+    /* link j3: derivatives */
+    const puma560_real_t t575 = PUMA560_C(2.0) * t574 + (t555 * t526 - t548 * t528);
+    const puma560_real_t t576 = t0 * (t1 * t573 - t3 * t575 + PUMA560_C(0.1254) * t569);
+    const puma560_real_t t577 = PUMA560_C(0.1254) * (t1 * t568 + t3 * t567) + PUMA560_C(0.4318) * (t522 * t528
+        + t521 * t526);
+    const puma560_real_t t578 = t576 + t2 * (t3 * t573 + t1 * t575 + t577);
+    input_by_dq[2] = PUMA560_C(0.06944177768728742) * t578;
+    input_by_ddq[14] = PUMA560_C(-233.50565217391303) * parameters[IA3]
+        + PUMA560_C(-0.08095560645504385) * t519;
+    const puma560_real_t t579 = t1 * t521 - t3 * t522; /* link j3: column of the mass matrix */
+    const puma560_real_t t580 = t519 + PUMA560_C(0.4318) * t579;
+    input_by_ddq[8] = PUMA560_C(0.04032672714331514) * t580;
+    const puma560_real_t t581 = t1 * t514 - t3 * t515;
+    const puma560_real_t t582 = PUMA560_C(-0.1254) * t579;
+    const puma560_real_t t583 = t581 + t582;
+    const puma560_real_t t584 = t1 * t522 + t3 * t521;
+    const puma560_real_t t585 = t3 * t514 + t1 * t515 + PUMA560_C(-0.1254) * t584;
+    const puma560_real_t t586 = t0 * t583 + t2 * t585;
+    input_by_ddq[2] = PUMA560_C(0.06944177768728742) * t586;
+    const puma560_real_t t587 = t3 * t512 - t1 * t509 + t579 * t291; /* link j3: derivatives */
+    const puma560_real_t t588 = t3 * t509 + t1 * t512 - t584 * t291;
+    const puma560_real_t t589 = t63 * t587 + t69 * t588 + (t583 * t66 - t585 * t72 + t580 * t79);
+    input_by_q[13] = PUMA560_C(0.08095560645504385) * (t589 + (t579 * t67 - t584 * t73));
+    const puma560_real_t t590 = t565 + (t579 * t293 + t584 * t290) + PUMA560_C(2.0) * (t583 * t63
+        - t585 * t69);
+    input_by_dq[13] = PUMA560_C(0.08095560645504385) * t590;
+    input_by_dq[12] = PUMA560_C(0.08095560645504385) * (t0 * t587 - t2 * t588);
+    input_by_ddq[13] = PUMA560_C(-0.08095560645504385) * t580;
+    input_by_ddq[12] = PUMA560_C(0.08095560645504385) * t586;
+    const puma560_real_t t591 = PUMA560_C(0.4318) * t63; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t592 = t1 * t508 + t3 * t511 + (PUMA560_C(0.4318) * t525 + t579 * t591);
+    const puma560_real_t t593 = PUMA560_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const puma560_real_t t594 = t593 - parameters[XX2R];
+    /* link j2: derivatives */
+    const puma560_real_t t595 = PUMA560_C(2.0) * (parameters[XY2] * t69 + t63 * t594 + t592);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t596 = parameters[XY2] * t63 + t69 * t593 - (t3 * t508 - t1 * t511 + t584 * t591);
+    const puma560_real_t t597 = PUMA560_C(2.0) * t596; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const puma560_real_t t598 = parameters[XZ2R] + (t581 + (t480 + t582));
+    const puma560_real_t t599 = parameters[YZ2] + t585;
+    const puma560_real_t t600 = PUMA560_C(-0.8636) * t579;
+    const puma560_real_t t601 = parameters[ZZ2R] + (t519 - t600);
+    /* link j2: derivatives */
+    const puma560_real_t t602 = t599 * t72 - t598 * t66 - t601 * t79 + (t63 * t595 + t69 * t597);
+    const puma560_real_t t603 = (parameters[MY2] + t584) * t73 - (parameters[MX2R] + t579) * t67 + t602;
+    input_by_q[7] = PUMA560_C(0.04032672714331514) * t603;
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t604 = t1 * (t544 + t554) + t3 * (t546 + t552);
+    const puma560_real_t t605 = t1 * t604;
+    const puma560_real_t t606 = t1 * t559 - t3 * t560;
+    const puma560_real_t t607 = PUMA560_C(0.4318) * t606;
+    const puma560_real_t t608 = PUMA560_C(-0.1254) * t63; /* link j3: velocity of its origin */
+    const puma560_real_t t609 = t579 * t608; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t610 = PUMA560_C(-0.1254) * t525;
+    const puma560_real_t t611 = t584 * t289;
+    const puma560_real_t t612 = t479 * t591;
+    const puma560_real_t t613 = t607 + t610 + (t611 - t609 + t612);
+    const puma560_real_t t614 = parameters[XZ2R] * t63;
+    const puma560_real_t t615 = parameters[XY2] * dq[1];
+    const puma560_real_t t616 = t614 + t615 + (t613 + (t605 - t554 + (t609 - t607)));
+    const puma560_real_t t617 = PUMA560_C(-2.0) * t63; /* link j2: derivatives */
+    const puma560_real_t t618 = t3 * t604; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t619 = parameters[YZ2] * t63 - dq[1] * t593 + (t618 - t546 + t584 * t608);
+    const puma560_real_t t620 = PUMA560_C(2.0) * t69; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const puma560_real_t t621 = t1 * (t555 - t547) + t548 * (PUMA560_C(2.0) * t3);
+    const puma560_real_t t622 = t1 * t621;
+    const puma560_real_t t623 = PUMA560_C(0.2508) * t479;
+    const puma560_real_t t624 = t622 - t555 + t623 - parameters[XX2R];
+    const puma560_real_t t625 = t3 * t621 - t548 + PUMA560_C(0.4318) * t584 - parameters[XY2];
+    /* link j2: derivatives */
+    const puma560_real_t t626 = t624 * t66 - t625 * t72 - t598 * t79 - (t616 * t617 + t619 * t620);
+    const puma560_real_t t627 = t3 * t559 + t1 * t560; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t628 = dq[1] * t594 - parameters[XZ2R] * t69 + (t618 - t552
+        + (PUMA560_C(-0.4318) * t627 - t579 * t289));
+    const puma560_real_t t629 = parameters[YZ2] * t69;
+    const puma560_real_t t630 = t613 + (t544 - t605 - t611) - (t615 + t629);
+    const puma560_real_t t631 = t547 + t622 - (t600 + t623); /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
+    const puma560_real_t t632 = t625 * t66 + t631 * t72 - t599 * t79 - (t628 * t617 + t630 * t620);
+    const puma560_real_t t633 = t0 * (t156 + (t626 - t479 * t67)) + t2 * (t153 + (t632 + t479 * t73));
+    input_by_q[1] = PUMA560_C(0.06944177768728742) * t633;
+    const puma560_real_t t634 = PUMA560_C(2.0) * (t614 - t629 + (t564 + (t610 + t612) - t613));
+    const puma560_real_t t635 = PUMA560_C(0.04032672714331514) * (t634 + PUMA560_C(2.0) * (t599 * t69
+        - t598 * t63));
+    input_by_dq[7] = PUMA560_C(468.7608695652174) * parameters[FV2] + t635;
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t636 = t1 * t572 - t3 * t574 + (PUMA560_C(0.1254) * t606 + t479 * t608);
+    const puma560_real_t t637 = parameters[ZZ2R] - t593;
+    /* link j2: derivatives */
+    const puma560_real_t t638 = PUMA560_C(2.0) * (t636 - (parameters[YZ2] * dq[1] + t63 * t637))
+        - (t624 * t617 + t625 * t620);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t639 = t3 * t572 + t1 * t574 + (PUMA560_C(0.1254) * t627 - t479 * t289);
+    /* link j2: derivatives */
+    const puma560_real_t t640 = PUMA560_C(2.0) * (parameters[XZ2R] * dq[1] + t69 * t637 + t639) + (t631 * t620
+        - t625 * t617);
+    input_by_dq[1] = PUMA560_C(0.06944177768728742) * (t0 * t638 + t2 * t640);
+    input_by_ddq[7] = PUMA560_C(0.04032672714331514) * t601;
+    const puma560_real_t t641 = t0 * t598 + t2 * t599; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = PUMA560_C(0.06944177768728742) * t641;
+    input_by_dq[6] = PUMA560_C(0.04032672714331514) * (t0 * t595 - t2 * t597);
+    input_by_ddq[6] = PUMA560_C(-0.04032672714331514) * t641;
+    /* link j2: inertia, momentum beyond */
+    const puma560_real_t t642 = t2 * (t2 * (t630 - t616) + t0 * (t619 + t628));
+    input_by_dq[0] = PUMA560_C(-272.2221739130435) * parameters[FV1] + PUMA560_C(0.13888355537457484) * (t616
+        + t642);
+    /* link j2: inertia of it and all beyond */
+    const puma560_real_t t643 = t2 * (t2 * (t631 + t624) + t625 * (PUMA560_C(-2.0) * t0));
+    input_by_ddq[0] = PUMA560_C(0.06944177768728742) * (t624 - t643 - parameters[ZZ1R]);
     /* always zero */
     input_by_q[0] = PUMA560_C(0.0);
     input_by_q[6] = PUMA560_C(0.0);

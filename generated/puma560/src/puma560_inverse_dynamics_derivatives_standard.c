@@ -110,7 +110,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -448,705 +448,695 @@ puma560_status_t puma560_inverse_dynamics_derivatives_standard(
     const puma560_real_t t206 = PUMA560_C(76.686) * dq[5] * parameters[FV6] + t205 * parameters[FC6]
         + PUMA560_C(76.686) * ddq[5] * parameters[IA6];
     input[5] = PUMA560_C(14.285714285714285) * t206 + PUMA560_C(-0.1862884266452062) * t120;
-    const puma560_real_t t207 = t49 * parameters[XZ6];
-    const puma560_real_t t208 = t50 * parameters[XY6];
-    const puma560_real_t t209 = t208 - t207;
-    const puma560_real_t t210 = t54 * parameters[YZ6];
-    const puma560_real_t t211 = t208 - t210;
-    const puma560_real_t t212 = PUMA560_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const puma560_real_t t213 = t212 - parameters[XX6];
-    const puma560_real_t t214 = t50 * t213 + t54 * parameters[XZ6];
-    const puma560_real_t t215 = parameters[YY6] - t212;
-    const puma560_real_t t216 = t50 * t215 - t49 * parameters[YZ6];
-    /* link j6: inertia, momentum beyond */
-    const puma560_real_t t217 = t30 * (t214 + t216) - t47 * (t209 + t211);
-    const puma560_real_t t218 = t47 * t217;
-    const puma560_real_t t219 = t27 * parameters[XZ5];
-    const puma560_real_t t220 = t43 * parameters[XY5];
-    const puma560_real_t t221 = t219 + t220 + (t211 + t218);
-    const puma560_real_t t222 = t210 - t207;
-    const puma560_real_t t223 = t26 * parameters[YZ5];
-    const puma560_real_t t224 = t223 - t220 + t222;
-    const puma560_real_t t225 = t212 - parameters[ZZ6];
-    const puma560_real_t t226 = t49 * t225 + t50 * parameters[YZ6];
-    const puma560_real_t t227 = t50 * parameters[XZ6] + t54 * t225;
-    const puma560_real_t t228 = PUMA560_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const puma560_real_t t229 = t228 - parameters[YY5];
-    const puma560_real_t t230 = t27 * parameters[YZ5] - t43 * t229 - (t47 * t226 + t30 * t227);
-    const puma560_real_t t231 = t54 * parameters[XY6] + t49 * t213;
-    const puma560_real_t t232 = t49 * parameters[XY6] - t54 * t215;
-    const puma560_real_t t233 = parameters[XX5] - t228;
-    const puma560_real_t t234 = t26 * parameters[XZ5] - t43 * t233 + (t47 * t231 + t30 * t232);
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t235 = t24 * (t224 - t221) + t25 * (t230 + t234);
-    const puma560_real_t t236 = t24 * t235;
-    const puma560_real_t t237 = t35 * parameters[XZ4];
-    const puma560_real_t t238 = t20 * parameters[XY4];
-    const puma560_real_t t239 = t237 - t238 + (t224 - t236);
-    const puma560_real_t t240 = t219 + t223 + (t209 + t218); /* link j6: inertia, momentum beyond */
-    const puma560_real_t t241 = t19 * parameters[YZ4];
-    const puma560_real_t t242 = t240 - (t238 + t241); /* link j5: inertia, momentum beyond */
-    const puma560_real_t t243 = t30 * t217; /* link j6: inertia, momentum beyond */
-    const puma560_real_t t244 = parameters[ZZ5] - t228;
-    const puma560_real_t t245 = t27 * t244 + t43 * parameters[YZ5] + (t216 - t243);
-    const puma560_real_t t246 = t26 * t244 - t43 * parameters[XZ5] + (t47 * t232 - t30 * t231);
-    const puma560_real_t t247 = PUMA560_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const puma560_real_t t248 = parameters[YY4] - t247;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t249 = t35 * parameters[YZ4] - t20 * t248 - (t24 * t245 - t25 * t246);
-    /* link j6: inertia, momentum beyond */
-    const puma560_real_t t250 = t214 - t243 - (t26 * parameters[XY5] + t27 * t233);
-    const puma560_real_t t251 = t26 * t229 - t27 * parameters[XY5] + (t30 * t226 - t47 * t227);
-    const puma560_real_t t252 = parameters[XX4] - t247;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t253 = t20 * t252 + t19 * parameters[XZ4] + (t25 * t251 - t24 * t250);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t254 = t17 * (t249 + t253) - t11 * (t239 + t242);
-    const puma560_real_t t255 = t11 * t254;
-    const puma560_real_t t256 = t50 * parameters[MY6] - t49 * parameters[MZ6];
-    const puma560_real_t t257 = t50 * parameters[MX6] - t54 * parameters[MZ6];
-    /* link j6: inertia, momentum beyond */
-    const puma560_real_t t258 = t47 * t256 + t30 * t257 - (t27 * parameters[MZ5] + t43 * parameters[MY5]);
-    const puma560_real_t t259 = t49 * parameters[MX6] - t54 * parameters[MY6];
-    const puma560_real_t t260 = t26 * parameters[MZ5] - t43 * parameters[MX5] - t259;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t261 = t20 * parameters[MY4] - t35 * parameters[MZ4] + (t24 * t258 + t25 * t260);
-    /* link j6: inertia, momentum beyond */
-    const puma560_real_t t262 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t47 * t257 - t30 * t256);
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t263 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t262;
-    const puma560_real_t t264 = t11 * t261 + t17 * t263; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t265 = PUMA560_C(-0.0203) * t264;
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t266 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const puma560_real_t t267 = parameters[MZ5] - t266; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t268 = t267 - parameters[MY4]; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t269 = t47 * parameters[MX6] - t30 * parameters[MY6];
-    const puma560_real_t t270 = parameters[MX5] + t269; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t271 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t272 = t24 * t270 - t25 * t271; /* link j5: column of the mass matrix */
-    const puma560_real_t t273 = parameters[MX4] + t272; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t274 = t17 * t268 + t11 * t273; /* link j4: column of the mass matrix */
-    const puma560_real_t t275 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t276 = parameters[M4] + t275; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t277 = PUMA560_C(0.0203) * t276; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t278 = t274 + t277;
-    const puma560_real_t t279 = PUMA560_C(0.4318) * t13; /* link j4: velocity of its origin */
-    const puma560_real_t t280 = t278 * t279; /* link j4: inertia, momentum beyond */
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t281 = t19 * parameters[MY4] + t35 * parameters[MX4] + (t25 * t258 - t24 * t260);
-    const puma560_real_t t282 = PUMA560_C(0.4318) * t281; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t283 = t11 * t268 - t17 * t273; /* link j4: column of the mass matrix */
-    const puma560_real_t t284 = PUMA560_C(0.4318) * t5 + PUMA560_C(0.0203) * t7;
-    const puma560_real_t t285 = t283 * t284; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t286 = t24 * t271 + t25 * t270; /* link j5: column of the mass matrix */
-    const puma560_real_t t287 = parameters[MZ4] + t286; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t288 = PUMA560_C(0.4318) * t276; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t289 = t287 + t288;
-    const puma560_real_t t290 = PUMA560_C(-0.0203) * t13; /* link j4: velocity of its origin */
-    const puma560_real_t t291 = t289 * t290; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t292 = t265 - t282 - (t280 + t291 + t285);
-    const puma560_real_t t293 = t7 * parameters[XZ3];
-    const puma560_real_t t294 = t13 * parameters[XY3];
-    const puma560_real_t t295 = t294 - t293 + (t242 + t255 + (t265 - t280) - t292);
-    const puma560_real_t t296 = t221 + t236 - (t237 + t241); /* link j5: inertia, momentum beyond */
-    const puma560_real_t t297 = t5 * parameters[YZ3];
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t298 = t294 + t297 + (t292 + (t296 + (t282 + t291)));
-    const puma560_real_t t299 = t25 * t235; /* link j5: inertia, momentum beyond */
-    const puma560_real_t t300 = t247 - parameters[ZZ4];
-    const puma560_real_t t301 = t230 - t299 - (t35 * t300 + t20 * parameters[YZ4]);
-    const puma560_real_t t302 = t19 * t300 - t20 * parameters[XZ4] + (t25 * t250 + t24 * t251);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t303 = t11 * t301 + t17 * t302 + (PUMA560_C(0.4318) * t264 + t289 * t279);
-    const puma560_real_t t304 = PUMA560_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const puma560_real_t t305 = t304 - parameters[YY3];
-    const puma560_real_t t306 = t7 * parameters[YZ3] + t13 * t305 + t303;
-    /* link j5: inertia, momentum beyond */
-    const puma560_real_t t307 = t19 * parameters[XY4] + t35 * t252 - (t234 - t299);
-    const puma560_real_t t308 = t19 * t248 + t35 * parameters[XY4] + (t25 * t245 + t24 * t246);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t309 = t11 * t307 - t17 * t308 - (PUMA560_C(0.0203) * t281 + t278 * t290);
-    const puma560_real_t t310 = parameters[XX3] - t304;
-    const puma560_real_t t311 = t13 * t310 + t5 * parameters[XZ3] - t309;
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t312 = t1 * (t295 + t298) + t3 * (t306 + t311);
-    const puma560_real_t t313 = t1 * t312;
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t314 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t264 + t276 * t279);
-    const puma560_real_t t315 = t281 + t276 * t290 - (t13 * parameters[MX3] + t5 * parameters[MZ3]);
-    const puma560_real_t t316 = t1 * t314 - t3 * t315; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t317 = PUMA560_C(-0.4318) * t316;
-    const puma560_real_t t318 = parameters[MX3] + t278; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t319 = parameters[MY3] + t289;
-    const puma560_real_t t320 = t1 * t318 - t3 * t319; /* link j3: column of the mass matrix */
-    const puma560_real_t t321 = parameters[M3] + t276; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t322 = PUMA560_C(0.4318) * t321; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t323 = t320 + t322;
-    const puma560_real_t t324 = PUMA560_C(0.1254) * t70; /* link j3: velocity of its origin */
-    const puma560_real_t t325 = t323 * t324; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t326 = t17 * t261 - t11 * t263; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t327 = t326 - t276 * t284 - (t5 * parameters[MY3] + t7 * parameters[MX3]);
-    const puma560_real_t t328 = PUMA560_C(-0.1254) * t327; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t329 = t1 * t319 + t3 * t318; /* link j3: column of the mass matrix */
-    /* link j3: velocity of its origin */
-    const puma560_real_t t330 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t76;
-    const puma560_real_t t331 = t329 * t330; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t332 = parameters[MZ3] + t283; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t333 = PUMA560_C(-0.1254) * t321; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t334 = t333 - t332;
-    const puma560_real_t t335 = PUMA560_C(-0.4318) * t70; /* link j3: velocity of its origin */
-    const puma560_real_t t336 = t334 * t335; /* link j3: inertia, momentum beyond */
-    const puma560_real_t t337 = t328 - t317 + (t325 + t331 - t336);
-    const puma560_real_t t338 = t70 * parameters[XZ2];
-    const puma560_real_t t339 = dq[1] * parameters[XY2];
-    const puma560_real_t t340 = t338 + t339 + (t337 + (t313 - t298 + (t317 - t325)));
-    const puma560_real_t t341 = t76 * parameters[YZ2];
-    const puma560_real_t t342 = t337 + (t295 - t313 - t331) - (t339 + t341);
-    const puma560_real_t t343 = t3 * t312;
-    const puma560_real_t t344 = PUMA560_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const puma560_real_t t345 = parameters[YY2] - t344;
-    const puma560_real_t t346 = t70 * parameters[YZ2] + dq[1] * t345 + (t343 - t306 - t329 * t324);
-    const puma560_real_t t347 = t3 * t314 + t1 * t315;
-    const puma560_real_t t348 = t344 - parameters[XX2];
-    const puma560_real_t t349 = dq[1] * t348 - t76 * parameters[XZ2] + (t343 - t311
-        + (PUMA560_C(-0.4318) * t347 - t323 * t330));
-    /* link j2: inertia, momentum beyond */
-    const puma560_real_t t350 = t2 * (t2 * (t342 - t340) + t0 * (t346 + t349));
-    input_by_dq[0] = PUMA560_C(-272.2221739130435) * parameters[FV1] + PUMA560_C(0.13888355537457484) * (t340
-        + t350);
-    const puma560_real_t t351 = t17 * t254; /* link j4: inertia, momentum beyond */
-    const puma560_real_t t352 = t5 * parameters[XY3] + t7 * t310 + (t253 - t351 - (PUMA560_C(-0.0203) * t326
-        + t278 * t284));
-    const puma560_real_t t353 = t11 * t302 - t17 * t301 + (PUMA560_C(-0.4318) * t326 + t289 * t284);
-    const puma560_real_t t354 = t5 * t305 - t7 * parameters[XY3] + t353;
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t355 = t1 * t352 + t3 * t354 + (PUMA560_C(0.4318) * t327 - t323 * t335);
-    /* link j2: derivatives */
-    const puma560_real_t t356 = PUMA560_C(2.0) * (t76 * parameters[XY2] + t70 * t348 + t355);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t357 = t70 * parameters[XY2] - t76 * t345 - (t3 * t352 - t1 * t354 - t329 * t335);
-    const puma560_real_t t358 = PUMA560_C(2.0) * t357; /* link j2: derivatives */
-    input_by_dq[6] = PUMA560_C(0.04032672714331514) * (t0 * t356 - t2 * t358);
-    const puma560_real_t t359 = PUMA560_C(2.0) * t352; /* link j3: derivatives */
-    const puma560_real_t t360 = PUMA560_C(-2.0) * t354;
-    const puma560_real_t t361 = PUMA560_C(-0.8636) * t70; /* link j6: derivatives */
-    const puma560_real_t t362 = t3 * t360 - t1 * t359 + t320 * t361; /* link j3: derivatives */
-    const puma560_real_t t363 = t3 * t359 + t1 * t360 - t329 * t361;
-    input_by_dq[12] = PUMA560_C(0.08095560645504385) * (t0 * t362 - t2 * t363);
-    const puma560_real_t t364 = PUMA560_C(2.0) * t307; /* link j4: derivatives */
-    const puma560_real_t t365 = PUMA560_C(2.0) * t308;
-    const puma560_real_t t366 = PUMA560_C(0.0406) * t13; /* link j6: derivatives */
-    const puma560_real_t t367 = t11 * t364 - t17 * t365 + t274 * t366; /* link j4: derivatives */
-    const puma560_real_t t368 = PUMA560_C(2.0) * t296;
-    const puma560_real_t t369 = PUMA560_C(2.0) * t284; /* link j6: derivatives */
-    const puma560_real_t t370 = PUMA560_C(0.8636) * t13;
-    const puma560_real_t t371 = t368 - (t283 * t369 + t274 * t370); /* link j4: derivatives */
-    const puma560_real_t t372 = PUMA560_C(2.0) * t330; /* link j6: derivatives */
-    const puma560_real_t t373 = t3 * t283; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const puma560_real_t t374 = t1 * t367 + t3 * t371 - (t274 * t372 + t373 * t361);
-    const puma560_real_t t375 = t1 * t283; /* link j4: column of the mass matrix */
-    const puma560_real_t t376 = PUMA560_C(0.2508) * t70; /* link j6: derivatives */
-    /* link j4: derivatives */
-    const puma560_real_t t377 = t3 * t367 - t1 * t371 + (t375 * t361 + t274 * t376);
-    input_by_dq[18] = PUMA560_C(0.18787994020908783) * (t0 * t374 + t2 * t377);
-    const puma560_real_t t378 = PUMA560_C(2.0) * t250; /* link j5: derivatives */
-    const puma560_real_t t379 = PUMA560_C(2.0) * t251;
-    const puma560_real_t t380 = t25 * t379 - t24 * t378;
-    const puma560_real_t t381 = PUMA560_C(-2.0) * t240;
-    const puma560_real_t t382 = t17 * t286; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const puma560_real_t t383 = t11 * t380 - t17 * t381 - (t382 * t366 + t272 * t369);
-    const puma560_real_t t384 = t25 * t378 + t24 * t379;
-    const puma560_real_t t385 = t11 * t286; /* link j5: column of the mass matrix */
-    const puma560_real_t t386 = t384 + (t385 * t369 + t382 * t370); /* link j5: derivatives */
-    const puma560_real_t t387 = t1 * t272 - t3 * t385; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const puma560_real_t t388 = t1 * t383 + t3 * t386 + (t382 * t372 - t387 * t361);
-    const puma560_real_t t389 = t1 * t385 + t3 * t272; /* link j5: column of the mass matrix */
-    /* link j5: derivatives */
-    const puma560_real_t t390 = t3 * t383 - t1 * t386 - (t389 * t361 + t382 * t376);
-    input_by_dq[24] = PUMA560_C(0.19862511694053758) * (t0 * t388 + t2 * t390);
-    const puma560_real_t t391 = PUMA560_C(2.0) * t231; /* link j6: derivatives */
-    const puma560_real_t t392 = PUMA560_C(2.0) * t232;
-    const puma560_real_t t393 = t47 * t391 + t30 * t392;
-    const puma560_real_t t394 = PUMA560_C(2.0) * t222;
-    const puma560_real_t t395 = t25 * t394 - t24 * t393;
-    const puma560_real_t t396 = t47 * t392 - t30 * t391;
-    const puma560_real_t t397 = t24 * t266; /* link j6: column of the mass matrix */
-    const puma560_real_t t398 = t11 * t269 - t17 * t397;
-    const puma560_real_t t399 = t25 * t266;
-    /* link j6: derivatives */
-    const puma560_real_t t400 = t11 * t395 - t17 * t396 + (t398 * t366 + t399 * t369);
-    const puma560_real_t t401 = t25 * t393 + t24 * t394;
-    const puma560_real_t t402 = t11 * t397 + t17 * t269; /* link j6: column of the mass matrix */
-    const puma560_real_t t403 = t401 + (t402 * t369 - t398 * t370); /* link j6: derivatives */
-    const puma560_real_t t404 = t3 * t402 + t1 * t399; /* link j6: column of the mass matrix */
-    /* link j6: derivatives */
-    const puma560_real_t t405 = t1 * t400 + t3 * t403 + (t404 * t361 - t398 * t372);
-    const puma560_real_t t406 = t1 * t402 - t3 * t399; /* link j6: column of the mass matrix */
-    /* link j6: derivatives */
-    const puma560_real_t t407 = t3 * t400 - t1 * t403 + (t398 * t376 - t406 * t361);
-    input_by_dq[30] = PUMA560_C(0.1862884266452062) * (t0 * t405 + t2 * t407);
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t408 = t47 * t118 + parameters[XY6] * (PUMA560_C(2.0) * t30);
-    const puma560_real_t t409 = t47 * t408;
-    const puma560_real_t t410 = parameters[XX5] + (parameters[YY6] - t409);
-    const puma560_real_t t411 = parameters[YY5] + parameters[ZZ6];
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t412 = t47 * parameters[XZ6] - t30 * parameters[YZ6];
-    const puma560_real_t t413 = parameters[XY5] + t412; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t414 = t24 * (t411 - t410) + t413 * (PUMA560_C(2.0) * t25);
-    const puma560_real_t t415 = t24 * t414;
-    const puma560_real_t t416 = parameters[XX4] + (t411 - t415);
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t417 = parameters[ZZ5] + (parameters[XX6] + t409);
-    const puma560_real_t t418 = parameters[YY4] + t417; /* link j5: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t419 = parameters[XZ5] + (t30 * t408 - parameters[XY6]);
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t420 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
-    const puma560_real_t t421 = parameters[YZ5] - t420; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t422 = t25 * t421 - t24 * t419; /* link j5: column of the mass matrix */
-    const puma560_real_t t423 = parameters[XY4] + t422; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t424 = t11 * (t418 - t416) + t423 * (PUMA560_C(2.0) * t17);
-    const puma560_real_t t425 = t11 * t424;
-    const puma560_real_t t426 = PUMA560_C(0.4318) * (t288 + PUMA560_C(2.0) * t287);
-    const puma560_real_t t427 = parameters[XX3] + (t418 - t425 + t426);
-    const puma560_real_t t428 = parameters[ZZ4] + (t410 + t415); /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t429 = PUMA560_C(0.0203) * (t277 + PUMA560_C(2.0) * t274);
-    const puma560_real_t t430 = parameters[YY3] + (t428 + t429);
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t431 = parameters[XZ4] + (t413 - t25 * t414);
-    const puma560_real_t t432 = t25 * t419 + t24 * t421; /* link j5: column of the mass matrix */
-    const puma560_real_t t433 = parameters[YZ4] - t432; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t434 = t11 * t431 - t17 * t433; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t435 = parameters[XY3] + (t434 + (PUMA560_C(-0.0203) * t287
-        + PUMA560_C(-0.4318) * t278));
-    /* link j3: inertia of it and all beyond */
-    const puma560_real_t t436 = t1 * (t430 - t427) + t435 * (PUMA560_C(2.0) * t3);
-    const puma560_real_t t437 = t1 * t436;
-    const puma560_real_t t438 = PUMA560_C(0.1254) * (t333 + PUMA560_C(-2.0) * t332);
-    const puma560_real_t t439 = t437 - t430 + t438 - parameters[XX2];
-    const puma560_real_t t440 = PUMA560_C(0.4318) * (t322 - PUMA560_C(-2.0) * t320);
-    const puma560_real_t t441 = parameters[YY2] + (t427 + t437 + (t440 - t438));
-    const puma560_real_t t442 = t3 * t436 - t435 + PUMA560_C(0.4318) * t329 - parameters[XY2];
-    /* link j2: inertia of it and all beyond */
-    const puma560_real_t t443 = t2 * (t2 * (t439 + t441) + t442 * (PUMA560_C(-2.0) * t0));
-    input_by_ddq[0] = PUMA560_C(-272.2221739130435) * parameters[IA1] + PUMA560_C(0.06944177768728742) * (t439
-        - t443 - parameters[ZZ1]);
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t444 = parameters[XZ3] - (t423 - t17 * t424 - PUMA560_C(-0.0203) * t283);
-    /* link j4: column of the mass matrix */
-    const puma560_real_t t445 = PUMA560_C(-0.4318) * t283 - (t17 * t431 + t11 * t433);
-    const puma560_real_t t446 = parameters[YZ3] + t445; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t447 = t1 * t444 - t3 * t446; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const puma560_real_t t448 = PUMA560_C(0.4318) * t332 + PUMA560_C(0.1254) * t323 - t447 - parameters[XZ2];
-    /* link j3: column of the mass matrix */
-    const puma560_real_t t449 = t3 * t444 + t1 * t446 + PUMA560_C(-0.1254) * t329;
-    const puma560_real_t t450 = parameters[YZ2] + t449; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t451 = t2 * t450 - t0 * t448; /* link j2: column of the mass matrix */
-    input_by_ddq[6] = PUMA560_C(-0.04032672714331514) * t451;
-    const puma560_real_t t452 = t447 + PUMA560_C(-0.1254) * t320; /* link j3: column of the mass matrix */
-    const puma560_real_t t453 = t0 * t452 + t2 * t449;
-    input_by_ddq[12] = PUMA560_C(0.08095560645504385) * t453;
-    const puma560_real_t t454 = PUMA560_C(-0.4318) * t274; /* link j4: column of the mass matrix */
-    const puma560_real_t t455 = t434 + t454;
-    const puma560_real_t t456 = t428 + PUMA560_C(0.0203) * t274;
-    const puma560_real_t t457 = t3 * t456 - t1 * t455 + PUMA560_C(0.1254) * t373;
-    const puma560_real_t t458 = t3 * t455 + t1 * t456 + (PUMA560_C(0.1254) * t375 - t454);
-    const puma560_real_t t459 = t2 * t458 - t0 * t457;
-    input_by_ddq[18] = PUMA560_C(-0.18787994020908783) * t459;
-    const puma560_real_t t460 = PUMA560_C(0.4318) * t382; /* link j5: column of the mass matrix */
-    const puma560_real_t t461 = t17 * t417 - t11 * t422 + t460;
-    const puma560_real_t t462 = t432 + PUMA560_C(-0.0203) * t382;
-    const puma560_real_t t463 = t3 * t462 - t1 * t461 + PUMA560_C(0.1254) * t387;
-    const puma560_real_t t464 = t3 * t461 + t1 * t462 + (PUMA560_C(-0.1254) * t389 - t460);
-    const puma560_real_t t465 = t2 * t464 - t0 * t463;
-    input_by_ddq[24] = PUMA560_C(-0.19862511694053758) * t465;
-    const puma560_real_t t466 = t24 * t412 - t25 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const puma560_real_t t467 = PUMA560_C(-0.4318) * t398;
-    const puma560_real_t t468 = t11 * t466 - t17 * t420 + t467;
-    const puma560_real_t t469 = t25 * t412 + t24 * parameters[ZZ6];
-    const puma560_real_t t470 = t469 + PUMA560_C(0.0203) * t398;
-    const puma560_real_t t471 = t3 * t468 + t1 * t470 + (PUMA560_C(-0.1254) * t406 - t467);
-    const puma560_real_t t472 = t3 * t470 - t1 * t468 + PUMA560_C(-0.1254) * t404;
-    const puma560_real_t t473 = t2 * t471 - t0 * t472;
-    input_by_ddq[30] = PUMA560_C(-0.1862884266452062) * t473;
-    const puma560_real_t t474 = PUMA560_C(-2.0) * t70; /* link j2: derivatives */
-    const puma560_real_t t475 = PUMA560_C(2.0) * t76;
-    const puma560_real_t t476 = t73 * t439 - t79 * t442 + t86 * t448 - (t340 * t474 + t346 * t475);
-    const puma560_real_t t477 = t334 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const puma560_real_t t478 = t73 * t442 + t79 * t441 - t86 * t450 - (t349 * t474 + t342 * t475);
-    const puma560_real_t t479 = t0 * (t186 + (t476 - t74 * t477)) + t2 * (t180 + (t478 + t80 * t477));
-    input_by_q[1] = PUMA560_C(0.06944177768728742) * t479;
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t480 = parameters[ZZ3] + (t416 + t425 + (t429 + t426));
-    const puma560_real_t t481 = parameters[ZZ2] + (t480 + t440); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const puma560_real_t t482 = t73 * t448 + t79 * t450 - t86 * t481 + (t70 * t356 + t76 * t358);
-    const puma560_real_t t483 = t80 * (parameters[MY2] + t329) - t74 * (parameters[MX2] + t323) + t482;
-    input_by_q[7] = PUMA560_C(0.04032672714331514) * t483;
-    const puma560_real_t t484 = t480 + PUMA560_C(0.4318) * t320; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const puma560_real_t t485 = t70 * t362 + t76 * t363 + (t73 * t452 - t79 * t449 + t86 * t484);
-    input_by_q[13] = PUMA560_C(0.08095560645504385) * (t485 + (t74 * t320 - t80 * t329));
-    const puma560_real_t t486 = t445 + PUMA560_C(0.4318) * t373; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const puma560_real_t t487 = t70 * t374 - t76 * t377 + (t73 * t457 + t79 * t458 - t86 * t486);
-    input_by_q[19] = PUMA560_C(0.18787994020908783) * (t487 - (t80 * t375 + t74 * t373));
-    /* link j5: column of the mass matrix */
-    const puma560_real_t t488 = t17 * t422 + t11 * t417 + (PUMA560_C(0.0203) * t272
-        + PUMA560_C(0.4318) * t385);
-    const puma560_real_t t489 = t488 + PUMA560_C(0.4318) * t387;
-    /* link j5: derivatives */
-    const puma560_real_t t490 = t70 * t388 - t76 * t390 + (t73 * t463 + t79 * t464 - t86 * t489);
-    input_by_q[25] = PUMA560_C(0.19862511694053758) * (t490 + (t80 * t389 - t74 * t387));
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t491 = PUMA560_C(-0.0203) * t399 + PUMA560_C(0.4318) * t402 - (t17 * t466
-        + t11 * t420);
-    const puma560_real_t t492 = t491 + PUMA560_C(-0.4318) * t404;
-    /* link j6: derivatives */
-    const puma560_real_t t493 = t70 * t405 - t76 * t407 + (t73 * t472 + t79 * t471 - t86 * t492);
-    input_by_q[31] = PUMA560_C(0.1862884266452062) * (t493 + (t80 * t406 + t74 * t404));
-    const puma560_real_t t494 = parameters[ZZ3] - t304;
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t495 = t7 * t494 - t13 * parameters[YZ3] + (t351 - t249 + t283 * t279);
-    const puma560_real_t t496 = t13 * parameters[XZ3] + t5 * t494 + (t17 * t307 + t11 * t308 + t283 * t290);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t497 = t1 * t495 - t3 * t496 + (PUMA560_C(0.1254) * t316 - t334 * t324);
-    const puma560_real_t t498 = parameters[ZZ2] - t344;
-    /* link j2: derivatives */
-    const puma560_real_t t499 = PUMA560_C(2.0) * (t497 - (dq[1] * parameters[YZ2] + t70 * t498))
-        - (t439 * t474 + t442 * t475);
-    /* link j3: inertia, momentum beyond */
-    const puma560_real_t t500 = t3 * t495 + t1 * t496 + (PUMA560_C(0.1254) * t347 - t334 * t330);
-    /* link j2: derivatives */
-    const puma560_real_t t501 = PUMA560_C(2.0) * (dq[1] * parameters[XZ2] + t76 * t498 + t500) + (t441 * t475
-        - t442 * t474);
-    input_by_dq[1] = PUMA560_C(0.06944177768728742) * (t0 * t499 + t2 * t501);
-    /* link j4: inertia, momentum beyond */
-    const puma560_real_t t502 = t292 + (t239 + t255 + t285) - (t293 + t297);
-    /* link j2: derivatives */
-    const puma560_real_t t503 = PUMA560_C(2.0) * (t338 - t341 + (t502 + (t328 - t336) - t337));
-    const puma560_real_t t504 = PUMA560_C(0.04032672714331514) * (t503 + PUMA560_C(2.0) * (t70 * t448
-        + t76 * t450));
-    input_by_dq[7] = PUMA560_C(468.7608695652174) * parameters[FV2] + t504;
-    const puma560_real_t t505 = PUMA560_C(-2.0) * t502; /* link j3: derivatives */
-    const puma560_real_t t506 = t505 + (t320 * t376 + t329 * t372) + PUMA560_C(2.0) * (t70 * t452
-        - t76 * t449);
-    input_by_dq[13] = PUMA560_C(0.08095560645504385) * t506;
-    const puma560_real_t t507 = t17 * t364 + t11 * t365 - t283 * t366; /* link j4: derivatives */
-    const puma560_real_t t508 = t507 + (t375 * t372 - t373 * t376) + PUMA560_C(2.0) * (t70 * t457
-        + t76 * t458);
-    input_by_dq[19] = PUMA560_C(0.18787994020908783) * t508;
-    /* link j5: derivatives */
-    const puma560_real_t t509 = t17 * t380 + t11 * t381 + (t385 * t366 - t272 * t370);
-    const puma560_real_t t510 = t509 - (t387 * t376 + t389 * t372) + PUMA560_C(2.0) * (t70 * t463
-        + t76 * t464);
-    input_by_dq[25] = PUMA560_C(0.19862511694053758) * t510;
-    /* link j6: derivatives */
-    const puma560_real_t t511 = t17 * t395 + t11 * t396 + (t399 * t370 + t402 * t366);
-    const puma560_real_t t512 = t511 + (t404 * t376 - t406 * t372) + PUMA560_C(2.0) * (t70 * t472
-        + t76 * t471);
-    input_by_dq[31] = PUMA560_C(0.1862884266452062) * t512;
-    input_by_ddq[1] = PUMA560_C(0.06944177768728742) * t451;
-    input_by_ddq[7] = PUMA560_C(468.7608695652174) * parameters[IA2] + PUMA560_C(0.04032672714331514) * t481;
-    input_by_ddq[13] = PUMA560_C(-0.08095560645504385) * t484;
-    input_by_ddq[19] = PUMA560_C(0.18787994020908783) * t486;
-    input_by_ddq[25] = PUMA560_C(0.19862511694053758) * t489;
-    input_by_ddq[31] = PUMA560_C(0.1862884266452062) * t492;
-    const puma560_real_t t513 = PUMA560_C(2.0) * t7; /* link j3: derivatives */
-    const puma560_real_t t514 = PUMA560_C(2.0) * t5;
-    const puma560_real_t t515 = t306 * t514 - t295 * t513 + (t31 * t427 + t12 * t435 - t181 * t444);
-    const puma560_real_t t516 = t166 + (t515 + t82 * t332);
-    const puma560_real_t t517 = t311 * t513 + t298 * t514 + (t31 * t435 + t12 * t430 - t181 * t446);
-    const puma560_real_t t518 = t160 + (t517 - t96 * t332);
-    const puma560_real_t t519 = t327 * t513 + t82 * t321 + (t181 * t318 + t31 * t332);
-    const puma560_real_t t520 = t169 + t519;
-    const puma560_real_t t521 = t327 * t514 - t96 * t321 + (t12 * t332 + t181 * t319);
-    const puma560_real_t t522 = t174 + t521;
-    const puma560_real_t t523 = t1 * t520 - t3 * t522;
-    const puma560_real_t t524 = t0 * (t1 * t516 - t3 * t518 + PUMA560_C(0.1254) * t523);
-    const puma560_real_t t525 = t315 * t513 - t314 * t514 + (t12 * t318 - t31 * t319);
-    const puma560_real_t t526 = PUMA560_C(0.1254) * (t1 * t522 + t3 * t520) + PUMA560_C(0.4318) * t525;
-    const puma560_real_t t527 = t524 + t2 * (t3 * t516 + t1 * t518 + t526);
-    input_by_q[2] = PUMA560_C(0.06944177768728742) * t527;
-    const puma560_real_t t528 = t31 * t444 + t12 * t446 - t181 * t480;
-    const puma560_real_t t529 = t96 * t319 - t82 * t318;
-    const puma560_real_t t530 = t354 * t514 - t352 * t513 + t528 + t529 + PUMA560_C(-0.4318) * t523;
-    input_by_q[8] = PUMA560_C(0.04032672714331514) * t530;
-    const puma560_real_t t531 = PUMA560_C(0.08095560645504385) * (t7 * t359 + t5 * t360 - t528 - t529);
-    input_by_q[14] = t531;
-    /* link j4: derivatives */
-    const puma560_real_t t532 = t5 * t371 - t7 * t367 + (t31 * t455 + t12 * t456 - t181 * t445);
-    input_by_q[20] = PUMA560_C(0.18787994020908783) * (t532 - t96 * t283);
-    /* link j5: derivatives */
-    const puma560_real_t t533 = t5 * t386 - t7 * t383 + (t31 * t461 + t12 * t462 - t181 * t488);
-    input_by_q[26] = PUMA560_C(0.19862511694053758) * (t533 + (t96 * t385 - t82 * t272));
-    /* link j6: derivatives */
-    const puma560_real_t t534 = t5 * t403 - t7 * t400 + (t31 * t468 + t12 * t470 - t181 * t491);
-    input_by_q[32] = PUMA560_C(0.1862884266452062) * (t534 + (t96 * t402 + t82 * t399));
-    /* link j3: derivatives */
-    const puma560_real_t t535 = PUMA560_C(2.0) * t495 + (t427 * t513 + t435 * t514);
-    const puma560_real_t t536 = PUMA560_C(2.0) * t496 + (t435 * t513 + t430 * t514);
-    const puma560_real_t t537 = PUMA560_C(2.0) * t314 + t332 * t513;
-    const puma560_real_t t538 = PUMA560_C(2.0) * t315 + t332 * t514;
-    const puma560_real_t t539 = t1 * t537 - t3 * t538;
-    const puma560_real_t t540 = t0 * (t1 * t535 - t3 * t536 + PUMA560_C(0.1254) * t539);
-    const puma560_real_t t541 = PUMA560_C(0.1254) * (t1 * t538 + t3 * t537) + PUMA560_C(0.4318) * (t318 * t514
-        - t319 * t513);
-    const puma560_real_t t542 = t540 + t2 * (t3 * t535 + t1 * t536 + t541);
-    input_by_dq[2] = PUMA560_C(0.06944177768728742) * t542;
-    const puma560_real_t t543 = t444 * t513 + t446 * t514 - t505 + PUMA560_C(-0.4318) * t539;
-    input_by_dq[8] = PUMA560_C(0.04032672714331514) * t543;
-    const puma560_real_t t544 = PUMA560_C(0.08095560645504385) * (t505 + PUMA560_C(-2.0) * (t7 * t444
-        + t5 * t446));
-    input_by_dq[14] = PUMA560_C(-233.50565217391303) * parameters[FV3] + t544;
-    const puma560_real_t t545 = PUMA560_C(0.18787994020908783) * (t507 + PUMA560_C(2.0) * (t7 * t455
-        + t5 * t456));
-    input_by_dq[20] = t545;
-    const puma560_real_t t546 = PUMA560_C(0.19862511694053758) * (t509 + PUMA560_C(2.0) * (t7 * t461
-        + t5 * t462));
-    input_by_dq[26] = t546;
-    const puma560_real_t t547 = PUMA560_C(0.1862884266452062) * (t511 + PUMA560_C(2.0) * (t7 * t468
-        + t5 * t470));
-    input_by_dq[32] = t547;
-    input_by_ddq[2] = PUMA560_C(0.06944177768728742) * t453;
-    input_by_ddq[8] = PUMA560_C(0.04032672714331514) * t484;
-    input_by_ddq[14] = PUMA560_C(-233.50565217391303) * parameters[IA3]
-        + PUMA560_C(-0.08095560645504385) * t480;
-    input_by_ddq[20] = PUMA560_C(0.18787994020908783) * t445;
-    input_by_ddq[26] = PUMA560_C(0.19862511694053758) * t488;
-    input_by_ddq[32] = PUMA560_C(0.1862884266452062) * t491;
-    const puma560_real_t t548 = PUMA560_C(-2.0) * t35; /* link j4: derivatives */
-    const puma560_real_t t549 = PUMA560_C(-2.0) * t19;
-    const puma560_real_t t550 = t253 * t548 - t242 * t549 + (t18 * t423 - t38 * t418 + t170 * t433);
-    const puma560_real_t t551 = t131 + (t550 + t99 * t287);
-    const puma560_real_t t552 = t239 * t548 + t249 * t549 + (t18 * t416 - t38 * t423 + t170 * t431);
-    const puma560_real_t t553 = t138 - (t552 + t92 * t287);
-    const puma560_real_t t554 = t99 * t276 - t281 * t549 - (t38 * t287 - t170 * t268);
-    const puma560_real_t t555 = t156 + t554;
-    const puma560_real_t t556 = t92 * t276 - t281 * t548 - (t170 * t273 - t18 * t287);
-    const puma560_real_t t557 = t152 - t556;
-    const puma560_real_t t558 = t17 * t555 + t11 * t557;
-    const puma560_real_t t559 = PUMA560_C(0.4318) * t558;
-    const puma560_real_t t560 = t11 * t553 + t17 * t551 + t559;
-    const puma560_real_t t561 = t38 * t433 - t18 * t431 - t170 * t428;
-    const puma560_real_t t562 = t92 * t273 - t99 * t268;
-    const puma560_real_t t563 = PUMA560_C(0.0203) * t558 - (t307 * t548 + t308 * t549 + t561 + t562);
-    const puma560_real_t t564 = t11 * t555 - t17 * t557;
-    const puma560_real_t t565 = t263 * t548 + t261 * t549 + (t38 * t273 - t18 * t268);
-    const puma560_real_t t566 = t3 * t560 - t1 * t563 + (PUMA560_C(0.1254) * (t3 * t565 - t1 * t564) - t559);
-    const puma560_real_t t567 = t3 * t564 + t1 * t565;
-    const puma560_real_t t568 = t0 * (t1 * t560 + t3 * t563 + PUMA560_C(0.1254) * t567);
-    input_by_q[3] = PUMA560_C(0.06944177768728742) * (t568 + t2 * t566);
-    const puma560_real_t t569 = t11 * t551 - t17 * t553 + (PUMA560_C(-0.0203) * t565
-        + PUMA560_C(0.4318) * t564);
-    input_by_q[9] = PUMA560_C(0.04032672714331514) * (t569 + PUMA560_C(-0.4318) * t567);
-    input_by_q[15] = PUMA560_C(-0.08095560645504385) * t569;
-    const puma560_real_t t570 = PUMA560_C(0.18787994020908783) * (t562 + (t561 - (t35 * t364 + t19 * t365)));
-    input_by_q[21] = t570;
-    /* link j5: derivatives */
-    const puma560_real_t t571 = t18 * t422 - t38 * t417 - t170 * t432 - (t35 * t380 + t19 * t381);
-    input_by_q[27] = PUMA560_C(0.19862511694053758) * (t571 + t99 * t286);
-    /* link j6: derivatives */
-    const puma560_real_t t572 = t38 * t420 - t18 * t466 - t170 * t469 - (t35 * t395 + t19 * t396);
-    input_by_q[33] = PUMA560_C(0.1862884266452062) * (t572 + (t99 * t397 + t92 * t269));
-    /* link j4: derivatives */
-    const puma560_real_t t573 = PUMA560_C(2.0) * t301 - (t416 * t548 + t423 * t549);
-    const puma560_real_t t574 = PUMA560_C(2.0) * t302 + (t423 * t548 + t418 * t549);
-    const puma560_real_t t575 = PUMA560_C(2.0) * t263 + t287 * t549;
-    const puma560_real_t t576 = PUMA560_C(-2.0) * t261 + t287 * t548;
-    const puma560_real_t t577 = t17 * t575 - t11 * t576;
-    const puma560_real_t t578 = PUMA560_C(0.4318) * t577;
-    const puma560_real_t t579 = t11 * t573 + t17 * t574 + t578;
-    const puma560_real_t t580 = t431 * t548 + t433 * t549 - t368 + PUMA560_C(0.0203) * t577;
-    const puma560_real_t t581 = t11 * t575 + t17 * t576;
-    const puma560_real_t t582 = t268 * t548 + t273 * t549;
-    const puma560_real_t t583 = t3 * t581 - t1 * t582;
-    const puma560_real_t t584 = t0 * (t1 * t579 + t3 * t580 + PUMA560_C(0.1254) * t583);
-    const puma560_real_t t585 = t3 * t579 - t1 * t580 + (PUMA560_C(-0.1254) * (t1 * t581 + t3 * t582) - t578);
-    input_by_dq[3] = PUMA560_C(0.06944177768728742) * (t584 + t2 * t585);
-    const puma560_real_t t586 = t11 * t574 - t17 * t573 + (PUMA560_C(0.0203) * t582
-        + PUMA560_C(0.4318) * t581);
-    input_by_dq[9] = PUMA560_C(0.04032672714331514) * (t586 + PUMA560_C(-0.4318) * t583);
-    input_by_dq[15] = PUMA560_C(-0.08095560645504385) * t586;
-    const puma560_real_t t587 = PUMA560_C(0.18787994020908783) * (t368 + PUMA560_C(2.0) * (t35 * t431
-        + t19 * t433));
-    input_by_dq[21] = PUMA560_C(1086.2342857142855) * parameters[FV4] + t587;
-    const puma560_real_t t588 = PUMA560_C(0.19862511694053758) * (t384 + PUMA560_C(-2.0) * (t35 * t422
-        + t19 * t417));
-    input_by_dq[27] = t588;
-    const puma560_real_t t589 = PUMA560_C(0.1862884266452062) * (t401 + PUMA560_C(2.0) * (t35 * t466
-        + t19 * t420));
-    input_by_dq[33] = t589;
-    input_by_ddq[3] = PUMA560_C(0.06944177768728742) * t459;
-    input_by_ddq[9] = PUMA560_C(0.04032672714331514) * t486;
-    input_by_ddq[15] = PUMA560_C(-0.08095560645504385) * t445;
-    input_by_ddq[21] = PUMA560_C(1086.2342857142855) * parameters[IA4]
-        + PUMA560_C(0.18787994020908783) * t428;
-    input_by_ddq[27] = PUMA560_C(0.19862511694053758) * t432;
-    input_by_ddq[33] = PUMA560_C(0.1862884266452062) * t469;
-    const puma560_real_t t590 = PUMA560_C(2.0) * t27; /* link j5: derivatives */
-    const puma560_real_t t591 = PUMA560_C(2.0) * t26;
-    const puma560_real_t t592 = t221 * t590 + t230 * t591 + (t59 * t410 + t42 * t413 - t153 * t419);
-    const puma560_real_t t593 = t124 + (t592 - t98 * t267);
-    const puma560_real_t t594 = t234 * t590 + t224 * t591 + (t59 * t413 + t42 * t411 - t153 * t421);
-    const puma560_real_t t595 = t117 + (t594 + t102 * t267);
-    const puma560_real_t t596 = t24 * t593 - t25 * t595;
-    const puma560_real_t t597 = t59 * t419 + t42 * t421 - t153 * t417;
-    const puma560_real_t t598 = t98 * t270 - t102 * t271;
-    const puma560_real_t t599 = t250 * t590 + t251 * t591 + t597 + t598;
-    const puma560_real_t t600 = t262 * t591 - t102 * t275 - (t42 * t267 + t153 * t271);
-    const puma560_real_t t601 = t150 + t600;
-    const puma560_real_t t602 = t262 * t590 + t98 * t275 - (t153 * t270 + t59 * t267);
-    const puma560_real_t t603 = t146 - t602;
-    const puma560_real_t t604 = t24 * t601 - t25 * t603;
-    const puma560_real_t t605 = t260 * t590 + t258 * t591 + (t59 * t271 - t42 * t270);
-    const puma560_real_t t606 = t17 * t604 + t11 * t605;
-    const puma560_real_t t607 = PUMA560_C(0.4318) * t606;
-    const puma560_real_t t608 = t11 * t596 + t17 * t599 + t607;
-    const puma560_real_t t609 = t25 * t593 + t24 * t595;
-    const puma560_real_t t610 = t609 - PUMA560_C(0.0203) * t606;
-    const puma560_real_t t611 = t11 * t604 - t17 * t605;
-    const puma560_real_t t612 = t25 * t601 + t24 * t603;
-    const puma560_real_t t613 = t3 * t611 + t1 * t612;
-    const puma560_real_t t614 = t0 * (t1 * t608 - t3 * t610 + PUMA560_C(0.1254) * t613);
-    const puma560_real_t t615 = t3 * t608 + t1 * t610 + (PUMA560_C(0.1254) * (t3 * t612 - t1 * t611) - t607);
-    input_by_q[4] = PUMA560_C(0.06944177768728742) * (t614 + t2 * t615);
-    const puma560_real_t t616 = t11 * t599 - t17 * t596 + (PUMA560_C(-0.0203) * t612
-        + PUMA560_C(0.4318) * t611);
-    input_by_q[10] = PUMA560_C(0.04032672714331514) * (t616 + PUMA560_C(-0.4318) * t613);
-    input_by_q[16] = PUMA560_C(-0.08095560645504385) * t616;
-    input_by_q[22] = PUMA560_C(0.18787994020908783) * t609;
-    const puma560_real_t t617 = PUMA560_C(0.19862511694053758) * (t598 + (t597 + (t27 * t378 + t26 * t379)));
-    input_by_q[28] = t617;
-    /* link j6: derivatives */
-    const puma560_real_t t618 = t27 * t393 + t26 * t394 + (t59 * t412 + t42 * parameters[ZZ6] + t153 * t420);
-    input_by_q[34] = PUMA560_C(0.1862884266452062) * (t618 - t102 * t266);
-    /* link j5: derivatives */
-    const puma560_real_t t619 = PUMA560_C(2.0) * t245 + (t410 * t590 + t413 * t591);
-    const puma560_real_t t620 = PUMA560_C(2.0) * t246 + (t413 * t590 + t411 * t591);
-    const puma560_real_t t621 = t24 * t619 - t25 * t620;
-    const puma560_real_t t622 = t381 + (t419 * t590 + t421 * t591);
-    const puma560_real_t t623 = PUMA560_C(-2.0) * t258 - t267 * t590;
-    const puma560_real_t t624 = PUMA560_C(2.0) * t260 - t267 * t591;
-    const puma560_real_t t625 = t24 * t624 + t25 * t623;
-    const puma560_real_t t626 = t271 * t590 - t270 * t591;
-    const puma560_real_t t627 = t17 * t625 + t11 * t626;
-    const puma560_real_t t628 = PUMA560_C(0.4318) * t627;
-    const puma560_real_t t629 = t11 * t621 + t17 * t622 + t628;
-    const puma560_real_t t630 = t25 * t619 + t24 * t620;
-    const puma560_real_t t631 = t630 - PUMA560_C(0.0203) * t627;
-    const puma560_real_t t632 = t11 * t625 - t17 * t626;
-    const puma560_real_t t633 = t25 * t624 - t24 * t623;
-    const puma560_real_t t634 = t3 * t632 + t1 * t633;
-    const puma560_real_t t635 = t0 * (t1 * t629 - t3 * t631 + PUMA560_C(0.1254) * t634);
-    const puma560_real_t t636 = t3 * t629 + t1 * t631 + (PUMA560_C(0.1254) * (t3 * t633 - t1 * t632) - t628);
-    input_by_dq[4] = PUMA560_C(0.06944177768728742) * (t635 + t2 * t636);
-    const puma560_real_t t637 = t11 * t622 - t17 * t621 + (PUMA560_C(-0.0203) * t633
-        + PUMA560_C(0.4318) * t632);
-    input_by_dq[10] = PUMA560_C(0.04032672714331514) * (t637 + PUMA560_C(-0.4318) * t634);
-    input_by_dq[16] = PUMA560_C(-0.08095560645504385) * t637;
-    input_by_dq[22] = PUMA560_C(0.18787994020908783) * t630;
-    const puma560_real_t t638 = PUMA560_C(0.19862511694053758) * (t381 + PUMA560_C(2.0) * (t27 * t419
-        + t26 * t421));
-    input_by_dq[28] = PUMA560_C(1027.4714285714285) * parameters[FV5] + t638;
-    const puma560_real_t t639 = PUMA560_C(0.1862884266452062) * (t396 + PUMA560_C(2.0) * (t27 * t412
-        + t26 * parameters[ZZ6]));
-    input_by_dq[34] = t639;
-    input_by_ddq[4] = PUMA560_C(0.06944177768728742) * t465;
-    input_by_ddq[10] = PUMA560_C(0.04032672714331514) * t489;
-    input_by_ddq[16] = PUMA560_C(-0.08095560645504385) * t488;
-    input_by_ddq[22] = PUMA560_C(0.18787994020908783) * t432;
-    input_by_ddq[28] = PUMA560_C(1027.4714285714285) * parameters[IA5]
-        + PUMA560_C(0.19862511694053758) * t417;
-    input_by_ddq[34] = PUMA560_C(-0.1862884266452062) * t420;
-    const puma560_real_t t640 = PUMA560_C(-2.0) * t49; /* link j6: derivatives */
-    const puma560_real_t t641 = PUMA560_C(2.0) * t54;
-    const puma560_real_t t642 = t209 * t640 + t216 * t641 - (t53 * parameters[XX6] - t48 * parameters[XY6]
+    const puma560_real_t t207 = t108 * parameters[MX6] + t100 * parameters[MY6]; /* link j6: derivatives */
+    const puma560_real_t t208 = t48 * parameters[YZ6] - t53 * parameters[XZ6] - t147 * parameters[ZZ6];
+    const puma560_real_t t209 = PUMA560_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const puma560_real_t t210 = t209 - parameters[XX6];
+    const puma560_real_t t211 = t54 * parameters[XY6] + t49 * t210;
+    const puma560_real_t t212 = PUMA560_C(2.0) * t211;
+    const puma560_real_t t213 = parameters[YY6] - t209;
+    const puma560_real_t t214 = t49 * parameters[XY6] - t54 * t213;
+    const puma560_real_t t215 = PUMA560_C(2.0) * t214;
+    const puma560_real_t t216 = PUMA560_C(0.1862884266452062) * (t207 + (t208 + (t49 * t212 + t54 * t215)));
+    input_by_q[35] = t216;
+    const puma560_real_t t217 = t49 * parameters[XZ6];
+    const puma560_real_t t218 = t50 * parameters[XY6];
+    const puma560_real_t t219 = t218 - t217;
+    const puma560_real_t t220 = PUMA560_C(-2.0) * t49;
+    const puma560_real_t t221 = t50 * t213 - t49 * parameters[YZ6];
+    const puma560_real_t t222 = PUMA560_C(2.0) * t54;
+    const puma560_real_t t223 = t219 * t220 + t221 * t222 - (t53 * parameters[XX6] - t48 * parameters[XY6]
         + t147 * parameters[XZ6]);
-    const puma560_real_t t643 = t110 - (t109 - t642);
-    const puma560_real_t t644 = t211 * t641 - t214 * t640 + (t53 * parameters[XY6] - t48 * parameters[YY6]
+    const puma560_real_t t224 = t110 - (t109 - t223);
+    const puma560_real_t t225 = t50 * t210 + t54 * parameters[XZ6];
+    const puma560_real_t t226 = t54 * parameters[YZ6];
+    const puma560_real_t t227 = t218 - t226;
+    const puma560_real_t t228 = t227 * t222 - t225 * t220 + (t53 * parameters[XY6] - t48 * parameters[YY6]
         + t147 * parameters[YZ6]);
-    const puma560_real_t t645 = t103 + (t101 + t644);
-    const puma560_real_t t646 = t47 * t643 + t30 * t645;
-    const puma560_real_t t647 = t48 * parameters[YZ6] - t53 * parameters[XZ6] - t147 * parameters[ZZ6];
-    const puma560_real_t t648 = t108 * parameters[MX6] + t100 * parameters[MY6];
-    const puma560_real_t t649 = t232 * t641 - t231 * t640 + t647 + t648;
-    const puma560_real_t t650 = t24 * t646 - t25 * t649;
-    const puma560_real_t t651 = t47 * t645 - t30 * t643;
-    const puma560_real_t t652 = t144 - (t259 * t641 - t143 + (t142 + t147 * parameters[MY6]));
-    const puma560_real_t t653 = t141 - (t140 - t259 * t640 + (t139 - t147 * parameters[MX6]));
-    const puma560_real_t t654 = t47 * t652 - t30 * t653;
-    const puma560_real_t t655 = t257 * t640 + t256 * t641 + (t53 * parameters[MY6] + t48 * parameters[MX6]);
-    const puma560_real_t t656 = t24 * t654 - t25 * t655;
-    const puma560_real_t t657 = t30 * t652 + t47 * t653;
-    const puma560_real_t t658 = t17 * t656 + t11 * t657;
-    const puma560_real_t t659 = PUMA560_C(0.4318) * t658;
-    const puma560_real_t t660 = t11 * t650 + t17 * t651 + t659;
-    const puma560_real_t t661 = t25 * t646 + t24 * t649;
-    const puma560_real_t t662 = t661 - PUMA560_C(0.0203) * t658;
-    const puma560_real_t t663 = t11 * t656 - t17 * t657;
-    const puma560_real_t t664 = t25 * t654 + t24 * t655;
-    const puma560_real_t t665 = t3 * t660 + t1 * t662 + (PUMA560_C(0.1254) * (t3 * t664 - t1 * t663) - t659);
-    const puma560_real_t t666 = t3 * t663 + t1 * t664;
-    const puma560_real_t t667 = t0 * (t1 * t660 - t3 * t662 + PUMA560_C(0.1254) * t666);
-    input_by_q[5] = PUMA560_C(0.06944177768728742) * (t667 + t2 * t665);
-    const puma560_real_t t668 = t11 * t651 - t17 * t650 + (PUMA560_C(-0.0203) * t664
-        + PUMA560_C(0.4318) * t663);
-    input_by_q[11] = PUMA560_C(0.04032672714331514) * (t668 + PUMA560_C(-0.4318) * t666);
-    input_by_q[17] = PUMA560_C(-0.08095560645504385) * t668;
-    input_by_q[23] = PUMA560_C(0.18787994020908783) * t661;
-    input_by_q[29] = PUMA560_C(0.19862511694053758) * t651;
-    const puma560_real_t t669 = PUMA560_C(0.1862884266452062) * (t648 + (t647 + (t49 * t391 + t54 * t392)));
-    input_by_q[35] = t669;
-    const puma560_real_t t670 = PUMA560_C(-2.0) * t226 - (parameters[XX6] * t640 + parameters[XY6] * t641);
-    const puma560_real_t t671 = PUMA560_C(-2.0) * t227 + (parameters[XY6] * t640 + parameters[YY6] * t641);
-    const puma560_real_t t672 = t47 * t670 + t30 * t671;
-    const puma560_real_t t673 = t394 - (parameters[XZ6] * t640 + parameters[YZ6] * t641);
-    const puma560_real_t t674 = t24 * t672 - t25 * t673;
-    const puma560_real_t t675 = t47 * t671 - t30 * t670;
-    const puma560_real_t t676 = PUMA560_C(2.0) * t257 + parameters[MZ6] * t641;
-    const puma560_real_t t677 = PUMA560_C(-2.0) * t256 + parameters[MZ6] * t640;
-    const puma560_real_t t678 = t47 * t676 + t30 * t677;
-    const puma560_real_t t679 = parameters[MX6] * t641 - parameters[MY6] * t640;
-    const puma560_real_t t680 = t24 * t678 + t25 * t679;
-    const puma560_real_t t681 = t30 * t676 - t47 * t677;
-    const puma560_real_t t682 = t17 * t680 + t11 * t681;
-    const puma560_real_t t683 = PUMA560_C(0.4318) * t682;
-    const puma560_real_t t684 = t11 * t674 + t17 * t675 + t683;
-    const puma560_real_t t685 = t25 * t672 + t24 * t673;
-    const puma560_real_t t686 = t685 - PUMA560_C(0.0203) * t682;
-    const puma560_real_t t687 = t11 * t680 - t17 * t681;
-    const puma560_real_t t688 = t25 * t678 - t24 * t679;
-    const puma560_real_t t689 = t3 * t687 + t1 * t688;
-    const puma560_real_t t690 = t0 * (t1 * t684 - t3 * t686 + PUMA560_C(0.1254) * t689);
-    const puma560_real_t t691 = t3 * t684 + t1 * t686 + (PUMA560_C(0.1254) * (t3 * t688 - t1 * t687) - t683);
-    input_by_dq[5] = PUMA560_C(0.06944177768728742) * (t690 + t2 * t691);
-    const puma560_real_t t692 = t11 * t675 - t17 * t674 + (PUMA560_C(-0.0203) * t688
-        + PUMA560_C(0.4318) * t687);
-    input_by_dq[11] = PUMA560_C(0.04032672714331514) * (t692 + PUMA560_C(-0.4318) * t689);
-    input_by_dq[17] = PUMA560_C(-0.08095560645504385) * t692;
-    input_by_dq[23] = PUMA560_C(0.18787994020908783) * t685;
-    input_by_dq[29] = PUMA560_C(0.19862511694053758) * t675;
+    const puma560_real_t t229 = t103 + (t101 + t228);
+    const puma560_real_t t230 = t47 * t229 - t30 * t224;
+    input_by_q[29] = PUMA560_C(0.19862511694053758) * t230;
+    const puma560_real_t t231 = t47 * t224 + t30 * t229;
+    const puma560_real_t t232 = t214 * t222 - t211 * t220 + t208 + t207;
+    const puma560_real_t t233 = t25 * t231 + t24 * t232;
+    input_by_q[23] = PUMA560_C(0.18787994020908783) * t233;
+    const puma560_real_t t234 = t24 * t231 - t25 * t232;
+    const puma560_real_t t235 = t49 * parameters[MX6] - t54 * parameters[MY6];
+    const puma560_real_t t236 = t144 - (t235 * t222 - t143 + (t142 + t147 * parameters[MY6]));
+    const puma560_real_t t237 = t141 - (t140 - t235 * t220 + (t139 - t147 * parameters[MX6]));
+    const puma560_real_t t238 = t47 * t236 - t30 * t237;
+    const puma560_real_t t239 = t50 * parameters[MX6] - t54 * parameters[MZ6];
+    const puma560_real_t t240 = t50 * parameters[MY6] - t49 * parameters[MZ6];
+    const puma560_real_t t241 = t239 * t220 + t240 * t222 + (t53 * parameters[MY6] + t48 * parameters[MX6]);
+    const puma560_real_t t242 = t24 * t238 - t25 * t241;
+    const puma560_real_t t243 = t30 * t236 + t47 * t237;
+    const puma560_real_t t244 = t11 * t242 - t17 * t243;
+    const puma560_real_t t245 = t25 * t238 + t24 * t241;
+    const puma560_real_t t246 = t11 * t230 - t17 * t234 + (PUMA560_C(-0.0203) * t245
+        + PUMA560_C(0.4318) * t244);
+    input_by_q[17] = PUMA560_C(-0.08095560645504385) * t246;
+    const puma560_real_t t247 = t3 * t244 + t1 * t245;
+    input_by_q[11] = PUMA560_C(0.04032672714331514) * (t246 + PUMA560_C(-0.4318) * t247);
+    const puma560_real_t t248 = t17 * t242 + t11 * t243;
+    const puma560_real_t t249 = PUMA560_C(0.4318) * t248;
+    const puma560_real_t t250 = t11 * t234 + t17 * t230 + t249;
+    const puma560_real_t t251 = t233 - PUMA560_C(0.0203) * t248;
+    const puma560_real_t t252 = t3 * t250 + t1 * t251 + (PUMA560_C(0.1254) * (t3 * t245 - t1 * t244) - t249);
+    const puma560_real_t t253 = t0 * (t1 * t250 - t3 * t251 + PUMA560_C(0.1254) * t247);
+    input_by_q[5] = PUMA560_C(0.06944177768728742) * (t253 + t2 * t252);
     input_by_dq[35] = PUMA560_C(1095.5142857142857) * parameters[FV6];
-    input_by_ddq[5] = PUMA560_C(0.06944177768728742) * t473;
-    input_by_ddq[11] = PUMA560_C(0.04032672714331514) * t492;
-    input_by_ddq[17] = PUMA560_C(-0.08095560645504385) * t491;
-    input_by_ddq[23] = PUMA560_C(0.18787994020908783) * t469;
-    input_by_ddq[29] = PUMA560_C(-0.19862511694053758) * t420;
+    const puma560_real_t t254 = t209 - parameters[ZZ6];
+    const puma560_real_t t255 = t49 * t254 + t50 * parameters[YZ6];
+    const puma560_real_t t256 = PUMA560_C(-2.0) * t255 - (parameters[XX6] * t220 + parameters[XY6] * t222);
+    const puma560_real_t t257 = t50 * parameters[XZ6] + t54 * t254;
+    const puma560_real_t t258 = PUMA560_C(-2.0) * t257 + (parameters[XY6] * t220 + parameters[YY6] * t222);
+    const puma560_real_t t259 = t47 * t258 - t30 * t256;
+    input_by_dq[29] = PUMA560_C(0.19862511694053758) * t259;
+    const puma560_real_t t260 = t47 * t256 + t30 * t258;
+    const puma560_real_t t261 = t226 - t217;
+    const puma560_real_t t262 = PUMA560_C(2.0) * t261;
+    const puma560_real_t t263 = t262 - (parameters[XZ6] * t220 + parameters[YZ6] * t222);
+    const puma560_real_t t264 = t25 * t260 + t24 * t263;
+    input_by_dq[23] = PUMA560_C(0.18787994020908783) * t264;
+    const puma560_real_t t265 = t24 * t260 - t25 * t263;
+    const puma560_real_t t266 = PUMA560_C(2.0) * t239 + parameters[MZ6] * t222;
+    const puma560_real_t t267 = PUMA560_C(-2.0) * t240 + parameters[MZ6] * t220;
+    const puma560_real_t t268 = t47 * t266 + t30 * t267;
+    const puma560_real_t t269 = parameters[MX6] * t222 - parameters[MY6] * t220;
+    const puma560_real_t t270 = t24 * t268 + t25 * t269;
+    const puma560_real_t t271 = t30 * t266 - t47 * t267;
+    const puma560_real_t t272 = t11 * t270 - t17 * t271;
+    const puma560_real_t t273 = t25 * t268 - t24 * t269;
+    const puma560_real_t t274 = t11 * t259 - t17 * t265 + (PUMA560_C(-0.0203) * t273
+        + PUMA560_C(0.4318) * t272);
+    input_by_dq[17] = PUMA560_C(-0.08095560645504385) * t274;
+    const puma560_real_t t275 = t3 * t272 + t1 * t273;
+    input_by_dq[11] = PUMA560_C(0.04032672714331514) * (t274 + PUMA560_C(-0.4318) * t275);
+    const puma560_real_t t276 = t17 * t270 + t11 * t271;
+    const puma560_real_t t277 = PUMA560_C(0.4318) * t276;
+    const puma560_real_t t278 = t11 * t265 + t17 * t259 + t277;
+    const puma560_real_t t279 = t264 - PUMA560_C(0.0203) * t276;
+    const puma560_real_t t280 = t0 * (t1 * t278 - t3 * t279 + PUMA560_C(0.1254) * t275);
+    const puma560_real_t t281 = t3 * t278 + t1 * t279 + (PUMA560_C(0.1254) * (t3 * t273 - t1 * t272) - t277);
+    input_by_dq[5] = PUMA560_C(0.06944177768728742) * (t280 + t2 * t281);
     input_by_ddq[35] = PUMA560_C(1095.5142857142857) * parameters[IA6]
         + PUMA560_C(0.1862884266452062) * parameters[ZZ6];
+    /* link j6: column of the mass matrix */
+    const puma560_real_t t282 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
+    input_by_ddq[29] = PUMA560_C(-0.19862511694053758) * t282;
+    const puma560_real_t t283 = t47 * parameters[XZ6] - t30 * parameters[YZ6];
+    const puma560_real_t t284 = t25 * t283 + t24 * parameters[ZZ6];
+    input_by_ddq[23] = PUMA560_C(0.18787994020908783) * t284;
+    const puma560_real_t t285 = t24 * t283 - t25 * parameters[ZZ6];
+    const puma560_real_t t286 = t47 * parameters[MY6] + t30 * parameters[MX6];
+    const puma560_real_t t287 = t24 * t286;
+    const puma560_real_t t288 = t47 * parameters[MX6] - t30 * parameters[MY6];
+    const puma560_real_t t289 = t11 * t287 + t17 * t288;
+    const puma560_real_t t290 = t25 * t286;
+    const puma560_real_t t291 = PUMA560_C(-0.0203) * t290 + PUMA560_C(0.4318) * t289 - (t17 * t285
+        + t11 * t282);
+    input_by_ddq[17] = PUMA560_C(-0.08095560645504385) * t291;
+    const puma560_real_t t292 = t3 * t289 + t1 * t290;
+    const puma560_real_t t293 = t291 + PUMA560_C(-0.4318) * t292;
+    input_by_ddq[11] = PUMA560_C(0.04032672714331514) * t293;
+    const puma560_real_t t294 = t11 * t288 - t17 * t287;
+    const puma560_real_t t295 = PUMA560_C(-0.4318) * t294;
+    const puma560_real_t t296 = t11 * t285 - t17 * t282 + t295;
+    const puma560_real_t t297 = t284 + PUMA560_C(0.0203) * t294;
+    const puma560_real_t t298 = t1 * t289 - t3 * t290;
+    const puma560_real_t t299 = t3 * t296 + t1 * t297 + (PUMA560_C(-0.1254) * t298 - t295);
+    const puma560_real_t t300 = t3 * t297 - t1 * t296 + PUMA560_C(-0.1254) * t292;
+    const puma560_real_t t301 = t2 * t299 - t0 * t300;
+    input_by_ddq[5] = PUMA560_C(0.06944177768728742) * t301;
+    const puma560_real_t t302 = t47 * t212 + t30 * t215; /* link j6: derivatives */
+    const puma560_real_t t303 = t27 * t302 + t26 * t262 + (t59 * t283 + t42 * parameters[ZZ6] + t153 * t282);
+    input_by_q[34] = PUMA560_C(0.1862884266452062) * (t303 - t102 * t286);
+    const puma560_real_t t304 = t25 * t262 - t24 * t302;
+    const puma560_real_t t305 = t47 * t215 - t30 * t212;
+    const puma560_real_t t306 = t38 * t282 - t18 * t285 - t170 * t284 - (t35 * t304 + t19 * t305);
+    input_by_q[33] = PUMA560_C(0.1862884266452062) * (t306 + (t99 * t287 + t92 * t288));
+    const puma560_real_t t307 = PUMA560_C(0.0406) * t13;
+    const puma560_real_t t308 = PUMA560_C(0.4318) * t5 + PUMA560_C(0.0203) * t7;
+    const puma560_real_t t309 = PUMA560_C(2.0) * t308;
+    const puma560_real_t t310 = t11 * t304 - t17 * t305 + (t294 * t307 + t290 * t309);
+    const puma560_real_t t311 = t25 * t302 + t24 * t262;
+    const puma560_real_t t312 = PUMA560_C(0.8636) * t13;
+    const puma560_real_t t313 = t311 + (t289 * t309 - t294 * t312);
+    const puma560_real_t t314 = t5 * t313 - t7 * t310 + (t31 * t296 + t12 * t297 - t181 * t291);
+    input_by_q[32] = PUMA560_C(0.1862884266452062) * (t314 + (t96 * t289 + t82 * t290));
+    /* link j3: velocity of its origin */
+    const puma560_real_t t315 = PUMA560_C(-0.4318) * dq[1] + PUMA560_C(-0.1254) * t76;
+    const puma560_real_t t316 = PUMA560_C(2.0) * t315; /* link j6: derivatives */
+    const puma560_real_t t317 = PUMA560_C(-0.8636) * t70;
+    const puma560_real_t t318 = t1 * t310 + t3 * t313 + (t292 * t317 - t294 * t316);
+    const puma560_real_t t319 = PUMA560_C(0.2508) * t70;
+    const puma560_real_t t320 = t3 * t310 - t1 * t313 + (t294 * t319 - t298 * t317);
+    const puma560_real_t t321 = t70 * t318 - t76 * t320 + (t73 * t300 + t79 * t299 - t86 * t293);
+    input_by_q[31] = PUMA560_C(0.1862884266452062) * (t321 + (t80 * t298 + t74 * t292));
+    const puma560_real_t t322 = PUMA560_C(0.1862884266452062) * (t305 + PUMA560_C(2.0) * (t27 * t283
+        + t26 * parameters[ZZ6]));
+    input_by_dq[34] = t322;
+    const puma560_real_t t323 = PUMA560_C(0.1862884266452062) * (t311 + PUMA560_C(2.0) * (t35 * t285
+        + t19 * t282));
+    input_by_dq[33] = t323;
+    const puma560_real_t t324 = t17 * t304 + t11 * t305 + (t290 * t312 + t289 * t307);
+    const puma560_real_t t325 = PUMA560_C(0.1862884266452062) * (t324 + PUMA560_C(2.0) * (t7 * t296
+        + t5 * t297));
+    input_by_dq[32] = t325;
+    const puma560_real_t t326 = t324 + (t292 * t319 - t298 * t316) + PUMA560_C(2.0) * (t70 * t300
+        + t76 * t299);
+    input_by_dq[31] = PUMA560_C(0.1862884266452062) * t326;
+    input_by_dq[30] = PUMA560_C(0.1862884266452062) * (t0 * t318 + t2 * t320);
+    input_by_ddq[34] = PUMA560_C(-0.1862884266452062) * t282;
+    input_by_ddq[33] = PUMA560_C(0.1862884266452062) * t284;
+    input_by_ddq[32] = PUMA560_C(0.1862884266452062) * t291;
+    input_by_ddq[31] = PUMA560_C(0.1862884266452062) * t293;
+    input_by_ddq[30] = PUMA560_C(-0.1862884266452062) * t301;
+    /* link j6: inertia of it and all beyond */
+    const puma560_real_t t327 = t47 * t118 + parameters[XY6] * (PUMA560_C(2.0) * t30);
+    const puma560_real_t t328 = parameters[XZ5] + (t30 * t327 - parameters[XY6]);
+    const puma560_real_t t329 = parameters[YZ5] - t282;
+    const puma560_real_t t330 = t47 * t327;
+    const puma560_real_t t331 = parameters[ZZ5] + (parameters[XX6] + t330);
+    const puma560_real_t t332 = t59 * t328 + t42 * t329 - t153 * t331; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t333 = t30 * (t225 + t221) - t47 * (t219 + t227);
+    const puma560_real_t t334 = t30 * t333;
+    const puma560_real_t t335 = PUMA560_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const puma560_real_t t336 = parameters[XX5] - t335;
+    const puma560_real_t t337 = t225 - t334 - (t26 * parameters[XY5] + t27 * t336);
+    const puma560_real_t t338 = PUMA560_C(2.0) * t337; /* link j5: derivatives */
+    const puma560_real_t t339 = t335 - parameters[YY5];
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t340 = t26 * t339 - t27 * parameters[XY5] + (t30 * t255 - t47 * t257);
+    const puma560_real_t t341 = PUMA560_C(2.0) * t340; /* link j5: derivatives */
+    const puma560_real_t t342 = parameters[MX5] + t288; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t343 = parameters[MY5] + parameters[MZ6];
+    const puma560_real_t t344 = t98 * t342 - t102 * t343; /* link j5: derivatives */
+    const puma560_real_t t345 = PUMA560_C(0.19862511694053758) * (t344 + (t332 + (t27 * t338 + t26 * t341)));
+    input_by_q[28] = t345;
+    const puma560_real_t t346 = t47 * t333; /* link j6: inertia, momentum beyond */
+    const puma560_real_t t347 = t27 * parameters[XZ5];
+    const puma560_real_t t348 = t43 * parameters[XY5];
+    const puma560_real_t t349 = t347 + t348 + (t227 + t346);
+    const puma560_real_t t350 = PUMA560_C(2.0) * t27; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t351 = t27 * parameters[YZ5] - t43 * t339 - (t47 * t255 + t30 * t257);
+    const puma560_real_t t352 = PUMA560_C(2.0) * t26; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const puma560_real_t t353 = parameters[XX5] + (parameters[YY6] - t330);
+    const puma560_real_t t354 = parameters[XY5] + t283;
+    /* link j5: derivatives */
+    const puma560_real_t t355 = t349 * t350 + t351 * t352 + (t59 * t353 + t42 * t354 - t153 * t328);
+    const puma560_real_t t356 = parameters[MZ5] - t286; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t357 = t124 + (t355 - t98 * t356); /* link j5: derivatives */
+    const puma560_real_t t358 = parameters[YY5] + parameters[ZZ6]; /* link j6: inertia of it and all beyond */
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t359 = t26 * parameters[XZ5] - t43 * t336 + (t47 * t211 + t30 * t214);
+    const puma560_real_t t360 = t26 * parameters[YZ5];
+    const puma560_real_t t361 = t360 - t348 + t261;
+    /* link j5: derivatives */
+    const puma560_real_t t362 = t359 * t350 + t361 * t352 + (t59 * t354 + t42 * t358 - t153 * t329);
+    const puma560_real_t t363 = t117 + (t362 + t102 * t356);
+    const puma560_real_t t364 = t25 * t357 + t24 * t363;
+    input_by_q[22] = PUMA560_C(0.18787994020908783) * t364;
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t365 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t47 * t239 - t30 * t240);
+    const puma560_real_t t366 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    /* link j5: derivatives */
+    const puma560_real_t t367 = t365 * t352 - t102 * t366 - (t42 * t356 + t153 * t343);
+    const puma560_real_t t368 = t150 + t367;
+    const puma560_real_t t369 = t365 * t350 + t98 * t366 - (t153 * t342 + t59 * t356);
+    const puma560_real_t t370 = t146 - t369;
+    const puma560_real_t t371 = t25 * t368 + t24 * t370;
+    const puma560_real_t t372 = t24 * t368 - t25 * t370;
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t373 = t47 * t240 + t30 * t239 - (t27 * parameters[MZ5] + t43 * parameters[MY5]);
+    const puma560_real_t t374 = t26 * parameters[MZ5] - t43 * parameters[MX5] - t235;
+    /* link j5: derivatives */
+    const puma560_real_t t375 = t374 * t350 + t373 * t352 + (t59 * t343 - t42 * t342);
+    const puma560_real_t t376 = t11 * t372 - t17 * t375;
+    const puma560_real_t t377 = t24 * t357 - t25 * t363;
+    const puma560_real_t t378 = t337 * t350 + t340 * t352 + t332 + t344;
+    const puma560_real_t t379 = t11 * t378 - t17 * t377 + (PUMA560_C(-0.0203) * t371
+        + PUMA560_C(0.4318) * t376);
+    input_by_q[16] = PUMA560_C(-0.08095560645504385) * t379;
+    const puma560_real_t t380 = t3 * t376 + t1 * t371;
+    input_by_q[10] = PUMA560_C(0.04032672714331514) * (t379 + PUMA560_C(-0.4318) * t380);
+    const puma560_real_t t381 = t17 * t372 + t11 * t375;
+    const puma560_real_t t382 = PUMA560_C(0.4318) * t381;
+    const puma560_real_t t383 = t11 * t377 + t17 * t378 + t382;
+    const puma560_real_t t384 = t364 - PUMA560_C(0.0203) * t381;
+    const puma560_real_t t385 = t0 * (t1 * t383 - t3 * t384 + PUMA560_C(0.1254) * t380);
+    const puma560_real_t t386 = t3 * t383 + t1 * t384 + (PUMA560_C(0.1254) * (t3 * t371 - t1 * t376) - t382);
+    input_by_q[4] = PUMA560_C(0.06944177768728742) * (t385 + t2 * t386);
+    const puma560_real_t t387 = t347 + t360 + (t219 + t346); /* link j6: inertia, momentum beyond */
+    const puma560_real_t t388 = PUMA560_C(-2.0) * t387; /* link j5: derivatives */
+    const puma560_real_t t389 = PUMA560_C(0.19862511694053758) * (t388 + PUMA560_C(2.0) * (t27 * t328
+        + t26 * t329));
+    input_by_dq[28] = PUMA560_C(1027.4714285714285) * parameters[FV5] + t389;
+    const puma560_real_t t390 = parameters[ZZ5] - t335;
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t391 = t27 * t390 + t43 * parameters[YZ5] + (t221 - t334);
+    /* link j5: derivatives */
+    const puma560_real_t t392 = PUMA560_C(2.0) * t391 + (t353 * t350 + t354 * t352);
+    /* link j6: inertia, momentum beyond */
+    const puma560_real_t t393 = t26 * t390 - t43 * parameters[XZ5] + (t47 * t214 - t30 * t211);
+    /* link j5: derivatives */
+    const puma560_real_t t394 = PUMA560_C(2.0) * t393 + (t354 * t350 + t358 * t352);
+    const puma560_real_t t395 = t25 * t392 + t24 * t394;
+    input_by_dq[22] = PUMA560_C(0.18787994020908783) * t395;
+    const puma560_real_t t396 = t24 * t392 - t25 * t394;
+    const puma560_real_t t397 = t388 + (t328 * t350 + t329 * t352);
+    const puma560_real_t t398 = PUMA560_C(-2.0) * t373 - t356 * t350;
+    const puma560_real_t t399 = PUMA560_C(2.0) * t374 - t356 * t352;
+    const puma560_real_t t400 = t25 * t399 - t24 * t398;
+    const puma560_real_t t401 = t24 * t399 + t25 * t398;
+    const puma560_real_t t402 = t343 * t350 - t342 * t352;
+    const puma560_real_t t403 = t11 * t401 - t17 * t402;
+    const puma560_real_t t404 = t11 * t397 - t17 * t396 + (PUMA560_C(-0.0203) * t400
+        + PUMA560_C(0.4318) * t403);
+    input_by_dq[16] = PUMA560_C(-0.08095560645504385) * t404;
+    const puma560_real_t t405 = t3 * t403 + t1 * t400;
+    input_by_dq[10] = PUMA560_C(0.04032672714331514) * (t404 + PUMA560_C(-0.4318) * t405);
+    const puma560_real_t t406 = t17 * t401 + t11 * t402;
+    const puma560_real_t t407 = PUMA560_C(0.4318) * t406;
+    const puma560_real_t t408 = t11 * t396 + t17 * t397 + t407;
+    const puma560_real_t t409 = t395 - PUMA560_C(0.0203) * t406;
+    const puma560_real_t t410 = t0 * (t1 * t408 - t3 * t409 + PUMA560_C(0.1254) * t405);
+    const puma560_real_t t411 = t3 * t408 + t1 * t409 + (PUMA560_C(0.1254) * (t3 * t400 - t1 * t403) - t407);
+    input_by_dq[4] = PUMA560_C(0.06944177768728742) * (t410 + t2 * t411);
+    input_by_ddq[28] = PUMA560_C(1027.4714285714285) * parameters[IA5]
+        + PUMA560_C(0.19862511694053758) * t331;
+    const puma560_real_t t412 = t25 * t328 + t24 * t329; /* link j5: column of the mass matrix */
+    input_by_ddq[22] = PUMA560_C(0.18787994020908783) * t412;
+    const puma560_real_t t413 = t25 * t329 - t24 * t328;
+    const puma560_real_t t414 = t24 * t342 - t25 * t343;
+    const puma560_real_t t415 = t24 * t343 + t25 * t342;
+    const puma560_real_t t416 = t11 * t415;
+    const puma560_real_t t417 = t17 * t413 + t11 * t331 + (PUMA560_C(0.0203) * t414
+        + PUMA560_C(0.4318) * t416);
+    input_by_ddq[16] = PUMA560_C(-0.08095560645504385) * t417;
+    const puma560_real_t t418 = t1 * t414 - t3 * t416;
+    const puma560_real_t t419 = t417 + PUMA560_C(0.4318) * t418;
+    input_by_ddq[10] = PUMA560_C(0.04032672714331514) * t419;
+    const puma560_real_t t420 = t17 * t415;
+    const puma560_real_t t421 = PUMA560_C(0.4318) * t420;
+    const puma560_real_t t422 = t17 * t331 - t11 * t413 + t421;
+    const puma560_real_t t423 = t412 + PUMA560_C(-0.0203) * t420;
+    const puma560_real_t t424 = t3 * t423 - t1 * t422 + PUMA560_C(0.1254) * t418;
+    const puma560_real_t t425 = t1 * t416 + t3 * t414;
+    const puma560_real_t t426 = t3 * t422 + t1 * t423 + (PUMA560_C(-0.1254) * t425 - t421);
+    const puma560_real_t t427 = t2 * t426 - t0 * t424;
+    input_by_ddq[4] = PUMA560_C(0.06944177768728742) * t427;
+    const puma560_real_t t428 = t25 * t341 - t24 * t338; /* link j5: derivatives */
+    const puma560_real_t t429 = t18 * t413 - t38 * t331 - t170 * t412 - (t35 * t428 + t19 * t388);
+    input_by_q[27] = PUMA560_C(0.19862511694053758) * (t429 + t99 * t415);
+    const puma560_real_t t430 = t11 * t428 - t17 * t388 - (t420 * t307 + t414 * t309);
+    const puma560_real_t t431 = t25 * t338 + t24 * t341;
+    const puma560_real_t t432 = t431 + (t416 * t309 + t420 * t312);
+    const puma560_real_t t433 = t5 * t432 - t7 * t430 + (t31 * t422 + t12 * t423 - t181 * t417);
+    input_by_q[26] = PUMA560_C(0.19862511694053758) * (t433 + (t96 * t416 - t82 * t414));
+    const puma560_real_t t434 = t1 * t430 + t3 * t432 + (t420 * t316 - t418 * t317);
+    const puma560_real_t t435 = t3 * t430 - t1 * t432 - (t425 * t317 + t420 * t319);
+    const puma560_real_t t436 = t70 * t434 - t76 * t435 + (t73 * t424 + t79 * t426 - t86 * t419);
+    input_by_q[25] = PUMA560_C(0.19862511694053758) * (t436 + (t80 * t425 - t74 * t418));
+    const puma560_real_t t437 = PUMA560_C(0.19862511694053758) * (t431 + PUMA560_C(-2.0) * (t35 * t413
+        + t19 * t331));
+    input_by_dq[27] = t437;
+    const puma560_real_t t438 = t17 * t428 + t11 * t388 + (t416 * t307 - t414 * t312);
+    const puma560_real_t t439 = PUMA560_C(0.19862511694053758) * (t438 + PUMA560_C(2.0) * (t7 * t422
+        + t5 * t423));
+    input_by_dq[26] = t439;
+    const puma560_real_t t440 = t438 - (t418 * t319 + t425 * t316) + PUMA560_C(2.0) * (t70 * t424
+        + t76 * t426);
+    input_by_dq[25] = PUMA560_C(0.19862511694053758) * t440;
+    input_by_dq[24] = PUMA560_C(0.19862511694053758) * (t0 * t434 + t2 * t435);
+    input_by_ddq[27] = PUMA560_C(0.19862511694053758) * t412;
+    input_by_ddq[26] = PUMA560_C(0.19862511694053758) * t417;
+    input_by_ddq[25] = PUMA560_C(0.19862511694053758) * t419;
+    input_by_ddq[24] = PUMA560_C(-0.19862511694053758) * t427;
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t441 = t24 * (t361 - t349) + t25 * (t351 + t359);
+    const puma560_real_t t442 = t25 * t441;
+    const puma560_real_t t443 = PUMA560_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const puma560_real_t t444 = parameters[XX4] - t443;
+    const puma560_real_t t445 = t19 * parameters[XY4] + t35 * t444 - (t359 - t442);
+    const puma560_real_t t446 = PUMA560_C(2.0) * t445; /* link j4: derivatives */
+    const puma560_real_t t447 = parameters[YY4] - t443;
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t448 = t19 * t447 + t35 * parameters[XY4] + (t25 * t391 + t24 * t393);
+    const puma560_real_t t449 = PUMA560_C(2.0) * t448; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const puma560_real_t t450 = t24 * (t358 - t353) + t354 * (PUMA560_C(2.0) * t25);
+    const puma560_real_t t451 = parameters[XZ4] + (t354 - t25 * t450);
+    const puma560_real_t t452 = parameters[YZ4] - t412;
+    const puma560_real_t t453 = t24 * t450;
+    const puma560_real_t t454 = parameters[ZZ4] + (t353 + t453);
+    const puma560_real_t t455 = t38 * t452 - t18 * t451 - t170 * t454; /* link j4: derivatives */
+    const puma560_real_t t456 = parameters[MX4] + t414; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t457 = t356 - parameters[MY4];
+    const puma560_real_t t458 = t92 * t456 - t99 * t457; /* link j4: derivatives */
+    const puma560_real_t t459 = PUMA560_C(0.18787994020908783) * (t458 + (t455 - (t35 * t446 + t19 * t449)));
+    input_by_q[21] = t459;
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t460 = t20 * t444 + t19 * parameters[XZ4] + (t25 * t340 - t24 * t337);
+    const puma560_real_t t461 = PUMA560_C(-2.0) * t35; /* link j4: derivatives */
+    const puma560_real_t t462 = t20 * parameters[XY4];
+    const puma560_real_t t463 = t19 * parameters[YZ4];
+    const puma560_real_t t464 = t387 - (t462 + t463); /* link j5: inertia, momentum beyond */
+    const puma560_real_t t465 = PUMA560_C(-2.0) * t19; /* link j4: derivatives */
+    const puma560_real_t t466 = parameters[XY4] + t413; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t467 = parameters[YY4] + t331;
+    /* link j4: derivatives */
+    const puma560_real_t t468 = t460 * t461 - t464 * t465 + (t18 * t466 - t38 * t467 + t170 * t452);
+    const puma560_real_t t469 = parameters[MZ4] + t415; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t470 = t131 + (t468 + t99 * t469); /* link j4: derivatives */
+    const puma560_real_t t471 = t24 * t441; /* link j5: inertia, momentum beyond */
+    const puma560_real_t t472 = t35 * parameters[XZ4];
+    const puma560_real_t t473 = t472 - t462 + (t361 - t471);
+    const puma560_real_t t474 = t35 * parameters[YZ4] - t20 * t447 - (t24 * t391 - t25 * t393);
+    const puma560_real_t t475 = parameters[XX4] + (t358 - t453); /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const puma560_real_t t476 = t473 * t461 + t474 * t465 + (t18 * t475 - t38 * t466 + t170 * t451);
+    const puma560_real_t t477 = t138 - (t476 + t92 * t469);
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t478 = t19 * parameters[MY4] + t35 * parameters[MX4] + (t25 * t373 - t24 * t374);
+    const puma560_real_t t479 = parameters[M4] + t366; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const puma560_real_t t480 = t99 * t479 - t478 * t465 - (t38 * t469 - t170 * t457);
+    const puma560_real_t t481 = t156 + t480;
+    const puma560_real_t t482 = t92 * t479 - t478 * t461 - (t170 * t456 - t18 * t469);
+    const puma560_real_t t483 = t152 - t482;
+    const puma560_real_t t484 = t11 * t481 - t17 * t483;
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t485 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t365;
+    const puma560_real_t t486 = t20 * parameters[MY4] - t35 * parameters[MZ4] + (t24 * t373 + t25 * t374);
+    /* link j4: derivatives */
+    const puma560_real_t t487 = t485 * t461 + t486 * t465 + (t38 * t456 - t18 * t457);
+    const puma560_real_t t488 = t11 * t470 - t17 * t477 + (PUMA560_C(-0.0203) * t487
+        + PUMA560_C(0.4318) * t484);
+    input_by_q[15] = PUMA560_C(-0.08095560645504385) * t488;
+    const puma560_real_t t489 = t3 * t484 + t1 * t487;
+    input_by_q[9] = PUMA560_C(0.04032672714331514) * (t488 + PUMA560_C(-0.4318) * t489);
+    const puma560_real_t t490 = t17 * t481 + t11 * t483;
+    const puma560_real_t t491 = PUMA560_C(0.4318) * t490;
+    const puma560_real_t t492 = t11 * t477 + t17 * t470 + t491;
+    const puma560_real_t t493 = PUMA560_C(0.0203) * t490 - (t445 * t461 + t448 * t465 + t455 + t458);
+    const puma560_real_t t494 = t3 * t492 - t1 * t493 + (PUMA560_C(0.1254) * (t3 * t487 - t1 * t484) - t491);
+    const puma560_real_t t495 = t0 * (t1 * t492 + t3 * t493 + PUMA560_C(0.1254) * t489);
+    input_by_q[3] = PUMA560_C(0.06944177768728742) * (t495 + t2 * t494);
+    const puma560_real_t t496 = t349 + t471 - (t472 + t463); /* link j5: inertia, momentum beyond */
+    const puma560_real_t t497 = PUMA560_C(2.0) * t496; /* link j4: derivatives */
+    const puma560_real_t t498 = PUMA560_C(0.18787994020908783) * (t497 + PUMA560_C(2.0) * (t35 * t451
+        + t19 * t452));
+    input_by_dq[21] = PUMA560_C(1086.2342857142855) * parameters[FV4] + t498;
+    const puma560_real_t t499 = t443 - parameters[ZZ4];
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t500 = t351 - t442 - (t35 * t499 + t20 * parameters[YZ4]);
+    /* link j4: derivatives */
+    const puma560_real_t t501 = PUMA560_C(2.0) * t500 - (t475 * t461 + t466 * t465);
+    /* link j5: inertia, momentum beyond */
+    const puma560_real_t t502 = t19 * t499 - t20 * parameters[XZ4] + (t25 * t337 + t24 * t340);
+    /* link j4: derivatives */
+    const puma560_real_t t503 = PUMA560_C(2.0) * t502 + (t466 * t461 + t467 * t465);
+    const puma560_real_t t504 = PUMA560_C(2.0) * t485 + t469 * t465;
+    const puma560_real_t t505 = PUMA560_C(-2.0) * t486 + t469 * t461;
+    const puma560_real_t t506 = t11 * t504 + t17 * t505;
+    const puma560_real_t t507 = t457 * t461 + t456 * t465;
+    const puma560_real_t t508 = t11 * t503 - t17 * t501 + (PUMA560_C(0.0203) * t507
+        + PUMA560_C(0.4318) * t506);
+    input_by_dq[15] = PUMA560_C(-0.08095560645504385) * t508;
+    const puma560_real_t t509 = t3 * t506 - t1 * t507;
+    input_by_dq[9] = PUMA560_C(0.04032672714331514) * (t508 + PUMA560_C(-0.4318) * t509);
+    const puma560_real_t t510 = t17 * t504 - t11 * t505;
+    const puma560_real_t t511 = PUMA560_C(0.4318) * t510;
+    const puma560_real_t t512 = t11 * t501 + t17 * t503 + t511;
+    const puma560_real_t t513 = t451 * t461 + t452 * t465 - t497 + PUMA560_C(0.0203) * t510;
+    const puma560_real_t t514 = t0 * (t1 * t512 + t3 * t513 + PUMA560_C(0.1254) * t509);
+    const puma560_real_t t515 = t3 * t512 - t1 * t513 + (PUMA560_C(-0.1254) * (t1 * t506 + t3 * t507) - t511);
+    input_by_dq[3] = PUMA560_C(0.06944177768728742) * (t514 + t2 * t515);
+    input_by_ddq[21] = PUMA560_C(1086.2342857142855) * parameters[IA4]
+        + PUMA560_C(0.18787994020908783) * t454;
+    const puma560_real_t t516 = t11 * t457 - t17 * t456; /* link j4: column of the mass matrix */
+    const puma560_real_t t517 = PUMA560_C(-0.4318) * t516 - (t17 * t451 + t11 * t452);
+    input_by_ddq[15] = PUMA560_C(-0.08095560645504385) * t517;
+    const puma560_real_t t518 = t3 * t516;
+    const puma560_real_t t519 = t517 + PUMA560_C(0.4318) * t518;
+    input_by_ddq[9] = PUMA560_C(0.04032672714331514) * t519;
+    const puma560_real_t t520 = t11 * t451 - t17 * t452;
+    const puma560_real_t t521 = t17 * t457 + t11 * t456;
+    const puma560_real_t t522 = PUMA560_C(-0.4318) * t521;
+    const puma560_real_t t523 = t520 + t522;
+    const puma560_real_t t524 = t454 + PUMA560_C(0.0203) * t521;
+    const puma560_real_t t525 = t3 * t524 - t1 * t523 + PUMA560_C(0.1254) * t518;
+    const puma560_real_t t526 = t1 * t516;
+    const puma560_real_t t527 = t3 * t523 + t1 * t524 + (PUMA560_C(0.1254) * t526 - t522);
+    const puma560_real_t t528 = t2 * t527 - t0 * t525;
+    input_by_ddq[3] = PUMA560_C(0.06944177768728742) * t528;
+    const puma560_real_t t529 = t11 * t446 - t17 * t449 + t521 * t307; /* link j4: derivatives */
+    const puma560_real_t t530 = t497 - (t516 * t309 + t521 * t312);
+    const puma560_real_t t531 = t5 * t530 - t7 * t529 + (t31 * t523 + t12 * t524 - t181 * t517);
+    input_by_q[20] = PUMA560_C(0.18787994020908783) * (t531 - t96 * t516);
+    const puma560_real_t t532 = t1 * t529 + t3 * t530 - (t521 * t316 + t518 * t317);
+    const puma560_real_t t533 = t3 * t529 - t1 * t530 + (t526 * t317 + t521 * t319);
+    const puma560_real_t t534 = t70 * t532 - t76 * t533 + (t73 * t525 + t79 * t527 - t86 * t519);
+    input_by_q[19] = PUMA560_C(0.18787994020908783) * (t534 - (t80 * t526 + t74 * t518));
+    const puma560_real_t t535 = t17 * t446 + t11 * t449 - t516 * t307;
+    const puma560_real_t t536 = PUMA560_C(0.18787994020908783) * (t535 + PUMA560_C(2.0) * (t7 * t523
+        + t5 * t524));
+    input_by_dq[20] = t536;
+    const puma560_real_t t537 = t535 + (t526 * t316 - t518 * t319) + PUMA560_C(2.0) * (t70 * t525
+        + t76 * t527);
+    input_by_dq[19] = PUMA560_C(0.18787994020908783) * t537;
+    input_by_dq[18] = PUMA560_C(0.18787994020908783) * (t0 * t532 + t2 * t533);
+    input_by_ddq[20] = PUMA560_C(0.18787994020908783) * t517;
+    input_by_ddq[19] = PUMA560_C(0.18787994020908783) * t519;
+    input_by_ddq[18] = PUMA560_C(-0.18787994020908783) * t528;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t538 = t17 * (t474 + t460) - t11 * (t473 + t464);
+    const puma560_real_t t539 = t17 * t538;
+    const puma560_real_t t540 = t17 * t486 - t11 * t485;
+    const puma560_real_t t541 = PUMA560_C(0.0203) * t479; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t542 = t521 + t541;
+    const puma560_real_t t543 = PUMA560_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const puma560_real_t t544 = parameters[XX3] - t543;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t545 = t5 * parameters[XY3] + t7 * t544 + (t460 - t539 - (PUMA560_C(-0.0203) * t540
+        + t542 * t308));
+    const puma560_real_t t546 = PUMA560_C(2.0) * t545; /* link j3: derivatives */
+    const puma560_real_t t547 = PUMA560_C(0.4318) * t479; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t548 = t469 + t547;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t549 = t11 * t502 - t17 * t500 + (PUMA560_C(-0.4318) * t540 + t548 * t308);
+    const puma560_real_t t550 = t543 - parameters[YY3];
+    const puma560_real_t t551 = t5 * t550 - t7 * parameters[XY3] + t549;
+    const puma560_real_t t552 = PUMA560_C(-2.0) * t551; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t553 = t11 * (t467 - t475) + t466 * (PUMA560_C(2.0) * t17);
+    const puma560_real_t t554 = parameters[XZ3] - (t466 - t17 * t553 - PUMA560_C(-0.0203) * t516);
+    const puma560_real_t t555 = parameters[YZ3] + t517;
+    const puma560_real_t t556 = t11 * t553;
+    const puma560_real_t t557 = PUMA560_C(0.0203) * (t541 + PUMA560_C(2.0) * t521);
+    const puma560_real_t t558 = PUMA560_C(0.4318) * (t547 + PUMA560_C(2.0) * t469);
+    const puma560_real_t t559 = parameters[ZZ3] + (t475 + t556 + (t557 + t558));
+    const puma560_real_t t560 = t31 * t554 + t12 * t555 - t181 * t559; /* link j3: derivatives */
+    const puma560_real_t t561 = parameters[MX3] + t542; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t562 = parameters[MY3] + t548;
+    const puma560_real_t t563 = t96 * t562 - t82 * t561; /* link j3: derivatives */
+    const puma560_real_t t564 = PUMA560_C(0.08095560645504385) * (t7 * t546 + t5 * t552 - t560 - t563);
+    input_by_q[14] = t564;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t565 = t540 - t479 * t308 - (t5 * parameters[MY3] + t7 * parameters[MX3]);
+    const puma560_real_t t566 = PUMA560_C(2.0) * t7; /* link j3: derivatives */
+    const puma560_real_t t567 = parameters[M3] + t479; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t568 = parameters[MZ3] + t516;
+    /* link j3: derivatives */
+    const puma560_real_t t569 = t565 * t566 + t82 * t567 + (t181 * t561 + t31 * t568);
+    const puma560_real_t t570 = t169 + t569;
+    const puma560_real_t t571 = PUMA560_C(2.0) * t5;
+    const puma560_real_t t572 = t565 * t571 - t96 * t567 + (t12 * t568 + t181 * t562);
+    const puma560_real_t t573 = t174 + t572;
+    const puma560_real_t t574 = t1 * t570 - t3 * t573;
+    const puma560_real_t t575 = t551 * t571 - t545 * t566 + t560 + t563 + PUMA560_C(-0.4318) * t574;
+    input_by_q[8] = PUMA560_C(0.04032672714331514) * t575;
+    const puma560_real_t t576 = t11 * t538; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t577 = t11 * t486 + t17 * t485;
+    const puma560_real_t t578 = PUMA560_C(-0.0203) * t577;
+    const puma560_real_t t579 = PUMA560_C(0.4318) * t13; /* link j4: velocity of its origin */
+    const puma560_real_t t580 = t542 * t579; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t581 = PUMA560_C(0.4318) * t478;
+    const puma560_real_t t582 = t516 * t308;
+    const puma560_real_t t583 = PUMA560_C(-0.0203) * t13; /* link j4: velocity of its origin */
+    const puma560_real_t t584 = t548 * t583; /* link j4: inertia, momentum beyond */
+    const puma560_real_t t585 = t578 - t581 - (t580 + t584 + t582);
+    const puma560_real_t t586 = t7 * parameters[XZ3];
+    const puma560_real_t t587 = t13 * parameters[XY3];
+    const puma560_real_t t588 = t587 - t586 + (t464 + t576 + (t578 - t580) - t585);
+    const puma560_real_t t589 = t11 * t500 + t17 * t502 + (PUMA560_C(0.4318) * t577 + t548 * t579);
+    const puma560_real_t t590 = t7 * parameters[YZ3] + t13 * t550 + t589;
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t591 = parameters[XX3] + (t467 - t556 + t558);
+    const puma560_real_t t592 = parameters[XY3] + (t520 + (PUMA560_C(-0.0203) * t469
+        + PUMA560_C(-0.4318) * t542));
+    /* link j3: derivatives */
+    const puma560_real_t t593 = t590 * t571 - t588 * t566 + (t31 * t591 + t12 * t592 - t181 * t554);
+    const puma560_real_t t594 = t166 + (t593 + t82 * t568);
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t595 = t11 * t445 - t17 * t448 - (PUMA560_C(0.0203) * t478 + t542 * t583);
+    const puma560_real_t t596 = t13 * t544 + t5 * parameters[XZ3] - t595;
+    const puma560_real_t t597 = t5 * parameters[YZ3];
+    const puma560_real_t t598 = t587 + t597 + (t585 + (t496 + (t581 + t584)));
+    const puma560_real_t t599 = parameters[YY3] + (t454 + t557); /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const puma560_real_t t600 = t596 * t566 + t598 * t571 + (t31 * t592 + t12 * t599 - t181 * t555);
+    const puma560_real_t t601 = t160 + (t600 - t96 * t568);
+    const puma560_real_t t602 = t0 * (t1 * t594 - t3 * t601 + PUMA560_C(0.1254) * t574);
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t603 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t577 + t479 * t579);
+    const puma560_real_t t604 = t478 + t479 * t583 - (t13 * parameters[MX3] + t5 * parameters[MZ3]);
+    /* link j3: derivatives */
+    const puma560_real_t t605 = t604 * t566 - t603 * t571 + (t12 * t561 - t31 * t562);
+    const puma560_real_t t606 = PUMA560_C(0.1254) * (t1 * t573 + t3 * t570) + PUMA560_C(0.4318) * t605;
+    const puma560_real_t t607 = t602 + t2 * (t3 * t594 + t1 * t601 + t606);
+    input_by_q[2] = PUMA560_C(0.06944177768728742) * t607;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t608 = t585 + (t473 + t576 + t582) - (t586 + t597);
+    const puma560_real_t t609 = PUMA560_C(-2.0) * t608; /* link j3: derivatives */
+    const puma560_real_t t610 = PUMA560_C(0.08095560645504385) * (t609 + PUMA560_C(-2.0) * (t7 * t554
+        + t5 * t555));
+    input_by_dq[14] = PUMA560_C(-233.50565217391303) * parameters[FV3] + t610;
+    const puma560_real_t t611 = PUMA560_C(2.0) * t603 + t568 * t566;
+    const puma560_real_t t612 = PUMA560_C(2.0) * t604 + t568 * t571;
+    const puma560_real_t t613 = t1 * t611 - t3 * t612;
+    const puma560_real_t t614 = t554 * t566 + t555 * t571 - t609 + PUMA560_C(-0.4318) * t613;
+    input_by_dq[8] = PUMA560_C(0.04032672714331514) * t614;
+    const puma560_real_t t615 = parameters[ZZ3] - t543;
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t616 = t7 * t615 - t13 * parameters[YZ3] + (t539 - t474 + t516 * t579);
+    /* link j3: derivatives */
+    const puma560_real_t t617 = PUMA560_C(2.0) * t616 + (t591 * t566 + t592 * t571);
+    /* link j4: inertia, momentum beyond */
+    const puma560_real_t t618 = t13 * parameters[XZ3] + t5 * t615 + (t17 * t445 + t11 * t448 + t516 * t583);
+    /* link j3: derivatives */
+    const puma560_real_t t619 = PUMA560_C(2.0) * t618 + (t592 * t566 + t599 * t571);
+    const puma560_real_t t620 = t0 * (t1 * t617 - t3 * t619 + PUMA560_C(0.1254) * t613);
+    const puma560_real_t t621 = PUMA560_C(0.1254) * (t1 * t612 + t3 * t611) + PUMA560_C(0.4318) * (t561 * t571
+        - t562 * t566);
+    const puma560_real_t t622 = t620 + t2 * (t3 * t617 + t1 * t619 + t621);
+    input_by_dq[2] = PUMA560_C(0.06944177768728742) * t622;
+    input_by_ddq[14] = PUMA560_C(-233.50565217391303) * parameters[IA3]
+        + PUMA560_C(-0.08095560645504385) * t559;
+    const puma560_real_t t623 = t1 * t561 - t3 * t562; /* link j3: column of the mass matrix */
+    const puma560_real_t t624 = t559 + PUMA560_C(0.4318) * t623;
+    input_by_ddq[8] = PUMA560_C(0.04032672714331514) * t624;
+    const puma560_real_t t625 = t1 * t554 - t3 * t555;
+    const puma560_real_t t626 = t625 + PUMA560_C(-0.1254) * t623;
+    const puma560_real_t t627 = t1 * t562 + t3 * t561;
+    const puma560_real_t t628 = t3 * t554 + t1 * t555 + PUMA560_C(-0.1254) * t627;
+    const puma560_real_t t629 = t0 * t626 + t2 * t628;
+    input_by_ddq[2] = PUMA560_C(0.06944177768728742) * t629;
+    const puma560_real_t t630 = t3 * t552 - t1 * t546 + t623 * t317; /* link j3: derivatives */
+    const puma560_real_t t631 = t3 * t546 + t1 * t552 - t627 * t317;
+    const puma560_real_t t632 = t70 * t630 + t76 * t631 + (t73 * t626 - t79 * t628 + t86 * t624);
+    input_by_q[13] = PUMA560_C(0.08095560645504385) * (t632 + (t74 * t623 - t80 * t627));
+    const puma560_real_t t633 = t609 + (t623 * t319 + t627 * t316) + PUMA560_C(2.0) * (t70 * t626
+        - t76 * t628);
+    input_by_dq[13] = PUMA560_C(0.08095560645504385) * t633;
+    input_by_dq[12] = PUMA560_C(0.08095560645504385) * (t0 * t630 - t2 * t631);
+    input_by_ddq[13] = PUMA560_C(-0.08095560645504385) * t624;
+    input_by_ddq[12] = PUMA560_C(0.08095560645504385) * t629;
+    const puma560_real_t t634 = PUMA560_C(0.4318) * t567; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t635 = t623 + t634;
+    const puma560_real_t t636 = PUMA560_C(-0.4318) * t70; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t637 = t1 * t545 + t3 * t551 + (PUMA560_C(0.4318) * t565 - t635 * t636);
+    const puma560_real_t t638 = PUMA560_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const puma560_real_t t639 = t638 - parameters[XX2];
+    /* link j2: derivatives */
+    const puma560_real_t t640 = PUMA560_C(2.0) * (t76 * parameters[XY2] + t70 * t639 + t637);
+    const puma560_real_t t641 = parameters[YY2] - t638;
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t642 = t70 * parameters[XY2] - t76 * t641 - (t3 * t545 - t1 * t551 - t627 * t636);
+    const puma560_real_t t643 = PUMA560_C(2.0) * t642; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const puma560_real_t t644 = PUMA560_C(0.4318) * t568 + PUMA560_C(0.1254) * t635 - t625 - parameters[XZ2];
+    const puma560_real_t t645 = parameters[YZ2] + t628;
+    const puma560_real_t t646 = PUMA560_C(0.4318) * (t634 - PUMA560_C(-2.0) * t623);
+    const puma560_real_t t647 = parameters[ZZ2] + (t559 + t646);
+    /* link j2: derivatives */
+    const puma560_real_t t648 = t73 * t644 + t79 * t645 - t86 * t647 + (t70 * t640 + t76 * t643);
+    const puma560_real_t t649 = t80 * (parameters[MY2] + t627) - t74 * (parameters[MX2] + t635) + t648;
+    input_by_q[7] = PUMA560_C(0.04032672714331514) * t649;
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t650 = t1 * (t588 + t598) + t3 * (t590 + t596);
+    const puma560_real_t t651 = t1 * t650;
+    const puma560_real_t t652 = t1 * t603 - t3 * t604;
+    const puma560_real_t t653 = PUMA560_C(-0.4318) * t652;
+    const puma560_real_t t654 = PUMA560_C(0.1254) * t70; /* link j3: velocity of its origin */
+    const puma560_real_t t655 = t635 * t654; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t656 = PUMA560_C(-0.1254) * t565;
+    const puma560_real_t t657 = t627 * t315;
+    const puma560_real_t t658 = PUMA560_C(-0.1254) * t567; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t659 = t658 - t568;
+    const puma560_real_t t660 = t659 * t636; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t661 = t656 - t653 + (t655 + t657 - t660);
+    const puma560_real_t t662 = t70 * parameters[XZ2];
+    const puma560_real_t t663 = dq[1] * parameters[XY2];
+    const puma560_real_t t664 = t662 + t663 + (t661 + (t651 - t598 + (t653 - t655)));
+    const puma560_real_t t665 = PUMA560_C(-2.0) * t70; /* link j2: derivatives */
+    const puma560_real_t t666 = t3 * t650; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t667 = t70 * parameters[YZ2] + dq[1] * t641 + (t666 - t590 - t627 * t654);
+    const puma560_real_t t668 = PUMA560_C(2.0) * t76; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const puma560_real_t t669 = t1 * (t599 - t591) + t592 * (PUMA560_C(2.0) * t3);
+    const puma560_real_t t670 = t1 * t669;
+    const puma560_real_t t671 = PUMA560_C(0.1254) * (t658 + PUMA560_C(-2.0) * t568);
+    const puma560_real_t t672 = t670 - t599 + t671 - parameters[XX2];
+    const puma560_real_t t673 = t3 * t669 - t592 + PUMA560_C(0.4318) * t627 - parameters[XY2];
+    /* link j2: derivatives */
+    const puma560_real_t t674 = t73 * t672 - t79 * t673 + t86 * t644 - (t664 * t665 + t667 * t668);
+    const puma560_real_t t675 = t659 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t676 = t3 * t603 + t1 * t604; /* link j3: inertia, momentum beyond */
+    const puma560_real_t t677 = dq[1] * t639 - t76 * parameters[XZ2] + (t666 - t596
+        + (PUMA560_C(-0.4318) * t676 - t635 * t315));
+    const puma560_real_t t678 = t76 * parameters[YZ2];
+    const puma560_real_t t679 = t661 + (t588 - t651 - t657) - (t663 + t678);
+    /* link j3: inertia of it and all beyond */
+    const puma560_real_t t680 = parameters[YY2] + (t591 + t670 + (t646 - t671));
+    /* link j2: derivatives */
+    const puma560_real_t t681 = t73 * t673 + t79 * t680 - t86 * t645 - (t677 * t665 + t679 * t668);
+    const puma560_real_t t682 = t0 * (t186 + (t674 - t74 * t675)) + t2 * (t180 + (t681 + t80 * t675));
+    input_by_q[1] = PUMA560_C(0.06944177768728742) * t682;
+    const puma560_real_t t683 = PUMA560_C(2.0) * (t662 - t678 + (t608 + (t656 - t660) - t661));
+    const puma560_real_t t684 = PUMA560_C(0.04032672714331514) * (t683 + PUMA560_C(2.0) * (t70 * t644
+        + t76 * t645));
+    input_by_dq[7] = PUMA560_C(468.7608695652174) * parameters[FV2] + t684;
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t685 = t1 * t616 - t3 * t618 + (PUMA560_C(0.1254) * t652 - t659 * t654);
+    const puma560_real_t t686 = parameters[ZZ2] - t638;
+    /* link j2: derivatives */
+    const puma560_real_t t687 = PUMA560_C(2.0) * (t685 - (dq[1] * parameters[YZ2] + t70 * t686))
+        - (t672 * t665 + t673 * t668);
+    /* link j3: inertia, momentum beyond */
+    const puma560_real_t t688 = t3 * t616 + t1 * t618 + (PUMA560_C(0.1254) * t676 - t659 * t315);
+    /* link j2: derivatives */
+    const puma560_real_t t689 = PUMA560_C(2.0) * (dq[1] * parameters[XZ2] + t76 * t686 + t688) + (t680 * t668
+        - t673 * t665);
+    input_by_dq[1] = PUMA560_C(0.06944177768728742) * (t0 * t687 + t2 * t689);
+    input_by_ddq[7] = PUMA560_C(468.7608695652174) * parameters[IA2] + PUMA560_C(0.04032672714331514) * t647;
+    const puma560_real_t t690 = t2 * t645 - t0 * t644; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = PUMA560_C(0.06944177768728742) * t690;
+    input_by_dq[6] = PUMA560_C(0.04032672714331514) * (t0 * t640 - t2 * t643);
+    input_by_ddq[6] = PUMA560_C(-0.04032672714331514) * t690;
+    /* link j2: inertia, momentum beyond */
+    const puma560_real_t t691 = t2 * (t2 * (t679 - t664) + t0 * (t667 + t677));
+    input_by_dq[0] = PUMA560_C(-272.2221739130435) * parameters[FV1] + PUMA560_C(0.13888355537457484) * (t664
+        + t691);
+    /* link j2: inertia of it and all beyond */
+    const puma560_real_t t692 = t2 * (t2 * (t672 + t680) + t673 * (PUMA560_C(-2.0) * t0));
+    input_by_ddq[0] = PUMA560_C(-272.2221739130435) * parameters[IA1] + PUMA560_C(0.06944177768728742) * (t672
+        - t692 - parameters[ZZ1]);
     /* always zero */
     input_by_q[0] = PUMA560_C(0.0);
     input_by_q[6] = PUMA560_C(0.0);

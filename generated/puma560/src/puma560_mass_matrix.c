@@ -79,7 +79,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -102,160 +102,152 @@ puma560_status_t puma560_mass_matrix(
         return status;
     }
 
-    puma560_real_t t54, t52;
-    PUMA560_SINCOS(q[1], &t54, &t52);
-    puma560_real_t t42, t35;
-    PUMA560_SINCOS(q[2], &t42, &t35);
-    puma560_real_t t14, t19;
-    PUMA560_SINCOS(q[3], &t14, &t19);
-    puma560_real_t t8, t5;
-    PUMA560_SINCOS(q[4], &t8, &t5);
-    puma560_real_t t1, t0;
-    PUMA560_SINCOS(q[5], &t1, &t0);
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t2 = parameters[XY6] * (PUMA560_C(2.0) * t1) - t0 * parameters[XX6R];
-    const puma560_real_t t3 = t0 * t2;
-    const puma560_real_t t4 = parameters[XX5R] - t3;
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t6 = t1 * parameters[YZ6] - t0 * parameters[XZ6];
-    const puma560_real_t t7 = t6 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t9 = t5 * (parameters[ZZ6] - t4) - t7 * (PUMA560_C(2.0) * t8);
-    const puma560_real_t t10 = t5 * t9;
-    const puma560_real_t t11 = parameters[ZZ4R] + (t4 + t10);
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t12 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const puma560_real_t t13 = parameters[MY4R] + t12; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t15 = t0 * parameters[MX6] - t1 * parameters[MY6];
-    const puma560_real_t t16 = parameters[MX5] + t15; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t17 = t5 * t16 - t8 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const puma560_real_t t18 = parameters[MX4] + t17; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t20 = t19 * t18 - t14 * t13; /* link j4: column of the mass matrix */
-    const puma560_real_t t21 = PUMA560_C(0.0406) * t20; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t22 = t11 + t21;
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t23 = parameters[XX4R] + (parameters[ZZ6] - t10);
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t24 = parameters[ZZ5R] + (parameters[XX6R] + t3);
-    const puma560_real_t t25 = parameters[XZ5] - (parameters[XY6] - t1 * t2);
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t26 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
-    const puma560_real_t t27 = parameters[YZ5] - t26; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t28 = t8 * t27 - t5 * t25; /* link j5: column of the mass matrix */
-    const puma560_real_t t29 = parameters[XY4] + t28; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t30 = t19 * (t23 - t24) + t29 * (PUMA560_C(-2.0) * t14);
-    const puma560_real_t t31 = t19 * t30;
-    const puma560_real_t t32 = t5 * parameters[MY5R] + t8 * t16; /* link j5: column of the mass matrix */
-    const puma560_real_t t33 = PUMA560_C(0.8636) * t32; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t34 = parameters[XX3R] + (t24 + t31 + t33);
-    const puma560_real_t t36 = t7 + t8 * t9 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t37 = t8 * t25 + t5 * t27; /* link j5: column of the mass matrix */
-    const puma560_real_t t38 = t37 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t39 = t14 * t38 - t19 * t36; /* link j4: column of the mass matrix */
-    const puma560_real_t t40 = PUMA560_C(-0.4318) * t20;
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t41 = parameters[XY3R] + (t39 + (t40 + PUMA560_C(-0.0203) * t32));
-    /* link j3: inertia of it and all beyond */
-    const puma560_real_t t43 = t35 * (t22 - t34) + t41 * (PUMA560_C(2.0) * t42);
-    const puma560_real_t t44 = t35 * t43;
-    const puma560_real_t t45 = parameters[MX3R] + t20; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t46 = parameters[MY3R] + t32;
-    const puma560_real_t t47 = t35 * t45 - t42 * t46; /* link j3: column of the mass matrix */
-    const puma560_real_t t48 = PUMA560_C(0.8636) * t47; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t49 = t19 * t13 + t14 * t18; /* link j4: column of the mass matrix */
-    const puma560_real_t t50 = PUMA560_C(-0.2508) * t49; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t51 = parameters[XX2R] + (t22 - t44 + t50);
-    const puma560_real_t t53 = t35 * t46 + t42 * t45; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const puma560_real_t t55 = (parameters[XY2] + (t41 - t42 * t43
-        + PUMA560_C(-0.4318) * t53)) * (PUMA560_C(2.0) * t54);
-    const puma560_real_t t56 = t52 * (t34 + t44 + (t48 + t50) - t51) + t55;
-    out[0] = parameters[ZZ1R] + (t51 + t52 * t56);
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t57 = t29 + t14 * t30 + PUMA560_C(-0.0203) * t49 - parameters[XZ3];
-    const puma560_real_t t58 = PUMA560_C(0.4318) * t49; /* link j4: column of the mass matrix */
-    const puma560_real_t t59 = t14 * t36 + t19 * t38 + t58;
-    const puma560_real_t t60 = parameters[YZ3] + t59; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t61 = t35 * t57 + t42 * t60; /* link j3: column of the mass matrix */
-    const puma560_real_t t62 = PUMA560_C(0.1254) * t47;
-    const puma560_real_t t63 = t42 * t57 - t35 * t60 + PUMA560_C(0.1254) * t53;
-    /* link j2: column of the mass matrix */
-    const puma560_real_t t64 = t54 * (t61 + (t62 - t58) - parameters[XZ2R]) + t52 * (t63 - parameters[YZ2]);
-    out[1] = t64;
-    const puma560_real_t t65 = t54 * (t61 + t62) + t52 * t63; /* link j3: column of the mass matrix */
-    out[2] = t65;
-    const puma560_real_t t66 = t39 + t40; /* link j4: column of the mass matrix */
-    const puma560_real_t t67 = t11 - PUMA560_C(-0.0203) * t20;
-    const puma560_real_t t68 = t42 * t49;
-    const puma560_real_t t69 = t54 * (t42 * t67 - t35 * t66 + PUMA560_C(-0.1254) * t68);
-    const puma560_real_t t70 = t40 + PUMA560_C(0.1254) * (t35 * t49) - (t42 * t66 + t35 * t67);
-    const puma560_real_t t71 = t69 + t52 * t70;
-    out[3] = t71;
-    const puma560_real_t t72 = t14 * t32; /* link j5: column of the mass matrix */
-    const puma560_real_t t73 = PUMA560_C(0.4318) * t72;
-    const puma560_real_t t74 = t19 * t28 - t14 * t24 - t73;
-    const puma560_real_t t75 = t37 - PUMA560_C(0.0203) * t72;
-    const puma560_real_t t76 = t19 * t32;
-    const puma560_real_t t77 = t35 * t17 - t42 * t76;
-    const puma560_real_t t78 = t54 * (t35 * t74 + t42 * t75 + PUMA560_C(0.1254) * t77);
-    const puma560_real_t t79 = t42 * t74 - t35 * t75 + (t73 + PUMA560_C(0.1254) * (t35 * t76 + t42 * t17));
-    const puma560_real_t t80 = t78 + t52 * t79;
-    out[4] = t80;
-    const puma560_real_t t81 = t5 * t6 + t8 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const puma560_real_t t82 = t5 * t12;
-    const puma560_real_t t83 = t14 * t82 - t19 * t15;
-    const puma560_real_t t84 = PUMA560_C(0.4318) * t83;
-    const puma560_real_t t85 = t19 * t81 + t14 * t26 - t84;
-    const puma560_real_t t86 = t5 * parameters[ZZ6] - t8 * t6;
-    const puma560_real_t t87 = t86 - PUMA560_C(0.0203) * t83;
-    const puma560_real_t t88 = t19 * t82 + t14 * t15;
-    const puma560_real_t t89 = t8 * t12;
-    const puma560_real_t t90 = t42 * t85 - t35 * t87 + (t84 + PUMA560_C(0.1254) * (t35 * t88 - t42 * t89));
-    const puma560_real_t t91 = t42 * t88 + t35 * t89;
-    const puma560_real_t t92 = t54 * (t35 * t85 + t42 * t87 + PUMA560_C(-0.1254) * t91);
-    const puma560_real_t t93 = t92 + t52 * t90;
-    out[5] = t93;
-    out[6] = t64;
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t94 = parameters[ZZ3R] + (t23 - t31 + (t21 + t33));
-    out[7] = parameters[ZZ2R] + (t94 + t48);
-    const puma560_real_t t95 = t94 + PUMA560_C(0.4318) * t47; /* link j3: column of the mass matrix */
-    out[8] = t95;
-    const puma560_real_t t96 = t59 + PUMA560_C(-0.4318) * t68; /* link j4: column of the mass matrix */
-    out[9] = t96;
-    /* link j5: column of the mass matrix */
-    const puma560_real_t t97 = t14 * t28 + t19 * t24 + (PUMA560_C(0.0203) * t17 + PUMA560_C(0.4318) * t76);
-    const puma560_real_t t98 = t97 + PUMA560_C(0.4318) * t77;
-    out[10] = t98;
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t99 = t14 * t81 - t19 * t26 + (PUMA560_C(-0.0203) * t89 + PUMA560_C(0.4318) * t88);
-    const puma560_real_t t100 = t99 + PUMA560_C(-0.4318) * t91;
-    out[11] = t100;
-    out[12] = t65;
-    out[13] = t95;
-    out[14] = t94 + PUMA560_C(2884.36665969) * parameters[IA3];
-    out[15] = t59;
-    out[16] = t97;
-    out[17] = t99;
-    out[18] = t71;
-    out[19] = t96;
-    out[20] = t59;
-    out[21] = t11 + PUMA560_C(5781.53412496) * parameters[IA4];
-    out[22] = t37;
-    out[23] = t86;
-    out[24] = t80;
-    out[25] = t98;
-    out[26] = t97;
-    out[27] = t37;
-    out[28] = t24 + PUMA560_C(5172.917929) * parameters[IA5];
-    out[29] = -t26;
-    out[30] = t93;
-    out[31] = t100;
-    out[32] = t99;
-    out[33] = t86;
-    out[34] = -t26;
+    puma560_real_t t26, t25;
+    PUMA560_SINCOS(q[1], &t26, &t25);
+    puma560_real_t t16, t17;
+    PUMA560_SINCOS(q[2], &t16, &t17);
+    puma560_real_t t8, t9;
+    PUMA560_SINCOS(q[3], &t8, &t9);
+    puma560_real_t t4, t5;
+    PUMA560_SINCOS(q[4], &t4, &t5);
+    puma560_real_t t0, t1;
+    PUMA560_SINCOS(q[5], &t0, &t1);
     out[35] = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
+    /* link j6: column of the mass matrix */
+    const puma560_real_t t2 = t0 * parameters[XZ6] + t1 * parameters[YZ6];
+    out[29] = -t2;
+    const puma560_real_t t3 = t0 * parameters[YZ6] - t1 * parameters[XZ6];
+    const puma560_real_t t6 = t5 * parameters[ZZ6] - t4 * t3;
+    out[23] = t6;
+    const puma560_real_t t7 = t5 * t3 + t4 * parameters[ZZ6];
+    const puma560_real_t t10 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const puma560_real_t t11 = t5 * t10;
+    const puma560_real_t t12 = t1 * parameters[MX6] - t0 * parameters[MY6];
+    const puma560_real_t t13 = t9 * t11 + t8 * t12;
+    const puma560_real_t t14 = t4 * t10;
+    const puma560_real_t t15 = t8 * t7 - t9 * t2 + (PUMA560_C(-0.0203) * t14 + PUMA560_C(0.4318) * t13);
+    out[17] = t15;
+    const puma560_real_t t18 = t16 * t13 + t17 * t14;
+    const puma560_real_t t19 = t15 + PUMA560_C(-0.4318) * t18;
+    out[11] = t19;
+    const puma560_real_t t20 = t8 * t11 - t9 * t12;
+    const puma560_real_t t21 = PUMA560_C(0.4318) * t20;
+    const puma560_real_t t22 = t9 * t7 + t8 * t2 - t21;
+    const puma560_real_t t23 = t6 - PUMA560_C(0.0203) * t20;
+    const puma560_real_t t24 = t16 * t22 - t17 * t23 + (t21 + PUMA560_C(0.1254) * (t17 * t13 - t16 * t14));
+    const puma560_real_t t27 = t26 * (t17 * t22 + t16 * t23 + PUMA560_C(-0.1254) * t18);
+    const puma560_real_t t28 = t27 + t25 * t24;
+    out[5] = t28;
+    out[34] = -t2;
+    out[33] = t6;
+    out[32] = t15;
+    out[31] = t19;
+    out[30] = t28;
+    /* link j6: inertia of it and all beyond */
+    const puma560_real_t t29 = parameters[XY6] * (PUMA560_C(2.0) * t0) - t1 * parameters[XX6R];
+    const puma560_real_t t30 = t1 * t29;
+    const puma560_real_t t31 = parameters[ZZ5R] + (parameters[XX6R] + t30);
+    out[28] = t31 + PUMA560_C(5172.917929) * parameters[IA5];
+    const puma560_real_t t32 = parameters[XZ5] - (parameters[XY6] - t0 * t29);
+    const puma560_real_t t33 = parameters[YZ5] - t2;
+    const puma560_real_t t34 = t4 * t32 + t5 * t33; /* link j5: column of the mass matrix */
+    out[22] = t34;
+    const puma560_real_t t35 = t4 * t33 - t5 * t32;
+    const puma560_real_t t36 = parameters[MX5] + t12; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t37 = t5 * t36 - t4 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const puma560_real_t t38 = t5 * parameters[MY5R] + t4 * t36;
+    const puma560_real_t t39 = t9 * t38;
+    const puma560_real_t t40 = t8 * t35 + t9 * t31 + (PUMA560_C(0.0203) * t37 + PUMA560_C(0.4318) * t39);
+    out[16] = t40;
+    const puma560_real_t t41 = t17 * t37 - t16 * t39;
+    const puma560_real_t t42 = t40 + PUMA560_C(0.4318) * t41;
+    out[10] = t42;
+    const puma560_real_t t43 = t8 * t38;
+    const puma560_real_t t44 = PUMA560_C(0.4318) * t43;
+    const puma560_real_t t45 = t9 * t35 - t8 * t31 - t44;
+    const puma560_real_t t46 = t34 - PUMA560_C(0.0203) * t43;
+    const puma560_real_t t47 = t26 * (t17 * t45 + t16 * t46 + PUMA560_C(0.1254) * t41);
+    const puma560_real_t t48 = t16 * t45 - t17 * t46 + (t44 + PUMA560_C(0.1254) * (t17 * t39 + t16 * t37));
+    const puma560_real_t t49 = t47 + t25 * t48;
+    out[4] = t49;
+    out[27] = t34;
+    out[26] = t40;
+    out[25] = t42;
+    out[24] = t49;
+    const puma560_real_t t50 = parameters[XX5R] - t30; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t51 = t3 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
+    const puma560_real_t t52 = t5 * (parameters[ZZ6] - t50) - t51 * (PUMA560_C(2.0) * t4);
+    const puma560_real_t t53 = t5 * t52;
+    const puma560_real_t t54 = parameters[ZZ4R] + (t50 + t53);
+    out[21] = t54 + PUMA560_C(5781.53412496) * parameters[IA4];
+    const puma560_real_t t55 = t51 + t4 * t52 - parameters[XZ4];
+    const puma560_real_t t56 = t34 - parameters[YZ4];
+    const puma560_real_t t57 = parameters[MY4R] + t10;
+    const puma560_real_t t58 = parameters[MX4] + t37;
+    const puma560_real_t t59 = t9 * t57 + t8 * t58; /* link j4: column of the mass matrix */
+    const puma560_real_t t60 = PUMA560_C(0.4318) * t59;
+    const puma560_real_t t61 = t8 * t55 + t9 * t56 + t60;
+    out[15] = t61;
+    const puma560_real_t t62 = t16 * t59;
+    const puma560_real_t t63 = t61 + PUMA560_C(-0.4318) * t62;
+    out[9] = t63;
+    const puma560_real_t t64 = t8 * t56 - t9 * t55;
+    const puma560_real_t t65 = t9 * t58 - t8 * t57;
+    const puma560_real_t t66 = PUMA560_C(-0.4318) * t65;
+    const puma560_real_t t67 = t64 + t66;
+    const puma560_real_t t68 = t54 - PUMA560_C(-0.0203) * t65;
+    const puma560_real_t t69 = t26 * (t16 * t68 - t17 * t67 + PUMA560_C(-0.1254) * t62);
+    const puma560_real_t t70 = t66 + PUMA560_C(0.1254) * (t17 * t59) - (t16 * t67 + t17 * t68);
+    const puma560_real_t t71 = t69 + t25 * t70;
+    out[3] = t71;
+    out[20] = t61;
+    out[19] = t63;
+    out[18] = t71;
+    /* link j5: inertia of it and all beyond */
+    const puma560_real_t t72 = parameters[XX4R] + (parameters[ZZ6] - t53);
+    const puma560_real_t t73 = parameters[XY4] + t35;
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t74 = t9 * (t72 - t31) + t73 * (PUMA560_C(-2.0) * t8);
+    const puma560_real_t t75 = t9 * t74;
+    const puma560_real_t t76 = PUMA560_C(0.0406) * t65;
+    const puma560_real_t t77 = PUMA560_C(0.8636) * t38;
+    const puma560_real_t t78 = parameters[ZZ3R] + (t72 - t75 + (t76 + t77));
+    out[14] = t78 + PUMA560_C(2884.36665969) * parameters[IA3];
+    const puma560_real_t t79 = parameters[MX3R] + t65;
+    const puma560_real_t t80 = parameters[MY3R] + t38;
+    const puma560_real_t t81 = t17 * t79 - t16 * t80; /* link j3: column of the mass matrix */
+    const puma560_real_t t82 = t78 + PUMA560_C(0.4318) * t81;
+    out[8] = t82;
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t83 = t73 + t8 * t74 + PUMA560_C(-0.0203) * t59 - parameters[XZ3];
+    const puma560_real_t t84 = parameters[YZ3] + t61;
+    const puma560_real_t t85 = t17 * t83 + t16 * t84; /* link j3: column of the mass matrix */
+    const puma560_real_t t86 = PUMA560_C(0.1254) * t81;
+    const puma560_real_t t87 = t17 * t80 + t16 * t79;
+    const puma560_real_t t88 = t16 * t83 - t17 * t84 + PUMA560_C(0.1254) * t87;
+    const puma560_real_t t89 = t26 * (t85 + t86) + t25 * t88;
+    out[2] = t89;
+    out[13] = t82;
+    out[12] = t89;
+    const puma560_real_t t90 = PUMA560_C(0.8636) * t81; /* link j3: inertia of it and all beyond */
+    out[7] = parameters[ZZ2R] + (t78 + t90);
+    /* link j2: column of the mass matrix */
+    const puma560_real_t t91 = t26 * (t85 + (t86 - t60) - parameters[XZ2R]) + t25 * (t88 - parameters[YZ2]);
+    out[1] = t91;
+    out[6] = t91;
+    const puma560_real_t t92 = t54 + t76; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t93 = parameters[XX3R] + (t31 + t75 + t77);
+    const puma560_real_t t94 = parameters[XY3R] + (t64 + (t66 + PUMA560_C(-0.0203) * t38));
+    /* link j3: inertia of it and all beyond */
+    const puma560_real_t t95 = t17 * (t92 - t93) + t94 * (PUMA560_C(2.0) * t16);
+    const puma560_real_t t96 = t17 * t95;
+    const puma560_real_t t97 = PUMA560_C(-0.2508) * t59;
+    const puma560_real_t t98 = parameters[XX2R] + (t92 - t96 + t97);
+    /* link j2: inertia of it and all beyond */
+    const puma560_real_t t99 = (parameters[XY2] + (t94 - t16 * t95
+        + PUMA560_C(-0.4318) * t87)) * (PUMA560_C(2.0) * t26);
+    const puma560_real_t t100 = t25 * (t93 + t96 + (t90 + t97) - t98) + t99;
+    out[0] = parameters[ZZ1R] + (t98 + t25 * t100);
     return PUMA560_STATUS_OK;
 }

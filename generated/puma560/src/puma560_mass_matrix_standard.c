@@ -104,7 +104,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -128,181 +128,170 @@ puma560_status_t puma560_mass_matrix_standard(
         return status;
     }
 
-    puma560_real_t t65, t62;
-    PUMA560_SINCOS(q[1], &t65, &t62);
-    puma560_real_t t49, t42;
-    PUMA560_SINCOS(q[2], &t49, &t42);
-    puma560_real_t t21, t15;
-    PUMA560_SINCOS(q[3], &t21, &t15);
-    puma560_real_t t9, t6;
-    PUMA560_SINCOS(q[4], &t9, &t6);
-    puma560_real_t t1, t0;
-    PUMA560_SINCOS(q[5], &t1, &t0);
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t2 = t0 * (parameters[YY6] - parameters[XX6])
-        + parameters[XY6] * (PUMA560_C(2.0) * t1);
-    const puma560_real_t t3 = t0 * t2;
-    const puma560_real_t t4 = parameters[XX5] + (parameters[YY6] - t3);
-    const puma560_real_t t5 = parameters[YY5] + parameters[ZZ6];
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t7 = t1 * parameters[YZ6] - t0 * parameters[XZ6];
-    const puma560_real_t t8 = t7 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t10 = t6 * (t5 - t4) - t8 * (PUMA560_C(2.0) * t9);
-    const puma560_real_t t11 = t6 * t10;
-    const puma560_real_t t12 = parameters[XX4] + (t5 - t11);
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t13 = parameters[ZZ5] + (parameters[XX6] + t3);
-    const puma560_real_t t14 = parameters[YY4] + t13; /* link j5: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const puma560_real_t t16 = parameters[XZ5] - (parameters[XY6] - t1 * t2);
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t17 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
-    const puma560_real_t t18 = parameters[YZ5] - t17; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t19 = t9 * t18 - t6 * t16; /* link j5: column of the mass matrix */
-    const puma560_real_t t20 = parameters[XY4] + t19; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t22 = t15 * (t12 - t14) + t20 * (PUMA560_C(-2.0) * t21);
-    const puma560_real_t t23 = t15 * t22;
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t24 = t0 * parameters[MX6] - t1 * parameters[MY6];
-    const puma560_real_t t25 = parameters[MX5] + t24; /* link j6: inertia of it and all beyond */
-    const puma560_real_t t26 = parameters[MY5] + parameters[MZ6];
-    const puma560_real_t t27 = t6 * t26 + t9 * t25; /* link j5: column of the mass matrix */
-    const puma560_real_t t28 = parameters[MZ4] + t27; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t29 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const puma560_real_t t30 = PUMA560_C(0.4318) * t29; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t31 = PUMA560_C(0.4318) * (t30 + PUMA560_C(2.0) * t28);
-    const puma560_real_t t32 = parameters[XX3] + (t14 + t23 + t31);
-    const puma560_real_t t33 = parameters[ZZ4] + (t4 + t11); /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t34 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    /* link j5: inertia of it and all beyond */
-    const puma560_real_t t35 = parameters[MZ5] - t34 - parameters[MY4];
-    const puma560_real_t t36 = t6 * t25 - t9 * t26; /* link j5: column of the mass matrix */
-    const puma560_real_t t37 = parameters[MX4] + t36; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t38 = t21 * t35 + t15 * t37; /* link j4: column of the mass matrix */
-    const puma560_real_t t39 = PUMA560_C(0.0203) * t29; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t40 = PUMA560_C(0.0203) * (t39 + PUMA560_C(2.0) * t38);
-    const puma560_real_t t41 = parameters[YY3] + (t33 + t40);
-    const puma560_real_t t43 = t8 + t9 * t10 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t44 = t9 * t16 + t6 * t18; /* link j5: column of the mass matrix */
-    const puma560_real_t t45 = t44 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const puma560_real_t t46 = t21 * t45 - t15 * t43; /* link j4: column of the mass matrix */
-    const puma560_real_t t47 = t38 + t39; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t48 = parameters[XY3] + (t46 + (PUMA560_C(-0.0203) * t28
-        + PUMA560_C(-0.4318) * t47));
-    /* link j3: inertia of it and all beyond */
-    const puma560_real_t t50 = t42 * (t32 - t41) - t48 * (PUMA560_C(2.0) * t49);
-    const puma560_real_t t51 = t42 * t50;
-    const puma560_real_t t52 = t15 * t35 - t21 * t37; /* link j4: column of the mass matrix */
-    const puma560_real_t t53 = parameters[MZ3] + t52; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t54 = parameters[M3] + t29;
-    /* link j3: inertia of it and all beyond */
-    const puma560_real_t t55 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t54 + PUMA560_C(2.0) * t53);
-    const puma560_real_t t56 = parameters[XX2] + (t41 + t51 + t55);
-    const puma560_real_t t57 = parameters[MX3] + t47; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t58 = parameters[MY3] + (t28 + t30);
-    const puma560_real_t t59 = t42 * t57 - t49 * t58; /* link j3: column of the mass matrix */
-    const puma560_real_t t60 = PUMA560_C(0.4318) * t54; /* link j3: inertia of it and all beyond */
-    const puma560_real_t t61 = PUMA560_C(0.4318) * (t60 + PUMA560_C(2.0) * t59);
-    /* link j2: inertia of it and all beyond */
-    const puma560_real_t t63 = t62 * (parameters[YY2] + (t32 - t51 + (t61 + t55)) - t56);
-    const puma560_real_t t64 = t42 * t58 + t49 * t57; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const puma560_real_t t66 = (parameters[XY2] + (t48 + t49 * t50
-        + PUMA560_C(-0.4318) * t64)) * (PUMA560_C(2.0) * t65);
-    const puma560_real_t t67 = parameters[ZZ1] + (t56 + t62 * (t63 + t66))
-        + PUMA560_C(3920.14984321) * parameters[IA1];
-    out[0] = t67;
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t68 = t20 + t21 * t22 + PUMA560_C(0.0203) * t52 - parameters[XZ3];
-    /* link j4: column of the mass matrix */
-    const puma560_real_t t69 = t21 * t43 + t15 * t45 + PUMA560_C(-0.4318) * t52;
-    const puma560_real_t t70 = parameters[YZ3] + t69; /* link j4: inertia of it and all beyond */
-    const puma560_real_t t71 = t42 * t68 + t49 * t70; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const puma560_real_t t72 = t71 + (PUMA560_C(0.4318) * t53 + PUMA560_C(0.1254) * (t59 + t60))
-        - parameters[XZ2];
-    /* link j3: column of the mass matrix */
-    const puma560_real_t t73 = t49 * t68 - t42 * t70 + PUMA560_C(0.1254) * t64;
-    /* link j2: column of the mass matrix */
-    const puma560_real_t t74 = t65 * t72 + t62 * (t73 - parameters[YZ2]);
-    out[1] = t74;
-    /* link j3: column of the mass matrix */
-    const puma560_real_t t75 = t65 * (t71 + PUMA560_C(0.1254) * t59) + t62 * t73;
-    out[2] = t75;
-    const puma560_real_t t76 = PUMA560_C(-0.4318) * t38; /* link j4: column of the mass matrix */
-    const puma560_real_t t77 = t46 + t76;
-    const puma560_real_t t78 = t33 - PUMA560_C(-0.0203) * t38;
-    const puma560_real_t t79 = t49 * t52;
-    const puma560_real_t t80 = t65 * (t49 * t78 - t42 * t77 + PUMA560_C(0.1254) * t79);
-    const puma560_real_t t81 = t76 + PUMA560_C(-0.1254) * (t42 * t52) - (t49 * t77 + t42 * t78);
-    const puma560_real_t t82 = t80 + t62 * t81;
-    out[3] = t82;
-    const puma560_real_t t83 = t21 * t27; /* link j5: column of the mass matrix */
-    const puma560_real_t t84 = PUMA560_C(0.4318) * t83;
-    const puma560_real_t t85 = t15 * t19 - t21 * t13 - t84;
-    const puma560_real_t t86 = t44 - PUMA560_C(0.0203) * t83;
-    const puma560_real_t t87 = t15 * t27;
-    const puma560_real_t t88 = t42 * t36 - t49 * t87;
-    const puma560_real_t t89 = t65 * (t42 * t85 + t49 * t86 + PUMA560_C(0.1254) * t88);
-    const puma560_real_t t90 = t49 * t85 - t42 * t86 + (t84 + PUMA560_C(0.1254) * (t42 * t87 + t49 * t36));
-    const puma560_real_t t91 = t89 + t62 * t90;
-    out[4] = t91;
-    const puma560_real_t t92 = t6 * t7 + t9 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const puma560_real_t t93 = t6 * t34;
-    const puma560_real_t t94 = t21 * t93 - t15 * t24;
-    const puma560_real_t t95 = PUMA560_C(0.4318) * t94;
-    const puma560_real_t t96 = t15 * t92 + t21 * t17 - t95;
-    const puma560_real_t t97 = t6 * parameters[ZZ6] - t9 * t7;
-    const puma560_real_t t98 = t97 - PUMA560_C(0.0203) * t94;
-    const puma560_real_t t99 = t15 * t93 + t21 * t24;
-    const puma560_real_t t100 = t9 * t34;
-    const puma560_real_t t101 = t49 * t96 - t42 * t98 + (t95 + PUMA560_C(0.1254) * (t42 * t99 - t49 * t100));
-    const puma560_real_t t102 = t49 * t99 + t42 * t100;
-    const puma560_real_t t103 = t65 * (t42 * t96 + t49 * t98 + PUMA560_C(-0.1254) * t102);
-    const puma560_real_t t104 = t103 + t62 * t101;
-    out[5] = t104;
-    out[6] = t74;
-    /* link j4: inertia of it and all beyond */
-    const puma560_real_t t105 = parameters[ZZ3] + (t12 - t23 + (t40 + t31));
-    out[7] = parameters[ZZ2] + (t105 + t61) + PUMA560_C(11624.074225) * parameters[IA2];
-    const puma560_real_t t106 = t105 + PUMA560_C(0.4318) * t59; /* link j3: column of the mass matrix */
-    out[8] = t106;
-    const puma560_real_t t107 = t69 + PUMA560_C(0.4318) * t79; /* link j4: column of the mass matrix */
-    out[9] = t107;
-    /* link j5: column of the mass matrix */
-    const puma560_real_t t108 = t21 * t19 + t15 * t13 + (PUMA560_C(0.0203) * t36 + PUMA560_C(0.4318) * t87);
-    const puma560_real_t t109 = t108 + PUMA560_C(0.4318) * t88;
-    out[10] = t109;
-    /* link j6: column of the mass matrix */
-    const puma560_real_t t110 = t21 * t92 - t15 * t17 + (PUMA560_C(-0.0203) * t100 + PUMA560_C(0.4318) * t99);
-    const puma560_real_t t111 = t110 + PUMA560_C(-0.4318) * t102;
-    out[11] = t111;
-    out[12] = t75;
-    out[13] = t106;
-    out[14] = t105 + PUMA560_C(2884.36665969) * parameters[IA3];
-    out[15] = t69;
-    out[16] = t108;
-    out[17] = t110;
-    out[18] = t82;
-    out[19] = t107;
-    out[20] = t69;
-    out[21] = t33 + PUMA560_C(5781.53412496) * parameters[IA4];
-    out[22] = t44;
-    out[23] = t97;
-    out[24] = t91;
-    out[25] = t109;
-    out[26] = t108;
-    out[27] = t44;
-    out[28] = t13 + PUMA560_C(5172.917929) * parameters[IA5];
-    out[29] = -t17;
-    out[30] = t104;
-    out[31] = t111;
-    out[32] = t110;
-    out[33] = t97;
-    out[34] = -t17;
+    puma560_real_t t26, t25;
+    PUMA560_SINCOS(q[1], &t26, &t25);
+    puma560_real_t t16, t17;
+    PUMA560_SINCOS(q[2], &t16, &t17);
+    puma560_real_t t8, t9;
+    PUMA560_SINCOS(q[3], &t8, &t9);
+    puma560_real_t t4, t5;
+    PUMA560_SINCOS(q[4], &t4, &t5);
+    puma560_real_t t0, t1;
+    PUMA560_SINCOS(q[5], &t0, &t1);
     out[35] = parameters[ZZ6] + PUMA560_C(5880.742596000001) * parameters[IA6];
+    /* link j6: column of the mass matrix */
+    const puma560_real_t t2 = t0 * parameters[XZ6] + t1 * parameters[YZ6];
+    out[29] = -t2;
+    const puma560_real_t t3 = t0 * parameters[YZ6] - t1 * parameters[XZ6];
+    const puma560_real_t t6 = t5 * parameters[ZZ6] - t4 * t3;
+    out[23] = t6;
+    const puma560_real_t t7 = t5 * t3 + t4 * parameters[ZZ6];
+    const puma560_real_t t10 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const puma560_real_t t11 = t5 * t10;
+    const puma560_real_t t12 = t1 * parameters[MX6] - t0 * parameters[MY6];
+    const puma560_real_t t13 = t9 * t11 + t8 * t12;
+    const puma560_real_t t14 = t4 * t10;
+    const puma560_real_t t15 = t8 * t7 - t9 * t2 + (PUMA560_C(-0.0203) * t14 + PUMA560_C(0.4318) * t13);
+    out[17] = t15;
+    const puma560_real_t t18 = t16 * t13 + t17 * t14;
+    const puma560_real_t t19 = t15 + PUMA560_C(-0.4318) * t18;
+    out[11] = t19;
+    const puma560_real_t t20 = t8 * t11 - t9 * t12;
+    const puma560_real_t t21 = PUMA560_C(0.4318) * t20;
+    const puma560_real_t t22 = t9 * t7 + t8 * t2 - t21;
+    const puma560_real_t t23 = t6 - PUMA560_C(0.0203) * t20;
+    const puma560_real_t t24 = t16 * t22 - t17 * t23 + (t21 + PUMA560_C(0.1254) * (t17 * t13 - t16 * t14));
+    const puma560_real_t t27 = t26 * (t17 * t22 + t16 * t23 + PUMA560_C(-0.1254) * t18);
+    const puma560_real_t t28 = t27 + t25 * t24;
+    out[5] = t28;
+    out[34] = -t2;
+    out[33] = t6;
+    out[32] = t15;
+    out[31] = t19;
+    out[30] = t28;
+    /* link j6: inertia of it and all beyond */
+    const puma560_real_t t29 = t1 * (parameters[YY6] - parameters[XX6])
+        + parameters[XY6] * (PUMA560_C(2.0) * t0);
+    const puma560_real_t t30 = t1 * t29;
+    const puma560_real_t t31 = parameters[ZZ5] + (parameters[XX6] + t30);
+    out[28] = t31 + PUMA560_C(5172.917929) * parameters[IA5];
+    const puma560_real_t t32 = parameters[XZ5] - (parameters[XY6] - t0 * t29);
+    const puma560_real_t t33 = parameters[YZ5] - t2;
+    const puma560_real_t t34 = t4 * t32 + t5 * t33; /* link j5: column of the mass matrix */
+    out[22] = t34;
+    const puma560_real_t t35 = t4 * t33 - t5 * t32;
+    const puma560_real_t t36 = parameters[MX5] + t12; /* link j6: inertia of it and all beyond */
+    const puma560_real_t t37 = parameters[MY5] + parameters[MZ6];
+    const puma560_real_t t38 = t5 * t36 - t4 * t37; /* link j5: column of the mass matrix */
+    const puma560_real_t t39 = t5 * t37 + t4 * t36;
+    const puma560_real_t t40 = t9 * t39;
+    const puma560_real_t t41 = t8 * t35 + t9 * t31 + (PUMA560_C(0.0203) * t38 + PUMA560_C(0.4318) * t40);
+    out[16] = t41;
+    const puma560_real_t t42 = t17 * t38 - t16 * t40;
+    const puma560_real_t t43 = t41 + PUMA560_C(0.4318) * t42;
+    out[10] = t43;
+    const puma560_real_t t44 = t8 * t39;
+    const puma560_real_t t45 = PUMA560_C(0.4318) * t44;
+    const puma560_real_t t46 = t9 * t35 - t8 * t31 - t45;
+    const puma560_real_t t47 = t34 - PUMA560_C(0.0203) * t44;
+    const puma560_real_t t48 = t26 * (t17 * t46 + t16 * t47 + PUMA560_C(0.1254) * t42);
+    const puma560_real_t t49 = t16 * t46 - t17 * t47 + (t45 + PUMA560_C(0.1254) * (t17 * t40 + t16 * t38));
+    const puma560_real_t t50 = t48 + t25 * t49;
+    out[4] = t50;
+    out[27] = t34;
+    out[26] = t41;
+    out[25] = t43;
+    out[24] = t50;
+    /* link j6: inertia of it and all beyond */
+    const puma560_real_t t51 = parameters[XX5] + (parameters[YY6] - t30);
+    const puma560_real_t t52 = parameters[YY5] + parameters[ZZ6];
+    const puma560_real_t t53 = t3 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
+    const puma560_real_t t54 = t5 * (t52 - t51) - t53 * (PUMA560_C(2.0) * t4);
+    const puma560_real_t t55 = t5 * t54;
+    const puma560_real_t t56 = parameters[ZZ4] + (t51 + t55);
+    out[21] = t56 + PUMA560_C(5781.53412496) * parameters[IA4];
+    const puma560_real_t t57 = t53 + t4 * t54 - parameters[XZ4];
+    const puma560_real_t t58 = t34 - parameters[YZ4];
+    const puma560_real_t t59 = parameters[MZ5] - t10 - parameters[MY4];
+    const puma560_real_t t60 = parameters[MX4] + t38;
+    const puma560_real_t t61 = t9 * t59 - t8 * t60; /* link j4: column of the mass matrix */
+    const puma560_real_t t62 = t8 * t57 + t9 * t58 + PUMA560_C(-0.4318) * t61;
+    out[15] = t62;
+    const puma560_real_t t63 = t16 * t61;
+    const puma560_real_t t64 = t62 + PUMA560_C(0.4318) * t63;
+    out[9] = t64;
+    const puma560_real_t t65 = t8 * t58 - t9 * t57;
+    const puma560_real_t t66 = t8 * t59 + t9 * t60;
+    const puma560_real_t t67 = PUMA560_C(-0.4318) * t66;
+    const puma560_real_t t68 = t65 + t67;
+    const puma560_real_t t69 = t56 - PUMA560_C(-0.0203) * t66;
+    const puma560_real_t t70 = t26 * (t16 * t69 - t17 * t68 + PUMA560_C(0.1254) * t63);
+    const puma560_real_t t71 = t67 + PUMA560_C(-0.1254) * (t17 * t61) - (t16 * t68 + t17 * t69);
+    const puma560_real_t t72 = t70 + t25 * t71;
+    out[3] = t72;
+    out[20] = t62;
+    out[19] = t64;
+    out[18] = t72;
+    const puma560_real_t t73 = parameters[XX4] + (t52 - t55); /* link j5: inertia of it and all beyond */
+    const puma560_real_t t74 = parameters[YY4] + t31;
+    const puma560_real_t t75 = parameters[XY4] + t35;
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t76 = t9 * (t73 - t74) + t75 * (PUMA560_C(-2.0) * t8);
+    const puma560_real_t t77 = t9 * t76;
+    /* link j5: inertia of it and all beyond */
+    const puma560_real_t t78 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const puma560_real_t t79 = PUMA560_C(0.0203) * t78; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t80 = PUMA560_C(0.0203) * (t79 + PUMA560_C(2.0) * t66);
+    const puma560_real_t t81 = parameters[MZ4] + t39; /* link j5: inertia of it and all beyond */
+    const puma560_real_t t82 = PUMA560_C(0.4318) * t78; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t83 = PUMA560_C(0.4318) * (t82 + PUMA560_C(2.0) * t81);
+    const puma560_real_t t84 = parameters[ZZ3] + (t73 - t77 + (t80 + t83));
+    out[14] = t84 + PUMA560_C(2884.36665969) * parameters[IA3];
+    const puma560_real_t t85 = t66 + t79;
+    const puma560_real_t t86 = parameters[MX3] + t85;
+    const puma560_real_t t87 = parameters[MY3] + (t81 + t82);
+    const puma560_real_t t88 = t17 * t86 - t16 * t87; /* link j3: column of the mass matrix */
+    const puma560_real_t t89 = t84 + PUMA560_C(0.4318) * t88;
+    out[8] = t89;
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t90 = t75 + t8 * t76 + PUMA560_C(0.0203) * t61 - parameters[XZ3];
+    const puma560_real_t t91 = parameters[YZ3] + t62;
+    const puma560_real_t t92 = t17 * t90 + t16 * t91; /* link j3: column of the mass matrix */
+    const puma560_real_t t93 = t17 * t87 + t16 * t86;
+    const puma560_real_t t94 = t16 * t90 - t17 * t91 + PUMA560_C(0.1254) * t93;
+    const puma560_real_t t95 = t26 * (t92 + PUMA560_C(0.1254) * t88) + t25 * t94;
+    out[2] = t95;
+    out[13] = t89;
+    out[12] = t95;
+    const puma560_real_t t96 = parameters[M3] + t78; /* link j4: inertia of it and all beyond */
+    const puma560_real_t t97 = PUMA560_C(0.4318) * t96; /* link j3: inertia of it and all beyond */
+    const puma560_real_t t98 = PUMA560_C(0.4318) * (t97 + PUMA560_C(2.0) * t88);
+    out[7] = parameters[ZZ2] + (t84 + t98) + PUMA560_C(11624.074225) * parameters[IA2];
+    const puma560_real_t t99 = parameters[MZ3] + t61; /* link j4: inertia of it and all beyond */
+    /* link j3: inertia of it and all beyond */
+    const puma560_real_t t100 = t92 + (PUMA560_C(0.4318) * t99 + PUMA560_C(0.1254) * (t88 + t97))
+        - parameters[XZ2];
+    /* link j2: column of the mass matrix */
+    const puma560_real_t t101 = t26 * t100 + t25 * (t94 - parameters[YZ2]);
+    out[1] = t101;
+    out[6] = t101;
+    /* link j4: inertia of it and all beyond */
+    const puma560_real_t t102 = parameters[XX3] + (t74 + t77 + t83);
+    const puma560_real_t t103 = parameters[YY3] + (t56 + t80);
+    const puma560_real_t t104 = parameters[XY3] + (t65 + (PUMA560_C(-0.0203) * t81
+        + PUMA560_C(-0.4318) * t85));
+    /* link j3: inertia of it and all beyond */
+    const puma560_real_t t105 = t17 * (t102 - t103) - t104 * (PUMA560_C(2.0) * t16);
+    const puma560_real_t t106 = t17 * t105;
+    const puma560_real_t t107 = PUMA560_C(0.1254) * (PUMA560_C(0.1254) * t96 + PUMA560_C(2.0) * t99);
+    const puma560_real_t t108 = parameters[XX2] + (t103 + t106 + t107);
+    /* link j2: inertia of it and all beyond */
+    const puma560_real_t t109 = t25 * (parameters[YY2] + (t102 - t106 + (t98 + t107)) - t108);
+    const puma560_real_t t110 = (parameters[XY2] + (t104 + t16 * t105
+        + PUMA560_C(-0.4318) * t93)) * (PUMA560_C(2.0) * t26);
+    const puma560_real_t t111 = parameters[ZZ1] + (t108 + t25 * (t109 + t110))
+        + PUMA560_C(3920.14984321) * parameters[IA1];
+    out[0] = t111;
     return PUMA560_STATUS_OK;
 }

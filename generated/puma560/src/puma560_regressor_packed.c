@@ -32,7 +32,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x0486C622UL
+#if PUMA560_GENERATION != 0xB20AC45DUL
 #error "puma560.h and puma560_regressor_packed.c are of different generations: generate the arm again"
 #endif
 

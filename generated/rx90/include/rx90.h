@@ -83,7 +83,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0x88006983UL
+#define RX90_GENERATION 0x1B6CDAA1UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define RX90_MODEL "10f0505273a073e2836fd5196308da2ff0e26815099ce8f081f39fd9e627e546"
@@ -411,7 +411,7 @@ rx90_status_t rx90_mass_matrix(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 864 (471 mul, 393 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 864 (471 mul, 393 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 rx90_status_t rx90_forward_dynamics(
     const rx90_real_t q[RX90_N_JOINTS],
@@ -610,7 +610,7 @@ rx90_status_t rx90_mass_matrix_standard(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 976 (515 mul, 461 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 976 (515 mul, 461 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 rx90_status_t rx90_forward_dynamics_standard(
     const rx90_real_t q[RX90_N_JOINTS],
@@ -786,7 +786,7 @@ rx90_status_t rx90_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 3605 (2016 mul, 1589 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 3605 (2016 mul, 1589 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t q[RX90_N_JOINTS],
@@ -839,7 +839,7 @@ rx90_status_t rx90_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return RX90_STATUS_OK or status bits
  *
- * Operations: 3857 (2123 mul, 1734 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 3857 (2123 mul, 1734 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t q[RX90_N_JOINTS],

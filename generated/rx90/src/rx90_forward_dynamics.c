@@ -6,7 +6,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 864 (471 mul, 393 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 864 (471 mul, 393 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -81,7 +81,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x88006983UL
+#if RX90_GENERATION != 0x1B6CDAA1UL
 #error "rx90.h and rx90_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -108,17 +108,17 @@ rx90_status_t rx90_forward_dynamics(
         return status;
     }
 
-    rx90_real_t t97, t95;
-    RX90_SINCOS(q[1], &t97, &t95);
-    rx90_real_t t67, t68;
-    RX90_SINCOS(q[2], &t67, &t68);
-    rx90_real_t t32, t34;
-    RX90_SINCOS(q[3], &t32, &t34);
-    rx90_real_t t13, t15;
-    RX90_SINCOS(q[4], &t13, &t15);
+    rx90_real_t t93, t91;
+    RX90_SINCOS(q[1], &t93, &t91);
+    rx90_real_t t64, t65;
+    RX90_SINCOS(q[2], &t64, &t65);
+    rx90_real_t t30, t32;
+    RX90_SINCOS(q[3], &t30, &t32);
+    rx90_real_t t12, t14;
+    RX90_SINCOS(q[4], &t12, &t14);
     rx90_real_t t1, t2;
     RX90_SINCOS(q[5], &t1, &t2);
-    const rx90_real_t t0 = rx90_bounded(parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6]);
+    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
     if (!(t0 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -132,396 +132,379 @@ rx90_status_t rx90_forward_dynamics(
     const rx90_real_t t7 = t2 * t6;
     const rx90_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
     const rx90_real_t t9 = t8 + RX90_C(2.5e3) * parameters[IA5];
-    const rx90_real_t t10 = rx90_bounded(t9 + t3 * t5);
+    const rx90_real_t t10 = t9 + t3 * t5;
     if (!(t10 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t11 = t10 + RX90_C(-1.0e-9) * t9;
-    if (!(t11 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t12 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
-    const rx90_real_t t14 = parameters[YZ5] - t3;
-    const rx90_real_t t16 = t13 * t12 + t15 * t14; /* link j5: column of the mass matrix */
+    const rx90_real_t t11 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
+    const rx90_real_t t13 = parameters[YZ5] - t3;
+    const rx90_real_t t15 = t12 * t11 + t14 * t13; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const rx90_real_t t17 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
-    const rx90_real_t t18 = t15 * parameters[ZZ6] - t13 * t17;
-    const rx90_real_t t19 = t16 - t18 * t5;
-    const rx90_real_t t20 = RX90_C(1.0) / t10;
-    const rx90_real_t t21 = t19 * t20;
-    const rx90_real_t t22 = parameters[XX5R] - t7; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t23 = t17 - parameters[XY5];
+    const rx90_real_t t16 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const rx90_real_t t17 = t14 * parameters[ZZ6] - t12 * t16;
+    const rx90_real_t t18 = t15 - t17 * t5;
+    const rx90_real_t t19 = RX90_C(1.0) / t10;
+    const rx90_real_t t20 = t18 * t19;
+    const rx90_real_t t21 = parameters[XX5R] - t7; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t22 = t16 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
-    const rx90_real_t t24 = t15 * (parameters[ZZ6] - t22) - t23 * (RX90_C(2.0) * t13);
-    const rx90_real_t t25 = t15 * t24;
-    const rx90_real_t t26 = parameters[ZZ4R] + (t22 + t25);
-    const rx90_real_t t27 = t26 + RX90_C(2.5e3) * parameters[IA4];
-    const rx90_real_t t28 = t18 * t4;
-    const rx90_real_t t29 = rx90_bounded(t27 + t18 * t28 - t19 * t21);
-    if (!(t29 > RX90_C(1.0e-12))) {
+    const rx90_real_t t23 = t14 * (parameters[ZZ6] - t21) - t22 * (RX90_C(2.0) * t12);
+    const rx90_real_t t24 = t14 * t23;
+    const rx90_real_t t25 = parameters[ZZ4R] + (t21 + t24);
+    const rx90_real_t t26 = t25 + RX90_C(2.5e3) * parameters[IA4];
+    const rx90_real_t t27 = t17 * t4;
+    const rx90_real_t t28 = t26 + t17 * t27 - t18 * t20;
+    if (!(t28 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t30 = t29 + RX90_C(-1.0e-9) * t27;
-    if (!(t30 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t31 = t23 + t13 * t24 - parameters[XZ4];
-    const rx90_real_t t33 = t16 - parameters[YZ4];
+    const rx90_real_t t29 = t22 + t12 * t23 - parameters[XZ4];
+    const rx90_real_t t31 = t15 - parameters[YZ4];
     /* link j6: column of the mass matrix */
-    const rx90_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const rx90_real_t t36 = parameters[MY4R] + t35; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t33 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const rx90_real_t t34 = parameters[MY4R] + t33; /* link j5: inertia of it and all beyond */
     /* link j6: column of the mass matrix */
-    const rx90_real_t t37 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const rx90_real_t t38 = t37 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t39 = t13 * parameters[MY5R] + t15 * t38; /* link j5: column of the mass matrix */
-    const rx90_real_t t40 = t39 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t41 = t32 * t40 - t34 * t36; /* link j4: column of the mass matrix */
-    const rx90_real_t t42 = RX90_C(-0.45) * t41;
-    const rx90_real_t t43 = t32 * t31 + t34 * t33 + t42;
-    const rx90_real_t t44 = t15 * t17 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const rx90_real_t t45 = t15 * t35;
-    const rx90_real_t t46 = t34 * t45 - t32 * t37;
-    const rx90_real_t t47 = t34 * t3 - t32 * t44 - RX90_C(0.45) * t46;
-    const rx90_real_t t48 = t13 * t14 - t15 * t12; /* link j5: column of the mass matrix */
-    const rx90_real_t t49 = t13 * t38 - t15 * parameters[MY5R];
-    const rx90_real_t t50 = t34 * t49;
-    const rx90_real_t t51 = t32 * t48 + t34 * t8 + RX90_C(-0.45) * t50;
-    const rx90_real_t t52 = t51 + t47 * t5;
-    const rx90_real_t t53 = t43 - t47 * t28 - t52 * t21;
-    const rx90_real_t t54 = RX90_C(-1.0) / t29;
-    const rx90_real_t t55 = t53 * t54;
-    const rx90_real_t t56 = t47 * t4;
+    const rx90_real_t t35 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const rx90_real_t t36 = t35 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t37 = t12 * parameters[MY5R] + t14 * t36; /* link j5: column of the mass matrix */
+    const rx90_real_t t38 = t37 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t39 = t30 * t38 - t32 * t34; /* link j4: column of the mass matrix */
+    const rx90_real_t t40 = RX90_C(-0.45) * t39;
+    const rx90_real_t t41 = t30 * t29 + t32 * t31 + t40;
+    const rx90_real_t t42 = t14 * t16 + t12 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const rx90_real_t t43 = t14 * t33;
+    const rx90_real_t t44 = t32 * t43 - t30 * t35;
+    const rx90_real_t t45 = t32 * t3 - t30 * t42 - RX90_C(0.45) * t44;
+    const rx90_real_t t46 = t12 * t13 - t14 * t11; /* link j5: column of the mass matrix */
+    const rx90_real_t t47 = t12 * t36 - t14 * parameters[MY5R];
+    const rx90_real_t t48 = t32 * t47;
+    const rx90_real_t t49 = t30 * t46 + t32 * t8 + RX90_C(-0.45) * t48;
+    const rx90_real_t t50 = t49 + t45 * t5;
+    const rx90_real_t t51 = t41 - t45 * t27 - t50 * t20;
+    const rx90_real_t t52 = RX90_C(-1.0) / t28;
+    const rx90_real_t t53 = t51 * t52;
+    const rx90_real_t t54 = t45 * t4;
     /* link j5: inertia of it and all beyond */
-    const rx90_real_t t57 = parameters[XX4R] + (parameters[ZZ6] - t25);
-    const rx90_real_t t58 = parameters[XY4] + t48;
+    const rx90_real_t t55 = parameters[XX4R] + (parameters[ZZ6] - t24);
+    const rx90_real_t t56 = parameters[XY4] + t46;
     /* link j4: inertia of it and all beyond */
-    const rx90_real_t t59 = t34 * (t57 - t8) + t58 * (RX90_C(-2.0) * t32);
-    const rx90_real_t t60 = t34 * t59;
-    const rx90_real_t t61 = RX90_C(-0.9) * t49;
-    const rx90_real_t t62 = parameters[ZZ3R] + (t57 - t60 + t61);
-    const rx90_real_t t63 = t62 + RX90_C(1.0e4) * parameters[IA3];
-    const rx90_real_t t64 = t52 * t20;
-    const rx90_real_t t65 = rx90_bounded(t63 + t47 * t56 - t52 * t64 + t53 * t55);
-    if (!(t65 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t66 = t65 + RX90_C(-1.0e-9) * t63;
-    if (!(t66 > RX90_C(1.0e-12))) {
+    const rx90_real_t t57 = t32 * (t55 - t8) + t56 * (RX90_C(-2.0) * t30);
+    const rx90_real_t t58 = t32 * t57;
+    const rx90_real_t t59 = RX90_C(-0.9) * t47;
+    const rx90_real_t t60 = parameters[ZZ3R] + (t55 - t58 + t59);
+    const rx90_real_t t61 = t60 + RX90_C(1.0e4) * parameters[IA3];
+    const rx90_real_t t62 = t50 * t19;
+    const rx90_real_t t63 = t61 + t45 * t54 - t50 * t62 + t51 * t53;
+    if (!(t63 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
     /* link j6: column of the mass matrix */
-    const rx90_real_t t69 = t47 + RX90_C(0.45) * (t67 * t46 + t68 * (t13 * t35));
-    const rx90_real_t t70 = RX90_C(0.45) * (t68 * t39 - t67 * t50) - t51 - t69 * t5;
-    const rx90_real_t t71 = t43 + RX90_C(0.45) * (t67 * t41) - t69 * t28 + t70 * t21;
-    const rx90_real_t t72 = t32 * t36 + t34 * t40; /* link j4: column of the mass matrix */
-    const rx90_real_t t73 = t72 - parameters[MX3]; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t74 = t49 - parameters[MY3R];
-    const rx90_real_t t75 = t68 * t73 - t67 * t74; /* link j3: column of the mass matrix */
-    const rx90_real_t t76 = RX90_C(0.45) * t75 - t62 - t69 * t56 - t70 * t64;
-    const rx90_real_t t77 = t76 - t71 * t55;
-    const rx90_real_t t78 = RX90_C(1.0) / t65;
-    const rx90_real_t t79 = t77 * t78;
-    const rx90_real_t t80 = t71 * t54;
-    const rx90_real_t t81 = t70 * t20;
-    const rx90_real_t t82 = t69 * t4;
-    const rx90_real_t t83 = RX90_C(-0.9) * t75; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t84 = parameters[ZZ2R] + (t62 + t83);
-    const rx90_real_t t85 = t84 + t69 * t82 - t70 * t81 + t71 * t80;
-    const rx90_real_t t86 = rx90_bounded(t85 - t77 * t79);
-    if (!(t86 > RX90_C(1.0e-12))) {
+    const rx90_real_t t66 = t45 + RX90_C(0.45) * (t64 * t44 + t65 * (t12 * t33));
+    const rx90_real_t t67 = RX90_C(0.45) * (t65 * t37 - t64 * t48) - t49 - t66 * t5;
+    const rx90_real_t t68 = t41 + RX90_C(0.45) * (t64 * t39) - t66 * t27 + t67 * t20;
+    const rx90_real_t t69 = t30 * t34 + t32 * t38; /* link j4: column of the mass matrix */
+    const rx90_real_t t70 = t69 - parameters[MX3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t71 = t47 - parameters[MY3R];
+    const rx90_real_t t72 = t65 * t70 - t64 * t71; /* link j3: column of the mass matrix */
+    const rx90_real_t t73 = RX90_C(0.45) * t72 - t60 - t66 * t54 - t67 * t62;
+    const rx90_real_t t74 = t73 - t68 * t53;
+    const rx90_real_t t75 = RX90_C(1.0) / t63;
+    const rx90_real_t t76 = t74 * t75;
+    const rx90_real_t t77 = t68 * t52;
+    const rx90_real_t t78 = t67 * t19;
+    const rx90_real_t t79 = t66 * t4;
+    const rx90_real_t t80 = RX90_C(-0.9) * t72; /* link j3: inertia of it and all beyond */
+    const rx90_real_t t81 = parameters[ZZ2R] + (t60 + t80);
+    const rx90_real_t t82 = t81 + t66 * t79 - t67 * t78 + t68 * t77;
+    const rx90_real_t t83 = t82 - t74 * t76;
+    if (!(t83 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t87 = t86 + RX90_C(-1.0e-9) * t84;
-    if (!(t87 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t88 = parameters[XX3R] + (t8 + t60 + t61); /* link j4: inertia of it and all beyond */
-    const rx90_real_t t89 = RX90_C(0.45) * t72; /* link j4: column of the mass matrix */
-    const rx90_real_t t90 = t32 * t33 - t34 * t31 + t89;
-    const rx90_real_t t91 = parameters[XY3] + t90; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t84 = parameters[XX3R] + (t8 + t58 + t59); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t85 = RX90_C(0.45) * t69; /* link j4: column of the mass matrix */
+    const rx90_real_t t86 = t30 * t31 - t32 * t29 + t85;
+    const rx90_real_t t87 = parameters[XY3] + t86; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const rx90_real_t t92 = t68 * (t26 - t88) + t91 * (RX90_C(2.0) * t67);
-    const rx90_real_t t93 = t68 * t92;
-    const rx90_real_t t94 = parameters[XX2R] + (t26 - t93);
-    const rx90_real_t t96 = t91 - t67 * t92 + RX90_C(0.45) * (t68 * t74 + t67 * t73);
+    const rx90_real_t t88 = t65 * (t25 - t84) + t87 * (RX90_C(2.0) * t64);
+    const rx90_real_t t89 = t65 * t88;
+    const rx90_real_t t90 = parameters[XX2R] + (t25 - t89);
+    const rx90_real_t t92 = t87 - t64 * t88 + RX90_C(0.45) * (t65 * t71 + t64 * t70);
     /* link j2: inertia of it and all beyond */
-    const rx90_real_t t98 = t95 * (t88 + t93 + t83 - t94) + (parameters[XY2] + t96) * (RX90_C(2.0) * t97);
-    const rx90_real_t t99 = parameters[ZZ1R] + (t94 + t95 * t98);
-    const rx90_real_t t100 = RX90_C(0.45) * (t32 * t45 + t34 * t37); /* link j6: column of the mass matrix */
-    const rx90_real_t t101 = t34 * t44 + t32 * t3 - t100;
-    const rx90_real_t t102 = t97 * (t68 * t101 + t67 * t18) + t95 * (t100 + (t67 * t101 - t68 * t18));
-    const rx90_real_t t103 = t102 * t4;
-    const rx90_real_t t104 = RX90_C(-0.45) * (t32 * t49); /* link j5: column of the mass matrix */
-    const rx90_real_t t105 = t34 * t48 - t32 * t8 - t104;
-    const rx90_real_t t106 = t97 * (t68 * t105 + t67 * t16) + t95 * (t104 + (t67 * t105 - t68 * t16));
-    const rx90_real_t t107 = t106 - t102 * t5;
-    const rx90_real_t t108 = t107 * t20;
+    const rx90_real_t t94 = t91 * (t84 + t89 + t80 - t90) + (parameters[XY2] + t92) * (RX90_C(2.0) * t93);
+    const rx90_real_t t95 = parameters[ZZ1R] + (t90 + t91 * t94);
+    const rx90_real_t t96 = RX90_C(0.45) * (t30 * t43 + t32 * t35); /* link j6: column of the mass matrix */
+    const rx90_real_t t97 = t32 * t42 + t30 * t3 - t96;
+    const rx90_real_t t98 = t93 * (t65 * t97 + t64 * t17) + t91 * (t96 + (t64 * t97 - t65 * t17));
+    const rx90_real_t t99 = t98 * t4;
+    const rx90_real_t t100 = RX90_C(-0.45) * (t30 * t47); /* link j5: column of the mass matrix */
+    const rx90_real_t t101 = t32 * t46 - t30 * t8 - t100;
+    const rx90_real_t t102 = t93 * (t65 * t101 + t64 * t15) + t91 * (t100 + (t64 * t101 - t65 * t15));
+    const rx90_real_t t103 = t102 - t98 * t5;
+    const rx90_real_t t104 = t103 * t19;
     /* link j4: column of the mass matrix */
-    const rx90_real_t t109 = t97 * (t67 * t26 - t68 * t90) + t95 * (t89 - (t67 * t90 + t68 * t26));
-    const rx90_real_t t110 = t109 + t102 * t28 - t107 * t21;
-    const rx90_real_t t111 = t110 * t54;
-    const rx90_real_t t112 = t99 + t102 * t103 - t107 * t108 + t110 * t111;
-    const rx90_real_t t113 = t58 + t32 * t59 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t114 = parameters[YZ3] + t43;
-    const rx90_real_t t115 = t68 * t113 + t67 * t114; /* link j3: column of the mass matrix */
-    const rx90_real_t t116 = t67 * t113 - t68 * t114;
-    const rx90_real_t t117 = t97 * t115 + t95 * t116 - t102 * t56 - t107 * t64;
-    const rx90_real_t t118 = t117 + t110 * t55;
-    const rx90_real_t t119 = t118 * t78;
+    const rx90_real_t t105 = t93 * (t64 * t25 - t65 * t86) + t91 * (t85 - (t64 * t86 + t65 * t25));
+    const rx90_real_t t106 = t105 + t98 * t27 - t103 * t20;
+    const rx90_real_t t107 = t106 * t52;
+    const rx90_real_t t108 = t95 + t98 * t99 - t103 * t104 + t106 * t107;
+    const rx90_real_t t109 = t56 + t30 * t57 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t110 = parameters[YZ3] + t41;
+    const rx90_real_t t111 = t65 * t109 + t64 * t110; /* link j3: column of the mass matrix */
+    const rx90_real_t t112 = t64 * t109 - t65 * t110;
+    const rx90_real_t t113 = t93 * t111 + t91 * t112 - t98 * t54 - t103 * t62;
+    const rx90_real_t t114 = t113 + t106 * t53;
+    const rx90_real_t t115 = t114 * t75;
     /* link j2: column of the mass matrix */
-    const rx90_real_t t120 = t97 * (t115 - t42 - parameters[XZ2R]) + t95 * (t116 - parameters[YZ2]);
-    const rx90_real_t t121 = t120 - t102 * t82 + t107 * t81 + t110 * t80;
-    const rx90_real_t t122 = t121 + t118 * t79;
-    const rx90_real_t t123 = RX90_C(1.0) / t86;
-    const rx90_real_t t124 = t122 * t123;
-    const rx90_real_t t125 = rx90_bounded(t112 - t118 * t119 - t122 * t124);
+    const rx90_real_t t116 = t93 * (t111 - t40 - parameters[XZ2R]) + t91 * (t112 - parameters[YZ2]);
+    const rx90_real_t t117 = t116 - t98 * t79 + t103 * t78 + t106 * t77;
+    const rx90_real_t t118 = t117 + t114 * t76;
+    const rx90_real_t t119 = RX90_C(1.0) / t83;
+    const rx90_real_t t120 = t118 * t119;
+    const rx90_real_t t121 = t108 - t114 * t115 - t118 * t120;
+    if (!(t121 > RX90_C(1.0e-12))) {
+        rx90_zero(out, 6);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t122 = rx90_min(t10 + RX90_C(-1.0e-9) * t9, t28 + RX90_C(-1.0e-9) * t26);
+    const rx90_real_t t123 = rx90_min(t122, t63 + RX90_C(-1.0e-9) * t61);
+    const rx90_real_t t124 = rx90_min(t123, t83 + RX90_C(-1.0e-9) * t81);
+    const rx90_real_t t125 = rx90_min(t124, t121 + RX90_C(-1.0e-9) * t95);
     if (!(t125 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t126 = t125 + RX90_C(-1.0e-9) * t99;
-    if (!(t126 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t127 = t97 * dq[0]; /* link j2: motion */
-    const rx90_real_t t128 = t95 * dq[0];
-    const rx90_real_t t129 = t68 * t127 + t67 * t128; /* link j3: motion */
-    const rx90_real_t t130 = t68 * t128 - t67 * t127;
-    const rx90_real_t t131 = t129 * t130;
-    const rx90_real_t t132 = dq[1] + dq[2];
-    const rx90_real_t t133 = t130 * t132;
-    const rx90_real_t t134 = RX90_C(2.0) * t133; /* link j4: motion */
-    const rx90_real_t t135 = t32 * t134 - t34 * t131;
-    const rx90_real_t t136 = t34 * t129 - t32 * t132;
-    const rx90_real_t t137 = dq[3] + t130;
-    const rx90_real_t t138 = t136 * t137;
-    const rx90_real_t t139 = t135 + t138;
-    const rx90_real_t t140 = t15 * t136 + t13 * t137; /* link j5: motion */
-    const rx90_real_t t141 = t13 * t136 - t15 * t137;
-    const rx90_real_t t142 = t140 * t141;
-    const rx90_real_t t143 = t139 + t142; /* link j6: motion */
-    const rx90_real_t t144 = t32 * t131 + t34 * t134; /* link j4: motion */
-    const rx90_real_t t145 = t32 * t129 + t34 * t132;
-    const rx90_real_t t146 = t145 * t137;
-    const rx90_real_t t147 = t144 - t146;
-    const rx90_real_t t148 = t147 - t146; /* link j5: motion */
-    const rx90_real_t t149 = t136 * t145; /* link j4: motion */
-    const rx90_real_t t150 = t129 * t132; /* link j3: motion */
-    const rx90_real_t t151 = t149 - t150; /* link j5: motion */
-    const rx90_real_t t152 = t13 * t151 + t15 * t148;
-    const rx90_real_t t153 = dq[4] + t145;
-    const rx90_real_t t154 = t141 * t153;
-    const rx90_real_t t155 = t152 - t154;
-    const rx90_real_t t156 = t155 - t154; /* link j6: motion */
-    const rx90_real_t t157 = t2 * t156 - t1 * t143;
-    const rx90_real_t t158 = t1 * t140 + t2 * t153;
-    const rx90_real_t t159 = dq[5] - t141;
-    const rx90_real_t t160 = t158 * t159;
-    const rx90_real_t t161 = t157 - t160;
-    const rx90_real_t t162 = t2 * t143 + t1 * t156;
-    const rx90_real_t t163 = t2 * t140 - t1 * t153;
-    const rx90_real_t t164 = t163 * t159;
-    const rx90_real_t t165 = t164 + (t162 + t164); /* link j6: force and moment */
-    const rx90_real_t t166 = t15 * t151 - t13 * t148; /* link j5: motion */
-    const rx90_real_t t167 = t140 * t153;
-    const rx90_real_t t168 = t166 - t167;
-    const rx90_real_t t169 = t163 * t158; /* link j6: motion */
-    const rx90_real_t t170 = t169 - t168; /* link j6: force and moment */
-    const rx90_real_t t171 = parameters[ZZ6] * t160 - parameters[XX6R] * t161 + parameters[XY6] * t165
-        + parameters[XZ6] * t170;
-    const rx90_real_t t172 = t158 * t158; /* link j6: motion */
-    const rx90_real_t t173 = t159 * t159;
-    const rx90_real_t t174 = t128 * t128; /* link j2: motion */
-    const rx90_real_t t175 = dq[1] * dq[1];
-    const rx90_real_t t176 = RX90_C(9.81) * t97;
-    const rx90_real_t t177 = t176 - RX90_C(0.45) * (t175 + t174); /* link j3: motion */
-    const rx90_real_t t178 = t127 * t128; /* link j2: motion */
-    const rx90_real_t t179 = RX90_C(-9.81) * t95;
-    const rx90_real_t t180 = t179 + RX90_C(-0.45) * t178; /* link j3: motion */
-    const rx90_real_t t181 = t67 * t180 - t68 * t177;
-    const rx90_real_t t182 = t181 + RX90_C(-0.45) * t131; /* link j4: motion */
-    const rx90_real_t t183 = dq[1] * t127; /* link j2: motion */
-    const rx90_real_t t184 = RX90_C(-0.9) * t183; /* link j3: motion */
-    const rx90_real_t t185 = t184 + RX90_C(-0.9) * t133; /* link j4: motion */
-    const rx90_real_t t186 = t32 * t185 - t34 * t182;
-    const rx90_real_t t187 = t67 * t177 + t68 * t180; /* link j3: motion */
-    const rx90_real_t t188 = t129 * t129;
-    const rx90_real_t t189 = t132 * t132;
-    const rx90_real_t t190 = t188 + t189; /* link j4: motion */
-    const rx90_real_t t191 = t187 + RX90_C(0.45) * t190;
-    const rx90_real_t t192 = t13 * t186 + t15 * t191; /* link j5: motion */
+    const rx90_real_t t126 = t93 * dq[0]; /* link j2: motion */
+    const rx90_real_t t127 = t91 * dq[0];
+    const rx90_real_t t128 = t65 * t126 + t64 * t127; /* link j3: motion */
+    const rx90_real_t t129 = t65 * t127 - t64 * t126;
+    const rx90_real_t t130 = t128 * t129;
+    const rx90_real_t t131 = dq[1] + dq[2];
+    const rx90_real_t t132 = t129 * t131;
+    const rx90_real_t t133 = RX90_C(2.0) * t132; /* link j4: motion */
+    const rx90_real_t t134 = t30 * t133 - t32 * t130;
+    const rx90_real_t t135 = t32 * t128 - t30 * t131;
+    const rx90_real_t t136 = dq[3] + t129;
+    const rx90_real_t t137 = t135 * t136;
+    const rx90_real_t t138 = t134 + t137;
+    const rx90_real_t t139 = t14 * t135 + t12 * t136; /* link j5: motion */
+    const rx90_real_t t140 = t12 * t135 - t14 * t136;
+    const rx90_real_t t141 = t139 * t140;
+    const rx90_real_t t142 = t138 + t141; /* link j6: motion */
+    const rx90_real_t t143 = t30 * t130 + t32 * t133; /* link j4: motion */
+    const rx90_real_t t144 = t30 * t128 + t32 * t131;
+    const rx90_real_t t145 = t144 * t136;
+    const rx90_real_t t146 = t143 - t145;
+    const rx90_real_t t147 = t146 - t145; /* link j5: motion */
+    const rx90_real_t t148 = t135 * t144; /* link j4: motion */
+    const rx90_real_t t149 = t128 * t131; /* link j3: motion */
+    const rx90_real_t t150 = t148 - t149; /* link j5: motion */
+    const rx90_real_t t151 = t12 * t150 + t14 * t147;
+    const rx90_real_t t152 = dq[4] + t144;
+    const rx90_real_t t153 = t140 * t152;
+    const rx90_real_t t154 = t151 - t153;
+    const rx90_real_t t155 = t154 - t153; /* link j6: motion */
+    const rx90_real_t t156 = t2 * t155 - t1 * t142;
+    const rx90_real_t t157 = t1 * t139 + t2 * t152;
+    const rx90_real_t t158 = dq[5] - t140;
+    const rx90_real_t t159 = t157 * t158;
+    const rx90_real_t t160 = t156 - t159;
+    const rx90_real_t t161 = t2 * t142 + t1 * t155;
+    const rx90_real_t t162 = t2 * t139 - t1 * t152;
+    const rx90_real_t t163 = t162 * t158;
+    const rx90_real_t t164 = t163 + (t161 + t163); /* link j6: force and moment */
+    const rx90_real_t t165 = t14 * t150 - t12 * t147; /* link j5: motion */
+    const rx90_real_t t166 = t139 * t152;
+    const rx90_real_t t167 = t165 - t166;
+    const rx90_real_t t168 = t162 * t157; /* link j6: motion */
+    const rx90_real_t t169 = t168 - t167; /* link j6: force and moment */
+    const rx90_real_t t170 = parameters[ZZ6] * t159 - parameters[XX6R] * t160 + parameters[XY6] * t164
+        + parameters[XZ6] * t169;
+    const rx90_real_t t171 = t157 * t157; /* link j6: motion */
+    const rx90_real_t t172 = t158 * t158;
+    const rx90_real_t t173 = t127 * t127; /* link j2: motion */
+    const rx90_real_t t174 = dq[1] * dq[1];
+    const rx90_real_t t175 = RX90_C(9.81) * t93;
+    const rx90_real_t t176 = t175 - RX90_C(0.45) * (t174 + t173); /* link j3: motion */
+    const rx90_real_t t177 = t126 * t127; /* link j2: motion */
+    const rx90_real_t t178 = RX90_C(-9.81) * t91;
+    const rx90_real_t t179 = t178 + RX90_C(-0.45) * t177; /* link j3: motion */
+    const rx90_real_t t180 = t64 * t179 - t65 * t176;
+    const rx90_real_t t181 = t180 + RX90_C(-0.45) * t130; /* link j4: motion */
+    const rx90_real_t t182 = dq[1] * t126; /* link j2: motion */
+    const rx90_real_t t183 = RX90_C(-0.9) * t182; /* link j3: motion */
+    const rx90_real_t t184 = t183 + RX90_C(-0.9) * t132; /* link j4: motion */
+    const rx90_real_t t185 = t30 * t184 - t32 * t181;
+    const rx90_real_t t186 = t64 * t176 + t65 * t179; /* link j3: motion */
+    const rx90_real_t t187 = t128 * t128;
+    const rx90_real_t t188 = t131 * t131;
+    const rx90_real_t t189 = t187 + t188; /* link j4: motion */
+    const rx90_real_t t190 = t186 + RX90_C(0.45) * t189;
+    const rx90_real_t t191 = t12 * t185 + t14 * t190; /* link j5: motion */
     /* link j6: force and moment */
-    const rx90_real_t t193 = t171 - parameters[YZ6] * (t172 - t173) + parameters[MY6] * t192;
-    const rx90_real_t t194 = t161 - t160;
-    const rx90_real_t t195 = t168 + t169;
-    const rx90_real_t t196 = t164 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t194
-        + parameters[YZ6] * t195;
-    const rx90_real_t t197 = t163 * t163; /* link j6: motion */
+    const rx90_real_t t192 = t170 - parameters[YZ6] * (t171 - t172) + parameters[MY6] * t191;
+    const rx90_real_t t193 = t160 - t159;
+    const rx90_real_t t194 = t167 + t168;
+    const rx90_real_t t195 = t163 * (parameters[XX6R] - parameters[ZZ6]) + parameters[XY6] * t193
+        + parameters[YZ6] * t194;
+    const rx90_real_t t196 = t162 * t162; /* link j6: motion */
     /* link j6: force and moment */
-    const rx90_real_t t198 = t196 + parameters[XZ6] * (t173 - t197) + parameters[MX6] * t192;
-    const rx90_real_t t199 = t167 - t168; /* link j6: motion */
-    const rx90_real_t t200 = t139 - t142;
+    const rx90_real_t t197 = t195 + parameters[XZ6] * (t172 - t196) + parameters[MX6] * t191;
+    const rx90_real_t t198 = t166 - t167; /* link j6: motion */
+    const rx90_real_t t199 = t138 - t141;
     /* link j5: force and moment */
-    const rx90_real_t t201 = parameters[ZZ5R] * t154 - parameters[XX5R] * t155 + parameters[XY5] * t199
-        - parameters[XZ5] * t200;
-    const rx90_real_t t202 = t141 * t141; /* link j5: motion */
-    const rx90_real_t t203 = t153 * t153;
-    const rx90_real_t t204 = t32 * t182 + t34 * t185; /* link j4: motion */
+    const rx90_real_t t200 = parameters[ZZ5R] * t153 - parameters[XX5R] * t154 + parameters[XY5] * t198
+        - parameters[XZ5] * t199;
+    const rx90_real_t t201 = t140 * t140; /* link j5: motion */
+    const rx90_real_t t202 = t152 * t152;
+    const rx90_real_t t203 = t30 * t181 + t32 * t184; /* link j4: motion */
     /* link j6: what it passes on */
-    const rx90_real_t t205 = t201 + parameters[YZ5] * (t203 - t202) + parameters[MY5R] * t204 + (t2 * t193
-        + t1 * t198);
+    const rx90_real_t t204 = t200 + parameters[YZ5] * (t202 - t201) + parameters[MY5R] * t203 + (t2 * t192
+        + t1 * t197);
     /* link j6: force and moment */
-    const rx90_real_t t206 = parameters[ZZ6] * t168 + parameters[XX6R] * t169 - parameters[YZ6] * t162
-        + parameters[XZ6] * t157;
-    const rx90_real_t t207 = t13 * t191 - t15 * t186; /* link j5: motion */
+    const rx90_real_t t205 = parameters[ZZ6] * t167 + parameters[XX6R] * t168 - parameters[YZ6] * t161
+        + parameters[XZ6] * t156;
+    const rx90_real_t t206 = t12 * t190 - t14 * t185; /* link j5: motion */
     /* link j6: force and moment */
-    const rx90_real_t t208 = parameters[MX6] * (t1 * t207 + t2 * t204) + parameters[MY6] * (t2 * t207
-        - t1 * t204);
-    const rx90_real_t t209 = t206 + parameters[XY6] * (t197 - t172) + t208;
+    const rx90_real_t t207 = parameters[MX6] * (t1 * t206 + t2 * t203) + parameters[MY6] * (t2 * t206
+        - t1 * t203);
+    const rx90_real_t t208 = t205 + parameters[XY6] * (t196 - t171) + t207;
     /* link j5: force and moment */
-    const rx90_real_t t210 = t167 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t156
-        + parameters[YZ5] * t143;
-    const rx90_real_t t211 = t140 * t140; /* link j5: motion */
+    const rx90_real_t t209 = t166 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t155
+        + parameters[YZ5] * t142;
+    const rx90_real_t t210 = t139 * t139; /* link j5: motion */
     /* link j6: what it passes on */
-    const rx90_real_t t212 = t210 + parameters[XZ5] * (t203 - t211) + parameters[MX5] * t204 + t209;
-    const rx90_real_t t213 = t138 + t139; /* link j5: motion */
-    const rx90_real_t t214 = t150 + t149;
+    const rx90_real_t t211 = t209 + parameters[XZ5] * (t202 - t210) + parameters[MX5] * t203 + t208;
+    const rx90_real_t t212 = t137 + t138; /* link j5: motion */
+    const rx90_real_t t213 = t149 + t148;
     /* link j4: force and moment */
-    const rx90_real_t t215 = parameters[ZZ4R] * t146 - parameters[XX4R] * t147 + parameters[XY4] * t213
-        + parameters[XZ4] * t214;
-    const rx90_real_t t216 = t145 * t145; /* link j4: motion */
-    const rx90_real_t t217 = t137 * t137;
+    const rx90_real_t t214 = parameters[ZZ4R] * t145 - parameters[XX4R] * t146 + parameters[XY4] * t212
+        + parameters[XZ4] * t213;
+    const rx90_real_t t215 = t144 * t144; /* link j4: motion */
+    const rx90_real_t t216 = t136 * t136;
     /* link j5: what it passes on */
-    const rx90_real_t t218 = t215 + parameters[YZ4] * (t217 - t216) + parameters[MY4R] * t191 + (t15 * t205
-        + t13 * t212);
+    const rx90_real_t t217 = t214 + parameters[YZ4] * (t216 - t215) + parameters[MY4R] * t190 + (t14 * t204
+        + t12 * t211);
     /* link j5: force and moment */
-    const rx90_real_t t219 = parameters[ZZ5R] * t139 + parameters[XX5R] * t142 + parameters[YZ5] * t166
-        + parameters[XZ5] * t152;
-    const rx90_real_t t220 = parameters[XY5] * (t202 - t211) - t219 + (parameters[MX5] * t192
-        - parameters[MY5R] * t207);
-    const rx90_real_t t221 = t220 + (t2 * t198 - t1 * t193); /* link j6: what it passes on */
+    const rx90_real_t t218 = parameters[ZZ5R] * t138 + parameters[XX5R] * t141 + parameters[YZ5] * t165
+        + parameters[XZ5] * t151;
+    const rx90_real_t t219 = parameters[XY5] * (t201 - t210) - t218 + (parameters[MX5] * t191
+        - parameters[MY5R] * t206);
+    const rx90_real_t t220 = t219 + (t2 * t197 - t1 * t192); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const rx90_real_t t222 = t138 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t148
-        + parameters[YZ4] * t151;
-    const rx90_real_t t223 = t136 * t136; /* link j4: motion */
+    const rx90_real_t t221 = t137 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t147
+        + parameters[YZ4] * t150;
+    const rx90_real_t t222 = t135 * t135; /* link j4: motion */
     /* link j5: what it passes on */
-    const rx90_real_t t224 = t222 + parameters[XZ4] * (t217 - t223) + parameters[MX4] * t191 + t221;
+    const rx90_real_t t223 = t221 + parameters[XZ4] * (t216 - t222) + parameters[MX4] * t190 + t220;
     /* link j6: force and moment */
-    const rx90_real_t t225 = parameters[MX6] * (t172 + t173) + parameters[MY6] * t195;
-    const rx90_real_t t226 = parameters[MX6] * t170 + parameters[MY6] * (t197 + t173);
+    const rx90_real_t t224 = parameters[MX6] * (t171 + t172) + parameters[MY6] * t194;
+    const rx90_real_t t225 = parameters[MX6] * t169 + parameters[MY6] * (t196 + t172);
     /* link j6: what it passes on */
-    const rx90_real_t t227 = parameters[MX5] * (t202 + t203) + parameters[MY5R] * t143 + (t2 * t225
-        - t1 * t226);
-    const rx90_real_t t228 = parameters[MX5] * t200 - parameters[MY5R] * (t211 + t203)
-        + (parameters[MX6] * t165 + parameters[MY6] * t194);
+    const rx90_real_t t226 = parameters[MX5] * (t201 + t202) + parameters[MY5R] * t142 + (t2 * t224
+        - t1 * t225);
+    const rx90_real_t t227 = parameters[MX5] * t199 - parameters[MY5R] * (t210 + t202)
+        + (parameters[MX6] * t164 + parameters[MY6] * t193);
     /* link j5: what it passes on */
-    const rx90_real_t t229 = parameters[MX4] * (t216 + t217) + parameters[MY4R] * t151 + (t15 * t227
-        + t13 * t228);
+    const rx90_real_t t228 = parameters[MX4] * (t215 + t216) + parameters[MY4R] * t150 + (t14 * t226
+        + t12 * t227);
     /* link j6: what it passes on */
-    const rx90_real_t t230 = parameters[MX5] * t199 + parameters[MY5R] * t156 + (t1 * t225 + t2 * t226);
+    const rx90_real_t t229 = parameters[MX5] * t198 + parameters[MY5R] * t155 + (t1 * t224 + t2 * t225);
     /* link j5: what it passes on */
-    const rx90_real_t t231 = parameters[MX4] * t214 + parameters[MY4R] * (t223 + t217) + t230;
-    const rx90_real_t t232 = t32 * t229 + t34 * t231; /* link j4: what it passes on */
-    const rx90_real_t t233 = RX90_C(2.0) * t150; /* link j4: motion */
+    const rx90_real_t t230 = parameters[MX4] * t213 + parameters[MY4R] * (t222 + t216) + t229;
+    const rx90_real_t t231 = t30 * t228 + t32 * t230; /* link j4: what it passes on */
+    const rx90_real_t t232 = RX90_C(2.0) * t149; /* link j4: motion */
     /* link j3: force and moment */
-    const rx90_real_t t234 = parameters[XY3] * t233 - (parameters[XX3R] * t133 + parameters[ZZ3R] * t133)
-        - parameters[XZ3] * t131;
-    const rx90_real_t t235 = t130 * t130; /* link j3: motion */
+    const rx90_real_t t233 = parameters[XY3] * t232 - (parameters[XX3R] * t132 + parameters[ZZ3R] * t132)
+        - parameters[XZ3] * t130;
+    const rx90_real_t t234 = t129 * t129; /* link j3: motion */
     /* link j4: what it passes on */
-    const rx90_real_t t236 = t234 + parameters[YZ3] * (t189 - t235) + parameters[MY3R] * t184 + (t34 * t218
-        + t32 * t224 + RX90_C(-0.45) * t232);
+    const rx90_real_t t235 = t233 + parameters[YZ3] * (t188 - t234) + parameters[MY3R] * t183 + (t32 * t217
+        + t30 * t223 + RX90_C(-0.45) * t231);
     /* link j4: force and moment */
-    const rx90_real_t t237 = parameters[ZZ4R] * t150 - parameters[XX4R] * t149 + parameters[YZ4] * t135
-        - parameters[XZ4] * t144;
-    const rx90_real_t t238 = t237 - parameters[XY4] * (t223 - t216) + (parameters[MY4R] * t186
-        - parameters[MX4] * t204);
-    const rx90_real_t t239 = t238 + (t13 * t205 - t15 * t212); /* link j5: what it passes on */
+    const rx90_real_t t236 = parameters[ZZ4R] * t149 - parameters[XX4R] * t148 + parameters[YZ4] * t134
+        - parameters[XZ4] * t143;
+    const rx90_real_t t237 = t236 - parameters[XY4] * (t222 - t215) + (parameters[MY4R] * t185
+        - parameters[MX4] * t203);
+    const rx90_real_t t238 = t237 + (t12 * t204 - t14 * t211); /* link j5: what it passes on */
     /* link j3: force and moment */
-    const rx90_real_t t240 = t150 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t134
-        - parameters[YZ3] * t131;
+    const rx90_real_t t239 = t149 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t133
+        - parameters[YZ3] * t130;
     /* link j4: what it passes on */
-    const rx90_real_t t241 = t240 - parameters[XZ3] * (t188 - t189) + parameters[MX3] * t184 - t239;
-    const rx90_real_t t242 = dq[1] * t128; /* link j2: motion */
+    const rx90_real_t t240 = t239 - parameters[XZ3] * (t187 - t188) + parameters[MX3] * t183 - t238;
+    const rx90_real_t t241 = dq[1] * t127; /* link j2: motion */
     /* link j2: force and moment */
-    const rx90_real_t t243 = parameters[XY2] * (RX90_C(2.0) * t183) - (parameters[XX2R] * t242
-        + parameters[ZZ2R] * t242);
+    const rx90_real_t t242 = parameters[XY2] * (RX90_C(2.0) * t182) - (parameters[XX2R] * t241
+        + parameters[ZZ2R] * t241);
     /* link j3: what it passes on */
-    const rx90_real_t t244 = t243 - parameters[XZ2R] * t178 + parameters[YZ2] * (t175 - t174) + (t68 * t236
-        + t67 * t241);
-    const rx90_real_t t245 = t67 * t236 - t68 * t241 + RX90_C(0.45) * (parameters[MX3] * t233
-        + parameters[MY3R] * t134 + t232);
+    const rx90_real_t t243 = t242 - parameters[XZ2R] * t177 + parameters[YZ2] * (t174 - t173) + (t65 * t235
+        + t64 * t240);
+    const rx90_real_t t244 = t64 * t235 - t65 * t240 + RX90_C(0.45) * (parameters[MX3] * t232
+        + parameters[MY3R] * t133 + t231);
     /* link j2: force and moment */
-    const rx90_real_t t246 = t183 * (parameters[ZZ2R] - parameters[XX2R])
-        + parameters[XY2] * (RX90_C(-2.0) * t242) + parameters[YZ2] * t178;
-    const rx90_real_t t247 = t127 * t127; /* link j2: motion */
+    const rx90_real_t t245 = t182 * (parameters[ZZ2R] - parameters[XX2R])
+        + parameters[XY2] * (RX90_C(-2.0) * t241) + parameters[YZ2] * t177;
+    const rx90_real_t t246 = t126 * t126; /* link j2: motion */
     /* link j2: what it passes on */
-    const rx90_real_t t248 = t97 * t244 + t95 * (t246 + parameters[XZ2R] * (t247 - t175) + t245);
-    const rx90_real_t t249 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
-    const rx90_real_t t250 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0])
-        - parameters[FC1] * t249) + t248;
-    const rx90_real_t t251 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
-    const rx90_real_t t252 = RX90_C(30.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5])
-        + parameters[FC6] * t251) + t209;
-    const rx90_real_t t253 = RX90_C(6.0) * input[5] - t252;
-    const rx90_real_t t254 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
-    const rx90_real_t t255 = RX90_C(50.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4])
-        + parameters[FC5] * t254) - t221;
-    const rx90_real_t t256 = RX90_C(10.0) * input[4] - t255 - t253 * t5;
-    const rx90_real_t t257 = RX90_C(30.0) * input[0] + t250 - t253 * t103 + t256 * t108;
-    const rx90_real_t t258 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
-    const rx90_real_t t259 = RX90_C(50.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3])
-        + parameters[FC4] * t258) - t239;
-    const rx90_real_t t260 = RX90_C(10.0) * input[3] - t259 + t253 * t28 - t256 * t21;
-    const rx90_real_t t261 = t34 * t229 - t32 * t231; /* link j4: what it passes on */
+    const rx90_real_t t247 = t93 * t243 + t91 * (t245 + parameters[XZ2R] * (t246 - t174) + t244);
+    const rx90_real_t t248 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
+    const rx90_real_t t249 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0])
+        - parameters[FC1] * t248) + t247;
+    const rx90_real_t t250 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
+    const rx90_real_t t251 = RX90_C(30.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5])
+        + parameters[FC6] * t250) + t208;
+    const rx90_real_t t252 = RX90_C(6.0) * input[5] - t251;
+    const rx90_real_t t253 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
+    const rx90_real_t t254 = RX90_C(50.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4])
+        + parameters[FC5] * t253) - t220;
+    const rx90_real_t t255 = RX90_C(10.0) * input[4] - t254 - t252 * t5;
+    const rx90_real_t t256 = RX90_C(30.0) * input[0] + t249 - t252 * t99 + t255 * t104;
+    const rx90_real_t t257 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
+    const rx90_real_t t258 = RX90_C(50.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3])
+        + parameters[FC4] * t257) - t238;
+    const rx90_real_t t259 = RX90_C(10.0) * input[3] - t258 + t252 * t27 - t255 * t20;
+    const rx90_real_t t260 = t32 * t228 - t30 * t230; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const rx90_real_t t262 = parameters[XY3] * (t188 - t235) - parameters[XX3R] * t131
-        - (parameters[MX3] * t187 - parameters[MY3R] * t181);
+    const rx90_real_t t261 = parameters[XY3] * (t187 - t234) - parameters[XX3R] * t130
+        - (parameters[MX3] * t186 - parameters[MY3R] * t180);
     /* link j4: what it passes on */
-    const rx90_real_t t263 = t262 + (t32 * t218 - t34 * t224 + RX90_C(0.45) * t261);
-    const rx90_real_t t264 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
-    const rx90_real_t t265 = RX90_C(1.0e2) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2])
-        + parameters[FC3] * t264) + t263;
-    const rx90_real_t t266 = RX90_C(30.0) * input[2] - t265 - t253 * t56 - t256 * t64;
-    const rx90_real_t t267 = t266 + t260 * t55;
+    const rx90_real_t t262 = t261 + (t30 * t217 - t32 * t223 + RX90_C(0.45) * t260);
+    const rx90_real_t t263 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
+    const rx90_real_t t264 = RX90_C(1.0e2) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2])
+        + parameters[FC3] * t263) + t262;
+    const rx90_real_t t265 = RX90_C(30.0) * input[2] - t264 - t252 * t54 - t255 * t62;
+    const rx90_real_t t266 = t265 + t259 * t53;
     /* link j3: what it passes on */
-    const rx90_real_t t268 = t67 * (parameters[MX3] * (t235 + t189) - parameters[MY3R] * t131 + t261);
+    const rx90_real_t t267 = t64 * (parameters[MX3] * (t234 + t188) - parameters[MY3R] * t130 + t260);
     /* link j5: what it passes on */
-    const rx90_real_t t269 = parameters[MX4] * t213 + parameters[MY4R] * t148 - (t13 * t227 - t15 * t228);
+    const rx90_real_t t268 = parameters[MX4] * t212 + parameters[MY4R] * t147 - (t12 * t226 - t14 * t227);
     /* link j3: what it passes on */
-    const rx90_real_t t270 = t268 + t68 * (parameters[MY3R] * t190 - parameters[MX3] * t131 - t269);
+    const rx90_real_t t269 = t267 + t65 * (parameters[MY3R] * t189 - parameters[MX3] * t130 - t268);
     /* link j2: force and moment */
-    const rx90_real_t t271 = parameters[XX2R] * t178 - parameters[XY2] * (t247 - t174)
-        + (parameters[MX2R] * t179 + parameters[MY2] * t176);
-    const rx90_real_t t272 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
-    const rx90_real_t t273 = RX90_C(1.0e2) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
-        + parameters[FC2] * t272) - (t271 - (t263 - RX90_C(0.45) * t270));
-    const rx90_real_t t274 = RX90_C(30.0) * input[1] - t273 - t253 * t82 + t256 * t81;
-    const rx90_real_t t275 = t274 + t260 * t80 + t267 * t79;
-    const rx90_real_t t276 = t257 - t260 * t111 + t267 * t119 + t275 * t124;
-    const rx90_real_t t277 = RX90_C(1.0) / t125;
-    const rx90_real_t t278 = rx90_bounded(t276 * t277);
-    out[0] = t278;
-    const rx90_real_t t279 = rx90_bounded(t275 * t123 + t124 * t278);
-    out[1] = t279;
-    const rx90_real_t t280 = rx90_bounded(t267 * t78 + t119 * t278 + t79 * t279);
-    out[2] = t280;
-    const rx90_real_t t281 = rx90_bounded(t80 * t279 - (t260 * t54 + t111 * t278) + t55 * t280);
-    out[3] = t281;
-    const rx90_real_t t282 = t256 * t20 + t108 * t278 + t81 * t279 - t64 * t280;
-    const rx90_real_t t283 = rx90_bounded(t282 - t21 * t281);
-    out[4] = t283;
-    const rx90_real_t t284 = t253 * t4 + t103 * t278 + t82 * t279 + t56 * t280;
-    out[5] = t28 * t281 - t284 - t5 * t283;
-    if (!rx90_all_bounded(out, 6)) {
+    const rx90_real_t t270 = parameters[XX2R] * t177 - parameters[XY2] * (t246 - t173)
+        + (parameters[MX2R] * t178 + parameters[MY2] * t175);
+    const rx90_real_t t271 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
+    const rx90_real_t t272 = RX90_C(1.0e2) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
+        + parameters[FC2] * t271) - (t270 - (t262 - RX90_C(0.45) * t269));
+    const rx90_real_t t273 = RX90_C(30.0) * input[1] - t272 - t252 * t79 + t255 * t78;
+    const rx90_real_t t274 = t273 + t259 * t77 + t266 * t76;
+    const rx90_real_t t275 = t256 - t259 * t107 + t266 * t115 + t274 * t120;
+    const rx90_real_t t276 = RX90_C(1.0) / t121;
+    const rx90_real_t t277 = rx90_held(t275 * t276);
+    out[0] = t277;
+    const rx90_real_t t278 = rx90_held(t274 * t119 + t120 * t277);
+    out[1] = t278;
+    const rx90_real_t t279 = rx90_held(t266 * t75 + t115 * t277 + t76 * t278);
+    out[2] = t279;
+    const rx90_real_t t280 = rx90_held(t77 * t278 - (t259 * t52 + t107 * t277) + t53 * t279);
+    out[3] = t280;
+    const rx90_real_t t281 = t255 * t19 + t104 * t277 + t78 * t278 - t62 * t279;
+    const rx90_real_t t282 = rx90_held(t281 - t20 * t280);
+    out[4] = t282;
+    const rx90_real_t t283 = t252 * t4 + t99 * t277 + t79 * t278 + t54 * t279;
+    out[5] = t27 * t280 - t283 - t5 * t282;
+    if (!rx90_bounded(out, 6)) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }

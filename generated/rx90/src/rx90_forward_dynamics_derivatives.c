@@ -7,7 +7,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3605 (2016 mul, 1589 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 3605 (2016 mul, 1589 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -85,7 +85,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x88006983UL
+#if RX90_GENERATION != 0x1B6CDAA1UL
 #error "rx90.h and rx90_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -118,17 +118,17 @@ rx90_status_t rx90_forward_dynamics_derivatives(
         return status;
     }
 
-    rx90_real_t t105, t102;
-    RX90_SINCOS(q[1], &t105, &t102);
-    rx90_real_t t67, t71;
-    RX90_SINCOS(q[2], &t67, &t71);
-    rx90_real_t t32, t34;
-    RX90_SINCOS(q[3], &t32, &t34);
-    rx90_real_t t13, t15;
-    RX90_SINCOS(q[4], &t13, &t15);
+    rx90_real_t t101, t98;
+    RX90_SINCOS(q[1], &t101, &t98);
+    rx90_real_t t64, t68;
+    RX90_SINCOS(q[2], &t64, &t68);
+    rx90_real_t t30, t32;
+    RX90_SINCOS(q[3], &t30, &t32);
+    rx90_real_t t12, t14;
+    RX90_SINCOS(q[4], &t12, &t14);
     rx90_real_t t1, t2;
     RX90_SINCOS(q[5], &t1, &t2);
-    const rx90_real_t t0 = rx90_bounded(parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6]);
+    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
     if (!(t0 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -145,7 +145,7 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t t7 = t2 * t6;
     const rx90_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
     const rx90_real_t t9 = t8 + RX90_C(2.5e3) * parameters[IA5];
-    const rx90_real_t t10 = rx90_bounded(t9 - t3 * t5);
+    const rx90_real_t t10 = t9 - t3 * t5;
     if (!(t10 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -153,186 +153,165 @@ rx90_status_t rx90_forward_dynamics_derivatives(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t11 = t10 + RX90_C(-1.0e-9) * t9;
-    if (!(t11 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t12 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
-    const rx90_real_t t14 = parameters[YZ5] - t3;
-    const rx90_real_t t16 = t13 * t12 + t15 * t14; /* link j5: column of the mass matrix */
+    const rx90_real_t t11 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
+    const rx90_real_t t13 = parameters[YZ5] - t3;
+    const rx90_real_t t15 = t12 * t11 + t14 * t13; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const rx90_real_t t17 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
-    const rx90_real_t t18 = t13 * t17 + t15 * parameters[ZZ6];
-    const rx90_real_t t19 = t16 + t18 * t5;
-    const rx90_real_t t20 = RX90_C(1.0) / t10;
-    const rx90_real_t t21 = t19 * t20;
-    const rx90_real_t t22 = parameters[XX5R] - t7; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t23 = parameters[XY5] + t17;
+    const rx90_real_t t16 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
+    const rx90_real_t t17 = t12 * t16 + t14 * parameters[ZZ6];
+    const rx90_real_t t18 = t15 + t17 * t5;
+    const rx90_real_t t19 = RX90_C(1.0) / t10;
+    const rx90_real_t t20 = t18 * t19;
+    const rx90_real_t t21 = parameters[XX5R] - t7; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t22 = parameters[XY5] + t16;
     /* link j5: inertia of it and all beyond */
-    const rx90_real_t t24 = t15 * (parameters[ZZ6] - t22) + t23 * (RX90_C(2.0) * t13);
-    const rx90_real_t t25 = t15 * t24;
-    const rx90_real_t t26 = parameters[ZZ4R] + (t22 + t25);
-    const rx90_real_t t27 = t26 + RX90_C(2.5e3) * parameters[IA4];
-    const rx90_real_t t28 = t18 * t4;
-    const rx90_real_t t29 = rx90_bounded(t27 - t18 * t28 - t19 * t21);
-    if (!(t29 > RX90_C(1.0e-12))) {
+    const rx90_real_t t23 = t14 * (parameters[ZZ6] - t21) + t22 * (RX90_C(2.0) * t12);
+    const rx90_real_t t24 = t14 * t23;
+    const rx90_real_t t25 = parameters[ZZ4R] + (t21 + t24);
+    const rx90_real_t t26 = t25 + RX90_C(2.5e3) * parameters[IA4];
+    const rx90_real_t t27 = t17 * t4;
+    const rx90_real_t t28 = t26 - t17 * t27 - t18 * t20;
+    if (!(t28 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t30 = t29 + RX90_C(-1.0e-9) * t27;
-    if (!(t30 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t31 = t13 * t24 - t23 - parameters[XZ4];
-    const rx90_real_t t33 = parameters[YZ4] - t16;
+    const rx90_real_t t29 = t12 * t23 - t22 - parameters[XZ4];
+    const rx90_real_t t31 = parameters[YZ4] - t15;
     /* link j6: column of the mass matrix */
-    const rx90_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const rx90_real_t t36 = parameters[MY4R] + t35; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t33 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const rx90_real_t t34 = parameters[MY4R] + t33; /* link j5: inertia of it and all beyond */
     /* link j6: column of the mass matrix */
-    const rx90_real_t t37 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const rx90_real_t t38 = parameters[MX5] + t37; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t39 = t15 * t38 - t13 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const rx90_real_t t40 = parameters[MX4] + t39; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t41 = t34 * t36 + t32 * t40; /* link j4: column of the mass matrix */
-    const rx90_real_t t42 = RX90_C(-0.45) * t41;
-    const rx90_real_t t43 = t34 * t33 - t32 * t31 + t42;
-    const rx90_real_t t44 = t15 * t17 - t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const rx90_real_t t45 = t15 * t35;
-    const rx90_real_t t46 = t34 * t45 + t32 * t37;
-    const rx90_real_t t47 = RX90_C(0.45) * t46 - (t32 * t44 + t34 * t3);
-    const rx90_real_t t48 = t15 * t12 - t13 * t14; /* link j5: column of the mass matrix */
-    const rx90_real_t t49 = t15 * parameters[MY5R] + t13 * t38;
-    const rx90_real_t t50 = t34 * t49;
-    const rx90_real_t t51 = t34 * t8 - t32 * t48 + RX90_C(0.45) * t50;
-    const rx90_real_t t52 = t51 + t47 * t5;
-    const rx90_real_t t53 = t43 + t47 * t28 + t52 * t21;
-    const rx90_real_t t54 = RX90_C(1.0) / t29;
-    const rx90_real_t t55 = t53 * t54;
-    const rx90_real_t t56 = t47 * t4;
+    const rx90_real_t t35 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const rx90_real_t t36 = parameters[MX5] + t35; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t37 = t14 * t36 - t12 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const rx90_real_t t38 = parameters[MX4] + t37; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t39 = t32 * t34 + t30 * t38; /* link j4: column of the mass matrix */
+    const rx90_real_t t40 = RX90_C(-0.45) * t39;
+    const rx90_real_t t41 = t32 * t31 - t30 * t29 + t40;
+    const rx90_real_t t42 = t14 * t16 - t12 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const rx90_real_t t43 = t14 * t33;
+    const rx90_real_t t44 = t32 * t43 + t30 * t35;
+    const rx90_real_t t45 = RX90_C(0.45) * t44 - (t30 * t42 + t32 * t3);
+    const rx90_real_t t46 = t14 * t11 - t12 * t13; /* link j5: column of the mass matrix */
+    const rx90_real_t t47 = t14 * parameters[MY5R] + t12 * t36;
+    const rx90_real_t t48 = t32 * t47;
+    const rx90_real_t t49 = t32 * t8 - t30 * t46 + RX90_C(0.45) * t48;
+    const rx90_real_t t50 = t49 + t45 * t5;
+    const rx90_real_t t51 = t41 + t45 * t27 + t50 * t20;
+    const rx90_real_t t52 = RX90_C(1.0) / t28;
+    const rx90_real_t t53 = t51 * t52;
+    const rx90_real_t t54 = t45 * t4;
     /* link j5: inertia of it and all beyond */
-    const rx90_real_t t57 = t25 - parameters[ZZ6] - parameters[XX4R];
-    const rx90_real_t t58 = parameters[XY4] - t48;
+    const rx90_real_t t55 = t24 - parameters[ZZ6] - parameters[XX4R];
+    const rx90_real_t t56 = parameters[XY4] - t46;
     /* link j4: inertia of it and all beyond */
-    const rx90_real_t t59 = t34 * (t8 + t57) + t58 * (RX90_C(2.0) * t32);
-    const rx90_real_t t60 = t34 * t59;
-    const rx90_real_t t61 = RX90_C(0.9) * t49;
-    const rx90_real_t t62 = parameters[ZZ3R] + (t60 - t57 + t61);
-    const rx90_real_t t63 = t62 + RX90_C(1.0e4) * parameters[IA3];
-    const rx90_real_t t64 = t52 * t20;
-    const rx90_real_t t65 = rx90_bounded(t63 - t47 * t56 - t52 * t64 - t53 * t55);
-    if (!(t65 > RX90_C(1.0e-12))) {
+    const rx90_real_t t57 = t32 * (t8 + t55) + t56 * (RX90_C(2.0) * t30);
+    const rx90_real_t t58 = t32 * t57;
+    const rx90_real_t t59 = RX90_C(0.9) * t47;
+    const rx90_real_t t60 = parameters[ZZ3R] + (t58 - t55 + t59);
+    const rx90_real_t t61 = t60 + RX90_C(1.0e4) * parameters[IA3];
+    const rx90_real_t t62 = t50 * t19;
+    const rx90_real_t t63 = t61 - t45 * t54 - t50 * t62 - t51 * t53;
+    if (!(t63 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t66 = t65 + RX90_C(-1.0e-9) * t63;
-    if (!(t66 > RX90_C(1.0e-12))) {
+    const rx90_real_t t65 = t64 * t39; /* link j4: column of the mass matrix */
+    const rx90_real_t t66 = t41 + RX90_C(0.45) * t65;
+    const rx90_real_t t67 = t12 * t33; /* link j6: column of the mass matrix */
+    const rx90_real_t t69 = t64 * t44 + t68 * t67;
+    const rx90_real_t t70 = t45 + RX90_C(-0.45) * t69;
+    const rx90_real_t t71 = t68 * t37 - t64 * t48; /* link j5: column of the mass matrix */
+    const rx90_real_t t72 = t49 + RX90_C(0.45) * t71;
+    const rx90_real_t t73 = t72 + t70 * t5;
+    const rx90_real_t t74 = t66 + t70 * t27 + t73 * t20;
+    const rx90_real_t t75 = t32 * t38 - t30 * t34; /* link j4: column of the mass matrix */
+    const rx90_real_t t76 = parameters[MX3] + t75; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t77 = parameters[MY3R] + t47;
+    const rx90_real_t t78 = t64 * t77 - t68 * t76; /* link j3: column of the mass matrix */
+    const rx90_real_t t79 = RX90_C(0.45) * t78 - t60;
+    const rx90_real_t t80 = t79 + t70 * t54 + t73 * t62 + t74 * t53;
+    const rx90_real_t t81 = RX90_C(1.0) / t63;
+    const rx90_real_t t82 = t80 * t81;
+    const rx90_real_t t83 = t74 * t52;
+    const rx90_real_t t84 = t73 * t19;
+    const rx90_real_t t85 = t70 * t4;
+    const rx90_real_t t86 = RX90_C(-0.9) * t78; /* link j3: inertia of it and all beyond */
+    const rx90_real_t t87 = parameters[ZZ2R] + (t60 + t86);
+    const rx90_real_t t88 = t87 - t70 * t85 - t73 * t84 - t74 * t83;
+    const rx90_real_t t89 = t88 - t80 * t82;
+    if (!(t89 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t68 = t67 * t41; /* link j4: column of the mass matrix */
-    const rx90_real_t t69 = t43 + RX90_C(0.45) * t68;
-    const rx90_real_t t70 = t13 * t35; /* link j6: column of the mass matrix */
-    const rx90_real_t t72 = t67 * t46 + t71 * t70;
-    const rx90_real_t t73 = t47 + RX90_C(-0.45) * t72;
-    const rx90_real_t t74 = t71 * t39 - t67 * t50; /* link j5: column of the mass matrix */
-    const rx90_real_t t75 = t51 + RX90_C(0.45) * t74;
-    const rx90_real_t t76 = t75 + t73 * t5;
-    const rx90_real_t t77 = t69 + t73 * t28 + t76 * t21;
-    const rx90_real_t t78 = t34 * t40 - t32 * t36; /* link j4: column of the mass matrix */
-    const rx90_real_t t79 = parameters[MX3] + t78; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t80 = parameters[MY3R] + t49;
-    const rx90_real_t t81 = t67 * t80 - t71 * t79; /* link j3: column of the mass matrix */
-    const rx90_real_t t82 = RX90_C(0.45) * t81 - t62;
-    const rx90_real_t t83 = t82 + t73 * t56 + t76 * t64 + t77 * t55;
-    const rx90_real_t t84 = RX90_C(1.0) / t65;
-    const rx90_real_t t85 = t83 * t84;
-    const rx90_real_t t86 = t77 * t54;
-    const rx90_real_t t87 = t76 * t20;
-    const rx90_real_t t88 = t73 * t4;
-    const rx90_real_t t89 = RX90_C(-0.9) * t81; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t90 = parameters[ZZ2R] + (t62 + t89);
-    const rx90_real_t t91 = t90 - t73 * t88 - t76 * t87 - t77 * t86;
-    const rx90_real_t t92 = rx90_bounded(t91 - t83 * t85);
-    if (!(t92 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t93 = t92 + RX90_C(-1.0e-9) * t90;
-    if (!(t93 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t94 = parameters[XX3R] + (t8 - t60 + t61); /* link j4: inertia of it and all beyond */
-    const rx90_real_t t95 = RX90_C(-0.45) * t78; /* link j4: column of the mass matrix */
-    const rx90_real_t t96 = t34 * t31 + t32 * t33 - t95;
-    const rx90_real_t t97 = t96 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t90 = parameters[XX3R] + (t8 - t58 + t59); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t91 = RX90_C(-0.45) * t75; /* link j4: column of the mass matrix */
+    const rx90_real_t t92 = t32 * t29 + t30 * t31 - t91;
+    const rx90_real_t t93 = t92 - parameters[XY3]; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const rx90_real_t t98 = t71 * (t94 - t26) - t97 * (RX90_C(-2.0) * t67);
-    const rx90_real_t t99 = t71 * t98;
-    const rx90_real_t t100 = t94 - t99 + t89;
-    const rx90_real_t t101 = parameters[XX2R] + (t26 + t99);
-    const rx90_real_t t103 = t71 * t80 + t67 * t79; /* link j3: column of the mass matrix */
+    const rx90_real_t t94 = t68 * (t90 - t25) - t93 * (RX90_C(-2.0) * t64);
+    const rx90_real_t t95 = t68 * t94;
+    const rx90_real_t t96 = t90 - t95 + t86;
+    const rx90_real_t t97 = parameters[XX2R] + (t25 + t95);
+    const rx90_real_t t99 = t68 * t77 + t64 * t76; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const rx90_real_t t104 = parameters[XY2] + (t67 * t98 - t97 + RX90_C(-0.45) * t103);
+    const rx90_real_t t100 = parameters[XY2] + (t64 * t94 - t93 + RX90_C(-0.45) * t99);
     /* link j2: inertia of it and all beyond */
-    const rx90_real_t t106 = t102 * (t102 * (t100 - t101) + t104 * (RX90_C(2.0) * t105));
-    const rx90_real_t t107 = parameters[ZZ1R] + (t101 + t106);
-    const rx90_real_t t108 = t32 * t45 - t34 * t37; /* link j6: column of the mass matrix */
-    const rx90_real_t t109 = RX90_C(0.45) * t108;
-    const rx90_real_t t110 = t34 * t44 - t32 * t3 + t109;
-    const rx90_real_t t111 = t67 * t18 - t71 * t110;
-    const rx90_real_t t112 = t67 * t110 + t71 * t18 - t109;
-    const rx90_real_t t113 = t102 * t112 - t105 * t111;
-    const rx90_real_t t114 = t113 * t4;
-    const rx90_real_t t115 = t32 * t49; /* link j5: column of the mass matrix */
-    const rx90_real_t t116 = RX90_C(0.45) * t115;
-    const rx90_real_t t117 = t34 * t48 + t32 * t8 + t116;
-    const rx90_real_t t118 = t67 * t16 - t71 * t117;
-    const rx90_real_t t119 = t67 * t117 + t71 * t16 - t116;
-    const rx90_real_t t120 = t102 * t119 - t105 * t118 + t113 * t5;
-    const rx90_real_t t121 = t120 * t20;
-    const rx90_real_t t122 = t71 * t96 + t67 * t26; /* link j4: column of the mass matrix */
-    const rx90_real_t t123 = t95 + (t67 * t96 - t71 * t26);
-    const rx90_real_t t124 = t105 * t122 + t102 * t123 + t113 * t28 + t120 * t21;
-    const rx90_real_t t125 = t124 * t54;
-    const rx90_real_t t126 = t107 - t113 * t114 - t120 * t121 - t124 * t125;
-    const rx90_real_t t127 = parameters[XZ3] + (t32 * t59 - t58); /* link j4: inertia of it and all beyond */
-    const rx90_real_t t128 = parameters[YZ3] - t43;
-    const rx90_real_t t129 = t67 * t128 - t71 * t127; /* link j3: column of the mass matrix */
-    const rx90_real_t t130 = t67 * t127 + t71 * t128;
-    const rx90_real_t t131 = t102 * t130 - t105 * t129 - t113 * t56 - t120 * t64;
-    const rx90_real_t t132 = t131 - t124 * t55;
-    const rx90_real_t t133 = t132 * t84;
-    const rx90_real_t t134 = t42 + t129 - parameters[XZ2R]; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t135 = parameters[YZ2] + t130;
-    const rx90_real_t t136 = t102 * t135 - t105 * t134 - t113 * t88 - t120 * t87;
-    const rx90_real_t t137 = t136 - t124 * t86 + t132 * t85;
-    const rx90_real_t t138 = RX90_C(1.0) / t92;
-    const rx90_real_t t139 = t137 * t138;
-    const rx90_real_t t140 = rx90_bounded(t126 - t132 * t133 - t137 * t139);
+    const rx90_real_t t102 = t98 * (t98 * (t96 - t97) + t100 * (RX90_C(2.0) * t101));
+    const rx90_real_t t103 = parameters[ZZ1R] + (t97 + t102);
+    const rx90_real_t t104 = t30 * t43 - t32 * t35; /* link j6: column of the mass matrix */
+    const rx90_real_t t105 = RX90_C(0.45) * t104;
+    const rx90_real_t t106 = t32 * t42 - t30 * t3 + t105;
+    const rx90_real_t t107 = t64 * t17 - t68 * t106;
+    const rx90_real_t t108 = t64 * t106 + t68 * t17 - t105;
+    const rx90_real_t t109 = t98 * t108 - t101 * t107;
+    const rx90_real_t t110 = t109 * t4;
+    const rx90_real_t t111 = t30 * t47; /* link j5: column of the mass matrix */
+    const rx90_real_t t112 = RX90_C(0.45) * t111;
+    const rx90_real_t t113 = t32 * t46 + t30 * t8 + t112;
+    const rx90_real_t t114 = t64 * t15 - t68 * t113;
+    const rx90_real_t t115 = t64 * t113 + t68 * t15 - t112;
+    const rx90_real_t t116 = t98 * t115 - t101 * t114 + t109 * t5;
+    const rx90_real_t t117 = t116 * t19;
+    const rx90_real_t t118 = t68 * t92 + t64 * t25; /* link j4: column of the mass matrix */
+    const rx90_real_t t119 = t91 + (t64 * t92 - t68 * t25);
+    const rx90_real_t t120 = t101 * t118 + t98 * t119 + t109 * t27 + t116 * t20;
+    const rx90_real_t t121 = t120 * t52;
+    const rx90_real_t t122 = t103 - t109 * t110 - t116 * t117 - t120 * t121;
+    const rx90_real_t t123 = parameters[XZ3] + (t30 * t57 - t56); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t124 = parameters[YZ3] - t41;
+    const rx90_real_t t125 = t64 * t124 - t68 * t123; /* link j3: column of the mass matrix */
+    const rx90_real_t t126 = t64 * t123 + t68 * t124;
+    const rx90_real_t t127 = t98 * t126 - t101 * t125 - t109 * t54 - t116 * t62;
+    const rx90_real_t t128 = t127 - t120 * t53;
+    const rx90_real_t t129 = t128 * t81;
+    const rx90_real_t t130 = t40 + t125 - parameters[XZ2R]; /* link j3: inertia of it and all beyond */
+    const rx90_real_t t131 = parameters[YZ2] + t126;
+    const rx90_real_t t132 = t98 * t131 - t101 * t130 - t109 * t85 - t116 * t84;
+    const rx90_real_t t133 = t132 - t120 * t83 + t128 * t82;
+    const rx90_real_t t134 = RX90_C(1.0) / t89;
+    const rx90_real_t t135 = t133 * t134;
+    const rx90_real_t t136 = t122 - t128 * t129 - t133 * t135;
+    if (!(t136 > RX90_C(1.0e-12))) {
+        rx90_zero(ddq, 6);
+        rx90_zero(ddq_by_q, 36);
+        rx90_zero(ddq_by_dq, 36);
+        rx90_zero(ddq_by_input, 36);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t137 = rx90_min(t10 + RX90_C(-1.0e-9) * t9, t28 + RX90_C(-1.0e-9) * t26);
+    const rx90_real_t t138 = rx90_min(t137, t63 + RX90_C(-1.0e-9) * t61);
+    const rx90_real_t t139 = rx90_min(t138, t89 + RX90_C(-1.0e-9) * t87);
+    const rx90_real_t t140 = rx90_min(t139, t136 + RX90_C(-1.0e-9) * t103);
     if (!(t140 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -340,1044 +319,1041 @@ rx90_status_t rx90_forward_dynamics_derivatives(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t141 = t140 + RX90_C(-1.0e-9) * t107;
-    if (!(t141 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t142 = t105 * dq[0]; /* link j2: motion */
-    const rx90_real_t t143 = t102 * dq[0];
-    const rx90_real_t t144 = t71 * t142 + t67 * t143; /* link j3: motion */
-    const rx90_real_t t145 = t71 * t143 - t67 * t142;
-    const rx90_real_t t146 = t144 * t145;
-    const rx90_real_t t147 = dq[1] + dq[2];
-    const rx90_real_t t148 = t145 * t147;
-    const rx90_real_t t149 = RX90_C(2.0) * t148; /* link j4: motion */
-    const rx90_real_t t150 = t32 * t149 - t34 * t146;
-    const rx90_real_t t151 = t32 * t147;
-    const rx90_real_t t152 = t34 * t144 - t151;
-    const rx90_real_t t153 = dq[3] + t145;
-    const rx90_real_t t154 = t152 * t153;
-    const rx90_real_t t155 = t150 + t154;
-    const rx90_real_t t156 = t15 * t152 + t13 * t153; /* link j5: motion */
-    const rx90_real_t t157 = t13 * t152 - t15 * t153;
-    const rx90_real_t t158 = t156 * t157;
-    const rx90_real_t t159 = t155 + t158; /* link j6: motion */
-    const rx90_real_t t160 = t32 * t146 + t34 * t149; /* link j4: motion */
-    const rx90_real_t t161 = t34 * t147;
-    const rx90_real_t t162 = t32 * t144 + t161;
-    const rx90_real_t t163 = t162 * t153;
-    const rx90_real_t t164 = t160 - t163;
-    const rx90_real_t t165 = t164 - t163; /* link j5: motion */
-    const rx90_real_t t166 = t152 * t162; /* link j4: motion */
-    const rx90_real_t t167 = t144 * t147; /* link j3: motion */
-    const rx90_real_t t168 = t166 - t167; /* link j5: motion */
-    const rx90_real_t t169 = t13 * t168 + t15 * t165;
-    const rx90_real_t t170 = dq[4] + t162;
-    const rx90_real_t t171 = t157 * t170;
-    const rx90_real_t t172 = t169 - t171;
-    const rx90_real_t t173 = t172 - t171; /* link j6: motion */
-    const rx90_real_t t174 = t2 * t173 - t1 * t159;
-    const rx90_real_t t175 = t1 * t156 + t2 * t170;
-    const rx90_real_t t176 = dq[5] - t157;
-    const rx90_real_t t177 = t175 * t176;
-    const rx90_real_t t178 = t174 - t177;
-    const rx90_real_t t179 = t2 * t159 + t1 * t173;
-    const rx90_real_t t180 = t2 * t156 - t1 * t170;
-    const rx90_real_t t181 = t180 * t176;
-    const rx90_real_t t182 = t181 + (t179 + t181); /* link j6: force and moment */
-    const rx90_real_t t183 = t15 * t168 - t13 * t165; /* link j5: motion */
-    const rx90_real_t t184 = t156 * t170;
-    const rx90_real_t t185 = t183 - t184;
-    const rx90_real_t t186 = t180 * t175; /* link j6: motion */
-    const rx90_real_t t187 = t186 - t185; /* link j6: force and moment */
-    const rx90_real_t t188 = parameters[ZZ6] * t177 - parameters[XX6R] * t178 + parameters[XY6] * t182
-        + parameters[XZ6] * t187;
-    const rx90_real_t t189 = t175 * t175; /* link j6: motion */
-    const rx90_real_t t190 = t176 * t176;
-    const rx90_real_t t191 = t143 * t143; /* link j2: motion */
-    const rx90_real_t t192 = dq[1] * dq[1];
-    const rx90_real_t t193 = RX90_C(-9.81) * t105;
-    const rx90_real_t t194 = t193 + RX90_C(0.45) * (t192 + t191); /* link j3: motion */
-    const rx90_real_t t195 = t71 * t194;
-    const rx90_real_t t196 = t142 * t143; /* link j2: motion */
-    const rx90_real_t t197 = RX90_C(9.81) * t102;
-    const rx90_real_t t198 = RX90_C(-0.45) * t196 - t197; /* link j3: motion */
-    const rx90_real_t t199 = t195 + t67 * t198;
-    const rx90_real_t t200 = t199 + RX90_C(-0.45) * t146; /* link j4: motion */
-    const rx90_real_t t201 = dq[1] * t142; /* link j2: motion */
-    const rx90_real_t t202 = RX90_C(-0.9) * t201; /* link j3: motion */
-    const rx90_real_t t203 = t202 + RX90_C(-0.9) * t148; /* link j4: motion */
-    const rx90_real_t t204 = t32 * t203 - t34 * t200;
-    const rx90_real_t t205 = t67 * t194; /* link j3: motion */
-    const rx90_real_t t206 = t71 * t198 - t205;
-    const rx90_real_t t207 = t144 * t144;
-    const rx90_real_t t208 = t147 * t147;
-    const rx90_real_t t209 = t207 + t208; /* link j4: motion */
-    const rx90_real_t t210 = t206 + RX90_C(0.45) * t209;
-    const rx90_real_t t211 = t13 * t204 + t15 * t210; /* link j5: motion */
+    const rx90_real_t t141 = t101 * dq[0]; /* link j2: motion */
+    const rx90_real_t t142 = t98 * dq[0];
+    const rx90_real_t t143 = t68 * t141 + t64 * t142; /* link j3: motion */
+    const rx90_real_t t144 = t68 * t142 - t64 * t141;
+    const rx90_real_t t145 = t143 * t144;
+    const rx90_real_t t146 = dq[1] + dq[2];
+    const rx90_real_t t147 = t144 * t146;
+    const rx90_real_t t148 = RX90_C(2.0) * t147; /* link j4: motion */
+    const rx90_real_t t149 = t30 * t148 - t32 * t145;
+    const rx90_real_t t150 = t30 * t146;
+    const rx90_real_t t151 = t32 * t143 - t150;
+    const rx90_real_t t152 = dq[3] + t144;
+    const rx90_real_t t153 = t151 * t152;
+    const rx90_real_t t154 = t149 + t153;
+    const rx90_real_t t155 = t14 * t151 + t12 * t152; /* link j5: motion */
+    const rx90_real_t t156 = t12 * t151 - t14 * t152;
+    const rx90_real_t t157 = t155 * t156;
+    const rx90_real_t t158 = t154 + t157; /* link j6: motion */
+    const rx90_real_t t159 = t30 * t145 + t32 * t148; /* link j4: motion */
+    const rx90_real_t t160 = t32 * t146;
+    const rx90_real_t t161 = t30 * t143 + t160;
+    const rx90_real_t t162 = t161 * t152;
+    const rx90_real_t t163 = t159 - t162;
+    const rx90_real_t t164 = t163 - t162; /* link j5: motion */
+    const rx90_real_t t165 = t151 * t161; /* link j4: motion */
+    const rx90_real_t t166 = t143 * t146; /* link j3: motion */
+    const rx90_real_t t167 = t165 - t166; /* link j5: motion */
+    const rx90_real_t t168 = t12 * t167 + t14 * t164;
+    const rx90_real_t t169 = dq[4] + t161;
+    const rx90_real_t t170 = t156 * t169;
+    const rx90_real_t t171 = t168 - t170;
+    const rx90_real_t t172 = t171 - t170; /* link j6: motion */
+    const rx90_real_t t173 = t2 * t172 - t1 * t158;
+    const rx90_real_t t174 = t1 * t155 + t2 * t169;
+    const rx90_real_t t175 = dq[5] - t156;
+    const rx90_real_t t176 = t174 * t175;
+    const rx90_real_t t177 = t173 - t176;
+    const rx90_real_t t178 = t2 * t158 + t1 * t172;
+    const rx90_real_t t179 = t2 * t155 - t1 * t169;
+    const rx90_real_t t180 = t179 * t175;
+    const rx90_real_t t181 = t180 + (t178 + t180); /* link j6: force and moment */
+    const rx90_real_t t182 = t14 * t167 - t12 * t164; /* link j5: motion */
+    const rx90_real_t t183 = t155 * t169;
+    const rx90_real_t t184 = t182 - t183;
+    const rx90_real_t t185 = t179 * t174; /* link j6: motion */
+    const rx90_real_t t186 = t185 - t184; /* link j6: force and moment */
+    const rx90_real_t t187 = parameters[ZZ6] * t176 - parameters[XX6R] * t177 + parameters[XY6] * t181
+        + parameters[XZ6] * t186;
+    const rx90_real_t t188 = t174 * t174; /* link j6: motion */
+    const rx90_real_t t189 = t175 * t175;
+    const rx90_real_t t190 = t142 * t142; /* link j2: motion */
+    const rx90_real_t t191 = dq[1] * dq[1];
+    const rx90_real_t t192 = RX90_C(-9.81) * t101;
+    const rx90_real_t t193 = t192 + RX90_C(0.45) * (t191 + t190); /* link j3: motion */
+    const rx90_real_t t194 = t68 * t193;
+    const rx90_real_t t195 = t141 * t142; /* link j2: motion */
+    const rx90_real_t t196 = RX90_C(9.81) * t98;
+    const rx90_real_t t197 = RX90_C(-0.45) * t195 - t196; /* link j3: motion */
+    const rx90_real_t t198 = t194 + t64 * t197;
+    const rx90_real_t t199 = t198 + RX90_C(-0.45) * t145; /* link j4: motion */
+    const rx90_real_t t200 = dq[1] * t141; /* link j2: motion */
+    const rx90_real_t t201 = RX90_C(-0.9) * t200; /* link j3: motion */
+    const rx90_real_t t202 = t201 + RX90_C(-0.9) * t147; /* link j4: motion */
+    const rx90_real_t t203 = t30 * t202 - t32 * t199;
+    const rx90_real_t t204 = t64 * t193; /* link j3: motion */
+    const rx90_real_t t205 = t68 * t197 - t204;
+    const rx90_real_t t206 = t143 * t143;
+    const rx90_real_t t207 = t146 * t146;
+    const rx90_real_t t208 = t206 + t207; /* link j4: motion */
+    const rx90_real_t t209 = t205 + RX90_C(0.45) * t208;
+    const rx90_real_t t210 = t12 * t203 + t14 * t209; /* link j5: motion */
     /* link j6: force and moment */
-    const rx90_real_t t212 = t188 - parameters[YZ6] * (t189 - t190) + parameters[MY6] * t211;
-    const rx90_real_t t213 = t178 - t177;
-    const rx90_real_t t214 = parameters[XX6R] - parameters[ZZ6];
-    const rx90_real_t t215 = t185 + t186;
-    const rx90_real_t t216 = t180 * t180; /* link j6: motion */
+    const rx90_real_t t211 = t187 - parameters[YZ6] * (t188 - t189) + parameters[MY6] * t210;
+    const rx90_real_t t212 = t177 - t176;
+    const rx90_real_t t213 = parameters[XX6R] - parameters[ZZ6];
+    const rx90_real_t t214 = t184 + t185;
+    const rx90_real_t t215 = t179 * t179; /* link j6: motion */
     /* link j6: force and moment */
-    const rx90_real_t t217 = t181 * t214 + parameters[XY6] * t213 + parameters[YZ6] * t215
-        + parameters[XZ6] * (t190 - t216);
-    const rx90_real_t t218 = t217 + parameters[MX6] * t211;
-    const rx90_real_t t219 = t184 - t185; /* link j6: motion */
-    const rx90_real_t t220 = t155 - t158;
+    const rx90_real_t t216 = t180 * t213 + parameters[XY6] * t212 + parameters[YZ6] * t214
+        + parameters[XZ6] * (t189 - t215);
+    const rx90_real_t t217 = t216 + parameters[MX6] * t210;
+    const rx90_real_t t218 = t183 - t184; /* link j6: motion */
+    const rx90_real_t t219 = t154 - t157;
     /* link j5: force and moment */
-    const rx90_real_t t221 = parameters[ZZ5R] * t171 - parameters[XX5R] * t172 + parameters[XY5] * t219
-        - parameters[XZ5] * t220;
-    const rx90_real_t t222 = t157 * t157; /* link j5: motion */
-    const rx90_real_t t223 = t170 * t170;
-    const rx90_real_t t224 = t32 * t200 + t34 * t203; /* link j4: motion */
+    const rx90_real_t t220 = parameters[ZZ5R] * t170 - parameters[XX5R] * t171 + parameters[XY5] * t218
+        - parameters[XZ5] * t219;
+    const rx90_real_t t221 = t156 * t156; /* link j5: motion */
+    const rx90_real_t t222 = t169 * t169;
+    const rx90_real_t t223 = t30 * t199 + t32 * t202; /* link j4: motion */
     /* link j6: what it passes on */
-    const rx90_real_t t225 = t221 + parameters[YZ5] * (t223 - t222) + parameters[MY5R] * t224 + (t2 * t212
-        + t1 * t218);
+    const rx90_real_t t224 = t220 + parameters[YZ5] * (t222 - t221) + parameters[MY5R] * t223 + (t2 * t211
+        + t1 * t217);
     /* link j6: force and moment */
-    const rx90_real_t t226 = parameters[ZZ6] * t185 + parameters[XX6R] * t186 - parameters[YZ6] * t179
-        + parameters[XZ6] * t174;
-    const rx90_real_t t227 = t13 * t210 - t15 * t204; /* link j5: motion */
+    const rx90_real_t t225 = parameters[ZZ6] * t184 + parameters[XX6R] * t185 - parameters[YZ6] * t178
+        + parameters[XZ6] * t173;
+    const rx90_real_t t226 = t12 * t209 - t14 * t203; /* link j5: motion */
     /* link j6: force and moment */
-    const rx90_real_t t228 = parameters[MX6] * (t1 * t227 + t2 * t224) + parameters[MY6] * (t2 * t227
-        - t1 * t224);
-    const rx90_real_t t229 = t226 + parameters[XY6] * (t216 - t189) + t228;
-    const rx90_real_t t230 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
-    const rx90_real_t t231 = t156 * t156; /* link j5: motion */
+    const rx90_real_t t227 = parameters[MX6] * (t1 * t226 + t2 * t223) + parameters[MY6] * (t2 * t226
+        - t1 * t223);
+    const rx90_real_t t228 = t225 + parameters[XY6] * (t215 - t188) + t227;
+    const rx90_real_t t229 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
+    const rx90_real_t t230 = t155 * t155; /* link j5: motion */
     /* link j5: force and moment */
-    const rx90_real_t t232 = t184 * t230 + parameters[XY5] * t173 + parameters[YZ5] * t159
-        + parameters[XZ5] * (t223 - t231);
-    const rx90_real_t t233 = t232 + parameters[MX5] * t224 + t229; /* link j6: what it passes on */
-    const rx90_real_t t234 = t154 + t155; /* link j5: motion */
-    const rx90_real_t t235 = t167 + t166;
+    const rx90_real_t t231 = t183 * t229 + parameters[XY5] * t172 + parameters[YZ5] * t158
+        + parameters[XZ5] * (t222 - t230);
+    const rx90_real_t t232 = t231 + parameters[MX5] * t223 + t228; /* link j6: what it passes on */
+    const rx90_real_t t233 = t153 + t154; /* link j5: motion */
+    const rx90_real_t t234 = t166 + t165;
     /* link j4: force and moment */
-    const rx90_real_t t236 = parameters[ZZ4R] * t163 - parameters[XX4R] * t164 + parameters[XY4] * t234
-        + parameters[XZ4] * t235;
-    const rx90_real_t t237 = t162 * t162; /* link j4: motion */
-    const rx90_real_t t238 = t153 * t153;
+    const rx90_real_t t235 = parameters[ZZ4R] * t162 - parameters[XX4R] * t163 + parameters[XY4] * t233
+        + parameters[XZ4] * t234;
+    const rx90_real_t t236 = t161 * t161; /* link j4: motion */
+    const rx90_real_t t237 = t152 * t152;
     /* link j5: what it passes on */
-    const rx90_real_t t239 = t236 + parameters[YZ4] * (t238 - t237) + parameters[MY4R] * t210 + (t15 * t225
-        + t13 * t233);
+    const rx90_real_t t238 = t235 + parameters[YZ4] * (t237 - t236) + parameters[MY4R] * t209 + (t14 * t224
+        + t12 * t232);
     /* link j5: force and moment */
-    const rx90_real_t t240 = parameters[ZZ5R] * t155 + parameters[XX5R] * t158 + parameters[YZ5] * t183
-        + parameters[XZ5] * t169;
-    const rx90_real_t t241 = parameters[XY5] * (t222 - t231) - t240 + (parameters[MX5] * t211
-        - parameters[MY5R] * t227);
-    const rx90_real_t t242 = t241 + (t2 * t218 - t1 * t212); /* link j6: what it passes on */
-    const rx90_real_t t243 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
-    const rx90_real_t t244 = t152 * t152; /* link j4: motion */
+    const rx90_real_t t239 = parameters[ZZ5R] * t154 + parameters[XX5R] * t157 + parameters[YZ5] * t182
+        + parameters[XZ5] * t168;
+    const rx90_real_t t240 = parameters[XY5] * (t221 - t230) - t239 + (parameters[MX5] * t210
+        - parameters[MY5R] * t226);
+    const rx90_real_t t241 = t240 + (t2 * t217 - t1 * t211); /* link j6: what it passes on */
+    const rx90_real_t t242 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
+    const rx90_real_t t243 = t151 * t151; /* link j4: motion */
     /* link j4: force and moment */
-    const rx90_real_t t245 = t154 * t243 + parameters[XY4] * t165 + parameters[YZ4] * t168
-        + parameters[XZ4] * (t238 - t244);
-    const rx90_real_t t246 = t245 + parameters[MX4] * t210 + t242; /* link j5: what it passes on */
+    const rx90_real_t t244 = t153 * t242 + parameters[XY4] * t164 + parameters[YZ4] * t167
+        + parameters[XZ4] * (t237 - t243);
+    const rx90_real_t t245 = t244 + parameters[MX4] * t209 + t241; /* link j5: what it passes on */
     /* link j6: force and moment */
-    const rx90_real_t t247 = parameters[MX6] * (t189 + t190) + parameters[MY6] * t215;
-    const rx90_real_t t248 = parameters[MX6] * t187 + parameters[MY6] * (t216 + t190);
+    const rx90_real_t t246 = parameters[MX6] * (t188 + t189) + parameters[MY6] * t214;
+    const rx90_real_t t247 = parameters[MX6] * t186 + parameters[MY6] * (t215 + t189);
     /* link j6: what it passes on */
-    const rx90_real_t t249 = parameters[MX5] * (t222 + t223) + parameters[MY5R] * t159 + (t2 * t247
-        - t1 * t248);
-    const rx90_real_t t250 = parameters[MX5] * t220 - parameters[MY5R] * (t231 + t223)
-        + (parameters[MX6] * t182 + parameters[MY6] * t213);
+    const rx90_real_t t248 = parameters[MX5] * (t221 + t222) + parameters[MY5R] * t158 + (t2 * t246
+        - t1 * t247);
+    const rx90_real_t t249 = parameters[MX5] * t219 - parameters[MY5R] * (t230 + t222)
+        + (parameters[MX6] * t181 + parameters[MY6] * t212);
     /* link j5: what it passes on */
-    const rx90_real_t t251 = parameters[MX4] * (t237 + t238) + parameters[MY4R] * t168 + (t15 * t249
-        + t13 * t250);
+    const rx90_real_t t250 = parameters[MX4] * (t236 + t237) + parameters[MY4R] * t167 + (t14 * t248
+        + t12 * t249);
     /* link j6: what it passes on */
-    const rx90_real_t t252 = parameters[MX5] * t219 + parameters[MY5R] * t173 + (t1 * t247 + t2 * t248);
+    const rx90_real_t t251 = parameters[MX5] * t218 + parameters[MY5R] * t172 + (t1 * t246 + t2 * t247);
     /* link j5: what it passes on */
-    const rx90_real_t t253 = parameters[MX4] * t235 + parameters[MY4R] * (t244 + t238) + t252;
-    const rx90_real_t t254 = t32 * t251 + t34 * t253; /* link j4: what it passes on */
-    const rx90_real_t t255 = RX90_C(2.0) * t167; /* link j4: motion */
+    const rx90_real_t t252 = parameters[MX4] * t234 + parameters[MY4R] * (t243 + t237) + t251;
+    const rx90_real_t t253 = t30 * t250 + t32 * t252; /* link j4: what it passes on */
+    const rx90_real_t t254 = RX90_C(2.0) * t166; /* link j4: motion */
     /* link j3: force and moment */
-    const rx90_real_t t256 = parameters[XY3] * t255 - (parameters[XX3R] * t148 + parameters[ZZ3R] * t148)
-        - parameters[XZ3] * t146;
-    const rx90_real_t t257 = t145 * t145; /* link j3: motion */
+    const rx90_real_t t255 = parameters[XY3] * t254 - (parameters[XX3R] * t147 + parameters[ZZ3R] * t147)
+        - parameters[XZ3] * t145;
+    const rx90_real_t t256 = t144 * t144; /* link j3: motion */
     /* link j4: what it passes on */
-    const rx90_real_t t258 = t256 + parameters[YZ3] * (t208 - t257) + parameters[MY3R] * t202 + (t34 * t239
-        + t32 * t246 + RX90_C(-0.45) * t254);
+    const rx90_real_t t257 = t255 + parameters[YZ3] * (t207 - t256) + parameters[MY3R] * t201 + (t32 * t238
+        + t30 * t245 + RX90_C(-0.45) * t253);
     /* link j4: force and moment */
-    const rx90_real_t t259 = parameters[ZZ4R] * t167 - parameters[XX4R] * t166 + parameters[YZ4] * t150
-        - parameters[XZ4] * t160;
-    const rx90_real_t t260 = t259 - parameters[XY4] * (t244 - t237) + (parameters[MY4R] * t204
-        - parameters[MX4] * t224);
-    const rx90_real_t t261 = t260 + (t13 * t225 - t15 * t233); /* link j5: what it passes on */
-    const rx90_real_t t262 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
-    const rx90_real_t t263 = parameters[XY3] * t149 - t167 * t262 - parameters[YZ3] * t146
-        - parameters[XZ3] * (t207 - t208);
-    const rx90_real_t t264 = t263 + parameters[MX3] * t202 - t261; /* link j4: what it passes on */
-    const rx90_real_t t265 = dq[1] * t143; /* link j2: motion */
-    const rx90_real_t t266 = parameters[ZZ2R] * t265; /* link j2: force and moment */
-    const rx90_real_t t267 = parameters[XY2] * (RX90_C(2.0) * t201) - (parameters[XX2R] * t265 + t266)
-        - parameters[XZ2R] * t196;
-    const rx90_real_t t268 = parameters[YZ2] * (t192 - t191);
+    const rx90_real_t t258 = parameters[ZZ4R] * t166 - parameters[XX4R] * t165 + parameters[YZ4] * t149
+        - parameters[XZ4] * t159;
+    const rx90_real_t t259 = t258 - parameters[XY4] * (t243 - t236) + (parameters[MY4R] * t203
+        - parameters[MX4] * t223);
+    const rx90_real_t t260 = t259 + (t12 * t224 - t14 * t232); /* link j5: what it passes on */
+    const rx90_real_t t261 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
+    const rx90_real_t t262 = parameters[XY3] * t148 - t166 * t261 - parameters[YZ3] * t145
+        - parameters[XZ3] * (t206 - t207);
+    const rx90_real_t t263 = t262 + parameters[MX3] * t201 - t260; /* link j4: what it passes on */
+    const rx90_real_t t264 = dq[1] * t142; /* link j2: motion */
+    const rx90_real_t t265 = parameters[ZZ2R] * t264; /* link j2: force and moment */
+    const rx90_real_t t266 = parameters[XY2] * (RX90_C(2.0) * t200) - (parameters[XX2R] * t264 + t265)
+        - parameters[XZ2R] * t195;
+    const rx90_real_t t267 = parameters[YZ2] * (t191 - t190);
     /* link j2: what it passes on */
-    const rx90_real_t t269 = t105 * (t267 + t268 + (t71 * t258 + t67 * t264));
+    const rx90_real_t t268 = t101 * (t266 + t267 + (t68 * t257 + t64 * t263));
     /* link j3: what it passes on */
-    const rx90_real_t t270 = t67 * t258 - t71 * t264 + RX90_C(0.45) * (parameters[MX3] * t255
-        + parameters[MY3R] * t149 + t254);
-    const rx90_real_t t271 = t201 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
-    const rx90_real_t t272 = t142 * t142; /* link j2: motion */
-    const rx90_real_t t273 = parameters[XZ2R] * (t272 - t192); /* link j2: force and moment */
-    const rx90_real_t t274 = t271 + parameters[XY2] * (RX90_C(-2.0) * t265) + parameters[YZ2] * t196 + t273;
-    const rx90_real_t t275 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
-    const rx90_real_t t276 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0])
-        - parameters[FC1] * t275) + (t269 + t102 * (t274 + t270));
-    const rx90_real_t t277 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
-    const rx90_real_t t278 = RX90_C(30.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5])
-        + parameters[FC6] * t277) + t229;
-    const rx90_real_t t279 = RX90_C(6.0) * input[5] - t278;
-    const rx90_real_t t280 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
-    const rx90_real_t t281 = RX90_C(50.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4])
-        + parameters[FC5] * t280) - t242;
-    const rx90_real_t t282 = RX90_C(10.0) * input[4] - t281 + t279 * t5;
-    const rx90_real_t t283 = RX90_C(30.0) * input[0] + t276 - t279 * t114 - t282 * t121;
-    const rx90_real_t t284 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
-    const rx90_real_t t285 = RX90_C(50.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3])
-        + parameters[FC4] * t284) - t261;
-    const rx90_real_t t286 = RX90_C(10.0) * input[3] - t285 - t279 * t28 - t282 * t21;
-    const rx90_real_t t287 = t34 * t251 - t32 * t253; /* link j4: what it passes on */
+    const rx90_real_t t269 = t64 * t257 - t68 * t263 + RX90_C(0.45) * (parameters[MX3] * t254
+        + parameters[MY3R] * t148 + t253);
+    const rx90_real_t t270 = t200 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
+    const rx90_real_t t271 = t141 * t141; /* link j2: motion */
+    const rx90_real_t t272 = parameters[XZ2R] * (t271 - t191); /* link j2: force and moment */
+    const rx90_real_t t273 = t270 + parameters[XY2] * (RX90_C(-2.0) * t264) + parameters[YZ2] * t195 + t272;
+    const rx90_real_t t274 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
+    const rx90_real_t t275 = RX90_C(1.0e2) * (parameters[FV1] * (RX90_C(-1.0e2) * dq[0])
+        - parameters[FC1] * t274) + (t268 + t98 * (t273 + t269));
+    const rx90_real_t t276 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
+    const rx90_real_t t277 = RX90_C(30.0) * (parameters[FV6] * (RX90_C(30.0) * dq[5])
+        + parameters[FC6] * t276) + t228;
+    const rx90_real_t t278 = RX90_C(6.0) * input[5] - t277;
+    const rx90_real_t t279 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
+    const rx90_real_t t280 = RX90_C(50.0) * (parameters[FV5] * (RX90_C(50.0) * dq[4])
+        + parameters[FC5] * t279) - t241;
+    const rx90_real_t t281 = RX90_C(10.0) * input[4] - t280 + t278 * t5;
+    const rx90_real_t t282 = RX90_C(30.0) * input[0] + t275 - t278 * t110 - t281 * t117;
+    const rx90_real_t t283 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
+    const rx90_real_t t284 = RX90_C(50.0) * (parameters[FV4] * (RX90_C(50.0) * dq[3])
+        + parameters[FC4] * t283) - t260;
+    const rx90_real_t t285 = RX90_C(10.0) * input[3] - t284 - t278 * t27 - t281 * t20;
+    const rx90_real_t t286 = t32 * t250 - t30 * t252; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const rx90_real_t t288 = parameters[XY3] * (t207 - t257) - parameters[XX3R] * t146
-        - (parameters[MX3] * t206 - parameters[MY3R] * t199);
+    const rx90_real_t t287 = parameters[XY3] * (t206 - t256) - parameters[XX3R] * t145
+        - (parameters[MX3] * t205 - parameters[MY3R] * t198);
     /* link j4: what it passes on */
-    const rx90_real_t t289 = t288 + (t32 * t239 - t34 * t246 + RX90_C(0.45) * t287);
-    const rx90_real_t t290 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
-    const rx90_real_t t291 = RX90_C(1.0e2) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2])
-        + parameters[FC3] * t290) + t289;
-    const rx90_real_t t292 = RX90_C(30.0) * input[2] - t291 - t279 * t56 - t282 * t64;
-    const rx90_real_t t293 = t292 + t286 * t55;
+    const rx90_real_t t288 = t287 + (t30 * t238 - t32 * t245 + RX90_C(0.45) * t286);
+    const rx90_real_t t289 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
+    const rx90_real_t t290 = RX90_C(1.0e2) * (parameters[FV3] * (RX90_C(1.0e2) * dq[2])
+        + parameters[FC3] * t289) + t288;
+    const rx90_real_t t291 = RX90_C(30.0) * input[2] - t290 - t278 * t54 - t281 * t62;
+    const rx90_real_t t292 = t291 + t285 * t53;
     /* link j3: what it passes on */
-    const rx90_real_t t294 = t67 * (parameters[MX3] * (t257 + t208) - parameters[MY3R] * t146 + t287);
+    const rx90_real_t t293 = t64 * (parameters[MX3] * (t256 + t207) - parameters[MY3R] * t145 + t286);
     /* link j5: what it passes on */
-    const rx90_real_t t295 = parameters[MX4] * t234 + parameters[MY4R] * t165 - (t13 * t249 - t15 * t250);
+    const rx90_real_t t294 = parameters[MX4] * t233 + parameters[MY4R] * t164 - (t12 * t248 - t14 * t249);
     /* link j3: what it passes on */
-    const rx90_real_t t296 = t294 + t71 * (parameters[MY3R] * t209 - parameters[MX3] * t146 - t295);
+    const rx90_real_t t295 = t293 + t68 * (parameters[MY3R] * t208 - parameters[MX3] * t145 - t294);
     /* link j2: force and moment */
-    const rx90_real_t t297 = parameters[XX2R] * t196 - parameters[XY2] * (t272 - t191)
-        - (parameters[MX2R] * t197 + parameters[MY2] * t193);
-    const rx90_real_t t298 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
-    const rx90_real_t t299 = RX90_C(1.0e2) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
-        + parameters[FC2] * t298) - (t297 - (t289 - RX90_C(0.45) * t296));
-    const rx90_real_t t300 = RX90_C(30.0) * input[1] - t299 - t279 * t88 - t282 * t87;
-    const rx90_real_t t301 = t300 + t286 * t86 + t293 * t85;
-    const rx90_real_t t302 = t283 + t286 * t125 - t293 * t133 - t301 * t139;
-    const rx90_real_t t303 = RX90_C(1.0) / t140;
-    const rx90_real_t t304 = rx90_bounded(t302 * t303);
-    ddq[0] = t304;
-    const rx90_real_t t305 = rx90_bounded(t301 * t138 - t139 * t304);
-    ddq[1] = t305;
-    const rx90_real_t t306 = rx90_bounded(t293 * t84 - t133 * t304 + t85 * t305);
-    ddq[2] = t306;
-    const rx90_real_t t307 = rx90_bounded(t286 * t54 + t125 * t304 + t86 * t305 + t55 * t306);
-    ddq[3] = t307;
-    const rx90_real_t t308 = t282 * t20 - t121 * t304 - t87 * t305 - t64 * t306;
-    const rx90_real_t t309 = rx90_bounded(t308 - t21 * t307);
-    ddq[4] = t309;
-    const rx90_real_t t310 = t279 * t4 - t114 * t304 - t88 * t305 - t56 * t306;
-    const rx90_real_t t311 = rx90_bounded(t310 - t28 * t307 + t5 * t309);
-    ddq[5] = t311;
-    const rx90_real_t t312 = t105 * t71 + t102 * t67; /* link j3: motion */
-    const rx90_real_t t313 = dq[0] * t312;
-    const rx90_real_t t314 = t151 - t34 * t313; /* link j4: motion */
-    const rx90_real_t t315 = t105 * t67 - t102 * t71; /* link j3: motion */
-    const rx90_real_t t316 = dq[0] * t315;
-    const rx90_real_t t317 = dq[3] - t316; /* link j4: motion */
-    const rx90_real_t t318 = t15 * t314 - t13 * t317; /* link j5: motion */
-    const rx90_real_t t319 = t161 + t32 * t313; /* link j4: motion */
-    const rx90_real_t t320 = dq[4] + t319; /* link j5: motion */
-    const rx90_real_t t321 = t1 * t318 - t2 * t320; /* link j6: motion */
-    const rx90_real_t t322 = parameters[XZ6] * t321;
-    const rx90_real_t t323 = t13 * t314 + t15 * t317; /* link j5: motion */
-    const rx90_real_t t324 = dq[5] + t323; /* link j6: motion */
-    const rx90_real_t t325 = parameters[XY6] * t324;
-    const rx90_real_t t326 = t322 - t325;
-    const rx90_real_t t327 = t2 * t318 + t1 * t320;
-    const rx90_real_t t328 = parameters[YZ6] * t327;
-    const rx90_real_t t329 = t325 + t328;
-    const rx90_real_t t330 = RX90_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
-    const rx90_real_t t331 = parameters[XX6R] + t330;
-    const rx90_real_t t332 = t324 * t331 + parameters[XZ6] * t327;
-    const rx90_real_t t333 = parameters[YZ6] * t321 - t324 * t330;
-    const rx90_real_t t334 = t2 * (t329 - t326) + t1 * (t332 + t333); /* link j6: inertia, momentum beyond */
-    const rx90_real_t t335 = t2 * t334;
-    const rx90_real_t t336 = parameters[XZ5] * t323;
-    const rx90_real_t t337 = parameters[XY5] * t320;
-    const rx90_real_t t338 = t337 - t336 + (t335 - t329);
-    const rx90_real_t t339 = t322 + t328;
-    const rx90_real_t t340 = parameters[YZ5] * t318;
-    const rx90_real_t t341 = t339 - (t337 + t340);
-    const rx90_real_t t342 = parameters[ZZ6] + t330;
-    const rx90_real_t t343 = t321 * t342 - parameters[YZ6] * t324;
-    const rx90_real_t t344 = parameters[XZ6] * t324 + t327 * t342;
-    const rx90_real_t t345 = RX90_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    const rx90_real_t t346 = parameters[YZ5] * t323 - t320 * t345 + (t2 * t343 - t1 * t344);
-    const rx90_real_t t347 = parameters[XY6] * t327 + t321 * t331;
-    const rx90_real_t t348 = t327 * t330 + parameters[XY6] * t321;
-    const rx90_real_t t349 = parameters[XX5R] + t345;
-    const rx90_real_t t350 = t320 * t349 + parameters[XZ5] * t318 + (t1 * t348 - t2 * t347);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t351 = t15 * (t338 - t341) + t13 * (t346 + t350);
-    const rx90_real_t t352 = t15 * t351;
-    const rx90_real_t t353 = parameters[XZ4] * t319;
-    const rx90_real_t t354 = parameters[XY4] * t317;
-    const rx90_real_t t355 = t353 + t354 + (t341 + t352);
-    const rx90_real_t t356 = t326 + t335 - (t336 + t340); /* link j6: inertia, momentum beyond */
-    const rx90_real_t t357 = parameters[YZ4] * t314;
-    const rx90_real_t t358 = t354 + t357 + t356; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t359 = t1 * t334; /* link j6: inertia, momentum beyond */
-    const rx90_real_t t360 = parameters[ZZ5R] + t345;
-    const rx90_real_t t361 = t323 * t360 - parameters[YZ5] * t320 + (t359 - t333);
-    const rx90_real_t t362 = parameters[XZ5] * t320 + t318 * t360 + (t1 * t347 + t2 * t348);
-    const rx90_real_t t363 = RX90_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t364 = parameters[YZ4] * t319 + t317 * t363 + (t15 * t361 - t13 * t362);
+    const rx90_real_t t296 = parameters[XX2R] * t195 - parameters[XY2] * (t271 - t190)
+        - (parameters[MX2R] * t196 + parameters[MY2] * t192);
+    const rx90_real_t t297 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
+    const rx90_real_t t298 = RX90_C(1.0e2) * (parameters[FV2] * (RX90_C(1.0e2) * dq[1])
+        + parameters[FC2] * t297) - (t296 - (t288 - RX90_C(0.45) * t295));
+    const rx90_real_t t299 = RX90_C(30.0) * input[1] - t298 - t278 * t85 - t281 * t84;
+    const rx90_real_t t300 = t299 + t285 * t83 + t292 * t82;
+    const rx90_real_t t301 = t282 + t285 * t121 - t292 * t129 - t300 * t135;
+    const rx90_real_t t302 = RX90_C(1.0) / t136;
+    const rx90_real_t t303 = rx90_held(t301 * t302);
+    ddq[0] = t303;
+    const rx90_real_t t304 = rx90_held(t300 * t134 - t135 * t303);
+    ddq[1] = t304;
+    const rx90_real_t t305 = rx90_held(t292 * t81 - t129 * t303 + t82 * t304);
+    ddq[2] = t305;
+    const rx90_real_t t306 = rx90_held(t285 * t52 + t121 * t303 + t83 * t304 + t53 * t305);
+    ddq[3] = t306;
+    const rx90_real_t t307 = t281 * t19 - t117 * t303 - t84 * t304 - t62 * t305;
+    const rx90_real_t t308 = rx90_held(t307 - t20 * t306);
+    ddq[4] = t308;
+    const rx90_real_t t309 = t278 * t4 - t110 * t303 - t85 * t304 - t54 * t305;
+    const rx90_real_t t310 = rx90_held(t309 - t27 * t306 + t5 * t308);
+    ddq[5] = t310;
+    const rx90_real_t t311 = t101 * t64 - t98 * t68; /* link j3: motion */
+    const rx90_real_t t312 = t303 * t311;
+    const rx90_real_t t313 = t101 * t68 + t98 * t64;
+    const rx90_real_t t314 = dq[0] * t313;
+    const rx90_real_t t315 = t146 * t314;
+    const rx90_real_t t316 = t315 + t312;
+    const rx90_real_t t317 = t316 - t306;
+    const rx90_real_t t318 = t150 - t32 * t314; /* link j4: motion */
+    const rx90_real_t t319 = t160 + t30 * t314;
+    const rx90_real_t t320 = t318 * t319;
+    const rx90_real_t t321 = t320 + t317;
+    const rx90_real_t t322 = t304 + t305;
+    const rx90_real_t t323 = dq[0] * t311; /* link j3: motion */
+    const rx90_real_t t324 = t314 * t323;
+    const rx90_real_t t325 = t324 + t322;
+    const rx90_real_t t326 = t303 * t313;
+    const rx90_real_t t327 = t146 * t323;
+    const rx90_real_t t328 = t327 - t326;
+    const rx90_real_t t329 = t327 + t328;
+    const rx90_real_t t330 = t30 * t325 + t32 * t329;
+    const rx90_real_t t331 = dq[3] - t323; /* link j4: motion */
+    const rx90_real_t t332 = t319 * t331;
+    const rx90_real_t t333 = t332 + t330;
+    const rx90_real_t t334 = t332 + t333;
+    const rx90_real_t t335 = t14 * t321 - t12 * t334;
+    const rx90_real_t t336 = t14 * t318 - t12 * t331; /* link j5: motion */
+    const rx90_real_t t337 = dq[4] + t319;
+    const rx90_real_t t338 = t336 * t337;
+    const rx90_real_t t339 = t335 - t338;
+    const rx90_real_t t340 = t339 - t310;
+    const rx90_real_t t341 = t2 * t336 + t1 * t337; /* link j6: motion */
+    const rx90_real_t t342 = t1 * t336 - t2 * t337;
+    const rx90_real_t t343 = t341 * t342;
+    const rx90_real_t t344 = t340 - t343;
+    const rx90_real_t t345 = t32 * t325 - t30 * t329;
+    const rx90_real_t t346 = t318 * t331; /* link j4: motion */
+    const rx90_real_t t347 = t345 - t346;
+    const rx90_real_t t348 = t308 + t347;
+    const rx90_real_t t349 = t12 * t318 + t14 * t331; /* link j5: motion */
+    const rx90_real_t t350 = t336 * t349;
+    const rx90_real_t t351 = t350 + t348;
+    const rx90_real_t t352 = t12 * t321 + t14 * t334;
+    const rx90_real_t t353 = t349 * t337;
+    const rx90_real_t t354 = t352 - t353;
+    const rx90_real_t t355 = t354 - t353;
+    const rx90_real_t t356 = t1 * t351 + t2 * t355;
+    const rx90_real_t t357 = dq[5] + t349; /* link j6: motion */
+    const rx90_real_t t358 = t342 * t357;
+    const rx90_real_t t359 = t356 - t358;
+    const rx90_real_t t360 = t358 - t359;
+    const rx90_real_t t361 = t341 * t357;
+    const rx90_real_t t362 = t341 * t341;
+    const rx90_real_t t363 = t357 * t357;
+    const rx90_real_t t364 = parameters[XZ6] * (t362 - t363) + (t213 * t361 - parameters[XY6] * t360
+        + parameters[YZ6] * t344);
+    const rx90_real_t t365 = t195 + t304;
+    const rx90_real_t t366 = t196 + RX90_C(0.45) * t365;
+    const rx90_real_t t367 = t194 - t64 * t366;
+    const rx90_real_t t368 = t367 + RX90_C(0.45) * t325;
+    const rx90_real_t t369 = t98 * t303;
+    const rx90_real_t t370 = t369 - t200 - t200;
+    const rx90_real_t t371 = RX90_C(0.45) * t370;
+    const rx90_real_t t372 = t371 + RX90_C(0.45) * t329;
+    const rx90_real_t t373 = t30 * t372 - t32 * t368;
+    const rx90_real_t t374 = t204 + t68 * t366;
+    const rx90_real_t t375 = t314 * t314; /* link j3: motion */
+    const rx90_real_t t376 = t207 + t375; /* link j4: motion */
+    const rx90_real_t t377 = RX90_C(-0.45) * t376 + t374;
+    const rx90_real_t t378 = t14 * t377 - t12 * t373;
+    const rx90_real_t t379 = t364 + parameters[MX6] * t378;
+    const rx90_real_t t380 = t2 * t351 - t1 * t355;
+    const rx90_real_t t381 = t342 * t342; /* link j6: motion */
+    const rx90_real_t t382 = t362 + t381; /* link j6: force and moment */
+    const rx90_real_t t383 = parameters[XZ6] * t342;
+    const rx90_real_t t384 = parameters[XY6] * t357;
+    const rx90_real_t t385 = t383 - t384;
+    const rx90_real_t t386 = RX90_C(2.0) * t342; /* link j6: derivatives */
+    const rx90_real_t t387 = RX90_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
+    const rx90_real_t t388 = parameters[YZ6] * t342 - t357 * t387;
+    const rx90_real_t t389 = RX90_C(2.0) * t341;
+    const rx90_real_t t390 = t385 * t386 + t388 * t389 + (parameters[XY6] * t356 - parameters[XX6R] * t380
+        - parameters[XZ6] * t382);
+    const rx90_real_t t391 = t379 + t390;
+    const rx90_real_t t392 = t380 - t361 - t361;
+    const rx90_real_t t393 = t343 + t340;
+    const rx90_real_t t394 = parameters[XX6R] * t359 - parameters[ZZ6] * t358 + parameters[XY6] * t392
+        + parameters[XZ6] * t393;
+    const rx90_real_t t395 = parameters[YZ6] * (t363 - t381) + t394 - parameters[MY6] * t378;
+    const rx90_real_t t396 = parameters[XX6R] + t387;
+    const rx90_real_t t397 = t357 * t396 + parameters[XZ6] * t341;
+    const rx90_real_t t398 = parameters[YZ6] * t341;
+    const rx90_real_t t399 = t384 + t398;
+    const rx90_real_t t400 = t397 * t386 + t399 * t389 - (parameters[YZ6] * t382 + parameters[XY6] * t380);
+    const rx90_real_t t401 = t400 - t395;
+    const rx90_real_t t402 = t2 * t391 - t1 * t401;
+    const rx90_real_t t403 = parameters[ZZ6] * t382 + (parameters[XZ6] * t380 - parameters[YZ6] * t356);
+    const rx90_real_t t404 = parameters[XY6] * t341 + t342 * t396;
+    const rx90_real_t t405 = t341 * t387 + parameters[XY6] * t342;
+    const rx90_real_t t406 = t14 * t373 + t12 * t377;
+    const rx90_real_t t407 = t30 * t368 + t32 * t372;
+    const rx90_real_t t408 = t2 * t406 + t1 * t407;
+    const rx90_real_t t409 = t1 * t406 - t2 * t407;
+    const rx90_real_t t410 = parameters[MX6] * t408 - parameters[MY6] * t409;
+    const rx90_real_t t411 = t404 * t386 + t405 * t389 + t403 + t410;
+    const rx90_real_t t412 = t14 * t402 + t12 * t411;
+    const rx90_real_t t413 = t1 * t391 + t2 * t401;
+    const rx90_real_t t414 = parameters[MY6] * (t362 + t363) + parameters[MX6] * t393;
+    const rx90_real_t t415 = parameters[MY6] * t341 + parameters[MX6] * t342;
+    const rx90_real_t t416 = t415 * t389 - parameters[MY6] * t382 - t414;
+    const rx90_real_t t417 = parameters[MY6] * t344 - parameters[MX6] * (t381 + t363);
+    const rx90_real_t t418 = t415 * t386 - parameters[MX6] * t382 + t417;
+    const rx90_real_t t419 = t2 * t416 + t1 * t418;
+    const rx90_real_t t420 = parameters[MX6] * t357;
+    const rx90_real_t t421 = parameters[MY6] * t357;
+    const rx90_real_t t422 = parameters[MY6] * t380 + parameters[MX6] * t356 - (t420 * t386 + t421 * t389);
+    const rx90_real_t t423 = t14 * t419 - t12 * t422;
+    const rx90_real_t t424 = t1 * t416 - t2 * t418;
+    const rx90_real_t t425 = RX90_C(0.45) * (t30 * t423 + t32 * t424);
+    const rx90_real_t t426 = t32 * t412 - t30 * t413 + t425;
+    const rx90_real_t t427 = t12 * t402 - t14 * t411;
+    const rx90_real_t t428 = t101 * (t68 * t426 - t64 * t427) + t98 * (t64 * t426 + t68 * t427 - t425);
+    const rx90_real_t t429 = RX90_C(0.03333333333333333) * t428;
+    const rx90_real_t t430 = rx90_held(RX90_C(30.0) * t302);
+    const rx90_real_t t431 = t32 * t423 - t30 * t424;
+    const rx90_real_t t432 = t30 * t412 + t32 * t413 + RX90_C(-0.45) * t431;
+    const rx90_real_t t433 = t64 * t431 + t68 * (t12 * t419 + t14 * t422);
+    const rx90_real_t t434 = RX90_C(0.03333333333333333) * (t432 + RX90_C(0.45) * t433);
+    const rx90_real_t t435 = t135 * t302;
+    const rx90_real_t t436 = rx90_held(RX90_C(-30.0) * t435);
+    const rx90_real_t t437 = RX90_C(0.03333333333333333) * t432;
+    const rx90_real_t t438 = t302 * (t129 + t82 * t135);
+    const rx90_real_t t439 = rx90_held(RX90_C(-30.0) * t438);
+    const rx90_real_t t440 = RX90_C(0.1) * t427;
+    const rx90_real_t t441 = t83 + t53 * t82;
+    const rx90_real_t t442 = t302 * (t53 * t129 - t121 + t135 * t441);
+    const rx90_real_t t443 = rx90_held(RX90_C(-10.0) * t442);
+    const rx90_real_t t444 = t436 * t434 - t430 * t429 + t439 * t437 - t443 * t440;
+    const rx90_real_t t445 = RX90_C(0.1) * t413;
+    const rx90_real_t t446 = t62 + t20 * t53;
+    const rx90_real_t t447 = t84 + t20 * t83 + t82 * t446;
+    const rx90_real_t t448 = t117 + t20 * t121 - t129 * t446 - t135 * t447;
+    const rx90_real_t t449 = t302 * t448;
+    const rx90_real_t t450 = rx90_held(RX90_C(-10.0) * t449);
+    const rx90_real_t t451 = RX90_C(2.0) * t404;
+    const rx90_real_t t452 = RX90_C(-2.0) * t405;
+    const rx90_real_t t453 = RX90_C(0.16666666666666666) * (t410 + (t342 * t451 - t341 * t452 + t403));
+    const rx90_real_t t454 = t27 + t5 * t20;
+    const rx90_real_t t455 = t54 + t5 * t62 + t53 * t454;
+    const rx90_real_t t456 = t85 + t5 * t84 + t83 * t454 + t82 * t455;
+    const rx90_real_t t457 = t110 + t5 * t117 + t121 * t454 - t129 * t455;
+    const rx90_real_t t458 = t302 * (t457 - t135 * t456);
+    const rx90_real_t t459 = rx90_held(RX90_C(-6.0) * t458);
+    ddq_by_q[5] = t444 + t450 * t445 + t459 * t453;
+    const rx90_real_t t460 = rx90_held(RX90_C(30.0) * (t134 + t135 * t435));
+    const rx90_real_t t461 = t82 * t134 + t135 * t438;
+    const rx90_real_t t462 = rx90_held(RX90_C(30.0) * t461);
+    const rx90_real_t t463 = t134 * t441 + t135 * t442;
+    const rx90_real_t t464 = rx90_held(RX90_C(10.0) * t463);
+    const rx90_real_t t465 = t460 * t434 - t436 * t429 + t462 * t437 - t464 * t440;
+    const rx90_real_t t466 = t135 * t449 - t134 * t447;
+    const rx90_real_t t467 = rx90_held(RX90_C(10.0) * t466);
+    const rx90_real_t t468 = t135 * t458 - t134 * t456;
+    const rx90_real_t t469 = rx90_held(RX90_C(6.0) * t468);
+    ddq_by_q[11] = t465 + t467 * t445 + t469 * t453;
+    const rx90_real_t t470 = rx90_held(RX90_C(30.0) * (t81 + t129 * t438 + t82 * t461));
+    const rx90_real_t t471 = t53 * t81 + t129 * t442 + t82 * t463;
+    const rx90_real_t t472 = rx90_held(RX90_C(10.0) * t471);
+    const rx90_real_t t473 = t462 * t434 - t439 * t429 + t470 * t437 - t472 * t440;
+    const rx90_real_t t474 = t129 * t449 - t81 * t446 + t82 * t466;
+    const rx90_real_t t475 = rx90_held(RX90_C(10.0) * t474);
+    const rx90_real_t t476 = t129 * t458 - t81 * t455 + t82 * t468;
+    const rx90_real_t t477 = rx90_held(RX90_C(6.0) * t476);
+    ddq_by_q[17] = t473 + t475 * t445 + t477 * t453;
+    const rx90_real_t t478 = rx90_held(RX90_C(-30.0) * t442);
+    const rx90_real_t t479 = rx90_held(RX90_C(30.0) * t463);
+    const rx90_real_t t480 = rx90_held(RX90_C(30.0) * t471);
+    const rx90_real_t t481 = t52 - t121 * t442 + t83 * t463 + t53 * t471;
+    const rx90_real_t t482 = rx90_held(RX90_C(10.0) * t481);
+    const rx90_real_t t483 = t479 * t434 - t478 * t429 + t480 * t437 - t482 * t440;
+    const rx90_real_t t484 = t20 * t52 + t121 * t449 - t83 * t466 - t53 * t474;
+    const rx90_real_t t485 = rx90_held(RX90_C(-10.0) * t484);
+    const rx90_real_t t486 = t52 * t454 + t121 * t458 - t83 * t468 - t53 * t476;
+    const rx90_real_t t487 = rx90_held(RX90_C(-6.0) * t486);
+    ddq_by_q[23] = t483 + t485 * t445 + t487 * t453;
+    const rx90_real_t t488 = rx90_held(RX90_C(-30.0) * t449);
+    const rx90_real_t t489 = rx90_held(RX90_C(30.0) * t466);
+    const rx90_real_t t490 = rx90_held(RX90_C(30.0) * t474);
+    const rx90_real_t t491 = t489 * t434 - t488 * t429 + t490 * t437 - t485 * t440;
+    const rx90_real_t t492 = t19 + t117 * t449 - t84 * t466 - t62 * t474;
+    const rx90_real_t t493 = rx90_held(RX90_C(10.0) * (t492 + t20 * t484));
+    const rx90_real_t t494 = t5 * t19 + t117 * t458 - t84 * t468 - t62 * t476;
+    const rx90_real_t t495 = t494 + t20 * t486;
+    const rx90_real_t t496 = rx90_held(RX90_C(6.0) * t495);
+    ddq_by_q[29] = t491 + t493 * t445 + t496 * t453;
+    const rx90_real_t t497 = rx90_held(RX90_C(-30.0) * t458);
+    const rx90_real_t t498 = rx90_held(RX90_C(30.0) * t468);
+    const rx90_real_t t499 = rx90_held(RX90_C(30.0) * t476);
+    const rx90_real_t t500 = rx90_held(RX90_C(-10.0) * t486);
+    const rx90_real_t t501 = t498 * t434 - t497 * t429 + t499 * t437 - t500 * t440;
+    const rx90_real_t t502 = rx90_held(RX90_C(10.0) * t495);
+    const rx90_real_t t503 = t4 + t110 * t458 - t85 * t468 - t54 * t476;
+    const rx90_real_t t504 = rx90_held(RX90_C(6.0) * (t503 + t27 * t486 + t5 * t495));
+    ddq_by_q[35] = t501 + t502 * t445 + t504 * t453;
+    const rx90_real_t t505 = parameters[ZZ6] + t387;
+    const rx90_real_t t506 = t342 * t505 - parameters[YZ6] * t357;
+    const rx90_real_t t507 = RX90_C(2.0) * t506 + (parameters[XX6R] * t386 + parameters[XY6] * t389);
+    const rx90_real_t t508 = parameters[XZ6] * t357 + t341 * t505;
+    const rx90_real_t t509 = RX90_C(2.0) * t508 + parameters[XY6] * t386;
+    const rx90_real_t t510 = t2 * t507 - t1 * t509;
+    const rx90_real_t t511 = t383 + t398;
+    const rx90_real_t t512 = RX90_C(2.0) * t511;
+    const rx90_real_t t513 = t512 - (parameters[XZ6] * t386 + parameters[YZ6] * t389);
+    const rx90_real_t t514 = t14 * t510 + t12 * t513;
+    const rx90_real_t t515 = t1 * t507 + t2 * t509;
+    const rx90_real_t t516 = RX90_C(2.0) * t420;
+    const rx90_real_t t517 = RX90_C(-2.0) * t421;
+    const rx90_real_t t518 = t2 * t516 + t1 * t517;
+    const rx90_real_t t519 = parameters[MX6] * t389 - parameters[MY6] * t386;
+    const rx90_real_t t520 = t14 * t518 - t12 * t519;
+    const rx90_real_t t521 = t1 * t516 - t2 * t517;
+    const rx90_real_t t522 = RX90_C(0.45) * (t30 * t520 + t32 * t521);
+    const rx90_real_t t523 = t32 * t514 - t30 * t515 + t522;
+    const rx90_real_t t524 = t12 * t510 - t14 * t513;
+    const rx90_real_t t525 = t101 * (t68 * t523 - t64 * t524) + t98 * (t64 * t523 + t68 * t524 - t522);
+    const rx90_real_t t526 = RX90_C(0.03333333333333333) * t525;
+    const rx90_real_t t527 = t32 * t520 - t30 * t521;
+    const rx90_real_t t528 = t30 * t514 + t32 * t515 + RX90_C(-0.45) * t527;
+    const rx90_real_t t529 = t64 * t527 + t68 * (t12 * t518 + t14 * t519);
+    const rx90_real_t t530 = RX90_C(0.03333333333333333) * (t528 + RX90_C(0.45) * t529);
+    const rx90_real_t t531 = RX90_C(0.03333333333333333) * t528;
+    const rx90_real_t t532 = RX90_C(0.1) * t524;
+    const rx90_real_t t533 = t530 * t436 - t526 * t430 + t531 * t439 - t532 * t443;
+    const rx90_real_t t534 = RX90_C(0.1) * t515;
+    const rx90_real_t t535 = RX90_C(-150.0) * parameters[FV6];
+    ddq_by_dq[5] = t533 + t534 * t450 + t535 * t459;
+    const rx90_real_t t536 = t530 * t460 - t526 * t436 + t531 * t462 - t532 * t464;
+    ddq_by_dq[11] = t536 + t534 * t467 + t535 * t469;
+    const rx90_real_t t537 = t530 * t462 - t526 * t439 + t531 * t470 - t532 * t472;
+    ddq_by_dq[17] = t537 + t534 * t475 + t535 * t477;
+    const rx90_real_t t538 = t530 * t479 - t526 * t478 + t531 * t480 - t532 * t482;
+    ddq_by_dq[23] = t538 + t534 * t485 + t535 * t487;
+    const rx90_real_t t539 = t530 * t489 - t526 * t488 + t531 * t490 - t532 * t485;
+    ddq_by_dq[29] = t539 + t534 * t493 + t535 * t496;
+    const rx90_real_t t540 = t530 * t498 - t526 * t497 + t531 * t499 - t532 * t500;
+    ddq_by_dq[35] = t540 + t534 * t502 + t535 * t504;
+    ddq_by_input[5] = t459;
+    ddq_by_input[11] = t469;
+    ddq_by_input[17] = t477;
+    ddq_by_input[23] = t487;
+    ddq_by_input[29] = t496;
+    ddq_by_input[35] = t504;
+    const rx90_real_t t541 = parameters[ZZ6] * t340 - parameters[XX6R] * t343 + parameters[YZ6] * t380
+        + parameters[XZ6] * t356;
+    const rx90_real_t t542 = parameters[XY6] * (t381 - t362) + t541 + (parameters[MX6] * t409
+        + parameters[MY6] * t408);
+    const rx90_real_t t543 = t336 * t336; /* link j5: motion */
+    const rx90_real_t t544 = t337 * t337;
+    const rx90_real_t t545 = parameters[XZ5] * (t543 - t544) + (t229 * t338 + parameters[XY5] * t355
+        - parameters[YZ5] * t351);
+    const rx90_real_t t546 = t545 - parameters[MX5] * t407 + t542;
+    const rx90_real_t t547 = t349 * t349;
+    const rx90_real_t t548 = t543 + t547; /* link j6: motion */
+    const rx90_real_t t549 = t2 * (t399 - t385) + t1 * (t397 + t388); /* link j6: inertia, momentum beyond */
+    const rx90_real_t t550 = t2 * t549;
+    const rx90_real_t t551 = parameters[XZ5] * t349;
+    const rx90_real_t t552 = parameters[XY5] * t337;
+    const rx90_real_t t553 = t552 - t551 + (t550 - t399);
+    const rx90_real_t t554 = RX90_C(-2.0) * t349; /* link j5: derivatives */
+    const rx90_real_t t555 = RX90_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
     /* link j6: inertia, momentum beyond */
-    const rx90_real_t t365 = parameters[XY5] * t318 + t323 * t349 + (t332 - t359);
-    const rx90_real_t t366 = t318 * t345 + parameters[XY5] * t323 + (t1 * t343 + t2 * t344);
-    const rx90_real_t t367 = parameters[XX4R] + t363;
+    const rx90_real_t t556 = parameters[YZ5] * t349 - t337 * t555 + (t2 * t506 - t1 * t508);
+    const rx90_real_t t557 = RX90_C(2.0) * t336; /* link j5: derivatives */
+    const rx90_real_t t558 = t553 * t554 + t556 * t557 + (t22 * t352 - t21 * t335 - t11 * t548);
+    const rx90_real_t t559 = t546 + (t558 - t33 * t406);
+    const rx90_real_t t560 = t339 - t338;
+    const rx90_real_t t561 = t350 - t348;
+    const rx90_real_t t562 = parameters[XX5R] * t354 - parameters[ZZ5R] * t353 + parameters[XY5] * t560
+        + parameters[XZ5] * t561;
+    const rx90_real_t t563 = parameters[YZ5] * (t544 - t547) + t562 + parameters[MY5R] * t407 + (t2 * t395
+        - t1 * t379);
+    const rx90_real_t t564 = parameters[ZZ6] * t352;
+    const rx90_real_t t565 = parameters[XX5R] + t555;
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t566 = t337 * t565 + parameters[XZ5] * t336 + (t1 * t405 - t2 * t404);
+    const rx90_real_t t567 = parameters[YZ5] * t336;
+    const rx90_real_t t568 = t511 - (t552 + t567);
+    const rx90_real_t t569 = t566 * t554 + t568 * t557 + (t13 * t548 + (t22 * t335 - t564));
+    const rx90_real_t t570 = t33 * t378;
+    const rx90_real_t t571 = t563 + (t570 + t569);
+    const rx90_real_t t572 = t14 * t559 + t12 * t571;
+    const rx90_real_t t573 = t8 * t548 + (t11 * t335 - t13 * t352);
+    const rx90_real_t t574 = t1 * t549;
+    const rx90_real_t t575 = parameters[XY5] * t336 + t349 * t565 + (t397 - t574);
+    const rx90_real_t t576 = t336 * t555 + parameters[XY5] * t349 + (t1 * t506 + t2 * t508);
+    const rx90_real_t t577 = t36 * t406 + parameters[MY5R] * t378;
+    const rx90_real_t t578 = t576 * t557 - t575 * t554 + t573 + t577;
+    const rx90_real_t t579 = parameters[MX5] * (t547 + t544) + parameters[MY5R] * t351 - (t2 * t417
+        + t1 * t414);
+    const rx90_real_t t580 = parameters[MY5R] * t336 + parameters[MX5] * t349 + (t2 * t420 - t1 * t421);
+    const rx90_real_t t581 = t579 + (t580 * t554 + (t36 * t548 + t33 * t335));
+    const rx90_real_t t582 = parameters[MX6] * t392 + parameters[MY6] * t360 - (parameters[MY5R] * (t543
+        + t544) + parameters[MX5] * t561);
+    const rx90_real_t t583 = t582 + (t580 * t557 + (t33 * t352 - parameters[MY5R] * t548));
+    const rx90_real_t t584 = t12 * t581 - t14 * t583;
+    const rx90_real_t t585 = parameters[MX5] * t337 - t415;
+    const rx90_real_t t586 = parameters[MY5R] * t337 + (t2 * t421 + t1 * t420);
+    const rx90_real_t t587 = t586 * t557 - t585 * t554 - (parameters[MY5R] * t335 + t36 * t352);
+    const rx90_real_t t588 = RX90_C(0.45) * (t30 * t584 - t32 * t587);
+    const rx90_real_t t589 = t32 * t572 - t30 * t578 - t588;
+    const rx90_real_t t590 = t12 * t559 - t14 * t571;
+    const rx90_real_t t591 = t101 * (t68 * t589 - t64 * t590) + t98 * (t588 + (t64 * t589 + t68 * t590));
+    const rx90_real_t t592 = RX90_C(0.03333333333333333) * t591;
+    const rx90_real_t t593 = t32 * t584 + t30 * t587;
+    const rx90_real_t t594 = t30 * t572 + t32 * t578 + RX90_C(0.45) * t593;
+    const rx90_real_t t595 = t68 * (t12 * t583 + t14 * t581) - t64 * t593;
+    const rx90_real_t t596 = RX90_C(0.03333333333333333) * (t594 + RX90_C(0.45) * t595);
+    const rx90_real_t t597 = RX90_C(0.03333333333333333) * t594;
+    const rx90_real_t t598 = RX90_C(0.1) * t590;
+    const rx90_real_t t599 = t436 * t596 - t430 * t592 + t439 * t597 - t443 * t598;
+    const rx90_real_t t600 = RX90_C(2.0) * t575; /* link j5: derivatives */
+    const rx90_real_t t601 = RX90_C(2.0) * t576;
+    const rx90_real_t t602 = RX90_C(0.1) * (t577 + (t349 * t600 + t336 * t601 + t573));
+    const rx90_real_t t603 = t2 * t451 + t1 * t452; /* link j6: derivatives */
+    const rx90_real_t t604 = t349 * t603 + t336 * t512 + (t16 * t335 - t564 - t3 * t548);
+    const rx90_real_t t605 = RX90_C(0.16666666666666666) * (t604 + t570);
+    ddq_by_q[4] = t599 + t450 * t602 + t459 * t605;
+    const rx90_real_t t606 = t460 * t596 - t436 * t592 + t462 * t597 - t464 * t598;
+    ddq_by_q[10] = t606 + t467 * t602 + t469 * t605;
+    const rx90_real_t t607 = t462 * t596 - t439 * t592 + t470 * t597 - t472 * t598;
+    ddq_by_q[16] = t607 + t475 * t602 + t477 * t605;
+    const rx90_real_t t608 = t479 * t596 - t478 * t592 + t480 * t597 - t482 * t598;
+    ddq_by_q[22] = t608 + t485 * t602 + t487 * t605;
+    const rx90_real_t t609 = t489 * t596 - t488 * t592 + t490 * t597 - t485 * t598;
+    ddq_by_q[28] = t609 + t493 * t602 + t496 * t605;
+    const rx90_real_t t610 = t498 * t596 - t497 * t592 + t499 * t597 - t500 * t598;
+    ddq_by_q[34] = t610 + t502 * t602 + t504 * t605;
+    const rx90_real_t t611 = parameters[ZZ5R] + t555;
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t612 = t349 * t611 - parameters[YZ5] * t337 + (t574 - t388);
+    const rx90_real_t t613 = RX90_C(2.0) * t612 + (t22 * t557 - t21 * t554); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t614 = parameters[XZ5] * t337 + t336 * t611 + (t1 * t404 + t2 * t405);
+    /* link j5: derivatives */
+    const rx90_real_t t615 = RX90_C(-2.0) * t614 + (t22 * t554 - parameters[ZZ6] * t557);
+    const rx90_real_t t616 = t14 * t613 + t12 * t615;
+    const rx90_real_t t617 = t385 + t550 - (t551 + t567); /* link j6: inertia, momentum beyond */
+    const rx90_real_t t618 = RX90_C(-2.0) * t617; /* link j5: derivatives */
+    const rx90_real_t t619 = t618 - (t13 * t557 - t11 * t554);
+    const rx90_real_t t620 = RX90_C(2.0) * t585 + t33 * t557;
+    const rx90_real_t t621 = RX90_C(2.0) * t586 + t33 * t554;
+    const rx90_real_t t622 = t14 * t620 - t12 * t621;
+    const rx90_real_t t623 = parameters[MY5R] * t554 + t36 * t557;
+    const rx90_real_t t624 = RX90_C(0.45) * (t30 * t622 - t32 * t623);
+    const rx90_real_t t625 = t32 * t616 - t30 * t619 + t624;
+    const rx90_real_t t626 = t12 * t613 - t14 * t615;
+    const rx90_real_t t627 = t101 * (t68 * t625 - t64 * t626) + t98 * (t64 * t625 + t68 * t626 - t624);
+    const rx90_real_t t628 = RX90_C(0.03333333333333333) * t627;
+    const rx90_real_t t629 = t32 * t622 + t30 * t623;
+    const rx90_real_t t630 = t30 * t616 + t32 * t619 + RX90_C(-0.45) * t629;
+    const rx90_real_t t631 = t64 * t629 + t68 * (t12 * t620 + t14 * t621);
+    const rx90_real_t t632 = RX90_C(0.03333333333333333) * (t630 + RX90_C(0.45) * t631);
+    const rx90_real_t t633 = RX90_C(0.03333333333333333) * t630;
+    const rx90_real_t t634 = RX90_C(0.1) * t626;
+    const rx90_real_t t635 = t632 * t436 - t628 * t430 + t633 * t439 - t634 * t443;
+    const rx90_real_t t636 = RX90_C(0.1) * (t618 + RX90_C(-2.0) * (t11 * t349 + t13 * t336));
+    const rx90_real_t t637 = RX90_C(-250.0) * parameters[FV5] + t636;
+    const rx90_real_t t638 = t2 * t452 - t1 * t451; /* link j6: derivatives */
+    const rx90_real_t t639 = RX90_C(0.16666666666666666) * (t638 + RX90_C(-2.0) * (t16 * t349
+        + parameters[ZZ6] * t336));
+    ddq_by_dq[4] = t635 + t637 * t450 + t639 * t459;
+    const rx90_real_t t640 = t632 * t460 - t628 * t436 + t633 * t462 - t634 * t464;
+    ddq_by_dq[10] = t640 + t637 * t467 + t639 * t469;
+    const rx90_real_t t641 = t632 * t462 - t628 * t439 + t633 * t470 - t634 * t472;
+    ddq_by_dq[16] = t641 + t637 * t475 + t639 * t477;
+    const rx90_real_t t642 = t632 * t479 - t628 * t478 + t633 * t480 - t634 * t482;
+    ddq_by_dq[22] = t642 + t637 * t485 + t639 * t487;
+    const rx90_real_t t643 = t632 * t489 - t628 * t488 + t633 * t490 - t634 * t485;
+    ddq_by_dq[28] = t643 + t637 * t493 + t639 * t496;
+    const rx90_real_t t644 = t632 * t498 - t628 * t497 + t633 * t499 - t634 * t500;
+    ddq_by_dq[34] = t644 + t637 * t502 + t639 * t504;
+    ddq_by_input[4] = t450;
+    ddq_by_input[10] = t467;
+    ddq_by_input[16] = t475;
+    ddq_by_input[22] = t485;
+    ddq_by_input[28] = t493;
+    ddq_by_input[34] = t502;
+    const rx90_real_t t645 = t347 - t346;
+    const rx90_real_t t646 = t320 - t317;
+    const rx90_real_t t647 = parameters[ZZ4R] * t332 + parameters[XX4R] * t333 + parameters[XY4] * t645
+        - parameters[XZ4] * t646;
+    const rx90_real_t t648 = t319 * t319; /* link j4: motion */
+    const rx90_real_t t649 = t331 * t331;
+    const rx90_real_t t650 = parameters[YZ4] * (t648 - t649) - t647 + parameters[MY4R] * t377 + (t12 * t546
+        - t14 * t563);
+    const rx90_real_t t651 = t47 * t407;
+    const rx90_real_t t652 = t8 * t330;
+    const rx90_real_t t653 = t318 * t318;
+    const rx90_real_t t654 = t653 + t648; /* link j5: motion */
+    const rx90_real_t t655 = RX90_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const rx90_real_t t656 = parameters[XX4R] + t655;
     /* link j5: inertia, momentum beyond */
-    const rx90_real_t t368 = t317 * t367 + parameters[XZ4] * t314 + (t15 * t365 - t13 * t366);
+    const rx90_real_t t657 = t331 * t656 + parameters[XZ4] * t318 + (t14 * t575 - t12 * t576);
+    const rx90_real_t t658 = RX90_C(2.0) * t319; /* link j4: derivatives */
+    const rx90_real_t t659 = parameters[XY4] * t331;
+    const rx90_real_t t660 = parameters[YZ4] * t318;
+    const rx90_real_t t661 = t659 + t660 + t617; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t662 = RX90_C(2.0) * t318; /* link j4: derivatives */
+    const rx90_real_t t663 = t657 * t658 - t661 * t662 + (t31 * t654 - (t652 - t56 * t345));
+    const rx90_real_t t664 = t650 - (t663 - t651);
+    const rx90_real_t t665 = parameters[XX5R] * t350 + parameters[ZZ5R] * t348 - parameters[YZ5] * t335
+        - parameters[XZ5] * t352;
+    const rx90_real_t t666 = parameters[XY5] * (t543 - t547) + t665 + (parameters[MX5] * t378
+        - parameters[MY5R] * t406);
+    const rx90_real_t t667 = parameters[XZ4] * (t653 - t649) + (t242 * t346 + parameters[XY4] * t334
+        + parameters[YZ4] * t321);
+    const rx90_real_t t668 = t667 + parameters[MX4] * t377 + (t666 + (t1 * t395 + t2 * t379));
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t669 = t14 * (t553 - t568) + t12 * (t556 + t566);
+    const rx90_real_t t670 = t14 * t669;
+    const rx90_real_t t671 = parameters[XZ4] * t319;
+    const rx90_real_t t672 = t671 + t659 + (t568 + t670);
+    const rx90_real_t t673 = parameters[YZ4] * t319 + t331 * t655 + (t14 * t612 - t12 * t614);
+    const rx90_real_t t674 = t672 * t658 - t673 * t662 + (t29 * t654 + (t55 * t345 + t56 * t330));
+    const rx90_real_t t675 = t668 + (t674 + t47 * t373);
+    const rx90_real_t t676 = parameters[MY5R] * t355 - parameters[MX5] * t560 - (t2 * t414 - t1 * t417);
+    const rx90_real_t t677 = parameters[MY4R] * (t653 + t649) - parameters[MX4] * t646 - t676;
+    const rx90_real_t t678 = parameters[MX4] * t319 - parameters[MY4R] * t318 + (t14 * t585 - t12 * t586);
+    const rx90_real_t t679 = t677 + (t678 * t662 + (t34 * t654 + t47 * t330));
+    const rx90_real_t t680 = parameters[MX4] * (t648 + t649) - parameters[MY4R] * t321 + (t14 * t579
+        + t12 * t582);
+    const rx90_real_t t681 = t680 + (t38 * t654 - t47 * t345 - t678 * t658);
+    const rx90_real_t t682 = RX90_C(0.45) * (t30 * t679 - t32 * t681);
+    const rx90_real_t t683 = t32 * t675 - t30 * t664 - t682;
+    const rx90_real_t t684 = t38 * t373 + t34 * t407;
+    const rx90_real_t t685 = t25 * t654 - (t29 * t345 + t31 * t330);
+    const rx90_real_t t686 = t12 * t669;
+    const rx90_real_t t687 = parameters[XY4] * t318 - t319 * t656 - (t566 - t686);
+    const rx90_real_t t688 = parameters[XY4] * t319 - t318 * t655 - (t12 * t612 + t14 * t614);
+    const rx90_real_t t689 = t687 * t658 + t688 * t662 - t685 - t684;
+    const rx90_real_t t690 = t101 * (t68 * t683 - t64 * t689) + t98 * (t682 + (t64 * t683 + t68 * t689));
+    const rx90_real_t t691 = RX90_C(0.03333333333333333) * t690;
+    const rx90_real_t t692 = t32 * t679 + t30 * t681;
+    const rx90_real_t t693 = t30 * t675 + t32 * t664 + RX90_C(0.45) * t692;
+    const rx90_real_t t694 = parameters[MX4] * t331 + t580;
+    const rx90_real_t t695 = parameters[MY4R] * t331 + (t14 * t586 + t12 * t585);
+    const rx90_real_t t696 = t694 * t658 - t695 * t662 + (t34 * t345 + t38 * t330);
+    const rx90_real_t t697 = RX90_C(0.03333333333333333) * (t693 + RX90_C(0.45) * (t68 * t696 - t64 * t692));
+    const rx90_real_t t698 = RX90_C(0.03333333333333333) * t693;
+    const rx90_real_t t699 = RX90_C(2.0) * t687; /* link j4: derivatives */
+    const rx90_real_t t700 = RX90_C(2.0) * t688;
+    const rx90_real_t t701 = RX90_C(0.1) * (t684 - (t319 * t699 + t318 * t700 - t685));
+    const rx90_real_t t702 = t436 * t697 - t430 * t691 + t439 * t698 + t443 * t701;
+    const rx90_real_t t703 = t12 * t601 - t14 * t600; /* link j5: derivatives */
+    const rx90_real_t t704 = t319 * t703 - t318 * t618 + (t15 * t654 + (t46 * t345 + t652));
+    const rx90_real_t t705 = RX90_C(0.1) * (t704 + t651);
+    const rx90_real_t t706 = t12 * t512 - t14 * t603; /* link j6: derivatives */
+    const rx90_real_t t707 = t319 * t706 - t318 * t638 + (t17 * t654 + (t42 * t345 - t3 * t330));
+    const rx90_real_t t708 = RX90_C(0.16666666666666666) * (t707 + (t43 * t407 + t35 * t373));
+    ddq_by_q[3] = t702 + t450 * t705 + t459 * t708;
+    const rx90_real_t t709 = t460 * t697 - t436 * t691 + t462 * t698 + t464 * t701;
+    ddq_by_q[9] = t709 + t467 * t705 + t469 * t708;
+    const rx90_real_t t710 = t462 * t697 - t439 * t691 + t470 * t698 + t472 * t701;
+    ddq_by_q[15] = t710 + t475 * t705 + t477 * t708;
+    const rx90_real_t t711 = t479 * t697 - t478 * t691 + t480 * t698 + t482 * t701;
+    ddq_by_q[21] = t711 + t485 * t705 + t487 * t708;
+    const rx90_real_t t712 = t489 * t697 - t488 * t691 + t490 * t698 + t485 * t701;
+    ddq_by_q[27] = t712 + t493 * t705 + t496 * t708;
+    const rx90_real_t t713 = t498 * t697 - t497 * t691 + t499 * t698 + t500 * t701;
+    ddq_by_q[33] = t713 + t502 * t705 + t504 * t708;
+    const rx90_real_t t714 = parameters[ZZ4R] + t655;
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t715 = t319 * t714 + parameters[YZ4] * t331 + (t686 - t556);
+    const rx90_real_t t716 = RX90_C(-2.0) * t715 + (t55 * t658 + t56 * t662); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t717 = parameters[XZ4] * t331 + t318 * t714 + (t12 * t575 + t14 * t576);
+    const rx90_real_t t718 = RX90_C(2.0) * t717 - (t56 * t658 - t8 * t662); /* link j4: derivatives */
+    const rx90_real_t t719 = RX90_C(2.0) * t694 - t47 * t662;
+    const rx90_real_t t720 = RX90_C(2.0) * t695 - t47 * t658;
+    const rx90_real_t t721 = RX90_C(0.45) * (t30 * t719 + t32 * t720);
+    const rx90_real_t t722 = t32 * t716 - t30 * t718 + t721;
+    const rx90_real_t t723 = t671 - t660 + (t670 - t553); /* link j5: inertia, momentum beyond */
+    const rx90_real_t t724 = RX90_C(2.0) * t723; /* link j4: derivatives */
+    const rx90_real_t t725 = t724 + (t29 * t658 + t31 * t662);
+    const rx90_real_t t726 = t101 * (t68 * t722 - t64 * t725) + t98 * (t64 * t722 + t68 * t725 - t721);
+    const rx90_real_t t727 = RX90_C(0.03333333333333333) * t726;
+    const rx90_real_t t728 = t32 * t719 - t30 * t720;
+    const rx90_real_t t729 = t30 * t716 + t32 * t718 + RX90_C(-0.45) * t728;
+    const rx90_real_t t730 = t64 * t728 + t68 * (t34 * t658 + t38 * t662);
+    const rx90_real_t t731 = RX90_C(0.03333333333333333) * (t729 + RX90_C(0.45) * t730);
+    const rx90_real_t t732 = RX90_C(0.03333333333333333) * t729;
+    const rx90_real_t t733 = RX90_C(0.1) * (t724 - RX90_C(-2.0) * (t29 * t319 + t31 * t318));
+    const rx90_real_t t734 = RX90_C(250.0) * parameters[FV4] + t733;
+    const rx90_real_t t735 = t731 * t436 - t727 * t430 + t732 * t439 - t734 * t443;
+    const rx90_real_t t736 = t12 * t600 + t14 * t601; /* link j5: derivatives */
+    const rx90_real_t t737 = RX90_C(0.1) * (t736 + RX90_C(2.0) * (t46 * t319 + t8 * t318));
+    const rx90_real_t t738 = t12 * t603 + t14 * t512; /* link j6: derivatives */
+    const rx90_real_t t739 = RX90_C(0.16666666666666666) * (t738 + RX90_C(2.0) * (t42 * t319 - t3 * t318));
+    ddq_by_dq[3] = t735 + t737 * t450 + t739 * t459;
+    const rx90_real_t t740 = t731 * t460 - t727 * t436 + t732 * t462 - t734 * t464;
+    ddq_by_dq[9] = t740 + t737 * t467 + t739 * t469;
+    const rx90_real_t t741 = t731 * t462 - t727 * t439 + t732 * t470 - t734 * t472;
+    ddq_by_dq[15] = t741 + t737 * t475 + t739 * t477;
+    const rx90_real_t t742 = t731 * t479 - t727 * t478 + t732 * t480 - t734 * t482;
+    ddq_by_dq[21] = t742 + t737 * t485 + t739 * t487;
+    const rx90_real_t t743 = t731 * t489 - t727 * t488 + t732 * t490 - t734 * t485;
+    ddq_by_dq[27] = t743 + t737 * t493 + t739 * t496;
+    const rx90_real_t t744 = t731 * t498 - t727 * t497 + t732 * t499 - t734 * t500;
+    ddq_by_dq[33] = t744 + t737 * t502 + t739 * t504;
+    ddq_by_input[3] = t443;
+    ddq_by_input[9] = t464;
+    ddq_by_input[15] = t472;
+    ddq_by_input[21] = t482;
+    ddq_by_input[27] = t485;
+    ddq_by_input[33] = t500;
+    const rx90_real_t t745 = t30 * t680 + t32 * t677;
+    const rx90_real_t t746 = t315 + t316;
+    const rx90_real_t t747 = t322 - t324;
+    const rx90_real_t t748 = parameters[ZZ3R] * t327 + parameters[XX3R] * t328 + parameters[XY3] * t746
+        - parameters[XZ3] * t747;
+    const rx90_real_t t749 = t323 * t323; /* link j3: motion */
+    const rx90_real_t t750 = t32 * t650 + t30 * t668 + RX90_C(0.45) * t745 - (parameters[MY3R] * t371
+        + (parameters[YZ3] * (t207 - t749) + t748));
+    const rx90_real_t t751 = t25 * t326;
+    const rx90_real_t t752 = t375 + t749; /* link j4: motion */
+    const rx90_real_t t753 = RX90_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const rx90_real_t t754 = parameters[XX3R] - t753;
     /* link j4: inertia, momentum beyond */
-    const rx90_real_t t369 = t34 * (t355 + t358) - t32 * (t364 - t368);
-    const rx90_real_t t370 = t34 * t369;
-    const rx90_real_t t371 = RX90_C(-0.45) * t147; /* link j4: velocity of its origin */
-    const rx90_real_t t372 = t78 * t371; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t373 = parameters[MY6] * t324;
-    const rx90_real_t t374 = parameters[MX6] * t324;
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t375 = parameters[MY5R] * t320 + (t2 * t373 + t1 * t374);
-    const rx90_real_t t376 = parameters[MY6] * t327 + parameters[MX6] * t321;
-    const rx90_real_t t377 = parameters[MX5] * t320 - t376;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t378 = parameters[MX4] * t319 - parameters[MY4R] * t314 + (t15 * t377 - t13 * t375);
-    const rx90_real_t t379 = RX90_C(-0.45) * t378; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t380 = RX90_C(-0.45) * t313;
-    const rx90_real_t t381 = t41 * t380;
-    const rx90_real_t t382 = t379 - (t372 + t381);
-    const rx90_real_t t383 = parameters[XZ3] * t316;
-    const rx90_real_t t384 = parameters[XY3] * t147;
-    const rx90_real_t t385 = t358 - t370 - t372 - t382 - (t383 + t384);
-    const rx90_real_t t386 = t353 - t357 + (t352 - t338); /* link j5: inertia, momentum beyond */
-    const rx90_real_t t387 = parameters[YZ3] * t313;
-    const rx90_real_t t388 = t384 - t387 - (t382 - (t386 + t379)); /* link j4: inertia, momentum beyond */
-    const rx90_real_t t389 = t13 * t351; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t390 = parameters[ZZ4R] + t363;
-    const rx90_real_t t391 = t319 * t390 + parameters[YZ4] * t317 + (t389 - t346);
-    const rx90_real_t t392 = parameters[XZ4] * t317 + t314 * t390 + (t13 * t365 + t15 * t366);
-    const rx90_real_t t393 = parameters[MY4R] * t317 + (t15 * t375 + t13 * t377);
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t394 = parameters[MY5R] * t318 + parameters[MX5] * t323 + (t2 * t374 - t1 * t373);
-    const rx90_real_t t395 = parameters[MX4] * t317 + t394; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t396 = t34 * t393 + t32 * t395; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t397 = t34 * t391 + t32 * t392 + (RX90_C(-0.45) * t396 + t49 * t371);
-    const rx90_real_t t398 = RX90_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const rx90_real_t t399 = parameters[YZ3] * t316 - t147 * t398 + t397;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t400 = parameters[XY4] * t314 - t319 * t367 - (t350 - t389);
-    const rx90_real_t t401 = parameters[XY4] * t319 - t314 * t363 - (t13 * t361 + t15 * t362);
-    const rx90_real_t t402 = parameters[XX3R] - t398;
+    const rx90_real_t t755 = t146 * t754 - parameters[XZ3] * t314 - (t32 * t687 + t30 * t688);
+    const rx90_real_t t756 = RX90_C(2.0) * t323; /* link j3: derivatives */
+    const rx90_real_t t757 = RX90_C(-0.45) * t678; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t758 = RX90_C(-0.45) * t146; /* link j4: velocity of its origin */
+    const rx90_real_t t759 = t75 * t758; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t760 = RX90_C(-0.45) * t314;
+    const rx90_real_t t761 = t39 * t760;
+    const rx90_real_t t762 = t757 - (t759 + t761);
+    const rx90_real_t t763 = parameters[YZ3] * t314;
+    const rx90_real_t t764 = parameters[XY3] * t146;
+    const rx90_real_t t765 = t764 - t763 - (t762 - (t723 + t757));
+    const rx90_real_t t766 = RX90_C(2.0) * t314; /* link j3: derivatives */
+    const rx90_real_t t767 = t755 * t756 + t765 * t766 + (t124 * t752 + (t751 - t93 * t312));
+    const rx90_real_t t768 = t39 * t374;
+    const rx90_real_t t769 = t750 - (t768 + t767);
+    const rx90_real_t t770 = parameters[XX4R] * t320 + parameters[ZZ4R] * t317 + parameters[YZ4] * t345
+        + parameters[XZ4] * t330;
+    const rx90_real_t t771 = parameters[XY4] * (t648 - t653) + t770 + (parameters[MY4R] * t373
+        - parameters[MX4] * t407);
+    const rx90_real_t t772 = parameters[XZ3] * (t375 - t207) + (t261 * t315 + parameters[XY3] * t329
+        - parameters[YZ3] * t325);
+    const rx90_real_t t773 = t772 - parameters[MX3] * t371 + (t771 + (t12 * t563 + t14 * t546));
     /* link j4: inertia, momentum beyond */
-    const rx90_real_t t403 = t147 * t402 - parameters[XZ3] * t313 - (t34 * t400 + t32 * t401);
+    const rx90_real_t t774 = t32 * (t672 + t661) - t30 * (t673 - t657);
+    const rx90_real_t t775 = t32 * t774;
+    const rx90_real_t t776 = parameters[XZ3] * t323;
+    const rx90_real_t t777 = t661 - t775 - t759 - t762 - (t776 + t764);
+    const rx90_real_t t778 = t32 * t695 + t30 * t694;
+    const rx90_real_t t779 = t32 * t715 + t30 * t717 + (RX90_C(-0.45) * t778 + t47 * t758);
+    const rx90_real_t t780 = parameters[YZ3] * t323 - t146 * t753 + t779;
+    const rx90_real_t t781 = t780 * t766 - t777 * t756 + (t93 * t326 - t90 * t312 - t123 * t752);
+    const rx90_real_t t782 = t773 + (t781 + t39 * t367);
+    const rx90_real_t t783 = parameters[MY3R] * t146 + t778;
+    const rx90_real_t t784 = parameters[MX3] * t146 + t678;
+    const rx90_real_t t785 = t784 * t756 + t783 * t766 + (t77 * t312 - t76 * t326);
+    const rx90_real_t t786 = t98 * (t64 * t782 + t68 * t769 + RX90_C(0.45) * t785);
+    const rx90_real_t t787 = RX90_C(0.03333333333333333) * (t101 * (t68 * t782 - t64 * t769) + t786);
+    const rx90_real_t t788 = parameters[MX3] * (t207 + t749) + parameters[MY3R] * t325 + (t32 * t680
+        - t30 * t677);
+    const rx90_real_t t789 = t30 * t695 - t32 * t694;
+    const rx90_real_t t790 = parameters[MY3R] * t314 + parameters[MX3] * t323 + t789;
+    const rx90_real_t t791 = t788 + (t76 * t752 + t39 * t312 - t790 * t756);
+    const rx90_real_t t792 = parameters[MX4] * t645 - parameters[MY4R] * t334 + (t14 * t582 - t12 * t579);
+    const rx90_real_t t793 = parameters[MX3] * t747 - parameters[MY3R] * t376 + t792 + (t790 * t766
+        - (t77 * t752 + t39 * t326));
+    const rx90_real_t t794 = t60 * t752 + (t123 * t312 + t124 * t326);
+    const rx90_real_t t795 = t30 * t774;
+    const rx90_real_t t796 = parameters[XY3] * t314 + t323 * t754 - (t657 - t795 - t75 * t760);
+    const rx90_real_t t797 = t30 * t715 - t32 * t717 + (RX90_C(-0.45) * t789 + t47 * t760);
+    const rx90_real_t t798 = parameters[XY3] * t323 - t314 * t753 + t797;
+    const rx90_real_t t799 = t77 * t374 - t76 * t367;
+    const rx90_real_t t800 = t796 * t756 + t798 * t766 + t794 + t799 + RX90_C(0.45) * (t64 * t793
+        + t68 * t791);
+    const rx90_real_t t801 = RX90_C(0.03333333333333333) * t800;
+    const rx90_real_t t802 = RX90_C(2.0) * t796; /* link j3: derivatives */
+    const rx90_real_t t803 = RX90_C(2.0) * t798;
+    const rx90_real_t t804 = RX90_C(0.03333333333333333) * (t799 + (t323 * t802 + t314 * t803 + t794));
+    const rx90_real_t t805 = t32 * t699 + t30 * t700; /* link j4: derivatives */
+    const rx90_real_t t806 = RX90_C(-0.9) * t314; /* link j6: derivatives */
+    const rx90_real_t t807 = RX90_C(0.9) * t146;
+    const rx90_real_t t808 = t724 - (t75 * t807 - t39 * t806); /* link j4: derivatives */
+    const rx90_real_t t809 = t323 * t805 - t314 * t808 + (t41 * t752 - (t751 - t92 * t312));
+    const rx90_real_t t810 = RX90_C(0.1) * (t809 - t768);
+    const rx90_real_t t811 = t436 * t801 - t430 * t787 + t439 * t804 - t443 * t810;
+    const rx90_real_t t812 = t30 * t618 - t32 * t703 - t37 * t806; /* link j5: derivatives */
+    const rx90_real_t t813 = t48 * t806 + t111 * t807 - t736;
+    const rx90_real_t t814 = t314 * t813 - t323 * t812 + (t49 * t752 + (t113 * t312 + t15 * t326));
+    const rx90_real_t t815 = RX90_C(0.1) * (t814 + (t48 * t374 - t37 * t367));
+    const rx90_real_t t816 = t30 * t638 - t32 * t706 + t67 * t806; /* link j6: derivatives */
+    const rx90_real_t t817 = t44 * t806 + t104 * t807 - t738;
+    const rx90_real_t t818 = t314 * t817 - t323 * t816 + (t45 * t752 + (t106 * t312 + t17 * t326));
+    const rx90_real_t t819 = RX90_C(0.16666666666666666) * (t818 + (t44 * t374 + t67 * t367));
+    ddq_by_q[2] = t811 + t450 * t815 + t459 * t819;
+    const rx90_real_t t820 = t460 * t801 - t436 * t787 + t462 * t804 - t464 * t810;
+    ddq_by_q[8] = t820 + t467 * t815 + t469 * t819;
+    const rx90_real_t t821 = t462 * t801 - t439 * t787 + t470 * t804 - t472 * t810;
+    ddq_by_q[14] = t821 + t475 * t815 + t477 * t819;
+    const rx90_real_t t822 = t479 * t801 - t478 * t787 + t480 * t804 - t482 * t810;
+    ddq_by_q[20] = t822 + t485 * t815 + t487 * t819;
+    const rx90_real_t t823 = t489 * t801 - t488 * t787 + t490 * t804 - t485 * t810;
+    ddq_by_q[26] = t823 + t493 * t815 + t496 * t819;
+    const rx90_real_t t824 = t498 * t801 - t497 * t787 + t499 * t804 - t500 * t810;
+    ddq_by_q[32] = t824 + t502 * t815 + t504 * t819;
+    const rx90_real_t t825 = t753 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t826 = t323 * t825 - parameters[YZ3] * t146 + (t673 + t795 + t39 * t758);
+    const rx90_real_t t827 = RX90_C(2.0) * t826 + (t93 * t766 - t90 * t756); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t828 = parameters[XZ3] * t146 + t314 * t825 + (t30 * t687 - t32 * t688);
+    const rx90_real_t t829 = RX90_C(2.0) * t828 - (t25 * t766 - t93 * t756); /* link j3: derivatives */
+    const rx90_real_t t830 = t64 * t827 + t68 * t829 + RX90_C(0.45) * (t77 * t756 - t76 * t766);
+    const rx90_real_t t831 = t101 * (t68 * t827 - t64 * t829) + t98 * t830;
+    const rx90_real_t t832 = RX90_C(0.03333333333333333) * t831;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t833 = t762 + (t672 - t775 + t761) - (t776 + t763);
+    const rx90_real_t t834 = RX90_C(2.0) * t833; /* link j3: derivatives */
+    const rx90_real_t t835 = t64 * (RX90_C(2.0) * t784 - t39 * t766) + t68 * (RX90_C(2.0) * t783
+        + t39 * t756);
+    const rx90_real_t t836 = t834 + (t123 * t756 + t124 * t766) + RX90_C(0.45) * t835;
+    const rx90_real_t t837 = RX90_C(0.03333333333333333) * t836;
+    const rx90_real_t t838 = RX90_C(0.03333333333333333) * (t834 + RX90_C(2.0) * (t123 * t323 + t124 * t314));
+    const rx90_real_t t839 = RX90_C(-333.33333333333337) * parameters[FV3] + t838;
+    const rx90_real_t t840 = t30 * t699 - t32 * t700; /* link j4: derivatives */
+    const rx90_real_t t841 = RX90_C(0.1) * (t840 - RX90_C(2.0) * (t25 * t314 - t92 * t323));
+    const rx90_real_t t842 = t837 * t436 - t832 * t430 + t839 * t439 - t841 * t443;
+    const rx90_real_t t843 = t30 * t703 + t32 * t618 + t37 * t807; /* link j5: derivatives */
+    const rx90_real_t t844 = RX90_C(0.1) * (t843 + RX90_C(2.0) * (t113 * t323 + t15 * t314));
+    const rx90_real_t t845 = t30 * t706 + t32 * t638 - t67 * t807; /* link j6: derivatives */
+    const rx90_real_t t846 = RX90_C(0.16666666666666666) * (t845 + RX90_C(2.0) * (t106 * t323 + t17 * t314));
+    ddq_by_dq[2] = t842 + t844 * t450 + t846 * t459;
+    const rx90_real_t t847 = t837 * t460 - t832 * t436 + t839 * t462 - t841 * t464;
+    ddq_by_dq[8] = t847 + t844 * t467 + t846 * t469;
+    const rx90_real_t t848 = t837 * t462 - t832 * t439 + t839 * t470 - t841 * t472;
+    ddq_by_dq[14] = t848 + t844 * t475 + t846 * t477;
+    const rx90_real_t t849 = t837 * t479 - t832 * t478 + t839 * t480 - t841 * t482;
+    ddq_by_dq[20] = t849 + t844 * t485 + t846 * t487;
+    const rx90_real_t t850 = t837 * t489 - t832 * t488 + t839 * t490 - t841 * t485;
+    ddq_by_dq[26] = t850 + t844 * t493 + t846 * t496;
+    const rx90_real_t t851 = t837 * t498 - t832 * t497 + t839 * t499 - t841 * t500;
+    ddq_by_dq[32] = t851 + t844 * t502 + t846 * t504;
+    ddq_by_input[2] = t439;
+    ddq_by_input[8] = t462;
+    ddq_by_input[14] = t470;
+    ddq_by_input[20] = t480;
+    ddq_by_input[26] = t490;
+    ddq_by_input[32] = t499;
+    const rx90_real_t t852 = t68 * t773 - t64 * t750 + RX90_C(0.45) * (parameters[MX3] * t746
+        - parameters[MY3R] * t329 + t745);
+    const rx90_real_t t853 = t101 * t303;
+    const rx90_real_t t854 = t264 + t853;
+    const rx90_real_t t855 = t270 - parameters[XY2] * (t264 + t854) + parameters[YZ2] * (t195 - t304);
+    const rx90_real_t t856 = t271 + t190; /* link j3: motion */
     /* link j3: inertia, momentum beyond */
-    const rx90_real_t t404 = t71 * (t385 - t388) + t67 * (t399 - t403);
-    const rx90_real_t t405 = t71 * t404;
-    const rx90_real_t t406 = parameters[MY3R] * t147 + t396; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t407 = parameters[MX3] * t147 + t378;
-    const rx90_real_t t408 = RX90_C(0.45) * (t71 * t406 + t67 * t407); /* link j3: inertia, momentum beyond */
-    const rx90_real_t t409 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
-    const rx90_real_t t410 = t103 * t409; /* link j3: inertia, momentum beyond */
-    const rx90_real_t t411 = RX90_C(0.45) * t143; /* link j3: velocity of its origin */
-    const rx90_real_t t412 = t41 * t411; /* link j3: inertia, momentum beyond */
-    const rx90_real_t t413 = t410 + t412 - t408;
-    const rx90_real_t t414 = parameters[XZ2R] * t143;
-    const rx90_real_t t415 = parameters[XY2] * dq[1];
-    const rx90_real_t t416 = t414 - t415 + (t413 + (t388 + t405 + t408));
-    const rx90_real_t t417 = parameters[YZ2] * t142;
-    const rx90_real_t t418 = t415 - t417 + (t413 + (t385 - t405 - t410));
-    const rx90_real_t t419 = t67 * t404;
-    const rx90_real_t t420 = RX90_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const rx90_real_t t421 = parameters[YZ2] * t143 - dq[1] * t420 + (t419 - t399);
-    const rx90_real_t t422 = RX90_C(0.45) * (t67 * t406 - t71 * t407) + t81 * t409;
-    const rx90_real_t t423 = parameters[XX2R] + t420;
-    const rx90_real_t t424 = dq[1] * t423 - parameters[XZ2R] * t142 + (t403 + t419 + t422);
+    const rx90_real_t t857 = t68 * (t777 - t765) + t64 * (t780 - t755);
+    const rx90_real_t t858 = t68 * t857;
+    const rx90_real_t t859 = RX90_C(0.45) * (t68 * t783 + t64 * t784);
+    const rx90_real_t t860 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
+    const rx90_real_t t861 = t99 * t860; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t862 = RX90_C(0.45) * t142; /* link j3: velocity of its origin */
+    const rx90_real_t t863 = t39 * t862; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t864 = t861 + t863 - t859;
+    const rx90_real_t t865 = parameters[XZ2R] * t142;
+    const rx90_real_t t866 = parameters[XY2] * dq[1];
+    const rx90_real_t t867 = t865 - t866 + (t864 + (t765 + t858 + t859));
+    const rx90_real_t t868 = RX90_C(2.0) * t142; /* link j2: derivatives */
+    const rx90_real_t t869 = t64 * t857; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t870 = RX90_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const rx90_real_t t871 = parameters[YZ2] * t142 - dq[1] * t870 + (t869 - t780);
+    const rx90_real_t t872 = RX90_C(-2.0) * t141; /* link j2: derivatives */
+    const rx90_real_t t873 = t867 * t868 + t871 * t872 + (t130 * t856 + (t97 * t369 - t100 * t853));
+    const rx90_real_t t874 = t101 * (t272 + t855 + t852 + (t39 * t192 + t873));
+    const rx90_real_t t875 = t265 + parameters[XX2R] * t854 + parameters[XY2] * t370
+        + parameters[XZ2R] * t365;
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t876 = RX90_C(0.45) * (t64 * t783 - t68 * t784) + t78 * t860;
+    const rx90_real_t t877 = parameters[XX2R] + t870;
+    const rx90_real_t t878 = dq[1] * t877 - parameters[XZ2R] * t141 + (t755 + t869 + t876);
+    const rx90_real_t t879 = parameters[YZ2] * t141;
+    const rx90_real_t t880 = t866 - t879 + (t864 + (t777 - t858 - t861));
+    const rx90_real_t t881 = t878 * t868 + t880 * t872 + (t100 * t369 - t96 * t853 - t131 * t856);
+    const rx90_real_t t882 = t875 - t267 + (t68 * t750 + t64 * t773) + (t881 - t39 * t196);
+    const rx90_real_t t883 = RX90_C(0.03333333333333333) * (t874 + t98 * t882);
+    const rx90_real_t t884 = t64 * t798 - t68 * t796 + (RX90_C(0.45) * t790 + t78 * t862);
+    /* link j2: derivatives */
+    const rx90_real_t t885 = RX90_C(2.0) * (t142 * t877 - parameters[XY2] * t141 + t884);
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t886 = parameters[XY2] * t142 - t141 * t870 - (t64 * t796 + t68 * t798 + t99 * t862);
+    const rx90_real_t t887 = RX90_C(2.0) * t886; /* link j2: derivatives */
+    const rx90_real_t t888 = t142 * t885 - t141 * t887 + (t87 * t856 + (t130 * t369 + t131 * t853));
+    const rx90_real_t t889 = (parameters[MY2] + t99) * t196 - (parameters[MX2R] - t78) * t192 + t888;
+    const rx90_real_t t890 = RX90_C(0.03333333333333333) * t889;
+    const rx90_real_t t891 = RX90_C(0.9) * t142; /* link j6: derivatives */
+    const rx90_real_t t892 = t64 * t803 - t68 * t802 + t78 * t891; /* link j3: derivatives */
+    const rx90_real_t t893 = t64 * t802 + t68 * t803 + t99 * t891;
+    const rx90_real_t t894 = t142 * t892 + t141 * t893 + (t125 * t369 + t126 * t853 - t79 * t856);
+    const rx90_real_t t895 = RX90_C(0.03333333333333333) * (t99 * t196 + t78 * t192 + t894);
+    const rx90_real_t t896 = RX90_C(-0.9) * dq[1]; /* link j6: derivatives */
+    const rx90_real_t t897 = t68 * t805 + t64 * t808 - (t75 * t896 - t65 * t891); /* link j4: derivatives */
+    const rx90_real_t t898 = t68 * t39; /* link j4: column of the mass matrix */
+    const rx90_real_t t899 = t64 * t805 - t68 * t808 - t898 * t891; /* link j4: derivatives */
+    const rx90_real_t t900 = t142 * t897 - t141 * t899 - (t66 * t856 + (t119 * t853 - t118 * t369));
+    const rx90_real_t t901 = RX90_C(0.1) * (t898 * t196 + t65 * t192 + t900);
+    const rx90_real_t t902 = t436 * t890 - t430 * t883 + t439 * t895 + t443 * t901;
+    const rx90_real_t t903 = t68 * t812 + t64 * t813 + (t111 * t896 - t71 * t891); /* link j5: derivatives */
+    const rx90_real_t t904 = t68 * t48 + t64 * t37; /* link j5: column of the mass matrix */
+    const rx90_real_t t905 = t64 * t812 - t68 * t813 - t904 * t891; /* link j5: derivatives */
+    const rx90_real_t t906 = t142 * t903 - t141 * t905 + (t72 * t856 + (t114 * t369 + t115 * t853));
+    const rx90_real_t t907 = RX90_C(0.1) * (t904 * t196 - t71 * t192 + t906);
+    const rx90_real_t t908 = t68 * t816 + t64 * t817 + (t104 * t896 + t69 * t891); /* link j6: derivatives */
+    const rx90_real_t t909 = t68 * t44 - t64 * t67; /* link j6: column of the mass matrix */
+    const rx90_real_t t910 = t64 * t816 - t68 * t817 - t909 * t891; /* link j6: derivatives */
+    const rx90_real_t t911 = t142 * t908 - t141 * t910 + (t70 * t856 + (t107 * t369 + t108 * t853));
+    const rx90_real_t t912 = RX90_C(0.16666666666666666) * (t909 * t196 + t69 * t192 + t911);
+    ddq_by_q[1] = t902 + t450 * t907 + t459 * t912;
+    const rx90_real_t t913 = t460 * t890 - t436 * t883 + t462 * t895 + t464 * t901;
+    ddq_by_q[7] = t913 + t467 * t907 + t469 * t912;
+    const rx90_real_t t914 = t462 * t890 - t439 * t883 + t470 * t895 + t472 * t901;
+    ddq_by_q[13] = t914 + t475 * t907 + t477 * t912;
+    const rx90_real_t t915 = t479 * t890 - t478 * t883 + t480 * t895 + t482 * t901;
+    ddq_by_q[19] = t915 + t485 * t907 + t487 * t912;
+    const rx90_real_t t916 = t489 * t890 - t488 * t883 + t490 * t895 + t485 * t901;
+    ddq_by_q[25] = t916 + t493 * t907 + t496 * t912;
+    const rx90_real_t t917 = t498 * t890 - t497 * t883 + t499 * t895 + t500 * t901;
+    ddq_by_q[31] = t917 + t502 * t907 + t504 * t912;
+    const rx90_real_t t918 = parameters[ZZ2R] + t870;
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t919 = t142 * t918 - parameters[YZ2] * dq[1] + (t68 * t826 - t64 * t828);
+    /* link j2: derivatives */
+    const rx90_real_t t920 = t101 * (RX90_C(2.0) * t919 + (t97 * t868 + t100 * t872));
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t921 = parameters[XZ2R] * dq[1] - t141 * t918 + (t64 * t826 + t68 * t828 + t39 * t860);
+    /* link j2: derivatives */
+    const rx90_real_t t922 = t98 * (RX90_C(2.0) * t921 + (t100 * t868 + t96 * t872));
+    const rx90_real_t t923 = RX90_C(0.03333333333333333) * (t920 + t922);
+    const rx90_real_t t924 = RX90_C(2.0) * (t865 - t879 + (t833 + t863 - t864)) + RX90_C(2.0) * (t130 * t142
+        + t131 * t141);
+    const rx90_real_t t925 = RX90_C(-333.33333333333337) * parameters[FV2]
+        + RX90_C(0.03333333333333333) * t924;
+    /* link j3: derivatives */
+    const rx90_real_t t926 = t834 + t99 * t896 + RX90_C(2.0) * (t125 * t142 + t126 * t141);
+    const rx90_real_t t927 = RX90_C(0.03333333333333333) * t926;
+    /* link j4: derivatives */
+    const rx90_real_t t928 = t840 - t898 * t896 + RX90_C(2.0) * (t119 * t141 - t118 * t142);
+    const rx90_real_t t929 = RX90_C(0.1) * t928;
+    const rx90_real_t t930 = t925 * t436 - t923 * t430 + t927 * t439 - t929 * t443;
+    /* link j5: derivatives */
+    const rx90_real_t t931 = t843 + t904 * t896 + RX90_C(2.0) * (t114 * t142 + t115 * t141);
+    const rx90_real_t t932 = RX90_C(0.1) * t931;
+    /* link j6: derivatives */
+    const rx90_real_t t933 = t845 + t909 * t896 + RX90_C(2.0) * (t107 * t142 + t108 * t141);
+    const rx90_real_t t934 = RX90_C(0.16666666666666666) * t933;
+    ddq_by_dq[1] = t930 + t932 * t450 + t934 * t459;
+    const rx90_real_t t935 = t925 * t460 - t923 * t436 + t927 * t462 - t929 * t464;
+    ddq_by_dq[7] = t935 + t932 * t467 + t934 * t469;
+    const rx90_real_t t936 = t925 * t462 - t923 * t439 + t927 * t470 - t929 * t472;
+    ddq_by_dq[13] = t936 + t932 * t475 + t934 * t477;
+    const rx90_real_t t937 = t925 * t479 - t923 * t478 + t927 * t480 - t929 * t482;
+    ddq_by_dq[19] = t937 + t932 * t485 + t934 * t487;
+    const rx90_real_t t938 = t925 * t489 - t923 * t488 + t927 * t490 - t929 * t485;
+    ddq_by_dq[25] = t938 + t932 * t493 + t934 * t496;
+    const rx90_real_t t939 = t925 * t498 - t923 * t497 + t927 * t499 - t929 * t500;
+    ddq_by_dq[31] = t939 + t932 * t502 + t934 * t504;
+    ddq_by_input[1] = t436;
+    ddq_by_input[7] = t460;
+    ddq_by_input[13] = t462;
+    ddq_by_input[19] = t479;
+    ddq_by_input[25] = t489;
+    ddq_by_input[31] = t498;
     /* link j2: inertia, momentum beyond */
-    const rx90_real_t t425 = t102 * (t102 * (t418 - t416) + t105 * (t421 + t424));
-    const rx90_real_t t426 = RX90_C(333.33333333333337) * parameters[FV1]
-        + RX90_C(0.06666666666666667) * (t416 + t425);
-    const rx90_real_t t427 = rx90_bounded(RX90_C(30.0) * t303);
-    const rx90_real_t t428 = t139 * t303;
-    const rx90_real_t t429 = rx90_bounded(RX90_C(-30.0) * t428);
-    const rx90_real_t t430 = t32 * t369; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t431 = parameters[XY3] * t313 + t316 * t402 - (t368 - t430 - t78 * t380);
-    const rx90_real_t t432 = t32 * t393 - t34 * t395;
-    const rx90_real_t t433 = t32 * t391 - t34 * t392 + (RX90_C(-0.45) * t432 + t49 * t380);
-    const rx90_real_t t434 = parameters[XY3] * t316 - t313 * t398 + t433;
-    const rx90_real_t t435 = parameters[MY3R] * t313 + parameters[MX3] * t316 + t432;
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t436 = t67 * t434 - t71 * t431 + (RX90_C(0.45) * t435 + t81 * t411);
-    /* link j2: derivatives */
-    const rx90_real_t t437 = RX90_C(2.0) * (t143 * t423 - parameters[XY2] * t142 + t436);
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t438 = parameters[XY2] * t143 - t142 * t420 - (t67 * t431 + t71 * t434 + t103 * t411);
-    const rx90_real_t t439 = RX90_C(2.0) * t438; /* link j2: derivatives */
-    const rx90_real_t t440 = RX90_C(0.03333333333333333) * (t105 * t437 + t102 * t439);
-    const rx90_real_t t441 = t303 * (t133 + t85 * t139);
-    const rx90_real_t t442 = rx90_bounded(RX90_C(-30.0) * t441);
-    const rx90_real_t t443 = RX90_C(2.0) * t431; /* link j3: derivatives */
-    const rx90_real_t t444 = RX90_C(2.0) * t434;
-    const rx90_real_t t445 = RX90_C(0.9) * t143; /* link j6: derivatives */
-    const rx90_real_t t446 = t67 * t444 - t71 * t443 + t81 * t445; /* link j3: derivatives */
-    const rx90_real_t t447 = t67 * t443 + t71 * t444 + t103 * t445;
-    const rx90_real_t t448 = RX90_C(0.03333333333333333) * (t105 * t446 - t102 * t447);
-    const rx90_real_t t449 = t86 + t55 * t85;
-    const rx90_real_t t450 = t303 * (t55 * t133 - t125 + t139 * t449);
-    const rx90_real_t t451 = rx90_bounded(RX90_C(-10.0) * t450);
-    const rx90_real_t t452 = RX90_C(2.0) * t400; /* link j4: derivatives */
-    const rx90_real_t t453 = RX90_C(2.0) * t401;
-    const rx90_real_t t454 = t34 * t452 + t32 * t453;
-    const rx90_real_t t455 = RX90_C(2.0) * t386;
-    const rx90_real_t t456 = RX90_C(-0.9) * t313; /* link j6: derivatives */
-    const rx90_real_t t457 = RX90_C(0.9) * t147;
-    const rx90_real_t t458 = t455 - (t78 * t457 - t41 * t456); /* link j4: derivatives */
-    const rx90_real_t t459 = RX90_C(-0.9) * dq[1]; /* link j6: derivatives */
-    const rx90_real_t t460 = t71 * t454 + t67 * t458 - (t78 * t459 - t68 * t445); /* link j4: derivatives */
-    const rx90_real_t t461 = t71 * t41; /* link j4: column of the mass matrix */
-    const rx90_real_t t462 = t67 * t454 - t71 * t458 - t461 * t445; /* link j4: derivatives */
-    const rx90_real_t t463 = RX90_C(0.1) * (t105 * t460 + t102 * t462);
-    const rx90_real_t t464 = t440 * t429 - t426 * t427 + t448 * t442 + t463 * t451;
-    const rx90_real_t t465 = t64 + t21 * t55;
-    const rx90_real_t t466 = t87 + t21 * t86 + t85 * t465;
-    const rx90_real_t t467 = t121 + t21 * t125 - t133 * t465 - t139 * t466;
-    const rx90_real_t t468 = t303 * t467;
-    const rx90_real_t t469 = rx90_bounded(RX90_C(-10.0) * t468);
-    const rx90_real_t t470 = RX90_C(2.0) * t365; /* link j5: derivatives */
-    const rx90_real_t t471 = RX90_C(2.0) * t366;
-    const rx90_real_t t472 = t13 * t471 - t15 * t470;
-    const rx90_real_t t473 = RX90_C(-2.0) * t356;
-    const rx90_real_t t474 = t32 * t473 - t34 * t472 - t39 * t456;
-    const rx90_real_t t475 = t13 * t470 + t15 * t471;
-    const rx90_real_t t476 = t50 * t456 + t115 * t457 - t475;
-    const rx90_real_t t477 = t71 * t474 + t67 * t476 + (t115 * t459 - t74 * t445);
-    const rx90_real_t t478 = t71 * t50 + t67 * t39; /* link j5: column of the mass matrix */
-    const rx90_real_t t479 = t67 * t474 - t71 * t476 - t478 * t445; /* link j5: derivatives */
-    const rx90_real_t t480 = RX90_C(0.1) * (t105 * t477 + t102 * t479);
-    const rx90_real_t t481 = t28 + t5 * t21;
-    const rx90_real_t t482 = t56 + t5 * t64 + t55 * t481;
-    const rx90_real_t t483 = t88 + t5 * t87 + t86 * t481 + t85 * t482;
-    const rx90_real_t t484 = t114 + t5 * t121 + t125 * t481 - t133 * t482;
-    const rx90_real_t t485 = t303 * (t484 - t139 * t483);
-    const rx90_real_t t486 = RX90_C(-6.0) * t485;
-    const rx90_real_t t487 = RX90_C(2.0) * t347; /* link j6: derivatives */
-    const rx90_real_t t488 = RX90_C(-2.0) * t348;
-    const rx90_real_t t489 = t2 * t487 + t1 * t488;
-    const rx90_real_t t490 = RX90_C(2.0) * t339;
-    const rx90_real_t t491 = t13 * t490 - t15 * t489;
-    const rx90_real_t t492 = t2 * t488 - t1 * t487;
-    const rx90_real_t t493 = t32 * t492 - t34 * t491 + t70 * t456;
-    const rx90_real_t t494 = t13 * t489 + t15 * t490;
-    const rx90_real_t t495 = t46 * t456 + t108 * t457 - t494;
-    const rx90_real_t t496 = t71 * t493 + t67 * t495 + (t108 * t459 + t72 * t445);
-    const rx90_real_t t497 = t71 * t46 - t67 * t70; /* link j6: column of the mass matrix */
-    const rx90_real_t t498 = t67 * t493 - t71 * t495 - t497 * t445; /* link j6: derivatives */
-    const rx90_real_t t499 = RX90_C(0.16666666666666666) * (t105 * t496 + t102 * t498);
-    ddq_by_dq[0] = t464 + t480 * t469 + t499 * t486;
-    const rx90_real_t t500 = rx90_bounded(RX90_C(30.0) * (t138 + t139 * t428));
-    const rx90_real_t t501 = t85 * t138 + t139 * t441;
-    const rx90_real_t t502 = rx90_bounded(RX90_C(30.0) * t501);
-    const rx90_real_t t503 = t138 * t449 + t139 * t450;
-    const rx90_real_t t504 = rx90_bounded(RX90_C(10.0) * t503);
-    const rx90_real_t t505 = t440 * t500 - t426 * t429 + t448 * t502 + t463 * t504;
-    const rx90_real_t t506 = t139 * t468 - t138 * t466;
-    const rx90_real_t t507 = rx90_bounded(RX90_C(10.0) * t506);
-    const rx90_real_t t508 = t139 * t485 - t138 * t483;
-    const rx90_real_t t509 = RX90_C(6.0) * t508;
-    ddq_by_dq[6] = t505 + t480 * t507 + t499 * t509;
-    const rx90_real_t t510 = rx90_bounded(RX90_C(30.0) * (t84 + t133 * t441 + t85 * t501));
-    const rx90_real_t t511 = t55 * t84 + t133 * t450 + t85 * t503;
-    const rx90_real_t t512 = rx90_bounded(RX90_C(10.0) * t511);
-    const rx90_real_t t513 = t440 * t502 - t426 * t442 + t448 * t510 + t463 * t512;
-    const rx90_real_t t514 = t133 * t468 - t84 * t465 + t85 * t506;
-    const rx90_real_t t515 = rx90_bounded(RX90_C(10.0) * t514);
-    const rx90_real_t t516 = t133 * t485 - t84 * t482 + t85 * t508;
-    const rx90_real_t t517 = RX90_C(6.0) * t516;
-    ddq_by_dq[12] = t513 + t480 * t515 + t499 * t517;
-    const rx90_real_t t518 = rx90_bounded(RX90_C(-30.0) * t450);
-    const rx90_real_t t519 = rx90_bounded(RX90_C(30.0) * t503);
-    const rx90_real_t t520 = rx90_bounded(RX90_C(30.0) * t511);
-    const rx90_real_t t521 = t54 - t125 * t450 + t86 * t503 + t55 * t511;
-    const rx90_real_t t522 = rx90_bounded(RX90_C(10.0) * t521);
-    const rx90_real_t t523 = t440 * t519 - t426 * t518 + t448 * t520 + t463 * t522;
-    const rx90_real_t t524 = t21 * t54 + t125 * t468 - t86 * t506 - t55 * t514;
-    const rx90_real_t t525 = rx90_bounded(RX90_C(-10.0) * t524);
-    const rx90_real_t t526 = t54 * t481 + t125 * t485 - t86 * t508 - t55 * t516;
-    const rx90_real_t t527 = RX90_C(-6.0) * t526;
-    ddq_by_dq[18] = t523 + t480 * t525 + t499 * t527;
-    const rx90_real_t t528 = rx90_bounded(RX90_C(-30.0) * t468);
-    const rx90_real_t t529 = rx90_bounded(RX90_C(30.0) * t506);
-    const rx90_real_t t530 = rx90_bounded(RX90_C(30.0) * t514);
-    const rx90_real_t t531 = t440 * t529 - t426 * t528 + t448 * t530 + t463 * t525;
-    const rx90_real_t t532 = t20 + t121 * t468 - t87 * t506 - t64 * t514;
-    const rx90_real_t t533 = rx90_bounded(RX90_C(10.0) * (t532 + t21 * t524));
-    const rx90_real_t t534 = t5 * t20 + t121 * t485 - t87 * t508 - t64 * t516;
-    const rx90_real_t t535 = t534 + t21 * t526;
-    const rx90_real_t t536 = RX90_C(6.0) * t535;
-    ddq_by_dq[24] = t531 + t480 * t533 + t499 * t536;
-    const rx90_real_t t537 = rx90_bounded(RX90_C(-30.0) * t485);
-    const rx90_real_t t538 = rx90_bounded(RX90_C(30.0) * t508);
-    const rx90_real_t t539 = rx90_bounded(RX90_C(30.0) * t516);
-    const rx90_real_t t540 = rx90_bounded(RX90_C(-10.0) * t526);
-    const rx90_real_t t541 = t440 * t538 - t426 * t537 + t448 * t539 + t463 * t540;
-    const rx90_real_t t542 = rx90_bounded(RX90_C(10.0) * t535);
-    const rx90_real_t t543 = t4 + t114 * t485 - t88 * t508 - t56 * t516;
-    const rx90_real_t t544 = RX90_C(6.0) * (t543 + t28 * t526 + t5 * t535);
-    ddq_by_dq[30] = t541 + t480 * t542 + t499 * t544;
-    ddq_by_input[0] = t427;
-    ddq_by_input[6] = t429;
-    ddq_by_input[12] = t442;
-    ddq_by_input[18] = t518;
-    ddq_by_input[24] = t528;
-    ddq_by_input[30] = t537;
-    const rx90_real_t t545 = t305 + t306;
-    const rx90_real_t t546 = t313 * t316; /* link j3: motion */
-    const rx90_real_t t547 = t546 + t545;
-    const rx90_real_t t548 = t304 * t312;
-    const rx90_real_t t549 = t147 * t316;
-    const rx90_real_t t550 = t549 - t548;
-    const rx90_real_t t551 = t549 + t550;
-    const rx90_real_t t552 = t34 * t547 - t32 * t551;
-    const rx90_real_t t553 = t314 * t317; /* link j4: motion */
-    const rx90_real_t t554 = t552 - t553;
-    const rx90_real_t t555 = t309 + t554;
-    const rx90_real_t t556 = t318 * t323; /* link j5: motion */
-    const rx90_real_t t557 = t556 + t555;
-    const rx90_real_t t558 = t304 * t315;
-    const rx90_real_t t559 = t147 * t313; /* link j3: motion */
-    const rx90_real_t t560 = t559 + t558;
-    const rx90_real_t t561 = t560 - t307;
-    const rx90_real_t t562 = t314 * t319; /* link j4: motion */
-    const rx90_real_t t563 = t562 + t561;
-    const rx90_real_t t564 = t32 * t547 + t34 * t551;
-    const rx90_real_t t565 = t319 * t317;
-    const rx90_real_t t566 = t565 + t564;
-    const rx90_real_t t567 = t565 + t566;
-    const rx90_real_t t568 = t13 * t563 + t15 * t567;
-    const rx90_real_t t569 = t323 * t320; /* link j5: motion */
-    const rx90_real_t t570 = t568 - t569;
-    const rx90_real_t t571 = t570 - t569;
-    const rx90_real_t t572 = t1 * t557 + t2 * t571;
-    const rx90_real_t t573 = t321 * t324; /* link j6: motion */
-    const rx90_real_t t574 = t572 - t573;
-    const rx90_real_t t575 = t2 * t557 - t1 * t571;
-    const rx90_real_t t576 = t327 * t324;
-    const rx90_real_t t577 = t575 - t576 - t576;
-    const rx90_real_t t578 = t15 * t563 - t13 * t567;
-    const rx90_real_t t579 = t318 * t320; /* link j5: motion */
-    const rx90_real_t t580 = t578 - t579;
-    const rx90_real_t t581 = t580 - t311;
-    const rx90_real_t t582 = t327 * t321; /* link j6: motion */
-    const rx90_real_t t583 = t582 + t581;
-    const rx90_real_t t584 = parameters[XX6R] * t574 - parameters[ZZ6] * t573 + parameters[XY6] * t577
-        + parameters[XZ6] * t583;
-    const rx90_real_t t585 = t321 * t321;
-    const rx90_real_t t586 = t324 * t324;
-    const rx90_real_t t587 = t196 + t305;
-    const rx90_real_t t588 = t197 + RX90_C(0.45) * t587;
-    const rx90_real_t t589 = t195 - t67 * t588;
-    const rx90_real_t t590 = t589 + RX90_C(0.45) * t547;
-    const rx90_real_t t591 = t102 * t304;
-    const rx90_real_t t592 = t591 - t201 - t201;
-    const rx90_real_t t593 = RX90_C(0.45) * t592;
-    const rx90_real_t t594 = t593 + RX90_C(0.45) * t551;
-    const rx90_real_t t595 = t32 * t594 - t34 * t590;
-    const rx90_real_t t596 = t205 + t71 * t588;
-    const rx90_real_t t597 = t313 * t313; /* link j3: motion */
-    const rx90_real_t t598 = t208 + t597; /* link j4: motion */
-    const rx90_real_t t599 = RX90_C(-0.45) * t598 + t596;
-    const rx90_real_t t600 = t15 * t599 - t13 * t595;
-    const rx90_real_t t601 = parameters[YZ6] * (t586 - t585) + t584 - parameters[MY6] * t600;
-    const rx90_real_t t602 = t581 - t582;
-    const rx90_real_t t603 = t573 - t574;
-    const rx90_real_t t604 = t327 * t327; /* link j6: motion */
-    const rx90_real_t t605 = parameters[XZ6] * (t604 - t586) + (t214 * t576 - parameters[XY6] * t603
-        + parameters[YZ6] * t602);
-    const rx90_real_t t606 = t605 + parameters[MX6] * t600;
-    const rx90_real_t t607 = t580 - t579;
-    const rx90_real_t t608 = t556 - t555;
-    const rx90_real_t t609 = parameters[XX5R] * t570 - parameters[ZZ5R] * t569 + parameters[XY5] * t607
-        + parameters[XZ5] * t608;
-    const rx90_real_t t610 = t323 * t323; /* link j5: motion */
-    const rx90_real_t t611 = t320 * t320;
-    const rx90_real_t t612 = t32 * t590 + t34 * t594;
-    const rx90_real_t t613 = parameters[YZ5] * (t611 - t610) + t609 + parameters[MY5R] * t612 + (t2 * t601
-        - t1 * t606);
-    const rx90_real_t t614 = parameters[ZZ6] * t581 - parameters[XX6R] * t582 + parameters[YZ6] * t575
-        + parameters[XZ6] * t572;
-    const rx90_real_t t615 = t15 * t595 + t13 * t599;
-    const rx90_real_t t616 = t1 * t615 - t2 * t612;
-    const rx90_real_t t617 = t2 * t615 + t1 * t612;
-    const rx90_real_t t618 = parameters[XY6] * (t585 - t604) + t614 + (parameters[MX6] * t616
-        + parameters[MY6] * t617);
-    const rx90_real_t t619 = t318 * t318;
-    const rx90_real_t t620 = parameters[XZ5] * (t619 - t611) + (t230 * t579 + parameters[XY5] * t571
-        - parameters[YZ5] * t557);
-    const rx90_real_t t621 = t620 - parameters[MX5] * t612 + t618;
-    const rx90_real_t t622 = t554 - t553;
-    const rx90_real_t t623 = t562 - t561;
-    const rx90_real_t t624 = parameters[ZZ4R] * t565 + parameters[XX4R] * t566 + parameters[XY4] * t622
-        - parameters[XZ4] * t623;
-    const rx90_real_t t625 = t319 * t319; /* link j4: motion */
-    const rx90_real_t t626 = t317 * t317;
-    const rx90_real_t t627 = parameters[YZ4] * (t625 - t626) - t624 + parameters[MY4R] * t599 + (t13 * t621
-        - t15 * t613);
-    const rx90_real_t t628 = parameters[XX5R] * t556 + parameters[ZZ5R] * t555 - parameters[YZ5] * t578
-        - parameters[XZ5] * t568;
-    const rx90_real_t t629 = parameters[XY5] * (t619 - t610) + t628 + (parameters[MX5] * t600
-        - parameters[MY5R] * t615);
-    const rx90_real_t t630 = t314 * t314;
-    const rx90_real_t t631 = parameters[XZ4] * (t630 - t626) + (t243 * t553 + parameters[XY4] * t567
-        + parameters[YZ4] * t563);
-    const rx90_real_t t632 = t631 + parameters[MX4] * t599 + (t629 + (t1 * t601 + t2 * t606));
-    const rx90_real_t t633 = parameters[MY6] * t602 - parameters[MX6] * (t585 + t586);
-    const rx90_real_t t634 = parameters[MY6] * (t604 + t586) + parameters[MX6] * t583;
-    const rx90_real_t t635 = parameters[MX5] * (t610 + t611) + parameters[MY5R] * t557 - (t2 * t633
-        + t1 * t634);
-    const rx90_real_t t636 = parameters[MX6] * t577 + parameters[MY6] * t603 - (parameters[MY5R] * (t619
-        + t611) + parameters[MX5] * t608);
-    const rx90_real_t t637 = parameters[MX4] * (t625 + t626) - parameters[MY4R] * t563 + (t15 * t635
-        + t13 * t636);
-    const rx90_real_t t638 = parameters[MY5R] * t571 - parameters[MX5] * t607 - (t2 * t634 - t1 * t633);
-    const rx90_real_t t639 = parameters[MY4R] * (t630 + t626) - parameters[MX4] * t623 - t638;
-    const rx90_real_t t640 = t32 * t637 + t34 * t639;
-    const rx90_real_t t641 = t559 + t560;
-    const rx90_real_t t642 = t545 - t546;
-    const rx90_real_t t643 = parameters[ZZ3R] * t549 + parameters[XX3R] * t550 + parameters[XY3] * t641
-        - parameters[XZ3] * t642;
-    const rx90_real_t t644 = t316 * t316; /* link j3: motion */
-    const rx90_real_t t645 = t34 * t627 + t32 * t632 + RX90_C(0.45) * t640 - (parameters[MY3R] * t593
-        + (parameters[YZ3] * (t208 - t644) + t643));
-    const rx90_real_t t646 = parameters[XX4R] * t562 + parameters[ZZ4R] * t561 + parameters[YZ4] * t552
-        + parameters[XZ4] * t564;
-    const rx90_real_t t647 = parameters[XY4] * (t625 - t630) + t646 + (parameters[MY4R] * t595
-        - parameters[MX4] * t612);
-    const rx90_real_t t648 = parameters[XZ3] * (t597 - t208) + (t262 * t559 + parameters[XY3] * t551
-        - parameters[YZ3] * t547);
-    const rx90_real_t t649 = t648 - parameters[MX3] * t593 + (t647 + (t13 * t613 + t15 * t621));
-    const rx90_real_t t650 = t71 * t649 - t67 * t645 + RX90_C(0.45) * (parameters[MX3] * t641
-        - parameters[MY3R] * t551 + t640);
-    const rx90_real_t t651 = t105 * t304;
-    const rx90_real_t t652 = t265 + t651;
-    const rx90_real_t t653 = t271 - parameters[XY2] * (t265 + t652) + parameters[YZ2] * (t196 - t305);
-    const rx90_real_t t654 = t272 + t191;
-    const rx90_real_t t655 = RX90_C(2.0) * t143; /* link j2: derivatives */
-    const rx90_real_t t656 = RX90_C(-2.0) * t142;
-    const rx90_real_t t657 = t416 * t655 + t421 * t656 + (t134 * t654 + (t101 * t591 - t104 * t651));
-    const rx90_real_t t658 = t105 * (t273 + t653 + t650 + (t41 * t193 + t657));
-    const rx90_real_t t659 = t266 + parameters[XX2R] * t652 + parameters[XY2] * t592
-        + parameters[XZ2R] * t587;
-    const rx90_real_t t660 = t424 * t655 + t418 * t656 + (t104 * t591 - t100 * t651 - t135 * t654);
-    const rx90_real_t t661 = t659 - t268 + (t71 * t645 + t67 * t649) + (t660 - t41 * t197);
-    const rx90_real_t t662 = RX90_C(0.03333333333333333) * (t658 + t102 * t661);
-    const rx90_real_t t663 = t143 * t437 - t142 * t439 + (t90 * t654 + (t134 * t591 + t135 * t651));
-    const rx90_real_t t664 = (parameters[MY2] + t103) * t197 - (parameters[MX2R] - t81) * t193 + t663;
-    const rx90_real_t t665 = RX90_C(0.03333333333333333) * t664;
-    const rx90_real_t t666 = t143 * t446 + t142 * t447 + (t129 * t591 + t130 * t651 - t82 * t654);
-    const rx90_real_t t667 = RX90_C(0.03333333333333333) * (t103 * t197 + t81 * t193 + t666);
-    const rx90_real_t t668 = t143 * t460 - t142 * t462 - (t69 * t654 + (t123 * t651 - t122 * t591));
-    const rx90_real_t t669 = RX90_C(0.1) * (t461 * t197 + t68 * t193 + t668);
-    const rx90_real_t t670 = t429 * t665 - t427 * t662 + t442 * t667 + t451 * t669;
-    const rx90_real_t t671 = t143 * t477 - t142 * t479 + (t75 * t654 + (t118 * t591 + t119 * t651));
-    const rx90_real_t t672 = RX90_C(0.1) * (t478 * t197 - t74 * t193 + t671);
-    const rx90_real_t t673 = t143 * t496 - t142 * t498 + (t73 * t654 + (t111 * t591 + t112 * t651));
-    const rx90_real_t t674 = RX90_C(0.16666666666666666) * (t497 * t197 + t72 * t193 + t673);
-    ddq_by_q[1] = t670 + t469 * t672 + t486 * t674;
-    const rx90_real_t t675 = t500 * t665 - t429 * t662 + t502 * t667 + t504 * t669;
-    ddq_by_q[7] = t675 + t507 * t672 + t509 * t674;
-    const rx90_real_t t676 = t502 * t665 - t442 * t662 + t510 * t667 + t512 * t669;
-    ddq_by_q[13] = t676 + t515 * t672 + t517 * t674;
-    const rx90_real_t t677 = t519 * t665 - t518 * t662 + t520 * t667 + t522 * t669;
-    ddq_by_q[19] = t677 + t525 * t672 + t527 * t674;
-    const rx90_real_t t678 = t529 * t665 - t528 * t662 + t530 * t667 + t525 * t669;
-    ddq_by_q[25] = t678 + t533 * t672 + t536 * t674;
-    const rx90_real_t t679 = t538 * t665 - t537 * t662 + t539 * t667 + t540 * t669;
-    ddq_by_q[31] = t679 + t542 * t672 + t544 * t674;
-    const rx90_real_t t680 = t398 - parameters[ZZ3R];
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t681 = t316 * t680 - parameters[YZ3] * t147 + (t364 + t430 + t41 * t371);
-    const rx90_real_t t682 = parameters[XZ3] * t147 + t313 * t680 + (t32 * t400 - t34 * t401);
-    const rx90_real_t t683 = parameters[ZZ2R] + t420;
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t684 = t143 * t683 - parameters[YZ2] * dq[1] + (t71 * t681 - t67 * t682);
-    /* link j2: derivatives */
-    const rx90_real_t t685 = t105 * (RX90_C(2.0) * t684 + (t101 * t655 + t104 * t656));
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t686 = parameters[XZ2R] * dq[1] - t142 * t683 + (t67 * t681 + t71 * t682 + t41 * t409);
-    /* link j2: derivatives */
-    const rx90_real_t t687 = t102 * (RX90_C(2.0) * t686 + (t104 * t655 + t100 * t656));
-    const rx90_real_t t688 = RX90_C(0.03333333333333333) * (t685 + t687);
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t689 = t382 + (t355 - t370 + t381) - (t383 + t387);
-    /* link j2: derivatives */
-    const rx90_real_t t690 = RX90_C(2.0) * (t414 - t417 + (t689 + t412 - t413)) + RX90_C(2.0) * (t134 * t143
-        + t135 * t142);
-    const rx90_real_t t691 = RX90_C(-333.33333333333337) * parameters[FV2]
-        + RX90_C(0.03333333333333333) * t690;
-    const rx90_real_t t692 = RX90_C(2.0) * t689; /* link j3: derivatives */
-    const rx90_real_t t693 = t692 + t103 * t459 + RX90_C(2.0) * (t129 * t143 + t130 * t142);
-    const rx90_real_t t694 = RX90_C(0.03333333333333333) * t693;
-    const rx90_real_t t695 = t32 * t452 - t34 * t453; /* link j4: derivatives */
-    const rx90_real_t t696 = t695 - t461 * t459 + RX90_C(2.0) * (t123 * t142 - t122 * t143);
-    const rx90_real_t t697 = RX90_C(0.1) * t696;
-    const rx90_real_t t698 = t691 * t429 - t688 * t427 + t694 * t442 - t697 * t451;
-    const rx90_real_t t699 = t32 * t472 + t34 * t473 + t39 * t457; /* link j5: derivatives */
-    const rx90_real_t t700 = t699 + t478 * t459 + RX90_C(2.0) * (t118 * t143 + t119 * t142);
-    const rx90_real_t t701 = RX90_C(0.1) * t700;
-    const rx90_real_t t702 = t32 * t491 + t34 * t492 - t70 * t457; /* link j6: derivatives */
-    const rx90_real_t t703 = t702 + t497 * t459 + RX90_C(2.0) * (t111 * t143 + t112 * t142);
-    const rx90_real_t t704 = RX90_C(0.16666666666666666) * t703;
-    ddq_by_dq[1] = t698 + t701 * t469 + t704 * t486;
-    const rx90_real_t t705 = t691 * t500 - t688 * t429 + t694 * t502 - t697 * t504;
-    ddq_by_dq[7] = t705 + t701 * t507 + t704 * t509;
-    const rx90_real_t t706 = t691 * t502 - t688 * t442 + t694 * t510 - t697 * t512;
-    ddq_by_dq[13] = t706 + t701 * t515 + t704 * t517;
-    const rx90_real_t t707 = t691 * t519 - t688 * t518 + t694 * t520 - t697 * t522;
-    ddq_by_dq[19] = t707 + t701 * t525 + t704 * t527;
-    const rx90_real_t t708 = t691 * t529 - t688 * t528 + t694 * t530 - t697 * t525;
-    ddq_by_dq[25] = t708 + t701 * t533 + t704 * t536;
-    const rx90_real_t t709 = t691 * t538 - t688 * t537 + t694 * t539 - t697 * t540;
-    ddq_by_dq[31] = t709 + t701 * t542 + t704 * t544;
-    ddq_by_input[1] = t429;
-    ddq_by_input[7] = t500;
-    ddq_by_input[13] = t502;
-    ddq_by_input[19] = t519;
-    ddq_by_input[25] = t529;
-    ddq_by_input[31] = t538;
-    const rx90_real_t t710 = t26 * t548;
-    const rx90_real_t t711 = t597 + t644; /* link j4: motion */
-    const rx90_real_t t712 = RX90_C(2.0) * t316; /* link j3: derivatives */
-    const rx90_real_t t713 = RX90_C(2.0) * t313;
-    const rx90_real_t t714 = t403 * t712 + t388 * t713 + (t128 * t711 + (t710 - t97 * t558));
-    const rx90_real_t t715 = t41 * t596;
-    const rx90_real_t t716 = t645 - (t715 + t714);
-    const rx90_real_t t717 = t399 * t713 - t385 * t712 + (t97 * t548 - t94 * t558 - t127 * t711);
-    const rx90_real_t t718 = t649 + (t717 + t41 * t589);
-    const rx90_real_t t719 = t407 * t712 + t406 * t713 + (t80 * t558 - t79 * t548);
-    const rx90_real_t t720 = t102 * (t67 * t718 + t71 * t716 + RX90_C(0.45) * t719);
-    const rx90_real_t t721 = RX90_C(0.03333333333333333) * (t105 * (t71 * t718 - t67 * t716) + t720);
-    const rx90_real_t t722 = parameters[MX3] * (t208 + t644) + parameters[MY3R] * t547 + (t34 * t637
-        - t32 * t639);
-    const rx90_real_t t723 = t722 + (t79 * t711 + t41 * t558 - t435 * t712);
-    const rx90_real_t t724 = parameters[MX4] * t622 - parameters[MY4R] * t567 + (t15 * t636 - t13 * t635);
-    const rx90_real_t t725 = parameters[MX3] * t642 - parameters[MY3R] * t598 + t724 + (t435 * t713
-        - (t80 * t711 + t41 * t548));
-    const rx90_real_t t726 = t62 * t711 + (t127 * t558 + t128 * t548);
-    const rx90_real_t t727 = t80 * t596 - t79 * t589;
-    const rx90_real_t t728 = t431 * t712 + t434 * t713 + t726 + t727 + RX90_C(0.45) * (t67 * t725
-        + t71 * t723);
-    const rx90_real_t t729 = RX90_C(0.03333333333333333) * t728;
-    const rx90_real_t t730 = RX90_C(0.03333333333333333) * (t727 + (t316 * t443 + t313 * t444 + t726));
-    const rx90_real_t t731 = t316 * t454 - t313 * t458 + (t43 * t711 - (t710 - t96 * t558));
-    const rx90_real_t t732 = RX90_C(0.1) * (t731 - t715);
-    const rx90_real_t t733 = t429 * t729 - t427 * t721 + t442 * t730 - t451 * t732;
-    const rx90_real_t t734 = t313 * t476 - t316 * t474 + (t51 * t711 + (t117 * t558 + t16 * t548));
-    const rx90_real_t t735 = RX90_C(0.1) * (t734 + (t50 * t596 - t39 * t589));
-    const rx90_real_t t736 = t313 * t495 - t316 * t493 + (t47 * t711 + (t110 * t558 + t18 * t548));
-    const rx90_real_t t737 = RX90_C(0.16666666666666666) * (t736 + (t46 * t596 + t70 * t589));
-    ddq_by_q[2] = t733 + t469 * t735 + t486 * t737;
-    const rx90_real_t t738 = t500 * t729 - t429 * t721 + t502 * t730 - t504 * t732;
-    ddq_by_q[8] = t738 + t507 * t735 + t509 * t737;
-    const rx90_real_t t739 = t502 * t729 - t442 * t721 + t510 * t730 - t512 * t732;
-    ddq_by_q[14] = t739 + t515 * t735 + t517 * t737;
-    const rx90_real_t t740 = t519 * t729 - t518 * t721 + t520 * t730 - t522 * t732;
-    ddq_by_q[20] = t740 + t525 * t735 + t527 * t737;
-    const rx90_real_t t741 = t529 * t729 - t528 * t721 + t530 * t730 - t525 * t732;
-    ddq_by_q[26] = t741 + t533 * t735 + t536 * t737;
-    const rx90_real_t t742 = t538 * t729 - t537 * t721 + t539 * t730 - t540 * t732;
-    ddq_by_q[32] = t742 + t542 * t735 + t544 * t737;
-    const rx90_real_t t743 = RX90_C(2.0) * t681 + (t97 * t713 - t94 * t712);
-    const rx90_real_t t744 = RX90_C(2.0) * t682 - (t26 * t713 - t97 * t712);
-    const rx90_real_t t745 = t67 * t743 + t71 * t744 + RX90_C(0.45) * (t80 * t712 - t79 * t713);
-    const rx90_real_t t746 = t105 * (t71 * t743 - t67 * t744) + t102 * t745;
-    const rx90_real_t t747 = RX90_C(0.03333333333333333) * t746;
-    const rx90_real_t t748 = t67 * (RX90_C(2.0) * t407 - t41 * t713) + t71 * (RX90_C(2.0) * t406
-        + t41 * t712);
-    const rx90_real_t t749 = t692 + (t127 * t712 + t128 * t713) + RX90_C(0.45) * t748;
-    const rx90_real_t t750 = RX90_C(0.03333333333333333) * t749;
-    const rx90_real_t t751 = RX90_C(0.03333333333333333) * (t692 + RX90_C(2.0) * (t127 * t316 + t128 * t313));
-    const rx90_real_t t752 = RX90_C(-333.33333333333337) * parameters[FV3] + t751;
-    const rx90_real_t t753 = RX90_C(0.1) * (t695 - RX90_C(2.0) * (t26 * t313 - t96 * t316));
-    const rx90_real_t t754 = t750 * t429 - t747 * t427 + t752 * t442 - t753 * t451;
-    const rx90_real_t t755 = RX90_C(0.1) * (t699 + RX90_C(2.0) * (t117 * t316 + t16 * t313));
-    const rx90_real_t t756 = RX90_C(0.16666666666666666) * (t702 + RX90_C(2.0) * (t110 * t316 + t18 * t313));
-    ddq_by_dq[2] = t754 + t755 * t469 + t756 * t486;
-    const rx90_real_t t757 = t750 * t500 - t747 * t429 + t752 * t502 - t753 * t504;
-    ddq_by_dq[8] = t757 + t755 * t507 + t756 * t509;
-    const rx90_real_t t758 = t750 * t502 - t747 * t442 + t752 * t510 - t753 * t512;
-    ddq_by_dq[14] = t758 + t755 * t515 + t756 * t517;
-    const rx90_real_t t759 = t750 * t519 - t747 * t518 + t752 * t520 - t753 * t522;
-    ddq_by_dq[20] = t759 + t755 * t525 + t756 * t527;
-    const rx90_real_t t760 = t750 * t529 - t747 * t528 + t752 * t530 - t753 * t525;
-    ddq_by_dq[26] = t760 + t755 * t533 + t756 * t536;
-    const rx90_real_t t761 = t750 * t538 - t747 * t537 + t752 * t539 - t753 * t540;
-    ddq_by_dq[32] = t761 + t755 * t542 + t756 * t544;
-    ddq_by_input[2] = t442;
-    ddq_by_input[8] = t502;
-    ddq_by_input[14] = t510;
-    ddq_by_input[20] = t520;
-    ddq_by_input[26] = t530;
-    ddq_by_input[32] = t539;
-    const rx90_real_t t762 = t49 * t612;
-    const rx90_real_t t763 = t8 * t564;
-    const rx90_real_t t764 = t630 + t625; /* link j5: motion */
-    const rx90_real_t t765 = RX90_C(2.0) * t319; /* link j4: derivatives */
-    const rx90_real_t t766 = RX90_C(2.0) * t314;
-    const rx90_real_t t767 = t368 * t765 - t358 * t766 + (t33 * t764 - (t763 - t58 * t552));
-    const rx90_real_t t768 = t627 - (t767 - t762);
-    const rx90_real_t t769 = t355 * t765 - t364 * t766 + (t31 * t764 + (t57 * t552 + t58 * t564));
-    const rx90_real_t t770 = t632 + (t769 + t49 * t595);
-    const rx90_real_t t771 = t639 + (t378 * t766 + (t36 * t764 + t49 * t564));
-    const rx90_real_t t772 = t637 + (t40 * t764 - t49 * t552 - t378 * t765);
-    const rx90_real_t t773 = RX90_C(0.45) * (t32 * t771 - t34 * t772);
-    const rx90_real_t t774 = t34 * t770 - t32 * t768 - t773;
-    const rx90_real_t t775 = t40 * t595 + t36 * t612;
-    const rx90_real_t t776 = t26 * t764 - (t31 * t552 + t33 * t564);
-    const rx90_real_t t777 = t400 * t765 + t401 * t766 - t776 - t775;
-    const rx90_real_t t778 = t105 * (t71 * t774 - t67 * t777) + t102 * (t773 + (t67 * t774 + t71 * t777));
-    const rx90_real_t t779 = RX90_C(0.03333333333333333) * t778;
-    const rx90_real_t t780 = t34 * t771 + t32 * t772;
-    const rx90_real_t t781 = t32 * t770 + t34 * t768 + RX90_C(0.45) * t780;
-    const rx90_real_t t782 = t395 * t765 - t393 * t766 + (t36 * t552 + t40 * t564);
-    const rx90_real_t t783 = RX90_C(0.03333333333333333) * (t781 + RX90_C(0.45) * (t71 * t782 - t67 * t780));
-    const rx90_real_t t784 = RX90_C(0.03333333333333333) * t781;
-    const rx90_real_t t785 = RX90_C(0.1) * (t775 - (t319 * t452 + t314 * t453 - t776));
-    const rx90_real_t t786 = t429 * t783 - t427 * t779 + t442 * t784 + t451 * t785;
-    const rx90_real_t t787 = t319 * t472 - t314 * t473 + (t16 * t764 + (t48 * t552 + t763));
-    const rx90_real_t t788 = RX90_C(0.1) * (t787 + t762);
-    const rx90_real_t t789 = t319 * t491 - t314 * t492 + (t18 * t764 + (t44 * t552 - t3 * t564));
-    const rx90_real_t t790 = RX90_C(0.16666666666666666) * (t789 + (t45 * t612 + t37 * t595));
-    ddq_by_q[3] = t786 + t469 * t788 + t486 * t790;
-    const rx90_real_t t791 = t500 * t783 - t429 * t779 + t502 * t784 + t504 * t785;
-    ddq_by_q[9] = t791 + t507 * t788 + t509 * t790;
-    const rx90_real_t t792 = t502 * t783 - t442 * t779 + t510 * t784 + t512 * t785;
-    ddq_by_q[15] = t792 + t515 * t788 + t517 * t790;
-    const rx90_real_t t793 = t519 * t783 - t518 * t779 + t520 * t784 + t522 * t785;
-    ddq_by_q[21] = t793 + t525 * t788 + t527 * t790;
-    const rx90_real_t t794 = t529 * t783 - t528 * t779 + t530 * t784 + t525 * t785;
-    ddq_by_q[27] = t794 + t533 * t788 + t536 * t790;
-    const rx90_real_t t795 = t538 * t783 - t537 * t779 + t539 * t784 + t540 * t785;
-    ddq_by_q[33] = t795 + t542 * t788 + t544 * t790;
-    const rx90_real_t t796 = RX90_C(-2.0) * t391 + (t57 * t765 + t58 * t766);
-    const rx90_real_t t797 = RX90_C(2.0) * t392 - (t58 * t765 - t8 * t766);
-    const rx90_real_t t798 = RX90_C(2.0) * t395 - t49 * t766;
-    const rx90_real_t t799 = RX90_C(2.0) * t393 - t49 * t765;
-    const rx90_real_t t800 = RX90_C(0.45) * (t32 * t798 + t34 * t799);
-    const rx90_real_t t801 = t34 * t796 - t32 * t797 + t800;
-    const rx90_real_t t802 = t455 + (t31 * t765 + t33 * t766);
-    const rx90_real_t t803 = t105 * (t71 * t801 - t67 * t802) + t102 * (t67 * t801 + t71 * t802 - t800);
-    const rx90_real_t t804 = RX90_C(0.03333333333333333) * t803;
-    const rx90_real_t t805 = t34 * t798 - t32 * t799;
-    const rx90_real_t t806 = t32 * t796 + t34 * t797 + RX90_C(-0.45) * t805;
-    const rx90_real_t t807 = t67 * t805 + t71 * (t36 * t765 + t40 * t766);
-    const rx90_real_t t808 = RX90_C(0.03333333333333333) * (t806 + RX90_C(0.45) * t807);
-    const rx90_real_t t809 = RX90_C(0.03333333333333333) * t806;
-    const rx90_real_t t810 = RX90_C(0.1) * (t455 - RX90_C(-2.0) * (t31 * t319 + t33 * t314));
-    const rx90_real_t t811 = RX90_C(250.0) * parameters[FV4] + t810;
-    const rx90_real_t t812 = t808 * t429 - t804 * t427 + t809 * t442 - t811 * t451;
-    const rx90_real_t t813 = RX90_C(0.1) * (t475 + RX90_C(2.0) * (t48 * t319 + t8 * t314));
-    const rx90_real_t t814 = RX90_C(0.16666666666666666) * (t494 + RX90_C(2.0) * (t44 * t319 - t3 * t314));
-    ddq_by_dq[3] = t812 + t813 * t469 + t814 * t486;
-    const rx90_real_t t815 = t808 * t500 - t804 * t429 + t809 * t502 - t811 * t504;
-    ddq_by_dq[9] = t815 + t813 * t507 + t814 * t509;
-    const rx90_real_t t816 = t808 * t502 - t804 * t442 + t809 * t510 - t811 * t512;
-    ddq_by_dq[15] = t816 + t813 * t515 + t814 * t517;
-    const rx90_real_t t817 = t808 * t519 - t804 * t518 + t809 * t520 - t811 * t522;
-    ddq_by_dq[21] = t817 + t813 * t525 + t814 * t527;
-    const rx90_real_t t818 = t808 * t529 - t804 * t528 + t809 * t530 - t811 * t525;
-    ddq_by_dq[27] = t818 + t813 * t533 + t814 * t536;
-    const rx90_real_t t819 = t808 * t538 - t804 * t537 + t809 * t539 - t811 * t540;
-    ddq_by_dq[33] = t819 + t813 * t542 + t814 * t544;
-    ddq_by_input[3] = t451;
-    ddq_by_input[9] = t504;
-    ddq_by_input[15] = t512;
-    ddq_by_input[21] = t522;
-    ddq_by_input[27] = t525;
-    ddq_by_input[33] = t540;
-    const rx90_real_t t820 = t619 + t610; /* link j6: motion */
-    const rx90_real_t t821 = RX90_C(-2.0) * t323; /* link j5: derivatives */
-    const rx90_real_t t822 = RX90_C(2.0) * t318;
-    const rx90_real_t t823 = t338 * t821 + t346 * t822 + (t23 * t568 - t22 * t578 - t12 * t820);
-    const rx90_real_t t824 = t621 + (t823 - t35 * t615);
-    const rx90_real_t t825 = parameters[ZZ6] * t568;
-    const rx90_real_t t826 = t350 * t821 + t341 * t822 + (t14 * t820 + (t23 * t578 - t825));
-    const rx90_real_t t827 = t35 * t600;
-    const rx90_real_t t828 = t613 + (t827 + t826);
-    const rx90_real_t t829 = t15 * t824 + t13 * t828;
-    const rx90_real_t t830 = t8 * t820 + (t12 * t578 - t14 * t568);
-    const rx90_real_t t831 = t38 * t615 + parameters[MY5R] * t600;
-    const rx90_real_t t832 = t366 * t822 - t365 * t821 + t830 + t831;
-    const rx90_real_t t833 = t635 + (t394 * t821 + (t38 * t820 + t35 * t578));
-    const rx90_real_t t834 = t636 + (t394 * t822 + (t35 * t568 - parameters[MY5R] * t820));
-    const rx90_real_t t835 = t13 * t833 - t15 * t834;
-    const rx90_real_t t836 = t375 * t822 - t377 * t821 - (parameters[MY5R] * t578 + t38 * t568);
-    const rx90_real_t t837 = RX90_C(0.45) * (t32 * t835 - t34 * t836);
-    const rx90_real_t t838 = t34 * t829 - t32 * t832 - t837;
-    const rx90_real_t t839 = t13 * t824 - t15 * t828;
-    const rx90_real_t t840 = t105 * (t71 * t838 - t67 * t839) + t102 * (t837 + (t67 * t838 + t71 * t839));
-    const rx90_real_t t841 = RX90_C(0.03333333333333333) * t840;
-    const rx90_real_t t842 = t34 * t835 + t32 * t836;
-    const rx90_real_t t843 = t32 * t829 + t34 * t832 + RX90_C(0.45) * t842;
-    const rx90_real_t t844 = t71 * (t13 * t834 + t15 * t833) - t67 * t842;
-    const rx90_real_t t845 = RX90_C(0.03333333333333333) * (t843 + RX90_C(0.45) * t844);
-    const rx90_real_t t846 = RX90_C(0.03333333333333333) * t843;
-    const rx90_real_t t847 = RX90_C(0.1) * t839;
-    const rx90_real_t t848 = t429 * t845 - t427 * t841 + t442 * t846 - t451 * t847;
-    const rx90_real_t t849 = RX90_C(0.1) * (t831 + (t323 * t470 + t318 * t471 + t830));
-    const rx90_real_t t850 = t323 * t489 + t318 * t490 + (t17 * t578 - t825 - t3 * t820);
-    const rx90_real_t t851 = RX90_C(0.16666666666666666) * (t850 + t827);
-    ddq_by_q[4] = t848 + t469 * t849 + t486 * t851;
-    const rx90_real_t t852 = t500 * t845 - t429 * t841 + t502 * t846 - t504 * t847;
-    ddq_by_q[10] = t852 + t507 * t849 + t509 * t851;
-    const rx90_real_t t853 = t502 * t845 - t442 * t841 + t510 * t846 - t512 * t847;
-    ddq_by_q[16] = t853 + t515 * t849 + t517 * t851;
-    const rx90_real_t t854 = t519 * t845 - t518 * t841 + t520 * t846 - t522 * t847;
-    ddq_by_q[22] = t854 + t525 * t849 + t527 * t851;
-    const rx90_real_t t855 = t529 * t845 - t528 * t841 + t530 * t846 - t525 * t847;
-    ddq_by_q[28] = t855 + t533 * t849 + t536 * t851;
-    const rx90_real_t t856 = t538 * t845 - t537 * t841 + t539 * t846 - t540 * t847;
-    ddq_by_q[34] = t856 + t542 * t849 + t544 * t851;
-    const rx90_real_t t857 = RX90_C(2.0) * t361 + (t23 * t822 - t22 * t821);
-    const rx90_real_t t858 = RX90_C(-2.0) * t362 + (t23 * t821 - parameters[ZZ6] * t822);
-    const rx90_real_t t859 = t15 * t857 + t13 * t858;
-    const rx90_real_t t860 = t473 - (t14 * t822 - t12 * t821);
-    const rx90_real_t t861 = RX90_C(2.0) * t377 + t35 * t822;
-    const rx90_real_t t862 = RX90_C(2.0) * t375 + t35 * t821;
-    const rx90_real_t t863 = t15 * t861 - t13 * t862;
-    const rx90_real_t t864 = parameters[MY5R] * t821 + t38 * t822;
-    const rx90_real_t t865 = RX90_C(0.45) * (t32 * t863 - t34 * t864);
-    const rx90_real_t t866 = t34 * t859 - t32 * t860 + t865;
-    const rx90_real_t t867 = t13 * t857 - t15 * t858;
-    const rx90_real_t t868 = t105 * (t71 * t866 - t67 * t867) + t102 * (t67 * t866 + t71 * t867 - t865);
-    const rx90_real_t t869 = RX90_C(0.03333333333333333) * t868;
-    const rx90_real_t t870 = t34 * t863 + t32 * t864;
-    const rx90_real_t t871 = t32 * t859 + t34 * t860 + RX90_C(-0.45) * t870;
-    const rx90_real_t t872 = t67 * t870 + t71 * (t13 * t861 + t15 * t862);
-    const rx90_real_t t873 = RX90_C(0.03333333333333333) * (t871 + RX90_C(0.45) * t872);
-    const rx90_real_t t874 = RX90_C(0.03333333333333333) * t871;
-    const rx90_real_t t875 = RX90_C(0.1) * t867;
-    const rx90_real_t t876 = t873 * t429 - t869 * t427 + t874 * t442 - t875 * t451;
-    const rx90_real_t t877 = RX90_C(0.1) * (t473 + RX90_C(-2.0) * (t12 * t323 + t14 * t318));
-    const rx90_real_t t878 = RX90_C(-250.0) * parameters[FV5] + t877;
-    const rx90_real_t t879 = RX90_C(0.16666666666666666) * (t492 + RX90_C(-2.0) * (t17 * t323
-        + parameters[ZZ6] * t318));
-    ddq_by_dq[4] = t876 + t878 * t469 + t879 * t486;
-    const rx90_real_t t880 = t873 * t500 - t869 * t429 + t874 * t502 - t875 * t504;
-    ddq_by_dq[10] = t880 + t878 * t507 + t879 * t509;
-    const rx90_real_t t881 = t873 * t502 - t869 * t442 + t874 * t510 - t875 * t512;
-    ddq_by_dq[16] = t881 + t878 * t515 + t879 * t517;
-    const rx90_real_t t882 = t873 * t519 - t869 * t518 + t874 * t520 - t875 * t522;
-    ddq_by_dq[22] = t882 + t878 * t525 + t879 * t527;
-    const rx90_real_t t883 = t873 * t529 - t869 * t528 + t874 * t530 - t875 * t525;
-    ddq_by_dq[28] = t883 + t878 * t533 + t879 * t536;
-    const rx90_real_t t884 = t873 * t538 - t869 * t537 + t874 * t539 - t875 * t540;
-    ddq_by_dq[34] = t884 + t878 * t542 + t879 * t544;
-    ddq_by_input[4] = t469;
-    ddq_by_input[10] = t507;
-    ddq_by_input[16] = t515;
-    ddq_by_input[22] = t525;
-    ddq_by_input[28] = t533;
-    ddq_by_input[34] = t542;
-    const rx90_real_t t885 = t604 + t585; /* link j6: force and moment */
-    const rx90_real_t t886 = RX90_C(2.0) * t321; /* link j6: derivatives */
-    const rx90_real_t t887 = RX90_C(2.0) * t327;
-    const rx90_real_t t888 = t326 * t886 + t333 * t887 + (parameters[XY6] * t572 - parameters[XX6R] * t575
-        - parameters[XZ6] * t885);
-    const rx90_real_t t889 = t606 + t888;
-    const rx90_real_t t890 = t332 * t886 + t329 * t887 - (parameters[YZ6] * t885 + parameters[XY6] * t575);
-    const rx90_real_t t891 = t890 - t601;
-    const rx90_real_t t892 = t2 * t889 - t1 * t891;
-    const rx90_real_t t893 = parameters[ZZ6] * t885 + (parameters[XZ6] * t575 - parameters[YZ6] * t572);
-    const rx90_real_t t894 = parameters[MX6] * t617 - parameters[MY6] * t616;
-    const rx90_real_t t895 = t347 * t886 + t348 * t887 + t893 + t894;
-    const rx90_real_t t896 = t15 * t892 + t13 * t895;
-    const rx90_real_t t897 = t1 * t889 + t2 * t891;
-    const rx90_real_t t898 = t376 * t887 - parameters[MY6] * t885 - t634;
-    const rx90_real_t t899 = t376 * t886 - parameters[MX6] * t885 + t633;
-    const rx90_real_t t900 = t2 * t898 + t1 * t899;
-    const rx90_real_t t901 = parameters[MY6] * t575 + parameters[MX6] * t572 - (t374 * t886 + t373 * t887);
-    const rx90_real_t t902 = t15 * t900 - t13 * t901;
-    const rx90_real_t t903 = t1 * t898 - t2 * t899;
-    const rx90_real_t t904 = RX90_C(0.45) * (t32 * t902 + t34 * t903);
-    const rx90_real_t t905 = t34 * t896 - t32 * t897 + t904;
-    const rx90_real_t t906 = t13 * t892 - t15 * t895;
-    const rx90_real_t t907 = t105 * (t71 * t905 - t67 * t906) + t102 * (t67 * t905 + t71 * t906 - t904);
-    const rx90_real_t t908 = RX90_C(0.03333333333333333) * t907;
-    const rx90_real_t t909 = t34 * t902 - t32 * t903;
-    const rx90_real_t t910 = t32 * t896 + t34 * t897 + RX90_C(-0.45) * t909;
-    const rx90_real_t t911 = t67 * t909 + t71 * (t13 * t900 + t15 * t901);
-    const rx90_real_t t912 = RX90_C(0.03333333333333333) * (t910 + RX90_C(0.45) * t911);
-    const rx90_real_t t913 = RX90_C(0.03333333333333333) * t910;
-    const rx90_real_t t914 = RX90_C(0.1) * t906;
-    const rx90_real_t t915 = t429 * t912 - t427 * t908 + t442 * t913 - t451 * t914;
-    const rx90_real_t t916 = RX90_C(0.1) * t897;
-    const rx90_real_t t917 = RX90_C(0.16666666666666666) * (t894 + (t321 * t487 - t327 * t488 + t893));
-    ddq_by_q[5] = t915 + t469 * t916 + t486 * t917;
-    const rx90_real_t t918 = t500 * t912 - t429 * t908 + t502 * t913 - t504 * t914;
-    ddq_by_q[11] = t918 + t507 * t916 + t509 * t917;
-    const rx90_real_t t919 = t502 * t912 - t442 * t908 + t510 * t913 - t512 * t914;
-    ddq_by_q[17] = t919 + t515 * t916 + t517 * t917;
-    const rx90_real_t t920 = t519 * t912 - t518 * t908 + t520 * t913 - t522 * t914;
-    ddq_by_q[23] = t920 + t525 * t916 + t527 * t917;
-    const rx90_real_t t921 = t529 * t912 - t528 * t908 + t530 * t913 - t525 * t914;
-    ddq_by_q[29] = t921 + t533 * t916 + t536 * t917;
-    const rx90_real_t t922 = t538 * t912 - t537 * t908 + t539 * t913 - t540 * t914;
-    ddq_by_q[35] = t922 + t542 * t916 + t544 * t917;
-    const rx90_real_t t923 = RX90_C(2.0) * t343 + (parameters[XX6R] * t886 + parameters[XY6] * t887);
-    const rx90_real_t t924 = RX90_C(2.0) * t344 + parameters[XY6] * t886;
-    const rx90_real_t t925 = t2 * t923 - t1 * t924;
-    const rx90_real_t t926 = t490 - (parameters[XZ6] * t886 + parameters[YZ6] * t887);
-    const rx90_real_t t927 = t15 * t925 + t13 * t926;
-    const rx90_real_t t928 = t1 * t923 + t2 * t924;
-    const rx90_real_t t929 = RX90_C(2.0) * t374;
-    const rx90_real_t t930 = RX90_C(-2.0) * t373;
-    const rx90_real_t t931 = t2 * t929 + t1 * t930;
-    const rx90_real_t t932 = parameters[MX6] * t887 - parameters[MY6] * t886;
-    const rx90_real_t t933 = t15 * t931 - t13 * t932;
-    const rx90_real_t t934 = t1 * t929 - t2 * t930;
-    const rx90_real_t t935 = RX90_C(0.45) * (t32 * t933 + t34 * t934);
-    const rx90_real_t t936 = t34 * t927 - t32 * t928 + t935;
-    const rx90_real_t t937 = t13 * t925 - t15 * t926;
-    const rx90_real_t t938 = t105 * (t71 * t936 - t67 * t937) + t102 * (t67 * t936 + t71 * t937 - t935);
-    const rx90_real_t t939 = RX90_C(0.03333333333333333) * t938;
-    const rx90_real_t t940 = t34 * t933 - t32 * t934;
-    const rx90_real_t t941 = t32 * t927 + t34 * t928 + RX90_C(-0.45) * t940;
-    const rx90_real_t t942 = t67 * t940 + t71 * (t13 * t931 + t15 * t932);
-    const rx90_real_t t943 = RX90_C(0.03333333333333333) * (t941 + RX90_C(0.45) * t942);
-    const rx90_real_t t944 = RX90_C(0.03333333333333333) * t941;
-    const rx90_real_t t945 = RX90_C(0.1) * t937;
-    const rx90_real_t t946 = t943 * t429 - t939 * t427 + t944 * t442 - t945 * t451;
-    const rx90_real_t t947 = RX90_C(0.1) * t928;
-    const rx90_real_t t948 = RX90_C(-150.0) * parameters[FV6];
-    ddq_by_dq[5] = t946 + t947 * t469 + t948 * t486;
-    const rx90_real_t t949 = t943 * t500 - t939 * t429 + t944 * t502 - t945 * t504;
-    ddq_by_dq[11] = t949 + t947 * t507 + t948 * t509;
-    const rx90_real_t t950 = t943 * t502 - t939 * t442 + t944 * t510 - t945 * t512;
-    ddq_by_dq[17] = t950 + t947 * t515 + t948 * t517;
-    const rx90_real_t t951 = t943 * t519 - t939 * t518 + t944 * t520 - t945 * t522;
-    ddq_by_dq[23] = t951 + t947 * t525 + t948 * t527;
-    const rx90_real_t t952 = t943 * t529 - t939 * t528 + t944 * t530 - t945 * t525;
-    ddq_by_dq[29] = t952 + t947 * t533 + t948 * t536;
-    const rx90_real_t t953 = t943 * t538 - t939 * t537 + t944 * t539 - t945 * t540;
-    ddq_by_dq[35] = t953 + t947 * t542 + t948 * t544;
-    ddq_by_input[5] = t486;
-    ddq_by_input[11] = t509;
-    ddq_by_input[17] = t517;
-    ddq_by_input[23] = t527;
-    ddq_by_input[29] = t536;
-    ddq_by_input[35] = t544;
+    const rx90_real_t t940 = t98 * (t98 * (t880 - t867) + t101 * (t871 + t878));
+    const rx90_real_t t941 = RX90_C(333.33333333333337) * parameters[FV1]
+        + RX90_C(0.06666666666666667) * (t867 + t940);
+    const rx90_real_t t942 = RX90_C(0.03333333333333333) * (t101 * t885 + t98 * t887);
+    const rx90_real_t t943 = RX90_C(0.03333333333333333) * (t101 * t892 - t98 * t893);
+    const rx90_real_t t944 = RX90_C(0.1) * (t101 * t897 + t98 * t899);
+    const rx90_real_t t945 = t942 * t436 - t941 * t430 + t943 * t439 + t944 * t443;
+    const rx90_real_t t946 = RX90_C(0.1) * (t101 * t903 + t98 * t905);
+    const rx90_real_t t947 = RX90_C(0.16666666666666666) * (t101 * t908 + t98 * t910);
+    ddq_by_dq[0] = t945 + t946 * t450 + t947 * t459;
+    const rx90_real_t t948 = t942 * t460 - t941 * t436 + t943 * t462 + t944 * t464;
+    ddq_by_dq[6] = t948 + t946 * t467 + t947 * t469;
+    const rx90_real_t t949 = t942 * t462 - t941 * t439 + t943 * t470 + t944 * t472;
+    ddq_by_dq[12] = t949 + t946 * t475 + t947 * t477;
+    const rx90_real_t t950 = t942 * t479 - t941 * t478 + t943 * t480 + t944 * t482;
+    ddq_by_dq[18] = t950 + t946 * t485 + t947 * t487;
+    const rx90_real_t t951 = t942 * t489 - t941 * t488 + t943 * t490 + t944 * t485;
+    ddq_by_dq[24] = t951 + t946 * t493 + t947 * t496;
+    const rx90_real_t t952 = t942 * t498 - t941 * t497 + t943 * t499 + t944 * t500;
+    ddq_by_dq[30] = t952 + t946 * t502 + t947 * t504;
+    ddq_by_input[0] = t430;
+    ddq_by_input[6] = t436;
+    ddq_by_input[12] = t439;
+    ddq_by_input[18] = t478;
+    ddq_by_input[24] = t488;
+    ddq_by_input[30] = t497;
     /* always zero */
     ddq_by_q[0] = RX90_C(0.0);
     ddq_by_q[6] = RX90_C(0.0);
@@ -1385,10 +1361,10 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     ddq_by_q[18] = RX90_C(0.0);
     ddq_by_q[24] = RX90_C(0.0);
     ddq_by_q[30] = RX90_C(0.0);
-    if (!rx90_all_bounded(ddq, 6)
-        || !rx90_all_bounded(ddq_by_q, 36)
-        || !rx90_all_bounded(ddq_by_dq, 36)
-        || !rx90_all_bounded(ddq_by_input, 36)) {
+    if (!rx90_bounded(ddq, 6)
+        || !rx90_bounded(ddq_by_q, 36)
+        || !rx90_bounded(ddq_by_dq, 36)
+        || !rx90_bounded(ddq_by_input, 36)) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);

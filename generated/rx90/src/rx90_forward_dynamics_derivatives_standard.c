@@ -7,7 +7,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3857 (2123 mul, 1734 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 3857 (2123 mul, 1734 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -111,7 +111,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x88006983UL
+#if RX90_GENERATION != 0x1B6CDAA1UL
 #error "rx90.h and rx90_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -145,17 +145,17 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    rx90_real_t t118, t115;
-    RX90_SINCOS(q[1], &t118, &t115);
-    rx90_real_t t75, t79;
-    RX90_SINCOS(q[2], &t75, &t79);
-    rx90_real_t t34, t36;
-    RX90_SINCOS(q[3], &t34, &t36);
-    rx90_real_t t14, t16;
-    RX90_SINCOS(q[4], &t14, &t16);
+    rx90_real_t t114, t111;
+    RX90_SINCOS(q[1], &t114, &t111);
+    rx90_real_t t72, t76;
+    RX90_SINCOS(q[2], &t72, &t76);
+    rx90_real_t t32, t34;
+    RX90_SINCOS(q[3], &t32, &t34);
+    rx90_real_t t13, t15;
+    RX90_SINCOS(q[4], &t13, &t15);
     rx90_real_t t1, t2;
     RX90_SINCOS(q[5], &t1, &t2);
-    const rx90_real_t t0 = rx90_bounded(parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6]);
+    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
     if (!(t0 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -172,7 +172,7 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t8 = t2 * t7;
     const rx90_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
     const rx90_real_t t10 = t9 + RX90_C(2.5e3) * parameters[IA5];
-    const rx90_real_t t11 = rx90_bounded(t10 - t3 * t5);
+    const rx90_real_t t11 = t10 - t3 * t5;
     if (!(t11 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -180,200 +180,179 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t12 = t11 + RX90_C(-1.0e-9) * t10;
-    if (!(t12 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t13 = parameters[XZ5] + (t1 * t7 - parameters[XY6]);
-    const rx90_real_t t15 = parameters[YZ5] - t3;
-    const rx90_real_t t17 = t14 * t13 + t16 * t15; /* link j5: column of the mass matrix */
+    const rx90_real_t t12 = parameters[XZ5] + (t1 * t7 - parameters[XY6]);
+    const rx90_real_t t14 = parameters[YZ5] - t3;
+    const rx90_real_t t16 = t13 * t12 + t15 * t14; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const rx90_real_t t18 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
-    const rx90_real_t t19 = t14 * t18 + t16 * parameters[ZZ6];
-    const rx90_real_t t20 = t17 + t19 * t5;
-    const rx90_real_t t21 = RX90_C(1.0) / t11;
-    const rx90_real_t t22 = t20 * t21;
+    const rx90_real_t t17 = t2 * parameters[XZ6] - t1 * parameters[YZ6];
+    const rx90_real_t t18 = t13 * t17 + t15 * parameters[ZZ6];
+    const rx90_real_t t19 = t16 + t18 * t5;
+    const rx90_real_t t20 = RX90_C(1.0) / t11;
+    const rx90_real_t t21 = t19 * t20;
     /* link j6: inertia of it and all beyond */
-    const rx90_real_t t23 = parameters[XX5] + (parameters[YY6] - t8);
-    const rx90_real_t t24 = parameters[YY5] + parameters[ZZ6];
-    const rx90_real_t t25 = parameters[XY5] + t18;
+    const rx90_real_t t22 = parameters[XX5] + (parameters[YY6] - t8);
+    const rx90_real_t t23 = parameters[YY5] + parameters[ZZ6];
+    const rx90_real_t t24 = parameters[XY5] + t17;
     /* link j5: inertia of it and all beyond */
-    const rx90_real_t t26 = t16 * (t24 - t23) + t25 * (RX90_C(2.0) * t14);
-    const rx90_real_t t27 = t16 * t26;
-    const rx90_real_t t28 = parameters[ZZ4] + (t23 + t27);
-    const rx90_real_t t29 = t28 + RX90_C(2.5e3) * parameters[IA4];
-    const rx90_real_t t30 = t19 * t4;
-    const rx90_real_t t31 = rx90_bounded(t29 - t19 * t30 - t20 * t22);
-    if (!(t31 > RX90_C(1.0e-12))) {
+    const rx90_real_t t25 = t15 * (t23 - t22) + t24 * (RX90_C(2.0) * t13);
+    const rx90_real_t t26 = t15 * t25;
+    const rx90_real_t t27 = parameters[ZZ4] + (t22 + t26);
+    const rx90_real_t t28 = t27 + RX90_C(2.5e3) * parameters[IA4];
+    const rx90_real_t t29 = t18 * t4;
+    const rx90_real_t t30 = t28 - t18 * t29 - t19 * t21;
+    if (!(t30 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t32 = t31 + RX90_C(-1.0e-9) * t29;
-    if (!(t32 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t33 = t14 * t26 - t25 - parameters[XZ4];
-    const rx90_real_t t35 = parameters[YZ4] - t17;
+    const rx90_real_t t31 = t13 * t25 - t24 - parameters[XZ4];
+    const rx90_real_t t33 = parameters[YZ4] - t16;
     /* link j6: column of the mass matrix */
-    const rx90_real_t t37 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const rx90_real_t t38 = parameters[MZ5] - t37; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t39 = parameters[MY4] - t38; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const rx90_real_t t36 = parameters[MZ5] - t35; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t37 = parameters[MY4] - t36; /* link j5: inertia of it and all beyond */
     /* link j6: column of the mass matrix */
-    const rx90_real_t t40 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const rx90_real_t t41 = parameters[MX5] + t40; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t42 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t43 = t16 * t41 - t14 * t42; /* link j5: column of the mass matrix */
-    const rx90_real_t t44 = parameters[MX4] + t43; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t45 = t36 * t39 + t34 * t44; /* link j4: column of the mass matrix */
-    const rx90_real_t t46 = t36 * t35 - t34 * t33 - RX90_C(0.45) * t45;
-    const rx90_real_t t47 = t16 * t18 - t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const rx90_real_t t48 = t16 * t37;
-    const rx90_real_t t49 = t36 * t48 + t34 * t40;
-    const rx90_real_t t50 = RX90_C(0.45) * t49 - (t34 * t47 + t36 * t3);
-    const rx90_real_t t51 = t16 * t13 - t14 * t15; /* link j5: column of the mass matrix */
-    const rx90_real_t t52 = t16 * t42 + t14 * t41;
-    const rx90_real_t t53 = t36 * t52;
-    const rx90_real_t t54 = t36 * t9 - t34 * t51 + RX90_C(0.45) * t53;
-    const rx90_real_t t55 = t54 + t50 * t5;
-    const rx90_real_t t56 = t46 + t50 * t30 + t55 * t22;
-    const rx90_real_t t57 = RX90_C(1.0) / t31;
-    const rx90_real_t t58 = t56 * t57;
-    const rx90_real_t t59 = t50 * t4;
-    const rx90_real_t t60 = t27 - t24 - parameters[XX4]; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t61 = parameters[YY4] + t9;
-    const rx90_real_t t62 = t51 - parameters[XY4];
+    const rx90_real_t t38 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const rx90_real_t t39 = parameters[MX5] + t38; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t40 = parameters[MY5] + parameters[MZ6];
+    const rx90_real_t t41 = t15 * t39 - t13 * t40; /* link j5: column of the mass matrix */
+    const rx90_real_t t42 = parameters[MX4] + t41; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t43 = t34 * t37 + t32 * t42; /* link j4: column of the mass matrix */
+    const rx90_real_t t44 = t34 * t33 - t32 * t31 - RX90_C(0.45) * t43;
+    const rx90_real_t t45 = t15 * t17 - t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const rx90_real_t t46 = t15 * t35;
+    const rx90_real_t t47 = t34 * t46 + t32 * t38;
+    const rx90_real_t t48 = RX90_C(0.45) * t47 - (t32 * t45 + t34 * t3);
+    const rx90_real_t t49 = t15 * t12 - t13 * t14; /* link j5: column of the mass matrix */
+    const rx90_real_t t50 = t15 * t40 + t13 * t39;
+    const rx90_real_t t51 = t34 * t50;
+    const rx90_real_t t52 = t34 * t9 - t32 * t49 + RX90_C(0.45) * t51;
+    const rx90_real_t t53 = t52 + t48 * t5;
+    const rx90_real_t t54 = t44 + t48 * t29 + t53 * t21;
+    const rx90_real_t t55 = RX90_C(1.0) / t30;
+    const rx90_real_t t56 = t54 * t55;
+    const rx90_real_t t57 = t48 * t4;
+    const rx90_real_t t58 = t26 - t23 - parameters[XX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t59 = parameters[YY4] + t9;
+    const rx90_real_t t60 = t49 - parameters[XY4];
     /* link j4: inertia of it and all beyond */
-    const rx90_real_t t63 = t36 * (t60 + t61) - t62 * (RX90_C(2.0) * t34);
-    const rx90_real_t t64 = t36 * t63;
-    const rx90_real_t t65 = parameters[MZ4] + t52; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t66 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t67 = parameters[M4] + t66; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t68 = RX90_C(0.45) * t67; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t69 = RX90_C(0.45) * (t68 + RX90_C(2.0) * t65);
-    const rx90_real_t t70 = parameters[ZZ3] + (t64 - t60 + t69);
-    const rx90_real_t t71 = t70 + RX90_C(1.0e4) * parameters[IA3];
-    const rx90_real_t t72 = t55 * t21;
-    const rx90_real_t t73 = rx90_bounded(t71 - t50 * t59 - t55 * t72 - t56 * t58);
-    if (!(t73 > RX90_C(1.0e-12))) {
+    const rx90_real_t t61 = t34 * (t58 + t59) - t60 * (RX90_C(2.0) * t32);
+    const rx90_real_t t62 = t34 * t61;
+    const rx90_real_t t63 = parameters[MZ4] + t50; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t64 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t65 = parameters[M4] + t64; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t66 = RX90_C(0.45) * t65; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t67 = RX90_C(0.45) * (t66 + RX90_C(2.0) * t63);
+    const rx90_real_t t68 = parameters[ZZ3] + (t62 - t58 + t67);
+    const rx90_real_t t69 = t68 + RX90_C(1.0e4) * parameters[IA3];
+    const rx90_real_t t70 = t53 * t20;
+    const rx90_real_t t71 = t69 - t48 * t57 - t53 * t70 - t54 * t56;
+    if (!(t71 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t74 = t73 + RX90_C(-1.0e-9) * t71;
-    if (!(t74 > RX90_C(1.0e-12))) {
+    const rx90_real_t t73 = t72 * t43; /* link j4: column of the mass matrix */
+    const rx90_real_t t74 = t44 + RX90_C(0.45) * t73;
+    const rx90_real_t t75 = t13 * t35; /* link j6: column of the mass matrix */
+    const rx90_real_t t77 = t72 * t47 + t76 * t75;
+    const rx90_real_t t78 = t48 + RX90_C(-0.45) * t77;
+    const rx90_real_t t79 = t76 * t41 - t72 * t51; /* link j5: column of the mass matrix */
+    const rx90_real_t t80 = t52 + RX90_C(0.45) * t79;
+    const rx90_real_t t81 = t80 + t78 * t5;
+    const rx90_real_t t82 = t74 + t78 * t29 + t81 * t21;
+    const rx90_real_t t83 = t34 * t42 - t32 * t37; /* link j4: column of the mass matrix */
+    const rx90_real_t t84 = parameters[MX3] + t83; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t85 = t63 + t66;
+    const rx90_real_t t86 = parameters[MY3] + t85;
+    const rx90_real_t t87 = t72 * t86 - t76 * t84; /* link j3: column of the mass matrix */
+    const rx90_real_t t88 = RX90_C(0.45) * t87 - t68;
+    const rx90_real_t t89 = t88 + t78 * t57 + t81 * t70 + t82 * t56;
+    const rx90_real_t t90 = RX90_C(1.0) / t71;
+    const rx90_real_t t91 = t89 * t90;
+    const rx90_real_t t92 = t82 * t55;
+    const rx90_real_t t93 = t81 * t20;
+    const rx90_real_t t94 = t78 * t4;
+    const rx90_real_t t95 = parameters[M3] + t65; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t96 = RX90_C(0.45) * t95; /* link j3: inertia of it and all beyond */
+    const rx90_real_t t97 = RX90_C(0.45) * (t96 + RX90_C(-2.0) * t87);
+    const rx90_real_t t98 = parameters[ZZ2] + (t68 + t97);
+    const rx90_real_t t99 = t98 + RX90_C(1.0e4) * parameters[IA2];
+    const rx90_real_t t100 = t99 - t78 * t94 - t81 * t93 - t82 * t92;
+    const rx90_real_t t101 = t100 - t89 * t91;
+    if (!(t101 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t76 = t75 * t45; /* link j4: column of the mass matrix */
-    const rx90_real_t t77 = t46 + RX90_C(0.45) * t76;
-    const rx90_real_t t78 = t14 * t37; /* link j6: column of the mass matrix */
-    const rx90_real_t t80 = t75 * t49 + t79 * t78;
-    const rx90_real_t t81 = t50 + RX90_C(-0.45) * t80;
-    const rx90_real_t t82 = t79 * t43 - t75 * t53; /* link j5: column of the mass matrix */
-    const rx90_real_t t83 = t54 + RX90_C(0.45) * t82;
-    const rx90_real_t t84 = t83 + t81 * t5;
-    const rx90_real_t t85 = t77 + t81 * t30 + t84 * t22;
-    const rx90_real_t t86 = t36 * t44 - t34 * t39; /* link j4: column of the mass matrix */
-    const rx90_real_t t87 = parameters[MX3] + t86; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t88 = t65 + t68;
-    const rx90_real_t t89 = parameters[MY3] + t88;
-    const rx90_real_t t90 = t75 * t89 - t79 * t87; /* link j3: column of the mass matrix */
-    const rx90_real_t t91 = RX90_C(0.45) * t90 - t70;
-    const rx90_real_t t92 = t91 + t81 * t59 + t84 * t72 + t85 * t58;
-    const rx90_real_t t93 = RX90_C(1.0) / t73;
-    const rx90_real_t t94 = t92 * t93;
-    const rx90_real_t t95 = t85 * t57;
-    const rx90_real_t t96 = t84 * t21;
-    const rx90_real_t t97 = t81 * t4;
-    const rx90_real_t t98 = parameters[M3] + t67; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t99 = RX90_C(0.45) * t98; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t100 = RX90_C(0.45) * (t99 + RX90_C(-2.0) * t90);
-    const rx90_real_t t101 = parameters[ZZ2] + (t70 + t100);
-    const rx90_real_t t102 = t101 + RX90_C(1.0e4) * parameters[IA2];
-    const rx90_real_t t103 = t102 - t81 * t97 - t84 * t96 - t85 * t95;
-    const rx90_real_t t104 = rx90_bounded(t103 - t92 * t94);
-    if (!(t104 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t105 = t104 + RX90_C(-1.0e-9) * t102;
-    if (!(t105 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t106 = parameters[XX3] + (t61 - t64 + t69); /* link j4: inertia of it and all beyond */
-    const rx90_real_t t107 = parameters[YY3] + t28;
-    const rx90_real_t t108 = RX90_C(-0.45) * t86; /* link j4: column of the mass matrix */
-    const rx90_real_t t109 = t36 * t33 + t34 * t35 - t108;
-    const rx90_real_t t110 = t109 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t102 = parameters[XX3] + (t59 - t62 + t67); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t103 = parameters[YY3] + t27;
+    const rx90_real_t t104 = RX90_C(-0.45) * t83; /* link j4: column of the mass matrix */
+    const rx90_real_t t105 = t34 * t31 + t32 * t33 - t104;
+    const rx90_real_t t106 = t105 - parameters[XY3]; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const rx90_real_t t111 = t79 * (t106 - t107) - t110 * (RX90_C(-2.0) * t75);
-    const rx90_real_t t112 = t79 * t111;
-    const rx90_real_t t113 = parameters[XX2] + (t107 + t112);
-    const rx90_real_t t114 = parameters[YY2] + (t106 - t112 + t100);
-    const rx90_real_t t116 = t79 * t89 + t75 * t87; /* link j3: column of the mass matrix */
+    const rx90_real_t t107 = t76 * (t102 - t103) - t106 * (RX90_C(-2.0) * t72);
+    const rx90_real_t t108 = t76 * t107;
+    const rx90_real_t t109 = parameters[XX2] + (t103 + t108);
+    const rx90_real_t t110 = parameters[YY2] + (t102 - t108 + t97);
+    const rx90_real_t t112 = t76 * t86 + t72 * t84; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const rx90_real_t t117 = parameters[XY2] + (t75 * t111 - t110 + RX90_C(-0.45) * t116);
+    const rx90_real_t t113 = parameters[XY2] + (t72 * t107 - t106 + RX90_C(-0.45) * t112);
     /* link j2: inertia of it and all beyond */
-    const rx90_real_t t119 = t115 * (t115 * (t114 - t113) + t117 * (RX90_C(2.0) * t118));
-    const rx90_real_t t120 = parameters[ZZ1] + (t113 + t119) + RX90_C(1.0e4) * parameters[IA1];
-    const rx90_real_t t121 = t34 * t48 - t36 * t40; /* link j6: column of the mass matrix */
-    const rx90_real_t t122 = RX90_C(0.45) * t121;
-    const rx90_real_t t123 = t36 * t47 - t34 * t3 + t122;
-    const rx90_real_t t124 = t75 * t19 - t79 * t123;
-    const rx90_real_t t125 = t75 * t123 + t79 * t19 - t122;
-    const rx90_real_t t126 = t115 * t125 - t118 * t124;
-    const rx90_real_t t127 = t126 * t4;
-    const rx90_real_t t128 = t34 * t52; /* link j5: column of the mass matrix */
-    const rx90_real_t t129 = RX90_C(0.45) * t128;
-    const rx90_real_t t130 = t36 * t51 + t34 * t9 + t129;
-    const rx90_real_t t131 = t75 * t17 - t79 * t130;
-    const rx90_real_t t132 = t75 * t130 + t79 * t17 - t129;
-    const rx90_real_t t133 = t115 * t132 - t118 * t131 + t126 * t5;
-    const rx90_real_t t134 = t133 * t21;
-    const rx90_real_t t135 = t79 * t109 + t75 * t28; /* link j4: column of the mass matrix */
-    const rx90_real_t t136 = t108 + (t75 * t109 - t79 * t28);
-    const rx90_real_t t137 = t118 * t135 + t115 * t136 + t126 * t30 + t133 * t22;
-    const rx90_real_t t138 = t137 * t57;
-    const rx90_real_t t139 = t120 - t126 * t127 - t133 * t134 - t137 * t138;
-    const rx90_real_t t140 = parameters[XZ3] + (t62 + t34 * t63); /* link j4: inertia of it and all beyond */
-    const rx90_real_t t141 = parameters[YZ3] - t46;
-    const rx90_real_t t142 = t75 * t141 - t79 * t140; /* link j3: column of the mass matrix */
-    const rx90_real_t t143 = t75 * t140 + t79 * t141;
-    const rx90_real_t t144 = t115 * t143 - t118 * t142 - t126 * t59 - t133 * t72;
-    const rx90_real_t t145 = t144 - t137 * t58;
-    const rx90_real_t t146 = t145 * t93;
-    const rx90_real_t t147 = parameters[MZ3] - t45; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t115 = t111 * (t111 * (t110 - t109) + t113 * (RX90_C(2.0) * t114));
+    const rx90_real_t t116 = parameters[ZZ1] + (t109 + t115) + RX90_C(1.0e4) * parameters[IA1];
+    const rx90_real_t t117 = t32 * t46 - t34 * t38; /* link j6: column of the mass matrix */
+    const rx90_real_t t118 = RX90_C(0.45) * t117;
+    const rx90_real_t t119 = t34 * t45 - t32 * t3 + t118;
+    const rx90_real_t t120 = t72 * t18 - t76 * t119;
+    const rx90_real_t t121 = t72 * t119 + t76 * t18 - t118;
+    const rx90_real_t t122 = t111 * t121 - t114 * t120;
+    const rx90_real_t t123 = t122 * t4;
+    const rx90_real_t t124 = t32 * t50; /* link j5: column of the mass matrix */
+    const rx90_real_t t125 = RX90_C(0.45) * t124;
+    const rx90_real_t t126 = t34 * t49 + t32 * t9 + t125;
+    const rx90_real_t t127 = t72 * t16 - t76 * t126;
+    const rx90_real_t t128 = t72 * t126 + t76 * t16 - t125;
+    const rx90_real_t t129 = t111 * t128 - t114 * t127 + t122 * t5;
+    const rx90_real_t t130 = t129 * t20;
+    const rx90_real_t t131 = t76 * t105 + t72 * t27; /* link j4: column of the mass matrix */
+    const rx90_real_t t132 = t104 + (t72 * t105 - t76 * t27);
+    const rx90_real_t t133 = t114 * t131 + t111 * t132 + t122 * t29 + t129 * t21;
+    const rx90_real_t t134 = t133 * t55;
+    const rx90_real_t t135 = t116 - t122 * t123 - t129 * t130 - t133 * t134;
+    const rx90_real_t t136 = parameters[XZ3] + (t60 + t32 * t61); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t137 = parameters[YZ3] - t44;
+    const rx90_real_t t138 = t72 * t137 - t76 * t136; /* link j3: column of the mass matrix */
+    const rx90_real_t t139 = t72 * t136 + t76 * t137;
+    const rx90_real_t t140 = t111 * t139 - t114 * t138 - t122 * t57 - t129 * t70;
+    const rx90_real_t t141 = t140 - t133 * t56;
+    const rx90_real_t t142 = t141 * t90;
+    const rx90_real_t t143 = parameters[MZ3] - t43; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const rx90_real_t t148 = t142 + RX90_C(0.45) * t147 - parameters[XZ2];
-    const rx90_real_t t149 = parameters[YZ2] + t143;
-    const rx90_real_t t150 = t115 * t149 - t118 * t148 - t126 * t97 - t133 * t96;
-    const rx90_real_t t151 = t150 - t137 * t95 + t145 * t94;
-    const rx90_real_t t152 = RX90_C(1.0) / t104;
-    const rx90_real_t t153 = t151 * t152;
-    const rx90_real_t t154 = rx90_bounded(t139 - t145 * t146 - t151 * t153);
+    const rx90_real_t t144 = t138 + RX90_C(0.45) * t143 - parameters[XZ2];
+    const rx90_real_t t145 = parameters[YZ2] + t139;
+    const rx90_real_t t146 = t111 * t145 - t114 * t144 - t122 * t94 - t129 * t93;
+    const rx90_real_t t147 = t146 - t133 * t92 + t141 * t91;
+    const rx90_real_t t148 = RX90_C(1.0) / t101;
+    const rx90_real_t t149 = t147 * t148;
+    const rx90_real_t t150 = t135 - t141 * t142 - t147 * t149;
+    if (!(t150 > RX90_C(1.0e-12))) {
+        rx90_zero(ddq, 6);
+        rx90_zero(ddq_by_q, 36);
+        rx90_zero(ddq_by_dq, 36);
+        rx90_zero(ddq_by_input, 36);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t151 = rx90_min(t11 + RX90_C(-1.0e-9) * t10, t30 + RX90_C(-1.0e-9) * t28);
+    const rx90_real_t t152 = rx90_min(t151, t71 + RX90_C(-1.0e-9) * t69);
+    const rx90_real_t t153 = rx90_min(t152, t101 + RX90_C(-1.0e-9) * t99);
+    const rx90_real_t t154 = rx90_min(t153, t150 + RX90_C(-1.0e-9) * t116);
     if (!(t154 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
@@ -381,1132 +360,1125 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
         rx90_zero(ddq_by_input, 36);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t155 = t154 + RX90_C(-1.0e-9) * t120;
-    if (!(t155 > RX90_C(1.0e-12))) {
-        rx90_zero(ddq, 6);
-        rx90_zero(ddq_by_q, 36);
-        rx90_zero(ddq_by_dq, 36);
-        rx90_zero(ddq_by_input, 36);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t156 = t118 * dq[0]; /* link j2: motion */
-    const rx90_real_t t157 = t115 * dq[0];
-    const rx90_real_t t158 = t79 * t156 + t75 * t157; /* link j3: motion */
-    const rx90_real_t t159 = t79 * t157 - t75 * t156;
-    const rx90_real_t t160 = t158 * t159;
-    const rx90_real_t t161 = dq[1] + dq[2];
-    const rx90_real_t t162 = t161 * t159;
-    const rx90_real_t t163 = RX90_C(2.0) * t162; /* link j4: motion */
-    const rx90_real_t t164 = t34 * t163 - t36 * t160;
-    const rx90_real_t t165 = t34 * t161;
-    const rx90_real_t t166 = t36 * t158 - t165;
-    const rx90_real_t t167 = dq[3] + t159;
-    const rx90_real_t t168 = t166 * t167;
-    const rx90_real_t t169 = t164 + t168;
-    const rx90_real_t t170 = t16 * t166 + t14 * t167; /* link j5: motion */
-    const rx90_real_t t171 = t16 * t167 - t14 * t166;
-    const rx90_real_t t172 = t170 * t171;
-    const rx90_real_t t173 = t169 - t172; /* link j6: motion */
-    const rx90_real_t t174 = t34 * t160 + t36 * t163; /* link j4: motion */
-    const rx90_real_t t175 = t36 * t161;
-    const rx90_real_t t176 = t175 + t34 * t158;
-    const rx90_real_t t177 = t176 * t167;
-    const rx90_real_t t178 = t174 - t177;
-    const rx90_real_t t179 = t178 - t177; /* link j5: motion */
-    const rx90_real_t t180 = t166 * t176; /* link j4: motion */
-    const rx90_real_t t181 = t161 * t158; /* link j3: motion */
-    const rx90_real_t t182 = t180 - t181; /* link j5: motion */
-    const rx90_real_t t183 = t14 * t182 + t16 * t179;
-    const rx90_real_t t184 = dq[4] + t176;
-    const rx90_real_t t185 = t171 * t184;
-    const rx90_real_t t186 = t183 + t185;
-    const rx90_real_t t187 = t185 + t186; /* link j6: motion */
-    const rx90_real_t t188 = t2 * t187 - t1 * t173;
-    const rx90_real_t t189 = t1 * t170 + t2 * t184;
-    const rx90_real_t t190 = dq[5] + t171;
-    const rx90_real_t t191 = t189 * t190;
-    const rx90_real_t t192 = t188 - t191;
-    const rx90_real_t t193 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
-    const rx90_real_t t194 = t2 * t173 + t1 * t187; /* link j6: motion */
-    const rx90_real_t t195 = t2 * t170 - t1 * t184;
-    const rx90_real_t t196 = t195 * t190;
-    const rx90_real_t t197 = t194 + t196;
-    const rx90_real_t t198 = t196 + t197; /* link j6: force and moment */
-    const rx90_real_t t199 = t14 * t179 - t16 * t182; /* link j5: motion */
-    const rx90_real_t t200 = t170 * t184;
-    const rx90_real_t t201 = t199 + t200;
-    const rx90_real_t t202 = t195 * t189; /* link j6: motion */
-    const rx90_real_t t203 = t201 + t202; /* link j6: force and moment */
-    const rx90_real_t t204 = t191 * t193 - parameters[XX6] * t192 + parameters[XY6] * t198
-        + parameters[XZ6] * t203;
-    const rx90_real_t t205 = t189 * t189; /* link j6: motion */
-    const rx90_real_t t206 = t190 * t190;
-    const rx90_real_t t207 = t157 * t157; /* link j2: motion */
-    const rx90_real_t t208 = dq[1] * dq[1];
-    const rx90_real_t t209 = RX90_C(-9.81) * t118;
-    const rx90_real_t t210 = t209 + RX90_C(0.45) * (t207 + t208); /* link j3: motion */
-    const rx90_real_t t211 = t79 * t210;
-    const rx90_real_t t212 = t156 * t157; /* link j2: motion */
-    const rx90_real_t t213 = RX90_C(9.81) * t115;
-    const rx90_real_t t214 = RX90_C(-0.45) * t212 - t213; /* link j3: motion */
-    const rx90_real_t t215 = t211 + t75 * t214;
-    const rx90_real_t t216 = t215 + RX90_C(-0.45) * t160; /* link j4: motion */
-    const rx90_real_t t217 = dq[1] * t156; /* link j2: motion */
-    const rx90_real_t t218 = RX90_C(0.9) * t217; /* link j3: motion */
-    const rx90_real_t t219 = t218 - RX90_C(-0.9) * t162; /* link j4: motion */
-    const rx90_real_t t220 = t36 * t216 + t34 * t219;
-    const rx90_real_t t221 = t75 * t210; /* link j3: motion */
-    const rx90_real_t t222 = t79 * t214 - t221;
-    const rx90_real_t t223 = t158 * t158;
-    const rx90_real_t t224 = t161 * t161;
-    const rx90_real_t t225 = t224 + t223; /* link j4: motion */
-    const rx90_real_t t226 = t222 + RX90_C(0.45) * t225;
-    const rx90_real_t t227 = t14 * t220 - t16 * t226; /* link j5: motion */
-    const rx90_real_t t228 = t16 * t220 + t14 * t226;
-    const rx90_real_t t229 = t34 * t216 - t36 * t219; /* link j4: motion */
-    const rx90_real_t t230 = t1 * t228 + t2 * t229; /* link j6: motion */
+    const rx90_real_t t155 = t114 * dq[0]; /* link j2: motion */
+    const rx90_real_t t156 = t111 * dq[0];
+    const rx90_real_t t157 = t76 * t155 + t72 * t156; /* link j3: motion */
+    const rx90_real_t t158 = t76 * t156 - t72 * t155;
+    const rx90_real_t t159 = t157 * t158;
+    const rx90_real_t t160 = dq[1] + dq[2];
+    const rx90_real_t t161 = t160 * t158;
+    const rx90_real_t t162 = RX90_C(2.0) * t161; /* link j4: motion */
+    const rx90_real_t t163 = t32 * t162 - t34 * t159;
+    const rx90_real_t t164 = t32 * t160;
+    const rx90_real_t t165 = t34 * t157 - t164;
+    const rx90_real_t t166 = dq[3] + t158;
+    const rx90_real_t t167 = t165 * t166;
+    const rx90_real_t t168 = t163 + t167;
+    const rx90_real_t t169 = t15 * t165 + t13 * t166; /* link j5: motion */
+    const rx90_real_t t170 = t15 * t166 - t13 * t165;
+    const rx90_real_t t171 = t169 * t170;
+    const rx90_real_t t172 = t168 - t171; /* link j6: motion */
+    const rx90_real_t t173 = t32 * t159 + t34 * t162; /* link j4: motion */
+    const rx90_real_t t174 = t34 * t160;
+    const rx90_real_t t175 = t174 + t32 * t157;
+    const rx90_real_t t176 = t175 * t166;
+    const rx90_real_t t177 = t173 - t176;
+    const rx90_real_t t178 = t177 - t176; /* link j5: motion */
+    const rx90_real_t t179 = t165 * t175; /* link j4: motion */
+    const rx90_real_t t180 = t160 * t157; /* link j3: motion */
+    const rx90_real_t t181 = t179 - t180; /* link j5: motion */
+    const rx90_real_t t182 = t13 * t181 + t15 * t178;
+    const rx90_real_t t183 = dq[4] + t175;
+    const rx90_real_t t184 = t170 * t183;
+    const rx90_real_t t185 = t182 + t184;
+    const rx90_real_t t186 = t184 + t185; /* link j6: motion */
+    const rx90_real_t t187 = t2 * t186 - t1 * t172;
+    const rx90_real_t t188 = t1 * t169 + t2 * t183;
+    const rx90_real_t t189 = dq[5] + t170;
+    const rx90_real_t t190 = t188 * t189;
+    const rx90_real_t t191 = t187 - t190;
+    const rx90_real_t t192 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
+    const rx90_real_t t193 = t2 * t172 + t1 * t186; /* link j6: motion */
+    const rx90_real_t t194 = t2 * t169 - t1 * t183;
+    const rx90_real_t t195 = t194 * t189;
+    const rx90_real_t t196 = t193 + t195;
+    const rx90_real_t t197 = t195 + t196; /* link j6: force and moment */
+    const rx90_real_t t198 = t13 * t178 - t15 * t181; /* link j5: motion */
+    const rx90_real_t t199 = t169 * t183;
+    const rx90_real_t t200 = t198 + t199;
+    const rx90_real_t t201 = t194 * t188; /* link j6: motion */
+    const rx90_real_t t202 = t200 + t201; /* link j6: force and moment */
+    const rx90_real_t t203 = t190 * t192 - parameters[XX6] * t191 + parameters[XY6] * t197
+        + parameters[XZ6] * t202;
+    const rx90_real_t t204 = t188 * t188; /* link j6: motion */
+    const rx90_real_t t205 = t189 * t189;
+    const rx90_real_t t206 = t156 * t156; /* link j2: motion */
+    const rx90_real_t t207 = dq[1] * dq[1];
+    const rx90_real_t t208 = RX90_C(-9.81) * t114;
+    const rx90_real_t t209 = t208 + RX90_C(0.45) * (t206 + t207); /* link j3: motion */
+    const rx90_real_t t210 = t76 * t209;
+    const rx90_real_t t211 = t155 * t156; /* link j2: motion */
+    const rx90_real_t t212 = RX90_C(9.81) * t111;
+    const rx90_real_t t213 = RX90_C(-0.45) * t211 - t212; /* link j3: motion */
+    const rx90_real_t t214 = t210 + t72 * t213;
+    const rx90_real_t t215 = t214 + RX90_C(-0.45) * t159; /* link j4: motion */
+    const rx90_real_t t216 = dq[1] * t155; /* link j2: motion */
+    const rx90_real_t t217 = RX90_C(0.9) * t216; /* link j3: motion */
+    const rx90_real_t t218 = t217 - RX90_C(-0.9) * t161; /* link j4: motion */
+    const rx90_real_t t219 = t34 * t215 + t32 * t218;
+    const rx90_real_t t220 = t72 * t209; /* link j3: motion */
+    const rx90_real_t t221 = t76 * t213 - t220;
+    const rx90_real_t t222 = t157 * t157;
+    const rx90_real_t t223 = t160 * t160;
+    const rx90_real_t t224 = t223 + t222; /* link j4: motion */
+    const rx90_real_t t225 = t221 + RX90_C(0.45) * t224;
+    const rx90_real_t t226 = t13 * t219 - t15 * t225; /* link j5: motion */
+    const rx90_real_t t227 = t15 * t219 + t13 * t225;
+    const rx90_real_t t228 = t32 * t215 - t34 * t218; /* link j4: motion */
+    const rx90_real_t t229 = t1 * t227 + t2 * t228; /* link j6: motion */
     /* link j6: force and moment */
-    const rx90_real_t t231 = t204 - parameters[YZ6] * (t205 - t206) + (parameters[MZ6] * t230
-        - parameters[MY6] * t227);
-    const rx90_real_t t232 = parameters[ZZ6] - parameters[XX6];
-    const rx90_real_t t233 = t192 - t191;
-    const rx90_real_t t234 = t202 - t201;
-    const rx90_real_t t235 = parameters[XY6] * t233 - (parameters[YY6] * t197 + t196 * t232)
-        + parameters[YZ6] * t234;
-    const rx90_real_t t236 = t195 * t195; /* link j6: motion */
-    const rx90_real_t t237 = t2 * t228 - t1 * t229;
+    const rx90_real_t t230 = t203 - parameters[YZ6] * (t204 - t205) + (parameters[MZ6] * t229
+        - parameters[MY6] * t226);
+    const rx90_real_t t231 = parameters[ZZ6] - parameters[XX6];
+    const rx90_real_t t232 = t191 - t190;
+    const rx90_real_t t233 = t201 - t200;
+    const rx90_real_t t234 = parameters[XY6] * t232 - (parameters[YY6] * t196 + t195 * t231)
+        + parameters[YZ6] * t233;
+    const rx90_real_t t235 = t194 * t194; /* link j6: motion */
+    const rx90_real_t t236 = t2 * t227 - t1 * t228;
     /* link j6: force and moment */
-    const rx90_real_t t238 = t235 + parameters[XZ6] * (t206 - t236) - (parameters[MZ6] * t237
-        + parameters[MX6] * t227);
-    const rx90_real_t t239 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
-    const rx90_real_t t240 = t200 + t201; /* link j6: motion */
-    const rx90_real_t t241 = t169 + t172;
+    const rx90_real_t t237 = t234 + parameters[XZ6] * (t205 - t235) - (parameters[MZ6] * t236
+        + parameters[MX6] * t226);
+    const rx90_real_t t238 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
+    const rx90_real_t t239 = t199 + t200; /* link j6: motion */
+    const rx90_real_t t240 = t168 + t171;
     /* link j5: force and moment */
-    const rx90_real_t t242 = t185 * t239 - parameters[XX5] * t186 + parameters[XY5] * t240
-        - parameters[XZ5] * t241;
-    const rx90_real_t t243 = t171 * t171; /* link j5: motion */
-    const rx90_real_t t244 = t184 * t184;
+    const rx90_real_t t241 = t184 * t238 - parameters[XX5] * t185 + parameters[XY5] * t239
+        - parameters[XZ5] * t240;
+    const rx90_real_t t242 = t170 * t170; /* link j5: motion */
+    const rx90_real_t t243 = t183 * t183;
     /* link j5: force and moment */
-    const rx90_real_t t245 = t242 + parameters[YZ5] * (t244 - t243) + (parameters[MY5] * t229
-        + parameters[MZ5] * t227);
-    const rx90_real_t t246 = t245 + (t2 * t231 + t1 * t238); /* link j6: what it passes on */
+    const rx90_real_t t244 = t241 + parameters[YZ5] * (t243 - t242) + (parameters[MY5] * t228
+        + parameters[MZ5] * t226);
+    const rx90_real_t t245 = t244 + (t2 * t230 + t1 * t237); /* link j6: what it passes on */
     /* link j6: force and moment */
-    const rx90_real_t t247 = parameters[XZ6] * t188 - (parameters[ZZ6] * t201 + t6 * t202
-        + parameters[YZ6] * t194);
-    const rx90_real_t t248 = t247 + parameters[XY6] * (t236 - t205) + (parameters[MX6] * t230
-        + parameters[MY6] * t237);
-    const rx90_real_t t249 = parameters[ZZ5] - parameters[XX5]; /* link j5: force and moment */
-    const rx90_real_t t250 = parameters[XY5] * t187 - (parameters[YY5] * t201 + t200 * t249)
-        + parameters[YZ5] * t173;
-    const rx90_real_t t251 = t170 * t170; /* link j5: motion */
+    const rx90_real_t t246 = parameters[XZ6] * t187 - (parameters[ZZ6] * t200 + t6 * t201
+        + parameters[YZ6] * t193);
+    const rx90_real_t t247 = t246 + parameters[XY6] * (t235 - t204) + (parameters[MX6] * t229
+        + parameters[MY6] * t236);
+    const rx90_real_t t248 = parameters[ZZ5] - parameters[XX5]; /* link j5: force and moment */
+    const rx90_real_t t249 = parameters[XY5] * t186 - (parameters[YY5] * t200 + t199 * t248)
+        + parameters[YZ5] * t172;
+    const rx90_real_t t250 = t169 * t169; /* link j5: motion */
     /* link j5: force and moment */
-    const rx90_real_t t252 = t250 + parameters[XZ5] * (t244 - t251) + (parameters[MX5] * t229
-        - parameters[MZ5] * t228);
-    const rx90_real_t t253 = t252 + t248; /* link j6: what it passes on */
-    const rx90_real_t t254 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
-    const rx90_real_t t255 = t168 + t169; /* link j5: motion */
-    const rx90_real_t t256 = t181 + t180;
+    const rx90_real_t t251 = t249 + parameters[XZ5] * (t243 - t250) + (parameters[MX5] * t228
+        - parameters[MZ5] * t227);
+    const rx90_real_t t252 = t251 + t247; /* link j6: what it passes on */
+    const rx90_real_t t253 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
+    const rx90_real_t t254 = t167 + t168; /* link j5: motion */
+    const rx90_real_t t255 = t180 + t179;
     /* link j4: force and moment */
-    const rx90_real_t t257 = t177 * t254 - parameters[XX4] * t178 + parameters[XY4] * t255
-        + parameters[XZ4] * t256;
-    const rx90_real_t t258 = t176 * t176; /* link j4: motion */
-    const rx90_real_t t259 = t167 * t167;
+    const rx90_real_t t256 = t176 * t253 - parameters[XX4] * t177 + parameters[XY4] * t254
+        + parameters[XZ4] * t255;
+    const rx90_real_t t257 = t175 * t175; /* link j4: motion */
+    const rx90_real_t t258 = t166 * t166;
     /* link j4: force and moment */
-    const rx90_real_t t260 = t257 + parameters[YZ4] * (t259 - t258) + (parameters[MY4] * t226
-        + parameters[MZ4] * t229);
-    const rx90_real_t t261 = t260 + (t16 * t246 + t14 * t253); /* link j5: what it passes on */
-    const rx90_real_t t262 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
-    const rx90_real_t t263 = t172 * t262 - parameters[ZZ5] * t169 + parameters[YZ5] * t199
-        - parameters[XZ5] * t183;
-    const rx90_real_t t264 = t263 + parameters[XY5] * (t243 - t251) - (parameters[MX5] * t227
-        + parameters[MY5] * t228);
-    const rx90_real_t t265 = t264 + (t2 * t238 - t1 * t231); /* link j6: what it passes on */
-    const rx90_real_t t266 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
-    const rx90_real_t t267 = parameters[XY4] * t179 - (parameters[YY4] * t169 + t168 * t266)
-        + parameters[YZ4] * t182;
-    const rx90_real_t t268 = t166 * t166; /* link j4: motion */
+    const rx90_real_t t259 = t256 + parameters[YZ4] * (t258 - t257) + (parameters[MY4] * t225
+        + parameters[MZ4] * t228);
+    const rx90_real_t t260 = t259 + (t15 * t245 + t13 * t252); /* link j5: what it passes on */
+    const rx90_real_t t261 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
+    const rx90_real_t t262 = t171 * t261 - parameters[ZZ5] * t168 + parameters[YZ5] * t198
+        - parameters[XZ5] * t182;
+    const rx90_real_t t263 = t262 + parameters[XY5] * (t242 - t250) - (parameters[MX5] * t226
+        + parameters[MY5] * t227);
+    const rx90_real_t t264 = t263 + (t2 * t237 - t1 * t230); /* link j6: what it passes on */
+    const rx90_real_t t265 = parameters[ZZ4] - parameters[XX4]; /* link j4: force and moment */
+    const rx90_real_t t266 = parameters[XY4] * t178 - (parameters[YY4] * t168 + t167 * t265)
+        + parameters[YZ4] * t181;
+    const rx90_real_t t267 = t165 * t165; /* link j4: motion */
     /* link j4: force and moment */
-    const rx90_real_t t269 = t267 + parameters[XZ4] * (t259 - t268) + (parameters[MX4] * t226
-        - parameters[MZ4] * t220);
-    const rx90_real_t t270 = t269 + t265; /* link j5: what it passes on */
+    const rx90_real_t t268 = t266 + parameters[XZ4] * (t258 - t267) + (parameters[MX4] * t225
+        - parameters[MZ4] * t219);
+    const rx90_real_t t269 = t268 + t264; /* link j5: what it passes on */
     /* link j6: force and moment */
-    const rx90_real_t t271 = parameters[MX6] * (t205 + t206) + parameters[MY6] * t234
-        + parameters[MZ6] * t194;
-    const rx90_real_t t272 = parameters[M6] * t237 + t271;
-    const rx90_real_t t273 = parameters[MX6] * t203 + parameters[MY6] * (t236 + t206)
-        + parameters[MZ6] * t188;
-    const rx90_real_t t274 = t273 - parameters[M6] * t230;
+    const rx90_real_t t270 = parameters[MX6] * (t204 + t205) + parameters[MY6] * t233
+        + parameters[MZ6] * t193;
+    const rx90_real_t t271 = parameters[M6] * t236 + t270;
+    const rx90_real_t t272 = parameters[MX6] * t202 + parameters[MY6] * (t235 + t205)
+        + parameters[MZ6] * t187;
+    const rx90_real_t t273 = t272 - parameters[M6] * t229;
     /* link j5: force and moment */
-    const rx90_real_t t275 = parameters[MX5] * (t243 + t244) + parameters[MY5] * t173
-        + parameters[MZ5] * t199;
+    const rx90_real_t t274 = parameters[MX5] * (t242 + t243) + parameters[MY5] * t172
+        + parameters[MZ5] * t198;
     /* link j6: what it passes on */
-    const rx90_real_t t276 = parameters[M5] * t228 + t275 + (t2 * t272 - t1 * t274);
+    const rx90_real_t t275 = parameters[M5] * t227 + t274 + (t2 * t271 - t1 * t273);
     /* link j5: force and moment */
-    const rx90_real_t t277 = parameters[MX5] * t241 - parameters[MY5] * (t251 + t244)
-        - parameters[MZ5] * t183;
+    const rx90_real_t t276 = parameters[MX5] * t240 - parameters[MY5] * (t250 + t243)
+        - parameters[MZ5] * t182;
     /* link j6: force and moment */
-    const rx90_real_t t278 = parameters[MX6] * t198 + parameters[MY6] * t233 - parameters[MZ6] * (t236
-        + t205);
+    const rx90_real_t t277 = parameters[MX6] * t197 + parameters[MY6] * t232 - parameters[MZ6] * (t235
+        + t204);
     /* link j6: what it passes on */
-    const rx90_real_t t279 = parameters[M5] * t227 + t277 + (parameters[M6] * t227 + t278);
+    const rx90_real_t t278 = parameters[M5] * t226 + t276 + (parameters[M6] * t226 + t277);
     /* link j4: force and moment */
-    const rx90_real_t t280 = parameters[MX4] * (t258 + t259) + parameters[MY4] * t182
-        + parameters[MZ4] * t164;
+    const rx90_real_t t279 = parameters[MX4] * (t257 + t258) + parameters[MY4] * t181
+        + parameters[MZ4] * t163;
     /* link j5: what it passes on */
-    const rx90_real_t t281 = parameters[M4] * t220 + t280 + (t16 * t276 + t14 * t279);
+    const rx90_real_t t280 = parameters[M4] * t219 + t279 + (t15 * t275 + t13 * t278);
     /* link j5: force and moment */
-    const rx90_real_t t282 = parameters[MX5] * t240 + parameters[MY5] * t187 - parameters[MZ5] * (t251
-        + t243);
+    const rx90_real_t t281 = parameters[MX5] * t239 + parameters[MY5] * t186 - parameters[MZ5] * (t250
+        + t242);
     /* link j6: what it passes on */
-    const rx90_real_t t283 = t282 - parameters[M5] * t229 + (t1 * t272 + t2 * t274);
+    const rx90_real_t t282 = t281 - parameters[M5] * t228 + (t1 * t271 + t2 * t273);
     /* link j4: force and moment */
-    const rx90_real_t t284 = parameters[MX4] * t256 + parameters[MY4] * (t268 + t259)
-        + parameters[MZ4] * t174;
-    const rx90_real_t t285 = t284 - parameters[M4] * t229 + t283; /* link j5: what it passes on */
-    const rx90_real_t t286 = t34 * t281 + t36 * t285; /* link j4: what it passes on */
-    const rx90_real_t t287 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
-    const rx90_real_t t288 = RX90_C(2.0) * t181; /* link j4: motion */
+    const rx90_real_t t283 = parameters[MX4] * t255 + parameters[MY4] * (t267 + t258)
+        + parameters[MZ4] * t173;
+    const rx90_real_t t284 = t283 - parameters[M4] * t228 + t282; /* link j5: what it passes on */
+    const rx90_real_t t285 = t32 * t280 + t34 * t284; /* link j4: what it passes on */
+    const rx90_real_t t286 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const rx90_real_t t287 = RX90_C(2.0) * t180; /* link j4: motion */
     /* link j3: force and moment */
-    const rx90_real_t t289 = parameters[XY3] * t288 - (parameters[XX3] * t162 + t162 * t287)
-        - parameters[XZ3] * t160;
-    const rx90_real_t t290 = t159 * t159; /* link j3: motion */
+    const rx90_real_t t288 = parameters[XY3] * t287 - (parameters[XX3] * t161 + t161 * t286)
+        - parameters[XZ3] * t159;
+    const rx90_real_t t289 = t158 * t158; /* link j3: motion */
     /* link j3: force and moment */
-    const rx90_real_t t291 = t289 + parameters[YZ3] * (t224 - t290) - (parameters[MY3] * t218
-        + parameters[MZ3] * t222);
+    const rx90_real_t t290 = t288 + parameters[YZ3] * (t223 - t289) - (parameters[MY3] * t217
+        + parameters[MZ3] * t221);
     /* link j4: what it passes on */
-    const rx90_real_t t292 = t291 + (t36 * t261 + t34 * t270 + RX90_C(-0.45) * t286);
-    const rx90_real_t t293 = parameters[YY4] - parameters[XX4]; /* link j4: force and moment */
-    const rx90_real_t t294 = parameters[ZZ4] * t181 + t180 * t293 + parameters[YZ4] * t164
-        - parameters[XZ4] * t174;
-    const rx90_real_t t295 = t294 - parameters[XY4] * (t268 - t258) - (parameters[MX4] * t229
-        + parameters[MY4] * t220);
-    const rx90_real_t t296 = t295 + (t14 * t246 - t16 * t253); /* link j5: what it passes on */
-    const rx90_real_t t297 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
-    const rx90_real_t t298 = parameters[YY3] * t181 + t181 * t297 - parameters[XY3] * t163
-        + parameters[YZ3] * t160;
-    const rx90_real_t t299 = t298 - parameters[XZ3] * (t224 - t223) + (parameters[MZ3] * t215
-        + parameters[MX3] * t218);
-    const rx90_real_t t300 = t299 + t296; /* link j4: what it passes on */
-    const rx90_real_t t301 = dq[1] * t157; /* link j2: motion */
-    const rx90_real_t t302 = t301 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
-    const rx90_real_t t303 = t302 - t301 * parameters[XX2] + RX90_C(2.0) * t217 * parameters[XY2]
-        - t212 * parameters[XZ2];
-    const rx90_real_t t304 = (t207 - t208) * parameters[YZ2];
-    const rx90_real_t t305 = t213 * parameters[MZ2];
-    const rx90_real_t t306 = t303 - t304 + t305 + (t79 * t292 - t75 * t300); /* link j3: what it passes on */
+    const rx90_real_t t291 = t290 + (t34 * t260 + t32 * t269 + RX90_C(-0.45) * t285);
+    const rx90_real_t t292 = parameters[YY4] - parameters[XX4]; /* link j4: force and moment */
+    const rx90_real_t t293 = parameters[ZZ4] * t180 + t179 * t292 + parameters[YZ4] * t163
+        - parameters[XZ4] * t173;
+    const rx90_real_t t294 = t293 - parameters[XY4] * (t267 - t257) - (parameters[MX4] * t228
+        + parameters[MY4] * t219);
+    const rx90_real_t t295 = t294 + (t13 * t245 - t15 * t252); /* link j5: what it passes on */
+    const rx90_real_t t296 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
+    const rx90_real_t t297 = parameters[YY3] * t180 + t180 * t296 - parameters[XY3] * t162
+        + parameters[YZ3] * t159;
+    const rx90_real_t t298 = t297 - parameters[XZ3] * (t223 - t222) + (parameters[MZ3] * t214
+        + parameters[MX3] * t217);
+    const rx90_real_t t299 = t298 + t295; /* link j4: what it passes on */
+    const rx90_real_t t300 = dq[1] * t156; /* link j2: motion */
+    const rx90_real_t t301 = t300 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const rx90_real_t t302 = t301 - t300 * parameters[XX2] + RX90_C(2.0) * t216 * parameters[XY2]
+        - t211 * parameters[XZ2];
+    const rx90_real_t t303 = (t206 - t207) * parameters[YZ2];
+    const rx90_real_t t304 = t212 * parameters[MZ2];
+    const rx90_real_t t305 = t302 - t303 + t304 + (t76 * t291 - t72 * t299); /* link j3: what it passes on */
     /* link j3: force and moment */
-    const rx90_real_t t307 = parameters[MX3] * t288 + parameters[MY3] * t163 - parameters[MZ3] * (t223
-        + t290);
+    const rx90_real_t t306 = parameters[MX3] * t287 + parameters[MY3] * t162 - parameters[MZ3] * (t222
+        + t289);
     /* link j3: what it passes on */
-    const rx90_real_t t308 = t75 * t292 + t79 * t300 + RX90_C(0.45) * (parameters[M3] * t218 + t307 + t286);
-    const rx90_real_t t309 = t217 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
-    const rx90_real_t t310 = t217 * parameters[YY2] + t309 + RX90_C(-2.0) * t301 * parameters[XY2]
-        + t212 * parameters[YZ2];
-    const rx90_real_t t311 = t156 * t156; /* link j2: motion */
-    const rx90_real_t t312 = (t311 - t208) * parameters[XZ2]; /* link j2: force and moment */
-    const rx90_real_t t313 = t209 * parameters[MZ2];
+    const rx90_real_t t307 = t72 * t291 + t76 * t299 + RX90_C(0.45) * (parameters[M3] * t217 + t306 + t285);
+    const rx90_real_t t308 = t216 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
+    const rx90_real_t t309 = t216 * parameters[YY2] + t308 + RX90_C(-2.0) * t300 * parameters[XY2]
+        + t211 * parameters[YZ2];
+    const rx90_real_t t310 = t155 * t155; /* link j2: motion */
+    const rx90_real_t t311 = (t310 - t207) * parameters[XZ2]; /* link j2: force and moment */
+    const rx90_real_t t312 = t208 * parameters[MZ2];
     /* link j2: what it passes on */
-    const rx90_real_t t314 = t118 * t306 + t115 * (t310 + t312 + t313 + t308);
-    const rx90_real_t t315 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
-    const rx90_real_t t316 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1]
-        - t315 * parameters[FC1]) + t314;
-    const rx90_real_t t317 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
-    const rx90_real_t t318 = RX90_C(30.0) * (RX90_C(30.0) * dq[5] * parameters[FV6] + t317 * parameters[FC6])
-        + t248;
-    const rx90_real_t t319 = RX90_C(6.0) * input[5] - t318;
-    const rx90_real_t t320 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
-    const rx90_real_t t321 = RX90_C(50.0) * (RX90_C(50.0) * dq[4] * parameters[FV5] + t320 * parameters[FC5])
-        - t265;
-    const rx90_real_t t322 = RX90_C(10.0) * input[4] - t321 + t319 * t5;
-    const rx90_real_t t323 = RX90_C(30.0) * input[0] + t316 - t319 * t127 - t322 * t134;
-    const rx90_real_t t324 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
-    const rx90_real_t t325 = RX90_C(50.0) * (RX90_C(50.0) * dq[3] * parameters[FV4] + t324 * parameters[FC4])
-        - t296;
-    const rx90_real_t t326 = RX90_C(10.0) * input[3] - t325 - t319 * t30 - t322 * t22;
-    const rx90_real_t t327 = t34 * t285 - t36 * t281; /* link j4: what it passes on */
+    const rx90_real_t t313 = t114 * t305 + t111 * (t309 + t311 + t312 + t307);
+    const rx90_real_t t314 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
+    const rx90_real_t t315 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1]
+        - t314 * parameters[FC1]) + t313;
+    const rx90_real_t t316 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
+    const rx90_real_t t317 = RX90_C(30.0) * (RX90_C(30.0) * dq[5] * parameters[FV6] + t316 * parameters[FC6])
+        + t247;
+    const rx90_real_t t318 = RX90_C(6.0) * input[5] - t317;
+    const rx90_real_t t319 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
+    const rx90_real_t t320 = RX90_C(50.0) * (RX90_C(50.0) * dq[4] * parameters[FV5] + t319 * parameters[FC5])
+        - t264;
+    const rx90_real_t t321 = RX90_C(10.0) * input[4] - t320 + t318 * t5;
+    const rx90_real_t t322 = RX90_C(30.0) * input[0] + t315 - t318 * t123 - t321 * t130;
+    const rx90_real_t t323 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
+    const rx90_real_t t324 = RX90_C(50.0) * (RX90_C(50.0) * dq[3] * parameters[FV4] + t323 * parameters[FC4])
+        - t295;
+    const rx90_real_t t325 = RX90_C(10.0) * input[3] - t324 - t318 * t29 - t321 * t21;
+    const rx90_real_t t326 = t32 * t284 - t34 * t280; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const rx90_real_t t328 = parameters[XY3] * (t223 - t290) - t160 * (parameters[XX3] - parameters[YY3])
-        - (parameters[MX3] * t222 - parameters[MY3] * t215);
+    const rx90_real_t t327 = parameters[XY3] * (t222 - t289) - t159 * (parameters[XX3] - parameters[YY3])
+        - (parameters[MX3] * t221 - parameters[MY3] * t214);
     /* link j4: what it passes on */
-    const rx90_real_t t329 = t328 + (t34 * t261 - t36 * t270 - RX90_C(0.45) * t327);
-    const rx90_real_t t330 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
-    const rx90_real_t t331 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[2] * parameters[FV3]
-        + t330 * parameters[FC3]) + t329;
-    const rx90_real_t t332 = RX90_C(30.0) * input[2] - t331 - t319 * t59 - t322 * t72;
-    const rx90_real_t t333 = t332 + t326 * t58;
+    const rx90_real_t t328 = t327 + (t32 * t260 - t34 * t269 - RX90_C(0.45) * t326);
+    const rx90_real_t t329 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
+    const rx90_real_t t330 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[2] * parameters[FV3]
+        + t329 * parameters[FC3]) + t328;
+    const rx90_real_t t331 = RX90_C(30.0) * input[2] - t330 - t318 * t57 - t321 * t70;
+    const rx90_real_t t332 = t331 + t325 * t56;
     /* link j3: force and moment */
-    const rx90_real_t t334 = parameters[M3] * t215 + (parameters[MX3] * (t224 + t290)
-        - parameters[MY3] * t160);
+    const rx90_real_t t333 = parameters[M3] * t214 + (parameters[MX3] * (t223 + t289)
+        - parameters[MY3] * t159);
     /* link j4: force and moment */
-    const rx90_real_t t335 = parameters[MZ4] * (t268 + t258) - (parameters[MX4] * t255
-        + parameters[MY4] * t179);
+    const rx90_real_t t334 = parameters[MZ4] * (t267 + t257) - (parameters[MX4] * t254
+        + parameters[MY4] * t178);
     /* link j5: what it passes on */
-    const rx90_real_t t336 = parameters[M4] * t226 + t335 - (t16 * t279 - t14 * t276);
+    const rx90_real_t t335 = parameters[M4] * t225 + t334 - (t15 * t278 - t13 * t275);
     /* link j4: what it passes on */
-    const rx90_real_t t337 = parameters[M3] * t222 + (parameters[MY3] * t225 - parameters[MX3] * t160) + t336;
+    const rx90_real_t t336 = parameters[M3] * t221 + (parameters[MY3] * t224 - parameters[MX3] * t159) + t335;
     /* link j3: what it passes on */
-    const rx90_real_t t338 = t329 + RX90_C(0.45) * (t75 * (t327 - t334) - t79 * t337);
+    const rx90_real_t t337 = t328 + RX90_C(0.45) * (t72 * (t326 - t333) - t76 * t336);
     /* link j2: force and moment */
-    const rx90_real_t t339 = t212 * (parameters[XX2] - parameters[YY2]) - (t311 - t207) * parameters[XY2]
-        - (t213 * parameters[MX2] + t209 * parameters[MY2]);
-    const rx90_real_t t340 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
-    const rx90_real_t t341 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[1] * parameters[FV2]
-        + t340 * parameters[FC2]) - (t339 - t338);
-    const rx90_real_t t342 = RX90_C(30.0) * input[1] - t341 - t319 * t97 - t322 * t96;
-    const rx90_real_t t343 = t342 + t326 * t95 + t333 * t94;
-    const rx90_real_t t344 = t323 + t326 * t138 - t333 * t146 - t343 * t153;
-    const rx90_real_t t345 = RX90_C(1.0) / t154;
-    const rx90_real_t t346 = rx90_bounded(t344 * t345);
-    ddq[0] = t346;
-    const rx90_real_t t347 = rx90_bounded(t343 * t152 - t153 * t346);
-    ddq[1] = t347;
-    const rx90_real_t t348 = rx90_bounded(t333 * t93 - t146 * t346 + t94 * t347);
-    ddq[2] = t348;
-    const rx90_real_t t349 = rx90_bounded(t326 * t57 + t138 * t346 + t95 * t347 + t58 * t348);
-    ddq[3] = t349;
-    const rx90_real_t t350 = t322 * t21 - t134 * t346 - t96 * t347 - t72 * t348;
-    const rx90_real_t t351 = rx90_bounded(t350 - t22 * t349);
-    ddq[4] = t351;
-    const rx90_real_t t352 = t319 * t4 - t127 * t346 - t97 * t347 - t59 * t348;
-    const rx90_real_t t353 = rx90_bounded(t352 - t30 * t349 + t5 * t351);
-    ddq[5] = t353;
-    const rx90_real_t t354 = t118 * t79 + t115 * t75; /* link j3: motion */
+    const rx90_real_t t338 = t211 * (parameters[XX2] - parameters[YY2]) - (t310 - t206) * parameters[XY2]
+        - (t212 * parameters[MX2] + t208 * parameters[MY2]);
+    const rx90_real_t t339 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
+    const rx90_real_t t340 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[1] * parameters[FV2]
+        + t339 * parameters[FC2]) - (t338 - t337);
+    const rx90_real_t t341 = RX90_C(30.0) * input[1] - t340 - t318 * t94 - t321 * t93;
+    const rx90_real_t t342 = t341 + t325 * t92 + t332 * t91;
+    const rx90_real_t t343 = t322 + t325 * t134 - t332 * t142 - t342 * t149;
+    const rx90_real_t t344 = RX90_C(1.0) / t150;
+    const rx90_real_t t345 = rx90_held(t343 * t344);
+    ddq[0] = t345;
+    const rx90_real_t t346 = rx90_held(t342 * t148 - t149 * t345);
+    ddq[1] = t346;
+    const rx90_real_t t347 = rx90_held(t332 * t90 - t142 * t345 + t91 * t346);
+    ddq[2] = t347;
+    const rx90_real_t t348 = rx90_held(t325 * t55 + t134 * t345 + t92 * t346 + t56 * t347);
+    ddq[3] = t348;
+    const rx90_real_t t349 = t321 * t20 - t130 * t345 - t93 * t346 - t70 * t347;
+    const rx90_real_t t350 = rx90_held(t349 - t21 * t348);
+    ddq[4] = t350;
+    const rx90_real_t t351 = t318 * t4 - t123 * t345 - t94 * t346 - t57 * t347;
+    const rx90_real_t t352 = rx90_held(t351 - t29 * t348 + t5 * t350);
+    ddq[5] = t352;
+    const rx90_real_t t353 = t346 + t347;
+    const rx90_real_t t354 = t114 * t76 + t111 * t72; /* link j3: motion */
     const rx90_real_t t355 = dq[0] * t354;
-    const rx90_real_t t356 = t36 * t355 - t165; /* link j4: motion */
-    const rx90_real_t t357 = t118 * t75 - t115 * t79; /* link j3: motion */
-    const rx90_real_t t358 = dq[0] * t357;
-    const rx90_real_t t359 = dq[3] - t358; /* link j4: motion */
-    const rx90_real_t t360 = t16 * t356 + t14 * t359; /* link j5: motion */
-    const rx90_real_t t361 = t34 * t355 + t175; /* link j4: motion */
-    const rx90_real_t t362 = dq[4] + t361; /* link j5: motion */
-    const rx90_real_t t363 = t1 * t360 + t2 * t362; /* link j6: motion */
-    const rx90_real_t t364 = t363 * parameters[XZ6];
-    const rx90_real_t t365 = t14 * t356 - t16 * t359; /* link j5: motion */
-    const rx90_real_t t366 = dq[5] - t365; /* link j6: motion */
-    const rx90_real_t t367 = t366 * parameters[XY6];
-    const rx90_real_t t368 = t364 + t367;
-    const rx90_real_t t369 = t2 * t360 - t1 * t362;
-    const rx90_real_t t370 = t369 * parameters[YZ6];
-    const rx90_real_t t371 = t367 - t370;
-    const rx90_real_t t372 = RX90_C(-0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const rx90_real_t t373 = parameters[XX6] + t372;
-    const rx90_real_t t374 = t366 * t373 - t369 * parameters[XZ6];
-    const rx90_real_t t375 = parameters[YY6] + t372;
-    const rx90_real_t t376 = t363 * parameters[YZ6] + t366 * t375;
-    const rx90_real_t t377 = t2 * (t368 + t371) + t1 * (t374 - t376); /* link j6: inertia, momentum beyond */
-    const rx90_real_t t378 = t2 * t377;
-    const rx90_real_t t379 = t365 * parameters[XZ5];
-    const rx90_real_t t380 = t362 * parameters[XY5];
-    const rx90_real_t t381 = t379 + t380 + (t378 - t371);
-    const rx90_real_t t382 = t364 + t370;
-    const rx90_real_t t383 = t360 * parameters[YZ5];
-    const rx90_real_t t384 = t380 - t383 + t382;
-    const rx90_real_t t385 = parameters[ZZ6] + t372;
-    const rx90_real_t t386 = t363 * t385 + t366 * parameters[YZ6];
-    const rx90_real_t t387 = t366 * parameters[XZ6] - t369 * t385;
-    const rx90_real_t t388 = RX90_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const rx90_real_t t389 = parameters[YY5] + t388;
-    const rx90_real_t t390 = t365 * parameters[YZ5] + t362 * t389 + (t2 * t386 + t1 * t387);
-    const rx90_real_t t391 = t369 * parameters[XY6] + t363 * t373;
-    const rx90_real_t t392 = t369 * t375 + t363 * parameters[XY6];
-    const rx90_real_t t393 = parameters[XX5] + t388;
-    const rx90_real_t t394 = t362 * t393 - t360 * parameters[XZ5] + (t2 * t391 - t1 * t392);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t395 = t16 * (t381 + t384) + t14 * (t394 - t390);
-    const rx90_real_t t396 = t16 * t395;
-    const rx90_real_t t397 = t361 * parameters[XZ4];
-    const rx90_real_t t398 = t359 * parameters[XY4];
-    const rx90_real_t t399 = t397 + t398 + (t396 - t384);
-    const rx90_real_t t400 = t379 + t383 + (t378 - t368); /* link j6: inertia, momentum beyond */
-    const rx90_real_t t401 = t356 * parameters[YZ4];
-    const rx90_real_t t402 = t398 - t401 + t400; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t403 = t1 * t377; /* link j6: inertia, momentum beyond */
-    const rx90_real_t t404 = parameters[ZZ5] + t388;
-    const rx90_real_t t405 = t376 + t403 - (t365 * t404 + t362 * parameters[YZ5]);
-    const rx90_real_t t406 = t360 * t404 - t362 * parameters[XZ5] + (t1 * t391 + t2 * t392);
-    const rx90_real_t t407 = RX90_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const rx90_real_t t408 = parameters[YY4] + t407;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t409 = t361 * parameters[YZ4] + t359 * t408 + (t16 * t405 + t14 * t406);
+    const rx90_real_t t356 = t114 * t72 - t111 * t76;
+    const rx90_real_t t357 = dq[0] * t356;
+    const rx90_real_t t358 = t355 * t357;
+    const rx90_real_t t359 = t358 + t353;
+    const rx90_real_t t360 = t354 * t345;
+    const rx90_real_t t361 = t357 * t160;
+    const rx90_real_t t362 = t361 - t360;
+    const rx90_real_t t363 = t361 + t362;
+    const rx90_real_t t364 = t34 * t359 - t32 * t363;
+    const rx90_real_t t365 = t34 * t355 - t164; /* link j4: motion */
+    const rx90_real_t t366 = dq[3] - t357;
+    const rx90_real_t t367 = t365 * t366;
+    const rx90_real_t t368 = t367 + t364;
+    const rx90_real_t t369 = t350 + t368;
+    const rx90_real_t t370 = t15 * t365 + t13 * t366; /* link j5: motion */
+    const rx90_real_t t371 = t13 * t365 - t15 * t366;
+    const rx90_real_t t372 = t370 * t371;
+    const rx90_real_t t373 = t372 + t369;
+    const rx90_real_t t374 = t356 * t345;
+    const rx90_real_t t375 = t355 * t160; /* link j3: motion */
+    const rx90_real_t t376 = t375 + t374;
+    const rx90_real_t t377 = t376 - t348;
+    const rx90_real_t t378 = t32 * t355 + t174; /* link j4: motion */
+    const rx90_real_t t379 = t365 * t378;
+    const rx90_real_t t380 = t379 - t377;
+    const rx90_real_t t381 = t32 * t359 + t34 * t363;
+    const rx90_real_t t382 = t378 * t366;
+    const rx90_real_t t383 = t382 + t381;
+    const rx90_real_t t384 = t382 + t383;
+    const rx90_real_t t385 = t13 * t380 - t15 * t384;
+    const rx90_real_t t386 = dq[4] + t378; /* link j5: motion */
+    const rx90_real_t t387 = t371 * t386;
+    const rx90_real_t t388 = t387 - t385;
+    const rx90_real_t t389 = t387 + t388;
+    const rx90_real_t t390 = t2 * t373 - t1 * t389;
+    const rx90_real_t t391 = t2 * t370 - t1 * t386; /* link j6: motion */
+    const rx90_real_t t392 = dq[5] - t371;
+    const rx90_real_t t393 = t391 * t392;
+    const rx90_real_t t394 = t393 + t390;
+    const rx90_real_t t395 = t1 * t373 + t2 * t389;
+    const rx90_real_t t396 = t1 * t370 + t2 * t386;
+    const rx90_real_t t397 = t396 * t392;
+    const rx90_real_t t398 = t397 + t395;
+    const rx90_real_t t399 = t397 + t398;
+    const rx90_real_t t400 = t15 * t380 + t13 * t384;
+    const rx90_real_t t401 = t370 * t386; /* link j5: motion */
+    const rx90_real_t t402 = t401 - t400;
+    const rx90_real_t t403 = t402 - t352;
+    const rx90_real_t t404 = t391 * t396; /* link j6: motion */
+    const rx90_real_t t405 = t403 - t404;
+    const rx90_real_t t406 = t393 * t231 + parameters[YY6] * t394 + parameters[XY6] * t399
+        + parameters[YZ6] * t405;
+    const rx90_real_t t407 = t391 * t391;
+    const rx90_real_t t408 = t392 * t392;
+    const rx90_real_t t409 = t211 + t346;
+    const rx90_real_t t410 = t212 + RX90_C(0.45) * t409;
+    const rx90_real_t t411 = t210 - t72 * t410;
+    const rx90_real_t t412 = t411 + RX90_C(0.45) * t359;
+    const rx90_real_t t413 = t111 * t345;
+    const rx90_real_t t414 = t216 - t413;
+    const rx90_real_t t415 = t216 + t414;
+    const rx90_real_t t416 = RX90_C(0.45) * t415;
+    const rx90_real_t t417 = t416 - RX90_C(0.45) * t363;
+    const rx90_real_t t418 = t34 * t412 + t32 * t417;
+    const rx90_real_t t419 = t220 + t76 * t410;
+    const rx90_real_t t420 = t355 * t355; /* link j3: motion */
+    const rx90_real_t t421 = t420 + t223; /* link j4: motion */
+    const rx90_real_t t422 = RX90_C(-0.45) * t421 + t419;
+    const rx90_real_t t423 = t13 * t422 - t15 * t418;
+    const rx90_real_t t424 = t32 * t412 - t34 * t417;
+    const rx90_real_t t425 = t2 * t423 + t1 * t424;
+    const rx90_real_t t426 = parameters[MZ6] * t425;
+    const rx90_real_t t427 = t13 * t418 + t15 * t422;
+    const rx90_real_t t428 = (t407 - t408) * parameters[XZ6] + t406 + (parameters[MX6] * t427 - t426);
+    const rx90_real_t t429 = t396 * t396; /* link j6: motion */
+    const rx90_real_t t430 = t407 + t429; /* link j6: columns */
+    const rx90_real_t t431 = t396 * parameters[XZ6];
+    const rx90_real_t t432 = t392 * parameters[XY6];
+    const rx90_real_t t433 = t431 + t432;
+    const rx90_real_t t434 = RX90_C(2.0) * t396; /* link j6: derivatives */
+    const rx90_real_t t435 = RX90_C(-0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const rx90_real_t t436 = parameters[YY6] + t435;
+    const rx90_real_t t437 = t396 * parameters[YZ6] + t392 * t436;
+    const rx90_real_t t438 = RX90_C(2.0) * t391;
+    const rx90_real_t t439 = t433 * t434 + t437 * t438 + (parameters[XY6] * t395 - parameters[XX6] * t390
+        - t430 * parameters[XZ6]);
+    const rx90_real_t t440 = t428 + (t426 + t439);
+    const rx90_real_t t441 = t393 + t394;
+    const rx90_real_t t442 = t404 + t403;
+    const rx90_real_t t443 = t397 * t192 + parameters[XX6] * t398 + parameters[XY6] * t441
+        + parameters[XZ6] * t442;
+    const rx90_real_t t444 = t2 * t424 - t1 * t423;
+    const rx90_real_t t445 = parameters[MZ6] * t444;
+    const rx90_real_t t446 = (t408 - t429) * parameters[YZ6] + t443 + (t445 - parameters[MY6] * t427);
+    const rx90_real_t t447 = parameters[XX6] + t435;
+    const rx90_real_t t448 = t392 * t447 - t391 * parameters[XZ6];
+    const rx90_real_t t449 = t391 * parameters[YZ6];
+    const rx90_real_t t450 = t432 - t449;
+    const rx90_real_t t451 = t448 * t434 + t450 * t438 + (t430 * parameters[YZ6] + (parameters[XY6] * t390
+        - parameters[YY6] * t395));
+    const rx90_real_t t452 = t446 + (t451 - t445);
+    const rx90_real_t t453 = t2 * t440 + t1 * t452;
+    const rx90_real_t t454 = t430 * parameters[ZZ6] + (parameters[XZ6] * t390 - parameters[YZ6] * t395);
+    const rx90_real_t t455 = t391 * parameters[XY6] + t396 * t447;
+    const rx90_real_t t456 = t391 * t436 + t396 * parameters[XY6];
+    const rx90_real_t t457 = parameters[MX6] * t425 + parameters[MY6] * t444;
+    const rx90_real_t t458 = t455 * t434 + t456 * t438 + t454 + t457;
+    const rx90_real_t t459 = t15 * t453 + t13 * t458;
+    const rx90_real_t t460 = t1 * t440 - t2 * t452;
+    const rx90_real_t t461 = parameters[MZ6] * t395;
+    const rx90_real_t t462 = parameters[M6] * t444;
+    const rx90_real_t t463 = t462 + (t461 - ((t407 + t408) * parameters[MY6] + parameters[MX6] * t442));
+    const rx90_real_t t464 = t391 * parameters[MY6] + t396 * parameters[MX6];
+    const rx90_real_t t465 = t463 + (t464 * t438 - t462 - (t430 * parameters[MY6] + t461));
+    const rx90_real_t t466 = parameters[MZ6] * t390;
+    const rx90_real_t t467 = parameters[M6] * t425;
+    const rx90_real_t t468 = t467 + (parameters[MY6] * t405 - (t429 + t408) * parameters[MX6] - t466);
+    const rx90_real_t t469 = t468 + (t464 * t434 - t467 + (t466 - t430 * parameters[MX6]));
+    const rx90_real_t t470 = t2 * t465 + t1 * t469;
+    const rx90_real_t t471 = t392 * parameters[MX6] - t391 * parameters[MZ6];
+    const rx90_real_t t472 = t396 * parameters[MZ6] + t392 * parameters[MY6];
+    const rx90_real_t t473 = t471 * t434 + t472 * t438 + (parameters[MY6] * t390 + parameters[MX6] * t395);
+    const rx90_real_t t474 = t13 * t473 - t15 * t470;
+    const rx90_real_t t475 = t2 * t469 - t1 * t465;
+    const rx90_real_t t476 = RX90_C(0.45) * (t32 * t474 + t34 * t475);
+    const rx90_real_t t477 = t34 * t459 - t32 * t460 - t476;
+    const rx90_real_t t478 = t13 * t453 - t15 * t458;
+    const rx90_real_t t479 = t114 * (t76 * t477 - t72 * t478) + t111 * (t476 + (t72 * t477 + t76 * t478));
+    const rx90_real_t t480 = RX90_C(0.03333333333333333) * t479;
+    const rx90_real_t t481 = rx90_held(RX90_C(30.0) * t344);
+    const rx90_real_t t482 = t34 * t474 - t32 * t475;
+    const rx90_real_t t483 = t32 * t459 + t34 * t460 + RX90_C(0.45) * t482;
+    const rx90_real_t t484 = t76 * (t13 * t470 + t15 * t473) - t72 * t482;
+    const rx90_real_t t485 = RX90_C(0.03333333333333333) * (t483 + RX90_C(0.45) * t484);
+    const rx90_real_t t486 = t149 * t344;
+    const rx90_real_t t487 = rx90_held(RX90_C(-30.0) * t486);
+    const rx90_real_t t488 = RX90_C(0.03333333333333333) * t483;
+    const rx90_real_t t489 = t344 * (t142 + t91 * t149);
+    const rx90_real_t t490 = rx90_held(RX90_C(-30.0) * t489);
+    const rx90_real_t t491 = RX90_C(0.1) * t478;
+    const rx90_real_t t492 = t92 + t56 * t91;
+    const rx90_real_t t493 = t344 * (t56 * t142 - t134 + t149 * t492);
+    const rx90_real_t t494 = rx90_held(RX90_C(-10.0) * t493);
+    const rx90_real_t t495 = t487 * t485 - t481 * t480 + t490 * t488 - t494 * t491;
+    const rx90_real_t t496 = RX90_C(0.1) * t460;
+    const rx90_real_t t497 = t70 + t21 * t56;
+    const rx90_real_t t498 = t93 + t21 * t92 + t91 * t497;
+    const rx90_real_t t499 = t130 + t21 * t134 - t142 * t497 - t149 * t498;
+    const rx90_real_t t500 = t344 * t499;
+    const rx90_real_t t501 = rx90_held(RX90_C(-10.0) * t500);
+    const rx90_real_t t502 = RX90_C(2.0) * t455;
+    const rx90_real_t t503 = RX90_C(2.0) * t456;
+    const rx90_real_t t504 = RX90_C(0.16666666666666666) * (t457 + (t396 * t502 + t391 * t503 + t454));
+    const rx90_real_t t505 = t29 + t5 * t21;
+    const rx90_real_t t506 = t57 + t5 * t70 + t56 * t505;
+    const rx90_real_t t507 = t94 + t5 * t93 + t92 * t505 + t91 * t506;
+    const rx90_real_t t508 = t123 + t5 * t130 + t134 * t505 - t142 * t506;
+    const rx90_real_t t509 = t344 * (t508 - t149 * t507);
+    const rx90_real_t t510 = rx90_held(RX90_C(-6.0) * t509);
+    ddq_by_q[5] = t495 + t501 * t496 + t510 * t504;
+    const rx90_real_t t511 = rx90_held(RX90_C(30.0) * (t148 + t149 * t486));
+    const rx90_real_t t512 = t91 * t148 + t149 * t489;
+    const rx90_real_t t513 = rx90_held(RX90_C(30.0) * t512);
+    const rx90_real_t t514 = t148 * t492 + t149 * t493;
+    const rx90_real_t t515 = rx90_held(RX90_C(10.0) * t514);
+    const rx90_real_t t516 = t511 * t485 - t487 * t480 + t513 * t488 - t515 * t491;
+    const rx90_real_t t517 = t149 * t500 - t148 * t498;
+    const rx90_real_t t518 = rx90_held(RX90_C(10.0) * t517);
+    const rx90_real_t t519 = t149 * t509 - t148 * t507;
+    const rx90_real_t t520 = rx90_held(RX90_C(6.0) * t519);
+    ddq_by_q[11] = t516 + t518 * t496 + t520 * t504;
+    const rx90_real_t t521 = rx90_held(RX90_C(30.0) * (t90 + t142 * t489 + t91 * t512));
+    const rx90_real_t t522 = t56 * t90 + t142 * t493 + t91 * t514;
+    const rx90_real_t t523 = rx90_held(RX90_C(10.0) * t522);
+    const rx90_real_t t524 = t513 * t485 - t490 * t480 + t521 * t488 - t523 * t491;
+    const rx90_real_t t525 = t142 * t500 - t90 * t497 + t91 * t517;
+    const rx90_real_t t526 = rx90_held(RX90_C(10.0) * t525);
+    const rx90_real_t t527 = t142 * t509 - t90 * t506 + t91 * t519;
+    const rx90_real_t t528 = rx90_held(RX90_C(6.0) * t527);
+    ddq_by_q[17] = t524 + t526 * t496 + t528 * t504;
+    const rx90_real_t t529 = rx90_held(RX90_C(-30.0) * t493);
+    const rx90_real_t t530 = rx90_held(RX90_C(30.0) * t514);
+    const rx90_real_t t531 = rx90_held(RX90_C(30.0) * t522);
+    const rx90_real_t t532 = t55 - t134 * t493 + t92 * t514 + t56 * t522;
+    const rx90_real_t t533 = rx90_held(RX90_C(10.0) * t532);
+    const rx90_real_t t534 = t530 * t485 - t529 * t480 + t531 * t488 - t533 * t491;
+    const rx90_real_t t535 = t21 * t55 + t134 * t500 - t92 * t517 - t56 * t525;
+    const rx90_real_t t536 = rx90_held(RX90_C(-10.0) * t535);
+    const rx90_real_t t537 = t55 * t505 + t134 * t509 - t92 * t519 - t56 * t527;
+    const rx90_real_t t538 = rx90_held(RX90_C(-6.0) * t537);
+    ddq_by_q[23] = t534 + t536 * t496 + t538 * t504;
+    const rx90_real_t t539 = rx90_held(RX90_C(-30.0) * t500);
+    const rx90_real_t t540 = rx90_held(RX90_C(30.0) * t517);
+    const rx90_real_t t541 = rx90_held(RX90_C(30.0) * t525);
+    const rx90_real_t t542 = t540 * t485 - t539 * t480 + t541 * t488 - t536 * t491;
+    const rx90_real_t t543 = t20 + t130 * t500 - t93 * t517 - t70 * t525;
+    const rx90_real_t t544 = rx90_held(RX90_C(10.0) * (t543 + t21 * t535));
+    const rx90_real_t t545 = t5 * t20 + t130 * t509 - t93 * t519 - t70 * t527;
+    const rx90_real_t t546 = t545 + t21 * t537;
+    const rx90_real_t t547 = rx90_held(RX90_C(6.0) * t546);
+    ddq_by_q[29] = t542 + t544 * t496 + t547 * t504;
+    const rx90_real_t t548 = rx90_held(RX90_C(-30.0) * t509);
+    const rx90_real_t t549 = rx90_held(RX90_C(30.0) * t519);
+    const rx90_real_t t550 = rx90_held(RX90_C(30.0) * t527);
+    const rx90_real_t t551 = rx90_held(RX90_C(-10.0) * t537);
+    const rx90_real_t t552 = t549 * t485 - t548 * t480 + t550 * t488 - t551 * t491;
+    const rx90_real_t t553 = rx90_held(RX90_C(10.0) * t546);
+    const rx90_real_t t554 = t4 + t123 * t509 - t94 * t519 - t57 * t527;
+    const rx90_real_t t555 = rx90_held(RX90_C(6.0) * (t554 + t29 * t537 + t5 * t546));
+    ddq_by_q[35] = t552 + t553 * t496 + t555 * t504;
+    const rx90_real_t t556 = parameters[ZZ6] + t435;
+    const rx90_real_t t557 = t396 * t556 + t392 * parameters[YZ6];
+    const rx90_real_t t558 = RX90_C(-2.0) * t557 - (parameters[XX6] * t434 + parameters[XY6] * t438);
+    const rx90_real_t t559 = t392 * parameters[XZ6] - t391 * t556;
+    const rx90_real_t t560 = RX90_C(2.0) * t559 - (parameters[XY6] * t434 + parameters[YY6] * t438);
+    const rx90_real_t t561 = t2 * t558 - t1 * t560;
+    const rx90_real_t t562 = t431 + t449;
+    const rx90_real_t t563 = RX90_C(-2.0) * t562;
+    const rx90_real_t t564 = t563 + (parameters[XZ6] * t434 + parameters[YZ6] * t438);
+    const rx90_real_t t565 = t15 * t561 + t13 * t564;
+    const rx90_real_t t566 = t1 * t558 + t2 * t560;
+    const rx90_real_t t567 = RX90_C(2.0) * t471 + parameters[MZ6] * t438;
+    const rx90_real_t t568 = RX90_C(-2.0) * t472 + parameters[MZ6] * t434;
+    const rx90_real_t t569 = t2 * t567 + t1 * t568;
+    const rx90_real_t t570 = parameters[MY6] * t434 - parameters[MX6] * t438;
+    const rx90_real_t t571 = t15 * t569 - t13 * t570;
+    const rx90_real_t t572 = t1 * t567 - t2 * t568;
+    const rx90_real_t t573 = RX90_C(0.45) * (t32 * t571 + t34 * t572);
+    const rx90_real_t t574 = t34 * t565 - t32 * t566 + t573;
+    const rx90_real_t t575 = t15 * t564 - t13 * t561;
+    const rx90_real_t t576 = t114 * (t76 * t574 + t72 * t575) + t111 * (t72 * t574 - t76 * t575 - t573);
+    const rx90_real_t t577 = RX90_C(0.03333333333333333) * t576;
+    const rx90_real_t t578 = t34 * t571 - t32 * t572;
+    const rx90_real_t t579 = t32 * t565 + t34 * t566 + RX90_C(-0.45) * t578;
+    const rx90_real_t t580 = t72 * t578 + t76 * (t13 * t569 + t15 * t570);
+    const rx90_real_t t581 = RX90_C(0.03333333333333333) * (t579 + RX90_C(0.45) * t580);
+    const rx90_real_t t582 = RX90_C(0.03333333333333333) * t579;
+    const rx90_real_t t583 = RX90_C(0.1) * t575;
+    const rx90_real_t t584 = t581 * t487 - t577 * t481 + t582 * t490 + t583 * t494;
+    const rx90_real_t t585 = RX90_C(0.1) * t566;
+    const rx90_real_t t586 = RX90_C(-150.0) * parameters[FV6];
+    ddq_by_dq[5] = t584 + t585 * t501 + t586 * t510;
+    const rx90_real_t t587 = t581 * t511 - t577 * t487 + t582 * t513 + t583 * t515;
+    ddq_by_dq[11] = t587 + t585 * t518 + t586 * t520;
+    const rx90_real_t t588 = t581 * t513 - t577 * t490 + t582 * t521 + t583 * t523;
+    ddq_by_dq[17] = t588 + t585 * t526 + t586 * t528;
+    const rx90_real_t t589 = t581 * t530 - t577 * t529 + t582 * t531 + t583 * t533;
+    ddq_by_dq[23] = t589 + t585 * t536 + t586 * t538;
+    const rx90_real_t t590 = t581 * t540 - t577 * t539 + t582 * t541 + t583 * t536;
+    ddq_by_dq[29] = t590 + t585 * t544 + t586 * t547;
+    const rx90_real_t t591 = t581 * t549 - t577 * t548 + t582 * t550 + t583 * t551;
+    ddq_by_dq[35] = t591 + t585 * t553 + t586 * t555;
+    ddq_by_input[5] = t510;
+    ddq_by_input[11] = t520;
+    ddq_by_input[17] = t528;
+    ddq_by_input[23] = t538;
+    ddq_by_input[29] = t547;
+    ddq_by_input[35] = t555;
+    const rx90_real_t t592 = t401 + t402;
+    const rx90_real_t t593 = t372 - t369;
+    const rx90_real_t t594 = parameters[XX5] * t388 - t387 * t238 + parameters[XY5] * t592
+        + parameters[XZ5] * t593;
+    const rx90_real_t t595 = t371 * t371; /* link j5: motion */
+    const rx90_real_t t596 = t386 * t386;
+    const rx90_real_t t597 = (t596 - t595) * parameters[YZ5] + t594 + (parameters[MY5] * t424
+        + parameters[MZ5] * t427);
+    const rx90_real_t t598 = t597 + (t2 * t446 - t1 * t428);
+    const rx90_real_t t599 = t370 * t370;
+    const rx90_real_t t600 = t599 + t595; /* link j6: motion */
+    const rx90_real_t t601 = RX90_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const rx90_real_t t602 = parameters[XX5] + t601;
     /* link j6: inertia, momentum beyond */
-    const rx90_real_t t410 = t360 * parameters[XY5] + t365 * t393 + (t403 - t374);
-    const rx90_real_t t411 = t360 * t389 + t365 * parameters[XY5] + (t1 * t386 - t2 * t387);
-    const rx90_real_t t412 = parameters[XX4] + t407;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t413 = t359 * t412 - t356 * parameters[XZ4] - (t16 * t410 - t14 * t411);
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t414 = t36 * (t399 + t402) - t34 * (t409 - t413);
-    const rx90_real_t t415 = t36 * t414;
-    const rx90_real_t t416 = RX90_C(-0.45) * t161; /* link j4: velocity of its origin */
-    const rx90_real_t t417 = t86 * t416; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t418 = t363 * parameters[MZ6] + t366 * parameters[MY6];
-    const rx90_real_t t419 = t366 * parameters[MX6] - t369 * parameters[MZ6];
+    const rx90_real_t t603 = t386 * t602 - t370 * parameters[XZ5] + (t2 * t455 - t1 * t456);
+    const rx90_real_t t604 = RX90_C(2.0) * t371; /* link j5: derivatives */
+    const rx90_real_t t605 = t370 * parameters[YZ5];
+    const rx90_real_t t606 = t386 * parameters[XY5];
+    const rx90_real_t t607 = t606 - t605 + t562; /* link j6: inertia, momentum beyond */
+    const rx90_real_t t608 = RX90_C(2.0) * t370; /* link j5: derivatives */
+    const rx90_real_t t609 = t603 * t604 + t607 * t608 + (t600 * t14 + (t23 * t385 - t24 * t400));
+    const rx90_real_t t610 = t598 + (t609 - t36 * t427);
+    const rx90_real_t t611 = t404 * t6 + parameters[ZZ6] * t403 + parameters[YZ6] * t390
+        + parameters[XZ6] * t395;
+    const rx90_real_t t612 = (t429 - t407) * parameters[XY6] + t611 + (parameters[MY6] * t425
+        - parameters[MX6] * t444);
+    const rx90_real_t t613 = t401 * t248 + parameters[YY5] * t402 + parameters[XY5] * t389
+        - parameters[YZ5] * t373;
+    const rx90_real_t t614 = (t599 - t596) * parameters[XZ5] + t613 - (parameters[MZ5] * t423
+        + parameters[MX5] * t424);
+    const rx90_real_t t615 = t614 + t612;
+    const rx90_real_t t616 = t2 * (t433 + t450) + t1 * (t448 - t437); /* link j6: inertia, momentum beyond */
+    const rx90_real_t t617 = t2 * t616;
+    const rx90_real_t t618 = t371 * parameters[XZ5];
+    const rx90_real_t t619 = t618 + t606 + (t617 - t450);
+    const rx90_real_t t620 = parameters[YY5] + t601;
+    const rx90_real_t t621 = t371 * parameters[YZ5] + t386 * t620 + (t2 * t557 + t1 * t559);
+    const rx90_real_t t622 = t619 * t604 + t621 * t608 + (t22 * t400 - t24 * t385 - t600 * t12);
+    const rx90_real_t t623 = t615 + (t622 + t36 * t423);
+    const rx90_real_t t624 = t15 * t623 + t13 * t610;
+    const rx90_real_t t625 = t600 * t9 + (t14 * t385 - t12 * t400);
+    const rx90_real_t t626 = t1 * t616;
+    const rx90_real_t t627 = t370 * parameters[XY5] + t371 * t602 + (t626 - t448);
+    const rx90_real_t t628 = t370 * t620 + t371 * parameters[XY5] + (t1 * t557 - t2 * t559);
+    const rx90_real_t t629 = t39 * t423 + t40 * t427;
+    const rx90_real_t t630 = t627 * t604 + t628 * t608 + t625 + t629;
+    const rx90_real_t t631 = (t595 + t596) * parameters[MX5] + parameters[MY5] * t373
+        - parameters[MZ5] * t400;
+    const rx90_real_t t632 = t631 - parameters[M5] * t423 + (t1 * t463 - t2 * t468);
+    const rx90_real_t t633 = t2 * t471 - t1 * t472 - (t370 * parameters[MY5] + t371 * parameters[MX5]);
+    const rx90_real_t t634 = t633 * t604 + t64 * t423 + (t600 * t39 + t36 * t400);
+    const rx90_real_t t635 = t632 + t634;
+    const rx90_real_t t636 = parameters[M6] * t427 + (parameters[MX6] * t441 - parameters[MY6] * t399
+        - t430 * parameters[MZ6]);
+    const rx90_real_t t637 = (t599 + t596) * parameters[MY5] + parameters[MX5] * t593
+        + parameters[MZ5] * t385;
+    const rx90_real_t t638 = parameters[M5] * t427 - t637 + t636;
+    const rx90_real_t t639 = t36 * t385 - t600 * t40 - (t633 * t608 + t64 * t427);
+    const rx90_real_t t640 = t638 + t639;
+    const rx90_real_t t641 = t13 * t635 - t15 * t640;
+    const rx90_real_t t642 = t371 * parameters[MZ5] + t386 * parameters[MY5] + (t2 * t472 + t1 * t471);
+    const rx90_real_t t643 = t386 * parameters[MX5] - t370 * parameters[MZ5] + t464;
+    const rx90_real_t t644 = t643 * t604 + t642 * t608 - (t40 * t400 + t39 * t385);
+    const rx90_real_t t645 = RX90_C(0.45) * (t32 * t641 + t34 * t644);
+    const rx90_real_t t646 = t34 * t624 - t32 * t630 - t645;
+    const rx90_real_t t647 = t13 * t623 - t15 * t610;
+    const rx90_real_t t648 = t114 * (t76 * t646 - t72 * t647) + t111 * (t645 + (t72 * t646 + t76 * t647));
+    const rx90_real_t t649 = RX90_C(0.03333333333333333) * t648;
+    const rx90_real_t t650 = t34 * t641 - t32 * t644;
+    const rx90_real_t t651 = t32 * t624 + t34 * t630 + RX90_C(0.45) * t650;
+    const rx90_real_t t652 = t76 * (t13 * t640 + t15 * t635) - t72 * t650;
+    const rx90_real_t t653 = RX90_C(0.03333333333333333) * (t651 + RX90_C(0.45) * t652);
+    const rx90_real_t t654 = RX90_C(0.03333333333333333) * t651;
+    const rx90_real_t t655 = RX90_C(0.1) * t647;
+    const rx90_real_t t656 = t487 * t653 - t481 * t649 + t490 * t654 - t494 * t655;
+    const rx90_real_t t657 = RX90_C(2.0) * t627; /* link j5: derivatives */
+    const rx90_real_t t658 = RX90_C(2.0) * t628;
+    const rx90_real_t t659 = RX90_C(0.1) * (t629 + (t371 * t657 + t370 * t658 + t625));
+    const rx90_real_t t660 = t2 * t502 - t1 * t503; /* link j6: derivatives */
+    const rx90_real_t t661 = t371 * t660 - t370 * t563 + (parameters[ZZ6] * t385 - t17 * t400 - t600 * t3);
+    const rx90_real_t t662 = RX90_C(0.16666666666666666) * (t661 + t35 * t427);
+    ddq_by_q[4] = t656 + t501 * t659 + t510 * t662;
+    const rx90_real_t t663 = t511 * t653 - t487 * t649 + t513 * t654 - t515 * t655;
+    ddq_by_q[10] = t663 + t518 * t659 + t520 * t662;
+    const rx90_real_t t664 = t513 * t653 - t490 * t649 + t521 * t654 - t523 * t655;
+    ddq_by_q[16] = t664 + t526 * t659 + t528 * t662;
+    const rx90_real_t t665 = t530 * t653 - t529 * t649 + t531 * t654 - t533 * t655;
+    ddq_by_q[22] = t665 + t536 * t659 + t538 * t662;
+    const rx90_real_t t666 = t540 * t653 - t539 * t649 + t541 * t654 - t536 * t655;
+    ddq_by_q[28] = t666 + t544 * t659 + t547 * t662;
+    const rx90_real_t t667 = t549 * t653 - t548 * t649 + t550 * t654 - t551 * t655;
+    ddq_by_q[34] = t667 + t553 * t659 + t555 * t662;
+    const rx90_real_t t668 = parameters[ZZ5] + t601;
     /* link j6: inertia, momentum beyond */
-    const rx90_real_t t420 = t365 * parameters[MZ5] + t362 * parameters[MY5] + (t2 * t418 + t1 * t419);
-    const rx90_real_t t421 = t369 * parameters[MY6] + t363 * parameters[MX6];
-    const rx90_real_t t422 = t362 * parameters[MX5] - t360 * parameters[MZ5] + t421;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t423 = t356 * parameters[MY4] + t361 * parameters[MX4] + (t16 * t422 - t14 * t420);
-    const rx90_real_t t424 = RX90_C(0.45) * t423; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t425 = RX90_C(-0.45) * t355;
-    const rx90_real_t t426 = t45 * t425;
-    const rx90_real_t t427 = t424 + (t417 + t426);
-    const rx90_real_t t428 = t358 * parameters[XZ3];
-    const rx90_real_t t429 = t161 * parameters[XY3];
-    const rx90_real_t t430 = t427 + (t402 - t415 - t417) - (t428 + t429);
-    const rx90_real_t t431 = t397 + t401 - (t381 - t396); /* link j5: inertia, momentum beyond */
-    const rx90_real_t t432 = t355 * parameters[YZ3];
-    const rx90_real_t t433 = t429 - t432 + (t427 + (t431 - t424)); /* link j4: inertia, momentum beyond */
-    const rx90_real_t t434 = t14 * t395; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t435 = parameters[ZZ4] + t407;
-    const rx90_real_t t436 = t361 * t435 + t359 * parameters[YZ4] + (t390 + t434);
-    const rx90_real_t t437 = t359 * parameters[XZ4] - t356 * t435 - (t14 * t410 + t16 * t411);
-    const rx90_real_t t438 = t361 * parameters[MZ4] + t359 * parameters[MY4] + (t16 * t420 + t14 * t422);
+    const rx90_real_t t669 = t437 + t626 - (t371 * t668 + t386 * parameters[YZ5]);
+    const rx90_real_t t670 = RX90_C(2.0) * t669 - (t22 * t604 + t24 * t608); /* link j5: derivatives */
     /* link j6: inertia, momentum beyond */
-    const rx90_real_t t439 = t2 * t419 - t1 * t418 - (t360 * parameters[MY5] + t365 * parameters[MX5]);
+    const rx90_real_t t671 = t370 * t668 - t386 * parameters[XZ5] + (t1 * t455 + t2 * t456);
+    const rx90_real_t t672 = RX90_C(2.0) * t671 + (t24 * t604 + t23 * t608); /* link j5: derivatives */
+    const rx90_real_t t673 = t15 * t670 + t13 * t672;
+    const rx90_real_t t674 = t618 + t605 + (t617 - t433); /* link j6: inertia, momentum beyond */
+    const rx90_real_t t675 = RX90_C(-2.0) * t674; /* link j5: derivatives */
+    const rx90_real_t t676 = t675 + (t12 * t604 + t14 * t608);
+    const rx90_real_t t677 = RX90_C(2.0) * t642 - t36 * t604;
+    const rx90_real_t t678 = RX90_C(2.0) * t643 + t36 * t608;
+    const rx90_real_t t679 = t15 * t678 - t13 * t677;
+    const rx90_real_t t680 = t40 * t604 - t39 * t608;
+    const rx90_real_t t681 = RX90_C(0.45) * (t32 * t679 - t34 * t680);
+    const rx90_real_t t682 = t34 * t673 - t32 * t676 + t681;
+    const rx90_real_t t683 = t15 * t672 - t13 * t670;
+    const rx90_real_t t684 = t114 * (t76 * t682 + t72 * t683) + t111 * (t72 * t682 - t76 * t683 - t681);
+    const rx90_real_t t685 = RX90_C(0.03333333333333333) * t684;
+    const rx90_real_t t686 = t34 * t679 + t32 * t680;
+    const rx90_real_t t687 = t32 * t673 + t34 * t676 + RX90_C(-0.45) * t686;
+    const rx90_real_t t688 = t72 * t686 + t76 * (t13 * t678 + t15 * t677);
+    const rx90_real_t t689 = RX90_C(0.03333333333333333) * (t687 + RX90_C(0.45) * t688);
+    const rx90_real_t t690 = RX90_C(0.03333333333333333) * t687;
+    const rx90_real_t t691 = RX90_C(0.1) * t683;
+    const rx90_real_t t692 = t689 * t487 - t685 * t481 + t690 * t490 + t691 * t494;
+    const rx90_real_t t693 = RX90_C(0.1) * (t675 + RX90_C(2.0) * (t371 * t12 + t370 * t14));
+    const rx90_real_t t694 = RX90_C(-250.0) * parameters[FV5] + t693;
+    const rx90_real_t t695 = t1 * t502 + t2 * t503; /* link j6: derivatives */
+    const rx90_real_t t696 = RX90_C(0.16666666666666666) * (t695 + RX90_C(2.0) * (t371 * t17
+        + t370 * parameters[ZZ6]));
+    ddq_by_dq[4] = t692 + t694 * t501 + t696 * t510;
+    const rx90_real_t t697 = t689 * t511 - t685 * t487 + t690 * t513 + t691 * t515;
+    ddq_by_dq[10] = t697 + t694 * t518 + t696 * t520;
+    const rx90_real_t t698 = t689 * t513 - t685 * t490 + t690 * t521 + t691 * t523;
+    ddq_by_dq[16] = t698 + t694 * t526 + t696 * t528;
+    const rx90_real_t t699 = t689 * t530 - t685 * t529 + t690 * t531 + t691 * t533;
+    ddq_by_dq[22] = t699 + t694 * t536 + t696 * t538;
+    const rx90_real_t t700 = t689 * t540 - t685 * t539 + t690 * t541 + t691 * t536;
+    ddq_by_dq[28] = t700 + t694 * t544 + t696 * t547;
+    const rx90_real_t t701 = t689 * t549 - t685 * t548 + t690 * t550 + t691 * t551;
+    ddq_by_dq[34] = t701 + t694 * t553 + t696 * t555;
+    ddq_by_input[4] = t501;
+    ddq_by_input[10] = t518;
+    ddq_by_input[16] = t526;
+    ddq_by_input[22] = t536;
+    ddq_by_input[28] = t544;
+    ddq_by_input[34] = t553;
+    const rx90_real_t t702 = t372 * t261 + parameters[ZZ5] * t369 + parameters[YZ5] * t400
+        + parameters[XZ5] * t385;
+    const rx90_real_t t703 = (t599 - t595) * parameters[XY5] + t702 + (parameters[MX5] * t427
+        - parameters[MY5] * t423);
+    const rx90_real_t t704 = t367 * t265 + parameters[YY4] * t368 + parameters[XY4] * t384
+        - parameters[YZ4] * t380;
+    const rx90_real_t t705 = t365 * t365; /* link j4: motion */
+    const rx90_real_t t706 = t366 * t366;
+    const rx90_real_t t707 = (t705 - t706) * parameters[XZ4] + t704 + (parameters[MZ4] * t418
+        + parameters[MX4] * t422);
+    const rx90_real_t t708 = t707 + (t703 + (t1 * t446 + t2 * t428));
+    const rx90_real_t t709 = t378 * t378;
+    const rx90_real_t t710 = t705 + t709; /* link j5: motion */
     /* link j5: inertia, momentum beyond */
-    const rx90_real_t t440 = t359 * parameters[MX4] - t356 * parameters[MZ4] + t439;
-    const rx90_real_t t441 = t36 * t438 + t34 * t440; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t442 = t36 * t436 + t34 * t437 + (RX90_C(-0.45) * t441 + t88 * t416);
-    const rx90_real_t t443 = RX90_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const rx90_real_t t444 = parameters[YY3] - t443;
-    const rx90_real_t t445 = t358 * parameters[YZ3] + t161 * t444 + t442;
+    const rx90_real_t t711 = t15 * (t619 + t607) + t13 * (t603 - t621);
+    const rx90_real_t t712 = t15 * t711;
+    const rx90_real_t t713 = t378 * parameters[XZ4];
+    const rx90_real_t t714 = t366 * parameters[XY4];
+    const rx90_real_t t715 = t713 + t714 + (t712 - t607);
+    const rx90_real_t t716 = RX90_C(2.0) * t378; /* link j4: derivatives */
+    const rx90_real_t t717 = RX90_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const rx90_real_t t718 = parameters[YY4] + t717;
     /* link j5: inertia, momentum beyond */
-    const rx90_real_t t446 = t356 * parameters[XY4] + t361 * t412 + (t394 - t434);
-    const rx90_real_t t447 = t356 * t408 + t361 * parameters[XY4] + (t16 * t406 - t14 * t405);
-    const rx90_real_t t448 = parameters[XX3] - t443;
+    const rx90_real_t t719 = t378 * parameters[YZ4] + t366 * t718 + (t15 * t669 + t13 * t671);
+    const rx90_real_t t720 = RX90_C(2.0) * t365; /* link j4: derivatives */
+    const rx90_real_t t721 = t715 * t716 + t719 * t720 + (t710 * t31 + (t58 * t364 - t60 * t381));
+    const rx90_real_t t722 = t708 + (t721 - t63 * t418);
+    const rx90_real_t t723 = t367 + t368;
+    const rx90_real_t t724 = t379 + t377;
+    const rx90_real_t t725 = t382 * t253 + parameters[XX4] * t383 + parameters[XY4] * t723
+        + parameters[XZ4] * t724;
+    const rx90_real_t t726 = (t709 - t706) * parameters[YZ4] - t725 - (parameters[MZ4] * t424
+        - parameters[MY4] * t422);
+    const rx90_real_t t727 = t726 + (t13 * t615 - t15 * t598);
+    const rx90_real_t t728 = parameters[XX4] + t717;
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t729 = t366 * t728 - t365 * parameters[XZ4] - (t15 * t627 - t13 * t628);
+    const rx90_real_t t730 = t365 * parameters[YZ4];
+    const rx90_real_t t731 = t714 - t730 + t674;
+    const rx90_real_t t732 = t729 * t716 + t731 * t720 + (t710 * t33 - (t60 * t364 + t59 * t381));
+    const rx90_real_t t733 = t727 - (t732 - t63 * t424);
+    const rx90_real_t t734 = parameters[M5] * t424 + (t600 * parameters[MZ5] - (parameters[MX5] * t592
+        - parameters[MY5] * t389));
+    const rx90_real_t t735 = (t705 + t706) * parameters[MY4] + parameters[MX4] * t724
+        - parameters[MZ4] * t381;
+    const rx90_real_t t736 = t735 - parameters[M4] * t424 - (t734 + (t1 * t468 + t2 * t463));
+    const rx90_real_t t737 = t365 * parameters[MY4] + t378 * parameters[MX4] + (t15 * t643 - t13 * t642);
+    const rx90_real_t t738 = t737 * t720 - t65 * t424 - (t710 * t37 + t63 * t381);
+    const rx90_real_t t739 = t736 - t738;
+    const rx90_real_t t740 = (t709 + t706) * parameters[MX4] + parameters[MY4] * t380
+        + parameters[MZ4] * t364;
+    const rx90_real_t t741 = parameters[M4] * t418 + t740 + (t15 * t632 + t13 * t638);
+    const rx90_real_t t742 = t737 * t716 + t65 * t418 - (t710 * t42 - t63 * t364);
+    const rx90_real_t t743 = t742 - t741;
+    const rx90_real_t t744 = RX90_C(0.45) * (t32 * t739 + t34 * t743);
+    const rx90_real_t t745 = t34 * t722 - t32 * t733 - t744;
+    const rx90_real_t t746 = t37 * t424 - t42 * t418;
+    const rx90_real_t t747 = t710 * t27 - (t31 * t364 + t33 * t381);
+    const rx90_real_t t748 = t13 * t711;
+    const rx90_real_t t749 = t365 * parameters[XY4] + t378 * t728 + (t603 - t748);
+    const rx90_real_t t750 = t365 * t718 + t378 * parameters[XY4] + (t15 * t671 - t13 * t669);
+    const rx90_real_t t751 = t749 * t716 + t750 * t720 + t747 + t746;
+    const rx90_real_t t752 = t114 * (t76 * t745 + t72 * t751) + t111 * (t744 + (t72 * t745 - t76 * t751));
+    const rx90_real_t t753 = RX90_C(0.03333333333333333) * t752;
+    const rx90_real_t t754 = t34 * t739 - t32 * t743;
+    const rx90_real_t t755 = t32 * t722 + t34 * t733 + RX90_C(0.45) * t754;
+    const rx90_real_t t756 = t366 * parameters[MX4] - t365 * parameters[MZ4] + t633;
+    const rx90_real_t t757 = t378 * parameters[MZ4] + t366 * parameters[MY4] + (t15 * t642 + t13 * t643);
+    const rx90_real_t t758 = t756 * t716 + t757 * t720 + (t37 * t364 + t42 * t381);
+    const rx90_real_t t759 = RX90_C(0.03333333333333333) * (t755 + RX90_C(0.45) * (t76 * t758 - t72 * t754));
+    const rx90_real_t t760 = RX90_C(0.03333333333333333) * t755;
+    const rx90_real_t t761 = RX90_C(2.0) * t749; /* link j4: derivatives */
+    const rx90_real_t t762 = RX90_C(2.0) * t750;
+    const rx90_real_t t763 = RX90_C(0.1) * (t746 + (t378 * t761 + t365 * t762 + t747));
+    const rx90_real_t t764 = t487 * t759 - t481 * t753 + t490 * t760 + t494 * t763;
+    const rx90_real_t t765 = t15 * t657 - t13 * t658; /* link j5: derivatives */
+    const rx90_real_t t766 = t378 * t765 + t365 * t675 + (t710 * t16 + (t49 * t364 + t9 * t381));
+    const rx90_real_t t767 = RX90_C(0.1) * (t766 + t50 * t424);
+    const rx90_real_t t768 = t15 * t660 + t13 * t563; /* link j6: derivatives */
+    const rx90_real_t t769 = t378 * t768 + t365 * t695 + (t710 * t18 + (t45 * t364 - t3 * t381));
+    const rx90_real_t t770 = RX90_C(0.16666666666666666) * (t769 + (t46 * t424 - t38 * t418));
+    ddq_by_q[3] = t764 + t501 * t767 + t510 * t770;
+    const rx90_real_t t771 = t511 * t759 - t487 * t753 + t513 * t760 + t515 * t763;
+    ddq_by_q[9] = t771 + t518 * t767 + t520 * t770;
+    const rx90_real_t t772 = t513 * t759 - t490 * t753 + t521 * t760 + t523 * t763;
+    ddq_by_q[15] = t772 + t526 * t767 + t528 * t770;
+    const rx90_real_t t773 = t530 * t759 - t529 * t753 + t531 * t760 + t533 * t763;
+    ddq_by_q[21] = t773 + t536 * t767 + t538 * t770;
+    const rx90_real_t t774 = t540 * t759 - t539 * t753 + t541 * t760 + t536 * t763;
+    ddq_by_q[27] = t774 + t544 * t767 + t547 * t770;
+    const rx90_real_t t775 = t549 * t759 - t548 * t753 + t550 * t760 + t551 * t763;
+    ddq_by_q[33] = t775 + t553 * t767 + t555 * t770;
+    const rx90_real_t t776 = parameters[ZZ4] + t717;
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t777 = t378 * t776 + t366 * parameters[YZ4] + (t621 + t748);
+    const rx90_real_t t778 = RX90_C(-2.0) * t777 + (t58 * t716 + t60 * t720); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t779 = t366 * parameters[XZ4] - t365 * t776 - (t13 * t627 + t15 * t628);
+    const rx90_real_t t780 = RX90_C(2.0) * t779 - (t59 * t720 - t60 * t716); /* link j4: derivatives */
+    const rx90_real_t t781 = RX90_C(2.0) * t756 + t63 * t720;
+    const rx90_real_t t782 = RX90_C(2.0) * t757 - t63 * t716;
+    const rx90_real_t t783 = RX90_C(0.45) * (t32 * t781 + t34 * t782);
+    const rx90_real_t t784 = t34 * t778 - t32 * t780 + t783;
+    const rx90_real_t t785 = t713 + t730 - (t619 - t712); /* link j5: inertia, momentum beyond */
+    const rx90_real_t t786 = RX90_C(2.0) * t785; /* link j4: derivatives */
+    const rx90_real_t t787 = t786 - (t33 * t720 - t31 * t716);
+    const rx90_real_t t788 = t114 * (t76 * t784 - t72 * t787) + t111 * (t72 * t784 + t76 * t787 - t783);
+    const rx90_real_t t789 = RX90_C(0.03333333333333333) * t788;
+    const rx90_real_t t790 = t34 * t781 - t32 * t782;
+    const rx90_real_t t791 = t32 * t778 + t34 * t780 + RX90_C(-0.45) * t790;
+    const rx90_real_t t792 = t72 * t790 + t76 * (t37 * t716 - t42 * t720);
+    const rx90_real_t t793 = RX90_C(0.03333333333333333) * (t791 + RX90_C(0.45) * t792);
+    const rx90_real_t t794 = RX90_C(0.03333333333333333) * t791;
+    const rx90_real_t t795 = RX90_C(0.1) * (t786 - RX90_C(2.0) * (t365 * t33 - t378 * t31));
+    const rx90_real_t t796 = RX90_C(250.0) * parameters[FV4] + t795;
+    const rx90_real_t t797 = t793 * t487 - t789 * t481 + t794 * t490 - t796 * t494;
+    const rx90_real_t t798 = t13 * t657 + t15 * t658; /* link j5: derivatives */
+    const rx90_real_t t799 = RX90_C(0.1) * (RX90_C(2.0) * (t378 * t49 - t365 * t9) - t798);
+    const rx90_real_t t800 = t13 * t660 - t15 * t563; /* link j6: derivatives */
+    const rx90_real_t t801 = RX90_C(0.16666666666666666) * (RX90_C(2.0) * (t378 * t45 + t365 * t3) - t800);
+    ddq_by_dq[3] = t797 + t799 * t501 + t801 * t510;
+    const rx90_real_t t802 = t793 * t511 - t789 * t487 + t794 * t513 - t796 * t515;
+    ddq_by_dq[9] = t802 + t799 * t518 + t801 * t520;
+    const rx90_real_t t803 = t793 * t513 - t789 * t490 + t794 * t521 - t796 * t523;
+    ddq_by_dq[15] = t803 + t799 * t526 + t801 * t528;
+    const rx90_real_t t804 = t793 * t530 - t789 * t529 + t794 * t531 - t796 * t533;
+    ddq_by_dq[21] = t804 + t799 * t536 + t801 * t538;
+    const rx90_real_t t805 = t793 * t540 - t789 * t539 + t794 * t541 - t796 * t536;
+    ddq_by_dq[27] = t805 + t799 * t544 + t801 * t547;
+    const rx90_real_t t806 = t793 * t549 - t789 * t548 + t794 * t550 - t796 * t551;
+    ddq_by_dq[33] = t806 + t799 * t553 + t801 * t555;
+    ddq_by_input[3] = t494;
+    ddq_by_input[9] = t515;
+    ddq_by_input[15] = t523;
+    ddq_by_input[21] = t533;
+    ddq_by_input[27] = t536;
+    ddq_by_input[33] = t551;
+    const rx90_real_t t807 = t32 * t741 + t34 * t736;
+    const rx90_real_t t808 = t375 + t376;
+    const rx90_real_t t809 = t353 - t358;
+    const rx90_real_t t810 = parameters[XZ3] * t809 - (t361 * t286 + parameters[XX3] * t362
+        + parameters[XY3] * t808);
+    const rx90_real_t t811 = t357 * t357; /* link j3: motion */
+    const rx90_real_t t812 = parameters[MY3] * t416 - parameters[MZ3] * t419 + ((t811
+        - t223) * parameters[YZ3] + t810);
+    const rx90_real_t t813 = t812 + (t34 * t727 + t32 * t708 - RX90_C(-0.45) * t807);
+    const rx90_real_t t814 = t420 + t811; /* link j4: motion */
+    const rx90_real_t t815 = RX90_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const rx90_real_t t816 = parameters[XX3] - t815;
     /* link j4: inertia, momentum beyond */
-    const rx90_real_t t449 = t161 * t448 - t355 * parameters[XZ3] + (t36 * t446 - t34 * t447);
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t450 = t79 * (t430 - t433) + t75 * (t445 - t449);
-    const rx90_real_t t451 = t79 * t450;
+    const rx90_real_t t817 = t160 * t816 - t355 * parameters[XZ3] + (t34 * t749 - t32 * t750);
+    const rx90_real_t t818 = RX90_C(2.0) * t357; /* link j3: derivatives */
+    const rx90_real_t t819 = RX90_C(0.45) * t737; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t820 = RX90_C(-0.45) * t160; /* link j4: velocity of its origin */
+    const rx90_real_t t821 = t83 * t820; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t822 = RX90_C(-0.45) * t355;
+    const rx90_real_t t823 = t43 * t822;
+    const rx90_real_t t824 = t819 + (t821 + t823);
+    const rx90_real_t t825 = t355 * parameters[YZ3];
+    const rx90_real_t t826 = t160 * parameters[XY3];
+    const rx90_real_t t827 = t826 - t825 + (t824 + (t785 - t819));
+    const rx90_real_t t828 = RX90_C(2.0) * t355; /* link j3: derivatives */
+    const rx90_real_t t829 = t817 * t818 + t827 * t828 + (t814 * t137 + (t103 * t360 - t106 * t374));
+    const rx90_real_t t830 = t813 - (t829 - t143 * t419);
+    const rx90_real_t t831 = t379 * t292 + parameters[ZZ4] * t377 + parameters[YZ4] * t364
+        + parameters[XZ4] * t381;
+    const rx90_real_t t832 = (t709 - t705) * parameters[XY4] + t831 - (parameters[MX4] * t424
+        + parameters[MY4] * t418);
+    const rx90_real_t t833 = t375 * t296 + parameters[YY3] * t376 + parameters[XY3] * t363
+        - parameters[YZ3] * t359;
+    const rx90_real_t t834 = parameters[MZ3] * t411 + parameters[MX3] * t416 + ((t420
+        - t223) * parameters[XZ3] + t833);
+    const rx90_real_t t835 = t834 + (t832 + (t13 * t598 + t15 * t615));
     /* link j4: inertia, momentum beyond */
-    const rx90_real_t t452 = t358 * parameters[MZ3] + t161 * parameters[MY3] + (t441 - t67 * t416);
-    const rx90_real_t t453 = t161 * parameters[MX3] - t355 * parameters[MZ3] + t423;
-    const rx90_real_t t454 = RX90_C(0.45) * (t79 * t452 + t75 * t453); /* link j3: inertia, momentum beyond */
-    const rx90_real_t t455 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
-    const rx90_real_t t456 = t116 * t455; /* link j3: inertia, momentum beyond */
-    const rx90_real_t t457 = RX90_C(0.45) * t157; /* link j3: velocity of its origin */
-    const rx90_real_t t458 = t147 * t457; /* link j3: inertia, momentum beyond */
-    const rx90_real_t t459 = t456 - t458 - t454;
-    const rx90_real_t t460 = t157 * parameters[XZ2];
-    const rx90_real_t t461 = dq[1] * parameters[XY2];
-    const rx90_real_t t462 = t460 - t461 + (t459 + (t433 + t451 + t454));
-    const rx90_real_t t463 = t156 * parameters[YZ2];
-    const rx90_real_t t464 = t461 - t463 + (t459 + (t430 - t451 - t456));
-    const rx90_real_t t465 = t75 * t450;
-    const rx90_real_t t466 = RX90_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const rx90_real_t t467 = t466 - parameters[YY2];
-    const rx90_real_t t468 = t157 * parameters[YZ2] + dq[1] * t467 + (t465 - t445);
-    const rx90_real_t t469 = t90 - t99; /* link j3: inertia of it and all beyond */
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t470 = RX90_C(0.45) * (t75 * t452 - t79 * t453) + t469 * t455;
-    const rx90_real_t t471 = parameters[XX2] - t466;
-    const rx90_real_t t472 = dq[1] * t471 - t156 * parameters[XZ2] + (t449 + t465 + t470);
-    /* link j2: inertia, momentum beyond */
-    const rx90_real_t t473 = t115 * (t115 * (t464 - t462) + t118 * (t468 + t472));
-    const rx90_real_t t474 = RX90_C(333.33333333333337) * parameters[FV1]
-        + RX90_C(0.06666666666666667) * (t462 + t473);
-    const rx90_real_t t475 = rx90_bounded(RX90_C(30.0) * t345);
-    const rx90_real_t t476 = t153 * t345;
-    const rx90_real_t t477 = rx90_bounded(RX90_C(-30.0) * t476);
-    const rx90_real_t t478 = t34 * t414; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t479 = t355 * parameters[XY3] + t358 * t448 - (t413 - t478 - t86 * t425);
-    const rx90_real_t t480 = t34 * t438 - t36 * t440;
-    const rx90_real_t t481 = t34 * t436 - t36 * t437 + (RX90_C(-0.45) * t480 + t88 * t425);
-    const rx90_real_t t482 = t355 * t444 + t358 * parameters[XY3] + t481;
-    const rx90_real_t t483 = t355 * parameters[MY3] + t358 * parameters[MX3] + (t480 - t67 * t425);
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t484 = t75 * t482 - t79 * t479 + (RX90_C(0.45) * t483 + t469 * t457);
-    /* link j2: derivatives */
-    const rx90_real_t t485 = RX90_C(2.0) * (t157 * t471 - t156 * parameters[XY2] + t484);
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t486 = t157 * parameters[XY2] + t156 * t467 - (t75 * t479 + t79 * t482 + t116 * t457);
-    const rx90_real_t t487 = RX90_C(2.0) * t486; /* link j2: derivatives */
-    const rx90_real_t t488 = RX90_C(0.03333333333333333) * (t118 * t485 + t115 * t487);
-    const rx90_real_t t489 = t345 * (t146 + t94 * t153);
-    const rx90_real_t t490 = rx90_bounded(RX90_C(-30.0) * t489);
-    const rx90_real_t t491 = RX90_C(2.0) * t479; /* link j3: derivatives */
-    const rx90_real_t t492 = RX90_C(2.0) * t482;
-    const rx90_real_t t493 = RX90_C(0.9) * t157; /* link j6: derivatives */
-    const rx90_real_t t494 = t75 * t492 - t79 * t491 + t90 * t493; /* link j3: derivatives */
-    const rx90_real_t t495 = t75 * t491 + t79 * t492 + t116 * t493;
-    const rx90_real_t t496 = RX90_C(0.03333333333333333) * (t118 * t494 - t115 * t495);
-    const rx90_real_t t497 = t95 + t58 * t94;
-    const rx90_real_t t498 = t345 * (t58 * t146 - t138 + t153 * t497);
-    const rx90_real_t t499 = rx90_bounded(RX90_C(-10.0) * t498);
-    const rx90_real_t t500 = RX90_C(2.0) * t446; /* link j4: derivatives */
-    const rx90_real_t t501 = RX90_C(2.0) * t447;
-    const rx90_real_t t502 = t36 * t500 - t34 * t501;
-    const rx90_real_t t503 = RX90_C(2.0) * t431;
-    const rx90_real_t t504 = RX90_C(-0.9) * t355; /* link j6: derivatives */
-    const rx90_real_t t505 = RX90_C(0.9) * t161;
-    const rx90_real_t t506 = t503 - (t86 * t505 - t45 * t504); /* link j4: derivatives */
-    const rx90_real_t t507 = RX90_C(-0.9) * dq[1]; /* link j6: derivatives */
-    const rx90_real_t t508 = t79 * t502 - t75 * t506 + (t86 * t507 - t76 * t493); /* link j4: derivatives */
-    const rx90_real_t t509 = t79 * t45; /* link j4: column of the mass matrix */
-    const rx90_real_t t510 = t75 * t502 + t79 * t506 + t509 * t493; /* link j4: derivatives */
-    const rx90_real_t t511 = RX90_C(0.1) * (t118 * t508 + t115 * t510);
-    const rx90_real_t t512 = t488 * t477 - t474 * t475 + t496 * t490 - t511 * t499;
-    const rx90_real_t t513 = t72 + t22 * t58;
-    const rx90_real_t t514 = t96 + t22 * t95 + t94 * t513;
-    const rx90_real_t t515 = t134 + t22 * t138 - t146 * t513 - t153 * t514;
-    const rx90_real_t t516 = t345 * t515;
-    const rx90_real_t t517 = rx90_bounded(RX90_C(-10.0) * t516);
-    const rx90_real_t t518 = RX90_C(2.0) * t410; /* link j5: derivatives */
-    const rx90_real_t t519 = RX90_C(2.0) * t411;
-    const rx90_real_t t520 = t16 * t518 - t14 * t519;
-    const rx90_real_t t521 = RX90_C(-2.0) * t400;
-    const rx90_real_t t522 = t36 * t520 - t34 * t521 + t43 * t504;
-    const rx90_real_t t523 = t14 * t518 + t16 * t519;
-    const rx90_real_t t524 = t523 + (t53 * t504 + t128 * t505);
-    const rx90_real_t t525 = t75 * t524 - t79 * t522 + (t128 * t507 - t82 * t493);
-    const rx90_real_t t526 = t79 * t53 + t75 * t43; /* link j5: column of the mass matrix */
-    const rx90_real_t t527 = t75 * t522 + t79 * t524 + t526 * t493; /* link j5: derivatives */
-    const rx90_real_t t528 = RX90_C(0.1) * (t118 * t525 - t115 * t527);
-    const rx90_real_t t529 = t30 + t5 * t22;
-    const rx90_real_t t530 = t59 + t5 * t72 + t58 * t529;
-    const rx90_real_t t531 = t97 + t5 * t96 + t95 * t529 + t94 * t530;
-    const rx90_real_t t532 = t127 + t5 * t134 + t138 * t529 - t146 * t530;
-    const rx90_real_t t533 = t345 * (t532 - t153 * t531);
-    const rx90_real_t t534 = RX90_C(-6.0) * t533;
-    const rx90_real_t t535 = RX90_C(2.0) * t391; /* link j6: derivatives */
-    const rx90_real_t t536 = RX90_C(2.0) * t392;
-    const rx90_real_t t537 = t2 * t535 - t1 * t536;
-    const rx90_real_t t538 = RX90_C(-2.0) * t382;
-    const rx90_real_t t539 = t16 * t537 + t14 * t538;
-    const rx90_real_t t540 = t1 * t535 + t2 * t536;
-    const rx90_real_t t541 = t36 * t539 - t34 * t540 - t78 * t504;
-    const rx90_real_t t542 = t14 * t537 - t16 * t538;
-    const rx90_real_t t543 = t542 + (t49 * t504 + t121 * t505);
-    const rx90_real_t t544 = t75 * t543 - t79 * t541 + (t121 * t507 + t80 * t493);
-    const rx90_real_t t545 = t79 * t49 - t75 * t78; /* link j6: column of the mass matrix */
-    const rx90_real_t t546 = t75 * t541 + t79 * t543 + t545 * t493; /* link j6: derivatives */
-    const rx90_real_t t547 = RX90_C(0.16666666666666666) * (t118 * t544 - t115 * t546);
-    ddq_by_dq[0] = t512 + t528 * t517 + t547 * t534;
-    const rx90_real_t t548 = rx90_bounded(RX90_C(30.0) * (t152 + t153 * t476));
-    const rx90_real_t t549 = t94 * t152 + t153 * t489;
-    const rx90_real_t t550 = rx90_bounded(RX90_C(30.0) * t549);
-    const rx90_real_t t551 = t152 * t497 + t153 * t498;
-    const rx90_real_t t552 = rx90_bounded(RX90_C(10.0) * t551);
-    const rx90_real_t t553 = t488 * t548 - t474 * t477 + t496 * t550 - t511 * t552;
-    const rx90_real_t t554 = t153 * t516 - t152 * t514;
-    const rx90_real_t t555 = rx90_bounded(RX90_C(10.0) * t554);
-    const rx90_real_t t556 = t153 * t533 - t152 * t531;
-    const rx90_real_t t557 = RX90_C(6.0) * t556;
-    ddq_by_dq[6] = t553 + t528 * t555 + t547 * t557;
-    const rx90_real_t t558 = rx90_bounded(RX90_C(30.0) * (t93 + t146 * t489 + t94 * t549));
-    const rx90_real_t t559 = t58 * t93 + t146 * t498 + t94 * t551;
-    const rx90_real_t t560 = rx90_bounded(RX90_C(10.0) * t559);
-    const rx90_real_t t561 = t488 * t550 - t474 * t490 + t496 * t558 - t511 * t560;
-    const rx90_real_t t562 = t146 * t516 - t93 * t513 + t94 * t554;
-    const rx90_real_t t563 = rx90_bounded(RX90_C(10.0) * t562);
-    const rx90_real_t t564 = t146 * t533 - t93 * t530 + t94 * t556;
-    const rx90_real_t t565 = RX90_C(6.0) * t564;
-    ddq_by_dq[12] = t561 + t528 * t563 + t547 * t565;
-    const rx90_real_t t566 = rx90_bounded(RX90_C(-30.0) * t498);
-    const rx90_real_t t567 = rx90_bounded(RX90_C(30.0) * t551);
-    const rx90_real_t t568 = rx90_bounded(RX90_C(30.0) * t559);
-    const rx90_real_t t569 = t57 - t138 * t498 + t95 * t551 + t58 * t559;
-    const rx90_real_t t570 = rx90_bounded(RX90_C(10.0) * t569);
-    const rx90_real_t t571 = t488 * t567 - t474 * t566 + t496 * t568 - t511 * t570;
-    const rx90_real_t t572 = t22 * t57 + t138 * t516 - t95 * t554 - t58 * t562;
-    const rx90_real_t t573 = rx90_bounded(RX90_C(-10.0) * t572);
-    const rx90_real_t t574 = t57 * t529 + t138 * t533 - t95 * t556 - t58 * t564;
-    const rx90_real_t t575 = RX90_C(-6.0) * t574;
-    ddq_by_dq[18] = t571 + t528 * t573 + t547 * t575;
-    const rx90_real_t t576 = rx90_bounded(RX90_C(-30.0) * t516);
-    const rx90_real_t t577 = rx90_bounded(RX90_C(30.0) * t554);
-    const rx90_real_t t578 = rx90_bounded(RX90_C(30.0) * t562);
-    const rx90_real_t t579 = t488 * t577 - t474 * t576 + t496 * t578 - t511 * t573;
-    const rx90_real_t t580 = t21 + t134 * t516 - t96 * t554 - t72 * t562;
-    const rx90_real_t t581 = rx90_bounded(RX90_C(10.0) * (t580 + t22 * t572));
-    const rx90_real_t t582 = t5 * t21 + t134 * t533 - t96 * t556 - t72 * t564;
-    const rx90_real_t t583 = t582 + t22 * t574;
-    const rx90_real_t t584 = RX90_C(6.0) * t583;
-    ddq_by_dq[24] = t579 + t528 * t581 + t547 * t584;
-    const rx90_real_t t585 = rx90_bounded(RX90_C(-30.0) * t533);
-    const rx90_real_t t586 = rx90_bounded(RX90_C(30.0) * t556);
-    const rx90_real_t t587 = rx90_bounded(RX90_C(30.0) * t564);
-    const rx90_real_t t588 = rx90_bounded(RX90_C(-10.0) * t574);
-    const rx90_real_t t589 = t488 * t586 - t474 * t585 + t496 * t587 - t511 * t588;
-    const rx90_real_t t590 = rx90_bounded(RX90_C(10.0) * t583);
-    const rx90_real_t t591 = t4 + t127 * t533 - t97 * t556 - t59 * t564;
-    const rx90_real_t t592 = RX90_C(6.0) * (t591 + t30 * t574 + t5 * t583);
-    ddq_by_dq[30] = t589 + t528 * t590 + t547 * t592;
-    ddq_by_input[0] = t475;
-    ddq_by_input[6] = t477;
-    ddq_by_input[12] = t490;
-    ddq_by_input[18] = t566;
-    ddq_by_input[24] = t576;
-    ddq_by_input[30] = t585;
-    const rx90_real_t t593 = t347 + t348;
-    const rx90_real_t t594 = t355 * t358; /* link j3: motion */
-    const rx90_real_t t595 = t594 + t593;
-    const rx90_real_t t596 = t354 * t346;
-    const rx90_real_t t597 = t358 * t161;
-    const rx90_real_t t598 = t597 - t596;
-    const rx90_real_t t599 = t597 + t598;
-    const rx90_real_t t600 = t36 * t595 - t34 * t599;
-    const rx90_real_t t601 = t356 * t359; /* link j4: motion */
-    const rx90_real_t t602 = t601 + t600;
-    const rx90_real_t t603 = t351 + t602;
-    const rx90_real_t t604 = t360 * t365; /* link j5: motion */
-    const rx90_real_t t605 = t604 + t603;
-    const rx90_real_t t606 = t357 * t346;
-    const rx90_real_t t607 = t355 * t161; /* link j3: motion */
-    const rx90_real_t t608 = t607 + t606;
-    const rx90_real_t t609 = t608 - t349;
-    const rx90_real_t t610 = t356 * t361; /* link j4: motion */
-    const rx90_real_t t611 = t610 - t609;
-    const rx90_real_t t612 = t34 * t595 + t36 * t599;
-    const rx90_real_t t613 = t361 * t359;
-    const rx90_real_t t614 = t613 + t612;
-    const rx90_real_t t615 = t613 + t614;
-    const rx90_real_t t616 = t14 * t611 - t16 * t615;
-    const rx90_real_t t617 = t365 * t362; /* link j5: motion */
-    const rx90_real_t t618 = t617 - t616;
-    const rx90_real_t t619 = t617 + t618;
-    const rx90_real_t t620 = t1 * t605 + t2 * t619;
-    const rx90_real_t t621 = t363 * t366; /* link j6: motion */
-    const rx90_real_t t622 = t621 + t620;
-    const rx90_real_t t623 = t2 * t605 - t1 * t619;
-    const rx90_real_t t624 = t369 * t366;
-    const rx90_real_t t625 = t624 + t623;
-    const rx90_real_t t626 = t624 + t625;
-    const rx90_real_t t627 = t16 * t611 + t14 * t615;
-    const rx90_real_t t628 = t360 * t362; /* link j5: motion */
-    const rx90_real_t t629 = t628 - t627;
-    const rx90_real_t t630 = t629 - t353;
-    const rx90_real_t t631 = t369 * t363; /* link j6: motion */
-    const rx90_real_t t632 = t631 + t630;
-    const rx90_real_t t633 = t621 * t193 + parameters[XX6] * t622 + parameters[XY6] * t626
-        + parameters[XZ6] * t632;
-    const rx90_real_t t634 = t363 * t363;
-    const rx90_real_t t635 = t366 * t366;
-    const rx90_real_t t636 = t212 + t347;
-    const rx90_real_t t637 = t213 + RX90_C(0.45) * t636;
-    const rx90_real_t t638 = t211 - t75 * t637;
-    const rx90_real_t t639 = t638 + RX90_C(0.45) * t595;
-    const rx90_real_t t640 = t115 * t346;
-    const rx90_real_t t641 = t217 - t640;
-    const rx90_real_t t642 = t217 + t641;
-    const rx90_real_t t643 = RX90_C(0.45) * t642;
-    const rx90_real_t t644 = t643 - RX90_C(0.45) * t599;
-    const rx90_real_t t645 = t36 * t639 + t34 * t644;
-    const rx90_real_t t646 = t221 + t79 * t637;
-    const rx90_real_t t647 = t355 * t355; /* link j3: motion */
-    const rx90_real_t t648 = t647 + t224; /* link j4: motion */
-    const rx90_real_t t649 = RX90_C(-0.45) * t648 + t646;
-    const rx90_real_t t650 = t14 * t649 - t16 * t645;
-    const rx90_real_t t651 = t34 * t639 - t36 * t644;
-    const rx90_real_t t652 = t2 * t651 - t1 * t650;
-    const rx90_real_t t653 = parameters[MZ6] * t652;
-    const rx90_real_t t654 = t14 * t645 + t16 * t649;
-    const rx90_real_t t655 = (t635 - t634) * parameters[YZ6] + t633 + (t653 - parameters[MY6] * t654);
-    const rx90_real_t t656 = t621 + t622;
-    const rx90_real_t t657 = t630 - t631;
-    const rx90_real_t t658 = t624 * t232 + parameters[YY6] * t625 + parameters[XY6] * t656
-        + parameters[YZ6] * t657;
-    const rx90_real_t t659 = t369 * t369; /* link j6: motion */
-    const rx90_real_t t660 = t2 * t650 + t1 * t651;
-    const rx90_real_t t661 = parameters[MZ6] * t660;
-    const rx90_real_t t662 = (t659 - t635) * parameters[XZ6] + t658 + (parameters[MX6] * t654 - t661);
-    const rx90_real_t t663 = t628 + t629;
-    const rx90_real_t t664 = t604 - t603;
-    const rx90_real_t t665 = parameters[XX5] * t618 - t617 * t239 + parameters[XY5] * t663
-        + parameters[XZ5] * t664;
-    const rx90_real_t t666 = t365 * t365; /* link j5: motion */
-    const rx90_real_t t667 = t362 * t362;
-    const rx90_real_t t668 = (t667 - t666) * parameters[YZ5] + t665 + (parameters[MY5] * t651
-        + parameters[MZ5] * t654);
-    const rx90_real_t t669 = t668 + (t2 * t655 - t1 * t662);
-    const rx90_real_t t670 = t631 * t6 + parameters[ZZ6] * t630 + parameters[YZ6] * t623
-        + parameters[XZ6] * t620;
-    const rx90_real_t t671 = (t634 - t659) * parameters[XY6] + t670 + (parameters[MY6] * t660
-        - parameters[MX6] * t652);
-    const rx90_real_t t672 = t628 * t249 + parameters[YY5] * t629 + parameters[XY5] * t619
-        - parameters[YZ5] * t605;
-    const rx90_real_t t673 = t360 * t360;
-    const rx90_real_t t674 = (t673 - t667) * parameters[XZ5] + t672 - (parameters[MZ5] * t650
-        + parameters[MX5] * t651);
-    const rx90_real_t t675 = t674 + t671;
-    const rx90_real_t t676 = t601 + t602;
-    const rx90_real_t t677 = t610 + t609;
-    const rx90_real_t t678 = t613 * t254 + parameters[XX4] * t614 + parameters[XY4] * t676
-        + parameters[XZ4] * t677;
-    const rx90_real_t t679 = t361 * t361; /* link j4: motion */
-    const rx90_real_t t680 = t359 * t359;
-    const rx90_real_t t681 = (t679 - t680) * parameters[YZ4] - t678 - (parameters[MZ4] * t651
-        - parameters[MY4] * t649);
-    const rx90_real_t t682 = t681 + (t14 * t675 - t16 * t669);
-    const rx90_real_t t683 = t604 * t262 + parameters[ZZ5] * t603 + parameters[YZ5] * t627
-        + parameters[XZ5] * t616;
-    const rx90_real_t t684 = (t673 - t666) * parameters[XY5] + t683 + (parameters[MX5] * t654
-        - parameters[MY5] * t650);
-    const rx90_real_t t685 = t601 * t266 + parameters[YY4] * t602 + parameters[XY4] * t615
-        - parameters[YZ4] * t611;
-    const rx90_real_t t686 = t356 * t356;
-    const rx90_real_t t687 = (t686 - t680) * parameters[XZ4] + t685 + (parameters[MZ4] * t645
-        + parameters[MX4] * t649);
-    const rx90_real_t t688 = t687 + (t684 + (t1 * t655 + t2 * t662));
-    const rx90_real_t t689 = parameters[MZ6] * t623;
-    const rx90_real_t t690 = parameters[M6] * t660;
-    const rx90_real_t t691 = t690 + (parameters[MY6] * t657 - (t634 + t635) * parameters[MX6] - t689);
-    const rx90_real_t t692 = parameters[MZ6] * t620;
-    const rx90_real_t t693 = parameters[M6] * t652;
-    const rx90_real_t t694 = t693 + (t692 - ((t659 + t635) * parameters[MY6] + parameters[MX6] * t632));
-    const rx90_real_t t695 = (t666 + t667) * parameters[MX5] + parameters[MY5] * t605
-        - parameters[MZ5] * t627;
-    const rx90_real_t t696 = t695 - parameters[M5] * t650 + (t1 * t694 - t2 * t691);
-    const rx90_real_t t697 = t659 + t634; /* link j6: columns */
-    const rx90_real_t t698 = parameters[M6] * t654 + (parameters[MX6] * t626 - parameters[MY6] * t656
-        - t697 * parameters[MZ6]);
-    const rx90_real_t t699 = (t673 + t667) * parameters[MY5] + parameters[MX5] * t664
-        + parameters[MZ5] * t616;
-    const rx90_real_t t700 = parameters[M5] * t654 - t699 + t698;
-    const rx90_real_t t701 = (t679 + t680) * parameters[MX4] + parameters[MY4] * t611
-        + parameters[MZ4] * t600;
-    const rx90_real_t t702 = parameters[M4] * t645 + t701 + (t16 * t696 + t14 * t700);
-    const rx90_real_t t703 = t673 + t666; /* link j6: motion */
-    const rx90_real_t t704 = parameters[M5] * t651 + (t703 * parameters[MZ5] - (parameters[MX5] * t663
-        - parameters[MY5] * t619));
-    const rx90_real_t t705 = (t686 + t680) * parameters[MY4] + parameters[MX4] * t677
-        - parameters[MZ4] * t612;
-    const rx90_real_t t706 = t705 - parameters[M4] * t651 - (t704 + (t1 * t691 + t2 * t694));
-    const rx90_real_t t707 = t34 * t702 + t36 * t706;
-    const rx90_real_t t708 = t607 + t608;
-    const rx90_real_t t709 = t593 - t594;
-    const rx90_real_t t710 = parameters[XZ3] * t709 - (t597 * t287 + parameters[XX3] * t598
-        + parameters[XY3] * t708);
-    const rx90_real_t t711 = t358 * t358; /* link j3: motion */
-    const rx90_real_t t712 = parameters[MY3] * t643 - parameters[MZ3] * t646 + ((t711
-        - t224) * parameters[YZ3] + t710);
-    const rx90_real_t t713 = t712 + (t36 * t682 + t34 * t688 - RX90_C(-0.45) * t707);
-    const rx90_real_t t714 = t610 * t293 + parameters[ZZ4] * t609 + parameters[YZ4] * t600
-        + parameters[XZ4] * t612;
-    const rx90_real_t t715 = (t679 - t686) * parameters[XY4] + t714 - (parameters[MX4] * t651
-        + parameters[MY4] * t645);
-    const rx90_real_t t716 = t607 * t297 + parameters[YY3] * t608 + parameters[XY3] * t599
-        - parameters[YZ3] * t595;
-    const rx90_real_t t717 = parameters[MZ3] * t638 + parameters[MX3] * t643 + ((t647
-        - t224) * parameters[XZ3] + t716);
-    const rx90_real_t t718 = t717 + (t715 + (t14 * t669 + t16 * t675));
-    const rx90_real_t t719 = t647 + t711; /* link j4: motion */
-    const rx90_real_t t720 = parameters[M3] * t643 + (parameters[MX3] * t708 - parameters[MY3] * t599
-        - t719 * parameters[MZ3]);
-    const rx90_real_t t721 = t79 * t718 - t75 * t713 + RX90_C(0.45) * (t720 + t707);
-    const rx90_real_t t722 = t118 * t346;
-    const rx90_real_t t723 = t301 + t722;
-    const rx90_real_t t724 = t309 + parameters[YY2] * t641 - parameters[XY2] * (t301 + t723)
-        + parameters[YZ2] * (t212 - t347);
-    const rx90_real_t t725 = t311 + t207; /* link j3: motion */
-    const rx90_real_t t726 = RX90_C(2.0) * t157; /* link j2: derivatives */
-    const rx90_real_t t727 = RX90_C(-2.0) * t156;
-    const rx90_real_t t728 = t462 * t726 + t468 * t727 + (t725 * t148 + (t113 * t640 - t117 * t722));
-    const rx90_real_t t729 = parameters[MZ2] + t147; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t730 = t313 + (t312 + t724) + t721 + (t728 - t209 * t729);
-    const rx90_real_t t731 = parameters[XX2] * t723 - t302 - parameters[XY2] * t642 + parameters[XZ2] * t636;
-    const rx90_real_t t732 = t304 + t731 - t305 + (t79 * t713 + t75 * t718);
-    const rx90_real_t t733 = t472 * t726 + t464 * t727 + (t117 * t640 - t114 * t722 - t725 * t149);
-    const rx90_real_t t734 = t118 * t730 + t115 * (t732 + (t213 * t729 + t733));
-    const rx90_real_t t735 = RX90_C(0.03333333333333333) * t734;
-    const rx90_real_t t736 = t157 * t485 - t156 * t487 + (t725 * t101 + (t148 * t640 + t149 * t722));
-    const rx90_real_t t737 = t213 * (parameters[MY2] + t116) - t209 * (parameters[MX2] - t469) + t736;
-    const rx90_real_t t738 = RX90_C(0.03333333333333333) * t737;
-    const rx90_real_t t739 = t157 * t494 + t156 * t495 + (t142 * t640 + t143 * t722 - t725 * t91);
-    const rx90_real_t t740 = RX90_C(0.03333333333333333) * (t213 * t116 + t209 * t90 + t739);
-    const rx90_real_t t741 = t157 * t508 - t156 * t510 + (t725 * t77 + (t136 * t722 - t135 * t640));
-    const rx90_real_t t742 = RX90_C(0.1) * (t213 * t509 + t209 * t76 - t741);
-    const rx90_real_t t743 = t477 * t738 - t475 * t735 + t490 * t740 + t499 * t742;
-    const rx90_real_t t744 = t157 * t525 + t156 * t527 + (t725 * t83 + (t131 * t640 + t132 * t722));
-    const rx90_real_t t745 = RX90_C(0.1) * (t213 * t526 - t209 * t82 + t744);
-    const rx90_real_t t746 = t157 * t544 + t156 * t546 + (t725 * t81 + (t124 * t640 + t125 * t722));
-    const rx90_real_t t747 = RX90_C(0.16666666666666666) * (t213 * t545 + t209 * t80 + t746);
-    ddq_by_q[1] = t743 + t517 * t745 + t534 * t747;
-    const rx90_real_t t748 = t548 * t738 - t477 * t735 + t550 * t740 + t552 * t742;
-    ddq_by_q[7] = t748 + t555 * t745 + t557 * t747;
-    const rx90_real_t t749 = t550 * t738 - t490 * t735 + t558 * t740 + t560 * t742;
-    ddq_by_q[13] = t749 + t563 * t745 + t565 * t747;
-    const rx90_real_t t750 = t567 * t738 - t566 * t735 + t568 * t740 + t570 * t742;
-    ddq_by_q[19] = t750 + t573 * t745 + t575 * t747;
-    const rx90_real_t t751 = t577 * t738 - t576 * t735 + t578 * t740 + t573 * t742;
-    ddq_by_q[25] = t751 + t581 * t745 + t584 * t747;
-    const rx90_real_t t752 = t586 * t738 - t585 * t735 + t587 * t740 + t588 * t742;
-    ddq_by_q[31] = t752 + t590 * t745 + t592 * t747;
-    const rx90_real_t t753 = t443 - parameters[ZZ3];
+    const rx90_real_t t836 = t34 * (t715 + t731) - t32 * (t719 - t729);
+    const rx90_real_t t837 = t34 * t836;
+    const rx90_real_t t838 = t357 * parameters[XZ3];
+    const rx90_real_t t839 = t824 + (t731 - t837 - t821) - (t838 + t826);
+    const rx90_real_t t840 = t34 * t757 + t32 * t756;
+    const rx90_real_t t841 = t34 * t777 + t32 * t779 + (RX90_C(-0.45) * t840 + t85 * t820);
+    const rx90_real_t t842 = parameters[YY3] - t815;
+    const rx90_real_t t843 = t357 * parameters[YZ3] + t160 * t842 + t841;
+    const rx90_real_t t844 = t843 * t828 - t839 * t818 + (t106 * t360 - t102 * t374 - t814 * t136);
+    const rx90_real_t t845 = t835 + (t844 - t143 * t411);
+    const rx90_real_t t846 = t357 * parameters[MZ3] + t160 * parameters[MY3] + (t840 - t65 * t820);
+    const rx90_real_t t847 = t160 * parameters[MX3] - t355 * parameters[MZ3] + t737;
+    const rx90_real_t t848 = t847 * t818 + t846 * t828 + (t86 * t374 - t84 * t360);
+    const rx90_real_t t849 = t111 * (t72 * t845 + t76 * t830 + RX90_C(0.45) * t848);
+    const rx90_real_t t850 = RX90_C(0.03333333333333333) * (t114 * (t76 * t845 - t72 * t830) + t849);
+    const rx90_real_t t851 = (t811 + t223) * parameters[MX3] + parameters[MY3] * t359
+        + parameters[MZ3] * t374;
+    const rx90_real_t t852 = parameters[M3] * t411 + t851 + (t34 * t741 - t32 * t736);
+    const rx90_real_t t853 = t32 * t757 - t34 * t756;
+    const rx90_real_t t854 = t355 * parameters[MY3] + t357 * parameters[MX3] + (t853 - t65 * t822);
+    const rx90_real_t t855 = t814 * t84 - t143 * t374 - (t854 * t818 + t95 * t411);
+    const rx90_real_t t856 = parameters[M4] * t422 + (parameters[MX4] * t723 - parameters[MY4] * t384
+        - t710 * parameters[MZ4]);
+    const rx90_real_t t857 = parameters[M3] * t419 + (parameters[MX3] * t809 - t421 * parameters[MY3]
+        - parameters[MZ3] * t360);
+    const rx90_real_t t858 = t854 * t828 - t95 * t419 + (t143 * t360 - t814 * t86);
+    const rx90_real_t t859 = t857 + (t856 + (t15 * t638 - t13 * t632)) + t858;
+    const rx90_real_t t860 = t814 * t68 + (t136 * t374 + t137 * t360);
+    const rx90_real_t t861 = t32 * t836;
+    const rx90_real_t t862 = t355 * parameters[XY3] + t357 * t816 - (t729 - t861 - t83 * t822);
+    const rx90_real_t t863 = t32 * t777 - t34 * t779 + (RX90_C(-0.45) * t853 + t85 * t822);
+    const rx90_real_t t864 = t355 * t842 + t357 * parameters[XY3] + t863;
+    const rx90_real_t t865 = t86 * t419 - t84 * t411;
+    const rx90_real_t t866 = t862 * t818 + t864 * t828 + t860 + t865 + RX90_C(0.45) * (t72 * t859
+        + t76 * (t852 + t855));
+    const rx90_real_t t867 = RX90_C(0.03333333333333333) * t866;
+    const rx90_real_t t868 = RX90_C(2.0) * t862; /* link j3: derivatives */
+    const rx90_real_t t869 = RX90_C(2.0) * t864;
+    const rx90_real_t t870 = RX90_C(0.03333333333333333) * (t865 + (t357 * t868 + t355 * t869 + t860));
+    const rx90_real_t t871 = t34 * t761 - t32 * t762; /* link j4: derivatives */
+    const rx90_real_t t872 = RX90_C(-0.9) * t355; /* link j6: derivatives */
+    const rx90_real_t t873 = RX90_C(0.9) * t160;
+    const rx90_real_t t874 = t786 - (t83 * t873 - t43 * t872); /* link j4: derivatives */
+    const rx90_real_t t875 = t357 * t871 + t355 * t874 - (t814 * t44 - (t27 * t360 - t105 * t374));
+    const rx90_real_t t876 = RX90_C(0.1) * (t875 + t43 * t419);
+    const rx90_real_t t877 = t487 * t867 - t481 * t850 + t490 * t870 + t494 * t876;
+    const rx90_real_t t878 = t34 * t765 - t32 * t675 + t41 * t872; /* link j5: derivatives */
+    const rx90_real_t t879 = t798 + (t51 * t872 + t124 * t873);
+    const rx90_real_t t880 = t357 * t878 + t355 * t879 + (t814 * t52 + (t126 * t374 + t16 * t360));
+    const rx90_real_t t881 = RX90_C(0.1) * (t880 + (t51 * t419 - t41 * t411));
+    const rx90_real_t t882 = t34 * t768 - t32 * t695 - t75 * t872; /* link j6: derivatives */
+    const rx90_real_t t883 = t800 + (t47 * t872 + t117 * t873);
+    const rx90_real_t t884 = t357 * t882 + t355 * t883 + (t814 * t48 + (t119 * t374 + t18 * t360));
+    const rx90_real_t t885 = RX90_C(0.16666666666666666) * (t884 + (t47 * t419 + t75 * t411));
+    ddq_by_q[2] = t877 + t501 * t881 + t510 * t885;
+    const rx90_real_t t886 = t511 * t867 - t487 * t850 + t513 * t870 + t515 * t876;
+    ddq_by_q[8] = t886 + t518 * t881 + t520 * t885;
+    const rx90_real_t t887 = t513 * t867 - t490 * t850 + t521 * t870 + t523 * t876;
+    ddq_by_q[14] = t887 + t526 * t881 + t528 * t885;
+    const rx90_real_t t888 = t530 * t867 - t529 * t850 + t531 * t870 + t533 * t876;
+    ddq_by_q[20] = t888 + t536 * t881 + t538 * t885;
+    const rx90_real_t t889 = t540 * t867 - t539 * t850 + t541 * t870 + t536 * t876;
+    ddq_by_q[26] = t889 + t544 * t881 + t547 * t885;
+    const rx90_real_t t890 = t549 * t867 - t548 * t850 + t550 * t870 + t551 * t876;
+    ddq_by_q[32] = t890 + t553 * t881 + t555 * t885;
+    const rx90_real_t t891 = t815 - parameters[ZZ3];
     /* link j4: inertia, momentum beyond */
-    const rx90_real_t t754 = t358 * t753 - t161 * parameters[YZ3] + (t409 + t478 + t45 * t416);
-    const rx90_real_t t755 = t161 * parameters[XZ3] + t355 * t753 - (t34 * t446 + t36 * t447);
-    const rx90_real_t t756 = parameters[ZZ2] - t466;
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t757 = t157 * t756 - dq[1] * parameters[YZ2] + (t79 * t754 - t75 * t755);
-    /* link j2: derivatives */
-    const rx90_real_t t758 = t118 * (RX90_C(2.0) * t757 + (t113 * t726 + t117 * t727));
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t759 = dq[1] * parameters[XZ2] - t156 * t756 + (t75 * t754 + t79 * t755 - t147 * t455);
-    /* link j2: derivatives */
-    const rx90_real_t t760 = t115 * (RX90_C(2.0) * t759 + (t117 * t726 + t114 * t727));
-    const rx90_real_t t761 = RX90_C(0.03333333333333333) * (t758 + t760);
+    const rx90_real_t t892 = t357 * t891 - t160 * parameters[YZ3] + (t719 + t861 + t43 * t820);
+    const rx90_real_t t893 = RX90_C(2.0) * t892 + (t106 * t828 - t102 * t818); /* link j3: derivatives */
     /* link j4: inertia, momentum beyond */
-    const rx90_real_t t762 = t399 - t415 + t426 - t427 - (t428 + t432);
-    /* link j2: derivatives */
-    const rx90_real_t t763 = RX90_C(2.0) * (t460 - t463 + (t762 - t458 - t459)) + RX90_C(2.0) * (t157 * t148
-        + t156 * t149);
-    const rx90_real_t t764 = RX90_C(-333.33333333333337) * parameters[FV2]
-        + RX90_C(0.03333333333333333) * t763;
-    const rx90_real_t t765 = RX90_C(2.0) * t762; /* link j3: derivatives */
-    const rx90_real_t t766 = t765 + t116 * t507 + RX90_C(2.0) * (t157 * t142 + t156 * t143);
-    const rx90_real_t t767 = RX90_C(0.03333333333333333) * t766;
-    const rx90_real_t t768 = t34 * t500 + t36 * t501; /* link j4: derivatives */
-    const rx90_real_t t769 = t768 + t509 * t507 - RX90_C(2.0) * (t156 * t136 - t157 * t135);
-    const rx90_real_t t770 = RX90_C(0.1) * t769;
-    const rx90_real_t t771 = t764 * t477 - t761 * t475 + t767 * t490 + t770 * t499;
-    const rx90_real_t t772 = t34 * t520 + t36 * t521 + t43 * t505; /* link j5: derivatives */
-    const rx90_real_t t773 = t772 + t526 * t507 + RX90_C(2.0) * (t157 * t131 + t156 * t132);
-    const rx90_real_t t774 = RX90_C(0.1) * t773;
-    const rx90_real_t t775 = t34 * t539 + t36 * t540 - t78 * t505; /* link j6: derivatives */
-    const rx90_real_t t776 = t775 + t545 * t507 + RX90_C(2.0) * (t157 * t124 + t156 * t125);
-    const rx90_real_t t777 = RX90_C(0.16666666666666666) * t776;
-    ddq_by_dq[1] = t771 + t774 * t517 + t777 * t534;
-    const rx90_real_t t778 = t764 * t548 - t761 * t477 + t767 * t550 + t770 * t552;
-    ddq_by_dq[7] = t778 + t774 * t555 + t777 * t557;
-    const rx90_real_t t779 = t764 * t550 - t761 * t490 + t767 * t558 + t770 * t560;
-    ddq_by_dq[13] = t779 + t774 * t563 + t777 * t565;
-    const rx90_real_t t780 = t764 * t567 - t761 * t566 + t767 * t568 + t770 * t570;
-    ddq_by_dq[19] = t780 + t774 * t573 + t777 * t575;
-    const rx90_real_t t781 = t764 * t577 - t761 * t576 + t767 * t578 + t770 * t573;
-    ddq_by_dq[25] = t781 + t774 * t581 + t777 * t584;
-    const rx90_real_t t782 = t764 * t586 - t761 * t585 + t767 * t587 + t770 * t588;
-    ddq_by_dq[31] = t782 + t774 * t590 + t777 * t592;
-    ddq_by_input[1] = t477;
-    ddq_by_input[7] = t548;
-    ddq_by_input[13] = t550;
-    ddq_by_input[19] = t567;
-    ddq_by_input[25] = t577;
-    ddq_by_input[31] = t586;
-    const rx90_real_t t783 = RX90_C(2.0) * t358; /* link j3: derivatives */
-    const rx90_real_t t784 = RX90_C(2.0) * t355;
-    const rx90_real_t t785 = t449 * t783 + t433 * t784 + (t719 * t141 + (t107 * t596 - t110 * t606));
-    const rx90_real_t t786 = t713 - (t785 - t147 * t646);
-    const rx90_real_t t787 = t445 * t784 - t430 * t783 + (t110 * t596 - t106 * t606 - t719 * t140);
-    const rx90_real_t t788 = t718 + (t787 - t147 * t638);
-    const rx90_real_t t789 = t453 * t783 + t452 * t784 + (t89 * t606 - t87 * t596);
-    const rx90_real_t t790 = t115 * (t75 * t788 + t79 * t786 + RX90_C(0.45) * t789);
-    const rx90_real_t t791 = RX90_C(0.03333333333333333) * (t118 * (t79 * t788 - t75 * t786) + t790);
-    const rx90_real_t t792 = (t711 + t224) * parameters[MX3] + parameters[MY3] * t595
-        + parameters[MZ3] * t606;
-    const rx90_real_t t793 = parameters[M3] * t638 + t792 + (t36 * t702 - t34 * t706);
-    const rx90_real_t t794 = t719 * t87 - t147 * t606 - (t483 * t783 + t98 * t638);
-    const rx90_real_t t795 = t686 + t679; /* link j5: motion */
-    const rx90_real_t t796 = parameters[M4] * t649 + (parameters[MX4] * t676 - parameters[MY4] * t615
-        - t795 * parameters[MZ4]);
-    const rx90_real_t t797 = parameters[M3] * t646 + (parameters[MX3] * t709 - t648 * parameters[MY3]
-        - parameters[MZ3] * t596);
-    const rx90_real_t t798 = t483 * t784 - t98 * t646 + (t147 * t596 - t719 * t89);
-    const rx90_real_t t799 = t797 + (t796 + (t16 * t700 - t14 * t696)) + t798;
-    const rx90_real_t t800 = t719 * t70 + (t140 * t606 + t141 * t596);
-    const rx90_real_t t801 = t89 * t646 - t87 * t638;
-    const rx90_real_t t802 = t479 * t783 + t482 * t784 + t800 + t801 + RX90_C(0.45) * (t75 * t799
-        + t79 * (t793 + t794));
-    const rx90_real_t t803 = RX90_C(0.03333333333333333) * t802;
-    const rx90_real_t t804 = RX90_C(0.03333333333333333) * (t801 + (t358 * t491 + t355 * t492 + t800));
-    const rx90_real_t t805 = t358 * t502 + t355 * t506 - (t719 * t46 - (t28 * t596 - t109 * t606));
-    const rx90_real_t t806 = RX90_C(0.1) * (t805 + t45 * t646);
-    const rx90_real_t t807 = t477 * t803 - t475 * t791 + t490 * t804 + t499 * t806;
-    const rx90_real_t t808 = t358 * t522 + t355 * t524 + (t719 * t54 + (t130 * t606 + t17 * t596));
-    const rx90_real_t t809 = RX90_C(0.1) * (t808 + (t53 * t646 - t43 * t638));
-    const rx90_real_t t810 = t358 * t541 + t355 * t543 + (t719 * t50 + (t123 * t606 + t19 * t596));
-    const rx90_real_t t811 = RX90_C(0.16666666666666666) * (t810 + (t49 * t646 + t78 * t638));
-    ddq_by_q[2] = t807 + t517 * t809 + t534 * t811;
-    const rx90_real_t t812 = t548 * t803 - t477 * t791 + t550 * t804 + t552 * t806;
-    ddq_by_q[8] = t812 + t555 * t809 + t557 * t811;
-    const rx90_real_t t813 = t550 * t803 - t490 * t791 + t558 * t804 + t560 * t806;
-    ddq_by_q[14] = t813 + t563 * t809 + t565 * t811;
-    const rx90_real_t t814 = t567 * t803 - t566 * t791 + t568 * t804 + t570 * t806;
-    ddq_by_q[20] = t814 + t573 * t809 + t575 * t811;
-    const rx90_real_t t815 = t577 * t803 - t576 * t791 + t578 * t804 + t573 * t806;
-    ddq_by_q[26] = t815 + t581 * t809 + t584 * t811;
-    const rx90_real_t t816 = t586 * t803 - t585 * t791 + t587 * t804 + t588 * t806;
-    ddq_by_q[32] = t816 + t590 * t809 + t592 * t811;
-    const rx90_real_t t817 = RX90_C(2.0) * t754 + (t110 * t784 - t106 * t783); /* link j3: derivatives */
-    const rx90_real_t t818 = RX90_C(2.0) * t755 - (t107 * t784 - t110 * t783);
-    const rx90_real_t t819 = t75 * t817 + t79 * t818 + RX90_C(0.45) * (t89 * t783 - t87 * t784);
-    const rx90_real_t t820 = t118 * (t79 * t817 - t75 * t818) + t115 * t819;
-    const rx90_real_t t821 = RX90_C(0.03333333333333333) * t820;
-    const rx90_real_t t822 = t75 * (RX90_C(2.0) * t453 + t147 * t784) + t79 * (RX90_C(2.0) * t452
-        - t147 * t783);
-    const rx90_real_t t823 = t765 + (t140 * t783 + t141 * t784) + RX90_C(0.45) * t822;
-    const rx90_real_t t824 = RX90_C(0.03333333333333333) * t823;
-    const rx90_real_t t825 = RX90_C(0.03333333333333333) * (t765 + RX90_C(2.0) * (t358 * t140 + t355 * t141));
-    const rx90_real_t t826 = RX90_C(-333.33333333333337) * parameters[FV3] + t825;
-    const rx90_real_t t827 = RX90_C(0.1) * (t768 + RX90_C(2.0) * (t355 * t28 - t358 * t109));
-    const rx90_real_t t828 = t824 * t477 - t821 * t475 + t826 * t490 + t827 * t499;
-    const rx90_real_t t829 = RX90_C(0.1) * (t772 + RX90_C(2.0) * (t358 * t130 + t355 * t17));
-    const rx90_real_t t830 = RX90_C(0.16666666666666666) * (t775 + RX90_C(2.0) * (t358 * t123 + t355 * t19));
-    ddq_by_dq[2] = t828 + t829 * t517 + t830 * t534;
-    const rx90_real_t t831 = t824 * t548 - t821 * t477 + t826 * t550 + t827 * t552;
-    ddq_by_dq[8] = t831 + t829 * t555 + t830 * t557;
-    const rx90_real_t t832 = t824 * t550 - t821 * t490 + t826 * t558 + t827 * t560;
-    ddq_by_dq[14] = t832 + t829 * t563 + t830 * t565;
-    const rx90_real_t t833 = t824 * t567 - t821 * t566 + t826 * t568 + t827 * t570;
-    ddq_by_dq[20] = t833 + t829 * t573 + t830 * t575;
-    const rx90_real_t t834 = t824 * t577 - t821 * t576 + t826 * t578 + t827 * t573;
-    ddq_by_dq[26] = t834 + t829 * t581 + t830 * t584;
-    const rx90_real_t t835 = t824 * t586 - t821 * t585 + t826 * t587 + t827 * t588;
-    ddq_by_dq[32] = t835 + t829 * t590 + t830 * t592;
+    const rx90_real_t t894 = t160 * parameters[XZ3] + t355 * t891 - (t32 * t749 + t34 * t750);
+    const rx90_real_t t895 = RX90_C(2.0) * t894 - (t103 * t828 - t106 * t818); /* link j3: derivatives */
+    const rx90_real_t t896 = t72 * t893 + t76 * t895 + RX90_C(0.45) * (t86 * t818 - t84 * t828);
+    const rx90_real_t t897 = t114 * (t76 * t893 - t72 * t895) + t111 * t896;
+    const rx90_real_t t898 = RX90_C(0.03333333333333333) * t897;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t899 = t715 - t837 + t823 - t824 - (t838 + t825);
+    const rx90_real_t t900 = RX90_C(2.0) * t899; /* link j3: derivatives */
+    const rx90_real_t t901 = t72 * (RX90_C(2.0) * t847 + t143 * t828) + t76 * (RX90_C(2.0) * t846
+        - t143 * t818);
+    const rx90_real_t t902 = t900 + (t136 * t818 + t137 * t828) + RX90_C(0.45) * t901;
+    const rx90_real_t t903 = RX90_C(0.03333333333333333) * t902;
+    const rx90_real_t t904 = RX90_C(0.03333333333333333) * (t900 + RX90_C(2.0) * (t357 * t136 + t355 * t137));
+    const rx90_real_t t905 = RX90_C(-333.33333333333337) * parameters[FV3] + t904;
+    const rx90_real_t t906 = t32 * t761 + t34 * t762; /* link j4: derivatives */
+    const rx90_real_t t907 = RX90_C(0.1) * (t906 + RX90_C(2.0) * (t355 * t27 - t357 * t105));
+    const rx90_real_t t908 = t903 * t487 - t898 * t481 + t905 * t490 + t907 * t494;
+    const rx90_real_t t909 = t32 * t765 + t34 * t675 + t41 * t873; /* link j5: derivatives */
+    const rx90_real_t t910 = RX90_C(0.1) * (t909 + RX90_C(2.0) * (t357 * t126 + t355 * t16));
+    const rx90_real_t t911 = t32 * t768 + t34 * t695 - t75 * t873; /* link j6: derivatives */
+    const rx90_real_t t912 = RX90_C(0.16666666666666666) * (t911 + RX90_C(2.0) * (t357 * t119 + t355 * t18));
+    ddq_by_dq[2] = t908 + t910 * t501 + t912 * t510;
+    const rx90_real_t t913 = t903 * t511 - t898 * t487 + t905 * t513 + t907 * t515;
+    ddq_by_dq[8] = t913 + t910 * t518 + t912 * t520;
+    const rx90_real_t t914 = t903 * t513 - t898 * t490 + t905 * t521 + t907 * t523;
+    ddq_by_dq[14] = t914 + t910 * t526 + t912 * t528;
+    const rx90_real_t t915 = t903 * t530 - t898 * t529 + t905 * t531 + t907 * t533;
+    ddq_by_dq[20] = t915 + t910 * t536 + t912 * t538;
+    const rx90_real_t t916 = t903 * t540 - t898 * t539 + t905 * t541 + t907 * t536;
+    ddq_by_dq[26] = t916 + t910 * t544 + t912 * t547;
+    const rx90_real_t t917 = t903 * t549 - t898 * t548 + t905 * t550 + t907 * t551;
+    ddq_by_dq[32] = t917 + t910 * t553 + t912 * t555;
     ddq_by_input[2] = t490;
-    ddq_by_input[8] = t550;
-    ddq_by_input[14] = t558;
-    ddq_by_input[20] = t568;
-    ddq_by_input[26] = t578;
-    ddq_by_input[32] = t587;
-    const rx90_real_t t836 = RX90_C(2.0) * t361; /* link j4: derivatives */
-    const rx90_real_t t837 = RX90_C(2.0) * t356;
-    const rx90_real_t t838 = t399 * t836 + t409 * t837 + (t795 * t33 + (t60 * t600 - t62 * t612));
-    const rx90_real_t t839 = t688 + (t838 - t65 * t645);
-    const rx90_real_t t840 = t413 * t836 + t402 * t837 + (t795 * t35 - (t62 * t600 + t61 * t612));
-    const rx90_real_t t841 = t682 - (t840 - t65 * t651);
-    const rx90_real_t t842 = t423 * t837 - t67 * t651 - (t795 * t39 + t65 * t612);
-    const rx90_real_t t843 = t706 - t842;
-    const rx90_real_t t844 = t423 * t836 + t67 * t645 - (t795 * t44 - t65 * t600);
-    const rx90_real_t t845 = t844 - t702;
-    const rx90_real_t t846 = RX90_C(0.45) * (t34 * t843 + t36 * t845);
-    const rx90_real_t t847 = t36 * t839 - t34 * t841 - t846;
-    const rx90_real_t t848 = t39 * t651 - t44 * t645;
-    const rx90_real_t t849 = t795 * t28 - (t33 * t600 + t35 * t612);
-    const rx90_real_t t850 = t446 * t836 + t447 * t837 + t849 + t848;
-    const rx90_real_t t851 = t118 * (t79 * t847 + t75 * t850) + t115 * (t846 + (t75 * t847 - t79 * t850));
-    const rx90_real_t t852 = RX90_C(0.03333333333333333) * t851;
-    const rx90_real_t t853 = t36 * t843 - t34 * t845;
-    const rx90_real_t t854 = t34 * t839 + t36 * t841 + RX90_C(0.45) * t853;
-    const rx90_real_t t855 = t440 * t836 + t438 * t837 + (t39 * t600 + t44 * t612);
-    const rx90_real_t t856 = RX90_C(0.03333333333333333) * (t854 + RX90_C(0.45) * (t79 * t855 - t75 * t853));
-    const rx90_real_t t857 = RX90_C(0.03333333333333333) * t854;
-    const rx90_real_t t858 = RX90_C(0.1) * (t848 + (t361 * t500 + t356 * t501 + t849));
-    const rx90_real_t t859 = t477 * t856 - t475 * t852 + t490 * t857 + t499 * t858;
-    const rx90_real_t t860 = t361 * t520 + t356 * t521 + (t795 * t17 + (t51 * t600 + t9 * t612));
-    const rx90_real_t t861 = RX90_C(0.1) * (t860 + t52 * t651);
-    const rx90_real_t t862 = t361 * t539 + t356 * t540 + (t795 * t19 + (t47 * t600 - t3 * t612));
-    const rx90_real_t t863 = RX90_C(0.16666666666666666) * (t862 + (t48 * t651 - t40 * t645));
-    ddq_by_q[3] = t859 + t517 * t861 + t534 * t863;
-    const rx90_real_t t864 = t548 * t856 - t477 * t852 + t550 * t857 + t552 * t858;
-    ddq_by_q[9] = t864 + t555 * t861 + t557 * t863;
-    const rx90_real_t t865 = t550 * t856 - t490 * t852 + t558 * t857 + t560 * t858;
-    ddq_by_q[15] = t865 + t563 * t861 + t565 * t863;
-    const rx90_real_t t866 = t567 * t856 - t566 * t852 + t568 * t857 + t570 * t858;
-    ddq_by_q[21] = t866 + t573 * t861 + t575 * t863;
-    const rx90_real_t t867 = t577 * t856 - t576 * t852 + t578 * t857 + t573 * t858;
-    ddq_by_q[27] = t867 + t581 * t861 + t584 * t863;
-    const rx90_real_t t868 = t586 * t856 - t585 * t852 + t587 * t857 + t588 * t858;
-    ddq_by_q[33] = t868 + t590 * t861 + t592 * t863;
-    const rx90_real_t t869 = RX90_C(-2.0) * t436 + (t60 * t836 + t62 * t837);
-    const rx90_real_t t870 = RX90_C(2.0) * t437 - (t61 * t837 - t62 * t836);
-    const rx90_real_t t871 = RX90_C(2.0) * t440 + t65 * t837;
-    const rx90_real_t t872 = RX90_C(2.0) * t438 - t65 * t836;
-    const rx90_real_t t873 = RX90_C(0.45) * (t34 * t871 + t36 * t872);
-    const rx90_real_t t874 = t36 * t869 - t34 * t870 + t873;
-    const rx90_real_t t875 = t503 - (t35 * t837 - t33 * t836);
-    const rx90_real_t t876 = t118 * (t79 * t874 - t75 * t875) + t115 * (t75 * t874 + t79 * t875 - t873);
-    const rx90_real_t t877 = RX90_C(0.03333333333333333) * t876;
-    const rx90_real_t t878 = t36 * t871 - t34 * t872;
-    const rx90_real_t t879 = t34 * t869 + t36 * t870 + RX90_C(-0.45) * t878;
-    const rx90_real_t t880 = t75 * t878 + t79 * (t39 * t836 - t44 * t837);
-    const rx90_real_t t881 = RX90_C(0.03333333333333333) * (t879 + RX90_C(0.45) * t880);
-    const rx90_real_t t882 = RX90_C(0.03333333333333333) * t879;
-    const rx90_real_t t883 = RX90_C(0.1) * (t503 - RX90_C(2.0) * (t356 * t35 - t361 * t33));
-    const rx90_real_t t884 = RX90_C(250.0) * parameters[FV4] + t883;
-    const rx90_real_t t885 = t881 * t477 - t877 * t475 + t882 * t490 - t884 * t499;
-    const rx90_real_t t886 = RX90_C(0.1) * (RX90_C(2.0) * (t361 * t51 - t356 * t9) - t523);
-    const rx90_real_t t887 = RX90_C(0.16666666666666666) * (RX90_C(2.0) * (t361 * t47 + t356 * t3) - t542);
-    ddq_by_dq[3] = t885 + t886 * t517 + t887 * t534;
-    const rx90_real_t t888 = t881 * t548 - t877 * t477 + t882 * t550 - t884 * t552;
-    ddq_by_dq[9] = t888 + t886 * t555 + t887 * t557;
-    const rx90_real_t t889 = t881 * t550 - t877 * t490 + t882 * t558 - t884 * t560;
-    ddq_by_dq[15] = t889 + t886 * t563 + t887 * t565;
-    const rx90_real_t t890 = t881 * t567 - t877 * t566 + t882 * t568 - t884 * t570;
-    ddq_by_dq[21] = t890 + t886 * t573 + t887 * t575;
-    const rx90_real_t t891 = t881 * t577 - t877 * t576 + t882 * t578 - t884 * t573;
-    ddq_by_dq[27] = t891 + t886 * t581 + t887 * t584;
-    const rx90_real_t t892 = t881 * t586 - t877 * t585 + t882 * t587 - t884 * t588;
-    ddq_by_dq[33] = t892 + t886 * t590 + t887 * t592;
-    ddq_by_input[3] = t499;
-    ddq_by_input[9] = t552;
-    ddq_by_input[15] = t560;
-    ddq_by_input[21] = t570;
-    ddq_by_input[27] = t573;
-    ddq_by_input[33] = t588;
-    const rx90_real_t t893 = RX90_C(2.0) * t365; /* link j5: derivatives */
-    const rx90_real_t t894 = RX90_C(2.0) * t360;
-    const rx90_real_t t895 = t394 * t893 + t384 * t894 + (t703 * t15 + (t24 * t616 - t25 * t627));
-    const rx90_real_t t896 = t669 + (t895 - t38 * t654);
-    const rx90_real_t t897 = t381 * t893 + t390 * t894 + (t23 * t627 - t25 * t616 - t703 * t13);
-    const rx90_real_t t898 = t675 + (t897 + t38 * t650);
-    const rx90_real_t t899 = t16 * t898 + t14 * t896;
-    const rx90_real_t t900 = t703 * t9 + (t15 * t616 - t13 * t627);
-    const rx90_real_t t901 = t41 * t650 + t42 * t654;
-    const rx90_real_t t902 = t410 * t893 + t411 * t894 + t900 + t901;
-    const rx90_real_t t903 = t439 * t893 + t66 * t650 + (t703 * t41 + t38 * t627);
-    const rx90_real_t t904 = t696 + t903;
-    const rx90_real_t t905 = t38 * t616 - t703 * t42 - (t439 * t894 + t66 * t654);
-    const rx90_real_t t906 = t700 + t905;
-    const rx90_real_t t907 = t14 * t904 - t16 * t906;
-    const rx90_real_t t908 = t422 * t893 + t420 * t894 - (t42 * t627 + t41 * t616);
-    const rx90_real_t t909 = RX90_C(0.45) * (t34 * t907 + t36 * t908);
-    const rx90_real_t t910 = t36 * t899 - t34 * t902 - t909;
-    const rx90_real_t t911 = t14 * t898 - t16 * t896;
-    const rx90_real_t t912 = t118 * (t79 * t910 - t75 * t911) + t115 * (t909 + (t75 * t910 + t79 * t911));
-    const rx90_real_t t913 = RX90_C(0.03333333333333333) * t912;
-    const rx90_real_t t914 = t36 * t907 - t34 * t908;
-    const rx90_real_t t915 = t34 * t899 + t36 * t902 + RX90_C(0.45) * t914;
-    const rx90_real_t t916 = t79 * (t14 * t906 + t16 * t904) - t75 * t914;
-    const rx90_real_t t917 = RX90_C(0.03333333333333333) * (t915 + RX90_C(0.45) * t916);
-    const rx90_real_t t918 = RX90_C(0.03333333333333333) * t915;
-    const rx90_real_t t919 = RX90_C(0.1) * t911;
-    const rx90_real_t t920 = t477 * t917 - t475 * t913 + t490 * t918 - t499 * t919;
-    const rx90_real_t t921 = RX90_C(0.1) * (t901 + (t365 * t518 + t360 * t519 + t900));
-    const rx90_real_t t922 = t365 * t537 - t360 * t538 + (parameters[ZZ6] * t616 - t18 * t627 - t703 * t3);
-    const rx90_real_t t923 = RX90_C(0.16666666666666666) * (t922 + t37 * t654);
-    ddq_by_q[4] = t920 + t517 * t921 + t534 * t923;
-    const rx90_real_t t924 = t548 * t917 - t477 * t913 + t550 * t918 - t552 * t919;
-    ddq_by_q[10] = t924 + t555 * t921 + t557 * t923;
-    const rx90_real_t t925 = t550 * t917 - t490 * t913 + t558 * t918 - t560 * t919;
-    ddq_by_q[16] = t925 + t563 * t921 + t565 * t923;
-    const rx90_real_t t926 = t567 * t917 - t566 * t913 + t568 * t918 - t570 * t919;
-    ddq_by_q[22] = t926 + t573 * t921 + t575 * t923;
-    const rx90_real_t t927 = t577 * t917 - t576 * t913 + t578 * t918 - t573 * t919;
-    ddq_by_q[28] = t927 + t581 * t921 + t584 * t923;
-    const rx90_real_t t928 = t586 * t917 - t585 * t913 + t587 * t918 - t588 * t919;
-    ddq_by_q[34] = t928 + t590 * t921 + t592 * t923;
-    const rx90_real_t t929 = RX90_C(2.0) * t405 - (t23 * t893 + t25 * t894);
-    const rx90_real_t t930 = RX90_C(2.0) * t406 + (t25 * t893 + t24 * t894);
-    const rx90_real_t t931 = t16 * t929 + t14 * t930;
-    const rx90_real_t t932 = t521 + (t13 * t893 + t15 * t894);
-    const rx90_real_t t933 = RX90_C(2.0) * t420 - t38 * t893;
-    const rx90_real_t t934 = RX90_C(2.0) * t422 + t38 * t894;
-    const rx90_real_t t935 = t16 * t934 - t14 * t933;
-    const rx90_real_t t936 = t42 * t893 - t41 * t894;
-    const rx90_real_t t937 = RX90_C(0.45) * (t34 * t935 - t36 * t936);
-    const rx90_real_t t938 = t36 * t931 - t34 * t932 + t937;
-    const rx90_real_t t939 = t16 * t930 - t14 * t929;
-    const rx90_real_t t940 = t118 * (t79 * t938 + t75 * t939) + t115 * (t75 * t938 - t79 * t939 - t937);
-    const rx90_real_t t941 = RX90_C(0.03333333333333333) * t940;
-    const rx90_real_t t942 = t36 * t935 + t34 * t936;
-    const rx90_real_t t943 = t34 * t931 + t36 * t932 + RX90_C(-0.45) * t942;
-    const rx90_real_t t944 = t75 * t942 + t79 * (t14 * t934 + t16 * t933);
-    const rx90_real_t t945 = RX90_C(0.03333333333333333) * (t943 + RX90_C(0.45) * t944);
-    const rx90_real_t t946 = RX90_C(0.03333333333333333) * t943;
-    const rx90_real_t t947 = RX90_C(0.1) * t939;
-    const rx90_real_t t948 = t945 * t477 - t941 * t475 + t946 * t490 + t947 * t499;
-    const rx90_real_t t949 = RX90_C(0.1) * (t521 + RX90_C(2.0) * (t365 * t13 + t360 * t15));
-    const rx90_real_t t950 = RX90_C(-250.0) * parameters[FV5] + t949;
-    const rx90_real_t t951 = RX90_C(0.16666666666666666) * (t540 + RX90_C(2.0) * (t365 * t18
-        + t360 * parameters[ZZ6]));
-    ddq_by_dq[4] = t948 + t950 * t517 + t951 * t534;
-    const rx90_real_t t952 = t945 * t548 - t941 * t477 + t946 * t550 + t947 * t552;
-    ddq_by_dq[10] = t952 + t950 * t555 + t951 * t557;
-    const rx90_real_t t953 = t945 * t550 - t941 * t490 + t946 * t558 + t947 * t560;
-    ddq_by_dq[16] = t953 + t950 * t563 + t951 * t565;
-    const rx90_real_t t954 = t945 * t567 - t941 * t566 + t946 * t568 + t947 * t570;
-    ddq_by_dq[22] = t954 + t950 * t573 + t951 * t575;
-    const rx90_real_t t955 = t945 * t577 - t941 * t576 + t946 * t578 + t947 * t573;
-    ddq_by_dq[28] = t955 + t950 * t581 + t951 * t584;
-    const rx90_real_t t956 = t945 * t586 - t941 * t585 + t946 * t587 + t947 * t588;
-    ddq_by_dq[34] = t956 + t950 * t590 + t951 * t592;
-    ddq_by_input[4] = t517;
-    ddq_by_input[10] = t555;
-    ddq_by_input[16] = t563;
-    ddq_by_input[22] = t573;
-    ddq_by_input[28] = t581;
-    ddq_by_input[34] = t590;
-    const rx90_real_t t957 = RX90_C(2.0) * t363; /* link j6: derivatives */
-    const rx90_real_t t958 = RX90_C(2.0) * t369;
-    const rx90_real_t t959 = t368 * t957 + t376 * t958 + (parameters[XY6] * t620 - parameters[XX6] * t623
-        - t697 * parameters[XZ6]);
-    const rx90_real_t t960 = t662 + (t661 + t959);
-    const rx90_real_t t961 = t374 * t957 + t371 * t958 + (t697 * parameters[YZ6] + (parameters[XY6] * t623
-        - parameters[YY6] * t620));
-    const rx90_real_t t962 = t655 + (t961 - t653);
-    const rx90_real_t t963 = t2 * t960 + t1 * t962;
-    const rx90_real_t t964 = t697 * parameters[ZZ6] + (parameters[XZ6] * t623 - parameters[YZ6] * t620);
-    const rx90_real_t t965 = parameters[MX6] * t660 + parameters[MY6] * t652;
-    const rx90_real_t t966 = t391 * t957 + t392 * t958 + t964 + t965;
-    const rx90_real_t t967 = t16 * t963 + t14 * t966;
-    const rx90_real_t t968 = t1 * t960 - t2 * t962;
-    const rx90_real_t t969 = t694 + (t421 * t958 - t693 - (t697 * parameters[MY6] + t692));
-    const rx90_real_t t970 = t691 + (t421 * t957 - t690 + (t689 - t697 * parameters[MX6]));
-    const rx90_real_t t971 = t2 * t969 + t1 * t970;
-    const rx90_real_t t972 = t419 * t957 + t418 * t958 + (parameters[MY6] * t623 + parameters[MX6] * t620);
-    const rx90_real_t t973 = t14 * t972 - t16 * t971;
-    const rx90_real_t t974 = t2 * t970 - t1 * t969;
-    const rx90_real_t t975 = RX90_C(0.45) * (t34 * t973 + t36 * t974);
-    const rx90_real_t t976 = t36 * t967 - t34 * t968 - t975;
-    const rx90_real_t t977 = t14 * t963 - t16 * t966;
-    const rx90_real_t t978 = t118 * (t79 * t976 - t75 * t977) + t115 * (t975 + (t75 * t976 + t79 * t977));
-    const rx90_real_t t979 = RX90_C(0.03333333333333333) * t978;
-    const rx90_real_t t980 = t36 * t973 - t34 * t974;
-    const rx90_real_t t981 = t34 * t967 + t36 * t968 + RX90_C(0.45) * t980;
-    const rx90_real_t t982 = t79 * (t14 * t971 + t16 * t972) - t75 * t980;
-    const rx90_real_t t983 = RX90_C(0.03333333333333333) * (t981 + RX90_C(0.45) * t982);
-    const rx90_real_t t984 = RX90_C(0.03333333333333333) * t981;
-    const rx90_real_t t985 = RX90_C(0.1) * t977;
-    const rx90_real_t t986 = t477 * t983 - t475 * t979 + t490 * t984 - t499 * t985;
-    const rx90_real_t t987 = RX90_C(0.1) * t968;
-    const rx90_real_t t988 = RX90_C(0.16666666666666666) * (t965 + (t363 * t535 + t369 * t536 + t964));
-    ddq_by_q[5] = t986 + t517 * t987 + t534 * t988;
-    const rx90_real_t t989 = t548 * t983 - t477 * t979 + t550 * t984 - t552 * t985;
-    ddq_by_q[11] = t989 + t555 * t987 + t557 * t988;
-    const rx90_real_t t990 = t550 * t983 - t490 * t979 + t558 * t984 - t560 * t985;
-    ddq_by_q[17] = t990 + t563 * t987 + t565 * t988;
-    const rx90_real_t t991 = t567 * t983 - t566 * t979 + t568 * t984 - t570 * t985;
-    ddq_by_q[23] = t991 + t573 * t987 + t575 * t988;
-    const rx90_real_t t992 = t577 * t983 - t576 * t979 + t578 * t984 - t573 * t985;
-    ddq_by_q[29] = t992 + t581 * t987 + t584 * t988;
-    const rx90_real_t t993 = t586 * t983 - t585 * t979 + t587 * t984 - t588 * t985;
-    ddq_by_q[35] = t993 + t590 * t987 + t592 * t988;
-    const rx90_real_t t994 = RX90_C(-2.0) * t386 - (parameters[XX6] * t957 + parameters[XY6] * t958);
-    const rx90_real_t t995 = RX90_C(2.0) * t387 - (parameters[XY6] * t957 + parameters[YY6] * t958);
-    const rx90_real_t t996 = t2 * t994 - t1 * t995;
-    const rx90_real_t t997 = t538 + (parameters[XZ6] * t957 + parameters[YZ6] * t958);
-    const rx90_real_t t998 = t16 * t996 + t14 * t997;
-    const rx90_real_t t999 = t1 * t994 + t2 * t995;
-    const rx90_real_t t1000 = RX90_C(2.0) * t419 + parameters[MZ6] * t958;
-    const rx90_real_t t1001 = RX90_C(-2.0) * t418 + parameters[MZ6] * t957;
-    const rx90_real_t t1002 = t2 * t1000 + t1 * t1001;
-    const rx90_real_t t1003 = parameters[MY6] * t957 - parameters[MX6] * t958;
-    const rx90_real_t t1004 = t16 * t1002 - t14 * t1003;
-    const rx90_real_t t1005 = t1 * t1000 - t2 * t1001;
-    const rx90_real_t t1006 = RX90_C(0.45) * (t34 * t1004 + t36 * t1005);
-    const rx90_real_t t1007 = t36 * t998 - t34 * t999 + t1006;
-    const rx90_real_t t1008 = t16 * t997 - t14 * t996;
-    const rx90_real_t t1009 = t118 * (t79 * t1007 + t75 * t1008) + t115 * (t75 * t1007 - t79 * t1008 - t1006);
-    const rx90_real_t t1010 = RX90_C(0.03333333333333333) * t1009;
-    const rx90_real_t t1011 = t36 * t1004 - t34 * t1005;
-    const rx90_real_t t1012 = t34 * t998 + t36 * t999 + RX90_C(-0.45) * t1011;
-    const rx90_real_t t1013 = t75 * t1011 + t79 * (t14 * t1002 + t16 * t1003);
-    const rx90_real_t t1014 = RX90_C(0.03333333333333333) * (t1012 + RX90_C(0.45) * t1013);
-    const rx90_real_t t1015 = RX90_C(0.03333333333333333) * t1012;
-    const rx90_real_t t1016 = RX90_C(0.1) * t1008;
-    const rx90_real_t t1017 = t1014 * t477 - t1010 * t475 + t1015 * t490 + t1016 * t499;
-    const rx90_real_t t1018 = RX90_C(0.1) * t999;
-    const rx90_real_t t1019 = RX90_C(-150.0) * parameters[FV6];
-    ddq_by_dq[5] = t1017 + t1018 * t517 + t1019 * t534;
-    const rx90_real_t t1020 = t1014 * t548 - t1010 * t477 + t1015 * t550 + t1016 * t552;
-    ddq_by_dq[11] = t1020 + t1018 * t555 + t1019 * t557;
-    const rx90_real_t t1021 = t1014 * t550 - t1010 * t490 + t1015 * t558 + t1016 * t560;
-    ddq_by_dq[17] = t1021 + t1018 * t563 + t1019 * t565;
-    const rx90_real_t t1022 = t1014 * t567 - t1010 * t566 + t1015 * t568 + t1016 * t570;
-    ddq_by_dq[23] = t1022 + t1018 * t573 + t1019 * t575;
-    const rx90_real_t t1023 = t1014 * t577 - t1010 * t576 + t1015 * t578 + t1016 * t573;
-    ddq_by_dq[29] = t1023 + t1018 * t581 + t1019 * t584;
-    const rx90_real_t t1024 = t1014 * t586 - t1010 * t585 + t1015 * t587 + t1016 * t588;
-    ddq_by_dq[35] = t1024 + t1018 * t590 + t1019 * t592;
-    ddq_by_input[5] = t534;
-    ddq_by_input[11] = t557;
-    ddq_by_input[17] = t565;
-    ddq_by_input[23] = t575;
-    ddq_by_input[29] = t584;
-    ddq_by_input[35] = t592;
+    ddq_by_input[8] = t513;
+    ddq_by_input[14] = t521;
+    ddq_by_input[20] = t531;
+    ddq_by_input[26] = t541;
+    ddq_by_input[32] = t550;
+    const rx90_real_t t918 = parameters[M3] * t416 + (parameters[MX3] * t808 - parameters[MY3] * t363
+        - t814 * parameters[MZ3]);
+    const rx90_real_t t919 = t76 * t835 - t72 * t813 + RX90_C(0.45) * (t918 + t807);
+    const rx90_real_t t920 = t114 * t345;
+    const rx90_real_t t921 = t300 + t920;
+    const rx90_real_t t922 = t308 + parameters[YY2] * t414 - parameters[XY2] * (t300 + t921)
+        + parameters[YZ2] * (t211 - t346);
+    const rx90_real_t t923 = t310 + t206; /* link j3: motion */
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t924 = t76 * (t839 - t827) + t72 * (t843 - t817);
+    const rx90_real_t t925 = t76 * t924;
+    const rx90_real_t t926 = RX90_C(0.45) * (t76 * t846 + t72 * t847);
+    const rx90_real_t t927 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
+    const rx90_real_t t928 = t112 * t927; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t929 = RX90_C(0.45) * t156; /* link j3: velocity of its origin */
+    const rx90_real_t t930 = t143 * t929; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t931 = t928 - t930 - t926;
+    const rx90_real_t t932 = t156 * parameters[XZ2];
+    const rx90_real_t t933 = dq[1] * parameters[XY2];
+    const rx90_real_t t934 = t932 - t933 + (t931 + (t827 + t925 + t926));
+    const rx90_real_t t935 = RX90_C(2.0) * t156; /* link j2: derivatives */
+    const rx90_real_t t936 = t72 * t924; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t937 = RX90_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const rx90_real_t t938 = t937 - parameters[YY2];
+    const rx90_real_t t939 = t156 * parameters[YZ2] + dq[1] * t938 + (t936 - t843);
+    const rx90_real_t t940 = RX90_C(-2.0) * t155; /* link j2: derivatives */
+    const rx90_real_t t941 = t934 * t935 + t939 * t940 + (t923 * t144 + (t109 * t413 - t113 * t920));
+    const rx90_real_t t942 = parameters[MZ2] + t143; /* link j3: inertia of it and all beyond */
+    const rx90_real_t t943 = t312 + (t311 + t922) + t919 + (t941 - t208 * t942);
+    const rx90_real_t t944 = parameters[XX2] * t921 - t301 - parameters[XY2] * t415 + parameters[XZ2] * t409;
+    const rx90_real_t t945 = t303 + t944 - t304 + (t76 * t813 + t72 * t835);
+    const rx90_real_t t946 = t87 - t96;
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t947 = RX90_C(0.45) * (t72 * t846 - t76 * t847) + t946 * t927;
+    const rx90_real_t t948 = parameters[XX2] - t937;
+    const rx90_real_t t949 = dq[1] * t948 - t155 * parameters[XZ2] + (t817 + t936 + t947);
+    const rx90_real_t t950 = t155 * parameters[YZ2];
+    const rx90_real_t t951 = t933 - t950 + (t931 + (t839 - t925 - t928));
+    const rx90_real_t t952 = t949 * t935 + t951 * t940 + (t113 * t413 - t110 * t920 - t923 * t145);
+    const rx90_real_t t953 = t114 * t943 + t111 * (t945 + (t212 * t942 + t952));
+    const rx90_real_t t954 = RX90_C(0.03333333333333333) * t953;
+    const rx90_real_t t955 = t72 * t864 - t76 * t862 + (RX90_C(0.45) * t854 + t946 * t929);
+    /* link j2: derivatives */
+    const rx90_real_t t956 = RX90_C(2.0) * (t156 * t948 - t155 * parameters[XY2] + t955);
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t957 = t156 * parameters[XY2] + t155 * t938 - (t72 * t862 + t76 * t864 + t112 * t929);
+    const rx90_real_t t958 = RX90_C(2.0) * t957; /* link j2: derivatives */
+    const rx90_real_t t959 = t156 * t956 - t155 * t958 + (t923 * t98 + (t144 * t413 + t145 * t920));
+    const rx90_real_t t960 = t212 * (parameters[MY2] + t112) - t208 * (parameters[MX2] - t946) + t959;
+    const rx90_real_t t961 = RX90_C(0.03333333333333333) * t960;
+    const rx90_real_t t962 = RX90_C(0.9) * t156; /* link j6: derivatives */
+    const rx90_real_t t963 = t72 * t869 - t76 * t868 + t87 * t962; /* link j3: derivatives */
+    const rx90_real_t t964 = t72 * t868 + t76 * t869 + t112 * t962;
+    const rx90_real_t t965 = t156 * t963 + t155 * t964 + (t138 * t413 + t139 * t920 - t923 * t88);
+    const rx90_real_t t966 = RX90_C(0.03333333333333333) * (t212 * t112 + t208 * t87 + t965);
+    const rx90_real_t t967 = RX90_C(-0.9) * dq[1]; /* link j6: derivatives */
+    const rx90_real_t t968 = t76 * t871 - t72 * t874 + (t83 * t967 - t73 * t962); /* link j4: derivatives */
+    const rx90_real_t t969 = t76 * t43; /* link j4: column of the mass matrix */
+    const rx90_real_t t970 = t72 * t871 + t76 * t874 + t969 * t962; /* link j4: derivatives */
+    const rx90_real_t t971 = t156 * t968 - t155 * t970 + (t923 * t74 + (t132 * t920 - t131 * t413));
+    const rx90_real_t t972 = RX90_C(0.1) * (t212 * t969 + t208 * t73 - t971);
+    const rx90_real_t t973 = t487 * t961 - t481 * t954 + t490 * t966 + t494 * t972;
+    const rx90_real_t t974 = t72 * t879 - t76 * t878 + (t124 * t967 - t79 * t962); /* link j5: derivatives */
+    const rx90_real_t t975 = t76 * t51 + t72 * t41; /* link j5: column of the mass matrix */
+    const rx90_real_t t976 = t72 * t878 + t76 * t879 + t975 * t962; /* link j5: derivatives */
+    const rx90_real_t t977 = t156 * t974 + t155 * t976 + (t923 * t80 + (t127 * t413 + t128 * t920));
+    const rx90_real_t t978 = RX90_C(0.1) * (t212 * t975 - t208 * t79 + t977);
+    const rx90_real_t t979 = t72 * t883 - t76 * t882 + (t117 * t967 + t77 * t962); /* link j6: derivatives */
+    const rx90_real_t t980 = t76 * t47 - t72 * t75; /* link j6: column of the mass matrix */
+    const rx90_real_t t981 = t72 * t882 + t76 * t883 + t980 * t962; /* link j6: derivatives */
+    const rx90_real_t t982 = t156 * t979 + t155 * t981 + (t923 * t78 + (t120 * t413 + t121 * t920));
+    const rx90_real_t t983 = RX90_C(0.16666666666666666) * (t212 * t980 + t208 * t77 + t982);
+    ddq_by_q[1] = t973 + t501 * t978 + t510 * t983;
+    const rx90_real_t t984 = t511 * t961 - t487 * t954 + t513 * t966 + t515 * t972;
+    ddq_by_q[7] = t984 + t518 * t978 + t520 * t983;
+    const rx90_real_t t985 = t513 * t961 - t490 * t954 + t521 * t966 + t523 * t972;
+    ddq_by_q[13] = t985 + t526 * t978 + t528 * t983;
+    const rx90_real_t t986 = t530 * t961 - t529 * t954 + t531 * t966 + t533 * t972;
+    ddq_by_q[19] = t986 + t536 * t978 + t538 * t983;
+    const rx90_real_t t987 = t540 * t961 - t539 * t954 + t541 * t966 + t536 * t972;
+    ddq_by_q[25] = t987 + t544 * t978 + t547 * t983;
+    const rx90_real_t t988 = t549 * t961 - t548 * t954 + t550 * t966 + t551 * t972;
+    ddq_by_q[31] = t988 + t553 * t978 + t555 * t983;
+    const rx90_real_t t989 = parameters[ZZ2] - t937;
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t990 = t156 * t989 - dq[1] * parameters[YZ2] + (t76 * t892 - t72 * t894);
+    /* link j2: derivatives */
+    const rx90_real_t t991 = t114 * (RX90_C(2.0) * t990 + (t109 * t935 + t113 * t940));
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t992 = dq[1] * parameters[XZ2] - t155 * t989 + (t72 * t892 + t76 * t894 - t143 * t927);
+    /* link j2: derivatives */
+    const rx90_real_t t993 = t111 * (RX90_C(2.0) * t992 + (t113 * t935 + t110 * t940));
+    const rx90_real_t t994 = RX90_C(0.03333333333333333) * (t991 + t993);
+    const rx90_real_t t995 = RX90_C(2.0) * (t932 - t950 + (t899 - t930 - t931)) + RX90_C(2.0) * (t156 * t144
+        + t155 * t145);
+    const rx90_real_t t996 = RX90_C(-333.33333333333337) * parameters[FV2]
+        + RX90_C(0.03333333333333333) * t995;
+    /* link j3: derivatives */
+    const rx90_real_t t997 = t900 + t112 * t967 + RX90_C(2.0) * (t156 * t138 + t155 * t139);
+    const rx90_real_t t998 = RX90_C(0.03333333333333333) * t997;
+    /* link j4: derivatives */
+    const rx90_real_t t999 = t906 + t969 * t967 - RX90_C(2.0) * (t155 * t132 - t156 * t131);
+    const rx90_real_t t1000 = RX90_C(0.1) * t999;
+    const rx90_real_t t1001 = t996 * t487 - t994 * t481 + t998 * t490 + t1000 * t494;
+    /* link j5: derivatives */
+    const rx90_real_t t1002 = t909 + t975 * t967 + RX90_C(2.0) * (t156 * t127 + t155 * t128);
+    const rx90_real_t t1003 = RX90_C(0.1) * t1002;
+    /* link j6: derivatives */
+    const rx90_real_t t1004 = t911 + t980 * t967 + RX90_C(2.0) * (t156 * t120 + t155 * t121);
+    const rx90_real_t t1005 = RX90_C(0.16666666666666666) * t1004;
+    ddq_by_dq[1] = t1001 + t1003 * t501 + t1005 * t510;
+    const rx90_real_t t1006 = t996 * t511 - t994 * t487 + t998 * t513 + t1000 * t515;
+    ddq_by_dq[7] = t1006 + t1003 * t518 + t1005 * t520;
+    const rx90_real_t t1007 = t996 * t513 - t994 * t490 + t998 * t521 + t1000 * t523;
+    ddq_by_dq[13] = t1007 + t1003 * t526 + t1005 * t528;
+    const rx90_real_t t1008 = t996 * t530 - t994 * t529 + t998 * t531 + t1000 * t533;
+    ddq_by_dq[19] = t1008 + t1003 * t536 + t1005 * t538;
+    const rx90_real_t t1009 = t996 * t540 - t994 * t539 + t998 * t541 + t1000 * t536;
+    ddq_by_dq[25] = t1009 + t1003 * t544 + t1005 * t547;
+    const rx90_real_t t1010 = t996 * t549 - t994 * t548 + t998 * t550 + t1000 * t551;
+    ddq_by_dq[31] = t1010 + t1003 * t553 + t1005 * t555;
+    ddq_by_input[1] = t487;
+    ddq_by_input[7] = t511;
+    ddq_by_input[13] = t513;
+    ddq_by_input[19] = t530;
+    ddq_by_input[25] = t540;
+    ddq_by_input[31] = t549;
+    /* link j2: inertia, momentum beyond */
+    const rx90_real_t t1011 = t111 * (t111 * (t951 - t934) + t114 * (t939 + t949));
+    const rx90_real_t t1012 = RX90_C(333.33333333333337) * parameters[FV1]
+        + RX90_C(0.06666666666666667) * (t934 + t1011);
+    const rx90_real_t t1013 = RX90_C(0.03333333333333333) * (t114 * t956 + t111 * t958);
+    const rx90_real_t t1014 = RX90_C(0.03333333333333333) * (t114 * t963 - t111 * t964);
+    const rx90_real_t t1015 = RX90_C(0.1) * (t114 * t968 + t111 * t970);
+    const rx90_real_t t1016 = t1013 * t487 - t1012 * t481 + t1014 * t490 - t1015 * t494;
+    const rx90_real_t t1017 = RX90_C(0.1) * (t114 * t974 - t111 * t976);
+    const rx90_real_t t1018 = RX90_C(0.16666666666666666) * (t114 * t979 - t111 * t981);
+    ddq_by_dq[0] = t1016 + t1017 * t501 + t1018 * t510;
+    const rx90_real_t t1019 = t1013 * t511 - t1012 * t487 + t1014 * t513 - t1015 * t515;
+    ddq_by_dq[6] = t1019 + t1017 * t518 + t1018 * t520;
+    const rx90_real_t t1020 = t1013 * t513 - t1012 * t490 + t1014 * t521 - t1015 * t523;
+    ddq_by_dq[12] = t1020 + t1017 * t526 + t1018 * t528;
+    const rx90_real_t t1021 = t1013 * t530 - t1012 * t529 + t1014 * t531 - t1015 * t533;
+    ddq_by_dq[18] = t1021 + t1017 * t536 + t1018 * t538;
+    const rx90_real_t t1022 = t1013 * t540 - t1012 * t539 + t1014 * t541 - t1015 * t536;
+    ddq_by_dq[24] = t1022 + t1017 * t544 + t1018 * t547;
+    const rx90_real_t t1023 = t1013 * t549 - t1012 * t548 + t1014 * t550 - t1015 * t551;
+    ddq_by_dq[30] = t1023 + t1017 * t553 + t1018 * t555;
+    ddq_by_input[0] = t481;
+    ddq_by_input[6] = t487;
+    ddq_by_input[12] = t490;
+    ddq_by_input[18] = t529;
+    ddq_by_input[24] = t539;
+    ddq_by_input[30] = t548;
     /* always zero */
     ddq_by_q[0] = RX90_C(0.0);
     ddq_by_q[6] = RX90_C(0.0);
@@ -1514,10 +1486,10 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = RX90_C(0.0);
     ddq_by_q[24] = RX90_C(0.0);
     ddq_by_q[30] = RX90_C(0.0);
-    if (!rx90_all_bounded(ddq, 6)
-        || !rx90_all_bounded(ddq_by_q, 36)
-        || !rx90_all_bounded(ddq_by_dq, 36)
-        || !rx90_all_bounded(ddq_by_input, 36)) {
+    if (!rx90_bounded(ddq, 6)
+        || !rx90_bounded(ddq_by_q, 36)
+        || !rx90_bounded(ddq_by_dq, 36)
+        || !rx90_bounded(ddq_by_input, 36)) {
         rx90_zero(ddq, 6);
         rx90_zero(ddq_by_q, 36);
         rx90_zero(ddq_by_dq, 36);

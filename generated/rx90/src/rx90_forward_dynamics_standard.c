@@ -6,7 +6,7 @@
  * Arm rx90, description 10f0505273a073e2.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 976 (515 mul, 461 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 976 (515 mul, 461 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -107,7 +107,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x88006983UL
+#if RX90_GENERATION != 0x1B6CDAA1UL
 #error "rx90.h and rx90_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -135,17 +135,17 @@ rx90_status_t rx90_forward_dynamics_standard(
         return status;
     }
 
-    rx90_real_t t104, t102;
-    RX90_SINCOS(q[1], &t104, &t102);
-    rx90_real_t t73, t74;
-    RX90_SINCOS(q[2], &t73, &t74);
-    rx90_real_t t34, t36;
-    RX90_SINCOS(q[3], &t34, &t36);
-    rx90_real_t t14, t16;
-    RX90_SINCOS(q[4], &t14, &t16);
+    rx90_real_t t100, t98;
+    RX90_SINCOS(q[1], &t100, &t98);
+    rx90_real_t t70, t71;
+    RX90_SINCOS(q[2], &t70, &t71);
+    rx90_real_t t32, t34;
+    RX90_SINCOS(q[3], &t32, &t34);
+    rx90_real_t t13, t15;
+    RX90_SINCOS(q[4], &t13, &t15);
     rx90_real_t t1, t2;
     RX90_SINCOS(q[5], &t1, &t2);
-    const rx90_real_t t0 = rx90_bounded(parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6]);
+    const rx90_real_t t0 = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
     if (!(t0 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
@@ -159,448 +159,431 @@ rx90_status_t rx90_forward_dynamics_standard(
     const rx90_real_t t8 = t2 * t7;
     const rx90_real_t t9 = parameters[ZZ5] + (parameters[XX6] + t8);
     const rx90_real_t t10 = t9 + RX90_C(2.5e3) * parameters[IA5];
-    const rx90_real_t t11 = rx90_bounded(t10 + t3 * t5);
+    const rx90_real_t t11 = t10 + t3 * t5;
     if (!(t11 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t12 = t11 + RX90_C(-1.0e-9) * t10;
-    if (!(t12 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t13 = parameters[XZ5] - (parameters[XY6] - t1 * t7);
-    const rx90_real_t t15 = parameters[YZ5] - t3;
-    const rx90_real_t t17 = t14 * t13 + t16 * t15; /* link j5: column of the mass matrix */
+    const rx90_real_t t12 = parameters[XZ5] - (parameters[XY6] - t1 * t7);
+    const rx90_real_t t14 = parameters[YZ5] - t3;
+    const rx90_real_t t16 = t13 * t12 + t15 * t14; /* link j5: column of the mass matrix */
     /* link j6: column of the mass matrix */
-    const rx90_real_t t18 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
-    const rx90_real_t t19 = t16 * parameters[ZZ6] - t14 * t18;
-    const rx90_real_t t20 = t17 - t19 * t5;
-    const rx90_real_t t21 = RX90_C(1.0) / t11;
-    const rx90_real_t t22 = t20 * t21;
+    const rx90_real_t t17 = t1 * parameters[YZ6] - t2 * parameters[XZ6];
+    const rx90_real_t t18 = t15 * parameters[ZZ6] - t13 * t17;
+    const rx90_real_t t19 = t16 - t18 * t5;
+    const rx90_real_t t20 = RX90_C(1.0) / t11;
+    const rx90_real_t t21 = t19 * t20;
     /* link j6: inertia of it and all beyond */
-    const rx90_real_t t23 = parameters[XX5] + (parameters[YY6] - t8);
-    const rx90_real_t t24 = parameters[YY5] + parameters[ZZ6];
-    const rx90_real_t t25 = t18 - parameters[XY5];
+    const rx90_real_t t22 = parameters[XX5] + (parameters[YY6] - t8);
+    const rx90_real_t t23 = parameters[YY5] + parameters[ZZ6];
+    const rx90_real_t t24 = t17 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
-    const rx90_real_t t26 = t16 * (t24 - t23) - t25 * (RX90_C(2.0) * t14);
-    const rx90_real_t t27 = t16 * t26;
-    const rx90_real_t t28 = parameters[ZZ4] + (t23 + t27);
-    const rx90_real_t t29 = t28 + RX90_C(2.5e3) * parameters[IA4];
-    const rx90_real_t t30 = t19 * t4;
-    const rx90_real_t t31 = rx90_bounded(t29 + t19 * t30 - t20 * t22);
-    if (!(t31 > RX90_C(1.0e-12))) {
+    const rx90_real_t t25 = t15 * (t23 - t22) - t24 * (RX90_C(2.0) * t13);
+    const rx90_real_t t26 = t15 * t25;
+    const rx90_real_t t27 = parameters[ZZ4] + (t22 + t26);
+    const rx90_real_t t28 = t27 + RX90_C(2.5e3) * parameters[IA4];
+    const rx90_real_t t29 = t18 * t4;
+    const rx90_real_t t30 = t28 + t18 * t29 - t19 * t21;
+    if (!(t30 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t32 = t31 + RX90_C(-1.0e-9) * t29;
-    if (!(t32 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t33 = t25 + t14 * t26 - parameters[XZ4];
-    const rx90_real_t t35 = t17 - parameters[YZ4];
+    const rx90_real_t t31 = t24 + t13 * t25 - parameters[XZ4];
+    const rx90_real_t t33 = t16 - parameters[YZ4];
     /* link j6: column of the mass matrix */
-    const rx90_real_t t37 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const rx90_real_t t35 = t2 * parameters[MY6] + t1 * parameters[MX6];
     /* link j5: inertia of it and all beyond */
-    const rx90_real_t t38 = parameters[MY4] - (parameters[MZ5] - t37);
+    const rx90_real_t t36 = parameters[MY4] - (parameters[MZ5] - t35);
     /* link j6: column of the mass matrix */
-    const rx90_real_t t39 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const rx90_real_t t40 = t39 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t41 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t42 = t14 * t41 + t16 * t40; /* link j5: column of the mass matrix */
-    const rx90_real_t t43 = t42 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t44 = t34 * t43 - t36 * t38; /* link j4: column of the mass matrix */
-    const rx90_real_t t45 = t34 * t33 + t36 * t35 + RX90_C(-0.45) * t44;
-    const rx90_real_t t46 = t16 * t18 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const rx90_real_t t47 = t16 * t37;
-    const rx90_real_t t48 = t36 * t47 - t34 * t39;
-    const rx90_real_t t49 = t36 * t3 - t34 * t46 - RX90_C(0.45) * t48;
-    const rx90_real_t t50 = t14 * t15 - t16 * t13; /* link j5: column of the mass matrix */
-    const rx90_real_t t51 = t14 * t40 - t16 * t41;
-    const rx90_real_t t52 = t36 * t51;
-    const rx90_real_t t53 = t34 * t50 + t36 * t9 + RX90_C(-0.45) * t52;
-    const rx90_real_t t54 = t53 + t49 * t5;
-    const rx90_real_t t55 = t45 - t49 * t30 - t54 * t22;
-    const rx90_real_t t56 = RX90_C(-1.0) / t31;
-    const rx90_real_t t57 = t55 * t56;
-    const rx90_real_t t58 = t49 * t4;
-    const rx90_real_t t59 = parameters[XX4] + (t24 - t27); /* link j5: inertia of it and all beyond */
-    const rx90_real_t t60 = parameters[YY4] + t9;
-    const rx90_real_t t61 = parameters[XY4] + t50;
+    const rx90_real_t t37 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const rx90_real_t t38 = t37 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t39 = parameters[MY5] + parameters[MZ6];
+    const rx90_real_t t40 = t13 * t39 + t15 * t38; /* link j5: column of the mass matrix */
+    const rx90_real_t t41 = t40 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t42 = t32 * t41 - t34 * t36; /* link j4: column of the mass matrix */
+    const rx90_real_t t43 = t32 * t31 + t34 * t33 + RX90_C(-0.45) * t42;
+    const rx90_real_t t44 = t15 * t17 + t13 * parameters[ZZ6]; /* link j6: column of the mass matrix */
+    const rx90_real_t t45 = t15 * t35;
+    const rx90_real_t t46 = t34 * t45 - t32 * t37;
+    const rx90_real_t t47 = t34 * t3 - t32 * t44 - RX90_C(0.45) * t46;
+    const rx90_real_t t48 = t13 * t14 - t15 * t12; /* link j5: column of the mass matrix */
+    const rx90_real_t t49 = t13 * t38 - t15 * t39;
+    const rx90_real_t t50 = t34 * t49;
+    const rx90_real_t t51 = t32 * t48 + t34 * t9 + RX90_C(-0.45) * t50;
+    const rx90_real_t t52 = t51 + t47 * t5;
+    const rx90_real_t t53 = t43 - t47 * t29 - t52 * t21;
+    const rx90_real_t t54 = RX90_C(-1.0) / t30;
+    const rx90_real_t t55 = t53 * t54;
+    const rx90_real_t t56 = t47 * t4;
+    const rx90_real_t t57 = parameters[XX4] + (t23 - t26); /* link j5: inertia of it and all beyond */
+    const rx90_real_t t58 = parameters[YY4] + t9;
+    const rx90_real_t t59 = parameters[XY4] + t48;
     /* link j4: inertia of it and all beyond */
-    const rx90_real_t t62 = t36 * (t59 - t60) + t61 * (RX90_C(-2.0) * t34);
-    const rx90_real_t t63 = t36 * t62;
-    const rx90_real_t t64 = t51 - parameters[MZ4]; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t65 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const rx90_real_t t66 = RX90_C(0.45) * t65; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t67 = RX90_C(0.45) * (t66 + RX90_C(-2.0) * t64);
-    const rx90_real_t t68 = parameters[ZZ3] + (t59 - t63 + t67);
-    const rx90_real_t t69 = t68 + RX90_C(1.0e4) * parameters[IA3];
-    const rx90_real_t t70 = t54 * t21;
-    const rx90_real_t t71 = rx90_bounded(t69 + t49 * t58 - t54 * t70 + t55 * t57);
-    if (!(t71 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t72 = t71 + RX90_C(-1.0e-9) * t69;
-    if (!(t72 > RX90_C(1.0e-12))) {
+    const rx90_real_t t60 = t34 * (t57 - t58) + t59 * (RX90_C(-2.0) * t32);
+    const rx90_real_t t61 = t34 * t60;
+    const rx90_real_t t62 = t49 - parameters[MZ4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t63 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const rx90_real_t t64 = RX90_C(0.45) * t63; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t65 = RX90_C(0.45) * (t64 + RX90_C(-2.0) * t62);
+    const rx90_real_t t66 = parameters[ZZ3] + (t57 - t61 + t65);
+    const rx90_real_t t67 = t66 + RX90_C(1.0e4) * parameters[IA3];
+    const rx90_real_t t68 = t52 * t20;
+    const rx90_real_t t69 = t67 + t47 * t56 - t52 * t68 + t53 * t55;
+    if (!(t69 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
     /* link j6: column of the mass matrix */
-    const rx90_real_t t75 = t49 + RX90_C(0.45) * (t73 * t48 + t74 * (t14 * t37));
-    const rx90_real_t t76 = RX90_C(0.45) * (t74 * t42 - t73 * t52) - t53 - t75 * t5;
-    const rx90_real_t t77 = t45 + RX90_C(0.45) * (t73 * t44) - t75 * t30 + t76 * t22;
-    const rx90_real_t t78 = t34 * t38 + t36 * t43; /* link j4: column of the mass matrix */
-    const rx90_real_t t79 = t78 - parameters[MX3]; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t80 = t64 - t66 - parameters[MY3];
-    const rx90_real_t t81 = t74 * t79 - t73 * t80; /* link j3: column of the mass matrix */
-    const rx90_real_t t82 = RX90_C(0.45) * t81 - t68 - t75 * t58 - t76 * t70;
-    const rx90_real_t t83 = t82 - t77 * t57;
-    const rx90_real_t t84 = RX90_C(1.0) / t71;
-    const rx90_real_t t85 = t83 * t84;
-    const rx90_real_t t86 = t77 * t56;
-    const rx90_real_t t87 = t76 * t21;
-    const rx90_real_t t88 = t75 * t4;
+    const rx90_real_t t72 = t47 + RX90_C(0.45) * (t70 * t46 + t71 * (t13 * t35));
+    const rx90_real_t t73 = RX90_C(0.45) * (t71 * t40 - t70 * t50) - t51 - t72 * t5;
+    const rx90_real_t t74 = t43 + RX90_C(0.45) * (t70 * t42) - t72 * t29 + t73 * t21;
+    const rx90_real_t t75 = t32 * t36 + t34 * t41; /* link j4: column of the mass matrix */
+    const rx90_real_t t76 = t75 - parameters[MX3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t77 = t62 - t64 - parameters[MY3];
+    const rx90_real_t t78 = t71 * t76 - t70 * t77; /* link j3: column of the mass matrix */
+    const rx90_real_t t79 = RX90_C(0.45) * t78 - t66 - t72 * t56 - t73 * t68;
+    const rx90_real_t t80 = t79 - t74 * t55;
+    const rx90_real_t t81 = RX90_C(1.0) / t69;
+    const rx90_real_t t82 = t80 * t81;
+    const rx90_real_t t83 = t74 * t54;
+    const rx90_real_t t84 = t73 * t20;
+    const rx90_real_t t85 = t72 * t4;
     /* link j3: inertia of it and all beyond */
-    const rx90_real_t t89 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t65) + RX90_C(-2.0) * t81);
-    const rx90_real_t t90 = parameters[ZZ2] + (t68 + t89) + RX90_C(1.0e4) * parameters[IA2];
-    const rx90_real_t t91 = t90 + t75 * t88 - t76 * t87 + t77 * t86;
-    const rx90_real_t t92 = rx90_bounded(t91 - t83 * t85);
-    if (!(t92 > RX90_C(1.0e-12))) {
+    const rx90_real_t t86 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t63) + RX90_C(-2.0) * t78);
+    const rx90_real_t t87 = parameters[ZZ2] + (t66 + t86) + RX90_C(1.0e4) * parameters[IA2];
+    const rx90_real_t t88 = t87 + t72 * t85 - t73 * t84 + t74 * t83;
+    const rx90_real_t t89 = t88 - t80 * t82;
+    if (!(t89 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t93 = t92 + RX90_C(-1.0e-9) * t90;
-    if (!(t93 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t94 = parameters[XX3] + (t60 + t63 + t67); /* link j4: inertia of it and all beyond */
-    const rx90_real_t t95 = parameters[YY3] + t28;
-    const rx90_real_t t96 = RX90_C(0.45) * t78; /* link j4: column of the mass matrix */
-    const rx90_real_t t97 = t34 * t35 - t36 * t33 + t96;
-    const rx90_real_t t98 = parameters[XY3] + t97; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t90 = parameters[XX3] + (t58 + t61 + t65); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t91 = parameters[YY3] + t27;
+    const rx90_real_t t92 = RX90_C(0.45) * t75; /* link j4: column of the mass matrix */
+    const rx90_real_t t93 = t32 * t33 - t34 * t31 + t92;
+    const rx90_real_t t94 = parameters[XY3] + t93; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const rx90_real_t t99 = t74 * (t94 - t95) - t98 * (RX90_C(2.0) * t73);
-    const rx90_real_t t100 = t74 * t99;
-    const rx90_real_t t101 = parameters[XX2] + (t95 + t100);
-    const rx90_real_t t103 = t98 + t73 * t99 + RX90_C(0.45) * (t74 * t80 + t73 * t79);
+    const rx90_real_t t95 = t71 * (t90 - t91) - t94 * (RX90_C(2.0) * t70);
+    const rx90_real_t t96 = t71 * t95;
+    const rx90_real_t t97 = parameters[XX2] + (t91 + t96);
+    const rx90_real_t t99 = t94 + t70 * t95 + RX90_C(0.45) * (t71 * t77 + t70 * t76);
     /* link j2: inertia of it and all beyond */
-    const rx90_real_t t105 = t102 * (parameters[YY2] + (t94 - t100 + t89) - t101) + (parameters[XY2]
-        + t103) * (RX90_C(2.0) * t104);
-    const rx90_real_t t106 = parameters[ZZ1] + (t101 + t102 * t105) + RX90_C(1.0e4) * parameters[IA1];
-    const rx90_real_t t107 = RX90_C(0.45) * (t34 * t47 + t36 * t39); /* link j6: column of the mass matrix */
-    const rx90_real_t t108 = t36 * t46 + t34 * t3 - t107;
-    const rx90_real_t t109 = t104 * (t74 * t108 + t73 * t19) + t102 * (t107 + (t73 * t108 - t74 * t19));
-    const rx90_real_t t110 = t109 * t4;
-    const rx90_real_t t111 = RX90_C(-0.45) * (t34 * t51); /* link j5: column of the mass matrix */
-    const rx90_real_t t112 = t36 * t50 - t34 * t9 - t111;
-    const rx90_real_t t113 = t104 * (t74 * t112 + t73 * t17) + t102 * (t111 + (t73 * t112 - t74 * t17));
-    const rx90_real_t t114 = t113 - t109 * t5;
-    const rx90_real_t t115 = t114 * t21;
+    const rx90_real_t t101 = t98 * (parameters[YY2] + (t90 - t96 + t86) - t97) + (parameters[XY2]
+        + t99) * (RX90_C(2.0) * t100);
+    const rx90_real_t t102 = parameters[ZZ1] + (t97 + t98 * t101) + RX90_C(1.0e4) * parameters[IA1];
+    const rx90_real_t t103 = RX90_C(0.45) * (t32 * t45 + t34 * t37); /* link j6: column of the mass matrix */
+    const rx90_real_t t104 = t34 * t44 + t32 * t3 - t103;
+    const rx90_real_t t105 = t100 * (t71 * t104 + t70 * t18) + t98 * (t103 + (t70 * t104 - t71 * t18));
+    const rx90_real_t t106 = t105 * t4;
+    const rx90_real_t t107 = RX90_C(-0.45) * (t32 * t49); /* link j5: column of the mass matrix */
+    const rx90_real_t t108 = t34 * t48 - t32 * t9 - t107;
+    const rx90_real_t t109 = t100 * (t71 * t108 + t70 * t16) + t98 * (t107 + (t70 * t108 - t71 * t16));
+    const rx90_real_t t110 = t109 - t105 * t5;
+    const rx90_real_t t111 = t110 * t20;
     /* link j4: column of the mass matrix */
-    const rx90_real_t t116 = t104 * (t73 * t28 - t74 * t97) + t102 * (t96 - (t73 * t97 + t74 * t28));
-    const rx90_real_t t117 = t116 + t109 * t30 - t114 * t22;
-    const rx90_real_t t118 = t117 * t56;
-    const rx90_real_t t119 = t106 + t109 * t110 - t114 * t115 + t117 * t118;
-    const rx90_real_t t120 = t61 + t34 * t62 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t121 = parameters[YZ3] + t45;
-    const rx90_real_t t122 = t74 * t120 + t73 * t121; /* link j3: column of the mass matrix */
-    const rx90_real_t t123 = t73 * t120 - t74 * t121;
-    const rx90_real_t t124 = t104 * t122 + t102 * t123 - t109 * t58 - t114 * t70;
-    const rx90_real_t t125 = t124 + t117 * t57;
-    const rx90_real_t t126 = t125 * t84;
+    const rx90_real_t t112 = t100 * (t70 * t27 - t71 * t93) + t98 * (t92 - (t70 * t93 + t71 * t27));
+    const rx90_real_t t113 = t112 + t105 * t29 - t110 * t21;
+    const rx90_real_t t114 = t113 * t54;
+    const rx90_real_t t115 = t102 + t105 * t106 - t110 * t111 + t113 * t114;
+    const rx90_real_t t116 = t59 + t32 * t60 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t117 = parameters[YZ3] + t43;
+    const rx90_real_t t118 = t71 * t116 + t70 * t117; /* link j3: column of the mass matrix */
+    const rx90_real_t t119 = t70 * t116 - t71 * t117;
+    const rx90_real_t t120 = t100 * t118 + t98 * t119 - t105 * t56 - t110 * t68;
+    const rx90_real_t t121 = t120 + t113 * t55;
+    const rx90_real_t t122 = t121 * t81;
     /* link j2: column of the mass matrix */
-    const rx90_real_t t127 = t104 * (t122 + RX90_C(0.45) * (parameters[MZ3] + t44) - parameters[XZ2])
-        + t102 * (t123 - parameters[YZ2]);
-    const rx90_real_t t128 = t127 - t109 * t88 + t114 * t87 + t117 * t86;
-    const rx90_real_t t129 = t128 + t125 * t85;
-    const rx90_real_t t130 = RX90_C(1.0) / t92;
-    const rx90_real_t t131 = t129 * t130;
-    const rx90_real_t t132 = rx90_bounded(t119 - t125 * t126 - t129 * t131);
+    const rx90_real_t t123 = t100 * (t118 + RX90_C(0.45) * (parameters[MZ3] + t42) - parameters[XZ2])
+        + t98 * (t119 - parameters[YZ2]);
+    const rx90_real_t t124 = t123 - t105 * t85 + t110 * t84 + t113 * t83;
+    const rx90_real_t t125 = t124 + t121 * t82;
+    const rx90_real_t t126 = RX90_C(1.0) / t89;
+    const rx90_real_t t127 = t125 * t126;
+    const rx90_real_t t128 = t115 - t121 * t122 - t125 * t127;
+    if (!(t128 > RX90_C(1.0e-12))) {
+        rx90_zero(out, 6);
+        return RX90_STATUS_PIVOT;
+    }
+    const rx90_real_t t129 = rx90_min(t11 + RX90_C(-1.0e-9) * t10, t30 + RX90_C(-1.0e-9) * t28);
+    const rx90_real_t t130 = rx90_min(t129, t69 + RX90_C(-1.0e-9) * t67);
+    const rx90_real_t t131 = rx90_min(t130, t89 + RX90_C(-1.0e-9) * t87);
+    const rx90_real_t t132 = rx90_min(t131, t128 + RX90_C(-1.0e-9) * t102);
     if (!(t132 > RX90_C(1.0e-12))) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }
-    const rx90_real_t t133 = t132 + RX90_C(-1.0e-9) * t106;
-    if (!(t133 > RX90_C(1.0e-12))) {
-        rx90_zero(out, 6);
-        return RX90_STATUS_PIVOT;
-    }
-    const rx90_real_t t134 = t104 * dq[0]; /* link j2: motion */
-    const rx90_real_t t135 = t102 * dq[0];
-    const rx90_real_t t136 = t74 * t134 + t73 * t135; /* link j3: motion */
-    const rx90_real_t t137 = t74 * t135 - t73 * t134;
-    const rx90_real_t t138 = t136 * t137;
-    const rx90_real_t t139 = dq[1] + dq[2];
-    const rx90_real_t t140 = t139 * t137;
-    const rx90_real_t t141 = RX90_C(2.0) * t140; /* link j4: motion */
-    const rx90_real_t t142 = t34 * t141 - t36 * t138;
-    const rx90_real_t t143 = t36 * t136 - t34 * t139;
-    const rx90_real_t t144 = dq[3] + t137;
-    const rx90_real_t t145 = t143 * t144;
-    const rx90_real_t t146 = t142 + t145;
-    const rx90_real_t t147 = t16 * t143 + t14 * t144; /* link j5: motion */
-    const rx90_real_t t148 = t16 * t144 - t14 * t143;
-    const rx90_real_t t149 = t147 * t148;
-    const rx90_real_t t150 = t146 - t149; /* link j6: motion */
-    const rx90_real_t t151 = t34 * t138 + t36 * t141; /* link j4: motion */
-    const rx90_real_t t152 = t36 * t139 + t34 * t136;
-    const rx90_real_t t153 = t152 * t144;
-    const rx90_real_t t154 = t151 - t153;
-    const rx90_real_t t155 = t154 - t153; /* link j5: motion */
-    const rx90_real_t t156 = t143 * t152; /* link j4: motion */
-    const rx90_real_t t157 = t139 * t136; /* link j3: motion */
-    const rx90_real_t t158 = t156 - t157; /* link j5: motion */
-    const rx90_real_t t159 = t14 * t158 + t16 * t155;
-    const rx90_real_t t160 = dq[4] + t152;
-    const rx90_real_t t161 = t148 * t160;
-    const rx90_real_t t162 = t159 + t161;
-    const rx90_real_t t163 = t161 + t162; /* link j6: motion */
-    const rx90_real_t t164 = t2 * t163 - t1 * t150;
-    const rx90_real_t t165 = t1 * t147 + t2 * t160;
-    const rx90_real_t t166 = dq[5] + t148;
-    const rx90_real_t t167 = t165 * t166;
-    const rx90_real_t t168 = t164 - t167;
-    const rx90_real_t t169 = t2 * t150 + t1 * t163;
-    const rx90_real_t t170 = t2 * t147 - t1 * t160;
-    const rx90_real_t t171 = t170 * t166;
-    const rx90_real_t t172 = t169 + t171;
-    const rx90_real_t t173 = t171 + t172; /* link j6: force and moment */
-    const rx90_real_t t174 = parameters[XY6] * t173 - (parameters[XX6] * t168 + t167 * (parameters[YY6]
+    const rx90_real_t t133 = t100 * dq[0]; /* link j2: motion */
+    const rx90_real_t t134 = t98 * dq[0];
+    const rx90_real_t t135 = t71 * t133 + t70 * t134; /* link j3: motion */
+    const rx90_real_t t136 = t71 * t134 - t70 * t133;
+    const rx90_real_t t137 = t135 * t136;
+    const rx90_real_t t138 = dq[1] + dq[2];
+    const rx90_real_t t139 = t138 * t136;
+    const rx90_real_t t140 = RX90_C(2.0) * t139; /* link j4: motion */
+    const rx90_real_t t141 = t32 * t140 - t34 * t137;
+    const rx90_real_t t142 = t34 * t135 - t32 * t138;
+    const rx90_real_t t143 = dq[3] + t136;
+    const rx90_real_t t144 = t142 * t143;
+    const rx90_real_t t145 = t141 + t144;
+    const rx90_real_t t146 = t15 * t142 + t13 * t143; /* link j5: motion */
+    const rx90_real_t t147 = t15 * t143 - t13 * t142;
+    const rx90_real_t t148 = t146 * t147;
+    const rx90_real_t t149 = t145 - t148; /* link j6: motion */
+    const rx90_real_t t150 = t32 * t137 + t34 * t140; /* link j4: motion */
+    const rx90_real_t t151 = t34 * t138 + t32 * t135;
+    const rx90_real_t t152 = t151 * t143;
+    const rx90_real_t t153 = t150 - t152;
+    const rx90_real_t t154 = t153 - t152; /* link j5: motion */
+    const rx90_real_t t155 = t142 * t151; /* link j4: motion */
+    const rx90_real_t t156 = t138 * t135; /* link j3: motion */
+    const rx90_real_t t157 = t155 - t156; /* link j5: motion */
+    const rx90_real_t t158 = t13 * t157 + t15 * t154;
+    const rx90_real_t t159 = dq[4] + t151;
+    const rx90_real_t t160 = t147 * t159;
+    const rx90_real_t t161 = t158 + t160;
+    const rx90_real_t t162 = t160 + t161; /* link j6: motion */
+    const rx90_real_t t163 = t2 * t162 - t1 * t149;
+    const rx90_real_t t164 = t1 * t146 + t2 * t159;
+    const rx90_real_t t165 = dq[5] + t147;
+    const rx90_real_t t166 = t164 * t165;
+    const rx90_real_t t167 = t163 - t166;
+    const rx90_real_t t168 = t2 * t149 + t1 * t162;
+    const rx90_real_t t169 = t2 * t146 - t1 * t159;
+    const rx90_real_t t170 = t169 * t165;
+    const rx90_real_t t171 = t168 + t170;
+    const rx90_real_t t172 = t170 + t171; /* link j6: force and moment */
+    const rx90_real_t t173 = parameters[XY6] * t172 - (parameters[XX6] * t167 + t166 * (parameters[YY6]
         - parameters[ZZ6]));
-    const rx90_real_t t175 = t14 * t155 - t16 * t158; /* link j5: motion */
-    const rx90_real_t t176 = t147 * t160;
-    const rx90_real_t t177 = t175 + t176;
-    const rx90_real_t t178 = t170 * t165; /* link j6: motion */
-    const rx90_real_t t179 = t177 + t178; /* link j6: force and moment */
-    const rx90_real_t t180 = t165 * t165; /* link j6: motion */
-    const rx90_real_t t181 = t166 * t166;
-    const rx90_real_t t182 = t135 * t135; /* link j2: motion */
-    const rx90_real_t t183 = dq[1] * dq[1];
-    const rx90_real_t t184 = RX90_C(-9.81) * t104;
-    const rx90_real_t t185 = t184 + RX90_C(0.45) * (t182 + t183); /* link j3: motion */
-    const rx90_real_t t186 = t134 * t135; /* link j2: motion */
-    const rx90_real_t t187 = RX90_C(-9.81) * t102;
-    const rx90_real_t t188 = t187 + RX90_C(-0.45) * t186; /* link j3: motion */
-    const rx90_real_t t189 = t74 * t185 + t73 * t188;
-    const rx90_real_t t190 = t189 + RX90_C(-0.45) * t138; /* link j4: motion */
-    const rx90_real_t t191 = dq[1] * t134; /* link j2: motion */
-    const rx90_real_t t192 = RX90_C(0.9) * t191; /* link j3: motion */
-    const rx90_real_t t193 = t192 - RX90_C(-0.9) * t140; /* link j4: motion */
-    const rx90_real_t t194 = t36 * t190 + t34 * t193;
-    const rx90_real_t t195 = t74 * t188 - t73 * t185; /* link j3: motion */
-    const rx90_real_t t196 = t136 * t136;
-    const rx90_real_t t197 = t139 * t139;
-    const rx90_real_t t198 = t197 + t196; /* link j4: motion */
-    const rx90_real_t t199 = t195 + RX90_C(0.45) * t198;
-    const rx90_real_t t200 = t14 * t194 - t16 * t199; /* link j5: motion */
-    const rx90_real_t t201 = t16 * t194 + t14 * t199;
-    const rx90_real_t t202 = t34 * t190 - t36 * t193; /* link j4: motion */
-    const rx90_real_t t203 = t1 * t201 + t2 * t202; /* link j6: motion */
+    const rx90_real_t t174 = t13 * t154 - t15 * t157; /* link j5: motion */
+    const rx90_real_t t175 = t146 * t159;
+    const rx90_real_t t176 = t174 + t175;
+    const rx90_real_t t177 = t169 * t164; /* link j6: motion */
+    const rx90_real_t t178 = t176 + t177; /* link j6: force and moment */
+    const rx90_real_t t179 = t164 * t164; /* link j6: motion */
+    const rx90_real_t t180 = t165 * t165;
+    const rx90_real_t t181 = t134 * t134; /* link j2: motion */
+    const rx90_real_t t182 = dq[1] * dq[1];
+    const rx90_real_t t183 = RX90_C(-9.81) * t100;
+    const rx90_real_t t184 = t183 + RX90_C(0.45) * (t181 + t182); /* link j3: motion */
+    const rx90_real_t t185 = t133 * t134; /* link j2: motion */
+    const rx90_real_t t186 = RX90_C(-9.81) * t98;
+    const rx90_real_t t187 = t186 + RX90_C(-0.45) * t185; /* link j3: motion */
+    const rx90_real_t t188 = t71 * t184 + t70 * t187;
+    const rx90_real_t t189 = t188 + RX90_C(-0.45) * t137; /* link j4: motion */
+    const rx90_real_t t190 = dq[1] * t133; /* link j2: motion */
+    const rx90_real_t t191 = RX90_C(0.9) * t190; /* link j3: motion */
+    const rx90_real_t t192 = t191 - RX90_C(-0.9) * t139; /* link j4: motion */
+    const rx90_real_t t193 = t34 * t189 + t32 * t192;
+    const rx90_real_t t194 = t71 * t187 - t70 * t184; /* link j3: motion */
+    const rx90_real_t t195 = t135 * t135;
+    const rx90_real_t t196 = t138 * t138;
+    const rx90_real_t t197 = t196 + t195; /* link j4: motion */
+    const rx90_real_t t198 = t194 + RX90_C(0.45) * t197;
+    const rx90_real_t t199 = t13 * t193 - t15 * t198; /* link j5: motion */
+    const rx90_real_t t200 = t15 * t193 + t13 * t198;
+    const rx90_real_t t201 = t32 * t189 - t34 * t192; /* link j4: motion */
+    const rx90_real_t t202 = t1 * t200 + t2 * t201; /* link j6: motion */
     /* link j6: force and moment */
-    const rx90_real_t t204 = t174 + parameters[XZ6] * t179 - parameters[YZ6] * (t180 - t181)
-        + (parameters[MZ6] * t203 - parameters[MY6] * t200);
-    const rx90_real_t t205 = t168 - t167;
-    const rx90_real_t t206 = parameters[XY6] * t205 - (parameters[YY6] * t172 + t171 * (parameters[ZZ6]
+    const rx90_real_t t203 = t173 + parameters[XZ6] * t178 - parameters[YZ6] * (t179 - t180)
+        + (parameters[MZ6] * t202 - parameters[MY6] * t199);
+    const rx90_real_t t204 = t167 - t166;
+    const rx90_real_t t205 = parameters[XY6] * t204 - (parameters[YY6] * t171 + t170 * (parameters[ZZ6]
         - parameters[XX6]));
-    const rx90_real_t t207 = t178 - t177;
-    const rx90_real_t t208 = t170 * t170; /* link j6: motion */
-    const rx90_real_t t209 = t2 * t201 - t1 * t202;
+    const rx90_real_t t206 = t177 - t176;
+    const rx90_real_t t207 = t169 * t169; /* link j6: motion */
+    const rx90_real_t t208 = t2 * t200 - t1 * t201;
     /* link j6: force and moment */
-    const rx90_real_t t210 = t206 + parameters[YZ6] * t207 + parameters[XZ6] * (t181 - t208)
-        - (parameters[MZ6] * t209 + parameters[MX6] * t200);
-    const rx90_real_t t211 = t176 + t177; /* link j6: motion */
+    const rx90_real_t t209 = t205 + parameters[YZ6] * t206 + parameters[XZ6] * (t180 - t207)
+        - (parameters[MZ6] * t208 + parameters[MX6] * t199);
+    const rx90_real_t t210 = t175 + t176; /* link j6: motion */
     /* link j5: force and moment */
-    const rx90_real_t t212 = t161 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t162
-        + parameters[XY5] * t211;
-    const rx90_real_t t213 = t146 + t149; /* link j6: motion */
-    const rx90_real_t t214 = t148 * t148; /* link j5: motion */
-    const rx90_real_t t215 = t160 * t160;
+    const rx90_real_t t211 = t160 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t161
+        + parameters[XY5] * t210;
+    const rx90_real_t t212 = t145 + t148; /* link j6: motion */
+    const rx90_real_t t213 = t147 * t147; /* link j5: motion */
+    const rx90_real_t t214 = t159 * t159;
     /* link j5: force and moment */
-    const rx90_real_t t216 = t212 - parameters[XZ5] * t213 + parameters[YZ5] * (t215 - t214)
-        + (parameters[MY5] * t202 + parameters[MZ5] * t200);
-    const rx90_real_t t217 = t216 + (t2 * t204 + t1 * t210); /* link j6: what it passes on */
+    const rx90_real_t t215 = t211 - parameters[XZ5] * t212 + parameters[YZ5] * (t214 - t213)
+        + (parameters[MY5] * t201 + parameters[MZ5] * t199);
+    const rx90_real_t t216 = t215 + (t2 * t203 + t1 * t209); /* link j6: what it passes on */
     /* link j6: force and moment */
-    const rx90_real_t t218 = t6 * t178 - parameters[ZZ6] * t177 - parameters[YZ6] * t169
-        + parameters[XZ6] * t164;
-    const rx90_real_t t219 = t218 + parameters[XY6] * (t208 - t180) + (parameters[MX6] * t203
-        + parameters[MY6] * t209);
+    const rx90_real_t t217 = t6 * t177 - parameters[ZZ6] * t176 - parameters[YZ6] * t168
+        + parameters[XZ6] * t163;
+    const rx90_real_t t218 = t217 + parameters[XY6] * (t207 - t179) + (parameters[MX6] * t202
+        + parameters[MY6] * t208);
     /* link j5: force and moment */
-    const rx90_real_t t220 = parameters[XY5] * t163 - (parameters[YY5] * t177 + t176 * (parameters[ZZ5]
+    const rx90_real_t t219 = parameters[XY5] * t162 - (parameters[YY5] * t176 + t175 * (parameters[ZZ5]
         - parameters[XX5]));
-    const rx90_real_t t221 = t147 * t147; /* link j5: motion */
+    const rx90_real_t t220 = t146 * t146; /* link j5: motion */
     /* link j5: force and moment */
-    const rx90_real_t t222 = t220 + parameters[YZ5] * t150 + parameters[XZ5] * (t215 - t221)
-        + (parameters[MX5] * t202 - parameters[MZ5] * t201);
-    const rx90_real_t t223 = t222 + t219; /* link j6: what it passes on */
-    const rx90_real_t t224 = t145 + t146; /* link j5: motion */
+    const rx90_real_t t221 = t219 + parameters[YZ5] * t149 + parameters[XZ5] * (t214 - t220)
+        + (parameters[MX5] * t201 - parameters[MZ5] * t200);
+    const rx90_real_t t222 = t221 + t218; /* link j6: what it passes on */
+    const rx90_real_t t223 = t144 + t145; /* link j5: motion */
     /* link j4: force and moment */
-    const rx90_real_t t225 = t153 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t154
-        + parameters[XY4] * t224;
-    const rx90_real_t t226 = t157 + t156; /* link j5: motion */
-    const rx90_real_t t227 = t152 * t152; /* link j4: motion */
-    const rx90_real_t t228 = t144 * t144;
+    const rx90_real_t t224 = t152 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t153
+        + parameters[XY4] * t223;
+    const rx90_real_t t225 = t156 + t155; /* link j5: motion */
+    const rx90_real_t t226 = t151 * t151; /* link j4: motion */
+    const rx90_real_t t227 = t143 * t143;
     /* link j4: force and moment */
-    const rx90_real_t t229 = t225 + parameters[XZ4] * t226 + parameters[YZ4] * (t228 - t227)
-        + (parameters[MY4] * t199 + parameters[MZ4] * t202);
-    const rx90_real_t t230 = t229 + (t16 * t217 + t14 * t223); /* link j5: what it passes on */
+    const rx90_real_t t228 = t224 + parameters[XZ4] * t225 + parameters[YZ4] * (t227 - t226)
+        + (parameters[MY4] * t198 + parameters[MZ4] * t201);
+    const rx90_real_t t229 = t228 + (t15 * t216 + t13 * t222); /* link j5: what it passes on */
     /* link j5: force and moment */
-    const rx90_real_t t231 = parameters[YZ5] * t175 - (parameters[ZZ5] * t146 + t149 * (parameters[YY5]
+    const rx90_real_t t230 = parameters[YZ5] * t174 - (parameters[ZZ5] * t145 + t148 * (parameters[YY5]
         - parameters[XX5]));
-    const rx90_real_t t232 = t231 - parameters[XZ5] * t159 + parameters[XY5] * (t214 - t221)
-        - (parameters[MX5] * t200 + parameters[MY5] * t201);
-    const rx90_real_t t233 = t232 + (t2 * t210 - t1 * t204); /* link j6: what it passes on */
+    const rx90_real_t t231 = t230 - parameters[XZ5] * t158 + parameters[XY5] * (t213 - t220)
+        - (parameters[MX5] * t199 + parameters[MY5] * t200);
+    const rx90_real_t t232 = t231 + (t2 * t209 - t1 * t203); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const rx90_real_t t234 = parameters[XY4] * t155 - (parameters[YY4] * t146 + t145 * (parameters[ZZ4]
+    const rx90_real_t t233 = parameters[XY4] * t154 - (parameters[YY4] * t145 + t144 * (parameters[ZZ4]
         - parameters[XX4]));
-    const rx90_real_t t235 = t143 * t143; /* link j4: motion */
+    const rx90_real_t t234 = t142 * t142; /* link j4: motion */
     /* link j4: force and moment */
-    const rx90_real_t t236 = t234 + parameters[YZ4] * t158 + parameters[XZ4] * (t228 - t235)
-        + (parameters[MX4] * t199 - parameters[MZ4] * t194);
-    const rx90_real_t t237 = t236 + t233; /* link j5: what it passes on */
+    const rx90_real_t t235 = t233 + parameters[YZ4] * t157 + parameters[XZ4] * (t227 - t234)
+        + (parameters[MX4] * t198 - parameters[MZ4] * t193);
+    const rx90_real_t t236 = t235 + t232; /* link j5: what it passes on */
     /* link j6: force and moment */
-    const rx90_real_t t238 = parameters[MX6] * (t180 + t181) + parameters[MY6] * t207
-        + parameters[MZ6] * t169;
-    const rx90_real_t t239 = parameters[M6] * t209 + t238;
-    const rx90_real_t t240 = parameters[MX6] * t179 + parameters[MY6] * (t208 + t181)
-        + parameters[MZ6] * t164;
-    const rx90_real_t t241 = t240 - parameters[M6] * t203;
+    const rx90_real_t t237 = parameters[MX6] * (t179 + t180) + parameters[MY6] * t206
+        + parameters[MZ6] * t168;
+    const rx90_real_t t238 = parameters[M6] * t208 + t237;
+    const rx90_real_t t239 = parameters[MX6] * t178 + parameters[MY6] * (t207 + t180)
+        + parameters[MZ6] * t163;
+    const rx90_real_t t240 = t239 - parameters[M6] * t202;
     /* link j5: force and moment */
-    const rx90_real_t t242 = parameters[MX5] * (t214 + t215) + parameters[MY5] * t150
-        + parameters[MZ5] * t175;
+    const rx90_real_t t241 = parameters[MX5] * (t213 + t214) + parameters[MY5] * t149
+        + parameters[MZ5] * t174;
     /* link j6: what it passes on */
-    const rx90_real_t t243 = parameters[M5] * t201 + t242 + (t2 * t239 - t1 * t241);
+    const rx90_real_t t242 = parameters[M5] * t200 + t241 + (t2 * t238 - t1 * t240);
     /* link j5: force and moment */
-    const rx90_real_t t244 = parameters[MX5] * t213 - parameters[MY5] * (t221 + t215)
-        - parameters[MZ5] * t159;
+    const rx90_real_t t243 = parameters[MX5] * t212 - parameters[MY5] * (t220 + t214)
+        - parameters[MZ5] * t158;
     /* link j6: force and moment */
-    const rx90_real_t t245 = parameters[MX6] * t173 + parameters[MY6] * t205 - parameters[MZ6] * (t208
-        + t180);
+    const rx90_real_t t244 = parameters[MX6] * t172 + parameters[MY6] * t204 - parameters[MZ6] * (t207
+        + t179);
     /* link j6: what it passes on */
-    const rx90_real_t t246 = parameters[M5] * t200 + t244 + (parameters[M6] * t200 + t245);
+    const rx90_real_t t245 = parameters[M5] * t199 + t243 + (parameters[M6] * t199 + t244);
     /* link j4: force and moment */
-    const rx90_real_t t247 = parameters[MX4] * (t227 + t228) + parameters[MY4] * t158
-        + parameters[MZ4] * t142;
+    const rx90_real_t t246 = parameters[MX4] * (t226 + t227) + parameters[MY4] * t157
+        + parameters[MZ4] * t141;
     /* link j5: what it passes on */
-    const rx90_real_t t248 = parameters[M4] * t194 + t247 + (t16 * t243 + t14 * t246);
+    const rx90_real_t t247 = parameters[M4] * t193 + t246 + (t15 * t242 + t13 * t245);
     /* link j5: force and moment */
-    const rx90_real_t t249 = parameters[MX5] * t211 + parameters[MY5] * t163 - parameters[MZ5] * (t221
-        + t214);
+    const rx90_real_t t248 = parameters[MX5] * t210 + parameters[MY5] * t162 - parameters[MZ5] * (t220
+        + t213);
     /* link j6: what it passes on */
-    const rx90_real_t t250 = t249 - parameters[M5] * t202 + (t1 * t239 + t2 * t241);
+    const rx90_real_t t249 = t248 - parameters[M5] * t201 + (t1 * t238 + t2 * t240);
     /* link j4: force and moment */
-    const rx90_real_t t251 = parameters[MX4] * t226 + parameters[MY4] * (t235 + t228)
-        + parameters[MZ4] * t151;
-    const rx90_real_t t252 = t251 - parameters[M4] * t202 + t250; /* link j5: what it passes on */
-    const rx90_real_t t253 = t34 * t248 + t36 * t252; /* link j4: what it passes on */
-    const rx90_real_t t254 = RX90_C(2.0) * t157; /* link j4: motion */
+    const rx90_real_t t250 = parameters[MX4] * t225 + parameters[MY4] * (t234 + t227)
+        + parameters[MZ4] * t150;
+    const rx90_real_t t251 = t250 - parameters[M4] * t201 + t249; /* link j5: what it passes on */
+    const rx90_real_t t252 = t32 * t247 + t34 * t251; /* link j4: what it passes on */
+    const rx90_real_t t253 = RX90_C(2.0) * t156; /* link j4: motion */
     /* link j3: force and moment */
-    const rx90_real_t t255 = parameters[XY3] * t254 - (parameters[XX3] * t140 + t140 * (parameters[ZZ3]
+    const rx90_real_t t254 = parameters[XY3] * t253 - (parameters[XX3] * t139 + t139 * (parameters[ZZ3]
         - parameters[YY3]));
-    const rx90_real_t t256 = t137 * t137; /* link j3: motion */
+    const rx90_real_t t255 = t136 * t136; /* link j3: motion */
     /* link j3: force and moment */
-    const rx90_real_t t257 = t255 - parameters[XZ3] * t138 + parameters[YZ3] * (t197 - t256)
-        - (parameters[MY3] * t192 + parameters[MZ3] * t195);
+    const rx90_real_t t256 = t254 - parameters[XZ3] * t137 + parameters[YZ3] * (t196 - t255)
+        - (parameters[MY3] * t191 + parameters[MZ3] * t194);
     /* link j4: what it passes on */
-    const rx90_real_t t258 = t257 + (t36 * t230 + t34 * t237 + RX90_C(-0.45) * t253);
+    const rx90_real_t t257 = t256 + (t34 * t229 + t32 * t236 + RX90_C(-0.45) * t252);
     /* link j4: force and moment */
-    const rx90_real_t t259 = parameters[ZZ4] * t157 - t156 * (parameters[XX4] - parameters[YY4])
-        + parameters[YZ4] * t142;
-    const rx90_real_t t260 = t259 - parameters[XZ4] * t151 - parameters[XY4] * (t235 - t227)
-        - (parameters[MX4] * t202 + parameters[MY4] * t194);
-    const rx90_real_t t261 = t260 + (t14 * t217 - t16 * t223); /* link j5: what it passes on */
+    const rx90_real_t t258 = parameters[ZZ4] * t156 - t155 * (parameters[XX4] - parameters[YY4])
+        + parameters[YZ4] * t141;
+    const rx90_real_t t259 = t258 - parameters[XZ4] * t150 - parameters[XY4] * (t234 - t226)
+        - (parameters[MX4] * t201 + parameters[MY4] * t193);
+    const rx90_real_t t260 = t259 + (t13 * t216 - t15 * t222); /* link j5: what it passes on */
     /* link j3: force and moment */
-    const rx90_real_t t262 = parameters[YY3] * t157 - t157 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t141;
-    const rx90_real_t t263 = t262 + parameters[YZ3] * t138 - parameters[XZ3] * (t197 - t196)
-        + (parameters[MZ3] * t189 + parameters[MX3] * t192);
-    const rx90_real_t t264 = t263 + t261; /* link j4: what it passes on */
-    const rx90_real_t t265 = dq[1] * t135; /* link j2: motion */
+    const rx90_real_t t261 = parameters[YY3] * t156 - t156 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t140;
+    const rx90_real_t t262 = t261 + parameters[YZ3] * t137 - parameters[XZ3] * (t196 - t195)
+        + (parameters[MZ3] * t188 + parameters[MX3] * t191);
+    const rx90_real_t t263 = t262 + t260; /* link j4: what it passes on */
+    const rx90_real_t t264 = dq[1] * t134; /* link j2: motion */
     /* link j2: force and moment */
-    const rx90_real_t t266 = t265 * (parameters[YY2] - parameters[ZZ2]) - t265 * parameters[XX2]
-        + RX90_C(2.0) * t191 * parameters[XY2];
-    const rx90_real_t t267 = t266 - t186 * parameters[XZ2] + (t183 - t182) * parameters[YZ2]
-        - t187 * parameters[MZ2];
+    const rx90_real_t t265 = t264 * (parameters[YY2] - parameters[ZZ2]) - t264 * parameters[XX2]
+        + RX90_C(2.0) * t190 * parameters[XY2];
+    const rx90_real_t t266 = t265 - t185 * parameters[XZ2] + (t182 - t181) * parameters[YZ2]
+        - t186 * parameters[MZ2];
     /* link j3: force and moment */
-    const rx90_real_t t268 = parameters[MX3] * t254 + parameters[MY3] * t141 - parameters[MZ3] * (t196
-        + t256);
+    const rx90_real_t t267 = parameters[MX3] * t253 + parameters[MY3] * t140 - parameters[MZ3] * (t195
+        + t255);
     /* link j3: what it passes on */
-    const rx90_real_t t269 = t73 * t258 + t74 * t264 + RX90_C(0.45) * (parameters[M3] * t192 + t268 + t253);
+    const rx90_real_t t268 = t70 * t257 + t71 * t263 + RX90_C(0.45) * (parameters[M3] * t191 + t267 + t252);
     /* link j2: force and moment */
-    const rx90_real_t t270 = t191 * parameters[YY2] + t191 * (parameters[ZZ2] - parameters[XX2])
-        + RX90_C(-2.0) * t265 * parameters[XY2];
-    const rx90_real_t t271 = t134 * t134; /* link j2: motion */
+    const rx90_real_t t269 = t190 * parameters[YY2] + t190 * (parameters[ZZ2] - parameters[XX2])
+        + RX90_C(-2.0) * t264 * parameters[XY2];
+    const rx90_real_t t270 = t133 * t133; /* link j2: motion */
     /* link j2: force and moment */
-    const rx90_real_t t272 = t270 + t186 * parameters[YZ2] + (t271 - t183) * parameters[XZ2]
-        + t184 * parameters[MZ2];
+    const rx90_real_t t271 = t269 + t185 * parameters[YZ2] + (t270 - t182) * parameters[XZ2]
+        + t183 * parameters[MZ2];
     /* link j2: what it passes on */
-    const rx90_real_t t273 = t104 * (t267 + (t74 * t258 - t73 * t264)) + t102 * (t272 + t269);
-    const rx90_real_t t274 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
-    const rx90_real_t t275 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1]
-        - t274 * parameters[FC1]) + t273;
-    const rx90_real_t t276 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
-    const rx90_real_t t277 = RX90_C(30.0) * (RX90_C(30.0) * dq[5] * parameters[FV6] + t276 * parameters[FC6])
-        + t219;
-    const rx90_real_t t278 = RX90_C(6.0) * input[5] - t277;
-    const rx90_real_t t279 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
-    const rx90_real_t t280 = RX90_C(50.0) * (RX90_C(50.0) * dq[4] * parameters[FV5] + t279 * parameters[FC5])
-        - t233;
-    const rx90_real_t t281 = RX90_C(10.0) * input[4] - t280 - t278 * t5;
-    const rx90_real_t t282 = RX90_C(30.0) * input[0] + t275 - t278 * t110 + t281 * t115;
-    const rx90_real_t t283 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
-    const rx90_real_t t284 = RX90_C(50.0) * (RX90_C(50.0) * dq[3] * parameters[FV4] + t283 * parameters[FC4])
-        - t261;
-    const rx90_real_t t285 = RX90_C(10.0) * input[3] - t284 + t278 * t30 - t281 * t22;
-    const rx90_real_t t286 = t34 * t252 - t36 * t248; /* link j4: what it passes on */
+    const rx90_real_t t272 = t100 * (t266 + (t71 * t257 - t70 * t263)) + t98 * (t271 + t268);
+    const rx90_real_t t273 = rx90_sign(dq[0]); /* joint j1: coulomb_friction */
+    const rx90_real_t t274 = RX90_C(1.0e2) * (RX90_C(-1.0e2) * dq[0] * parameters[FV1]
+        - t273 * parameters[FC1]) + t272;
+    const rx90_real_t t275 = rx90_sign(dq[5]); /* joint j6: coulomb_friction */
+    const rx90_real_t t276 = RX90_C(30.0) * (RX90_C(30.0) * dq[5] * parameters[FV6] + t275 * parameters[FC6])
+        + t218;
+    const rx90_real_t t277 = RX90_C(6.0) * input[5] - t276;
+    const rx90_real_t t278 = rx90_sign(dq[4]); /* joint j5: coulomb_friction */
+    const rx90_real_t t279 = RX90_C(50.0) * (RX90_C(50.0) * dq[4] * parameters[FV5] + t278 * parameters[FC5])
+        - t232;
+    const rx90_real_t t280 = RX90_C(10.0) * input[4] - t279 - t277 * t5;
+    const rx90_real_t t281 = RX90_C(30.0) * input[0] + t274 - t277 * t106 + t280 * t111;
+    const rx90_real_t t282 = rx90_sign(dq[3]); /* joint j4: coulomb_friction */
+    const rx90_real_t t283 = RX90_C(50.0) * (RX90_C(50.0) * dq[3] * parameters[FV4] + t282 * parameters[FC4])
+        - t260;
+    const rx90_real_t t284 = RX90_C(10.0) * input[3] - t283 + t277 * t29 - t280 * t21;
+    const rx90_real_t t285 = t32 * t251 - t34 * t247; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const rx90_real_t t287 = parameters[XY3] * (t196 - t256) - t138 * (parameters[XX3] - parameters[YY3])
-        - (parameters[MX3] * t195 - parameters[MY3] * t189);
+    const rx90_real_t t286 = parameters[XY3] * (t195 - t255) - t137 * (parameters[XX3] - parameters[YY3])
+        - (parameters[MX3] * t194 - parameters[MY3] * t188);
     /* link j4: what it passes on */
-    const rx90_real_t t288 = t287 + (t34 * t230 - t36 * t237 - RX90_C(0.45) * t286);
-    const rx90_real_t t289 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
-    const rx90_real_t t290 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[2] * parameters[FV3]
-        + t289 * parameters[FC3]) + t288;
-    const rx90_real_t t291 = RX90_C(30.0) * input[2] - t290 - t278 * t58 - t281 * t70;
-    const rx90_real_t t292 = t291 + t285 * t57;
+    const rx90_real_t t287 = t286 + (t32 * t229 - t34 * t236 - RX90_C(0.45) * t285);
+    const rx90_real_t t288 = rx90_sign(dq[2]); /* joint j3: coulomb_friction */
+    const rx90_real_t t289 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[2] * parameters[FV3]
+        + t288 * parameters[FC3]) + t287;
+    const rx90_real_t t290 = RX90_C(30.0) * input[2] - t289 - t277 * t56 - t280 * t68;
+    const rx90_real_t t291 = t290 + t284 * t55;
     /* link j3: force and moment */
-    const rx90_real_t t293 = parameters[M3] * t189 + (parameters[MX3] * (t197 + t256)
-        - parameters[MY3] * t138);
+    const rx90_real_t t292 = parameters[M3] * t188 + (parameters[MX3] * (t196 + t255)
+        - parameters[MY3] * t137);
     /* link j4: force and moment */
-    const rx90_real_t t294 = parameters[MZ4] * (t235 + t227) - (parameters[MX4] * t224
-        + parameters[MY4] * t155);
+    const rx90_real_t t293 = parameters[MZ4] * (t234 + t226) - (parameters[MX4] * t223
+        + parameters[MY4] * t154);
     /* link j5: what it passes on */
-    const rx90_real_t t295 = parameters[M4] * t199 + t294 - (t16 * t246 - t14 * t243);
+    const rx90_real_t t294 = parameters[M4] * t198 + t293 - (t15 * t245 - t13 * t242);
     /* link j4: what it passes on */
-    const rx90_real_t t296 = parameters[M3] * t195 + (parameters[MY3] * t198 - parameters[MX3] * t138) + t295;
+    const rx90_real_t t295 = parameters[M3] * t194 + (parameters[MY3] * t197 - parameters[MX3] * t137) + t294;
     /* link j3: what it passes on */
-    const rx90_real_t t297 = t288 + RX90_C(0.45) * (t73 * (t286 - t293) - t74 * t296);
+    const rx90_real_t t296 = t287 + RX90_C(0.45) * (t70 * (t285 - t292) - t71 * t295);
     /* link j2: force and moment */
-    const rx90_real_t t298 = t186 * (parameters[XX2] - parameters[YY2]) - (t271 - t182) * parameters[XY2]
-        - (t184 * parameters[MY2] - t187 * parameters[MX2]);
-    const rx90_real_t t299 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
-    const rx90_real_t t300 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[1] * parameters[FV2]
-        + t299 * parameters[FC2]) - (t298 - t297);
-    const rx90_real_t t301 = RX90_C(30.0) * input[1] - t300 - t278 * t88 + t281 * t87;
-    const rx90_real_t t302 = t301 + t285 * t86 + t292 * t85;
-    const rx90_real_t t303 = t282 - t285 * t118 + t292 * t126 + t302 * t131;
-    const rx90_real_t t304 = RX90_C(1.0) / t132;
-    const rx90_real_t t305 = rx90_bounded(t303 * t304);
-    out[0] = t305;
-    const rx90_real_t t306 = rx90_bounded(t302 * t130 + t131 * t305);
-    out[1] = t306;
-    const rx90_real_t t307 = rx90_bounded(t292 * t84 + t126 * t305 + t85 * t306);
-    out[2] = t307;
-    const rx90_real_t t308 = rx90_bounded(t86 * t306 - (t285 * t56 + t118 * t305) + t57 * t307);
-    out[3] = t308;
-    const rx90_real_t t309 = t281 * t21 + t115 * t305 + t87 * t306 - t70 * t307;
-    const rx90_real_t t310 = rx90_bounded(t309 - t22 * t308);
-    out[4] = t310;
-    const rx90_real_t t311 = t278 * t4 + t110 * t305 + t88 * t306 + t58 * t307;
-    out[5] = t30 * t308 - t311 - t5 * t310;
-    if (!rx90_all_bounded(out, 6)) {
+    const rx90_real_t t297 = t185 * (parameters[XX2] - parameters[YY2]) - (t270 - t181) * parameters[XY2]
+        - (t183 * parameters[MY2] - t186 * parameters[MX2]);
+    const rx90_real_t t298 = rx90_sign(dq[1]); /* joint j2: coulomb_friction */
+    const rx90_real_t t299 = RX90_C(1.0e2) * (RX90_C(1.0e2) * dq[1] * parameters[FV2]
+        + t298 * parameters[FC2]) - (t297 - t296);
+    const rx90_real_t t300 = RX90_C(30.0) * input[1] - t299 - t277 * t85 + t280 * t84;
+    const rx90_real_t t301 = t300 + t284 * t83 + t291 * t82;
+    const rx90_real_t t302 = t281 - t284 * t114 + t291 * t122 + t301 * t127;
+    const rx90_real_t t303 = RX90_C(1.0) / t128;
+    const rx90_real_t t304 = rx90_held(t302 * t303);
+    out[0] = t304;
+    const rx90_real_t t305 = rx90_held(t301 * t126 + t127 * t304);
+    out[1] = t305;
+    const rx90_real_t t306 = rx90_held(t291 * t81 + t122 * t304 + t82 * t305);
+    out[2] = t306;
+    const rx90_real_t t307 = rx90_held(t83 * t305 - (t284 * t54 + t114 * t304) + t55 * t306);
+    out[3] = t307;
+    const rx90_real_t t308 = t280 * t20 + t111 * t304 + t84 * t305 - t68 * t306;
+    const rx90_real_t t309 = rx90_held(t308 - t21 * t307);
+    out[4] = t309;
+    const rx90_real_t t310 = t277 * t4 + t106 * t304 + t85 * t305 + t56 * t306;
+    out[5] = t29 * t307 - t310 - t5 * t309;
+    if (!rx90_bounded(out, 6)) {
         rx90_zero(out, 6);
         return RX90_STATUS_PIVOT;
     }

@@ -84,7 +84,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x88006983UL
+#if RX90_GENERATION != 0x1B6CDAA1UL
 #error "rx90.h and rx90_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -362,593 +362,591 @@ rx90_status_t rx90_inverse_dynamics_derivatives(
     const rx90_real_t t172 = parameters[FV6] * (RX90_C(30.0) * dq[5]) + parameters[FC6] * t171
         + parameters[IA6] * (RX90_C(30.0) * ddq[5]);
     input[5] = RX90_C(5.0) * t172 + RX90_C(-0.16666666666666666) * t107;
-    const rx90_real_t t173 = parameters[XZ6] * t49;
-    const rx90_real_t t174 = parameters[XY6] * t50;
-    const rx90_real_t t175 = t173 + t174;
-    const rx90_real_t t176 = parameters[YZ6] * t54;
-    const rx90_real_t t177 = t174 + t176;
-    const rx90_real_t t178 = RX90_C(0.5) * (parameters[XX6R] + parameters[ZZ6]);
-    const rx90_real_t t179 = parameters[XX6R] - t178;
-    const rx90_real_t t180 = t50 * t179 + parameters[XZ6] * t54;
-    const rx90_real_t t181 = t50 * t178 - parameters[YZ6] * t49;
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t182 = t47 * (t175 + t177) + t30 * (t180 + t181);
-    const rx90_real_t t183 = t47 * t182;
-    const rx90_real_t t184 = parameters[XZ5] * t16;
-    const rx90_real_t t185 = parameters[XY5] * t43;
-    const rx90_real_t t186 = t185 - t184 + (t183 - t177);
-    const rx90_real_t t187 = t173 - t176;
-    const rx90_real_t t188 = parameters[YZ5] * t15;
-    const rx90_real_t t189 = t185 + t188 + t187;
-    const rx90_real_t t190 = t178 - parameters[ZZ6];
-    const rx90_real_t t191 = t49 * t190 - parameters[YZ6] * t50;
-    const rx90_real_t t192 = t54 * t190 - parameters[XZ6] * t50;
-    const rx90_real_t t193 = RX90_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    const rx90_real_t t194 = parameters[YZ5] * t16 - t43 * t193 + (t47 * t191 + t30 * t192);
-    const rx90_real_t t195 = t49 * t179 - parameters[XY6] * t54;
-    const rx90_real_t t196 = t54 * t178 + parameters[XY6] * t49;
-    const rx90_real_t t197 = parameters[XX5R] + t193;
-    const rx90_real_t t198 = t43 * t197 + parameters[XZ5] * t15 + (t47 * t195 - t30 * t196);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t199 = t10 * (t186 + t189) + t14 * (t194 + t198);
-    const rx90_real_t t200 = t10 * t199;
-    const rx90_real_t t201 = parameters[XZ4] * t31;
-    const rx90_real_t t202 = parameters[XY4] * t13;
-    const rx90_real_t t203 = t201 + t202 - (t189 - t200);
-    const rx90_real_t t204 = t183 - t175 - (t184 + t188); /* link j6: inertia, momentum beyond */
-    const rx90_real_t t205 = parameters[YZ4] * t9;
-    const rx90_real_t t206 = t202 + t205 + t204; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t207 = t30 * t182; /* link j6: inertia, momentum beyond */
-    const rx90_real_t t208 = parameters[ZZ5R] + t193;
-    const rx90_real_t t209 = t16 * t208 - parameters[YZ5] * t43 + (t207 - t181);
-    const rx90_real_t t210 = parameters[XZ5] * t43 + t15 * t208 - (t30 * t195 + t47 * t196);
-    const rx90_real_t t211 = RX90_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t212 = parameters[YZ4] * t31 + t13 * t211 + (t10 * t209 - t14 * t210);
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t213 = parameters[XY5] * t15 + t16 * t197 + (t180 - t207);
-    const rx90_real_t t214 = t47 * t192 - t30 * t191 - (t15 * t193 + parameters[XY5] * t16);
-    const rx90_real_t t215 = parameters[XX4R] + t211;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t216 = t13 * t215 + parameters[XZ4] * t9 + (t10 * t213 + t14 * t214);
-    const rx90_real_t t217 = t6 * (t203 + t206) + t8 * (t216 - t212); /* link j4: inertia, momentum beyond */
-    const rx90_real_t t218 = t6 * t217;
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t219 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const rx90_real_t t220 = parameters[MY4R] + t219; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t221 = t30 * parameters[MY6] - t47 * parameters[MX6];
-    const rx90_real_t t222 = t221 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t223 = t14 * parameters[MY5R] + t10 * t222; /* link j5: column of the mass matrix */
-    const rx90_real_t t224 = t223 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t225 = t8 * t220 + t6 * t224; /* link j4: column of the mass matrix */
-    const rx90_real_t t226 = RX90_C(-0.45) * t7; /* link j4: velocity of its origin */
-    const rx90_real_t t227 = t225 * t226; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t228 = parameters[MY6] * t50;
-    const rx90_real_t t229 = parameters[MX6] * t50;
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t230 = parameters[MY5R] * t43 + (t47 * t228 + t30 * t229);
-    const rx90_real_t t231 = parameters[MY6] * t54 - parameters[MX6] * t49;
-    const rx90_real_t t232 = t231 - parameters[MX5] * t43;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t233 = parameters[MY4R] * t9 - parameters[MX4] * t31 + (t14 * t230 + t10 * t232);
-    const rx90_real_t t234 = RX90_C(-0.45) * t233; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t235 = t8 * t224 - t6 * t220; /* link j4: column of the mass matrix */
-    const rx90_real_t t236 = RX90_C(0.45) * t5;
-    const rx90_real_t t237 = t235 * t236; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t238 = t234 + (t237 - t227);
-    const rx90_real_t t239 = parameters[XZ3] * t12;
-    const rx90_real_t t240 = parameters[XY3] * t7;
-    const rx90_real_t t241 = t239 - t240 + (t238 + (t206 - t218 + t227));
-    const rx90_real_t t242 = t201 - t205 + (t200 - t186); /* link j5: inertia, momentum beyond */
-    const rx90_real_t t243 = parameters[YZ3] * t5;
-    const rx90_real_t t244 = t240 - t243 + (t238 + (t242 - t234)); /* link j4: inertia, momentum beyond */
-    const rx90_real_t t245 = t14 * t199; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t246 = parameters[ZZ4R] + t211;
-    const rx90_real_t t247 = t31 * t246 + parameters[YZ4] * t13 - (t194 - t245);
-    const rx90_real_t t248 = parameters[XZ4] * t13 + t9 * t246 + (t14 * t213 - t10 * t214);
-    const rx90_real_t t249 = parameters[MY4R] * t13 + (t10 * t230 - t14 * t232);
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t250 = parameters[MY5R] * t15 + parameters[MX5] * t16 + (t47 * t229 - t30 * t228);
-    const rx90_real_t t251 = parameters[MX4] * t13 + t250; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t252 = t6 * t249 + t8 * t251; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t253 = t10 * parameters[MY5R] - t14 * t222; /* link j5: column of the mass matrix */
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t254 = t6 * t247 + t8 * t248 + (RX90_C(-0.45) * t252 + t253 * t226);
-    const rx90_real_t t255 = RX90_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const rx90_real_t t256 = t254 - (parameters[YZ3] * t12 + t7 * t255);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t257 = parameters[XY4] * t9 - t31 * t215 + (t245 - t198);
-    const rx90_real_t t258 = parameters[XY4] * t31 - t9 * t211 - (t14 * t209 + t10 * t210);
-    const rx90_real_t t259 = parameters[XX3R] - t255;
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t260 = t7 * t259 - parameters[XZ3] * t5 - (t6 * t257 + t8 * t258);
-    const rx90_real_t t261 = t1 * (t241 - t244) + t3 * (t256 - t260); /* link j3: inertia, momentum beyond */
-    const rx90_real_t t262 = t1 * t261;
-    const rx90_real_t t263 = parameters[MY3R] * t7 + t252; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t264 = t233 - parameters[MX3] * t7;
-    const rx90_real_t t265 = RX90_C(0.45) * (t1 * t263 - t3 * t264); /* link j3: inertia, momentum beyond */
-    const rx90_real_t t266 = t225 - parameters[MX3]; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t267 = parameters[MY3R] + t253;
-    const rx90_real_t t268 = t3 * t266 - t1 * t267; /* link j3: column of the mass matrix */
-    const rx90_real_t t269 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
-    const rx90_real_t t270 = t268 * t269; /* link j3: inertia, momentum beyond */
-    const rx90_real_t t271 = RX90_C(-0.45) * t66; /* link j3: velocity of its origin */
-    const rx90_real_t t272 = t235 * t271; /* link j3: inertia, momentum beyond */
-    const rx90_real_t t273 = t272 - t270 - t265;
-    const rx90_real_t t274 = parameters[XZ2R] * t66;
-    const rx90_real_t t275 = parameters[XY2] * dq[1];
-    const rx90_real_t t276 = t274 - t275 + (t273 + (t244 + t262 + t265));
-    const rx90_real_t t277 = parameters[YZ2] * t71;
-    const rx90_real_t t278 = t275 - t277 + (t273 + (t241 - t262 + t270));
-    const rx90_real_t t279 = t3 * t261;
-    const rx90_real_t t280 = RX90_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const rx90_real_t t281 = parameters[YZ2] * t66 + dq[1] * t280 + (t279 - t256);
-    const rx90_real_t t282 = t3 * t267 + t1 * t266; /* link j3: column of the mass matrix */
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t283 = RX90_C(0.45) * (t3 * t263 + t1 * t264) + t282 * t269;
-    const rx90_real_t t284 = parameters[XX2R] - t280;
-    const rx90_real_t t285 = dq[1] * t284 - parameters[XZ2R] * t71 + (t260 + t279 + t283);
-    /* link j2: inertia, momentum beyond */
-    const rx90_real_t t286 = t2 * (t2 * (t278 - t276) + t0 * (t281 + t285));
-    input_by_dq[0] = RX90_C(333.33333333333337) * parameters[FV1] + RX90_C(0.06666666666666667) * (t276
-        + t286);
-    const rx90_real_t t287 = t8 * t217; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t288 = parameters[XY3] * t5 - t12 * t259 - (t216 - t287 - t225 * t236);
-    const rx90_real_t t289 = t6 * t251 - t8 * t249;
-    const rx90_real_t t290 = t6 * t248 - t8 * t247 + (RX90_C(-0.45) * t289 + t253 * t236);
-    const rx90_real_t t291 = t5 * t255 + parameters[XY3] * t12 + t290;
-    const rx90_real_t t292 = parameters[MX3] * t12 - parameters[MY3R] * t5 + t289;
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t293 = t1 * t288 + t3 * t291 + (RX90_C(0.45) * t292 + t282 * t271);
-    /* link j2: derivatives */
-    const rx90_real_t t294 = RX90_C(2.0) * (parameters[XY2] * t71 - t66 * t284 + t293);
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t295 = parameters[XY2] * t66 + t71 * t280 - (t3 * t288 - t1 * t291 + t268 * t271);
-    const rx90_real_t t296 = RX90_C(2.0) * t295; /* link j2: derivatives */
-    input_by_dq[6] = RX90_C(0.03333333333333333) * (t0 * t294 - t2 * t296);
-    const rx90_real_t t297 = RX90_C(2.0) * t288; /* link j3: derivatives */
-    const rx90_real_t t298 = RX90_C(2.0) * t291;
-    const rx90_real_t t299 = RX90_C(-0.9) * t66; /* link j6: derivatives */
-    const rx90_real_t t300 = t1 * t297 + t3 * t298 + t282 * t299; /* link j3: derivatives */
-    const rx90_real_t t301 = t3 * t297 - t1 * t298 + t268 * t299;
-    input_by_dq[12] = RX90_C(0.03333333333333333) * (t0 * t300 + t2 * t301);
-    const rx90_real_t t302 = RX90_C(2.0) * t257; /* link j4: derivatives */
-    const rx90_real_t t303 = RX90_C(2.0) * t258;
-    const rx90_real_t t304 = t6 * t302 + t8 * t303;
-    const rx90_real_t t305 = RX90_C(2.0) * t242;
-    const rx90_real_t t306 = RX90_C(0.9) * t5; /* link j6: derivatives */
-    const rx90_real_t t307 = RX90_C(-0.9) * t7;
-    const rx90_real_t t308 = t225 * t307 - t235 * t306 - t305; /* link j4: derivatives */
-    const rx90_real_t t309 = RX90_C(0.9) * dq[1]; /* link j6: derivatives */
-    const rx90_real_t t310 = t3 * t235; /* link j4: column of the mass matrix */
-    const rx90_real_t t311 = t3 * t308 - t1 * t304 + (t225 * t309 - t310 * t299); /* link j4: derivatives */
-    const rx90_real_t t312 = t1 * t235; /* link j4: column of the mass matrix */
-    const rx90_real_t t313 = t3 * t304 + t1 * t308 - t312 * t299; /* link j4: derivatives */
-    input_by_dq[18] = RX90_C(0.1) * (t0 * t311 - t2 * t313);
-    const rx90_real_t t314 = RX90_C(2.0) * t213; /* link j5: derivatives */
-    const rx90_real_t t315 = RX90_C(2.0) * t214;
-    const rx90_real_t t316 = t10 * t314 + t14 * t315;
-    const rx90_real_t t317 = RX90_C(2.0) * t204;
-    const rx90_real_t t318 = t6 * t316 - t8 * t317 - t223 * t306;
-    const rx90_real_t t319 = t14 * t314 - t10 * t315;
-    const rx90_real_t t320 = t6 * t253; /* link j5: column of the mass matrix */
-    const rx90_real_t t321 = t8 * t253;
-    const rx90_real_t t322 = t319 + (t320 * t306 + t321 * t307); /* link j5: derivatives */
-    const rx90_real_t t323 = t3 * t320 + t1 * t223; /* link j5: column of the mass matrix */
-    const rx90_real_t t324 = t3 * t322 - t1 * t318 + (t321 * t309 + t323 * t299); /* link j5: derivatives */
-    const rx90_real_t t325 = t1 * t320 - t3 * t223; /* link j5: column of the mass matrix */
-    const rx90_real_t t326 = t3 * t318 + t1 * t322 + t325 * t299; /* link j5: derivatives */
-    input_by_dq[24] = RX90_C(0.1) * (t0 * t324 - t2 * t326);
-    const rx90_real_t t327 = RX90_C(-2.0) * t195; /* link j6: derivatives */
-    const rx90_real_t t328 = RX90_C(2.0) * t196;
-    const rx90_real_t t329 = t47 * t327 + t30 * t328;
-    const rx90_real_t t330 = RX90_C(2.0) * t187;
-    const rx90_real_t t331 = t10 * t329 + t14 * t330;
-    const rx90_real_t t332 = t30 * t327 - t47 * t328;
-    const rx90_real_t t333 = t14 * t219; /* link j6: column of the mass matrix */
-    const rx90_real_t t334 = t6 * t331 - t8 * t332 - t333 * t306; /* link j6: derivatives */
-    const rx90_real_t t335 = t14 * t329 - t10 * t330;
-    const rx90_real_t t336 = t10 * t219; /* link j6: column of the mass matrix */
-    const rx90_real_t t337 = t6 * t336 - t8 * t221;
-    const rx90_real_t t338 = t8 * t336 + t6 * t221;
-    const rx90_real_t t339 = t335 + (t337 * t306 + t338 * t307); /* link j6: derivatives */
-    const rx90_real_t t340 = t3 * t337 + t1 * t333; /* link j6: column of the mass matrix */
-    const rx90_real_t t341 = t3 * t339 - t1 * t334 + (t338 * t309 + t340 * t299); /* link j6: derivatives */
-    const rx90_real_t t342 = t1 * t337 - t3 * t333; /* link j6: column of the mass matrix */
-    const rx90_real_t t343 = t3 * t334 + t1 * t339 + t342 * t299; /* link j6: derivatives */
-    input_by_dq[30] = RX90_C(0.16666666666666666) * (t0 * t341 - t2 * t343);
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t344 = t47 * parameters[XX6R] + parameters[XY6] * (RX90_C(-2.0) * t30);
-    const rx90_real_t t345 = t47 * t344;
-    const rx90_real_t t346 = parameters[XX5R] + t345;
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t347 = t30 * parameters[YZ6] - t47 * parameters[XZ6];
-    const rx90_real_t t348 = parameters[XY5] - t347; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const rx90_real_t t349 = t10 * (parameters[ZZ6] - t346) + t348 * (RX90_C(2.0) * t14);
-    const rx90_real_t t350 = t10 * t349;
-    const rx90_real_t t351 = parameters[XX4R] + (parameters[ZZ6] - t350);
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t352 = t345 - parameters[XX6R] - parameters[ZZ5R];
-    const rx90_real_t t353 = parameters[XY6] + t30 * t344 - parameters[XZ5];
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t354 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
-    const rx90_real_t t355 = parameters[YZ5] - t354; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t356 = t10 * t353 + t14 * t355; /* link j5: column of the mass matrix */
-    const rx90_real_t t357 = parameters[XY4] + t356; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const rx90_real_t t358 = t6 * (t352 + t351) + t357 * (RX90_C(-2.0) * t8);
-    const rx90_real_t t359 = t6 * t358;
-    const rx90_real_t t360 = RX90_C(0.9) * t253;
-    const rx90_real_t t361 = parameters[XX3R] + (t359 - t352 + t360);
-    const rx90_real_t t362 = parameters[ZZ4R] + (t346 + t350); /* link j5: inertia of it and all beyond */
-    const rx90_real_t t363 = t14 * t349 - t348 - parameters[XZ4];
-    const rx90_real_t t364 = t14 * t353 - t10 * t355; /* link j5: column of the mass matrix */
-    const rx90_real_t t365 = parameters[YZ4] + t364; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t366 = RX90_C(0.45) * t225; /* link j4: column of the mass matrix */
-    const rx90_real_t t367 = t6 * t363 + t8 * t365 - t366;
-    const rx90_real_t t368 = t367 - parameters[XY3]; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const rx90_real_t t369 = t1 * (t361 - t362) - t368 * (RX90_C(-2.0) * t3);
-    const rx90_real_t t370 = t1 * t369;
-    const rx90_real_t t371 = RX90_C(0.9) * t282;
-    const rx90_real_t t372 = t361 - t370 - t371;
-    const rx90_real_t t373 = parameters[XX2R] + (t362 + t370);
-    const rx90_real_t t374 = parameters[XY2] + (t3 * t369 - t368 + RX90_C(0.45) * t268);
-    /* link j2: inertia of it and all beyond */
-    const rx90_real_t t375 = t2 * (t2 * (t372 - t373) + t374 * (RX90_C(2.0) * t0));
-    input_by_ddq[0] = RX90_C(0.03333333333333333) * (parameters[ZZ1R] + (t373 + t375));
-    const rx90_real_t t376 = t357 + t8 * t358 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t377 = RX90_C(-0.45) * t235; /* link j4: column of the mass matrix */
-    const rx90_real_t t378 = t8 * t363 - t6 * t365 + t377;
-    const rx90_real_t t379 = parameters[YZ3] + t378; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t380 = t1 * t376 + t3 * t379; /* link j3: column of the mass matrix */
-    const rx90_real_t t381 = parameters[XZ2R] + (t377 - t380); /* link j3: inertia of it and all beyond */
-    const rx90_real_t t382 = t3 * t376 - t1 * t379; /* link j3: column of the mass matrix */
-    const rx90_real_t t383 = t382 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t384 = RX90_C(0.03333333333333333) * (t0 * t381 - t2 * t383);
-    input_by_ddq[6] = t384;
-    const rx90_real_t t385 = RX90_C(-0.03333333333333333) * (t0 * t380 + t2 * t382);
-    input_by_ddq[12] = t385;
-    const rx90_real_t t386 = t1 * t367 + t3 * t362; /* link j4: column of the mass matrix */
-    const rx90_real_t t387 = t366 + (t3 * t367 - t1 * t362);
-    const rx90_real_t t388 = t0 * t386 + t2 * t387;
-    input_by_ddq[18] = RX90_C(-0.1) * t388;
-    const rx90_real_t t389 = RX90_C(0.45) * t321; /* link j5: column of the mass matrix */
-    const rx90_real_t t390 = t6 * t356 + t8 * t352 - t389;
-    const rx90_real_t t391 = t3 * t364 - t1 * t390;
-    const rx90_real_t t392 = t389 + (t3 * t390 + t1 * t364);
-    const rx90_real_t t393 = t0 * t391 - t2 * t392;
-    input_by_ddq[24] = RX90_C(0.1) * t393;
-    const rx90_real_t t394 = t10 * t347 + t14 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const rx90_real_t t395 = RX90_C(0.45) * t338;
-    const rx90_real_t t396 = t6 * t394 + t8 * t354 - t395;
-    const rx90_real_t t397 = t14 * t347 - t10 * parameters[ZZ6];
-    const rx90_real_t t398 = t3 * t397 - t1 * t396;
-    const rx90_real_t t399 = t395 + (t3 * t396 + t1 * t397);
-    const rx90_real_t t400 = t0 * t398 - t2 * t399;
-    input_by_ddq[30] = RX90_C(0.16666666666666666) * t400;
-    const rx90_real_t t401 = RX90_C(2.0) * t66; /* link j2: derivatives */
-    const rx90_real_t t402 = RX90_C(-2.0) * t71;
-    const rx90_real_t t403 = t148 + t67; /* link j3: motion */
-    /* link j2: derivatives */
-    const rx90_real_t t404 = t276 * t401 + t281 * t402 + (t373 * t79 - t374 * t142 - t381 * t403);
-    const rx90_real_t t405 = t285 * t401 + t278 * t402 + (t374 * t79 - t372 * t142 + t383 * t403);
-    const rx90_real_t t406 = t0 * (t149 + (t404 + t235 * t69)) + t2 * (t145 + (t405 - t235 * t74));
-    input_by_q[1] = RX90_C(0.03333333333333333) * t406;
-    /* link j4: inertia of it and all beyond */
-    const rx90_real_t t407 = parameters[ZZ3R] + (t351 - t359 + t360);
-    const rx90_real_t t408 = parameters[ZZ2R] + (t407 - t371); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const rx90_real_t t409 = t381 * t79 + t383 * t142 - t408 * t403 + (t66 * t294 + t71 * t296);
-    const rx90_real_t t410 = (t282 - parameters[MX2R]) * t69 - (t268 - parameters[MY2]) * t74 + t409;
-    input_by_q[7] = RX90_C(0.03333333333333333) * t410;
-    const rx90_real_t t411 = t407 - RX90_C(0.45) * t282; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const rx90_real_t t412 = t66 * t300 - t71 * t301 + (t382 * t142 - t380 * t79 - t411 * t403);
-    input_by_q[13] = RX90_C(0.03333333333333333) * (t412 + (t282 * t69 - t268 * t74));
-    const rx90_real_t t413 = t378 + RX90_C(0.45) * t310; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const rx90_real_t t414 = t66 * t311 + t71 * t313 + (t387 * t142 - t386 * t79 - t413 * t403);
-    input_by_q[19] = RX90_C(0.1) * (t414 - (t312 * t74 + t310 * t69));
-    /* link j5: column of the mass matrix */
-    const rx90_real_t t415 = t8 * t356 - t6 * t352 + RX90_C(0.45) * t320;
-    const rx90_real_t t416 = t415 + RX90_C(-0.45) * t323;
-    /* link j5: derivatives */
-    const rx90_real_t t417 = t66 * t324 + t71 * t326 + (t391 * t79 + t392 * t142 - t416 * t403);
-    input_by_q[25] = RX90_C(0.1) * (t417 + (t325 * t74 + t323 * t69));
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t418 = t8 * t394 - t6 * t354 + RX90_C(0.45) * t337;
-    const rx90_real_t t419 = t418 + RX90_C(-0.45) * t340;
+    const rx90_real_t t173 = t94 + t64; /* link j6: force and moment */
     /* link j6: derivatives */
-    const rx90_real_t t420 = t66 * t341 + t71 * t343 + (t398 * t79 + t399 * t142 - t419 * t403);
-    input_by_q[31] = RX90_C(0.16666666666666666) * (t420 + (t342 * t74 + t340 * t69));
-    const rx90_real_t t421 = t255 - parameters[ZZ3R];
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t422 = t212 + t287 - t235 * t226 - (parameters[YZ3] * t7 + t12 * t421);
-    const rx90_real_t t423 = parameters[XZ3] * t7 + t5 * t421 + (t8 * t257 - t6 * t258);
-    const rx90_real_t t424 = parameters[ZZ2R] - t280;
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t425 = t66 * t424 - parameters[YZ2] * dq[1] + (t1 * t422 - t3 * t423);
-    /* link j2: derivatives */
-    const rx90_real_t t426 = t0 * (RX90_C(2.0) * t425 + (t373 * t401 + t374 * t402));
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t427 = parameters[XZ2R] * dq[1] - t71 * t424 + (t3 * t422 + t1 * t423 - t235 * t269);
-    /* link j2: derivatives */
-    const rx90_real_t t428 = t2 * (RX90_C(2.0) * t427 + (t374 * t401 + t372 * t402));
-    input_by_dq[1] = RX90_C(0.03333333333333333) * (t426 + t428);
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t429 = t243 - t239 + (t238 + (t218 - t203 - t237));
-    /* link j2: derivatives */
-    const rx90_real_t t430 = RX90_C(2.0) * (t277 - t274 + (t273 + (t429 - t272))) + RX90_C(2.0) * (t381 * t66
-        + t383 * t71);
-    input_by_dq[7] = RX90_C(333.33333333333337) * parameters[FV2] + RX90_C(0.03333333333333333) * t430;
-    const rx90_real_t t431 = RX90_C(2.0) * t429; /* link j3: derivatives */
-    const rx90_real_t t432 = t431 - t268 * t309 + RX90_C(2.0) * (t382 * t71 - t380 * t66);
-    input_by_dq[13] = RX90_C(0.03333333333333333) * t432;
-    const rx90_real_t t433 = t8 * t302 - t6 * t303; /* link j4: derivatives */
-    const rx90_real_t t434 = t433 - t312 * t309 + RX90_C(2.0) * (t387 * t71 - t386 * t66);
-    input_by_dq[19] = RX90_C(0.1) * t434;
-    const rx90_real_t t435 = t8 * t316 + t6 * t317 - t223 * t307; /* link j5: derivatives */
-    const rx90_real_t t436 = t435 + t325 * t309 + RX90_C(2.0) * (t391 * t66 + t392 * t71);
-    input_by_dq[25] = RX90_C(0.1) * t436;
-    const rx90_real_t t437 = t8 * t331 + t6 * t332 - t333 * t307; /* link j6: derivatives */
-    const rx90_real_t t438 = t437 + t342 * t309 + RX90_C(2.0) * (t398 * t66 + t399 * t71);
-    input_by_dq[31] = RX90_C(0.16666666666666666) * t438;
-    input_by_ddq[1] = t384;
-    input_by_ddq[7] = RX90_C(0.03333333333333333) * t408;
-    const rx90_real_t t439 = RX90_C(0.03333333333333333) * t411;
-    input_by_ddq[13] = t439;
-    input_by_ddq[19] = RX90_C(0.1) * t413;
-    input_by_ddq[25] = RX90_C(0.1) * t416;
-    input_by_ddq[31] = RX90_C(0.16666666666666666) * t419;
-    const rx90_real_t t440 = RX90_C(-2.0) * t12; /* link j3: derivatives */
-    const rx90_real_t t441 = RX90_C(2.0) * t5;
-    const rx90_real_t t442 = t84 + t134; /* link j4: motion */
-    /* link j3: derivatives */
-    const rx90_real_t t443 = t256 * t441 - t241 * t440 + (t361 * t34 + t368 * t22 + t376 * t442);
-    const rx90_real_t t444 = t140 + (t443 + t235 * t76);
-    const rx90_real_t t445 = t362 * t22; /* link j4: derivatives */
-    /* link j3: derivatives */
-    const rx90_real_t t446 = t260 * t440 + t244 * t441 + (t445 + t368 * t34 + t379 * t442);
-    const rx90_real_t t447 = t235 * t87; /* link j4: derivatives */
-    const rx90_real_t t448 = t135 - (t447 + t446); /* link j3: derivatives */
-    const rx90_real_t t449 = t263 * t441 - t264 * t440 + (t266 * t22 - t267 * t34);
-    const rx90_real_t t450 = t2 * (t3 * t444 + t1 * t448 + RX90_C(0.45) * t449);
-    const rx90_real_t t451 = RX90_C(0.03333333333333333) * (t0 * (t1 * t444 - t3 * t448) + t450);
-    input_by_q[2] = t451;
-    const rx90_real_t t452 = t159 + (t292 * t441 + (t267 * t442 - t235 * t22));
-    const rx90_real_t t453 = t157 + (t266 * t442 - t235 * t34 - t292 * t440);
-    const rx90_real_t t454 = t376 * t34 + t379 * t22 + t407 * t442;
-    const rx90_real_t t455 = t266 * t76 + t267 * t87;
-    const rx90_real_t t456 = t291 * t441 - t288 * t440 - t454 + t455 + RX90_C(0.45) * (t3 * t452 + t1 * t453);
-    input_by_q[8] = RX90_C(0.03333333333333333) * t456;
-    const rx90_real_t t457 = RX90_C(0.03333333333333333) * (t455 + (t12 * t297 + t5 * t298 - t454));
-    input_by_q[14] = t457;
-    /* link j4: derivatives */
-    const rx90_real_t t458 = t5 * t308 - t12 * t304 - (t367 * t34 + t445 + t378 * t442);
-    input_by_q[20] = RX90_C(0.1) * (t458 - t447);
-    /* link j5: derivatives */
-    const rx90_real_t t459 = t5 * t322 - t12 * t318 + (t364 * t22 - t390 * t34 - t415 * t442);
-    input_by_q[26] = RX90_C(0.1) * (t459 + (t320 * t87 + t223 * t76));
-    /* link j6: derivatives */
-    const rx90_real_t t460 = t5 * t339 - t12 * t334 + (t397 * t22 - t396 * t34 - t418 * t442);
-    input_by_q[32] = RX90_C(0.16666666666666666) * (t460 + (t337 * t87 + t333 * t76));
-    const rx90_real_t t461 = RX90_C(2.0) * t422 + (t368 * t441 - t361 * t440); /* link j3: derivatives */
-    const rx90_real_t t462 = RX90_C(2.0) * t423 - (t362 * t441 - t368 * t440);
-    const rx90_real_t t463 = t3 * t461 + t1 * t462 + RX90_C(0.45) * (t267 * t440 + t266 * t441);
-    const rx90_real_t t464 = t0 * (t1 * t461 - t3 * t462) + t2 * t463;
-    input_by_dq[2] = RX90_C(0.03333333333333333) * t464;
-    const rx90_real_t t465 = t3 * (RX90_C(2.0) * t264 - t235 * t441) + t1 * (RX90_C(-2.0) * t263
-        + t235 * t440);
-    const rx90_real_t t466 = t431 + (t376 * t440 - t379 * t441) + RX90_C(0.45) * t465;
-    input_by_dq[8] = RX90_C(0.03333333333333333) * t466;
-    const rx90_real_t t467 = RX90_C(0.03333333333333333) * (t431 + RX90_C(-2.0) * (t376 * t12 + t379 * t5));
-    input_by_dq[14] = RX90_C(333.33333333333337) * parameters[FV3] + t467;
-    const rx90_real_t t468 = RX90_C(0.1) * (t433 + RX90_C(-2.0) * (t367 * t12 + t362 * t5));
-    input_by_dq[20] = t468;
-    const rx90_real_t t469 = RX90_C(0.1) * (t435 + RX90_C(2.0) * (t364 * t5 - t390 * t12));
-    input_by_dq[26] = t469;
-    const rx90_real_t t470 = RX90_C(0.16666666666666666) * (t437 + RX90_C(2.0) * (t397 * t5 - t396 * t12));
-    input_by_dq[32] = t470;
-    input_by_ddq[2] = t385;
-    input_by_ddq[8] = t439;
-    input_by_ddq[14] = RX90_C(333.33333333333337) * parameters[IA3] + RX90_C(0.03333333333333333) * t407;
-    input_by_ddq[20] = RX90_C(0.1) * t378;
-    input_by_ddq[26] = RX90_C(0.1) * t415;
-    input_by_ddq[32] = RX90_C(0.16666666666666666) * t418;
-    const rx90_real_t t471 = RX90_C(2.0) * t31; /* link j4: derivatives */
-    const rx90_real_t t472 = RX90_C(-2.0) * t9;
-    const rx90_real_t t473 = t121 + t114; /* link j5: motion */
-    /* link j4: derivatives */
-    const rx90_real_t t474 = t203 * t471 + t212 * t472 - (t357 * t38 - t351 * t25 - t363 * t473);
-    const rx90_real_t t475 = t122 + (t474 + t253 * t83);
-    const rx90_real_t t476 = t352 * t38; /* link j5: derivatives */
-    /* link j4: derivatives */
-    const rx90_real_t t477 = t216 * t471 + t206 * t472 + (t365 * t473 - (t476 + t357 * t25));
-    const rx90_real_t t478 = t253 * t101; /* link j5: derivatives */
-    const rx90_real_t t479 = t116 + (t478 + t477); /* link j4: derivatives */
-    const rx90_real_t t480 = t127 + (t233 * t471 + (t253 * t25 - t224 * t473));
-    const rx90_real_t t481 = t129 + (t233 * t472 + (t220 * t473 - t253 * t38));
-    const rx90_real_t t482 = RX90_C(0.45) * (t8 * t481 - t6 * t480);
-    const rx90_real_t t483 = t6 * t475 + t8 * t479 - t482;
-    const rx90_real_t t484 = t363 * t25 + t365 * t38 + t362 * t473;
-    const rx90_real_t t485 = t224 * t83 + t220 * t101;
-    const rx90_real_t t486 = t257 * t471 - t258 * t472 - t484 + t485;
-    const rx90_real_t t487 = t0 * (t1 * t483 - t3 * t486) + t2 * (t482 + (t3 * t483 + t1 * t486));
-    input_by_q[3] = RX90_C(0.03333333333333333) * t487;
-    const rx90_real_t t488 = t6 * t481 + t8 * t480;
-    const rx90_real_t t489 = t6 * t479 - t8 * t475 + RX90_C(-0.45) * t488;
-    const rx90_real_t t490 = t220 * t25 - t224 * t38 - (t251 * t471 + t249 * t472);
-    const rx90_real_t t491 = RX90_C(0.03333333333333333) * (t489 + RX90_C(0.45) * (t3 * t488 + t1 * t490));
-    input_by_q[9] = t491;
-    input_by_q[15] = RX90_C(0.03333333333333333) * t489;
-    const rx90_real_t t492 = RX90_C(0.1) * (t485 + (t31 * t302 + t9 * t303 - t484));
-    input_by_q[21] = t492;
-    /* link j5: derivatives */
-    const rx90_real_t t493 = t31 * t316 - t9 * t317 + (t364 * t473 - (t356 * t25 + t476));
-    input_by_q[27] = RX90_C(0.1) * (t493 + t478);
-    /* link j6: derivatives */
-    const rx90_real_t t494 = t31 * t331 - t9 * t332 + (t397 * t473 - (t394 * t25 + t354 * t38));
-    input_by_q[33] = RX90_C(0.16666666666666666) * (t494 + (t336 * t101 + t221 * t83));
-    const rx90_real_t t495 = RX90_C(2.0) * t247 + (t351 * t471 + t357 * t472); /* link j4: derivatives */
-    const rx90_real_t t496 = RX90_C(-2.0) * t248 + (t357 * t471 - t352 * t472);
-    const rx90_real_t t497 = RX90_C(2.0) * t251 + t253 * t472;
-    const rx90_real_t t498 = RX90_C(2.0) * t249 - t253 * t471;
-    const rx90_real_t t499 = RX90_C(0.45) * (t8 * t497 + t6 * t498);
-    const rx90_real_t t500 = t8 * t496 - t6 * t495 + t499;
-    const rx90_real_t t501 = t305 - (t365 * t472 - t363 * t471);
-    const rx90_real_t t502 = t0 * (t1 * t500 - t3 * t501) + t2 * (t3 * t500 + t1 * t501 - t499);
-    input_by_dq[3] = RX90_C(0.03333333333333333) * t502;
-    const rx90_real_t t503 = t6 * t497 - t8 * t498;
-    const rx90_real_t t504 = t8 * t495 + t6 * t496 + RX90_C(0.45) * t503;
-    const rx90_real_t t505 = t3 * t503 + t1 * (t220 * t471 + t224 * t472);
-    input_by_dq[9] = RX90_C(0.03333333333333333) * (t504 + RX90_C(-0.45) * t505);
-    input_by_dq[15] = RX90_C(0.03333333333333333) * t504;
-    const rx90_real_t t506 = RX90_C(0.1) * (t305 + RX90_C(2.0) * (t363 * t31 + t365 * t9));
-    input_by_dq[21] = RX90_C(250.0) * parameters[FV4] + t506;
-    const rx90_real_t t507 = RX90_C(0.1) * (RX90_C(2.0) * (t356 * t31 + t352 * t9) - t319);
-    input_by_dq[27] = t507;
-    const rx90_real_t t508 = RX90_C(0.16666666666666666) * (RX90_C(2.0) * (t394 * t31 + t354 * t9) - t335);
-    input_by_dq[33] = t508;
-    input_by_ddq[3] = RX90_C(-0.03333333333333333) * t388;
-    input_by_ddq[9] = RX90_C(0.03333333333333333) * t413;
-    input_by_ddq[15] = RX90_C(0.03333333333333333) * t378;
-    input_by_ddq[21] = RX90_C(250.0) * parameters[IA4] + RX90_C(0.1) * t362;
-    const rx90_real_t t509 = RX90_C(-0.1) * t364;
-    input_by_ddq[27] = t509;
-    input_by_ddq[33] = RX90_C(-0.16666666666666666) * t397;
-    const rx90_real_t t510 = RX90_C(2.0) * t16; /* link j5: derivatives */
-    const rx90_real_t t511 = RX90_C(2.0) * t15;
-    const rx90_real_t t512 = t109 + t99; /* link j6: motion */
-    /* link j5: derivatives */
-    const rx90_real_t t513 = t194 * t511 - t186 * t510 + (t346 * t57 + t348 * t42 + t353 * t512);
-    const rx90_real_t t514 = t110 + (t513 + t219 * t104);
-    const rx90_real_t t515 = parameters[ZZ6] * t42; /* link j6: derivatives */
-    /* link j5: derivatives */
-    const rx90_real_t t516 = t198 * t510 + t189 * t511 + (t515 + t348 * t57 - t355 * t512);
-    const rx90_real_t t517 = t219 * t89; /* link j6: derivatives */
-    const rx90_real_t t518 = t102 + (t517 + t516); /* link j5: derivatives */
-    const rx90_real_t t519 = t10 * t514 - t14 * t518;
-    const rx90_real_t t520 = t355 * t42 - t353 * t57 + t352 * t512;
-    const rx90_real_t t521 = parameters[MY5R] * t89 - t222 * t104;
-    const rx90_real_t t522 = t214 * t511 - t213 * t510 + t520 + t521;
-    const rx90_real_t t523 = t126 + (parameters[MY5R] * t512 - t219 * t42 - t250 * t511);
-    const rx90_real_t t524 = t125 + (t250 * t510 + (t222 * t512 + t219 * t57));
-    const rx90_real_t t525 = t10 * t523 - t14 * t524;
-    const rx90_real_t t526 = t230 * t511 - t232 * t510 + (parameters[MY5R] * t57 + t222 * t42);
-    const rx90_real_t t527 = RX90_C(0.45) * (t8 * t525 - t6 * t526);
-    const rx90_real_t t528 = t6 * t519 + t8 * t522 - t527;
-    const rx90_real_t t529 = t14 * t514 + t10 * t518;
-    const rx90_real_t t530 = t0 * (t1 * t528 - t3 * t529) + t2 * (t527 + (t3 * t528 + t1 * t529));
-    input_by_q[4] = RX90_C(0.03333333333333333) * t530;
-    const rx90_real_t t531 = t6 * t525 + t8 * t526;
-    const rx90_real_t t532 = t6 * t522 - t8 * t519 + RX90_C(-0.45) * t531;
-    const rx90_real_t t533 = t3 * t531 + t1 * (t14 * t523 + t10 * t524);
-    input_by_q[10] = RX90_C(0.03333333333333333) * (t532 + RX90_C(0.45) * t533);
-    input_by_q[16] = RX90_C(0.03333333333333333) * t532;
-    input_by_q[22] = RX90_C(0.1) * t529;
-    const rx90_real_t t534 = RX90_C(0.1) * (t521 + (t520 + (t15 * t315 - t16 * t314)));
-    input_by_q[28] = t534;
-    /* link j6: derivatives */
-    const rx90_real_t t535 = t15 * t330 - t16 * t329 + (t515 - t347 * t57 + t354 * t512);
-    input_by_q[34] = RX90_C(0.16666666666666666) * (t535 + t517);
-    const rx90_real_t t536 = RX90_C(2.0) * t209 + (t346 * t510 + t348 * t511); /* link j5: derivatives */
-    const rx90_real_t t537 = RX90_C(2.0) * t210 + (t348 * t510 + parameters[ZZ6] * t511);
-    const rx90_real_t t538 = t10 * t536 - t14 * t537;
-    const rx90_real_t t539 = t317 + (t355 * t511 - t353 * t510);
-    const rx90_real_t t540 = RX90_C(2.0) * t232 - t219 * t511;
-    const rx90_real_t t541 = RX90_C(-2.0) * t230 + t219 * t510;
-    const rx90_real_t t542 = t14 * t541 - t10 * t540;
-    const rx90_real_t t543 = parameters[MY5R] * t510 + t222 * t511;
-    const rx90_real_t t544 = RX90_C(0.45) * (t8 * t542 + t6 * t543);
-    const rx90_real_t t545 = t6 * t538 + t8 * t539 + t544;
-    const rx90_real_t t546 = t14 * t536 + t10 * t537;
-    const rx90_real_t t547 = t0 * (t1 * t545 - t3 * t546) + t2 * (t3 * t545 + t1 * t546 - t544);
-    input_by_dq[4] = RX90_C(0.03333333333333333) * t547;
-    const rx90_real_t t548 = t6 * t542 - t8 * t543;
-    const rx90_real_t t549 = t6 * t539 - t8 * t538 + RX90_C(0.45) * t548;
-    const rx90_real_t t550 = t1 * (t14 * t540 + t10 * t541) - t3 * t548;
-    input_by_dq[10] = RX90_C(0.03333333333333333) * (t549 + RX90_C(0.45) * t550);
-    input_by_dq[16] = RX90_C(0.03333333333333333) * t549;
-    input_by_dq[22] = RX90_C(0.1) * t546;
-    const rx90_real_t t551 = RX90_C(0.1) * (t317 + RX90_C(2.0) * (t355 * t15 - t353 * t16));
-    input_by_dq[28] = RX90_C(250.0) * parameters[FV5] + t551;
-    const rx90_real_t t552 = RX90_C(0.16666666666666666) * (t332 + RX90_C(2.0) * (parameters[ZZ6] * t15
-        - t347 * t16));
-    input_by_dq[34] = t552;
-    input_by_ddq[4] = RX90_C(0.03333333333333333) * t393;
-    input_by_ddq[10] = RX90_C(0.03333333333333333) * t416;
-    input_by_ddq[16] = RX90_C(0.03333333333333333) * t415;
-    input_by_ddq[22] = t509;
-    input_by_ddq[28] = RX90_C(250.0) * parameters[IA5] + RX90_C(-0.1) * t352;
-    input_by_ddq[34] = RX90_C(-0.16666666666666666) * t354;
-    const rx90_real_t t553 = t94 + t64; /* link j6: force and moment */
-    const rx90_real_t t554 = RX90_C(2.0) * t49; /* link j6: derivatives */
-    const rx90_real_t t555 = RX90_C(2.0) * t54;
-    const rx90_real_t t556 = t175 * t554 + t181 * t555 - (parameters[XZ6] * t553 - (parameters[XX6R] * t53
+    const rx90_real_t t174 = parameters[XZ6] * t53 + parameters[YZ6] * t48 - parameters[ZZ6] * t173;
+    const rx90_real_t t175 = RX90_C(0.5) * (parameters[XX6R] + parameters[ZZ6]);
+    const rx90_real_t t176 = parameters[XX6R] - t175;
+    const rx90_real_t t177 = t49 * t176 - parameters[XY6] * t54;
+    const rx90_real_t t178 = RX90_C(-2.0) * t177;
+    const rx90_real_t t179 = t54 * t175 + parameters[XY6] * t49;
+    const rx90_real_t t180 = RX90_C(2.0) * t179;
+    const rx90_real_t t181 = parameters[MX6] * t106 + parameters[MY6] * t105;
+    const rx90_real_t t182 = RX90_C(0.16666666666666666) * (t181 + (t174 + (t49 * t178 + t54 * t180)));
+    input_by_q[35] = t182;
+    const rx90_real_t t183 = parameters[XZ6] * t49;
+    const rx90_real_t t184 = parameters[XY6] * t50;
+    const rx90_real_t t185 = t183 + t184;
+    const rx90_real_t t186 = RX90_C(2.0) * t49;
+    const rx90_real_t t187 = t50 * t175 - parameters[YZ6] * t49;
+    const rx90_real_t t188 = RX90_C(2.0) * t54;
+    const rx90_real_t t189 = t185 * t186 + t187 * t188 - (parameters[XZ6] * t173 - (parameters[XX6R] * t53
         + parameters[XY6] * t48));
-    const rx90_real_t t557 = t95 + t556;
-    const rx90_real_t t558 = t180 * t554 - t177 * t555 + (parameters[YZ6] * t553 - parameters[XY6] * t53);
-    const rx90_real_t t559 = t90 + t558;
-    const rx90_real_t t560 = t47 * t557 + t30 * t559;
-    const rx90_real_t t561 = parameters[XZ6] * t53 + parameters[YZ6] * t48 - parameters[ZZ6] * t553;
-    const rx90_real_t t562 = parameters[MX6] * t106 + parameters[MY6] * t105;
-    const rx90_real_t t563 = t196 * t555 - t195 * t554 + t561 + t562;
-    const rx90_real_t t564 = t10 * t560 - t14 * t563;
-    const rx90_real_t t565 = t47 * t559 - t30 * t557;
-    const rx90_real_t t566 = t124 + (parameters[MY6] * t553 - t231 * t555);
-    const rx90_real_t t567 = t123 + (t231 * t554 + parameters[MX6] * t553);
-    const rx90_real_t t568 = t47 * t566 + t30 * t567;
-    const rx90_real_t t569 = t228 * t555 - t229 * t554 + (parameters[MY6] * t53 - parameters[MX6] * t48);
-    const rx90_real_t t570 = t10 * t568 - t14 * t569;
-    const rx90_real_t t571 = t30 * t566 - t47 * t567;
-    const rx90_real_t t572 = RX90_C(0.45) * (t8 * t570 + t6 * t571);
-    const rx90_real_t t573 = t6 * t564 + t8 * t565 - t572;
-    const rx90_real_t t574 = t14 * t560 + t10 * t563;
-    const rx90_real_t t575 = t0 * (t1 * t573 - t3 * t574) + t2 * (t572 + (t3 * t573 + t1 * t574));
-    input_by_q[5] = RX90_C(0.03333333333333333) * t575;
-    const rx90_real_t t576 = t6 * t570 - t8 * t571;
-    const rx90_real_t t577 = t6 * t565 - t8 * t564 + RX90_C(-0.45) * t576;
-    const rx90_real_t t578 = t3 * t576 + t1 * (t14 * t568 + t10 * t569);
-    input_by_q[11] = RX90_C(0.03333333333333333) * (t577 + RX90_C(0.45) * t578);
-    input_by_q[17] = RX90_C(0.03333333333333333) * t577;
-    input_by_q[23] = RX90_C(0.1) * t574;
-    input_by_q[29] = RX90_C(0.1) * t565;
-    const rx90_real_t t579 = RX90_C(0.16666666666666666) * (t562 + (t561 + (t49 * t327 + t54 * t328)));
-    input_by_q[35] = t579;
-    const rx90_real_t t580 = RX90_C(2.0) * t191 + (parameters[XY6] * t555 - parameters[XX6R] * t554);
-    const rx90_real_t t581 = RX90_C(2.0) * t192 + parameters[XY6] * t554;
-    const rx90_real_t t582 = t47 * t580 + t30 * t581;
-    const rx90_real_t t583 = t330 + (parameters[YZ6] * t555 - parameters[XZ6] * t554);
-    const rx90_real_t t584 = t10 * t582 - t14 * t583;
-    const rx90_real_t t585 = t47 * t581 - t30 * t580;
-    const rx90_real_t t586 = RX90_C(-2.0) * t229;
-    const rx90_real_t t587 = RX90_C(2.0) * t228;
-    const rx90_real_t t588 = t47 * t586 + t30 * t587;
-    const rx90_real_t t589 = parameters[MY6] * t554 + parameters[MX6] * t555;
-    const rx90_real_t t590 = t10 * t588 + t14 * t589;
-    const rx90_real_t t591 = t47 * t587 - t30 * t586;
-    const rx90_real_t t592 = RX90_C(0.45) * (t6 * t591 - t8 * t590);
-    const rx90_real_t t593 = t6 * t584 + t8 * t585 + t592;
-    const rx90_real_t t594 = t14 * t582 + t10 * t583;
-    const rx90_real_t t595 = t0 * (t1 * t593 - t3 * t594) + t2 * (t3 * t593 + t1 * t594 - t592);
-    input_by_dq[5] = RX90_C(0.03333333333333333) * t595;
-    const rx90_real_t t596 = t6 * t590 + t8 * t591;
-    const rx90_real_t t597 = t6 * t585 - t8 * t584 + RX90_C(-0.45) * t596;
-    const rx90_real_t t598 = t3 * t596 + t1 * (t14 * t588 - t10 * t589);
-    input_by_dq[11] = RX90_C(0.03333333333333333) * (t597 + RX90_C(0.45) * t598);
-    input_by_dq[17] = RX90_C(0.03333333333333333) * t597;
-    input_by_dq[23] = RX90_C(0.1) * t594;
-    input_by_dq[29] = RX90_C(0.1) * t585;
+    const rx90_real_t t190 = t95 + t189;
+    const rx90_real_t t191 = t50 * t176 + parameters[XZ6] * t54;
+    const rx90_real_t t192 = parameters[YZ6] * t54;
+    const rx90_real_t t193 = t184 + t192;
+    const rx90_real_t t194 = t191 * t186 - t193 * t188 + (parameters[YZ6] * t173 - parameters[XY6] * t53);
+    const rx90_real_t t195 = t90 + t194;
+    const rx90_real_t t196 = t47 * t195 - t30 * t190;
+    input_by_q[29] = RX90_C(0.1) * t196;
+    const rx90_real_t t197 = t47 * t190 + t30 * t195;
+    const rx90_real_t t198 = t179 * t188 - t177 * t186 + t174 + t181;
+    const rx90_real_t t199 = t14 * t197 + t10 * t198;
+    input_by_q[23] = RX90_C(0.1) * t199;
+    const rx90_real_t t200 = t10 * t197 - t14 * t198;
+    const rx90_real_t t201 = parameters[MY6] * t54 - parameters[MX6] * t49;
+    const rx90_real_t t202 = t124 + (parameters[MY6] * t173 - t201 * t188);
+    const rx90_real_t t203 = t123 + (t201 * t186 + parameters[MX6] * t173);
+    const rx90_real_t t204 = t47 * t202 + t30 * t203;
+    const rx90_real_t t205 = parameters[MX6] * t50;
+    const rx90_real_t t206 = parameters[MY6] * t50;
+    const rx90_real_t t207 = t206 * t188 - t205 * t186 + (parameters[MY6] * t53 - parameters[MX6] * t48);
+    const rx90_real_t t208 = t10 * t204 - t14 * t207;
+    const rx90_real_t t209 = t30 * t202 - t47 * t203;
+    const rx90_real_t t210 = t6 * t208 - t8 * t209;
+    const rx90_real_t t211 = t6 * t196 - t8 * t200 + RX90_C(-0.45) * t210;
+    input_by_q[17] = RX90_C(0.03333333333333333) * t211;
+    const rx90_real_t t212 = t3 * t210 + t1 * (t14 * t204 + t10 * t207);
+    input_by_q[11] = RX90_C(0.03333333333333333) * (t211 + RX90_C(0.45) * t212);
+    const rx90_real_t t213 = RX90_C(0.45) * (t8 * t208 + t6 * t209);
+    const rx90_real_t t214 = t6 * t200 + t8 * t196 - t213;
+    const rx90_real_t t215 = t0 * (t1 * t214 - t3 * t199) + t2 * (t213 + (t3 * t214 + t1 * t199));
+    input_by_q[5] = RX90_C(0.03333333333333333) * t215;
     input_by_dq[35] = RX90_C(150.0) * parameters[FV6];
-    input_by_ddq[5] = RX90_C(0.03333333333333333) * t400;
-    input_by_ddq[11] = RX90_C(0.03333333333333333) * t419;
-    input_by_ddq[17] = RX90_C(0.03333333333333333) * t418;
-    input_by_ddq[23] = RX90_C(-0.1) * t397;
-    input_by_ddq[29] = RX90_C(-0.1) * t354;
+    const rx90_real_t t216 = t175 - parameters[ZZ6];
+    const rx90_real_t t217 = t49 * t216 - parameters[YZ6] * t50;
+    const rx90_real_t t218 = RX90_C(2.0) * t217 + (parameters[XY6] * t188 - parameters[XX6R] * t186);
+    const rx90_real_t t219 = t54 * t216 - parameters[XZ6] * t50;
+    const rx90_real_t t220 = RX90_C(2.0) * t219 + parameters[XY6] * t186;
+    const rx90_real_t t221 = t47 * t220 - t30 * t218;
+    input_by_dq[29] = RX90_C(0.1) * t221;
+    const rx90_real_t t222 = t47 * t218 + t30 * t220;
+    const rx90_real_t t223 = t183 - t192;
+    const rx90_real_t t224 = RX90_C(2.0) * t223;
+    const rx90_real_t t225 = t224 + (parameters[YZ6] * t188 - parameters[XZ6] * t186);
+    const rx90_real_t t226 = t14 * t222 + t10 * t225;
+    input_by_dq[23] = RX90_C(0.1) * t226;
+    const rx90_real_t t227 = t10 * t222 - t14 * t225;
+    const rx90_real_t t228 = RX90_C(-2.0) * t205;
+    const rx90_real_t t229 = RX90_C(2.0) * t206;
+    const rx90_real_t t230 = t47 * t228 + t30 * t229;
+    const rx90_real_t t231 = parameters[MY6] * t186 + parameters[MX6] * t188;
+    const rx90_real_t t232 = t10 * t230 + t14 * t231;
+    const rx90_real_t t233 = t47 * t229 - t30 * t228;
+    const rx90_real_t t234 = t6 * t232 + t8 * t233;
+    const rx90_real_t t235 = t6 * t221 - t8 * t227 + RX90_C(-0.45) * t234;
+    input_by_dq[17] = RX90_C(0.03333333333333333) * t235;
+    const rx90_real_t t236 = t3 * t234 + t1 * (t14 * t230 - t10 * t231);
+    input_by_dq[11] = RX90_C(0.03333333333333333) * (t235 + RX90_C(0.45) * t236);
+    const rx90_real_t t237 = RX90_C(0.45) * (t6 * t233 - t8 * t232);
+    const rx90_real_t t238 = t6 * t227 + t8 * t221 + t237;
+    const rx90_real_t t239 = t0 * (t1 * t238 - t3 * t226) + t2 * (t3 * t238 + t1 * t226 - t237);
+    input_by_dq[5] = RX90_C(0.03333333333333333) * t239;
     input_by_ddq[35] = RX90_C(150.0) * parameters[IA6] + RX90_C(0.16666666666666666) * parameters[ZZ6];
+    /* link j6: column of the mass matrix */
+    const rx90_real_t t240 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
+    input_by_ddq[29] = RX90_C(-0.1) * t240;
+    const rx90_real_t t241 = t30 * parameters[YZ6] - t47 * parameters[XZ6];
+    const rx90_real_t t242 = t14 * t241 - t10 * parameters[ZZ6];
+    input_by_ddq[23] = RX90_C(-0.1) * t242;
+    const rx90_real_t t243 = t10 * t241 + t14 * parameters[ZZ6];
+    const rx90_real_t t244 = t47 * parameters[MY6] + t30 * parameters[MX6];
+    const rx90_real_t t245 = t10 * t244;
+    const rx90_real_t t246 = t30 * parameters[MY6] - t47 * parameters[MX6];
+    const rx90_real_t t247 = t6 * t245 - t8 * t246;
+    const rx90_real_t t248 = t8 * t243 - t6 * t240 + RX90_C(0.45) * t247;
+    input_by_ddq[17] = RX90_C(0.03333333333333333) * t248;
+    const rx90_real_t t249 = t14 * t244;
+    const rx90_real_t t250 = t3 * t247 + t1 * t249;
+    const rx90_real_t t251 = t248 + RX90_C(-0.45) * t250;
+    input_by_ddq[11] = RX90_C(0.03333333333333333) * t251;
+    const rx90_real_t t252 = t8 * t245 + t6 * t246;
+    const rx90_real_t t253 = RX90_C(0.45) * t252;
+    const rx90_real_t t254 = t6 * t243 + t8 * t240 - t253;
+    const rx90_real_t t255 = t3 * t242 - t1 * t254;
+    const rx90_real_t t256 = t253 + (t3 * t254 + t1 * t242);
+    const rx90_real_t t257 = t0 * t255 - t2 * t256;
+    input_by_ddq[5] = RX90_C(0.03333333333333333) * t257;
+    const rx90_real_t t258 = parameters[ZZ6] * t42; /* link j6: derivatives */
+    const rx90_real_t t259 = t109 + t99; /* link j6: motion */
+    const rx90_real_t t260 = t47 * t178 + t30 * t180; /* link j6: derivatives */
+    const rx90_real_t t261 = t15 * t224 - t16 * t260 + (t258 - t241 * t57 + t240 * t259);
+    const rx90_real_t t262 = t244 * t89;
+    input_by_q[34] = RX90_C(0.16666666666666666) * (t261 + t262);
+    const rx90_real_t t263 = t10 * t260 + t14 * t224;
+    const rx90_real_t t264 = t30 * t178 - t47 * t180;
+    const rx90_real_t t265 = t121 + t114; /* link j5: motion */
+    /* link j6: derivatives */
+    const rx90_real_t t266 = t31 * t263 - t9 * t264 + (t242 * t265 - (t243 * t25 + t240 * t38));
+    input_by_q[33] = RX90_C(0.16666666666666666) * (t266 + (t245 * t101 + t246 * t83));
+    const rx90_real_t t267 = RX90_C(0.9) * t5;
+    const rx90_real_t t268 = t6 * t263 - t8 * t264 - t249 * t267;
+    const rx90_real_t t269 = t14 * t260 - t10 * t224;
+    const rx90_real_t t270 = RX90_C(-0.9) * t7;
+    const rx90_real_t t271 = t269 + (t247 * t267 + t252 * t270);
+    const rx90_real_t t272 = t84 + t134; /* link j4: motion */
+    /* link j6: derivatives */
+    const rx90_real_t t273 = t5 * t271 - t12 * t268 + (t242 * t22 - t254 * t34 - t248 * t272);
+    input_by_q[32] = RX90_C(0.16666666666666666) * (t273 + (t247 * t87 + t249 * t76));
+    const rx90_real_t t274 = RX90_C(0.9) * dq[1];
+    const rx90_real_t t275 = RX90_C(-0.9) * t66;
+    const rx90_real_t t276 = t3 * t271 - t1 * t268 + (t252 * t274 + t250 * t275);
+    const rx90_real_t t277 = t1 * t247 - t3 * t249; /* link j6: column of the mass matrix */
+    const rx90_real_t t278 = t3 * t268 + t1 * t271 + t277 * t275; /* link j6: derivatives */
+    const rx90_real_t t279 = t148 + t67; /* link j3: motion */
+    /* link j6: derivatives */
+    const rx90_real_t t280 = t66 * t276 + t71 * t278 + (t255 * t79 + t256 * t142 - t251 * t279);
+    input_by_q[31] = RX90_C(0.16666666666666666) * (t280 + (t277 * t74 + t250 * t69));
+    const rx90_real_t t281 = RX90_C(0.16666666666666666) * (t264 + RX90_C(2.0) * (parameters[ZZ6] * t15
+        - t241 * t16));
+    input_by_dq[34] = t281;
+    const rx90_real_t t282 = RX90_C(0.16666666666666666) * (RX90_C(2.0) * (t243 * t31 + t240 * t9) - t269);
+    input_by_dq[33] = t282;
+    const rx90_real_t t283 = t8 * t263 + t6 * t264 - t249 * t270;
+    const rx90_real_t t284 = RX90_C(0.16666666666666666) * (t283 + RX90_C(2.0) * (t242 * t5 - t254 * t12));
+    input_by_dq[32] = t284;
+    const rx90_real_t t285 = t283 + t277 * t274 + RX90_C(2.0) * (t255 * t66 + t256 * t71);
+    input_by_dq[31] = RX90_C(0.16666666666666666) * t285;
+    input_by_dq[30] = RX90_C(0.16666666666666666) * (t0 * t276 - t2 * t278);
+    input_by_ddq[34] = RX90_C(-0.16666666666666666) * t240;
+    input_by_ddq[33] = RX90_C(-0.16666666666666666) * t242;
+    input_by_ddq[32] = RX90_C(0.16666666666666666) * t248;
+    input_by_ddq[31] = RX90_C(0.16666666666666666) * t251;
+    input_by_ddq[30] = RX90_C(0.16666666666666666) * t257;
+    /* link j6: inertia of it and all beyond */
+    const rx90_real_t t286 = t47 * parameters[XX6R] + parameters[XY6] * (RX90_C(-2.0) * t30);
+    const rx90_real_t t287 = parameters[XY6] + t30 * t286 - parameters[XZ5];
+    const rx90_real_t t288 = parameters[YZ5] - t240;
+    const rx90_real_t t289 = t47 * t286;
+    const rx90_real_t t290 = t289 - parameters[XX6R] - parameters[ZZ5R];
+    const rx90_real_t t291 = t288 * t42 - t287 * t57 + t290 * t259; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t292 = t47 * (t185 + t193) + t30 * (t191 + t187);
+    const rx90_real_t t293 = t30 * t292;
+    const rx90_real_t t294 = RX90_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    const rx90_real_t t295 = parameters[XX5R] + t294;
+    const rx90_real_t t296 = parameters[XY5] * t15 + t16 * t295 + (t191 - t293);
+    const rx90_real_t t297 = RX90_C(2.0) * t296; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t298 = t47 * t219 - t30 * t217 - (t15 * t294 + parameters[XY5] * t16);
+    const rx90_real_t t299 = RX90_C(2.0) * t298; /* link j5: derivatives */
+    const rx90_real_t t300 = t246 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t301 = parameters[MY5R] * t89 - t300 * t104; /* link j5: derivatives */
+    const rx90_real_t t302 = RX90_C(0.1) * (t301 + (t291 + (t15 * t299 - t16 * t297)));
+    input_by_q[28] = t302;
+    const rx90_real_t t303 = t47 * t292; /* link j6: inertia, momentum beyond */
+    const rx90_real_t t304 = parameters[XZ5] * t16;
+    const rx90_real_t t305 = parameters[XY5] * t43;
+    const rx90_real_t t306 = t305 - t304 + (t303 - t193);
+    const rx90_real_t t307 = RX90_C(2.0) * t16; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t308 = parameters[YZ5] * t16 - t43 * t294 + (t47 * t217 + t30 * t219);
+    const rx90_real_t t309 = RX90_C(2.0) * t15; /* link j5: derivatives */
+    const rx90_real_t t310 = parameters[XX5R] + t289; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t311 = parameters[XY5] - t241;
+    /* link j5: derivatives */
+    const rx90_real_t t312 = t308 * t309 - t306 * t307 + (t310 * t57 + t311 * t42 + t287 * t259);
+    const rx90_real_t t313 = t110 + (t312 + t244 * t104);
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t314 = t43 * t295 + parameters[XZ5] * t15 + (t47 * t177 - t30 * t179);
+    const rx90_real_t t315 = parameters[YZ5] * t15;
+    const rx90_real_t t316 = t305 + t315 + t223;
+    /* link j5: derivatives */
+    const rx90_real_t t317 = t314 * t307 + t316 * t309 + (t258 + t311 * t57 - t288 * t259);
+    const rx90_real_t t318 = t102 + (t262 + t317);
+    const rx90_real_t t319 = t14 * t313 + t10 * t318;
+    input_by_q[22] = RX90_C(0.1) * t319;
+    const rx90_real_t t320 = t10 * t313 - t14 * t318;
+    const rx90_real_t t321 = t298 * t309 - t296 * t307 + t291 + t301;
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t322 = parameters[MY5R] * t15 + parameters[MX5] * t16 + (t47 * t205 - t30 * t206);
+    /* link j5: derivatives */
+    const rx90_real_t t323 = t126 + (parameters[MY5R] * t259 - t244 * t42 - t322 * t309);
+    const rx90_real_t t324 = t125 + (t322 * t307 + (t300 * t259 + t244 * t57));
+    const rx90_real_t t325 = t10 * t323 - t14 * t324;
+    const rx90_real_t t326 = t201 - parameters[MX5] * t43; /* link j6: inertia, momentum beyond */
+    const rx90_real_t t327 = parameters[MY5R] * t43 + (t47 * t206 + t30 * t205);
+    /* link j5: derivatives */
+    const rx90_real_t t328 = t327 * t309 - t326 * t307 + (parameters[MY5R] * t57 + t300 * t42);
+    const rx90_real_t t329 = t6 * t325 + t8 * t328;
+    const rx90_real_t t330 = t6 * t321 - t8 * t320 + RX90_C(-0.45) * t329;
+    input_by_q[16] = RX90_C(0.03333333333333333) * t330;
+    const rx90_real_t t331 = t3 * t329 + t1 * (t14 * t323 + t10 * t324);
+    input_by_q[10] = RX90_C(0.03333333333333333) * (t330 + RX90_C(0.45) * t331);
+    const rx90_real_t t332 = RX90_C(0.45) * (t8 * t325 - t6 * t328);
+    const rx90_real_t t333 = t6 * t320 + t8 * t321 - t332;
+    const rx90_real_t t334 = t0 * (t1 * t333 - t3 * t319) + t2 * (t332 + (t3 * t333 + t1 * t319));
+    input_by_q[4] = RX90_C(0.03333333333333333) * t334;
+    const rx90_real_t t335 = t303 - t185 - (t304 + t315); /* link j6: inertia, momentum beyond */
+    const rx90_real_t t336 = RX90_C(2.0) * t335; /* link j5: derivatives */
+    const rx90_real_t t337 = RX90_C(0.1) * (t336 + RX90_C(2.0) * (t288 * t15 - t287 * t16));
+    input_by_dq[28] = RX90_C(250.0) * parameters[FV5] + t337;
+    const rx90_real_t t338 = parameters[ZZ5R] + t294;
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t339 = t16 * t338 - parameters[YZ5] * t43 + (t293 - t187);
+    const rx90_real_t t340 = RX90_C(2.0) * t339 + (t310 * t307 + t311 * t309); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t341 = parameters[XZ5] * t43 + t15 * t338 - (t30 * t177 + t47 * t179);
+    /* link j5: derivatives */
+    const rx90_real_t t342 = RX90_C(2.0) * t341 + (t311 * t307 + parameters[ZZ6] * t309);
+    const rx90_real_t t343 = t14 * t340 + t10 * t342;
+    input_by_dq[22] = RX90_C(0.1) * t343;
+    const rx90_real_t t344 = t10 * t340 - t14 * t342;
+    const rx90_real_t t345 = t336 + (t288 * t309 - t287 * t307);
+    const rx90_real_t t346 = RX90_C(2.0) * t326 - t244 * t309;
+    const rx90_real_t t347 = RX90_C(-2.0) * t327 + t244 * t307;
+    const rx90_real_t t348 = t14 * t347 - t10 * t346;
+    const rx90_real_t t349 = parameters[MY5R] * t307 + t300 * t309;
+    const rx90_real_t t350 = t6 * t348 - t8 * t349;
+    const rx90_real_t t351 = t6 * t345 - t8 * t344 + RX90_C(0.45) * t350;
+    input_by_dq[16] = RX90_C(0.03333333333333333) * t351;
+    const rx90_real_t t352 = t1 * (t14 * t346 + t10 * t347) - t3 * t350;
+    input_by_dq[10] = RX90_C(0.03333333333333333) * (t351 + RX90_C(0.45) * t352);
+    const rx90_real_t t353 = RX90_C(0.45) * (t8 * t348 + t6 * t349);
+    const rx90_real_t t354 = t6 * t344 + t8 * t345 + t353;
+    const rx90_real_t t355 = t0 * (t1 * t354 - t3 * t343) + t2 * (t3 * t354 + t1 * t343 - t353);
+    input_by_dq[4] = RX90_C(0.03333333333333333) * t355;
+    input_by_ddq[28] = RX90_C(250.0) * parameters[IA5] + RX90_C(-0.1) * t290;
+    const rx90_real_t t356 = t14 * t287 - t10 * t288; /* link j5: column of the mass matrix */
+    const rx90_real_t t357 = RX90_C(-0.1) * t356;
+    input_by_ddq[22] = t357;
+    const rx90_real_t t358 = t10 * t287 + t14 * t288;
+    const rx90_real_t t359 = t10 * parameters[MY5R] - t14 * t300;
+    const rx90_real_t t360 = t6 * t359;
+    const rx90_real_t t361 = t8 * t358 - t6 * t290 + RX90_C(0.45) * t360;
+    input_by_ddq[16] = RX90_C(0.03333333333333333) * t361;
+    const rx90_real_t t362 = t14 * parameters[MY5R] + t10 * t300;
+    const rx90_real_t t363 = t3 * t360 + t1 * t362;
+    const rx90_real_t t364 = t361 + RX90_C(-0.45) * t363;
+    input_by_ddq[10] = RX90_C(0.03333333333333333) * t364;
+    const rx90_real_t t365 = t8 * t359;
+    const rx90_real_t t366 = RX90_C(0.45) * t365;
+    const rx90_real_t t367 = t6 * t358 + t8 * t290 - t366;
+    const rx90_real_t t368 = t3 * t356 - t1 * t367;
+    const rx90_real_t t369 = t366 + (t3 * t367 + t1 * t356);
+    const rx90_real_t t370 = t0 * t368 - t2 * t369;
+    input_by_ddq[4] = RX90_C(0.03333333333333333) * t370;
+    const rx90_real_t t371 = t10 * t297 + t14 * t299; /* link j5: derivatives */
+    const rx90_real_t t372 = t290 * t38;
+    const rx90_real_t t373 = t31 * t371 - t9 * t336 + (t356 * t265 - (t358 * t25 + t372));
+    const rx90_real_t t374 = t359 * t101;
+    input_by_q[27] = RX90_C(0.1) * (t373 + t374);
+    const rx90_real_t t375 = t6 * t371 - t8 * t336 - t362 * t267;
+    const rx90_real_t t376 = t14 * t297 - t10 * t299;
+    const rx90_real_t t377 = t376 + (t360 * t267 + t365 * t270);
+    const rx90_real_t t378 = t5 * t377 - t12 * t375 + (t356 * t22 - t367 * t34 - t361 * t272);
+    input_by_q[26] = RX90_C(0.1) * (t378 + (t360 * t87 + t362 * t76));
+    const rx90_real_t t379 = t3 * t377 - t1 * t375 + (t365 * t274 + t363 * t275);
+    const rx90_real_t t380 = t1 * t360 - t3 * t362; /* link j5: column of the mass matrix */
+    const rx90_real_t t381 = t3 * t375 + t1 * t377 + t380 * t275; /* link j5: derivatives */
+    const rx90_real_t t382 = t66 * t379 + t71 * t381 + (t368 * t79 + t369 * t142 - t364 * t279);
+    input_by_q[25] = RX90_C(0.1) * (t382 + (t380 * t74 + t363 * t69));
+    const rx90_real_t t383 = RX90_C(0.1) * (RX90_C(2.0) * (t358 * t31 + t290 * t9) - t376);
+    input_by_dq[27] = t383;
+    const rx90_real_t t384 = t8 * t371 + t6 * t336 - t362 * t270;
+    const rx90_real_t t385 = RX90_C(0.1) * (t384 + RX90_C(2.0) * (t356 * t5 - t367 * t12));
+    input_by_dq[26] = t385;
+    const rx90_real_t t386 = t384 + t380 * t274 + RX90_C(2.0) * (t368 * t66 + t369 * t71);
+    input_by_dq[25] = RX90_C(0.1) * t386;
+    input_by_dq[24] = RX90_C(0.1) * (t0 * t379 - t2 * t381);
+    input_by_ddq[27] = t357;
+    input_by_ddq[26] = RX90_C(0.1) * t361;
+    input_by_ddq[25] = RX90_C(0.1) * t364;
+    input_by_ddq[24] = RX90_C(0.1) * t370;
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t387 = t10 * (t306 + t316) + t14 * (t308 + t314);
+    const rx90_real_t t388 = t14 * t387;
+    const rx90_real_t t389 = RX90_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const rx90_real_t t390 = parameters[XX4R] + t389;
+    const rx90_real_t t391 = parameters[XY4] * t9 - t31 * t390 + (t388 - t314);
+    const rx90_real_t t392 = RX90_C(2.0) * t391; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t393 = parameters[XY4] * t31 - t9 * t389 - (t14 * t339 + t10 * t341);
+    const rx90_real_t t394 = RX90_C(2.0) * t393; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const rx90_real_t t395 = t10 * (parameters[ZZ6] - t310) + t311 * (RX90_C(2.0) * t14);
+    const rx90_real_t t396 = t14 * t395 - t311 - parameters[XZ4];
+    const rx90_real_t t397 = parameters[YZ4] + t356;
+    const rx90_real_t t398 = t10 * t395;
+    const rx90_real_t t399 = parameters[ZZ4R] + (t310 + t398);
+    const rx90_real_t t400 = t396 * t25 + t397 * t38 + t399 * t265; /* link j4: derivatives */
+    const rx90_real_t t401 = t362 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t402 = parameters[MY4R] + t244;
+    const rx90_real_t t403 = t401 * t83 + t402 * t101; /* link j4: derivatives */
+    const rx90_real_t t404 = RX90_C(0.1) * (t403 + (t31 * t392 + t9 * t394 - t400));
+    input_by_q[21] = t404;
+    const rx90_real_t t405 = t10 * t387; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t406 = parameters[XZ4] * t31;
+    const rx90_real_t t407 = parameters[XY4] * t13;
+    const rx90_real_t t408 = t406 + t407 - (t316 - t405);
+    const rx90_real_t t409 = RX90_C(2.0) * t31; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t410 = parameters[YZ4] * t31 + t13 * t389 + (t10 * t339 - t14 * t341);
+    const rx90_real_t t411 = RX90_C(-2.0) * t9; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const rx90_real_t t412 = parameters[XX4R] + (parameters[ZZ6] - t398);
+    const rx90_real_t t413 = parameters[XY4] + t358;
+    /* link j4: derivatives */
+    const rx90_real_t t414 = t408 * t409 + t410 * t411 - (t413 * t38 - t412 * t25 - t396 * t265);
+    const rx90_real_t t415 = t122 + (t414 + t359 * t83);
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t416 = t13 * t390 + parameters[XZ4] * t9 + (t10 * t296 + t14 * t298);
+    const rx90_real_t t417 = parameters[YZ4] * t9;
+    const rx90_real_t t418 = t407 + t417 + t335;
+    /* link j4: derivatives */
+    const rx90_real_t t419 = t416 * t409 + t418 * t411 + (t397 * t265 - (t372 + t413 * t25));
+    const rx90_real_t t420 = t116 + (t374 + t419);
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t421 = parameters[MY4R] * t9 - parameters[MX4] * t31 + (t14 * t327 + t10 * t326);
+    const rx90_real_t t422 = t127 + (t421 * t409 + (t359 * t25 - t401 * t265)); /* link j4: derivatives */
+    const rx90_real_t t423 = t129 + (t421 * t411 + (t402 * t265 - t359 * t38));
+    const rx90_real_t t424 = t6 * t423 + t8 * t422;
+    const rx90_real_t t425 = t6 * t420 - t8 * t415 + RX90_C(-0.45) * t424;
+    input_by_q[15] = RX90_C(0.03333333333333333) * t425;
+    const rx90_real_t t426 = parameters[MX4] * t13 + t322; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t427 = parameters[MY4R] * t13 + (t10 * t327 - t14 * t326);
+    const rx90_real_t t428 = t402 * t25 - t401 * t38 - (t426 * t409 + t427 * t411); /* link j4: derivatives */
+    const rx90_real_t t429 = RX90_C(0.03333333333333333) * (t425 + RX90_C(0.45) * (t3 * t424 + t1 * t428));
+    input_by_q[9] = t429;
+    const rx90_real_t t430 = RX90_C(0.45) * (t8 * t423 - t6 * t422);
+    const rx90_real_t t431 = t6 * t415 + t8 * t420 - t430;
+    const rx90_real_t t432 = t391 * t409 - t393 * t411 - t400 + t403;
+    const rx90_real_t t433 = t0 * (t1 * t431 - t3 * t432) + t2 * (t430 + (t3 * t431 + t1 * t432));
+    input_by_q[3] = RX90_C(0.03333333333333333) * t433;
+    const rx90_real_t t434 = t406 - t417 + (t405 - t306); /* link j5: inertia, momentum beyond */
+    const rx90_real_t t435 = RX90_C(2.0) * t434; /* link j4: derivatives */
+    const rx90_real_t t436 = RX90_C(0.1) * (t435 + RX90_C(2.0) * (t396 * t31 + t397 * t9));
+    input_by_dq[21] = RX90_C(250.0) * parameters[FV4] + t436;
+    const rx90_real_t t437 = parameters[ZZ4R] + t389;
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t438 = t31 * t437 + parameters[YZ4] * t13 - (t308 - t388);
+    const rx90_real_t t439 = RX90_C(2.0) * t438 + (t412 * t409 + t413 * t411); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t440 = parameters[XZ4] * t13 + t9 * t437 + (t14 * t296 - t10 * t298);
+    const rx90_real_t t441 = RX90_C(-2.0) * t440 + (t413 * t409 - t290 * t411); /* link j4: derivatives */
+    const rx90_real_t t442 = RX90_C(2.0) * t426 + t359 * t411;
+    const rx90_real_t t443 = RX90_C(2.0) * t427 - t359 * t409;
+    const rx90_real_t t444 = t6 * t442 - t8 * t443;
+    const rx90_real_t t445 = t8 * t439 + t6 * t441 + RX90_C(0.45) * t444;
+    input_by_dq[15] = RX90_C(0.03333333333333333) * t445;
+    const rx90_real_t t446 = t3 * t444 + t1 * (t402 * t409 + t401 * t411);
+    input_by_dq[9] = RX90_C(0.03333333333333333) * (t445 + RX90_C(-0.45) * t446);
+    const rx90_real_t t447 = RX90_C(0.45) * (t8 * t442 + t6 * t443);
+    const rx90_real_t t448 = t8 * t441 - t6 * t439 + t447;
+    const rx90_real_t t449 = t435 - (t397 * t411 - t396 * t409);
+    const rx90_real_t t450 = t0 * (t1 * t448 - t3 * t449) + t2 * (t3 * t448 + t1 * t449 - t447);
+    input_by_dq[3] = RX90_C(0.03333333333333333) * t450;
+    input_by_ddq[21] = RX90_C(250.0) * parameters[IA4] + RX90_C(0.1) * t399;
+    const rx90_real_t t451 = t8 * t401 - t6 * t402; /* link j4: column of the mass matrix */
+    const rx90_real_t t452 = RX90_C(-0.45) * t451;
+    const rx90_real_t t453 = t8 * t396 - t6 * t397 + t452;
+    input_by_ddq[15] = RX90_C(0.03333333333333333) * t453;
+    const rx90_real_t t454 = t3 * t451;
+    const rx90_real_t t455 = t453 + RX90_C(0.45) * t454;
+    input_by_ddq[9] = RX90_C(0.03333333333333333) * t455;
+    const rx90_real_t t456 = t8 * t402 + t6 * t401;
+    const rx90_real_t t457 = RX90_C(0.45) * t456;
+    const rx90_real_t t458 = t6 * t396 + t8 * t397 - t457;
+    const rx90_real_t t459 = t1 * t458 + t3 * t399;
+    const rx90_real_t t460 = t457 + (t3 * t458 - t1 * t399);
+    const rx90_real_t t461 = t0 * t459 + t2 * t460;
+    input_by_ddq[3] = RX90_C(-0.03333333333333333) * t461;
+    const rx90_real_t t462 = t6 * t392 + t8 * t394; /* link j4: derivatives */
+    const rx90_real_t t463 = t456 * t270 - t451 * t267 - t435;
+    const rx90_real_t t464 = t399 * t22;
+    const rx90_real_t t465 = t5 * t463 - t12 * t462 - (t458 * t34 + t464 + t453 * t272);
+    const rx90_real_t t466 = t451 * t87;
+    input_by_q[20] = RX90_C(0.1) * (t465 - t466);
+    const rx90_real_t t467 = t3 * t463 - t1 * t462 + (t456 * t274 - t454 * t275);
+    const rx90_real_t t468 = t1 * t451; /* link j4: column of the mass matrix */
+    const rx90_real_t t469 = t3 * t462 + t1 * t463 - t468 * t275; /* link j4: derivatives */
+    const rx90_real_t t470 = t66 * t467 + t71 * t469 + (t460 * t142 - t459 * t79 - t455 * t279);
+    input_by_q[19] = RX90_C(0.1) * (t470 - (t468 * t74 + t454 * t69));
+    const rx90_real_t t471 = t8 * t392 - t6 * t394;
+    const rx90_real_t t472 = RX90_C(0.1) * (t471 + RX90_C(-2.0) * (t458 * t12 + t399 * t5));
+    input_by_dq[20] = t472;
+    const rx90_real_t t473 = t471 - t468 * t274 + RX90_C(2.0) * (t460 * t71 - t459 * t66);
+    input_by_dq[19] = RX90_C(0.1) * t473;
+    input_by_dq[18] = RX90_C(0.1) * (t0 * t467 - t2 * t469);
+    input_by_ddq[20] = RX90_C(0.1) * t453;
+    input_by_ddq[19] = RX90_C(0.1) * t455;
+    input_by_ddq[18] = RX90_C(-0.1) * t461;
+    const rx90_real_t t474 = t6 * (t408 + t418) + t8 * (t416 - t410); /* link j4: inertia, momentum beyond */
+    const rx90_real_t t475 = t8 * t474;
+    const rx90_real_t t476 = RX90_C(0.45) * t5;
+    const rx90_real_t t477 = RX90_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const rx90_real_t t478 = parameters[XX3R] - t477;
+    const rx90_real_t t479 = parameters[XY3] * t5 - t12 * t478 - (t416 - t475 - t456 * t476);
+    const rx90_real_t t480 = RX90_C(2.0) * t479; /* link j3: derivatives */
+    const rx90_real_t t481 = t6 * t426 - t8 * t427; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t482 = t6 * t440 - t8 * t438 + (RX90_C(-0.45) * t481 + t359 * t476);
+    const rx90_real_t t483 = t5 * t477 + parameters[XY3] * t12 + t482;
+    const rx90_real_t t484 = RX90_C(2.0) * t483; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const rx90_real_t t485 = t6 * (t290 + t412) + t413 * (RX90_C(-2.0) * t8);
+    const rx90_real_t t486 = t413 + t8 * t485 - parameters[XZ3];
+    const rx90_real_t t487 = parameters[YZ3] + t453;
+    const rx90_real_t t488 = t6 * t485;
+    const rx90_real_t t489 = RX90_C(0.9) * t359;
+    const rx90_real_t t490 = parameters[ZZ3R] + (t412 - t488 + t489);
+    const rx90_real_t t491 = t486 * t34 + t487 * t22 + t490 * t272; /* link j3: derivatives */
+    const rx90_real_t t492 = t456 - parameters[MX3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t493 = parameters[MY3R] + t359;
+    const rx90_real_t t494 = t492 * t76 + t493 * t87; /* link j3: derivatives */
+    const rx90_real_t t495 = RX90_C(0.03333333333333333) * (t494 + (t12 * t480 + t5 * t484 - t491));
+    input_by_q[14] = t495;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t496 = parameters[MX3] * t12 - parameters[MY3R] * t5 + t481;
+    const rx90_real_t t497 = RX90_C(2.0) * t5; /* link j3: derivatives */
+    const rx90_real_t t498 = t159 + (t496 * t497 + (t493 * t272 - t451 * t22));
+    const rx90_real_t t499 = RX90_C(-2.0) * t12;
+    const rx90_real_t t500 = t157 + (t492 * t272 - t451 * t34 - t496 * t499);
+    const rx90_real_t t501 = t483 * t497 - t479 * t499 - t491 + t494 + RX90_C(0.45) * (t3 * t498 + t1 * t500);
+    input_by_q[8] = RX90_C(0.03333333333333333) * t501;
+    const rx90_real_t t502 = t6 * t474; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t503 = RX90_C(-0.45) * t7; /* link j4: velocity of its origin */
+    const rx90_real_t t504 = t456 * t503; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t505 = RX90_C(-0.45) * t421;
+    const rx90_real_t t506 = t451 * t476;
+    const rx90_real_t t507 = t505 + (t506 - t504);
+    const rx90_real_t t508 = parameters[XZ3] * t12;
+    const rx90_real_t t509 = parameters[XY3] * t7;
+    const rx90_real_t t510 = t508 - t509 + (t507 + (t418 - t502 + t504));
+    const rx90_real_t t511 = t6 * t427 + t8 * t426;
+    const rx90_real_t t512 = t6 * t438 + t8 * t440 + (RX90_C(-0.45) * t511 + t359 * t503);
+    const rx90_real_t t513 = t512 - (parameters[YZ3] * t12 + t7 * t477);
+    /* link j4: inertia of it and all beyond */
+    const rx90_real_t t514 = parameters[XX3R] + (t488 - t290 + t489);
+    const rx90_real_t t515 = t458 - parameters[XY3];
+    /* link j3: derivatives */
+    const rx90_real_t t516 = t513 * t497 - t510 * t499 + (t514 * t34 + t515 * t22 + t486 * t272);
+    const rx90_real_t t517 = t140 + (t516 + t451 * t76);
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t518 = t7 * t478 - parameters[XZ3] * t5 - (t6 * t391 + t8 * t393);
+    const rx90_real_t t519 = parameters[YZ3] * t5;
+    const rx90_real_t t520 = t509 - t519 + (t507 + (t434 - t505));
+    /* link j3: derivatives */
+    const rx90_real_t t521 = t518 * t499 + t520 * t497 + (t464 + t515 * t34 + t487 * t272);
+    const rx90_real_t t522 = t135 - (t466 + t521);
+    const rx90_real_t t523 = parameters[MY3R] * t7 + t511; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t524 = t421 - parameters[MX3] * t7;
+    const rx90_real_t t525 = t523 * t497 - t524 * t499 + (t492 * t22 - t493 * t34); /* link j3: derivatives */
+    const rx90_real_t t526 = t2 * (t3 * t517 + t1 * t522 + RX90_C(0.45) * t525);
+    const rx90_real_t t527 = RX90_C(0.03333333333333333) * (t0 * (t1 * t517 - t3 * t522) + t526);
+    input_by_q[2] = t527;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t528 = t519 - t508 + (t507 + (t502 - t408 - t506));
+    const rx90_real_t t529 = RX90_C(2.0) * t528; /* link j3: derivatives */
+    const rx90_real_t t530 = RX90_C(0.03333333333333333) * (t529 + RX90_C(-2.0) * (t486 * t12 + t487 * t5));
+    input_by_dq[14] = RX90_C(333.33333333333337) * parameters[FV3] + t530;
+    const rx90_real_t t531 = t3 * (RX90_C(2.0) * t524 - t451 * t497) + t1 * (RX90_C(-2.0) * t523
+        + t451 * t499);
+    const rx90_real_t t532 = t529 + (t486 * t499 - t487 * t497) + RX90_C(0.45) * t531;
+    input_by_dq[8] = RX90_C(0.03333333333333333) * t532;
+    const rx90_real_t t533 = t477 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t534 = t410 + t475 - t451 * t503 - (parameters[YZ3] * t7 + t12 * t533);
+    const rx90_real_t t535 = RX90_C(2.0) * t534 + (t515 * t497 - t514 * t499); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t536 = parameters[XZ3] * t7 + t5 * t533 + (t8 * t391 - t6 * t393);
+    const rx90_real_t t537 = RX90_C(2.0) * t536 - (t399 * t497 - t515 * t499); /* link j3: derivatives */
+    const rx90_real_t t538 = t3 * t535 + t1 * t537 + RX90_C(0.45) * (t493 * t499 + t492 * t497);
+    const rx90_real_t t539 = t0 * (t1 * t535 - t3 * t537) + t2 * t538;
+    input_by_dq[2] = RX90_C(0.03333333333333333) * t539;
+    input_by_ddq[14] = RX90_C(333.33333333333337) * parameters[IA3] + RX90_C(0.03333333333333333) * t490;
+    const rx90_real_t t540 = t3 * t493 + t1 * t492; /* link j3: column of the mass matrix */
+    const rx90_real_t t541 = t490 - RX90_C(0.45) * t540;
+    const rx90_real_t t542 = RX90_C(0.03333333333333333) * t541;
+    input_by_ddq[8] = t542;
+    const rx90_real_t t543 = t1 * t486 + t3 * t487;
+    const rx90_real_t t544 = t3 * t486 - t1 * t487;
+    const rx90_real_t t545 = RX90_C(-0.03333333333333333) * (t0 * t543 + t2 * t544);
+    input_by_ddq[2] = t545;
+    const rx90_real_t t546 = t1 * t480 + t3 * t484 + t540 * t275; /* link j3: derivatives */
+    const rx90_real_t t547 = t3 * t492 - t1 * t493; /* link j3: column of the mass matrix */
+    const rx90_real_t t548 = t3 * t480 - t1 * t484 + t547 * t275; /* link j3: derivatives */
+    const rx90_real_t t549 = t66 * t546 - t71 * t548 + (t544 * t142 - t543 * t79 - t541 * t279);
+    input_by_q[13] = RX90_C(0.03333333333333333) * (t549 + (t540 * t69 - t547 * t74));
+    const rx90_real_t t550 = t529 - t547 * t274 + RX90_C(2.0) * (t544 * t71 - t543 * t66);
+    input_by_dq[13] = RX90_C(0.03333333333333333) * t550;
+    input_by_dq[12] = RX90_C(0.03333333333333333) * (t0 * t546 + t2 * t548);
+    input_by_ddq[13] = t542;
+    input_by_ddq[12] = t545;
+    const rx90_real_t t551 = RX90_C(-0.45) * t66; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t552 = t1 * t479 + t3 * t483 + (RX90_C(0.45) * t496 + t540 * t551);
+    const rx90_real_t t553 = RX90_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const rx90_real_t t554 = parameters[XX2R] - t553;
+    /* link j2: derivatives */
+    const rx90_real_t t555 = RX90_C(2.0) * (parameters[XY2] * t71 - t66 * t554 + t552);
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t556 = parameters[XY2] * t66 + t71 * t553 - (t3 * t479 - t1 * t483 + t547 * t551);
+    const rx90_real_t t557 = RX90_C(2.0) * t556; /* link j2: derivatives */
+    const rx90_real_t t558 = parameters[XZ2R] + (t452 - t543); /* link j3: inertia of it and all beyond */
+    const rx90_real_t t559 = t544 - parameters[YZ2];
+    const rx90_real_t t560 = RX90_C(0.9) * t540;
+    const rx90_real_t t561 = parameters[ZZ2R] + (t490 - t560);
+    /* link j2: derivatives */
+    const rx90_real_t t562 = t558 * t79 + t559 * t142 - t561 * t279 + (t66 * t555 + t71 * t557);
+    const rx90_real_t t563 = (t540 - parameters[MX2R]) * t69 - (t547 - parameters[MY2]) * t74 + t562;
+    input_by_q[7] = RX90_C(0.03333333333333333) * t563;
+    const rx90_real_t t564 = t1 * (t510 - t520) + t3 * (t513 - t518); /* link j3: inertia, momentum beyond */
+    const rx90_real_t t565 = t1 * t564;
+    const rx90_real_t t566 = RX90_C(0.45) * (t1 * t523 - t3 * t524);
+    const rx90_real_t t567 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
+    const rx90_real_t t568 = t547 * t567; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t569 = t451 * t551;
+    const rx90_real_t t570 = t569 - t568 - t566;
+    const rx90_real_t t571 = parameters[XZ2R] * t66;
+    const rx90_real_t t572 = parameters[XY2] * dq[1];
+    const rx90_real_t t573 = t571 - t572 + (t570 + (t520 + t565 + t566));
+    const rx90_real_t t574 = RX90_C(2.0) * t66; /* link j2: derivatives */
+    const rx90_real_t t575 = t3 * t564; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t576 = parameters[YZ2] * t66 + dq[1] * t553 + (t575 - t513);
+    const rx90_real_t t577 = RX90_C(-2.0) * t71; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const rx90_real_t t578 = t1 * (t514 - t399) - t515 * (RX90_C(-2.0) * t3);
+    const rx90_real_t t579 = t1 * t578;
+    const rx90_real_t t580 = parameters[XX2R] + (t399 + t579);
+    const rx90_real_t t581 = parameters[XY2] + (t3 * t578 - t515 + RX90_C(0.45) * t547);
+    /* link j2: derivatives */
+    const rx90_real_t t582 = t573 * t574 + t576 * t577 + (t580 * t79 - t581 * t142 - t558 * t279);
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t583 = RX90_C(0.45) * (t3 * t523 + t1 * t524) + t540 * t567;
+    const rx90_real_t t584 = dq[1] * t554 - parameters[XZ2R] * t71 + (t518 + t575 + t583);
+    const rx90_real_t t585 = parameters[YZ2] * t71;
+    const rx90_real_t t586 = t572 - t585 + (t570 + (t510 - t565 + t568));
+    const rx90_real_t t587 = t514 - t579 - t560; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
+    const rx90_real_t t588 = t584 * t574 + t586 * t577 + (t581 * t79 - t587 * t142 + t559 * t279);
+    const rx90_real_t t589 = t0 * (t149 + (t582 + t451 * t69)) + t2 * (t145 + (t588 - t451 * t74));
+    input_by_q[1] = RX90_C(0.03333333333333333) * t589;
+    const rx90_real_t t590 = RX90_C(2.0) * (t585 - t571 + (t570 + (t528 - t569))) + RX90_C(2.0) * (t558 * t66
+        + t559 * t71);
+    input_by_dq[7] = RX90_C(333.33333333333337) * parameters[FV2] + RX90_C(0.03333333333333333) * t590;
+    const rx90_real_t t591 = parameters[ZZ2R] - t553;
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t592 = t66 * t591 - parameters[YZ2] * dq[1] + (t1 * t534 - t3 * t536);
+    /* link j2: derivatives */
+    const rx90_real_t t593 = t0 * (RX90_C(2.0) * t592 + (t580 * t574 + t581 * t577));
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t594 = parameters[XZ2R] * dq[1] - t71 * t591 + (t3 * t534 + t1 * t536 - t451 * t567);
+    /* link j2: derivatives */
+    const rx90_real_t t595 = t2 * (RX90_C(2.0) * t594 + (t581 * t574 + t587 * t577));
+    input_by_dq[1] = RX90_C(0.03333333333333333) * (t593 + t595);
+    input_by_ddq[7] = RX90_C(0.03333333333333333) * t561;
+    const rx90_real_t t596 = RX90_C(0.03333333333333333) * (t0 * t558 - t2 * t559);
+    input_by_ddq[1] = t596;
+    input_by_dq[6] = RX90_C(0.03333333333333333) * (t0 * t555 - t2 * t557);
+    input_by_ddq[6] = t596;
+    /* link j2: inertia, momentum beyond */
+    const rx90_real_t t597 = t2 * (t2 * (t586 - t573) + t0 * (t576 + t584));
+    input_by_dq[0] = RX90_C(333.33333333333337) * parameters[FV1] + RX90_C(0.06666666666666667) * (t573
+        + t597);
+    /* link j2: inertia of it and all beyond */
+    const rx90_real_t t598 = t2 * (t2 * (t587 - t580) + t581 * (RX90_C(2.0) * t0));
+    input_by_ddq[0] = RX90_C(0.03333333333333333) * (parameters[ZZ1R] + (t580 + t598));
     /* always zero */
     input_by_q[0] = RX90_C(0.0);
     input_by_q[6] = RX90_C(0.0);

@@ -110,7 +110,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x88006983UL
+#if RX90_GENERATION != 0x1B6CDAA1UL
 #error "rx90.h and rx90_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -432,610 +432,609 @@ rx90_status_t rx90_inverse_dynamics_derivatives_standard(
     const rx90_real_t t201 = RX90_C(30.0) * dq[5] * parameters[FV6] + t200 * parameters[FC6]
         + RX90_C(30.0) * ddq[5] * parameters[IA6];
     input[5] = RX90_C(5.0) * t201 + RX90_C(-0.16666666666666666) * t113;
-    const rx90_real_t t202 = t49 * parameters[XZ6];
-    const rx90_real_t t203 = t50 * parameters[XY6];
-    const rx90_real_t t204 = t203 - t202;
-    const rx90_real_t t205 = t54 * parameters[YZ6];
-    const rx90_real_t t206 = t203 + t205;
-    const rx90_real_t t207 = RX90_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const rx90_real_t t208 = parameters[XX6] - t207;
-    const rx90_real_t t209 = t50 * t208 + t54 * parameters[XZ6];
-    const rx90_real_t t210 = t207 - parameters[YY6];
-    const rx90_real_t t211 = t49 * parameters[YZ6] + t50 * t210;
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t212 = t47 * (t204 + t206) + t30 * (t209 + t211);
-    const rx90_real_t t213 = t47 * t212;
-    const rx90_real_t t214 = t27 * parameters[XZ5];
-    const rx90_real_t t215 = t43 * parameters[XY5];
-    const rx90_real_t t216 = t215 - t214 + (t213 - t206);
-    const rx90_real_t t217 = t202 + t205;
-    const rx90_real_t t218 = t26 * parameters[YZ5];
-    const rx90_real_t t219 = t215 + t218 - t217;
-    const rx90_real_t t220 = parameters[ZZ6] - t207;
-    const rx90_real_t t221 = t49 * t220 - t50 * parameters[YZ6];
-    const rx90_real_t t222 = t50 * parameters[XZ6] + t54 * t220;
-    const rx90_real_t t223 = RX90_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const rx90_real_t t224 = t223 - parameters[YY5];
-    const rx90_real_t t225 = t27 * parameters[YZ5] + t43 * t224 + (t47 * t221 - t30 * t222);
-    const rx90_real_t t226 = t54 * parameters[XY6] + t49 * t208;
-    const rx90_real_t t227 = t49 * parameters[XY6] - t54 * t210;
-    const rx90_real_t t228 = t223 - parameters[XX5];
-    const rx90_real_t t229 = t43 * t228 - t26 * parameters[XZ5] + (t47 * t226 - t30 * t227);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t230 = t24 * (t216 + t219) + t25 * (t225 - t229);
-    const rx90_real_t t231 = t24 * t230;
-    const rx90_real_t t232 = t35 * parameters[XZ4];
-    const rx90_real_t t233 = t20 * parameters[XY4];
-    const rx90_real_t t234 = t232 + t233 - (t219 - t231);
-    const rx90_real_t t235 = t213 - t204 - (t214 + t218); /* link j6: inertia, momentum beyond */
-    const rx90_real_t t236 = t19 * parameters[YZ4];
-    const rx90_real_t t237 = t233 + t236 + t235; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t238 = t30 * t212; /* link j6: inertia, momentum beyond */
-    const rx90_real_t t239 = t223 - parameters[ZZ5];
-    const rx90_real_t t240 = t238 - t211 - (t27 * t239 + t43 * parameters[YZ5]);
-    const rx90_real_t t241 = t43 * parameters[XZ5] - t26 * t239 + (t30 * t226 + t47 * t227);
-    const rx90_real_t t242 = RX90_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const rx90_real_t t243 = t242 - parameters[YY4];
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t244 = t35 * parameters[YZ4] - t20 * t243 - (t25 * t241 - t24 * t240);
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t245 = t26 * parameters[XY5] - t27 * t228 + (t209 - t238);
-    const rx90_real_t t246 = t27 * parameters[XY5] - t26 * t224 + (t30 * t221 + t47 * t222);
-    const rx90_real_t t247 = parameters[XX4] - t242;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t248 = t20 * t247 + t19 * parameters[XZ4] + (t24 * t245 - t25 * t246);
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t249 = t11 * (t234 + t237) + t17 * (t248 - t244);
-    const rx90_real_t t250 = t11 * t249;
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t251 = t47 * parameters[MY6] + t30 * parameters[MX6];
-    const rx90_real_t t252 = parameters[MZ5] - t251; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t253 = t252 - parameters[MY4]; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t254 = t30 * parameters[MY6] - t47 * parameters[MX6];
-    const rx90_real_t t255 = t254 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t256 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t257 = t25 * t256 + t24 * t255; /* link j5: column of the mass matrix */
-    const rx90_real_t t258 = t257 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t259 = t11 * t258 - t17 * t253; /* link j4: column of the mass matrix */
-    const rx90_real_t t260 = RX90_C(-0.45) * t13; /* link j4: velocity of its origin */
-    const rx90_real_t t261 = t259 * t260; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t262 = t49 * parameters[MZ6] - t50 * parameters[MY6];
-    const rx90_real_t t263 = t50 * parameters[MX6] + t54 * parameters[MZ6];
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t264 = t27 * parameters[MZ5] - t43 * parameters[MY5] + (t47 * t262 - t30 * t263);
-    const rx90_real_t t265 = t54 * parameters[MY6] + t49 * parameters[MX6];
-    const rx90_real_t t266 = t265 - (t43 * parameters[MX5] + t26 * parameters[MZ5]);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t267 = t19 * parameters[MY4] - t35 * parameters[MX4] + (t24 * t266 - t25 * t264);
-    const rx90_real_t t268 = RX90_C(-0.45) * t267; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t269 = t11 * t253 + t17 * t258; /* link j4: column of the mass matrix */
-    const rx90_real_t t270 = RX90_C(0.45) * t5;
-    const rx90_real_t t271 = t269 * t270; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t272 = t268 + (t271 - t261);
-    const rx90_real_t t273 = t7 * parameters[XZ3];
-    const rx90_real_t t274 = t13 * parameters[XY3];
-    const rx90_real_t t275 = t273 - t274 + (t272 + (t237 - t250 + t261));
-    const rx90_real_t t276 = t232 - t236 - (t216 - t231); /* link j5: inertia, momentum beyond */
-    const rx90_real_t t277 = t5 * parameters[YZ3];
-    const rx90_real_t t278 = t274 - t277 + (t272 + (t276 - t268)); /* link j4: inertia, momentum beyond */
-    const rx90_real_t t279 = t25 * t230; /* link j5: inertia, momentum beyond */
-    const rx90_real_t t280 = t242 - parameters[ZZ4];
-    const rx90_real_t t281 = t20 * parameters[YZ4] - t35 * t280 + (t279 - t225);
-    const rx90_real_t t282 = t20 * parameters[XZ4] - t19 * t280 + (t25 * t245 + t24 * t246);
-    const rx90_real_t t283 = t24 * t264 + t25 * t266 - (t35 * parameters[MZ4] + t20 * parameters[MY4]);
-    /* link j6: inertia, momentum beyond */
-    const rx90_real_t t284 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t30 * t262 + t47 * t263);
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t285 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t284;
-    const rx90_real_t t286 = t17 * t285 - t11 * t283; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t287 = t24 * t256 - t25 * t255; /* link j5: column of the mass matrix */
-    const rx90_real_t t288 = parameters[MZ4] + t287; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t289 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t290 = parameters[M4] + t289; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t291 = RX90_C(0.45) * t290; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t292 = t288 + t291;
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t293 = t11 * t281 + t17 * t282 + (RX90_C(-0.45) * t286 + t292 * t260);
-    const rx90_real_t t294 = RX90_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const rx90_real_t t295 = parameters[YY3] - t294;
-    const rx90_real_t t296 = t13 * t295 - t7 * parameters[YZ3] + t293;
-    /* link j5: inertia, momentum beyond */
-    const rx90_real_t t297 = t19 * parameters[XY4] - t35 * t247 + (t229 + t279);
-    const rx90_real_t t298 = t25 * t240 + t24 * t241 - (t19 * t243 + t35 * parameters[XY4]);
-    const rx90_real_t t299 = parameters[XX3] - t294;
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t300 = t13 * t299 - t5 * parameters[XZ3] + (t17 * t298 - t11 * t297);
-    const rx90_real_t t301 = t1 * (t275 - t278) + t3 * (t296 - t300); /* link j3: inertia, momentum beyond */
-    const rx90_real_t t302 = t1 * t301;
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t303 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t286 - t290 * t260);
-    const rx90_real_t t304 = t5 * parameters[MZ3] - t13 * parameters[MX3] + t267;
-    const rx90_real_t t305 = RX90_C(0.45) * (t1 * t303 - t3 * t304); /* link j3: inertia, momentum beyond */
-    const rx90_real_t t306 = t259 - parameters[MX3]; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t307 = parameters[MY3] + t292;
-    const rx90_real_t t308 = t3 * t306 - t1 * t307; /* link j3: column of the mass matrix */
-    const rx90_real_t t309 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
-    const rx90_real_t t310 = t308 * t309; /* link j3: inertia, momentum beyond */
-    const rx90_real_t t311 = parameters[MZ3] + t269; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t312 = RX90_C(-0.45) * t67; /* link j3: velocity of its origin */
-    const rx90_real_t t313 = t311 * t312; /* link j3: inertia, momentum beyond */
-    const rx90_real_t t314 = t313 - t310 - t305;
-    const rx90_real_t t315 = t67 * parameters[XZ2];
-    const rx90_real_t t316 = dq[1] * parameters[XY2];
-    const rx90_real_t t317 = t315 - t316 + (t314 + (t278 + t302 + t305));
-    const rx90_real_t t318 = t72 * parameters[YZ2];
-    const rx90_real_t t319 = t316 - t318 + (t314 + (t275 - t302 + t310));
-    const rx90_real_t t320 = t3 * t301;
-    const rx90_real_t t321 = RX90_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const rx90_real_t t322 = t321 - parameters[YY2];
-    const rx90_real_t t323 = t67 * parameters[YZ2] + dq[1] * t322 + (t320 - t296);
-    const rx90_real_t t324 = t3 * t307 + t1 * t306; /* link j3: column of the mass matrix */
-    const rx90_real_t t325 = parameters[M3] + t290; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t326 = RX90_C(-0.45) * t325; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t327 = t324 + t326;
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t328 = RX90_C(0.45) * (t3 * t303 + t1 * t304) + t327 * t309;
-    const rx90_real_t t329 = parameters[XX2] - t321;
-    const rx90_real_t t330 = dq[1] * t329 - t72 * parameters[XZ2] + (t300 + t320 + t328);
-    /* link j2: inertia, momentum beyond */
-    const rx90_real_t t331 = t2 * (t2 * (t319 - t317) + t0 * (t323 + t330));
-    input_by_dq[0] = RX90_C(333.33333333333337) * parameters[FV1] + RX90_C(0.06666666666666667) * (t317
-        + t331);
-    const rx90_real_t t332 = t17 * t249; /* link j4: inertia, momentum beyond */
-    const rx90_real_t t333 = t5 * parameters[XY3] - t7 * t299 - (t248 - t332 - t259 * t270);
-    const rx90_real_t t334 = t17 * t283 + t11 * t285;
-    const rx90_real_t t335 = t11 * t282 - t17 * t281 + (RX90_C(-0.45) * t334 + t292 * t270);
-    const rx90_real_t t336 = t7 * parameters[XY3] - t5 * t295 + t335;
-    const rx90_real_t t337 = t7 * parameters[MX3] - t5 * parameters[MY3] + (t334 - t290 * t270);
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t338 = t1 * t333 + t3 * t336 + (RX90_C(0.45) * t337 + t327 * t312);
-    /* link j2: derivatives */
-    const rx90_real_t t339 = RX90_C(2.0) * (t72 * parameters[XY2] - t67 * t329 + t338);
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t340 = t67 * parameters[XY2] + t72 * t322 - (t3 * t333 - t1 * t336 + t308 * t312);
-    const rx90_real_t t341 = RX90_C(2.0) * t340; /* link j2: derivatives */
-    input_by_dq[6] = RX90_C(0.03333333333333333) * (t0 * t339 - t2 * t341);
-    const rx90_real_t t342 = RX90_C(2.0) * t333; /* link j3: derivatives */
-    const rx90_real_t t343 = RX90_C(2.0) * t336;
-    const rx90_real_t t344 = RX90_C(-0.9) * t67; /* link j6: derivatives */
-    const rx90_real_t t345 = t1 * t342 + t3 * t343 + t324 * t344; /* link j3: derivatives */
-    const rx90_real_t t346 = t3 * t342 - t1 * t343 + t308 * t344;
-    input_by_dq[12] = RX90_C(0.03333333333333333) * (t0 * t345 + t2 * t346);
-    const rx90_real_t t347 = RX90_C(2.0) * t297; /* link j4: derivatives */
-    const rx90_real_t t348 = RX90_C(2.0) * t298;
-    const rx90_real_t t349 = t17 * t348 - t11 * t347;
-    const rx90_real_t t350 = RX90_C(2.0) * t276;
-    const rx90_real_t t351 = RX90_C(0.9) * t5; /* link j6: derivatives */
-    const rx90_real_t t352 = RX90_C(-0.9) * t13;
-    const rx90_real_t t353 = t259 * t352 - t269 * t351 - t350; /* link j4: derivatives */
-    const rx90_real_t t354 = RX90_C(0.9) * dq[1]; /* link j6: derivatives */
-    const rx90_real_t t355 = t3 * t269; /* link j4: column of the mass matrix */
-    const rx90_real_t t356 = t1 * t349 + t3 * t353 + (t259 * t354 - t355 * t344); /* link j4: derivatives */
-    const rx90_real_t t357 = t1 * t269; /* link j4: column of the mass matrix */
-    const rx90_real_t t358 = t3 * t349 - t1 * t353 + t357 * t344; /* link j4: derivatives */
-    input_by_dq[18] = RX90_C(0.1) * (t0 * t356 + t2 * t358);
-    const rx90_real_t t359 = RX90_C(2.0) * t245; /* link j5: derivatives */
-    const rx90_real_t t360 = RX90_C(-2.0) * t246;
-    const rx90_real_t t361 = t24 * t359 + t25 * t360;
-    const rx90_real_t t362 = RX90_C(2.0) * t235;
-    const rx90_real_t t363 = t17 * t362 - t11 * t361 + t257 * t351;
-    const rx90_real_t t364 = t24 * t360 - t25 * t359;
-    const rx90_real_t t365 = t11 * t287; /* link j5: column of the mass matrix */
-    const rx90_real_t t366 = t17 * t287;
-    const rx90_real_t t367 = t365 * t351 + t366 * t352 - t364; /* link j5: derivatives */
-    const rx90_real_t t368 = t3 * t365 + t1 * t257; /* link j5: column of the mass matrix */
-    const rx90_real_t t369 = t1 * t363 + t3 * t367 + (t366 * t354 + t368 * t344); /* link j5: derivatives */
-    const rx90_real_t t370 = t1 * t365 - t3 * t257; /* link j5: column of the mass matrix */
-    const rx90_real_t t371 = t3 * t363 - t1 * t367 - t370 * t344; /* link j5: derivatives */
-    input_by_dq[24] = RX90_C(0.1) * (t0 * t369 + t2 * t371);
-    const rx90_real_t t372 = RX90_C(2.0) * t226; /* link j6: derivatives */
-    const rx90_real_t t373 = RX90_C(2.0) * t227;
-    const rx90_real_t t374 = t47 * t372 - t30 * t373;
-    const rx90_real_t t375 = RX90_C(-2.0) * t217;
-    const rx90_real_t t376 = t24 * t374 + t25 * t375;
-    const rx90_real_t t377 = t30 * t372 + t47 * t373;
-    const rx90_real_t t378 = t25 * t251; /* link j6: column of the mass matrix */
-    const rx90_real_t t379 = t17 * t377 - t11 * t376 + t378 * t351; /* link j6: derivatives */
-    const rx90_real_t t380 = t24 * t375 - t25 * t374;
-    const rx90_real_t t381 = t24 * t251; /* link j6: column of the mass matrix */
-    const rx90_real_t t382 = t11 * t381 - t17 * t254;
-    const rx90_real_t t383 = t17 * t381 + t11 * t254;
-    const rx90_real_t t384 = t382 * t351 + t383 * t352 - t380; /* link j6: derivatives */
-    const rx90_real_t t385 = t3 * t382 + t1 * t378; /* link j6: column of the mass matrix */
-    const rx90_real_t t386 = t1 * t379 + t3 * t384 + (t383 * t354 + t385 * t344); /* link j6: derivatives */
-    const rx90_real_t t387 = t1 * t382 - t3 * t378; /* link j6: column of the mass matrix */
-    const rx90_real_t t388 = t3 * t379 - t1 * t384 - t387 * t344; /* link j6: derivatives */
-    input_by_dq[30] = RX90_C(0.16666666666666666) * (t0 * t386 + t2 * t388);
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t389 = t47 * t111 + parameters[XY6] * (RX90_C(-2.0) * t30);
-    const rx90_real_t t390 = t47 * t389;
-    const rx90_real_t t391 = parameters[XX5] + (parameters[YY6] + t390);
-    const rx90_real_t t392 = parameters[YY5] + parameters[ZZ6];
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t393 = t30 * parameters[YZ6] - t47 * parameters[XZ6];
-    const rx90_real_t t394 = t393 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const rx90_real_t t395 = t24 * (t391 - t392) + t394 * (RX90_C(2.0) * t25);
-    const rx90_real_t t396 = t24 * t395;
-    const rx90_real_t t397 = parameters[XX4] + (t392 + t396);
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t398 = t390 - parameters[XX6] - parameters[ZZ5];
-    const rx90_real_t t399 = t398 - parameters[YY4]; /* link j5: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t400 = parameters[XY6] + t30 * t389 - parameters[XZ5];
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t401 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
-    const rx90_real_t t402 = t401 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t403 = t24 * t400 - t25 * t402; /* link j5: column of the mass matrix */
-    const rx90_real_t t404 = parameters[XY4] + t403; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const rx90_real_t t405 = t11 * (t397 + t399) + t404 * (RX90_C(-2.0) * t17);
-    const rx90_real_t t406 = t11 * t405;
-    const rx90_real_t t407 = RX90_C(0.45) * (t291 + RX90_C(2.0) * t288);
-    const rx90_real_t t408 = parameters[XX3] + (t406 - t399 + t407);
-    const rx90_real_t t409 = t396 - t391 - parameters[ZZ4]; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t410 = parameters[YY3] - t409; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t411 = t394 - t25 * t395 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t412 = t25 * t400 + t24 * t402; /* link j5: column of the mass matrix */
-    const rx90_real_t t413 = parameters[YZ4] + t412; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t414 = RX90_C(0.45) * t259; /* link j4: column of the mass matrix */
-    const rx90_real_t t415 = t11 * t411 + t17 * t413 - t414;
-    const rx90_real_t t416 = t415 - parameters[XY3]; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const rx90_real_t t417 = t1 * (t408 - t410) - t416 * (RX90_C(-2.0) * t3);
-    const rx90_real_t t418 = t1 * t417;
-    const rx90_real_t t419 = parameters[XX2] + (t410 + t418);
-    const rx90_real_t t420 = RX90_C(-0.45) * (t326 + RX90_C(2.0) * t324);
-    const rx90_real_t t421 = parameters[YY2] + (t408 - t418 + t420);
-    const rx90_real_t t422 = parameters[XY2] + (t3 * t417 - t416 + RX90_C(0.45) * t308);
-    /* link j2: inertia of it and all beyond */
-    const rx90_real_t t423 = t2 * (t2 * (t421 - t419) + t422 * (RX90_C(2.0) * t0));
-    input_by_ddq[0] = RX90_C(333.33333333333337) * parameters[IA1]
-        + RX90_C(0.03333333333333333) * (parameters[ZZ1] + (t419 + t423));
-    const rx90_real_t t424 = t404 + t17 * t405 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
-    /* link j4: column of the mass matrix */
-    const rx90_real_t t425 = t17 * t411 - t11 * t413 + RX90_C(-0.45) * t269;
-    const rx90_real_t t426 = parameters[YZ3] + t425; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t427 = t1 * t424 + t3 * t426; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const rx90_real_t t428 = parameters[XZ2] + (RX90_C(-0.45) * t311 - t427);
-    const rx90_real_t t429 = t3 * t424 - t1 * t426; /* link j3: column of the mass matrix */
-    const rx90_real_t t430 = t429 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t431 = RX90_C(0.03333333333333333) * (t0 * t428 - t2 * t430);
-    input_by_ddq[6] = t431;
-    const rx90_real_t t432 = RX90_C(-0.03333333333333333) * (t0 * t427 + t2 * t429);
-    input_by_ddq[12] = t432;
-    const rx90_real_t t433 = t3 * t409 - t1 * t415; /* link j4: column of the mass matrix */
-    const rx90_real_t t434 = t414 + (t3 * t415 + t1 * t409);
-    const rx90_real_t t435 = t0 * t433 - t2 * t434;
-    input_by_ddq[18] = RX90_C(0.1) * t435;
-    const rx90_real_t t436 = RX90_C(0.45) * t366; /* link j5: column of the mass matrix */
-    const rx90_real_t t437 = t11 * t403 + t17 * t398 - t436;
-    const rx90_real_t t438 = t3 * t412 - t1 * t437;
-    const rx90_real_t t439 = t436 + (t3 * t437 + t1 * t412);
-    const rx90_real_t t440 = t0 * t438 - t2 * t439;
-    input_by_ddq[24] = RX90_C(0.1) * t440;
-    const rx90_real_t t441 = t24 * t393 + t25 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const rx90_real_t t442 = RX90_C(0.45) * t383;
-    const rx90_real_t t443 = t11 * t441 + t17 * t401 - t442;
-    const rx90_real_t t444 = t25 * t393 - t24 * parameters[ZZ6];
-    const rx90_real_t t445 = t3 * t444 - t1 * t443;
-    const rx90_real_t t446 = t442 + (t3 * t443 + t1 * t444);
-    const rx90_real_t t447 = t0 * t445 - t2 * t446;
-    input_by_ddq[30] = RX90_C(0.16666666666666666) * t447;
-    const rx90_real_t t448 = RX90_C(2.0) * t67; /* link j2: derivatives */
-    const rx90_real_t t449 = RX90_C(-2.0) * t72;
-    const rx90_real_t t450 = t173 + t68; /* link j3: motion */
-    /* link j2: derivatives */
-    const rx90_real_t t451 = t317 * t448 + t323 * t449 + (t79 * t419 - t164 * t422 - t450 * t428);
-    const rx90_real_t t452 = parameters[MZ2] + t311; /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const rx90_real_t t453 = t330 * t448 + t319 * t449 + (t79 * t422 - t164 * t421 + t450 * t430);
-    const rx90_real_t t454 = t0 * (t175 + (t451 + t70 * t452)) + t2 * (t168 + (t453 - t75 * t452));
-    input_by_q[1] = RX90_C(0.03333333333333333) * t454;
-    /* link j4: inertia of it and all beyond */
-    const rx90_real_t t455 = parameters[ZZ3] + (t397 - t406 + t407);
-    const rx90_real_t t456 = parameters[ZZ2] + (t455 + t420); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const rx90_real_t t457 = t79 * t428 + t164 * t430 - t450 * t456 + (t67 * t339 + t72 * t341);
-    const rx90_real_t t458 = t70 * (t327 - parameters[MX2]) - t75 * (t308 - parameters[MY2]) + t457;
-    input_by_q[7] = RX90_C(0.03333333333333333) * t458;
-    const rx90_real_t t459 = t455 - RX90_C(0.45) * t324; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const rx90_real_t t460 = t67 * t345 - t72 * t346 + (t164 * t429 - t79 * t427 - t450 * t459);
-    input_by_q[13] = RX90_C(0.03333333333333333) * (t460 + (t70 * t324 - t75 * t308));
-    const rx90_real_t t461 = t425 + RX90_C(0.45) * t355; /* link j4: column of the mass matrix */
-    /* link j4: derivatives */
-    const rx90_real_t t462 = t67 * t356 - t72 * t358 + (t79 * t433 + t164 * t434 - t450 * t461);
-    input_by_q[19] = RX90_C(0.1) * (t462 - (t75 * t357 + t70 * t355));
-    /* link j5: column of the mass matrix */
-    const rx90_real_t t463 = t17 * t403 - t11 * t398 + RX90_C(0.45) * t365;
-    const rx90_real_t t464 = t463 + RX90_C(-0.45) * t368;
-    /* link j5: derivatives */
-    const rx90_real_t t465 = t67 * t369 - t72 * t371 + (t79 * t438 + t164 * t439 - t450 * t464);
-    input_by_q[25] = RX90_C(0.1) * (t465 + (t75 * t370 + t70 * t368));
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t466 = t17 * t441 - t11 * t401 + RX90_C(0.45) * t382;
-    const rx90_real_t t467 = t466 + RX90_C(-0.45) * t385;
     /* link j6: derivatives */
-    const rx90_real_t t468 = t67 * t386 - t72 * t388 + (t79 * t445 + t164 * t446 - t450 * t467);
-    input_by_q[31] = RX90_C(0.16666666666666666) * (t468 + (t75 * t387 + t70 * t385));
-    const rx90_real_t t469 = t294 - parameters[ZZ3];
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t470 = t244 + t332 - t269 * t260 - (t13 * parameters[YZ3] + t7 * t469);
-    const rx90_real_t t471 = t13 * parameters[XZ3] + t5 * t469 + (t17 * t297 + t11 * t298);
-    const rx90_real_t t472 = parameters[ZZ2] - t321;
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t473 = t67 * t472 - dq[1] * parameters[YZ2] + (t1 * t470 - t3 * t471);
-    /* link j2: derivatives */
-    const rx90_real_t t474 = t0 * (RX90_C(2.0) * t473 + (t419 * t448 + t422 * t449));
-    /* link j3: inertia, momentum beyond */
-    const rx90_real_t t475 = dq[1] * parameters[XZ2] - t72 * t472 + (t3 * t470 + t1 * t471 - t311 * t309);
-    /* link j2: derivatives */
-    const rx90_real_t t476 = t2 * (RX90_C(2.0) * t475 + (t422 * t448 + t421 * t449));
-    input_by_dq[1] = RX90_C(0.03333333333333333) * (t474 + t476);
-    /* link j4: inertia, momentum beyond */
-    const rx90_real_t t477 = t277 - t273 + (t272 + (t250 - t234 - t271));
-    /* link j2: derivatives */
-    const rx90_real_t t478 = RX90_C(2.0) * (t318 - t315 + (t314 + (t477 - t313))) + RX90_C(2.0) * (t67 * t428
-        + t72 * t430);
-    input_by_dq[7] = RX90_C(333.33333333333337) * parameters[FV2] + RX90_C(0.03333333333333333) * t478;
-    const rx90_real_t t479 = RX90_C(2.0) * t477; /* link j3: derivatives */
-    const rx90_real_t t480 = t479 - t308 * t354 + RX90_C(2.0) * (t72 * t429 - t67 * t427);
-    input_by_dq[13] = RX90_C(0.03333333333333333) * t480;
-    const rx90_real_t t481 = t17 * t347 + t11 * t348; /* link j4: derivatives */
-    const rx90_real_t t482 = t481 - t357 * t354 + RX90_C(2.0) * (t67 * t433 + t72 * t434);
-    input_by_dq[19] = RX90_C(0.1) * t482;
-    const rx90_real_t t483 = t17 * t361 + t11 * t362 - t257 * t352; /* link j5: derivatives */
-    const rx90_real_t t484 = t483 + t370 * t354 + RX90_C(2.0) * (t67 * t438 + t72 * t439);
-    input_by_dq[25] = RX90_C(0.1) * t484;
-    const rx90_real_t t485 = t17 * t376 + t11 * t377 - t378 * t352; /* link j6: derivatives */
-    const rx90_real_t t486 = t485 + t387 * t354 + RX90_C(2.0) * (t67 * t445 + t72 * t446);
-    input_by_dq[31] = RX90_C(0.16666666666666666) * t486;
-    input_by_ddq[1] = t431;
-    input_by_ddq[7] = RX90_C(333.33333333333337) * parameters[IA2] + RX90_C(0.03333333333333333) * t456;
-    const rx90_real_t t487 = RX90_C(0.03333333333333333) * t459;
-    input_by_ddq[13] = t487;
-    input_by_ddq[19] = RX90_C(0.1) * t461;
-    input_by_ddq[25] = RX90_C(0.1) * t464;
-    input_by_ddq[31] = RX90_C(0.16666666666666666) * t467;
-    const rx90_real_t t488 = RX90_C(-2.0) * t7; /* link j3: derivatives */
-    const rx90_real_t t489 = RX90_C(-2.0) * t5;
-    const rx90_real_t t490 = t300 * t488 - t278 * t489 + (t31 * t416 + t12 * t410 + t169 * t426);
-    const rx90_real_t t491 = t156 - (t490 + t86 * t311);
-    const rx90_real_t t492 = t31 * t408 + t12 * t416 + t169 * t424 - (t275 * t488 + t296 * t489);
-    const rx90_real_t t493 = t162 + (t492 + t77 * t311);
-    const rx90_real_t t494 = t12 * t306 - t31 * t307 - (t304 * t488 + t303 * t489);
-    const rx90_real_t t495 = t2 * (t3 * t493 + t1 * t491 + RX90_C(0.45) * t494);
-    const rx90_real_t t496 = RX90_C(0.03333333333333333) * (t0 * (t1 * t493 - t3 * t491) + t495);
-    input_by_q[2] = t496;
-    const rx90_real_t t497 = t169 * t306 - t31 * t311 - (t337 * t488 + t77 * t325);
-    const rx90_real_t t498 = t169 * t307 - t12 * t311 - (t337 * t489 + t86 * t325);
-    const rx90_real_t t499 = RX90_C(0.45) * (t3 * (t188 + t498) + t1 * (t184 + t497));
-    const rx90_real_t t500 = t31 * t424 + t12 * t426 + t169 * t455;
-    const rx90_real_t t501 = t77 * t306 + t86 * t307;
-    const rx90_real_t t502 = t501 - (t333 * t488 + t336 * t489 + t500) + t499;
-    input_by_q[8] = RX90_C(0.03333333333333333) * t502;
-    const rx90_real_t t503 = RX90_C(0.03333333333333333) * (t501 + (t7 * t342 + t5 * t343 - t500));
-    input_by_q[14] = t503;
-    /* link j4: derivatives */
-    const rx90_real_t t504 = t7 * t349 + t5 * t353 + (t12 * t409 - t31 * t415 - t169 * t425);
-    input_by_q[20] = RX90_C(0.1) * (t504 - t86 * t269);
-    /* link j5: derivatives */
-    const rx90_real_t t505 = t7 * t363 + t5 * t367 + (t12 * t412 - t31 * t437 - t169 * t463);
-    input_by_q[26] = RX90_C(0.1) * (t505 + (t86 * t365 + t77 * t257));
-    /* link j6: derivatives */
-    const rx90_real_t t506 = t7 * t379 + t5 * t384 + (t12 * t444 - t31 * t443 - t169 * t466);
-    input_by_q[32] = RX90_C(0.16666666666666666) * (t506 + (t86 * t382 + t77 * t378));
-    const rx90_real_t t507 = RX90_C(2.0) * t470 - (t408 * t488 + t416 * t489); /* link j3: derivatives */
-    const rx90_real_t t508 = RX90_C(2.0) * t471 + (t416 * t488 + t410 * t489);
-    const rx90_real_t t509 = t3 * t507 + t1 * t508 + RX90_C(0.45) * (t307 * t488 - t306 * t489);
-    const rx90_real_t t510 = t0 * (t1 * t507 - t3 * t508) + t2 * t509;
-    input_by_dq[2] = RX90_C(0.03333333333333333) * t510;
-    const rx90_real_t t511 = t3 * (RX90_C(2.0) * t304 + t311 * t489) + t1 * (RX90_C(-2.0) * t303
-        + t311 * t488);
-    const rx90_real_t t512 = t479 + (t424 * t488 + t426 * t489) + RX90_C(0.45) * t511;
-    input_by_dq[8] = RX90_C(0.03333333333333333) * t512;
-    const rx90_real_t t513 = RX90_C(0.03333333333333333) * (t479 + RX90_C(-2.0) * (t7 * t424 + t5 * t426));
-    input_by_dq[14] = RX90_C(333.33333333333337) * parameters[FV3] + t513;
-    const rx90_real_t t514 = RX90_C(0.1) * (t481 + RX90_C(2.0) * (t5 * t409 - t7 * t415));
-    input_by_dq[20] = t514;
-    const rx90_real_t t515 = RX90_C(0.1) * (t483 + RX90_C(2.0) * (t5 * t412 - t7 * t437));
-    input_by_dq[26] = t515;
-    const rx90_real_t t516 = RX90_C(0.16666666666666666) * (t485 + RX90_C(2.0) * (t5 * t444 - t7 * t443));
-    input_by_dq[32] = t516;
-    input_by_ddq[2] = t432;
-    input_by_ddq[8] = t487;
-    input_by_ddq[14] = RX90_C(333.33333333333337) * parameters[IA3] + RX90_C(0.03333333333333333) * t455;
-    input_by_ddq[20] = RX90_C(0.1) * t425;
-    input_by_ddq[26] = RX90_C(0.1) * t463;
-    input_by_ddq[32] = RX90_C(0.16666666666666666) * t466;
-    const rx90_real_t t517 = RX90_C(2.0) * t35; /* link j4: derivatives */
-    const rx90_real_t t518 = RX90_C(-2.0) * t19;
-    const rx90_real_t t519 = t234 * t517 + t244 * t518 - (t38 * t404 - t18 * t397 - t185 * t411);
-    const rx90_real_t t520 = t131 + (t519 + t85 * t288);
-    const rx90_real_t t521 = t248 * t517 + t237 * t518 + (t185 * t413 - (t18 * t404 + t38 * t399));
-    const rx90_real_t t522 = t124 + (t521 + t93 * t288);
-    const rx90_real_t t523 = t93 * t290 - t267 * t518 + (t38 * t288 + t185 * t253);
-    const rx90_real_t t524 = t149 - t523;
-    const rx90_real_t t525 = t267 * t517 + t85 * t290 + (t18 * t288 - t185 * t258);
-    const rx90_real_t t526 = t145 - t525;
-    const rx90_real_t t527 = RX90_C(0.45) * (t17 * t524 + t11 * t526);
-    const rx90_real_t t528 = t11 * t520 + t17 * t522 - t527;
-    const rx90_real_t t529 = t185 * t409 - (t18 * t411 + t38 * t413);
-    const rx90_real_t t530 = t85 * t258 - t93 * t253;
-    const rx90_real_t t531 = t297 * t517 + t298 * t518 + t529 + t530;
-    const rx90_real_t t532 = t0 * (t1 * t528 - t3 * t531) + t2 * (t527 + (t3 * t528 + t1 * t531));
-    input_by_q[3] = RX90_C(0.03333333333333333) * t532;
-    const rx90_real_t t533 = t11 * t524 - t17 * t526;
-    const rx90_real_t t534 = t11 * t522 - t17 * t520 + RX90_C(-0.45) * t533;
-    const rx90_real_t t535 = t283 * t518 - t285 * t517 - (t18 * t253 + t38 * t258);
-    const rx90_real_t t536 = RX90_C(0.03333333333333333) * (t534 + RX90_C(0.45) * (t3 * t533 + t1 * t535));
-    input_by_q[9] = t536;
-    input_by_q[15] = RX90_C(0.03333333333333333) * t534;
-    const rx90_real_t t537 = RX90_C(0.1) * (t530 + (t529 + (t35 * t347 - t19 * t348)));
-    input_by_q[21] = t537;
-    /* link j5: derivatives */
-    const rx90_real_t t538 = t35 * t361 - t19 * t362 + (t185 * t412 - (t18 * t403 + t38 * t398));
-    input_by_q[27] = RX90_C(0.1) * (t538 + t93 * t287);
-    /* link j6: derivatives */
-    const rx90_real_t t539 = t35 * t376 - t19 * t377 + (t185 * t444 - (t18 * t441 + t38 * t401));
-    input_by_q[33] = RX90_C(0.16666666666666666) * (t539 + (t93 * t381 + t85 * t254));
-    const rx90_real_t t540 = RX90_C(2.0) * t281 + (t397 * t517 + t404 * t518); /* link j4: derivatives */
-    const rx90_real_t t541 = RX90_C(-2.0) * t282 + (t404 * t517 - t399 * t518);
-    const rx90_real_t t542 = RX90_C(2.0) * t285 + t288 * t518;
-    const rx90_real_t t543 = RX90_C(-2.0) * t283 - t288 * t517;
-    const rx90_real_t t544 = RX90_C(0.45) * (t17 * t542 + t11 * t543);
-    const rx90_real_t t545 = t17 * t541 - t11 * t540 + t544;
-    const rx90_real_t t546 = t350 - (t413 * t518 - t411 * t517);
-    const rx90_real_t t547 = t0 * (t1 * t545 - t3 * t546) + t2 * (t3 * t545 + t1 * t546 - t544);
-    input_by_dq[3] = RX90_C(0.03333333333333333) * t547;
-    const rx90_real_t t548 = t11 * t542 - t17 * t543;
-    const rx90_real_t t549 = t17 * t540 + t11 * t541 + RX90_C(0.45) * t548;
-    const rx90_real_t t550 = t1 * (t253 * t517 - t258 * t518) - t3 * t548;
-    input_by_dq[9] = RX90_C(0.03333333333333333) * (t549 + RX90_C(0.45) * t550);
-    input_by_dq[15] = RX90_C(0.03333333333333333) * t549;
-    const rx90_real_t t551 = RX90_C(0.1) * (t350 + RX90_C(2.0) * (t35 * t411 + t19 * t413));
-    input_by_dq[21] = RX90_C(250.0) * parameters[FV4] + t551;
-    const rx90_real_t t552 = RX90_C(0.1) * (t364 + RX90_C(2.0) * (t35 * t403 + t19 * t398));
-    input_by_dq[27] = t552;
-    const rx90_real_t t553 = RX90_C(0.16666666666666666) * (t380 + RX90_C(2.0) * (t35 * t441 + t19 * t401));
-    input_by_dq[33] = t553;
-    input_by_ddq[3] = RX90_C(0.03333333333333333) * t435;
-    input_by_ddq[9] = RX90_C(0.03333333333333333) * t461;
-    input_by_ddq[15] = RX90_C(0.03333333333333333) * t425;
-    input_by_ddq[21] = RX90_C(250.0) * parameters[IA4] + RX90_C(-0.1) * t409;
-    const rx90_real_t t554 = RX90_C(-0.1) * t412;
-    input_by_ddq[27] = t554;
-    input_by_ddq[33] = RX90_C(-0.16666666666666666) * t444;
-    const rx90_real_t t555 = RX90_C(2.0) * t27; /* link j5: derivatives */
-    const rx90_real_t t556 = RX90_C(2.0) * t26;
-    const rx90_real_t t557 = t225 * t556 - t216 * t555 + (t59 * t391 - t42 * t394 + t146 * t400);
-    const rx90_real_t t558 = t117 + (t557 - t92 * t252);
-    const rx90_real_t t559 = t219 * t556 - t229 * t555 + (t42 * t392 - t59 * t394 + t146 * t402);
-    const rx90_real_t t560 = t110 + (t559 - t91 * t252);
-    const rx90_real_t t561 = t24 * t558 - t25 * t560;
-    const rx90_real_t t562 = t146 * t398 - (t59 * t400 + t42 * t402);
-    const rx90_real_t t563 = t91 * t256 - t92 * t255;
-    const rx90_real_t t564 = t562 - (t245 * t555 + t246 * t556) + t563;
-    const rx90_real_t t565 = t42 * t252 + t146 * t256 - (t284 * t556 + t91 * t289);
-    const rx90_real_t t566 = t143 + t565;
-    const rx90_real_t t567 = t284 * t555 + t92 * t289 + (t146 * t255 - t59 * t252);
-    const rx90_real_t t568 = t139 + t567;
-    const rx90_real_t t569 = t24 * t566 - t25 * t568;
-    const rx90_real_t t570 = t266 * t555 + t264 * t556 - (t59 * t256 + t42 * t255);
-    const rx90_real_t t571 = RX90_C(0.45) * (t17 * t569 + t11 * t570);
-    const rx90_real_t t572 = t11 * t561 + t17 * t564 - t571;
-    const rx90_real_t t573 = t25 * t558 + t24 * t560;
-    const rx90_real_t t574 = t0 * (t1 * t572 - t3 * t573) + t2 * (t571 + (t3 * t572 + t1 * t573));
-    input_by_q[4] = RX90_C(0.03333333333333333) * t574;
-    const rx90_real_t t575 = t11 * t569 - t17 * t570;
-    const rx90_real_t t576 = t11 * t564 - t17 * t561 + RX90_C(-0.45) * t575;
-    const rx90_real_t t577 = t3 * t575 + t1 * (t25 * t566 + t24 * t568);
-    input_by_q[10] = RX90_C(0.03333333333333333) * (t576 + RX90_C(0.45) * t577);
-    input_by_q[16] = RX90_C(0.03333333333333333) * t576;
-    input_by_q[22] = RX90_C(0.1) * t573;
-    const rx90_real_t t578 = RX90_C(0.1) * (t563 + (t562 + (t26 * t360 - t27 * t359)));
-    input_by_q[28] = t578;
-    /* link j6: derivatives */
-    const rx90_real_t t579 = t26 * t375 - t27 * t374 + (t42 * parameters[ZZ6] - t59 * t393 + t146 * t401);
-    input_by_q[34] = RX90_C(0.16666666666666666) * (t579 + t91 * t251);
-    const rx90_real_t t580 = RX90_C(2.0) * t240 + (t391 * t555 - t394 * t556); /* link j5: derivatives */
-    const rx90_real_t t581 = RX90_C(2.0) * t241 + (t392 * t556 - t394 * t555);
-    const rx90_real_t t582 = t25 * t581 - t24 * t580;
-    const rx90_real_t t583 = t362 - (t400 * t555 + t402 * t556);
-    const rx90_real_t t584 = RX90_C(2.0) * t264 - t252 * t555;
-    const rx90_real_t t585 = RX90_C(2.0) * t266 + t252 * t556;
-    const rx90_real_t t586 = t25 * t584 - t24 * t585;
-    const rx90_real_t t587 = t256 * t555 + t255 * t556;
-    const rx90_real_t t588 = RX90_C(0.45) * (t17 * t586 + t11 * t587);
-    const rx90_real_t t589 = t17 * t583 - t11 * t582 + t588;
-    const rx90_real_t t590 = t25 * t580 + t24 * t581;
-    const rx90_real_t t591 = t0 * (t1 * t589 - t3 * t590) + t2 * (t3 * t589 + t1 * t590 - t588);
-    input_by_dq[4] = RX90_C(0.03333333333333333) * t591;
-    const rx90_real_t t592 = t11 * t586 - t17 * t587;
-    const rx90_real_t t593 = t17 * t582 + t11 * t583 + RX90_C(0.45) * t592;
-    const rx90_real_t t594 = t1 * (t25 * t585 + t24 * t584) - t3 * t592;
-    input_by_dq[10] = RX90_C(0.03333333333333333) * (t593 + RX90_C(0.45) * t594);
-    input_by_dq[16] = RX90_C(0.03333333333333333) * t593;
-    input_by_dq[22] = RX90_C(0.1) * t590;
-    const rx90_real_t t595 = RX90_C(0.1) * (t362 + RX90_C(-2.0) * (t27 * t400 + t26 * t402));
-    input_by_dq[28] = RX90_C(250.0) * parameters[FV5] + t595;
-    const rx90_real_t t596 = RX90_C(0.16666666666666666) * (t377 + RX90_C(2.0) * (t26 * parameters[ZZ6]
-        - t27 * t393));
-    input_by_dq[34] = t596;
-    input_by_ddq[4] = RX90_C(0.03333333333333333) * t440;
-    input_by_ddq[10] = RX90_C(0.03333333333333333) * t464;
-    input_by_ddq[16] = RX90_C(0.03333333333333333) * t463;
-    input_by_ddq[22] = t554;
-    input_by_ddq[28] = RX90_C(250.0) * parameters[IA5] + RX90_C(-0.1) * t398;
-    input_by_ddq[34] = RX90_C(-0.16666666666666666) * t401;
-    const rx90_real_t t597 = RX90_C(2.0) * t49; /* link j6: derivatives */
-    const rx90_real_t t598 = RX90_C(2.0) * t54;
-    const rx90_real_t t599 = t211 * t598 - t204 * t597 - (t53 * parameters[XX6] - t48 * parameters[XY6]
+    const rx90_real_t t202 = t48 * parameters[YZ6] - t53 * parameters[XZ6] - t140 * parameters[ZZ6];
+    const rx90_real_t t203 = RX90_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const rx90_real_t t204 = parameters[XX6] - t203;
+    const rx90_real_t t205 = t54 * parameters[XY6] + t49 * t204;
+    const rx90_real_t t206 = RX90_C(2.0) * t205;
+    const rx90_real_t t207 = t203 - parameters[YY6];
+    const rx90_real_t t208 = t49 * parameters[XY6] - t54 * t207;
+    const rx90_real_t t209 = RX90_C(2.0) * t208;
+    const rx90_real_t t210 = t101 * parameters[MX6] + t94 * parameters[MY6];
+    const rx90_real_t t211 = RX90_C(0.16666666666666666) * (t210 + (t202 - (t49 * t206 + t54 * t209)));
+    input_by_q[35] = t211;
+    const rx90_real_t t212 = t49 * parameters[XZ6];
+    const rx90_real_t t213 = t50 * parameters[XY6];
+    const rx90_real_t t214 = t213 - t212;
+    const rx90_real_t t215 = RX90_C(2.0) * t49;
+    const rx90_real_t t216 = t49 * parameters[YZ6] + t50 * t207;
+    const rx90_real_t t217 = RX90_C(2.0) * t54;
+    const rx90_real_t t218 = t216 * t217 - t214 * t215 - (t53 * parameters[XX6] - t48 * parameters[XY6]
         + t140 * parameters[XZ6]);
-    const rx90_real_t t600 = t103 + (t599 - t102);
-    const rx90_real_t t601 = t53 * parameters[XY6] - t48 * parameters[YY6] + t140 * parameters[YZ6]
-        - (t209 * t597 + t206 * t598);
-    const rx90_real_t t602 = t96 + (t95 + t601);
-    const rx90_real_t t603 = t47 * t600 + t30 * t602;
-    const rx90_real_t t604 = t48 * parameters[YZ6] - t53 * parameters[XZ6] - t140 * parameters[ZZ6];
-    const rx90_real_t t605 = t101 * parameters[MX6] + t94 * parameters[MY6];
-    const rx90_real_t t606 = t604 - (t226 * t597 + t227 * t598) + t605;
-    const rx90_real_t t607 = t24 * t603 - t25 * t606;
-    const rx90_real_t t608 = t47 * t602 - t30 * t600;
-    const rx90_real_t t609 = t137 + (t135 + t140 * parameters[MY6] - (t136 + t265 * t598));
-    const rx90_real_t t610 = t134 + (t140 * parameters[MX6] - t132 - (t133 + t265 * t597));
-    const rx90_real_t t611 = t47 * t609 + t30 * t610;
-    const rx90_real_t t612 = t263 * t597 - t262 * t598 - (t53 * parameters[MY6] + t48 * parameters[MX6]);
-    const rx90_real_t t613 = t24 * t611 - t25 * t612;
-    const rx90_real_t t614 = t30 * t609 - t47 * t610;
-    const rx90_real_t t615 = RX90_C(0.45) * (t17 * t613 + t11 * t614);
-    const rx90_real_t t616 = t11 * t607 + t17 * t608 - t615;
-    const rx90_real_t t617 = t25 * t603 + t24 * t606;
-    const rx90_real_t t618 = t0 * (t1 * t616 - t3 * t617) + t2 * (t615 + (t3 * t616 + t1 * t617));
-    input_by_q[5] = RX90_C(0.03333333333333333) * t618;
-    const rx90_real_t t619 = t11 * t613 - t17 * t614;
-    const rx90_real_t t620 = t11 * t608 - t17 * t607 + RX90_C(-0.45) * t619;
-    const rx90_real_t t621 = t3 * t619 + t1 * (t25 * t611 + t24 * t612);
-    input_by_q[11] = RX90_C(0.03333333333333333) * (t620 + RX90_C(0.45) * t621);
-    input_by_q[17] = RX90_C(0.03333333333333333) * t620;
-    input_by_q[23] = RX90_C(0.1) * t617;
-    input_by_q[29] = RX90_C(0.1) * t608;
-    const rx90_real_t t622 = RX90_C(0.16666666666666666) * (t605 + (t604 - (t49 * t372 + t54 * t373)));
-    input_by_q[35] = t622;
-    const rx90_real_t t623 = RX90_C(-2.0) * t221 - (parameters[XX6] * t597 + parameters[XY6] * t598);
-    const rx90_real_t t624 = RX90_C(-2.0) * t222 - (parameters[XY6] * t597 + parameters[YY6] * t598);
-    const rx90_real_t t625 = t30 * t624 - t47 * t623;
-    const rx90_real_t t626 = t375 + (parameters[XZ6] * t597 + parameters[YZ6] * t598);
-    const rx90_real_t t627 = t25 * t626 - t24 * t625;
-    const rx90_real_t t628 = t30 * t623 + t47 * t624;
-    const rx90_real_t t629 = RX90_C(-2.0) * t263 + parameters[MZ6] * t598;
-    const rx90_real_t t630 = RX90_C(-2.0) * t262 + parameters[MZ6] * t597;
-    const rx90_real_t t631 = t47 * t629 + t30 * t630;
-    const rx90_real_t t632 = parameters[MY6] * t597 - parameters[MX6] * t598;
-    const rx90_real_t t633 = t25 * t632 - t24 * t631;
-    const rx90_real_t t634 = t47 * t630 - t30 * t629;
-    const rx90_real_t t635 = RX90_C(0.45) * (t17 * t633 + t11 * t634);
-    const rx90_real_t t636 = t17 * t628 - t11 * t627 + t635;
-    const rx90_real_t t637 = t25 * t625 + t24 * t626;
-    const rx90_real_t t638 = t0 * (t1 * t636 - t3 * t637) + t2 * (t3 * t636 + t1 * t637 - t635);
-    input_by_dq[5] = RX90_C(0.03333333333333333) * t638;
-    const rx90_real_t t639 = t11 * t633 - t17 * t634;
-    const rx90_real_t t640 = t17 * t627 + t11 * t628 + RX90_C(0.45) * t639;
-    const rx90_real_t t641 = t1 * (t25 * t631 + t24 * t632) - t3 * t639;
-    input_by_dq[11] = RX90_C(0.03333333333333333) * (t640 + RX90_C(0.45) * t641);
-    input_by_dq[17] = RX90_C(0.03333333333333333) * t640;
-    input_by_dq[23] = RX90_C(0.1) * t637;
-    input_by_dq[29] = RX90_C(0.1) * t628;
+    const rx90_real_t t219 = t103 + (t218 - t102);
+    const rx90_real_t t220 = t50 * t204 + t54 * parameters[XZ6];
+    const rx90_real_t t221 = t54 * parameters[YZ6];
+    const rx90_real_t t222 = t213 + t221;
+    const rx90_real_t t223 = t53 * parameters[XY6] - t48 * parameters[YY6] + t140 * parameters[YZ6]
+        - (t220 * t215 + t222 * t217);
+    const rx90_real_t t224 = t96 + (t95 + t223);
+    const rx90_real_t t225 = t47 * t224 - t30 * t219;
+    input_by_q[29] = RX90_C(0.1) * t225;
+    const rx90_real_t t226 = t47 * t219 + t30 * t224;
+    const rx90_real_t t227 = t202 - (t205 * t215 + t208 * t217) + t210;
+    const rx90_real_t t228 = t25 * t226 + t24 * t227;
+    input_by_q[23] = RX90_C(0.1) * t228;
+    const rx90_real_t t229 = t24 * t226 - t25 * t227;
+    const rx90_real_t t230 = t54 * parameters[MY6] + t49 * parameters[MX6];
+    const rx90_real_t t231 = t137 + (t135 + t140 * parameters[MY6] - (t136 + t230 * t217));
+    const rx90_real_t t232 = t134 + (t140 * parameters[MX6] - t132 - (t133 + t230 * t215));
+    const rx90_real_t t233 = t47 * t231 + t30 * t232;
+    const rx90_real_t t234 = t50 * parameters[MX6] + t54 * parameters[MZ6];
+    const rx90_real_t t235 = t49 * parameters[MZ6] - t50 * parameters[MY6];
+    const rx90_real_t t236 = t234 * t215 - t235 * t217 - (t53 * parameters[MY6] + t48 * parameters[MX6]);
+    const rx90_real_t t237 = t24 * t233 - t25 * t236;
+    const rx90_real_t t238 = t30 * t231 - t47 * t232;
+    const rx90_real_t t239 = t11 * t237 - t17 * t238;
+    const rx90_real_t t240 = t11 * t225 - t17 * t229 + RX90_C(-0.45) * t239;
+    input_by_q[17] = RX90_C(0.03333333333333333) * t240;
+    const rx90_real_t t241 = t3 * t239 + t1 * (t25 * t233 + t24 * t236);
+    input_by_q[11] = RX90_C(0.03333333333333333) * (t240 + RX90_C(0.45) * t241);
+    const rx90_real_t t242 = RX90_C(0.45) * (t17 * t237 + t11 * t238);
+    const rx90_real_t t243 = t11 * t229 + t17 * t225 - t242;
+    const rx90_real_t t244 = t0 * (t1 * t243 - t3 * t228) + t2 * (t242 + (t3 * t243 + t1 * t228));
+    input_by_q[5] = RX90_C(0.03333333333333333) * t244;
     input_by_dq[35] = RX90_C(150.0) * parameters[FV6];
-    input_by_ddq[5] = RX90_C(0.03333333333333333) * t447;
-    input_by_ddq[11] = RX90_C(0.03333333333333333) * t467;
-    input_by_ddq[17] = RX90_C(0.03333333333333333) * t466;
-    input_by_ddq[23] = RX90_C(-0.1) * t444;
-    input_by_ddq[29] = RX90_C(-0.1) * t401;
+    const rx90_real_t t245 = parameters[ZZ6] - t203;
+    const rx90_real_t t246 = t49 * t245 - t50 * parameters[YZ6];
+    const rx90_real_t t247 = RX90_C(-2.0) * t246 - (parameters[XX6] * t215 + parameters[XY6] * t217);
+    const rx90_real_t t248 = t50 * parameters[XZ6] + t54 * t245;
+    const rx90_real_t t249 = RX90_C(-2.0) * t248 - (parameters[XY6] * t215 + parameters[YY6] * t217);
+    const rx90_real_t t250 = t30 * t247 + t47 * t249;
+    input_by_dq[29] = RX90_C(0.1) * t250;
+    const rx90_real_t t251 = t30 * t249 - t47 * t247;
+    const rx90_real_t t252 = t212 + t221;
+    const rx90_real_t t253 = RX90_C(-2.0) * t252;
+    const rx90_real_t t254 = t253 + (parameters[XZ6] * t215 + parameters[YZ6] * t217);
+    const rx90_real_t t255 = t25 * t251 + t24 * t254;
+    input_by_dq[23] = RX90_C(0.1) * t255;
+    const rx90_real_t t256 = t25 * t254 - t24 * t251;
+    const rx90_real_t t257 = RX90_C(-2.0) * t234 + parameters[MZ6] * t217;
+    const rx90_real_t t258 = RX90_C(-2.0) * t235 + parameters[MZ6] * t215;
+    const rx90_real_t t259 = t47 * t257 + t30 * t258;
+    const rx90_real_t t260 = parameters[MY6] * t215 - parameters[MX6] * t217;
+    const rx90_real_t t261 = t25 * t260 - t24 * t259;
+    const rx90_real_t t262 = t47 * t258 - t30 * t257;
+    const rx90_real_t t263 = t11 * t261 - t17 * t262;
+    const rx90_real_t t264 = t17 * t256 + t11 * t250 + RX90_C(0.45) * t263;
+    input_by_dq[17] = RX90_C(0.03333333333333333) * t264;
+    const rx90_real_t t265 = t1 * (t25 * t259 + t24 * t260) - t3 * t263;
+    input_by_dq[11] = RX90_C(0.03333333333333333) * (t264 + RX90_C(0.45) * t265);
+    const rx90_real_t t266 = RX90_C(0.45) * (t17 * t261 + t11 * t262);
+    const rx90_real_t t267 = t17 * t250 - t11 * t256 + t266;
+    const rx90_real_t t268 = t0 * (t1 * t267 - t3 * t255) + t2 * (t3 * t267 + t1 * t255 - t266);
+    input_by_dq[5] = RX90_C(0.03333333333333333) * t268;
     input_by_ddq[35] = RX90_C(150.0) * parameters[IA6] + RX90_C(0.16666666666666666) * parameters[ZZ6];
+    /* link j6: column of the mass matrix */
+    const rx90_real_t t269 = t30 * parameters[XZ6] + t47 * parameters[YZ6];
+    input_by_ddq[29] = RX90_C(-0.1) * t269;
+    const rx90_real_t t270 = t30 * parameters[YZ6] - t47 * parameters[XZ6];
+    const rx90_real_t t271 = t25 * t270 - t24 * parameters[ZZ6];
+    input_by_ddq[23] = RX90_C(-0.1) * t271;
+    const rx90_real_t t272 = t24 * t270 + t25 * parameters[ZZ6];
+    const rx90_real_t t273 = t47 * parameters[MY6] + t30 * parameters[MX6];
+    const rx90_real_t t274 = t24 * t273;
+    const rx90_real_t t275 = t30 * parameters[MY6] - t47 * parameters[MX6];
+    const rx90_real_t t276 = t11 * t274 - t17 * t275;
+    const rx90_real_t t277 = t17 * t272 - t11 * t269 + RX90_C(0.45) * t276;
+    input_by_ddq[17] = RX90_C(0.03333333333333333) * t277;
+    const rx90_real_t t278 = t25 * t273;
+    const rx90_real_t t279 = t3 * t276 + t1 * t278;
+    const rx90_real_t t280 = t277 + RX90_C(-0.45) * t279;
+    input_by_ddq[11] = RX90_C(0.03333333333333333) * t280;
+    const rx90_real_t t281 = t17 * t274 + t11 * t275;
+    const rx90_real_t t282 = RX90_C(0.45) * t281;
+    const rx90_real_t t283 = t11 * t272 + t17 * t269 - t282;
+    const rx90_real_t t284 = t3 * t271 - t1 * t283;
+    const rx90_real_t t285 = t282 + (t3 * t283 + t1 * t271);
+    const rx90_real_t t286 = t0 * t284 - t2 * t285;
+    input_by_ddq[5] = RX90_C(0.03333333333333333) * t286;
+    const rx90_real_t t287 = t47 * t206 - t30 * t209; /* link j6: derivatives */
+    const rx90_real_t t288 = t26 * t253 - t27 * t287 + (t42 * parameters[ZZ6] - t59 * t270 + t146 * t269);
+    input_by_q[34] = RX90_C(0.16666666666666666) * (t288 + t91 * t273);
+    const rx90_real_t t289 = t24 * t287 + t25 * t253;
+    const rx90_real_t t290 = t30 * t206 + t47 * t209;
+    const rx90_real_t t291 = t35 * t289 - t19 * t290 + (t185 * t271 - (t18 * t272 + t38 * t269));
+    input_by_q[33] = RX90_C(0.16666666666666666) * (t291 + (t93 * t274 + t85 * t275));
+    const rx90_real_t t292 = RX90_C(0.9) * t5;
+    const rx90_real_t t293 = t17 * t290 - t11 * t289 + t278 * t292;
+    const rx90_real_t t294 = t24 * t253 - t25 * t287;
+    const rx90_real_t t295 = RX90_C(-0.9) * t13;
+    const rx90_real_t t296 = t276 * t292 + t281 * t295 - t294;
+    const rx90_real_t t297 = t7 * t293 + t5 * t296 + (t12 * t271 - t31 * t283 - t169 * t277);
+    input_by_q[32] = RX90_C(0.16666666666666666) * (t297 + (t86 * t276 + t77 * t278));
+    const rx90_real_t t298 = RX90_C(0.9) * dq[1];
+    const rx90_real_t t299 = RX90_C(-0.9) * t67;
+    const rx90_real_t t300 = t1 * t293 + t3 * t296 + (t281 * t298 + t279 * t299);
+    const rx90_real_t t301 = t1 * t276 - t3 * t278; /* link j6: column of the mass matrix */
+    const rx90_real_t t302 = t3 * t293 - t1 * t296 - t301 * t299; /* link j6: derivatives */
+    const rx90_real_t t303 = t173 + t68; /* link j3: motion */
+    /* link j6: derivatives */
+    const rx90_real_t t304 = t67 * t300 - t72 * t302 + (t79 * t284 + t164 * t285 - t303 * t280);
+    input_by_q[31] = RX90_C(0.16666666666666666) * (t304 + (t75 * t301 + t70 * t279));
+    const rx90_real_t t305 = RX90_C(0.16666666666666666) * (t290 + RX90_C(2.0) * (t26 * parameters[ZZ6]
+        - t27 * t270));
+    input_by_dq[34] = t305;
+    const rx90_real_t t306 = RX90_C(0.16666666666666666) * (t294 + RX90_C(2.0) * (t35 * t272 + t19 * t269));
+    input_by_dq[33] = t306;
+    const rx90_real_t t307 = t17 * t289 + t11 * t290 - t278 * t295;
+    const rx90_real_t t308 = RX90_C(0.16666666666666666) * (t307 + RX90_C(2.0) * (t5 * t271 - t7 * t283));
+    input_by_dq[32] = t308;
+    const rx90_real_t t309 = t307 + t301 * t298 + RX90_C(2.0) * (t67 * t284 + t72 * t285);
+    input_by_dq[31] = RX90_C(0.16666666666666666) * t309;
+    input_by_dq[30] = RX90_C(0.16666666666666666) * (t0 * t300 + t2 * t302);
+    input_by_ddq[34] = RX90_C(-0.16666666666666666) * t269;
+    input_by_ddq[33] = RX90_C(-0.16666666666666666) * t271;
+    input_by_ddq[32] = RX90_C(0.16666666666666666) * t277;
+    input_by_ddq[31] = RX90_C(0.16666666666666666) * t280;
+    input_by_ddq[30] = RX90_C(0.16666666666666666) * t286;
+    /* link j6: inertia of it and all beyond */
+    const rx90_real_t t310 = t47 * t111 + parameters[XY6] * (RX90_C(-2.0) * t30);
+    const rx90_real_t t311 = parameters[XY6] + t30 * t310 - parameters[XZ5];
+    const rx90_real_t t312 = t269 - parameters[YZ5];
+    const rx90_real_t t313 = t47 * t310;
+    const rx90_real_t t314 = t313 - parameters[XX6] - parameters[ZZ5];
+    const rx90_real_t t315 = t146 * t314 - (t59 * t311 + t42 * t312); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t316 = t47 * (t214 + t222) + t30 * (t220 + t216);
+    const rx90_real_t t317 = t30 * t316;
+    const rx90_real_t t318 = RX90_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const rx90_real_t t319 = t318 - parameters[XX5];
+    const rx90_real_t t320 = t26 * parameters[XY5] - t27 * t319 + (t220 - t317);
+    const rx90_real_t t321 = RX90_C(2.0) * t320; /* link j5: derivatives */
+    const rx90_real_t t322 = t318 - parameters[YY5];
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t323 = t27 * parameters[XY5] - t26 * t322 + (t30 * t246 + t47 * t248);
+    const rx90_real_t t324 = RX90_C(-2.0) * t323; /* link j5: derivatives */
+    const rx90_real_t t325 = t275 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t326 = parameters[MY5] + parameters[MZ6];
+    const rx90_real_t t327 = t91 * t326 - t92 * t325; /* link j5: derivatives */
+    const rx90_real_t t328 = RX90_C(0.1) * (t327 + (t315 + (t26 * t324 - t27 * t321)));
+    input_by_q[28] = t328;
+    const rx90_real_t t329 = t47 * t316; /* link j6: inertia, momentum beyond */
+    const rx90_real_t t330 = t27 * parameters[XZ5];
+    const rx90_real_t t331 = t43 * parameters[XY5];
+    const rx90_real_t t332 = t331 - t330 + (t329 - t222);
+    const rx90_real_t t333 = RX90_C(2.0) * t27; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t334 = t27 * parameters[YZ5] + t43 * t322 + (t47 * t246 - t30 * t248);
+    const rx90_real_t t335 = RX90_C(2.0) * t26; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const rx90_real_t t336 = parameters[XX5] + (parameters[YY6] + t313);
+    const rx90_real_t t337 = t270 - parameters[XY5];
+    /* link j5: derivatives */
+    const rx90_real_t t338 = t334 * t335 - t332 * t333 + (t59 * t336 - t42 * t337 + t146 * t311);
+    const rx90_real_t t339 = parameters[MZ5] - t273; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t340 = t117 + (t338 - t92 * t339); /* link j5: derivatives */
+    const rx90_real_t t341 = parameters[YY5] + parameters[ZZ6]; /* link j6: inertia of it and all beyond */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t342 = t43 * t319 - t26 * parameters[XZ5] + (t47 * t205 - t30 * t208);
+    const rx90_real_t t343 = t26 * parameters[YZ5];
+    const rx90_real_t t344 = t331 + t343 - t252;
+    /* link j5: derivatives */
+    const rx90_real_t t345 = t344 * t335 - t342 * t333 + (t42 * t341 - t59 * t337 + t146 * t312);
+    const rx90_real_t t346 = t110 + (t345 - t91 * t339);
+    const rx90_real_t t347 = t25 * t340 + t24 * t346;
+    input_by_q[22] = RX90_C(0.1) * t347;
+    const rx90_real_t t348 = t24 * t340 - t25 * t346;
+    const rx90_real_t t349 = t315 - (t320 * t333 + t323 * t335) + t327;
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t350 = t26 * parameters[MY5] + t27 * parameters[MX5] + (t30 * t235 + t47 * t234);
+    const rx90_real_t t351 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t352 = t42 * t339 + t146 * t326 - (t350 * t335 + t91 * t351); /* link j5: derivatives */
+    const rx90_real_t t353 = t143 + t352;
+    const rx90_real_t t354 = t350 * t333 + t92 * t351 + (t146 * t325 - t59 * t339);
+    const rx90_real_t t355 = t139 + t354;
+    const rx90_real_t t356 = t24 * t353 - t25 * t355;
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t357 = t27 * parameters[MZ5] - t43 * parameters[MY5] + (t47 * t235 - t30 * t234);
+    const rx90_real_t t358 = t230 - (t43 * parameters[MX5] + t26 * parameters[MZ5]);
+    const rx90_real_t t359 = t358 * t333 + t357 * t335 - (t59 * t326 + t42 * t325); /* link j5: derivatives */
+    const rx90_real_t t360 = t11 * t356 - t17 * t359;
+    const rx90_real_t t361 = t11 * t349 - t17 * t348 + RX90_C(-0.45) * t360;
+    input_by_q[16] = RX90_C(0.03333333333333333) * t361;
+    const rx90_real_t t362 = t3 * t360 + t1 * (t25 * t353 + t24 * t355);
+    input_by_q[10] = RX90_C(0.03333333333333333) * (t361 + RX90_C(0.45) * t362);
+    const rx90_real_t t363 = RX90_C(0.45) * (t17 * t356 + t11 * t359);
+    const rx90_real_t t364 = t11 * t348 + t17 * t349 - t363;
+    const rx90_real_t t365 = t0 * (t1 * t364 - t3 * t347) + t2 * (t363 + (t3 * t364 + t1 * t347));
+    input_by_q[4] = RX90_C(0.03333333333333333) * t365;
+    const rx90_real_t t366 = t329 - t214 - (t330 + t343); /* link j6: inertia, momentum beyond */
+    const rx90_real_t t367 = RX90_C(2.0) * t366; /* link j5: derivatives */
+    const rx90_real_t t368 = RX90_C(0.1) * (t367 + RX90_C(-2.0) * (t27 * t311 + t26 * t312));
+    input_by_dq[28] = RX90_C(250.0) * parameters[FV5] + t368;
+    const rx90_real_t t369 = t318 - parameters[ZZ5];
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t370 = t317 - t216 - (t27 * t369 + t43 * parameters[YZ5]);
+    const rx90_real_t t371 = RX90_C(2.0) * t370 + (t336 * t333 - t337 * t335); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const rx90_real_t t372 = t43 * parameters[XZ5] - t26 * t369 + (t30 * t205 + t47 * t208);
+    const rx90_real_t t373 = RX90_C(2.0) * t372 + (t341 * t335 - t337 * t333); /* link j5: derivatives */
+    const rx90_real_t t374 = t25 * t371 + t24 * t373;
+    input_by_dq[22] = RX90_C(0.1) * t374;
+    const rx90_real_t t375 = t25 * t373 - t24 * t371;
+    const rx90_real_t t376 = t367 - (t311 * t333 + t312 * t335);
+    const rx90_real_t t377 = RX90_C(2.0) * t357 - t339 * t333;
+    const rx90_real_t t378 = RX90_C(2.0) * t358 + t339 * t335;
+    const rx90_real_t t379 = t25 * t377 - t24 * t378;
+    const rx90_real_t t380 = t326 * t333 + t325 * t335;
+    const rx90_real_t t381 = t11 * t379 - t17 * t380;
+    const rx90_real_t t382 = t17 * t375 + t11 * t376 + RX90_C(0.45) * t381;
+    input_by_dq[16] = RX90_C(0.03333333333333333) * t382;
+    const rx90_real_t t383 = t1 * (t25 * t378 + t24 * t377) - t3 * t381;
+    input_by_dq[10] = RX90_C(0.03333333333333333) * (t382 + RX90_C(0.45) * t383);
+    const rx90_real_t t384 = RX90_C(0.45) * (t17 * t379 + t11 * t380);
+    const rx90_real_t t385 = t17 * t376 - t11 * t375 + t384;
+    const rx90_real_t t386 = t0 * (t1 * t385 - t3 * t374) + t2 * (t3 * t385 + t1 * t374 - t384);
+    input_by_dq[4] = RX90_C(0.03333333333333333) * t386;
+    input_by_ddq[28] = RX90_C(250.0) * parameters[IA5] + RX90_C(-0.1) * t314;
+    const rx90_real_t t387 = t25 * t311 + t24 * t312; /* link j5: column of the mass matrix */
+    const rx90_real_t t388 = RX90_C(-0.1) * t387;
+    input_by_ddq[22] = t388;
+    const rx90_real_t t389 = t24 * t311 - t25 * t312;
+    const rx90_real_t t390 = t24 * t326 - t25 * t325;
+    const rx90_real_t t391 = t11 * t390;
+    const rx90_real_t t392 = t17 * t389 - t11 * t314 + RX90_C(0.45) * t391;
+    input_by_ddq[16] = RX90_C(0.03333333333333333) * t392;
+    const rx90_real_t t393 = t25 * t326 + t24 * t325;
+    const rx90_real_t t394 = t3 * t391 + t1 * t393;
+    const rx90_real_t t395 = t392 + RX90_C(-0.45) * t394;
+    input_by_ddq[10] = RX90_C(0.03333333333333333) * t395;
+    const rx90_real_t t396 = t17 * t390;
+    const rx90_real_t t397 = RX90_C(0.45) * t396;
+    const rx90_real_t t398 = t11 * t389 + t17 * t314 - t397;
+    const rx90_real_t t399 = t3 * t387 - t1 * t398;
+    const rx90_real_t t400 = t397 + (t3 * t398 + t1 * t387);
+    const rx90_real_t t401 = t0 * t399 - t2 * t400;
+    input_by_ddq[4] = RX90_C(0.03333333333333333) * t401;
+    const rx90_real_t t402 = t24 * t321 + t25 * t324; /* link j5: derivatives */
+    const rx90_real_t t403 = t35 * t402 - t19 * t367 + (t185 * t387 - (t18 * t389 + t38 * t314));
+    input_by_q[27] = RX90_C(0.1) * (t403 + t93 * t390);
+    const rx90_real_t t404 = t17 * t367 - t11 * t402 + t393 * t292;
+    const rx90_real_t t405 = t24 * t324 - t25 * t321;
+    const rx90_real_t t406 = t391 * t292 + t396 * t295 - t405;
+    const rx90_real_t t407 = t7 * t404 + t5 * t406 + (t12 * t387 - t31 * t398 - t169 * t392);
+    input_by_q[26] = RX90_C(0.1) * (t407 + (t86 * t391 + t77 * t393));
+    const rx90_real_t t408 = t1 * t404 + t3 * t406 + (t396 * t298 + t394 * t299);
+    const rx90_real_t t409 = t1 * t391 - t3 * t393; /* link j5: column of the mass matrix */
+    const rx90_real_t t410 = t3 * t404 - t1 * t406 - t409 * t299; /* link j5: derivatives */
+    const rx90_real_t t411 = t67 * t408 - t72 * t410 + (t79 * t399 + t164 * t400 - t303 * t395);
+    input_by_q[25] = RX90_C(0.1) * (t411 + (t75 * t409 + t70 * t394));
+    const rx90_real_t t412 = RX90_C(0.1) * (t405 + RX90_C(2.0) * (t35 * t389 + t19 * t314));
+    input_by_dq[27] = t412;
+    const rx90_real_t t413 = t17 * t402 + t11 * t367 - t393 * t295;
+    const rx90_real_t t414 = RX90_C(0.1) * (t413 + RX90_C(2.0) * (t5 * t387 - t7 * t398));
+    input_by_dq[26] = t414;
+    const rx90_real_t t415 = t413 + t409 * t298 + RX90_C(2.0) * (t67 * t399 + t72 * t400);
+    input_by_dq[25] = RX90_C(0.1) * t415;
+    input_by_dq[24] = RX90_C(0.1) * (t0 * t408 + t2 * t410);
+    input_by_ddq[27] = t388;
+    input_by_ddq[26] = RX90_C(0.1) * t392;
+    input_by_ddq[25] = RX90_C(0.1) * t395;
+    input_by_ddq[24] = RX90_C(0.1) * t401;
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t416 = t24 * (t332 + t344) + t25 * (t334 - t342);
+    const rx90_real_t t417 = t25 * t416;
+    const rx90_real_t t418 = RX90_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const rx90_real_t t419 = parameters[XX4] - t418;
+    const rx90_real_t t420 = t19 * parameters[XY4] - t35 * t419 + (t342 + t417);
+    const rx90_real_t t421 = RX90_C(2.0) * t420; /* link j4: derivatives */
+    const rx90_real_t t422 = t418 - parameters[YY4];
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t423 = t25 * t370 + t24 * t372 - (t19 * t422 + t35 * parameters[XY4]);
+    const rx90_real_t t424 = RX90_C(2.0) * t423; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const rx90_real_t t425 = t24 * (t336 - t341) + t337 * (RX90_C(2.0) * t25);
+    const rx90_real_t t426 = t337 - t25 * t425 - parameters[XZ4];
+    const rx90_real_t t427 = parameters[YZ4] + t387;
+    const rx90_real_t t428 = t24 * t425;
+    const rx90_real_t t429 = t428 - t336 - parameters[ZZ4];
+    const rx90_real_t t430 = t185 * t429 - (t18 * t426 + t38 * t427); /* link j4: derivatives */
+    const rx90_real_t t431 = t393 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t432 = t339 - parameters[MY4];
+    const rx90_real_t t433 = t85 * t431 - t93 * t432; /* link j4: derivatives */
+    const rx90_real_t t434 = RX90_C(0.1) * (t433 + (t430 + (t35 * t421 - t19 * t424)));
+    input_by_q[21] = t434;
+    const rx90_real_t t435 = t24 * t416; /* link j5: inertia, momentum beyond */
+    const rx90_real_t t436 = t35 * parameters[XZ4];
+    const rx90_real_t t437 = t20 * parameters[XY4];
+    const rx90_real_t t438 = t436 + t437 - (t344 - t435);
+    const rx90_real_t t439 = RX90_C(2.0) * t35; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t440 = t35 * parameters[YZ4] - t20 * t422 - (t25 * t372 - t24 * t370);
+    const rx90_real_t t441 = RX90_C(-2.0) * t19; /* link j4: derivatives */
+    const rx90_real_t t442 = parameters[XX4] + (t341 + t428); /* link j5: inertia of it and all beyond */
+    const rx90_real_t t443 = parameters[XY4] + t389;
+    /* link j4: derivatives */
+    const rx90_real_t t444 = t438 * t439 + t440 * t441 - (t38 * t443 - t18 * t442 - t185 * t426);
+    const rx90_real_t t445 = parameters[MZ4] + t390; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t446 = t131 + (t444 + t85 * t445); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t447 = t20 * t419 + t19 * parameters[XZ4] + (t24 * t320 - t25 * t323);
+    const rx90_real_t t448 = t19 * parameters[YZ4];
+    const rx90_real_t t449 = t437 + t448 + t366;
+    const rx90_real_t t450 = t314 - parameters[YY4]; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const rx90_real_t t451 = t447 * t439 + t449 * t441 + (t185 * t427 - (t18 * t443 + t38 * t450));
+    const rx90_real_t t452 = t124 + (t451 + t93 * t445);
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t453 = t19 * parameters[MY4] - t35 * parameters[MX4] + (t24 * t358 - t25 * t357);
+    const rx90_real_t t454 = parameters[M4] + t351; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t455 = t93 * t454 - t453 * t441 + (t38 * t445 + t185 * t432); /* link j4: derivatives */
+    const rx90_real_t t456 = t149 - t455;
+    const rx90_real_t t457 = t453 * t439 + t85 * t454 + (t18 * t445 - t185 * t431);
+    const rx90_real_t t458 = t145 - t457;
+    const rx90_real_t t459 = t11 * t456 - t17 * t458;
+    const rx90_real_t t460 = t11 * t452 - t17 * t446 + RX90_C(-0.45) * t459;
+    input_by_q[15] = RX90_C(0.03333333333333333) * t460;
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t461 = t20 * parameters[MX4] + t19 * parameters[MZ4] + t350;
+    const rx90_real_t t462 = t24 * t357 + t25 * t358 - (t35 * parameters[MZ4] + t20 * parameters[MY4]);
+    const rx90_real_t t463 = t462 * t441 - t461 * t439 - (t18 * t432 + t38 * t431); /* link j4: derivatives */
+    const rx90_real_t t464 = RX90_C(0.03333333333333333) * (t460 + RX90_C(0.45) * (t3 * t459 + t1 * t463));
+    input_by_q[9] = t464;
+    const rx90_real_t t465 = RX90_C(0.45) * (t17 * t456 + t11 * t458);
+    const rx90_real_t t466 = t11 * t446 + t17 * t452 - t465;
+    const rx90_real_t t467 = t420 * t439 + t423 * t441 + t430 + t433;
+    const rx90_real_t t468 = t0 * (t1 * t466 - t3 * t467) + t2 * (t465 + (t3 * t466 + t1 * t467));
+    input_by_q[3] = RX90_C(0.03333333333333333) * t468;
+    const rx90_real_t t469 = t436 - t448 - (t332 - t435); /* link j5: inertia, momentum beyond */
+    const rx90_real_t t470 = RX90_C(2.0) * t469; /* link j4: derivatives */
+    const rx90_real_t t471 = RX90_C(0.1) * (t470 + RX90_C(2.0) * (t35 * t426 + t19 * t427));
+    input_by_dq[21] = RX90_C(250.0) * parameters[FV4] + t471;
+    const rx90_real_t t472 = t418 - parameters[ZZ4];
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t473 = t20 * parameters[YZ4] - t35 * t472 + (t417 - t334);
+    const rx90_real_t t474 = RX90_C(2.0) * t473 + (t442 * t439 + t443 * t441); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const rx90_real_t t475 = t20 * parameters[XZ4] - t19 * t472 + (t25 * t320 + t24 * t323);
+    const rx90_real_t t476 = RX90_C(-2.0) * t475 + (t443 * t439 - t450 * t441); /* link j4: derivatives */
+    const rx90_real_t t477 = RX90_C(2.0) * t461 + t445 * t441;
+    const rx90_real_t t478 = RX90_C(-2.0) * t462 - t445 * t439;
+    const rx90_real_t t479 = t11 * t477 - t17 * t478;
+    const rx90_real_t t480 = t17 * t474 + t11 * t476 + RX90_C(0.45) * t479;
+    input_by_dq[15] = RX90_C(0.03333333333333333) * t480;
+    const rx90_real_t t481 = t1 * (t432 * t439 - t431 * t441) - t3 * t479;
+    input_by_dq[9] = RX90_C(0.03333333333333333) * (t480 + RX90_C(0.45) * t481);
+    const rx90_real_t t482 = RX90_C(0.45) * (t17 * t477 + t11 * t478);
+    const rx90_real_t t483 = t17 * t476 - t11 * t474 + t482;
+    const rx90_real_t t484 = t470 - (t427 * t441 - t426 * t439);
+    const rx90_real_t t485 = t0 * (t1 * t483 - t3 * t484) + t2 * (t3 * t483 + t1 * t484 - t482);
+    input_by_dq[3] = RX90_C(0.03333333333333333) * t485;
+    input_by_ddq[21] = RX90_C(250.0) * parameters[IA4] + RX90_C(-0.1) * t429;
+    const rx90_real_t t486 = t11 * t432 + t17 * t431; /* link j4: column of the mass matrix */
+    const rx90_real_t t487 = t17 * t426 - t11 * t427 + RX90_C(-0.45) * t486;
+    input_by_ddq[15] = RX90_C(0.03333333333333333) * t487;
+    const rx90_real_t t488 = t3 * t486;
+    const rx90_real_t t489 = t487 + RX90_C(0.45) * t488;
+    input_by_ddq[9] = RX90_C(0.03333333333333333) * t489;
+    const rx90_real_t t490 = t11 * t431 - t17 * t432;
+    const rx90_real_t t491 = RX90_C(0.45) * t490;
+    const rx90_real_t t492 = t11 * t426 + t17 * t427 - t491;
+    const rx90_real_t t493 = t3 * t429 - t1 * t492;
+    const rx90_real_t t494 = t491 + (t3 * t492 + t1 * t429);
+    const rx90_real_t t495 = t0 * t493 - t2 * t494;
+    input_by_ddq[3] = RX90_C(0.03333333333333333) * t495;
+    const rx90_real_t t496 = t17 * t424 - t11 * t421; /* link j4: derivatives */
+    const rx90_real_t t497 = t490 * t295 - t486 * t292 - t470;
+    const rx90_real_t t498 = t7 * t496 + t5 * t497 + (t12 * t429 - t31 * t492 - t169 * t487);
+    input_by_q[20] = RX90_C(0.1) * (t498 - t86 * t486);
+    const rx90_real_t t499 = t1 * t496 + t3 * t497 + (t490 * t298 - t488 * t299);
+    const rx90_real_t t500 = t1 * t486; /* link j4: column of the mass matrix */
+    const rx90_real_t t501 = t3 * t496 - t1 * t497 + t500 * t299; /* link j4: derivatives */
+    const rx90_real_t t502 = t67 * t499 - t72 * t501 + (t79 * t493 + t164 * t494 - t303 * t489);
+    input_by_q[19] = RX90_C(0.1) * (t502 - (t75 * t500 + t70 * t488));
+    const rx90_real_t t503 = t17 * t421 + t11 * t424;
+    const rx90_real_t t504 = RX90_C(0.1) * (t503 + RX90_C(2.0) * (t5 * t429 - t7 * t492));
+    input_by_dq[20] = t504;
+    const rx90_real_t t505 = t503 - t500 * t298 + RX90_C(2.0) * (t67 * t493 + t72 * t494);
+    input_by_dq[19] = RX90_C(0.1) * t505;
+    input_by_dq[18] = RX90_C(0.1) * (t0 * t499 + t2 * t501);
+    input_by_ddq[20] = RX90_C(0.1) * t487;
+    input_by_ddq[19] = RX90_C(0.1) * t489;
+    input_by_ddq[18] = RX90_C(0.1) * t495;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t506 = t11 * (t438 + t449) + t17 * (t447 - t440);
+    const rx90_real_t t507 = t17 * t506;
+    const rx90_real_t t508 = RX90_C(0.45) * t5;
+    const rx90_real_t t509 = RX90_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const rx90_real_t t510 = parameters[XX3] - t509;
+    const rx90_real_t t511 = t5 * parameters[XY3] - t7 * t510 - (t447 - t507 - t490 * t508);
+    const rx90_real_t t512 = RX90_C(2.0) * t511; /* link j3: derivatives */
+    const rx90_real_t t513 = t17 * t462 + t11 * t461; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t514 = RX90_C(0.45) * t454; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t515 = t445 + t514;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t516 = t11 * t475 - t17 * t473 + (RX90_C(-0.45) * t513 + t515 * t508);
+    const rx90_real_t t517 = parameters[YY3] - t509;
+    const rx90_real_t t518 = t7 * parameters[XY3] - t5 * t517 + t516;
+    const rx90_real_t t519 = RX90_C(2.0) * t518; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const rx90_real_t t520 = t11 * (t442 + t450) + t443 * (RX90_C(-2.0) * t17);
+    const rx90_real_t t521 = t443 + t17 * t520 - parameters[XZ3];
+    const rx90_real_t t522 = parameters[YZ3] + t487;
+    const rx90_real_t t523 = t11 * t520;
+    const rx90_real_t t524 = RX90_C(0.45) * (t514 + RX90_C(2.0) * t445);
+    const rx90_real_t t525 = parameters[ZZ3] + (t442 - t523 + t524);
+    const rx90_real_t t526 = t31 * t521 + t12 * t522 + t169 * t525; /* link j3: derivatives */
+    const rx90_real_t t527 = t490 - parameters[MX3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t528 = parameters[MY3] + t515;
+    const rx90_real_t t529 = t77 * t527 + t86 * t528; /* link j3: derivatives */
+    const rx90_real_t t530 = RX90_C(0.03333333333333333) * (t529 + (t7 * t512 + t5 * t519 - t526));
+    input_by_q[14] = t530;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t531 = t7 * parameters[MX3] - t5 * parameters[MY3] + (t513 - t454 * t508);
+    const rx90_real_t t532 = RX90_C(-2.0) * t7; /* link j3: derivatives */
+    const rx90_real_t t533 = parameters[M3] + t454; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t534 = parameters[MZ3] + t486;
+    const rx90_real_t t535 = t169 * t527 - t31 * t534 - (t531 * t532 + t77 * t533); /* link j3: derivatives */
+    const rx90_real_t t536 = RX90_C(-2.0) * t5;
+    const rx90_real_t t537 = t169 * t528 - t12 * t534 - (t531 * t536 + t86 * t533);
+    const rx90_real_t t538 = RX90_C(0.45) * (t3 * (t188 + t537) + t1 * (t184 + t535));
+    const rx90_real_t t539 = t529 - (t511 * t532 + t518 * t536 + t526) + t538;
+    input_by_q[8] = RX90_C(0.03333333333333333) * t539;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t540 = t13 * t510 - t5 * parameters[XZ3] + (t17 * t423 - t11 * t420);
+    const rx90_real_t t541 = RX90_C(-0.45) * t453;
+    const rx90_real_t t542 = RX90_C(-0.45) * t13; /* link j4: velocity of its origin */
+    const rx90_real_t t543 = t490 * t542; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t544 = t486 * t508;
+    const rx90_real_t t545 = t541 + (t544 - t543);
+    const rx90_real_t t546 = t5 * parameters[YZ3];
+    const rx90_real_t t547 = t13 * parameters[XY3];
+    const rx90_real_t t548 = t547 - t546 + (t545 + (t469 - t541));
+    const rx90_real_t t549 = t492 - parameters[XY3]; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t550 = parameters[YY3] - t429;
+    /* link j3: derivatives */
+    const rx90_real_t t551 = t540 * t532 - t548 * t536 + (t31 * t549 + t12 * t550 + t169 * t522);
+    const rx90_real_t t552 = t156 - (t551 + t86 * t534);
+    const rx90_real_t t553 = t11 * t506; /* link j4: inertia, momentum beyond */
+    const rx90_real_t t554 = t7 * parameters[XZ3];
+    const rx90_real_t t555 = t554 - t547 + (t545 + (t449 - t553 + t543));
+    const rx90_real_t t556 = t17 * t461 - t11 * t462;
+    const rx90_real_t t557 = t11 * t473 + t17 * t475 + (RX90_C(-0.45) * t556 + t515 * t542);
+    const rx90_real_t t558 = t13 * t517 - t7 * parameters[YZ3] + t557;
+    /* link j4: inertia of it and all beyond */
+    const rx90_real_t t559 = parameters[XX3] + (t523 - t450 + t524);
+    /* link j3: derivatives */
+    const rx90_real_t t560 = t31 * t559 + t12 * t549 + t169 * t521 - (t555 * t532 + t558 * t536);
+    const rx90_real_t t561 = t162 + (t560 + t77 * t534);
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t562 = t13 * parameters[MY3] - t7 * parameters[MZ3] + (t556 - t454 * t542);
+    const rx90_real_t t563 = t5 * parameters[MZ3] - t13 * parameters[MX3] + t453;
+    const rx90_real_t t564 = t12 * t527 - t31 * t528 - (t563 * t532 + t562 * t536); /* link j3: derivatives */
+    const rx90_real_t t565 = t2 * (t3 * t561 + t1 * t552 + RX90_C(0.45) * t564);
+    const rx90_real_t t566 = RX90_C(0.03333333333333333) * (t0 * (t1 * t561 - t3 * t552) + t565);
+    input_by_q[2] = t566;
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t567 = t546 - t554 + (t545 + (t553 - t438 - t544));
+    const rx90_real_t t568 = RX90_C(2.0) * t567; /* link j3: derivatives */
+    const rx90_real_t t569 = RX90_C(0.03333333333333333) * (t568 + RX90_C(-2.0) * (t7 * t521 + t5 * t522));
+    input_by_dq[14] = RX90_C(333.33333333333337) * parameters[FV3] + t569;
+    const rx90_real_t t570 = t3 * (RX90_C(2.0) * t563 + t534 * t536) + t1 * (RX90_C(-2.0) * t562
+        + t534 * t532);
+    const rx90_real_t t571 = t568 + (t521 * t532 + t522 * t536) + RX90_C(0.45) * t570;
+    input_by_dq[8] = RX90_C(0.03333333333333333) * t571;
+    const rx90_real_t t572 = t509 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t573 = t440 + t507 - t486 * t542 - (t13 * parameters[YZ3] + t7 * t572);
+    const rx90_real_t t574 = RX90_C(2.0) * t573 - (t559 * t532 + t549 * t536); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const rx90_real_t t575 = t13 * parameters[XZ3] + t5 * t572 + (t17 * t420 + t11 * t423);
+    const rx90_real_t t576 = RX90_C(2.0) * t575 + (t549 * t532 + t550 * t536); /* link j3: derivatives */
+    const rx90_real_t t577 = t3 * t574 + t1 * t576 + RX90_C(0.45) * (t528 * t532 - t527 * t536);
+    const rx90_real_t t578 = t0 * (t1 * t574 - t3 * t576) + t2 * t577;
+    input_by_dq[2] = RX90_C(0.03333333333333333) * t578;
+    input_by_ddq[14] = RX90_C(333.33333333333337) * parameters[IA3] + RX90_C(0.03333333333333333) * t525;
+    const rx90_real_t t579 = t3 * t528 + t1 * t527; /* link j3: column of the mass matrix */
+    const rx90_real_t t580 = t525 - RX90_C(0.45) * t579;
+    const rx90_real_t t581 = RX90_C(0.03333333333333333) * t580;
+    input_by_ddq[8] = t581;
+    const rx90_real_t t582 = t1 * t521 + t3 * t522;
+    const rx90_real_t t583 = t3 * t521 - t1 * t522;
+    const rx90_real_t t584 = RX90_C(-0.03333333333333333) * (t0 * t582 + t2 * t583);
+    input_by_ddq[2] = t584;
+    const rx90_real_t t585 = t1 * t512 + t3 * t519 + t579 * t299; /* link j3: derivatives */
+    const rx90_real_t t586 = t3 * t527 - t1 * t528; /* link j3: column of the mass matrix */
+    const rx90_real_t t587 = t3 * t512 - t1 * t519 + t586 * t299; /* link j3: derivatives */
+    const rx90_real_t t588 = t67 * t585 - t72 * t587 + (t164 * t583 - t79 * t582 - t303 * t580);
+    input_by_q[13] = RX90_C(0.03333333333333333) * (t588 + (t70 * t579 - t75 * t586));
+    const rx90_real_t t589 = t568 - t586 * t298 + RX90_C(2.0) * (t72 * t583 - t67 * t582);
+    input_by_dq[13] = RX90_C(0.03333333333333333) * t589;
+    input_by_dq[12] = RX90_C(0.03333333333333333) * (t0 * t585 + t2 * t587);
+    input_by_ddq[13] = t581;
+    input_by_ddq[12] = t584;
+    const rx90_real_t t590 = RX90_C(-0.45) * t533; /* link j3: inertia of it and all beyond */
+    const rx90_real_t t591 = t579 + t590;
+    const rx90_real_t t592 = RX90_C(-0.45) * t67; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t593 = t1 * t511 + t3 * t518 + (RX90_C(0.45) * t531 + t591 * t592);
+    const rx90_real_t t594 = RX90_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const rx90_real_t t595 = parameters[XX2] - t594;
+    /* link j2: derivatives */
+    const rx90_real_t t596 = RX90_C(2.0) * (t72 * parameters[XY2] - t67 * t595 + t593);
+    const rx90_real_t t597 = t594 - parameters[YY2];
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t598 = t67 * parameters[XY2] + t72 * t597 - (t3 * t511 - t1 * t518 + t586 * t592);
+    const rx90_real_t t599 = RX90_C(2.0) * t598; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const rx90_real_t t600 = parameters[XZ2] + (RX90_C(-0.45) * t534 - t582);
+    const rx90_real_t t601 = t583 - parameters[YZ2];
+    const rx90_real_t t602 = RX90_C(-0.45) * (t590 + RX90_C(2.0) * t579);
+    const rx90_real_t t603 = parameters[ZZ2] + (t525 + t602);
+    /* link j2: derivatives */
+    const rx90_real_t t604 = t79 * t600 + t164 * t601 - t303 * t603 + (t67 * t596 + t72 * t599);
+    const rx90_real_t t605 = t70 * (t591 - parameters[MX2]) - t75 * (t586 - parameters[MY2]) + t604;
+    input_by_q[7] = RX90_C(0.03333333333333333) * t605;
+    const rx90_real_t t606 = t1 * (t555 - t548) + t3 * (t558 - t540); /* link j3: inertia, momentum beyond */
+    const rx90_real_t t607 = t1 * t606;
+    const rx90_real_t t608 = RX90_C(0.45) * (t1 * t562 - t3 * t563);
+    const rx90_real_t t609 = RX90_C(0.45) * dq[1]; /* link j3: velocity of its origin */
+    const rx90_real_t t610 = t586 * t609; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t611 = t534 * t592;
+    const rx90_real_t t612 = t611 - t610 - t608;
+    const rx90_real_t t613 = t67 * parameters[XZ2];
+    const rx90_real_t t614 = dq[1] * parameters[XY2];
+    const rx90_real_t t615 = t613 - t614 + (t612 + (t548 + t607 + t608));
+    const rx90_real_t t616 = RX90_C(2.0) * t67; /* link j2: derivatives */
+    const rx90_real_t t617 = t3 * t606; /* link j3: inertia, momentum beyond */
+    const rx90_real_t t618 = t67 * parameters[YZ2] + dq[1] * t597 + (t617 - t558);
+    const rx90_real_t t619 = RX90_C(-2.0) * t72; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const rx90_real_t t620 = t1 * (t559 - t550) - t549 * (RX90_C(-2.0) * t3);
+    const rx90_real_t t621 = t1 * t620;
+    const rx90_real_t t622 = parameters[XX2] + (t550 + t621);
+    const rx90_real_t t623 = parameters[XY2] + (t3 * t620 - t549 + RX90_C(0.45) * t586);
+    /* link j2: derivatives */
+    const rx90_real_t t624 = t615 * t616 + t618 * t619 + (t79 * t622 - t164 * t623 - t303 * t600);
+    const rx90_real_t t625 = parameters[MZ2] + t534; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t626 = RX90_C(0.45) * (t3 * t562 + t1 * t563) + t591 * t609;
+    const rx90_real_t t627 = dq[1] * t595 - t72 * parameters[XZ2] + (t540 + t617 + t626);
+    const rx90_real_t t628 = t72 * parameters[YZ2];
+    const rx90_real_t t629 = t614 - t628 + (t612 + (t555 - t607 + t610));
+    /* link j3: inertia of it and all beyond */
+    const rx90_real_t t630 = parameters[YY2] + (t559 - t621 + t602);
+    /* link j2: derivatives */
+    const rx90_real_t t631 = t627 * t616 + t629 * t619 + (t79 * t623 - t164 * t630 + t303 * t601);
+    const rx90_real_t t632 = t0 * (t175 + (t624 + t70 * t625)) + t2 * (t168 + (t631 - t75 * t625));
+    input_by_q[1] = RX90_C(0.03333333333333333) * t632;
+    const rx90_real_t t633 = RX90_C(2.0) * (t628 - t613 + (t612 + (t567 - t611))) + RX90_C(2.0) * (t67 * t600
+        + t72 * t601);
+    input_by_dq[7] = RX90_C(333.33333333333337) * parameters[FV2] + RX90_C(0.03333333333333333) * t633;
+    const rx90_real_t t634 = parameters[ZZ2] - t594;
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t635 = t67 * t634 - dq[1] * parameters[YZ2] + (t1 * t573 - t3 * t575);
+    /* link j2: derivatives */
+    const rx90_real_t t636 = t0 * (RX90_C(2.0) * t635 + (t622 * t616 + t623 * t619));
+    /* link j3: inertia, momentum beyond */
+    const rx90_real_t t637 = dq[1] * parameters[XZ2] - t72 * t634 + (t3 * t573 + t1 * t575 - t534 * t609);
+    /* link j2: derivatives */
+    const rx90_real_t t638 = t2 * (RX90_C(2.0) * t637 + (t623 * t616 + t630 * t619));
+    input_by_dq[1] = RX90_C(0.03333333333333333) * (t636 + t638);
+    input_by_ddq[7] = RX90_C(333.33333333333337) * parameters[IA2] + RX90_C(0.03333333333333333) * t603;
+    const rx90_real_t t639 = RX90_C(0.03333333333333333) * (t0 * t600 - t2 * t601);
+    input_by_ddq[1] = t639;
+    input_by_dq[6] = RX90_C(0.03333333333333333) * (t0 * t596 - t2 * t599);
+    input_by_ddq[6] = t639;
+    /* link j2: inertia, momentum beyond */
+    const rx90_real_t t640 = t2 * (t2 * (t629 - t615) + t0 * (t618 + t627));
+    input_by_dq[0] = RX90_C(333.33333333333337) * parameters[FV1] + RX90_C(0.06666666666666667) * (t615
+        + t640);
+    /* link j2: inertia of it and all beyond */
+    const rx90_real_t t641 = t2 * (t2 * (t630 - t622) + t623 * (RX90_C(2.0) * t0));
+    input_by_ddq[0] = RX90_C(333.33333333333337) * parameters[IA1]
+        + RX90_C(0.03333333333333333) * (parameters[ZZ1] + (t622 + t641));
     /* always zero */
     input_by_q[0] = RX90_C(0.0);
     input_by_q[6] = RX90_C(0.0);

@@ -78,7 +78,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x88006983UL
+#if RX90_GENERATION != 0x1B6CDAA1UL
 #error "rx90.h and rx90_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -101,133 +101,129 @@ rx90_status_t rx90_mass_matrix(
         return status;
     }
 
-    rx90_real_t t50, t48;
-    RX90_SINCOS(q[1], &t50, &t48);
-    rx90_real_t t40, t28;
-    RX90_SINCOS(q[2], &t40, &t28);
-    rx90_real_t t19, t13;
-    RX90_SINCOS(q[3], &t19, &t13);
-    rx90_real_t t8, t5;
-    RX90_SINCOS(q[4], &t8, &t5);
-    rx90_real_t t1, t0;
-    RX90_SINCOS(q[5], &t1, &t0);
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t2 = parameters[XY6] * (RX90_C(2.0) * t1) - t0 * parameters[XX6R];
-    const rx90_real_t t3 = t0 * t2;
-    const rx90_real_t t4 = parameters[XX5R] - t3;
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t6 = t0 * parameters[XZ6] - t1 * parameters[YZ6];
-    const rx90_real_t t7 = parameters[XY5] + t6; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const rx90_real_t t9 = t5 * (parameters[ZZ6] - t4) + t7 * (RX90_C(2.0) * t8);
-    const rx90_real_t t10 = t5 * t9;
-    const rx90_real_t t11 = parameters[XX4R] + (parameters[ZZ6] - t10);
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t12 = parameters[ZZ5R] + (parameters[XX6R] + t3);
-    const rx90_real_t t14 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t15 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
-    const rx90_real_t t16 = parameters[YZ5] - t15; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t17 = t5 * t14 - t8 * t16; /* link j5: column of the mass matrix */
-    const rx90_real_t t18 = t17 - parameters[XY4]; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const rx90_real_t t20 = t13 * (t12 - t11) - t18 * (RX90_C(2.0) * t19);
-    const rx90_real_t t21 = t13 * t20;
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t22 = t1 * parameters[MY6] - t0 * parameters[MX6];
-    const rx90_real_t t23 = parameters[MX5] - t22; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t24 = t5 * parameters[MY5R] + t8 * t23; /* link j5: column of the mass matrix */
-    const rx90_real_t t25 = RX90_C(0.9) * t24; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t26 = parameters[XX3R] + (t12 - t21 + t25);
-    const rx90_real_t t27 = parameters[ZZ4R] + (t4 + t10); /* link j5: inertia of it and all beyond */
-    const rx90_real_t t29 = parameters[XZ4] + (t7 - t8 * t9);
-    const rx90_real_t t30 = t8 * t14 + t5 * t16; /* link j5: column of the mass matrix */
-    const rx90_real_t t31 = t30 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t32 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const rx90_real_t t33 = parameters[MY4R] + t32; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t34 = t5 * t23 - t8 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const rx90_real_t t35 = parameters[MX4] + t34; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t36 = t19 * t33 - t13 * t35; /* link j4: column of the mass matrix */
-    const rx90_real_t t37 = RX90_C(0.45) * t36;
-    const rx90_real_t t38 = t13 * t29 + t19 * t31 + t37;
-    const rx90_real_t t39 = parameters[XY3] + t38; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const rx90_real_t t41 = t28 * (t27 - t26) + t39 * (RX90_C(2.0) * t40);
-    const rx90_real_t t42 = t28 * t41;
-    const rx90_real_t t43 = parameters[MX3] - t36; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t44 = parameters[MY3R] + t24;
-    const rx90_real_t t45 = t28 * t43 - t40 * t44; /* link j3: column of the mass matrix */
-    const rx90_real_t t46 = RX90_C(0.9) * t45; /* link j3: inertia of it and all beyond */
-    const rx90_real_t t47 = parameters[XX2R] + (t27 - t42);
-    const rx90_real_t t49 = t39 - t40 * t41 + RX90_C(-0.45) * (t28 * t44 + t40 * t43);
-    /* link j2: inertia of it and all beyond */
-    const rx90_real_t t51 = t48 * (t26 + t42 + t46 - t47) + (parameters[XY2] + t49) * (RX90_C(2.0) * t50);
-    out[0] = parameters[ZZ1R] + (t47 + t48 * t51);
-    const rx90_real_t t52 = parameters[XZ3] + (t18 + t19 * t20); /* link j4: inertia of it and all beyond */
-    const rx90_real_t t53 = t13 * t33 + t19 * t35; /* link j4: column of the mass matrix */
-    const rx90_real_t t54 = RX90_C(0.45) * t53;
-    const rx90_real_t t55 = t13 * t31 - t19 * t29 + t54;
-    const rx90_real_t t56 = parameters[YZ3] + t55; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t57 = t28 * t52 - t40 * t56; /* link j3: column of the mass matrix */
-    const rx90_real_t t58 = t40 * t52 + t28 * t56;
-    /* link j2: column of the mass matrix */
-    const rx90_real_t t59 = t50 * (parameters[XZ2R] + (t54 + t57)) + t48 * (parameters[YZ2] + t58);
-    out[1] = t59;
-    const rx90_real_t t60 = t50 * t57 + t48 * t58; /* link j3: column of the mass matrix */
-    out[2] = t60;
-    /* link j4: column of the mass matrix */
-    const rx90_real_t t61 = t50 * (t28 * t38 - t40 * t27) + t48 * (t40 * t38 + t28 * t27 - t37);
-    out[3] = t61;
-    const rx90_real_t t62 = RX90_C(0.45) * (t19 * t24); /* link j5: column of the mass matrix */
-    const rx90_real_t t63 = t13 * t17 + t19 * t12 + t62;
-    const rx90_real_t t64 = t50 * (t28 * t63 - t40 * t30) + t48 * (t40 * t63 + t28 * t30 - t62);
-    out[4] = t64;
-    const rx90_real_t t65 = t5 * t6 - t8 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const rx90_real_t t66 = t5 * t32;
-    const rx90_real_t t67 = RX90_C(0.45) * (t19 * t66 + t13 * t22);
-    const rx90_real_t t68 = t13 * t65 - t19 * t15 + t67;
-    const rx90_real_t t69 = t8 * t6 + t5 * parameters[ZZ6];
-    const rx90_real_t t70 = t50 * (t28 * t68 - t40 * t69) + t48 * (t40 * t68 + t28 * t69 - t67);
-    out[5] = t70;
-    out[6] = t59;
-    const rx90_real_t t71 = parameters[ZZ3R] + (t11 + t21 + t25); /* link j4: inertia of it and all beyond */
-    out[7] = parameters[ZZ2R] + (t71 + t46);
-    const rx90_real_t t72 = t71 + RX90_C(0.45) * t45; /* link j3: column of the mass matrix */
-    out[8] = t72;
-    const rx90_real_t t73 = t55 + RX90_C(-0.45) * (t40 * t53); /* link j4: column of the mass matrix */
-    out[9] = t73;
-    const rx90_real_t t74 = t13 * t24; /* link j5: column of the mass matrix */
-    const rx90_real_t t75 = t13 * t12 - t19 * t17 + RX90_C(0.45) * t74;
-    const rx90_real_t t76 = t75 + RX90_C(0.45) * (t28 * t34 - t40 * t74);
-    out[10] = t76;
-    const rx90_real_t t77 = t13 * t66 - t19 * t22; /* link j6: column of the mass matrix */
-    const rx90_real_t t78 = RX90_C(0.45) * t77 - (t19 * t65 + t13 * t15);
-    const rx90_real_t t79 = t78 + RX90_C(-0.45) * (t40 * t77 + t28 * (t8 * t32));
-    out[11] = t79;
-    out[12] = t60;
-    out[13] = t72;
-    out[14] = t71 + RX90_C(1.0e4) * parameters[IA3];
-    out[15] = t55;
-    out[16] = t75;
-    out[17] = t78;
-    out[18] = t61;
-    out[19] = t73;
-    out[20] = t55;
-    out[21] = t27 + RX90_C(2.5e3) * parameters[IA4];
-    out[22] = t30;
-    out[23] = t69;
-    out[24] = t64;
-    out[25] = t76;
-    out[26] = t75;
-    out[27] = t30;
-    out[28] = t12 + RX90_C(2.5e3) * parameters[IA5];
-    out[29] = -t15;
-    out[30] = t70;
-    out[31] = t79;
-    out[32] = t78;
-    out[33] = t69;
-    out[34] = -t15;
+    rx90_real_t t20, t21;
+    RX90_SINCOS(q[1], &t20, &t21);
+    rx90_real_t t15, t16;
+    RX90_SINCOS(q[2], &t15, &t16);
+    rx90_real_t t8, t9;
+    RX90_SINCOS(q[3], &t8, &t9);
+    rx90_real_t t4, t5;
+    RX90_SINCOS(q[4], &t4, &t5);
+    rx90_real_t t0, t1;
+    RX90_SINCOS(q[5], &t0, &t1);
     out[35] = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
+    /* link j6: column of the mass matrix */
+    const rx90_real_t t2 = t0 * parameters[XZ6] + t1 * parameters[YZ6];
+    out[29] = -t2;
+    const rx90_real_t t3 = t1 * parameters[XZ6] - t0 * parameters[YZ6];
+    const rx90_real_t t6 = t4 * t3 + t5 * parameters[ZZ6];
+    out[23] = t6;
+    const rx90_real_t t7 = t5 * t3 - t4 * parameters[ZZ6];
+    const rx90_real_t t10 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const rx90_real_t t11 = t5 * t10;
+    const rx90_real_t t12 = t0 * parameters[MY6] - t1 * parameters[MX6];
+    const rx90_real_t t13 = t9 * t11 - t8 * t12;
+    const rx90_real_t t14 = RX90_C(0.45) * t13 - (t8 * t7 + t9 * t2);
+    out[17] = t14;
+    const rx90_real_t t17 = t14 + RX90_C(-0.45) * (t15 * t13 + t16 * (t4 * t10));
+    out[11] = t17;
+    const rx90_real_t t18 = RX90_C(0.45) * (t8 * t11 + t9 * t12);
+    const rx90_real_t t19 = t9 * t7 - t8 * t2 + t18;
+    const rx90_real_t t22 = t20 * (t16 * t19 - t15 * t6) + t21 * (t15 * t19 + t16 * t6 - t18);
+    out[5] = t22;
+    out[34] = -t2;
+    out[33] = t6;
+    out[32] = t14;
+    out[31] = t17;
+    out[30] = t22;
+    /* link j6: inertia of it and all beyond */
+    const rx90_real_t t23 = parameters[XY6] * (RX90_C(2.0) * t0) - t1 * parameters[XX6R];
+    const rx90_real_t t24 = t1 * t23;
+    const rx90_real_t t25 = parameters[ZZ5R] + (parameters[XX6R] + t24);
+    out[28] = t25 + RX90_C(2.5e3) * parameters[IA5];
+    const rx90_real_t t26 = parameters[XZ5] + (t0 * t23 - parameters[XY6]);
+    const rx90_real_t t27 = parameters[YZ5] - t2;
+    const rx90_real_t t28 = t4 * t26 + t5 * t27; /* link j5: column of the mass matrix */
+    out[22] = t28;
+    const rx90_real_t t29 = t5 * t26 - t4 * t27;
+    const rx90_real_t t30 = parameters[MX5] - t12; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t31 = t5 * parameters[MY5R] + t4 * t30; /* link j5: column of the mass matrix */
+    const rx90_real_t t32 = t9 * t31;
+    const rx90_real_t t33 = t9 * t25 - t8 * t29 + RX90_C(0.45) * t32;
+    out[16] = t33;
+    const rx90_real_t t34 = t5 * t30 - t4 * parameters[MY5R];
+    const rx90_real_t t35 = t33 + RX90_C(0.45) * (t16 * t34 - t15 * t32);
+    out[10] = t35;
+    const rx90_real_t t36 = RX90_C(0.45) * (t8 * t31);
+    const rx90_real_t t37 = t9 * t29 + t8 * t25 + t36;
+    const rx90_real_t t38 = t20 * (t16 * t37 - t15 * t28) + t21 * (t15 * t37 + t16 * t28 - t36);
+    out[4] = t38;
+    out[27] = t28;
+    out[26] = t33;
+    out[25] = t35;
+    out[24] = t38;
+    const rx90_real_t t39 = parameters[XX5R] - t24; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t40 = parameters[XY5] + t3;
+    /* link j5: inertia of it and all beyond */
+    const rx90_real_t t41 = t5 * (parameters[ZZ6] - t39) + t40 * (RX90_C(2.0) * t4);
+    const rx90_real_t t42 = t5 * t41;
+    const rx90_real_t t43 = parameters[ZZ4R] + (t39 + t42);
+    out[21] = t43 + RX90_C(2.5e3) * parameters[IA4];
+    const rx90_real_t t44 = parameters[XZ4] + (t40 - t4 * t41);
+    const rx90_real_t t45 = t28 - parameters[YZ4];
+    const rx90_real_t t46 = parameters[MY4R] + t10;
+    const rx90_real_t t47 = parameters[MX4] + t34;
+    const rx90_real_t t48 = t9 * t46 + t8 * t47; /* link j4: column of the mass matrix */
+    const rx90_real_t t49 = RX90_C(0.45) * t48;
+    const rx90_real_t t50 = t9 * t45 - t8 * t44 + t49;
+    out[15] = t50;
+    const rx90_real_t t51 = t50 + RX90_C(-0.45) * (t15 * t48);
+    out[9] = t51;
+    const rx90_real_t t52 = t8 * t46 - t9 * t47;
+    const rx90_real_t t53 = RX90_C(0.45) * t52;
+    const rx90_real_t t54 = t9 * t44 + t8 * t45 + t53;
+    const rx90_real_t t55 = t20 * (t16 * t54 - t15 * t43) + t21 * (t15 * t54 + t16 * t43 - t53);
+    out[3] = t55;
+    out[20] = t50;
+    out[19] = t51;
+    out[18] = t55;
+    /* link j5: inertia of it and all beyond */
+    const rx90_real_t t56 = parameters[XX4R] + (parameters[ZZ6] - t42);
+    const rx90_real_t t57 = t29 - parameters[XY4];
+    /* link j4: inertia of it and all beyond */
+    const rx90_real_t t58 = t9 * (t25 - t56) - t57 * (RX90_C(2.0) * t8);
+    const rx90_real_t t59 = t9 * t58;
+    const rx90_real_t t60 = RX90_C(0.9) * t31;
+    const rx90_real_t t61 = parameters[ZZ3R] + (t56 + t59 + t60);
+    out[14] = t61 + RX90_C(1.0e4) * parameters[IA3];
+    const rx90_real_t t62 = parameters[MX3] - t52;
+    const rx90_real_t t63 = parameters[MY3R] + t31;
+    const rx90_real_t t64 = t16 * t62 - t15 * t63; /* link j3: column of the mass matrix */
+    const rx90_real_t t65 = t61 + RX90_C(0.45) * t64;
+    out[8] = t65;
+    const rx90_real_t t66 = parameters[XZ3] + (t57 + t8 * t58); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t67 = parameters[YZ3] + t50;
+    const rx90_real_t t68 = t16 * t66 - t15 * t67; /* link j3: column of the mass matrix */
+    const rx90_real_t t69 = t15 * t66 + t16 * t67;
+    const rx90_real_t t70 = t20 * t68 + t21 * t69;
+    out[2] = t70;
+    out[13] = t65;
+    out[12] = t70;
+    const rx90_real_t t71 = RX90_C(0.9) * t64; /* link j3: inertia of it and all beyond */
+    out[7] = parameters[ZZ2R] + (t61 + t71);
+    /* link j2: column of the mass matrix */
+    const rx90_real_t t72 = t20 * (parameters[XZ2R] + (t49 + t68)) + t21 * (parameters[YZ2] + t69);
+    out[1] = t72;
+    out[6] = t72;
+    const rx90_real_t t73 = parameters[XX3R] + (t25 - t59 + t60); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t74 = parameters[XY3] + t54;
+    /* link j3: inertia of it and all beyond */
+    const rx90_real_t t75 = t16 * (t43 - t73) + t74 * (RX90_C(2.0) * t15);
+    const rx90_real_t t76 = t16 * t75;
+    const rx90_real_t t77 = parameters[XX2R] + (t43 - t76);
+    const rx90_real_t t78 = t74 - t15 * t75 + RX90_C(-0.45) * (t16 * t63 + t15 * t62);
+    /* link j2: inertia of it and all beyond */
+    const rx90_real_t t79 = t21 * (t73 + t76 + t71 - t77) + (parameters[XY2] + t78) * (RX90_C(2.0) * t20);
+    out[0] = parameters[ZZ1R] + (t77 + t21 * t79);
     return RX90_STATUS_OK;
 }

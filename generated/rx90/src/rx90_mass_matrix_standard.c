@@ -104,7 +104,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x88006983UL
+#if RX90_GENERATION != 0x1B6CDAA1UL
 #error "rx90.h and rx90_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -128,144 +128,138 @@ rx90_status_t rx90_mass_matrix_standard(
         return status;
     }
 
-    rx90_real_t t57, t55;
-    RX90_SINCOS(q[1], &t57, &t55);
-    rx90_real_t t47, t35;
-    RX90_SINCOS(q[2], &t47, &t35);
-    rx90_real_t t21, t15;
-    RX90_SINCOS(q[3], &t21, &t15);
-    rx90_real_t t9, t6;
-    RX90_SINCOS(q[4], &t9, &t6);
-    rx90_real_t t1, t0;
-    RX90_SINCOS(q[5], &t1, &t0);
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t2 = t0 * (parameters[YY6] - parameters[XX6]) + parameters[XY6] * (RX90_C(2.0) * t1);
-    const rx90_real_t t3 = t0 * t2;
-    const rx90_real_t t4 = parameters[XX5] + (parameters[YY6] - t3);
-    const rx90_real_t t5 = parameters[YY5] + parameters[ZZ6];
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t7 = t0 * parameters[XZ6] - t1 * parameters[YZ6];
-    const rx90_real_t t8 = parameters[XY5] + t7; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const rx90_real_t t10 = t6 * (t5 - t4) + t8 * (RX90_C(2.0) * t9);
-    const rx90_real_t t11 = t6 * t10;
-    const rx90_real_t t12 = parameters[XX4] + (t5 - t11);
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t13 = parameters[ZZ5] + (parameters[XX6] + t3);
-    const rx90_real_t t14 = parameters[YY4] + t13; /* link j5: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const rx90_real_t t16 = parameters[XZ5] + (t1 * t2 - parameters[XY6]);
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t17 = t1 * parameters[XZ6] + t0 * parameters[YZ6];
-    const rx90_real_t t18 = parameters[YZ5] - t17; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t19 = t6 * t16 - t9 * t18; /* link j5: column of the mass matrix */
-    const rx90_real_t t20 = t19 - parameters[XY4]; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const rx90_real_t t22 = t15 * (t14 - t12) - t20 * (RX90_C(2.0) * t21);
-    const rx90_real_t t23 = t15 * t22;
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t24 = t1 * parameters[MY6] - t0 * parameters[MX6];
-    const rx90_real_t t25 = parameters[MX5] - t24; /* link j6: inertia of it and all beyond */
-    const rx90_real_t t26 = parameters[MY5] + parameters[MZ6];
-    const rx90_real_t t27 = t6 * t26 + t9 * t25; /* link j5: column of the mass matrix */
-    const rx90_real_t t28 = parameters[MZ4] + t27; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t29 = parameters[M4] + (parameters[M5] + parameters[M6]);
-    const rx90_real_t t30 = RX90_C(0.45) * t29; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t31 = RX90_C(0.45) * (t30 + RX90_C(2.0) * t28);
-    const rx90_real_t t32 = parameters[XX3] + (t14 - t23 + t31);
-    const rx90_real_t t33 = parameters[ZZ4] + (t4 + t11); /* link j5: inertia of it and all beyond */
-    const rx90_real_t t34 = parameters[YY3] + t33; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t36 = parameters[XZ4] + (t8 - t9 * t10); /* link j5: inertia of it and all beyond */
-    const rx90_real_t t37 = t9 * t16 + t6 * t18; /* link j5: column of the mass matrix */
-    const rx90_real_t t38 = t37 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const rx90_real_t t39 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    /* link j5: inertia of it and all beyond */
-    const rx90_real_t t40 = parameters[MY4] + (t39 - parameters[MZ5]);
-    const rx90_real_t t41 = t6 * t25 - t9 * t26; /* link j5: column of the mass matrix */
-    const rx90_real_t t42 = parameters[MX4] + t41; /* link j5: inertia of it and all beyond */
-    const rx90_real_t t43 = t21 * t40 - t15 * t42; /* link j4: column of the mass matrix */
-    const rx90_real_t t44 = RX90_C(0.45) * t43;
-    const rx90_real_t t45 = t15 * t36 + t21 * t38 + t44;
-    const rx90_real_t t46 = parameters[XY3] + t45; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const rx90_real_t t48 = t35 * (t32 - t34) - t46 * (RX90_C(2.0) * t47);
-    const rx90_real_t t49 = t35 * t48;
-    const rx90_real_t t50 = parameters[XX2] + (t34 + t49);
-    const rx90_real_t t51 = parameters[MX3] - t43; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t52 = parameters[MY3] + (t28 + t30);
-    const rx90_real_t t53 = t35 * t51 - t47 * t52; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const rx90_real_t t54 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t29) + RX90_C(2.0) * t53);
-    const rx90_real_t t56 = t46 + t47 * t48 + RX90_C(-0.45) * (t35 * t52 + t47 * t51);
-    /* link j2: inertia of it and all beyond */
-    const rx90_real_t t58 = t55 * (parameters[YY2] + (t32 - t49 + t54) - t50) + (parameters[XY2]
-        + t56) * (RX90_C(2.0) * t57);
-    out[0] = parameters[ZZ1] + (t50 + t55 * t58) + RX90_C(1.0e4) * parameters[IA1];
-    const rx90_real_t t59 = parameters[XZ3] + (t20 + t21 * t22); /* link j4: inertia of it and all beyond */
-    const rx90_real_t t60 = t15 * t40 + t21 * t42; /* link j4: column of the mass matrix */
-    const rx90_real_t t61 = t15 * t38 - t21 * t36 + RX90_C(0.45) * t60;
-    const rx90_real_t t62 = parameters[YZ3] + t61; /* link j4: inertia of it and all beyond */
-    const rx90_real_t t63 = t35 * t59 - t47 * t62; /* link j3: column of the mass matrix */
-    const rx90_real_t t64 = t47 * t59 + t35 * t62;
-    /* link j2: column of the mass matrix */
-    const rx90_real_t t65 = t57 * (parameters[XZ2] + (t63 + RX90_C(0.45) * (t60 - parameters[MZ3])))
-        + t55 * (parameters[YZ2] + t64);
-    out[1] = t65;
-    const rx90_real_t t66 = t57 * t63 + t55 * t64; /* link j3: column of the mass matrix */
-    out[2] = t66;
-    /* link j4: column of the mass matrix */
-    const rx90_real_t t67 = t57 * (t35 * t45 - t47 * t33) + t55 * (t47 * t45 + t35 * t33 - t44);
-    out[3] = t67;
-    const rx90_real_t t68 = RX90_C(0.45) * (t21 * t27); /* link j5: column of the mass matrix */
-    const rx90_real_t t69 = t15 * t19 + t21 * t13 + t68;
-    const rx90_real_t t70 = t57 * (t35 * t69 - t47 * t37) + t55 * (t47 * t69 + t35 * t37 - t68);
-    out[4] = t70;
-    const rx90_real_t t71 = t6 * t7 - t9 * parameters[ZZ6]; /* link j6: column of the mass matrix */
-    const rx90_real_t t72 = t6 * t39;
-    const rx90_real_t t73 = RX90_C(0.45) * (t21 * t72 + t15 * t24);
-    const rx90_real_t t74 = t15 * t71 - t21 * t17 + t73;
-    const rx90_real_t t75 = t9 * t7 + t6 * parameters[ZZ6];
-    const rx90_real_t t76 = t57 * (t35 * t74 - t47 * t75) + t55 * (t47 * t74 + t35 * t75 - t73);
-    out[5] = t76;
-    out[6] = t65;
-    const rx90_real_t t77 = parameters[ZZ3] + (t12 + t23 + t31); /* link j4: inertia of it and all beyond */
-    out[7] = parameters[ZZ2] + (t77 + t54) + RX90_C(1.0e4) * parameters[IA2];
-    const rx90_real_t t78 = t77 + RX90_C(0.45) * t53; /* link j3: column of the mass matrix */
-    out[8] = t78;
-    const rx90_real_t t79 = t61 + RX90_C(-0.45) * (t47 * t60); /* link j4: column of the mass matrix */
-    out[9] = t79;
-    const rx90_real_t t80 = t15 * t27; /* link j5: column of the mass matrix */
-    const rx90_real_t t81 = t15 * t13 - t21 * t19 + RX90_C(0.45) * t80;
-    const rx90_real_t t82 = t81 + RX90_C(0.45) * (t35 * t41 - t47 * t80);
-    out[10] = t82;
-    const rx90_real_t t83 = t15 * t72 - t21 * t24; /* link j6: column of the mass matrix */
-    const rx90_real_t t84 = RX90_C(0.45) * t83 - (t21 * t71 + t15 * t17);
-    const rx90_real_t t85 = t84 + RX90_C(-0.45) * (t47 * t83 + t35 * (t9 * t39));
-    out[11] = t85;
-    out[12] = t66;
-    out[13] = t78;
-    out[14] = t77 + RX90_C(1.0e4) * parameters[IA3];
-    out[15] = t61;
-    out[16] = t81;
-    out[17] = t84;
-    out[18] = t67;
-    out[19] = t79;
-    out[20] = t61;
-    out[21] = t33 + RX90_C(2.5e3) * parameters[IA4];
-    out[22] = t37;
-    out[23] = t75;
-    out[24] = t70;
-    out[25] = t82;
-    out[26] = t81;
-    out[27] = t37;
-    out[28] = t13 + RX90_C(2.5e3) * parameters[IA5];
-    out[29] = -t17;
-    out[30] = t76;
-    out[31] = t85;
-    out[32] = t84;
-    out[33] = t75;
-    out[34] = -t17;
+    rx90_real_t t20, t21;
+    RX90_SINCOS(q[1], &t20, &t21);
+    rx90_real_t t15, t16;
+    RX90_SINCOS(q[2], &t15, &t16);
+    rx90_real_t t8, t9;
+    RX90_SINCOS(q[3], &t8, &t9);
+    rx90_real_t t4, t5;
+    RX90_SINCOS(q[4], &t4, &t5);
+    rx90_real_t t0, t1;
+    RX90_SINCOS(q[5], &t0, &t1);
     out[35] = parameters[ZZ6] + RX90_C(9.0e2) * parameters[IA6];
+    /* link j6: column of the mass matrix */
+    const rx90_real_t t2 = t0 * parameters[XZ6] + t1 * parameters[YZ6];
+    out[29] = -t2;
+    const rx90_real_t t3 = t1 * parameters[XZ6] - t0 * parameters[YZ6];
+    const rx90_real_t t6 = t4 * t3 + t5 * parameters[ZZ6];
+    out[23] = t6;
+    const rx90_real_t t7 = t5 * t3 - t4 * parameters[ZZ6];
+    const rx90_real_t t10 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const rx90_real_t t11 = t5 * t10;
+    const rx90_real_t t12 = t0 * parameters[MY6] - t1 * parameters[MX6];
+    const rx90_real_t t13 = t9 * t11 - t8 * t12;
+    const rx90_real_t t14 = RX90_C(0.45) * t13 - (t8 * t7 + t9 * t2);
+    out[17] = t14;
+    const rx90_real_t t17 = t14 + RX90_C(-0.45) * (t15 * t13 + t16 * (t4 * t10));
+    out[11] = t17;
+    const rx90_real_t t18 = RX90_C(0.45) * (t8 * t11 + t9 * t12);
+    const rx90_real_t t19 = t9 * t7 - t8 * t2 + t18;
+    const rx90_real_t t22 = t20 * (t16 * t19 - t15 * t6) + t21 * (t15 * t19 + t16 * t6 - t18);
+    out[5] = t22;
+    out[34] = -t2;
+    out[33] = t6;
+    out[32] = t14;
+    out[31] = t17;
+    out[30] = t22;
+    /* link j6: inertia of it and all beyond */
+    const rx90_real_t t23 = t1 * (parameters[YY6] - parameters[XX6]) + parameters[XY6] * (RX90_C(2.0) * t0);
+    const rx90_real_t t24 = t1 * t23;
+    const rx90_real_t t25 = parameters[ZZ5] + (parameters[XX6] + t24);
+    out[28] = t25 + RX90_C(2.5e3) * parameters[IA5];
+    const rx90_real_t t26 = parameters[XZ5] + (t0 * t23 - parameters[XY6]);
+    const rx90_real_t t27 = parameters[YZ5] - t2;
+    const rx90_real_t t28 = t4 * t26 + t5 * t27; /* link j5: column of the mass matrix */
+    out[22] = t28;
+    const rx90_real_t t29 = t5 * t26 - t4 * t27;
+    const rx90_real_t t30 = parameters[MX5] - t12; /* link j6: inertia of it and all beyond */
+    const rx90_real_t t31 = parameters[MY5] + parameters[MZ6];
+    const rx90_real_t t32 = t5 * t31 + t4 * t30; /* link j5: column of the mass matrix */
+    const rx90_real_t t33 = t9 * t32;
+    const rx90_real_t t34 = t9 * t25 - t8 * t29 + RX90_C(0.45) * t33;
+    out[16] = t34;
+    const rx90_real_t t35 = t5 * t30 - t4 * t31;
+    const rx90_real_t t36 = t34 + RX90_C(0.45) * (t16 * t35 - t15 * t33);
+    out[10] = t36;
+    const rx90_real_t t37 = RX90_C(0.45) * (t8 * t32);
+    const rx90_real_t t38 = t9 * t29 + t8 * t25 + t37;
+    const rx90_real_t t39 = t20 * (t16 * t38 - t15 * t28) + t21 * (t15 * t38 + t16 * t28 - t37);
+    out[4] = t39;
+    out[27] = t28;
+    out[26] = t34;
+    out[25] = t36;
+    out[24] = t39;
+    /* link j6: inertia of it and all beyond */
+    const rx90_real_t t40 = parameters[XX5] + (parameters[YY6] - t24);
+    const rx90_real_t t41 = parameters[YY5] + parameters[ZZ6];
+    const rx90_real_t t42 = parameters[XY5] + t3;
+    /* link j5: inertia of it and all beyond */
+    const rx90_real_t t43 = t5 * (t41 - t40) + t42 * (RX90_C(2.0) * t4);
+    const rx90_real_t t44 = t5 * t43;
+    const rx90_real_t t45 = parameters[ZZ4] + (t40 + t44);
+    out[21] = t45 + RX90_C(2.5e3) * parameters[IA4];
+    const rx90_real_t t46 = parameters[XZ4] + (t42 - t4 * t43);
+    const rx90_real_t t47 = t28 - parameters[YZ4];
+    const rx90_real_t t48 = parameters[MY4] + (t10 - parameters[MZ5]);
+    const rx90_real_t t49 = parameters[MX4] + t35;
+    const rx90_real_t t50 = t9 * t48 + t8 * t49; /* link j4: column of the mass matrix */
+    const rx90_real_t t51 = t9 * t47 - t8 * t46 + RX90_C(0.45) * t50;
+    out[15] = t51;
+    const rx90_real_t t52 = t51 + RX90_C(-0.45) * (t15 * t50);
+    out[9] = t52;
+    const rx90_real_t t53 = t8 * t48 - t9 * t49;
+    const rx90_real_t t54 = RX90_C(0.45) * t53;
+    const rx90_real_t t55 = t9 * t46 + t8 * t47 + t54;
+    const rx90_real_t t56 = t20 * (t16 * t55 - t15 * t45) + t21 * (t15 * t55 + t16 * t45 - t54);
+    out[3] = t56;
+    out[20] = t51;
+    out[19] = t52;
+    out[18] = t56;
+    const rx90_real_t t57 = parameters[XX4] + (t41 - t44); /* link j5: inertia of it and all beyond */
+    const rx90_real_t t58 = parameters[YY4] + t25;
+    const rx90_real_t t59 = t29 - parameters[XY4];
+    /* link j4: inertia of it and all beyond */
+    const rx90_real_t t60 = t9 * (t58 - t57) - t59 * (RX90_C(2.0) * t8);
+    const rx90_real_t t61 = t9 * t60;
+    const rx90_real_t t62 = parameters[MZ4] + t32; /* link j5: inertia of it and all beyond */
+    const rx90_real_t t63 = parameters[M4] + (parameters[M5] + parameters[M6]);
+    const rx90_real_t t64 = RX90_C(0.45) * t63; /* link j4: inertia of it and all beyond */
+    const rx90_real_t t65 = RX90_C(0.45) * (t64 + RX90_C(2.0) * t62);
+    const rx90_real_t t66 = parameters[ZZ3] + (t57 + t61 + t65);
+    out[14] = t66 + RX90_C(1.0e4) * parameters[IA3];
+    const rx90_real_t t67 = parameters[MX3] - t53;
+    const rx90_real_t t68 = parameters[MY3] + (t62 + t64);
+    const rx90_real_t t69 = t16 * t67 - t15 * t68; /* link j3: column of the mass matrix */
+    const rx90_real_t t70 = t66 + RX90_C(0.45) * t69;
+    out[8] = t70;
+    const rx90_real_t t71 = parameters[XZ3] + (t59 + t8 * t60); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t72 = parameters[YZ3] + t51;
+    const rx90_real_t t73 = t16 * t71 - t15 * t72; /* link j3: column of the mass matrix */
+    const rx90_real_t t74 = t15 * t71 + t16 * t72;
+    const rx90_real_t t75 = t20 * t73 + t21 * t74;
+    out[2] = t75;
+    out[13] = t70;
+    out[12] = t75;
+    /* link j3: inertia of it and all beyond */
+    const rx90_real_t t76 = RX90_C(0.45) * (RX90_C(0.45) * (parameters[M3] + t63) + RX90_C(2.0) * t69);
+    out[7] = parameters[ZZ2] + (t66 + t76) + RX90_C(1.0e4) * parameters[IA2];
+    /* link j2: column of the mass matrix */
+    const rx90_real_t t77 = t20 * (parameters[XZ2] + (t73 + RX90_C(0.45) * (t50 - parameters[MZ3])))
+        + t21 * (parameters[YZ2] + t74);
+    out[1] = t77;
+    out[6] = t77;
+    const rx90_real_t t78 = parameters[XX3] + (t58 - t61 + t65); /* link j4: inertia of it and all beyond */
+    const rx90_real_t t79 = parameters[YY3] + t45;
+    const rx90_real_t t80 = parameters[XY3] + t55;
+    /* link j3: inertia of it and all beyond */
+    const rx90_real_t t81 = t16 * (t78 - t79) - t80 * (RX90_C(2.0) * t15);
+    const rx90_real_t t82 = t16 * t81;
+    const rx90_real_t t83 = parameters[XX2] + (t79 + t82);
+    const rx90_real_t t84 = t80 + t15 * t81 + RX90_C(-0.45) * (t16 * t68 + t15 * t67);
+    /* link j2: inertia of it and all beyond */
+    const rx90_real_t t85 = t21 * (parameters[YY2] + (t78 - t82 + t76) - t83) + (parameters[XY2]
+        + t84) * (RX90_C(2.0) * t20);
+    out[0] = parameters[ZZ1] + (t83 + t21 * t85) + RX90_C(1.0e4) * parameters[IA1];
     return RX90_STATUS_OK;
 }

@@ -54,7 +54,7 @@
 #define SCARA_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCARA_GENERATION 0xC2234E4EUL
+#define SCARA_GENERATION 0x743B3253UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCARA_MODEL "c1d518ff4a0020fbd2ee0fb14fc12a05e9368b5ecb740059a83582da6419b7fa"
@@ -324,7 +324,7 @@ scara_status_t scara_mass_matrix(
  * @param[out]  out         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
+ * Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 5 other calls (sign, select and the like).
  */
 scara_status_t scara_forward_dynamics(
     const scara_real_t q[SCARA_N_JOINTS],
@@ -524,7 +524,7 @@ scara_status_t scara_mass_matrix_standard(
  * @param[out]  out         [4]   [rad/s^2, rad/s^2, m/s^2, rad/s^2]  joint accelerations
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
+ * Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 5 other calls (sign, select and the like).
  */
 scara_status_t scara_forward_dynamics_standard(
     const scara_real_t q[SCARA_N_JOINTS],
@@ -743,7 +743,7 @@ scara_status_t scara_inverse_dynamics_derivatives(
  *                                                                                                       row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
+ * Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 5 other calls (sign, select and the like).
  */
 scara_status_t scara_forward_dynamics_derivatives(
     const scara_real_t q[SCARA_N_JOINTS],
@@ -841,7 +841,7 @@ scara_status_t scara_inverse_dynamics_derivatives_standard(
  *                                                                                                       row-major
  * @return SCARA_STATUS_OK or status bits
  *
- * Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
+ * Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 5 other calls (sign, select and the like).
  */
 scara_status_t scara_forward_dynamics_derivatives_standard(
     const scara_real_t q[SCARA_N_JOINTS],

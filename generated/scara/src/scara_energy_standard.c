@@ -78,7 +78,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_energy_standard.c are of different generations: generate the arm again"
 #endif
 

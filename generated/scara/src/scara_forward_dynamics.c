@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
+ * Operations: 149 (89 mul, 60 add, 0 neg), 4 div, 4 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -46,7 +46,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -72,16 +72,16 @@ scara_status_t scara_forward_dynamics(
         return status;
     }
 
-    scara_real_t t14, t15;
-    SCARA_SINCOS(q[1], &t14, &t15);
+    scara_real_t t13, t14;
+    SCARA_SINCOS(q[1], &t13, &t14);
     scara_real_t t2, t3;
     SCARA_SINCOS(q[3], &t2, &t3);
-    const scara_real_t t0 = scara_bounded(parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3]);
+    const scara_real_t t0 = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
     if (!(t0 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t1 = scara_bounded(parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4]);
+    const scara_real_t t1 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
@@ -95,83 +95,78 @@ scara_status_t scara_forward_dynamics(
     /* link j3: inertia of it and all beyond */
     const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t8));
     const scara_real_t t10 = t9 + SCARA_C(2.5e3) * parameters[IA2];
-    const scara_real_t t11 = scara_bounded(t10 - t5 * t7);
+    const scara_real_t t11 = t10 - t5 * t7;
     if (!(t11 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t12 = t11 + SCARA_C(-1.0e-9) * t10;
-    if (!(t12 > SCARA_C(1.0e-12))) {
+    /* link j4: column of the mass matrix */
+    const scara_real_t t12 = t3 * parameters[MY4] + t2 * parameters[MX4];
+    /* link j2: column of the mass matrix */
+    const scara_real_t t15 = t13 * (parameters[MY2R] - t12) - t14 * (parameters[MX2R] + (t4 + t8));
+    /* link j4: column of the mass matrix */
+    const scara_real_t t16 = t5 + SCARA_C(0.325) * (t13 * t12 + t14 * t4);
+    const scara_real_t t17 = SCARA_C(0.325) * t15 - t9 + t16 * t7;
+    const scara_real_t t18 = SCARA_C(1.0) / t11;
+    const scara_real_t t19 = t17 * t18;
+    const scara_real_t t20 = t16 * t6;
+    /* link j2: inertia of it and all beyond */
+    const scara_real_t t21 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
+        + SCARA_C(-2.0) * t15));
+    const scara_real_t t22 = t21 - t16 * t20 - t17 * t19;
+    if (!(t22 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    /* link j4: column of the mass matrix */
-    const scara_real_t t13 = t3 * parameters[MY4] + t2 * parameters[MX4];
-    /* link j2: column of the mass matrix */
-    const scara_real_t t16 = t14 * (parameters[MY2R] - t13) - t15 * (parameters[MX2R] + (t4 + t8));
-    /* link j4: column of the mass matrix */
-    const scara_real_t t17 = t5 + SCARA_C(0.325) * (t14 * t13 + t15 * t4);
-    const scara_real_t t18 = SCARA_C(0.325) * t16 - t9 + t17 * t7;
-    const scara_real_t t19 = SCARA_C(1.0) / t11;
-    const scara_real_t t20 = t18 * t19;
-    const scara_real_t t21 = t17 * t6;
-    /* link j2: inertia of it and all beyond */
-    const scara_real_t t22 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
-        + SCARA_C(-2.0) * t16));
-    const scara_real_t t23 = scara_bounded(t22 - t17 * t21 - t18 * t20);
+    const scara_real_t t23 = scara_min(t11 + SCARA_C(-1.0e-9) * t10, t22 + SCARA_C(-1.0e-9) * t21);
     if (!(t23 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t24 = t23 + SCARA_C(-1.0e-9) * t22;
-    if (!(t24 > SCARA_C(1.0e-12))) {
-        scara_zero(out, 4);
-        return SCARA_STATUS_PIVOT;
-    }
-    const scara_real_t t25 = dq[0] + dq[1]; /* link j2: motion */
-    const scara_real_t t26 = t25 * t25;
-    const scara_real_t t27 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t28 = t15 * t27;
-    const scara_real_t t29 = t28 + SCARA_C(0.275) * t26; /* link j3: motion */
-    const scara_real_t t30 = t14 * t27; /* link j2: motion */
+    const scara_real_t t24 = dq[0] + dq[1]; /* link j2: motion */
+    const scara_real_t t25 = t24 * t24;
+    const scara_real_t t26 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t27 = t14 * t26;
+    const scara_real_t t28 = t27 + SCARA_C(0.275) * t25; /* link j3: motion */
+    const scara_real_t t29 = t13 * t26; /* link j2: motion */
     /* link j4: force and moment */
-    const scara_real_t t31 = parameters[MX4] * (t2 * t29 - t3 * t30) + parameters[MY4] * (t3 * t29
-        + t2 * t30);
-    const scara_real_t t32 = t25 - dq[3]; /* link j4: motion */
-    const scara_real_t t33 = t32 * t32;
-    const scara_real_t t34 = parameters[MX4] * t33; /* link j4: force and moment */
-    const scara_real_t t35 = parameters[MY4] * t33;
-    const scara_real_t t36 = parameters[M3R] * t30 + (t2 * t34 + t3 * t35); /* link j4: what it passes on */
+    const scara_real_t t30 = parameters[MX4] * (t2 * t28 - t3 * t29) + parameters[MY4] * (t3 * t28
+        + t2 * t29);
+    const scara_real_t t31 = t24 - dq[3]; /* link j4: motion */
+    const scara_real_t t32 = t31 * t31;
+    const scara_real_t t33 = parameters[MX4] * t32; /* link j4: force and moment */
+    const scara_real_t t34 = parameters[MY4] * t32;
+    const scara_real_t t35 = parameters[M3R] * t29 + (t2 * t33 + t3 * t34); /* link j4: what it passes on */
     /* link j3: what it passes on */
-    const scara_real_t t37 = t31 + SCARA_C(-0.275) * t36 - (parameters[MX2R] * t30 + parameters[MY2R] * t28);
-    const scara_real_t t38 = parameters[MX2R] * t26 + (parameters[M3R] * t29 + (t3 * t34 - t2 * t35));
+    const scara_real_t t36 = t30 + SCARA_C(-0.275) * t35 - (parameters[MX2R] * t29 + parameters[MY2R] * t27);
+    const scara_real_t t37 = parameters[MX2R] * t25 + (parameters[M3R] * t28 + (t3 * t33 - t2 * t34));
     /* link j2: what it passes on */
-    const scara_real_t t39 = SCARA_C(0.325) * (t14 * t38 + t15 * (parameters[MY2R] * t26 - t36));
-    const scara_real_t t40 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
-    const scara_real_t t41 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0])
-        - parameters[FC1] * t40) + (t37 + t39);
-    const scara_real_t t42 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
-    const scara_real_t t43 = SCARA_C(20.0) * (parameters[FV4] * (SCARA_C(-20.0) * dq[3])
-        - parameters[FC4] * t42) - t31;
-    const scara_real_t t44 = SCARA_C(2.0) * input[3] + t43;
-    const scara_real_t t45 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
-    const scara_real_t t46 = SCARA_C(50.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1])
-        + parameters[FC2] * t45) - t37;
-    const scara_real_t t47 = SCARA_C(10.0) * input[1] - t46 + t44 * t7;
-    const scara_real_t t48 = SCARA_C(16.0) * input[0] + t41 + t44 * t21 + t47 * t20;
-    const scara_real_t t49 = SCARA_C(1.0) / t23;
-    const scara_real_t t50 = scara_bounded(t48 * t49);
-    out[0] = t50;
-    const scara_real_t t51 = scara_bounded(t47 * t19 + t20 * t50);
-    out[1] = t51;
-    const scara_real_t t52 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
+    const scara_real_t t38 = SCARA_C(0.325) * (t13 * t37 + t14 * (parameters[MY2R] * t25 - t35));
+    const scara_real_t t39 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
+    const scara_real_t t40 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0])
+        - parameters[FC1] * t39) + (t36 + t38);
+    const scara_real_t t41 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
+    const scara_real_t t42 = SCARA_C(20.0) * (parameters[FV4] * (SCARA_C(-20.0) * dq[3])
+        - parameters[FC4] * t41) - t30;
+    const scara_real_t t43 = SCARA_C(2.0) * input[3] + t42;
+    const scara_real_t t44 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
+    const scara_real_t t45 = SCARA_C(50.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1])
+        + parameters[FC2] * t44) - t36;
+    const scara_real_t t46 = SCARA_C(10.0) * input[1] - t45 + t43 * t7;
+    const scara_real_t t47 = SCARA_C(16.0) * input[0] + t40 + t43 * t20 + t46 * t19;
+    const scara_real_t t48 = SCARA_C(1.0) / t22;
+    const scara_real_t t49 = scara_held(t47 * t48);
+    out[0] = t49;
+    const scara_real_t t50 = scara_held(t46 * t18 + t19 * t49);
+    out[1] = t50;
+    const scara_real_t t51 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t
-        t53 = SCARA_C(314.1592653589793) * (parameters[FV3] * (SCARA_C(-314.1592653589793) * dq[2])
-        - parameters[FC3] * t52) + SCARA_C(9.81) * parameters[M3R];
-    const scara_real_t t54 = SCARA_C(1.0) / t0;
-    out[2] = (SCARA_C(31.415926535897935) * input[2] + t53) * t54;
-    out[3] = t44 * t6 + t21 * t50 + t7 * t51;
-    if (!scara_all_bounded(out, 4)) {
+        t52 = SCARA_C(314.1592653589793) * (parameters[FV3] * (SCARA_C(-314.1592653589793) * dq[2])
+        - parameters[FC3] * t51) + SCARA_C(9.81) * parameters[M3R];
+    const scara_real_t t53 = SCARA_C(1.0) / t0;
+    out[2] = (SCARA_C(31.415926535897935) * input[2] + t52) * t53;
+    out[3] = t43 * t6 + t20 * t49 + t7 * t50;
+    if (!scara_bounded(out, 4)) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }

@@ -7,7 +7,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
+ * Operations: 394 (248 mul, 146 add, 0 neg), 4 div, 4 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad, rad, m, rad]                                                   joint
  *                                                                                                       coordinates;
@@ -87,7 +87,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -119,11 +119,11 @@ scara_status_t scara_forward_dynamics_derivatives(
         return status;
     }
 
-    scara_real_t t15, t17;
-    SCARA_SINCOS(q[1], &t15, &t17);
+    scara_real_t t14, t16;
+    SCARA_SINCOS(q[1], &t14, &t16);
     scara_real_t t2, t3;
     SCARA_SINCOS(q[3], &t2, &t3);
-    const scara_real_t t0 = scara_bounded(parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3]);
+    const scara_real_t t0 = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
     if (!(t0 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -131,7 +131,7 @@ scara_status_t scara_forward_dynamics_derivatives(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t1 = scara_bounded(parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4]);
+    const scara_real_t t1 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -148,7 +148,7 @@ scara_status_t scara_forward_dynamics_derivatives(
     /* link j3: inertia of it and all beyond */
     const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t8));
     const scara_real_t t10 = t9 + SCARA_C(2.5e3) * parameters[IA2];
-    const scara_real_t t11 = scara_bounded(t10 - t5 * t7);
+    const scara_real_t t11 = t10 - t5 * t7;
     if (!(t11 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -156,29 +156,29 @@ scara_status_t scara_forward_dynamics_derivatives(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t12 = t11 + SCARA_C(-1.0e-9) * t10;
-    if (!(t12 > SCARA_C(1.0e-12))) {
+    /* link j4: column of the mass matrix */
+    const scara_real_t t12 = t3 * parameters[MY4] + t2 * parameters[MX4];
+    const scara_real_t t13 = parameters[MY2R] - t12; /* link j3: inertia of it and all beyond */
+    const scara_real_t t15 = parameters[MX2R] + (t4 + t8);
+    const scara_real_t t17 = t14 * t13 - t16 * t15; /* link j2: column of the mass matrix */
+    /* link j4: column of the mass matrix */
+    const scara_real_t t18 = t5 + SCARA_C(0.325) * (t14 * t12 + t16 * t4);
+    const scara_real_t t19 = SCARA_C(0.325) * t17 - t9 + t18 * t7;
+    const scara_real_t t20 = SCARA_C(1.0) / t11;
+    const scara_real_t t21 = t19 * t20;
+    const scara_real_t t22 = t18 * t6;
+    /* link j2: inertia of it and all beyond */
+    const scara_real_t t23 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
+        + SCARA_C(-2.0) * t17));
+    const scara_real_t t24 = t23 - t18 * t22 - t19 * t21;
+    if (!(t24 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
         scara_zero(ddq_by_dq, 16);
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    /* link j4: column of the mass matrix */
-    const scara_real_t t13 = t3 * parameters[MY4] + t2 * parameters[MX4];
-    const scara_real_t t14 = parameters[MY2R] - t13; /* link j3: inertia of it and all beyond */
-    const scara_real_t t16 = parameters[MX2R] + (t4 + t8);
-    const scara_real_t t18 = t15 * t14 - t17 * t16; /* link j2: column of the mass matrix */
-    /* link j4: column of the mass matrix */
-    const scara_real_t t19 = t5 + SCARA_C(0.325) * (t15 * t13 + t17 * t4);
-    const scara_real_t t20 = SCARA_C(0.325) * t18 - t9 + t19 * t7;
-    const scara_real_t t21 = SCARA_C(1.0) / t11;
-    const scara_real_t t22 = t20 * t21;
-    const scara_real_t t23 = t19 * t6;
-    /* link j2: inertia of it and all beyond */
-    const scara_real_t t24 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
-        + SCARA_C(-2.0) * t18));
-    const scara_real_t t25 = scara_bounded(t24 - t19 * t23 - t20 * t22);
+    const scara_real_t t25 = scara_min(t11 + SCARA_C(-1.0e-9) * t10, t24 + SCARA_C(-1.0e-9) * t23);
     if (!(t25 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -186,156 +186,148 @@ scara_status_t scara_forward_dynamics_derivatives(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t26 = t25 + SCARA_C(-1.0e-9) * t24;
-    if (!(t26 > SCARA_C(1.0e-12))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
-    const scara_real_t t27 = dq[0] + dq[1]; /* link j2: motion */
-    const scara_real_t t28 = t27 * t27;
-    const scara_real_t t29 = SCARA_C(0.275) * t28; /* link j3: motion */
-    const scara_real_t t30 = SCARA_C(-0.325) * (dq[0] * dq[0]); /* link j2: motion */
-    const scara_real_t t31 = t17 * t30;
-    const scara_real_t t32 = t29 - t31; /* link j3: motion */
-    const scara_real_t t33 = t15 * t30; /* link j2: motion */
+    const scara_real_t t26 = dq[0] + dq[1]; /* link j2: motion */
+    const scara_real_t t27 = t26 * t26;
+    const scara_real_t t28 = SCARA_C(0.275) * t27; /* link j3: motion */
+    const scara_real_t t29 = SCARA_C(-0.325) * (dq[0] * dq[0]); /* link j2: motion */
+    const scara_real_t t30 = t16 * t29;
+    const scara_real_t t31 = t28 - t30; /* link j3: motion */
+    const scara_real_t t32 = t14 * t29; /* link j2: motion */
     /* link j4: force and moment */
-    const scara_real_t t34 = parameters[MX4] * (t2 * t32 + t3 * t33) + parameters[MY4] * (t3 * t32
-        - t2 * t33);
-    const scara_real_t t35 = dq[3] - t27; /* link j4: motion */
-    const scara_real_t t36 = t35 * t35;
-    const scara_real_t t37 = parameters[MX4] * t36; /* link j4: force and moment */
-    const scara_real_t t38 = parameters[MY4] * t36;
-    const scara_real_t t39 = parameters[M3R] * t33 - (t2 * t37 + t3 * t38); /* link j4: what it passes on */
+    const scara_real_t t33 = parameters[MX4] * (t2 * t31 + t3 * t32) + parameters[MY4] * (t3 * t31
+        - t2 * t32);
+    const scara_real_t t34 = dq[3] - t26; /* link j4: motion */
+    const scara_real_t t35 = t34 * t34;
+    const scara_real_t t36 = parameters[MX4] * t35; /* link j4: force and moment */
+    const scara_real_t t37 = parameters[MY4] * t35;
+    const scara_real_t t38 = parameters[M3R] * t32 - (t2 * t36 + t3 * t37); /* link j4: what it passes on */
     /* link j3: what it passes on */
-    const scara_real_t t40 = parameters[MX2R] * t33 + parameters[MY2R] * t31 + (t34 + SCARA_C(0.275) * t39);
-    const scara_real_t t41 = parameters[MX2R] * t28; /* link j2: force and moment */
+    const scara_real_t t39 = parameters[MX2R] * t32 + parameters[MY2R] * t30 + (t33 + SCARA_C(0.275) * t38);
+    const scara_real_t t40 = parameters[MX2R] * t27; /* link j2: force and moment */
     /* link j3: what it passes on */
-    const scara_real_t t42 = t41 + (parameters[M3R] * t32 + (t3 * t37 - t2 * t38));
-    const scara_real_t t43 = parameters[MY2R] * t28; /* link j2: force and moment */
+    const scara_real_t t41 = t40 + (parameters[M3R] * t31 + (t3 * t36 - t2 * t37));
+    const scara_real_t t42 = parameters[MY2R] * t27; /* link j2: force and moment */
     /* link j2: what it passes on */
-    const scara_real_t t44 = t40 + SCARA_C(0.325) * (t15 * t42 + t17 * (t43 + t39));
-    const scara_real_t t45 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
-    const scara_real_t t46 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0])
-        - parameters[FC1] * t45) + t44;
-    const scara_real_t t47 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
-    const scara_real_t t48 = SCARA_C(20.0) * (parameters[FV4] * (SCARA_C(-20.0) * dq[3])
-        - parameters[FC4] * t47) - t34;
-    const scara_real_t t49 = SCARA_C(2.0) * input[3] + t48;
-    const scara_real_t t50 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
-    const scara_real_t t51 = SCARA_C(50.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1])
-        + parameters[FC2] * t50) - t40;
-    const scara_real_t t52 = SCARA_C(10.0) * input[1] - t51 + t49 * t7;
-    const scara_real_t t53 = SCARA_C(16.0) * input[0] + t46 + t49 * t23 + t52 * t22;
-    const scara_real_t t54 = SCARA_C(1.0) / t25;
-    const scara_real_t t55 = scara_bounded(t53 * t54);
-    ddq[0] = t55;
-    const scara_real_t t56 = scara_bounded(t52 * t21 + t22 * t55);
-    ddq[1] = t56;
-    const scara_real_t t57 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
+    const scara_real_t t43 = t39 + SCARA_C(0.325) * (t14 * t41 + t16 * (t42 + t38));
+    const scara_real_t t44 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
+    const scara_real_t t45 = SCARA_C(80.0) * (parameters[FV1] * (SCARA_C(-80.0) * dq[0])
+        - parameters[FC1] * t44) + t43;
+    const scara_real_t t46 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
+    const scara_real_t t47 = SCARA_C(20.0) * (parameters[FV4] * (SCARA_C(-20.0) * dq[3])
+        - parameters[FC4] * t46) - t33;
+    const scara_real_t t48 = SCARA_C(2.0) * input[3] + t47;
+    const scara_real_t t49 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
+    const scara_real_t t50 = SCARA_C(50.0) * (parameters[FV2] * (SCARA_C(50.0) * dq[1])
+        + parameters[FC2] * t49) - t39;
+    const scara_real_t t51 = SCARA_C(10.0) * input[1] - t50 + t48 * t7;
+    const scara_real_t t52 = SCARA_C(16.0) * input[0] + t45 + t48 * t22 + t51 * t21;
+    const scara_real_t t53 = SCARA_C(1.0) / t24;
+    const scara_real_t t54 = scara_held(t52 * t53);
+    ddq[0] = t54;
+    const scara_real_t t55 = scara_held(t51 * t20 + t21 * t54);
+    ddq[1] = t55;
+    const scara_real_t t56 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t
-        t58 = SCARA_C(314.1592653589793) * (parameters[FV3] * (SCARA_C(-314.1592653589793) * dq[2])
-        - parameters[FC3] * t57) + SCARA_C(9.81) * parameters[M3R];
-    const scara_real_t t59 = SCARA_C(1.0) / t0;
-    ddq[2] = (SCARA_C(31.415926535897935) * input[2] + t58) * t59;
-    const scara_real_t t60 = scara_bounded(t49 * t6 + t23 * t55 + t7 * t56);
-    ddq[3] = t60;
-    const scara_real_t t61 = scara_bounded(SCARA_C(16.0) * t54);
-    const scara_real_t t62 = parameters[MY4] * t35;
-    const scara_real_t t63 = parameters[MX4] * t35;
-    const scara_real_t t64 = t3 * t62 + t2 * t63; /* link j4: inertia, momentum beyond */
-    const scara_real_t t65 = parameters[MY2R] * t27 + t64; /* link j3: inertia, momentum beyond */
-    const scara_real_t t66 = SCARA_C(0.275) * t27; /* link j3: velocity of its origin */
+        t57 = SCARA_C(314.1592653589793) * (parameters[FV3] * (SCARA_C(-314.1592653589793) * dq[2])
+        - parameters[FC3] * t56) + SCARA_C(9.81) * parameters[M3R];
+    const scara_real_t t58 = SCARA_C(1.0) / t0;
+    ddq[2] = (SCARA_C(31.415926535897935) * input[2] + t57) * t58;
+    const scara_real_t t59 = scara_held(t48 * t6 + t22 * t54 + t7 * t55);
+    ddq[3] = t59;
+    const scara_real_t t60 = t54 + t55;
+    const scara_real_t t61 = t59 - t60;
+    const scara_real_t t62 = t36 + parameters[MY4] * t61;
+    const scara_real_t t63 = t37 - parameters[MX4] * t61;
+    const scara_real_t t64 = t2 * t62 + t3 * t63;
+    const scara_real_t t65 = t3 * t62 - t2 * t63;
+    const scara_real_t t66 = SCARA_C(0.325) * t54;
+    const scara_real_t t67 = t16 * t66 - t32;
+    const scara_real_t t68 = t67 + SCARA_C(0.275) * t60;
+    const scara_real_t t69 = t30 + t14 * t66;
+    const scara_real_t t70 = t28 - t69;
+    const scara_real_t t71 = parameters[MX4] * (t3 * t70 + t2 * t68) + parameters[MY4] * (t3 * t68
+        - t2 * t70);
+    const scara_real_t t72 = t71 + SCARA_C(-0.275) * t65;
+    const scara_real_t t73 = SCARA_C(0.0625) * (t72 + SCARA_C(-0.325) * (t14 * t64 + t16 * t65));
+    const scara_real_t t74 = scara_held(SCARA_C(16.0) * t53);
+    const scara_real_t t75 = SCARA_C(0.1) * t72;
+    const scara_real_t t76 = t21 * t53;
+    const scara_real_t t77 = scara_held(SCARA_C(10.0) * t76);
+    const scara_real_t t78 = SCARA_C(-0.5) * t71;
+    const scara_real_t t79 = t53 * (t22 + t7 * t21);
+    const scara_real_t t80 = scara_held(SCARA_C(2.0) * t79);
+    ddq_by_q[3] = t74 * t73 + t77 * t75 + t80 * t78;
+    const scara_real_t t81 = scara_held(SCARA_C(16.0) * t76);
+    const scara_real_t t82 = scara_held(SCARA_C(10.0) * (t20 + t21 * t76));
+    const scara_real_t t83 = t7 * t20 + t21 * t79;
+    const scara_real_t t84 = scara_held(SCARA_C(2.0) * t83);
+    ddq_by_q[7] = t81 * t73 + t82 * t75 + t84 * t78;
+    const scara_real_t t85 = scara_held(SCARA_C(16.0) * t79);
+    const scara_real_t t86 = scara_held(SCARA_C(10.0) * t83);
+    const scara_real_t t87 = scara_held(SCARA_C(2.0) * (t6 + t22 * t79 + t7 * t83));
+    ddq_by_q[15] = t85 * t73 + t86 * t75 + t87 * t78;
+    const scara_real_t t88 = parameters[MX4] * t34;
+    const scara_real_t t89 = SCARA_C(2.0) * t88; /* link j4: derivatives */
+    const scara_real_t t90 = parameters[MY4] * t34;
+    const scara_real_t t91 = SCARA_C(-2.0) * t90;
+    const scara_real_t t92 = t3 * t91 - t2 * t89;
+    const scara_real_t t93 = t14 * (t3 * t89 + t2 * t91) + t16 * t92;
+    const scara_real_t t94 = SCARA_C(0.0625) * (SCARA_C(0.275) * t92 + SCARA_C(0.325) * t93);
+    const scara_real_t t95 = SCARA_C(0.027500000000000004) * t92;
+    const scara_real_t t96 = SCARA_C(-2.0e2) * parameters[FV4];
+    ddq_by_dq[3] = t94 * t74 + t95 * t77 + t96 * t80;
+    ddq_by_dq[7] = t94 * t81 + t95 * t82 + t96 * t84;
+    ddq_by_dq[15] = t94 * t85 + t95 * t86 + t96 * t87;
+    ddq_by_input[3] = t80;
+    ddq_by_input[7] = t84;
+    ddq_by_input[15] = t87;
+    const scara_real_t t97 = scara_held(SCARA_C(31.415926535897935) * t58);
+    ddq_by_dq[10] = SCARA_C(-3141.5926535897934) * parameters[FV3] * t97;
+    ddq_by_input[10] = t97;
+    const scara_real_t t98 = parameters[MX2R] * t60 - t42 + (parameters[M3R] * t68 + t64)
+        - parameters[M3R] * t67;
+    const scara_real_t t99 = t40 + parameters[MY2R] * t60 + (parameters[M3R] * t70 + t65)
+        + parameters[M3R] * t69;
+    const scara_real_t t100 = t15 * t69 + t13 * t67;
+    const scara_real_t t101 = SCARA_C(0.0625) * (t100 + SCARA_C(0.325) * (t14 * t98 + t16 * t99));
+    const scara_real_t t102 = SCARA_C(0.1) * t100;
+    const scara_real_t t103 = SCARA_C(0.5) * (t12 * t67 - t4 * t69);
+    ddq_by_q[1] = t74 * t101 + t77 * t102 + t80 * t103;
+    ddq_by_q[5] = t81 * t101 + t82 * t102 + t84 * t103;
+    ddq_by_q[13] = t85 * t101 + t86 * t102 + t87 * t103;
+    const scara_real_t t104 = t3 * t90 + t2 * t88; /* link j4: inertia, momentum beyond */
+    const scara_real_t t105 = SCARA_C(0.275) * t26; /* link j3: velocity of its origin */
+    const scara_real_t t106 = dq[2] * (q[2] * parameters[M3R]); /* link j3: inertia, momentum beyond */
+    const scara_real_t t107 = t106 + (SCARA_C(0.275) * t104 + (t12 * t105 - t106));
+    const scara_real_t t108 = SCARA_C(2.0) * t107; /* link j2: derivatives */
     /* link j3: inertia, momentum beyond */
-    const scara_real_t t67 = parameters[MX2R] * t27 + (t2 * t62 - t3 * t63 + parameters[M3R] * t66);
-    const scara_real_t t68 = t17 * t14 + t15 * t16; /* link j2: column of the mass matrix */
-    /* link j2: inertia, momentum beyond */
-    const scara_real_t t69 = SCARA_C(0.325) * (t17 * t65 + t15 * t67) + t68 * (SCARA_C(-0.325) * dq[0]);
-    const scara_real_t t70 = dq[2] * (q[2] * parameters[M3R]); /* link j3: inertia, momentum beyond */
-    const scara_real_t t71 = t70 + (SCARA_C(0.275) * t64 + (t13 * t66 - t70));
-    const scara_real_t t72 = SCARA_C(-4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t71 + t69);
-    const scara_real_t t73 = t22 * t54;
-    const scara_real_t t74 = scara_bounded(SCARA_C(10.0) * t73);
-    const scara_real_t t75 = SCARA_C(2.0) * t71; /* link j2: derivatives */
-    const scara_real_t t76 = SCARA_C(-0.65) * dq[0];
-    const scara_real_t t77 = SCARA_C(0.1) * (t75 + t68 * t76);
-    const scara_real_t t78 = t54 * (t23 + t7 * t22);
-    const scara_real_t t79 = SCARA_C(2.0) * t78;
-    const scara_real_t t80 = t13 * (SCARA_C(-0.55) * t27); /* link j4: derivatives */
-    const scara_real_t t81 = SCARA_C(0.5) * (t80 - (t15 * t4 - t17 * t13) * t76);
-    ddq_by_dq[0] = t72 * t61 + t77 * t74 + t81 * t79;
-    const scara_real_t t82 = scara_bounded(SCARA_C(16.0) * t73);
-    const scara_real_t t83 = scara_bounded(SCARA_C(10.0) * (t21 + t22 * t73));
-    const scara_real_t t84 = t7 * t21 + t22 * t78;
-    const scara_real_t t85 = SCARA_C(2.0) * t84;
-    ddq_by_dq[4] = t72 * t82 + t77 * t83 + t81 * t85;
-    const scara_real_t t86 = scara_bounded(SCARA_C(16.0) * t78);
-    const scara_real_t t87 = scara_bounded(SCARA_C(10.0) * t84);
-    const scara_real_t t88 = SCARA_C(2.0) * (t6 + t23 * t78 + t7 * t84);
-    ddq_by_dq[12] = t72 * t86 + t77 * t87 + t81 * t88;
-    ddq_by_input[0] = t61;
-    ddq_by_input[4] = t82;
-    ddq_by_input[12] = t86;
-    const scara_real_t t89 = t55 + t56;
-    const scara_real_t t90 = t60 - t89;
-    const scara_real_t t91 = t37 + parameters[MY4] * t90;
-    const scara_real_t t92 = t38 - parameters[MX4] * t90;
-    const scara_real_t t93 = t2 * t91 + t3 * t92;
-    const scara_real_t t94 = SCARA_C(0.325) * t55;
-    const scara_real_t t95 = t17 * t94 - t33;
-    const scara_real_t t96 = t95 + SCARA_C(0.275) * t89;
-    const scara_real_t t97 = parameters[MX2R] * t89 - t43 + (parameters[M3R] * t96 + t93)
-        - parameters[M3R] * t95;
-    const scara_real_t t98 = t3 * t91 - t2 * t92;
-    const scara_real_t t99 = t31 + t15 * t94;
-    const scara_real_t t100 = t29 - t99;
-    const scara_real_t t101 = t41 + parameters[MY2R] * t89 + (parameters[M3R] * t100 + t98)
-        + parameters[M3R] * t99;
-    const scara_real_t t102 = t16 * t99 + t14 * t95;
-    const scara_real_t t103 = SCARA_C(0.0625) * (t102 + SCARA_C(0.325) * (t15 * t97 + t17 * t101));
-    const scara_real_t t104 = SCARA_C(0.1) * t102;
-    const scara_real_t t105 = SCARA_C(0.5) * (t13 * t95 - t4 * t99);
-    ddq_by_q[1] = t61 * t103 + t74 * t104 + t79 * t105;
-    ddq_by_q[5] = t82 * t103 + t83 * t104 + t85 * t105;
-    ddq_by_q[13] = t86 * t103 + t87 * t104 + t88 * t105;
+    const scara_real_t t109 = parameters[MX2R] * t26 + (t2 * t90 - t3 * t88 + parameters[M3R] * t105);
+    const scara_real_t t110 = parameters[MY2R] * t26 + t104;
     /* link j2: derivatives */
-    const scara_real_t t106 = SCARA_C(0.325) * (t15 * (SCARA_C(2.0) * t67) + t17 * (SCARA_C(2.0) * t65));
-    const scara_real_t t107 = SCARA_C(0.0625) * (t75 + t106);
-    const scara_real_t t108 = SCARA_C(-250.0) * parameters[FV2] + SCARA_C(0.2) * t71;
-    const scara_real_t t109 = SCARA_C(0.5) * t80;
-    ddq_by_dq[1] = t107 * t61 + t108 * t74 + t109 * t79;
-    ddq_by_dq[5] = t107 * t82 + t108 * t83 + t109 * t85;
-    ddq_by_dq[13] = t107 * t86 + t108 * t87 + t109 * t88;
-    ddq_by_input[1] = t74;
-    ddq_by_input[5] = t83;
-    ddq_by_input[13] = t87;
-    const scara_real_t t110 = SCARA_C(31.415926535897935) * t59;
-    ddq_by_dq[10] = SCARA_C(-3141.5926535897934) * parameters[FV3] * t110;
-    ddq_by_input[10] = t110;
-    const scara_real_t t111 = parameters[MX4] * (t3 * t100 + t2 * t96) + parameters[MY4] * (t3 * t96
-        - t2 * t100);
-    const scara_real_t t112 = t111 + SCARA_C(-0.275) * t98;
-    const scara_real_t t113 = SCARA_C(0.0625) * (t112 + SCARA_C(-0.325) * (t15 * t93 + t17 * t98));
-    const scara_real_t t114 = SCARA_C(0.1) * t112;
-    const scara_real_t t115 = SCARA_C(-0.5) * t111;
-    ddq_by_q[3] = t61 * t113 + t74 * t114 + t79 * t115;
-    ddq_by_q[7] = t82 * t113 + t83 * t114 + t85 * t115;
-    ddq_by_q[15] = t86 * t113 + t87 * t114 + t88 * t115;
-    const scara_real_t t116 = SCARA_C(2.0) * t63; /* link j4: derivatives */
-    const scara_real_t t117 = SCARA_C(-2.0) * t62;
-    const scara_real_t t118 = t3 * t117 - t2 * t116;
-    const scara_real_t t119 = t15 * (t3 * t116 + t2 * t117) + t17 * t118;
-    const scara_real_t t120 = SCARA_C(0.0625) * (SCARA_C(0.275) * t118 + SCARA_C(0.325) * t119);
-    const scara_real_t t121 = SCARA_C(0.027500000000000004) * t118;
-    const scara_real_t t122 = SCARA_C(-2.0e2) * parameters[FV4];
-    ddq_by_dq[3] = t120 * t61 + t121 * t74 + t122 * t79;
-    ddq_by_dq[7] = t120 * t82 + t121 * t83 + t122 * t85;
-    ddq_by_dq[15] = t120 * t86 + t121 * t87 + t122 * t88;
-    ddq_by_input[3] = t79;
-    ddq_by_input[7] = t85;
-    ddq_by_input[15] = t88;
+    const scara_real_t t111 = SCARA_C(0.325) * (t14 * (SCARA_C(2.0) * t109) + t16 * (SCARA_C(2.0) * t110));
+    const scara_real_t t112 = SCARA_C(0.0625) * (t108 + t111);
+    const scara_real_t t113 = SCARA_C(-250.0) * parameters[FV2] + SCARA_C(0.2) * t107;
+    const scara_real_t t114 = t12 * (SCARA_C(-0.55) * t26); /* link j4: derivatives */
+    const scara_real_t t115 = SCARA_C(0.5) * t114;
+    ddq_by_dq[1] = t112 * t74 + t113 * t77 + t115 * t80;
+    ddq_by_dq[5] = t112 * t81 + t113 * t82 + t115 * t84;
+    ddq_by_dq[13] = t112 * t85 + t113 * t86 + t115 * t87;
+    ddq_by_input[1] = t77;
+    ddq_by_input[5] = t82;
+    ddq_by_input[13] = t86;
+    const scara_real_t t116 = t16 * t13 + t14 * t15; /* link j2: column of the mass matrix */
+    /* link j2: inertia, momentum beyond */
+    const scara_real_t t117 = SCARA_C(0.325) * (t16 * t110 + t14 * t109) + t116 * (SCARA_C(-0.325) * dq[0]);
+    const scara_real_t t118 = SCARA_C(-4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t107 + t117);
+    const scara_real_t t119 = SCARA_C(-0.65) * dq[0];
+    const scara_real_t t120 = SCARA_C(0.1) * (t108 + t116 * t119);
+    const scara_real_t t121 = SCARA_C(0.5) * (t114 - (t14 * t4 - t16 * t12) * t119);
+    ddq_by_dq[0] = t118 * t74 + t120 * t77 + t121 * t80;
+    ddq_by_dq[4] = t118 * t81 + t120 * t82 + t121 * t84;
+    ddq_by_dq[12] = t118 * t85 + t120 * t86 + t121 * t87;
+    ddq_by_input[0] = t74;
+    ddq_by_input[4] = t81;
+    ddq_by_input[12] = t85;
     /* always zero */
     ddq_by_q[0] = ddq_by_q[2] = SCARA_C(0.0);
     ddq_by_q[4] = ddq_by_q[6] = SCARA_C(0.0);
@@ -349,10 +341,10 @@ scara_status_t scara_forward_dynamics_derivatives(
     ddq_by_input[6] = SCARA_C(0.0);
     ddq_by_input[8] = ddq_by_input[9] = ddq_by_input[11] = SCARA_C(0.0);
     ddq_by_input[14] = SCARA_C(0.0);
-    if (!scara_all_bounded(ddq, 4)
-        || !scara_all_bounded(ddq_by_q, 16)
-        || !scara_all_bounded(ddq_by_dq, 16)
-        || !scara_all_bounded(ddq_by_input, 16)) {
+    if (!scara_bounded(ddq, 4)
+        || !scara_bounded(ddq_by_q, 16)
+        || !scara_bounded(ddq_by_dq, 16)
+        || !scara_bounded(ddq_by_input, 16)) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
         scara_zero(ddq_by_dq, 16);

@@ -7,7 +7,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
+ * Operations: 445 (270 mul, 175 add, 0 neg), 4 div, 4 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad, rad, m, rad]                                                   joint
  *                                                                                                       coordinates;
@@ -120,7 +120,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -153,12 +153,12 @@ scara_status_t scara_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    scara_real_t t18, t20;
-    SCARA_SINCOS(q[1], &t18, &t20);
+    scara_real_t t17, t19;
+    SCARA_SINCOS(q[1], &t17, &t19);
     scara_real_t t3, t4;
     SCARA_SINCOS(q[3], &t3, &t4);
     const scara_real_t t0 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const scara_real_t t1 = scara_bounded(t0 + SCARA_C(98696.04401089359) * parameters[IA3]);
+    const scara_real_t t1 = t0 + SCARA_C(98696.04401089359) * parameters[IA3];
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -166,7 +166,7 @@ scara_status_t scara_forward_dynamics_derivatives_standard(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t2 = scara_bounded(parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4]);
+    const scara_real_t t2 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
     if (!(t2 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -185,7 +185,7 @@ scara_status_t scara_forward_dynamics_derivatives_standard(
     const scara_real_t t11 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t10
         + SCARA_C(2.0) * t9));
     const scara_real_t t12 = t11 + SCARA_C(2.5e3) * parameters[IA2];
-    const scara_real_t t13 = scara_bounded(t12 - t6 * t8);
+    const scara_real_t t13 = t12 - t6 * t8;
     if (!(t13 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -193,32 +193,32 @@ scara_status_t scara_forward_dynamics_derivatives_standard(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t14 = t13 + SCARA_C(-1.0e-9) * t12;
-    if (!(t14 > SCARA_C(1.0e-12))) {
+    /* link j4: column of the mass matrix */
+    const scara_real_t t14 = t4 * parameters[MY4] + t3 * parameters[MX4];
+    const scara_real_t t15 = parameters[MY3] + t14; /* link j4: inertia of it and all beyond */
+    const scara_real_t t16 = parameters[MY2] - t15; /* link j3: inertia of it and all beyond */
+    const scara_real_t t18 = parameters[MX2] + (t9 + t10);
+    const scara_real_t t20 = t17 * t16 - t19 * t18; /* link j2: column of the mass matrix */
+    /* link j4: column of the mass matrix */
+    const scara_real_t t21 = t6 + SCARA_C(0.325) * (t17 * t14 + t19 * t5);
+    const scara_real_t t22 = SCARA_C(0.325) * t20 - t11 + t21 * t8;
+    const scara_real_t t23 = SCARA_C(1.0) / t13;
+    const scara_real_t t24 = t22 * t23;
+    const scara_real_t t25 = t21 * t7;
+    const scara_real_t t26 = parameters[M2] + t0; /* link j3: inertia of it and all beyond */
+    /* link j2: inertia of it and all beyond */
+    const scara_real_t t27 = parameters[ZZ1] + (t11 + SCARA_C(0.325) * (SCARA_C(0.325) * t26
+        + SCARA_C(-2.0) * t20));
+    const scara_real_t t28 = t27 + SCARA_C(6.4e3) * parameters[IA1];
+    const scara_real_t t29 = t28 - t21 * t25 - t22 * t24;
+    if (!(t29 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
         scara_zero(ddq_by_dq, 16);
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    /* link j4: column of the mass matrix */
-    const scara_real_t t15 = t4 * parameters[MY4] + t3 * parameters[MX4];
-    const scara_real_t t16 = parameters[MY3] + t15; /* link j4: inertia of it and all beyond */
-    const scara_real_t t17 = parameters[MY2] - t16; /* link j3: inertia of it and all beyond */
-    const scara_real_t t19 = parameters[MX2] + (t9 + t10);
-    const scara_real_t t21 = t18 * t17 - t20 * t19; /* link j2: column of the mass matrix */
-    /* link j4: column of the mass matrix */
-    const scara_real_t t22 = t6 + SCARA_C(0.325) * (t18 * t15 + t20 * t5);
-    const scara_real_t t23 = SCARA_C(0.325) * t21 - t11 + t22 * t8;
-    const scara_real_t t24 = SCARA_C(1.0) / t13;
-    const scara_real_t t25 = t23 * t24;
-    const scara_real_t t26 = t22 * t7;
-    const scara_real_t t27 = parameters[M2] + t0; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia of it and all beyond */
-    const scara_real_t t28 = parameters[ZZ1] + (t11 + SCARA_C(0.325) * (SCARA_C(0.325) * t27
-        + SCARA_C(-2.0) * t21));
-    const scara_real_t t29 = t28 + SCARA_C(6.4e3) * parameters[IA1];
-    const scara_real_t t30 = scara_bounded(t29 - t22 * t26 - t23 * t25);
+    const scara_real_t t30 = scara_min(t13 + SCARA_C(-1.0e-9) * t12, t29 + SCARA_C(-1.0e-9) * t28);
     if (!(t30 > SCARA_C(1.0e-12))) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
@@ -226,171 +226,162 @@ scara_status_t scara_forward_dynamics_derivatives_standard(
         scara_zero(ddq_by_input, 16);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t31 = t30 + SCARA_C(-1.0e-9) * t29;
-    if (!(t31 > SCARA_C(1.0e-12))) {
-        scara_zero(ddq, 4);
-        scara_zero(ddq_by_q, 16);
-        scara_zero(ddq_by_dq, 16);
-        scara_zero(ddq_by_input, 16);
-        return SCARA_STATUS_PIVOT;
-    }
-    const scara_real_t t32 = dq[0] + dq[1]; /* link j2: motion */
-    const scara_real_t t33 = t32 * t32;
-    const scara_real_t t34 = SCARA_C(0.275) * t33; /* link j3: motion */
-    const scara_real_t t35 = SCARA_C(0.325) * (dq[0] * dq[0]); /* link j2: motion */
-    const scara_real_t t36 = t20 * t35;
-    const scara_real_t t37 = t36 + t34; /* link j3: motion */
-    const scara_real_t t38 = t18 * t35; /* link j2: motion */
-    const scara_real_t t39 = t4 * t37 + t3 * t38; /* link j4: motion */
-    const scara_real_t t40 = t32 - dq[3];
-    const scara_real_t t41 = t40 * t40;
-    const scara_real_t t42 = t41 * parameters[MX4]; /* link j4: force and moment */
-    const scara_real_t t43 = parameters[M4] * t39 + t42;
-    const scara_real_t t44 = t3 * t37 - t4 * t38; /* link j4: motion */
-    const scara_real_t t45 = t41 * parameters[MY4]; /* link j4: force and moment */
-    const scara_real_t t46 = parameters[M4] * t44 - t45;
-    const scara_real_t t47 = t33 * parameters[MX3]; /* link j3: force and moment */
+    const scara_real_t t31 = dq[0] + dq[1]; /* link j2: motion */
+    const scara_real_t t32 = t31 * t31;
+    const scara_real_t t33 = SCARA_C(0.275) * t32; /* link j3: motion */
+    const scara_real_t t34 = SCARA_C(0.325) * (dq[0] * dq[0]); /* link j2: motion */
+    const scara_real_t t35 = t19 * t34;
+    const scara_real_t t36 = t35 + t33; /* link j3: motion */
+    const scara_real_t t37 = t17 * t34; /* link j2: motion */
+    const scara_real_t t38 = t4 * t36 + t3 * t37; /* link j4: motion */
+    const scara_real_t t39 = t31 - dq[3];
+    const scara_real_t t40 = t39 * t39;
+    const scara_real_t t41 = t40 * parameters[MX4]; /* link j4: force and moment */
+    const scara_real_t t42 = parameters[M4] * t38 + t41;
+    const scara_real_t t43 = t3 * t36 - t4 * t37; /* link j4: motion */
+    const scara_real_t t44 = t40 * parameters[MY4]; /* link j4: force and moment */
+    const scara_real_t t45 = parameters[M4] * t43 - t44;
+    const scara_real_t t46 = t32 * parameters[MX3]; /* link j3: force and moment */
     /* link j4: what it passes on */
-    const scara_real_t t48 = parameters[M3] * t37 + t47 + (t4 * t43 + t3 * t46);
-    const scara_real_t t49 = t33 * parameters[MX2]; /* link j2: force and moment */
-    const scara_real_t t50 = t33 * parameters[MY3]; /* link j3: force and moment */
+    const scara_real_t t47 = parameters[M3] * t36 + t46 + (t4 * t42 + t3 * t45);
+    const scara_real_t t48 = t32 * parameters[MX2]; /* link j2: force and moment */
+    const scara_real_t t49 = t32 * parameters[MY3]; /* link j3: force and moment */
     /* link j4: what it passes on */
-    const scara_real_t t51 = t4 * t46 - t3 * t43 - (t38 * parameters[M3] + t50);
-    const scara_real_t t52 = t33 * parameters[MY2]; /* link j2: force and moment */
+    const scara_real_t t50 = t4 * t45 - t3 * t42 - (t37 * parameters[M3] + t49);
+    const scara_real_t t51 = t32 * parameters[MY2]; /* link j2: force and moment */
     /* link j2: what it passes on */
-    const scara_real_t t53 = t18 * (t36 * parameters[M2] + t49 + t48) + t20 * (t52 - t38 * parameters[M2]
-        + t51);
-    const scara_real_t t54 = parameters[MX4] * t44 + parameters[MY4] * t39; /* link j4: force and moment */
+    const scara_real_t t52 = t17 * (t35 * parameters[M2] + t48 + t47) + t19 * (t51 - t37 * parameters[M2]
+        + t50);
+    const scara_real_t t53 = parameters[MX4] * t43 + parameters[MY4] * t38; /* link j4: force and moment */
     /* link j3: what it passes on */
-    const scara_real_t t55 = parameters[MY3] * t37 - t38 * parameters[MX3] + t54 + SCARA_C(0.275) * t51;
-    const scara_real_t t56 = t55 - (t38 * parameters[MX2] + t36 * parameters[MY2]);
-    const scara_real_t t57 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
-    const scara_real_t t58 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1]
-        - t57 * parameters[FC1]) + (t56 + SCARA_C(0.325) * t53);
-    const scara_real_t t59 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
-    const scara_real_t t60 = SCARA_C(20.0) * (SCARA_C(-20.0) * dq[3] * parameters[FV4]
-        - t59 * parameters[FC4]) - t54;
-    const scara_real_t t61 = SCARA_C(2.0) * input[3] + t60;
-    const scara_real_t t62 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
-    const scara_real_t t63 = SCARA_C(50.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2] + t62 * parameters[FC2])
-        - t56;
-    const scara_real_t t64 = SCARA_C(10.0) * input[1] - t63 + t61 * t8;
-    const scara_real_t t65 = SCARA_C(16.0) * input[0] + t58 + t61 * t26 + t64 * t25;
-    const scara_real_t t66 = SCARA_C(1.0) / t30;
-    const scara_real_t t67 = scara_bounded(t65 * t66);
-    ddq[0] = t67;
-    const scara_real_t t68 = scara_bounded(t64 * t24 + t25 * t67);
-    ddq[1] = t68;
-    const scara_real_t t69 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
+    const scara_real_t t54 = parameters[MY3] * t36 - t37 * parameters[MX3] + t53 + SCARA_C(0.275) * t50;
+    const scara_real_t t55 = t54 - (t37 * parameters[MX2] + t35 * parameters[MY2]);
+    const scara_real_t t56 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
+    const scara_real_t t57 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1]
+        - t56 * parameters[FC1]) + (t55 + SCARA_C(0.325) * t52);
+    const scara_real_t t58 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
+    const scara_real_t t59 = SCARA_C(20.0) * (SCARA_C(-20.0) * dq[3] * parameters[FV4]
+        - t58 * parameters[FC4]) - t53;
+    const scara_real_t t60 = SCARA_C(2.0) * input[3] + t59;
+    const scara_real_t t61 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
+    const scara_real_t t62 = SCARA_C(50.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2] + t61 * parameters[FC2])
+        - t55;
+    const scara_real_t t63 = SCARA_C(10.0) * input[1] - t62 + t60 * t8;
+    const scara_real_t t64 = SCARA_C(16.0) * input[0] + t57 + t60 * t25 + t63 * t24;
+    const scara_real_t t65 = SCARA_C(1.0) / t29;
+    const scara_real_t t66 = scara_held(t64 * t65);
+    ddq[0] = t66;
+    const scara_real_t t67 = scara_held(t63 * t23 + t24 * t66);
+    ddq[1] = t67;
+    const scara_real_t t68 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t
-        t70 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3]
-        - t69 * parameters[FC3]) + (SCARA_C(9.81) * parameters[M3] + SCARA_C(9.81) * parameters[M4]);
-    const scara_real_t t71 = SCARA_C(1.0) / t1;
-    ddq[2] = (SCARA_C(31.415926535897935) * input[2] + t70) * t71;
-    const scara_real_t t72 = scara_bounded(t61 * t7 + t26 * t67 + t8 * t68);
-    ddq[3] = t72;
-    const scara_real_t t73 = scara_bounded(SCARA_C(16.0) * t66);
-    const scara_real_t t74 = t40 * parameters[MY4];
-    const scara_real_t t75 = t40 * parameters[MX4];
-    const scara_real_t t76 = SCARA_C(0.275) * t32; /* link j3: velocity of its origin */
-    /* link j3: inertia, momentum beyond */
-    const scara_real_t t77 = t32 * parameters[MX3] + (t4 * t75 - t3 * t74) + t0 * t76;
-    const scara_real_t t78 = t32 * parameters[MX2] + t77;
-    /* link j4: inertia, momentum beyond */
-    const scara_real_t t79 = t32 * parameters[MY3] + (t4 * t74 + t3 * t75);
-    const scara_real_t t80 = t32 * parameters[MY2] - t79; /* link j3: inertia, momentum beyond */
-    const scara_real_t t81 = t20 * t17 + t18 * t19; /* link j2: column of the mass matrix */
-    /* link j2: inertia, momentum beyond */
-    const scara_real_t t82 = SCARA_C(0.325) * (t20 * t80 + t18 * t78) + t81 * (SCARA_C(-0.325) * dq[0]);
-    /* link j3: inertia, momentum beyond */
-    const scara_real_t t83 = dq[2] * (parameters[MZ3] + parameters[MZ4] + q[2] * t0);
-    const scara_real_t t84 = t83 + (SCARA_C(-0.275) * t79 + (t16 * t76 - t83));
-    const scara_real_t t85 = SCARA_C(-4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t84 + t82);
-    const scara_real_t t86 = t25 * t66;
-    const scara_real_t t87 = scara_bounded(SCARA_C(10.0) * t86);
-    const scara_real_t t88 = SCARA_C(2.0) * t84; /* link j2: derivatives */
-    const scara_real_t t89 = SCARA_C(-0.65) * dq[0];
-    const scara_real_t t90 = SCARA_C(0.1) * (t88 + t81 * t89);
-    const scara_real_t t91 = t66 * (t26 + t8 * t25);
-    const scara_real_t t92 = SCARA_C(2.0) * t91;
-    const scara_real_t t93 = t15 * (SCARA_C(-0.55) * t32); /* link j4: derivatives */
-    const scara_real_t t94 = SCARA_C(0.5) * (t93 - (t18 * t5 - t20 * t15) * t89);
-    ddq_by_dq[0] = t85 * t73 + t90 * t87 + t94 * t92;
-    const scara_real_t t95 = scara_bounded(SCARA_C(16.0) * t86);
-    const scara_real_t t96 = scara_bounded(SCARA_C(10.0) * (t24 + t25 * t86));
-    const scara_real_t t97 = t8 * t24 + t25 * t91;
-    const scara_real_t t98 = SCARA_C(2.0) * t97;
-    ddq_by_dq[4] = t85 * t95 + t90 * t96 + t94 * t98;
-    const scara_real_t t99 = scara_bounded(SCARA_C(16.0) * t91);
-    const scara_real_t t100 = scara_bounded(SCARA_C(10.0) * t97);
-    const scara_real_t t101 = SCARA_C(2.0) * (t7 + t26 * t91 + t8 * t97);
-    ddq_by_dq[12] = t85 * t99 + t90 * t100 + t94 * t101;
-    ddq_by_input[0] = t73;
-    ddq_by_input[4] = t95;
-    ddq_by_input[12] = t99;
-    const scara_real_t t102 = t67 + t68;
-    const scara_real_t t103 = t72 - t102;
-    const scara_real_t t104 = t42 + parameters[MY4] * t103;
-    const scara_real_t t105 = SCARA_C(0.325) * t67;
-    const scara_real_t t106 = t38 + t20 * t105;
-    const scara_real_t t107 = t106 + SCARA_C(0.275) * t102;
-    const scara_real_t t108 = t36 - t18 * t105;
-    const scara_real_t t109 = t34 + t108;
-    const scara_real_t t110 = t4 * t109 + t3 * t107;
-    const scara_real_t t111 = parameters[M4] * t110 + t104;
-    const scara_real_t t112 = t45 - parameters[MX4] * t103;
-    const scara_real_t t113 = t4 * t107 - t3 * t109;
-    const scara_real_t t114 = parameters[M4] * t113 + t112;
-    const scara_real_t t115 = parameters[M3] * t107 + (t50 + parameters[MX3] * t102) + (t3 * t111
-        + t4 * t114);
-    const scara_real_t t116 = parameters[M2] * t106 + (parameters[MX2] * t102 - t52) + t115 - t27 * t106;
-    const scara_real_t t117 = parameters[M3] * t109 + (t47 - parameters[MY3] * t102) + (t4 * t111
-        - t3 * t114);
-    const scara_real_t t118 = parameters[M2] * t108 + (t49 + parameters[MY2] * t102) + t117 - t27 * t108;
-    const scara_real_t t119 = t17 * t106 - t19 * t108;
-    const scara_real_t t120 = SCARA_C(0.0625) * (t119 + SCARA_C(0.325) * (t18 * t116 + t20 * t118));
-    const scara_real_t t121 = SCARA_C(0.1) * t119;
-    const scara_real_t t122 = SCARA_C(0.5) * (t15 * t106 + t5 * t108);
-    ddq_by_q[1] = t73 * t120 + t87 * t121 + t92 * t122;
-    ddq_by_q[5] = t95 * t120 + t96 * t121 + t98 * t122;
-    ddq_by_q[13] = t99 * t120 + t100 * t121 + t101 * t122;
-    /* link j2: derivatives */
-    const scara_real_t t123 = SCARA_C(0.325) * (t18 * (SCARA_C(2.0) * t78) + t20 * (SCARA_C(2.0) * t80));
-    const scara_real_t t124 = SCARA_C(0.0625) * (t88 + t123);
-    const scara_real_t t125 = SCARA_C(-250.0) * parameters[FV2] + SCARA_C(0.2) * t84;
-    const scara_real_t t126 = SCARA_C(0.5) * t93;
-    ddq_by_dq[1] = t124 * t73 + t125 * t87 + t126 * t92;
-    ddq_by_dq[5] = t124 * t95 + t125 * t96 + t126 * t98;
-    ddq_by_dq[13] = t124 * t99 + t125 * t100 + t126 * t101;
-    ddq_by_input[1] = t87;
-    ddq_by_input[5] = t96;
-    ddq_by_input[13] = t100;
-    const scara_real_t t127 = SCARA_C(31.415926535897935) * t71;
-    ddq_by_dq[10] = SCARA_C(-3141.5926535897934) * parameters[FV3] * t127;
-    ddq_by_input[10] = t127;
-    const scara_real_t t128 = t3 * t112 - t4 * t104;
-    const scara_real_t t129 = t20 * t128 - t18 * (t4 * t112 + t3 * t104);
-    const scara_real_t t130 = parameters[MX4] * t110 + parameters[MY4] * t113;
-    const scara_real_t t131 = t130 + SCARA_C(0.275) * t128;
-    const scara_real_t t132 = SCARA_C(0.0625) * (t131 + SCARA_C(0.325) * t129);
-    const scara_real_t t133 = SCARA_C(0.1) * t131;
-    const scara_real_t t134 = SCARA_C(-0.5) * t130;
-    ddq_by_q[3] = t73 * t132 + t87 * t133 + t92 * t134;
-    ddq_by_q[7] = t95 * t132 + t96 * t133 + t98 * t134;
-    ddq_by_q[15] = t99 * t132 + t100 * t133 + t101 * t134;
-    const scara_real_t t135 = SCARA_C(-2.0) * t75; /* link j4: derivatives */
-    const scara_real_t t136 = SCARA_C(2.0) * t74;
-    const scara_real_t t137 = t4 * t136 - t3 * t135;
-    const scara_real_t t138 = t18 * (t4 * t135 + t3 * t136) + t20 * t137;
-    const scara_real_t t139 = SCARA_C(0.0625) * (SCARA_C(0.275) * t137 + SCARA_C(0.325) * t138);
-    const scara_real_t t140 = SCARA_C(0.027500000000000004) * t137;
-    const scara_real_t t141 = SCARA_C(-2.0e2) * parameters[FV4];
-    ddq_by_dq[3] = t139 * t73 + t140 * t87 + t141 * t92;
-    ddq_by_dq[7] = t139 * t95 + t140 * t96 + t141 * t98;
-    ddq_by_dq[15] = t139 * t99 + t140 * t100 + t141 * t101;
-    ddq_by_input[3] = t92;
+        t69 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3]
+        - t68 * parameters[FC3]) + (SCARA_C(9.81) * parameters[M3] + SCARA_C(9.81) * parameters[M4]);
+    const scara_real_t t70 = SCARA_C(1.0) / t1;
+    ddq[2] = (SCARA_C(31.415926535897935) * input[2] + t69) * t70;
+    const scara_real_t t71 = scara_held(t60 * t7 + t25 * t66 + t8 * t67);
+    ddq[3] = t71;
+    const scara_real_t t72 = t66 + t67;
+    const scara_real_t t73 = t71 - t72;
+    const scara_real_t t74 = t44 - parameters[MX4] * t73;
+    const scara_real_t t75 = t41 + parameters[MY4] * t73;
+    const scara_real_t t76 = t3 * t74 - t4 * t75;
+    const scara_real_t t77 = t19 * t76 - t17 * (t4 * t74 + t3 * t75);
+    const scara_real_t t78 = SCARA_C(0.325) * t66;
+    const scara_real_t t79 = t37 + t19 * t78;
+    const scara_real_t t80 = t79 + SCARA_C(0.275) * t72;
+    const scara_real_t t81 = t35 - t17 * t78;
+    const scara_real_t t82 = t33 + t81;
+    const scara_real_t t83 = t4 * t82 + t3 * t80;
+    const scara_real_t t84 = t4 * t80 - t3 * t82;
+    const scara_real_t t85 = parameters[MX4] * t83 + parameters[MY4] * t84;
+    const scara_real_t t86 = t85 + SCARA_C(0.275) * t76;
+    const scara_real_t t87 = SCARA_C(0.0625) * (t86 + SCARA_C(0.325) * t77);
+    const scara_real_t t88 = scara_held(SCARA_C(16.0) * t65);
+    const scara_real_t t89 = SCARA_C(0.1) * t86;
+    const scara_real_t t90 = t24 * t65;
+    const scara_real_t t91 = scara_held(SCARA_C(10.0) * t90);
+    const scara_real_t t92 = SCARA_C(-0.5) * t85;
+    const scara_real_t t93 = t65 * (t25 + t8 * t24);
+    const scara_real_t t94 = scara_held(SCARA_C(2.0) * t93);
+    ddq_by_q[3] = t88 * t87 + t91 * t89 + t94 * t92;
+    const scara_real_t t95 = scara_held(SCARA_C(16.0) * t90);
+    const scara_real_t t96 = scara_held(SCARA_C(10.0) * (t23 + t24 * t90));
+    const scara_real_t t97 = t8 * t23 + t24 * t93;
+    const scara_real_t t98 = scara_held(SCARA_C(2.0) * t97);
+    ddq_by_q[7] = t95 * t87 + t96 * t89 + t98 * t92;
+    const scara_real_t t99 = scara_held(SCARA_C(16.0) * t93);
+    const scara_real_t t100 = scara_held(SCARA_C(10.0) * t97);
+    const scara_real_t t101 = scara_held(SCARA_C(2.0) * (t7 + t25 * t93 + t8 * t97));
+    ddq_by_q[15] = t99 * t87 + t100 * t89 + t101 * t92;
+    const scara_real_t t102 = t39 * parameters[MX4];
+    const scara_real_t t103 = SCARA_C(-2.0) * t102; /* link j4: derivatives */
+    const scara_real_t t104 = t39 * parameters[MY4];
+    const scara_real_t t105 = SCARA_C(2.0) * t104;
+    const scara_real_t t106 = t4 * t105 - t3 * t103;
+    const scara_real_t t107 = t17 * (t4 * t103 + t3 * t105) + t19 * t106;
+    const scara_real_t t108 = SCARA_C(0.0625) * (SCARA_C(0.275) * t106 + SCARA_C(0.325) * t107);
+    const scara_real_t t109 = SCARA_C(0.027500000000000004) * t106;
+    const scara_real_t t110 = SCARA_C(-2.0e2) * parameters[FV4];
+    ddq_by_dq[3] = t108 * t88 + t109 * t91 + t110 * t94;
+    ddq_by_dq[7] = t108 * t95 + t109 * t96 + t110 * t98;
+    ddq_by_dq[15] = t108 * t99 + t109 * t100 + t110 * t101;
+    ddq_by_input[3] = t94;
     ddq_by_input[7] = t98;
     ddq_by_input[15] = t101;
+    const scara_real_t t111 = scara_held(SCARA_C(31.415926535897935) * t70);
+    ddq_by_dq[10] = SCARA_C(-3141.5926535897934) * parameters[FV3] * t111;
+    ddq_by_input[10] = t111;
+    const scara_real_t t112 = parameters[M4] * t83 + t75;
+    const scara_real_t t113 = parameters[M4] * t84 + t74;
+    const scara_real_t t114 = parameters[M3] * t80 + (t49 + parameters[MX3] * t72) + (t3 * t112 + t4 * t113);
+    const scara_real_t t115 = parameters[M2] * t79 + (parameters[MX2] * t72 - t51) + t114 - t26 * t79;
+    const scara_real_t t116 = parameters[M3] * t82 + (t46 - parameters[MY3] * t72) + (t4 * t112 - t3 * t113);
+    const scara_real_t t117 = parameters[M2] * t81 + (t48 + parameters[MY2] * t72) + t116 - t26 * t81;
+    const scara_real_t t118 = t16 * t79 - t18 * t81;
+    const scara_real_t t119 = SCARA_C(0.0625) * (t118 + SCARA_C(0.325) * (t17 * t115 + t19 * t117));
+    const scara_real_t t120 = SCARA_C(0.1) * t118;
+    const scara_real_t t121 = SCARA_C(0.5) * (t14 * t79 + t5 * t81);
+    ddq_by_q[1] = t88 * t119 + t91 * t120 + t94 * t121;
+    ddq_by_q[5] = t95 * t119 + t96 * t120 + t98 * t121;
+    ddq_by_q[13] = t99 * t119 + t100 * t120 + t101 * t121;
+    const scara_real_t t122 = SCARA_C(0.275) * t31; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const scara_real_t t123 = dq[2] * (parameters[MZ3] + parameters[MZ4] + q[2] * t0);
+    /* link j4: inertia, momentum beyond */
+    const scara_real_t t124 = t31 * parameters[MY3] + (t4 * t104 + t3 * t102);
+    /* link j3: inertia, momentum beyond */
+    const scara_real_t t125 = t123 + (SCARA_C(-0.275) * t124 + (t15 * t122 - t123));
+    const scara_real_t t126 = SCARA_C(2.0) * t125; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const scara_real_t t127 = t31 * parameters[MX3] + (t4 * t102 - t3 * t104) + t0 * t122;
+    const scara_real_t t128 = t31 * parameters[MX2] + t127;
+    const scara_real_t t129 = t31 * parameters[MY2] - t124;
+    /* link j2: derivatives */
+    const scara_real_t t130 = SCARA_C(0.325) * (t17 * (SCARA_C(2.0) * t128) + t19 * (SCARA_C(2.0) * t129));
+    const scara_real_t t131 = SCARA_C(0.0625) * (t126 + t130);
+    const scara_real_t t132 = SCARA_C(-250.0) * parameters[FV2] + SCARA_C(0.2) * t125;
+    const scara_real_t t133 = t14 * (SCARA_C(-0.55) * t31); /* link j4: derivatives */
+    const scara_real_t t134 = SCARA_C(0.5) * t133;
+    ddq_by_dq[1] = t131 * t88 + t132 * t91 + t134 * t94;
+    ddq_by_dq[5] = t131 * t95 + t132 * t96 + t134 * t98;
+    ddq_by_dq[13] = t131 * t99 + t132 * t100 + t134 * t101;
+    ddq_by_input[1] = t91;
+    ddq_by_input[5] = t96;
+    ddq_by_input[13] = t100;
+    const scara_real_t t135 = t19 * t16 + t17 * t18; /* link j2: column of the mass matrix */
+    /* link j2: inertia, momentum beyond */
+    const scara_real_t t136 = SCARA_C(0.325) * (t19 * t129 + t17 * t128) + t135 * (SCARA_C(-0.325) * dq[0]);
+    const scara_real_t t137 = SCARA_C(-4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t125 + t136);
+    const scara_real_t t138 = SCARA_C(-0.65) * dq[0];
+    const scara_real_t t139 = SCARA_C(0.1) * (t126 + t135 * t138);
+    const scara_real_t t140 = SCARA_C(0.5) * (t133 - (t17 * t5 - t19 * t14) * t138);
+    ddq_by_dq[0] = t137 * t88 + t139 * t91 + t140 * t94;
+    ddq_by_dq[4] = t137 * t95 + t139 * t96 + t140 * t98;
+    ddq_by_dq[12] = t137 * t99 + t139 * t100 + t140 * t101;
+    ddq_by_input[0] = t88;
+    ddq_by_input[4] = t95;
+    ddq_by_input[12] = t99;
     /* always zero */
     ddq_by_q[0] = ddq_by_q[2] = SCARA_C(0.0);
     ddq_by_q[4] = ddq_by_q[6] = SCARA_C(0.0);
@@ -404,10 +395,10 @@ scara_status_t scara_forward_dynamics_derivatives_standard(
     ddq_by_input[6] = SCARA_C(0.0);
     ddq_by_input[8] = ddq_by_input[9] = ddq_by_input[11] = SCARA_C(0.0);
     ddq_by_input[14] = SCARA_C(0.0);
-    if (!scara_all_bounded(ddq, 4)
-        || !scara_all_bounded(ddq_by_q, 16)
-        || !scara_all_bounded(ddq_by_dq, 16)
-        || !scara_all_bounded(ddq_by_input, 16)) {
+    if (!scara_bounded(ddq, 4)
+        || !scara_bounded(ddq_by_q, 16)
+        || !scara_bounded(ddq_by_dq, 16)
+        || !scara_bounded(ddq_by_input, 16)) {
         scara_zero(ddq, 4);
         scara_zero(ddq_by_q, 16);
         scara_zero(ddq_by_dq, 16);

@@ -6,7 +6,7 @@
  * Arm scara, description c1d518ff4a0020fb.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 4 other calls (sign, select and the like).
+ * Operations: 174 (99 mul, 75 add, 0 neg), 4 div, 4 trig, 5 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad, rad, m, rad]                  joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s, rad/s, m/s, rad/s]          joint velocities; norm at most 100000
@@ -79,7 +79,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -106,17 +106,17 @@ scara_status_t scara_forward_dynamics_standard(
         return status;
     }
 
-    scara_real_t t16, t17;
-    SCARA_SINCOS(q[1], &t16, &t17);
+    scara_real_t t15, t16;
+    SCARA_SINCOS(q[1], &t15, &t16);
     scara_real_t t3, t4;
     SCARA_SINCOS(q[3], &t3, &t4);
     const scara_real_t t0 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const scara_real_t t1 = scara_bounded(t0 + SCARA_C(98696.04401089359) * parameters[IA3]);
+    const scara_real_t t1 = t0 + SCARA_C(98696.04401089359) * parameters[IA3];
     if (!(t1 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t2 = scara_bounded(parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4]);
+    const scara_real_t t2 = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
     if (!(t2 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
@@ -132,88 +132,83 @@ scara_status_t scara_forward_dynamics_standard(
     const scara_real_t t11 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t10
         + SCARA_C(2.0) * t9));
     const scara_real_t t12 = t11 + SCARA_C(2.5e3) * parameters[IA2];
-    const scara_real_t t13 = scara_bounded(t12 - t6 * t8);
+    const scara_real_t t13 = t12 - t6 * t8;
     if (!(t13 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t14 = t13 + SCARA_C(-1.0e-9) * t12;
-    if (!(t14 > SCARA_C(1.0e-12))) {
+    /* link j4: column of the mass matrix */
+    const scara_real_t t14 = t4 * parameters[MY4] + t3 * parameters[MX4];
+    /* link j2: column of the mass matrix */
+    const scara_real_t t17 = t15 * (parameters[MY2] - (parameters[MY3] + t14)) - t16 * (parameters[MX2] + (t9
+        + t10));
+    /* link j4: column of the mass matrix */
+    const scara_real_t t18 = t6 + SCARA_C(0.325) * (t15 * t14 + t16 * t5);
+    const scara_real_t t19 = SCARA_C(0.325) * t17 - t11 + t18 * t8;
+    const scara_real_t t20 = SCARA_C(1.0) / t13;
+    const scara_real_t t21 = t19 * t20;
+    const scara_real_t t22 = t18 * t7;
+    /* link j2: inertia of it and all beyond */
+    const scara_real_t t23 = t11 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t0)
+        + SCARA_C(-2.0) * t17);
+    const scara_real_t t24 = parameters[ZZ1] + t23 + SCARA_C(6.4e3) * parameters[IA1];
+    const scara_real_t t25 = t24 - t18 * t22 - t19 * t21;
+    if (!(t25 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    /* link j4: column of the mass matrix */
-    const scara_real_t t15 = t4 * parameters[MY4] + t3 * parameters[MX4];
-    /* link j2: column of the mass matrix */
-    const scara_real_t t18 = t16 * (parameters[MY2] - (parameters[MY3] + t15)) - t17 * (parameters[MX2] + (t9
-        + t10));
-    /* link j4: column of the mass matrix */
-    const scara_real_t t19 = t6 + SCARA_C(0.325) * (t16 * t15 + t17 * t5);
-    const scara_real_t t20 = SCARA_C(0.325) * t18 - t11 + t19 * t8;
-    const scara_real_t t21 = SCARA_C(1.0) / t13;
-    const scara_real_t t22 = t20 * t21;
-    const scara_real_t t23 = t19 * t7;
-    /* link j2: inertia of it and all beyond */
-    const scara_real_t t24 = t11 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t0)
-        + SCARA_C(-2.0) * t18);
-    const scara_real_t t25 = parameters[ZZ1] + t24 + SCARA_C(6.4e3) * parameters[IA1];
-    const scara_real_t t26 = scara_bounded(t25 - t19 * t23 - t20 * t22);
+    const scara_real_t t26 = scara_min(t13 + SCARA_C(-1.0e-9) * t12, t25 + SCARA_C(-1.0e-9) * t24);
     if (!(t26 > SCARA_C(1.0e-12))) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }
-    const scara_real_t t27 = t26 + SCARA_C(-1.0e-9) * t25;
-    if (!(t27 > SCARA_C(1.0e-12))) {
-        scara_zero(out, 4);
-        return SCARA_STATUS_PIVOT;
-    }
-    const scara_real_t t28 = dq[0] + dq[1]; /* link j2: motion */
-    const scara_real_t t29 = t28 * t28;
-    const scara_real_t t30 = SCARA_C(0.325) * (dq[0] * dq[0]);
-    const scara_real_t t31 = t17 * t30;
-    const scara_real_t t32 = t31 + SCARA_C(0.275) * t29; /* link j3: motion */
-    const scara_real_t t33 = t16 * t30; /* link j2: motion */
-    const scara_real_t t34 = t4 * t32 + t3 * t33; /* link j4: motion */
-    const scara_real_t t35 = t28 - dq[3];
-    const scara_real_t t36 = t35 * t35;
-    const scara_real_t t37 = parameters[M4] * t34 + t36 * parameters[MX4]; /* link j4: force and moment */
-    const scara_real_t t38 = t3 * t32 - t4 * t33; /* link j4: motion */
-    const scara_real_t t39 = parameters[M4] * t38 - t36 * parameters[MY4]; /* link j4: force and moment */
+    const scara_real_t t27 = dq[0] + dq[1]; /* link j2: motion */
+    const scara_real_t t28 = t27 * t27;
+    const scara_real_t t29 = SCARA_C(0.325) * (dq[0] * dq[0]);
+    const scara_real_t t30 = t16 * t29;
+    const scara_real_t t31 = t30 + SCARA_C(0.275) * t28; /* link j3: motion */
+    const scara_real_t t32 = t15 * t29; /* link j2: motion */
+    const scara_real_t t33 = t4 * t31 + t3 * t32; /* link j4: motion */
+    const scara_real_t t34 = t27 - dq[3];
+    const scara_real_t t35 = t34 * t34;
+    const scara_real_t t36 = parameters[M4] * t33 + t35 * parameters[MX4]; /* link j4: force and moment */
+    const scara_real_t t37 = t3 * t31 - t4 * t32; /* link j4: motion */
+    const scara_real_t t38 = parameters[M4] * t37 - t35 * parameters[MY4]; /* link j4: force and moment */
     /* link j4: what it passes on */
-    const scara_real_t t40 = parameters[M3] * t32 + t29 * parameters[MX3] + (t4 * t37 + t3 * t39);
-    const scara_real_t t41 = t4 * t39 - t3 * t37 - (t33 * parameters[M3] + t29 * parameters[MY3]);
+    const scara_real_t t39 = parameters[M3] * t31 + t28 * parameters[MX3] + (t4 * t36 + t3 * t38);
+    const scara_real_t t40 = t4 * t38 - t3 * t36 - (t32 * parameters[M3] + t28 * parameters[MY3]);
     /* link j2: what it passes on */
-    const scara_real_t t42 = t16 * (t31 * parameters[M2] + t29 * parameters[MX2] + t40)
-        + t17 * (t29 * parameters[MY2] - t33 * parameters[M2] + t41);
-    const scara_real_t t43 = parameters[MX4] * t38 + parameters[MY4] * t34; /* link j4: force and moment */
+    const scara_real_t t41 = t15 * (t30 * parameters[M2] + t28 * parameters[MX2] + t39)
+        + t16 * (t28 * parameters[MY2] - t32 * parameters[M2] + t40);
+    const scara_real_t t42 = parameters[MX4] * t37 + parameters[MY4] * t33; /* link j4: force and moment */
     /* link j3: what it passes on */
-    const scara_real_t t44 = parameters[MY3] * t32 - t33 * parameters[MX3] + t43 + SCARA_C(0.275) * t41;
-    const scara_real_t t45 = t44 - (t33 * parameters[MX2] + t31 * parameters[MY2]);
-    const scara_real_t t46 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
-    const scara_real_t t47 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1]
-        - t46 * parameters[FC1]) + (t45 + SCARA_C(0.325) * t42);
-    const scara_real_t t48 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
-    const scara_real_t t49 = SCARA_C(20.0) * (SCARA_C(-20.0) * dq[3] * parameters[FV4]
-        - t48 * parameters[FC4]) - t43;
-    const scara_real_t t50 = SCARA_C(2.0) * input[3] + t49;
-    const scara_real_t t51 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
-    const scara_real_t t52 = SCARA_C(50.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2] + t51 * parameters[FC2])
-        - t45;
-    const scara_real_t t53 = SCARA_C(10.0) * input[1] - t52 + t50 * t8;
-    const scara_real_t t54 = SCARA_C(16.0) * input[0] + t47 + t50 * t23 + t53 * t22;
-    const scara_real_t t55 = SCARA_C(1.0) / t26;
-    const scara_real_t t56 = scara_bounded(t54 * t55);
-    out[0] = t56;
-    const scara_real_t t57 = scara_bounded(t53 * t21 + t22 * t56);
-    out[1] = t57;
-    const scara_real_t t58 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
+    const scara_real_t t43 = parameters[MY3] * t31 - t32 * parameters[MX3] + t42 + SCARA_C(0.275) * t40;
+    const scara_real_t t44 = t43 - (t32 * parameters[MX2] + t30 * parameters[MY2]);
+    const scara_real_t t45 = scara_sign(dq[0]); /* joint j1: coulomb_friction */
+    const scara_real_t t46 = SCARA_C(80.0) * (SCARA_C(-80.0) * dq[0] * parameters[FV1]
+        - t45 * parameters[FC1]) + (t44 + SCARA_C(0.325) * t41);
+    const scara_real_t t47 = scara_sign(dq[3]); /* joint j4: coulomb_friction */
+    const scara_real_t t48 = SCARA_C(20.0) * (SCARA_C(-20.0) * dq[3] * parameters[FV4]
+        - t47 * parameters[FC4]) - t42;
+    const scara_real_t t49 = SCARA_C(2.0) * input[3] + t48;
+    const scara_real_t t50 = scara_sign(dq[1]); /* joint j2: coulomb_friction */
+    const scara_real_t t51 = SCARA_C(50.0) * (SCARA_C(50.0) * dq[1] * parameters[FV2] + t50 * parameters[FC2])
+        - t44;
+    const scara_real_t t52 = SCARA_C(10.0) * input[1] - t51 + t49 * t8;
+    const scara_real_t t53 = SCARA_C(16.0) * input[0] + t46 + t49 * t22 + t52 * t21;
+    const scara_real_t t54 = SCARA_C(1.0) / t25;
+    const scara_real_t t55 = scara_held(t53 * t54);
+    out[0] = t55;
+    const scara_real_t t56 = scara_held(t52 * t20 + t21 * t55);
+    out[1] = t56;
+    const scara_real_t t57 = scara_sign(dq[2]); /* joint j3: coulomb_friction */
     const scara_real_t
-        t59 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3]
-        - t58 * parameters[FC3]) + (SCARA_C(9.81) * parameters[M3] + SCARA_C(9.81) * parameters[M4]);
-    const scara_real_t t60 = SCARA_C(1.0) / t1;
-    out[2] = (SCARA_C(31.415926535897935) * input[2] + t59) * t60;
-    out[3] = t50 * t7 + t23 * t56 + t8 * t57;
-    if (!scara_all_bounded(out, 4)) {
+        t58 = SCARA_C(314.1592653589793) * (SCARA_C(-314.1592653589793) * dq[2] * parameters[FV3]
+        - t57 * parameters[FC3]) + (SCARA_C(9.81) * parameters[M3] + SCARA_C(9.81) * parameters[M4]);
+    const scara_real_t t59 = SCARA_C(1.0) / t1;
+    out[2] = (SCARA_C(31.415926535897935) * input[2] + t58) * t59;
+    out[3] = t49 * t7 + t22 * t55 + t8 * t56;
+    if (!scara_bounded(out, 4)) {
         scara_zero(out, 4);
         return SCARA_STATUS_PIVOT;
     }

@@ -57,7 +57,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -139,76 +139,76 @@ scara_status_t scara_inverse_dynamics_derivatives(
     const scara_real_t t35 = parameters[FV4] * (SCARA_C(20.0) * dq[3]) + parameters[FC4] * t34
         + parameters[IA4] * (SCARA_C(20.0) * ddq[3]);
     input[3] = SCARA_C(10.0) * t35 + SCARA_C(-0.5) * t16;
-    const scara_real_t t36 = parameters[MY4] * t17;
-    const scara_real_t t37 = parameters[MX4] * t17;
-    const scara_real_t t38 = t12 * t36 + t8 * t37; /* link j4: inertia, momentum beyond */
-    const scara_real_t t39 = t38 - parameters[MY2R] * t0; /* link j3: inertia, momentum beyond */
-    const scara_real_t t40 = SCARA_C(-0.275) * t0; /* link j3: velocity of its origin */
-    /* link j3: inertia, momentum beyond */
-    const scara_real_t t41 = t8 * t36 - t12 * t37 + parameters[M3R] * t40 - parameters[MX2R] * t0;
+    const scara_real_t t36 = parameters[MX4] * t14 + parameters[MY4] * t13;
+    input_by_q[15] = SCARA_C(-0.5) * t36;
+    const scara_real_t t37 = t36 + SCARA_C(-0.275) * t24;
+    input_by_q[7] = SCARA_C(0.1) * t37;
+    const scara_real_t t38 = SCARA_C(0.0625) * (t37 + SCARA_C(-0.325) * (t5 * t21 + t3 * t24));
+    input_by_q[3] = t38;
+    input_by_dq[15] = SCARA_C(2.0e2) * parameters[FV4];
+    const scara_real_t t39 = parameters[MX4] * t17;
+    const scara_real_t t40 = SCARA_C(-2.0) * t39; /* link j4: derivatives */
+    const scara_real_t t41 = parameters[MY4] * t17;
+    const scara_real_t t42 = SCARA_C(-2.0) * t41;
+    const scara_real_t t43 = t8 * t40 + t12 * t42;
+    input_by_dq[7] = SCARA_C(0.027500000000000004) * t43;
+    const scara_real_t t44 = t5 * (t8 * t42 - t12 * t40) + t3 * t43;
+    input_by_dq[3] = SCARA_C(0.0625) * (SCARA_C(0.275) * t43 + SCARA_C(0.325) * t44);
+    input_by_ddq[15] = SCARA_C(2.0e2) * parameters[IA4] + SCARA_C(0.5) * parameters[ZZ4];
     /* link j4: column of the mass matrix */
-    const scara_real_t t42 = t12 * parameters[MY4] + t8 * parameters[MX4];
-    const scara_real_t t43 = t42 - parameters[MY2R]; /* link j3: inertia of it and all beyond */
-    /* link j4: column of the mass matrix */
-    const scara_real_t t44 = t8 * parameters[MY4] - t12 * parameters[MX4];
-    const scara_real_t t45 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
-    const scara_real_t t46 = parameters[MX2R] + (t45 - t44); /* link j3: inertia of it and all beyond */
-    const scara_real_t t47 = t5 * t46 - t3 * t43; /* link j2: column of the mass matrix */
-    /* link j2: inertia, momentum beyond */
-    const scara_real_t t48 = SCARA_C(0.325) * (t3 * t39 + t5 * t41) + t47 * (SCARA_C(0.325) * dq[0]);
-    const scara_real_t t49 = dq[2] * (q[2] * parameters[M3R]); /* link j3: inertia, momentum beyond */
-    const scara_real_t t50 = SCARA_C(0.275) * t38 + (t42 * t40 + t49) - t49;
-    input_by_dq[0] = SCARA_C(4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t50 + t48);
-    const scara_real_t t51 = SCARA_C(2.0) * t50; /* link j2: derivatives */
-    const scara_real_t t52 = SCARA_C(0.65) * dq[0];
-    input_by_dq[4] = SCARA_C(0.1) * (t51 + t47 * t52);
-    const scara_real_t t53 = t42 * (SCARA_C(0.55) * t0); /* link j4: derivatives */
-    const scara_real_t t54 = SCARA_C(0.5) * (t53 + (t3 * t42 + t5 * t44) * t52);
-    input_by_dq[12] = t54;
-    const scara_real_t t55 = t5 * t43 + t3 * t46; /* link j2: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const scara_real_t t56 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(-2.0) * t44
-        + t45));
-    /* link j2: inertia of it and all beyond */
-    const scara_real_t t57 = parameters[ZZ1R] + (t56 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
-        + SCARA_C(2.0) * t55));
-    input_by_ddq[0] = SCARA_C(0.0625) * t57;
-    const scara_real_t t58 = t56 + SCARA_C(0.325) * t55; /* link j2: column of the mass matrix */
-    input_by_ddq[4] = SCARA_C(0.1) * t58;
-    const scara_real_t t59 = SCARA_C(0.275) * t44 - parameters[ZZ4]; /* link j4: column of the mass matrix */
-    const scara_real_t t60 = t59 + SCARA_C(0.325) * (t3 * t44 - t5 * t42);
-    input_by_ddq[12] = SCARA_C(0.5) * t60;
-    const scara_real_t t61 = t46 * t6 - t43 * t9; /* link j2: derivatives */
-    const scara_real_t t62 = t5 * (t26 - parameters[M3R] * t9) + t3 * (t25 + parameters[M3R] * t6);
-    input_by_q[1] = SCARA_C(0.0625) * (t61 + SCARA_C(0.325) * t62);
-    input_by_q[5] = SCARA_C(0.1) * t61;
-    input_by_q[13] = SCARA_C(0.5) * (t42 * t9 + t44 * t6);
-    const scara_real_t t63 = SCARA_C(0.325) * (t5 * (SCARA_C(2.0) * t41) + t3 * (SCARA_C(2.0) * t39));
-    input_by_dq[1] = SCARA_C(0.0625) * (t51 + t63);
-    input_by_dq[5] = SCARA_C(250.0) * parameters[FV2] + SCARA_C(0.2) * t50;
-    input_by_dq[13] = SCARA_C(0.5) * t53;
-    input_by_ddq[1] = SCARA_C(0.0625) * t58;
-    input_by_ddq[5] = SCARA_C(250.0) * parameters[IA2] + SCARA_C(0.1) * t56;
-    input_by_ddq[13] = SCARA_C(0.5) * t59;
+    const scara_real_t t45 = t8 * parameters[MY4] - t12 * parameters[MX4];
+    const scara_real_t t46 = SCARA_C(0.275) * t45 - parameters[ZZ4];
+    input_by_ddq[7] = SCARA_C(0.1) * t46;
+    const scara_real_t t47 = t12 * parameters[MY4] + t8 * parameters[MX4];
+    const scara_real_t t48 = t46 + SCARA_C(0.325) * (t3 * t45 - t5 * t47);
+    input_by_ddq[3] = SCARA_C(0.0625) * t48;
+    input_by_q[13] = SCARA_C(0.5) * (t47 * t9 + t45 * t6);
+    const scara_real_t t49 = t47 * (SCARA_C(0.55) * t0); /* link j4: derivatives */
+    input_by_dq[13] = SCARA_C(0.5) * t49;
+    const scara_real_t t50 = SCARA_C(0.65) * dq[0];
+    const scara_real_t t51 = SCARA_C(0.5) * (t49 + (t3 * t47 + t5 * t45) * t50);
+    input_by_dq[12] = t51;
+    input_by_ddq[13] = SCARA_C(0.5) * t46;
+    input_by_ddq[12] = SCARA_C(0.5) * t48;
     input_by_dq[10] = SCARA_C(3141.5926535897934) * parameters[FV3];
     input_by_ddq[10] = SCARA_C(3141.5926535897934) * parameters[IA3]
         + SCARA_C(0.03183098861837907) * parameters[M3R];
-    const scara_real_t t64 = parameters[MX4] * t14 + parameters[MY4] * t13;
-    const scara_real_t t65 = t64 + SCARA_C(-0.275) * t24;
-    const scara_real_t t66 = SCARA_C(0.0625) * (t65 + SCARA_C(-0.325) * (t5 * t21 + t3 * t24));
-    input_by_q[3] = t66;
-    input_by_q[7] = SCARA_C(0.1) * t65;
-    input_by_q[15] = SCARA_C(-0.5) * t64;
-    const scara_real_t t67 = SCARA_C(-2.0) * t37; /* link j4: derivatives */
-    const scara_real_t t68 = SCARA_C(-2.0) * t36;
-    const scara_real_t t69 = t8 * t67 + t12 * t68;
-    const scara_real_t t70 = t5 * (t8 * t68 - t12 * t67) + t3 * t69;
-    input_by_dq[3] = SCARA_C(0.0625) * (SCARA_C(0.275) * t69 + SCARA_C(0.325) * t70);
-    input_by_dq[7] = SCARA_C(0.027500000000000004) * t69;
-    input_by_dq[15] = SCARA_C(2.0e2) * parameters[FV4];
-    input_by_ddq[3] = SCARA_C(0.0625) * t60;
-    input_by_ddq[7] = SCARA_C(0.1) * t59;
-    input_by_ddq[15] = SCARA_C(2.0e2) * parameters[IA4] + SCARA_C(0.5) * parameters[ZZ4];
+    const scara_real_t t52 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
+    const scara_real_t t53 = parameters[MX2R] + (t52 - t45); /* link j3: inertia of it and all beyond */
+    const scara_real_t t54 = t47 - parameters[MY2R];
+    const scara_real_t t55 = t53 * t6 - t54 * t9; /* link j2: derivatives */
+    input_by_q[5] = SCARA_C(0.1) * t55;
+    const scara_real_t t56 = t5 * (t26 - parameters[M3R] * t9) + t3 * (t25 + parameters[M3R] * t6);
+    input_by_q[1] = SCARA_C(0.0625) * (t55 + SCARA_C(0.325) * t56);
+    const scara_real_t t57 = t12 * t41 + t8 * t39; /* link j4: inertia, momentum beyond */
+    const scara_real_t t58 = SCARA_C(-0.275) * t0; /* link j3: velocity of its origin */
+    const scara_real_t t59 = dq[2] * (q[2] * parameters[M3R]); /* link j3: inertia, momentum beyond */
+    const scara_real_t t60 = SCARA_C(0.275) * t57 + (t47 * t58 + t59) - t59;
+    input_by_dq[5] = SCARA_C(250.0) * parameters[FV2] + SCARA_C(0.2) * t60;
+    const scara_real_t t61 = SCARA_C(2.0) * t60; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const scara_real_t t62 = t8 * t41 - t12 * t39 + parameters[M3R] * t58 - parameters[MX2R] * t0;
+    const scara_real_t t63 = t57 - parameters[MY2R] * t0;
+    /* link j2: derivatives */
+    const scara_real_t t64 = SCARA_C(0.325) * (t5 * (SCARA_C(2.0) * t62) + t3 * (SCARA_C(2.0) * t63));
+    input_by_dq[1] = SCARA_C(0.0625) * (t61 + t64);
+    /* link j3: inertia of it and all beyond */
+    const scara_real_t t65 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(-2.0) * t45
+        + t52));
+    input_by_ddq[5] = SCARA_C(250.0) * parameters[IA2] + SCARA_C(0.1) * t65;
+    const scara_real_t t66 = t5 * t54 + t3 * t53; /* link j2: column of the mass matrix */
+    const scara_real_t t67 = t65 + SCARA_C(0.325) * t66;
+    input_by_ddq[1] = SCARA_C(0.0625) * t67;
+    const scara_real_t t68 = t5 * t53 - t3 * t54;
+    input_by_dq[4] = SCARA_C(0.1) * (t61 + t68 * t50);
+    input_by_ddq[4] = SCARA_C(0.1) * t67;
+    /* link j2: inertia, momentum beyond */
+    const scara_real_t t69 = SCARA_C(0.325) * (t3 * t63 + t5 * t62) + t68 * (SCARA_C(0.325) * dq[0]);
+    input_by_dq[0] = SCARA_C(4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t60 + t69);
+    /* link j2: inertia of it and all beyond */
+    const scara_real_t t70 = parameters[ZZ1R] + (t65 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
+        + SCARA_C(2.0) * t66));
+    input_by_ddq[0] = SCARA_C(0.0625) * t70;
     /* always zero */
     input_by_q[0] = input_by_q[2] = SCARA_C(0.0);
     input_by_q[4] = input_by_q[6] = SCARA_C(0.0);

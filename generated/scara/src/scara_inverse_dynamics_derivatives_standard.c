@@ -90,7 +90,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -182,82 +182,84 @@ scara_status_t scara_inverse_dynamics_derivatives_standard(
     const scara_real_t t39 = SCARA_C(20.0) * dq[3] * parameters[FV4] + t38 * parameters[FC4]
         + SCARA_C(20.0) * ddq[3] * parameters[IA4];
     input[3] = SCARA_C(10.0) * t39 + SCARA_C(-0.5) * t16;
-    const scara_real_t t40 = t18 * parameters[MY4];
-    const scara_real_t t41 = t18 * parameters[MX4];
-    const scara_real_t t42 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const scara_real_t t43 = SCARA_C(-0.275) * t5; /* link j3: velocity of its origin */
-    /* link j3: inertia, momentum beyond */
-    const scara_real_t t44 = t8 * t40 - t12 * t41 - t5 * parameters[MX3] + t42 * t43;
-    const scara_real_t t45 = t44 - t5 * parameters[MX2];
-    /* link j4: inertia, momentum beyond */
-    const scara_real_t t46 = t5 * parameters[MY3] + (t12 * t40 + t8 * t41);
-    const scara_real_t t47 = t46 - t5 * parameters[MY2]; /* link j3: inertia, momentum beyond */
-    /* link j4: column of the mass matrix */
-    const scara_real_t t48 = t12 * parameters[MY4] + t8 * parameters[MX4];
-    const scara_real_t t49 = parameters[MY3] + t48; /* link j4: inertia of it and all beyond */
-    const scara_real_t t50 = t49 - parameters[MY2]; /* link j3: inertia of it and all beyond */
-    /* link j4: column of the mass matrix */
-    const scara_real_t t51 = t8 * parameters[MY4] - t12 * parameters[MX4];
-    const scara_real_t t52 = parameters[MX3] - t51; /* link j4: inertia of it and all beyond */
-    const scara_real_t t53 = SCARA_C(0.275) * t42; /* link j3: column of the mass matrix */
-    const scara_real_t t54 = parameters[MX2] + (t52 + t53); /* link j3: inertia of it and all beyond */
-    const scara_real_t t55 = t3 * t54 - t1 * t50; /* link j2: column of the mass matrix */
-    /* link j2: inertia, momentum beyond */
-    const scara_real_t t56 = SCARA_C(0.325) * (t1 * t47 + t3 * t45) + t55 * (SCARA_C(0.325) * dq[0]);
-    /* link j3: inertia, momentum beyond */
-    const scara_real_t t57 = dq[2] * (parameters[MZ3] + parameters[MZ4] + q[2] * t42);
-    const scara_real_t t58 = SCARA_C(0.275) * t46 + (t49 * t43 + t57) - t57;
-    input_by_dq[0] = SCARA_C(4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t58 + t56);
-    const scara_real_t t59 = SCARA_C(2.0) * t58; /* link j2: derivatives */
-    const scara_real_t t60 = SCARA_C(0.65) * dq[0];
-    input_by_dq[4] = SCARA_C(0.1) * (t59 + t55 * t60);
-    const scara_real_t t61 = t48 * (SCARA_C(0.55) * t5); /* link j4: derivatives */
-    const scara_real_t t62 = SCARA_C(0.5) * (t61 + (t1 * t48 + t3 * t51) * t60);
-    input_by_dq[12] = t62;
-    const scara_real_t t63 = t3 * t50 + t1 * t54; /* link j2: column of the mass matrix */
-    const scara_real_t t64 = parameters[M2] + t42; /* link j3: inertia of it and all beyond */
-    const scara_real_t t65 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t53
-        + SCARA_C(2.0) * t52));
-    /* link j2: inertia of it and all beyond */
-    const scara_real_t t66 = parameters[ZZ1] + (t65 + SCARA_C(0.325) * (SCARA_C(0.325) * t64
-        + SCARA_C(2.0) * t63));
-    input_by_ddq[0] = SCARA_C(4.0e2) * parameters[IA1] + SCARA_C(0.0625) * t66;
-    const scara_real_t t67 = t65 + SCARA_C(0.325) * t63; /* link j2: column of the mass matrix */
-    input_by_ddq[4] = SCARA_C(0.1) * t67;
-    const scara_real_t t68 = SCARA_C(0.275) * t51 - parameters[ZZ4]; /* link j4: column of the mass matrix */
-    const scara_real_t t69 = t68 + SCARA_C(0.325) * (t1 * t51 - t3 * t48);
-    input_by_ddq[12] = SCARA_C(0.5) * t69;
-    const scara_real_t t70 = t3 * (t28 - t9 * t64) + t1 * (t27 + t4 * t64); /* link j2: derivatives */
-    const scara_real_t t71 = t4 * t54 - t9 * t50;
-    input_by_q[1] = SCARA_C(0.0625) * (t71 + SCARA_C(0.325) * t70);
-    input_by_q[5] = SCARA_C(0.1) * t71;
-    input_by_q[13] = SCARA_C(0.5) * (t9 * t48 + t4 * t51);
-    const scara_real_t t72 = SCARA_C(0.325) * (t3 * (SCARA_C(2.0) * t45) + t1 * (SCARA_C(2.0) * t47));
-    input_by_dq[1] = SCARA_C(0.0625) * (t59 + t72);
-    input_by_dq[5] = SCARA_C(250.0) * parameters[FV2] + SCARA_C(0.2) * t58;
-    input_by_dq[13] = SCARA_C(0.5) * t61;
-    input_by_ddq[1] = SCARA_C(0.0625) * t67;
-    input_by_ddq[5] = SCARA_C(250.0) * parameters[IA2] + SCARA_C(0.1) * t65;
-    input_by_ddq[13] = SCARA_C(0.5) * t68;
-    input_by_dq[10] = SCARA_C(3141.5926535897934) * parameters[FV3];
-    input_by_ddq[10] = SCARA_C(3141.5926535897934) * parameters[IA3] + SCARA_C(0.03183098861837907) * t42;
-    const scara_real_t t73 = t14 * parameters[MX4] + t13 * parameters[MY4];
-    const scara_real_t t74 = t12 * t20 - t8 * t22; /* link j4: derivatives */
-    const scara_real_t t75 = t73 + SCARA_C(0.275) * t74;
-    const scara_real_t t76 = t3 * (t12 * t22 + t8 * t20) + t1 * t74;
-    input_by_q[3] = SCARA_C(0.0625) * (t75 + SCARA_C(0.325) * t76);
-    input_by_q[7] = SCARA_C(0.1) * t75;
-    input_by_q[15] = SCARA_C(-0.5) * t73;
-    const scara_real_t t77 = SCARA_C(-2.0) * t41;
-    const scara_real_t t78 = SCARA_C(-2.0) * t40;
-    const scara_real_t t79 = t8 * t77 + t12 * t78;
-    const scara_real_t t80 = t3 * (t8 * t78 - t12 * t77) + t1 * t79;
-    input_by_dq[3] = SCARA_C(0.0625) * (SCARA_C(0.275) * t79 + SCARA_C(0.325) * t80);
-    input_by_dq[7] = SCARA_C(0.027500000000000004) * t79;
+    const scara_real_t t40 = t14 * parameters[MX4] + t13 * parameters[MY4];
+    input_by_q[15] = SCARA_C(-0.5) * t40;
+    const scara_real_t t41 = t12 * t20 - t8 * t22; /* link j4: derivatives */
+    const scara_real_t t42 = t40 + SCARA_C(0.275) * t41;
+    input_by_q[7] = SCARA_C(0.1) * t42;
+    const scara_real_t t43 = t3 * (t12 * t22 + t8 * t20) + t1 * t41;
+    input_by_q[3] = SCARA_C(0.0625) * (t42 + SCARA_C(0.325) * t43);
     input_by_dq[15] = SCARA_C(2.0e2) * parameters[FV4];
-    input_by_ddq[3] = SCARA_C(0.0625) * t69;
-    input_by_ddq[7] = SCARA_C(0.1) * t68;
+    const scara_real_t t44 = t18 * parameters[MX4];
+    const scara_real_t t45 = SCARA_C(-2.0) * t44;
+    const scara_real_t t46 = t18 * parameters[MY4];
+    const scara_real_t t47 = SCARA_C(-2.0) * t46;
+    const scara_real_t t48 = t8 * t45 + t12 * t47;
+    input_by_dq[7] = SCARA_C(0.027500000000000004) * t48;
+    const scara_real_t t49 = t3 * (t8 * t47 - t12 * t45) + t1 * t48;
+    input_by_dq[3] = SCARA_C(0.0625) * (SCARA_C(0.275) * t48 + SCARA_C(0.325) * t49);
     input_by_ddq[15] = SCARA_C(2.0e2) * parameters[IA4] + SCARA_C(0.5) * parameters[ZZ4];
+    /* link j4: column of the mass matrix */
+    const scara_real_t t50 = t8 * parameters[MY4] - t12 * parameters[MX4];
+    const scara_real_t t51 = SCARA_C(0.275) * t50 - parameters[ZZ4];
+    input_by_ddq[7] = SCARA_C(0.1) * t51;
+    const scara_real_t t52 = t12 * parameters[MY4] + t8 * parameters[MX4];
+    const scara_real_t t53 = t51 + SCARA_C(0.325) * (t1 * t50 - t3 * t52);
+    input_by_ddq[3] = SCARA_C(0.0625) * t53;
+    input_by_q[13] = SCARA_C(0.5) * (t9 * t52 + t4 * t50);
+    const scara_real_t t54 = t52 * (SCARA_C(0.55) * t5); /* link j4: derivatives */
+    input_by_dq[13] = SCARA_C(0.5) * t54;
+    const scara_real_t t55 = SCARA_C(0.65) * dq[0];
+    const scara_real_t t56 = SCARA_C(0.5) * (t54 + (t1 * t52 + t3 * t50) * t55);
+    input_by_dq[12] = t56;
+    input_by_ddq[13] = SCARA_C(0.5) * t51;
+    input_by_ddq[12] = SCARA_C(0.5) * t53;
+    input_by_dq[10] = SCARA_C(3141.5926535897934) * parameters[FV3];
+    const scara_real_t t57 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    input_by_ddq[10] = SCARA_C(3141.5926535897934) * parameters[IA3] + SCARA_C(0.03183098861837907) * t57;
+    const scara_real_t t58 = parameters[MX3] - t50;
+    const scara_real_t t59 = SCARA_C(0.275) * t57; /* link j3: column of the mass matrix */
+    const scara_real_t t60 = parameters[MX2] + (t58 + t59); /* link j3: inertia of it and all beyond */
+    const scara_real_t t61 = parameters[MY3] + t52; /* link j4: inertia of it and all beyond */
+    const scara_real_t t62 = t61 - parameters[MY2]; /* link j3: inertia of it and all beyond */
+    const scara_real_t t63 = t4 * t60 - t9 * t62; /* link j2: derivatives */
+    input_by_q[5] = SCARA_C(0.1) * t63;
+    const scara_real_t t64 = parameters[M2] + t57; /* link j3: inertia of it and all beyond */
+    const scara_real_t t65 = t3 * (t28 - t9 * t64) + t1 * (t27 + t4 * t64); /* link j2: derivatives */
+    input_by_q[1] = SCARA_C(0.0625) * (t63 + SCARA_C(0.325) * t65);
+    const scara_real_t t66 = SCARA_C(-0.275) * t5; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const scara_real_t t67 = dq[2] * (parameters[MZ3] + parameters[MZ4] + q[2] * t57);
+    /* link j4: inertia, momentum beyond */
+    const scara_real_t t68 = t5 * parameters[MY3] + (t12 * t46 + t8 * t44);
+    /* link j3: inertia, momentum beyond */
+    const scara_real_t t69 = SCARA_C(0.275) * t68 + (t61 * t66 + t67) - t67;
+    input_by_dq[5] = SCARA_C(250.0) * parameters[FV2] + SCARA_C(0.2) * t69;
+    const scara_real_t t70 = SCARA_C(2.0) * t69; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const scara_real_t t71 = t8 * t46 - t12 * t44 - t5 * parameters[MX3] + t57 * t66;
+    const scara_real_t t72 = t71 - t5 * parameters[MX2];
+    const scara_real_t t73 = t68 - t5 * parameters[MY2];
+    /* link j2: derivatives */
+    const scara_real_t t74 = SCARA_C(0.325) * (t3 * (SCARA_C(2.0) * t72) + t1 * (SCARA_C(2.0) * t73));
+    input_by_dq[1] = SCARA_C(0.0625) * (t70 + t74);
+    /* link j3: inertia of it and all beyond */
+    const scara_real_t t75 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t59
+        + SCARA_C(2.0) * t58));
+    input_by_ddq[5] = SCARA_C(250.0) * parameters[IA2] + SCARA_C(0.1) * t75;
+    const scara_real_t t76 = t3 * t62 + t1 * t60; /* link j2: column of the mass matrix */
+    const scara_real_t t77 = t75 + SCARA_C(0.325) * t76;
+    input_by_ddq[1] = SCARA_C(0.0625) * t77;
+    const scara_real_t t78 = t3 * t60 - t1 * t62;
+    input_by_dq[4] = SCARA_C(0.1) * (t70 + t78 * t55);
+    input_by_ddq[4] = SCARA_C(0.1) * t77;
+    /* link j2: inertia, momentum beyond */
+    const scara_real_t t79 = SCARA_C(0.325) * (t1 * t73 + t3 * t72) + t78 * (SCARA_C(0.325) * dq[0]);
+    input_by_dq[0] = SCARA_C(4.0e2) * parameters[FV1] + SCARA_C(0.125) * (t69 + t79);
+    /* link j2: inertia of it and all beyond */
+    const scara_real_t t80 = parameters[ZZ1] + (t75 + SCARA_C(0.325) * (SCARA_C(0.325) * t64
+        + SCARA_C(2.0) * t76));
+    input_by_ddq[0] = SCARA_C(4.0e2) * parameters[IA1] + SCARA_C(0.0625) * t80;
     /* always zero */
     input_by_q[0] = input_by_q[2] = SCARA_C(0.0);
     input_by_q[4] = input_by_q[6] = SCARA_C(0.0);

@@ -43,7 +43,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -65,34 +65,34 @@ scara_status_t scara_mass_matrix(
         return status;
     }
 
-    scara_real_t t3, t6;
-    SCARA_SINCOS(q[1], &t3, &t6);
-    scara_real_t t1, t0;
-    SCARA_SINCOS(q[3], &t1, &t0);
-    /* link j4: column of the mass matrix */
-    const scara_real_t t2 = t0 * parameters[MY4] + t1 * parameters[MX4];
-    const scara_real_t t4 = t0 * parameters[MX4] - t1 * parameters[MY4];
-    const scara_real_t t5 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
-    /* link j2: column of the mass matrix */
-    const scara_real_t t7 = t3 * (t2 - parameters[MY2R]) + t6 * (parameters[MX2R] + (t4 + t5));
-    /* link j3: inertia of it and all beyond */
-    const scara_real_t t8 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t5));
-    /* link j2: inertia of it and all beyond */
-    const scara_real_t t9 = parameters[ZZ1R] + (t8 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
-        + SCARA_C(2.0) * t7));
-    out[0] = t9;
-    const scara_real_t t10 = t8 + SCARA_C(0.325) * t7; /* link j2: column of the mass matrix */
-    out[1] = t10;
-    const scara_real_t t11 = SCARA_C(-0.275) * t4 - parameters[ZZ4]; /* link j4: column of the mass matrix */
-    const scara_real_t t12 = t11 + SCARA_C(-0.325) * (t3 * t2 + t6 * t4);
-    out[3] = t12;
-    out[4] = t10;
-    out[5] = t8 + SCARA_C(2.5e3) * parameters[IA2];
-    out[7] = t11;
-    out[10] = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
-    out[12] = t12;
-    out[13] = t11;
+    scara_real_t t5, t6;
+    SCARA_SINCOS(q[1], &t5, &t6);
+    scara_real_t t0, t1;
+    SCARA_SINCOS(q[3], &t0, &t1);
     out[15] = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
+    /* link j4: column of the mass matrix */
+    const scara_real_t t2 = t1 * parameters[MX4] - t0 * parameters[MY4];
+    const scara_real_t t3 = SCARA_C(-0.275) * t2 - parameters[ZZ4];
+    out[7] = t3;
+    const scara_real_t t4 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const scara_real_t t7 = t3 + SCARA_C(-0.325) * (t5 * t4 + t6 * t2);
+    out[3] = t7;
+    out[13] = t3;
+    out[12] = t7;
+    out[10] = parameters[M3R] + SCARA_C(98696.04401089359) * parameters[IA3];
+    const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
+    const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t2 + t8));
+    out[5] = t9 + SCARA_C(2.5e3) * parameters[IA2];
+    /* link j2: column of the mass matrix */
+    const scara_real_t t10 = t5 * (t4 - parameters[MY2R]) + t6 * (parameters[MX2R] + (t2 + t8));
+    const scara_real_t t11 = t9 + SCARA_C(0.325) * t10;
+    out[1] = t11;
+    out[4] = t11;
+    /* link j2: inertia of it and all beyond */
+    const scara_real_t t12 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
+        + SCARA_C(2.0) * t10));
+    out[0] = t12;
     /* always zero */
     out[2] = SCARA_C(0.0);
     out[6] = SCARA_C(0.0);

@@ -76,7 +76,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -99,38 +99,38 @@ scara_status_t scara_mass_matrix_standard(
         return status;
     }
 
-    scara_real_t t3, t8;
-    SCARA_SINCOS(q[1], &t3, &t8);
-    scara_real_t t1, t0;
-    SCARA_SINCOS(q[3], &t1, &t0);
-    /* link j4: column of the mass matrix */
-    const scara_real_t t2 = t0 * parameters[MY4] + t1 * parameters[MX4];
-    const scara_real_t t4 = t1 * parameters[MY4] - t0 * parameters[MX4];
-    const scara_real_t t5 = parameters[MX3] - t4; /* link j4: inertia of it and all beyond */
-    const scara_real_t t6 = parameters[M3] + parameters[M4];
-    const scara_real_t t7 = SCARA_C(0.275) * t6; /* link j3: column of the mass matrix */
-    /* link j2: column of the mass matrix */
-    const scara_real_t t9 = t3 * (parameters[MY3] + t2 - parameters[MY2]) + t8 * (parameters[MX2] + (t5
-        + t7));
-    /* link j3: inertia of it and all beyond */
-    const scara_real_t t10 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t7
-        + SCARA_C(2.0) * t5));
-    /* link j2: inertia of it and all beyond */
-    const scara_real_t t11 = t10 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t6)
-        + SCARA_C(2.0) * t9);
-    out[0] = parameters[ZZ1] + t11 + SCARA_C(6.4e3) * parameters[IA1];
-    const scara_real_t t12 = t10 + SCARA_C(0.325) * t9; /* link j2: column of the mass matrix */
-    out[1] = t12;
-    const scara_real_t t13 = SCARA_C(0.275) * t4 - parameters[ZZ4]; /* link j4: column of the mass matrix */
-    const scara_real_t t14 = t13 + SCARA_C(0.325) * (t8 * t4 - t3 * t2);
-    out[3] = t14;
-    out[4] = t12;
-    out[5] = t10 + SCARA_C(2.5e3) * parameters[IA2];
-    out[7] = t13;
-    out[10] = t6 + SCARA_C(98696.04401089359) * parameters[IA3];
-    out[12] = t14;
-    out[13] = t13;
+    scara_real_t t5, t6;
+    SCARA_SINCOS(q[1], &t5, &t6);
+    scara_real_t t0, t1;
+    SCARA_SINCOS(q[3], &t0, &t1);
     out[15] = parameters[ZZ4] + SCARA_C(4.0e2) * parameters[IA4];
+    /* link j4: column of the mass matrix */
+    const scara_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
+    const scara_real_t t3 = SCARA_C(0.275) * t2 - parameters[ZZ4];
+    out[7] = t3;
+    const scara_real_t t4 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const scara_real_t t7 = t3 + SCARA_C(0.325) * (t6 * t2 - t5 * t4);
+    out[3] = t7;
+    out[13] = t3;
+    out[12] = t7;
+    const scara_real_t t8 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    out[10] = t8 + SCARA_C(98696.04401089359) * parameters[IA3];
+    const scara_real_t t9 = parameters[MX3] - t2;
+    const scara_real_t t10 = SCARA_C(0.275) * t8; /* link j3: column of the mass matrix */
+    /* link j3: inertia of it and all beyond */
+    const scara_real_t t11 = parameters[ZZ2] + (parameters[ZZ3] + parameters[ZZ4] + SCARA_C(0.275) * (t10
+        + SCARA_C(2.0) * t9));
+    out[5] = t11 + SCARA_C(2.5e3) * parameters[IA2];
+    /* link j2: column of the mass matrix */
+    const scara_real_t t12 = t5 * (parameters[MY3] + t4 - parameters[MY2]) + t6 * (parameters[MX2] + (t9
+        + t10));
+    const scara_real_t t13 = t11 + SCARA_C(0.325) * t12;
+    out[1] = t13;
+    out[4] = t13;
+    /* link j2: inertia of it and all beyond */
+    const scara_real_t t14 = t11 + SCARA_C(0.325) * (SCARA_C(0.325) * (parameters[M2] + t8)
+        + SCARA_C(2.0) * t12);
+    out[0] = parameters[ZZ1] + t14 + SCARA_C(6.4e3) * parameters[IA1];
     /* always zero */
     out[2] = SCARA_C(0.0);
     out[6] = SCARA_C(0.0);

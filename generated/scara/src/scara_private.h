@@ -13,7 +13,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0xC2234E4EUL
+#if SCARA_GENERATION != 0x743B3253UL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 
@@ -102,15 +102,24 @@ static inline void scara_sine_cosine(scara_real_t x, scara_real_t *sine, scara_r
 }
 #endif
 
-/* Whether the sum of squares is at most limit; false where an element is not a number. */
+/*
+ * Whether the sum of squares is at most limit; false where an element is not a number. Four sums at a time wait
+ * less for one another, and fill a vector where the processor has them.
+ */
 static inline int scara_within(const scara_real_t x[], int n, scara_real_t limit)
 {
-    scara_real_t sum = SCARA_C(0.0);
-    int i;
-    for (i = 0; i < n; ++i) {
-        sum += x[i] * x[i];
+    scara_real_t a = SCARA_C(0.0), b = SCARA_C(0.0), c = SCARA_C(0.0), d = SCARA_C(0.0);
+    int i = 0;
+    for (; n - i >= 4; i += 4) {
+        a += x[i] * x[i];
+        b += x[i + 1] * x[i + 1];
+        c += x[i + 2] * x[i + 2];
+        d += x[i + 3] * x[i + 3];
     }
-    return sum <= limit;
+    for (; n - i >= 1; ++i) {
+        a += x[i] * x[i];
+    }
+    return (a + b) + (c + d) <= limit;
 }
 
 /* The same for a vector with an element for each joint. */
@@ -119,22 +128,28 @@ static inline int scara_within_joints(const scara_real_t x[], scara_real_t limit
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
 }
 
-/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
-static inline scara_real_t scara_bounded(scara_real_t x)
+/* x held within twice the limit of a result, above it where x is not a number: what builds on it is finite. */
+static inline scara_real_t scara_held(scara_real_t x)
 {
-    return x >= SCARA_C(-1.0e15) && x <= SCARA_C(1.0e15) ? x : SCARA_C(2.0e15);
+    const scara_real_t below = x < SCARA_C(2.0e15) ? x : SCARA_C(2.0e15);
+    return below > -SCARA_C(2.0e15) ? below : -SCARA_C(2.0e15);
 }
 
-/* Whether every element of a result is within the limit; false where one is not a number. */
-static inline int scara_all_bounded(const scara_real_t x[], int n)
+/* Whether the magnitudes of a result's elements add up to its limit at most; false where one is not a number. */
+static inline int scara_bounded(const scara_real_t x[], int n)
 {
-    int i;
-    for (i = 0; i < n; ++i) {
-        if (!(x[i] >= SCARA_C(-1.0e15) && x[i] <= SCARA_C(1.0e15))) {
-            return 0;
-        }
+    scara_real_t a = SCARA_C(0.0), b = SCARA_C(0.0), c = SCARA_C(0.0), d = SCARA_C(0.0);
+    int i = 0;
+    for (; n - i >= 4; i += 4) {
+        a += SCARA_ABS(x[i]);
+        b += SCARA_ABS(x[i + 1]);
+        c += SCARA_ABS(x[i + 2]);
+        d += SCARA_ABS(x[i + 3]);
     }
-    return 1;
+    for (; n - i >= 1; ++i) {
+        a += SCARA_ABS(x[i]);
+    }
+    return (a + b) + (c + d) <= SCARA_C(1.0e15);
 }
 
 /* Left out of every call with -DSCARA_PARAMETERS_CHECKED, for parameters that scara_check_parameters has seen. */

@@ -26,7 +26,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
+#if SCREW_AXIS_GENERATION != 0x88953F49UL
 #error "screw_axis.h and screw_axis_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -61,7 +61,7 @@ screw_axis_status_t screw_axis_forward_dynamics(
         - parameters[FC1] * t0) + SCREW_AXIS_C(37.69911184307752) * input[0];
     const screw_axis_real_t t2 = SCREW_AXIS_C(1.0) / parameters[M1R];
     out[0] = t1 * t2;
-    if (!screw_axis_all_bounded(out, 1)) {
+    if (!screw_axis_bounded(out, 1)) {
         screw_axis_zero(out, 1);
         return SCREW_AXIS_STATUS_PIVOT;
     }

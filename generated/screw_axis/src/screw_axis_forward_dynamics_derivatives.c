@@ -31,7 +31,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
+#if SCREW_AXIS_GENERATION != 0x88953F49UL
 #error "screw_axis.h and screw_axis_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -75,15 +75,15 @@ screw_axis_status_t screw_axis_forward_dynamics_derivatives(
         - parameters[FC1] * t0) + SCREW_AXIS_C(37.69911184307752) * input[0];
     const screw_axis_real_t t2 = SCREW_AXIS_C(1.0) / parameters[M1R];
     ddq[0] = t1 * t2;
-    const screw_axis_real_t t3 = SCREW_AXIS_C(37.69911184307752) * t2;
+    const screw_axis_real_t t3 = screw_axis_held(SCREW_AXIS_C(37.69911184307752) * t2);
     ddq_by_dq[0] = SCREW_AXIS_C(-41887.902047863914) * parameters[FV1] * t3;
     ddq_by_input[0] = t3;
     /* always zero */
     ddq_by_q[0] = SCREW_AXIS_C(0.0);
-    if (!screw_axis_all_bounded(ddq, 1)
-        || !screw_axis_all_bounded(ddq_by_q, 1)
-        || !screw_axis_all_bounded(ddq_by_dq, 1)
-        || !screw_axis_all_bounded(ddq_by_input, 1)) {
+    if (!screw_axis_bounded(ddq, 1)
+        || !screw_axis_bounded(ddq_by_q, 1)
+        || !screw_axis_bounded(ddq_by_dq, 1)
+        || !screw_axis_bounded(ddq_by_input, 1)) {
         screw_axis_zero(ddq, 1);
         screw_axis_zero(ddq_by_q, 1);
         screw_axis_zero(ddq_by_dq, 1);

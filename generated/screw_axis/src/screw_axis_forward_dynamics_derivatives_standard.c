@@ -41,7 +41,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
+#if SCREW_AXIS_GENERATION != 0x88953F49UL
 #error "screw_axis.h and screw_axis_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -72,8 +72,7 @@ screw_axis_status_t screw_axis_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    const screw_axis_real_t t0 = screw_axis_bounded(parameters[M1]
-        + SCREW_AXIS_C(1579136.7041742974) * parameters[IA1]);
+    const screw_axis_real_t t0 = parameters[M1] + SCREW_AXIS_C(1579136.7041742974) * parameters[IA1];
     if (!(t0 > SCREW_AXIS_C(1.0e-12))) {
         screw_axis_zero(ddq, 1);
         screw_axis_zero(ddq_by_q, 1);
@@ -87,15 +86,15 @@ screw_axis_status_t screw_axis_forward_dynamics_derivatives_standard(
         - t1 * parameters[FC1]) + SCREW_AXIS_C(37.69911184307752) * input[0];
     const screw_axis_real_t t3 = SCREW_AXIS_C(1.0) / t0;
     ddq[0] = t2 * t3;
-    const screw_axis_real_t t4 = SCREW_AXIS_C(37.69911184307752) * t3;
+    const screw_axis_real_t t4 = screw_axis_held(SCREW_AXIS_C(37.69911184307752) * t3);
     ddq_by_dq[0] = SCREW_AXIS_C(-41887.902047863914) * parameters[FV1] * t4;
     ddq_by_input[0] = t4;
     /* always zero */
     ddq_by_q[0] = SCREW_AXIS_C(0.0);
-    if (!screw_axis_all_bounded(ddq, 1)
-        || !screw_axis_all_bounded(ddq_by_q, 1)
-        || !screw_axis_all_bounded(ddq_by_dq, 1)
-        || !screw_axis_all_bounded(ddq_by_input, 1)) {
+    if (!screw_axis_bounded(ddq, 1)
+        || !screw_axis_bounded(ddq_by_q, 1)
+        || !screw_axis_bounded(ddq_by_dq, 1)
+        || !screw_axis_bounded(ddq_by_input, 1)) {
         screw_axis_zero(ddq, 1);
         screw_axis_zero(ddq_by_q, 1);
         screw_axis_zero(ddq_by_dq, 1);

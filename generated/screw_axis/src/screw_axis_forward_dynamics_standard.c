@@ -36,7 +36,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x7400E9F7UL
+#if SCREW_AXIS_GENERATION != 0x88953F49UL
 #error "screw_axis.h and screw_axis_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -61,8 +61,7 @@ screw_axis_status_t screw_axis_forward_dynamics_standard(
         return status;
     }
 
-    const screw_axis_real_t t0 = screw_axis_bounded(parameters[M1]
-        + SCREW_AXIS_C(1579136.7041742974) * parameters[IA1]);
+    const screw_axis_real_t t0 = parameters[M1] + SCREW_AXIS_C(1579136.7041742974) * parameters[IA1];
     if (!(t0 > SCREW_AXIS_C(1.0e-12))) {
         screw_axis_zero(out, 1);
         return SCREW_AXIS_STATUS_PIVOT;
@@ -73,7 +72,7 @@ screw_axis_status_t screw_axis_forward_dynamics_standard(
         - t1 * parameters[FC1]) + SCREW_AXIS_C(37.69911184307752) * input[0];
     const screw_axis_real_t t3 = SCREW_AXIS_C(1.0) / t0;
     out[0] = t2 * t3;
-    if (!screw_axis_all_bounded(out, 1)) {
+    if (!screw_axis_bounded(out, 1)) {
         screw_axis_zero(out, 1);
         return SCREW_AXIS_STATUS_PIVOT;
     }

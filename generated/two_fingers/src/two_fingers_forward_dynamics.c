@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 524 (300 mul, 224 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
+ * Operations: 524 (300 mul, 224 add, 0 neg), 5 div, 8 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [5]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [5]   [rad/s]    joint velocities; norm at most 100000
@@ -70,7 +70,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -97,22 +97,20 @@ two_fingers_status_t two_fingers_forward_dynamics(
         return status;
     }
 
-    two_fingers_real_t t38, t36;
-    TWO_FINGERS_SINCOS(q[1], &t38, &t36);
-    two_fingers_real_t t12, t13;
-    TWO_FINGERS_SINCOS(q[2], &t12, &t13);
-    two_fingers_real_t t27, t25;
-    TWO_FINGERS_SINCOS(q[3], &t27, &t25);
+    two_fingers_real_t t36, t34;
+    TWO_FINGERS_SINCOS(q[1], &t36, &t34);
+    two_fingers_real_t t11, t12;
+    TWO_FINGERS_SINCOS(q[2], &t11, &t12);
+    two_fingers_real_t t25, t23;
+    TWO_FINGERS_SINCOS(q[3], &t25, &t23);
     two_fingers_real_t t2, t3;
     TWO_FINGERS_SINCOS(q[4], &t2, &t3);
-    const two_fingers_real_t t0 = two_fingers_bounded(parameters[ZZ3]
-        + TWO_FINGERS_C(9.0e2) * parameters[IA3]);
+    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
     if (!(t0 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t1 = two_fingers_bounded(parameters[ZZ5]
-        + TWO_FINGERS_C(9.0e2) * parameters[IA5]);
+    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
     if (!(t1 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -124,259 +122,251 @@ two_fingers_status_t two_fingers_forward_dynamics(
     const two_fingers_real_t t7 = t5 * t6;
     const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t9 = parameters[ZZ4R] + (parameters[ZZ5] + t8);
-    const two_fingers_real_t t10 = two_fingers_bounded(t9 - t5 * t7);
+    const two_fingers_real_t t10 = t9 - t5 * t7;
     if (!(t10 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t11 = t10 + TWO_FINGERS_C(-1.0e-9) * t9;
-    if (!(t11 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t14 = t13 * parameters[MX3] - t12 * parameters[MY3];
-    const two_fingers_real_t t15 = TWO_FINGERS_C(-0.05) * t14 - parameters[ZZ3];
-    const two_fingers_real_t t16 = TWO_FINGERS_C(1.0) / t0;
-    const two_fingers_real_t t17 = t15 * t16;
-    const two_fingers_real_t t18 = TWO_FINGERS_C(0.1) * t14; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t19 = parameters[ZZ2R] + (parameters[ZZ3] + t18);
-    const two_fingers_real_t t20 = two_fingers_bounded(t19 - t15 * t17);
-    if (!(t20 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t21 = t20 + TWO_FINGERS_C(-1.0e-9) * t19;
-    if (!(t21 > TWO_FINGERS_C(1.0e-12))) {
+    const two_fingers_real_t t13 = t12 * parameters[MX3] - t11 * parameters[MY3];
+    const two_fingers_real_t t14 = TWO_FINGERS_C(-0.05) * t13 - parameters[ZZ3];
+    const two_fingers_real_t t15 = TWO_FINGERS_C(1.0) / t0;
+    const two_fingers_real_t t16 = t14 * t15;
+    const two_fingers_real_t t17 = TWO_FINGERS_C(0.1) * t13; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t18 = parameters[ZZ2R] + (parameters[ZZ3] + t17);
+    const two_fingers_real_t t19 = t18 - t14 * t16;
+    if (!(t19 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t22 = t3 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t2);
-    const two_fingers_real_t t23 = t3 * t22;
-    const two_fingers_real_t t24 = parameters[XX4R] + t23;
+    const two_fingers_real_t t20 = t3 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t2);
+    const two_fingers_real_t t21 = t3 * t20;
+    const two_fingers_real_t t22 = parameters[XX4R] + t21;
     /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t26 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    const two_fingers_real_t t24 = t3 * parameters[MY5] + t2 * parameters[MX5];
     /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t28 = (parameters[XY4] + (parameters[XY5] + t2 * t22
-        + TWO_FINGERS_C(-0.045) * t26)) * (TWO_FINGERS_C(2.0) * t27);
-    const two_fingers_real_t t29 = t25 * (t25 * (parameters[XX5R] - t23 + t8 - t24) + t28);
-    const two_fingers_real_t t30 = parameters[MY4] + t26; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t31 = parameters[MX4R] - t4;
+    const two_fingers_real_t t26 = (parameters[XY4] + (parameters[XY5] + t2 * t20
+        + TWO_FINGERS_C(-0.045) * t24)) * (TWO_FINGERS_C(2.0) * t25);
+    const two_fingers_real_t t27 = t23 * (t23 * (parameters[XX5R] - t21 + t8 - t22) + t26);
+    const two_fingers_real_t t28 = parameters[MY4] + t24; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t29 = parameters[MX4R] - t4;
     /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t32 = t24 + t29 + TWO_FINGERS_C(0.06999999999999999) * (t25 * t31 - t27 * t30);
+    const two_fingers_real_t t30 = t22 + t27 + TWO_FINGERS_C(0.06999999999999999) * (t23 * t29 - t25 * t28);
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t33 = t13 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t12);
-    const two_fingers_real_t t34 = t13 * t33;
-    const two_fingers_real_t t35 = parameters[XX2R] + t34;
+    const two_fingers_real_t t31 = t12 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t11);
+    const two_fingers_real_t t32 = t12 * t31;
+    const two_fingers_real_t t33 = parameters[XX2R] + t32;
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t37 = t13 * parameters[MY3] + t12 * parameters[MX3];
+    const two_fingers_real_t t35 = t12 * parameters[MY3] + t11 * parameters[MX3];
     /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t39 = (parameters[XY2] + (parameters[XY3] + t12 * t33
-        + TWO_FINGERS_C(-0.05) * t37)) * (TWO_FINGERS_C(2.0) * t38);
-    const two_fingers_real_t t40 = t36 * (t36 * (parameters[XX3R] - t34 + t18 - t35) + t39);
-    const two_fingers_real_t t41 = TWO_FINGERS_C(0.06) * (t36 * (parameters[MX2R] + t14)
-        - t38 * (parameters[MY2] + t37));
-    const two_fingers_real_t t42 = parameters[ZZ1R] + t32 + (t35 + t40 + t41);
+    const two_fingers_real_t t37 = (parameters[XY2] + (parameters[XY3] + t11 * t31
+        + TWO_FINGERS_C(-0.05) * t35)) * (TWO_FINGERS_C(2.0) * t36);
+    const two_fingers_real_t t38 = t34 * (t34 * (parameters[XX3R] - t32 + t17 - t33) + t37);
+    const two_fingers_real_t t39 = TWO_FINGERS_C(0.06) * (t34 * (parameters[MX2R] + t13)
+        - t36 * (parameters[MY2] + t35));
+    const two_fingers_real_t t40 = parameters[ZZ1R] + t30 + (t33 + t38 + t39);
     /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t43 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
-    const two_fingers_real_t t44 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
-    const two_fingers_real_t t45 = t27 * t43 - t25 * t44 + TWO_FINGERS_C(8.673617379884035e-19) * (t27 * t4
-        - t25 * t26);
-    const two_fingers_real_t t46 = t45 * t6;
+    const two_fingers_real_t t41 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
+    const two_fingers_real_t t42 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
+    const two_fingers_real_t t43 = t25 * t41 - t23 * t42 + TWO_FINGERS_C(8.673617379884035e-19) * (t25 * t4
+        - t23 * t24);
+    const two_fingers_real_t t44 = t43 * t6;
     /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t47 = t27 * (t43 - parameters[XZ4R]) - t25 * (parameters[YZ4] + t44)
-        + TWO_FINGERS_C(-8.673617379884035e-19) * (t25 * t30 + t27 * t31);
-    const two_fingers_real_t t48 = t47 + t45 * t7;
-    const two_fingers_real_t t49 = TWO_FINGERS_C(1.0) / t10;
-    const two_fingers_real_t t50 = t48 * t49;
+    const two_fingers_real_t t45 = t25 * (t41 - parameters[XZ4R]) - t23 * (parameters[YZ4] + t42)
+        + TWO_FINGERS_C(-8.673617379884035e-19) * (t23 * t28 + t25 * t29);
+    const two_fingers_real_t t46 = t45 + t43 * t7;
+    const two_fingers_real_t t47 = TWO_FINGERS_C(1.0) / t10;
+    const two_fingers_real_t t48 = t46 * t47;
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t51 = t12 * parameters[YZ3] - t13 * parameters[XZ3];
-    const two_fingers_real_t t52 = t12 * parameters[XZ3] + t13 * parameters[YZ3];
-    const two_fingers_real_t t53 = t38 * t51 - t36 * t52;
-    const two_fingers_real_t t54 = t53 * t16;
-    const two_fingers_real_t t55 = t42 - t45 * t46 - t48 * t50 - t53 * t54;
-    const two_fingers_real_t t56 = t38 * (t51 - parameters[XZ2R]) - t36 * (parameters[YZ2] + t52) + t53 * t17;
-    const two_fingers_real_t t57 = TWO_FINGERS_C(1.0) / t20;
-    const two_fingers_real_t t58 = t56 * t57;
-    const two_fingers_real_t t59 = two_fingers_bounded(t55 - t56 * t58);
+    const two_fingers_real_t t49 = t11 * parameters[YZ3] - t12 * parameters[XZ3];
+    const two_fingers_real_t t50 = t11 * parameters[XZ3] + t12 * parameters[YZ3];
+    const two_fingers_real_t t51 = t36 * t49 - t34 * t50;
+    const two_fingers_real_t t52 = t51 * t15;
+    const two_fingers_real_t t53 = t40 - t43 * t44 - t46 * t48 - t51 * t52;
+    const two_fingers_real_t t54 = t36 * (t49 - parameters[XZ2R]) - t34 * (parameters[YZ2] + t50) + t51 * t16;
+    const two_fingers_real_t t55 = TWO_FINGERS_C(1.0) / t19;
+    const two_fingers_real_t t56 = t54 * t55;
+    const two_fingers_real_t t57 = t53 - t54 * t56;
+    if (!(t57 > TWO_FINGERS_C(1.0e-12))) {
+        two_fingers_zero(out, 5);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t58 = two_fingers_min(t10 + TWO_FINGERS_C(-1.0e-9) * t9, t19
+        + TWO_FINGERS_C(-1.0e-9) * t18);
+    const two_fingers_real_t t59 = two_fingers_min(t58, t57 + TWO_FINGERS_C(-1.0e-9) * t40);
     if (!(t59 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t60 = t59 + TWO_FINGERS_C(-1.0e-9) * t42;
-    if (!(t60 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t61 = t27 * dq[0]; /* link right_1: motion */
-    const two_fingers_real_t t62 = t25 * dq[0];
-    const two_fingers_real_t t63 = t2 * t61 - t3 * t62; /* link right_2: motion */
-    const two_fingers_real_t t64 = t63 * t63;
-    const two_fingers_real_t t65 = dq[3] + dq[4];
-    const two_fingers_real_t t66 = t65 * t65;
-    const two_fingers_real_t t67 = t3 * t61 + t2 * t62;
-    const two_fingers_real_t t68 = t67 * t63;
+    const two_fingers_real_t t60 = t25 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t61 = t23 * dq[0];
+    const two_fingers_real_t t62 = t2 * t60 - t3 * t61; /* link right_2: motion */
+    const two_fingers_real_t t63 = t62 * t62;
+    const two_fingers_real_t t64 = dq[3] + dq[4];
+    const two_fingers_real_t t65 = t64 * t64;
+    const two_fingers_real_t t66 = t3 * t60 + t2 * t61;
+    const two_fingers_real_t t67 = t66 * t62;
     /* link right_2: force and moment */
-    const two_fingers_real_t t69 = parameters[MX5] * (t64 + t66) + parameters[MY5] * t68;
-    const two_fingers_real_t t70 = t67 * t67; /* link right_2: motion */
+    const two_fingers_real_t t68 = parameters[MX5] * (t63 + t65) + parameters[MY5] * t67;
+    const two_fingers_real_t t69 = t66 * t66; /* link right_2: motion */
     /* link right_2: force and moment */
-    const two_fingers_real_t t71 = parameters[MX5] * t68 + parameters[MY5] * (t70 + t66);
-    const two_fingers_real_t t72 = t62 * t62; /* link right_2: motion */
-    const two_fingers_real_t t73 = dq[3] * dq[3];
-    const two_fingers_real_t t74 = t73 + t72;
-    const two_fingers_real_t t75 = t61 * t62;
+    const two_fingers_real_t t70 = parameters[MX5] * t67 + parameters[MY5] * (t69 + t65);
+    const two_fingers_real_t t71 = t61 * t61; /* link right_2: motion */
+    const two_fingers_real_t t72 = dq[3] * dq[3];
+    const two_fingers_real_t t73 = t72 + t71;
+    const two_fingers_real_t t74 = t60 * t61;
     /* link right_2: what it passes on */
-    const two_fingers_real_t t76 = parameters[MX4R] * t74 - parameters[MY4] * t75 + (t3 * t69 - t2 * t71);
-    const two_fingers_real_t t77 = t2 * t69 + t3 * t71;
-    const two_fingers_real_t t78 = t61 * t61; /* link right_2: motion */
+    const two_fingers_real_t t75 = parameters[MX4R] * t73 - parameters[MY4] * t74 + (t3 * t68 - t2 * t70);
+    const two_fingers_real_t t76 = t2 * t68 + t3 * t70;
+    const two_fingers_real_t t77 = t60 * t60; /* link right_2: motion */
     /* link right_1: what it passes on */
-    const two_fingers_real_t t79 = t27 * (parameters[MX4R] * t75 - parameters[MY4] * (t73 + t78) - t77);
-    const two_fingers_real_t t80 = t25 * t76 + t79;
-    const two_fingers_real_t t81 = t67 * t65; /* link right_2: motion */
-    const two_fingers_real_t t82 = TWO_FINGERS_C(2.0) * t81; /* link right_2: force and moment */
-    const two_fingers_real_t t83 = t63 * t65; /* link right_2: motion */
-    const two_fingers_real_t t84 = TWO_FINGERS_C(-2.0) * t83; /* link right_2: force and moment */
-    const two_fingers_real_t t85 = parameters[MX5] * t82 + parameters[MY5] * t84;
-    const two_fingers_real_t t86 = dq[3] * t61; /* link right_1: motion */
-    const two_fingers_real_t t87 = TWO_FINGERS_C(2.0) * t86;
-    const two_fingers_real_t t88 = dq[3] * t62;
-    const two_fingers_real_t t89 = TWO_FINGERS_C(2.0) * t88;
+    const two_fingers_real_t t78 = t25 * (parameters[MX4R] * t74 - parameters[MY4] * (t72 + t77) - t76);
+    const two_fingers_real_t t79 = t23 * t75 + t78;
+    const two_fingers_real_t t80 = t66 * t64; /* link right_2: motion */
+    const two_fingers_real_t t81 = TWO_FINGERS_C(2.0) * t80; /* link right_2: force and moment */
+    const two_fingers_real_t t82 = t62 * t64; /* link right_2: motion */
+    const two_fingers_real_t t83 = TWO_FINGERS_C(-2.0) * t82; /* link right_2: force and moment */
+    const two_fingers_real_t t84 = parameters[MX5] * t81 + parameters[MY5] * t83;
+    const two_fingers_real_t t85 = dq[3] * t60; /* link right_1: motion */
+    const two_fingers_real_t t86 = TWO_FINGERS_C(2.0) * t85;
+    const two_fingers_real_t t87 = dq[3] * t61;
+    const two_fingers_real_t t88 = TWO_FINGERS_C(2.0) * t87;
     /* link right_2: what it passes on */
-    const two_fingers_real_t t90 = parameters[MX4R] * t87 + parameters[MY4] * t89 + t85;
+    const two_fingers_real_t t89 = parameters[MX4R] * t86 + parameters[MY4] * t88 + t84;
     /* link right_1: what it passes on */
     const two_fingers_real_t
-        t91 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t80
-        + TWO_FINGERS_C(0.984807753012208) * t90)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t80
-        + TWO_FINGERS_C(0.17364817766693028) * t90);
+        t90 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t79
+        + TWO_FINGERS_C(0.984807753012208) * t89)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t79
+        + TWO_FINGERS_C(0.17364817766693028) * t89);
     /* link right_2: force and moment */
-    const two_fingers_real_t t92 = parameters[XX5R] * t83 + parameters[ZZ5] * t83 + parameters[XY5] * t82
-        + parameters[XZ5] * t68;
-    const two_fingers_real_t t93 = dq[0] * dq[0];
-    const two_fingers_real_t t94 = TWO_FINGERS_C(-8.673617379884035e-19) * t93; /* link right_1: motion */
-    const two_fingers_real_t t95 = t94 + TWO_FINGERS_C(-0.09) * t86; /* link right_2: motion */
+    const two_fingers_real_t t91 = parameters[XX5R] * t82 + parameters[ZZ5] * t82 + parameters[XY5] * t81
+        + parameters[XZ5] * t67;
+    const two_fingers_real_t t92 = dq[0] * dq[0];
+    const two_fingers_real_t t93 = TWO_FINGERS_C(-8.673617379884035e-19) * t92; /* link right_1: motion */
+    const two_fingers_real_t t94 = t93 + TWO_FINGERS_C(-0.09) * t85; /* link right_2: motion */
     /* link right_2: force and moment */
-    const two_fingers_real_t t96 = t92 + parameters[YZ5] * (t66 - t64) + parameters[MY5] * t95;
-    const two_fingers_real_t t97 = t81 * (parameters[XX5R] - parameters[ZZ5]) + parameters[XY5] * t84
-        + parameters[YZ5] * t68;
-    const two_fingers_real_t t98 = t97 - parameters[XZ5] * (t70 - t66) + parameters[MX5] * t95;
+    const two_fingers_real_t t95 = t91 + parameters[YZ5] * (t65 - t63) + parameters[MY5] * t94;
+    const two_fingers_real_t t96 = t80 * (parameters[XX5R] - parameters[ZZ5]) + parameters[XY5] * t83
+        + parameters[YZ5] * t67;
+    const two_fingers_real_t t97 = t96 - parameters[XZ5] * (t69 - t65) + parameters[MX5] * t94;
     /* link right_1: force and moment */
-    const two_fingers_real_t t99 = parameters[XY4] * t87 - (parameters[XX4R] * t88 + parameters[ZZ4R] * t88)
-        - parameters[XZ4R] * t75;
+    const two_fingers_real_t t98 = parameters[XY4] * t86 - (parameters[XX4R] * t87 + parameters[ZZ4R] * t87)
+        - parameters[XZ4R] * t74;
     /* link right_2: what it passes on */
-    const two_fingers_real_t t100 = t99 + parameters[YZ4] * (t73 - t72) + parameters[MY4] * t94 + (t3 * t96
-        + t2 * t98);
+    const two_fingers_real_t t99 = t98 + parameters[YZ4] * (t72 - t71) + parameters[MY4] * t93 + (t3 * t95
+        + t2 * t97);
     /* link right_1: force and moment */
-    const two_fingers_real_t t101 = t86 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t89
-        + parameters[YZ4] * t75;
+    const two_fingers_real_t t100 = t85 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4] * t88
+        + parameters[YZ4] * t74;
     /* link right_2: what it passes on */
-    const two_fingers_real_t t102 = t101 + parameters[XZ4R] * (t78 - t73) - parameters[MX4R] * t94 + (t2 * t96
-        - t3 * t98 + TWO_FINGERS_C(0.045) * t85);
-    const two_fingers_real_t t103 = t38 * dq[0]; /* link left_1: motion */
-    const two_fingers_real_t t104 = t36 * dq[0];
-    const two_fingers_real_t t105 = t12 * t103 - t13 * t104; /* link left_2: motion */
-    const two_fingers_real_t t106 = dq[1] + dq[2];
-    const two_fingers_real_t t107 = t105 * t106;
-    const two_fingers_real_t t108 = t13 * t103 + t12 * t104;
-    const two_fingers_real_t t109 = t108 * t106;
-    const two_fingers_real_t t110 = TWO_FINGERS_C(2.0) * t109; /* link left_2: force and moment */
-    const two_fingers_real_t t111 = t108 * t105; /* link left_2: motion */
+    const two_fingers_real_t t101 = t100 + parameters[XZ4R] * (t77 - t72) - parameters[MX4R] * t93 + (t2 * t95
+        - t3 * t97 + TWO_FINGERS_C(0.045) * t84);
+    const two_fingers_real_t t102 = t36 * dq[0]; /* link left_1: motion */
+    const two_fingers_real_t t103 = t34 * dq[0];
+    const two_fingers_real_t t104 = t11 * t102 - t12 * t103; /* link left_2: motion */
+    const two_fingers_real_t t105 = dq[1] + dq[2];
+    const two_fingers_real_t t106 = t104 * t105;
+    const two_fingers_real_t t107 = t12 * t102 + t11 * t103;
+    const two_fingers_real_t t108 = t107 * t105;
+    const two_fingers_real_t t109 = TWO_FINGERS_C(2.0) * t108; /* link left_2: force and moment */
+    const two_fingers_real_t t110 = t107 * t104; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t112 = parameters[XX3R] * t107 + parameters[ZZ3] * t107 + parameters[XY3] * t110
-        + parameters[XZ3] * t111;
-    const two_fingers_real_t t113 = t105 * t105; /* link left_2: motion */
-    const two_fingers_real_t t114 = t106 * t106;
-    const two_fingers_real_t t115 = dq[1] * t103; /* link left_1: motion */
-    const two_fingers_real_t t116 = TWO_FINGERS_C(-0.1) * t115; /* link left_2: motion */
+    const two_fingers_real_t t111 = parameters[XX3R] * t106 + parameters[ZZ3] * t106 + parameters[XY3] * t109
+        + parameters[XZ3] * t110;
+    const two_fingers_real_t t112 = t104 * t104; /* link left_2: motion */
+    const two_fingers_real_t t113 = t105 * t105;
+    const two_fingers_real_t t114 = dq[1] * t102; /* link left_1: motion */
+    const two_fingers_real_t t115 = TWO_FINGERS_C(-0.1) * t114; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t117 = t112 + parameters[YZ3] * (t114 - t113) + parameters[MY3] * t116;
-    const two_fingers_real_t t118 = TWO_FINGERS_C(-2.0) * t107;
-    const two_fingers_real_t t119 = t109 * (parameters[XX3R] - parameters[ZZ3]) + parameters[XY3] * t118
-        + parameters[YZ3] * t111;
-    const two_fingers_real_t t120 = t108 * t108; /* link left_2: motion */
+    const two_fingers_real_t t116 = t111 + parameters[YZ3] * (t113 - t112) + parameters[MY3] * t115;
+    const two_fingers_real_t t117 = TWO_FINGERS_C(-2.0) * t106;
+    const two_fingers_real_t t118 = t108 * (parameters[XX3R] - parameters[ZZ3]) + parameters[XY3] * t117
+        + parameters[YZ3] * t110;
+    const two_fingers_real_t t119 = t107 * t107; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t121 = t119 - parameters[XZ3] * (t120 - t114) + parameters[MX3] * t116;
-    const two_fingers_real_t t122 = dq[1] * t104; /* link left_1: motion */
-    const two_fingers_real_t t123 = TWO_FINGERS_C(2.0) * t115;
-    const two_fingers_real_t t124 = t103 * t104;
+    const two_fingers_real_t t120 = t118 - parameters[XZ3] * (t119 - t113) + parameters[MX3] * t115;
+    const two_fingers_real_t t121 = dq[1] * t103; /* link left_1: motion */
+    const two_fingers_real_t t122 = TWO_FINGERS_C(2.0) * t114;
+    const two_fingers_real_t t123 = t102 * t103;
     /* link left_1: force and moment */
-    const two_fingers_real_t t125 = parameters[XY2] * t123 - (parameters[XX2R] * t122
-        + parameters[ZZ2R] * t122) - parameters[XZ2R] * t124;
-    const two_fingers_real_t t126 = t104 * t104; /* link left_1: motion */
-    const two_fingers_real_t t127 = dq[1] * dq[1];
+    const two_fingers_real_t t124 = parameters[XY2] * t122 - (parameters[XX2R] * t121
+        + parameters[ZZ2R] * t121) - parameters[XZ2R] * t123;
+    const two_fingers_real_t t125 = t103 * t103; /* link left_1: motion */
+    const two_fingers_real_t t126 = dq[1] * dq[1];
     /* link left_2: what it passes on */
-    const two_fingers_real_t t128 = t125 + parameters[YZ2] * (t127 - t126) + (t13 * t117 + t12 * t121);
+    const two_fingers_real_t t127 = t124 + parameters[YZ2] * (t126 - t125) + (t12 * t116 + t11 * t120);
     /* link left_2: force and moment */
-    const two_fingers_real_t t129 = parameters[MX3] * t110 + parameters[MY3] * t118;
-    const two_fingers_real_t t130 = TWO_FINGERS_C(2.0) * t122; /* link left_1: motion */
+    const two_fingers_real_t t128 = parameters[MX3] * t109 + parameters[MY3] * t117;
+    const two_fingers_real_t t129 = TWO_FINGERS_C(2.0) * t121; /* link left_1: motion */
     /* link left_1: force and moment */
-    const two_fingers_real_t t131 = t115 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t130
-        + parameters[YZ2] * t124;
-    const two_fingers_real_t t132 = t103 * t103; /* link left_1: motion */
+    const two_fingers_real_t t130 = t114 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t129
+        + parameters[YZ2] * t123;
+    const two_fingers_real_t t131 = t102 * t102; /* link left_1: motion */
     /* link left_2: what it passes on */
-    const two_fingers_real_t t133 = t131 + parameters[XZ2R] * (t132 - t127) + (t12 * t117 - t13 * t121
-        + TWO_FINGERS_C(0.05) * t129);
+    const two_fingers_real_t t132 = t130 + parameters[XZ2R] * (t131 - t126) + (t11 * t116 - t12 * t120
+        + TWO_FINGERS_C(0.05) * t128);
     /* link left_1: what it passes on */
-    const two_fingers_real_t t134 = t38 * t128 + t36 * t133 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t123
-        + parameters[MY2] * t130 + t129);
-    const two_fingers_real_t t135 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
-    const two_fingers_real_t t136 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0])
-        - parameters[FC1] * t135) + (t27 * t100 + t25 * t102 + t91 + t134);
-    const two_fingers_real_t t137 = TWO_FINGERS_C(0.034999999999999996) * t93; /* link right_1: motion */
-    const two_fingers_real_t t138 = t25 * t137 - TWO_FINGERS_C(9.81) * t27;
-    const two_fingers_real_t t139 = t138 + TWO_FINGERS_C(0.045) * t74; /* link right_2: motion */
-    const two_fingers_real_t t140 = t27 * t137 + TWO_FINGERS_C(9.81) * t25; /* link right_1: motion */
-    const two_fingers_real_t t141 = t140 + TWO_FINGERS_C(0.045) * t75; /* link right_2: motion */
+    const two_fingers_real_t t133 = t36 * t127 + t34 * t132 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t122
+        + parameters[MY2] * t129 + t128);
+    const two_fingers_real_t t134 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
+    const two_fingers_real_t t135 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0])
+        - parameters[FC1] * t134) + (t25 * t99 + t23 * t101 + t90 + t133);
+    const two_fingers_real_t t136 = TWO_FINGERS_C(0.034999999999999996) * t92; /* link right_1: motion */
+    const two_fingers_real_t t137 = t23 * t136 - TWO_FINGERS_C(9.81) * t25;
+    const two_fingers_real_t t138 = t137 + TWO_FINGERS_C(0.045) * t73; /* link right_2: motion */
+    const two_fingers_real_t t139 = t25 * t136 + TWO_FINGERS_C(9.81) * t23; /* link right_1: motion */
+    const two_fingers_real_t t140 = t139 + TWO_FINGERS_C(0.045) * t74; /* link right_2: motion */
     /* link right_2: force and moment */
-    const two_fingers_real_t t142 = parameters[MX5] * (t2 * t139 + t3 * t141) + parameters[MY5] * (t3 * t139
-        - t2 * t141);
-    const two_fingers_real_t t143 = parameters[XX5R] * t68 + parameters[XY5] * (t70 - t64) + t142;
-    const two_fingers_real_t t144 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
-    const two_fingers_real_t t145 = TWO_FINGERS_C(30.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4])
-        + parameters[FC5] * t144) + t143;
-    const two_fingers_real_t t146 = TWO_FINGERS_C(0.6) * input[4] - t145;
+    const two_fingers_real_t t141 = parameters[MX5] * (t2 * t138 + t3 * t140) + parameters[MY5] * (t3 * t138
+        - t2 * t140);
+    const two_fingers_real_t t142 = parameters[XX5R] * t67 + parameters[XY5] * (t69 - t63) + t141;
+    const two_fingers_real_t t143 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
+    const two_fingers_real_t t144 = TWO_FINGERS_C(30.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4])
+        + parameters[FC5] * t143) + t142;
+    const two_fingers_real_t t145 = TWO_FINGERS_C(0.6) * input[4] - t144;
     /* link right_1: force and moment */
-    const two_fingers_real_t t147 = parameters[XX4R] * t75 - parameters[XY4] * (t78 - t72)
-        - (parameters[MX4R] * t140 + parameters[MY4] * t138);
-    const two_fingers_real_t t148 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
-    const two_fingers_real_t t149 = TWO_FINGERS_C(30.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
-        + parameters[FC4] * t148) - (t147 - (t143 - TWO_FINGERS_C(0.045) * t77));
-    const two_fingers_real_t t150 = TWO_FINGERS_C(0.6) * input[3] - t149 + t146 * t7;
-    const two_fingers_real_t t151 = TWO_FINGERS_C(2.4) * input[0] + t136 + t146 * t46 + t150 * t50;
-    const two_fingers_real_t t152 = TWO_FINGERS_C(0.03) * t93; /* link left_1: motion */
-    const two_fingers_real_t t153 = t36 * t152 - TWO_FINGERS_C(9.81) * t38;
-    const two_fingers_real_t t154 = t153 + TWO_FINGERS_C(0.05) * (t127 + t126); /* link left_2: motion */
-    const two_fingers_real_t t155 = t38 * t152 + TWO_FINGERS_C(9.81) * t36; /* link left_1: motion */
-    const two_fingers_real_t t156 = t155 + TWO_FINGERS_C(0.05) * t124; /* link left_2: motion */
+    const two_fingers_real_t t146 = parameters[XX4R] * t74 - parameters[XY4] * (t77 - t71)
+        - (parameters[MX4R] * t139 + parameters[MY4] * t137);
+    const two_fingers_real_t t147 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
+    const two_fingers_real_t t148 = TWO_FINGERS_C(30.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
+        + parameters[FC4] * t147) - (t146 - (t142 - TWO_FINGERS_C(0.045) * t76));
+    const two_fingers_real_t t149 = TWO_FINGERS_C(0.6) * input[3] - t148 + t145 * t7;
+    const two_fingers_real_t t150 = TWO_FINGERS_C(2.4) * input[0] + t135 + t145 * t44 + t149 * t48;
+    const two_fingers_real_t t151 = TWO_FINGERS_C(0.03) * t92; /* link left_1: motion */
+    const two_fingers_real_t t152 = t34 * t151 - TWO_FINGERS_C(9.81) * t36;
+    const two_fingers_real_t t153 = t152 + TWO_FINGERS_C(0.05) * (t126 + t125); /* link left_2: motion */
+    const two_fingers_real_t t154 = t36 * t151 + TWO_FINGERS_C(9.81) * t34; /* link left_1: motion */
+    const two_fingers_real_t t155 = t154 + TWO_FINGERS_C(0.05) * t123; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t157 = parameters[MX3] * (t12 * t154 + t13 * t156)
-        + parameters[MY3] * (t13 * t154 - t12 * t156);
-    const two_fingers_real_t t158 = parameters[XX3R] * t111 + parameters[XY3] * (t120 - t113) + t157;
-    const two_fingers_real_t t159 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
-    const two_fingers_real_t t160 = TWO_FINGERS_C(30.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2])
-        + parameters[FC3] * t159) + t158;
-    const two_fingers_real_t t161 = TWO_FINGERS_C(0.6) * input[2] - t160;
+    const two_fingers_real_t t156 = parameters[MX3] * (t11 * t153 + t12 * t155)
+        + parameters[MY3] * (t12 * t153 - t11 * t155);
+    const two_fingers_real_t t157 = parameters[XX3R] * t110 + parameters[XY3] * (t119 - t112) + t156;
+    const two_fingers_real_t t158 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
+    const two_fingers_real_t t159 = TWO_FINGERS_C(30.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2])
+        + parameters[FC3] * t158) + t157;
+    const two_fingers_real_t t160 = TWO_FINGERS_C(0.6) * input[2] - t159;
     /* link left_2: what it passes on */
-    const two_fingers_real_t t162 = t12 * (parameters[MX3] * (t113 + t114) + parameters[MY3] * t111)
-        + t13 * (parameters[MX3] * t111 + parameters[MY3] * (t120 + t114));
+    const two_fingers_real_t t161 = t11 * (parameters[MX3] * (t112 + t113) + parameters[MY3] * t110)
+        + t12 * (parameters[MX3] * t110 + parameters[MY3] * (t119 + t113));
     /* link left_1: force and moment */
-    const two_fingers_real_t t163 = parameters[XX2R] * t124 - parameters[XY2] * (t132 - t126)
-        - (parameters[MX2R] * t155 + parameters[MY2] * t153);
-    const two_fingers_real_t t164 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
-    const two_fingers_real_t t165 = TWO_FINGERS_C(30.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
-        + parameters[FC2] * t164) - (t163 - (t158 - TWO_FINGERS_C(0.05) * t162));
-    const two_fingers_real_t t166 = TWO_FINGERS_C(0.6) * input[1] - t165 + t161 * t17;
-    const two_fingers_real_t t167 = TWO_FINGERS_C(1.0) / t59;
-    const two_fingers_real_t t168 = two_fingers_bounded((t151 + t161 * t54 + t166 * t58) * t167);
-    out[0] = t168;
-    const two_fingers_real_t t169 = two_fingers_bounded(t166 * t57 + t58 * t168);
-    out[1] = t169;
-    out[2] = t161 * t16 + t54 * t168 + t17 * t169;
-    const two_fingers_real_t t170 = two_fingers_bounded(t150 * t49 + t50 * t168);
-    out[3] = t170;
-    out[4] = t146 * t6 + t46 * t168 + t7 * t170;
-    if (!two_fingers_all_bounded(out, 5)) {
+    const two_fingers_real_t t162 = parameters[XX2R] * t123 - parameters[XY2] * (t131 - t125)
+        - (parameters[MX2R] * t154 + parameters[MY2] * t152);
+    const two_fingers_real_t t163 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
+    const two_fingers_real_t t164 = TWO_FINGERS_C(30.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
+        + parameters[FC2] * t163) - (t162 - (t157 - TWO_FINGERS_C(0.05) * t161));
+    const two_fingers_real_t t165 = TWO_FINGERS_C(0.6) * input[1] - t164 + t160 * t16;
+    const two_fingers_real_t t166 = TWO_FINGERS_C(1.0) / t57;
+    const two_fingers_real_t t167 = two_fingers_held((t150 + t160 * t52 + t165 * t56) * t166);
+    out[0] = t167;
+    const two_fingers_real_t t168 = two_fingers_held(t165 * t55 + t56 * t167);
+    out[1] = t168;
+    out[2] = t160 * t15 + t52 * t167 + t16 * t168;
+    const two_fingers_real_t t169 = two_fingers_held(t149 * t47 + t48 * t167);
+    out[3] = t169;
+    out[4] = t145 * t6 + t44 * t167 + t7 * t169;
+    if (!two_fingers_bounded(out, 5)) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }

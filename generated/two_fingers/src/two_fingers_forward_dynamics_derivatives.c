@@ -7,7 +7,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1915 (1105 mul, 810 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
+ * Operations: 1915 (1105 mul, 810 add, 0 neg), 5 div, 8 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [5]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [5]   [rad/s]                  joint velocities; norm at most 100000
@@ -74,7 +74,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -107,16 +107,15 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
         return status;
     }
 
-    two_fingers_real_t t41, t38;
-    TWO_FINGERS_SINCOS(q[1], &t41, &t38);
-    two_fingers_real_t t12, t13;
-    TWO_FINGERS_SINCOS(q[2], &t12, &t13);
-    two_fingers_real_t t29, t26;
-    TWO_FINGERS_SINCOS(q[3], &t29, &t26);
+    two_fingers_real_t t39, t36;
+    TWO_FINGERS_SINCOS(q[1], &t39, &t36);
+    two_fingers_real_t t11, t12;
+    TWO_FINGERS_SINCOS(q[2], &t11, &t12);
+    two_fingers_real_t t27, t24;
+    TWO_FINGERS_SINCOS(q[3], &t27, &t24);
     two_fingers_real_t t2, t3;
     TWO_FINGERS_SINCOS(q[4], &t2, &t3);
-    const two_fingers_real_t t0 = two_fingers_bounded(parameters[ZZ3]
-        + TWO_FINGERS_C(9.0e2) * parameters[IA3]);
+    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
     if (!(t0 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -124,8 +123,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t1 = two_fingers_bounded(parameters[ZZ5]
-        + TWO_FINGERS_C(9.0e2) * parameters[IA5]);
+    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
     if (!(t1 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -140,7 +138,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t7 = t5 * t6;
     const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t9 = parameters[ZZ4R] + (parameters[ZZ5] + t8);
-    const two_fingers_real_t t10 = two_fingers_bounded(t9 - t5 * t7);
+    const two_fingers_real_t t10 = t9 - t5 * t7;
     if (!(t10 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -148,31 +146,15 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t11 = t10 + TWO_FINGERS_C(-1.0e-9) * t9;
-    if (!(t11 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(ddq, 5);
-        two_fingers_zero(ddq_by_q, 25);
-        two_fingers_zero(ddq_by_dq, 25);
-        two_fingers_zero(ddq_by_input, 25);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t14 = t12 * parameters[MY3] - t13 * parameters[MX3];
-    const two_fingers_real_t t15 = TWO_FINGERS_C(0.05) * t14 - parameters[ZZ3];
-    const two_fingers_real_t t16 = TWO_FINGERS_C(1.0) / t0;
-    const two_fingers_real_t t17 = t15 * t16;
-    const two_fingers_real_t t18 = TWO_FINGERS_C(-0.1) * t14; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t19 = parameters[ZZ2R] + (parameters[ZZ3] + t18);
-    const two_fingers_real_t t20 = two_fingers_bounded(t19 - t15 * t17);
-    if (!(t20 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(ddq, 5);
-        two_fingers_zero(ddq_by_q, 25);
-        two_fingers_zero(ddq_by_dq, 25);
-        two_fingers_zero(ddq_by_input, 25);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t21 = t20 + TWO_FINGERS_C(-1.0e-9) * t19;
-    if (!(t21 > TWO_FINGERS_C(1.0e-12))) {
+    const two_fingers_real_t t13 = t11 * parameters[MY3] - t12 * parameters[MX3];
+    const two_fingers_real_t t14 = TWO_FINGERS_C(0.05) * t13 - parameters[ZZ3];
+    const two_fingers_real_t t15 = TWO_FINGERS_C(1.0) / t0;
+    const two_fingers_real_t t16 = t14 * t15;
+    const two_fingers_real_t t17 = TWO_FINGERS_C(-0.1) * t13; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t18 = parameters[ZZ2R] + (parameters[ZZ3] + t17);
+    const two_fingers_real_t t19 = t18 - t14 * t16;
+    if (!(t19 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
         two_fingers_zero(ddq_by_dq, 25);
@@ -180,63 +162,73 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
         return TWO_FINGERS_STATUS_PIVOT;
     }
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t22 = t3 * parameters[XX5R] + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t2);
-    const two_fingers_real_t t23 = t3 * t22;
-    const two_fingers_real_t t24 = parameters[XX5R] - t23 + t8;
-    const two_fingers_real_t t25 = parameters[XX4R] + t23;
+    const two_fingers_real_t t20 = t3 * parameters[XX5R] + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t2);
+    const two_fingers_real_t t21 = t3 * t20;
+    const two_fingers_real_t t22 = parameters[XX5R] - t21 + t8;
+    const two_fingers_real_t t23 = parameters[XX4R] + t21;
     /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t27 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    const two_fingers_real_t t25 = t3 * parameters[MY5] + t2 * parameters[MX5];
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t28 = parameters[XY4] + (parameters[XY5] + t2 * t22
-        + TWO_FINGERS_C(-0.045) * t27);
+    const two_fingers_real_t t26 = parameters[XY4] + (parameters[XY5] + t2 * t20
+        + TWO_FINGERS_C(-0.045) * t25);
     /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t30 = t26 * (t26 * (t24 - t25) + t28 * (TWO_FINGERS_C(2.0) * t29));
-    const two_fingers_real_t t31 = parameters[MY4] + t27; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t32 = t4 - parameters[MX4R];
-    const two_fingers_real_t t33 = t29 * t31 + t26 * t32; /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t28 = t24 * (t24 * (t22 - t23) + t26 * (TWO_FINGERS_C(2.0) * t27));
+    const two_fingers_real_t t29 = parameters[MY4] + t25; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t30 = t4 - parameters[MX4R];
+    const two_fingers_real_t t31 = t27 * t29 + t24 * t30; /* link right_1: column of the mass matrix */
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t34 = t13 * parameters[XX3R] + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t12);
-    const two_fingers_real_t t35 = t13 * t34;
-    const two_fingers_real_t t36 = parameters[XX3R] - t35 + t18;
-    const two_fingers_real_t t37 = parameters[XX2R] + t35;
+    const two_fingers_real_t t32 = t12 * parameters[XX3R] + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t11);
+    const two_fingers_real_t t33 = t12 * t32;
+    const two_fingers_real_t t34 = parameters[XX3R] - t33 + t17;
+    const two_fingers_real_t t35 = parameters[XX2R] + t33;
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t39 = t13 * parameters[MY3] + t12 * parameters[MX3];
+    const two_fingers_real_t t37 = t12 * parameters[MY3] + t11 * parameters[MX3];
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t40 = parameters[XY2] + (parameters[XY3] + t12 * t34
-        + TWO_FINGERS_C(-0.05) * t39);
+    const two_fingers_real_t t38 = parameters[XY2] + (parameters[XY3] + t11 * t32
+        + TWO_FINGERS_C(-0.05) * t37);
     /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t42 = t38 * (t38 * (t36 - t37) + t40 * (TWO_FINGERS_C(2.0) * t41));
-    const two_fingers_real_t t43 = parameters[MY2] + t39; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t44 = t14 - parameters[MX2R];
+    const two_fingers_real_t t40 = t36 * (t36 * (t34 - t35) + t38 * (TWO_FINGERS_C(2.0) * t39));
+    const two_fingers_real_t t41 = parameters[MY2] + t37; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t42 = t13 - parameters[MX2R];
     /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t45 = t37 + t42 + TWO_FINGERS_C(-0.06) * (t41 * t43 + t38 * t44);
-    const two_fingers_real_t t46 = parameters[ZZ1R] + (t25 + t30 + TWO_FINGERS_C(-0.06999999999999999) * t33)
-        + t45;
+    const two_fingers_real_t t43 = t35 + t40 + TWO_FINGERS_C(-0.06) * (t39 * t41 + t36 * t42);
+    const two_fingers_real_t t44 = parameters[ZZ1R] + (t23 + t28 + TWO_FINGERS_C(-0.06999999999999999) * t31)
+        + t43;
     /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t47 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
-    const two_fingers_real_t t48 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
-    const two_fingers_real_t t49 = t29 * t4 - t26 * t27;
-    const two_fingers_real_t t50 = t29 * t47 - t26 * t48 + TWO_FINGERS_C(8.673617379884035e-19) * t49;
-    const two_fingers_real_t t51 = t50 * t6;
-    const two_fingers_real_t t52 = t47 - parameters[XZ4R]; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t53 = parameters[YZ4] + t48;
-    const two_fingers_real_t t54 = t29 * t32 - t26 * t31; /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t55 = t29 * t52 - t26 * t53 + TWO_FINGERS_C(8.673617379884035e-19) * t54
-        - t50 * t7;
-    const two_fingers_real_t t56 = TWO_FINGERS_C(1.0) / t10;
-    const two_fingers_real_t t57 = t55 * t56;
+    const two_fingers_real_t t45 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
+    const two_fingers_real_t t46 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
+    const two_fingers_real_t t47 = t27 * t4 - t24 * t25;
+    const two_fingers_real_t t48 = t27 * t45 - t24 * t46 + TWO_FINGERS_C(8.673617379884035e-19) * t47;
+    const two_fingers_real_t t49 = t48 * t6;
+    const two_fingers_real_t t50 = t45 - parameters[XZ4R]; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t51 = parameters[YZ4] + t46;
+    const two_fingers_real_t t52 = t27 * t30 - t24 * t29; /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t53 = t27 * t50 - t24 * t51 + TWO_FINGERS_C(8.673617379884035e-19) * t52
+        - t48 * t7;
+    const two_fingers_real_t t54 = TWO_FINGERS_C(1.0) / t10;
+    const two_fingers_real_t t55 = t53 * t54;
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t58 = t12 * parameters[YZ3] - t13 * parameters[XZ3];
-    const two_fingers_real_t t59 = t12 * parameters[XZ3] + t13 * parameters[YZ3];
-    const two_fingers_real_t t60 = t41 * t58 - t38 * t59;
-    const two_fingers_real_t t61 = t60 * t16;
-    const two_fingers_real_t t62 = t46 - t50 * t51 - t55 * t57 - t60 * t61;
-    const two_fingers_real_t t63 = t58 - parameters[XZ2R]; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t64 = parameters[YZ2] + t59;
-    const two_fingers_real_t t65 = t41 * t63 - t38 * t64 + t60 * t17;
-    const two_fingers_real_t t66 = TWO_FINGERS_C(1.0) / t20;
-    const two_fingers_real_t t67 = t65 * t66;
-    const two_fingers_real_t t68 = two_fingers_bounded(t62 - t65 * t67);
+    const two_fingers_real_t t56 = t11 * parameters[YZ3] - t12 * parameters[XZ3];
+    const two_fingers_real_t t57 = t11 * parameters[XZ3] + t12 * parameters[YZ3];
+    const two_fingers_real_t t58 = t39 * t56 - t36 * t57;
+    const two_fingers_real_t t59 = t58 * t15;
+    const two_fingers_real_t t60 = t44 - t48 * t49 - t53 * t55 - t58 * t59;
+    const two_fingers_real_t t61 = t56 - parameters[XZ2R]; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t62 = parameters[YZ2] + t57;
+    const two_fingers_real_t t63 = t39 * t61 - t36 * t62 + t58 * t16;
+    const two_fingers_real_t t64 = TWO_FINGERS_C(1.0) / t19;
+    const two_fingers_real_t t65 = t63 * t64;
+    const two_fingers_real_t t66 = t60 - t63 * t65;
+    if (!(t66 > TWO_FINGERS_C(1.0e-12))) {
+        two_fingers_zero(ddq, 5);
+        two_fingers_zero(ddq_by_q, 25);
+        two_fingers_zero(ddq_by_dq, 25);
+        two_fingers_zero(ddq_by_input, 25);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t67 = two_fingers_min(t10 + TWO_FINGERS_C(-1.0e-9) * t9, t19
+        + TWO_FINGERS_C(-1.0e-9) * t18);
+    const two_fingers_real_t t68 = two_fingers_min(t67, t66 + TWO_FINGERS_C(-1.0e-9) * t44);
     if (!(t68 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -244,711 +236,701 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t69 = t68 + TWO_FINGERS_C(-1.0e-9) * t46;
-    if (!(t69 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(ddq, 5);
-        two_fingers_zero(ddq_by_q, 25);
-        two_fingers_zero(ddq_by_dq, 25);
-        two_fingers_zero(ddq_by_input, 25);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t70 = t29 * dq[0]; /* link right_1: motion */
-    const two_fingers_real_t t71 = t26 * dq[0];
-    const two_fingers_real_t t72 = t2 * t70 - t3 * t71; /* link right_2: motion */
-    const two_fingers_real_t t73 = t72 * t72;
-    const two_fingers_real_t t74 = dq[3] + dq[4];
-    const two_fingers_real_t t75 = t74 * t74;
-    const two_fingers_real_t t76 = t3 * t70 + t2 * t71;
-    const two_fingers_real_t t77 = t76 * t72;
+    const two_fingers_real_t t69 = t27 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t70 = t24 * dq[0];
+    const two_fingers_real_t t71 = t2 * t69 - t3 * t70; /* link right_2: motion */
+    const two_fingers_real_t t72 = t71 * t71;
+    const two_fingers_real_t t73 = dq[3] + dq[4];
+    const two_fingers_real_t t74 = t73 * t73;
+    const two_fingers_real_t t75 = t3 * t69 + t2 * t70;
+    const two_fingers_real_t t76 = t75 * t71;
     /* link right_2: force and moment */
-    const two_fingers_real_t t78 = parameters[MX5] * (t73 + t75) + parameters[MY5] * t77;
-    const two_fingers_real_t t79 = t76 * t76; /* link right_2: motion */
+    const two_fingers_real_t t77 = parameters[MX5] * (t72 + t74) + parameters[MY5] * t76;
+    const two_fingers_real_t t78 = t75 * t75; /* link right_2: motion */
     /* link right_2: force and moment */
-    const two_fingers_real_t t80 = parameters[MX5] * t77 + parameters[MY5] * (t79 + t75);
-    const two_fingers_real_t t81 = t71 * t71; /* link right_2: motion */
-    const two_fingers_real_t t82 = dq[3] * dq[3];
-    const two_fingers_real_t t83 = t82 + t81;
-    const two_fingers_real_t t84 = parameters[MX4R] * t83; /* link right_1: force and moment */
-    const two_fingers_real_t t85 = t70 * t71; /* link right_2: motion */
+    const two_fingers_real_t t79 = parameters[MX5] * t76 + parameters[MY5] * (t78 + t74);
+    const two_fingers_real_t t80 = t70 * t70; /* link right_2: motion */
+    const two_fingers_real_t t81 = dq[3] * dq[3];
+    const two_fingers_real_t t82 = t81 + t80;
+    const two_fingers_real_t t83 = parameters[MX4R] * t82; /* link right_1: force and moment */
+    const two_fingers_real_t t84 = t69 * t70; /* link right_2: motion */
     /* link right_2: what it passes on */
-    const two_fingers_real_t t86 = t84 - parameters[MY4] * t85 + (t3 * t78 - t2 * t80);
-    const two_fingers_real_t t87 = t2 * t78 + t3 * t80;
-    const two_fingers_real_t t88 = t70 * t70; /* link right_2: motion */
-    const two_fingers_real_t t89 = parameters[MY4] * (t82 + t88); /* link right_1: force and moment */
+    const two_fingers_real_t t85 = t83 - parameters[MY4] * t84 + (t3 * t77 - t2 * t79);
+    const two_fingers_real_t t86 = t2 * t77 + t3 * t79;
+    const two_fingers_real_t t87 = t69 * t69; /* link right_2: motion */
+    const two_fingers_real_t t88 = parameters[MY4] * (t81 + t87); /* link right_1: force and moment */
     /* link right_1: what it passes on */
-    const two_fingers_real_t t90 = t26 * t86 + t29 * (parameters[MX4R] * t85 - t89 - t87);
-    const two_fingers_real_t t91 = t76 * t74; /* link right_2: motion */
-    const two_fingers_real_t t92 = TWO_FINGERS_C(2.0) * t91; /* link right_2: force and moment */
-    const two_fingers_real_t t93 = t72 * t74; /* link right_2: motion */
-    const two_fingers_real_t t94 = TWO_FINGERS_C(-2.0) * t93; /* link right_2: force and moment */
-    const two_fingers_real_t t95 = parameters[MX5] * t92 + parameters[MY5] * t94;
-    const two_fingers_real_t t96 = dq[3] * t70; /* link right_1: motion */
-    const two_fingers_real_t t97 = TWO_FINGERS_C(2.0) * t96;
-    const two_fingers_real_t t98 = dq[3] * t71;
-    const two_fingers_real_t t99 = TWO_FINGERS_C(2.0) * t98;
+    const two_fingers_real_t t89 = t24 * t85 + t27 * (parameters[MX4R] * t84 - t88 - t86);
+    const two_fingers_real_t t90 = t75 * t73; /* link right_2: motion */
+    const two_fingers_real_t t91 = TWO_FINGERS_C(2.0) * t90; /* link right_2: force and moment */
+    const two_fingers_real_t t92 = t71 * t73; /* link right_2: motion */
+    const two_fingers_real_t t93 = TWO_FINGERS_C(-2.0) * t92; /* link right_2: force and moment */
+    const two_fingers_real_t t94 = parameters[MX5] * t91 + parameters[MY5] * t93;
+    const two_fingers_real_t t95 = dq[3] * t69; /* link right_1: motion */
+    const two_fingers_real_t t96 = TWO_FINGERS_C(2.0) * t95;
+    const two_fingers_real_t t97 = dq[3] * t70;
+    const two_fingers_real_t t98 = TWO_FINGERS_C(2.0) * t97;
     /* link right_2: what it passes on */
-    const two_fingers_real_t t100 = parameters[MX4R] * t97 + parameters[MY4] * t99 + t95;
+    const two_fingers_real_t t99 = parameters[MX4R] * t96 + parameters[MY4] * t98 + t94;
     /* link right_1: what it passes on */
     const two_fingers_real_t
-        t101 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t90
-        + TWO_FINGERS_C(0.984807753012208) * t100)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t90
-        + TWO_FINGERS_C(0.17364817766693028) * t100);
+        t100 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t89
+        + TWO_FINGERS_C(0.984807753012208) * t99)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t89
+        + TWO_FINGERS_C(0.17364817766693028) * t99);
     /* link right_2: force and moment */
-    const two_fingers_real_t t102 = parameters[XX5R] * t93 + parameters[ZZ5] * t93 + parameters[XY5] * t92
-        + parameters[XZ5] * t77;
-    const two_fingers_real_t t103 = dq[0] * dq[0];
-    const two_fingers_real_t t104 = TWO_FINGERS_C(-8.673617379884035e-19) * t103; /* link right_1: motion */
-    const two_fingers_real_t t105 = t104 + TWO_FINGERS_C(-0.09) * t96; /* link right_2: motion */
+    const two_fingers_real_t t101 = parameters[XX5R] * t92 + parameters[ZZ5] * t92 + parameters[XY5] * t91
+        + parameters[XZ5] * t76;
+    const two_fingers_real_t t102 = dq[0] * dq[0];
+    const two_fingers_real_t t103 = TWO_FINGERS_C(-8.673617379884035e-19) * t102; /* link right_1: motion */
+    const two_fingers_real_t t104 = t103 + TWO_FINGERS_C(-0.09) * t95; /* link right_2: motion */
     /* link right_2: force and moment */
-    const two_fingers_real_t t106 = t102 + parameters[YZ5] * (t75 - t73) + parameters[MY5] * t105;
-    const two_fingers_real_t t107 = parameters[ZZ5] - parameters[XX5R];
-    const two_fingers_real_t t108 = parameters[XY5] * t94 - t91 * t107 + parameters[YZ5] * t77
-        - parameters[XZ5] * (t79 - t75);
-    const two_fingers_real_t t109 = t108 + parameters[MX5] * t105;
-    const two_fingers_real_t t110 = parameters[ZZ4R] * t98; /* link right_1: force and moment */
-    const two_fingers_real_t t111 = parameters[XY4] * t97 - (parameters[XX4R] * t98 + t110)
-        - parameters[XZ4R] * t85;
-    const two_fingers_real_t t112 = parameters[YZ4] * (t82 - t81);
+    const two_fingers_real_t t105 = t101 + parameters[YZ5] * (t74 - t72) + parameters[MY5] * t104;
+    const two_fingers_real_t t106 = parameters[ZZ5] - parameters[XX5R];
+    const two_fingers_real_t t107 = parameters[XY5] * t93 - t90 * t106 + parameters[YZ5] * t76
+        - parameters[XZ5] * (t78 - t74);
+    const two_fingers_real_t t108 = t107 + parameters[MX5] * t104;
+    const two_fingers_real_t t109 = parameters[ZZ4R] * t97; /* link right_1: force and moment */
+    const two_fingers_real_t t110 = parameters[XY4] * t96 - (parameters[XX4R] * t97 + t109)
+        - parameters[XZ4R] * t84;
+    const two_fingers_real_t t111 = parameters[YZ4] * (t81 - t80);
     /* link right_2: what it passes on */
-    const two_fingers_real_t t113 = t111 + t112 + parameters[MY4] * t104 + (t3 * t106 + t2 * t109);
+    const two_fingers_real_t t112 = t110 + t111 + parameters[MY4] * t103 + (t3 * t105 + t2 * t108);
     /* link right_1: force and moment */
-    const two_fingers_real_t t114 = t96 * (parameters[ZZ4R] - parameters[XX4R]);
-    const two_fingers_real_t t115 = parameters[XZ4R] * (t88 - t82);
-    const two_fingers_real_t t116 = t114 - parameters[XY4] * t99 + parameters[YZ4] * t85 + t115
-        - parameters[MX4R] * t104;
+    const two_fingers_real_t t113 = t95 * (parameters[ZZ4R] - parameters[XX4R]);
+    const two_fingers_real_t t114 = parameters[XZ4R] * (t87 - t81);
+    const two_fingers_real_t t115 = t113 - parameters[XY4] * t98 + parameters[YZ4] * t84 + t114
+        - parameters[MX4R] * t103;
     /* link right_2: what it passes on */
-    const two_fingers_real_t t117 = t116 + (t2 * t106 - t3 * t109 + TWO_FINGERS_C(0.045) * t95);
-    const two_fingers_real_t t118 = t41 * dq[0]; /* link left_1: motion */
-    const two_fingers_real_t t119 = t38 * dq[0];
-    const two_fingers_real_t t120 = t12 * t118 - t13 * t119; /* link left_2: motion */
-    const two_fingers_real_t t121 = dq[1] + dq[2];
-    const two_fingers_real_t t122 = t120 * t121;
-    const two_fingers_real_t t123 = t13 * t118 + t12 * t119;
-    const two_fingers_real_t t124 = t123 * t121;
-    const two_fingers_real_t t125 = TWO_FINGERS_C(2.0) * t124; /* link left_2: force and moment */
-    const two_fingers_real_t t126 = t123 * t120; /* link left_2: motion */
+    const two_fingers_real_t t116 = t115 + (t2 * t105 - t3 * t108 + TWO_FINGERS_C(0.045) * t94);
+    const two_fingers_real_t t117 = t39 * dq[0]; /* link left_1: motion */
+    const two_fingers_real_t t118 = t36 * dq[0];
+    const two_fingers_real_t t119 = t11 * t117 - t12 * t118; /* link left_2: motion */
+    const two_fingers_real_t t120 = dq[1] + dq[2];
+    const two_fingers_real_t t121 = t119 * t120;
+    const two_fingers_real_t t122 = t12 * t117 + t11 * t118;
+    const two_fingers_real_t t123 = t122 * t120;
+    const two_fingers_real_t t124 = TWO_FINGERS_C(2.0) * t123; /* link left_2: force and moment */
+    const two_fingers_real_t t125 = t122 * t119; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t127 = parameters[XX3R] * t122 + parameters[ZZ3] * t122 + parameters[XY3] * t125
-        + parameters[XZ3] * t126;
-    const two_fingers_real_t t128 = t120 * t120; /* link left_2: motion */
-    const two_fingers_real_t t129 = t121 * t121;
-    const two_fingers_real_t t130 = dq[1] * t118; /* link left_1: motion */
-    const two_fingers_real_t t131 = TWO_FINGERS_C(-0.1) * t130; /* link left_2: motion */
+    const two_fingers_real_t t126 = parameters[XX3R] * t121 + parameters[ZZ3] * t121 + parameters[XY3] * t124
+        + parameters[XZ3] * t125;
+    const two_fingers_real_t t127 = t119 * t119; /* link left_2: motion */
+    const two_fingers_real_t t128 = t120 * t120;
+    const two_fingers_real_t t129 = dq[1] * t117; /* link left_1: motion */
+    const two_fingers_real_t t130 = TWO_FINGERS_C(-0.1) * t129; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t132 = t127 + parameters[YZ3] * (t129 - t128) + parameters[MY3] * t131;
-    const two_fingers_real_t t133 = parameters[ZZ3] - parameters[XX3R];
-    const two_fingers_real_t t134 = TWO_FINGERS_C(-2.0) * t122;
-    const two_fingers_real_t t135 = t123 * t123; /* link left_2: motion */
+    const two_fingers_real_t t131 = t126 + parameters[YZ3] * (t128 - t127) + parameters[MY3] * t130;
+    const two_fingers_real_t t132 = parameters[ZZ3] - parameters[XX3R];
+    const two_fingers_real_t t133 = TWO_FINGERS_C(-2.0) * t121;
+    const two_fingers_real_t t134 = t122 * t122; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t136 = parameters[XY3] * t134 - t124 * t133 + parameters[YZ3] * t126
-        - parameters[XZ3] * (t135 - t129);
-    const two_fingers_real_t t137 = t136 + parameters[MX3] * t131;
-    const two_fingers_real_t t138 = dq[1] * t119; /* link left_1: motion */
-    const two_fingers_real_t t139 = parameters[ZZ2R] * t138; /* link left_1: force and moment */
-    const two_fingers_real_t t140 = TWO_FINGERS_C(2.0) * t130; /* link left_1: motion */
-    const two_fingers_real_t t141 = t118 * t119;
+    const two_fingers_real_t t135 = parameters[XY3] * t133 - t123 * t132 + parameters[YZ3] * t125
+        - parameters[XZ3] * (t134 - t128);
+    const two_fingers_real_t t136 = t135 + parameters[MX3] * t130;
+    const two_fingers_real_t t137 = dq[1] * t118; /* link left_1: motion */
+    const two_fingers_real_t t138 = parameters[ZZ2R] * t137; /* link left_1: force and moment */
+    const two_fingers_real_t t139 = TWO_FINGERS_C(2.0) * t129; /* link left_1: motion */
+    const two_fingers_real_t t140 = t117 * t118;
     /* link left_1: force and moment */
-    const two_fingers_real_t t142 = parameters[XY2] * t140 - (parameters[XX2R] * t138 + t139)
-        - parameters[XZ2R] * t141;
-    const two_fingers_real_t t143 = t119 * t119; /* link left_1: motion */
-    const two_fingers_real_t t144 = dq[1] * dq[1];
-    const two_fingers_real_t t145 = parameters[YZ2] * (t144 - t143); /* link left_1: force and moment */
+    const two_fingers_real_t t141 = parameters[XY2] * t139 - (parameters[XX2R] * t137 + t138)
+        - parameters[XZ2R] * t140;
+    const two_fingers_real_t t142 = t118 * t118; /* link left_1: motion */
+    const two_fingers_real_t t143 = dq[1] * dq[1];
+    const two_fingers_real_t t144 = parameters[YZ2] * (t143 - t142); /* link left_1: force and moment */
     /* link left_1: what it passes on */
-    const two_fingers_real_t t146 = t41 * (t142 + t145 + (t13 * t132 + t12 * t137));
+    const two_fingers_real_t t145 = t39 * (t141 + t144 + (t12 * t131 + t11 * t136));
     /* link left_2: force and moment */
-    const two_fingers_real_t t147 = parameters[MX3] * t125 + parameters[MY3] * t134;
+    const two_fingers_real_t t146 = parameters[MX3] * t124 + parameters[MY3] * t133;
     /* link left_1: force and moment */
-    const two_fingers_real_t t148 = t130 * (parameters[ZZ2R] - parameters[XX2R]);
-    const two_fingers_real_t t149 = TWO_FINGERS_C(2.0) * t138; /* link left_1: motion */
-    const two_fingers_real_t t150 = t118 * t118;
-    const two_fingers_real_t t151 = parameters[XZ2R] * (t150 - t144); /* link left_1: force and moment */
+    const two_fingers_real_t t147 = t129 * (parameters[ZZ2R] - parameters[XX2R]);
+    const two_fingers_real_t t148 = TWO_FINGERS_C(2.0) * t137; /* link left_1: motion */
+    const two_fingers_real_t t149 = t117 * t117;
+    const two_fingers_real_t t150 = parameters[XZ2R] * (t149 - t143); /* link left_1: force and moment */
     /* link left_2: what it passes on */
-    const two_fingers_real_t t152 = t148 - parameters[XY2] * t149 + parameters[YZ2] * t141 + t151
-        + (t12 * t132 - t13 * t137 + TWO_FINGERS_C(0.05) * t147);
+    const two_fingers_real_t t151 = t147 - parameters[XY2] * t148 + parameters[YZ2] * t140 + t150
+        + (t11 * t131 - t12 * t136 + TWO_FINGERS_C(0.05) * t146);
     /* link left_1: what it passes on */
-    const two_fingers_real_t t153 = t146 + t38 * t152 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t140
-        + parameters[MY2] * t149 + t147);
-    const two_fingers_real_t t154 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
-    const two_fingers_real_t t155 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0])
-        - parameters[FC1] * t154) + (t29 * t113 + t26 * t117 + t101 + t153);
-    const two_fingers_real_t t156 = TWO_FINGERS_C(0.034999999999999996) * t103; /* link right_1: motion */
-    const two_fingers_real_t t157 = TWO_FINGERS_C(9.81) * t29;
-    const two_fingers_real_t t158 = t26 * t156 - t157;
-    const two_fingers_real_t t159 = TWO_FINGERS_C(0.045) * t83; /* link right_2: motion */
-    const two_fingers_real_t t160 = t158 + t159;
-    const two_fingers_real_t t161 = TWO_FINGERS_C(9.81) * t26; /* link right_1: motion */
-    const two_fingers_real_t t162 = t29 * t156 + t161;
-    const two_fingers_real_t t163 = t162 + TWO_FINGERS_C(0.045) * t85; /* link right_2: motion */
+    const two_fingers_real_t t152 = t145 + t36 * t151 + TWO_FINGERS_C(0.03) * (parameters[MX2R] * t139
+        + parameters[MY2] * t148 + t146);
+    const two_fingers_real_t t153 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
+    const two_fingers_real_t t154 = TWO_FINGERS_C(60.0) * (parameters[FV1] * (TWO_FINGERS_C(-60.0) * dq[0])
+        - parameters[FC1] * t153) + (t27 * t112 + t24 * t116 + t100 + t152);
+    const two_fingers_real_t t155 = TWO_FINGERS_C(0.034999999999999996) * t102; /* link right_1: motion */
+    const two_fingers_real_t t156 = TWO_FINGERS_C(9.81) * t27;
+    const two_fingers_real_t t157 = t24 * t155 - t156;
+    const two_fingers_real_t t158 = TWO_FINGERS_C(0.045) * t82; /* link right_2: motion */
+    const two_fingers_real_t t159 = t157 + t158;
+    const two_fingers_real_t t160 = TWO_FINGERS_C(9.81) * t24; /* link right_1: motion */
+    const two_fingers_real_t t161 = t27 * t155 + t160;
+    const two_fingers_real_t t162 = t161 + TWO_FINGERS_C(0.045) * t84; /* link right_2: motion */
     /* link right_2: force and moment */
-    const two_fingers_real_t t164 = parameters[MX5] * (t2 * t160 + t3 * t163) + parameters[MY5] * (t3 * t160
-        - t2 * t163);
-    const two_fingers_real_t t165 = parameters[XX5R] * t77 + parameters[XY5] * (t79 - t73) + t164;
-    const two_fingers_real_t t166 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
-    const two_fingers_real_t t167 = TWO_FINGERS_C(30.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4])
-        + parameters[FC5] * t166) + t165;
-    const two_fingers_real_t t168 = TWO_FINGERS_C(0.6) * input[4] - t167;
+    const two_fingers_real_t t163 = parameters[MX5] * (t2 * t159 + t3 * t162) + parameters[MY5] * (t3 * t159
+        - t2 * t162);
+    const two_fingers_real_t t164 = parameters[XX5R] * t76 + parameters[XY5] * (t78 - t72) + t163;
+    const two_fingers_real_t t165 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
+    const two_fingers_real_t t166 = TWO_FINGERS_C(30.0) * (parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4])
+        + parameters[FC5] * t165) + t164;
+    const two_fingers_real_t t167 = TWO_FINGERS_C(0.6) * input[4] - t166;
     /* link right_1: force and moment */
-    const two_fingers_real_t t169 = parameters[XX4R] * t85 - parameters[XY4] * (t88 - t81)
-        - (parameters[MX4R] * t162 + parameters[MY4] * t158);
-    const two_fingers_real_t t170 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
-    const two_fingers_real_t t171 = TWO_FINGERS_C(30.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
-        + parameters[FC4] * t170) - (t169 - (t165 - TWO_FINGERS_C(0.045) * t87));
-    const two_fingers_real_t t172 = TWO_FINGERS_C(0.6) * input[3] - t171 - t168 * t7;
-    const two_fingers_real_t t173 = TWO_FINGERS_C(2.4) * input[0] + t155 + t168 * t51 + t172 * t57;
-    const two_fingers_real_t t174 = TWO_FINGERS_C(0.03) * t103; /* link left_1: motion */
-    const two_fingers_real_t t175 = t38 * t174 - TWO_FINGERS_C(9.81) * t41;
-    const two_fingers_real_t t176 = t175 + TWO_FINGERS_C(0.05) * (t144 + t143); /* link left_2: motion */
-    const two_fingers_real_t t177 = t12 * t176;
-    const two_fingers_real_t t178 = t41 * t174 + TWO_FINGERS_C(9.81) * t38; /* link left_1: motion */
-    const two_fingers_real_t t179 = t178 + TWO_FINGERS_C(0.05) * t141; /* link left_2: motion */
-    const two_fingers_real_t t180 = t13 * t176;
+    const two_fingers_real_t t168 = parameters[XX4R] * t84 - parameters[XY4] * (t87 - t80)
+        - (parameters[MX4R] * t161 + parameters[MY4] * t157);
+    const two_fingers_real_t t169 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
+    const two_fingers_real_t t170 = TWO_FINGERS_C(30.0) * (parameters[FV4] * (TWO_FINGERS_C(30.0) * dq[3])
+        + parameters[FC4] * t169) - (t168 - (t164 - TWO_FINGERS_C(0.045) * t86));
+    const two_fingers_real_t t171 = TWO_FINGERS_C(0.6) * input[3] - t170 - t167 * t7;
+    const two_fingers_real_t t172 = TWO_FINGERS_C(2.4) * input[0] + t154 + t167 * t49 + t171 * t55;
+    const two_fingers_real_t t173 = TWO_FINGERS_C(0.03) * t102; /* link left_1: motion */
+    const two_fingers_real_t t174 = t36 * t173 - TWO_FINGERS_C(9.81) * t39;
+    const two_fingers_real_t t175 = t174 + TWO_FINGERS_C(0.05) * (t143 + t142); /* link left_2: motion */
+    const two_fingers_real_t t176 = t11 * t175;
+    const two_fingers_real_t t177 = t39 * t173 + TWO_FINGERS_C(9.81) * t36; /* link left_1: motion */
+    const two_fingers_real_t t178 = t177 + TWO_FINGERS_C(0.05) * t140; /* link left_2: motion */
+    const two_fingers_real_t t179 = t12 * t175;
     /* link left_2: force and moment */
-    const two_fingers_real_t t181 = parameters[MX3] * (t177 + t13 * t179) + parameters[MY3] * (t180
-        - t12 * t179);
-    const two_fingers_real_t t182 = parameters[XX3R] * t126 + parameters[XY3] * (t135 - t128) + t181;
-    const two_fingers_real_t t183 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
-    const two_fingers_real_t t184 = TWO_FINGERS_C(30.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2])
-        + parameters[FC3] * t183) + t182;
-    const two_fingers_real_t t185 = TWO_FINGERS_C(0.6) * input[2] - t184;
+    const two_fingers_real_t t180 = parameters[MX3] * (t176 + t12 * t178) + parameters[MY3] * (t179
+        - t11 * t178);
+    const two_fingers_real_t t181 = parameters[XX3R] * t125 + parameters[XY3] * (t134 - t127) + t180;
+    const two_fingers_real_t t182 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
+    const two_fingers_real_t t183 = TWO_FINGERS_C(30.0) * (parameters[FV3] * (TWO_FINGERS_C(30.0) * dq[2])
+        + parameters[FC3] * t182) + t181;
+    const two_fingers_real_t t184 = TWO_FINGERS_C(0.6) * input[2] - t183;
     /* link left_2: what it passes on */
-    const two_fingers_real_t t186 = t12 * (parameters[MX3] * (t128 + t129) + parameters[MY3] * t126)
-        + t13 * (parameters[MX3] * t126 + parameters[MY3] * (t135 + t129));
+    const two_fingers_real_t t185 = t11 * (parameters[MX3] * (t127 + t128) + parameters[MY3] * t125)
+        + t12 * (parameters[MX3] * t125 + parameters[MY3] * (t134 + t128));
     /* link left_1: force and moment */
-    const two_fingers_real_t t187 = parameters[XX2R] * t141 - parameters[XY2] * (t150 - t143)
-        - (parameters[MX2R] * t178 + parameters[MY2] * t175);
-    const two_fingers_real_t t188 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
-    const two_fingers_real_t t189 = TWO_FINGERS_C(30.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
-        + parameters[FC2] * t188) - (t187 - (t182 - TWO_FINGERS_C(0.05) * t186));
-    const two_fingers_real_t t190 = TWO_FINGERS_C(0.6) * input[1] - t189 + t185 * t17;
-    const two_fingers_real_t t191 = TWO_FINGERS_C(1.0) / t68;
-    const two_fingers_real_t t192 = two_fingers_bounded((t173 + t185 * t61 + t190 * t67) * t191);
-    ddq[0] = t192;
-    const two_fingers_real_t t193 = two_fingers_bounded(t190 * t66 + t67 * t192);
-    ddq[1] = t193;
-    const two_fingers_real_t t194 = two_fingers_bounded(t185 * t16 + t61 * t192 + t17 * t193);
-    ddq[2] = t194;
-    const two_fingers_real_t t195 = two_fingers_bounded(t172 * t56 + t57 * t192);
-    ddq[3] = t195;
-    const two_fingers_real_t t196 = two_fingers_bounded(t168 * t6 + t51 * t192 - t7 * t195);
-    ddq[4] = t196;
-    const two_fingers_real_t t197 = TWO_FINGERS_C(0.5) * (parameters[XX5R] + parameters[ZZ5]);
-    const two_fingers_real_t t198 = parameters[XX5R] - t197;
-    const two_fingers_real_t t199 = t29 * t3 + t26 * t2; /* link right_2: motion */
-    const two_fingers_real_t t200 = dq[0] * t199;
-    const two_fingers_real_t t201 = t74 * t198 - parameters[XZ5] * t200;
-    const two_fingers_real_t t202 = t29 * t2 - t26 * t3;
-    const two_fingers_real_t t203 = dq[0] * t202;
-    const two_fingers_real_t t204 = parameters[YZ5] * t203 - t74 * t197;
-    const two_fingers_real_t t205 = parameters[XZ5] * t203;
-    const two_fingers_real_t t206 = parameters[XY5] * t74;
-    const two_fingers_real_t t207 = t205 + t206;
-    const two_fingers_real_t t208 = parameters[YZ5] * t200;
-    const two_fingers_real_t t209 = t206 - t208;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t210 = t2 * (t204 - t201) - t3 * (t207 + t209);
-    const two_fingers_real_t t211 = t3 * t210;
-    const two_fingers_real_t t212 = parameters[MY5] * t74;
-    const two_fingers_real_t t213 = parameters[MX5] * t74;
-    const two_fingers_real_t t214 = t3 * t212 + t2 * t213;
-    const two_fingers_real_t t215 = TWO_FINGERS_C(0.045) * t214;
-    const two_fingers_real_t t216 = TWO_FINGERS_C(0.045) * dq[3]; /* link right_2: velocity of its origin */
-    const two_fingers_real_t t217 = t27 * t216; /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t218 = t217 - t215;
-    const two_fingers_real_t t219 = parameters[XZ4R] * t71;
-    const two_fingers_real_t t220 = parameters[XY4] * dq[3];
-    const two_fingers_real_t t221 = t219 - t220 + (t218 + (t209 + t211 + t215));
-    const two_fingers_real_t t222 = parameters[YZ4] * t70;
-    const two_fingers_real_t t223 = t220 - t222 + (t218 - (t207 + t211 + t217));
-    const two_fingers_real_t t224 = t2 * t210;
-    const two_fingers_real_t t225 = TWO_FINGERS_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    const two_fingers_real_t t226 = parameters[YZ4] * t71 - dq[3] * t225 + (t224 - t204);
-    const two_fingers_real_t t227 = t2 * t212 - t3 * t213;
-    const two_fingers_real_t t228 = parameters[XX4R] + t225;
-    const two_fingers_real_t t229 = dq[3] * t228 - parameters[XZ4R] * t70 + (t201 + t224
-        + (TWO_FINGERS_C(0.045) * t227 + t4 * t216));
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t230 = t26 * (t26 * (t223 - t221) + t29 * (t226 + t229));
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t231 = parameters[MY4] * dq[3] + t214;
-    const two_fingers_real_t t232 = t227 - parameters[MX4R] * dq[3];
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t233 = TWO_FINGERS_C(0.07) * (t29 * t231 + t26 * t232);
-    const two_fingers_real_t t234 = t29 * t232 - t26 * t231;
-    const two_fingers_real_t t235 = parameters[MY5] * t200 + parameters[MX5] * t203;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t236 = parameters[MY4] * t70 - parameters[MX4R] * t71 + t235;
-    /* link right_1: inertia, momentum beyond */
+    const two_fingers_real_t t186 = parameters[XX2R] * t140 - parameters[XY2] * (t149 - t142)
+        - (parameters[MX2R] * t177 + parameters[MY2] * t174);
+    const two_fingers_real_t t187 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
+    const two_fingers_real_t t188 = TWO_FINGERS_C(30.0) * (parameters[FV2] * (TWO_FINGERS_C(30.0) * dq[1])
+        + parameters[FC2] * t187) - (t186 - (t181 - TWO_FINGERS_C(0.05) * t185));
+    const two_fingers_real_t t189 = TWO_FINGERS_C(0.6) * input[1] - t188 + t184 * t16;
+    const two_fingers_real_t t190 = TWO_FINGERS_C(1.0) / t66;
+    const two_fingers_real_t t191 = two_fingers_held((t172 + t184 * t59 + t189 * t65) * t190);
+    ddq[0] = t191;
+    const two_fingers_real_t t192 = two_fingers_held(t189 * t64 + t65 * t191);
+    ddq[1] = t192;
+    const two_fingers_real_t t193 = two_fingers_held(t184 * t15 + t59 * t191 + t16 * t192);
+    ddq[2] = t193;
+    const two_fingers_real_t t194 = two_fingers_held(t171 * t54 + t55 * t191);
+    ddq[3] = t194;
+    const two_fingers_real_t t195 = two_fingers_held(t167 * t6 + t49 * t191 - t7 * t194);
+    ddq[4] = t195;
+    const two_fingers_real_t t196 = TWO_FINGERS_C(0.03446827135542729) * t102
+        + TWO_FINGERS_C(-0.00607768621834256) * t191;
+    const two_fingers_real_t t197 = TWO_FINGERS_C(0.00607768621834256) * t102
+        + TWO_FINGERS_C(0.03446827135542729) * t191;
+    const two_fingers_real_t t198 = TWO_FINGERS_C(0.17364817766693028) * t196
+        + TWO_FINGERS_C(-0.984807753012208) * t197;
+    const two_fingers_real_t t199 = t24 * t191;
+    const two_fingers_real_t t200 = t95 + (t95 - t199);
+    const two_fingers_real_t t201 = t198 + TWO_FINGERS_C(0.045) * t200;
+    const two_fingers_real_t t202 = t194 + t195;
+    const two_fingers_real_t t203 = t27 * t3 + t24 * t2; /* link right_2: motion */
+    const two_fingers_real_t t204 = dq[0] * t203;
+    const two_fingers_real_t t205 = t27 * t2 - t24 * t3;
+    const two_fingers_real_t t206 = dq[0] * t205;
+    const two_fingers_real_t t207 = t204 * t206;
+    const two_fingers_real_t t208 = t207 + t202;
+    const two_fingers_real_t t209 = t191 * t203;
+    const two_fingers_real_t t210 = t73 * t206;
+    const two_fingers_real_t t211 = t210 - t209;
+    const two_fingers_real_t t212 = t210 + t211;
+    const two_fingers_real_t t213 = t73 * t204;
+    const two_fingers_real_t t214 = t204 * t204;
+    const two_fingers_real_t t215 = parameters[XZ5] * (t214 - t74) + (t106 * t213 + parameters[XY5] * t212
+        - parameters[YZ5] * t208);
+    const two_fingers_real_t t216 = parameters[MX5] * t201 + t215;
+    const two_fingers_real_t t217 = t191 * t205;
+    const two_fingers_real_t t218 = t206 * t206;
+    const two_fingers_real_t t219 = t214 + t218; /* link right_2: force and moment */
+    const two_fingers_real_t t220 = TWO_FINGERS_C(2.0) * t206;
+    const two_fingers_real_t t221 = parameters[XZ5] * t206;
+    const two_fingers_real_t t222 = parameters[XY5] * t73;
+    const two_fingers_real_t t223 = t221 + t222;
+    const two_fingers_real_t t224 = TWO_FINGERS_C(0.5) * (parameters[XX5R] + parameters[ZZ5]);
+    const two_fingers_real_t t225 = parameters[YZ5] * t206 - t73 * t224;
+    const two_fingers_real_t t226 = TWO_FINGERS_C(2.0) * t204;
+    const two_fingers_real_t t227 = t220 * t223 + t226 * t225 - (parameters[XZ5] * t219
+        + (parameters[XX5R] * t217 + parameters[XY5] * t209));
+    const two_fingers_real_t t228 = t216 + t227;
+    const two_fingers_real_t t229 = t213 + (t213 + t217);
+    const two_fingers_real_t t230 = t202 - t207;
+    const two_fingers_real_t t231 = parameters[ZZ5] * t210 + parameters[XX5R] * t211 + parameters[XY5] * t229
+        - parameters[XZ5] * t230;
+    const two_fingers_real_t t232 = parameters[MY5] * t201 - (parameters[YZ5] * (t74 - t218) + t231);
+    const two_fingers_real_t t233 = parameters[XX5R] - t224;
+    const two_fingers_real_t t234 = t73 * t233 - parameters[XZ5] * t204;
+    const two_fingers_real_t t235 = parameters[YZ5] * t204;
+    const two_fingers_real_t t236 = t222 - t235;
+    const two_fingers_real_t t237 = t220 * t234 + t226 * t236 + (parameters[YZ5] * t219
+        + parameters[XY5] * t217);
+    const two_fingers_real_t t238 = t232 - t237;
+    const two_fingers_real_t t239 = parameters[MX5] * t73;
+    const two_fingers_real_t t240 = parameters[MY5] * t73;
+    const two_fingers_real_t t241 = t220 * t239 + t226 * t240 + (parameters[MY5] * t217
+        - parameters[MX5] * t209);
+    const two_fingers_real_t t242 = t24 * (t2 * t228 + t3 * t238 + TWO_FINGERS_C(0.045) * t241);
+    const two_fingers_real_t t243 = parameters[MX5] * t230 - parameters[MY5] * (t74 + t214);
+    const two_fingers_real_t t244 = parameters[MY5] * t204 + parameters[MX5] * t206;
+    const two_fingers_real_t t245 = t226 * t244 - parameters[MY5] * t219 + t243;
+    const two_fingers_real_t t246 = parameters[MX5] * (t74 + t218) + parameters[MY5] * t208;
+    const two_fingers_real_t t247 = parameters[MX5] * t219 - t220 * t244 + t246;
+    const two_fingers_real_t t248 = t2 * t245 + t3 * t247;
+    const two_fingers_real_t t249 = t24 * (t3 * t245 - t2 * t247) - t27 * t248;
     const two_fingers_real_t
-        t237 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t234
-        + TWO_FINGERS_C(-0.17364817766693028) * t236)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t234
-        + TWO_FINGERS_C(0.984807753012208) * t236);
+        t250 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t249
+        + TWO_FINGERS_C(0.984807753012208) * t241)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t249
+        + TWO_FINGERS_C(0.17364817766693028) * t241);
+    const two_fingers_real_t t251 = t27 * (t3 * t228 - t2 * t238) + t242 + t250;
+    const two_fingers_real_t t252 = TWO_FINGERS_C(0.4166666666666667) * t251;
+    const two_fingers_real_t t253 = two_fingers_held(TWO_FINGERS_C(2.4) * t190);
+    const two_fingers_real_t t254 = TWO_FINGERS_C(0.984807753012208) * t196
+        + TWO_FINGERS_C(0.17364817766693028) * t197;
+    const two_fingers_real_t t255 = t156 - t24 * t254;
+    const two_fingers_real_t t256 = t158 - t255;
+    const two_fingers_real_t t257 = t160 + t27 * t254;
+    const two_fingers_real_t t258 = t84 + t194;
+    const two_fingers_real_t t259 = t257 + TWO_FINGERS_C(0.045) * t258;
+    const two_fingers_real_t t260 = parameters[MX5] * (t2 * t259 - t3 * t256) + parameters[MY5] * (t2 * t256
+        + t3 * t259);
+    const two_fingers_real_t t261 = parameters[ZZ5] * t219 + (parameters[YZ5] * t209
+        + parameters[XZ5] * t217);
+    const two_fingers_real_t t262 = parameters[XY5] * t204 + t206 * t233;
+    const two_fingers_real_t t263 = parameters[XY5] * t206 - t204 * t224;
+    const two_fingers_real_t t264 = t260 + (t220 * t262 + t226 * t263 + t261) + TWO_FINGERS_C(0.045) * t248;
+    const two_fingers_real_t t265 = TWO_FINGERS_C(1.6666666666666667) * t264;
+    const two_fingers_real_t t266 = t55 * t190;
+    const two_fingers_real_t t267 = two_fingers_held(TWO_FINGERS_C(0.6) * t266);
+    const two_fingers_real_t t268 = TWO_FINGERS_C(2.0) * t262; /* link right_2: derivatives */
+    const two_fingers_real_t t269 = TWO_FINGERS_C(2.0) * t263;
+    const two_fingers_real_t t270 = TWO_FINGERS_C(1.6666666666666667) * (t260 + (t206 * t268 + t204 * t269
+        + t261));
+    const two_fingers_real_t t271 = t190 * (t7 * t55 - t49);
+    const two_fingers_real_t t272 = two_fingers_held(TWO_FINGERS_C(-0.6) * t271);
+    ddq_by_q[4] = t267 * t265 - t253 * t252 + t272 * t270;
+    const two_fingers_real_t t273 = t65 * t190;
+    const two_fingers_real_t t274 = two_fingers_held(TWO_FINGERS_C(2.4) * t273);
+    const two_fingers_real_t t275 = t65 * t266;
+    const two_fingers_real_t t276 = two_fingers_held(TWO_FINGERS_C(0.6) * t275);
+    const two_fingers_real_t t277 = t65 * t271;
+    const two_fingers_real_t t278 = two_fingers_held(TWO_FINGERS_C(-0.6) * t277);
+    ddq_by_q[9] = t276 * t265 - t274 * t252 + t278 * t270;
+    const two_fingers_real_t t279 = t190 * (t59 + t16 * t65);
+    const two_fingers_real_t t280 = two_fingers_held(TWO_FINGERS_C(2.4) * t279);
+    const two_fingers_real_t t281 = two_fingers_held(TWO_FINGERS_C(0.6) * (t59 * t266 + t16 * t275));
+    const two_fingers_real_t t282 = two_fingers_held(TWO_FINGERS_C(-0.6) * (t59 * t271 + t16 * t277));
+    ddq_by_q[14] = t281 * t265 - t280 * t252 + t282 * t270;
+    const two_fingers_real_t t283 = two_fingers_held(TWO_FINGERS_C(2.4) * t266);
+    const two_fingers_real_t t284 = two_fingers_held(TWO_FINGERS_C(0.6) * (t54 + t55 * t266));
+    const two_fingers_real_t t285 = t7 * t54 + t55 * t271;
+    const two_fingers_real_t t286 = two_fingers_held(TWO_FINGERS_C(-0.6) * t285);
+    ddq_by_q[19] = t284 * t265 - t283 * t252 + t286 * t270;
+    const two_fingers_real_t t287 = two_fingers_held(TWO_FINGERS_C(-2.4) * t271);
+    const two_fingers_real_t t288 = two_fingers_held(TWO_FINGERS_C(0.6) * (t6 - t49 * t271 + t7 * t285));
+    ddq_by_q[24] = t286 * t265 - t287 * t252 + t288 * t270;
+    const two_fingers_real_t t289 = t224 - parameters[ZZ5];
+    const two_fingers_real_t t290 = t206 * t289 - parameters[YZ5] * t73;
+    const two_fingers_real_t t291 = TWO_FINGERS_C(2.0) * t290 - (parameters[XY5] * t226
+        + parameters[XX5R] * t220);
+    const two_fingers_real_t t292 = parameters[XZ5] * t73 + t204 * t289;
+    const two_fingers_real_t t293 = parameters[XY5] * t220 - TWO_FINGERS_C(2.0) * t292;
+    const two_fingers_real_t t294 = parameters[MY5] * t220 - parameters[MX5] * t226;
+    const two_fingers_real_t t295 = t24 * (TWO_FINGERS_C(0.045) * t294 + (t2 * t291 - t3 * t293));
+    const two_fingers_real_t t296 = TWO_FINGERS_C(2.0) * t239;
+    const two_fingers_real_t t297 = TWO_FINGERS_C(2.0) * t240;
+    const two_fingers_real_t t298 = t2 * t296 + t3 * t297;
+    const two_fingers_real_t t299 = t24 * (t3 * t296 - t2 * t297) - t27 * t298;
     const two_fingers_real_t
-        t238 = TWO_FINGERS_C(0.17364817766693028) * t33 * (TWO_FINGERS_C(0.03446827135542729) * dq[0])
-        - TWO_FINGERS_C(-0.984807753012208) * t33 * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
-    const two_fingers_real_t t239 = TWO_FINGERS_C(0.5) * (parameters[XX3R] + parameters[ZZ3]);
-    const two_fingers_real_t t240 = parameters[XX3R] - t239;
-    const two_fingers_real_t t241 = t41 * t13 + t38 * t12; /* link left_2: motion */
-    const two_fingers_real_t t242 = dq[0] * t241;
-    const two_fingers_real_t t243 = t121 * t240 - parameters[XZ3] * t242;
-    const two_fingers_real_t t244 = t41 * t12 - t38 * t13;
-    const two_fingers_real_t t245 = dq[0] * t244;
-    const two_fingers_real_t t246 = parameters[YZ3] * t245 - t121 * t239;
-    const two_fingers_real_t t247 = parameters[XZ3] * t245;
-    const two_fingers_real_t t248 = parameters[XY3] * t121;
-    const two_fingers_real_t t249 = t247 + t248;
-    const two_fingers_real_t t250 = parameters[YZ3] * t242;
-    const two_fingers_real_t t251 = t248 - t250;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t252 = t12 * (t246 - t243) - t13 * (t249 + t251);
-    const two_fingers_real_t t253 = t13 * t252;
-    const two_fingers_real_t t254 = parameters[MY3] * t121;
-    const two_fingers_real_t t255 = parameters[MX3] * t121;
-    const two_fingers_real_t t256 = t13 * t254 + t12 * t255;
-    const two_fingers_real_t t257 = TWO_FINGERS_C(0.05) * t256;
-    const two_fingers_real_t t258 = TWO_FINGERS_C(0.05) * dq[1]; /* link left_2: velocity of its origin */
-    const two_fingers_real_t t259 = t39 * t258; /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t260 = t259 - t257;
-    const two_fingers_real_t t261 = parameters[XZ2R] * t119;
-    const two_fingers_real_t t262 = parameters[XY2] * dq[1];
-    const two_fingers_real_t t263 = t261 - t262 + (t260 + (t251 + t253 + t257));
-    const two_fingers_real_t t264 = parameters[YZ2] * t118;
-    const two_fingers_real_t t265 = t262 - t264 + (t260 - (t249 + t253 + t259));
-    const two_fingers_real_t t266 = t12 * t252;
-    const two_fingers_real_t t267 = TWO_FINGERS_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const two_fingers_real_t t268 = parameters[YZ2] * t119 - dq[1] * t267 + (t266 - t246);
-    const two_fingers_real_t t269 = t12 * t254 - t13 * t255;
-    const two_fingers_real_t t270 = parameters[XX2R] + t267;
-    const two_fingers_real_t t271 = dq[1] * t270 - parameters[XZ2R] * t118 + (t243 + t266
-        + (TWO_FINGERS_C(0.05) * t269 + t14 * t258));
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t272 = t38 * (t38 * (t265 - t263) + t41 * (t268 + t271));
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t273 = parameters[MY2] * dq[1] + t256;
-    const two_fingers_real_t t274 = t269 - parameters[MX2R] * dq[1];
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t275 = TWO_FINGERS_C(0.08) * (t41 * t273 + t38 * t274);
-    const two_fingers_real_t t276 = TWO_FINGERS_C(0.03) * (t41 * t274 - t38 * t273) - t275 + (t263 + t272
-        + t275);
-    const two_fingers_real_t t277 = t237 - t233 + t238 + (t221 + t230 + t233) + t276;
-    const two_fingers_real_t t278 = TWO_FINGERS_C(1.5e3) * parameters[FV1]
-        + TWO_FINGERS_C(0.8333333333333334) * t277;
-    const two_fingers_real_t t279 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t191);
-    const two_fingers_real_t t280 = t67 * t191;
-    const two_fingers_real_t t281 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t280);
-    const two_fingers_real_t t282 = parameters[XY3] * t242 + t245 * t240;
-    const two_fingers_real_t t283 = parameters[XY3] * t245 - t242 * t239;
-    const two_fingers_real_t t284 = parameters[MY3] * t242 + parameters[MX3] * t245;
-    const two_fingers_real_t t285 = TWO_FINGERS_C(0.05) * t119; /* link left_2: velocity of its origin */
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t286 = t12 * t283 - t13 * t282 + (TWO_FINGERS_C(0.05) * t284 + t14 * t285);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t287 = TWO_FINGERS_C(2.0) * (t119 * t270 - parameters[XY2] * t118 + t286);
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t288 = parameters[XY2] * t119 - t118 * t267 - (t12 * t282 + t13 * t283
-        + t39 * t285);
-    const two_fingers_real_t t289 = TWO_FINGERS_C(2.0) * t288; /* link left_1: derivatives */
-    const two_fingers_real_t t290 = TWO_FINGERS_C(-0.06) * dq[0];
-    const two_fingers_real_t t291 = t41 * t287 + t38 * t289 - (t41 * t44 - t38 * t43) * t290;
-    const two_fingers_real_t t292 = TWO_FINGERS_C(1.6666666666666667) * t291;
-    const two_fingers_real_t t293 = t191 * (t61 + t17 * t67);
-    const two_fingers_real_t t294 = TWO_FINGERS_C(0.6) * t293;
-    const two_fingers_real_t t295 = TWO_FINGERS_C(2.0) * t282; /* link left_2: derivatives */
-    const two_fingers_real_t t296 = TWO_FINGERS_C(2.0) * t283;
-    const two_fingers_real_t t297 = TWO_FINGERS_C(0.1) * t119;
-    const two_fingers_real_t t298 = t12 * t296 - t13 * t295 + t14 * t297;
-    const two_fingers_real_t t299 = t12 * t295 + t13 * t296 + t39 * t297;
-    const two_fingers_real_t t300 = t41 * t298 - t38 * t299 - (t41 * t14 - t38 * t39) * t290;
-    const two_fingers_real_t t301 = TWO_FINGERS_C(1.6666666666666667) * t300;
-    const two_fingers_real_t t302 = t57 * t191;
-    const two_fingers_real_t t303 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t302);
-    const two_fingers_real_t t304 = parameters[XY5] * t200 + t203 * t198;
-    const two_fingers_real_t t305 = parameters[XY5] * t203 - t200 * t197;
-    const two_fingers_real_t t306 = TWO_FINGERS_C(0.045) * t71; /* link right_2: velocity of its origin */
+        t300 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t294
+        + TWO_FINGERS_C(0.17364817766693028) * t299)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t294
+        + TWO_FINGERS_C(-0.984807753012208) * t299);
+    const two_fingers_real_t t301 = t27 * (t3 * t291 + t2 * t293) + t295 + t300;
+    const two_fingers_real_t t302 = TWO_FINGERS_C(0.4166666666666667) * t301;
+    const two_fingers_real_t t303 = t221 + t235;
+    const two_fingers_real_t t304 = TWO_FINGERS_C(-2.0) * t303;
+    const two_fingers_real_t t305 = t304 + (parameters[XZ5] * t220 + parameters[YZ5] * t226)
+        + TWO_FINGERS_C(0.045) * t298;
+    const two_fingers_real_t t306 = TWO_FINGERS_C(1.6666666666666667) * t305;
+    const two_fingers_real_t t307 = TWO_FINGERS_C(-1.5e3) * parameters[FV5];
+    ddq_by_dq[4] = t306 * t267 - t302 * t253 + t307 * t272;
+    ddq_by_dq[9] = t306 * t276 - t302 * t274 + t307 * t278;
+    ddq_by_dq[14] = t306 * t281 - t302 * t280 + t307 * t282;
+    ddq_by_dq[19] = t306 * t284 - t302 * t283 + t307 * t286;
+    ddq_by_dq[24] = t306 * t286 - t302 * t287 + t307 * t288;
+    ddq_by_input[4] = t272;
+    ddq_by_input[9] = t278;
+    ddq_by_input[14] = t282;
+    ddq_by_input[19] = t286;
+    ddq_by_input[24] = t288;
+    const two_fingers_real_t t308 = t3 * t216 - t2 * t232 + TWO_FINGERS_C(0.045) * (parameters[MX5] * t229
+        - parameters[MY5] * t212);
+    const two_fingers_real_t t309 = t27 * t191;
+    const two_fingers_real_t t310 = t97 + t309;
+    const two_fingers_real_t t311 = t84 - t194;
+    const two_fingers_real_t t312 = t114 + (t113 - parameters[XY4] * (t97 + t310) + parameters[YZ4] * t311);
+    const two_fingers_real_t t313 = t87 + t80; /* link right_2: motion */
     /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t307 = t2 * t305 - t3 * t304 + (TWO_FINGERS_C(0.045) * t235 + t4 * t306);
+    const two_fingers_real_t t314 = t2 * (t225 - t234) - t3 * (t223 + t236);
+    const two_fingers_real_t t315 = t3 * t314;
+    const two_fingers_real_t t316 = t3 * t240 + t2 * t239;
+    const two_fingers_real_t t317 = TWO_FINGERS_C(0.045) * t316;
+    const two_fingers_real_t t318 = TWO_FINGERS_C(0.045) * dq[3]; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t319 = t25 * t318; /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t320 = t319 - t317;
+    const two_fingers_real_t t321 = parameters[XZ4R] * t70;
+    const two_fingers_real_t t322 = parameters[XY4] * dq[3];
+    const two_fingers_real_t t323 = t321 - t322 + (t320 + (t236 + t315 + t317));
+    const two_fingers_real_t t324 = TWO_FINGERS_C(2.0) * t70;
+    const two_fingers_real_t t325 = t2 * t314;
+    const two_fingers_real_t t326 = TWO_FINGERS_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const two_fingers_real_t t327 = parameters[YZ4] * t70 - dq[3] * t326 + (t325 - t225);
+    const two_fingers_real_t t328 = TWO_FINGERS_C(-2.0) * t69;
+    const two_fingers_real_t t329 = t324 * t323 + t328 * t327 + (t50 * t313 + (t23 * t199 - t26 * t309));
+    const two_fingers_real_t t330 = t109 + parameters[XX4R] * t310 - parameters[XY4] * t200
+        + parameters[XZ4R] * t258;
+    const two_fingers_real_t t331 = t330 - t111 + parameters[MY4] * t198 + (t3 * t232 + t2 * t216);
+    const two_fingers_real_t t332 = t2 * t240 - t3 * t239;
+    const two_fingers_real_t t333 = parameters[XX4R] + t326;
+    const two_fingers_real_t t334 = dq[3] * t333 - parameters[XZ4R] * t69 + (t234 + t325
+        + (TWO_FINGERS_C(0.045) * t332 + t4 * t318));
+    const two_fingers_real_t t335 = parameters[YZ4] * t69;
+    const two_fingers_real_t t336 = t322 - t335 + (t320 - (t223 + t315 + t319));
+    const two_fingers_real_t t337 = t324 * t334 + t328 * t336 + (t26 * t199 - t22 * t309 - t51 * t313);
+    const two_fingers_real_t t338 = t27 * (t312 + parameters[MX4R] * t198 + t308 + t329) + t24 * (t331
+        + t337);
+    const two_fingers_real_t t339 = t88 - parameters[MX4R] * t258 + (t2 * t246 - t3 * t243);
+    const two_fingers_real_t t340 = parameters[MY4] * t69 - parameters[MX4R] * t70 + t244;
+    const two_fingers_real_t t341 = t83 - parameters[MY4] * t311 + (t3 * t246 + t2 * t243);
+    const two_fingers_real_t t342 = t24 * (t328 * t340 + t29 * t313 + t339) + t27 * (t324 * t340 - t30 * t313
+        + t341);
+    const two_fingers_real_t t343 = t332 - parameters[MX4R] * dq[3];
+    const two_fingers_real_t t344 = parameters[MY4] * dq[3] + t316;
+    const two_fingers_real_t t345 = t324 * t343 - t328 * t344 + (t30 * t309 - t29 * t199);
+    const two_fingers_real_t
+        t346 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t342
+        + TWO_FINGERS_C(0.984807753012208) * t345)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t342
+        + TWO_FINGERS_C(0.17364817766693028) * t345);
+    const two_fingers_real_t t347 = TWO_FINGERS_C(0.4166666666666667) * (t338 + t346);
+    const two_fingers_real_t t348 = TWO_FINGERS_C(0.045) * t70; /* link right_2: velocity of its origin */
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t349 = t2 * t263 - t3 * t262 + (TWO_FINGERS_C(0.045) * t244 + t4 * t348);
     /* link right_1: derivatives */
-    const two_fingers_real_t t308 = TWO_FINGERS_C(2.0) * (t71 * t228 - parameters[XY4] * t70 + t307);
+    const two_fingers_real_t t350 = TWO_FINGERS_C(2.0) * (t70 * t333 - parameters[XY4] * t69 + t349);
     /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t309 = parameters[XY4] * t71 - t70 * t225 - (t2 * t304 + t3 * t305 + t27 * t306);
-    const two_fingers_real_t t310 = TWO_FINGERS_C(2.0) * t309; /* link right_1: derivatives */
-    const two_fingers_real_t t311 = TWO_FINGERS_C(-0.01215537243668512) * dq[0];
-    const two_fingers_real_t t312 = TWO_FINGERS_C(-0.06893654271085457) * dq[0];
-    const two_fingers_real_t t313 = t29 * t308 + t26 * t310 - (TWO_FINGERS_C(0.17364817766693028) * t54 * t311
-        + TWO_FINGERS_C(0.984807753012208) * t54 * t312);
-    const two_fingers_real_t t314 = TWO_FINGERS_C(1.6666666666666667) * t313;
-    const two_fingers_real_t t315 = t292 * t281 - t278 * t279 + t301 * t294 + t314 * t303;
-    const two_fingers_real_t t316 = t191 * (t7 * t57 - t51);
-    const two_fingers_real_t t317 = TWO_FINGERS_C(-0.6) * t316;
-    const two_fingers_real_t t318 = TWO_FINGERS_C(2.0) * t304; /* link right_2: derivatives */
-    const two_fingers_real_t t319 = TWO_FINGERS_C(2.0) * t305;
-    const two_fingers_real_t t320 = TWO_FINGERS_C(0.09) * t71;
-    const two_fingers_real_t t321 = t2 * t319 - t3 * t318 + t4 * t320;
-    const two_fingers_real_t t322 = t2 * t318 + t3 * t319 + t27 * t320;
-    const two_fingers_real_t t323 = t29 * t321 - t26 * t322 - (TWO_FINGERS_C(0.17364817766693028) * t49 * t311
-        + TWO_FINGERS_C(0.984807753012208) * t49 * t312);
-    const two_fingers_real_t t324 = TWO_FINGERS_C(1.6666666666666667) * t323;
-    ddq_by_dq[0] = t315 + t324 * t317;
-    const two_fingers_real_t t325 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t280);
-    const two_fingers_real_t t326 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t66 + t67 * t280));
-    const two_fingers_real_t t327 = t17 * t66 + t67 * t293;
-    const two_fingers_real_t t328 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t327);
-    const two_fingers_real_t t329 = t67 * t302;
-    const two_fingers_real_t t330 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t329);
-    const two_fingers_real_t t331 = t292 * t326 - t278 * t325 + t301 * t328 + t314 * t330;
-    const two_fingers_real_t t332 = t67 * t316;
-    const two_fingers_real_t t333 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * t332);
-    ddq_by_dq[5] = t331 + t324 * t333;
-    const two_fingers_real_t t334 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t293);
-    const two_fingers_real_t t335 = TWO_FINGERS_C(0.6) * (t16 + t61 * t293 + t17 * t327);
-    const two_fingers_real_t t336 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t61 * t302 + t17 * t329));
-    const two_fingers_real_t t337 = t292 * t328 - t278 * t334 + t301 * t335 + t314 * t336;
-    const two_fingers_real_t t338 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * (t61 * t316 + t17 * t332));
-    ddq_by_dq[10] = t337 + t324 * t338;
-    const two_fingers_real_t t339 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t302);
-    const two_fingers_real_t t340 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t56 + t57 * t302));
-    const two_fingers_real_t t341 = t292 * t330 - t278 * t339 + t301 * t336 + t314 * t340;
-    const two_fingers_real_t t342 = t7 * t56 + t57 * t316;
-    const two_fingers_real_t t343 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * t342);
-    ddq_by_dq[15] = t341 + t324 * t343;
-    const two_fingers_real_t t344 = two_fingers_bounded(TWO_FINGERS_C(-2.4) * t316);
-    const two_fingers_real_t t345 = t292 * t333 - t278 * t344 + t301 * t338 + t314 * t343;
-    const two_fingers_real_t t346 = TWO_FINGERS_C(0.6) * (t6 - t51 * t316 + t7 * t342);
-    ddq_by_dq[20] = t345 + t324 * t346;
-    ddq_by_input[0] = t279;
-    ddq_by_input[5] = t325;
-    ddq_by_input[10] = t334;
-    ddq_by_input[15] = t339;
-    ddq_by_input[20] = t344;
-    const two_fingers_real_t t347 = t192 * t241;
-    const two_fingers_real_t t348 = t121 * t245; /* link left_2: motion */
-    const two_fingers_real_t t349 = t348 - t347;
-    const two_fingers_real_t t350 = t192 * t244;
-    const two_fingers_real_t t351 = t121 * t242;
-    const two_fingers_real_t t352 = t351 + (t351 + t350);
-    const two_fingers_real_t t353 = t193 + t194;
-    const two_fingers_real_t t354 = t242 * t245;
-    const two_fingers_real_t t355 = t353 - t354;
-    const two_fingers_real_t t356 = parameters[ZZ3] * t348 + parameters[XX3R] * t349 + parameters[XY3] * t352
-        - parameters[XZ3] * t355;
-    const two_fingers_real_t t357 = t245 * t245;
-    const two_fingers_real_t t358 = TWO_FINGERS_C(-0.03) * t192;
-    const two_fingers_real_t t359 = t38 * t192;
-    const two_fingers_real_t t360 = t130 + (t130 - t359);
-    const two_fingers_real_t t361 = t358 + TWO_FINGERS_C(0.05) * t360;
-    const two_fingers_real_t t362 = parameters[YZ3] * (t129 - t357) + t356 - parameters[MY3] * t361;
-    const two_fingers_real_t t363 = t354 + t353;
-    const two_fingers_real_t t364 = t348 + t349;
-    const two_fingers_real_t t365 = t242 * t242;
-    const two_fingers_real_t t366 = parameters[XZ3] * (t365 - t129) + (t133 * t351 + parameters[XY3] * t364
-        - parameters[YZ3] * t363);
-    const two_fingers_real_t t367 = parameters[MX3] * t361 + t366;
-    const two_fingers_real_t t368 = t12 * t362 + t13 * t367 + TWO_FINGERS_C(0.05) * (parameters[MX3] * t352
-        - parameters[MY3] * t364);
-    const two_fingers_real_t t369 = t41 * t192;
-    const two_fingers_real_t t370 = t138 + t369;
-    const two_fingers_real_t t371 = t148 - parameters[XY2] * (t138 + t370) + parameters[YZ2] * (t141 - t193);
-    const two_fingers_real_t t372 = t150 + t143;
-    const two_fingers_real_t t373 = TWO_FINGERS_C(2.0) * t119;
-    const two_fingers_real_t t374 = TWO_FINGERS_C(-2.0) * t118;
-    const two_fingers_real_t t375 = t373 * t263 + t374 * t268 + (t63 * t372 + (t37 * t359 - t40 * t369));
-    const two_fingers_real_t t376 = t41 * (t151 + t371 + parameters[MX2R] * t358 + t368 + t375);
-    const two_fingers_real_t t377 = t141 + t193;
-    const two_fingers_real_t t378 = t139 + parameters[XX2R] * t370 - parameters[XY2] * t360
-        + parameters[XZ2R] * t377;
-    const two_fingers_real_t t379 = t378 - t145 + parameters[MY2] * t358 + (t12 * t367 - t13 * t362);
-    const two_fingers_real_t t380 = t373 * t271 + t374 * t265 + (t40 * t359 - t36 * t369 - t64 * t372);
-    const two_fingers_real_t t381 = t373 * t274 - t374 * t273 + (t44 * t369 - t43 * t359);
-    const two_fingers_real_t t382 = TWO_FINGERS_C(0.4166666666666667) * (t376 + t38 * (t379 + t380)
-        + TWO_FINGERS_C(0.03) * t381);
-    const two_fingers_real_t t383 = t119 * t287 - t118 * t289 + (t19 * t372 + (t63 * t359 + t64 * t369));
-    const two_fingers_real_t t384 = TWO_FINGERS_C(1.6666666666666667) * (t44 * t175 + t43 * t178 + t383);
-    const two_fingers_real_t t385 = t119 * t298 + t118 * t299 + (t58 * t359 + t59 * t369 - t15 * t372);
-    const two_fingers_real_t t386 = TWO_FINGERS_C(1.6666666666666667) * (t39 * t178 + t14 * t175 + t385);
-    ddq_by_q[1] = t281 * t384 - t279 * t382 + t294 * t386;
-    ddq_by_q[6] = t326 * t384 - t325 * t382 + t328 * t386;
-    ddq_by_q[11] = t328 * t384 - t334 * t382 + t335 * t386;
-    ddq_by_q[16] = t330 * t384 - t339 * t382 + t336 * t386;
-    ddq_by_q[21] = t333 * t384 - t344 * t382 + t338 * t386;
-    const two_fingers_real_t t387 = t239 - parameters[ZZ3];
-    const two_fingers_real_t t388 = t245 * t387 - parameters[YZ3] * t121;
-    const two_fingers_real_t t389 = parameters[XZ3] * t121 + t242 * t387;
-    const two_fingers_real_t t390 = parameters[ZZ2R] + t267;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t391 = t119 * t390 - parameters[YZ2] * dq[1] + (t13 * t388 - t12 * t389);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t392 = t41 * (TWO_FINGERS_C(2.0) * t391 + (t37 * t373 + t40 * t374));
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t393 = parameters[XZ2R] * dq[1] - t118 * t390 + (t12 * t388 + t13 * t389);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t394 = t38 * (TWO_FINGERS_C(2.0) * t393 + (t40 * t373 + t36 * t374));
-    const two_fingers_real_t t395 = t392 + t394 + TWO_FINGERS_C(-0.03) * (t43 * t373 + t44 * t374);
-    const two_fingers_real_t t396 = TWO_FINGERS_C(0.4166666666666667) * t395;
-    const two_fingers_real_t t397 = t247 + t250;
-    const two_fingers_real_t t398 = TWO_FINGERS_C(2.0) * (t261 - t264 - (t397 + t260))
-        + TWO_FINGERS_C(2.0) * (t63 * t119 + t64 * t118);
-    const two_fingers_real_t t399 = TWO_FINGERS_C(-1.5e3) * parameters[FV2]
-        + TWO_FINGERS_C(1.6666666666666667) * t398;
-    const two_fingers_real_t t400 = TWO_FINGERS_C(-2.0) * t397; /* link left_2: derivatives */
-    const two_fingers_real_t t401 = t400 + t39 * (TWO_FINGERS_C(-0.1) * dq[1])
-        + TWO_FINGERS_C(2.0) * (t58 * t119 + t59 * t118);
-    const two_fingers_real_t t402 = TWO_FINGERS_C(1.6666666666666667) * t401;
-    ddq_by_dq[1] = t399 * t281 - t396 * t279 + t402 * t294;
-    ddq_by_dq[6] = t399 * t326 - t396 * t325 + t402 * t328;
-    ddq_by_dq[11] = t399 * t328 - t396 * t334 + t402 * t335;
-    ddq_by_dq[16] = t399 * t330 - t396 * t339 + t402 * t336;
-    ddq_by_dq[21] = t399 * t333 - t396 * t344 + t402 * t338;
-    ddq_by_input[1] = t281;
-    ddq_by_input[6] = t326;
-    ddq_by_input[11] = t328;
-    ddq_by_input[16] = t330;
-    ddq_by_input[21] = t333;
-    const two_fingers_real_t t403 = t365 + t357; /* link left_2: force and moment */
-    const two_fingers_real_t t404 = TWO_FINGERS_C(2.0) * t245;
-    const two_fingers_real_t t405 = TWO_FINGERS_C(2.0) * t242;
-    const two_fingers_real_t t406 = t404 * t249 + t405 * t246 - (parameters[XZ3] * t403
-        + (parameters[XX3R] * t350 + parameters[XY3] * t347));
-    const two_fingers_real_t t407 = t367 + t406;
-    const two_fingers_real_t t408 = t404 * t243 + t405 * t251 + (parameters[YZ3] * t403
-        + parameters[XY3] * t350);
-    const two_fingers_real_t t409 = t362 + t408;
-    const two_fingers_real_t t410 = t404 * t255 + t405 * t254 + (parameters[MY3] * t350
-        - parameters[MX3] * t347);
-    const two_fingers_real_t t411 = t38 * (t12 * t407 - t13 * t409 + TWO_FINGERS_C(0.05) * t410);
-    const two_fingers_real_t t412 = t41 * (t13 * t407 + t12 * t409) + t411 + TWO_FINGERS_C(0.03) * t410;
-    const two_fingers_real_t t413 = TWO_FINGERS_C(0.4166666666666667) * t412;
-    const two_fingers_real_t t414 = t178 + TWO_FINGERS_C(0.05) * t377;
-    const two_fingers_real_t t415 = parameters[MX3] * (t12 * t414 - t180) + parameters[MY3] * (t177
-        + t13 * t414);
-    const two_fingers_real_t t416 = parameters[ZZ3] * t403 + (parameters[YZ3] * t347
-        + parameters[XZ3] * t350);
-    const two_fingers_real_t t417 = t405 * t284 - parameters[MY3] * t403 + (parameters[MX3] * t355
-        - parameters[MY3] * (t129 + t365));
-    const two_fingers_real_t t418 = parameters[MX3] * t403 - t404 * t284 + (parameters[MX3] * (t129 + t357)
-        + parameters[MY3] * t363);
-    const two_fingers_real_t t419 = t415 + (t404 * t282 + t405 * t283 + t416)
-        + TWO_FINGERS_C(0.05) * (t12 * t417 + t13 * t418);
-    const two_fingers_real_t t420 = TWO_FINGERS_C(1.6666666666666667) * t419;
-    const two_fingers_real_t t421 = TWO_FINGERS_C(1.6666666666666667) * (t415 + (t245 * t295 + t242 * t296
-        + t416));
-    ddq_by_q[2] = t281 * t420 - t279 * t413 + t294 * t421;
-    ddq_by_q[7] = t326 * t420 - t325 * t413 + t328 * t421;
-    ddq_by_q[12] = t328 * t420 - t334 * t413 + t335 * t421;
-    ddq_by_q[17] = t330 * t420 - t339 * t413 + t336 * t421;
-    ddq_by_q[22] = t333 * t420 - t344 * t413 + t338 * t421;
-    /* link left_2: derivatives */
-    const two_fingers_real_t t422 = TWO_FINGERS_C(2.0) * t388 - (parameters[XY3] * t405
-        + parameters[XX3R] * t404);
-    const two_fingers_real_t t423 = parameters[XY3] * t404 - TWO_FINGERS_C(2.0) * t389;
-    const two_fingers_real_t t424 = parameters[MY3] * t404 - parameters[MX3] * t405;
-    const two_fingers_real_t t425 = t38 * (TWO_FINGERS_C(0.05) * t424 + (t12 * t422 - t13 * t423));
-    const two_fingers_real_t t426 = TWO_FINGERS_C(0.03) * t424 + (t41 * (t13 * t422 + t12 * t423) + t425);
-    const two_fingers_real_t t427 = TWO_FINGERS_C(0.4166666666666667) * t426;
-    const two_fingers_real_t t428 = TWO_FINGERS_C(0.05) * (t12 * (TWO_FINGERS_C(2.0) * t255)
-        + t13 * (TWO_FINGERS_C(2.0) * t254));
-    const two_fingers_real_t t429 = TWO_FINGERS_C(1.6666666666666667) * (t400 + (parameters[XZ3] * t404
-        + parameters[YZ3] * t405) + t428);
-    const two_fingers_real_t t430 = TWO_FINGERS_C(-1.5e3) * parameters[FV3];
-    ddq_by_dq[2] = t429 * t281 - t427 * t279 + t430 * t294;
-    ddq_by_dq[7] = t429 * t326 - t427 * t325 + t430 * t328;
-    ddq_by_dq[12] = t429 * t328 - t427 * t334 + t430 * t335;
-    ddq_by_dq[17] = t429 * t330 - t427 * t339 + t430 * t336;
-    ddq_by_dq[22] = t429 * t333 - t427 * t344 + t430 * t338;
-    ddq_by_input[2] = t294;
-    ddq_by_input[7] = t328;
-    ddq_by_input[12] = t335;
-    ddq_by_input[17] = t336;
-    ddq_by_input[22] = t338;
-    const two_fingers_real_t t431 = t192 * t199;
-    const two_fingers_real_t t432 = t74 * t203; /* link right_2: motion */
-    const two_fingers_real_t t433 = t432 - t431;
-    const two_fingers_real_t t434 = t192 * t202;
-    const two_fingers_real_t t435 = t74 * t200;
-    const two_fingers_real_t t436 = t435 + (t435 + t434);
-    const two_fingers_real_t t437 = t195 + t196;
-    const two_fingers_real_t t438 = t200 * t203;
-    const two_fingers_real_t t439 = t437 - t438;
-    const two_fingers_real_t t440 = parameters[ZZ5] * t432 + parameters[XX5R] * t433 + parameters[XY5] * t436
-        - parameters[XZ5] * t439;
-    const two_fingers_real_t t441 = t203 * t203;
-    const two_fingers_real_t t442 = TWO_FINGERS_C(0.03446827135542729) * t103
-        + TWO_FINGERS_C(-0.00607768621834256) * t192;
-    const two_fingers_real_t t443 = TWO_FINGERS_C(0.00607768621834256) * t103
-        + TWO_FINGERS_C(0.03446827135542729) * t192;
-    const two_fingers_real_t t444 = TWO_FINGERS_C(0.17364817766693028) * t442
-        + TWO_FINGERS_C(-0.984807753012208) * t443;
-    const two_fingers_real_t t445 = t26 * t192;
-    const two_fingers_real_t t446 = t96 + (t96 - t445);
-    const two_fingers_real_t t447 = t444 + TWO_FINGERS_C(0.045) * t446;
-    const two_fingers_real_t t448 = parameters[MY5] * t447 - (parameters[YZ5] * (t75 - t441) + t440);
-    const two_fingers_real_t t449 = t438 + t437;
-    const two_fingers_real_t t450 = t432 + t433;
-    const two_fingers_real_t t451 = t200 * t200;
-    const two_fingers_real_t t452 = parameters[XZ5] * (t451 - t75) + (t107 * t435 + parameters[XY5] * t450
-        - parameters[YZ5] * t449);
-    const two_fingers_real_t t453 = parameters[MX5] * t447 + t452;
-    const two_fingers_real_t t454 = t3 * t453 - t2 * t448 + TWO_FINGERS_C(0.045) * (parameters[MX5] * t436
-        - parameters[MY5] * t450);
-    const two_fingers_real_t t455 = t29 * t192;
-    const two_fingers_real_t t456 = t98 + t455;
-    const two_fingers_real_t t457 = t85 - t195;
-    const two_fingers_real_t t458 = t115 + (t114 - parameters[XY4] * (t98 + t456) + parameters[YZ4] * t457);
-    const two_fingers_real_t t459 = t88 + t81;
-    const two_fingers_real_t t460 = TWO_FINGERS_C(2.0) * t71;
-    const two_fingers_real_t t461 = TWO_FINGERS_C(-2.0) * t70;
-    const two_fingers_real_t t462 = t460 * t221 + t461 * t226 + (t52 * t459 + (t25 * t445 - t28 * t455));
-    const two_fingers_real_t t463 = t85 + t195;
-    const two_fingers_real_t t464 = t110 + parameters[XX4R] * t456 - parameters[XY4] * t446
-        + parameters[XZ4R] * t463;
-    const two_fingers_real_t t465 = t464 - t112 + parameters[MY4] * t444 + (t3 * t448 + t2 * t453);
-    const two_fingers_real_t t466 = t460 * t229 + t461 * t223 + (t28 * t445 - t24 * t455 - t53 * t459);
-    const two_fingers_real_t t467 = t29 * (t458 + parameters[MX4R] * t444 + t454 + t462) + t26 * (t465
-        + t466);
-    const two_fingers_real_t t468 = parameters[MX5] * (t75 + t441) + parameters[MY5] * t449;
-    const two_fingers_real_t t469 = parameters[MX5] * t439 - parameters[MY5] * (t75 + t451);
-    const two_fingers_real_t t470 = t89 - parameters[MX4R] * t463 + (t2 * t468 - t3 * t469);
-    const two_fingers_real_t t471 = t84 - parameters[MY4] * t457 + (t3 * t468 + t2 * t469);
-    const two_fingers_real_t t472 = t26 * (t461 * t236 + t31 * t459 + t470) + t29 * (t460 * t236 - t32 * t459
-        + t471);
-    const two_fingers_real_t t473 = t460 * t232 - t461 * t231 + (t32 * t455 - t31 * t445);
-    const two_fingers_real_t
-        t474 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t472
-        + TWO_FINGERS_C(0.984807753012208) * t473)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t472
-        + TWO_FINGERS_C(0.17364817766693028) * t473);
-    const two_fingers_real_t t475 = TWO_FINGERS_C(0.4166666666666667) * (t467 + t474);
-    const two_fingers_real_t t476 = TWO_FINGERS_C(0.984807753012208) * t442
-        + TWO_FINGERS_C(0.17364817766693028) * t443;
-    const two_fingers_real_t t477 = t157 - t26 * t476;
-    const two_fingers_real_t t478 = t161 + t29 * t476;
-    const two_fingers_real_t t479 = t71 * t308 - t70 * t310 + (t9 * t459 + (t52 * t445 + t53 * t455));
-    const two_fingers_real_t t480 = TWO_FINGERS_C(1.6666666666666667) * (t31 * t478 - t32 * t477 + t479);
-    const two_fingers_real_t t481 = t71 * t321 + t70 * t322 + (t5 * t459 + (t47 * t445 + t48 * t455));
-    const two_fingers_real_t t482 = TWO_FINGERS_C(1.6666666666666667) * (t481 + (t27 * t478 - t4 * t477));
-    ddq_by_q[3] = t303 * t480 - t279 * t475 + t317 * t482;
-    ddq_by_q[8] = t330 * t480 - t325 * t475 + t333 * t482;
-    ddq_by_q[13] = t336 * t480 - t334 * t475 + t338 * t482;
-    ddq_by_q[18] = t340 * t480 - t339 * t475 + t343 * t482;
-    ddq_by_q[23] = t343 * t480 - t344 * t475 + t346 * t482;
-    const two_fingers_real_t t483 = t197 - parameters[ZZ5];
-    const two_fingers_real_t t484 = t203 * t483 - parameters[YZ5] * t74;
-    const two_fingers_real_t t485 = parameters[XZ5] * t74 + t200 * t483;
-    const two_fingers_real_t t486 = parameters[ZZ4R] + t225;
+    const two_fingers_real_t t351 = parameters[XY4] * t70 - t69 * t326 - (t2 * t262 + t3 * t263 + t25 * t348);
+    const two_fingers_real_t t352 = TWO_FINGERS_C(2.0) * t351; /* link right_1: derivatives */
+    const two_fingers_real_t t353 = t70 * t350 - t69 * t352 + (t9 * t313 + (t50 * t199 + t51 * t309));
+    const two_fingers_real_t t354 = TWO_FINGERS_C(1.6666666666666667) * (t29 * t257 - t30 * t255 + t353);
+    const two_fingers_real_t t355 = TWO_FINGERS_C(0.09) * t70; /* link right_2: derivatives */
+    const two_fingers_real_t t356 = t2 * t269 - t3 * t268 + t4 * t355;
+    const two_fingers_real_t t357 = t2 * t268 + t3 * t269 + t25 * t355;
+    const two_fingers_real_t t358 = t70 * t356 + t69 * t357 + (t5 * t313 + (t45 * t199 + t46 * t309));
+    const two_fingers_real_t t359 = TWO_FINGERS_C(1.6666666666666667) * (t358 + (t25 * t257 - t4 * t255));
+    ddq_by_q[3] = t267 * t354 - t253 * t347 + t272 * t359;
+    ddq_by_q[8] = t276 * t354 - t274 * t347 + t278 * t359;
+    ddq_by_q[13] = t281 * t354 - t280 * t347 + t282 * t359;
+    ddq_by_q[18] = t284 * t354 - t283 * t347 + t286 * t359;
+    ddq_by_q[23] = t286 * t354 - t287 * t347 + t288 * t359;
+    const two_fingers_real_t t360 = parameters[ZZ4R] + t326;
     /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t487 = t71 * t486 - parameters[YZ4] * dq[3] + (t3 * t484 - t2 * t485);
+    const two_fingers_real_t t361 = t70 * t360 - parameters[YZ4] * dq[3] + (t3 * t290 - t2 * t292);
     /* link right_1: derivatives */
-    const two_fingers_real_t t488 = t29 * (TWO_FINGERS_C(2.0) * t487 + (t25 * t460 + t28 * t461));
+    const two_fingers_real_t t362 = t27 * (TWO_FINGERS_C(2.0) * t361 + (t23 * t324 + t26 * t328));
     /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t489 = parameters[XZ4R] * dq[3] - t70 * t486 + (t2 * t484 + t3 * t485);
+    const two_fingers_real_t t363 = parameters[XZ4R] * dq[3] - t69 * t360 + (t2 * t290 + t3 * t292);
     /* link right_1: derivatives */
-    const two_fingers_real_t t490 = t26 * (TWO_FINGERS_C(2.0) * t489 + (t28 * t460 + t24 * t461));
-    const two_fingers_real_t t491 = t26 * (TWO_FINGERS_C(-2.0) * t232) - t29 * (TWO_FINGERS_C(2.0) * t231);
-    const two_fingers_real_t t492 = t31 * t460 + t32 * t461;
+    const two_fingers_real_t t364 = t24 * (TWO_FINGERS_C(2.0) * t363 + (t26 * t324 + t22 * t328));
+    const two_fingers_real_t t365 = t24 * (TWO_FINGERS_C(-2.0) * t343) - t27 * (TWO_FINGERS_C(2.0) * t344);
+    const two_fingers_real_t t366 = t29 * t324 + t30 * t328;
     const two_fingers_real_t
-        t493 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t491
-        + TWO_FINGERS_C(-0.984807753012208) * t492)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t491
-        + TWO_FINGERS_C(-0.17364817766693028) * t492);
-    const two_fingers_real_t t494 = TWO_FINGERS_C(0.4166666666666667) * (t488 + t490 + t493);
-    const two_fingers_real_t t495 = t205 + t208;
-    const two_fingers_real_t t496 = TWO_FINGERS_C(2.0) * (t219 - t222 - (t495 + t218))
-        + TWO_FINGERS_C(2.0) * (t52 * t71 + t53 * t70);
-    const two_fingers_real_t t497 = TWO_FINGERS_C(-1.5e3) * parameters[FV4]
-        + TWO_FINGERS_C(1.6666666666666667) * t496;
-    const two_fingers_real_t t498 = TWO_FINGERS_C(-2.0) * t495; /* link right_2: derivatives */
-    const two_fingers_real_t t499 = t498 + t27 * (TWO_FINGERS_C(-0.09) * dq[3])
-        + TWO_FINGERS_C(2.0) * (t47 * t71 + t48 * t70);
-    const two_fingers_real_t t500 = TWO_FINGERS_C(1.6666666666666667) * t499;
-    ddq_by_dq[3] = t497 * t303 - t494 * t279 + t500 * t317;
-    ddq_by_dq[8] = t497 * t330 - t494 * t325 + t500 * t333;
-    ddq_by_dq[13] = t497 * t336 - t494 * t334 + t500 * t338;
-    ddq_by_dq[18] = t497 * t340 - t494 * t339 + t500 * t343;
-    ddq_by_dq[23] = t497 * t343 - t494 * t344 + t500 * t346;
-    ddq_by_input[3] = t303;
-    ddq_by_input[8] = t330;
-    ddq_by_input[13] = t336;
-    ddq_by_input[18] = t340;
-    ddq_by_input[23] = t343;
-    const two_fingers_real_t t501 = t451 + t441; /* link right_2: force and moment */
-    const two_fingers_real_t t502 = TWO_FINGERS_C(2.0) * t203;
-    const two_fingers_real_t t503 = TWO_FINGERS_C(2.0) * t200;
-    const two_fingers_real_t t504 = t502 * t207 + t503 * t204 - (parameters[XZ5] * t501
-        + (parameters[XX5R] * t434 + parameters[XY5] * t431));
-    const two_fingers_real_t t505 = t453 + t504;
-    const two_fingers_real_t t506 = t502 * t201 + t503 * t209 + (parameters[YZ5] * t501
-        + parameters[XY5] * t434);
-    const two_fingers_real_t t507 = t448 - t506;
-    const two_fingers_real_t t508 = t502 * t213 + t503 * t212 + (parameters[MY5] * t434
-        - parameters[MX5] * t431);
-    const two_fingers_real_t t509 = t26 * (t2 * t505 + t3 * t507 + TWO_FINGERS_C(0.045) * t508);
-    const two_fingers_real_t t510 = t503 * t235 - parameters[MY5] * t501 + t469;
-    const two_fingers_real_t t511 = parameters[MX5] * t501 - t502 * t235 + t468;
-    const two_fingers_real_t t512 = t2 * t510 + t3 * t511;
-    const two_fingers_real_t t513 = t26 * (t3 * t510 - t2 * t511) - t29 * t512;
-    const two_fingers_real_t
-        t514 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t513
-        + TWO_FINGERS_C(0.984807753012208) * t508)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t513
-        + TWO_FINGERS_C(0.17364817766693028) * t508);
-    const two_fingers_real_t t515 = t29 * (t3 * t505 - t2 * t507) + t509 + t514;
-    const two_fingers_real_t t516 = TWO_FINGERS_C(0.4166666666666667) * t515;
-    const two_fingers_real_t t517 = t159 - t477;
-    const two_fingers_real_t t518 = t478 + TWO_FINGERS_C(0.045) * t463;
-    const two_fingers_real_t t519 = parameters[MX5] * (t2 * t518 - t3 * t517) + parameters[MY5] * (t2 * t517
-        + t3 * t518);
-    const two_fingers_real_t t520 = parameters[ZZ5] * t501 + (parameters[YZ5] * t431
-        + parameters[XZ5] * t434);
-    const two_fingers_real_t t521 = t519 + (t502 * t304 + t503 * t305 + t520) + TWO_FINGERS_C(0.045) * t512;
-    const two_fingers_real_t t522 = TWO_FINGERS_C(1.6666666666666667) * t521;
-    const two_fingers_real_t t523 = TWO_FINGERS_C(1.6666666666666667) * (t519 + (t203 * t318 + t200 * t319
-        + t520));
-    ddq_by_q[4] = t303 * t522 - t279 * t516 + t317 * t523;
-    ddq_by_q[9] = t330 * t522 - t325 * t516 + t333 * t523;
-    ddq_by_q[14] = t336 * t522 - t334 * t516 + t338 * t523;
-    ddq_by_q[19] = t340 * t522 - t339 * t516 + t343 * t523;
-    ddq_by_q[24] = t343 * t522 - t344 * t516 + t346 * t523;
+        t367 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t365
+        + TWO_FINGERS_C(-0.984807753012208) * t366)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t365
+        + TWO_FINGERS_C(-0.17364817766693028) * t366);
+    const two_fingers_real_t t368 = TWO_FINGERS_C(0.4166666666666667) * (t362 + t364 + t367);
+    const two_fingers_real_t t369 = TWO_FINGERS_C(2.0) * (t321 - t335 - (t303 + t320))
+        + TWO_FINGERS_C(2.0) * (t50 * t70 + t51 * t69);
+    const two_fingers_real_t t370 = TWO_FINGERS_C(-1.5e3) * parameters[FV4]
+        + TWO_FINGERS_C(1.6666666666666667) * t369;
     /* link right_2: derivatives */
-    const two_fingers_real_t t524 = TWO_FINGERS_C(2.0) * t484 - (parameters[XY5] * t503
-        + parameters[XX5R] * t502);
-    const two_fingers_real_t t525 = parameters[XY5] * t502 - TWO_FINGERS_C(2.0) * t485;
-    const two_fingers_real_t t526 = parameters[MY5] * t502 - parameters[MX5] * t503;
-    const two_fingers_real_t t527 = t26 * (TWO_FINGERS_C(0.045) * t526 + (t2 * t524 - t3 * t525));
-    const two_fingers_real_t t528 = TWO_FINGERS_C(2.0) * t213;
-    const two_fingers_real_t t529 = TWO_FINGERS_C(2.0) * t212;
-    const two_fingers_real_t t530 = t2 * t528 + t3 * t529;
-    const two_fingers_real_t t531 = t26 * (t3 * t528 - t2 * t529) - t29 * t530;
+    const two_fingers_real_t t371 = t304 + t25 * (TWO_FINGERS_C(-0.09) * dq[3])
+        + TWO_FINGERS_C(2.0) * (t45 * t70 + t46 * t69);
+    const two_fingers_real_t t372 = TWO_FINGERS_C(1.6666666666666667) * t371;
+    ddq_by_dq[3] = t370 * t267 - t368 * t253 + t372 * t272;
+    ddq_by_dq[8] = t370 * t276 - t368 * t274 + t372 * t278;
+    ddq_by_dq[13] = t370 * t281 - t368 * t280 + t372 * t282;
+    ddq_by_dq[18] = t370 * t284 - t368 * t283 + t372 * t286;
+    ddq_by_dq[23] = t370 * t286 - t368 * t287 + t372 * t288;
+    ddq_by_input[3] = t267;
+    ddq_by_input[8] = t276;
+    ddq_by_input[13] = t281;
+    ddq_by_input[18] = t284;
+    ddq_by_input[23] = t286;
+    const two_fingers_real_t t373 = TWO_FINGERS_C(-0.03) * t191;
+    const two_fingers_real_t t374 = t36 * t191;
+    const two_fingers_real_t t375 = t129 + (t129 - t374);
+    const two_fingers_real_t t376 = t373 + TWO_FINGERS_C(0.05) * t375;
+    const two_fingers_real_t t377 = t192 + t193;
+    const two_fingers_real_t t378 = t39 * t12 + t36 * t11; /* link left_2: motion */
+    const two_fingers_real_t t379 = dq[0] * t378;
+    const two_fingers_real_t t380 = t39 * t11 - t36 * t12;
+    const two_fingers_real_t t381 = dq[0] * t380;
+    const two_fingers_real_t t382 = t379 * t381;
+    const two_fingers_real_t t383 = t382 + t377;
+    const two_fingers_real_t t384 = t191 * t378;
+    const two_fingers_real_t t385 = t120 * t381;
+    const two_fingers_real_t t386 = t385 - t384;
+    const two_fingers_real_t t387 = t385 + t386;
+    const two_fingers_real_t t388 = t120 * t379;
+    const two_fingers_real_t t389 = t379 * t379;
+    const two_fingers_real_t t390 = parameters[XZ3] * (t389 - t128) + (t132 * t388 + parameters[XY3] * t387
+        - parameters[YZ3] * t383);
+    const two_fingers_real_t t391 = parameters[MX3] * t376 + t390;
+    const two_fingers_real_t t392 = t191 * t380;
+    const two_fingers_real_t t393 = t381 * t381;
+    const two_fingers_real_t t394 = t389 + t393; /* link left_2: force and moment */
+    const two_fingers_real_t t395 = TWO_FINGERS_C(2.0) * t381;
+    const two_fingers_real_t t396 = parameters[XZ3] * t381;
+    const two_fingers_real_t t397 = parameters[XY3] * t120;
+    const two_fingers_real_t t398 = t396 + t397;
+    const two_fingers_real_t t399 = TWO_FINGERS_C(0.5) * (parameters[XX3R] + parameters[ZZ3]);
+    const two_fingers_real_t t400 = parameters[YZ3] * t381 - t120 * t399;
+    const two_fingers_real_t t401 = TWO_FINGERS_C(2.0) * t379;
+    const two_fingers_real_t t402 = t395 * t398 + t401 * t400 - (parameters[XZ3] * t394
+        + (parameters[XX3R] * t392 + parameters[XY3] * t384));
+    const two_fingers_real_t t403 = t391 + t402;
+    const two_fingers_real_t t404 = t388 + (t388 + t392);
+    const two_fingers_real_t t405 = t377 - t382;
+    const two_fingers_real_t t406 = parameters[ZZ3] * t385 + parameters[XX3R] * t386 + parameters[XY3] * t404
+        - parameters[XZ3] * t405;
+    const two_fingers_real_t t407 = parameters[YZ3] * (t128 - t393) + t406 - parameters[MY3] * t376;
+    const two_fingers_real_t t408 = parameters[XX3R] - t399;
+    const two_fingers_real_t t409 = t120 * t408 - parameters[XZ3] * t379;
+    const two_fingers_real_t t410 = parameters[YZ3] * t379;
+    const two_fingers_real_t t411 = t397 - t410;
+    const two_fingers_real_t t412 = t395 * t409 + t401 * t411 + (parameters[YZ3] * t394
+        + parameters[XY3] * t392);
+    const two_fingers_real_t t413 = t407 + t412;
+    const two_fingers_real_t t414 = parameters[MX3] * t120;
+    const two_fingers_real_t t415 = parameters[MY3] * t120;
+    const two_fingers_real_t t416 = t395 * t414 + t401 * t415 + (parameters[MY3] * t392
+        - parameters[MX3] * t384);
+    const two_fingers_real_t t417 = t36 * (t11 * t403 - t12 * t413 + TWO_FINGERS_C(0.05) * t416);
+    const two_fingers_real_t t418 = t39 * (t12 * t403 + t11 * t413) + t417 + TWO_FINGERS_C(0.03) * t416;
+    const two_fingers_real_t t419 = TWO_FINGERS_C(0.4166666666666667) * t418;
+    const two_fingers_real_t t420 = t140 + t192;
+    const two_fingers_real_t t421 = t177 + TWO_FINGERS_C(0.05) * t420;
+    const two_fingers_real_t t422 = parameters[MX3] * (t11 * t421 - t179) + parameters[MY3] * (t176
+        + t12 * t421);
+    const two_fingers_real_t t423 = parameters[ZZ3] * t394 + (parameters[YZ3] * t384
+        + parameters[XZ3] * t392);
+    const two_fingers_real_t t424 = parameters[XY3] * t379 + t381 * t408;
+    const two_fingers_real_t t425 = parameters[XY3] * t381 - t379 * t399;
+    const two_fingers_real_t t426 = parameters[MY3] * t379 + parameters[MX3] * t381;
+    const two_fingers_real_t t427 = t401 * t426 - parameters[MY3] * t394 + (parameters[MX3] * t405
+        - parameters[MY3] * (t128 + t389));
+    const two_fingers_real_t t428 = parameters[MX3] * t394 - t395 * t426 + (parameters[MX3] * (t128 + t393)
+        + parameters[MY3] * t383);
+    const two_fingers_real_t t429 = t422 + (t395 * t424 + t401 * t425 + t423)
+        + TWO_FINGERS_C(0.05) * (t11 * t427 + t12 * t428);
+    const two_fingers_real_t t430 = TWO_FINGERS_C(1.6666666666666667) * t429;
+    const two_fingers_real_t t431 = two_fingers_held(TWO_FINGERS_C(0.6) * t273);
+    const two_fingers_real_t t432 = TWO_FINGERS_C(2.0) * t424; /* link left_2: derivatives */
+    const two_fingers_real_t t433 = TWO_FINGERS_C(2.0) * t425;
+    const two_fingers_real_t t434 = TWO_FINGERS_C(1.6666666666666667) * (t422 + (t381 * t432 + t379 * t433
+        + t423));
+    const two_fingers_real_t t435 = two_fingers_held(TWO_FINGERS_C(0.6) * t279);
+    ddq_by_q[2] = t431 * t430 - t253 * t419 + t435 * t434;
+    const two_fingers_real_t t436 = two_fingers_held(TWO_FINGERS_C(0.6) * (t64 + t65 * t273));
+    const two_fingers_real_t t437 = t16 * t64 + t65 * t279;
+    const two_fingers_real_t t438 = two_fingers_held(TWO_FINGERS_C(0.6) * t437);
+    ddq_by_q[7] = t436 * t430 - t274 * t419 + t438 * t434;
+    const two_fingers_real_t t439 = two_fingers_held(TWO_FINGERS_C(0.6) * (t15 + t59 * t279 + t16 * t437));
+    ddq_by_q[12] = t438 * t430 - t280 * t419 + t439 * t434;
+    ddq_by_q[17] = t276 * t430 - t283 * t419 + t281 * t434;
+    ddq_by_q[22] = t278 * t430 - t287 * t419 + t282 * t434;
+    const two_fingers_real_t t440 = t399 - parameters[ZZ3];
+    const two_fingers_real_t t441 = t381 * t440 - parameters[YZ3] * t120;
+    const two_fingers_real_t t442 = TWO_FINGERS_C(2.0) * t441 - (parameters[XY3] * t401
+        + parameters[XX3R] * t395);
+    const two_fingers_real_t t443 = parameters[XZ3] * t120 + t379 * t440;
+    const two_fingers_real_t t444 = parameters[XY3] * t395 - TWO_FINGERS_C(2.0) * t443;
+    const two_fingers_real_t t445 = parameters[MY3] * t395 - parameters[MX3] * t401;
+    const two_fingers_real_t t446 = t36 * (TWO_FINGERS_C(0.05) * t445 + (t11 * t442 - t12 * t444));
+    const two_fingers_real_t t447 = TWO_FINGERS_C(0.03) * t445 + (t39 * (t12 * t442 + t11 * t444) + t446);
+    const two_fingers_real_t t448 = TWO_FINGERS_C(0.4166666666666667) * t447;
+    const two_fingers_real_t t449 = t396 + t410;
+    const two_fingers_real_t t450 = TWO_FINGERS_C(-2.0) * t449;
+    const two_fingers_real_t t451 = TWO_FINGERS_C(0.05) * (t11 * (TWO_FINGERS_C(2.0) * t414)
+        + t12 * (TWO_FINGERS_C(2.0) * t415));
+    const two_fingers_real_t t452 = TWO_FINGERS_C(1.6666666666666667) * (t450 + (parameters[XZ3] * t395
+        + parameters[YZ3] * t401) + t451);
+    const two_fingers_real_t t453 = TWO_FINGERS_C(-1.5e3) * parameters[FV3];
+    ddq_by_dq[2] = t452 * t431 - t448 * t253 + t453 * t435;
+    ddq_by_dq[7] = t452 * t436 - t448 * t274 + t453 * t438;
+    ddq_by_dq[12] = t452 * t438 - t448 * t280 + t453 * t439;
+    ddq_by_dq[17] = t452 * t276 - t448 * t283 + t453 * t281;
+    ddq_by_dq[22] = t452 * t278 - t448 * t287 + t453 * t282;
+    ddq_by_input[2] = t435;
+    ddq_by_input[7] = t438;
+    ddq_by_input[12] = t439;
+    ddq_by_input[17] = t281;
+    ddq_by_input[22] = t282;
+    const two_fingers_real_t t454 = t11 * t407 + t12 * t391 + TWO_FINGERS_C(0.05) * (parameters[MX3] * t404
+        - parameters[MY3] * t387);
+    const two_fingers_real_t t455 = t39 * t191;
+    const two_fingers_real_t t456 = t137 + t455;
+    const two_fingers_real_t t457 = t147 - parameters[XY2] * (t137 + t456) + parameters[YZ2] * (t140 - t192);
+    const two_fingers_real_t t458 = t149 + t142; /* link left_2: motion */
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t459 = t11 * (t400 - t409) - t12 * (t398 + t411);
+    const two_fingers_real_t t460 = t12 * t459;
+    const two_fingers_real_t t461 = t12 * t415 + t11 * t414;
+    const two_fingers_real_t t462 = TWO_FINGERS_C(0.05) * t461;
+    const two_fingers_real_t t463 = TWO_FINGERS_C(0.05) * dq[1]; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t464 = t37 * t463; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t465 = t464 - t462;
+    const two_fingers_real_t t466 = parameters[XZ2R] * t118;
+    const two_fingers_real_t t467 = parameters[XY2] * dq[1];
+    const two_fingers_real_t t468 = t466 - t467 + (t465 + (t411 + t460 + t462));
+    const two_fingers_real_t t469 = TWO_FINGERS_C(2.0) * t118;
+    const two_fingers_real_t t470 = t11 * t459;
+    const two_fingers_real_t t471 = TWO_FINGERS_C(-0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const two_fingers_real_t t472 = parameters[YZ2] * t118 - dq[1] * t471 + (t470 - t400);
+    const two_fingers_real_t t473 = TWO_FINGERS_C(-2.0) * t117;
+    const two_fingers_real_t t474 = t469 * t468 + t473 * t472 + (t61 * t458 + (t35 * t374 - t38 * t455));
+    const two_fingers_real_t t475 = t39 * (t150 + t457 + parameters[MX2R] * t373 + t454 + t474);
+    const two_fingers_real_t t476 = t138 + parameters[XX2R] * t456 - parameters[XY2] * t375
+        + parameters[XZ2R] * t420;
+    const two_fingers_real_t t477 = t476 - t144 + parameters[MY2] * t373 + (t11 * t391 - t12 * t407);
+    const two_fingers_real_t t478 = t11 * t415 - t12 * t414;
+    const two_fingers_real_t t479 = parameters[XX2R] + t471;
+    const two_fingers_real_t t480 = dq[1] * t479 - parameters[XZ2R] * t117 + (t409 + t470
+        + (TWO_FINGERS_C(0.05) * t478 + t13 * t463));
+    const two_fingers_real_t t481 = parameters[YZ2] * t117;
+    const two_fingers_real_t t482 = t467 - t481 + (t465 - (t398 + t460 + t464));
+    const two_fingers_real_t t483 = t469 * t480 + t473 * t482 + (t38 * t374 - t34 * t455 - t62 * t458);
+    const two_fingers_real_t t484 = t478 - parameters[MX2R] * dq[1];
+    const two_fingers_real_t t485 = parameters[MY2] * dq[1] + t461;
+    const two_fingers_real_t t486 = t469 * t484 - t473 * t485 + (t42 * t455 - t41 * t374);
+    const two_fingers_real_t t487 = TWO_FINGERS_C(0.4166666666666667) * (t475 + t36 * (t477 + t483)
+        + TWO_FINGERS_C(0.03) * t486);
+    const two_fingers_real_t t488 = TWO_FINGERS_C(0.05) * t118; /* link left_2: velocity of its origin */
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t489 = t11 * t425 - t12 * t424 + (TWO_FINGERS_C(0.05) * t426 + t13 * t488);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t490 = TWO_FINGERS_C(2.0) * (t118 * t479 - parameters[XY2] * t117 + t489);
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t491 = parameters[XY2] * t118 - t117 * t471 - (t11 * t424 + t12 * t425
+        + t37 * t488);
+    const two_fingers_real_t t492 = TWO_FINGERS_C(2.0) * t491; /* link left_1: derivatives */
+    const two_fingers_real_t t493 = t118 * t490 - t117 * t492 + (t18 * t458 + (t61 * t374 + t62 * t455));
+    const two_fingers_real_t t494 = TWO_FINGERS_C(1.6666666666666667) * (t42 * t174 + t41 * t177 + t493);
+    const two_fingers_real_t t495 = TWO_FINGERS_C(0.1) * t118; /* link left_2: derivatives */
+    const two_fingers_real_t t496 = t11 * t433 - t12 * t432 + t13 * t495;
+    const two_fingers_real_t t497 = t11 * t432 + t12 * t433 + t37 * t495;
+    const two_fingers_real_t t498 = t118 * t496 + t117 * t497 + (t56 * t374 + t57 * t455 - t14 * t458);
+    const two_fingers_real_t t499 = TWO_FINGERS_C(1.6666666666666667) * (t37 * t177 + t13 * t174 + t498);
+    ddq_by_q[1] = t431 * t494 - t253 * t487 + t435 * t499;
+    ddq_by_q[6] = t436 * t494 - t274 * t487 + t438 * t499;
+    ddq_by_q[11] = t438 * t494 - t280 * t487 + t439 * t499;
+    ddq_by_q[16] = t276 * t494 - t283 * t487 + t281 * t499;
+    ddq_by_q[21] = t278 * t494 - t287 * t487 + t282 * t499;
+    const two_fingers_real_t t500 = parameters[ZZ2R] + t471;
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t501 = t118 * t500 - parameters[YZ2] * dq[1] + (t12 * t441 - t11 * t443);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t502 = t39 * (TWO_FINGERS_C(2.0) * t501 + (t35 * t469 + t38 * t473));
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t503 = parameters[XZ2R] * dq[1] - t117 * t500 + (t11 * t441 + t12 * t443);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t504 = t36 * (TWO_FINGERS_C(2.0) * t503 + (t38 * t469 + t34 * t473));
+    const two_fingers_real_t t505 = t502 + t504 + TWO_FINGERS_C(-0.03) * (t41 * t469 + t42 * t473);
+    const two_fingers_real_t t506 = TWO_FINGERS_C(0.4166666666666667) * t505;
+    const two_fingers_real_t t507 = TWO_FINGERS_C(2.0) * (t466 - t481 - (t449 + t465))
+        + TWO_FINGERS_C(2.0) * (t61 * t118 + t62 * t117);
+    const two_fingers_real_t t508 = TWO_FINGERS_C(-1.5e3) * parameters[FV2]
+        + TWO_FINGERS_C(1.6666666666666667) * t507;
+    /* link left_2: derivatives */
+    const two_fingers_real_t t509 = t450 + t37 * (TWO_FINGERS_C(-0.1) * dq[1])
+        + TWO_FINGERS_C(2.0) * (t56 * t118 + t57 * t117);
+    const two_fingers_real_t t510 = TWO_FINGERS_C(1.6666666666666667) * t509;
+    ddq_by_dq[1] = t508 * t431 - t506 * t253 + t510 * t435;
+    ddq_by_dq[6] = t508 * t436 - t506 * t274 + t510 * t438;
+    ddq_by_dq[11] = t508 * t438 - t506 * t280 + t510 * t439;
+    ddq_by_dq[16] = t508 * t276 - t506 * t283 + t510 * t281;
+    ddq_by_dq[21] = t508 * t278 - t506 * t287 + t510 * t282;
+    ddq_by_input[1] = t431;
+    ddq_by_input[6] = t436;
+    ddq_by_input[11] = t438;
+    ddq_by_input[16] = t276;
+    ddq_by_input[21] = t278;
+    /* link right_1: inertia, momentum beyond */
+    const two_fingers_real_t t511 = t24 * (t24 * (t336 - t323) + t27 * (t327 + t334));
+    const two_fingers_real_t t512 = TWO_FINGERS_C(0.07) * (t27 * t344 + t24 * t343);
+    const two_fingers_real_t t513 = t27 * t343 - t24 * t344;
     const two_fingers_real_t
-        t532 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t526
-        + TWO_FINGERS_C(0.17364817766693028) * t531)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t526
-        + TWO_FINGERS_C(-0.984807753012208) * t531);
-    const two_fingers_real_t t533 = t29 * (t3 * t524 + t2 * t525) + t527 + t532;
-    const two_fingers_real_t t534 = TWO_FINGERS_C(0.4166666666666667) * t533;
-    const two_fingers_real_t t535 = t498 + (parameters[XZ5] * t502 + parameters[YZ5] * t503)
-        + TWO_FINGERS_C(0.045) * t530;
-    const two_fingers_real_t t536 = TWO_FINGERS_C(1.6666666666666667) * t535;
-    const two_fingers_real_t t537 = TWO_FINGERS_C(-1.5e3) * parameters[FV5];
-    ddq_by_dq[4] = t536 * t303 - t534 * t279 + t537 * t317;
-    ddq_by_dq[9] = t536 * t330 - t534 * t325 + t537 * t333;
-    ddq_by_dq[14] = t536 * t336 - t534 * t334 + t537 * t338;
-    ddq_by_dq[19] = t536 * t340 - t534 * t339 + t537 * t343;
-    ddq_by_dq[24] = t536 * t343 - t534 * t344 + t537 * t346;
-    ddq_by_input[4] = t317;
-    ddq_by_input[9] = t333;
-    ddq_by_input[14] = t338;
-    ddq_by_input[19] = t343;
-    ddq_by_input[24] = t346;
+        t514 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t513
+        + TWO_FINGERS_C(-0.17364817766693028) * t340)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t513
+        + TWO_FINGERS_C(0.984807753012208) * t340);
+    const two_fingers_real_t
+        t515 = TWO_FINGERS_C(0.17364817766693028) * t31 * (TWO_FINGERS_C(0.03446827135542729) * dq[0])
+        - TWO_FINGERS_C(-0.984807753012208) * t31 * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
+    /* link left_1: inertia, momentum beyond */
+    const two_fingers_real_t t516 = t36 * (t36 * (t482 - t468) + t39 * (t472 + t480));
+    const two_fingers_real_t t517 = TWO_FINGERS_C(0.08) * (t39 * t485 + t36 * t484);
+    const two_fingers_real_t t518 = TWO_FINGERS_C(0.03) * (t39 * t484 - t36 * t485) - t517 + (t468 + t516
+        + t517);
+    const two_fingers_real_t t519 = t514 - t512 + t515 + (t323 + t511 + t512) + t518;
+    const two_fingers_real_t t520 = TWO_FINGERS_C(1.5e3) * parameters[FV1]
+        + TWO_FINGERS_C(0.8333333333333334) * t519;
+    const two_fingers_real_t t521 = TWO_FINGERS_C(-0.06) * dq[0];
+    /* link left_1: derivatives */
+    const two_fingers_real_t t522 = t39 * t490 + t36 * t492 - (t39 * t42 - t36 * t41) * t521;
+    const two_fingers_real_t t523 = TWO_FINGERS_C(1.6666666666666667) * t522;
+    /* link left_2: derivatives */
+    const two_fingers_real_t t524 = t39 * t496 - t36 * t497 - (t39 * t13 - t36 * t37) * t521;
+    const two_fingers_real_t t525 = TWO_FINGERS_C(1.6666666666666667) * t524;
+    const two_fingers_real_t t526 = TWO_FINGERS_C(-0.01215537243668512) * dq[0];
+    const two_fingers_real_t t527 = TWO_FINGERS_C(-0.06893654271085457) * dq[0];
+    /* link right_1: derivatives */
+    const two_fingers_real_t t528 = t27 * t350 + t24 * t352 - (TWO_FINGERS_C(0.17364817766693028) * t52 * t526
+        + TWO_FINGERS_C(0.984807753012208) * t52 * t527);
+    const two_fingers_real_t t529 = TWO_FINGERS_C(1.6666666666666667) * t528;
+    const two_fingers_real_t t530 = t523 * t431 - t520 * t253 + t525 * t435 + t529 * t267;
+    /* link right_2: derivatives */
+    const two_fingers_real_t t531 = t27 * t356 - t24 * t357 - (TWO_FINGERS_C(0.17364817766693028) * t47 * t526
+        + TWO_FINGERS_C(0.984807753012208) * t47 * t527);
+    const two_fingers_real_t t532 = TWO_FINGERS_C(1.6666666666666667) * t531;
+    ddq_by_dq[0] = t530 + t532 * t272;
+    const two_fingers_real_t t533 = t523 * t436 - t520 * t274 + t525 * t438 + t529 * t276;
+    ddq_by_dq[5] = t533 + t532 * t278;
+    const two_fingers_real_t t534 = t523 * t438 - t520 * t280 + t525 * t439 + t529 * t281;
+    ddq_by_dq[10] = t534 + t532 * t282;
+    const two_fingers_real_t t535 = t523 * t276 - t520 * t283 + t525 * t281 + t529 * t284;
+    ddq_by_dq[15] = t535 + t532 * t286;
+    const two_fingers_real_t t536 = t523 * t278 - t520 * t287 + t525 * t282 + t529 * t286;
+    ddq_by_dq[20] = t536 + t532 * t288;
+    ddq_by_input[0] = t253;
+    ddq_by_input[5] = t274;
+    ddq_by_input[10] = t280;
+    ddq_by_input[15] = t283;
+    ddq_by_input[20] = t287;
     /* always zero */
     ddq_by_q[0] = TWO_FINGERS_C(0.0);
     ddq_by_q[5] = TWO_FINGERS_C(0.0);
     ddq_by_q[10] = TWO_FINGERS_C(0.0);
     ddq_by_q[15] = TWO_FINGERS_C(0.0);
     ddq_by_q[20] = TWO_FINGERS_C(0.0);
-    if (!two_fingers_all_bounded(ddq, 5)
-        || !two_fingers_all_bounded(ddq_by_q, 25)
-        || !two_fingers_all_bounded(ddq_by_dq, 25)
-        || !two_fingers_all_bounded(ddq_by_input, 25)) {
+    if (!two_fingers_bounded(ddq, 5)
+        || !two_fingers_bounded(ddq_by_q, 25)
+        || !two_fingers_bounded(ddq_by_dq, 25)
+        || !two_fingers_bounded(ddq_by_input, 25)) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
         two_fingers_zero(ddq_by_dq, 25);

@@ -7,7 +7,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 2163 (1209 mul, 954 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
+ * Operations: 2163 (1209 mul, 954 add, 0 neg), 5 div, 8 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q             [5]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [5]   [rad/s]                  joint velocities; norm at most 100000
@@ -97,7 +97,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -131,16 +131,15 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    two_fingers_real_t t55, t52;
-    TWO_FINGERS_SINCOS(q[1], &t55, &t52);
-    two_fingers_real_t t14, t15;
-    TWO_FINGERS_SINCOS(q[2], &t14, &t15);
-    two_fingers_real_t t34, t31;
-    TWO_FINGERS_SINCOS(q[3], &t34, &t31);
+    two_fingers_real_t t53, t50;
+    TWO_FINGERS_SINCOS(q[1], &t53, &t50);
+    two_fingers_real_t t13, t14;
+    TWO_FINGERS_SINCOS(q[2], &t13, &t14);
+    two_fingers_real_t t32, t29;
+    TWO_FINGERS_SINCOS(q[3], &t32, &t29);
     two_fingers_real_t t2, t3;
     TWO_FINGERS_SINCOS(q[4], &t2, &t3);
-    const two_fingers_real_t t0 = two_fingers_bounded(parameters[ZZ3]
-        + TWO_FINGERS_C(9.0e2) * parameters[IA3]);
+    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
     if (!(t0 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -148,8 +147,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t1 = two_fingers_bounded(parameters[ZZ5]
-        + TWO_FINGERS_C(9.0e2) * parameters[IA5]);
+    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
     if (!(t1 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -167,7 +165,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * (t8 + TWO_FINGERS_C(-2.0) * t4);
     const two_fingers_real_t t10 = parameters[ZZ4] + (parameters[ZZ5] + t9);
     const two_fingers_real_t t11 = t10 + TWO_FINGERS_C(9.0e2) * parameters[IA4];
-    const two_fingers_real_t t12 = two_fingers_bounded(t11 - t5 * t7);
+    const two_fingers_real_t t12 = t11 - t5 * t7;
     if (!(t12 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -175,34 +173,18 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t13 = t12 + TWO_FINGERS_C(-1.0e-9) * t11;
-    if (!(t13 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(ddq, 5);
-        two_fingers_zero(ddq_by_q, 25);
-        two_fingers_zero(ddq_by_dq, 25);
-        two_fingers_zero(ddq_by_input, 25);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t16 = t14 * parameters[MY3] - t15 * parameters[MX3];
-    const two_fingers_real_t t17 = TWO_FINGERS_C(0.05) * t16 - parameters[ZZ3];
-    const two_fingers_real_t t18 = TWO_FINGERS_C(1.0) / t0;
-    const two_fingers_real_t t19 = t17 * t18;
+    const two_fingers_real_t t15 = t13 * parameters[MY3] - t14 * parameters[MX3];
+    const two_fingers_real_t t16 = TWO_FINGERS_C(0.05) * t15 - parameters[ZZ3];
+    const two_fingers_real_t t17 = TWO_FINGERS_C(1.0) / t0;
+    const two_fingers_real_t t18 = t16 * t17;
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t20 = TWO_FINGERS_C(0.05) * parameters[M3];
-    const two_fingers_real_t t21 = TWO_FINGERS_C(0.05) * (t20 + TWO_FINGERS_C(-2.0) * t16);
-    const two_fingers_real_t t22 = parameters[ZZ2] + (parameters[ZZ3] + t21);
-    const two_fingers_real_t t23 = t22 + TWO_FINGERS_C(9.0e2) * parameters[IA2];
-    const two_fingers_real_t t24 = two_fingers_bounded(t23 - t17 * t19);
-    if (!(t24 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(ddq, 5);
-        two_fingers_zero(ddq_by_q, 25);
-        two_fingers_zero(ddq_by_dq, 25);
-        two_fingers_zero(ddq_by_input, 25);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t25 = t24 + TWO_FINGERS_C(-1.0e-9) * t23;
-    if (!(t25 > TWO_FINGERS_C(1.0e-12))) {
+    const two_fingers_real_t t19 = TWO_FINGERS_C(0.05) * parameters[M3];
+    const two_fingers_real_t t20 = TWO_FINGERS_C(0.05) * (t19 + TWO_FINGERS_C(-2.0) * t15);
+    const two_fingers_real_t t21 = parameters[ZZ2] + (parameters[ZZ3] + t20);
+    const two_fingers_real_t t22 = t21 + TWO_FINGERS_C(9.0e2) * parameters[IA2];
+    const two_fingers_real_t t23 = t22 - t16 * t18;
+    if (!(t23 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
         two_fingers_zero(ddq_by_dq, 25);
@@ -210,85 +192,95 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
         return TWO_FINGERS_STATUS_PIVOT;
     }
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t26 = parameters[XX5] - parameters[YY5];
-    const two_fingers_real_t t27 = t3 * t26 + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t2);
-    const two_fingers_real_t t28 = t3 * t27;
-    const two_fingers_real_t t29 = parameters[YY4] + (parameters[XX5] - t28 + t9);
-    const two_fingers_real_t t30 = parameters[XX4] + (parameters[YY5] + t28);
+    const two_fingers_real_t t24 = parameters[XX5] - parameters[YY5];
+    const two_fingers_real_t t25 = t3 * t24 + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t2);
+    const two_fingers_real_t t26 = t3 * t25;
+    const two_fingers_real_t t27 = parameters[YY4] + (parameters[XX5] - t26 + t9);
+    const two_fingers_real_t t28 = parameters[XX4] + (parameters[YY5] + t26);
     /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t32 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    const two_fingers_real_t t30 = t3 * parameters[MY5] + t2 * parameters[MX5];
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t33 = parameters[XY4] + (parameters[XY5] + t2 * t27
-        + TWO_FINGERS_C(-0.045) * t32);
+    const two_fingers_real_t t31 = parameters[XY4] + (parameters[XY5] + t2 * t25
+        + TWO_FINGERS_C(-0.045) * t30);
     /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t35 = t31 * (t31 * (t29 - t30) + t33 * (TWO_FINGERS_C(2.0) * t34));
-    const two_fingers_real_t t36 = parameters[MY4] + t32; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t37 = t4 - t8;
-    const two_fingers_real_t t38 = t37 - parameters[MX4];
-    const two_fingers_real_t t39 = t34 * t36 + t31 * t38; /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t33 = t29 * (t29 * (t27 - t28) + t31 * (TWO_FINGERS_C(2.0) * t32));
+    const two_fingers_real_t t34 = parameters[MY4] + t30; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t35 = t4 - t8;
+    const two_fingers_real_t t36 = t35 - parameters[MX4];
+    const two_fingers_real_t t37 = t32 * t34 + t29 * t36; /* link right_1: column of the mass matrix */
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t40 = parameters[MZ4] + parameters[MZ5];
+    const two_fingers_real_t t38 = parameters[MZ4] + parameters[MZ5];
     /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t41 = TWO_FINGERS_C(-0.984807753012208) * t39
-        + TWO_FINGERS_C(-0.17364817766693028) * t40;
+    const two_fingers_real_t t39 = TWO_FINGERS_C(-0.984807753012208) * t37
+        + TWO_FINGERS_C(-0.17364817766693028) * t38;
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t42 = parameters[M4] + parameters[M5];
+    const two_fingers_real_t t40 = parameters[M4] + parameters[M5];
     /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t43 = TWO_FINGERS_C(0.03446827135542729) * t42;
-    const two_fingers_real_t t44 = TWO_FINGERS_C(0.17364817766693028) * t39
-        + TWO_FINGERS_C(-0.984807753012208) * t40;
-    const two_fingers_real_t t45 = TWO_FINGERS_C(0.00607768621834256) * t42;
-    const two_fingers_real_t t46 = TWO_FINGERS_C(0.03446827135542729) * (t43 + TWO_FINGERS_C(2.0) * t41)
-        + TWO_FINGERS_C(0.00607768621834256) * (t45 + TWO_FINGERS_C(-2.0) * t44);
+    const two_fingers_real_t t41 = TWO_FINGERS_C(0.03446827135542729) * t40;
+    const two_fingers_real_t t42 = TWO_FINGERS_C(0.17364817766693028) * t37
+        + TWO_FINGERS_C(-0.984807753012208) * t38;
+    const two_fingers_real_t t43 = TWO_FINGERS_C(0.00607768621834256) * t40;
+    const two_fingers_real_t t44 = TWO_FINGERS_C(0.03446827135542729) * (t41 + TWO_FINGERS_C(2.0) * t39)
+        + TWO_FINGERS_C(0.00607768621834256) * (t43 + TWO_FINGERS_C(-2.0) * t42);
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t47 = parameters[XX3] - parameters[YY3];
-    const two_fingers_real_t t48 = t15 * t47 + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t14);
-    const two_fingers_real_t t49 = t15 * t48;
-    const two_fingers_real_t t50 = parameters[YY2] + (parameters[XX3] - t49 + t21);
-    const two_fingers_real_t t51 = parameters[XX2] + (parameters[YY3] + t49);
+    const two_fingers_real_t t45 = parameters[XX3] - parameters[YY3];
+    const two_fingers_real_t t46 = t14 * t45 + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t13);
+    const two_fingers_real_t t47 = t14 * t46;
+    const two_fingers_real_t t48 = parameters[YY2] + (parameters[XX3] - t47 + t20);
+    const two_fingers_real_t t49 = parameters[XX2] + (parameters[YY3] + t47);
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t53 = t15 * parameters[MY3] + t14 * parameters[MX3];
+    const two_fingers_real_t t51 = t14 * parameters[MY3] + t13 * parameters[MX3];
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t54 = parameters[XY2] + (parameters[XY3] + t14 * t48
-        + TWO_FINGERS_C(-0.05) * t53);
+    const two_fingers_real_t t52 = parameters[XY2] + (parameters[XY3] + t13 * t46
+        + TWO_FINGERS_C(-0.05) * t51);
     /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t56 = t52 * (t52 * (t50 - t51) + t54 * (TWO_FINGERS_C(2.0) * t55));
-    const two_fingers_real_t t57 = parameters[MY2] + t53; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t58 = t16 - t20;
-    const two_fingers_real_t t59 = t58 - parameters[MX2];
+    const two_fingers_real_t t54 = t50 * (t50 * (t48 - t49) + t52 * (TWO_FINGERS_C(2.0) * t53));
+    const two_fingers_real_t t55 = parameters[MY2] + t51; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t56 = t15 - t19;
+    const two_fingers_real_t t57 = t56 - parameters[MX2];
     /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t60 = TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
-        + TWO_FINGERS_C(-2.0) * (t55 * t57 + t52 * t59);
-    const two_fingers_real_t t61 = parameters[ZZ1] + (t30 + t35 + t46) + (t51 + t56
-        + TWO_FINGERS_C(0.03) * t60);
-    const two_fingers_real_t t62 = t61 + TWO_FINGERS_C(3.6e3) * parameters[IA1];
+    const two_fingers_real_t t58 = TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
+        + TWO_FINGERS_C(-2.0) * (t53 * t55 + t50 * t57);
+    const two_fingers_real_t t59 = parameters[ZZ1] + (t28 + t33 + t44) + (t49 + t54
+        + TWO_FINGERS_C(0.03) * t58);
+    const two_fingers_real_t t60 = t59 + TWO_FINGERS_C(3.6e3) * parameters[IA1];
     /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t63 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
-    const two_fingers_real_t t64 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
-    const two_fingers_real_t t65 = t34 * t4 - t31 * t32;
-    const two_fingers_real_t t66 = t34 * t63 - t31 * t64 + TWO_FINGERS_C(8.673617379884035e-19) * t65;
-    const two_fingers_real_t t67 = t66 * t6;
+    const two_fingers_real_t t61 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
+    const two_fingers_real_t t62 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
+    const two_fingers_real_t t63 = t32 * t4 - t29 * t30;
+    const two_fingers_real_t t64 = t32 * t61 - t29 * t62 + TWO_FINGERS_C(8.673617379884035e-19) * t63;
+    const two_fingers_real_t t65 = t64 * t6;
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t68 = t63 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4];
-    const two_fingers_real_t t69 = parameters[YZ4] + t64;
-    const two_fingers_real_t t70 = t34 * t38 - t31 * t36; /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t71 = t34 * t68 - t31 * t69 + TWO_FINGERS_C(8.673617379884035e-19) * t70
-        - t66 * t7;
-    const two_fingers_real_t t72 = TWO_FINGERS_C(1.0) / t12;
-    const two_fingers_real_t t73 = t71 * t72;
+    const two_fingers_real_t t66 = t61 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4];
+    const two_fingers_real_t t67 = parameters[YZ4] + t62;
+    const two_fingers_real_t t68 = t32 * t36 - t29 * t34; /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t69 = t32 * t66 - t29 * t67 + TWO_FINGERS_C(8.673617379884035e-19) * t68
+        - t64 * t7;
+    const two_fingers_real_t t70 = TWO_FINGERS_C(1.0) / t12;
+    const two_fingers_real_t t71 = t69 * t70;
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t74 = t14 * parameters[YZ3] - t15 * parameters[XZ3];
-    const two_fingers_real_t t75 = t14 * parameters[XZ3] + t15 * parameters[YZ3];
-    const two_fingers_real_t t76 = t55 * t74 - t52 * t75;
-    const two_fingers_real_t t77 = t76 * t18;
-    const two_fingers_real_t t78 = t62 - t66 * t67 - t71 * t73 - t76 * t77;
+    const two_fingers_real_t t72 = t13 * parameters[YZ3] - t14 * parameters[XZ3];
+    const two_fingers_real_t t73 = t13 * parameters[XZ3] + t14 * parameters[YZ3];
+    const two_fingers_real_t t74 = t53 * t72 - t50 * t73;
+    const two_fingers_real_t t75 = t74 * t17;
+    const two_fingers_real_t t76 = t60 - t64 * t65 - t69 * t71 - t74 * t75;
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t79 = t74 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2];
-    const two_fingers_real_t t80 = parameters[YZ2] + t75;
-    const two_fingers_real_t t81 = t55 * t79 - t52 * t80 + t76 * t19;
-    const two_fingers_real_t t82 = TWO_FINGERS_C(1.0) / t24;
-    const two_fingers_real_t t83 = t81 * t82;
-    const two_fingers_real_t t84 = two_fingers_bounded(t78 - t81 * t83);
+    const two_fingers_real_t t77 = t72 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2];
+    const two_fingers_real_t t78 = parameters[YZ2] + t73;
+    const two_fingers_real_t t79 = t53 * t77 - t50 * t78 + t74 * t18;
+    const two_fingers_real_t t80 = TWO_FINGERS_C(1.0) / t23;
+    const two_fingers_real_t t81 = t79 * t80;
+    const two_fingers_real_t t82 = t76 - t79 * t81;
+    if (!(t82 > TWO_FINGERS_C(1.0e-12))) {
+        two_fingers_zero(ddq, 5);
+        two_fingers_zero(ddq_by_q, 25);
+        two_fingers_zero(ddq_by_dq, 25);
+        two_fingers_zero(ddq_by_input, 25);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t83 = two_fingers_min(t12 + TWO_FINGERS_C(-1.0e-9) * t11, t23
+        + TWO_FINGERS_C(-1.0e-9) * t22);
+    const two_fingers_real_t t84 = two_fingers_min(t83, t82 + TWO_FINGERS_C(-1.0e-9) * t60);
     if (!(t84 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
@@ -296,790 +288,779 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
         two_fingers_zero(ddq_by_input, 25);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t85 = t84 + TWO_FINGERS_C(-1.0e-9) * t62;
-    if (!(t85 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(ddq, 5);
-        two_fingers_zero(ddq_by_q, 25);
-        two_fingers_zero(ddq_by_dq, 25);
-        two_fingers_zero(ddq_by_input, 25);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t86 = t31 * dq[0]; /* link right_1: motion */
-    const two_fingers_real_t t87 = t86 * t86; /* link right_2: motion */
-    const two_fingers_real_t t88 = dq[3] * dq[3];
-    const two_fingers_real_t t89 = t87 + t88;
-    const two_fingers_real_t t90 = TWO_FINGERS_C(0.045) * t89;
-    const two_fingers_real_t t91 = TWO_FINGERS_C(-9.81) * t34; /* link right_1: motion */
-    const two_fingers_real_t t92 = dq[0] * dq[0]; /* link wrist: motion */
-    const two_fingers_real_t t93 = TWO_FINGERS_C(0.034999999999999996) * t92; /* link right_1: motion */
-    const two_fingers_real_t t94 = t91 + t31 * t93;
-    const two_fingers_real_t t95 = t90 + t94; /* link right_2: motion */
-    const two_fingers_real_t t96 = TWO_FINGERS_C(9.81) * t31; /* link right_1: motion */
-    const two_fingers_real_t t97 = t96 + t34 * t93;
-    const two_fingers_real_t t98 = t34 * dq[0];
-    const two_fingers_real_t t99 = t98 * t86; /* link right_2: motion */
-    const two_fingers_real_t t100 = t97 + TWO_FINGERS_C(0.045) * t99;
-    const two_fingers_real_t t101 = t3 * t95 - t2 * t100;
-    const two_fingers_real_t t102 = t3 * t86 - t2 * t98;
-    const two_fingers_real_t t103 = t102 * t102;
-    const two_fingers_real_t t104 = dq[3] + dq[4];
-    const two_fingers_real_t t105 = t104 * t104;
-    const two_fingers_real_t t106 = t3 * t98 + t2 * t86;
-    const two_fingers_real_t t107 = t106 * t102;
+    const two_fingers_real_t t85 = t29 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t86 = t85 * t85; /* link right_2: motion */
+    const two_fingers_real_t t87 = dq[3] * dq[3];
+    const two_fingers_real_t t88 = t86 + t87;
+    const two_fingers_real_t t89 = TWO_FINGERS_C(0.045) * t88;
+    const two_fingers_real_t t90 = TWO_FINGERS_C(-9.81) * t32; /* link right_1: motion */
+    const two_fingers_real_t t91 = dq[0] * dq[0]; /* link wrist: motion */
+    const two_fingers_real_t t92 = TWO_FINGERS_C(0.034999999999999996) * t91; /* link right_1: motion */
+    const two_fingers_real_t t93 = t90 + t29 * t92;
+    const two_fingers_real_t t94 = t89 + t93; /* link right_2: motion */
+    const two_fingers_real_t t95 = TWO_FINGERS_C(9.81) * t29; /* link right_1: motion */
+    const two_fingers_real_t t96 = t95 + t32 * t92;
+    const two_fingers_real_t t97 = t32 * dq[0];
+    const two_fingers_real_t t98 = t97 * t85; /* link right_2: motion */
+    const two_fingers_real_t t99 = t96 + TWO_FINGERS_C(0.045) * t98;
+    const two_fingers_real_t t100 = t3 * t94 - t2 * t99;
+    const two_fingers_real_t t101 = t3 * t85 - t2 * t97;
+    const two_fingers_real_t t102 = t101 * t101;
+    const two_fingers_real_t t103 = dq[3] + dq[4];
+    const two_fingers_real_t t104 = t103 * t103;
+    const two_fingers_real_t t105 = t3 * t97 + t2 * t85;
+    const two_fingers_real_t t106 = t105 * t101;
     /* link right_2: force and moment */
-    const two_fingers_real_t t108 = parameters[M5] * t101 + (parameters[MX5] * (t105 + t103)
-        - parameters[MY5] * t107);
-    const two_fingers_real_t t109 = t2 * t95 + t3 * t100; /* link right_2: motion */
-    const two_fingers_real_t t110 = t106 * t106;
+    const two_fingers_real_t t107 = parameters[M5] * t100 + (parameters[MX5] * (t104 + t102)
+        - parameters[MY5] * t106);
+    const two_fingers_real_t t108 = t2 * t94 + t3 * t99; /* link right_2: motion */
+    const two_fingers_real_t t109 = t105 * t105;
     /* link right_2: force and moment */
-    const two_fingers_real_t t111 = parameters[M5] * t109 - (parameters[MY5] * (t105 + t110)
-        - parameters[MX5] * t107);
-    const two_fingers_real_t t112 = t89 * parameters[MX4]; /* link right_1: force and moment */
+    const two_fingers_real_t t110 = parameters[M5] * t108 - (parameters[MY5] * (t104 + t109)
+        - parameters[MX5] * t106);
+    const two_fingers_real_t t111 = t88 * parameters[MX4]; /* link right_1: force and moment */
     /* link right_2: what it passes on */
-    const two_fingers_real_t t113 = parameters[M4] * t94 + (t112 - t99 * parameters[MY4]) + (t3 * t108
-        + t2 * t111);
-    const two_fingers_real_t t114 = t2 * t108 - t3 * t111;
-    const two_fingers_real_t t115 = t98 * t98; /* link right_2: motion */
-    const two_fingers_real_t t116 = (t115 + t88) * parameters[MY4]; /* link right_1: force and moment */
+    const two_fingers_real_t t112 = parameters[M4] * t93 + (t111 - t98 * parameters[MY4]) + (t3 * t107
+        + t2 * t110);
+    const two_fingers_real_t t113 = t2 * t107 - t3 * t110;
+    const two_fingers_real_t t114 = t97 * t97; /* link right_2: motion */
+    const two_fingers_real_t t115 = (t114 + t87) * parameters[MY4]; /* link right_1: force and moment */
     /* link right_1: what it passes on */
-    const two_fingers_real_t t117 = t34 * (parameters[M4] * t97 + (t99 * parameters[MX4] - t116) - t114);
-    const two_fingers_real_t t118 = t31 * t113 + t117;
-    const two_fingers_real_t t119 = t104 * t106; /* link right_2: motion */
-    const two_fingers_real_t t120 = TWO_FINGERS_C(2.0) * t119; /* link right_2: force and moment */
-    const two_fingers_real_t t121 = t104 * t102; /* link right_2: motion */
-    const two_fingers_real_t t122 = TWO_FINGERS_C(2.0) * t121; /* link right_2: force and moment */
-    const two_fingers_real_t t123 = parameters[MX5] * t120 + parameters[MY5] * t122 - parameters[MZ5] * (t110
-        + t103);
-    const two_fingers_real_t t124 = TWO_FINGERS_C(8.673617379884035e-19) * t92; /* link right_1: motion */
-    const two_fingers_real_t t125 = dq[3] * t98;
-    const two_fingers_real_t t126 = t124 + TWO_FINGERS_C(0.09) * t125; /* link right_2: motion */
-    const two_fingers_real_t t127 = parameters[M5] * t126 + t123; /* link right_2: force and moment */
-    const two_fingers_real_t t128 = t115 + t87; /* link right_2: motion */
-    const two_fingers_real_t t129 = TWO_FINGERS_C(2.0) * t125; /* link right_1: motion */
-    const two_fingers_real_t t130 = dq[3] * t86;
-    const two_fingers_real_t t131 = TWO_FINGERS_C(2.0) * t130;
+    const two_fingers_real_t t116 = t32 * (parameters[M4] * t96 + (t98 * parameters[MX4] - t115) - t113);
+    const two_fingers_real_t t117 = t29 * t112 + t116;
+    const two_fingers_real_t t118 = t103 * t105; /* link right_2: motion */
+    const two_fingers_real_t t119 = TWO_FINGERS_C(2.0) * t118; /* link right_2: force and moment */
+    const two_fingers_real_t t120 = t103 * t101; /* link right_2: motion */
+    const two_fingers_real_t t121 = TWO_FINGERS_C(2.0) * t120; /* link right_2: force and moment */
+    const two_fingers_real_t t122 = parameters[MX5] * t119 + parameters[MY5] * t121 - parameters[MZ5] * (t109
+        + t102);
+    const two_fingers_real_t t123 = TWO_FINGERS_C(8.673617379884035e-19) * t91; /* link right_1: motion */
+    const two_fingers_real_t t124 = dq[3] * t97;
+    const two_fingers_real_t t125 = t123 + TWO_FINGERS_C(0.09) * t124; /* link right_2: motion */
+    const two_fingers_real_t t126 = parameters[M5] * t125 + t122; /* link right_2: force and moment */
+    const two_fingers_real_t t127 = t114 + t86; /* link right_2: motion */
+    const two_fingers_real_t t128 = TWO_FINGERS_C(2.0) * t124; /* link right_1: motion */
+    const two_fingers_real_t t129 = dq[3] * t85;
+    const two_fingers_real_t t130 = TWO_FINGERS_C(2.0) * t129;
     /* link right_1: force and moment */
-    const two_fingers_real_t t132 = parameters[M4] * t124 + (t129 * parameters[MX4] + t131 * parameters[MY4]
-        - t128 * parameters[MZ4]);
-    const two_fingers_real_t t133 = t132 + t127; /* link right_2: what it passes on */
+    const two_fingers_real_t t131 = parameters[M4] * t123 + (t128 * parameters[MX4] + t130 * parameters[MY4]
+        - t127 * parameters[MZ4]);
+    const two_fingers_real_t t132 = t131 + t126; /* link right_2: what it passes on */
     /* link right_1: what it passes on */
     const two_fingers_real_t
-        t134 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t118
-        + TWO_FINGERS_C(0.984807753012208) * t133)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t118
-        + TWO_FINGERS_C(0.17364817766693028) * t133);
-    const two_fingers_real_t t135 = parameters[ZZ5] - parameters[YY5]; /* link right_2: force and moment */
-    const two_fingers_real_t t136 = parameters[XY5] * t120 - (parameters[XX5] * t121 + t121 * t135)
-        - parameters[XZ5] * t107;
-    const two_fingers_real_t t137 = t136 + parameters[YZ5] * (t105 - t103) + (parameters[MZ5] * t109
-        - parameters[MY5] * t126);
-    const two_fingers_real_t t138 = parameters[ZZ5] - parameters[XX5];
-    const two_fingers_real_t t139 = parameters[YY5] * t119 + t119 * t138 - parameters[XY5] * t122
-        + parameters[YZ5] * t107;
-    const two_fingers_real_t t140 = t139 - parameters[XZ5] * (t105 - t110) + (parameters[MZ5] * t101
-        + parameters[MX5] * t126);
+        t133 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t117
+        + TWO_FINGERS_C(0.984807753012208) * t132)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t117
+        + TWO_FINGERS_C(0.17364817766693028) * t132);
+    const two_fingers_real_t t134 = parameters[ZZ5] - parameters[YY5]; /* link right_2: force and moment */
+    const two_fingers_real_t t135 = parameters[XY5] * t119 - (parameters[XX5] * t120 + t120 * t134)
+        - parameters[XZ5] * t106;
+    const two_fingers_real_t t136 = t135 + parameters[YZ5] * (t104 - t102) + (parameters[MZ5] * t108
+        - parameters[MY5] * t125);
+    const two_fingers_real_t t137 = parameters[ZZ5] - parameters[XX5];
+    const two_fingers_real_t t138 = parameters[YY5] * t118 + t118 * t137 - parameters[XY5] * t121
+        + parameters[YZ5] * t106;
+    const two_fingers_real_t t139 = t138 - parameters[XZ5] * (t104 - t109) + (parameters[MZ5] * t100
+        + parameters[MX5] * t125);
     /* link right_1: force and moment */
-    const two_fingers_real_t t141 = t130 * (parameters[YY4] - parameters[ZZ4]);
-    const two_fingers_real_t t142 = t141 - t130 * parameters[XX4] + t129 * parameters[XY4]
-        - t99 * parameters[XZ4];
-    const two_fingers_real_t t143 = (t87 - t88) * parameters[YZ4];
+    const two_fingers_real_t t140 = t129 * (parameters[YY4] - parameters[ZZ4]);
+    const two_fingers_real_t t141 = t140 - t129 * parameters[XX4] + t128 * parameters[XY4]
+        - t98 * parameters[XZ4];
+    const two_fingers_real_t t142 = (t86 - t87) * parameters[YZ4];
     /* link right_2: what it passes on */
-    const two_fingers_real_t t144 = t142 - t143 + (parameters[MZ4] * t97 - parameters[MY4] * t124)
-        + (t3 * t137 - t2 * t140);
+    const two_fingers_real_t t143 = t141 - t142 + (parameters[MZ4] * t96 - parameters[MY4] * t123)
+        + (t3 * t136 - t2 * t139);
     /* link right_1: force and moment */
-    const two_fingers_real_t t145 = t125 * (parameters[ZZ4] - parameters[XX4]);
-    const two_fingers_real_t t146 = t125 * parameters[YY4] + t145 - t131 * parameters[XY4]
-        + t99 * parameters[YZ4];
-    const two_fingers_real_t t147 = (t115 - t88) * parameters[XZ4];
+    const two_fingers_real_t t144 = t124 * (parameters[ZZ4] - parameters[XX4]);
+    const two_fingers_real_t t145 = t124 * parameters[YY4] + t144 - t130 * parameters[XY4]
+        + t98 * parameters[YZ4];
+    const two_fingers_real_t t146 = (t114 - t87) * parameters[XZ4];
     /* link right_2: what it passes on */
-    const two_fingers_real_t t148 = t146 + t147 + (parameters[MZ4] * t94 + parameters[MX4] * t124)
-        + (t2 * t137 + t3 * t140 + TWO_FINGERS_C(0.045) * t127);
-    const two_fingers_real_t t149 = t55 * dq[0]; /* link left_1: motion */
-    const two_fingers_real_t t150 = t52 * dq[0];
-    const two_fingers_real_t t151 = t15 * t150 - t14 * t149; /* link left_2: motion */
-    const two_fingers_real_t t152 = dq[1] + dq[2];
-    const two_fingers_real_t t153 = t152 * t151;
-    const two_fingers_real_t t154 = parameters[ZZ3] - parameters[YY3]; /* link left_2: force and moment */
-    const two_fingers_real_t t155 = t15 * t149 + t14 * t150; /* link left_2: motion */
-    const two_fingers_real_t t156 = t152 * t155;
-    const two_fingers_real_t t157 = TWO_FINGERS_C(2.0) * t156; /* link left_2: force and moment */
-    const two_fingers_real_t t158 = t155 * t151; /* link left_2: motion */
+    const two_fingers_real_t t147 = t145 + t146 + (parameters[MZ4] * t93 + parameters[MX4] * t123)
+        + (t2 * t136 + t3 * t139 + TWO_FINGERS_C(0.045) * t126);
+    const two_fingers_real_t t148 = t53 * dq[0]; /* link left_1: motion */
+    const two_fingers_real_t t149 = t50 * dq[0];
+    const two_fingers_real_t t150 = t14 * t149 - t13 * t148; /* link left_2: motion */
+    const two_fingers_real_t t151 = dq[1] + dq[2];
+    const two_fingers_real_t t152 = t151 * t150;
+    const two_fingers_real_t t153 = parameters[ZZ3] - parameters[YY3]; /* link left_2: force and moment */
+    const two_fingers_real_t t154 = t14 * t148 + t13 * t149; /* link left_2: motion */
+    const two_fingers_real_t t155 = t151 * t154;
+    const two_fingers_real_t t156 = TWO_FINGERS_C(2.0) * t155; /* link left_2: force and moment */
+    const two_fingers_real_t t157 = t154 * t150; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t159 = parameters[XY3] * t157 - (parameters[XX3] * t153 + t153 * t154)
-        - parameters[XZ3] * t158;
-    const two_fingers_real_t t160 = t151 * t151; /* link left_2: motion */
-    const two_fingers_real_t t161 = t152 * t152;
-    const two_fingers_real_t t162 = TWO_FINGERS_C(0.03) * t92; /* link left_1: motion */
-    const two_fingers_real_t t163 = t52 * t162 - TWO_FINGERS_C(9.81) * t55;
-    const two_fingers_real_t t164 = t150 * t150;
-    const two_fingers_real_t t165 = dq[1] * dq[1];
-    const two_fingers_real_t t166 = t163 + TWO_FINGERS_C(0.05) * (t164 + t165); /* link left_2: motion */
-    const two_fingers_real_t t167 = t14 * t166;
-    const two_fingers_real_t t168 = t55 * t162 + TWO_FINGERS_C(9.81) * t52; /* link left_1: motion */
-    const two_fingers_real_t t169 = t149 * t150;
-    const two_fingers_real_t t170 = t168 + TWO_FINGERS_C(0.05) * t169; /* link left_2: motion */
-    const two_fingers_real_t t171 = t167 + t15 * t170;
-    const two_fingers_real_t t172 = dq[1] * t149; /* link left_1: motion */
-    const two_fingers_real_t t173 = TWO_FINGERS_C(0.1) * t172; /* link left_2: motion */
+    const two_fingers_real_t t158 = parameters[XY3] * t156 - (parameters[XX3] * t152 + t152 * t153)
+        - parameters[XZ3] * t157;
+    const two_fingers_real_t t159 = t150 * t150; /* link left_2: motion */
+    const two_fingers_real_t t160 = t151 * t151;
+    const two_fingers_real_t t161 = TWO_FINGERS_C(0.03) * t91; /* link left_1: motion */
+    const two_fingers_real_t t162 = t50 * t161 - TWO_FINGERS_C(9.81) * t53;
+    const two_fingers_real_t t163 = t149 * t149;
+    const two_fingers_real_t t164 = dq[1] * dq[1];
+    const two_fingers_real_t t165 = t162 + TWO_FINGERS_C(0.05) * (t163 + t164); /* link left_2: motion */
+    const two_fingers_real_t t166 = t13 * t165;
+    const two_fingers_real_t t167 = t53 * t161 + TWO_FINGERS_C(9.81) * t50; /* link left_1: motion */
+    const two_fingers_real_t t168 = t148 * t149;
+    const two_fingers_real_t t169 = t167 + TWO_FINGERS_C(0.05) * t168; /* link left_2: motion */
+    const two_fingers_real_t t170 = t166 + t14 * t169;
+    const two_fingers_real_t t171 = dq[1] * t148; /* link left_1: motion */
+    const two_fingers_real_t t172 = TWO_FINGERS_C(0.1) * t171; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t174 = t159 + parameters[YZ3] * (t161 - t160) + (parameters[MZ3] * t171
-        - parameters[MY3] * t173);
-    const two_fingers_real_t t175 = parameters[ZZ3] - parameters[XX3];
-    const two_fingers_real_t t176 = TWO_FINGERS_C(2.0) * t153;
-    const two_fingers_real_t t177 = parameters[YY3] * t156 + t156 * t175 - parameters[XY3] * t176
-        + parameters[YZ3] * t158;
-    const two_fingers_real_t t178 = t155 * t155; /* link left_2: motion */
-    const two_fingers_real_t t179 = t15 * t166;
-    const two_fingers_real_t t180 = t179 - t14 * t170;
+    const two_fingers_real_t t173 = t158 + parameters[YZ3] * (t160 - t159) + (parameters[MZ3] * t170
+        - parameters[MY3] * t172);
+    const two_fingers_real_t t174 = parameters[ZZ3] - parameters[XX3];
+    const two_fingers_real_t t175 = TWO_FINGERS_C(2.0) * t152;
+    const two_fingers_real_t t176 = parameters[YY3] * t155 + t155 * t174 - parameters[XY3] * t175
+        + parameters[YZ3] * t157;
+    const two_fingers_real_t t177 = t154 * t154; /* link left_2: motion */
+    const two_fingers_real_t t178 = t14 * t165;
+    const two_fingers_real_t t179 = t178 - t13 * t169;
     /* link left_2: force and moment */
-    const two_fingers_real_t t181 = t177 - parameters[XZ3] * (t161 - t178) + (parameters[MZ3] * t180
-        + parameters[MX3] * t173);
-    const two_fingers_real_t t182 = dq[1] * t150; /* link left_1: motion */
+    const two_fingers_real_t t180 = t176 - parameters[XZ3] * (t160 - t177) + (parameters[MZ3] * t179
+        + parameters[MX3] * t172);
+    const two_fingers_real_t t181 = dq[1] * t149; /* link left_1: motion */
     /* link left_1: force and moment */
-    const two_fingers_real_t t183 = t182 * (parameters[YY2] - parameters[ZZ2]);
-    const two_fingers_real_t t184 = TWO_FINGERS_C(2.0) * t172; /* link left_1: motion */
+    const two_fingers_real_t t182 = t181 * (parameters[YY2] - parameters[ZZ2]);
+    const two_fingers_real_t t183 = TWO_FINGERS_C(2.0) * t171; /* link left_1: motion */
     /* link left_1: force and moment */
-    const two_fingers_real_t t185 = t183 - t182 * parameters[XX2] + t184 * parameters[XY2]
-        - t169 * parameters[XZ2];
-    const two_fingers_real_t t186 = (t164 - t165) * parameters[YZ2];
-    const two_fingers_real_t t187 = t168 * parameters[MZ2];
+    const two_fingers_real_t t184 = t182 - t181 * parameters[XX2] + t183 * parameters[XY2]
+        - t168 * parameters[XZ2];
+    const two_fingers_real_t t185 = (t163 - t164) * parameters[YZ2];
+    const two_fingers_real_t t186 = t167 * parameters[MZ2];
     /* link left_2: what it passes on */
-    const two_fingers_real_t t188 = t185 - t186 + t187 + (t15 * t174 - t14 * t181);
+    const two_fingers_real_t t187 = t184 - t185 + t186 + (t14 * t173 - t13 * t180);
     /* link left_2: force and moment */
-    const two_fingers_real_t t189 = parameters[MX3] * t157 + parameters[MY3] * t176 - parameters[MZ3] * (t178
-        + t160);
-    const two_fingers_real_t t190 = parameters[M3] * t173 + t189;
+    const two_fingers_real_t t188 = parameters[MX3] * t156 + parameters[MY3] * t175 - parameters[MZ3] * (t177
+        + t159);
+    const two_fingers_real_t t189 = parameters[M3] * t172 + t188;
     /* link left_1: force and moment */
-    const two_fingers_real_t t191 = t172 * (parameters[ZZ2] - parameters[XX2]);
-    const two_fingers_real_t t192 = TWO_FINGERS_C(2.0) * t182; /* link left_1: motion */
+    const two_fingers_real_t t190 = t171 * (parameters[ZZ2] - parameters[XX2]);
+    const two_fingers_real_t t191 = TWO_FINGERS_C(2.0) * t181; /* link left_1: motion */
     /* link left_1: force and moment */
-    const two_fingers_real_t t193 = t172 * parameters[YY2] + t191 - t192 * parameters[XY2]
-        + t169 * parameters[YZ2];
-    const two_fingers_real_t t194 = t149 * t149; /* link left_1: motion */
-    const two_fingers_real_t t195 = (t194 - t165) * parameters[XZ2]; /* link left_1: force and moment */
-    const two_fingers_real_t t196 = t163 * parameters[MZ2];
+    const two_fingers_real_t t192 = t171 * parameters[YY2] + t190 - t191 * parameters[XY2]
+        + t168 * parameters[YZ2];
+    const two_fingers_real_t t193 = t148 * t148; /* link left_1: motion */
+    const two_fingers_real_t t194 = (t193 - t164) * parameters[XZ2]; /* link left_1: force and moment */
+    const two_fingers_real_t t195 = t162 * parameters[MZ2];
     /* link left_2: what it passes on */
-    const two_fingers_real_t t197 = t193 + t195 + t196 + (t14 * t174 + t15 * t181
-        + TWO_FINGERS_C(0.05) * t190);
-    const two_fingers_real_t t198 = t194 + t164; /* link left_2: motion */
+    const two_fingers_real_t t196 = t192 + t194 + t195 + (t13 * t173 + t14 * t180
+        + TWO_FINGERS_C(0.05) * t189);
+    const two_fingers_real_t t197 = t193 + t163; /* link left_2: motion */
     /* link left_2: what it passes on */
-    const two_fingers_real_t t199 = t184 * parameters[MX2] + t192 * parameters[MY2] - t198 * parameters[MZ2]
-        + t190;
+    const two_fingers_real_t t198 = t183 * parameters[MX2] + t191 * parameters[MY2] - t197 * parameters[MZ2]
+        + t189;
     /* link left_1: what it passes on */
-    const two_fingers_real_t t200 = t34 * t144 + t31 * t148 + t134 + (t55 * t188 + t52 * t197
-        + TWO_FINGERS_C(0.03) * t199);
-    const two_fingers_real_t t201 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
-    const two_fingers_real_t t202 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1]
-        - t201 * parameters[FC1]) + t200;
+    const two_fingers_real_t t199 = t32 * t143 + t29 * t147 + t133 + (t53 * t187 + t50 * t196
+        + TWO_FINGERS_C(0.03) * t198);
+    const two_fingers_real_t t200 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
+    const two_fingers_real_t t201 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1]
+        - t200 * parameters[FC1]) + t199;
     /* link right_2: force and moment */
-    const two_fingers_real_t t203 = parameters[XY5] * (t110 - t103) - t26 * t107 + (parameters[MX5] * t109
-        + parameters[MY5] * t101);
-    const two_fingers_real_t t204 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
-    const two_fingers_real_t t205 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5]
-        + t204 * parameters[FC5]) + t203;
-    const two_fingers_real_t t206 = TWO_FINGERS_C(0.6) * input[4] - t205;
+    const two_fingers_real_t t202 = parameters[XY5] * (t109 - t102) - t24 * t106 + (parameters[MX5] * t108
+        + parameters[MY5] * t100);
+    const two_fingers_real_t t203 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
+    const two_fingers_real_t t204 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5]
+        + t203 * parameters[FC5]) + t202;
+    const two_fingers_real_t t205 = TWO_FINGERS_C(0.6) * input[4] - t204;
     /* link right_1: force and moment */
-    const two_fingers_real_t t207 = t99 * (parameters[XX4] - parameters[YY4]) - (t115 - t87) * parameters[XY4]
-        - (parameters[MX4] * t97 + parameters[MY4] * t94);
-    const two_fingers_real_t t208 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
-    const two_fingers_real_t t209 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4]
-        + t208 * parameters[FC4]) - (t207 - (t203 - TWO_FINGERS_C(0.045) * t114));
-    const two_fingers_real_t t210 = TWO_FINGERS_C(0.6) * input[3] - t209 - t206 * t7;
-    const two_fingers_real_t t211 = TWO_FINGERS_C(2.4) * input[0] + t202 + t206 * t67 + t210 * t73;
+    const two_fingers_real_t t206 = t98 * (parameters[XX4] - parameters[YY4]) - (t114 - t86) * parameters[XY4]
+        - (parameters[MX4] * t96 + parameters[MY4] * t93);
+    const two_fingers_real_t t207 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
+    const two_fingers_real_t t208 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4]
+        + t207 * parameters[FC4]) - (t206 - (t202 - TWO_FINGERS_C(0.045) * t113));
+    const two_fingers_real_t t209 = TWO_FINGERS_C(0.6) * input[3] - t208 - t205 * t7;
+    const two_fingers_real_t t210 = TWO_FINGERS_C(2.4) * input[0] + t201 + t205 * t65 + t209 * t71;
     /* link left_2: force and moment */
-    const two_fingers_real_t t212 = parameters[XY3] * (t178 - t160) - t47 * t158 + (parameters[MX3] * t171
-        + parameters[MY3] * t180);
-    const two_fingers_real_t t213 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
-    const two_fingers_real_t t214 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3]
-        + t213 * parameters[FC3]) + t212;
-    const two_fingers_real_t t215 = TWO_FINGERS_C(0.6) * input[2] - t214;
+    const two_fingers_real_t t211 = parameters[XY3] * (t177 - t159) - t45 * t157 + (parameters[MX3] * t170
+        + parameters[MY3] * t179);
+    const two_fingers_real_t t212 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
+    const two_fingers_real_t t213 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3]
+        + t212 * parameters[FC3]) + t211;
+    const two_fingers_real_t t214 = TWO_FINGERS_C(0.6) * input[2] - t213;
     /* link left_2: force and moment */
-    const two_fingers_real_t t216 = parameters[M3] * t180 + (parameters[MX3] * (t161 + t160)
-        - parameters[MY3] * t158);
-    const two_fingers_real_t t217 = parameters[M3] * t171 - (parameters[MY3] * (t161 + t178)
-        - parameters[MX3] * t158);
+    const two_fingers_real_t t215 = parameters[M3] * t179 + (parameters[MX3] * (t160 + t159)
+        - parameters[MY3] * t157);
+    const two_fingers_real_t t216 = parameters[M3] * t170 - (parameters[MY3] * (t160 + t177)
+        - parameters[MX3] * t157);
     /* link left_1: force and moment */
-    const two_fingers_real_t t218 = t169 * (parameters[XX2] - parameters[YY2]) - (t194
-        - t164) * parameters[XY2] - (t168 * parameters[MX2] + t163 * parameters[MY2]);
+    const two_fingers_real_t t217 = t168 * (parameters[XX2] - parameters[YY2]) - (t193
+        - t163) * parameters[XY2] - (t167 * parameters[MX2] + t162 * parameters[MY2]);
     /* link left_2: what it passes on */
-    const two_fingers_real_t t219 = t218 - (t212 - TWO_FINGERS_C(0.05) * (t14 * t216 - t15 * t217));
-    const two_fingers_real_t t220 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
-    const two_fingers_real_t t221 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2]
-        + t220 * parameters[FC2]) - t219;
-    const two_fingers_real_t t222 = TWO_FINGERS_C(0.6) * input[1] - t221 + t215 * t19;
-    const two_fingers_real_t t223 = TWO_FINGERS_C(1.0) / t84;
-    const two_fingers_real_t t224 = two_fingers_bounded((t211 + t215 * t77 + t222 * t83) * t223);
-    ddq[0] = t224;
-    const two_fingers_real_t t225 = two_fingers_bounded(t222 * t82 + t83 * t224);
-    ddq[1] = t225;
-    const two_fingers_real_t t226 = two_fingers_bounded(t215 * t18 + t77 * t224 + t19 * t225);
-    ddq[2] = t226;
-    const two_fingers_real_t t227 = two_fingers_bounded(t210 * t72 + t73 * t224);
-    ddq[3] = t227;
-    const two_fingers_real_t t228 = two_fingers_bounded(t206 * t6 + t67 * t224 - t7 * t227);
-    ddq[4] = t228;
-    const two_fingers_real_t t229 = TWO_FINGERS_C(0.5) * (parameters[ZZ5] + (parameters[XX5]
+    const two_fingers_real_t t218 = t217 - (t211 - TWO_FINGERS_C(0.05) * (t13 * t215 - t14 * t216));
+    const two_fingers_real_t t219 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
+    const two_fingers_real_t t220 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2]
+        + t219 * parameters[FC2]) - t218;
+    const two_fingers_real_t t221 = TWO_FINGERS_C(0.6) * input[1] - t220 + t214 * t18;
+    const two_fingers_real_t t222 = TWO_FINGERS_C(1.0) / t82;
+    const two_fingers_real_t t223 = two_fingers_held((t210 + t214 * t75 + t221 * t81) * t222);
+    ddq[0] = t223;
+    const two_fingers_real_t t224 = two_fingers_held(t221 * t80 + t81 * t223);
+    ddq[1] = t224;
+    const two_fingers_real_t t225 = two_fingers_held(t214 * t17 + t75 * t223 + t18 * t224);
+    ddq[2] = t225;
+    const two_fingers_real_t t226 = two_fingers_held(t209 * t70 + t71 * t223);
+    ddq[3] = t226;
+    const two_fingers_real_t t227 = two_fingers_held(t205 * t6 + t65 * t223 - t7 * t226);
+    ddq[4] = t227;
+    const two_fingers_real_t t228 = TWO_FINGERS_C(0.03446827135542729) * t91
+        + TWO_FINGERS_C(-0.00607768621834256) * t223;
+    const two_fingers_real_t t229 = TWO_FINGERS_C(0.00607768621834256) * t91
+        + TWO_FINGERS_C(0.03446827135542729) * t223;
+    const two_fingers_real_t t230 = TWO_FINGERS_C(0.984807753012208) * t228
+        + TWO_FINGERS_C(0.17364817766693028) * t229;
+    const two_fingers_real_t t231 = t90 + t29 * t230;
+    const two_fingers_real_t t232 = t89 + t231;
+    const two_fingers_real_t t233 = t95 + t32 * t230;
+    const two_fingers_real_t t234 = t98 + t226;
+    const two_fingers_real_t t235 = t233 + TWO_FINGERS_C(0.045) * t234;
+    const two_fingers_real_t t236 = t2 * t232 + t3 * t235;
+    const two_fingers_real_t t237 = parameters[M5] * t236;
+    const two_fingers_real_t t238 = t226 + t227;
+    const two_fingers_real_t t239 = t32 * t3 + t29 * t2; /* link right_2: motion */
+    const two_fingers_real_t t240 = dq[0] * t239;
+    const two_fingers_real_t t241 = t32 * t2 - t29 * t3;
+    const two_fingers_real_t t242 = dq[0] * t241;
+    const two_fingers_real_t t243 = t240 * t242;
+    const two_fingers_real_t t244 = t238 - t243;
+    const two_fingers_real_t t245 = t240 * t240;
+    const two_fingers_real_t t246 = t239 * t223;
+    const two_fingers_real_t t247 = parameters[MZ5] * t246;
+    const two_fingers_real_t t248 = t237 + (parameters[MX5] * t244 - (t245 + t104) * parameters[MY5] - t247);
+    const two_fingers_real_t t249 = t240 * parameters[MY5] + t242 * parameters[MX5];
+    const two_fingers_real_t t250 = TWO_FINGERS_C(2.0) * t240;
+    const two_fingers_real_t t251 = t242 * t242;
+    const two_fingers_real_t t252 = t245 + t251; /* link right_2: columns */
+    const two_fingers_real_t t253 = t248 + (t250 * t249 - t237 + (t247 - t252 * parameters[MY5]));
+    const two_fingers_real_t t254 = t2 * t235 - t3 * t232;
+    const two_fingers_real_t t255 = parameters[M5] * t254;
+    const two_fingers_real_t t256 = t243 + t238;
+    const two_fingers_real_t t257 = t241 * t223;
+    const two_fingers_real_t t258 = parameters[MZ5] * t257;
+    const two_fingers_real_t t259 = (t251 + t104) * parameters[MX5] + parameters[MY5] * t256 + t258 - t255;
+    const two_fingers_real_t t260 = TWO_FINGERS_C(2.0) * t242;
+    const two_fingers_real_t t261 = t259 + (t255 - t260 * t249 + (t252 * parameters[MX5] - t258));
+    const two_fingers_real_t t262 = t2 * t253 + t3 * t261;
+    const two_fingers_real_t t263 = t29 * (t3 * t253 - t2 * t261) - t32 * t262;
+    const two_fingers_real_t t264 = t103 * parameters[MX5] - t240 * parameters[MZ5];
+    const two_fingers_real_t t265 = t242 * parameters[MZ5] + t103 * parameters[MY5];
+    const two_fingers_real_t t266 = t260 * t264 + t250 * t265 + (parameters[MY5] * t257
+        - parameters[MX5] * t246);
+    const two_fingers_real_t
+        t267 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t263
+        + TWO_FINGERS_C(0.984807753012208) * t266)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t263
+        + TWO_FINGERS_C(0.17364817766693028) * t266);
+    const two_fingers_real_t t268 = parameters[MZ5] * t254;
+    const two_fingers_real_t t269 = TWO_FINGERS_C(0.17364817766693028) * t228
+        + TWO_FINGERS_C(-0.984807753012208) * t229;
+    const two_fingers_real_t t270 = t29 * t223;
+    const two_fingers_real_t t271 = t124 - t270;
+    const two_fingers_real_t t272 = t124 + t271;
+    const two_fingers_real_t t273 = t269 + TWO_FINGERS_C(0.045) * t272;
+    const two_fingers_real_t t274 = t240 * t103; /* link right_2: motion */
+    const two_fingers_real_t t275 = t274 + t257;
+    const two_fingers_real_t t276 = t242 * t103;
+    const two_fingers_real_t t277 = t276 - t246;
+    const two_fingers_real_t t278 = t276 + t277;
+    const two_fingers_real_t t279 = t274 * t137 + parameters[YY5] * t275 + parameters[XY5] * t278
+        - parameters[YZ5] * t256;
+    const two_fingers_real_t t280 = parameters[MX5] * t273 - t268 + ((t245 - t104) * parameters[XZ5] + t279);
+    const two_fingers_real_t t281 = t242 * parameters[XZ5];
+    const two_fingers_real_t t282 = t103 * parameters[XY5];
+    const two_fingers_real_t t283 = t281 + t282;
+    const two_fingers_real_t t284 = TWO_FINGERS_C(0.5) * (parameters[ZZ5] + (parameters[XX5]
         + parameters[YY5]));
-    const two_fingers_real_t t230 = parameters[XX5] - t229;
-    const two_fingers_real_t t231 = t34 * t3 + t31 * t2; /* link right_2: motion */
-    const two_fingers_real_t t232 = dq[0] * t231;
-    const two_fingers_real_t t233 = t104 * t230 - t232 * parameters[XZ5];
-    const two_fingers_real_t t234 = t34 * t2 - t31 * t3;
-    const two_fingers_real_t t235 = dq[0] * t234;
-    const two_fingers_real_t t236 = parameters[YY5] - t229;
-    const two_fingers_real_t t237 = t235 * parameters[YZ5] + t104 * t236;
-    const two_fingers_real_t t238 = t235 * parameters[XZ5];
-    const two_fingers_real_t t239 = t104 * parameters[XY5];
-    const two_fingers_real_t t240 = t238 + t239;
-    const two_fingers_real_t t241 = t232 * parameters[YZ5];
-    const two_fingers_real_t t242 = t239 - t241;
+    const two_fingers_real_t t285 = parameters[YY5] - t284;
+    const two_fingers_real_t t286 = t242 * parameters[YZ5] + t103 * t285;
+    const two_fingers_real_t t287 = t260 * t283 + t250 * t286 - (t252 * parameters[XZ5]
+        + (parameters[XX5] * t257 + parameters[XY5] * t246));
+    const two_fingers_real_t t288 = t280 + (t268 + t287);
+    const two_fingers_real_t t289 = parameters[MZ5] * t236;
+    const two_fingers_real_t t290 = t274 + t275;
+    const two_fingers_real_t t291 = parameters[XZ5] * t244 - (t276 * t134 + parameters[XX5] * t277
+        + parameters[XY5] * t290);
+    const two_fingers_real_t t292 = parameters[MY5] * t273 - t289 + ((t251 - t104) * parameters[YZ5] + t291);
+    const two_fingers_real_t t293 = parameters[XX5] - t284;
+    const two_fingers_real_t t294 = t103 * t293 - t240 * parameters[XZ5];
+    const two_fingers_real_t t295 = t240 * parameters[YZ5];
+    const two_fingers_real_t t296 = t282 - t295;
+    const two_fingers_real_t t297 = t260 * t294 + t250 * t296 + (t252 * parameters[YZ5]
+        + (parameters[XY5] * t257 + parameters[YY5] * t246));
+    const two_fingers_real_t t298 = t292 + (t289 - t297);
+    const two_fingers_real_t t299 = t29 * (t2 * t288 + t3 * t298 + TWO_FINGERS_C(0.045) * t266);
+    const two_fingers_real_t t300 = t32 * (t3 * t288 - t2 * t298) + t299 + t267;
+    const two_fingers_real_t t301 = TWO_FINGERS_C(0.4166666666666667) * t300;
+    const two_fingers_real_t t302 = two_fingers_held(TWO_FINGERS_C(2.4) * t222);
+    const two_fingers_real_t t303 = parameters[MX5] * t254 + parameters[MY5] * t236;
+    const two_fingers_real_t t304 = t252 * parameters[ZZ5] + (parameters[YZ5] * t246
+        + parameters[XZ5] * t257);
+    const two_fingers_real_t t305 = t240 * parameters[XY5] + t242 * t293;
+    const two_fingers_real_t t306 = t240 * t285 + t242 * parameters[XY5];
+    const two_fingers_real_t t307 = t303 + (t260 * t305 + t250 * t306 + t304) + TWO_FINGERS_C(0.045) * t262;
+    const two_fingers_real_t t308 = TWO_FINGERS_C(1.6666666666666667) * t307;
+    const two_fingers_real_t t309 = t71 * t222;
+    const two_fingers_real_t t310 = two_fingers_held(TWO_FINGERS_C(0.6) * t309);
+    const two_fingers_real_t t311 = TWO_FINGERS_C(2.0) * t305; /* link right_2: derivatives */
+    const two_fingers_real_t t312 = TWO_FINGERS_C(2.0) * t306;
+    const two_fingers_real_t t313 = TWO_FINGERS_C(1.6666666666666667) * (t303 + (t242 * t311 + t240 * t312
+        + t304));
+    const two_fingers_real_t t314 = t222 * (t7 * t71 - t65);
+    const two_fingers_real_t t315 = two_fingers_held(TWO_FINGERS_C(-0.6) * t314);
+    ddq_by_q[4] = t310 * t308 - t302 * t301 + t315 * t313;
+    const two_fingers_real_t t316 = t81 * t222;
+    const two_fingers_real_t t317 = two_fingers_held(TWO_FINGERS_C(2.4) * t316);
+    const two_fingers_real_t t318 = t81 * t309;
+    const two_fingers_real_t t319 = two_fingers_held(TWO_FINGERS_C(0.6) * t318);
+    const two_fingers_real_t t320 = t81 * t314;
+    const two_fingers_real_t t321 = two_fingers_held(TWO_FINGERS_C(-0.6) * t320);
+    ddq_by_q[9] = t319 * t308 - t317 * t301 + t321 * t313;
+    const two_fingers_real_t t322 = t222 * (t75 + t18 * t81);
+    const two_fingers_real_t t323 = two_fingers_held(TWO_FINGERS_C(2.4) * t322);
+    const two_fingers_real_t t324 = two_fingers_held(TWO_FINGERS_C(0.6) * (t75 * t309 + t18 * t318));
+    const two_fingers_real_t t325 = two_fingers_held(TWO_FINGERS_C(-0.6) * (t75 * t314 + t18 * t320));
+    ddq_by_q[14] = t324 * t308 - t323 * t301 + t325 * t313;
+    const two_fingers_real_t t326 = two_fingers_held(TWO_FINGERS_C(2.4) * t309);
+    const two_fingers_real_t t327 = two_fingers_held(TWO_FINGERS_C(0.6) * (t70 + t71 * t309));
+    const two_fingers_real_t t328 = t7 * t70 + t71 * t314;
+    const two_fingers_real_t t329 = two_fingers_held(TWO_FINGERS_C(-0.6) * t328);
+    ddq_by_q[19] = t327 * t308 - t326 * t301 + t329 * t313;
+    const two_fingers_real_t t330 = two_fingers_held(TWO_FINGERS_C(-2.4) * t314);
+    const two_fingers_real_t t331 = two_fingers_held(TWO_FINGERS_C(0.6) * (t6 - t65 * t314 + t7 * t328));
+    ddq_by_q[24] = t329 * t308 - t330 * t301 + t331 * t313;
+    const two_fingers_real_t t332 = TWO_FINGERS_C(2.0) * t264 + parameters[MZ5] * t250;
+    const two_fingers_real_t t333 = TWO_FINGERS_C(2.0) * t265 - parameters[MZ5] * t260;
+    const two_fingers_real_t t334 = t2 * t332 + t3 * t333;
+    const two_fingers_real_t t335 = t29 * (t3 * t332 - t2 * t333) - t32 * t334;
+    const two_fingers_real_t t336 = parameters[MY5] * t260 - parameters[MX5] * t250;
+    const two_fingers_real_t
+        t337 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t336
+        + TWO_FINGERS_C(0.17364817766693028) * t335)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t336
+        + TWO_FINGERS_C(-0.984807753012208) * t335);
+    const two_fingers_real_t t338 = t284 - parameters[ZZ5];
+    const two_fingers_real_t t339 = t242 * t338 - t103 * parameters[YZ5];
+    const two_fingers_real_t t340 = TWO_FINGERS_C(2.0) * t339 - (parameters[XY5] * t250
+        + parameters[XX5] * t260);
+    const two_fingers_real_t t341 = t103 * parameters[XZ5] + t240 * t338;
+    const two_fingers_real_t t342 = TWO_FINGERS_C(2.0) * t341 - (parameters[XY5] * t260
+        + parameters[YY5] * t250);
+    const two_fingers_real_t t343 = t29 * (TWO_FINGERS_C(0.045) * t336 + (t2 * t340 + t3 * t342));
+    const two_fingers_real_t t344 = t32 * (t3 * t340 - t2 * t342) + t343 + t337;
+    const two_fingers_real_t t345 = TWO_FINGERS_C(0.4166666666666667) * t344;
+    const two_fingers_real_t t346 = t281 + t295;
+    const two_fingers_real_t t347 = TWO_FINGERS_C(-2.0) * t346;
+    const two_fingers_real_t t348 = t347 + (parameters[XZ5] * t260 + parameters[YZ5] * t250)
+        + TWO_FINGERS_C(0.045) * t334;
+    const two_fingers_real_t t349 = TWO_FINGERS_C(1.6666666666666667) * t348;
+    const two_fingers_real_t t350 = TWO_FINGERS_C(-1.5e3) * parameters[FV5];
+    ddq_by_dq[4] = t349 * t310 - t345 * t302 + t350 * t315;
+    ddq_by_dq[9] = t349 * t319 - t345 * t317 + t350 * t321;
+    ddq_by_dq[14] = t349 * t324 - t345 * t323 + t350 * t325;
+    ddq_by_dq[19] = t349 * t327 - t345 * t326 + t350 * t329;
+    ddq_by_dq[24] = t349 * t329 - t345 * t330 + t350 * t331;
+    ddq_by_input[4] = t315;
+    ddq_by_input[9] = t321;
+    ddq_by_input[14] = t325;
+    ddq_by_input[19] = t329;
+    ddq_by_input[24] = t331;
+    const two_fingers_real_t t351 = parameters[M5] * t273 + (parameters[MX5] * t290 - parameters[MY5] * t278
+        - t252 * parameters[MZ5]);
+    const two_fingers_real_t t352 = t32 * t223;
+    const two_fingers_real_t t353 = t129 + t352;
+    const two_fingers_real_t t354 = t98 - t226;
+    const two_fingers_real_t t355 = t144 + parameters[YY4] * t271 - parameters[XY4] * (t129 + t353)
+        + parameters[YZ4] * t354;
+    const two_fingers_real_t t356 = t146 + t355 + (parameters[MZ4] * t231 + parameters[MX4] * t269)
+        + (t3 * t280 - t2 * t292 + TWO_FINGERS_C(0.045) * t351);
     /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t243 = t2 * (t237 - t233) - t3 * (t240 + t242);
-    const two_fingers_real_t t244 = t3 * t243;
-    const two_fingers_real_t t245 = t235 * parameters[MZ5] + t104 * parameters[MY5];
-    const two_fingers_real_t t246 = t104 * parameters[MX5] - t232 * parameters[MZ5];
-    const two_fingers_real_t t247 = t3 * t245 + t2 * t246;
-    const two_fingers_real_t t248 = TWO_FINGERS_C(0.045) * t247;
-    const two_fingers_real_t t249 = TWO_FINGERS_C(-0.045) * dq[3]; /* link right_2: velocity of its origin */
-    const two_fingers_real_t t250 = t32 * t249; /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t251 = TWO_FINGERS_C(0.045) * t86; /* link right_2: velocity of its origin */
-    const two_fingers_real_t t252 = parameters[MZ5] * t251; /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t253 = t248 + (t250 + t252);
-    const two_fingers_real_t t254 = t86 * parameters[XZ4];
-    const two_fingers_real_t t255 = dq[3] * parameters[XY4];
-    const two_fingers_real_t t256 = t254 - t255 + (t242 + t244 + t248 - t253);
-    const two_fingers_real_t t257 = t98 * parameters[YZ4];
-    const two_fingers_real_t t258 = t255 - t257 + (t250 - (t240 + t244) - t253);
-    const two_fingers_real_t t259 = t2 * t243;
-    const two_fingers_real_t t260 = TWO_FINGERS_C(0.5) * (parameters[ZZ4] + (parameters[XX4]
+    const two_fingers_real_t t357 = t2 * (t286 - t294) - t3 * (t283 + t296);
+    const two_fingers_real_t t358 = t3 * t357;
+    const two_fingers_real_t t359 = t3 * t265 + t2 * t264;
+    const two_fingers_real_t t360 = TWO_FINGERS_C(0.045) * t359;
+    const two_fingers_real_t t361 = TWO_FINGERS_C(-0.045) * dq[3]; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t362 = t30 * t361; /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t363 = TWO_FINGERS_C(0.045) * t85; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t364 = parameters[MZ5] * t363; /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t365 = t360 + (t362 + t364);
+    const two_fingers_real_t t366 = t85 * parameters[XZ4];
+    const two_fingers_real_t t367 = dq[3] * parameters[XY4];
+    const two_fingers_real_t t368 = t366 - t367 + (t296 + t358 + t360 - t365);
+    const two_fingers_real_t t369 = TWO_FINGERS_C(2.0) * t85;
+    const two_fingers_real_t t370 = t2 * t357;
+    const two_fingers_real_t t371 = TWO_FINGERS_C(0.5) * (parameters[ZZ4] + (parameters[XX4]
         + parameters[YY4]));
-    const two_fingers_real_t t261 = t260 - parameters[YY4];
-    const two_fingers_real_t t262 = t86 * parameters[YZ4] + dq[3] * t261 + (t259 - t237);
-    const two_fingers_real_t t263 = t2 * t245 - t3 * t246;
-    const two_fingers_real_t t264 = parameters[XX4] - t260;
-    const two_fingers_real_t t265 = dq[3] * t264 - t98 * parameters[XZ4] + (t233 + t259
-        + (TWO_FINGERS_C(0.045) * t263 - t37 * t249));
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t266 = t31 * (t31 * (t258 - t256) + t34 * (t262 + t265));
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t267 = t86 * parameters[MZ4] - dq[3] * parameters[MY4] - t247;
-    const two_fingers_real_t t268 = t98 * parameters[MZ4] - dq[3] * parameters[MX4] + (t263
-        + parameters[M5] * t249);
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t269 = TWO_FINGERS_C(0.07) * (t34 * t267 - t31 * t268);
-    const two_fingers_real_t t270 = t31 * t267 + t34 * t268;
-    const two_fingers_real_t t271 = t232 * parameters[MY5] + t235 * parameters[MX5];
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t272 = t98 * parameters[MY4] - t86 * parameters[MX4] + (t271
-        - parameters[M5] * t251);
-    /* link right_1: inertia, momentum beyond */
+    const two_fingers_real_t t372 = t371 - parameters[YY4];
+    const two_fingers_real_t t373 = t85 * parameters[YZ4] + dq[3] * t372 + (t370 - t286);
+    const two_fingers_real_t t374 = TWO_FINGERS_C(-2.0) * t97;
+    const two_fingers_real_t t375 = t369 * t368 + t374 * t373 + (t127 * t66 + (t28 * t270 - t31 * t352));
+    const two_fingers_real_t t376 = parameters[XX4] * t353 - t140 - parameters[XY4] * t272
+        + parameters[XZ4] * t234;
+    const two_fingers_real_t t377 = t142 + t376 + (parameters[MY4] * t269 - parameters[MZ4] * t233)
+        + (t3 * t292 + t2 * t280);
+    const two_fingers_real_t t378 = t2 * t265 - t3 * t264;
+    const two_fingers_real_t t379 = parameters[XX4] - t371;
+    const two_fingers_real_t t380 = dq[3] * t379 - t97 * parameters[XZ4] + (t294 + t370
+        + (TWO_FINGERS_C(0.045) * t378 - t35 * t361));
+    const two_fingers_real_t t381 = t97 * parameters[YZ4];
+    const two_fingers_real_t t382 = t367 - t381 + (t362 - (t283 + t358) - t365);
+    const two_fingers_real_t t383 = t369 * t380 + t374 * t382 + (t31 * t270 - t27 * t352 - t127 * t67);
+    const two_fingers_real_t t384 = t32 * (t356 + (t375 - t38 * t231)) + t29 * (t377 + (t383 + t38 * t233));
+    const two_fingers_real_t t385 = parameters[M4] * t233 - (t115 - parameters[MX4] * t234
+        + parameters[MZ4] * t352);
+    const two_fingers_real_t t386 = t97 * parameters[MY4] - t85 * parameters[MX4] + (t249
+        - parameters[M5] * t363);
+    const two_fingers_real_t t387 = t374 * t386 + t40 * t233 + (t127 * t34 - t38 * t352);
+    const two_fingers_real_t t388 = t29 * (t385 - (t2 * t259 - t3 * t248) - t387);
+    const two_fingers_real_t t389 = parameters[M4] * t231 + (t111 - parameters[MY4] * t354
+        - parameters[MZ4] * t270);
+    const two_fingers_real_t t390 = t369 * t386 - t40 * t231 + (t38 * t270 - t127 * t36);
+    const two_fingers_real_t t391 = t32 * (t389 + (t3 * t259 + t2 * t248) + t390);
+    const two_fingers_real_t t392 = t388 - t391;
+    const two_fingers_real_t t393 = t97 * parameters[MZ4] - dq[3] * parameters[MX4] + (t378
+        + parameters[M5] * t361);
+    const two_fingers_real_t t394 = t85 * parameters[MZ4] - dq[3] * parameters[MY4] - t359;
+    const two_fingers_real_t t395 = t369 * t393 + t374 * t394 + (t36 * t352 - t34 * t270);
     const two_fingers_real_t
-        t273 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t270
-        + TWO_FINGERS_C(-0.17364817766693028) * t272)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t270
-        + TWO_FINGERS_C(0.984807753012208) * t272);
-    const two_fingers_real_t t274 = (t44 - t45) * (TWO_FINGERS_C(0.03446827135542729) * dq[0]) - (t41
-        + t43) * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
-    const two_fingers_real_t t275 = TWO_FINGERS_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
+        t396 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t392
+        + TWO_FINGERS_C(0.984807753012208) * t395)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t392
+        + TWO_FINGERS_C(0.17364817766693028) * t395);
+    const two_fingers_real_t t397 = TWO_FINGERS_C(0.4166666666666667) * (t384 + t396);
+    const two_fingers_real_t t398 = t2 * t306 - t3 * t305 + (TWO_FINGERS_C(0.045) * t249 + t35 * t363);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t399 = TWO_FINGERS_C(2.0) * (t85 * t379 - t97 * parameters[XY4] + t398);
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t400 = t85 * parameters[XY4] + t97 * t372 - (t2 * t305 + t3 * t306 + t30 * t363);
+    const two_fingers_real_t t401 = TWO_FINGERS_C(2.0) * t400; /* link right_1: derivatives */
+    const two_fingers_real_t t402 = t85 * t399 - t97 * t401 + (t127 * t10 + (t66 * t270 + t67 * t352));
+    const two_fingers_real_t t403 = TWO_FINGERS_C(1.6666666666666667) * (t36 * t231 + t34 * t233 + t402);
+    const two_fingers_real_t t404 = TWO_FINGERS_C(0.09) * t85; /* link right_2: derivatives */
+    const two_fingers_real_t t405 = t2 * t312 - t3 * t311 + t4 * t404;
+    const two_fingers_real_t t406 = t2 * t311 + t3 * t312 + t30 * t404;
+    const two_fingers_real_t t407 = t85 * t405 + t97 * t406 + (t127 * t5 + (t61 * t270 + t62 * t352));
+    const two_fingers_real_t t408 = TWO_FINGERS_C(1.6666666666666667) * (t407 + (t30 * t233 + t4 * t231));
+    ddq_by_q[3] = t310 * t403 - t302 * t397 + t315 * t408;
+    ddq_by_q[8] = t319 * t403 - t317 * t397 + t321 * t408;
+    ddq_by_q[13] = t324 * t403 - t323 * t397 + t325 * t408;
+    ddq_by_q[18] = t327 * t403 - t326 * t397 + t329 * t408;
+    ddq_by_q[23] = t329 * t403 - t330 * t397 + t331 * t408;
+    const two_fingers_real_t t409 = parameters[ZZ4] - t371;
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t410 = t85 * t409 - dq[3] * parameters[YZ4] + (t3 * t339 - t2 * t341);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t411 = t32 * (TWO_FINGERS_C(2.0) * t410 + (t28 * t369 + t31 * t374));
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t412 = dq[3] * parameters[XZ4] - t97 * t409 + (t2 * t339 + t3 * t341
+        + parameters[MZ5] * t361);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t413 = t29 * (TWO_FINGERS_C(2.0) * t412 + (t31 * t369 + t27 * t374));
+    const two_fingers_real_t t414 = t29 * (TWO_FINGERS_C(-2.0) * t393 - t38 * t374)
+        + t32 * (TWO_FINGERS_C(2.0) * t394 - t38 * t369);
+    const two_fingers_real_t t415 = t34 * t369 + t36 * t374;
+    const two_fingers_real_t
+        t416 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t414
+        + TWO_FINGERS_C(-0.984807753012208) * t415)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t414
+        + TWO_FINGERS_C(-0.17364817766693028) * t415);
+    const two_fingers_real_t t417 = TWO_FINGERS_C(0.4166666666666667) * (t411 + t413 + t416);
+    const two_fingers_real_t t418 = TWO_FINGERS_C(2.0) * (t366 - t381 + (t365 - (t346 + t364)))
+        + TWO_FINGERS_C(2.0) * (t85 * t66 + t97 * t67);
+    const two_fingers_real_t t419 = TWO_FINGERS_C(-1.5e3) * parameters[FV4]
+        + TWO_FINGERS_C(1.6666666666666667) * t418;
+    /* link right_2: derivatives */
+    const two_fingers_real_t t420 = t347 + t30 * (TWO_FINGERS_C(-0.09) * dq[3])
+        + TWO_FINGERS_C(2.0) * (t85 * t61 + t97 * t62);
+    const two_fingers_real_t t421 = TWO_FINGERS_C(1.6666666666666667) * t420;
+    ddq_by_dq[3] = t419 * t310 - t417 * t302 + t421 * t315;
+    ddq_by_dq[8] = t419 * t319 - t417 * t317 + t421 * t321;
+    ddq_by_dq[13] = t419 * t324 - t417 * t323 + t421 * t325;
+    ddq_by_dq[18] = t419 * t327 - t417 * t326 + t421 * t329;
+    ddq_by_dq[23] = t419 * t329 - t417 * t330 + t421 * t331;
+    ddq_by_input[3] = t310;
+    ddq_by_input[8] = t319;
+    ddq_by_input[13] = t324;
+    ddq_by_input[18] = t327;
+    ddq_by_input[23] = t329;
+    const two_fingers_real_t t422 = t53 * t13 - t50 * t14; /* link left_2: motion */
+    const two_fingers_real_t t423 = t422 * t223;
+    const two_fingers_real_t t424 = t53 * t14 + t50 * t13;
+    const two_fingers_real_t t425 = dq[0] * t424;
+    const two_fingers_real_t t426 = t425 * t151;
+    const two_fingers_real_t t427 = t426 + t423;
+    const two_fingers_real_t t428 = t424 * t223;
+    const two_fingers_real_t t429 = dq[0] * t422;
+    const two_fingers_real_t t430 = t429 * t151;
+    const two_fingers_real_t t431 = t430 - t428;
+    const two_fingers_real_t t432 = t430 + t431;
+    const two_fingers_real_t t433 = t224 + t225;
+    const two_fingers_real_t t434 = t425 * t429;
+    const two_fingers_real_t t435 = t434 + t433;
+    const two_fingers_real_t t436 = t426 * t174 + parameters[YY3] * t427 + parameters[XY3] * t432
+        - parameters[YZ3] * t435;
+    const two_fingers_real_t t437 = t425 * t425;
+    const two_fingers_real_t t438 = TWO_FINGERS_C(-0.03) * t223;
+    const two_fingers_real_t t439 = t50 * t223;
+    const two_fingers_real_t t440 = t171 - t439;
+    const two_fingers_real_t t441 = t171 + t440;
+    const two_fingers_real_t t442 = t438 + TWO_FINGERS_C(0.05) * t441;
+    const two_fingers_real_t t443 = t168 + t224;
+    const two_fingers_real_t t444 = t167 + TWO_FINGERS_C(0.05) * t443;
+    const two_fingers_real_t t445 = t13 * t444 - t178;
+    const two_fingers_real_t t446 = parameters[MZ3] * t445;
+    const two_fingers_real_t t447 = parameters[MX3] * t442 - t446 + ((t437 - t160) * parameters[XZ3] + t436);
+    const two_fingers_real_t t448 = t429 * t429;
+    const two_fingers_real_t t449 = t437 + t448; /* link left_2: columns */
+    const two_fingers_real_t t450 = TWO_FINGERS_C(2.0) * t429;
+    const two_fingers_real_t t451 = t429 * parameters[XZ3];
+    const two_fingers_real_t t452 = t151 * parameters[XY3];
+    const two_fingers_real_t t453 = t451 + t452;
+    const two_fingers_real_t t454 = TWO_FINGERS_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
         + parameters[YY3]));
-    const two_fingers_real_t t276 = parameters[XX3] - t275;
-    const two_fingers_real_t t277 = t55 * t15 + t52 * t14; /* link left_2: motion */
-    const two_fingers_real_t t278 = dq[0] * t277;
-    const two_fingers_real_t t279 = t152 * t276 - t278 * parameters[XZ3];
-    const two_fingers_real_t t280 = t55 * t14 - t52 * t15;
-    const two_fingers_real_t t281 = dq[0] * t280;
-    const two_fingers_real_t t282 = parameters[YY3] - t275;
-    const two_fingers_real_t t283 = t281 * parameters[YZ3] + t152 * t282;
-    const two_fingers_real_t t284 = t281 * parameters[XZ3];
-    const two_fingers_real_t t285 = t152 * parameters[XY3];
-    const two_fingers_real_t t286 = t284 + t285;
-    const two_fingers_real_t t287 = t278 * parameters[YZ3];
-    const two_fingers_real_t t288 = t285 - t287;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t289 = t14 * (t283 - t279) - t15 * (t286 + t288);
-    const two_fingers_real_t t290 = t15 * t289;
-    const two_fingers_real_t t291 = t281 * parameters[MZ3] + t152 * parameters[MY3];
-    const two_fingers_real_t t292 = t152 * parameters[MX3] - t278 * parameters[MZ3];
-    const two_fingers_real_t t293 = t15 * t291 + t14 * t292;
-    const two_fingers_real_t t294 = TWO_FINGERS_C(0.05) * t293;
-    const two_fingers_real_t t295 = TWO_FINGERS_C(-0.05) * dq[1]; /* link left_2: velocity of its origin */
-    const two_fingers_real_t t296 = t53 * t295; /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t297 = TWO_FINGERS_C(0.05) * t150; /* link left_2: velocity of its origin */
-    const two_fingers_real_t t298 = parameters[MZ3] * t297; /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t299 = t294 + (t296 + t298);
-    const two_fingers_real_t t300 = t150 * parameters[XZ2];
-    const two_fingers_real_t t301 = dq[1] * parameters[XY2];
-    const two_fingers_real_t t302 = t300 - t301 + (t288 + t290 + t294 - t299);
-    const two_fingers_real_t t303 = t149 * parameters[YZ2];
-    const two_fingers_real_t t304 = t301 - t303 + (t296 - (t286 + t290) - t299);
-    const two_fingers_real_t t305 = t14 * t289;
-    const two_fingers_real_t t306 = TWO_FINGERS_C(0.5) * (parameters[ZZ2] + (parameters[XX2]
-        + parameters[YY2]));
-    const two_fingers_real_t t307 = t306 - parameters[YY2];
-    const two_fingers_real_t t308 = t150 * parameters[YZ2] + dq[1] * t307 + (t305 - t283);
-    const two_fingers_real_t t309 = t14 * t291 - t15 * t292;
-    const two_fingers_real_t t310 = parameters[XX2] - t306;
-    const two_fingers_real_t t311 = dq[1] * t310 - t149 * parameters[XZ2] + (t279 + t305
-        + (TWO_FINGERS_C(0.05) * t309 - t58 * t295));
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t312 = t52 * (t52 * (t304 - t302) + t55 * (t308 + t311));
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t313 = t150 * parameters[MZ2] - dq[1] * parameters[MY2] - t293;
-    const two_fingers_real_t t314 = t149 * parameters[MZ2] - dq[1] * parameters[MX2] + (t309
-        + parameters[M3] * t295);
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t315 = TWO_FINGERS_C(0.08) * (t55 * t313 - t52 * t314);
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t316 = parameters[MZ2] + parameters[MZ3];
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t317 = TWO_FINGERS_C(0.03) * (t52 * t313 + t55 * t314) + t315
-        + t316 * (TWO_FINGERS_C(-0.03) * dq[0]);
-    const two_fingers_real_t t318 = t273 + t269 + t274 + (t256 + t266 - t269) + (t317 + (t302 + t312 - t315));
-    const two_fingers_real_t t319 = TWO_FINGERS_C(1.5e3) * parameters[FV1]
-        + TWO_FINGERS_C(0.8333333333333334) * t318;
-    const two_fingers_real_t t320 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t223);
-    const two_fingers_real_t t321 = t83 * t223;
-    const two_fingers_real_t t322 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t321);
-    const two_fingers_real_t t323 = t278 * parameters[XY3] + t281 * t276;
-    const two_fingers_real_t t324 = t278 * t282 + t281 * parameters[XY3];
-    const two_fingers_real_t t325 = t278 * parameters[MY3] + t281 * parameters[MX3];
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t326 = t14 * t324 - t15 * t323 + (TWO_FINGERS_C(0.05) * t325 + t58 * t297);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t327 = TWO_FINGERS_C(2.0) * (t150 * t310 - t149 * parameters[XY2] + t326);
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t328 = t150 * parameters[XY2] + t149 * t307 - (t14 * t323 + t15 * t324
-        + t53 * t297);
-    const two_fingers_real_t t329 = TWO_FINGERS_C(2.0) * t328; /* link left_1: derivatives */
-    const two_fingers_real_t t330 = TWO_FINGERS_C(-0.06) * dq[0];
-    const two_fingers_real_t t331 = t55 * t327 + t52 * t329 - (t55 * t59 - t52 * t57) * t330;
-    const two_fingers_real_t t332 = TWO_FINGERS_C(1.6666666666666667) * t331;
-    const two_fingers_real_t t333 = t223 * (t77 + t19 * t83);
-    const two_fingers_real_t t334 = TWO_FINGERS_C(0.6) * t333;
-    const two_fingers_real_t t335 = TWO_FINGERS_C(2.0) * t323; /* link left_2: derivatives */
-    const two_fingers_real_t t336 = TWO_FINGERS_C(2.0) * t324;
-    const two_fingers_real_t t337 = TWO_FINGERS_C(0.1) * t150;
-    const two_fingers_real_t t338 = t14 * t336 - t15 * t335 + t16 * t337;
-    const two_fingers_real_t t339 = t14 * t335 + t15 * t336 + t53 * t337;
-    const two_fingers_real_t t340 = t55 * t338 - t52 * t339 - (t55 * t16 - t52 * t53) * t330;
-    const two_fingers_real_t t341 = TWO_FINGERS_C(1.6666666666666667) * t340;
-    const two_fingers_real_t t342 = t73 * t223;
-    const two_fingers_real_t t343 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t342);
-    const two_fingers_real_t t344 = t232 * parameters[XY5] + t235 * t230;
-    const two_fingers_real_t t345 = t232 * t236 + t235 * parameters[XY5];
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t346 = t2 * t345 - t3 * t344 + (TWO_FINGERS_C(0.045) * t271 + t37 * t251);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t347 = TWO_FINGERS_C(2.0) * (t86 * t264 - t98 * parameters[XY4] + t346);
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t348 = t86 * parameters[XY4] + t98 * t261 - (t2 * t344 + t3 * t345 + t32 * t251);
-    const two_fingers_real_t t349 = TWO_FINGERS_C(2.0) * t348; /* link right_1: derivatives */
-    const two_fingers_real_t t350 = TWO_FINGERS_C(-0.01215537243668512) * dq[0];
-    const two_fingers_real_t t351 = TWO_FINGERS_C(-0.06893654271085457) * dq[0];
-    const two_fingers_real_t t352 = t34 * t347 + t31 * t349 - (TWO_FINGERS_C(0.17364817766693028) * t70 * t350
-        + TWO_FINGERS_C(0.984807753012208) * t70 * t351);
-    const two_fingers_real_t t353 = TWO_FINGERS_C(1.6666666666666667) * t352;
-    const two_fingers_real_t t354 = t332 * t322 - t319 * t320 + t341 * t334 + t353 * t343;
-    const two_fingers_real_t t355 = t223 * (t7 * t73 - t67);
-    const two_fingers_real_t t356 = TWO_FINGERS_C(-0.6) * t355;
-    const two_fingers_real_t t357 = TWO_FINGERS_C(2.0) * t344; /* link right_2: derivatives */
-    const two_fingers_real_t t358 = TWO_FINGERS_C(2.0) * t345;
-    const two_fingers_real_t t359 = TWO_FINGERS_C(0.09) * t86;
-    const two_fingers_real_t t360 = t2 * t358 - t3 * t357 + t4 * t359;
-    const two_fingers_real_t t361 = t2 * t357 + t3 * t358 + t32 * t359;
-    const two_fingers_real_t t362 = t34 * t360 - t31 * t361 - (TWO_FINGERS_C(0.17364817766693028) * t65 * t350
-        + TWO_FINGERS_C(0.984807753012208) * t65 * t351);
-    const two_fingers_real_t t363 = TWO_FINGERS_C(1.6666666666666667) * t362;
-    ddq_by_dq[0] = t354 + t363 * t356;
-    const two_fingers_real_t t364 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t321);
-    const two_fingers_real_t t365 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t82 + t83 * t321));
-    const two_fingers_real_t t366 = t19 * t82 + t83 * t333;
-    const two_fingers_real_t t367 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t366);
-    const two_fingers_real_t t368 = t83 * t342;
-    const two_fingers_real_t t369 = two_fingers_bounded(TWO_FINGERS_C(0.6) * t368);
-    const two_fingers_real_t t370 = t332 * t365 - t319 * t364 + t341 * t367 + t353 * t369;
-    const two_fingers_real_t t371 = t83 * t355;
-    const two_fingers_real_t t372 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * t371);
-    ddq_by_dq[5] = t370 + t363 * t372;
-    const two_fingers_real_t t373 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t333);
-    const two_fingers_real_t t374 = TWO_FINGERS_C(0.6) * (t18 + t77 * t333 + t19 * t366);
-    const two_fingers_real_t t375 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t77 * t342 + t19 * t368));
-    const two_fingers_real_t t376 = t332 * t367 - t319 * t373 + t341 * t374 + t353 * t375;
-    const two_fingers_real_t t377 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * (t77 * t355 + t19 * t371));
-    ddq_by_dq[10] = t376 + t363 * t377;
-    const two_fingers_real_t t378 = two_fingers_bounded(TWO_FINGERS_C(2.4) * t342);
-    const two_fingers_real_t t379 = two_fingers_bounded(TWO_FINGERS_C(0.6) * (t72 + t73 * t342));
-    const two_fingers_real_t t380 = t332 * t369 - t319 * t378 + t341 * t375 + t353 * t379;
-    const two_fingers_real_t t381 = t7 * t72 + t73 * t355;
-    const two_fingers_real_t t382 = two_fingers_bounded(TWO_FINGERS_C(-0.6) * t381);
-    ddq_by_dq[15] = t380 + t363 * t382;
-    const two_fingers_real_t t383 = two_fingers_bounded(TWO_FINGERS_C(-2.4) * t355);
-    const two_fingers_real_t t384 = t332 * t372 - t319 * t383 + t341 * t377 + t353 * t382;
-    const two_fingers_real_t t385 = TWO_FINGERS_C(0.6) * (t6 - t67 * t355 + t7 * t381);
-    ddq_by_dq[20] = t384 + t363 * t385;
-    ddq_by_input[0] = t320;
-    ddq_by_input[5] = t364;
-    ddq_by_input[10] = t373;
-    ddq_by_input[15] = t378;
-    ddq_by_input[20] = t383;
-    const two_fingers_real_t t386 = t277 * t224;
-    const two_fingers_real_t t387 = t281 * t152; /* link left_2: motion */
-    const two_fingers_real_t t388 = t387 - t386;
-    const two_fingers_real_t t389 = t280 * t224;
-    const two_fingers_real_t t390 = t278 * t152;
-    const two_fingers_real_t t391 = t390 + t389;
-    const two_fingers_real_t t392 = t390 + t391;
-    const two_fingers_real_t t393 = t225 + t226;
-    const two_fingers_real_t t394 = t278 * t281;
-    const two_fingers_real_t t395 = t393 - t394;
-    const two_fingers_real_t t396 = parameters[XZ3] * t395 - (t387 * t154 + parameters[XX3] * t388
-        + parameters[XY3] * t392);
-    const two_fingers_real_t t397 = t281 * t281;
-    const two_fingers_real_t t398 = TWO_FINGERS_C(-0.03) * t224;
-    const two_fingers_real_t t399 = t52 * t224;
-    const two_fingers_real_t t400 = t172 - t399;
-    const two_fingers_real_t t401 = t172 + t400;
-    const two_fingers_real_t t402 = t398 + TWO_FINGERS_C(0.05) * t401;
-    const two_fingers_real_t t403 = t169 + t225;
-    const two_fingers_real_t t404 = t168 + TWO_FINGERS_C(0.05) * t403;
-    const two_fingers_real_t t405 = t167 + t15 * t404;
-    const two_fingers_real_t t406 = parameters[MZ3] * t405;
-    const two_fingers_real_t t407 = t406 - parameters[MY3] * t402 - ((t397 - t161) * parameters[YZ3] + t396);
-    const two_fingers_real_t t408 = t387 + t388;
-    const two_fingers_real_t t409 = t394 + t393;
-    const two_fingers_real_t t410 = t390 * t175 + parameters[YY3] * t391 + parameters[XY3] * t408
-        - parameters[YZ3] * t409;
-    const two_fingers_real_t t411 = t278 * t278;
-    const two_fingers_real_t t412 = t14 * t404 - t179;
-    const two_fingers_real_t t413 = parameters[MZ3] * t412;
-    const two_fingers_real_t t414 = parameters[MX3] * t402 - t413 + ((t411 - t161) * parameters[XZ3] + t410);
-    const two_fingers_real_t t415 = t411 + t397; /* link left_2: columns */
-    const two_fingers_real_t t416 = parameters[M3] * t402 + (parameters[MX3] * t392 - parameters[MY3] * t408
-        - t415 * parameters[MZ3]);
-    const two_fingers_real_t t417 = t55 * t224;
-    const two_fingers_real_t t418 = t182 + t417;
-    const two_fingers_real_t t419 = t191 + parameters[YY2] * t400 - parameters[XY2] * (t182 + t418)
-        + parameters[YZ2] * (t169 - t225);
-    const two_fingers_real_t t420 = t195 + t419 + (t196 + parameters[MX2] * t398) + (t14 * t407 + t15 * t414
-        + TWO_FINGERS_C(0.05) * t416);
-    const two_fingers_real_t t421 = TWO_FINGERS_C(2.0) * t150;
-    const two_fingers_real_t t422 = TWO_FINGERS_C(-2.0) * t149;
-    const two_fingers_real_t t423 = t421 * t302 + t422 * t308 + (t198 * t79 + (t51 * t399 - t54 * t417));
-    const two_fingers_real_t t424 = parameters[XX2] * t418 - t183 - parameters[XY2] * t401
-        + parameters[XZ2] * t403;
-    const two_fingers_real_t t425 = t186 + t424 + (parameters[MY2] * t398 - t187) + (t14 * t414 - t15 * t407);
-    const two_fingers_real_t t426 = t421 * t311 + t422 * t304 + (t54 * t399 - t50 * t417 - t198 * t80);
-    const two_fingers_real_t t427 = t55 * (t420 + (t423 - t163 * t316)) + t52 * (t425 + (t168 * t316 + t426));
-    const two_fingers_real_t t428 = t421 * t314 + t422 * t313 + (t59 * t417 - t57 * t399);
-    const two_fingers_real_t t429 = TWO_FINGERS_C(0.4166666666666667) * (t427 + TWO_FINGERS_C(0.03) * t428);
-    const two_fingers_real_t t430 = t150 * t327 - t149 * t329 + (t198 * t22 + (t79 * t399 + t80 * t417));
-    const two_fingers_real_t t431 = TWO_FINGERS_C(1.6666666666666667) * (t163 * t59 + t168 * t57 + t430);
-    const two_fingers_real_t t432 = t150 * t338 + t149 * t339 + (t74 * t399 + t75 * t417 - t198 * t17);
-    const two_fingers_real_t t433 = TWO_FINGERS_C(1.6666666666666667) * (t168 * t53 + t163 * t16 + t432);
-    ddq_by_q[1] = t322 * t431 - t320 * t429 + t334 * t433;
-    ddq_by_q[6] = t365 * t431 - t364 * t429 + t367 * t433;
-    ddq_by_q[11] = t367 * t431 - t373 * t429 + t374 * t433;
-    ddq_by_q[16] = t369 * t431 - t378 * t429 + t375 * t433;
-    ddq_by_q[21] = t372 * t431 - t383 * t429 + t377 * t433;
-    const two_fingers_real_t t434 = t275 - parameters[ZZ3];
-    const two_fingers_real_t t435 = t281 * t434 - t152 * parameters[YZ3];
-    const two_fingers_real_t t436 = t152 * parameters[XZ3] + t278 * t434;
-    const two_fingers_real_t t437 = parameters[ZZ2] - t306;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t438 = t150 * t437 - dq[1] * parameters[YZ2] + (t15 * t435 - t14 * t436);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t439 = t55 * (TWO_FINGERS_C(2.0) * t438 + (t51 * t421 + t54 * t422));
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t440 = dq[1] * parameters[XZ2] - t149 * t437 + (t14 * t435 + t15 * t436
-        + parameters[MZ3] * t295);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t441 = t52 * (TWO_FINGERS_C(2.0) * t440 + (t54 * t421 + t50 * t422));
-    const two_fingers_real_t t442 = t439 + t441 + TWO_FINGERS_C(-0.03) * (t57 * t421 + t59 * t422);
-    const two_fingers_real_t t443 = TWO_FINGERS_C(0.4166666666666667) * t442;
-    const two_fingers_real_t t444 = t284 + t287;
-    const two_fingers_real_t t445 = TWO_FINGERS_C(2.0) * (t300 - t303 + (t299 - (t444 + t298)))
-        + TWO_FINGERS_C(2.0) * (t150 * t79 + t149 * t80);
-    const two_fingers_real_t t446 = TWO_FINGERS_C(-1.5e3) * parameters[FV2]
-        + TWO_FINGERS_C(1.6666666666666667) * t445;
-    const two_fingers_real_t t447 = TWO_FINGERS_C(-2.0) * t444; /* link left_2: derivatives */
-    const two_fingers_real_t t448 = t447 + t53 * (TWO_FINGERS_C(-0.1) * dq[1])
-        + TWO_FINGERS_C(2.0) * (t150 * t74 + t149 * t75);
-    const two_fingers_real_t t449 = TWO_FINGERS_C(1.6666666666666667) * t448;
-    ddq_by_dq[1] = t446 * t322 - t443 * t320 + t449 * t334;
-    ddq_by_dq[6] = t446 * t365 - t443 * t364 + t449 * t367;
-    ddq_by_dq[11] = t446 * t367 - t443 * t373 + t449 * t374;
-    ddq_by_dq[16] = t446 * t369 - t443 * t378 + t449 * t375;
-    ddq_by_dq[21] = t446 * t372 - t443 * t383 + t449 * t377;
-    ddq_by_input[1] = t322;
-    ddq_by_input[6] = t365;
-    ddq_by_input[11] = t367;
-    ddq_by_input[16] = t369;
-    ddq_by_input[21] = t372;
-    const two_fingers_real_t t450 = TWO_FINGERS_C(2.0) * t281;
-    const two_fingers_real_t t451 = TWO_FINGERS_C(2.0) * t278;
-    const two_fingers_real_t t452 = t450 * t286 + t451 * t283 - (t415 * parameters[XZ3]
-        + (parameters[XX3] * t389 + parameters[XY3] * t386));
-    const two_fingers_real_t t453 = t414 + (t413 + t452);
-    const two_fingers_real_t t454 = t450 * t279 + t451 * t288 + (t415 * parameters[YZ3]
-        + (parameters[XY3] * t389 + parameters[YY3] * t386));
-    const two_fingers_real_t t455 = t407 - (t406 - t454);
-    const two_fingers_real_t t456 = t450 * t292 + t451 * t291 + (parameters[MY3] * t389
-        - parameters[MX3] * t386);
-    const two_fingers_real_t t457 = t52 * (t14 * t453 - t15 * t455 + TWO_FINGERS_C(0.05) * t456);
-    const two_fingers_real_t t458 = t55 * (t15 * t453 + t14 * t455) + t457 + TWO_FINGERS_C(0.03) * t456;
-    const two_fingers_real_t t459 = TWO_FINGERS_C(0.4166666666666667) * t458;
-    const two_fingers_real_t t460 = parameters[MZ3] * t386;
-    const two_fingers_real_t t461 = parameters[M3] * t405;
-    const two_fingers_real_t t462 = t461 + (parameters[MX3] * t395 - (t411 + t161) * parameters[MY3] - t460);
-    const two_fingers_real_t t463 = t462 + (t451 * t325 - t461 + (t460 - t415 * parameters[MY3]));
-    const two_fingers_real_t t464 = parameters[MZ3] * t389;
-    const two_fingers_real_t t465 = parameters[M3] * t412;
-    const two_fingers_real_t t466 = (t397 + t161) * parameters[MX3] + parameters[MY3] * t409 + t464 - t465;
-    const two_fingers_real_t t467 = t466 + (t465 - t450 * t325 + (t415 * parameters[MX3] - t464));
-    const two_fingers_real_t t468 = parameters[MX3] * t412 + parameters[MY3] * t405;
-    const two_fingers_real_t t469 = t415 * parameters[ZZ3] + (parameters[YZ3] * t386
-        + parameters[XZ3] * t389);
-    const two_fingers_real_t t470 = t468 + (t450 * t323 + t451 * t324 + t469)
-        + TWO_FINGERS_C(0.05) * (t14 * t463 + t15 * t467);
-    const two_fingers_real_t t471 = TWO_FINGERS_C(1.6666666666666667) * t470;
-    const two_fingers_real_t t472 = TWO_FINGERS_C(1.6666666666666667) * (t468 + (t281 * t335 + t278 * t336
-        + t469));
-    ddq_by_q[2] = t322 * t471 - t320 * t459 + t334 * t472;
-    ddq_by_q[7] = t365 * t471 - t364 * t459 + t367 * t472;
-    ddq_by_q[12] = t367 * t471 - t373 * t459 + t374 * t472;
-    ddq_by_q[17] = t369 * t471 - t378 * t459 + t375 * t472;
-    ddq_by_q[22] = t372 * t471 - t383 * t459 + t377 * t472;
-    const two_fingers_real_t t473 = TWO_FINGERS_C(2.0) * t435 - (parameters[XY3] * t451
+    const two_fingers_real_t t455 = parameters[YY3] - t454;
+    const two_fingers_real_t t456 = t429 * parameters[YZ3] + t151 * t455;
+    const two_fingers_real_t t457 = TWO_FINGERS_C(2.0) * t425;
+    const two_fingers_real_t t458 = t450 * t453 + t457 * t456 - (t449 * parameters[XZ3]
+        + (parameters[XX3] * t423 + parameters[XY3] * t428));
+    const two_fingers_real_t t459 = t447 + (t446 + t458);
+    const two_fingers_real_t t460 = t426 + t427;
+    const two_fingers_real_t t461 = t433 - t434;
+    const two_fingers_real_t t462 = parameters[XZ3] * t461 - (t430 * t153 + parameters[XX3] * t431
+        + parameters[XY3] * t460);
+    const two_fingers_real_t t463 = t166 + t14 * t444;
+    const two_fingers_real_t t464 = parameters[MZ3] * t463;
+    const two_fingers_real_t t465 = t464 - parameters[MY3] * t442 - ((t448 - t160) * parameters[YZ3] + t462);
+    const two_fingers_real_t t466 = parameters[XX3] - t454;
+    const two_fingers_real_t t467 = t151 * t466 - t425 * parameters[XZ3];
+    const two_fingers_real_t t468 = t425 * parameters[YZ3];
+    const two_fingers_real_t t469 = t452 - t468;
+    const two_fingers_real_t t470 = t450 * t467 + t457 * t469 + (t449 * parameters[YZ3]
+        + (parameters[XY3] * t423 + parameters[YY3] * t428));
+    const two_fingers_real_t t471 = t465 - (t464 - t470);
+    const two_fingers_real_t t472 = t151 * parameters[MX3] - t425 * parameters[MZ3];
+    const two_fingers_real_t t473 = t429 * parameters[MZ3] + t151 * parameters[MY3];
+    const two_fingers_real_t t474 = t450 * t472 + t457 * t473 + (parameters[MY3] * t423
+        - parameters[MX3] * t428);
+    const two_fingers_real_t t475 = t50 * (t13 * t459 - t14 * t471 + TWO_FINGERS_C(0.05) * t474);
+    const two_fingers_real_t t476 = t53 * (t14 * t459 + t13 * t471) + t475 + TWO_FINGERS_C(0.03) * t474;
+    const two_fingers_real_t t477 = TWO_FINGERS_C(0.4166666666666667) * t476;
+    const two_fingers_real_t t478 = parameters[MZ3] * t428;
+    const two_fingers_real_t t479 = parameters[M3] * t463;
+    const two_fingers_real_t t480 = t479 + (parameters[MX3] * t461 - (t437 + t160) * parameters[MY3] - t478);
+    const two_fingers_real_t t481 = t425 * parameters[MY3] + t429 * parameters[MX3];
+    const two_fingers_real_t t482 = t480 + (t457 * t481 - t479 + (t478 - t449 * parameters[MY3]));
+    const two_fingers_real_t t483 = parameters[MZ3] * t423;
+    const two_fingers_real_t t484 = parameters[M3] * t445;
+    const two_fingers_real_t t485 = (t448 + t160) * parameters[MX3] + parameters[MY3] * t435 + t483 - t484;
+    const two_fingers_real_t t486 = t485 + (t484 - t450 * t481 + (t449 * parameters[MX3] - t483));
+    const two_fingers_real_t t487 = parameters[MX3] * t445 + parameters[MY3] * t463;
+    const two_fingers_real_t t488 = t449 * parameters[ZZ3] + (parameters[YZ3] * t428
+        + parameters[XZ3] * t423);
+    const two_fingers_real_t t489 = t425 * parameters[XY3] + t429 * t466;
+    const two_fingers_real_t t490 = t425 * t455 + t429 * parameters[XY3];
+    const two_fingers_real_t t491 = t487 + (t450 * t489 + t457 * t490 + t488)
+        + TWO_FINGERS_C(0.05) * (t13 * t482 + t14 * t486);
+    const two_fingers_real_t t492 = TWO_FINGERS_C(1.6666666666666667) * t491;
+    const two_fingers_real_t t493 = two_fingers_held(TWO_FINGERS_C(0.6) * t316);
+    const two_fingers_real_t t494 = TWO_FINGERS_C(2.0) * t489; /* link left_2: derivatives */
+    const two_fingers_real_t t495 = TWO_FINGERS_C(2.0) * t490;
+    const two_fingers_real_t t496 = TWO_FINGERS_C(1.6666666666666667) * (t487 + (t429 * t494 + t425 * t495
+        + t488));
+    const two_fingers_real_t t497 = two_fingers_held(TWO_FINGERS_C(0.6) * t322);
+    ddq_by_q[2] = t493 * t492 - t302 * t477 + t497 * t496;
+    const two_fingers_real_t t498 = two_fingers_held(TWO_FINGERS_C(0.6) * (t80 + t81 * t316));
+    const two_fingers_real_t t499 = t18 * t80 + t81 * t322;
+    const two_fingers_real_t t500 = two_fingers_held(TWO_FINGERS_C(0.6) * t499);
+    ddq_by_q[7] = t498 * t492 - t317 * t477 + t500 * t496;
+    const two_fingers_real_t t501 = two_fingers_held(TWO_FINGERS_C(0.6) * (t17 + t75 * t322 + t18 * t499));
+    ddq_by_q[12] = t500 * t492 - t323 * t477 + t501 * t496;
+    ddq_by_q[17] = t319 * t492 - t326 * t477 + t324 * t496;
+    ddq_by_q[22] = t321 * t492 - t330 * t477 + t325 * t496;
+    const two_fingers_real_t t502 = t454 - parameters[ZZ3];
+    const two_fingers_real_t t503 = t429 * t502 - t151 * parameters[YZ3];
+    const two_fingers_real_t t504 = TWO_FINGERS_C(2.0) * t503 - (parameters[XY3] * t457
         + parameters[XX3] * t450);
-    const two_fingers_real_t t474 = TWO_FINGERS_C(2.0) * t436 - (parameters[XY3] * t450
-        + parameters[YY3] * t451);
-    const two_fingers_real_t t475 = parameters[MY3] * t450 - parameters[MX3] * t451;
-    const two_fingers_real_t t476 = t52 * (TWO_FINGERS_C(0.05) * t475 + (t14 * t473 + t15 * t474));
-    const two_fingers_real_t t477 = TWO_FINGERS_C(0.03) * t475 + (t55 * (t15 * t473 - t14 * t474) + t476);
-    const two_fingers_real_t t478 = TWO_FINGERS_C(0.4166666666666667) * t477;
-    const two_fingers_real_t t479 = t14 * (TWO_FINGERS_C(2.0) * t292 + parameters[MZ3] * t451)
-        + t15 * (TWO_FINGERS_C(2.0) * t291 - parameters[MZ3] * t450);
-    const two_fingers_real_t t480 = t447 + (parameters[XZ3] * t450 + parameters[YZ3] * t451)
-        + TWO_FINGERS_C(0.05) * t479;
-    const two_fingers_real_t t481 = TWO_FINGERS_C(1.6666666666666667) * t480;
-    const two_fingers_real_t t482 = TWO_FINGERS_C(-1.5e3) * parameters[FV3];
-    ddq_by_dq[2] = t481 * t322 - t478 * t320 + t482 * t334;
-    ddq_by_dq[7] = t481 * t365 - t478 * t364 + t482 * t367;
-    ddq_by_dq[12] = t481 * t367 - t478 * t373 + t482 * t374;
-    ddq_by_dq[17] = t481 * t369 - t478 * t378 + t482 * t375;
-    ddq_by_dq[22] = t481 * t372 - t478 * t383 + t482 * t377;
-    ddq_by_input[2] = t334;
-    ddq_by_input[7] = t367;
-    ddq_by_input[12] = t374;
-    ddq_by_input[17] = t375;
-    ddq_by_input[22] = t377;
-    const two_fingers_real_t t483 = TWO_FINGERS_C(0.03446827135542729) * t92
-        + TWO_FINGERS_C(-0.00607768621834256) * t224;
-    const two_fingers_real_t t484 = TWO_FINGERS_C(0.00607768621834256) * t92
-        + TWO_FINGERS_C(0.03446827135542729) * t224;
-    const two_fingers_real_t t485 = TWO_FINGERS_C(0.984807753012208) * t483
-        + TWO_FINGERS_C(0.17364817766693028) * t484;
-    const two_fingers_real_t t486 = t91 + t31 * t485;
-    const two_fingers_real_t t487 = t90 + t486;
-    const two_fingers_real_t t488 = t96 + t34 * t485;
-    const two_fingers_real_t t489 = t99 + t227;
-    const two_fingers_real_t t490 = t488 + TWO_FINGERS_C(0.045) * t489;
-    const two_fingers_real_t t491 = t2 * t487 + t3 * t490;
-    const two_fingers_real_t t492 = parameters[MZ5] * t491;
-    const two_fingers_real_t t493 = TWO_FINGERS_C(0.17364817766693028) * t483
-        + TWO_FINGERS_C(-0.984807753012208) * t484;
-    const two_fingers_real_t t494 = t31 * t224;
-    const two_fingers_real_t t495 = t125 - t494;
-    const two_fingers_real_t t496 = t125 + t495;
-    const two_fingers_real_t t497 = t493 + TWO_FINGERS_C(0.045) * t496;
-    const two_fingers_real_t t498 = t231 * t224;
-    const two_fingers_real_t t499 = t235 * t104; /* link right_2: motion */
-    const two_fingers_real_t t500 = t499 - t498;
-    const two_fingers_real_t t501 = t234 * t224;
-    const two_fingers_real_t t502 = t232 * t104;
-    const two_fingers_real_t t503 = t502 + t501;
-    const two_fingers_real_t t504 = t502 + t503;
-    const two_fingers_real_t t505 = t227 + t228;
-    const two_fingers_real_t t506 = t232 * t235;
-    const two_fingers_real_t t507 = t505 - t506;
-    const two_fingers_real_t t508 = parameters[XZ5] * t507 - (t499 * t135 + parameters[XX5] * t500
-        + parameters[XY5] * t504);
-    const two_fingers_real_t t509 = t235 * t235;
-    const two_fingers_real_t t510 = parameters[MY5] * t497 - t492 + ((t509 - t105) * parameters[YZ5] + t508);
-    const two_fingers_real_t t511 = t2 * t490 - t3 * t487;
-    const two_fingers_real_t t512 = parameters[MZ5] * t511;
-    const two_fingers_real_t t513 = t499 + t500;
-    const two_fingers_real_t t514 = t506 + t505;
-    const two_fingers_real_t t515 = t502 * t138 + parameters[YY5] * t503 + parameters[XY5] * t513
-        - parameters[YZ5] * t514;
-    const two_fingers_real_t t516 = t232 * t232;
-    const two_fingers_real_t t517 = parameters[MX5] * t497 - t512 + ((t516 - t105) * parameters[XZ5] + t515);
-    const two_fingers_real_t t518 = t516 + t509; /* link right_2: columns */
-    const two_fingers_real_t t519 = parameters[M5] * t497 + (parameters[MX5] * t504 - parameters[MY5] * t513
-        - t518 * parameters[MZ5]);
-    const two_fingers_real_t t520 = t34 * t224;
-    const two_fingers_real_t t521 = t130 + t520;
-    const two_fingers_real_t t522 = t99 - t227;
-    const two_fingers_real_t t523 = t145 + parameters[YY4] * t495 - parameters[XY4] * (t130 + t521)
-        + parameters[YZ4] * t522;
-    const two_fingers_real_t t524 = t147 + t523 + (parameters[MZ4] * t486 + parameters[MX4] * t493)
-        + (t3 * t517 - t2 * t510 + TWO_FINGERS_C(0.045) * t519);
-    const two_fingers_real_t t525 = TWO_FINGERS_C(2.0) * t86;
-    const two_fingers_real_t t526 = TWO_FINGERS_C(-2.0) * t98;
-    const two_fingers_real_t t527 = t525 * t256 + t526 * t262 + (t128 * t68 + (t30 * t494 - t33 * t520));
-    const two_fingers_real_t t528 = parameters[XX4] * t521 - t141 - parameters[XY4] * t496
-        + parameters[XZ4] * t489;
-    const two_fingers_real_t t529 = t143 + t528 + (parameters[MY4] * t493 - parameters[MZ4] * t488)
-        + (t3 * t510 + t2 * t517);
-    const two_fingers_real_t t530 = t525 * t265 + t526 * t258 + (t33 * t494 - t29 * t520 - t128 * t69);
-    const two_fingers_real_t t531 = t34 * (t524 + (t527 - t40 * t486)) + t31 * (t529 + (t530 + t40 * t488));
-    const two_fingers_real_t t532 = parameters[M5] * t511;
-    const two_fingers_real_t t533 = parameters[MZ5] * t501;
-    const two_fingers_real_t t534 = (t509 + t105) * parameters[MX5] + parameters[MY5] * t514 + t533 - t532;
-    const two_fingers_real_t t535 = parameters[M5] * t491;
-    const two_fingers_real_t t536 = parameters[MZ5] * t498;
-    const two_fingers_real_t t537 = t535 + (parameters[MX5] * t507 - (t516 + t105) * parameters[MY5] - t536);
-    const two_fingers_real_t t538 = parameters[M4] * t488 - (t116 - parameters[MX4] * t489
-        + parameters[MZ4] * t520);
-    const two_fingers_real_t t539 = t526 * t272 + t42 * t488 + (t128 * t36 - t40 * t520);
-    const two_fingers_real_t t540 = t31 * (t538 - (t2 * t534 - t3 * t537) - t539);
-    const two_fingers_real_t t541 = parameters[M4] * t486 + (t112 - parameters[MY4] * t522
-        - parameters[MZ4] * t494);
-    const two_fingers_real_t t542 = t525 * t272 - t42 * t486 + (t40 * t494 - t128 * t38);
-    const two_fingers_real_t t543 = t34 * (t541 + (t3 * t534 + t2 * t537) + t542);
-    const two_fingers_real_t t544 = t540 - t543;
-    const two_fingers_real_t t545 = t525 * t268 + t526 * t267 + (t38 * t520 - t36 * t494);
+    const two_fingers_real_t t505 = t151 * parameters[XZ3] + t425 * t502;
+    const two_fingers_real_t t506 = TWO_FINGERS_C(2.0) * t505 - (parameters[XY3] * t450
+        + parameters[YY3] * t457);
+    const two_fingers_real_t t507 = parameters[MY3] * t450 - parameters[MX3] * t457;
+    const two_fingers_real_t t508 = t50 * (TWO_FINGERS_C(0.05) * t507 + (t13 * t504 + t14 * t506));
+    const two_fingers_real_t t509 = TWO_FINGERS_C(0.03) * t507 + (t53 * (t14 * t504 - t13 * t506) + t508);
+    const two_fingers_real_t t510 = TWO_FINGERS_C(0.4166666666666667) * t509;
+    const two_fingers_real_t t511 = t451 + t468;
+    const two_fingers_real_t t512 = TWO_FINGERS_C(-2.0) * t511;
+    const two_fingers_real_t t513 = t13 * (TWO_FINGERS_C(2.0) * t472 + parameters[MZ3] * t457)
+        + t14 * (TWO_FINGERS_C(2.0) * t473 - parameters[MZ3] * t450);
+    const two_fingers_real_t t514 = t512 + (parameters[XZ3] * t450 + parameters[YZ3] * t457)
+        + TWO_FINGERS_C(0.05) * t513;
+    const two_fingers_real_t t515 = TWO_FINGERS_C(1.6666666666666667) * t514;
+    const two_fingers_real_t t516 = TWO_FINGERS_C(-1.5e3) * parameters[FV3];
+    ddq_by_dq[2] = t515 * t493 - t510 * t302 + t516 * t497;
+    ddq_by_dq[7] = t515 * t498 - t510 * t317 + t516 * t500;
+    ddq_by_dq[12] = t515 * t500 - t510 * t323 + t516 * t501;
+    ddq_by_dq[17] = t515 * t319 - t510 * t326 + t516 * t324;
+    ddq_by_dq[22] = t515 * t321 - t510 * t330 + t516 * t325;
+    ddq_by_input[2] = t497;
+    ddq_by_input[7] = t500;
+    ddq_by_input[12] = t501;
+    ddq_by_input[17] = t324;
+    ddq_by_input[22] = t325;
+    const two_fingers_real_t t517 = parameters[M3] * t442 + (parameters[MX3] * t460 - parameters[MY3] * t432
+        - t449 * parameters[MZ3]);
+    const two_fingers_real_t t518 = t53 * t223;
+    const two_fingers_real_t t519 = t181 + t518;
+    const two_fingers_real_t t520 = t190 + parameters[YY2] * t440 - parameters[XY2] * (t181 + t519)
+        + parameters[YZ2] * (t168 - t224);
+    const two_fingers_real_t t521 = t194 + t520 + (t195 + parameters[MX2] * t438) + (t13 * t465 + t14 * t447
+        + TWO_FINGERS_C(0.05) * t517);
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t522 = t13 * (t456 - t467) - t14 * (t453 + t469);
+    const two_fingers_real_t t523 = t14 * t522;
+    const two_fingers_real_t t524 = t14 * t473 + t13 * t472;
+    const two_fingers_real_t t525 = TWO_FINGERS_C(0.05) * t524;
+    const two_fingers_real_t t526 = TWO_FINGERS_C(-0.05) * dq[1]; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t527 = t51 * t526; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t528 = TWO_FINGERS_C(0.05) * t149; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t529 = parameters[MZ3] * t528; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t530 = t525 + (t527 + t529);
+    const two_fingers_real_t t531 = t149 * parameters[XZ2];
+    const two_fingers_real_t t532 = dq[1] * parameters[XY2];
+    const two_fingers_real_t t533 = t531 - t532 + (t469 + t523 + t525 - t530);
+    const two_fingers_real_t t534 = TWO_FINGERS_C(2.0) * t149;
+    const two_fingers_real_t t535 = t13 * t522;
+    const two_fingers_real_t t536 = TWO_FINGERS_C(0.5) * (parameters[ZZ2] + (parameters[XX2]
+        + parameters[YY2]));
+    const two_fingers_real_t t537 = t536 - parameters[YY2];
+    const two_fingers_real_t t538 = t149 * parameters[YZ2] + dq[1] * t537 + (t535 - t456);
+    const two_fingers_real_t t539 = TWO_FINGERS_C(-2.0) * t148;
+    const two_fingers_real_t t540 = t534 * t533 + t539 * t538 + (t197 * t77 + (t49 * t439 - t52 * t518));
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t541 = parameters[MZ2] + parameters[MZ3];
+    const two_fingers_real_t t542 = parameters[XX2] * t519 - t182 - parameters[XY2] * t441
+        + parameters[XZ2] * t443;
+    const two_fingers_real_t t543 = t185 + t542 + (parameters[MY2] * t438 - t186) + (t13 * t447 - t14 * t465);
+    const two_fingers_real_t t544 = t13 * t473 - t14 * t472; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t545 = parameters[XX2] - t536;
+    const two_fingers_real_t t546 = dq[1] * t545 - t148 * parameters[XZ2] + (t467 + t535
+        + (TWO_FINGERS_C(0.05) * t544 - t56 * t526));
+    const two_fingers_real_t t547 = t148 * parameters[YZ2];
+    const two_fingers_real_t t548 = t532 - t547 + (t527 - (t453 + t523) - t530);
+    const two_fingers_real_t t549 = t534 * t546 + t539 * t548 + (t52 * t439 - t48 * t518 - t197 * t78);
+    const two_fingers_real_t t550 = t53 * (t521 + (t540 - t162 * t541)) + t50 * (t543 + (t167 * t541 + t549));
+    const two_fingers_real_t t551 = t148 * parameters[MZ2] - dq[1] * parameters[MX2] + (t544
+        + parameters[M3] * t526);
+    const two_fingers_real_t t552 = t149 * parameters[MZ2] - dq[1] * parameters[MY2] - t524;
+    const two_fingers_real_t t553 = t534 * t551 + t539 * t552 + (t57 * t518 - t55 * t439);
+    const two_fingers_real_t t554 = TWO_FINGERS_C(0.4166666666666667) * (t550 + TWO_FINGERS_C(0.03) * t553);
+    const two_fingers_real_t t555 = t13 * t490 - t14 * t489 + (TWO_FINGERS_C(0.05) * t481 + t56 * t528);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t556 = TWO_FINGERS_C(2.0) * (t149 * t545 - t148 * parameters[XY2] + t555);
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t557 = t149 * parameters[XY2] + t148 * t537 - (t13 * t489 + t14 * t490
+        + t51 * t528);
+    const two_fingers_real_t t558 = TWO_FINGERS_C(2.0) * t557; /* link left_1: derivatives */
+    const two_fingers_real_t t559 = t149 * t556 - t148 * t558 + (t197 * t21 + (t77 * t439 + t78 * t518));
+    const two_fingers_real_t t560 = TWO_FINGERS_C(1.6666666666666667) * (t162 * t57 + t167 * t55 + t559);
+    const two_fingers_real_t t561 = TWO_FINGERS_C(0.1) * t149; /* link left_2: derivatives */
+    const two_fingers_real_t t562 = t13 * t495 - t14 * t494 + t15 * t561;
+    const two_fingers_real_t t563 = t13 * t494 + t14 * t495 + t51 * t561;
+    const two_fingers_real_t t564 = t149 * t562 + t148 * t563 + (t72 * t439 + t73 * t518 - t197 * t16);
+    const two_fingers_real_t t565 = TWO_FINGERS_C(1.6666666666666667) * (t167 * t51 + t162 * t15 + t564);
+    ddq_by_q[1] = t493 * t560 - t302 * t554 + t497 * t565;
+    ddq_by_q[6] = t498 * t560 - t317 * t554 + t500 * t565;
+    ddq_by_q[11] = t500 * t560 - t323 * t554 + t501 * t565;
+    ddq_by_q[16] = t319 * t560 - t326 * t554 + t324 * t565;
+    ddq_by_q[21] = t321 * t560 - t330 * t554 + t325 * t565;
+    const two_fingers_real_t t566 = parameters[ZZ2] - t536;
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t567 = t149 * t566 - dq[1] * parameters[YZ2] + (t14 * t503 - t13 * t505);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t568 = t53 * (TWO_FINGERS_C(2.0) * t567 + (t49 * t534 + t52 * t539));
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t569 = dq[1] * parameters[XZ2] - t148 * t566 + (t13 * t503 + t14 * t505
+        + parameters[MZ3] * t526);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t570 = t50 * (TWO_FINGERS_C(2.0) * t569 + (t52 * t534 + t48 * t539));
+    const two_fingers_real_t t571 = t568 + t570 + TWO_FINGERS_C(-0.03) * (t55 * t534 + t57 * t539);
+    const two_fingers_real_t t572 = TWO_FINGERS_C(0.4166666666666667) * t571;
+    const two_fingers_real_t t573 = TWO_FINGERS_C(2.0) * (t531 - t547 + (t530 - (t511 + t529)))
+        + TWO_FINGERS_C(2.0) * (t149 * t77 + t148 * t78);
+    const two_fingers_real_t t574 = TWO_FINGERS_C(-1.5e3) * parameters[FV2]
+        + TWO_FINGERS_C(1.6666666666666667) * t573;
+    /* link left_2: derivatives */
+    const two_fingers_real_t t575 = t512 + t51 * (TWO_FINGERS_C(-0.1) * dq[1])
+        + TWO_FINGERS_C(2.0) * (t149 * t72 + t148 * t73);
+    const two_fingers_real_t t576 = TWO_FINGERS_C(1.6666666666666667) * t575;
+    ddq_by_dq[1] = t574 * t493 - t572 * t302 + t576 * t497;
+    ddq_by_dq[6] = t574 * t498 - t572 * t317 + t576 * t500;
+    ddq_by_dq[11] = t574 * t500 - t572 * t323 + t576 * t501;
+    ddq_by_dq[16] = t574 * t319 - t572 * t326 + t576 * t324;
+    ddq_by_dq[21] = t574 * t321 - t572 * t330 + t576 * t325;
+    ddq_by_input[1] = t493;
+    ddq_by_input[6] = t498;
+    ddq_by_input[11] = t500;
+    ddq_by_input[16] = t319;
+    ddq_by_input[21] = t321;
+    /* link right_1: inertia, momentum beyond */
+    const two_fingers_real_t t577 = t29 * (t29 * (t382 - t368) + t32 * (t373 + t380));
+    const two_fingers_real_t t578 = TWO_FINGERS_C(0.07) * (t32 * t394 - t29 * t393);
+    const two_fingers_real_t t579 = t29 * t394 + t32 * t393;
     const two_fingers_real_t
-        t546 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t544
-        + TWO_FINGERS_C(0.984807753012208) * t545)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t544
-        + TWO_FINGERS_C(0.17364817766693028) * t545);
-    const two_fingers_real_t t547 = TWO_FINGERS_C(0.4166666666666667) * (t531 + t546);
-    const two_fingers_real_t t548 = t86 * t347 - t98 * t349 + (t128 * t10 + (t68 * t494 + t69 * t520));
-    const two_fingers_real_t t549 = TWO_FINGERS_C(1.6666666666666667) * (t38 * t486 + t36 * t488 + t548);
-    const two_fingers_real_t t550 = t86 * t360 + t98 * t361 + (t128 * t5 + (t63 * t494 + t64 * t520));
-    const two_fingers_real_t t551 = TWO_FINGERS_C(1.6666666666666667) * (t550 + (t32 * t488 + t4 * t486));
-    ddq_by_q[3] = t343 * t549 - t320 * t547 + t356 * t551;
-    ddq_by_q[8] = t369 * t549 - t364 * t547 + t372 * t551;
-    ddq_by_q[13] = t375 * t549 - t373 * t547 + t377 * t551;
-    ddq_by_q[18] = t379 * t549 - t378 * t547 + t382 * t551;
-    ddq_by_q[23] = t382 * t549 - t383 * t547 + t385 * t551;
-    const two_fingers_real_t t552 = t229 - parameters[ZZ5];
-    const two_fingers_real_t t553 = t235 * t552 - t104 * parameters[YZ5];
-    const two_fingers_real_t t554 = t104 * parameters[XZ5] + t232 * t552;
-    const two_fingers_real_t t555 = parameters[ZZ4] - t260;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t556 = t86 * t555 - dq[3] * parameters[YZ4] + (t3 * t553 - t2 * t554);
+        t580 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t579
+        + TWO_FINGERS_C(-0.17364817766693028) * t386)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t579
+        + TWO_FINGERS_C(0.984807753012208) * t386);
+    const two_fingers_real_t t581 = (t42 - t43) * (TWO_FINGERS_C(0.03446827135542729) * dq[0]) - (t39
+        + t41) * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
+    /* link left_1: inertia, momentum beyond */
+    const two_fingers_real_t t582 = t50 * (t50 * (t548 - t533) + t53 * (t538 + t546));
+    const two_fingers_real_t t583 = TWO_FINGERS_C(0.08) * (t53 * t552 - t50 * t551);
+    const two_fingers_real_t t584 = TWO_FINGERS_C(0.03) * (t50 * t552 + t53 * t551) + t583
+        + t541 * (TWO_FINGERS_C(-0.03) * dq[0]);
+    const two_fingers_real_t t585 = t580 + t578 + t581 + (t368 + t577 - t578) + (t584 + (t533 + t582 - t583));
+    const two_fingers_real_t t586 = TWO_FINGERS_C(1.5e3) * parameters[FV1]
+        + TWO_FINGERS_C(0.8333333333333334) * t585;
+    const two_fingers_real_t t587 = TWO_FINGERS_C(-0.06) * dq[0];
+    /* link left_1: derivatives */
+    const two_fingers_real_t t588 = t53 * t556 + t50 * t558 - (t53 * t57 - t50 * t55) * t587;
+    const two_fingers_real_t t589 = TWO_FINGERS_C(1.6666666666666667) * t588;
+    /* link left_2: derivatives */
+    const two_fingers_real_t t590 = t53 * t562 - t50 * t563 - (t53 * t15 - t50 * t51) * t587;
+    const two_fingers_real_t t591 = TWO_FINGERS_C(1.6666666666666667) * t590;
+    const two_fingers_real_t t592 = TWO_FINGERS_C(-0.01215537243668512) * dq[0];
+    const two_fingers_real_t t593 = TWO_FINGERS_C(-0.06893654271085457) * dq[0];
     /* link right_1: derivatives */
-    const two_fingers_real_t t557 = t34 * (TWO_FINGERS_C(2.0) * t556 + (t30 * t525 + t33 * t526));
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t558 = dq[3] * parameters[XZ4] - t98 * t555 + (t2 * t553 + t3 * t554
-        + parameters[MZ5] * t249);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t559 = t31 * (TWO_FINGERS_C(2.0) * t558 + (t33 * t525 + t29 * t526));
-    const two_fingers_real_t t560 = t31 * (TWO_FINGERS_C(-2.0) * t268 - t40 * t526)
-        + t34 * (TWO_FINGERS_C(2.0) * t267 - t40 * t525);
-    const two_fingers_real_t t561 = t36 * t525 + t38 * t526;
-    const two_fingers_real_t
-        t562 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t560
-        + TWO_FINGERS_C(-0.984807753012208) * t561)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t560
-        + TWO_FINGERS_C(-0.17364817766693028) * t561);
-    const two_fingers_real_t t563 = TWO_FINGERS_C(0.4166666666666667) * (t557 + t559 + t562);
-    const two_fingers_real_t t564 = t238 + t241;
-    const two_fingers_real_t t565 = TWO_FINGERS_C(2.0) * (t254 - t257 + (t253 - (t564 + t252)))
-        + TWO_FINGERS_C(2.0) * (t86 * t68 + t98 * t69);
-    const two_fingers_real_t t566 = TWO_FINGERS_C(-1.5e3) * parameters[FV4]
-        + TWO_FINGERS_C(1.6666666666666667) * t565;
-    const two_fingers_real_t t567 = TWO_FINGERS_C(-2.0) * t564; /* link right_2: derivatives */
-    const two_fingers_real_t t568 = t567 + t32 * (TWO_FINGERS_C(-0.09) * dq[3])
-        + TWO_FINGERS_C(2.0) * (t86 * t63 + t98 * t64);
-    const two_fingers_real_t t569 = TWO_FINGERS_C(1.6666666666666667) * t568;
-    ddq_by_dq[3] = t566 * t343 - t563 * t320 + t569 * t356;
-    ddq_by_dq[8] = t566 * t369 - t563 * t364 + t569 * t372;
-    ddq_by_dq[13] = t566 * t375 - t563 * t373 + t569 * t377;
-    ddq_by_dq[18] = t566 * t379 - t563 * t378 + t569 * t382;
-    ddq_by_dq[23] = t566 * t382 - t563 * t383 + t569 * t385;
-    ddq_by_input[3] = t343;
-    ddq_by_input[8] = t369;
-    ddq_by_input[13] = t375;
-    ddq_by_input[18] = t379;
-    ddq_by_input[23] = t382;
-    const two_fingers_real_t t570 = TWO_FINGERS_C(2.0) * t232;
-    const two_fingers_real_t t571 = t537 + (t570 * t271 - t535 + (t536 - t518 * parameters[MY5]));
-    const two_fingers_real_t t572 = TWO_FINGERS_C(2.0) * t235;
-    const two_fingers_real_t t573 = t534 + (t532 - t572 * t271 + (t518 * parameters[MX5] - t533));
-    const two_fingers_real_t t574 = t2 * t571 + t3 * t573;
-    const two_fingers_real_t t575 = t31 * (t3 * t571 - t2 * t573) - t34 * t574;
-    const two_fingers_real_t t576 = t572 * t246 + t570 * t245 + (parameters[MY5] * t501
-        - parameters[MX5] * t498);
-    const two_fingers_real_t
-        t577 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t575
-        + TWO_FINGERS_C(0.984807753012208) * t576)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t575
-        + TWO_FINGERS_C(0.17364817766693028) * t576);
-    const two_fingers_real_t t578 = t572 * t240 + t570 * t237 - (t518 * parameters[XZ5]
-        + (parameters[XX5] * t501 + parameters[XY5] * t498));
-    const two_fingers_real_t t579 = t517 + (t512 + t578);
-    const two_fingers_real_t t580 = t572 * t233 + t570 * t242 + (t518 * parameters[YZ5]
-        + (parameters[XY5] * t501 + parameters[YY5] * t498));
-    const two_fingers_real_t t581 = t510 + (t492 - t580);
-    const two_fingers_real_t t582 = t31 * (t2 * t579 + t3 * t581 + TWO_FINGERS_C(0.045) * t576);
-    const two_fingers_real_t t583 = t34 * (t3 * t579 - t2 * t581) + t582 + t577;
-    const two_fingers_real_t t584 = TWO_FINGERS_C(0.4166666666666667) * t583;
-    const two_fingers_real_t t585 = parameters[MX5] * t511 + parameters[MY5] * t491;
-    const two_fingers_real_t t586 = t518 * parameters[ZZ5] + (parameters[YZ5] * t498
-        + parameters[XZ5] * t501);
-    const two_fingers_real_t t587 = t585 + (t572 * t344 + t570 * t345 + t586) + TWO_FINGERS_C(0.045) * t574;
-    const two_fingers_real_t t588 = TWO_FINGERS_C(1.6666666666666667) * t587;
-    const two_fingers_real_t t589 = TWO_FINGERS_C(1.6666666666666667) * (t585 + (t235 * t357 + t232 * t358
-        + t586));
-    ddq_by_q[4] = t343 * t588 - t320 * t584 + t356 * t589;
-    ddq_by_q[9] = t369 * t588 - t364 * t584 + t372 * t589;
-    ddq_by_q[14] = t375 * t588 - t373 * t584 + t377 * t589;
-    ddq_by_q[19] = t379 * t588 - t378 * t584 + t382 * t589;
-    ddq_by_q[24] = t382 * t588 - t383 * t584 + t385 * t589;
-    const two_fingers_real_t t590 = TWO_FINGERS_C(2.0) * t246 + parameters[MZ5] * t570;
-    const two_fingers_real_t t591 = TWO_FINGERS_C(2.0) * t245 - parameters[MZ5] * t572;
-    const two_fingers_real_t t592 = t2 * t590 + t3 * t591;
-    const two_fingers_real_t t593 = t31 * (t3 * t590 - t2 * t591) - t34 * t592;
-    const two_fingers_real_t t594 = parameters[MY5] * t572 - parameters[MX5] * t570;
-    const two_fingers_real_t
-        t595 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t594
-        + TWO_FINGERS_C(0.17364817766693028) * t593)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t594
-        + TWO_FINGERS_C(-0.984807753012208) * t593);
-    const two_fingers_real_t t596 = TWO_FINGERS_C(2.0) * t553 - (parameters[XY5] * t570
-        + parameters[XX5] * t572);
-    const two_fingers_real_t t597 = TWO_FINGERS_C(2.0) * t554 - (parameters[XY5] * t572
-        + parameters[YY5] * t570);
-    const two_fingers_real_t t598 = t31 * (TWO_FINGERS_C(0.045) * t594 + (t2 * t596 + t3 * t597));
-    const two_fingers_real_t t599 = t34 * (t3 * t596 - t2 * t597) + t598 + t595;
-    const two_fingers_real_t t600 = TWO_FINGERS_C(0.4166666666666667) * t599;
-    const two_fingers_real_t t601 = t567 + (parameters[XZ5] * t572 + parameters[YZ5] * t570)
-        + TWO_FINGERS_C(0.045) * t592;
-    const two_fingers_real_t t602 = TWO_FINGERS_C(1.6666666666666667) * t601;
-    const two_fingers_real_t t603 = TWO_FINGERS_C(-1.5e3) * parameters[FV5];
-    ddq_by_dq[4] = t602 * t343 - t600 * t320 + t603 * t356;
-    ddq_by_dq[9] = t602 * t369 - t600 * t364 + t603 * t372;
-    ddq_by_dq[14] = t602 * t375 - t600 * t373 + t603 * t377;
-    ddq_by_dq[19] = t602 * t379 - t600 * t378 + t603 * t382;
-    ddq_by_dq[24] = t602 * t382 - t600 * t383 + t603 * t385;
-    ddq_by_input[4] = t356;
-    ddq_by_input[9] = t372;
-    ddq_by_input[14] = t377;
-    ddq_by_input[19] = t382;
-    ddq_by_input[24] = t385;
+    const two_fingers_real_t t594 = t32 * t399 + t29 * t401 - (TWO_FINGERS_C(0.17364817766693028) * t68 * t592
+        + TWO_FINGERS_C(0.984807753012208) * t68 * t593);
+    const two_fingers_real_t t595 = TWO_FINGERS_C(1.6666666666666667) * t594;
+    const two_fingers_real_t t596 = t589 * t493 - t586 * t302 + t591 * t497 + t595 * t310;
+    /* link right_2: derivatives */
+    const two_fingers_real_t t597 = t32 * t405 - t29 * t406 - (TWO_FINGERS_C(0.17364817766693028) * t63 * t592
+        + TWO_FINGERS_C(0.984807753012208) * t63 * t593);
+    const two_fingers_real_t t598 = TWO_FINGERS_C(1.6666666666666667) * t597;
+    ddq_by_dq[0] = t596 + t598 * t315;
+    const two_fingers_real_t t599 = t589 * t498 - t586 * t317 + t591 * t500 + t595 * t319;
+    ddq_by_dq[5] = t599 + t598 * t321;
+    const two_fingers_real_t t600 = t589 * t500 - t586 * t323 + t591 * t501 + t595 * t324;
+    ddq_by_dq[10] = t600 + t598 * t325;
+    const two_fingers_real_t t601 = t589 * t319 - t586 * t326 + t591 * t324 + t595 * t327;
+    ddq_by_dq[15] = t601 + t598 * t329;
+    const two_fingers_real_t t602 = t589 * t321 - t586 * t330 + t591 * t325 + t595 * t329;
+    ddq_by_dq[20] = t602 + t598 * t331;
+    ddq_by_input[0] = t302;
+    ddq_by_input[5] = t317;
+    ddq_by_input[10] = t323;
+    ddq_by_input[15] = t326;
+    ddq_by_input[20] = t330;
     /* always zero */
     ddq_by_q[0] = TWO_FINGERS_C(0.0);
     ddq_by_q[5] = TWO_FINGERS_C(0.0);
     ddq_by_q[10] = TWO_FINGERS_C(0.0);
     ddq_by_q[15] = TWO_FINGERS_C(0.0);
     ddq_by_q[20] = TWO_FINGERS_C(0.0);
-    if (!two_fingers_all_bounded(ddq, 5)
-        || !two_fingers_all_bounded(ddq_by_q, 25)
-        || !two_fingers_all_bounded(ddq_by_dq, 25)
-        || !two_fingers_all_bounded(ddq_by_input, 25)) {
+    if (!two_fingers_bounded(ddq, 5)
+        || !two_fingers_bounded(ddq_by_q, 25)
+        || !two_fingers_bounded(ddq_by_dq, 25)
+        || !two_fingers_bounded(ddq_by_input, 25)) {
         two_fingers_zero(ddq, 5);
         two_fingers_zero(ddq_by_q, 25);
         two_fingers_zero(ddq_by_dq, 25);

@@ -6,7 +6,7 @@
  * Arm two_fingers, description a6b389943be5f64e.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 628 (345 mul, 283 add, 0 neg), 5 div, 8 trig, 5 other calls (sign, select and the like).
+ * Operations: 628 (345 mul, 283 add, 0 neg), 5 div, 8 trig, 7 other calls (sign, select and the like).
  *
  * @param[in]   q           [5]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [5]   [rad/s]    joint velocities; norm at most 100000
@@ -93,7 +93,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -121,22 +121,20 @@ two_fingers_status_t two_fingers_forward_dynamics_standard(
         return status;
     }
 
-    two_fingers_real_t t47, t45;
-    TWO_FINGERS_SINCOS(q[1], &t47, &t45);
-    two_fingers_real_t t13, t14;
-    TWO_FINGERS_SINCOS(q[2], &t13, &t14);
-    two_fingers_real_t t30, t28;
-    TWO_FINGERS_SINCOS(q[3], &t30, &t28);
+    two_fingers_real_t t45, t43;
+    TWO_FINGERS_SINCOS(q[1], &t45, &t43);
+    two_fingers_real_t t12, t13;
+    TWO_FINGERS_SINCOS(q[2], &t12, &t13);
+    two_fingers_real_t t28, t26;
+    TWO_FINGERS_SINCOS(q[3], &t28, &t26);
     two_fingers_real_t t2, t3;
     TWO_FINGERS_SINCOS(q[4], &t2, &t3);
-    const two_fingers_real_t t0 = two_fingers_bounded(parameters[ZZ3]
-        + TWO_FINGERS_C(9.0e2) * parameters[IA3]);
+    const two_fingers_real_t t0 = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
     if (!(t0 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t1 = two_fingers_bounded(parameters[ZZ5]
-        + TWO_FINGERS_C(9.0e2) * parameters[IA5]);
+    const two_fingers_real_t t1 = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
     if (!(t1 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
@@ -151,306 +149,298 @@ two_fingers_status_t two_fingers_forward_dynamics_standard(
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * (t8 + TWO_FINGERS_C(-2.0) * t4);
     const two_fingers_real_t t10 = parameters[ZZ4] + (parameters[ZZ5] + t9)
         + TWO_FINGERS_C(9.0e2) * parameters[IA4];
-    const two_fingers_real_t t11 = two_fingers_bounded(t10 - t5 * t7);
+    const two_fingers_real_t t11 = t10 - t5 * t7;
     if (!(t11 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t12 = t11 + TWO_FINGERS_C(-1.0e-9) * t10;
-    if (!(t12 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t15 = t14 * parameters[MX3] - t13 * parameters[MY3];
-    const two_fingers_real_t t16 = TWO_FINGERS_C(-0.05) * t15 - parameters[ZZ3];
-    const two_fingers_real_t t17 = TWO_FINGERS_C(1.0) / t0;
-    const two_fingers_real_t t18 = t16 * t17;
+    const two_fingers_real_t t14 = t13 * parameters[MX3] - t12 * parameters[MY3];
+    const two_fingers_real_t t15 = TWO_FINGERS_C(-0.05) * t14 - parameters[ZZ3];
+    const two_fingers_real_t t16 = TWO_FINGERS_C(1.0) / t0;
+    const two_fingers_real_t t17 = t15 * t16;
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t19 = TWO_FINGERS_C(0.05) * parameters[M3];
-    const two_fingers_real_t t20 = TWO_FINGERS_C(0.05) * (t19 + TWO_FINGERS_C(2.0) * t15);
-    const two_fingers_real_t t21 = parameters[ZZ2] + (parameters[ZZ3] + t20)
+    const two_fingers_real_t t18 = TWO_FINGERS_C(0.05) * parameters[M3];
+    const two_fingers_real_t t19 = TWO_FINGERS_C(0.05) * (t18 + TWO_FINGERS_C(2.0) * t14);
+    const two_fingers_real_t t20 = parameters[ZZ2] + (parameters[ZZ3] + t19)
         + TWO_FINGERS_C(9.0e2) * parameters[IA2];
-    const two_fingers_real_t t22 = two_fingers_bounded(t21 - t16 * t18);
-    if (!(t22 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t23 = t22 + TWO_FINGERS_C(-1.0e-9) * t21;
-    if (!(t23 > TWO_FINGERS_C(1.0e-12))) {
+    const two_fingers_real_t t21 = t20 - t15 * t17;
+    if (!(t21 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t24 = parameters[XX5] - parameters[YY5];
-    const two_fingers_real_t t25 = t3 * t24 - parameters[XY5] * (TWO_FINGERS_C(2.0) * t2);
-    const two_fingers_real_t t26 = t3 * t25;
-    const two_fingers_real_t t27 = parameters[XX4] + (parameters[YY5] + t26);
+    const two_fingers_real_t t22 = parameters[XX5] - parameters[YY5];
+    const two_fingers_real_t t23 = t3 * t22 - parameters[XY5] * (TWO_FINGERS_C(2.0) * t2);
+    const two_fingers_real_t t24 = t3 * t23;
+    const two_fingers_real_t t25 = parameters[XX4] + (parameters[YY5] + t24);
     /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t29 = t3 * parameters[MY5] + t2 * parameters[MX5];
+    const two_fingers_real_t t27 = t3 * parameters[MY5] + t2 * parameters[MX5];
     /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t31 = (parameters[XY4] + (parameters[XY5] + t2 * t25
-        + TWO_FINGERS_C(-0.045) * t29)) * (TWO_FINGERS_C(2.0) * t30);
-    const two_fingers_real_t t32 = t28 * (parameters[YY4] + (parameters[XX5] - t26 + t9) - t27) + t31;
-    const two_fingers_real_t t33 = parameters[MY4] + t29; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t34 = parameters[MX4] - (t4 - t8);
-    const two_fingers_real_t t35 = t28 * t34 - t30 * t33; /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t29 = (parameters[XY4] + (parameters[XY5] + t2 * t23
+        + TWO_FINGERS_C(-0.045) * t27)) * (TWO_FINGERS_C(2.0) * t28);
+    const two_fingers_real_t t30 = t26 * (parameters[YY4] + (parameters[XX5] - t24 + t9) - t25) + t29;
+    const two_fingers_real_t t31 = parameters[MY4] + t27; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t32 = parameters[MX4] - (t4 - t8);
+    const two_fingers_real_t t33 = t26 * t32 - t28 * t31; /* link right_1: column of the mass matrix */
     /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t36 = parameters[MZ4] + parameters[MZ5];
-    const two_fingers_real_t t37 = parameters[M4] + parameters[M5];
+    const two_fingers_real_t t34 = parameters[MZ4] + parameters[MZ5];
+    const two_fingers_real_t t35 = parameters[M4] + parameters[M5];
     /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t38 = TWO_FINGERS_C(0.03446827135542729) * t37
-        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.984807753012208) * t35
-        + TWO_FINGERS_C(-0.17364817766693028) * t36);
-    const two_fingers_real_t t39 = TWO_FINGERS_C(0.00607768621834256) * t37
-        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.17364817766693028) * t35
-        + TWO_FINGERS_C(0.984807753012208) * t36);
-    const two_fingers_real_t t40 = t27 + t28 * t32 + (TWO_FINGERS_C(0.03446827135542729) * t38
-        + TWO_FINGERS_C(0.00607768621834256) * t39);
+    const two_fingers_real_t t36 = TWO_FINGERS_C(0.03446827135542729) * t35
+        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.984807753012208) * t33
+        + TWO_FINGERS_C(-0.17364817766693028) * t34);
+    const two_fingers_real_t t37 = TWO_FINGERS_C(0.00607768621834256) * t35
+        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.17364817766693028) * t33
+        + TWO_FINGERS_C(0.984807753012208) * t34);
+    const two_fingers_real_t t38 = t25 + t26 * t30 + (TWO_FINGERS_C(0.03446827135542729) * t36
+        + TWO_FINGERS_C(0.00607768621834256) * t37);
     /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t41 = parameters[XX3] - parameters[YY3];
-    const two_fingers_real_t t42 = t14 * t41 - parameters[XY3] * (TWO_FINGERS_C(2.0) * t13);
-    const two_fingers_real_t t43 = t14 * t42;
-    const two_fingers_real_t t44 = parameters[XX2] + (parameters[YY3] + t43);
+    const two_fingers_real_t t39 = parameters[XX3] - parameters[YY3];
+    const two_fingers_real_t t40 = t13 * t39 - parameters[XY3] * (TWO_FINGERS_C(2.0) * t12);
+    const two_fingers_real_t t41 = t13 * t40;
+    const two_fingers_real_t t42 = parameters[XX2] + (parameters[YY3] + t41);
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t46 = t14 * parameters[MY3] + t13 * parameters[MX3];
+    const two_fingers_real_t t44 = t13 * parameters[MY3] + t12 * parameters[MX3];
     /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t48 = (parameters[XY2] + (parameters[XY3] + t13 * t42
-        + TWO_FINGERS_C(-0.05) * t46)) * (TWO_FINGERS_C(2.0) * t47);
-    const two_fingers_real_t t49 = t45 * (parameters[YY2] + (parameters[XX3] - t43 + t20) - t44) + t48;
+    const two_fingers_real_t t46 = (parameters[XY2] + (parameters[XY3] + t12 * t40
+        + TWO_FINGERS_C(-0.05) * t44)) * (TWO_FINGERS_C(2.0) * t45);
+    const two_fingers_real_t t47 = t43 * (parameters[YY2] + (parameters[XX3] - t41 + t19) - t42) + t46;
     /* link left_1: column of the mass matrix */
-    const two_fingers_real_t t50 = t45 * (parameters[MX2] + (t15 + t19)) - t47 * (parameters[MY2] + t46);
+    const two_fingers_real_t t48 = t43 * (parameters[MX2] + (t14 + t18)) - t45 * (parameters[MY2] + t44);
     /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t51 = t44 + t45 * t49
+    const two_fingers_real_t t49 = t42 + t43 * t47
         + TWO_FINGERS_C(0.03) * (TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
-        + TWO_FINGERS_C(2.0) * t50);
-    const two_fingers_real_t t52 = parameters[ZZ1] + t40 + t51 + TWO_FINGERS_C(3.6e3) * parameters[IA1];
+        + TWO_FINGERS_C(2.0) * t48);
+    const two_fingers_real_t t50 = parameters[ZZ1] + t38 + t49 + TWO_FINGERS_C(3.6e3) * parameters[IA1];
     /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t53 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
-    const two_fingers_real_t t54 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
-    const two_fingers_real_t t55 = t30 * t53 - t28 * t54 + TWO_FINGERS_C(8.673617379884035e-19) * (t30 * t4
-        - t28 * t29);
-    const two_fingers_real_t t56 = t55 * t6;
+    const two_fingers_real_t t51 = t2 * parameters[YZ5] - t3 * parameters[XZ5];
+    const two_fingers_real_t t52 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
+    const two_fingers_real_t t53 = t28 * t51 - t26 * t52 + TWO_FINGERS_C(8.673617379884035e-19) * (t28 * t4
+        - t26 * t27);
+    const two_fingers_real_t t54 = t53 * t6;
     /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t57 = t30 * (t53 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4])
-        - t28 * (parameters[YZ4] + t54);
-    const two_fingers_real_t t58 = t57 + TWO_FINGERS_C(-8.673617379884035e-19) * (t28 * t33 + t30 * t34)
-        + t55 * t7;
-    const two_fingers_real_t t59 = TWO_FINGERS_C(1.0) / t11;
-    const two_fingers_real_t t60 = t58 * t59;
+    const two_fingers_real_t t55 = t28 * (t51 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4])
+        - t26 * (parameters[YZ4] + t52);
+    const two_fingers_real_t t56 = t55 + TWO_FINGERS_C(-8.673617379884035e-19) * (t26 * t31 + t28 * t32)
+        + t53 * t7;
+    const two_fingers_real_t t57 = TWO_FINGERS_C(1.0) / t11;
+    const two_fingers_real_t t58 = t56 * t57;
     /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t61 = t13 * parameters[YZ3] - t14 * parameters[XZ3];
-    const two_fingers_real_t t62 = t13 * parameters[XZ3] + t14 * parameters[YZ3];
-    const two_fingers_real_t t63 = t47 * t61 - t45 * t62;
-    const two_fingers_real_t t64 = t63 * t17;
-    const two_fingers_real_t t65 = t52 - t55 * t56 - t58 * t60 - t63 * t64;
+    const two_fingers_real_t t59 = t12 * parameters[YZ3] - t13 * parameters[XZ3];
+    const two_fingers_real_t t60 = t12 * parameters[XZ3] + t13 * parameters[YZ3];
+    const two_fingers_real_t t61 = t45 * t59 - t43 * t60;
+    const two_fingers_real_t t62 = t61 * t16;
+    const two_fingers_real_t t63 = t50 - t53 * t54 - t56 * t58 - t61 * t62;
     /* link left_1: column of the mass matrix */
-    const two_fingers_real_t t66 = t47 * (t61 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2])
-        - t45 * (parameters[YZ2] + t62);
-    const two_fingers_real_t t67 = t66 + t63 * t18;
-    const two_fingers_real_t t68 = TWO_FINGERS_C(1.0) / t22;
-    const two_fingers_real_t t69 = t67 * t68;
-    const two_fingers_real_t t70 = two_fingers_bounded(t65 - t67 * t69);
+    const two_fingers_real_t t64 = t45 * (t59 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2])
+        - t43 * (parameters[YZ2] + t60);
+    const two_fingers_real_t t65 = t64 + t61 * t17;
+    const two_fingers_real_t t66 = TWO_FINGERS_C(1.0) / t21;
+    const two_fingers_real_t t67 = t65 * t66;
+    const two_fingers_real_t t68 = t63 - t65 * t67;
+    if (!(t68 > TWO_FINGERS_C(1.0e-12))) {
+        two_fingers_zero(out, 5);
+        return TWO_FINGERS_STATUS_PIVOT;
+    }
+    const two_fingers_real_t t69 = two_fingers_min(t11 + TWO_FINGERS_C(-1.0e-9) * t10, t21
+        + TWO_FINGERS_C(-1.0e-9) * t20);
+    const two_fingers_real_t t70 = two_fingers_min(t69, t68 + TWO_FINGERS_C(-1.0e-9) * t50);
     if (!(t70 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }
-    const two_fingers_real_t t71 = t70 + TWO_FINGERS_C(-1.0e-9) * t52;
-    if (!(t71 > TWO_FINGERS_C(1.0e-12))) {
-        two_fingers_zero(out, 5);
-        return TWO_FINGERS_STATUS_PIVOT;
-    }
-    const two_fingers_real_t t72 = t28 * dq[0]; /* link right_1: motion */
-    const two_fingers_real_t t73 = t72 * t72; /* link right_2: motion */
-    const two_fingers_real_t t74 = dq[3] * dq[3];
-    const two_fingers_real_t t75 = t73 + t74;
-    const two_fingers_real_t t76 = dq[0] * dq[0]; /* link wrist: motion */
-    const two_fingers_real_t t77 = TWO_FINGERS_C(0.034999999999999996) * t76; /* link right_1: motion */
-    const two_fingers_real_t t78 = TWO_FINGERS_C(-9.81) * t30 + t28 * t77;
-    const two_fingers_real_t t79 = TWO_FINGERS_C(0.045) * t75 + t78; /* link right_2: motion */
-    const two_fingers_real_t t80 = TWO_FINGERS_C(9.81) * t28 + t30 * t77; /* link right_1: motion */
-    const two_fingers_real_t t81 = t30 * dq[0];
-    const two_fingers_real_t t82 = t81 * t72; /* link right_2: motion */
-    const two_fingers_real_t t83 = t80 + TWO_FINGERS_C(0.045) * t82;
-    const two_fingers_real_t t84 = t3 * t79 - t2 * t83;
-    const two_fingers_real_t t85 = t3 * t72 - t2 * t81;
-    const two_fingers_real_t t86 = t85 * t85;
-    const two_fingers_real_t t87 = dq[3] + dq[4];
-    const two_fingers_real_t t88 = t87 * t87;
-    const two_fingers_real_t t89 = t3 * t81 + t2 * t72;
-    const two_fingers_real_t t90 = t89 * t85;
+    const two_fingers_real_t t71 = t26 * dq[0]; /* link right_1: motion */
+    const two_fingers_real_t t72 = t71 * t71; /* link right_2: motion */
+    const two_fingers_real_t t73 = dq[3] * dq[3];
+    const two_fingers_real_t t74 = t72 + t73;
+    const two_fingers_real_t t75 = dq[0] * dq[0]; /* link wrist: motion */
+    const two_fingers_real_t t76 = TWO_FINGERS_C(0.034999999999999996) * t75; /* link right_1: motion */
+    const two_fingers_real_t t77 = TWO_FINGERS_C(-9.81) * t28 + t26 * t76;
+    const two_fingers_real_t t78 = TWO_FINGERS_C(0.045) * t74 + t77; /* link right_2: motion */
+    const two_fingers_real_t t79 = TWO_FINGERS_C(9.81) * t26 + t28 * t76; /* link right_1: motion */
+    const two_fingers_real_t t80 = t28 * dq[0];
+    const two_fingers_real_t t81 = t80 * t71; /* link right_2: motion */
+    const two_fingers_real_t t82 = t79 + TWO_FINGERS_C(0.045) * t81;
+    const two_fingers_real_t t83 = t3 * t78 - t2 * t82;
+    const two_fingers_real_t t84 = t3 * t71 - t2 * t80;
+    const two_fingers_real_t t85 = t84 * t84;
+    const two_fingers_real_t t86 = dq[3] + dq[4];
+    const two_fingers_real_t t87 = t86 * t86;
+    const two_fingers_real_t t88 = t3 * t80 + t2 * t71;
+    const two_fingers_real_t t89 = t88 * t84;
     /* link right_2: force and moment */
-    const two_fingers_real_t t91 = parameters[M5] * t84 + (parameters[MX5] * (t88 + t86)
-        - parameters[MY5] * t90);
-    const two_fingers_real_t t92 = t2 * t79 + t3 * t83; /* link right_2: motion */
-    const two_fingers_real_t t93 = t89 * t89;
+    const two_fingers_real_t t90 = parameters[M5] * t83 + (parameters[MX5] * (t87 + t85)
+        - parameters[MY5] * t89);
+    const two_fingers_real_t t91 = t2 * t78 + t3 * t82; /* link right_2: motion */
+    const two_fingers_real_t t92 = t88 * t88;
     /* link right_2: force and moment */
-    const two_fingers_real_t t94 = parameters[M5] * t92 - (parameters[MY5] * (t88 + t93)
-        - parameters[MX5] * t90);
+    const two_fingers_real_t t93 = parameters[M5] * t91 - (parameters[MY5] * (t87 + t92)
+        - parameters[MX5] * t89);
     /* link right_2: what it passes on */
-    const two_fingers_real_t t95 = parameters[M4] * t78 + (t75 * parameters[MX4] - t82 * parameters[MY4])
-        + (t3 * t91 + t2 * t94);
-    const two_fingers_real_t t96 = t2 * t91 - t3 * t94;
-    const two_fingers_real_t t97 = t81 * t81; /* link right_2: motion */
+    const two_fingers_real_t t94 = parameters[M4] * t77 + (t74 * parameters[MX4] - t81 * parameters[MY4])
+        + (t3 * t90 + t2 * t93);
+    const two_fingers_real_t t95 = t2 * t90 - t3 * t93;
+    const two_fingers_real_t t96 = t80 * t80; /* link right_2: motion */
     /* link right_1: force and moment */
-    const two_fingers_real_t t98 = parameters[M4] * t80 + (t82 * parameters[MX4] - (t97
-        + t74) * parameters[MY4]);
-    const two_fingers_real_t t99 = t28 * t95 + t30 * (t98 - t96); /* link right_1: what it passes on */
-    const two_fingers_real_t t100 = t87 * t89; /* link right_2: motion */
-    const two_fingers_real_t t101 = TWO_FINGERS_C(2.0) * t100; /* link right_2: force and moment */
-    const two_fingers_real_t t102 = t87 * t85; /* link right_2: motion */
-    const two_fingers_real_t t103 = TWO_FINGERS_C(2.0) * t102; /* link right_2: force and moment */
-    const two_fingers_real_t t104 = parameters[MX5] * t101 + parameters[MY5] * t103 - parameters[MZ5] * (t93
-        + t86);
-    const two_fingers_real_t t105 = TWO_FINGERS_C(8.673617379884035e-19) * t76; /* link right_1: motion */
-    const two_fingers_real_t t106 = dq[3] * t81;
-    const two_fingers_real_t t107 = t105 + TWO_FINGERS_C(0.09) * t106; /* link right_2: motion */
-    const two_fingers_real_t t108 = parameters[M5] * t107 + t104; /* link right_2: force and moment */
-    const two_fingers_real_t t109 = TWO_FINGERS_C(2.0) * t106; /* link right_1: motion */
-    const two_fingers_real_t t110 = dq[3] * t72;
-    const two_fingers_real_t t111 = TWO_FINGERS_C(2.0) * t110;
+    const two_fingers_real_t t97 = parameters[M4] * t79 + (t81 * parameters[MX4] - (t96
+        + t73) * parameters[MY4]);
+    const two_fingers_real_t t98 = t26 * t94 + t28 * (t97 - t95); /* link right_1: what it passes on */
+    const two_fingers_real_t t99 = t86 * t88; /* link right_2: motion */
+    const two_fingers_real_t t100 = TWO_FINGERS_C(2.0) * t99; /* link right_2: force and moment */
+    const two_fingers_real_t t101 = t86 * t84; /* link right_2: motion */
+    const two_fingers_real_t t102 = TWO_FINGERS_C(2.0) * t101; /* link right_2: force and moment */
+    const two_fingers_real_t t103 = parameters[MX5] * t100 + parameters[MY5] * t102 - parameters[MZ5] * (t92
+        + t85);
+    const two_fingers_real_t t104 = TWO_FINGERS_C(8.673617379884035e-19) * t75; /* link right_1: motion */
+    const two_fingers_real_t t105 = dq[3] * t80;
+    const two_fingers_real_t t106 = t104 + TWO_FINGERS_C(0.09) * t105; /* link right_2: motion */
+    const two_fingers_real_t t107 = parameters[M5] * t106 + t103; /* link right_2: force and moment */
+    const two_fingers_real_t t108 = TWO_FINGERS_C(2.0) * t105; /* link right_1: motion */
+    const two_fingers_real_t t109 = dq[3] * t71;
+    const two_fingers_real_t t110 = TWO_FINGERS_C(2.0) * t109;
     /* link right_1: force and moment */
-    const two_fingers_real_t t112 = t109 * parameters[MX4] + t111 * parameters[MY4] - (t97
-        + t73) * parameters[MZ4];
-    const two_fingers_real_t t113 = parameters[M4] * t105 + t112 + t108; /* link right_2: what it passes on */
+    const two_fingers_real_t t111 = t108 * parameters[MX4] + t110 * parameters[MY4] - (t96
+        + t72) * parameters[MZ4];
+    const two_fingers_real_t t112 = parameters[M4] * t104 + t111 + t107; /* link right_2: what it passes on */
     /* link right_1: what it passes on */
     const two_fingers_real_t
-        t114 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t99
-        + TWO_FINGERS_C(0.984807753012208) * t113)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t99
-        + TWO_FINGERS_C(0.17364817766693028) * t113);
+        t113 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t98
+        + TWO_FINGERS_C(0.984807753012208) * t112)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t98
+        + TWO_FINGERS_C(0.17364817766693028) * t112);
     /* link right_2: force and moment */
-    const two_fingers_real_t t115 = parameters[XY5] * t101 - (parameters[XX5] * t102 + t102 * (parameters[ZZ5]
+    const two_fingers_real_t t114 = parameters[XY5] * t100 - (parameters[XX5] * t101 + t101 * (parameters[ZZ5]
         - parameters[YY5]));
-    const two_fingers_real_t t116 = t115 - parameters[XZ5] * t90 + parameters[YZ5] * (t88 - t86)
-        + (parameters[MZ5] * t92 - parameters[MY5] * t107);
-    const two_fingers_real_t t117 = parameters[YY5] * t100 - t100 * (parameters[XX5] - parameters[ZZ5])
-        - parameters[XY5] * t103;
-    const two_fingers_real_t t118 = t117 + parameters[YZ5] * t90 - parameters[XZ5] * (t88 - t93)
-        + (parameters[MZ5] * t84 + parameters[MX5] * t107);
+    const two_fingers_real_t t115 = t114 - parameters[XZ5] * t89 + parameters[YZ5] * (t87 - t85)
+        + (parameters[MZ5] * t91 - parameters[MY5] * t106);
+    const two_fingers_real_t t116 = parameters[YY5] * t99 - t99 * (parameters[XX5] - parameters[ZZ5])
+        - parameters[XY5] * t102;
+    const two_fingers_real_t t117 = t116 + parameters[YZ5] * t89 - parameters[XZ5] * (t87 - t92)
+        + (parameters[MZ5] * t83 + parameters[MX5] * t106);
     /* link right_1: force and moment */
-    const two_fingers_real_t t119 = t110 * (parameters[YY4] - parameters[ZZ4]) - t110 * parameters[XX4]
-        + t109 * parameters[XY4];
-    const two_fingers_real_t t120 = t119 - t82 * parameters[XZ4] + (t74 - t73) * parameters[YZ4]
-        + (parameters[MZ4] * t80 - parameters[MY4] * t105);
-    const two_fingers_real_t t121 = t106 * parameters[YY4] + t106 * (parameters[ZZ4] - parameters[XX4])
-        - t111 * parameters[XY4];
-    const two_fingers_real_t t122 = t121 + t82 * parameters[YZ4] + (t97 - t74) * parameters[XZ4]
-        + (parameters[MZ4] * t78 + parameters[MX4] * t105);
+    const two_fingers_real_t t118 = t109 * (parameters[YY4] - parameters[ZZ4]) - t109 * parameters[XX4]
+        + t108 * parameters[XY4];
+    const two_fingers_real_t t119 = t118 - t81 * parameters[XZ4] + (t73 - t72) * parameters[YZ4]
+        + (parameters[MZ4] * t79 - parameters[MY4] * t104);
+    const two_fingers_real_t t120 = t105 * parameters[YY4] + t105 * (parameters[ZZ4] - parameters[XX4])
+        - t110 * parameters[XY4];
+    const two_fingers_real_t t121 = t120 + t81 * parameters[YZ4] + (t96 - t73) * parameters[XZ4]
+        + (parameters[MZ4] * t77 + parameters[MX4] * t104);
     /* link right_2: what it passes on */
-    const two_fingers_real_t t123 = t122 + (t2 * t116 + t3 * t118 + TWO_FINGERS_C(0.045) * t108);
+    const two_fingers_real_t t122 = t121 + (t2 * t115 + t3 * t117 + TWO_FINGERS_C(0.045) * t107);
     /* link right_1: what it passes on */
-    const two_fingers_real_t t124 = t30 * (t120 + (t3 * t116 - t2 * t118)) + t28 * t123;
-    const two_fingers_real_t t125 = t47 * dq[0]; /* link left_1: motion */
-    const two_fingers_real_t t126 = t45 * dq[0];
-    const two_fingers_real_t t127 = t14 * t126 - t13 * t125; /* link left_2: motion */
-    const two_fingers_real_t t128 = dq[1] + dq[2];
-    const two_fingers_real_t t129 = t128 * t127;
-    const two_fingers_real_t t130 = t14 * t125 + t13 * t126;
-    const two_fingers_real_t t131 = t128 * t130;
-    const two_fingers_real_t t132 = TWO_FINGERS_C(2.0) * t131; /* link left_2: force and moment */
-    const two_fingers_real_t t133 = parameters[XY3] * t132 - (parameters[XX3] * t129 + t129 * (parameters[ZZ3]
+    const two_fingers_real_t t123 = t28 * (t119 + (t3 * t115 - t2 * t117)) + t26 * t122;
+    const two_fingers_real_t t124 = t45 * dq[0]; /* link left_1: motion */
+    const two_fingers_real_t t125 = t43 * dq[0];
+    const two_fingers_real_t t126 = t13 * t125 - t12 * t124; /* link left_2: motion */
+    const two_fingers_real_t t127 = dq[1] + dq[2];
+    const two_fingers_real_t t128 = t127 * t126;
+    const two_fingers_real_t t129 = t13 * t124 + t12 * t125;
+    const two_fingers_real_t t130 = t127 * t129;
+    const two_fingers_real_t t131 = TWO_FINGERS_C(2.0) * t130; /* link left_2: force and moment */
+    const two_fingers_real_t t132 = parameters[XY3] * t131 - (parameters[XX3] * t128 + t128 * (parameters[ZZ3]
         - parameters[YY3]));
-    const two_fingers_real_t t134 = t130 * t127; /* link left_2: motion */
+    const two_fingers_real_t t133 = t129 * t126; /* link left_2: motion */
+    const two_fingers_real_t t134 = t126 * t126;
     const two_fingers_real_t t135 = t127 * t127;
-    const two_fingers_real_t t136 = t128 * t128;
-    const two_fingers_real_t t137 = TWO_FINGERS_C(0.03) * t76; /* link left_1: motion */
-    const two_fingers_real_t t138 = t45 * t137 + TWO_FINGERS_C(-9.81) * t47;
-    const two_fingers_real_t t139 = t126 * t126;
-    const two_fingers_real_t t140 = dq[1] * dq[1];
-    const two_fingers_real_t t141 = t138 + TWO_FINGERS_C(0.05) * (t139 + t140); /* link left_2: motion */
-    const two_fingers_real_t t142 = t47 * t137 + TWO_FINGERS_C(9.81) * t45; /* link left_1: motion */
-    const two_fingers_real_t t143 = t125 * t126;
-    const two_fingers_real_t t144 = t142 + TWO_FINGERS_C(0.05) * t143; /* link left_2: motion */
-    const two_fingers_real_t t145 = t13 * t141 + t14 * t144;
-    const two_fingers_real_t t146 = dq[1] * t125; /* link left_1: motion */
-    const two_fingers_real_t t147 = TWO_FINGERS_C(0.1) * t146; /* link left_2: motion */
+    const two_fingers_real_t t136 = TWO_FINGERS_C(0.03) * t75; /* link left_1: motion */
+    const two_fingers_real_t t137 = t43 * t136 + TWO_FINGERS_C(-9.81) * t45;
+    const two_fingers_real_t t138 = t125 * t125;
+    const two_fingers_real_t t139 = dq[1] * dq[1];
+    const two_fingers_real_t t140 = t137 + TWO_FINGERS_C(0.05) * (t138 + t139); /* link left_2: motion */
+    const two_fingers_real_t t141 = t45 * t136 + TWO_FINGERS_C(9.81) * t43; /* link left_1: motion */
+    const two_fingers_real_t t142 = t124 * t125;
+    const two_fingers_real_t t143 = t141 + TWO_FINGERS_C(0.05) * t142; /* link left_2: motion */
+    const two_fingers_real_t t144 = t12 * t140 + t13 * t143;
+    const two_fingers_real_t t145 = dq[1] * t124; /* link left_1: motion */
+    const two_fingers_real_t t146 = TWO_FINGERS_C(0.1) * t145; /* link left_2: motion */
     /* link left_2: force and moment */
-    const two_fingers_real_t t148 = t133 - parameters[XZ3] * t134 + parameters[YZ3] * (t136 - t135)
-        + (parameters[MZ3] * t145 - parameters[MY3] * t147);
-    const two_fingers_real_t t149 = TWO_FINGERS_C(2.0) * t129;
-    const two_fingers_real_t t150 = parameters[YY3] * t131 - t131 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t149;
-    const two_fingers_real_t t151 = t130 * t130; /* link left_2: motion */
-    const two_fingers_real_t t152 = t14 * t141 - t13 * t144;
+    const two_fingers_real_t t147 = t132 - parameters[XZ3] * t133 + parameters[YZ3] * (t135 - t134)
+        + (parameters[MZ3] * t144 - parameters[MY3] * t146);
+    const two_fingers_real_t t148 = TWO_FINGERS_C(2.0) * t128;
+    const two_fingers_real_t t149 = parameters[YY3] * t130 - t130 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t148;
+    const two_fingers_real_t t150 = t129 * t129; /* link left_2: motion */
+    const two_fingers_real_t t151 = t13 * t140 - t12 * t143;
     /* link left_2: force and moment */
-    const two_fingers_real_t t153 = t150 + parameters[YZ3] * t134 - parameters[XZ3] * (t136 - t151)
-        + (parameters[MZ3] * t152 + parameters[MX3] * t147);
-    const two_fingers_real_t t154 = dq[1] * t126; /* link left_1: motion */
-    const two_fingers_real_t t155 = TWO_FINGERS_C(2.0) * t146;
+    const two_fingers_real_t t152 = t149 + parameters[YZ3] * t133 - parameters[XZ3] * (t135 - t150)
+        + (parameters[MZ3] * t151 + parameters[MX3] * t146);
+    const two_fingers_real_t t153 = dq[1] * t125; /* link left_1: motion */
+    const two_fingers_real_t t154 = TWO_FINGERS_C(2.0) * t145;
     /* link left_1: force and moment */
-    const two_fingers_real_t t156 = t154 * (parameters[YY2] - parameters[ZZ2]) - t154 * parameters[XX2]
-        + t155 * parameters[XY2];
-    const two_fingers_real_t t157 = t156 - t143 * parameters[XZ2] + (t140 - t139) * parameters[YZ2]
-        + t142 * parameters[MZ2];
+    const two_fingers_real_t t155 = t153 * (parameters[YY2] - parameters[ZZ2]) - t153 * parameters[XX2]
+        + t154 * parameters[XY2];
+    const two_fingers_real_t t156 = t155 - t142 * parameters[XZ2] + (t139 - t138) * parameters[YZ2]
+        + t141 * parameters[MZ2];
     /* link left_2: force and moment */
-    const two_fingers_real_t t158 = parameters[MX3] * t132 + parameters[MY3] * t149 - parameters[MZ3] * (t151
-        + t135);
-    const two_fingers_real_t t159 = parameters[M3] * t147 + t158;
-    const two_fingers_real_t t160 = TWO_FINGERS_C(2.0) * t154; /* link left_1: motion */
+    const two_fingers_real_t t157 = parameters[MX3] * t131 + parameters[MY3] * t148 - parameters[MZ3] * (t150
+        + t134);
+    const two_fingers_real_t t158 = parameters[M3] * t146 + t157;
+    const two_fingers_real_t t159 = TWO_FINGERS_C(2.0) * t153; /* link left_1: motion */
     /* link left_1: force and moment */
-    const two_fingers_real_t t161 = t146 * parameters[YY2] + t146 * (parameters[ZZ2] - parameters[XX2])
-        - t160 * parameters[XY2];
-    const two_fingers_real_t t162 = t125 * t125; /* link left_1: motion */
+    const two_fingers_real_t t160 = t145 * parameters[YY2] + t145 * (parameters[ZZ2] - parameters[XX2])
+        - t159 * parameters[XY2];
+    const two_fingers_real_t t161 = t124 * t124; /* link left_1: motion */
     /* link left_1: force and moment */
-    const two_fingers_real_t t163 = t161 + t143 * parameters[YZ2] + (t162 - t140) * parameters[XZ2]
-        + t138 * parameters[MZ2];
+    const two_fingers_real_t t162 = t160 + t142 * parameters[YZ2] + (t161 - t139) * parameters[XZ2]
+        + t137 * parameters[MZ2];
     /* link left_2: what it passes on */
-    const two_fingers_real_t t164 = t163 + (t13 * t148 + t14 * t153 + TWO_FINGERS_C(0.05) * t159);
+    const two_fingers_real_t t163 = t162 + (t12 * t147 + t13 * t152 + TWO_FINGERS_C(0.05) * t158);
     /* link left_1: what it passes on */
-    const two_fingers_real_t t165 = t47 * (t157 + (t14 * t148 - t13 * t153)) + t45 * t164;
+    const two_fingers_real_t t164 = t45 * (t156 + (t13 * t147 - t12 * t152)) + t43 * t163;
     /* link left_1: force and moment */
-    const two_fingers_real_t t166 = t155 * parameters[MX2] + t160 * parameters[MY2] - (t162
-        + t139) * parameters[MZ2];
-    const two_fingers_real_t t167 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
-    const two_fingers_real_t t168 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1]
-        - t167 * parameters[FC1]) + (t124 + t114 + (t165 + TWO_FINGERS_C(0.03) * (t166 + t159)));
+    const two_fingers_real_t t165 = t154 * parameters[MX2] + t159 * parameters[MY2] - (t161
+        + t138) * parameters[MZ2];
+    const two_fingers_real_t t166 = two_fingers_sign(dq[0]); /* joint wrist: coulomb_friction */
+    const two_fingers_real_t t167 = TWO_FINGERS_C(60.0) * (TWO_FINGERS_C(-60.0) * dq[0] * parameters[FV1]
+        - t166 * parameters[FC1]) + (t123 + t113 + (t164 + TWO_FINGERS_C(0.03) * (t165 + t158)));
     /* link right_2: force and moment */
-    const two_fingers_real_t t169 = parameters[XY5] * (t93 - t86) - t24 * t90 + (parameters[MX5] * t92
-        + parameters[MY5] * t84);
-    const two_fingers_real_t t170 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
-    const two_fingers_real_t t171 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5]
-        + t170 * parameters[FC5]) + t169;
-    const two_fingers_real_t t172 = TWO_FINGERS_C(0.6) * input[4] - t171;
+    const two_fingers_real_t t168 = parameters[XY5] * (t92 - t85) - t22 * t89 + (parameters[MX5] * t91
+        + parameters[MY5] * t83);
+    const two_fingers_real_t t169 = two_fingers_sign(dq[4]); /* joint right_2: coulomb_friction */
+    const two_fingers_real_t t170 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5]
+        + t169 * parameters[FC5]) + t168;
+    const two_fingers_real_t t171 = TWO_FINGERS_C(0.6) * input[4] - t170;
     /* link right_1: force and moment */
-    const two_fingers_real_t t173 = t82 * (parameters[XX4] - parameters[YY4]) - (t97 - t73) * parameters[XY4]
-        - (parameters[MX4] * t80 + parameters[MY4] * t78);
-    const two_fingers_real_t t174 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
-    const two_fingers_real_t t175 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4]
-        + t174 * parameters[FC4]) - (t173 - (t169 - TWO_FINGERS_C(0.045) * t96));
-    const two_fingers_real_t t176 = TWO_FINGERS_C(0.6) * input[3] - t175 + t172 * t7;
-    const two_fingers_real_t t177 = TWO_FINGERS_C(2.4) * input[0] + t168 + t172 * t56 + t176 * t60;
+    const two_fingers_real_t t172 = t81 * (parameters[XX4] - parameters[YY4]) - (t96 - t72) * parameters[XY4]
+        - (parameters[MX4] * t79 + parameters[MY4] * t77);
+    const two_fingers_real_t t173 = two_fingers_sign(dq[3]); /* joint right_1: coulomb_friction */
+    const two_fingers_real_t t174 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[3] * parameters[FV4]
+        + t173 * parameters[FC4]) - (t172 - (t168 - TWO_FINGERS_C(0.045) * t95));
+    const two_fingers_real_t t175 = TWO_FINGERS_C(0.6) * input[3] - t174 + t171 * t7;
+    const two_fingers_real_t t176 = TWO_FINGERS_C(2.4) * input[0] + t167 + t171 * t54 + t175 * t58;
     /* link left_2: force and moment */
-    const two_fingers_real_t t178 = parameters[XY3] * (t151 - t135) - t41 * t134 + (parameters[MX3] * t145
-        + parameters[MY3] * t152);
-    const two_fingers_real_t t179 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
-    const two_fingers_real_t t180 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3]
-        + t179 * parameters[FC3]) + t178;
-    const two_fingers_real_t t181 = TWO_FINGERS_C(0.6) * input[2] - t180;
+    const two_fingers_real_t t177 = parameters[XY3] * (t150 - t134) - t39 * t133 + (parameters[MX3] * t144
+        + parameters[MY3] * t151);
+    const two_fingers_real_t t178 = two_fingers_sign(dq[2]); /* joint left_2: coulomb_friction */
+    const two_fingers_real_t t179 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[2] * parameters[FV3]
+        + t178 * parameters[FC3]) + t177;
+    const two_fingers_real_t t180 = TWO_FINGERS_C(0.6) * input[2] - t179;
     /* link left_2: force and moment */
-    const two_fingers_real_t t182 = parameters[M3] * t152 + (parameters[MX3] * (t136 + t135)
-        - parameters[MY3] * t134);
-    const two_fingers_real_t t183 = parameters[M3] * t145 - (parameters[MY3] * (t136 + t151)
-        - parameters[MX3] * t134);
+    const two_fingers_real_t t181 = parameters[M3] * t151 + (parameters[MX3] * (t135 + t134)
+        - parameters[MY3] * t133);
+    const two_fingers_real_t t182 = parameters[M3] * t144 - (parameters[MY3] * (t135 + t150)
+        - parameters[MX3] * t133);
     /* link left_1: force and moment */
-    const two_fingers_real_t t184 = t143 * (parameters[XX2] - parameters[YY2]) - (t162
-        - t139) * parameters[XY2] - (t142 * parameters[MX2] + t138 * parameters[MY2]);
+    const two_fingers_real_t t183 = t142 * (parameters[XX2] - parameters[YY2]) - (t161
+        - t138) * parameters[XY2] - (t141 * parameters[MX2] + t137 * parameters[MY2]);
     /* link left_2: what it passes on */
-    const two_fingers_real_t t185 = t184 - (t178 - TWO_FINGERS_C(0.05) * (t13 * t182 - t14 * t183));
-    const two_fingers_real_t t186 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
-    const two_fingers_real_t t187 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2]
-        + t186 * parameters[FC2]) - t185;
-    const two_fingers_real_t t188 = TWO_FINGERS_C(0.6) * input[1] - t187 + t181 * t18;
-    const two_fingers_real_t t189 = TWO_FINGERS_C(1.0) / t70;
-    const two_fingers_real_t t190 = two_fingers_bounded((t177 + t181 * t64 + t188 * t69) * t189);
-    out[0] = t190;
-    const two_fingers_real_t t191 = two_fingers_bounded(t188 * t68 + t69 * t190);
-    out[1] = t191;
-    out[2] = t181 * t17 + t64 * t190 + t18 * t191;
-    const two_fingers_real_t t192 = two_fingers_bounded(t176 * t59 + t60 * t190);
-    out[3] = t192;
-    out[4] = t172 * t6 + t56 * t190 + t7 * t192;
-    if (!two_fingers_all_bounded(out, 5)) {
+    const two_fingers_real_t t184 = t183 - (t177 - TWO_FINGERS_C(0.05) * (t12 * t181 - t13 * t182));
+    const two_fingers_real_t t185 = two_fingers_sign(dq[1]); /* joint left_1: coulomb_friction */
+    const two_fingers_real_t t186 = TWO_FINGERS_C(30.0) * (TWO_FINGERS_C(30.0) * dq[1] * parameters[FV2]
+        + t185 * parameters[FC2]) - t184;
+    const two_fingers_real_t t187 = TWO_FINGERS_C(0.6) * input[1] - t186 + t180 * t17;
+    const two_fingers_real_t t188 = TWO_FINGERS_C(1.0) / t68;
+    const two_fingers_real_t t189 = two_fingers_held((t176 + t180 * t62 + t187 * t67) * t188);
+    out[0] = t189;
+    const two_fingers_real_t t190 = two_fingers_held(t187 * t66 + t67 * t189);
+    out[1] = t190;
+    out[2] = t180 * t16 + t62 * t189 + t17 * t190;
+    const two_fingers_real_t t191 = two_fingers_held(t175 * t57 + t58 * t189);
+    out[3] = t191;
+    out[4] = t171 * t6 + t54 * t189 + t7 * t191;
+    if (!two_fingers_bounded(out, 5)) {
         two_fingers_zero(out, 5);
         return TWO_FINGERS_STATUS_PIVOT;
     }

@@ -73,7 +73,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -318,411 +318,401 @@ two_fingers_status_t two_fingers_inverse_dynamics_derivatives(
     const two_fingers_real_t t145 = parameters[FV5] * (TWO_FINGERS_C(30.0) * dq[4]) + parameters[FC5] * t144
         + parameters[IA5] * (TWO_FINGERS_C(30.0) * ddq[4]);
     input[4] = TWO_FINGERS_C(50.0) * t145 + TWO_FINGERS_C(1.6666666666666667) * t139;
-    const two_fingers_real_t t146 = TWO_FINGERS_C(0.5) * (parameters[XX5R] + parameters[ZZ5]);
-    const two_fingers_real_t t147 = parameters[XX5R] - t146;
-    const two_fingers_real_t t148 = t7 * t147 - parameters[XZ5] * t10;
-    const two_fingers_real_t t149 = parameters[YZ5] * t5 + t7 * t146;
-    const two_fingers_real_t t150 = parameters[XZ5] * t5;
-    const two_fingers_real_t t151 = parameters[XY5] * t7;
-    const two_fingers_real_t t152 = t150 - t151;
-    const two_fingers_real_t t153 = parameters[YZ5] * t10;
-    const two_fingers_real_t t154 = t151 - t153;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t155 = t3 * (t152 - t154) - t1 * (t148 + t149);
-    const two_fingers_real_t t156 = t3 * t155;
-    const two_fingers_real_t t157 = parameters[MY5] * t7;
-    const two_fingers_real_t t158 = parameters[MX5] * t7;
-    const two_fingers_real_t t159 = t3 * t157 + t1 * t158;
-    const two_fingers_real_t t160 = TWO_FINGERS_C(0.045) * t159;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t161 = t3 * parameters[MY5] + t1 * parameters[MX5];
-    const two_fingers_real_t t162 = TWO_FINGERS_C(0.045) * dq[3]; /* link right_2: velocity of its origin */
-    const two_fingers_real_t t163 = t161 * t162; /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t164 = t163 - t160;
-    const two_fingers_real_t t165 = parameters[XZ4R] * t18;
-    const two_fingers_real_t t166 = parameters[XY4] * dq[3];
-    const two_fingers_real_t t167 = t165 - t166 + (t164 + (t154 + t156 + t160));
-    const two_fingers_real_t t168 = parameters[YZ4] * t22;
-    const two_fingers_real_t t169 = t166 - t168 + (t164 + (t152 - t156 - t163));
-    const two_fingers_real_t t170 = t1 * t155;
-    const two_fingers_real_t t171 = TWO_FINGERS_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    const two_fingers_real_t t172 = parameters[YZ4] * t18 + dq[3] * t171 + (t149 + t170);
-    const two_fingers_real_t t173 = t1 * t157 - t3 * t158;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t174 = t1 * parameters[MY5] - t3 * parameters[MX5];
-    const two_fingers_real_t t175 = parameters[XX4R] - t171;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t176 = dq[3] * t175 - parameters[XZ4R] * t22 + (t148 + t170
-        + (TWO_FINGERS_C(0.045) * t173 + t174 * t162));
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t177 = t2 * (t2 * (t169 - t167) + t0 * (t172 + t176));
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t178 = parameters[MY4] * dq[3] + t159;
-    const two_fingers_real_t t179 = t173 - parameters[MX4R] * dq[3];
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t180 = TWO_FINGERS_C(0.07) * (t0 * t178 + t2 * t179);
-    const two_fingers_real_t t181 = t0 * t179 - t2 * t178;
-    const two_fingers_real_t t182 = parameters[MX5] * t5 - parameters[MY5] * t10;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t183 = parameters[MY4] * t22 - parameters[MX4R] * t18 - t182;
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t
-        t184 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t181
-        + TWO_FINGERS_C(-0.17364817766693028) * t183)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t181
-        + TWO_FINGERS_C(0.984807753012208) * t183);
-    const two_fingers_real_t t185 = parameters[MY4] + t161; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t186 = t174 - parameters[MX4R];
-    const two_fingers_real_t t187 = t0 * t185 + t2 * t186; /* link right_1: column of the mass matrix */
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t
-        t188 = TWO_FINGERS_C(0.17364817766693028) * t187 * (TWO_FINGERS_C(0.03446827135542729) * dq[0])
-        - TWO_FINGERS_C(-0.984807753012208) * t187 * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
-    const two_fingers_real_t t189 = TWO_FINGERS_C(0.5) * (parameters[XX3R] + parameters[ZZ3]);
-    const two_fingers_real_t t190 = parameters[XX3R] - t189;
-    const two_fingers_real_t t191 = t68 * t190 - parameters[XZ3] * t73;
-    const two_fingers_real_t t192 = parameters[YZ3] * t67 + t68 * t189;
-    const two_fingers_real_t t193 = parameters[XZ3] * t67;
-    const two_fingers_real_t t194 = parameters[XY3] * t68;
-    const two_fingers_real_t t195 = t193 - t194;
-    const two_fingers_real_t t196 = parameters[YZ3] * t73;
-    const two_fingers_real_t t197 = t194 - t196;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t198 = t65 * (t195 - t197) - t63 * (t191 + t192);
-    const two_fingers_real_t t199 = t65 * t198;
-    const two_fingers_real_t t200 = parameters[MY3] * t68;
-    const two_fingers_real_t t201 = parameters[MX3] * t68;
-    const two_fingers_real_t t202 = t65 * t200 + t63 * t201;
-    const two_fingers_real_t t203 = TWO_FINGERS_C(0.05) * t202;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t204 = t65 * parameters[MY3] + t63 * parameters[MX3];
-    const two_fingers_real_t t205 = TWO_FINGERS_C(0.05) * dq[1]; /* link left_2: velocity of its origin */
-    const two_fingers_real_t t206 = t204 * t205; /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t207 = t206 - t203;
-    const two_fingers_real_t t208 = parameters[XZ2R] * t95;
-    const two_fingers_real_t t209 = parameters[XY2] * dq[1];
-    const two_fingers_real_t t210 = t208 - t209 + (t207 + (t197 + t199 + t203));
-    const two_fingers_real_t t211 = parameters[YZ2] * t83;
-    const two_fingers_real_t t212 = t209 - t211 + (t207 + (t195 - t199 - t206));
-    const two_fingers_real_t t213 = t63 * t198;
-    const two_fingers_real_t t214 = TWO_FINGERS_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const two_fingers_real_t t215 = parameters[YZ2] * t95 + dq[1] * t214 + (t192 + t213);
-    const two_fingers_real_t t216 = t63 * t200 - t65 * t201;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t217 = t65 * parameters[MX3] - t63 * parameters[MY3];
-    const two_fingers_real_t t218 = parameters[XX2R] - t214;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t219 = dq[1] * t218 - parameters[XZ2R] * t83 + (t191 + t213
-        + (TWO_FINGERS_C(0.05) * t216 - t217 * t205));
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t220 = t64 * (t64 * (t212 - t210) + t62 * (t215 + t219));
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t221 = parameters[MY2] * dq[1] + t202;
-    const two_fingers_real_t t222 = t216 - parameters[MX2R] * dq[1];
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t223 = TWO_FINGERS_C(0.08) * (t62 * t221 + t64 * t222);
-    const two_fingers_real_t t224 = TWO_FINGERS_C(0.03) * (t62 * t222 - t64 * t221) - t223 + (t210 + t220
-        + t223);
-    const two_fingers_real_t t225 = t184 - t180 + t188 + (t167 + t177 + t180) + t224;
-    input_by_dq[0] = TWO_FINGERS_C(1.5e3) * parameters[FV1] + TWO_FINGERS_C(0.8333333333333334) * t225;
-    const two_fingers_real_t t226 = parameters[XY3] * t73 - t67 * t190;
-    const two_fingers_real_t t227 = t73 * t189 + parameters[XY3] * t67;
-    const two_fingers_real_t t228 = parameters[MX3] * t67 - parameters[MY3] * t73;
-    const two_fingers_real_t t229 = TWO_FINGERS_C(-0.05) * t95; /* link left_2: velocity of its origin */
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t230 = t65 * t226 + t63 * t227 + (TWO_FINGERS_C(0.05) * t228 - t217 * t229);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t231 = TWO_FINGERS_C(2.0) * (parameters[XY2] * t83 - t95 * t218 + t230);
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t232 = parameters[XY2] * t95 + t83 * t214 - (t63 * t226 - t65 * t227
-        - t204 * t229);
-    const two_fingers_real_t t233 = TWO_FINGERS_C(2.0) * t232; /* link left_1: derivatives */
-    const two_fingers_real_t t234 = parameters[MY2] + t204; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t235 = parameters[MX2R] + t217;
-    const two_fingers_real_t t236 = TWO_FINGERS_C(0.06) * dq[0];
-    /* link left_1: derivatives */
-    const two_fingers_real_t t237 = t62 * t231 - t64 * t233 + (t64 * t234 + t62 * t235) * t236;
-    input_by_dq[5] = TWO_FINGERS_C(1.6666666666666667) * t237;
-    const two_fingers_real_t t238 = TWO_FINGERS_C(2.0) * t226; /* link left_2: derivatives */
-    const two_fingers_real_t t239 = TWO_FINGERS_C(2.0) * t227;
-    const two_fingers_real_t t240 = TWO_FINGERS_C(-0.1) * t95;
-    const two_fingers_real_t t241 = t65 * t238 + t63 * t239 - t217 * t240;
-    const two_fingers_real_t t242 = t63 * t238 - t65 * t239 - t204 * t240;
-    const two_fingers_real_t t243 = t62 * t241 + t64 * t242 + (t64 * t204 + t62 * t217) * t236;
-    input_by_dq[10] = TWO_FINGERS_C(1.6666666666666667) * t243;
-    const two_fingers_real_t t244 = parameters[XY5] * t10 - t5 * t147;
-    const two_fingers_real_t t245 = t10 * t146 + parameters[XY5] * t5;
-    const two_fingers_real_t t246 = TWO_FINGERS_C(-0.045) * t18; /* link right_2: velocity of its origin */
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t247 = t3 * t244 + t1 * t245 + (TWO_FINGERS_C(0.045) * t182 + t174 * t246);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t248 = TWO_FINGERS_C(2.0) * (parameters[XY4] * t22 - t18 * t175 + t247);
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t249 = parameters[XY4] * t18 + t22 * t171 - (t1 * t244 - t3 * t245
-        - t161 * t246);
-    const two_fingers_real_t t250 = TWO_FINGERS_C(2.0) * t249; /* link right_1: derivatives */
-    const two_fingers_real_t t251 = t2 * t185 - t0 * t186; /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t252 = TWO_FINGERS_C(0.01215537243668512) * dq[0];
-    const two_fingers_real_t t253 = TWO_FINGERS_C(0.06893654271085457) * dq[0];
-    /* link right_1: derivatives */
-    const two_fingers_real_t t254 = t0 * t248 - t2 * t250 + (TWO_FINGERS_C(0.17364817766693028) * t251 * t252
-        + TWO_FINGERS_C(0.984807753012208) * t251 * t253);
-    input_by_dq[15] = TWO_FINGERS_C(1.6666666666666667) * t254;
-    const two_fingers_real_t t255 = TWO_FINGERS_C(2.0) * t244; /* link right_2: derivatives */
-    const two_fingers_real_t t256 = TWO_FINGERS_C(2.0) * t245;
-    const two_fingers_real_t t257 = TWO_FINGERS_C(-0.09) * t18;
-    const two_fingers_real_t t258 = t3 * t255 + t1 * t256 + t174 * t257;
-    const two_fingers_real_t t259 = t1 * t255 - t3 * t256 - t161 * t257;
-    const two_fingers_real_t t260 = t2 * t161 - t0 * t174; /* link right_2: column of the mass matrix */
+    const two_fingers_real_t t146 = parameters[MX5] * t137 - parameters[MY5] * t136;
+    const two_fingers_real_t t147 = t15 + t6; /* link right_2: force and moment */
     /* link right_2: derivatives */
-    const two_fingers_real_t t261 = t0 * t258 + t2 * t259 + (TWO_FINGERS_C(0.17364817766693028) * t260 * t252
-        + TWO_FINGERS_C(0.984807753012208) * t260 * t253);
-    input_by_dq[20] = TWO_FINGERS_C(1.6666666666666667) * t261;
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t262 = t3 * parameters[XX5R] + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t1);
-    const two_fingers_real_t t263 = t3 * t262;
-    const two_fingers_real_t t264 = TWO_FINGERS_C(0.09) * t174;
-    const two_fingers_real_t t265 = parameters[XX5R] - t263 - t264;
-    const two_fingers_real_t t266 = parameters[XX4R] + t263;
-    const two_fingers_real_t t267 = parameters[XY4] + (parameters[XY5] + t1 * t262
-        + TWO_FINGERS_C(-0.045) * t161);
-    /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t268 = t2 * (t2 * (t265 - t266) + t267 * (TWO_FINGERS_C(2.0) * t0));
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t269 = t65 * parameters[XX3R] + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t63);
-    const two_fingers_real_t t270 = t65 * t269;
-    const two_fingers_real_t t271 = TWO_FINGERS_C(-0.1) * t217;
-    const two_fingers_real_t t272 = parameters[XX3R] - t270 - t271;
-    const two_fingers_real_t t273 = parameters[XX2R] + t270;
-    const two_fingers_real_t t274 = parameters[XY2] + (parameters[XY3] + t63 * t269
-        + TWO_FINGERS_C(-0.05) * t204);
-    /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t275 = t64 * (t64 * (t272 - t273) + t274 * (TWO_FINGERS_C(2.0) * t62));
-    const two_fingers_real_t t276 = t273 + t275 + TWO_FINGERS_C(0.06) * (t64 * t235 - t62 * t234);
-    const two_fingers_real_t t277 = TWO_FINGERS_C(0.4166666666666667) * (parameters[ZZ1R] + (t266 + t268
-        + TWO_FINGERS_C(-0.06999999999999999) * t187) + t276);
-    input_by_ddq[0] = t277;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t278 = t65 * parameters[XZ3] - t63 * parameters[YZ3];
-    const two_fingers_real_t t279 = parameters[XZ2R] + t278; /* link left_2: inertia of it and all beyond */
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t280 = t63 * parameters[XZ3] + t65 * parameters[YZ3];
-    const two_fingers_real_t t281 = parameters[YZ2] + t280; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t282 = t62 * t279 + t64 * t281; /* link left_1: column of the mass matrix */
-    input_by_ddq[5] = TWO_FINGERS_C(1.6666666666666667) * t282;
-    const two_fingers_real_t t283 = t62 * t278 + t64 * t280; /* link left_2: column of the mass matrix */
-    input_by_ddq[10] = TWO_FINGERS_C(1.6666666666666667) * t283;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t284 = t3 * parameters[XZ5] - t1 * parameters[YZ5];
-    const two_fingers_real_t t285 = parameters[XZ4R] + t284; /* link right_2: inertia of it and all beyond */
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t286 = t1 * parameters[XZ5] + t3 * parameters[YZ5];
-    const two_fingers_real_t t287 = parameters[YZ4] + t286; /* link right_2: inertia of it and all beyond */
-    /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t288 = t0 * t285 + t2 * t287 + TWO_FINGERS_C(8.673617379884035e-19) * t251;
-    input_by_ddq[15] = TWO_FINGERS_C(1.6666666666666667) * t288;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t289 = t0 * t284 + t2 * t286 + TWO_FINGERS_C(8.673617379884035e-19) * t260;
-    input_by_ddq[20] = TWO_FINGERS_C(1.6666666666666667) * t289;
-    const two_fingers_real_t t290 = TWO_FINGERS_C(2.0) * t95;
-    const two_fingers_real_t t291 = TWO_FINGERS_C(-2.0) * t83;
-    const two_fingers_real_t t292 = t108 + t102; /* link left_2: motion */
-    /* link left_1: derivatives */
-    const two_fingers_real_t t293 = t290 * t210 + t291 * t215 + (t273 * t85 - t274 * t97 - t279 * t292);
-    const two_fingers_real_t t294 = t290 * t219 + t291 * t212 + (t274 * t85 - t272 * t97 - t281 * t292);
-    const two_fingers_real_t t295 = t290 * t222 - t291 * t221 - (t234 * t85 + t235 * t97);
-    const two_fingers_real_t t296 = t62 * (t109 + t293) + t64 * (t104 + t294) + TWO_FINGERS_C(0.03) * t295;
-    input_by_q[1] = TWO_FINGERS_C(0.4166666666666667) * t296;
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t297 = parameters[ZZ2R] + (parameters[ZZ3] - t271);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t298 = t279 * t85 - t281 * t97 - t297 * t292 + (t95 * t231 + t83 * t233);
-    input_by_q[6] = TWO_FINGERS_C(1.6666666666666667) * (t235 * t114 + t234 * t116 + t298);
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t299 = parameters[ZZ3] - TWO_FINGERS_C(-0.05) * t217;
-    /* link left_2: derivatives */
-    const two_fingers_real_t t300 = t95 * t241 - t83 * t242 + (t278 * t85 - t280 * t97 - t299 * t292);
-    input_by_q[11] = TWO_FINGERS_C(1.6666666666666667) * (t300 + (t204 * t116 + t217 * t114));
-    const two_fingers_real_t t301 = t189 - parameters[ZZ3];
-    const two_fingers_real_t t302 = parameters[YZ3] * t68 + t67 * t301;
-    const two_fingers_real_t t303 = parameters[XZ3] * t68 + t73 * t301;
-    const two_fingers_real_t t304 = parameters[ZZ2R] - t214;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t305 = t95 * t304 - parameters[YZ2] * dq[1] - (t65 * t302 + t63 * t303);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t306 = t62 * (TWO_FINGERS_C(2.0) * t305 + (t273 * t290 + t274 * t291));
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t307 = parameters[XZ2R] * dq[1] - t83 * t304 + (t65 * t303 - t63 * t302);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t308 = t64 * (TWO_FINGERS_C(2.0) * t307 + (t274 * t290 + t272 * t291));
-    const two_fingers_real_t t309 = t306 + t308 + TWO_FINGERS_C(0.03) * (t235 * t291 - t234 * t290);
-    input_by_dq[1] = TWO_FINGERS_C(0.4166666666666667) * t309;
-    const two_fingers_real_t t310 = t196 - t193;
-    const two_fingers_real_t t311 = TWO_FINGERS_C(2.0) * (t211 - t208 + (t310 + t207))
-        + TWO_FINGERS_C(2.0) * (t279 * t95 - t281 * t83);
-    input_by_dq[6] = TWO_FINGERS_C(1.5e3) * parameters[FV2] + TWO_FINGERS_C(1.6666666666666667) * t311;
-    const two_fingers_real_t t312 = TWO_FINGERS_C(2.0) * t310; /* link left_2: derivatives */
-    const two_fingers_real_t t313 = t312 + t204 * (TWO_FINGERS_C(0.1) * dq[1])
-        + TWO_FINGERS_C(2.0) * (t278 * t95 - t280 * t83);
-    input_by_dq[11] = TWO_FINGERS_C(1.6666666666666667) * t313;
-    input_by_ddq[1] = TWO_FINGERS_C(0.4166666666666667) * t282;
-    input_by_ddq[6] = TWO_FINGERS_C(1.6666666666666667) * t297;
-    const two_fingers_real_t t314 = TWO_FINGERS_C(1.6666666666666667) * t299;
-    input_by_ddq[11] = t314;
-    const two_fingers_real_t t315 = TWO_FINGERS_C(-2.0) * t67;
-    const two_fingers_real_t t316 = TWO_FINGERS_C(-2.0) * t73;
-    const two_fingers_real_t t317 = t93 + t81; /* link left_2: force and moment */
-    /* link left_2: derivatives */
-    const two_fingers_real_t t318 = t316 * t192 - t315 * t195 + (parameters[XX3R] * t75
-        - parameters[XY3] * t71 - parameters[XZ3] * t317);
-    const two_fingers_real_t t319 = t94 + t318;
-    const two_fingers_real_t t320 = t315 * t191 - t316 * t197 + (parameters[YZ3] * t317
-        - parameters[XY3] * t75);
-    const two_fingers_real_t t321 = t89 + t320;
-    const two_fingers_real_t t322 = t315 * t201 - t316 * t200 - (parameters[MY3] * t75
-        + parameters[MX3] * t71);
-    const two_fingers_real_t t323 = t64 * (t63 * t319 - t65 * t321 + TWO_FINGERS_C(0.05) * t322);
-    const two_fingers_real_t t324 = t62 * (t65 * t319 + t63 * t321) + t323 + TWO_FINGERS_C(0.03) * t322;
-    input_by_q[2] = TWO_FINGERS_C(0.4166666666666667) * t324;
-    const two_fingers_real_t t325 = parameters[MX3] * t119 - parameters[MY3] * t118;
-    const two_fingers_real_t t326 = parameters[XZ3] * t75 - parameters[YZ3] * t71 - parameters[ZZ3] * t317;
-    const two_fingers_real_t t327 = t63 * (t123 + (parameters[MY3] * t317 - t316 * t228)) + t65 * (t122
-        - (t315 * t228 + parameters[MX3] * t317));
-    const two_fingers_real_t t328 = t325 + (t326 - (t315 * t226 + t316 * t227)) + TWO_FINGERS_C(0.05) * t327;
-    input_by_q[7] = TWO_FINGERS_C(1.6666666666666667) * t328;
-    const two_fingers_real_t t329 = TWO_FINGERS_C(1.6666666666666667) * (t325 + (t326 + (t67 * t238
-        + t73 * t239)));
-    input_by_q[12] = t329;
-    const two_fingers_real_t t330 = TWO_FINGERS_C(-2.0) * t302 + (parameters[XY3] * t316
-        - parameters[XX3R] * t315);
-    const two_fingers_real_t t331 = parameters[XY3] * t315 - TWO_FINGERS_C(2.0) * t303;
-    const two_fingers_real_t t332 = parameters[MX3] * t316 + parameters[MY3] * t315;
-    const two_fingers_real_t t333 = t64 * (TWO_FINGERS_C(0.05) * t332 + (t63 * t330 - t65 * t331));
-    const two_fingers_real_t t334 = TWO_FINGERS_C(0.03) * t332 + (t62 * (t65 * t330 + t63 * t331) + t333);
-    input_by_dq[2] = TWO_FINGERS_C(0.4166666666666667) * t334;
-    const two_fingers_real_t t335 = TWO_FINGERS_C(0.05) * (t63 * (TWO_FINGERS_C(-2.0) * t201)
-        + t65 * (TWO_FINGERS_C(-2.0) * t200));
-    const two_fingers_real_t t336 = TWO_FINGERS_C(1.6666666666666667) * (t312 + (parameters[YZ3] * t316
-        - parameters[XZ3] * t315) + t335);
-    input_by_dq[7] = t336;
-    input_by_dq[12] = TWO_FINGERS_C(1.5e3) * parameters[FV3];
-    input_by_ddq[2] = TWO_FINGERS_C(0.4166666666666667) * t283;
-    input_by_ddq[7] = t314;
-    input_by_ddq[12] = TWO_FINGERS_C(1.5e3) * parameters[IA3]
-        + TWO_FINGERS_C(1.6666666666666667) * parameters[ZZ3];
-    const two_fingers_real_t t337 = TWO_FINGERS_C(2.0) * t18;
-    const two_fingers_real_t t338 = TWO_FINGERS_C(-2.0) * t22;
-    const two_fingers_real_t t339 = t27 + t19; /* link right_2: motion */
-    /* link right_1: derivatives */
-    const two_fingers_real_t t340 = t337 * t167 + t338 * t172 + (t266 * t40 - t267 * t43 - t285 * t339);
-    const two_fingers_real_t t341 = t337 * t176 + t338 * t169 + (t267 * t40 - t265 * t43 - t287 * t339);
-    const two_fingers_real_t t342 = t2 * (t29 + (t338 * t183 + t185 * t339)) + t0 * (t25 + (t337 * t183
-        - t186 * t339));
-    const two_fingers_real_t t343 = t337 * t179 - t338 * t178 + (t186 * t43 - t185 * t40);
-    const two_fingers_real_t
-        t344 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t342
-        + TWO_FINGERS_C(0.984807753012208) * t343)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t342
-        + TWO_FINGERS_C(0.17364817766693028) * t343);
-    const two_fingers_real_t t345 = t0 * (t60 + t340) + t2 * (t58 + t341) + t344;
-    input_by_q[3] = TWO_FINGERS_C(0.4166666666666667) * t345;
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t346 = parameters[ZZ4R] + (parameters[ZZ5] - t264);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t347 = t285 * t40 - t287 * t43 - t346 * t339 + (t18 * t248 + t22 * t250);
-    input_by_q[18] = TWO_FINGERS_C(1.6666666666666667) * (t185 * t134 - t186 * t132 + t347);
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t348 = parameters[ZZ5] - TWO_FINGERS_C(0.045) * t174;
-    /* link right_2: derivatives */
-    const two_fingers_real_t t349 = t18 * t258 - t22 * t259 + (t284 * t40 - t286 * t43 - t348 * t339);
-    input_by_q[23] = TWO_FINGERS_C(1.6666666666666667) * (t349 + (t161 * t134 - t174 * t132));
-    const two_fingers_real_t t350 = t146 - parameters[ZZ5];
-    const two_fingers_real_t t351 = parameters[YZ5] * t7 + t5 * t350;
-    const two_fingers_real_t t352 = parameters[XZ5] * t7 + t10 * t350;
-    const two_fingers_real_t t353 = parameters[ZZ4R] - t171;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t354 = t18 * t353 - parameters[YZ4] * dq[3] - (t3 * t351 + t1 * t352);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t355 = t0 * (TWO_FINGERS_C(2.0) * t354 + (t266 * t337 + t267 * t338));
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t356 = parameters[XZ4R] * dq[3] - t22 * t353 + (t3 * t352 - t1 * t351);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t357 = t2 * (TWO_FINGERS_C(2.0) * t356 + (t267 * t337 + t265 * t338));
-    const two_fingers_real_t t358 = t2 * (TWO_FINGERS_C(-2.0) * t179) - t0 * (TWO_FINGERS_C(2.0) * t178);
-    const two_fingers_real_t t359 = t185 * t337 + t186 * t338;
-    const two_fingers_real_t
-        t360 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t358
-        + TWO_FINGERS_C(-0.984807753012208) * t359)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t358
-        + TWO_FINGERS_C(-0.17364817766693028) * t359);
-    input_by_dq[3] = TWO_FINGERS_C(0.4166666666666667) * (t355 + t357 + t360);
-    const two_fingers_real_t t361 = t153 - t150;
-    const two_fingers_real_t t362 = TWO_FINGERS_C(2.0) * (t168 - t165 + (t361 + t164))
-        + TWO_FINGERS_C(2.0) * (t285 * t18 - t287 * t22);
-    input_by_dq[18] = TWO_FINGERS_C(1.5e3) * parameters[FV4] + TWO_FINGERS_C(1.6666666666666667) * t362;
-    const two_fingers_real_t t363 = TWO_FINGERS_C(2.0) * t361; /* link right_2: derivatives */
-    const two_fingers_real_t t364 = t363 + t161 * (TWO_FINGERS_C(0.09) * dq[3])
-        + TWO_FINGERS_C(2.0) * (t284 * t18 - t286 * t22);
-    input_by_dq[23] = TWO_FINGERS_C(1.6666666666666667) * t364;
-    input_by_ddq[3] = TWO_FINGERS_C(0.4166666666666667) * t288;
-    input_by_ddq[18] = TWO_FINGERS_C(1.6666666666666667) * t346;
-    const two_fingers_real_t t365 = TWO_FINGERS_C(1.6666666666666667) * t348;
-    input_by_ddq[23] = t365;
-    const two_fingers_real_t t366 = t15 + t6; /* link right_2: force and moment */
-    const two_fingers_real_t t367 = TWO_FINGERS_C(-2.0) * t10;
-    /* link right_2: derivatives */
-    const two_fingers_real_t t368 = t17 + (parameters[MY5] * t366 - t367 * t182);
-    const two_fingers_real_t t369 = TWO_FINGERS_C(-2.0) * t5;
-    const two_fingers_real_t t370 = t14 - (t369 * t182 + parameters[MX5] * t366);
-    const two_fingers_real_t t371 = t1 * t368 + t3 * t370;
-    const two_fingers_real_t t372 = t2 * (t3 * t368 - t1 * t370) - t0 * t371;
-    const two_fingers_real_t t373 = t369 * t158 - t367 * t157 - (parameters[MY5] * t32
+    const two_fingers_real_t t148 = parameters[XZ5] * t32 - parameters[YZ5] * t35 - parameters[ZZ5] * t147;
+    const two_fingers_real_t t149 = TWO_FINGERS_C(0.5) * (parameters[XX5R] + parameters[ZZ5]);
+    const two_fingers_real_t t150 = parameters[XX5R] - t149;
+    const two_fingers_real_t t151 = parameters[XY5] * t10 - t5 * t150;
+    const two_fingers_real_t t152 = TWO_FINGERS_C(2.0) * t151;
+    const two_fingers_real_t t153 = t10 * t149 + parameters[XY5] * t5;
+    const two_fingers_real_t t154 = TWO_FINGERS_C(2.0) * t153;
+    const two_fingers_real_t t155 = TWO_FINGERS_C(1.6666666666666667) * (t146 + (t148 + (t5 * t152
+        + t10 * t154)));
+    input_by_q[24] = t155;
+    const two_fingers_real_t t156 = TWO_FINGERS_C(-2.0) * t5;
+    const two_fingers_real_t t157 = TWO_FINGERS_C(-2.0) * t10;
+    const two_fingers_real_t t158 = parameters[MX5] * t5 - parameters[MY5] * t10;
+    const two_fingers_real_t t159 = t17 + (parameters[MY5] * t147 - t157 * t158);
+    const two_fingers_real_t t160 = t14 - (t156 * t158 + parameters[MX5] * t147);
+    const two_fingers_real_t t161 = t1 * t159 + t3 * t160;
+    const two_fingers_real_t t162 = t146 + (t148 - (t156 * t151 + t157 * t153)) + TWO_FINGERS_C(0.045) * t161;
+    input_by_q[19] = TWO_FINGERS_C(1.6666666666666667) * t162;
+    const two_fingers_real_t t163 = t2 * (t3 * t159 - t1 * t160) - t0 * t161;
+    const two_fingers_real_t t164 = parameters[MX5] * t7;
+    const two_fingers_real_t t165 = parameters[MY5] * t7;
+    const two_fingers_real_t t166 = t156 * t164 - t157 * t165 - (parameters[MY5] * t32
         + parameters[MX5] * t35);
     const two_fingers_real_t
-        t374 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t372
-        + TWO_FINGERS_C(0.984807753012208) * t373)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t372
-        + TWO_FINGERS_C(0.17364817766693028) * t373);
-    const two_fingers_real_t t375 = t367 * t149 - t369 * t152 + (parameters[XX5R] * t32
-        - parameters[XY5] * t35 - parameters[XZ5] * t366);
-    const two_fingers_real_t t376 = t56 + t375;
-    const two_fingers_real_t t377 = t369 * t148 - t367 * t154 + (parameters[YZ5] * t366
+        t167 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t163
+        + TWO_FINGERS_C(0.984807753012208) * t166)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t163
+        + TWO_FINGERS_C(0.17364817766693028) * t166);
+    const two_fingers_real_t t168 = parameters[XZ5] * t5;
+    const two_fingers_real_t t169 = parameters[XY5] * t7;
+    const two_fingers_real_t t170 = t168 - t169;
+    const two_fingers_real_t t171 = parameters[YZ5] * t5 + t7 * t149;
+    const two_fingers_real_t t172 = t157 * t171 - t156 * t170 + (parameters[XX5R] * t32
+        - parameters[XY5] * t35 - parameters[XZ5] * t147);
+    const two_fingers_real_t t173 = t56 + t172;
+    const two_fingers_real_t t174 = t7 * t150 - parameters[XZ5] * t10;
+    const two_fingers_real_t t175 = parameters[YZ5] * t10;
+    const two_fingers_real_t t176 = t169 - t175;
+    const two_fingers_real_t t177 = t156 * t174 - t157 * t176 + (parameters[YZ5] * t147
         - parameters[XY5] * t32);
-    const two_fingers_real_t t378 = t54 - t377;
-    const two_fingers_real_t t379 = t2 * (t1 * t376 + t3 * t378 + TWO_FINGERS_C(0.045) * t373);
-    const two_fingers_real_t t380 = t0 * (t3 * t376 - t1 * t378) + t379 + t374;
-    input_by_q[4] = TWO_FINGERS_C(0.4166666666666667) * t380;
-    const two_fingers_real_t t381 = parameters[MX5] * t137 - parameters[MY5] * t136;
-    const two_fingers_real_t t382 = parameters[XZ5] * t32 - parameters[YZ5] * t35 - parameters[ZZ5] * t366;
-    const two_fingers_real_t t383 = t381 + (t382 - (t369 * t244 + t367 * t245)) + TWO_FINGERS_C(0.045) * t371;
-    input_by_q[19] = TWO_FINGERS_C(1.6666666666666667) * t383;
-    const two_fingers_real_t t384 = TWO_FINGERS_C(1.6666666666666667) * (t381 + (t382 + (t5 * t255
-        + t10 * t256)));
-    input_by_q[24] = t384;
-    const two_fingers_real_t t385 = TWO_FINGERS_C(-2.0) * t351 + (parameters[XY5] * t367
-        - parameters[XX5R] * t369);
-    const two_fingers_real_t t386 = parameters[XY5] * t369 - TWO_FINGERS_C(2.0) * t352;
-    const two_fingers_real_t t387 = parameters[MX5] * t367 + parameters[MY5] * t369;
-    const two_fingers_real_t t388 = t2 * (TWO_FINGERS_C(0.045) * t387 + (t1 * t385 - t3 * t386));
-    const two_fingers_real_t t389 = TWO_FINGERS_C(-2.0) * t158;
-    const two_fingers_real_t t390 = TWO_FINGERS_C(-2.0) * t157;
-    const two_fingers_real_t t391 = t1 * t389 + t3 * t390;
-    const two_fingers_real_t t392 = t2 * (t1 * t390 - t3 * t389) + t0 * t391;
-    const two_fingers_real_t
-        t393 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t387
-        + TWO_FINGERS_C(0.17364817766693028) * t392)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t387
-        + TWO_FINGERS_C(-0.984807753012208) * t392);
-    const two_fingers_real_t t394 = t0 * (t3 * t385 + t1 * t386) + t388 + t393;
-    input_by_dq[4] = TWO_FINGERS_C(0.4166666666666667) * t394;
-    const two_fingers_real_t t395 = t363 + (parameters[YZ5] * t367 - parameters[XZ5] * t369)
-        + TWO_FINGERS_C(0.045) * t391;
-    input_by_dq[19] = TWO_FINGERS_C(1.6666666666666667) * t395;
+    const two_fingers_real_t t178 = t54 - t177;
+    const two_fingers_real_t t179 = t2 * (t1 * t173 + t3 * t178 + TWO_FINGERS_C(0.045) * t166);
+    const two_fingers_real_t t180 = t0 * (t3 * t173 - t1 * t178) + t179 + t167;
+    input_by_q[4] = TWO_FINGERS_C(0.4166666666666667) * t180;
     input_by_dq[24] = TWO_FINGERS_C(1.5e3) * parameters[FV5];
-    input_by_ddq[4] = TWO_FINGERS_C(0.4166666666666667) * t289;
-    input_by_ddq[19] = t365;
+    const two_fingers_real_t t181 = t175 - t168;
+    const two_fingers_real_t t182 = TWO_FINGERS_C(2.0) * t181;
+    const two_fingers_real_t t183 = TWO_FINGERS_C(-2.0) * t164;
+    const two_fingers_real_t t184 = TWO_FINGERS_C(-2.0) * t165;
+    const two_fingers_real_t t185 = t1 * t183 + t3 * t184;
+    const two_fingers_real_t t186 = t182 + (parameters[YZ5] * t157 - parameters[XZ5] * t156)
+        + TWO_FINGERS_C(0.045) * t185;
+    input_by_dq[19] = TWO_FINGERS_C(1.6666666666666667) * t186;
+    const two_fingers_real_t t187 = t149 - parameters[ZZ5];
+    const two_fingers_real_t t188 = parameters[YZ5] * t7 + t5 * t187;
+    const two_fingers_real_t t189 = TWO_FINGERS_C(-2.0) * t188 + (parameters[XY5] * t157
+        - parameters[XX5R] * t156);
+    const two_fingers_real_t t190 = parameters[XZ5] * t7 + t10 * t187;
+    const two_fingers_real_t t191 = parameters[XY5] * t156 - TWO_FINGERS_C(2.0) * t190;
+    const two_fingers_real_t t192 = parameters[MX5] * t157 + parameters[MY5] * t156;
+    const two_fingers_real_t t193 = t2 * (TWO_FINGERS_C(0.045) * t192 + (t1 * t189 - t3 * t191));
+    const two_fingers_real_t t194 = t2 * (t1 * t184 - t3 * t183) + t0 * t185;
+    const two_fingers_real_t
+        t195 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t192
+        + TWO_FINGERS_C(0.17364817766693028) * t194)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t192
+        + TWO_FINGERS_C(-0.984807753012208) * t194);
+    const two_fingers_real_t t196 = t0 * (t3 * t189 + t1 * t191) + t193 + t195;
+    input_by_dq[4] = TWO_FINGERS_C(0.4166666666666667) * t196;
     input_by_ddq[24] = TWO_FINGERS_C(1.5e3) * parameters[IA5]
         + TWO_FINGERS_C(1.6666666666666667) * parameters[ZZ5];
+    /* link right_2: column of the mass matrix */
+    const two_fingers_real_t t197 = t1 * parameters[MY5] - t3 * parameters[MX5];
+    const two_fingers_real_t t198 = parameters[ZZ5] - TWO_FINGERS_C(0.045) * t197;
+    const two_fingers_real_t t199 = TWO_FINGERS_C(1.6666666666666667) * t198;
+    input_by_ddq[19] = t199;
+    const two_fingers_real_t t200 = t3 * parameters[XZ5] - t1 * parameters[YZ5];
+    const two_fingers_real_t t201 = t1 * parameters[XZ5] + t3 * parameters[YZ5];
+    const two_fingers_real_t t202 = t3 * parameters[MY5] + t1 * parameters[MX5];
+    const two_fingers_real_t t203 = t2 * t202 - t0 * t197;
+    const two_fingers_real_t t204 = t0 * t200 + t2 * t201 + TWO_FINGERS_C(8.673617379884035e-19) * t203;
+    input_by_ddq[4] = TWO_FINGERS_C(0.4166666666666667) * t204;
+    const two_fingers_real_t t205 = TWO_FINGERS_C(-0.09) * t18; /* link right_2: derivatives */
+    const two_fingers_real_t t206 = t3 * t152 + t1 * t154 + t197 * t205;
+    const two_fingers_real_t t207 = t1 * t152 - t3 * t154 - t202 * t205;
+    const two_fingers_real_t t208 = t27 + t19; /* link right_2: motion */
+    /* link right_2: derivatives */
+    const two_fingers_real_t t209 = t18 * t206 - t22 * t207 + (t200 * t40 - t201 * t43 - t198 * t208);
+    input_by_q[23] = TWO_FINGERS_C(1.6666666666666667) * (t209 + (t202 * t134 - t197 * t132));
+    const two_fingers_real_t t210 = t182 + t202 * (TWO_FINGERS_C(0.09) * dq[3])
+        + TWO_FINGERS_C(2.0) * (t200 * t18 - t201 * t22);
+    input_by_dq[23] = TWO_FINGERS_C(1.6666666666666667) * t210;
+    const two_fingers_real_t t211 = TWO_FINGERS_C(0.01215537243668512) * dq[0];
+    const two_fingers_real_t t212 = TWO_FINGERS_C(0.06893654271085457) * dq[0];
+    const two_fingers_real_t t213 = t0 * t206 + t2 * t207 + (TWO_FINGERS_C(0.17364817766693028) * t203 * t211
+        + TWO_FINGERS_C(0.984807753012208) * t203 * t212);
+    input_by_dq[20] = TWO_FINGERS_C(1.6666666666666667) * t213;
+    input_by_ddq[23] = t199;
+    input_by_ddq[20] = TWO_FINGERS_C(1.6666666666666667) * t204;
+    const two_fingers_real_t t214 = TWO_FINGERS_C(-0.045) * t18; /* link right_2: velocity of its origin */
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t215 = t3 * t151 + t1 * t153 + (TWO_FINGERS_C(0.045) * t158 + t197 * t214);
+    const two_fingers_real_t t216 = TWO_FINGERS_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const two_fingers_real_t t217 = parameters[XX4R] - t216;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t218 = TWO_FINGERS_C(2.0) * (parameters[XY4] * t22 - t18 * t217 + t215);
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t219 = parameters[XY4] * t18 + t22 * t216 - (t1 * t151 - t3 * t153
+        - t202 * t214);
+    const two_fingers_real_t t220 = TWO_FINGERS_C(2.0) * t219; /* link right_1: derivatives */
+    const two_fingers_real_t t221 = parameters[XZ4R] + t200; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t222 = parameters[YZ4] + t201;
+    const two_fingers_real_t t223 = TWO_FINGERS_C(0.09) * t197;
+    const two_fingers_real_t t224 = parameters[ZZ4R] + (parameters[ZZ5] - t223);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t225 = t221 * t40 - t222 * t43 - t224 * t208 + (t18 * t218 + t22 * t220);
+    const two_fingers_real_t t226 = t197 - parameters[MX4R]; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t227 = parameters[MY4] + t202;
+    input_by_q[18] = TWO_FINGERS_C(1.6666666666666667) * (t227 * t134 - t226 * t132 + t225);
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t228 = t3 * (t170 - t176) - t1 * (t174 + t171);
+    const two_fingers_real_t t229 = t3 * t228;
+    const two_fingers_real_t t230 = t3 * t165 + t1 * t164;
+    const two_fingers_real_t t231 = TWO_FINGERS_C(0.045) * t230;
+    const two_fingers_real_t t232 = TWO_FINGERS_C(0.045) * dq[3]; /* link right_2: velocity of its origin */
+    const two_fingers_real_t t233 = t202 * t232; /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t234 = t233 - t231;
+    const two_fingers_real_t t235 = parameters[XZ4R] * t18;
+    const two_fingers_real_t t236 = parameters[XY4] * dq[3];
+    const two_fingers_real_t t237 = t235 - t236 + (t234 + (t176 + t229 + t231));
+    const two_fingers_real_t t238 = TWO_FINGERS_C(2.0) * t18;
+    const two_fingers_real_t t239 = t1 * t228;
+    const two_fingers_real_t t240 = parameters[YZ4] * t18 + dq[3] * t216 + (t171 + t239);
+    const two_fingers_real_t t241 = TWO_FINGERS_C(-2.0) * t22;
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t242 = t3 * parameters[XX5R] + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t1);
+    const two_fingers_real_t t243 = parameters[XY4] + (parameters[XY5] + t1 * t242
+        + TWO_FINGERS_C(-0.045) * t202);
+    const two_fingers_real_t t244 = t3 * t242;
+    const two_fingers_real_t t245 = parameters[XX4R] + t244;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t246 = t238 * t237 + t241 * t240 + (t245 * t40 - t243 * t43 - t221 * t208);
+    const two_fingers_real_t t247 = t1 * t165 - t3 * t164; /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t248 = dq[3] * t217 - parameters[XZ4R] * t22 + (t174 + t239
+        + (TWO_FINGERS_C(0.045) * t247 + t197 * t232));
+    const two_fingers_real_t t249 = parameters[YZ4] * t22;
+    const two_fingers_real_t t250 = t236 - t249 + (t234 + (t170 - t229 - t233));
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t251 = parameters[XX5R] - t244 - t223;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t252 = t238 * t248 + t241 * t250 + (t243 * t40 - t251 * t43 - t222 * t208);
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t253 = parameters[MY4] * t22 - parameters[MX4R] * t18 - t158;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t254 = t2 * (t29 + (t241 * t253 + t227 * t208)) + t0 * (t25 + (t238 * t253
+        - t226 * t208));
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t255 = t247 - parameters[MX4R] * dq[3];
+    const two_fingers_real_t t256 = parameters[MY4] * dq[3] + t230;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t257 = t238 * t255 - t241 * t256 + (t226 * t43 - t227 * t40);
+    const two_fingers_real_t
+        t258 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(-0.17364817766693028) * t254
+        + TWO_FINGERS_C(0.984807753012208) * t257)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.984807753012208) * t254
+        + TWO_FINGERS_C(0.17364817766693028) * t257);
+    const two_fingers_real_t t259 = t0 * (t60 + t246) + t2 * (t58 + t252) + t258;
+    input_by_q[3] = TWO_FINGERS_C(0.4166666666666667) * t259;
+    const two_fingers_real_t t260 = TWO_FINGERS_C(2.0) * (t249 - t235 + (t181 + t234))
+        + TWO_FINGERS_C(2.0) * (t221 * t18 - t222 * t22);
+    input_by_dq[18] = TWO_FINGERS_C(1.5e3) * parameters[FV4] + TWO_FINGERS_C(1.6666666666666667) * t260;
+    const two_fingers_real_t t261 = parameters[ZZ4R] - t216;
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t262 = t18 * t261 - parameters[YZ4] * dq[3] - (t3 * t188 + t1 * t190);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t263 = t0 * (TWO_FINGERS_C(2.0) * t262 + (t245 * t238 + t243 * t241));
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t264 = parameters[XZ4R] * dq[3] - t22 * t261 + (t3 * t190 - t1 * t188);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t265 = t2 * (TWO_FINGERS_C(2.0) * t264 + (t243 * t238 + t251 * t241));
+    const two_fingers_real_t t266 = t2 * (TWO_FINGERS_C(-2.0) * t255) - t0 * (TWO_FINGERS_C(2.0) * t256);
+    const two_fingers_real_t t267 = t227 * t238 + t226 * t241;
+    const two_fingers_real_t
+        t268 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t266
+        + TWO_FINGERS_C(-0.984807753012208) * t267)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t266
+        + TWO_FINGERS_C(-0.17364817766693028) * t267);
+    input_by_dq[3] = TWO_FINGERS_C(0.4166666666666667) * (t263 + t265 + t268);
+    input_by_ddq[18] = TWO_FINGERS_C(1.6666666666666667) * t224;
+    const two_fingers_real_t t269 = t2 * t227 - t0 * t226; /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t270 = t0 * t221 + t2 * t222 + TWO_FINGERS_C(8.673617379884035e-19) * t269;
+    input_by_ddq[3] = TWO_FINGERS_C(0.4166666666666667) * t270;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t271 = t0 * t218 - t2 * t220 + (TWO_FINGERS_C(0.17364817766693028) * t269 * t211
+        + TWO_FINGERS_C(0.984807753012208) * t269 * t212);
+    input_by_dq[15] = TWO_FINGERS_C(1.6666666666666667) * t271;
+    input_by_ddq[15] = TWO_FINGERS_C(1.6666666666666667) * t270;
+    const two_fingers_real_t t272 = parameters[MX3] * t119 - parameters[MY3] * t118;
+    const two_fingers_real_t t273 = t93 + t81; /* link left_2: force and moment */
+    /* link left_2: derivatives */
+    const two_fingers_real_t t274 = parameters[XZ3] * t75 - parameters[YZ3] * t71 - parameters[ZZ3] * t273;
+    const two_fingers_real_t t275 = TWO_FINGERS_C(0.5) * (parameters[XX3R] + parameters[ZZ3]);
+    const two_fingers_real_t t276 = parameters[XX3R] - t275;
+    const two_fingers_real_t t277 = parameters[XY3] * t73 - t67 * t276;
+    const two_fingers_real_t t278 = TWO_FINGERS_C(2.0) * t277;
+    const two_fingers_real_t t279 = t73 * t275 + parameters[XY3] * t67;
+    const two_fingers_real_t t280 = TWO_FINGERS_C(2.0) * t279;
+    const two_fingers_real_t t281 = TWO_FINGERS_C(1.6666666666666667) * (t272 + (t274 + (t67 * t278
+        + t73 * t280)));
+    input_by_q[12] = t281;
+    const two_fingers_real_t t282 = TWO_FINGERS_C(-2.0) * t67;
+    const two_fingers_real_t t283 = TWO_FINGERS_C(-2.0) * t73;
+    const two_fingers_real_t t284 = parameters[MX3] * t67 - parameters[MY3] * t73;
+    const two_fingers_real_t t285 = t63 * (t123 + (parameters[MY3] * t273 - t283 * t284)) + t65 * (t122
+        - (t282 * t284 + parameters[MX3] * t273));
+    const two_fingers_real_t t286 = t272 + (t274 - (t282 * t277 + t283 * t279)) + TWO_FINGERS_C(0.05) * t285;
+    input_by_q[7] = TWO_FINGERS_C(1.6666666666666667) * t286;
+    const two_fingers_real_t t287 = parameters[XZ3] * t67;
+    const two_fingers_real_t t288 = parameters[XY3] * t68;
+    const two_fingers_real_t t289 = t287 - t288;
+    const two_fingers_real_t t290 = parameters[YZ3] * t67 + t68 * t275;
+    const two_fingers_real_t t291 = t283 * t290 - t282 * t289 + (parameters[XX3R] * t75
+        - parameters[XY3] * t71 - parameters[XZ3] * t273);
+    const two_fingers_real_t t292 = t94 + t291;
+    const two_fingers_real_t t293 = t68 * t276 - parameters[XZ3] * t73;
+    const two_fingers_real_t t294 = parameters[YZ3] * t73;
+    const two_fingers_real_t t295 = t288 - t294;
+    const two_fingers_real_t t296 = t282 * t293 - t283 * t295 + (parameters[YZ3] * t273
+        - parameters[XY3] * t75);
+    const two_fingers_real_t t297 = t89 + t296;
+    const two_fingers_real_t t298 = parameters[MX3] * t68;
+    const two_fingers_real_t t299 = parameters[MY3] * t68;
+    const two_fingers_real_t t300 = t282 * t298 - t283 * t299 - (parameters[MY3] * t75
+        + parameters[MX3] * t71);
+    const two_fingers_real_t t301 = t64 * (t63 * t292 - t65 * t297 + TWO_FINGERS_C(0.05) * t300);
+    const two_fingers_real_t t302 = t62 * (t65 * t292 + t63 * t297) + t301 + TWO_FINGERS_C(0.03) * t300;
+    input_by_q[2] = TWO_FINGERS_C(0.4166666666666667) * t302;
+    input_by_dq[12] = TWO_FINGERS_C(1.5e3) * parameters[FV3];
+    const two_fingers_real_t t303 = t294 - t287;
+    const two_fingers_real_t t304 = TWO_FINGERS_C(2.0) * t303;
+    const two_fingers_real_t t305 = TWO_FINGERS_C(0.05) * (t63 * (TWO_FINGERS_C(-2.0) * t298)
+        + t65 * (TWO_FINGERS_C(-2.0) * t299));
+    const two_fingers_real_t t306 = TWO_FINGERS_C(1.6666666666666667) * (t304 + (parameters[YZ3] * t283
+        - parameters[XZ3] * t282) + t305);
+    input_by_dq[7] = t306;
+    const two_fingers_real_t t307 = t275 - parameters[ZZ3];
+    const two_fingers_real_t t308 = parameters[YZ3] * t68 + t67 * t307;
+    const two_fingers_real_t t309 = TWO_FINGERS_C(-2.0) * t308 + (parameters[XY3] * t283
+        - parameters[XX3R] * t282);
+    const two_fingers_real_t t310 = parameters[XZ3] * t68 + t73 * t307;
+    const two_fingers_real_t t311 = parameters[XY3] * t282 - TWO_FINGERS_C(2.0) * t310;
+    const two_fingers_real_t t312 = parameters[MX3] * t283 + parameters[MY3] * t282;
+    const two_fingers_real_t t313 = t64 * (TWO_FINGERS_C(0.05) * t312 + (t63 * t309 - t65 * t311));
+    const two_fingers_real_t t314 = TWO_FINGERS_C(0.03) * t312 + (t62 * (t65 * t309 + t63 * t311) + t313);
+    input_by_dq[2] = TWO_FINGERS_C(0.4166666666666667) * t314;
+    input_by_ddq[12] = TWO_FINGERS_C(1.5e3) * parameters[IA3]
+        + TWO_FINGERS_C(1.6666666666666667) * parameters[ZZ3];
+    /* link left_2: column of the mass matrix */
+    const two_fingers_real_t t315 = t65 * parameters[MX3] - t63 * parameters[MY3];
+    const two_fingers_real_t t316 = parameters[ZZ3] - TWO_FINGERS_C(-0.05) * t315;
+    const two_fingers_real_t t317 = TWO_FINGERS_C(1.6666666666666667) * t316;
+    input_by_ddq[7] = t317;
+    const two_fingers_real_t t318 = t65 * parameters[XZ3] - t63 * parameters[YZ3];
+    const two_fingers_real_t t319 = t63 * parameters[XZ3] + t65 * parameters[YZ3];
+    const two_fingers_real_t t320 = t62 * t318 + t64 * t319;
+    input_by_ddq[2] = TWO_FINGERS_C(0.4166666666666667) * t320;
+    const two_fingers_real_t t321 = TWO_FINGERS_C(-0.1) * t95; /* link left_2: derivatives */
+    const two_fingers_real_t t322 = t65 * t278 + t63 * t280 - t315 * t321;
+    /* link left_2: column of the mass matrix */
+    const two_fingers_real_t t323 = t65 * parameters[MY3] + t63 * parameters[MX3];
+    const two_fingers_real_t t324 = t63 * t278 - t65 * t280 - t323 * t321; /* link left_2: derivatives */
+    const two_fingers_real_t t325 = t108 + t102; /* link left_2: motion */
+    /* link left_2: derivatives */
+    const two_fingers_real_t t326 = t95 * t322 - t83 * t324 + (t318 * t85 - t319 * t97 - t316 * t325);
+    input_by_q[11] = TWO_FINGERS_C(1.6666666666666667) * (t326 + (t323 * t116 + t315 * t114));
+    const two_fingers_real_t t327 = t304 + t323 * (TWO_FINGERS_C(0.1) * dq[1])
+        + TWO_FINGERS_C(2.0) * (t318 * t95 - t319 * t83);
+    input_by_dq[11] = TWO_FINGERS_C(1.6666666666666667) * t327;
+    const two_fingers_real_t t328 = TWO_FINGERS_C(0.06) * dq[0];
+    const two_fingers_real_t t329 = t62 * t322 + t64 * t324 + (t64 * t323 + t62 * t315) * t328;
+    input_by_dq[10] = TWO_FINGERS_C(1.6666666666666667) * t329;
+    input_by_ddq[11] = t317;
+    input_by_ddq[10] = TWO_FINGERS_C(1.6666666666666667) * t320;
+    const two_fingers_real_t t330 = TWO_FINGERS_C(-0.05) * t95; /* link left_2: velocity of its origin */
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t331 = t65 * t277 + t63 * t279 + (TWO_FINGERS_C(0.05) * t284 - t315 * t330);
+    const two_fingers_real_t t332 = TWO_FINGERS_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const two_fingers_real_t t333 = parameters[XX2R] - t332;
+    /* link left_1: derivatives */
+    const two_fingers_real_t t334 = TWO_FINGERS_C(2.0) * (parameters[XY2] * t83 - t95 * t333 + t331);
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t335 = parameters[XY2] * t95 + t83 * t332 - (t63 * t277 - t65 * t279
+        - t323 * t330);
+    const two_fingers_real_t t336 = TWO_FINGERS_C(2.0) * t335; /* link left_1: derivatives */
+    const two_fingers_real_t t337 = parameters[XZ2R] + t318; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t338 = parameters[YZ2] + t319;
+    const two_fingers_real_t t339 = TWO_FINGERS_C(-0.1) * t315;
+    const two_fingers_real_t t340 = parameters[ZZ2R] + (parameters[ZZ3] - t339);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t341 = t337 * t85 - t338 * t97 - t340 * t325 + (t95 * t334 + t83 * t336);
+    const two_fingers_real_t t342 = parameters[MX2R] + t315; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t343 = parameters[MY2] + t323;
+    input_by_q[6] = TWO_FINGERS_C(1.6666666666666667) * (t342 * t114 + t343 * t116 + t341);
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t344 = t65 * (t289 - t295) - t63 * (t293 + t290);
+    const two_fingers_real_t t345 = t65 * t344;
+    const two_fingers_real_t t346 = t65 * t299 + t63 * t298;
+    const two_fingers_real_t t347 = TWO_FINGERS_C(0.05) * t346;
+    const two_fingers_real_t t348 = TWO_FINGERS_C(0.05) * dq[1]; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t349 = t323 * t348; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t350 = t349 - t347;
+    const two_fingers_real_t t351 = parameters[XZ2R] * t95;
+    const two_fingers_real_t t352 = parameters[XY2] * dq[1];
+    const two_fingers_real_t t353 = t351 - t352 + (t350 + (t295 + t345 + t347));
+    const two_fingers_real_t t354 = TWO_FINGERS_C(2.0) * t95;
+    const two_fingers_real_t t355 = t63 * t344;
+    const two_fingers_real_t t356 = parameters[YZ2] * t95 + dq[1] * t332 + (t290 + t355);
+    const two_fingers_real_t t357 = TWO_FINGERS_C(-2.0) * t83;
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t358 = t65 * parameters[XX3R] + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t63);
+    const two_fingers_real_t t359 = parameters[XY2] + (parameters[XY3] + t63 * t358
+        + TWO_FINGERS_C(-0.05) * t323);
+    const two_fingers_real_t t360 = t65 * t358;
+    const two_fingers_real_t t361 = parameters[XX2R] + t360;
+    /* link left_1: derivatives */
+    const two_fingers_real_t t362 = t354 * t353 + t357 * t356 + (t361 * t85 - t359 * t97 - t337 * t325);
+    const two_fingers_real_t t363 = t63 * t299 - t65 * t298; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t364 = dq[1] * t333 - parameters[XZ2R] * t83 + (t293 + t355
+        + (TWO_FINGERS_C(0.05) * t363 - t315 * t348));
+    const two_fingers_real_t t365 = parameters[YZ2] * t83;
+    const two_fingers_real_t t366 = t352 - t365 + (t350 + (t289 - t345 - t349));
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t367 = parameters[XX3R] - t360 - t339;
+    /* link left_1: derivatives */
+    const two_fingers_real_t t368 = t354 * t364 + t357 * t366 + (t359 * t85 - t367 * t97 - t338 * t325);
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t369 = t363 - parameters[MX2R] * dq[1];
+    const two_fingers_real_t t370 = parameters[MY2] * dq[1] + t346;
+    /* link left_1: derivatives */
+    const two_fingers_real_t t371 = t354 * t369 - t357 * t370 - (t343 * t85 + t342 * t97);
+    const two_fingers_real_t t372 = t62 * (t109 + t362) + t64 * (t104 + t368) + TWO_FINGERS_C(0.03) * t371;
+    input_by_q[1] = TWO_FINGERS_C(0.4166666666666667) * t372;
+    const two_fingers_real_t t373 = TWO_FINGERS_C(2.0) * (t365 - t351 + (t303 + t350))
+        + TWO_FINGERS_C(2.0) * (t337 * t95 - t338 * t83);
+    input_by_dq[6] = TWO_FINGERS_C(1.5e3) * parameters[FV2] + TWO_FINGERS_C(1.6666666666666667) * t373;
+    const two_fingers_real_t t374 = parameters[ZZ2R] - t332;
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t375 = t95 * t374 - parameters[YZ2] * dq[1] - (t65 * t308 + t63 * t310);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t376 = t62 * (TWO_FINGERS_C(2.0) * t375 + (t361 * t354 + t359 * t357));
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t377 = parameters[XZ2R] * dq[1] - t83 * t374 + (t65 * t310 - t63 * t308);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t378 = t64 * (TWO_FINGERS_C(2.0) * t377 + (t359 * t354 + t367 * t357));
+    const two_fingers_real_t t379 = t376 + t378 + TWO_FINGERS_C(0.03) * (t342 * t357 - t343 * t354);
+    input_by_dq[1] = TWO_FINGERS_C(0.4166666666666667) * t379;
+    input_by_ddq[6] = TWO_FINGERS_C(1.6666666666666667) * t340;
+    const two_fingers_real_t t380 = t62 * t337 + t64 * t338; /* link left_1: column of the mass matrix */
+    input_by_ddq[1] = TWO_FINGERS_C(0.4166666666666667) * t380;
+    /* link left_1: derivatives */
+    const two_fingers_real_t t381 = t62 * t334 - t64 * t336 + (t64 * t343 + t62 * t342) * t328;
+    input_by_dq[5] = TWO_FINGERS_C(1.6666666666666667) * t381;
+    input_by_ddq[5] = TWO_FINGERS_C(1.6666666666666667) * t380;
+    /* link right_1: inertia, momentum beyond */
+    const two_fingers_real_t t382 = t2 * (t2 * (t250 - t237) + t0 * (t240 + t248));
+    const two_fingers_real_t t383 = TWO_FINGERS_C(0.07) * (t0 * t256 + t2 * t255);
+    const two_fingers_real_t t384 = t0 * t255 - t2 * t256;
+    const two_fingers_real_t
+        t385 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t384
+        + TWO_FINGERS_C(-0.17364817766693028) * t253)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t384
+        + TWO_FINGERS_C(0.984807753012208) * t253);
+    const two_fingers_real_t t386 = t0 * t227 + t2 * t226; /* link right_1: column of the mass matrix */
+    /* link right_1: inertia, momentum beyond */
+    const two_fingers_real_t
+        t387 = TWO_FINGERS_C(0.17364817766693028) * t386 * (TWO_FINGERS_C(0.03446827135542729) * dq[0])
+        - TWO_FINGERS_C(-0.984807753012208) * t386 * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
+    /* link left_1: inertia, momentum beyond */
+    const two_fingers_real_t t388 = t64 * (t64 * (t366 - t353) + t62 * (t356 + t364));
+    const two_fingers_real_t t389 = TWO_FINGERS_C(0.08) * (t62 * t370 + t64 * t369);
+    const two_fingers_real_t t390 = TWO_FINGERS_C(0.03) * (t62 * t369 - t64 * t370) - t389 + (t353 + t388
+        + t389);
+    const two_fingers_real_t t391 = t385 - t383 + t387 + (t237 + t382 + t383) + t390;
+    input_by_dq[0] = TWO_FINGERS_C(1.5e3) * parameters[FV1] + TWO_FINGERS_C(0.8333333333333334) * t391;
+    /* link right_1: inertia of it and all beyond */
+    const two_fingers_real_t t392 = t2 * (t2 * (t251 - t245) + t243 * (TWO_FINGERS_C(2.0) * t0));
+    /* link left_1: inertia of it and all beyond */
+    const two_fingers_real_t t393 = t64 * (t64 * (t367 - t361) + t359 * (TWO_FINGERS_C(2.0) * t62));
+    const two_fingers_real_t t394 = t361 + t393 + TWO_FINGERS_C(0.06) * (t64 * t342 - t62 * t343);
+    const two_fingers_real_t t395 = TWO_FINGERS_C(0.4166666666666667) * (parameters[ZZ1R] + (t245 + t392
+        + TWO_FINGERS_C(-0.06999999999999999) * t386) + t394);
+    input_by_ddq[0] = t395;
     /* always zero */
     input_by_q[0] = TWO_FINGERS_C(0.0);
     input_by_q[5] = input_by_q[8] = input_by_q[9] = TWO_FINGERS_C(0.0);

@@ -96,7 +96,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -386,450 +386,438 @@ two_fingers_status_t two_fingers_inverse_dynamics_derivatives_standard(
     const two_fingers_real_t t176 = TWO_FINGERS_C(30.0) * dq[4] * parameters[FV5] + t175 * parameters[FC5]
         + TWO_FINGERS_C(30.0) * ddq[4] * parameters[IA5];
     input[4] = TWO_FINGERS_C(50.0) * t176 + TWO_FINGERS_C(1.6666666666666667) * t169;
-    const two_fingers_real_t t177 = TWO_FINGERS_C(0.5) * (parameters[ZZ5] + (parameters[XX5]
+    const two_fingers_real_t t177 = t19 * parameters[MX5] - t34 * parameters[MY5];
+    /* link right_2: derivatives */
+    const two_fingers_real_t t178 = t31 * parameters[XZ5] - t38 * parameters[YZ5] - t51 * parameters[ZZ5];
+    const two_fingers_real_t t179 = TWO_FINGERS_C(0.5) * (parameters[ZZ5] + (parameters[XX5]
         + parameters[YY5]));
-    const two_fingers_real_t t178 = parameters[XX5] - t177;
-    const two_fingers_real_t t179 = t24 * t178 - t27 * parameters[XZ5];
-    const two_fingers_real_t t180 = parameters[YY5] - t177;
-    const two_fingers_real_t t181 = t24 * t180 - t22 * parameters[YZ5];
-    const two_fingers_real_t t182 = t22 * parameters[XZ5];
-    const two_fingers_real_t t183 = t24 * parameters[XY5];
-    const two_fingers_real_t t184 = t182 - t183;
-    const two_fingers_real_t t185 = t27 * parameters[YZ5];
-    const two_fingers_real_t t186 = t183 - t185;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t187 = t12 * (t184 - t186) + t18 * (t181 - t179);
-    const two_fingers_real_t t188 = t12 * t187;
-    const two_fingers_real_t t189 = t24 * parameters[MY5] - t22 * parameters[MZ5];
-    const two_fingers_real_t t190 = t27 * parameters[MZ5] - t24 * parameters[MX5];
-    const two_fingers_real_t t191 = t12 * t189 - t18 * t190;
-    const two_fingers_real_t t192 = TWO_FINGERS_C(0.045) * t191;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t193 = t12 * parameters[MY5] + t18 * parameters[MX5];
-    const two_fingers_real_t t194 = TWO_FINGERS_C(-0.045) * dq[3]; /* link right_2: velocity of its origin */
-    const two_fingers_real_t t195 = t193 * t194; /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t196 = TWO_FINGERS_C(-0.045) * t7; /* link right_2: velocity of its origin */
-    const two_fingers_real_t t197 = parameters[MZ5] * t196; /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t198 = t197 - t195 - t192;
-    const two_fingers_real_t t199 = t7 * parameters[XZ4];
-    const two_fingers_real_t t200 = dq[3] * parameters[XY4];
-    const two_fingers_real_t t201 = t199 - t200 + (t198 + (t186 + t188 + t192));
-    const two_fingers_real_t t202 = t14 * parameters[YZ4];
-    const two_fingers_real_t t203 = t200 - t202 + (t198 + (t184 - t188 + t195));
-    const two_fingers_real_t t204 = t18 * t187;
-    const two_fingers_real_t t205 = TWO_FINGERS_C(0.5) * (parameters[ZZ4] + (parameters[XX4]
-        + parameters[YY4]));
-    const two_fingers_real_t t206 = t205 - parameters[YY4];
-    const two_fingers_real_t t207 = t7 * parameters[YZ4] + dq[3] * t206 + (t204 - t181);
-    const two_fingers_real_t t208 = t18 * t189 + t12 * t190;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t209 = t12 * parameters[MX5] - t18 * parameters[MY5];
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t210 = TWO_FINGERS_C(0.045) * parameters[M5];
-    const two_fingers_real_t t211 = t209 + t210;
-    const two_fingers_real_t t212 = parameters[XX4] - t205;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t213 = dq[3] * t212 - t14 * parameters[XZ4] + (t179 + t204
-        + (TWO_FINGERS_C(0.045) * t208 + t211 * t194));
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t214 = t4 * (t4 * (t203 - t201) + t5 * (t207 + t213));
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t215 = t7 * parameters[MZ4] - dq[3] * parameters[MY4] - t191;
-    const two_fingers_real_t t216 = t14 * parameters[MZ4] - dq[3] * parameters[MX4] + (t208
-        + parameters[M5] * t194);
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t217 = TWO_FINGERS_C(0.07) * (t5 * t215 - t4 * t216);
-    const two_fingers_real_t t218 = t4 * t215 + t5 * t216;
-    const two_fingers_real_t t219 = t22 * parameters[MX5] - t27 * parameters[MY5];
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t220 = t14 * parameters[MY4] - t7 * parameters[MX4] + (parameters[M5] * t196
-        - t219);
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t
-        t221 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t218
-        + TWO_FINGERS_C(-0.17364817766693028) * t220)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t218
-        + TWO_FINGERS_C(0.984807753012208) * t220);
-    const two_fingers_real_t t222 = parameters[MY4] + t193; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t223 = parameters[MX4] + t211;
-    const two_fingers_real_t t224 = t5 * t222 - t4 * t223; /* link right_1: column of the mass matrix */
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t225 = parameters[MZ4] + parameters[MZ5];
-    /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t226 = TWO_FINGERS_C(-0.984807753012208) * t224
-        + TWO_FINGERS_C(-0.17364817766693028) * t225;
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t227 = parameters[M4] + parameters[M5];
-    /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t228 = TWO_FINGERS_C(0.03446827135542729) * t227;
-    const two_fingers_real_t t229 = TWO_FINGERS_C(0.17364817766693028) * t224
-        + TWO_FINGERS_C(-0.984807753012208) * t225;
-    const two_fingers_real_t t230 = TWO_FINGERS_C(0.00607768621834256) * t227;
-    /* link right_1: inertia, momentum beyond */
-    const two_fingers_real_t t231 = (t229 - t230) * (TWO_FINGERS_C(0.03446827135542729) * dq[0]) - (t226
-        + t228) * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
-    const two_fingers_real_t t232 = TWO_FINGERS_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
-        + parameters[YY3]));
-    const two_fingers_real_t t233 = parameters[XX3] - t232;
-    const two_fingers_real_t t234 = t111 * t233 - t115 * parameters[XZ3];
-    const two_fingers_real_t t235 = parameters[YY3] - t232;
-    const two_fingers_real_t t236 = t111 * t235 - t110 * parameters[YZ3];
-    const two_fingers_real_t t237 = t110 * parameters[XZ3];
-    const two_fingers_real_t t238 = t111 * parameters[XY3];
-    const two_fingers_real_t t239 = t237 - t238;
-    const two_fingers_real_t t240 = t115 * parameters[YZ3];
-    const two_fingers_real_t t241 = t238 - t240;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t242 = t98 * (t239 - t241) + t92 * (t236 - t234);
-    const two_fingers_real_t t243 = t98 * t242;
-    const two_fingers_real_t t244 = t111 * parameters[MY3] - t110 * parameters[MZ3];
-    const two_fingers_real_t t245 = t115 * parameters[MZ3] - t111 * parameters[MX3];
-    const two_fingers_real_t t246 = t98 * t244 - t92 * t245;
-    const two_fingers_real_t t247 = TWO_FINGERS_C(0.05) * t246;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t248 = t98 * parameters[MY3] + t92 * parameters[MX3];
-    const two_fingers_real_t t249 = TWO_FINGERS_C(-0.05) * dq[1]; /* link left_2: velocity of its origin */
-    const two_fingers_real_t t250 = t248 * t249; /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t251 = TWO_FINGERS_C(-0.05) * t88; /* link left_2: velocity of its origin */
-    const two_fingers_real_t t252 = parameters[MZ3] * t251; /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t253 = t252 - t250 - t247;
-    const two_fingers_real_t t254 = t88 * parameters[XZ2];
-    const two_fingers_real_t t255 = dq[1] * parameters[XY2];
-    const two_fingers_real_t t256 = t254 - t255 + (t253 + (t241 + t243 + t247));
-    const two_fingers_real_t t257 = t94 * parameters[YZ2];
-    const two_fingers_real_t t258 = t255 - t257 + (t253 + (t239 - t243 + t250));
-    const two_fingers_real_t t259 = t92 * t242;
-    const two_fingers_real_t t260 = TWO_FINGERS_C(0.5) * (parameters[ZZ2] + (parameters[XX2]
-        + parameters[YY2]));
-    const two_fingers_real_t t261 = t260 - parameters[YY2];
-    const two_fingers_real_t t262 = t88 * parameters[YZ2] + dq[1] * t261 + (t259 - t236);
-    const two_fingers_real_t t263 = t92 * t244 + t98 * t245;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t264 = t98 * parameters[MX3] - t92 * parameters[MY3];
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t265 = TWO_FINGERS_C(0.05) * parameters[M3];
-    const two_fingers_real_t t266 = t264 + t265;
-    const two_fingers_real_t t267 = parameters[XX2] - t260;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t268 = dq[1] * t267 - t94 * parameters[XZ2] + (t234 + t259
-        + (TWO_FINGERS_C(0.05) * t263 + t266 * t249));
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t269 = t85 * (t85 * (t258 - t256) + t86 * (t262 + t268));
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t270 = t88 * parameters[MZ2] - dq[1] * parameters[MY2] - t246;
-    const two_fingers_real_t t271 = t94 * parameters[MZ2] - dq[1] * parameters[MX2] + (t263
-        + parameters[M3] * t249);
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t272 = TWO_FINGERS_C(0.08) * (t86 * t270 - t85 * t271);
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t273 = parameters[MZ2] + parameters[MZ3];
-    /* link left_1: inertia, momentum beyond */
-    const two_fingers_real_t t274 = TWO_FINGERS_C(0.03) * (t85 * t270 + t86 * t271) + t272
-        + t273 * (TWO_FINGERS_C(-0.03) * dq[0]);
-    const two_fingers_real_t t275 = t221 + t217 + t231 + (t201 + t214 - t217) + (t274 + (t256 + t269 - t272));
-    input_by_dq[0] = TWO_FINGERS_C(1.5e3) * parameters[FV1] + TWO_FINGERS_C(0.8333333333333334) * t275;
-    const two_fingers_real_t t276 = t115 * parameters[XY3] - t110 * t233;
-    const two_fingers_real_t t277 = t110 * parameters[XY3] - t115 * t235;
-    const two_fingers_real_t t278 = t110 * parameters[MX3] - t115 * parameters[MY3];
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t279 = t98 * t276 + t92 * t277 + (TWO_FINGERS_C(0.05) * t278 - t266 * t251);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t280 = TWO_FINGERS_C(2.0) * (t94 * parameters[XY2] - t88 * t267 + t279);
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t281 = t88 * parameters[XY2] + t94 * t261 - (t92 * t276 - t98 * t277
-        - t248 * t251);
-    const two_fingers_real_t t282 = TWO_FINGERS_C(2.0) * t281; /* link left_1: derivatives */
-    const two_fingers_real_t t283 = parameters[MY2] + t248; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t284 = parameters[MX2] + t266;
-    const two_fingers_real_t t285 = TWO_FINGERS_C(0.06) * dq[0];
-    /* link left_1: derivatives */
-    const two_fingers_real_t t286 = t86 * t280 - t85 * t282 + (t85 * t283 + t86 * t284) * t285;
-    input_by_dq[5] = TWO_FINGERS_C(1.6666666666666667) * t286;
-    const two_fingers_real_t t287 = TWO_FINGERS_C(2.0) * t276; /* link left_2: derivatives */
-    const two_fingers_real_t t288 = TWO_FINGERS_C(2.0) * t277;
-    const two_fingers_real_t t289 = TWO_FINGERS_C(-0.1) * t88;
-    const two_fingers_real_t t290 = t98 * t287 + t92 * t288 - t264 * t289;
-    const two_fingers_real_t t291 = t92 * t287 - t98 * t288 - t248 * t289;
-    const two_fingers_real_t t292 = t86 * t290 + t85 * t291 + (t85 * t248 + t86 * t264) * t285;
-    input_by_dq[10] = TWO_FINGERS_C(1.6666666666666667) * t292;
-    const two_fingers_real_t t293 = t27 * parameters[XY5] - t22 * t178;
-    const two_fingers_real_t t294 = t22 * parameters[XY5] - t27 * t180;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t295 = t12 * t293 + t18 * t294 + (TWO_FINGERS_C(0.045) * t219 - t211 * t196);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t296 = TWO_FINGERS_C(2.0) * (t14 * parameters[XY4] - t7 * t212 + t295);
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t297 = t7 * parameters[XY4] + t14 * t206 - (t18 * t293 - t12 * t294
-        - t193 * t196);
-    const two_fingers_real_t t298 = TWO_FINGERS_C(2.0) * t297; /* link right_1: derivatives */
-    const two_fingers_real_t t299 = t4 * t222 + t5 * t223; /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t300 = TWO_FINGERS_C(0.01215537243668512) * dq[0];
-    const two_fingers_real_t t301 = TWO_FINGERS_C(0.06893654271085457) * dq[0];
-    /* link right_1: derivatives */
-    const two_fingers_real_t t302 = t5 * t296 - t4 * t298 + (TWO_FINGERS_C(0.17364817766693028) * t299 * t300
-        + TWO_FINGERS_C(0.984807753012208) * t299 * t301);
-    input_by_dq[15] = TWO_FINGERS_C(1.6666666666666667) * t302;
-    const two_fingers_real_t t303 = TWO_FINGERS_C(2.0) * t293; /* link right_2: derivatives */
-    const two_fingers_real_t t304 = TWO_FINGERS_C(2.0) * t294;
-    const two_fingers_real_t t305 = TWO_FINGERS_C(-0.09) * t7;
-    const two_fingers_real_t t306 = t12 * t303 + t18 * t304 - t209 * t305;
-    const two_fingers_real_t t307 = t18 * t303 - t12 * t304 - t193 * t305;
-    const two_fingers_real_t t308 = t4 * t193 + t5 * t209; /* link right_2: column of the mass matrix */
-    /* link right_2: derivatives */
-    const two_fingers_real_t t309 = t5 * t306 + t4 * t307 + (TWO_FINGERS_C(0.17364817766693028) * t308 * t300
-        + TWO_FINGERS_C(0.984807753012208) * t308 * t301);
-    input_by_dq[20] = TWO_FINGERS_C(1.6666666666666667) * t309;
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t310 = t12 * t167 + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t18);
-    const two_fingers_real_t t311 = t12 * t310;
-    const two_fingers_real_t t312 = TWO_FINGERS_C(0.045) * (t210 - TWO_FINGERS_C(-2.0) * t209);
-    const two_fingers_real_t t313 = parameters[YY4] + (parameters[XX5] - t311 + t312);
-    const two_fingers_real_t t314 = parameters[XX4] + (parameters[YY5] + t311);
-    const two_fingers_real_t t315 = parameters[XY4] + (parameters[XY5] + t18 * t310
-        + TWO_FINGERS_C(-0.045) * t193);
-    /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t316 = t4 * (t4 * (t313 - t314) + t315 * (TWO_FINGERS_C(2.0) * t5));
-    const two_fingers_real_t t317 = TWO_FINGERS_C(0.03446827135542729) * (t228 + TWO_FINGERS_C(2.0) * t226)
-        + TWO_FINGERS_C(0.00607768621834256) * (t230 + TWO_FINGERS_C(-2.0) * t229);
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t318 = t98 * t157 + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t92);
-    const two_fingers_real_t t319 = t98 * t318;
-    const two_fingers_real_t t320 = TWO_FINGERS_C(0.05) * (t265 - TWO_FINGERS_C(-2.0) * t264);
-    const two_fingers_real_t t321 = parameters[YY2] + (parameters[XX3] - t319 + t320);
-    const two_fingers_real_t t322 = parameters[XX2] + (parameters[YY3] + t319);
-    const two_fingers_real_t t323 = parameters[XY2] + (parameters[XY3] + t92 * t318
-        + TWO_FINGERS_C(-0.05) * t248);
-    /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t324 = t85 * (t85 * (t321 - t322) + t323 * (TWO_FINGERS_C(2.0) * t86));
-    const two_fingers_real_t t325 = TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
-        + TWO_FINGERS_C(2.0) * (t85 * t284 - t86 * t283);
-    const two_fingers_real_t t326 = parameters[ZZ1] + (t314 + t316 + t317) + (t322 + t324
-        + TWO_FINGERS_C(0.03) * t325);
-    input_by_ddq[0] = TWO_FINGERS_C(1.5e3) * parameters[IA1] + TWO_FINGERS_C(0.4166666666666667) * t326;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t327 = t98 * parameters[XZ3] - t92 * parameters[YZ3];
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t328 = parameters[XZ2] + (t327 + TWO_FINGERS_C(-0.05) * parameters[MZ3]);
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t329 = t92 * parameters[XZ3] + t98 * parameters[YZ3];
-    const two_fingers_real_t t330 = parameters[YZ2] + t329; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t331 = t86 * t328 + t85 * t330; /* link left_1: column of the mass matrix */
-    input_by_ddq[5] = TWO_FINGERS_C(1.6666666666666667) * t331;
-    const two_fingers_real_t t332 = t86 * t327 + t85 * t329; /* link left_2: column of the mass matrix */
-    input_by_ddq[10] = TWO_FINGERS_C(1.6666666666666667) * t332;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t333 = t12 * parameters[XZ5] - t18 * parameters[YZ5];
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t334 = parameters[XZ4] + (t333 + TWO_FINGERS_C(-0.045) * parameters[MZ5]);
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t335 = t18 * parameters[XZ5] + t12 * parameters[YZ5];
-    const two_fingers_real_t t336 = parameters[YZ4] + t335; /* link right_2: inertia of it and all beyond */
-    /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t337 = t5 * t334 + t4 * t336 + TWO_FINGERS_C(8.673617379884035e-19) * t299;
-    input_by_ddq[15] = TWO_FINGERS_C(1.6666666666666667) * t337;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t338 = t5 * t333 + t4 * t335 + TWO_FINGERS_C(8.673617379884035e-19) * t308;
-    input_by_ddq[20] = TWO_FINGERS_C(1.6666666666666667) * t338;
-    const two_fingers_real_t t339 = TWO_FINGERS_C(2.0) * t88;
-    const two_fingers_real_t t340 = TWO_FINGERS_C(-2.0) * t94;
-    /* link left_1: derivatives */
-    const two_fingers_real_t t341 = t339 * t256 + t340 * t262 + (t101 * t322 - t134 * t323 - t146 * t328);
-    const two_fingers_real_t t342 = t339 * t268 + t340 * t258 + (t101 * t323 - t134 * t321 - t146 * t330);
-    const two_fingers_real_t t343 = t86 * (t145 + (t341 - t87 * t273)) + t85 * (t138 + (t342 - t93 * t273));
-    const two_fingers_real_t t344 = t339 * t271 + t340 * t270 - (t101 * t283 + t134 * t284);
-    input_by_q[1] = TWO_FINGERS_C(0.4166666666666667) * (t343 + TWO_FINGERS_C(0.03) * t344);
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t345 = parameters[ZZ2] + (parameters[ZZ3] + t320);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t346 = t101 * t328 - t134 * t330 - t146 * t345 + (t88 * t280 + t94 * t282);
-    input_by_q[6] = TWO_FINGERS_C(1.6666666666666667) * (t87 * t284 + t93 * t283 + t346);
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t347 = parameters[ZZ3] - TWO_FINGERS_C(-0.05) * t264;
-    /* link left_2: derivatives */
-    const two_fingers_real_t t348 = t88 * t290 - t94 * t291 + (t101 * t327 - t134 * t329 - t146 * t347);
-    input_by_q[11] = TWO_FINGERS_C(1.6666666666666667) * (t348 + (t93 * t248 + t87 * t264));
-    const two_fingers_real_t t349 = t232 - parameters[ZZ3];
-    const two_fingers_real_t t350 = t111 * parameters[YZ3] + t110 * t349;
-    const two_fingers_real_t t351 = t111 * parameters[XZ3] + t115 * t349;
-    const two_fingers_real_t t352 = parameters[ZZ2] - t260;
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t353 = t88 * t352 - dq[1] * parameters[YZ2] - (t98 * t350 + t92 * t351);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t354 = t86 * (TWO_FINGERS_C(2.0) * t353 + (t322 * t339 + t323 * t340));
-    /* link left_2: inertia, momentum beyond */
-    const two_fingers_real_t t355 = dq[1] * parameters[XZ2] - t94 * t352 + (t98 * t351 - t92 * t350
-        + parameters[MZ3] * t249);
-    /* link left_1: derivatives */
-    const two_fingers_real_t t356 = t85 * (TWO_FINGERS_C(2.0) * t355 + (t323 * t339 + t321 * t340));
-    const two_fingers_real_t t357 = t354 + t356 + TWO_FINGERS_C(0.03) * (t284 * t340 - t283 * t339);
-    input_by_dq[1] = TWO_FINGERS_C(0.4166666666666667) * t357;
-    const two_fingers_real_t t358 = t240 - t237;
-    const two_fingers_real_t t359 = TWO_FINGERS_C(2.0) * (t257 - t254 + (t253 + (t358 - t252)))
-        + TWO_FINGERS_C(2.0) * (t88 * t328 - t94 * t330);
-    input_by_dq[6] = TWO_FINGERS_C(1.5e3) * parameters[FV2] + TWO_FINGERS_C(1.6666666666666667) * t359;
-    const two_fingers_real_t t360 = TWO_FINGERS_C(2.0) * t358; /* link left_2: derivatives */
-    const two_fingers_real_t t361 = t360 + t248 * (TWO_FINGERS_C(0.1) * dq[1])
-        + TWO_FINGERS_C(2.0) * (t88 * t327 - t94 * t329);
-    input_by_dq[11] = TWO_FINGERS_C(1.6666666666666667) * t361;
-    input_by_ddq[1] = TWO_FINGERS_C(0.4166666666666667) * t331;
-    input_by_ddq[6] = TWO_FINGERS_C(1.5e3) * parameters[IA2] + TWO_FINGERS_C(1.6666666666666667) * t345;
-    const two_fingers_real_t t362 = TWO_FINGERS_C(1.6666666666666667) * t347;
-    input_by_ddq[11] = t362;
-    const two_fingers_real_t t363 = TWO_FINGERS_C(-2.0) * t110;
-    const two_fingers_real_t t364 = TWO_FINGERS_C(-2.0) * t115;
-    const two_fingers_real_t t365 = t114 * parameters[XX3] - t108 * parameters[XY3] - t139 * parameters[XZ3]
-        - (t363 * t239 + t364 * t236);
-    const two_fingers_real_t t366 = t132 + (t365 - t127);
-    const two_fingers_real_t t367 = t363 * t234 - t364 * t241 + (t108 * parameters[YY3]
-        - t114 * parameters[XY3] + t139 * parameters[YZ3]);
-    const two_fingers_real_t t368 = t125 - (t100 - t367);
-    const two_fingers_real_t t369 = t363 * t245 + t364 * t244 + (t114 * parameters[MY3]
-        + t108 * parameters[MX3]);
-    const two_fingers_real_t t370 = t85 * (t92 * t366 - t98 * t368 + TWO_FINGERS_C(-0.05) * t369);
-    const two_fingers_real_t t371 = t86 * (t98 * t366 + t92 * t368) + t370 + TWO_FINGERS_C(-0.03) * t369;
-    input_by_q[2] = TWO_FINGERS_C(0.4166666666666667) * t371;
-    const two_fingers_real_t t372 = t156 + (t154 - t364 * t278 + (t139 * parameters[MY3] - t155));
-    const two_fingers_real_t t373 = t153 + (t151 - t363 * t278 - (t152 + t139 * parameters[MX3]));
-    const two_fingers_real_t t374 = t126 * parameters[MX3] - t99 * parameters[MY3];
-    const two_fingers_real_t t375 = t114 * parameters[XZ3] - t108 * parameters[YZ3] - t139 * parameters[ZZ3];
-    const two_fingers_real_t t376 = t374 + (t375 - (t363 * t276 + t364 * t277))
-        + TWO_FINGERS_C(0.05) * (t92 * t372 + t98 * t373);
-    input_by_q[7] = TWO_FINGERS_C(1.6666666666666667) * t376;
-    const two_fingers_real_t t377 = TWO_FINGERS_C(1.6666666666666667) * (t374 + (t375 + (t110 * t287
-        + t115 * t288)));
-    input_by_q[12] = t377;
-    const two_fingers_real_t t378 = TWO_FINGERS_C(-2.0) * t350 + (parameters[XY3] * t364
-        - parameters[XX3] * t363);
-    const two_fingers_real_t t379 = TWO_FINGERS_C(2.0) * t351 - (parameters[XY3] * t363
-        - parameters[YY3] * t364);
-    const two_fingers_real_t t380 = parameters[MX3] * t364 + parameters[MY3] * t363;
-    const two_fingers_real_t t381 = t85 * (TWO_FINGERS_C(0.05) * t380 + (t92 * t378 + t98 * t379));
-    const two_fingers_real_t t382 = TWO_FINGERS_C(0.03) * t380 + (t86 * (t98 * t378 - t92 * t379) + t381);
-    input_by_dq[2] = TWO_FINGERS_C(0.4166666666666667) * t382;
-    const two_fingers_real_t t383 = t92 * (TWO_FINGERS_C(2.0) * t245 + parameters[MZ3] * t364)
-        + t98 * (TWO_FINGERS_C(-2.0) * t244 + parameters[MZ3] * t363);
-    const two_fingers_real_t t384 = t360 + (parameters[YZ3] * t364 - parameters[XZ3] * t363)
-        + TWO_FINGERS_C(0.05) * t383;
-    input_by_dq[7] = TWO_FINGERS_C(1.6666666666666667) * t384;
-    input_by_dq[12] = TWO_FINGERS_C(1.5e3) * parameters[FV3];
-    input_by_ddq[2] = TWO_FINGERS_C(0.4166666666666667) * t332;
-    input_by_ddq[7] = t362;
-    input_by_ddq[12] = TWO_FINGERS_C(1.5e3) * parameters[IA3]
-        + TWO_FINGERS_C(1.6666666666666667) * parameters[ZZ3];
-    const two_fingers_real_t t385 = TWO_FINGERS_C(-2.0) * t14;
-    /* link right_1: derivatives */
-    const two_fingers_real_t t386 = t13 * t227 - t385 * t220 + (t47 * t225 - t64 * t222);
-    const two_fingers_real_t t387 = TWO_FINGERS_C(2.0) * t7;
-    const two_fingers_real_t t388 = t387 * t220 - t6 * t227 + (t64 * t223 + t42 * t225);
-    const two_fingers_real_t t389 = t4 * (t49 + t386) - t5 * (t44 + t388);
-    const two_fingers_real_t t390 = t387 * t216 + t385 * t215 - (t42 * t222 + t47 * t223);
-    const two_fingers_real_t
-        t391 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t389
-        + TWO_FINGERS_C(0.984807753012208) * t390)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t389
-        + TWO_FINGERS_C(0.17364817766693028) * t390);
-    const two_fingers_real_t t392 = t387 * t201 + t385 * t207 + (t42 * t314 - t47 * t315 - t64 * t334);
-    const two_fingers_real_t t393 = t387 * t213 + t385 * t203 + (t42 * t315 - t47 * t313 - t64 * t336);
-    const two_fingers_real_t t394 = t5 * (t82 + (t392 - t6 * t225)) + t4 * (t79 + (t393 - t13 * t225));
-    input_by_q[3] = TWO_FINGERS_C(0.4166666666666667) * (t394 + t391);
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t395 = parameters[ZZ4] + (parameters[ZZ5] + t312);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t396 = t42 * t334 - t47 * t336 - t64 * t395 + (t7 * t296 + t14 * t298);
-    input_by_q[18] = TWO_FINGERS_C(1.6666666666666667) * (t6 * t223 + t13 * t222 + t396);
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t397 = parameters[ZZ5] - TWO_FINGERS_C(-0.045) * t209;
-    /* link right_2: derivatives */
-    const two_fingers_real_t t398 = t7 * t306 - t14 * t307 + (t42 * t333 - t47 * t335 - t64 * t397);
-    input_by_q[23] = TWO_FINGERS_C(1.6666666666666667) * (t398 + (t13 * t193 + t6 * t209));
-    const two_fingers_real_t t399 = t177 - parameters[ZZ5];
-    const two_fingers_real_t t400 = t24 * parameters[YZ5] + t22 * t399;
-    const two_fingers_real_t t401 = t24 * parameters[XZ5] + t27 * t399;
-    const two_fingers_real_t t402 = parameters[ZZ4] - t205;
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t403 = t7 * t402 - dq[3] * parameters[YZ4] - (t12 * t400 + t18 * t401);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t404 = t5 * (TWO_FINGERS_C(2.0) * t403 + (t314 * t387 + t315 * t385));
-    /* link right_2: inertia, momentum beyond */
-    const two_fingers_real_t t405 = dq[3] * parameters[XZ4] - t14 * t402 + (t12 * t401 - t18 * t400
-        + parameters[MZ5] * t194);
-    /* link right_1: derivatives */
-    const two_fingers_real_t t406 = t4 * (TWO_FINGERS_C(2.0) * t405 + (t315 * t387 + t313 * t385));
-    const two_fingers_real_t t407 = t4 * (TWO_FINGERS_C(-2.0) * t216 - t225 * t385)
-        + t5 * (TWO_FINGERS_C(2.0) * t215 - t225 * t387);
-    const two_fingers_real_t t408 = t223 * t385 - t222 * t387;
-    const two_fingers_real_t
-        t409 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t407
-        + TWO_FINGERS_C(0.984807753012208) * t408)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t407
-        + TWO_FINGERS_C(0.17364817766693028) * t408);
-    input_by_dq[3] = TWO_FINGERS_C(0.4166666666666667) * (t404 + t406 + t409);
-    const two_fingers_real_t t410 = t185 - t182;
-    const two_fingers_real_t t411 = TWO_FINGERS_C(2.0) * (t202 - t199 + (t198 + (t410 - t197)))
-        + TWO_FINGERS_C(2.0) * (t7 * t334 - t14 * t336);
-    input_by_dq[18] = TWO_FINGERS_C(1.5e3) * parameters[FV4] + TWO_FINGERS_C(1.6666666666666667) * t411;
-    const two_fingers_real_t t412 = TWO_FINGERS_C(2.0) * t410; /* link right_2: derivatives */
-    const two_fingers_real_t t413 = t412 + t193 * (TWO_FINGERS_C(0.09) * dq[3])
-        + TWO_FINGERS_C(2.0) * (t7 * t333 - t14 * t335);
-    input_by_dq[23] = TWO_FINGERS_C(1.6666666666666667) * t413;
-    input_by_ddq[3] = TWO_FINGERS_C(0.4166666666666667) * t337;
-    input_by_ddq[18] = TWO_FINGERS_C(1.5e3) * parameters[IA4] + TWO_FINGERS_C(1.6666666666666667) * t395;
-    const two_fingers_real_t t414 = TWO_FINGERS_C(1.6666666666666667) * t397;
-    input_by_ddq[23] = t414;
-    const two_fingers_real_t t415 = TWO_FINGERS_C(-2.0) * t27;
-    const two_fingers_real_t t416 = t40 + (t35 - t415 * t219 + (t51 * parameters[MY5] - t39));
-    const two_fingers_real_t t417 = TWO_FINGERS_C(-2.0) * t22;
-    const two_fingers_real_t t418 = t33 + (t20 - t417 * t219 - (t32 + t51 * parameters[MX5]));
-    const two_fingers_real_t t419 = t18 * t416 + t12 * t418;
-    const two_fingers_real_t t420 = t4 * (t18 * t418 - t12 * t416) + t5 * t419;
-    const two_fingers_real_t t421 = t417 * t190 + t415 * t189 + (t31 * parameters[MY5]
+    const two_fingers_real_t t180 = parameters[XX5] - t179;
+    const two_fingers_real_t t181 = t27 * parameters[XY5] - t22 * t180;
+    const two_fingers_real_t t182 = TWO_FINGERS_C(2.0) * t181;
+    const two_fingers_real_t t183 = parameters[YY5] - t179;
+    const two_fingers_real_t t184 = t22 * parameters[XY5] - t27 * t183;
+    const two_fingers_real_t t185 = TWO_FINGERS_C(2.0) * t184;
+    const two_fingers_real_t t186 = TWO_FINGERS_C(1.6666666666666667) * (t177 + (t178 + (t22 * t182
+        + t27 * t185)));
+    input_by_q[24] = t186;
+    const two_fingers_real_t t187 = t22 * parameters[MX5] - t27 * parameters[MY5];
+    const two_fingers_real_t t188 = TWO_FINGERS_C(-2.0) * t27;
+    const two_fingers_real_t t189 = t40 + (t35 - t188 * t187 + (t51 * parameters[MY5] - t39));
+    const two_fingers_real_t t190 = TWO_FINGERS_C(-2.0) * t22;
+    const two_fingers_real_t t191 = t33 + (t20 - t190 * t187 - (t32 + t51 * parameters[MX5]));
+    const two_fingers_real_t t192 = t18 * t189 + t12 * t191;
+    const two_fingers_real_t t193 = t177 + (t178 - (t190 * t181 + t188 * t184)) + TWO_FINGERS_C(0.045) * t192;
+    input_by_q[19] = TWO_FINGERS_C(1.6666666666666667) * t193;
+    const two_fingers_real_t t194 = t4 * (t18 * t191 - t12 * t189) + t5 * t192;
+    const two_fingers_real_t t195 = t27 * parameters[MZ5] - t24 * parameters[MX5];
+    const two_fingers_real_t t196 = t24 * parameters[MY5] - t22 * parameters[MZ5];
+    const two_fingers_real_t t197 = t190 * t195 + t188 * t196 + (t31 * parameters[MY5]
         + t38 * parameters[MX5]);
     const two_fingers_real_t
-        t422 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t420
-        + TWO_FINGERS_C(-0.984807753012208) * t421)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t420
-        + TWO_FINGERS_C(-0.17364817766693028) * t421);
-    const two_fingers_real_t t423 = t31 * parameters[XX5] - t38 * parameters[XY5] - t51 * parameters[XZ5]
-        - (t417 * t184 + t415 * t181);
-    const two_fingers_real_t t424 = t76 + (t423 - t74);
-    const two_fingers_real_t t425 = t417 * t179 - t415 * t186 + (t38 * parameters[YY5] - t31 * parameters[XY5]
+        t198 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t194
+        + TWO_FINGERS_C(-0.984807753012208) * t197)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t194
+        + TWO_FINGERS_C(-0.17364817766693028) * t197);
+    const two_fingers_real_t t199 = t22 * parameters[XZ5];
+    const two_fingers_real_t t200 = t24 * parameters[XY5];
+    const two_fingers_real_t t201 = t199 - t200;
+    const two_fingers_real_t t202 = t24 * t183 - t22 * parameters[YZ5];
+    const two_fingers_real_t t203 = t31 * parameters[XX5] - t38 * parameters[XY5] - t51 * parameters[XZ5]
+        - (t190 * t201 + t188 * t202);
+    const two_fingers_real_t t204 = t76 + (t203 - t74);
+    const two_fingers_real_t t205 = t24 * t180 - t27 * parameters[XZ5];
+    const two_fingers_real_t t206 = t27 * parameters[YZ5];
+    const two_fingers_real_t t207 = t200 - t206;
+    const two_fingers_real_t t208 = t190 * t205 - t188 * t207 + (t38 * parameters[YY5] - t31 * parameters[XY5]
         + t51 * parameters[YZ5]);
-    const two_fingers_real_t t426 = t73 + (t71 - t425);
-    const two_fingers_real_t t427 = t4 * (t18 * t424 + t12 * t426 + TWO_FINGERS_C(-0.045) * t421);
-    const two_fingers_real_t t428 = t5 * (t12 * t424 - t18 * t426) + t427 + t422;
-    input_by_q[4] = TWO_FINGERS_C(0.4166666666666667) * t428;
-    const two_fingers_real_t t429 = t19 * parameters[MX5] - t34 * parameters[MY5];
-    const two_fingers_real_t t430 = t31 * parameters[XZ5] - t38 * parameters[YZ5] - t51 * parameters[ZZ5];
-    const two_fingers_real_t t431 = t429 + (t430 - (t417 * t293 + t415 * t294)) + TWO_FINGERS_C(0.045) * t419;
-    input_by_q[19] = TWO_FINGERS_C(1.6666666666666667) * t431;
-    const two_fingers_real_t t432 = TWO_FINGERS_C(1.6666666666666667) * (t429 + (t430 + (t22 * t303
-        + t27 * t304)));
-    input_by_q[24] = t432;
-    const two_fingers_real_t t433 = TWO_FINGERS_C(2.0) * t190 + parameters[MZ5] * t415;
-    const two_fingers_real_t t434 = TWO_FINGERS_C(-2.0) * t189 + parameters[MZ5] * t417;
-    const two_fingers_real_t t435 = t18 * t433 + t12 * t434;
-    const two_fingers_real_t t436 = t4 * (t18 * t434 - t12 * t433) + t5 * t435;
-    const two_fingers_real_t t437 = parameters[MX5] * t415 + parameters[MY5] * t417;
-    const two_fingers_real_t
-        t438 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t437
-        + TWO_FINGERS_C(0.17364817766693028) * t436)
-        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t437
-        + TWO_FINGERS_C(-0.984807753012208) * t436);
-    const two_fingers_real_t t439 = TWO_FINGERS_C(-2.0) * t400 + (parameters[XY5] * t415
-        - parameters[XX5] * t417);
-    const two_fingers_real_t t440 = TWO_FINGERS_C(2.0) * t401 - (parameters[XY5] * t417
-        - parameters[YY5] * t415);
-    const two_fingers_real_t t441 = t4 * (TWO_FINGERS_C(0.045) * t437 + (t18 * t439 + t12 * t440));
-    const two_fingers_real_t t442 = t5 * (t12 * t439 - t18 * t440) + t441 + t438;
-    input_by_dq[4] = TWO_FINGERS_C(0.4166666666666667) * t442;
-    const two_fingers_real_t t443 = t412 + (parameters[YZ5] * t415 - parameters[XZ5] * t417)
-        + TWO_FINGERS_C(0.045) * t435;
-    input_by_dq[19] = TWO_FINGERS_C(1.6666666666666667) * t443;
+    const two_fingers_real_t t209 = t73 + (t71 - t208);
+    const two_fingers_real_t t210 = t4 * (t18 * t204 + t12 * t209 + TWO_FINGERS_C(-0.045) * t197);
+    const two_fingers_real_t t211 = t5 * (t12 * t204 - t18 * t209) + t210 + t198;
+    input_by_q[4] = TWO_FINGERS_C(0.4166666666666667) * t211;
     input_by_dq[24] = TWO_FINGERS_C(1.5e3) * parameters[FV5];
-    input_by_ddq[4] = TWO_FINGERS_C(0.4166666666666667) * t338;
-    input_by_ddq[19] = t414;
+    const two_fingers_real_t t212 = t206 - t199;
+    const two_fingers_real_t t213 = TWO_FINGERS_C(2.0) * t212;
+    const two_fingers_real_t t214 = TWO_FINGERS_C(2.0) * t195 + parameters[MZ5] * t188;
+    const two_fingers_real_t t215 = TWO_FINGERS_C(-2.0) * t196 + parameters[MZ5] * t190;
+    const two_fingers_real_t t216 = t18 * t214 + t12 * t215;
+    const two_fingers_real_t t217 = t213 + (parameters[YZ5] * t188 - parameters[XZ5] * t190)
+        + TWO_FINGERS_C(0.045) * t216;
+    input_by_dq[19] = TWO_FINGERS_C(1.6666666666666667) * t217;
+    const two_fingers_real_t t218 = t4 * (t18 * t215 - t12 * t214) + t5 * t216;
+    const two_fingers_real_t t219 = parameters[MX5] * t188 + parameters[MY5] * t190;
+    const two_fingers_real_t
+        t220 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t219
+        + TWO_FINGERS_C(0.17364817766693028) * t218)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t219
+        + TWO_FINGERS_C(-0.984807753012208) * t218);
+    const two_fingers_real_t t221 = t179 - parameters[ZZ5];
+    const two_fingers_real_t t222 = t24 * parameters[YZ5] + t22 * t221;
+    const two_fingers_real_t t223 = TWO_FINGERS_C(-2.0) * t222 + (parameters[XY5] * t188
+        - parameters[XX5] * t190);
+    const two_fingers_real_t t224 = t24 * parameters[XZ5] + t27 * t221;
+    const two_fingers_real_t t225 = TWO_FINGERS_C(2.0) * t224 - (parameters[XY5] * t190
+        - parameters[YY5] * t188);
+    const two_fingers_real_t t226 = t4 * (TWO_FINGERS_C(0.045) * t219 + (t18 * t223 + t12 * t225));
+    const two_fingers_real_t t227 = t5 * (t12 * t223 - t18 * t225) + t226 + t220;
+    input_by_dq[4] = TWO_FINGERS_C(0.4166666666666667) * t227;
     input_by_ddq[24] = TWO_FINGERS_C(1.5e3) * parameters[IA5]
         + TWO_FINGERS_C(1.6666666666666667) * parameters[ZZ5];
+    /* link right_2: column of the mass matrix */
+    const two_fingers_real_t t228 = t12 * parameters[MX5] - t18 * parameters[MY5];
+    const two_fingers_real_t t229 = parameters[ZZ5] - TWO_FINGERS_C(-0.045) * t228;
+    const two_fingers_real_t t230 = TWO_FINGERS_C(1.6666666666666667) * t229;
+    input_by_ddq[19] = t230;
+    const two_fingers_real_t t231 = t12 * parameters[XZ5] - t18 * parameters[YZ5];
+    const two_fingers_real_t t232 = t18 * parameters[XZ5] + t12 * parameters[YZ5];
+    const two_fingers_real_t t233 = t12 * parameters[MY5] + t18 * parameters[MX5];
+    const two_fingers_real_t t234 = t4 * t233 + t5 * t228;
+    const two_fingers_real_t t235 = t5 * t231 + t4 * t232 + TWO_FINGERS_C(8.673617379884035e-19) * t234;
+    input_by_ddq[4] = TWO_FINGERS_C(0.4166666666666667) * t235;
+    const two_fingers_real_t t236 = TWO_FINGERS_C(-0.09) * t7; /* link right_2: derivatives */
+    const two_fingers_real_t t237 = t12 * t182 + t18 * t185 - t228 * t236;
+    const two_fingers_real_t t238 = t18 * t182 - t12 * t185 - t233 * t236;
+    const two_fingers_real_t t239 = t7 * t237 - t14 * t238 + (t42 * t231 - t47 * t232 - t64 * t229);
+    input_by_q[23] = TWO_FINGERS_C(1.6666666666666667) * (t239 + (t13 * t233 + t6 * t228));
+    const two_fingers_real_t t240 = t213 + t233 * (TWO_FINGERS_C(0.09) * dq[3])
+        + TWO_FINGERS_C(2.0) * (t7 * t231 - t14 * t232);
+    input_by_dq[23] = TWO_FINGERS_C(1.6666666666666667) * t240;
+    const two_fingers_real_t t241 = TWO_FINGERS_C(0.01215537243668512) * dq[0];
+    const two_fingers_real_t t242 = TWO_FINGERS_C(0.06893654271085457) * dq[0];
+    const two_fingers_real_t t243 = t5 * t237 + t4 * t238 + (TWO_FINGERS_C(0.17364817766693028) * t234 * t241
+        + TWO_FINGERS_C(0.984807753012208) * t234 * t242);
+    input_by_dq[20] = TWO_FINGERS_C(1.6666666666666667) * t243;
+    input_by_ddq[23] = t230;
+    input_by_ddq[20] = TWO_FINGERS_C(1.6666666666666667) * t235;
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t244 = TWO_FINGERS_C(0.045) * parameters[M5];
+    const two_fingers_real_t t245 = t228 + t244;
+    const two_fingers_real_t t246 = TWO_FINGERS_C(-0.045) * t7; /* link right_2: velocity of its origin */
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t247 = t12 * t181 + t18 * t184 + (TWO_FINGERS_C(0.045) * t187 - t245 * t246);
+    const two_fingers_real_t t248 = TWO_FINGERS_C(0.5) * (parameters[ZZ4] + (parameters[XX4]
+        + parameters[YY4]));
+    const two_fingers_real_t t249 = parameters[XX4] - t248;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t250 = TWO_FINGERS_C(2.0) * (t14 * parameters[XY4] - t7 * t249 + t247);
+    const two_fingers_real_t t251 = t248 - parameters[YY4];
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t252 = t7 * parameters[XY4] + t14 * t251 - (t18 * t181 - t12 * t184
+        - t233 * t246);
+    const two_fingers_real_t t253 = TWO_FINGERS_C(2.0) * t252; /* link right_1: derivatives */
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t254 = parameters[XZ4] + (t231 + TWO_FINGERS_C(-0.045) * parameters[MZ5]);
+    const two_fingers_real_t t255 = parameters[YZ4] + t232;
+    const two_fingers_real_t t256 = TWO_FINGERS_C(0.045) * (t244 - TWO_FINGERS_C(-2.0) * t228);
+    const two_fingers_real_t t257 = parameters[ZZ4] + (parameters[ZZ5] + t256);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t258 = t42 * t254 - t47 * t255 - t64 * t257 + (t7 * t250 + t14 * t253);
+    const two_fingers_real_t t259 = parameters[MX4] + t245; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t260 = parameters[MY4] + t233;
+    input_by_q[18] = TWO_FINGERS_C(1.6666666666666667) * (t6 * t259 + t13 * t260 + t258);
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t261 = t14 * parameters[MY4] - t7 * parameters[MX4] + (parameters[M5] * t246
+        - t187);
+    const two_fingers_real_t t262 = TWO_FINGERS_C(-2.0) * t14;
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t263 = parameters[M4] + parameters[M5];
+    const two_fingers_real_t t264 = parameters[MZ4] + parameters[MZ5];
+    /* link right_1: derivatives */
+    const two_fingers_real_t t265 = t13 * t263 - t262 * t261 + (t47 * t264 - t64 * t260);
+    const two_fingers_real_t t266 = TWO_FINGERS_C(2.0) * t7;
+    const two_fingers_real_t t267 = t266 * t261 - t6 * t263 + (t64 * t259 + t42 * t264);
+    const two_fingers_real_t t268 = t4 * (t49 + t265) - t5 * (t44 + t267);
+    const two_fingers_real_t t269 = t18 * t196 + t12 * t195; /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t270 = TWO_FINGERS_C(-0.045) * dq[3]; /* link right_2: velocity of its origin */
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t271 = t14 * parameters[MZ4] - dq[3] * parameters[MX4] + (t269
+        + parameters[M5] * t270);
+    const two_fingers_real_t t272 = t12 * t196 - t18 * t195;
+    const two_fingers_real_t t273 = t7 * parameters[MZ4] - dq[3] * parameters[MY4] - t272;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t274 = t266 * t271 + t262 * t273 - (t42 * t260 + t47 * t259);
+    const two_fingers_real_t
+        t275 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t268
+        + TWO_FINGERS_C(0.984807753012208) * t274)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t268
+        + TWO_FINGERS_C(0.17364817766693028) * t274);
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t276 = t12 * (t201 - t207) + t18 * (t202 - t205);
+    const two_fingers_real_t t277 = t12 * t276;
+    const two_fingers_real_t t278 = TWO_FINGERS_C(0.045) * t272;
+    const two_fingers_real_t t279 = t233 * t270;
+    const two_fingers_real_t t280 = parameters[MZ5] * t246;
+    const two_fingers_real_t t281 = t280 - t279 - t278;
+    const two_fingers_real_t t282 = t7 * parameters[XZ4];
+    const two_fingers_real_t t283 = dq[3] * parameters[XY4];
+    const two_fingers_real_t t284 = t282 - t283 + (t281 + (t207 + t277 + t278));
+    const two_fingers_real_t t285 = t18 * t276;
+    const two_fingers_real_t t286 = t7 * parameters[YZ4] + dq[3] * t251 + (t285 - t202);
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t287 = t12 * t167 + parameters[XY5] * (TWO_FINGERS_C(-2.0) * t18);
+    const two_fingers_real_t t288 = parameters[XY4] + (parameters[XY5] + t18 * t287
+        + TWO_FINGERS_C(-0.045) * t233);
+    const two_fingers_real_t t289 = t12 * t287;
+    const two_fingers_real_t t290 = parameters[XX4] + (parameters[YY5] + t289);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t291 = t266 * t284 + t262 * t286 + (t42 * t290 - t47 * t288 - t64 * t254);
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t292 = dq[3] * t249 - t14 * parameters[XZ4] + (t205 + t285
+        + (TWO_FINGERS_C(0.045) * t269 + t245 * t270));
+    const two_fingers_real_t t293 = t14 * parameters[YZ4];
+    const two_fingers_real_t t294 = t283 - t293 + (t281 + (t201 - t277 + t279));
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t295 = parameters[YY4] + (parameters[XX5] - t289 + t256);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t296 = t266 * t292 + t262 * t294 + (t42 * t288 - t47 * t295 - t64 * t255);
+    const two_fingers_real_t t297 = t5 * (t82 + (t291 - t6 * t264)) + t4 * (t79 + (t296 - t13 * t264));
+    input_by_q[3] = TWO_FINGERS_C(0.4166666666666667) * (t297 + t275);
+    const two_fingers_real_t t298 = TWO_FINGERS_C(2.0) * (t293 - t282 + (t281 + (t212 - t280)))
+        + TWO_FINGERS_C(2.0) * (t7 * t254 - t14 * t255);
+    input_by_dq[18] = TWO_FINGERS_C(1.5e3) * parameters[FV4] + TWO_FINGERS_C(1.6666666666666667) * t298;
+    const two_fingers_real_t t299 = parameters[ZZ4] - t248;
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t300 = t7 * t299 - dq[3] * parameters[YZ4] - (t12 * t222 + t18 * t224);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t301 = t5 * (TWO_FINGERS_C(2.0) * t300 + (t290 * t266 + t288 * t262));
+    /* link right_2: inertia, momentum beyond */
+    const two_fingers_real_t t302 = dq[3] * parameters[XZ4] - t14 * t299 + (t12 * t224 - t18 * t222
+        + parameters[MZ5] * t270);
+    /* link right_1: derivatives */
+    const two_fingers_real_t t303 = t4 * (TWO_FINGERS_C(2.0) * t302 + (t288 * t266 + t295 * t262));
+    const two_fingers_real_t t304 = t4 * (TWO_FINGERS_C(-2.0) * t271 - t264 * t262)
+        + t5 * (TWO_FINGERS_C(2.0) * t273 - t264 * t266);
+    const two_fingers_real_t t305 = t259 * t262 - t260 * t266;
+    const two_fingers_real_t
+        t306 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.17364817766693028) * t304
+        + TWO_FINGERS_C(0.984807753012208) * t305)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(-0.984807753012208) * t304
+        + TWO_FINGERS_C(0.17364817766693028) * t305);
+    input_by_dq[3] = TWO_FINGERS_C(0.4166666666666667) * (t301 + t303 + t306);
+    input_by_ddq[18] = TWO_FINGERS_C(1.5e3) * parameters[IA4] + TWO_FINGERS_C(1.6666666666666667) * t257;
+    const two_fingers_real_t t307 = t4 * t260 + t5 * t259; /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t308 = t5 * t254 + t4 * t255 + TWO_FINGERS_C(8.673617379884035e-19) * t307;
+    input_by_ddq[3] = TWO_FINGERS_C(0.4166666666666667) * t308;
+    /* link right_1: derivatives */
+    const two_fingers_real_t t309 = t5 * t250 - t4 * t253 + (TWO_FINGERS_C(0.17364817766693028) * t307 * t241
+        + TWO_FINGERS_C(0.984807753012208) * t307 * t242);
+    input_by_dq[15] = TWO_FINGERS_C(1.6666666666666667) * t309;
+    input_by_ddq[15] = TWO_FINGERS_C(1.6666666666666667) * t308;
+    const two_fingers_real_t t310 = t126 * parameters[MX3] - t99 * parameters[MY3];
+    /* link left_2: derivatives */
+    const two_fingers_real_t t311 = t114 * parameters[XZ3] - t108 * parameters[YZ3] - t139 * parameters[ZZ3];
+    const two_fingers_real_t t312 = TWO_FINGERS_C(0.5) * (parameters[ZZ3] + (parameters[XX3]
+        + parameters[YY3]));
+    const two_fingers_real_t t313 = parameters[XX3] - t312;
+    const two_fingers_real_t t314 = t115 * parameters[XY3] - t110 * t313;
+    const two_fingers_real_t t315 = TWO_FINGERS_C(2.0) * t314;
+    const two_fingers_real_t t316 = parameters[YY3] - t312;
+    const two_fingers_real_t t317 = t110 * parameters[XY3] - t115 * t316;
+    const two_fingers_real_t t318 = TWO_FINGERS_C(2.0) * t317;
+    const two_fingers_real_t t319 = TWO_FINGERS_C(1.6666666666666667) * (t310 + (t311 + (t110 * t315
+        + t115 * t318)));
+    input_by_q[12] = t319;
+    const two_fingers_real_t t320 = t110 * parameters[MX3] - t115 * parameters[MY3];
+    const two_fingers_real_t t321 = TWO_FINGERS_C(-2.0) * t115;
+    const two_fingers_real_t t322 = t156 + (t154 - t321 * t320 + (t139 * parameters[MY3] - t155));
+    const two_fingers_real_t t323 = TWO_FINGERS_C(-2.0) * t110;
+    const two_fingers_real_t t324 = t153 + (t151 - t323 * t320 - (t152 + t139 * parameters[MX3]));
+    const two_fingers_real_t t325 = t310 + (t311 - (t323 * t314 + t321 * t317))
+        + TWO_FINGERS_C(0.05) * (t92 * t322 + t98 * t324);
+    input_by_q[7] = TWO_FINGERS_C(1.6666666666666667) * t325;
+    const two_fingers_real_t t326 = t110 * parameters[XZ3];
+    const two_fingers_real_t t327 = t111 * parameters[XY3];
+    const two_fingers_real_t t328 = t326 - t327;
+    const two_fingers_real_t t329 = t111 * t316 - t110 * parameters[YZ3];
+    const two_fingers_real_t t330 = t114 * parameters[XX3] - t108 * parameters[XY3] - t139 * parameters[XZ3]
+        - (t323 * t328 + t321 * t329);
+    const two_fingers_real_t t331 = t132 + (t330 - t127);
+    const two_fingers_real_t t332 = t111 * t313 - t115 * parameters[XZ3];
+    const two_fingers_real_t t333 = t115 * parameters[YZ3];
+    const two_fingers_real_t t334 = t327 - t333;
+    const two_fingers_real_t t335 = t323 * t332 - t321 * t334 + (t108 * parameters[YY3]
+        - t114 * parameters[XY3] + t139 * parameters[YZ3]);
+    const two_fingers_real_t t336 = t125 - (t100 - t335);
+    const two_fingers_real_t t337 = t115 * parameters[MZ3] - t111 * parameters[MX3];
+    const two_fingers_real_t t338 = t111 * parameters[MY3] - t110 * parameters[MZ3];
+    const two_fingers_real_t t339 = t323 * t337 + t321 * t338 + (t114 * parameters[MY3]
+        + t108 * parameters[MX3]);
+    const two_fingers_real_t t340 = t85 * (t92 * t331 - t98 * t336 + TWO_FINGERS_C(-0.05) * t339);
+    const two_fingers_real_t t341 = t86 * (t98 * t331 + t92 * t336) + t340 + TWO_FINGERS_C(-0.03) * t339;
+    input_by_q[2] = TWO_FINGERS_C(0.4166666666666667) * t341;
+    input_by_dq[12] = TWO_FINGERS_C(1.5e3) * parameters[FV3];
+    const two_fingers_real_t t342 = t333 - t326;
+    const two_fingers_real_t t343 = TWO_FINGERS_C(2.0) * t342;
+    const two_fingers_real_t t344 = t92 * (TWO_FINGERS_C(2.0) * t337 + parameters[MZ3] * t321)
+        + t98 * (TWO_FINGERS_C(-2.0) * t338 + parameters[MZ3] * t323);
+    const two_fingers_real_t t345 = t343 + (parameters[YZ3] * t321 - parameters[XZ3] * t323)
+        + TWO_FINGERS_C(0.05) * t344;
+    input_by_dq[7] = TWO_FINGERS_C(1.6666666666666667) * t345;
+    const two_fingers_real_t t346 = t312 - parameters[ZZ3];
+    const two_fingers_real_t t347 = t111 * parameters[YZ3] + t110 * t346;
+    const two_fingers_real_t t348 = TWO_FINGERS_C(-2.0) * t347 + (parameters[XY3] * t321
+        - parameters[XX3] * t323);
+    const two_fingers_real_t t349 = t111 * parameters[XZ3] + t115 * t346;
+    const two_fingers_real_t t350 = TWO_FINGERS_C(2.0) * t349 - (parameters[XY3] * t323
+        - parameters[YY3] * t321);
+    const two_fingers_real_t t351 = parameters[MX3] * t321 + parameters[MY3] * t323;
+    const two_fingers_real_t t352 = t85 * (TWO_FINGERS_C(0.05) * t351 + (t92 * t348 + t98 * t350));
+    const two_fingers_real_t t353 = TWO_FINGERS_C(0.03) * t351 + (t86 * (t98 * t348 - t92 * t350) + t352);
+    input_by_dq[2] = TWO_FINGERS_C(0.4166666666666667) * t353;
+    input_by_ddq[12] = TWO_FINGERS_C(1.5e3) * parameters[IA3]
+        + TWO_FINGERS_C(1.6666666666666667) * parameters[ZZ3];
+    /* link left_2: column of the mass matrix */
+    const two_fingers_real_t t354 = t98 * parameters[MX3] - t92 * parameters[MY3];
+    const two_fingers_real_t t355 = parameters[ZZ3] - TWO_FINGERS_C(-0.05) * t354;
+    const two_fingers_real_t t356 = TWO_FINGERS_C(1.6666666666666667) * t355;
+    input_by_ddq[7] = t356;
+    const two_fingers_real_t t357 = t98 * parameters[XZ3] - t92 * parameters[YZ3];
+    const two_fingers_real_t t358 = t92 * parameters[XZ3] + t98 * parameters[YZ3];
+    const two_fingers_real_t t359 = t86 * t357 + t85 * t358;
+    input_by_ddq[2] = TWO_FINGERS_C(0.4166666666666667) * t359;
+    const two_fingers_real_t t360 = TWO_FINGERS_C(-0.1) * t88; /* link left_2: derivatives */
+    const two_fingers_real_t t361 = t98 * t315 + t92 * t318 - t354 * t360;
+    /* link left_2: column of the mass matrix */
+    const two_fingers_real_t t362 = t98 * parameters[MY3] + t92 * parameters[MX3];
+    const two_fingers_real_t t363 = t92 * t315 - t98 * t318 - t362 * t360; /* link left_2: derivatives */
+    const two_fingers_real_t t364 = t88 * t361 - t94 * t363 + (t101 * t357 - t134 * t358 - t146 * t355);
+    input_by_q[11] = TWO_FINGERS_C(1.6666666666666667) * (t364 + (t93 * t362 + t87 * t354));
+    const two_fingers_real_t t365 = t343 + t362 * (TWO_FINGERS_C(0.1) * dq[1])
+        + TWO_FINGERS_C(2.0) * (t88 * t357 - t94 * t358);
+    input_by_dq[11] = TWO_FINGERS_C(1.6666666666666667) * t365;
+    const two_fingers_real_t t366 = TWO_FINGERS_C(0.06) * dq[0];
+    const two_fingers_real_t t367 = t86 * t361 + t85 * t363 + (t85 * t362 + t86 * t354) * t366;
+    input_by_dq[10] = TWO_FINGERS_C(1.6666666666666667) * t367;
+    input_by_ddq[11] = t356;
+    input_by_ddq[10] = TWO_FINGERS_C(1.6666666666666667) * t359;
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t368 = TWO_FINGERS_C(0.05) * parameters[M3];
+    const two_fingers_real_t t369 = t354 + t368;
+    const two_fingers_real_t t370 = TWO_FINGERS_C(-0.05) * t88; /* link left_2: velocity of its origin */
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t371 = t98 * t314 + t92 * t317 + (TWO_FINGERS_C(0.05) * t320 - t369 * t370);
+    const two_fingers_real_t t372 = TWO_FINGERS_C(0.5) * (parameters[ZZ2] + (parameters[XX2]
+        + parameters[YY2]));
+    const two_fingers_real_t t373 = parameters[XX2] - t372;
+    /* link left_1: derivatives */
+    const two_fingers_real_t t374 = TWO_FINGERS_C(2.0) * (t94 * parameters[XY2] - t88 * t373 + t371);
+    const two_fingers_real_t t375 = t372 - parameters[YY2];
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t376 = t88 * parameters[XY2] + t94 * t375 - (t92 * t314 - t98 * t317
+        - t362 * t370);
+    const two_fingers_real_t t377 = TWO_FINGERS_C(2.0) * t376; /* link left_1: derivatives */
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t378 = parameters[XZ2] + (t357 + TWO_FINGERS_C(-0.05) * parameters[MZ3]);
+    const two_fingers_real_t t379 = parameters[YZ2] + t358;
+    const two_fingers_real_t t380 = TWO_FINGERS_C(0.05) * (t368 - TWO_FINGERS_C(-2.0) * t354);
+    const two_fingers_real_t t381 = parameters[ZZ2] + (parameters[ZZ3] + t380);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t382 = t101 * t378 - t134 * t379 - t146 * t381 + (t88 * t374 + t94 * t377);
+    const two_fingers_real_t t383 = parameters[MX2] + t369; /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t384 = parameters[MY2] + t362;
+    input_by_q[6] = TWO_FINGERS_C(1.6666666666666667) * (t87 * t383 + t93 * t384 + t382);
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t385 = t98 * (t328 - t334) + t92 * (t329 - t332);
+    const two_fingers_real_t t386 = t98 * t385;
+    const two_fingers_real_t t387 = t98 * t338 - t92 * t337;
+    const two_fingers_real_t t388 = TWO_FINGERS_C(0.05) * t387;
+    const two_fingers_real_t t389 = TWO_FINGERS_C(-0.05) * dq[1]; /* link left_2: velocity of its origin */
+    const two_fingers_real_t t390 = t362 * t389; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t391 = parameters[MZ3] * t370;
+    const two_fingers_real_t t392 = t391 - t390 - t388;
+    const two_fingers_real_t t393 = t88 * parameters[XZ2];
+    const two_fingers_real_t t394 = dq[1] * parameters[XY2];
+    const two_fingers_real_t t395 = t393 - t394 + (t392 + (t334 + t386 + t388));
+    const two_fingers_real_t t396 = TWO_FINGERS_C(2.0) * t88;
+    const two_fingers_real_t t397 = t92 * t385;
+    const two_fingers_real_t t398 = t88 * parameters[YZ2] + dq[1] * t375 + (t397 - t329);
+    const two_fingers_real_t t399 = TWO_FINGERS_C(-2.0) * t94;
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t400 = t98 * t157 + parameters[XY3] * (TWO_FINGERS_C(-2.0) * t92);
+    const two_fingers_real_t t401 = parameters[XY2] + (parameters[XY3] + t92 * t400
+        + TWO_FINGERS_C(-0.05) * t362);
+    const two_fingers_real_t t402 = t98 * t400;
+    const two_fingers_real_t t403 = parameters[XX2] + (parameters[YY3] + t402);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t404 = t396 * t395 + t399 * t398 + (t101 * t403 - t134 * t401 - t146 * t378);
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t405 = parameters[MZ2] + parameters[MZ3];
+    const two_fingers_real_t t406 = t92 * t338 + t98 * t337; /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t407 = dq[1] * t373 - t94 * parameters[XZ2] + (t332 + t397
+        + (TWO_FINGERS_C(0.05) * t406 + t369 * t389));
+    const two_fingers_real_t t408 = t94 * parameters[YZ2];
+    const two_fingers_real_t t409 = t394 - t408 + (t392 + (t328 - t386 + t390));
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t410 = parameters[YY2] + (parameters[XX3] - t402 + t380);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t411 = t396 * t407 + t399 * t409 + (t101 * t401 - t134 * t410 - t146 * t379);
+    const two_fingers_real_t t412 = t86 * (t145 + (t404 - t87 * t405)) + t85 * (t138 + (t411 - t93 * t405));
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t413 = t94 * parameters[MZ2] - dq[1] * parameters[MX2] + (t406
+        + parameters[M3] * t389);
+    const two_fingers_real_t t414 = t88 * parameters[MZ2] - dq[1] * parameters[MY2] - t387;
+    /* link left_1: derivatives */
+    const two_fingers_real_t t415 = t396 * t413 + t399 * t414 - (t101 * t384 + t134 * t383);
+    input_by_q[1] = TWO_FINGERS_C(0.4166666666666667) * (t412 + TWO_FINGERS_C(0.03) * t415);
+    const two_fingers_real_t t416 = TWO_FINGERS_C(2.0) * (t408 - t393 + (t392 + (t342 - t391)))
+        + TWO_FINGERS_C(2.0) * (t88 * t378 - t94 * t379);
+    input_by_dq[6] = TWO_FINGERS_C(1.5e3) * parameters[FV2] + TWO_FINGERS_C(1.6666666666666667) * t416;
+    const two_fingers_real_t t417 = parameters[ZZ2] - t372;
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t418 = t88 * t417 - dq[1] * parameters[YZ2] - (t98 * t347 + t92 * t349);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t419 = t86 * (TWO_FINGERS_C(2.0) * t418 + (t403 * t396 + t401 * t399));
+    /* link left_2: inertia, momentum beyond */
+    const two_fingers_real_t t420 = dq[1] * parameters[XZ2] - t94 * t417 + (t98 * t349 - t92 * t347
+        + parameters[MZ3] * t389);
+    /* link left_1: derivatives */
+    const two_fingers_real_t t421 = t85 * (TWO_FINGERS_C(2.0) * t420 + (t401 * t396 + t410 * t399));
+    const two_fingers_real_t t422 = t419 + t421 + TWO_FINGERS_C(0.03) * (t383 * t399 - t384 * t396);
+    input_by_dq[1] = TWO_FINGERS_C(0.4166666666666667) * t422;
+    input_by_ddq[6] = TWO_FINGERS_C(1.5e3) * parameters[IA2] + TWO_FINGERS_C(1.6666666666666667) * t381;
+    const two_fingers_real_t t423 = t86 * t378 + t85 * t379; /* link left_1: column of the mass matrix */
+    input_by_ddq[1] = TWO_FINGERS_C(0.4166666666666667) * t423;
+    /* link left_1: derivatives */
+    const two_fingers_real_t t424 = t86 * t374 - t85 * t377 + (t85 * t384 + t86 * t383) * t366;
+    input_by_dq[5] = TWO_FINGERS_C(1.6666666666666667) * t424;
+    input_by_ddq[5] = TWO_FINGERS_C(1.6666666666666667) * t423;
+    /* link right_1: inertia, momentum beyond */
+    const two_fingers_real_t t425 = t4 * (t4 * (t294 - t284) + t5 * (t286 + t292));
+    const two_fingers_real_t t426 = TWO_FINGERS_C(0.07) * (t5 * t273 - t4 * t271);
+    const two_fingers_real_t t427 = t4 * t273 + t5 * t271;
+    const two_fingers_real_t
+        t428 = TWO_FINGERS_C(0.03446827135542729) * (TWO_FINGERS_C(0.984807753012208) * t427
+        + TWO_FINGERS_C(-0.17364817766693028) * t261)
+        + TWO_FINGERS_C(0.00607768621834256) * (TWO_FINGERS_C(0.17364817766693028) * t427
+        + TWO_FINGERS_C(0.984807753012208) * t261);
+    const two_fingers_real_t t429 = t5 * t260 - t4 * t259; /* link right_1: column of the mass matrix */
+    /* link right_1: inertia of it and all beyond */
+    const two_fingers_real_t t430 = TWO_FINGERS_C(-0.984807753012208) * t429
+        + TWO_FINGERS_C(-0.17364817766693028) * t264;
+    const two_fingers_real_t t431 = TWO_FINGERS_C(0.03446827135542729) * t263;
+    const two_fingers_real_t t432 = TWO_FINGERS_C(0.17364817766693028) * t429
+        + TWO_FINGERS_C(-0.984807753012208) * t264;
+    const two_fingers_real_t t433 = TWO_FINGERS_C(0.00607768621834256) * t263;
+    /* link right_1: inertia, momentum beyond */
+    const two_fingers_real_t t434 = (t432 - t433) * (TWO_FINGERS_C(0.03446827135542729) * dq[0]) - (t430
+        + t431) * (TWO_FINGERS_C(-0.00607768621834256) * dq[0]);
+    /* link left_1: inertia, momentum beyond */
+    const two_fingers_real_t t435 = t85 * (t85 * (t409 - t395) + t86 * (t398 + t407));
+    const two_fingers_real_t t436 = TWO_FINGERS_C(0.08) * (t86 * t414 - t85 * t413);
+    const two_fingers_real_t t437 = TWO_FINGERS_C(0.03) * (t85 * t414 + t86 * t413) + t436
+        + t405 * (TWO_FINGERS_C(-0.03) * dq[0]);
+    const two_fingers_real_t t438 = t428 + t426 + t434 + (t284 + t425 - t426) + (t437 + (t395 + t435 - t436));
+    input_by_dq[0] = TWO_FINGERS_C(1.5e3) * parameters[FV1] + TWO_FINGERS_C(0.8333333333333334) * t438;
+    /* link right_1: inertia of it and all beyond */
+    const two_fingers_real_t t439 = t4 * (t4 * (t295 - t290) + t288 * (TWO_FINGERS_C(2.0) * t5));
+    const two_fingers_real_t t440 = TWO_FINGERS_C(0.03446827135542729) * (t431 + TWO_FINGERS_C(2.0) * t430)
+        + TWO_FINGERS_C(0.00607768621834256) * (t433 + TWO_FINGERS_C(-2.0) * t432);
+    /* link left_1: inertia of it and all beyond */
+    const two_fingers_real_t t441 = t85 * (t85 * (t410 - t403) + t401 * (TWO_FINGERS_C(2.0) * t86));
+    const two_fingers_real_t t442 = TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
+        + TWO_FINGERS_C(2.0) * (t85 * t383 - t86 * t384);
+    const two_fingers_real_t t443 = parameters[ZZ1] + (t290 + t439 + t440) + (t403 + t441
+        + TWO_FINGERS_C(0.03) * t442);
+    input_by_ddq[0] = TWO_FINGERS_C(1.5e3) * parameters[IA1] + TWO_FINGERS_C(0.4166666666666667) * t443;
     /* always zero */
     input_by_q[0] = TWO_FINGERS_C(0.0);
     input_by_q[5] = input_by_q[8] = input_by_q[9] = TWO_FINGERS_C(0.0);

@@ -67,7 +67,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -90,82 +90,75 @@ two_fingers_status_t two_fingers_mass_matrix(
         return status;
     }
 
-    two_fingers_real_t t24, t22;
-    TWO_FINGERS_SINCOS(q[1], &t24, &t22);
-    two_fingers_real_t t16, t15;
-    TWO_FINGERS_SINCOS(q[2], &t16, &t15);
-    two_fingers_real_t t9, t7;
-    TWO_FINGERS_SINCOS(q[3], &t9, &t7);
-    two_fingers_real_t t1, t0;
-    TWO_FINGERS_SINCOS(q[4], &t1, &t0);
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t2 = t0 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t1);
-    const two_fingers_real_t t3 = t0 * t2;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t4 = t0 * parameters[MX5] - t1 * parameters[MY5];
-    const two_fingers_real_t t5 = TWO_FINGERS_C(0.09) * t4; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t6 = parameters[XX4R] + t3;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t8 = t0 * parameters[MY5] + t1 * parameters[MX5];
-    /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t10 = (parameters[XY4] + (parameters[XY5] + t1 * t2
-        + TWO_FINGERS_C(-0.045) * t8)) * (TWO_FINGERS_C(2.0) * t9);
-    const two_fingers_real_t t11 = t7 * (t7 * (parameters[XX5R] - t3 + t5 - t6) + t10);
-    const two_fingers_real_t t12 = parameters[MY4] + t8; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t13 = parameters[MX4R] + t4;
-    /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t14 = t6 + t11 + TWO_FINGERS_C(0.06999999999999999) * (t7 * t13 - t9 * t12);
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t17 = t15 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t16);
-    const two_fingers_real_t t18 = t15 * t17;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t19 = t15 * parameters[MX3] - t16 * parameters[MY3];
-    const two_fingers_real_t t20 = TWO_FINGERS_C(0.1) * t19; /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t21 = parameters[XX2R] + t18;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t23 = t15 * parameters[MY3] + t16 * parameters[MX3];
-    /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t25 = (parameters[XY2] + (parameters[XY3] + t16 * t17
-        + TWO_FINGERS_C(-0.05) * t23)) * (TWO_FINGERS_C(2.0) * t24);
-    const two_fingers_real_t t26 = t22 * (t22 * (parameters[XX3R] - t18 + t20 - t21) + t25);
-    const two_fingers_real_t t27 = TWO_FINGERS_C(0.06) * (t22 * (parameters[MX2R] + t19)
-        - t24 * (parameters[MY2] + t23));
-    out[0] = parameters[ZZ1R] + t14 + (t21 + t26 + t27);
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t28 = t15 * parameters[XZ3] - t16 * parameters[YZ3];
-    const two_fingers_real_t t29 = t16 * parameters[XZ3] + t15 * parameters[YZ3];
-    /* link left_1: column of the mass matrix */
-    const two_fingers_real_t t30 = t24 * (parameters[XZ2R] + t28) + t22 * (parameters[YZ2] + t29);
-    out[1] = t30;
-    const two_fingers_real_t t31 = t24 * t28 + t22 * t29; /* link left_2: column of the mass matrix */
-    out[2] = t31;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t32 = t0 * parameters[XZ5] - t1 * parameters[YZ5];
-    const two_fingers_real_t t33 = t1 * parameters[XZ5] + t0 * parameters[YZ5];
-    /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t34 = t9 * (parameters[XZ4R] + t32) + t7 * (parameters[YZ4] + t33)
-        + TWO_FINGERS_C(8.673617379884035e-19) * (t7 * t12 + t9 * t13);
-    out[3] = t34;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t35 = t9 * t32 + t7 * t33 + TWO_FINGERS_C(8.673617379884035e-19) * (t7 * t8
-        + t9 * t4);
-    out[4] = t35;
-    out[5] = t30;
-    out[6] = parameters[ZZ2R] + (parameters[ZZ3] + t20);
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t36 = parameters[ZZ3] + TWO_FINGERS_C(0.05) * t19;
-    out[7] = t36;
-    out[10] = t31;
-    out[11] = t36;
-    out[12] = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
-    out[15] = t34;
-    out[18] = parameters[ZZ4R] + (parameters[ZZ5] + t5);
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t37 = parameters[ZZ5] + TWO_FINGERS_C(0.045) * t4;
-    out[19] = t37;
-    out[20] = t35;
-    out[23] = t37;
+    two_fingers_real_t t19, t21;
+    TWO_FINGERS_SINCOS(q[1], &t19, &t21);
+    two_fingers_real_t t14, t15;
+    TWO_FINGERS_SINCOS(q[2], &t14, &t15);
+    two_fingers_real_t t5, t7;
+    TWO_FINGERS_SINCOS(q[3], &t5, &t7);
+    two_fingers_real_t t0, t1;
+    TWO_FINGERS_SINCOS(q[4], &t0, &t1);
     out[24] = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
+    /* link right_2: column of the mass matrix */
+    const two_fingers_real_t t2 = t1 * parameters[MX5] - t0 * parameters[MY5];
+    const two_fingers_real_t t3 = parameters[ZZ5] + TWO_FINGERS_C(0.045) * t2;
+    out[19] = t3;
+    const two_fingers_real_t t4 = t1 * parameters[XZ5] - t0 * parameters[YZ5];
+    const two_fingers_real_t t6 = t0 * parameters[XZ5] + t1 * parameters[YZ5];
+    const two_fingers_real_t t8 = t1 * parameters[MY5] + t0 * parameters[MX5];
+    const two_fingers_real_t t9 = t5 * t4 + t7 * t6 + TWO_FINGERS_C(8.673617379884035e-19) * (t7 * t8
+        + t5 * t2);
+    out[4] = t9;
+    out[23] = t3;
+    out[20] = t9;
+    const two_fingers_real_t t10 = TWO_FINGERS_C(0.09) * t2; /* link right_2: inertia of it and all beyond */
+    out[18] = parameters[ZZ4R] + (parameters[ZZ5] + t10);
+    const two_fingers_real_t t11 = parameters[MY4] + t8;
+    const two_fingers_real_t t12 = parameters[MX4R] + t2;
+    /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t13 = t5 * (parameters[XZ4R] + t4) + t7 * (parameters[YZ4] + t6)
+        + TWO_FINGERS_C(8.673617379884035e-19) * (t7 * t11 + t5 * t12);
+    out[3] = t13;
+    out[15] = t13;
+    out[12] = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
+    /* link left_2: column of the mass matrix */
+    const two_fingers_real_t t16 = t15 * parameters[MX3] - t14 * parameters[MY3];
+    const two_fingers_real_t t17 = parameters[ZZ3] + TWO_FINGERS_C(0.05) * t16;
+    out[7] = t17;
+    const two_fingers_real_t t18 = t15 * parameters[XZ3] - t14 * parameters[YZ3];
+    const two_fingers_real_t t20 = t14 * parameters[XZ3] + t15 * parameters[YZ3];
+    const two_fingers_real_t t22 = t19 * t18 + t21 * t20;
+    out[2] = t22;
+    out[11] = t17;
+    out[10] = t22;
+    const two_fingers_real_t t23 = TWO_FINGERS_C(0.1) * t16; /* link left_2: inertia of it and all beyond */
+    out[6] = parameters[ZZ2R] + (parameters[ZZ3] + t23);
+    /* link left_1: column of the mass matrix */
+    const two_fingers_real_t t24 = t19 * (parameters[XZ2R] + t18) + t21 * (parameters[YZ2] + t20);
+    out[1] = t24;
+    out[5] = t24;
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t25 = t1 * parameters[XX5R] - parameters[XY5] * (TWO_FINGERS_C(2.0) * t0);
+    const two_fingers_real_t t26 = t1 * t25;
+    const two_fingers_real_t t27 = parameters[XX4R] + t26;
+    /* link right_1: inertia of it and all beyond */
+    const two_fingers_real_t t28 = (parameters[XY4] + (parameters[XY5] + t0 * t25
+        + TWO_FINGERS_C(-0.045) * t8)) * (TWO_FINGERS_C(2.0) * t5);
+    const two_fingers_real_t t29 = t7 * (t7 * (parameters[XX5R] - t26 + t10 - t27) + t28);
+    const two_fingers_real_t t30 = t27 + t29 + TWO_FINGERS_C(0.06999999999999999) * (t7 * t12 - t5 * t11);
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t31 = t15 * parameters[XX3R] - parameters[XY3] * (TWO_FINGERS_C(2.0) * t14);
+    const two_fingers_real_t t32 = t15 * t31;
+    const two_fingers_real_t t33 = parameters[XX2R] + t32;
+    /* link left_2: column of the mass matrix */
+    const two_fingers_real_t t34 = t15 * parameters[MY3] + t14 * parameters[MX3];
+    /* link left_1: inertia of it and all beyond */
+    const two_fingers_real_t t35 = (parameters[XY2] + (parameters[XY3] + t14 * t31
+        + TWO_FINGERS_C(-0.05) * t34)) * (TWO_FINGERS_C(2.0) * t19);
+    const two_fingers_real_t t36 = t21 * (t21 * (parameters[XX3R] - t32 + t23 - t33) + t35);
+    const two_fingers_real_t t37 = TWO_FINGERS_C(0.06) * (t21 * (parameters[MX2R] + t16)
+        - t19 * (parameters[MY2] + t34));
+    out[0] = parameters[ZZ1R] + t30 + (t33 + t36 + t37);
     /* always zero */
     out[8] = out[9] = TWO_FINGERS_C(0.0);
     out[13] = out[14] = TWO_FINGERS_C(0.0);

@@ -90,7 +90,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -114,105 +114,100 @@ two_fingers_status_t two_fingers_mass_matrix_standard(
         return status;
     }
 
-    two_fingers_real_t t31, t29;
-    TWO_FINGERS_SINCOS(q[1], &t31, &t29);
-    two_fingers_real_t t22, t21;
-    TWO_FINGERS_SINCOS(q[2], &t22, &t21);
-    two_fingers_real_t t10, t8;
-    TWO_FINGERS_SINCOS(q[3], &t10, &t8);
-    two_fingers_real_t t1, t0;
-    TWO_FINGERS_SINCOS(q[4], &t1, &t0);
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t2 = t0 * (parameters[XX5] - parameters[YY5])
-        - parameters[XY5] * (TWO_FINGERS_C(2.0) * t1);
-    const two_fingers_real_t t3 = t0 * t2;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t4 = t0 * parameters[MX5] - t1 * parameters[MY5];
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t5 = TWO_FINGERS_C(0.045) * parameters[M5];
-    const two_fingers_real_t t6 = TWO_FINGERS_C(0.045) * (t5 + TWO_FINGERS_C(2.0) * t4);
-    const two_fingers_real_t t7 = parameters[XX4] + (parameters[YY5] + t3);
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t9 = t0 * parameters[MY5] + t1 * parameters[MX5];
-    /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t11 = (parameters[XY4] + (parameters[XY5] + t1 * t2
-        + TWO_FINGERS_C(-0.045) * t9)) * (TWO_FINGERS_C(2.0) * t10);
-    const two_fingers_real_t t12 = t8 * (parameters[YY4] + (parameters[XX5] - t3 + t6) - t7) + t11;
-    const two_fingers_real_t t13 = parameters[MY4] + t9; /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t14 = parameters[MX4] + (t4 + t5);
-    const two_fingers_real_t t15 = t8 * t14 - t10 * t13; /* link right_1: column of the mass matrix */
-    /* link right_2: inertia of it and all beyond */
-    const two_fingers_real_t t16 = parameters[MZ4] + parameters[MZ5];
-    const two_fingers_real_t t17 = parameters[M4] + parameters[M5];
-    /* link right_1: inertia of it and all beyond */
-    const two_fingers_real_t t18 = TWO_FINGERS_C(0.03446827135542729) * t17
-        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.984807753012208) * t15
-        + TWO_FINGERS_C(-0.17364817766693028) * t16);
-    const two_fingers_real_t t19 = TWO_FINGERS_C(0.00607768621834256) * t17
-        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.17364817766693028) * t15
-        + TWO_FINGERS_C(0.984807753012208) * t16);
-    const two_fingers_real_t t20 = t7 + t8 * t12 + (TWO_FINGERS_C(0.03446827135542729) * t18
-        + TWO_FINGERS_C(0.00607768621834256) * t19);
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t23 = t21 * (parameters[XX3] - parameters[YY3])
-        - parameters[XY3] * (TWO_FINGERS_C(2.0) * t22);
-    const two_fingers_real_t t24 = t21 * t23;
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t25 = t21 * parameters[MX3] - t22 * parameters[MY3];
-    /* link left_2: inertia of it and all beyond */
-    const two_fingers_real_t t26 = TWO_FINGERS_C(0.05) * parameters[M3];
-    const two_fingers_real_t t27 = TWO_FINGERS_C(0.05) * (t26 + TWO_FINGERS_C(2.0) * t25);
-    const two_fingers_real_t t28 = parameters[XX2] + (parameters[YY3] + t24);
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t30 = t21 * parameters[MY3] + t22 * parameters[MX3];
-    /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t32 = (parameters[XY2] + (parameters[XY3] + t22 * t23
-        + TWO_FINGERS_C(-0.05) * t30)) * (TWO_FINGERS_C(2.0) * t31);
-    const two_fingers_real_t t33 = t29 * (parameters[YY2] + (parameters[XX3] - t24 + t27) - t28) + t32;
-    /* link left_1: column of the mass matrix */
-    const two_fingers_real_t t34 = t29 * (parameters[MX2] + (t25 + t26)) - t31 * (parameters[MY2] + t30);
-    /* link left_1: inertia of it and all beyond */
-    const two_fingers_real_t t35 = t28 + t29 * t33
-        + TWO_FINGERS_C(0.03) * (TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
-        + TWO_FINGERS_C(2.0) * t34);
-    out[0] = parameters[ZZ1] + t20 + t35 + TWO_FINGERS_C(3.6e3) * parameters[IA1];
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t36 = t21 * parameters[XZ3] - t22 * parameters[YZ3];
-    const two_fingers_real_t t37 = t22 * parameters[XZ3] + t21 * parameters[YZ3];
-    /* link left_1: column of the mass matrix */
-    const two_fingers_real_t t38 = t31 * (parameters[XZ2] + (t36 + TWO_FINGERS_C(-0.05) * parameters[MZ3]))
-        + t29 * (parameters[YZ2] + t37);
-    out[1] = t38;
-    const two_fingers_real_t t39 = t31 * t36 + t29 * t37; /* link left_2: column of the mass matrix */
-    out[2] = t39;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t40 = t0 * parameters[XZ5] - t1 * parameters[YZ5];
-    const two_fingers_real_t t41 = t1 * parameters[XZ5] + t0 * parameters[YZ5];
-    /* link right_1: column of the mass matrix */
-    const two_fingers_real_t t42 = t10 * (parameters[XZ4] + (t40 + TWO_FINGERS_C(-0.045) * parameters[MZ5]))
-        + t8 * (parameters[YZ4] + t41);
-    const two_fingers_real_t t43 = t42 + TWO_FINGERS_C(8.673617379884035e-19) * (t8 * t13 + t10 * t14);
-    out[3] = t43;
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t44 = t10 * t40 + t8 * t41 + TWO_FINGERS_C(8.673617379884035e-19) * (t8 * t9
-        + t10 * t4);
-    out[4] = t44;
-    out[5] = t38;
-    out[6] = parameters[ZZ2] + (parameters[ZZ3] + t27) + TWO_FINGERS_C(9.0e2) * parameters[IA2];
-    /* link left_2: column of the mass matrix */
-    const two_fingers_real_t t45 = parameters[ZZ3] + TWO_FINGERS_C(0.05) * t25;
-    out[7] = t45;
-    out[10] = t39;
-    out[11] = t45;
-    out[12] = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
-    out[15] = t43;
-    out[18] = parameters[ZZ4] + (parameters[ZZ5] + t6) + TWO_FINGERS_C(9.0e2) * parameters[IA4];
-    /* link right_2: column of the mass matrix */
-    const two_fingers_real_t t46 = parameters[ZZ5] + TWO_FINGERS_C(0.045) * t4;
-    out[19] = t46;
-    out[20] = t44;
-    out[23] = t46;
+    two_fingers_real_t t21, t23;
+    TWO_FINGERS_SINCOS(q[1], &t21, &t23);
+    two_fingers_real_t t16, t17;
+    TWO_FINGERS_SINCOS(q[2], &t16, &t17);
+    two_fingers_real_t t5, t7;
+    TWO_FINGERS_SINCOS(q[3], &t5, &t7);
+    two_fingers_real_t t0, t1;
+    TWO_FINGERS_SINCOS(q[4], &t0, &t1);
     out[24] = parameters[ZZ5] + TWO_FINGERS_C(9.0e2) * parameters[IA5];
+    /* link right_2: column of the mass matrix */
+    const two_fingers_real_t t2 = t1 * parameters[MX5] - t0 * parameters[MY5];
+    const two_fingers_real_t t3 = parameters[ZZ5] + TWO_FINGERS_C(0.045) * t2;
+    out[19] = t3;
+    const two_fingers_real_t t4 = t1 * parameters[XZ5] - t0 * parameters[YZ5];
+    const two_fingers_real_t t6 = t0 * parameters[XZ5] + t1 * parameters[YZ5];
+    const two_fingers_real_t t8 = t1 * parameters[MY5] + t0 * parameters[MX5];
+    const two_fingers_real_t t9 = t5 * t4 + t7 * t6 + TWO_FINGERS_C(8.673617379884035e-19) * (t7 * t8
+        + t5 * t2);
+    out[4] = t9;
+    out[23] = t3;
+    out[20] = t9;
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t10 = TWO_FINGERS_C(0.045) * parameters[M5];
+    const two_fingers_real_t t11 = TWO_FINGERS_C(0.045) * (t10 + TWO_FINGERS_C(2.0) * t2);
+    out[18] = parameters[ZZ4] + (parameters[ZZ5] + t11) + TWO_FINGERS_C(9.0e2) * parameters[IA4];
+    /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t12 = t5 * (parameters[XZ4] + (t4 + TWO_FINGERS_C(-0.045) * parameters[MZ5]))
+        + t7 * (parameters[YZ4] + t6);
+    const two_fingers_real_t t13 = parameters[MY4] + t8; /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t14 = parameters[MX4] + (t2 + t10);
+    /* link right_1: column of the mass matrix */
+    const two_fingers_real_t t15 = t12 + TWO_FINGERS_C(8.673617379884035e-19) * (t7 * t13 + t5 * t14);
+    out[3] = t15;
+    out[15] = t15;
+    out[12] = parameters[ZZ3] + TWO_FINGERS_C(9.0e2) * parameters[IA3];
+    /* link left_2: column of the mass matrix */
+    const two_fingers_real_t t18 = t17 * parameters[MX3] - t16 * parameters[MY3];
+    const two_fingers_real_t t19 = parameters[ZZ3] + TWO_FINGERS_C(0.05) * t18;
+    out[7] = t19;
+    const two_fingers_real_t t20 = t17 * parameters[XZ3] - t16 * parameters[YZ3];
+    const two_fingers_real_t t22 = t16 * parameters[XZ3] + t17 * parameters[YZ3];
+    const two_fingers_real_t t24 = t21 * t20 + t23 * t22;
+    out[2] = t24;
+    out[11] = t19;
+    out[10] = t24;
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t25 = TWO_FINGERS_C(0.05) * parameters[M3];
+    const two_fingers_real_t t26 = TWO_FINGERS_C(0.05) * (t25 + TWO_FINGERS_C(2.0) * t18);
+    out[6] = parameters[ZZ2] + (parameters[ZZ3] + t26) + TWO_FINGERS_C(9.0e2) * parameters[IA2];
+    /* link left_1: column of the mass matrix */
+    const two_fingers_real_t t27 = t21 * (parameters[XZ2] + (t20 + TWO_FINGERS_C(-0.05) * parameters[MZ3]))
+        + t23 * (parameters[YZ2] + t22);
+    out[1] = t27;
+    out[5] = t27;
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t28 = t1 * (parameters[XX5] - parameters[YY5])
+        - parameters[XY5] * (TWO_FINGERS_C(2.0) * t0);
+    const two_fingers_real_t t29 = t1 * t28;
+    const two_fingers_real_t t30 = parameters[XX4] + (parameters[YY5] + t29);
+    /* link right_1: inertia of it and all beyond */
+    const two_fingers_real_t t31 = (parameters[XY4] + (parameters[XY5] + t0 * t28
+        + TWO_FINGERS_C(-0.045) * t8)) * (TWO_FINGERS_C(2.0) * t5);
+    const two_fingers_real_t t32 = t7 * (parameters[YY4] + (parameters[XX5] - t29 + t11) - t30) + t31;
+    const two_fingers_real_t t33 = t7 * t14 - t5 * t13; /* link right_1: column of the mass matrix */
+    /* link right_2: inertia of it and all beyond */
+    const two_fingers_real_t t34 = parameters[MZ4] + parameters[MZ5];
+    const two_fingers_real_t t35 = parameters[M4] + parameters[M5];
+    /* link right_1: inertia of it and all beyond */
+    const two_fingers_real_t t36 = TWO_FINGERS_C(0.03446827135542729) * t35
+        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.984807753012208) * t33
+        + TWO_FINGERS_C(-0.17364817766693028) * t34);
+    const two_fingers_real_t t37 = TWO_FINGERS_C(0.00607768621834256) * t35
+        + TWO_FINGERS_C(2.0) * (TWO_FINGERS_C(0.17364817766693028) * t33
+        + TWO_FINGERS_C(0.984807753012208) * t34);
+    const two_fingers_real_t t38 = t30 + t7 * t32 + (TWO_FINGERS_C(0.03446827135542729) * t36
+        + TWO_FINGERS_C(0.00607768621834256) * t37);
+    /* link left_2: inertia of it and all beyond */
+    const two_fingers_real_t t39 = t17 * (parameters[XX3] - parameters[YY3])
+        - parameters[XY3] * (TWO_FINGERS_C(2.0) * t16);
+    const two_fingers_real_t t40 = t17 * t39;
+    const two_fingers_real_t t41 = parameters[XX2] + (parameters[YY3] + t40);
+    /* link left_2: column of the mass matrix */
+    const two_fingers_real_t t42 = t17 * parameters[MY3] + t16 * parameters[MX3];
+    /* link left_1: inertia of it and all beyond */
+    const two_fingers_real_t t43 = (parameters[XY2] + (parameters[XY3] + t16 * t39
+        + TWO_FINGERS_C(-0.05) * t42)) * (TWO_FINGERS_C(2.0) * t21);
+    const two_fingers_real_t t44 = t23 * (parameters[YY2] + (parameters[XX3] - t40 + t26) - t41) + t43;
+    /* link left_1: column of the mass matrix */
+    const two_fingers_real_t t45 = t23 * (parameters[MX2] + (t18 + t25)) - t21 * (parameters[MY2] + t42);
+    /* link left_1: inertia of it and all beyond */
+    const two_fingers_real_t t46 = t41 + t23 * t44
+        + TWO_FINGERS_C(0.03) * (TWO_FINGERS_C(0.03) * (parameters[M2] + parameters[M3])
+        + TWO_FINGERS_C(2.0) * t45);
+    out[0] = parameters[ZZ1] + t38 + t46 + TWO_FINGERS_C(3.6e3) * parameters[IA1];
     /* always zero */
     out[8] = out[9] = TWO_FINGERS_C(0.0);
     out[13] = out[14] = TWO_FINGERS_C(0.0);

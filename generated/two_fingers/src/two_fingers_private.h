@@ -13,7 +13,7 @@
 
 #include "two_fingers.h"
 
-#if TWO_FINGERS_GENERATION != 0x24AB78D7UL
+#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
 #error "two_fingers.h and two_fingers_private.h are of different generations: generate the arm again"
 #endif
 
@@ -102,15 +102,24 @@ static inline void two_fingers_sine_cosine(two_fingers_real_t x, two_fingers_rea
 }
 #endif
 
-/* Whether the sum of squares is at most limit; false where an element is not a number. */
+/*
+ * Whether the sum of squares is at most limit; false where an element is not a number. Four sums at a time wait
+ * less for one another, and fill a vector where the processor has them.
+ */
 static inline int two_fingers_within(const two_fingers_real_t x[], int n, two_fingers_real_t limit)
 {
-    two_fingers_real_t sum = TWO_FINGERS_C(0.0);
-    int i;
-    for (i = 0; i < n; ++i) {
-        sum += x[i] * x[i];
+    two_fingers_real_t a = TWO_FINGERS_C(0.0), b = TWO_FINGERS_C(0.0), c = TWO_FINGERS_C(0.0), d = TWO_FINGERS_C(0.0);
+    int i = 0;
+    for (; n - i >= 4; i += 4) {
+        a += x[i] * x[i];
+        b += x[i + 1] * x[i + 1];
+        c += x[i + 2] * x[i + 2];
+        d += x[i + 3] * x[i + 3];
     }
-    return sum <= limit;
+    for (; n - i >= 1; ++i) {
+        a += x[i] * x[i];
+    }
+    return (a + b) + (c + d) <= limit;
 }
 
 /* The same for a vector with an element for each joint. */
@@ -119,22 +128,28 @@ static inline int two_fingers_within_joints(const two_fingers_real_t x[], two_fi
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] <= limit;
 }
 
-/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
-static inline two_fingers_real_t two_fingers_bounded(two_fingers_real_t x)
+/* x held within twice the limit of a result, above it where x is not a number: what builds on it is finite. */
+static inline two_fingers_real_t two_fingers_held(two_fingers_real_t x)
 {
-    return x >= TWO_FINGERS_C(-1.0e15) && x <= TWO_FINGERS_C(1.0e15) ? x : TWO_FINGERS_C(2.0e15);
+    const two_fingers_real_t below = x < TWO_FINGERS_C(2.0e15) ? x : TWO_FINGERS_C(2.0e15);
+    return below > -TWO_FINGERS_C(2.0e15) ? below : -TWO_FINGERS_C(2.0e15);
 }
 
-/* Whether every element of a result is within the limit; false where one is not a number. */
-static inline int two_fingers_all_bounded(const two_fingers_real_t x[], int n)
+/* Whether the magnitudes of a result's elements add up to its limit at most; false where one is not a number. */
+static inline int two_fingers_bounded(const two_fingers_real_t x[], int n)
 {
-    int i;
-    for (i = 0; i < n; ++i) {
-        if (!(x[i] >= TWO_FINGERS_C(-1.0e15) && x[i] <= TWO_FINGERS_C(1.0e15))) {
-            return 0;
-        }
+    two_fingers_real_t a = TWO_FINGERS_C(0.0), b = TWO_FINGERS_C(0.0), c = TWO_FINGERS_C(0.0), d = TWO_FINGERS_C(0.0);
+    int i = 0;
+    for (; n - i >= 4; i += 4) {
+        a += TWO_FINGERS_ABS(x[i]);
+        b += TWO_FINGERS_ABS(x[i + 1]);
+        c += TWO_FINGERS_ABS(x[i + 2]);
+        d += TWO_FINGERS_ABS(x[i + 3]);
     }
-    return 1;
+    for (; n - i >= 1; ++i) {
+        a += TWO_FINGERS_ABS(x[i]);
+    }
+    return (a + b) + (c + d) <= TWO_FINGERS_C(1.0e15);
 }
 
 /* Left out of every call with -DTWO_FINGERS_PARAMETERS_CHECKED, for parameters that two_fingers_check_parameters has seen. */

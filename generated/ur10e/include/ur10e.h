@@ -84,7 +84,7 @@
 #define UR10E_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_GENERATION 0xA003030FUL
+#define UR10E_GENERATION 0x39EF5DCBUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define UR10E_MODEL "0615fad907f568ac00d3b2df22af4c08533d3fe15e3186011fcc1354d2d059ad"
@@ -417,7 +417,7 @@ ur10e_status_t ur10e_mass_matrix(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return UR10E_STATUS_OK or status bits
  *
- * Operations: 898 (491 mul, 407 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 898 (491 mul, 407 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 ur10e_status_t ur10e_forward_dynamics(
     const ur10e_real_t q[UR10E_N_JOINTS],
@@ -616,7 +616,7 @@ ur10e_status_t ur10e_mass_matrix_standard(
  * @param[out]  out         [6]   [rad/s^2]  joint accelerations
  * @return UR10E_STATUS_OK or status bits
  *
- * Operations: 1034 (547 mul, 487 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 1034 (547 mul, 487 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 ur10e_status_t ur10e_forward_dynamics_standard(
     const ur10e_real_t q[UR10E_N_JOINTS],
@@ -792,7 +792,7 @@ ur10e_status_t ur10e_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return UR10E_STATUS_OK or status bits
  *
- * Operations: 3764 (2100 mul, 1657 add, 7 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 3764 (2100 mul, 1657 add, 7 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t q[UR10E_N_JOINTS],
@@ -845,7 +845,7 @@ ur10e_status_t ur10e_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [36]  [(rad/s^2) per A]        d ddq / d input; 6 x 6, row-major
  * @return UR10E_STATUS_OK or status bits
  *
- * Operations: 4097 (2246 mul, 1844 add, 7 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 4097 (2246 mul, 1844 add, 7 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  */
 ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t q[UR10E_N_JOINTS],

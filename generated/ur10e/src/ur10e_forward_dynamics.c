@@ -6,7 +6,7 @@
  * Arm ur10e, description 0615fad907f568ac.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 898 (491 mul, 407 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 898 (491 mul, 407 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -82,7 +82,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -109,17 +109,17 @@ ur10e_status_t ur10e_forward_dynamics(
         return status;
     }
 
-    ur10e_real_t t87, t88;
-    UR10E_SINCOS(q[1], &t87, &t88);
-    ur10e_real_t t60, t61;
-    UR10E_SINCOS(q[2], &t60, &t61);
-    ur10e_real_t t38, t41;
-    UR10E_SINCOS(q[3], &t38, &t41);
-    ur10e_real_t t13, t15;
-    UR10E_SINCOS(q[4], &t13, &t15);
+    ur10e_real_t t83, t84;
+    UR10E_SINCOS(q[1], &t83, &t84);
+    ur10e_real_t t57, t58;
+    UR10E_SINCOS(q[2], &t57, &t58);
+    ur10e_real_t t36, t39;
+    UR10E_SINCOS(q[3], &t36, &t39);
+    ur10e_real_t t12, t14;
+    UR10E_SINCOS(q[4], &t12, &t14);
     ur10e_real_t t1, t2;
     UR10E_SINCOS(q[5], &t1, &t2);
-    const ur10e_real_t t0 = ur10e_bounded(parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6]);
+    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
     if (!(t0 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -133,404 +133,386 @@ ur10e_status_t ur10e_forward_dynamics(
     const ur10e_real_t t7 = t2 * t6;
     const ur10e_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] - t7);
     const ur10e_real_t t9 = t8 + UR10E_C(10201.0) * parameters[IA5];
-    const ur10e_real_t t10 = ur10e_bounded(t9 + t3 * t5);
+    const ur10e_real_t t10 = t9 + t3 * t5;
     if (!(t10 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t11 = t10 + UR10E_C(-1.0e-9) * t9;
-    if (!(t11 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t12 = parameters[XY6] + t1 * t6 - parameters[XZ5];
-    const ur10e_real_t t14 = parameters[YZ5] - t3;
+    const ur10e_real_t t11 = parameters[XY6] + t1 * t6 - parameters[XZ5];
+    const ur10e_real_t t13 = parameters[YZ5] - t3;
     /* link j6: column of the mass matrix */
-    const ur10e_real_t t16 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const ur10e_real_t t17 = parameters[MX5] + t16; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t18 = t15 * parameters[MY5R] + t13 * t17; /* link j5: column of the mass matrix */
-    const ur10e_real_t t19 = t13 * t12 - t15 * t14 + UR10E_C(0.11985) * t18;
+    const ur10e_real_t t15 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const ur10e_real_t t16 = parameters[MX5] + t15; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t17 = t14 * parameters[MY5R] + t12 * t16; /* link j5: column of the mass matrix */
+    const ur10e_real_t t18 = t12 * t11 - t14 * t13 + UR10E_C(0.11985) * t17;
     /* link j6: column of the mass matrix */
-    const ur10e_real_t t20 = t1 * parameters[YZ6R] - t2 * parameters[XZ6R];
-    const ur10e_real_t t21 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const ur10e_real_t t22 = t15 * t21;
-    const ur10e_real_t t23 = t13 * t20 - t15 * parameters[ZZ6] + UR10E_C(0.11985) * t22;
-    const ur10e_real_t t24 = t19 - t23 * t5;
-    const ur10e_real_t t25 = UR10E_C(-1.0) / t10;
-    const ur10e_real_t t26 = t24 * t25;
-    const ur10e_real_t t27 = t23 * t4;
-    const ur10e_real_t t28 = parameters[XX5R] + t7; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t29 = t20 - parameters[XY5];
+    const ur10e_real_t t19 = t1 * parameters[YZ6R] - t2 * parameters[XZ6R];
+    const ur10e_real_t t20 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const ur10e_real_t t21 = t14 * t20;
+    const ur10e_real_t t22 = t12 * t19 - t14 * parameters[ZZ6] + UR10E_C(0.11985) * t21;
+    const ur10e_real_t t23 = t18 - t22 * t5;
+    const ur10e_real_t t24 = UR10E_C(-1.0) / t10;
+    const ur10e_real_t t25 = t23 * t24;
+    const ur10e_real_t t26 = t22 * t4;
+    const ur10e_real_t t27 = parameters[XX5R] + t7; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t28 = t19 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t30 = t15 * (parameters[ZZ6] - t28) - t29 * (UR10E_C(2.0) * t13);
-    const ur10e_real_t t31 = t15 * t30;
-    const ur10e_real_t t32 = UR10E_C(-0.2397) * t21;
-    const ur10e_real_t t33 = parameters[ZZ4R] + (t28 + t31 + t32);
-    const ur10e_real_t t34 = t33 + UR10E_C(10201.0) * parameters[IA4];
-    const ur10e_real_t t35 = ur10e_bounded(t34 + t23 * t27 + t24 * t26);
-    if (!(t35 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t29 = t14 * (parameters[ZZ6] - t27) - t28 * (UR10E_C(2.0) * t12);
+    const ur10e_real_t t30 = t14 * t29;
+    const ur10e_real_t t31 = UR10E_C(-0.2397) * t20;
+    const ur10e_real_t t32 = parameters[ZZ4R] + (t27 + t30 + t31);
+    const ur10e_real_t t33 = t32 + UR10E_C(10201.0) * parameters[IA4];
+    const ur10e_real_t t34 = t33 + t22 * t26 + t23 * t25;
+    if (!(t34 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t36 = t35 + UR10E_C(-1.0e-9) * t34;
-    if (!(t36 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t35 = parameters[MY4R] + t20;
+    const ur10e_real_t t37 = t14 * t16 - t12 * parameters[MY5R]; /* link j5: column of the mass matrix */
+    const ur10e_real_t t38 = parameters[MX4] + t37; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t40 = t39 * t38 - t36 * t35; /* link j4: column of the mass matrix */
+    const ur10e_real_t t41 = UR10E_C(0.57155) * t40 - t32;
+    const ur10e_real_t t42 = t36 * t21 - t39 * t15; /* link j6: column of the mass matrix */
+    const ur10e_real_t t43 = UR10E_C(0.57155) * t42 - t22;
+    const ur10e_real_t t44 = t36 * t17; /* link j5: column of the mass matrix */
+    const ur10e_real_t t45 = UR10E_C(0.57155) * t44 - t18;
+    const ur10e_real_t t46 = t45 - t43 * t5;
+    const ur10e_real_t t47 = t41 + t43 * t26 + t46 * t25;
+    const ur10e_real_t t48 = UR10E_C(-1.0) / t34;
+    const ur10e_real_t t49 = t47 * t48;
+    const ur10e_real_t t50 = t43 * t4;
+    const ur10e_real_t t51 = UR10E_C(-1.1431) * t40; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t52 = parameters[ZZ3R] + (t32 + t51);
+    const ur10e_real_t t53 = t52 + UR10E_C(10201.0) * parameters[IA3];
+    const ur10e_real_t t54 = t46 * t24;
+    const ur10e_real_t t55 = t53 + t43 * t50 + t46 * t54 + t47 * t49;
+    if (!(t55 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t37 = parameters[MY4R] + t21;
-    const ur10e_real_t t39 = t15 * t17 - t13 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const ur10e_real_t t40 = parameters[MX4] + t39; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t42 = t41 * t40 - t38 * t37; /* link j4: column of the mass matrix */
-    const ur10e_real_t t43 = UR10E_C(0.57155) * t42 - t33;
-    const ur10e_real_t t44 = t38 * t22 - t41 * t16; /* link j6: column of the mass matrix */
-    const ur10e_real_t t45 = UR10E_C(0.57155) * t44 - t23;
-    const ur10e_real_t t46 = t38 * t18; /* link j5: column of the mass matrix */
-    const ur10e_real_t t47 = UR10E_C(0.57155) * t46 - t19;
-    const ur10e_real_t t48 = t47 - t45 * t5;
-    const ur10e_real_t t49 = t43 + t45 * t27 + t48 * t26;
-    const ur10e_real_t t50 = UR10E_C(-1.0) / t35;
-    const ur10e_real_t t51 = t49 * t50;
-    const ur10e_real_t t52 = t45 * t4;
-    const ur10e_real_t t53 = UR10E_C(-1.1431) * t42; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t54 = parameters[ZZ3R] + (t33 + t53);
-    const ur10e_real_t t55 = t54 + UR10E_C(10201.0) * parameters[IA3];
-    const ur10e_real_t t56 = t48 * t25;
-    const ur10e_real_t t57 = ur10e_bounded(t55 + t45 * t52 + t48 * t56 + t49 * t51);
-    if (!(t57 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t56 = t39 * t21 + t36 * t15; /* link j6: column of the mass matrix */
+    const ur10e_real_t t59 = t43 + UR10E_C(0.6127) * (t57 * t56 + t58 * t42);
+    const ur10e_real_t t60 = t59 * t4;
+    const ur10e_real_t t61 = t39 * t35 + t36 * t38; /* link j4: column of the mass matrix */
+    const ur10e_real_t t62 = parameters[MY3] + t61; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t63 = parameters[MX3R] + t40;
+    const ur10e_real_t t64 = t57 * t62 - t58 * t63; /* link j3: column of the mass matrix */
+    const ur10e_real_t t65 = UR10E_C(1.2254) * t64; /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t66 = parameters[ZZ2R] + (t52 + t65);
+    const ur10e_real_t t67 = t39 * t17; /* link j5: column of the mass matrix */
+    const ur10e_real_t t68 = t45 + UR10E_C(0.6127) * (t57 * t67 + t58 * t44) - t59 * t5;
+    const ur10e_real_t t69 = t68 * t24;
+    const ur10e_real_t t70 = t41 + UR10E_C(0.6127) * (t58 * t40 - t57 * t61) + t59 * t26;
+    const ur10e_real_t t71 = t70 + t68 * t25;
+    const ur10e_real_t t72 = t71 * t48;
+    const ur10e_real_t t73 = t66 + t59 * t60 + t68 * t69 + t71 * t72;
+    const ur10e_real_t t74 = UR10E_C(-0.6127) * t64 - t52 - t59 * t50 - t68 * t54;
+    const ur10e_real_t t75 = t74 - t71 * t49;
+    const ur10e_real_t t76 = UR10E_C(1.0) / t55;
+    const ur10e_real_t t77 = t75 * t76;
+    const ur10e_real_t t78 = t73 - t75 * t77;
+    if (!(t78 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t58 = t57 + UR10E_C(-1.0e-9) * t55;
-    if (!(t58 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t59 = t41 * t22 + t38 * t16; /* link j6: column of the mass matrix */
-    const ur10e_real_t t62 = t45 + UR10E_C(0.6127) * (t60 * t59 + t61 * t44);
-    const ur10e_real_t t63 = t62 * t4;
-    const ur10e_real_t t64 = t41 * t37 + t38 * t40; /* link j4: column of the mass matrix */
-    const ur10e_real_t t65 = parameters[MY3] + t64; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t66 = parameters[MX3R] + t42;
-    const ur10e_real_t t67 = t60 * t65 - t61 * t66; /* link j3: column of the mass matrix */
-    const ur10e_real_t t68 = UR10E_C(1.2254) * t67; /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t69 = parameters[ZZ2R] + (t54 + t68);
-    const ur10e_real_t t70 = t41 * t18; /* link j5: column of the mass matrix */
-    const ur10e_real_t t71 = t47 + UR10E_C(0.6127) * (t60 * t70 + t61 * t46) - t62 * t5;
-    const ur10e_real_t t72 = t71 * t25;
-    const ur10e_real_t t73 = t43 + UR10E_C(0.6127) * (t61 * t42 - t60 * t64) + t62 * t27;
-    const ur10e_real_t t74 = t73 + t71 * t26;
-    const ur10e_real_t t75 = t74 * t50;
-    const ur10e_real_t t76 = t69 + t62 * t63 + t71 * t72 + t74 * t75;
-    const ur10e_real_t t77 = UR10E_C(-0.6127) * t67 - t54 - t62 * t52 - t71 * t56;
-    const ur10e_real_t t78 = t77 - t74 * t51;
-    const ur10e_real_t t79 = UR10E_C(1.0) / t57;
-    const ur10e_real_t t80 = t78 * t79;
-    const ur10e_real_t t81 = ur10e_bounded(t76 - t78 * t80);
-    if (!(t81 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t82 = t81 + UR10E_C(-1.0e-9) * t69;
-    if (!(t82 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t83 = t13 * t21; /* link j6: column of the mass matrix */
-    const ur10e_real_t t84 = UR10E_C(0.11985) * t83 - (t15 * t20 + t13 * parameters[ZZ6]);
-    const ur10e_real_t t85 = t41 * t84 - t38 * t3 + UR10E_C(0.17415) * t44;
-    const ur10e_real_t t86 = t38 * t84 + t41 * t3 - (UR10E_C(0.17415) * t59 + UR10E_C(0.57155) * t83);
-    const ur10e_real_t t89 = t88 * (t60 * t85 + t61 * t86 - UR10E_C(0.6127) * t83);
-    const ur10e_real_t t90 = t87 * (t61 * t85 - t60 * t86) + t89;
-    const ur10e_real_t t91 = t90 * t4;
+    const ur10e_real_t t79 = t12 * t20; /* link j6: column of the mass matrix */
+    const ur10e_real_t t80 = UR10E_C(0.11985) * t79 - (t14 * t19 + t12 * parameters[ZZ6]);
+    const ur10e_real_t t81 = t39 * t80 - t36 * t3 + UR10E_C(0.17415) * t42;
+    const ur10e_real_t t82 = t36 * t80 + t39 * t3 - (UR10E_C(0.17415) * t56 + UR10E_C(0.57155) * t79);
+    const ur10e_real_t t85 = t84 * (t57 * t81 + t58 * t82 - UR10E_C(0.6127) * t79);
+    const ur10e_real_t t86 = t83 * (t58 * t81 - t57 * t82) + t85;
+    const ur10e_real_t t87 = t86 * t4;
     /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t92 = parameters[XX4R] + (parameters[ZZ6] - t31 + t32);
+    const ur10e_real_t t88 = parameters[XX4R] + (parameters[ZZ6] - t30 + t31);
     /* link j5: column of the mass matrix */
-    const ur10e_real_t t93 = t15 * t12 + t13 * t14 + UR10E_C(0.11985) * t39;
-    const ur10e_real_t t94 = parameters[XY4] + t93; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t89 = t14 * t11 + t12 * t13 + UR10E_C(0.11985) * t37;
+    const ur10e_real_t t90 = parameters[XY4] + t89; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t95 = t41 * (t92 - t8) + t94 * (UR10E_C(-2.0) * t38);
-    const ur10e_real_t t96 = t41 * t95;
-    const ur10e_real_t t97 = UR10E_C(0.3483) * t18;
-    const ur10e_real_t t98 = t92 - t96 + (t53 + t97);
-    const ur10e_real_t t99 = parameters[XX3R] + (t8 + t96 + t97);
-    const ur10e_real_t t100 = parameters[XY3] + (t94 + t38 * t95 + UR10E_C(0.57155) * t64);
+    const ur10e_real_t t91 = t39 * (t88 - t8) + t90 * (UR10E_C(-2.0) * t36);
+    const ur10e_real_t t92 = t39 * t91;
+    const ur10e_real_t t93 = UR10E_C(0.3483) * t17;
+    const ur10e_real_t t94 = t88 - t92 + (t51 + t93);
+    const ur10e_real_t t95 = parameters[XX3R] + (t8 + t92 + t93);
+    const ur10e_real_t t96 = parameters[XY3] + (t90 + t36 * t91 + UR10E_C(0.57155) * t61);
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t101 = t61 * (t98 - t99) + t100 * (UR10E_C(2.0) * t60);
-    const ur10e_real_t t102 = t61 * t101;
-    const ur10e_real_t t103 = parameters[XX2R] + (t98 - t102);
-    const ur10e_real_t t104 = t100 - t60 * t101 + UR10E_C(0.6127) * (t61 * t65 + t60 * t66);
+    const ur10e_real_t t97 = t58 * (t94 - t95) + t96 * (UR10E_C(2.0) * t57);
+    const ur10e_real_t t98 = t58 * t97;
+    const ur10e_real_t t99 = parameters[XX2R] + (t94 - t98);
+    const ur10e_real_t t100 = t96 - t57 * t97 + UR10E_C(0.6127) * (t58 * t62 + t57 * t63);
     /* link j2: inertia of it and all beyond */
-    const ur10e_real_t t105 = t88 * (t99 + t102 + t68 - t103) + (parameters[XY2]
-        + t104) * (UR10E_C(2.0) * t87);
-    const ur10e_real_t t106 = parameters[ZZ1R] + (t103 + t88 * t105);
+    const ur10e_real_t t101 = t84 * (t95 + t98 + t65 - t99) + (parameters[XY2] + t100) * (UR10E_C(2.0) * t83);
+    const ur10e_real_t t102 = parameters[ZZ1R] + (t99 + t84 * t101);
     /* link j5: column of the mass matrix */
-    const ur10e_real_t t107 = t38 * t93 + t41 * t8 + (UR10E_C(0.17415) * t70 + UR10E_C(-0.57155) * t39);
-    const ur10e_real_t t108 = t38 * t8 - t41 * t93 + UR10E_C(0.17415) * t46;
-    const ur10e_real_t t109 = t88 * (t60 * t108 - t61 * t107 - UR10E_C(-0.6127) * t39);
-    const ur10e_real_t t110 = t87 * (t61 * t108 + t60 * t107) + t109 - t90 * t5;
-    const ur10e_real_t t111 = t110 * t25;
-    const ur10e_real_t t112 = t29 + t13 * t30 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t113 = parameters[YZ4] + t19;
-    const ur10e_real_t t114 = t41 * t112 + t38 * t113; /* link j4: column of the mass matrix */
-    const ur10e_real_t t115 = UR10E_C(0.17415) * t42;
-    const ur10e_real_t t116 = t114 + t115;
-    const ur10e_real_t t117 = t41 * t113 - t38 * t112 - UR10E_C(0.17415) * t64;
-    const ur10e_real_t t118 = t88 * (t61 * t117 - t60 * t116) - t87 * (t61 * t116 + t60 * t117);
-    const ur10e_real_t t119 = t118 - t90 * t27 - t110 * t26;
-    const ur10e_real_t t120 = t119 * t50;
-    const ur10e_real_t t121 = t106 + t90 * t91 + t110 * t111 + t119 * t120;
+    const ur10e_real_t t103 = t36 * t89 + t39 * t8 + (UR10E_C(0.17415) * t67 + UR10E_C(-0.57155) * t37);
+    const ur10e_real_t t104 = t36 * t8 - t39 * t89 + UR10E_C(0.17415) * t44;
+    const ur10e_real_t t105 = t84 * (t57 * t104 - t58 * t103 - UR10E_C(-0.6127) * t37);
+    const ur10e_real_t t106 = t83 * (t58 * t104 + t57 * t103) + t105 - t86 * t5;
+    const ur10e_real_t t107 = t106 * t24;
+    const ur10e_real_t t108 = t28 + t12 * t29 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t109 = parameters[YZ4] + t18;
+    const ur10e_real_t t110 = t39 * t108 + t36 * t109; /* link j4: column of the mass matrix */
+    const ur10e_real_t t111 = UR10E_C(0.17415) * t40;
+    const ur10e_real_t t112 = t110 + t111;
+    const ur10e_real_t t113 = t39 * t109 - t36 * t108 - UR10E_C(0.17415) * t61;
+    const ur10e_real_t t114 = t84 * (t58 * t113 - t57 * t112) - t83 * (t58 * t112 + t57 * t113);
+    const ur10e_real_t t115 = t114 - t86 * t26 - t106 * t25;
+    const ur10e_real_t t116 = t115 * t48;
+    const ur10e_real_t t117 = t102 + t86 * t87 + t106 * t107 + t115 * t116;
     /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t122 = t114 + (t115 + UR10E_C(-0.57155) * t18) - parameters[XZ3R];
-    const ur10e_real_t t123 = parameters[YZ3] + t117;
-    const ur10e_real_t t124 = t61 * t122 + t60 * t123; /* link j3: column of the mass matrix */
-    const ur10e_real_t t125 = t60 * t122 - t61 * t123;
-    const ur10e_real_t t126 = t87 * t124 + t88 * t125 - t90 * t52 - t110 * t56;
-    const ur10e_real_t t127 = t126 + t119 * t51;
-    const ur10e_real_t t128 = t127 * t79;
+    const ur10e_real_t t118 = t110 + (t111 + UR10E_C(-0.57155) * t17) - parameters[XZ3R];
+    const ur10e_real_t t119 = parameters[YZ3] + t113;
+    const ur10e_real_t t120 = t58 * t118 + t57 * t119; /* link j3: column of the mass matrix */
+    const ur10e_real_t t121 = t57 * t118 - t58 * t119;
+    const ur10e_real_t t122 = t83 * t120 + t84 * t121 - t86 * t50 - t106 * t54;
+    const ur10e_real_t t123 = t122 + t115 * t49;
+    const ur10e_real_t t124 = t123 * t76;
     /* link j2: column of the mass matrix */
-    const ur10e_real_t t129 = t87 * (t124 + UR10E_C(-0.6127) * t18 - parameters[XZ2R]) + t88 * (t125
+    const ur10e_real_t t125 = t83 * (t120 + UR10E_C(-0.6127) * t17 - parameters[XZ2R]) + t84 * (t121
         - parameters[YZ2]);
-    const ur10e_real_t t130 = t129 - t90 * t63 - t110 * t72 + t119 * t75;
-    const ur10e_real_t t131 = t130 + t127 * t80;
-    const ur10e_real_t t132 = UR10E_C(1.0) / t81;
-    const ur10e_real_t t133 = t131 * t132;
-    const ur10e_real_t t134 = ur10e_bounded(t121 - t127 * t128 - t131 * t133);
+    const ur10e_real_t t126 = t125 - t86 * t60 - t106 * t69 + t115 * t72;
+    const ur10e_real_t t127 = t126 + t123 * t77;
+    const ur10e_real_t t128 = UR10E_C(1.0) / t78;
+    const ur10e_real_t t129 = t127 * t128;
+    const ur10e_real_t t130 = t117 - t123 * t124 - t127 * t129;
+    if (!(t130 > UR10E_C(1.0e-12))) {
+        ur10e_zero(out, 6);
+        return UR10E_STATUS_PIVOT;
+    }
+    const ur10e_real_t t131 = ur10e_min(t10 + UR10E_C(-1.0e-9) * t9, t34 + UR10E_C(-1.0e-9) * t33);
+    const ur10e_real_t t132 = ur10e_min(t131, t55 + UR10E_C(-1.0e-9) * t53);
+    const ur10e_real_t t133 = ur10e_min(t132, t78 + UR10E_C(-1.0e-9) * t66);
+    const ur10e_real_t t134 = ur10e_min(t133, t130 + UR10E_C(-1.0e-9) * t102);
     if (!(t134 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t135 = t134 + UR10E_C(-1.0e-9) * t106;
-    if (!(t135 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t136 = t87 * dq[0]; /* link j2: motion */
-    const ur10e_real_t t137 = t88 * dq[0];
-    const ur10e_real_t t138 = t61 * t136 + t60 * t137; /* link j3: motion */
-    const ur10e_real_t t139 = t60 * t136 - t61 * t137;
-    const ur10e_real_t t140 = t38 * t139 - t41 * t138; /* link j4: motion */
-    const ur10e_real_t t141 = t38 * t138 + t41 * t139;
-    const ur10e_real_t t142 = t140 * t141;
-    const ur10e_real_t t143 = dq[1] + dq[2]; /* link j3: motion */
-    const ur10e_real_t t144 = dq[3] + t143; /* link j4: motion */
-    const ur10e_real_t t145 = t141 * t144;
-    const ur10e_real_t t146 = UR10E_C(2.0) * t145; /* link j5: motion */
-    const ur10e_real_t t147 = t13 * t146 - t15 * t142;
-    const ur10e_real_t t148 = t15 * t140 - t13 * t144;
-    const ur10e_real_t t149 = dq[4] + t141;
-    const ur10e_real_t t150 = t148 * t149;
-    const ur10e_real_t t151 = t147 + t150;
-    const ur10e_real_t t152 = t2 * t148 + t1 * t149; /* link j6: motion */
-    const ur10e_real_t t153 = t1 * t148 - t2 * t149;
-    const ur10e_real_t t154 = t152 * t153;
-    const ur10e_real_t t155 = t13 * t142 + t15 * t146; /* link j5: motion */
-    const ur10e_real_t t156 = t13 * t140 + t15 * t144;
-    const ur10e_real_t t157 = t156 * t149;
-    const ur10e_real_t t158 = t155 - t157;
-    const ur10e_real_t t159 = t158 - t157; /* link j6: motion */
-    const ur10e_real_t t160 = t148 * t156; /* link j5: motion */
-    const ur10e_real_t t161 = t140 * t144; /* link j4: motion */
-    const ur10e_real_t t162 = t161 - t160; /* link j6: motion */
-    const ur10e_real_t t163 = t2 * t162 + t1 * t159;
-    const ur10e_real_t t164 = t1 * t162 - t2 * t159;
+    const ur10e_real_t t135 = t83 * dq[0]; /* link j2: motion */
+    const ur10e_real_t t136 = t84 * dq[0];
+    const ur10e_real_t t137 = t58 * t135 + t57 * t136; /* link j3: motion */
+    const ur10e_real_t t138 = t57 * t135 - t58 * t136;
+    const ur10e_real_t t139 = t36 * t138 - t39 * t137; /* link j4: motion */
+    const ur10e_real_t t140 = t36 * t137 + t39 * t138;
+    const ur10e_real_t t141 = t139 * t140;
+    const ur10e_real_t t142 = dq[1] + dq[2]; /* link j3: motion */
+    const ur10e_real_t t143 = dq[3] + t142; /* link j4: motion */
+    const ur10e_real_t t144 = t140 * t143;
+    const ur10e_real_t t145 = UR10E_C(2.0) * t144; /* link j5: motion */
+    const ur10e_real_t t146 = t12 * t145 - t14 * t141;
+    const ur10e_real_t t147 = t14 * t139 - t12 * t143;
+    const ur10e_real_t t148 = dq[4] + t140;
+    const ur10e_real_t t149 = t147 * t148;
+    const ur10e_real_t t150 = t146 + t149;
+    const ur10e_real_t t151 = t2 * t147 + t1 * t148; /* link j6: motion */
+    const ur10e_real_t t152 = t1 * t147 - t2 * t148;
+    const ur10e_real_t t153 = t151 * t152;
+    const ur10e_real_t t154 = t12 * t141 + t14 * t145; /* link j5: motion */
+    const ur10e_real_t t155 = t12 * t139 + t14 * t143;
+    const ur10e_real_t t156 = t155 * t148;
+    const ur10e_real_t t157 = t154 - t156;
+    const ur10e_real_t t158 = t157 - t156; /* link j6: motion */
+    const ur10e_real_t t159 = t147 * t155; /* link j5: motion */
+    const ur10e_real_t t160 = t139 * t143; /* link j4: motion */
+    const ur10e_real_t t161 = t160 - t159; /* link j6: motion */
+    const ur10e_real_t t162 = t2 * t161 + t1 * t158;
+    const ur10e_real_t t163 = t1 * t161 - t2 * t158;
     /* link j6: force and moment */
-    const ur10e_real_t t165 = parameters[ZZ6] * t151 + parameters[XX6R] * t154 + parameters[YZ6R] * t163
-        + parameters[XZ6R] * t164;
-    const ur10e_real_t t166 = t152 * t152; /* link j6: motion */
-    const ur10e_real_t t167 = t153 * t153;
-    const ur10e_real_t t168 = t137 * t137; /* link j2: motion */
-    const ur10e_real_t t169 = dq[1] * dq[1];
-    const ur10e_real_t t170 = UR10E_C(-9.81) * t87;
-    const ur10e_real_t t171 = t170 + UR10E_C(-0.6127) * (t169 + t168); /* link j3: motion */
-    const ur10e_real_t t172 = t136 * t137; /* link j2: motion */
-    const ur10e_real_t t173 = UR10E_C(9.81) * t88;
-    const ur10e_real_t t174 = t173 - UR10E_C(0.6127) * t172; /* link j3: motion */
-    const ur10e_real_t t175 = t61 * t171 - t60 * t174;
-    const ur10e_real_t t176 = t139 * t139;
-    const ur10e_real_t t177 = t143 * t143;
-    const ur10e_real_t t178 = t176 + t177; /* link j4: motion */
-    const ur10e_real_t t179 = t175 + UR10E_C(-0.57155) * t178;
-    const ur10e_real_t t180 = t60 * t171 + t61 * t174; /* link j3: motion */
-    const ur10e_real_t t181 = t138 * t139;
-    const ur10e_real_t t182 = t180 + UR10E_C(0.57155) * t181; /* link j4: motion */
-    const ur10e_real_t t183 = t38 * t182 - t41 * t179;
-    const ur10e_real_t t184 = t183 + UR10E_C(-0.11985) * t142; /* link j5: motion */
-    const ur10e_real_t t185 = t138 * t138; /* link j3: motion */
-    const ur10e_real_t t186 = t138 * t143;
-    const ur10e_real_t t187 = dq[1] * t136; /* link j2: motion */
-    const ur10e_real_t t188 = UR10E_C(1.2254) * t187; /* link j3: motion */
+    const ur10e_real_t t164 = parameters[ZZ6] * t150 + parameters[XX6R] * t153 + parameters[YZ6R] * t162
+        + parameters[XZ6R] * t163;
+    const ur10e_real_t t165 = t151 * t151; /* link j6: motion */
+    const ur10e_real_t t166 = t152 * t152;
+    const ur10e_real_t t167 = t136 * t136; /* link j2: motion */
+    const ur10e_real_t t168 = dq[1] * dq[1];
+    const ur10e_real_t t169 = UR10E_C(-9.81) * t83;
+    const ur10e_real_t t170 = t169 + UR10E_C(-0.6127) * (t168 + t167); /* link j3: motion */
+    const ur10e_real_t t171 = t135 * t136; /* link j2: motion */
+    const ur10e_real_t t172 = UR10E_C(9.81) * t84;
+    const ur10e_real_t t173 = t172 - UR10E_C(0.6127) * t171; /* link j3: motion */
+    const ur10e_real_t t174 = t58 * t170 - t57 * t173;
+    const ur10e_real_t t175 = t138 * t138;
+    const ur10e_real_t t176 = t142 * t142;
+    const ur10e_real_t t177 = t175 + t176; /* link j4: motion */
+    const ur10e_real_t t178 = t174 + UR10E_C(-0.57155) * t177;
+    const ur10e_real_t t179 = t57 * t170 + t58 * t173; /* link j3: motion */
+    const ur10e_real_t t180 = t137 * t138;
+    const ur10e_real_t t181 = t179 + UR10E_C(0.57155) * t180; /* link j4: motion */
+    const ur10e_real_t t182 = t36 * t181 - t39 * t178;
+    const ur10e_real_t t183 = t182 + UR10E_C(-0.11985) * t141; /* link j5: motion */
+    const ur10e_real_t t184 = t137 * t137; /* link j3: motion */
+    const ur10e_real_t t185 = t137 * t142;
+    const ur10e_real_t t186 = dq[1] * t135; /* link j2: motion */
+    const ur10e_real_t t187 = UR10E_C(1.2254) * t186; /* link j3: motion */
     /* link j4: motion */
-    const ur10e_real_t t189 = t188 + (UR10E_C(1.1431) * t186 + UR10E_C(0.17415) * (t185 + t176));
-    const ur10e_real_t t190 = t189 + UR10E_C(-0.2397) * t145; /* link j5: motion */
-    const ur10e_real_t t191 = t13 * t190 - t15 * t184;
-    const ur10e_real_t t192 = t38 * t179 + t41 * t182; /* link j4: motion */
-    const ur10e_real_t t193 = t140 * t140;
-    const ur10e_real_t t194 = t144 * t144;
-    const ur10e_real_t t195 = t193 + t194; /* link j5: motion */
-    const ur10e_real_t t196 = t192 + UR10E_C(0.11985) * t195;
+    const ur10e_real_t t188 = t187 + (UR10E_C(1.1431) * t185 + UR10E_C(0.17415) * (t184 + t175));
+    const ur10e_real_t t189 = t188 + UR10E_C(-0.2397) * t144; /* link j5: motion */
+    const ur10e_real_t t190 = t12 * t189 - t14 * t183;
+    const ur10e_real_t t191 = t36 * t178 + t39 * t181; /* link j4: motion */
+    const ur10e_real_t t192 = t139 * t139;
+    const ur10e_real_t t193 = t143 * t143;
+    const ur10e_real_t t194 = t192 + t193; /* link j5: motion */
+    const ur10e_real_t t195 = t191 + UR10E_C(0.11985) * t194;
     /* link j6: force and moment */
-    const ur10e_real_t t197 = parameters[MX6] * (t1 * t191 + t2 * t196) + parameters[MY6] * (t2 * t191
-        - t1 * t196);
-    const ur10e_real_t t198 = t165 + parameters[XY6] * (t166 - t167) + t197;
+    const ur10e_real_t t196 = parameters[MX6] * (t1 * t190 + t2 * t195) + parameters[MY6] * (t2 * t190
+        - t1 * t195);
+    const ur10e_real_t t197 = t164 + parameters[XY6] * (t165 - t166) + t196;
     /* link j5: force and moment */
-    const ur10e_real_t t199 = t150 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t159
-        + parameters[YZ5] * t162;
-    const ur10e_real_t t200 = t148 * t148; /* link j5: motion */
-    const ur10e_real_t t201 = t149 * t149;
+    const ur10e_real_t t198 = t149 * (parameters[XX5R] - parameters[ZZ5R]) + parameters[XY5] * t158
+        + parameters[YZ5] * t161;
+    const ur10e_real_t t199 = t147 * t147; /* link j5: motion */
+    const ur10e_real_t t200 = t148 * t148;
     /* link j6: what it passes on */
-    const ur10e_real_t t202 = parameters[XZ5] * (t201 - t200) - t199 + parameters[MX5] * t196 + t198;
-    const ur10e_real_t t203 = dq[5] + t156; /* link j6: motion */
-    const ur10e_real_t t204 = t153 * t203;
-    const ur10e_real_t t205 = t164 + t204;
-    const ur10e_real_t t206 = t152 * t203;
-    const ur10e_real_t t207 = t206 + (t163 + t206); /* link j6: force and moment */
-    const ur10e_real_t t208 = t151 - t154;
-    const ur10e_real_t t209 = parameters[XX6R] * t205 + parameters[ZZ6] * t204 + parameters[XY6] * t207
-        + parameters[XZ6R] * t208;
-    const ur10e_real_t t210 = t203 * t203; /* link j6: motion */
-    const ur10e_real_t t211 = t13 * t184 + t15 * t190; /* link j5: motion */
+    const ur10e_real_t t201 = parameters[XZ5] * (t200 - t199) - t198 + parameters[MX5] * t195 + t197;
+    const ur10e_real_t t202 = dq[5] + t155; /* link j6: motion */
+    const ur10e_real_t t203 = t152 * t202;
+    const ur10e_real_t t204 = t163 + t203;
+    const ur10e_real_t t205 = t151 * t202;
+    const ur10e_real_t t206 = t205 + (t162 + t205); /* link j6: force and moment */
+    const ur10e_real_t t207 = t150 - t153;
+    const ur10e_real_t t208 = parameters[XX6R] * t204 + parameters[ZZ6] * t203 + parameters[XY6] * t206
+        + parameters[XZ6R] * t207;
+    const ur10e_real_t t209 = t202 * t202; /* link j6: motion */
+    const ur10e_real_t t210 = t12 * t183 + t14 * t189; /* link j5: motion */
     /* link j6: force and moment */
-    const ur10e_real_t t212 = parameters[MY6] * t211 - (t209 + parameters[YZ6R] * (t167 - t210));
-    const ur10e_real_t t213 = t151 + t154;
-    const ur10e_real_t t214 = t204 + t205;
-    const ur10e_real_t t215 = parameters[XY6] * t214 - t206 * (parameters[XX6R] - parameters[ZZ6])
-        + parameters[YZ6R] * t213;
-    const ur10e_real_t t216 = t215 + parameters[XZ6R] * (t210 - t166) + parameters[MX6] * t211;
-    const ur10e_real_t t217 = t150 + t151; /* link j6: motion */
-    const ur10e_real_t t218 = t161 + t160;
+    const ur10e_real_t t211 = parameters[MY6] * t210 - (t208 + parameters[YZ6R] * (t166 - t209));
+    const ur10e_real_t t212 = t150 + t153;
+    const ur10e_real_t t213 = t203 + t204;
+    const ur10e_real_t t214 = parameters[XY6] * t213 - t205 * (parameters[XX6R] - parameters[ZZ6])
+        + parameters[YZ6R] * t212;
+    const ur10e_real_t t215 = t214 + parameters[XZ6R] * (t209 - t165) + parameters[MX6] * t210;
+    const ur10e_real_t t216 = t149 + t150; /* link j6: motion */
+    const ur10e_real_t t217 = t160 + t159;
     /* link j5: force and moment */
-    const ur10e_real_t t219 = parameters[XX5R] * t158 - parameters[ZZ5R] * t157 - parameters[XY5] * t217
-        + parameters[XZ5] * t218;
-    const ur10e_real_t t220 = t156 * t156; /* link j5: motion */
+    const ur10e_real_t t218 = parameters[XX5R] * t157 - parameters[ZZ5R] * t156 - parameters[XY5] * t216
+        + parameters[XZ5] * t217;
+    const ur10e_real_t t219 = t155 * t155; /* link j5: motion */
     /* link j6: what it passes on */
-    const ur10e_real_t t221 = t219 + parameters[YZ5] * (t201 - t220) + parameters[MY5R] * t196 + (t2 * t212
-        + t1 * t216);
+    const ur10e_real_t t220 = t218 + parameters[YZ5] * (t200 - t219) + parameters[MY5R] * t195 + (t2 * t211
+        + t1 * t215);
     /* link j6: force and moment */
-    const ur10e_real_t t222 = parameters[MX6] * (t167 + t210) + parameters[MY6] * t213;
-    const ur10e_real_t t223 = parameters[MX6] * t208 - parameters[MY6] * (t166 + t210);
+    const ur10e_real_t t221 = parameters[MX6] * (t166 + t209) + parameters[MY6] * t212;
+    const ur10e_real_t t222 = parameters[MX6] * t207 - parameters[MY6] * (t165 + t209);
     /* link j6: what it passes on */
-    const ur10e_real_t t224 = parameters[MX5] * (t220 + t201) - parameters[MY5R] * t162 + (t2 * t222
-        + t1 * t223);
-    const ur10e_real_t t225 = parameters[MX5] * t218 + parameters[MY5R] * (t200 + t201)
-        + (parameters[MX6] * t207 - parameters[MY6] * t214);
-    const ur10e_real_t t226 = t13 * t224 + t15 * t225; /* link j5: what it passes on */
-    const ur10e_real_t t227 = UR10E_C(-2.0) * t161; /* link j5: motion */
+    const ur10e_real_t t223 = parameters[MX5] * (t219 + t200) - parameters[MY5R] * t161 + (t2 * t221
+        + t1 * t222);
+    const ur10e_real_t t224 = parameters[MX5] * t217 + parameters[MY5R] * (t199 + t200)
+        + (parameters[MX6] * t206 - parameters[MY6] * t213);
+    const ur10e_real_t t225 = t12 * t223 + t14 * t224; /* link j5: what it passes on */
+    const ur10e_real_t t226 = UR10E_C(-2.0) * t160; /* link j5: motion */
     /* link j4: force and moment */
-    const ur10e_real_t t228 = parameters[XX4R] * t145 + parameters[ZZ4R] * t145 + parameters[XY4] * t227
-        - parameters[XZ4] * t142;
-    const ur10e_real_t t229 = t141 * t141; /* link j4: motion */
+    const ur10e_real_t t227 = parameters[XX4R] * t144 + parameters[ZZ4R] * t144 + parameters[XY4] * t226
+        - parameters[XZ4] * t141;
+    const ur10e_real_t t228 = t140 * t140; /* link j4: motion */
     /* link j5: what it passes on */
-    const ur10e_real_t t230 = t228 + parameters[YZ4] * (t194 - t229) + parameters[MY4R] * t189 + (t15 * t221
-        + t13 * t202 + UR10E_C(-0.11985) * t226);
+    const ur10e_real_t t229 = t227 + parameters[YZ4] * (t193 - t228) + parameters[MY4R] * t188 + (t14 * t220
+        + t12 * t201 + UR10E_C(-0.11985) * t225);
     /* link j5: force and moment */
-    const ur10e_real_t t231 = parameters[ZZ5R] * t161 - parameters[XX5R] * t160 - parameters[YZ5] * t147
-        + parameters[XZ5] * t155;
-    const ur10e_real_t t232 = t231 + parameters[XY5] * (t220 - t200) + (parameters[MX5] * t211
-        - parameters[MY5R] * t191);
-    const ur10e_real_t t233 = t232 + (t2 * t216 - t1 * t212); /* link j6: what it passes on */
+    const ur10e_real_t t230 = parameters[ZZ5R] * t160 - parameters[XX5R] * t159 - parameters[YZ5] * t146
+        + parameters[XZ5] * t154;
+    const ur10e_real_t t231 = t230 + parameters[XY5] * (t219 - t199) + (parameters[MX5] * t210
+        - parameters[MY5R] * t190);
+    const ur10e_real_t t232 = t231 + (t2 * t215 - t1 * t211); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const ur10e_real_t t234 = t161 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t146
-        + parameters[YZ4] * t142;
+    const ur10e_real_t t233 = t160 * (parameters[XX4R] - parameters[ZZ4R]) + parameters[XY4] * t145
+        + parameters[YZ4] * t141;
     /* link j5: what it passes on */
-    const ur10e_real_t t235 = parameters[XZ4] * (t194 - t193) - t234 + parameters[MX4] * t189 + t233;
-    const ur10e_real_t t236 = t13 * t225 - t15 * t224;
-    const ur10e_real_t t237 = parameters[MY4R] * t142 - parameters[MX4] * (t229 + t194) + t236;
+    const ur10e_real_t t234 = parameters[XZ4] * (t193 - t192) - t233 + parameters[MX4] * t188 + t232;
+    const ur10e_real_t t235 = t12 * t224 - t14 * t223;
+    const ur10e_real_t t236 = parameters[MY4R] * t141 - parameters[MX4] * (t228 + t193) + t235;
     /* link j6: what it passes on */
-    const ur10e_real_t t238 = parameters[MX5] * t217 + parameters[MY5R] * t159 + (t2 * t223 - t1 * t222);
+    const ur10e_real_t t237 = parameters[MX5] * t216 + parameters[MY5R] * t158 + (t2 * t222 - t1 * t221);
     /* link j5: what it passes on */
-    const ur10e_real_t t239 = parameters[MX4] * t142 - parameters[MY4R] * t195 + t238;
-    const ur10e_real_t t240 = t38 * t237 + t41 * t239; /* link j4: what it passes on */
-    const ur10e_real_t t241 = t139 * t143; /* link j3: motion */
-    const ur10e_real_t t242 = UR10E_C(2.0) * t186; /* link j4: motion */
+    const ur10e_real_t t238 = parameters[MX4] * t141 - parameters[MY4R] * t194 + t237;
+    const ur10e_real_t t239 = t36 * t236 + t39 * t238; /* link j4: what it passes on */
+    const ur10e_real_t t240 = t138 * t142; /* link j3: motion */
+    const ur10e_real_t t241 = UR10E_C(2.0) * t185; /* link j4: motion */
     /* link j3: force and moment */
-    const ur10e_real_t t243 = parameters[XX3R] * t241 + parameters[ZZ3R] * t241 + parameters[XY3] * t242
-        + parameters[XZ3R] * t181;
+    const ur10e_real_t t242 = parameters[XX3R] * t240 + parameters[ZZ3R] * t240 + parameters[XY3] * t241
+        + parameters[XZ3R] * t180;
     /* link j4: what it passes on */
-    const ur10e_real_t t244 = t243 + parameters[YZ3] * (t177 - t176) + parameters[MY3] * t188 + (t41 * t230
-        + t38 * t235 + UR10E_C(0.17415) * t240);
-    const ur10e_real_t t245 = t38 * t239 - t41 * t237;
+    const ur10e_real_t t243 = t242 + parameters[YZ3] * (t176 - t175) + parameters[MY3] * t187 + (t39 * t229
+        + t36 * t234 + UR10E_C(0.17415) * t239);
+    const ur10e_real_t t244 = t36 * t238 - t39 * t236;
     /* link j5: what it passes on */
-    const ur10e_real_t t246 = parameters[MY4R] * t146 - parameters[MX4] * t227 + t226;
+    const ur10e_real_t t245 = parameters[MY4R] * t145 - parameters[MX4] * t226 + t225;
     /* link j4: what it passes on */
-    const ur10e_real_t t247 = t38 * t230 - t41 * t235 + (UR10E_C(0.17415) * t245 - UR10E_C(-0.57155) * t246);
-    const ur10e_real_t t248 = UR10E_C(2.0) * t241; /* link j4: motion */
+    const ur10e_real_t t246 = t36 * t229 - t39 * t234 + (UR10E_C(0.17415) * t244 - UR10E_C(-0.57155) * t245);
+    const ur10e_real_t t247 = UR10E_C(2.0) * t240; /* link j4: motion */
     /* link j3: force and moment */
-    const ur10e_real_t t249 = t186 * (parameters[XX3R] - parameters[ZZ3R]) - parameters[XY3] * t248
-        + parameters[YZ3] * t181;
+    const ur10e_real_t t248 = t185 * (parameters[XX3R] - parameters[ZZ3R]) - parameters[XY3] * t247
+        + parameters[YZ3] * t180;
     /* link j4: what it passes on */
-    const ur10e_real_t t250 = t249 - parameters[XZ3R] * (t185 - t177) + parameters[MX3R] * t188 - t247;
-    const ur10e_real_t t251 = dq[1] * t137; /* link j2: motion */
+    const ur10e_real_t t249 = t248 - parameters[XZ3R] * (t184 - t176) + parameters[MX3R] * t187 - t246;
+    const ur10e_real_t t250 = dq[1] * t136; /* link j2: motion */
     /* link j2: force and moment */
-    const ur10e_real_t t252 = parameters[XY2] * (UR10E_C(2.0) * t187) - (parameters[XX2R] * t251
-        + parameters[ZZ2R] * t251);
+    const ur10e_real_t t251 = parameters[XY2] * (UR10E_C(2.0) * t186) - (parameters[XX2R] * t250
+        + parameters[ZZ2R] * t250);
     /* link j3: what it passes on */
-    const ur10e_real_t t253 = t252 - parameters[XZ2R] * t172 + parameters[YZ2] * (t169 - t168) + (t61 * t244
-        + t60 * t250);
-    const ur10e_real_t t254 = t60 * t244 - t61 * t250 + UR10E_C(0.6127) * (parameters[MY3] * t248
-        - parameters[MX3R] * t242 + t246);
+    const ur10e_real_t t252 = t251 - parameters[XZ2R] * t171 + parameters[YZ2] * (t168 - t167) + (t58 * t243
+        + t57 * t249);
+    const ur10e_real_t t253 = t57 * t243 - t58 * t249 + UR10E_C(0.6127) * (parameters[MY3] * t247
+        - parameters[MX3R] * t241 + t245);
     /* link j2: force and moment */
-    const ur10e_real_t t255 = t187 * (parameters[ZZ2R] - parameters[XX2R])
-        + parameters[XY2] * (UR10E_C(-2.0) * t251) + parameters[YZ2] * t172;
-    const ur10e_real_t t256 = t136 * t136; /* link j2: motion */
+    const ur10e_real_t t254 = t186 * (parameters[ZZ2R] - parameters[XX2R])
+        + parameters[XY2] * (UR10E_C(-2.0) * t250) + parameters[YZ2] * t171;
+    const ur10e_real_t t255 = t135 * t135; /* link j2: motion */
     /* link j2: what it passes on */
-    const ur10e_real_t t257 = t87 * t253 + t88 * (t255 + parameters[XZ2R] * (t256 - t169) + t254);
-    const ur10e_real_t t258 = ur10e_sign(dq[0]); /* joint j1: coulomb_friction */
-    const ur10e_real_t t259 = UR10E_C(101.0) * (parameters[FV1] * (UR10E_C(-101.0) * dq[0])
-        - parameters[FC1] * t258) + t257;
-    const ur10e_real_t t260 = ur10e_sign(dq[5]); /* joint j6: coulomb_friction */
-    const ur10e_real_t t261 = UR10E_C(101.0) * (parameters[FV6] * (UR10E_C(101.0) * dq[5])
-        + parameters[FC6] * t260) + t198;
-    const ur10e_real_t t262 = UR10E_C(9.09) * input[5] - t261;
-    const ur10e_real_t t263 = ur10e_sign(dq[4]); /* joint j5: coulomb_friction */
-    const ur10e_real_t t264 = UR10E_C(101.0) * (parameters[FV5] * (UR10E_C(101.0) * dq[4])
-        + parameters[FC5] * t263) - t233;
-    const ur10e_real_t t265 = UR10E_C(9.09) * input[4] - t264 - t262 * t5;
-    const ur10e_real_t t266 = UR10E_C(12.12) * input[0] + t259 + t262 * t91 + t265 * t111;
+    const ur10e_real_t t256 = t83 * t252 + t84 * (t254 + parameters[XZ2R] * (t255 - t168) + t253);
+    const ur10e_real_t t257 = ur10e_sign(dq[0]); /* joint j1: coulomb_friction */
+    const ur10e_real_t t258 = UR10E_C(101.0) * (parameters[FV1] * (UR10E_C(-101.0) * dq[0])
+        - parameters[FC1] * t257) + t256;
+    const ur10e_real_t t259 = ur10e_sign(dq[5]); /* joint j6: coulomb_friction */
+    const ur10e_real_t t260 = UR10E_C(101.0) * (parameters[FV6] * (UR10E_C(101.0) * dq[5])
+        + parameters[FC6] * t259) + t197;
+    const ur10e_real_t t261 = UR10E_C(9.09) * input[5] - t260;
+    const ur10e_real_t t262 = ur10e_sign(dq[4]); /* joint j5: coulomb_friction */
+    const ur10e_real_t t263 = UR10E_C(101.0) * (parameters[FV5] * (UR10E_C(101.0) * dq[4])
+        + parameters[FC5] * t262) - t232;
+    const ur10e_real_t t264 = UR10E_C(9.09) * input[4] - t263 - t261 * t5;
+    const ur10e_real_t t265 = UR10E_C(12.12) * input[0] + t258 + t261 * t87 + t264 * t107;
     /* link j4: force and moment */
-    const ur10e_real_t t267 = parameters[XY4] * (t193 - t229) - parameters[XX4R] * t142
-        - (parameters[MY4R] * t183 - parameters[MX4] * t192);
+    const ur10e_real_t t266 = parameters[XY4] * (t192 - t228) - parameters[XX4R] * t141
+        - (parameters[MY4R] * t182 - parameters[MX4] * t191);
     /* link j5: what it passes on */
-    const ur10e_real_t t268 = t267 + (t15 * t202 - t13 * t221 - UR10E_C(-0.11985) * t236);
-    const ur10e_real_t t269 = ur10e_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ur10e_real_t t270 = UR10E_C(101.0) * (parameters[FV4] * (UR10E_C(101.0) * dq[3])
-        + parameters[FC4] * t269) + t268;
-    const ur10e_real_t t271 = UR10E_C(9.09) * input[3] - t270 - t262 * t27 - t265 * t26;
+    const ur10e_real_t t267 = t266 + (t14 * t201 - t12 * t220 - UR10E_C(-0.11985) * t235);
+    const ur10e_real_t t268 = ur10e_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ur10e_real_t t269 = UR10E_C(101.0) * (parameters[FV4] * (UR10E_C(101.0) * dq[3])
+        + parameters[FC4] * t268) + t267;
+    const ur10e_real_t t270 = UR10E_C(9.09) * input[3] - t269 - t261 * t26 - t264 * t25;
     /* link j3: force and moment */
-    const ur10e_real_t t272 = parameters[XX3R] * t181 + parameters[XY3] * (t185 - t176)
-        + (parameters[MX3R] * t180 + parameters[MY3] * t175);
-    const ur10e_real_t t273 = t272 + (t268 + UR10E_C(-0.57155) * t240); /* link j4: what it passes on */
-    const ur10e_real_t t274 = ur10e_sign(dq[2]); /* joint j3: coulomb_friction */
-    const ur10e_real_t t275 = UR10E_C(101.0) * (parameters[FV3] * (UR10E_C(101.0) * dq[2])
-        + parameters[FC3] * t274) + t273;
-    const ur10e_real_t t276 = UR10E_C(10.100000000000001) * input[2] - t275 + t262 * t52 + t265 * t56;
-    const ur10e_real_t t277 = t276 - t271 * t51;
+    const ur10e_real_t t271 = parameters[XX3R] * t180 + parameters[XY3] * (t184 - t175)
+        + (parameters[MX3R] * t179 + parameters[MY3] * t174);
+    const ur10e_real_t t272 = t271 + (t267 + UR10E_C(-0.57155) * t239); /* link j4: what it passes on */
+    const ur10e_real_t t273 = ur10e_sign(dq[2]); /* joint j3: coulomb_friction */
+    const ur10e_real_t t274 = UR10E_C(101.0) * (parameters[FV3] * (UR10E_C(101.0) * dq[2])
+        + parameters[FC3] * t273) + t272;
+    const ur10e_real_t t275 = UR10E_C(10.100000000000001) * input[2] - t274 + t261 * t50 + t264 * t54;
+    const ur10e_real_t t276 = t275 - t270 * t49;
     /* link j3: what it passes on */
-    const ur10e_real_t t278 = t61 * (parameters[MX3R] * t181 + parameters[MY3] * (t185 + t177) - t240);
-    const ur10e_real_t t279 = t60 * (parameters[MX3R] * t178 + parameters[MY3] * t181 + t245) + t278;
+    const ur10e_real_t t277 = t58 * (parameters[MX3R] * t180 + parameters[MY3] * (t184 + t176) - t239);
+    const ur10e_real_t t278 = t57 * (parameters[MX3R] * t177 + parameters[MY3] * t180 + t244) + t277;
     /* link j2: force and moment */
-    const ur10e_real_t t280 = parameters[XX2R] * t172 - parameters[XY2] * (t256 - t168)
-        - (parameters[MX2R] * t173 + parameters[MY2] * t170);
-    const ur10e_real_t t281 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
-    const ur10e_real_t t282 = UR10E_C(101.0) * (parameters[FV2] * (UR10E_C(101.0) * dq[1])
-        + parameters[FC2] * t281) - (t280 - (t273 + UR10E_C(0.6127) * t279));
-    const ur10e_real_t t283 = UR10E_C(12.12) * input[1] - t282 + t262 * t63 + t265 * t72;
-    const ur10e_real_t t284 = t283 - t271 * t75 + t277 * t80;
-    const ur10e_real_t t285 = t266 + t271 * t120 + t277 * t128 + t284 * t133;
-    const ur10e_real_t t286 = UR10E_C(1.0) / t134;
-    const ur10e_real_t t287 = ur10e_bounded(t285 * t286);
-    out[0] = t287;
-    const ur10e_real_t t288 = ur10e_bounded(t284 * t132 + t133 * t287);
-    out[1] = t288;
-    const ur10e_real_t t289 = ur10e_bounded(t277 * t79 + t128 * t287 + t80 * t288);
-    out[2] = t289;
-    const ur10e_real_t t290 = ur10e_bounded(t120 * t287 - t271 * t50 - t75 * t288 - t51 * t289);
-    out[3] = t290;
-    const ur10e_real_t t291 = t111 * t287 - t265 * t25 + t72 * t288 + t56 * t289;
-    const ur10e_real_t t292 = ur10e_bounded(t291 - t26 * t290);
-    out[4] = t292;
-    const ur10e_real_t t293 = t91 * t287 - t262 * t4 + t63 * t288 + t52 * t289;
-    out[5] = t293 - t27 * t290 - t5 * t292;
-    if (!ur10e_all_bounded(out, 6)) {
+    const ur10e_real_t t279 = parameters[XX2R] * t171 - parameters[XY2] * (t255 - t167)
+        - (parameters[MX2R] * t172 + parameters[MY2] * t169);
+    const ur10e_real_t t280 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
+    const ur10e_real_t t281 = UR10E_C(101.0) * (parameters[FV2] * (UR10E_C(101.0) * dq[1])
+        + parameters[FC2] * t280) - (t279 - (t272 + UR10E_C(0.6127) * t278));
+    const ur10e_real_t t282 = UR10E_C(12.12) * input[1] - t281 + t261 * t60 + t264 * t69;
+    const ur10e_real_t t283 = t282 - t270 * t72 + t276 * t77;
+    const ur10e_real_t t284 = t265 + t270 * t116 + t276 * t124 + t283 * t129;
+    const ur10e_real_t t285 = UR10E_C(1.0) / t130;
+    const ur10e_real_t t286 = ur10e_held(t284 * t285);
+    out[0] = t286;
+    const ur10e_real_t t287 = ur10e_held(t283 * t128 + t129 * t286);
+    out[1] = t287;
+    const ur10e_real_t t288 = ur10e_held(t276 * t76 + t124 * t286 + t77 * t287);
+    out[2] = t288;
+    const ur10e_real_t t289 = ur10e_held(t116 * t286 - t270 * t48 - t72 * t287 - t49 * t288);
+    out[3] = t289;
+    const ur10e_real_t t290 = t107 * t286 - t264 * t24 + t69 * t287 + t54 * t288;
+    const ur10e_real_t t291 = ur10e_held(t290 - t25 * t289);
+    out[4] = t291;
+    const ur10e_real_t t292 = t87 * t286 - t261 * t4 + t60 * t287 + t50 * t288;
+    out[5] = t292 - t26 * t289 - t5 * t291;
+    if (!ur10e_bounded(out, 6)) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }

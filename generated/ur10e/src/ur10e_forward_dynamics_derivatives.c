@@ -7,7 +7,7 @@
  * Arm ur10e, description 0615fad907f568ac.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 3764 (2100 mul, 1657 add, 7 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 3764 (2100 mul, 1657 add, 7 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -86,7 +86,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -119,17 +119,17 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
         return status;
     }
 
-    ur10e_real_t t92, t94;
-    UR10E_SINCOS(q[1], &t92, &t94);
-    ur10e_real_t t60, t61;
-    UR10E_SINCOS(q[2], &t60, &t61);
-    ur10e_real_t t38, t41;
-    UR10E_SINCOS(q[3], &t38, &t41);
-    ur10e_real_t t13, t15;
-    UR10E_SINCOS(q[4], &t13, &t15);
+    ur10e_real_t t88, t90;
+    UR10E_SINCOS(q[1], &t88, &t90);
+    ur10e_real_t t57, t58;
+    UR10E_SINCOS(q[2], &t57, &t58);
+    ur10e_real_t t36, t39;
+    UR10E_SINCOS(q[3], &t36, &t39);
+    ur10e_real_t t12, t14;
+    UR10E_SINCOS(q[4], &t12, &t14);
     ur10e_real_t t1, t2;
     UR10E_SINCOS(q[5], &t1, &t2);
-    const ur10e_real_t t0 = ur10e_bounded(parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6]);
+    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
     if (!(t0 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -146,7 +146,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t7 = t2 * t6;
     const ur10e_real_t t8 = parameters[ZZ5R] + (parameters[XX6R] + t7);
     const ur10e_real_t t9 = t8 + UR10E_C(10201.0) * parameters[IA5];
-    const ur10e_real_t t10 = ur10e_bounded(t9 - t3 * t5);
+    const ur10e_real_t t10 = t9 - t3 * t5;
     if (!(t10 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -154,193 +154,172 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t11 = t10 + UR10E_C(-1.0e-9) * t9;
-    if (!(t11 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t12 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
-    const ur10e_real_t t14 = t3 - parameters[YZ5];
+    const ur10e_real_t t11 = parameters[XZ5] - (parameters[XY6] - t1 * t6);
+    const ur10e_real_t t13 = t3 - parameters[YZ5];
     /* link j6: column of the mass matrix */
-    const ur10e_real_t t16 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const ur10e_real_t t17 = t16 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t18 = t15 * parameters[MY5R] - t13 * t17; /* link j5: column of the mass matrix */
-    const ur10e_real_t t19 = t15 * t14 - t13 * t12 + UR10E_C(0.11985) * t18;
+    const ur10e_real_t t15 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const ur10e_real_t t16 = t15 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t17 = t14 * parameters[MY5R] - t12 * t16; /* link j5: column of the mass matrix */
+    const ur10e_real_t t18 = t14 * t13 - t12 * t11 + UR10E_C(0.11985) * t17;
     /* link j6: column of the mass matrix */
-    const ur10e_real_t t20 = t1 * parameters[YZ6R] - t2 * parameters[XZ6R];
-    const ur10e_real_t t21 = t2 * parameters[MY6] + t1 * parameters[MX6];
-    const ur10e_real_t t22 = t15 * t21;
-    const ur10e_real_t t23 = t13 * t20 - t15 * parameters[ZZ6] + UR10E_C(0.11985) * t22;
-    const ur10e_real_t t24 = t19 + t23 * t5;
-    const ur10e_real_t t25 = UR10E_C(1.0) / t10;
-    const ur10e_real_t t26 = t24 * t25;
-    const ur10e_real_t t27 = t23 * t4;
-    const ur10e_real_t t28 = t7 - parameters[XX5R]; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t29 = t20 - parameters[XY5];
+    const ur10e_real_t t19 = t1 * parameters[YZ6R] - t2 * parameters[XZ6R];
+    const ur10e_real_t t20 = t2 * parameters[MY6] + t1 * parameters[MX6];
+    const ur10e_real_t t21 = t14 * t20;
+    const ur10e_real_t t22 = t12 * t19 - t14 * parameters[ZZ6] + UR10E_C(0.11985) * t21;
+    const ur10e_real_t t23 = t18 + t22 * t5;
+    const ur10e_real_t t24 = UR10E_C(1.0) / t10;
+    const ur10e_real_t t25 = t23 * t24;
+    const ur10e_real_t t26 = t22 * t4;
+    const ur10e_real_t t27 = t7 - parameters[XX5R]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t28 = t19 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t30 = t15 * (parameters[ZZ6] + t28) - t29 * (UR10E_C(2.0) * t13);
-    const ur10e_real_t t31 = t15 * t30;
-    const ur10e_real_t t32 = UR10E_C(0.2397) * t21;
-    const ur10e_real_t t33 = t28 - t31 + t32 - parameters[ZZ4R];
-    const ur10e_real_t t34 = UR10E_C(10201.0) * parameters[IA4] - t33;
-    const ur10e_real_t t35 = ur10e_bounded(t34 - t23 * t27 - t24 * t26);
-    if (!(t35 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t29 = t14 * (parameters[ZZ6] + t27) - t28 * (UR10E_C(2.0) * t12);
+    const ur10e_real_t t30 = t14 * t29;
+    const ur10e_real_t t31 = UR10E_C(0.2397) * t20;
+    const ur10e_real_t t32 = t27 - t30 + t31 - parameters[ZZ4R];
+    const ur10e_real_t t33 = UR10E_C(10201.0) * parameters[IA4] - t32;
+    const ur10e_real_t t34 = t33 - t22 * t26 - t23 * t25;
+    if (!(t34 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t36 = t35 + UR10E_C(-1.0e-9) * t34;
-    if (!(t36 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t35 = parameters[MY4R] + t20;
+    const ur10e_real_t t37 = t12 * parameters[MY5R] + t14 * t16; /* link j5: column of the mass matrix */
+    const ur10e_real_t t38 = t37 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t40 = t36 * t35 + t39 * t38; /* link j4: column of the mass matrix */
+    const ur10e_real_t t41 = t32 + UR10E_C(-0.57155) * t40;
+    const ur10e_real_t t42 = t36 * t21 + t39 * t15; /* link j6: column of the mass matrix */
+    const ur10e_real_t t43 = t22 + UR10E_C(-0.57155) * t42;
+    const ur10e_real_t t44 = t36 * t17; /* link j5: column of the mass matrix */
+    const ur10e_real_t t45 = t18 + UR10E_C(-0.57155) * t44;
+    const ur10e_real_t t46 = t45 + t43 * t5;
+    const ur10e_real_t t47 = t41 + t43 * t26 + t46 * t25;
+    const ur10e_real_t t48 = UR10E_C(1.0) / t34;
+    const ur10e_real_t t49 = t47 * t48;
+    const ur10e_real_t t50 = t43 * t4;
+    const ur10e_real_t t51 = UR10E_C(-1.1431) * t40; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t52 = t32 + t51 - parameters[ZZ3R];
+    const ur10e_real_t t53 = UR10E_C(10201.0) * parameters[IA3] - t52;
+    const ur10e_real_t t54 = t46 * t24;
+    const ur10e_real_t t55 = t53 - t43 * t50 - t46 * t54 - t47 * t49;
+    if (!(t55 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t37 = parameters[MY4R] + t21;
-    const ur10e_real_t t39 = t13 * parameters[MY5R] + t15 * t17; /* link j5: column of the mass matrix */
-    const ur10e_real_t t40 = t39 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t42 = t38 * t37 + t41 * t40; /* link j4: column of the mass matrix */
-    const ur10e_real_t t43 = t33 + UR10E_C(-0.57155) * t42;
-    const ur10e_real_t t44 = t38 * t22 + t41 * t16; /* link j6: column of the mass matrix */
-    const ur10e_real_t t45 = t23 + UR10E_C(-0.57155) * t44;
-    const ur10e_real_t t46 = t38 * t18; /* link j5: column of the mass matrix */
-    const ur10e_real_t t47 = t19 + UR10E_C(-0.57155) * t46;
-    const ur10e_real_t t48 = t47 + t45 * t5;
-    const ur10e_real_t t49 = t43 + t45 * t27 + t48 * t26;
-    const ur10e_real_t t50 = UR10E_C(1.0) / t35;
-    const ur10e_real_t t51 = t49 * t50;
-    const ur10e_real_t t52 = t45 * t4;
-    const ur10e_real_t t53 = UR10E_C(-1.1431) * t42; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t54 = t33 + t53 - parameters[ZZ3R];
-    const ur10e_real_t t55 = UR10E_C(10201.0) * parameters[IA3] - t54;
-    const ur10e_real_t t56 = t48 * t25;
-    const ur10e_real_t t57 = ur10e_bounded(t55 - t45 * t52 - t48 * t56 - t49 * t51);
-    if (!(t57 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t56 = t39 * t21 - t36 * t15; /* link j6: column of the mass matrix */
+    const ur10e_real_t t59 = t57 * t56 + t58 * t42;
+    const ur10e_real_t t60 = UR10E_C(0.6127) * t59 - t43;
+    const ur10e_real_t t61 = t60 * t4;
+    const ur10e_real_t t62 = t36 * t38 - t39 * t35; /* link j4: column of the mass matrix */
+    const ur10e_real_t t63 = t62 - parameters[MY3]; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t64 = parameters[MX3R] - t40;
+    const ur10e_real_t t65 = t57 * t63 + t58 * t64; /* link j3: column of the mass matrix */
+    const ur10e_real_t t66 = UR10E_C(-1.2254) * t65; /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t67 = parameters[ZZ2R] + (t66 - t52);
+    const ur10e_real_t t68 = t39 * t17; /* link j5: column of the mass matrix */
+    const ur10e_real_t t69 = t57 * t68 + t58 * t44;
+    const ur10e_real_t t70 = UR10E_C(0.6127) * t69 - t45;
+    const ur10e_real_t t71 = t70 + t60 * t5;
+    const ur10e_real_t t72 = t71 * t24;
+    const ur10e_real_t t73 = t58 * t40 - t57 * t62; /* link j4: column of the mass matrix */
+    const ur10e_real_t t74 = t41 + UR10E_C(-0.6127) * t73;
+    const ur10e_real_t t75 = t74 - t60 * t26 - t71 * t25;
+    const ur10e_real_t t76 = t75 * t48;
+    const ur10e_real_t t77 = t67 - t60 * t61 - t71 * t72 - t75 * t76;
+    const ur10e_real_t t78 = t52 + UR10E_C(0.6127) * t65; /* link j3: column of the mass matrix */
+    const ur10e_real_t t79 = t60 * t50 - t78 + t71 * t54 - t75 * t49;
+    const ur10e_real_t t80 = UR10E_C(1.0) / t55;
+    const ur10e_real_t t81 = t79 * t80;
+    const ur10e_real_t t82 = t77 - t79 * t81;
+    if (!(t82 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t58 = t57 + UR10E_C(-1.0e-9) * t55;
-    if (!(t58 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t59 = t41 * t22 - t38 * t16; /* link j6: column of the mass matrix */
-    const ur10e_real_t t62 = t60 * t59 + t61 * t44;
-    const ur10e_real_t t63 = UR10E_C(0.6127) * t62 - t45;
-    const ur10e_real_t t64 = t63 * t4;
-    const ur10e_real_t t65 = t38 * t40 - t41 * t37; /* link j4: column of the mass matrix */
-    const ur10e_real_t t66 = t65 - parameters[MY3]; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t67 = parameters[MX3R] - t42;
-    const ur10e_real_t t68 = t60 * t66 + t61 * t67; /* link j3: column of the mass matrix */
-    const ur10e_real_t t69 = UR10E_C(-1.2254) * t68; /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t70 = parameters[ZZ2R] + (t69 - t54);
-    const ur10e_real_t t71 = t41 * t18; /* link j5: column of the mass matrix */
-    const ur10e_real_t t72 = t60 * t71 + t61 * t46;
-    const ur10e_real_t t73 = UR10E_C(0.6127) * t72 - t47;
-    const ur10e_real_t t74 = t73 + t63 * t5;
-    const ur10e_real_t t75 = t74 * t25;
-    const ur10e_real_t t76 = t61 * t42 - t60 * t65; /* link j4: column of the mass matrix */
-    const ur10e_real_t t77 = t43 + UR10E_C(-0.6127) * t76;
-    const ur10e_real_t t78 = t77 - t63 * t27 - t74 * t26;
-    const ur10e_real_t t79 = t78 * t50;
-    const ur10e_real_t t80 = t70 - t63 * t64 - t74 * t75 - t78 * t79;
-    const ur10e_real_t t81 = t54 + UR10E_C(0.6127) * t68; /* link j3: column of the mass matrix */
-    const ur10e_real_t t82 = t63 * t52 - t81 + t74 * t56 - t78 * t51;
-    const ur10e_real_t t83 = UR10E_C(1.0) / t57;
-    const ur10e_real_t t84 = t82 * t83;
-    const ur10e_real_t t85 = ur10e_bounded(t80 - t82 * t84);
-    if (!(t85 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t86 = t85 + UR10E_C(-1.0e-9) * t70;
-    if (!(t86 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t87 = t13 * t21; /* link j6: column of the mass matrix */
-    const ur10e_real_t t88 = t15 * t20 + t13 * parameters[ZZ6] + UR10E_C(-0.11985) * t87;
-    const ur10e_real_t t89 = t41 * t88 + t38 * t3 + UR10E_C(-0.17415) * t44;
-    const ur10e_real_t t90 = t38 * t88 - t41 * t3 + (UR10E_C(0.17415) * t59 + UR10E_C(0.57155) * t87);
-    const ur10e_real_t t91 = t60 * t90 - t61 * t89;
-    const ur10e_real_t t93 = t60 * t89 + t61 * t90 + UR10E_C(0.6127) * t87;
-    const ur10e_real_t t95 = t94 * t93 - t92 * t91;
-    const ur10e_real_t t96 = t95 * t4;
+    const ur10e_real_t t83 = t12 * t20; /* link j6: column of the mass matrix */
+    const ur10e_real_t t84 = t14 * t19 + t12 * parameters[ZZ6] + UR10E_C(-0.11985) * t83;
+    const ur10e_real_t t85 = t39 * t84 + t36 * t3 + UR10E_C(-0.17415) * t42;
+    const ur10e_real_t t86 = t36 * t84 - t39 * t3 + (UR10E_C(0.17415) * t56 + UR10E_C(0.57155) * t83);
+    const ur10e_real_t t87 = t57 * t86 - t58 * t85;
+    const ur10e_real_t t89 = t57 * t85 + t58 * t86 + UR10E_C(0.6127) * t83;
+    const ur10e_real_t t91 = t90 * t89 - t88 * t87;
+    const ur10e_real_t t92 = t91 * t4;
     /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t97 = t31 - parameters[ZZ6] + t32 - parameters[XX4R];
+    const ur10e_real_t t93 = t30 - parameters[ZZ6] + t31 - parameters[XX4R];
     /* link j5: column of the mass matrix */
-    const ur10e_real_t t98 = UR10E_C(-0.11985) * t39 - (t15 * t12 + t13 * t14);
-    const ur10e_real_t t99 = parameters[XY4] + t98; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t94 = UR10E_C(-0.11985) * t37 - (t14 * t11 + t12 * t13);
+    const ur10e_real_t t95 = parameters[XY4] + t94; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t100 = t41 * (t8 + t97) + t99 * (UR10E_C(2.0) * t38);
-    const ur10e_real_t t101 = t41 * t100;
-    const ur10e_real_t t102 = UR10E_C(0.3483) * t18;
-    const ur10e_real_t t103 = t101 - t97 + (t102 - t53);
-    const ur10e_real_t t104 = parameters[XX3R] + (t8 - t101 + t102);
-    const ur10e_real_t t105 = t38 * t100 - t99 + UR10E_C(0.57155) * t65 - parameters[XY3];
+    const ur10e_real_t t96 = t39 * (t8 + t93) + t95 * (UR10E_C(2.0) * t36);
+    const ur10e_real_t t97 = t39 * t96;
+    const ur10e_real_t t98 = UR10E_C(0.3483) * t17;
+    const ur10e_real_t t99 = t97 - t93 + (t98 - t51);
+    const ur10e_real_t t100 = parameters[XX3R] + (t8 - t97 + t98);
+    const ur10e_real_t t101 = t36 * t96 - t95 + UR10E_C(0.57155) * t62 - parameters[XY3];
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t106 = t61 * (t104 - t103) - t105 * (UR10E_C(-2.0) * t60);
-    const ur10e_real_t t107 = t61 * t106;
-    const ur10e_real_t t108 = t104 - t107 + t69;
-    const ur10e_real_t t109 = parameters[XX2R] + (t103 + t107);
-    const ur10e_real_t t110 = t61 * t66 - t60 * t67; /* link j3: column of the mass matrix */
+    const ur10e_real_t t102 = t58 * (t100 - t99) - t101 * (UR10E_C(-2.0) * t57);
+    const ur10e_real_t t103 = t58 * t102;
+    const ur10e_real_t t104 = t100 - t103 + t66;
+    const ur10e_real_t t105 = parameters[XX2R] + (t99 + t103);
+    const ur10e_real_t t106 = t58 * t63 - t57 * t64; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t111 = parameters[XY2] + (t60 * t106 - t105 + UR10E_C(-0.6127) * t110);
+    const ur10e_real_t t107 = parameters[XY2] + (t57 * t102 - t101 + UR10E_C(-0.6127) * t106);
     /* link j2: inertia of it and all beyond */
-    const ur10e_real_t t112 = t94 * (t94 * (t108 - t109) + t111 * (UR10E_C(2.0) * t92));
-    const ur10e_real_t t113 = parameters[ZZ1R] + (t109 + t112);
+    const ur10e_real_t t108 = t90 * (t90 * (t104 - t105) + t107 * (UR10E_C(2.0) * t88));
+    const ur10e_real_t t109 = parameters[ZZ1R] + (t105 + t108);
     /* link j5: column of the mass matrix */
-    const ur10e_real_t t114 = t38 * t98 + t41 * t8 + (UR10E_C(0.17415) * t71 + UR10E_C(0.57155) * t39);
-    const ur10e_real_t t115 = t41 * t98 - t38 * t8 + UR10E_C(-0.17415) * t46;
-    const ur10e_real_t t116 = t60 * t114 - t61 * t115;
-    const ur10e_real_t t117 = t60 * t115 + t61 * t114 + UR10E_C(0.6127) * t39;
-    const ur10e_real_t t118 = t94 * t117 - t92 * t116 + t95 * t5;
-    const ur10e_real_t t119 = t118 * t25;
-    const ur10e_real_t t120 = t29 + t13 * t30 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t121 = parameters[YZ4] + t19;
-    const ur10e_real_t t122 = t41 * t120 + t38 * t121; /* link j4: column of the mass matrix */
-    const ur10e_real_t t123 = UR10E_C(-0.17415) * t42;
-    const ur10e_real_t t124 = t122 + t123;
-    const ur10e_real_t t125 = t38 * t120 - t41 * t121 + UR10E_C(-0.17415) * t65;
-    const ur10e_real_t t126 = t60 * t125 - t61 * t124;
-    const ur10e_real_t t127 = t60 * t124 + t61 * t125;
-    const ur10e_real_t t128 = t94 * t127 - t92 * t126 + t95 * t27 + t118 * t26;
-    const ur10e_real_t t129 = t128 * t50;
-    const ur10e_real_t t130 = t113 - t95 * t96 - t118 * t119 - t128 * t129;
+    const ur10e_real_t t110 = t36 * t94 + t39 * t8 + (UR10E_C(0.17415) * t68 + UR10E_C(0.57155) * t37);
+    const ur10e_real_t t111 = t39 * t94 - t36 * t8 + UR10E_C(-0.17415) * t44;
+    const ur10e_real_t t112 = t57 * t110 - t58 * t111;
+    const ur10e_real_t t113 = t57 * t111 + t58 * t110 + UR10E_C(0.6127) * t37;
+    const ur10e_real_t t114 = t90 * t113 - t88 * t112 + t91 * t5;
+    const ur10e_real_t t115 = t114 * t24;
+    const ur10e_real_t t116 = t28 + t12 * t29 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t117 = parameters[YZ4] + t18;
+    const ur10e_real_t t118 = t39 * t116 + t36 * t117; /* link j4: column of the mass matrix */
+    const ur10e_real_t t119 = UR10E_C(-0.17415) * t40;
+    const ur10e_real_t t120 = t118 + t119;
+    const ur10e_real_t t121 = t36 * t116 - t39 * t117 + UR10E_C(-0.17415) * t62;
+    const ur10e_real_t t122 = t57 * t121 - t58 * t120;
+    const ur10e_real_t t123 = t57 * t120 + t58 * t121;
+    const ur10e_real_t t124 = t90 * t123 - t88 * t122 + t91 * t26 + t114 * t25;
+    const ur10e_real_t t125 = t124 * t48;
+    const ur10e_real_t t126 = t109 - t91 * t92 - t114 * t115 - t124 * t125;
     /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t131 = t122 + (t123 + UR10E_C(-0.57155) * t18) - parameters[XZ3R];
-    const ur10e_real_t t132 = t125 - parameters[YZ3];
-    const ur10e_real_t t133 = t60 * t132 - t61 * t131; /* link j3: column of the mass matrix */
-    const ur10e_real_t t134 = t60 * t131 + t61 * t132;
-    const ur10e_real_t t135 = t92 * t133 - t94 * t134 - t95 * t52 - t118 * t56;
-    const ur10e_real_t t136 = t135 - t128 * t51;
-    const ur10e_real_t t137 = t136 * t83;
+    const ur10e_real_t t127 = t118 + (t119 + UR10E_C(-0.57155) * t17) - parameters[XZ3R];
+    const ur10e_real_t t128 = t121 - parameters[YZ3];
+    const ur10e_real_t t129 = t57 * t128 - t58 * t127; /* link j3: column of the mass matrix */
+    const ur10e_real_t t130 = t57 * t127 + t58 * t128;
+    const ur10e_real_t t131 = t88 * t129 - t90 * t130 - t91 * t50 - t114 * t54;
+    const ur10e_real_t t132 = t131 - t124 * t49;
+    const ur10e_real_t t133 = t132 * t80;
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t138 = parameters[XZ2R] + (t133 + UR10E_C(0.6127) * t18);
-    const ur10e_real_t t139 = t134 - parameters[YZ2];
-    const ur10e_real_t t140 = t94 * t139 - t92 * t138 - t95 * t64 - t118 * t75;
-    const ur10e_real_t t141 = t140 + t128 * t79 + t136 * t84;
-    const ur10e_real_t t142 = UR10E_C(1.0) / t85;
-    const ur10e_real_t t143 = t141 * t142;
-    const ur10e_real_t t144 = ur10e_bounded(t130 - t136 * t137 - t141 * t143);
+    const ur10e_real_t t134 = parameters[XZ2R] + (t129 + UR10E_C(0.6127) * t17);
+    const ur10e_real_t t135 = t130 - parameters[YZ2];
+    const ur10e_real_t t136 = t90 * t135 - t88 * t134 - t91 * t61 - t114 * t72;
+    const ur10e_real_t t137 = t136 + t124 * t76 + t132 * t81;
+    const ur10e_real_t t138 = UR10E_C(1.0) / t82;
+    const ur10e_real_t t139 = t137 * t138;
+    const ur10e_real_t t140 = t126 - t132 * t133 - t137 * t139;
+    if (!(t140 > UR10E_C(1.0e-12))) {
+        ur10e_zero(ddq, 6);
+        ur10e_zero(ddq_by_q, 36);
+        ur10e_zero(ddq_by_dq, 36);
+        ur10e_zero(ddq_by_input, 36);
+        return UR10E_STATUS_PIVOT;
+    }
+    const ur10e_real_t t141 = ur10e_min(t10 + UR10E_C(-1.0e-9) * t9, t34 + UR10E_C(-1.0e-9) * t33);
+    const ur10e_real_t t142 = ur10e_min(t141, t55 + UR10E_C(-1.0e-9) * t53);
+    const ur10e_real_t t143 = ur10e_min(t142, t82 + UR10E_C(-1.0e-9) * t67);
+    const ur10e_real_t t144 = ur10e_min(t143, t140 + UR10E_C(-1.0e-9) * t109);
     if (!(t144 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -348,1076 +327,1074 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t145 = t144 + UR10E_C(-1.0e-9) * t113;
-    if (!(t145 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t146 = t92 * dq[0]; /* link j2: motion */
-    const ur10e_real_t t147 = t94 * dq[0];
-    const ur10e_real_t t148 = t61 * t146 + t60 * t147; /* link j3: motion */
-    const ur10e_real_t t149 = t60 * t146 - t61 * t147;
-    const ur10e_real_t t150 = t38 * t149 - t41 * t148; /* link j4: motion */
-    const ur10e_real_t t151 = t38 * t148 + t41 * t149;
-    const ur10e_real_t t152 = t150 * t151;
-    const ur10e_real_t t153 = dq[1] + dq[2]; /* link j3: motion */
-    const ur10e_real_t t154 = dq[3] + t153; /* link j4: motion */
-    const ur10e_real_t t155 = t151 * t154;
-    const ur10e_real_t t156 = UR10E_C(2.0) * t155; /* link j5: motion */
-    const ur10e_real_t t157 = t13 * t156 - t15 * t152;
-    const ur10e_real_t t158 = t13 * t154;
-    const ur10e_real_t t159 = t15 * t150 - t158;
-    const ur10e_real_t t160 = dq[4] + t151;
-    const ur10e_real_t t161 = t159 * t160;
-    const ur10e_real_t t162 = t157 + t161;
-    const ur10e_real_t t163 = t2 * t159 + t1 * t160; /* link j6: motion */
-    const ur10e_real_t t164 = t1 * t159 - t2 * t160;
-    const ur10e_real_t t165 = t163 * t164;
-    const ur10e_real_t t166 = t13 * t152 + t15 * t156; /* link j5: motion */
-    const ur10e_real_t t167 = t15 * t154;
-    const ur10e_real_t t168 = t13 * t150 + t167;
-    const ur10e_real_t t169 = t168 * t160;
-    const ur10e_real_t t170 = t166 - t169;
-    const ur10e_real_t t171 = t170 - t169; /* link j6: motion */
-    const ur10e_real_t t172 = t159 * t168; /* link j5: motion */
-    const ur10e_real_t t173 = t150 * t154; /* link j4: motion */
-    const ur10e_real_t t174 = t173 - t172; /* link j6: motion */
-    const ur10e_real_t t175 = t2 * t174 + t1 * t171;
-    const ur10e_real_t t176 = t1 * t174 - t2 * t171;
+    const ur10e_real_t t145 = t88 * dq[0]; /* link j2: motion */
+    const ur10e_real_t t146 = t90 * dq[0];
+    const ur10e_real_t t147 = t58 * t145 + t57 * t146; /* link j3: motion */
+    const ur10e_real_t t148 = t57 * t145 - t58 * t146;
+    const ur10e_real_t t149 = t36 * t148 - t39 * t147; /* link j4: motion */
+    const ur10e_real_t t150 = t36 * t147 + t39 * t148;
+    const ur10e_real_t t151 = t149 * t150;
+    const ur10e_real_t t152 = dq[1] + dq[2]; /* link j3: motion */
+    const ur10e_real_t t153 = dq[3] + t152; /* link j4: motion */
+    const ur10e_real_t t154 = t150 * t153;
+    const ur10e_real_t t155 = UR10E_C(2.0) * t154; /* link j5: motion */
+    const ur10e_real_t t156 = t12 * t155 - t14 * t151;
+    const ur10e_real_t t157 = t12 * t153;
+    const ur10e_real_t t158 = t14 * t149 - t157;
+    const ur10e_real_t t159 = dq[4] + t150;
+    const ur10e_real_t t160 = t158 * t159;
+    const ur10e_real_t t161 = t156 + t160;
+    const ur10e_real_t t162 = t2 * t158 + t1 * t159; /* link j6: motion */
+    const ur10e_real_t t163 = t1 * t158 - t2 * t159;
+    const ur10e_real_t t164 = t162 * t163;
+    const ur10e_real_t t165 = t12 * t151 + t14 * t155; /* link j5: motion */
+    const ur10e_real_t t166 = t14 * t153;
+    const ur10e_real_t t167 = t12 * t149 + t166;
+    const ur10e_real_t t168 = t167 * t159;
+    const ur10e_real_t t169 = t165 - t168;
+    const ur10e_real_t t170 = t169 - t168; /* link j6: motion */
+    const ur10e_real_t t171 = t158 * t167; /* link j5: motion */
+    const ur10e_real_t t172 = t149 * t153; /* link j4: motion */
+    const ur10e_real_t t173 = t172 - t171; /* link j6: motion */
+    const ur10e_real_t t174 = t2 * t173 + t1 * t170;
+    const ur10e_real_t t175 = t1 * t173 - t2 * t170;
     /* link j6: force and moment */
-    const ur10e_real_t t177 = parameters[ZZ6] * t162 + parameters[XX6R] * t165 + parameters[YZ6R] * t175
-        + parameters[XZ6R] * t176;
-    const ur10e_real_t t178 = t163 * t163; /* link j6: motion */
-    const ur10e_real_t t179 = t164 * t164;
-    const ur10e_real_t t180 = t147 * t147; /* link j2: motion */
-    const ur10e_real_t t181 = dq[1] * dq[1];
-    const ur10e_real_t t182 = UR10E_C(9.81) * t92;
-    const ur10e_real_t t183 = t182 + UR10E_C(0.6127) * (t181 + t180); /* link j3: motion */
-    const ur10e_real_t t184 = t61 * t183;
-    const ur10e_real_t t185 = t146 * t147; /* link j2: motion */
-    const ur10e_real_t t186 = UR10E_C(-9.81) * t94;
-    const ur10e_real_t t187 = t186 + UR10E_C(0.6127) * t185; /* link j3: motion */
-    const ur10e_real_t t188 = t60 * t187 - t184;
-    const ur10e_real_t t189 = t149 * t149;
-    const ur10e_real_t t190 = t153 * t153;
-    const ur10e_real_t t191 = t189 + t190; /* link j4: motion */
-    const ur10e_real_t t192 = t188 + UR10E_C(-0.57155) * t191;
-    const ur10e_real_t t193 = t60 * t183; /* link j3: motion */
-    const ur10e_real_t t194 = t193 + t61 * t187;
-    const ur10e_real_t t195 = t148 * t149;
-    const ur10e_real_t t196 = UR10E_C(0.57155) * t195 - t194; /* link j4: motion */
-    const ur10e_real_t t197 = t38 * t196 - t41 * t192;
-    const ur10e_real_t t198 = t197 + UR10E_C(-0.11985) * t152; /* link j5: motion */
-    const ur10e_real_t t199 = t148 * t148; /* link j3: motion */
-    const ur10e_real_t t200 = t148 * t153;
-    const ur10e_real_t t201 = dq[1] * t146; /* link j2: motion */
-    const ur10e_real_t t202 = UR10E_C(1.2254) * t201; /* link j3: motion */
+    const ur10e_real_t t176 = parameters[ZZ6] * t161 + parameters[XX6R] * t164 + parameters[YZ6R] * t174
+        + parameters[XZ6R] * t175;
+    const ur10e_real_t t177 = t162 * t162; /* link j6: motion */
+    const ur10e_real_t t178 = t163 * t163;
+    const ur10e_real_t t179 = t146 * t146; /* link j2: motion */
+    const ur10e_real_t t180 = dq[1] * dq[1];
+    const ur10e_real_t t181 = UR10E_C(9.81) * t88;
+    const ur10e_real_t t182 = t181 + UR10E_C(0.6127) * (t180 + t179); /* link j3: motion */
+    const ur10e_real_t t183 = t58 * t182;
+    const ur10e_real_t t184 = t145 * t146; /* link j2: motion */
+    const ur10e_real_t t185 = UR10E_C(-9.81) * t90;
+    const ur10e_real_t t186 = t185 + UR10E_C(0.6127) * t184; /* link j3: motion */
+    const ur10e_real_t t187 = t57 * t186 - t183;
+    const ur10e_real_t t188 = t148 * t148;
+    const ur10e_real_t t189 = t152 * t152;
+    const ur10e_real_t t190 = t188 + t189; /* link j4: motion */
+    const ur10e_real_t t191 = t187 + UR10E_C(-0.57155) * t190;
+    const ur10e_real_t t192 = t57 * t182; /* link j3: motion */
+    const ur10e_real_t t193 = t192 + t58 * t186;
+    const ur10e_real_t t194 = t147 * t148;
+    const ur10e_real_t t195 = UR10E_C(0.57155) * t194 - t193; /* link j4: motion */
+    const ur10e_real_t t196 = t36 * t195 - t39 * t191;
+    const ur10e_real_t t197 = t196 + UR10E_C(-0.11985) * t151; /* link j5: motion */
+    const ur10e_real_t t198 = t147 * t147; /* link j3: motion */
+    const ur10e_real_t t199 = t147 * t152;
+    const ur10e_real_t t200 = dq[1] * t145; /* link j2: motion */
+    const ur10e_real_t t201 = UR10E_C(1.2254) * t200; /* link j3: motion */
     /* link j4: motion */
-    const ur10e_real_t t203 = t202 + (UR10E_C(1.1431) * t200 + UR10E_C(0.17415) * (t199 + t189));
-    const ur10e_real_t t204 = t203 + UR10E_C(-0.2397) * t155; /* link j5: motion */
-    const ur10e_real_t t205 = t13 * t204 - t15 * t198;
-    const ur10e_real_t t206 = t38 * t192 + t41 * t196; /* link j4: motion */
-    const ur10e_real_t t207 = t150 * t150;
-    const ur10e_real_t t208 = t154 * t154;
-    const ur10e_real_t t209 = t207 + t208; /* link j5: motion */
-    const ur10e_real_t t210 = t206 + UR10E_C(0.11985) * t209;
+    const ur10e_real_t t202 = t201 + (UR10E_C(1.1431) * t199 + UR10E_C(0.17415) * (t198 + t188));
+    const ur10e_real_t t203 = t202 + UR10E_C(-0.2397) * t154; /* link j5: motion */
+    const ur10e_real_t t204 = t12 * t203 - t14 * t197;
+    const ur10e_real_t t205 = t36 * t191 + t39 * t195; /* link j4: motion */
+    const ur10e_real_t t206 = t149 * t149;
+    const ur10e_real_t t207 = t153 * t153;
+    const ur10e_real_t t208 = t206 + t207; /* link j5: motion */
+    const ur10e_real_t t209 = t205 + UR10E_C(0.11985) * t208;
     /* link j6: force and moment */
-    const ur10e_real_t t211 = parameters[MX6] * (t1 * t205 + t2 * t210) + parameters[MY6] * (t2 * t205
-        - t1 * t210);
-    const ur10e_real_t t212 = t177 + parameters[XY6] * (t178 - t179) + t211;
-    const ur10e_real_t t213 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
-    const ur10e_real_t t214 = t159 * t159; /* link j5: motion */
-    const ur10e_real_t t215 = t160 * t160;
+    const ur10e_real_t t210 = parameters[MX6] * (t1 * t204 + t2 * t209) + parameters[MY6] * (t2 * t204
+        - t1 * t209);
+    const ur10e_real_t t211 = t176 + parameters[XY6] * (t177 - t178) + t210;
+    const ur10e_real_t t212 = parameters[XX5R] - parameters[ZZ5R]; /* link j5: force and moment */
+    const ur10e_real_t t213 = t158 * t158; /* link j5: motion */
+    const ur10e_real_t t214 = t159 * t159;
     /* link j5: force and moment */
-    const ur10e_real_t t216 = parameters[XZ5] * (t215 - t214) - (t161 * t213 + parameters[XY5] * t171
-        + parameters[YZ5] * t174);
-    const ur10e_real_t t217 = t216 + parameters[MX5] * t210 + t212; /* link j6: what it passes on */
-    const ur10e_real_t t218 = dq[5] + t168; /* link j6: motion */
-    const ur10e_real_t t219 = t164 * t218;
-    const ur10e_real_t t220 = t176 + t219;
-    const ur10e_real_t t221 = t163 * t218;
-    const ur10e_real_t t222 = t221 + (t175 + t221); /* link j6: force and moment */
-    const ur10e_real_t t223 = t162 - t165;
-    const ur10e_real_t t224 = parameters[XX6R] * t220 + parameters[ZZ6] * t219 + parameters[XY6] * t222
-        + parameters[XZ6R] * t223;
-    const ur10e_real_t t225 = t218 * t218; /* link j6: motion */
-    const ur10e_real_t t226 = t13 * t198 + t15 * t204; /* link j5: motion */
+    const ur10e_real_t t215 = parameters[XZ5] * (t214 - t213) - (t160 * t212 + parameters[XY5] * t170
+        + parameters[YZ5] * t173);
+    const ur10e_real_t t216 = t215 + parameters[MX5] * t209 + t211; /* link j6: what it passes on */
+    const ur10e_real_t t217 = dq[5] + t167; /* link j6: motion */
+    const ur10e_real_t t218 = t163 * t217;
+    const ur10e_real_t t219 = t175 + t218;
+    const ur10e_real_t t220 = t162 * t217;
+    const ur10e_real_t t221 = t220 + (t174 + t220); /* link j6: force and moment */
+    const ur10e_real_t t222 = t161 - t164;
+    const ur10e_real_t t223 = parameters[XX6R] * t219 + parameters[ZZ6] * t218 + parameters[XY6] * t221
+        + parameters[XZ6R] * t222;
+    const ur10e_real_t t224 = t217 * t217; /* link j6: motion */
+    const ur10e_real_t t225 = t12 * t197 + t14 * t203; /* link j5: motion */
     /* link j6: force and moment */
-    const ur10e_real_t t227 = parameters[MY6] * t226 - (t224 + parameters[YZ6R] * (t179 - t225));
-    const ur10e_real_t t228 = t162 + t165;
-    const ur10e_real_t t229 = t219 + t220;
-    const ur10e_real_t t230 = parameters[XX6R] - parameters[ZZ6];
-    const ur10e_real_t t231 = parameters[XY6] * t229 - t221 * t230 + parameters[YZ6R] * t228
-        + parameters[XZ6R] * (t225 - t178);
-    const ur10e_real_t t232 = t231 + parameters[MX6] * t226;
-    const ur10e_real_t t233 = t161 + t162; /* link j6: motion */
-    const ur10e_real_t t234 = t173 + t172;
+    const ur10e_real_t t226 = parameters[MY6] * t225 - (t223 + parameters[YZ6R] * (t178 - t224));
+    const ur10e_real_t t227 = t161 + t164;
+    const ur10e_real_t t228 = t218 + t219;
+    const ur10e_real_t t229 = parameters[XX6R] - parameters[ZZ6];
+    const ur10e_real_t t230 = parameters[XY6] * t228 - t220 * t229 + parameters[YZ6R] * t227
+        + parameters[XZ6R] * (t224 - t177);
+    const ur10e_real_t t231 = t230 + parameters[MX6] * t225;
+    const ur10e_real_t t232 = t160 + t161; /* link j6: motion */
+    const ur10e_real_t t233 = t172 + t171;
     /* link j5: force and moment */
-    const ur10e_real_t t235 = parameters[XX5R] * t170 - parameters[ZZ5R] * t169 - parameters[XY5] * t233
-        + parameters[XZ5] * t234;
-    const ur10e_real_t t236 = t168 * t168; /* link j5: motion */
+    const ur10e_real_t t234 = parameters[XX5R] * t169 - parameters[ZZ5R] * t168 - parameters[XY5] * t232
+        + parameters[XZ5] * t233;
+    const ur10e_real_t t235 = t167 * t167; /* link j5: motion */
     /* link j6: what it passes on */
-    const ur10e_real_t t237 = t235 + parameters[YZ5] * (t215 - t236) + parameters[MY5R] * t210 + (t2 * t227
-        + t1 * t232);
+    const ur10e_real_t t236 = t234 + parameters[YZ5] * (t214 - t235) + parameters[MY5R] * t209 + (t2 * t226
+        + t1 * t231);
     /* link j6: force and moment */
-    const ur10e_real_t t238 = parameters[MX6] * (t179 + t225) + parameters[MY6] * t228;
-    const ur10e_real_t t239 = parameters[MX6] * t223 - parameters[MY6] * (t178 + t225);
+    const ur10e_real_t t237 = parameters[MX6] * (t178 + t224) + parameters[MY6] * t227;
+    const ur10e_real_t t238 = parameters[MX6] * t222 - parameters[MY6] * (t177 + t224);
     /* link j6: what it passes on */
-    const ur10e_real_t t240 = parameters[MX5] * (t236 + t215) - parameters[MY5R] * t174 + (t2 * t238
-        + t1 * t239);
-    const ur10e_real_t t241 = parameters[MX5] * t234 + parameters[MY5R] * (t214 + t215)
-        + (parameters[MX6] * t222 - parameters[MY6] * t229);
-    const ur10e_real_t t242 = t13 * t240 + t15 * t241; /* link j5: what it passes on */
-    const ur10e_real_t t243 = UR10E_C(-2.0) * t173; /* link j5: motion */
+    const ur10e_real_t t239 = parameters[MX5] * (t235 + t214) - parameters[MY5R] * t173 + (t2 * t237
+        + t1 * t238);
+    const ur10e_real_t t240 = parameters[MX5] * t233 + parameters[MY5R] * (t213 + t214)
+        + (parameters[MX6] * t221 - parameters[MY6] * t228);
+    const ur10e_real_t t241 = t12 * t239 + t14 * t240; /* link j5: what it passes on */
+    const ur10e_real_t t242 = UR10E_C(-2.0) * t172; /* link j5: motion */
     /* link j4: force and moment */
-    const ur10e_real_t t244 = parameters[XX4R] * t155 + parameters[ZZ4R] * t155 + parameters[XY4] * t243
-        - parameters[XZ4] * t152;
-    const ur10e_real_t t245 = t151 * t151; /* link j4: motion */
+    const ur10e_real_t t243 = parameters[XX4R] * t154 + parameters[ZZ4R] * t154 + parameters[XY4] * t242
+        - parameters[XZ4] * t151;
+    const ur10e_real_t t244 = t150 * t150; /* link j4: motion */
     /* link j5: what it passes on */
-    const ur10e_real_t t246 = t244 + parameters[YZ4] * (t208 - t245) + parameters[MY4R] * t203 + (t15 * t237
-        + t13 * t217 + UR10E_C(-0.11985) * t242);
+    const ur10e_real_t t245 = t243 + parameters[YZ4] * (t207 - t244) + parameters[MY4R] * t202 + (t14 * t236
+        + t12 * t216 + UR10E_C(-0.11985) * t241);
     /* link j5: force and moment */
-    const ur10e_real_t t247 = parameters[ZZ5R] * t173 - parameters[XX5R] * t172 - parameters[YZ5] * t157
-        + parameters[XZ5] * t166;
-    const ur10e_real_t t248 = t247 + parameters[XY5] * (t236 - t214) + (parameters[MX5] * t226
-        - parameters[MY5R] * t205);
-    const ur10e_real_t t249 = t248 + (t2 * t232 - t1 * t227); /* link j6: what it passes on */
-    const ur10e_real_t t250 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
-    const ur10e_real_t t251 = parameters[XZ4] * (t208 - t207) - (t173 * t250 + parameters[XY4] * t156
-        + parameters[YZ4] * t152);
-    const ur10e_real_t t252 = t251 + parameters[MX4] * t203 + t249; /* link j5: what it passes on */
-    const ur10e_real_t t253 = t13 * t241 - t15 * t240;
-    const ur10e_real_t t254 = parameters[MY4R] * t152 - parameters[MX4] * (t245 + t208) + t253;
+    const ur10e_real_t t246 = parameters[ZZ5R] * t172 - parameters[XX5R] * t171 - parameters[YZ5] * t156
+        + parameters[XZ5] * t165;
+    const ur10e_real_t t247 = t246 + parameters[XY5] * (t235 - t213) + (parameters[MX5] * t225
+        - parameters[MY5R] * t204);
+    const ur10e_real_t t248 = t247 + (t2 * t231 - t1 * t226); /* link j6: what it passes on */
+    const ur10e_real_t t249 = parameters[XX4R] - parameters[ZZ4R]; /* link j4: force and moment */
+    const ur10e_real_t t250 = parameters[XZ4] * (t207 - t206) - (t172 * t249 + parameters[XY4] * t155
+        + parameters[YZ4] * t151);
+    const ur10e_real_t t251 = t250 + parameters[MX4] * t202 + t248; /* link j5: what it passes on */
+    const ur10e_real_t t252 = t12 * t240 - t14 * t239;
+    const ur10e_real_t t253 = parameters[MY4R] * t151 - parameters[MX4] * (t244 + t207) + t252;
     /* link j6: what it passes on */
-    const ur10e_real_t t255 = parameters[MX5] * t233 + parameters[MY5R] * t171 + (t2 * t239 - t1 * t238);
+    const ur10e_real_t t254 = parameters[MX5] * t232 + parameters[MY5R] * t170 + (t2 * t238 - t1 * t237);
     /* link j5: what it passes on */
-    const ur10e_real_t t256 = parameters[MX4] * t152 - parameters[MY4R] * t209 + t255;
-    const ur10e_real_t t257 = t38 * t254 + t41 * t256; /* link j4: what it passes on */
-    const ur10e_real_t t258 = t149 * t153; /* link j3: motion */
-    const ur10e_real_t t259 = UR10E_C(2.0) * t200; /* link j4: motion */
+    const ur10e_real_t t255 = parameters[MX4] * t151 - parameters[MY4R] * t208 + t254;
+    const ur10e_real_t t256 = t36 * t253 + t39 * t255; /* link j4: what it passes on */
+    const ur10e_real_t t257 = t148 * t152; /* link j3: motion */
+    const ur10e_real_t t258 = UR10E_C(2.0) * t199; /* link j4: motion */
     /* link j3: force and moment */
-    const ur10e_real_t t260 = parameters[XX3R] * t258 + parameters[ZZ3R] * t258 + parameters[XY3] * t259
-        + parameters[XZ3R] * t195;
+    const ur10e_real_t t259 = parameters[XX3R] * t257 + parameters[ZZ3R] * t257 + parameters[XY3] * t258
+        + parameters[XZ3R] * t194;
     /* link j4: what it passes on */
-    const ur10e_real_t t261 = t260 + parameters[YZ3] * (t190 - t189) + parameters[MY3] * t202 + (t41 * t246
-        + t38 * t252 + UR10E_C(0.17415) * t257);
-    const ur10e_real_t t262 = t38 * t256 - t41 * t254;
+    const ur10e_real_t t260 = t259 + parameters[YZ3] * (t189 - t188) + parameters[MY3] * t201 + (t39 * t245
+        + t36 * t251 + UR10E_C(0.17415) * t256);
+    const ur10e_real_t t261 = t36 * t255 - t39 * t253;
     /* link j5: what it passes on */
-    const ur10e_real_t t263 = parameters[MY4R] * t156 - parameters[MX4] * t243 + t242;
+    const ur10e_real_t t262 = parameters[MY4R] * t155 - parameters[MX4] * t242 + t241;
     /* link j4: what it passes on */
-    const ur10e_real_t t264 = t38 * t246 - t41 * t252 + (UR10E_C(0.17415) * t262 - UR10E_C(-0.57155) * t263);
-    const ur10e_real_t t265 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
-    const ur10e_real_t t266 = UR10E_C(2.0) * t258; /* link j4: motion */
+    const ur10e_real_t t263 = t36 * t245 - t39 * t251 + (UR10E_C(0.17415) * t261 - UR10E_C(-0.57155) * t262);
+    const ur10e_real_t t264 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
+    const ur10e_real_t t265 = UR10E_C(2.0) * t257; /* link j4: motion */
     /* link j3: force and moment */
-    const ur10e_real_t t267 = parameters[YZ3] * t195 - (t200 * t265 + parameters[XY3] * t266)
-        - parameters[XZ3R] * (t199 - t190);
-    const ur10e_real_t t268 = t267 + parameters[MX3R] * t202 - t264; /* link j4: what it passes on */
-    const ur10e_real_t t269 = dq[1] * t147; /* link j2: motion */
-    const ur10e_real_t t270 = parameters[ZZ2R] * t269; /* link j2: force and moment */
-    const ur10e_real_t t271 = parameters[XY2] * (UR10E_C(2.0) * t201) - (parameters[XX2R] * t269 + t270)
-        - parameters[XZ2R] * t185;
-    const ur10e_real_t t272 = parameters[YZ2] * (t181 - t180);
+    const ur10e_real_t t266 = parameters[YZ3] * t194 - (t199 * t264 + parameters[XY3] * t265)
+        - parameters[XZ3R] * (t198 - t189);
+    const ur10e_real_t t267 = t266 + parameters[MX3R] * t201 - t263; /* link j4: what it passes on */
+    const ur10e_real_t t268 = dq[1] * t146; /* link j2: motion */
+    const ur10e_real_t t269 = parameters[ZZ2R] * t268; /* link j2: force and moment */
+    const ur10e_real_t t270 = parameters[XY2] * (UR10E_C(2.0) * t200) - (parameters[XX2R] * t268 + t269)
+        - parameters[XZ2R] * t184;
+    const ur10e_real_t t271 = parameters[YZ2] * (t180 - t179);
     /* link j2: what it passes on */
-    const ur10e_real_t t273 = t92 * (t271 + t272 + (t61 * t261 + t60 * t268));
+    const ur10e_real_t t272 = t88 * (t270 + t271 + (t58 * t260 + t57 * t267));
     /* link j3: what it passes on */
-    const ur10e_real_t t274 = t60 * t261 - t61 * t268 + UR10E_C(0.6127) * (parameters[MY3] * t266
-        - parameters[MX3R] * t259 + t263);
-    const ur10e_real_t t275 = t201 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
-    const ur10e_real_t t276 = t146 * t146; /* link j2: motion */
-    const ur10e_real_t t277 = parameters[XZ2R] * (t276 - t181); /* link j2: force and moment */
-    const ur10e_real_t t278 = t275 + parameters[XY2] * (UR10E_C(-2.0) * t269) + parameters[YZ2] * t185 + t277;
-    const ur10e_real_t t279 = ur10e_sign(dq[0]); /* joint j1: coulomb_friction */
-    const ur10e_real_t t280 = UR10E_C(101.0) * (parameters[FV1] * (UR10E_C(-101.0) * dq[0])
-        - parameters[FC1] * t279) + (t273 + t94 * (t278 + t274));
-    const ur10e_real_t t281 = ur10e_sign(dq[5]); /* joint j6: coulomb_friction */
-    const ur10e_real_t t282 = UR10E_C(101.0) * (parameters[FV6] * (UR10E_C(101.0) * dq[5])
-        + parameters[FC6] * t281) + t212;
-    const ur10e_real_t t283 = UR10E_C(9.09) * input[5] - t282;
-    const ur10e_real_t t284 = ur10e_sign(dq[4]); /* joint j5: coulomb_friction */
-    const ur10e_real_t t285 = UR10E_C(101.0) * (parameters[FV5] * (UR10E_C(101.0) * dq[4])
-        + parameters[FC5] * t284) - t249;
-    const ur10e_real_t t286 = UR10E_C(9.09) * input[4] - t285 + t283 * t5;
-    const ur10e_real_t t287 = UR10E_C(12.12) * input[0] + t280 + t283 * t96 + t286 * t119;
+    const ur10e_real_t t273 = t57 * t260 - t58 * t267 + UR10E_C(0.6127) * (parameters[MY3] * t265
+        - parameters[MX3R] * t258 + t262);
+    const ur10e_real_t t274 = t200 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
+    const ur10e_real_t t275 = t145 * t145; /* link j2: motion */
+    const ur10e_real_t t276 = parameters[XZ2R] * (t275 - t180); /* link j2: force and moment */
+    const ur10e_real_t t277 = t274 + parameters[XY2] * (UR10E_C(-2.0) * t268) + parameters[YZ2] * t184 + t276;
+    const ur10e_real_t t278 = ur10e_sign(dq[0]); /* joint j1: coulomb_friction */
+    const ur10e_real_t t279 = UR10E_C(101.0) * (parameters[FV1] * (UR10E_C(-101.0) * dq[0])
+        - parameters[FC1] * t278) + (t272 + t90 * (t277 + t273));
+    const ur10e_real_t t280 = ur10e_sign(dq[5]); /* joint j6: coulomb_friction */
+    const ur10e_real_t t281 = UR10E_C(101.0) * (parameters[FV6] * (UR10E_C(101.0) * dq[5])
+        + parameters[FC6] * t280) + t211;
+    const ur10e_real_t t282 = UR10E_C(9.09) * input[5] - t281;
+    const ur10e_real_t t283 = ur10e_sign(dq[4]); /* joint j5: coulomb_friction */
+    const ur10e_real_t t284 = UR10E_C(101.0) * (parameters[FV5] * (UR10E_C(101.0) * dq[4])
+        + parameters[FC5] * t283) - t248;
+    const ur10e_real_t t285 = UR10E_C(9.09) * input[4] - t284 + t282 * t5;
+    const ur10e_real_t t286 = UR10E_C(12.12) * input[0] + t279 + t282 * t92 + t285 * t115;
     /* link j4: force and moment */
-    const ur10e_real_t t288 = parameters[XY4] * (t207 - t245) - parameters[XX4R] * t152
-        - (parameters[MY4R] * t197 - parameters[MX4] * t206);
+    const ur10e_real_t t287 = parameters[XY4] * (t206 - t244) - parameters[XX4R] * t151
+        - (parameters[MY4R] * t196 - parameters[MX4] * t205);
     /* link j5: what it passes on */
-    const ur10e_real_t t289 = t288 + (t15 * t217 - t13 * t237 - UR10E_C(-0.11985) * t253);
-    const ur10e_real_t t290 = ur10e_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ur10e_real_t t291 = UR10E_C(101.0) * (parameters[FV4] * (UR10E_C(101.0) * dq[3])
-        + parameters[FC4] * t290) + t289;
-    const ur10e_real_t t292 = UR10E_C(9.09) * input[3] - t291 + t283 * t27 + t286 * t26;
+    const ur10e_real_t t288 = t287 + (t14 * t216 - t12 * t236 - UR10E_C(-0.11985) * t252);
+    const ur10e_real_t t289 = ur10e_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ur10e_real_t t290 = UR10E_C(101.0) * (parameters[FV4] * (UR10E_C(101.0) * dq[3])
+        + parameters[FC4] * t289) + t288;
+    const ur10e_real_t t291 = UR10E_C(9.09) * input[3] - t290 + t282 * t26 + t285 * t25;
     /* link j3: force and moment */
-    const ur10e_real_t t293 = parameters[XX3R] * t195 + parameters[XY3] * (t199 - t189)
-        - (parameters[MX3R] * t194 - parameters[MY3] * t188);
-    const ur10e_real_t t294 = t293 + (t289 + UR10E_C(-0.57155) * t257); /* link j4: what it passes on */
-    const ur10e_real_t t295 = ur10e_sign(dq[2]); /* joint j3: coulomb_friction */
-    const ur10e_real_t t296 = UR10E_C(101.0) * (parameters[FV3] * (UR10E_C(101.0) * dq[2])
-        + parameters[FC3] * t295) + t294;
-    const ur10e_real_t t297 = UR10E_C(10.100000000000001) * input[2] - t296 + t283 * t52 + t286 * t56;
-    const ur10e_real_t t298 = t297 + t292 * t51;
+    const ur10e_real_t t292 = parameters[XX3R] * t194 + parameters[XY3] * (t198 - t188)
+        - (parameters[MX3R] * t193 - parameters[MY3] * t187);
+    const ur10e_real_t t293 = t292 + (t288 + UR10E_C(-0.57155) * t256); /* link j4: what it passes on */
+    const ur10e_real_t t294 = ur10e_sign(dq[2]); /* joint j3: coulomb_friction */
+    const ur10e_real_t t295 = UR10E_C(101.0) * (parameters[FV3] * (UR10E_C(101.0) * dq[2])
+        + parameters[FC3] * t294) + t293;
+    const ur10e_real_t t296 = UR10E_C(10.100000000000001) * input[2] - t295 + t282 * t50 + t285 * t54;
+    const ur10e_real_t t297 = t296 + t291 * t49;
     /* link j3: what it passes on */
-    const ur10e_real_t t299 = t61 * (parameters[MX3R] * t195 + parameters[MY3] * (t199 + t190) - t257);
-    const ur10e_real_t t300 = t60 * (parameters[MX3R] * t191 + parameters[MY3] * t195 + t262) + t299;
+    const ur10e_real_t t298 = t58 * (parameters[MX3R] * t194 + parameters[MY3] * (t198 + t189) - t256);
+    const ur10e_real_t t299 = t57 * (parameters[MX3R] * t190 + parameters[MY3] * t194 + t261) + t298;
     /* link j2: force and moment */
-    const ur10e_real_t t301 = parameters[XX2R] * t185 - parameters[XY2] * (t276 - t180)
-        + (parameters[MX2R] * t186 + parameters[MY2] * t182);
-    const ur10e_real_t t302 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
-    const ur10e_real_t t303 = UR10E_C(101.0) * (parameters[FV2] * (UR10E_C(101.0) * dq[1])
-        + parameters[FC2] * t302) - (t301 - (t294 + UR10E_C(0.6127) * t300));
-    const ur10e_real_t t304 = UR10E_C(12.12) * input[1] - t303 - t283 * t64 - t286 * t75;
-    const ur10e_real_t t305 = t304 + t292 * t79 - t298 * t84;
-    const ur10e_real_t t306 = t287 + t292 * t129 - t298 * t137 + t305 * t143;
-    const ur10e_real_t t307 = UR10E_C(1.0) / t144;
-    const ur10e_real_t t308 = ur10e_bounded(t306 * t307);
-    ddq[0] = t308;
-    const ur10e_real_t t309 = ur10e_bounded(t305 * t142 + t143 * t308);
-    ddq[1] = t309;
-    const ur10e_real_t t310 = ur10e_bounded(t298 * t83 - t137 * t308 - t84 * t309);
-    ddq[2] = t310;
-    const ur10e_real_t t311 = ur10e_bounded(t292 * t50 + t129 * t308 + t79 * t309 + t51 * t310);
-    ddq[3] = t311;
-    const ur10e_real_t t312 = t286 * t25 + t119 * t308 - t75 * t309 + t56 * t310;
-    const ur10e_real_t t313 = ur10e_bounded(t312 + t26 * t311);
-    ddq[4] = t313;
-    const ur10e_real_t t314 = t283 * t4 + t96 * t308 - t64 * t309 + t52 * t310;
-    const ur10e_real_t t315 = ur10e_bounded(t314 + t27 * t311 + t5 * t313);
-    ddq[5] = t315;
-    const ur10e_real_t t316 = t92 * t61 + t94 * t60; /* link j3: motion */
-    const ur10e_real_t t317 = t94 * t61 - t92 * t60;
-    const ur10e_real_t t318 = t41 * t316 + t38 * t317; /* link j4: motion */
-    const ur10e_real_t t319 = dq[0] * t318;
-    const ur10e_real_t t320 = t158 + t15 * t319; /* link j5: motion */
-    const ur10e_real_t t321 = t41 * t317 - t38 * t316; /* link j4: motion */
+    const ur10e_real_t t300 = parameters[XX2R] * t184 - parameters[XY2] * (t275 - t179)
+        + (parameters[MX2R] * t185 + parameters[MY2] * t181);
+    const ur10e_real_t t301 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
+    const ur10e_real_t t302 = UR10E_C(101.0) * (parameters[FV2] * (UR10E_C(101.0) * dq[1])
+        + parameters[FC2] * t301) - (t300 - (t293 + UR10E_C(0.6127) * t299));
+    const ur10e_real_t t303 = UR10E_C(12.12) * input[1] - t302 - t282 * t61 - t285 * t72;
+    const ur10e_real_t t304 = t303 + t291 * t76 - t297 * t81;
+    const ur10e_real_t t305 = t286 + t291 * t125 - t297 * t133 + t304 * t139;
+    const ur10e_real_t t306 = UR10E_C(1.0) / t140;
+    const ur10e_real_t t307 = ur10e_held(t305 * t306);
+    ddq[0] = t307;
+    const ur10e_real_t t308 = ur10e_held(t304 * t138 + t139 * t307);
+    ddq[1] = t308;
+    const ur10e_real_t t309 = ur10e_held(t297 * t80 - t133 * t307 - t81 * t308);
+    ddq[2] = t309;
+    const ur10e_real_t t310 = ur10e_held(t291 * t48 + t125 * t307 + t76 * t308 + t49 * t309);
+    ddq[3] = t310;
+    const ur10e_real_t t311 = t285 * t24 + t115 * t307 - t72 * t308 + t54 * t309;
+    const ur10e_real_t t312 = ur10e_held(t311 + t25 * t310);
+    ddq[4] = t312;
+    const ur10e_real_t t313 = t282 * t4 + t92 * t307 - t61 * t308 + t50 * t309;
+    const ur10e_real_t t314 = ur10e_held(t313 + t26 * t310 + t5 * t312);
+    ddq[5] = t314;
+    const ur10e_real_t t315 = t308 + t309;
+    const ur10e_real_t t316 = t310 + t315;
+    const ur10e_real_t t317 = t88 * t58 + t90 * t57; /* link j3: motion */
+    const ur10e_real_t t318 = t90 * t58 - t88 * t57;
+    const ur10e_real_t t319 = t39 * t317 + t36 * t318; /* link j4: motion */
+    const ur10e_real_t t320 = dq[0] * t319;
+    const ur10e_real_t t321 = t39 * t318 - t36 * t317;
     const ur10e_real_t t322 = dq[0] * t321;
-    const ur10e_real_t t323 = t322 - dq[4]; /* link j5: motion */
-    const ur10e_real_t t324 = t2 * t323 - t1 * t320; /* link j6: motion */
-    const ur10e_real_t t325 = parameters[XZ6R] * t324;
-    const ur10e_real_t t326 = t167 - t13 * t319; /* link j5: motion */
-    const ur10e_real_t t327 = dq[5] + t326; /* link j6: motion */
-    const ur10e_real_t t328 = parameters[XY6] * t327;
-    const ur10e_real_t t329 = t328 - t325;
-    const ur10e_real_t t330 = t2 * t320 + t1 * t323;
-    const ur10e_real_t t331 = parameters[YZ6R] * t330;
-    const ur10e_real_t t332 = t328 - t331;
-    const ur10e_real_t t333 = UR10E_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
-    const ur10e_real_t t334 = parameters[XX6R] + t333;
-    const ur10e_real_t t335 = t327 * t334 - parameters[XZ6R] * t330;
-    const ur10e_real_t t336 = t327 * t333 - parameters[YZ6R] * t324;
-    const ur10e_real_t t337 = t2 * (t329 + t332) + t1 * (t335 - t336); /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t338 = t2 * t337;
-    const ur10e_real_t t339 = parameters[XZ5] * t326;
-    const ur10e_real_t t340 = parameters[XY5] * t323;
-    const ur10e_real_t t341 = t339 + t340 + (t332 - t338);
-    const ur10e_real_t t342 = t331 - t325;
-    const ur10e_real_t t343 = parameters[YZ5] * t320;
-    const ur10e_real_t t344 = t342 - (t340 + t343);
-    const ur10e_real_t t345 = t324 * t334 - parameters[XY6] * t330;
-    const ur10e_real_t t346 = parameters[XY6] * t324 - t330 * t333;
-    const ur10e_real_t t347 = UR10E_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    const ur10e_real_t t348 = t347 - parameters[XX5R];
-    const ur10e_real_t t349 = t323 * t348 - parameters[XZ5] * t320 + (t1 * t346 - t2 * t345);
-    const ur10e_real_t t350 = parameters[ZZ6] + t333;
-    const ur10e_real_t t351 = parameters[YZ6R] * t327 - t324 * t350;
-    const ur10e_real_t t352 = t330 * t350 - parameters[XZ6R] * t327;
-    const ur10e_real_t t353 = parameters[YZ5] * t326 - t323 * t347 + (t1 * t352 - t2 * t351);
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t354 = t15 * (t344 - t341) + t13 * (t353 + t349);
-    const ur10e_real_t t355 = t15 * t354;
-    const ur10e_real_t t356 = UR10E_C(-0.11985) * t154; /* link j5: velocity of its origin */
-    const ur10e_real_t t357 = t39 * t356; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t358 = parameters[MY6] * t327;
-    const ur10e_real_t t359 = parameters[MX6] * t327;
+    const ur10e_real_t t323 = t320 * t322;
+    const ur10e_real_t t324 = t323 - t316;
+    const ur10e_real_t t325 = t307 * t319;
+    const ur10e_real_t t326 = t153 * t322;
+    const ur10e_real_t t327 = t326 + t325;
+    const ur10e_real_t t328 = t326 + t327;
+    const ur10e_real_t t329 = t14 * t324 + t12 * t328;
+    const ur10e_real_t t330 = t157 + t14 * t320; /* link j5: motion */
+    const ur10e_real_t t331 = t322 - dq[4];
+    const ur10e_real_t t332 = t330 * t331;
+    const ur10e_real_t t333 = t329 - t332;
+    const ur10e_real_t t334 = t333 - t314;
+    const ur10e_real_t t335 = t2 * t330 + t1 * t331; /* link j6: motion */
+    const ur10e_real_t t336 = t2 * t331 - t1 * t330;
+    const ur10e_real_t t337 = t335 * t336;
+    const ur10e_real_t t338 = t337 + t334;
+    const ur10e_real_t t339 = t307 * t321;
+    const ur10e_real_t t340 = t153 * t320; /* link j4: motion */
+    const ur10e_real_t t341 = t339 - t340;
+    const ur10e_real_t t342 = t341 - t312;
+    const ur10e_real_t t343 = t166 - t12 * t320; /* link j5: motion */
+    const ur10e_real_t t344 = t330 * t343;
+    const ur10e_real_t t345 = t344 + t342;
+    const ur10e_real_t t346 = t12 * t324 - t14 * t328;
+    const ur10e_real_t t347 = t343 * t331;
+    const ur10e_real_t t348 = t347 + t346;
+    const ur10e_real_t t349 = t347 + t348;
+    const ur10e_real_t t350 = t1 * t345 - t2 * t349;
+    const ur10e_real_t t351 = dq[5] + t343; /* link j6: motion */
+    const ur10e_real_t t352 = t336 * t351;
+    const ur10e_real_t t353 = t352 + t350;
+    const ur10e_real_t t354 = t352 + t353;
+    const ur10e_real_t t355 = t335 * t351;
+    const ur10e_real_t t356 = t335 * t335;
+    const ur10e_real_t t357 = t351 * t351;
+    const ur10e_real_t t358 = parameters[XZ6R] * (t356 - t357) - (t229 * t355 + parameters[XY6] * t354
+        - parameters[YZ6R] * t338);
+    const ur10e_real_t t359 = t184 + t308;
+    const ur10e_real_t t360 = t185 + UR10E_C(0.6127) * t359;
+    const ur10e_real_t t361 = t183 - t57 * t360;
+    const ur10e_real_t t362 = t307 * t318;
+    const ur10e_real_t t363 = dq[0] * t318; /* link j3: motion */
+    const ur10e_real_t t364 = t363 * t363;
+    const ur10e_real_t t365 = t189 + t364; /* link j4: motion */
+    const ur10e_real_t t366 = t361 + (UR10E_C(0.57155) * t365 + UR10E_C(0.17415) * t362);
+    const ur10e_real_t t367 = dq[0] * t317; /* link j3: motion */
+    const ur10e_real_t t368 = t367 * t363;
+    const ur10e_real_t t369 = t368 + t315;
+    const ur10e_real_t t370 = t307 * t317;
+    const ur10e_real_t t371 = t192 + t58 * t360;
+    const ur10e_real_t t372 = t371 - (UR10E_C(-0.57155) * t369 - UR10E_C(0.17415) * t370);
+    const ur10e_real_t t373 = t39 * t366 - t36 * t372;
+    const ur10e_real_t t374 = t373 + UR10E_C(-0.11985) * t324;
+    const ur10e_real_t t375 = t90 * t307;
+    const ur10e_real_t t376 = t200 + (t200 - t375);
+    const ur10e_real_t t377 = UR10E_C(0.6127) * t376;
+    const ur10e_real_t t378 = t152 * t367;
+    const ur10e_real_t t379 = t378 + (t378 - t362);
+    const ur10e_real_t t380 = t367 * t367;
+    const ur10e_real_t t381 = t380 + t364; /* link j4: motion */
+    const ur10e_real_t t382 = t377 + (UR10E_C(0.17415) * t381 + UR10E_C(0.57155) * t379);
+    const ur10e_real_t t383 = t382 + UR10E_C(0.11985) * t328;
+    const ur10e_real_t t384 = t12 * t374 + t14 * t383;
+    const ur10e_real_t t385 = t358 - parameters[MX6] * t384;
+    const ur10e_real_t t386 = t2 * t345 + t1 * t349;
+    const ur10e_real_t t387 = t336 * t336; /* link j6: motion */
+    const ur10e_real_t t388 = t356 + t387; /* link j6: force and moment */
+    const ur10e_real_t t389 = parameters[XZ6R] * t336;
+    const ur10e_real_t t390 = parameters[XY6] * t351;
+    const ur10e_real_t t391 = t390 - t389;
+    const ur10e_real_t t392 = UR10E_C(-2.0) * t336; /* link j6: derivatives */
+    const ur10e_real_t t393 = UR10E_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
+    const ur10e_real_t t394 = t351 * t393 - parameters[YZ6R] * t336;
+    const ur10e_real_t t395 = UR10E_C(2.0) * t335;
+    const ur10e_real_t t396 = t391 * t392 + t394 * t395 - (parameters[XZ6R] * t388 - (parameters[XX6R] * t386
+        - parameters[XY6] * t350));
+    const ur10e_real_t t397 = t385 + t396;
+    const ur10e_real_t t398 = t355 + (t355 - t386);
+    const ur10e_real_t t399 = t334 - t337;
+    const ur10e_real_t t400 = parameters[XY6] * t398 - (parameters[ZZ6] * t352 + parameters[XX6R] * t353)
+        + parameters[XZ6R] * t399;
+    const ur10e_real_t t401 = parameters[YZ6R] * (t357 - t387) + t400 + parameters[MY6] * t384;
+    const ur10e_real_t t402 = parameters[XX6R] + t393;
+    const ur10e_real_t t403 = t351 * t402 - parameters[XZ6R] * t335;
+    const ur10e_real_t t404 = parameters[YZ6R] * t335;
+    const ur10e_real_t t405 = t390 - t404;
+    const ur10e_real_t t406 = t403 * t392 + t405 * t395 + (parameters[YZ6R] * t388 - parameters[XY6] * t386);
+    const ur10e_real_t t407 = t401 + t406;
+    const ur10e_real_t t408 = t2 * t397 + t1 * t407;
+    const ur10e_real_t t409 = parameters[XZ6R] * t386 - parameters[YZ6R] * t350 - parameters[ZZ6] * t388;
+    const ur10e_real_t t410 = t336 * t402 - parameters[XY6] * t335;
+    const ur10e_real_t t411 = parameters[XY6] * t336 - t335 * t393;
+    const ur10e_real_t t412 = t12 * t383 - t14 * t374;
+    const ur10e_real_t t413 = t36 * t366 + t39 * t372;
+    const ur10e_real_t t414 = t320 * t320; /* link j4: motion */
+    const ur10e_real_t t415 = t207 + t414; /* link j5: motion */
+    const ur10e_real_t t416 = UR10E_C(-0.11985) * t415 + t413;
+    const ur10e_real_t t417 = t2 * t412 + t1 * t416;
+    const ur10e_real_t t418 = t2 * t416 - t1 * t412;
+    const ur10e_real_t t419 = parameters[MX6] * t417 + parameters[MY6] * t418;
+    const ur10e_real_t t420 = t410 * t392 + t411 * t395 + t409 + t419;
+    const ur10e_real_t t421 = parameters[MY6] * (t356 + t357) + parameters[MX6] * t399;
+    const ur10e_real_t t422 = parameters[MY6] * t335 - parameters[MX6] * t336;
+    const ur10e_real_t t423 = t422 * t395 - parameters[MY6] * t388 - t421;
+    const ur10e_real_t t424 = parameters[MY6] * t338 - parameters[MX6] * (t387 + t357);
+    const ur10e_real_t t425 = t422 * t392 - parameters[MX6] * t388 + t424;
+    const ur10e_real_t t426 = t2 * t423 + t1 * t425;
+    const ur10e_real_t t427 = parameters[MX6] * t351;
+    const ur10e_real_t t428 = parameters[MY6] * t351;
+    const ur10e_real_t t429 = parameters[MY6] * t386 + parameters[MX6] * t350 - (t427 * t392 + t428 * t395);
+    const ur10e_real_t t430 = t12 * t426 - t14 * t429;
+    const ur10e_real_t t431 = t14 * t408 - t12 * t420 + UR10E_C(0.11985) * t430;
+    const ur10e_real_t t432 = t2 * t407 - t1 * t397;
+    const ur10e_real_t t433 = t14 * t426 + t12 * t429;
+    const ur10e_real_t t434 = t1 * t423 - t2 * t425;
+    const ur10e_real_t t435 = t36 * t433 + t39 * t434;
+    const ur10e_real_t t436 = t39 * t431 + t36 * t432 + UR10E_C(0.17415) * t435;
+    const ur10e_real_t t437 = t39 * t433 - t36 * t434;
+    const ur10e_real_t t438 = t36 * t431 - t39 * t432 - (UR10E_C(0.17415) * t437 + UR10E_C(0.57155) * t430);
+    const ur10e_real_t t439 = t90 * (t57 * t436 + t58 * t438 + UR10E_C(-0.6127) * t430);
+    const ur10e_real_t t440 = UR10E_C(0.08250825082508251) * (t88 * (t58 * t436 - t57 * t438) + t439);
+    const ur10e_real_t t441 = ur10e_held(UR10E_C(12.12) * t306);
+    const ur10e_real_t t442 = t12 * t408 + t14 * t420 + UR10E_C(-0.11985) * t433;
+    const ur10e_real_t t443 = t442 + UR10E_C(0.57155) * t435;
+    const ur10e_real_t t444 = UR10E_C(0.08250825082508251) * (t443 + UR10E_C(0.6127) * (t57 * t437
+        + t58 * t435));
+    const ur10e_real_t t445 = t139 * t306;
+    const ur10e_real_t t446 = ur10e_held(UR10E_C(12.12) * t445);
+    const ur10e_real_t t447 = UR10E_C(0.099009900990099) * t443;
+    const ur10e_real_t t448 = t306 * (t133 + t81 * t139);
+    const ur10e_real_t t449 = ur10e_held(UR10E_C(-10.100000000000001) * t448);
+    const ur10e_real_t t450 = UR10E_C(0.11001100110011001) * t442;
+    const ur10e_real_t t451 = t49 * t81 - t76;
+    const ur10e_real_t t452 = t306 * (t49 * t133 - t125 + t139 * t451);
+    const ur10e_real_t t453 = ur10e_held(UR10E_C(-9.09) * t452);
+    const ur10e_real_t t454 = t441 * t440 + t446 * t444 + t449 * t447 + t453 * t450;
+    const ur10e_real_t t455 = UR10E_C(0.11001100110011001) * t432;
+    const ur10e_real_t t456 = t54 + t25 * t49;
+    const ur10e_real_t t457 = t72 - t25 * t76 + t81 * t456;
+    const ur10e_real_t t458 = t133 * t456 - (t115 + t25 * t125) + t139 * t457;
+    const ur10e_real_t t459 = t306 * t458;
+    const ur10e_real_t t460 = ur10e_held(UR10E_C(-9.09) * t459);
+    const ur10e_real_t t461 = UR10E_C(2.0) * t410; /* link j6: derivatives */
+    const ur10e_real_t t462 = UR10E_C(2.0) * t411;
+    const ur10e_real_t t463 = UR10E_C(0.11001100110011001) * (t419 + (t335 * t462 - t336 * t461 + t409));
+    const ur10e_real_t t464 = t26 + t5 * t25;
+    const ur10e_real_t t465 = t50 + t5 * t54 + t49 * t464;
+    const ur10e_real_t t466 = t61 + t5 * t72 - t76 * t464 + t81 * t465;
+    const ur10e_real_t t467 = t133 * t465 - (t92 + t5 * t115 + t125 * t464);
+    const ur10e_real_t t468 = t306 * (t467 + t139 * t466);
+    const ur10e_real_t t469 = UR10E_C(9.09) * t468;
+    ddq_by_q[5] = t469 * t463 - (t454 + t460 * t455);
+    const ur10e_real_t t470 = ur10e_held(UR10E_C(12.12) * (t138 + t139 * t445));
+    const ur10e_real_t t471 = t81 * t138 + t139 * t448;
+    const ur10e_real_t t472 = ur10e_held(UR10E_C(-10.100000000000001) * t471);
+    const ur10e_real_t t473 = t138 * t451 + t139 * t452;
+    const ur10e_real_t t474 = ur10e_held(UR10E_C(-9.09) * t473);
+    const ur10e_real_t t475 = t446 * t440 + t470 * t444 + t472 * t447 + t474 * t450;
+    const ur10e_real_t t476 = t138 * t457 + t139 * t459;
+    const ur10e_real_t t477 = ur10e_held(UR10E_C(-9.09) * t476);
+    const ur10e_real_t t478 = t138 * t466 + t139 * t468;
+    const ur10e_real_t t479 = UR10E_C(9.09) * t478;
+    ddq_by_q[11] = t479 * t463 - (t475 + t477 * t455);
+    const ur10e_real_t t480 = ur10e_held(UR10E_C(-12.12) * t448);
+    const ur10e_real_t t481 = ur10e_held(UR10E_C(-12.12) * t471);
+    const ur10e_real_t t482 = ur10e_held(UR10E_C(10.100000000000001) * (t80 + t133 * t448 + t81 * t471));
+    const ur10e_real_t t483 = t49 * t80 + t133 * t452 + t81 * t473;
+    const ur10e_real_t t484 = ur10e_held(UR10E_C(9.09) * t483);
+    const ur10e_real_t t485 = t480 * t440 + t481 * t444 + t482 * t447 + t484 * t450;
+    const ur10e_real_t t486 = t80 * t456 + t133 * t459 + t81 * t476;
+    const ur10e_real_t t487 = ur10e_held(UR10E_C(9.09) * t486);
+    const ur10e_real_t t488 = t80 * t465 + t133 * t468 + t81 * t478;
+    const ur10e_real_t t489 = UR10E_C(-9.09) * t488;
+    ddq_by_q[17] = t489 * t463 - (t485 + t487 * t455);
+    const ur10e_real_t t490 = ur10e_held(UR10E_C(-12.12) * t452);
+    const ur10e_real_t t491 = ur10e_held(UR10E_C(-12.12) * t473);
+    const ur10e_real_t t492 = ur10e_held(UR10E_C(10.100000000000001) * t483);
+    const ur10e_real_t t493 = t48 - t125 * t452 - t76 * t473 + t49 * t483;
+    const ur10e_real_t t494 = ur10e_held(UR10E_C(9.09) * t493);
+    const ur10e_real_t t495 = t490 * t440 + t491 * t444 + t492 * t447 + t494 * t450;
+    const ur10e_real_t t496 = t125 * t459 - t25 * t48 + t76 * t476 - t49 * t486;
+    const ur10e_real_t t497 = ur10e_held(UR10E_C(-9.09) * t496);
+    const ur10e_real_t t498 = t125 * t468 - t48 * t464 + t76 * t478 - t49 * t488;
+    const ur10e_real_t t499 = UR10E_C(9.09) * t498;
+    ddq_by_q[23] = t499 * t463 - (t495 + t497 * t455);
+    const ur10e_real_t t500 = ur10e_held(UR10E_C(-12.12) * t459);
+    const ur10e_real_t t501 = ur10e_held(UR10E_C(-12.12) * t476);
+    const ur10e_real_t t502 = ur10e_held(UR10E_C(10.100000000000001) * t486);
+    const ur10e_real_t t503 = t500 * t440 + t501 * t444 + t502 * t447 + t497 * t450;
+    const ur10e_real_t t504 = t24 - t115 * t459 + t72 * t476 + t54 * t486;
+    const ur10e_real_t t505 = ur10e_held(UR10E_C(9.09) * (t504 - t25 * t496));
+    const ur10e_real_t t506 = t5 * t24 - t115 * t468 + t72 * t478 + t54 * t488;
+    const ur10e_real_t t507 = t506 - t25 * t498;
+    const ur10e_real_t t508 = UR10E_C(-9.09) * t507;
+    ddq_by_q[29] = t508 * t463 - (t503 + t505 * t455);
+    const ur10e_real_t t509 = ur10e_held(UR10E_C(-12.12) * t468);
+    const ur10e_real_t t510 = ur10e_held(UR10E_C(-12.12) * t478);
+    const ur10e_real_t t511 = ur10e_held(UR10E_C(10.100000000000001) * t488);
+    const ur10e_real_t t512 = t509 * t440 + t510 * t444 + t511 * t447 - t499 * t450;
+    const ur10e_real_t t513 = t4 - t92 * t468 + t61 * t478 + t50 * t488;
+    const ur10e_real_t t514 = ur10e_held(UR10E_C(9.09) * (t513 - t26 * t498 + t5 * t507));
+    ddq_by_q[35] = t508 * t455 - t512 - t514 * t463;
+    const ur10e_real_t t515 = parameters[ZZ6] + t393;
+    const ur10e_real_t t516 = parameters[YZ6R] * t351 - t336 * t515;
+    const ur10e_real_t t517 = UR10E_C(2.0) * t516 + (parameters[XX6R] * t392 + parameters[XY6] * t395);
+    const ur10e_real_t t518 = t335 * t515 - parameters[XZ6R] * t351;
+    const ur10e_real_t t519 = UR10E_C(2.0) * t518 + parameters[XY6] * t392;
+    const ur10e_real_t t520 = t1 * t519 - t2 * t517;
+    const ur10e_real_t t521 = t404 - t389;
+    const ur10e_real_t t522 = UR10E_C(2.0) * t521;
+    const ur10e_real_t t523 = t522 - (parameters[XZ6R] * t392 + parameters[YZ6R] * t395);
+    const ur10e_real_t t524 = parameters[MX6] * t395 - parameters[MY6] * t392;
+    const ur10e_real_t t525 = UR10E_C(2.0) * t427;
+    const ur10e_real_t t526 = UR10E_C(-2.0) * t428;
+    const ur10e_real_t t527 = t2 * t525 + t1 * t526;
+    const ur10e_real_t t528 = t12 * t527 - t14 * t524;
+    const ur10e_real_t t529 = t14 * t520 - t12 * t523 + UR10E_C(0.11985) * t528;
+    const ur10e_real_t t530 = t1 * t517 + t2 * t519;
+    const ur10e_real_t t531 = t14 * t527 + t12 * t524;
+    const ur10e_real_t t532 = t1 * t525 - t2 * t526;
+    const ur10e_real_t t533 = t36 * t531 + t39 * t532;
+    const ur10e_real_t t534 = t39 * t529 + t36 * t530 + UR10E_C(0.17415) * t533;
+    const ur10e_real_t t535 = t39 * t531 - t36 * t532;
+    const ur10e_real_t t536 = t39 * t530 - t36 * t529 + (UR10E_C(0.17415) * t535 + UR10E_C(0.57155) * t528);
+    const ur10e_real_t t537 = t90 * (t57 * t534 - t58 * t536 + UR10E_C(-0.6127) * t528);
+    const ur10e_real_t t538 = UR10E_C(0.08250825082508251) * (t88 * (t58 * t534 + t57 * t536) + t537);
+    const ur10e_real_t t539 = t12 * t520 + t14 * t523 + UR10E_C(-0.11985) * t531;
+    const ur10e_real_t t540 = t539 + UR10E_C(0.57155) * t533;
+    const ur10e_real_t t541 = UR10E_C(0.08250825082508251) * (t540 + UR10E_C(0.6127) * (t57 * t535
+        + t58 * t533));
+    const ur10e_real_t t542 = UR10E_C(0.099009900990099) * t540;
+    const ur10e_real_t t543 = UR10E_C(0.11001100110011001) * t539;
+    const ur10e_real_t t544 = t538 * t441 + t541 * t446 + t542 * t449 + t543 * t453;
+    const ur10e_real_t t545 = UR10E_C(0.11001100110011001) * t530;
+    const ur10e_real_t t546 = UR10E_C(1122.2222222222222) * parameters[FV6];
+    ddq_by_dq[5] = t546 * t469 - (t544 + t545 * t460);
+    const ur10e_real_t t547 = t538 * t446 + t541 * t470 + t542 * t472 + t543 * t474;
+    ddq_by_dq[11] = t546 * t479 - (t547 + t545 * t477);
+    const ur10e_real_t t548 = t538 * t480 + t541 * t481 + t542 * t482 + t543 * t484;
+    ddq_by_dq[17] = t546 * t489 - (t548 + t545 * t487);
+    const ur10e_real_t t549 = t538 * t490 + t541 * t491 + t542 * t492 + t543 * t494;
+    ddq_by_dq[23] = t546 * t499 - (t549 + t545 * t497);
+    const ur10e_real_t t550 = t538 * t500 + t541 * t501 + t542 * t502 + t543 * t497;
+    ddq_by_dq[29] = t546 * t508 - (t550 + t545 * t505);
+    const ur10e_real_t t551 = t538 * t509 + t541 * t510 + t542 * t511 - t543 * t499;
+    ddq_by_dq[35] = t545 * t508 - t551 - t546 * t514;
+    ddq_by_input[5] = -t469;
+    ddq_by_input[11] = -t479;
+    ddq_by_input[17] = -t489;
+    ddq_by_input[23] = -t499;
+    ddq_by_input[29] = -t508;
+    ddq_by_input[35] = t514;
+    const ur10e_real_t t552 = parameters[XX6R] * t337 + parameters[ZZ6] * t334 - parameters[YZ6R] * t386
+        - parameters[XZ6R] * t350;
+    const ur10e_real_t t553 = parameters[XY6] * (t387 - t356) + t552 + (parameters[MX6] * t418
+        - parameters[MY6] * t417);
+    const ur10e_real_t t554 = t330 * t330; /* link j5: motion */
+    const ur10e_real_t t555 = t331 * t331;
+    const ur10e_real_t t556 = parameters[XZ5] * (t554 - t555) + (t212 * t332 + parameters[XY5] * t349
+        + parameters[YZ5] * t345);
+    const ur10e_real_t t557 = t556 + parameters[MX5] * t416 + t553;
+    const ur10e_real_t t558 = t343 * t343;
+    const ur10e_real_t t559 = t554 + t558; /* link j6: motion */
+    const ur10e_real_t t560 = t2 * (t391 + t405) + t1 * (t403 - t394); /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t561 = t2 * t560;
+    const ur10e_real_t t562 = parameters[XZ5] * t343;
+    const ur10e_real_t t563 = parameters[XY5] * t331;
+    const ur10e_real_t t564 = t562 + t563 + (t405 - t561);
+    const ur10e_real_t t565 = UR10E_C(2.0) * t343; /* link j5: derivatives */
+    const ur10e_real_t t566 = UR10E_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
     /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t360 = parameters[MY5R] * t320 - parameters[MX5] * t326 + (t1 * t358 - t2 * t359);
-    const ur10e_real_t t361 = UR10E_C(0.11985) * t360; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t362 = UR10E_C(0.11985) * t319;
-    const ur10e_real_t t363 = t18 * t362;
-    const ur10e_real_t t364 = t361 + (t357 - t363);
-    const ur10e_real_t t365 = parameters[XZ4] * t322;
-    const ur10e_real_t t366 = parameters[XY4] * t154;
-    const ur10e_real_t t367 = t366 - t365 + (t355 - t344 + t357 - t364);
-    const ur10e_real_t t368 = t343 - t339 + (t338 - t329); /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t369 = parameters[YZ4] * t319;
-    const ur10e_real_t t370 = t366 - t369 + (t364 + (t368 - t361)); /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t371 = t1 * t337; /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t372 = parameters[ZZ5R] - t347;
-    const ur10e_real_t t373 = t326 * t372 + parameters[YZ5] * t323 + (t336 + t371);
-    const ur10e_real_t t374 = t1 * t345 + t2 * t346 - (parameters[XZ5] * t323 + t320 * t372);
-    const ur10e_real_t t375 = parameters[MY6] * t330 - parameters[MX6] * t324;
-    const ur10e_real_t t376 = t375 - parameters[MX5] * t323;
-    const ur10e_real_t t377 = parameters[MY5R] * t323 - (t2 * t358 + t1 * t359);
-    const ur10e_real_t t378 = t15 * t377 - t13 * t376; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t379 = t15 * t373 - t13 * t374 + (UR10E_C(-0.11985) * t378 - t21 * t356);
-    const ur10e_real_t t380 = UR10E_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    const ur10e_real_t t381 = t379 - (parameters[YZ4] * t322 + t154 * t380);
+    const ur10e_real_t t567 = parameters[YZ5] * t343 - t331 * t566 + (t1 * t518 - t2 * t516);
+    const ur10e_real_t t568 = UR10E_C(-2.0) * t330; /* link j5: derivatives */
+    const ur10e_real_t t569 = t564 * t565 + t567 * t568 + (t27 * t329 - t28 * t346 - t11 * t559);
+    const ur10e_real_t t570 = t557 + (t569 + t20 * t412);
+    const ur10e_real_t t571 = t333 - t332;
+    const ur10e_real_t t572 = t344 - t342;
+    const ur10e_real_t t573 = parameters[ZZ5R] * t347 + parameters[XX5R] * t348 + parameters[XY5] * t571
+        - parameters[XZ5] * t572;
+    const ur10e_real_t t574 = parameters[YZ5] * (t555 - t558) + t573 - parameters[MY5R] * t416 + (t2 * t401
+        - t1 * t385);
+    const ur10e_real_t t575 = t20 * t384;
+    const ur10e_real_t t576 = parameters[ZZ6] * t346;
+    const ur10e_real_t t577 = t566 - parameters[XX5R];
     /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t382 = parameters[XY5] * t320 + t326 * t348 + (t371 - t335);
-    const ur10e_real_t t383 = t1 * t351 + t2 * t352 - (t320 * t347 + parameters[XY5] * t326);
-    const ur10e_real_t t384 = parameters[XX4R] - t380;
+    const ur10e_real_t t578 = t331 * t577 - parameters[XZ5] * t330 + (t1 * t411 - t2 * t410);
+    const ur10e_real_t t579 = parameters[YZ5] * t330;
+    const ur10e_real_t t580 = t521 - (t563 + t579);
+    const ur10e_real_t t581 = t578 * t565 + t580 * t568 + (t13 * t559 + (t576 + t28 * t329));
+    const ur10e_real_t t582 = t575 + t581 - t574;
+    const ur10e_real_t t583 = parameters[MY5R] * t345 - parameters[MX5] * (t558 + t555) + (t2 * t424
+        + t1 * t421);
+    const ur10e_real_t t584 = parameters[MY5R] * t330 - parameters[MX5] * t343 + (t1 * t428 - t2 * t427);
+    const ur10e_real_t t585 = t583 + (t16 * t559 - t20 * t329 - t584 * t565);
+    const ur10e_real_t t586 = parameters[MX5] * t572 - parameters[MY5R] * (t554 + t555)
+        + (parameters[MX6] * t398 + parameters[MY6] * t354);
+    const ur10e_real_t t587 = t586 + (t20 * t346 - parameters[MY5R] * t559 - t584 * t568);
+    const ur10e_real_t t588 = t14 * t585 - t12 * t587;
+    const ur10e_real_t t589 = t14 * t570 - t12 * t582 + UR10E_C(-0.11985) * t588;
+    const ur10e_real_t t590 = parameters[MY5R] * t384 - t16 * t412;
+    const ur10e_real_t t591 = t8 * t559 + (t11 * t329 + t13 * t346);
+    const ur10e_real_t t592 = t1 * t560;
+    const ur10e_real_t t593 = parameters[XY5] * t330 + t343 * t577 + (t592 - t403);
+    const ur10e_real_t t594 = t1 * t516 + t2 * t518 - (t330 * t566 + parameters[XY5] * t343);
+    const ur10e_real_t t595 = t593 * t565 + t594 * t568 - t591 + t590;
+    const ur10e_real_t t596 = t14 * t587 + t12 * t585;
+    const ur10e_real_t t597 = t422 - parameters[MX5] * t331;
+    const ur10e_real_t t598 = parameters[MY5R] * t331 - (t2 * t428 + t1 * t427);
+    const ur10e_real_t t599 = t597 * t565 - t598 * t568 + (t16 * t346 - parameters[MY5R] * t329);
+    const ur10e_real_t t600 = t39 * t596 - t36 * t599;
+    const ur10e_real_t t601 = t36 * t589 - t39 * t595 + (UR10E_C(-0.17415) * t600 + UR10E_C(0.57155) * t588);
+    const ur10e_real_t t602 = t36 * t596 + t39 * t599;
+    const ur10e_real_t t603 = t39 * t589 + t36 * t595 + UR10E_C(0.17415) * t602;
+    const ur10e_real_t t604 = t90 * (t57 * t603 + t58 * t601 + UR10E_C(0.6127) * t588);
+    const ur10e_real_t t605 = UR10E_C(0.08250825082508251) * (t88 * (t58 * t603 - t57 * t601) + t604);
+    const ur10e_real_t t606 = t12 * t570 + t14 * t582 + UR10E_C(-0.11985) * t596;
+    const ur10e_real_t t607 = t606 + UR10E_C(0.57155) * t602;
+    const ur10e_real_t t608 = UR10E_C(0.08250825082508251) * (t607 + UR10E_C(0.6127) * (t57 * t600
+        + t58 * t602));
+    const ur10e_real_t t609 = UR10E_C(0.099009900990099) * t607;
+    const ur10e_real_t t610 = UR10E_C(0.11001100110011001) * t606;
+    const ur10e_real_t t611 = t441 * t605 + t446 * t608 + t449 * t609 + t453 * t610;
+    const ur10e_real_t t612 = UR10E_C(2.0) * t593; /* link j5: derivatives */
+    const ur10e_real_t t613 = UR10E_C(2.0) * t594;
+    const ur10e_real_t t614 = UR10E_C(0.11001100110011001) * (t590 + (t343 * t612 - t330 * t613 - t591));
+    const ur10e_real_t t615 = t1 * t462 - t2 * t461; /* link j6: derivatives */
+    const ur10e_real_t t616 = t343 * t615 - t330 * t522 + (t3 * t559 + (t19 * t329 + t576));
+    const ur10e_real_t t617 = UR10E_C(0.11001100110011001) * (t616 + t575);
+    ddq_by_q[4] = t469 * t617 - (t611 + t460 * t614);
+    const ur10e_real_t t618 = t446 * t605 + t470 * t608 + t472 * t609 + t474 * t610;
+    ddq_by_q[10] = t479 * t617 - (t618 + t477 * t614);
+    const ur10e_real_t t619 = t480 * t605 + t481 * t608 + t482 * t609 + t484 * t610;
+    ddq_by_q[16] = t489 * t617 - (t619 + t487 * t614);
+    const ur10e_real_t t620 = t490 * t605 + t491 * t608 + t492 * t609 + t494 * t610;
+    ddq_by_q[22] = t499 * t617 - (t620 + t497 * t614);
+    const ur10e_real_t t621 = t500 * t605 + t501 * t608 + t502 * t609 + t497 * t610;
+    ddq_by_q[28] = t508 * t617 - (t621 + t505 * t614);
+    const ur10e_real_t t622 = t509 * t605 + t510 * t608 + t511 * t609 - t499 * t610;
+    ddq_by_q[34] = t508 * t614 - t622 - t514 * t617;
+    const ur10e_real_t t623 = parameters[ZZ5R] - t566;
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t624 = t343 * t623 + parameters[YZ5] * t331 + (t394 + t592);
+    const ur10e_real_t t625 = UR10E_C(2.0) * t624 - (t27 * t565 + t28 * t568); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t626 = t1 * t410 + t2 * t411 - (parameters[XZ5] * t331 + t330 * t623);
+    /* link j5: derivatives */
+    const ur10e_real_t t627 = UR10E_C(2.0) * t626 + (parameters[ZZ6] * t568 - t28 * t565);
+    const ur10e_real_t t628 = UR10E_C(2.0) * t597 + t20 * t568;
+    const ur10e_real_t t629 = UR10E_C(2.0) * t598 + t20 * t565;
+    const ur10e_real_t t630 = t12 * t628 - t14 * t629;
+    const ur10e_real_t t631 = t14 * t625 - t12 * t627 + UR10E_C(0.11985) * t630;
+    const ur10e_real_t t632 = t579 - t562 + (t561 - t391); /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t633 = UR10E_C(2.0) * t632; /* link j5: derivatives */
+    const ur10e_real_t t634 = t633 + (t11 * t565 - t13 * t568);
+    const ur10e_real_t t635 = t14 * t628 + t12 * t629;
+    const ur10e_real_t t636 = parameters[MY5R] * t565 + t16 * t568;
+    const ur10e_real_t t637 = t36 * t635 + t39 * t636;
+    const ur10e_real_t t638 = t39 * t631 + t36 * t634 + UR10E_C(0.17415) * t637;
+    const ur10e_real_t t639 = t39 * t635 - t36 * t636;
+    const ur10e_real_t t640 = t36 * t631 - t39 * t634 - (UR10E_C(0.17415) * t639 + UR10E_C(0.57155) * t630);
+    const ur10e_real_t t641 = t90 * (t57 * t638 + t58 * t640 + UR10E_C(-0.6127) * t630);
+    const ur10e_real_t t642 = UR10E_C(0.08250825082508251) * (t88 * (t58 * t638 - t57 * t640) + t641);
+    const ur10e_real_t t643 = t12 * t625 + t14 * t627 + UR10E_C(-0.11985) * t635;
+    const ur10e_real_t t644 = t643 + UR10E_C(0.57155) * t637;
+    const ur10e_real_t t645 = UR10E_C(0.08250825082508251) * (t644 + UR10E_C(0.6127) * (t57 * t639
+        + t58 * t637));
+    const ur10e_real_t t646 = UR10E_C(0.099009900990099) * t644;
+    const ur10e_real_t t647 = UR10E_C(0.11001100110011001) * t643;
+    const ur10e_real_t t648 = t642 * t441 + t645 * t446 + t646 * t449 + t647 * t453;
+    const ur10e_real_t t649 = UR10E_C(0.11001100110011001) * (t633 + UR10E_C(2.0) * (t11 * t343
+        + t13 * t330));
+    const ur10e_real_t t650 = UR10E_C(1122.2222222222222) * parameters[FV5] + t649;
+    const ur10e_real_t t651 = t1 * t461 + t2 * t462; /* link j6: derivatives */
+    const ur10e_real_t t652 = UR10E_C(0.11001100110011001) * (t651 + UR10E_C(-2.0) * (t19 * t343
+        + parameters[ZZ6] * t330));
+    ddq_by_dq[4] = t652 * t469 - (t648 + t650 * t460);
+    const ur10e_real_t t653 = t642 * t446 + t645 * t470 + t646 * t472 + t647 * t474;
+    ddq_by_dq[10] = t652 * t479 - (t653 + t650 * t477);
+    const ur10e_real_t t654 = t642 * t480 + t645 * t481 + t646 * t482 + t647 * t484;
+    ddq_by_dq[16] = t652 * t489 - (t654 + t650 * t487);
+    const ur10e_real_t t655 = t642 * t490 + t645 * t491 + t646 * t492 + t647 * t494;
+    ddq_by_dq[22] = t652 * t499 - (t655 + t650 * t497);
+    const ur10e_real_t t656 = t642 * t500 + t645 * t501 + t646 * t502 + t647 * t497;
+    ddq_by_dq[28] = t652 * t508 - (t656 + t650 * t505);
+    const ur10e_real_t t657 = t642 * t509 + t645 * t510 + t646 * t511 - t647 * t499;
+    ddq_by_dq[34] = t650 * t508 - t657 - t652 * t514;
+    ddq_by_input[4] = t460;
+    ddq_by_input[10] = t477;
+    ddq_by_input[16] = t487;
+    ddq_by_input[22] = t497;
+    ddq_by_input[28] = t505;
+    ddq_by_input[34] = -t508;
+    const ur10e_real_t t658 = t12 * t583 + t14 * t586;
+    const ur10e_real_t t659 = t323 + t316;
+    const ur10e_real_t t660 = t340 - t341;
+    const ur10e_real_t t661 = parameters[XY4] * t660 - (parameters[ZZ4R] * t326 + parameters[XX4R] * t327)
+        - parameters[XZ4] * t659;
+    const ur10e_real_t t662 = t322 * t322; /* link j4: motion */
+    const ur10e_real_t t663 = parameters[YZ4] * (t207 - t662) + t661 + parameters[MY4R] * t382 + (t14 * t574
+        - t12 * t557 + UR10E_C(0.11985) * t658);
+    const ur10e_real_t t664 = t17 * t413;
+    const ur10e_real_t t665 = t8 * t325;
+    const ur10e_real_t t666 = t414 + t662; /* link j5: motion */
+    const ur10e_real_t t667 = UR10E_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const ur10e_real_t t668 = parameters[XX4R] - t667;
     /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t385 = t154 * t384 - parameters[XZ4] * t319 + (t13 * t383 - t15 * t382);
+    const ur10e_real_t t669 = t153 * t668 - parameters[XZ4] * t320 + (t12 * t594 - t14 * t593);
+    const ur10e_real_t t670 = UR10E_C(2.0) * t322; /* link j4: derivatives */
+    const ur10e_real_t t671 = UR10E_C(0.11985) * t584; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t672 = UR10E_C(0.11985) * t320;
+    const ur10e_real_t t673 = t17 * t672;
+    const ur10e_real_t t674 = UR10E_C(-0.11985) * t153; /* link j5: velocity of its origin */
+    const ur10e_real_t t675 = t37 * t674; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t676 = t671 + (t675 - t673);
+    const ur10e_real_t t677 = parameters[YZ4] * t320;
+    const ur10e_real_t t678 = parameters[XY4] * t153;
+    const ur10e_real_t t679 = t678 - t677 + (t676 + (t632 - t671));
+    const ur10e_real_t t680 = UR10E_C(2.0) * t320; /* link j4: derivatives */
+    const ur10e_real_t t681 = t679 * t680 - t669 * t670 + (t117 * t666 + (t665 - t95 * t339));
+    const ur10e_real_t t682 = t663 + (t664 + t681);
+    const ur10e_real_t t683 = parameters[XX5R] * t344 + parameters[ZZ5R] * t342 + parameters[YZ5] * t329
+        + parameters[XZ5] * t346;
+    const ur10e_real_t t684 = parameters[XY5] * (t554 - t558) - t683 + (parameters[MY5R] * t412
+        - parameters[MX5] * t384);
+    const ur10e_real_t t685 = parameters[XZ4] * (t414 - t207) + (parameters[YZ4] * t324 - (t249 * t340
+        + parameters[XY4] * t328));
+    const ur10e_real_t t686 = t685 - parameters[MX4] * t382 + (t684 + (t1 * t401 + t2 * t385));
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t687 = t14 * (t580 - t564) + t12 * (t567 + t578);
+    const ur10e_real_t t688 = t14 * t687;
+    const ur10e_real_t t689 = parameters[XZ4] * t322;
+    const ur10e_real_t t690 = t678 - t689 + (t688 - t580 + t675 - t676);
+    const ur10e_real_t t691 = t14 * t598 - t12 * t597;
+    const ur10e_real_t t692 = t14 * t624 - t12 * t626 + (UR10E_C(-0.11985) * t691 - t20 * t674);
+    const ur10e_real_t t693 = t692 - (parameters[YZ4] * t322 + t153 * t667);
+    const ur10e_real_t t694 = t693 * t680 - t690 * t670 + (t116 * t666 - (t93 * t339 + t95 * t325));
+    const ur10e_real_t t695 = t686 + (t694 + t17 * t373);
+    const ur10e_real_t t696 = parameters[MY5R] * t349 - parameters[MX5] * t571 + (t1 * t424 - t2 * t421);
+    const ur10e_real_t t697 = parameters[MX4] * t659 - parameters[MY4R] * t415 + t696;
+    const ur10e_real_t t698 = t12 * t598 + t14 * t597;
+    const ur10e_real_t t699 = parameters[MY4R] * t320 - parameters[MX4] * t322 + t698;
+    const ur10e_real_t t700 = t697 + (t699 * t680 + (t17 * t325 - t35 * t666));
+    const ur10e_real_t t701 = parameters[MX4] * (t207 + t662) - parameters[MY4R] * t324 + (t12 * t586
+        - t14 * t583);
+    const ur10e_real_t t702 = t701 + (t699 * t670 + (t17 * t339 - t38 * t666));
+    const ur10e_real_t t703 = t36 * t700 + t39 * t702;
+    const ur10e_real_t t704 = t39 * t695 + t36 * t682 + UR10E_C(0.17415) * t703;
+    const ur10e_real_t t705 = t39 * t700 - t36 * t702;
+    const ur10e_real_t t706 = parameters[MX4] * t153 - t584;
+    const ur10e_real_t t707 = t691 - parameters[MY4R] * t153;
+    const ur10e_real_t t708 = t706 * t670 + t707 * t680 + (t35 * t339 - t38 * t325);
+    const ur10e_real_t t709 = t39 * t682 - t36 * t695 - (UR10E_C(-0.17415) * t705 - UR10E_C(-0.57155) * t708);
+    const ur10e_real_t t710 = t90 * (t57 * t704 - t58 * t709 + UR10E_C(0.6127) * t708);
+    const ur10e_real_t t711 = UR10E_C(0.08250825082508251) * (t88 * (t58 * t704 + t57 * t709) + t710);
+    const ur10e_real_t t712 = t38 * t373 + t35 * t413;
+    const ur10e_real_t t713 = t32 * t666 - (t116 * t339 + t117 * t325);
+    const ur10e_real_t t714 = t12 * t687;
+    const ur10e_real_t t715 = t322 * t668 - parameters[XY4] * t320 + (t714 - t578 + t37 * t672);
+    const ur10e_real_t t716 = t12 * t624 + t14 * t626 + (UR10E_C(-0.11985) * t698 - t20 * t672);
+    const ur10e_real_t t717 = t320 * t667 + parameters[XY4] * t322 + t716;
+    const ur10e_real_t t718 = t717 * t680 - t715 * t670 + t713 + t712 + UR10E_C(0.57155) * t703;
+    const ur10e_real_t t719 = UR10E_C(0.08250825082508251) * (t718 + UR10E_C(0.6127) * (t57 * t705
+        + t58 * t703));
+    const ur10e_real_t t720 = UR10E_C(0.099009900990099) * t718;
+    const ur10e_real_t t721 = UR10E_C(2.0) * t715; /* link j4: derivatives */
+    const ur10e_real_t t722 = UR10E_C(2.0) * t717;
+    const ur10e_real_t t723 = UR10E_C(0.11001100110011001) * (t712 + (t320 * t722 - t322 * t721 + t713));
+    const ur10e_real_t t724 = t441 * t711 + t446 * t719 + t449 * t720 + t453 * t723;
+    const ur10e_real_t t725 = t12 * t613 - t14 * t612; /* link j5: derivatives */
+    const ur10e_real_t t726 = UR10E_C(-0.2397) * t320; /* link j6: derivatives */
+    const ur10e_real_t t727 = UR10E_C(-0.2397) * t153;
+    const ur10e_real_t t728 = t633 + (t17 * t726 + t37 * t727); /* link j5: derivatives */
+    const ur10e_real_t t729 = t320 * t728 - t322 * t725 + (t18 * t666 + (t665 - t94 * t339));
+    const ur10e_real_t t730 = UR10E_C(0.11001100110011001) * (t729 + t664);
+    const ur10e_real_t t731 = t12 * t522 - t14 * t615 - t15 * t726; /* link j6: derivatives */
+    const ur10e_real_t t732 = t651 + (t21 * t726 + t83 * t727);
+    const ur10e_real_t t733 = t320 * t732 - t322 * t731 + (t22 * t666 - (t84 * t339 + t3 * t325));
+    const ur10e_real_t t734 = UR10E_C(0.11001100110011001) * (t733 + (t21 * t413 + t15 * t373));
+    ddq_by_q[3] = t469 * t734 - (t724 + t460 * t730);
+    const ur10e_real_t t735 = t446 * t711 + t470 * t719 + t472 * t720 + t474 * t723;
+    ddq_by_q[9] = t479 * t734 - (t735 + t477 * t730);
+    const ur10e_real_t t736 = t480 * t711 + t481 * t719 + t482 * t720 + t484 * t723;
+    ddq_by_q[15] = t489 * t734 - (t736 + t487 * t730);
+    const ur10e_real_t t737 = t490 * t711 + t491 * t719 + t492 * t720 + t494 * t723;
+    ddq_by_q[21] = t499 * t734 - (t737 + t497 * t730);
+    const ur10e_real_t t738 = t500 * t711 + t501 * t719 + t502 * t720 + t497 * t723;
+    ddq_by_q[27] = t508 * t734 - (t738 + t505 * t730);
+    const ur10e_real_t t739 = t509 * t711 + t510 * t719 + t511 * t720 - t499 * t723;
+    ddq_by_q[33] = t508 * t730 - t739 - t514 * t734;
+    const ur10e_real_t t740 = parameters[ZZ4R] - t667;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t741 = t322 * t740 - parameters[YZ4] * t153 + (t567 - t714 + t17 * t674);
+    const ur10e_real_t t742 = UR10E_C(2.0) * t741 - (t93 * t670 + t95 * t680); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t743 = t320 * t740 - parameters[XZ4] * t153 + (t12 * t593 + t14 * t594);
+    const ur10e_real_t t744 = UR10E_C(2.0) * t743 + (t8 * t680 - t95 * t670); /* link j4: derivatives */
+    const ur10e_real_t t745 = UR10E_C(2.0) * t706 + t17 * t680;
+    const ur10e_real_t t746 = UR10E_C(-2.0) * t707 + t17 * t670;
+    const ur10e_real_t t747 = t36 * t745 + t39 * t746;
+    const ur10e_real_t t748 = t39 * t742 + t36 * t744 + UR10E_C(0.17415) * t747;
+    const ur10e_real_t t749 = t39 * t745 - t36 * t746;
+    const ur10e_real_t t750 = t35 * t670 - t38 * t680;
+    const ur10e_real_t t751 = t39 * t744 - t36 * t742 + (UR10E_C(0.17415) * t749 + UR10E_C(-0.57155) * t750);
+    const ur10e_real_t t752 = t90 * (t57 * t748 - t58 * t751 + UR10E_C(0.6127) * t750);
+    const ur10e_real_t t753 = UR10E_C(0.08250825082508251) * (t88 * (t58 * t748 + t57 * t751) + t752);
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t754 = t677 - t689 + (t676 + (t564 + t688 + t673));
+    const ur10e_real_t t755 = UR10E_C(2.0) * t754; /* link j4: derivatives */
+    const ur10e_real_t t756 = t755 - (t116 * t670 + t117 * t680) + UR10E_C(0.57155) * t747;
+    const ur10e_real_t t757 = UR10E_C(0.08250825082508251) * (t756 + UR10E_C(0.6127) * (t57 * t749
+        + t58 * t747));
+    const ur10e_real_t t758 = UR10E_C(0.099009900990099) * t756;
+    const ur10e_real_t t759 = UR10E_C(0.11001100110011001) * (t755 + UR10E_C(-2.0) * (t116 * t322
+        + t117 * t320));
+    const ur10e_real_t t760 = UR10E_C(1122.2222222222222) * parameters[FV4] + t759;
+    const ur10e_real_t t761 = t753 * t441 + t757 * t446 + t758 * t449 + t760 * t453;
+    const ur10e_real_t t762 = t12 * t612 + t14 * t613; /* link j5: derivatives */
+    const ur10e_real_t t763 = UR10E_C(0.11001100110011001) * (t762 + UR10E_C(2.0) * (t8 * t320 - t94 * t322));
+    const ur10e_real_t t764 = t12 * t615 + t14 * t522 + t15 * t727; /* link j6: derivatives */
+    const ur10e_real_t t765 = UR10E_C(0.11001100110011001) * (t764 + UR10E_C(-2.0) * (t84 * t322
+        + t3 * t320));
+    ddq_by_dq[3] = t765 * t469 - (t761 + t763 * t460);
+    const ur10e_real_t t766 = t753 * t446 + t757 * t470 + t758 * t472 + t760 * t474;
+    ddq_by_dq[9] = t765 * t479 - (t766 + t763 * t477);
+    const ur10e_real_t t767 = t753 * t480 + t757 * t481 + t758 * t482 + t760 * t484;
+    ddq_by_dq[15] = t765 * t489 - (t767 + t763 * t487);
+    const ur10e_real_t t768 = t753 * t490 + t757 * t491 + t758 * t492 + t760 * t494;
+    ddq_by_dq[21] = t765 * t499 - (t768 + t763 * t497);
+    const ur10e_real_t t769 = t753 * t500 + t757 * t501 + t758 * t502 + t760 * t497;
+    ddq_by_dq[27] = t765 * t508 - (t769 + t763 * t505);
+    const ur10e_real_t t770 = t753 * t509 + t757 * t510 + t758 * t511 - t760 * t499;
+    ddq_by_dq[33] = t763 * t508 - t770 - t765 * t514;
+    ddq_by_input[3] = t453;
+    ddq_by_input[9] = t474;
+    ddq_by_input[15] = t484;
+    ddq_by_input[21] = t494;
+    ddq_by_input[27] = t497;
+    ddq_by_input[33] = -t499;
+    const ur10e_real_t t771 = t39 * t701 + t36 * t697;
+    const ur10e_real_t t772 = parameters[MX4] * t660 + parameters[MY4R] * t328 + t658;
+    const ur10e_real_t t773 = t36 * t663 + t39 * t686 + (UR10E_C(0.17415) * t771 + UR10E_C(-0.57155) * t772);
+    const ur10e_real_t t774 = t315 - t368;
+    const ur10e_real_t t775 = t152 * t363; /* link j3: motion */
+    const ur10e_real_t t776 = t775 + t370;
+    const ur10e_real_t t777 = t775 + t776;
+    const ur10e_real_t t778 = parameters[XZ3R] * (t380 - t189) + (t264 * t378 - parameters[XY3] * t777
+        - parameters[YZ3] * t774);
+    const ur10e_real_t t779 = t778 - parameters[MX3R] * t377 + t773;
     /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t386 = t41 * (t367 + t370) - t38 * (t381 - t385);
-    const ur10e_real_t t387 = t41 * t386;
-    const ur10e_real_t t388 = t378 - parameters[MY4R] * t154; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t389 = parameters[MX4] * t154 - t360;
-    const ur10e_real_t t390 = t41 * t388 - t38 * t389; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t391 = UR10E_C(-0.57155) * t390;
-    const ur10e_real_t t392 = dq[0] * t317; /* link j3: motion */
-    const ur10e_real_t t393 = UR10E_C(-0.17415) * t392;
-    const ur10e_real_t t394 = t42 * t393; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t395 = t13 * t377 + t15 * t376; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t396 = parameters[MY4R] * t319 - parameters[MX4] * t322 + t395;
-    const ur10e_real_t t397 = UR10E_C(0.17415) * t396; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t398 = dq[0] * t316; /* link j3: motion */
-    const ur10e_real_t t399 = UR10E_C(-0.57155) * t153 + UR10E_C(-0.17415) * t398;
-    const ur10e_real_t t400 = t65 * t399; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t401 = UR10E_C(0.57155) * t392;
-    const ur10e_real_t t402 = t18 * t401;
-    const ur10e_real_t t403 = t391 + t397 + (t394 - t400 + t402);
-    const ur10e_real_t t404 = parameters[XZ3R] * t392;
-    const ur10e_real_t t405 = parameters[XY3] * t153;
-    const ur10e_real_t t406 = t404 - t405 + (t403 + (t370 - t387 - (t391 + t394)));
-    const ur10e_real_t t407 = parameters[YZ3] * t398;
-    const ur10e_real_t t408 = t405 - t407 + (t403 - (t367 - t387 - t400));
-    const ur10e_real_t t409 = t38 * t386;
-    const ur10e_real_t t410 = UR10E_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const ur10e_real_t t411 = t381 + t409 + t65 * t393 - (parameters[YZ3] * t392 + t153 * t410);
-    const ur10e_real_t t412 = t38 * t388 + t41 * t389;
-    const ur10e_real_t t413 = parameters[XX3R] - t410;
-    const ur10e_real_t t414 = t153 * t413 - parameters[XZ3R] * t398 + (t385 - t409 - (UR10E_C(-0.57155) * t412
-        - t42 * t399));
+    const ur10e_real_t t780 = t39 * (t690 + t679) - t36 * (t693 - t669);
+    const ur10e_real_t t781 = t39 * t780;
+    const ur10e_real_t t782 = t39 * t707 - t36 * t706;
+    const ur10e_real_t t783 = UR10E_C(-0.57155) * t782;
+    const ur10e_real_t t784 = UR10E_C(-0.17415) * t363;
+    const ur10e_real_t t785 = t40 * t784;
+    const ur10e_real_t t786 = UR10E_C(0.17415) * t699;
+    const ur10e_real_t t787 = UR10E_C(-0.57155) * t152 + UR10E_C(-0.17415) * t367;
+    const ur10e_real_t t788 = t62 * t787;
+    const ur10e_real_t t789 = UR10E_C(0.57155) * t363;
+    const ur10e_real_t t790 = t17 * t789;
+    const ur10e_real_t t791 = t783 + t786 + (t785 - t788 + t790);
+    const ur10e_real_t t792 = parameters[XZ3R] * t363;
+    const ur10e_real_t t793 = parameters[XY3] * t152;
+    const ur10e_real_t t794 = t792 - t793 + (t791 + (t679 - t781 - (t783 + t785)));
+    const ur10e_real_t t795 = UR10E_C(2.0) * t363; /* link j3: derivatives */
+    const ur10e_real_t t796 = t36 * t780; /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t797 = UR10E_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const ur10e_real_t t798 = t693 + t796 + t62 * t784 - (parameters[YZ3] * t363 + t152 * t797);
+    const ur10e_real_t t799 = UR10E_C(2.0) * t367; /* link j3: derivatives */
+    const ur10e_real_t t800 = t794 * t795 + t798 * t799 + (t127 * t381 + (t100 * t362 + t101 * t370));
+    const ur10e_real_t t801 = t779 + (t800 + t17 * t361);
+    const ur10e_real_t t802 = t39 * t697 - t36 * t701;
+    const ur10e_real_t t803 = parameters[XY3] * t379 - (parameters[ZZ3R] * t775 + parameters[XX3R] * t776)
+        - parameters[XZ3R] * t369;
+    const ur10e_real_t t804 = parameters[MY3] * t377 + (parameters[YZ3] * (t189 - t364) + t803) + (t39 * t663
+        - t36 * t686 - UR10E_C(-0.17415) * t802);
+    const ur10e_real_t t805 = t36 * t707 + t39 * t706; /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t806 = parameters[XX3R] - t797;
+    const ur10e_real_t t807 = t152 * t806 - parameters[XZ3R] * t367 + (t669 - t796 - (UR10E_C(-0.57155) * t805
+        - t40 * t787));
+    const ur10e_real_t t808 = parameters[YZ3] * t367;
+    const ur10e_real_t t809 = t793 - t808 + (t791 - (t690 - t781 - t788));
+    const ur10e_real_t t810 = t809 * t799 - t807 * t795 + (t101 * t362 + t99 * t370 - t128 * t381);
+    const ur10e_real_t t811 = t804 + (t810 + t17 * t371);
+    const ur10e_real_t t812 = parameters[MX3R] * t152 + t805;
+    const ur10e_real_t t813 = t782 - parameters[MY3] * t152;
+    const ur10e_real_t t814 = t812 * t795 + t813 * t799 + (t64 * t370 - t63 * t362);
+    const ur10e_real_t t815 = t90 * (t57 * t801 - t58 * t811 + UR10E_C(0.6127) * t814);
+    const ur10e_real_t t816 = UR10E_C(0.08250825082508251) * (t88 * (t58 * t801 + t57 * t811) + t815);
+    const ur10e_real_t t817 = parameters[MY3] * t367 - parameters[MX3R] * t363 + t699;
+    const ur10e_real_t t818 = parameters[MX3R] * t369 - parameters[MY3] * (t189 + t380) + t802 + (t817 * t799
+        + (t63 * t381 + t17 * t370));
+    const ur10e_real_t t819 = parameters[MX3R] * t365 + parameters[MY3] * t774 + t771 + (t817 * t795
+        + (t64 * t381 + t17 * t362));
+    const ur10e_real_t t820 = t52 * t381 + (t128 * t370 - t127 * t362);
+    const ur10e_real_t t821 = t36 * t717 - t39 * t715 + (UR10E_C(0.57155) * t699 + t40 * t789);
+    const ur10e_real_t t822 = parameters[XY3] * t367 - t363 * t806 + t821;
+    const ur10e_real_t t823 = t367 * t797 + parameters[XY3] * t363 + (t36 * t715 + t39 * t717 - t62 * t789);
+    const ur10e_real_t t824 = t64 * t361 + t63 * t371;
+    const ur10e_real_t t825 = t822 * t795 + t823 * t799 + t820 - t824 + UR10E_C(0.6127) * (t57 * t818
+        + t58 * t819);
+    const ur10e_real_t t826 = UR10E_C(0.08250825082508251) * t825;
+    const ur10e_real_t t827 = UR10E_C(2.0) * t822; /* link j3: derivatives */
+    const ur10e_real_t t828 = UR10E_C(2.0) * t823;
+    const ur10e_real_t t829 = UR10E_C(0.099009900990099) * (t363 * t827 + t367 * t828 + t820 - t824);
+    const ur10e_real_t t830 = UR10E_C(1.1431) * t363; /* link j6: derivatives */
+    const ur10e_real_t t831 = t36 * t722 - t39 * t721 + t40 * t830; /* link j4: derivatives */
+    const ur10e_real_t t832 = t36 * t721 + t39 * t722 - t62 * t830;
+    const ur10e_real_t t833 = t363 * t831 + t367 * t832 + (t41 * t381 + (t121 * t370 - t120 * t362));
+    const ur10e_real_t t834 = UR10E_C(0.11001100110011001) * (t833 + (t40 * t361 - t62 * t371));
+    const ur10e_real_t t835 = t441 * t816 + t446 * t826 + t449 * t829 + t453 * t834;
+    const ur10e_real_t t836 = UR10E_C(2.0) * t787; /* link j6: derivatives */
+    const ur10e_real_t t837 = t36 * t728 - t39 * t725 + (t44 * t830 - t37 * t836); /* link j5: derivatives */
+    const ur10e_real_t t838 = UR10E_C(-0.3483) * t363; /* link j6: derivatives */
+    const ur10e_real_t t839 = t36 * t725 + t39 * t728 + (t68 * t830 + t37 * t838); /* link j5: derivatives */
+    const ur10e_real_t t840 = t363 * t837 + t367 * t839 + (t45 * t381 + (t110 * t370 - t111 * t362));
+    const ur10e_real_t t841 = UR10E_C(0.11001100110011001) * (t840 + (t68 * t371 + t44 * t361));
+    const ur10e_real_t t842 = t36 * t732 - t39 * t731 + (t42 * t830 - t83 * t836); /* link j6: derivatives */
+    const ur10e_real_t t843 = t36 * t731 + t39 * t732 + (t56 * t830 + t83 * t838);
+    const ur10e_real_t t844 = t363 * t842 + t367 * t843 + (t43 * t381 + (t86 * t370 - t85 * t362));
+    const ur10e_real_t t845 = UR10E_C(0.11001100110011001) * (t844 + (t56 * t371 + t42 * t361));
+    ddq_by_q[2] = t469 * t845 - (t835 + t460 * t841);
+    const ur10e_real_t t846 = t446 * t816 + t470 * t826 + t472 * t829 + t474 * t834;
+    ddq_by_q[8] = t479 * t845 - (t846 + t477 * t841);
+    const ur10e_real_t t847 = t480 * t816 + t481 * t826 + t482 * t829 + t484 * t834;
+    ddq_by_q[14] = t489 * t845 - (t847 + t487 * t841);
+    const ur10e_real_t t848 = t490 * t816 + t491 * t826 + t492 * t829 + t494 * t834;
+    ddq_by_q[20] = t499 * t845 - (t848 + t497 * t841);
+    const ur10e_real_t t849 = t500 * t816 + t501 * t826 + t502 * t829 + t497 * t834;
+    ddq_by_q[26] = t508 * t845 - (t849 + t505 * t841);
+    const ur10e_real_t t850 = t509 * t816 + t510 * t826 + t511 * t829 - t499 * t834;
+    ddq_by_q[32] = t508 * t841 - t850 - t514 * t845;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t851 = t39 * t741 + t36 * t743 + (UR10E_C(-0.17415) * t782 + t17 * t784);
+    const ur10e_real_t t852 = t797 - parameters[ZZ3R];
+    const ur10e_real_t t853 = t851 - (parameters[YZ3] * t152 + t363 * t852);
+    const ur10e_real_t t854 = UR10E_C(2.0) * t853 + (t100 * t795 + t101 * t799); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t855 = t39 * t743 - t36 * t741 - (UR10E_C(-0.17415) * t805 - t17 * t787);
+    const ur10e_real_t t856 = parameters[XZ3R] * t152 + t367 * t852 - t855;
+    const ur10e_real_t t857 = UR10E_C(2.0) * t856 - (t101 * t795 + t99 * t799); /* link j3: derivatives */
+    const ur10e_real_t t858 = t57 * t854 + t58 * t857 + UR10E_C(0.6127) * (t64 * t799 - t63 * t795);
+    const ur10e_real_t t859 = t88 * (t58 * t854 - t57 * t857) + t90 * t858;
+    const ur10e_real_t t860 = UR10E_C(0.08250825082508251) * t859;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t861 = t808 - t792 + (t791 + (t754 - (t786 + t790)));
+    const ur10e_real_t t862 = UR10E_C(2.0) * t861; /* link j3: derivatives */
+    const ur10e_real_t t863 = t57 * (UR10E_C(2.0) * t812 + t17 * t799) + t58 * (UR10E_C(-2.0) * t813
+        + t17 * t795);
+    const ur10e_real_t t864 = t862 + (t128 * t799 - t127 * t795) + UR10E_C(0.6127) * t863;
+    const ur10e_real_t t865 = UR10E_C(0.08250825082508251) * t864;
+    const ur10e_real_t t866 = UR10E_C(0.099009900990099) * (t862 + UR10E_C(2.0) * (t128 * t367
+        - t127 * t363));
+    const ur10e_real_t t867 = UR10E_C(1010.0) * parameters[FV3] + t866;
+    const ur10e_real_t t868 = t755 + (t40 * t838 - t62 * t836); /* link j4: derivatives */
+    const ur10e_real_t t869 = UR10E_C(0.11001100110011001) * (t868 + UR10E_C(2.0) * (t121 * t367
+        - t120 * t363));
+    const ur10e_real_t t870 = t860 * t441 + t865 * t446 + t867 * t449 + t869 * t453;
+    const ur10e_real_t t871 = t762 + (t44 * t838 + t68 * t836); /* link j5: derivatives */
+    const ur10e_real_t t872 = UR10E_C(0.11001100110011001) * (t871 + UR10E_C(2.0) * (t110 * t367
+        - t111 * t363));
+    const ur10e_real_t t873 = t764 + (t42 * t838 + t56 * t836); /* link j6: derivatives */
+    const ur10e_real_t t874 = UR10E_C(0.11001100110011001) * (t873 + UR10E_C(2.0) * (t86 * t367
+        - t85 * t363));
+    ddq_by_dq[2] = t874 * t469 - (t870 + t872 * t460);
+    const ur10e_real_t t875 = t860 * t446 + t865 * t470 + t867 * t472 + t869 * t474;
+    ddq_by_dq[8] = t874 * t479 - (t875 + t872 * t477);
+    const ur10e_real_t t876 = t860 * t480 + t865 * t481 + t867 * t482 + t869 * t484;
+    ddq_by_dq[14] = t874 * t489 - (t876 + t872 * t487);
+    const ur10e_real_t t877 = t860 * t490 + t865 * t491 + t867 * t492 + t869 * t494;
+    ddq_by_dq[20] = t874 * t499 - (t877 + t872 * t497);
+    const ur10e_real_t t878 = t860 * t500 + t865 * t501 + t867 * t502 + t869 * t497;
+    ddq_by_dq[26] = t874 * t508 - (t878 + t872 * t505);
+    const ur10e_real_t t879 = t860 * t509 + t865 * t510 + t867 * t511 - t869 * t499;
+    ddq_by_dq[32] = t872 * t508 - t879 - t874 * t514;
+    ddq_by_input[2] = t449;
+    ddq_by_input[8] = t472;
+    ddq_by_input[14] = t482;
+    ddq_by_input[20] = t492;
+    ddq_by_input[26] = t502;
+    ddq_by_input[32] = t511;
+    const ur10e_real_t t880 = t57 * t804 + t58 * t779 + UR10E_C(-0.6127) * (parameters[MX3R] * t379
+        + parameters[MY3] * t777 + t772);
+    const ur10e_real_t t881 = t88 * t307;
+    const ur10e_real_t t882 = t268 + t881;
+    const ur10e_real_t t883 = t274 - parameters[XY2] * (t268 + t882) + parameters[YZ2] * (t184 - t308);
+    const ur10e_real_t t884 = t275 + t179; /* link j3: motion */
     /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t415 = t61 * (t406 - t408) + t60 * (t411 - t414);
-    const ur10e_real_t t416 = t61 * t415;
-    const ur10e_real_t t417 = t390 - parameters[MY3] * t153; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t418 = parameters[MX3R] * t153 + t412;
+    const ur10e_real_t t885 = t58 * (t794 - t809) + t57 * (t798 - t807);
+    const ur10e_real_t t886 = t58 * t885;
+    const ur10e_real_t t887 = UR10E_C(0.6127) * (t57 * t812 - t58 * t813);
+    const ur10e_real_t t888 = UR10E_C(0.6127) * dq[1]; /* link j3: velocity of its origin */
+    const ur10e_real_t t889 = t106 * t888; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t890 = UR10E_C(0.6127) * t146; /* link j3: velocity of its origin */
+    const ur10e_real_t t891 = t17 * t890; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t892 = t887 + (t889 + t891);
+    const ur10e_real_t t893 = parameters[XZ2R] * t146;
+    const ur10e_real_t t894 = parameters[XY2] * dq[1];
+    const ur10e_real_t t895 = t893 - t894 + (t892 + (t809 + t886 - t887));
+    const ur10e_real_t t896 = UR10E_C(2.0) * t146; /* link j2: derivatives */
+    const ur10e_real_t t897 = t57 * t885; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t898 = UR10E_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const ur10e_real_t t899 = parameters[YZ2] * t146 + dq[1] * t898 + (t897 - t798);
+    const ur10e_real_t t900 = UR10E_C(-2.0) * t145; /* link j2: derivatives */
+    const ur10e_real_t t901 = t895 * t896 + t899 * t900 + (t105 * t375 - t107 * t881 - t134 * t884);
+    const ur10e_real_t t902 = t88 * (t276 + t883 + t880 + (t17 * t181 + t901));
+    const ur10e_real_t t903 = t269 + parameters[XX2R] * t882 - parameters[XY2] * t376
+        + parameters[XZ2R] * t359;
     /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t419 = UR10E_C(0.6127) * (t60 * t418 - t61 * t417);
-    const ur10e_real_t t420 = UR10E_C(0.6127) * dq[1]; /* link j3: velocity of its origin */
-    const ur10e_real_t t421 = t110 * t420; /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t422 = UR10E_C(0.6127) * t147; /* link j3: velocity of its origin */
-    const ur10e_real_t t423 = t18 * t422; /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t424 = t419 + (t421 + t423);
-    const ur10e_real_t t425 = parameters[XZ2R] * t147;
-    const ur10e_real_t t426 = parameters[XY2] * dq[1];
-    const ur10e_real_t t427 = t425 - t426 + (t424 + (t408 + t416 - t419));
-    const ur10e_real_t t428 = parameters[YZ2] * t146;
-    const ur10e_real_t t429 = t426 - t428 + (t424 + (t406 - t416 - t421));
-    const ur10e_real_t t430 = t60 * t415;
-    const ur10e_real_t t431 = UR10E_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const ur10e_real_t t432 = parameters[YZ2] * t147 + dq[1] * t431 + (t430 - t411);
-    const ur10e_real_t t433 = UR10E_C(0.6127) * (t60 * t417 + t61 * t418) + t68 * t420;
-    const ur10e_real_t t434 = parameters[XX2R] - t431;
-    const ur10e_real_t t435 = dq[1] * t434 - parameters[XZ2R] * t146 + (t414 + t430 + t433);
+    const ur10e_real_t t904 = UR10E_C(0.6127) * (t57 * t813 + t58 * t812) + t65 * t888;
+    const ur10e_real_t t905 = parameters[XX2R] - t898;
+    const ur10e_real_t t906 = dq[1] * t905 - parameters[XZ2R] * t145 + (t807 + t897 + t904);
+    const ur10e_real_t t907 = parameters[YZ2] * t145;
+    const ur10e_real_t t908 = t894 - t907 + (t892 + (t794 - t886 - t889));
+    const ur10e_real_t t909 = t906 * t896 + t908 * t900 + (t135 * t884 + (t107 * t375 - t104 * t881));
+    const ur10e_real_t t910 = t903 - t271 + (t57 * t779 - t58 * t804) + (t909 - t17 * t185);
+    const ur10e_real_t t911 = UR10E_C(0.08250825082508251) * (t902 + t90 * t910);
+    const ur10e_real_t t912 = t58 * t822 + t57 * t823 + (UR10E_C(0.6127) * t817 - t65 * t890);
+    /* link j2: derivatives */
+    const ur10e_real_t t913 = UR10E_C(2.0) * (parameters[XY2] * t145 - t146 * t905 + t912);
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t914 = parameters[XY2] * t146 + t145 * t898 - (t57 * t822 - t58 * t823 + t106 * t890);
+    const ur10e_real_t t915 = UR10E_C(2.0) * t914; /* link j2: derivatives */
+    const ur10e_real_t t916 = t146 * t913 + t145 * t915 + (t134 * t375 + t135 * t881 - t67 * t884);
+    const ur10e_real_t t917 = t916 - ((parameters[MX2R] + t65) * t181 + (t106 - parameters[MY2]) * t185);
+    const ur10e_real_t t918 = UR10E_C(0.08250825082508251) * t917;
+    const ur10e_real_t t919 = UR10E_C(1.2254) * t146; /* link j6: derivatives */
+    const ur10e_real_t t920 = t58 * t827 + t57 * t828 - t65 * t919; /* link j3: derivatives */
+    const ur10e_real_t t921 = t57 * t827 - t58 * t828 + t106 * t919;
+    const ur10e_real_t t922 = t146 * t920 - t145 * t921 + (t78 * t884 + (t129 * t375 + t130 * t881));
+    const ur10e_real_t t923 = UR10E_C(0.099009900990099) * (t922 - (t106 * t185 + t65 * t181));
+    const ur10e_real_t t924 = t58 * t831 + t57 * t832 + t73 * t919; /* link j4: derivatives */
+    const ur10e_real_t t925 = t58 * t62 + t57 * t40; /* link j4: column of the mass matrix */
+    const ur10e_real_t t926 = t57 * t831 - t58 * t832 + t925 * t919; /* link j4: derivatives */
+    const ur10e_real_t t927 = t146 * t924 - t145 * t926 + (t74 * t884 + (t122 * t375 + t123 * t881));
+    const ur10e_real_t t928 = UR10E_C(0.11001100110011001) * (t73 * t181 - t925 * t185 + t927);
+    const ur10e_real_t t929 = t441 * t911 + t446 * t918 + t449 * t923 + t453 * t928;
+    const ur10e_real_t t930 = UR10E_C(-1.2254) * dq[1]; /* link j6: derivatives */
+    const ur10e_real_t t931 = t58 * t837 + t57 * t839 + (t69 * t919 - t37 * t930); /* link j5: derivatives */
+    const ur10e_real_t t932 = t57 * t44 - t58 * t68; /* link j5: column of the mass matrix */
+    const ur10e_real_t t933 = t57 * t837 - t58 * t839 + t932 * t919; /* link j5: derivatives */
+    const ur10e_real_t t934 = t146 * t931 - t145 * t933 + (t112 * t375 + t113 * t881 - t70 * t884);
+    const ur10e_real_t t935 = UR10E_C(0.11001100110011001) * (t69 * t181 - t932 * t185 + t934);
+    const ur10e_real_t t936 = t58 * t842 + t57 * t843 + (t59 * t919 - t83 * t930); /* link j6: derivatives */
+    const ur10e_real_t t937 = t57 * t42 - t58 * t56; /* link j6: column of the mass matrix */
+    const ur10e_real_t t938 = t57 * t842 - t58 * t843 + t937 * t919; /* link j6: derivatives */
+    const ur10e_real_t t939 = t146 * t936 - t145 * t938 + (t87 * t375 + t89 * t881 - t60 * t884);
+    const ur10e_real_t t940 = UR10E_C(0.11001100110011001) * (t59 * t181 - t937 * t185 + t939);
+    ddq_by_q[1] = t469 * t940 - (t929 + t460 * t935);
+    const ur10e_real_t t941 = t446 * t911 + t470 * t918 + t472 * t923 + t474 * t928;
+    ddq_by_q[7] = t479 * t940 - (t941 + t477 * t935);
+    const ur10e_real_t t942 = t480 * t911 + t481 * t918 + t482 * t923 + t484 * t928;
+    ddq_by_q[13] = t489 * t940 - (t942 + t487 * t935);
+    const ur10e_real_t t943 = t490 * t911 + t491 * t918 + t492 * t923 + t494 * t928;
+    ddq_by_q[19] = t499 * t940 - (t943 + t497 * t935);
+    const ur10e_real_t t944 = t500 * t911 + t501 * t918 + t502 * t923 + t497 * t928;
+    ddq_by_q[25] = t508 * t940 - (t944 + t505 * t935);
+    const ur10e_real_t t945 = t509 * t911 + t510 * t918 + t511 * t923 - t499 * t928;
+    ddq_by_q[31] = t508 * t935 - t945 - t514 * t940;
+    const ur10e_real_t t946 = parameters[ZZ2R] - t898;
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t947 = t146 * t946 - parameters[YZ2] * dq[1] + (t58 * t853 - t57 * t856);
+    /* link j2: derivatives */
+    const ur10e_real_t t948 = t88 * (UR10E_C(2.0) * t947 + (t105 * t896 + t107 * t900));
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t949 = parameters[XZ2R] * dq[1] - t145 * t946 + (t57 * t853 + t58 * t856 + t17 * t888);
+    /* link j2: derivatives */
+    const ur10e_real_t t950 = t90 * (UR10E_C(2.0) * t949 + (t107 * t896 + t104 * t900));
+    const ur10e_real_t t951 = UR10E_C(0.08250825082508251) * (t948 + t950);
+    const ur10e_real_t t952 = UR10E_C(2.0) * (t907 - t893 + (t892 + (t861 - t891)))
+        + UR10E_C(2.0) * (t134 * t146 + t135 * t145);
+    const ur10e_real_t t953 = UR10E_C(841.6666666666667) * parameters[FV2]
+        + UR10E_C(0.08250825082508251) * t952;
+    /* link j3: derivatives */
+    const ur10e_real_t t954 = t862 - t106 * t930 + UR10E_C(2.0) * (t129 * t146 + t130 * t145);
+    const ur10e_real_t t955 = UR10E_C(0.099009900990099) * t954;
+    /* link j4: derivatives */
+    const ur10e_real_t t956 = t868 - t925 * t930 + UR10E_C(2.0) * (t122 * t146 + t123 * t145);
+    const ur10e_real_t t957 = UR10E_C(0.11001100110011001) * t956;
+    const ur10e_real_t t958 = t951 * t441 + t953 * t446 + t955 * t449 + t957 * t453;
+    /* link j5: derivatives */
+    const ur10e_real_t t959 = t871 - t932 * t930 + UR10E_C(2.0) * (t112 * t146 + t113 * t145);
+    const ur10e_real_t t960 = UR10E_C(0.11001100110011001) * t959;
+    /* link j6: derivatives */
+    const ur10e_real_t t961 = t873 - t937 * t930 + UR10E_C(2.0) * (t87 * t146 + t89 * t145);
+    const ur10e_real_t t962 = UR10E_C(0.11001100110011001) * t961;
+    ddq_by_dq[1] = t962 * t469 - (t958 + t960 * t460);
+    const ur10e_real_t t963 = t951 * t446 + t953 * t470 + t955 * t472 + t957 * t474;
+    ddq_by_dq[7] = t962 * t479 - (t963 + t960 * t477);
+    const ur10e_real_t t964 = t951 * t480 + t953 * t481 + t955 * t482 + t957 * t484;
+    ddq_by_dq[13] = t962 * t489 - (t964 + t960 * t487);
+    const ur10e_real_t t965 = t951 * t490 + t953 * t491 + t955 * t492 + t957 * t494;
+    ddq_by_dq[19] = t962 * t499 - (t965 + t960 * t497);
+    const ur10e_real_t t966 = t951 * t500 + t953 * t501 + t955 * t502 + t957 * t497;
+    ddq_by_dq[25] = t962 * t508 - (t966 + t960 * t505);
+    const ur10e_real_t t967 = t951 * t509 + t953 * t510 + t955 * t511 - t957 * t499;
+    ddq_by_dq[31] = t960 * t508 - t967 - t962 * t514;
+    ddq_by_input[1] = t446;
+    ddq_by_input[7] = t470;
+    ddq_by_input[13] = t481;
+    ddq_by_input[19] = t491;
+    ddq_by_input[25] = t501;
+    ddq_by_input[31] = t510;
     /* link j2: inertia, momentum beyond */
-    const ur10e_real_t t436 = t94 * (t94 * (t429 - t427) + t92 * (t432 + t435));
-    const ur10e_real_t t437 = UR10E_C(841.6666666666667) * parameters[FV1]
-        + UR10E_C(0.16501650165016502) * (t427 + t436);
-    const ur10e_real_t t438 = ur10e_bounded(UR10E_C(12.12) * t307);
-    const ur10e_real_t t439 = t143 * t307;
-    const ur10e_real_t t440 = ur10e_bounded(UR10E_C(12.12) * t439);
-    const ur10e_real_t t441 = t13 * t354; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t442 = t322 * t384 - parameters[XY4] * t319 + (t441 - t349 + t39 * t362);
-    const ur10e_real_t t443 = t13 * t373 + t15 * t374 + (UR10E_C(-0.11985) * t395 - t21 * t362);
-    const ur10e_real_t t444 = t319 * t380 + parameters[XY4] * t322 + t443;
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t445 = t38 * t444 - t41 * t442 + (UR10E_C(0.57155) * t396 + t42 * t401);
-    const ur10e_real_t t446 = parameters[XY3] * t398 - t392 * t413 + t445;
-    const ur10e_real_t t447 = t398 * t410 + parameters[XY3] * t392 + (t38 * t442 + t41 * t444 - t65 * t401);
-    const ur10e_real_t t448 = parameters[MY3] * t398 - parameters[MX3R] * t392 + t396;
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t449 = t61 * t446 + t60 * t447 + (UR10E_C(0.6127) * t448 - t68 * t422);
-    /* link j2: derivatives */
-    const ur10e_real_t t450 = UR10E_C(2.0) * (parameters[XY2] * t146 - t147 * t434 + t449);
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t451 = parameters[XY2] * t147 + t146 * t431 - (t60 * t446 - t61 * t447 + t110 * t422);
-    const ur10e_real_t t452 = UR10E_C(2.0) * t451; /* link j2: derivatives */
-    const ur10e_real_t t453 = UR10E_C(0.08250825082508251) * (t92 * t450 - t94 * t452);
-    const ur10e_real_t t454 = t307 * (t137 + t84 * t143);
-    const ur10e_real_t t455 = ur10e_bounded(UR10E_C(-10.100000000000001) * t454);
-    const ur10e_real_t t456 = UR10E_C(2.0) * t446; /* link j3: derivatives */
-    const ur10e_real_t t457 = UR10E_C(2.0) * t447;
-    const ur10e_real_t t458 = UR10E_C(1.2254) * t147; /* link j6: derivatives */
-    const ur10e_real_t t459 = t61 * t456 + t60 * t457 - t68 * t458; /* link j3: derivatives */
-    const ur10e_real_t t460 = t60 * t456 - t61 * t457 + t110 * t458;
-    const ur10e_real_t t461 = UR10E_C(0.099009900990099) * (t92 * t459 + t94 * t460);
-    const ur10e_real_t t462 = t51 * t84 - t79;
-    const ur10e_real_t t463 = t307 * (t51 * t137 - t129 + t143 * t462);
-    const ur10e_real_t t464 = ur10e_bounded(UR10E_C(-9.09) * t463);
-    const ur10e_real_t t465 = UR10E_C(2.0) * t442; /* link j4: derivatives */
-    const ur10e_real_t t466 = UR10E_C(2.0) * t444;
-    const ur10e_real_t t467 = UR10E_C(1.1431) * t392; /* link j6: derivatives */
-    const ur10e_real_t t468 = t38 * t466 - t41 * t465 + t42 * t467; /* link j4: derivatives */
-    const ur10e_real_t t469 = t38 * t465 + t41 * t466 - t65 * t467;
-    const ur10e_real_t t470 = t61 * t468 + t60 * t469 + t76 * t458;
-    const ur10e_real_t t471 = t61 * t65 + t60 * t42; /* link j4: column of the mass matrix */
-    const ur10e_real_t t472 = t60 * t468 - t61 * t469 + t471 * t458; /* link j4: derivatives */
-    const ur10e_real_t t473 = UR10E_C(0.11001100110011001) * (t92 * t470 + t94 * t472);
-    const ur10e_real_t t474 = t437 * t438 + t453 * t440 + t461 * t455 + t473 * t464;
-    const ur10e_real_t t475 = t56 + t26 * t51;
-    const ur10e_real_t t476 = t75 - t26 * t79 + t84 * t475;
-    const ur10e_real_t t477 = t137 * t475 - (t119 + t26 * t129) + t143 * t476;
-    const ur10e_real_t t478 = t307 * t477;
-    const ur10e_real_t t479 = ur10e_bounded(UR10E_C(-9.09) * t478);
-    const ur10e_real_t t480 = UR10E_C(2.0) * t382; /* link j5: derivatives */
-    const ur10e_real_t t481 = UR10E_C(2.0) * t383;
-    const ur10e_real_t t482 = t13 * t481 - t15 * t480;
-    const ur10e_real_t t483 = UR10E_C(2.0) * t368;
-    const ur10e_real_t t484 = UR10E_C(-0.2397) * t319; /* link j6: derivatives */
-    const ur10e_real_t t485 = UR10E_C(-0.2397) * t154;
-    const ur10e_real_t t486 = t483 + (t18 * t484 + t39 * t485); /* link j5: derivatives */
-    const ur10e_real_t t487 = UR10E_C(2.0) * t399; /* link j6: derivatives */
-    const ur10e_real_t t488 = t38 * t486 - t41 * t482 + (t46 * t467 - t39 * t487); /* link j5: derivatives */
-    const ur10e_real_t t489 = UR10E_C(-0.3483) * t392; /* link j6: derivatives */
-    const ur10e_real_t t490 = t38 * t482 + t41 * t486 + (t71 * t467 + t39 * t489); /* link j5: derivatives */
-    const ur10e_real_t t491 = UR10E_C(-1.2254) * dq[1]; /* link j6: derivatives */
-    const ur10e_real_t t492 = t61 * t488 + t60 * t490 + (t72 * t458 - t39 * t491); /* link j5: derivatives */
-    const ur10e_real_t t493 = t60 * t46 - t61 * t71; /* link j5: column of the mass matrix */
-    const ur10e_real_t t494 = t60 * t488 - t61 * t490 + t493 * t458; /* link j5: derivatives */
-    const ur10e_real_t t495 = UR10E_C(0.11001100110011001) * (t92 * t492 + t94 * t494);
-    const ur10e_real_t t496 = t27 + t5 * t26;
-    const ur10e_real_t t497 = t52 + t5 * t56 + t51 * t496;
-    const ur10e_real_t t498 = t64 + t5 * t75 - t79 * t496 + t84 * t497;
-    const ur10e_real_t t499 = t137 * t497 - (t96 + t5 * t119 + t129 * t496);
-    const ur10e_real_t t500 = t307 * (t499 + t143 * t498);
-    const ur10e_real_t t501 = UR10E_C(9.09) * t500;
-    const ur10e_real_t t502 = UR10E_C(2.0) * t345; /* link j6: derivatives */
-    const ur10e_real_t t503 = UR10E_C(2.0) * t346;
-    const ur10e_real_t t504 = t1 * t503 - t2 * t502;
-    const ur10e_real_t t505 = UR10E_C(2.0) * t342;
-    const ur10e_real_t t506 = t13 * t505 - t15 * t504 - t16 * t484;
-    const ur10e_real_t t507 = t1 * t502 + t2 * t503;
-    const ur10e_real_t t508 = t507 + (t22 * t484 + t87 * t485);
-    const ur10e_real_t t509 = t38 * t508 - t41 * t506 + (t44 * t467 - t87 * t487);
-    const ur10e_real_t t510 = t38 * t506 + t41 * t508 + (t59 * t467 + t87 * t489);
-    const ur10e_real_t t511 = t61 * t509 + t60 * t510 + (t62 * t458 - t87 * t491);
-    const ur10e_real_t t512 = t60 * t44 - t61 * t59; /* link j6: column of the mass matrix */
-    const ur10e_real_t t513 = t60 * t509 - t61 * t510 + t512 * t458; /* link j6: derivatives */
-    const ur10e_real_t t514 = UR10E_C(0.11001100110011001) * (t92 * t511 + t94 * t513);
-    ddq_by_dq[0] = t514 * t501 - (t474 + t495 * t479);
-    const ur10e_real_t t515 = ur10e_bounded(UR10E_C(12.12) * (t142 + t143 * t439));
-    const ur10e_real_t t516 = t84 * t142 + t143 * t454;
-    const ur10e_real_t t517 = ur10e_bounded(UR10E_C(-10.100000000000001) * t516);
-    const ur10e_real_t t518 = t142 * t462 + t143 * t463;
-    const ur10e_real_t t519 = ur10e_bounded(UR10E_C(-9.09) * t518);
-    const ur10e_real_t t520 = t437 * t440 + t453 * t515 + t461 * t517 + t473 * t519;
-    const ur10e_real_t t521 = t142 * t476 + t143 * t478;
-    const ur10e_real_t t522 = ur10e_bounded(UR10E_C(-9.09) * t521);
-    const ur10e_real_t t523 = t142 * t498 + t143 * t500;
-    const ur10e_real_t t524 = UR10E_C(9.09) * t523;
-    ddq_by_dq[6] = t514 * t524 - (t520 + t495 * t522);
-    const ur10e_real_t t525 = ur10e_bounded(UR10E_C(-12.12) * t454);
-    const ur10e_real_t t526 = ur10e_bounded(UR10E_C(-12.12) * t516);
-    const ur10e_real_t t527 = ur10e_bounded(UR10E_C(10.100000000000001) * (t83 + t137 * t454 + t84 * t516));
-    const ur10e_real_t t528 = t51 * t83 + t137 * t463 + t84 * t518;
-    const ur10e_real_t t529 = ur10e_bounded(UR10E_C(9.09) * t528);
-    const ur10e_real_t t530 = t437 * t525 + t453 * t526 + t461 * t527 + t473 * t529;
-    const ur10e_real_t t531 = t83 * t475 + t137 * t478 + t84 * t521;
-    const ur10e_real_t t532 = ur10e_bounded(UR10E_C(9.09) * t531);
-    const ur10e_real_t t533 = t83 * t497 + t137 * t500 + t84 * t523;
-    const ur10e_real_t t534 = UR10E_C(-9.09) * t533;
-    ddq_by_dq[12] = t514 * t534 - (t530 + t495 * t532);
-    const ur10e_real_t t535 = ur10e_bounded(UR10E_C(-12.12) * t463);
-    const ur10e_real_t t536 = ur10e_bounded(UR10E_C(-12.12) * t518);
-    const ur10e_real_t t537 = ur10e_bounded(UR10E_C(10.100000000000001) * t528);
-    const ur10e_real_t t538 = t50 - t129 * t463 - t79 * t518 + t51 * t528;
-    const ur10e_real_t t539 = ur10e_bounded(UR10E_C(9.09) * t538);
-    const ur10e_real_t t540 = t437 * t535 + t453 * t536 + t461 * t537 + t473 * t539;
-    const ur10e_real_t t541 = t129 * t478 - t26 * t50 + t79 * t521 - t51 * t531;
-    const ur10e_real_t t542 = ur10e_bounded(UR10E_C(-9.09) * t541);
-    const ur10e_real_t t543 = t129 * t500 - t50 * t496 + t79 * t523 - t51 * t533;
-    const ur10e_real_t t544 = UR10E_C(9.09) * t543;
-    ddq_by_dq[18] = t514 * t544 - (t540 + t495 * t542);
-    const ur10e_real_t t545 = ur10e_bounded(UR10E_C(-12.12) * t478);
-    const ur10e_real_t t546 = ur10e_bounded(UR10E_C(-12.12) * t521);
-    const ur10e_real_t t547 = ur10e_bounded(UR10E_C(10.100000000000001) * t531);
-    const ur10e_real_t t548 = t437 * t545 + t453 * t546 + t461 * t547 + t473 * t542;
-    const ur10e_real_t t549 = t25 - t119 * t478 + t75 * t521 + t56 * t531;
-    const ur10e_real_t t550 = ur10e_bounded(UR10E_C(9.09) * (t549 - t26 * t541));
-    const ur10e_real_t t551 = t5 * t25 - t119 * t500 + t75 * t523 + t56 * t533;
-    const ur10e_real_t t552 = t551 - t26 * t543;
-    const ur10e_real_t t553 = UR10E_C(-9.09) * t552;
-    ddq_by_dq[24] = t514 * t553 - (t548 + t495 * t550);
-    const ur10e_real_t t554 = ur10e_bounded(UR10E_C(-12.12) * t500);
-    const ur10e_real_t t555 = ur10e_bounded(UR10E_C(-12.12) * t523);
-    const ur10e_real_t t556 = ur10e_bounded(UR10E_C(10.100000000000001) * t533);
-    const ur10e_real_t t557 = t437 * t554 + t453 * t555 + t461 * t556 - t473 * t544;
-    const ur10e_real_t t558 = t4 - t96 * t500 + t64 * t523 + t52 * t533;
-    const ur10e_real_t t559 = UR10E_C(9.09) * (t558 - t27 * t543 + t5 * t552);
-    ddq_by_dq[30] = t495 * t553 - t557 - t514 * t559;
-    ddq_by_input[0] = t438;
-    ddq_by_input[6] = t440;
-    ddq_by_input[12] = t525;
-    ddq_by_input[18] = t535;
-    ddq_by_input[24] = t545;
-    ddq_by_input[30] = t554;
-    const ur10e_real_t t560 = t308 * t321;
-    const ur10e_real_t t561 = t154 * t319; /* link j4: motion */
-    const ur10e_real_t t562 = t560 - t561;
-    const ur10e_real_t t563 = t562 - t313;
-    const ur10e_real_t t564 = t320 * t326; /* link j5: motion */
-    const ur10e_real_t t565 = t564 + t563;
-    const ur10e_real_t t566 = t309 + t310;
-    const ur10e_real_t t567 = t311 + t566;
-    const ur10e_real_t t568 = t319 * t322; /* link j4: motion */
-    const ur10e_real_t t569 = t568 - t567;
-    const ur10e_real_t t570 = t308 * t318;
-    const ur10e_real_t t571 = t154 * t322;
-    const ur10e_real_t t572 = t571 + t570;
-    const ur10e_real_t t573 = t571 + t572;
-    const ur10e_real_t t574 = t13 * t569 - t15 * t573;
-    const ur10e_real_t t575 = t326 * t323; /* link j5: motion */
-    const ur10e_real_t t576 = t575 + t574;
-    const ur10e_real_t t577 = t575 + t576;
-    const ur10e_real_t t578 = t1 * t565 - t2 * t577;
-    const ur10e_real_t t579 = t324 * t327; /* link j6: motion */
-    const ur10e_real_t t580 = t579 + t578;
-    const ur10e_real_t t581 = t2 * t565 + t1 * t577;
-    const ur10e_real_t t582 = t330 * t327;
-    const ur10e_real_t t583 = t582 + (t582 - t581);
-    const ur10e_real_t t584 = t15 * t569 + t13 * t573;
-    const ur10e_real_t t585 = t320 * t323; /* link j5: motion */
-    const ur10e_real_t t586 = t584 - t585;
-    const ur10e_real_t t587 = t586 - t315;
-    const ur10e_real_t t588 = t330 * t324; /* link j6: motion */
-    const ur10e_real_t t589 = t587 - t588;
-    const ur10e_real_t t590 = parameters[XY6] * t583 - (parameters[ZZ6] * t579 + parameters[XX6R] * t580)
-        + parameters[XZ6R] * t589;
-    const ur10e_real_t t591 = t324 * t324;
-    const ur10e_real_t t592 = t327 * t327;
-    const ur10e_real_t t593 = t185 + t309;
-    const ur10e_real_t t594 = t186 + UR10E_C(0.6127) * t593;
-    const ur10e_real_t t595 = t184 - t60 * t594;
-    const ur10e_real_t t596 = t308 * t317;
-    const ur10e_real_t t597 = t392 * t392; /* link j3: motion */
-    const ur10e_real_t t598 = t190 + t597; /* link j4: motion */
-    const ur10e_real_t t599 = t595 + (UR10E_C(0.57155) * t598 + UR10E_C(0.17415) * t596);
-    const ur10e_real_t t600 = t398 * t392; /* link j3: motion */
-    const ur10e_real_t t601 = t600 + t566;
-    const ur10e_real_t t602 = t308 * t316;
-    const ur10e_real_t t603 = t193 + t61 * t594;
-    const ur10e_real_t t604 = t603 - (UR10E_C(-0.57155) * t601 - UR10E_C(0.17415) * t602);
-    const ur10e_real_t t605 = t41 * t599 - t38 * t604;
-    const ur10e_real_t t606 = t605 + UR10E_C(-0.11985) * t569;
-    const ur10e_real_t t607 = t94 * t308;
-    const ur10e_real_t t608 = t201 + (t201 - t607);
-    const ur10e_real_t t609 = UR10E_C(0.6127) * t608;
-    const ur10e_real_t t610 = t153 * t398;
-    const ur10e_real_t t611 = t610 + (t610 - t596);
-    const ur10e_real_t t612 = t398 * t398;
-    const ur10e_real_t t613 = t612 + t597; /* link j4: motion */
-    const ur10e_real_t t614 = t609 + (UR10E_C(0.17415) * t613 + UR10E_C(0.57155) * t611);
-    const ur10e_real_t t615 = t614 + UR10E_C(0.11985) * t573;
-    const ur10e_real_t t616 = t13 * t606 + t15 * t615;
-    const ur10e_real_t t617 = parameters[YZ6R] * (t592 - t591) + t590 + parameters[MY6] * t616;
-    const ur10e_real_t t618 = t588 + t587;
-    const ur10e_real_t t619 = t579 + t580;
-    const ur10e_real_t t620 = t330 * t330; /* link j6: motion */
-    const ur10e_real_t t621 = parameters[XZ6R] * (t620 - t592) - (t230 * t582 + parameters[XY6] * t619
-        - parameters[YZ6R] * t618);
-    const ur10e_real_t t622 = t621 - parameters[MX6] * t616;
-    const ur10e_real_t t623 = t586 - t585;
-    const ur10e_real_t t624 = t564 - t563;
-    const ur10e_real_t t625 = parameters[ZZ5R] * t575 + parameters[XX5R] * t576 + parameters[XY5] * t623
-        - parameters[XZ5] * t624;
-    const ur10e_real_t t626 = t326 * t326; /* link j5: motion */
-    const ur10e_real_t t627 = t323 * t323;
-    const ur10e_real_t t628 = t38 * t599 + t41 * t604;
-    const ur10e_real_t t629 = t319 * t319; /* link j4: motion */
-    const ur10e_real_t t630 = t208 + t629; /* link j5: motion */
-    const ur10e_real_t t631 = UR10E_C(-0.11985) * t630 + t628;
-    const ur10e_real_t t632 = parameters[YZ5] * (t627 - t626) + t625 - parameters[MY5R] * t631 + (t2 * t617
-        - t1 * t622);
-    const ur10e_real_t t633 = parameters[XX6R] * t588 + parameters[ZZ6] * t587 - parameters[YZ6R] * t581
-        - parameters[XZ6R] * t578;
-    const ur10e_real_t t634 = t13 * t615 - t15 * t606;
-    const ur10e_real_t t635 = t2 * t631 - t1 * t634;
-    const ur10e_real_t t636 = t2 * t634 + t1 * t631;
-    const ur10e_real_t t637 = parameters[XY6] * (t591 - t620) + t633 + (parameters[MX6] * t635
-        - parameters[MY6] * t636);
-    const ur10e_real_t t638 = t320 * t320;
-    const ur10e_real_t t639 = parameters[XZ5] * (t638 - t627) + (t213 * t585 + parameters[XY5] * t577
-        + parameters[YZ5] * t565);
-    const ur10e_real_t t640 = t639 + parameters[MX5] * t631 + t637;
-    const ur10e_real_t t641 = parameters[MY6] * t618 - parameters[MX6] * (t591 + t592);
-    const ur10e_real_t t642 = parameters[MY6] * (t620 + t592) + parameters[MX6] * t589;
-    const ur10e_real_t t643 = parameters[MY5R] * t565 - parameters[MX5] * (t626 + t627) + (t2 * t641
-        + t1 * t642);
-    const ur10e_real_t t644 = parameters[MX5] * t624 - parameters[MY5R] * (t638 + t627)
-        + (parameters[MX6] * t583 + parameters[MY6] * t619);
-    const ur10e_real_t t645 = t13 * t643 + t15 * t644;
-    const ur10e_real_t t646 = t568 + t567;
-    const ur10e_real_t t647 = t561 - t562;
-    const ur10e_real_t t648 = parameters[XY4] * t647 - (parameters[ZZ4R] * t571 + parameters[XX4R] * t572)
-        - parameters[XZ4] * t646;
-    const ur10e_real_t t649 = t322 * t322; /* link j4: motion */
-    const ur10e_real_t t650 = parameters[YZ4] * (t208 - t649) + t648 + parameters[MY4R] * t614 + (t15 * t632
-        - t13 * t640 + UR10E_C(0.11985) * t645);
-    const ur10e_real_t t651 = parameters[XX5R] * t564 + parameters[ZZ5R] * t563 + parameters[YZ5] * t584
-        + parameters[XZ5] * t574;
-    const ur10e_real_t t652 = parameters[XY5] * (t638 - t626) - t651 + (parameters[MY5R] * t634
-        - parameters[MX5] * t616);
-    const ur10e_real_t t653 = parameters[XZ4] * (t629 - t208) + (parameters[YZ4] * t569 - (t250 * t561
-        + parameters[XY4] * t573));
-    const ur10e_real_t t654 = t653 - parameters[MX4] * t614 + (t652 + (t1 * t617 + t2 * t622));
-    const ur10e_real_t t655 = parameters[MX4] * (t208 + t649) - parameters[MY4R] * t569 + (t13 * t644
-        - t15 * t643);
-    const ur10e_real_t t656 = parameters[MY5R] * t577 - parameters[MX5] * t623 + (t1 * t641 - t2 * t642);
-    const ur10e_real_t t657 = parameters[MX4] * t646 - parameters[MY4R] * t630 + t656;
-    const ur10e_real_t t658 = t41 * t657 - t38 * t655;
-    const ur10e_real_t t659 = t153 * t392; /* link j3: motion */
-    const ur10e_real_t t660 = t659 + t602;
-    const ur10e_real_t t661 = parameters[XY3] * t611 - (parameters[ZZ3R] * t659 + parameters[XX3R] * t660)
-        - parameters[XZ3R] * t601;
-    const ur10e_real_t t662 = parameters[MY3] * t609 + (parameters[YZ3] * (t190 - t597) + t661) + (t41 * t650
-        - t38 * t654 - UR10E_C(-0.17415) * t658);
-    const ur10e_real_t t663 = t41 * t655 + t38 * t657;
-    const ur10e_real_t t664 = parameters[MX4] * t647 + parameters[MY4R] * t573 + t645;
-    const ur10e_real_t t665 = t38 * t650 + t41 * t654 + (UR10E_C(0.17415) * t663 + UR10E_C(-0.57155) * t664);
-    const ur10e_real_t t666 = t566 - t600;
-    const ur10e_real_t t667 = t659 + t660;
-    const ur10e_real_t t668 = parameters[XZ3R] * (t612 - t190) + (t265 * t610 - parameters[XY3] * t667
-        - parameters[YZ3] * t666);
-    const ur10e_real_t t669 = t668 - parameters[MX3R] * t609 + t665;
-    const ur10e_real_t t670 = t60 * t662 + t61 * t669 + UR10E_C(-0.6127) * (parameters[MX3R] * t611
-        + parameters[MY3] * t667 + t664);
-    const ur10e_real_t t671 = t92 * t308;
-    const ur10e_real_t t672 = t269 + t671;
-    const ur10e_real_t t673 = t275 - parameters[XY2] * (t269 + t672) + parameters[YZ2] * (t185 - t309);
-    const ur10e_real_t t674 = t276 + t180;
-    const ur10e_real_t t675 = UR10E_C(2.0) * t147; /* link j2: derivatives */
-    const ur10e_real_t t676 = UR10E_C(-2.0) * t146;
-    const ur10e_real_t t677 = t427 * t675 + t432 * t676 + (t109 * t607 - t111 * t671 - t138 * t674);
-    const ur10e_real_t t678 = t92 * (t277 + t673 + t670 + (t18 * t182 + t677));
-    const ur10e_real_t t679 = t270 + parameters[XX2R] * t672 - parameters[XY2] * t608
-        + parameters[XZ2R] * t593;
-    const ur10e_real_t t680 = t435 * t675 + t429 * t676 + (t139 * t674 + (t111 * t607 - t108 * t671));
-    const ur10e_real_t t681 = t679 - t272 + (t60 * t669 - t61 * t662) + (t680 - t18 * t186);
-    const ur10e_real_t t682 = UR10E_C(0.08250825082508251) * (t678 + t94 * t681);
-    const ur10e_real_t t683 = t147 * t450 + t146 * t452 + (t138 * t607 + t139 * t671 - t70 * t674);
-    const ur10e_real_t t684 = t683 - ((parameters[MX2R] + t68) * t182 + (t110 - parameters[MY2]) * t186);
-    const ur10e_real_t t685 = UR10E_C(0.08250825082508251) * t684;
-    const ur10e_real_t t686 = t147 * t459 - t146 * t460 + (t81 * t674 + (t133 * t607 + t134 * t671));
-    const ur10e_real_t t687 = UR10E_C(0.099009900990099) * (t686 - (t110 * t186 + t68 * t182));
-    const ur10e_real_t t688 = t147 * t470 - t146 * t472 + (t77 * t674 + (t126 * t607 + t127 * t671));
-    const ur10e_real_t t689 = UR10E_C(0.11001100110011001) * (t76 * t182 - t471 * t186 + t688);
-    const ur10e_real_t t690 = t438 * t682 + t440 * t685 + t455 * t687 + t464 * t689;
-    const ur10e_real_t t691 = t147 * t492 - t146 * t494 + (t116 * t607 + t117 * t671 - t73 * t674);
-    const ur10e_real_t t692 = UR10E_C(0.11001100110011001) * (t72 * t182 - t493 * t186 + t691);
-    const ur10e_real_t t693 = t147 * t511 - t146 * t513 + (t91 * t607 + t93 * t671 - t63 * t674);
-    const ur10e_real_t t694 = UR10E_C(0.11001100110011001) * (t62 * t182 - t512 * t186 + t693);
-    ddq_by_q[1] = t501 * t694 - (t690 + t479 * t692);
-    const ur10e_real_t t695 = t440 * t682 + t515 * t685 + t517 * t687 + t519 * t689;
-    ddq_by_q[7] = t524 * t694 - (t695 + t522 * t692);
-    const ur10e_real_t t696 = t525 * t682 + t526 * t685 + t527 * t687 + t529 * t689;
-    ddq_by_q[13] = t534 * t694 - (t696 + t532 * t692);
-    const ur10e_real_t t697 = t535 * t682 + t536 * t685 + t537 * t687 + t539 * t689;
-    ddq_by_q[19] = t544 * t694 - (t697 + t542 * t692);
-    const ur10e_real_t t698 = t545 * t682 + t546 * t685 + t547 * t687 + t542 * t689;
-    ddq_by_q[25] = t553 * t694 - (t698 + t550 * t692);
-    const ur10e_real_t t699 = t554 * t682 + t555 * t685 + t556 * t687 - t544 * t689;
-    ddq_by_q[31] = t553 * t692 - t699 - t559 * t694;
-    const ur10e_real_t t700 = parameters[ZZ4R] - t380;
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t701 = t322 * t700 - parameters[YZ4] * t154 + (t353 - t441 + t18 * t356);
-    const ur10e_real_t t702 = t319 * t700 - parameters[XZ4] * t154 + (t13 * t382 + t15 * t383);
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t703 = t41 * t701 + t38 * t702 + (UR10E_C(-0.17415) * t390 + t18 * t393);
-    const ur10e_real_t t704 = t410 - parameters[ZZ3R];
-    const ur10e_real_t t705 = t703 - (parameters[YZ3] * t153 + t392 * t704);
-    const ur10e_real_t t706 = t41 * t702 - t38 * t701 - (UR10E_C(-0.17415) * t412 - t18 * t399);
-    const ur10e_real_t t707 = parameters[XZ3R] * t153 + t398 * t704 - t706;
-    const ur10e_real_t t708 = parameters[ZZ2R] - t431;
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t709 = t147 * t708 - parameters[YZ2] * dq[1] + (t61 * t705 - t60 * t707);
-    /* link j2: derivatives */
-    const ur10e_real_t t710 = t92 * (UR10E_C(2.0) * t709 + (t109 * t675 + t111 * t676));
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t711 = parameters[XZ2R] * dq[1] - t146 * t708 + (t60 * t705 + t61 * t707 + t18 * t420);
-    /* link j2: derivatives */
-    const ur10e_real_t t712 = t94 * (UR10E_C(2.0) * t711 + (t111 * t675 + t108 * t676));
-    const ur10e_real_t t713 = UR10E_C(0.08250825082508251) * (t710 + t712);
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t714 = t369 - t365 + (t364 + (t341 + t355 + t363));
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t715 = t407 - t404 + (t403 + (t714 - (t397 + t402)));
-    /* link j2: derivatives */
-    const ur10e_real_t t716 = UR10E_C(2.0) * (t428 - t425 + (t424 + (t715 - t423)))
-        + UR10E_C(2.0) * (t138 * t147 + t139 * t146);
-    const ur10e_real_t t717 = UR10E_C(841.6666666666667) * parameters[FV2]
-        + UR10E_C(0.08250825082508251) * t716;
-    const ur10e_real_t t718 = UR10E_C(2.0) * t715; /* link j3: derivatives */
-    const ur10e_real_t t719 = t718 - t110 * t491 + UR10E_C(2.0) * (t133 * t147 + t134 * t146);
-    const ur10e_real_t t720 = UR10E_C(0.099009900990099) * t719;
-    const ur10e_real_t t721 = UR10E_C(2.0) * t714; /* link j4: derivatives */
-    const ur10e_real_t t722 = t721 + (t42 * t489 - t65 * t487);
-    const ur10e_real_t t723 = t722 - t471 * t491 + UR10E_C(2.0) * (t126 * t147 + t127 * t146);
-    const ur10e_real_t t724 = UR10E_C(0.11001100110011001) * t723;
-    const ur10e_real_t t725 = t713 * t438 + t717 * t440 + t720 * t455 + t724 * t464;
-    const ur10e_real_t t726 = t13 * t480 + t15 * t481; /* link j5: derivatives */
-    const ur10e_real_t t727 = t726 + (t46 * t489 + t71 * t487);
-    const ur10e_real_t t728 = t727 - t493 * t491 + UR10E_C(2.0) * (t116 * t147 + t117 * t146);
-    const ur10e_real_t t729 = UR10E_C(0.11001100110011001) * t728;
-    const ur10e_real_t t730 = t13 * t504 + t15 * t505 + t16 * t485; /* link j6: derivatives */
-    const ur10e_real_t t731 = t730 + (t44 * t489 + t59 * t487);
-    const ur10e_real_t t732 = t731 - t512 * t491 + UR10E_C(2.0) * (t91 * t147 + t93 * t146);
-    const ur10e_real_t t733 = UR10E_C(0.11001100110011001) * t732;
-    ddq_by_dq[1] = t733 * t501 - (t725 + t729 * t479);
-    const ur10e_real_t t734 = t713 * t440 + t717 * t515 + t720 * t517 + t724 * t519;
-    ddq_by_dq[7] = t733 * t524 - (t734 + t729 * t522);
-    const ur10e_real_t t735 = t713 * t525 + t717 * t526 + t720 * t527 + t724 * t529;
-    ddq_by_dq[13] = t733 * t534 - (t735 + t729 * t532);
-    const ur10e_real_t t736 = t713 * t535 + t717 * t536 + t720 * t537 + t724 * t539;
-    ddq_by_dq[19] = t733 * t544 - (t736 + t729 * t542);
-    const ur10e_real_t t737 = t713 * t545 + t717 * t546 + t720 * t547 + t724 * t542;
-    ddq_by_dq[25] = t733 * t553 - (t737 + t729 * t550);
-    const ur10e_real_t t738 = t713 * t554 + t717 * t555 + t720 * t556 - t724 * t544;
-    ddq_by_dq[31] = t729 * t553 - t738 - t733 * t559;
-    ddq_by_input[1] = t440;
-    ddq_by_input[7] = t515;
-    ddq_by_input[13] = t526;
-    ddq_by_input[19] = t536;
-    ddq_by_input[25] = t546;
-    ddq_by_input[31] = t555;
-    const ur10e_real_t t739 = UR10E_C(2.0) * t392; /* link j3: derivatives */
-    const ur10e_real_t t740 = UR10E_C(2.0) * t398;
-    const ur10e_real_t t741 = t406 * t739 + t411 * t740 + (t131 * t613 + (t104 * t596 + t105 * t602));
-    const ur10e_real_t t742 = t669 + (t741 + t18 * t595);
-    const ur10e_real_t t743 = t408 * t740 - t414 * t739 + (t105 * t596 + t103 * t602 - t132 * t613);
-    const ur10e_real_t t744 = t662 + (t743 + t18 * t603);
-    const ur10e_real_t t745 = t418 * t739 + t417 * t740 + (t67 * t602 - t66 * t596);
-    const ur10e_real_t t746 = t94 * (t60 * t742 - t61 * t744 + UR10E_C(0.6127) * t745);
-    const ur10e_real_t t747 = UR10E_C(0.08250825082508251) * (t92 * (t61 * t742 + t60 * t744) + t746);
-    const ur10e_real_t t748 = parameters[MX3R] * t601 - parameters[MY3] * (t190 + t612) + t658 + (t448 * t740
-        + (t66 * t613 + t18 * t602));
-    const ur10e_real_t t749 = parameters[MX3R] * t598 + parameters[MY3] * t666 + t663 + (t448 * t739
-        + (t67 * t613 + t18 * t596));
-    const ur10e_real_t t750 = t54 * t613 + (t132 * t602 - t131 * t596);
-    const ur10e_real_t t751 = t67 * t595 + t66 * t603;
-    const ur10e_real_t t752 = t446 * t739 + t447 * t740 + t750 - t751 + UR10E_C(0.6127) * (t60 * t748
-        + t61 * t749);
-    const ur10e_real_t t753 = UR10E_C(0.08250825082508251) * t752;
-    const ur10e_real_t t754 = UR10E_C(0.099009900990099) * (t392 * t456 + t398 * t457 + t750 - t751);
-    const ur10e_real_t t755 = t392 * t468 + t398 * t469 + (t43 * t613 + (t125 * t602 - t124 * t596));
-    const ur10e_real_t t756 = UR10E_C(0.11001100110011001) * (t755 + (t42 * t595 - t65 * t603));
-    const ur10e_real_t t757 = t438 * t747 + t440 * t753 + t455 * t754 + t464 * t756;
-    const ur10e_real_t t758 = t392 * t488 + t398 * t490 + (t47 * t613 + (t114 * t602 - t115 * t596));
-    const ur10e_real_t t759 = UR10E_C(0.11001100110011001) * (t758 + (t71 * t603 + t46 * t595));
-    const ur10e_real_t t760 = t392 * t509 + t398 * t510 + (t45 * t613 + (t90 * t602 - t89 * t596));
-    const ur10e_real_t t761 = UR10E_C(0.11001100110011001) * (t760 + (t59 * t603 + t44 * t595));
-    ddq_by_q[2] = t501 * t761 - (t757 + t479 * t759);
-    const ur10e_real_t t762 = t440 * t747 + t515 * t753 + t517 * t754 + t519 * t756;
-    ddq_by_q[8] = t524 * t761 - (t762 + t522 * t759);
-    const ur10e_real_t t763 = t525 * t747 + t526 * t753 + t527 * t754 + t529 * t756;
-    ddq_by_q[14] = t534 * t761 - (t763 + t532 * t759);
-    const ur10e_real_t t764 = t535 * t747 + t536 * t753 + t537 * t754 + t539 * t756;
-    ddq_by_q[20] = t544 * t761 - (t764 + t542 * t759);
-    const ur10e_real_t t765 = t545 * t747 + t546 * t753 + t547 * t754 + t542 * t756;
-    ddq_by_q[26] = t553 * t761 - (t765 + t550 * t759);
-    const ur10e_real_t t766 = t554 * t747 + t555 * t753 + t556 * t754 - t544 * t756;
-    ddq_by_q[32] = t553 * t759 - t766 - t559 * t761;
-    const ur10e_real_t t767 = UR10E_C(2.0) * t705 + (t104 * t739 + t105 * t740);
-    const ur10e_real_t t768 = UR10E_C(2.0) * t707 - (t105 * t739 + t103 * t740);
-    const ur10e_real_t t769 = t60 * t767 + t61 * t768 + UR10E_C(0.6127) * (t67 * t740 - t66 * t739);
-    const ur10e_real_t t770 = t92 * (t61 * t767 - t60 * t768) + t94 * t769;
-    const ur10e_real_t t771 = UR10E_C(0.08250825082508251) * t770;
-    const ur10e_real_t t772 = t60 * (UR10E_C(2.0) * t418 + t18 * t740) + t61 * (UR10E_C(-2.0) * t417
-        + t18 * t739);
-    const ur10e_real_t t773 = t718 + (t132 * t740 - t131 * t739) + UR10E_C(0.6127) * t772;
-    const ur10e_real_t t774 = UR10E_C(0.08250825082508251) * t773;
-    const ur10e_real_t t775 = UR10E_C(0.099009900990099) * (t718 + UR10E_C(2.0) * (t132 * t398
-        - t131 * t392));
-    const ur10e_real_t t776 = UR10E_C(1010.0) * parameters[FV3] + t775;
-    const ur10e_real_t t777 = UR10E_C(0.11001100110011001) * (t722 + UR10E_C(2.0) * (t125 * t398
-        - t124 * t392));
-    const ur10e_real_t t778 = t771 * t438 + t774 * t440 + t776 * t455 + t777 * t464;
-    const ur10e_real_t t779 = UR10E_C(0.11001100110011001) * (t727 + UR10E_C(2.0) * (t114 * t398
-        - t115 * t392));
-    const ur10e_real_t t780 = UR10E_C(0.11001100110011001) * (t731 + UR10E_C(2.0) * (t90 * t398
-        - t89 * t392));
-    ddq_by_dq[2] = t780 * t501 - (t778 + t779 * t479);
-    const ur10e_real_t t781 = t771 * t440 + t774 * t515 + t776 * t517 + t777 * t519;
-    ddq_by_dq[8] = t780 * t524 - (t781 + t779 * t522);
-    const ur10e_real_t t782 = t771 * t525 + t774 * t526 + t776 * t527 + t777 * t529;
-    ddq_by_dq[14] = t780 * t534 - (t782 + t779 * t532);
-    const ur10e_real_t t783 = t771 * t535 + t774 * t536 + t776 * t537 + t777 * t539;
-    ddq_by_dq[20] = t780 * t544 - (t783 + t779 * t542);
-    const ur10e_real_t t784 = t771 * t545 + t774 * t546 + t776 * t547 + t777 * t542;
-    ddq_by_dq[26] = t780 * t553 - (t784 + t779 * t550);
-    const ur10e_real_t t785 = t771 * t554 + t774 * t555 + t776 * t556 - t777 * t544;
-    ddq_by_dq[32] = t779 * t553 - t785 - t780 * t559;
-    ddq_by_input[2] = t455;
-    ddq_by_input[8] = t517;
-    ddq_by_input[14] = t527;
-    ddq_by_input[20] = t537;
-    ddq_by_input[26] = t547;
-    ddq_by_input[32] = t556;
-    const ur10e_real_t t786 = t18 * t628;
-    const ur10e_real_t t787 = t8 * t570;
-    const ur10e_real_t t788 = t629 + t649; /* link j5: motion */
-    const ur10e_real_t t789 = UR10E_C(2.0) * t322; /* link j4: derivatives */
-    const ur10e_real_t t790 = UR10E_C(2.0) * t319;
-    const ur10e_real_t t791 = t370 * t790 - t385 * t789 + (t121 * t788 + (t787 - t99 * t560));
-    const ur10e_real_t t792 = t650 + (t786 + t791);
-    const ur10e_real_t t793 = t381 * t790 - t367 * t789 + (t120 * t788 - (t97 * t560 + t99 * t570));
-    const ur10e_real_t t794 = t654 + (t793 + t18 * t605);
-    const ur10e_real_t t795 = t657 + (t396 * t790 + (t18 * t570 - t37 * t788));
-    const ur10e_real_t t796 = t655 + (t396 * t789 + (t18 * t560 - t40 * t788));
-    const ur10e_real_t t797 = t38 * t795 + t41 * t796;
-    const ur10e_real_t t798 = t41 * t794 + t38 * t792 + UR10E_C(0.17415) * t797;
-    const ur10e_real_t t799 = t41 * t795 - t38 * t796;
-    const ur10e_real_t t800 = t389 * t789 + t388 * t790 + (t37 * t560 - t40 * t570);
-    const ur10e_real_t t801 = t41 * t792 - t38 * t794 - (UR10E_C(-0.17415) * t799 - UR10E_C(-0.57155) * t800);
-    const ur10e_real_t t802 = t94 * (t60 * t798 - t61 * t801 + UR10E_C(0.6127) * t800);
-    const ur10e_real_t t803 = UR10E_C(0.08250825082508251) * (t92 * (t61 * t798 + t60 * t801) + t802);
-    const ur10e_real_t t804 = t40 * t605 + t37 * t628;
-    const ur10e_real_t t805 = t33 * t788 - (t120 * t560 + t121 * t570);
-    const ur10e_real_t t806 = t444 * t790 - t442 * t789 + t805 + t804 + UR10E_C(0.57155) * t797;
-    const ur10e_real_t t807 = UR10E_C(0.08250825082508251) * (t806 + UR10E_C(0.6127) * (t60 * t799
-        + t61 * t797));
-    const ur10e_real_t t808 = UR10E_C(0.099009900990099) * t806;
-    const ur10e_real_t t809 = UR10E_C(0.11001100110011001) * (t804 + (t319 * t466 - t322 * t465 + t805));
-    const ur10e_real_t t810 = t438 * t803 + t440 * t807 + t455 * t808 + t464 * t809;
-    const ur10e_real_t t811 = t319 * t486 - t322 * t482 + (t19 * t788 + (t787 - t98 * t560));
-    const ur10e_real_t t812 = UR10E_C(0.11001100110011001) * (t811 + t786);
-    const ur10e_real_t t813 = t319 * t508 - t322 * t506 + (t23 * t788 - (t88 * t560 + t3 * t570));
-    const ur10e_real_t t814 = UR10E_C(0.11001100110011001) * (t813 + (t22 * t628 + t16 * t605));
-    ddq_by_q[3] = t501 * t814 - (t810 + t479 * t812);
-    const ur10e_real_t t815 = t440 * t803 + t515 * t807 + t517 * t808 + t519 * t809;
-    ddq_by_q[9] = t524 * t814 - (t815 + t522 * t812);
-    const ur10e_real_t t816 = t525 * t803 + t526 * t807 + t527 * t808 + t529 * t809;
-    ddq_by_q[15] = t534 * t814 - (t816 + t532 * t812);
-    const ur10e_real_t t817 = t535 * t803 + t536 * t807 + t537 * t808 + t539 * t809;
-    ddq_by_q[21] = t544 * t814 - (t817 + t542 * t812);
-    const ur10e_real_t t818 = t545 * t803 + t546 * t807 + t547 * t808 + t542 * t809;
-    ddq_by_q[27] = t553 * t814 - (t818 + t550 * t812);
-    const ur10e_real_t t819 = t554 * t803 + t555 * t807 + t556 * t808 - t544 * t809;
-    ddq_by_q[33] = t553 * t812 - t819 - t559 * t814;
-    const ur10e_real_t t820 = UR10E_C(2.0) * t701 - (t97 * t789 + t99 * t790);
-    const ur10e_real_t t821 = UR10E_C(2.0) * t702 + (t8 * t790 - t99 * t789);
-    const ur10e_real_t t822 = UR10E_C(2.0) * t389 + t18 * t790;
-    const ur10e_real_t t823 = UR10E_C(-2.0) * t388 + t18 * t789;
-    const ur10e_real_t t824 = t38 * t822 + t41 * t823;
-    const ur10e_real_t t825 = t41 * t820 + t38 * t821 + UR10E_C(0.17415) * t824;
-    const ur10e_real_t t826 = t41 * t822 - t38 * t823;
-    const ur10e_real_t t827 = t37 * t789 - t40 * t790;
-    const ur10e_real_t t828 = t41 * t821 - t38 * t820 + (UR10E_C(0.17415) * t826 + UR10E_C(-0.57155) * t827);
-    const ur10e_real_t t829 = t94 * (t60 * t825 - t61 * t828 + UR10E_C(0.6127) * t827);
-    const ur10e_real_t t830 = UR10E_C(0.08250825082508251) * (t92 * (t61 * t825 + t60 * t828) + t829);
-    const ur10e_real_t t831 = t721 - (t120 * t789 + t121 * t790) + UR10E_C(0.57155) * t824;
-    const ur10e_real_t t832 = UR10E_C(0.08250825082508251) * (t831 + UR10E_C(0.6127) * (t60 * t826
-        + t61 * t824));
-    const ur10e_real_t t833 = UR10E_C(0.099009900990099) * t831;
-    const ur10e_real_t t834 = UR10E_C(0.11001100110011001) * (t721 + UR10E_C(-2.0) * (t120 * t322
-        + t121 * t319));
-    const ur10e_real_t t835 = UR10E_C(1122.2222222222222) * parameters[FV4] + t834;
-    const ur10e_real_t t836 = t830 * t438 + t832 * t440 + t833 * t455 + t835 * t464;
-    const ur10e_real_t t837 = UR10E_C(0.11001100110011001) * (t726 + UR10E_C(2.0) * (t8 * t319 - t98 * t322));
-    const ur10e_real_t t838 = UR10E_C(0.11001100110011001) * (t730 + UR10E_C(-2.0) * (t88 * t322
-        + t3 * t319));
-    ddq_by_dq[3] = t838 * t501 - (t836 + t837 * t479);
-    const ur10e_real_t t839 = t830 * t440 + t832 * t515 + t833 * t517 + t835 * t519;
-    ddq_by_dq[9] = t838 * t524 - (t839 + t837 * t522);
-    const ur10e_real_t t840 = t830 * t525 + t832 * t526 + t833 * t527 + t835 * t529;
-    ddq_by_dq[15] = t838 * t534 - (t840 + t837 * t532);
-    const ur10e_real_t t841 = t830 * t535 + t832 * t536 + t833 * t537 + t835 * t539;
-    ddq_by_dq[21] = t838 * t544 - (t841 + t837 * t542);
-    const ur10e_real_t t842 = t830 * t545 + t832 * t546 + t833 * t547 + t835 * t542;
-    ddq_by_dq[27] = t838 * t553 - (t842 + t837 * t550);
-    const ur10e_real_t t843 = t830 * t554 + t832 * t555 + t833 * t556 - t835 * t544;
-    ddq_by_dq[33] = t837 * t553 - t843 - t838 * t559;
-    ddq_by_input[3] = t464;
-    ddq_by_input[9] = t519;
-    ddq_by_input[15] = t529;
-    ddq_by_input[21] = t539;
-    ddq_by_input[27] = t542;
-    ddq_by_input[33] = -t544;
-    const ur10e_real_t t844 = t638 + t626; /* link j6: motion */
-    const ur10e_real_t t845 = UR10E_C(2.0) * t326; /* link j5: derivatives */
-    const ur10e_real_t t846 = UR10E_C(-2.0) * t320;
-    const ur10e_real_t t847 = t341 * t845 + t353 * t846 + (t28 * t584 - t29 * t574 - t12 * t844);
-    const ur10e_real_t t848 = t640 + (t847 + t21 * t634);
-    const ur10e_real_t t849 = t21 * t616;
-    const ur10e_real_t t850 = parameters[ZZ6] * t574;
-    const ur10e_real_t t851 = t349 * t845 + t344 * t846 + (t14 * t844 + (t850 + t29 * t584));
-    const ur10e_real_t t852 = t849 + t851 - t632;
-    const ur10e_real_t t853 = t643 + (t17 * t844 - t21 * t584 - t360 * t845);
-    const ur10e_real_t t854 = t644 + (t21 * t574 - parameters[MY5R] * t844 - t360 * t846);
-    const ur10e_real_t t855 = t15 * t853 - t13 * t854;
-    const ur10e_real_t t856 = t15 * t848 - t13 * t852 + UR10E_C(-0.11985) * t855;
-    const ur10e_real_t t857 = parameters[MY5R] * t616 - t17 * t634;
-    const ur10e_real_t t858 = t8 * t844 + (t12 * t584 + t14 * t574);
-    const ur10e_real_t t859 = t382 * t845 + t383 * t846 - t858 + t857;
-    const ur10e_real_t t860 = t15 * t854 + t13 * t853;
-    const ur10e_real_t t861 = t376 * t845 - t377 * t846 + (t17 * t574 - parameters[MY5R] * t584);
-    const ur10e_real_t t862 = t41 * t860 - t38 * t861;
-    const ur10e_real_t t863 = t38 * t856 - t41 * t859 + (UR10E_C(-0.17415) * t862 + UR10E_C(0.57155) * t855);
-    const ur10e_real_t t864 = t38 * t860 + t41 * t861;
-    const ur10e_real_t t865 = t41 * t856 + t38 * t859 + UR10E_C(0.17415) * t864;
-    const ur10e_real_t t866 = t94 * (t60 * t865 + t61 * t863 + UR10E_C(0.6127) * t855);
-    const ur10e_real_t t867 = UR10E_C(0.08250825082508251) * (t92 * (t61 * t865 - t60 * t863) + t866);
-    const ur10e_real_t t868 = t13 * t848 + t15 * t852 + UR10E_C(-0.11985) * t860;
-    const ur10e_real_t t869 = t868 + UR10E_C(0.57155) * t864;
-    const ur10e_real_t t870 = UR10E_C(0.08250825082508251) * (t869 + UR10E_C(0.6127) * (t60 * t862
-        + t61 * t864));
-    const ur10e_real_t t871 = UR10E_C(0.099009900990099) * t869;
-    const ur10e_real_t t872 = UR10E_C(0.11001100110011001) * t868;
-    const ur10e_real_t t873 = t438 * t867 + t440 * t870 + t455 * t871 + t464 * t872;
-    const ur10e_real_t t874 = UR10E_C(0.11001100110011001) * (t857 + (t326 * t480 - t320 * t481 - t858));
-    const ur10e_real_t t875 = t326 * t504 - t320 * t505 + (t3 * t844 + (t20 * t584 + t850));
-    const ur10e_real_t t876 = UR10E_C(0.11001100110011001) * (t875 + t849);
-    ddq_by_q[4] = t501 * t876 - (t873 + t479 * t874);
-    const ur10e_real_t t877 = t440 * t867 + t515 * t870 + t517 * t871 + t519 * t872;
-    ddq_by_q[10] = t524 * t876 - (t877 + t522 * t874);
-    const ur10e_real_t t878 = t525 * t867 + t526 * t870 + t527 * t871 + t529 * t872;
-    ddq_by_q[16] = t534 * t876 - (t878 + t532 * t874);
-    const ur10e_real_t t879 = t535 * t867 + t536 * t870 + t537 * t871 + t539 * t872;
-    ddq_by_q[22] = t544 * t876 - (t879 + t542 * t874);
-    const ur10e_real_t t880 = t545 * t867 + t546 * t870 + t547 * t871 + t542 * t872;
-    ddq_by_q[28] = t553 * t876 - (t880 + t550 * t874);
-    const ur10e_real_t t881 = t554 * t867 + t555 * t870 + t556 * t871 - t544 * t872;
-    ddq_by_q[34] = t553 * t874 - t881 - t559 * t876;
-    const ur10e_real_t t882 = UR10E_C(2.0) * t373 - (t28 * t845 + t29 * t846);
-    const ur10e_real_t t883 = UR10E_C(2.0) * t374 + (parameters[ZZ6] * t846 - t29 * t845);
-    const ur10e_real_t t884 = UR10E_C(2.0) * t376 + t21 * t846;
-    const ur10e_real_t t885 = UR10E_C(2.0) * t377 + t21 * t845;
-    const ur10e_real_t t886 = t13 * t884 - t15 * t885;
-    const ur10e_real_t t887 = t15 * t882 - t13 * t883 + UR10E_C(0.11985) * t886;
-    const ur10e_real_t t888 = t483 + (t12 * t845 - t14 * t846);
-    const ur10e_real_t t889 = t15 * t884 + t13 * t885;
-    const ur10e_real_t t890 = parameters[MY5R] * t845 + t17 * t846;
-    const ur10e_real_t t891 = t38 * t889 + t41 * t890;
-    const ur10e_real_t t892 = t41 * t887 + t38 * t888 + UR10E_C(0.17415) * t891;
-    const ur10e_real_t t893 = t41 * t889 - t38 * t890;
-    const ur10e_real_t t894 = t38 * t887 - t41 * t888 - (UR10E_C(0.17415) * t893 + UR10E_C(0.57155) * t886);
-    const ur10e_real_t t895 = t94 * (t60 * t892 + t61 * t894 + UR10E_C(-0.6127) * t886);
-    const ur10e_real_t t896 = UR10E_C(0.08250825082508251) * (t92 * (t61 * t892 - t60 * t894) + t895);
-    const ur10e_real_t t897 = t13 * t882 + t15 * t883 + UR10E_C(-0.11985) * t889;
-    const ur10e_real_t t898 = t897 + UR10E_C(0.57155) * t891;
-    const ur10e_real_t t899 = UR10E_C(0.08250825082508251) * (t898 + UR10E_C(0.6127) * (t60 * t893
-        + t61 * t891));
-    const ur10e_real_t t900 = UR10E_C(0.099009900990099) * t898;
-    const ur10e_real_t t901 = UR10E_C(0.11001100110011001) * t897;
-    const ur10e_real_t t902 = t896 * t438 + t899 * t440 + t900 * t455 + t901 * t464;
-    const ur10e_real_t t903 = UR10E_C(0.11001100110011001) * (t483 + UR10E_C(2.0) * (t12 * t326
-        + t14 * t320));
-    const ur10e_real_t t904 = UR10E_C(1122.2222222222222) * parameters[FV5] + t903;
-    const ur10e_real_t t905 = UR10E_C(0.11001100110011001) * (t507 + UR10E_C(-2.0) * (t20 * t326
-        + parameters[ZZ6] * t320));
-    ddq_by_dq[4] = t905 * t501 - (t902 + t904 * t479);
-    const ur10e_real_t t906 = t896 * t440 + t899 * t515 + t900 * t517 + t901 * t519;
-    ddq_by_dq[10] = t905 * t524 - (t906 + t904 * t522);
-    const ur10e_real_t t907 = t896 * t525 + t899 * t526 + t900 * t527 + t901 * t529;
-    ddq_by_dq[16] = t905 * t534 - (t907 + t904 * t532);
-    const ur10e_real_t t908 = t896 * t535 + t899 * t536 + t900 * t537 + t901 * t539;
-    ddq_by_dq[22] = t905 * t544 - (t908 + t904 * t542);
-    const ur10e_real_t t909 = t896 * t545 + t899 * t546 + t900 * t547 + t901 * t542;
-    ddq_by_dq[28] = t905 * t553 - (t909 + t904 * t550);
-    const ur10e_real_t t910 = t896 * t554 + t899 * t555 + t900 * t556 - t901 * t544;
-    ddq_by_dq[34] = t904 * t553 - t910 - t905 * t559;
-    ddq_by_input[4] = t479;
-    ddq_by_input[10] = t522;
-    ddq_by_input[16] = t532;
-    ddq_by_input[22] = t542;
-    ddq_by_input[28] = t550;
-    ddq_by_input[34] = -t553;
-    const ur10e_real_t t911 = t620 + t591; /* link j6: force and moment */
-    const ur10e_real_t t912 = UR10E_C(-2.0) * t324; /* link j6: derivatives */
-    const ur10e_real_t t913 = UR10E_C(2.0) * t330;
-    const ur10e_real_t t914 = t329 * t912 + t336 * t913 - (parameters[XZ6R] * t911 - (parameters[XX6R] * t581
-        - parameters[XY6] * t578));
-    const ur10e_real_t t915 = t622 + t914;
-    const ur10e_real_t t916 = t335 * t912 + t332 * t913 + (parameters[YZ6R] * t911 - parameters[XY6] * t581);
-    const ur10e_real_t t917 = t617 + t916;
-    const ur10e_real_t t918 = t2 * t915 + t1 * t917;
-    const ur10e_real_t t919 = parameters[XZ6R] * t581 - parameters[YZ6R] * t578 - parameters[ZZ6] * t911;
-    const ur10e_real_t t920 = parameters[MX6] * t636 + parameters[MY6] * t635;
-    const ur10e_real_t t921 = t345 * t912 + t346 * t913 + t919 + t920;
-    const ur10e_real_t t922 = t375 * t913 - parameters[MY6] * t911 - t642;
-    const ur10e_real_t t923 = t375 * t912 - parameters[MX6] * t911 + t641;
-    const ur10e_real_t t924 = t2 * t922 + t1 * t923;
-    const ur10e_real_t t925 = parameters[MY6] * t581 + parameters[MX6] * t578 - (t359 * t912 + t358 * t913);
-    const ur10e_real_t t926 = t13 * t924 - t15 * t925;
-    const ur10e_real_t t927 = t15 * t918 - t13 * t921 + UR10E_C(0.11985) * t926;
-    const ur10e_real_t t928 = t2 * t917 - t1 * t915;
-    const ur10e_real_t t929 = t15 * t924 + t13 * t925;
-    const ur10e_real_t t930 = t1 * t922 - t2 * t923;
-    const ur10e_real_t t931 = t38 * t929 + t41 * t930;
-    const ur10e_real_t t932 = t41 * t927 + t38 * t928 + UR10E_C(0.17415) * t931;
-    const ur10e_real_t t933 = t41 * t929 - t38 * t930;
-    const ur10e_real_t t934 = t38 * t927 - t41 * t928 - (UR10E_C(0.17415) * t933 + UR10E_C(0.57155) * t926);
-    const ur10e_real_t t935 = t94 * (t60 * t932 + t61 * t934 + UR10E_C(-0.6127) * t926);
-    const ur10e_real_t t936 = UR10E_C(0.08250825082508251) * (t92 * (t61 * t932 - t60 * t934) + t935);
-    const ur10e_real_t t937 = t13 * t918 + t15 * t921 + UR10E_C(-0.11985) * t929;
-    const ur10e_real_t t938 = t937 + UR10E_C(0.57155) * t931;
-    const ur10e_real_t t939 = UR10E_C(0.08250825082508251) * (t938 + UR10E_C(0.6127) * (t60 * t933
-        + t61 * t931));
-    const ur10e_real_t t940 = UR10E_C(0.099009900990099) * t938;
-    const ur10e_real_t t941 = UR10E_C(0.11001100110011001) * t937;
-    const ur10e_real_t t942 = t438 * t936 + t440 * t939 + t455 * t940 + t464 * t941;
-    const ur10e_real_t t943 = UR10E_C(0.11001100110011001) * t928;
-    const ur10e_real_t t944 = UR10E_C(0.11001100110011001) * (t920 + (t330 * t503 - t324 * t502 + t919));
-    ddq_by_q[5] = t501 * t944 - (t942 + t479 * t943);
-    const ur10e_real_t t945 = t440 * t936 + t515 * t939 + t517 * t940 + t519 * t941;
-    ddq_by_q[11] = t524 * t944 - (t945 + t522 * t943);
-    const ur10e_real_t t946 = t525 * t936 + t526 * t939 + t527 * t940 + t529 * t941;
-    ddq_by_q[17] = t534 * t944 - (t946 + t532 * t943);
-    const ur10e_real_t t947 = t535 * t936 + t536 * t939 + t537 * t940 + t539 * t941;
-    ddq_by_q[23] = t544 * t944 - (t947 + t542 * t943);
-    const ur10e_real_t t948 = t545 * t936 + t546 * t939 + t547 * t940 + t542 * t941;
-    ddq_by_q[29] = t553 * t944 - (t948 + t550 * t943);
-    const ur10e_real_t t949 = t554 * t936 + t555 * t939 + t556 * t940 - t544 * t941;
-    ddq_by_q[35] = t553 * t943 - t949 - t559 * t944;
-    const ur10e_real_t t950 = UR10E_C(2.0) * t351 + (parameters[XX6R] * t912 + parameters[XY6] * t913);
-    const ur10e_real_t t951 = UR10E_C(2.0) * t352 + parameters[XY6] * t912;
-    const ur10e_real_t t952 = t1 * t951 - t2 * t950;
-    const ur10e_real_t t953 = t505 - (parameters[XZ6R] * t912 + parameters[YZ6R] * t913);
-    const ur10e_real_t t954 = parameters[MX6] * t913 - parameters[MY6] * t912;
-    const ur10e_real_t t955 = UR10E_C(2.0) * t359;
-    const ur10e_real_t t956 = UR10E_C(-2.0) * t358;
-    const ur10e_real_t t957 = t2 * t955 + t1 * t956;
-    const ur10e_real_t t958 = t13 * t957 - t15 * t954;
-    const ur10e_real_t t959 = t15 * t952 - t13 * t953 + UR10E_C(0.11985) * t958;
-    const ur10e_real_t t960 = t1 * t950 + t2 * t951;
-    const ur10e_real_t t961 = t15 * t957 + t13 * t954;
-    const ur10e_real_t t962 = t1 * t955 - t2 * t956;
-    const ur10e_real_t t963 = t38 * t961 + t41 * t962;
-    const ur10e_real_t t964 = t41 * t959 + t38 * t960 + UR10E_C(0.17415) * t963;
-    const ur10e_real_t t965 = t41 * t961 - t38 * t962;
-    const ur10e_real_t t966 = t41 * t960 - t38 * t959 + (UR10E_C(0.17415) * t965 + UR10E_C(0.57155) * t958);
-    const ur10e_real_t t967 = t94 * (t60 * t964 - t61 * t966 + UR10E_C(-0.6127) * t958);
-    const ur10e_real_t t968 = UR10E_C(0.08250825082508251) * (t92 * (t61 * t964 + t60 * t966) + t967);
-    const ur10e_real_t t969 = t13 * t952 + t15 * t953 + UR10E_C(-0.11985) * t961;
-    const ur10e_real_t t970 = t969 + UR10E_C(0.57155) * t963;
-    const ur10e_real_t t971 = UR10E_C(0.08250825082508251) * (t970 + UR10E_C(0.6127) * (t60 * t965
-        + t61 * t963));
-    const ur10e_real_t t972 = UR10E_C(0.099009900990099) * t970;
-    const ur10e_real_t t973 = UR10E_C(0.11001100110011001) * t969;
-    const ur10e_real_t t974 = t968 * t438 + t971 * t440 + t972 * t455 + t973 * t464;
-    const ur10e_real_t t975 = UR10E_C(0.11001100110011001) * t960;
-    const ur10e_real_t t976 = UR10E_C(1122.2222222222222) * parameters[FV6];
-    ddq_by_dq[5] = t976 * t501 - (t974 + t975 * t479);
-    const ur10e_real_t t977 = t968 * t440 + t971 * t515 + t972 * t517 + t973 * t519;
-    ddq_by_dq[11] = t976 * t524 - (t977 + t975 * t522);
-    const ur10e_real_t t978 = t968 * t525 + t971 * t526 + t972 * t527 + t973 * t529;
-    ddq_by_dq[17] = t976 * t534 - (t978 + t975 * t532);
-    const ur10e_real_t t979 = t968 * t535 + t971 * t536 + t972 * t537 + t973 * t539;
-    ddq_by_dq[23] = t976 * t544 - (t979 + t975 * t542);
-    const ur10e_real_t t980 = t968 * t545 + t971 * t546 + t972 * t547 + t973 * t542;
-    ddq_by_dq[29] = t976 * t553 - (t980 + t975 * t550);
-    const ur10e_real_t t981 = t968 * t554 + t971 * t555 + t972 * t556 - t973 * t544;
-    ddq_by_dq[35] = t975 * t553 - t981 - t976 * t559;
-    ddq_by_input[5] = -t501;
-    ddq_by_input[11] = -t524;
-    ddq_by_input[17] = -t534;
-    ddq_by_input[23] = -t544;
-    ddq_by_input[29] = -t553;
-    ddq_by_input[35] = t559;
+    const ur10e_real_t t968 = t90 * (t90 * (t908 - t895) + t88 * (t899 + t906));
+    const ur10e_real_t t969 = UR10E_C(841.6666666666667) * parameters[FV1]
+        + UR10E_C(0.16501650165016502) * (t895 + t968);
+    const ur10e_real_t t970 = UR10E_C(0.08250825082508251) * (t88 * t913 - t90 * t915);
+    const ur10e_real_t t971 = UR10E_C(0.099009900990099) * (t88 * t920 + t90 * t921);
+    const ur10e_real_t t972 = UR10E_C(0.11001100110011001) * (t88 * t924 + t90 * t926);
+    const ur10e_real_t t973 = t969 * t441 + t970 * t446 + t971 * t449 + t972 * t453;
+    const ur10e_real_t t974 = UR10E_C(0.11001100110011001) * (t88 * t931 + t90 * t933);
+    const ur10e_real_t t975 = UR10E_C(0.11001100110011001) * (t88 * t936 + t90 * t938);
+    ddq_by_dq[0] = t975 * t469 - (t973 + t974 * t460);
+    const ur10e_real_t t976 = t969 * t446 + t970 * t470 + t971 * t472 + t972 * t474;
+    ddq_by_dq[6] = t975 * t479 - (t976 + t974 * t477);
+    const ur10e_real_t t977 = t969 * t480 + t970 * t481 + t971 * t482 + t972 * t484;
+    ddq_by_dq[12] = t975 * t489 - (t977 + t974 * t487);
+    const ur10e_real_t t978 = t969 * t490 + t970 * t491 + t971 * t492 + t972 * t494;
+    ddq_by_dq[18] = t975 * t499 - (t978 + t974 * t497);
+    const ur10e_real_t t979 = t969 * t500 + t970 * t501 + t971 * t502 + t972 * t497;
+    ddq_by_dq[24] = t975 * t508 - (t979 + t974 * t505);
+    const ur10e_real_t t980 = t969 * t509 + t970 * t510 + t971 * t511 - t972 * t499;
+    ddq_by_dq[30] = t974 * t508 - t980 - t975 * t514;
+    ddq_by_input[0] = t441;
+    ddq_by_input[6] = t446;
+    ddq_by_input[12] = t480;
+    ddq_by_input[18] = t490;
+    ddq_by_input[24] = t500;
+    ddq_by_input[30] = t509;
     /* always zero */
     ddq_by_q[0] = UR10E_C(0.0);
     ddq_by_q[6] = UR10E_C(0.0);
@@ -1425,10 +1402,10 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     ddq_by_q[18] = UR10E_C(0.0);
     ddq_by_q[24] = UR10E_C(0.0);
     ddq_by_q[30] = UR10E_C(0.0);
-    if (!ur10e_all_bounded(ddq, 6)
-        || !ur10e_all_bounded(ddq_by_q, 36)
-        || !ur10e_all_bounded(ddq_by_dq, 36)
-        || !ur10e_all_bounded(ddq_by_input, 36)) {
+    if (!ur10e_bounded(ddq, 6)
+        || !ur10e_bounded(ddq_by_q, 36)
+        || !ur10e_bounded(ddq_by_dq, 36)
+        || !ur10e_bounded(ddq_by_input, 36)) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);

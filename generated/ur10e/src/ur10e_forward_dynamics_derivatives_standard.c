@@ -7,7 +7,7 @@
  * Arm ur10e, description 0615fad907f568ac.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 4097 (2246 mul, 1844 add, 7 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 4097 (2246 mul, 1844 add, 7 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q             [6]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [6]   [rad/s]                  joint velocities; norm at most 100000
@@ -111,7 +111,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -145,17 +145,17 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    ur10e_real_t t122, t119;
-    UR10E_SINCOS(q[1], &t122, &t119);
-    ur10e_real_t t72, t73;
-    UR10E_SINCOS(q[2], &t72, &t73);
-    ur10e_real_t t48, t51;
-    UR10E_SINCOS(q[3], &t48, &t51);
-    ur10e_real_t t22, t18;
-    UR10E_SINCOS(q[4], &t22, &t18);
+    ur10e_real_t t118, t115;
+    UR10E_SINCOS(q[1], &t118, &t115);
+    ur10e_real_t t69, t70;
+    UR10E_SINCOS(q[2], &t69, &t70);
+    ur10e_real_t t46, t49;
+    UR10E_SINCOS(q[3], &t46, &t49);
+    ur10e_real_t t21, t17;
+    UR10E_SINCOS(q[4], &t21, &t17);
     ur10e_real_t t1, t2;
     UR10E_SINCOS(q[5], &t1, &t2);
-    const ur10e_real_t t0 = ur10e_bounded(parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6]);
+    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
     if (!(t0 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -175,7 +175,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t11 = UR10E_C(0.11655) * (t10 + UR10E_C(2.0) * parameters[MZ6]);
     const ur10e_real_t t12 = parameters[ZZ5] + (parameters[XX6] - t9 + t11);
     const ur10e_real_t t13 = t12 + UR10E_C(10201.0) * parameters[IA5];
-    const ur10e_real_t t14 = ur10e_bounded(t13 - t4 * t6);
+    const ur10e_real_t t14 = t13 - t4 * t6;
     if (!(t14 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -183,207 +183,186 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t15 = t14 + UR10E_C(-1.0e-9) * t13;
-    if (!(t15 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t16 = parameters[XX5] + (parameters[YY6] + t9 + t11);
-    const ur10e_real_t t17 = parameters[YY5] + parameters[ZZ6];
+    const ur10e_real_t t15 = parameters[XX5] + (parameters[YY6] + t9 + t11);
+    const ur10e_real_t t16 = parameters[YY5] + parameters[ZZ6];
     /* link j6: column of the mass matrix */
-    const ur10e_real_t t19 = t1 * parameters[MY6] - t2 * parameters[MX6];
-    const ur10e_real_t t20 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + UR10E_C(-0.11655) * t19;
-    const ur10e_real_t t21 = t20 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t18 = t1 * parameters[MY6] - t2 * parameters[MX6];
+    const ur10e_real_t t19 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + UR10E_C(-0.11655) * t18;
+    const ur10e_real_t t20 = t19 - parameters[XY5]; /* link j6: inertia of it and all beyond */
     /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t23 = t18 * (t17 - t16) - t21 * (UR10E_C(2.0) * t22);
-    const ur10e_real_t t24 = t18 * t23;
-    const ur10e_real_t t25 = parameters[MZ5] - t3; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t26 = parameters[M5] + parameters[M6];
-    const ur10e_real_t t27 = UR10E_C(0.11985) * t26; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t28 = UR10E_C(0.11985) * (t27 + UR10E_C(2.0) * t25);
-    const ur10e_real_t t29 = parameters[ZZ4] + (t16 + t24 + t28);
-    const ur10e_real_t t30 = t29 + UR10E_C(10201.0) * parameters[IA4];
-    const ur10e_real_t t31 = t18 * t3; /* link j6: column of the mass matrix */
-    const ur10e_real_t t32 = t22 * t20 - t18 * parameters[ZZ6] + UR10E_C(0.11985) * t31;
-    const ur10e_real_t t33 = t32 * t5;
-    const ur10e_real_t t34 = t4 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t35 = parameters[XY6] + t1 * t8 - parameters[XZ5];
-    const ur10e_real_t t36 = t19 - parameters[MX5];
-    const ur10e_real_t t37 = parameters[MZ6] + t10;
-    const ur10e_real_t t38 = parameters[MY5] + t37;
-    const ur10e_real_t t39 = t18 * t38 - t22 * t36; /* link j5: column of the mass matrix */
-    const ur10e_real_t t40 = t22 * t35 + t18 * t34 + UR10E_C(0.11985) * t39;
-    const ur10e_real_t t41 = t40 + t32 * t6;
-    const ur10e_real_t t42 = UR10E_C(1.0) / t14;
-    const ur10e_real_t t43 = t41 * t42;
-    const ur10e_real_t t44 = ur10e_bounded(t30 - t32 * t33 - t41 * t43);
-    if (!(t44 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t22 = t17 * (t16 - t15) - t20 * (UR10E_C(2.0) * t21);
+    const ur10e_real_t t23 = t17 * t22;
+    const ur10e_real_t t24 = parameters[MZ5] - t3; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t25 = parameters[M5] + parameters[M6];
+    const ur10e_real_t t26 = UR10E_C(0.11985) * t25; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t27 = UR10E_C(0.11985) * (t26 + UR10E_C(2.0) * t24);
+    const ur10e_real_t t28 = parameters[ZZ4] + (t15 + t23 + t27);
+    const ur10e_real_t t29 = t28 + UR10E_C(10201.0) * parameters[IA4];
+    const ur10e_real_t t30 = t17 * t3; /* link j6: column of the mass matrix */
+    const ur10e_real_t t31 = t21 * t19 - t17 * parameters[ZZ6] + UR10E_C(0.11985) * t30;
+    const ur10e_real_t t32 = t31 * t5;
+    const ur10e_real_t t33 = t4 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t34 = parameters[XY6] + t1 * t8 - parameters[XZ5];
+    const ur10e_real_t t35 = t18 - parameters[MX5];
+    const ur10e_real_t t36 = parameters[MZ6] + t10;
+    const ur10e_real_t t37 = parameters[MY5] + t36;
+    const ur10e_real_t t38 = t17 * t37 - t21 * t35; /* link j5: column of the mass matrix */
+    const ur10e_real_t t39 = t21 * t34 + t17 * t33 + UR10E_C(0.11985) * t38;
+    const ur10e_real_t t40 = t39 + t31 * t6;
+    const ur10e_real_t t41 = UR10E_C(1.0) / t14;
+    const ur10e_real_t t42 = t40 * t41;
+    const ur10e_real_t t43 = t29 - t31 * t32 - t40 * t42;
+    if (!(t43 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t45 = t44 + UR10E_C(-1.0e-9) * t30;
-    if (!(t45 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t44 = t24 + t26; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t45 = t44 - parameters[MY4];
+    const ur10e_real_t t47 = t21 * t37 + t17 * t35; /* link j5: column of the mass matrix */
+    const ur10e_real_t t48 = t47 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t50 = t49 * t48 - t46 * t45; /* link j4: column of the mass matrix */
+    const ur10e_real_t t51 = UR10E_C(-0.57155) * t50 - t28;
+    const ur10e_real_t t52 = t46 * t30 + t49 * t18; /* link j6: column of the mass matrix */
+    const ur10e_real_t t53 = t31 + UR10E_C(-0.57155) * t52;
+    const ur10e_real_t t54 = t46 * t38; /* link j5: column of the mass matrix */
+    const ur10e_real_t t55 = t39 + UR10E_C(-0.57155) * t54;
+    const ur10e_real_t t56 = t55 + t53 * t6;
+    const ur10e_real_t t57 = t51 + t53 * t32 + t56 * t42;
+    const ur10e_real_t t58 = UR10E_C(1.0) / t43;
+    const ur10e_real_t t59 = t57 * t58;
+    const ur10e_real_t t60 = t53 * t5;
+    const ur10e_real_t t61 = parameters[M4] + t25; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t62 = UR10E_C(0.57155) * t61; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t63 = UR10E_C(0.57155) * (t62 + UR10E_C(2.0) * t50);
+    const ur10e_real_t t64 = parameters[ZZ3] + (t28 + t63);
+    const ur10e_real_t t65 = t64 + UR10E_C(10201.0) * parameters[IA3];
+    const ur10e_real_t t66 = t56 * t41;
+    const ur10e_real_t t67 = t65 - t53 * t60 - t56 * t66 - t57 * t59;
+    if (!(t67 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t46 = t25 + t27; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t47 = t46 - parameters[MY4];
-    const ur10e_real_t t49 = t22 * t38 + t18 * t36; /* link j5: column of the mass matrix */
-    const ur10e_real_t t50 = t49 - parameters[MX4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t52 = t51 * t50 - t48 * t47; /* link j4: column of the mass matrix */
-    const ur10e_real_t t53 = UR10E_C(-0.57155) * t52 - t29;
-    const ur10e_real_t t54 = t48 * t31 + t51 * t19; /* link j6: column of the mass matrix */
-    const ur10e_real_t t55 = t32 + UR10E_C(-0.57155) * t54;
-    const ur10e_real_t t56 = t48 * t39; /* link j5: column of the mass matrix */
-    const ur10e_real_t t57 = t40 + UR10E_C(-0.57155) * t56;
-    const ur10e_real_t t58 = t57 + t55 * t6;
-    const ur10e_real_t t59 = t53 + t55 * t33 + t58 * t43;
-    const ur10e_real_t t60 = UR10E_C(1.0) / t44;
-    const ur10e_real_t t61 = t59 * t60;
-    const ur10e_real_t t62 = t55 * t5;
-    const ur10e_real_t t63 = parameters[M4] + t26; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t64 = UR10E_C(0.57155) * t63; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t65 = UR10E_C(0.57155) * (t64 + UR10E_C(2.0) * t52);
-    const ur10e_real_t t66 = parameters[ZZ3] + (t29 + t65);
-    const ur10e_real_t t67 = t66 + UR10E_C(10201.0) * parameters[IA3];
-    const ur10e_real_t t68 = t58 * t42;
-    const ur10e_real_t t69 = ur10e_bounded(t67 - t55 * t62 - t58 * t68 - t59 * t61);
-    if (!(t69 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t70 = t69 + UR10E_C(-1.0e-9) * t67;
-    if (!(t70 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t71 = t51 * t47 + t48 * t50; /* link j4: column of the mass matrix */
-    const ur10e_real_t t74 = t73 * t52 - t72 * t71;
-    const ur10e_real_t t75 = t53 + UR10E_C(-0.6127) * t74;
-    const ur10e_real_t t76 = t51 * t31 - t48 * t19; /* link j6: column of the mass matrix */
-    const ur10e_real_t t77 = t72 * t76 + t73 * t54;
+    const ur10e_real_t t68 = t49 * t45 + t46 * t48; /* link j4: column of the mass matrix */
+    const ur10e_real_t t71 = t70 * t50 - t69 * t68;
+    const ur10e_real_t t72 = t51 + UR10E_C(-0.6127) * t71;
+    const ur10e_real_t t73 = t49 * t30 - t46 * t18; /* link j6: column of the mass matrix */
+    const ur10e_real_t t74 = t69 * t73 + t70 * t52;
+    const ur10e_real_t t75 = UR10E_C(0.6127) * t74 - t53;
+    const ur10e_real_t t76 = t49 * t38; /* link j5: column of the mass matrix */
+    const ur10e_real_t t77 = t69 * t76 + t70 * t54;
     const ur10e_real_t t78 = UR10E_C(0.6127) * t77 - t55;
-    const ur10e_real_t t79 = t51 * t39; /* link j5: column of the mass matrix */
-    const ur10e_real_t t80 = t72 * t79 + t73 * t56;
-    const ur10e_real_t t81 = UR10E_C(0.6127) * t80 - t57;
-    const ur10e_real_t t82 = t81 + t78 * t6;
-    const ur10e_real_t t83 = t75 - t78 * t33 - t82 * t43;
-    const ur10e_real_t t84 = t71 - parameters[MY3]; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t85 = t52 + t64;
-    const ur10e_real_t t86 = parameters[MX3] - t85;
-    const ur10e_real_t t87 = t72 * t84 + t73 * t86; /* link j3: column of the mass matrix */
-    const ur10e_real_t t88 = UR10E_C(0.6127) * t87 - t66;
-    const ur10e_real_t t89 = t78 * t62 - t88 + t82 * t68 - t83 * t61;
-    const ur10e_real_t t90 = UR10E_C(1.0) / t69;
-    const ur10e_real_t t91 = t89 * t90;
-    const ur10e_real_t t92 = t83 * t60;
-    const ur10e_real_t t93 = t78 * t5;
-    const ur10e_real_t t94 = parameters[M3] + t63; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t95 = UR10E_C(0.6127) * t94; /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t96 = UR10E_C(0.6127) * (t95 + UR10E_C(-2.0) * t87);
-    const ur10e_real_t t97 = parameters[ZZ2] + (t66 + t96);
-    const ur10e_real_t t98 = t97 + UR10E_C(10201.0) * parameters[IA2];
-    const ur10e_real_t t99 = t82 * t42;
-    const ur10e_real_t t100 = t98 - t78 * t93 - t82 * t99 - t83 * t92;
-    const ur10e_real_t t101 = ur10e_bounded(t100 - t89 * t91);
-    if (!(t101 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t79 = t78 + t75 * t6;
+    const ur10e_real_t t80 = t72 - t75 * t32 - t79 * t42;
+    const ur10e_real_t t81 = t68 - parameters[MY3]; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t82 = t50 + t62;
+    const ur10e_real_t t83 = parameters[MX3] - t82;
+    const ur10e_real_t t84 = t69 * t81 + t70 * t83; /* link j3: column of the mass matrix */
+    const ur10e_real_t t85 = UR10E_C(0.6127) * t84 - t64;
+    const ur10e_real_t t86 = t75 * t60 - t85 + t79 * t66 - t80 * t59;
+    const ur10e_real_t t87 = UR10E_C(1.0) / t67;
+    const ur10e_real_t t88 = t86 * t87;
+    const ur10e_real_t t89 = t80 * t58;
+    const ur10e_real_t t90 = t75 * t5;
+    const ur10e_real_t t91 = parameters[M3] + t61; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t92 = UR10E_C(0.6127) * t91; /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t93 = UR10E_C(0.6127) * (t92 + UR10E_C(-2.0) * t84);
+    const ur10e_real_t t94 = parameters[ZZ2] + (t64 + t93);
+    const ur10e_real_t t95 = t94 + UR10E_C(10201.0) * parameters[IA2];
+    const ur10e_real_t t96 = t79 * t41;
+    const ur10e_real_t t97 = t95 - t75 * t90 - t79 * t96 - t80 * t89;
+    const ur10e_real_t t98 = t97 - t86 * t88;
+    if (!(t98 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t102 = t101 + UR10E_C(-1.0e-9) * t98;
-    if (!(t102 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t103 = t24 - t17 - t28 - parameters[XX4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t104 = parameters[YY4] + t12;
+    const ur10e_real_t t99 = t23 - t16 - t27 - parameters[XX4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t100 = parameters[YY4] + t12;
     /* link j5: column of the mass matrix */
-    const ur10e_real_t t105 = t18 * t35 - t22 * t34 + UR10E_C(-0.11985) * t49;
-    const ur10e_real_t t106 = parameters[XY4] + t105; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t101 = t17 * t34 - t21 * t33 + UR10E_C(-0.11985) * t47;
+    const ur10e_real_t t102 = parameters[XY4] + t101; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t107 = t51 * (t103 + t104) + t106 * (UR10E_C(2.0) * t48);
-    const ur10e_real_t t108 = t51 * t107;
-    const ur10e_real_t t109 = parameters[MZ4] + t39; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t110 = UR10E_C(0.17415) * t63; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t111 = UR10E_C(0.17415) * (t110 + UR10E_C(2.0) * t109);
-    const ur10e_real_t t112 = parameters[YY3] + (t108 - t103 + (t65 + t111));
-    const ur10e_real_t t113 = parameters[XX3] + (t104 - t108 + t111);
-    const ur10e_real_t t114 = t48 * t107 - t106 + UR10E_C(0.57155) * t71 - parameters[XY3];
+    const ur10e_real_t t103 = t49 * (t99 + t100) + t102 * (UR10E_C(2.0) * t46);
+    const ur10e_real_t t104 = t49 * t103;
+    const ur10e_real_t t105 = parameters[MZ4] + t38; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t106 = UR10E_C(0.17415) * t61; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t107 = UR10E_C(0.17415) * (t106 + UR10E_C(2.0) * t105);
+    const ur10e_real_t t108 = parameters[YY3] + (t104 - t99 + (t63 + t107));
+    const ur10e_real_t t109 = parameters[XX3] + (t100 - t104 + t107);
+    const ur10e_real_t t110 = t46 * t103 - t102 + UR10E_C(0.57155) * t68 - parameters[XY3];
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t115 = t73 * (t113 - t112) - t114 * (UR10E_C(-2.0) * t72);
-    const ur10e_real_t t116 = t73 * t115;
-    const ur10e_real_t t117 = parameters[XX2] + (t112 + t116);
-    const ur10e_real_t t118 = parameters[YY2] + (t113 - t116 + t96);
-    const ur10e_real_t t120 = t73 * t84 - t72 * t86; /* link j3: column of the mass matrix */
+    const ur10e_real_t t111 = t70 * (t109 - t108) - t110 * (UR10E_C(-2.0) * t69);
+    const ur10e_real_t t112 = t70 * t111;
+    const ur10e_real_t t113 = parameters[XX2] + (t108 + t112);
+    const ur10e_real_t t114 = parameters[YY2] + (t109 - t112 + t93);
+    const ur10e_real_t t116 = t70 * t81 - t69 * t83; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t121 = parameters[XY2] + (t72 * t115 - t114 + UR10E_C(-0.6127) * t120);
+    const ur10e_real_t t117 = parameters[XY2] + (t69 * t111 - t110 + UR10E_C(-0.6127) * t116);
     /* link j2: inertia of it and all beyond */
-    const ur10e_real_t t123 = t119 * (t119 * (t118 - t117) + t121 * (UR10E_C(2.0) * t122));
-    const ur10e_real_t t124 = parameters[ZZ1] + (t117 + t123) + UR10E_C(10201.0) * parameters[IA1];
-    const ur10e_real_t t125 = t22 * t3; /* link j6: column of the mass matrix */
-    const ur10e_real_t t126 = t18 * t20 + t22 * parameters[ZZ6] + UR10E_C(-0.11985) * t125;
-    const ur10e_real_t t127 = t51 * t126 + t48 * t4 + UR10E_C(-0.17415) * t54;
-    const ur10e_real_t t128 = t48 * t126 - t51 * t4 + (UR10E_C(0.17415) * t76 + UR10E_C(0.57155) * t125);
-    const ur10e_real_t t129 = t72 * t128 - t73 * t127;
-    const ur10e_real_t t130 = t72 * t127 + t73 * t128 + UR10E_C(0.6127) * t125;
-    const ur10e_real_t t131 = t119 * t130 - t122 * t129;
-    const ur10e_real_t t132 = t131 * t5;
+    const ur10e_real_t t119 = t115 * (t115 * (t114 - t113) + t117 * (UR10E_C(2.0) * t118));
+    const ur10e_real_t t120 = parameters[ZZ1] + (t113 + t119) + UR10E_C(10201.0) * parameters[IA1];
+    const ur10e_real_t t121 = t21 * t3; /* link j6: column of the mass matrix */
+    const ur10e_real_t t122 = t17 * t19 + t21 * parameters[ZZ6] + UR10E_C(-0.11985) * t121;
+    const ur10e_real_t t123 = t49 * t122 + t46 * t4 + UR10E_C(-0.17415) * t52;
+    const ur10e_real_t t124 = t46 * t122 - t49 * t4 + (UR10E_C(0.17415) * t73 + UR10E_C(0.57155) * t121);
+    const ur10e_real_t t125 = t69 * t124 - t70 * t123;
+    const ur10e_real_t t126 = t69 * t123 + t70 * t124 + UR10E_C(0.6127) * t121;
+    const ur10e_real_t t127 = t115 * t126 - t118 * t125;
+    const ur10e_real_t t128 = t127 * t5;
     /* link j5: column of the mass matrix */
-    const ur10e_real_t t133 = t51 * t105 - t48 * t12 + UR10E_C(-0.17415) * t56;
-    const ur10e_real_t t134 = t48 * t105 + t51 * t12 + (UR10E_C(0.17415) * t79 + UR10E_C(0.57155) * t49);
-    const ur10e_real_t t135 = t72 * t134 - t73 * t133;
-    const ur10e_real_t t136 = t72 * t133 + t73 * t134 + UR10E_C(0.6127) * t49;
-    const ur10e_real_t t137 = t119 * t136 - t122 * t135 + t131 * t6;
-    const ur10e_real_t t138 = t137 * t42;
-    const ur10e_real_t t139 = t21 + t22 * t23 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t140 = parameters[YZ4] + t40;
-    const ur10e_real_t t141 = t51 * t139 + t48 * t140; /* link j4: column of the mass matrix */
-    const ur10e_real_t t142 = t141 + UR10E_C(-0.17415) * t52;
-    const ur10e_real_t t143 = t48 * t139 - t51 * t140 + UR10E_C(-0.17415) * t71;
-    const ur10e_real_t t144 = t72 * t143 - t73 * t142;
-    const ur10e_real_t t145 = t72 * t142 + t73 * t143;
-    const ur10e_real_t t146 = t119 * t145 - t122 * t144 + t131 * t33 + t137 * t43;
-    const ur10e_real_t t147 = t146 * t60;
-    const ur10e_real_t t148 = t124 - t131 * t132 - t137 * t138 - t146 * t147;
+    const ur10e_real_t t129 = t49 * t101 - t46 * t12 + UR10E_C(-0.17415) * t54;
+    const ur10e_real_t t130 = t46 * t101 + t49 * t12 + (UR10E_C(0.17415) * t76 + UR10E_C(0.57155) * t47);
+    const ur10e_real_t t131 = t69 * t130 - t70 * t129;
+    const ur10e_real_t t132 = t69 * t129 + t70 * t130 + UR10E_C(0.6127) * t47;
+    const ur10e_real_t t133 = t115 * t132 - t118 * t131 + t127 * t6;
+    const ur10e_real_t t134 = t133 * t41;
+    const ur10e_real_t t135 = t20 + t21 * t22 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t136 = parameters[YZ4] + t39;
+    const ur10e_real_t t137 = t49 * t135 + t46 * t136; /* link j4: column of the mass matrix */
+    const ur10e_real_t t138 = t137 + UR10E_C(-0.17415) * t50;
+    const ur10e_real_t t139 = t46 * t135 - t49 * t136 + UR10E_C(-0.17415) * t68;
+    const ur10e_real_t t140 = t69 * t139 - t70 * t138;
+    const ur10e_real_t t141 = t69 * t138 + t70 * t139;
+    const ur10e_real_t t142 = t115 * t141 - t118 * t140 + t127 * t32 + t133 * t42;
+    const ur10e_real_t t143 = t142 * t58;
+    const ur10e_real_t t144 = t120 - t127 * t128 - t133 * t134 - t142 * t143;
     /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t149 = t141 + (UR10E_C(-0.57155) * t109 + UR10E_C(-0.17415) * t85) - parameters[XZ3];
-    const ur10e_real_t t150 = t143 - parameters[YZ3];
-    const ur10e_real_t t151 = t72 * t150 - t73 * t149; /* link j3: column of the mass matrix */
-    const ur10e_real_t t152 = t72 * t149 + t73 * t150;
-    const ur10e_real_t t153 = t122 * t151 - t119 * t152 - t131 * t62 - t137 * t68;
-    const ur10e_real_t t154 = t153 - t146 * t61;
-    const ur10e_real_t t155 = t154 * t90;
-    const ur10e_real_t t156 = t109 + t110; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t157 = parameters[MZ3] + t156;
+    const ur10e_real_t t145 = t137 + (UR10E_C(-0.57155) * t105 + UR10E_C(-0.17415) * t82) - parameters[XZ3];
+    const ur10e_real_t t146 = t139 - parameters[YZ3];
+    const ur10e_real_t t147 = t69 * t146 - t70 * t145; /* link j3: column of the mass matrix */
+    const ur10e_real_t t148 = t69 * t145 + t70 * t146;
+    const ur10e_real_t t149 = t118 * t147 - t115 * t148 - t127 * t60 - t133 * t66;
+    const ur10e_real_t t150 = t149 - t142 * t59;
+    const ur10e_real_t t151 = t150 * t87;
+    const ur10e_real_t t152 = t105 + t106; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t153 = parameters[MZ3] + t152;
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t158 = parameters[XZ2] + (t151 + UR10E_C(0.6127) * t157);
-    const ur10e_real_t t159 = t152 - parameters[YZ2];
-    const ur10e_real_t t160 = t119 * t159 - t122 * t158 - t131 * t93 - t137 * t99;
-    const ur10e_real_t t161 = t160 + t146 * t92 + t154 * t91;
-    const ur10e_real_t t162 = UR10E_C(1.0) / t101;
-    const ur10e_real_t t163 = t161 * t162;
-    const ur10e_real_t t164 = ur10e_bounded(t148 - t154 * t155 - t161 * t163);
+    const ur10e_real_t t154 = parameters[XZ2] + (t147 + UR10E_C(0.6127) * t153);
+    const ur10e_real_t t155 = t148 - parameters[YZ2];
+    const ur10e_real_t t156 = t115 * t155 - t118 * t154 - t127 * t90 - t133 * t96;
+    const ur10e_real_t t157 = t156 + t142 * t89 + t150 * t88;
+    const ur10e_real_t t158 = UR10E_C(1.0) / t98;
+    const ur10e_real_t t159 = t157 * t158;
+    const ur10e_real_t t160 = t144 - t150 * t151 - t157 * t159;
+    if (!(t160 > UR10E_C(1.0e-12))) {
+        ur10e_zero(ddq, 6);
+        ur10e_zero(ddq_by_q, 36);
+        ur10e_zero(ddq_by_dq, 36);
+        ur10e_zero(ddq_by_input, 36);
+        return UR10E_STATUS_PIVOT;
+    }
+    const ur10e_real_t t161 = ur10e_min(t14 + UR10E_C(-1.0e-9) * t13, t43 + UR10E_C(-1.0e-9) * t29);
+    const ur10e_real_t t162 = ur10e_min(t161, t67 + UR10E_C(-1.0e-9) * t65);
+    const ur10e_real_t t163 = ur10e_min(t162, t98 + UR10E_C(-1.0e-9) * t95);
+    const ur10e_real_t t164 = ur10e_min(t163, t160 + UR10E_C(-1.0e-9) * t120);
     if (!(t164 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
@@ -391,1195 +370,1190 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
         ur10e_zero(ddq_by_input, 36);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t165 = t164 + UR10E_C(-1.0e-9) * t124;
-    if (!(t165 > UR10E_C(1.0e-12))) {
-        ur10e_zero(ddq, 6);
-        ur10e_zero(ddq_by_q, 36);
-        ur10e_zero(ddq_by_dq, 36);
-        ur10e_zero(ddq_by_input, 36);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t166 = t122 * dq[0]; /* link j2: motion */
-    const ur10e_real_t t167 = t119 * dq[0];
-    const ur10e_real_t t168 = t73 * t166 + t72 * t167; /* link j3: motion */
-    const ur10e_real_t t169 = t72 * t166 - t73 * t167;
-    const ur10e_real_t t170 = t51 * t168 - t48 * t169; /* link j4: motion */
-    const ur10e_real_t t171 = t48 * t168 + t51 * t169;
-    const ur10e_real_t t172 = t170 * t171;
-    const ur10e_real_t t173 = dq[1] + dq[2]; /* link j3: motion */
-    const ur10e_real_t t174 = dq[3] + t173; /* link j4: motion */
-    const ur10e_real_t t175 = t174 * t171;
-    const ur10e_real_t t176 = UR10E_C(2.0) * t175; /* link j5: motion */
-    const ur10e_real_t t177 = t18 * t176 - t22 * t172;
-    const ur10e_real_t t178 = t18 * t174;
-    const ur10e_real_t t179 = t178 - t22 * t170;
-    const ur10e_real_t t180 = dq[4] + t171;
-    const ur10e_real_t t181 = t179 * t180;
-    const ur10e_real_t t182 = t177 - t181;
-    const ur10e_real_t t183 = t182 - t181; /* link j6: motion */
-    const ur10e_real_t t184 = t22 * t174; /* link j5: motion */
-    const ur10e_real_t t185 = t184 + t18 * t170;
-    const ur10e_real_t t186 = t185 * t179;
-    const ur10e_real_t t187 = t174 * t170; /* link j4: motion */
-    const ur10e_real_t t188 = t186 - t187; /* link j6: motion */
-    const ur10e_real_t t189 = t1 * t188 - t2 * t183;
-    const ur10e_real_t t190 = t1 * t185 + t2 * t180;
-    const ur10e_real_t t191 = dq[5] + t179;
-    const ur10e_real_t t192 = t190 * t191;
-    const ur10e_real_t t193 = t192 - t189;
-    const ur10e_real_t t194 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
-    const ur10e_real_t t195 = t2 * t188 + t1 * t183; /* link j6: motion */
-    const ur10e_real_t t196 = t2 * t185 - t1 * t180;
-    const ur10e_real_t t197 = t196 * t191;
-    const ur10e_real_t t198 = t195 - t197;
-    const ur10e_real_t t199 = t198 - t197; /* link j6: force and moment */
-    const ur10e_real_t t200 = t18 * t172 + t22 * t176; /* link j5: motion */
-    const ur10e_real_t t201 = t185 * t180;
-    const ur10e_real_t t202 = t200 - t201;
-    const ur10e_real_t t203 = t196 * t190; /* link j6: motion */
-    const ur10e_real_t t204 = t202 - t203; /* link j6: force and moment */
-    const ur10e_real_t t205 = parameters[XX6] * t193 + t192 * t194 - parameters[XY6] * t199
-        - parameters[XZ6] * t204;
-    const ur10e_real_t t206 = t190 * t190; /* link j6: motion */
-    const ur10e_real_t t207 = t191 * t191;
-    const ur10e_real_t t208 = t167 * t167; /* link j2: motion */
-    const ur10e_real_t t209 = dq[1] * dq[1];
-    const ur10e_real_t t210 = UR10E_C(9.81) * t122;
-    const ur10e_real_t t211 = t210 + UR10E_C(0.6127) * (t208 + t209); /* link j3: motion */
-    const ur10e_real_t t212 = t73 * t211;
-    const ur10e_real_t t213 = t166 * t167; /* link j2: motion */
-    const ur10e_real_t t214 = UR10E_C(-9.81) * t119;
-    const ur10e_real_t t215 = UR10E_C(-0.6127) * t213 - t214; /* link j3: motion */
-    const ur10e_real_t t216 = t212 + t72 * t215;
-    const ur10e_real_t t217 = t169 * t169;
-    const ur10e_real_t t218 = t173 * t173;
-    const ur10e_real_t t219 = t218 + t217; /* link j4: motion */
-    const ur10e_real_t t220 = t216 + UR10E_C(0.57155) * t219;
-    const ur10e_real_t t221 = t72 * t211; /* link j3: motion */
-    const ur10e_real_t t222 = t73 * t215 - t221;
-    const ur10e_real_t t223 = t168 * t169;
-    const ur10e_real_t t224 = t222 + UR10E_C(0.57155) * t223; /* link j4: motion */
-    const ur10e_real_t t225 = t51 * t220 + t48 * t224;
-    const ur10e_real_t t226 = t225 + UR10E_C(0.11985) * t172; /* link j5: motion */
-    const ur10e_real_t t227 = t168 * t168; /* link j3: motion */
-    const ur10e_real_t t228 = t227 + t217; /* link j4: motion */
-    const ur10e_real_t t229 = t173 * t168; /* link j3: motion */
-    const ur10e_real_t t230 = dq[1] * t166; /* link j2: motion */
-    const ur10e_real_t t231 = UR10E_C(1.2254) * t230; /* link j3: motion */
-    const ur10e_real_t t232 = t231 + (UR10E_C(1.1431) * t229 + UR10E_C(0.17415) * t228); /* link j4: motion */
-    const ur10e_real_t t233 = t232 - UR10E_C(0.2397) * t175; /* link j5: motion */
-    const ur10e_real_t t234 = t22 * t226 + t18 * t233;
-    const ur10e_real_t t235 = t185 * t185;
-    const ur10e_real_t t236 = t180 * t180;
-    const ur10e_real_t t237 = t235 + t236; /* link j6: motion */
-    const ur10e_real_t t238 = t234 + UR10E_C(0.11655) * t237;
-    const ur10e_real_t t239 = t51 * t224 - t48 * t220; /* link j4: motion */
-    const ur10e_real_t t240 = t170 * t170;
-    const ur10e_real_t t241 = t174 * t174;
-    const ur10e_real_t t242 = t241 + t240; /* link j5: motion */
-    const ur10e_real_t t243 = t239 + UR10E_C(0.11985) * t242;
-    const ur10e_real_t t244 = t243 + UR10E_C(0.11655) * t183; /* link j6: motion */
-    const ur10e_real_t t245 = t18 * t226 - t22 * t233; /* link j5: motion */
-    const ur10e_real_t t246 = t245 - UR10E_C(-0.11655) * t188; /* link j6: motion */
-    const ur10e_real_t t247 = t2 * t244 - t1 * t246;
+    const ur10e_real_t t165 = t118 * dq[0]; /* link j2: motion */
+    const ur10e_real_t t166 = t115 * dq[0];
+    const ur10e_real_t t167 = t70 * t165 + t69 * t166; /* link j3: motion */
+    const ur10e_real_t t168 = t69 * t165 - t70 * t166;
+    const ur10e_real_t t169 = t49 * t167 - t46 * t168; /* link j4: motion */
+    const ur10e_real_t t170 = t46 * t167 + t49 * t168;
+    const ur10e_real_t t171 = t169 * t170;
+    const ur10e_real_t t172 = dq[1] + dq[2]; /* link j3: motion */
+    const ur10e_real_t t173 = dq[3] + t172; /* link j4: motion */
+    const ur10e_real_t t174 = t173 * t170;
+    const ur10e_real_t t175 = UR10E_C(2.0) * t174; /* link j5: motion */
+    const ur10e_real_t t176 = t17 * t175 - t21 * t171;
+    const ur10e_real_t t177 = t17 * t173;
+    const ur10e_real_t t178 = t177 - t21 * t169;
+    const ur10e_real_t t179 = dq[4] + t170;
+    const ur10e_real_t t180 = t178 * t179;
+    const ur10e_real_t t181 = t176 - t180;
+    const ur10e_real_t t182 = t181 - t180; /* link j6: motion */
+    const ur10e_real_t t183 = t21 * t173; /* link j5: motion */
+    const ur10e_real_t t184 = t183 + t17 * t169;
+    const ur10e_real_t t185 = t184 * t178;
+    const ur10e_real_t t186 = t173 * t169; /* link j4: motion */
+    const ur10e_real_t t187 = t185 - t186; /* link j6: motion */
+    const ur10e_real_t t188 = t1 * t187 - t2 * t182;
+    const ur10e_real_t t189 = t1 * t184 + t2 * t179;
+    const ur10e_real_t t190 = dq[5] + t178;
+    const ur10e_real_t t191 = t189 * t190;
+    const ur10e_real_t t192 = t191 - t188;
+    const ur10e_real_t t193 = parameters[ZZ6] - parameters[YY6]; /* link j6: force and moment */
+    const ur10e_real_t t194 = t2 * t187 + t1 * t182; /* link j6: motion */
+    const ur10e_real_t t195 = t2 * t184 - t1 * t179;
+    const ur10e_real_t t196 = t195 * t190;
+    const ur10e_real_t t197 = t194 - t196;
+    const ur10e_real_t t198 = t197 - t196; /* link j6: force and moment */
+    const ur10e_real_t t199 = t17 * t171 + t21 * t175; /* link j5: motion */
+    const ur10e_real_t t200 = t184 * t179;
+    const ur10e_real_t t201 = t199 - t200;
+    const ur10e_real_t t202 = t195 * t189; /* link j6: motion */
+    const ur10e_real_t t203 = t201 - t202; /* link j6: force and moment */
+    const ur10e_real_t t204 = parameters[XX6] * t192 + t191 * t193 - parameters[XY6] * t198
+        - parameters[XZ6] * t203;
+    const ur10e_real_t t205 = t189 * t189; /* link j6: motion */
+    const ur10e_real_t t206 = t190 * t190;
+    const ur10e_real_t t207 = t166 * t166; /* link j2: motion */
+    const ur10e_real_t t208 = dq[1] * dq[1];
+    const ur10e_real_t t209 = UR10E_C(9.81) * t118;
+    const ur10e_real_t t210 = t209 + UR10E_C(0.6127) * (t207 + t208); /* link j3: motion */
+    const ur10e_real_t t211 = t70 * t210;
+    const ur10e_real_t t212 = t165 * t166; /* link j2: motion */
+    const ur10e_real_t t213 = UR10E_C(-9.81) * t115;
+    const ur10e_real_t t214 = UR10E_C(-0.6127) * t212 - t213; /* link j3: motion */
+    const ur10e_real_t t215 = t211 + t69 * t214;
+    const ur10e_real_t t216 = t168 * t168;
+    const ur10e_real_t t217 = t172 * t172;
+    const ur10e_real_t t218 = t217 + t216; /* link j4: motion */
+    const ur10e_real_t t219 = t215 + UR10E_C(0.57155) * t218;
+    const ur10e_real_t t220 = t69 * t210; /* link j3: motion */
+    const ur10e_real_t t221 = t70 * t214 - t220;
+    const ur10e_real_t t222 = t167 * t168;
+    const ur10e_real_t t223 = t221 + UR10E_C(0.57155) * t222; /* link j4: motion */
+    const ur10e_real_t t224 = t49 * t219 + t46 * t223;
+    const ur10e_real_t t225 = t224 + UR10E_C(0.11985) * t171; /* link j5: motion */
+    const ur10e_real_t t226 = t167 * t167; /* link j3: motion */
+    const ur10e_real_t t227 = t226 + t216; /* link j4: motion */
+    const ur10e_real_t t228 = t172 * t167; /* link j3: motion */
+    const ur10e_real_t t229 = dq[1] * t165; /* link j2: motion */
+    const ur10e_real_t t230 = UR10E_C(1.2254) * t229; /* link j3: motion */
+    const ur10e_real_t t231 = t230 + (UR10E_C(1.1431) * t228 + UR10E_C(0.17415) * t227); /* link j4: motion */
+    const ur10e_real_t t232 = t231 - UR10E_C(0.2397) * t174; /* link j5: motion */
+    const ur10e_real_t t233 = t21 * t225 + t17 * t232;
+    const ur10e_real_t t234 = t184 * t184;
+    const ur10e_real_t t235 = t179 * t179;
+    const ur10e_real_t t236 = t234 + t235; /* link j6: motion */
+    const ur10e_real_t t237 = t233 + UR10E_C(0.11655) * t236;
+    const ur10e_real_t t238 = t49 * t223 - t46 * t219; /* link j4: motion */
+    const ur10e_real_t t239 = t169 * t169;
+    const ur10e_real_t t240 = t173 * t173;
+    const ur10e_real_t t241 = t240 + t239; /* link j5: motion */
+    const ur10e_real_t t242 = t238 + UR10E_C(0.11985) * t241;
+    const ur10e_real_t t243 = t242 + UR10E_C(0.11655) * t182; /* link j6: motion */
+    const ur10e_real_t t244 = t17 * t225 - t21 * t232; /* link j5: motion */
+    const ur10e_real_t t245 = t244 - UR10E_C(-0.11655) * t187; /* link j6: motion */
+    const ur10e_real_t t246 = t2 * t243 - t1 * t245;
     /* link j6: force and moment */
-    const ur10e_real_t t248 = t205 - parameters[YZ6] * (t206 - t207) + (parameters[MY6] * t238
-        + parameters[MZ6] * t247);
-    const ur10e_real_t t249 = parameters[XX6] - parameters[ZZ6];
-    const ur10e_real_t t250 = t192 + t193;
-    const ur10e_real_t t251 = t202 + t203;
-    const ur10e_real_t t252 = parameters[YY6] * t198 + t197 * t249 - parameters[XY6] * t250
-        + parameters[YZ6] * t251;
-    const ur10e_real_t t253 = t196 * t196; /* link j6: motion */
-    const ur10e_real_t t254 = t2 * t246 + t1 * t244;
+    const ur10e_real_t t247 = t204 - parameters[YZ6] * (t205 - t206) + (parameters[MY6] * t237
+        + parameters[MZ6] * t246);
+    const ur10e_real_t t248 = parameters[XX6] - parameters[ZZ6];
+    const ur10e_real_t t249 = t191 + t192;
+    const ur10e_real_t t250 = t201 + t202;
+    const ur10e_real_t t251 = parameters[YY6] * t197 + t196 * t248 - parameters[XY6] * t249
+        + parameters[YZ6] * t250;
+    const ur10e_real_t t252 = t195 * t195; /* link j6: motion */
+    const ur10e_real_t t253 = t2 * t245 + t1 * t243;
     /* link j6: force and moment */
-    const ur10e_real_t t255 = t252 + parameters[XZ6] * (t207 - t253) + (parameters[MZ6] * t254
-        + parameters[MX6] * t238);
-    const ur10e_real_t t256 = parameters[MZ6] * t195 - (parameters[MX6] * (t206 + t207)
-        + parameters[MY6] * t251);
-    const ur10e_real_t t257 = parameters[M6] * t254 + t256;
-    const ur10e_real_t t258 = parameters[MX6] * t204 - parameters[MY6] * (t253 + t207)
-        - parameters[MZ6] * t189;
-    const ur10e_real_t t259 = parameters[M6] * t247 + t258;
-    const ur10e_real_t t260 = t1 * t257 + t2 * t259; /* link j6: what it passes on */
-    const ur10e_real_t t261 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
-    const ur10e_real_t t262 = t201 - t202; /* link j6: motion */
-    const ur10e_real_t t263 = t187 + t186;
+    const ur10e_real_t t254 = t251 + parameters[XZ6] * (t206 - t252) + (parameters[MZ6] * t253
+        + parameters[MX6] * t237);
+    const ur10e_real_t t255 = parameters[MZ6] * t194 - (parameters[MX6] * (t205 + t206)
+        + parameters[MY6] * t250);
+    const ur10e_real_t t256 = parameters[M6] * t253 + t255;
+    const ur10e_real_t t257 = parameters[MX6] * t203 - parameters[MY6] * (t252 + t206)
+        - parameters[MZ6] * t188;
+    const ur10e_real_t t258 = parameters[M6] * t246 + t257;
+    const ur10e_real_t t259 = t1 * t256 + t2 * t258; /* link j6: what it passes on */
+    const ur10e_real_t t260 = parameters[YY5] - parameters[ZZ5]; /* link j5: force and moment */
+    const ur10e_real_t t261 = t200 - t201; /* link j6: motion */
+    const ur10e_real_t t262 = t186 + t185;
     /* link j5: force and moment */
-    const ur10e_real_t t264 = parameters[XX5] * t182 + t181 * t261 + parameters[XY5] * t262
-        - parameters[XZ5] * t263;
-    const ur10e_real_t t265 = t179 * t179; /* link j5: motion */
+    const ur10e_real_t t263 = parameters[XX5] * t181 + t180 * t260 + parameters[XY5] * t261
+        - parameters[XZ5] * t262;
+    const ur10e_real_t t264 = t178 * t178; /* link j5: motion */
     /* link j5: force and moment */
-    const ur10e_real_t t266 = t264 + parameters[YZ5] * (t236 - t265) + (parameters[MY5] * t243
-        - parameters[MZ5] * t234);
+    const ur10e_real_t t265 = t263 + parameters[YZ5] * (t235 - t264) + (parameters[MY5] * t242
+        - parameters[MZ5] * t233);
     /* link j6: what it passes on */
-    const ur10e_real_t t267 = t266 + (t2 * t248 + t1 * t255 + UR10E_C(0.11655) * t260);
+    const ur10e_real_t t266 = t265 + (t2 * t247 + t1 * t254 + UR10E_C(0.11655) * t259);
     /* link j6: force and moment */
-    const ur10e_real_t t268 = parameters[ZZ6] * t202 + t7 * t203 + parameters[YZ6] * t195
-        + parameters[XZ6] * t189;
-    const ur10e_real_t t269 = t268 + parameters[XY6] * (t253 - t206) + (parameters[MX6] * t247
-        - parameters[MY6] * t254);
-    const ur10e_real_t t270 = parameters[XX5] - parameters[ZZ5]; /* link j5: force and moment */
-    const ur10e_real_t t271 = parameters[YY5] * t202 + t201 * t270 - parameters[XY5] * t183
-        - parameters[YZ5] * t188;
-    const ur10e_real_t t272 = t271 + parameters[XZ5] * (t236 - t235) + (parameters[MZ5] * t245
-        + parameters[MX5] * t243);
-    const ur10e_real_t t273 = t272 + t269; /* link j6: what it passes on */
-    const ur10e_real_t t274 = t2 * t257 - t1 * t259;
+    const ur10e_real_t t267 = parameters[ZZ6] * t201 + t7 * t202 + parameters[YZ6] * t194
+        + parameters[XZ6] * t188;
+    const ur10e_real_t t268 = t267 + parameters[XY6] * (t252 - t205) + (parameters[MX6] * t246
+        - parameters[MY6] * t253);
+    const ur10e_real_t t269 = parameters[XX5] - parameters[ZZ5]; /* link j5: force and moment */
+    const ur10e_real_t t270 = parameters[YY5] * t201 + t200 * t269 - parameters[XY5] * t182
+        - parameters[YZ5] * t187;
+    const ur10e_real_t t271 = t270 + parameters[XZ5] * (t235 - t234) + (parameters[MZ5] * t244
+        + parameters[MX5] * t242);
+    const ur10e_real_t t272 = t271 + t268; /* link j6: what it passes on */
+    const ur10e_real_t t273 = t2 * t256 - t1 * t258;
     /* link j5: force and moment */
-    const ur10e_real_t t275 = parameters[MX5] * (t265 + t236) - parameters[MY5] * t188
-        - parameters[MZ5] * t200;
-    const ur10e_real_t t276 = parameters[M5] * t245 - t275 + t274; /* link j6: what it passes on */
+    const ur10e_real_t t274 = parameters[MX5] * (t264 + t235) - parameters[MY5] * t187
+        - parameters[MZ5] * t199;
+    const ur10e_real_t t275 = parameters[M5] * t244 - t274 + t273; /* link j6: what it passes on */
     /* link j6: force and moment */
-    const ur10e_real_t t277 = parameters[MX6] * t199 + parameters[MY6] * t250 + parameters[MZ6] * (t253
-        + t206);
+    const ur10e_real_t t276 = parameters[MX6] * t198 + parameters[MY6] * t249 + parameters[MZ6] * (t252
+        + t205);
     /* link j5: force and moment */
-    const ur10e_real_t t278 = parameters[M5] * t234 + (parameters[MY5] * t237 - parameters[MX5] * t263
-        - parameters[MZ5] * t177);
-    const ur10e_real_t t279 = t278 + (parameters[M6] * t238 + t277); /* link j6: what it passes on */
-    const ur10e_real_t t280 = t18 * t279 - t22 * t276; /* link j5: what it passes on */
-    const ur10e_real_t t281 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
-    const ur10e_real_t t282 = UR10E_C(2.0) * t187; /* link j5: motion */
+    const ur10e_real_t t277 = parameters[M5] * t233 + (parameters[MY5] * t236 - parameters[MX5] * t262
+        - parameters[MZ5] * t176);
+    const ur10e_real_t t278 = t277 + (parameters[M6] * t237 + t276); /* link j6: what it passes on */
+    const ur10e_real_t t279 = t17 * t278 - t21 * t275; /* link j5: what it passes on */
+    const ur10e_real_t t280 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
+    const ur10e_real_t t281 = UR10E_C(2.0) * t186; /* link j5: motion */
     /* link j4: force and moment */
-    const ur10e_real_t t283 = parameters[XX4] * t175 + t175 * t281 + parameters[XY4] * t282
-        + parameters[XZ4] * t172;
-    const ur10e_real_t t284 = t171 * t171; /* link j4: motion */
+    const ur10e_real_t t282 = parameters[XX4] * t174 + t174 * t280 + parameters[XY4] * t281
+        + parameters[XZ4] * t171;
+    const ur10e_real_t t283 = t170 * t170; /* link j4: motion */
     /* link j4: force and moment */
-    const ur10e_real_t t285 = t283 + parameters[YZ4] * (t241 - t284) + (parameters[MY4] * t232
-        + parameters[MZ4] * t239);
+    const ur10e_real_t t284 = t282 + parameters[YZ4] * (t240 - t283) + (parameters[MY4] * t231
+        + parameters[MZ4] * t238);
     /* link j5: what it passes on */
-    const ur10e_real_t t286 = t285 + (t18 * t267 + t22 * t273 + UR10E_C(-0.11985) * t280);
-    const ur10e_real_t t287 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
-    const ur10e_real_t t288 = t186 * t287 - parameters[ZZ5] * t187 - parameters[YZ5] * t200
-        + parameters[XZ5] * t177;
-    const ur10e_real_t t289 = t288 + parameters[XY5] * (t265 - t235) + (parameters[MX5] * t234
-        + parameters[MY5] * t245);
+    const ur10e_real_t t285 = t284 + (t17 * t266 + t21 * t272 + UR10E_C(-0.11985) * t279);
+    const ur10e_real_t t286 = parameters[XX5] - parameters[YY5]; /* link j5: force and moment */
+    const ur10e_real_t t287 = t185 * t286 - parameters[ZZ5] * t186 - parameters[YZ5] * t199
+        + parameters[XZ5] * t176;
+    const ur10e_real_t t288 = t287 + parameters[XY5] * (t264 - t234) + (parameters[MX5] * t233
+        + parameters[MY5] * t244);
     /* link j6: what it passes on */
-    const ur10e_real_t t290 = t289 + (t2 * t255 - t1 * t248 + UR10E_C(0.11655) * t274);
-    const ur10e_real_t t291 = parameters[XX4] - parameters[ZZ4]; /* link j4: force and moment */
-    const ur10e_real_t t292 = t187 * t291 - parameters[YY4] * t187 - parameters[XY4] * t176
-        + parameters[YZ4] * t172;
-    const ur10e_real_t t293 = t292 + parameters[XZ4] * (t241 - t240) + (parameters[MZ4] * t225
-        + parameters[MX4] * t232);
-    const ur10e_real_t t294 = t293 + t290; /* link j5: what it passes on */
-    const ur10e_real_t t295 = t18 * t276 + t22 * t279;
+    const ur10e_real_t t289 = t288 + (t2 * t254 - t1 * t247 + UR10E_C(0.11655) * t273);
+    const ur10e_real_t t290 = parameters[XX4] - parameters[ZZ4]; /* link j4: force and moment */
+    const ur10e_real_t t291 = t186 * t290 - parameters[YY4] * t186 - parameters[XY4] * t175
+        + parameters[YZ4] * t171;
+    const ur10e_real_t t292 = t291 + parameters[XZ4] * (t240 - t239) + (parameters[MZ4] * t224
+        + parameters[MX4] * t231);
+    const ur10e_real_t t293 = t292 + t289; /* link j5: what it passes on */
+    const ur10e_real_t t294 = t17 * t275 + t21 * t278;
     /* link j4: force and moment */
-    const ur10e_real_t t296 = parameters[M4] * t225 - (parameters[MX4] * (t241 + t284)
-        + parameters[MY4] * t172);
-    const ur10e_real_t t297 = t296 + t295; /* link j5: what it passes on */
+    const ur10e_real_t t295 = parameters[M4] * t224 - (parameters[MX4] * (t240 + t283)
+        + parameters[MY4] * t171);
+    const ur10e_real_t t296 = t295 + t294; /* link j5: what it passes on */
     /* link j5: force and moment */
-    const ur10e_real_t t298 = parameters[MY5] * t183 - parameters[MX5] * t262 + parameters[MZ5] * (t235
-        + t265);
+    const ur10e_real_t t297 = parameters[MY5] * t182 - parameters[MX5] * t261 + parameters[MZ5] * (t234
+        + t264);
     /* link j5: what it passes on */
-    const ur10e_real_t t299 = parameters[M4] * t239 - (parameters[MX4] * t172 + parameters[MY4] * t242)
-        + (parameters[M5] * t243 + t298 + t260);
-    const ur10e_real_t t300 = t48 * t297 + t51 * t299; /* link j4: what it passes on */
-    const ur10e_real_t t301 = t173 * t169; /* link j3: motion */
-    const ur10e_real_t t302 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
-    const ur10e_real_t t303 = UR10E_C(2.0) * t229; /* link j4: motion */
+    const ur10e_real_t t298 = parameters[M4] * t238 - (parameters[MX4] * t171 + parameters[MY4] * t241)
+        + (parameters[M5] * t242 + t297 + t259);
+    const ur10e_real_t t299 = t46 * t296 + t49 * t298; /* link j4: what it passes on */
+    const ur10e_real_t t300 = t172 * t168; /* link j3: motion */
+    const ur10e_real_t t301 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const ur10e_real_t t302 = UR10E_C(2.0) * t228; /* link j4: motion */
     /* link j3: force and moment */
-    const ur10e_real_t t304 = parameters[XX3] * t301 + t301 * t302 + parameters[XY3] * t303
-        + parameters[XZ3] * t223;
-    const ur10e_real_t t305 = t304 + parameters[YZ3] * (t218 - t217) + (parameters[MY3] * t231
-        + parameters[MZ3] * t222);
+    const ur10e_real_t t303 = parameters[XX3] * t300 + t300 * t301 + parameters[XY3] * t302
+        + parameters[XZ3] * t222;
+    const ur10e_real_t t304 = t303 + parameters[YZ3] * (t217 - t216) + (parameters[MY3] * t230
+        + parameters[MZ3] * t221);
     /* link j4: what it passes on */
-    const ur10e_real_t t306 = t305 + (t51 * t286 + t48 * t294 + UR10E_C(0.17415) * t300);
-    const ur10e_real_t t307 = t51 * t297 - t48 * t299;
+    const ur10e_real_t t305 = t304 + (t49 * t285 + t46 * t293 + UR10E_C(0.17415) * t299);
+    const ur10e_real_t t306 = t49 * t296 - t46 * t298;
     /* link j4: force and moment */
-    const ur10e_real_t t308 = parameters[MY4] * t176 - parameters[MX4] * t282 + parameters[MZ4] * (t240
-        + t284);
-    const ur10e_real_t t309 = parameters[M4] * t232 + t308 + t280; /* link j5: what it passes on */
+    const ur10e_real_t t307 = parameters[MY4] * t175 - parameters[MX4] * t281 + parameters[MZ4] * (t239
+        + t283);
+    const ur10e_real_t t308 = parameters[M4] * t231 + t307 + t279; /* link j5: what it passes on */
     /* link j4: what it passes on */
-    const ur10e_real_t t310 = t48 * t286 - t51 * t294 - (UR10E_C(0.17415) * t307 - UR10E_C(0.57155) * t309);
-    const ur10e_real_t t311 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
-    const ur10e_real_t t312 = UR10E_C(2.0) * t301; /* link j4: motion */
+    const ur10e_real_t t309 = t46 * t285 - t49 * t293 - (UR10E_C(0.17415) * t306 - UR10E_C(0.57155) * t308);
+    const ur10e_real_t t310 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
+    const ur10e_real_t t311 = UR10E_C(2.0) * t300; /* link j4: motion */
     /* link j3: force and moment */
-    const ur10e_real_t t313 = parameters[YY3] * t229 + t229 * t311 + parameters[XY3] * t312
-        - parameters[YZ3] * t223;
-    const ur10e_real_t t314 = t313 - parameters[XZ3] * (t218 - t227) - (parameters[MZ3] * t216
-        + parameters[MX3] * t231);
-    const ur10e_real_t t315 = t314 + t310; /* link j4: what it passes on */
-    const ur10e_real_t t316 = dq[1] * t167; /* link j2: motion */
-    const ur10e_real_t t317 = t316 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
-    const ur10e_real_t t318 = t317 - t316 * parameters[XX2] + UR10E_C(2.0) * t230 * parameters[XY2]
-        - t213 * parameters[XZ2];
-    const ur10e_real_t t319 = (t208 - t209) * parameters[YZ2];
-    const ur10e_real_t t320 = t214 * parameters[MZ2];
-    const ur10e_real_t t321 = t318 - t319 - t320 + (t73 * t306 - t72 * t315); /* link j3: what it passes on */
+    const ur10e_real_t t312 = parameters[YY3] * t228 + t228 * t310 + parameters[XY3] * t311
+        - parameters[YZ3] * t222;
+    const ur10e_real_t t313 = t312 - parameters[XZ3] * (t217 - t226) - (parameters[MZ3] * t215
+        + parameters[MX3] * t230);
+    const ur10e_real_t t314 = t313 + t309; /* link j4: what it passes on */
+    const ur10e_real_t t315 = dq[1] * t166; /* link j2: motion */
+    const ur10e_real_t t316 = t315 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const ur10e_real_t t317 = t316 - t315 * parameters[XX2] + UR10E_C(2.0) * t229 * parameters[XY2]
+        - t212 * parameters[XZ2];
+    const ur10e_real_t t318 = (t207 - t208) * parameters[YZ2];
+    const ur10e_real_t t319 = t213 * parameters[MZ2];
+    const ur10e_real_t t320 = t317 - t318 - t319 + (t70 * t305 - t69 * t314); /* link j3: what it passes on */
     /* link j3: force and moment */
-    const ur10e_real_t t322 = parameters[M3] * t231 + (parameters[MY3] * t312 - parameters[MX3] * t303
-        + parameters[MZ3] * t228);
+    const ur10e_real_t t321 = parameters[M3] * t230 + (parameters[MY3] * t311 - parameters[MX3] * t302
+        + parameters[MZ3] * t227);
     /* link j3: what it passes on */
-    const ur10e_real_t t323 = t72 * t306 + t73 * t315 + UR10E_C(0.6127) * (t322 + t309);
-    const ur10e_real_t t324 = t230 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
-    const ur10e_real_t t325 = t230 * parameters[YY2] + t324 + UR10E_C(-2.0) * t316 * parameters[XY2]
-        + t213 * parameters[YZ2];
-    const ur10e_real_t t326 = t166 * t166; /* link j2: motion */
-    const ur10e_real_t t327 = (t326 - t209) * parameters[XZ2]; /* link j2: force and moment */
-    const ur10e_real_t t328 = t210 * parameters[MZ2];
+    const ur10e_real_t t322 = t69 * t305 + t70 * t314 + UR10E_C(0.6127) * (t321 + t308);
+    const ur10e_real_t t323 = t229 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
+    const ur10e_real_t t324 = t229 * parameters[YY2] + t323 + UR10E_C(-2.0) * t315 * parameters[XY2]
+        + t212 * parameters[YZ2];
+    const ur10e_real_t t325 = t165 * t165; /* link j2: motion */
+    const ur10e_real_t t326 = (t325 - t208) * parameters[XZ2]; /* link j2: force and moment */
+    const ur10e_real_t t327 = t209 * parameters[MZ2];
     /* link j2: what it passes on */
-    const ur10e_real_t t329 = t122 * t321 + t119 * (t325 + t327 - t328 + t323);
-    const ur10e_real_t t330 = ur10e_sign(dq[0]); /* joint j1: coulomb_friction */
-    const ur10e_real_t t331 = UR10E_C(101.0) * (UR10E_C(-101.0) * dq[0] * parameters[FV1]
-        - t330 * parameters[FC1]) + t329;
-    const ur10e_real_t t332 = ur10e_sign(dq[5]); /* joint j6: coulomb_friction */
-    const ur10e_real_t t333 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[5] * parameters[FV6]
-        + t332 * parameters[FC6]) + t269;
-    const ur10e_real_t t334 = UR10E_C(9.09) * input[5] - t333;
-    const ur10e_real_t t335 = ur10e_sign(dq[4]); /* joint j5: coulomb_friction */
-    const ur10e_real_t t336 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[4] * parameters[FV5]
-        + t335 * parameters[FC5]) - t290;
-    const ur10e_real_t t337 = UR10E_C(9.09) * input[4] - t336 + t334 * t6;
-    const ur10e_real_t t338 = UR10E_C(12.12) * input[0] + t331 + t334 * t132 + t337 * t138;
+    const ur10e_real_t t328 = t118 * t320 + t115 * (t324 + t326 - t327 + t322);
+    const ur10e_real_t t329 = ur10e_sign(dq[0]); /* joint j1: coulomb_friction */
+    const ur10e_real_t t330 = UR10E_C(101.0) * (UR10E_C(-101.0) * dq[0] * parameters[FV1]
+        - t329 * parameters[FC1]) + t328;
+    const ur10e_real_t t331 = ur10e_sign(dq[5]); /* joint j6: coulomb_friction */
+    const ur10e_real_t t332 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[5] * parameters[FV6]
+        + t331 * parameters[FC6]) + t268;
+    const ur10e_real_t t333 = UR10E_C(9.09) * input[5] - t332;
+    const ur10e_real_t t334 = ur10e_sign(dq[4]); /* joint j5: coulomb_friction */
+    const ur10e_real_t t335 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[4] * parameters[FV5]
+        + t334 * parameters[FC5]) - t289;
+    const ur10e_real_t t336 = UR10E_C(9.09) * input[4] - t335 + t333 * t6;
+    const ur10e_real_t t337 = UR10E_C(12.12) * input[0] + t330 + t333 * t128 + t336 * t134;
     /* link j4: force and moment */
-    const ur10e_real_t t339 = t172 * (parameters[XX4] - parameters[YY4]) + parameters[XY4] * (t240 - t284)
-        - (parameters[MY4] * t225 - parameters[MX4] * t239);
+    const ur10e_real_t t338 = t171 * (parameters[XX4] - parameters[YY4]) + parameters[XY4] * (t239 - t283)
+        - (parameters[MY4] * t224 - parameters[MX4] * t238);
     /* link j5: what it passes on */
-    const ur10e_real_t t340 = t339 + (t18 * t273 - t22 * t267 + UR10E_C(0.11985) * t295);
-    const ur10e_real_t t341 = ur10e_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ur10e_real_t t342 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[3] * parameters[FV4]
-        + t341 * parameters[FC4]) + t340;
-    const ur10e_real_t t343 = UR10E_C(9.09) * input[3] - t342 + t334 * t33 + t337 * t43;
+    const ur10e_real_t t339 = t338 + (t17 * t272 - t21 * t266 + UR10E_C(0.11985) * t294);
+    const ur10e_real_t t340 = ur10e_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ur10e_real_t t341 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[3] * parameters[FV4]
+        + t340 * parameters[FC4]) + t339;
+    const ur10e_real_t t342 = UR10E_C(9.09) * input[3] - t341 + t333 * t32 + t336 * t42;
     /* link j3: force and moment */
-    const ur10e_real_t t344 = t223 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t227 - t217)
-        - (parameters[MY3] * t216 - parameters[MX3] * t222);
-    const ur10e_real_t t345 = t344 + (t340 - UR10E_C(0.57155) * t300); /* link j4: what it passes on */
-    const ur10e_real_t t346 = ur10e_sign(dq[2]); /* joint j3: coulomb_friction */
-    const ur10e_real_t t347 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[2] * parameters[FV3]
-        + t346 * parameters[FC3]) + t345;
-    const ur10e_real_t t348 = UR10E_C(10.100000000000001) * input[2] - t347 + t334 * t62 + t337 * t68;
-    const ur10e_real_t t349 = t348 + t343 * t61;
+    const ur10e_real_t t343 = t222 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t226 - t216)
+        - (parameters[MY3] * t215 - parameters[MX3] * t221);
+    const ur10e_real_t t344 = t343 + (t339 - UR10E_C(0.57155) * t299); /* link j4: what it passes on */
+    const ur10e_real_t t345 = ur10e_sign(dq[2]); /* joint j3: coulomb_friction */
+    const ur10e_real_t t346 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[2] * parameters[FV3]
+        + t345 * parameters[FC3]) + t344;
+    const ur10e_real_t t347 = UR10E_C(10.100000000000001) * input[2] - t346 + t333 * t60 + t336 * t66;
+    const ur10e_real_t t348 = t347 + t342 * t59;
     /* link j4: what it passes on */
-    const ur10e_real_t t350 = parameters[M3] * t216 - (parameters[MX3] * t219 + parameters[MY3] * t223)
-        + t307;
+    const ur10e_real_t t349 = parameters[M3] * t215 - (parameters[MX3] * t218 + parameters[MY3] * t222)
+        + t306;
     /* link j3: force and moment */
-    const ur10e_real_t t351 = parameters[MX3] * t223 + parameters[MY3] * (t218 + t227)
-        - parameters[M3] * t222;
+    const ur10e_real_t t350 = parameters[MX3] * t222 + parameters[MY3] * (t217 + t226)
+        - parameters[M3] * t221;
     /* link j3: what it passes on */
-    const ur10e_real_t t352 = t345 - UR10E_C(0.6127) * (t72 * t350 - t73 * (t351 - t300));
+    const ur10e_real_t t351 = t344 - UR10E_C(0.6127) * (t69 * t349 - t70 * (t350 - t299));
     /* link j2: force and moment */
-    const ur10e_real_t t353 = t213 * (parameters[XX2] - parameters[YY2]) - (t326 - t208) * parameters[XY2]
-        + (t214 * parameters[MX2] + t210 * parameters[MY2]);
-    const ur10e_real_t t354 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
-    const ur10e_real_t t355 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[1] * parameters[FV2]
-        + t354 * parameters[FC2]) - (t353 - t352);
-    const ur10e_real_t t356 = UR10E_C(12.12) * input[1] - t355 - t334 * t93 - t337 * t99;
-    const ur10e_real_t t357 = t356 + t343 * t92 - t349 * t91;
-    const ur10e_real_t t358 = t338 + t343 * t147 - t349 * t155 + t357 * t163;
-    const ur10e_real_t t359 = UR10E_C(1.0) / t164;
-    const ur10e_real_t t360 = ur10e_bounded(t358 * t359);
-    ddq[0] = t360;
-    const ur10e_real_t t361 = ur10e_bounded(t357 * t162 + t163 * t360);
-    ddq[1] = t361;
-    const ur10e_real_t t362 = ur10e_bounded(t349 * t90 - t155 * t360 - t91 * t361);
-    ddq[2] = t362;
-    const ur10e_real_t t363 = ur10e_bounded(t343 * t60 + t147 * t360 + t92 * t361 + t61 * t362);
-    ddq[3] = t363;
-    const ur10e_real_t t364 = t337 * t42 + t138 * t360 - t99 * t361 + t68 * t362;
-    const ur10e_real_t t365 = ur10e_bounded(t364 + t43 * t363);
-    ddq[4] = t365;
-    const ur10e_real_t t366 = t334 * t5 + t132 * t360 - t93 * t361 + t62 * t362;
-    const ur10e_real_t t367 = ur10e_bounded(t366 + t33 * t363 + t6 * t365);
-    ddq[5] = t367;
-    const ur10e_real_t t368 = t122 * t73 + t119 * t72; /* link j3: motion */
-    const ur10e_real_t t369 = t119 * t73 - t122 * t72;
-    const ur10e_real_t t370 = t51 * t368 + t48 * t369; /* link j4: motion */
-    const ur10e_real_t t371 = dq[0] * t370;
-    const ur10e_real_t t372 = t18 * t371 + t184; /* link j5: motion */
-    const ur10e_real_t t373 = t51 * t369 - t48 * t368; /* link j4: motion */
-    const ur10e_real_t t374 = dq[0] * t373;
-    const ur10e_real_t t375 = dq[4] - t374; /* link j5: motion */
-    const ur10e_real_t t376 = t1 * t372 + t2 * t375; /* link j6: motion */
-    const ur10e_real_t t377 = t376 * parameters[XZ6];
-    const ur10e_real_t t378 = t178 - t22 * t371; /* link j5: motion */
-    const ur10e_real_t t379 = dq[5] + t378; /* link j6: motion */
-    const ur10e_real_t t380 = t379 * parameters[XY6];
-    const ur10e_real_t t381 = t377 + t380;
-    const ur10e_real_t t382 = t1 * t375 - t2 * t372;
-    const ur10e_real_t t383 = t382 * parameters[YZ6];
-    const ur10e_real_t t384 = t380 + t383;
-    const ur10e_real_t t385 = UR10E_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const ur10e_real_t t386 = parameters[XX6] - t385;
-    const ur10e_real_t t387 = t379 * t386 + t382 * parameters[XZ6];
-    const ur10e_real_t t388 = t385 - parameters[YY6];
-    const ur10e_real_t t389 = t376 * parameters[YZ6] - t379 * t388;
-    const ur10e_real_t t390 = t2 * (t381 + t384) + t1 * (t387 - t389); /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t391 = t2 * t390;
-    const ur10e_real_t t392 = UR10E_C(0.11655) * t375;
-    const ur10e_real_t t393 = t19 * t392;
-    const ur10e_real_t t394 = t376 * parameters[MX6] - t382 * parameters[MY6];
-    const ur10e_real_t t395 = UR10E_C(0.11655) * t394;
-    const ur10e_real_t t396 = UR10E_C(0.11655) * t372;
-    const ur10e_real_t t397 = t3 * t396;
-    const ur10e_real_t t398 = t395 + (t393 - t397);
-    const ur10e_real_t t399 = t378 * parameters[XZ5];
-    const ur10e_real_t t400 = t375 * parameters[XY5];
-    const ur10e_real_t t401 = t400 - t399 + (t391 - t384 + t393 - t398);
-    const ur10e_real_t t402 = t377 - t383;
-    const ur10e_real_t t403 = t372 * parameters[YZ5];
-    const ur10e_real_t t404 = t400 - t403 + (t398 + (t402 - t395));
-    const ur10e_real_t t405 = parameters[ZZ6] - t385;
-    const ur10e_real_t t406 = t376 * t405 + t379 * parameters[YZ6];
-    const ur10e_real_t t407 = t379 * parameters[XZ6] + t382 * t405;
-    const ur10e_real_t t408 = t376 * parameters[MZ6] + t379 * parameters[MY6];
-    const ur10e_real_t t409 = t379 * parameters[MX6] + t382 * parameters[MZ6];
-    const ur10e_real_t t410 = t2 * t408 + t1 * t409;
-    const ur10e_real_t t411 = UR10E_C(0.11655) * t410 + t37 * t392 - (t2 * t406 + t1 * t407);
-    const ur10e_real_t t412 = UR10E_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const ur10e_real_t t413 = parameters[YY5] - t412;
-    const ur10e_real_t t414 = t378 * parameters[YZ5] - t375 * t413 + t411;
-    const ur10e_real_t t415 = t382 * parameters[XY6] - t376 * t386;
-    const ur10e_real_t t416 = t382 * t388 + t376 * parameters[XY6];
-    const ur10e_real_t t417 = t412 - parameters[XX5];
-    const ur10e_real_t t418 = t375 * t417 + t372 * parameters[XZ5] + (t2 * t415 + t1 * t416);
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t419 = t18 * (t401 + t404) + t22 * (t414 - t418);
-    const ur10e_real_t t420 = t18 * t419;
-    const ur10e_real_t t421 = UR10E_C(-0.11985) * t174; /* link j5: velocity of its origin */
-    const ur10e_real_t t422 = t49 * t421; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t423 = t1 * t408 - t2 * t409; /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t424 = t372 * parameters[MY5] - t378 * parameters[MX5] + (t423
-        + parameters[M6] * t396);
-    const ur10e_real_t t425 = UR10E_C(0.11985) * t424; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t426 = UR10E_C(0.11985) * t371;
-    const ur10e_real_t t427 = t39 * t426;
-    const ur10e_real_t t428 = t425 + (t422 - t427);
-    const ur10e_real_t t429 = t374 * parameters[XZ4];
-    const ur10e_real_t t430 = t174 * parameters[XY4];
-    const ur10e_real_t t431 = t430 - t429 + (t420 - t404 + t422 - t428);
+    const ur10e_real_t t352 = t212 * (parameters[XX2] - parameters[YY2]) - (t325 - t207) * parameters[XY2]
+        + (t213 * parameters[MX2] + t209 * parameters[MY2]);
+    const ur10e_real_t t353 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
+    const ur10e_real_t t354 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[1] * parameters[FV2]
+        + t353 * parameters[FC2]) - (t352 - t351);
+    const ur10e_real_t t355 = UR10E_C(12.12) * input[1] - t354 - t333 * t90 - t336 * t96;
+    const ur10e_real_t t356 = t355 + t342 * t89 - t348 * t88;
+    const ur10e_real_t t357 = t337 + t342 * t143 - t348 * t151 + t356 * t159;
+    const ur10e_real_t t358 = UR10E_C(1.0) / t160;
+    const ur10e_real_t t359 = ur10e_held(t357 * t358);
+    ddq[0] = t359;
+    const ur10e_real_t t360 = ur10e_held(t356 * t158 + t159 * t359);
+    ddq[1] = t360;
+    const ur10e_real_t t361 = ur10e_held(t348 * t87 - t151 * t359 - t88 * t360);
+    ddq[2] = t361;
+    const ur10e_real_t t362 = ur10e_held(t342 * t58 + t143 * t359 + t89 * t360 + t59 * t361);
+    ddq[3] = t362;
+    const ur10e_real_t t363 = t336 * t41 + t134 * t359 - t96 * t360 + t66 * t361;
+    const ur10e_real_t t364 = ur10e_held(t363 + t42 * t362);
+    ddq[4] = t364;
+    const ur10e_real_t t365 = t333 * t5 + t128 * t359 - t90 * t360 + t60 * t361;
+    const ur10e_real_t t366 = ur10e_held(t365 + t32 * t362 + t6 * t364);
+    ddq[5] = t366;
+    const ur10e_real_t t367 = t118 * t70 + t115 * t69; /* link j3: motion */
+    const ur10e_real_t t368 = t115 * t70 - t118 * t69;
+    const ur10e_real_t t369 = t49 * t368 - t46 * t367; /* link j4: motion */
+    const ur10e_real_t t370 = t369 * t359;
+    const ur10e_real_t t371 = t49 * t367 + t46 * t368;
+    const ur10e_real_t t372 = dq[0] * t371;
+    const ur10e_real_t t373 = t372 * t173;
+    const ur10e_real_t t374 = t370 - t373;
+    const ur10e_real_t t375 = t374 - t364;
+    const ur10e_real_t t376 = t17 * t372 + t183; /* link j5: motion */
+    const ur10e_real_t t377 = t177 - t21 * t372;
+    const ur10e_real_t t378 = t376 * t377;
+    const ur10e_real_t t379 = t378 + t375;
+    const ur10e_real_t t380 = t360 + t361;
+    const ur10e_real_t t381 = t362 + t380;
+    const ur10e_real_t t382 = dq[0] * t369; /* link j4: motion */
+    const ur10e_real_t t383 = t372 * t382;
+    const ur10e_real_t t384 = t383 - t381;
+    const ur10e_real_t t385 = t371 * t359;
+    const ur10e_real_t t386 = t382 * t173;
+    const ur10e_real_t t387 = t386 + t385;
+    const ur10e_real_t t388 = t386 + t387;
+    const ur10e_real_t t389 = t21 * t384 - t17 * t388;
+    const ur10e_real_t t390 = dq[4] - t382; /* link j5: motion */
+    const ur10e_real_t t391 = t377 * t390;
+    const ur10e_real_t t392 = t389 - t391;
+    const ur10e_real_t t393 = t392 - t391;
+    const ur10e_real_t t394 = t2 * t379 + t1 * t393;
+    const ur10e_real_t t395 = t1 * t390 - t2 * t376; /* link j6: motion */
+    const ur10e_real_t t396 = dq[5] + t377;
+    const ur10e_real_t t397 = t395 * t396;
+    const ur10e_real_t t398 = t397 + t394;
+    const ur10e_real_t t399 = t1 * t379 - t2 * t393;
+    const ur10e_real_t t400 = t1 * t376 + t2 * t390;
+    const ur10e_real_t t401 = t400 * t396;
+    const ur10e_real_t t402 = t399 - t401;
+    const ur10e_real_t t403 = t402 - t401;
+    const ur10e_real_t t404 = t17 * t384 + t21 * t388;
+    const ur10e_real_t t405 = t376 * t390; /* link j5: motion */
+    const ur10e_real_t t406 = t405 + t404;
+    const ur10e_real_t t407 = t406 - t366;
+    const ur10e_real_t t408 = t395 * t400; /* link j6: motion */
+    const ur10e_real_t t409 = t408 + t407;
+    const ur10e_real_t t410 = parameters[YY6] * t398 - t397 * t248 + parameters[XY6] * t403
+        - parameters[YZ6] * t409;
+    const ur10e_real_t t411 = t395 * t395;
+    const ur10e_real_t t412 = t396 * t396;
+    const ur10e_real_t t413 = t212 + t360;
+    const ur10e_real_t t414 = t213 + UR10E_C(0.6127) * t413;
+    const ur10e_real_t t415 = t211 - t69 * t414;
+    const ur10e_real_t t416 = t368 * t359;
+    const ur10e_real_t t417 = dq[0] * t368; /* link j3: motion */
+    const ur10e_real_t t418 = t417 * t417;
+    const ur10e_real_t t419 = t418 + t217; /* link j4: motion */
+    const ur10e_real_t t420 = t415 + (UR10E_C(0.57155) * t419 + UR10E_C(0.17415) * t416);
+    const ur10e_real_t t421 = dq[0] * t367; /* link j3: motion */
+    const ur10e_real_t t422 = t421 * t417;
+    const ur10e_real_t t423 = t422 + t380;
+    const ur10e_real_t t424 = t367 * t359;
+    const ur10e_real_t t425 = t220 + t70 * t414;
+    const ur10e_real_t t426 = t425 + (UR10E_C(0.57155) * t423 + UR10E_C(0.17415) * t424);
+    const ur10e_real_t t427 = t49 * t420 - t46 * t426;
+    const ur10e_real_t t428 = t427 + UR10E_C(-0.11985) * t384;
+    const ur10e_real_t t429 = t115 * t359;
+    const ur10e_real_t t430 = t229 - t429;
+    const ur10e_real_t t431 = t229 + t430;
+    const ur10e_real_t t432 = UR10E_C(0.6127) * t431;
+    const ur10e_real_t t433 = t421 * t172;
+    const ur10e_real_t t434 = t433 - t416;
+    const ur10e_real_t t435 = t433 + t434;
+    const ur10e_real_t t436 = t421 * t421;
+    const ur10e_real_t t437 = t436 + t418; /* link j4: motion */
+    const ur10e_real_t t438 = t432 + (UR10E_C(0.17415) * t437 + UR10E_C(0.57155) * t435);
+    const ur10e_real_t t439 = t438 - UR10E_C(-0.11985) * t388;
+    const ur10e_real_t t440 = t17 * t428 - t21 * t439;
+    const ur10e_real_t t441 = t440 + UR10E_C(0.11655) * t379;
+    const ur10e_real_t t442 = t46 * t420 + t49 * t426;
+    const ur10e_real_t t443 = t372 * t372;
+    const ur10e_real_t t444 = t443 + t240; /* link j5: motion */
+    const ur10e_real_t t445 = UR10E_C(0.11985) * t444 - t442;
+    const ur10e_real_t t446 = t445 + UR10E_C(0.11655) * t393;
+    const ur10e_real_t t447 = t2 * t441 + t1 * t446;
+    const ur10e_real_t t448 = parameters[MZ6] * t447;
+    const ur10e_real_t t449 = t21 * t428 + t17 * t439;
+    const ur10e_real_t t450 = t376 * t376;
+    const ur10e_real_t t451 = t390 * t390;
+    const ur10e_real_t t452 = t450 + t451; /* link j6: motion */
+    const ur10e_real_t t453 = UR10E_C(0.11655) * t452 + t449;
+    const ur10e_real_t t454 = (t411 - t412) * parameters[XZ6] - t410 - (t448 + parameters[MX6] * t453);
+    const ur10e_real_t t455 = t400 * t400;
+    const ur10e_real_t t456 = t411 + t455; /* link j6: columns */
+    const ur10e_real_t t457 = t400 * parameters[XZ6];
+    const ur10e_real_t t458 = t396 * parameters[XY6];
+    const ur10e_real_t t459 = t457 + t458;
+    const ur10e_real_t t460 = UR10E_C(2.0) * t400; /* link j6: derivatives */
+    const ur10e_real_t t461 = UR10E_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const ur10e_real_t t462 = t461 - parameters[YY6];
+    const ur10e_real_t t463 = t400 * parameters[YZ6] - t396 * t462;
+    const ur10e_real_t t464 = UR10E_C(-2.0) * t395;
+    const ur10e_real_t t465 = t459 * t460 + t463 * t464 - (t456 * parameters[XZ6] + (parameters[XY6] * t399
+        - parameters[XX6] * t394));
+    const ur10e_real_t t466 = t454 + (t448 + t465);
+    const ur10e_real_t t467 = t397 + t398;
+    const ur10e_real_t t468 = t407 - t408;
+    const ur10e_real_t t469 = t401 * t193 - parameters[XX6] * t402 - parameters[XY6] * t467
+        + parameters[XZ6] * t468;
+    const ur10e_real_t t470 = t1 * t441 - t2 * t446;
+    const ur10e_real_t t471 = parameters[MZ6] * t470;
+    const ur10e_real_t t472 = (t412 - t455) * parameters[YZ6] + t469 + (parameters[MY6] * t453 - t471);
+    const ur10e_real_t t473 = parameters[XX6] - t461;
+    const ur10e_real_t t474 = t396 * t473 + t395 * parameters[XZ6];
+    const ur10e_real_t t475 = t395 * parameters[YZ6];
+    const ur10e_real_t t476 = t458 + t475;
+    const ur10e_real_t t477 = t474 * t460 + t476 * t464 + (t456 * parameters[YZ6] + (parameters[YY6] * t399
+        - parameters[XY6] * t394));
+    const ur10e_real_t t478 = t472 + (t471 + t477);
+    const ur10e_real_t t479 = parameters[M6] * t470;
+    const ur10e_real_t t480 = parameters[MZ6] * t399;
+    const ur10e_real_t t481 = t479 + ((t411 + t412) * parameters[MY6] + parameters[MX6] * t468 + t480);
+    const ur10e_real_t t482 = t400 * parameters[MX6] - t395 * parameters[MY6];
+    const ur10e_real_t t483 = t482 * t464 + t479 + (t480 - t456 * parameters[MY6]) - t481;
+    const ur10e_real_t t484 = parameters[M6] * t447;
+    const ur10e_real_t t485 = parameters[MZ6] * t394;
+    const ur10e_real_t t486 = t484 + (parameters[MY6] * t409 - (t455 + t412) * parameters[MX6] + t485);
+    const ur10e_real_t t487 = t486 + (t482 * t460 - t484 - (t456 * parameters[MX6] + t485));
+    const ur10e_real_t t488 = t1 * t483 - t2 * t487;
+    const ur10e_real_t t489 = t2 * t466 + t1 * t478 + UR10E_C(0.11655) * t488;
+    const ur10e_real_t t490 = parameters[MY6] * t470 - parameters[MX6] * t447;
+    const ur10e_real_t t491 = parameters[XZ6] * t394 - parameters[YZ6] * t399 - t456 * parameters[ZZ6];
+    const ur10e_real_t t492 = t395 * parameters[XY6] - t400 * t473;
+    const ur10e_real_t t493 = t395 * t462 + t400 * parameters[XY6];
+    const ur10e_real_t t494 = t493 * t464 - t492 * t460 - t491 - t490;
+    const ur10e_real_t t495 = t2 * t483 + t1 * t487;
+    const ur10e_real_t t496 = t396 * parameters[MX6] + t395 * parameters[MZ6];
+    const ur10e_real_t t497 = t400 * parameters[MZ6] + t396 * parameters[MY6];
+    const ur10e_real_t t498 = parameters[MY6] * t394 + parameters[MX6] * t399 - (t496 * t460 + t497 * t464);
+    const ur10e_real_t t499 = t17 * t498 - t21 * t495;
+    const ur10e_real_t t500 = t17 * t489 + t21 * t494 + UR10E_C(-0.11985) * t499;
+    const ur10e_real_t t501 = t2 * t478 - t1 * t466 + UR10E_C(0.11655) * t495;
+    const ur10e_real_t t502 = t17 * t495 + t21 * t498;
+    const ur10e_real_t t503 = t46 * t502 + t49 * t488;
+    const ur10e_real_t t504 = t49 * t500 + t46 * t501 + UR10E_C(0.17415) * t503;
+    const ur10e_real_t t505 = t49 * t502 - t46 * t488;
+    const ur10e_real_t t506 = t46 * t500 - t49 * t501 + (UR10E_C(-0.17415) * t505 + UR10E_C(0.57155) * t499);
+    const ur10e_real_t t507 = t115 * (t69 * t504 + t70 * t506 + UR10E_C(0.6127) * t499);
+    const ur10e_real_t t508 = UR10E_C(0.08250825082508251) * (t118 * (t70 * t504 - t69 * t506) + t507);
+    const ur10e_real_t t509 = ur10e_held(UR10E_C(12.12) * t358);
+    const ur10e_real_t t510 = t21 * t489 - t17 * t494 + UR10E_C(-0.11985) * t502;
+    const ur10e_real_t t511 = t510 + UR10E_C(0.57155) * t503;
+    const ur10e_real_t t512 = UR10E_C(0.08250825082508251) * (t511 + UR10E_C(0.6127) * (t69 * t505
+        + t70 * t503));
+    const ur10e_real_t t513 = t159 * t358;
+    const ur10e_real_t t514 = ur10e_held(UR10E_C(12.12) * t513);
+    const ur10e_real_t t515 = UR10E_C(0.099009900990099) * t511;
+    const ur10e_real_t t516 = t358 * (t151 + t88 * t159);
+    const ur10e_real_t t517 = ur10e_held(UR10E_C(-10.100000000000001) * t516);
+    const ur10e_real_t t518 = UR10E_C(0.11001100110011001) * t510;
+    const ur10e_real_t t519 = t59 * t88 - t89;
+    const ur10e_real_t t520 = t358 * (t59 * t151 - t143 + t159 * t519);
+    const ur10e_real_t t521 = ur10e_held(UR10E_C(-9.09) * t520);
+    const ur10e_real_t t522 = t509 * t508 + t514 * t512 + t517 * t515 + t521 * t518;
+    const ur10e_real_t t523 = UR10E_C(0.11001100110011001) * t501;
+    const ur10e_real_t t524 = t66 + t42 * t59;
+    const ur10e_real_t t525 = t96 - t42 * t89 + t88 * t524;
+    const ur10e_real_t t526 = t151 * t524 - (t134 + t42 * t143) + t159 * t525;
+    const ur10e_real_t t527 = t358 * t526;
+    const ur10e_real_t t528 = ur10e_held(UR10E_C(-9.09) * t527);
+    const ur10e_real_t t529 = UR10E_C(2.0) * t492;
+    const ur10e_real_t t530 = UR10E_C(-2.0) * t493;
+    const ur10e_real_t t531 = UR10E_C(0.11001100110011001) * (t490 + (t400 * t529 - t395 * t530 + t491));
+    const ur10e_real_t t532 = t32 + t6 * t42;
+    const ur10e_real_t t533 = t60 + t6 * t66 + t59 * t532;
+    const ur10e_real_t t534 = t90 + t6 * t96 - t89 * t532 + t88 * t533;
+    const ur10e_real_t t535 = t151 * t533 - (t128 + t6 * t134 + t143 * t532);
+    const ur10e_real_t t536 = t358 * (t535 + t159 * t534);
+    const ur10e_real_t t537 = UR10E_C(9.09) * t536;
+    ddq_by_q[5] = t537 * t531 - (t522 + t528 * t523);
+    const ur10e_real_t t538 = ur10e_held(UR10E_C(12.12) * (t158 + t159 * t513));
+    const ur10e_real_t t539 = t88 * t158 + t159 * t516;
+    const ur10e_real_t t540 = ur10e_held(UR10E_C(-10.100000000000001) * t539);
+    const ur10e_real_t t541 = t158 * t519 + t159 * t520;
+    const ur10e_real_t t542 = ur10e_held(UR10E_C(-9.09) * t541);
+    const ur10e_real_t t543 = t514 * t508 + t538 * t512 + t540 * t515 + t542 * t518;
+    const ur10e_real_t t544 = t158 * t525 + t159 * t527;
+    const ur10e_real_t t545 = ur10e_held(UR10E_C(-9.09) * t544);
+    const ur10e_real_t t546 = t158 * t534 + t159 * t536;
+    const ur10e_real_t t547 = UR10E_C(9.09) * t546;
+    ddq_by_q[11] = t547 * t531 - (t543 + t545 * t523);
+    const ur10e_real_t t548 = ur10e_held(UR10E_C(-12.12) * t516);
+    const ur10e_real_t t549 = ur10e_held(UR10E_C(-12.12) * t539);
+    const ur10e_real_t t550 = ur10e_held(UR10E_C(10.100000000000001) * (t87 + t151 * t516 + t88 * t539));
+    const ur10e_real_t t551 = t59 * t87 + t151 * t520 + t88 * t541;
+    const ur10e_real_t t552 = ur10e_held(UR10E_C(9.09) * t551);
+    const ur10e_real_t t553 = t548 * t508 + t549 * t512 + t550 * t515 + t552 * t518;
+    const ur10e_real_t t554 = t87 * t524 + t151 * t527 + t88 * t544;
+    const ur10e_real_t t555 = ur10e_held(UR10E_C(9.09) * t554);
+    const ur10e_real_t t556 = t87 * t533 + t151 * t536 + t88 * t546;
+    const ur10e_real_t t557 = UR10E_C(-9.09) * t556;
+    ddq_by_q[17] = t557 * t531 - (t553 + t555 * t523);
+    const ur10e_real_t t558 = ur10e_held(UR10E_C(-12.12) * t520);
+    const ur10e_real_t t559 = ur10e_held(UR10E_C(-12.12) * t541);
+    const ur10e_real_t t560 = ur10e_held(UR10E_C(10.100000000000001) * t551);
+    const ur10e_real_t t561 = t58 - t143 * t520 - t89 * t541 + t59 * t551;
+    const ur10e_real_t t562 = ur10e_held(UR10E_C(9.09) * t561);
+    const ur10e_real_t t563 = t558 * t508 + t559 * t512 + t560 * t515 + t562 * t518;
+    const ur10e_real_t t564 = t143 * t527 - t42 * t58 + t89 * t544 - t59 * t554;
+    const ur10e_real_t t565 = ur10e_held(UR10E_C(-9.09) * t564);
+    const ur10e_real_t t566 = t143 * t536 - t58 * t532 + t89 * t546 - t59 * t556;
+    const ur10e_real_t t567 = UR10E_C(9.09) * t566;
+    ddq_by_q[23] = t567 * t531 - (t563 + t565 * t523);
+    const ur10e_real_t t568 = ur10e_held(UR10E_C(-12.12) * t527);
+    const ur10e_real_t t569 = ur10e_held(UR10E_C(-12.12) * t544);
+    const ur10e_real_t t570 = ur10e_held(UR10E_C(10.100000000000001) * t554);
+    const ur10e_real_t t571 = t568 * t508 + t569 * t512 + t570 * t515 + t565 * t518;
+    const ur10e_real_t t572 = t41 - t134 * t527 + t96 * t544 + t66 * t554;
+    const ur10e_real_t t573 = ur10e_held(UR10E_C(9.09) * (t572 - t42 * t564));
+    const ur10e_real_t t574 = t6 * t41 - t134 * t536 + t96 * t546 + t66 * t556;
+    const ur10e_real_t t575 = t574 - t42 * t566;
+    const ur10e_real_t t576 = UR10E_C(-9.09) * t575;
+    ddq_by_q[29] = t576 * t531 - (t571 + t573 * t523);
+    const ur10e_real_t t577 = ur10e_held(UR10E_C(-12.12) * t536);
+    const ur10e_real_t t578 = ur10e_held(UR10E_C(-12.12) * t546);
+    const ur10e_real_t t579 = ur10e_held(UR10E_C(10.100000000000001) * t556);
+    const ur10e_real_t t580 = t577 * t508 + t578 * t512 + t579 * t515 - t567 * t518;
+    const ur10e_real_t t581 = t5 - t128 * t536 + t90 * t546 + t60 * t556;
+    const ur10e_real_t t582 = ur10e_held(UR10E_C(9.09) * (t581 - t32 * t566 + t6 * t575));
+    ddq_by_q[35] = t576 * t523 - t580 - t582 * t531;
+    const ur10e_real_t t583 = parameters[ZZ6] - t461;
+    const ur10e_real_t t584 = t400 * t583 + t396 * parameters[YZ6];
+    const ur10e_real_t t585 = UR10E_C(2.0) * t584 + (parameters[XX6] * t460 + parameters[XY6] * t464);
+    const ur10e_real_t t586 = t396 * parameters[XZ6] + t395 * t583;
+    const ur10e_real_t t587 = UR10E_C(-2.0) * t586 + (parameters[XY6] * t460 + parameters[YY6] * t464);
+    const ur10e_real_t t588 = UR10E_C(2.0) * t496 + parameters[MZ6] * t464;
+    const ur10e_real_t t589 = UR10E_C(2.0) * t497 - parameters[MZ6] * t460;
+    const ur10e_real_t t590 = t1 * t588 + t2 * t589;
+    const ur10e_real_t t591 = t1 * t587 - t2 * t585 + UR10E_C(0.11655) * t590;
+    const ur10e_real_t t592 = t457 - t475;
+    const ur10e_real_t t593 = UR10E_C(2.0) * t592;
+    const ur10e_real_t t594 = t593 - (parameters[XZ6] * t460 + parameters[YZ6] * t464);
+    const ur10e_real_t t595 = t2 * t588 - t1 * t589;
+    const ur10e_real_t t596 = parameters[MX6] * t464 - parameters[MY6] * t460;
+    const ur10e_real_t t597 = t21 * t595 - t17 * t596;
+    const ur10e_real_t t598 = t17 * t591 - t21 * t594 + UR10E_C(0.11985) * t597;
+    const ur10e_real_t t599 = t1 * t585 + t2 * t587 + UR10E_C(0.11655) * t595;
+    const ur10e_real_t t600 = t17 * t595 + t21 * t596;
+    const ur10e_real_t t601 = t46 * t600 + t49 * t590;
+    const ur10e_real_t t602 = t49 * t598 + t46 * t599 + UR10E_C(0.17415) * t601;
+    const ur10e_real_t t603 = t49 * t600 - t46 * t590;
+    const ur10e_real_t t604 = t49 * t599 - t46 * t598 + (UR10E_C(0.17415) * t603 + UR10E_C(0.57155) * t597);
+    const ur10e_real_t t605 = t115 * (t69 * t602 - t70 * t604 + UR10E_C(-0.6127) * t597);
+    const ur10e_real_t t606 = UR10E_C(0.08250825082508251) * (t118 * (t70 * t602 + t69 * t604) + t605);
+    const ur10e_real_t t607 = t21 * t591 + t17 * t594 + UR10E_C(-0.11985) * t600;
+    const ur10e_real_t t608 = t607 + UR10E_C(0.57155) * t601;
+    const ur10e_real_t t609 = UR10E_C(0.08250825082508251) * (t608 + UR10E_C(0.6127) * (t69 * t603
+        + t70 * t601));
+    const ur10e_real_t t610 = UR10E_C(0.099009900990099) * t608;
+    const ur10e_real_t t611 = UR10E_C(0.11001100110011001) * t607;
+    const ur10e_real_t t612 = t606 * t509 + t609 * t514 + t610 * t517 + t611 * t521;
+    const ur10e_real_t t613 = UR10E_C(0.11001100110011001) * t599;
+    const ur10e_real_t t614 = UR10E_C(1122.2222222222222) * parameters[FV6];
+    ddq_by_dq[5] = t614 * t537 - (t612 + t613 * t528);
+    const ur10e_real_t t615 = t606 * t514 + t609 * t538 + t610 * t540 + t611 * t542;
+    ddq_by_dq[11] = t614 * t547 - (t615 + t613 * t545);
+    const ur10e_real_t t616 = t606 * t548 + t609 * t549 + t610 * t550 + t611 * t552;
+    ddq_by_dq[17] = t614 * t557 - (t616 + t613 * t555);
+    const ur10e_real_t t617 = t606 * t558 + t609 * t559 + t610 * t560 + t611 * t562;
+    ddq_by_dq[23] = t614 * t567 - (t617 + t613 * t565);
+    const ur10e_real_t t618 = t606 * t568 + t609 * t569 + t610 * t570 + t611 * t565;
+    ddq_by_dq[29] = t614 * t576 - (t618 + t613 * t573);
+    const ur10e_real_t t619 = t606 * t577 + t609 * t578 + t610 * t579 - t611 * t567;
+    ddq_by_dq[35] = t613 * t576 - t619 - t614 * t582;
+    ddq_by_input[5] = -t537;
+    ddq_by_input[11] = -t547;
+    ddq_by_input[17] = -t557;
+    ddq_by_input[23] = -t567;
+    ddq_by_input[29] = -t576;
+    ddq_by_input[35] = t582;
+    const ur10e_real_t t620 = t1 * t486 - t2 * t481;
+    const ur10e_real_t t621 = t405 + t406;
+    const ur10e_real_t t622 = t375 - t378;
+    const ur10e_real_t t623 = t391 * t260 + parameters[XX5] * t392 + parameters[XY5] * t621
+        + parameters[XZ5] * t622;
+    const ur10e_real_t t624 = t377 * t377; /* link j5: motion */
+    const ur10e_real_t t625 = (t451 - t624) * parameters[YZ5] + t623 + (parameters[MY5] * t445
+        - parameters[MZ5] * t449);
+    const ur10e_real_t t626 = t625 + (t2 * t472 - t1 * t454 + UR10E_C(0.11655) * t620);
+    const ur10e_real_t t627 = t450 + t624; /* link j6: motion */
+    const ur10e_real_t t628 = UR10E_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const ur10e_real_t t629 = t628 - parameters[XX5];
     /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t432 = t403 - t399 + (t398 + (t391 - t381 + t397));
-    const ur10e_real_t t433 = t371 * parameters[YZ4];
-    const ur10e_real_t t434 = t430 - t433 + (t428 + (t432 - t425)); /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t435 = t1 * t390; /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t436 = t412 - parameters[ZZ5];
-    const ur10e_real_t t437 = t389 + t435 - t3 * t392 - (t378 * t436 + t375 * parameters[YZ5]);
-    const ur10e_real_t t438 = t375 * parameters[XZ5] + t372 * t436 - (t2 * t416 - t1 * t415);
-    const ur10e_real_t t439 = t378 * parameters[MZ5] - t375 * parameters[MY5] - (t410
-        + parameters[M6] * t392);
-    const ur10e_real_t t440 = t375 * parameters[MX5] - t372 * parameters[MZ5] + t394;
-    const ur10e_real_t t441 = t18 * t439 - t22 * t440; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t442 = t18 * t437 - t22 * t438 + (UR10E_C(-0.11985) * t441 + t46 * t421);
-    const ur10e_real_t t443 = UR10E_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const ur10e_real_t t444 = parameters[YY4] - t443;
-    const ur10e_real_t t445 = t174 * t444 - t374 * parameters[YZ4] + t442;
+    const ur10e_real_t t630 = t390 * t629 + t376 * parameters[XZ5] + (t2 * t492 + t1 * t493);
+    const ur10e_real_t t631 = UR10E_C(-2.0) * t377; /* link j5: derivatives */
+    const ur10e_real_t t632 = UR10E_C(0.11655) * t482; /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t633 = UR10E_C(0.11655) * t390;
+    const ur10e_real_t t634 = t18 * t633;
+    const ur10e_real_t t635 = UR10E_C(0.11655) * t376;
+    const ur10e_real_t t636 = t3 * t635;
+    const ur10e_real_t t637 = t632 + (t634 - t636);
+    const ur10e_real_t t638 = t390 * parameters[XY5];
+    const ur10e_real_t t639 = t376 * parameters[YZ5];
+    const ur10e_real_t t640 = t638 - t639 + (t637 + (t592 - t632));
+    const ur10e_real_t t641 = UR10E_C(2.0) * t376; /* link j5: derivatives */
+    const ur10e_real_t t642 = t640 * t641 - t630 * t631 - (t627 * t33 + (t20 * t404 + t16 * t389));
+    const ur10e_real_t t643 = t626 + (t642 + t24 * t449);
+    const ur10e_real_t t644 = t408 * t7 + parameters[ZZ6] * t407 - parameters[YZ6] * t394
+        - parameters[XZ6] * t399;
+    const ur10e_real_t t645 = (t455 - t411) * parameters[XY6] + t644 + (parameters[MX6] * t470
+        + parameters[MY6] * t447);
+    const ur10e_real_t t646 = parameters[YY5] * t406 - t405 * t269 + parameters[XY5] * t393
+        + parameters[YZ5] * t379;
+    const ur10e_real_t t647 = (t450 - t451) * parameters[XZ5] + t646 - (parameters[MZ5] * t440
+        + parameters[MX5] * t445);
+    const ur10e_real_t t648 = t647 + t645;
+    const ur10e_real_t t649 = t2 * (t459 + t476) + t1 * (t474 - t463); /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t650 = t2 * t649;
+    const ur10e_real_t t651 = t377 * parameters[XZ5];
+    const ur10e_real_t t652 = t638 - t651 + (t650 - t476 + t634 - t637);
+    const ur10e_real_t t653 = t2 * t497 + t1 * t496;
+    const ur10e_real_t t654 = UR10E_C(0.11655) * t653 + t36 * t633 - (t2 * t584 + t1 * t586);
+    const ur10e_real_t t655 = parameters[YY5] - t628;
+    const ur10e_real_t t656 = t377 * parameters[YZ5] - t390 * t655 + t654;
+    const ur10e_real_t t657 = t652 * t631 - t656 * t641 + (t627 * t34 - (t15 * t404 + t20 * t389));
+    const ur10e_real_t t658 = t648 + (t657 + t24 * t440);
+    const ur10e_real_t t659 = t2 * t486 + t1 * t481;
+    const ur10e_real_t t660 = parameters[MY5] * t379 - (t624 + t451) * parameters[MX5]
+        - parameters[MZ5] * t404;
+    const ur10e_real_t t661 = parameters[M5] * t440 + t660 + t659;
+    const ur10e_real_t t662 = t1 * t497 - t2 * t496;
+    const ur10e_real_t t663 = t376 * parameters[MY5] - t377 * parameters[MX5] + (t662
+        + parameters[M6] * t635);
+    const ur10e_real_t t664 = t663 * t631 - t25 * t440 + (t627 * t35 + t24 * t404);
+    const ur10e_real_t t665 = t661 + t664;
+    const ur10e_real_t t666 = parameters[MZ5] * t389 - (t452 * parameters[MY5] + parameters[MX5] * t622)
+        - parameters[M5] * t449;
+    const ur10e_real_t t667 = parameters[MY6] * t403 - parameters[MX6] * t467 - t456 * parameters[MZ6]
+        - parameters[M6] * t453;
+    const ur10e_real_t t668 = t666 + t667;
+    const ur10e_real_t t669 = t663 * t641 + t25 * t449 - (t627 * t37 + t24 * t389);
+    const ur10e_real_t t670 = t668 + t669;
+    const ur10e_real_t t671 = t17 * t665 - t21 * t670;
+    const ur10e_real_t t672 = t17 * t658 + t21 * t643 + UR10E_C(-0.11985) * t671;
+    const ur10e_real_t t673 = t35 * t440 + t37 * t449;
+    const ur10e_real_t t674 = t34 * t404 - t33 * t389 - t627 * t12;
+    const ur10e_real_t t675 = t1 * t649;
+    const ur10e_real_t t676 = t474 - t675 - t18 * t635 - (t376 * parameters[XY5] + t377 * t629);
+    const ur10e_real_t t677 = t1 * t584 - t2 * t586 + (UR10E_C(-0.11655) * t662 - t36 * t635);
+    const ur10e_real_t t678 = t376 * t655 - t377 * parameters[XY5] + t677;
+    const ur10e_real_t t679 = t676 * t631 - t678 * t641 + t674 + t673;
+    const ur10e_real_t t680 = t17 * t670 + t21 * t665;
+    const ur10e_real_t t681 = t390 * parameters[MX5] - t376 * parameters[MZ5] + t482;
+    const ur10e_real_t t682 = t377 * parameters[MZ5] - t390 * parameters[MY5] - (t653
+        + parameters[M6] * t633);
+    const ur10e_real_t t683 = t681 * t631 - t682 * t641 - (t35 * t389 - t37 * t404);
+    const ur10e_real_t t684 = t49 * t680 + t46 * t683;
+    const ur10e_real_t t685 = t46 * t672 - t49 * t679 + (UR10E_C(-0.17415) * t684 + UR10E_C(0.57155) * t671);
+    const ur10e_real_t t686 = t46 * t680 - t49 * t683;
+    const ur10e_real_t t687 = t49 * t672 + t46 * t679 + UR10E_C(0.17415) * t686;
+    const ur10e_real_t t688 = t115 * (t69 * t687 + t70 * t685 + UR10E_C(0.6127) * t671);
+    const ur10e_real_t t689 = UR10E_C(0.08250825082508251) * (t118 * (t70 * t687 - t69 * t685) + t688);
+    const ur10e_real_t t690 = t21 * t658 - t17 * t643 + UR10E_C(-0.11985) * t680;
+    const ur10e_real_t t691 = t690 + UR10E_C(0.57155) * t686;
+    const ur10e_real_t t692 = UR10E_C(0.08250825082508251) * (t691 + UR10E_C(0.6127) * (t69 * t684
+        + t70 * t686));
+    const ur10e_real_t t693 = UR10E_C(0.099009900990099) * t691;
+    const ur10e_real_t t694 = UR10E_C(0.11001100110011001) * t690;
+    const ur10e_real_t t695 = t509 * t689 + t514 * t692 + t517 * t693 + t521 * t694;
+    const ur10e_real_t t696 = UR10E_C(2.0) * t676; /* link j5: derivatives */
+    const ur10e_real_t t697 = UR10E_C(2.0) * t678;
+    const ur10e_real_t t698 = UR10E_C(0.11001100110011001) * (t673 + (t674 - (t377 * t696 + t376 * t697)));
+    const ur10e_real_t t699 = t2 * t529 - t1 * t530; /* link j6: derivatives */
+    const ur10e_real_t t700 = t593 + (t3 * (UR10E_C(-0.2331) * t376) + t18 * (UR10E_C(0.2331) * t390));
+    const ur10e_real_t t701 = t627 * t4 + (t19 * t404 + parameters[ZZ6] * t389) - (t377 * t699 + t376 * t700);
+    const ur10e_real_t t702 = UR10E_C(0.11001100110011001) * (t701 + t3 * t449);
+    ddq_by_q[4] = t537 * t702 - (t695 + t528 * t698);
+    const ur10e_real_t t703 = t514 * t689 + t538 * t692 + t540 * t693 + t542 * t694;
+    ddq_by_q[10] = t547 * t702 - (t703 + t545 * t698);
+    const ur10e_real_t t704 = t548 * t689 + t549 * t692 + t550 * t693 + t552 * t694;
+    ddq_by_q[16] = t557 * t702 - (t704 + t555 * t698);
+    const ur10e_real_t t705 = t558 * t689 + t559 * t692 + t560 * t693 + t562 * t694;
+    ddq_by_q[22] = t567 * t702 - (t705 + t565 * t698);
+    const ur10e_real_t t706 = t568 * t689 + t569 * t692 + t570 * t693 + t565 * t694;
+    ddq_by_q[28] = t576 * t702 - (t706 + t573 * t698);
+    const ur10e_real_t t707 = t577 * t689 + t578 * t692 + t579 * t693 - t567 * t694;
+    ddq_by_q[34] = t576 * t698 - t707 - t582 * t702;
+    const ur10e_real_t t708 = t628 - parameters[ZZ5];
     /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t446 = t387 - t435 - t19 * t396 - (t372 * parameters[XY5] + t378 * t417);
-    const ur10e_real_t t447 = t1 * t406 - t2 * t407 + (UR10E_C(-0.11655) * t423 - t37 * t396);
-    const ur10e_real_t t448 = t372 * t413 - t378 * parameters[XY5] + t447;
-    const ur10e_real_t t449 = parameters[XX4] - t443;
+    const ur10e_real_t t709 = t463 + t675 - t3 * t633 - (t377 * t708 + t390 * parameters[YZ5]);
+    const ur10e_real_t t710 = UR10E_C(2.0) * t709 + (t20 * t641 - t15 * t631); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t711 = t390 * parameters[XZ5] + t376 * t708 - (t2 * t493 - t1 * t492);
+    const ur10e_real_t t712 = UR10E_C(2.0) * t711 - (t16 * t641 - t20 * t631); /* link j5: derivatives */
+    const ur10e_real_t t713 = UR10E_C(2.0) * t681 + t24 * t641;
+    const ur10e_real_t t714 = UR10E_C(2.0) * t682 + t24 * t631;
+    const ur10e_real_t t715 = t21 * t713 - t17 * t714;
+    const ur10e_real_t t716 = t17 * t710 - t21 * t712 + UR10E_C(0.11985) * t715;
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t717 = t639 - t651 + (t637 + (t650 - t459 + t636));
+    const ur10e_real_t t718 = UR10E_C(2.0) * t717; /* link j5: derivatives */
+    const ur10e_real_t t719 = t718 + (t34 * t631 + t33 * t641);
+    const ur10e_real_t t720 = t17 * t713 + t21 * t714;
+    const ur10e_real_t t721 = t37 * t631 + t35 * t641;
+    const ur10e_real_t t722 = t49 * t720 + t46 * t721;
+    const ur10e_real_t t723 = t49 * t719 - t46 * t716 + (UR10E_C(0.17415) * t722 + UR10E_C(0.57155) * t715);
+    const ur10e_real_t t724 = t46 * t720 - t49 * t721;
+    const ur10e_real_t t725 = t49 * t716 + t46 * t719 + UR10E_C(0.17415) * t724;
+    const ur10e_real_t t726 = t115 * (t69 * t725 - t70 * t723 + UR10E_C(-0.6127) * t715);
+    const ur10e_real_t t727 = UR10E_C(0.08250825082508251) * (t118 * (t70 * t725 + t69 * t723) + t726);
+    const ur10e_real_t t728 = t21 * t710 + t17 * t712 + UR10E_C(-0.11985) * t720;
+    const ur10e_real_t t729 = t728 + UR10E_C(0.57155) * t724;
+    const ur10e_real_t t730 = UR10E_C(0.08250825082508251) * (t729 + UR10E_C(0.6127) * (t69 * t722
+        + t70 * t724));
+    const ur10e_real_t t731 = UR10E_C(0.099009900990099) * t729;
+    const ur10e_real_t t732 = UR10E_C(0.11001100110011001) * t728;
+    const ur10e_real_t t733 = t727 * t509 + t730 * t514 + t731 * t517 + t732 * t521;
+    const ur10e_real_t t734 = UR10E_C(0.11001100110011001) * (t718 + UR10E_C(2.0) * (t376 * t33
+        - t377 * t34));
+    const ur10e_real_t t735 = UR10E_C(1122.2222222222222) * parameters[FV5] + t734;
+    const ur10e_real_t t736 = t1 * t529 + t2 * t530; /* link j6: derivatives */
+    const ur10e_real_t t737 = UR10E_C(0.11001100110011001) * (t736 + UR10E_C(-2.0) * (t377 * t19
+        + t376 * parameters[ZZ6]));
+    ddq_by_dq[4] = t737 * t537 - (t733 + t735 * t528);
+    const ur10e_real_t t738 = t727 * t514 + t730 * t538 + t731 * t540 + t732 * t542;
+    ddq_by_dq[10] = t737 * t547 - (t738 + t735 * t545);
+    const ur10e_real_t t739 = t727 * t548 + t730 * t549 + t731 * t550 + t732 * t552;
+    ddq_by_dq[16] = t737 * t557 - (t739 + t735 * t555);
+    const ur10e_real_t t740 = t727 * t558 + t730 * t559 + t731 * t560 + t732 * t562;
+    ddq_by_dq[22] = t737 * t567 - (t740 + t735 * t565);
+    const ur10e_real_t t741 = t727 * t568 + t730 * t569 + t731 * t570 + t732 * t565;
+    ddq_by_dq[28] = t737 * t576 - (t741 + t735 * t573);
+    const ur10e_real_t t742 = t727 * t577 + t730 * t578 + t731 * t579 - t732 * t567;
+    ddq_by_dq[34] = t735 * t576 - t742 - t737 * t582;
+    ddq_by_input[4] = t528;
+    ddq_by_input[10] = t545;
+    ddq_by_input[16] = t555;
+    ddq_by_input[22] = t565;
+    ddq_by_input[28] = t573;
+    ddq_by_input[34] = -t576;
+    const ur10e_real_t t743 = t378 * t286 + parameters[ZZ5] * t375 + parameters[YZ5] * t404
+        + parameters[XZ5] * t389;
+    const ur10e_real_t t744 = (t450 - t624) * parameters[XY5] - t743 - (parameters[MX5] * t449
+        + parameters[MY5] * t440);
+    const ur10e_real_t t745 = t744 + (t1 * t472 + t2 * t454 + UR10E_C(-0.11655) * t659);
+    const ur10e_real_t t746 = parameters[YZ4] * t384 - (t373 * t290 + parameters[YY4] * t374
+        + parameters[XY4] * t388);
+    const ur10e_real_t t747 = (t443 - t240) * parameters[XZ4] + t746 - (parameters[MZ4] * t427
+        + parameters[MX4] * t438);
+    const ur10e_real_t t748 = t747 + t745;
+    const ur10e_real_t t749 = t382 * t382; /* link j4: motion */
+    const ur10e_real_t t750 = t443 + t749; /* link j5: motion */
     /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t450 = t174 * t449 - t371 * parameters[XZ4] + (t18 * t446 + t22 * t448);
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t451 = t51 * (t431 + t434) - t48 * (t445 - t450);
-    const ur10e_real_t t452 = t51 * t451;
+    const ur10e_real_t t751 = t17 * (t652 + t640) + t21 * (t656 - t630);
+    const ur10e_real_t t752 = t17 * t751;
+    const ur10e_real_t t753 = UR10E_C(-0.11985) * t173; /* link j5: velocity of its origin */
+    const ur10e_real_t t754 = t47 * t753; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t755 = UR10E_C(0.11985) * t663;
+    const ur10e_real_t t756 = UR10E_C(0.11985) * t372;
+    const ur10e_real_t t757 = t38 * t756;
+    const ur10e_real_t t758 = t755 + (t754 - t757);
+    const ur10e_real_t t759 = t382 * parameters[XZ4];
+    const ur10e_real_t t760 = t173 * parameters[XY4];
+    const ur10e_real_t t761 = t760 - t759 + (t752 - t640 + t754 - t758);
+    const ur10e_real_t t762 = UR10E_C(2.0) * t382; /* link j4: derivatives */
+    const ur10e_real_t t763 = t17 * t682 - t21 * t681; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t764 = t17 * t709 - t21 * t711 + (UR10E_C(-0.11985) * t763 + t44 * t753);
+    const ur10e_real_t t765 = UR10E_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const ur10e_real_t t766 = parameters[YY4] - t765;
+    const ur10e_real_t t767 = t173 * t766 - t382 * parameters[YZ4] + t764;
+    const ur10e_real_t t768 = UR10E_C(2.0) * t372; /* link j4: derivatives */
+    const ur10e_real_t t769 = t767 * t768 - t761 * t762 + (t750 * t135 - (t99 * t370 + t102 * t385));
+    const ur10e_real_t t770 = t748 + (t769 + t105 * t427);
+    const ur10e_real_t t771 = t21 * t661 + t17 * t668;
+    const ur10e_real_t t772 = t383 + t381;
+    const ur10e_real_t t773 = t373 - t374;
+    const ur10e_real_t t774 = parameters[XY4] * t773 - (t386 * t280 + parameters[XX4] * t387)
+        - parameters[XZ4] * t772;
+    const ur10e_real_t t775 = (t240 - t749) * parameters[YZ4] + t774 + (parameters[MY4] * t438
+        - parameters[MZ4] * t442);
+    const ur10e_real_t t776 = t775 + (t17 * t626 - t21 * t648 + UR10E_C(0.11985) * t771);
+    const ur10e_real_t t777 = parameters[XX4] - t765;
     /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t453 = t374 * parameters[MZ4] - t174 * parameters[MY4] + (t441 - t26 * t421);
-    const ur10e_real_t t454 = t174 * parameters[MX4] - t371 * parameters[MZ4] - t424;
-    const ur10e_real_t t455 = t51 * t453 - t48 * t454; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t456 = UR10E_C(-0.57155) * t455;
-    const ur10e_real_t t457 = dq[0] * t369; /* link j3: motion */
-    const ur10e_real_t t458 = UR10E_C(0.17415) * t457;
-    const ur10e_real_t t459 = t85 * t458; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t460 = t22 * t439 + t18 * t440; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t461 = t371 * parameters[MY4] - t374 * parameters[MX4] + (t460 - t26 * t426);
-    const ur10e_real_t t462 = UR10E_C(0.17415) * t461; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t463 = dq[0] * t368; /* link j3: motion */
-    const ur10e_real_t t464 = UR10E_C(-0.57155) * t173 + UR10E_C(-0.17415) * t463;
-    const ur10e_real_t t465 = t71 * t464; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t466 = UR10E_C(0.57155) * t457;
-    const ur10e_real_t t467 = t156 * t466;
-    const ur10e_real_t t468 = t456 + t462 + (t467 - (t459 + t465));
-    const ur10e_real_t t469 = t457 * parameters[XZ3];
-    const ur10e_real_t t470 = t173 * parameters[XY3];
-    const ur10e_real_t t471 = t469 - t470 + (t468 + (t434 - t452 + (t459 - t456)));
-    const ur10e_real_t t472 = t463 * parameters[YZ3];
-    const ur10e_real_t t473 = t470 - t472 + (t468 - (t431 - t452 - t465));
-    const ur10e_real_t t474 = t48 * t451;
-    const ur10e_real_t t475 = UR10E_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const ur10e_real_t t476 = parameters[YY3] - t475;
-    const ur10e_real_t t477 = t173 * t476 - t457 * parameters[YZ3] + (t445 + t474 - t71 * t458);
-    const ur10e_real_t t478 = t48 * t453 + t51 * t454;
-    const ur10e_real_t t479 = parameters[XX3] - t475;
-    const ur10e_real_t t480 = t173 * t479 - t463 * parameters[XZ3] + (t450 - t474 - (UR10E_C(-0.57155) * t478
-        - t85 * t464));
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t481 = t73 * (t471 - t473) + t72 * (t477 - t480);
-    const ur10e_real_t t482 = t73 * t481;
+    const ur10e_real_t t778 = t173 * t777 - t372 * parameters[XZ4] + (t17 * t676 + t21 * t678);
+    const ur10e_real_t t779 = t372 * parameters[YZ4];
+    const ur10e_real_t t780 = t760 - t779 + (t758 + (t717 - t755));
+    const ur10e_real_t t781 = t780 * t768 - t778 * t762 + (t750 * t136 + (t100 * t385 - t102 * t370));
+    const ur10e_real_t t782 = t776 + (t781 + t105 * t442);
+    const ur10e_real_t t783 = parameters[M5] * t445 + (t627 * parameters[MZ5] + (parameters[MY5] * t393
+        - parameters[MX5] * t621));
+    const ur10e_real_t t784 = parameters[MX4] * t772 - t444 * parameters[MY4] - parameters[MZ4] * t385
+        - parameters[M4] * t442;
+    const ur10e_real_t t785 = t784 + (t783 + t620);
+    const ur10e_real_t t786 = t21 * t682 + t17 * t681;
+    const ur10e_real_t t787 = t372 * parameters[MY4] - t382 * parameters[MX4] + (t786 - t25 * t756);
+    const ur10e_real_t t788 = t787 * t768 + t61 * t442 + (t750 * t45 + t105 * t385);
+    const ur10e_real_t t789 = t785 + t788;
+    const ur10e_real_t t790 = (t749 + t240) * parameters[MX4] - parameters[MY4] * t384
+        - parameters[MZ4] * t370;
+    const ur10e_real_t t791 = parameters[M4] * t427 - t790 + (t17 * t661 - t21 * t668);
+    const ur10e_real_t t792 = t787 * t762 + t61 * t427 + (t105 * t370 - t750 * t48);
+    const ur10e_real_t t793 = t791 - t792;
+    const ur10e_real_t t794 = t46 * t789 - t49 * t793;
+    const ur10e_real_t t795 = t49 * t770 + t46 * t782 + UR10E_C(0.17415) * t794;
+    const ur10e_real_t t796 = t49 * t789 + t46 * t793;
+    const ur10e_real_t t797 = t382 * parameters[MZ4] - t173 * parameters[MY4] + (t763 - t25 * t753);
+    const ur10e_real_t t798 = t173 * parameters[MX4] - t372 * parameters[MZ4] - t663;
+    const ur10e_real_t t799 = t798 * t762 + t797 * t768 - (t45 * t370 + t48 * t385);
+    const ur10e_real_t t800 = t46 * t770 - t49 * t782 + (UR10E_C(-0.17415) * t796 - UR10E_C(-0.57155) * t799);
+    const ur10e_real_t t801 = t115 * (t69 * t795 + t70 * t800 + UR10E_C(0.6127) * t799);
+    const ur10e_real_t t802 = UR10E_C(0.08250825082508251) * (t118 * (t70 * t795 - t69 * t800) + t801);
+    const ur10e_real_t t803 = t48 * t427 - t45 * t442;
+    const ur10e_real_t t804 = t750 * t28 + (t135 * t370 + t136 * t385);
+    const ur10e_real_t t805 = t21 * t751;
+    const ur10e_real_t t806 = t382 * t777 - t372 * parameters[XY4] + (t630 + t805 + t47 * t756);
+    const ur10e_real_t t807 = t21 * t709 + t17 * t711 + (UR10E_C(-0.11985) * t786 + t44 * t756);
+    const ur10e_real_t t808 = t382 * parameters[XY4] - t372 * t766 + t807;
+    const ur10e_real_t t809 = t808 * t768 - t806 * t762 - t804 + t803 + UR10E_C(0.57155) * t794;
+    const ur10e_real_t t810 = UR10E_C(0.08250825082508251) * (t809 + UR10E_C(0.6127) * (t69 * t796
+        + t70 * t794));
+    const ur10e_real_t t811 = UR10E_C(0.099009900990099) * t809;
+    const ur10e_real_t t812 = UR10E_C(2.0) * t806; /* link j4: derivatives */
+    const ur10e_real_t t813 = UR10E_C(2.0) * t808;
+    const ur10e_real_t t814 = UR10E_C(0.11001100110011001) * (t803 + (t372 * t813 - t382 * t812 - t804));
+    const ur10e_real_t t815 = t509 * t802 + t514 * t810 + t517 * t811 + t521 * t814;
+    const ur10e_real_t t816 = t17 * t696 + t21 * t697; /* link j5: derivatives */
+    const ur10e_real_t t817 = UR10E_C(-0.2397) * t372; /* link j6: derivatives */
+    const ur10e_real_t t818 = UR10E_C(-0.2397) * t173;
+    const ur10e_real_t t819 = t718 + (t38 * t817 + t47 * t818); /* link j5: derivatives */
+    const ur10e_real_t t820 = t372 * t819 - t382 * t816 + (t750 * t39 + (t12 * t385 - t101 * t370));
+    const ur10e_real_t t821 = UR10E_C(0.11001100110011001) * (t820 + t38 * t442);
+    const ur10e_real_t t822 = t17 * t699 + t21 * t700 - t18 * t817; /* link j6: derivatives */
+    const ur10e_real_t t823 = t736 + (t30 * t817 + t121 * t818);
+    const ur10e_real_t t824 = t372 * t823 - t382 * t822 + (t750 * t31 - (t122 * t370 + t4 * t385));
+    const ur10e_real_t t825 = UR10E_C(0.11001100110011001) * (t824 + (t30 * t442 + t18 * t427));
+    ddq_by_q[3] = t537 * t825 - (t815 + t528 * t821);
+    const ur10e_real_t t826 = t514 * t802 + t538 * t810 + t540 * t811 + t542 * t814;
+    ddq_by_q[9] = t547 * t825 - (t826 + t545 * t821);
+    const ur10e_real_t t827 = t548 * t802 + t549 * t810 + t550 * t811 + t552 * t814;
+    ddq_by_q[15] = t557 * t825 - (t827 + t555 * t821);
+    const ur10e_real_t t828 = t558 * t802 + t559 * t810 + t560 * t811 + t562 * t814;
+    ddq_by_q[21] = t567 * t825 - (t828 + t565 * t821);
+    const ur10e_real_t t829 = t568 * t802 + t569 * t810 + t570 * t811 + t565 * t814;
+    ddq_by_q[27] = t576 * t825 - (t829 + t573 * t821);
+    const ur10e_real_t t830 = t577 * t802 + t578 * t810 + t579 * t811 - t567 * t814;
+    ddq_by_q[33] = t576 * t821 - t830 - t582 * t825;
+    const ur10e_real_t t831 = parameters[ZZ4] - t765;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t832 = t382 * t831 - t173 * parameters[YZ4] + (t656 - t805 + t38 * t753);
+    const ur10e_real_t t833 = UR10E_C(2.0) * t832 - (t99 * t762 + t102 * t768); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t834 = t372 * t831 - t173 * parameters[XZ4] + (t17 * t678 - t21 * t676);
+    const ur10e_real_t t835 = UR10E_C(2.0) * t834 + (t100 * t768 - t102 * t762); /* link j4: derivatives */
+    const ur10e_real_t t836 = UR10E_C(-2.0) * t797 + t105 * t762;
+    const ur10e_real_t t837 = UR10E_C(2.0) * t798 + t105 * t768;
+    const ur10e_real_t t838 = t46 * t837 + t49 * t836;
+    const ur10e_real_t t839 = t49 * t833 + t46 * t835 + UR10E_C(0.17415) * t838;
+    const ur10e_real_t t840 = t49 * t837 - t46 * t836;
+    const ur10e_real_t t841 = t45 * t762 + t48 * t768;
+    const ur10e_real_t t842 = t49 * t835 - t46 * t833 + (UR10E_C(0.17415) * t840 + UR10E_C(0.57155) * t841);
+    const ur10e_real_t t843 = t115 * (t69 * t839 - t70 * t842 + UR10E_C(-0.6127) * t841);
+    const ur10e_real_t t844 = UR10E_C(0.08250825082508251) * (t118 * (t70 * t839 + t69 * t842) + t843);
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t845 = t779 - t759 + (t758 + (t752 - t652 + t757));
+    const ur10e_real_t t846 = UR10E_C(2.0) * t845; /* link j4: derivatives */
+    const ur10e_real_t t847 = t846 - (t135 * t762 + t136 * t768) + UR10E_C(0.57155) * t838;
+    const ur10e_real_t t848 = UR10E_C(0.08250825082508251) * (t847 + UR10E_C(0.6127) * (t69 * t840
+        + t70 * t838));
+    const ur10e_real_t t849 = UR10E_C(0.099009900990099) * t847;
+    const ur10e_real_t t850 = UR10E_C(0.11001100110011001) * (t846 + UR10E_C(-2.0) * (t382 * t135
+        + t372 * t136));
+    const ur10e_real_t t851 = UR10E_C(1122.2222222222222) * parameters[FV4] + t850;
+    const ur10e_real_t t852 = t844 * t509 + t848 * t514 + t849 * t517 + t851 * t521;
+    const ur10e_real_t t853 = t17 * t697 - t21 * t696; /* link j5: derivatives */
+    const ur10e_real_t t854 = UR10E_C(0.11001100110011001) * (t853 + UR10E_C(2.0) * (t372 * t12
+        - t382 * t101));
+    const ur10e_real_t t855 = t17 * t700 - t21 * t699 + t18 * t818; /* link j6: derivatives */
+    const ur10e_real_t t856 = UR10E_C(0.11001100110011001) * (t855 + UR10E_C(-2.0) * (t382 * t122
+        + t372 * t4));
+    ddq_by_dq[3] = t856 * t537 - (t852 + t854 * t528);
+    const ur10e_real_t t857 = t844 * t514 + t848 * t538 + t849 * t540 + t851 * t542;
+    ddq_by_dq[9] = t856 * t547 - (t857 + t854 * t545);
+    const ur10e_real_t t858 = t844 * t548 + t848 * t549 + t849 * t550 + t851 * t552;
+    ddq_by_dq[15] = t856 * t557 - (t858 + t854 * t555);
+    const ur10e_real_t t859 = t844 * t558 + t848 * t559 + t849 * t560 + t851 * t562;
+    ddq_by_dq[21] = t856 * t567 - (t859 + t854 * t565);
+    const ur10e_real_t t860 = t844 * t568 + t848 * t569 + t849 * t570 + t851 * t565;
+    ddq_by_dq[27] = t856 * t576 - (t860 + t854 * t573);
+    const ur10e_real_t t861 = t844 * t577 + t848 * t578 + t849 * t579 - t851 * t567;
+    ddq_by_dq[33] = t854 * t576 - t861 - t856 * t582;
+    ddq_by_input[3] = t521;
+    ddq_by_input[9] = t542;
+    ddq_by_input[15] = t552;
+    ddq_by_input[21] = t562;
+    ddq_by_input[27] = t565;
+    ddq_by_input[33] = -t567;
+    const ur10e_real_t t862 = t46 * t785 - t49 * t791;
+    const ur10e_real_t t863 = parameters[M4] * t438 + (t750 * parameters[MZ4] - (parameters[MX4] * t773
+        + parameters[MY4] * t388));
+    const ur10e_real_t t864 = t863 - t771;
+    const ur10e_real_t t865 = t46 * t776 + t49 * t748 + (UR10E_C(0.17415) * t862 + UR10E_C(0.57155) * t864);
+    const ur10e_real_t t866 = t417 * t172; /* link j3: motion */
+    const ur10e_real_t t867 = t866 + t424;
+    const ur10e_real_t t868 = t866 + t867;
+    const ur10e_real_t t869 = t380 - t422;
+    const ur10e_real_t t870 = t433 * t310 + parameters[YY3] * t434 - parameters[XY3] * t868
+        - parameters[YZ3] * t869;
+    const ur10e_real_t t871 = (t436 - t217) * parameters[XZ3] + t870 - (parameters[MZ3] * t415
+        + parameters[MX3] * t432);
+    const ur10e_real_t t872 = t871 + t865;
     /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t483 = t457 * parameters[MZ3] - t173 * parameters[MY3] + (t455 + t63 * t458);
-    const ur10e_real_t t484 = t173 * parameters[MX3] - t463 * parameters[MZ3] + (t478 + t63 * t464);
+    const ur10e_real_t t873 = t49 * (t761 + t780) - t46 * (t767 - t778);
+    const ur10e_real_t t874 = t49 * t873;
+    const ur10e_real_t t875 = t49 * t797 - t46 * t798;
+    const ur10e_real_t t876 = UR10E_C(-0.57155) * t875;
+    const ur10e_real_t t877 = UR10E_C(0.17415) * t417;
+    const ur10e_real_t t878 = t82 * t877;
+    const ur10e_real_t t879 = UR10E_C(0.17415) * t787;
+    const ur10e_real_t t880 = UR10E_C(-0.57155) * t172 + UR10E_C(-0.17415) * t421;
+    const ur10e_real_t t881 = t68 * t880;
+    const ur10e_real_t t882 = UR10E_C(0.57155) * t417;
+    const ur10e_real_t t883 = t152 * t882;
+    const ur10e_real_t t884 = t876 + t879 + (t883 - (t878 + t881));
+    const ur10e_real_t t885 = t417 * parameters[XZ3];
+    const ur10e_real_t t886 = t172 * parameters[XY3];
+    const ur10e_real_t t887 = t885 - t886 + (t884 + (t780 - t874 + (t878 - t876)));
+    const ur10e_real_t t888 = UR10E_C(2.0) * t417; /* link j3: derivatives */
+    const ur10e_real_t t889 = t46 * t873; /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t890 = UR10E_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const ur10e_real_t t891 = parameters[YY3] - t890;
+    const ur10e_real_t t892 = t172 * t891 - t417 * parameters[YZ3] + (t767 + t889 - t68 * t877);
+    const ur10e_real_t t893 = UR10E_C(2.0) * t421; /* link j3: derivatives */
+    const ur10e_real_t t894 = t887 * t888 + t892 * t893 + (t437 * t145 + (t109 * t416 + t110 * t424));
+    const ur10e_real_t t895 = t872 + (t894 + t153 * t415);
+    const ur10e_real_t t896 = t46 * t791 + t49 * t785;
+    const ur10e_real_t t897 = t866 * t301 + parameters[XX3] * t867 - parameters[XY3] * t435
+        + parameters[XZ3] * t423;
+    const ur10e_real_t t898 = parameters[MY3] * t432 - parameters[MZ3] * t425 - ((t418
+        - t217) * parameters[YZ3] + t897);
+    const ur10e_real_t t899 = t898 - (t46 * t748 - t49 * t776 - UR10E_C(0.17415) * t896);
+    const ur10e_real_t t900 = t46 * t797 + t49 * t798; /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t901 = parameters[XX3] - t890;
+    const ur10e_real_t t902 = t172 * t901 - t421 * parameters[XZ3] + (t778 - t889 - (UR10E_C(-0.57155) * t900
+        - t82 * t880));
+    const ur10e_real_t t903 = t421 * parameters[YZ3];
+    const ur10e_real_t t904 = t886 - t903 + (t884 - (t761 - t874 - t881));
+    const ur10e_real_t t905 = t904 * t893 - t902 * t888 + (t110 * t416 + t108 * t424 - t437 * t146);
+    const ur10e_real_t t906 = t899 + (t905 + t153 * t425);
+    const ur10e_real_t t907 = t172 * parameters[MX3] - t421 * parameters[MZ3] + (t900 + t61 * t880);
+    const ur10e_real_t t908 = t417 * parameters[MZ3] - t172 * parameters[MY3] + (t875 + t61 * t877);
+    const ur10e_real_t t909 = t907 * t888 + t908 * t893 + (t83 * t424 - t81 * t416);
+    const ur10e_real_t t910 = t115 * (t69 * t895 - t70 * t906 + UR10E_C(0.6127) * t909);
+    const ur10e_real_t t911 = UR10E_C(0.08250825082508251) * (t118 * (t70 * t895 + t69 * t906) + t910);
+    const ur10e_real_t t912 = parameters[MX3] * t423 - (t436 + t217) * parameters[MY3]
+        - parameters[MZ3] * t424;
+    const ur10e_real_t t913 = t421 * parameters[MY3] - t417 * parameters[MX3] + (t787 + t61 * t882);
+    const ur10e_real_t t914 = t913 * t893 + t91 * t425 + (t437 * t81 + t153 * t424);
+    const ur10e_real_t t915 = t419 * parameters[MX3] + parameters[MY3] * t869 - parameters[MZ3] * t416
+        - parameters[M3] * t415;
+    const ur10e_real_t t916 = t913 * t888 + t91 * t415 + (t437 * t83 + t153 * t416);
+    const ur10e_real_t t917 = t69 * (t912 - parameters[M3] * t425 + t896 + t914) + t70 * (t915 + t862 + t916);
+    const ur10e_real_t t918 = t146 * t424 - t145 * t416 - t437 * t64;
+    const ur10e_real_t t919 = t46 * t808 - t49 * t806 + (UR10E_C(0.57155) * t787 + t82 * t882);
+    const ur10e_real_t t920 = t421 * parameters[XY3] - t417 * t901 + t919;
+    const ur10e_real_t t921 = t417 * parameters[XY3] - t421 * t891 + (t46 * t806 + t49 * t808 - t68 * t882);
+    const ur10e_real_t t922 = t83 * t415 + t81 * t425;
+    const ur10e_real_t t923 = t920 * t888 + t921 * t893 + t918 - t922 + UR10E_C(0.6127) * t917;
+    const ur10e_real_t t924 = UR10E_C(0.08250825082508251) * t923;
+    const ur10e_real_t t925 = UR10E_C(2.0) * t920; /* link j3: derivatives */
+    const ur10e_real_t t926 = UR10E_C(2.0) * t921;
+    const ur10e_real_t t927 = UR10E_C(0.099009900990099) * (t417 * t925 + t421 * t926 + t918 - t922);
+    const ur10e_real_t t928 = UR10E_C(1.1431) * t417; /* link j6: derivatives */
+    const ur10e_real_t t929 = t46 * t813 - t49 * t812 + t50 * t928; /* link j4: derivatives */
+    const ur10e_real_t t930 = t46 * t812 + t49 * t813 - t68 * t928;
+    const ur10e_real_t t931 = t417 * t929 + t421 * t930 + (t437 * t51 + (t139 * t424 - t138 * t416));
+    const ur10e_real_t t932 = UR10E_C(0.11001100110011001) * (t931 + (t50 * t415 - t68 * t425));
+    const ur10e_real_t t933 = t509 * t911 + t514 * t924 + t517 * t927 + t521 * t932;
+    const ur10e_real_t t934 = UR10E_C(2.0) * t880; /* link j6: derivatives */
+    const ur10e_real_t t935 = t46 * t819 - t49 * t816 + (t54 * t928 - t47 * t934); /* link j5: derivatives */
+    const ur10e_real_t t936 = UR10E_C(-0.3483) * t417; /* link j6: derivatives */
+    const ur10e_real_t t937 = t46 * t816 + t49 * t819 + (t76 * t928 + t47 * t936); /* link j5: derivatives */
+    const ur10e_real_t t938 = t417 * t935 + t421 * t937 + (t437 * t55 + (t130 * t424 - t129 * t416));
+    const ur10e_real_t t939 = UR10E_C(0.11001100110011001) * (t938 + (t76 * t425 + t54 * t415));
+    const ur10e_real_t t940 = t46 * t823 - t49 * t822 + (t52 * t928 - t121 * t934); /* link j6: derivatives */
+    const ur10e_real_t t941 = t46 * t822 + t49 * t823 + (t73 * t928 + t121 * t936);
+    const ur10e_real_t t942 = t417 * t940 + t421 * t941 + (t437 * t53 + (t124 * t424 - t123 * t416));
+    const ur10e_real_t t943 = UR10E_C(0.11001100110011001) * (t942 + (t73 * t425 + t52 * t415));
+    ddq_by_q[2] = t537 * t943 - (t933 + t528 * t939);
+    const ur10e_real_t t944 = t514 * t911 + t538 * t924 + t540 * t927 + t542 * t932;
+    ddq_by_q[8] = t547 * t943 - (t944 + t545 * t939);
+    const ur10e_real_t t945 = t548 * t911 + t549 * t924 + t550 * t927 + t552 * t932;
+    ddq_by_q[14] = t557 * t943 - (t945 + t555 * t939);
+    const ur10e_real_t t946 = t558 * t911 + t559 * t924 + t560 * t927 + t562 * t932;
+    ddq_by_q[20] = t567 * t943 - (t946 + t565 * t939);
+    const ur10e_real_t t947 = t568 * t911 + t569 * t924 + t570 * t927 + t565 * t932;
+    ddq_by_q[26] = t576 * t943 - (t947 + t573 * t939);
+    const ur10e_real_t t948 = t577 * t911 + t578 * t924 + t579 * t927 - t567 * t932;
+    ddq_by_q[32] = t576 * t939 - t948 - t582 * t943;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t949 = t49 * t832 + t46 * t834 + (UR10E_C(-0.17415) * t875 - t152 * t877);
+    const ur10e_real_t t950 = t890 - parameters[ZZ3];
+    const ur10e_real_t t951 = t949 - (t172 * parameters[YZ3] + t417 * t950);
+    const ur10e_real_t t952 = UR10E_C(2.0) * t951 + (t109 * t888 + t110 * t893); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t953 = t49 * t834 - t46 * t832 - (UR10E_C(-0.17415) * t900 - t152 * t880);
+    const ur10e_real_t t954 = t172 * parameters[XZ3] + t421 * t950 - t953;
+    const ur10e_real_t t955 = UR10E_C(2.0) * t954 - (t110 * t888 + t108 * t893); /* link j3: derivatives */
+    const ur10e_real_t t956 = t69 * t952 + t70 * t955 + UR10E_C(0.6127) * (t83 * t893 - t81 * t888);
+    const ur10e_real_t t957 = t118 * (t70 * t952 - t69 * t955) + t115 * t956;
+    const ur10e_real_t t958 = UR10E_C(0.08250825082508251) * t957;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t959 = t903 - t885 + (t884 + (t845 - (t879 + t883)));
+    const ur10e_real_t t960 = UR10E_C(2.0) * t959; /* link j3: derivatives */
+    const ur10e_real_t t961 = t69 * (UR10E_C(2.0) * t907 + t153 * t893) + t70 * (UR10E_C(-2.0) * t908
+        + t153 * t888);
+    const ur10e_real_t t962 = t960 + (t146 * t893 - t145 * t888) + UR10E_C(0.6127) * t961;
+    const ur10e_real_t t963 = UR10E_C(0.08250825082508251) * t962;
+    const ur10e_real_t t964 = UR10E_C(0.099009900990099) * (t960 + UR10E_C(2.0) * (t421 * t146
+        - t417 * t145));
+    const ur10e_real_t t965 = UR10E_C(1010.0) * parameters[FV3] + t964;
+    const ur10e_real_t t966 = t846 + (t50 * t936 - t68 * t934); /* link j4: derivatives */
+    const ur10e_real_t t967 = UR10E_C(0.11001100110011001) * (t966 + UR10E_C(2.0) * (t421 * t139
+        - t417 * t138));
+    const ur10e_real_t t968 = t958 * t509 + t963 * t514 + t965 * t517 + t967 * t521;
+    const ur10e_real_t t969 = t853 + (t54 * t936 + t76 * t934); /* link j5: derivatives */
+    const ur10e_real_t t970 = UR10E_C(0.11001100110011001) * (t969 + UR10E_C(2.0) * (t421 * t130
+        - t417 * t129));
+    const ur10e_real_t t971 = t855 + (t52 * t936 + t73 * t934); /* link j6: derivatives */
+    const ur10e_real_t t972 = UR10E_C(0.11001100110011001) * (t971 + UR10E_C(2.0) * (t421 * t124
+        - t417 * t123));
+    ddq_by_dq[2] = t972 * t537 - (t968 + t970 * t528);
+    const ur10e_real_t t973 = t958 * t514 + t963 * t538 + t965 * t540 + t967 * t542;
+    ddq_by_dq[8] = t972 * t547 - (t973 + t970 * t545);
+    const ur10e_real_t t974 = t958 * t548 + t963 * t549 + t965 * t550 + t967 * t552;
+    ddq_by_dq[14] = t972 * t557 - (t974 + t970 * t555);
+    const ur10e_real_t t975 = t958 * t558 + t963 * t559 + t965 * t560 + t967 * t562;
+    ddq_by_dq[20] = t972 * t567 - (t975 + t970 * t565);
+    const ur10e_real_t t976 = t958 * t568 + t963 * t569 + t965 * t570 + t967 * t565;
+    ddq_by_dq[26] = t972 * t576 - (t976 + t970 * t573);
+    const ur10e_real_t t977 = t958 * t577 + t963 * t578 + t965 * t579 - t967 * t567;
+    ddq_by_dq[32] = t970 * t576 - t977 - t972 * t582;
+    ddq_by_input[2] = t517;
+    ddq_by_input[8] = t540;
+    ddq_by_input[14] = t550;
+    ddq_by_input[20] = t560;
+    ddq_by_input[26] = t570;
+    ddq_by_input[32] = t579;
+    const ur10e_real_t t978 = parameters[M3] * t432 + (t437 * parameters[MZ3] - (parameters[MX3] * t435
+        + parameters[MY3] * t868));
+    const ur10e_real_t t979 = t69 * t899 + t70 * t872 + UR10E_C(0.6127) * (t978 + t864);
+    const ur10e_real_t t980 = t118 * t359;
+    const ur10e_real_t t981 = t315 + t980;
+    const ur10e_real_t t982 = t323 + parameters[YY2] * t430 - parameters[XY2] * (t315 + t981)
+        + parameters[YZ2] * (t212 - t360);
+    const ur10e_real_t t983 = t325 + t207; /* link j3: motion */
     /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t485 = UR10E_C(0.6127) * (t72 * t484 - t73 * t483);
-    const ur10e_real_t t486 = UR10E_C(0.6127) * dq[1]; /* link j3: velocity of its origin */
-    const ur10e_real_t t487 = t120 * t486; /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t488 = UR10E_C(0.6127) * t167; /* link j3: velocity of its origin */
-    const ur10e_real_t t489 = t157 * t488; /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t490 = t485 + (t487 + t489);
-    const ur10e_real_t t491 = t167 * parameters[XZ2];
-    const ur10e_real_t t492 = dq[1] * parameters[XY2];
-    const ur10e_real_t t493 = t491 - t492 + (t490 + (t473 + t482 - t485));
-    const ur10e_real_t t494 = t166 * parameters[YZ2];
-    const ur10e_real_t t495 = t492 - t494 + (t490 + (t471 - t482 - t487));
-    const ur10e_real_t t496 = t72 * t481;
-    const ur10e_real_t t497 = UR10E_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const ur10e_real_t t498 = t497 - parameters[YY2];
-    const ur10e_real_t t499 = t167 * parameters[YZ2] + dq[1] * t498 + (t496 - t477);
-    const ur10e_real_t t500 = t95 - t87; /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t984 = t70 * (t887 - t904) + t69 * (t892 - t902);
+    const ur10e_real_t t985 = t70 * t984;
+    const ur10e_real_t t986 = UR10E_C(0.6127) * (t69 * t907 - t70 * t908);
+    const ur10e_real_t t987 = UR10E_C(0.6127) * dq[1]; /* link j3: velocity of its origin */
+    const ur10e_real_t t988 = t116 * t987; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t989 = UR10E_C(0.6127) * t166; /* link j3: velocity of its origin */
+    const ur10e_real_t t990 = t153 * t989; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t991 = t986 + (t988 + t990);
+    const ur10e_real_t t992 = t166 * parameters[XZ2];
+    const ur10e_real_t t993 = dq[1] * parameters[XY2];
+    const ur10e_real_t t994 = t992 - t993 + (t991 + (t904 + t985 - t986));
+    const ur10e_real_t t995 = UR10E_C(2.0) * t166; /* link j2: derivatives */
+    const ur10e_real_t t996 = t69 * t984; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t997 = UR10E_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const ur10e_real_t t998 = t997 - parameters[YY2];
+    const ur10e_real_t t999 = t166 * parameters[YZ2] + dq[1] * t998 + (t996 - t892);
+    const ur10e_real_t t1000 = UR10E_C(-2.0) * t165; /* link j2: derivatives */
+    const ur10e_real_t t1001 = t994 * t995 + t999 * t1000 + (t113 * t429 - t117 * t980 - t983 * t154);
+    const ur10e_real_t t1002 = parameters[MZ2] + t153; /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t1003 = t326 + t982 - t327 + t979 + (t209 * t1002 + t1001);
+    const ur10e_real_t t1004 = parameters[XX2] * t981 - t316 - parameters[XY2] * t431
+        + parameters[XZ2] * t413;
+    const ur10e_real_t t1005 = t319 + (t318 + t1004) + (t69 * t872 - t70 * t899);
+    const ur10e_real_t t1006 = t92 - t84;
     /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t501 = UR10E_C(0.6127) * (t72 * t483 + t73 * t484) - t500 * t486;
-    const ur10e_real_t t502 = parameters[XX2] - t497;
-    const ur10e_real_t t503 = dq[1] * t502 - t166 * parameters[XZ2] + (t480 + t496 + t501);
+    const ur10e_real_t t1007 = UR10E_C(0.6127) * (t69 * t908 + t70 * t907) - t1006 * t987;
+    const ur10e_real_t t1008 = parameters[XX2] - t997;
+    const ur10e_real_t t1009 = dq[1] * t1008 - t165 * parameters[XZ2] + (t902 + t996 + t1007);
+    const ur10e_real_t t1010 = t165 * parameters[YZ2];
+    const ur10e_real_t t1011 = t993 - t1010 + (t991 + (t887 - t985 - t988));
+    const ur10e_real_t t1012 = t1009 * t995 + t1011 * t1000 + (t983 * t155 + (t117 * t429 - t114 * t980));
+    const ur10e_real_t t1013 = t118 * t1003 + t115 * (t1005 + (t1012 - t213 * t1002));
+    const ur10e_real_t t1014 = UR10E_C(0.08250825082508251) * t1013;
+    const ur10e_real_t t1015 = t70 * t920 + t69 * t921 + (UR10E_C(0.6127) * t913 + t1006 * t989);
+    /* link j2: derivatives */
+    const ur10e_real_t t1016 = UR10E_C(2.0) * (t165 * parameters[XY2] - t166 * t1008 + t1015);
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t1017 = t166 * parameters[XY2] + t165 * t998 - (t69 * t920 - t70 * t921 + t116 * t989);
+    const ur10e_real_t t1018 = UR10E_C(2.0) * t1017; /* link j2: derivatives */
+    const ur10e_real_t t1019 = t166 * t1016 + t165 * t1018 + (t154 * t429 + t155 * t980 - t983 * t94);
+    const ur10e_real_t t1020 = t209 * (t1006 - parameters[MX2]) - t213 * (t116 - parameters[MY2]) + t1019;
+    const ur10e_real_t t1021 = UR10E_C(0.08250825082508251) * t1020;
+    const ur10e_real_t t1022 = UR10E_C(1.2254) * t166; /* link j6: derivatives */
+    const ur10e_real_t t1023 = t70 * t925 + t69 * t926 - t84 * t1022; /* link j3: derivatives */
+    const ur10e_real_t t1024 = t69 * t925 - t70 * t926 + t116 * t1022;
+    const ur10e_real_t t1025 = t166 * t1023 - t165 * t1024 + (t983 * t85 + (t147 * t429 + t148 * t980));
+    const ur10e_real_t t1026 = UR10E_C(0.099009900990099) * (t1025 - (t213 * t116 + t209 * t84));
+    const ur10e_real_t t1027 = t70 * t929 + t69 * t930 + t71 * t1022; /* link j4: derivatives */
+    const ur10e_real_t t1028 = t70 * t68 + t69 * t50; /* link j4: column of the mass matrix */
+    const ur10e_real_t t1029 = t69 * t929 - t70 * t930 + t1028 * t1022; /* link j4: derivatives */
+    const ur10e_real_t t1030 = t166 * t1027 - t165 * t1029 + (t983 * t72 + (t140 * t429 + t141 * t980));
+    const ur10e_real_t t1031 = UR10E_C(0.11001100110011001) * (t209 * t71 - t213 * t1028 + t1030);
+    const ur10e_real_t t1032 = t509 * t1014 + t514 * t1021 + t517 * t1026 + t521 * t1031;
+    const ur10e_real_t t1033 = UR10E_C(-1.2254) * dq[1]; /* link j6: derivatives */
+    /* link j5: derivatives */
+    const ur10e_real_t t1034 = t70 * t935 + t69 * t937 + (t77 * t1022 - t47 * t1033);
+    const ur10e_real_t t1035 = t69 * t54 - t70 * t76; /* link j5: column of the mass matrix */
+    const ur10e_real_t t1036 = t69 * t935 - t70 * t937 + t1035 * t1022; /* link j5: derivatives */
+    const ur10e_real_t t1037 = t166 * t1034 - t165 * t1036 + (t131 * t429 + t132 * t980 - t983 * t78);
+    const ur10e_real_t t1038 = UR10E_C(0.11001100110011001) * (t209 * t77 - t213 * t1035 + t1037);
+    /* link j6: derivatives */
+    const ur10e_real_t t1039 = t70 * t940 + t69 * t941 + (t74 * t1022 - t121 * t1033);
+    const ur10e_real_t t1040 = t69 * t52 - t70 * t73; /* link j6: column of the mass matrix */
+    const ur10e_real_t t1041 = t69 * t940 - t70 * t941 + t1040 * t1022; /* link j6: derivatives */
+    const ur10e_real_t t1042 = t166 * t1039 - t165 * t1041 + (t125 * t429 + t126 * t980 - t983 * t75);
+    const ur10e_real_t t1043 = UR10E_C(0.11001100110011001) * (t209 * t74 - t213 * t1040 + t1042);
+    ddq_by_q[1] = t537 * t1043 - (t1032 + t528 * t1038);
+    const ur10e_real_t t1044 = t514 * t1014 + t538 * t1021 + t540 * t1026 + t542 * t1031;
+    ddq_by_q[7] = t547 * t1043 - (t1044 + t545 * t1038);
+    const ur10e_real_t t1045 = t548 * t1014 + t549 * t1021 + t550 * t1026 + t552 * t1031;
+    ddq_by_q[13] = t557 * t1043 - (t1045 + t555 * t1038);
+    const ur10e_real_t t1046 = t558 * t1014 + t559 * t1021 + t560 * t1026 + t562 * t1031;
+    ddq_by_q[19] = t567 * t1043 - (t1046 + t565 * t1038);
+    const ur10e_real_t t1047 = t568 * t1014 + t569 * t1021 + t570 * t1026 + t565 * t1031;
+    ddq_by_q[25] = t576 * t1043 - (t1047 + t573 * t1038);
+    const ur10e_real_t t1048 = t577 * t1014 + t578 * t1021 + t579 * t1026 - t567 * t1031;
+    ddq_by_q[31] = t576 * t1038 - t1048 - t582 * t1043;
+    const ur10e_real_t t1049 = parameters[ZZ2] - t997;
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t1050 = t166 * t1049 - dq[1] * parameters[YZ2] + (t70 * t951 - t69 * t954);
+    /* link j2: derivatives */
+    const ur10e_real_t t1051 = t118 * (UR10E_C(2.0) * t1050 + (t113 * t995 + t117 * t1000));
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t1052 = dq[1] * parameters[XZ2] - t165 * t1049 + (t69 * t951 + t70 * t954
+        + t153 * t987);
+    /* link j2: derivatives */
+    const ur10e_real_t t1053 = t115 * (UR10E_C(2.0) * t1052 + (t117 * t995 + t114 * t1000));
+    const ur10e_real_t t1054 = UR10E_C(0.08250825082508251) * (t1051 + t1053);
+    const ur10e_real_t t1055 = UR10E_C(2.0) * (t1010 - t992 + (t991 + (t959 - t990)))
+        + UR10E_C(2.0) * (t166 * t154 + t165 * t155);
+    const ur10e_real_t t1056 = UR10E_C(841.6666666666667) * parameters[FV2]
+        + UR10E_C(0.08250825082508251) * t1055;
+    /* link j3: derivatives */
+    const ur10e_real_t t1057 = t960 - t116 * t1033 + UR10E_C(2.0) * (t166 * t147 + t165 * t148);
+    const ur10e_real_t t1058 = UR10E_C(0.099009900990099) * t1057;
+    /* link j4: derivatives */
+    const ur10e_real_t t1059 = t966 - t1028 * t1033 + UR10E_C(2.0) * (t166 * t140 + t165 * t141);
+    const ur10e_real_t t1060 = UR10E_C(0.11001100110011001) * t1059;
+    const ur10e_real_t t1061 = t1054 * t509 + t1056 * t514 + t1058 * t517 + t1060 * t521;
+    /* link j5: derivatives */
+    const ur10e_real_t t1062 = t969 - t1035 * t1033 + UR10E_C(2.0) * (t166 * t131 + t165 * t132);
+    const ur10e_real_t t1063 = UR10E_C(0.11001100110011001) * t1062;
+    /* link j6: derivatives */
+    const ur10e_real_t t1064 = t971 - t1040 * t1033 + UR10E_C(2.0) * (t166 * t125 + t165 * t126);
+    const ur10e_real_t t1065 = UR10E_C(0.11001100110011001) * t1064;
+    ddq_by_dq[1] = t1065 * t537 - (t1061 + t1063 * t528);
+    const ur10e_real_t t1066 = t1054 * t514 + t1056 * t538 + t1058 * t540 + t1060 * t542;
+    ddq_by_dq[7] = t1065 * t547 - (t1066 + t1063 * t545);
+    const ur10e_real_t t1067 = t1054 * t548 + t1056 * t549 + t1058 * t550 + t1060 * t552;
+    ddq_by_dq[13] = t1065 * t557 - (t1067 + t1063 * t555);
+    const ur10e_real_t t1068 = t1054 * t558 + t1056 * t559 + t1058 * t560 + t1060 * t562;
+    ddq_by_dq[19] = t1065 * t567 - (t1068 + t1063 * t565);
+    const ur10e_real_t t1069 = t1054 * t568 + t1056 * t569 + t1058 * t570 + t1060 * t565;
+    ddq_by_dq[25] = t1065 * t576 - (t1069 + t1063 * t573);
+    const ur10e_real_t t1070 = t1054 * t577 + t1056 * t578 + t1058 * t579 - t1060 * t567;
+    ddq_by_dq[31] = t1063 * t576 - t1070 - t1065 * t582;
+    ddq_by_input[1] = t514;
+    ddq_by_input[7] = t538;
+    ddq_by_input[13] = t549;
+    ddq_by_input[19] = t559;
+    ddq_by_input[25] = t569;
+    ddq_by_input[31] = t578;
     /* link j2: inertia, momentum beyond */
-    const ur10e_real_t t504 = t119 * (t119 * (t495 - t493) + t122 * (t499 + t503));
-    const ur10e_real_t t505 = UR10E_C(841.6666666666667) * parameters[FV1]
-        + UR10E_C(0.16501650165016502) * (t493 + t504);
-    const ur10e_real_t t506 = ur10e_bounded(UR10E_C(12.12) * t359);
-    const ur10e_real_t t507 = t163 * t359;
-    const ur10e_real_t t508 = ur10e_bounded(UR10E_C(12.12) * t507);
-    const ur10e_real_t t509 = t22 * t419; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t510 = t374 * t449 - t371 * parameters[XY4] + (t418 + t509 + t49 * t426);
-    const ur10e_real_t t511 = t22 * t437 + t18 * t438 + (UR10E_C(-0.11985) * t460 + t46 * t426);
-    const ur10e_real_t t512 = t374 * parameters[XY4] - t371 * t444 + t511;
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t513 = t48 * t512 - t51 * t510 + (UR10E_C(0.57155) * t461 + t85 * t466);
-    const ur10e_real_t t514 = t463 * parameters[XY3] - t457 * t479 + t513;
-    const ur10e_real_t t515 = t457 * parameters[XY3] - t463 * t476 + (t48 * t510 + t51 * t512 - t71 * t466);
-    const ur10e_real_t t516 = t463 * parameters[MY3] - t457 * parameters[MX3] + (t461 + t63 * t466);
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t517 = t73 * t514 + t72 * t515 + (UR10E_C(0.6127) * t516 + t500 * t488);
-    /* link j2: derivatives */
-    const ur10e_real_t t518 = UR10E_C(2.0) * (t166 * parameters[XY2] - t167 * t502 + t517);
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t519 = t167 * parameters[XY2] + t166 * t498 - (t72 * t514 - t73 * t515 + t120 * t488);
-    const ur10e_real_t t520 = UR10E_C(2.0) * t519; /* link j2: derivatives */
-    const ur10e_real_t t521 = UR10E_C(0.08250825082508251) * (t122 * t518 - t119 * t520);
-    const ur10e_real_t t522 = t359 * (t155 + t91 * t163);
-    const ur10e_real_t t523 = ur10e_bounded(UR10E_C(-10.100000000000001) * t522);
-    const ur10e_real_t t524 = UR10E_C(2.0) * t514; /* link j3: derivatives */
-    const ur10e_real_t t525 = UR10E_C(2.0) * t515;
-    const ur10e_real_t t526 = UR10E_C(1.2254) * t167; /* link j6: derivatives */
-    const ur10e_real_t t527 = t73 * t524 + t72 * t525 - t87 * t526; /* link j3: derivatives */
-    const ur10e_real_t t528 = t72 * t524 - t73 * t525 + t120 * t526;
-    const ur10e_real_t t529 = UR10E_C(0.099009900990099) * (t122 * t527 + t119 * t528);
-    const ur10e_real_t t530 = t61 * t91 - t92;
-    const ur10e_real_t t531 = t359 * (t61 * t155 - t147 + t163 * t530);
-    const ur10e_real_t t532 = ur10e_bounded(UR10E_C(-9.09) * t531);
-    const ur10e_real_t t533 = UR10E_C(2.0) * t510; /* link j4: derivatives */
-    const ur10e_real_t t534 = UR10E_C(2.0) * t512;
-    const ur10e_real_t t535 = UR10E_C(1.1431) * t457; /* link j6: derivatives */
-    const ur10e_real_t t536 = t48 * t534 - t51 * t533 + t52 * t535; /* link j4: derivatives */
-    const ur10e_real_t t537 = t48 * t533 + t51 * t534 - t71 * t535;
-    const ur10e_real_t t538 = t73 * t536 + t72 * t537 + t74 * t526;
-    const ur10e_real_t t539 = t73 * t71 + t72 * t52; /* link j4: column of the mass matrix */
-    const ur10e_real_t t540 = t72 * t536 - t73 * t537 + t539 * t526; /* link j4: derivatives */
-    const ur10e_real_t t541 = UR10E_C(0.11001100110011001) * (t122 * t538 + t119 * t540);
-    const ur10e_real_t t542 = t505 * t506 + t521 * t508 + t529 * t523 + t541 * t532;
-    const ur10e_real_t t543 = t68 + t43 * t61;
-    const ur10e_real_t t544 = t99 - t43 * t92 + t91 * t543;
-    const ur10e_real_t t545 = t155 * t543 - (t138 + t43 * t147) + t163 * t544;
-    const ur10e_real_t t546 = t359 * t545;
-    const ur10e_real_t t547 = ur10e_bounded(UR10E_C(-9.09) * t546);
-    const ur10e_real_t t548 = UR10E_C(2.0) * t446; /* link j5: derivatives */
-    const ur10e_real_t t549 = UR10E_C(2.0) * t448;
-    const ur10e_real_t t550 = t18 * t548 + t22 * t549;
-    const ur10e_real_t t551 = UR10E_C(2.0) * t432;
-    const ur10e_real_t t552 = UR10E_C(-0.2397) * t371; /* link j6: derivatives */
-    const ur10e_real_t t553 = UR10E_C(-0.2397) * t174;
-    const ur10e_real_t t554 = t551 + (t39 * t552 + t49 * t553); /* link j5: derivatives */
-    const ur10e_real_t t555 = UR10E_C(2.0) * t464; /* link j6: derivatives */
-    const ur10e_real_t t556 = t48 * t554 - t51 * t550 + (t56 * t535 - t49 * t555); /* link j5: derivatives */
-    const ur10e_real_t t557 = UR10E_C(-0.3483) * t457; /* link j6: derivatives */
-    const ur10e_real_t t558 = t48 * t550 + t51 * t554 + (t79 * t535 + t49 * t557); /* link j5: derivatives */
-    const ur10e_real_t t559 = UR10E_C(-1.2254) * dq[1]; /* link j6: derivatives */
-    const ur10e_real_t t560 = t73 * t556 + t72 * t558 + (t80 * t526 - t49 * t559); /* link j5: derivatives */
-    const ur10e_real_t t561 = t72 * t56 - t73 * t79; /* link j5: column of the mass matrix */
-    const ur10e_real_t t562 = t72 * t556 - t73 * t558 + t561 * t526; /* link j5: derivatives */
-    const ur10e_real_t t563 = UR10E_C(0.11001100110011001) * (t122 * t560 + t119 * t562);
-    const ur10e_real_t t564 = t33 + t6 * t43;
-    const ur10e_real_t t565 = t62 + t6 * t68 + t61 * t564;
-    const ur10e_real_t t566 = t93 + t6 * t99 - t92 * t564 + t91 * t565;
-    const ur10e_real_t t567 = t155 * t565 - (t132 + t6 * t138 + t147 * t564);
-    const ur10e_real_t t568 = t359 * (t567 + t163 * t566);
-    const ur10e_real_t t569 = UR10E_C(9.09) * t568;
-    const ur10e_real_t t570 = UR10E_C(2.0) * t415; /* link j6: derivatives */
-    const ur10e_real_t t571 = UR10E_C(-2.0) * t416;
-    const ur10e_real_t t572 = t2 * t570 - t1 * t571;
-    const ur10e_real_t t573 = UR10E_C(2.0) * t402;
-    const ur10e_real_t t574 = t573 + (t3 * (UR10E_C(-0.2331) * t372) + t19 * (UR10E_C(0.2331) * t375));
-    const ur10e_real_t t575 = t18 * t572 + t22 * t574 - t19 * t552;
-    const ur10e_real_t t576 = t1 * t570 + t2 * t571;
-    const ur10e_real_t t577 = t576 + (t31 * t552 + t125 * t553);
-    const ur10e_real_t t578 = t48 * t577 - t51 * t575 + (t54 * t535 - t125 * t555);
-    const ur10e_real_t t579 = t48 * t575 + t51 * t577 + (t76 * t535 + t125 * t557);
-    const ur10e_real_t t580 = t73 * t578 + t72 * t579 + (t77 * t526 - t125 * t559);
-    const ur10e_real_t t581 = t72 * t54 - t73 * t76; /* link j6: column of the mass matrix */
-    const ur10e_real_t t582 = t72 * t578 - t73 * t579 + t581 * t526; /* link j6: derivatives */
-    const ur10e_real_t t583 = UR10E_C(0.11001100110011001) * (t122 * t580 + t119 * t582);
-    ddq_by_dq[0] = t583 * t569 - (t542 + t563 * t547);
-    const ur10e_real_t t584 = ur10e_bounded(UR10E_C(12.12) * (t162 + t163 * t507));
-    const ur10e_real_t t585 = t91 * t162 + t163 * t522;
-    const ur10e_real_t t586 = ur10e_bounded(UR10E_C(-10.100000000000001) * t585);
-    const ur10e_real_t t587 = t162 * t530 + t163 * t531;
-    const ur10e_real_t t588 = ur10e_bounded(UR10E_C(-9.09) * t587);
-    const ur10e_real_t t589 = t505 * t508 + t521 * t584 + t529 * t586 + t541 * t588;
-    const ur10e_real_t t590 = t162 * t544 + t163 * t546;
-    const ur10e_real_t t591 = ur10e_bounded(UR10E_C(-9.09) * t590);
-    const ur10e_real_t t592 = t162 * t566 + t163 * t568;
-    const ur10e_real_t t593 = UR10E_C(9.09) * t592;
-    ddq_by_dq[6] = t583 * t593 - (t589 + t563 * t591);
-    const ur10e_real_t t594 = ur10e_bounded(UR10E_C(-12.12) * t522);
-    const ur10e_real_t t595 = ur10e_bounded(UR10E_C(-12.12) * t585);
-    const ur10e_real_t t596 = ur10e_bounded(UR10E_C(10.100000000000001) * (t90 + t155 * t522 + t91 * t585));
-    const ur10e_real_t t597 = t61 * t90 + t155 * t531 + t91 * t587;
-    const ur10e_real_t t598 = ur10e_bounded(UR10E_C(9.09) * t597);
-    const ur10e_real_t t599 = t505 * t594 + t521 * t595 + t529 * t596 + t541 * t598;
-    const ur10e_real_t t600 = t90 * t543 + t155 * t546 + t91 * t590;
-    const ur10e_real_t t601 = ur10e_bounded(UR10E_C(9.09) * t600);
-    const ur10e_real_t t602 = t90 * t565 + t155 * t568 + t91 * t592;
-    const ur10e_real_t t603 = UR10E_C(-9.09) * t602;
-    ddq_by_dq[12] = t583 * t603 - (t599 + t563 * t601);
-    const ur10e_real_t t604 = ur10e_bounded(UR10E_C(-12.12) * t531);
-    const ur10e_real_t t605 = ur10e_bounded(UR10E_C(-12.12) * t587);
-    const ur10e_real_t t606 = ur10e_bounded(UR10E_C(10.100000000000001) * t597);
-    const ur10e_real_t t607 = t60 - t147 * t531 - t92 * t587 + t61 * t597;
-    const ur10e_real_t t608 = ur10e_bounded(UR10E_C(9.09) * t607);
-    const ur10e_real_t t609 = t505 * t604 + t521 * t605 + t529 * t606 + t541 * t608;
-    const ur10e_real_t t610 = t147 * t546 - t43 * t60 + t92 * t590 - t61 * t600;
-    const ur10e_real_t t611 = ur10e_bounded(UR10E_C(-9.09) * t610);
-    const ur10e_real_t t612 = t147 * t568 - t60 * t564 + t92 * t592 - t61 * t602;
-    const ur10e_real_t t613 = UR10E_C(9.09) * t612;
-    ddq_by_dq[18] = t583 * t613 - (t609 + t563 * t611);
-    const ur10e_real_t t614 = ur10e_bounded(UR10E_C(-12.12) * t546);
-    const ur10e_real_t t615 = ur10e_bounded(UR10E_C(-12.12) * t590);
-    const ur10e_real_t t616 = ur10e_bounded(UR10E_C(10.100000000000001) * t600);
-    const ur10e_real_t t617 = t505 * t614 + t521 * t615 + t529 * t616 + t541 * t611;
-    const ur10e_real_t t618 = t42 - t138 * t546 + t99 * t590 + t68 * t600;
-    const ur10e_real_t t619 = ur10e_bounded(UR10E_C(9.09) * (t618 - t43 * t610));
-    const ur10e_real_t t620 = t6 * t42 - t138 * t568 + t99 * t592 + t68 * t602;
-    const ur10e_real_t t621 = t620 - t43 * t612;
-    const ur10e_real_t t622 = UR10E_C(-9.09) * t621;
-    ddq_by_dq[24] = t583 * t622 - (t617 + t563 * t619);
-    const ur10e_real_t t623 = ur10e_bounded(UR10E_C(-12.12) * t568);
-    const ur10e_real_t t624 = ur10e_bounded(UR10E_C(-12.12) * t592);
-    const ur10e_real_t t625 = ur10e_bounded(UR10E_C(10.100000000000001) * t602);
-    const ur10e_real_t t626 = t505 * t623 + t521 * t624 + t529 * t625 - t541 * t613;
-    const ur10e_real_t t627 = t5 - t132 * t568 + t93 * t592 + t62 * t602;
-    const ur10e_real_t t628 = UR10E_C(9.09) * (t627 - t33 * t612 + t6 * t621);
-    ddq_by_dq[30] = t563 * t622 - t626 - t583 * t628;
-    ddq_by_input[0] = t506;
-    ddq_by_input[6] = t508;
-    ddq_by_input[12] = t594;
-    ddq_by_input[18] = t604;
-    ddq_by_input[24] = t614;
-    ddq_by_input[30] = t623;
-    const ur10e_real_t t629 = t373 * t360;
-    const ur10e_real_t t630 = t371 * t174; /* link j4: motion */
-    const ur10e_real_t t631 = t629 - t630;
-    const ur10e_real_t t632 = t631 - t365;
-    const ur10e_real_t t633 = t372 * t378; /* link j5: motion */
-    const ur10e_real_t t634 = t633 + t632;
-    const ur10e_real_t t635 = t361 + t362;
-    const ur10e_real_t t636 = t363 + t635;
-    const ur10e_real_t t637 = t371 * t374; /* link j4: motion */
-    const ur10e_real_t t638 = t637 - t636;
-    const ur10e_real_t t639 = t370 * t360;
-    const ur10e_real_t t640 = t374 * t174;
-    const ur10e_real_t t641 = t640 + t639;
-    const ur10e_real_t t642 = t640 + t641;
-    const ur10e_real_t t643 = t22 * t638 - t18 * t642;
-    const ur10e_real_t t644 = t378 * t375; /* link j5: motion */
-    const ur10e_real_t t645 = t643 - t644;
-    const ur10e_real_t t646 = t645 - t644;
-    const ur10e_real_t t647 = t1 * t634 - t2 * t646;
-    const ur10e_real_t t648 = t376 * t379; /* link j6: motion */
-    const ur10e_real_t t649 = t647 - t648;
-    const ur10e_real_t t650 = t2 * t634 + t1 * t646;
-    const ur10e_real_t t651 = t382 * t379;
-    const ur10e_real_t t652 = t651 + t650;
-    const ur10e_real_t t653 = t651 + t652;
-    const ur10e_real_t t654 = t18 * t638 + t22 * t642;
-    const ur10e_real_t t655 = t372 * t375; /* link j5: motion */
-    const ur10e_real_t t656 = t655 + t654;
-    const ur10e_real_t t657 = t656 - t367;
-    const ur10e_real_t t658 = t382 * t376; /* link j6: motion */
-    const ur10e_real_t t659 = t657 - t658;
-    const ur10e_real_t t660 = t648 * t194 - parameters[XX6] * t649 - parameters[XY6] * t653
-        + parameters[XZ6] * t659;
-    const ur10e_real_t t661 = t376 * t376;
-    const ur10e_real_t t662 = t379 * t379;
-    const ur10e_real_t t663 = t213 + t361;
-    const ur10e_real_t t664 = t214 + UR10E_C(0.6127) * t663;
-    const ur10e_real_t t665 = t212 - t72 * t664;
-    const ur10e_real_t t666 = t369 * t360;
-    const ur10e_real_t t667 = t457 * t457; /* link j3: motion */
-    const ur10e_real_t t668 = t667 + t218; /* link j4: motion */
-    const ur10e_real_t t669 = t665 + (UR10E_C(0.57155) * t668 + UR10E_C(0.17415) * t666);
-    const ur10e_real_t t670 = t463 * t457; /* link j3: motion */
-    const ur10e_real_t t671 = t670 + t635;
-    const ur10e_real_t t672 = t368 * t360;
-    const ur10e_real_t t673 = t221 + t73 * t664;
-    const ur10e_real_t t674 = t673 + (UR10E_C(0.57155) * t671 + UR10E_C(0.17415) * t672);
-    const ur10e_real_t t675 = t51 * t669 - t48 * t674;
-    const ur10e_real_t t676 = t675 + UR10E_C(-0.11985) * t638;
-    const ur10e_real_t t677 = t119 * t360;
-    const ur10e_real_t t678 = t230 - t677;
-    const ur10e_real_t t679 = t230 + t678;
-    const ur10e_real_t t680 = UR10E_C(0.6127) * t679;
-    const ur10e_real_t t681 = t463 * t173;
-    const ur10e_real_t t682 = t681 - t666;
-    const ur10e_real_t t683 = t681 + t682;
-    const ur10e_real_t t684 = t463 * t463;
-    const ur10e_real_t t685 = t684 + t667; /* link j4: motion */
-    const ur10e_real_t t686 = t680 + (UR10E_C(0.17415) * t685 + UR10E_C(0.57155) * t683);
-    const ur10e_real_t t687 = t686 - UR10E_C(-0.11985) * t642;
-    const ur10e_real_t t688 = t18 * t676 - t22 * t687;
-    const ur10e_real_t t689 = t688 + UR10E_C(0.11655) * t634;
-    const ur10e_real_t t690 = t48 * t669 + t51 * t674;
-    const ur10e_real_t t691 = t371 * t371;
-    const ur10e_real_t t692 = t691 + t241; /* link j5: motion */
-    const ur10e_real_t t693 = UR10E_C(0.11985) * t692 - t690;
-    const ur10e_real_t t694 = t693 + UR10E_C(0.11655) * t646;
-    const ur10e_real_t t695 = t1 * t689 - t2 * t694;
-    const ur10e_real_t t696 = parameters[MZ6] * t695;
-    const ur10e_real_t t697 = t22 * t676 + t18 * t687;
-    const ur10e_real_t t698 = t372 * t372;
-    const ur10e_real_t t699 = t375 * t375;
-    const ur10e_real_t t700 = t698 + t699; /* link j6: motion */
-    const ur10e_real_t t701 = UR10E_C(0.11655) * t700 + t697;
-    const ur10e_real_t t702 = (t662 - t661) * parameters[YZ6] + t660 + (parameters[MY6] * t701 - t696);
-    const ur10e_real_t t703 = t649 - t648;
-    const ur10e_real_t t704 = t658 + t657;
-    const ur10e_real_t t705 = parameters[YY6] * t652 - t651 * t249 + parameters[XY6] * t703
-        - parameters[YZ6] * t704;
-    const ur10e_real_t t706 = t382 * t382;
-    const ur10e_real_t t707 = t2 * t689 + t1 * t694;
-    const ur10e_real_t t708 = parameters[MZ6] * t707;
-    const ur10e_real_t t709 = (t706 - t662) * parameters[XZ6] - t705 - (t708 + parameters[MX6] * t701);
-    const ur10e_real_t t710 = parameters[M6] * t707;
-    const ur10e_real_t t711 = parameters[MZ6] * t650;
-    const ur10e_real_t t712 = t710 + (parameters[MY6] * t704 - (t661 + t662) * parameters[MX6] + t711);
-    const ur10e_real_t t713 = parameters[M6] * t695;
-    const ur10e_real_t t714 = parameters[MZ6] * t647;
-    const ur10e_real_t t715 = t713 + ((t706 + t662) * parameters[MY6] + parameters[MX6] * t659 + t714);
-    const ur10e_real_t t716 = t1 * t712 - t2 * t715;
-    const ur10e_real_t t717 = t655 + t656;
-    const ur10e_real_t t718 = t632 - t633;
-    const ur10e_real_t t719 = t644 * t261 + parameters[XX5] * t645 + parameters[XY5] * t717
-        + parameters[XZ5] * t718;
-    const ur10e_real_t t720 = t378 * t378; /* link j5: motion */
-    const ur10e_real_t t721 = (t699 - t720) * parameters[YZ5] + t719 + (parameters[MY5] * t693
-        - parameters[MZ5] * t697);
-    const ur10e_real_t t722 = t721 + (t2 * t702 - t1 * t709 + UR10E_C(0.11655) * t716);
-    const ur10e_real_t t723 = t658 * t7 + parameters[ZZ6] * t657 - parameters[YZ6] * t650
-        - parameters[XZ6] * t647;
-    const ur10e_real_t t724 = (t661 - t706) * parameters[XY6] + t723 + (parameters[MX6] * t695
-        + parameters[MY6] * t707);
-    const ur10e_real_t t725 = parameters[YY5] * t656 - t655 * t270 + parameters[XY5] * t646
-        + parameters[YZ5] * t634;
-    const ur10e_real_t t726 = (t698 - t699) * parameters[XZ5] + t725 - (parameters[MZ5] * t688
-        + parameters[MX5] * t693);
-    const ur10e_real_t t727 = t726 + t724;
-    const ur10e_real_t t728 = t2 * t712 + t1 * t715;
-    const ur10e_real_t t729 = parameters[MY5] * t634 - (t720 + t699) * parameters[MX5]
-        - parameters[MZ5] * t654;
-    const ur10e_real_t t730 = parameters[M5] * t688 + t729 + t728;
-    const ur10e_real_t t731 = parameters[MZ5] * t643 - (t700 * parameters[MY5] + parameters[MX5] * t718)
-        - parameters[M5] * t697;
-    const ur10e_real_t t732 = t706 + t661; /* link j6: columns */
-    const ur10e_real_t t733 = parameters[MY6] * t703 - parameters[MX6] * t653 - t732 * parameters[MZ6]
-        - parameters[M6] * t701;
-    const ur10e_real_t t734 = t731 + t733;
-    const ur10e_real_t t735 = t22 * t730 + t18 * t734;
-    const ur10e_real_t t736 = t637 + t636;
-    const ur10e_real_t t737 = t630 - t631;
-    const ur10e_real_t t738 = parameters[XY4] * t737 - (t640 * t281 + parameters[XX4] * t641)
-        - parameters[XZ4] * t736;
-    const ur10e_real_t t739 = t374 * t374; /* link j4: motion */
-    const ur10e_real_t t740 = (t241 - t739) * parameters[YZ4] + t738 + (parameters[MY4] * t686
-        - parameters[MZ4] * t690);
-    const ur10e_real_t t741 = t740 + (t18 * t722 - t22 * t727 + UR10E_C(0.11985) * t735);
-    const ur10e_real_t t742 = t633 * t287 + parameters[ZZ5] * t632 + parameters[YZ5] * t654
-        + parameters[XZ5] * t643;
-    const ur10e_real_t t743 = (t698 - t720) * parameters[XY5] - t742 - (parameters[MX5] * t697
-        + parameters[MY5] * t688);
-    const ur10e_real_t t744 = t743 + (t1 * t702 + t2 * t709 + UR10E_C(-0.11655) * t728);
-    const ur10e_real_t t745 = parameters[YZ4] * t638 - (t630 * t291 + parameters[YY4] * t631
-        + parameters[XY4] * t642);
-    const ur10e_real_t t746 = (t691 - t241) * parameters[XZ4] + t745 - (parameters[MZ4] * t675
-        + parameters[MX4] * t686);
-    const ur10e_real_t t747 = t746 + t744;
-    const ur10e_real_t t748 = (t739 + t241) * parameters[MX4] - parameters[MY4] * t638
-        - parameters[MZ4] * t629;
-    const ur10e_real_t t749 = parameters[M4] * t675 - t748 + (t18 * t730 - t22 * t734);
-    const ur10e_real_t t750 = t698 + t720; /* link j6: motion */
-    const ur10e_real_t t751 = parameters[M5] * t693 + (t750 * parameters[MZ5] + (parameters[MY5] * t646
-        - parameters[MX5] * t717));
-    const ur10e_real_t t752 = parameters[MX4] * t736 - t692 * parameters[MY4] - parameters[MZ4] * t639
-        - parameters[M4] * t690;
-    const ur10e_real_t t753 = t752 + (t751 + t716);
-    const ur10e_real_t t754 = t48 * t749 + t51 * t753;
-    const ur10e_real_t t755 = t457 * t173; /* link j3: motion */
-    const ur10e_real_t t756 = t755 + t672;
-    const ur10e_real_t t757 = t755 * t302 + parameters[XX3] * t756 - parameters[XY3] * t683
-        + parameters[XZ3] * t671;
-    const ur10e_real_t t758 = parameters[MY3] * t680 - parameters[MZ3] * t673 - ((t667
-        - t218) * parameters[YZ3] + t757);
-    const ur10e_real_t t759 = t758 - (t48 * t747 - t51 * t741 - UR10E_C(0.17415) * t754);
-    const ur10e_real_t t760 = t48 * t753 - t51 * t749;
-    const ur10e_real_t t761 = t691 + t739; /* link j5: motion */
-    const ur10e_real_t t762 = parameters[M4] * t686 + (t761 * parameters[MZ4] - (parameters[MX4] * t737
-        + parameters[MY4] * t642));
-    const ur10e_real_t t763 = t762 - t735;
-    const ur10e_real_t t764 = t48 * t741 + t51 * t747 + (UR10E_C(0.17415) * t760 + UR10E_C(0.57155) * t763);
-    const ur10e_real_t t765 = t755 + t756;
-    const ur10e_real_t t766 = t635 - t670;
-    const ur10e_real_t t767 = t681 * t311 + parameters[YY3] * t682 - parameters[XY3] * t765
-        - parameters[YZ3] * t766;
-    const ur10e_real_t t768 = (t684 - t218) * parameters[XZ3] + t767 - (parameters[MZ3] * t665
-        + parameters[MX3] * t680);
-    const ur10e_real_t t769 = t768 + t764;
-    const ur10e_real_t t770 = parameters[M3] * t680 + (t685 * parameters[MZ3] - (parameters[MX3] * t683
-        + parameters[MY3] * t765));
-    const ur10e_real_t t771 = t72 * t759 + t73 * t769 + UR10E_C(0.6127) * (t770 + t763);
-    const ur10e_real_t t772 = t122 * t360;
-    const ur10e_real_t t773 = t316 + t772;
-    const ur10e_real_t t774 = t324 + parameters[YY2] * t678 - parameters[XY2] * (t316 + t773)
-        + parameters[YZ2] * (t213 - t361);
-    const ur10e_real_t t775 = t326 + t208; /* link j3: motion */
-    const ur10e_real_t t776 = UR10E_C(2.0) * t167; /* link j2: derivatives */
-    const ur10e_real_t t777 = UR10E_C(-2.0) * t166;
-    const ur10e_real_t t778 = t493 * t776 + t499 * t777 + (t117 * t677 - t121 * t772 - t775 * t158);
-    const ur10e_real_t t779 = parameters[MZ2] + t157; /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t780 = t327 + t774 - t328 + t771 + (t210 * t779 + t778);
-    const ur10e_real_t t781 = parameters[XX2] * t773 - t317 - parameters[XY2] * t679 + parameters[XZ2] * t663;
-    const ur10e_real_t t782 = t320 + (t319 + t781) + (t72 * t769 - t73 * t759);
-    const ur10e_real_t t783 = t503 * t776 + t495 * t777 + (t775 * t159 + (t121 * t677 - t118 * t772));
-    const ur10e_real_t t784 = t122 * t780 + t119 * (t782 + (t783 - t214 * t779));
-    const ur10e_real_t t785 = UR10E_C(0.08250825082508251) * t784;
-    const ur10e_real_t t786 = t167 * t518 + t166 * t520 + (t158 * t677 + t159 * t772 - t775 * t97);
-    const ur10e_real_t t787 = t210 * (t500 - parameters[MX2]) - t214 * (t120 - parameters[MY2]) + t786;
-    const ur10e_real_t t788 = UR10E_C(0.08250825082508251) * t787;
-    const ur10e_real_t t789 = t167 * t527 - t166 * t528 + (t775 * t88 + (t151 * t677 + t152 * t772));
-    const ur10e_real_t t790 = UR10E_C(0.099009900990099) * (t789 - (t214 * t120 + t210 * t87));
-    const ur10e_real_t t791 = t167 * t538 - t166 * t540 + (t775 * t75 + (t144 * t677 + t145 * t772));
-    const ur10e_real_t t792 = UR10E_C(0.11001100110011001) * (t210 * t74 - t214 * t539 + t791);
-    const ur10e_real_t t793 = t506 * t785 + t508 * t788 + t523 * t790 + t532 * t792;
-    const ur10e_real_t t794 = t167 * t560 - t166 * t562 + (t135 * t677 + t136 * t772 - t775 * t81);
-    const ur10e_real_t t795 = UR10E_C(0.11001100110011001) * (t210 * t80 - t214 * t561 + t794);
-    const ur10e_real_t t796 = t167 * t580 - t166 * t582 + (t129 * t677 + t130 * t772 - t775 * t78);
-    const ur10e_real_t t797 = UR10E_C(0.11001100110011001) * (t210 * t77 - t214 * t581 + t796);
-    ddq_by_q[1] = t569 * t797 - (t793 + t547 * t795);
-    const ur10e_real_t t798 = t508 * t785 + t584 * t788 + t586 * t790 + t588 * t792;
-    ddq_by_q[7] = t593 * t797 - (t798 + t591 * t795);
-    const ur10e_real_t t799 = t594 * t785 + t595 * t788 + t596 * t790 + t598 * t792;
-    ddq_by_q[13] = t603 * t797 - (t799 + t601 * t795);
-    const ur10e_real_t t800 = t604 * t785 + t605 * t788 + t606 * t790 + t608 * t792;
-    ddq_by_q[19] = t613 * t797 - (t800 + t611 * t795);
-    const ur10e_real_t t801 = t614 * t785 + t615 * t788 + t616 * t790 + t611 * t792;
-    ddq_by_q[25] = t622 * t797 - (t801 + t619 * t795);
-    const ur10e_real_t t802 = t623 * t785 + t624 * t788 + t625 * t790 - t613 * t792;
-    ddq_by_q[31] = t622 * t795 - t802 - t628 * t797;
-    const ur10e_real_t t803 = parameters[ZZ4] - t443;
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t804 = t374 * t803 - t174 * parameters[YZ4] + (t414 - t509 + t39 * t421);
-    const ur10e_real_t t805 = t371 * t803 - t174 * parameters[XZ4] + (t18 * t448 - t22 * t446);
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t806 = t51 * t804 + t48 * t805 + (UR10E_C(-0.17415) * t455 - t156 * t458);
-    const ur10e_real_t t807 = t475 - parameters[ZZ3];
-    const ur10e_real_t t808 = t806 - (t173 * parameters[YZ3] + t457 * t807);
-    const ur10e_real_t t809 = t51 * t805 - t48 * t804 - (UR10E_C(-0.17415) * t478 - t156 * t464);
-    const ur10e_real_t t810 = t173 * parameters[XZ3] + t463 * t807 - t809;
-    const ur10e_real_t t811 = parameters[ZZ2] - t497;
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t812 = t167 * t811 - dq[1] * parameters[YZ2] + (t73 * t808 - t72 * t810);
-    /* link j2: derivatives */
-    const ur10e_real_t t813 = t122 * (UR10E_C(2.0) * t812 + (t117 * t776 + t121 * t777));
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t814 = dq[1] * parameters[XZ2] - t166 * t811 + (t72 * t808 + t73 * t810 + t157 * t486);
-    /* link j2: derivatives */
-    const ur10e_real_t t815 = t119 * (UR10E_C(2.0) * t814 + (t121 * t776 + t118 * t777));
-    const ur10e_real_t t816 = UR10E_C(0.08250825082508251) * (t813 + t815);
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t817 = t433 - t429 + (t428 + (t420 - t401 + t427));
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t818 = t472 - t469 + (t468 + (t817 - (t462 + t467)));
-    /* link j2: derivatives */
-    const ur10e_real_t t819 = UR10E_C(2.0) * (t494 - t491 + (t490 + (t818 - t489)))
-        + UR10E_C(2.0) * (t167 * t158 + t166 * t159);
-    const ur10e_real_t t820 = UR10E_C(841.6666666666667) * parameters[FV2]
-        + UR10E_C(0.08250825082508251) * t819;
-    const ur10e_real_t t821 = UR10E_C(2.0) * t818; /* link j3: derivatives */
-    const ur10e_real_t t822 = t821 - t120 * t559 + UR10E_C(2.0) * (t167 * t151 + t166 * t152);
-    const ur10e_real_t t823 = UR10E_C(0.099009900990099) * t822;
-    const ur10e_real_t t824 = UR10E_C(2.0) * t817; /* link j4: derivatives */
-    const ur10e_real_t t825 = t824 + (t52 * t557 - t71 * t555);
-    const ur10e_real_t t826 = t825 - t539 * t559 + UR10E_C(2.0) * (t167 * t144 + t166 * t145);
-    const ur10e_real_t t827 = UR10E_C(0.11001100110011001) * t826;
-    const ur10e_real_t t828 = t816 * t506 + t820 * t508 + t823 * t523 + t827 * t532;
-    const ur10e_real_t t829 = t18 * t549 - t22 * t548; /* link j5: derivatives */
-    const ur10e_real_t t830 = t829 + (t56 * t557 + t79 * t555);
-    const ur10e_real_t t831 = t830 - t561 * t559 + UR10E_C(2.0) * (t167 * t135 + t166 * t136);
-    const ur10e_real_t t832 = UR10E_C(0.11001100110011001) * t831;
-    const ur10e_real_t t833 = t18 * t574 - t22 * t572 + t19 * t553; /* link j6: derivatives */
-    const ur10e_real_t t834 = t833 + (t54 * t557 + t76 * t555);
-    const ur10e_real_t t835 = t834 - t581 * t559 + UR10E_C(2.0) * (t167 * t129 + t166 * t130);
-    const ur10e_real_t t836 = UR10E_C(0.11001100110011001) * t835;
-    ddq_by_dq[1] = t836 * t569 - (t828 + t832 * t547);
-    const ur10e_real_t t837 = t816 * t508 + t820 * t584 + t823 * t586 + t827 * t588;
-    ddq_by_dq[7] = t836 * t593 - (t837 + t832 * t591);
-    const ur10e_real_t t838 = t816 * t594 + t820 * t595 + t823 * t596 + t827 * t598;
-    ddq_by_dq[13] = t836 * t603 - (t838 + t832 * t601);
-    const ur10e_real_t t839 = t816 * t604 + t820 * t605 + t823 * t606 + t827 * t608;
-    ddq_by_dq[19] = t836 * t613 - (t839 + t832 * t611);
-    const ur10e_real_t t840 = t816 * t614 + t820 * t615 + t823 * t616 + t827 * t611;
-    ddq_by_dq[25] = t836 * t622 - (t840 + t832 * t619);
-    const ur10e_real_t t841 = t816 * t623 + t820 * t624 + t823 * t625 - t827 * t613;
-    ddq_by_dq[31] = t832 * t622 - t841 - t836 * t628;
-    ddq_by_input[1] = t508;
-    ddq_by_input[7] = t584;
-    ddq_by_input[13] = t595;
-    ddq_by_input[19] = t605;
-    ddq_by_input[25] = t615;
-    ddq_by_input[31] = t624;
-    const ur10e_real_t t842 = UR10E_C(2.0) * t457; /* link j3: derivatives */
-    const ur10e_real_t t843 = UR10E_C(2.0) * t463;
-    const ur10e_real_t t844 = t471 * t842 + t477 * t843 + (t685 * t149 + (t113 * t666 + t114 * t672));
-    const ur10e_real_t t845 = t769 + (t844 + t157 * t665);
-    const ur10e_real_t t846 = t473 * t843 - t480 * t842 + (t114 * t666 + t112 * t672 - t685 * t150);
-    const ur10e_real_t t847 = t759 + (t846 + t157 * t673);
-    const ur10e_real_t t848 = t484 * t842 + t483 * t843 + (t86 * t672 - t84 * t666);
-    const ur10e_real_t t849 = t119 * (t72 * t845 - t73 * t847 + UR10E_C(0.6127) * t848);
-    const ur10e_real_t t850 = UR10E_C(0.08250825082508251) * (t122 * (t73 * t845 + t72 * t847) + t849);
-    const ur10e_real_t t851 = parameters[MX3] * t671 - (t684 + t218) * parameters[MY3]
-        - parameters[MZ3] * t672;
-    const ur10e_real_t t852 = t516 * t843 + t94 * t673 + (t685 * t84 + t157 * t672);
-    const ur10e_real_t t853 = t668 * parameters[MX3] + parameters[MY3] * t766 - parameters[MZ3] * t666
-        - parameters[M3] * t665;
-    const ur10e_real_t t854 = t516 * t842 + t94 * t665 + (t685 * t86 + t157 * t666);
-    const ur10e_real_t t855 = t72 * (t851 - parameters[M3] * t673 + t754 + t852) + t73 * (t853 + t760 + t854);
-    const ur10e_real_t t856 = t150 * t672 - t149 * t666 - t685 * t66;
-    const ur10e_real_t t857 = t86 * t665 + t84 * t673;
-    const ur10e_real_t t858 = t514 * t842 + t515 * t843 + t856 - t857 + UR10E_C(0.6127) * t855;
-    const ur10e_real_t t859 = UR10E_C(0.08250825082508251) * t858;
-    const ur10e_real_t t860 = UR10E_C(0.099009900990099) * (t457 * t524 + t463 * t525 + t856 - t857);
-    const ur10e_real_t t861 = t457 * t536 + t463 * t537 + (t685 * t53 + (t143 * t672 - t142 * t666));
-    const ur10e_real_t t862 = UR10E_C(0.11001100110011001) * (t861 + (t52 * t665 - t71 * t673));
-    const ur10e_real_t t863 = t506 * t850 + t508 * t859 + t523 * t860 + t532 * t862;
-    const ur10e_real_t t864 = t457 * t556 + t463 * t558 + (t685 * t57 + (t134 * t672 - t133 * t666));
-    const ur10e_real_t t865 = UR10E_C(0.11001100110011001) * (t864 + (t79 * t673 + t56 * t665));
-    const ur10e_real_t t866 = t457 * t578 + t463 * t579 + (t685 * t55 + (t128 * t672 - t127 * t666));
-    const ur10e_real_t t867 = UR10E_C(0.11001100110011001) * (t866 + (t76 * t673 + t54 * t665));
-    ddq_by_q[2] = t569 * t867 - (t863 + t547 * t865);
-    const ur10e_real_t t868 = t508 * t850 + t584 * t859 + t586 * t860 + t588 * t862;
-    ddq_by_q[8] = t593 * t867 - (t868 + t591 * t865);
-    const ur10e_real_t t869 = t594 * t850 + t595 * t859 + t596 * t860 + t598 * t862;
-    ddq_by_q[14] = t603 * t867 - (t869 + t601 * t865);
-    const ur10e_real_t t870 = t604 * t850 + t605 * t859 + t606 * t860 + t608 * t862;
-    ddq_by_q[20] = t613 * t867 - (t870 + t611 * t865);
-    const ur10e_real_t t871 = t614 * t850 + t615 * t859 + t616 * t860 + t611 * t862;
-    ddq_by_q[26] = t622 * t867 - (t871 + t619 * t865);
-    const ur10e_real_t t872 = t623 * t850 + t624 * t859 + t625 * t860 - t613 * t862;
-    ddq_by_q[32] = t622 * t865 - t872 - t628 * t867;
-    const ur10e_real_t t873 = UR10E_C(2.0) * t808 + (t113 * t842 + t114 * t843);
-    const ur10e_real_t t874 = UR10E_C(2.0) * t810 - (t114 * t842 + t112 * t843);
-    const ur10e_real_t t875 = t72 * t873 + t73 * t874 + UR10E_C(0.6127) * (t86 * t843 - t84 * t842);
-    const ur10e_real_t t876 = t122 * (t73 * t873 - t72 * t874) + t119 * t875;
-    const ur10e_real_t t877 = UR10E_C(0.08250825082508251) * t876;
-    const ur10e_real_t t878 = t72 * (UR10E_C(2.0) * t484 + t157 * t843) + t73 * (UR10E_C(-2.0) * t483
-        + t157 * t842);
-    const ur10e_real_t t879 = t821 + (t150 * t843 - t149 * t842) + UR10E_C(0.6127) * t878;
-    const ur10e_real_t t880 = UR10E_C(0.08250825082508251) * t879;
-    const ur10e_real_t t881 = UR10E_C(0.099009900990099) * (t821 + UR10E_C(2.0) * (t463 * t150
-        - t457 * t149));
-    const ur10e_real_t t882 = UR10E_C(1010.0) * parameters[FV3] + t881;
-    const ur10e_real_t t883 = UR10E_C(0.11001100110011001) * (t825 + UR10E_C(2.0) * (t463 * t143
-        - t457 * t142));
-    const ur10e_real_t t884 = t877 * t506 + t880 * t508 + t882 * t523 + t883 * t532;
-    const ur10e_real_t t885 = UR10E_C(0.11001100110011001) * (t830 + UR10E_C(2.0) * (t463 * t134
-        - t457 * t133));
-    const ur10e_real_t t886 = UR10E_C(0.11001100110011001) * (t834 + UR10E_C(2.0) * (t463 * t128
-        - t457 * t127));
-    ddq_by_dq[2] = t886 * t569 - (t884 + t885 * t547);
-    const ur10e_real_t t887 = t877 * t508 + t880 * t584 + t882 * t586 + t883 * t588;
-    ddq_by_dq[8] = t886 * t593 - (t887 + t885 * t591);
-    const ur10e_real_t t888 = t877 * t594 + t880 * t595 + t882 * t596 + t883 * t598;
-    ddq_by_dq[14] = t886 * t603 - (t888 + t885 * t601);
-    const ur10e_real_t t889 = t877 * t604 + t880 * t605 + t882 * t606 + t883 * t608;
-    ddq_by_dq[20] = t886 * t613 - (t889 + t885 * t611);
-    const ur10e_real_t t890 = t877 * t614 + t880 * t615 + t882 * t616 + t883 * t611;
-    ddq_by_dq[26] = t886 * t622 - (t890 + t885 * t619);
-    const ur10e_real_t t891 = t877 * t623 + t880 * t624 + t882 * t625 - t883 * t613;
-    ddq_by_dq[32] = t885 * t622 - t891 - t886 * t628;
-    ddq_by_input[2] = t523;
-    ddq_by_input[8] = t586;
-    ddq_by_input[14] = t596;
-    ddq_by_input[20] = t606;
-    ddq_by_input[26] = t616;
-    ddq_by_input[32] = t625;
-    const ur10e_real_t t892 = UR10E_C(2.0) * t374; /* link j4: derivatives */
-    const ur10e_real_t t893 = UR10E_C(2.0) * t371;
-    const ur10e_real_t t894 = t445 * t893 - t431 * t892 + (t761 * t139 - (t103 * t629 + t106 * t639));
-    const ur10e_real_t t895 = t747 + (t894 + t109 * t675);
-    const ur10e_real_t t896 = t434 * t893 - t450 * t892 + (t761 * t140 + (t104 * t639 - t106 * t629));
-    const ur10e_real_t t897 = t741 + (t896 + t109 * t690);
-    const ur10e_real_t t898 = t461 * t893 + t63 * t690 + (t761 * t47 + t109 * t639);
-    const ur10e_real_t t899 = t753 + t898;
-    const ur10e_real_t t900 = t461 * t892 + t63 * t675 + (t109 * t629 - t761 * t50);
-    const ur10e_real_t t901 = t749 - t900;
-    const ur10e_real_t t902 = t48 * t899 - t51 * t901;
-    const ur10e_real_t t903 = t51 * t895 + t48 * t897 + UR10E_C(0.17415) * t902;
-    const ur10e_real_t t904 = t51 * t899 + t48 * t901;
-    const ur10e_real_t t905 = t454 * t892 + t453 * t893 - (t47 * t629 + t50 * t639);
-    const ur10e_real_t t906 = t48 * t895 - t51 * t897 + (UR10E_C(-0.17415) * t904 - UR10E_C(-0.57155) * t905);
-    const ur10e_real_t t907 = t119 * (t72 * t903 + t73 * t906 + UR10E_C(0.6127) * t905);
-    const ur10e_real_t t908 = UR10E_C(0.08250825082508251) * (t122 * (t73 * t903 - t72 * t906) + t907);
-    const ur10e_real_t t909 = t50 * t675 - t47 * t690;
-    const ur10e_real_t t910 = t761 * t29 + (t139 * t629 + t140 * t639);
-    const ur10e_real_t t911 = t512 * t893 - t510 * t892 - t910 + t909 + UR10E_C(0.57155) * t902;
-    const ur10e_real_t t912 = UR10E_C(0.08250825082508251) * (t911 + UR10E_C(0.6127) * (t72 * t904
-        + t73 * t902));
-    const ur10e_real_t t913 = UR10E_C(0.099009900990099) * t911;
-    const ur10e_real_t t914 = UR10E_C(0.11001100110011001) * (t909 + (t371 * t534 - t374 * t533 - t910));
-    const ur10e_real_t t915 = t506 * t908 + t508 * t912 + t523 * t913 + t532 * t914;
-    const ur10e_real_t t916 = t371 * t554 - t374 * t550 + (t761 * t40 + (t12 * t639 - t105 * t629));
-    const ur10e_real_t t917 = UR10E_C(0.11001100110011001) * (t916 + t39 * t690);
-    const ur10e_real_t t918 = t371 * t577 - t374 * t575 + (t761 * t32 - (t126 * t629 + t4 * t639));
-    const ur10e_real_t t919 = UR10E_C(0.11001100110011001) * (t918 + (t31 * t690 + t19 * t675));
-    ddq_by_q[3] = t569 * t919 - (t915 + t547 * t917);
-    const ur10e_real_t t920 = t508 * t908 + t584 * t912 + t586 * t913 + t588 * t914;
-    ddq_by_q[9] = t593 * t919 - (t920 + t591 * t917);
-    const ur10e_real_t t921 = t594 * t908 + t595 * t912 + t596 * t913 + t598 * t914;
-    ddq_by_q[15] = t603 * t919 - (t921 + t601 * t917);
-    const ur10e_real_t t922 = t604 * t908 + t605 * t912 + t606 * t913 + t608 * t914;
-    ddq_by_q[21] = t613 * t919 - (t922 + t611 * t917);
-    const ur10e_real_t t923 = t614 * t908 + t615 * t912 + t616 * t913 + t611 * t914;
-    ddq_by_q[27] = t622 * t919 - (t923 + t619 * t917);
-    const ur10e_real_t t924 = t623 * t908 + t624 * t912 + t625 * t913 - t613 * t914;
-    ddq_by_q[33] = t622 * t917 - t924 - t628 * t919;
-    const ur10e_real_t t925 = UR10E_C(2.0) * t804 - (t103 * t892 + t106 * t893);
-    const ur10e_real_t t926 = UR10E_C(2.0) * t805 + (t104 * t893 - t106 * t892);
-    const ur10e_real_t t927 = UR10E_C(-2.0) * t453 + t109 * t892;
-    const ur10e_real_t t928 = UR10E_C(2.0) * t454 + t109 * t893;
-    const ur10e_real_t t929 = t48 * t928 + t51 * t927;
-    const ur10e_real_t t930 = t51 * t925 + t48 * t926 + UR10E_C(0.17415) * t929;
-    const ur10e_real_t t931 = t51 * t928 - t48 * t927;
-    const ur10e_real_t t932 = t47 * t892 + t50 * t893;
-    const ur10e_real_t t933 = t51 * t926 - t48 * t925 + (UR10E_C(0.17415) * t931 + UR10E_C(0.57155) * t932);
-    const ur10e_real_t t934 = t119 * (t72 * t930 - t73 * t933 + UR10E_C(-0.6127) * t932);
-    const ur10e_real_t t935 = UR10E_C(0.08250825082508251) * (t122 * (t73 * t930 + t72 * t933) + t934);
-    const ur10e_real_t t936 = t824 - (t139 * t892 + t140 * t893) + UR10E_C(0.57155) * t929;
-    const ur10e_real_t t937 = UR10E_C(0.08250825082508251) * (t936 + UR10E_C(0.6127) * (t72 * t931
-        + t73 * t929));
-    const ur10e_real_t t938 = UR10E_C(0.099009900990099) * t936;
-    const ur10e_real_t t939 = UR10E_C(0.11001100110011001) * (t824 + UR10E_C(-2.0) * (t374 * t139
-        + t371 * t140));
-    const ur10e_real_t t940 = UR10E_C(1122.2222222222222) * parameters[FV4] + t939;
-    const ur10e_real_t t941 = t935 * t506 + t937 * t508 + t938 * t523 + t940 * t532;
-    const ur10e_real_t t942 = UR10E_C(0.11001100110011001) * (t829 + UR10E_C(2.0) * (t371 * t12
-        - t374 * t105));
-    const ur10e_real_t t943 = UR10E_C(0.11001100110011001) * (t833 + UR10E_C(-2.0) * (t374 * t126
-        + t371 * t4));
-    ddq_by_dq[3] = t943 * t569 - (t941 + t942 * t547);
-    const ur10e_real_t t944 = t935 * t508 + t937 * t584 + t938 * t586 + t940 * t588;
-    ddq_by_dq[9] = t943 * t593 - (t944 + t942 * t591);
-    const ur10e_real_t t945 = t935 * t594 + t937 * t595 + t938 * t596 + t940 * t598;
-    ddq_by_dq[15] = t943 * t603 - (t945 + t942 * t601);
-    const ur10e_real_t t946 = t935 * t604 + t937 * t605 + t938 * t606 + t940 * t608;
-    ddq_by_dq[21] = t943 * t613 - (t946 + t942 * t611);
-    const ur10e_real_t t947 = t935 * t614 + t937 * t615 + t938 * t616 + t940 * t611;
-    ddq_by_dq[27] = t943 * t622 - (t947 + t942 * t619);
-    const ur10e_real_t t948 = t935 * t623 + t937 * t624 + t938 * t625 - t940 * t613;
-    ddq_by_dq[33] = t942 * t622 - t948 - t943 * t628;
-    ddq_by_input[3] = t532;
-    ddq_by_input[9] = t588;
-    ddq_by_input[15] = t598;
-    ddq_by_input[21] = t608;
-    ddq_by_input[27] = t611;
-    ddq_by_input[33] = -t613;
-    const ur10e_real_t t949 = UR10E_C(-2.0) * t378; /* link j5: derivatives */
-    const ur10e_real_t t950 = UR10E_C(2.0) * t372;
-    const ur10e_real_t t951 = t404 * t950 - t418 * t949 - (t750 * t34 + (t21 * t654 + t17 * t643));
-    const ur10e_real_t t952 = t722 + (t951 + t25 * t697);
-    const ur10e_real_t t953 = t401 * t949 - t414 * t950 + (t750 * t35 - (t16 * t654 + t21 * t643));
-    const ur10e_real_t t954 = t727 + (t953 + t25 * t688);
-    const ur10e_real_t t955 = t424 * t949 - t26 * t688 + (t750 * t36 + t25 * t654);
-    const ur10e_real_t t956 = t730 + t955;
-    const ur10e_real_t t957 = t424 * t950 + t26 * t697 - (t750 * t38 + t25 * t643);
-    const ur10e_real_t t958 = t734 + t957;
-    const ur10e_real_t t959 = t18 * t956 - t22 * t958;
-    const ur10e_real_t t960 = t18 * t954 + t22 * t952 + UR10E_C(-0.11985) * t959;
-    const ur10e_real_t t961 = t36 * t688 + t38 * t697;
-    const ur10e_real_t t962 = t35 * t654 - t34 * t643 - t750 * t12;
-    const ur10e_real_t t963 = t446 * t949 - t448 * t950 + t962 + t961;
-    const ur10e_real_t t964 = t18 * t958 + t22 * t956;
-    const ur10e_real_t t965 = t440 * t949 - t439 * t950 - (t36 * t643 - t38 * t654);
-    const ur10e_real_t t966 = t51 * t964 + t48 * t965;
-    const ur10e_real_t t967 = t48 * t960 - t51 * t963 + (UR10E_C(-0.17415) * t966 + UR10E_C(0.57155) * t959);
-    const ur10e_real_t t968 = t48 * t964 - t51 * t965;
-    const ur10e_real_t t969 = t51 * t960 + t48 * t963 + UR10E_C(0.17415) * t968;
-    const ur10e_real_t t970 = t119 * (t72 * t969 + t73 * t967 + UR10E_C(0.6127) * t959);
-    const ur10e_real_t t971 = UR10E_C(0.08250825082508251) * (t122 * (t73 * t969 - t72 * t967) + t970);
-    const ur10e_real_t t972 = t22 * t954 - t18 * t952 + UR10E_C(-0.11985) * t964;
-    const ur10e_real_t t973 = t972 + UR10E_C(0.57155) * t968;
-    const ur10e_real_t t974 = UR10E_C(0.08250825082508251) * (t973 + UR10E_C(0.6127) * (t72 * t966
-        + t73 * t968));
-    const ur10e_real_t t975 = UR10E_C(0.099009900990099) * t973;
-    const ur10e_real_t t976 = UR10E_C(0.11001100110011001) * t972;
-    const ur10e_real_t t977 = t506 * t971 + t508 * t974 + t523 * t975 + t532 * t976;
-    const ur10e_real_t t978 = UR10E_C(0.11001100110011001) * (t961 + (t962 - (t378 * t548 + t372 * t549)));
-    const ur10e_real_t t979 = t750 * t4 + (t20 * t654 + parameters[ZZ6] * t643) - (t378 * t572 + t372 * t574);
-    const ur10e_real_t t980 = UR10E_C(0.11001100110011001) * (t979 + t3 * t697);
-    ddq_by_q[4] = t569 * t980 - (t977 + t547 * t978);
-    const ur10e_real_t t981 = t508 * t971 + t584 * t974 + t586 * t975 + t588 * t976;
-    ddq_by_q[10] = t593 * t980 - (t981 + t591 * t978);
-    const ur10e_real_t t982 = t594 * t971 + t595 * t974 + t596 * t975 + t598 * t976;
-    ddq_by_q[16] = t603 * t980 - (t982 + t601 * t978);
-    const ur10e_real_t t983 = t604 * t971 + t605 * t974 + t606 * t975 + t608 * t976;
-    ddq_by_q[22] = t613 * t980 - (t983 + t611 * t978);
-    const ur10e_real_t t984 = t614 * t971 + t615 * t974 + t616 * t975 + t611 * t976;
-    ddq_by_q[28] = t622 * t980 - (t984 + t619 * t978);
-    const ur10e_real_t t985 = t623 * t971 + t624 * t974 + t625 * t975 - t613 * t976;
-    ddq_by_q[34] = t622 * t978 - t985 - t628 * t980;
-    const ur10e_real_t t986 = UR10E_C(2.0) * t437 + (t21 * t950 - t16 * t949);
-    const ur10e_real_t t987 = UR10E_C(2.0) * t438 - (t17 * t950 - t21 * t949);
-    const ur10e_real_t t988 = UR10E_C(2.0) * t440 + t25 * t950;
-    const ur10e_real_t t989 = UR10E_C(2.0) * t439 + t25 * t949;
-    const ur10e_real_t t990 = t22 * t988 - t18 * t989;
-    const ur10e_real_t t991 = t18 * t986 - t22 * t987 + UR10E_C(0.11985) * t990;
-    const ur10e_real_t t992 = t551 + (t35 * t949 + t34 * t950);
-    const ur10e_real_t t993 = t18 * t988 + t22 * t989;
-    const ur10e_real_t t994 = t38 * t949 + t36 * t950;
-    const ur10e_real_t t995 = t51 * t993 + t48 * t994;
-    const ur10e_real_t t996 = t51 * t992 - t48 * t991 + (UR10E_C(0.17415) * t995 + UR10E_C(0.57155) * t990);
-    const ur10e_real_t t997 = t48 * t993 - t51 * t994;
-    const ur10e_real_t t998 = t51 * t991 + t48 * t992 + UR10E_C(0.17415) * t997;
-    const ur10e_real_t t999 = t119 * (t72 * t998 - t73 * t996 + UR10E_C(-0.6127) * t990);
-    const ur10e_real_t t1000 = UR10E_C(0.08250825082508251) * (t122 * (t73 * t998 + t72 * t996) + t999);
-    const ur10e_real_t t1001 = t22 * t986 + t18 * t987 + UR10E_C(-0.11985) * t993;
-    const ur10e_real_t t1002 = t1001 + UR10E_C(0.57155) * t997;
-    const ur10e_real_t t1003 = UR10E_C(0.08250825082508251) * (t1002 + UR10E_C(0.6127) * (t72 * t995
-        + t73 * t997));
-    const ur10e_real_t t1004 = UR10E_C(0.099009900990099) * t1002;
-    const ur10e_real_t t1005 = UR10E_C(0.11001100110011001) * t1001;
-    const ur10e_real_t t1006 = t1000 * t506 + t1003 * t508 + t1004 * t523 + t1005 * t532;
-    const ur10e_real_t t1007 = UR10E_C(0.11001100110011001) * (t551 + UR10E_C(2.0) * (t372 * t34
-        - t378 * t35));
-    const ur10e_real_t t1008 = UR10E_C(1122.2222222222222) * parameters[FV5] + t1007;
-    const ur10e_real_t t1009 = UR10E_C(0.11001100110011001) * (t576 + UR10E_C(-2.0) * (t378 * t20
-        + t372 * parameters[ZZ6]));
-    ddq_by_dq[4] = t1009 * t569 - (t1006 + t1008 * t547);
-    const ur10e_real_t t1010 = t1000 * t508 + t1003 * t584 + t1004 * t586 + t1005 * t588;
-    ddq_by_dq[10] = t1009 * t593 - (t1010 + t1008 * t591);
-    const ur10e_real_t t1011 = t1000 * t594 + t1003 * t595 + t1004 * t596 + t1005 * t598;
-    ddq_by_dq[16] = t1009 * t603 - (t1011 + t1008 * t601);
-    const ur10e_real_t t1012 = t1000 * t604 + t1003 * t605 + t1004 * t606 + t1005 * t608;
-    ddq_by_dq[22] = t1009 * t613 - (t1012 + t1008 * t611);
-    const ur10e_real_t t1013 = t1000 * t614 + t1003 * t615 + t1004 * t616 + t1005 * t611;
-    ddq_by_dq[28] = t1009 * t622 - (t1013 + t1008 * t619);
-    const ur10e_real_t t1014 = t1000 * t623 + t1003 * t624 + t1004 * t625 - t1005 * t613;
-    ddq_by_dq[34] = t1008 * t622 - t1014 - t1009 * t628;
-    ddq_by_input[4] = t547;
-    ddq_by_input[10] = t591;
-    ddq_by_input[16] = t601;
-    ddq_by_input[22] = t611;
-    ddq_by_input[28] = t619;
-    ddq_by_input[34] = -t622;
-    const ur10e_real_t t1015 = UR10E_C(2.0) * t376; /* link j6: derivatives */
-    const ur10e_real_t t1016 = UR10E_C(-2.0) * t382;
-    const ur10e_real_t t1017 = t381 * t1015 + t389 * t1016 - (t732 * parameters[XZ6] + (parameters[XY6] * t647
-        - parameters[XX6] * t650));
-    const ur10e_real_t t1018 = t709 + (t708 + t1017);
-    const ur10e_real_t t1019 = t387 * t1015 + t384 * t1016 + (t732 * parameters[YZ6] + (parameters[YY6] * t647
-        - parameters[XY6] * t650));
-    const ur10e_real_t t1020 = t702 + (t696 + t1019);
-    const ur10e_real_t t1021 = t394 * t1016 + t713 + (t714 - t732 * parameters[MY6]) - t715;
-    const ur10e_real_t t1022 = t712 + (t394 * t1015 - t710 - (t732 * parameters[MX6] + t711));
-    const ur10e_real_t t1023 = t1 * t1021 - t2 * t1022;
-    const ur10e_real_t t1024 = t2 * t1018 + t1 * t1020 + UR10E_C(0.11655) * t1023;
-    const ur10e_real_t t1025 = parameters[MY6] * t695 - parameters[MX6] * t707;
-    const ur10e_real_t t1026 = parameters[XZ6] * t650 - parameters[YZ6] * t647 - t732 * parameters[ZZ6];
-    const ur10e_real_t t1027 = t416 * t1016 - t415 * t1015 - t1026 - t1025;
-    const ur10e_real_t t1028 = t2 * t1021 + t1 * t1022;
-    const ur10e_real_t t1029 = parameters[MY6] * t650 + parameters[MX6] * t647 - (t409 * t1015
-        + t408 * t1016);
-    const ur10e_real_t t1030 = t18 * t1029 - t22 * t1028;
-    const ur10e_real_t t1031 = t18 * t1024 + t22 * t1027 + UR10E_C(-0.11985) * t1030;
-    const ur10e_real_t t1032 = t2 * t1020 - t1 * t1018 + UR10E_C(0.11655) * t1028;
-    const ur10e_real_t t1033 = t18 * t1028 + t22 * t1029;
-    const ur10e_real_t t1034 = t48 * t1033 + t51 * t1023;
-    const ur10e_real_t t1035 = t51 * t1031 + t48 * t1032 + UR10E_C(0.17415) * t1034;
-    const ur10e_real_t t1036 = t51 * t1033 - t48 * t1023;
-    const ur10e_real_t t1037 = t48 * t1031 - t51 * t1032 + (UR10E_C(-0.17415) * t1036
-        + UR10E_C(0.57155) * t1030);
-    const ur10e_real_t t1038 = t119 * (t72 * t1035 + t73 * t1037 + UR10E_C(0.6127) * t1030);
-    const ur10e_real_t t1039 = UR10E_C(0.08250825082508251) * (t122 * (t73 * t1035 - t72 * t1037) + t1038);
-    const ur10e_real_t t1040 = t22 * t1024 - t18 * t1027 + UR10E_C(-0.11985) * t1033;
-    const ur10e_real_t t1041 = t1040 + UR10E_C(0.57155) * t1034;
-    const ur10e_real_t t1042 = UR10E_C(0.08250825082508251) * (t1041 + UR10E_C(0.6127) * (t72 * t1036
-        + t73 * t1034));
-    const ur10e_real_t t1043 = UR10E_C(0.099009900990099) * t1041;
-    const ur10e_real_t t1044 = UR10E_C(0.11001100110011001) * t1040;
-    const ur10e_real_t t1045 = t506 * t1039 + t508 * t1042 + t523 * t1043 + t532 * t1044;
-    const ur10e_real_t t1046 = UR10E_C(0.11001100110011001) * t1032;
-    const ur10e_real_t t1047 = UR10E_C(0.11001100110011001) * (t1025 + (t376 * t570 - t382 * t571 + t1026));
-    ddq_by_q[5] = t569 * t1047 - (t1045 + t547 * t1046);
-    const ur10e_real_t t1048 = t508 * t1039 + t584 * t1042 + t586 * t1043 + t588 * t1044;
-    ddq_by_q[11] = t593 * t1047 - (t1048 + t591 * t1046);
-    const ur10e_real_t t1049 = t594 * t1039 + t595 * t1042 + t596 * t1043 + t598 * t1044;
-    ddq_by_q[17] = t603 * t1047 - (t1049 + t601 * t1046);
-    const ur10e_real_t t1050 = t604 * t1039 + t605 * t1042 + t606 * t1043 + t608 * t1044;
-    ddq_by_q[23] = t613 * t1047 - (t1050 + t611 * t1046);
-    const ur10e_real_t t1051 = t614 * t1039 + t615 * t1042 + t616 * t1043 + t611 * t1044;
-    ddq_by_q[29] = t622 * t1047 - (t1051 + t619 * t1046);
-    const ur10e_real_t t1052 = t623 * t1039 + t624 * t1042 + t625 * t1043 - t613 * t1044;
-    ddq_by_q[35] = t622 * t1046 - t1052 - t628 * t1047;
-    const ur10e_real_t t1053 = UR10E_C(2.0) * t406 + (parameters[XX6] * t1015 + parameters[XY6] * t1016);
-    const ur10e_real_t t1054 = UR10E_C(-2.0) * t407 + (parameters[XY6] * t1015 + parameters[YY6] * t1016);
-    const ur10e_real_t t1055 = UR10E_C(2.0) * t409 + parameters[MZ6] * t1016;
-    const ur10e_real_t t1056 = UR10E_C(2.0) * t408 - parameters[MZ6] * t1015;
-    const ur10e_real_t t1057 = t1 * t1055 + t2 * t1056;
-    const ur10e_real_t t1058 = t1 * t1054 - t2 * t1053 + UR10E_C(0.11655) * t1057;
-    const ur10e_real_t t1059 = t573 - (parameters[XZ6] * t1015 + parameters[YZ6] * t1016);
-    const ur10e_real_t t1060 = t2 * t1055 - t1 * t1056;
-    const ur10e_real_t t1061 = parameters[MX6] * t1016 - parameters[MY6] * t1015;
-    const ur10e_real_t t1062 = t22 * t1060 - t18 * t1061;
-    const ur10e_real_t t1063 = t18 * t1058 - t22 * t1059 + UR10E_C(0.11985) * t1062;
-    const ur10e_real_t t1064 = t1 * t1053 + t2 * t1054 + UR10E_C(0.11655) * t1060;
-    const ur10e_real_t t1065 = t18 * t1060 + t22 * t1061;
-    const ur10e_real_t t1066 = t48 * t1065 + t51 * t1057;
-    const ur10e_real_t t1067 = t51 * t1063 + t48 * t1064 + UR10E_C(0.17415) * t1066;
-    const ur10e_real_t t1068 = t51 * t1065 - t48 * t1057;
-    const ur10e_real_t t1069 = t51 * t1064 - t48 * t1063 + (UR10E_C(0.17415) * t1068
-        + UR10E_C(0.57155) * t1062);
-    const ur10e_real_t t1070 = t119 * (t72 * t1067 - t73 * t1069 + UR10E_C(-0.6127) * t1062);
-    const ur10e_real_t t1071 = UR10E_C(0.08250825082508251) * (t122 * (t73 * t1067 + t72 * t1069) + t1070);
-    const ur10e_real_t t1072 = t22 * t1058 + t18 * t1059 + UR10E_C(-0.11985) * t1065;
-    const ur10e_real_t t1073 = t1072 + UR10E_C(0.57155) * t1066;
-    const ur10e_real_t t1074 = UR10E_C(0.08250825082508251) * (t1073 + UR10E_C(0.6127) * (t72 * t1068
-        + t73 * t1066));
-    const ur10e_real_t t1075 = UR10E_C(0.099009900990099) * t1073;
-    const ur10e_real_t t1076 = UR10E_C(0.11001100110011001) * t1072;
-    const ur10e_real_t t1077 = t1071 * t506 + t1074 * t508 + t1075 * t523 + t1076 * t532;
-    const ur10e_real_t t1078 = UR10E_C(0.11001100110011001) * t1064;
-    const ur10e_real_t t1079 = UR10E_C(1122.2222222222222) * parameters[FV6];
-    ddq_by_dq[5] = t1079 * t569 - (t1077 + t1078 * t547);
-    const ur10e_real_t t1080 = t1071 * t508 + t1074 * t584 + t1075 * t586 + t1076 * t588;
-    ddq_by_dq[11] = t1079 * t593 - (t1080 + t1078 * t591);
-    const ur10e_real_t t1081 = t1071 * t594 + t1074 * t595 + t1075 * t596 + t1076 * t598;
-    ddq_by_dq[17] = t1079 * t603 - (t1081 + t1078 * t601);
-    const ur10e_real_t t1082 = t1071 * t604 + t1074 * t605 + t1075 * t606 + t1076 * t608;
-    ddq_by_dq[23] = t1079 * t613 - (t1082 + t1078 * t611);
-    const ur10e_real_t t1083 = t1071 * t614 + t1074 * t615 + t1075 * t616 + t1076 * t611;
-    ddq_by_dq[29] = t1079 * t622 - (t1083 + t1078 * t619);
-    const ur10e_real_t t1084 = t1071 * t623 + t1074 * t624 + t1075 * t625 - t1076 * t613;
-    ddq_by_dq[35] = t1078 * t622 - t1084 - t1079 * t628;
-    ddq_by_input[5] = -t569;
-    ddq_by_input[11] = -t593;
-    ddq_by_input[17] = -t603;
-    ddq_by_input[23] = -t613;
-    ddq_by_input[29] = -t622;
-    ddq_by_input[35] = t628;
+    const ur10e_real_t t1071 = t115 * (t115 * (t1011 - t994) + t118 * (t999 + t1009));
+    const ur10e_real_t t1072 = UR10E_C(841.6666666666667) * parameters[FV1]
+        + UR10E_C(0.16501650165016502) * (t994 + t1071);
+    const ur10e_real_t t1073 = UR10E_C(0.08250825082508251) * (t118 * t1016 - t115 * t1018);
+    const ur10e_real_t t1074 = UR10E_C(0.099009900990099) * (t118 * t1023 + t115 * t1024);
+    const ur10e_real_t t1075 = UR10E_C(0.11001100110011001) * (t118 * t1027 + t115 * t1029);
+    const ur10e_real_t t1076 = t1072 * t509 + t1073 * t514 + t1074 * t517 + t1075 * t521;
+    const ur10e_real_t t1077 = UR10E_C(0.11001100110011001) * (t118 * t1034 + t115 * t1036);
+    const ur10e_real_t t1078 = UR10E_C(0.11001100110011001) * (t118 * t1039 + t115 * t1041);
+    ddq_by_dq[0] = t1078 * t537 - (t1076 + t1077 * t528);
+    const ur10e_real_t t1079 = t1072 * t514 + t1073 * t538 + t1074 * t540 + t1075 * t542;
+    ddq_by_dq[6] = t1078 * t547 - (t1079 + t1077 * t545);
+    const ur10e_real_t t1080 = t1072 * t548 + t1073 * t549 + t1074 * t550 + t1075 * t552;
+    ddq_by_dq[12] = t1078 * t557 - (t1080 + t1077 * t555);
+    const ur10e_real_t t1081 = t1072 * t558 + t1073 * t559 + t1074 * t560 + t1075 * t562;
+    ddq_by_dq[18] = t1078 * t567 - (t1081 + t1077 * t565);
+    const ur10e_real_t t1082 = t1072 * t568 + t1073 * t569 + t1074 * t570 + t1075 * t565;
+    ddq_by_dq[24] = t1078 * t576 - (t1082 + t1077 * t573);
+    const ur10e_real_t t1083 = t1072 * t577 + t1073 * t578 + t1074 * t579 - t1075 * t567;
+    ddq_by_dq[30] = t1077 * t576 - t1083 - t1078 * t582;
+    ddq_by_input[0] = t509;
+    ddq_by_input[6] = t514;
+    ddq_by_input[12] = t548;
+    ddq_by_input[18] = t558;
+    ddq_by_input[24] = t568;
+    ddq_by_input[30] = t577;
     /* always zero */
     ddq_by_q[0] = UR10E_C(0.0);
     ddq_by_q[6] = UR10E_C(0.0);
@@ -1587,10 +1561,10 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     ddq_by_q[18] = UR10E_C(0.0);
     ddq_by_q[24] = UR10E_C(0.0);
     ddq_by_q[30] = UR10E_C(0.0);
-    if (!ur10e_all_bounded(ddq, 6)
-        || !ur10e_all_bounded(ddq_by_q, 36)
-        || !ur10e_all_bounded(ddq_by_dq, 36)
-        || !ur10e_all_bounded(ddq_by_input, 36)) {
+    if (!ur10e_bounded(ddq, 6)
+        || !ur10e_bounded(ddq_by_q, 36)
+        || !ur10e_bounded(ddq_by_dq, 36)
+        || !ur10e_bounded(ddq_by_input, 36)) {
         ur10e_zero(ddq, 6);
         ur10e_zero(ddq_by_q, 36);
         ur10e_zero(ddq_by_dq, 36);

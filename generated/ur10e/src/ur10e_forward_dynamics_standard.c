@@ -6,7 +6,7 @@
  * Arm ur10e, description 0615fad907f568ac.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1034 (547 mul, 487 add, 0 neg), 6 div, 10 trig, 6 other calls (sign, select and the like).
+ * Operations: 1034 (547 mul, 487 add, 0 neg), 6 div, 10 trig, 10 other calls (sign, select and the like).
  *
  * @param[in]   q           [6]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [6]   [rad/s]    joint velocities; norm at most 100000
@@ -107,7 +107,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -135,17 +135,17 @@ ur10e_status_t ur10e_forward_dynamics_standard(
         return status;
     }
 
-    ur10e_real_t t111, t109;
-    UR10E_SINCOS(q[1], &t111, &t109);
-    ur10e_real_t t70, t71;
-    UR10E_SINCOS(q[2], &t70, &t71);
-    ur10e_real_t t46, t49;
-    UR10E_SINCOS(q[3], &t46, &t49);
-    ur10e_real_t t22, t18;
-    UR10E_SINCOS(q[4], &t22, &t18);
+    ur10e_real_t t107, t105;
+    UR10E_SINCOS(q[1], &t107, &t105);
+    ur10e_real_t t67, t68;
+    UR10E_SINCOS(q[2], &t67, &t68);
+    ur10e_real_t t44, t47;
+    UR10E_SINCOS(q[3], &t44, &t47);
+    ur10e_real_t t21, t17;
+    UR10E_SINCOS(q[4], &t21, &t17);
     ur10e_real_t t1, t2;
     UR10E_SINCOS(q[5], &t1, &t2);
-    const ur10e_real_t t0 = ur10e_bounded(parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6]);
+    const ur10e_real_t t0 = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
     if (!(t0 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
@@ -162,458 +162,441 @@ ur10e_status_t ur10e_forward_dynamics_standard(
     const ur10e_real_t t11 = UR10E_C(0.11655) * (t10 + UR10E_C(2.0) * parameters[MZ6]);
     const ur10e_real_t t12 = parameters[ZZ5] + (parameters[XX6] - t9 + t11);
     const ur10e_real_t t13 = t12 + UR10E_C(10201.0) * parameters[IA5];
-    const ur10e_real_t t14 = ur10e_bounded(t13 + t4 * t6);
+    const ur10e_real_t t14 = t13 + t4 * t6;
     if (!(t14 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t15 = t14 + UR10E_C(-1.0e-9) * t13;
-    if (!(t15 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t16 = parameters[XX5] + (parameters[YY6] + t9 + t11);
-    const ur10e_real_t t17 = parameters[YY5] + parameters[ZZ6];
+    const ur10e_real_t t15 = parameters[XX5] + (parameters[YY6] + t9 + t11);
+    const ur10e_real_t t16 = parameters[YY5] + parameters[ZZ6];
     /* link j6: column of the mass matrix */
-    const ur10e_real_t t19 = t2 * parameters[MX6] - t1 * parameters[MY6];
-    const ur10e_real_t t20 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + UR10E_C(0.11655) * t19;
-    const ur10e_real_t t21 = t20 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t18 = t2 * parameters[MX6] - t1 * parameters[MY6];
+    const ur10e_real_t t19 = t1 * parameters[YZ6] - t2 * parameters[XZ6] + UR10E_C(0.11655) * t18;
+    const ur10e_real_t t20 = t19 - parameters[XY5]; /* link j6: inertia of it and all beyond */
     /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t23 = t18 * (t17 - t16) - t21 * (UR10E_C(2.0) * t22);
-    const ur10e_real_t t24 = t18 * t23;
-    const ur10e_real_t t25 = parameters[MZ5] - t3; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t26 = parameters[M5] + parameters[M6];
-    const ur10e_real_t t27 = UR10E_C(0.11985) * t26; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t28 = UR10E_C(0.11985) * (t27 + UR10E_C(2.0) * t25);
-    const ur10e_real_t t29 = parameters[ZZ4] + (t16 + t24 + t28);
-    const ur10e_real_t t30 = t29 + UR10E_C(10201.0) * parameters[IA4];
-    const ur10e_real_t t31 = t18 * t3; /* link j6: column of the mass matrix */
-    const ur10e_real_t t32 = t22 * t20 - t18 * parameters[ZZ6] + UR10E_C(0.11985) * t31;
-    const ur10e_real_t t33 = t32 * t5;
-    const ur10e_real_t t34 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t35 = parameters[XY6] + t1 * t8 - parameters[XZ5];
-    const ur10e_real_t t36 = parameters[MX5] + t19;
-    const ur10e_real_t t37 = parameters[MY5] + (parameters[MZ6] + t10);
-    const ur10e_real_t t38 = t18 * t37 + t22 * t36; /* link j5: column of the mass matrix */
-    const ur10e_real_t t39 = t22 * t35 - t18 * t34 + UR10E_C(0.11985) * t38;
-    const ur10e_real_t t40 = t39 + t32 * t6;
-    const ur10e_real_t t41 = UR10E_C(-1.0) / t14;
-    const ur10e_real_t t42 = t40 * t41;
-    const ur10e_real_t t43 = ur10e_bounded(t30 + t32 * t33 + t40 * t42);
-    if (!(t43 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t22 = t17 * (t16 - t15) - t20 * (UR10E_C(2.0) * t21);
+    const ur10e_real_t t23 = t17 * t22;
+    const ur10e_real_t t24 = parameters[MZ5] - t3; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t25 = parameters[M5] + parameters[M6];
+    const ur10e_real_t t26 = UR10E_C(0.11985) * t25; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t27 = UR10E_C(0.11985) * (t26 + UR10E_C(2.0) * t24);
+    const ur10e_real_t t28 = parameters[ZZ4] + (t15 + t23 + t27);
+    const ur10e_real_t t29 = t28 + UR10E_C(10201.0) * parameters[IA4];
+    const ur10e_real_t t30 = t17 * t3; /* link j6: column of the mass matrix */
+    const ur10e_real_t t31 = t21 * t19 - t17 * parameters[ZZ6] + UR10E_C(0.11985) * t30;
+    const ur10e_real_t t32 = t31 * t5;
+    const ur10e_real_t t33 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t34 = parameters[XY6] + t1 * t8 - parameters[XZ5];
+    const ur10e_real_t t35 = parameters[MX5] + t18;
+    const ur10e_real_t t36 = parameters[MY5] + (parameters[MZ6] + t10);
+    const ur10e_real_t t37 = t17 * t36 + t21 * t35; /* link j5: column of the mass matrix */
+    const ur10e_real_t t38 = t21 * t34 - t17 * t33 + UR10E_C(0.11985) * t37;
+    const ur10e_real_t t39 = t38 + t31 * t6;
+    const ur10e_real_t t40 = UR10E_C(-1.0) / t14;
+    const ur10e_real_t t41 = t39 * t40;
+    const ur10e_real_t t42 = t29 + t31 * t32 + t39 * t41;
+    if (!(t42 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t44 = t43 + UR10E_C(-1.0e-9) * t30;
-    if (!(t44 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t43 = parameters[MY4] - (t24 + t26); /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t45 = t17 * t35 - t21 * t36; /* link j5: column of the mass matrix */
+    const ur10e_real_t t46 = parameters[MX4] + t45; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t48 = t47 * t46 - t44 * t43; /* link j4: column of the mass matrix */
+    const ur10e_real_t t49 = UR10E_C(0.57155) * t48 - t28;
+    const ur10e_real_t t50 = t44 * t30 - t47 * t18; /* link j6: column of the mass matrix */
+    const ur10e_real_t t51 = UR10E_C(0.57155) * t50 - t31;
+    const ur10e_real_t t52 = t44 * t37; /* link j5: column of the mass matrix */
+    const ur10e_real_t t53 = UR10E_C(0.57155) * t52 - t38;
+    const ur10e_real_t t54 = t53 + t51 * t6;
+    const ur10e_real_t t55 = t49 + t51 * t32 + t54 * t41;
+    const ur10e_real_t t56 = UR10E_C(-1.0) / t42;
+    const ur10e_real_t t57 = t55 * t56;
+    const ur10e_real_t t58 = t51 * t5;
+    const ur10e_real_t t59 = parameters[M4] + t25; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t60 = UR10E_C(0.57155) * t59; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t61 = UR10E_C(0.57155) * (t60 + UR10E_C(-2.0) * t48);
+    const ur10e_real_t t62 = parameters[ZZ3] + (t28 + t61);
+    const ur10e_real_t t63 = t62 + UR10E_C(10201.0) * parameters[IA3];
+    const ur10e_real_t t64 = t54 * t40;
+    const ur10e_real_t t65 = t63 + t51 * t58 + t54 * t64 + t55 * t57;
+    if (!(t65 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t45 = parameters[MY4] - (t25 + t27); /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t47 = t18 * t36 - t22 * t37; /* link j5: column of the mass matrix */
-    const ur10e_real_t t48 = parameters[MX4] + t47; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t50 = t49 * t48 - t46 * t45; /* link j4: column of the mass matrix */
-    const ur10e_real_t t51 = UR10E_C(0.57155) * t50 - t29;
-    const ur10e_real_t t52 = t46 * t31 - t49 * t19; /* link j6: column of the mass matrix */
-    const ur10e_real_t t53 = UR10E_C(0.57155) * t52 - t32;
-    const ur10e_real_t t54 = t46 * t38; /* link j5: column of the mass matrix */
-    const ur10e_real_t t55 = UR10E_C(0.57155) * t54 - t39;
-    const ur10e_real_t t56 = t55 + t53 * t6;
-    const ur10e_real_t t57 = t51 + t53 * t33 + t56 * t42;
-    const ur10e_real_t t58 = UR10E_C(-1.0) / t43;
-    const ur10e_real_t t59 = t57 * t58;
-    const ur10e_real_t t60 = t53 * t5;
-    const ur10e_real_t t61 = parameters[M4] + t26; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t62 = UR10E_C(0.57155) * t61; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t63 = UR10E_C(0.57155) * (t62 + UR10E_C(-2.0) * t50);
-    const ur10e_real_t t64 = parameters[ZZ3] + (t29 + t63);
-    const ur10e_real_t t65 = t64 + UR10E_C(10201.0) * parameters[IA3];
-    const ur10e_real_t t66 = t56 * t41;
-    const ur10e_real_t t67 = ur10e_bounded(t65 + t53 * t60 + t56 * t66 + t57 * t59);
-    if (!(t67 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t68 = t67 + UR10E_C(-1.0e-9) * t65;
-    if (!(t68 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t69 = t49 * t45 + t46 * t48; /* link j4: column of the mass matrix */
-    const ur10e_real_t t72 = t49 * t31 + t46 * t19; /* link j6: column of the mass matrix */
-    const ur10e_real_t t73 = t53 + UR10E_C(0.6127) * (t70 * t72 + t71 * t52);
-    const ur10e_real_t t74 = t51 + UR10E_C(0.6127) * (t71 * t50 - t70 * t69) + t73 * t33;
-    const ur10e_real_t t75 = t49 * t38; /* link j5: column of the mass matrix */
-    const ur10e_real_t t76 = t55 + UR10E_C(0.6127) * (t70 * t75 + t71 * t54) + t73 * t6;
-    const ur10e_real_t t77 = t74 + t76 * t42;
-    const ur10e_real_t t78 = parameters[MY3] + t69; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t79 = t50 - t62;
-    const ur10e_real_t t80 = parameters[MX3] + t79;
-    const ur10e_real_t t81 = t70 * t78 - t71 * t80; /* link j3: column of the mass matrix */
-    const ur10e_real_t t82 = UR10E_C(-0.6127) * t81 - t64 - t73 * t60 - t76 * t66;
-    const ur10e_real_t t83 = t82 - t77 * t59;
-    const ur10e_real_t t84 = UR10E_C(1.0) / t67;
-    const ur10e_real_t t85 = t83 * t84;
-    const ur10e_real_t t86 = t77 * t58;
-    const ur10e_real_t t87 = t73 * t5;
+    const ur10e_real_t t66 = t47 * t43 + t44 * t46; /* link j4: column of the mass matrix */
+    const ur10e_real_t t69 = t47 * t30 + t44 * t18; /* link j6: column of the mass matrix */
+    const ur10e_real_t t70 = t51 + UR10E_C(0.6127) * (t67 * t69 + t68 * t50);
+    const ur10e_real_t t71 = t49 + UR10E_C(0.6127) * (t68 * t48 - t67 * t66) + t70 * t32;
+    const ur10e_real_t t72 = t47 * t37; /* link j5: column of the mass matrix */
+    const ur10e_real_t t73 = t53 + UR10E_C(0.6127) * (t67 * t72 + t68 * t52) + t70 * t6;
+    const ur10e_real_t t74 = t71 + t73 * t41;
+    const ur10e_real_t t75 = parameters[MY3] + t66; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t76 = t48 - t60;
+    const ur10e_real_t t77 = parameters[MX3] + t76;
+    const ur10e_real_t t78 = t67 * t75 - t68 * t77; /* link j3: column of the mass matrix */
+    const ur10e_real_t t79 = UR10E_C(-0.6127) * t78 - t62 - t70 * t58 - t73 * t64;
+    const ur10e_real_t t80 = t79 - t74 * t57;
+    const ur10e_real_t t81 = UR10E_C(1.0) / t65;
+    const ur10e_real_t t82 = t80 * t81;
+    const ur10e_real_t t83 = t74 * t56;
+    const ur10e_real_t t84 = t70 * t5;
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t88 = UR10E_C(0.6127) * (UR10E_C(0.6127) * (parameters[M3] + t61)
-        + UR10E_C(2.0) * t81);
-    const ur10e_real_t t89 = parameters[ZZ2] + (t64 + t88) + UR10E_C(10201.0) * parameters[IA2];
-    const ur10e_real_t t90 = t76 * t41;
-    const ur10e_real_t t91 = t89 + t73 * t87 + t76 * t90 + t77 * t86;
-    const ur10e_real_t t92 = ur10e_bounded(t91 - t83 * t85);
-    if (!(t92 > UR10E_C(1.0e-12))) {
+    const ur10e_real_t t85 = UR10E_C(0.6127) * (UR10E_C(0.6127) * (parameters[M3] + t59)
+        + UR10E_C(2.0) * t78);
+    const ur10e_real_t t86 = parameters[ZZ2] + (t62 + t85) + UR10E_C(10201.0) * parameters[IA2];
+    const ur10e_real_t t87 = t73 * t40;
+    const ur10e_real_t t88 = t86 + t70 * t84 + t73 * t87 + t74 * t83;
+    const ur10e_real_t t89 = t88 - t80 * t82;
+    if (!(t89 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t93 = t92 + UR10E_C(-1.0e-9) * t89;
-    if (!(t93 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t94 = parameters[XX4] + (t17 - t24 + t28); /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t95 = parameters[YY4] + t12;
+    const ur10e_real_t t90 = parameters[XX4] + (t16 - t23 + t27); /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t91 = parameters[YY4] + t12;
     /* link j5: column of the mass matrix */
-    const ur10e_real_t t96 = t18 * t35 + t22 * t34 + UR10E_C(0.11985) * t47;
-    const ur10e_real_t t97 = parameters[XY4] + t96; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t92 = t17 * t34 + t21 * t33 + UR10E_C(0.11985) * t45;
+    const ur10e_real_t t93 = parameters[XY4] + t92; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t98 = t49 * (t94 - t95) + t97 * (UR10E_C(-2.0) * t46);
-    const ur10e_real_t t99 = t49 * t98;
-    const ur10e_real_t t100 = parameters[MZ4] + t38; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t101 = UR10E_C(0.17415) * t61; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t102 = UR10E_C(0.17415) * (t101 + UR10E_C(2.0) * t100);
-    const ur10e_real_t t103 = parameters[YY3] + (t94 - t99 + (t63 + t102));
-    const ur10e_real_t t104 = parameters[XX3] + (t95 + t99 + t102);
-    const ur10e_real_t t105 = parameters[XY3] + (t97 + t46 * t98 + UR10E_C(0.57155) * t69);
+    const ur10e_real_t t94 = t47 * (t90 - t91) + t93 * (UR10E_C(-2.0) * t44);
+    const ur10e_real_t t95 = t47 * t94;
+    const ur10e_real_t t96 = parameters[MZ4] + t37; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t97 = UR10E_C(0.17415) * t59; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t98 = UR10E_C(0.17415) * (t97 + UR10E_C(2.0) * t96);
+    const ur10e_real_t t99 = parameters[YY3] + (t90 - t95 + (t61 + t98));
+    const ur10e_real_t t100 = parameters[XX3] + (t91 + t95 + t98);
+    const ur10e_real_t t101 = parameters[XY3] + (t93 + t44 * t94 + UR10E_C(0.57155) * t66);
     /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t106 = t71 * (t104 - t103) - t105 * (UR10E_C(2.0) * t70);
-    const ur10e_real_t t107 = t71 * t106;
-    const ur10e_real_t t108 = parameters[XX2] + (t103 + t107);
-    const ur10e_real_t t110 = t105 + t70 * t106 + UR10E_C(0.6127) * (t71 * t78 + t70 * t80);
+    const ur10e_real_t t102 = t68 * (t100 - t99) - t101 * (UR10E_C(2.0) * t67);
+    const ur10e_real_t t103 = t68 * t102;
+    const ur10e_real_t t104 = parameters[XX2] + (t99 + t103);
+    const ur10e_real_t t106 = t101 + t67 * t102 + UR10E_C(0.6127) * (t68 * t75 + t67 * t77);
     /* link j2: inertia of it and all beyond */
-    const ur10e_real_t t112 = t109 * (parameters[YY2] + (t104 - t107 + t88) - t108) + (parameters[XY2]
-        + t110) * (UR10E_C(2.0) * t111);
-    const ur10e_real_t t113 = parameters[ZZ1] + (t108 + t109 * t112) + UR10E_C(10201.0) * parameters[IA1];
-    const ur10e_real_t t114 = t22 * t3; /* link j6: column of the mass matrix */
-    const ur10e_real_t t115 = UR10E_C(0.11985) * t114 - (t18 * t20 + t22 * parameters[ZZ6]);
-    const ur10e_real_t t116 = t49 * t115 + t46 * t4 + UR10E_C(0.17415) * t52;
-    const ur10e_real_t t117 = t46 * t115 - t49 * t4 - (UR10E_C(0.17415) * t72 + UR10E_C(0.57155) * t114);
-    const ur10e_real_t t118 = t109 * (t70 * t116 + t71 * t117 - UR10E_C(0.6127) * t114);
-    const ur10e_real_t t119 = t111 * (t71 * t116 - t70 * t117) + t118;
-    const ur10e_real_t t120 = t119 * t5;
+    const ur10e_real_t t108 = t105 * (parameters[YY2] + (t100 - t103 + t85) - t104) + (parameters[XY2]
+        + t106) * (UR10E_C(2.0) * t107);
+    const ur10e_real_t t109 = parameters[ZZ1] + (t104 + t105 * t108) + UR10E_C(10201.0) * parameters[IA1];
+    const ur10e_real_t t110 = t21 * t3; /* link j6: column of the mass matrix */
+    const ur10e_real_t t111 = UR10E_C(0.11985) * t110 - (t17 * t19 + t21 * parameters[ZZ6]);
+    const ur10e_real_t t112 = t47 * t111 + t44 * t4 + UR10E_C(0.17415) * t50;
+    const ur10e_real_t t113 = t44 * t111 - t47 * t4 - (UR10E_C(0.17415) * t69 + UR10E_C(0.57155) * t110);
+    const ur10e_real_t t114 = t105 * (t67 * t112 + t68 * t113 - UR10E_C(0.6127) * t110);
+    const ur10e_real_t t115 = t107 * (t68 * t112 - t67 * t113) + t114;
+    const ur10e_real_t t116 = t115 * t5;
     /* link j5: column of the mass matrix */
-    const ur10e_real_t t121 = t46 * t12 - t49 * t96 + UR10E_C(0.17415) * t54;
-    const ur10e_real_t t122 = t46 * t96 + t49 * t12 + (UR10E_C(0.17415) * t75 + UR10E_C(-0.57155) * t47);
-    const ur10e_real_t t123 = t109 * (t70 * t121 - t71 * t122 - UR10E_C(-0.6127) * t47);
-    const ur10e_real_t t124 = t111 * (t71 * t121 + t70 * t122) + t123 + t119 * t6;
-    const ur10e_real_t t125 = t124 * t41;
-    const ur10e_real_t t126 = t21 + t22 * t23 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t127 = parameters[YZ4] + t39;
-    const ur10e_real_t t128 = t49 * t126 + t46 * t127; /* link j4: column of the mass matrix */
-    const ur10e_real_t t129 = UR10E_C(-0.17415) * t50 - t128;
-    const ur10e_real_t t130 = t49 * t127 - t46 * t126 - UR10E_C(0.17415) * t69;
-    const ur10e_real_t t131 = t111 * (t71 * t129 - t70 * t130) + t109 * (t70 * t129 + t71 * t130);
-    const ur10e_real_t t132 = t131 - t119 * t33 - t124 * t42;
-    const ur10e_real_t t133 = t132 * t58;
-    const ur10e_real_t t134 = t113 + t119 * t120 + t124 * t125 + t132 * t133;
+    const ur10e_real_t t117 = t44 * t12 - t47 * t92 + UR10E_C(0.17415) * t52;
+    const ur10e_real_t t118 = t44 * t92 + t47 * t12 + (UR10E_C(0.17415) * t72 + UR10E_C(-0.57155) * t45);
+    const ur10e_real_t t119 = t105 * (t67 * t117 - t68 * t118 - UR10E_C(-0.6127) * t45);
+    const ur10e_real_t t120 = t107 * (t68 * t117 + t67 * t118) + t119 + t115 * t6;
+    const ur10e_real_t t121 = t120 * t40;
+    const ur10e_real_t t122 = t20 + t21 * t22 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t123 = parameters[YZ4] + t38;
+    const ur10e_real_t t124 = t47 * t122 + t44 * t123; /* link j4: column of the mass matrix */
+    const ur10e_real_t t125 = UR10E_C(-0.17415) * t48 - t124;
+    const ur10e_real_t t126 = t47 * t123 - t44 * t122 - UR10E_C(0.17415) * t66;
+    const ur10e_real_t t127 = t107 * (t68 * t125 - t67 * t126) + t105 * (t67 * t125 + t68 * t126);
+    const ur10e_real_t t128 = t127 - t115 * t32 - t120 * t41;
+    const ur10e_real_t t129 = t128 * t56;
+    const ur10e_real_t t130 = t109 + t115 * t116 + t120 * t121 + t128 * t129;
     /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t135 = t128 + (UR10E_C(-0.57155) * t100 + UR10E_C(0.17415) * t79) - parameters[XZ3];
-    const ur10e_real_t t136 = parameters[YZ3] + t130;
-    const ur10e_real_t t137 = t71 * t135 + t70 * t136; /* link j3: column of the mass matrix */
-    const ur10e_real_t t138 = t70 * t135 - t71 * t136;
-    const ur10e_real_t t139 = t111 * t137 + t109 * t138 - t119 * t60 - t124 * t66;
-    const ur10e_real_t t140 = t139 + t132 * t59;
-    const ur10e_real_t t141 = t140 * t84;
+    const ur10e_real_t t131 = t124 + (UR10E_C(-0.57155) * t96 + UR10E_C(0.17415) * t76) - parameters[XZ3];
+    const ur10e_real_t t132 = parameters[YZ3] + t126;
+    const ur10e_real_t t133 = t68 * t131 + t67 * t132; /* link j3: column of the mass matrix */
+    const ur10e_real_t t134 = t67 * t131 - t68 * t132;
+    const ur10e_real_t t135 = t107 * t133 + t105 * t134 - t115 * t58 - t120 * t64;
+    const ur10e_real_t t136 = t135 + t128 * t57;
+    const ur10e_real_t t137 = t136 * t81;
     /* link j2: column of the mass matrix */
-    const ur10e_real_t t142 = t111 * (t137 + UR10E_C(-0.6127) * (parameters[MZ3] + (t100 + t101))
+    const ur10e_real_t t138 = t107 * (t133 + UR10E_C(-0.6127) * (parameters[MZ3] + (t96 + t97))
         - parameters[XZ2]);
-    const ur10e_real_t t143 = t142 + t109 * (t138 - parameters[YZ2]) - t119 * t87 - t124 * t90;
-    const ur10e_real_t t144 = t143 + t132 * t86 + t140 * t85;
-    const ur10e_real_t t145 = UR10E_C(1.0) / t92;
-    const ur10e_real_t t146 = t144 * t145;
-    const ur10e_real_t t147 = ur10e_bounded(t134 - t140 * t141 - t144 * t146);
+    const ur10e_real_t t139 = t138 + t105 * (t134 - parameters[YZ2]) - t115 * t84 - t120 * t87;
+    const ur10e_real_t t140 = t139 + t128 * t83 + t136 * t82;
+    const ur10e_real_t t141 = UR10E_C(1.0) / t89;
+    const ur10e_real_t t142 = t140 * t141;
+    const ur10e_real_t t143 = t130 - t136 * t137 - t140 * t142;
+    if (!(t143 > UR10E_C(1.0e-12))) {
+        ur10e_zero(out, 6);
+        return UR10E_STATUS_PIVOT;
+    }
+    const ur10e_real_t t144 = ur10e_min(t14 + UR10E_C(-1.0e-9) * t13, t42 + UR10E_C(-1.0e-9) * t29);
+    const ur10e_real_t t145 = ur10e_min(t144, t65 + UR10E_C(-1.0e-9) * t63);
+    const ur10e_real_t t146 = ur10e_min(t145, t89 + UR10E_C(-1.0e-9) * t86);
+    const ur10e_real_t t147 = ur10e_min(t146, t143 + UR10E_C(-1.0e-9) * t109);
     if (!(t147 > UR10E_C(1.0e-12))) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }
-    const ur10e_real_t t148 = t147 + UR10E_C(-1.0e-9) * t113;
-    if (!(t148 > UR10E_C(1.0e-12))) {
-        ur10e_zero(out, 6);
-        return UR10E_STATUS_PIVOT;
-    }
-    const ur10e_real_t t149 = t111 * dq[0]; /* link j2: motion */
-    const ur10e_real_t t150 = t109 * dq[0];
-    const ur10e_real_t t151 = t71 * t149 + t70 * t150; /* link j3: motion */
-    const ur10e_real_t t152 = t70 * t149 - t71 * t150;
-    const ur10e_real_t t153 = t49 * t151 - t46 * t152; /* link j4: motion */
-    const ur10e_real_t t154 = t46 * t151 + t49 * t152;
-    const ur10e_real_t t155 = t153 * t154;
-    const ur10e_real_t t156 = dq[1] + dq[2]; /* link j3: motion */
-    const ur10e_real_t t157 = dq[3] + t156; /* link j4: motion */
-    const ur10e_real_t t158 = t157 * t154;
-    const ur10e_real_t t159 = UR10E_C(2.0) * t158; /* link j5: motion */
-    const ur10e_real_t t160 = t18 * t159 - t22 * t155;
-    const ur10e_real_t t161 = t18 * t157 - t22 * t153;
-    const ur10e_real_t t162 = dq[4] + t154;
-    const ur10e_real_t t163 = t161 * t162;
-    const ur10e_real_t t164 = t160 - t163;
-    const ur10e_real_t t165 = t164 - t163; /* link j6: motion */
-    const ur10e_real_t t166 = t22 * t157 + t18 * t153; /* link j5: motion */
-    const ur10e_real_t t167 = t166 * t161;
-    const ur10e_real_t t168 = t157 * t153; /* link j4: motion */
-    const ur10e_real_t t169 = t167 - t168; /* link j6: motion */
-    const ur10e_real_t t170 = t1 * t169 - t2 * t165;
-    const ur10e_real_t t171 = t1 * t166 + t2 * t162;
-    const ur10e_real_t t172 = dq[5] + t161;
-    const ur10e_real_t t173 = t171 * t172;
-    const ur10e_real_t t174 = t173 - t170;
-    const ur10e_real_t t175 = t2 * t169 + t1 * t165;
-    const ur10e_real_t t176 = t2 * t166 - t1 * t162;
-    const ur10e_real_t t177 = t176 * t172;
-    const ur10e_real_t t178 = t175 - t177;
-    const ur10e_real_t t179 = t178 - t177; /* link j6: force and moment */
-    const ur10e_real_t t180 = parameters[XX6] * t174 - t173 * (parameters[YY6] - parameters[ZZ6])
-        - parameters[XY6] * t179;
-    const ur10e_real_t t181 = t18 * t155 + t22 * t159; /* link j5: motion */
-    const ur10e_real_t t182 = t166 * t162;
-    const ur10e_real_t t183 = t181 - t182;
-    const ur10e_real_t t184 = t176 * t171; /* link j6: motion */
-    const ur10e_real_t t185 = t183 - t184; /* link j6: force and moment */
-    const ur10e_real_t t186 = t171 * t171; /* link j6: motion */
-    const ur10e_real_t t187 = t172 * t172;
-    const ur10e_real_t t188 = t150 * t150; /* link j2: motion */
-    const ur10e_real_t t189 = dq[1] * dq[1];
-    const ur10e_real_t t190 = UR10E_C(-9.81) * t111;
-    const ur10e_real_t t191 = t190 + UR10E_C(-0.6127) * (t188 + t189); /* link j3: motion */
-    const ur10e_real_t t192 = t149 * t150; /* link j2: motion */
-    const ur10e_real_t t193 = UR10E_C(9.81) * t109;
-    const ur10e_real_t t194 = t193 + UR10E_C(-0.6127) * t192; /* link j3: motion */
-    const ur10e_real_t t195 = t70 * t194 - t71 * t191;
-    const ur10e_real_t t196 = t152 * t152;
-    const ur10e_real_t t197 = t156 * t156;
-    const ur10e_real_t t198 = t197 + t196; /* link j4: motion */
-    const ur10e_real_t t199 = t195 + UR10E_C(0.57155) * t198;
-    const ur10e_real_t t200 = t70 * t191 + t71 * t194; /* link j3: motion */
-    const ur10e_real_t t201 = t151 * t152;
-    const ur10e_real_t t202 = t200 + UR10E_C(0.57155) * t201; /* link j4: motion */
-    const ur10e_real_t t203 = t49 * t199 + t46 * t202;
-    const ur10e_real_t t204 = t203 + UR10E_C(0.11985) * t155; /* link j5: motion */
-    const ur10e_real_t t205 = t151 * t151; /* link j3: motion */
-    const ur10e_real_t t206 = t205 + t196; /* link j4: motion */
-    const ur10e_real_t t207 = t156 * t151; /* link j3: motion */
-    const ur10e_real_t t208 = dq[1] * t149; /* link j2: motion */
-    const ur10e_real_t t209 = UR10E_C(1.2254) * t208; /* link j3: motion */
-    const ur10e_real_t t210 = t209 + (UR10E_C(1.1431) * t207 + UR10E_C(0.17415) * t206); /* link j4: motion */
-    const ur10e_real_t t211 = t210 - UR10E_C(0.2397) * t158; /* link j5: motion */
-    const ur10e_real_t t212 = t22 * t204 + t18 * t211;
-    const ur10e_real_t t213 = t166 * t166;
-    const ur10e_real_t t214 = t162 * t162;
-    const ur10e_real_t t215 = t213 + t214; /* link j6: motion */
-    const ur10e_real_t t216 = t212 + UR10E_C(0.11655) * t215;
-    const ur10e_real_t t217 = t49 * t202 - t46 * t199; /* link j4: motion */
-    const ur10e_real_t t218 = t153 * t153;
-    const ur10e_real_t t219 = t157 * t157;
-    const ur10e_real_t t220 = t219 + t218; /* link j5: motion */
-    const ur10e_real_t t221 = t217 + UR10E_C(0.11985) * t220;
-    const ur10e_real_t t222 = t221 + UR10E_C(0.11655) * t165; /* link j6: motion */
-    const ur10e_real_t t223 = t18 * t204 - t22 * t211; /* link j5: motion */
-    const ur10e_real_t t224 = t223 - UR10E_C(-0.11655) * t169; /* link j6: motion */
-    const ur10e_real_t t225 = t2 * t222 - t1 * t224;
+    const ur10e_real_t t148 = t107 * dq[0]; /* link j2: motion */
+    const ur10e_real_t t149 = t105 * dq[0];
+    const ur10e_real_t t150 = t68 * t148 + t67 * t149; /* link j3: motion */
+    const ur10e_real_t t151 = t67 * t148 - t68 * t149;
+    const ur10e_real_t t152 = t47 * t150 - t44 * t151; /* link j4: motion */
+    const ur10e_real_t t153 = t44 * t150 + t47 * t151;
+    const ur10e_real_t t154 = t152 * t153;
+    const ur10e_real_t t155 = dq[1] + dq[2]; /* link j3: motion */
+    const ur10e_real_t t156 = dq[3] + t155; /* link j4: motion */
+    const ur10e_real_t t157 = t156 * t153;
+    const ur10e_real_t t158 = UR10E_C(2.0) * t157; /* link j5: motion */
+    const ur10e_real_t t159 = t17 * t158 - t21 * t154;
+    const ur10e_real_t t160 = t17 * t156 - t21 * t152;
+    const ur10e_real_t t161 = dq[4] + t153;
+    const ur10e_real_t t162 = t160 * t161;
+    const ur10e_real_t t163 = t159 - t162;
+    const ur10e_real_t t164 = t163 - t162; /* link j6: motion */
+    const ur10e_real_t t165 = t21 * t156 + t17 * t152; /* link j5: motion */
+    const ur10e_real_t t166 = t165 * t160;
+    const ur10e_real_t t167 = t156 * t152; /* link j4: motion */
+    const ur10e_real_t t168 = t166 - t167; /* link j6: motion */
+    const ur10e_real_t t169 = t1 * t168 - t2 * t164;
+    const ur10e_real_t t170 = t1 * t165 + t2 * t161;
+    const ur10e_real_t t171 = dq[5] + t160;
+    const ur10e_real_t t172 = t170 * t171;
+    const ur10e_real_t t173 = t172 - t169;
+    const ur10e_real_t t174 = t2 * t168 + t1 * t164;
+    const ur10e_real_t t175 = t2 * t165 - t1 * t161;
+    const ur10e_real_t t176 = t175 * t171;
+    const ur10e_real_t t177 = t174 - t176;
+    const ur10e_real_t t178 = t177 - t176; /* link j6: force and moment */
+    const ur10e_real_t t179 = parameters[XX6] * t173 - t172 * (parameters[YY6] - parameters[ZZ6])
+        - parameters[XY6] * t178;
+    const ur10e_real_t t180 = t17 * t154 + t21 * t158; /* link j5: motion */
+    const ur10e_real_t t181 = t165 * t161;
+    const ur10e_real_t t182 = t180 - t181;
+    const ur10e_real_t t183 = t175 * t170; /* link j6: motion */
+    const ur10e_real_t t184 = t182 - t183; /* link j6: force and moment */
+    const ur10e_real_t t185 = t170 * t170; /* link j6: motion */
+    const ur10e_real_t t186 = t171 * t171;
+    const ur10e_real_t t187 = t149 * t149; /* link j2: motion */
+    const ur10e_real_t t188 = dq[1] * dq[1];
+    const ur10e_real_t t189 = UR10E_C(-9.81) * t107;
+    const ur10e_real_t t190 = t189 + UR10E_C(-0.6127) * (t187 + t188); /* link j3: motion */
+    const ur10e_real_t t191 = t148 * t149; /* link j2: motion */
+    const ur10e_real_t t192 = UR10E_C(9.81) * t105;
+    const ur10e_real_t t193 = t192 + UR10E_C(-0.6127) * t191; /* link j3: motion */
+    const ur10e_real_t t194 = t67 * t193 - t68 * t190;
+    const ur10e_real_t t195 = t151 * t151;
+    const ur10e_real_t t196 = t155 * t155;
+    const ur10e_real_t t197 = t196 + t195; /* link j4: motion */
+    const ur10e_real_t t198 = t194 + UR10E_C(0.57155) * t197;
+    const ur10e_real_t t199 = t67 * t190 + t68 * t193; /* link j3: motion */
+    const ur10e_real_t t200 = t150 * t151;
+    const ur10e_real_t t201 = t199 + UR10E_C(0.57155) * t200; /* link j4: motion */
+    const ur10e_real_t t202 = t47 * t198 + t44 * t201;
+    const ur10e_real_t t203 = t202 + UR10E_C(0.11985) * t154; /* link j5: motion */
+    const ur10e_real_t t204 = t150 * t150; /* link j3: motion */
+    const ur10e_real_t t205 = t204 + t195; /* link j4: motion */
+    const ur10e_real_t t206 = t155 * t150; /* link j3: motion */
+    const ur10e_real_t t207 = dq[1] * t148; /* link j2: motion */
+    const ur10e_real_t t208 = UR10E_C(1.2254) * t207; /* link j3: motion */
+    const ur10e_real_t t209 = t208 + (UR10E_C(1.1431) * t206 + UR10E_C(0.17415) * t205); /* link j4: motion */
+    const ur10e_real_t t210 = t209 - UR10E_C(0.2397) * t157; /* link j5: motion */
+    const ur10e_real_t t211 = t21 * t203 + t17 * t210;
+    const ur10e_real_t t212 = t165 * t165;
+    const ur10e_real_t t213 = t161 * t161;
+    const ur10e_real_t t214 = t212 + t213; /* link j6: motion */
+    const ur10e_real_t t215 = t211 + UR10E_C(0.11655) * t214;
+    const ur10e_real_t t216 = t47 * t201 - t44 * t198; /* link j4: motion */
+    const ur10e_real_t t217 = t152 * t152;
+    const ur10e_real_t t218 = t156 * t156;
+    const ur10e_real_t t219 = t218 + t217; /* link j5: motion */
+    const ur10e_real_t t220 = t216 + UR10E_C(0.11985) * t219;
+    const ur10e_real_t t221 = t220 + UR10E_C(0.11655) * t164; /* link j6: motion */
+    const ur10e_real_t t222 = t17 * t203 - t21 * t210; /* link j5: motion */
+    const ur10e_real_t t223 = t222 - UR10E_C(-0.11655) * t168; /* link j6: motion */
+    const ur10e_real_t t224 = t2 * t221 - t1 * t223;
     /* link j6: force and moment */
-    const ur10e_real_t t226 = t180 - parameters[XZ6] * t185 - parameters[YZ6] * (t186 - t187)
-        + (parameters[MY6] * t216 + parameters[MZ6] * t225);
-    const ur10e_real_t t227 = t173 + t174;
-    const ur10e_real_t t228 = parameters[YY6] * t178 + t177 * (parameters[XX6] - parameters[ZZ6])
-        - parameters[XY6] * t227;
-    const ur10e_real_t t229 = t183 + t184;
-    const ur10e_real_t t230 = t176 * t176; /* link j6: motion */
-    const ur10e_real_t t231 = t2 * t224 + t1 * t222;
+    const ur10e_real_t t225 = t179 - parameters[XZ6] * t184 - parameters[YZ6] * (t185 - t186)
+        + (parameters[MY6] * t215 + parameters[MZ6] * t224);
+    const ur10e_real_t t226 = t172 + t173;
+    const ur10e_real_t t227 = parameters[YY6] * t177 + t176 * (parameters[XX6] - parameters[ZZ6])
+        - parameters[XY6] * t226;
+    const ur10e_real_t t228 = t182 + t183;
+    const ur10e_real_t t229 = t175 * t175; /* link j6: motion */
+    const ur10e_real_t t230 = t2 * t223 + t1 * t221;
     /* link j6: force and moment */
-    const ur10e_real_t t232 = t228 + parameters[YZ6] * t229 + parameters[XZ6] * (t187 - t230)
-        + (parameters[MZ6] * t231 + parameters[MX6] * t216);
-    const ur10e_real_t t233 = parameters[MZ6] * t175 - (parameters[MX6] * (t186 + t187)
-        + parameters[MY6] * t229);
-    const ur10e_real_t t234 = parameters[M6] * t231 + t233;
-    const ur10e_real_t t235 = parameters[MX6] * t185 - parameters[MY6] * (t230 + t187)
-        - parameters[MZ6] * t170;
-    const ur10e_real_t t236 = parameters[M6] * t225 + t235;
-    const ur10e_real_t t237 = t1 * t234 + t2 * t236; /* link j6: what it passes on */
-    const ur10e_real_t t238 = t182 - t183; /* link j6: motion */
+    const ur10e_real_t t231 = t227 + parameters[YZ6] * t228 + parameters[XZ6] * (t186 - t229)
+        + (parameters[MZ6] * t230 + parameters[MX6] * t215);
+    const ur10e_real_t t232 = parameters[MZ6] * t174 - (parameters[MX6] * (t185 + t186)
+        + parameters[MY6] * t228);
+    const ur10e_real_t t233 = parameters[M6] * t230 + t232;
+    const ur10e_real_t t234 = parameters[MX6] * t184 - parameters[MY6] * (t229 + t186)
+        - parameters[MZ6] * t169;
+    const ur10e_real_t t235 = parameters[M6] * t224 + t234;
+    const ur10e_real_t t236 = t1 * t233 + t2 * t235; /* link j6: what it passes on */
+    const ur10e_real_t t237 = t181 - t182; /* link j6: motion */
     /* link j5: force and moment */
-    const ur10e_real_t t239 = parameters[XX5] * t164 + t163 * (parameters[YY5] - parameters[ZZ5])
-        + parameters[XY5] * t238;
-    const ur10e_real_t t240 = t168 + t167; /* link j6: motion */
-    const ur10e_real_t t241 = t161 * t161; /* link j5: motion */
+    const ur10e_real_t t238 = parameters[XX5] * t163 + t162 * (parameters[YY5] - parameters[ZZ5])
+        + parameters[XY5] * t237;
+    const ur10e_real_t t239 = t167 + t166; /* link j6: motion */
+    const ur10e_real_t t240 = t160 * t160; /* link j5: motion */
     /* link j5: force and moment */
-    const ur10e_real_t t242 = t239 - parameters[XZ5] * t240 + parameters[YZ5] * (t214 - t241)
-        + (parameters[MY5] * t221 - parameters[MZ5] * t212);
+    const ur10e_real_t t241 = t238 - parameters[XZ5] * t239 + parameters[YZ5] * (t213 - t240)
+        + (parameters[MY5] * t220 - parameters[MZ5] * t211);
     /* link j6: what it passes on */
-    const ur10e_real_t t243 = t242 + (t2 * t226 + t1 * t232 + UR10E_C(0.11655) * t237);
+    const ur10e_real_t t242 = t241 + (t2 * t225 + t1 * t231 + UR10E_C(0.11655) * t236);
     /* link j6: force and moment */
-    const ur10e_real_t t244 = parameters[ZZ6] * t183 + t7 * t184 + parameters[YZ6] * t175
-        + parameters[XZ6] * t170;
-    const ur10e_real_t t245 = t244 + parameters[XY6] * (t230 - t186) + (parameters[MX6] * t225
-        - parameters[MY6] * t231);
+    const ur10e_real_t t243 = parameters[ZZ6] * t182 + t7 * t183 + parameters[YZ6] * t174
+        + parameters[XZ6] * t169;
+    const ur10e_real_t t244 = t243 + parameters[XY6] * (t229 - t185) + (parameters[MX6] * t224
+        - parameters[MY6] * t230);
     /* link j5: force and moment */
-    const ur10e_real_t t246 = parameters[YY5] * t183 + t182 * (parameters[XX5] - parameters[ZZ5])
-        - parameters[XY5] * t165;
-    const ur10e_real_t t247 = t246 - parameters[YZ5] * t169 + parameters[XZ5] * (t214 - t213)
-        + (parameters[MZ5] * t223 + parameters[MX5] * t221);
-    const ur10e_real_t t248 = t247 + t245; /* link j6: what it passes on */
-    const ur10e_real_t t249 = t2 * t234 - t1 * t236;
+    const ur10e_real_t t245 = parameters[YY5] * t182 + t181 * (parameters[XX5] - parameters[ZZ5])
+        - parameters[XY5] * t164;
+    const ur10e_real_t t246 = t245 - parameters[YZ5] * t168 + parameters[XZ5] * (t213 - t212)
+        + (parameters[MZ5] * t222 + parameters[MX5] * t220);
+    const ur10e_real_t t247 = t246 + t244; /* link j6: what it passes on */
+    const ur10e_real_t t248 = t2 * t233 - t1 * t235;
     /* link j5: force and moment */
-    const ur10e_real_t t250 = parameters[MX5] * (t241 + t214) - parameters[MY5] * t169
-        - parameters[MZ5] * t181;
-    const ur10e_real_t t251 = parameters[M5] * t223 - t250 + t249; /* link j6: what it passes on */
+    const ur10e_real_t t249 = parameters[MX5] * (t240 + t213) - parameters[MY5] * t168
+        - parameters[MZ5] * t180;
+    const ur10e_real_t t250 = parameters[M5] * t222 - t249 + t248; /* link j6: what it passes on */
     /* link j6: force and moment */
-    const ur10e_real_t t252 = parameters[MX6] * t179 + parameters[MY6] * t227 + parameters[MZ6] * (t230
-        + t186);
+    const ur10e_real_t t251 = parameters[MX6] * t178 + parameters[MY6] * t226 + parameters[MZ6] * (t229
+        + t185);
     /* link j5: force and moment */
-    const ur10e_real_t t253 = parameters[M5] * t212 + (parameters[MY5] * t215 - parameters[MX5] * t240
-        - parameters[MZ5] * t160);
-    const ur10e_real_t t254 = t253 + (parameters[M6] * t216 + t252); /* link j6: what it passes on */
-    const ur10e_real_t t255 = t18 * t254 - t22 * t251; /* link j5: what it passes on */
-    const ur10e_real_t t256 = UR10E_C(2.0) * t168; /* link j5: motion */
+    const ur10e_real_t t252 = parameters[M5] * t211 + (parameters[MY5] * t214 - parameters[MX5] * t239
+        - parameters[MZ5] * t159);
+    const ur10e_real_t t253 = t252 + (parameters[M6] * t215 + t251); /* link j6: what it passes on */
+    const ur10e_real_t t254 = t17 * t253 - t21 * t250; /* link j5: what it passes on */
+    const ur10e_real_t t255 = UR10E_C(2.0) * t167; /* link j5: motion */
     /* link j4: force and moment */
-    const ur10e_real_t t257 = parameters[XX4] * t158 + t158 * (parameters[ZZ4] - parameters[YY4])
-        + parameters[XY4] * t256;
-    const ur10e_real_t t258 = t154 * t154; /* link j4: motion */
+    const ur10e_real_t t256 = parameters[XX4] * t157 + t157 * (parameters[ZZ4] - parameters[YY4])
+        + parameters[XY4] * t255;
+    const ur10e_real_t t257 = t153 * t153; /* link j4: motion */
     /* link j4: force and moment */
-    const ur10e_real_t t259 = t257 + parameters[XZ4] * t155 + parameters[YZ4] * (t219 - t258)
-        + (parameters[MY4] * t210 + parameters[MZ4] * t217);
+    const ur10e_real_t t258 = t256 + parameters[XZ4] * t154 + parameters[YZ4] * (t218 - t257)
+        + (parameters[MY4] * t209 + parameters[MZ4] * t216);
     /* link j5: what it passes on */
-    const ur10e_real_t t260 = t259 + (t18 * t243 + t22 * t248 + UR10E_C(-0.11985) * t255);
+    const ur10e_real_t t259 = t258 + (t17 * t242 + t21 * t247 + UR10E_C(-0.11985) * t254);
     /* link j5: force and moment */
-    const ur10e_real_t t261 = t167 * (parameters[XX5] - parameters[YY5]) - parameters[ZZ5] * t168
-        - parameters[YZ5] * t181;
-    const ur10e_real_t t262 = t261 + parameters[XZ5] * t160 + parameters[XY5] * (t241 - t213)
-        + (parameters[MX5] * t212 + parameters[MY5] * t223);
+    const ur10e_real_t t260 = t166 * (parameters[XX5] - parameters[YY5]) - parameters[ZZ5] * t167
+        - parameters[YZ5] * t180;
+    const ur10e_real_t t261 = t260 + parameters[XZ5] * t159 + parameters[XY5] * (t240 - t212)
+        + (parameters[MX5] * t211 + parameters[MY5] * t222);
     /* link j6: what it passes on */
-    const ur10e_real_t t263 = t262 + (t2 * t232 - t1 * t226 + UR10E_C(0.11655) * t249);
+    const ur10e_real_t t262 = t261 + (t2 * t231 - t1 * t225 + UR10E_C(0.11655) * t248);
     /* link j4: force and moment */
-    const ur10e_real_t t264 = t168 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t168
-        - parameters[XY4] * t159;
-    const ur10e_real_t t265 = t264 + parameters[YZ4] * t155 + parameters[XZ4] * (t219 - t218)
-        + (parameters[MZ4] * t203 + parameters[MX4] * t210);
-    const ur10e_real_t t266 = t265 + t263; /* link j5: what it passes on */
-    const ur10e_real_t t267 = t18 * t251 + t22 * t254;
+    const ur10e_real_t t263 = t167 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t167
+        - parameters[XY4] * t158;
+    const ur10e_real_t t264 = t263 + parameters[YZ4] * t154 + parameters[XZ4] * (t218 - t217)
+        + (parameters[MZ4] * t202 + parameters[MX4] * t209);
+    const ur10e_real_t t265 = t264 + t262; /* link j5: what it passes on */
+    const ur10e_real_t t266 = t17 * t250 + t21 * t253;
     /* link j4: force and moment */
-    const ur10e_real_t t268 = parameters[M4] * t203 - (parameters[MX4] * (t219 + t258)
-        + parameters[MY4] * t155);
-    const ur10e_real_t t269 = t268 + t267; /* link j5: what it passes on */
+    const ur10e_real_t t267 = parameters[M4] * t202 - (parameters[MX4] * (t218 + t257)
+        + parameters[MY4] * t154);
+    const ur10e_real_t t268 = t267 + t266; /* link j5: what it passes on */
     /* link j5: force and moment */
-    const ur10e_real_t t270 = parameters[MY5] * t165 - parameters[MX5] * t238 + parameters[MZ5] * (t213
-        + t241);
+    const ur10e_real_t t269 = parameters[MY5] * t164 - parameters[MX5] * t237 + parameters[MZ5] * (t212
+        + t240);
     /* link j5: what it passes on */
-    const ur10e_real_t t271 = parameters[M4] * t217 - (parameters[MX4] * t155 + parameters[MY4] * t220)
-        + (parameters[M5] * t221 + t270 + t237);
-    const ur10e_real_t t272 = t46 * t269 + t49 * t271; /* link j4: what it passes on */
-    const ur10e_real_t t273 = t156 * t152; /* link j3: motion */
-    const ur10e_real_t t274 = UR10E_C(2.0) * t207; /* link j4: motion */
+    const ur10e_real_t t270 = parameters[M4] * t216 - (parameters[MX4] * t154 + parameters[MY4] * t219)
+        + (parameters[M5] * t220 + t269 + t236);
+    const ur10e_real_t t271 = t44 * t268 + t47 * t270; /* link j4: what it passes on */
+    const ur10e_real_t t272 = t155 * t151; /* link j3: motion */
+    const ur10e_real_t t273 = UR10E_C(2.0) * t206; /* link j4: motion */
     /* link j3: force and moment */
-    const ur10e_real_t t275 = parameters[XX3] * t273 + t273 * (parameters[ZZ3] - parameters[YY3])
-        + parameters[XY3] * t274;
-    const ur10e_real_t t276 = t275 + parameters[XZ3] * t201 + parameters[YZ3] * (t197 - t196)
-        + (parameters[MY3] * t209 + parameters[MZ3] * t200);
+    const ur10e_real_t t274 = parameters[XX3] * t272 + t272 * (parameters[ZZ3] - parameters[YY3])
+        + parameters[XY3] * t273;
+    const ur10e_real_t t275 = t274 + parameters[XZ3] * t200 + parameters[YZ3] * (t196 - t195)
+        + (parameters[MY3] * t208 + parameters[MZ3] * t199);
     /* link j4: what it passes on */
-    const ur10e_real_t t277 = t276 + (t49 * t260 + t46 * t266 + UR10E_C(0.17415) * t272);
-    const ur10e_real_t t278 = t49 * t269 - t46 * t271;
+    const ur10e_real_t t276 = t275 + (t47 * t259 + t44 * t265 + UR10E_C(0.17415) * t271);
+    const ur10e_real_t t277 = t47 * t268 - t44 * t270;
     /* link j4: force and moment */
-    const ur10e_real_t t279 = parameters[MY4] * t159 - parameters[MX4] * t256 + parameters[MZ4] * (t218
-        + t258);
-    const ur10e_real_t t280 = parameters[M4] * t210 + t279 + t255; /* link j5: what it passes on */
+    const ur10e_real_t t278 = parameters[MY4] * t158 - parameters[MX4] * t255 + parameters[MZ4] * (t217
+        + t257);
+    const ur10e_real_t t279 = parameters[M4] * t209 + t278 + t254; /* link j5: what it passes on */
     /* link j4: what it passes on */
-    const ur10e_real_t t281 = t46 * t260 - t49 * t266 - (UR10E_C(0.17415) * t278 - UR10E_C(0.57155) * t280);
-    const ur10e_real_t t282 = UR10E_C(2.0) * t273; /* link j4: motion */
+    const ur10e_real_t t280 = t44 * t259 - t47 * t265 - (UR10E_C(0.17415) * t277 - UR10E_C(0.57155) * t279);
+    const ur10e_real_t t281 = UR10E_C(2.0) * t272; /* link j4: motion */
     /* link j3: force and moment */
-    const ur10e_real_t t283 = parameters[YY3] * t207 - t207 * (parameters[XX3] - parameters[ZZ3])
-        + parameters[XY3] * t282;
-    const ur10e_real_t t284 = t283 - parameters[YZ3] * t201 - parameters[XZ3] * (t197 - t205)
-        - (parameters[MZ3] * t195 + parameters[MX3] * t209);
-    const ur10e_real_t t285 = t284 + t281; /* link j4: what it passes on */
-    const ur10e_real_t t286 = dq[1] * t150; /* link j2: motion */
+    const ur10e_real_t t282 = parameters[YY3] * t206 - t206 * (parameters[XX3] - parameters[ZZ3])
+        + parameters[XY3] * t281;
+    const ur10e_real_t t283 = t282 - parameters[YZ3] * t200 - parameters[XZ3] * (t196 - t204)
+        - (parameters[MZ3] * t194 + parameters[MX3] * t208);
+    const ur10e_real_t t284 = t283 + t280; /* link j4: what it passes on */
+    const ur10e_real_t t285 = dq[1] * t149; /* link j2: motion */
     /* link j2: force and moment */
-    const ur10e_real_t t287 = t286 * (parameters[YY2] - parameters[ZZ2]) - t286 * parameters[XX2]
-        + UR10E_C(2.0) * t208 * parameters[XY2];
-    const ur10e_real_t t288 = t287 - t192 * parameters[XZ2] + (t189 - t188) * parameters[YZ2]
-        + t193 * parameters[MZ2];
+    const ur10e_real_t t286 = t285 * (parameters[YY2] - parameters[ZZ2]) - t285 * parameters[XX2]
+        + UR10E_C(2.0) * t207 * parameters[XY2];
+    const ur10e_real_t t287 = t286 - t191 * parameters[XZ2] + (t188 - t187) * parameters[YZ2]
+        + t192 * parameters[MZ2];
     /* link j3: force and moment */
-    const ur10e_real_t t289 = parameters[M3] * t209 + (parameters[MY3] * t282 - parameters[MX3] * t274
-        + parameters[MZ3] * t206);
+    const ur10e_real_t t288 = parameters[M3] * t208 + (parameters[MY3] * t281 - parameters[MX3] * t273
+        + parameters[MZ3] * t205);
     /* link j3: what it passes on */
-    const ur10e_real_t t290 = t70 * t277 + t71 * t285 + UR10E_C(0.6127) * (t289 + t280);
+    const ur10e_real_t t289 = t67 * t276 + t68 * t284 + UR10E_C(0.6127) * (t288 + t279);
     /* link j2: force and moment */
-    const ur10e_real_t t291 = t208 * parameters[YY2] + t208 * (parameters[ZZ2] - parameters[XX2])
-        + UR10E_C(-2.0) * t286 * parameters[XY2];
-    const ur10e_real_t t292 = t149 * t149; /* link j2: motion */
+    const ur10e_real_t t290 = t207 * parameters[YY2] + t207 * (parameters[ZZ2] - parameters[XX2])
+        + UR10E_C(-2.0) * t285 * parameters[XY2];
+    const ur10e_real_t t291 = t148 * t148; /* link j2: motion */
     /* link j2: force and moment */
-    const ur10e_real_t t293 = t291 + t192 * parameters[YZ2] + (t292 - t189) * parameters[XZ2]
-        + t190 * parameters[MZ2];
+    const ur10e_real_t t292 = t290 + t191 * parameters[YZ2] + (t291 - t188) * parameters[XZ2]
+        + t189 * parameters[MZ2];
     /* link j2: what it passes on */
-    const ur10e_real_t t294 = t111 * (t288 + (t71 * t277 - t70 * t285)) + t109 * (t293 + t290);
-    const ur10e_real_t t295 = ur10e_sign(dq[0]); /* joint j1: coulomb_friction */
-    const ur10e_real_t t296 = UR10E_C(101.0) * (UR10E_C(-101.0) * dq[0] * parameters[FV1]
-        - t295 * parameters[FC1]) + t294;
-    const ur10e_real_t t297 = ur10e_sign(dq[5]); /* joint j6: coulomb_friction */
-    const ur10e_real_t t298 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[5] * parameters[FV6]
-        + t297 * parameters[FC6]) + t245;
-    const ur10e_real_t t299 = UR10E_C(9.09) * input[5] - t298;
-    const ur10e_real_t t300 = ur10e_sign(dq[4]); /* joint j5: coulomb_friction */
-    const ur10e_real_t t301 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[4] * parameters[FV5]
-        + t300 * parameters[FC5]) - t263;
-    const ur10e_real_t t302 = UR10E_C(9.09) * input[4] - t301 + t299 * t6;
-    const ur10e_real_t t303 = UR10E_C(12.12) * input[0] + t296 + t299 * t120 + t302 * t125;
+    const ur10e_real_t t293 = t107 * (t287 + (t68 * t276 - t67 * t284)) + t105 * (t292 + t289);
+    const ur10e_real_t t294 = ur10e_sign(dq[0]); /* joint j1: coulomb_friction */
+    const ur10e_real_t t295 = UR10E_C(101.0) * (UR10E_C(-101.0) * dq[0] * parameters[FV1]
+        - t294 * parameters[FC1]) + t293;
+    const ur10e_real_t t296 = ur10e_sign(dq[5]); /* joint j6: coulomb_friction */
+    const ur10e_real_t t297 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[5] * parameters[FV6]
+        + t296 * parameters[FC6]) + t244;
+    const ur10e_real_t t298 = UR10E_C(9.09) * input[5] - t297;
+    const ur10e_real_t t299 = ur10e_sign(dq[4]); /* joint j5: coulomb_friction */
+    const ur10e_real_t t300 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[4] * parameters[FV5]
+        + t299 * parameters[FC5]) - t262;
+    const ur10e_real_t t301 = UR10E_C(9.09) * input[4] - t300 + t298 * t6;
+    const ur10e_real_t t302 = UR10E_C(12.12) * input[0] + t295 + t298 * t116 + t301 * t121;
     /* link j4: force and moment */
-    const ur10e_real_t t304 = t155 * (parameters[XX4] - parameters[YY4]) + parameters[XY4] * (t218 - t258)
-        - (parameters[MY4] * t203 - parameters[MX4] * t217);
+    const ur10e_real_t t303 = t154 * (parameters[XX4] - parameters[YY4]) + parameters[XY4] * (t217 - t257)
+        - (parameters[MY4] * t202 - parameters[MX4] * t216);
     /* link j5: what it passes on */
-    const ur10e_real_t t305 = t304 + (t18 * t248 - t22 * t243 + UR10E_C(0.11985) * t267);
-    const ur10e_real_t t306 = ur10e_sign(dq[3]); /* joint j4: coulomb_friction */
-    const ur10e_real_t t307 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[3] * parameters[FV4]
-        + t306 * parameters[FC4]) + t305;
-    const ur10e_real_t t308 = UR10E_C(9.09) * input[3] - t307 - t299 * t33 - t302 * t42;
+    const ur10e_real_t t304 = t303 + (t17 * t247 - t21 * t242 + UR10E_C(0.11985) * t266);
+    const ur10e_real_t t305 = ur10e_sign(dq[3]); /* joint j4: coulomb_friction */
+    const ur10e_real_t t306 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[3] * parameters[FV4]
+        + t305 * parameters[FC4]) + t304;
+    const ur10e_real_t t307 = UR10E_C(9.09) * input[3] - t306 - t298 * t32 - t301 * t41;
     /* link j3: force and moment */
-    const ur10e_real_t t309 = t201 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t205 - t196)
-        - (parameters[MY3] * t195 - parameters[MX3] * t200);
-    const ur10e_real_t t310 = t309 + (t305 - UR10E_C(0.57155) * t272); /* link j4: what it passes on */
-    const ur10e_real_t t311 = ur10e_sign(dq[2]); /* joint j3: coulomb_friction */
-    const ur10e_real_t t312 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[2] * parameters[FV3]
-        + t311 * parameters[FC3]) + t310;
-    const ur10e_real_t t313 = UR10E_C(10.100000000000001) * input[2] - t312 + t299 * t60 + t302 * t66;
-    const ur10e_real_t t314 = t313 - t308 * t59;
+    const ur10e_real_t t308 = t200 * (parameters[XX3] - parameters[YY3]) + parameters[XY3] * (t204 - t195)
+        - (parameters[MY3] * t194 - parameters[MX3] * t199);
+    const ur10e_real_t t309 = t308 + (t304 - UR10E_C(0.57155) * t271); /* link j4: what it passes on */
+    const ur10e_real_t t310 = ur10e_sign(dq[2]); /* joint j3: coulomb_friction */
+    const ur10e_real_t t311 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[2] * parameters[FV3]
+        + t310 * parameters[FC3]) + t309;
+    const ur10e_real_t t312 = UR10E_C(10.100000000000001) * input[2] - t311 + t298 * t58 + t301 * t64;
+    const ur10e_real_t t313 = t312 - t307 * t57;
     /* link j4: what it passes on */
-    const ur10e_real_t t315 = parameters[M3] * t195 - (parameters[MX3] * t198 + parameters[MY3] * t201)
-        + t278;
+    const ur10e_real_t t314 = parameters[M3] * t194 - (parameters[MX3] * t197 + parameters[MY3] * t200)
+        + t277;
     /* link j3: force and moment */
-    const ur10e_real_t t316 = parameters[MX3] * t201 + parameters[MY3] * (t197 + t205)
-        - parameters[M3] * t200;
+    const ur10e_real_t t315 = parameters[MX3] * t200 + parameters[MY3] * (t196 + t204)
+        - parameters[M3] * t199;
     /* link j3: what it passes on */
-    const ur10e_real_t t317 = t310 - UR10E_C(0.6127) * (t70 * t315 - t71 * (t316 - t272));
+    const ur10e_real_t t316 = t309 - UR10E_C(0.6127) * (t67 * t314 - t68 * (t315 - t271));
     /* link j2: force and moment */
-    const ur10e_real_t t318 = t192 * (parameters[XX2] - parameters[YY2]) - (t292 - t188) * parameters[XY2]
-        - (t193 * parameters[MX2] + t190 * parameters[MY2]);
-    const ur10e_real_t t319 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
-    const ur10e_real_t t320 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[1] * parameters[FV2]
-        + t319 * parameters[FC2]) - (t318 - t317);
-    const ur10e_real_t t321 = UR10E_C(12.12) * input[1] - t320 + t299 * t87 + t302 * t90;
-    const ur10e_real_t t322 = t321 - t308 * t86 + t314 * t85;
-    const ur10e_real_t t323 = t303 + t308 * t133 + t314 * t141 + t322 * t146;
-    const ur10e_real_t t324 = UR10E_C(1.0) / t147;
-    const ur10e_real_t t325 = ur10e_bounded(t323 * t324);
-    out[0] = t325;
-    const ur10e_real_t t326 = ur10e_bounded(t322 * t145 + t146 * t325);
-    out[1] = t326;
-    const ur10e_real_t t327 = ur10e_bounded(t314 * t84 + t141 * t325 + t85 * t326);
-    out[2] = t327;
-    const ur10e_real_t t328 = ur10e_bounded(t133 * t325 - t308 * t58 - t86 * t326 - t59 * t327);
-    out[3] = t328;
-    const ur10e_real_t t329 = t125 * t325 - t302 * t41 + t90 * t326 + t66 * t327;
-    const ur10e_real_t t330 = ur10e_bounded(t329 - t42 * t328);
-    out[4] = t330;
-    const ur10e_real_t t331 = t120 * t325 - t299 * t5 + t87 * t326 + t60 * t327;
-    out[5] = t331 - t33 * t328 + t6 * t330;
-    if (!ur10e_all_bounded(out, 6)) {
+    const ur10e_real_t t317 = t191 * (parameters[XX2] - parameters[YY2]) - (t291 - t187) * parameters[XY2]
+        - (t192 * parameters[MX2] + t189 * parameters[MY2]);
+    const ur10e_real_t t318 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
+    const ur10e_real_t t319 = UR10E_C(101.0) * (UR10E_C(101.0) * dq[1] * parameters[FV2]
+        + t318 * parameters[FC2]) - (t317 - t316);
+    const ur10e_real_t t320 = UR10E_C(12.12) * input[1] - t319 + t298 * t84 + t301 * t87;
+    const ur10e_real_t t321 = t320 - t307 * t83 + t313 * t82;
+    const ur10e_real_t t322 = t302 + t307 * t129 + t313 * t137 + t321 * t142;
+    const ur10e_real_t t323 = UR10E_C(1.0) / t143;
+    const ur10e_real_t t324 = ur10e_held(t322 * t323);
+    out[0] = t324;
+    const ur10e_real_t t325 = ur10e_held(t321 * t141 + t142 * t324);
+    out[1] = t325;
+    const ur10e_real_t t326 = ur10e_held(t313 * t81 + t137 * t324 + t82 * t325);
+    out[2] = t326;
+    const ur10e_real_t t327 = ur10e_held(t129 * t324 - t307 * t56 - t83 * t325 - t57 * t326);
+    out[3] = t327;
+    const ur10e_real_t t328 = t121 * t324 - t301 * t40 + t87 * t325 + t64 * t326;
+    const ur10e_real_t t329 = ur10e_held(t328 - t41 * t327);
+    out[4] = t329;
+    const ur10e_real_t t330 = t116 * t324 - t298 * t5 + t84 * t325 + t58 * t326;
+    out[5] = t330 - t32 * t327 + t6 * t329;
+    if (!ur10e_bounded(out, 6)) {
         ur10e_zero(out, 6);
         return UR10E_STATUS_PIVOT;
     }

@@ -85,7 +85,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -370,646 +370,644 @@ ur10e_status_t ur10e_inverse_dynamics_derivatives(
     const ur10e_real_t t181 = parameters[FV6] * (UR10E_C(101.0) * dq[5]) + parameters[FC6] * t180
         + parameters[IA6] * (UR10E_C(101.0) * ddq[5]);
     input[5] = UR10E_C(11.11111111111111) * t181 + UR10E_C(0.11001100110011001) * t114;
-    const ur10e_real_t t182 = parameters[XZ6R] * t40;
-    const ur10e_real_t t183 = parameters[XY6] * t41;
-    const ur10e_real_t t184 = t182 + t183;
-    const ur10e_real_t t185 = parameters[YZ6R] * t45;
-    const ur10e_real_t t186 = t183 + t185;
-    const ur10e_real_t t187 = UR10E_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
-    const ur10e_real_t t188 = parameters[XX6R] + t187;
-    const ur10e_real_t t189 = t41 * t188 + parameters[XZ6R] * t45;
-    const ur10e_real_t t190 = parameters[YZ6R] * t40 + t41 * t187;
-    /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t191 = t23 * (t190 - t189) - t38 * (t184 + t186);
-    const ur10e_real_t t192 = t38 * t191;
-    const ur10e_real_t t193 = parameters[XZ5] * t15;
-    const ur10e_real_t t194 = parameters[XY5] * t34;
-    const ur10e_real_t t195 = t194 - t193 - (t186 + t192);
-    const ur10e_real_t t196 = t185 - t182;
-    const ur10e_real_t t197 = parameters[YZ5] * t14;
-    const ur10e_real_t t198 = t196 - (t194 + t197);
-    const ur10e_real_t t199 = t40 * t188 - parameters[XY6] * t45;
-    const ur10e_real_t t200 = parameters[XY6] * t40 - t45 * t187;
-    const ur10e_real_t t201 = UR10E_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    const ur10e_real_t t202 = t201 - parameters[XX5R];
-    const ur10e_real_t t203 = t34 * t202 - parameters[XZ5] * t14 + (t23 * t200 - t38 * t199);
-    const ur10e_real_t t204 = parameters[ZZ6] + t187;
-    const ur10e_real_t t205 = t40 * t204 + parameters[YZ6R] * t41;
-    const ur10e_real_t t206 = parameters[XZ6R] * t41 + t45 * t204;
-    const ur10e_real_t t207 = t38 * t205 + t23 * t206 - (parameters[YZ5] * t15 + t34 * t201);
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t208 = t10 * (t198 - t195) + t13 * (t207 + t203);
-    const ur10e_real_t t209 = t10 * t208;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t210 = t23 * parameters[MY6] - t38 * parameters[MX6];
-    const ur10e_real_t t211 = t210 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t212 = t13 * parameters[MY5R] + t10 * t211; /* link j5: column of the mass matrix */
-    const ur10e_real_t t213 = UR10E_C(-0.11985) * t12; /* link j5: velocity of its origin */
-    const ur10e_real_t t214 = t212 * t213; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t215 = parameters[MY6] * t41;
-    const ur10e_real_t t216 = parameters[MX6] * t41;
-    /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t217 = parameters[MY5R] * t14 + parameters[MX5] * t15 + (t38 * t216 - t23 * t215);
-    const ur10e_real_t t218 = UR10E_C(0.11985) * t217; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t219 = UR10E_C(0.11985) * t9;
-    const ur10e_real_t t220 = t10 * parameters[MY5R] - t13 * t211; /* link j5: column of the mass matrix */
-    const ur10e_real_t t221 = t220 * t219; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t222 = t218 + (t214 - t221);
-    const ur10e_real_t t223 = parameters[XZ4] * t24;
-    const ur10e_real_t t224 = parameters[XY4] * t12;
-    const ur10e_real_t t225 = t224 - t223 + (t209 - t198 + t214 - t222);
-    const ur10e_real_t t226 = t193 + t197 + (t184 + t192); /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t227 = parameters[YZ4] * t9;
-    const ur10e_real_t t228 = t224 - t227 + (t222 + (t226 - t218)); /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t229 = t23 * t191; /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t230 = parameters[ZZ5R] - t201;
-    const ur10e_real_t t231 = parameters[YZ5] * t34 - t15 * t230 + (t229 - t190);
-    const ur10e_real_t t232 = t23 * t199 + t38 * t200 - (parameters[XZ5] * t34 + t14 * t230);
-    const ur10e_real_t t233 = parameters[MY6] * t45 - parameters[MX6] * t40;
-    const ur10e_real_t t234 = t233 - parameters[MX5] * t34;
-    const ur10e_real_t t235 = parameters[MY5R] * t34 + (t38 * t215 + t23 * t216);
-    const ur10e_real_t t236 = t10 * t235 - t13 * t234; /* link j5: inertia, momentum beyond */
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t237 = t38 * parameters[MY6] + t23 * parameters[MX6];
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t238 = t10 * t231 - t13 * t232 + (UR10E_C(-0.11985) * t236 - t237 * t213);
-    const ur10e_real_t t239 = UR10E_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    const ur10e_real_t t240 = t238 - (parameters[YZ4] * t24 + t12 * t239);
-    /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t241 = parameters[XY5] * t14 - t15 * t202 + (t189 + t229);
-    const ur10e_real_t t242 = parameters[XY5] * t15 - t14 * t201 + (t38 * t206 - t23 * t205);
-    const ur10e_real_t t243 = parameters[XX4R] - t239;
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t244 = t12 * t243 - parameters[XZ4] * t9 + (t13 * t242 - t10 * t241);
-    const ur10e_real_t t245 = t5 * (t225 + t228) - t7 * (t240 - t244); /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t246 = t5 * t245;
-    const ur10e_real_t t247 = t236 - parameters[MY4R] * t12; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t248 = parameters[MX4] * t12 - t217;
-    const ur10e_real_t t249 = t5 * t247 - t7 * t248; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t250 = UR10E_C(-0.57155) * t249;
-    const ur10e_real_t t251 = parameters[MY4R] + t237; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t252 = t212 - parameters[MX4];
-    const ur10e_real_t t253 = t7 * t251 + t5 * t252; /* link j4: column of the mass matrix */
-    const ur10e_real_t t254 = UR10E_C(-0.17415) * t68;
-    const ur10e_real_t t255 = t253 * t254; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t256 = t13 * t235 + t10 * t234; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t257 = parameters[MY4R] * t9 - parameters[MX4] * t24 + t256;
-    const ur10e_real_t t258 = UR10E_C(0.17415) * t257; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t259 = t7 * t252 - t5 * t251; /* link j4: column of the mass matrix */
-    const ur10e_real_t t260 = UR10E_C(-0.57155) * t11 + UR10E_C(-0.17415) * t75;
-    const ur10e_real_t t261 = t259 * t260; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t262 = UR10E_C(0.57155) * t68;
-    const ur10e_real_t t263 = t220 * t262;
-    const ur10e_real_t t264 = t250 + t258 + (t255 - t261 + t263);
-    const ur10e_real_t t265 = parameters[XZ3R] * t68;
-    const ur10e_real_t t266 = parameters[XY3] * t11;
-    const ur10e_real_t t267 = t265 - t266 + (t264 + (t228 - t246 - (t250 + t255)));
-    const ur10e_real_t t268 = parameters[YZ3] * t75;
-    const ur10e_real_t t269 = t266 - t268 + (t264 - (t225 - t246 - t261));
-    const ur10e_real_t t270 = t7 * t245;
-    const ur10e_real_t t271 = UR10E_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const ur10e_real_t t272 = t240 + t270 + t259 * t254 - (parameters[YZ3] * t68 + t11 * t271);
-    const ur10e_real_t t273 = t7 * t247 + t5 * t248;
-    const ur10e_real_t t274 = parameters[XX3R] - t271;
-    const ur10e_real_t t275 = t11 * t274 - parameters[XZ3R] * t75 + (t244 - t270 - (UR10E_C(-0.57155) * t273
-        - t253 * t260));
-    const ur10e_real_t t276 = t1 * (t267 - t269) + t3 * (t272 - t275); /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t277 = t1 * t276;
-    const ur10e_real_t t278 = t249 - parameters[MY3] * t11; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t279 = parameters[MX3R] * t11 + t273;
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t280 = UR10E_C(0.6127) * (t3 * t279 - t1 * t278);
-    const ur10e_real_t t281 = t259 - parameters[MY3]; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t282 = parameters[MX3R] - t253;
-    const ur10e_real_t t283 = t1 * t281 - t3 * t282; /* link j3: column of the mass matrix */
-    const ur10e_real_t t284 = UR10E_C(0.6127) * dq[1]; /* link j3: velocity of its origin */
-    const ur10e_real_t t285 = t283 * t284; /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t286 = UR10E_C(0.6127) * t57; /* link j3: velocity of its origin */
-    const ur10e_real_t t287 = t220 * t286; /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t288 = t280 + (t285 + t287);
-    const ur10e_real_t t289 = parameters[XZ2R] * t57;
-    const ur10e_real_t t290 = parameters[XY2] * dq[1];
-    const ur10e_real_t t291 = t289 - t290 + (t288 + (t269 + t277 - t280));
-    const ur10e_real_t t292 = parameters[YZ2] * t62;
-    const ur10e_real_t t293 = t290 - t292 + (t288 + (t267 - t277 - t285));
-    const ur10e_real_t t294 = t3 * t276;
-    const ur10e_real_t t295 = UR10E_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const ur10e_real_t t296 = parameters[YZ2] * t57 + dq[1] * t295 + (t294 - t272);
-    const ur10e_real_t t297 = t3 * t281 + t1 * t282; /* link j3: column of the mass matrix */
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t298 = UR10E_C(0.6127) * (t3 * t278 + t1 * t279) + t297 * t284;
-    const ur10e_real_t t299 = parameters[XX2R] - t295;
-    const ur10e_real_t t300 = dq[1] * t299 - parameters[XZ2R] * t62 + (t275 + t294 + t298);
-    /* link j2: inertia, momentum beyond */
-    const ur10e_real_t t301 = t2 * (t2 * (t293 - t291) + t0 * (t296 + t300));
-    input_by_dq[0] = UR10E_C(841.6666666666667) * parameters[FV1] + UR10E_C(0.16501650165016502) * (t291
-        + t301);
-    const ur10e_real_t t302 = t13 * t208; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t303 = t24 * t243 - parameters[XY4] * t9 + (t302 - t203 + t212 * t219);
-    const ur10e_real_t t304 = t13 * t231 + t10 * t232 + (UR10E_C(-0.11985) * t256 - t237 * t219);
-    const ur10e_real_t t305 = t9 * t239 + parameters[XY4] * t24 + t304;
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t306 = t7 * t305 - t5 * t303 + (UR10E_C(0.57155) * t257 + t253 * t262);
-    const ur10e_real_t t307 = parameters[XY3] * t75 - t68 * t274 + t306;
-    const ur10e_real_t t308 = t75 * t271 + parameters[XY3] * t68 + (t7 * t303 + t5 * t305 - t259 * t262);
-    const ur10e_real_t t309 = parameters[MY3] * t75 - parameters[MX3R] * t68 + t257;
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t310 = t1 * t307 + t3 * t308 + (UR10E_C(0.6127) * t309 - t297 * t286);
-    /* link j2: derivatives */
-    const ur10e_real_t t311 = UR10E_C(2.0) * (parameters[XY2] * t62 - t57 * t299 + t310);
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t312 = parameters[XY2] * t57 + t62 * t295 - (t3 * t307 - t1 * t308 + t283 * t286);
-    const ur10e_real_t t313 = UR10E_C(2.0) * t312; /* link j2: derivatives */
-    input_by_dq[6] = UR10E_C(0.08250825082508251) * (t0 * t311 - t2 * t313);
-    const ur10e_real_t t314 = UR10E_C(2.0) * t307; /* link j3: derivatives */
-    const ur10e_real_t t315 = UR10E_C(2.0) * t308;
-    const ur10e_real_t t316 = UR10E_C(1.2254) * t57; /* link j6: derivatives */
-    const ur10e_real_t t317 = t1 * t314 + t3 * t315 - t297 * t316; /* link j3: derivatives */
-    const ur10e_real_t t318 = t3 * t314 - t1 * t315 + t283 * t316;
-    input_by_dq[12] = UR10E_C(0.099009900990099) * (t0 * t317 + t2 * t318);
-    const ur10e_real_t t319 = UR10E_C(2.0) * t303; /* link j4: derivatives */
-    const ur10e_real_t t320 = UR10E_C(2.0) * t305;
-    const ur10e_real_t t321 = UR10E_C(1.1431) * t68; /* link j6: derivatives */
-    const ur10e_real_t t322 = t7 * t320 - t5 * t319 + t253 * t321; /* link j4: derivatives */
-    const ur10e_real_t t323 = t7 * t319 + t5 * t320 - t259 * t321;
-    const ur10e_real_t t324 = t1 * t253 - t3 * t259; /* link j4: column of the mass matrix */
-    const ur10e_real_t t325 = t1 * t322 + t3 * t323 + t324 * t316; /* link j4: derivatives */
-    const ur10e_real_t t326 = t1 * t259 + t3 * t253; /* link j4: column of the mass matrix */
-    const ur10e_real_t t327 = t3 * t322 - t1 * t323 + t326 * t316; /* link j4: derivatives */
-    input_by_dq[18] = UR10E_C(0.11001100110011001) * (t0 * t325 + t2 * t327);
-    const ur10e_real_t t328 = UR10E_C(2.0) * t241; /* link j5: derivatives */
-    const ur10e_real_t t329 = UR10E_C(2.0) * t242;
-    const ur10e_real_t t330 = t13 * t329 - t10 * t328;
-    const ur10e_real_t t331 = UR10E_C(2.0) * t226;
-    const ur10e_real_t t332 = UR10E_C(-0.2397) * t9; /* link j6: derivatives */
-    const ur10e_real_t t333 = UR10E_C(-0.2397) * t12;
-    const ur10e_real_t t334 = t331 + (t220 * t332 + t212 * t333); /* link j5: derivatives */
-    const ur10e_real_t t335 = UR10E_C(2.0) * t260; /* link j6: derivatives */
-    const ur10e_real_t t336 = t7 * t220; /* link j5: column of the mass matrix */
-    const ur10e_real_t t337 = t7 * t334 - t5 * t330 + (t336 * t321 - t212 * t335); /* link j5: derivatives */
-    const ur10e_real_t t338 = t5 * t220; /* link j5: column of the mass matrix */
-    const ur10e_real_t t339 = UR10E_C(-0.3483) * t68; /* link j6: derivatives */
-    const ur10e_real_t t340 = t7 * t330 + t5 * t334 + (t338 * t321 + t212 * t339); /* link j5: derivatives */
-    const ur10e_real_t t341 = t3 * t338 + t1 * t336; /* link j5: column of the mass matrix */
-    const ur10e_real_t t342 = UR10E_C(-1.2254) * dq[1]; /* link j6: derivatives */
-    const ur10e_real_t t343 = t1 * t337 + t3 * t340 + (t341 * t316 - t212 * t342); /* link j5: derivatives */
-    const ur10e_real_t t344 = t3 * t336 - t1 * t338; /* link j5: column of the mass matrix */
-    const ur10e_real_t t345 = t3 * t337 - t1 * t340 + t344 * t316; /* link j5: derivatives */
-    input_by_dq[24] = UR10E_C(0.11001100110011001) * (t0 * t343 + t2 * t345);
-    const ur10e_real_t t346 = UR10E_C(2.0) * t199; /* link j6: derivatives */
-    const ur10e_real_t t347 = UR10E_C(2.0) * t200;
-    const ur10e_real_t t348 = t23 * t347 - t38 * t346;
-    const ur10e_real_t t349 = UR10E_C(2.0) * t196;
-    const ur10e_real_t t350 = t13 * t349 - t10 * t348 - t210 * t332;
-    const ur10e_real_t t351 = t23 * t346 + t38 * t347;
-    const ur10e_real_t t352 = t10 * t237; /* link j6: column of the mass matrix */
-    const ur10e_real_t t353 = t13 * t237;
-    const ur10e_real_t t354 = t351 + (t352 * t332 + t353 * t333); /* link j6: derivatives */
-    const ur10e_real_t t355 = t7 * t352 + t5 * t210; /* link j6: column of the mass matrix */
-    const ur10e_real_t t356 = t7 * t354 - t5 * t350 + (t355 * t321 - t353 * t335); /* link j6: derivatives */
-    const ur10e_real_t t357 = t5 * t352 - t7 * t210; /* link j6: column of the mass matrix */
-    const ur10e_real_t t358 = t7 * t350 + t5 * t354 + (t357 * t321 + t353 * t339); /* link j6: derivatives */
-    const ur10e_real_t t359 = t3 * t357 + t1 * t355; /* link j6: column of the mass matrix */
-    const ur10e_real_t t360 = t1 * t356 + t3 * t358 + (t359 * t316 - t353 * t342); /* link j6: derivatives */
-    const ur10e_real_t t361 = t3 * t355 - t1 * t357; /* link j6: column of the mass matrix */
-    const ur10e_real_t t362 = t3 * t356 - t1 * t358 + t361 * t316; /* link j6: derivatives */
-    input_by_dq[30] = UR10E_C(0.11001100110011001) * (t0 * t360 + t2 * t362);
-    /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t363 = parameters[XY6] * (UR10E_C(2.0) * t23) - t38 * parameters[XX6R];
-    const ur10e_real_t t364 = t38 * t363;
-    const ur10e_real_t t365 = parameters[XX5R] - t364;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t366 = t38 * parameters[XZ6R] - t23 * parameters[YZ6R];
-    const ur10e_real_t t367 = parameters[XY5] + t366; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t368 = t10 * (parameters[ZZ6] - t365) + t367 * (UR10E_C(2.0) * t13);
-    const ur10e_real_t t369 = t10 * t368;
-    const ur10e_real_t t370 = UR10E_C(0.2397) * t237;
-    const ur10e_real_t t371 = t369 - parameters[ZZ6] + t370 - parameters[XX4R];
-    /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t372 = parameters[ZZ5R] + (parameters[XX6R] + t364);
-    const ur10e_real_t t373 = parameters[XZ5] + (t23 * t363 - parameters[XY6]);
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t374 = t23 * parameters[XZ6R] + t38 * parameters[YZ6R];
-    const ur10e_real_t t375 = t374 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
-    /* link j5: column of the mass matrix */
-    const ur10e_real_t t376 = UR10E_C(-0.11985) * t212 - (t10 * t373 + t13 * t375);
-    const ur10e_real_t t377 = parameters[XY4] + t376; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t378 = t5 * (t372 + t371) + t377 * (UR10E_C(2.0) * t7);
-    const ur10e_real_t t379 = t5 * t378;
-    const ur10e_real_t t380 = UR10E_C(1.1431) * t253;
-    const ur10e_real_t t381 = UR10E_C(0.3483) * t220;
-    const ur10e_real_t t382 = t379 - t371 + (t380 + t381);
-    const ur10e_real_t t383 = parameters[XX3R] + (t372 - t379 + t381);
-    const ur10e_real_t t384 = t7 * t378 - t377 + UR10E_C(0.57155) * t259 - parameters[XY3];
-    /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t385 = t1 * (t383 - t382) - t384 * (UR10E_C(-2.0) * t3);
-    const ur10e_real_t t386 = t1 * t385;
-    const ur10e_real_t t387 = UR10E_C(-1.2254) * t297;
-    const ur10e_real_t t388 = t383 - t386 + t387;
-    const ur10e_real_t t389 = parameters[XX2R] + (t382 + t386);
-    const ur10e_real_t t390 = parameters[XY2] + (t3 * t385 - t384 + UR10E_C(-0.6127) * t283);
-    /* link j2: inertia of it and all beyond */
-    const ur10e_real_t t391 = t2 * (t2 * (t388 - t389) + t390 * (UR10E_C(2.0) * t0));
-    input_by_ddq[0] = UR10E_C(0.08250825082508251) * (parameters[ZZ1R] + (t389 + t391));
-    const ur10e_real_t t392 = t13 * t368 - t367 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    /* link j5: column of the mass matrix */
-    const ur10e_real_t t393 = t13 * t373 - t10 * t375 + UR10E_C(-0.11985) * t220;
-    const ur10e_real_t t394 = t393 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t395 = t5 * t392 - t7 * t394; /* link j4: column of the mass matrix */
-    const ur10e_real_t t396 = UR10E_C(-0.17415) * t253;
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t397 = t395 + (t396 + UR10E_C(-0.57155) * t220) - parameters[XZ3R];
-    /* link j4: column of the mass matrix */
-    const ur10e_real_t t398 = t7 * t392 + t5 * t394 + UR10E_C(-0.17415) * t259;
-    const ur10e_real_t t399 = t398 - parameters[YZ3]; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t400 = t3 * t399 - t1 * t397; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t401 = parameters[XZ2R] + (t400 + UR10E_C(0.6127) * t220);
-    const ur10e_real_t t402 = t3 * t397 + t1 * t399; /* link j3: column of the mass matrix */
-    const ur10e_real_t t403 = t402 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t404 = UR10E_C(0.08250825082508251) * (t0 * t401 - t2 * t403);
-    input_by_ddq[6] = t404;
-    const ur10e_real_t t405 = t0 * t400 - t2 * t402; /* link j3: column of the mass matrix */
-    input_by_ddq[12] = UR10E_C(0.099009900990099) * t405;
-    const ur10e_real_t t406 = t395 + t396; /* link j4: column of the mass matrix */
-    const ur10e_real_t t407 = t3 * t398 - t1 * t406;
-    const ur10e_real_t t408 = t3 * t406 + t1 * t398;
-    const ur10e_real_t t409 = t0 * t407 - t2 * t408;
-    input_by_ddq[18] = UR10E_C(0.11001100110011001) * t409;
-    /* link j5: column of the mass matrix */
-    const ur10e_real_t t410 = t7 * t376 + t5 * t372 + (UR10E_C(0.17415) * t338 + UR10E_C(0.57155) * t212);
-    const ur10e_real_t t411 = t5 * t376 - t7 * t372 + UR10E_C(-0.17415) * t336;
-    const ur10e_real_t t412 = t3 * t410 - t1 * t411;
-    const ur10e_real_t t413 = t3 * t411 + t1 * t410 + UR10E_C(0.6127) * t212;
-    const ur10e_real_t t414 = t0 * t412 - t2 * t413;
-    input_by_ddq[24] = UR10E_C(0.11001100110011001) * t414;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t415 = t13 * parameters[ZZ6] - t10 * t366 + UR10E_C(-0.11985) * t353;
-    const ur10e_real_t t416 = t5 * t415 + t7 * t374 + UR10E_C(-0.17415) * t355;
-    const ur10e_real_t t417 = t7 * t415 - t5 * t374 + (UR10E_C(0.17415) * t357 + UR10E_C(0.57155) * t353);
-    const ur10e_real_t t418 = t3 * t417 - t1 * t416;
-    const ur10e_real_t t419 = t3 * t416 + t1 * t417 + UR10E_C(0.6127) * t353;
-    const ur10e_real_t t420 = t0 * t418 - t2 * t419;
-    input_by_ddq[30] = UR10E_C(0.11001100110011001) * t420;
-    const ur10e_real_t t421 = UR10E_C(2.0) * t57; /* link j2: derivatives */
-    const ur10e_real_t t422 = UR10E_C(-2.0) * t62;
-    const ur10e_real_t t423 = t156 + t58; /* link j3: motion */
-    /* link j2: derivatives */
-    const ur10e_real_t t424 = t291 * t421 + t296 * t422 + (t389 * t87 - t390 * t150 - t401 * t423);
-    const ur10e_real_t t425 = t300 * t421 + t293 * t422 + (t390 * t87 - t388 * t150 + t403 * t423);
-    const ur10e_real_t t426 = t0 * (t157 + (t424 + t220 * t60)) + t2 * (t153 + (t425 - t220 * t65));
-    input_by_q[1] = UR10E_C(0.08250825082508251) * t426;
-    /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t427 = parameters[ZZ4R] + (t365 + t369 - t370);
-    const ur10e_real_t t428 = parameters[ZZ3R] + (t427 + t380); /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t429 = parameters[ZZ2R] + (t428 + t387); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const ur10e_real_t t430 = t401 * t87 + t403 * t150 - t429 * t423 + (t57 * t311 + t62 * t313);
-    const ur10e_real_t t431 = t430 - ((parameters[MX2R] + t297) * t60 + (t283 - parameters[MY2]) * t65);
-    input_by_q[7] = UR10E_C(0.08250825082508251) * t431;
-    const ur10e_real_t t432 = t428 + UR10E_C(-0.6127) * t297; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const ur10e_real_t t433 = t57 * t317 - t62 * t318 + (t400 * t87 + t402 * t150 - t432 * t423);
-    input_by_q[13] = UR10E_C(0.099009900990099) * (t433 - (t283 * t65 + t297 * t60));
-    const ur10e_real_t t434 = t427 + UR10E_C(0.57155) * t253; /* link j4: column of the mass matrix */
-    const ur10e_real_t t435 = t434 + UR10E_C(0.6127) * t324;
-    /* link j4: derivatives */
-    const ur10e_real_t t436 = t57 * t325 - t62 * t327 + (t407 * t87 + t408 * t150 - t435 * t423);
-    input_by_q[19] = UR10E_C(0.11001100110011001) * (t436 + (t324 * t60 - t326 * t65));
-    const ur10e_real_t t437 = t393 + UR10E_C(0.57155) * t336; /* link j5: column of the mass matrix */
-    const ur10e_real_t t438 = t437 + UR10E_C(0.6127) * t341;
-    /* link j5: derivatives */
-    const ur10e_real_t t439 = t57 * t343 - t62 * t345 + (t412 * t87 + t413 * t150 - t438 * t423);
-    input_by_q[25] = UR10E_C(0.11001100110011001) * (t439 + (t341 * t60 - t344 * t65));
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t440 = t13 * t366 + t10 * parameters[ZZ6] + UR10E_C(-0.11985) * t352;
-    const ur10e_real_t t441 = t440 + UR10E_C(0.57155) * t355;
-    const ur10e_real_t t442 = t441 + UR10E_C(0.6127) * t359;
+    const ur10e_real_t t182 = parameters[MX6] * t113 + parameters[MY6] * t112; /* link j6: derivatives */
+    const ur10e_real_t t183 = t97 + t55; /* link j6: force and moment */
     /* link j6: derivatives */
-    const ur10e_real_t t443 = t57 * t360 - t62 * t362 + (t418 * t87 + t419 * t150 - t442 * t423);
-    input_by_q[31] = UR10E_C(0.11001100110011001) * (t443 + (t359 * t60 - t361 * t65));
-    const ur10e_real_t t444 = parameters[ZZ4R] - t239;
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t445 = t24 * t444 - parameters[YZ4] * t12 + (t207 - t302 + t220 * t213);
-    const ur10e_real_t t446 = t9 * t444 - parameters[XZ4] * t12 + (t13 * t241 + t10 * t242);
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t447 = t5 * t445 + t7 * t446 + (UR10E_C(-0.17415) * t249 + t220 * t254);
-    const ur10e_real_t t448 = t271 - parameters[ZZ3R];
-    const ur10e_real_t t449 = t447 - (parameters[YZ3] * t11 + t68 * t448);
-    const ur10e_real_t t450 = t5 * t446 - t7 * t445 - (UR10E_C(-0.17415) * t273 - t220 * t260);
-    const ur10e_real_t t451 = parameters[XZ3R] * t11 + t75 * t448 - t450;
-    const ur10e_real_t t452 = parameters[ZZ2R] - t295;
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t453 = t57 * t452 - parameters[YZ2] * dq[1] + (t1 * t449 - t3 * t451);
-    /* link j2: derivatives */
-    const ur10e_real_t t454 = t0 * (UR10E_C(2.0) * t453 + (t389 * t421 + t390 * t422));
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t455 = parameters[XZ2R] * dq[1] - t62 * t452 + (t3 * t449 + t1 * t451 + t220 * t284);
-    /* link j2: derivatives */
-    const ur10e_real_t t456 = t2 * (UR10E_C(2.0) * t455 + (t390 * t421 + t388 * t422));
-    input_by_dq[1] = UR10E_C(0.08250825082508251) * (t454 + t456);
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t457 = t227 - t223 + (t222 + (t195 + t209 + t221));
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t458 = t268 - t265 + (t264 + (t457 - (t258 + t263)));
-    /* link j2: derivatives */
-    const ur10e_real_t t459 = UR10E_C(2.0) * (t292 - t289 + (t288 + (t458 - t287)))
-        + UR10E_C(2.0) * (t401 * t57 + t403 * t62);
-    input_by_dq[7] = UR10E_C(841.6666666666667) * parameters[FV2] + UR10E_C(0.08250825082508251) * t459;
-    const ur10e_real_t t460 = UR10E_C(2.0) * t458; /* link j3: derivatives */
-    const ur10e_real_t t461 = t460 - t283 * t342 + UR10E_C(2.0) * (t400 * t57 + t402 * t62);
-    input_by_dq[13] = UR10E_C(0.099009900990099) * t461;
-    const ur10e_real_t t462 = UR10E_C(2.0) * t457; /* link j4: derivatives */
-    const ur10e_real_t t463 = t462 + (t253 * t339 - t259 * t335);
-    const ur10e_real_t t464 = t463 - t326 * t342 + UR10E_C(2.0) * (t407 * t57 + t408 * t62);
-    input_by_dq[19] = UR10E_C(0.11001100110011001) * t464;
-    const ur10e_real_t t465 = t13 * t328 + t10 * t329; /* link j5: derivatives */
-    const ur10e_real_t t466 = t465 + (t336 * t339 + t338 * t335);
-    const ur10e_real_t t467 = t466 - t344 * t342 + UR10E_C(2.0) * (t412 * t57 + t413 * t62);
-    input_by_dq[25] = UR10E_C(0.11001100110011001) * t467;
-    const ur10e_real_t t468 = t13 * t348 + t10 * t349 + t210 * t333; /* link j6: derivatives */
-    const ur10e_real_t t469 = t468 + (t355 * t339 + t357 * t335);
-    const ur10e_real_t t470 = t469 - t361 * t342 + UR10E_C(2.0) * (t418 * t57 + t419 * t62);
-    input_by_dq[31] = UR10E_C(0.11001100110011001) * t470;
-    input_by_ddq[1] = t404;
-    input_by_ddq[7] = UR10E_C(0.08250825082508251) * t429;
-    input_by_ddq[13] = UR10E_C(0.099009900990099) * t432;
-    input_by_ddq[19] = UR10E_C(0.11001100110011001) * t435;
-    input_by_ddq[25] = UR10E_C(0.11001100110011001) * t438;
-    input_by_ddq[31] = UR10E_C(0.11001100110011001) * t442;
-    const ur10e_real_t t471 = UR10E_C(2.0) * t68; /* link j3: derivatives */
-    const ur10e_real_t t472 = UR10E_C(2.0) * t75;
-    const ur10e_real_t t473 = t267 * t471 + t272 * t472 + (t383 * t72 + t384 * t78 + t397 * t83);
-    const ur10e_real_t t474 = t145 + (t473 + t220 * t67);
-    const ur10e_real_t t475 = t269 * t472 - t275 * t471 + (t384 * t72 + t382 * t78 - t399 * t83);
-    const ur10e_real_t t476 = t148 + (t475 + t220 * t74);
-    const ur10e_real_t t477 = t279 * t471 + t278 * t472 + (t282 * t78 - t281 * t72);
-    const ur10e_real_t t478 = t2 * (t3 * t474 - t1 * t476 + UR10E_C(0.6127) * t477);
-    const ur10e_real_t t479 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t474 + t3 * t476) + t478);
-    input_by_q[2] = t479;
-    const ur10e_real_t t480 = t399 * t78 - t397 * t72 - t428 * t83;
-    const ur10e_real_t t481 = t282 * t67 + t281 * t74;
-    const ur10e_real_t t482 = t168 + (t309 * t472 + (t220 * t78 + t281 * t83));
-    const ur10e_real_t t483 = t167 + (t309 * t471 + (t282 * t83 + t220 * t72));
-    const ur10e_real_t t484 = t307 * t471 + t308 * t472 + t480 - t481 + UR10E_C(0.6127) * (t3 * t482
-        + t1 * t483);
-    input_by_q[8] = UR10E_C(0.08250825082508251) * t484;
-    const ur10e_real_t t485 = UR10E_C(0.099009900990099) * (t480 + (t68 * t314 + t75 * t315) - t481);
-    input_by_q[14] = t485;
-    /* link j4: derivatives */
-    const ur10e_real_t t486 = t68 * t322 + t75 * t323 + (t398 * t78 - t406 * t72 - t434 * t83);
-    input_by_q[20] = UR10E_C(0.11001100110011001) * (t486 + (t253 * t67 - t259 * t74));
-    /* link j5: derivatives */
-    const ur10e_real_t t487 = t68 * t337 + t75 * t340 + (t410 * t78 - t411 * t72 - t437 * t83);
-    input_by_q[26] = UR10E_C(0.11001100110011001) * (t487 + (t338 * t74 + t336 * t67));
-    /* link j6: derivatives */
-    const ur10e_real_t t488 = t68 * t356 + t75 * t358 + (t417 * t78 - t416 * t72 - t441 * t83);
-    input_by_q[32] = UR10E_C(0.11001100110011001) * (t488 + (t357 * t74 + t355 * t67));
-    const ur10e_real_t t489 = UR10E_C(2.0) * t449 + (t383 * t471 + t384 * t472); /* link j3: derivatives */
-    const ur10e_real_t t490 = UR10E_C(2.0) * t451 - (t384 * t471 + t382 * t472);
-    const ur10e_real_t t491 = t3 * t489 + t1 * t490 + UR10E_C(0.6127) * (t282 * t472 - t281 * t471);
-    const ur10e_real_t t492 = t0 * (t1 * t489 - t3 * t490) + t2 * t491;
-    input_by_dq[2] = UR10E_C(0.08250825082508251) * t492;
-    const ur10e_real_t t493 = t3 * (UR10E_C(2.0) * t279 + t220 * t472) + t1 * (UR10E_C(-2.0) * t278
-        + t220 * t471);
-    const ur10e_real_t t494 = t460 + (t399 * t472 - t397 * t471) + UR10E_C(0.6127) * t493;
-    input_by_dq[8] = UR10E_C(0.08250825082508251) * t494;
-    const ur10e_real_t t495 = UR10E_C(0.099009900990099) * (t460 + UR10E_C(2.0) * (t399 * t75 - t397 * t68));
-    input_by_dq[14] = UR10E_C(1010.0) * parameters[FV3] + t495;
-    const ur10e_real_t t496 = UR10E_C(0.11001100110011001) * (t463 + UR10E_C(2.0) * (t398 * t75
-        - t406 * t68));
-    input_by_dq[20] = t496;
-    const ur10e_real_t t497 = UR10E_C(0.11001100110011001) * (t466 + UR10E_C(2.0) * (t410 * t75
-        - t411 * t68));
-    input_by_dq[26] = t497;
-    const ur10e_real_t t498 = UR10E_C(0.11001100110011001) * (t469 + UR10E_C(2.0) * (t417 * t75
-        - t416 * t68));
-    input_by_dq[32] = t498;
-    input_by_ddq[2] = UR10E_C(0.08250825082508251) * t405;
-    input_by_ddq[8] = UR10E_C(0.08250825082508251) * t432;
-    input_by_ddq[14] = UR10E_C(1010.0) * parameters[IA3] + UR10E_C(0.099009900990099) * t428;
-    input_by_ddq[20] = UR10E_C(0.11001100110011001) * t434;
-    input_by_ddq[26] = UR10E_C(0.11001100110011001) * t437;
-    input_by_ddq[32] = UR10E_C(0.11001100110011001) * t441;
-    const ur10e_real_t t499 = UR10E_C(2.0) * t24; /* link j4: derivatives */
-    const ur10e_real_t t500 = UR10E_C(2.0) * t9;
-    const ur10e_real_t t501 = t105 + t126; /* link j5: motion */
-    /* link j4: derivatives */
-    const ur10e_real_t t502 = t240 * t500 - t225 * t499 + (t392 * t501 - (t371 * t19 + t377 * t30));
-    const ur10e_real_t t503 = t132 + (t502 + t220 * t80);
-    const ur10e_real_t t504 = t372 * t30; /* link j5: derivatives */
-    /* link j4: derivatives */
-    const ur10e_real_t t505 = t228 * t500 - t244 * t499 + (t504 - t377 * t19 - t394 * t501);
-    const ur10e_real_t t506 = t220 * t104; /* link j5: derivatives */
-    const ur10e_real_t t507 = t127 + (t506 + t505); /* link j4: derivatives */
-    const ur10e_real_t t508 = t134 + (t257 * t499 + (t220 * t19 - t252 * t501));
-    const ur10e_real_t t509 = t136 + (t257 * t500 + (t220 * t30 - t251 * t501));
-    const ur10e_real_t t510 = t7 * t509 + t5 * t508;
-    const ur10e_real_t t511 = t5 * t503 + t7 * t507 + UR10E_C(0.17415) * t510;
-    const ur10e_real_t t512 = t5 * t509 - t7 * t508;
-    const ur10e_real_t t513 = t248 * t499 + t247 * t500 + (t251 * t19 - t252 * t30);
-    const ur10e_real_t t514 = t5 * t507 - t7 * t503 - (UR10E_C(-0.17415) * t512 - UR10E_C(-0.57155) * t513);
-    const ur10e_real_t t515 = t2 * (t3 * t511 - t1 * t514 + UR10E_C(0.6127) * t513);
-    const ur10e_real_t t516 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t511 + t3 * t514) + t515);
-    input_by_q[3] = t516;
-    const ur10e_real_t t517 = t394 * t30 - t392 * t19 - t427 * t501;
-    const ur10e_real_t t518 = t252 * t80 + t251 * t104;
-    const ur10e_real_t t519 = t305 * t500 - t303 * t499 + t517 + t518 + UR10E_C(0.57155) * t510;
-    const ur10e_real_t t520 = UR10E_C(0.08250825082508251) * (t519 + UR10E_C(0.6127) * (t3 * t512
-        + t1 * t510));
-    input_by_q[9] = t520;
-    input_by_q[15] = UR10E_C(0.099009900990099) * t519;
-    const ur10e_real_t t521 = UR10E_C(0.11001100110011001) * (t518 + (t517 + (t9 * t320 - t24 * t319)));
-    input_by_q[21] = t521;
-    /* link j5: derivatives */
-    const ur10e_real_t t522 = t9 * t334 - t24 * t330 + (t504 - t376 * t19 - t393 * t501);
-    input_by_q[27] = UR10E_C(0.11001100110011001) * (t522 + t506);
-    /* link j6: derivatives */
-    const ur10e_real_t t523 = t9 * t354 - t24 * t350 - (t415 * t19 + t374 * t30 + t440 * t501);
-    input_by_q[33] = UR10E_C(0.11001100110011001) * (t523 + (t352 * t104 + t210 * t80));
-    const ur10e_real_t t524 = UR10E_C(2.0) * t445 - (t371 * t499 + t377 * t500); /* link j4: derivatives */
-    const ur10e_real_t t525 = UR10E_C(2.0) * t446 + (t372 * t500 - t377 * t499);
-    const ur10e_real_t t526 = UR10E_C(2.0) * t248 + t220 * t500;
-    const ur10e_real_t t527 = UR10E_C(-2.0) * t247 + t220 * t499;
-    const ur10e_real_t t528 = t7 * t526 + t5 * t527;
-    const ur10e_real_t t529 = t5 * t524 + t7 * t525 + UR10E_C(0.17415) * t528;
-    const ur10e_real_t t530 = t5 * t526 - t7 * t527;
-    const ur10e_real_t t531 = t251 * t499 - t252 * t500;
-    const ur10e_real_t t532 = t5 * t525 - t7 * t524 + (UR10E_C(0.17415) * t530 + UR10E_C(-0.57155) * t531);
-    const ur10e_real_t t533 = t2 * (t3 * t529 - t1 * t532 + UR10E_C(0.6127) * t531);
-    const ur10e_real_t t534 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t529 + t3 * t532) + t533);
-    input_by_dq[3] = t534;
-    const ur10e_real_t t535 = t462 + (t394 * t500 - t392 * t499) + UR10E_C(0.57155) * t528;
-    const ur10e_real_t t536 = UR10E_C(0.08250825082508251) * (t535 + UR10E_C(0.6127) * (t3 * t530
-        + t1 * t528));
-    input_by_dq[9] = t536;
-    input_by_dq[15] = UR10E_C(0.099009900990099) * t535;
-    const ur10e_real_t t537 = UR10E_C(0.11001100110011001) * (t462 + UR10E_C(2.0) * (t394 * t9 - t392 * t24));
-    input_by_dq[21] = UR10E_C(1122.2222222222222) * parameters[FV4] + t537;
-    const ur10e_real_t t538 = UR10E_C(0.11001100110011001) * (t465 + UR10E_C(2.0) * (t372 * t9 - t376 * t24));
-    input_by_dq[27] = t538;
-    const ur10e_real_t t539 = UR10E_C(0.11001100110011001) * (t468 + UR10E_C(-2.0) * (t415 * t24
-        + t374 * t9));
-    input_by_dq[33] = t539;
-    input_by_ddq[3] = UR10E_C(0.08250825082508251) * t409;
-    input_by_ddq[9] = UR10E_C(0.08250825082508251) * t435;
-    input_by_ddq[15] = UR10E_C(0.099009900990099) * t434;
-    input_by_ddq[21] = UR10E_C(1122.2222222222222) * parameters[IA4] + UR10E_C(0.11001100110011001) * t427;
-    const ur10e_real_t t540 = UR10E_C(0.11001100110011001) * t393;
-    input_by_ddq[27] = t540;
-    const ur10e_real_t t541 = UR10E_C(0.11001100110011001) * t440;
-    input_by_ddq[33] = t541;
-    const ur10e_real_t t542 = UR10E_C(-2.0) * t15; /* link j5: derivatives */
-    const ur10e_real_t t543 = UR10E_C(-2.0) * t14;
-    const ur10e_real_t t544 = t116 + t102; /* link j6: motion */
-    /* link j5: derivatives */
-    const ur10e_real_t t545 = t195 * t542 + t207 * t543 + (t367 * t33 - t365 * t49 - t373 * t544);
-    const ur10e_real_t t546 = t117 + (t545 + t237 * t111);
-    const ur10e_real_t t547 = parameters[ZZ6] * t33; /* link j6: derivatives */
-    /* link j5: derivatives */
-    const ur10e_real_t t548 = t203 * t542 + t198 * t543 - (t367 * t49 - t547 - t375 * t544);
-    const ur10e_real_t t549 = t237 * t92; /* link j6: derivatives */
-    const ur10e_real_t t550 = t109 + (t549 + t548); /* link j5: derivatives */
-    const ur10e_real_t t551 = t237 * t33 - parameters[MY5R] * t544 - t217 * t543 - t121;
-    const ur10e_real_t t552 = t120 + (t211 * t544 - t237 * t49 - t217 * t542);
-    const ur10e_real_t t553 = t10 * t552 - t13 * t551;
-    const ur10e_real_t t554 = t10 * t546 - t13 * t550 + UR10E_C(-0.11985) * t553;
-    const ur10e_real_t t555 = t373 * t49 + t375 * t33 + t372 * t544;
-    const ur10e_real_t t556 = parameters[MY5R] * t92 - t211 * t111;
-    const ur10e_real_t t557 = t241 * t542 + t242 * t543 - t555 + t556;
-    const ur10e_real_t t558 = t10 * t551 + t13 * t552;
-    const ur10e_real_t t559 = t234 * t542 - t235 * t543 + (t211 * t33 - parameters[MY5R] * t49);
-    const ur10e_real_t t560 = t5 * t558 - t7 * t559;
-    const ur10e_real_t t561 = t7 * t554 - t5 * t557 + (UR10E_C(-0.17415) * t560 + UR10E_C(0.57155) * t553);
-    const ur10e_real_t t562 = t7 * t558 + t5 * t559;
-    const ur10e_real_t t563 = t5 * t554 + t7 * t557 + UR10E_C(0.17415) * t562;
-    const ur10e_real_t t564 = t2 * (t3 * t563 + t1 * t561 + UR10E_C(0.6127) * t553);
-    const ur10e_real_t t565 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t563 - t3 * t561) + t564);
-    input_by_q[4] = t565;
-    const ur10e_real_t t566 = t13 * t546 + t10 * t550 + UR10E_C(-0.11985) * t558;
-    const ur10e_real_t t567 = t566 + UR10E_C(0.57155) * t562;
-    const ur10e_real_t t568 = UR10E_C(0.08250825082508251) * (t567 + UR10E_C(0.6127) * (t3 * t560
-        + t1 * t562));
-    input_by_q[10] = t568;
-    input_by_q[16] = UR10E_C(0.099009900990099) * t567;
-    input_by_q[22] = UR10E_C(0.11001100110011001) * t566;
-    const ur10e_real_t t569 = UR10E_C(0.11001100110011001) * (t556 - (t555 + (t15 * t328 + t14 * t329)));
-    input_by_q[28] = t569;
-    /* link j6: derivatives */
-    const ur10e_real_t t570 = t547 - t366 * t49 + t374 * t544 - (t15 * t348 + t14 * t349);
-    input_by_q[34] = UR10E_C(0.11001100110011001) * (t570 + t549);
-    const ur10e_real_t t571 = UR10E_C(2.0) * t231 + (t365 * t542 + t367 * t543); /* link j5: derivatives */
-    const ur10e_real_t t572 = UR10E_C(2.0) * t232 + (t367 * t542 + parameters[ZZ6] * t543);
-    const ur10e_real_t t573 = UR10E_C(2.0) * t234 + t237 * t543;
-    const ur10e_real_t t574 = UR10E_C(2.0) * t235 + t237 * t542;
-    const ur10e_real_t t575 = t13 * t573 - t10 * t574;
-    const ur10e_real_t t576 = t10 * t571 - t13 * t572 + UR10E_C(0.11985) * t575;
-    const ur10e_real_t t577 = t331 + (t373 * t542 - t375 * t543);
-    const ur10e_real_t t578 = t10 * t573 + t13 * t574;
-    const ur10e_real_t t579 = parameters[MY5R] * t542 + t211 * t543;
-    const ur10e_real_t t580 = t7 * t578 + t5 * t579;
-    const ur10e_real_t t581 = t5 * t576 + t7 * t577 + UR10E_C(0.17415) * t580;
-    const ur10e_real_t t582 = t5 * t578 - t7 * t579;
-    const ur10e_real_t t583 = t7 * t576 - t5 * t577 - (UR10E_C(0.17415) * t582 + UR10E_C(0.57155) * t575);
-    const ur10e_real_t t584 = t2 * (t3 * t581 + t1 * t583 + UR10E_C(-0.6127) * t575);
-    const ur10e_real_t t585 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t581 - t3 * t583) + t584);
-    input_by_dq[4] = t585;
-    const ur10e_real_t t586 = t13 * t571 + t10 * t572 + UR10E_C(-0.11985) * t578;
-    const ur10e_real_t t587 = t586 + UR10E_C(0.57155) * t580;
-    const ur10e_real_t t588 = UR10E_C(0.08250825082508251) * (t587 + UR10E_C(0.6127) * (t3 * t582
-        + t1 * t580));
-    input_by_dq[10] = t588;
-    input_by_dq[16] = UR10E_C(0.099009900990099) * t587;
-    input_by_dq[22] = UR10E_C(0.11001100110011001) * t586;
-    const ur10e_real_t t589 = UR10E_C(0.11001100110011001) * (t331 + UR10E_C(2.0) * (t375 * t14
-        - t373 * t15));
-    input_by_dq[28] = UR10E_C(1122.2222222222222) * parameters[FV5] + t589;
-    const ur10e_real_t t590 = UR10E_C(0.11001100110011001) * (t351 + UR10E_C(-2.0) * (t366 * t15
-        + parameters[ZZ6] * t14));
-    input_by_dq[34] = t590;
-    input_by_ddq[4] = UR10E_C(0.08250825082508251) * t414;
-    input_by_ddq[10] = UR10E_C(0.08250825082508251) * t438;
-    input_by_ddq[16] = UR10E_C(0.099009900990099) * t437;
-    input_by_ddq[22] = t540;
-    input_by_ddq[28] = UR10E_C(1122.2222222222222) * parameters[IA5] + UR10E_C(0.11001100110011001) * t372;
-    const ur10e_real_t t591 = UR10E_C(-0.11001100110011001) * t374;
-    input_by_ddq[34] = t591;
-    const ur10e_real_t t592 = t97 + t55; /* link j6: force and moment */
-    const ur10e_real_t t593 = UR10E_C(-2.0) * t40; /* link j6: derivatives */
-    const ur10e_real_t t594 = UR10E_C(2.0) * t45;
-    const ur10e_real_t t595 = parameters[XX6R] * t44 + parameters[XY6] * t39 - parameters[XZ6R] * t592
-        - (t184 * t593 + t190 * t594);
-    const ur10e_real_t t596 = t98 + t595;
-    const ur10e_real_t t597 = parameters[YZ6R] * t592 - parameters[XY6] * t44 - (t189 * t593 + t186 * t594);
-    const ur10e_real_t t598 = t93 + t597;
-    const ur10e_real_t t599 = t38 * t596 + t23 * t598;
-    const ur10e_real_t t600 = parameters[XZ6R] * t44 + parameters[YZ6R] * t39 - parameters[ZZ6] * t592;
-    const ur10e_real_t t601 = parameters[MX6] * t113 + parameters[MY6] * t112;
-    const ur10e_real_t t602 = t199 * t593 + t200 * t594 + t600 + t601;
-    const ur10e_real_t t603 = t233 * t594 - parameters[MY6] * t592 - t119;
-    const ur10e_real_t t604 = t118 + (t233 * t593 - parameters[MX6] * t592);
-    const ur10e_real_t t605 = t38 * t603 + t23 * t604;
-    const ur10e_real_t t606 = t216 * t593 + t215 * t594 + (parameters[MY6] * t44 - parameters[MX6] * t39);
-    const ur10e_real_t t607 = t10 * t606 - t13 * t605;
-    const ur10e_real_t t608 = t10 * t599 - t13 * t602 + UR10E_C(-0.11985) * t607;
-    const ur10e_real_t t609 = t38 * t598 - t23 * t596;
-    const ur10e_real_t t610 = t10 * t605 + t13 * t606;
-    const ur10e_real_t t611 = t38 * t604 - t23 * t603;
-    const ur10e_real_t t612 = t7 * t610 - t5 * t611;
-    const ur10e_real_t t613 = t5 * t608 + t7 * t609 + UR10E_C(0.17415) * t612;
-    const ur10e_real_t t614 = t5 * t610 + t7 * t611;
-    const ur10e_real_t t615 = t7 * t608 - t5 * t609 + (UR10E_C(-0.17415) * t614 + UR10E_C(0.57155) * t607);
-    const ur10e_real_t t616 = t2 * (t3 * t613 + t1 * t615 + UR10E_C(0.6127) * t607);
-    const ur10e_real_t t617 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t613 - t3 * t615) + t616);
-    input_by_q[5] = t617;
-    const ur10e_real_t t618 = t13 * t599 + t10 * t602 + UR10E_C(-0.11985) * t610;
-    const ur10e_real_t t619 = t618 + UR10E_C(0.57155) * t612;
-    const ur10e_real_t t620 = UR10E_C(0.08250825082508251) * (t619 + UR10E_C(0.6127) * (t3 * t614
-        + t1 * t612));
-    input_by_q[11] = t620;
-    input_by_q[17] = UR10E_C(0.099009900990099) * t619;
-    input_by_q[23] = UR10E_C(0.11001100110011001) * t618;
-    input_by_q[29] = UR10E_C(0.11001100110011001) * t609;
-    const ur10e_real_t t621 = UR10E_C(0.11001100110011001) * (t601 + (t600 + (t45 * t347 - t40 * t346)));
-    input_by_q[35] = t621;
-    const ur10e_real_t t622 = UR10E_C(-2.0) * t205 + (parameters[XX6R] * t593 + parameters[XY6] * t594);
-    const ur10e_real_t t623 = UR10E_C(2.0) * t206 + parameters[XY6] * t593;
-    const ur10e_real_t t624 = t23 * t623 - t38 * t622;
-    const ur10e_real_t t625 = t349 - (parameters[XZ6R] * t593 + parameters[YZ6R] * t594);
-    const ur10e_real_t t626 = parameters[MX6] * t594 - parameters[MY6] * t593;
-    const ur10e_real_t t627 = UR10E_C(-2.0) * t216;
-    const ur10e_real_t t628 = UR10E_C(2.0) * t215;
-    const ur10e_real_t t629 = t38 * t627 + t23 * t628;
-    const ur10e_real_t t630 = t13 * t629 - t10 * t626;
-    const ur10e_real_t t631 = t10 * t624 - t13 * t625 + UR10E_C(0.11985) * t630;
-    const ur10e_real_t t632 = t23 * t622 + t38 * t623;
-    const ur10e_real_t t633 = t10 * t629 + t13 * t626;
-    const ur10e_real_t t634 = t23 * t627 - t38 * t628;
-    const ur10e_real_t t635 = t7 * t633 + t5 * t634;
-    const ur10e_real_t t636 = t5 * t631 + t7 * t632 + UR10E_C(0.17415) * t635;
-    const ur10e_real_t t637 = t5 * t633 - t7 * t634;
-    const ur10e_real_t t638 = t5 * t632 - t7 * t631 + (UR10E_C(0.17415) * t637 + UR10E_C(0.57155) * t630);
-    const ur10e_real_t t639 = t2 * (t3 * t636 - t1 * t638 + UR10E_C(-0.6127) * t630);
-    const ur10e_real_t t640 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t636 + t3 * t638) + t639);
-    input_by_dq[5] = t640;
-    const ur10e_real_t t641 = t13 * t624 + t10 * t625 + UR10E_C(-0.11985) * t633;
-    const ur10e_real_t t642 = t641 + UR10E_C(0.57155) * t635;
-    const ur10e_real_t t643 = UR10E_C(0.08250825082508251) * (t642 + UR10E_C(0.6127) * (t3 * t637
-        + t1 * t635));
-    input_by_dq[11] = t643;
-    input_by_dq[17] = UR10E_C(0.099009900990099) * t642;
-    input_by_dq[23] = UR10E_C(0.11001100110011001) * t641;
-    input_by_dq[29] = UR10E_C(0.11001100110011001) * t632;
+    const ur10e_real_t t184 = parameters[XZ6R] * t44 + parameters[YZ6R] * t39 - parameters[ZZ6] * t183;
+    const ur10e_real_t t185 = UR10E_C(-0.5) * (parameters[XX6R] + parameters[ZZ6]);
+    const ur10e_real_t t186 = parameters[XX6R] + t185;
+    const ur10e_real_t t187 = t40 * t186 - parameters[XY6] * t45;
+    const ur10e_real_t t188 = UR10E_C(2.0) * t187;
+    const ur10e_real_t t189 = parameters[XY6] * t40 - t45 * t185;
+    const ur10e_real_t t190 = UR10E_C(2.0) * t189;
+    const ur10e_real_t t191 = UR10E_C(0.11001100110011001) * (t182 + (t184 + (t45 * t190 - t40 * t188)));
+    input_by_q[35] = t191;
+    const ur10e_real_t t192 = parameters[XZ6R] * t40;
+    const ur10e_real_t t193 = parameters[XY6] * t41;
+    const ur10e_real_t t194 = t192 + t193;
+    const ur10e_real_t t195 = UR10E_C(-2.0) * t40;
+    const ur10e_real_t t196 = parameters[YZ6R] * t40 + t41 * t185;
+    const ur10e_real_t t197 = UR10E_C(2.0) * t45;
+    const ur10e_real_t t198 = parameters[XX6R] * t44 + parameters[XY6] * t39 - parameters[XZ6R] * t183
+        - (t194 * t195 + t196 * t197);
+    const ur10e_real_t t199 = t98 + t198;
+    const ur10e_real_t t200 = t41 * t186 + parameters[XZ6R] * t45;
+    const ur10e_real_t t201 = parameters[YZ6R] * t45;
+    const ur10e_real_t t202 = t193 + t201;
+    const ur10e_real_t t203 = parameters[YZ6R] * t183 - parameters[XY6] * t44 - (t200 * t195 + t202 * t197);
+    const ur10e_real_t t204 = t93 + t203;
+    const ur10e_real_t t205 = t38 * t204 - t23 * t199;
+    input_by_q[29] = UR10E_C(0.11001100110011001) * t205;
+    const ur10e_real_t t206 = t38 * t199 + t23 * t204;
+    const ur10e_real_t t207 = t187 * t195 + t189 * t197 + t184 + t182;
+    const ur10e_real_t t208 = parameters[MY6] * t45 - parameters[MX6] * t40;
+    const ur10e_real_t t209 = t208 * t197 - parameters[MY6] * t183 - t119;
+    const ur10e_real_t t210 = t118 + (t208 * t195 - parameters[MX6] * t183);
+    const ur10e_real_t t211 = t38 * t209 + t23 * t210;
+    const ur10e_real_t t212 = parameters[MX6] * t41;
+    const ur10e_real_t t213 = parameters[MY6] * t41;
+    const ur10e_real_t t214 = t212 * t195 + t213 * t197 + (parameters[MY6] * t44 - parameters[MX6] * t39);
+    const ur10e_real_t t215 = t10 * t211 + t13 * t214;
+    const ur10e_real_t t216 = t13 * t206 + t10 * t207 + UR10E_C(-0.11985) * t215;
+    input_by_q[23] = UR10E_C(0.11001100110011001) * t216;
+    const ur10e_real_t t217 = t38 * t210 - t23 * t209;
+    const ur10e_real_t t218 = t7 * t215 - t5 * t217;
+    const ur10e_real_t t219 = t216 + UR10E_C(0.57155) * t218;
+    input_by_q[17] = UR10E_C(0.099009900990099) * t219;
+    const ur10e_real_t t220 = t5 * t215 + t7 * t217;
+    const ur10e_real_t t221 = UR10E_C(0.08250825082508251) * (t219 + UR10E_C(0.6127) * (t3 * t220
+        + t1 * t218));
+    input_by_q[11] = t221;
+    const ur10e_real_t t222 = t10 * t214 - t13 * t211;
+    const ur10e_real_t t223 = t10 * t206 - t13 * t207 + UR10E_C(-0.11985) * t222;
+    const ur10e_real_t t224 = t5 * t223 + t7 * t205 + UR10E_C(0.17415) * t218;
+    const ur10e_real_t t225 = t7 * t223 - t5 * t205 + (UR10E_C(-0.17415) * t220 + UR10E_C(0.57155) * t222);
+    const ur10e_real_t t226 = t2 * (t3 * t224 + t1 * t225 + UR10E_C(0.6127) * t222);
+    const ur10e_real_t t227 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t224 - t3 * t225) + t226);
+    input_by_q[5] = t227;
     input_by_dq[35] = UR10E_C(1122.2222222222222) * parameters[FV6];
-    input_by_ddq[5] = UR10E_C(0.08250825082508251) * t420;
-    input_by_ddq[11] = UR10E_C(0.08250825082508251) * t442;
-    input_by_ddq[17] = UR10E_C(0.099009900990099) * t441;
-    input_by_ddq[23] = t541;
-    input_by_ddq[29] = t591;
+    const ur10e_real_t t228 = parameters[ZZ6] + t185;
+    const ur10e_real_t t229 = t40 * t228 + parameters[YZ6R] * t41;
+    const ur10e_real_t t230 = UR10E_C(-2.0) * t229 + (parameters[XX6R] * t195 + parameters[XY6] * t197);
+    const ur10e_real_t t231 = parameters[XZ6R] * t41 + t45 * t228;
+    const ur10e_real_t t232 = UR10E_C(2.0) * t231 + parameters[XY6] * t195;
+    const ur10e_real_t t233 = t23 * t230 + t38 * t232;
+    input_by_dq[29] = UR10E_C(0.11001100110011001) * t233;
+    const ur10e_real_t t234 = t23 * t232 - t38 * t230;
+    const ur10e_real_t t235 = t201 - t192;
+    const ur10e_real_t t236 = UR10E_C(2.0) * t235;
+    const ur10e_real_t t237 = t236 - (parameters[XZ6R] * t195 + parameters[YZ6R] * t197);
+    const ur10e_real_t t238 = parameters[MX6] * t197 - parameters[MY6] * t195;
+    const ur10e_real_t t239 = UR10E_C(-2.0) * t212;
+    const ur10e_real_t t240 = UR10E_C(2.0) * t213;
+    const ur10e_real_t t241 = t38 * t239 + t23 * t240;
+    const ur10e_real_t t242 = t10 * t241 + t13 * t238;
+    const ur10e_real_t t243 = t13 * t234 + t10 * t237 + UR10E_C(-0.11985) * t242;
+    input_by_dq[23] = UR10E_C(0.11001100110011001) * t243;
+    const ur10e_real_t t244 = t23 * t239 - t38 * t240;
+    const ur10e_real_t t245 = t7 * t242 + t5 * t244;
+    const ur10e_real_t t246 = t243 + UR10E_C(0.57155) * t245;
+    input_by_dq[17] = UR10E_C(0.099009900990099) * t246;
+    const ur10e_real_t t247 = t5 * t242 - t7 * t244;
+    const ur10e_real_t t248 = UR10E_C(0.08250825082508251) * (t246 + UR10E_C(0.6127) * (t3 * t247
+        + t1 * t245));
+    input_by_dq[11] = t248;
+    const ur10e_real_t t249 = t13 * t241 - t10 * t238;
+    const ur10e_real_t t250 = t10 * t234 - t13 * t237 + UR10E_C(0.11985) * t249;
+    const ur10e_real_t t251 = t5 * t250 + t7 * t233 + UR10E_C(0.17415) * t245;
+    const ur10e_real_t t252 = t5 * t233 - t7 * t250 + (UR10E_C(0.17415) * t247 + UR10E_C(0.57155) * t249);
+    const ur10e_real_t t253 = t2 * (t3 * t251 - t1 * t252 + UR10E_C(-0.6127) * t249);
+    const ur10e_real_t t254 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t251 + t3 * t252) + t253);
+    input_by_dq[5] = t254;
     input_by_ddq[35] = UR10E_C(1122.2222222222222) * parameters[IA6]
         + UR10E_C(0.11001100110011001) * parameters[ZZ6];
+    /* link j6: column of the mass matrix */
+    const ur10e_real_t t255 = t23 * parameters[XZ6R] + t38 * parameters[YZ6R];
+    const ur10e_real_t t256 = UR10E_C(-0.11001100110011001) * t255;
+    input_by_ddq[29] = t256;
+    const ur10e_real_t t257 = t38 * parameters[XZ6R] - t23 * parameters[YZ6R];
+    const ur10e_real_t t258 = t38 * parameters[MY6] + t23 * parameters[MX6];
+    const ur10e_real_t t259 = t10 * t258;
+    const ur10e_real_t t260 = t13 * t257 + t10 * parameters[ZZ6] + UR10E_C(-0.11985) * t259;
+    const ur10e_real_t t261 = UR10E_C(0.11001100110011001) * t260;
+    input_by_ddq[23] = t261;
+    const ur10e_real_t t262 = t23 * parameters[MY6] - t38 * parameters[MX6];
+    const ur10e_real_t t263 = t7 * t259 + t5 * t262;
+    const ur10e_real_t t264 = t260 + UR10E_C(0.57155) * t263;
+    input_by_ddq[17] = UR10E_C(0.099009900990099) * t264;
+    const ur10e_real_t t265 = t5 * t259 - t7 * t262;
+    const ur10e_real_t t266 = t3 * t265 + t1 * t263;
+    const ur10e_real_t t267 = t264 + UR10E_C(0.6127) * t266;
+    input_by_ddq[11] = UR10E_C(0.08250825082508251) * t267;
+    const ur10e_real_t t268 = t13 * t258;
+    const ur10e_real_t t269 = t13 * parameters[ZZ6] - t10 * t257 + UR10E_C(-0.11985) * t268;
+    const ur10e_real_t t270 = t5 * t269 + t7 * t255 + UR10E_C(-0.17415) * t263;
+    const ur10e_real_t t271 = t7 * t269 - t5 * t255 + (UR10E_C(0.17415) * t265 + UR10E_C(0.57155) * t268);
+    const ur10e_real_t t272 = t3 * t271 - t1 * t270;
+    const ur10e_real_t t273 = t3 * t270 + t1 * t271 + UR10E_C(0.6127) * t268;
+    const ur10e_real_t t274 = t0 * t272 - t2 * t273;
+    input_by_ddq[5] = UR10E_C(0.08250825082508251) * t274;
+    const ur10e_real_t t275 = t23 * t190 - t38 * t188; /* link j6: derivatives */
+    const ur10e_real_t t276 = parameters[ZZ6] * t33;
+    const ur10e_real_t t277 = t116 + t102; /* link j6: motion */
+    /* link j6: derivatives */
+    const ur10e_real_t t278 = t276 - t257 * t49 + t255 * t277 - (t15 * t275 + t14 * t236);
+    const ur10e_real_t t279 = t258 * t92;
+    input_by_q[34] = UR10E_C(0.11001100110011001) * (t278 + t279);
+    const ur10e_real_t t280 = UR10E_C(-0.2397) * t9;
+    const ur10e_real_t t281 = t13 * t236 - t10 * t275 - t262 * t280;
+    const ur10e_real_t t282 = t23 * t188 + t38 * t190;
+    const ur10e_real_t t283 = UR10E_C(-0.2397) * t12;
+    const ur10e_real_t t284 = t282 + (t259 * t280 + t268 * t283);
+    const ur10e_real_t t285 = t105 + t126; /* link j5: motion */
+    /* link j6: derivatives */
+    const ur10e_real_t t286 = t9 * t284 - t24 * t281 - (t269 * t19 + t255 * t30 + t260 * t285);
+    input_by_q[33] = UR10E_C(0.11001100110011001) * (t286 + (t259 * t104 + t262 * t80));
+    const ur10e_real_t t287 = UR10E_C(-0.57155) * t11 + UR10E_C(-0.17415) * t75;
+    const ur10e_real_t t288 = UR10E_C(2.0) * t287;
+    const ur10e_real_t t289 = UR10E_C(1.1431) * t68;
+    const ur10e_real_t t290 = t7 * t284 - t5 * t281 + (t263 * t289 - t268 * t288);
+    const ur10e_real_t t291 = UR10E_C(-0.3483) * t68;
+    const ur10e_real_t t292 = t7 * t281 + t5 * t284 + (t265 * t289 + t268 * t291);
+    const ur10e_real_t t293 = t68 * t290 + t75 * t292 + (t271 * t78 - t270 * t72 - t264 * t83);
+    input_by_q[32] = UR10E_C(0.11001100110011001) * (t293 + (t265 * t74 + t263 * t67));
+    const ur10e_real_t t294 = UR10E_C(1.2254) * t57;
+    const ur10e_real_t t295 = UR10E_C(-1.2254) * dq[1];
+    const ur10e_real_t t296 = t1 * t290 + t3 * t292 + (t266 * t294 - t268 * t295);
+    const ur10e_real_t t297 = t3 * t263 - t1 * t265; /* link j6: column of the mass matrix */
+    const ur10e_real_t t298 = t3 * t290 - t1 * t292 + t297 * t294; /* link j6: derivatives */
+    const ur10e_real_t t299 = t156 + t58; /* link j3: motion */
+    /* link j6: derivatives */
+    const ur10e_real_t t300 = t57 * t296 - t62 * t298 + (t272 * t87 + t273 * t150 - t267 * t299);
+    input_by_q[31] = UR10E_C(0.11001100110011001) * (t300 + (t266 * t60 - t297 * t65));
+    const ur10e_real_t t301 = UR10E_C(0.11001100110011001) * (t282 + UR10E_C(-2.0) * (t257 * t15
+        + parameters[ZZ6] * t14));
+    input_by_dq[34] = t301;
+    const ur10e_real_t t302 = t13 * t275 + t10 * t236 + t262 * t283;
+    const ur10e_real_t t303 = UR10E_C(0.11001100110011001) * (t302 + UR10E_C(-2.0) * (t269 * t24
+        + t255 * t9));
+    input_by_dq[33] = t303;
+    const ur10e_real_t t304 = t302 + (t263 * t291 + t265 * t288);
+    const ur10e_real_t t305 = UR10E_C(0.11001100110011001) * (t304 + UR10E_C(2.0) * (t271 * t75
+        - t270 * t68));
+    input_by_dq[32] = t305;
+    const ur10e_real_t t306 = t304 - t297 * t295 + UR10E_C(2.0) * (t272 * t57 + t273 * t62);
+    input_by_dq[31] = UR10E_C(0.11001100110011001) * t306;
+    input_by_dq[30] = UR10E_C(0.11001100110011001) * (t0 * t296 + t2 * t298);
+    input_by_ddq[34] = t256;
+    input_by_ddq[33] = t261;
+    input_by_ddq[32] = UR10E_C(0.11001100110011001) * t264;
+    input_by_ddq[31] = UR10E_C(0.11001100110011001) * t267;
+    input_by_ddq[30] = UR10E_C(0.11001100110011001) * t274;
+    const ur10e_real_t t307 = t262 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t308 = parameters[MY5R] * t92 - t307 * t111; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t309 = parameters[XY6] * (UR10E_C(2.0) * t23) - t38 * parameters[XX6R];
+    const ur10e_real_t t310 = parameters[XZ5] + (t23 * t309 - parameters[XY6]);
+    const ur10e_real_t t311 = t255 - parameters[YZ5];
+    const ur10e_real_t t312 = t38 * t309;
+    const ur10e_real_t t313 = parameters[ZZ5R] + (parameters[XX6R] + t312);
+    const ur10e_real_t t314 = t310 * t49 + t311 * t33 + t313 * t277; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t315 = t23 * (t196 - t200) - t38 * (t194 + t202);
+    const ur10e_real_t t316 = t23 * t315;
+    const ur10e_real_t t317 = UR10E_C(0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    const ur10e_real_t t318 = t317 - parameters[XX5R];
+    const ur10e_real_t t319 = parameters[XY5] * t14 - t15 * t318 + (t200 + t316);
+    const ur10e_real_t t320 = UR10E_C(2.0) * t319; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t321 = parameters[XY5] * t15 - t14 * t317 + (t38 * t231 - t23 * t229);
+    const ur10e_real_t t322 = UR10E_C(2.0) * t321; /* link j5: derivatives */
+    const ur10e_real_t t323 = UR10E_C(0.11001100110011001) * (t308 - (t314 + (t15 * t320 + t14 * t322)));
+    input_by_q[28] = t323;
+    const ur10e_real_t t324 = t38 * t315; /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t325 = parameters[XZ5] * t15;
+    const ur10e_real_t t326 = parameters[XY5] * t34;
+    const ur10e_real_t t327 = t326 - t325 - (t202 + t324);
+    const ur10e_real_t t328 = UR10E_C(-2.0) * t15; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t329 = t38 * t229 + t23 * t231 - (parameters[YZ5] * t15 + t34 * t317);
+    const ur10e_real_t t330 = UR10E_C(-2.0) * t14; /* link j5: derivatives */
+    const ur10e_real_t t331 = parameters[XX5R] - t312; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t332 = parameters[XY5] + t257;
+    /* link j5: derivatives */
+    const ur10e_real_t t333 = t327 * t328 + t329 * t330 + (t332 * t33 - t331 * t49 - t310 * t277);
+    const ur10e_real_t t334 = t117 + (t333 + t258 * t111);
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t335 = t34 * t318 - parameters[XZ5] * t14 + (t23 * t189 - t38 * t187);
+    const ur10e_real_t t336 = parameters[YZ5] * t14;
+    const ur10e_real_t t337 = t235 - (t326 + t336);
+    /* link j5: derivatives */
+    const ur10e_real_t t338 = t335 * t328 + t337 * t330 - (t332 * t49 - t276 - t311 * t277);
+    const ur10e_real_t t339 = t109 + (t279 + t338);
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t340 = parameters[MY5R] * t14 + parameters[MX5] * t15 + (t38 * t212 - t23 * t213);
+    /* link j5: derivatives */
+    const ur10e_real_t t341 = t258 * t33 - parameters[MY5R] * t277 - t340 * t330 - t121;
+    const ur10e_real_t t342 = t120 + (t307 * t277 - t258 * t49 - t340 * t328);
+    const ur10e_real_t t343 = t10 * t341 + t13 * t342;
+    const ur10e_real_t t344 = t13 * t334 + t10 * t339 + UR10E_C(-0.11985) * t343;
+    input_by_q[22] = UR10E_C(0.11001100110011001) * t344;
+    const ur10e_real_t t345 = t208 - parameters[MX5] * t34; /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t346 = parameters[MY5R] * t34 + (t38 * t213 + t23 * t212);
+    /* link j5: derivatives */
+    const ur10e_real_t t347 = t345 * t328 - t346 * t330 + (t307 * t33 - parameters[MY5R] * t49);
+    const ur10e_real_t t348 = t7 * t343 + t5 * t347;
+    const ur10e_real_t t349 = t344 + UR10E_C(0.57155) * t348;
+    input_by_q[16] = UR10E_C(0.099009900990099) * t349;
+    const ur10e_real_t t350 = t5 * t343 - t7 * t347;
+    const ur10e_real_t t351 = UR10E_C(0.08250825082508251) * (t349 + UR10E_C(0.6127) * (t3 * t350
+        + t1 * t348));
+    input_by_q[10] = t351;
+    const ur10e_real_t t352 = t10 * t342 - t13 * t341;
+    const ur10e_real_t t353 = t10 * t334 - t13 * t339 + UR10E_C(-0.11985) * t352;
+    const ur10e_real_t t354 = t319 * t328 + t321 * t330 - t314 + t308;
+    const ur10e_real_t t355 = t7 * t353 - t5 * t354 + (UR10E_C(-0.17415) * t350 + UR10E_C(0.57155) * t352);
+    const ur10e_real_t t356 = t5 * t353 + t7 * t354 + UR10E_C(0.17415) * t348;
+    const ur10e_real_t t357 = t2 * (t3 * t356 + t1 * t355 + UR10E_C(0.6127) * t352);
+    const ur10e_real_t t358 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t356 - t3 * t355) + t357);
+    input_by_q[4] = t358;
+    const ur10e_real_t t359 = t325 + t336 + (t194 + t324); /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t360 = UR10E_C(2.0) * t359; /* link j5: derivatives */
+    const ur10e_real_t t361 = UR10E_C(0.11001100110011001) * (t360 + UR10E_C(2.0) * (t311 * t14
+        - t310 * t15));
+    input_by_dq[28] = UR10E_C(1122.2222222222222) * parameters[FV5] + t361;
+    const ur10e_real_t t362 = parameters[ZZ5R] - t317;
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t363 = parameters[YZ5] * t34 - t15 * t362 + (t316 - t196);
+    const ur10e_real_t t364 = UR10E_C(2.0) * t363 + (t331 * t328 + t332 * t330); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t365 = t23 * t187 + t38 * t189 - (parameters[XZ5] * t34 + t14 * t362);
+    /* link j5: derivatives */
+    const ur10e_real_t t366 = UR10E_C(2.0) * t365 + (t332 * t328 + parameters[ZZ6] * t330);
+    const ur10e_real_t t367 = UR10E_C(2.0) * t345 + t258 * t330;
+    const ur10e_real_t t368 = UR10E_C(2.0) * t346 + t258 * t328;
+    const ur10e_real_t t369 = t10 * t367 + t13 * t368;
+    const ur10e_real_t t370 = t13 * t364 + t10 * t366 + UR10E_C(-0.11985) * t369;
+    input_by_dq[22] = UR10E_C(0.11001100110011001) * t370;
+    const ur10e_real_t t371 = parameters[MY5R] * t328 + t307 * t330;
+    const ur10e_real_t t372 = t7 * t369 + t5 * t371;
+    const ur10e_real_t t373 = t370 + UR10E_C(0.57155) * t372;
+    input_by_dq[16] = UR10E_C(0.099009900990099) * t373;
+    const ur10e_real_t t374 = t5 * t369 - t7 * t371;
+    const ur10e_real_t t375 = UR10E_C(0.08250825082508251) * (t373 + UR10E_C(0.6127) * (t3 * t374
+        + t1 * t372));
+    input_by_dq[10] = t375;
+    const ur10e_real_t t376 = t13 * t367 - t10 * t368;
+    const ur10e_real_t t377 = t10 * t364 - t13 * t366 + UR10E_C(0.11985) * t376;
+    const ur10e_real_t t378 = t360 + (t310 * t328 - t311 * t330);
+    const ur10e_real_t t379 = t5 * t377 + t7 * t378 + UR10E_C(0.17415) * t372;
+    const ur10e_real_t t380 = t7 * t377 - t5 * t378 - (UR10E_C(0.17415) * t374 + UR10E_C(0.57155) * t376);
+    const ur10e_real_t t381 = t2 * (t3 * t379 + t1 * t380 + UR10E_C(-0.6127) * t376);
+    const ur10e_real_t t382 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t379 - t3 * t380) + t381);
+    input_by_dq[4] = t382;
+    input_by_ddq[28] = UR10E_C(1122.2222222222222) * parameters[IA5] + UR10E_C(0.11001100110011001) * t313;
+    const ur10e_real_t t383 = t10 * parameters[MY5R] - t13 * t307; /* link j5: column of the mass matrix */
+    const ur10e_real_t t384 = t13 * t310 - t10 * t311 + UR10E_C(-0.11985) * t383;
+    const ur10e_real_t t385 = UR10E_C(0.11001100110011001) * t384;
+    input_by_ddq[22] = t385;
+    const ur10e_real_t t386 = t7 * t383;
+    const ur10e_real_t t387 = t384 + UR10E_C(0.57155) * t386;
+    input_by_ddq[16] = UR10E_C(0.099009900990099) * t387;
+    const ur10e_real_t t388 = t5 * t383;
+    const ur10e_real_t t389 = t3 * t388 + t1 * t386;
+    const ur10e_real_t t390 = t387 + UR10E_C(0.6127) * t389;
+    input_by_ddq[10] = UR10E_C(0.08250825082508251) * t390;
+    const ur10e_real_t t391 = t13 * parameters[MY5R] + t10 * t307;
+    const ur10e_real_t t392 = UR10E_C(-0.11985) * t391 - (t10 * t310 + t13 * t311);
+    const ur10e_real_t t393 = t7 * t392 + t5 * t313 + (UR10E_C(0.17415) * t388 + UR10E_C(0.57155) * t391);
+    const ur10e_real_t t394 = t5 * t392 - t7 * t313 + UR10E_C(-0.17415) * t386;
+    const ur10e_real_t t395 = t3 * t393 - t1 * t394;
+    const ur10e_real_t t396 = t3 * t394 + t1 * t393 + UR10E_C(0.6127) * t391;
+    const ur10e_real_t t397 = t0 * t395 - t2 * t396;
+    input_by_ddq[4] = UR10E_C(0.08250825082508251) * t397;
+    const ur10e_real_t t398 = t13 * t322 - t10 * t320; /* link j5: derivatives */
+    const ur10e_real_t t399 = t360 + (t383 * t280 + t391 * t283);
+    const ur10e_real_t t400 = t313 * t30;
+    const ur10e_real_t t401 = t9 * t399 - t24 * t398 + (t400 - t392 * t19 - t384 * t285);
+    const ur10e_real_t t402 = t383 * t104;
+    input_by_q[27] = UR10E_C(0.11001100110011001) * (t401 + t402);
+    const ur10e_real_t t403 = t7 * t399 - t5 * t398 + (t386 * t289 - t391 * t288);
+    const ur10e_real_t t404 = t7 * t398 + t5 * t399 + (t388 * t289 + t391 * t291);
+    const ur10e_real_t t405 = t68 * t403 + t75 * t404 + (t393 * t78 - t394 * t72 - t387 * t83);
+    input_by_q[26] = UR10E_C(0.11001100110011001) * (t405 + (t388 * t74 + t386 * t67));
+    const ur10e_real_t t406 = t1 * t403 + t3 * t404 + (t389 * t294 - t391 * t295);
+    const ur10e_real_t t407 = t3 * t386 - t1 * t388; /* link j5: column of the mass matrix */
+    const ur10e_real_t t408 = t3 * t403 - t1 * t404 + t407 * t294; /* link j5: derivatives */
+    const ur10e_real_t t409 = t57 * t406 - t62 * t408 + (t395 * t87 + t396 * t150 - t390 * t299);
+    input_by_q[25] = UR10E_C(0.11001100110011001) * (t409 + (t389 * t60 - t407 * t65));
+    const ur10e_real_t t410 = t13 * t320 + t10 * t322;
+    const ur10e_real_t t411 = UR10E_C(0.11001100110011001) * (t410 + UR10E_C(2.0) * (t313 * t9 - t392 * t24));
+    input_by_dq[27] = t411;
+    const ur10e_real_t t412 = t410 + (t386 * t291 + t388 * t288);
+    const ur10e_real_t t413 = UR10E_C(0.11001100110011001) * (t412 + UR10E_C(2.0) * (t393 * t75
+        - t394 * t68));
+    input_by_dq[26] = t413;
+    const ur10e_real_t t414 = t412 - t407 * t295 + UR10E_C(2.0) * (t395 * t57 + t396 * t62);
+    input_by_dq[25] = UR10E_C(0.11001100110011001) * t414;
+    input_by_dq[24] = UR10E_C(0.11001100110011001) * (t0 * t406 + t2 * t408);
+    input_by_ddq[27] = t385;
+    input_by_ddq[26] = UR10E_C(0.11001100110011001) * t387;
+    input_by_ddq[25] = UR10E_C(0.11001100110011001) * t390;
+    input_by_ddq[24] = UR10E_C(0.11001100110011001) * t397;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t415 = t10 * (t337 - t327) + t13 * (t329 + t335);
+    const ur10e_real_t t416 = t13 * t415;
+    const ur10e_real_t t417 = UR10E_C(0.11985) * t9;
+    const ur10e_real_t t418 = UR10E_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const ur10e_real_t t419 = parameters[XX4R] - t418;
+    const ur10e_real_t t420 = t24 * t419 - parameters[XY4] * t9 + (t416 - t335 + t391 * t417);
+    const ur10e_real_t t421 = UR10E_C(2.0) * t420; /* link j4: derivatives */
+    const ur10e_real_t t422 = t13 * t346 + t10 * t345; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t423 = t13 * t363 + t10 * t365 + (UR10E_C(-0.11985) * t422 - t258 * t417);
+    const ur10e_real_t t424 = t9 * t418 + parameters[XY4] * t24 + t423;
+    const ur10e_real_t t425 = UR10E_C(2.0) * t424; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t426 = t10 * (parameters[ZZ6] - t331) + t332 * (UR10E_C(2.0) * t13);
+    const ur10e_real_t t427 = t13 * t426 - t332 - parameters[XZ4];
+    const ur10e_real_t t428 = t384 - parameters[YZ4];
+    const ur10e_real_t t429 = t10 * t426;
+    const ur10e_real_t t430 = UR10E_C(0.2397) * t258;
+    const ur10e_real_t t431 = parameters[ZZ4R] + (t331 + t429 - t430);
+    const ur10e_real_t t432 = t428 * t30 - t427 * t19 - t431 * t285; /* link j4: derivatives */
+    const ur10e_real_t t433 = t391 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t434 = parameters[MY4R] + t258;
+    const ur10e_real_t t435 = t433 * t80 + t434 * t104; /* link j4: derivatives */
+    const ur10e_real_t t436 = UR10E_C(0.11001100110011001) * (t435 + (t432 + (t9 * t425 - t24 * t421)));
+    input_by_q[21] = t436;
+    const ur10e_real_t t437 = UR10E_C(2.0) * t24;
+    const ur10e_real_t t438 = UR10E_C(2.0) * t9;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t439 = parameters[MY4R] * t9 - parameters[MX4] * t24 + t422;
+    const ur10e_real_t t440 = t134 + (t439 * t437 + (t383 * t19 - t433 * t285)); /* link j4: derivatives */
+    const ur10e_real_t t441 = t136 + (t439 * t438 + (t383 * t30 - t434 * t285));
+    const ur10e_real_t t442 = t7 * t441 + t5 * t440;
+    const ur10e_real_t t443 = t424 * t438 - t420 * t437 + t432 + t435 + UR10E_C(0.57155) * t442;
+    input_by_q[15] = UR10E_C(0.099009900990099) * t443;
+    const ur10e_real_t t444 = t5 * t441 - t7 * t440;
+    const ur10e_real_t t445 = UR10E_C(0.08250825082508251) * (t443 + UR10E_C(0.6127) * (t3 * t444
+        + t1 * t442));
+    input_by_q[9] = t445;
+    const ur10e_real_t t446 = t10 * t415; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t447 = UR10E_C(-0.11985) * t12; /* link j5: velocity of its origin */
+    const ur10e_real_t t448 = t391 * t447; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t449 = UR10E_C(0.11985) * t340;
+    const ur10e_real_t t450 = t383 * t417;
+    const ur10e_real_t t451 = t449 + (t448 - t450);
+    const ur10e_real_t t452 = parameters[XZ4] * t24;
+    const ur10e_real_t t453 = parameters[XY4] * t12;
+    const ur10e_real_t t454 = t453 - t452 + (t446 - t337 + t448 - t451);
+    const ur10e_real_t t455 = t10 * t346 - t13 * t345;
+    const ur10e_real_t t456 = t10 * t363 - t13 * t365 + (UR10E_C(-0.11985) * t455 - t258 * t447);
+    const ur10e_real_t t457 = t456 - (parameters[YZ4] * t24 + t12 * t418);
+    /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t458 = t429 - parameters[ZZ6] + t430 - parameters[XX4R];
+    const ur10e_real_t t459 = parameters[XY4] + t392;
+    /* link j4: derivatives */
+    const ur10e_real_t t460 = t457 * t438 - t454 * t437 + (t427 * t285 - (t458 * t19 + t459 * t30));
+    const ur10e_real_t t461 = t132 + (t460 + t383 * t80);
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t462 = t12 * t419 - parameters[XZ4] * t9 + (t13 * t321 - t10 * t319);
+    const ur10e_real_t t463 = parameters[YZ4] * t9;
+    const ur10e_real_t t464 = t453 - t463 + (t451 + (t359 - t449));
+    /* link j4: derivatives */
+    const ur10e_real_t t465 = t464 * t438 - t462 * t437 + (t400 - t459 * t19 - t428 * t285);
+    const ur10e_real_t t466 = t127 + (t402 + t465);
+    const ur10e_real_t t467 = t5 * t461 + t7 * t466 + UR10E_C(0.17415) * t442;
+    const ur10e_real_t t468 = parameters[MX4] * t12 - t340; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t469 = t455 - parameters[MY4R] * t12;
+    /* link j4: derivatives */
+    const ur10e_real_t t470 = t468 * t437 + t469 * t438 + (t434 * t19 - t433 * t30);
+    const ur10e_real_t t471 = t5 * t466 - t7 * t461 - (UR10E_C(-0.17415) * t444 - UR10E_C(-0.57155) * t470);
+    const ur10e_real_t t472 = t2 * (t3 * t467 - t1 * t471 + UR10E_C(0.6127) * t470);
+    const ur10e_real_t t473 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t467 + t3 * t471) + t472);
+    input_by_q[3] = t473;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t474 = t463 - t452 + (t451 + (t327 + t446 + t450));
+    const ur10e_real_t t475 = UR10E_C(2.0) * t474; /* link j4: derivatives */
+    const ur10e_real_t t476 = UR10E_C(0.11001100110011001) * (t475 + UR10E_C(2.0) * (t428 * t9 - t427 * t24));
+    input_by_dq[21] = UR10E_C(1122.2222222222222) * parameters[FV4] + t476;
+    const ur10e_real_t t477 = UR10E_C(2.0) * t468 + t383 * t438;
+    const ur10e_real_t t478 = UR10E_C(-2.0) * t469 + t383 * t437;
+    const ur10e_real_t t479 = t7 * t477 + t5 * t478;
+    const ur10e_real_t t480 = t475 + (t428 * t438 - t427 * t437) + UR10E_C(0.57155) * t479;
+    input_by_dq[15] = UR10E_C(0.099009900990099) * t480;
+    const ur10e_real_t t481 = t5 * t477 - t7 * t478;
+    const ur10e_real_t t482 = UR10E_C(0.08250825082508251) * (t480 + UR10E_C(0.6127) * (t3 * t481
+        + t1 * t479));
+    input_by_dq[9] = t482;
+    const ur10e_real_t t483 = parameters[ZZ4R] - t418;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t484 = t24 * t483 - parameters[YZ4] * t12 + (t329 - t416 + t383 * t447);
+    const ur10e_real_t t485 = UR10E_C(2.0) * t484 - (t458 * t437 + t459 * t438); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t486 = t9 * t483 - parameters[XZ4] * t12 + (t13 * t319 + t10 * t321);
+    const ur10e_real_t t487 = UR10E_C(2.0) * t486 + (t313 * t438 - t459 * t437); /* link j4: derivatives */
+    const ur10e_real_t t488 = t5 * t485 + t7 * t487 + UR10E_C(0.17415) * t479;
+    const ur10e_real_t t489 = t434 * t437 - t433 * t438;
+    const ur10e_real_t t490 = t5 * t487 - t7 * t485 + (UR10E_C(0.17415) * t481 + UR10E_C(-0.57155) * t489);
+    const ur10e_real_t t491 = t2 * (t3 * t488 - t1 * t490 + UR10E_C(0.6127) * t489);
+    const ur10e_real_t t492 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t488 + t3 * t490) + t491);
+    input_by_dq[3] = t492;
+    input_by_ddq[21] = UR10E_C(1122.2222222222222) * parameters[IA4] + UR10E_C(0.11001100110011001) * t431;
+    const ur10e_real_t t493 = t7 * t434 + t5 * t433; /* link j4: column of the mass matrix */
+    const ur10e_real_t t494 = t431 + UR10E_C(0.57155) * t493;
+    input_by_ddq[15] = UR10E_C(0.099009900990099) * t494;
+    const ur10e_real_t t495 = t7 * t433 - t5 * t434;
+    const ur10e_real_t t496 = t1 * t493 - t3 * t495;
+    const ur10e_real_t t497 = t494 + UR10E_C(0.6127) * t496;
+    input_by_ddq[9] = UR10E_C(0.08250825082508251) * t497;
+    const ur10e_real_t t498 = t5 * t427 - t7 * t428;
+    const ur10e_real_t t499 = UR10E_C(-0.17415) * t493;
+    const ur10e_real_t t500 = t498 + t499;
+    const ur10e_real_t t501 = t7 * t427 + t5 * t428 + UR10E_C(-0.17415) * t495;
+    const ur10e_real_t t502 = t3 * t501 - t1 * t500;
+    const ur10e_real_t t503 = t3 * t500 + t1 * t501;
+    const ur10e_real_t t504 = t0 * t502 - t2 * t503;
+    input_by_ddq[3] = UR10E_C(0.08250825082508251) * t504;
+    const ur10e_real_t t505 = t7 * t425 - t5 * t421 + t493 * t289; /* link j4: derivatives */
+    const ur10e_real_t t506 = t7 * t421 + t5 * t425 - t495 * t289;
+    const ur10e_real_t t507 = t68 * t505 + t75 * t506 + (t501 * t78 - t500 * t72 - t494 * t83);
+    input_by_q[20] = UR10E_C(0.11001100110011001) * (t507 + (t493 * t67 - t495 * t74));
+    const ur10e_real_t t508 = t1 * t505 + t3 * t506 + t496 * t294;
+    const ur10e_real_t t509 = t1 * t495 + t3 * t493; /* link j4: column of the mass matrix */
+    const ur10e_real_t t510 = t3 * t505 - t1 * t506 + t509 * t294; /* link j4: derivatives */
+    const ur10e_real_t t511 = t57 * t508 - t62 * t510 + (t502 * t87 + t503 * t150 - t497 * t299);
+    input_by_q[19] = UR10E_C(0.11001100110011001) * (t511 + (t496 * t60 - t509 * t65));
+    const ur10e_real_t t512 = t475 + (t493 * t291 - t495 * t288);
+    const ur10e_real_t t513 = UR10E_C(0.11001100110011001) * (t512 + UR10E_C(2.0) * (t501 * t75
+        - t500 * t68));
+    input_by_dq[20] = t513;
+    const ur10e_real_t t514 = t512 - t509 * t295 + UR10E_C(2.0) * (t502 * t57 + t503 * t62);
+    input_by_dq[19] = UR10E_C(0.11001100110011001) * t514;
+    input_by_dq[18] = UR10E_C(0.11001100110011001) * (t0 * t508 + t2 * t510);
+    input_by_ddq[20] = UR10E_C(0.11001100110011001) * t494;
+    input_by_ddq[19] = UR10E_C(0.11001100110011001) * t497;
+    input_by_ddq[18] = UR10E_C(0.11001100110011001) * t504;
+    const ur10e_real_t t515 = UR10E_C(0.57155) * t68;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t516 = t7 * t424 - t5 * t420 + (UR10E_C(0.57155) * t439 + t493 * t515);
+    const ur10e_real_t t517 = UR10E_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const ur10e_real_t t518 = parameters[XX3R] - t517;
+    const ur10e_real_t t519 = parameters[XY3] * t75 - t68 * t518 + t516;
+    const ur10e_real_t t520 = UR10E_C(2.0) * t519; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t521 = t75 * t517 + parameters[XY3] * t68 + (t7 * t420 + t5 * t424 - t495 * t515);
+    const ur10e_real_t t522 = UR10E_C(2.0) * t521; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t523 = t498 + (t499 + UR10E_C(-0.57155) * t383) - parameters[XZ3R];
+    const ur10e_real_t t524 = t501 - parameters[YZ3];
+    const ur10e_real_t t525 = UR10E_C(1.1431) * t493;
+    const ur10e_real_t t526 = parameters[ZZ3R] + (t431 + t525);
+    const ur10e_real_t t527 = t524 * t78 - t523 * t72 - t526 * t83; /* link j3: derivatives */
+    const ur10e_real_t t528 = parameters[MX3R] - t493; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t529 = t495 - parameters[MY3];
+    const ur10e_real_t t530 = t528 * t67 + t529 * t74; /* link j3: derivatives */
+    const ur10e_real_t t531 = UR10E_C(0.099009900990099) * (t527 + (t68 * t520 + t75 * t522) - t530);
+    input_by_q[14] = t531;
+    const ur10e_real_t t532 = UR10E_C(2.0) * t68;
+    const ur10e_real_t t533 = UR10E_C(2.0) * t75;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t534 = parameters[MY3] * t75 - parameters[MX3R] * t68 + t439;
+    const ur10e_real_t t535 = t168 + (t534 * t533 + (t383 * t78 + t529 * t83)); /* link j3: derivatives */
+    const ur10e_real_t t536 = t167 + (t534 * t532 + (t528 * t83 + t383 * t72));
+    const ur10e_real_t t537 = t519 * t532 + t521 * t533 + t527 - t530 + UR10E_C(0.6127) * (t3 * t535
+        + t1 * t536);
+    input_by_q[8] = UR10E_C(0.08250825082508251) * t537;
+    const ur10e_real_t t538 = t5 * (t454 + t464) - t7 * (t457 - t462); /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t539 = t5 * t538;
+    const ur10e_real_t t540 = t5 * t469 - t7 * t468;
+    const ur10e_real_t t541 = UR10E_C(-0.57155) * t540;
+    const ur10e_real_t t542 = UR10E_C(-0.17415) * t68;
+    const ur10e_real_t t543 = t493 * t542;
+    const ur10e_real_t t544 = UR10E_C(0.17415) * t439;
+    const ur10e_real_t t545 = t495 * t287;
+    const ur10e_real_t t546 = t383 * t515;
+    const ur10e_real_t t547 = t541 + t544 + (t543 - t545 + t546);
+    const ur10e_real_t t548 = parameters[XZ3R] * t68;
+    const ur10e_real_t t549 = parameters[XY3] * t11;
+    const ur10e_real_t t550 = t548 - t549 + (t547 + (t464 - t539 - (t541 + t543)));
+    const ur10e_real_t t551 = t7 * t538;
+    const ur10e_real_t t552 = t457 + t551 + t495 * t542 - (parameters[YZ3] * t68 + t11 * t517);
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t553 = t5 * (t313 + t458) + t459 * (UR10E_C(2.0) * t7);
+    const ur10e_real_t t554 = t5 * t553;
+    const ur10e_real_t t555 = UR10E_C(0.3483) * t383;
+    const ur10e_real_t t556 = parameters[XX3R] + (t313 - t554 + t555);
+    const ur10e_real_t t557 = t7 * t553 - t459 + UR10E_C(0.57155) * t495 - parameters[XY3];
+    /* link j3: derivatives */
+    const ur10e_real_t t558 = t550 * t532 + t552 * t533 + (t556 * t72 + t557 * t78 + t523 * t83);
+    const ur10e_real_t t559 = t145 + (t558 + t383 * t67);
+    const ur10e_real_t t560 = t7 * t469 + t5 * t468; /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t561 = t11 * t518 - parameters[XZ3R] * t75 + (t462 - t551 - (UR10E_C(-0.57155) * t560
+        - t493 * t287));
+    const ur10e_real_t t562 = parameters[YZ3] * t75;
+    const ur10e_real_t t563 = t549 - t562 + (t547 - (t454 - t539 - t545));
+    const ur10e_real_t t564 = t554 - t458 + (t525 + t555); /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const ur10e_real_t t565 = t563 * t533 - t561 * t532 + (t557 * t72 + t564 * t78 - t524 * t83);
+    const ur10e_real_t t566 = t148 + (t565 + t383 * t74);
+    const ur10e_real_t t567 = parameters[MX3R] * t11 + t560; /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t568 = t540 - parameters[MY3] * t11;
+    /* link j3: derivatives */
+    const ur10e_real_t t569 = t567 * t532 + t568 * t533 + (t528 * t78 - t529 * t72);
+    const ur10e_real_t t570 = t2 * (t3 * t559 - t1 * t566 + UR10E_C(0.6127) * t569);
+    const ur10e_real_t t571 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t559 + t3 * t566) + t570);
+    input_by_q[2] = t571;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t572 = t562 - t548 + (t547 + (t474 - (t544 + t546)));
+    const ur10e_real_t t573 = UR10E_C(2.0) * t572; /* link j3: derivatives */
+    const ur10e_real_t t574 = UR10E_C(0.099009900990099) * (t573 + UR10E_C(2.0) * (t524 * t75 - t523 * t68));
+    input_by_dq[14] = UR10E_C(1010.0) * parameters[FV3] + t574;
+    const ur10e_real_t t575 = t3 * (UR10E_C(2.0) * t567 + t383 * t533) + t1 * (UR10E_C(-2.0) * t568
+        + t383 * t532);
+    const ur10e_real_t t576 = t573 + (t524 * t533 - t523 * t532) + UR10E_C(0.6127) * t575;
+    input_by_dq[8] = UR10E_C(0.08250825082508251) * t576;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t577 = t5 * t484 + t7 * t486 + (UR10E_C(-0.17415) * t540 + t383 * t542);
+    const ur10e_real_t t578 = t517 - parameters[ZZ3R];
+    const ur10e_real_t t579 = t577 - (parameters[YZ3] * t11 + t68 * t578);
+    const ur10e_real_t t580 = UR10E_C(2.0) * t579 + (t556 * t532 + t557 * t533); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t581 = t5 * t486 - t7 * t484 - (UR10E_C(-0.17415) * t560 - t383 * t287);
+    const ur10e_real_t t582 = parameters[XZ3R] * t11 + t75 * t578 - t581;
+    const ur10e_real_t t583 = UR10E_C(2.0) * t582 - (t557 * t532 + t564 * t533); /* link j3: derivatives */
+    const ur10e_real_t t584 = t3 * t580 + t1 * t583 + UR10E_C(0.6127) * (t528 * t533 - t529 * t532);
+    const ur10e_real_t t585 = t0 * (t1 * t580 - t3 * t583) + t2 * t584;
+    input_by_dq[2] = UR10E_C(0.08250825082508251) * t585;
+    input_by_ddq[14] = UR10E_C(1010.0) * parameters[IA3] + UR10E_C(0.099009900990099) * t526;
+    const ur10e_real_t t586 = t3 * t529 + t1 * t528; /* link j3: column of the mass matrix */
+    const ur10e_real_t t587 = t526 + UR10E_C(-0.6127) * t586;
+    input_by_ddq[8] = UR10E_C(0.08250825082508251) * t587;
+    const ur10e_real_t t588 = t3 * t524 - t1 * t523;
+    const ur10e_real_t t589 = t3 * t523 + t1 * t524;
+    const ur10e_real_t t590 = t0 * t588 - t2 * t589;
+    input_by_ddq[2] = UR10E_C(0.08250825082508251) * t590;
+    const ur10e_real_t t591 = t1 * t520 + t3 * t522 - t586 * t294; /* link j3: derivatives */
+    const ur10e_real_t t592 = t1 * t529 - t3 * t528; /* link j3: column of the mass matrix */
+    const ur10e_real_t t593 = t3 * t520 - t1 * t522 + t592 * t294; /* link j3: derivatives */
+    const ur10e_real_t t594 = t57 * t591 - t62 * t593 + (t588 * t87 + t589 * t150 - t587 * t299);
+    input_by_q[13] = UR10E_C(0.099009900990099) * (t594 - (t592 * t65 + t586 * t60));
+    const ur10e_real_t t595 = t573 - t592 * t295 + UR10E_C(2.0) * (t588 * t57 + t589 * t62);
+    input_by_dq[13] = UR10E_C(0.099009900990099) * t595;
+    input_by_dq[12] = UR10E_C(0.099009900990099) * (t0 * t591 + t2 * t593);
+    input_by_ddq[13] = UR10E_C(0.099009900990099) * t587;
+    input_by_ddq[12] = UR10E_C(0.099009900990099) * t590;
+    const ur10e_real_t t596 = UR10E_C(0.6127) * t57; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t597 = t1 * t519 + t3 * t521 + (UR10E_C(0.6127) * t534 - t586 * t596);
+    const ur10e_real_t t598 = UR10E_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const ur10e_real_t t599 = parameters[XX2R] - t598;
+    /* link j2: derivatives */
+    const ur10e_real_t t600 = UR10E_C(2.0) * (parameters[XY2] * t62 - t57 * t599 + t597);
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t601 = parameters[XY2] * t57 + t62 * t598 - (t3 * t519 - t1 * t521 + t592 * t596);
+    const ur10e_real_t t602 = UR10E_C(2.0) * t601; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t603 = parameters[XZ2R] + (t588 + UR10E_C(0.6127) * t383);
+    const ur10e_real_t t604 = t589 - parameters[YZ2];
+    const ur10e_real_t t605 = UR10E_C(-1.2254) * t586;
+    const ur10e_real_t t606 = parameters[ZZ2R] + (t526 + t605);
+    /* link j2: derivatives */
+    const ur10e_real_t t607 = t603 * t87 + t604 * t150 - t606 * t299 + (t57 * t600 + t62 * t602);
+    const ur10e_real_t t608 = t607 - ((parameters[MX2R] + t586) * t60 + (t592 - parameters[MY2]) * t65);
+    input_by_q[7] = UR10E_C(0.08250825082508251) * t608;
+    const ur10e_real_t t609 = t1 * (t550 - t563) + t3 * (t552 - t561); /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t610 = t1 * t609;
+    const ur10e_real_t t611 = UR10E_C(0.6127) * (t3 * t567 - t1 * t568);
+    const ur10e_real_t t612 = UR10E_C(0.6127) * dq[1]; /* link j3: velocity of its origin */
+    const ur10e_real_t t613 = t592 * t612; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t614 = t383 * t596;
+    const ur10e_real_t t615 = t611 + (t613 + t614);
+    const ur10e_real_t t616 = parameters[XZ2R] * t57;
+    const ur10e_real_t t617 = parameters[XY2] * dq[1];
+    const ur10e_real_t t618 = t616 - t617 + (t615 + (t563 + t610 - t611));
+    const ur10e_real_t t619 = UR10E_C(2.0) * t57; /* link j2: derivatives */
+    const ur10e_real_t t620 = t3 * t609; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t621 = parameters[YZ2] * t57 + dq[1] * t598 + (t620 - t552);
+    const ur10e_real_t t622 = UR10E_C(-2.0) * t62; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t623 = t1 * (t556 - t564) - t557 * (UR10E_C(-2.0) * t3);
+    const ur10e_real_t t624 = t1 * t623;
+    const ur10e_real_t t625 = parameters[XX2R] + (t564 + t624);
+    const ur10e_real_t t626 = parameters[XY2] + (t3 * t623 - t557 + UR10E_C(-0.6127) * t592);
+    /* link j2: derivatives */
+    const ur10e_real_t t627 = t618 * t619 + t621 * t622 + (t625 * t87 - t626 * t150 - t603 * t299);
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t628 = UR10E_C(0.6127) * (t3 * t568 + t1 * t567) + t586 * t612;
+    const ur10e_real_t t629 = dq[1] * t599 - parameters[XZ2R] * t62 + (t561 + t620 + t628);
+    const ur10e_real_t t630 = parameters[YZ2] * t62;
+    const ur10e_real_t t631 = t617 - t630 + (t615 + (t550 - t610 - t613));
+    const ur10e_real_t t632 = t556 - t624 + t605; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
+    const ur10e_real_t t633 = t629 * t619 + t631 * t622 + (t626 * t87 - t632 * t150 + t604 * t299);
+    const ur10e_real_t t634 = t0 * (t157 + (t627 + t383 * t60)) + t2 * (t153 + (t633 - t383 * t65));
+    input_by_q[1] = UR10E_C(0.08250825082508251) * t634;
+    const ur10e_real_t t635 = UR10E_C(2.0) * (t630 - t616 + (t615 + (t572 - t614)))
+        + UR10E_C(2.0) * (t603 * t57 + t604 * t62);
+    input_by_dq[7] = UR10E_C(841.6666666666667) * parameters[FV2] + UR10E_C(0.08250825082508251) * t635;
+    const ur10e_real_t t636 = parameters[ZZ2R] - t598;
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t637 = t57 * t636 - parameters[YZ2] * dq[1] + (t1 * t579 - t3 * t582);
+    /* link j2: derivatives */
+    const ur10e_real_t t638 = t0 * (UR10E_C(2.0) * t637 + (t625 * t619 + t626 * t622));
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t639 = parameters[XZ2R] * dq[1] - t62 * t636 + (t3 * t579 + t1 * t582 + t383 * t612);
+    /* link j2: derivatives */
+    const ur10e_real_t t640 = t2 * (UR10E_C(2.0) * t639 + (t626 * t619 + t632 * t622));
+    input_by_dq[1] = UR10E_C(0.08250825082508251) * (t638 + t640);
+    input_by_ddq[7] = UR10E_C(0.08250825082508251) * t606;
+    const ur10e_real_t t641 = UR10E_C(0.08250825082508251) * (t0 * t603 - t2 * t604);
+    input_by_ddq[1] = t641;
+    input_by_dq[6] = UR10E_C(0.08250825082508251) * (t0 * t600 - t2 * t602);
+    input_by_ddq[6] = t641;
+    /* link j2: inertia, momentum beyond */
+    const ur10e_real_t t642 = t2 * (t2 * (t631 - t618) + t0 * (t621 + t629));
+    input_by_dq[0] = UR10E_C(841.6666666666667) * parameters[FV1] + UR10E_C(0.16501650165016502) * (t618
+        + t642);
+    /* link j2: inertia of it and all beyond */
+    const ur10e_real_t t643 = t2 * (t2 * (t632 - t625) + t626 * (UR10E_C(2.0) * t0));
+    input_by_ddq[0] = UR10E_C(0.08250825082508251) * (parameters[ZZ1R] + (t625 + t643));
     /* always zero */
     input_by_q[0] = UR10E_C(0.0);
     input_by_q[6] = UR10E_C(0.0);

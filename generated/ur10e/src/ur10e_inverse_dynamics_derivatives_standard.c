@@ -110,7 +110,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -449,683 +449,683 @@ ur10e_status_t ur10e_inverse_dynamics_derivatives_standard(
     const ur10e_real_t t217 = UR10E_C(101.0) * dq[5] * parameters[FV6] + t216 * parameters[FC6]
         + UR10E_C(101.0) * ddq[5] * parameters[IA6];
     input[5] = UR10E_C(11.11111111111111) * t217 + UR10E_C(0.11001100110011001) * t133;
-    const ur10e_real_t t218 = t40 * parameters[XZ6];
-    const ur10e_real_t t219 = t41 * parameters[XY6];
-    const ur10e_real_t t220 = t219 - t218;
-    const ur10e_real_t t221 = t45 * parameters[YZ6];
-    const ur10e_real_t t222 = t219 - t221;
-    const ur10e_real_t t223 = UR10E_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const ur10e_real_t t224 = parameters[XX6] - t223;
-    const ur10e_real_t t225 = t41 * t224 - t45 * parameters[XZ6];
-    const ur10e_real_t t226 = t223 - parameters[YY6];
-    const ur10e_real_t t227 = t40 * parameters[YZ6] + t41 * t226;
-    /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t228 = t38 * (t220 + t222) + t23 * (t225 + t227);
-    const ur10e_real_t t229 = t38 * t228;
-    const ur10e_real_t t230 = UR10E_C(-0.11655) * t34;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t231 = t23 * parameters[MY6] - t38 * parameters[MX6];
-    const ur10e_real_t t232 = t231 * t230; /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t233 = t45 * parameters[MY6] - t40 * parameters[MX6];
-    const ur10e_real_t t234 = UR10E_C(0.11655) * t233;
-    const ur10e_real_t t235 = UR10E_C(0.11655) * t19;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t236 = t38 * parameters[MY6] + t23 * parameters[MX6];
-    const ur10e_real_t t237 = t236 * t235; /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t238 = t234 + (t232 - t237);
-    const ur10e_real_t t239 = t20 * parameters[XZ5];
-    const ur10e_real_t t240 = t34 * parameters[XY5];
-    const ur10e_real_t t241 = t229 - t222 + t232 - t238 - (t239 + t240);
-    const ur10e_real_t t242 = t221 - t218;
-    const ur10e_real_t t243 = t19 * parameters[YZ5];
-    const ur10e_real_t t244 = t238 + (t242 - t234) - (t240 + t243);
-    const ur10e_real_t t245 = parameters[ZZ6] - t223;
-    const ur10e_real_t t246 = t41 * parameters[YZ6] - t40 * t245;
-    const ur10e_real_t t247 = t45 * t245 - t41 * parameters[XZ6];
-    const ur10e_real_t t248 = t40 * parameters[MZ6] - t41 * parameters[MY6];
-    const ur10e_real_t t249 = t45 * parameters[MZ6] - t41 * parameters[MX6];
-    const ur10e_real_t t250 = t38 * t248 + t23 * t249;
-    const ur10e_real_t t251 = UR10E_C(0.11655) * parameters[M6]; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t252 = parameters[MZ6] + t251;
-    /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t253 = t23 * t247 - t38 * t246 + (UR10E_C(-0.11655) * t250 + t252 * t230);
-    const ur10e_real_t t254 = UR10E_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const ur10e_real_t t255 = parameters[YY5] - t254;
-    const ur10e_real_t t256 = t20 * parameters[YZ5] + t34 * t255 + t253;
-    const ur10e_real_t t257 = t40 * t224 - t45 * parameters[XY6];
-    const ur10e_real_t t258 = t45 * t226 + t40 * parameters[XY6];
-    const ur10e_real_t t259 = t254 - parameters[XX5];
-    const ur10e_real_t t260 = t34 * t259 - t19 * parameters[XZ5] + (t23 * t258 - t38 * t257);
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t261 = t17 * (t241 + t244) + t18 * (t256 + t260);
-    const ur10e_real_t t262 = t17 * t261;
-    const ur10e_real_t t263 = t231 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t264 = parameters[MY5] + t252;
-    const ur10e_real_t t265 = t18 * t264 + t17 * t263; /* link j5: column of the mass matrix */
-    const ur10e_real_t t266 = UR10E_C(-0.11985) * t13; /* link j5: velocity of its origin */
-    const ur10e_real_t t267 = t265 * t266; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t268 = t38 * t249 - t23 * t248; /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t269 = t19 * parameters[MY5] - t20 * parameters[MX5] + (t268 + parameters[M6] * t235);
-    const ur10e_real_t t270 = UR10E_C(0.11985) * t269; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t271 = UR10E_C(0.11985) * t11;
-    const ur10e_real_t t272 = t17 * t264 - t18 * t263; /* link j5: column of the mass matrix */
-    const ur10e_real_t t273 = t272 * t271; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t274 = t270 + (t267 - t273);
-    const ur10e_real_t t275 = t24 * parameters[XZ4];
-    const ur10e_real_t t276 = t13 * parameters[XY4];
-    const ur10e_real_t t277 = t276 - t275 + (t262 - t244 + t267 - t274);
-    /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t278 = t243 - t239 + (t238 + (t229 - t220 + t237));
-    const ur10e_real_t t279 = t11 * parameters[YZ4];
-    const ur10e_real_t t280 = t276 - t279 + (t274 + (t278 - t270)); /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t281 = t23 * t228; /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t282 = t254 - parameters[ZZ5];
-    const ur10e_real_t t283 = t34 * parameters[YZ5] - t20 * t282 + (t281 - t227 - t236 * t230);
-    const ur10e_real_t t284 = t19 * t282 - t34 * parameters[XZ5] + (t23 * t257 + t38 * t258);
-    const ur10e_real_t t285 = t20 * parameters[MZ5] + t34 * parameters[MY5] + (t250 - parameters[M6] * t230);
-    const ur10e_real_t t286 = t233 - (t34 * parameters[MX5] + t19 * parameters[MZ5]);
-    const ur10e_real_t t287 = t17 * t285 - t18 * t286; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t288 = parameters[MZ5] - t236; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t289 = parameters[M5] + parameters[M6];
-    const ur10e_real_t t290 = UR10E_C(0.11985) * t289; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t291 = t288 + t290;
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t292 = t17 * t283 - t18 * t284 + (UR10E_C(-0.11985) * t287 + t291 * t266);
-    const ur10e_real_t t293 = UR10E_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const ur10e_real_t t294 = parameters[YY4] - t293;
-    const ur10e_real_t t295 = t13 * t294 - t24 * parameters[YZ4] + t292;
-    /* link j6: inertia, momentum beyond */
-    const ur10e_real_t t296 = t225 - t281 - t231 * t235 - (t19 * parameters[XY5] + t20 * t259);
-    const ur10e_real_t t297 = t23 * t246 + t38 * t247 + (UR10E_C(-0.11655) * t268 - t252 * t235);
-    const ur10e_real_t t298 = t19 * t255 - t20 * parameters[XY5] + t297;
-    const ur10e_real_t t299 = parameters[XX4] - t293;
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t300 = t13 * t299 - t11 * parameters[XZ4] + (t17 * t296 + t18 * t298);
-    const ur10e_real_t t301 = t7 * (t277 + t280) - t5 * (t295 - t300); /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t302 = t7 * t301;
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t303 = t24 * parameters[MZ4] - t13 * parameters[MY4] + (t287 - t289 * t266);
-    const ur10e_real_t t304 = t13 * parameters[MX4] - t11 * parameters[MZ4] - t269;
-    const ur10e_real_t t305 = t7 * t303 - t5 * t304; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t306 = UR10E_C(-0.57155) * t305;
-    const ur10e_real_t t307 = t291 - parameters[MY4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t308 = t265 - parameters[MX4];
-    const ur10e_real_t t309 = t7 * t308 - t5 * t307; /* link j4: column of the mass matrix */
-    const ur10e_real_t t310 = parameters[M4] + t289; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t311 = UR10E_C(0.57155) * t310; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t312 = t309 + t311;
-    const ur10e_real_t t313 = UR10E_C(0.17415) * t69;
-    const ur10e_real_t t314 = t312 * t313; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t315 = t18 * t285 + t17 * t286; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t316 = t11 * parameters[MY4] - t24 * parameters[MX4] + (t315 - t289 * t271);
-    const ur10e_real_t t317 = UR10E_C(0.17415) * t316; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t318 = t7 * t307 + t5 * t308; /* link j4: column of the mass matrix */
-    const ur10e_real_t t319 = UR10E_C(-0.57155) * t12 + UR10E_C(-0.17415) * t76;
-    const ur10e_real_t t320 = t318 * t319; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t321 = parameters[MZ4] + t272; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t322 = UR10E_C(0.17415) * t310; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t323 = t321 + t322;
-    const ur10e_real_t t324 = UR10E_C(0.57155) * t69;
-    const ur10e_real_t t325 = t323 * t324; /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t326 = t306 + t317 + (t325 - (t314 + t320));
-    const ur10e_real_t t327 = t69 * parameters[XZ3];
-    const ur10e_real_t t328 = t12 * parameters[XY3];
-    const ur10e_real_t t329 = t327 - t328 + (t326 + (t280 - t302 + (t314 - t306)));
-    const ur10e_real_t t330 = t76 * parameters[YZ3];
-    const ur10e_real_t t331 = t328 - t330 + (t326 - (t277 - t302 - t320));
-    const ur10e_real_t t332 = t5 * t301;
-    const ur10e_real_t t333 = UR10E_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const ur10e_real_t t334 = parameters[YY3] - t333;
-    const ur10e_real_t t335 = t12 * t334 - t69 * parameters[YZ3] + (t295 + t332 - t318 * t313);
-    const ur10e_real_t t336 = t5 * t303 + t7 * t304;
-    const ur10e_real_t t337 = parameters[XX3] - t333;
-    const ur10e_real_t t338 = t12 * t337 - t76 * parameters[XZ3] + (t300 - t332 - (UR10E_C(-0.57155) * t336
-        - t312 * t319));
-    const ur10e_real_t t339 = t1 * (t329 - t331) + t3 * (t335 - t338); /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t340 = t1 * t339;
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t341 = t69 * parameters[MZ3] - t12 * parameters[MY3] + (t305 + t310 * t313);
-    const ur10e_real_t t342 = t12 * parameters[MX3] - t76 * parameters[MZ3] + (t336 + t310 * t319);
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t343 = UR10E_C(0.6127) * (t3 * t342 - t1 * t341);
-    const ur10e_real_t t344 = t318 - parameters[MY3]; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t345 = parameters[MX3] - t312;
-    const ur10e_real_t t346 = t1 * t344 - t3 * t345; /* link j3: column of the mass matrix */
-    const ur10e_real_t t347 = UR10E_C(0.6127) * dq[1]; /* link j3: velocity of its origin */
-    const ur10e_real_t t348 = t346 * t347; /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t349 = parameters[MZ3] + t323; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t350 = UR10E_C(0.6127) * t58; /* link j3: velocity of its origin */
-    const ur10e_real_t t351 = t349 * t350; /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t352 = t343 + (t348 + t351);
-    const ur10e_real_t t353 = t58 * parameters[XZ2];
-    const ur10e_real_t t354 = dq[1] * parameters[XY2];
-    const ur10e_real_t t355 = t353 - t354 + (t352 + (t331 + t340 - t343));
-    const ur10e_real_t t356 = t63 * parameters[YZ2];
-    const ur10e_real_t t357 = t354 - t356 + (t352 + (t329 - t340 - t348));
-    const ur10e_real_t t358 = t3 * t339;
-    const ur10e_real_t t359 = UR10E_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const ur10e_real_t t360 = t359 - parameters[YY2];
-    const ur10e_real_t t361 = t58 * parameters[YZ2] + dq[1] * t360 + (t358 - t335);
-    const ur10e_real_t t362 = t3 * t344 + t1 * t345; /* link j3: column of the mass matrix */
-    const ur10e_real_t t363 = parameters[M3] + t310; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t364 = UR10E_C(0.6127) * t363; /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t365 = t364 - t362;
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t366 = UR10E_C(0.6127) * (t3 * t341 + t1 * t342) - t365 * t347;
-    const ur10e_real_t t367 = parameters[XX2] - t359;
-    const ur10e_real_t t368 = dq[1] * t367 - t63 * parameters[XZ2] + (t338 + t358 + t366);
-    /* link j2: inertia, momentum beyond */
-    const ur10e_real_t t369 = t2 * (t2 * (t357 - t355) + t0 * (t361 + t368));
-    input_by_dq[0] = UR10E_C(841.6666666666667) * parameters[FV1] + UR10E_C(0.16501650165016502) * (t355
-        + t369);
-    const ur10e_real_t t370 = t18 * t261; /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t371 = t24 * t299 - t11 * parameters[XY4] + (t370 - t260 + t265 * t271);
-    const ur10e_real_t t372 = t18 * t283 + t17 * t284 + (UR10E_C(-0.11985) * t315 + t291 * t271);
-    const ur10e_real_t t373 = t24 * parameters[XY4] - t11 * t294 + t372;
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t374 = t5 * t373 - t7 * t371 + (UR10E_C(0.57155) * t316 + t312 * t324);
-    const ur10e_real_t t375 = t76 * parameters[XY3] - t69 * t337 + t374;
-    const ur10e_real_t t376 = t69 * parameters[XY3] - t76 * t334 + (t5 * t371 + t7 * t373 - t318 * t324);
-    const ur10e_real_t t377 = t76 * parameters[MY3] - t69 * parameters[MX3] + (t316 + t310 * t324);
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t378 = t1 * t375 + t3 * t376 + (UR10E_C(0.6127) * t377 + t365 * t350);
-    /* link j2: derivatives */
-    const ur10e_real_t t379 = UR10E_C(2.0) * (t63 * parameters[XY2] - t58 * t367 + t378);
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t380 = t58 * parameters[XY2] + t63 * t360 - (t3 * t375 - t1 * t376 + t346 * t350);
-    const ur10e_real_t t381 = UR10E_C(2.0) * t380; /* link j2: derivatives */
-    input_by_dq[6] = UR10E_C(0.08250825082508251) * (t0 * t379 - t2 * t381);
-    const ur10e_real_t t382 = UR10E_C(2.0) * t375; /* link j3: derivatives */
-    const ur10e_real_t t383 = UR10E_C(2.0) * t376;
-    const ur10e_real_t t384 = UR10E_C(1.2254) * t58; /* link j6: derivatives */
-    const ur10e_real_t t385 = t1 * t382 + t3 * t383 - t362 * t384; /* link j3: derivatives */
-    const ur10e_real_t t386 = t3 * t382 - t1 * t383 + t346 * t384;
-    input_by_dq[12] = UR10E_C(0.099009900990099) * (t0 * t385 + t2 * t386);
-    const ur10e_real_t t387 = UR10E_C(2.0) * t371; /* link j4: derivatives */
-    const ur10e_real_t t388 = UR10E_C(2.0) * t373;
-    const ur10e_real_t t389 = UR10E_C(1.1431) * t69; /* link j6: derivatives */
-    const ur10e_real_t t390 = t5 * t388 - t7 * t387 + t309 * t389; /* link j4: derivatives */
-    const ur10e_real_t t391 = t5 * t387 + t7 * t388 - t318 * t389;
-    const ur10e_real_t t392 = t1 * t309 - t3 * t318; /* link j4: column of the mass matrix */
-    const ur10e_real_t t393 = t1 * t390 + t3 * t391 + t392 * t384; /* link j4: derivatives */
-    const ur10e_real_t t394 = t1 * t318 + t3 * t309; /* link j4: column of the mass matrix */
-    const ur10e_real_t t395 = t3 * t390 - t1 * t391 + t394 * t384; /* link j4: derivatives */
-    input_by_dq[18] = UR10E_C(0.11001100110011001) * (t0 * t393 + t2 * t395);
-    const ur10e_real_t t396 = UR10E_C(2.0) * t296; /* link j5: derivatives */
-    const ur10e_real_t t397 = UR10E_C(2.0) * t298;
-    const ur10e_real_t t398 = t17 * t396 + t18 * t397;
-    const ur10e_real_t t399 = UR10E_C(2.0) * t278;
-    const ur10e_real_t t400 = UR10E_C(-0.2397) * t11; /* link j6: derivatives */
-    const ur10e_real_t t401 = UR10E_C(-0.2397) * t13;
-    const ur10e_real_t t402 = t399 + (t272 * t400 + t265 * t401); /* link j5: derivatives */
-    const ur10e_real_t t403 = UR10E_C(2.0) * t319; /* link j6: derivatives */
-    const ur10e_real_t t404 = t5 * t272; /* link j5: column of the mass matrix */
-    const ur10e_real_t t405 = t5 * t402 - t7 * t398 + (t404 * t389 - t265 * t403); /* link j5: derivatives */
-    const ur10e_real_t t406 = t7 * t272; /* link j5: column of the mass matrix */
-    const ur10e_real_t t407 = UR10E_C(-0.3483) * t69; /* link j6: derivatives */
-    const ur10e_real_t t408 = t5 * t398 + t7 * t402 + (t406 * t389 + t265 * t407); /* link j5: derivatives */
-    const ur10e_real_t t409 = t3 * t406 + t1 * t404; /* link j5: column of the mass matrix */
-    const ur10e_real_t t410 = UR10E_C(-1.2254) * dq[1]; /* link j6: derivatives */
-    const ur10e_real_t t411 = t1 * t405 + t3 * t408 + (t409 * t384 - t265 * t410); /* link j5: derivatives */
-    const ur10e_real_t t412 = t3 * t404 - t1 * t406; /* link j5: column of the mass matrix */
-    const ur10e_real_t t413 = t3 * t405 - t1 * t408 + t412 * t384; /* link j5: derivatives */
-    input_by_dq[24] = UR10E_C(0.11001100110011001) * (t0 * t411 + t2 * t413);
-    const ur10e_real_t t414 = UR10E_C(2.0) * t257; /* link j6: derivatives */
-    const ur10e_real_t t415 = UR10E_C(2.0) * t258;
-    const ur10e_real_t t416 = t38 * t414 - t23 * t415;
-    const ur10e_real_t t417 = UR10E_C(2.0) * t242;
-    const ur10e_real_t t418 = t417 + (t236 * (UR10E_C(-0.2331) * t19) + t231 * (UR10E_C(-0.2331) * t34));
-    const ur10e_real_t t419 = t17 * t416 + t18 * t418 - t231 * t400;
-    const ur10e_real_t t420 = t23 * t414 + t38 * t415;
-    const ur10e_real_t t421 = t17 * t236; /* link j6: column of the mass matrix */
-    const ur10e_real_t t422 = t18 * t236;
-    const ur10e_real_t t423 = t420 + (t421 * t400 + t422 * t401); /* link j6: derivatives */
-    const ur10e_real_t t424 = t5 * t421 + t7 * t231; /* link j6: column of the mass matrix */
-    const ur10e_real_t t425 = t5 * t423 - t7 * t419 + (t424 * t389 - t422 * t403); /* link j6: derivatives */
-    const ur10e_real_t t426 = t7 * t421 - t5 * t231; /* link j6: column of the mass matrix */
-    const ur10e_real_t t427 = t5 * t419 + t7 * t423 + (t426 * t389 + t422 * t407); /* link j6: derivatives */
-    const ur10e_real_t t428 = t3 * t426 + t1 * t424; /* link j6: column of the mass matrix */
-    const ur10e_real_t t429 = t1 * t425 + t3 * t427 + (t428 * t384 - t422 * t410); /* link j6: derivatives */
-    const ur10e_real_t t430 = t3 * t424 - t1 * t426; /* link j6: column of the mass matrix */
-    const ur10e_real_t t431 = t3 * t425 - t1 * t427 + t430 * t384; /* link j6: derivatives */
-    input_by_dq[30] = UR10E_C(0.11001100110011001) * (t0 * t429 + t2 * t431);
-    /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t432 = t38 * t131 - parameters[XY6] * (UR10E_C(2.0) * t23);
-    const ur10e_real_t t433 = t38 * t432;
-    const ur10e_real_t t434 = UR10E_C(0.11655) * (t251 + UR10E_C(2.0) * parameters[MZ6]);
-    const ur10e_real_t t435 = parameters[XX5] + (parameters[YY6] + t433 + t434);
-    const ur10e_real_t t436 = parameters[YY5] + parameters[ZZ6];
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t437 = t23 * parameters[YZ6] - t38 * parameters[XZ6] + UR10E_C(-0.11655) * t231;
-    const ur10e_real_t t438 = t437 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t439 = t17 * (t436 - t435) - t438 * (UR10E_C(2.0) * t18);
-    const ur10e_real_t t440 = t17 * t439;
-    const ur10e_real_t t441 = UR10E_C(0.11985) * (t290 + UR10E_C(2.0) * t288);
-    const ur10e_real_t t442 = t440 - t436 - t441 - parameters[XX4];
-    /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t443 = parameters[ZZ5] + (parameters[XX6] - t433 + t434);
-    const ur10e_real_t t444 = parameters[YY4] + t443; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t445 = t23 * parameters[XZ6] + t38 * parameters[YZ6] - UR10E_C(0.11655) * t236;
-    const ur10e_real_t t446 = t445 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t447 = parameters[XY6] + t23 * t432 - parameters[XZ5];
-    /* link j5: column of the mass matrix */
-    const ur10e_real_t t448 = t17 * t447 - t18 * t446 + UR10E_C(-0.11985) * t265;
-    const ur10e_real_t t449 = parameters[XY4] + t448; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t450 = t7 * (t442 + t444) + t449 * (UR10E_C(2.0) * t5);
-    const ur10e_real_t t451 = t7 * t450;
-    const ur10e_real_t t452 = UR10E_C(0.57155) * (t311 + UR10E_C(2.0) * t309);
-    const ur10e_real_t t453 = UR10E_C(0.17415) * (t322 + UR10E_C(2.0) * t321);
-    const ur10e_real_t t454 = parameters[YY3] + (t451 - t442 + (t452 + t453));
-    const ur10e_real_t t455 = parameters[XX3] + (t444 - t451 + t453);
-    const ur10e_real_t t456 = t5 * t450 - t449 + UR10E_C(0.57155) * t318 - parameters[XY3];
-    /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t457 = t1 * (t455 - t454) - t456 * (UR10E_C(-2.0) * t3);
-    const ur10e_real_t t458 = t1 * t457;
-    const ur10e_real_t t459 = parameters[XX2] + (t454 + t458);
-    const ur10e_real_t t460 = UR10E_C(0.6127) * (t364 + UR10E_C(-2.0) * t362);
-    const ur10e_real_t t461 = parameters[YY2] + (t455 - t458 + t460);
-    const ur10e_real_t t462 = parameters[XY2] + (t3 * t457 - t456 + UR10E_C(-0.6127) * t346);
-    /* link j2: inertia of it and all beyond */
-    const ur10e_real_t t463 = t2 * (t2 * (t461 - t459) + t462 * (UR10E_C(2.0) * t0));
-    input_by_ddq[0] = UR10E_C(841.6666666666667) * parameters[IA1]
-        + UR10E_C(0.08250825082508251) * (parameters[ZZ1] + (t459 + t463));
-    const ur10e_real_t t464 = t438 + t18 * t439 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
-    /* link j5: column of the mass matrix */
-    const ur10e_real_t t465 = UR10E_C(-0.11985) * t272 - (t18 * t447 + t17 * t446);
-    const ur10e_real_t t466 = t465 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t467 = t7 * t464 - t5 * t466; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t468 = t467 + (UR10E_C(-0.57155) * t321 + UR10E_C(-0.17415) * t312) - parameters[XZ3];
-    /* link j4: column of the mass matrix */
-    const ur10e_real_t t469 = t5 * t464 + t7 * t466 + UR10E_C(-0.17415) * t318;
-    const ur10e_real_t t470 = t469 - parameters[YZ3]; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t471 = t3 * t470 - t1 * t468; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t472 = parameters[XZ2] + (t471 + UR10E_C(0.6127) * t349);
-    const ur10e_real_t t473 = t3 * t468 + t1 * t470; /* link j3: column of the mass matrix */
-    const ur10e_real_t t474 = t473 - parameters[YZ2]; /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t475 = UR10E_C(0.08250825082508251) * (t0 * t472 - t2 * t474);
-    input_by_ddq[6] = t475;
-    const ur10e_real_t t476 = t0 * t471 - t2 * t473; /* link j3: column of the mass matrix */
-    input_by_ddq[12] = UR10E_C(0.099009900990099) * t476;
-    const ur10e_real_t t477 = t467 + UR10E_C(-0.17415) * t309; /* link j4: column of the mass matrix */
-    const ur10e_real_t t478 = t3 * t469 - t1 * t477;
-    const ur10e_real_t t479 = t3 * t477 + t1 * t469;
-    const ur10e_real_t t480 = t0 * t478 - t2 * t479;
-    input_by_ddq[18] = UR10E_C(0.11001100110011001) * t480;
-    /* link j5: column of the mass matrix */
-    const ur10e_real_t t481 = t7 * t448 - t5 * t443 + UR10E_C(-0.17415) * t404;
-    const ur10e_real_t t482 = t5 * t448 + t7 * t443 + (UR10E_C(0.17415) * t406 + UR10E_C(0.57155) * t265);
-    const ur10e_real_t t483 = t3 * t482 - t1 * t481;
-    const ur10e_real_t t484 = t3 * t481 + t1 * t482 + UR10E_C(0.6127) * t265;
-    const ur10e_real_t t485 = t0 * t483 - t2 * t484;
-    input_by_ddq[24] = UR10E_C(0.11001100110011001) * t485;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t486 = t17 * t437 + t18 * parameters[ZZ6] + UR10E_C(-0.11985) * t422;
-    const ur10e_real_t t487 = t7 * t486 + t5 * t445 + UR10E_C(-0.17415) * t424;
-    const ur10e_real_t t488 = t5 * t486 - t7 * t445 + (UR10E_C(0.17415) * t426 + UR10E_C(0.57155) * t422);
-    const ur10e_real_t t489 = t3 * t488 - t1 * t487;
-    const ur10e_real_t t490 = t3 * t487 + t1 * t488 + UR10E_C(0.6127) * t422;
-    const ur10e_real_t t491 = t0 * t489 - t2 * t490;
-    input_by_ddq[30] = UR10E_C(0.11001100110011001) * t491;
-    const ur10e_real_t t492 = UR10E_C(2.0) * t58; /* link j2: derivatives */
-    const ur10e_real_t t493 = UR10E_C(-2.0) * t63;
-    const ur10e_real_t t494 = t189 + t59; /* link j3: motion */
-    /* link j2: derivatives */
-    const ur10e_real_t t495 = t355 * t492 + t361 * t493 + (t88 * t459 - t181 * t462 - t494 * t472);
-    const ur10e_real_t t496 = parameters[MZ2] + t349; /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const ur10e_real_t t497 = t368 * t492 + t357 * t493 + (t88 * t462 - t181 * t461 + t494 * t474);
-    const ur10e_real_t t498 = t0 * (t191 + (t495 + t61 * t496)) + t2 * (t185 + (t497 - t66 * t496));
-    input_by_q[1] = UR10E_C(0.08250825082508251) * t498;
-    /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t499 = parameters[ZZ4] + (t435 + t440 + t441);
-    const ur10e_real_t t500 = parameters[ZZ3] + (t499 + t452); /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t501 = parameters[ZZ2] + (t500 + t460); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const ur10e_real_t t502 = t88 * t472 + t181 * t474 - t494 * t501 + (t58 * t379 + t63 * t381);
-    const ur10e_real_t t503 = t61 * (t365 - parameters[MX2]) - t66 * (t346 - parameters[MY2]) + t502;
-    input_by_q[7] = UR10E_C(0.08250825082508251) * t503;
-    const ur10e_real_t t504 = t500 + UR10E_C(-0.6127) * t362; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const ur10e_real_t t505 = t58 * t385 - t63 * t386 + (t88 * t471 + t181 * t473 - t494 * t504);
-    input_by_q[13] = UR10E_C(0.099009900990099) * (t505 - (t66 * t346 + t61 * t362));
-    const ur10e_real_t t506 = t499 + UR10E_C(0.57155) * t309; /* link j4: column of the mass matrix */
-    const ur10e_real_t t507 = t506 + UR10E_C(0.6127) * t392;
-    /* link j4: derivatives */
-    const ur10e_real_t t508 = t58 * t393 - t63 * t395 + (t88 * t478 + t181 * t479 - t494 * t507);
-    input_by_q[19] = UR10E_C(0.11001100110011001) * (t508 + (t61 * t392 - t66 * t394));
-    const ur10e_real_t t509 = t465 + UR10E_C(0.57155) * t404; /* link j5: column of the mass matrix */
-    const ur10e_real_t t510 = t509 + UR10E_C(0.6127) * t409;
-    /* link j5: derivatives */
-    const ur10e_real_t t511 = t58 * t411 - t63 * t413 + (t88 * t483 + t181 * t484 - t494 * t510);
-    input_by_q[25] = UR10E_C(0.11001100110011001) * (t511 + (t61 * t409 - t66 * t412));
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t512 = t17 * parameters[ZZ6] - t18 * t437 + UR10E_C(-0.11985) * t421;
-    const ur10e_real_t t513 = t512 + UR10E_C(0.57155) * t424;
-    const ur10e_real_t t514 = t513 + UR10E_C(0.6127) * t428;
-    /* link j6: derivatives */
-    const ur10e_real_t t515 = t58 * t429 - t63 * t431 + (t88 * t489 + t181 * t490 - t494 * t514);
-    input_by_q[31] = UR10E_C(0.11001100110011001) * (t515 + (t61 * t428 - t66 * t430));
-    const ur10e_real_t t516 = parameters[ZZ4] - t293;
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t517 = t24 * t516 - t13 * parameters[YZ4] + (t256 - t370 + t272 * t266);
-    const ur10e_real_t t518 = t11 * t516 - t13 * parameters[XZ4] + (t17 * t298 - t18 * t296);
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t519 = t7 * t517 + t5 * t518 + (UR10E_C(-0.17415) * t305 - t323 * t313);
-    const ur10e_real_t t520 = t333 - parameters[ZZ3];
-    const ur10e_real_t t521 = t519 - (t12 * parameters[YZ3] + t69 * t520);
-    const ur10e_real_t t522 = t7 * t518 - t5 * t517 - (UR10E_C(-0.17415) * t336 - t323 * t319);
-    const ur10e_real_t t523 = t12 * parameters[XZ3] + t76 * t520 - t522;
-    const ur10e_real_t t524 = parameters[ZZ2] - t359;
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t525 = t58 * t524 - dq[1] * parameters[YZ2] + (t1 * t521 - t3 * t523);
-    /* link j2: derivatives */
-    const ur10e_real_t t526 = t0 * (UR10E_C(2.0) * t525 + (t459 * t492 + t462 * t493));
-    /* link j3: inertia, momentum beyond */
-    const ur10e_real_t t527 = dq[1] * parameters[XZ2] - t63 * t524 + (t3 * t521 + t1 * t523 + t349 * t347);
-    /* link j2: derivatives */
-    const ur10e_real_t t528 = t2 * (UR10E_C(2.0) * t527 + (t462 * t492 + t461 * t493));
-    input_by_dq[1] = UR10E_C(0.08250825082508251) * (t526 + t528);
-    /* link j5: inertia, momentum beyond */
-    const ur10e_real_t t529 = t279 - t275 + (t274 + (t262 - t241 + t273));
-    /* link j4: inertia, momentum beyond */
-    const ur10e_real_t t530 = t330 - t327 + (t326 + (t529 - (t317 + t325)));
-    /* link j2: derivatives */
-    const ur10e_real_t t531 = UR10E_C(2.0) * (t356 - t353 + (t352 + (t530 - t351)))
-        + UR10E_C(2.0) * (t58 * t472 + t63 * t474);
-    input_by_dq[7] = UR10E_C(841.6666666666667) * parameters[FV2] + UR10E_C(0.08250825082508251) * t531;
-    const ur10e_real_t t532 = UR10E_C(2.0) * t530; /* link j3: derivatives */
-    const ur10e_real_t t533 = t532 - t346 * t410 + UR10E_C(2.0) * (t58 * t471 + t63 * t473);
-    input_by_dq[13] = UR10E_C(0.099009900990099) * t533;
-    const ur10e_real_t t534 = UR10E_C(2.0) * t529; /* link j4: derivatives */
-    const ur10e_real_t t535 = t534 + (t309 * t407 - t318 * t403);
-    const ur10e_real_t t536 = t535 - t394 * t410 + UR10E_C(2.0) * (t58 * t478 + t63 * t479);
-    input_by_dq[19] = UR10E_C(0.11001100110011001) * t536;
-    const ur10e_real_t t537 = t17 * t397 - t18 * t396; /* link j5: derivatives */
-    const ur10e_real_t t538 = t537 + (t404 * t407 + t406 * t403);
-    const ur10e_real_t t539 = t538 - t412 * t410 + UR10E_C(2.0) * (t58 * t483 + t63 * t484);
-    input_by_dq[25] = UR10E_C(0.11001100110011001) * t539;
-    const ur10e_real_t t540 = t17 * t418 - t18 * t416 + t231 * t401; /* link j6: derivatives */
-    const ur10e_real_t t541 = t540 + (t424 * t407 + t426 * t403);
-    const ur10e_real_t t542 = t541 - t430 * t410 + UR10E_C(2.0) * (t58 * t489 + t63 * t490);
-    input_by_dq[31] = UR10E_C(0.11001100110011001) * t542;
-    input_by_ddq[1] = t475;
-    input_by_ddq[7] = UR10E_C(841.6666666666667) * parameters[IA2] + UR10E_C(0.08250825082508251) * t501;
-    input_by_ddq[13] = UR10E_C(0.099009900990099) * t504;
-    input_by_ddq[19] = UR10E_C(0.11001100110011001) * t507;
-    input_by_ddq[25] = UR10E_C(0.11001100110011001) * t510;
-    input_by_ddq[31] = UR10E_C(0.11001100110011001) * t514;
-    const ur10e_real_t t543 = UR10E_C(2.0) * t69; /* link j3: derivatives */
-    const ur10e_real_t t544 = UR10E_C(2.0) * t76;
-    const ur10e_real_t t545 = t329 * t543 + t335 * t544 + (t73 * t455 + t79 * t456 + t84 * t468);
-    const ur10e_real_t t546 = t179 + (t545 + t68 * t349);
-    const ur10e_real_t t547 = t331 * t544 - t338 * t543 + (t73 * t456 + t79 * t454 - t84 * t470);
-    const ur10e_real_t t548 = t169 + (t547 + t75 * t349);
-    const ur10e_real_t t549 = t342 * t543 + t341 * t544 + (t79 * t345 - t73 * t344);
-    const ur10e_real_t t550 = t2 * (t3 * t546 - t1 * t548 + UR10E_C(0.6127) * t549);
-    const ur10e_real_t t551 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t546 + t3 * t548) + t550);
-    input_by_q[2] = t551;
-    const ur10e_real_t t552 = t377 * t544 + t75 * t363 + (t79 * t349 + t84 * t344);
-    const ur10e_real_t t553 = t377 * t543 + t68 * t363 + (t84 * t345 + t73 * t349);
-    const ur10e_real_t t554 = UR10E_C(0.6127) * (t3 * (t204 + t552) + t1 * (t202 + t553));
-    const ur10e_real_t t555 = t79 * t470 - t73 * t468 - t84 * t500;
-    const ur10e_real_t t556 = t68 * t345 + t75 * t344;
-    const ur10e_real_t t557 = t375 * t543 + t376 * t544 + t555 - t556 + t554;
-    input_by_q[8] = UR10E_C(0.08250825082508251) * t557;
-    const ur10e_real_t t558 = UR10E_C(0.099009900990099) * (t555 + (t69 * t382 + t76 * t383) - t556);
-    input_by_q[14] = t558;
-    /* link j4: derivatives */
-    const ur10e_real_t t559 = t69 * t390 + t76 * t391 + (t79 * t469 - t73 * t477 - t84 * t506);
-    input_by_q[20] = UR10E_C(0.11001100110011001) * (t559 + (t68 * t309 - t75 * t318));
-    /* link j5: derivatives */
-    const ur10e_real_t t560 = t69 * t405 + t76 * t408 + (t79 * t482 - t73 * t481 - t84 * t509);
-    input_by_q[26] = UR10E_C(0.11001100110011001) * (t560 + (t75 * t406 + t68 * t404));
-    /* link j6: derivatives */
-    const ur10e_real_t t561 = t69 * t425 + t76 * t427 + (t79 * t488 - t73 * t487 - t84 * t513);
-    input_by_q[32] = UR10E_C(0.11001100110011001) * (t561 + (t75 * t426 + t68 * t424));
-    const ur10e_real_t t562 = UR10E_C(2.0) * t521 + (t455 * t543 + t456 * t544); /* link j3: derivatives */
-    const ur10e_real_t t563 = UR10E_C(2.0) * t523 - (t456 * t543 + t454 * t544);
-    const ur10e_real_t t564 = t3 * t562 + t1 * t563 + UR10E_C(0.6127) * (t345 * t544 - t344 * t543);
-    const ur10e_real_t t565 = t0 * (t1 * t562 - t3 * t563) + t2 * t564;
-    input_by_dq[2] = UR10E_C(0.08250825082508251) * t565;
-    const ur10e_real_t t566 = t3 * (UR10E_C(2.0) * t342 + t349 * t544) + t1 * (UR10E_C(-2.0) * t341
-        + t349 * t543);
-    const ur10e_real_t t567 = t532 + (t470 * t544 - t468 * t543) + UR10E_C(0.6127) * t566;
-    input_by_dq[8] = UR10E_C(0.08250825082508251) * t567;
-    const ur10e_real_t t568 = UR10E_C(0.099009900990099) * (t532 + UR10E_C(2.0) * (t76 * t470 - t69 * t468));
-    input_by_dq[14] = UR10E_C(1010.0) * parameters[FV3] + t568;
-    const ur10e_real_t t569 = UR10E_C(0.11001100110011001) * (t535 + UR10E_C(2.0) * (t76 * t469
-        - t69 * t477));
-    input_by_dq[20] = t569;
-    const ur10e_real_t t570 = UR10E_C(0.11001100110011001) * (t538 + UR10E_C(2.0) * (t76 * t482
-        - t69 * t481));
-    input_by_dq[26] = t570;
-    const ur10e_real_t t571 = UR10E_C(0.11001100110011001) * (t541 + UR10E_C(2.0) * (t76 * t488
-        - t69 * t487));
-    input_by_dq[32] = t571;
-    input_by_ddq[2] = UR10E_C(0.08250825082508251) * t476;
-    input_by_ddq[8] = UR10E_C(0.08250825082508251) * t504;
-    input_by_ddq[14] = UR10E_C(1010.0) * parameters[IA3] + UR10E_C(0.099009900990099) * t500;
-    input_by_ddq[20] = UR10E_C(0.11001100110011001) * t506;
-    input_by_ddq[26] = UR10E_C(0.11001100110011001) * t509;
-    input_by_ddq[32] = UR10E_C(0.11001100110011001) * t513;
-    const ur10e_real_t t572 = UR10E_C(2.0) * t24; /* link j4: derivatives */
-    const ur10e_real_t t573 = UR10E_C(2.0) * t11;
-    const ur10e_real_t t574 = t295 * t573 - t277 * t572 + (t171 * t464 - (t9 * t442 + t29 * t449));
-    const ur10e_real_t t575 = t156 + (t574 - t81 * t321);
-    const ur10e_real_t t576 = t280 * t573 - t300 * t572 + (t29 * t444 - t9 * t449 - t171 * t466);
-    const ur10e_real_t t577 = t150 + (t576 + t97 * t321);
-    const ur10e_real_t t578 = t316 * t573 + t97 * t310 + (t29 * t321 + t171 * t307);
-    const ur10e_real_t t579 = t163 + t578;
-    const ur10e_real_t t580 = t81 * t310 - t316 * t572 - (t9 * t321 - t171 * t308);
-    const ur10e_real_t t581 = t159 + t580;
-    const ur10e_real_t t582 = t5 * t579 - t7 * t581;
-    const ur10e_real_t t583 = t7 * t575 + t5 * t577 + UR10E_C(0.17415) * t582;
-    const ur10e_real_t t584 = t7 * t579 + t5 * t581;
-    const ur10e_real_t t585 = t304 * t572 + t303 * t573 - (t9 * t307 + t29 * t308);
-    const ur10e_real_t t586 = t5 * t575 - t7 * t577 + (UR10E_C(-0.17415) * t584 - UR10E_C(-0.57155) * t585);
-    const ur10e_real_t t587 = t2 * (t3 * t583 + t1 * t586 + UR10E_C(0.6127) * t585);
-    const ur10e_real_t t588 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t583 - t3 * t586) + t587);
-    input_by_q[3] = t588;
-    const ur10e_real_t t589 = t29 * t466 - t9 * t464 - t171 * t499;
-    const ur10e_real_t t590 = t81 * t308 + t97 * t307;
-    const ur10e_real_t t591 = t373 * t573 - t371 * t572 + t589 - t590 + UR10E_C(0.57155) * t582;
-    const ur10e_real_t t592 = UR10E_C(0.08250825082508251) * (t591 + UR10E_C(0.6127) * (t3 * t584
-        + t1 * t582));
-    input_by_q[9] = t592;
-    input_by_q[15] = UR10E_C(0.099009900990099) * t591;
-    const ur10e_real_t t593 = UR10E_C(0.11001100110011001) * (t589 + (t11 * t388 - t24 * t387) - t590);
-    input_by_q[21] = t593;
-    /* link j5: derivatives */
-    const ur10e_real_t t594 = t11 * t402 - t24 * t398 + (t29 * t443 - t9 * t448 - t171 * t465);
-    input_by_q[27] = UR10E_C(0.11001100110011001) * (t594 + t97 * t272);
-    /* link j6: derivatives */
-    const ur10e_real_t t595 = t11 * t423 - t24 * t419 - (t9 * t486 + t29 * t445 + t171 * t512);
-    input_by_q[33] = UR10E_C(0.11001100110011001) * (t595 + (t97 * t421 - t81 * t231));
-    const ur10e_real_t t596 = UR10E_C(2.0) * t517 - (t442 * t572 + t449 * t573); /* link j4: derivatives */
-    const ur10e_real_t t597 = UR10E_C(2.0) * t518 + (t444 * t573 - t449 * t572);
-    const ur10e_real_t t598 = UR10E_C(-2.0) * t303 + t321 * t572;
-    const ur10e_real_t t599 = UR10E_C(2.0) * t304 + t321 * t573;
-    const ur10e_real_t t600 = t5 * t599 + t7 * t598;
-    const ur10e_real_t t601 = t7 * t596 + t5 * t597 + UR10E_C(0.17415) * t600;
-    const ur10e_real_t t602 = t7 * t599 - t5 * t598;
-    const ur10e_real_t t603 = t307 * t572 + t308 * t573;
-    const ur10e_real_t t604 = t7 * t597 - t5 * t596 + (UR10E_C(0.17415) * t602 + UR10E_C(0.57155) * t603);
-    const ur10e_real_t t605 = t2 * (t3 * t601 - t1 * t604 + UR10E_C(-0.6127) * t603);
-    const ur10e_real_t t606 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t601 + t3 * t604) + t605);
-    input_by_dq[3] = t606;
-    const ur10e_real_t t607 = t534 + (t466 * t573 - t464 * t572) + UR10E_C(0.57155) * t600;
-    const ur10e_real_t t608 = UR10E_C(0.08250825082508251) * (t607 + UR10E_C(0.6127) * (t3 * t602
-        + t1 * t600));
-    input_by_dq[9] = t608;
-    input_by_dq[15] = UR10E_C(0.099009900990099) * t607;
-    const ur10e_real_t t609 = UR10E_C(0.11001100110011001) * (t534 + UR10E_C(2.0) * (t11 * t466
-        - t24 * t464));
-    input_by_dq[21] = UR10E_C(1122.2222222222222) * parameters[FV4] + t609;
-    const ur10e_real_t t610 = UR10E_C(0.11001100110011001) * (t537 + UR10E_C(2.0) * (t11 * t443
-        - t24 * t448));
-    input_by_dq[27] = t610;
-    const ur10e_real_t t611 = UR10E_C(0.11001100110011001) * (t540 + UR10E_C(-2.0) * (t24 * t486
-        + t11 * t445));
-    input_by_dq[33] = t611;
-    input_by_ddq[3] = UR10E_C(0.08250825082508251) * t480;
-    input_by_ddq[9] = UR10E_C(0.08250825082508251) * t507;
-    input_by_ddq[15] = UR10E_C(0.099009900990099) * t506;
-    input_by_ddq[21] = UR10E_C(1122.2222222222222) * parameters[IA4] + UR10E_C(0.11001100110011001) * t499;
-    const ur10e_real_t t612 = UR10E_C(0.11001100110011001) * t465;
-    input_by_ddq[27] = t612;
-    const ur10e_real_t t613 = UR10E_C(0.11001100110011001) * t512;
-    input_by_ddq[33] = t613;
-    const ur10e_real_t t614 = UR10E_C(-2.0) * t20; /* link j5: derivatives */
-    const ur10e_real_t t615 = UR10E_C(2.0) * t19;
-    const ur10e_real_t t616 = t260 * t614 + t244 * t615 - (t50 * t438 + t33 * t436 + t160 * t446);
-    const ur10e_real_t t617 = t130 - (t616 + t105 * t288);
-    const ur10e_real_t t618 = t241 * t614 - t256 * t615 + (t160 * t447 - (t50 * t435 + t33 * t438));
-    const ur10e_real_t t619 = t136 + (t618 - t95 * t288);
-    const ur10e_real_t t620 = t269 * t614 + t95 * t289 + (t160 * t263 + t50 * t288);
-    const ur10e_real_t t621 = t139 + t620;
-    const ur10e_real_t t622 = t269 * t615 + t105 * t289 - (t33 * t288 + t160 * t264);
-    const ur10e_real_t t623 = t622 - t143;
-    const ur10e_real_t t624 = t17 * t621 - t18 * t623;
-    const ur10e_real_t t625 = t17 * t619 - t18 * t617 + UR10E_C(-0.11985) * t624;
-    const ur10e_real_t t626 = t50 * t447 - t33 * t446 - t160 * t443;
-    const ur10e_real_t t627 = t105 * t264 - t95 * t263;
-    const ur10e_real_t t628 = t296 * t614 - t298 * t615 + t626 + t627;
-    const ur10e_real_t t629 = t17 * t623 + t18 * t621;
-    const ur10e_real_t t630 = t286 * t614 - t285 * t615 - (t33 * t263 - t50 * t264);
-    const ur10e_real_t t631 = t7 * t629 + t5 * t630;
-    const ur10e_real_t t632 = t5 * t625 - t7 * t628 + (UR10E_C(-0.17415) * t631 + UR10E_C(0.57155) * t624);
-    const ur10e_real_t t633 = t5 * t629 - t7 * t630;
-    const ur10e_real_t t634 = t7 * t625 + t5 * t628 + UR10E_C(0.17415) * t633;
-    const ur10e_real_t t635 = t2 * (t3 * t634 + t1 * t632 + UR10E_C(0.6127) * t624);
-    const ur10e_real_t t636 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t634 - t3 * t632) + t635);
-    input_by_q[4] = t636;
-    const ur10e_real_t t637 = t18 * t619 + t17 * t617 + UR10E_C(-0.11985) * t629;
-    const ur10e_real_t t638 = t637 + UR10E_C(0.57155) * t633;
-    const ur10e_real_t t639 = UR10E_C(0.08250825082508251) * (t638 + UR10E_C(0.6127) * (t3 * t631
-        + t1 * t633));
-    input_by_q[10] = t639;
-    input_by_q[16] = UR10E_C(0.099009900990099) * t638;
-    input_by_q[22] = UR10E_C(0.11001100110011001) * t637;
-    const ur10e_real_t t640 = UR10E_C(0.11001100110011001) * (t627 + (t626 - (t20 * t396 + t19 * t397)));
-    input_by_q[28] = t640;
-    /* link j6: derivatives */
-    const ur10e_real_t t641 = t50 * t437 + t33 * parameters[ZZ6] + t160 * t445 - (t20 * t416 + t19 * t418);
-    input_by_q[34] = UR10E_C(0.11001100110011001) * (t641 + t105 * t236);
-    const ur10e_real_t t642 = UR10E_C(2.0) * t283 + (t438 * t615 - t435 * t614); /* link j5: derivatives */
-    const ur10e_real_t t643 = UR10E_C(2.0) * t284 - (t436 * t615 - t438 * t614);
-    const ur10e_real_t t644 = UR10E_C(2.0) * t286 + t288 * t615;
-    const ur10e_real_t t645 = UR10E_C(2.0) * t285 + t288 * t614;
-    const ur10e_real_t t646 = t18 * t644 - t17 * t645;
-    const ur10e_real_t t647 = t17 * t642 - t18 * t643 + UR10E_C(0.11985) * t646;
-    const ur10e_real_t t648 = t399 + (t447 * t614 + t446 * t615);
-    const ur10e_real_t t649 = t17 * t644 + t18 * t645;
-    const ur10e_real_t t650 = t264 * t614 + t263 * t615;
-    const ur10e_real_t t651 = t7 * t649 + t5 * t650;
-    const ur10e_real_t t652 = t7 * t648 - t5 * t647 + (UR10E_C(0.17415) * t651 + UR10E_C(0.57155) * t646);
-    const ur10e_real_t t653 = t5 * t649 - t7 * t650;
-    const ur10e_real_t t654 = t7 * t647 + t5 * t648 + UR10E_C(0.17415) * t653;
-    const ur10e_real_t t655 = t2 * (t3 * t654 - t1 * t652 + UR10E_C(-0.6127) * t646);
-    const ur10e_real_t t656 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t654 + t3 * t652) + t655);
-    input_by_dq[4] = t656;
-    const ur10e_real_t t657 = t18 * t642 + t17 * t643 + UR10E_C(-0.11985) * t649;
-    const ur10e_real_t t658 = t657 + UR10E_C(0.57155) * t653;
-    const ur10e_real_t t659 = UR10E_C(0.08250825082508251) * (t658 + UR10E_C(0.6127) * (t3 * t651
-        + t1 * t653));
-    input_by_dq[10] = t659;
-    input_by_dq[16] = UR10E_C(0.099009900990099) * t658;
-    input_by_dq[22] = UR10E_C(0.11001100110011001) * t657;
-    const ur10e_real_t t660 = UR10E_C(0.11001100110011001) * (t399 + UR10E_C(2.0) * (t19 * t446
-        - t20 * t447));
-    input_by_dq[28] = UR10E_C(1122.2222222222222) * parameters[FV5] + t660;
-    const ur10e_real_t t661 = UR10E_C(0.11001100110011001) * (t420 + UR10E_C(-2.0) * (t20 * t437
-        + t19 * parameters[ZZ6]));
-    input_by_dq[34] = t661;
-    input_by_ddq[4] = UR10E_C(0.08250825082508251) * t485;
-    input_by_ddq[10] = UR10E_C(0.08250825082508251) * t510;
-    input_by_ddq[16] = UR10E_C(0.099009900990099) * t509;
-    input_by_ddq[22] = t612;
-    input_by_ddq[28] = UR10E_C(1122.2222222222222) * parameters[IA5] + UR10E_C(0.11001100110011001) * t443;
-    const ur10e_real_t t662 = UR10E_C(-0.11001100110011001) * t445;
-    input_by_ddq[34] = t662;
-    const ur10e_real_t t663 = UR10E_C(-2.0) * t40; /* link j6: derivatives */
-    const ur10e_real_t t664 = UR10E_C(2.0) * t45;
-    const ur10e_real_t t665 = t220 * t663 - t227 * t664 - (t141 * parameters[XZ6] - (t44 * parameters[XX6]
+    const ur10e_real_t t218 = t115 * parameters[MX6] + t103 * parameters[MY6]; /* link j6: derivatives */
+    const ur10e_real_t t219 = t44 * parameters[XZ6] + t39 * parameters[YZ6] - t141 * parameters[ZZ6];
+    const ur10e_real_t t220 = UR10E_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const ur10e_real_t t221 = parameters[XX6] - t220;
+    const ur10e_real_t t222 = t40 * t221 - t45 * parameters[XY6];
+    const ur10e_real_t t223 = UR10E_C(2.0) * t222;
+    const ur10e_real_t t224 = t220 - parameters[YY6];
+    const ur10e_real_t t225 = t45 * t224 + t40 * parameters[XY6];
+    const ur10e_real_t t226 = UR10E_C(2.0) * t225;
+    const ur10e_real_t t227 = UR10E_C(0.11001100110011001) * (t218 + (t219 + (t45 * t226 - t40 * t223)));
+    input_by_q[35] = t227;
+    const ur10e_real_t t228 = t40 * parameters[XZ6];
+    const ur10e_real_t t229 = t41 * parameters[XY6];
+    const ur10e_real_t t230 = t229 - t228;
+    const ur10e_real_t t231 = UR10E_C(-2.0) * t40;
+    const ur10e_real_t t232 = t40 * parameters[YZ6] + t41 * t224;
+    const ur10e_real_t t233 = UR10E_C(2.0) * t45;
+    const ur10e_real_t t234 = t230 * t231 - t232 * t233 - (t141 * parameters[XZ6] - (t44 * parameters[XX6]
         + t39 * parameters[XY6]));
-    const ur10e_real_t t666 = t117 + (t665 - t116);
-    const ur10e_real_t t667 = t225 * t663 + t222 * t664 + (t141 * parameters[YZ6] - (t44 * parameters[XY6]
+    const ur10e_real_t t235 = t117 + (t234 - t116);
+    const ur10e_real_t t236 = t41 * t221 - t45 * parameters[XZ6];
+    const ur10e_real_t t237 = t45 * parameters[YZ6];
+    const ur10e_real_t t238 = t229 - t237;
+    const ur10e_real_t t239 = t236 * t231 + t238 * t233 + (t141 * parameters[YZ6] - (t44 * parameters[XY6]
         + t39 * parameters[YY6]));
-    const ur10e_real_t t668 = t110 + (t104 + t667);
-    const ur10e_real_t t669 = t123 + (t121 + t233 * t664 - (t122 + t141 * parameters[MY6]));
-    const ur10e_real_t t670 = t120 - (t119 + t141 * parameters[MX6] - (t118 + t233 * t663));
-    const ur10e_real_t t671 = t23 * t669 - t38 * t670;
-    const ur10e_real_t t672 = t38 * t666 + t23 * t668 + UR10E_C(0.11655) * t671;
-    const ur10e_real_t t673 = t115 * parameters[MX6] + t103 * parameters[MY6];
-    const ur10e_real_t t674 = t44 * parameters[XZ6] + t39 * parameters[YZ6] - t141 * parameters[ZZ6];
-    const ur10e_real_t t675 = t257 * t663 + t258 * t664 + t674 + t673;
-    const ur10e_real_t t676 = t38 * t669 + t23 * t670;
-    const ur10e_real_t t677 = t249 * t663 + t248 * t664 + (t44 * parameters[MY6] - t39 * parameters[MX6]);
-    const ur10e_real_t t678 = t17 * t677 - t18 * t676;
-    const ur10e_real_t t679 = t17 * t672 - t18 * t675 + UR10E_C(-0.11985) * t678;
-    const ur10e_real_t t680 = t38 * t668 - t23 * t666 + UR10E_C(0.11655) * t676;
-    const ur10e_real_t t681 = t17 * t676 + t18 * t677;
-    const ur10e_real_t t682 = t5 * t681 + t7 * t671;
-    const ur10e_real_t t683 = t7 * t679 + t5 * t680 + UR10E_C(0.17415) * t682;
-    const ur10e_real_t t684 = t7 * t681 - t5 * t671;
-    const ur10e_real_t t685 = t5 * t679 - t7 * t680 + (UR10E_C(-0.17415) * t684 + UR10E_C(0.57155) * t678);
-    const ur10e_real_t t686 = t2 * (t3 * t683 + t1 * t685 + UR10E_C(0.6127) * t678);
-    const ur10e_real_t t687 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t683 - t3 * t685) + t686);
-    input_by_q[5] = t687;
-    const ur10e_real_t t688 = t18 * t672 + t17 * t675 + UR10E_C(-0.11985) * t681;
-    const ur10e_real_t t689 = t688 + UR10E_C(0.57155) * t682;
-    const ur10e_real_t t690 = UR10E_C(0.08250825082508251) * (t689 + UR10E_C(0.6127) * (t3 * t684
-        + t1 * t682));
-    input_by_q[11] = t690;
-    input_by_q[17] = UR10E_C(0.099009900990099) * t689;
-    input_by_q[23] = UR10E_C(0.11001100110011001) * t688;
-    input_by_q[29] = UR10E_C(0.11001100110011001) * t680;
-    const ur10e_real_t t691 = UR10E_C(0.11001100110011001) * (t673 + (t674 + (t45 * t415 - t40 * t414)));
-    input_by_q[35] = t691;
-    const ur10e_real_t t692 = UR10E_C(2.0) * t246 + (parameters[XX6] * t663 + parameters[XY6] * t664);
-    const ur10e_real_t t693 = UR10E_C(2.0) * t247 + (parameters[XY6] * t663 + parameters[YY6] * t664);
-    const ur10e_real_t t694 = UR10E_C(-2.0) * t249 + parameters[MZ6] * t664;
-    const ur10e_real_t t695 = UR10E_C(-2.0) * t248 - parameters[MZ6] * t663;
-    const ur10e_real_t t696 = t23 * t694 + t38 * t695;
-    const ur10e_real_t t697 = t23 * t693 - t38 * t692 + UR10E_C(0.11655) * t696;
-    const ur10e_real_t t698 = t417 - (parameters[XZ6] * t663 + parameters[YZ6] * t664);
-    const ur10e_real_t t699 = t38 * t694 - t23 * t695;
-    const ur10e_real_t t700 = parameters[MX6] * t664 - parameters[MY6] * t663;
-    const ur10e_real_t t701 = t18 * t699 - t17 * t700;
-    const ur10e_real_t t702 = t17 * t697 - t18 * t698 + UR10E_C(0.11985) * t701;
-    const ur10e_real_t t703 = t23 * t692 + t38 * t693 + UR10E_C(0.11655) * t699;
-    const ur10e_real_t t704 = t17 * t699 + t18 * t700;
-    const ur10e_real_t t705 = t5 * t704 + t7 * t696;
-    const ur10e_real_t t706 = t7 * t702 + t5 * t703 + UR10E_C(0.17415) * t705;
-    const ur10e_real_t t707 = t7 * t704 - t5 * t696;
-    const ur10e_real_t t708 = t7 * t703 - t5 * t702 + (UR10E_C(0.17415) * t707 + UR10E_C(0.57155) * t701);
-    const ur10e_real_t t709 = t2 * (t3 * t706 - t1 * t708 + UR10E_C(-0.6127) * t701);
-    const ur10e_real_t t710 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t706 + t3 * t708) + t709);
-    input_by_dq[5] = t710;
-    const ur10e_real_t t711 = t18 * t697 + t17 * t698 + UR10E_C(-0.11985) * t704;
-    const ur10e_real_t t712 = t711 + UR10E_C(0.57155) * t705;
-    const ur10e_real_t t713 = UR10E_C(0.08250825082508251) * (t712 + UR10E_C(0.6127) * (t3 * t707
-        + t1 * t705));
-    input_by_dq[11] = t713;
-    input_by_dq[17] = UR10E_C(0.099009900990099) * t712;
-    input_by_dq[23] = UR10E_C(0.11001100110011001) * t711;
-    input_by_dq[29] = UR10E_C(0.11001100110011001) * t703;
+    const ur10e_real_t t240 = t110 + (t104 + t239);
+    const ur10e_real_t t241 = t45 * parameters[MY6] - t40 * parameters[MX6];
+    const ur10e_real_t t242 = t123 + (t121 + t241 * t233 - (t122 + t141 * parameters[MY6]));
+    const ur10e_real_t t243 = t120 - (t119 + t141 * parameters[MX6] - (t118 + t241 * t231));
+    const ur10e_real_t t244 = t38 * t242 + t23 * t243;
+    const ur10e_real_t t245 = t38 * t240 - t23 * t235 + UR10E_C(0.11655) * t244;
+    input_by_q[29] = UR10E_C(0.11001100110011001) * t245;
+    const ur10e_real_t t246 = t23 * t242 - t38 * t243;
+    const ur10e_real_t t247 = t38 * t235 + t23 * t240 + UR10E_C(0.11655) * t246;
+    const ur10e_real_t t248 = t222 * t231 + t225 * t233 + t219 + t218;
+    const ur10e_real_t t249 = t45 * parameters[MZ6] - t41 * parameters[MX6];
+    const ur10e_real_t t250 = t40 * parameters[MZ6] - t41 * parameters[MY6];
+    const ur10e_real_t t251 = t249 * t231 + t250 * t233 + (t44 * parameters[MY6] - t39 * parameters[MX6]);
+    const ur10e_real_t t252 = t17 * t244 + t18 * t251;
+    const ur10e_real_t t253 = t18 * t247 + t17 * t248 + UR10E_C(-0.11985) * t252;
+    input_by_q[23] = UR10E_C(0.11001100110011001) * t253;
+    const ur10e_real_t t254 = t5 * t252 + t7 * t246;
+    const ur10e_real_t t255 = t253 + UR10E_C(0.57155) * t254;
+    input_by_q[17] = UR10E_C(0.099009900990099) * t255;
+    const ur10e_real_t t256 = t7 * t252 - t5 * t246;
+    const ur10e_real_t t257 = UR10E_C(0.08250825082508251) * (t255 + UR10E_C(0.6127) * (t3 * t256
+        + t1 * t254));
+    input_by_q[11] = t257;
+    const ur10e_real_t t258 = t17 * t251 - t18 * t244;
+    const ur10e_real_t t259 = t17 * t247 - t18 * t248 + UR10E_C(-0.11985) * t258;
+    const ur10e_real_t t260 = t7 * t259 + t5 * t245 + UR10E_C(0.17415) * t254;
+    const ur10e_real_t t261 = t5 * t259 - t7 * t245 + (UR10E_C(-0.17415) * t256 + UR10E_C(0.57155) * t258);
+    const ur10e_real_t t262 = t2 * (t3 * t260 + t1 * t261 + UR10E_C(0.6127) * t258);
+    const ur10e_real_t t263 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t260 - t3 * t261) + t262);
+    input_by_q[5] = t263;
     input_by_dq[35] = UR10E_C(1122.2222222222222) * parameters[FV6];
-    input_by_ddq[5] = UR10E_C(0.08250825082508251) * t491;
-    input_by_ddq[11] = UR10E_C(0.08250825082508251) * t514;
-    input_by_ddq[17] = UR10E_C(0.099009900990099) * t513;
-    input_by_ddq[23] = t613;
-    input_by_ddq[29] = t662;
+    const ur10e_real_t t264 = parameters[ZZ6] - t220;
+    const ur10e_real_t t265 = t41 * parameters[YZ6] - t40 * t264;
+    const ur10e_real_t t266 = UR10E_C(2.0) * t265 + (parameters[XX6] * t231 + parameters[XY6] * t233);
+    const ur10e_real_t t267 = t45 * t264 - t41 * parameters[XZ6];
+    const ur10e_real_t t268 = UR10E_C(2.0) * t267 + (parameters[XY6] * t231 + parameters[YY6] * t233);
+    const ur10e_real_t t269 = UR10E_C(-2.0) * t249 + parameters[MZ6] * t233;
+    const ur10e_real_t t270 = UR10E_C(-2.0) * t250 - parameters[MZ6] * t231;
+    const ur10e_real_t t271 = t38 * t269 - t23 * t270;
+    const ur10e_real_t t272 = t23 * t266 + t38 * t268 + UR10E_C(0.11655) * t271;
+    input_by_dq[29] = UR10E_C(0.11001100110011001) * t272;
+    const ur10e_real_t t273 = t23 * t269 + t38 * t270;
+    const ur10e_real_t t274 = t23 * t268 - t38 * t266 + UR10E_C(0.11655) * t273;
+    const ur10e_real_t t275 = t237 - t228;
+    const ur10e_real_t t276 = UR10E_C(2.0) * t275;
+    const ur10e_real_t t277 = t276 - (parameters[XZ6] * t231 + parameters[YZ6] * t233);
+    const ur10e_real_t t278 = parameters[MX6] * t233 - parameters[MY6] * t231;
+    const ur10e_real_t t279 = t17 * t271 + t18 * t278;
+    const ur10e_real_t t280 = t18 * t274 + t17 * t277 + UR10E_C(-0.11985) * t279;
+    input_by_dq[23] = UR10E_C(0.11001100110011001) * t280;
+    const ur10e_real_t t281 = t5 * t279 + t7 * t273;
+    const ur10e_real_t t282 = t280 + UR10E_C(0.57155) * t281;
+    input_by_dq[17] = UR10E_C(0.099009900990099) * t282;
+    const ur10e_real_t t283 = t7 * t279 - t5 * t273;
+    const ur10e_real_t t284 = UR10E_C(0.08250825082508251) * (t282 + UR10E_C(0.6127) * (t3 * t283
+        + t1 * t281));
+    input_by_dq[11] = t284;
+    const ur10e_real_t t285 = t18 * t271 - t17 * t278;
+    const ur10e_real_t t286 = t17 * t274 - t18 * t277 + UR10E_C(0.11985) * t285;
+    const ur10e_real_t t287 = t7 * t286 + t5 * t272 + UR10E_C(0.17415) * t281;
+    const ur10e_real_t t288 = t7 * t272 - t5 * t286 + (UR10E_C(0.17415) * t283 + UR10E_C(0.57155) * t285);
+    const ur10e_real_t t289 = t2 * (t3 * t287 - t1 * t288 + UR10E_C(-0.6127) * t285);
+    const ur10e_real_t t290 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t287 + t3 * t288) + t289);
+    input_by_dq[5] = t290;
     input_by_ddq[35] = UR10E_C(1122.2222222222222) * parameters[IA6]
         + UR10E_C(0.11001100110011001) * parameters[ZZ6];
+    /* link j6: column of the mass matrix */
+    const ur10e_real_t t291 = t38 * parameters[MY6] + t23 * parameters[MX6];
+    const ur10e_real_t t292 = t23 * parameters[XZ6] + t38 * parameters[YZ6] - UR10E_C(0.11655) * t291;
+    const ur10e_real_t t293 = UR10E_C(-0.11001100110011001) * t292;
+    input_by_ddq[29] = t293;
+    const ur10e_real_t t294 = t23 * parameters[MY6] - t38 * parameters[MX6];
+    const ur10e_real_t t295 = t23 * parameters[YZ6] - t38 * parameters[XZ6] + UR10E_C(-0.11655) * t294;
+    const ur10e_real_t t296 = t17 * t291;
+    const ur10e_real_t t297 = t17 * parameters[ZZ6] - t18 * t295 + UR10E_C(-0.11985) * t296;
+    const ur10e_real_t t298 = UR10E_C(0.11001100110011001) * t297;
+    input_by_ddq[23] = t298;
+    const ur10e_real_t t299 = t5 * t296 + t7 * t294;
+    const ur10e_real_t t300 = t297 + UR10E_C(0.57155) * t299;
+    input_by_ddq[17] = UR10E_C(0.099009900990099) * t300;
+    const ur10e_real_t t301 = t7 * t296 - t5 * t294;
+    const ur10e_real_t t302 = t3 * t301 + t1 * t299;
+    const ur10e_real_t t303 = t300 + UR10E_C(0.6127) * t302;
+    input_by_ddq[11] = UR10E_C(0.08250825082508251) * t303;
+    const ur10e_real_t t304 = t18 * t291;
+    const ur10e_real_t t305 = t17 * t295 + t18 * parameters[ZZ6] + UR10E_C(-0.11985) * t304;
+    const ur10e_real_t t306 = t7 * t305 + t5 * t292 + UR10E_C(-0.17415) * t299;
+    const ur10e_real_t t307 = t5 * t305 - t7 * t292 + (UR10E_C(0.17415) * t301 + UR10E_C(0.57155) * t304);
+    const ur10e_real_t t308 = t3 * t307 - t1 * t306;
+    const ur10e_real_t t309 = t3 * t306 + t1 * t307 + UR10E_C(0.6127) * t304;
+    const ur10e_real_t t310 = t0 * t308 - t2 * t309;
+    input_by_ddq[5] = UR10E_C(0.08250825082508251) * t310;
+    const ur10e_real_t t311 = t38 * t223 - t23 * t226; /* link j6: derivatives */
+    const ur10e_real_t t312 = t276 + (t291 * (UR10E_C(-0.2331) * t19) + t294 * (UR10E_C(-0.2331) * t34));
+    const ur10e_real_t t313 = t50 * t295 + t33 * parameters[ZZ6] + t160 * t292 - (t20 * t311 + t19 * t312);
+    input_by_q[34] = UR10E_C(0.11001100110011001) * (t313 + t105 * t291);
+    const ur10e_real_t t314 = UR10E_C(-0.2397) * t11;
+    const ur10e_real_t t315 = t17 * t311 + t18 * t312 - t294 * t314;
+    const ur10e_real_t t316 = t23 * t223 + t38 * t226;
+    const ur10e_real_t t317 = UR10E_C(-0.2397) * t13;
+    const ur10e_real_t t318 = t316 + (t296 * t314 + t304 * t317);
+    const ur10e_real_t t319 = t11 * t318 - t24 * t315 - (t9 * t305 + t29 * t292 + t171 * t297);
+    input_by_q[33] = UR10E_C(0.11001100110011001) * (t319 + (t97 * t296 - t81 * t294));
+    const ur10e_real_t t320 = UR10E_C(-0.57155) * t12 + UR10E_C(-0.17415) * t76;
+    const ur10e_real_t t321 = UR10E_C(2.0) * t320;
+    const ur10e_real_t t322 = UR10E_C(1.1431) * t69;
+    const ur10e_real_t t323 = t5 * t318 - t7 * t315 + (t299 * t322 - t304 * t321);
+    const ur10e_real_t t324 = UR10E_C(-0.3483) * t69;
+    const ur10e_real_t t325 = t5 * t315 + t7 * t318 + (t301 * t322 + t304 * t324);
+    const ur10e_real_t t326 = t69 * t323 + t76 * t325 + (t79 * t307 - t73 * t306 - t84 * t300);
+    input_by_q[32] = UR10E_C(0.11001100110011001) * (t326 + (t75 * t301 + t68 * t299));
+    const ur10e_real_t t327 = UR10E_C(1.2254) * t58;
+    const ur10e_real_t t328 = UR10E_C(-1.2254) * dq[1];
+    const ur10e_real_t t329 = t1 * t323 + t3 * t325 + (t302 * t327 - t304 * t328);
+    const ur10e_real_t t330 = t3 * t299 - t1 * t301; /* link j6: column of the mass matrix */
+    const ur10e_real_t t331 = t3 * t323 - t1 * t325 + t330 * t327; /* link j6: derivatives */
+    const ur10e_real_t t332 = t189 + t59; /* link j3: motion */
+    /* link j6: derivatives */
+    const ur10e_real_t t333 = t58 * t329 - t63 * t331 + (t88 * t308 + t181 * t309 - t332 * t303);
+    input_by_q[31] = UR10E_C(0.11001100110011001) * (t333 + (t61 * t302 - t66 * t330));
+    const ur10e_real_t t334 = UR10E_C(0.11001100110011001) * (t316 + UR10E_C(-2.0) * (t20 * t295
+        + t19 * parameters[ZZ6]));
+    input_by_dq[34] = t334;
+    const ur10e_real_t t335 = t17 * t312 - t18 * t311 + t294 * t317;
+    const ur10e_real_t t336 = UR10E_C(0.11001100110011001) * (t335 + UR10E_C(-2.0) * (t24 * t305
+        + t11 * t292));
+    input_by_dq[33] = t336;
+    const ur10e_real_t t337 = t335 + (t299 * t324 + t301 * t321);
+    const ur10e_real_t t338 = UR10E_C(0.11001100110011001) * (t337 + UR10E_C(2.0) * (t76 * t307
+        - t69 * t306));
+    input_by_dq[32] = t338;
+    const ur10e_real_t t339 = t337 - t330 * t328 + UR10E_C(2.0) * (t58 * t308 + t63 * t309);
+    input_by_dq[31] = UR10E_C(0.11001100110011001) * t339;
+    input_by_dq[30] = UR10E_C(0.11001100110011001) * (t0 * t329 + t2 * t331);
+    input_by_ddq[34] = t293;
+    input_by_ddq[33] = t298;
+    input_by_ddq[32] = UR10E_C(0.11001100110011001) * t300;
+    input_by_ddq[31] = UR10E_C(0.11001100110011001) * t303;
+    input_by_ddq[30] = UR10E_C(0.11001100110011001) * t310;
+    const ur10e_real_t t340 = t294 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t341 = UR10E_C(0.11655) * parameters[M6];
+    const ur10e_real_t t342 = parameters[MZ6] + t341;
+    const ur10e_real_t t343 = parameters[MY5] + t342;
+    const ur10e_real_t t344 = t105 * t343 - t95 * t340; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t345 = t38 * (t230 + t238) + t23 * (t236 + t232);
+    const ur10e_real_t t346 = t23 * t345;
+    const ur10e_real_t t347 = UR10E_C(0.11655) * t19;
+    const ur10e_real_t t348 = UR10E_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const ur10e_real_t t349 = t348 - parameters[XX5];
+    const ur10e_real_t t350 = t236 - t346 - t294 * t347 - (t19 * parameters[XY5] + t20 * t349);
+    const ur10e_real_t t351 = UR10E_C(2.0) * t350; /* link j5: derivatives */
+    const ur10e_real_t t352 = t38 * t249 - t23 * t250; /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t353 = t23 * t265 + t38 * t267 + (UR10E_C(-0.11655) * t352 - t342 * t347);
+    const ur10e_real_t t354 = parameters[YY5] - t348;
+    const ur10e_real_t t355 = t19 * t354 - t20 * parameters[XY5] + t353;
+    const ur10e_real_t t356 = UR10E_C(2.0) * t355; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t357 = t38 * t131 - parameters[XY6] * (UR10E_C(2.0) * t23);
+    const ur10e_real_t t358 = parameters[XY6] + t23 * t357 - parameters[XZ5];
+    const ur10e_real_t t359 = t292 - parameters[YZ5];
+    const ur10e_real_t t360 = t38 * t357;
+    const ur10e_real_t t361 = UR10E_C(0.11655) * (t341 + UR10E_C(2.0) * parameters[MZ6]);
+    const ur10e_real_t t362 = parameters[ZZ5] + (parameters[XX6] - t360 + t361);
+    const ur10e_real_t t363 = t50 * t358 - t33 * t359 - t160 * t362; /* link j5: derivatives */
+    const ur10e_real_t t364 = UR10E_C(0.11001100110011001) * (t344 + (t363 - (t20 * t351 + t19 * t356)));
+    input_by_q[28] = t364;
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t365 = t34 * t349 - t19 * parameters[XZ5] + (t23 * t225 - t38 * t222);
+    const ur10e_real_t t366 = UR10E_C(-2.0) * t20; /* link j5: derivatives */
+    const ur10e_real_t t367 = UR10E_C(0.11655) * t241; /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t368 = UR10E_C(-0.11655) * t34;
+    const ur10e_real_t t369 = t294 * t368;
+    const ur10e_real_t t370 = t291 * t347;
+    const ur10e_real_t t371 = t367 + (t369 - t370);
+    const ur10e_real_t t372 = t34 * parameters[XY5];
+    const ur10e_real_t t373 = t19 * parameters[YZ5];
+    const ur10e_real_t t374 = t371 + (t275 - t367) - (t372 + t373);
+    const ur10e_real_t t375 = UR10E_C(2.0) * t19; /* link j5: derivatives */
+    const ur10e_real_t t376 = t295 - parameters[XY5]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t377 = parameters[YY5] + parameters[ZZ6];
+    /* link j5: derivatives */
+    const ur10e_real_t t378 = t365 * t366 + t374 * t375 - (t50 * t376 + t33 * t377 + t160 * t359);
+    const ur10e_real_t t379 = parameters[MZ5] - t291; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t380 = t130 - (t378 + t105 * t379); /* link j5: derivatives */
+    const ur10e_real_t t381 = t38 * t345; /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t382 = t20 * parameters[XZ5];
+    const ur10e_real_t t383 = t381 - t238 + t369 - t371 - (t382 + t372);
+    const ur10e_real_t t384 = t38 * t250 + t23 * t249;
+    const ur10e_real_t t385 = t23 * t267 - t38 * t265 + (UR10E_C(-0.11655) * t384 + t342 * t368);
+    const ur10e_real_t t386 = t20 * parameters[YZ5] + t34 * t354 + t385;
+    /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t387 = parameters[XX5] + (parameters[YY6] + t360 + t361);
+    /* link j5: derivatives */
+    const ur10e_real_t t388 = t383 * t366 - t386 * t375 + (t160 * t358 - (t50 * t387 + t33 * t376));
+    const ur10e_real_t t389 = t136 + (t388 - t95 * t379);
+    const ur10e_real_t t390 = parameters[M5] + parameters[M6]; /* link j6: inertia of it and all beyond */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t391 = t19 * parameters[MY5] - t20 * parameters[MX5] + (t352 + parameters[M6] * t347);
+    /* link j5: derivatives */
+    const ur10e_real_t t392 = t391 * t366 + t95 * t390 + (t160 * t340 + t50 * t379);
+    const ur10e_real_t t393 = t139 + t392;
+    const ur10e_real_t t394 = t391 * t375 + t105 * t390 - (t33 * t379 + t160 * t343);
+    const ur10e_real_t t395 = t394 - t143;
+    const ur10e_real_t t396 = t17 * t395 + t18 * t393;
+    const ur10e_real_t t397 = t18 * t389 + t17 * t380 + UR10E_C(-0.11985) * t396;
+    input_by_q[22] = UR10E_C(0.11001100110011001) * t397;
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t398 = t241 - (t34 * parameters[MX5] + t19 * parameters[MZ5]);
+    const ur10e_real_t t399 = t20 * parameters[MZ5] + t34 * parameters[MY5] + (t384 - parameters[M6] * t368);
+    /* link j5: derivatives */
+    const ur10e_real_t t400 = t398 * t366 - t399 * t375 - (t33 * t340 - t50 * t343);
+    const ur10e_real_t t401 = t5 * t396 - t7 * t400;
+    const ur10e_real_t t402 = t397 + UR10E_C(0.57155) * t401;
+    input_by_q[16] = UR10E_C(0.099009900990099) * t402;
+    const ur10e_real_t t403 = t7 * t396 + t5 * t400;
+    const ur10e_real_t t404 = UR10E_C(0.08250825082508251) * (t402 + UR10E_C(0.6127) * (t3 * t403
+        + t1 * t401));
+    input_by_q[10] = t404;
+    const ur10e_real_t t405 = t17 * t393 - t18 * t395;
+    const ur10e_real_t t406 = t17 * t389 - t18 * t380 + UR10E_C(-0.11985) * t405;
+    const ur10e_real_t t407 = t350 * t366 - t355 * t375 + t363 + t344;
+    const ur10e_real_t t408 = t5 * t406 - t7 * t407 + (UR10E_C(-0.17415) * t403 + UR10E_C(0.57155) * t405);
+    const ur10e_real_t t409 = t7 * t406 + t5 * t407 + UR10E_C(0.17415) * t401;
+    const ur10e_real_t t410 = t2 * (t3 * t409 + t1 * t408 + UR10E_C(0.6127) * t405);
+    const ur10e_real_t t411 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t409 - t3 * t408) + t410);
+    input_by_q[4] = t411;
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t412 = t373 - t382 + (t371 + (t381 - t230 + t370));
+    const ur10e_real_t t413 = UR10E_C(2.0) * t412; /* link j5: derivatives */
+    const ur10e_real_t t414 = UR10E_C(0.11001100110011001) * (t413 + UR10E_C(2.0) * (t19 * t359
+        - t20 * t358));
+    input_by_dq[28] = UR10E_C(1122.2222222222222) * parameters[FV5] + t414;
+    const ur10e_real_t t415 = t348 - parameters[ZZ5];
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t416 = t34 * parameters[YZ5] - t20 * t415 + (t346 - t232 - t291 * t368);
+    const ur10e_real_t t417 = UR10E_C(2.0) * t416 + (t376 * t375 - t387 * t366); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const ur10e_real_t t418 = t19 * t415 - t34 * parameters[XZ5] + (t23 * t222 + t38 * t225);
+    const ur10e_real_t t419 = UR10E_C(2.0) * t418 - (t377 * t375 - t376 * t366); /* link j5: derivatives */
+    const ur10e_real_t t420 = UR10E_C(2.0) * t398 + t379 * t375;
+    const ur10e_real_t t421 = UR10E_C(2.0) * t399 + t379 * t366;
+    const ur10e_real_t t422 = t17 * t420 + t18 * t421;
+    const ur10e_real_t t423 = t18 * t417 + t17 * t419 + UR10E_C(-0.11985) * t422;
+    input_by_dq[22] = UR10E_C(0.11001100110011001) * t423;
+    const ur10e_real_t t424 = t343 * t366 + t340 * t375;
+    const ur10e_real_t t425 = t5 * t422 - t7 * t424;
+    const ur10e_real_t t426 = t423 + UR10E_C(0.57155) * t425;
+    input_by_dq[16] = UR10E_C(0.099009900990099) * t426;
+    const ur10e_real_t t427 = t7 * t422 + t5 * t424;
+    const ur10e_real_t t428 = UR10E_C(0.08250825082508251) * (t426 + UR10E_C(0.6127) * (t3 * t427
+        + t1 * t425));
+    input_by_dq[10] = t428;
+    const ur10e_real_t t429 = t18 * t420 - t17 * t421;
+    const ur10e_real_t t430 = t17 * t417 - t18 * t419 + UR10E_C(0.11985) * t429;
+    const ur10e_real_t t431 = t413 + (t358 * t366 + t359 * t375);
+    const ur10e_real_t t432 = t7 * t431 - t5 * t430 + (UR10E_C(0.17415) * t427 + UR10E_C(0.57155) * t429);
+    const ur10e_real_t t433 = t7 * t430 + t5 * t431 + UR10E_C(0.17415) * t425;
+    const ur10e_real_t t434 = t2 * (t3 * t433 - t1 * t432 + UR10E_C(-0.6127) * t429);
+    const ur10e_real_t t435 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t433 + t3 * t432) + t434);
+    input_by_dq[4] = t435;
+    input_by_ddq[28] = UR10E_C(1122.2222222222222) * parameters[IA5] + UR10E_C(0.11001100110011001) * t362;
+    const ur10e_real_t t436 = t17 * t343 - t18 * t340; /* link j5: column of the mass matrix */
+    const ur10e_real_t t437 = UR10E_C(-0.11985) * t436 - (t18 * t358 + t17 * t359);
+    const ur10e_real_t t438 = UR10E_C(0.11001100110011001) * t437;
+    input_by_ddq[22] = t438;
+    const ur10e_real_t t439 = t5 * t436;
+    const ur10e_real_t t440 = t437 + UR10E_C(0.57155) * t439;
+    input_by_ddq[16] = UR10E_C(0.099009900990099) * t440;
+    const ur10e_real_t t441 = t7 * t436;
+    const ur10e_real_t t442 = t3 * t441 + t1 * t439;
+    const ur10e_real_t t443 = t440 + UR10E_C(0.6127) * t442;
+    input_by_ddq[10] = UR10E_C(0.08250825082508251) * t443;
+    const ur10e_real_t t444 = t18 * t343 + t17 * t340;
+    const ur10e_real_t t445 = t17 * t358 - t18 * t359 + UR10E_C(-0.11985) * t444;
+    const ur10e_real_t t446 = t7 * t445 - t5 * t362 + UR10E_C(-0.17415) * t439;
+    const ur10e_real_t t447 = t5 * t445 + t7 * t362 + (UR10E_C(0.17415) * t441 + UR10E_C(0.57155) * t444);
+    const ur10e_real_t t448 = t3 * t447 - t1 * t446;
+    const ur10e_real_t t449 = t3 * t446 + t1 * t447 + UR10E_C(0.6127) * t444;
+    const ur10e_real_t t450 = t0 * t448 - t2 * t449;
+    input_by_ddq[4] = UR10E_C(0.08250825082508251) * t450;
+    const ur10e_real_t t451 = t17 * t351 + t18 * t356; /* link j5: derivatives */
+    const ur10e_real_t t452 = t413 + (t436 * t314 + t444 * t317);
+    const ur10e_real_t t453 = t11 * t452 - t24 * t451 + (t29 * t362 - t9 * t445 - t171 * t437);
+    input_by_q[27] = UR10E_C(0.11001100110011001) * (t453 + t97 * t436);
+    const ur10e_real_t t454 = t5 * t452 - t7 * t451 + (t439 * t322 - t444 * t321);
+    const ur10e_real_t t455 = t5 * t451 + t7 * t452 + (t441 * t322 + t444 * t324);
+    const ur10e_real_t t456 = t69 * t454 + t76 * t455 + (t79 * t447 - t73 * t446 - t84 * t440);
+    input_by_q[26] = UR10E_C(0.11001100110011001) * (t456 + (t75 * t441 + t68 * t439));
+    const ur10e_real_t t457 = t1 * t454 + t3 * t455 + (t442 * t327 - t444 * t328);
+    const ur10e_real_t t458 = t3 * t439 - t1 * t441; /* link j5: column of the mass matrix */
+    const ur10e_real_t t459 = t3 * t454 - t1 * t455 + t458 * t327; /* link j5: derivatives */
+    const ur10e_real_t t460 = t58 * t457 - t63 * t459 + (t88 * t448 + t181 * t449 - t332 * t443);
+    input_by_q[25] = UR10E_C(0.11001100110011001) * (t460 + (t61 * t442 - t66 * t458));
+    const ur10e_real_t t461 = t17 * t356 - t18 * t351;
+    const ur10e_real_t t462 = UR10E_C(0.11001100110011001) * (t461 + UR10E_C(2.0) * (t11 * t362
+        - t24 * t445));
+    input_by_dq[27] = t462;
+    const ur10e_real_t t463 = t461 + (t439 * t324 + t441 * t321);
+    const ur10e_real_t t464 = UR10E_C(0.11001100110011001) * (t463 + UR10E_C(2.0) * (t76 * t447
+        - t69 * t446));
+    input_by_dq[26] = t464;
+    const ur10e_real_t t465 = t463 - t458 * t328 + UR10E_C(2.0) * (t58 * t448 + t63 * t449);
+    input_by_dq[25] = UR10E_C(0.11001100110011001) * t465;
+    input_by_dq[24] = UR10E_C(0.11001100110011001) * (t0 * t457 + t2 * t459);
+    input_by_ddq[27] = t438;
+    input_by_ddq[26] = UR10E_C(0.11001100110011001) * t440;
+    input_by_ddq[25] = UR10E_C(0.11001100110011001) * t443;
+    input_by_ddq[24] = UR10E_C(0.11001100110011001) * t450;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t466 = t17 * (t383 + t374) + t18 * (t386 + t365);
+    const ur10e_real_t t467 = t18 * t466;
+    const ur10e_real_t t468 = UR10E_C(0.11985) * t11;
+    const ur10e_real_t t469 = UR10E_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const ur10e_real_t t470 = parameters[XX4] - t469;
+    const ur10e_real_t t471 = t24 * t470 - t11 * parameters[XY4] + (t467 - t365 + t444 * t468);
+    const ur10e_real_t t472 = UR10E_C(2.0) * t471; /* link j4: derivatives */
+    const ur10e_real_t t473 = t18 * t399 + t17 * t398; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t474 = UR10E_C(0.11985) * t390; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t475 = t379 + t474;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t476 = t18 * t416 + t17 * t418 + (UR10E_C(-0.11985) * t473 + t475 * t468);
+    const ur10e_real_t t477 = parameters[YY4] - t469;
+    const ur10e_real_t t478 = t24 * parameters[XY4] - t11 * t477 + t476;
+    const ur10e_real_t t479 = UR10E_C(2.0) * t478; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t480 = t17 * (t377 - t387) - t376 * (UR10E_C(2.0) * t18);
+    const ur10e_real_t t481 = t376 + t18 * t480 - parameters[XZ4];
+    const ur10e_real_t t482 = t437 - parameters[YZ4];
+    const ur10e_real_t t483 = t17 * t480;
+    const ur10e_real_t t484 = UR10E_C(0.11985) * (t474 + UR10E_C(2.0) * t379);
+    const ur10e_real_t t485 = parameters[ZZ4] + (t387 + t483 + t484);
+    const ur10e_real_t t486 = t29 * t482 - t9 * t481 - t171 * t485; /* link j4: derivatives */
+    const ur10e_real_t t487 = t444 - parameters[MX4]; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t488 = t475 - parameters[MY4];
+    const ur10e_real_t t489 = t81 * t487 + t97 * t488; /* link j4: derivatives */
+    const ur10e_real_t t490 = UR10E_C(0.11001100110011001) * (t486 + (t11 * t479 - t24 * t472) - t489);
+    input_by_q[21] = t490;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t491 = t11 * parameters[MY4] - t24 * parameters[MX4] + (t473 - t390 * t468);
+    const ur10e_real_t t492 = UR10E_C(2.0) * t11; /* link j4: derivatives */
+    const ur10e_real_t t493 = parameters[M4] + t390; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t494 = parameters[MZ4] + t436;
+    /* link j4: derivatives */
+    const ur10e_real_t t495 = t491 * t492 + t97 * t493 + (t29 * t494 + t171 * t488);
+    const ur10e_real_t t496 = t163 + t495;
+    const ur10e_real_t t497 = UR10E_C(2.0) * t24;
+    const ur10e_real_t t498 = t81 * t493 - t491 * t497 - (t9 * t494 - t171 * t487);
+    const ur10e_real_t t499 = t159 + t498;
+    const ur10e_real_t t500 = t5 * t496 - t7 * t499;
+    const ur10e_real_t t501 = t478 * t492 - t471 * t497 + t486 - t489 + UR10E_C(0.57155) * t500;
+    input_by_q[15] = UR10E_C(0.099009900990099) * t501;
+    const ur10e_real_t t502 = t7 * t496 + t5 * t499;
+    const ur10e_real_t t503 = UR10E_C(0.08250825082508251) * (t501 + UR10E_C(0.6127) * (t3 * t502
+        + t1 * t500));
+    input_by_q[9] = t503;
+    const ur10e_real_t t504 = t17 * t466; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t505 = UR10E_C(-0.11985) * t13; /* link j5: velocity of its origin */
+    const ur10e_real_t t506 = t444 * t505; /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t507 = UR10E_C(0.11985) * t391;
+    const ur10e_real_t t508 = t436 * t468;
+    const ur10e_real_t t509 = t507 + (t506 - t508);
+    const ur10e_real_t t510 = t24 * parameters[XZ4];
+    const ur10e_real_t t511 = t13 * parameters[XY4];
+    const ur10e_real_t t512 = t511 - t510 + (t504 - t374 + t506 - t509);
+    const ur10e_real_t t513 = t17 * t399 - t18 * t398;
+    const ur10e_real_t t514 = t17 * t416 - t18 * t418 + (UR10E_C(-0.11985) * t513 + t475 * t505);
+    const ur10e_real_t t515 = t13 * t477 - t24 * parameters[YZ4] + t514;
+    /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t516 = t483 - t377 - t484 - parameters[XX4];
+    const ur10e_real_t t517 = parameters[XY4] + t445;
+    /* link j4: derivatives */
+    const ur10e_real_t t518 = t515 * t492 - t512 * t497 + (t171 * t481 - (t9 * t516 + t29 * t517));
+    const ur10e_real_t t519 = t156 + (t518 - t81 * t494);
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t520 = t13 * t470 - t11 * parameters[XZ4] + (t17 * t350 + t18 * t355);
+    const ur10e_real_t t521 = t11 * parameters[YZ4];
+    const ur10e_real_t t522 = t511 - t521 + (t509 + (t412 - t507));
+    const ur10e_real_t t523 = parameters[YY4] + t362; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const ur10e_real_t t524 = t522 * t492 - t520 * t497 + (t29 * t523 - t9 * t517 - t171 * t482);
+    const ur10e_real_t t525 = t150 + (t524 + t97 * t494);
+    const ur10e_real_t t526 = t7 * t519 + t5 * t525 + UR10E_C(0.17415) * t500;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t527 = t24 * parameters[MZ4] - t13 * parameters[MY4] + (t513 - t390 * t505);
+    const ur10e_real_t t528 = t13 * parameters[MX4] - t11 * parameters[MZ4] - t391;
+    const ur10e_real_t t529 = t528 * t497 + t527 * t492 - (t9 * t488 + t29 * t487); /* link j4: derivatives */
+    const ur10e_real_t t530 = t5 * t519 - t7 * t525 + (UR10E_C(-0.17415) * t502 - UR10E_C(-0.57155) * t529);
+    const ur10e_real_t t531 = t2 * (t3 * t526 + t1 * t530 + UR10E_C(0.6127) * t529);
+    const ur10e_real_t t532 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t526 - t3 * t530) + t531);
+    input_by_q[3] = t532;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t533 = t521 - t510 + (t509 + (t504 - t383 + t508));
+    const ur10e_real_t t534 = UR10E_C(2.0) * t533; /* link j4: derivatives */
+    const ur10e_real_t t535 = UR10E_C(0.11001100110011001) * (t534 + UR10E_C(2.0) * (t11 * t482
+        - t24 * t481));
+    input_by_dq[21] = UR10E_C(1122.2222222222222) * parameters[FV4] + t535;
+    const ur10e_real_t t536 = UR10E_C(-2.0) * t527 + t494 * t497;
+    const ur10e_real_t t537 = UR10E_C(2.0) * t528 + t494 * t492;
+    const ur10e_real_t t538 = t5 * t537 + t7 * t536;
+    const ur10e_real_t t539 = t534 + (t482 * t492 - t481 * t497) + UR10E_C(0.57155) * t538;
+    input_by_dq[15] = UR10E_C(0.099009900990099) * t539;
+    const ur10e_real_t t540 = t7 * t537 - t5 * t536;
+    const ur10e_real_t t541 = UR10E_C(0.08250825082508251) * (t539 + UR10E_C(0.6127) * (t3 * t540
+        + t1 * t538));
+    input_by_dq[9] = t541;
+    const ur10e_real_t t542 = parameters[ZZ4] - t469;
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t543 = t24 * t542 - t13 * parameters[YZ4] + (t386 - t467 + t436 * t505);
+    const ur10e_real_t t544 = UR10E_C(2.0) * t543 - (t516 * t497 + t517 * t492); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const ur10e_real_t t545 = t11 * t542 - t13 * parameters[XZ4] + (t17 * t355 - t18 * t350);
+    const ur10e_real_t t546 = UR10E_C(2.0) * t545 + (t523 * t492 - t517 * t497); /* link j4: derivatives */
+    const ur10e_real_t t547 = t7 * t544 + t5 * t546 + UR10E_C(0.17415) * t538;
+    const ur10e_real_t t548 = t488 * t497 + t487 * t492;
+    const ur10e_real_t t549 = t7 * t546 - t5 * t544 + (UR10E_C(0.17415) * t540 + UR10E_C(0.57155) * t548);
+    const ur10e_real_t t550 = t2 * (t3 * t547 - t1 * t549 + UR10E_C(-0.6127) * t548);
+    const ur10e_real_t t551 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t547 + t3 * t549) + t550);
+    input_by_dq[3] = t551;
+    input_by_ddq[21] = UR10E_C(1122.2222222222222) * parameters[IA4] + UR10E_C(0.11001100110011001) * t485;
+    const ur10e_real_t t552 = t7 * t487 - t5 * t488; /* link j4: column of the mass matrix */
+    const ur10e_real_t t553 = t485 + UR10E_C(0.57155) * t552;
+    input_by_ddq[15] = UR10E_C(0.099009900990099) * t553;
+    const ur10e_real_t t554 = t7 * t488 + t5 * t487;
+    const ur10e_real_t t555 = t1 * t552 - t3 * t554;
+    const ur10e_real_t t556 = t553 + UR10E_C(0.6127) * t555;
+    input_by_ddq[9] = UR10E_C(0.08250825082508251) * t556;
+    const ur10e_real_t t557 = t7 * t481 - t5 * t482;
+    const ur10e_real_t t558 = t557 + UR10E_C(-0.17415) * t552;
+    const ur10e_real_t t559 = t5 * t481 + t7 * t482 + UR10E_C(-0.17415) * t554;
+    const ur10e_real_t t560 = t3 * t559 - t1 * t558;
+    const ur10e_real_t t561 = t3 * t558 + t1 * t559;
+    const ur10e_real_t t562 = t0 * t560 - t2 * t561;
+    input_by_ddq[3] = UR10E_C(0.08250825082508251) * t562;
+    const ur10e_real_t t563 = t5 * t479 - t7 * t472 + t552 * t322; /* link j4: derivatives */
+    const ur10e_real_t t564 = t5 * t472 + t7 * t479 - t554 * t322;
+    const ur10e_real_t t565 = t69 * t563 + t76 * t564 + (t79 * t559 - t73 * t558 - t84 * t553);
+    input_by_q[20] = UR10E_C(0.11001100110011001) * (t565 + (t68 * t552 - t75 * t554));
+    const ur10e_real_t t566 = t1 * t563 + t3 * t564 + t555 * t327;
+    const ur10e_real_t t567 = t1 * t554 + t3 * t552; /* link j4: column of the mass matrix */
+    const ur10e_real_t t568 = t3 * t563 - t1 * t564 + t567 * t327; /* link j4: derivatives */
+    const ur10e_real_t t569 = t58 * t566 - t63 * t568 + (t88 * t560 + t181 * t561 - t332 * t556);
+    input_by_q[19] = UR10E_C(0.11001100110011001) * (t569 + (t61 * t555 - t66 * t567));
+    const ur10e_real_t t570 = t534 + (t552 * t324 - t554 * t321);
+    const ur10e_real_t t571 = UR10E_C(0.11001100110011001) * (t570 + UR10E_C(2.0) * (t76 * t559
+        - t69 * t558));
+    input_by_dq[20] = t571;
+    const ur10e_real_t t572 = t570 - t567 * t328 + UR10E_C(2.0) * (t58 * t560 + t63 * t561);
+    input_by_dq[19] = UR10E_C(0.11001100110011001) * t572;
+    input_by_dq[18] = UR10E_C(0.11001100110011001) * (t0 * t566 + t2 * t568);
+    input_by_ddq[20] = UR10E_C(0.11001100110011001) * t553;
+    input_by_ddq[19] = UR10E_C(0.11001100110011001) * t556;
+    input_by_ddq[18] = UR10E_C(0.11001100110011001) * t562;
+    const ur10e_real_t t573 = UR10E_C(0.57155) * t493; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t574 = t552 + t573;
+    const ur10e_real_t t575 = UR10E_C(0.57155) * t69;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t576 = t5 * t478 - t7 * t471 + (UR10E_C(0.57155) * t491 + t574 * t575);
+    const ur10e_real_t t577 = UR10E_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const ur10e_real_t t578 = parameters[XX3] - t577;
+    const ur10e_real_t t579 = t76 * parameters[XY3] - t69 * t578 + t576;
+    const ur10e_real_t t580 = UR10E_C(2.0) * t579; /* link j3: derivatives */
+    const ur10e_real_t t581 = parameters[YY3] - t577;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t582 = t69 * parameters[XY3] - t76 * t581 + (t5 * t471 + t7 * t478 - t554 * t575);
+    const ur10e_real_t t583 = UR10E_C(2.0) * t582; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t584 = t557 + (UR10E_C(-0.57155) * t494 + UR10E_C(-0.17415) * t574) - parameters[XZ3];
+    const ur10e_real_t t585 = t559 - parameters[YZ3];
+    const ur10e_real_t t586 = UR10E_C(0.57155) * (t573 + UR10E_C(2.0) * t552);
+    const ur10e_real_t t587 = parameters[ZZ3] + (t485 + t586);
+    const ur10e_real_t t588 = t79 * t585 - t73 * t584 - t84 * t587; /* link j3: derivatives */
+    const ur10e_real_t t589 = parameters[MX3] - t574; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t590 = t554 - parameters[MY3];
+    const ur10e_real_t t591 = t68 * t589 + t75 * t590; /* link j3: derivatives */
+    const ur10e_real_t t592 = UR10E_C(0.099009900990099) * (t588 + (t69 * t580 + t76 * t583) - t591);
+    input_by_q[14] = t592;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t593 = t76 * parameters[MY3] - t69 * parameters[MX3] + (t491 + t493 * t575);
+    const ur10e_real_t t594 = UR10E_C(2.0) * t76; /* link j3: derivatives */
+    const ur10e_real_t t595 = parameters[M3] + t493; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t596 = UR10E_C(0.17415) * t493;
+    const ur10e_real_t t597 = t494 + t596;
+    const ur10e_real_t t598 = parameters[MZ3] + t597;
+    const ur10e_real_t t599 = t593 * t594 + t75 * t595 + (t79 * t598 + t84 * t590); /* link j3: derivatives */
+    const ur10e_real_t t600 = UR10E_C(2.0) * t69;
+    const ur10e_real_t t601 = t593 * t600 + t68 * t595 + (t84 * t589 + t73 * t598);
+    const ur10e_real_t t602 = UR10E_C(0.6127) * (t3 * (t204 + t599) + t1 * (t202 + t601));
+    const ur10e_real_t t603 = t579 * t600 + t582 * t594 + t588 - t591 + t602;
+    input_by_q[8] = UR10E_C(0.08250825082508251) * t603;
+    const ur10e_real_t t604 = t7 * (t512 + t522) - t5 * (t515 - t520); /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t605 = t7 * t604;
+    const ur10e_real_t t606 = t7 * t527 - t5 * t528;
+    const ur10e_real_t t607 = UR10E_C(-0.57155) * t606;
+    const ur10e_real_t t608 = UR10E_C(0.17415) * t69;
+    const ur10e_real_t t609 = t574 * t608;
+    const ur10e_real_t t610 = UR10E_C(0.17415) * t491;
+    const ur10e_real_t t611 = t554 * t320;
+    const ur10e_real_t t612 = t597 * t575;
+    const ur10e_real_t t613 = t607 + t610 + (t612 - (t609 + t611));
+    const ur10e_real_t t614 = t69 * parameters[XZ3];
+    const ur10e_real_t t615 = t12 * parameters[XY3];
+    const ur10e_real_t t616 = t614 - t615 + (t613 + (t522 - t605 + (t609 - t607)));
+    const ur10e_real_t t617 = t5 * t604;
+    const ur10e_real_t t618 = t12 * t581 - t69 * parameters[YZ3] + (t515 + t617 - t554 * t608);
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t619 = t7 * (t516 + t523) + t517 * (UR10E_C(2.0) * t5);
+    const ur10e_real_t t620 = t7 * t619;
+    const ur10e_real_t t621 = UR10E_C(0.17415) * (t596 + UR10E_C(2.0) * t494);
+    const ur10e_real_t t622 = parameters[XX3] + (t523 - t620 + t621);
+    const ur10e_real_t t623 = t5 * t619 - t517 + UR10E_C(0.57155) * t554 - parameters[XY3];
+    /* link j3: derivatives */
+    const ur10e_real_t t624 = t616 * t600 + t618 * t594 + (t73 * t622 + t79 * t623 + t84 * t584);
+    const ur10e_real_t t625 = t179 + (t624 + t68 * t598);
+    const ur10e_real_t t626 = t5 * t527 + t7 * t528; /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t627 = t12 * t578 - t76 * parameters[XZ3] + (t520 - t617 - (UR10E_C(-0.57155) * t626
+        - t574 * t320));
+    const ur10e_real_t t628 = t76 * parameters[YZ3];
+    const ur10e_real_t t629 = t615 - t628 + (t613 - (t512 - t605 - t611));
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t630 = parameters[YY3] + (t620 - t516 + (t586 + t621));
+    /* link j3: derivatives */
+    const ur10e_real_t t631 = t629 * t594 - t627 * t600 + (t73 * t623 + t79 * t630 - t84 * t585);
+    const ur10e_real_t t632 = t169 + (t631 + t75 * t598);
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t633 = t12 * parameters[MX3] - t76 * parameters[MZ3] + (t626 + t493 * t320);
+    const ur10e_real_t t634 = t69 * parameters[MZ3] - t12 * parameters[MY3] + (t606 + t493 * t608);
+    /* link j3: derivatives */
+    const ur10e_real_t t635 = t633 * t600 + t634 * t594 + (t79 * t589 - t73 * t590);
+    const ur10e_real_t t636 = t2 * (t3 * t625 - t1 * t632 + UR10E_C(0.6127) * t635);
+    const ur10e_real_t t637 = UR10E_C(0.08250825082508251) * (t0 * (t1 * t625 + t3 * t632) + t636);
+    input_by_q[2] = t637;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t638 = t628 - t614 + (t613 + (t533 - (t610 + t612)));
+    const ur10e_real_t t639 = UR10E_C(2.0) * t638; /* link j3: derivatives */
+    const ur10e_real_t t640 = UR10E_C(0.099009900990099) * (t639 + UR10E_C(2.0) * (t76 * t585 - t69 * t584));
+    input_by_dq[14] = UR10E_C(1010.0) * parameters[FV3] + t640;
+    const ur10e_real_t t641 = t3 * (UR10E_C(2.0) * t633 + t598 * t594) + t1 * (UR10E_C(-2.0) * t634
+        + t598 * t600);
+    const ur10e_real_t t642 = t639 + (t585 * t594 - t584 * t600) + UR10E_C(0.6127) * t641;
+    input_by_dq[8] = UR10E_C(0.08250825082508251) * t642;
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t643 = t7 * t543 + t5 * t545 + (UR10E_C(-0.17415) * t606 - t597 * t608);
+    const ur10e_real_t t644 = t577 - parameters[ZZ3];
+    const ur10e_real_t t645 = t643 - (t12 * parameters[YZ3] + t69 * t644);
+    const ur10e_real_t t646 = UR10E_C(2.0) * t645 + (t622 * t600 + t623 * t594); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const ur10e_real_t t647 = t7 * t545 - t5 * t543 - (UR10E_C(-0.17415) * t626 - t597 * t320);
+    const ur10e_real_t t648 = t12 * parameters[XZ3] + t76 * t644 - t647;
+    const ur10e_real_t t649 = UR10E_C(2.0) * t648 - (t623 * t600 + t630 * t594); /* link j3: derivatives */
+    const ur10e_real_t t650 = t3 * t646 + t1 * t649 + UR10E_C(0.6127) * (t589 * t594 - t590 * t600);
+    const ur10e_real_t t651 = t0 * (t1 * t646 - t3 * t649) + t2 * t650;
+    input_by_dq[2] = UR10E_C(0.08250825082508251) * t651;
+    input_by_ddq[14] = UR10E_C(1010.0) * parameters[IA3] + UR10E_C(0.099009900990099) * t587;
+    const ur10e_real_t t652 = t3 * t590 + t1 * t589; /* link j3: column of the mass matrix */
+    const ur10e_real_t t653 = t587 + UR10E_C(-0.6127) * t652;
+    input_by_ddq[8] = UR10E_C(0.08250825082508251) * t653;
+    const ur10e_real_t t654 = t3 * t585 - t1 * t584;
+    const ur10e_real_t t655 = t3 * t584 + t1 * t585;
+    const ur10e_real_t t656 = t0 * t654 - t2 * t655;
+    input_by_ddq[2] = UR10E_C(0.08250825082508251) * t656;
+    const ur10e_real_t t657 = t1 * t580 + t3 * t583 - t652 * t327; /* link j3: derivatives */
+    const ur10e_real_t t658 = t1 * t590 - t3 * t589; /* link j3: column of the mass matrix */
+    const ur10e_real_t t659 = t3 * t580 - t1 * t583 + t658 * t327; /* link j3: derivatives */
+    const ur10e_real_t t660 = t58 * t657 - t63 * t659 + (t88 * t654 + t181 * t655 - t332 * t653);
+    input_by_q[13] = UR10E_C(0.099009900990099) * (t660 - (t66 * t658 + t61 * t652));
+    const ur10e_real_t t661 = t639 - t658 * t328 + UR10E_C(2.0) * (t58 * t654 + t63 * t655);
+    input_by_dq[13] = UR10E_C(0.099009900990099) * t661;
+    input_by_dq[12] = UR10E_C(0.099009900990099) * (t0 * t657 + t2 * t659);
+    input_by_ddq[13] = UR10E_C(0.099009900990099) * t653;
+    input_by_ddq[12] = UR10E_C(0.099009900990099) * t656;
+    const ur10e_real_t t662 = UR10E_C(0.6127) * t595; /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t663 = t662 - t652;
+    const ur10e_real_t t664 = UR10E_C(0.6127) * t58; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t665 = t1 * t579 + t3 * t582 + (UR10E_C(0.6127) * t593 + t663 * t664);
+    const ur10e_real_t t666 = UR10E_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const ur10e_real_t t667 = parameters[XX2] - t666;
+    /* link j2: derivatives */
+    const ur10e_real_t t668 = UR10E_C(2.0) * (t63 * parameters[XY2] - t58 * t667 + t665);
+    const ur10e_real_t t669 = t666 - parameters[YY2];
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t670 = t58 * parameters[XY2] + t63 * t669 - (t3 * t579 - t1 * t582 + t658 * t664);
+    const ur10e_real_t t671 = UR10E_C(2.0) * t670; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t672 = parameters[XZ2] + (t654 + UR10E_C(0.6127) * t598);
+    const ur10e_real_t t673 = t655 - parameters[YZ2];
+    const ur10e_real_t t674 = UR10E_C(0.6127) * (t662 + UR10E_C(-2.0) * t652);
+    const ur10e_real_t t675 = parameters[ZZ2] + (t587 + t674);
+    /* link j2: derivatives */
+    const ur10e_real_t t676 = t88 * t672 + t181 * t673 - t332 * t675 + (t58 * t668 + t63 * t671);
+    const ur10e_real_t t677 = t61 * (t663 - parameters[MX2]) - t66 * (t658 - parameters[MY2]) + t676;
+    input_by_q[7] = UR10E_C(0.08250825082508251) * t677;
+    const ur10e_real_t t678 = t1 * (t616 - t629) + t3 * (t618 - t627); /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t679 = t1 * t678;
+    const ur10e_real_t t680 = UR10E_C(0.6127) * (t3 * t633 - t1 * t634);
+    const ur10e_real_t t681 = UR10E_C(0.6127) * dq[1]; /* link j3: velocity of its origin */
+    const ur10e_real_t t682 = t658 * t681; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t683 = t598 * t664;
+    const ur10e_real_t t684 = t680 + (t682 + t683);
+    const ur10e_real_t t685 = t58 * parameters[XZ2];
+    const ur10e_real_t t686 = dq[1] * parameters[XY2];
+    const ur10e_real_t t687 = t685 - t686 + (t684 + (t629 + t679 - t680));
+    const ur10e_real_t t688 = UR10E_C(2.0) * t58; /* link j2: derivatives */
+    const ur10e_real_t t689 = t3 * t678; /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t690 = t58 * parameters[YZ2] + dq[1] * t669 + (t689 - t618);
+    const ur10e_real_t t691 = UR10E_C(-2.0) * t63; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t692 = t1 * (t622 - t630) - t623 * (UR10E_C(-2.0) * t3);
+    const ur10e_real_t t693 = t1 * t692;
+    const ur10e_real_t t694 = parameters[XX2] + (t630 + t693);
+    const ur10e_real_t t695 = parameters[XY2] + (t3 * t692 - t623 + UR10E_C(-0.6127) * t658);
+    /* link j2: derivatives */
+    const ur10e_real_t t696 = t687 * t688 + t690 * t691 + (t88 * t694 - t181 * t695 - t332 * t672);
+    const ur10e_real_t t697 = parameters[MZ2] + t598; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t698 = UR10E_C(0.6127) * (t3 * t634 + t1 * t633) - t663 * t681;
+    const ur10e_real_t t699 = dq[1] * t667 - t63 * parameters[XZ2] + (t627 + t689 + t698);
+    const ur10e_real_t t700 = t63 * parameters[YZ2];
+    const ur10e_real_t t701 = t686 - t700 + (t684 + (t616 - t679 - t682));
+    /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t702 = parameters[YY2] + (t622 - t693 + t674);
+    /* link j2: derivatives */
+    const ur10e_real_t t703 = t699 * t688 + t701 * t691 + (t88 * t695 - t181 * t702 + t332 * t673);
+    const ur10e_real_t t704 = t0 * (t191 + (t696 + t61 * t697)) + t2 * (t185 + (t703 - t66 * t697));
+    input_by_q[1] = UR10E_C(0.08250825082508251) * t704;
+    const ur10e_real_t t705 = UR10E_C(2.0) * (t700 - t685 + (t684 + (t638 - t683)))
+        + UR10E_C(2.0) * (t58 * t672 + t63 * t673);
+    input_by_dq[7] = UR10E_C(841.6666666666667) * parameters[FV2] + UR10E_C(0.08250825082508251) * t705;
+    const ur10e_real_t t706 = parameters[ZZ2] - t666;
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t707 = t58 * t706 - dq[1] * parameters[YZ2] + (t1 * t645 - t3 * t648);
+    /* link j2: derivatives */
+    const ur10e_real_t t708 = t0 * (UR10E_C(2.0) * t707 + (t694 * t688 + t695 * t691));
+    /* link j3: inertia, momentum beyond */
+    const ur10e_real_t t709 = dq[1] * parameters[XZ2] - t63 * t706 + (t3 * t645 + t1 * t648 + t598 * t681);
+    /* link j2: derivatives */
+    const ur10e_real_t t710 = t2 * (UR10E_C(2.0) * t709 + (t695 * t688 + t702 * t691));
+    input_by_dq[1] = UR10E_C(0.08250825082508251) * (t708 + t710);
+    input_by_ddq[7] = UR10E_C(841.6666666666667) * parameters[IA2] + UR10E_C(0.08250825082508251) * t675;
+    const ur10e_real_t t711 = UR10E_C(0.08250825082508251) * (t0 * t672 - t2 * t673);
+    input_by_ddq[1] = t711;
+    input_by_dq[6] = UR10E_C(0.08250825082508251) * (t0 * t668 - t2 * t671);
+    input_by_ddq[6] = t711;
+    /* link j2: inertia, momentum beyond */
+    const ur10e_real_t t712 = t2 * (t2 * (t701 - t687) + t0 * (t690 + t699));
+    input_by_dq[0] = UR10E_C(841.6666666666667) * parameters[FV1] + UR10E_C(0.16501650165016502) * (t687
+        + t712);
+    /* link j2: inertia of it and all beyond */
+    const ur10e_real_t t713 = t2 * (t2 * (t702 - t694) + t695 * (UR10E_C(2.0) * t0));
+    input_by_ddq[0] = UR10E_C(841.6666666666667) * parameters[IA1]
+        + UR10E_C(0.08250825082508251) * (parameters[ZZ1] + (t694 + t713));
     /* always zero */
     input_by_q[0] = UR10E_C(0.0);
     input_by_q[6] = UR10E_C(0.0);

@@ -79,7 +79,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -102,147 +102,140 @@ ur10e_status_t ur10e_mass_matrix(
         return status;
     }
 
-    ur10e_real_t t48, t46;
-    UR10E_SINCOS(q[1], &t48, &t46);
-    ur10e_real_t t38, t35;
-    UR10E_SINCOS(q[2], &t38, &t35);
-    ur10e_real_t t24, t15;
-    UR10E_SINCOS(q[3], &t24, &t15);
-    ur10e_real_t t8, t5;
-    UR10E_SINCOS(q[4], &t8, &t5);
-    ur10e_real_t t1, t0;
-    UR10E_SINCOS(q[5], &t1, &t0);
-    /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t2 = t0 * parameters[XX6R] - parameters[XY6] * (UR10E_C(2.0) * t1);
-    const ur10e_real_t t3 = t0 * t2;
-    const ur10e_real_t t4 = parameters[XX5R] + t3;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t6 = t0 * parameters[XZ6R] - t1 * parameters[YZ6R];
-    const ur10e_real_t t7 = parameters[XY5] + t6; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t9 = t5 * (t4 - parameters[ZZ6]) + t7 * (UR10E_C(-2.0) * t8);
-    const ur10e_real_t t10 = t5 * t9;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t11 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const ur10e_real_t t12 = UR10E_C(-0.2397) * t11; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t13 = parameters[XX4R] + (parameters[ZZ6] + t10 + t12);
-    /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t14 = parameters[ZZ5R] + (parameters[XX6R] - t3);
-    const ur10e_real_t t16 = parameters[XZ5] - (parameters[XY6] + t1 * t2);
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t17 = t1 * parameters[XZ6R] + t0 * parameters[YZ6R];
-    const ur10e_real_t t18 = parameters[YZ5] - t17; /* link j6: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t19 = t0 * parameters[MX6] - t1 * parameters[MY6];
-    const ur10e_real_t t20 = parameters[MX5] + t19; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t21 = t5 * t20 - t8 * parameters[MY5R]; /* link j5: column of the mass matrix */
-    const ur10e_real_t t22 = t8 * t18 - t5 * t16 + UR10E_C(0.11985) * t21;
-    const ur10e_real_t t23 = parameters[XY4] + t22; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t25 = t15 * (t13 - t14) + t23 * (UR10E_C(-2.0) * t24);
-    const ur10e_real_t t26 = t15 * t25;
-    const ur10e_real_t t27 = parameters[MY4R] + t11; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t28 = parameters[MX4] + t21;
-    const ur10e_real_t t29 = t24 * t27 - t15 * t28; /* link j4: column of the mass matrix */
-    const ur10e_real_t t30 = UR10E_C(1.1431) * t29; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t31 = t5 * parameters[MY5R] + t8 * t20; /* link j5: column of the mass matrix */
-    const ur10e_real_t t32 = UR10E_C(0.3483) * t31; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t33 = t13 - t26 + (t30 + t32);
-    const ur10e_real_t t34 = parameters[XX3R] + (t14 + t26 + t32);
-    const ur10e_real_t t36 = t15 * t27 + t24 * t28; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t37 = parameters[XY3] + (t23 + t24 * t25 + UR10E_C(0.57155) * t36);
-    /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t39 = t35 * (t33 - t34) + t37 * (UR10E_C(2.0) * t38);
-    const ur10e_real_t t40 = t35 * t39;
-    const ur10e_real_t t41 = parameters[MY3] + t36; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t42 = parameters[MX3R] - t29;
-    const ur10e_real_t t43 = t38 * t41 - t35 * t42; /* link j3: column of the mass matrix */
-    const ur10e_real_t t44 = UR10E_C(1.2254) * t43; /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t45 = parameters[XX2R] + (t33 - t40);
-    const ur10e_real_t t47 = t37 - t38 * t39 + UR10E_C(0.6127) * (t35 * t41 + t38 * t42);
-    /* link j2: inertia of it and all beyond */
-    const ur10e_real_t t49 = t46 * (t34 + t40 + t44 - t45) + (parameters[XY2] + t47) * (UR10E_C(2.0) * t48);
-    out[0] = parameters[ZZ1R] + (t45 + t46 * t49);
-    const ur10e_real_t t50 = parameters[XZ4] + (t7 + t8 * t9); /* link j5: inertia of it and all beyond */
-    /* link j5: column of the mass matrix */
-    const ur10e_real_t t51 = t8 * t16 + t5 * t18 + UR10E_C(-0.11985) * t31;
-    const ur10e_real_t t52 = t51 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t53 = t15 * t50 + t24 * t52; /* link j4: column of the mass matrix */
-    const ur10e_real_t t54 = UR10E_C(0.17415) * t29;
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t55 = parameters[XZ3R] + (t53 + (t54 + UR10E_C(0.57155) * t31));
-    /* link j4: column of the mass matrix */
-    const ur10e_real_t t56 = t24 * t50 - t15 * t52 - UR10E_C(0.17415) * t36;
-    const ur10e_real_t t57 = parameters[YZ3] + t56; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t58 = t35 * t55 - t38 * t57; /* link j3: column of the mass matrix */
-    const ur10e_real_t t59 = t38 * t55 + t35 * t57;
-    /* link j2: column of the mass matrix */
-    const ur10e_real_t t60 = t48 * (parameters[XZ2R] + (t58 + UR10E_C(0.6127) * t31)) + t46 * (parameters[YZ2]
-        + t59);
-    out[1] = t60;
-    const ur10e_real_t t61 = t48 * t58 + t46 * t59; /* link j3: column of the mass matrix */
-    out[2] = t61;
-    const ur10e_real_t t62 = t53 + t54; /* link j4: column of the mass matrix */
-    const ur10e_real_t t63 = t48 * (t35 * t62 - t38 * t56) + t46 * (t38 * t62 + t35 * t56);
-    out[3] = t63;
-    const ur10e_real_t t64 = t15 * t31; /* link j5: column of the mass matrix */
-    const ur10e_real_t t65 = t24 * t22 + t15 * t14 + (UR10E_C(0.17415) * t64 + UR10E_C(-0.57155) * t21);
-    const ur10e_real_t t66 = t24 * t31;
-    const ur10e_real_t t67 = t24 * t14 - t15 * t22 + UR10E_C(0.17415) * t66;
-    const ur10e_real_t t68 = t46 * (t38 * t67 - t35 * t65 + UR10E_C(0.6127) * t21);
-    const ur10e_real_t t69 = t48 * (t35 * t67 + t38 * t65) + t68;
-    out[4] = t69;
-    const ur10e_real_t t70 = t8 * t11; /* link j6: column of the mass matrix */
-    const ur10e_real_t t71 = t5 * t6 - t8 * parameters[ZZ6] + UR10E_C(0.11985) * t70;
-    const ur10e_real_t t72 = t5 * t11;
-    const ur10e_real_t t73 = t24 * t72 - t15 * t19;
-    const ur10e_real_t t74 = t15 * t71 - t24 * t17 + UR10E_C(0.17415) * t73;
-    const ur10e_real_t t75 = t15 * t72 + t24 * t19;
-    const ur10e_real_t t76 = t24 * t71 + t15 * t17 - (UR10E_C(0.17415) * t75 + UR10E_C(0.57155) * t70);
-    const ur10e_real_t t77 = t46 * (t38 * t74 + t35 * t76 + UR10E_C(-0.6127) * t70);
-    const ur10e_real_t t78 = t48 * (t35 * t74 - t38 * t76) + t77;
-    out[5] = t78;
-    out[6] = t60;
-    const ur10e_real_t t79 = parameters[ZZ4R] + (t4 - t10 + t12); /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t80 = parameters[ZZ3R] + (t79 + t30); /* link j4: inertia of it and all beyond */
-    out[7] = parameters[ZZ2R] + (t80 + t44);
-    const ur10e_real_t t81 = t80 + UR10E_C(0.6127) * t43; /* link j3: column of the mass matrix */
-    out[8] = t81;
-    const ur10e_real_t t82 = t79 + UR10E_C(0.57155) * t29; /* link j4: column of the mass matrix */
-    const ur10e_real_t t83 = t82 + UR10E_C(0.6127) * (t38 * t36 + t35 * t29);
-    out[9] = t83;
-    const ur10e_real_t t84 = t51 + UR10E_C(0.57155) * t66; /* link j5: column of the mass matrix */
-    const ur10e_real_t t85 = t84 + UR10E_C(0.6127) * (t38 * t64 + t35 * t66);
-    out[10] = t85;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t86 = t8 * t6 + t5 * parameters[ZZ6] + UR10E_C(-0.11985) * t72;
-    const ur10e_real_t t87 = t86 + UR10E_C(0.57155) * t73;
-    const ur10e_real_t t88 = t87 + UR10E_C(0.6127) * (t38 * t75 + t35 * t73);
-    out[11] = t88;
-    out[12] = t61;
-    out[13] = t81;
-    out[14] = t80 + UR10E_C(10201.0) * parameters[IA3];
-    out[15] = t82;
-    out[16] = t84;
-    out[17] = t87;
-    out[18] = t63;
-    out[19] = t83;
-    out[20] = t82;
-    out[21] = t79 + UR10E_C(10201.0) * parameters[IA4];
-    out[22] = t51;
-    out[23] = t86;
-    out[24] = t69;
-    out[25] = t85;
-    out[26] = t84;
-    out[27] = t51;
-    out[28] = t14 + UR10E_C(10201.0) * parameters[IA5];
-    out[29] = -t17;
-    out[30] = t78;
-    out[31] = t88;
-    out[32] = t87;
-    out[33] = t86;
-    out[34] = -t17;
+    ur10e_real_t t22, t23;
+    UR10E_SINCOS(q[1], &t22, &t23);
+    ur10e_real_t t15, t16;
+    UR10E_SINCOS(q[2], &t15, &t16);
+    ur10e_real_t t9, t11;
+    UR10E_SINCOS(q[3], &t9, &t11);
+    ur10e_real_t t4, t5;
+    UR10E_SINCOS(q[4], &t4, &t5);
+    ur10e_real_t t0, t1;
+    UR10E_SINCOS(q[5], &t0, &t1);
     out[35] = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
+    /* link j6: column of the mass matrix */
+    const ur10e_real_t t2 = t0 * parameters[XZ6R] + t1 * parameters[YZ6R];
+    out[29] = -t2;
+    const ur10e_real_t t3 = t1 * parameters[XZ6R] - t0 * parameters[YZ6R];
+    const ur10e_real_t t6 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const ur10e_real_t t7 = t5 * t6;
+    const ur10e_real_t t8 = t4 * t3 + t5 * parameters[ZZ6] + UR10E_C(-0.11985) * t7;
+    out[23] = t8;
+    const ur10e_real_t t10 = t1 * parameters[MX6] - t0 * parameters[MY6];
+    const ur10e_real_t t12 = t9 * t7 - t11 * t10;
+    const ur10e_real_t t13 = t8 + UR10E_C(0.57155) * t12;
+    out[17] = t13;
+    const ur10e_real_t t14 = t11 * t7 + t9 * t10;
+    const ur10e_real_t t17 = t13 + UR10E_C(0.6127) * (t15 * t14 + t16 * t12);
+    out[11] = t17;
+    const ur10e_real_t t18 = t4 * t6;
+    const ur10e_real_t t19 = t5 * t3 - t4 * parameters[ZZ6] + UR10E_C(0.11985) * t18;
+    const ur10e_real_t t20 = t11 * t19 - t9 * t2 + UR10E_C(0.17415) * t12;
+    const ur10e_real_t t21 = t9 * t19 + t11 * t2 - (UR10E_C(0.17415) * t14 + UR10E_C(0.57155) * t18);
+    const ur10e_real_t t24 = t23 * (t15 * t20 + t16 * t21 + UR10E_C(-0.6127) * t18);
+    const ur10e_real_t t25 = t22 * (t16 * t20 - t15 * t21) + t24;
+    out[5] = t25;
+    out[34] = -t2;
+    out[33] = t8;
+    out[32] = t13;
+    out[31] = t17;
+    out[30] = t25;
+    /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t26 = t1 * parameters[XX6R] - parameters[XY6] * (UR10E_C(2.0) * t0);
+    const ur10e_real_t t27 = t1 * t26;
+    const ur10e_real_t t28 = parameters[ZZ5R] + (parameters[XX6R] - t27);
+    out[28] = t28 + UR10E_C(10201.0) * parameters[IA5];
+    const ur10e_real_t t29 = parameters[XZ5] - (parameters[XY6] + t0 * t26);
+    const ur10e_real_t t30 = parameters[YZ5] - t2;
+    const ur10e_real_t t31 = parameters[MX5] + t10;
+    const ur10e_real_t t32 = t5 * parameters[MY5R] + t4 * t31; /* link j5: column of the mass matrix */
+    const ur10e_real_t t33 = t4 * t29 + t5 * t30 + UR10E_C(-0.11985) * t32;
+    out[22] = t33;
+    const ur10e_real_t t34 = t9 * t32;
+    const ur10e_real_t t35 = t33 + UR10E_C(0.57155) * t34;
+    out[16] = t35;
+    const ur10e_real_t t36 = t11 * t32;
+    const ur10e_real_t t37 = t35 + UR10E_C(0.6127) * (t15 * t36 + t16 * t34);
+    out[10] = t37;
+    const ur10e_real_t t38 = t5 * t31 - t4 * parameters[MY5R];
+    const ur10e_real_t t39 = t4 * t30 - t5 * t29 + UR10E_C(0.11985) * t38;
+    const ur10e_real_t t40 = t9 * t39 + t11 * t28 + (UR10E_C(0.17415) * t36 + UR10E_C(-0.57155) * t38);
+    const ur10e_real_t t41 = t9 * t28 - t11 * t39 + UR10E_C(0.17415) * t34;
+    const ur10e_real_t t42 = t23 * (t15 * t41 - t16 * t40 + UR10E_C(0.6127) * t38);
+    const ur10e_real_t t43 = t22 * (t16 * t41 + t15 * t40) + t42;
+    out[4] = t43;
+    out[27] = t33;
+    out[26] = t35;
+    out[25] = t37;
+    out[24] = t43;
+    const ur10e_real_t t44 = parameters[XX5R] + t27; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t45 = parameters[XY5] + t3;
+    /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t46 = t5 * (t44 - parameters[ZZ6]) + t45 * (UR10E_C(-2.0) * t4);
+    const ur10e_real_t t47 = t5 * t46;
+    const ur10e_real_t t48 = UR10E_C(-0.2397) * t6;
+    const ur10e_real_t t49 = parameters[ZZ4R] + (t44 - t47 + t48);
+    out[21] = t49 + UR10E_C(10201.0) * parameters[IA4];
+    const ur10e_real_t t50 = parameters[MY4R] + t6;
+    const ur10e_real_t t51 = parameters[MX4] + t38;
+    const ur10e_real_t t52 = t9 * t50 - t11 * t51; /* link j4: column of the mass matrix */
+    const ur10e_real_t t53 = t49 + UR10E_C(0.57155) * t52;
+    out[15] = t53;
+    const ur10e_real_t t54 = t11 * t50 + t9 * t51;
+    const ur10e_real_t t55 = t53 + UR10E_C(0.6127) * (t15 * t54 + t16 * t52);
+    out[9] = t55;
+    const ur10e_real_t t56 = parameters[XZ4] + (t45 + t4 * t46); /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t57 = t33 - parameters[YZ4];
+    const ur10e_real_t t58 = t11 * t56 + t9 * t57; /* link j4: column of the mass matrix */
+    const ur10e_real_t t59 = UR10E_C(0.17415) * t52;
+    const ur10e_real_t t60 = t58 + t59;
+    const ur10e_real_t t61 = t9 * t56 - t11 * t57 - UR10E_C(0.17415) * t54;
+    const ur10e_real_t t62 = t22 * (t16 * t60 - t15 * t61) + t23 * (t15 * t60 + t16 * t61);
+    out[3] = t62;
+    out[20] = t53;
+    out[19] = t55;
+    out[18] = t62;
+    const ur10e_real_t t63 = UR10E_C(1.1431) * t52; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t64 = parameters[ZZ3R] + (t49 + t63);
+    out[14] = t64 + UR10E_C(10201.0) * parameters[IA3];
+    const ur10e_real_t t65 = parameters[MY3] + t54;
+    const ur10e_real_t t66 = parameters[MX3R] - t52;
+    const ur10e_real_t t67 = t15 * t65 - t16 * t66; /* link j3: column of the mass matrix */
+    const ur10e_real_t t68 = t64 + UR10E_C(0.6127) * t67;
+    out[8] = t68;
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t69 = parameters[XZ3R] + (t58 + (t59 + UR10E_C(0.57155) * t32));
+    const ur10e_real_t t70 = parameters[YZ3] + t61;
+    const ur10e_real_t t71 = t16 * t69 - t15 * t70; /* link j3: column of the mass matrix */
+    const ur10e_real_t t72 = t15 * t69 + t16 * t70;
+    const ur10e_real_t t73 = t22 * t71 + t23 * t72;
+    out[2] = t73;
+    out[13] = t68;
+    out[12] = t73;
+    const ur10e_real_t t74 = UR10E_C(1.2254) * t67; /* link j3: inertia of it and all beyond */
+    out[7] = parameters[ZZ2R] + (t64 + t74);
+    /* link j2: column of the mass matrix */
+    const ur10e_real_t t75 = t22 * (parameters[XZ2R] + (t71 + UR10E_C(0.6127) * t32)) + t23 * (parameters[YZ2]
+        + t72);
+    out[1] = t75;
+    out[6] = t75;
+    /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t76 = parameters[XX4R] + (parameters[ZZ6] + t47 + t48);
+    const ur10e_real_t t77 = parameters[XY4] + t39;
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t78 = t11 * (t76 - t28) + t77 * (UR10E_C(-2.0) * t9);
+    const ur10e_real_t t79 = t11 * t78;
+    const ur10e_real_t t80 = UR10E_C(0.3483) * t32;
+    const ur10e_real_t t81 = t76 - t79 + (t63 + t80);
+    const ur10e_real_t t82 = parameters[XX3R] + (t28 + t79 + t80);
+    const ur10e_real_t t83 = parameters[XY3] + (t77 + t9 * t78 + UR10E_C(0.57155) * t54);
+    /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t84 = t16 * (t81 - t82) + t83 * (UR10E_C(2.0) * t15);
+    const ur10e_real_t t85 = t16 * t84;
+    const ur10e_real_t t86 = parameters[XX2R] + (t81 - t85);
+    const ur10e_real_t t87 = t83 - t15 * t84 + UR10E_C(0.6127) * (t16 * t65 + t15 * t66);
+    /* link j2: inertia of it and all beyond */
+    const ur10e_real_t t88 = t23 * (t82 + t85 + t74 - t86) + (parameters[XY2] + t87) * (UR10E_C(2.0) * t22);
+    out[0] = parameters[ZZ1R] + (t86 + t23 * t88);
     return UR10E_STATUS_OK;
 }

@@ -104,7 +104,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -128,162 +128,156 @@ ur10e_status_t ur10e_mass_matrix_standard(
         return status;
     }
 
-    ur10e_real_t t61, t59;
-    UR10E_SINCOS(q[1], &t61, &t59);
-    ur10e_real_t t50, t47;
-    UR10E_SINCOS(q[2], &t50, &t47);
-    ur10e_real_t t32, t23;
-    UR10E_SINCOS(q[3], &t32, &t23);
-    ur10e_real_t t12, t8;
-    UR10E_SINCOS(q[4], &t12, &t8);
-    ur10e_real_t t1, t0;
-    UR10E_SINCOS(q[5], &t1, &t0);
-    /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t2 = t0 * (parameters[XX6] - parameters[YY6]) - parameters[XY6] * (UR10E_C(2.0) * t1);
-    const ur10e_real_t t3 = t0 * t2;
-    const ur10e_real_t t4 = UR10E_C(0.11655) * parameters[M6];
-    const ur10e_real_t t5 = UR10E_C(0.11655) * (t4 + UR10E_C(2.0) * parameters[MZ6]);
-    const ur10e_real_t t6 = parameters[XX5] + (parameters[YY6] + t3 + t5);
-    const ur10e_real_t t7 = parameters[YY5] + parameters[ZZ6];
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t9 = t0 * parameters[MX6] - t1 * parameters[MY6];
-    const ur10e_real_t t10 = t0 * parameters[XZ6] - t1 * parameters[YZ6] + UR10E_C(-0.11655) * t9;
-    const ur10e_real_t t11 = parameters[XY5] + t10; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t13 = t8 * (t6 - t7) + t11 * (UR10E_C(-2.0) * t12);
-    const ur10e_real_t t14 = t8 * t13;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t15 = t0 * parameters[MY6] + t1 * parameters[MX6];
-    const ur10e_real_t t16 = t15 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t17 = parameters[M5] + parameters[M6];
-    const ur10e_real_t t18 = UR10E_C(0.11985) * t17; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t19 = UR10E_C(0.11985) * (t18 + UR10E_C(-2.0) * t16);
-    const ur10e_real_t t20 = parameters[XX4] + (t7 + t14 + t19);
-    /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t21 = parameters[ZZ5] + (parameters[XX6] - t3 + t5);
-    const ur10e_real_t t22 = parameters[YY4] + t21; /* link j5: inertia of it and all beyond */
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t24 = UR10E_C(0.11655) * t15 - (t1 * parameters[XZ6] + t0 * parameters[YZ6]);
-    const ur10e_real_t t25 = parameters[YZ5] + t24; /* link j6: inertia of it and all beyond */
-    const ur10e_real_t t26 = parameters[XZ5] - (parameters[XY6] + t1 * t2);
-    const ur10e_real_t t27 = parameters[MX5] + t9;
-    const ur10e_real_t t28 = parameters[MY5] + (parameters[MZ6] + t4);
-    const ur10e_real_t t29 = t8 * t27 - t12 * t28; /* link j5: column of the mass matrix */
-    const ur10e_real_t t30 = t12 * t25 - t8 * t26 + UR10E_C(0.11985) * t29;
-    const ur10e_real_t t31 = parameters[XY4] + t30; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t33 = t23 * (t20 - t22) + t31 * (UR10E_C(-2.0) * t32);
-    const ur10e_real_t t34 = t23 * t33;
-    const ur10e_real_t t35 = parameters[MY4] + (t16 - t18); /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t36 = parameters[MX4] + t29;
-    const ur10e_real_t t37 = t32 * t35 - t23 * t36; /* link j4: column of the mass matrix */
-    const ur10e_real_t t38 = parameters[M4] + t17; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t39 = UR10E_C(0.57155) * t38; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t40 = UR10E_C(0.57155) * (t39 + UR10E_C(2.0) * t37);
-    const ur10e_real_t t41 = t8 * t28 + t12 * t27; /* link j5: column of the mass matrix */
-    const ur10e_real_t t42 = parameters[MZ4] + t41; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t43 = UR10E_C(0.17415) * t38; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t44 = UR10E_C(0.17415) * (t43 + UR10E_C(2.0) * t42);
-    const ur10e_real_t t45 = parameters[YY3] + (t20 - t34 + (t40 + t44));
-    const ur10e_real_t t46 = parameters[XX3] + (t22 + t34 + t44);
-    const ur10e_real_t t48 = t23 * t35 + t32 * t36; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t49 = parameters[XY3] + (t31 + t32 * t33 + UR10E_C(0.57155) * t48);
-    /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t51 = t47 * (t46 - t45) - t49 * (UR10E_C(2.0) * t50);
-    const ur10e_real_t t52 = t47 * t51;
-    const ur10e_real_t t53 = parameters[XX2] + (t45 + t52);
-    const ur10e_real_t t54 = parameters[MY3] + t48; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t55 = t37 + t39;
-    const ur10e_real_t t56 = parameters[MX3] - t55;
-    const ur10e_real_t t57 = t50 * t54 - t47 * t56; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const ur10e_real_t t58 = UR10E_C(0.6127) * (UR10E_C(0.6127) * (parameters[M3] + t38)
-        + UR10E_C(2.0) * t57);
-    const ur10e_real_t t60 = t49 + t50 * t51 + UR10E_C(0.6127) * (t47 * t54 + t50 * t56);
-    /* link j2: inertia of it and all beyond */
-    const ur10e_real_t t62 = t59 * (parameters[YY2] + (t46 - t52 + t58) - t53) + (parameters[XY2]
-        + t60) * (UR10E_C(2.0) * t61);
-    out[0] = parameters[ZZ1] + (t53 + t59 * t62) + UR10E_C(10201.0) * parameters[IA1];
-    const ur10e_real_t t63 = parameters[XZ4] + (t11 + t12 * t13); /* link j5: inertia of it and all beyond */
-    /* link j5: column of the mass matrix */
-    const ur10e_real_t t64 = t12 * t26 + t8 * t25 + UR10E_C(-0.11985) * t41;
-    const ur10e_real_t t65 = t64 - parameters[YZ4]; /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t66 = t23 * t63 + t32 * t65; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t67 = parameters[XZ3] + (t66 + (UR10E_C(0.57155) * t42 + UR10E_C(0.17415) * t55));
-    /* link j4: column of the mass matrix */
-    const ur10e_real_t t68 = t32 * t63 - t23 * t65 - UR10E_C(0.17415) * t48;
-    const ur10e_real_t t69 = parameters[YZ3] + t68; /* link j4: inertia of it and all beyond */
-    const ur10e_real_t t70 = t47 * t67 - t50 * t69; /* link j3: column of the mass matrix */
-    /* link j2: column of the mass matrix */
-    const ur10e_real_t t71 = t61 * (parameters[XZ2] + (t70 + UR10E_C(0.6127) * (parameters[MZ3] + (t42
-        + t43))));
-    const ur10e_real_t t72 = t50 * t67 + t47 * t69; /* link j3: column of the mass matrix */
-    const ur10e_real_t t73 = t71 + t59 * (parameters[YZ2] + t72); /* link j2: column of the mass matrix */
-    out[1] = t73;
-    const ur10e_real_t t74 = t61 * t70 + t59 * t72; /* link j3: column of the mass matrix */
-    out[2] = t74;
-    const ur10e_real_t t75 = t66 + UR10E_C(0.17415) * t37; /* link j4: column of the mass matrix */
-    const ur10e_real_t t76 = t61 * (t47 * t75 - t50 * t68) + t59 * (t50 * t75 + t47 * t68);
-    out[3] = t76;
-    const ur10e_real_t t77 = t32 * t41; /* link j5: column of the mass matrix */
-    const ur10e_real_t t78 = t32 * t21 - t23 * t30 + UR10E_C(0.17415) * t77;
-    const ur10e_real_t t79 = t23 * t41;
-    const ur10e_real_t t80 = t32 * t30 + t23 * t21 + (UR10E_C(0.17415) * t79 + UR10E_C(-0.57155) * t29);
-    const ur10e_real_t t81 = t59 * (t50 * t78 - t47 * t80 + UR10E_C(0.6127) * t29);
-    const ur10e_real_t t82 = t61 * (t47 * t78 + t50 * t80) + t81;
-    out[4] = t82;
-    const ur10e_real_t t83 = t12 * t15; /* link j6: column of the mass matrix */
-    const ur10e_real_t t84 = t8 * t10 - t12 * parameters[ZZ6] + UR10E_C(0.11985) * t83;
-    const ur10e_real_t t85 = t8 * t15;
-    const ur10e_real_t t86 = t32 * t85 - t23 * t9;
-    const ur10e_real_t t87 = t23 * t84 + t32 * t24 + UR10E_C(0.17415) * t86;
-    const ur10e_real_t t88 = t23 * t85 + t32 * t9;
-    const ur10e_real_t t89 = t32 * t84 - t23 * t24 - (UR10E_C(0.17415) * t88 + UR10E_C(0.57155) * t83);
-    const ur10e_real_t t90 = t59 * (t50 * t87 + t47 * t89 + UR10E_C(-0.6127) * t83);
-    const ur10e_real_t t91 = t61 * (t47 * t87 - t50 * t89) + t90;
-    out[5] = t91;
-    out[6] = t73;
-    const ur10e_real_t t92 = parameters[ZZ4] + (t6 - t14 + t19); /* link j5: inertia of it and all beyond */
-    const ur10e_real_t t93 = parameters[ZZ3] + (t92 + t40); /* link j4: inertia of it and all beyond */
-    out[7] = parameters[ZZ2] + (t93 + t58) + UR10E_C(10201.0) * parameters[IA2];
-    const ur10e_real_t t94 = t93 + UR10E_C(0.6127) * t57; /* link j3: column of the mass matrix */
-    out[8] = t94;
-    const ur10e_real_t t95 = t92 + UR10E_C(0.57155) * t37; /* link j4: column of the mass matrix */
-    const ur10e_real_t t96 = t95 + UR10E_C(0.6127) * (t50 * t48 + t47 * t37);
-    out[9] = t96;
-    const ur10e_real_t t97 = t64 + UR10E_C(0.57155) * t77; /* link j5: column of the mass matrix */
-    const ur10e_real_t t98 = t97 + UR10E_C(0.6127) * (t50 * t79 + t47 * t77);
-    out[10] = t98;
-    /* link j6: column of the mass matrix */
-    const ur10e_real_t t99 = t12 * t10 + t8 * parameters[ZZ6] + UR10E_C(-0.11985) * t85;
-    const ur10e_real_t t100 = t99 + UR10E_C(0.57155) * t86;
-    const ur10e_real_t t101 = t100 + UR10E_C(0.6127) * (t50 * t88 + t47 * t86);
-    out[11] = t101;
-    out[12] = t74;
-    out[13] = t94;
-    out[14] = t93 + UR10E_C(10201.0) * parameters[IA3];
-    out[15] = t95;
-    out[16] = t97;
-    out[17] = t100;
-    out[18] = t76;
-    out[19] = t96;
-    out[20] = t95;
-    out[21] = t92 + UR10E_C(10201.0) * parameters[IA4];
-    out[22] = t64;
-    out[23] = t99;
-    out[24] = t82;
-    out[25] = t98;
-    out[26] = t97;
-    out[27] = t64;
-    out[28] = t21 + UR10E_C(10201.0) * parameters[IA5];
-    out[29] = t24;
-    out[30] = t91;
-    out[31] = t101;
-    out[32] = t100;
-    out[33] = t99;
-    out[34] = t24;
+    ur10e_real_t t22, t23;
+    UR10E_SINCOS(q[1], &t22, &t23);
+    ur10e_real_t t15, t16;
+    UR10E_SINCOS(q[2], &t15, &t16);
+    ur10e_real_t t10, t11;
+    UR10E_SINCOS(q[3], &t10, &t11);
+    ur10e_real_t t6, t7;
+    UR10E_SINCOS(q[4], &t6, &t7);
+    ur10e_real_t t0, t1;
+    UR10E_SINCOS(q[5], &t0, &t1);
     out[35] = parameters[ZZ6] + UR10E_C(10201.0) * parameters[IA6];
+    /* link j6: column of the mass matrix */
+    const ur10e_real_t t2 = t1 * parameters[MY6] + t0 * parameters[MX6];
+    const ur10e_real_t t3 = UR10E_C(0.11655) * t2 - (t0 * parameters[XZ6] + t1 * parameters[YZ6]);
+    out[29] = t3;
+    const ur10e_real_t t4 = t1 * parameters[MX6] - t0 * parameters[MY6];
+    const ur10e_real_t t5 = t1 * parameters[XZ6] - t0 * parameters[YZ6] + UR10E_C(-0.11655) * t4;
+    const ur10e_real_t t8 = t7 * t2;
+    const ur10e_real_t t9 = t6 * t5 + t7 * parameters[ZZ6] + UR10E_C(-0.11985) * t8;
+    out[23] = t9;
+    const ur10e_real_t t12 = t10 * t8 - t11 * t4;
+    const ur10e_real_t t13 = t9 + UR10E_C(0.57155) * t12;
+    out[17] = t13;
+    const ur10e_real_t t14 = t11 * t8 + t10 * t4;
+    const ur10e_real_t t17 = t13 + UR10E_C(0.6127) * (t15 * t14 + t16 * t12);
+    out[11] = t17;
+    const ur10e_real_t t18 = t6 * t2;
+    const ur10e_real_t t19 = t7 * t5 - t6 * parameters[ZZ6] + UR10E_C(0.11985) * t18;
+    const ur10e_real_t t20 = t11 * t19 + t10 * t3 + UR10E_C(0.17415) * t12;
+    const ur10e_real_t t21 = t10 * t19 - t11 * t3 - (UR10E_C(0.17415) * t14 + UR10E_C(0.57155) * t18);
+    const ur10e_real_t t24 = t23 * (t15 * t20 + t16 * t21 + UR10E_C(-0.6127) * t18);
+    const ur10e_real_t t25 = t22 * (t16 * t20 - t15 * t21) + t24;
+    out[5] = t25;
+    out[34] = t3;
+    out[33] = t9;
+    out[32] = t13;
+    out[31] = t17;
+    out[30] = t25;
+    /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t26 = t1 * (parameters[XX6] - parameters[YY6]) - parameters[XY6] * (UR10E_C(2.0) * t0);
+    const ur10e_real_t t27 = t1 * t26;
+    const ur10e_real_t t28 = UR10E_C(0.11655) * parameters[M6];
+    const ur10e_real_t t29 = UR10E_C(0.11655) * (t28 + UR10E_C(2.0) * parameters[MZ6]);
+    const ur10e_real_t t30 = parameters[ZZ5] + (parameters[XX6] - t27 + t29);
+    out[28] = t30 + UR10E_C(10201.0) * parameters[IA5];
+    const ur10e_real_t t31 = parameters[YZ5] + t3;
+    const ur10e_real_t t32 = parameters[XZ5] - (parameters[XY6] + t0 * t26);
+    const ur10e_real_t t33 = parameters[MX5] + t4;
+    const ur10e_real_t t34 = parameters[MY5] + (parameters[MZ6] + t28);
+    const ur10e_real_t t35 = t7 * t34 + t6 * t33; /* link j5: column of the mass matrix */
+    const ur10e_real_t t36 = t6 * t32 + t7 * t31 + UR10E_C(-0.11985) * t35;
+    out[22] = t36;
+    const ur10e_real_t t37 = t10 * t35;
+    const ur10e_real_t t38 = t36 + UR10E_C(0.57155) * t37;
+    out[16] = t38;
+    const ur10e_real_t t39 = t11 * t35;
+    const ur10e_real_t t40 = t38 + UR10E_C(0.6127) * (t15 * t39 + t16 * t37);
+    out[10] = t40;
+    const ur10e_real_t t41 = t7 * t33 - t6 * t34;
+    const ur10e_real_t t42 = t6 * t31 - t7 * t32 + UR10E_C(0.11985) * t41;
+    const ur10e_real_t t43 = t10 * t30 - t11 * t42 + UR10E_C(0.17415) * t37;
+    const ur10e_real_t t44 = t10 * t42 + t11 * t30 + (UR10E_C(0.17415) * t39 + UR10E_C(-0.57155) * t41);
+    const ur10e_real_t t45 = t23 * (t15 * t43 - t16 * t44 + UR10E_C(0.6127) * t41);
+    const ur10e_real_t t46 = t22 * (t16 * t43 + t15 * t44) + t45;
+    out[4] = t46;
+    out[27] = t36;
+    out[26] = t38;
+    out[25] = t40;
+    out[24] = t46;
+    /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t47 = parameters[XX5] + (parameters[YY6] + t27 + t29);
+    const ur10e_real_t t48 = parameters[YY5] + parameters[ZZ6];
+    const ur10e_real_t t49 = parameters[XY5] + t5;
+    /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t50 = t7 * (t47 - t48) + t49 * (UR10E_C(-2.0) * t6);
+    const ur10e_real_t t51 = t7 * t50;
+    const ur10e_real_t t52 = t2 - parameters[MZ5]; /* link j6: inertia of it and all beyond */
+    const ur10e_real_t t53 = parameters[M5] + parameters[M6];
+    const ur10e_real_t t54 = UR10E_C(0.11985) * t53; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t55 = UR10E_C(0.11985) * (t54 + UR10E_C(-2.0) * t52);
+    const ur10e_real_t t56 = parameters[ZZ4] + (t47 - t51 + t55);
+    out[21] = t56 + UR10E_C(10201.0) * parameters[IA4];
+    const ur10e_real_t t57 = parameters[MY4] + (t52 - t54);
+    const ur10e_real_t t58 = parameters[MX4] + t41;
+    const ur10e_real_t t59 = t10 * t57 - t11 * t58; /* link j4: column of the mass matrix */
+    const ur10e_real_t t60 = t56 + UR10E_C(0.57155) * t59;
+    out[15] = t60;
+    const ur10e_real_t t61 = t11 * t57 + t10 * t58;
+    const ur10e_real_t t62 = t60 + UR10E_C(0.6127) * (t15 * t61 + t16 * t59);
+    out[9] = t62;
+    const ur10e_real_t t63 = parameters[XZ4] + (t49 + t6 * t50); /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t64 = t36 - parameters[YZ4];
+    const ur10e_real_t t65 = t11 * t63 + t10 * t64; /* link j4: column of the mass matrix */
+    const ur10e_real_t t66 = t65 + UR10E_C(0.17415) * t59;
+    const ur10e_real_t t67 = t10 * t63 - t11 * t64 - UR10E_C(0.17415) * t61;
+    const ur10e_real_t t68 = t22 * (t16 * t66 - t15 * t67) + t23 * (t15 * t66 + t16 * t67);
+    out[3] = t68;
+    out[20] = t60;
+    out[19] = t62;
+    out[18] = t68;
+    const ur10e_real_t t69 = parameters[M4] + t53; /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t70 = UR10E_C(0.57155) * t69; /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t71 = UR10E_C(0.57155) * (t70 + UR10E_C(2.0) * t59);
+    const ur10e_real_t t72 = parameters[ZZ3] + (t56 + t71);
+    out[14] = t72 + UR10E_C(10201.0) * parameters[IA3];
+    const ur10e_real_t t73 = parameters[MY3] + t61;
+    const ur10e_real_t t74 = t59 + t70;
+    const ur10e_real_t t75 = parameters[MX3] - t74;
+    const ur10e_real_t t76 = t15 * t73 - t16 * t75; /* link j3: column of the mass matrix */
+    const ur10e_real_t t77 = t72 + UR10E_C(0.6127) * t76;
+    out[8] = t77;
+    const ur10e_real_t t78 = parameters[MZ4] + t35; /* link j5: inertia of it and all beyond */
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t79 = parameters[XZ3] + (t65 + (UR10E_C(0.57155) * t78 + UR10E_C(0.17415) * t74));
+    const ur10e_real_t t80 = parameters[YZ3] + t67;
+    const ur10e_real_t t81 = t16 * t79 - t15 * t80; /* link j3: column of the mass matrix */
+    const ur10e_real_t t82 = t15 * t79 + t16 * t80;
+    const ur10e_real_t t83 = t22 * t81 + t23 * t82;
+    out[2] = t83;
+    out[13] = t77;
+    out[12] = t83;
+    /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t84 = UR10E_C(0.6127) * (UR10E_C(0.6127) * (parameters[M3] + t69)
+        + UR10E_C(2.0) * t76);
+    out[7] = parameters[ZZ2] + (t72 + t84) + UR10E_C(10201.0) * parameters[IA2];
+    const ur10e_real_t t85 = UR10E_C(0.17415) * t69; /* link j4: inertia of it and all beyond */
+    /* link j2: column of the mass matrix */
+    const ur10e_real_t t86 = t22 * (parameters[XZ2] + (t81 + UR10E_C(0.6127) * (parameters[MZ3] + (t78
+        + t85))));
+    const ur10e_real_t t87 = t86 + t23 * (parameters[YZ2] + t82);
+    out[1] = t87;
+    out[6] = t87;
+    const ur10e_real_t t88 = parameters[XX4] + (t48 + t51 + t55); /* link j5: inertia of it and all beyond */
+    const ur10e_real_t t89 = parameters[YY4] + t30;
+    const ur10e_real_t t90 = parameters[XY4] + t42;
+    /* link j4: inertia of it and all beyond */
+    const ur10e_real_t t91 = t11 * (t88 - t89) + t90 * (UR10E_C(-2.0) * t10);
+    const ur10e_real_t t92 = t11 * t91;
+    const ur10e_real_t t93 = UR10E_C(0.17415) * (t85 + UR10E_C(2.0) * t78);
+    const ur10e_real_t t94 = parameters[YY3] + (t88 - t92 + (t71 + t93));
+    const ur10e_real_t t95 = parameters[XX3] + (t89 + t92 + t93);
+    const ur10e_real_t t96 = parameters[XY3] + (t90 + t10 * t91 + UR10E_C(0.57155) * t61);
+    /* link j3: inertia of it and all beyond */
+    const ur10e_real_t t97 = t16 * (t95 - t94) - t96 * (UR10E_C(2.0) * t15);
+    const ur10e_real_t t98 = t16 * t97;
+    const ur10e_real_t t99 = parameters[XX2] + (t94 + t98);
+    const ur10e_real_t t100 = t96 + t15 * t97 + UR10E_C(0.6127) * (t16 * t73 + t15 * t75);
+    /* link j2: inertia of it and all beyond */
+    const ur10e_real_t t101 = t23 * (parameters[YY2] + (t95 - t98 + t84) - t99) + (parameters[XY2]
+        + t100) * (UR10E_C(2.0) * t22);
+    out[0] = parameters[ZZ1] + (t99 + t23 * t101) + UR10E_C(10201.0) * parameters[IA1];
     return UR10E_STATUS_OK;
 }

@@ -105,7 +105,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_monitor_step.c are of different generations: generate the arm again"
 #endif
 
@@ -289,24 +289,24 @@ ur10e_status_t ur10e_monitor_step(
     const ur10e_real_t t135 = UR10E_ABS(dq[4]);
     const ur10e_real_t t136 = ur10e_select(t135, UR10E_C(1.0), UR10E_C(0.0));
     const ur10e_real_t t137 = t134 * t136;
-    const ur10e_real_t t138 = forgetting[0] * state[14] + (t133 + t134 * t137);
+    const ur10e_real_t t138 = ur10e_held(forgetting[0] * state[14] + (t133 + t134 * t137));
     const ur10e_real_t t139 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
     const ur10e_real_t t140 = UR10E_C(0.5208333333333334) * t139;
-    const ur10e_real_t t141 = forgetting[0] * state[12] - t140 * t124;
+    const ur10e_real_t t141 = ur10e_held(forgetting[0] * state[12] - t140 * t124);
     const ur10e_real_t t142 = t140 * t123;
-    const ur10e_real_t t143 = forgetting[0] * state[9] + t140 * t142;
+    const ur10e_real_t t143 = ur10e_held(forgetting[0] * state[9] + t140 * t142);
     const ur10e_real_t t144 = t143 + (UR10E_C(-0.0001) * t143 - UR10E_C(1.0e-20));
     const ur10e_real_t t145 = ur10e_select(t144, t143, UR10E_C(1.0));
     const ur10e_real_t t146 = UR10E_C(1.0) / t145;
     const ur10e_real_t t147 = ur10e_select(t144, t146, UR10E_C(0.0));
     const ur10e_real_t t148 = t141 * t147;
-    const ur10e_real_t t149 = forgetting[0] * state[10];
+    const ur10e_real_t t149 = ur10e_held(forgetting[0] * state[10]);
     const ur10e_real_t t150 = UR10E_C(1.97265625) * dq[2];
-    const ur10e_real_t t151 = forgetting[0] * state[13] + t150 * t128;
+    const ur10e_real_t t151 = ur10e_held(forgetting[0] * state[13] + t150 * t128);
     const ur10e_real_t t152 = t149 * t148 - t151;
     const ur10e_real_t t153 = t149 * t147;
     const ur10e_real_t t154 = t150 * t127;
-    const ur10e_real_t t155 = forgetting[0] * state[11] + t150 * t154;
+    const ur10e_real_t t155 = ur10e_held(forgetting[0] * state[11] + t150 * t154);
     const ur10e_real_t t156 = t155 - t149 * t153;
     const ur10e_real_t t157 = t156 + (UR10E_C(-0.0001) * t155 - UR10E_C(1.0e-20));
     const ur10e_real_t t158 = ur10e_select(t157, t156, UR10E_C(1.0));
@@ -475,11 +475,11 @@ ur10e_status_t ur10e_monitor_step(
         + parameters[IA5] * (UR10E_C(101.0) * ddq[4]);
     const ur10e_real_t t260 = t257 + (UR10E_C(11.11111111111111) * t259 + UR10E_C(-0.11001100110011001) * t215
         - input[4]) * t137;
-    const ur10e_real_t t261 = forgetting[0] * state[8] + t260;
-    const ur10e_real_t t262 = forgetting[0] * state[6] + t250 * t142;
-    const ur10e_real_t t263 = forgetting[0] * state[7] + t253 * t154;
+    const ur10e_real_t t261 = ur10e_held(forgetting[0] * state[8] + t260);
+    const ur10e_real_t t262 = ur10e_held(forgetting[0] * state[6] + t250 * t142);
+    const ur10e_real_t t263 = ur10e_held(forgetting[0] * state[7] + t253 * t154);
     const ur10e_real_t t264 = t262 * t153 - t263;
-    const ur10e_real_t t265 = t166 * (t261 - t262 * t148 - t161 * t264);
+    const ur10e_real_t t265 = ur10e_held(t166 * (t261 - t262 * t148 - t161 * t264));
     const ur10e_real_t t266 = t161 * t265 - t160 * t264;
     const ur10e_real_t t267 = UR10E_C(0.0625) * (t262 * t147 - t153 * t266 - t148 * t265);
     out[0] = parameters[FC2] + t267;
@@ -502,7 +502,7 @@ ur10e_status_t ur10e_monitor_step(
     out[12] = t141;
     out[13] = t151;
     out[14] = t138;
-    if (!ur10e_all_bounded(out, 15)) {
+    if (!ur10e_bounded(out, 15)) {
         ur10e_zero(out, 15);
         return UR10E_STATUS_INPUT;
     }

@@ -130,7 +130,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_monitor_step_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -292,24 +292,24 @@ ur10e_status_t ur10e_monitor_step_standard(
     const ur10e_real_t t123 = UR10E_ABS(dq[4]);
     const ur10e_real_t t124 = ur10e_select(t123, UR10E_C(1.0), UR10E_C(0.0));
     const ur10e_real_t t125 = t122 * t124;
-    const ur10e_real_t t126 = forgetting[0] * state[14] + (t121 + t122 * t125);
+    const ur10e_real_t t126 = ur10e_held(forgetting[0] * state[14] + (t121 + t122 * t125));
     const ur10e_real_t t127 = ur10e_sign(dq[1]); /* joint j2: coulomb_friction */
     const ur10e_real_t t128 = UR10E_C(0.5208333333333334) * t127;
-    const ur10e_real_t t129 = forgetting[0] * state[12] - t128 * t112;
+    const ur10e_real_t t129 = ur10e_held(forgetting[0] * state[12] - t128 * t112);
     const ur10e_real_t t130 = t128 * t111;
-    const ur10e_real_t t131 = forgetting[0] * state[9] + t128 * t130;
+    const ur10e_real_t t131 = ur10e_held(forgetting[0] * state[9] + t128 * t130);
     const ur10e_real_t t132 = t131 + (UR10E_C(-0.0001) * t131 - UR10E_C(1.0e-20));
     const ur10e_real_t t133 = ur10e_select(t132, t131, UR10E_C(1.0));
     const ur10e_real_t t134 = UR10E_C(1.0) / t133;
     const ur10e_real_t t135 = ur10e_select(t132, t134, UR10E_C(0.0));
     const ur10e_real_t t136 = t129 * t135;
-    const ur10e_real_t t137 = forgetting[0] * state[10];
+    const ur10e_real_t t137 = ur10e_held(forgetting[0] * state[10]);
     const ur10e_real_t t138 = UR10E_C(1.97265625) * dq[2];
-    const ur10e_real_t t139 = forgetting[0] * state[13] - t138 * t116;
+    const ur10e_real_t t139 = ur10e_held(forgetting[0] * state[13] - t138 * t116);
     const ur10e_real_t t140 = t137 * t136 - t139;
     const ur10e_real_t t141 = t137 * t135;
     const ur10e_real_t t142 = t138 * t115;
-    const ur10e_real_t t143 = forgetting[0] * state[11] + t138 * t142;
+    const ur10e_real_t t143 = ur10e_held(forgetting[0] * state[11] + t138 * t142);
     const ur10e_real_t t144 = t143 - t137 * t141;
     const ur10e_real_t t145 = t144 + (UR10E_C(-0.0001) * t143 - UR10E_C(1.0e-20));
     const ur10e_real_t t146 = ur10e_select(t145, t144, UR10E_C(1.0));
@@ -524,9 +524,9 @@ ur10e_status_t ur10e_monitor_step_standard(
         + UR10E_C(101.0) * ddq[4] * parameters[IA5];
     const ur10e_real_t t272 = t269 + (UR10E_C(11.11111111111111) * t271 + UR10E_C(0.11001100110011001) * t211
         - input[4]) * t125;
-    const ur10e_real_t t273 = forgetting[0] * state[8] + t272;
-    const ur10e_real_t t274 = forgetting[0] * state[6] + t263 * t130;
-    const ur10e_real_t t275 = forgetting[0] * state[7] + t266 * t142;
+    const ur10e_real_t t273 = ur10e_held(forgetting[0] * state[8] + t272);
+    const ur10e_real_t t274 = ur10e_held(forgetting[0] * state[6] + t263 * t130);
+    const ur10e_real_t t275 = ur10e_held(forgetting[0] * state[7] + t266 * t142);
     const ur10e_real_t t276 = t274 * t141 - t275;
     const ur10e_real_t t277 = t154 * (t273 - t274 * t136 - t149 * t276);
     const ur10e_real_t t278 = t149 * t277 - t148 * t276;
@@ -551,7 +551,7 @@ ur10e_status_t ur10e_monitor_step_standard(
     out[12] = t129;
     out[13] = t139;
     out[14] = t126;
-    if (!ur10e_all_bounded(out, 15)) {
+    if (!ur10e_bounded(out, 15)) {
         ur10e_zero(out, 15);
         return UR10E_STATUS_INPUT;
     }

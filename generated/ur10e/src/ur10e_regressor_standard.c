@@ -35,7 +35,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0xA003030FUL
+#if UR10E_GENERATION != 0x39EF5DCBUL
 #error "ur10e.h and ur10e_regressor_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -97,7 +97,7 @@
 #define WAM7_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define WAM7_GENERATION 0x0E2B7B26UL
+#define WAM7_GENERATION 0x741DCFF0UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define WAM7_MODEL "552353c9ea1f05cf3522da2330779db9d5ae95abc9b7ddc1779c790670b7dd0e"
@@ -448,7 +448,7 @@ wam7_status_t wam7_mass_matrix(
  * @param[out]  out         [7]   [rad/s^2]  joint accelerations
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 1205 (652 mul, 553 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 1205 (652 mul, 553 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  */
 wam7_status_t wam7_forward_dynamics(
     const wam7_real_t q[WAM7_N_JOINTS],
@@ -647,7 +647,7 @@ wam7_status_t wam7_mass_matrix_standard(
  * @param[out]  out         [7]   [rad/s^2]  joint accelerations
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 1370 (720 mul, 650 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 1370 (720 mul, 650 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  */
 wam7_status_t wam7_forward_dynamics_standard(
     const wam7_real_t q[WAM7_N_JOINTS],
@@ -824,7 +824,7 @@ wam7_status_t wam7_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 5105 (2823 mul, 2282 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 5105 (2823 mul, 2282 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  */
 wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t q[WAM7_N_JOINTS],
@@ -877,7 +877,7 @@ wam7_status_t wam7_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [49]  [(rad/s^2) per A]        d ddq / d input; 7 x 7, row-major
  * @return WAM7_STATUS_OK or status bits
  *
- * Operations: 5486 (2991 mul, 2495 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 5486 (2991 mul, 2495 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  */
 wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t q[WAM7_N_JOINTS],

@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1205 (652 mul, 553 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 1205 (652 mul, 553 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -92,7 +92,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -120,19 +120,19 @@ wam7_status_t wam7_forward_dynamics(
         return status;
     }
 
-    wam7_real_t t157, t158;
-    WAM7_SINCOS(q[1], &t157, &t158);
-    wam7_real_t t118, t115;
-    WAM7_SINCOS(q[2], &t118, &t115);
-    wam7_real_t t71, t73;
-    WAM7_SINCOS(q[3], &t71, &t73);
-    wam7_real_t t32, t34;
-    WAM7_SINCOS(q[4], &t32, &t34);
-    wam7_real_t t13, t15;
-    WAM7_SINCOS(q[5], &t13, &t15);
+    wam7_real_t t152, t153;
+    WAM7_SINCOS(q[1], &t152, &t153);
+    wam7_real_t t114, t111;
+    WAM7_SINCOS(q[2], &t114, &t111);
+    wam7_real_t t68, t70;
+    WAM7_SINCOS(q[3], &t68, &t70);
+    wam7_real_t t30, t32;
+    WAM7_SINCOS(q[4], &t30, &t32);
+    wam7_real_t t12, t14;
+    WAM7_SINCOS(q[5], &t12, &t14);
     wam7_real_t t1, t2;
     WAM7_SINCOS(q[6], &t1, &t2);
-    const wam7_real_t t0 = wam7_bounded(parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7]);
+    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
     if (!(t0 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -146,536 +146,515 @@ wam7_status_t wam7_forward_dynamics(
     const wam7_real_t t7 = t2 * t6;
     const wam7_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
     const wam7_real_t t9 = t8 + WAM7_C(89.8704) * parameters[IA6];
-    const wam7_real_t t10 = wam7_bounded(t9 + t3 * t5);
+    const wam7_real_t t10 = t9 + t3 * t5;
     if (!(t10 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t11 = t10 + WAM7_C(-1.0e-9) * t9;
-    if (!(t11 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t12 = t1 * t6 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t14 = parameters[YZ6] - t3;
-    const wam7_real_t t16 = t15 * t14 - t13 * t12; /* link j6: column of the mass matrix */
+    const wam7_real_t t11 = t1 * t6 - parameters[XY7] - parameters[XZ6];
+    const wam7_real_t t13 = parameters[YZ6] - t3;
+    const wam7_real_t t15 = t14 * t13 - t12 * t11; /* link j6: column of the mass matrix */
     /* link j7: column of the mass matrix */
-    const wam7_real_t t17 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
-    const wam7_real_t t18 = t13 * t17 + t15 * parameters[ZZ7];
-    const wam7_real_t t19 = t18 * t5 - t16;
-    const wam7_real_t t20 = WAM7_C(-1.0) / t10;
-    const wam7_real_t t21 = t19 * t20;
-    const wam7_real_t t22 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t23 = parameters[XY6] + t17;
+    const wam7_real_t t16 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
+    const wam7_real_t t17 = t12 * t16 + t14 * parameters[ZZ7];
+    const wam7_real_t t18 = t17 * t5 - t15;
+    const wam7_real_t t19 = WAM7_C(-1.0) / t10;
+    const wam7_real_t t20 = t18 * t19;
+    const wam7_real_t t21 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t22 = parameters[XY6] + t16;
     /* link j6: inertia of it and all beyond */
-    const wam7_real_t t24 = t15 * (t22 - parameters[ZZ7]) + t23 * (WAM7_C(-2.0) * t13);
-    const wam7_real_t t25 = t15 * t24;
-    const wam7_real_t t26 = parameters[ZZ5R] + (t22 - t25);
-    const wam7_real_t t27 = t26 + WAM7_C(89.8704) * parameters[IA5];
-    const wam7_real_t t28 = t18 * t4;
-    const wam7_real_t t29 = wam7_bounded(t27 + t18 * t28 + t19 * t21);
-    if (!(t29 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t23 = t14 * (t21 - parameters[ZZ7]) + t22 * (WAM7_C(-2.0) * t12);
+    const wam7_real_t t24 = t14 * t23;
+    const wam7_real_t t25 = parameters[ZZ5R] + (t21 - t24);
+    const wam7_real_t t26 = t25 + WAM7_C(89.8704) * parameters[IA5];
+    const wam7_real_t t27 = t17 * t4;
+    const wam7_real_t t28 = t26 + t17 * t27 + t18 * t20;
+    if (!(t28 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t30 = t29 + WAM7_C(-1.0e-9) * t27;
-    if (!(t30 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t31 = t23 + t13 * t24 - parameters[XZ5];
-    const wam7_real_t t33 = parameters[YZ5] - t16;
+    const wam7_real_t t29 = t22 + t12 * t23 - parameters[XZ5];
+    const wam7_real_t t31 = parameters[YZ5] - t15;
     /* link j7: column of the mass matrix */
-    const wam7_real_t t35 = t2 * parameters[MY7] + t1 * parameters[MX7];
-    const wam7_real_t t36 = parameters[MY5R] + t35; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t33 = t2 * parameters[MY7] + t1 * parameters[MX7];
+    const wam7_real_t t34 = parameters[MY5R] + t33; /* link j6: inertia of it and all beyond */
     /* link j7: column of the mass matrix */
-    const wam7_real_t t37 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const wam7_real_t t38 = parameters[MX6] + t37; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t39 = t15 * t38 - t13 * parameters[MY6R]; /* link j6: column of the mass matrix */
-    const wam7_real_t t40 = parameters[MX5] + t39; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t41 = t34 * t36 + t32 * t40; /* link j5: column of the mass matrix */
-    const wam7_real_t t42 = t32 * t31 - t34 * t33 + WAM7_C(0.3) * t41;
-    const wam7_real_t t43 = t15 * t17 - t13 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t44 = t15 * t35;
-    const wam7_real_t t45 = t34 * t44 + t32 * t37;
-    const wam7_real_t t46 = t13 * t35;
-    const wam7_real_t t47 = t32 * t43 - t34 * t3 + (WAM7_C(-0.045) * t46 + WAM7_C(0.3) * t45);
-    const wam7_real_t t48 = t15 * t12 + t13 * t14; /* link j6: column of the mass matrix */
-    const wam7_real_t t49 = t15 * parameters[MY6R] + t13 * t38;
-    const wam7_real_t t50 = t34 * t49;
-    const wam7_real_t t51 = t32 * t48 - t34 * t8 + (WAM7_C(0.045) * t39 + WAM7_C(0.3) * t50);
-    const wam7_real_t t52 = t51 + t47 * t5;
-    const wam7_real_t t53 = t42 + t47 * t28 + t52 * t21;
-    const wam7_real_t t54 = WAM7_C(1.0) / t29;
-    const wam7_real_t t55 = t53 * t54;
-    const wam7_real_t t56 = t52 * t20;
-    const wam7_real_t t57 = t47 * t4;
+    const wam7_real_t t35 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const wam7_real_t t36 = parameters[MX6] + t35; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t37 = t14 * t36 - t12 * parameters[MY6R]; /* link j6: column of the mass matrix */
+    const wam7_real_t t38 = parameters[MX5] + t37; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t39 = t32 * t34 + t30 * t38; /* link j5: column of the mass matrix */
+    const wam7_real_t t40 = t30 * t29 - t32 * t31 + WAM7_C(0.3) * t39;
+    const wam7_real_t t41 = t14 * t16 - t12 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const wam7_real_t t42 = t14 * t33;
+    const wam7_real_t t43 = t32 * t42 + t30 * t35;
+    const wam7_real_t t44 = t12 * t33;
+    const wam7_real_t t45 = t30 * t41 - t32 * t3 + (WAM7_C(-0.045) * t44 + WAM7_C(0.3) * t43);
+    const wam7_real_t t46 = t14 * t11 + t12 * t13; /* link j6: column of the mass matrix */
+    const wam7_real_t t47 = t14 * parameters[MY6R] + t12 * t36;
+    const wam7_real_t t48 = t32 * t47;
+    const wam7_real_t t49 = t30 * t46 - t32 * t8 + (WAM7_C(0.045) * t37 + WAM7_C(0.3) * t48);
+    const wam7_real_t t50 = t49 + t45 * t5;
+    const wam7_real_t t51 = t40 + t45 * t27 + t50 * t20;
+    const wam7_real_t t52 = WAM7_C(1.0) / t28;
+    const wam7_real_t t53 = t51 * t52;
+    const wam7_real_t t54 = t50 * t19;
+    const wam7_real_t t55 = t45 * t4;
     /* link j6: inertia of it and all beyond */
-    const wam7_real_t t58 = parameters[XX5R] + (parameters[ZZ7] + t25);
-    const wam7_real_t t59 = parameters[XY5] - t48;
+    const wam7_real_t t56 = parameters[XX5R] + (parameters[ZZ7] + t24);
+    const wam7_real_t t57 = parameters[XY5] - t46;
     /* link j5: inertia of it and all beyond */
-    const wam7_real_t t60 = t34 * (t8 - t58) + t59 * (WAM7_C(2.0) * t32);
-    const wam7_real_t t61 = t34 * t60;
-    const wam7_real_t t62 = t34 * t40 - t32 * t36; /* link j5: column of the mass matrix */
-    const wam7_real_t t63 = WAM7_C(-0.09) * t62; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t64 = WAM7_C(-0.6) * t49;
-    const wam7_real_t t65 = parameters[ZZ4R] + (t58 + t61 + (t63 + t64));
-    const wam7_real_t t66 = t65 + WAM7_C(324.0) * parameters[IA4];
-    const wam7_real_t t67 = wam7_bounded(t66 + t47 * t57 + t52 * t56 - t53 * t55);
-    if (!(t67 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t58 = t32 * (t8 - t56) + t57 * (WAM7_C(2.0) * t30);
+    const wam7_real_t t59 = t32 * t58;
+    const wam7_real_t t60 = t32 * t38 - t30 * t34; /* link j5: column of the mass matrix */
+    const wam7_real_t t61 = WAM7_C(-0.09) * t60; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t62 = WAM7_C(-0.6) * t47;
+    const wam7_real_t t63 = parameters[ZZ4R] + (t56 + t59 + (t61 + t62));
+    const wam7_real_t t64 = t63 + WAM7_C(324.0) * parameters[IA4];
+    const wam7_real_t t65 = t64 + t45 * t55 + t50 * t54 - t51 * t53;
+    if (!(t65 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t68 = t67 + WAM7_C(-1.0e-9) * t66;
-    if (!(t68 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t69 = WAM7_C(-0.045) * t41;
-    const wam7_real_t t70 = parameters[XZ4] + (t59 - t32 * t60 - t69);
-    const wam7_real_t t72 = parameters[YZ4] + t42;
-    const wam7_real_t t74 = t71 * t70 + t73 * t72; /* link j4: column of the mass matrix */
-    const wam7_real_t t75 = t34 * t37 - t32 * t44; /* link j7: column of the mass matrix */
-    const wam7_real_t t76 = t34 * t43 + t32 * t3 + WAM7_C(0.3) * t75;
-    const wam7_real_t t77 = WAM7_C(0.045) * t75;
-    const wam7_real_t t78 = t77 - t18;
-    const wam7_real_t t79 = t73 * t78 - t71 * t76 - t77;
-    const wam7_real_t t80 = t32 * t49; /* link j6: column of the mass matrix */
-    const wam7_real_t t81 = t34 * t48 + t32 * t8 + WAM7_C(-0.3) * t80;
-    const wam7_real_t t82 = WAM7_C(-0.045) * t80;
-    const wam7_real_t t83 = t16 + t82;
-    const wam7_real_t t84 = t73 * t83 - t71 * t81 - t82;
-    const wam7_real_t t85 = t84 + t79 * t5;
-    const wam7_real_t t86 = t34 * t31 + t32 * t33; /* link j5: column of the mass matrix */
-    const wam7_real_t t87 = WAM7_C(0.3) * t62;
-    const wam7_real_t t88 = t86 + t87;
-    const wam7_real_t t89 = WAM7_C(0.045) * t62;
-    const wam7_real_t t90 = t89 - t26;
-    const wam7_real_t t91 = t73 * t90 - t71 * t88 - t89;
-    const wam7_real_t t92 = t91 + t79 * t28 + t85 * t21;
-    const wam7_real_t t93 = t79 * t57 - t74 + t85 * t56 - t92 * t55;
-    const wam7_real_t t94 = WAM7_C(1.0) / t67;
-    const wam7_real_t t95 = t93 * t94;
-    const wam7_real_t t96 = t26 + t63; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t97 = parameters[XX4R] + (t8 - t61 + t64);
-    const wam7_real_t t98 = parameters[XY4R] + (t86 + (t87 + WAM7_C(0.045) * t49));
+    const wam7_real_t t66 = WAM7_C(-0.045) * t39;
+    const wam7_real_t t67 = parameters[XZ4] + (t57 - t30 * t58 - t66);
+    const wam7_real_t t69 = parameters[YZ4] + t40;
+    const wam7_real_t t71 = t68 * t67 + t70 * t69; /* link j4: column of the mass matrix */
+    const wam7_real_t t72 = t32 * t35 - t30 * t42; /* link j7: column of the mass matrix */
+    const wam7_real_t t73 = t32 * t41 + t30 * t3 + WAM7_C(0.3) * t72;
+    const wam7_real_t t74 = WAM7_C(0.045) * t72;
+    const wam7_real_t t75 = t74 - t17;
+    const wam7_real_t t76 = t70 * t75 - t68 * t73 - t74;
+    const wam7_real_t t77 = t30 * t47; /* link j6: column of the mass matrix */
+    const wam7_real_t t78 = t32 * t46 + t30 * t8 + WAM7_C(-0.3) * t77;
+    const wam7_real_t t79 = WAM7_C(-0.045) * t77;
+    const wam7_real_t t80 = t15 + t79;
+    const wam7_real_t t81 = t70 * t80 - t68 * t78 - t79;
+    const wam7_real_t t82 = t81 + t76 * t5;
+    const wam7_real_t t83 = t32 * t29 + t30 * t31; /* link j5: column of the mass matrix */
+    const wam7_real_t t84 = WAM7_C(0.3) * t60;
+    const wam7_real_t t85 = t83 + t84;
+    const wam7_real_t t86 = WAM7_C(0.045) * t60;
+    const wam7_real_t t87 = t86 - t25;
+    const wam7_real_t t88 = t70 * t87 - t68 * t85 - t86;
+    const wam7_real_t t89 = t88 + t76 * t27 + t82 * t20;
+    const wam7_real_t t90 = t76 * t55 - t71 + t82 * t54 - t89 * t53;
+    const wam7_real_t t91 = WAM7_C(1.0) / t65;
+    const wam7_real_t t92 = t90 * t91;
+    const wam7_real_t t93 = t25 + t61; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t94 = parameters[XX4R] + (t8 - t59 + t62);
+    const wam7_real_t t95 = parameters[XY4R] + (t83 + (t84 + WAM7_C(0.045) * t47));
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t99 = t73 * (t96 - t97) + t98 * (WAM7_C(2.0) * t71);
-    const wam7_real_t t100 = t73 * t99;
-    const wam7_real_t t101 = parameters[MX4R] + t62; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t102 = parameters[MY4R] + t49;
-    const wam7_real_t t103 = t73 * t101 - t71 * t102; /* link j4: column of the mass matrix */
-    const wam7_real_t t104 = WAM7_C(0.09) * t103; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t105 = parameters[ZZ3R] + (t97 + t100 + t104);
-    const wam7_real_t t106 = t105 + WAM7_C(798.0625) * parameters[IA3];
-    const wam7_real_t t107 = t79 * t4;
-    const wam7_real_t t108 = t85 * t20;
-    const wam7_real_t t109 = t92 * t54;
-    const wam7_real_t t110 = t106 + t79 * t107 + t85 * t108 - t92 * t109;
-    const wam7_real_t t111 = wam7_bounded(t110 - t93 * t95);
-    if (!(t111 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t96 = t70 * (t93 - t94) + t95 * (WAM7_C(2.0) * t68);
+    const wam7_real_t t97 = t70 * t96;
+    const wam7_real_t t98 = parameters[MX4R] + t60; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t99 = parameters[MY4R] + t47;
+    const wam7_real_t t100 = t70 * t98 - t68 * t99; /* link j4: column of the mass matrix */
+    const wam7_real_t t101 = WAM7_C(0.09) * t100; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t102 = parameters[ZZ3R] + (t94 + t97 + t101);
+    const wam7_real_t t103 = t102 + WAM7_C(798.0625) * parameters[IA3];
+    const wam7_real_t t104 = t76 * t4;
+    const wam7_real_t t105 = t82 * t19;
+    const wam7_real_t t106 = t89 * t52;
+    const wam7_real_t t107 = t103 + t76 * t104 + t82 * t105 - t89 * t106;
+    const wam7_real_t t108 = t107 - t90 * t92;
+    if (!(t108 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t112 = t111 + WAM7_C(-1.0e-9) * t106;
-    if (!(t112 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t113 = parameters[XX3R] + (t96 - t100);
-    const wam7_real_t t114 = t65 + t104;
-    const wam7_real_t t116 = t73 * t70 - t71 * t72; /* link j4: column of the mass matrix */
-    const wam7_real_t t117 = parameters[XY3R] + (t69 + t116); /* link j4: inertia of it and all beyond */
+    const wam7_real_t t109 = parameters[XX3R] + (t93 - t97);
+    const wam7_real_t t110 = t63 + t101;
+    const wam7_real_t t112 = t70 * t67 - t68 * t69; /* link j4: column of the mass matrix */
+    const wam7_real_t t113 = parameters[XY3R] + (t66 + t112); /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const wam7_real_t t119 = t115 * (t114 - t113) + t117 * (WAM7_C(2.0) * t118);
-    const wam7_real_t t120 = t115 * t119;
-    const wam7_real_t t121 = t73 * t102 + t71 * t101; /* link j4: column of the mass matrix */
-    const wam7_real_t t122 = WAM7_C(-1.1) * t121; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t123 = parameters[ZZ2R] + (t113 + t120 + t122);
-    const wam7_real_t t124 = t73 * t76 + t71 * t78; /* link j7: column of the mass matrix */
-    const wam7_real_t t125 = t47 + WAM7_C(0.045) * (t71 * t45 + t73 * t46);
-    const wam7_real_t t126 = t73 * t45 - t71 * t46;
-    const wam7_real_t t127 = t118 * t124 + t115 * t125 + WAM7_C(0.55) * (t115 * t126 + t118 * t75);
-    const wam7_real_t t128 = t127 * t4;
-    const wam7_real_t t129 = t73 * t81 + t71 * t83; /* link j6: column of the mass matrix */
-    const wam7_real_t t130 = t51 + WAM7_C(0.045) * (t71 * t50 - t73 * t39);
-    const wam7_real_t t131 = t73 * t50 + t71 * t39;
-    const wam7_real_t t132 = t118 * t129 + t115 * t130 + WAM7_C(0.55) * (t115 * t131 - t118 * t80);
-    const wam7_real_t t133 = t132 + t127 * t5;
-    const wam7_real_t t134 = t133 * t20;
-    const wam7_real_t t135 = t73 * t88 + t71 * t90; /* link j5: column of the mass matrix */
-    const wam7_real_t t136 = t42 + WAM7_C(0.045) * (t71 * t41);
-    const wam7_real_t t137 = t73 * t41;
-    const wam7_real_t t138 = t118 * t135 + t115 * t136 + WAM7_C(0.55) * (t115 * t137 + t118 * t62);
-    const wam7_real_t t139 = t138 + t127 * t28 + t133 * t21;
-    const wam7_real_t t140 = t139 * t54;
-    const wam7_real_t t141 = t123 + t127 * t128 + t133 * t134 - t139 * t140;
-    const wam7_real_t t142 = WAM7_C(-0.045) * t103 - t65; /* link j4: column of the mass matrix */
-    const wam7_real_t t143 = t115 * t142 - t118 * t116 + WAM7_C(0.55) * (t115 * t121);
-    const wam7_real_t t144 = t143 - t127 * t57 - t133 * t56 + t139 * t55;
-    const wam7_real_t t145 = t144 * t94;
+    const wam7_real_t t115 = t111 * (t110 - t109) + t113 * (WAM7_C(2.0) * t114);
+    const wam7_real_t t116 = t111 * t115;
+    const wam7_real_t t117 = t70 * t99 + t68 * t98; /* link j4: column of the mass matrix */
+    const wam7_real_t t118 = WAM7_C(-1.1) * t117; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t119 = parameters[ZZ2R] + (t109 + t116 + t118);
+    const wam7_real_t t120 = t70 * t73 + t68 * t75; /* link j7: column of the mass matrix */
+    const wam7_real_t t121 = t45 + WAM7_C(0.045) * (t68 * t43 + t70 * t44);
+    const wam7_real_t t122 = t70 * t43 - t68 * t44;
+    const wam7_real_t t123 = t114 * t120 + t111 * t121 + WAM7_C(0.55) * (t111 * t122 + t114 * t72);
+    const wam7_real_t t124 = t123 * t4;
+    const wam7_real_t t125 = t70 * t78 + t68 * t80; /* link j6: column of the mass matrix */
+    const wam7_real_t t126 = t49 + WAM7_C(0.045) * (t68 * t48 - t70 * t37);
+    const wam7_real_t t127 = t70 * t48 + t68 * t37;
+    const wam7_real_t t128 = t114 * t125 + t111 * t126 + WAM7_C(0.55) * (t111 * t127 - t114 * t77);
+    const wam7_real_t t129 = t128 + t123 * t5;
+    const wam7_real_t t130 = t129 * t19;
+    const wam7_real_t t131 = t70 * t85 + t68 * t87; /* link j5: column of the mass matrix */
+    const wam7_real_t t132 = t40 + WAM7_C(0.045) * (t68 * t39);
+    const wam7_real_t t133 = t70 * t39;
+    const wam7_real_t t134 = t114 * t131 + t111 * t132 + WAM7_C(0.55) * (t111 * t133 + t114 * t60);
+    const wam7_real_t t135 = t134 + t123 * t27 + t129 * t20;
+    const wam7_real_t t136 = t135 * t52;
+    const wam7_real_t t137 = t119 + t123 * t124 + t129 * t130 - t135 * t136;
+    const wam7_real_t t138 = WAM7_C(-0.045) * t100 - t63; /* link j4: column of the mass matrix */
+    const wam7_real_t t139 = t111 * t138 - t114 * t112 + WAM7_C(0.55) * (t111 * t117);
+    const wam7_real_t t140 = t139 - t123 * t55 - t129 * t54 + t135 * t53;
+    const wam7_real_t t141 = t140 * t91;
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t146 = t98 - t71 * t99 + WAM7_C(-0.045) * t121 - parameters[XZ3];
-    const wam7_real_t t147 = parameters[YZ3] - t74;
-    const wam7_real_t t148 = parameters[MY3R] + t41;
-    const wam7_real_t t149 = parameters[MX3R] + t103;
+    const wam7_real_t t142 = t95 - t68 * t96 + WAM7_C(-0.045) * t117 - parameters[XZ3];
+    const wam7_real_t t143 = parameters[YZ3] - t71;
+    const wam7_real_t t144 = parameters[MY3R] + t39;
+    const wam7_real_t t145 = parameters[MX3R] + t100;
     /* link j3: column of the mass matrix */
-    const wam7_real_t t150 = t118 * t146 - t115 * t147 + WAM7_C(0.55) * (t115 * t148 + t118 * t149);
-    const wam7_real_t t151 = t150 - t127 * t107 - t133 * t108 + t139 * t109;
-    const wam7_real_t t152 = t151 - t144 * t95;
-    const wam7_real_t t153 = WAM7_C(1.0) / t111;
-    const wam7_real_t t154 = t152 * t153;
-    const wam7_real_t t155 = wam7_bounded(t141 - t144 * t145 - t152 * t154);
-    if (!(t155 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t156 = t155 + WAM7_C(-1.0e-9) * t123;
-    if (!(t156 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t146 = t114 * t142 - t111 * t143 + WAM7_C(0.55) * (t111 * t144 + t114 * t145);
+    const wam7_real_t t147 = t146 - t123 * t104 - t129 * t105 + t135 * t106;
+    const wam7_real_t t148 = t147 - t140 * t92;
+    const wam7_real_t t149 = WAM7_C(1.0) / t108;
+    const wam7_real_t t150 = t148 * t149;
+    const wam7_real_t t151 = t137 - t140 * t141 - t148 * t150;
+    if (!(t151 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
     /* link j2: column of the mass matrix */
-    const wam7_real_t t159 = t157 * (parameters[XZ2] + (t117 - t118 * t119)) + t158 * (parameters[YZ2]
-        + t150);
+    const wam7_real_t t154 = t152 * (parameters[XZ2] + (t113 - t114 * t115)) + t153 * (parameters[YZ2]
+        + t146);
     /* link j7: column of the mass matrix */
-    const wam7_real_t t160 = t118 * t125 - t115 * t124 + WAM7_C(0.55) * (t118 * t126 - t115 * t75);
-    const wam7_real_t t161 = t157 * t160 + t158 * t79;
+    const wam7_real_t t155 = t114 * t121 - t111 * t120 + WAM7_C(0.55) * (t114 * t122 - t111 * t72);
+    const wam7_real_t t156 = t152 * t155 + t153 * t76;
     /* link j6: column of the mass matrix */
-    const wam7_real_t t162 = t118 * t130 - t115 * t129 + WAM7_C(0.55) * (t118 * t131 + t115 * t80);
-    const wam7_real_t t163 = t157 * t162 + t158 * t84 + t161 * t5;
+    const wam7_real_t t157 = t114 * t126 - t111 * t125 + WAM7_C(0.55) * (t114 * t127 + t111 * t77);
+    const wam7_real_t t158 = t152 * t157 + t153 * t81 + t156 * t5;
     /* link j5: column of the mass matrix */
-    const wam7_real_t t164 = t118 * t136 - t115 * t135 + WAM7_C(0.55) * (t118 * t137 - t115 * t62);
-    const wam7_real_t t165 = t157 * t164 + t158 * t91 + t161 * t28 + t163 * t21;
-    const wam7_real_t t166 = t159 - t161 * t128 - t163 * t134 + t165 * t140;
+    const wam7_real_t t159 = t114 * t132 - t111 * t131 + WAM7_C(0.55) * (t114 * t133 - t111 * t60);
+    const wam7_real_t t160 = t152 * t159 + t153 * t88 + t156 * t27 + t158 * t20;
+    const wam7_real_t t161 = t154 - t156 * t124 - t158 * t130 + t160 * t136;
     /* link j4: column of the mass matrix */
-    const wam7_real_t t167 = t115 * t116 + t118 * t142 + WAM7_C(0.55) * (t118 * t121);
-    const wam7_real_t t168 = t157 * t167 + t158 * t74 - t161 * t57 - t163 * t56;
-    const wam7_real_t t169 = t168 + t165 * t55;
+    const wam7_real_t t162 = t111 * t112 + t114 * t138 + WAM7_C(0.55) * (t114 * t117);
+    const wam7_real_t t163 = t152 * t162 + t153 * t71 - t156 * t55 - t158 * t54;
+    const wam7_real_t t164 = t163 + t160 * t53;
     /* link j3: column of the mass matrix */
-    const wam7_real_t t170 = t115 * t146 + t118 * t147 + WAM7_C(0.55) * (t115 * t149 - t118 * t148);
-    const wam7_real_t t171 = t157 * t170 + t158 * t105 + t161 * t107 + t163 * t108;
-    const wam7_real_t t172 = t165 * t109 - t171 - t169 * t95;
-    const wam7_real_t t173 = t166 + t169 * t145 + t172 * t154;
-    const wam7_real_t t174 = WAM7_C(1.0) / t155;
-    const wam7_real_t t175 = t173 * t174;
+    const wam7_real_t t165 = t111 * t142 + t114 * t143 + WAM7_C(0.55) * (t111 * t145 - t114 * t144);
+    const wam7_real_t t166 = t152 * t165 + t153 * t102 + t156 * t104 + t158 * t105;
+    const wam7_real_t t167 = t160 * t106 - t166 - t164 * t92;
+    const wam7_real_t t168 = t161 + t164 * t141 + t167 * t150;
+    const wam7_real_t t169 = WAM7_C(1.0) / t151;
+    const wam7_real_t t170 = t168 * t169;
     /* link j3: inertia of it and all beyond */
-    const wam7_real_t t176 = parameters[XX2R] + (t114 - t120 + t122);
+    const wam7_real_t t171 = parameters[XX2R] + (t110 - t116 + t118);
     /* link j2: inertia of it and all beyond */
-    const wam7_real_t t177 = t158 * (t105 - t176) + (parameters[XY2] + t170) * (WAM7_C(2.0) * t157);
-    const wam7_real_t t178 = parameters[ZZ1R] + (t176 + t158 * t177);
-    const wam7_real_t t179 = t161 * t4;
-    const wam7_real_t t180 = t163 * t20;
-    const wam7_real_t t181 = t165 * t54;
-    const wam7_real_t t182 = t178 + t161 * t179 + t163 * t180 - t165 * t181;
-    const wam7_real_t t183 = t169 * t94;
-    const wam7_real_t t184 = t172 * t153;
-    const wam7_real_t t185 = wam7_bounded(t182 - t169 * t183 - t172 * t184 - t173 * t175);
+    const wam7_real_t t172 = t153 * (t102 - t171) + (parameters[XY2] + t165) * (WAM7_C(2.0) * t152);
+    const wam7_real_t t173 = parameters[ZZ1R] + (t171 + t153 * t172);
+    const wam7_real_t t174 = t156 * t4;
+    const wam7_real_t t175 = t158 * t19;
+    const wam7_real_t t176 = t160 * t52;
+    const wam7_real_t t177 = t173 + t156 * t174 + t158 * t175 - t160 * t176;
+    const wam7_real_t t178 = t164 * t91;
+    const wam7_real_t t179 = t167 * t149;
+    const wam7_real_t t180 = t177 - t164 * t178 - t167 * t179 - t168 * t170;
+    if (!(t180 > WAM7_C(1.0e-12))) {
+        wam7_zero(out, 7);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t181 = wam7_min(t10 + WAM7_C(-1.0e-9) * t9, t28 + WAM7_C(-1.0e-9) * t26);
+    const wam7_real_t t182 = wam7_min(t181, t65 + WAM7_C(-1.0e-9) * t64);
+    const wam7_real_t t183 = wam7_min(t182, t108 + WAM7_C(-1.0e-9) * t103);
+    const wam7_real_t t184 = wam7_min(t183, t151 + WAM7_C(-1.0e-9) * t119);
+    const wam7_real_t t185 = wam7_min(t184, t180 + WAM7_C(-1.0e-9) * t173);
     if (!(t185 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t186 = t185 + WAM7_C(-1.0e-9) * t178;
-    if (!(t186 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t187 = t157 * dq[0]; /* link j2: motion */
-    const wam7_real_t t188 = t115 * t187 - t118 * dq[1]; /* link j3: motion */
-    const wam7_real_t t189 = t118 * t187 + t115 * dq[1];
-    const wam7_real_t t190 = t188 * t189;
-    const wam7_real_t t191 = dq[1] * t187; /* link j2: motion */
-    const wam7_real_t t192 = t191 - t190; /* link j4: motion */
-    const wam7_real_t t193 = t158 * dq[0]; /* link j2: motion */
-    const wam7_real_t t194 = t187 * t193;
-    const wam7_real_t t195 = dq[1] * t193;
-    const wam7_real_t t196 = WAM7_C(2.0) * t195;
-    const wam7_real_t t197 = t118 * t194 + t115 * t196; /* link j3: motion */
-    const wam7_real_t t198 = dq[2] + t193;
-    const wam7_real_t t199 = t189 * t198;
-    const wam7_real_t t200 = t197 - t199;
-    const wam7_real_t t201 = t200 - t199; /* link j4: motion */
-    const wam7_real_t t202 = t73 * t192 + t71 * t201;
-    const wam7_real_t t203 = t73 * t188 + t71 * t198;
-    const wam7_real_t t204 = dq[3] + t189;
-    const wam7_real_t t205 = t203 * t204;
-    const wam7_real_t t206 = t202 + t205;
-    const wam7_real_t t207 = t34 * t203 - t32 * t204; /* link j5: motion */
-    const wam7_real_t t208 = t32 * t203 + t34 * t204;
-    const wam7_real_t t209 = t207 * t208;
-    const wam7_real_t t210 = t206 - t209; /* link j6: motion */
-    const wam7_real_t t211 = t118 * t196 - t115 * t194; /* link j3: motion */
-    const wam7_real_t t212 = t188 * t198;
-    const wam7_real_t t213 = t211 + t212;
-    const wam7_real_t t214 = t71 * t188 - t73 * t198; /* link j4: motion */
-    const wam7_real_t t215 = t203 * t214;
-    const wam7_real_t t216 = t213 + t215; /* link j5: motion */
-    const wam7_real_t t217 = t73 * t201 - t71 * t192; /* link j4: motion */
-    const wam7_real_t t218 = t214 * t204;
-    const wam7_real_t t219 = t217 - t218;
-    const wam7_real_t t220 = t219 - t218; /* link j5: motion */
-    const wam7_real_t t221 = t34 * t220 - t32 * t216;
-    const wam7_real_t t222 = t214 - dq[4];
-    const wam7_real_t t223 = t208 * t222;
-    const wam7_real_t t224 = t221 + t223;
-    const wam7_real_t t225 = t223 + t224; /* link j6: motion */
-    const wam7_real_t t226 = t15 * t225 - t13 * t210;
-    const wam7_real_t t227 = t13 * t207 + t15 * t222;
-    const wam7_real_t t228 = dq[5] + t208;
-    const wam7_real_t t229 = t227 * t228;
-    const wam7_real_t t230 = t226 - t229;
-    const wam7_real_t t231 = t230 - t229; /* link j7: motion */
-    const wam7_real_t t232 = t34 * t216 + t32 * t220; /* link j5: motion */
-    const wam7_real_t t233 = t207 * t222;
-    const wam7_real_t t234 = t232 - t233;
-    const wam7_real_t t235 = t13 * t222 - t15 * t207; /* link j6: motion */
-    const wam7_real_t t236 = t235 * t227;
-    const wam7_real_t t237 = t234 - t236; /* link j7: motion */
-    const wam7_real_t t238 = t2 * t231 - t1 * t237;
-    const wam7_real_t t239 = t2 * t228 - t1 * t235;
-    const wam7_real_t t240 = t227 - dq[6];
-    const wam7_real_t t241 = t239 * t240;
-    const wam7_real_t t242 = t238 + t241;
-    const wam7_real_t t243 = t2 * t237 + t1 * t231;
-    const wam7_real_t t244 = t2 * t235 + t1 * t228;
-    const wam7_real_t t245 = t244 * t240;
-    const wam7_real_t t246 = t245 + (t243 + t245); /* link j7: force and moment */
-    const wam7_real_t t247 = t15 * t210 + t13 * t225; /* link j6: motion */
-    const wam7_real_t t248 = t235 * t228;
-    const wam7_real_t t249 = t247 - t248;
-    const wam7_real_t t250 = t244 * t239; /* link j7: motion */
-    const wam7_real_t t251 = t249 - t250; /* link j7: force and moment */
-    const wam7_real_t t252 = parameters[XX7R] * t242 + parameters[ZZ7] * t241 - parameters[XY7] * t246
-        + parameters[XZ7R] * t251;
-    const wam7_real_t t253 = t239 * t239; /* link j7: motion */
-    const wam7_real_t t254 = t240 * t240;
-    const wam7_real_t t255 = t214 * t214; /* link j4: motion */
-    const wam7_real_t t256 = t204 * t204;
-    const wam7_real_t t257 = t255 + t256; /* link j5: motion */
-    const wam7_real_t t258 = t189 * t189; /* link j3: motion */
-    const wam7_real_t t259 = t198 * t198;
-    const wam7_real_t t260 = t258 + t259; /* link j4: motion */
-    const wam7_real_t t261 = WAM7_C(-9.81) * t157; /* link j2: motion */
-    const wam7_real_t t262 = t261 + WAM7_C(-0.55) * t194; /* link j3: motion */
-    const wam7_real_t t263 = WAM7_C(1.1) * t195;
-    const wam7_real_t t264 = t115 * t262 + t118 * t263;
-    const wam7_real_t t265 = t264 + WAM7_C(-0.045) * t260; /* link j4: motion */
-    const wam7_real_t t266 = t212 + t213;
-    const wam7_real_t t267 = t187 * t187; /* link j2: motion */
-    const wam7_real_t t268 = dq[1] * dq[1];
-    const wam7_real_t t269 = WAM7_C(9.81) * t158;
-    const wam7_real_t t270 = t269 + WAM7_C(-0.55) * (t268 + t267); /* link j3: motion */
-    const wam7_real_t t271 = t270 - WAM7_C(0.045) * t266; /* link j4: motion */
-    const wam7_real_t t272 = t73 * t265 - t71 * t271;
-    const wam7_real_t t273 = t272 + (WAM7_C(0.045) * t257 + WAM7_C(0.3) * t216); /* link j5: motion */
-    const wam7_real_t t274 = t205 + t206;
-    const wam7_real_t t275 = t191 + t190; /* link j4: motion */
-    const wam7_real_t t276 = t118 * t262 - t115 * t263; /* link j3: motion */
-    const wam7_real_t t277 = t276 + WAM7_C(0.045) * t275; /* link j4: motion */
-    const wam7_real_t t278 = WAM7_C(0.045) * t274 - WAM7_C(-0.3) * t220 - t277; /* link j5: motion */
-    const wam7_real_t t279 = t34 * t273 + t32 * t278;
-    const wam7_real_t t280 = t213 - t215;
-    const wam7_real_t t281 = t203 * t203; /* link j4: motion */
-    const wam7_real_t t282 = t281 + t256; /* link j5: motion */
-    const wam7_real_t t283 = t71 * t265 + t73 * t271; /* link j4: motion */
-    const wam7_real_t t284 = t283 + (WAM7_C(0.045) * t280 + WAM7_C(-0.3) * t282); /* link j5: motion */
-    const wam7_real_t t285 = t13 * t279 + t15 * t284; /* link j6: motion */
+    const wam7_real_t t186 = t152 * dq[0]; /* link j2: motion */
+    const wam7_real_t t187 = t111 * t186 - t114 * dq[1]; /* link j3: motion */
+    const wam7_real_t t188 = t114 * t186 + t111 * dq[1];
+    const wam7_real_t t189 = t187 * t188;
+    const wam7_real_t t190 = dq[1] * t186; /* link j2: motion */
+    const wam7_real_t t191 = t190 - t189; /* link j4: motion */
+    const wam7_real_t t192 = t153 * dq[0]; /* link j2: motion */
+    const wam7_real_t t193 = t186 * t192;
+    const wam7_real_t t194 = dq[1] * t192;
+    const wam7_real_t t195 = WAM7_C(2.0) * t194;
+    const wam7_real_t t196 = t114 * t193 + t111 * t195; /* link j3: motion */
+    const wam7_real_t t197 = dq[2] + t192;
+    const wam7_real_t t198 = t188 * t197;
+    const wam7_real_t t199 = t196 - t198;
+    const wam7_real_t t200 = t199 - t198; /* link j4: motion */
+    const wam7_real_t t201 = t70 * t191 + t68 * t200;
+    const wam7_real_t t202 = t70 * t187 + t68 * t197;
+    const wam7_real_t t203 = dq[3] + t188;
+    const wam7_real_t t204 = t202 * t203;
+    const wam7_real_t t205 = t201 + t204;
+    const wam7_real_t t206 = t32 * t202 - t30 * t203; /* link j5: motion */
+    const wam7_real_t t207 = t30 * t202 + t32 * t203;
+    const wam7_real_t t208 = t206 * t207;
+    const wam7_real_t t209 = t205 - t208; /* link j6: motion */
+    const wam7_real_t t210 = t114 * t195 - t111 * t193; /* link j3: motion */
+    const wam7_real_t t211 = t187 * t197;
+    const wam7_real_t t212 = t210 + t211;
+    const wam7_real_t t213 = t68 * t187 - t70 * t197; /* link j4: motion */
+    const wam7_real_t t214 = t202 * t213;
+    const wam7_real_t t215 = t212 + t214; /* link j5: motion */
+    const wam7_real_t t216 = t70 * t200 - t68 * t191; /* link j4: motion */
+    const wam7_real_t t217 = t213 * t203;
+    const wam7_real_t t218 = t216 - t217;
+    const wam7_real_t t219 = t218 - t217; /* link j5: motion */
+    const wam7_real_t t220 = t32 * t219 - t30 * t215;
+    const wam7_real_t t221 = t213 - dq[4];
+    const wam7_real_t t222 = t207 * t221;
+    const wam7_real_t t223 = t220 + t222;
+    const wam7_real_t t224 = t222 + t223; /* link j6: motion */
+    const wam7_real_t t225 = t14 * t224 - t12 * t209;
+    const wam7_real_t t226 = t12 * t206 + t14 * t221;
+    const wam7_real_t t227 = dq[5] + t207;
+    const wam7_real_t t228 = t226 * t227;
+    const wam7_real_t t229 = t225 - t228;
+    const wam7_real_t t230 = t229 - t228; /* link j7: motion */
+    const wam7_real_t t231 = t32 * t215 + t30 * t219; /* link j5: motion */
+    const wam7_real_t t232 = t206 * t221;
+    const wam7_real_t t233 = t231 - t232;
+    const wam7_real_t t234 = t12 * t221 - t14 * t206; /* link j6: motion */
+    const wam7_real_t t235 = t234 * t226;
+    const wam7_real_t t236 = t233 - t235; /* link j7: motion */
+    const wam7_real_t t237 = t2 * t230 - t1 * t236;
+    const wam7_real_t t238 = t2 * t227 - t1 * t234;
+    const wam7_real_t t239 = t226 - dq[6];
+    const wam7_real_t t240 = t238 * t239;
+    const wam7_real_t t241 = t237 + t240;
+    const wam7_real_t t242 = t2 * t236 + t1 * t230;
+    const wam7_real_t t243 = t2 * t234 + t1 * t227;
+    const wam7_real_t t244 = t243 * t239;
+    const wam7_real_t t245 = t244 + (t242 + t244); /* link j7: force and moment */
+    const wam7_real_t t246 = t14 * t209 + t12 * t224; /* link j6: motion */
+    const wam7_real_t t247 = t234 * t227;
+    const wam7_real_t t248 = t246 - t247;
+    const wam7_real_t t249 = t243 * t238; /* link j7: motion */
+    const wam7_real_t t250 = t248 - t249; /* link j7: force and moment */
+    const wam7_real_t t251 = parameters[XX7R] * t241 + parameters[ZZ7] * t240 - parameters[XY7] * t245
+        + parameters[XZ7R] * t250;
+    const wam7_real_t t252 = t238 * t238; /* link j7: motion */
+    const wam7_real_t t253 = t239 * t239;
+    const wam7_real_t t254 = t213 * t213; /* link j4: motion */
+    const wam7_real_t t255 = t203 * t203;
+    const wam7_real_t t256 = t254 + t255; /* link j5: motion */
+    const wam7_real_t t257 = t188 * t188; /* link j3: motion */
+    const wam7_real_t t258 = t197 * t197;
+    const wam7_real_t t259 = t257 + t258; /* link j4: motion */
+    const wam7_real_t t260 = WAM7_C(-9.81) * t152; /* link j2: motion */
+    const wam7_real_t t261 = t260 + WAM7_C(-0.55) * t193; /* link j3: motion */
+    const wam7_real_t t262 = WAM7_C(1.1) * t194;
+    const wam7_real_t t263 = t111 * t261 + t114 * t262;
+    const wam7_real_t t264 = t263 + WAM7_C(-0.045) * t259; /* link j4: motion */
+    const wam7_real_t t265 = t211 + t212;
+    const wam7_real_t t266 = t186 * t186; /* link j2: motion */
+    const wam7_real_t t267 = dq[1] * dq[1];
+    const wam7_real_t t268 = WAM7_C(9.81) * t153;
+    const wam7_real_t t269 = t268 + WAM7_C(-0.55) * (t267 + t266); /* link j3: motion */
+    const wam7_real_t t270 = t269 - WAM7_C(0.045) * t265; /* link j4: motion */
+    const wam7_real_t t271 = t70 * t264 - t68 * t270;
+    const wam7_real_t t272 = t271 + (WAM7_C(0.045) * t256 + WAM7_C(0.3) * t215); /* link j5: motion */
+    const wam7_real_t t273 = t204 + t205;
+    const wam7_real_t t274 = t190 + t189; /* link j4: motion */
+    const wam7_real_t t275 = t114 * t261 - t111 * t262; /* link j3: motion */
+    const wam7_real_t t276 = t275 + WAM7_C(0.045) * t274; /* link j4: motion */
+    const wam7_real_t t277 = WAM7_C(0.045) * t273 - WAM7_C(-0.3) * t219 - t276; /* link j5: motion */
+    const wam7_real_t t278 = t32 * t272 + t30 * t277;
+    const wam7_real_t t279 = t212 - t214;
+    const wam7_real_t t280 = t202 * t202; /* link j4: motion */
+    const wam7_real_t t281 = t280 + t255; /* link j5: motion */
+    const wam7_real_t t282 = t68 * t264 + t70 * t270; /* link j4: motion */
+    const wam7_real_t t283 = t282 + (WAM7_C(0.045) * t279 + WAM7_C(-0.3) * t281); /* link j5: motion */
+    const wam7_real_t t284 = t12 * t278 + t14 * t283; /* link j6: motion */
     /* link j7: force and moment */
-    const wam7_real_t t286 = t252 - parameters[YZ7R] * (t253 - t254) - parameters[MY7] * t285;
-    const wam7_real_t t287 = t241 + t242;
-    const wam7_real_t t288 = t249 + t250;
-    const wam7_real_t t289 = t245 * (parameters[XX7R] - parameters[ZZ7]) + parameters[XY7] * t287
-        + parameters[YZ7R] * t288;
-    const wam7_real_t t290 = t244 * t244; /* link j7: motion */
+    const wam7_real_t t285 = t251 - parameters[YZ7R] * (t252 - t253) - parameters[MY7] * t284;
+    const wam7_real_t t286 = t240 + t241;
+    const wam7_real_t t287 = t248 + t249;
+    const wam7_real_t t288 = t244 * (parameters[XX7R] - parameters[ZZ7]) + parameters[XY7] * t286
+        + parameters[YZ7R] * t287;
+    const wam7_real_t t289 = t243 * t243; /* link j7: motion */
     /* link j7: force and moment */
-    const wam7_real_t t291 = t289 + parameters[XZ7R] * (t290 - t254) + parameters[MX7] * t285;
-    const wam7_real_t t292 = t249 - t248; /* link j7: motion */
-    const wam7_real_t t293 = t234 + t236;
+    const wam7_real_t t290 = t288 + parameters[XZ7R] * (t289 - t253) + parameters[MX7] * t284;
+    const wam7_real_t t291 = t248 - t247; /* link j7: motion */
+    const wam7_real_t t292 = t233 + t235;
     /* link j6: force and moment */
-    const wam7_real_t t294 = parameters[ZZ6R] * t229 - parameters[XX6R] * t230 + parameters[XY6] * t292
-        + parameters[XZ6] * t293;
-    const wam7_real_t t295 = t227 * t227; /* link j6: motion */
-    const wam7_real_t t296 = t228 * t228;
-    const wam7_real_t t297 = t32 * t273 - t34 * t278; /* link j5: motion */
+    const wam7_real_t t293 = parameters[ZZ6R] * t228 - parameters[XX6R] * t229 + parameters[XY6] * t291
+        + parameters[XZ6] * t292;
+    const wam7_real_t t294 = t226 * t226; /* link j6: motion */
+    const wam7_real_t t295 = t227 * t227;
+    const wam7_real_t t296 = t30 * t272 - t32 * t277; /* link j5: motion */
     /* link j7: what it passes on */
-    const wam7_real_t t298 = t294 + parameters[YZ6] * (t295 - t296) - parameters[MY6R] * t297 + (t1 * t291
-        - t2 * t286);
-    const wam7_real_t t299 = t15 * t279 - t13 * t284; /* link j6: motion */
+    const wam7_real_t t297 = t293 + parameters[YZ6] * (t294 - t295) - parameters[MY6R] * t296 + (t1 * t290
+        - t2 * t285);
+    const wam7_real_t t298 = t14 * t278 - t12 * t283; /* link j6: motion */
     /* link j7: force and moment */
-    const wam7_real_t t300 = parameters[MX7] * (t1 * t299 + t2 * t297) + parameters[MY7] * (t2 * t299
-        - t1 * t297);
-    const wam7_real_t t301 = parameters[ZZ7] * t249 + parameters[XX7R] * t250 - parameters[YZ7R] * t243
-        + parameters[XZ7R] * t238;
-    const wam7_real_t t302 = t301 + parameters[XY7] * (t253 - t290) + t300;
+    const wam7_real_t t299 = parameters[MX7] * (t1 * t298 + t2 * t296) + parameters[MY7] * (t2 * t298
+        - t1 * t296);
+    const wam7_real_t t300 = parameters[ZZ7] * t248 + parameters[XX7R] * t249 - parameters[YZ7R] * t242
+        + parameters[XZ7R] * t237;
+    const wam7_real_t t301 = t300 + parameters[XY7] * (t252 - t289) + t299;
     /* link j6: force and moment */
-    const wam7_real_t t303 = parameters[YZ6] * t237 - (t248 * (parameters[ZZ6R] - parameters[XX6R])
-        + parameters[XY6] * t231);
-    const wam7_real_t t304 = t235 * t235; /* link j6: motion */
+    const wam7_real_t t302 = parameters[YZ6] * t236 - (t247 * (parameters[ZZ6R] - parameters[XX6R])
+        + parameters[XY6] * t230);
+    const wam7_real_t t303 = t234 * t234; /* link j6: motion */
     /* link j7: what it passes on */
-    const wam7_real_t t305 = t303 + parameters[XZ6] * (t296 - t304) + parameters[MX6] * t297 + t302;
-    const wam7_real_t t306 = t234 - t233; /* link j6: motion */
-    const wam7_real_t t307 = t206 + t209;
+    const wam7_real_t t304 = t302 + parameters[XZ6] * (t295 - t303) + parameters[MX6] * t296 + t301;
+    const wam7_real_t t305 = t233 - t232; /* link j6: motion */
+    const wam7_real_t t306 = t205 + t208;
     /* link j5: force and moment */
-    const wam7_real_t t308 = parameters[XX5R] * t224 + parameters[ZZ5R] * t223 - parameters[XY5] * t306
-        + parameters[XZ5] * t307;
-    const wam7_real_t t309 = t208 * t208; /* link j5: motion */
-    const wam7_real_t t310 = t222 * t222;
+    const wam7_real_t t307 = parameters[XX5R] * t223 + parameters[ZZ5R] * t222 - parameters[XY5] * t305
+        + parameters[XZ5] * t306;
+    const wam7_real_t t308 = t207 * t207; /* link j5: motion */
+    const wam7_real_t t309 = t221 * t221;
     /* link j6: what it passes on */
-    const wam7_real_t t311 = t308 - parameters[YZ5] * (t309 - t310) - parameters[MY5R] * t284 - (t15 * t298
-        - t13 * t305);
+    const wam7_real_t t310 = t307 - parameters[YZ5] * (t308 - t309) - parameters[MY5R] * t283 - (t14 * t297
+        - t12 * t304);
     /* link j6: force and moment */
-    const wam7_real_t t312 = parameters[XX6R] * t236 - parameters[ZZ6R] * t234 - parameters[YZ6] * t247
-        + parameters[XZ6] * t226;
-    const wam7_real_t t313 = t312 + parameters[XY6] * (t295 - t304) + (parameters[MX6] * t285
-        + parameters[MY6R] * t299);
-    const wam7_real_t t314 = t313 + (t1 * t286 + t2 * t291); /* link j7: what it passes on */
+    const wam7_real_t t311 = parameters[XX6R] * t235 - parameters[ZZ6R] * t233 - parameters[YZ6] * t246
+        + parameters[XZ6] * t225;
+    const wam7_real_t t312 = t311 + parameters[XY6] * (t294 - t303) + (parameters[MX6] * t284
+        + parameters[MY6R] * t298);
+    const wam7_real_t t313 = t312 + (t1 * t285 + t2 * t290); /* link j7: what it passes on */
     /* link j5: force and moment */
-    const wam7_real_t t315 = parameters[XY5] * t225 - t233 * (parameters[XX5R] - parameters[ZZ5R])
-        + parameters[YZ5] * t210;
-    const wam7_real_t t316 = t207 * t207; /* link j5: motion */
+    const wam7_real_t t314 = parameters[XY5] * t224 - t232 * (parameters[XX5R] - parameters[ZZ5R])
+        + parameters[YZ5] * t209;
+    const wam7_real_t t315 = t206 * t206; /* link j5: motion */
     /* link j6: what it passes on */
-    const wam7_real_t t317 = t315 + parameters[XZ5] * (t316 - t310) + parameters[MX5] * t284 + t314;
+    const wam7_real_t t316 = t314 + parameters[XZ5] * (t315 - t309) + parameters[MX5] * t283 + t313;
     /* link j7: force and moment */
-    const wam7_real_t t318 = parameters[MX7] * (t253 + t254) - parameters[MY7] * t288;
-    const wam7_real_t t319 = parameters[MX7] * t251 + parameters[MY7] * (t290 + t254);
+    const wam7_real_t t317 = parameters[MX7] * (t252 + t253) - parameters[MY7] * t287;
+    const wam7_real_t t318 = parameters[MX7] * t250 + parameters[MY7] * (t289 + t253);
     /* link j7: what it passes on */
-    const wam7_real_t t320 = parameters[MX6] * (t295 + t296) + parameters[MY6R] * t237 + (t2 * t318
-        - t1 * t319);
-    const wam7_real_t t321 = parameters[MX6] * t293 - parameters[MY6R] * (t304 + t296)
-        + (parameters[MX7] * t246 + parameters[MY7] * t287);
+    const wam7_real_t t319 = parameters[MX6] * (t294 + t295) + parameters[MY6R] * t236 + (t2 * t317
+        - t1 * t318);
+    const wam7_real_t t320 = parameters[MX6] * t292 - parameters[MY6R] * (t303 + t295)
+        + (parameters[MX7] * t245 + parameters[MY7] * t286);
     /* link j6: what it passes on */
-    const wam7_real_t t322 = parameters[MX5] * (t309 + t310) - parameters[MY5R] * t210 + (t15 * t320
-        + t13 * t321);
+    const wam7_real_t t321 = parameters[MX5] * (t308 + t309) - parameters[MY5R] * t209 + (t14 * t319
+        + t12 * t320);
     /* link j7: what it passes on */
-    const wam7_real_t t323 = parameters[MX6] * t292 + parameters[MY6R] * t231 + (t1 * t318 + t2 * t319);
+    const wam7_real_t t322 = parameters[MX6] * t291 + parameters[MY6R] * t230 + (t1 * t317 + t2 * t318);
     /* link j6: what it passes on */
-    const wam7_real_t t324 = parameters[MX5] * t307 + parameters[MY5R] * (t316 + t310) + t323;
-    const wam7_real_t t325 = t32 * t322 + t34 * t324; /* link j5: what it passes on */
+    const wam7_real_t t323 = parameters[MX5] * t306 + parameters[MY5R] * (t315 + t309) + t322;
+    const wam7_real_t t324 = t30 * t321 + t32 * t323; /* link j5: what it passes on */
     /* link j4: force and moment */
-    const wam7_real_t t326 = parameters[ZZ4R] * t218 - parameters[XX4R] * t219 + parameters[XY4R] * t274
-        + parameters[XZ4] * t280;
+    const wam7_real_t t325 = parameters[ZZ4R] * t217 - parameters[XX4R] * t218 + parameters[XY4R] * t273
+        + parameters[XZ4] * t279;
     /* link j5: what it passes on */
-    const wam7_real_t t327 = t326 + parameters[YZ4] * (t255 - t256) - parameters[MY4R] * t277 + (t32 * t317
-        - t34 * t311 + WAM7_C(0.3) * t325);
+    const wam7_real_t t326 = t325 + parameters[YZ4] * (t254 - t255) - parameters[MY4R] * t276 + (t30 * t316
+        - t32 * t310 + WAM7_C(0.3) * t324);
     /* link j5: force and moment */
-    const wam7_real_t t328 = parameters[ZZ5R] * t206 - parameters[XX5R] * t209 - parameters[YZ5] * t232
-        + parameters[XZ5] * t221;
-    const wam7_real_t t329 = t328 + parameters[XY5] * (t309 - t316) + (parameters[MX5] * t297
-        + parameters[MY5R] * t279);
-    const wam7_real_t t330 = t329 + (t13 * t298 + t15 * t305); /* link j6: what it passes on */
+    const wam7_real_t t327 = parameters[ZZ5R] * t205 - parameters[XX5R] * t208 - parameters[YZ5] * t231
+        + parameters[XZ5] * t220;
+    const wam7_real_t t328 = t327 + parameters[XY5] * (t308 - t315) + (parameters[MX5] * t296
+        + parameters[MY5R] * t278);
+    const wam7_real_t t329 = t328 + (t12 * t297 + t14 * t304); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const wam7_real_t t331 = t205 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4R] * t220
-        + parameters[YZ4] * t216;
+    const wam7_real_t t330 = t204 * (parameters[ZZ4R] - parameters[XX4R]) - parameters[XY4R] * t219
+        + parameters[YZ4] * t215;
     /* link j5: what it passes on */
-    const wam7_real_t t332 = t331 + parameters[XZ4] * (t256 - t281) + parameters[MX4R] * t277 + (t330
-        + WAM7_C(-0.045) * t325);
+    const wam7_real_t t331 = t330 + parameters[XZ4] * (t255 - t280) + parameters[MX4R] * t276 + (t329
+        + WAM7_C(-0.045) * t324);
     /* link j3: force and moment */
-    const wam7_real_t t333 = parameters[XX3R] * t200 - parameters[ZZ3R] * t199 - parameters[XY3R] * t266
-        + parameters[XZ3] * t275;
+    const wam7_real_t t332 = parameters[XX3R] * t199 - parameters[ZZ3R] * t198 - parameters[XY3R] * t265
+        + parameters[XZ3] * t274;
     /* link j4: what it passes on */
-    const wam7_real_t t334 = t333 - parameters[YZ3] * (t258 - t259) - parameters[MY3R] * t270 - (t73 * t327
-        - t71 * t332);
-    const wam7_real_t t335 = t34 * t322 - t32 * t324; /* link j5: what it passes on */
+    const wam7_real_t t333 = t332 - parameters[YZ3] * (t257 - t258) - parameters[MY3R] * t269 - (t70 * t326
+        - t68 * t331);
+    const wam7_real_t t334 = t32 * t321 - t30 * t323; /* link j5: what it passes on */
     /* link j6: what it passes on */
-    const wam7_real_t t336 = parameters[MX5] * t306 + parameters[MY5R] * t225 + (t15 * t321 - t13 * t320);
+    const wam7_real_t t335 = parameters[MX5] * t305 + parameters[MY5R] * t224 + (t14 * t320 - t12 * t319);
     /* link j5: what it passes on */
-    const wam7_real_t t337 = t32 * t311 + t34 * t317 + (WAM7_C(0.045) * t336 + WAM7_C(0.3) * t335);
+    const wam7_real_t t336 = t30 * t310 + t32 * t316 + (WAM7_C(0.045) * t335 + WAM7_C(0.3) * t334);
     /* link j4: force and moment */
-    const wam7_real_t t338 = parameters[XZ4] * t217 - (parameters[ZZ4R] * t213 + parameters[XX4R] * t215
-        + parameters[YZ4] * t202);
-    const wam7_real_t t339 = t338 + parameters[XY4R] * (t255 - t281) + (parameters[MX4R] * t283
-        + parameters[MY4R] * t272);
-    const wam7_real_t t340 = t339 + t337; /* link j5: what it passes on */
-    const wam7_real_t t341 = parameters[MX4R] * t257 + parameters[MY4R] * t216 + t335;
-    const wam7_real_t t342 = parameters[MY4R] * t282 - parameters[MX4R] * t280 - t336;
+    const wam7_real_t t337 = parameters[XZ4] * t216 - (parameters[ZZ4R] * t212 + parameters[XX4R] * t214
+        + parameters[YZ4] * t201);
+    const wam7_real_t t338 = t337 + parameters[XY4R] * (t254 - t280) + (parameters[MX4R] * t282
+        + parameters[MY4R] * t271);
+    const wam7_real_t t339 = t338 + t336; /* link j5: what it passes on */
+    const wam7_real_t t340 = parameters[MX4R] * t256 + parameters[MY4R] * t215 + t334;
+    const wam7_real_t t341 = parameters[MY4R] * t281 - parameters[MX4R] * t279 - t335;
     /* link j3: force and moment */
-    const wam7_real_t t343 = t212 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t201
-        + parameters[YZ3] * t192;
-    const wam7_real_t t344 = t188 * t188; /* link j3: motion */
+    const wam7_real_t t342 = t211 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3R] * t200
+        + parameters[YZ3] * t191;
+    const wam7_real_t t343 = t187 * t187; /* link j3: motion */
     /* link j4: what it passes on */
-    const wam7_real_t t345 = t343 + parameters[XZ3] * (t344 - t259) + parameters[MX3R] * t270 + (t340
-        + WAM7_C(0.045) * (t71 * t341 + t73 * t342));
-    const wam7_real_t t346 = parameters[MX3R] * t260 - parameters[MY3R] * t192 + (t73 * t341 - t71 * t342);
+    const wam7_real_t t344 = t342 + parameters[XZ3] * (t343 - t258) + parameters[MX3R] * t269 + (t339
+        + WAM7_C(0.045) * (t68 * t340 + t70 * t341));
+    const wam7_real_t t345 = parameters[MX3R] * t259 - parameters[MY3R] * t191 + (t70 * t340 - t68 * t341);
     /* link j5: what it passes on */
-    const wam7_real_t t347 = parameters[MX4R] * t274 + parameters[MY4R] * t220 + t325;
+    const wam7_real_t t346 = parameters[MX4R] * t273 + parameters[MY4R] * t219 + t324;
     /* link j4: what it passes on */
-    const wam7_real_t t348 = parameters[MX3R] * t275 + parameters[MY3R] * (t344 + t259) + t347;
+    const wam7_real_t t347 = parameters[MX3R] * t274 + parameters[MY3R] * (t343 + t258) + t346;
     /* link j3: what it passes on */
-    const wam7_real_t t349 = t118 * t345 - t115 * t334 + WAM7_C(0.55) * (t118 * t346 + t115 * t348);
+    const wam7_real_t t348 = t114 * t344 - t111 * t333 + WAM7_C(0.55) * (t114 * t345 + t111 * t347);
     /* link j2: force and moment */
-    const wam7_real_t t350 = parameters[XY2] * (WAM7_C(2.0) * t191) - (parameters[XX2R] * t195
-        + parameters[ZZ2R] * t195);
-    const wam7_real_t t351 = t193 * t193; /* link j2: motion */
+    const wam7_real_t t349 = parameters[XY2] * (WAM7_C(2.0) * t190) - (parameters[XX2R] * t194
+        + parameters[ZZ2R] * t194);
+    const wam7_real_t t350 = t192 * t192; /* link j2: motion */
     /* link j3: what it passes on */
-    const wam7_real_t t352 = t350 + parameters[XZ2] * t194 + parameters[YZ2] * (t351 - t268) + t349;
+    const wam7_real_t t351 = t349 + parameters[XZ2] * t193 + parameters[YZ2] * (t350 - t267) + t348;
     /* link j3: force and moment */
-    const wam7_real_t t353 = parameters[ZZ3R] * t191 - parameters[XX3R] * t190 - parameters[YZ3] * t211
-        + parameters[XZ3] * t197;
-    const wam7_real_t t354 = t353 + parameters[XY3R] * (t258 - t344) + (parameters[MX3R] * t276
-        + parameters[MY3R] * t264);
+    const wam7_real_t t352 = parameters[ZZ3R] * t190 - parameters[XX3R] * t189 - parameters[YZ3] * t210
+        + parameters[XZ3] * t196;
+    const wam7_real_t t353 = t352 + parameters[XY3R] * (t257 - t343) + (parameters[MX3R] * t275
+        + parameters[MY3R] * t263);
     /* link j4: what it passes on */
-    const wam7_real_t t355 = t354 + (t71 * t327 + t73 * t332 + WAM7_C(0.045) * t347);
+    const wam7_real_t t354 = t353 + (t68 * t326 + t70 * t331 + WAM7_C(0.045) * t346);
     /* link j2: force and moment */
-    const wam7_real_t t356 = t191 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t196
-        - parameters[YZ2] * t194;
+    const wam7_real_t t355 = t190 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t195
+        - parameters[YZ2] * t193;
     /* link j2: what it passes on */
-    const wam7_real_t t357 = t157 * t352 + t158 * (t356 + parameters[XZ2] * (t268 - t267) + t355);
-    const wam7_real_t t358 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
-    const wam7_real_t t359 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0])
-        - parameters[FC1] * t358) + t357;
-    const wam7_real_t t360 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
-    const wam7_real_t t361 = WAM7_C(14.93) * (parameters[FV7] * (WAM7_C(-14.93) * dq[6])
-        - parameters[FC7] * t360) + t302;
-    const wam7_real_t t362 = WAM7_C(1.00031) * input[6] + t361;
-    const wam7_real_t t363 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
-    const wam7_real_t t364 = WAM7_C(9.48) * (parameters[FV6] * (WAM7_C(-9.48) * dq[5])
-        - parameters[FC6] * t363) + t314;
-    const wam7_real_t t365 = WAM7_C(2.23728) * input[5] + t364 + t362 * t5;
-    const wam7_real_t t366 = WAM7_C(19.194) * input[0] + t359 - t362 * t179 - t365 * t180;
-    const wam7_real_t t367 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
-    const wam7_real_t t368 = WAM7_C(9.48) * (parameters[FV5] * (WAM7_C(-9.48) * dq[4])
-        - parameters[FC5] * t367) + t330;
-    const wam7_real_t t369 = WAM7_C(2.23728) * input[4] + t368 + t362 * t28 + t365 * t21;
-    const wam7_real_t t370 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
-    const wam7_real_t t371 = WAM7_C(18.0) * (parameters[FV4] * (WAM7_C(-18.0) * dq[3])
-        - parameters[FC4] * t370) + t340;
-    const wam7_real_t t372 = WAM7_C(8.226) * input[3] + t371 - t362 * t57 - t365 * t56;
-    const wam7_real_t t373 = t372 + t369 * t55;
-    const wam7_real_t t374 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
-    const wam7_real_t t375 = WAM7_C(28.25) * (parameters[FV3] * (WAM7_C(-28.25) * dq[2])
-        - parameters[FC3] * t374) + t355;
-    const wam7_real_t t376 = WAM7_C(12.910250000000001) * input[2] + t375 - t362 * t107 - t365 * t108;
-    const wam7_real_t t377 = t376 + t369 * t109 - t373 * t95;
-    const wam7_real_t t378 = t366 + t369 * t181 + t373 * t183 + t377 * t184;
+    const wam7_real_t t356 = t152 * t351 + t153 * (t355 + parameters[XZ2] * (t267 - t266) + t354);
+    const wam7_real_t t357 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
+    const wam7_real_t t358 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0])
+        - parameters[FC1] * t357) + t356;
+    const wam7_real_t t359 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
+    const wam7_real_t t360 = WAM7_C(14.93) * (parameters[FV7] * (WAM7_C(-14.93) * dq[6])
+        - parameters[FC7] * t359) + t301;
+    const wam7_real_t t361 = WAM7_C(1.00031) * input[6] + t360;
+    const wam7_real_t t362 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
+    const wam7_real_t t363 = WAM7_C(9.48) * (parameters[FV6] * (WAM7_C(-9.48) * dq[5])
+        - parameters[FC6] * t362) + t313;
+    const wam7_real_t t364 = WAM7_C(2.23728) * input[5] + t363 + t361 * t5;
+    const wam7_real_t t365 = WAM7_C(19.194) * input[0] + t358 - t361 * t174 - t364 * t175;
+    const wam7_real_t t366 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
+    const wam7_real_t t367 = WAM7_C(9.48) * (parameters[FV5] * (WAM7_C(-9.48) * dq[4])
+        - parameters[FC5] * t366) + t329;
+    const wam7_real_t t368 = WAM7_C(2.23728) * input[4] + t367 + t361 * t27 + t364 * t20;
+    const wam7_real_t t369 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
+    const wam7_real_t t370 = WAM7_C(18.0) * (parameters[FV4] * (WAM7_C(-18.0) * dq[3])
+        - parameters[FC4] * t369) + t339;
+    const wam7_real_t t371 = WAM7_C(8.226) * input[3] + t370 - t361 * t55 - t364 * t54;
+    const wam7_real_t t372 = t371 + t368 * t53;
+    const wam7_real_t t373 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
+    const wam7_real_t t374 = WAM7_C(28.25) * (parameters[FV3] * (WAM7_C(-28.25) * dq[2])
+        - parameters[FC3] * t373) + t354;
+    const wam7_real_t t375 = WAM7_C(12.910250000000001) * input[2] + t374 - t361 * t104 - t364 * t105;
+    const wam7_real_t t376 = t375 + t368 * t106 - t372 * t92;
+    const wam7_real_t t377 = t365 + t368 * t176 + t372 * t178 + t376 * t179;
     /* link j3: what it passes on */
-    const wam7_real_t t379 = t118 * t334 + t115 * t345 + WAM7_C(0.55) * (t115 * t346 - t118 * t348);
+    const wam7_real_t t378 = t114 * t333 + t111 * t344 + WAM7_C(0.55) * (t111 * t345 - t114 * t347);
     /* link j2: force and moment */
-    const wam7_real_t t380 = parameters[XX2R] * t194 + parameters[XY2] * (t351 - t267)
-        + (parameters[MX2] * t269 + parameters[MY2R] * t261);
-    const wam7_real_t t381 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
-    const wam7_real_t t382 = WAM7_C(28.25) * (parameters[FV2] * (WAM7_C(-28.25) * dq[1])
-        - parameters[FC2] * t381) + (t380 + t379);
-    const wam7_real_t t383 = WAM7_C(12.910250000000001) * input[1] + t382 - t362 * t128 - t365 * t134;
-    const wam7_real_t t384 = t383 + t369 * t140 + t373 * t145 + t377 * t154;
-    const wam7_real_t t385 = WAM7_C(1.0) / t185;
-    const wam7_real_t t386 = wam7_bounded((t378 + t384 * t175) * t385);
-    out[0] = t386;
-    const wam7_real_t t387 = wam7_bounded(t384 * t174 + t175 * t386);
-    out[1] = t387;
-    const wam7_real_t t388 = wam7_bounded(t377 * t153 + t184 * t386 + t154 * t387);
-    out[2] = t388;
-    const wam7_real_t t389 = wam7_bounded(t373 * t94 + t183 * t386 + t145 * t387 - t95 * t388);
-    out[3] = t389;
-    const wam7_real_t t390 = t369 * t54 + t181 * t386 + t140 * t387 + t109 * t388;
-    const wam7_real_t t391 = wam7_bounded(t390 + t55 * t389);
-    out[4] = t391;
-    const wam7_real_t t392 = t365 * t20 + t180 * t386 + t134 * t387 + t108 * t388;
-    const wam7_real_t t393 = wam7_bounded(t21 * t391 - (t392 + t56 * t389));
-    out[5] = t393;
-    const wam7_real_t t394 = t362 * t4 + t179 * t386 + t128 * t387 + t107 * t388;
-    const wam7_real_t t395 = t28 * t391 - (t394 + t57 * t389) + t5 * t393;
-    out[6] = t395;
-    if (!wam7_all_bounded(out, 7)) {
+    const wam7_real_t t379 = parameters[XX2R] * t193 + parameters[XY2] * (t350 - t266)
+        + (parameters[MX2] * t268 + parameters[MY2R] * t260);
+    const wam7_real_t t380 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
+    const wam7_real_t t381 = WAM7_C(28.25) * (parameters[FV2] * (WAM7_C(-28.25) * dq[1])
+        - parameters[FC2] * t380) + (t379 + t378);
+    const wam7_real_t t382 = WAM7_C(12.910250000000001) * input[1] + t381 - t361 * t124 - t364 * t130;
+    const wam7_real_t t383 = t382 + t368 * t136 + t372 * t141 + t376 * t150;
+    const wam7_real_t t384 = WAM7_C(1.0) / t180;
+    const wam7_real_t t385 = wam7_held((t377 + t383 * t170) * t384);
+    out[0] = t385;
+    const wam7_real_t t386 = wam7_held(t383 * t169 + t170 * t385);
+    out[1] = t386;
+    const wam7_real_t t387 = wam7_held(t376 * t149 + t179 * t385 + t150 * t386);
+    out[2] = t387;
+    const wam7_real_t t388 = wam7_held(t372 * t91 + t178 * t385 + t141 * t386 - t92 * t387);
+    out[3] = t388;
+    const wam7_real_t t389 = t368 * t52 + t176 * t385 + t136 * t386 + t106 * t387;
+    const wam7_real_t t390 = wam7_held(t389 + t53 * t388);
+    out[4] = t390;
+    const wam7_real_t t391 = t364 * t19 + t175 * t385 + t130 * t386 + t105 * t387;
+    const wam7_real_t t392 = wam7_held(t20 * t390 - (t391 + t54 * t388));
+    out[5] = t392;
+    const wam7_real_t t393 = t361 * t4 + t174 * t385 + t124 * t386 + t104 * t387;
+    const wam7_real_t t394 = t27 * t390 - (t393 + t55 * t388) + t5 * t392;
+    out[6] = t394;
+    if (!wam7_bounded(out, 7)) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }

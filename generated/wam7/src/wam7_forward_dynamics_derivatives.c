@@ -7,7 +7,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 5105 (2823 mul, 2282 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 5105 (2823 mul, 2282 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  *
  * @param[in]   q             [7]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [7]   [rad/s]                  joint velocities; norm at most 100000
@@ -96,7 +96,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -130,19 +130,19 @@ wam7_status_t wam7_forward_dynamics_derivatives(
         return status;
     }
 
-    wam7_real_t t166, t168;
-    WAM7_SINCOS(q[1], &t166, &t168);
-    wam7_real_t t118, t115;
-    WAM7_SINCOS(q[2], &t118, &t115);
-    wam7_real_t t71, t73;
-    WAM7_SINCOS(q[3], &t71, &t73);
-    wam7_real_t t32, t34;
-    WAM7_SINCOS(q[4], &t32, &t34);
-    wam7_real_t t13, t15;
-    WAM7_SINCOS(q[5], &t13, &t15);
+    wam7_real_t t161, t163;
+    WAM7_SINCOS(q[1], &t161, &t163);
+    wam7_real_t t114, t111;
+    WAM7_SINCOS(q[2], &t114, &t111);
+    wam7_real_t t68, t70;
+    WAM7_SINCOS(q[3], &t68, &t70);
+    wam7_real_t t30, t32;
+    WAM7_SINCOS(q[4], &t30, &t32);
+    wam7_real_t t12, t14;
+    WAM7_SINCOS(q[5], &t12, &t14);
     wam7_real_t t1, t2;
     WAM7_SINCOS(q[6], &t1, &t2);
-    const wam7_real_t t0 = wam7_bounded(parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7]);
+    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
     if (!(t0 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -159,7 +159,7 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t7 = t2 * t6;
     const wam7_real_t t8 = parameters[ZZ6R] + (parameters[XX7R] + t7);
     const wam7_real_t t9 = t8 + WAM7_C(89.8704) * parameters[IA6];
-    const wam7_real_t t10 = wam7_bounded(t9 - t3 * t5);
+    const wam7_real_t t10 = t9 - t3 * t5;
     if (!(t10 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -167,260 +167,232 @@ wam7_status_t wam7_forward_dynamics_derivatives(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t11 = t10 + WAM7_C(-1.0e-9) * t9;
-    if (!(t11 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t12 = t1 * t6 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t14 = t3 - parameters[YZ6];
-    const wam7_real_t t16 = t13 * t12 + t15 * t14; /* link j6: column of the mass matrix */
+    const wam7_real_t t11 = t1 * t6 - parameters[XY7] - parameters[XZ6];
+    const wam7_real_t t13 = t3 - parameters[YZ6];
+    const wam7_real_t t15 = t12 * t11 + t14 * t13; /* link j6: column of the mass matrix */
     /* link j7: column of the mass matrix */
-    const wam7_real_t t17 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
-    const wam7_real_t t18 = t13 * t17 + t15 * parameters[ZZ7];
-    const wam7_real_t t19 = t18 * t5 - t16;
-    const wam7_real_t t20 = WAM7_C(1.0) / t10;
-    const wam7_real_t t21 = t19 * t20;
-    const wam7_real_t t22 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t23 = parameters[XY6] + t17;
+    const wam7_real_t t16 = t1 * parameters[YZ7R] - t2 * parameters[XZ7R];
+    const wam7_real_t t17 = t12 * t16 + t14 * parameters[ZZ7];
+    const wam7_real_t t18 = t17 * t5 - t15;
+    const wam7_real_t t19 = WAM7_C(1.0) / t10;
+    const wam7_real_t t20 = t18 * t19;
+    const wam7_real_t t21 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t22 = parameters[XY6] + t16;
     /* link j6: inertia of it and all beyond */
-    const wam7_real_t t24 = t15 * (t22 - parameters[ZZ7]) + t23 * (WAM7_C(-2.0) * t13);
-    const wam7_real_t t25 = t15 * t24;
-    const wam7_real_t t26 = parameters[ZZ5R] + (t22 - t25);
-    const wam7_real_t t27 = t26 + WAM7_C(89.8704) * parameters[IA5];
-    const wam7_real_t t28 = t18 * t4;
-    const wam7_real_t t29 = wam7_bounded(t27 - t18 * t28 - t19 * t21);
-    if (!(t29 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t23 = t14 * (t21 - parameters[ZZ7]) + t22 * (WAM7_C(-2.0) * t12);
+    const wam7_real_t t24 = t14 * t23;
+    const wam7_real_t t25 = parameters[ZZ5R] + (t21 - t24);
+    const wam7_real_t t26 = t25 + WAM7_C(89.8704) * parameters[IA5];
+    const wam7_real_t t27 = t17 * t4;
+    const wam7_real_t t28 = t26 - t17 * t27 - t18 * t20;
+    if (!(t28 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t30 = t29 + WAM7_C(-1.0e-9) * t27;
-    if (!(t30 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t31 = t23 + t13 * t24 - parameters[XZ5];
-    const wam7_real_t t33 = parameters[YZ5] + t16;
+    const wam7_real_t t29 = t22 + t12 * t23 - parameters[XZ5];
+    const wam7_real_t t31 = parameters[YZ5] + t15;
     /* link j7: column of the mass matrix */
-    const wam7_real_t t35 = t2 * parameters[MY7] + t1 * parameters[MX7];
-    const wam7_real_t t36 = parameters[MY5R] + t35; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t33 = t2 * parameters[MY7] + t1 * parameters[MX7];
+    const wam7_real_t t34 = parameters[MY5R] + t33; /* link j6: inertia of it and all beyond */
     /* link j7: column of the mass matrix */
-    const wam7_real_t t37 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const wam7_real_t t38 = parameters[MX6] + t37; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t39 = t13 * parameters[MY6R] - t15 * t38; /* link j6: column of the mass matrix */
-    const wam7_real_t t40 = t39 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t41 = t32 * t40 - t34 * t36; /* link j5: column of the mass matrix */
-    const wam7_real_t t42 = t32 * t31 - t34 * t33 + WAM7_C(-0.3) * t41;
-    const wam7_real_t t43 = t15 * t17 - t13 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t44 = t15 * t35;
-    const wam7_real_t t45 = t34 * t44 + t32 * t37;
-    const wam7_real_t t46 = t13 * t35;
-    const wam7_real_t t47 = t32 * t43 - t34 * t3 + (WAM7_C(-0.045) * t46 + WAM7_C(0.3) * t45);
-    const wam7_real_t t48 = t15 * t12 - t13 * t14; /* link j6: column of the mass matrix */
-    const wam7_real_t t49 = t15 * parameters[MY6R] + t13 * t38;
-    const wam7_real_t t50 = t34 * t49;
-    const wam7_real_t t51 = t32 * t48 - t34 * t8 + (WAM7_C(-0.045) * t39 + WAM7_C(0.3) * t50);
-    const wam7_real_t t52 = t51 - t47 * t5;
-    const wam7_real_t t53 = t42 - t47 * t28 + t52 * t21;
-    const wam7_real_t t54 = WAM7_C(1.0) / t29;
-    const wam7_real_t t55 = t53 * t54;
-    const wam7_real_t t56 = t52 * t20;
-    const wam7_real_t t57 = t47 * t4;
+    const wam7_real_t t35 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const wam7_real_t t36 = parameters[MX6] + t35; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t37 = t12 * parameters[MY6R] - t14 * t36; /* link j6: column of the mass matrix */
+    const wam7_real_t t38 = t37 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t39 = t30 * t38 - t32 * t34; /* link j5: column of the mass matrix */
+    const wam7_real_t t40 = t30 * t29 - t32 * t31 + WAM7_C(-0.3) * t39;
+    const wam7_real_t t41 = t14 * t16 - t12 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const wam7_real_t t42 = t14 * t33;
+    const wam7_real_t t43 = t32 * t42 + t30 * t35;
+    const wam7_real_t t44 = t12 * t33;
+    const wam7_real_t t45 = t30 * t41 - t32 * t3 + (WAM7_C(-0.045) * t44 + WAM7_C(0.3) * t43);
+    const wam7_real_t t46 = t14 * t11 - t12 * t13; /* link j6: column of the mass matrix */
+    const wam7_real_t t47 = t14 * parameters[MY6R] + t12 * t36;
+    const wam7_real_t t48 = t32 * t47;
+    const wam7_real_t t49 = t30 * t46 - t32 * t8 + (WAM7_C(-0.045) * t37 + WAM7_C(0.3) * t48);
+    const wam7_real_t t50 = t49 - t45 * t5;
+    const wam7_real_t t51 = t40 - t45 * t27 + t50 * t20;
+    const wam7_real_t t52 = WAM7_C(1.0) / t28;
+    const wam7_real_t t53 = t51 * t52;
+    const wam7_real_t t54 = t50 * t19;
+    const wam7_real_t t55 = t45 * t4;
     /* link j6: inertia of it and all beyond */
-    const wam7_real_t t58 = parameters[XX5R] + (parameters[ZZ7] + t25);
-    const wam7_real_t t59 = parameters[XY5] - t48;
+    const wam7_real_t t56 = parameters[XX5R] + (parameters[ZZ7] + t24);
+    const wam7_real_t t57 = parameters[XY5] - t46;
     /* link j5: inertia of it and all beyond */
-    const wam7_real_t t60 = t34 * (t8 - t58) + t59 * (WAM7_C(2.0) * t32);
-    const wam7_real_t t61 = t34 * t60;
-    const wam7_real_t t62 = t32 * t36 + t34 * t40; /* link j5: column of the mass matrix */
-    const wam7_real_t t63 = WAM7_C(0.09) * t62; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t64 = WAM7_C(-0.6) * t49;
-    const wam7_real_t t65 = parameters[ZZ4R] + (t58 + t61 + (t63 + t64));
-    const wam7_real_t t66 = t65 + WAM7_C(324.0) * parameters[IA4];
-    const wam7_real_t t67 = wam7_bounded(t66 - t47 * t57 - t52 * t56 - t53 * t55);
-    if (!(t67 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t58 = t32 * (t8 - t56) + t57 * (WAM7_C(2.0) * t30);
+    const wam7_real_t t59 = t32 * t58;
+    const wam7_real_t t60 = t30 * t34 + t32 * t38; /* link j5: column of the mass matrix */
+    const wam7_real_t t61 = WAM7_C(0.09) * t60; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t62 = WAM7_C(-0.6) * t47;
+    const wam7_real_t t63 = parameters[ZZ4R] + (t56 + t59 + (t61 + t62));
+    const wam7_real_t t64 = t63 + WAM7_C(324.0) * parameters[IA4];
+    const wam7_real_t t65 = t64 - t45 * t55 - t50 * t54 - t51 * t53;
+    if (!(t65 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t68 = t67 + WAM7_C(-1.0e-9) * t66;
-    if (!(t68 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t69 = WAM7_C(0.045) * t41;
-    const wam7_real_t t70 = parameters[XZ4] + (t59 - t32 * t60 - t69);
-    const wam7_real_t t72 = parameters[YZ4] + t42;
-    const wam7_real_t t74 = t71 * t70 + t73 * t72; /* link j4: column of the mass matrix */
-    const wam7_real_t t75 = t32 * t44 - t34 * t37; /* link j7: column of the mass matrix */
-    const wam7_real_t t76 = WAM7_C(0.3) * t75 - (t34 * t43 + t32 * t3);
-    const wam7_real_t t77 = WAM7_C(0.045) * t75;
-    const wam7_real_t t78 = t18 + t77;
-    const wam7_real_t t79 = t73 * t78 - t71 * t76 - t77;
-    const wam7_real_t t80 = t32 * t49; /* link j6: column of the mass matrix */
-    const wam7_real_t t81 = WAM7_C(0.3) * t80 - (t34 * t48 + t32 * t8);
-    const wam7_real_t t82 = WAM7_C(0.045) * t80;
-    const wam7_real_t t83 = t16 + t82;
-    const wam7_real_t t84 = t73 * t83 - t71 * t81 - t82;
-    const wam7_real_t t85 = t79 * t5 - t84;
-    const wam7_real_t t86 = t34 * t31 + t32 * t33; /* link j5: column of the mass matrix */
-    const wam7_real_t t87 = WAM7_C(-0.3) * t62;
-    const wam7_real_t t88 = t86 + t87;
-    const wam7_real_t t89 = WAM7_C(0.045) * t62;
-    const wam7_real_t t90 = t26 + t89;
-    const wam7_real_t t91 = t71 * t88 + t73 * t90 - t89;
-    const wam7_real_t t92 = t79 * t28 - t91 + t85 * t21;
-    const wam7_real_t t93 = t74 - t79 * t57 + t85 * t56 + t92 * t55;
-    const wam7_real_t t94 = WAM7_C(1.0) / t67;
-    const wam7_real_t t95 = t93 * t94;
-    const wam7_real_t t96 = t26 + t63; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t97 = parameters[XX4R] + (t8 - t61 + t64);
-    const wam7_real_t t98 = parameters[XY4R] + (t86 + (t87 + WAM7_C(0.045) * t49));
+    const wam7_real_t t66 = WAM7_C(0.045) * t39;
+    const wam7_real_t t67 = parameters[XZ4] + (t57 - t30 * t58 - t66);
+    const wam7_real_t t69 = parameters[YZ4] + t40;
+    const wam7_real_t t71 = t68 * t67 + t70 * t69; /* link j4: column of the mass matrix */
+    const wam7_real_t t72 = t30 * t42 - t32 * t35; /* link j7: column of the mass matrix */
+    const wam7_real_t t73 = WAM7_C(0.3) * t72 - (t32 * t41 + t30 * t3);
+    const wam7_real_t t74 = WAM7_C(0.045) * t72;
+    const wam7_real_t t75 = t17 + t74;
+    const wam7_real_t t76 = t70 * t75 - t68 * t73 - t74;
+    const wam7_real_t t77 = t30 * t47; /* link j6: column of the mass matrix */
+    const wam7_real_t t78 = WAM7_C(0.3) * t77 - (t32 * t46 + t30 * t8);
+    const wam7_real_t t79 = WAM7_C(0.045) * t77;
+    const wam7_real_t t80 = t15 + t79;
+    const wam7_real_t t81 = t70 * t80 - t68 * t78 - t79;
+    const wam7_real_t t82 = t76 * t5 - t81;
+    const wam7_real_t t83 = t32 * t29 + t30 * t31; /* link j5: column of the mass matrix */
+    const wam7_real_t t84 = WAM7_C(-0.3) * t60;
+    const wam7_real_t t85 = t83 + t84;
+    const wam7_real_t t86 = WAM7_C(0.045) * t60;
+    const wam7_real_t t87 = t25 + t86;
+    const wam7_real_t t88 = t68 * t85 + t70 * t87 - t86;
+    const wam7_real_t t89 = t76 * t27 - t88 + t82 * t20;
+    const wam7_real_t t90 = t71 - t76 * t55 + t82 * t54 + t89 * t53;
+    const wam7_real_t t91 = WAM7_C(1.0) / t65;
+    const wam7_real_t t92 = t90 * t91;
+    const wam7_real_t t93 = t25 + t61; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t94 = parameters[XX4R] + (t8 - t59 + t62);
+    const wam7_real_t t95 = parameters[XY4R] + (t83 + (t84 + WAM7_C(0.045) * t47));
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t99 = t73 * (t96 - t97) + t98 * (WAM7_C(2.0) * t71);
-    const wam7_real_t t100 = t73 * t99;
-    const wam7_real_t t101 = parameters[MX4R] - t62; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t102 = parameters[MY4R] + t49;
-    const wam7_real_t t103 = t73 * t101 - t71 * t102; /* link j4: column of the mass matrix */
-    const wam7_real_t t104 = WAM7_C(0.09) * t103; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t105 = parameters[ZZ3R] + (t97 + t100 + t104);
-    const wam7_real_t t106 = t105 + WAM7_C(798.0625) * parameters[IA3];
-    const wam7_real_t t107 = t79 * t4;
-    const wam7_real_t t108 = t85 * t20;
-    const wam7_real_t t109 = t92 * t54;
-    const wam7_real_t t110 = t106 - t79 * t107 - t85 * t108 - t92 * t109;
-    const wam7_real_t t111 = wam7_bounded(t110 - t93 * t95);
-    if (!(t111 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t96 = t70 * (t93 - t94) + t95 * (WAM7_C(2.0) * t68);
+    const wam7_real_t t97 = t70 * t96;
+    const wam7_real_t t98 = parameters[MX4R] - t60; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t99 = parameters[MY4R] + t47;
+    const wam7_real_t t100 = t70 * t98 - t68 * t99; /* link j4: column of the mass matrix */
+    const wam7_real_t t101 = WAM7_C(0.09) * t100; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t102 = parameters[ZZ3R] + (t94 + t97 + t101);
+    const wam7_real_t t103 = t102 + WAM7_C(798.0625) * parameters[IA3];
+    const wam7_real_t t104 = t76 * t4;
+    const wam7_real_t t105 = t82 * t19;
+    const wam7_real_t t106 = t89 * t52;
+    const wam7_real_t t107 = t103 - t76 * t104 - t82 * t105 - t89 * t106;
+    const wam7_real_t t108 = t107 - t90 * t92;
+    if (!(t108 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t112 = t111 + WAM7_C(-1.0e-9) * t106;
-    if (!(t112 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t113 = t100 - t96 - parameters[XX3R];
-    const wam7_real_t t114 = t65 + t104;
-    const wam7_real_t t116 = t73 * t70 - t71 * t72; /* link j4: column of the mass matrix */
-    const wam7_real_t t117 = parameters[XY3R] + (t69 + t116); /* link j4: inertia of it and all beyond */
+    const wam7_real_t t109 = t97 - t93 - parameters[XX3R];
+    const wam7_real_t t110 = t63 + t101;
+    const wam7_real_t t112 = t70 * t67 - t68 * t69; /* link j4: column of the mass matrix */
+    const wam7_real_t t113 = parameters[XY3R] + (t66 + t112); /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
-    const wam7_real_t t119 = t115 * (t114 + t113) + t117 * (WAM7_C(2.0) * t118);
-    const wam7_real_t t120 = t115 * t119;
-    const wam7_real_t t121 = t73 * t102 + t71 * t101; /* link j4: column of the mass matrix */
-    const wam7_real_t t122 = WAM7_C(1.1) * t121; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t123 = parameters[ZZ2R] + (t120 - t113 - t122);
-    const wam7_real_t t124 = t73 * t76 + t71 * t78; /* link j7: column of the mass matrix */
-    const wam7_real_t t125 = t71 * t45 + t73 * t46;
-    const wam7_real_t t126 = t47 + WAM7_C(0.045) * t125;
-    const wam7_real_t t127 = t71 * t46 - t73 * t45;
-    const wam7_real_t t128 = t115 * t127 + t118 * t75;
-    const wam7_real_t t129 = t118 * t124 - t115 * t126 - WAM7_C(-0.55) * t128;
-    const wam7_real_t t130 = t129 * t4;
-    const wam7_real_t t131 = t73 * t81 + t71 * t83; /* link j6: column of the mass matrix */
-    const wam7_real_t t132 = t71 * t50 + t73 * t39;
-    const wam7_real_t t133 = t51 + WAM7_C(0.045) * t132;
-    const wam7_real_t t134 = t71 * t39 - t73 * t50;
-    const wam7_real_t t135 = t115 * t134 + t118 * t80;
-    const wam7_real_t t136 = t118 * t131 - t115 * t133 + WAM7_C(0.55) * t135;
-    const wam7_real_t t137 = t136 - t129 * t5;
-    const wam7_real_t t138 = t137 * t20;
-    const wam7_real_t t139 = t71 * t90 - t73 * t88; /* link j5: column of the mass matrix */
-    const wam7_real_t t140 = t71 * t41;
-    const wam7_real_t t141 = t42 + WAM7_C(-0.045) * t140;
-    const wam7_real_t t142 = t73 * t41;
-    const wam7_real_t t143 = t115 * t142 + t118 * t62;
-    const wam7_real_t t144 = t118 * t139 - t115 * t141 + WAM7_C(0.55) * t143;
-    const wam7_real_t t145 = t144 - t129 * t28 + t137 * t21;
-    const wam7_real_t t146 = t145 * t54;
-    const wam7_real_t t147 = t123 - t129 * t130 - t137 * t138 - t145 * t146;
-    const wam7_real_t t148 = t65 + WAM7_C(0.045) * t103; /* link j4: column of the mass matrix */
-    const wam7_real_t t149 = t115 * t121;
-    const wam7_real_t t150 = WAM7_C(0.55) * t149 - (t118 * t116 + t115 * t148);
-    const wam7_real_t t151 = t150 - t129 * t57 - t137 * t56 - t145 * t55;
-    const wam7_real_t t152 = t151 * t94;
+    const wam7_real_t t115 = t111 * (t110 + t109) + t113 * (WAM7_C(2.0) * t114);
+    const wam7_real_t t116 = t111 * t115;
+    const wam7_real_t t117 = t70 * t99 + t68 * t98; /* link j4: column of the mass matrix */
+    const wam7_real_t t118 = WAM7_C(1.1) * t117; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t119 = parameters[ZZ2R] + (t116 - t109 - t118);
+    const wam7_real_t t120 = t70 * t73 + t68 * t75; /* link j7: column of the mass matrix */
+    const wam7_real_t t121 = t68 * t43 + t70 * t44;
+    const wam7_real_t t122 = t45 + WAM7_C(0.045) * t121;
+    const wam7_real_t t123 = t68 * t44 - t70 * t43;
+    const wam7_real_t t124 = t111 * t123 + t114 * t72;
+    const wam7_real_t t125 = t114 * t120 - t111 * t122 - WAM7_C(-0.55) * t124;
+    const wam7_real_t t126 = t125 * t4;
+    const wam7_real_t t127 = t70 * t78 + t68 * t80; /* link j6: column of the mass matrix */
+    const wam7_real_t t128 = t68 * t48 + t70 * t37;
+    const wam7_real_t t129 = t49 + WAM7_C(0.045) * t128;
+    const wam7_real_t t130 = t68 * t37 - t70 * t48;
+    const wam7_real_t t131 = t111 * t130 + t114 * t77;
+    const wam7_real_t t132 = t114 * t127 - t111 * t129 + WAM7_C(0.55) * t131;
+    const wam7_real_t t133 = t132 - t125 * t5;
+    const wam7_real_t t134 = t133 * t19;
+    const wam7_real_t t135 = t68 * t87 - t70 * t85; /* link j5: column of the mass matrix */
+    const wam7_real_t t136 = t68 * t39;
+    const wam7_real_t t137 = t40 + WAM7_C(-0.045) * t136;
+    const wam7_real_t t138 = t70 * t39;
+    const wam7_real_t t139 = t111 * t138 + t114 * t60;
+    const wam7_real_t t140 = t114 * t135 - t111 * t137 + WAM7_C(0.55) * t139;
+    const wam7_real_t t141 = t140 - t125 * t27 + t133 * t20;
+    const wam7_real_t t142 = t141 * t52;
+    const wam7_real_t t143 = t119 - t125 * t126 - t133 * t134 - t141 * t142;
+    const wam7_real_t t144 = t63 + WAM7_C(0.045) * t100; /* link j4: column of the mass matrix */
+    const wam7_real_t t145 = t111 * t117;
+    const wam7_real_t t146 = WAM7_C(0.55) * t145 - (t114 * t112 + t111 * t144);
+    const wam7_real_t t147 = t146 - t125 * t55 - t133 * t54 - t141 * t53;
+    const wam7_real_t t148 = t147 * t91;
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t153 = parameters[XZ3] - (t98 - t71 * t99 - WAM7_C(0.045) * t121);
-    const wam7_real_t t154 = t74 - parameters[YZ3];
-    const wam7_real_t t155 = t41 - parameters[MY3R];
-    const wam7_real_t t156 = parameters[MX3R] + t103;
-    const wam7_real_t t157 = t115 * t155 - t118 * t156; /* link j3: column of the mass matrix */
-    const wam7_real_t t158 = t118 * t153 - t115 * t154 + WAM7_C(0.55) * t157;
-    const wam7_real_t t159 = t158 - t129 * t107 + t137 * t108 + t145 * t109;
-    const wam7_real_t t160 = t159 - t151 * t95;
-    const wam7_real_t t161 = WAM7_C(1.0) / t111;
-    const wam7_real_t t162 = t160 * t161;
-    const wam7_real_t t163 = wam7_bounded(t147 - t151 * t152 - t160 * t162);
-    if (!(t163 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t149 = parameters[XZ3] - (t95 - t68 * t96 - WAM7_C(0.045) * t117);
+    const wam7_real_t t150 = t71 - parameters[YZ3];
+    const wam7_real_t t151 = t39 - parameters[MY3R];
+    const wam7_real_t t152 = parameters[MX3R] + t100;
+    const wam7_real_t t153 = t111 * t151 - t114 * t152; /* link j3: column of the mass matrix */
+    const wam7_real_t t154 = t114 * t149 - t111 * t150 + WAM7_C(0.55) * t153;
+    const wam7_real_t t155 = t154 - t125 * t104 + t133 * t105 + t141 * t106;
+    const wam7_real_t t156 = t155 - t147 * t92;
+    const wam7_real_t t157 = WAM7_C(1.0) / t108;
+    const wam7_real_t t158 = t156 * t157;
+    const wam7_real_t t159 = t143 - t147 * t148 - t156 * t158;
+    if (!(t159 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t164 = t163 + WAM7_C(-1.0e-9) * t123;
-    if (!(t164 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t165 = t118 * t119 - t117 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t167 = parameters[YZ2] - t158;
-    const wam7_real_t t169 = t115 * t75 - t118 * t127; /* link j7: column of the mass matrix */
-    const wam7_real_t t170 = t115 * t124 + t118 * t126 + WAM7_C(0.55) * t169;
-    const wam7_real_t t171 = t166 * t170 - t168 * t79;
-    const wam7_real_t t172 = t115 * t80 - t118 * t134; /* link j6: column of the mass matrix */
-    const wam7_real_t t173 = t115 * t131 + t118 * t133 + WAM7_C(0.55) * t172;
-    const wam7_real_t t174 = t166 * t173 - t168 * t84 - t171 * t5;
-    const wam7_real_t t175 = t166 * t165 - t168 * t167 + t171 * t130 + t174 * t138;
-    const wam7_real_t t176 = t115 * t62 - t118 * t142; /* link j5: column of the mass matrix */
-    const wam7_real_t t177 = t115 * t139 + t118 * t141 + WAM7_C(0.55) * t176;
-    const wam7_real_t t178 = t166 * t177 - t168 * t91 - t171 * t28 + t174 * t21;
-    const wam7_real_t t179 = t118 * t121; /* link j4: column of the mass matrix */
-    const wam7_real_t t180 = t118 * t148 - t115 * t116 + WAM7_C(-0.55) * t179;
-    const wam7_real_t t181 = t168 * t74 - t166 * t180 + t171 * t57 + t174 * t56;
-    const wam7_real_t t182 = t181 + t178 * t55;
-    const wam7_real_t t183 = t118 * t155 + t115 * t156; /* link j3: column of the mass matrix */
-    const wam7_real_t t184 = t115 * t153 + t118 * t154 + WAM7_C(-0.55) * t183;
-    const wam7_real_t t185 = t166 * t184 - t168 * t105 - t171 * t107 + t174 * t108;
-    const wam7_real_t t186 = t185 + t178 * t109 + t182 * t95;
-    const wam7_real_t t187 = t175 + t178 * t146 - t182 * t152 + t186 * t162;
-    const wam7_real_t t188 = WAM7_C(1.0) / t163;
-    const wam7_real_t t189 = t187 * t188;
+    const wam7_real_t t160 = t114 * t115 - t113 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t162 = parameters[YZ2] - t154;
+    const wam7_real_t t164 = t111 * t72 - t114 * t123; /* link j7: column of the mass matrix */
+    const wam7_real_t t165 = t111 * t120 + t114 * t122 + WAM7_C(0.55) * t164;
+    const wam7_real_t t166 = t161 * t165 - t163 * t76;
+    const wam7_real_t t167 = t111 * t77 - t114 * t130; /* link j6: column of the mass matrix */
+    const wam7_real_t t168 = t111 * t127 + t114 * t129 + WAM7_C(0.55) * t167;
+    const wam7_real_t t169 = t161 * t168 - t163 * t81 - t166 * t5;
+    const wam7_real_t t170 = t161 * t160 - t163 * t162 + t166 * t126 + t169 * t134;
+    const wam7_real_t t171 = t111 * t60 - t114 * t138; /* link j5: column of the mass matrix */
+    const wam7_real_t t172 = t111 * t135 + t114 * t137 + WAM7_C(0.55) * t171;
+    const wam7_real_t t173 = t161 * t172 - t163 * t88 - t166 * t27 + t169 * t20;
+    const wam7_real_t t174 = t114 * t117; /* link j4: column of the mass matrix */
+    const wam7_real_t t175 = t114 * t144 - t111 * t112 + WAM7_C(-0.55) * t174;
+    const wam7_real_t t176 = t163 * t71 - t161 * t175 + t166 * t55 + t169 * t54;
+    const wam7_real_t t177 = t176 + t173 * t53;
+    const wam7_real_t t178 = t114 * t151 + t111 * t152; /* link j3: column of the mass matrix */
+    const wam7_real_t t179 = t111 * t149 + t114 * t150 + WAM7_C(-0.55) * t178;
+    const wam7_real_t t180 = t161 * t179 - t163 * t102 - t166 * t104 + t169 * t105;
+    const wam7_real_t t181 = t180 + t173 * t106 + t177 * t92;
+    const wam7_real_t t182 = t170 + t173 * t142 - t177 * t148 + t181 * t158;
+    const wam7_real_t t183 = WAM7_C(1.0) / t159;
+    const wam7_real_t t184 = t182 * t183;
     /* link j3: inertia of it and all beyond */
-    const wam7_real_t t190 = t120 - t114 + t122 - parameters[XX2R];
-    const wam7_real_t t191 = parameters[XY2] - t184;
+    const wam7_real_t t185 = t116 - t110 + t118 - parameters[XX2R];
+    const wam7_real_t t186 = parameters[XY2] - t179;
     /* link j2: inertia of it and all beyond */
-    const wam7_real_t t192 = t168 * (t168 * (t105 + t190) + t191 * (WAM7_C(2.0) * t166));
-    const wam7_real_t t193 = parameters[ZZ1R] + (t192 - t190);
-    const wam7_real_t t194 = t171 * t4;
-    const wam7_real_t t195 = t174 * t20;
-    const wam7_real_t t196 = t178 * t54;
-    const wam7_real_t t197 = t193 - t171 * t194 - t174 * t195 - t178 * t196;
-    const wam7_real_t t198 = t182 * t94;
-    const wam7_real_t t199 = t186 * t161;
-    const wam7_real_t t200 = wam7_bounded(t197 - t182 * t198 - t186 * t199 - t187 * t189);
+    const wam7_real_t t187 = t163 * (t163 * (t102 + t185) + t186 * (WAM7_C(2.0) * t161));
+    const wam7_real_t t188 = parameters[ZZ1R] + (t187 - t185);
+    const wam7_real_t t189 = t166 * t4;
+    const wam7_real_t t190 = t169 * t19;
+    const wam7_real_t t191 = t173 * t52;
+    const wam7_real_t t192 = t188 - t166 * t189 - t169 * t190 - t173 * t191;
+    const wam7_real_t t193 = t177 * t91;
+    const wam7_real_t t194 = t181 * t157;
+    const wam7_real_t t195 = t192 - t177 * t193 - t181 * t194 - t182 * t184;
+    if (!(t195 > WAM7_C(1.0e-12))) {
+        wam7_zero(ddq, 7);
+        wam7_zero(ddq_by_q, 49);
+        wam7_zero(ddq_by_dq, 49);
+        wam7_zero(ddq_by_input, 49);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t196 = wam7_min(t10 + WAM7_C(-1.0e-9) * t9, t28 + WAM7_C(-1.0e-9) * t26);
+    const wam7_real_t t197 = wam7_min(t196, t65 + WAM7_C(-1.0e-9) * t64);
+    const wam7_real_t t198 = wam7_min(t197, t108 + WAM7_C(-1.0e-9) * t103);
+    const wam7_real_t t199 = wam7_min(t198, t159 + WAM7_C(-1.0e-9) * t119);
+    const wam7_real_t t200 = wam7_min(t199, t195 + WAM7_C(-1.0e-9) * t188);
     if (!(t200 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -428,1458 +400,1467 @@ wam7_status_t wam7_forward_dynamics_derivatives(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t201 = t200 + WAM7_C(-1.0e-9) * t193;
-    if (!(t201 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t202 = t166 * dq[0]; /* link j2: motion */
-    const wam7_real_t t203 = t115 * t202 - t118 * dq[1]; /* link j3: motion */
-    const wam7_real_t t204 = t118 * t202 + t115 * dq[1];
-    const wam7_real_t t205 = t203 * t204;
-    const wam7_real_t t206 = dq[1] * t202; /* link j2: motion */
-    const wam7_real_t t207 = t206 - t205; /* link j4: motion */
-    const wam7_real_t t208 = t168 * dq[0]; /* link j2: motion */
-    const wam7_real_t t209 = t202 * t208;
-    const wam7_real_t t210 = dq[1] * t208;
-    const wam7_real_t t211 = WAM7_C(2.0) * t210;
-    const wam7_real_t t212 = t118 * t209 + t115 * t211; /* link j3: motion */
-    const wam7_real_t t213 = dq[2] + t208;
-    const wam7_real_t t214 = t204 * t213;
-    const wam7_real_t t215 = t212 - t214;
-    const wam7_real_t t216 = t215 - t214; /* link j4: motion */
-    const wam7_real_t t217 = t73 * t207 + t71 * t216;
-    const wam7_real_t t218 = t73 * t203 + t71 * t213;
-    const wam7_real_t t219 = dq[3] + t204;
-    const wam7_real_t t220 = t218 * t219;
-    const wam7_real_t t221 = t217 + t220;
-    const wam7_real_t t222 = t34 * t218 - t32 * t219; /* link j5: motion */
-    const wam7_real_t t223 = t32 * t218 + t34 * t219;
-    const wam7_real_t t224 = t222 * t223;
-    const wam7_real_t t225 = t221 - t224; /* link j6: motion */
-    const wam7_real_t t226 = t118 * t211 - t115 * t209; /* link j3: motion */
-    const wam7_real_t t227 = t203 * t213;
-    const wam7_real_t t228 = t226 + t227;
-    const wam7_real_t t229 = t73 * t213 - t71 * t203; /* link j4: motion */
-    const wam7_real_t t230 = t218 * t229;
-    const wam7_real_t t231 = t228 - t230; /* link j5: motion */
-    const wam7_real_t t232 = t73 * t216 - t71 * t207; /* link j4: motion */
-    const wam7_real_t t233 = t229 * t219;
-    const wam7_real_t t234 = t232 + t233;
-    const wam7_real_t t235 = t233 + t234; /* link j5: motion */
-    const wam7_real_t t236 = t34 * t235 - t32 * t231;
-    const wam7_real_t t237 = dq[4] + t229;
-    const wam7_real_t t238 = t223 * t237;
-    const wam7_real_t t239 = t236 - t238;
-    const wam7_real_t t240 = t239 - t238; /* link j6: motion */
-    const wam7_real_t t241 = t15 * t240 - t13 * t225;
-    const wam7_real_t t242 = t13 * t222 - t15 * t237;
-    const wam7_real_t t243 = dq[5] + t223;
-    const wam7_real_t t244 = t242 * t243;
-    const wam7_real_t t245 = t241 - t244;
-    const wam7_real_t t246 = t245 - t244; /* link j7: motion */
-    const wam7_real_t t247 = t34 * t231 + t32 * t235; /* link j5: motion */
-    const wam7_real_t t248 = t222 * t237;
-    const wam7_real_t t249 = t247 + t248;
-    const wam7_real_t t250 = t15 * t222 + t13 * t237; /* link j6: motion */
-    const wam7_real_t t251 = t250 * t242;
-    const wam7_real_t t252 = t249 + t251; /* link j7: motion */
-    const wam7_real_t t253 = t2 * t246 - t1 * t252;
-    const wam7_real_t t254 = t1 * t250 + t2 * t243;
-    const wam7_real_t t255 = t242 - dq[6];
-    const wam7_real_t t256 = t254 * t255;
-    const wam7_real_t t257 = t253 + t256;
-    const wam7_real_t t258 = parameters[ZZ7] * t256; /* link j7: force and moment */
-    const wam7_real_t t259 = t2 * t252 + t1 * t246; /* link j7: motion */
-    const wam7_real_t t260 = t2 * t250 - t1 * t243;
-    const wam7_real_t t261 = t260 * t255;
-    const wam7_real_t t262 = t259 - t261 - t261; /* link j7: force and moment */
-    const wam7_real_t t263 = t15 * t225 + t13 * t240; /* link j6: motion */
-    const wam7_real_t t264 = t250 * t243;
-    const wam7_real_t t265 = t263 + t264;
-    const wam7_real_t t266 = t260 * t254; /* link j7: motion */
-    const wam7_real_t t267 = t265 + t266; /* link j7: force and moment */
-    const wam7_real_t t268 = parameters[XX7R] * t257 + t258 - parameters[XY7] * t262
-        + parameters[XZ7R] * t267;
-    const wam7_real_t t269 = t254 * t254; /* link j7: motion */
-    const wam7_real_t t270 = t255 * t255;
-    const wam7_real_t t271 = parameters[YZ7R] * (t270 - t269); /* link j7: force and moment */
-    const wam7_real_t t272 = t229 * t229; /* link j4: motion */
-    const wam7_real_t t273 = t219 * t219;
-    const wam7_real_t t274 = t272 + t273; /* link j5: motion */
-    const wam7_real_t t275 = WAM7_C(0.045) * t274;
-    const wam7_real_t t276 = t204 * t204; /* link j3: motion */
-    const wam7_real_t t277 = t213 * t213;
-    const wam7_real_t t278 = t276 + t277; /* link j4: motion */
-    const wam7_real_t t279 = WAM7_C(0.045) * t278;
-    const wam7_real_t t280 = WAM7_C(9.81) * t166; /* link j2: motion */
-    const wam7_real_t t281 = WAM7_C(-0.55) * t209 - t280; /* link j3: motion */
-    const wam7_real_t t282 = WAM7_C(1.1) * t210;
-    const wam7_real_t t283 = t115 * t281 + t118 * t282;
-    const wam7_real_t t284 = t283 - t279; /* link j4: motion */
-    const wam7_real_t t285 = t227 + t228;
-    const wam7_real_t t286 = t202 * t202; /* link j2: motion */
-    const wam7_real_t t287 = dq[1] * dq[1];
-    const wam7_real_t t288 = WAM7_C(9.81) * t168;
-    const wam7_real_t t289 = t288 + WAM7_C(-0.55) * (t287 + t286); /* link j3: motion */
-    const wam7_real_t t290 = t289 - WAM7_C(0.045) * t285; /* link j4: motion */
-    const wam7_real_t t291 = t73 * t284 - t71 * t290;
-    const wam7_real_t t292 = t291 + (t275 + WAM7_C(0.3) * t231); /* link j5: motion */
-    const wam7_real_t t293 = t220 + t221;
-    const wam7_real_t t294 = t206 + t205; /* link j4: motion */
-    const wam7_real_t t295 = t118 * t281 - t115 * t282; /* link j3: motion */
-    const wam7_real_t t296 = t295 + WAM7_C(0.045) * t294; /* link j4: motion */
-    const wam7_real_t t297 = WAM7_C(0.045) * t293 - WAM7_C(-0.3) * t235 - t296; /* link j5: motion */
-    const wam7_real_t t298 = t34 * t292 + t32 * t297;
-    const wam7_real_t t299 = t228 + t230;
-    const wam7_real_t t300 = t218 * t218; /* link j4: motion */
-    const wam7_real_t t301 = t300 + t273; /* link j5: motion */
-    const wam7_real_t t302 = WAM7_C(0.3) * t301;
-    const wam7_real_t t303 = t71 * t284 + t73 * t290; /* link j4: motion */
-    const wam7_real_t t304 = t303 + (WAM7_C(0.045) * t299 - t302); /* link j5: motion */
-    const wam7_real_t t305 = t13 * t298 + t15 * t304; /* link j6: motion */
-    const wam7_real_t t306 = t268 + t271 - parameters[MY7] * t305; /* link j7: force and moment */
-    const wam7_real_t t307 = t256 + t257;
-    const wam7_real_t t308 = t261 * (parameters[XX7R] - parameters[ZZ7]);
-    const wam7_real_t t309 = t265 - t266;
-    const wam7_real_t t310 = t260 * t260; /* link j7: motion */
-    const wam7_real_t t311 = parameters[XZ7R] * (t310 - t270); /* link j7: force and moment */
-    const wam7_real_t t312 = parameters[XY7] * t307 - t308 + parameters[YZ7R] * t309 + t311
-        + parameters[MX7] * t305;
-    const wam7_real_t t313 = parameters[ZZ6R] * t244; /* link j6: force and moment */
-    const wam7_real_t t314 = t264 + t265; /* link j7: motion */
-    const wam7_real_t t315 = t249 - t251;
+    const wam7_real_t t201 = t161 * dq[0]; /* link j2: motion */
+    const wam7_real_t t202 = t111 * t201 - t114 * dq[1]; /* link j3: motion */
+    const wam7_real_t t203 = t114 * t201 + t111 * dq[1];
+    const wam7_real_t t204 = t202 * t203;
+    const wam7_real_t t205 = dq[1] * t201; /* link j2: motion */
+    const wam7_real_t t206 = t205 - t204; /* link j4: motion */
+    const wam7_real_t t207 = t163 * dq[0]; /* link j2: motion */
+    const wam7_real_t t208 = t201 * t207;
+    const wam7_real_t t209 = dq[1] * t207;
+    const wam7_real_t t210 = WAM7_C(2.0) * t209;
+    const wam7_real_t t211 = t114 * t208 + t111 * t210; /* link j3: motion */
+    const wam7_real_t t212 = dq[2] + t207;
+    const wam7_real_t t213 = t203 * t212;
+    const wam7_real_t t214 = t211 - t213;
+    const wam7_real_t t215 = t214 - t213; /* link j4: motion */
+    const wam7_real_t t216 = t70 * t206 + t68 * t215;
+    const wam7_real_t t217 = t70 * t202 + t68 * t212;
+    const wam7_real_t t218 = dq[3] + t203;
+    const wam7_real_t t219 = t217 * t218;
+    const wam7_real_t t220 = t216 + t219;
+    const wam7_real_t t221 = t32 * t217 - t30 * t218; /* link j5: motion */
+    const wam7_real_t t222 = t30 * t217 + t32 * t218;
+    const wam7_real_t t223 = t221 * t222;
+    const wam7_real_t t224 = t220 - t223; /* link j6: motion */
+    const wam7_real_t t225 = t114 * t210 - t111 * t208; /* link j3: motion */
+    const wam7_real_t t226 = t202 * t212;
+    const wam7_real_t t227 = t225 + t226;
+    const wam7_real_t t228 = t70 * t212 - t68 * t202; /* link j4: motion */
+    const wam7_real_t t229 = t217 * t228;
+    const wam7_real_t t230 = t227 - t229; /* link j5: motion */
+    const wam7_real_t t231 = t70 * t215 - t68 * t206; /* link j4: motion */
+    const wam7_real_t t232 = t228 * t218;
+    const wam7_real_t t233 = t231 + t232;
+    const wam7_real_t t234 = t232 + t233; /* link j5: motion */
+    const wam7_real_t t235 = t32 * t234 - t30 * t230;
+    const wam7_real_t t236 = dq[4] + t228;
+    const wam7_real_t t237 = t222 * t236;
+    const wam7_real_t t238 = t235 - t237;
+    const wam7_real_t t239 = t238 - t237; /* link j6: motion */
+    const wam7_real_t t240 = t14 * t239 - t12 * t224;
+    const wam7_real_t t241 = t12 * t221 - t14 * t236;
+    const wam7_real_t t242 = dq[5] + t222;
+    const wam7_real_t t243 = t241 * t242;
+    const wam7_real_t t244 = t240 - t243;
+    const wam7_real_t t245 = t244 - t243; /* link j7: motion */
+    const wam7_real_t t246 = t32 * t230 + t30 * t234; /* link j5: motion */
+    const wam7_real_t t247 = t221 * t236;
+    const wam7_real_t t248 = t246 + t247;
+    const wam7_real_t t249 = t14 * t221 + t12 * t236; /* link j6: motion */
+    const wam7_real_t t250 = t249 * t241;
+    const wam7_real_t t251 = t248 + t250; /* link j7: motion */
+    const wam7_real_t t252 = t2 * t245 - t1 * t251;
+    const wam7_real_t t253 = t1 * t249 + t2 * t242;
+    const wam7_real_t t254 = t241 - dq[6];
+    const wam7_real_t t255 = t253 * t254;
+    const wam7_real_t t256 = t252 + t255;
+    const wam7_real_t t257 = parameters[ZZ7] * t255; /* link j7: force and moment */
+    const wam7_real_t t258 = t2 * t251 + t1 * t245; /* link j7: motion */
+    const wam7_real_t t259 = t2 * t249 - t1 * t242;
+    const wam7_real_t t260 = t259 * t254;
+    const wam7_real_t t261 = t258 - t260 - t260; /* link j7: force and moment */
+    const wam7_real_t t262 = t14 * t224 + t12 * t239; /* link j6: motion */
+    const wam7_real_t t263 = t249 * t242;
+    const wam7_real_t t264 = t262 + t263;
+    const wam7_real_t t265 = t259 * t253; /* link j7: motion */
+    const wam7_real_t t266 = t264 + t265; /* link j7: force and moment */
+    const wam7_real_t t267 = parameters[XX7R] * t256 + t257 - parameters[XY7] * t261
+        + parameters[XZ7R] * t266;
+    const wam7_real_t t268 = t253 * t253; /* link j7: motion */
+    const wam7_real_t t269 = t254 * t254;
+    const wam7_real_t t270 = parameters[YZ7R] * (t269 - t268); /* link j7: force and moment */
+    const wam7_real_t t271 = t228 * t228; /* link j4: motion */
+    const wam7_real_t t272 = t218 * t218;
+    const wam7_real_t t273 = t271 + t272; /* link j5: motion */
+    const wam7_real_t t274 = WAM7_C(0.045) * t273;
+    const wam7_real_t t275 = t203 * t203; /* link j3: motion */
+    const wam7_real_t t276 = t212 * t212;
+    const wam7_real_t t277 = t275 + t276; /* link j4: motion */
+    const wam7_real_t t278 = WAM7_C(0.045) * t277;
+    const wam7_real_t t279 = WAM7_C(9.81) * t161; /* link j2: motion */
+    const wam7_real_t t280 = WAM7_C(-0.55) * t208 - t279; /* link j3: motion */
+    const wam7_real_t t281 = WAM7_C(1.1) * t209;
+    const wam7_real_t t282 = t111 * t280 + t114 * t281;
+    const wam7_real_t t283 = t282 - t278; /* link j4: motion */
+    const wam7_real_t t284 = t226 + t227;
+    const wam7_real_t t285 = t201 * t201; /* link j2: motion */
+    const wam7_real_t t286 = dq[1] * dq[1];
+    const wam7_real_t t287 = WAM7_C(9.81) * t163;
+    const wam7_real_t t288 = t287 + WAM7_C(-0.55) * (t286 + t285); /* link j3: motion */
+    const wam7_real_t t289 = t288 - WAM7_C(0.045) * t284; /* link j4: motion */
+    const wam7_real_t t290 = t70 * t283 - t68 * t289;
+    const wam7_real_t t291 = t290 + (t274 + WAM7_C(0.3) * t230); /* link j5: motion */
+    const wam7_real_t t292 = t219 + t220;
+    const wam7_real_t t293 = t205 + t204; /* link j4: motion */
+    const wam7_real_t t294 = t114 * t280 - t111 * t281; /* link j3: motion */
+    const wam7_real_t t295 = t294 + WAM7_C(0.045) * t293; /* link j4: motion */
+    const wam7_real_t t296 = WAM7_C(0.045) * t292 - WAM7_C(-0.3) * t234 - t295; /* link j5: motion */
+    const wam7_real_t t297 = t32 * t291 + t30 * t296;
+    const wam7_real_t t298 = t227 + t229;
+    const wam7_real_t t299 = t217 * t217; /* link j4: motion */
+    const wam7_real_t t300 = t299 + t272; /* link j5: motion */
+    const wam7_real_t t301 = WAM7_C(0.3) * t300;
+    const wam7_real_t t302 = t68 * t283 + t70 * t289; /* link j4: motion */
+    const wam7_real_t t303 = t302 + (WAM7_C(0.045) * t298 - t301); /* link j5: motion */
+    const wam7_real_t t304 = t12 * t297 + t14 * t303; /* link j6: motion */
+    const wam7_real_t t305 = t267 + t270 - parameters[MY7] * t304; /* link j7: force and moment */
+    const wam7_real_t t306 = t255 + t256;
+    const wam7_real_t t307 = t260 * (parameters[XX7R] - parameters[ZZ7]);
+    const wam7_real_t t308 = t264 - t265;
+    const wam7_real_t t309 = t259 * t259; /* link j7: motion */
+    const wam7_real_t t310 = parameters[XZ7R] * (t309 - t269); /* link j7: force and moment */
+    const wam7_real_t t311 = parameters[XY7] * t306 - t307 + parameters[YZ7R] * t308 + t310
+        + parameters[MX7] * t304;
+    const wam7_real_t t312 = parameters[ZZ6R] * t243; /* link j6: force and moment */
+    const wam7_real_t t313 = t263 + t264; /* link j7: motion */
+    const wam7_real_t t314 = t248 - t250;
     /* link j6: force and moment */
-    const wam7_real_t t316 = t313 - parameters[XX6R] * t245 + parameters[XY6] * t314 + parameters[XZ6] * t315;
-    const wam7_real_t t317 = t242 * t242; /* link j6: motion */
-    const wam7_real_t t318 = t243 * t243;
-    const wam7_real_t t319 = parameters[YZ6] * (t317 - t318); /* link j6: force and moment */
-    const wam7_real_t t320 = t32 * t292 - t34 * t297; /* link j5: motion */
+    const wam7_real_t t315 = t312 - parameters[XX6R] * t244 + parameters[XY6] * t313 + parameters[XZ6] * t314;
+    const wam7_real_t t316 = t241 * t241; /* link j6: motion */
+    const wam7_real_t t317 = t242 * t242;
+    const wam7_real_t t318 = parameters[YZ6] * (t316 - t317); /* link j6: force and moment */
+    const wam7_real_t t319 = t30 * t291 - t32 * t296; /* link j5: motion */
     /* link j7: what it passes on */
-    const wam7_real_t t321 = t316 + t319 - parameters[MY6R] * t320 + (t1 * t312 - t2 * t306);
-    const wam7_real_t t322 = t15 * t298 - t13 * t304; /* link j6: motion */
+    const wam7_real_t t320 = t315 + t318 - parameters[MY6R] * t319 + (t1 * t311 - t2 * t305);
+    const wam7_real_t t321 = t14 * t297 - t12 * t303; /* link j6: motion */
     /* link j7: force and moment */
-    const wam7_real_t t323 = parameters[MX7] * (t1 * t322 + t2 * t320) + parameters[MY7] * (t2 * t322
-        - t1 * t320);
-    const wam7_real_t t324 = parameters[XX7R] * t266;
-    const wam7_real_t t325 = parameters[ZZ7] * t265 - t324 - parameters[YZ7R] * t259
-        + parameters[XZ7R] * t253;
-    const wam7_real_t t326 = parameters[XY7] * (t310 - t269);
-    const wam7_real_t t327 = t325 - t326 + t323;
-    const wam7_real_t t328 = t264 * (parameters[XX6R] - parameters[ZZ6R]); /* link j6: force and moment */
-    const wam7_real_t t329 = t250 * t250; /* link j6: motion */
-    const wam7_real_t t330 = parameters[XZ6] * (t329 - t318); /* link j6: force and moment */
-    const wam7_real_t t331 = parameters[YZ6] * t252 - (t328 + parameters[XY6] * t246) - t330
-        + parameters[MX6] * t320;
-    const wam7_real_t t332 = t331 + t327; /* link j7: what it passes on */
-    const wam7_real_t t333 = parameters[ZZ5R] * t238; /* link j5: force and moment */
-    const wam7_real_t t334 = t248 + t249; /* link j6: motion */
-    const wam7_real_t t335 = t221 + t224;
+    const wam7_real_t t322 = parameters[MX7] * (t1 * t321 + t2 * t319) + parameters[MY7] * (t2 * t321
+        - t1 * t319);
+    const wam7_real_t t323 = parameters[XX7R] * t265;
+    const wam7_real_t t324 = parameters[ZZ7] * t264 - t323 - parameters[YZ7R] * t258
+        + parameters[XZ7R] * t252;
+    const wam7_real_t t325 = parameters[XY7] * (t309 - t268);
+    const wam7_real_t t326 = t324 - t325 + t322;
+    const wam7_real_t t327 = t263 * (parameters[XX6R] - parameters[ZZ6R]); /* link j6: force and moment */
+    const wam7_real_t t328 = t249 * t249; /* link j6: motion */
+    const wam7_real_t t329 = parameters[XZ6] * (t328 - t317); /* link j6: force and moment */
+    const wam7_real_t t330 = parameters[YZ6] * t251 - (t327 + parameters[XY6] * t245) - t329
+        + parameters[MX6] * t319;
+    const wam7_real_t t331 = t330 + t326; /* link j7: what it passes on */
+    const wam7_real_t t332 = parameters[ZZ5R] * t237; /* link j5: force and moment */
+    const wam7_real_t t333 = t247 + t248; /* link j6: motion */
+    const wam7_real_t t334 = t220 + t223;
     /* link j5: force and moment */
-    const wam7_real_t t336 = parameters[XX5R] * t239 - t333 - parameters[XY5] * t334 + parameters[XZ5] * t335;
-    const wam7_real_t t337 = t223 * t223; /* link j5: motion */
-    const wam7_real_t t338 = t237 * t237;
-    const wam7_real_t t339 = parameters[YZ5] * (t338 - t337); /* link j5: force and moment */
+    const wam7_real_t t335 = parameters[XX5R] * t238 - t332 - parameters[XY5] * t333 + parameters[XZ5] * t334;
+    const wam7_real_t t336 = t222 * t222; /* link j5: motion */
+    const wam7_real_t t337 = t236 * t236;
+    const wam7_real_t t338 = parameters[YZ5] * (t337 - t336); /* link j5: force and moment */
     /* link j6: what it passes on */
-    const wam7_real_t t340 = t336 + t339 - parameters[MY5R] * t304 - (t15 * t321 - t13 * t332);
-    const wam7_real_t t341 = parameters[XX6R] * t251; /* link j6: force and moment */
-    const wam7_real_t t342 = parameters[XZ6] * t241 - (parameters[ZZ6R] * t249 + t341
-        + parameters[YZ6] * t263);
-    const wam7_real_t t343 = parameters[XY6] * (t317 - t329);
+    const wam7_real_t t339 = t335 + t338 - parameters[MY5R] * t303 - (t14 * t320 - t12 * t331);
+    const wam7_real_t t340 = parameters[XX6R] * t250; /* link j6: force and moment */
+    const wam7_real_t t341 = parameters[XZ6] * t240 - (parameters[ZZ6R] * t248 + t340
+        + parameters[YZ6] * t262);
+    const wam7_real_t t342 = parameters[XY6] * (t316 - t328);
     /* link j7: what it passes on */
-    const wam7_real_t t344 = t342 + t343 + (parameters[MX6] * t305 + parameters[MY6R] * t322) + (t1 * t306
-        + t2 * t312);
-    const wam7_real_t t345 = t248 * (parameters[XX5R] - parameters[ZZ5R]); /* link j5: force and moment */
-    const wam7_real_t t346 = t222 * t222; /* link j5: motion */
-    const wam7_real_t t347 = parameters[XZ5] * (t346 - t338); /* link j5: force and moment */
-    const wam7_real_t t348 = t345 + parameters[XY5] * t240 + parameters[YZ5] * t225 + t347
-        + parameters[MX5] * t304;
-    const wam7_real_t t349 = t348 + t344; /* link j6: what it passes on */
-    const wam7_real_t t350 = parameters[MX7] * (t269 + t270); /* link j7: force and moment */
-    const wam7_real_t t351 = t350 - parameters[MY7] * t309;
-    const wam7_real_t t352 = parameters[MY7] * (t310 + t270);
-    const wam7_real_t t353 = parameters[MX7] * t267 + t352;
-    const wam7_real_t t354 = parameters[MX6] * (t317 + t318); /* link j6: force and moment */
+    const wam7_real_t t343 = t341 + t342 + (parameters[MX6] * t304 + parameters[MY6R] * t321) + (t1 * t305
+        + t2 * t311);
+    const wam7_real_t t344 = t247 * (parameters[XX5R] - parameters[ZZ5R]); /* link j5: force and moment */
+    const wam7_real_t t345 = t221 * t221; /* link j5: motion */
+    const wam7_real_t t346 = parameters[XZ5] * (t345 - t337); /* link j5: force and moment */
+    const wam7_real_t t347 = t344 + parameters[XY5] * t239 + parameters[YZ5] * t224 + t346
+        + parameters[MX5] * t303;
+    const wam7_real_t t348 = t347 + t343; /* link j6: what it passes on */
+    const wam7_real_t t349 = parameters[MX7] * (t268 + t269); /* link j7: force and moment */
+    const wam7_real_t t350 = t349 - parameters[MY7] * t308;
+    const wam7_real_t t351 = parameters[MY7] * (t309 + t269);
+    const wam7_real_t t352 = parameters[MX7] * t266 + t351;
+    const wam7_real_t t353 = parameters[MX6] * (t316 + t317); /* link j6: force and moment */
     /* link j7: what it passes on */
-    const wam7_real_t t355 = t354 + parameters[MY6R] * t252 + (t2 * t351 - t1 * t353);
-    const wam7_real_t t356 = parameters[MY6R] * (t329 + t318); /* link j6: force and moment */
+    const wam7_real_t t354 = t353 + parameters[MY6R] * t251 + (t2 * t350 - t1 * t352);
+    const wam7_real_t t355 = parameters[MY6R] * (t328 + t317); /* link j6: force and moment */
     /* link j7: what it passes on */
-    const wam7_real_t t357 = parameters[MX6] * t315 - t356 + (parameters[MX7] * t262
-        + parameters[MY7] * t307);
-    const wam7_real_t t358 = parameters[MX5] * (t337 + t338); /* link j5: force and moment */
+    const wam7_real_t t356 = parameters[MX6] * t314 - t355 + (parameters[MX7] * t261
+        + parameters[MY7] * t306);
+    const wam7_real_t t357 = parameters[MX5] * (t336 + t337); /* link j5: force and moment */
     /* link j6: what it passes on */
-    const wam7_real_t t359 = t358 - parameters[MY5R] * t225 + (t15 * t355 + t13 * t357);
+    const wam7_real_t t358 = t357 - parameters[MY5R] * t224 + (t14 * t354 + t12 * t356);
     /* link j7: what it passes on */
-    const wam7_real_t t360 = parameters[MX6] * t314 + parameters[MY6R] * t246 + (t1 * t351 + t2 * t353);
-    const wam7_real_t t361 = parameters[MY5R] * (t346 + t338); /* link j5: force and moment */
-    const wam7_real_t t362 = parameters[MX5] * t335 + t361 + t360; /* link j6: what it passes on */
-    const wam7_real_t t363 = t32 * t359 + t34 * t362; /* link j5: what it passes on */
-    const wam7_real_t t364 = parameters[ZZ4R] * t233; /* link j4: force and moment */
-    const wam7_real_t t365 = parameters[XY4R] * t293 - (parameters[XX4R] * t234 + t364)
-        + parameters[XZ4] * t299;
-    const wam7_real_t t366 = parameters[YZ4] * (t272 - t273);
+    const wam7_real_t t359 = parameters[MX6] * t313 + parameters[MY6R] * t245 + (t1 * t350 + t2 * t352);
+    const wam7_real_t t360 = parameters[MY5R] * (t345 + t337); /* link j5: force and moment */
+    const wam7_real_t t361 = parameters[MX5] * t334 + t360 + t359; /* link j6: what it passes on */
+    const wam7_real_t t362 = t30 * t358 + t32 * t361; /* link j5: what it passes on */
+    const wam7_real_t t363 = parameters[ZZ4R] * t232; /* link j4: force and moment */
+    const wam7_real_t t364 = parameters[XY4R] * t292 - (parameters[XX4R] * t233 + t363)
+        + parameters[XZ4] * t298;
+    const wam7_real_t t365 = parameters[YZ4] * (t271 - t272);
     /* link j5: what it passes on */
-    const wam7_real_t t367 = t365 + t366 - parameters[MY4R] * t296 + (t32 * t349 - t34 * t340
-        + WAM7_C(0.3) * t363);
-    const wam7_real_t t368 = parameters[XX5R] * t224; /* link j5: force and moment */
-    const wam7_real_t t369 = parameters[ZZ5R] * t221 - t368 - parameters[YZ5] * t247 + parameters[XZ5] * t236;
-    const wam7_real_t t370 = parameters[XY5] * (t346 - t337);
+    const wam7_real_t t366 = t364 + t365 - parameters[MY4R] * t295 + (t30 * t348 - t32 * t339
+        + WAM7_C(0.3) * t362);
+    const wam7_real_t t367 = parameters[XX5R] * t223; /* link j5: force and moment */
+    const wam7_real_t t368 = parameters[ZZ5R] * t220 - t367 - parameters[YZ5] * t246 + parameters[XZ5] * t235;
+    const wam7_real_t t369 = parameters[XY5] * (t345 - t336);
     /* link j6: what it passes on */
-    const wam7_real_t t371 = t369 - t370 + (parameters[MX5] * t320 + parameters[MY5R] * t298) + (t13 * t321
-        + t15 * t332);
-    const wam7_real_t t372 = t220 * (parameters[XX4R] - parameters[ZZ4R]); /* link j4: force and moment */
-    const wam7_real_t t373 = parameters[XZ4] * (t300 - t273);
-    const wam7_real_t t374 = parameters[YZ4] * t231 - (t372 + parameters[XY4R] * t235) - t373
-        + parameters[MX4R] * t296;
-    const wam7_real_t t375 = t374 + (t371 + WAM7_C(-0.045) * t363); /* link j5: what it passes on */
-    const wam7_real_t t376 = parameters[ZZ3R] * t214; /* link j3: force and moment */
-    const wam7_real_t t377 = parameters[XX3R] * t215 - t376 - parameters[XY3R] * t285
-        + parameters[XZ3] * t294;
-    const wam7_real_t t378 = parameters[YZ3] * (t276 - t277);
-    const wam7_real_t t379 = parameters[MY3R] * t289;
-    const wam7_real_t t380 = t377 - t378 - t379 - (t73 * t367 - t71 * t375); /* link j4: what it passes on */
-    const wam7_real_t t381 = t34 * t359 - t32 * t362; /* link j5: what it passes on */
+    const wam7_real_t t370 = t368 - t369 + (parameters[MX5] * t319 + parameters[MY5R] * t297) + (t12 * t320
+        + t14 * t331);
+    const wam7_real_t t371 = t219 * (parameters[XX4R] - parameters[ZZ4R]); /* link j4: force and moment */
+    const wam7_real_t t372 = parameters[XZ4] * (t299 - t272);
+    const wam7_real_t t373 = parameters[YZ4] * t230 - (t371 + parameters[XY4R] * t234) - t372
+        + parameters[MX4R] * t295;
+    const wam7_real_t t374 = t373 + (t370 + WAM7_C(-0.045) * t362); /* link j5: what it passes on */
+    const wam7_real_t t375 = parameters[ZZ3R] * t213; /* link j3: force and moment */
+    const wam7_real_t t376 = parameters[XX3R] * t214 - t375 - parameters[XY3R] * t284
+        + parameters[XZ3] * t293;
+    const wam7_real_t t377 = parameters[YZ3] * (t275 - t276);
+    const wam7_real_t t378 = parameters[MY3R] * t288;
+    const wam7_real_t t379 = t376 - t377 - t378 - (t70 * t366 - t68 * t374); /* link j4: what it passes on */
+    const wam7_real_t t380 = t32 * t358 - t30 * t361; /* link j5: what it passes on */
     /* link j6: what it passes on */
-    const wam7_real_t t382 = parameters[MX5] * t334 + parameters[MY5R] * t240 + (t15 * t357 - t13 * t355);
+    const wam7_real_t t381 = parameters[MX5] * t333 + parameters[MY5R] * t239 + (t14 * t356 - t12 * t354);
     /* link j5: what it passes on */
-    const wam7_real_t t383 = t32 * t340 + t34 * t349 + (WAM7_C(0.045) * t382 + WAM7_C(0.3) * t381);
-    const wam7_real_t t384 = parameters[XX4R] * t230; /* link j4: force and moment */
-    const wam7_real_t t385 = t384 - parameters[ZZ4R] * t228 - parameters[YZ4] * t217 + parameters[XZ4] * t232;
-    const wam7_real_t t386 = parameters[XY4R] * (t272 - t300);
+    const wam7_real_t t382 = t30 * t339 + t32 * t348 + (WAM7_C(0.045) * t381 + WAM7_C(0.3) * t380);
+    const wam7_real_t t383 = parameters[XX4R] * t229; /* link j4: force and moment */
+    const wam7_real_t t384 = t383 - parameters[ZZ4R] * t227 - parameters[YZ4] * t216 + parameters[XZ4] * t231;
+    const wam7_real_t t385 = parameters[XY4R] * (t271 - t299);
     /* link j5: what it passes on */
-    const wam7_real_t t387 = t385 + t386 + (parameters[MX4R] * t303 + parameters[MY4R] * t291) + t383;
-    const wam7_real_t t388 = parameters[MX4R] * t274; /* link j4: force and moment */
-    const wam7_real_t t389 = t388 + parameters[MY4R] * t231 + t381; /* link j5: what it passes on */
-    const wam7_real_t t390 = parameters[MY4R] * t301; /* link j4: force and moment */
-    const wam7_real_t t391 = t390 - parameters[MX4R] * t299 - t382; /* link j5: what it passes on */
-    const wam7_real_t t392 = t227 * (parameters[XX3R] - parameters[ZZ3R]); /* link j3: force and moment */
-    const wam7_real_t t393 = t203 * t203; /* link j3: motion */
-    const wam7_real_t t394 = parameters[XZ3] * (t393 - t277); /* link j3: force and moment */
-    const wam7_real_t t395 = parameters[MX3R] * t289;
-    const wam7_real_t t396 = t392 + parameters[XY3R] * t216 + parameters[YZ3] * t207 + t394 + t395;
+    const wam7_real_t t386 = t384 + t385 + (parameters[MX4R] * t302 + parameters[MY4R] * t290) + t382;
+    const wam7_real_t t387 = parameters[MX4R] * t273; /* link j4: force and moment */
+    const wam7_real_t t388 = t387 + parameters[MY4R] * t230 + t380; /* link j5: what it passes on */
+    const wam7_real_t t389 = parameters[MY4R] * t300; /* link j4: force and moment */
+    const wam7_real_t t390 = t389 - parameters[MX4R] * t298 - t381; /* link j5: what it passes on */
+    const wam7_real_t t391 = t226 * (parameters[XX3R] - parameters[ZZ3R]); /* link j3: force and moment */
+    const wam7_real_t t392 = t202 * t202; /* link j3: motion */
+    const wam7_real_t t393 = parameters[XZ3] * (t392 - t276); /* link j3: force and moment */
+    const wam7_real_t t394 = parameters[MX3R] * t288;
+    const wam7_real_t t395 = t391 + parameters[XY3R] * t215 + parameters[YZ3] * t206 + t393 + t394;
     /* link j4: what it passes on */
-    const wam7_real_t t397 = t396 + (t387 + WAM7_C(0.045) * (t71 * t389 + t73 * t391));
-    const wam7_real_t t398 = parameters[MX3R] * t278; /* link j3: force and moment */
+    const wam7_real_t t396 = t395 + (t386 + WAM7_C(0.045) * (t68 * t388 + t70 * t390));
+    const wam7_real_t t397 = parameters[MX3R] * t277; /* link j3: force and moment */
     /* link j4: what it passes on */
-    const wam7_real_t t399 = t398 - parameters[MY3R] * t207 + (t73 * t389 - t71 * t391);
+    const wam7_real_t t398 = t397 - parameters[MY3R] * t206 + (t70 * t388 - t68 * t390);
     /* link j5: what it passes on */
-    const wam7_real_t t400 = parameters[MX4R] * t293 + parameters[MY4R] * t235 + t363;
-    const wam7_real_t t401 = parameters[MY3R] * (t393 + t277); /* link j3: force and moment */
-    const wam7_real_t t402 = parameters[MX3R] * t294 + t401 + t400; /* link j4: what it passes on */
+    const wam7_real_t t399 = parameters[MX4R] * t292 + parameters[MY4R] * t234 + t362;
+    const wam7_real_t t400 = parameters[MY3R] * (t392 + t276); /* link j3: force and moment */
+    const wam7_real_t t401 = parameters[MX3R] * t293 + t400 + t399; /* link j4: what it passes on */
     /* link j3: what it passes on */
-    const wam7_real_t t403 = t118 * t397 - t115 * t380 + WAM7_C(0.55) * (t118 * t399 + t115 * t402);
-    const wam7_real_t t404 = parameters[ZZ2R] * t210; /* link j2: force and moment */
-    const wam7_real_t t405 = parameters[XY2] * (WAM7_C(2.0) * t206) - (parameters[XX2R] * t210 + t404)
-        + parameters[XZ2] * t209;
-    const wam7_real_t t406 = t208 * t208; /* link j2: motion */
-    const wam7_real_t t407 = parameters[YZ2] * (t406 - t287); /* link j2: force and moment */
-    const wam7_real_t t408 = parameters[XY3R] * (t393 - t276); /* link j3: force and moment */
-    const wam7_real_t t409 = parameters[XX3R] * t205;
-    const wam7_real_t t410 = parameters[ZZ3R] * t206 - t409 - parameters[YZ3] * t226 + parameters[XZ3] * t212;
+    const wam7_real_t t402 = t114 * t396 - t111 * t379 + WAM7_C(0.55) * (t114 * t398 + t111 * t401);
+    const wam7_real_t t403 = parameters[ZZ2R] * t209; /* link j2: force and moment */
+    const wam7_real_t t404 = parameters[XY2] * (WAM7_C(2.0) * t205) - (parameters[XX2R] * t209 + t403)
+        + parameters[XZ2] * t208;
+    const wam7_real_t t405 = t207 * t207; /* link j2: motion */
+    const wam7_real_t t406 = parameters[YZ2] * (t405 - t286); /* link j2: force and moment */
+    const wam7_real_t t407 = parameters[XY3R] * (t392 - t275); /* link j3: force and moment */
+    const wam7_real_t t408 = parameters[XX3R] * t204;
+    const wam7_real_t t409 = parameters[ZZ3R] * t205 - t408 - parameters[YZ3] * t225 + parameters[XZ3] * t211;
     /* link j4: what it passes on */
-    const wam7_real_t t411 = t410 - t408 + (parameters[MX3R] * t295 + parameters[MY3R] * t283) + (t71 * t367
-        + t73 * t375 + WAM7_C(0.045) * t400);
-    const wam7_real_t t412 = t206 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
-    const wam7_real_t t413 = parameters[XZ2] * (t287 - t286);
+    const wam7_real_t t410 = t409 - t407 + (parameters[MX3R] * t294 + parameters[MY3R] * t282) + (t68 * t366
+        + t70 * t374 + WAM7_C(0.045) * t399);
+    const wam7_real_t t411 = t205 * (parameters[XX2R] - parameters[ZZ2R]); /* link j2: force and moment */
+    const wam7_real_t t412 = parameters[XZ2] * (t286 - t285);
     /* link j3: what it passes on */
-    const wam7_real_t t414 = t413 - (t412 + parameters[XY2] * t211 + parameters[YZ2] * t209) + t411;
-    const wam7_real_t t415 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
-    const wam7_real_t t416 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0])
-        - parameters[FC1] * t415) + (t166 * (t405 + t407 + t403) + t168 * t414);
-    const wam7_real_t t417 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
-    const wam7_real_t t418 = WAM7_C(14.93) * (parameters[FV7] * (WAM7_C(-14.93) * dq[6])
-        - parameters[FC7] * t417) + t327;
-    const wam7_real_t t419 = WAM7_C(1.00031) * input[6] + t418;
-    const wam7_real_t t420 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
-    const wam7_real_t t421 = WAM7_C(9.48) * (parameters[FV6] * (WAM7_C(-9.48) * dq[5])
-        - parameters[FC6] * t420) + t344;
-    const wam7_real_t t422 = WAM7_C(2.23728) * input[5] + t421 - t419 * t5;
-    const wam7_real_t t423 = WAM7_C(19.194) * input[0] + t416 + t419 * t194 + t422 * t195;
-    const wam7_real_t t424 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
-    const wam7_real_t t425 = WAM7_C(9.48) * (parameters[FV5] * (WAM7_C(-9.48) * dq[4])
-        - parameters[FC5] * t424) + t371;
-    const wam7_real_t t426 = WAM7_C(2.23728) * input[4] + t425 - t419 * t28 + t422 * t21;
-    const wam7_real_t t427 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
-    const wam7_real_t t428 = WAM7_C(18.0) * (parameters[FV4] * (WAM7_C(-18.0) * dq[3])
-        - parameters[FC4] * t427) + t387;
-    const wam7_real_t t429 = WAM7_C(8.226) * input[3] + t428 + t419 * t57 + t422 * t56;
-    const wam7_real_t t430 = t429 + t426 * t55;
-    const wam7_real_t t431 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
-    const wam7_real_t t432 = WAM7_C(28.25) * (parameters[FV3] * (WAM7_C(-28.25) * dq[2])
-        - parameters[FC3] * t431) + t411;
-    const wam7_real_t t433 = WAM7_C(12.910250000000001) * input[2] + t432 - t419 * t107 + t422 * t108;
-    const wam7_real_t t434 = t433 + t426 * t109 + t430 * t95;
-    const wam7_real_t t435 = t423 + t426 * t196 + t430 * t198 + t434 * t199;
+    const wam7_real_t t413 = t412 - (t411 + parameters[XY2] * t210 + parameters[YZ2] * t208) + t410;
+    const wam7_real_t t414 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
+    const wam7_real_t t415 = WAM7_C(42.0) * (parameters[FV1] * (WAM7_C(-42.0) * dq[0])
+        - parameters[FC1] * t414) + (t161 * (t404 + t406 + t402) + t163 * t413);
+    const wam7_real_t t416 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
+    const wam7_real_t t417 = WAM7_C(14.93) * (parameters[FV7] * (WAM7_C(-14.93) * dq[6])
+        - parameters[FC7] * t416) + t326;
+    const wam7_real_t t418 = WAM7_C(1.00031) * input[6] + t417;
+    const wam7_real_t t419 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
+    const wam7_real_t t420 = WAM7_C(9.48) * (parameters[FV6] * (WAM7_C(-9.48) * dq[5])
+        - parameters[FC6] * t419) + t343;
+    const wam7_real_t t421 = WAM7_C(2.23728) * input[5] + t420 - t418 * t5;
+    const wam7_real_t t422 = WAM7_C(19.194) * input[0] + t415 + t418 * t189 + t421 * t190;
+    const wam7_real_t t423 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
+    const wam7_real_t t424 = WAM7_C(9.48) * (parameters[FV5] * (WAM7_C(-9.48) * dq[4])
+        - parameters[FC5] * t423) + t370;
+    const wam7_real_t t425 = WAM7_C(2.23728) * input[4] + t424 - t418 * t27 + t421 * t20;
+    const wam7_real_t t426 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
+    const wam7_real_t t427 = WAM7_C(18.0) * (parameters[FV4] * (WAM7_C(-18.0) * dq[3])
+        - parameters[FC4] * t426) + t386;
+    const wam7_real_t t428 = WAM7_C(8.226) * input[3] + t427 + t418 * t55 + t421 * t54;
+    const wam7_real_t t429 = t428 + t425 * t53;
+    const wam7_real_t t430 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
+    const wam7_real_t t431 = WAM7_C(28.25) * (parameters[FV3] * (WAM7_C(-28.25) * dq[2])
+        - parameters[FC3] * t430) + t410;
+    const wam7_real_t t432 = WAM7_C(12.910250000000001) * input[2] + t431 - t418 * t104 + t421 * t105;
+    const wam7_real_t t433 = t432 + t425 * t106 + t429 * t92;
+    const wam7_real_t t434 = t422 + t425 * t191 + t429 * t193 + t433 * t194;
     /* link j3: what it passes on */
-    const wam7_real_t t436 = t118 * t380 + t115 * t397 + WAM7_C(0.55) * (t115 * t399 - t118 * t402);
+    const wam7_real_t t435 = t114 * t379 + t111 * t396 + WAM7_C(0.55) * (t111 * t398 - t114 * t401);
     /* link j2: force and moment */
-    const wam7_real_t t437 = parameters[XX2R] * t209 + parameters[XY2] * (t406 - t286)
-        + (parameters[MX2] * t288 - parameters[MY2R] * t280);
-    const wam7_real_t t438 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
-    const wam7_real_t t439 = WAM7_C(28.25) * (parameters[FV2] * (WAM7_C(-28.25) * dq[1])
-        - parameters[FC2] * t438) + (t437 + t436);
-    const wam7_real_t t440 = WAM7_C(12.910250000000001) * input[1] + t439 - t419 * t130 - t422 * t138;
-    const wam7_real_t t441 = t440 - t426 * t146 + t430 * t152 - t434 * t162;
-    const wam7_real_t t442 = WAM7_C(1.0) / t200;
-    const wam7_real_t t443 = wam7_bounded((t435 - t441 * t189) * t442);
-    ddq[0] = t443;
-    const wam7_real_t t444 = wam7_bounded(t441 * t188 - t189 * t443);
-    ddq[1] = t444;
-    const wam7_real_t t445 = wam7_bounded(t434 * t161 + t199 * t443 - t162 * t444);
-    ddq[2] = t445;
-    const wam7_real_t t446 = wam7_bounded(t430 * t94 + t198 * t443 + t152 * t444 + t95 * t445);
-    ddq[3] = t446;
-    const wam7_real_t t447 = t426 * t54 + t196 * t443 - t146 * t444 + t109 * t445;
-    const wam7_real_t t448 = wam7_bounded(t447 + t55 * t446);
-    ddq[4] = t448;
-    const wam7_real_t t449 = t422 * t20 + t195 * t443 - t138 * t444 + t108 * t445;
-    const wam7_real_t t450 = wam7_bounded(t449 + t56 * t446 + t21 * t448);
-    ddq[5] = t450;
-    const wam7_real_t t451 = t419 * t4 + t194 * t443 - t130 * t444 - t107 * t445;
-    const wam7_real_t t452 = wam7_bounded(t451 + t57 * t446 - t28 * t448 - t5 * t450);
-    ddq[6] = t452;
-    const wam7_real_t t453 = t189 * t442;
-    const wam7_real_t t454 = wam7_bounded(WAM7_C(-12.910250000000001) * t453);
-    const wam7_real_t t455 = parameters[XZ7R] * t254;
-    const wam7_real_t t456 = parameters[XY7] * t255;
-    const wam7_real_t t457 = t455 + t456;
-    const wam7_real_t t458 = parameters[YZ7R] * t260;
-    const wam7_real_t t459 = t456 - t458;
-    const wam7_real_t t460 = WAM7_C(0.5) * (parameters[XX7R] + parameters[ZZ7]);
-    const wam7_real_t t461 = parameters[XX7R] - t460;
-    const wam7_real_t t462 = t255 * t461 - parameters[XZ7R] * t260;
-    const wam7_real_t t463 = parameters[YZ7R] * t254 - t255 * t460;
-    const wam7_real_t t464 = t2 * (t457 + t459) + t1 * (t462 - t463); /* link j7: inertia, momentum beyond */
-    const wam7_real_t t465 = t2 * t464;
-    const wam7_real_t t466 = parameters[XZ6] * t242;
-    const wam7_real_t t467 = parameters[XY6] * t243;
-    const wam7_real_t t468 = t466 - t467 + (t465 - t459);
-    const wam7_real_t t469 = t455 + t458;
-    const wam7_real_t t470 = parameters[YZ6] * t250;
-    const wam7_real_t t471 = t467 + t470 - t469;
-    const wam7_real_t t472 = parameters[XY7] * t260 + t254 * t461;
-    const wam7_real_t t473 = parameters[XY7] * t254 - t260 * t460;
-    const wam7_real_t t474 = WAM7_C(-0.5) * (parameters[XX6R] + parameters[ZZ6R]);
-    const wam7_real_t t475 = parameters[XX6R] + t474;
-    const wam7_real_t t476 = parameters[XZ6] * t250 + t243 * t475 + (t2 * t472 - t1 * t473);
-    const wam7_real_t t477 = t460 - parameters[ZZ7];
-    const wam7_real_t t478 = t254 * t477 - parameters[YZ7R] * t255;
-    const wam7_real_t t479 = parameters[XZ7R] * t255 + t260 * t477;
-    const wam7_real_t t480 = t243 * t474 - parameters[YZ6] * t242 + (t1 * t479 - t2 * t478);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t481 = t15 * (t468 - t471) + t13 * (t480 - t476);
-    const wam7_real_t t482 = t15 * t481;
-    const wam7_real_t t483 = parameters[XZ5] * t223;
-    const wam7_real_t t484 = parameters[XY5] * t237;
-    const wam7_real_t t485 = t483 - t484 + (t471 + t482);
-    const wam7_real_t t486 = t466 + t470 + (t465 - t457); /* link j7: inertia, momentum beyond */
-    const wam7_real_t t487 = parameters[YZ5] * t222;
-    const wam7_real_t t488 = t484 + t487 - t486; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t489 = t1 * t464; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t490 = parameters[ZZ6R] + t474;
-    const wam7_real_t t491 = t242 * t490 - parameters[YZ6] * t243 + (t463 + t489);
-    const wam7_real_t t492 = parameters[XZ6] * t243 + t250 * t490 + (t1 * t472 + t2 * t473);
-    const wam7_real_t t493 = WAM7_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t494 = parameters[YZ5] * t223 - t237 * t493 + (t15 * t491 - t13 * t492);
+    const wam7_real_t t436 = parameters[XX2R] * t208 + parameters[XY2] * (t405 - t285)
+        + (parameters[MX2] * t287 - parameters[MY2R] * t279);
+    const wam7_real_t t437 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
+    const wam7_real_t t438 = WAM7_C(28.25) * (parameters[FV2] * (WAM7_C(-28.25) * dq[1])
+        - parameters[FC2] * t437) + (t436 + t435);
+    const wam7_real_t t439 = WAM7_C(12.910250000000001) * input[1] + t438 - t418 * t126 - t421 * t134;
+    const wam7_real_t t440 = t439 - t425 * t142 + t429 * t148 - t433 * t158;
+    const wam7_real_t t441 = WAM7_C(1.0) / t195;
+    const wam7_real_t t442 = wam7_held((t434 - t440 * t184) * t441);
+    ddq[0] = t442;
+    const wam7_real_t t443 = wam7_held(t440 * t183 - t184 * t442);
+    ddq[1] = t443;
+    const wam7_real_t t444 = wam7_held(t433 * t157 + t194 * t442 - t158 * t443);
+    ddq[2] = t444;
+    const wam7_real_t t445 = wam7_held(t429 * t91 + t193 * t442 + t148 * t443 + t92 * t444);
+    ddq[3] = t445;
+    const wam7_real_t t446 = t425 * t52 + t191 * t442 - t142 * t443 + t106 * t444;
+    const wam7_real_t t447 = wam7_held(t446 + t53 * t445);
+    ddq[4] = t447;
+    const wam7_real_t t448 = t421 * t19 + t190 * t442 - t134 * t443 + t105 * t444;
+    const wam7_real_t t449 = wam7_held(t448 + t54 * t445 + t20 * t447);
+    ddq[5] = t449;
+    const wam7_real_t t450 = t418 * t4 + t189 * t442 - t126 * t443 - t104 * t444;
+    const wam7_real_t t451 = wam7_held(t450 + t55 * t445 - t27 * t447 - t5 * t449);
+    ddq[6] = t451;
+    const wam7_real_t t452 = t208 - t443;
+    const wam7_real_t t453 = t161 * t442;
+    const wam7_real_t t454 = t209 + t453;
+    const wam7_real_t t455 = t209 + t454;
+    const wam7_real_t t456 = t111 * t452 - t114 * t455;
+    const wam7_real_t t457 = t226 - t456;
+    const wam7_real_t t458 = t445 + t457;
+    const wam7_real_t t459 = t458 - t229;
+    const wam7_real_t t460 = t163 * t442;
+    const wam7_real_t t461 = t205 - t460;
+    const wam7_real_t t462 = t444 - t461;
+    const wam7_real_t t463 = t204 + t462;
+    const wam7_real_t t464 = t114 * t452 + t111 * t455;
+    const wam7_real_t t465 = t464 - t213;
+    const wam7_real_t t466 = t465 - t213;
+    const wam7_real_t t467 = t68 * t463 + t70 * t466;
+    const wam7_real_t t468 = t232 + t467;
+    const wam7_real_t t469 = t232 + t468;
+    const wam7_real_t t470 = t32 * t459 + t30 * t469;
+    const wam7_real_t t471 = t247 + t470;
+    const wam7_real_t t472 = t449 + t471;
+    const wam7_real_t t473 = t250 + t472;
+    const wam7_real_t t474 = t70 * t463 - t68 * t466;
+    const wam7_real_t t475 = t219 - t474;
+    const wam7_real_t t476 = t447 - t475;
+    const wam7_real_t t477 = t223 + t476;
+    const wam7_real_t t478 = t30 * t459 - t32 * t469;
+    const wam7_real_t t479 = t237 + t478;
+    const wam7_real_t t480 = t237 + t479;
+    const wam7_real_t t481 = t12 * t477 - t14 * t480;
+    const wam7_real_t t482 = t481 - t243;
+    const wam7_real_t t483 = t243 - t482;
+    const wam7_real_t t484 = t1 * t473 + t2 * t483;
+    const wam7_real_t t485 = t255 - t484;
+    const wam7_real_t t486 = t255 + t485;
+    const wam7_real_t t487 = t14 * t477 + t12 * t480;
+    const wam7_real_t t488 = t487 - t263;
+    const wam7_real_t t489 = t451 + t488;
+    const wam7_real_t t490 = t265 + t489;
+    const wam7_real_t t491 = t279 + WAM7_C(0.55) * t452;
+    const wam7_real_t t492 = WAM7_C(0.55) * t455;
+    const wam7_real_t t493 = t111 * t491 - t114 * t492;
+    const wam7_real_t t494 = t278 + t493;
+    const wam7_real_t t495 = t226 + t457;
+    const wam7_real_t t496 = t288 - WAM7_C(0.045) * t495;
+    const wam7_real_t t497 = t70 * t494 + t68 * t496;
+    const wam7_real_t t498 = t497 + (WAM7_C(-0.3) * t459 - t274);
+    const wam7_real_t t499 = t219 + t475;
+    const wam7_real_t t500 = t114 * t491 + t111 * t492;
+    const wam7_real_t t501 = t462 - t204;
+    const wam7_real_t t502 = t500 + WAM7_C(0.045) * t501;
+    const wam7_real_t t503 = t502 + (WAM7_C(0.045) * t499 - WAM7_C(-0.3) * t469);
+    const wam7_real_t t504 = t32 * t498 - t30 * t503;
+    const wam7_real_t t505 = t68 * t494 - t70 * t496;
+    const wam7_real_t t506 = t229 + t458;
+    const wam7_real_t t507 = t505 + (t301 + WAM7_C(-0.045) * t506);
+    const wam7_real_t t508 = t12 * t504 + t14 * t507;
+    const wam7_real_t t509 = t310 + (parameters[XY7] * t486 - t307 - parameters[YZ7R] * t490)
+        - parameters[MX7] * t508;
+    const wam7_real_t t510 = t2 * t473 - t1 * t483;
+    const wam7_real_t t511 = t309 + t268; /* link j7: force and moment */
+    const wam7_real_t t512 = parameters[XZ7R] * t253;
+    const wam7_real_t t513 = parameters[XY7] * t254;
+    const wam7_real_t t514 = t512 + t513;
+    const wam7_real_t t515 = WAM7_C(2.0) * t253; /* link j7: derivatives */
+    const wam7_real_t t516 = WAM7_C(0.5) * (parameters[XX7R] + parameters[ZZ7]);
+    const wam7_real_t t517 = parameters[YZ7R] * t253 - t254 * t516;
+    const wam7_real_t t518 = WAM7_C(2.0) * t259;
+    const wam7_real_t t519 = t514 * t515 + t517 * t518 - (parameters[XZ7R] * t511 - (parameters[XX7R] * t510
+        - parameters[XY7] * t484));
+    const wam7_real_t t520 = t509 + t519;
+    const wam7_real_t t521 = t510 - t260 - t260;
+    const wam7_real_t t522 = t265 - t489;
+    const wam7_real_t t523 = t257 + parameters[XX7R] * t485 - parameters[XY7] * t521
+        + parameters[XZ7R] * t522;
+    const wam7_real_t t524 = t270 + t523 + parameters[MY7] * t508;
+    const wam7_real_t t525 = parameters[XX7R] - t516;
+    const wam7_real_t t526 = t254 * t525 - parameters[XZ7R] * t259;
+    const wam7_real_t t527 = parameters[YZ7R] * t259;
+    const wam7_real_t t528 = t513 - t527;
+    const wam7_real_t t529 = t526 * t515 + t528 * t518 + (parameters[YZ7R] * t511 - parameters[XY7] * t510);
+    const wam7_real_t t530 = t524 + t529;
+    const wam7_real_t t531 = t2 * t520 + t1 * t530;
+    const wam7_real_t t532 = parameters[ZZ7] * t511 + (parameters[YZ7R] * t484 - parameters[XZ7R] * t510);
+    const wam7_real_t t533 = parameters[XY7] * t259 + t253 * t525;
+    const wam7_real_t t534 = parameters[XY7] * t253 - t259 * t516;
+    const wam7_real_t t535 = t12 * t507 - t14 * t504;
+    const wam7_real_t t536 = t30 * t498 + t32 * t503;
+    const wam7_real_t t537 = t2 * t535 + t1 * t536;
+    const wam7_real_t t538 = t2 * t536 - t1 * t535;
+    const wam7_real_t t539 = parameters[MX7] * t537 + parameters[MY7] * t538;
+    const wam7_real_t t540 = t533 * t515 + t534 * t518 + t532 + t539;
+    const wam7_real_t t541 = t14 * t531 - t12 * t540;
+    const wam7_real_t t542 = t2 * t530 - t1 * t520;
+    const wam7_real_t t543 = t351 + parameters[MX7] * t522;
+    const wam7_real_t t544 = parameters[MY7] * t259 + parameters[MX7] * t253;
+    const wam7_real_t t545 = t544 * t518 - parameters[MY7] * t511 - t543;
+    const wam7_real_t t546 = t349 + parameters[MY7] * t490;
+    const wam7_real_t t547 = t544 * t515 - parameters[MX7] * t511 - t546;
+    const wam7_real_t t548 = t2 * t545 + t1 * t547;
+    const wam7_real_t t549 = parameters[MX7] * t254;
+    const wam7_real_t t550 = parameters[MY7] * t254;
+    const wam7_real_t t551 = parameters[MY7] * t510 + parameters[MX7] * t484 - (t549 * t515 + t550 * t518);
+    const wam7_real_t t552 = t14 * t548 - t12 * t551;
+    const wam7_real_t t553 = t1 * t545 - t2 * t547;
+    const wam7_real_t t554 = t30 * t552 + t32 * t553;
+    const wam7_real_t t555 = t32 * t541 + t30 * t542 + WAM7_C(0.3) * t554;
+    const wam7_real_t t556 = t12 * t531 + t14 * t540;
+    const wam7_real_t t557 = WAM7_C(0.045) * t554;
+    const wam7_real_t t558 = t556 - t557;
+    const wam7_real_t t559 = t70 * t555 - t68 * t558;
+    const wam7_real_t t560 = t12 * t548 + t14 * t551;
+    const wam7_real_t t561 = t30 * t553 - t32 * t552;
+    const wam7_real_t t562 = t30 * t541 - t32 * t542 + (WAM7_C(0.045) * t560 + WAM7_C(0.3) * t561);
+    const wam7_real_t t563 = t562 - WAM7_C(0.045) * (t70 * t560 - t68 * t561);
+    const wam7_real_t t564 = t70 * t561 + t68 * t560;
+    const wam7_real_t t565 = t111 * t559 - t114 * t563 + WAM7_C(0.55) * (t111 * t554 - t114 * t564);
+    const wam7_real_t t566 = t557 + (t68 * t555 + t70 * t558);
+    const wam7_real_t t567 = WAM7_C(0.05209961446285298) * (t161 * t565 + t163 * t566);
+    const wam7_real_t t568 = wam7_held(WAM7_C(19.194) * t441);
+    const wam7_real_t t569 = t114 * t559 + t111 * t563 + WAM7_C(0.55) * (t111 * t564 + t114 * t554);
+    const wam7_real_t t570 = WAM7_C(0.07745783389167521) * t569;
+    const wam7_real_t t571 = t184 * t441;
+    const wam7_real_t t572 = wam7_held(WAM7_C(-12.910250000000001) * t571);
+    const wam7_real_t t573 = WAM7_C(0.07745783389167521) * t566;
+    const wam7_real_t t574 = t441 * (t194 + t158 * t184);
+    const wam7_real_t t575 = wam7_held(WAM7_C(12.910250000000001) * t574);
+    const wam7_real_t t576 = WAM7_C(0.12156576707999026) * t562;
+    const wam7_real_t t577 = t148 - t92 * t158;
+    const wam7_real_t t578 = t441 * (t193 + t92 * t194 - t184 * t577);
+    const wam7_real_t t579 = wam7_held(WAM7_C(8.226) * t578);
+    const wam7_real_t t580 = t568 * t567 - t572 * t570 + t575 * t573 - t579 * t576;
+    const wam7_real_t t581 = WAM7_C(0.4469713223199599) * t556;
+    const wam7_real_t t582 = t106 + t53 * t92;
+    const wam7_real_t t583 = t142 - t53 * t148 + t158 * t582;
+    const wam7_real_t t584 = t191 + t53 * t193 + t194 * t582 + t184 * t583;
+    const wam7_real_t t585 = t441 * t584;
+    const wam7_real_t t586 = wam7_held(WAM7_C(2.23728) * t585);
+    const wam7_real_t t587 = WAM7_C(0.4469713223199599) * t542;
+    const wam7_real_t t588 = t54 + t20 * t53;
+    const wam7_real_t t589 = t105 + t20 * t106 + t92 * t588;
+    const wam7_real_t t590 = t134 + t20 * t142 - t148 * t588 + t158 * t589;
+    const wam7_real_t t591 = t190 + t20 * t191 + t193 * t588 + t194 * t589;
+    const wam7_real_t t592 = t441 * (t591 + t184 * t590);
+    const wam7_real_t t593 = wam7_held(WAM7_C(2.23728) * t592);
+    const wam7_real_t t594 = WAM7_C(2.0) * t533;
+    const wam7_real_t t595 = WAM7_C(2.0) * t534;
+    const wam7_real_t t596 = WAM7_C(0.9996900960702182) * (t539 + (t253 * t594 + t259 * t595 + t532));
+    const wam7_real_t t597 = t27 + t5 * t20;
+    const wam7_real_t t598 = t55 - t5 * t54 - t53 * t597;
+    const wam7_real_t t599 = t92 * t598 - (t104 + t5 * t105 + t106 * t597);
+    const wam7_real_t t600 = t126 - t5 * t134 - t142 * t597 - t148 * t598;
+    const wam7_real_t t601 = t600 + t158 * t599;
+    const wam7_real_t t602 = t189 - t5 * t190 - t191 * t597 + t193 * t598;
+    const wam7_real_t t603 = t441 * (t602 + t194 * t599 + t184 * t601);
+    const wam7_real_t t604 = wam7_held(WAM7_C(1.00031) * t603);
+    const wam7_real_t t605 = t580 + t586 * t581 + t593 * t587 + t604 * t596;
+    ddq_by_q[6] = t605;
+    const wam7_real_t t606 = wam7_held(WAM7_C(-19.194) * t571);
+    const wam7_real_t t607 = wam7_held(WAM7_C(12.910250000000001) * (t183 + t184 * t571));
+    const wam7_real_t t608 = t158 * t183 + t184 * t574;
+    const wam7_real_t t609 = wam7_held(WAM7_C(-12.910250000000001) * t608);
+    const wam7_real_t t610 = t184 * t578 - t183 * t577;
+    const wam7_real_t t611 = wam7_held(WAM7_C(-8.226) * t610);
+    const wam7_real_t t612 = t606 * t567 - t607 * t570 + t609 * t573 - t611 * t576;
+    const wam7_real_t t613 = t183 * t583 + t184 * t585;
+    const wam7_real_t t614 = wam7_held(WAM7_C(-2.23728) * t613);
+    const wam7_real_t t615 = t183 * t590 + t184 * t592;
+    const wam7_real_t t616 = wam7_held(WAM7_C(-2.23728) * t615);
+    const wam7_real_t t617 = t183 * t601 + t184 * t603;
+    const wam7_real_t t618 = wam7_held(WAM7_C(-1.00031) * t617);
+    const wam7_real_t t619 = t612 + t614 * t581 + t616 * t587 + t618 * t596;
+    ddq_by_q[13] = t619;
+    const wam7_real_t t620 = wam7_held(WAM7_C(19.194) * t574);
+    const wam7_real_t t621 = wam7_held(WAM7_C(12.910250000000001) * (t157 + t194 * t574 + t158 * t608));
+    const wam7_real_t t622 = t92 * t157 + t194 * t578 + t158 * t610;
+    const wam7_real_t t623 = wam7_held(WAM7_C(8.226) * t622);
+    const wam7_real_t t624 = t620 * t567 - t609 * t570 + t621 * t573 - t623 * t576;
+    const wam7_real_t t625 = t157 * t582 + t194 * t585 + t158 * t613;
+    const wam7_real_t t626 = wam7_held(WAM7_C(2.23728) * t625);
+    const wam7_real_t t627 = t157 * t589 + t194 * t592 + t158 * t615;
+    const wam7_real_t t628 = wam7_held(WAM7_C(2.23728) * t627);
+    const wam7_real_t t629 = t157 * t599 + t194 * t603 + t158 * t617;
+    const wam7_real_t t630 = wam7_held(WAM7_C(1.00031) * t629);
+    const wam7_real_t t631 = t624 + t626 * t581 + t628 * t587 + t630 * t596;
+    ddq_by_q[20] = t631;
+    const wam7_real_t t632 = wam7_held(WAM7_C(19.194) * t578);
+    const wam7_real_t t633 = wam7_held(WAM7_C(-12.910250000000001) * t610);
+    const wam7_real_t t634 = wam7_held(WAM7_C(12.910250000000001) * t622);
+    const wam7_real_t t635 = t91 + t193 * t578 - t148 * t610 + t92 * t622;
+    const wam7_real_t t636 = wam7_held(WAM7_C(8.226) * t635);
+    const wam7_real_t t637 = t632 * t567 - t633 * t570 + t634 * t573 - t636 * t576;
+    const wam7_real_t t638 = t53 * t91 + t193 * t585 - t148 * t613 + t92 * t625;
+    const wam7_real_t t639 = wam7_held(WAM7_C(2.23728) * t638);
+    const wam7_real_t t640 = t148 * t615 - (t91 * t588 + t193 * t592) - t92 * t627;
+    const wam7_real_t t641 = wam7_held(WAM7_C(-2.23728) * t640);
+    const wam7_real_t t642 = t148 * t617 - (t91 * t598 + t193 * t603) - t92 * t629;
+    const wam7_real_t t643 = wam7_held(WAM7_C(-1.00031) * t642);
+    const wam7_real_t t644 = t637 + t639 * t581 + t641 * t587 + t643 * t596;
+    ddq_by_q[27] = t644;
+    const wam7_real_t t645 = wam7_held(WAM7_C(19.194) * t585);
+    const wam7_real_t t646 = wam7_held(WAM7_C(-12.910250000000001) * t613);
+    const wam7_real_t t647 = wam7_held(WAM7_C(12.910250000000001) * t625);
+    const wam7_real_t t648 = wam7_held(WAM7_C(8.226) * t638);
+    const wam7_real_t t649 = t645 * t567 - t646 * t570 + t647 * t573 - t648 * t576;
+    const wam7_real_t t650 = t52 + t191 * t585 + t142 * t613 + t106 * t625;
+    const wam7_real_t t651 = wam7_held(WAM7_C(2.23728) * (t650 + t53 * t638));
+    const wam7_real_t t652 = t20 * t52 + t191 * t592 + t142 * t615 + t106 * t627;
+    const wam7_real_t t653 = t652 - t53 * t640;
+    const wam7_real_t t654 = wam7_held(WAM7_C(2.23728) * t653);
+    const wam7_real_t t655 = t191 * t603 - t52 * t597 + t142 * t617 + t106 * t629;
+    const wam7_real_t t656 = t655 - t53 * t642;
+    const wam7_real_t t657 = wam7_held(WAM7_C(1.00031) * t656);
+    const wam7_real_t t658 = t649 + t651 * t581 + t654 * t587 + t657 * t596;
+    ddq_by_q[34] = t658;
+    const wam7_real_t t659 = wam7_held(WAM7_C(19.194) * t592);
+    const wam7_real_t t660 = wam7_held(WAM7_C(-12.910250000000001) * t615);
+    const wam7_real_t t661 = wam7_held(WAM7_C(12.910250000000001) * t627);
+    const wam7_real_t t662 = wam7_held(WAM7_C(-8.226) * t640);
+    const wam7_real_t t663 = t659 * t567 - t660 * t570 + t661 * t573 - t662 * t576;
+    const wam7_real_t t664 = t19 + t190 * t592 + t134 * t615 + t105 * t627;
+    const wam7_real_t t665 = wam7_held(WAM7_C(2.23728) * (t664 - t54 * t640 + t20 * t653));
+    const wam7_real_t t666 = t190 * t603 - t5 * t19 + t134 * t617 + t105 * t629;
+    const wam7_real_t t667 = t666 - t54 * t642 + t20 * t656;
+    const wam7_real_t t668 = wam7_held(WAM7_C(1.00031) * t667);
+    const wam7_real_t t669 = t663 + t654 * t581 + t665 * t587 + t668 * t596;
+    ddq_by_q[41] = t669;
+    const wam7_real_t t670 = wam7_held(WAM7_C(19.194) * t603);
+    const wam7_real_t t671 = wam7_held(WAM7_C(-12.910250000000001) * t617);
+    const wam7_real_t t672 = wam7_held(WAM7_C(12.910250000000001) * t629);
+    const wam7_real_t t673 = wam7_held(WAM7_C(-8.226) * t642);
+    const wam7_real_t t674 = t670 * t567 - t671 * t570 + t672 * t573 - t673 * t576;
+    const wam7_real_t t675 = wam7_held(WAM7_C(2.23728) * t656);
+    const wam7_real_t t676 = wam7_held(WAM7_C(2.23728) * t667);
+    const wam7_real_t t677 = t4 + t189 * t603 + t126 * t617 - t104 * t629;
+    const wam7_real_t t678 = t677 - t55 * t642 - t27 * t656 - t5 * t667;
+    const wam7_real_t t679 = wam7_held(WAM7_C(1.00031) * t678);
+    const wam7_real_t t680 = t674 + t675 * t581 + t676 * t587 + t679 * t596;
+    ddq_by_q[48] = t680;
+    const wam7_real_t t681 = t516 - parameters[ZZ7];
+    const wam7_real_t t682 = t253 * t681 - parameters[YZ7R] * t254;
+    const wam7_real_t t683 = WAM7_C(2.0) * t682 - (parameters[XX7R] * t515 + parameters[XY7] * t518);
+    const wam7_real_t t684 = parameters[XZ7R] * t254 + t259 * t681;
+    const wam7_real_t t685 = WAM7_C(2.0) * t684 - parameters[XY7] * t515;
+    const wam7_real_t t686 = t1 * t685 - t2 * t683;
+    const wam7_real_t t687 = t512 + t527;
+    const wam7_real_t t688 = WAM7_C(2.0) * t687;
+    const wam7_real_t t689 = t688 - (parameters[XZ7R] * t515 + parameters[YZ7R] * t518);
+    const wam7_real_t t690 = t14 * t686 - t12 * t689;
+    const wam7_real_t t691 = t1 * t683 + t2 * t685;
+    const wam7_real_t t692 = parameters[MY7] * t515 - parameters[MX7] * t518;
+    const wam7_real_t t693 = WAM7_C(-2.0) * t549;
+    const wam7_real_t t694 = WAM7_C(-2.0) * t550;
+    const wam7_real_t t695 = t2 * t693 - t1 * t694;
+    const wam7_real_t t696 = t14 * t695 - t12 * t692;
+    const wam7_real_t t697 = t1 * t693 + t2 * t694;
+    const wam7_real_t t698 = t30 * t696 + t32 * t697;
+    const wam7_real_t t699 = t32 * t690 + t30 * t691 + WAM7_C(0.3) * t698;
+    const wam7_real_t t700 = t12 * t686 + t14 * t689;
+    const wam7_real_t t701 = WAM7_C(0.045) * t698;
+    const wam7_real_t t702 = t701 - t700;
+    const wam7_real_t t703 = t70 * t699 + t68 * t702;
+    const wam7_real_t t704 = t12 * t695 + t14 * t692;
+    const wam7_real_t t705 = t30 * t697 - t32 * t696;
+    const wam7_real_t t706 = t30 * t690 - t32 * t691 + (WAM7_C(0.045) * t704 + WAM7_C(0.3) * t705);
+    const wam7_real_t t707 = WAM7_C(0.045) * (t70 * t704 - t68 * t705) - t706;
+    const wam7_real_t t708 = t70 * t705 + t68 * t704;
+    const wam7_real_t t709 = t114 * t703 - t111 * t707 + WAM7_C(0.55) * (t111 * t708 + t114 * t698);
+    const wam7_real_t t710 = WAM7_C(0.07745783389167521) * t709;
+    const wam7_real_t t711 = t111 * t703 + t114 * t707 + WAM7_C(0.55) * (t111 * t698 - t114 * t708);
+    const wam7_real_t t712 = t701 + (t68 * t699 - t70 * t702);
+    const wam7_real_t t713 = WAM7_C(0.05209961446285298) * (t161 * t711 + t163 * t712);
+    const wam7_real_t t714 = WAM7_C(0.07745783389167521) * t712;
+    const wam7_real_t t715 = WAM7_C(0.12156576707999026) * t706;
+    const wam7_real_t t716 = t713 * t568 - t710 * t572 + t714 * t575 - t715 * t579;
+    const wam7_real_t t717 = WAM7_C(0.4469713223199599) * t700;
+    const wam7_real_t t718 = WAM7_C(0.4469713223199599) * t691;
+    const wam7_real_t t719 = WAM7_C(-222.83582089552237) * parameters[FV7];
+    const wam7_real_t t720 = t716 + t717 * t586 + t718 * t593 + t719 * t604;
+    ddq_by_dq[6] = t720;
+    const wam7_real_t t721 = t713 * t606 - t710 * t607 + t714 * t609 - t715 * t611;
+    const wam7_real_t t722 = t721 + t717 * t614 + t718 * t616 + t719 * t618;
+    ddq_by_dq[13] = t722;
+    const wam7_real_t t723 = t713 * t620 - t710 * t609 + t714 * t621 - t715 * t623;
+    const wam7_real_t t724 = t723 + t717 * t626 + t718 * t628 + t719 * t630;
+    ddq_by_dq[20] = t724;
+    const wam7_real_t t725 = t713 * t632 - t710 * t633 + t714 * t634 - t715 * t636;
+    const wam7_real_t t726 = t725 + t717 * t639 + t718 * t641 + t719 * t643;
+    ddq_by_dq[27] = t726;
+    const wam7_real_t t727 = t713 * t645 - t710 * t646 + t714 * t647 - t715 * t648;
+    const wam7_real_t t728 = t727 + t717 * t651 + t718 * t654 + t719 * t657;
+    ddq_by_dq[34] = t728;
+    const wam7_real_t t729 = t713 * t659 - t710 * t660 + t714 * t661 - t715 * t662;
+    const wam7_real_t t730 = t729 + t717 * t654 + t718 * t665 + t719 * t668;
+    ddq_by_dq[41] = t730;
+    const wam7_real_t t731 = t713 * t670 - t710 * t671 + t714 * t672 - t715 * t673;
+    const wam7_real_t t732 = t731 + t717 * t675 + t718 * t676 + t719 * t679;
+    ddq_by_dq[48] = t732;
+    ddq_by_input[6] = t604;
+    ddq_by_input[13] = t618;
+    ddq_by_input[20] = t630;
+    ddq_by_input[27] = t643;
+    ddq_by_input[34] = t657;
+    ddq_by_input[41] = t668;
+    ddq_by_input[48] = t679;
+    const wam7_real_t t733 = t323 + parameters[ZZ7] * t489 + parameters[YZ7R] * t510
+        + parameters[XZ7R] * t484;
+    const wam7_real_t t734 = t329 + (t327 - parameters[XY6] * t483 - parameters[YZ6] * t473)
+        + parameters[MX6] * t536;
+    const wam7_real_t t735 = t734 + (t325 + t733 + (parameters[MX7] * t538 - parameters[MY7] * t537));
+    const wam7_real_t t736 = t328 + t316; /* link j7: motion */
+    const wam7_real_t t737 = t2 * (t514 + t528) + t1 * (t526 - t517); /* link j7: inertia, momentum beyond */
+    const wam7_real_t t738 = t2 * t737;
+    const wam7_real_t t739 = parameters[XZ6] * t241;
+    const wam7_real_t t740 = parameters[XY6] * t242;
+    const wam7_real_t t741 = t739 - t740 + (t738 - t528);
+    const wam7_real_t t742 = WAM7_C(2.0) * t241; /* link j6: derivatives */
+    const wam7_real_t t743 = WAM7_C(-0.5) * (parameters[XX6R] + parameters[ZZ6R]);
     /* link j7: inertia, momentum beyond */
-    const wam7_real_t t495 = parameters[XY6] * t250 + t242 * t475 - (t489 - t462);
-    const wam7_real_t t496 = t1 * t478 + t2 * t479 - (parameters[XY6] * t242 + t250 * t474);
-    const wam7_real_t t497 = parameters[XX5R] + t493;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t498 = parameters[XZ5] * t222 + t237 * t497 - (t15 * t495 + t13 * t496);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t499 = t34 * (t485 - t488) - t32 * (t494 + t498);
-    const wam7_real_t t500 = t34 * t499;
-    const wam7_real_t t501 = parameters[MY7] * t260 + parameters[MX7] * t254;
-    const wam7_real_t t502 = parameters[MX6] * t243 + t501; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t503 = parameters[MY7] * t255;
-    const wam7_real_t t504 = parameters[MX7] * t255;
-    const wam7_real_t t505 = parameters[MY6R] * t243 - (t2 * t503 + t1 * t504);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t506 = parameters[MY5R] * t237 + (t15 * t505 + t13 * t502);
+    const wam7_real_t t744 = t242 * t743 - parameters[YZ6] * t241 + (t1 * t684 - t2 * t682);
+    const wam7_real_t t745 = WAM7_C(2.0) * t249; /* link j6: derivatives */
+    const wam7_real_t t746 = t741 * t742 - t744 * t745 + (t11 * t736 + (t22 * t481 - t21 * t487));
+    const wam7_real_t t747 = t735 + (t746 + t33 * t535);
+    const wam7_real_t t748 = t488 - t263;
+    const wam7_real_t t749 = t250 - t472;
+    const wam7_real_t t750 = parameters[XX6R] * t482 - t312 + parameters[XY6] * t748 + parameters[XZ6] * t749;
+    const wam7_real_t t751 = t750 - t318 - parameters[MY6R] * t536 + (t2 * t524 - t1 * t509);
+    const wam7_real_t t752 = parameters[ZZ7] * t481;
+    const wam7_real_t t753 = parameters[XX6R] + t743;
     /* link j7: inertia, momentum beyond */
-    const wam7_real_t t507 = t1 * t503 - t2 * t504 - (parameters[MY6R] * t250 + parameters[MX6] * t242);
-    const wam7_real_t t508 = parameters[MX5] * t237 + t507; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t509 = t34 * t506 + t32 * t508; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t510 = WAM7_C(0.045) * t509;
-    const wam7_real_t t511 = WAM7_C(0.3) * t219; /* link j5: velocity of its origin */
-    const wam7_real_t t512 = t62 * t511; /* link j5: inertia, momentum beyond */
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t513 = t13 * t505 - t15 * t502 - (parameters[MY5R] * t222 + parameters[MX5] * t223);
-    const wam7_real_t t514 = WAM7_C(0.3) * t513; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t515 = WAM7_C(-0.045) * t219; /* link j5: velocity of its origin */
-    const wam7_real_t t516 = t49 * t515; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t517 = WAM7_C(0.3) * t218 + WAM7_C(-0.045) * t229; /* link j5: velocity of its origin */
-    const wam7_real_t t518 = t41 * t517; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t519 = t510 + t514 + (t516 - t512 - t518);
-    const wam7_real_t t520 = parameters[XZ4] * t229;
-    const wam7_real_t t521 = parameters[XY4R] * t219;
-    const wam7_real_t t522 = t519 + (t488 + t500 + (t512 - t510)) - (t520 + t521);
-    const wam7_real_t t523 = t483 + t487 + (t482 - t468); /* link j6: inertia, momentum beyond */
-    const wam7_real_t t524 = parameters[YZ4] * t218;
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t525 = t521 + t524 + (t519 - (t523 + (t514 + t516)));
-    const wam7_real_t t526 = t13 * t481; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t527 = parameters[XY5] * t222 + t223 * t497 + (t476 + t526);
-    const wam7_real_t t528 = parameters[XY5] * t223 + t222 * t493 + (t13 * t491 + t15 * t492);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t529 = t34 * t527 - t32 * t528 + (WAM7_C(-0.045) * t513 + t62 * t515);
-    const wam7_real_t t530 = WAM7_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    const wam7_real_t t531 = parameters[XX4R] + t530;
-    const wam7_real_t t532 = parameters[XZ4] * t218 + t219 * t531 + t529;
-    const wam7_real_t t533 = parameters[ZZ5R] + t493;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t534 = t223 * t533 - parameters[YZ5] * t237 + (t480 - t526);
-    const wam7_real_t t535 = t15 * t496 - t13 * t495 - (parameters[XZ5] * t237 + t222 * t533);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t536 = t34 * t534 + t32 * t535 + (WAM7_C(0.3) * t509 + t49 * t511);
-    const wam7_real_t t537 = parameters[YZ4] * t229 + t219 * t530 + t536;
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t538 = t73 * (t522 - t525) + t71 * (t537 - t532);
-    const wam7_real_t t539 = t73 * t538;
-    const wam7_real_t t540 = parameters[MY4R] * t219 + t509; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t541 = t513 - parameters[MX4R] * t219;
-    const wam7_real_t t542 = t73 * t540 - t71 * t541; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t543 = WAM7_C(0.045) * t542;
-    const wam7_real_t t544 = WAM7_C(-0.045) * t213; /* link j4: velocity of its origin */
-    const wam7_real_t t545 = t41 * t544; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t546 = WAM7_C(0.045) * t204; /* link j4: velocity of its origin */
-    const wam7_real_t t547 = t121 * t546; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t548 = t543 - (t545 + t547);
-    const wam7_real_t t549 = parameters[XZ3] * t204;
-    const wam7_real_t t550 = parameters[XY3R] * t213;
-    const wam7_real_t t551 = t549 - t550 + (t525 + t539 + t543 - t548);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t552 = t520 - t524 + (t519 + (t485 - t500 + t518));
-    const wam7_real_t t553 = parameters[YZ3] * t203;
-    const wam7_real_t t554 = t550 + t553 - (t548 + (t545 - t552)); /* link j4: inertia, momentum beyond */
-    const wam7_real_t t555 = t32 * t499; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t556 = parameters[ZZ4R] + t530;
-    const wam7_real_t t557 = t494 + t555 + t41 * t511 - (parameters[YZ4] * t219 + t229 * t556);
-    const wam7_real_t t558 = parameters[XZ4] * t219 + t218 * t556 + (t32 * t527 + t34 * t528 + t41 * t515);
-    const wam7_real_t t559 = WAM7_C(-0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t560 = parameters[YZ3] * t204 - t213 * t559 + (t73 * t557 - t71 * t558);
-    const wam7_real_t t561 = t34 * t508 - t32 * t506; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t562 = t229 * t531 - parameters[XY4R] * t218 + (t498 + t555 + (WAM7_C(0.045) * t561
-        + t62 * t517));
-    const wam7_real_t t563 = t34 * t535 - t32 * t534 - (WAM7_C(-0.3) * t561 + t49 * t517);
-    const wam7_real_t t564 = t218 * t530 - parameters[XY4R] * t229 - t563;
-    const wam7_real_t t565 = parameters[MX4R] * t229 - parameters[MY4R] * t218 + t561;
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t566 = t73 * t562 + t71 * t564 + (WAM7_C(-0.045) * t565 + t103 * t544);
-    const wam7_real_t t567 = parameters[XX3R] + t559;
-    const wam7_real_t t568 = parameters[XZ3] * t203 + t213 * t567 + t566;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t569 = t115 * (t554 - t551) + t118 * (t560 + t568);
-    const wam7_real_t t570 = t118 * t569;
-    const wam7_real_t t571 = WAM7_C(-0.55) * t202; /* link j3: velocity of its origin */
-    const wam7_real_t t572 = WAM7_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const wam7_real_t t573 = t572 - parameters[XX2R];
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t574 = parameters[XY2] * t202 + t208 * t573 + (t570 - t568 - t183 * t571);
-    const wam7_real_t t575 = WAM7_C(2.0) * t574; /* link j2: derivatives */
-    const wam7_real_t t576 = t71 * t538; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t577 = parameters[ZZ3R] + t559;
-    const wam7_real_t t578 = t204 * t577 - parameters[YZ3] * t213 + (t537 - t576);
-    const wam7_real_t t579 = t71 * t562 - t73 * t564 + t121 * t544 - (parameters[XZ3] * t213 + t203 * t577);
-    const wam7_real_t t580 = parameters[MY3R] * t213 + t542;
-    const wam7_real_t t581 = parameters[MX3R] * t213 + t565;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t582 = WAM7_C(0.55) * (t118 * t580 - t115 * t581) - t121 * t571;
-    const wam7_real_t t583 = parameters[XY2] * t208 + t202 * t572 + (t115 * t579 - t118 * t578 - t582);
-    const wam7_real_t t584 = WAM7_C(2.0) * t583; /* link j2: derivatives */
-    const wam7_real_t t585 = WAM7_C(0.07745783389167521) * (t166 * t575 - t168 * t584);
-    const wam7_real_t t586 = wam7_bounded(WAM7_C(19.194) * t442);
-    const wam7_real_t t587 = t115 * t569; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t588 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
-    const wam7_real_t t589 = t183 * t588; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t590 = t71 * t540 + t73 * t541; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t591 = t590 - (parameters[MY3R] * t203 + parameters[MX3R] * t204);
-    const wam7_real_t t592 = WAM7_C(-0.55) * t591; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t593 = t157 * t571;
-    const wam7_real_t t594 = t592 - (t589 + t593);
-    const wam7_real_t t595 = parameters[XZ2] * t208;
-    const wam7_real_t t596 = parameters[XY2] * dq[1];
-    const wam7_real_t t597 = t595 + t596 + (t594 + (t587 - t554 + t589));
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t598 = t549 + t553 + (t548 + (t539 - t522 + t547));
-    const wam7_real_t t599 = parameters[YZ2] * t202;
-    const wam7_real_t t600 = t594 + (t598 - t592) - (t596 + t599); /* link j3: inertia, momentum beyond */
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t601 = parameters[XY3R] * t203 + t204 * t567 + (t532 + t576 + (WAM7_C(0.045) * t590
-        - t103 * t546));
-    const wam7_real_t t602 = parameters[XY3R] * t204 + t203 * t559 + (t71 * t557 + t73 * t558 + t41 * t546);
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t603 = dq[1] * t573 - parameters[XZ2] * t202 + (t118 * t602 - t115 * t601);
-    const wam7_real_t t604 = WAM7_C(0.55) * (t115 * t580 + t118 * t581) + t121 * t588;
-    const wam7_real_t t605 = parameters[YZ2] * t208 - dq[1] * t572 + (t115 * t578 + t118 * t579 + t604);
-    /* link j2: inertia, momentum beyond */
-    const wam7_real_t t606 = t168 * (t168 * (t600 - t597) + t166 * (t605 + t603));
-    const wam7_real_t t607 = WAM7_C(-91.90371991247264) * parameters[FV1]
-        + WAM7_C(0.10419922892570596) * (t597 + t606);
-    const wam7_real_t t608 = t442 * (t199 + t162 * t189);
-    const wam7_real_t t609 = wam7_bounded(WAM7_C(12.910250000000001) * t608);
-    const wam7_real_t t610 = WAM7_C(2.0) * t601; /* link j3: derivatives */
-    const wam7_real_t t611 = WAM7_C(2.0) * t602;
-    const wam7_real_t t612 = t118 * t611 - t115 * t610;
-    const wam7_real_t t613 = WAM7_C(2.0) * t598;
-    const wam7_real_t t614 = WAM7_C(1.1) * t202; /* link j7: derivatives */
-    const wam7_real_t t615 = WAM7_C(1.1) * dq[1];
-    const wam7_real_t t616 = t613 - (t183 * t615 - t157 * t614); /* link j3: derivatives */
-    const wam7_real_t t617 = WAM7_C(0.07745783389167521) * (t166 * t612 + t168 * t616);
-    const wam7_real_t t618 = t152 - t95 * t162;
-    const wam7_real_t t619 = t442 * (t198 + t95 * t199 - t189 * t618);
-    const wam7_real_t t620 = wam7_bounded(WAM7_C(8.226) * t619);
-    const wam7_real_t t621 = WAM7_C(2.0) * t562; /* link j4: derivatives */
-    const wam7_real_t t622 = WAM7_C(2.0) * t564;
-    const wam7_real_t t623 = WAM7_C(-0.09) * t213; /* link j7: derivatives */
-    const wam7_real_t t624 = t73 * t621 + t71 * t622 + t103 * t623; /* link j4: derivatives */
-    const wam7_real_t t625 = WAM7_C(2.0) * t552;
-    const wam7_real_t t626 = WAM7_C(0.09) * t204; /* link j7: derivatives */
-    const wam7_real_t t627 = t625 + t121 * t626; /* link j4: derivatives */
-    const wam7_real_t t628 = t118 * t627 - t115 * t624 + t103 * t614;
-    const wam7_real_t t629 = t73 * t622 - t71 * t621 - t121 * t623;
-    const wam7_real_t t630 = t629 + (t149 * t614 - t179 * t615);
-    const wam7_real_t t631 = WAM7_C(0.12156576707999026) * (t166 * t628 + t168 * t630);
-    const wam7_real_t t632 = t607 * t586 - t585 * t454 + t617 * t609 - t631 * t620;
-    const wam7_real_t t633 = t109 + t55 * t95;
-    const wam7_real_t t634 = t146 - t55 * t152 + t162 * t633;
-    const wam7_real_t t635 = t196 + t55 * t198 + t199 * t633 + t189 * t634;
-    const wam7_real_t t636 = t442 * t635;
-    const wam7_real_t t637 = wam7_bounded(WAM7_C(2.23728) * t636);
-    const wam7_real_t t638 = WAM7_C(2.0) * t527; /* link j5: derivatives */
-    const wam7_real_t t639 = WAM7_C(2.0) * t528;
-    const wam7_real_t t640 = WAM7_C(0.09) * t219; /* link j7: derivatives */
-    const wam7_real_t t641 = t34 * t638 - t32 * t639 - t62 * t640; /* link j5: derivatives */
-    const wam7_real_t t642 = WAM7_C(2.0) * t523;
-    const wam7_real_t t643 = WAM7_C(-2.0) * t517; /* link j7: derivatives */
-    const wam7_real_t t644 = WAM7_C(0.6) * t219;
-    const wam7_real_t t645 = t642 + (t62 * t644 - t41 * t643); /* link j5: derivatives */
-    const wam7_real_t t646 = t73 * t641 + t71 * t645 + (t62 * t626 - t140 * t623);
-    const wam7_real_t t647 = t32 * t638 + t34 * t639 - t41 * t640;
-    const wam7_real_t t648 = t647 + t142 * t626;
-    const wam7_real_t t649 = t118 * t648 - t115 * t646 - t140 * t614;
-    const wam7_real_t t650 = t73 * t645 - t71 * t641 - t142 * t623;
-    const wam7_real_t t651 = t650 + (t143 * t614 + t176 * t615);
-    const wam7_real_t t652 = WAM7_C(0.4469713223199599) * (t166 * t649 + t168 * t651);
-    const wam7_real_t t653 = t56 + t21 * t55;
-    const wam7_real_t t654 = t108 + t21 * t109 + t95 * t653;
-    const wam7_real_t t655 = t138 + t21 * t146 - t152 * t653 + t162 * t654;
-    const wam7_real_t t656 = t195 + t21 * t196 + t198 * t653 + t199 * t654;
-    const wam7_real_t t657 = t442 * (t656 + t189 * t655);
-    const wam7_real_t t658 = wam7_bounded(WAM7_C(2.23728) * t657);
-    const wam7_real_t t659 = WAM7_C(2.0) * t495; /* link j6: derivatives */
-    const wam7_real_t t660 = WAM7_C(2.0) * t496;
-    const wam7_real_t t661 = t15 * t659 + t13 * t660;
-    const wam7_real_t t662 = WAM7_C(2.0) * t486;
-    const wam7_real_t t663 = t34 * t661 - t32 * t662 + (t39 * t643 - t80 * t640);
-    const wam7_real_t t664 = t15 * t660 - t13 * t659;
-    const wam7_real_t t665 = t664 + (t50 * t643 + t80 * t644);
-    const wam7_real_t t666 = t73 * t663 + t71 * t665 + (t132 * t623 + t80 * t626);
-    const wam7_real_t t667 = t32 * t661 + t34 * t662 + (t39 * t644 + t50 * t640);
-    const wam7_real_t t668 = t667 + t134 * t626;
-    const wam7_real_t t669 = t118 * t668 - t115 * t666 + t132 * t614;
-    const wam7_real_t t670 = t73 * t665 - t71 * t663 - t134 * t623;
-    const wam7_real_t t671 = t670 + (t135 * t614 + t172 * t615);
-    const wam7_real_t t672 = WAM7_C(0.4469713223199599) * (t166 * t669 + t168 * t671);
-    const wam7_real_t t673 = t28 + t5 * t21;
-    const wam7_real_t t674 = t57 - t5 * t56 - t55 * t673;
-    const wam7_real_t t675 = t95 * t674 - (t107 + t5 * t108 + t109 * t673);
-    const wam7_real_t t676 = t130 - t5 * t138 - t146 * t673 - t152 * t674;
-    const wam7_real_t t677 = t676 + t162 * t675;
-    const wam7_real_t t678 = t194 - t5 * t195 - t196 * t673 + t198 * t674;
-    const wam7_real_t t679 = t442 * (t678 + t199 * t675 + t189 * t677);
-    const wam7_real_t t680 = WAM7_C(1.00031) * t679;
-    const wam7_real_t t681 = WAM7_C(2.0) * t472; /* link j7: derivatives */
-    const wam7_real_t t682 = WAM7_C(2.0) * t473;
-    const wam7_real_t t683 = t2 * t681 - t1 * t682;
-    const wam7_real_t t684 = WAM7_C(2.0) * t469;
-    const wam7_real_t t685 = t15 * t683 + t13 * t684;
-    const wam7_real_t t686 = t1 * t681 + t2 * t682;
-    const wam7_real_t t687 = t34 * t685 - t32 * t686 + (t46 * t643 - t75 * t640);
-    const wam7_real_t t688 = t15 * t684 - t13 * t683;
-    const wam7_real_t t689 = t688 + (t45 * t643 + t75 * t644);
-    const wam7_real_t t690 = t73 * t687 + t71 * t689 + (t125 * t623 + t75 * t626);
-    const wam7_real_t t691 = t32 * t685 + t34 * t686 + (t46 * t644 + t45 * t640);
-    const wam7_real_t t692 = t691 + t127 * t626;
-    const wam7_real_t t693 = t118 * t692 - t115 * t690 + t125 * t614;
-    const wam7_real_t t694 = t73 * t689 - t71 * t687 - t127 * t623;
-    const wam7_real_t t695 = t694 + (t128 * t614 + t169 * t615);
-    const wam7_real_t t696 = WAM7_C(0.9996900960702182) * (t166 * t693 + t168 * t695);
-    const wam7_real_t t697 = t632 + t652 * t637 + t672 * t658 + t696 * t680;
-    ddq_by_dq[0] = t697;
-    const wam7_real_t t698 = wam7_bounded(WAM7_C(-19.194) * t453);
-    const wam7_real_t t699 = wam7_bounded(WAM7_C(12.910250000000001) * (t188 + t189 * t453));
-    const wam7_real_t t700 = t162 * t188 + t189 * t608;
-    const wam7_real_t t701 = wam7_bounded(WAM7_C(-12.910250000000001) * t700);
-    const wam7_real_t t702 = t189 * t619 - t188 * t618;
-    const wam7_real_t t703 = wam7_bounded(WAM7_C(-8.226) * t702);
-    const wam7_real_t t704 = t607 * t698 - t585 * t699 + t617 * t701 - t631 * t703;
-    const wam7_real_t t705 = t188 * t634 + t189 * t636;
-    const wam7_real_t t706 = wam7_bounded(WAM7_C(-2.23728) * t705);
-    const wam7_real_t t707 = t188 * t655 + t189 * t657;
-    const wam7_real_t t708 = wam7_bounded(WAM7_C(-2.23728) * t707);
-    const wam7_real_t t709 = t188 * t677 + t189 * t679;
-    const wam7_real_t t710 = WAM7_C(-1.00031) * t709;
-    const wam7_real_t t711 = t704 + t652 * t706 + t672 * t708 + t696 * t710;
-    ddq_by_dq[7] = t711;
-    const wam7_real_t t712 = wam7_bounded(WAM7_C(19.194) * t608);
-    const wam7_real_t t713 = wam7_bounded(WAM7_C(12.910250000000001) * (t161 + t199 * t608 + t162 * t700));
-    const wam7_real_t t714 = t95 * t161 + t199 * t619 + t162 * t702;
-    const wam7_real_t t715 = wam7_bounded(WAM7_C(8.226) * t714);
-    const wam7_real_t t716 = t607 * t712 - t585 * t701 + t617 * t713 - t631 * t715;
-    const wam7_real_t t717 = t161 * t633 + t199 * t636 + t162 * t705;
-    const wam7_real_t t718 = wam7_bounded(WAM7_C(2.23728) * t717);
-    const wam7_real_t t719 = t161 * t654 + t199 * t657 + t162 * t707;
-    const wam7_real_t t720 = wam7_bounded(WAM7_C(2.23728) * t719);
-    const wam7_real_t t721 = t161 * t675 + t199 * t679 + t162 * t709;
-    const wam7_real_t t722 = WAM7_C(1.00031) * t721;
-    const wam7_real_t t723 = t716 + t652 * t718 + t672 * t720 + t696 * t722;
-    ddq_by_dq[14] = t723;
-    const wam7_real_t t724 = wam7_bounded(WAM7_C(19.194) * t619);
-    const wam7_real_t t725 = wam7_bounded(WAM7_C(-12.910250000000001) * t702);
-    const wam7_real_t t726 = wam7_bounded(WAM7_C(12.910250000000001) * t714);
-    const wam7_real_t t727 = t94 + t198 * t619 - t152 * t702 + t95 * t714;
-    const wam7_real_t t728 = wam7_bounded(WAM7_C(8.226) * t727);
-    const wam7_real_t t729 = t607 * t724 - t585 * t725 + t617 * t726 - t631 * t728;
-    const wam7_real_t t730 = t55 * t94 + t198 * t636 - t152 * t705 + t95 * t717;
-    const wam7_real_t t731 = wam7_bounded(WAM7_C(2.23728) * t730);
-    const wam7_real_t t732 = t152 * t707 - (t94 * t653 + t198 * t657) - t95 * t719;
-    const wam7_real_t t733 = wam7_bounded(WAM7_C(-2.23728) * t732);
-    const wam7_real_t t734 = t152 * t709 - (t94 * t674 + t198 * t679) - t95 * t721;
-    const wam7_real_t t735 = WAM7_C(-1.00031) * t734;
-    const wam7_real_t t736 = t729 + t652 * t731 + t672 * t733 + t696 * t735;
-    ddq_by_dq[21] = t736;
-    const wam7_real_t t737 = wam7_bounded(WAM7_C(19.194) * t636);
-    const wam7_real_t t738 = wam7_bounded(WAM7_C(-12.910250000000001) * t705);
-    const wam7_real_t t739 = wam7_bounded(WAM7_C(12.910250000000001) * t717);
-    const wam7_real_t t740 = wam7_bounded(WAM7_C(8.226) * t730);
-    const wam7_real_t t741 = t607 * t737 - t585 * t738 + t617 * t739 - t631 * t740;
-    const wam7_real_t t742 = t54 + t196 * t636 + t146 * t705 + t109 * t717;
-    const wam7_real_t t743 = wam7_bounded(WAM7_C(2.23728) * (t742 + t55 * t730));
-    const wam7_real_t t744 = t21 * t54 + t196 * t657 + t146 * t707 + t109 * t719;
-    const wam7_real_t t745 = t744 - t55 * t732;
-    const wam7_real_t t746 = wam7_bounded(WAM7_C(2.23728) * t745);
-    const wam7_real_t t747 = t196 * t679 - t54 * t673 + t146 * t709 + t109 * t721;
-    const wam7_real_t t748 = t747 - t55 * t734;
-    const wam7_real_t t749 = WAM7_C(1.00031) * t748;
-    const wam7_real_t t750 = t741 + t652 * t743 + t672 * t746 + t696 * t749;
-    ddq_by_dq[28] = t750;
-    const wam7_real_t t751 = wam7_bounded(WAM7_C(19.194) * t657);
-    const wam7_real_t t752 = wam7_bounded(WAM7_C(-12.910250000000001) * t707);
-    const wam7_real_t t753 = wam7_bounded(WAM7_C(12.910250000000001) * t719);
-    const wam7_real_t t754 = wam7_bounded(WAM7_C(-8.226) * t732);
-    const wam7_real_t t755 = t607 * t751 - t585 * t752 + t617 * t753 - t631 * t754;
-    const wam7_real_t t756 = t20 + t195 * t657 + t138 * t707 + t108 * t719;
-    const wam7_real_t t757 = wam7_bounded(WAM7_C(2.23728) * (t756 - t56 * t732 + t21 * t745));
-    const wam7_real_t t758 = t195 * t679 - t5 * t20 + t138 * t709 + t108 * t721;
-    const wam7_real_t t759 = t758 - t56 * t734 + t21 * t748;
-    const wam7_real_t t760 = WAM7_C(1.00031) * t759;
-    const wam7_real_t t761 = t755 + t652 * t746 + t672 * t757 + t696 * t760;
-    ddq_by_dq[35] = t761;
-    const wam7_real_t t762 = wam7_bounded(WAM7_C(19.194) * t679);
-    const wam7_real_t t763 = wam7_bounded(WAM7_C(-12.910250000000001) * t709);
-    const wam7_real_t t764 = wam7_bounded(WAM7_C(12.910250000000001) * t721);
-    const wam7_real_t t765 = wam7_bounded(WAM7_C(-8.226) * t734);
-    const wam7_real_t t766 = t607 * t762 - t585 * t763 + t617 * t764 - t631 * t765;
-    const wam7_real_t t767 = wam7_bounded(WAM7_C(2.23728) * t748);
-    const wam7_real_t t768 = wam7_bounded(WAM7_C(2.23728) * t759);
-    const wam7_real_t t769 = t4 + t194 * t679 + t130 * t709 - t107 * t721;
-    const wam7_real_t t770 = t769 - t57 * t734 - t28 * t748 - t5 * t759;
-    const wam7_real_t t771 = WAM7_C(1.00031) * t770;
-    const wam7_real_t t772 = t766 + t652 * t767 + t672 * t768 + t696 * t771;
-    ddq_by_dq[42] = t772;
-    ddq_by_input[0] = t586;
-    ddq_by_input[7] = t698;
-    ddq_by_input[14] = t712;
-    ddq_by_input[21] = t724;
-    ddq_by_input[28] = t737;
-    ddq_by_input[35] = t751;
-    ddq_by_input[42] = t762;
-    const wam7_real_t t773 = t209 - t444;
-    const wam7_real_t t774 = t166 * t443;
-    const wam7_real_t t775 = t210 + t774;
-    const wam7_real_t t776 = t210 + t775;
-    const wam7_real_t t777 = t115 * t773 - t118 * t776;
-    const wam7_real_t t778 = t227 - t777;
-    const wam7_real_t t779 = t446 + t778;
-    const wam7_real_t t780 = t779 - t230;
-    const wam7_real_t t781 = t168 * t443;
-    const wam7_real_t t782 = t206 - t781;
-    const wam7_real_t t783 = t445 - t782;
-    const wam7_real_t t784 = t205 + t783;
-    const wam7_real_t t785 = t118 * t773 + t115 * t776;
-    const wam7_real_t t786 = t785 - t214;
-    const wam7_real_t t787 = t786 - t214;
-    const wam7_real_t t788 = t71 * t784 + t73 * t787;
-    const wam7_real_t t789 = t233 + t788;
-    const wam7_real_t t790 = t233 + t789;
-    const wam7_real_t t791 = t34 * t780 + t32 * t790;
-    const wam7_real_t t792 = t248 + t791;
-    const wam7_real_t t793 = t450 + t792;
-    const wam7_real_t t794 = t251 + t793;
-    const wam7_real_t t795 = t73 * t784 - t71 * t787;
-    const wam7_real_t t796 = t220 - t795;
-    const wam7_real_t t797 = t448 - t796;
-    const wam7_real_t t798 = t224 + t797;
-    const wam7_real_t t799 = t32 * t780 - t34 * t790;
-    const wam7_real_t t800 = t238 + t799;
-    const wam7_real_t t801 = t238 + t800;
-    const wam7_real_t t802 = t13 * t798 - t15 * t801;
-    const wam7_real_t t803 = t802 - t244;
-    const wam7_real_t t804 = t244 - t803;
-    const wam7_real_t t805 = t1 * t794 + t2 * t804;
-    const wam7_real_t t806 = t256 - t805;
-    const wam7_real_t t807 = t2 * t794 - t1 * t804;
-    const wam7_real_t t808 = t807 - t261 - t261;
-    const wam7_real_t t809 = t15 * t798 + t13 * t801;
-    const wam7_real_t t810 = t809 - t264;
-    const wam7_real_t t811 = t452 + t810;
-    const wam7_real_t t812 = t266 - t811;
-    const wam7_real_t t813 = t258 + parameters[XX7R] * t806 - parameters[XY7] * t808
-        + parameters[XZ7R] * t812;
-    const wam7_real_t t814 = t280 + WAM7_C(0.55) * t773;
-    const wam7_real_t t815 = WAM7_C(0.55) * t776;
-    const wam7_real_t t816 = t115 * t814 - t118 * t815;
-    const wam7_real_t t817 = t279 + t816;
-    const wam7_real_t t818 = t227 + t778;
-    const wam7_real_t t819 = t289 - WAM7_C(0.045) * t818;
-    const wam7_real_t t820 = t73 * t817 + t71 * t819;
-    const wam7_real_t t821 = t820 + (WAM7_C(-0.3) * t780 - t275);
-    const wam7_real_t t822 = t220 + t796;
-    const wam7_real_t t823 = t118 * t814 + t115 * t815;
-    const wam7_real_t t824 = t783 - t205;
-    const wam7_real_t t825 = t823 + WAM7_C(0.045) * t824;
-    const wam7_real_t t826 = t825 + (WAM7_C(0.045) * t822 - WAM7_C(-0.3) * t790);
-    const wam7_real_t t827 = t34 * t821 - t32 * t826;
-    const wam7_real_t t828 = t71 * t817 - t73 * t819;
-    const wam7_real_t t829 = t230 + t779;
-    const wam7_real_t t830 = t828 + (t302 + WAM7_C(-0.045) * t829);
-    const wam7_real_t t831 = t13 * t827 + t15 * t830;
-    const wam7_real_t t832 = t271 + t813 + parameters[MY7] * t831;
-    const wam7_real_t t833 = t256 + t806;
-    const wam7_real_t t834 = t266 + t811;
-    const wam7_real_t t835 = t311 + (parameters[XY7] * t833 - t308 - parameters[YZ7R] * t834)
-        - parameters[MX7] * t831;
-    const wam7_real_t t836 = t810 - t264;
-    const wam7_real_t t837 = t251 - t793;
-    const wam7_real_t t838 = parameters[XX6R] * t803 - t313 + parameters[XY6] * t836 + parameters[XZ6] * t837;
-    const wam7_real_t t839 = t32 * t821 + t34 * t826;
-    const wam7_real_t t840 = t838 - t319 - parameters[MY6R] * t839 + (t2 * t832 - t1 * t835);
-    const wam7_real_t t841 = t324 + parameters[ZZ7] * t811 + parameters[YZ7R] * t807
-        + parameters[XZ7R] * t805;
-    const wam7_real_t t842 = t13 * t830 - t15 * t827;
-    const wam7_real_t t843 = t2 * t839 - t1 * t842;
-    const wam7_real_t t844 = t2 * t842 + t1 * t839;
-    const wam7_real_t t845 = t330 + (t328 - parameters[XY6] * t804 - parameters[YZ6] * t794)
-        + parameters[MX6] * t839;
-    const wam7_real_t t846 = t845 + (t326 + t841 + (parameters[MX7] * t843 - parameters[MY7] * t844));
-    const wam7_real_t t847 = t248 + t792;
-    const wam7_real_t t848 = t224 - t797;
-    const wam7_real_t t849 = parameters[XZ5] * t848 - (t333 + parameters[XX5R] * t800
-        + parameters[XY5] * t847);
-    const wam7_real_t t850 = t339 + t849 + parameters[MY5R] * t830 + (t15 * t840 - t13 * t846);
-    const wam7_real_t t851 = parameters[YZ6] * t809 - (t341 + parameters[ZZ6R] * t793)
-        + parameters[XZ6] * t802;
-    const wam7_real_t t852 = t343 + t851 + (parameters[MY6R] * t842 - parameters[MX6] * t831) + (t1 * t832
-        + t2 * t835);
-    const wam7_real_t t853 = t347 + (t345 - parameters[XY5] * t801 - parameters[YZ5] * t798)
-        - parameters[MX5] * t830;
-    const wam7_real_t t854 = t853 + t852;
-    const wam7_real_t t855 = t350 + parameters[MY7] * t834;
-    const wam7_real_t t856 = t352 + parameters[MX7] * t812;
-    const wam7_real_t t857 = t354 + parameters[MY6R] * t794 + (t2 * t855 - t1 * t856);
-    const wam7_real_t t858 = parameters[MX7] * t808 + parameters[MY7] * t833 - (t356
-        + parameters[MX6] * t837);
-    const wam7_real_t t859 = t358 + parameters[MY5R] * t798 + (t15 * t857 + t13 * t858);
-    const wam7_real_t t860 = t1 * t855 + t2 * t856 - (parameters[MX6] * t836 + parameters[MY6R] * t804);
-    const wam7_real_t t861 = t361 + parameters[MX5] * t848 + t860;
-    const wam7_real_t t862 = t32 * t859 + t34 * t861;
-    const wam7_real_t t863 = parameters[XY4R] * t822 - (t364 + parameters[XX4R] * t789)
-        + parameters[XZ4] * t829;
-    const wam7_real_t t864 = t366 + t863 + parameters[MY4R] * t825 + (t32 * t854 - t34 * t850
-        + WAM7_C(0.3) * t862);
-    const wam7_real_t t865 = t368 + parameters[ZZ5R] * t797 + parameters[YZ5] * t791 + parameters[XZ5] * t799;
-    const wam7_real_t t866 = t370 + t865 + (parameters[MX5] * t839 + parameters[MY5R] * t827) + (t13 * t840
-        + t15 * t846);
-    const wam7_real_t t867 = t373 + (t372 + parameters[XY4R] * t790 - parameters[YZ4] * t780)
-        + parameters[MX4R] * t825;
-    const wam7_real_t t868 = t867 + (t866 + WAM7_C(0.045) * t862);
-    const wam7_real_t t869 = t376 - parameters[XX3R] * t786 + parameters[XY3R] * t818
-        + parameters[XZ3] * t824;
-    const wam7_real_t t870 = t379 + (t378 + t869) + (t73 * t864 + t71 * t868);
-    const wam7_real_t t871 = parameters[MX5] * t847 - parameters[MY5R] * t801 + (t15 * t858 - t13 * t857);
-    const wam7_real_t t872 = t34 * t859 - t32 * t861;
-    const wam7_real_t t873 = t32 * t850 + t34 * t854 + (WAM7_C(0.045) * t871 + WAM7_C(0.3) * t872);
-    const wam7_real_t t874 = t384 - parameters[ZZ4R] * t779 + parameters[YZ4] * t795 + parameters[XZ4] * t788;
-    const wam7_real_t t875 = t386 + t874 - (parameters[MX4R] * t828 + parameters[MY4R] * t820) + t873;
-    const wam7_real_t t876 = t388 + parameters[MY4R] * t780 + t872;
-    const wam7_real_t t877 = t390 - parameters[MX4R] * t829 - t871;
-    const wam7_real_t t878 = t395 + (t394 + (t392 + parameters[XY3R] * t787 - parameters[YZ3] * t784));
-    const wam7_real_t t879 = t878 + (t875 + WAM7_C(0.045) * (t71 * t876 + t73 * t877));
-    const wam7_real_t t880 = t398 + parameters[MY3R] * t784 + (t73 * t876 - t71 * t877);
-    const wam7_real_t t881 = parameters[MX4R] * t822 + parameters[MY4R] * t790 + t862;
-    const wam7_real_t t882 = t401 - parameters[MX3R] * t824 + t881;
-    const wam7_real_t t883 = t115 * t870 + t118 * t879 + WAM7_C(0.55) * (t118 * t880 + t115 * t882);
-    const wam7_real_t t884 = parameters[XY2] * (t206 + t782) - (t404 + parameters[XX2R] * t775)
-        + parameters[XZ2] * (t209 + t444);
-    const wam7_real_t t885 = t105 * t774;
-    const wam7_real_t t886 = t286 + t406; /* link j3: motion */
-    const wam7_real_t t887 = WAM7_C(-2.0) * t208; /* link j2: derivatives */
-    const wam7_real_t t888 = WAM7_C(2.0) * t202;
-    const wam7_real_t t889 = t885 - t191 * t781 - t167 * t886 - (t603 * t887 + t600 * t888);
-    const wam7_real_t t890 = t157 * t288; /* link j3: derivatives */
-    const wam7_real_t t891 = t409 + parameters[ZZ3R] * t783 - parameters[YZ3] * t777 - parameters[XZ3] * t785;
-    const wam7_real_t t892 = t408 + t891 + (parameters[MX3R] * t823 + parameters[MY3R] * t816) + (t73 * t868
-        - t71 * t864 + WAM7_C(-0.045) * t881);
-    const wam7_real_t t893 = t412 + parameters[XY2] * t776 + parameters[YZ2] * t773 - t413 + t892;
-    const wam7_real_t t894 = t165 * t886 + (t190 * t781 + t191 * t774) - (t597 * t887 + t605 * t888);
-    const wam7_real_t t895 = t166 * (t893 + (t157 * t280 + t894)) + t168 * (t407 + t884 + t883 + (t890
-        + t889));
-    const wam7_real_t t896 = WAM7_C(0.05209961446285298) * t895;
-    const wam7_real_t t897 = t208 * t575 + t202 * t584 + (t165 * t781 + t167 * t774 - t123 * t886);
-    const wam7_real_t t898 = (parameters[MX2] + t183) * t280 + (parameters[MY2R] + t121) * t288 + t897;
-    const wam7_real_t t899 = WAM7_C(0.07745783389167521) * t898;
-    const wam7_real_t t900 = t208 * t612 - t202 * t616 + (t158 * t886 + (t184 * t781 + t885));
-    const wam7_real_t t901 = WAM7_C(0.07745783389167521) * (t890 + t900);
-    const wam7_real_t t902 = t208 * t628 - t202 * t630 + (t150 * t886 + (t180 * t781 + t74 * t774));
-    const wam7_real_t t903 = WAM7_C(0.12156576707999026) * (t149 * t288 + t103 * t280 + t902);
-    const wam7_real_t t904 = t586 * t896 - t454 * t899 + t609 * t901 - t620 * t903;
-    const wam7_real_t t905 = t208 * t649 - t202 * t651 + (t144 * t886 + (t177 * t781 + t91 * t774));
-    const wam7_real_t t906 = WAM7_C(0.4469713223199599) * (t143 * t288 - t140 * t280 + t905);
-    const wam7_real_t t907 = t208 * t669 - t202 * t671 + (t136 * t886 + (t173 * t781 + t84 * t774));
-    const wam7_real_t t908 = WAM7_C(0.4469713223199599) * (t135 * t288 + t132 * t280 + t907);
-    const wam7_real_t t909 = t208 * t693 - t202 * t695 + (t129 * t886 + (t170 * t781 + t79 * t774));
-    const wam7_real_t t910 = WAM7_C(0.9996900960702182) * (t128 * t288 + t125 * t280 + t909);
-    const wam7_real_t t911 = t904 + t637 * t906 + t658 * t908 + t680 * t910;
-    ddq_by_q[1] = t911;
-    const wam7_real_t t912 = t698 * t896 - t699 * t899 + t701 * t901 - t703 * t903;
-    const wam7_real_t t913 = t912 + t706 * t906 + t708 * t908 + t710 * t910;
-    ddq_by_q[8] = t913;
-    const wam7_real_t t914 = t712 * t896 - t701 * t899 + t713 * t901 - t715 * t903;
-    const wam7_real_t t915 = t914 + t718 * t906 + t720 * t908 + t722 * t910;
-    ddq_by_q[15] = t915;
-    const wam7_real_t t916 = t724 * t896 - t725 * t899 + t726 * t901 - t728 * t903;
-    const wam7_real_t t917 = t916 + t731 * t906 + t733 * t908 + t735 * t910;
-    ddq_by_q[22] = t917;
-    const wam7_real_t t918 = t737 * t896 - t738 * t899 + t739 * t901 - t740 * t903;
-    const wam7_real_t t919 = t918 + t743 * t906 + t746 * t908 + t749 * t910;
-    ddq_by_q[29] = t919;
-    const wam7_real_t t920 = t751 * t896 - t752 * t899 + t753 * t901 - t754 * t903;
-    const wam7_real_t t921 = t920 + t746 * t906 + t757 * t908 + t760 * t910;
-    ddq_by_q[36] = t921;
-    const wam7_real_t t922 = t762 * t896 - t763 * t899 + t764 * t901 - t765 * t903;
-    const wam7_real_t t923 = t922 + t767 * t906 + t768 * t908 + t771 * t910;
-    ddq_by_q[43] = t923;
-    /* link j2: derivatives */
-    const wam7_real_t t924 = WAM7_C(2.0) * (t595 - t599 + (t551 + t587 - t593 - t594));
-    const wam7_real_t t925 = WAM7_C(0.07745783389167521) * (t924 + WAM7_C(2.0) * (t165 * t208 + t167 * t202));
-    const wam7_real_t t926 = WAM7_C(61.81619256017505) * parameters[FV2] + t925;
-    const wam7_real_t t927 = parameters[ZZ2R] - t572;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t928 = t560 - t570 + t157 * t588 - (parameters[YZ2] * dq[1] + t208 * t927);
-    /* link j2: derivatives */
-    const wam7_real_t t929 = t166 * (WAM7_C(2.0) * t928 + (t191 * t888 - t190 * t887));
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t930 = parameters[XZ2] * dq[1] + t202 * t927 + (t118 * t601 + t115 * t602);
-    /* link j2: derivatives */
-    const wam7_real_t t931 = t168 * (WAM7_C(2.0) * t930 + (t191 * t887 + t105 * t888));
-    const wam7_real_t t932 = WAM7_C(0.05209961446285298) * (t929 + t931);
-    /* link j3: derivatives */
-    const wam7_real_t t933 = t118 * t610 + t115 * t611 + WAM7_C(2.0) * (t184 * t208 + t105 * t202);
-    const wam7_real_t t934 = WAM7_C(0.07745783389167521) * t933;
-    /* link j4: derivatives */
-    const wam7_real_t t935 = t118 * t624 + t115 * t627 + t103 * t615 + WAM7_C(2.0) * (t180 * t208
-        + t74 * t202);
-    const wam7_real_t t936 = WAM7_C(0.12156576707999026) * t935;
-    const wam7_real_t t937 = t932 * t586 - t926 * t454 + t934 * t609 - t936 * t620;
-    /* link j5: derivatives */
-    const wam7_real_t t938 = t118 * t646 + t115 * t648 - t140 * t615 + WAM7_C(2.0) * (t177 * t208
-        + t91 * t202);
-    const wam7_real_t t939 = WAM7_C(0.4469713223199599) * t938;
+    const wam7_real_t t754 = parameters[XZ6] * t249 + t242 * t753 + (t2 * t533 - t1 * t534);
+    const wam7_real_t t755 = parameters[YZ6] * t249;
+    const wam7_real_t t756 = t740 + t755 - t687;
+    const wam7_real_t t757 = t754 * t742 + t756 * t745 + (t13 * t736 + (t752 - t22 * t487));
+    const wam7_real_t t758 = t33 * t508;
+    const wam7_real_t t759 = t758 + t757 - t751;
+    const wam7_real_t t760 = t14 * t747 - t12 * t759;
+    const wam7_real_t t761 = t8 * t736 + (t13 * t481 - t11 * t487);
+    const wam7_real_t t762 = t1 * t737;
+    const wam7_real_t t763 = parameters[XY6] * t249 + t241 * t753 - (t762 - t526);
+    const wam7_real_t t764 = t1 * t682 + t2 * t684 - (parameters[XY6] * t241 + t249 * t743);
+    const wam7_real_t t765 = t36 * t535 + parameters[MY6R] * t508;
+    const wam7_real_t t766 = t763 * t742 - t764 * t745 + t761 + t765;
+    const wam7_real_t t767 = parameters[MX7] * t521 + parameters[MY7] * t486 - (t355
+        + parameters[MX6] * t749);
+    const wam7_real_t t768 = t1 * t550 - t2 * t549 - (parameters[MY6R] * t249 + parameters[MX6] * t241);
+    const wam7_real_t t769 = t767 - (t768 * t745 + (parameters[MY6R] * t736 + t33 * t481));
+    const wam7_real_t t770 = t353 + parameters[MY6R] * t473 + (t2 * t546 - t1 * t543);
+    const wam7_real_t t771 = t770 + (t768 * t742 + (t36 * t736 - t33 * t487));
+    const wam7_real_t t772 = t12 * t771 - t14 * t769;
+    const wam7_real_t t773 = parameters[MX6] * t242 + t544;
+    const wam7_real_t t774 = parameters[MY6R] * t242 - (t2 * t550 + t1 * t549);
+    const wam7_real_t t775 = parameters[MY6R] * t487 + t36 * t481 - (t773 * t742 + t774 * t745);
+    const wam7_real_t t776 = t32 * t775 - t30 * t772;
+    const wam7_real_t t777 = t32 * t760 + t30 * t766 + WAM7_C(0.3) * t776;
+    const wam7_real_t t778 = t12 * t747 + t14 * t759;
+    const wam7_real_t t779 = WAM7_C(0.045) * t776;
+    const wam7_real_t t780 = t778 - t779;
+    const wam7_real_t t781 = t70 * t777 - t68 * t780;
+    const wam7_real_t t782 = t12 * t769 + t14 * t771;
+    const wam7_real_t t783 = t32 * t772 + t30 * t775;
+    const wam7_real_t t784 = t30 * t760 - t32 * t766 + (WAM7_C(0.045) * t782 + WAM7_C(0.3) * t783);
+    const wam7_real_t t785 = t784 + WAM7_C(0.045) * (t68 * t783 - t70 * t782);
+    const wam7_real_t t786 = t70 * t783 + t68 * t782;
+    const wam7_real_t t787 = t111 * t781 - t114 * t785 + WAM7_C(0.55) * (t111 * t776 - t114 * t786);
+    const wam7_real_t t788 = t779 + (t68 * t777 + t70 * t780);
+    const wam7_real_t t789 = WAM7_C(0.05209961446285298) * (t161 * t787 + t163 * t788);
+    const wam7_real_t t790 = t114 * t781 + t111 * t785 + WAM7_C(0.55) * (t111 * t786 + t114 * t776);
+    const wam7_real_t t791 = WAM7_C(0.07745783389167521) * t790;
+    const wam7_real_t t792 = WAM7_C(0.07745783389167521) * t788;
+    const wam7_real_t t793 = WAM7_C(0.12156576707999026) * t784;
+    const wam7_real_t t794 = t568 * t789 - t572 * t791 + t575 * t792 - t579 * t793;
+    const wam7_real_t t795 = WAM7_C(0.4469713223199599) * t778;
+    const wam7_real_t t796 = WAM7_C(2.0) * t763; /* link j6: derivatives */
+    const wam7_real_t t797 = WAM7_C(2.0) * t764;
+    const wam7_real_t t798 = WAM7_C(0.4469713223199599) * (t765 + (t241 * t796 - t249 * t797 + t761));
+    const wam7_real_t t799 = t2 * t594 - t1 * t595; /* link j7: derivatives */
+    const wam7_real_t t800 = t241 * t799 - t249 * t688 + (t3 * t736 + (t752 - t16 * t487));
+    const wam7_real_t t801 = WAM7_C(0.9996900960702182) * (t800 + t758);
+    const wam7_real_t t802 = t794 + t586 * t795 + t593 * t798 + t604 * t801;
+    ddq_by_q[5] = t802;
+    const wam7_real_t t803 = t606 * t789 - t607 * t791 + t609 * t792 - t611 * t793;
+    const wam7_real_t t804 = t803 + t614 * t795 + t616 * t798 + t618 * t801;
+    ddq_by_q[12] = t804;
+    const wam7_real_t t805 = t620 * t789 - t609 * t791 + t621 * t792 - t623 * t793;
+    const wam7_real_t t806 = t805 + t626 * t795 + t628 * t798 + t630 * t801;
+    ddq_by_q[19] = t806;
+    const wam7_real_t t807 = t632 * t789 - t633 * t791 + t634 * t792 - t636 * t793;
+    const wam7_real_t t808 = t807 + t639 * t795 + t641 * t798 + t643 * t801;
+    ddq_by_q[26] = t808;
+    const wam7_real_t t809 = t645 * t789 - t646 * t791 + t647 * t792 - t648 * t793;
+    const wam7_real_t t810 = t809 + t651 * t795 + t654 * t798 + t657 * t801;
+    ddq_by_q[33] = t810;
+    const wam7_real_t t811 = t659 * t789 - t660 * t791 + t661 * t792 - t662 * t793;
+    const wam7_real_t t812 = t811 + t654 * t795 + t665 * t798 + t668 * t801;
+    ddq_by_q[40] = t812;
+    const wam7_real_t t813 = t670 * t789 - t671 * t791 + t672 * t792 - t673 * t793;
+    const wam7_real_t t814 = t813 + t675 * t795 + t676 * t798 + t679 * t801;
+    ddq_by_q[47] = t814;
+    const wam7_real_t t815 = parameters[ZZ6R] + t743;
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t816 = t241 * t815 - parameters[YZ6] * t242 + (t517 + t762);
+    const wam7_real_t t817 = WAM7_C(2.0) * t816 + (t21 * t742 + t22 * t745); /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t818 = parameters[XZ6] * t242 + t249 * t815 + (t1 * t533 + t2 * t534);
     /* link j6: derivatives */
-    const wam7_real_t t940 = t118 * t666 + t115 * t668 + t132 * t615 + WAM7_C(2.0) * (t173 * t208
-        + t84 * t202);
-    const wam7_real_t t941 = WAM7_C(0.4469713223199599) * t940;
+    const wam7_real_t t819 = WAM7_C(2.0) * t818 + (t22 * t742 + parameters[ZZ7] * t745);
+    const wam7_real_t t820 = t14 * t817 - t12 * t819;
+    const wam7_real_t t821 = t739 + t755 + (t738 - t514); /* link j7: inertia, momentum beyond */
+    const wam7_real_t t822 = WAM7_C(2.0) * t821; /* link j6: derivatives */
+    const wam7_real_t t823 = t822 + (t11 * t742 + t13 * t745);
+    const wam7_real_t t824 = WAM7_C(2.0) * t773 - t33 * t745;
+    const wam7_real_t t825 = WAM7_C(2.0) * t774 + t33 * t742;
+    const wam7_real_t t826 = t14 * t824 - t12 * t825;
+    const wam7_real_t t827 = t36 * t745 - parameters[MY6R] * t742;
+    const wam7_real_t t828 = t30 * t826 + t32 * t827;
+    const wam7_real_t t829 = t32 * t820 + t30 * t823 + WAM7_C(0.3) * t828;
+    const wam7_real_t t830 = t12 * t817 + t14 * t819;
+    const wam7_real_t t831 = WAM7_C(0.045) * t828;
+    const wam7_real_t t832 = t831 - t830;
+    const wam7_real_t t833 = t70 * t829 + t68 * t832;
+    const wam7_real_t t834 = t12 * t824 + t14 * t825;
+    const wam7_real_t t835 = t30 * t827 - t32 * t826;
+    const wam7_real_t t836 = t30 * t820 - t32 * t823 + (WAM7_C(0.045) * t834 + WAM7_C(0.3) * t835);
+    const wam7_real_t t837 = WAM7_C(0.045) * (t70 * t834 - t68 * t835) - t836;
+    const wam7_real_t t838 = t70 * t835 + t68 * t834;
+    const wam7_real_t t839 = t114 * t833 - t111 * t837 + WAM7_C(0.55) * (t111 * t838 + t114 * t828);
+    const wam7_real_t t840 = WAM7_C(0.07745783389167521) * t839;
+    const wam7_real_t t841 = t111 * t833 + t114 * t837 + WAM7_C(0.55) * (t111 * t828 - t114 * t838);
+    const wam7_real_t t842 = t831 + (t68 * t829 - t70 * t832);
+    const wam7_real_t t843 = WAM7_C(0.05209961446285298) * (t161 * t841 + t163 * t842);
+    const wam7_real_t t844 = WAM7_C(0.07745783389167521) * t842;
+    const wam7_real_t t845 = WAM7_C(0.12156576707999026) * t836;
+    const wam7_real_t t846 = t843 * t568 - t840 * t572 + t844 * t575 - t845 * t579;
+    const wam7_real_t t847 = WAM7_C(0.4469713223199599) * t830;
+    const wam7_real_t t848 = WAM7_C(0.4469713223199599) * (t822 + WAM7_C(2.0) * (t11 * t241 + t13 * t249));
+    const wam7_real_t t849 = WAM7_C(-40.16949152542373) * parameters[FV6] + t848;
+    const wam7_real_t t850 = t1 * t594 + t2 * t595; /* link j7: derivatives */
+    const wam7_real_t t851 = WAM7_C(0.9996900960702182) * (t850 + WAM7_C(2.0) * (t16 * t241
+        + parameters[ZZ7] * t249));
+    const wam7_real_t t852 = t846 + t847 * t586 + t849 * t593 + t851 * t604;
+    ddq_by_dq[5] = t852;
+    const wam7_real_t t853 = t843 * t606 - t840 * t607 + t844 * t609 - t845 * t611;
+    const wam7_real_t t854 = t853 + t847 * t614 + t849 * t616 + t851 * t618;
+    ddq_by_dq[12] = t854;
+    const wam7_real_t t855 = t843 * t620 - t840 * t609 + t844 * t621 - t845 * t623;
+    const wam7_real_t t856 = t855 + t847 * t626 + t849 * t628 + t851 * t630;
+    ddq_by_dq[19] = t856;
+    const wam7_real_t t857 = t843 * t632 - t840 * t633 + t844 * t634 - t845 * t636;
+    const wam7_real_t t858 = t857 + t847 * t639 + t849 * t641 + t851 * t643;
+    ddq_by_dq[26] = t858;
+    const wam7_real_t t859 = t843 * t645 - t840 * t646 + t844 * t647 - t845 * t648;
+    const wam7_real_t t860 = t859 + t847 * t651 + t849 * t654 + t851 * t657;
+    ddq_by_dq[33] = t860;
+    const wam7_real_t t861 = t843 * t659 - t840 * t660 + t844 * t661 - t845 * t662;
+    const wam7_real_t t862 = t861 + t847 * t654 + t849 * t665 + t851 * t668;
+    ddq_by_dq[40] = t862;
+    const wam7_real_t t863 = t843 * t670 - t840 * t671 + t844 * t672 - t845 * t673;
+    const wam7_real_t t864 = t863 + t847 * t675 + t849 * t676 + t851 * t679;
+    ddq_by_dq[47] = t864;
+    ddq_by_input[5] = t593;
+    ddq_by_input[12] = t616;
+    ddq_by_input[19] = t628;
+    ddq_by_input[26] = t641;
+    ddq_by_input[33] = t654;
+    ddq_by_input[40] = t665;
+    ddq_by_input[47] = t676;
+    const wam7_real_t t865 = t247 + t471;
+    const wam7_real_t t866 = t223 - t476;
+    const wam7_real_t t867 = parameters[XZ5] * t866 - (t332 + parameters[XX5R] * t479
+        + parameters[XY5] * t865);
+    const wam7_real_t t868 = t338 + t867 + parameters[MY5R] * t507 + (t14 * t751 - t12 * t735);
+    const wam7_real_t t869 = t47 * t536;
+    const wam7_real_t t870 = t8 * t478;
+    const wam7_real_t t871 = t345 + t336; /* link j6: motion */
+    const wam7_real_t t872 = WAM7_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    const wam7_real_t t873 = parameters[XX5R] + t872;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t874 = parameters[XZ5] * t221 + t236 * t873 - (t14 * t763 + t12 * t764);
+    const wam7_real_t t875 = WAM7_C(2.0) * t222; /* link j5: derivatives */
+    const wam7_real_t t876 = parameters[YZ5] * t221;
+    const wam7_real_t t877 = parameters[XY5] * t236;
+    const wam7_real_t t878 = t877 + t876 - t821; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t879 = WAM7_C(2.0) * t221; /* link j5: derivatives */
+    const wam7_real_t t880 = t874 * t875 + t878 * t879 - (t31 * t871 + (t870 - t57 * t470));
+    const wam7_real_t t881 = t868 + (t869 - t880);
+    const wam7_real_t t882 = parameters[YZ6] * t487 - (t340 + parameters[ZZ6R] * t472)
+        + parameters[XZ6] * t481;
+    const wam7_real_t t883 = t342 + t882 + (parameters[MY6R] * t535 - parameters[MX6] * t508) + (t1 * t524
+        + t2 * t509);
+    const wam7_real_t t884 = t346 + (t344 - parameters[XY5] * t480 - parameters[YZ5] * t477)
+        - parameters[MX5] * t507;
+    const wam7_real_t t885 = t884 + t883;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t886 = t14 * (t741 - t756) + t12 * (t744 - t754);
+    const wam7_real_t t887 = t14 * t886;
+    const wam7_real_t t888 = parameters[XZ5] * t222;
+    const wam7_real_t t889 = t888 - t877 + (t756 + t887);
+    const wam7_real_t t890 = parameters[YZ5] * t222 - t236 * t872 + (t14 * t816 - t12 * t818);
+    const wam7_real_t t891 = t889 * t875 + t890 * t879 + (t29 * t871 + (t56 * t470 - t57 * t478));
+    const wam7_real_t t892 = t885 + (t891 + t47 * t504);
+    const wam7_real_t t893 = t357 + parameters[MY5R] * t477 + (t14 * t770 + t12 * t767);
+    const wam7_real_t t894 = t12 * t774 - t14 * t773 - (parameters[MY5R] * t221 + parameters[MX5] * t222);
+    const wam7_real_t t895 = t893 + (t894 * t875 - (t38 * t871 + t47 * t470));
+    const wam7_real_t t896 = t1 * t546 + t2 * t543 - (parameters[MX6] * t748 + parameters[MY6R] * t483);
+    const wam7_real_t t897 = t360 + parameters[MX5] * t866 + t896;
+    const wam7_real_t t898 = t897 + (t894 * t879 + (t34 * t871 + t47 * t478));
+    const wam7_real_t t899 = t32 * t895 - t30 * t898;
+    const wam7_real_t t900 = t32 * t892 + t30 * t881 + WAM7_C(0.3) * t899;
+    const wam7_real_t t901 = WAM7_C(0.045) * t899;
+    const wam7_real_t t902 = t38 * t504 + t34 * t536;
+    const wam7_real_t t903 = t25 * t871 + (t29 * t470 + t31 * t478);
+    const wam7_real_t t904 = t12 * t886;
+    const wam7_real_t t905 = parameters[XY5] * t221 + t222 * t873 + (t754 + t904);
+    const wam7_real_t t906 = parameters[XY5] * t222 + t221 * t872 + (t12 * t816 + t14 * t818);
+    const wam7_real_t t907 = t905 * t875 + t906 * t879 + t903 + t902 - t901;
+    const wam7_real_t t908 = t70 * t900 - t68 * t907;
+    const wam7_real_t t909 = t32 * t898 + t30 * t895;
+    const wam7_real_t t910 = parameters[MX5] * t236 + t768;
+    const wam7_real_t t911 = parameters[MY5R] * t236 + (t14 * t774 + t12 * t773);
+    const wam7_real_t t912 = t910 * t875 + t911 * t879 + (t34 * t470 - t38 * t478);
+    const wam7_real_t t913 = t30 * t892 - t32 * t881 + (WAM7_C(0.045) * t912 + WAM7_C(0.3) * t909);
+    const wam7_real_t t914 = t913 + WAM7_C(0.045) * (t68 * t909 - t70 * t912);
+    const wam7_real_t t915 = t70 * t909 + t68 * t912;
+    const wam7_real_t t916 = t111 * t908 - t114 * t914 + WAM7_C(0.55) * (t111 * t899 - t114 * t915);
+    const wam7_real_t t917 = t901 + (t68 * t900 + t70 * t907);
+    const wam7_real_t t918 = WAM7_C(0.05209961446285298) * (t161 * t916 + t163 * t917);
+    const wam7_real_t t919 = t114 * t908 + t111 * t914 + WAM7_C(0.55) * (t111 * t915 + t114 * t899);
+    const wam7_real_t t920 = WAM7_C(0.07745783389167521) * t919;
+    const wam7_real_t t921 = WAM7_C(0.07745783389167521) * t917;
+    const wam7_real_t t922 = WAM7_C(0.12156576707999026) * t913;
+    const wam7_real_t t923 = t568 * t918 - t572 * t920 + t575 * t921 - t579 * t922;
+    const wam7_real_t t924 = WAM7_C(2.0) * t905; /* link j5: derivatives */
+    const wam7_real_t t925 = WAM7_C(2.0) * t906;
+    const wam7_real_t t926 = WAM7_C(0.4469713223199599) * (t902 + (t222 * t924 + t221 * t925 + t903));
+    const wam7_real_t t927 = t14 * t796 + t12 * t797; /* link j6: derivatives */
+    const wam7_real_t t928 = t222 * t927 + t221 * t822 + (t15 * t871 + (t46 * t470 + t870));
+    const wam7_real_t t929 = WAM7_C(0.4469713223199599) * (t928 + t869);
+    const wam7_real_t t930 = t14 * t799 + t12 * t688; /* link j7: derivatives */
+    const wam7_real_t t931 = t222 * t930 + t221 * t850 + (t17 * t871 + (t41 * t470 + t3 * t478));
+    const wam7_real_t t932 = WAM7_C(0.9996900960702182) * (t931 + (t42 * t536 - t35 * t504));
+    const wam7_real_t t933 = t923 + t586 * t926 + t593 * t929 + t604 * t932;
+    ddq_by_q[4] = t933;
+    const wam7_real_t t934 = t606 * t918 - t607 * t920 + t609 * t921 - t611 * t922;
+    const wam7_real_t t935 = t934 + t614 * t926 + t616 * t929 + t618 * t932;
+    ddq_by_q[11] = t935;
+    const wam7_real_t t936 = t620 * t918 - t609 * t920 + t621 * t921 - t623 * t922;
+    const wam7_real_t t937 = t936 + t626 * t926 + t628 * t929 + t630 * t932;
+    ddq_by_q[18] = t937;
+    const wam7_real_t t938 = t632 * t918 - t633 * t920 + t634 * t921 - t636 * t922;
+    const wam7_real_t t939 = t938 + t639 * t926 + t641 * t929 + t643 * t932;
+    ddq_by_q[25] = t939;
+    const wam7_real_t t940 = t645 * t918 - t646 * t920 + t647 * t921 - t648 * t922;
+    const wam7_real_t t941 = t940 + t651 * t926 + t654 * t929 + t657 * t932;
+    ddq_by_q[32] = t941;
+    const wam7_real_t t942 = t659 * t918 - t660 * t920 + t661 * t921 - t662 * t922;
+    const wam7_real_t t943 = t942 + t654 * t926 + t665 * t929 + t668 * t932;
+    ddq_by_q[39] = t943;
+    const wam7_real_t t944 = t670 * t918 - t671 * t920 + t672 * t921 - t673 * t922;
+    const wam7_real_t t945 = t944 + t675 * t926 + t676 * t929 + t679 * t932;
+    ddq_by_q[46] = t945;
+    const wam7_real_t t946 = parameters[ZZ5R] + t872;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t947 = t222 * t946 - parameters[YZ5] * t236 + (t744 - t904);
+    const wam7_real_t t948 = WAM7_C(2.0) * t947 + (t56 * t875 + t57 * t879); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t949 = t14 * t764 - t12 * t763 - (parameters[XZ5] * t236 + t221 * t946);
+    const wam7_real_t t950 = WAM7_C(-2.0) * t949 + (t57 * t875 + t8 * t879); /* link j5: derivatives */
+    const wam7_real_t t951 = WAM7_C(2.0) * t910 + t47 * t879;
+    const wam7_real_t t952 = WAM7_C(2.0) * t911 - t47 * t875;
+    const wam7_real_t t953 = t30 * t951 + t32 * t952;
+    const wam7_real_t t954 = t32 * t948 - t30 * t950 + WAM7_C(0.3) * t953;
+    const wam7_real_t t955 = t888 + t876 + (t887 - t741); /* link j6: inertia, momentum beyond */
+    const wam7_real_t t956 = WAM7_C(2.0) * t955; /* link j5: derivatives */
+    const wam7_real_t t957 = WAM7_C(0.045) * t953;
+    const wam7_real_t t958 = t956 - (t31 * t879 - t29 * t875) - t957;
+    const wam7_real_t t959 = t70 * t954 - t68 * t958;
+    const wam7_real_t t960 = t30 * t952 - t32 * t951;
+    const wam7_real_t t961 = t34 * t875 + t38 * t879;
+    const wam7_real_t t962 = t30 * t948 + t32 * t950 + (WAM7_C(0.045) * t961 + WAM7_C(0.3) * t960);
+    const wam7_real_t t963 = WAM7_C(0.045) * (t70 * t961 - t68 * t960) - t962;
+    const wam7_real_t t964 = t70 * t960 + t68 * t961;
+    const wam7_real_t t965 = t114 * t959 - t111 * t963 + WAM7_C(0.55) * (t111 * t964 + t114 * t953);
+    const wam7_real_t t966 = WAM7_C(0.07745783389167521) * t965;
+    const wam7_real_t t967 = t111 * t959 + t114 * t963 + WAM7_C(0.55) * (t111 * t953 - t114 * t964);
+    const wam7_real_t t968 = t957 + (t68 * t954 + t70 * t958);
+    const wam7_real_t t969 = WAM7_C(0.05209961446285298) * (t161 * t967 + t163 * t968);
+    const wam7_real_t t970 = WAM7_C(0.07745783389167521) * t968;
+    const wam7_real_t t971 = WAM7_C(0.12156576707999026) * t962;
+    const wam7_real_t t972 = t969 * t568 - t966 * t572 + t970 * t575 - t971 * t579;
+    const wam7_real_t t973 = WAM7_C(0.4469713223199599) * (t956 + WAM7_C(2.0) * (t29 * t222 - t31 * t221));
+    const wam7_real_t t974 = WAM7_C(-40.16949152542373) * parameters[FV5] + t973;
+    const wam7_real_t t975 = t14 * t797 - t12 * t796; /* link j6: derivatives */
+    const wam7_real_t t976 = WAM7_C(0.4469713223199599) * (t975 + WAM7_C(2.0) * (t46 * t222 - t8 * t221));
+    const wam7_real_t t977 = t14 * t688 - t12 * t799; /* link j7: derivatives */
+    const wam7_real_t t978 = WAM7_C(0.9996900960702182) * (t977 + WAM7_C(2.0) * (t41 * t222 - t3 * t221));
+    const wam7_real_t t979 = t972 + t974 * t586 + t976 * t593 + t978 * t604;
+    ddq_by_dq[4] = t979;
+    const wam7_real_t t980 = t969 * t606 - t966 * t607 + t970 * t609 - t971 * t611;
+    const wam7_real_t t981 = t980 + t974 * t614 + t976 * t616 + t978 * t618;
+    ddq_by_dq[11] = t981;
+    const wam7_real_t t982 = t969 * t620 - t966 * t609 + t970 * t621 - t971 * t623;
+    const wam7_real_t t983 = t982 + t974 * t626 + t976 * t628 + t978 * t630;
+    ddq_by_dq[18] = t983;
+    const wam7_real_t t984 = t969 * t632 - t966 * t633 + t970 * t634 - t971 * t636;
+    const wam7_real_t t985 = t984 + t974 * t639 + t976 * t641 + t978 * t643;
+    ddq_by_dq[25] = t985;
+    const wam7_real_t t986 = t969 * t645 - t966 * t646 + t970 * t647 - t971 * t648;
+    const wam7_real_t t987 = t986 + t974 * t651 + t976 * t654 + t978 * t657;
+    ddq_by_dq[32] = t987;
+    const wam7_real_t t988 = t969 * t659 - t966 * t660 + t970 * t661 - t971 * t662;
+    const wam7_real_t t989 = t988 + t974 * t654 + t976 * t665 + t978 * t668;
+    ddq_by_dq[39] = t989;
+    const wam7_real_t t990 = t969 * t670 - t966 * t671 + t970 * t672 - t971 * t673;
+    const wam7_real_t t991 = t990 + t974 * t675 + t976 * t676 + t978 * t679;
+    ddq_by_dq[46] = t991;
+    ddq_by_input[4] = t586;
+    ddq_by_input[11] = t614;
+    ddq_by_input[18] = t626;
+    ddq_by_input[25] = t639;
+    ddq_by_input[32] = t651;
+    ddq_by_input[39] = t654;
+    ddq_by_input[46] = t675;
+    const wam7_real_t t992 = t367 + parameters[ZZ5R] * t476 + parameters[YZ5] * t470 + parameters[XZ5] * t478;
+    const wam7_real_t t993 = t369 + t992 + (parameters[MX5] * t536 + parameters[MY5R] * t504) + (t12 * t751
+        + t14 * t735);
+    const wam7_real_t t994 = t30 * t893 + t32 * t897;
+    const wam7_real_t t995 = t372 + (t371 + parameters[XY4R] * t469 - parameters[YZ4] * t459)
+        + parameters[MX4R] * t502;
+    const wam7_real_t t996 = t995 + (t993 + WAM7_C(0.045) * t994);
+    const wam7_real_t t997 = t299 + t271; /* link j5: motion */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t998 = t32 * (t889 - t878) - t30 * (t890 + t874);
+    const wam7_real_t t999 = t32 * t998;
+    const wam7_real_t t1000 = t32 * t911 + t30 * t910;
+    const wam7_real_t t1001 = WAM7_C(0.045) * t1000;
+    const wam7_real_t t1002 = WAM7_C(0.3) * t218; /* link j5: velocity of its origin */
+    const wam7_real_t t1003 = t60 * t1002; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1004 = WAM7_C(0.3) * t894;
+    const wam7_real_t t1005 = WAM7_C(-0.045) * t218; /* link j5: velocity of its origin */
+    const wam7_real_t t1006 = t47 * t1005; /* link j5: inertia, momentum beyond */
+    /* link j5: velocity of its origin */
+    const wam7_real_t t1007 = WAM7_C(0.3) * t217 + WAM7_C(-0.045) * t228;
+    const wam7_real_t t1008 = t39 * t1007; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1009 = t1001 + t1004 + (t1006 - t1003 - t1008);
+    const wam7_real_t t1010 = parameters[XZ4] * t228;
+    const wam7_real_t t1011 = parameters[XY4R] * t218;
+    const wam7_real_t t1012 = t1009 + (t878 + t999 + (t1003 - t1001)) - (t1010 + t1011);
+    const wam7_real_t t1013 = WAM7_C(-2.0) * t228; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1014 = t32 * t947 + t30 * t949 + (WAM7_C(0.3) * t1000 + t47 * t1002);
+    const wam7_real_t t1015 = WAM7_C(-0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const wam7_real_t t1016 = parameters[YZ4] * t228 + t218 * t1015 + t1014;
+    const wam7_real_t t1017 = WAM7_C(2.0) * t217; /* link j4: derivatives */
+    const wam7_real_t t1018 = t1012 * t1013 - t1016 * t1017 + (t95 * t467 - t94 * t474 - t67 * t997);
+    const wam7_real_t t1019 = t996 + (t1018 + t39 * t497);
+    const wam7_real_t t1020 = parameters[XY4R] * t499 - (t363 + parameters[XX4R] * t468)
+        + parameters[XZ4] * t506;
+    const wam7_real_t t1021 = t365 + t1020 + parameters[MY4R] * t502 + (t30 * t885 - t32 * t868
+        + WAM7_C(0.3) * t994);
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1022 = t32 * t905 - t30 * t906 + (WAM7_C(-0.045) * t894 + t60 * t1005);
+    const wam7_real_t t1023 = parameters[XX4R] + t1015;
+    const wam7_real_t t1024 = parameters[XZ4] * t217 + t218 * t1023 + t1022;
+    const wam7_real_t t1025 = parameters[YZ4] * t217;
+    const wam7_real_t t1026 = t1011 + t1025 + (t1009 - (t955 + (t1004 + t1006)));
+    const wam7_real_t t1027 = t1024 * t1013 + t1026 * t1017 - (t69 * t997 + (t95 * t474 - t93 * t467));
+    const wam7_real_t t1028 = t39 * t505;
+    const wam7_real_t t1029 = t1021 + (t1027 - t1028);
+    const wam7_real_t t1030 = t70 * t1019 - t68 * t1029;
+    const wam7_real_t t1031 = parameters[MX5] * t865 - parameters[MY5R] * t480 + (t14 * t767 - t12 * t770);
+    const wam7_real_t t1032 = t389 - parameters[MX4R] * t506 - t1031;
+    const wam7_real_t t1033 = t32 * t910 - t30 * t911;
+    const wam7_real_t t1034 = parameters[MX4R] * t228 - parameters[MY4R] * t217 + t1033;
+    const wam7_real_t t1035 = t1032 + (t1034 * t1017 + (t99 * t997 - t39 * t467));
+    const wam7_real_t t1036 = t32 * t893 - t30 * t897;
+    const wam7_real_t t1037 = t387 + parameters[MY4R] * t459 + t1036;
+    const wam7_real_t t1038 = t1037 + (t1034 * t1013 + (t98 * t997 + t39 * t474));
+    const wam7_real_t t1039 = t69 * t467 - t67 * t474 - t63 * t997;
+    const wam7_real_t t1040 = t30 * t998;
+    const wam7_real_t t1041 = t228 * t1023 - parameters[XY4R] * t217 + (t874 + t1040 + (WAM7_C(0.045) * t1033
+        + t60 * t1007));
+    const wam7_real_t t1042 = t32 * t949 - t30 * t947 - (WAM7_C(-0.3) * t1033 + t47 * t1007);
+    const wam7_real_t t1043 = t217 * t1015 - parameters[XY4R] * t228 - t1042;
+    const wam7_real_t t1044 = t98 * t497 - t99 * t505;
+    const wam7_real_t t1045 = t1043 * t1017 - t1041 * t1013 - t1039 - t1044 - WAM7_C(0.045) * (t68 * t1035
+        - t70 * t1038);
+    const wam7_real_t t1046 = t70 * t1035 + t68 * t1038;
+    const wam7_real_t t1047 = parameters[MY4R] * t218 + t1000;
+    const wam7_real_t t1048 = t894 - parameters[MX4R] * t218;
+    const wam7_real_t t1049 = t1048 * t1013 - t1047 * t1017 + (t99 * t474 + t98 * t467);
+    const wam7_real_t t1050 = t111 * t1030 + t114 * t1045 + WAM7_C(0.55) * (t111 * t1049 - t114 * t1046);
+    const wam7_real_t t1051 = t68 * t1019 + t70 * t1029 + WAM7_C(0.045) * t1049;
+    const wam7_real_t t1052 = WAM7_C(0.05209961446285298) * (t161 * t1050 + t163 * t1051);
+    const wam7_real_t t1053 = t114 * t1030 - t111 * t1045 + WAM7_C(0.55) * (t111 * t1046 + t114 * t1049);
+    const wam7_real_t t1054 = WAM7_C(0.07745783389167521) * t1053;
+    const wam7_real_t t1055 = WAM7_C(0.07745783389167521) * t1051;
+    const wam7_real_t t1056 = WAM7_C(2.0) * t1041; /* link j4: derivatives */
+    const wam7_real_t t1057 = WAM7_C(2.0) * t1043;
+    const wam7_real_t t1058 = WAM7_C(0.12156576707999026) * (t1044 + (t1039 - (t228 * t1056 + t217 * t1057)));
+    const wam7_real_t t1059 = t568 * t1052 - t572 * t1054 + t575 * t1055 - t579 * t1058;
+    const wam7_real_t t1060 = WAM7_C(0.09) * t218; /* link j7: derivatives */
+    const wam7_real_t t1061 = t32 * t924 - t30 * t925 - t60 * t1060; /* link j5: derivatives */
+    const wam7_real_t t1062 = WAM7_C(-2.0) * t1007; /* link j7: derivatives */
+    const wam7_real_t t1063 = WAM7_C(0.6) * t218;
+    const wam7_real_t t1064 = t956 + (t60 * t1063 - t39 * t1062); /* link j5: derivatives */
+    const wam7_real_t t1065 = t87 * t467 - t85 * t474 - t40 * t997 - (t228 * t1061 + t217 * t1064);
+    const wam7_real_t t1066 = WAM7_C(0.4469713223199599) * (t1065 - t1028);
+    /* link j6: derivatives */
+    const wam7_real_t t1067 = t32 * t927 - t30 * t822 + (t37 * t1062 - t77 * t1060);
+    const wam7_real_t t1068 = t975 + (t48 * t1062 + t77 * t1063);
+    const wam7_real_t t1069 = t78 * t474 + t80 * t467 - t49 * t997 - (t228 * t1067 + t217 * t1068);
+    const wam7_real_t t1070 = WAM7_C(0.4469713223199599) * (t1069 + (t48 * t505 + t37 * t497));
     /* link j7: derivatives */
-    const wam7_real_t t942 = t118 * t690 + t115 * t692 + t125 * t615 + WAM7_C(2.0) * (t170 * t208
-        + t79 * t202);
-    const wam7_real_t t943 = WAM7_C(0.9996900960702182) * t942;
-    const wam7_real_t t944 = t937 + t939 * t637 + t941 * t658 + t943 * t680;
-    ddq_by_dq[1] = t944;
-    const wam7_real_t t945 = t932 * t698 - t926 * t699 + t934 * t701 - t936 * t703;
-    const wam7_real_t t946 = t945 + t939 * t706 + t941 * t708 + t943 * t710;
-    ddq_by_dq[8] = t946;
-    const wam7_real_t t947 = t932 * t712 - t926 * t701 + t934 * t713 - t936 * t715;
-    const wam7_real_t t948 = t947 + t939 * t718 + t941 * t720 + t943 * t722;
-    ddq_by_dq[15] = t948;
-    const wam7_real_t t949 = t932 * t724 - t926 * t725 + t934 * t726 - t936 * t728;
-    const wam7_real_t t950 = t949 + t939 * t731 + t941 * t733 + t943 * t735;
-    ddq_by_dq[22] = t950;
-    const wam7_real_t t951 = t932 * t737 - t926 * t738 + t934 * t739 - t936 * t740;
-    const wam7_real_t t952 = t951 + t939 * t743 + t941 * t746 + t943 * t749;
-    ddq_by_dq[29] = t952;
-    const wam7_real_t t953 = t932 * t751 - t926 * t752 + t934 * t753 - t936 * t754;
-    const wam7_real_t t954 = t953 + t939 * t746 + t941 * t757 + t943 * t760;
-    ddq_by_dq[36] = t954;
-    const wam7_real_t t955 = t932 * t762 - t926 * t763 + t934 * t764 - t936 * t765;
-    const wam7_real_t t956 = t955 + t939 * t767 + t941 * t768 + t943 * t771;
-    ddq_by_dq[43] = t956;
-    ddq_by_input[1] = t454;
-    ddq_by_input[8] = t699;
-    ddq_by_input[15] = t701;
-    ddq_by_input[22] = t725;
-    ddq_by_input[29] = t738;
-    ddq_by_input[36] = t752;
-    ddq_by_input[43] = t763;
-    const wam7_real_t t957 = t393 + t276; /* link j4: motion */
-    const wam7_real_t t958 = WAM7_C(2.0) * t204; /* link j3: derivatives */
-    const wam7_real_t t959 = WAM7_C(2.0) * t203;
-    const wam7_real_t t960 = t551 * t958 + t560 * t959 + (t113 * t777 + t117 * t785 - t153 * t957);
-    const wam7_real_t t961 = t879 + (t960 + t121 * t816);
-    const wam7_real_t t962 = t568 * t958 + t554 * t959 - (t117 * t777 - t114 * t785 - t154 * t957);
-    const wam7_real_t t963 = t121 * t823;
-    const wam7_real_t t964 = t870 - (t963 - t962);
-    const wam7_real_t t965 = t880 + (t591 * t958 + (t156 * t957 + t121 * t777));
-    const wam7_real_t t966 = t882 - (t155 * t957 + t121 * t785 - t591 * t959);
-    const wam7_real_t t967 = t115 * t961 - t118 * t964 + WAM7_C(0.55) * (t115 * t965 - t118 * t966);
-    const wam7_real_t t968 = t105 * t957 + (t153 * t777 + t154 * t785);
-    const wam7_real_t t969 = t156 * t816 + t155 * t823;
-    const wam7_real_t t970 = t168 * (t601 * t958 + t602 * t959 + t968 - t969);
-    const wam7_real_t t971 = WAM7_C(0.05209961446285298) * (t166 * t967 + t970);
-    const wam7_real_t t972 = t118 * t961 + t115 * t964 + WAM7_C(0.55) * (t115 * t966 + t118 * t965);
-    const wam7_real_t t973 = WAM7_C(0.07745783389167521) * t972;
-    const wam7_real_t t974 = WAM7_C(0.07745783389167521) * (t204 * t610 + t203 * t611 + t968 - t969);
-    const wam7_real_t t975 = t204 * t624 + t203 * t627 + (t74 * t957 + (t148 * t785 - t116 * t777));
-    const wam7_real_t t976 = WAM7_C(0.12156576707999026) * (t975 - t963);
-    const wam7_real_t t977 = t586 * t971 - t454 * t973 + t609 * t974 - t620 * t976;
-    const wam7_real_t t978 = t204 * t646 + t203 * t648 + (t91 * t957 + (t139 * t777 + t141 * t785));
-    const wam7_real_t t979 = WAM7_C(0.4469713223199599) * (t978 + (t62 * t816 - t142 * t823));
-    const wam7_real_t t980 = t204 * t666 + t203 * t668 + (t84 * t957 + (t131 * t777 + t133 * t785));
-    const wam7_real_t t981 = WAM7_C(0.4469713223199599) * (t980 + (t80 * t816 - t134 * t823));
-    const wam7_real_t t982 = t204 * t690 + t203 * t692 + (t79 * t957 + (t124 * t777 + t126 * t785));
-    const wam7_real_t t983 = WAM7_C(0.9996900960702182) * (t982 + (t75 * t816 - t127 * t823));
-    const wam7_real_t t984 = t977 + t637 * t979 + t658 * t981 + t680 * t983;
-    ddq_by_q[2] = t984;
-    const wam7_real_t t985 = t698 * t971 - t699 * t973 + t701 * t974 - t703 * t976;
-    const wam7_real_t t986 = t985 + t706 * t979 + t708 * t981 + t710 * t983;
-    ddq_by_q[9] = t986;
-    const wam7_real_t t987 = t712 * t971 - t701 * t973 + t713 * t974 - t715 * t976;
-    const wam7_real_t t988 = t987 + t718 * t979 + t720 * t981 + t722 * t983;
-    ddq_by_q[16] = t988;
-    const wam7_real_t t989 = t724 * t971 - t725 * t973 + t726 * t974 - t728 * t976;
-    const wam7_real_t t990 = t989 + t731 * t979 + t733 * t981 + t735 * t983;
-    ddq_by_q[23] = t990;
-    const wam7_real_t t991 = t737 * t971 - t738 * t973 + t739 * t974 - t740 * t976;
-    const wam7_real_t t992 = t991 + t743 * t979 + t746 * t981 + t749 * t983;
-    ddq_by_q[30] = t992;
-    const wam7_real_t t993 = t751 * t971 - t752 * t973 + t753 * t974 - t754 * t976;
-    const wam7_real_t t994 = t993 + t746 * t979 + t757 * t981 + t760 * t983;
-    ddq_by_q[37] = t994;
-    const wam7_real_t t995 = t762 * t971 - t763 * t973 + t764 * t974 - t765 * t976;
-    const wam7_real_t t996 = t995 + t767 * t979 + t768 * t981 + t771 * t983;
-    ddq_by_q[44] = t996;
-    const wam7_real_t t997 = WAM7_C(2.0) * t578 + (t117 * t959 - t113 * t958);
-    const wam7_real_t t998 = WAM7_C(-2.0) * t579 + (t117 * t958 + t114 * t959);
-    const wam7_real_t t999 = WAM7_C(2.0) * t581 + t121 * t959;
-    const wam7_real_t t1000 = WAM7_C(2.0) * t580 - t121 * t958;
-    const wam7_real_t t1001 = t118 * t997 + t115 * t998 + WAM7_C(0.55) * (t118 * t1000 - t115 * t999);
-    const wam7_real_t t1002 = WAM7_C(0.07745783389167521) * t1001;
-    const wam7_real_t t1003 = t115 * t997 - t118 * t998 + WAM7_C(0.55) * (t118 * t999 + t115 * t1000);
-    const wam7_real_t t1004 = t166 * t1003 + t168 * (t613 + (t154 * t959 - t153 * t958));
-    const wam7_real_t t1005 = WAM7_C(0.05209961446285298) * t1004;
-    const wam7_real_t t1006 = WAM7_C(0.07745783389167521) * (t613 + WAM7_C(2.0) * (t154 * t203
-        - t153 * t204));
-    const wam7_real_t t1007 = WAM7_C(-61.81619256017505) * parameters[FV3] + t1006;
-    const wam7_real_t t1008 = WAM7_C(0.12156576707999026) * (t629 + WAM7_C(2.0) * (t116 * t204
-        + t148 * t203));
-    const wam7_real_t t1009 = t1005 * t586 - t1002 * t454 + t1007 * t609 - t1008 * t620;
-    const wam7_real_t t1010 = WAM7_C(0.4469713223199599) * (t650 + WAM7_C(2.0) * (t141 * t203 - t139 * t204));
-    const wam7_real_t t1011 = WAM7_C(0.4469713223199599) * (t670 + WAM7_C(2.0) * (t133 * t203 - t131 * t204));
-    const wam7_real_t t1012 = WAM7_C(0.9996900960702182) * (t694 + WAM7_C(2.0) * (t126 * t203 - t124 * t204));
-    const wam7_real_t t1013 = t1009 + t1010 * t637 + t1011 * t658 + t1012 * t680;
-    ddq_by_dq[2] = t1013;
-    const wam7_real_t t1014 = t1005 * t698 - t1002 * t699 + t1007 * t701 - t1008 * t703;
-    const wam7_real_t t1015 = t1014 + t1010 * t706 + t1011 * t708 + t1012 * t710;
-    ddq_by_dq[9] = t1015;
-    const wam7_real_t t1016 = t1005 * t712 - t1002 * t701 + t1007 * t713 - t1008 * t715;
-    const wam7_real_t t1017 = t1016 + t1010 * t718 + t1011 * t720 + t1012 * t722;
-    ddq_by_dq[16] = t1017;
-    const wam7_real_t t1018 = t1005 * t724 - t1002 * t725 + t1007 * t726 - t1008 * t728;
-    const wam7_real_t t1019 = t1018 + t1010 * t731 + t1011 * t733 + t1012 * t735;
-    ddq_by_dq[23] = t1019;
-    const wam7_real_t t1020 = t1005 * t737 - t1002 * t738 + t1007 * t739 - t1008 * t740;
-    const wam7_real_t t1021 = t1020 + t1010 * t743 + t1011 * t746 + t1012 * t749;
-    ddq_by_dq[30] = t1021;
-    const wam7_real_t t1022 = t1005 * t751 - t1002 * t752 + t1007 * t753 - t1008 * t754;
-    const wam7_real_t t1023 = t1022 + t1010 * t746 + t1011 * t757 + t1012 * t760;
-    ddq_by_dq[37] = t1023;
-    const wam7_real_t t1024 = t1005 * t762 - t1002 * t763 + t1007 * t764 - t1008 * t765;
-    const wam7_real_t t1025 = t1024 + t1010 * t767 + t1011 * t768 + t1012 * t771;
-    ddq_by_dq[44] = t1025;
-    ddq_by_input[2] = t609;
-    ddq_by_input[9] = t701;
-    ddq_by_input[16] = t713;
-    ddq_by_input[23] = t726;
-    ddq_by_input[30] = t739;
-    ddq_by_input[37] = t753;
-    ddq_by_input[44] = t764;
-    const wam7_real_t t1026 = t300 + t272; /* link j5: motion */
-    const wam7_real_t t1027 = WAM7_C(-2.0) * t229; /* link j4: derivatives */
-    const wam7_real_t t1028 = WAM7_C(2.0) * t218;
-    const wam7_real_t t1029 = t522 * t1027 - t537 * t1028 + (t98 * t788 - t97 * t795 - t70 * t1026);
-    const wam7_real_t t1030 = t868 + (t1029 + t41 * t820);
-    const wam7_real_t t1031 = t532 * t1027 + t525 * t1028 - (t72 * t1026 + (t98 * t795 - t96 * t788));
-    const wam7_real_t t1032 = t41 * t828;
-    const wam7_real_t t1033 = t864 + (t1031 - t1032);
-    const wam7_real_t t1034 = t73 * t1030 - t71 * t1033;
-    const wam7_real_t t1035 = t877 + (t565 * t1028 + (t102 * t1026 - t41 * t788));
-    const wam7_real_t t1036 = t876 + (t565 * t1027 + (t101 * t1026 + t41 * t795));
-    const wam7_real_t t1037 = t72 * t788 - t70 * t795 - t65 * t1026;
-    const wam7_real_t t1038 = t101 * t820 - t102 * t828;
-    const wam7_real_t t1039 = t564 * t1028 - t562 * t1027 - t1037 - t1038 - WAM7_C(0.045) * (t71 * t1035
-        - t73 * t1036);
-    const wam7_real_t t1040 = t73 * t1035 + t71 * t1036;
-    const wam7_real_t t1041 = t541 * t1027 - t540 * t1028 + (t102 * t795 + t101 * t788);
-    const wam7_real_t t1042 = t115 * t1034 + t118 * t1039 + WAM7_C(0.55) * (t115 * t1041 - t118 * t1040);
-    const wam7_real_t t1043 = t71 * t1030 + t73 * t1033 + WAM7_C(0.045) * t1041;
-    const wam7_real_t t1044 = WAM7_C(0.05209961446285298) * (t166 * t1042 + t168 * t1043);
-    const wam7_real_t t1045 = t118 * t1034 - t115 * t1039 + WAM7_C(0.55) * (t115 * t1040 + t118 * t1041);
-    const wam7_real_t t1046 = WAM7_C(0.07745783389167521) * t1045;
-    const wam7_real_t t1047 = WAM7_C(0.07745783389167521) * t1043;
-    const wam7_real_t t1048 = WAM7_C(0.12156576707999026) * (t1038 + (t1037 - (t229 * t621 + t218 * t622)));
-    const wam7_real_t t1049 = t586 * t1044 - t454 * t1046 + t609 * t1047 - t620 * t1048;
-    const wam7_real_t t1050 = t90 * t788 - t88 * t795 - t42 * t1026 - (t229 * t641 + t218 * t645);
-    const wam7_real_t t1051 = WAM7_C(0.4469713223199599) * (t1050 - t1032);
-    const wam7_real_t t1052 = t81 * t795 + t83 * t788 - t51 * t1026 - (t229 * t663 + t218 * t665);
-    const wam7_real_t t1053 = WAM7_C(0.4469713223199599) * (t1052 + (t50 * t828 + t39 * t820));
-    const wam7_real_t t1054 = t76 * t795 + t78 * t788 - t47 * t1026 - (t229 * t687 + t218 * t689);
-    const wam7_real_t t1055 = WAM7_C(0.9996900960702182) * (t1054 + (t45 * t828 + t46 * t820));
-    const wam7_real_t t1056 = t1049 + t637 * t1051 + t658 * t1053 + t680 * t1055;
-    ddq_by_q[3] = t1056;
-    const wam7_real_t t1057 = t698 * t1044 - t699 * t1046 + t701 * t1047 - t703 * t1048;
-    const wam7_real_t t1058 = t1057 + t706 * t1051 + t708 * t1053 + t710 * t1055;
-    ddq_by_q[10] = t1058;
-    const wam7_real_t t1059 = t712 * t1044 - t701 * t1046 + t713 * t1047 - t715 * t1048;
-    const wam7_real_t t1060 = t1059 + t718 * t1051 + t720 * t1053 + t722 * t1055;
-    ddq_by_q[17] = t1060;
-    const wam7_real_t t1061 = t724 * t1044 - t725 * t1046 + t726 * t1047 - t728 * t1048;
-    const wam7_real_t t1062 = t1061 + t731 * t1051 + t733 * t1053 + t735 * t1055;
-    ddq_by_q[24] = t1062;
-    const wam7_real_t t1063 = t737 * t1044 - t738 * t1046 + t739 * t1047 - t740 * t1048;
-    const wam7_real_t t1064 = t1063 + t743 * t1051 + t746 * t1053 + t749 * t1055;
-    ddq_by_q[31] = t1064;
-    const wam7_real_t t1065 = t751 * t1044 - t752 * t1046 + t753 * t1047 - t754 * t1048;
-    const wam7_real_t t1066 = t1065 + t746 * t1051 + t757 * t1053 + t760 * t1055;
-    ddq_by_q[38] = t1066;
-    const wam7_real_t t1067 = t762 * t1044 - t763 * t1046 + t764 * t1047 - t765 * t1048;
-    const wam7_real_t t1068 = t1067 + t767 * t1051 + t768 * t1053 + t771 * t1055;
-    ddq_by_q[45] = t1068;
-    const wam7_real_t t1069 = WAM7_C(2.0) * t557 + (t97 * t1027 + t98 * t1028);
-    const wam7_real_t t1070 = WAM7_C(2.0) * t558 + (t98 * t1027 + t96 * t1028);
-    const wam7_real_t t1071 = t73 * t1069 - t71 * t1070;
-    const wam7_real_t t1072 = WAM7_C(2.0) * t540 - t41 * t1027;
-    const wam7_real_t t1073 = WAM7_C(-2.0) * t541 + t41 * t1028;
-    const wam7_real_t t1074 = WAM7_C(0.045) * (t71 * t1073 + t73 * t1072) - (t625 + (t70 * t1027
-        + t72 * t1028));
-    const wam7_real_t t1075 = t73 * t1073 - t71 * t1072;
-    const wam7_real_t t1076 = t101 * t1028 - t102 * t1027;
-    const wam7_real_t t1077 = t118 * t1071 - t115 * t1074 + WAM7_C(0.55) * (t118 * t1076 - t115 * t1075);
-    const wam7_real_t t1078 = WAM7_C(0.07745783389167521) * t1077;
-    const wam7_real_t t1079 = t115 * t1071 + t118 * t1074 + WAM7_C(0.55) * (t118 * t1075 + t115 * t1076);
-    const wam7_real_t t1080 = t71 * t1069 + t73 * t1070 + WAM7_C(0.045) * t1076;
-    const wam7_real_t t1081 = WAM7_C(0.05209961446285298) * (t166 * t1079 + t168 * t1080);
-    const wam7_real_t t1082 = WAM7_C(0.07745783389167521) * t1080;
-    const wam7_real_t t1083 = WAM7_C(0.12156576707999026) * (t625 + WAM7_C(2.0) * (t72 * t218 - t70 * t229));
-    const wam7_real_t t1084 = WAM7_C(39.387308533916844) * parameters[FV4] + t1083;
-    const wam7_real_t t1085 = t1081 * t586 - t1078 * t454 + t1082 * t609 - t1084 * t620;
-    const wam7_real_t t1086 = WAM7_C(0.4469713223199599) * (t647 + WAM7_C(2.0) * (t90 * t218 - t88 * t229));
-    const wam7_real_t t1087 = WAM7_C(0.4469713223199599) * (t667 + WAM7_C(2.0) * (t81 * t229 + t83 * t218));
-    const wam7_real_t t1088 = WAM7_C(0.9996900960702182) * (t691 + WAM7_C(2.0) * (t76 * t229 + t78 * t218));
-    const wam7_real_t t1089 = t1085 + t1086 * t637 + t1087 * t658 + t1088 * t680;
-    ddq_by_dq[3] = t1089;
-    const wam7_real_t t1090 = t1081 * t698 - t1078 * t699 + t1082 * t701 - t1084 * t703;
-    const wam7_real_t t1091 = t1090 + t1086 * t706 + t1087 * t708 + t1088 * t710;
-    ddq_by_dq[10] = t1091;
-    const wam7_real_t t1092 = t1081 * t712 - t1078 * t701 + t1082 * t713 - t1084 * t715;
-    const wam7_real_t t1093 = t1092 + t1086 * t718 + t1087 * t720 + t1088 * t722;
-    ddq_by_dq[17] = t1093;
-    const wam7_real_t t1094 = t1081 * t724 - t1078 * t725 + t1082 * t726 - t1084 * t728;
-    const wam7_real_t t1095 = t1094 + t1086 * t731 + t1087 * t733 + t1088 * t735;
-    ddq_by_dq[24] = t1095;
-    const wam7_real_t t1096 = t1081 * t737 - t1078 * t738 + t1082 * t739 - t1084 * t740;
-    const wam7_real_t t1097 = t1096 + t1086 * t743 + t1087 * t746 + t1088 * t749;
-    ddq_by_dq[31] = t1097;
-    const wam7_real_t t1098 = t1081 * t751 - t1078 * t752 + t1082 * t753 - t1084 * t754;
-    const wam7_real_t t1099 = t1098 + t1086 * t746 + t1087 * t757 + t1088 * t760;
-    ddq_by_dq[38] = t1099;
-    const wam7_real_t t1100 = t1081 * t762 - t1078 * t763 + t1082 * t764 - t1084 * t765;
-    const wam7_real_t t1101 = t1100 + t1086 * t767 + t1087 * t768 + t1088 * t771;
-    ddq_by_dq[45] = t1101;
-    ddq_by_input[3] = t620;
-    ddq_by_input[10] = t703;
-    ddq_by_input[17] = t715;
-    ddq_by_input[24] = t728;
-    ddq_by_input[31] = t740;
-    ddq_by_input[38] = t754;
-    ddq_by_input[45] = t765;
-    const wam7_real_t t1102 = t49 * t839;
-    const wam7_real_t t1103 = t8 * t799;
-    const wam7_real_t t1104 = t346 + t337; /* link j6: motion */
-    const wam7_real_t t1105 = WAM7_C(2.0) * t223; /* link j5: derivatives */
-    const wam7_real_t t1106 = WAM7_C(2.0) * t222;
-    const wam7_real_t t1107 = t498 * t1105 + t488 * t1106 - (t33 * t1104 + (t1103 - t59 * t791));
-    const wam7_real_t t1108 = t850 + (t1102 - t1107);
-    const wam7_real_t t1109 = t485 * t1105 + t494 * t1106 + (t31 * t1104 + (t58 * t791 - t59 * t799));
-    const wam7_real_t t1110 = t854 + (t1109 + t49 * t827);
-    const wam7_real_t t1111 = t859 + (t513 * t1105 - (t40 * t1104 + t49 * t791));
-    const wam7_real_t t1112 = t861 + (t513 * t1106 + (t36 * t1104 + t49 * t799));
-    const wam7_real_t t1113 = t34 * t1111 - t32 * t1112;
-    const wam7_real_t t1114 = t34 * t1110 + t32 * t1108 + WAM7_C(0.3) * t1113;
-    const wam7_real_t t1115 = WAM7_C(0.045) * t1113;
-    const wam7_real_t t1116 = t40 * t827 + t36 * t839;
-    const wam7_real_t t1117 = t26 * t1104 + (t31 * t791 + t33 * t799);
-    const wam7_real_t t1118 = t527 * t1105 + t528 * t1106 + t1117 + t1116 - t1115;
-    const wam7_real_t t1119 = t73 * t1114 - t71 * t1118;
-    const wam7_real_t t1120 = t34 * t1112 + t32 * t1111;
-    const wam7_real_t t1121 = t508 * t1105 + t506 * t1106 + (t36 * t791 - t40 * t799);
-    const wam7_real_t t1122 = t32 * t1110 - t34 * t1108 + (WAM7_C(0.045) * t1121 + WAM7_C(0.3) * t1120);
-    const wam7_real_t t1123 = t1122 + WAM7_C(0.045) * (t71 * t1120 - t73 * t1121);
-    const wam7_real_t t1124 = t73 * t1120 + t71 * t1121;
-    const wam7_real_t t1125 = t115 * t1119 - t118 * t1123 + WAM7_C(0.55) * (t115 * t1113 - t118 * t1124);
-    const wam7_real_t t1126 = t1115 + (t71 * t1114 + t73 * t1118);
-    const wam7_real_t t1127 = WAM7_C(0.05209961446285298) * (t166 * t1125 + t168 * t1126);
-    const wam7_real_t t1128 = t118 * t1119 + t115 * t1123 + WAM7_C(0.55) * (t115 * t1124 + t118 * t1113);
-    const wam7_real_t t1129 = WAM7_C(0.07745783389167521) * t1128;
-    const wam7_real_t t1130 = WAM7_C(0.07745783389167521) * t1126;
-    const wam7_real_t t1131 = WAM7_C(0.12156576707999026) * t1122;
-    const wam7_real_t t1132 = t586 * t1127 - t454 * t1129 + t609 * t1130 - t620 * t1131;
-    const wam7_real_t t1133 = WAM7_C(0.4469713223199599) * (t1116 + (t223 * t638 + t222 * t639 + t1117));
-    const wam7_real_t t1134 = t223 * t661 + t222 * t662 + (t16 * t1104 + (t48 * t791 + t1103));
-    const wam7_real_t t1135 = WAM7_C(0.4469713223199599) * (t1134 + t1102);
-    const wam7_real_t t1136 = t223 * t685 + t222 * t686 + (t18 * t1104 + (t43 * t791 + t3 * t799));
-    const wam7_real_t t1137 = WAM7_C(0.9996900960702182) * (t1136 + (t44 * t839 - t37 * t827));
-    const wam7_real_t t1138 = t1132 + t637 * t1133 + t658 * t1135 + t680 * t1137;
-    ddq_by_q[4] = t1138;
-    const wam7_real_t t1139 = t698 * t1127 - t699 * t1129 + t701 * t1130 - t703 * t1131;
-    const wam7_real_t t1140 = t1139 + t706 * t1133 + t708 * t1135 + t710 * t1137;
-    ddq_by_q[11] = t1140;
-    const wam7_real_t t1141 = t712 * t1127 - t701 * t1129 + t713 * t1130 - t715 * t1131;
-    const wam7_real_t t1142 = t1141 + t718 * t1133 + t720 * t1135 + t722 * t1137;
-    ddq_by_q[18] = t1142;
-    const wam7_real_t t1143 = t724 * t1127 - t725 * t1129 + t726 * t1130 - t728 * t1131;
-    const wam7_real_t t1144 = t1143 + t731 * t1133 + t733 * t1135 + t735 * t1137;
-    ddq_by_q[25] = t1144;
-    const wam7_real_t t1145 = t737 * t1127 - t738 * t1129 + t739 * t1130 - t740 * t1131;
-    const wam7_real_t t1146 = t1145 + t743 * t1133 + t746 * t1135 + t749 * t1137;
-    ddq_by_q[32] = t1146;
-    const wam7_real_t t1147 = t751 * t1127 - t752 * t1129 + t753 * t1130 - t754 * t1131;
-    const wam7_real_t t1148 = t1147 + t746 * t1133 + t757 * t1135 + t760 * t1137;
-    ddq_by_q[39] = t1148;
-    const wam7_real_t t1149 = t762 * t1127 - t763 * t1129 + t764 * t1130 - t765 * t1131;
-    const wam7_real_t t1150 = t1149 + t767 * t1133 + t768 * t1135 + t771 * t1137;
-    ddq_by_q[46] = t1150;
-    const wam7_real_t t1151 = WAM7_C(2.0) * t534 + (t58 * t1105 + t59 * t1106);
-    const wam7_real_t t1152 = WAM7_C(-2.0) * t535 + (t59 * t1105 + t8 * t1106);
-    const wam7_real_t t1153 = WAM7_C(2.0) * t508 + t49 * t1106;
-    const wam7_real_t t1154 = WAM7_C(2.0) * t506 - t49 * t1105;
-    const wam7_real_t t1155 = t32 * t1153 + t34 * t1154;
-    const wam7_real_t t1156 = t34 * t1151 - t32 * t1152 + WAM7_C(0.3) * t1155;
-    const wam7_real_t t1157 = WAM7_C(0.045) * t1155;
-    const wam7_real_t t1158 = t642 - (t33 * t1106 - t31 * t1105) - t1157;
-    const wam7_real_t t1159 = t73 * t1156 - t71 * t1158;
-    const wam7_real_t t1160 = t32 * t1154 - t34 * t1153;
-    const wam7_real_t t1161 = t36 * t1105 + t40 * t1106;
-    const wam7_real_t t1162 = t32 * t1151 + t34 * t1152 + (WAM7_C(0.045) * t1161 + WAM7_C(0.3) * t1160);
-    const wam7_real_t t1163 = WAM7_C(0.045) * (t73 * t1161 - t71 * t1160) - t1162;
-    const wam7_real_t t1164 = t73 * t1160 + t71 * t1161;
-    const wam7_real_t t1165 = t118 * t1159 - t115 * t1163 + WAM7_C(0.55) * (t115 * t1164 + t118 * t1155);
-    const wam7_real_t t1166 = WAM7_C(0.07745783389167521) * t1165;
-    const wam7_real_t t1167 = t115 * t1159 + t118 * t1163 + WAM7_C(0.55) * (t115 * t1155 - t118 * t1164);
-    const wam7_real_t t1168 = t1157 + (t71 * t1156 + t73 * t1158);
-    const wam7_real_t t1169 = WAM7_C(0.05209961446285298) * (t166 * t1167 + t168 * t1168);
-    const wam7_real_t t1170 = WAM7_C(0.07745783389167521) * t1168;
-    const wam7_real_t t1171 = WAM7_C(0.12156576707999026) * t1162;
-    const wam7_real_t t1172 = t1169 * t586 - t1166 * t454 + t1170 * t609 - t1171 * t620;
-    const wam7_real_t t1173 = WAM7_C(0.4469713223199599) * (t642 + WAM7_C(2.0) * (t31 * t223 - t33 * t222));
-    const wam7_real_t t1174 = WAM7_C(-40.16949152542373) * parameters[FV5] + t1173;
-    const wam7_real_t t1175 = WAM7_C(0.4469713223199599) * (t664 + WAM7_C(2.0) * (t48 * t223 - t8 * t222));
-    const wam7_real_t t1176 = WAM7_C(0.9996900960702182) * (t688 + WAM7_C(2.0) * (t43 * t223 - t3 * t222));
-    const wam7_real_t t1177 = t1172 + t1174 * t637 + t1175 * t658 + t1176 * t680;
-    ddq_by_dq[4] = t1177;
-    const wam7_real_t t1178 = t1169 * t698 - t1166 * t699 + t1170 * t701 - t1171 * t703;
-    const wam7_real_t t1179 = t1178 + t1174 * t706 + t1175 * t708 + t1176 * t710;
-    ddq_by_dq[11] = t1179;
-    const wam7_real_t t1180 = t1169 * t712 - t1166 * t701 + t1170 * t713 - t1171 * t715;
-    const wam7_real_t t1181 = t1180 + t1174 * t718 + t1175 * t720 + t1176 * t722;
-    ddq_by_dq[18] = t1181;
-    const wam7_real_t t1182 = t1169 * t724 - t1166 * t725 + t1170 * t726 - t1171 * t728;
-    const wam7_real_t t1183 = t1182 + t1174 * t731 + t1175 * t733 + t1176 * t735;
-    ddq_by_dq[25] = t1183;
-    const wam7_real_t t1184 = t1169 * t737 - t1166 * t738 + t1170 * t739 - t1171 * t740;
-    const wam7_real_t t1185 = t1184 + t1174 * t743 + t1175 * t746 + t1176 * t749;
-    ddq_by_dq[32] = t1185;
-    const wam7_real_t t1186 = t1169 * t751 - t1166 * t752 + t1170 * t753 - t1171 * t754;
-    const wam7_real_t t1187 = t1186 + t1174 * t746 + t1175 * t757 + t1176 * t760;
-    ddq_by_dq[39] = t1187;
-    const wam7_real_t t1188 = t1169 * t762 - t1166 * t763 + t1170 * t764 - t1171 * t765;
-    const wam7_real_t t1189 = t1188 + t1174 * t767 + t1175 * t768 + t1176 * t771;
-    ddq_by_dq[46] = t1189;
-    ddq_by_input[4] = t637;
-    ddq_by_input[11] = t706;
-    ddq_by_input[18] = t718;
-    ddq_by_input[25] = t731;
-    ddq_by_input[32] = t743;
-    ddq_by_input[39] = t746;
-    ddq_by_input[46] = t767;
-    const wam7_real_t t1190 = t329 + t317; /* link j7: motion */
-    const wam7_real_t t1191 = WAM7_C(2.0) * t242; /* link j6: derivatives */
-    const wam7_real_t t1192 = WAM7_C(2.0) * t250;
-    const wam7_real_t t1193 = t468 * t1191 - t480 * t1192 + (t12 * t1190 + (t23 * t802 - t22 * t809));
-    const wam7_real_t t1194 = t846 + (t1193 + t35 * t842);
-    const wam7_real_t t1195 = parameters[ZZ7] * t802;
-    const wam7_real_t t1196 = t476 * t1191 + t471 * t1192 + (t14 * t1190 + (t1195 - t23 * t809));
-    const wam7_real_t t1197 = t35 * t831;
-    const wam7_real_t t1198 = t1197 + t1196 - t840;
-    const wam7_real_t t1199 = t15 * t1194 - t13 * t1198;
-    const wam7_real_t t1200 = t8 * t1190 + (t14 * t802 - t12 * t809);
-    const wam7_real_t t1201 = t38 * t842 + parameters[MY6R] * t831;
-    const wam7_real_t t1202 = t495 * t1191 - t496 * t1192 + t1200 + t1201;
-    const wam7_real_t t1203 = t858 - (t507 * t1192 + (parameters[MY6R] * t1190 + t35 * t802));
-    const wam7_real_t t1204 = t857 + (t507 * t1191 + (t38 * t1190 - t35 * t809));
-    const wam7_real_t t1205 = t13 * t1204 - t15 * t1203;
-    const wam7_real_t t1206 = parameters[MY6R] * t809 + t38 * t802 - (t502 * t1191 + t505 * t1192);
-    const wam7_real_t t1207 = t34 * t1206 - t32 * t1205;
-    const wam7_real_t t1208 = t34 * t1199 + t32 * t1202 + WAM7_C(0.3) * t1207;
-    const wam7_real_t t1209 = t13 * t1194 + t15 * t1198;
-    const wam7_real_t t1210 = WAM7_C(0.045) * t1207;
-    const wam7_real_t t1211 = t1209 - t1210;
-    const wam7_real_t t1212 = t73 * t1208 - t71 * t1211;
-    const wam7_real_t t1213 = t13 * t1203 + t15 * t1204;
-    const wam7_real_t t1214 = t34 * t1205 + t32 * t1206;
-    const wam7_real_t t1215 = t32 * t1199 - t34 * t1202 + (WAM7_C(0.045) * t1213 + WAM7_C(0.3) * t1214);
-    const wam7_real_t t1216 = t1215 + WAM7_C(0.045) * (t71 * t1214 - t73 * t1213);
-    const wam7_real_t t1217 = t73 * t1214 + t71 * t1213;
-    const wam7_real_t t1218 = t115 * t1212 - t118 * t1216 + WAM7_C(0.55) * (t115 * t1207 - t118 * t1217);
-    const wam7_real_t t1219 = t1210 + (t71 * t1208 + t73 * t1211);
-    const wam7_real_t t1220 = WAM7_C(0.05209961446285298) * (t166 * t1218 + t168 * t1219);
-    const wam7_real_t t1221 = t118 * t1212 + t115 * t1216 + WAM7_C(0.55) * (t115 * t1217 + t118 * t1207);
-    const wam7_real_t t1222 = WAM7_C(0.07745783389167521) * t1221;
-    const wam7_real_t t1223 = WAM7_C(0.07745783389167521) * t1219;
-    const wam7_real_t t1224 = WAM7_C(0.12156576707999026) * t1215;
-    const wam7_real_t t1225 = t586 * t1220 - t454 * t1222 + t609 * t1223 - t620 * t1224;
-    const wam7_real_t t1226 = WAM7_C(0.4469713223199599) * t1209;
-    const wam7_real_t t1227 = WAM7_C(0.4469713223199599) * (t1201 + (t242 * t659 - t250 * t660 + t1200));
-    const wam7_real_t t1228 = t242 * t683 - t250 * t684 + (t3 * t1190 + (t1195 - t17 * t809));
-    const wam7_real_t t1229 = WAM7_C(0.9996900960702182) * (t1228 + t1197);
-    const wam7_real_t t1230 = t1225 + t637 * t1226 + t658 * t1227 + t680 * t1229;
-    ddq_by_q[5] = t1230;
-    const wam7_real_t t1231 = t698 * t1220 - t699 * t1222 + t701 * t1223 - t703 * t1224;
-    const wam7_real_t t1232 = t1231 + t706 * t1226 + t708 * t1227 + t710 * t1229;
-    ddq_by_q[12] = t1232;
-    const wam7_real_t t1233 = t712 * t1220 - t701 * t1222 + t713 * t1223 - t715 * t1224;
-    const wam7_real_t t1234 = t1233 + t718 * t1226 + t720 * t1227 + t722 * t1229;
-    ddq_by_q[19] = t1234;
-    const wam7_real_t t1235 = t724 * t1220 - t725 * t1222 + t726 * t1223 - t728 * t1224;
-    const wam7_real_t t1236 = t1235 + t731 * t1226 + t733 * t1227 + t735 * t1229;
-    ddq_by_q[26] = t1236;
-    const wam7_real_t t1237 = t737 * t1220 - t738 * t1222 + t739 * t1223 - t740 * t1224;
-    const wam7_real_t t1238 = t1237 + t743 * t1226 + t746 * t1227 + t749 * t1229;
-    ddq_by_q[33] = t1238;
-    const wam7_real_t t1239 = t751 * t1220 - t752 * t1222 + t753 * t1223 - t754 * t1224;
-    const wam7_real_t t1240 = t1239 + t746 * t1226 + t757 * t1227 + t760 * t1229;
-    ddq_by_q[40] = t1240;
-    const wam7_real_t t1241 = t762 * t1220 - t763 * t1222 + t764 * t1223 - t765 * t1224;
-    const wam7_real_t t1242 = t1241 + t767 * t1226 + t768 * t1227 + t771 * t1229;
-    ddq_by_q[47] = t1242;
-    const wam7_real_t t1243 = WAM7_C(2.0) * t491 + (t22 * t1191 + t23 * t1192);
-    const wam7_real_t t1244 = WAM7_C(2.0) * t492 + (t23 * t1191 + parameters[ZZ7] * t1192);
-    const wam7_real_t t1245 = t15 * t1243 - t13 * t1244;
-    const wam7_real_t t1246 = t662 + (t12 * t1191 + t14 * t1192);
-    const wam7_real_t t1247 = WAM7_C(2.0) * t502 - t35 * t1192;
-    const wam7_real_t t1248 = WAM7_C(2.0) * t505 + t35 * t1191;
-    const wam7_real_t t1249 = t15 * t1247 - t13 * t1248;
-    const wam7_real_t t1250 = t38 * t1192 - parameters[MY6R] * t1191;
-    const wam7_real_t t1251 = t32 * t1249 + t34 * t1250;
-    const wam7_real_t t1252 = t34 * t1245 + t32 * t1246 + WAM7_C(0.3) * t1251;
-    const wam7_real_t t1253 = t13 * t1243 + t15 * t1244;
-    const wam7_real_t t1254 = WAM7_C(0.045) * t1251;
-    const wam7_real_t t1255 = t1254 - t1253;
-    const wam7_real_t t1256 = t73 * t1252 + t71 * t1255;
-    const wam7_real_t t1257 = t13 * t1247 + t15 * t1248;
-    const wam7_real_t t1258 = t32 * t1250 - t34 * t1249;
-    const wam7_real_t t1259 = t32 * t1245 - t34 * t1246 + (WAM7_C(0.045) * t1257 + WAM7_C(0.3) * t1258);
-    const wam7_real_t t1260 = WAM7_C(0.045) * (t73 * t1257 - t71 * t1258) - t1259;
-    const wam7_real_t t1261 = t73 * t1258 + t71 * t1257;
-    const wam7_real_t t1262 = t118 * t1256 - t115 * t1260 + WAM7_C(0.55) * (t115 * t1261 + t118 * t1251);
-    const wam7_real_t t1263 = WAM7_C(0.07745783389167521) * t1262;
-    const wam7_real_t t1264 = t115 * t1256 + t118 * t1260 + WAM7_C(0.55) * (t115 * t1251 - t118 * t1261);
-    const wam7_real_t t1265 = t1254 + (t71 * t1252 - t73 * t1255);
-    const wam7_real_t t1266 = WAM7_C(0.05209961446285298) * (t166 * t1264 + t168 * t1265);
-    const wam7_real_t t1267 = WAM7_C(0.07745783389167521) * t1265;
-    const wam7_real_t t1268 = WAM7_C(0.12156576707999026) * t1259;
-    const wam7_real_t t1269 = t1266 * t586 - t1263 * t454 + t1267 * t609 - t1268 * t620;
-    const wam7_real_t t1270 = WAM7_C(0.4469713223199599) * t1253;
-    const wam7_real_t t1271 = WAM7_C(0.4469713223199599) * (t662 + WAM7_C(2.0) * (t12 * t242 + t14 * t250));
-    const wam7_real_t t1272 = WAM7_C(-40.16949152542373) * parameters[FV6] + t1271;
-    const wam7_real_t t1273 = WAM7_C(0.9996900960702182) * (t686 + WAM7_C(2.0) * (t17 * t242
-        + parameters[ZZ7] * t250));
-    const wam7_real_t t1274 = t1269 + t1270 * t637 + t1272 * t658 + t1273 * t680;
-    ddq_by_dq[5] = t1274;
-    const wam7_real_t t1275 = t1266 * t698 - t1263 * t699 + t1267 * t701 - t1268 * t703;
-    const wam7_real_t t1276 = t1275 + t1270 * t706 + t1272 * t708 + t1273 * t710;
-    ddq_by_dq[12] = t1276;
-    const wam7_real_t t1277 = t1266 * t712 - t1263 * t701 + t1267 * t713 - t1268 * t715;
-    const wam7_real_t t1278 = t1277 + t1270 * t718 + t1272 * t720 + t1273 * t722;
-    ddq_by_dq[19] = t1278;
-    const wam7_real_t t1279 = t1266 * t724 - t1263 * t725 + t1267 * t726 - t1268 * t728;
-    const wam7_real_t t1280 = t1279 + t1270 * t731 + t1272 * t733 + t1273 * t735;
-    ddq_by_dq[26] = t1280;
-    const wam7_real_t t1281 = t1266 * t737 - t1263 * t738 + t1267 * t739 - t1268 * t740;
-    const wam7_real_t t1282 = t1281 + t1270 * t743 + t1272 * t746 + t1273 * t749;
-    ddq_by_dq[33] = t1282;
-    const wam7_real_t t1283 = t1266 * t751 - t1263 * t752 + t1267 * t753 - t1268 * t754;
-    const wam7_real_t t1284 = t1283 + t1270 * t746 + t1272 * t757 + t1273 * t760;
-    ddq_by_dq[40] = t1284;
-    const wam7_real_t t1285 = t1266 * t762 - t1263 * t763 + t1267 * t764 - t1268 * t765;
-    const wam7_real_t t1286 = t1285 + t1270 * t767 + t1272 * t768 + t1273 * t771;
-    ddq_by_dq[47] = t1286;
-    ddq_by_input[5] = t658;
-    ddq_by_input[12] = t708;
-    ddq_by_input[19] = t720;
-    ddq_by_input[26] = t733;
-    ddq_by_input[33] = t746;
-    ddq_by_input[40] = t757;
-    ddq_by_input[47] = t768;
-    const wam7_real_t t1287 = t310 + t269; /* link j7: force and moment */
-    const wam7_real_t t1288 = WAM7_C(2.0) * t254; /* link j7: derivatives */
-    const wam7_real_t t1289 = WAM7_C(2.0) * t260;
-    const wam7_real_t t1290 = t457 * t1288 + t463 * t1289 - (parameters[XZ7R] * t1287
-        - (parameters[XX7R] * t807 - parameters[XY7] * t805));
-    const wam7_real_t t1291 = t835 + t1290;
-    const wam7_real_t t1292 = t462 * t1288 + t459 * t1289 + (parameters[YZ7R] * t1287
-        - parameters[XY7] * t807);
-    const wam7_real_t t1293 = t832 + t1292;
-    const wam7_real_t t1294 = t2 * t1291 + t1 * t1293;
-    const wam7_real_t t1295 = parameters[ZZ7] * t1287 + (parameters[YZ7R] * t805 - parameters[XZ7R] * t807);
-    const wam7_real_t t1296 = parameters[MX7] * t844 + parameters[MY7] * t843;
-    const wam7_real_t t1297 = t472 * t1288 + t473 * t1289 + t1295 + t1296;
-    const wam7_real_t t1298 = t15 * t1294 - t13 * t1297;
-    const wam7_real_t t1299 = t2 * t1293 - t1 * t1291;
-    const wam7_real_t t1300 = t501 * t1289 - parameters[MY7] * t1287 - t856;
-    const wam7_real_t t1301 = t501 * t1288 - parameters[MX7] * t1287 - t855;
-    const wam7_real_t t1302 = t2 * t1300 + t1 * t1301;
-    const wam7_real_t t1303 = parameters[MY7] * t807 + parameters[MX7] * t805 - (t504 * t1288 + t503 * t1289);
-    const wam7_real_t t1304 = t15 * t1302 - t13 * t1303;
-    const wam7_real_t t1305 = t1 * t1300 - t2 * t1301;
-    const wam7_real_t t1306 = t32 * t1304 + t34 * t1305;
-    const wam7_real_t t1307 = t34 * t1298 + t32 * t1299 + WAM7_C(0.3) * t1306;
-    const wam7_real_t t1308 = t13 * t1294 + t15 * t1297;
-    const wam7_real_t t1309 = WAM7_C(0.045) * t1306;
-    const wam7_real_t t1310 = t1308 - t1309;
-    const wam7_real_t t1311 = t73 * t1307 - t71 * t1310;
-    const wam7_real_t t1312 = t13 * t1302 + t15 * t1303;
-    const wam7_real_t t1313 = t32 * t1305 - t34 * t1304;
-    const wam7_real_t t1314 = t32 * t1298 - t34 * t1299 + (WAM7_C(0.045) * t1312 + WAM7_C(0.3) * t1313);
-    const wam7_real_t t1315 = t1314 - WAM7_C(0.045) * (t73 * t1312 - t71 * t1313);
-    const wam7_real_t t1316 = t73 * t1313 + t71 * t1312;
-    const wam7_real_t t1317 = t115 * t1311 - t118 * t1315 + WAM7_C(0.55) * (t115 * t1306 - t118 * t1316);
-    const wam7_real_t t1318 = t1309 + (t71 * t1307 + t73 * t1310);
-    const wam7_real_t t1319 = WAM7_C(0.05209961446285298) * (t166 * t1317 + t168 * t1318);
-    const wam7_real_t t1320 = t118 * t1311 + t115 * t1315 + WAM7_C(0.55) * (t115 * t1316 + t118 * t1306);
-    const wam7_real_t t1321 = WAM7_C(0.07745783389167521) * t1320;
-    const wam7_real_t t1322 = WAM7_C(0.07745783389167521) * t1318;
-    const wam7_real_t t1323 = WAM7_C(0.12156576707999026) * t1314;
-    const wam7_real_t t1324 = t586 * t1319 - t454 * t1321 + t609 * t1322 - t620 * t1323;
-    const wam7_real_t t1325 = WAM7_C(0.4469713223199599) * t1308;
-    const wam7_real_t t1326 = WAM7_C(0.4469713223199599) * t1299;
-    const wam7_real_t t1327 = WAM7_C(0.9996900960702182) * (t1296 + (t254 * t681 + t260 * t682 + t1295));
-    const wam7_real_t t1328 = t1324 + t637 * t1325 + t658 * t1326 + t680 * t1327;
-    ddq_by_q[6] = t1328;
-    const wam7_real_t t1329 = t698 * t1319 - t699 * t1321 + t701 * t1322 - t703 * t1323;
-    const wam7_real_t t1330 = t1329 + t706 * t1325 + t708 * t1326 + t710 * t1327;
-    ddq_by_q[13] = t1330;
-    const wam7_real_t t1331 = t712 * t1319 - t701 * t1321 + t713 * t1322 - t715 * t1323;
-    const wam7_real_t t1332 = t1331 + t718 * t1325 + t720 * t1326 + t722 * t1327;
-    ddq_by_q[20] = t1332;
-    const wam7_real_t t1333 = t724 * t1319 - t725 * t1321 + t726 * t1322 - t728 * t1323;
-    const wam7_real_t t1334 = t1333 + t731 * t1325 + t733 * t1326 + t735 * t1327;
-    ddq_by_q[27] = t1334;
-    const wam7_real_t t1335 = t737 * t1319 - t738 * t1321 + t739 * t1322 - t740 * t1323;
-    const wam7_real_t t1336 = t1335 + t743 * t1325 + t746 * t1326 + t749 * t1327;
-    ddq_by_q[34] = t1336;
-    const wam7_real_t t1337 = t751 * t1319 - t752 * t1321 + t753 * t1322 - t754 * t1323;
-    const wam7_real_t t1338 = t1337 + t746 * t1325 + t757 * t1326 + t760 * t1327;
-    ddq_by_q[41] = t1338;
-    const wam7_real_t t1339 = t762 * t1319 - t763 * t1321 + t764 * t1322 - t765 * t1323;
-    const wam7_real_t t1340 = t1339 + t767 * t1325 + t768 * t1326 + t771 * t1327;
-    ddq_by_q[48] = t1340;
-    const wam7_real_t t1341 = WAM7_C(2.0) * t478 - (parameters[XX7R] * t1288 + parameters[XY7] * t1289);
-    const wam7_real_t t1342 = WAM7_C(2.0) * t479 - parameters[XY7] * t1288;
-    const wam7_real_t t1343 = t1 * t1342 - t2 * t1341;
-    const wam7_real_t t1344 = t684 - (parameters[XZ7R] * t1288 + parameters[YZ7R] * t1289);
-    const wam7_real_t t1345 = t15 * t1343 - t13 * t1344;
-    const wam7_real_t t1346 = t1 * t1341 + t2 * t1342;
-    const wam7_real_t t1347 = parameters[MY7] * t1288 - parameters[MX7] * t1289;
-    const wam7_real_t t1348 = WAM7_C(-2.0) * t504;
-    const wam7_real_t t1349 = WAM7_C(-2.0) * t503;
-    const wam7_real_t t1350 = t2 * t1348 - t1 * t1349;
-    const wam7_real_t t1351 = t15 * t1350 - t13 * t1347;
-    const wam7_real_t t1352 = t1 * t1348 + t2 * t1349;
-    const wam7_real_t t1353 = t32 * t1351 + t34 * t1352;
-    const wam7_real_t t1354 = t34 * t1345 + t32 * t1346 + WAM7_C(0.3) * t1353;
-    const wam7_real_t t1355 = t13 * t1343 + t15 * t1344;
-    const wam7_real_t t1356 = WAM7_C(0.045) * t1353;
-    const wam7_real_t t1357 = t1356 - t1355;
-    const wam7_real_t t1358 = t73 * t1354 + t71 * t1357;
-    const wam7_real_t t1359 = t13 * t1350 + t15 * t1347;
-    const wam7_real_t t1360 = t32 * t1352 - t34 * t1351;
-    const wam7_real_t t1361 = t32 * t1345 - t34 * t1346 + (WAM7_C(0.045) * t1359 + WAM7_C(0.3) * t1360);
-    const wam7_real_t t1362 = WAM7_C(0.045) * (t73 * t1359 - t71 * t1360) - t1361;
-    const wam7_real_t t1363 = t73 * t1360 + t71 * t1359;
-    const wam7_real_t t1364 = t118 * t1358 - t115 * t1362 + WAM7_C(0.55) * (t115 * t1363 + t118 * t1353);
-    const wam7_real_t t1365 = WAM7_C(0.07745783389167521) * t1364;
-    const wam7_real_t t1366 = t115 * t1358 + t118 * t1362 + WAM7_C(0.55) * (t115 * t1353 - t118 * t1363);
-    const wam7_real_t t1367 = t1356 + (t71 * t1354 - t73 * t1357);
-    const wam7_real_t t1368 = WAM7_C(0.05209961446285298) * (t166 * t1366 + t168 * t1367);
-    const wam7_real_t t1369 = WAM7_C(0.07745783389167521) * t1367;
-    const wam7_real_t t1370 = WAM7_C(0.12156576707999026) * t1361;
-    const wam7_real_t t1371 = t1368 * t586 - t1365 * t454 + t1369 * t609 - t1370 * t620;
-    const wam7_real_t t1372 = WAM7_C(0.4469713223199599) * t1355;
-    const wam7_real_t t1373 = WAM7_C(0.4469713223199599) * t1346;
-    const wam7_real_t t1374 = WAM7_C(-222.83582089552237) * parameters[FV7];
-    const wam7_real_t t1375 = t1371 + t1372 * t637 + t1373 * t658 + t1374 * t680;
-    ddq_by_dq[6] = t1375;
-    const wam7_real_t t1376 = t1368 * t698 - t1365 * t699 + t1369 * t701 - t1370 * t703;
-    const wam7_real_t t1377 = t1376 + t1372 * t706 + t1373 * t708 + t1374 * t710;
-    ddq_by_dq[13] = t1377;
-    const wam7_real_t t1378 = t1368 * t712 - t1365 * t701 + t1369 * t713 - t1370 * t715;
-    const wam7_real_t t1379 = t1378 + t1372 * t718 + t1373 * t720 + t1374 * t722;
-    ddq_by_dq[20] = t1379;
-    const wam7_real_t t1380 = t1368 * t724 - t1365 * t725 + t1369 * t726 - t1370 * t728;
-    const wam7_real_t t1381 = t1380 + t1372 * t731 + t1373 * t733 + t1374 * t735;
-    ddq_by_dq[27] = t1381;
-    const wam7_real_t t1382 = t1368 * t737 - t1365 * t738 + t1369 * t739 - t1370 * t740;
-    const wam7_real_t t1383 = t1382 + t1372 * t743 + t1373 * t746 + t1374 * t749;
-    ddq_by_dq[34] = t1383;
-    const wam7_real_t t1384 = t1368 * t751 - t1365 * t752 + t1369 * t753 - t1370 * t754;
-    const wam7_real_t t1385 = t1384 + t1372 * t746 + t1373 * t757 + t1374 * t760;
-    ddq_by_dq[41] = t1385;
-    const wam7_real_t t1386 = t1368 * t762 - t1365 * t763 + t1369 * t764 - t1370 * t765;
-    const wam7_real_t t1387 = t1386 + t1372 * t767 + t1373 * t768 + t1374 * t771;
-    ddq_by_dq[48] = t1387;
-    ddq_by_input[6] = t680;
-    ddq_by_input[13] = t710;
-    ddq_by_input[20] = t722;
-    ddq_by_input[27] = t735;
-    ddq_by_input[34] = t749;
-    ddq_by_input[41] = t760;
-    ddq_by_input[48] = t771;
+    const wam7_real_t t1071 = t32 * t930 - t30 * t850 + (t44 * t1062 - t72 * t1060);
+    const wam7_real_t t1072 = t977 + (t43 * t1062 + t72 * t1063);
+    const wam7_real_t t1073 = t73 * t474 + t75 * t467 - t45 * t997 - (t228 * t1071 + t217 * t1072);
+    const wam7_real_t t1074 = WAM7_C(0.9996900960702182) * (t1073 + (t43 * t505 + t44 * t497));
+    const wam7_real_t t1075 = t1059 + t586 * t1066 + t593 * t1070 + t604 * t1074;
+    ddq_by_q[3] = t1075;
+    const wam7_real_t t1076 = t606 * t1052 - t607 * t1054 + t609 * t1055 - t611 * t1058;
+    const wam7_real_t t1077 = t1076 + t614 * t1066 + t616 * t1070 + t618 * t1074;
+    ddq_by_q[10] = t1077;
+    const wam7_real_t t1078 = t620 * t1052 - t609 * t1054 + t621 * t1055 - t623 * t1058;
+    const wam7_real_t t1079 = t1078 + t626 * t1066 + t628 * t1070 + t630 * t1074;
+    ddq_by_q[17] = t1079;
+    const wam7_real_t t1080 = t632 * t1052 - t633 * t1054 + t634 * t1055 - t636 * t1058;
+    const wam7_real_t t1081 = t1080 + t639 * t1066 + t641 * t1070 + t643 * t1074;
+    ddq_by_q[24] = t1081;
+    const wam7_real_t t1082 = t645 * t1052 - t646 * t1054 + t647 * t1055 - t648 * t1058;
+    const wam7_real_t t1083 = t1082 + t651 * t1066 + t654 * t1070 + t657 * t1074;
+    ddq_by_q[31] = t1083;
+    const wam7_real_t t1084 = t659 * t1052 - t660 * t1054 + t661 * t1055 - t662 * t1058;
+    const wam7_real_t t1085 = t1084 + t654 * t1066 + t665 * t1070 + t668 * t1074;
+    ddq_by_q[38] = t1085;
+    const wam7_real_t t1086 = t670 * t1052 - t671 * t1054 + t672 * t1055 - t673 * t1058;
+    const wam7_real_t t1087 = t1086 + t675 * t1066 + t676 * t1070 + t679 * t1074;
+    ddq_by_q[45] = t1087;
+    const wam7_real_t t1088 = parameters[ZZ4R] + t1015;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1089 = t890 + t1040 + t39 * t1002 - (parameters[YZ4] * t218 + t228 * t1088);
+    const wam7_real_t t1090 = WAM7_C(2.0) * t1089 + (t94 * t1013 + t95 * t1017); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1091 = parameters[XZ4] * t218 + t217 * t1088 + (t30 * t905 + t32 * t906 + t39 * t1005);
+    const wam7_real_t t1092 = WAM7_C(2.0) * t1091 + (t95 * t1013 + t93 * t1017); /* link j4: derivatives */
+    const wam7_real_t t1093 = t70 * t1090 - t68 * t1092;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1094 = t1010 - t1025 + (t1009 + (t889 - t999 + t1008));
+    const wam7_real_t t1095 = WAM7_C(2.0) * t1094; /* link j4: derivatives */
+    const wam7_real_t t1096 = WAM7_C(2.0) * t1047 - t39 * t1013;
+    const wam7_real_t t1097 = WAM7_C(-2.0) * t1048 + t39 * t1017;
+    const wam7_real_t t1098 = WAM7_C(0.045) * (t68 * t1097 + t70 * t1096) - (t1095 + (t67 * t1013
+        + t69 * t1017));
+    const wam7_real_t t1099 = t70 * t1097 - t68 * t1096;
+    const wam7_real_t t1100 = t98 * t1017 - t99 * t1013;
+    const wam7_real_t t1101 = t114 * t1093 - t111 * t1098 + WAM7_C(0.55) * (t114 * t1100 - t111 * t1099);
+    const wam7_real_t t1102 = WAM7_C(0.07745783389167521) * t1101;
+    const wam7_real_t t1103 = t111 * t1093 + t114 * t1098 + WAM7_C(0.55) * (t114 * t1099 + t111 * t1100);
+    const wam7_real_t t1104 = t68 * t1090 + t70 * t1092 + WAM7_C(0.045) * t1100;
+    const wam7_real_t t1105 = WAM7_C(0.05209961446285298) * (t161 * t1103 + t163 * t1104);
+    const wam7_real_t t1106 = WAM7_C(0.07745783389167521) * t1104;
+    const wam7_real_t t1107 = WAM7_C(0.12156576707999026) * (t1095 + WAM7_C(2.0) * (t69 * t217 - t67 * t228));
+    const wam7_real_t t1108 = WAM7_C(39.387308533916844) * parameters[FV4] + t1107;
+    const wam7_real_t t1109 = t1105 * t568 - t1102 * t572 + t1106 * t575 - t1108 * t579;
+    const wam7_real_t t1110 = t30 * t924 + t32 * t925 - t39 * t1060; /* link j5: derivatives */
+    const wam7_real_t t1111 = WAM7_C(0.4469713223199599) * (t1110 + WAM7_C(2.0) * (t87 * t217 - t85 * t228));
+    /* link j6: derivatives */
+    const wam7_real_t t1112 = t30 * t927 + t32 * t822 + (t37 * t1063 + t48 * t1060);
+    const wam7_real_t t1113 = WAM7_C(0.4469713223199599) * (t1112 + WAM7_C(2.0) * (t78 * t228 + t80 * t217));
+    /* link j7: derivatives */
+    const wam7_real_t t1114 = t30 * t930 + t32 * t850 + (t44 * t1063 + t43 * t1060);
+    const wam7_real_t t1115 = WAM7_C(0.9996900960702182) * (t1114 + WAM7_C(2.0) * (t73 * t228 + t75 * t217));
+    const wam7_real_t t1116 = t1109 + t1111 * t586 + t1113 * t593 + t1115 * t604;
+    ddq_by_dq[3] = t1116;
+    const wam7_real_t t1117 = t1105 * t606 - t1102 * t607 + t1106 * t609 - t1108 * t611;
+    const wam7_real_t t1118 = t1117 + t1111 * t614 + t1113 * t616 + t1115 * t618;
+    ddq_by_dq[10] = t1118;
+    const wam7_real_t t1119 = t1105 * t620 - t1102 * t609 + t1106 * t621 - t1108 * t623;
+    const wam7_real_t t1120 = t1119 + t1111 * t626 + t1113 * t628 + t1115 * t630;
+    ddq_by_dq[17] = t1120;
+    const wam7_real_t t1121 = t1105 * t632 - t1102 * t633 + t1106 * t634 - t1108 * t636;
+    const wam7_real_t t1122 = t1121 + t1111 * t639 + t1113 * t641 + t1115 * t643;
+    ddq_by_dq[24] = t1122;
+    const wam7_real_t t1123 = t1105 * t645 - t1102 * t646 + t1106 * t647 - t1108 * t648;
+    const wam7_real_t t1124 = t1123 + t1111 * t651 + t1113 * t654 + t1115 * t657;
+    ddq_by_dq[31] = t1124;
+    const wam7_real_t t1125 = t1105 * t659 - t1102 * t660 + t1106 * t661 - t1108 * t662;
+    const wam7_real_t t1126 = t1125 + t1111 * t654 + t1113 * t665 + t1115 * t668;
+    ddq_by_dq[38] = t1126;
+    const wam7_real_t t1127 = t1105 * t670 - t1102 * t671 + t1106 * t672 - t1108 * t673;
+    const wam7_real_t t1128 = t1127 + t1111 * t675 + t1113 * t676 + t1115 * t679;
+    ddq_by_dq[45] = t1128;
+    ddq_by_input[3] = t579;
+    ddq_by_input[10] = t611;
+    ddq_by_input[17] = t623;
+    ddq_by_input[24] = t636;
+    ddq_by_input[31] = t648;
+    ddq_by_input[38] = t662;
+    ddq_by_input[45] = t673;
+    const wam7_real_t t1129 = t30 * t868 + t32 * t885 + (WAM7_C(0.045) * t1031 + WAM7_C(0.3) * t1036);
+    const wam7_real_t t1130 = t383 - parameters[ZZ4R] * t458 + parameters[YZ4] * t474
+        + parameters[XZ4] * t467;
+    const wam7_real_t t1131 = t385 + t1130 - (parameters[MX4R] * t505 + parameters[MY4R] * t497) + t1129;
+    const wam7_real_t t1132 = t394 + (t393 + (t391 + parameters[XY3R] * t466 - parameters[YZ3] * t463));
+    const wam7_real_t t1133 = t1132 + (t1131 + WAM7_C(0.045) * (t68 * t1037 + t70 * t1032));
+    const wam7_real_t t1134 = t392 + t275; /* link j4: motion */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1135 = t70 * (t1012 - t1026) + t68 * (t1016 - t1024);
+    const wam7_real_t t1136 = t70 * t1135;
+    const wam7_real_t t1137 = t70 * t1047 - t68 * t1048;
+    const wam7_real_t t1138 = WAM7_C(0.045) * t1137;
+    const wam7_real_t t1139 = WAM7_C(-0.045) * t212; /* link j4: velocity of its origin */
+    const wam7_real_t t1140 = t39 * t1139; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1141 = WAM7_C(0.045) * t203; /* link j4: velocity of its origin */
+    const wam7_real_t t1142 = t117 * t1141; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1143 = t1138 - (t1140 + t1142);
+    const wam7_real_t t1144 = parameters[XZ3] * t203;
+    const wam7_real_t t1145 = parameters[XY3R] * t212;
+    const wam7_real_t t1146 = t1144 - t1145 + (t1026 + t1136 + t1138 - t1143);
+    const wam7_real_t t1147 = WAM7_C(2.0) * t203; /* link j3: derivatives */
+    const wam7_real_t t1148 = WAM7_C(-0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1149 = parameters[YZ3] * t203 - t212 * t1148 + (t70 * t1089 - t68 * t1091);
+    const wam7_real_t t1150 = WAM7_C(2.0) * t202; /* link j3: derivatives */
+    const wam7_real_t t1151 = t1146 * t1147 + t1149 * t1150 + (t109 * t456 + t113 * t464 - t149 * t1134);
+    const wam7_real_t t1152 = t1133 + (t1151 + t117 * t493);
+    const wam7_real_t t1153 = t375 - parameters[XX3R] * t465 + parameters[XY3R] * t495
+        + parameters[XZ3] * t501;
+    const wam7_real_t t1154 = t378 + (t377 + t1153) + (t70 * t1021 + t68 * t996);
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1155 = t70 * t1041 + t68 * t1043 + (WAM7_C(-0.045) * t1034 + t100 * t1139);
+    const wam7_real_t t1156 = parameters[XX3R] + t1148;
+    const wam7_real_t t1157 = parameters[XZ3] * t202 + t212 * t1156 + t1155;
+    const wam7_real_t t1158 = parameters[YZ3] * t202;
+    const wam7_real_t t1159 = t1145 + t1158 - (t1143 + (t1140 - t1094));
+    const wam7_real_t t1160 = t1157 * t1147 + t1159 * t1150 - (t113 * t456 - t110 * t464 - t150 * t1134);
+    const wam7_real_t t1161 = t117 * t500;
+    const wam7_real_t t1162 = t1154 - (t1161 - t1160);
+    const wam7_real_t t1163 = t397 + parameters[MY3R] * t463 + (t70 * t1037 - t68 * t1032);
+    const wam7_real_t t1164 = t68 * t1047 + t70 * t1048;
+    const wam7_real_t t1165 = t1164 - (parameters[MY3R] * t202 + parameters[MX3R] * t203);
+    const wam7_real_t t1166 = t1163 + (t1165 * t1147 + (t152 * t1134 + t117 * t456));
+    const wam7_real_t t1167 = parameters[MX4R] * t499 + parameters[MY4R] * t469 + t994;
+    const wam7_real_t t1168 = t400 - parameters[MX3R] * t501 + t1167;
+    const wam7_real_t t1169 = t1168 - (t151 * t1134 + t117 * t464 - t1165 * t1150);
+    const wam7_real_t t1170 = t111 * t1152 - t114 * t1162 + WAM7_C(0.55) * (t111 * t1166 - t114 * t1169);
+    const wam7_real_t t1171 = t102 * t1134 + (t149 * t456 + t150 * t464);
+    const wam7_real_t t1172 = t68 * t1135;
+    const wam7_real_t t1173 = parameters[XY3R] * t202 + t203 * t1156 + (t1024 + t1172 + (WAM7_C(0.045) * t1164
+        - t100 * t1141));
+    const wam7_real_t t1174 = parameters[XY3R] * t203 + t202 * t1148 + (t68 * t1089 + t70 * t1091
+        + t39 * t1141);
+    const wam7_real_t t1175 = t152 * t493 + t151 * t500;
+    const wam7_real_t t1176 = t163 * (t1173 * t1147 + t1174 * t1150 + t1171 - t1175);
+    const wam7_real_t t1177 = WAM7_C(0.05209961446285298) * (t161 * t1170 + t1176);
+    const wam7_real_t t1178 = t114 * t1152 + t111 * t1162 + WAM7_C(0.55) * (t111 * t1169 + t114 * t1166);
+    const wam7_real_t t1179 = WAM7_C(0.07745783389167521) * t1178;
+    const wam7_real_t t1180 = WAM7_C(2.0) * t1173; /* link j3: derivatives */
+    const wam7_real_t t1181 = WAM7_C(2.0) * t1174;
+    const wam7_real_t t1182 = WAM7_C(0.07745783389167521) * (t203 * t1180 + t202 * t1181 + t1171 - t1175);
+    const wam7_real_t t1183 = WAM7_C(-0.09) * t212; /* link j7: derivatives */
+    const wam7_real_t t1184 = t70 * t1056 + t68 * t1057 + t100 * t1183; /* link j4: derivatives */
+    const wam7_real_t t1185 = WAM7_C(0.09) * t203; /* link j7: derivatives */
+    const wam7_real_t t1186 = t1095 + t117 * t1185; /* link j4: derivatives */
+    const wam7_real_t t1187 = t203 * t1184 + t202 * t1186 + (t71 * t1134 + (t144 * t464 - t112 * t456));
+    const wam7_real_t t1188 = WAM7_C(0.12156576707999026) * (t1187 - t1161);
+    const wam7_real_t t1189 = t568 * t1177 - t572 * t1179 + t575 * t1182 - t579 * t1188;
+    /* link j5: derivatives */
+    const wam7_real_t t1190 = t70 * t1061 + t68 * t1064 + (t60 * t1185 - t136 * t1183);
+    const wam7_real_t t1191 = t1110 + t138 * t1185;
+    const wam7_real_t t1192 = t203 * t1190 + t202 * t1191 + (t88 * t1134 + (t135 * t456 + t137 * t464));
+    const wam7_real_t t1193 = WAM7_C(0.4469713223199599) * (t1192 + (t60 * t493 - t138 * t500));
+    /* link j6: derivatives */
+    const wam7_real_t t1194 = t70 * t1067 + t68 * t1068 + (t128 * t1183 + t77 * t1185);
+    const wam7_real_t t1195 = t1112 + t130 * t1185;
+    const wam7_real_t t1196 = t203 * t1194 + t202 * t1195 + (t81 * t1134 + (t127 * t456 + t129 * t464));
+    const wam7_real_t t1197 = WAM7_C(0.4469713223199599) * (t1196 + (t77 * t493 - t130 * t500));
+    /* link j7: derivatives */
+    const wam7_real_t t1198 = t70 * t1071 + t68 * t1072 + (t121 * t1183 + t72 * t1185);
+    const wam7_real_t t1199 = t1114 + t123 * t1185;
+    const wam7_real_t t1200 = t203 * t1198 + t202 * t1199 + (t76 * t1134 + (t120 * t456 + t122 * t464));
+    const wam7_real_t t1201 = WAM7_C(0.9996900960702182) * (t1200 + (t72 * t493 - t123 * t500));
+    const wam7_real_t t1202 = t1189 + t586 * t1193 + t593 * t1197 + t604 * t1201;
+    ddq_by_q[2] = t1202;
+    const wam7_real_t t1203 = t606 * t1177 - t607 * t1179 + t609 * t1182 - t611 * t1188;
+    const wam7_real_t t1204 = t1203 + t614 * t1193 + t616 * t1197 + t618 * t1201;
+    ddq_by_q[9] = t1204;
+    const wam7_real_t t1205 = t620 * t1177 - t609 * t1179 + t621 * t1182 - t623 * t1188;
+    const wam7_real_t t1206 = t1205 + t626 * t1193 + t628 * t1197 + t630 * t1201;
+    ddq_by_q[16] = t1206;
+    const wam7_real_t t1207 = t632 * t1177 - t633 * t1179 + t634 * t1182 - t636 * t1188;
+    const wam7_real_t t1208 = t1207 + t639 * t1193 + t641 * t1197 + t643 * t1201;
+    ddq_by_q[23] = t1208;
+    const wam7_real_t t1209 = t645 * t1177 - t646 * t1179 + t647 * t1182 - t648 * t1188;
+    const wam7_real_t t1210 = t1209 + t651 * t1193 + t654 * t1197 + t657 * t1201;
+    ddq_by_q[30] = t1210;
+    const wam7_real_t t1211 = t659 * t1177 - t660 * t1179 + t661 * t1182 - t662 * t1188;
+    const wam7_real_t t1212 = t1211 + t654 * t1193 + t665 * t1197 + t668 * t1201;
+    ddq_by_q[37] = t1212;
+    const wam7_real_t t1213 = t670 * t1177 - t671 * t1179 + t672 * t1182 - t673 * t1188;
+    const wam7_real_t t1214 = t1213 + t675 * t1193 + t676 * t1197 + t679 * t1201;
+    ddq_by_q[44] = t1214;
+    const wam7_real_t t1215 = parameters[ZZ3R] + t1148;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1216 = t203 * t1215 - parameters[YZ3] * t212 + (t1016 - t1172);
+    const wam7_real_t t1217 = WAM7_C(2.0) * t1216 + (t113 * t1150 - t109 * t1147); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1218 = t68 * t1041 - t70 * t1043 + t117 * t1139 - (parameters[XZ3] * t212
+        + t202 * t1215);
+    const wam7_real_t t1219 = WAM7_C(-2.0) * t1218 + (t113 * t1147 + t110 * t1150); /* link j3: derivatives */
+    const wam7_real_t t1220 = parameters[MX3R] * t212 + t1034; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1221 = WAM7_C(2.0) * t1220 + t117 * t1150; /* link j3: derivatives */
+    const wam7_real_t t1222 = parameters[MY3R] * t212 + t1137; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1223 = WAM7_C(2.0) * t1222 - t117 * t1147; /* link j3: derivatives */
+    const wam7_real_t t1224 = t114 * t1217 + t111 * t1219 + WAM7_C(0.55) * (t114 * t1223 - t111 * t1221);
+    const wam7_real_t t1225 = WAM7_C(0.07745783389167521) * t1224;
+    const wam7_real_t t1226 = t111 * t1217 - t114 * t1219 + WAM7_C(0.55) * (t114 * t1221 + t111 * t1223);
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1227 = t1144 + t1158 + (t1143 + (t1136 - t1012 + t1142));
+    const wam7_real_t t1228 = WAM7_C(2.0) * t1227; /* link j3: derivatives */
+    const wam7_real_t t1229 = t161 * t1226 + t163 * (t1228 + (t150 * t1150 - t149 * t1147));
+    const wam7_real_t t1230 = WAM7_C(0.05209961446285298) * t1229;
+    const wam7_real_t t1231 = WAM7_C(0.07745783389167521) * (t1228 + WAM7_C(2.0) * (t150 * t202
+        - t149 * t203));
+    const wam7_real_t t1232 = WAM7_C(-61.81619256017505) * parameters[FV3] + t1231;
+    const wam7_real_t t1233 = t70 * t1057 - t68 * t1056 - t117 * t1183; /* link j4: derivatives */
+    const wam7_real_t t1234 = WAM7_C(0.12156576707999026) * (t1233 + WAM7_C(2.0) * (t112 * t203
+        + t144 * t202));
+    const wam7_real_t t1235 = t1230 * t568 - t1225 * t572 + t1232 * t575 - t1234 * t579;
+    const wam7_real_t t1236 = t70 * t1064 - t68 * t1061 - t138 * t1183; /* link j5: derivatives */
+    const wam7_real_t t1237 = WAM7_C(0.4469713223199599) * (t1236 + WAM7_C(2.0) * (t137 * t202
+        - t135 * t203));
+    const wam7_real_t t1238 = t70 * t1068 - t68 * t1067 - t130 * t1183; /* link j6: derivatives */
+    const wam7_real_t t1239 = WAM7_C(0.4469713223199599) * (t1238 + WAM7_C(2.0) * (t129 * t202
+        - t127 * t203));
+    const wam7_real_t t1240 = t70 * t1072 - t68 * t1071 - t123 * t1183; /* link j7: derivatives */
+    const wam7_real_t t1241 = WAM7_C(0.9996900960702182) * (t1240 + WAM7_C(2.0) * (t122 * t202
+        - t120 * t203));
+    const wam7_real_t t1242 = t1235 + t1237 * t586 + t1239 * t593 + t1241 * t604;
+    ddq_by_dq[2] = t1242;
+    const wam7_real_t t1243 = t1230 * t606 - t1225 * t607 + t1232 * t609 - t1234 * t611;
+    const wam7_real_t t1244 = t1243 + t1237 * t614 + t1239 * t616 + t1241 * t618;
+    ddq_by_dq[9] = t1244;
+    const wam7_real_t t1245 = t1230 * t620 - t1225 * t609 + t1232 * t621 - t1234 * t623;
+    const wam7_real_t t1246 = t1245 + t1237 * t626 + t1239 * t628 + t1241 * t630;
+    ddq_by_dq[16] = t1246;
+    const wam7_real_t t1247 = t1230 * t632 - t1225 * t633 + t1232 * t634 - t1234 * t636;
+    const wam7_real_t t1248 = t1247 + t1237 * t639 + t1239 * t641 + t1241 * t643;
+    ddq_by_dq[23] = t1248;
+    const wam7_real_t t1249 = t1230 * t645 - t1225 * t646 + t1232 * t647 - t1234 * t648;
+    const wam7_real_t t1250 = t1249 + t1237 * t651 + t1239 * t654 + t1241 * t657;
+    ddq_by_dq[30] = t1250;
+    const wam7_real_t t1251 = t1230 * t659 - t1225 * t660 + t1232 * t661 - t1234 * t662;
+    const wam7_real_t t1252 = t1251 + t1237 * t654 + t1239 * t665 + t1241 * t668;
+    ddq_by_dq[37] = t1252;
+    const wam7_real_t t1253 = t1230 * t670 - t1225 * t671 + t1232 * t672 - t1234 * t673;
+    const wam7_real_t t1254 = t1253 + t1237 * t675 + t1239 * t676 + t1241 * t679;
+    ddq_by_dq[44] = t1254;
+    ddq_by_input[2] = t575;
+    ddq_by_input[9] = t609;
+    ddq_by_input[16] = t621;
+    ddq_by_input[23] = t634;
+    ddq_by_input[30] = t647;
+    ddq_by_input[37] = t661;
+    ddq_by_input[44] = t672;
+    const wam7_real_t t1255 = t111 * t1154 + t114 * t1133 + WAM7_C(0.55) * (t114 * t1163 + t111 * t1168);
+    const wam7_real_t t1256 = parameters[XY2] * (t205 + t461) - (t403 + parameters[XX2R] * t454)
+        + parameters[XZ2] * (t208 + t443);
+    const wam7_real_t t1257 = t102 * t453;
+    const wam7_real_t t1258 = t285 + t405; /* link j3: motion */
+    const wam7_real_t t1259 = WAM7_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const wam7_real_t t1260 = t1259 - parameters[XX2R];
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1261 = dq[1] * t1260 - parameters[XZ2] * t201 + (t114 * t1174 - t111 * t1173);
+    const wam7_real_t t1262 = WAM7_C(-2.0) * t207; /* link j2: derivatives */
+    const wam7_real_t t1263 = WAM7_C(-0.55) * t1165; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1264 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
+    const wam7_real_t t1265 = t178 * t1264; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1266 = WAM7_C(-0.55) * t201; /* link j3: velocity of its origin */
+    const wam7_real_t t1267 = t153 * t1266; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1268 = t1263 - (t1265 + t1267);
+    const wam7_real_t t1269 = parameters[XY2] * dq[1];
+    const wam7_real_t t1270 = parameters[YZ2] * t201;
+    const wam7_real_t t1271 = t1268 + (t1227 - t1263) - (t1269 + t1270);
+    const wam7_real_t t1272 = WAM7_C(2.0) * t201; /* link j2: derivatives */
+    const wam7_real_t t1273 = t1257 - t186 * t460 - t162 * t1258 - (t1261 * t1262 + t1271 * t1272);
+    const wam7_real_t t1274 = t153 * t287; /* link j3: derivatives */
+    const wam7_real_t t1275 = t408 + parameters[ZZ3R] * t462 - parameters[YZ3] * t456
+        - parameters[XZ3] * t464;
+    const wam7_real_t t1276 = t407 + t1275 + (parameters[MX3R] * t500 + parameters[MY3R] * t493) + (t70 * t996
+        - t68 * t1021 + WAM7_C(-0.045) * t1167);
+    const wam7_real_t t1277 = t411 + parameters[XY2] * t455 + parameters[YZ2] * t452 - t412 + t1276;
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1278 = t111 * (t1159 - t1146) + t114 * (t1149 + t1157);
+    const wam7_real_t t1279 = t111 * t1278;
+    const wam7_real_t t1280 = parameters[XZ2] * t207;
+    const wam7_real_t t1281 = t1280 + t1269 + (t1268 + (t1279 - t1159 + t1265));
+    const wam7_real_t t1282 = WAM7_C(0.55) * (t111 * t1222 + t114 * t1220) + t117 * t1264;
+    const wam7_real_t t1283 = parameters[YZ2] * t207 - dq[1] * t1259 + (t111 * t1216 + t114 * t1218 + t1282);
+    const wam7_real_t t1284 = t160 * t1258 + (t185 * t460 + t186 * t453) - (t1281 * t1262 + t1283 * t1272);
+    const wam7_real_t t1285 = t161 * (t1277 + (t153 * t279 + t1284)) + t163 * (t406 + t1256 + t1255 + (t1274
+        + t1273));
+    const wam7_real_t t1286 = WAM7_C(0.05209961446285298) * t1285;
+    const wam7_real_t t1287 = t114 * t1278;
+    const wam7_real_t t1288 = parameters[XY2] * t201 + t207 * t1260 + (t1287 - t1157 - t178 * t1266);
+    const wam7_real_t t1289 = WAM7_C(2.0) * t1288; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1290 = WAM7_C(0.55) * (t114 * t1222 - t111 * t1220) - t117 * t1266;
+    const wam7_real_t t1291 = parameters[XY2] * t207 + t201 * t1259 + (t111 * t1218 - t114 * t1216 - t1290);
+    const wam7_real_t t1292 = WAM7_C(2.0) * t1291; /* link j2: derivatives */
+    const wam7_real_t t1293 = t207 * t1289 + t201 * t1292 + (t160 * t460 + t162 * t453 - t119 * t1258);
+    const wam7_real_t t1294 = (parameters[MX2] + t178) * t279 + (parameters[MY2R] + t117) * t287 + t1293;
+    const wam7_real_t t1295 = WAM7_C(0.07745783389167521) * t1294;
+    const wam7_real_t t1296 = t114 * t1181 - t111 * t1180; /* link j3: derivatives */
+    const wam7_real_t t1297 = WAM7_C(1.1) * t201; /* link j7: derivatives */
+    const wam7_real_t t1298 = WAM7_C(1.1) * dq[1];
+    const wam7_real_t t1299 = t1228 - (t178 * t1298 - t153 * t1297); /* link j3: derivatives */
+    const wam7_real_t t1300 = t207 * t1296 - t201 * t1299 + (t154 * t1258 + (t179 * t460 + t1257));
+    const wam7_real_t t1301 = WAM7_C(0.07745783389167521) * (t1274 + t1300);
+    const wam7_real_t t1302 = t114 * t1186 - t111 * t1184 + t100 * t1297; /* link j4: derivatives */
+    const wam7_real_t t1303 = t1233 + (t145 * t1297 - t174 * t1298);
+    const wam7_real_t t1304 = t207 * t1302 - t201 * t1303 + (t146 * t1258 + (t175 * t460 + t71 * t453));
+    const wam7_real_t t1305 = WAM7_C(0.12156576707999026) * (t145 * t287 + t100 * t279 + t1304);
+    const wam7_real_t t1306 = t568 * t1286 - t572 * t1295 + t575 * t1301 - t579 * t1305;
+    const wam7_real_t t1307 = t114 * t1191 - t111 * t1190 - t136 * t1297; /* link j5: derivatives */
+    const wam7_real_t t1308 = t1236 + (t139 * t1297 + t171 * t1298);
+    const wam7_real_t t1309 = t207 * t1307 - t201 * t1308 + (t140 * t1258 + (t172 * t460 + t88 * t453));
+    const wam7_real_t t1310 = WAM7_C(0.4469713223199599) * (t139 * t287 - t136 * t279 + t1309);
+    const wam7_real_t t1311 = t114 * t1195 - t111 * t1194 + t128 * t1297; /* link j6: derivatives */
+    const wam7_real_t t1312 = t1238 + (t131 * t1297 + t167 * t1298);
+    const wam7_real_t t1313 = t207 * t1311 - t201 * t1312 + (t132 * t1258 + (t168 * t460 + t81 * t453));
+    const wam7_real_t t1314 = WAM7_C(0.4469713223199599) * (t131 * t287 + t128 * t279 + t1313);
+    const wam7_real_t t1315 = t114 * t1199 - t111 * t1198 + t121 * t1297; /* link j7: derivatives */
+    const wam7_real_t t1316 = t1240 + (t124 * t1297 + t164 * t1298);
+    const wam7_real_t t1317 = t207 * t1315 - t201 * t1316 + (t125 * t1258 + (t165 * t460 + t76 * t453));
+    const wam7_real_t t1318 = WAM7_C(0.9996900960702182) * (t124 * t287 + t121 * t279 + t1317);
+    const wam7_real_t t1319 = t1306 + t586 * t1310 + t593 * t1314 + t604 * t1318;
+    ddq_by_q[1] = t1319;
+    const wam7_real_t t1320 = t606 * t1286 - t607 * t1295 + t609 * t1301 - t611 * t1305;
+    const wam7_real_t t1321 = t1320 + t614 * t1310 + t616 * t1314 + t618 * t1318;
+    ddq_by_q[8] = t1321;
+    const wam7_real_t t1322 = t620 * t1286 - t609 * t1295 + t621 * t1301 - t623 * t1305;
+    const wam7_real_t t1323 = t1322 + t626 * t1310 + t628 * t1314 + t630 * t1318;
+    ddq_by_q[15] = t1323;
+    const wam7_real_t t1324 = t632 * t1286 - t633 * t1295 + t634 * t1301 - t636 * t1305;
+    const wam7_real_t t1325 = t1324 + t639 * t1310 + t641 * t1314 + t643 * t1318;
+    ddq_by_q[22] = t1325;
+    const wam7_real_t t1326 = t645 * t1286 - t646 * t1295 + t647 * t1301 - t648 * t1305;
+    const wam7_real_t t1327 = t1326 + t651 * t1310 + t654 * t1314 + t657 * t1318;
+    ddq_by_q[29] = t1327;
+    const wam7_real_t t1328 = t659 * t1286 - t660 * t1295 + t661 * t1301 - t662 * t1305;
+    const wam7_real_t t1329 = t1328 + t654 * t1310 + t665 * t1314 + t668 * t1318;
+    ddq_by_q[36] = t1329;
+    const wam7_real_t t1330 = t670 * t1286 - t671 * t1295 + t672 * t1301 - t673 * t1305;
+    const wam7_real_t t1331 = t1330 + t675 * t1310 + t676 * t1314 + t679 * t1318;
+    ddq_by_q[43] = t1331;
+    /* link j2: derivatives */
+    const wam7_real_t t1332 = WAM7_C(2.0) * (t1280 - t1270 + (t1146 + t1279 - t1267 - t1268));
+    const wam7_real_t t1333 = WAM7_C(0.07745783389167521) * (t1332 + WAM7_C(2.0) * (t160 * t207
+        + t162 * t201));
+    const wam7_real_t t1334 = WAM7_C(61.81619256017505) * parameters[FV2] + t1333;
+    const wam7_real_t t1335 = parameters[ZZ2R] - t1259;
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1336 = t1149 - t1287 + t153 * t1264 - (parameters[YZ2] * dq[1] + t207 * t1335);
+    /* link j2: derivatives */
+    const wam7_real_t t1337 = t161 * (WAM7_C(2.0) * t1336 + (t186 * t1272 - t185 * t1262));
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1338 = parameters[XZ2] * dq[1] + t201 * t1335 + (t114 * t1173 + t111 * t1174);
+    /* link j2: derivatives */
+    const wam7_real_t t1339 = t163 * (WAM7_C(2.0) * t1338 + (t186 * t1262 + t102 * t1272));
+    const wam7_real_t t1340 = WAM7_C(0.05209961446285298) * (t1337 + t1339);
+    /* link j3: derivatives */
+    const wam7_real_t t1341 = t114 * t1180 + t111 * t1181 + WAM7_C(2.0) * (t179 * t207 + t102 * t201);
+    const wam7_real_t t1342 = WAM7_C(0.07745783389167521) * t1341;
+    /* link j4: derivatives */
+    const wam7_real_t t1343 = t114 * t1184 + t111 * t1186 + t100 * t1298 + WAM7_C(2.0) * (t175 * t207
+        + t71 * t201);
+    const wam7_real_t t1344 = WAM7_C(0.12156576707999026) * t1343;
+    const wam7_real_t t1345 = t1340 * t568 - t1334 * t572 + t1342 * t575 - t1344 * t579;
+    /* link j5: derivatives */
+    const wam7_real_t t1346 = t114 * t1190 + t111 * t1191 - t136 * t1298 + WAM7_C(2.0) * (t172 * t207
+        + t88 * t201);
+    const wam7_real_t t1347 = WAM7_C(0.4469713223199599) * t1346;
+    /* link j6: derivatives */
+    const wam7_real_t t1348 = t114 * t1194 + t111 * t1195 + t128 * t1298 + WAM7_C(2.0) * (t168 * t207
+        + t81 * t201);
+    const wam7_real_t t1349 = WAM7_C(0.4469713223199599) * t1348;
+    /* link j7: derivatives */
+    const wam7_real_t t1350 = t114 * t1198 + t111 * t1199 + t121 * t1298 + WAM7_C(2.0) * (t165 * t207
+        + t76 * t201);
+    const wam7_real_t t1351 = WAM7_C(0.9996900960702182) * t1350;
+    const wam7_real_t t1352 = t1345 + t1347 * t586 + t1349 * t593 + t1351 * t604;
+    ddq_by_dq[1] = t1352;
+    const wam7_real_t t1353 = t1340 * t606 - t1334 * t607 + t1342 * t609 - t1344 * t611;
+    const wam7_real_t t1354 = t1353 + t1347 * t614 + t1349 * t616 + t1351 * t618;
+    ddq_by_dq[8] = t1354;
+    const wam7_real_t t1355 = t1340 * t620 - t1334 * t609 + t1342 * t621 - t1344 * t623;
+    const wam7_real_t t1356 = t1355 + t1347 * t626 + t1349 * t628 + t1351 * t630;
+    ddq_by_dq[15] = t1356;
+    const wam7_real_t t1357 = t1340 * t632 - t1334 * t633 + t1342 * t634 - t1344 * t636;
+    const wam7_real_t t1358 = t1357 + t1347 * t639 + t1349 * t641 + t1351 * t643;
+    ddq_by_dq[22] = t1358;
+    const wam7_real_t t1359 = t1340 * t645 - t1334 * t646 + t1342 * t647 - t1344 * t648;
+    const wam7_real_t t1360 = t1359 + t1347 * t651 + t1349 * t654 + t1351 * t657;
+    ddq_by_dq[29] = t1360;
+    const wam7_real_t t1361 = t1340 * t659 - t1334 * t660 + t1342 * t661 - t1344 * t662;
+    const wam7_real_t t1362 = t1361 + t1347 * t654 + t1349 * t665 + t1351 * t668;
+    ddq_by_dq[36] = t1362;
+    const wam7_real_t t1363 = t1340 * t670 - t1334 * t671 + t1342 * t672 - t1344 * t673;
+    const wam7_real_t t1364 = t1363 + t1347 * t675 + t1349 * t676 + t1351 * t679;
+    ddq_by_dq[43] = t1364;
+    ddq_by_input[1] = t572;
+    ddq_by_input[8] = t607;
+    ddq_by_input[15] = t609;
+    ddq_by_input[22] = t633;
+    ddq_by_input[29] = t646;
+    ddq_by_input[36] = t660;
+    ddq_by_input[43] = t671;
+    const wam7_real_t t1365 = WAM7_C(0.07745783389167521) * (t161 * t1289 - t163 * t1292);
+    /* link j2: inertia, momentum beyond */
+    const wam7_real_t t1366 = t163 * (t163 * (t1271 - t1281) + t161 * (t1283 + t1261));
+    const wam7_real_t t1367 = WAM7_C(-91.90371991247264) * parameters[FV1]
+        + WAM7_C(0.10419922892570596) * (t1281 + t1366);
+    const wam7_real_t t1368 = WAM7_C(0.07745783389167521) * (t161 * t1296 + t163 * t1299);
+    const wam7_real_t t1369 = WAM7_C(0.12156576707999026) * (t161 * t1302 + t163 * t1303);
+    const wam7_real_t t1370 = t1367 * t568 - t1365 * t572 + t1368 * t575 - t1369 * t579;
+    const wam7_real_t t1371 = WAM7_C(0.4469713223199599) * (t161 * t1307 + t163 * t1308);
+    const wam7_real_t t1372 = WAM7_C(0.4469713223199599) * (t161 * t1311 + t163 * t1312);
+    const wam7_real_t t1373 = WAM7_C(0.9996900960702182) * (t161 * t1315 + t163 * t1316);
+    const wam7_real_t t1374 = t1370 + t1371 * t586 + t1372 * t593 + t1373 * t604;
+    ddq_by_dq[0] = t1374;
+    const wam7_real_t t1375 = t1367 * t606 - t1365 * t607 + t1368 * t609 - t1369 * t611;
+    const wam7_real_t t1376 = t1375 + t1371 * t614 + t1372 * t616 + t1373 * t618;
+    ddq_by_dq[7] = t1376;
+    const wam7_real_t t1377 = t1367 * t620 - t1365 * t609 + t1368 * t621 - t1369 * t623;
+    const wam7_real_t t1378 = t1377 + t1371 * t626 + t1372 * t628 + t1373 * t630;
+    ddq_by_dq[14] = t1378;
+    const wam7_real_t t1379 = t1367 * t632 - t1365 * t633 + t1368 * t634 - t1369 * t636;
+    const wam7_real_t t1380 = t1379 + t1371 * t639 + t1372 * t641 + t1373 * t643;
+    ddq_by_dq[21] = t1380;
+    const wam7_real_t t1381 = t1367 * t645 - t1365 * t646 + t1368 * t647 - t1369 * t648;
+    const wam7_real_t t1382 = t1381 + t1371 * t651 + t1372 * t654 + t1373 * t657;
+    ddq_by_dq[28] = t1382;
+    const wam7_real_t t1383 = t1367 * t659 - t1365 * t660 + t1368 * t661 - t1369 * t662;
+    const wam7_real_t t1384 = t1383 + t1371 * t654 + t1372 * t665 + t1373 * t668;
+    ddq_by_dq[35] = t1384;
+    const wam7_real_t t1385 = t1367 * t670 - t1365 * t671 + t1368 * t672 - t1369 * t673;
+    const wam7_real_t t1386 = t1385 + t1371 * t675 + t1372 * t676 + t1373 * t679;
+    ddq_by_dq[42] = t1386;
+    ddq_by_input[0] = t568;
+    ddq_by_input[7] = t606;
+    ddq_by_input[14] = t620;
+    ddq_by_input[21] = t632;
+    ddq_by_input[28] = t645;
+    ddq_by_input[35] = t659;
+    ddq_by_input[42] = t670;
     /* always zero */
     ddq_by_q[0] = WAM7_C(0.0);
     ddq_by_q[7] = WAM7_C(0.0);
@@ -1888,10 +1869,10 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     ddq_by_q[28] = WAM7_C(0.0);
     ddq_by_q[35] = WAM7_C(0.0);
     ddq_by_q[42] = WAM7_C(0.0);
-    if (!wam7_all_bounded(ddq, 7)
-        || !wam7_all_bounded(ddq_by_q, 49)
-        || !wam7_all_bounded(ddq_by_dq, 49)
-        || !wam7_all_bounded(ddq_by_input, 49)) {
+    if (!wam7_bounded(ddq, 7)
+        || !wam7_bounded(ddq_by_q, 49)
+        || !wam7_bounded(ddq_by_dq, 49)
+        || !wam7_bounded(ddq_by_input, 49)) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);

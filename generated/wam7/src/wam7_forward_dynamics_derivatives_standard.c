@@ -7,7 +7,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 5486 (2991 mul, 2495 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 5486 (2991 mul, 2495 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  *
  * @param[in]   q             [7]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [7]   [rad/s]                  joint velocities; norm at most 100000
@@ -125,7 +125,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -160,19 +160,19 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    wam7_real_t t187, t189;
-    WAM7_SINCOS(q[1], &t187, &t189);
-    wam7_real_t t134, t130;
-    WAM7_SINCOS(q[2], &t134, &t130);
-    wam7_real_t t84, t87;
-    WAM7_SINCOS(q[3], &t84, &t87);
-    wam7_real_t t42, t39;
-    WAM7_SINCOS(q[4], &t42, &t39);
-    wam7_real_t t22, t18;
-    WAM7_SINCOS(q[5], &t22, &t18);
+    wam7_real_t t182, t184;
+    WAM7_SINCOS(q[1], &t182, &t184);
+    wam7_real_t t130, t126;
+    WAM7_SINCOS(q[2], &t130, &t126);
+    wam7_real_t t81, t84;
+    WAM7_SINCOS(q[3], &t81, &t84);
+    wam7_real_t t40, t37;
+    WAM7_SINCOS(q[4], &t40, &t37);
+    wam7_real_t t21, t17;
+    WAM7_SINCOS(q[5], &t21, &t17);
     wam7_real_t t1, t2;
     WAM7_SINCOS(q[6], &t1, &t2);
-    const wam7_real_t t0 = wam7_bounded(parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7]);
+    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
     if (!(t0 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -192,7 +192,7 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t11 = WAM7_C(0.06) * (t10 + WAM7_C(2.0) * parameters[MZ7]);
     const wam7_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
     const wam7_real_t t13 = t12 + WAM7_C(89.8704) * parameters[IA6];
-    const wam7_real_t t14 = wam7_bounded(t13 - t4 * t6);
+    const wam7_real_t t14 = t13 - t4 * t6;
     if (!(t14 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -200,276 +200,248 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t15 = t14 + WAM7_C(-1.0e-9) * t13;
-    if (!(t15 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t16 = parameters[XX6] + (parameters[YY7] - t9 + t11);
-    const wam7_real_t t17 = parameters[YY6] + parameters[ZZ7];
+    const wam7_real_t t15 = parameters[XX6] + (parameters[YY7] - t9 + t11);
+    const wam7_real_t t16 = parameters[YY6] + parameters[ZZ7];
     /* link j7: column of the mass matrix */
-    const wam7_real_t t19 = t1 * parameters[MY7] - t2 * parameters[MX7];
-    const wam7_real_t t20 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + WAM7_C(-0.06) * t19;
-    const wam7_real_t t21 = parameters[XY6] + t20; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t18 = t1 * parameters[MY7] - t2 * parameters[MX7];
+    const wam7_real_t t19 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + WAM7_C(-0.06) * t18;
+    const wam7_real_t t20 = parameters[XY6] + t19; /* link j7: inertia of it and all beyond */
     /* link j6: inertia of it and all beyond */
-    const wam7_real_t t23 = t18 * (t16 - t17) + t21 * (WAM7_C(-2.0) * t22);
-    const wam7_real_t t24 = t18 * t23;
-    const wam7_real_t t25 = parameters[ZZ5] + (t16 - t24);
-    const wam7_real_t t26 = t25 + WAM7_C(89.8704) * parameters[IA5];
-    const wam7_real_t t27 = t22 * t20 + t18 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t28 = t27 * t5;
-    const wam7_real_t t29 = t4 - parameters[YZ6]; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t30 = t1 * t8 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t31 = t22 * t30 + t18 * t29; /* link j6: column of the mass matrix */
-    const wam7_real_t t32 = t27 * t6 - t31;
-    const wam7_real_t t33 = WAM7_C(1.0) / t14;
-    const wam7_real_t t34 = t32 * t33;
-    const wam7_real_t t35 = wam7_bounded(t26 - t27 * t28 - t32 * t34);
-    if (!(t35 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t22 = t17 * (t15 - t16) + t20 * (WAM7_C(-2.0) * t21);
+    const wam7_real_t t23 = t17 * t22;
+    const wam7_real_t t24 = parameters[ZZ5] + (t15 - t23);
+    const wam7_real_t t25 = t24 + WAM7_C(89.8704) * parameters[IA5];
+    const wam7_real_t t26 = t21 * t19 + t17 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const wam7_real_t t27 = t26 * t5;
+    const wam7_real_t t28 = t4 - parameters[YZ6]; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t29 = t1 * t8 - parameters[XY7] - parameters[XZ6];
+    const wam7_real_t t30 = t21 * t29 + t17 * t28; /* link j6: column of the mass matrix */
+    const wam7_real_t t31 = t26 * t6 - t30;
+    const wam7_real_t t32 = WAM7_C(1.0) / t14;
+    const wam7_real_t t33 = t31 * t32;
+    const wam7_real_t t34 = t25 - t26 * t27 - t31 * t33;
+    if (!(t34 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t36 = t35 + WAM7_C(-1.0e-9) * t26;
-    if (!(t36 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t37 = parameters[XX5] + (t17 + t24); /* link j6: inertia of it and all beyond */
-    const wam7_real_t t38 = parameters[YY5] + t12;
-    const wam7_real_t t40 = t18 * t30 - t22 * t29; /* link j6: column of the mass matrix */
-    const wam7_real_t t41 = parameters[XY5] - t40; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t35 = parameters[XX5] + (t16 + t23); /* link j6: inertia of it and all beyond */
+    const wam7_real_t t36 = parameters[YY5] + t12;
+    const wam7_real_t t38 = t17 * t29 - t21 * t28; /* link j6: column of the mass matrix */
+    const wam7_real_t t39 = parameters[XY5] - t38; /* link j6: inertia of it and all beyond */
     /* link j5: inertia of it and all beyond */
-    const wam7_real_t t43 = t39 * (t38 - t37) + t41 * (WAM7_C(2.0) * t42);
-    const wam7_real_t t44 = t39 * t43;
-    const wam7_real_t t45 = parameters[MZ6] + t3; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t46 = parameters[MY5] + t45; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t47 = parameters[MX6] - t19; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t48 = parameters[MZ7] + t10;
-    const wam7_real_t t49 = parameters[MY6] - t48;
-    const wam7_real_t t50 = t22 * t49 - t18 * t47; /* link j6: column of the mass matrix */
-    const wam7_real_t t51 = t50 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t52 = t42 * t46 + t39 * t51; /* link j5: column of the mass matrix */
-    const wam7_real_t t53 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t54 = parameters[M5] + t53; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t55 = WAM7_C(0.045) * t54; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t56 = WAM7_C(0.045) * (t55 + WAM7_C(2.0) * t52);
-    const wam7_real_t t57 = t18 * t49 + t22 * t47; /* link j6: column of the mass matrix */
-    const wam7_real_t t58 = parameters[MZ5] - t57; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t59 = WAM7_C(0.3) * t54; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t60 = WAM7_C(0.3) * (t59 + WAM7_C(2.0) * t58);
-    const wam7_real_t t61 = parameters[ZZ4] + (t37 + t44 + (t56 + t60));
-    const wam7_real_t t62 = t61 + WAM7_C(324.0) * parameters[IA4];
-    const wam7_real_t t63 = t18 * t20 - t22 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t64 = t18 * t3;
-    const wam7_real_t t65 = t39 * t64 - t42 * t19;
-    const wam7_real_t t66 = t22 * t3;
-    const wam7_real_t t67 = t42 * t63 - t39 * t4 + (WAM7_C(-0.045) * t66 + WAM7_C(0.3) * t65);
-    const wam7_real_t t68 = t67 * t5;
-    const wam7_real_t t69 = t39 * t57; /* link j6: column of the mass matrix */
-    const wam7_real_t t70 = t42 * t40 - t39 * t12 + (WAM7_C(-0.045) * t50 + WAM7_C(0.3) * t69);
-    const wam7_real_t t71 = t70 - t67 * t6;
-    const wam7_real_t t72 = t71 * t33;
-    const wam7_real_t t73 = t21 + t22 * t23 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t74 = parameters[YZ5] + t31;
-    const wam7_real_t t75 = t42 * t51 - t39 * t46; /* link j5: column of the mass matrix */
-    const wam7_real_t t76 = t42 * t73 - t39 * t74 + WAM7_C(-0.3) * t75;
-    const wam7_real_t t77 = t76 - t67 * t28 + t71 * t34;
-    const wam7_real_t t78 = WAM7_C(1.0) / t35;
-    const wam7_real_t t79 = t77 * t78;
-    const wam7_real_t t80 = wam7_bounded(t62 - t67 * t68 - t71 * t72 - t77 * t79);
-    if (!(t80 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t41 = t37 * (t36 - t35) + t39 * (WAM7_C(2.0) * t40);
+    const wam7_real_t t42 = t37 * t41;
+    const wam7_real_t t43 = parameters[MZ6] + t3; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t44 = parameters[MY5] + t43; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t45 = parameters[MX6] - t18; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t46 = parameters[MZ7] + t10;
+    const wam7_real_t t47 = parameters[MY6] - t46;
+    const wam7_real_t t48 = t21 * t47 - t17 * t45; /* link j6: column of the mass matrix */
+    const wam7_real_t t49 = t48 - parameters[MX5]; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t50 = t40 * t44 + t37 * t49; /* link j5: column of the mass matrix */
+    const wam7_real_t t51 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t52 = parameters[M5] + t51; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t53 = WAM7_C(0.045) * t52; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t54 = WAM7_C(0.045) * (t53 + WAM7_C(2.0) * t50);
+    const wam7_real_t t55 = t17 * t47 + t21 * t45; /* link j6: column of the mass matrix */
+    const wam7_real_t t56 = parameters[MZ5] - t55; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t57 = WAM7_C(0.3) * t52; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t58 = WAM7_C(0.3) * (t57 + WAM7_C(2.0) * t56);
+    const wam7_real_t t59 = parameters[ZZ4] + (t35 + t42 + (t54 + t58));
+    const wam7_real_t t60 = t59 + WAM7_C(324.0) * parameters[IA4];
+    const wam7_real_t t61 = t17 * t19 - t21 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const wam7_real_t t62 = t17 * t3;
+    const wam7_real_t t63 = t37 * t62 - t40 * t18;
+    const wam7_real_t t64 = t21 * t3;
+    const wam7_real_t t65 = t40 * t61 - t37 * t4 + (WAM7_C(-0.045) * t64 + WAM7_C(0.3) * t63);
+    const wam7_real_t t66 = t65 * t5;
+    const wam7_real_t t67 = t37 * t55; /* link j6: column of the mass matrix */
+    const wam7_real_t t68 = t40 * t38 - t37 * t12 + (WAM7_C(-0.045) * t48 + WAM7_C(0.3) * t67);
+    const wam7_real_t t69 = t68 - t65 * t6;
+    const wam7_real_t t70 = t69 * t32;
+    const wam7_real_t t71 = t20 + t21 * t22 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t72 = parameters[YZ5] + t30;
+    const wam7_real_t t73 = t40 * t49 - t37 * t44; /* link j5: column of the mass matrix */
+    const wam7_real_t t74 = t40 * t71 - t37 * t72 + WAM7_C(-0.3) * t73;
+    const wam7_real_t t75 = t74 - t65 * t27 + t69 * t33;
+    const wam7_real_t t76 = WAM7_C(1.0) / t34;
+    const wam7_real_t t77 = t75 * t76;
+    const wam7_real_t t78 = t60 - t65 * t66 - t69 * t70 - t75 * t77;
+    if (!(t78 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t81 = t80 + WAM7_C(-1.0e-9) * t62;
-    if (!(t81 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t82 = t39 * t73 + t42 * t74;
-    const wam7_real_t t83 = WAM7_C(0.3) * t52 - t82;
-    const wam7_real_t t85 = WAM7_C(0.045) * t52;
-    const wam7_real_t t86 = t25 + t85;
-    const wam7_real_t t88 = t87 * t86 - t84 * t83 - t85;
-    const wam7_real_t t89 = t42 * t64 + t39 * t19; /* link j7: column of the mass matrix */
-    const wam7_real_t t90 = WAM7_C(0.3) * t89 - (t39 * t63 + t42 * t4);
-    const wam7_real_t t91 = WAM7_C(0.045) * t89;
-    const wam7_real_t t92 = t27 + t91;
-    const wam7_real_t t93 = t87 * t92 - t84 * t90 - t91;
-    const wam7_real_t t94 = t42 * t57; /* link j6: column of the mass matrix */
-    const wam7_real_t t95 = WAM7_C(0.3) * t94 - (t39 * t40 + t42 * t12);
-    const wam7_real_t t96 = WAM7_C(0.045) * t94;
-    const wam7_real_t t97 = t31 + t96;
-    const wam7_real_t t98 = t87 * t97 - t84 * t95 - t96;
-    const wam7_real_t t99 = t93 * t6 - t98;
-    const wam7_real_t t100 = t93 * t28 - t88 + t99 * t34;
+    const wam7_real_t t79 = t37 * t71 + t40 * t72;
+    const wam7_real_t t80 = WAM7_C(0.3) * t50 - t79;
+    const wam7_real_t t82 = WAM7_C(0.045) * t50;
+    const wam7_real_t t83 = t24 + t82;
+    const wam7_real_t t85 = t84 * t83 - t81 * t80 - t82;
+    const wam7_real_t t86 = t40 * t62 + t37 * t18; /* link j7: column of the mass matrix */
+    const wam7_real_t t87 = WAM7_C(0.3) * t86 - (t37 * t61 + t40 * t4);
+    const wam7_real_t t88 = WAM7_C(0.045) * t86;
+    const wam7_real_t t89 = t26 + t88;
+    const wam7_real_t t90 = t84 * t89 - t81 * t87 - t88;
+    const wam7_real_t t91 = t40 * t55; /* link j6: column of the mass matrix */
+    const wam7_real_t t92 = WAM7_C(0.3) * t91 - (t37 * t38 + t40 * t12);
+    const wam7_real_t t93 = WAM7_C(0.045) * t91;
+    const wam7_real_t t94 = t30 + t93;
+    const wam7_real_t t95 = t84 * t94 - t81 * t92 - t93;
+    const wam7_real_t t96 = t90 * t6 - t95;
+    const wam7_real_t t97 = t90 * t27 - t85 + t96 * t33;
     /* link j5: inertia of it and all beyond */
-    const wam7_real_t t101 = parameters[XZ4] + (t41 - t42 * t43 + WAM7_C(-0.045) * t75);
-    const wam7_real_t t102 = parameters[YZ4] + t76;
-    const wam7_real_t t103 = t84 * t101 + t87 * t102; /* link j4: column of the mass matrix */
-    const wam7_real_t t104 = t103 - t93 * t68 + t99 * t72 + t100 * t79;
-    const wam7_real_t t105 = WAM7_C(1.0) / t80;
-    const wam7_real_t t106 = t104 * t105;
-    const wam7_real_t t107 = t100 * t78;
-    const wam7_real_t t108 = t93 * t5;
-    const wam7_real_t t109 = parameters[XX4] + (t38 - t44 + t60); /* link j5: inertia of it and all beyond */
-    const wam7_real_t t110 = parameters[YY4] + (t25 + t56);
-    const wam7_real_t t111 = t52 + t55;
-    const wam7_real_t t112 = parameters[XY4] + (t82 + (WAM7_C(-0.045) * t58 + WAM7_C(-0.3) * t111));
+    const wam7_real_t t98 = parameters[XZ4] + (t39 - t40 * t41 + WAM7_C(-0.045) * t73);
+    const wam7_real_t t99 = parameters[YZ4] + t74;
+    const wam7_real_t t100 = t81 * t98 + t84 * t99; /* link j4: column of the mass matrix */
+    const wam7_real_t t101 = t100 - t90 * t66 + t96 * t70 + t97 * t77;
+    const wam7_real_t t102 = WAM7_C(1.0) / t78;
+    const wam7_real_t t103 = t101 * t102;
+    const wam7_real_t t104 = t97 * t76;
+    const wam7_real_t t105 = t90 * t5;
+    const wam7_real_t t106 = parameters[XX4] + (t36 - t42 + t58); /* link j5: inertia of it and all beyond */
+    const wam7_real_t t107 = parameters[YY4] + (t24 + t54);
+    const wam7_real_t t108 = t50 + t53;
+    const wam7_real_t t109 = parameters[XY4] + (t79 + (WAM7_C(-0.045) * t56 + WAM7_C(-0.3) * t108));
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t113 = t87 * (t110 - t109) + t112 * (WAM7_C(2.0) * t84);
-    const wam7_real_t t114 = t87 * t113;
-    const wam7_real_t t115 = parameters[MX4] - t111; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t116 = t58 + t59;
-    const wam7_real_t t117 = t116 - parameters[MY4];
-    const wam7_real_t t118 = t84 * t117 + t87 * t115; /* link j4: column of the mass matrix */
-    const wam7_real_t t119 = parameters[M4] + t54; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t120 = WAM7_C(0.045) * t119; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t121 = WAM7_C(0.045) * (t120 + WAM7_C(2.0) * t118);
-    const wam7_real_t t122 = parameters[ZZ3] + (t109 + t114 + t121);
-    const wam7_real_t t123 = t122 + WAM7_C(798.0625) * parameters[IA3];
-    const wam7_real_t t124 = t99 * t33;
-    const wam7_real_t t125 = t123 - t93 * t108 - t99 * t124 - t100 * t107;
-    const wam7_real_t t126 = wam7_bounded(t125 - t104 * t106);
-    if (!(t126 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t110 = t84 * (t107 - t106) + t109 * (WAM7_C(2.0) * t81);
+    const wam7_real_t t111 = t84 * t110;
+    const wam7_real_t t112 = parameters[MX4] - t108; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t113 = t56 + t57;
+    const wam7_real_t t114 = t113 - parameters[MY4];
+    const wam7_real_t t115 = t81 * t114 + t84 * t112; /* link j4: column of the mass matrix */
+    const wam7_real_t t116 = parameters[M4] + t52; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t117 = WAM7_C(0.045) * t116; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t118 = WAM7_C(0.045) * (t117 + WAM7_C(2.0) * t115);
+    const wam7_real_t t119 = parameters[ZZ3] + (t106 + t111 + t118);
+    const wam7_real_t t120 = t119 + WAM7_C(798.0625) * parameters[IA3];
+    const wam7_real_t t121 = t96 * t32;
+    const wam7_real_t t122 = t120 - t90 * t105 - t96 * t121 - t97 * t104;
+    const wam7_real_t t123 = t122 - t101 * t103;
+    if (!(t123 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t127 = t126 + WAM7_C(-1.0e-9) * t123;
-    if (!(t127 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t128 = parameters[XX3] + (t110 - t114);
-    const wam7_real_t t129 = parameters[YY3] + (t61 + t121);
-    const wam7_real_t t131 = t87 * t101 - t84 * t102; /* link j4: column of the mass matrix */
-    const wam7_real_t t132 = t75 - parameters[MZ4]; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t124 = parameters[XX3] + (t107 - t111);
+    const wam7_real_t t125 = parameters[YY3] + (t59 + t118);
+    const wam7_real_t t127 = t84 * t98 - t81 * t99; /* link j4: column of the mass matrix */
+    const wam7_real_t t128 = t73 - parameters[MZ4]; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t133 = parameters[XY3] + (t131 + WAM7_C(0.045) * t132);
+    const wam7_real_t t129 = parameters[XY3] + (t127 + WAM7_C(0.045) * t128);
     /* link j3: inertia of it and all beyond */
-    const wam7_real_t t135 = t130 * (t129 - t128) + t133 * (WAM7_C(2.0) * t134);
-    const wam7_real_t t136 = t130 * t135;
-    const wam7_real_t t137 = t84 * t115 - t87 * t117; /* link j4: column of the mass matrix */
-    const wam7_real_t t138 = t137 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t139 = parameters[M3] + t119;
-    const wam7_real_t t140 = WAM7_C(-0.55) * t139; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t141 = WAM7_C(0.55) * (WAM7_C(-2.0) * t138 - t140);
-    const wam7_real_t t142 = parameters[ZZ2] + (t128 + t136 + t141);
-    const wam7_real_t t143 = t142 + WAM7_C(798.0625) * parameters[IA2];
-    const wam7_real_t t144 = t87 * t90 + t84 * t92; /* link j7: column of the mass matrix */
-    const wam7_real_t t145 = t84 * t65 + t87 * t66;
-    const wam7_real_t t146 = t67 + WAM7_C(0.045) * t145;
-    const wam7_real_t t147 = t84 * t66 - t87 * t65;
-    const wam7_real_t t148 = t130 * t147 + t134 * t89;
-    const wam7_real_t t149 = t134 * t144 - t130 * t146 - WAM7_C(-0.55) * t148;
-    const wam7_real_t t150 = t149 * t5;
-    const wam7_real_t t151 = t87 * t95 + t84 * t97; /* link j6: column of the mass matrix */
-    const wam7_real_t t152 = t84 * t69 + t87 * t50;
-    const wam7_real_t t153 = t70 + WAM7_C(0.045) * t152;
-    const wam7_real_t t154 = t84 * t50 - t87 * t69;
-    const wam7_real_t t155 = t130 * t154 + t134 * t94;
-    const wam7_real_t t156 = t134 * t151 - t130 * t153 + WAM7_C(0.55) * t155;
-    const wam7_real_t t157 = t156 - t149 * t6;
-    const wam7_real_t t158 = t157 * t33;
-    const wam7_real_t t159 = t87 * t83 + t84 * t86; /* link j5: column of the mass matrix */
-    const wam7_real_t t160 = t84 * t75;
-    const wam7_real_t t161 = t76 + WAM7_C(-0.045) * t160;
-    const wam7_real_t t162 = t87 * t75;
-    const wam7_real_t t163 = t130 * t162 + t134 * t52;
-    const wam7_real_t t164 = t134 * t159 - t130 * t161 + WAM7_C(0.55) * t163;
-    const wam7_real_t t165 = t164 - t149 * t28 + t157 * t34;
-    const wam7_real_t t166 = t165 * t78;
-    const wam7_real_t t167 = t143 - t149 * t150 - t157 * t158 - t165 * t166;
-    const wam7_real_t t168 = t61 + WAM7_C(0.045) * t118; /* link j4: column of the mass matrix */
-    const wam7_real_t t169 = t130 * t137;
-    const wam7_real_t t170 = WAM7_C(0.55) * t169 - (t134 * t131 + t130 * t168);
-    const wam7_real_t t171 = t170 - t149 * t68 - t157 * t72 - t165 * t79;
-    const wam7_real_t t172 = t171 * t105;
+    const wam7_real_t t131 = t126 * (t125 - t124) + t129 * (WAM7_C(2.0) * t130);
+    const wam7_real_t t132 = t126 * t131;
+    const wam7_real_t t133 = t81 * t112 - t84 * t114; /* link j4: column of the mass matrix */
+    const wam7_real_t t134 = t133 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t135 = parameters[M3] + t116;
+    const wam7_real_t t136 = WAM7_C(-0.55) * t135; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t137 = WAM7_C(0.55) * (WAM7_C(-2.0) * t134 - t136);
+    const wam7_real_t t138 = parameters[ZZ2] + (t124 + t132 + t137);
+    const wam7_real_t t139 = t138 + WAM7_C(798.0625) * parameters[IA2];
+    const wam7_real_t t140 = t84 * t87 + t81 * t89; /* link j7: column of the mass matrix */
+    const wam7_real_t t141 = t81 * t63 + t84 * t64;
+    const wam7_real_t t142 = t65 + WAM7_C(0.045) * t141;
+    const wam7_real_t t143 = t81 * t64 - t84 * t63;
+    const wam7_real_t t144 = t126 * t143 + t130 * t86;
+    const wam7_real_t t145 = t130 * t140 - t126 * t142 - WAM7_C(-0.55) * t144;
+    const wam7_real_t t146 = t145 * t5;
+    const wam7_real_t t147 = t84 * t92 + t81 * t94; /* link j6: column of the mass matrix */
+    const wam7_real_t t148 = t81 * t67 + t84 * t48;
+    const wam7_real_t t149 = t68 + WAM7_C(0.045) * t148;
+    const wam7_real_t t150 = t81 * t48 - t84 * t67;
+    const wam7_real_t t151 = t126 * t150 + t130 * t91;
+    const wam7_real_t t152 = t130 * t147 - t126 * t149 + WAM7_C(0.55) * t151;
+    const wam7_real_t t153 = t152 - t145 * t6;
+    const wam7_real_t t154 = t153 * t32;
+    const wam7_real_t t155 = t84 * t80 + t81 * t83; /* link j5: column of the mass matrix */
+    const wam7_real_t t156 = t81 * t73;
+    const wam7_real_t t157 = t74 + WAM7_C(-0.045) * t156;
+    const wam7_real_t t158 = t84 * t73;
+    const wam7_real_t t159 = t126 * t158 + t130 * t50;
+    const wam7_real_t t160 = t130 * t155 - t126 * t157 + WAM7_C(0.55) * t159;
+    const wam7_real_t t161 = t160 - t145 * t27 + t153 * t33;
+    const wam7_real_t t162 = t161 * t76;
+    const wam7_real_t t163 = t139 - t145 * t146 - t153 * t154 - t161 * t162;
+    const wam7_real_t t164 = t59 + WAM7_C(0.045) * t115; /* link j4: column of the mass matrix */
+    const wam7_real_t t165 = t126 * t133;
+    const wam7_real_t t166 = WAM7_C(0.55) * t165 - (t130 * t127 + t126 * t164);
+    const wam7_real_t t167 = t166 - t145 * t66 - t153 * t70 - t161 * t77;
+    const wam7_real_t t168 = t167 * t102;
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t173 = parameters[XZ3] - (t112 - t84 * t113 - WAM7_C(0.045) * t137);
-    const wam7_real_t t174 = t103 - parameters[YZ3];
-    const wam7_real_t t175 = t132 - parameters[MY3];
-    const wam7_real_t t176 = t118 + t120;
-    const wam7_real_t t177 = parameters[MX3] + t176;
-    const wam7_real_t t178 = t130 * t175 - t134 * t177; /* link j3: column of the mass matrix */
-    const wam7_real_t t179 = t134 * t173 - t130 * t174 + WAM7_C(0.55) * t178;
-    const wam7_real_t t180 = t179 - t149 * t108 + t157 * t124 + t165 * t107;
-    const wam7_real_t t181 = t180 - t171 * t106;
-    const wam7_real_t t182 = WAM7_C(1.0) / t126;
-    const wam7_real_t t183 = t181 * t182;
-    const wam7_real_t t184 = wam7_bounded(t167 - t171 * t172 - t181 * t183);
-    if (!(t184 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t169 = parameters[XZ3] - (t109 - t81 * t110 - WAM7_C(0.045) * t133);
+    const wam7_real_t t170 = t100 - parameters[YZ3];
+    const wam7_real_t t171 = t128 - parameters[MY3];
+    const wam7_real_t t172 = t115 + t117;
+    const wam7_real_t t173 = parameters[MX3] + t172;
+    const wam7_real_t t174 = t126 * t171 - t130 * t173; /* link j3: column of the mass matrix */
+    const wam7_real_t t175 = t130 * t169 - t126 * t170 + WAM7_C(0.55) * t174;
+    const wam7_real_t t176 = t175 - t145 * t105 + t153 * t121 + t161 * t104;
+    const wam7_real_t t177 = t176 - t167 * t103;
+    const wam7_real_t t178 = WAM7_C(1.0) / t123;
+    const wam7_real_t t179 = t177 * t178;
+    const wam7_real_t t180 = t163 - t167 * t168 - t177 * t179;
+    if (!(t180 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t185 = t184 + WAM7_C(-1.0e-9) * t143;
-    if (!(t185 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t186 = t134 * t135 - t133 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t188 = parameters[YZ2] - t179;
-    const wam7_real_t t190 = t130 * t89 - t134 * t147; /* link j7: column of the mass matrix */
-    const wam7_real_t t191 = t130 * t144 + t134 * t146 + WAM7_C(0.55) * t190;
-    const wam7_real_t t192 = t187 * t191 - t189 * t93;
-    const wam7_real_t t193 = t130 * t94 - t134 * t154; /* link j6: column of the mass matrix */
-    const wam7_real_t t194 = t130 * t151 + t134 * t153 + WAM7_C(0.55) * t193;
-    const wam7_real_t t195 = t187 * t194 - t189 * t98 - t192 * t6;
-    const wam7_real_t t196 = t187 * t186 - t189 * t188 + t192 * t150 + t195 * t158;
-    const wam7_real_t t197 = t130 * t52 - t134 * t162; /* link j5: column of the mass matrix */
-    const wam7_real_t t198 = t130 * t159 + t134 * t161 + WAM7_C(0.55) * t197;
-    const wam7_real_t t199 = t187 * t198 - t189 * t88 - t192 * t28 + t195 * t34;
-    const wam7_real_t t200 = t134 * t137; /* link j4: column of the mass matrix */
-    const wam7_real_t t201 = t134 * t168 - t130 * t131 + WAM7_C(-0.55) * t200;
-    const wam7_real_t t202 = t189 * t103 - t187 * t201 + t192 * t68 + t195 * t72;
-    const wam7_real_t t203 = t202 + t199 * t79;
-    const wam7_real_t t204 = t134 * t175 + t130 * t177; /* link j3: column of the mass matrix */
-    const wam7_real_t t205 = t130 * t173 + t134 * t174 + WAM7_C(-0.55) * t204;
-    const wam7_real_t t206 = t187 * t205 - t189 * t122 - t192 * t108 + t195 * t124;
-    const wam7_real_t t207 = t206 + t199 * t107 + t203 * t106;
-    const wam7_real_t t208 = t196 + t199 * t166 - t203 * t172 + t207 * t183;
-    const wam7_real_t t209 = WAM7_C(1.0) / t184;
-    const wam7_real_t t210 = t208 * t209;
-    const wam7_real_t t211 = t136 - t129 - t141 - parameters[XX2]; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t212 = parameters[YY2] + t122;
-    const wam7_real_t t213 = parameters[XY2] - t205;
+    const wam7_real_t t181 = t130 * t131 - t129 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t183 = parameters[YZ2] - t175;
+    const wam7_real_t t185 = t126 * t86 - t130 * t143; /* link j7: column of the mass matrix */
+    const wam7_real_t t186 = t126 * t140 + t130 * t142 + WAM7_C(0.55) * t185;
+    const wam7_real_t t187 = t182 * t186 - t184 * t90;
+    const wam7_real_t t188 = t126 * t91 - t130 * t150; /* link j6: column of the mass matrix */
+    const wam7_real_t t189 = t126 * t147 + t130 * t149 + WAM7_C(0.55) * t188;
+    const wam7_real_t t190 = t182 * t189 - t184 * t95 - t187 * t6;
+    const wam7_real_t t191 = t182 * t181 - t184 * t183 + t187 * t146 + t190 * t154;
+    const wam7_real_t t192 = t126 * t50 - t130 * t158; /* link j5: column of the mass matrix */
+    const wam7_real_t t193 = t126 * t155 + t130 * t157 + WAM7_C(0.55) * t192;
+    const wam7_real_t t194 = t182 * t193 - t184 * t85 - t187 * t27 + t190 * t33;
+    const wam7_real_t t195 = t130 * t133; /* link j4: column of the mass matrix */
+    const wam7_real_t t196 = t130 * t164 - t126 * t127 + WAM7_C(-0.55) * t195;
+    const wam7_real_t t197 = t184 * t100 - t182 * t196 + t187 * t66 + t190 * t70;
+    const wam7_real_t t198 = t197 + t194 * t77;
+    const wam7_real_t t199 = t130 * t171 + t126 * t173; /* link j3: column of the mass matrix */
+    const wam7_real_t t200 = t126 * t169 + t130 * t170 + WAM7_C(-0.55) * t199;
+    const wam7_real_t t201 = t182 * t200 - t184 * t119 - t187 * t105 + t190 * t121;
+    const wam7_real_t t202 = t201 + t194 * t104 + t198 * t103;
+    const wam7_real_t t203 = t191 + t194 * t162 - t198 * t168 + t202 * t179;
+    const wam7_real_t t204 = WAM7_C(1.0) / t180;
+    const wam7_real_t t205 = t203 * t204;
+    const wam7_real_t t206 = t132 - t125 - t137 - parameters[XX2]; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t207 = parameters[YY2] + t119;
+    const wam7_real_t t208 = parameters[XY2] - t200;
     /* link j2: inertia of it and all beyond */
-    const wam7_real_t t214 = t189 * (t189 * (t211 + t212) + t213 * (WAM7_C(2.0) * t187));
-    const wam7_real_t t215 = parameters[ZZ1] + (t214 - t211) + WAM7_C(1764.0) * parameters[IA1];
-    const wam7_real_t t216 = t192 * t5;
-    const wam7_real_t t217 = t195 * t33;
-    const wam7_real_t t218 = t199 * t78;
-    const wam7_real_t t219 = t215 - t192 * t216 - t195 * t217 - t199 * t218;
-    const wam7_real_t t220 = t203 * t105;
-    const wam7_real_t t221 = t207 * t182;
-    const wam7_real_t t222 = wam7_bounded(t219 - t203 * t220 - t207 * t221 - t208 * t210);
+    const wam7_real_t t209 = t184 * (t184 * (t206 + t207) + t208 * (WAM7_C(2.0) * t182));
+    const wam7_real_t t210 = parameters[ZZ1] + (t209 - t206) + WAM7_C(1764.0) * parameters[IA1];
+    const wam7_real_t t211 = t187 * t5;
+    const wam7_real_t t212 = t190 * t32;
+    const wam7_real_t t213 = t194 * t76;
+    const wam7_real_t t214 = t210 - t187 * t211 - t190 * t212 - t194 * t213;
+    const wam7_real_t t215 = t198 * t102;
+    const wam7_real_t t216 = t202 * t178;
+    const wam7_real_t t217 = t214 - t198 * t215 - t202 * t216 - t203 * t205;
+    if (!(t217 > WAM7_C(1.0e-12))) {
+        wam7_zero(ddq, 7);
+        wam7_zero(ddq_by_q, 49);
+        wam7_zero(ddq_by_dq, 49);
+        wam7_zero(ddq_by_input, 49);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t218 = wam7_min(t14 + WAM7_C(-1.0e-9) * t13, t34 + WAM7_C(-1.0e-9) * t25);
+    const wam7_real_t t219 = wam7_min(t218, t78 + WAM7_C(-1.0e-9) * t60);
+    const wam7_real_t t220 = wam7_min(t219, t123 + WAM7_C(-1.0e-9) * t120);
+    const wam7_real_t t221 = wam7_min(t220, t180 + WAM7_C(-1.0e-9) * t139);
+    const wam7_real_t t222 = wam7_min(t221, t217 + WAM7_C(-1.0e-9) * t210);
     if (!(t222 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
@@ -477,1529 +449,1537 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
         wam7_zero(ddq_by_input, 49);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t223 = t222 + WAM7_C(-1.0e-9) * t215;
-    if (!(t223 > WAM7_C(1.0e-12))) {
-        wam7_zero(ddq, 7);
-        wam7_zero(ddq_by_q, 49);
-        wam7_zero(ddq_by_dq, 49);
-        wam7_zero(ddq_by_input, 49);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t224 = t187 * dq[0]; /* link j2: motion */
-    const wam7_real_t t225 = t130 * t224 - t134 * dq[1]; /* link j3: motion */
-    const wam7_real_t t226 = t189 * dq[0]; /* link j2: motion */
-    const wam7_real_t t227 = dq[2] + t226; /* link j3: motion */
-    const wam7_real_t t228 = t87 * t225 + t84 * t227; /* link j4: motion */
-    const wam7_real_t t229 = t134 * t224 + t130 * dq[1]; /* link j3: motion */
-    const wam7_real_t t230 = dq[3] + t229; /* link j4: motion */
-    const wam7_real_t t231 = t39 * t228 - t42 * t230; /* link j5: motion */
-    const wam7_real_t t232 = t42 * t228 + t39 * t230;
-    const wam7_real_t t233 = t231 * t232;
-    const wam7_real_t t234 = t225 * t229; /* link j3: motion */
-    const wam7_real_t t235 = dq[1] * t224; /* link j2: motion */
-    const wam7_real_t t236 = t234 - t235; /* link j4: motion */
-    const wam7_real_t t237 = t229 * t227; /* link j3: motion */
-    const wam7_real_t t238 = t224 * t226; /* link j2: motion */
-    const wam7_real_t t239 = dq[1] * t226;
-    const wam7_real_t t240 = WAM7_C(2.0) * t239;
-    const wam7_real_t t241 = t134 * t238 + t130 * t240; /* link j3: motion */
-    const wam7_real_t t242 = t241 - t237;
-    const wam7_real_t t243 = t242 - t237; /* link j4: motion */
-    const wam7_real_t t244 = t84 * t243 - t87 * t236;
-    const wam7_real_t t245 = t228 * t230;
-    const wam7_real_t t246 = t245 + t244;
-    const wam7_real_t t247 = t246 - t233; /* link j6: motion */
-    const wam7_real_t t248 = t87 * t227 - t84 * t225; /* link j4: motion */
-    const wam7_real_t t249 = t228 * t248;
-    const wam7_real_t t250 = t225 * t227; /* link j3: motion */
-    const wam7_real_t t251 = t130 * t238 - t134 * t240;
-    const wam7_real_t t252 = t250 - t251;
-    const wam7_real_t t253 = t252 - t249; /* link j5: motion */
-    const wam7_real_t t254 = t84 * t236 + t87 * t243; /* link j4: motion */
-    const wam7_real_t t255 = t248 * t230;
-    const wam7_real_t t256 = t255 + t254;
-    const wam7_real_t t257 = t255 + t256; /* link j5: motion */
-    const wam7_real_t t258 = t39 * t257 - t42 * t253;
-    const wam7_real_t t259 = dq[4] + t248;
-    const wam7_real_t t260 = t232 * t259;
-    const wam7_real_t t261 = t258 - t260;
-    const wam7_real_t t262 = t261 - t260; /* link j6: motion */
-    const wam7_real_t t263 = t18 * t262 - t22 * t247;
-    const wam7_real_t t264 = t22 * t231 - t18 * t259;
-    const wam7_real_t t265 = dq[5] + t232;
-    const wam7_real_t t266 = t264 * t265;
-    const wam7_real_t t267 = t266 - t263;
-    const wam7_real_t t268 = t266 + t267; /* link j7: motion */
-    const wam7_real_t t269 = t39 * t253 + t42 * t257; /* link j5: motion */
-    const wam7_real_t t270 = t231 * t259;
-    const wam7_real_t t271 = t270 + t269;
-    const wam7_real_t t272 = t18 * t231 + t22 * t259; /* link j6: motion */
-    const wam7_real_t t273 = t272 * t264;
-    const wam7_real_t t274 = t273 + t271; /* link j7: motion */
-    const wam7_real_t t275 = t1 * t274 + t2 * t268;
-    const wam7_real_t t276 = t1 * t272 + t2 * t265;
-    const wam7_real_t t277 = t264 - dq[6];
-    const wam7_real_t t278 = t276 * t277;
-    const wam7_real_t t279 = t278 - t275;
-    const wam7_real_t t280 = t278 * (parameters[YY7] - parameters[ZZ7]); /* link j7: force and moment */
-    const wam7_real_t t281 = t2 * t274 - t1 * t268; /* link j7: motion */
-    const wam7_real_t t282 = t2 * t272 - t1 * t265;
-    const wam7_real_t t283 = t282 * t277;
-    const wam7_real_t t284 = t281 - t283;
-    const wam7_real_t t285 = t284 - t283; /* link j7: force and moment */
-    const wam7_real_t t286 = t18 * t247 + t22 * t262; /* link j6: motion */
-    const wam7_real_t t287 = t272 * t265;
-    const wam7_real_t t288 = t287 + t286;
-    const wam7_real_t t289 = t282 * t276; /* link j7: motion */
-    const wam7_real_t t290 = t289 + t288; /* link j7: force and moment */
-    const wam7_real_t t291 = t280 - parameters[XX7] * t279 + parameters[XY7] * t285 - parameters[XZ7] * t290;
-    const wam7_real_t t292 = t276 * t276; /* link j7: motion */
-    const wam7_real_t t293 = t277 * t277;
-    const wam7_real_t t294 = (t293 - t292) * parameters[YZ7]; /* link j7: force and moment */
-    const wam7_real_t t295 = t248 * t248; /* link j4: motion */
-    const wam7_real_t t296 = t230 * t230;
-    const wam7_real_t t297 = t295 + t296; /* link j5: motion */
-    const wam7_real_t t298 = WAM7_C(0.045) * t297;
-    const wam7_real_t t299 = t229 * t229; /* link j3: motion */
-    const wam7_real_t t300 = t227 * t227;
-    const wam7_real_t t301 = t299 + t300; /* link j4: motion */
-    const wam7_real_t t302 = WAM7_C(0.045) * t301;
-    const wam7_real_t t303 = WAM7_C(9.81) * t187; /* link j2: motion */
-    const wam7_real_t t304 = WAM7_C(-0.55) * t238 - t303; /* link j3: motion */
-    const wam7_real_t t305 = WAM7_C(1.1) * t239;
-    const wam7_real_t t306 = t130 * t304 + t134 * t305;
-    const wam7_real_t t307 = t306 - t302; /* link j4: motion */
-    const wam7_real_t t308 = t250 + t252;
-    const wam7_real_t t309 = t224 * t224; /* link j2: motion */
-    const wam7_real_t t310 = dq[1] * dq[1];
-    const wam7_real_t t311 = WAM7_C(9.81) * t189;
-    const wam7_real_t t312 = t311 + WAM7_C(-0.55) * (t309 + t310); /* link j3: motion */
-    const wam7_real_t t313 = t312 - WAM7_C(0.045) * t308; /* link j4: motion */
-    const wam7_real_t t314 = t87 * t307 - t84 * t313;
-    const wam7_real_t t315 = t314 + (t298 + WAM7_C(0.3) * t253); /* link j5: motion */
-    const wam7_real_t t316 = t245 + t246;
-    const wam7_real_t t317 = t235 + t234; /* link j4: motion */
-    const wam7_real_t t318 = t134 * t304 - t130 * t305; /* link j3: motion */
-    const wam7_real_t t319 = t318 + WAM7_C(0.045) * t317; /* link j4: motion */
-    const wam7_real_t t320 = WAM7_C(0.045) * t316 - WAM7_C(-0.3) * t257 - t319; /* link j5: motion */
-    const wam7_real_t t321 = t42 * t315 - t39 * t320;
-    const wam7_real_t t322 = t321 + WAM7_C(0.06) * t268; /* link j7: motion */
-    const wam7_real_t t323 = t39 * t315 + t42 * t320; /* link j5: motion */
-    const wam7_real_t t324 = t228 * t228; /* link j4: motion */
-    const wam7_real_t t325 = t324 + t296; /* link j5: motion */
-    const wam7_real_t t326 = WAM7_C(0.3) * t325;
-    const wam7_real_t t327 = t249 + t252;
-    const wam7_real_t t328 = t84 * t307 + t87 * t313; /* link j4: motion */
-    const wam7_real_t t329 = t326 + WAM7_C(-0.045) * t327 - t328; /* link j5: motion */
-    const wam7_real_t t330 = t18 * t323 + t22 * t329; /* link j6: motion */
-    const wam7_real_t t331 = t330 + WAM7_C(0.06) * t274; /* link j7: motion */
-    const wam7_real_t t332 = t1 * t331 + t2 * t322;
-    const wam7_real_t t333 = t22 * t323 - t18 * t329; /* link j6: motion */
-    const wam7_real_t t334 = t272 * t272;
-    const wam7_real_t t335 = t265 * t265;
-    const wam7_real_t t336 = t334 + t335; /* link j7: motion */
-    const wam7_real_t t337 = WAM7_C(0.06) * t336;
-    const wam7_real_t t338 = t337 - t333;
+    const wam7_real_t t223 = t182 * dq[0]; /* link j2: motion */
+    const wam7_real_t t224 = t126 * t223 - t130 * dq[1]; /* link j3: motion */
+    const wam7_real_t t225 = t184 * dq[0]; /* link j2: motion */
+    const wam7_real_t t226 = dq[2] + t225; /* link j3: motion */
+    const wam7_real_t t227 = t84 * t224 + t81 * t226; /* link j4: motion */
+    const wam7_real_t t228 = t130 * t223 + t126 * dq[1]; /* link j3: motion */
+    const wam7_real_t t229 = dq[3] + t228; /* link j4: motion */
+    const wam7_real_t t230 = t37 * t227 - t40 * t229; /* link j5: motion */
+    const wam7_real_t t231 = t40 * t227 + t37 * t229;
+    const wam7_real_t t232 = t230 * t231;
+    const wam7_real_t t233 = t224 * t228; /* link j3: motion */
+    const wam7_real_t t234 = dq[1] * t223; /* link j2: motion */
+    const wam7_real_t t235 = t233 - t234; /* link j4: motion */
+    const wam7_real_t t236 = t228 * t226; /* link j3: motion */
+    const wam7_real_t t237 = t223 * t225; /* link j2: motion */
+    const wam7_real_t t238 = dq[1] * t225;
+    const wam7_real_t t239 = WAM7_C(2.0) * t238;
+    const wam7_real_t t240 = t130 * t237 + t126 * t239; /* link j3: motion */
+    const wam7_real_t t241 = t240 - t236;
+    const wam7_real_t t242 = t241 - t236; /* link j4: motion */
+    const wam7_real_t t243 = t81 * t242 - t84 * t235;
+    const wam7_real_t t244 = t227 * t229;
+    const wam7_real_t t245 = t244 + t243;
+    const wam7_real_t t246 = t245 - t232; /* link j6: motion */
+    const wam7_real_t t247 = t84 * t226 - t81 * t224; /* link j4: motion */
+    const wam7_real_t t248 = t227 * t247;
+    const wam7_real_t t249 = t224 * t226; /* link j3: motion */
+    const wam7_real_t t250 = t126 * t237 - t130 * t239;
+    const wam7_real_t t251 = t249 - t250;
+    const wam7_real_t t252 = t251 - t248; /* link j5: motion */
+    const wam7_real_t t253 = t81 * t235 + t84 * t242; /* link j4: motion */
+    const wam7_real_t t254 = t247 * t229;
+    const wam7_real_t t255 = t254 + t253;
+    const wam7_real_t t256 = t254 + t255; /* link j5: motion */
+    const wam7_real_t t257 = t37 * t256 - t40 * t252;
+    const wam7_real_t t258 = dq[4] + t247;
+    const wam7_real_t t259 = t231 * t258;
+    const wam7_real_t t260 = t257 - t259;
+    const wam7_real_t t261 = t260 - t259; /* link j6: motion */
+    const wam7_real_t t262 = t17 * t261 - t21 * t246;
+    const wam7_real_t t263 = t21 * t230 - t17 * t258;
+    const wam7_real_t t264 = dq[5] + t231;
+    const wam7_real_t t265 = t263 * t264;
+    const wam7_real_t t266 = t265 - t262;
+    const wam7_real_t t267 = t265 + t266; /* link j7: motion */
+    const wam7_real_t t268 = t37 * t252 + t40 * t256; /* link j5: motion */
+    const wam7_real_t t269 = t230 * t258;
+    const wam7_real_t t270 = t269 + t268;
+    const wam7_real_t t271 = t17 * t230 + t21 * t258; /* link j6: motion */
+    const wam7_real_t t272 = t271 * t263;
+    const wam7_real_t t273 = t272 + t270; /* link j7: motion */
+    const wam7_real_t t274 = t1 * t273 + t2 * t267;
+    const wam7_real_t t275 = t1 * t271 + t2 * t264;
+    const wam7_real_t t276 = t263 - dq[6];
+    const wam7_real_t t277 = t275 * t276;
+    const wam7_real_t t278 = t277 - t274;
+    const wam7_real_t t279 = t277 * (parameters[YY7] - parameters[ZZ7]); /* link j7: force and moment */
+    const wam7_real_t t280 = t2 * t273 - t1 * t267; /* link j7: motion */
+    const wam7_real_t t281 = t2 * t271 - t1 * t264;
+    const wam7_real_t t282 = t281 * t276;
+    const wam7_real_t t283 = t280 - t282;
+    const wam7_real_t t284 = t283 - t282; /* link j7: force and moment */
+    const wam7_real_t t285 = t17 * t246 + t21 * t261; /* link j6: motion */
+    const wam7_real_t t286 = t271 * t264;
+    const wam7_real_t t287 = t286 + t285;
+    const wam7_real_t t288 = t281 * t275; /* link j7: motion */
+    const wam7_real_t t289 = t288 + t287; /* link j7: force and moment */
+    const wam7_real_t t290 = t279 - parameters[XX7] * t278 + parameters[XY7] * t284 - parameters[XZ7] * t289;
+    const wam7_real_t t291 = t275 * t275; /* link j7: motion */
+    const wam7_real_t t292 = t276 * t276;
+    const wam7_real_t t293 = (t292 - t291) * parameters[YZ7]; /* link j7: force and moment */
+    const wam7_real_t t294 = t247 * t247; /* link j4: motion */
+    const wam7_real_t t295 = t229 * t229;
+    const wam7_real_t t296 = t294 + t295; /* link j5: motion */
+    const wam7_real_t t297 = WAM7_C(0.045) * t296;
+    const wam7_real_t t298 = t228 * t228; /* link j3: motion */
+    const wam7_real_t t299 = t226 * t226;
+    const wam7_real_t t300 = t298 + t299; /* link j4: motion */
+    const wam7_real_t t301 = WAM7_C(0.045) * t300;
+    const wam7_real_t t302 = WAM7_C(9.81) * t182; /* link j2: motion */
+    const wam7_real_t t303 = WAM7_C(-0.55) * t237 - t302; /* link j3: motion */
+    const wam7_real_t t304 = WAM7_C(1.1) * t238;
+    const wam7_real_t t305 = t126 * t303 + t130 * t304;
+    const wam7_real_t t306 = t305 - t301; /* link j4: motion */
+    const wam7_real_t t307 = t249 + t251;
+    const wam7_real_t t308 = t223 * t223; /* link j2: motion */
+    const wam7_real_t t309 = dq[1] * dq[1];
+    const wam7_real_t t310 = WAM7_C(9.81) * t184;
+    const wam7_real_t t311 = t310 + WAM7_C(-0.55) * (t308 + t309); /* link j3: motion */
+    const wam7_real_t t312 = t311 - WAM7_C(0.045) * t307; /* link j4: motion */
+    const wam7_real_t t313 = t84 * t306 - t81 * t312;
+    const wam7_real_t t314 = t313 + (t297 + WAM7_C(0.3) * t252); /* link j5: motion */
+    const wam7_real_t t315 = t244 + t245;
+    const wam7_real_t t316 = t234 + t233; /* link j4: motion */
+    const wam7_real_t t317 = t130 * t303 - t126 * t304; /* link j3: motion */
+    const wam7_real_t t318 = t317 + WAM7_C(0.045) * t316; /* link j4: motion */
+    const wam7_real_t t319 = WAM7_C(0.045) * t315 - WAM7_C(-0.3) * t256 - t318; /* link j5: motion */
+    const wam7_real_t t320 = t40 * t314 - t37 * t319;
+    const wam7_real_t t321 = t320 + WAM7_C(0.06) * t267; /* link j7: motion */
+    const wam7_real_t t322 = t37 * t314 + t40 * t319; /* link j5: motion */
+    const wam7_real_t t323 = t227 * t227; /* link j4: motion */
+    const wam7_real_t t324 = t323 + t295; /* link j5: motion */
+    const wam7_real_t t325 = WAM7_C(0.3) * t324;
+    const wam7_real_t t326 = t248 + t251;
+    const wam7_real_t t327 = t81 * t306 + t84 * t312; /* link j4: motion */
+    const wam7_real_t t328 = t325 + WAM7_C(-0.045) * t326 - t327; /* link j5: motion */
+    const wam7_real_t t329 = t17 * t322 + t21 * t328; /* link j6: motion */
+    const wam7_real_t t330 = t329 + WAM7_C(0.06) * t273; /* link j7: motion */
+    const wam7_real_t t331 = t1 * t330 + t2 * t321;
+    const wam7_real_t t332 = t21 * t322 - t17 * t328; /* link j6: motion */
+    const wam7_real_t t333 = t271 * t271;
+    const wam7_real_t t334 = t264 * t264;
+    const wam7_real_t t335 = t333 + t334; /* link j7: motion */
+    const wam7_real_t t336 = WAM7_C(0.06) * t335;
+    const wam7_real_t t337 = t336 - t332;
     /* link j7: force and moment */
-    const wam7_real_t t339 = t291 - t294 - (parameters[MY7] * t338 - parameters[MZ7] * t332);
-    const wam7_real_t t340 = t283 * (parameters[XX7] - parameters[ZZ7]);
-    const wam7_real_t t341 = t278 + t279;
-    const wam7_real_t t342 = t289 - t288;
-    const wam7_real_t t343 = parameters[XY7] * t341 - (parameters[YY7] * t284 + t340)
-        - parameters[YZ7] * t342;
-    const wam7_real_t t344 = t282 * t282; /* link j7: motion */
-    const wam7_real_t t345 = (t344 - t293) * parameters[XZ7]; /* link j7: force and moment */
-    const wam7_real_t t346 = t1 * t322 - t2 * t331; /* link j7: motion */
+    const wam7_real_t t338 = t290 - t293 - (parameters[MY7] * t337 - parameters[MZ7] * t331);
+    const wam7_real_t t339 = t282 * (parameters[XX7] - parameters[ZZ7]);
+    const wam7_real_t t340 = t277 + t278;
+    const wam7_real_t t341 = t288 - t287;
+    const wam7_real_t t342 = parameters[XY7] * t340 - (parameters[YY7] * t283 + t339)
+        - parameters[YZ7] * t341;
+    const wam7_real_t t343 = t281 * t281; /* link j7: motion */
+    const wam7_real_t t344 = (t343 - t292) * parameters[XZ7]; /* link j7: force and moment */
+    const wam7_real_t t345 = t1 * t321 - t2 * t330; /* link j7: motion */
     /* link j7: force and moment */
-    const wam7_real_t t347 = t343 + t345 + (parameters[MZ7] * t346 - parameters[MX7] * t338);
-    const wam7_real_t t348 = (t292 + t293) * parameters[MX7];
-    const wam7_real_t t349 = parameters[M7] * t346 + (t348 + parameters[MY7] * t342 - parameters[MZ7] * t281);
-    const wam7_real_t t350 = (t344 + t293) * parameters[MY7];
-    const wam7_real_t t351 = parameters[M7] * t332 + (parameters[MX7] * t290 + t350 + parameters[MZ7] * t275);
-    const wam7_real_t t352 = t1 * t349 + t2 * t351; /* link j7: what it passes on */
-    const wam7_real_t t353 = t266 * (parameters[YY6] - parameters[ZZ6]); /* link j6: force and moment */
-    const wam7_real_t t354 = t287 + t288; /* link j7: motion */
-    const wam7_real_t t355 = t271 - t273;
+    const wam7_real_t t346 = t342 + t344 + (parameters[MZ7] * t345 - parameters[MX7] * t337);
+    const wam7_real_t t347 = (t291 + t292) * parameters[MX7];
+    const wam7_real_t t348 = parameters[M7] * t345 + (t347 + parameters[MY7] * t341 - parameters[MZ7] * t280);
+    const wam7_real_t t349 = (t343 + t292) * parameters[MY7];
+    const wam7_real_t t350 = parameters[M7] * t331 + (parameters[MX7] * t289 + t349 + parameters[MZ7] * t274);
+    const wam7_real_t t351 = t1 * t348 + t2 * t350; /* link j7: what it passes on */
+    const wam7_real_t t352 = t265 * (parameters[YY6] - parameters[ZZ6]); /* link j6: force and moment */
+    const wam7_real_t t353 = t286 + t287; /* link j7: motion */
+    const wam7_real_t t354 = t270 - t272;
     /* link j6: force and moment */
-    const wam7_real_t t356 = parameters[XX6] * t267 - t353 + parameters[XY6] * t354 + parameters[XZ6] * t355;
-    const wam7_real_t t357 = t264 * t264; /* link j6: motion */
-    const wam7_real_t t358 = (t357 - t335) * parameters[YZ6]; /* link j6: force and moment */
+    const wam7_real_t t355 = parameters[XX6] * t266 - t352 + parameters[XY6] * t353 + parameters[XZ6] * t354;
+    const wam7_real_t t356 = t263 * t263; /* link j6: motion */
+    const wam7_real_t t357 = (t356 - t334) * parameters[YZ6]; /* link j6: force and moment */
     /* link j7: what it passes on */
-    const wam7_real_t t359 = t356 + t358 + (parameters[MZ6] * t333 - parameters[MY6] * t321) + (t2 * t339
-        + t1 * t347 + WAM7_C(0.06) * t352);
-    const wam7_real_t t360 = t287 * (parameters[XX6] - parameters[ZZ6]); /* link j6: force and moment */
-    const wam7_real_t t361 = parameters[YY6] * t288 - t360 + parameters[XY6] * t268 + parameters[YZ6] * t274;
-    const wam7_real_t t362 = (t334 - t335) * parameters[XZ6];
-    const wam7_real_t t363 = t289 * t7; /* link j7: force and moment */
-    const wam7_real_t t364 = parameters[ZZ7] * t288 + t363 - parameters[YZ7] * t281 - parameters[XZ7] * t275;
-    const wam7_real_t t365 = (t344 - t292) * parameters[XY7];
-    const wam7_real_t t366 = t364 - t365 + (parameters[MX7] * t332 - parameters[MY7] * t346);
+    const wam7_real_t t358 = t355 + t357 + (parameters[MZ6] * t332 - parameters[MY6] * t320) + (t2 * t338
+        + t1 * t346 + WAM7_C(0.06) * t351);
+    const wam7_real_t t359 = t286 * (parameters[XX6] - parameters[ZZ6]); /* link j6: force and moment */
+    const wam7_real_t t360 = parameters[YY6] * t287 - t359 + parameters[XY6] * t267 + parameters[YZ6] * t273;
+    const wam7_real_t t361 = (t333 - t334) * parameters[XZ6];
+    const wam7_real_t t362 = t288 * t7; /* link j7: force and moment */
+    const wam7_real_t t363 = parameters[ZZ7] * t287 + t362 - parameters[YZ7] * t280 - parameters[XZ7] * t274;
+    const wam7_real_t t364 = (t343 - t291) * parameters[XY7];
+    const wam7_real_t t365 = t363 - t364 + (parameters[MX7] * t331 - parameters[MY7] * t345);
     /* link j7: what it passes on */
-    const wam7_real_t t367 = t361 - t362 + (parameters[MZ6] * t330 + parameters[MX6] * t321) + t366;
-    const wam7_real_t t368 = t260 * (parameters[YY5] - parameters[ZZ5]); /* link j5: force and moment */
-    const wam7_real_t t369 = t270 + t271; /* link j6: motion */
-    const wam7_real_t t370 = t233 + t246;
+    const wam7_real_t t366 = t360 - t361 + (parameters[MZ6] * t329 + parameters[MX6] * t320) + t365;
+    const wam7_real_t t367 = t259 * (parameters[YY5] - parameters[ZZ5]); /* link j5: force and moment */
+    const wam7_real_t t368 = t269 + t270; /* link j6: motion */
+    const wam7_real_t t369 = t232 + t245;
     /* link j5: force and moment */
-    const wam7_real_t t371 = parameters[XY5] * t369 - (parameters[XX5] * t261 + t368)
-        - parameters[XZ5] * t370;
-    const wam7_real_t t372 = t232 * t232; /* link j5: motion */
-    const wam7_real_t t373 = t259 * t259;
-    const wam7_real_t t374 = (t373 - t372) * parameters[YZ5]; /* link j5: force and moment */
+    const wam7_real_t t370 = parameters[XY5] * t368 - (parameters[XX5] * t260 + t367)
+        - parameters[XZ5] * t369;
+    const wam7_real_t t371 = t231 * t231; /* link j5: motion */
+    const wam7_real_t t372 = t258 * t258;
+    const wam7_real_t t373 = (t372 - t371) * parameters[YZ5]; /* link j5: force and moment */
     /* link j6: what it passes on */
-    const wam7_real_t t375 = t371 - t374 - (parameters[MY5] * t329 - parameters[MZ5] * t321) + (t18 * t359
-        - t22 * t367);
-    const wam7_real_t t376 = t2 * t349 - t1 * t351; /* link j7: what it passes on */
-    const wam7_real_t t377 = t273 * (parameters[YY6] - parameters[XX6]); /* link j6: force and moment */
-    const wam7_real_t t378 = t377 - parameters[ZZ6] * t271 - parameters[YZ6] * t286 + parameters[XZ6] * t263;
-    const wam7_real_t t379 = (t357 - t334) * parameters[XY6];
+    const wam7_real_t t374 = t370 - t373 - (parameters[MY5] * t328 - parameters[MZ5] * t320) + (t17 * t358
+        - t21 * t366);
+    const wam7_real_t t375 = t2 * t348 - t1 * t350; /* link j7: what it passes on */
+    const wam7_real_t t376 = t272 * (parameters[YY6] - parameters[XX6]); /* link j6: force and moment */
+    const wam7_real_t t377 = t376 - parameters[ZZ6] * t270 - parameters[YZ6] * t285 + parameters[XZ6] * t262;
+    const wam7_real_t t378 = (t356 - t333) * parameters[XY6];
     /* link j7: what it passes on */
-    const wam7_real_t t380 = t378 + t379 + (parameters[MX6] * t333 + parameters[MY6] * t330) + (t2 * t347
-        - t1 * t339 + WAM7_C(0.06) * t376);
-    const wam7_real_t t381 = t270 * (parameters[XX5] - parameters[ZZ5]); /* link j5: force and moment */
-    const wam7_real_t t382 = t381 - parameters[YY5] * t271 + parameters[XY5] * t262 + parameters[YZ5] * t247;
-    const wam7_real_t t383 = t231 * t231; /* link j5: motion */
-    const wam7_real_t t384 = (t383 - t373) * parameters[XZ5]; /* link j5: force and moment */
+    const wam7_real_t t379 = t377 + t378 + (parameters[MX6] * t332 + parameters[MY6] * t329) + (t2 * t346
+        - t1 * t338 + WAM7_C(0.06) * t375);
+    const wam7_real_t t380 = t269 * (parameters[XX5] - parameters[ZZ5]); /* link j5: force and moment */
+    const wam7_real_t t381 = t380 - parameters[YY5] * t270 + parameters[XY5] * t261 + parameters[YZ5] * t246;
+    const wam7_real_t t382 = t230 * t230; /* link j5: motion */
+    const wam7_real_t t383 = (t382 - t372) * parameters[XZ5]; /* link j5: force and moment */
     /* link j6: what it passes on */
-    const wam7_real_t t385 = t382 + t384 - (parameters[MZ5] * t323 + parameters[MX5] * t329) + t380;
-    const wam7_real_t t386 = (t357 + t335) * parameters[MX6]; /* link j6: force and moment */
-    const wam7_real_t t387 = t386 + parameters[MY6] * t274 - parameters[MZ6] * t286 - parameters[M6] * t330;
-    const wam7_real_t t388 = t387 + t376; /* link j7: what it passes on */
-    const wam7_real_t t389 = t336 * parameters[MY6]; /* link j6: force and moment */
-    const wam7_real_t t390 = parameters[MX6] * t355 - t389 + parameters[MZ6] * t263 - parameters[M6] * t333;
-    const wam7_real_t t391 = t344 + t292; /* link j7: columns */
-    const wam7_real_t t392 = t391 * parameters[MZ7]; /* link j7: force and moment */
-    const wam7_real_t t393 = parameters[M7] * t338 + (parameters[MX7] * t285 + parameters[MY7] * t341 + t392);
-    const wam7_real_t t394 = t390 + t393; /* link j7: what it passes on */
-    const wam7_real_t t395 = (t372 + t373) * parameters[MX5]; /* link j5: force and moment */
-    const wam7_real_t t396 = t395 - parameters[MY5] * t247 - parameters[MZ5] * t269 - parameters[M5] * t323;
-    const wam7_real_t t397 = t396 + (t18 * t388 + t22 * t394); /* link j6: what it passes on */
-    const wam7_real_t t398 = t334 + t357; /* link j7: motion */
-    const wam7_real_t t399 = t398 * parameters[MZ6]; /* link j6: force and moment */
-    const wam7_real_t t400 = parameters[M6] * t321 + (parameters[MX6] * t354 - parameters[MY6] * t268 + t399);
-    const wam7_real_t t401 = (t383 + t373) * parameters[MY5]; /* link j5: force and moment */
-    const wam7_real_t t402 = parameters[M5] * t321 + (parameters[MX5] * t370 + t401 - parameters[MZ5] * t258);
-    const wam7_real_t t403 = t402 + (t400 + t352); /* link j6: what it passes on */
-    const wam7_real_t t404 = t42 * t397 + t39 * t403; /* link j5: what it passes on */
-    const wam7_real_t t405 = t255 * (parameters[ZZ4] - parameters[YY4]); /* link j4: force and moment */
-    const wam7_real_t t406 = parameters[XY4] * t316 - (parameters[XX4] * t256 + t405)
-        + parameters[XZ4] * t327;
-    const wam7_real_t t407 = (t295 - t296) * parameters[YZ4];
+    const wam7_real_t t384 = t381 + t383 - (parameters[MZ5] * t322 + parameters[MX5] * t328) + t379;
+    const wam7_real_t t385 = (t356 + t334) * parameters[MX6]; /* link j6: force and moment */
+    const wam7_real_t t386 = t385 + parameters[MY6] * t273 - parameters[MZ6] * t285 - parameters[M6] * t329;
+    const wam7_real_t t387 = t386 + t375; /* link j7: what it passes on */
+    const wam7_real_t t388 = t335 * parameters[MY6]; /* link j6: force and moment */
+    const wam7_real_t t389 = parameters[MX6] * t354 - t388 + parameters[MZ6] * t262 - parameters[M6] * t332;
+    const wam7_real_t t390 = t343 + t291; /* link j7: columns */
+    const wam7_real_t t391 = t390 * parameters[MZ7]; /* link j7: force and moment */
+    const wam7_real_t t392 = parameters[M7] * t337 + (parameters[MX7] * t284 + parameters[MY7] * t340 + t391);
+    const wam7_real_t t393 = t389 + t392; /* link j7: what it passes on */
+    const wam7_real_t t394 = (t371 + t372) * parameters[MX5]; /* link j5: force and moment */
+    const wam7_real_t t395 = t394 - parameters[MY5] * t246 - parameters[MZ5] * t268 - parameters[M5] * t322;
+    const wam7_real_t t396 = t395 + (t17 * t387 + t21 * t393); /* link j6: what it passes on */
+    const wam7_real_t t397 = t333 + t356; /* link j7: motion */
+    const wam7_real_t t398 = t397 * parameters[MZ6]; /* link j6: force and moment */
+    const wam7_real_t t399 = parameters[M6] * t320 + (parameters[MX6] * t353 - parameters[MY6] * t267 + t398);
+    const wam7_real_t t400 = (t382 + t372) * parameters[MY5]; /* link j5: force and moment */
+    const wam7_real_t t401 = parameters[M5] * t320 + (parameters[MX5] * t369 + t400 - parameters[MZ5] * t257);
+    const wam7_real_t t402 = t401 + (t399 + t351); /* link j6: what it passes on */
+    const wam7_real_t t403 = t40 * t396 + t37 * t402; /* link j5: what it passes on */
+    const wam7_real_t t404 = t254 * (parameters[ZZ4] - parameters[YY4]); /* link j4: force and moment */
+    const wam7_real_t t405 = parameters[XY4] * t315 - (parameters[XX4] * t255 + t404)
+        + parameters[XZ4] * t326;
+    const wam7_real_t t406 = (t294 - t295) * parameters[YZ4];
     /* link j5: what it passes on */
-    const wam7_real_t t408 = t406 + t407 + (parameters[MZ4] * t328 - parameters[MY4] * t319) + (t39 * t375
-        + t42 * t385 + WAM7_C(0.3) * t404);
-    const wam7_real_t t409 = t233 * (parameters[XX5] - parameters[YY5]); /* link j5: force and moment */
-    const wam7_real_t t410 = parameters[ZZ5] * t246 - t409 - parameters[YZ5] * t269 + parameters[XZ5] * t258;
-    const wam7_real_t t411 = (t383 - t372) * parameters[XY5];
+    const wam7_real_t t407 = t405 + t406 + (parameters[MZ4] * t327 - parameters[MY4] * t318) + (t37 * t374
+        + t40 * t384 + WAM7_C(0.3) * t403);
+    const wam7_real_t t408 = t232 * (parameters[XX5] - parameters[YY5]); /* link j5: force and moment */
+    const wam7_real_t t409 = parameters[ZZ5] * t245 - t408 - parameters[YZ5] * t268 + parameters[XZ5] * t257;
+    const wam7_real_t t410 = (t382 - t371) * parameters[XY5];
     /* link j6: what it passes on */
-    const wam7_real_t t412 = t410 - t411 + (parameters[MX5] * t321 + parameters[MY5] * t323) + (t22 * t359
-        + t18 * t367);
-    const wam7_real_t t413 = t245 * (parameters[XX4] - parameters[ZZ4]); /* link j4: force and moment */
-    const wam7_real_t t414 = parameters[YY4] * t246 - t413 - parameters[XY4] * t257 + parameters[YZ4] * t253;
-    const wam7_real_t t415 = (t324 - t296) * parameters[XZ4];
+    const wam7_real_t t411 = t409 - t410 + (parameters[MX5] * t320 + parameters[MY5] * t322) + (t21 * t358
+        + t17 * t366);
+    const wam7_real_t t412 = t244 * (parameters[XX4] - parameters[ZZ4]); /* link j4: force and moment */
+    const wam7_real_t t413 = parameters[YY4] * t245 - t412 - parameters[XY4] * t256 + parameters[YZ4] * t252;
+    const wam7_real_t t414 = (t323 - t295) * parameters[XZ4];
     /* link j5: what it passes on */
-    const wam7_real_t t416 = t414 - t415 + (parameters[MZ4] * t314 + parameters[MX4] * t319) + (t412
-        + WAM7_C(-0.045) * t404);
-    const wam7_real_t t417 = t237 * (parameters[ZZ3] - parameters[YY3]); /* link j3: force and moment */
-    const wam7_real_t t418 = t417 - parameters[XX3] * t242 + parameters[XY3] * t308 - parameters[XZ3] * t317;
-    const wam7_real_t t419 = (t299 - t300) * parameters[YZ3];
-    const wam7_real_t t420 = t312 * parameters[MY3];
+    const wam7_real_t t415 = t413 - t414 + (parameters[MZ4] * t313 + parameters[MX4] * t318) + (t411
+        + WAM7_C(-0.045) * t403);
+    const wam7_real_t t416 = t236 * (parameters[ZZ3] - parameters[YY3]); /* link j3: force and moment */
+    const wam7_real_t t417 = t416 - parameters[XX3] * t241 + parameters[XY3] * t307 - parameters[XZ3] * t316;
+    const wam7_real_t t418 = (t298 - t299) * parameters[YZ3];
+    const wam7_real_t t419 = t311 * parameters[MY3];
     /* link j4: what it passes on */
-    const wam7_real_t t421 = t418 + t419 + (t420 + parameters[MZ3] * t318) + (t87 * t408 - t84 * t416);
-    const wam7_real_t t422 = t39 * t397 - t42 * t403; /* link j5: what it passes on */
-    const wam7_real_t t423 = t383 + t372; /* link j6: motion */
-    const wam7_real_t t424 = t423 * parameters[MZ5]; /* link j5: force and moment */
-    const wam7_real_t t425 = parameters[M5] * t329 + (parameters[MX5] * t369 + parameters[MY5] * t262 + t424);
-    const wam7_real_t t426 = t425 + (t18 * t394 - t22 * t388); /* link j6: what it passes on */
+    const wam7_real_t t420 = t417 + t418 + (t419 + parameters[MZ3] * t317) + (t84 * t407 - t81 * t415);
+    const wam7_real_t t421 = t37 * t396 - t40 * t402; /* link j5: what it passes on */
+    const wam7_real_t t422 = t382 + t371; /* link j6: motion */
+    const wam7_real_t t423 = t422 * parameters[MZ5]; /* link j5: force and moment */
+    const wam7_real_t t424 = parameters[M5] * t328 + (parameters[MX5] * t368 + parameters[MY5] * t261 + t423);
+    const wam7_real_t t425 = t424 + (t17 * t393 - t21 * t387); /* link j6: what it passes on */
     /* link j5: what it passes on */
-    const wam7_real_t t427 = t39 * t385 - t42 * t375 + (WAM7_C(0.045) * t426 + WAM7_C(0.3) * t422);
-    const wam7_real_t t428 = t249 * (parameters[YY4] - parameters[XX4]); /* link j4: force and moment */
-    const wam7_real_t t429 = parameters[XZ4] * t254 - (parameters[ZZ4] * t252 + t428
-        + parameters[YZ4] * t244);
-    const wam7_real_t t430 = (t295 - t324) * parameters[XY4];
+    const wam7_real_t t426 = t37 * t384 - t40 * t374 + (WAM7_C(0.045) * t425 + WAM7_C(0.3) * t421);
+    const wam7_real_t t427 = t248 * (parameters[YY4] - parameters[XX4]); /* link j4: force and moment */
+    const wam7_real_t t428 = parameters[XZ4] * t253 - (parameters[ZZ4] * t251 + t427
+        + parameters[YZ4] * t243);
+    const wam7_real_t t429 = (t294 - t323) * parameters[XY4];
     /* link j5: what it passes on */
-    const wam7_real_t t431 = t429 + t430 + (parameters[MX4] * t328 + parameters[MY4] * t314) + t427;
-    const wam7_real_t t432 = t297 * parameters[MX4]; /* link j4: force and moment */
-    const wam7_real_t t433 = t432 + parameters[MY4] * t253 - parameters[MZ4] * t244 - parameters[M4] * t314;
-    const wam7_real_t t434 = t433 + t422; /* link j5: what it passes on */
-    const wam7_real_t t435 = t325 * parameters[MY4]; /* link j4: force and moment */
-    const wam7_real_t t436 = parameters[M4] * t328 + (t435 - parameters[MX4] * t327 - parameters[MZ4] * t254);
-    const wam7_real_t t437 = t426 - t436; /* link j5: what it passes on */
-    const wam7_real_t t438 = t250 * (parameters[XX3] - parameters[ZZ3]); /* link j3: force and moment */
-    const wam7_real_t t439 = t438 - parameters[YY3] * t252 + parameters[XY3] * t243 - parameters[YZ3] * t236;
-    const wam7_real_t t440 = t225 * t225; /* link j3: motion */
-    const wam7_real_t t441 = (t440 - t300) * parameters[XZ3]; /* link j3: force and moment */
-    const wam7_real_t t442 = t312 * parameters[MX3];
+    const wam7_real_t t430 = t428 + t429 + (parameters[MX4] * t327 + parameters[MY4] * t313) + t426;
+    const wam7_real_t t431 = t296 * parameters[MX4]; /* link j4: force and moment */
+    const wam7_real_t t432 = t431 + parameters[MY4] * t252 - parameters[MZ4] * t243 - parameters[M4] * t313;
+    const wam7_real_t t433 = t432 + t421; /* link j5: what it passes on */
+    const wam7_real_t t434 = t324 * parameters[MY4]; /* link j4: force and moment */
+    const wam7_real_t t435 = parameters[M4] * t327 + (t434 - parameters[MX4] * t326 - parameters[MZ4] * t253);
+    const wam7_real_t t436 = t425 - t435; /* link j5: what it passes on */
+    const wam7_real_t t437 = t249 * (parameters[XX3] - parameters[ZZ3]); /* link j3: force and moment */
+    const wam7_real_t t438 = t437 - parameters[YY3] * t251 + parameters[XY3] * t242 - parameters[YZ3] * t235;
+    const wam7_real_t t439 = t224 * t224; /* link j3: motion */
+    const wam7_real_t t440 = (t439 - t299) * parameters[XZ3]; /* link j3: force and moment */
+    const wam7_real_t t441 = t311 * parameters[MX3];
     /* link j4: what it passes on */
-    const wam7_real_t t443 = t439 + t441 + (t442 - parameters[MZ3] * t306) + (t431
-        + WAM7_C(0.045) * (t84 * t434 - t87 * t437));
-    const wam7_real_t t444 = t301 * parameters[MX3]; /* link j3: force and moment */
-    const wam7_real_t t445 = t444 + parameters[MY3] * t236 + parameters[MZ3] * t251 - parameters[M3] * t306;
-    const wam7_real_t t446 = t445 + (t87 * t434 + t84 * t437); /* link j4: what it passes on */
-    const wam7_real_t t447 = t324 + t295; /* link j5: motion */
-    const wam7_real_t t448 = t447 * parameters[MZ4]; /* link j4: force and moment */
-    const wam7_real_t t449 = parameters[M4] * t319 + (parameters[MX4] * t316 + parameters[MY4] * t257 + t448);
-    const wam7_real_t t450 = t449 + t404; /* link j5: what it passes on */
-    const wam7_real_t t451 = (t440 + t300) * parameters[MY3]; /* link j3: force and moment */
-    const wam7_real_t t452 = parameters[M3] * t318 + (parameters[MX3] * t317 + t451 - parameters[MZ3] * t241);
-    const wam7_real_t t453 = t452 + t450; /* link j4: what it passes on */
+    const wam7_real_t t442 = t438 + t440 + (t441 - parameters[MZ3] * t305) + (t430
+        + WAM7_C(0.045) * (t81 * t433 - t84 * t436));
+    const wam7_real_t t443 = t300 * parameters[MX3]; /* link j3: force and moment */
+    const wam7_real_t t444 = t443 + parameters[MY3] * t235 + parameters[MZ3] * t250 - parameters[M3] * t305;
+    const wam7_real_t t445 = t444 + (t84 * t433 + t81 * t436); /* link j4: what it passes on */
+    const wam7_real_t t446 = t323 + t294; /* link j5: motion */
+    const wam7_real_t t447 = t446 * parameters[MZ4]; /* link j4: force and moment */
+    const wam7_real_t t448 = parameters[M4] * t318 + (parameters[MX4] * t315 + parameters[MY4] * t256 + t447);
+    const wam7_real_t t449 = t448 + t403; /* link j5: what it passes on */
+    const wam7_real_t t450 = (t439 + t299) * parameters[MY3]; /* link j3: force and moment */
+    const wam7_real_t t451 = parameters[M3] * t317 + (parameters[MX3] * t316 + t450 - parameters[MZ3] * t240);
+    const wam7_real_t t452 = t451 + t449; /* link j4: what it passes on */
     /* link j3: what it passes on */
-    const wam7_real_t t454 = t130 * t421 + t134 * t443 + WAM7_C(0.55) * (t134 * t446 + t130 * t453);
-    const wam7_real_t t455 = t239 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
-    const wam7_real_t t456 = t455 - t239 * parameters[XX2] + WAM7_C(2.0) * t235 * parameters[XY2]
-        + t238 * parameters[XZ2];
-    const wam7_real_t t457 = t226 * t226; /* link j2: motion */
-    const wam7_real_t t458 = (t457 - t310) * parameters[YZ2]; /* link j2: force and moment */
-    const wam7_real_t t459 = t311 * parameters[MZ2];
-    const wam7_real_t t460 = (t440 - t299) * parameters[XY3]; /* link j3: force and moment */
-    const wam7_real_t t461 = t234 * (parameters[XX3] - parameters[YY3]);
-    const wam7_real_t t462 = t235 * parameters[ZZ3] - t461 + parameters[YZ3] * t251 + parameters[XZ3] * t241;
+    const wam7_real_t t453 = t126 * t420 + t130 * t442 + WAM7_C(0.55) * (t130 * t445 + t126 * t452);
+    const wam7_real_t t454 = t238 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const wam7_real_t t455 = t454 - t238 * parameters[XX2] + WAM7_C(2.0) * t234 * parameters[XY2]
+        + t237 * parameters[XZ2];
+    const wam7_real_t t456 = t225 * t225; /* link j2: motion */
+    const wam7_real_t t457 = (t456 - t309) * parameters[YZ2]; /* link j2: force and moment */
+    const wam7_real_t t458 = t310 * parameters[MZ2];
+    const wam7_real_t t459 = (t439 - t298) * parameters[XY3]; /* link j3: force and moment */
+    const wam7_real_t t460 = t233 * (parameters[XX3] - parameters[YY3]);
+    const wam7_real_t t461 = t234 * parameters[ZZ3] - t460 + parameters[YZ3] * t250 + parameters[XZ3] * t240;
     /* link j4: what it passes on */
-    const wam7_real_t t463 = t462 - t460 + (parameters[MX3] * t318 + parameters[MY3] * t306) + (t84 * t408
-        + t87 * t416 + WAM7_C(0.045) * t450);
-    const wam7_real_t t464 = t235 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
-    const wam7_real_t t465 = t235 * parameters[YY2] - t464 - t240 * parameters[XY2] - t238 * parameters[YZ2];
-    const wam7_real_t t466 = (t309 - t310) * parameters[XZ2];
-    const wam7_real_t t467 = t303 * parameters[MZ2];
+    const wam7_real_t t462 = t461 - t459 + (parameters[MX3] * t317 + parameters[MY3] * t305) + (t81 * t407
+        + t84 * t415 + WAM7_C(0.045) * t449);
+    const wam7_real_t t463 = t234 * (parameters[XX2] - parameters[ZZ2]); /* link j2: force and moment */
+    const wam7_real_t t464 = t234 * parameters[YY2] - t463 - t239 * parameters[XY2] - t237 * parameters[YZ2];
+    const wam7_real_t t465 = (t308 - t309) * parameters[XZ2];
+    const wam7_real_t t466 = t302 * parameters[MZ2];
     /* link j2: what it passes on */
-    const wam7_real_t t468 = t187 * (t456 + t458 + t459 + t454) + t189 * (t465 - t466 - t467 + t463);
-    const wam7_real_t t469 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
-    const wam7_real_t t470 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1] - t469 * parameters[FC1])
-        + t468;
-    const wam7_real_t t471 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
-    const wam7_real_t t472 = WAM7_C(14.93) * (WAM7_C(-14.93) * dq[6] * parameters[FV7]
-        - t471 * parameters[FC7]) + t366;
-    const wam7_real_t t473 = WAM7_C(1.00031) * input[6] + t472;
-    const wam7_real_t t474 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
-    const wam7_real_t t475 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[5] * parameters[FV6] - t474 * parameters[FC6])
-        + t380;
-    const wam7_real_t t476 = WAM7_C(2.23728) * input[5] + t475 - t473 * t6;
-    const wam7_real_t t477 = WAM7_C(19.194) * input[0] + t470 + t473 * t216 + t476 * t217;
-    const wam7_real_t t478 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
-    const wam7_real_t t479 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[4] * parameters[FV5] - t478 * parameters[FC5])
-        + t412;
-    const wam7_real_t t480 = WAM7_C(2.23728) * input[4] + t479 - t473 * t28 + t476 * t34;
-    const wam7_real_t t481 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
-    const wam7_real_t t482 = WAM7_C(18.0) * (WAM7_C(-18.0) * dq[3] * parameters[FV4] - t481 * parameters[FC4])
-        + t431;
-    const wam7_real_t t483 = WAM7_C(8.226) * input[3] + t482 + t473 * t68 + t476 * t72;
-    const wam7_real_t t484 = t483 + t480 * t79;
-    const wam7_real_t t485 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
-    const wam7_real_t t486 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[2] * parameters[FV3]
-        - t485 * parameters[FC3]) + t463;
-    const wam7_real_t t487 = WAM7_C(12.910250000000001) * input[2] + t486 - t473 * t108 + t476 * t124;
-    const wam7_real_t t488 = t487 + t480 * t107 + t484 * t106;
-    const wam7_real_t t489 = t477 + t480 * t218 + t484 * t220 + t488 * t221;
+    const wam7_real_t t467 = t182 * (t455 + t457 + t458 + t453) + t184 * (t464 - t465 - t466 + t462);
+    const wam7_real_t t468 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
+    const wam7_real_t t469 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1] - t468 * parameters[FC1])
+        + t467;
+    const wam7_real_t t470 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
+    const wam7_real_t t471 = WAM7_C(14.93) * (WAM7_C(-14.93) * dq[6] * parameters[FV7]
+        - t470 * parameters[FC7]) + t365;
+    const wam7_real_t t472 = WAM7_C(1.00031) * input[6] + t471;
+    const wam7_real_t t473 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
+    const wam7_real_t t474 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[5] * parameters[FV6] - t473 * parameters[FC6])
+        + t379;
+    const wam7_real_t t475 = WAM7_C(2.23728) * input[5] + t474 - t472 * t6;
+    const wam7_real_t t476 = WAM7_C(19.194) * input[0] + t469 + t472 * t211 + t475 * t212;
+    const wam7_real_t t477 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
+    const wam7_real_t t478 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[4] * parameters[FV5] - t477 * parameters[FC5])
+        + t411;
+    const wam7_real_t t479 = WAM7_C(2.23728) * input[4] + t478 - t472 * t27 + t475 * t33;
+    const wam7_real_t t480 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
+    const wam7_real_t t481 = WAM7_C(18.0) * (WAM7_C(-18.0) * dq[3] * parameters[FV4] - t480 * parameters[FC4])
+        + t430;
+    const wam7_real_t t482 = WAM7_C(8.226) * input[3] + t481 + t472 * t66 + t475 * t70;
+    const wam7_real_t t483 = t482 + t479 * t77;
+    const wam7_real_t t484 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
+    const wam7_real_t t485 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[2] * parameters[FV3]
+        - t484 * parameters[FC3]) + t462;
+    const wam7_real_t t486 = WAM7_C(12.910250000000001) * input[2] + t485 - t472 * t105 + t475 * t121;
+    const wam7_real_t t487 = t486 + t479 * t104 + t483 * t103;
+    const wam7_real_t t488 = t476 + t479 * t213 + t483 * t215 + t487 * t216;
     /* link j3: what it passes on */
-    const wam7_real_t t490 = t130 * t443 - t134 * t421 + WAM7_C(0.55) * (t130 * t446 - t134 * t453);
+    const wam7_real_t t489 = t126 * t442 - t130 * t420 + WAM7_C(0.55) * (t126 * t445 - t130 * t452);
     /* link j2: force and moment */
-    const wam7_real_t t491 = t238 * (parameters[XX2] - parameters[YY2]) + (t457 - t309) * parameters[XY2]
-        + (t311 * parameters[MX2] - t303 * parameters[MY2]);
-    const wam7_real_t t492 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
-    const wam7_real_t t493 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[1] * parameters[FV2]
-        - t492 * parameters[FC2]) + (t491 + t490);
-    const wam7_real_t t494 = WAM7_C(12.910250000000001) * input[1] + t493 - t473 * t150 - t476 * t158;
-    const wam7_real_t t495 = t494 - t480 * t166 + t484 * t172 - t488 * t183;
-    const wam7_real_t t496 = WAM7_C(1.0) / t222;
-    const wam7_real_t t497 = wam7_bounded((t489 - t495 * t210) * t496);
-    ddq[0] = t497;
-    const wam7_real_t t498 = wam7_bounded(t495 * t209 - t210 * t497);
-    ddq[1] = t498;
-    const wam7_real_t t499 = wam7_bounded(t488 * t182 + t221 * t497 - t183 * t498);
-    ddq[2] = t499;
-    const wam7_real_t t500 = wam7_bounded(t484 * t105 + t220 * t497 + t172 * t498 + t106 * t499);
-    ddq[3] = t500;
-    const wam7_real_t t501 = t480 * t78 + t218 * t497 - t166 * t498 + t107 * t499;
-    const wam7_real_t t502 = wam7_bounded(t501 + t79 * t500);
-    ddq[4] = t502;
-    const wam7_real_t t503 = t476 * t33 + t217 * t497 - t158 * t498 + t124 * t499;
-    const wam7_real_t t504 = wam7_bounded(t503 + t72 * t500 + t34 * t502);
-    ddq[5] = t504;
-    const wam7_real_t t505 = t473 * t5 + t216 * t497 - t150 * t498 - t108 * t499;
-    const wam7_real_t t506 = wam7_bounded(t505 + t68 * t500 - t28 * t502 - t6 * t504);
-    ddq[6] = t506;
-    const wam7_real_t t507 = t276 * parameters[XZ7];
-    const wam7_real_t t508 = t277 * parameters[XY7];
-    const wam7_real_t t509 = t507 + t508;
-    const wam7_real_t t510 = t282 * parameters[YZ7];
-    const wam7_real_t t511 = t508 - t510;
-    const wam7_real_t t512 = WAM7_C(0.5) * (parameters[ZZ7] + (parameters[XX7] + parameters[YY7]));
-    const wam7_real_t t513 = parameters[XX7] - t512;
-    const wam7_real_t t514 = t277 * t513 - t282 * parameters[XZ7];
-    const wam7_real_t t515 = parameters[YY7] - t512;
-    const wam7_real_t t516 = t276 * parameters[YZ7] + t277 * t515;
-    const wam7_real_t t517 = t2 * (t509 + t511) + t1 * (t514 - t516); /* link j7: inertia, momentum beyond */
-    const wam7_real_t t518 = t2 * t517;
-    const wam7_real_t t519 = WAM7_C(-0.06) * t265; /* link j7: velocity of its origin */
-    const wam7_real_t t520 = t19 * t519; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t521 = t282 * parameters[MY7] + t276 * parameters[MX7];
-    const wam7_real_t t522 = WAM7_C(0.06) * t521;
-    const wam7_real_t t523 = WAM7_C(0.06) * t272; /* link j7: velocity of its origin */
-    const wam7_real_t t524 = t3 * t523; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t525 = t522 - (t520 + t524);
-    const wam7_real_t t526 = t264 * parameters[XZ6];
-    const wam7_real_t t527 = t265 * parameters[XY6];
-    const wam7_real_t t528 = t526 - t527 + (t518 - t511 - t520 - t525);
-    const wam7_real_t t529 = t507 + t510;
-    const wam7_real_t t530 = t272 * parameters[YZ6];
-    const wam7_real_t t531 = t527 + t530 - (t525 + (t529 - t522));
-    const wam7_real_t t532 = t512 - parameters[ZZ7];
-    const wam7_real_t t533 = t276 * t532 - t277 * parameters[YZ7];
-    const wam7_real_t t534 = t277 * parameters[XZ7] + t282 * t532;
-    const wam7_real_t t535 = t276 * parameters[MZ7] + t277 * parameters[MY7];
-    const wam7_real_t t536 = t282 * parameters[MZ7] - t277 * parameters[MX7];
-    const wam7_real_t t537 = t1 * t536 - t2 * t535;
-    const wam7_real_t t538 = t1 * t534 - t2 * t533 + (WAM7_C(0.06) * t537 + t48 * t519);
-    const wam7_real_t t539 = WAM7_C(-0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const wam7_real_t t540 = parameters[YY6] + t539;
-    const wam7_real_t t541 = t265 * t540 - t264 * parameters[YZ6] + t538;
-    const wam7_real_t t542 = t282 * parameters[XY7] + t276 * t513;
-    const wam7_real_t t543 = t276 * parameters[XY7] + t282 * t515;
-    const wam7_real_t t544 = parameters[XX6] + t539;
-    const wam7_real_t t545 = t272 * parameters[XZ6] + t265 * t544 + (t2 * t542 - t1 * t543);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t546 = t18 * (t528 - t531) + t22 * (t541 - t545);
-    const wam7_real_t t547 = t18 * t546;
-    const wam7_real_t t548 = t232 * parameters[XZ5];
-    const wam7_real_t t549 = t259 * parameters[XY5];
-    const wam7_real_t t550 = t548 - t549 + (t531 + t547);
+    const wam7_real_t t490 = t237 * (parameters[XX2] - parameters[YY2]) + (t456 - t308) * parameters[XY2]
+        + (t310 * parameters[MX2] - t302 * parameters[MY2]);
+    const wam7_real_t t491 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
+    const wam7_real_t t492 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[1] * parameters[FV2]
+        - t491 * parameters[FC2]) + (t490 + t489);
+    const wam7_real_t t493 = WAM7_C(12.910250000000001) * input[1] + t492 - t472 * t146 - t475 * t154;
+    const wam7_real_t t494 = t493 - t479 * t162 + t483 * t168 - t487 * t179;
+    const wam7_real_t t495 = WAM7_C(1.0) / t217;
+    const wam7_real_t t496 = wam7_held((t488 - t494 * t205) * t495);
+    ddq[0] = t496;
+    const wam7_real_t t497 = wam7_held(t494 * t204 - t205 * t496);
+    ddq[1] = t497;
+    const wam7_real_t t498 = wam7_held(t487 * t178 + t216 * t496 - t179 * t497);
+    ddq[2] = t498;
+    const wam7_real_t t499 = wam7_held(t483 * t102 + t215 * t496 + t168 * t497 + t103 * t498);
+    ddq[3] = t499;
+    const wam7_real_t t500 = t479 * t76 + t213 * t496 - t162 * t497 + t104 * t498;
+    const wam7_real_t t501 = wam7_held(t500 + t77 * t499);
+    ddq[4] = t501;
+    const wam7_real_t t502 = t475 * t32 + t212 * t496 - t154 * t497 + t121 * t498;
+    const wam7_real_t t503 = wam7_held(t502 + t70 * t499 + t33 * t501);
+    ddq[5] = t503;
+    const wam7_real_t t504 = t472 * t5 + t211 * t496 - t146 * t497 - t105 * t498;
+    const wam7_real_t t505 = wam7_held(t504 + t66 * t499 - t27 * t501 - t6 * t503);
+    ddq[6] = t505;
+    const wam7_real_t t506 = t237 - t497;
+    const wam7_real_t t507 = t182 * t496;
+    const wam7_real_t t508 = t238 + t507;
+    const wam7_real_t t509 = t238 + t508;
+    const wam7_real_t t510 = t126 * t506 - t130 * t509;
+    const wam7_real_t t511 = t510 - t249;
+    const wam7_real_t t512 = t511 - t499;
+    const wam7_real_t t513 = t248 + t512;
+    const wam7_real_t t514 = t184 * t496;
+    const wam7_real_t t515 = t514 - t234;
+    const wam7_real_t t516 = t498 + t515;
+    const wam7_real_t t517 = t233 + t516;
+    const wam7_real_t t518 = t130 * t506 + t126 * t509;
+    const wam7_real_t t519 = t518 - t236;
+    const wam7_real_t t520 = t519 - t236;
+    const wam7_real_t t521 = t81 * t517 + t84 * t520;
+    const wam7_real_t t522 = t254 + t521;
+    const wam7_real_t t523 = t254 + t522;
+    const wam7_real_t t524 = t37 * t513 - t40 * t523;
+    const wam7_real_t t525 = t524 - t269;
+    const wam7_real_t t526 = t525 - t503;
+    const wam7_real_t t527 = t272 - t526;
+    const wam7_real_t t528 = t84 * t517 - t81 * t520;
+    const wam7_real_t t529 = t528 - t244;
+    const wam7_real_t t530 = t501 + t529;
+    const wam7_real_t t531 = t232 + t530;
+    const wam7_real_t t532 = t40 * t513 + t37 * t523;
+    const wam7_real_t t533 = t532 - t259;
+    const wam7_real_t t534 = t533 - t259;
+    const wam7_real_t t535 = t21 * t531 + t17 * t534;
+    const wam7_real_t t536 = t535 - t265;
+    const wam7_real_t t537 = t536 - t265;
+    const wam7_real_t t538 = t2 * t527 + t1 * t537;
+    const wam7_real_t t539 = t538 - t282;
+    const wam7_real_t t540 = t1 * t527 - t2 * t537;
+    const wam7_real_t t541 = t277 - t540;
+    const wam7_real_t t542 = t277 + t541;
+    const wam7_real_t t543 = t17 * t531 - t21 * t534;
+    const wam7_real_t t544 = t543 - t286;
+    const wam7_real_t t545 = t505 + t544;
+    const wam7_real_t t546 = t288 + t545;
+    const wam7_real_t t547 = parameters[XY7] * t542 - (t339 + parameters[YY7] * t539)
+        - parameters[YZ7] * t546;
+    const wam7_real_t t548 = t302 + WAM7_C(0.55) * t506;
+    const wam7_real_t t549 = WAM7_C(0.55) * t509;
+    const wam7_real_t t550 = t126 * t548 - t130 * t549;
+    const wam7_real_t t551 = t301 + t550;
+    const wam7_real_t t552 = t249 - t511;
+    const wam7_real_t t553 = t311 - WAM7_C(0.045) * t552;
+    const wam7_real_t t554 = t84 * t551 + t81 * t553;
+    const wam7_real_t t555 = t554 + (WAM7_C(0.3) * t513 - t297);
+    const wam7_real_t t556 = t244 - t529;
+    const wam7_real_t t557 = t130 * t548 + t126 * t549;
+    const wam7_real_t t558 = t233 - t516;
+    const wam7_real_t t559 = t557 - WAM7_C(0.045) * t558;
+    const wam7_real_t t560 = t559 + (WAM7_C(0.045) * t556 - WAM7_C(-0.3) * t523);
+    const wam7_real_t t561 = t37 * t555 - t40 * t560;
+    const wam7_real_t t562 = t81 * t551 - t84 * t553;
+    const wam7_real_t t563 = t512 - t248;
+    const wam7_real_t t564 = t562 + (t325 + WAM7_C(0.045) * t563);
+    const wam7_real_t t565 = t17 * t561 - t21 * t564;
+    const wam7_real_t t566 = t565 + WAM7_C(-0.06) * t527;
+    const wam7_real_t t567 = t40 * t555 + t37 * t560;
+    const wam7_real_t t568 = t567 + WAM7_C(0.06) * t537;
+    const wam7_real_t t569 = t2 * t566 - t1 * t568;
+    const wam7_real_t t570 = parameters[MZ7] * t569;
+    const wam7_real_t t571 = t21 * t561 + t17 * t564;
+    const wam7_real_t t572 = t336 + t571;
+    const wam7_real_t t573 = t344 + t547 + (t570 - parameters[MX7] * t572);
+    const wam7_real_t t574 = t275 * parameters[XZ7];
+    const wam7_real_t t575 = t276 * parameters[XY7];
+    const wam7_real_t t576 = t574 + t575;
+    const wam7_real_t t577 = WAM7_C(2.0) * t275; /* link j7: derivatives */
+    const wam7_real_t t578 = WAM7_C(0.5) * (parameters[ZZ7] + (parameters[XX7] + parameters[YY7]));
+    const wam7_real_t t579 = parameters[YY7] - t578;
+    const wam7_real_t t580 = t275 * parameters[YZ7] + t276 * t579;
+    const wam7_real_t t581 = WAM7_C(-2.0) * t281;
+    const wam7_real_t t582 = t576 * t577 - t580 * t581 - (t390 * parameters[XZ7] - (parameters[XX7] * t538
+        - parameters[XY7] * t540));
+    const wam7_real_t t583 = t573 - (t570 - t582);
+    const wam7_real_t t584 = t539 - t282;
+    const wam7_real_t t585 = t288 - t545;
+    const wam7_real_t t586 = parameters[XX7] * t541 - t279 - parameters[XY7] * t584 + parameters[XZ7] * t585;
+    const wam7_real_t t587 = t1 * t566 + t2 * t568;
+    const wam7_real_t t588 = parameters[MZ7] * t587;
+    const wam7_real_t t589 = t293 + t586 + (parameters[MY7] * t572 + t588);
+    const wam7_real_t t590 = parameters[XX7] - t578;
+    const wam7_real_t t591 = t276 * t590 - t281 * parameters[XZ7];
+    const wam7_real_t t592 = t281 * parameters[YZ7];
+    const wam7_real_t t593 = t575 - t592;
+    const wam7_real_t t594 = t591 * t577 - t593 * t581 + (t390 * parameters[YZ7] + (parameters[YY7] * t540
+        - parameters[XY7] * t538));
+    const wam7_real_t t595 = t589 + (t594 - t588);
+    const wam7_real_t t596 = parameters[M7] * t587;
+    const wam7_real_t t597 = parameters[MZ7] * t540;
+    const wam7_real_t t598 = t596 - (t349 + parameters[MX7] * t585 + t597);
+    const wam7_real_t t599 = t281 * parameters[MY7] + t275 * parameters[MX7];
+    const wam7_real_t t600 = t598 + (t597 - t390 * parameters[MY7] - (t599 * t581 + t596));
+    const wam7_real_t t601 = parameters[M7] * t569;
+    const wam7_real_t t602 = parameters[MZ7] * t538;
+    const wam7_real_t t603 = t601 + (t347 + parameters[MY7] * t546 - t602);
+    const wam7_real_t t604 = t603 - (t599 * t577 + t601 - (t390 * parameters[MX7] + t602));
+    const wam7_real_t t605 = t1 * t600 + t2 * t604;
+    const wam7_real_t t606 = t2 * t583 + t1 * t595 + WAM7_C(0.06) * t605;
+    const wam7_real_t t607 = parameters[MY7] * t587 - parameters[MX7] * t569;
+    const wam7_real_t t608 = t390 * parameters[ZZ7] + (parameters[YZ7] * t540 - parameters[XZ7] * t538);
+    const wam7_real_t t609 = t281 * parameters[XY7] + t275 * t590;
+    const wam7_real_t t610 = t275 * parameters[XY7] + t281 * t579;
+    const wam7_real_t t611 = t609 * t577 - t610 * t581 + t608 + t607;
+    const wam7_real_t t612 = t17 * t606 - t21 * t611;
+    const wam7_real_t t613 = t2 * t600 - t1 * t604;
+    const wam7_real_t t614 = t2 * t595 - t1 * t583 + WAM7_C(0.06) * t613;
+    const wam7_real_t t615 = t281 * parameters[MZ7] - t276 * parameters[MX7];
+    const wam7_real_t t616 = t275 * parameters[MZ7] + t276 * parameters[MY7];
+    const wam7_real_t t617 = t615 * t577 + t616 * t581 + (parameters[MY7] * t538 + parameters[MX7] * t540);
+    const wam7_real_t t618 = t17 * t613 - t21 * t617;
+    const wam7_real_t t619 = t40 * t618 + t37 * t605;
+    const wam7_real_t t620 = t37 * t612 + t40 * t614 + WAM7_C(0.3) * t619;
+    const wam7_real_t t621 = t21 * t606 + t17 * t611;
+    const wam7_real_t t622 = WAM7_C(0.045) * t619;
+    const wam7_real_t t623 = t621 - t622;
+    const wam7_real_t t624 = t84 * t620 - t81 * t623;
+    const wam7_real_t t625 = t40 * t605 - t37 * t618;
+    const wam7_real_t t626 = t21 * t613 + t17 * t617;
+    const wam7_real_t t627 = t40 * t612 - t37 * t614 + (WAM7_C(0.045) * t626 + WAM7_C(0.3) * t625);
+    const wam7_real_t t628 = t627 - WAM7_C(0.045) * (t84 * t626 - t81 * t625);
+    const wam7_real_t t629 = t84 * t625 + t81 * t626;
+    const wam7_real_t t630 = t126 * t624 - t130 * t628 + WAM7_C(0.55) * (t126 * t619 - t130 * t629);
+    const wam7_real_t t631 = t622 + (t81 * t620 + t84 * t623);
+    const wam7_real_t t632 = WAM7_C(0.05209961446285298) * (t182 * t630 + t184 * t631);
+    const wam7_real_t t633 = wam7_held(WAM7_C(19.194) * t495);
+    const wam7_real_t t634 = t130 * t624 + t126 * t628 + WAM7_C(0.55) * (t126 * t629 + t130 * t619);
+    const wam7_real_t t635 = WAM7_C(0.07745783389167521) * t634;
+    const wam7_real_t t636 = t205 * t495;
+    const wam7_real_t t637 = wam7_held(WAM7_C(-12.910250000000001) * t636);
+    const wam7_real_t t638 = WAM7_C(0.07745783389167521) * t631;
+    const wam7_real_t t639 = t495 * (t216 + t179 * t205);
+    const wam7_real_t t640 = wam7_held(WAM7_C(12.910250000000001) * t639);
+    const wam7_real_t t641 = WAM7_C(0.12156576707999026) * t627;
+    const wam7_real_t t642 = t168 - t103 * t179;
+    const wam7_real_t t643 = t495 * (t215 + t103 * t216 - t205 * t642);
+    const wam7_real_t t644 = wam7_held(WAM7_C(8.226) * t643);
+    const wam7_real_t t645 = t633 * t632 - t637 * t635 + t640 * t638 - t644 * t641;
+    const wam7_real_t t646 = WAM7_C(0.4469713223199599) * t621;
+    const wam7_real_t t647 = t104 + t77 * t103;
+    const wam7_real_t t648 = t162 - t77 * t168 + t179 * t647;
+    const wam7_real_t t649 = t213 + t77 * t215 + t216 * t647 + t205 * t648;
+    const wam7_real_t t650 = t495 * t649;
+    const wam7_real_t t651 = wam7_held(WAM7_C(2.23728) * t650);
+    const wam7_real_t t652 = WAM7_C(0.4469713223199599) * t614;
+    const wam7_real_t t653 = t70 + t33 * t77;
+    const wam7_real_t t654 = t121 + t33 * t104 + t103 * t653;
+    const wam7_real_t t655 = t154 + t33 * t162 - t168 * t653 + t179 * t654;
+    const wam7_real_t t656 = t212 + t33 * t213 + t215 * t653 + t216 * t654;
+    const wam7_real_t t657 = t495 * (t656 + t205 * t655);
+    const wam7_real_t t658 = wam7_held(WAM7_C(2.23728) * t657);
+    const wam7_real_t t659 = WAM7_C(2.0) * t609;
+    const wam7_real_t t660 = WAM7_C(2.0) * t610;
+    const wam7_real_t t661 = WAM7_C(0.9996900960702182) * (t607 + (t275 * t659 + t281 * t660 + t608));
+    const wam7_real_t t662 = t27 + t6 * t33;
+    const wam7_real_t t663 = t66 - t6 * t70 - t77 * t662;
+    const wam7_real_t t664 = t103 * t663 - (t105 + t6 * t121 + t104 * t662);
+    const wam7_real_t t665 = t146 - t6 * t154 - t162 * t662 - t168 * t663;
+    const wam7_real_t t666 = t665 + t179 * t664;
+    const wam7_real_t t667 = t211 - t6 * t212 - t213 * t662 + t215 * t663;
+    const wam7_real_t t668 = t495 * (t667 + t216 * t664 + t205 * t666);
+    const wam7_real_t t669 = wam7_held(WAM7_C(1.00031) * t668);
+    const wam7_real_t t670 = t645 + t651 * t646 + t658 * t652 + t669 * t661;
+    ddq_by_q[6] = t670;
+    const wam7_real_t t671 = wam7_held(WAM7_C(-19.194) * t636);
+    const wam7_real_t t672 = wam7_held(WAM7_C(12.910250000000001) * (t204 + t205 * t636));
+    const wam7_real_t t673 = t179 * t204 + t205 * t639;
+    const wam7_real_t t674 = wam7_held(WAM7_C(-12.910250000000001) * t673);
+    const wam7_real_t t675 = t205 * t643 - t204 * t642;
+    const wam7_real_t t676 = wam7_held(WAM7_C(-8.226) * t675);
+    const wam7_real_t t677 = t671 * t632 - t672 * t635 + t674 * t638 - t676 * t641;
+    const wam7_real_t t678 = t204 * t648 + t205 * t650;
+    const wam7_real_t t679 = wam7_held(WAM7_C(-2.23728) * t678);
+    const wam7_real_t t680 = t204 * t655 + t205 * t657;
+    const wam7_real_t t681 = wam7_held(WAM7_C(-2.23728) * t680);
+    const wam7_real_t t682 = t204 * t666 + t205 * t668;
+    const wam7_real_t t683 = wam7_held(WAM7_C(-1.00031) * t682);
+    const wam7_real_t t684 = t677 + t679 * t646 + t681 * t652 + t683 * t661;
+    ddq_by_q[13] = t684;
+    const wam7_real_t t685 = wam7_held(WAM7_C(19.194) * t639);
+    const wam7_real_t t686 = wam7_held(WAM7_C(12.910250000000001) * (t178 + t216 * t639 + t179 * t673));
+    const wam7_real_t t687 = t103 * t178 + t216 * t643 + t179 * t675;
+    const wam7_real_t t688 = wam7_held(WAM7_C(8.226) * t687);
+    const wam7_real_t t689 = t685 * t632 - t674 * t635 + t686 * t638 - t688 * t641;
+    const wam7_real_t t690 = t178 * t647 + t216 * t650 + t179 * t678;
+    const wam7_real_t t691 = wam7_held(WAM7_C(2.23728) * t690);
+    const wam7_real_t t692 = t178 * t654 + t216 * t657 + t179 * t680;
+    const wam7_real_t t693 = wam7_held(WAM7_C(2.23728) * t692);
+    const wam7_real_t t694 = t178 * t664 + t216 * t668 + t179 * t682;
+    const wam7_real_t t695 = wam7_held(WAM7_C(1.00031) * t694);
+    const wam7_real_t t696 = t689 + t691 * t646 + t693 * t652 + t695 * t661;
+    ddq_by_q[20] = t696;
+    const wam7_real_t t697 = wam7_held(WAM7_C(19.194) * t643);
+    const wam7_real_t t698 = wam7_held(WAM7_C(-12.910250000000001) * t675);
+    const wam7_real_t t699 = wam7_held(WAM7_C(12.910250000000001) * t687);
+    const wam7_real_t t700 = t102 + t215 * t643 - t168 * t675 + t103 * t687;
+    const wam7_real_t t701 = wam7_held(WAM7_C(8.226) * t700);
+    const wam7_real_t t702 = t697 * t632 - t698 * t635 + t699 * t638 - t701 * t641;
+    const wam7_real_t t703 = t77 * t102 + t215 * t650 - t168 * t678 + t103 * t690;
+    const wam7_real_t t704 = wam7_held(WAM7_C(2.23728) * t703);
+    const wam7_real_t t705 = t168 * t680 - (t102 * t653 + t215 * t657) - t103 * t692;
+    const wam7_real_t t706 = wam7_held(WAM7_C(-2.23728) * t705);
+    const wam7_real_t t707 = t168 * t682 - (t102 * t663 + t215 * t668) - t103 * t694;
+    const wam7_real_t t708 = wam7_held(WAM7_C(-1.00031) * t707);
+    const wam7_real_t t709 = t702 + t704 * t646 + t706 * t652 + t708 * t661;
+    ddq_by_q[27] = t709;
+    const wam7_real_t t710 = wam7_held(WAM7_C(19.194) * t650);
+    const wam7_real_t t711 = wam7_held(WAM7_C(-12.910250000000001) * t678);
+    const wam7_real_t t712 = wam7_held(WAM7_C(12.910250000000001) * t690);
+    const wam7_real_t t713 = wam7_held(WAM7_C(8.226) * t703);
+    const wam7_real_t t714 = t710 * t632 - t711 * t635 + t712 * t638 - t713 * t641;
+    const wam7_real_t t715 = t76 + t213 * t650 + t162 * t678 + t104 * t690;
+    const wam7_real_t t716 = wam7_held(WAM7_C(2.23728) * (t715 + t77 * t703));
+    const wam7_real_t t717 = t33 * t76 + t213 * t657 + t162 * t680 + t104 * t692;
+    const wam7_real_t t718 = t717 - t77 * t705;
+    const wam7_real_t t719 = wam7_held(WAM7_C(2.23728) * t718);
+    const wam7_real_t t720 = t213 * t668 - t76 * t662 + t162 * t682 + t104 * t694;
+    const wam7_real_t t721 = t720 - t77 * t707;
+    const wam7_real_t t722 = wam7_held(WAM7_C(1.00031) * t721);
+    const wam7_real_t t723 = t714 + t716 * t646 + t719 * t652 + t722 * t661;
+    ddq_by_q[34] = t723;
+    const wam7_real_t t724 = wam7_held(WAM7_C(19.194) * t657);
+    const wam7_real_t t725 = wam7_held(WAM7_C(-12.910250000000001) * t680);
+    const wam7_real_t t726 = wam7_held(WAM7_C(12.910250000000001) * t692);
+    const wam7_real_t t727 = wam7_held(WAM7_C(-8.226) * t705);
+    const wam7_real_t t728 = t724 * t632 - t725 * t635 + t726 * t638 - t727 * t641;
+    const wam7_real_t t729 = t32 + t212 * t657 + t154 * t680 + t121 * t692;
+    const wam7_real_t t730 = wam7_held(WAM7_C(2.23728) * (t729 - t70 * t705 + t33 * t718));
+    const wam7_real_t t731 = t212 * t668 - t6 * t32 + t154 * t682 + t121 * t694;
+    const wam7_real_t t732 = t731 - t70 * t707 + t33 * t721;
+    const wam7_real_t t733 = wam7_held(WAM7_C(1.00031) * t732);
+    const wam7_real_t t734 = t728 + t719 * t646 + t730 * t652 + t733 * t661;
+    ddq_by_q[41] = t734;
+    const wam7_real_t t735 = wam7_held(WAM7_C(19.194) * t668);
+    const wam7_real_t t736 = wam7_held(WAM7_C(-12.910250000000001) * t682);
+    const wam7_real_t t737 = wam7_held(WAM7_C(12.910250000000001) * t694);
+    const wam7_real_t t738 = wam7_held(WAM7_C(-8.226) * t707);
+    const wam7_real_t t739 = t735 * t632 - t736 * t635 + t737 * t638 - t738 * t641;
+    const wam7_real_t t740 = wam7_held(WAM7_C(2.23728) * t721);
+    const wam7_real_t t741 = wam7_held(WAM7_C(2.23728) * t732);
+    const wam7_real_t t742 = t5 + t211 * t668 + t146 * t682 - t105 * t694;
+    const wam7_real_t t743 = t742 - t66 * t707 - t27 * t721 - t6 * t732;
+    const wam7_real_t t744 = wam7_held(WAM7_C(1.00031) * t743);
+    const wam7_real_t t745 = t739 + t740 * t646 + t741 * t652 + t744 * t661;
+    ddq_by_q[48] = t745;
+    const wam7_real_t t746 = t578 - parameters[ZZ7];
+    const wam7_real_t t747 = t275 * t746 - t276 * parameters[YZ7];
+    const wam7_real_t t748 = WAM7_C(2.0) * t747 - (parameters[XX7] * t577 - parameters[XY7] * t581);
+    const wam7_real_t t749 = t276 * parameters[XZ7] + t281 * t746;
+    const wam7_real_t t750 = WAM7_C(2.0) * t749 + (parameters[YY7] * t581 - parameters[XY7] * t577);
+    const wam7_real_t t751 = WAM7_C(2.0) * t615 + parameters[MZ7] * t581;
+    const wam7_real_t t752 = WAM7_C(2.0) * t616 - parameters[MZ7] * t577;
+    const wam7_real_t t753 = t1 * t751 - t2 * t752;
+    const wam7_real_t t754 = t1 * t750 - t2 * t748 + WAM7_C(0.06) * t753;
+    const wam7_real_t t755 = t574 + t592;
+    const wam7_real_t t756 = WAM7_C(2.0) * t755;
+    const wam7_real_t t757 = t756 - (parameters[XZ7] * t577 - parameters[YZ7] * t581);
+    const wam7_real_t t758 = t17 * t754 - t21 * t757;
+    const wam7_real_t t759 = t2 * t751 + t1 * t752;
+    const wam7_real_t t760 = t1 * t748 + t2 * t750 + WAM7_C(0.06) * t759;
+    const wam7_real_t t761 = parameters[MY7] * t577 + parameters[MX7] * t581;
+    const wam7_real_t t762 = t17 * t759 - t21 * t761;
+    const wam7_real_t t763 = t40 * t762 + t37 * t753;
+    const wam7_real_t t764 = t37 * t758 + t40 * t760 + WAM7_C(0.3) * t763;
+    const wam7_real_t t765 = t21 * t754 + t17 * t757;
+    const wam7_real_t t766 = WAM7_C(0.045) * t763;
+    const wam7_real_t t767 = t766 - t765;
+    const wam7_real_t t768 = t84 * t764 + t81 * t767;
+    const wam7_real_t t769 = t40 * t753 - t37 * t762;
+    const wam7_real_t t770 = t21 * t759 + t17 * t761;
+    const wam7_real_t t771 = t40 * t758 - t37 * t760 + (WAM7_C(0.045) * t770 + WAM7_C(0.3) * t769);
+    const wam7_real_t t772 = WAM7_C(0.045) * (t84 * t770 - t81 * t769) - t771;
+    const wam7_real_t t773 = t84 * t769 + t81 * t770;
+    const wam7_real_t t774 = t130 * t768 - t126 * t772 + WAM7_C(0.55) * (t126 * t773 + t130 * t763);
+    const wam7_real_t t775 = WAM7_C(0.07745783389167521) * t774;
+    const wam7_real_t t776 = t126 * t768 + t130 * t772 + WAM7_C(0.55) * (t126 * t763 - t130 * t773);
+    const wam7_real_t t777 = t766 + (t81 * t764 - t84 * t767);
+    const wam7_real_t t778 = WAM7_C(0.05209961446285298) * (t182 * t776 + t184 * t777);
+    const wam7_real_t t779 = WAM7_C(0.07745783389167521) * t777;
+    const wam7_real_t t780 = WAM7_C(0.12156576707999026) * t771;
+    const wam7_real_t t781 = t778 * t633 - t775 * t637 + t779 * t640 - t780 * t644;
+    const wam7_real_t t782 = WAM7_C(0.4469713223199599) * t765;
+    const wam7_real_t t783 = WAM7_C(0.4469713223199599) * t760;
+    const wam7_real_t t784 = WAM7_C(-222.83582089552237) * parameters[FV7];
+    const wam7_real_t t785 = t781 + t782 * t651 + t783 * t658 + t784 * t669;
+    ddq_by_dq[6] = t785;
+    const wam7_real_t t786 = t778 * t671 - t775 * t672 + t779 * t674 - t780 * t676;
+    const wam7_real_t t787 = t786 + t782 * t679 + t783 * t681 + t784 * t683;
+    ddq_by_dq[13] = t787;
+    const wam7_real_t t788 = t778 * t685 - t775 * t674 + t779 * t686 - t780 * t688;
+    const wam7_real_t t789 = t788 + t782 * t691 + t783 * t693 + t784 * t695;
+    ddq_by_dq[20] = t789;
+    const wam7_real_t t790 = t778 * t697 - t775 * t698 + t779 * t699 - t780 * t701;
+    const wam7_real_t t791 = t790 + t782 * t704 + t783 * t706 + t784 * t708;
+    ddq_by_dq[27] = t791;
+    const wam7_real_t t792 = t778 * t710 - t775 * t711 + t779 * t712 - t780 * t713;
+    const wam7_real_t t793 = t792 + t782 * t716 + t783 * t719 + t784 * t722;
+    ddq_by_dq[34] = t793;
+    const wam7_real_t t794 = t778 * t724 - t775 * t725 + t779 * t726 - t780 * t727;
+    const wam7_real_t t795 = t794 + t782 * t719 + t783 * t730 + t784 * t733;
+    ddq_by_dq[41] = t795;
+    const wam7_real_t t796 = t778 * t735 - t775 * t736 + t779 * t737 - t780 * t738;
+    const wam7_real_t t797 = t796 + t782 * t740 + t783 * t741 + t784 * t744;
+    ddq_by_dq[48] = t797;
+    ddq_by_input[6] = t669;
+    ddq_by_input[13] = t683;
+    ddq_by_input[20] = t695;
+    ddq_by_input[27] = t708;
+    ddq_by_input[34] = t722;
+    ddq_by_input[41] = t733;
+    ddq_by_input[48] = t744;
+    const wam7_real_t t798 = t2 * t598 - t1 * t603;
+    const wam7_real_t t799 = t544 - t286;
+    const wam7_real_t t800 = t272 + t526;
+    const wam7_real_t t801 = t352 + parameters[XX6] * t536 + parameters[XY6] * t799 + parameters[XZ6] * t800;
+    const wam7_real_t t802 = t801 - t357 + (parameters[MZ6] * t571 - parameters[MY6] * t567) + (t2 * t589
+        - t1 * t573 + WAM7_C(0.06) * t798);
+    const wam7_real_t t803 = WAM7_C(-0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const wam7_real_t t804 = parameters[XX6] + t803;
     /* link j7: inertia, momentum beyond */
-    const wam7_real_t t551 = t526 + t530 + (t525 + (t518 - t509 + t524));
-    const wam7_real_t t552 = t231 * parameters[YZ5];
-    const wam7_real_t t553 = t549 + t552 - t551; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t554 = t1 * t517; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t555 = parameters[ZZ6] + t539;
-    const wam7_real_t t556 = t264 * t555 - t265 * parameters[YZ6] + (t516 + t554 + t3 * t519);
-    const wam7_real_t t557 = t265 * parameters[XZ6] + t272 * t555 + (t1 * t542 + t2 * t543);
-    const wam7_real_t t558 = WAM7_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const wam7_real_t t559 = parameters[YY5] + t558;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t560 = t232 * parameters[YZ5] - t259 * t559 + (t18 * t556 - t22 * t557);
+    const wam7_real_t t805 = t271 * parameters[XZ6] + t264 * t804 + (t2 * t609 - t1 * t610);
+    const wam7_real_t t806 = WAM7_C(2.0) * t263; /* link j6: derivatives */
+    const wam7_real_t t807 = WAM7_C(0.06) * t599; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t808 = WAM7_C(-0.06) * t264; /* link j7: velocity of its origin */
+    const wam7_real_t t809 = t18 * t808; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t810 = WAM7_C(0.06) * t271; /* link j7: velocity of its origin */
+    const wam7_real_t t811 = t3 * t810; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t812 = t807 - (t809 + t811);
+    const wam7_real_t t813 = t264 * parameters[XY6];
+    const wam7_real_t t814 = t271 * parameters[YZ6];
+    const wam7_real_t t815 = t813 + t814 - (t812 + (t755 - t807));
+    const wam7_real_t t816 = WAM7_C(2.0) * t271; /* link j6: derivatives */
+    const wam7_real_t t817 = t805 * t806 + t815 * t816 - (t20 * t543 - t16 * t535 - t397 * t28);
+    const wam7_real_t t818 = t817 + t43 * t571 - t802;
+    const wam7_real_t t819 = parameters[ZZ7] * t545 - t362 + parameters[YZ7] * t538 + parameters[XZ7] * t540;
+    const wam7_real_t t820 = t359 + parameters[YY6] * t544 + parameters[XY6] * t537 - parameters[YZ6] * t527;
+    const wam7_real_t t821 = t361 + t820 + (parameters[MZ6] * t565 + parameters[MX6] * t567) + (t364 + t819
+        + (parameters[MX7] * t587 + parameters[MY7] * t569));
+    const wam7_real_t t822 = t2 * (t576 + t593) + t1 * (t591 - t580); /* link j7: inertia, momentum beyond */
+    const wam7_real_t t823 = t2 * t822;
+    const wam7_real_t t824 = t263 * parameters[XZ6];
+    const wam7_real_t t825 = t824 - t813 + (t823 - t593 - t809 - t812);
+    const wam7_real_t t826 = t1 * t615 - t2 * t616;
+    const wam7_real_t t827 = t1 * t749 - t2 * t747 + (WAM7_C(0.06) * t826 + t46 * t808);
+    const wam7_real_t t828 = parameters[YY6] + t803;
+    const wam7_real_t t829 = t264 * t828 - t263 * parameters[YZ6] + t827;
+    const wam7_real_t t830 = t825 * t806 - t829 * t816 + (t397 * t29 + (t20 * t535 - t15 * t543));
+    const wam7_real_t t831 = t821 + (t830 - t43 * t565);
+    const wam7_real_t t832 = t17 * t831 - t21 * t818;
+    const wam7_real_t t833 = t397 * t12 + (t28 * t535 - t29 * t543);
+    const wam7_real_t t834 = t1 * t822;
+    const wam7_real_t t835 = t271 * parameters[XY6] + t263 * t804 - (t834 - t591 + t18 * t810);
+    const wam7_real_t t836 = t1 * t616 + t2 * t615;
+    const wam7_real_t t837 = t1 * t747 + t2 * t749 + (WAM7_C(0.06) * t836 + t46 * t810);
+    const wam7_real_t t838 = t837 - (t263 * parameters[XY6] + t271 * t828);
+    const wam7_real_t t839 = t47 * t571 - t45 * t565;
+    const wam7_real_t t840 = t835 * t806 - t838 * t816 + t833 + t839;
+    const wam7_real_t t841 = t2 * t603 + t1 * t598;
+    const wam7_real_t t842 = parameters[M6] * t565 + (t385 + parameters[MY6] * t527 + parameters[MZ6] * t543);
+    const wam7_real_t t843 = t842 + t841;
+    const wam7_real_t t844 = t836 + parameters[M7] * t810 - (t271 * parameters[MY6] + t263 * parameters[MX6]);
+    const wam7_real_t t845 = t844 * t806 - t51 * t565 + (t397 * t45 - t43 * t543);
+    const wam7_real_t t846 = t843 + t845;
+    const wam7_real_t t847 = parameters[M7] * t572 + (t391 + (parameters[MX7] * t584
+        + parameters[MY7] * t542));
+    const wam7_real_t t848 = parameters[M6] * t571 + (parameters[MZ6] * t535 - (t388
+        + parameters[MX6] * t800));
+    const wam7_real_t t849 = t848 + t847;
+    const wam7_real_t t850 = t844 * t816 + t51 * t571 + (t397 * t47 + t43 * t535);
+    const wam7_real_t t851 = t849 - t850;
+    const wam7_real_t t852 = t17 * t851 - t21 * t846;
+    const wam7_real_t t853 = t264 * parameters[MX6] + t271 * parameters[MZ6] + t599;
+    const wam7_real_t t854 = t264 * parameters[MY6] - t263 * parameters[MZ6] + (t826 + parameters[M7] * t808);
+    const wam7_real_t t855 = t47 * t543 + t45 * t535 - (t853 * t806 + t854 * t816);
+    const wam7_real_t t856 = t40 * t852 + t37 * t855;
+    const wam7_real_t t857 = t37 * t832 + t40 * t840 + WAM7_C(0.3) * t856;
+    const wam7_real_t t858 = t21 * t831 + t17 * t818;
+    const wam7_real_t t859 = WAM7_C(0.045) * t856;
+    const wam7_real_t t860 = t858 - t859;
+    const wam7_real_t t861 = t84 * t857 - t81 * t860;
+    const wam7_real_t t862 = t21 * t851 + t17 * t846;
+    const wam7_real_t t863 = t40 * t855 - t37 * t852;
+    const wam7_real_t t864 = t40 * t832 - t37 * t840 + (WAM7_C(0.045) * t862 + WAM7_C(0.3) * t863);
+    const wam7_real_t t865 = t864 - WAM7_C(0.045) * (t84 * t862 - t81 * t863);
+    const wam7_real_t t866 = t84 * t863 + t81 * t862;
+    const wam7_real_t t867 = t126 * t861 - t130 * t865 + WAM7_C(0.55) * (t126 * t856 - t130 * t866);
+    const wam7_real_t t868 = t859 + (t81 * t857 + t84 * t860);
+    const wam7_real_t t869 = WAM7_C(0.05209961446285298) * (t182 * t867 + t184 * t868);
+    const wam7_real_t t870 = t130 * t861 + t126 * t865 + WAM7_C(0.55) * (t126 * t866 + t130 * t856);
+    const wam7_real_t t871 = WAM7_C(0.07745783389167521) * t870;
+    const wam7_real_t t872 = WAM7_C(0.07745783389167521) * t868;
+    const wam7_real_t t873 = WAM7_C(0.12156576707999026) * t864;
+    const wam7_real_t t874 = t633 * t869 - t637 * t871 + t640 * t872 - t644 * t873;
+    const wam7_real_t t875 = WAM7_C(0.4469713223199599) * t858;
+    const wam7_real_t t876 = WAM7_C(2.0) * t835; /* link j6: derivatives */
+    const wam7_real_t t877 = WAM7_C(2.0) * t838;
+    const wam7_real_t t878 = WAM7_C(0.4469713223199599) * (t839 + (t263 * t876 - t271 * t877 + t833));
+    const wam7_real_t t879 = t2 * t659 - t1 * t660; /* link j7: derivatives */
+    const wam7_real_t t880 = t756 + (t3 * (WAM7_C(-0.12) * t271) + t18 * (WAM7_C(0.12) * t264));
+    const wam7_real_t t881 = t263 * t879 - t271 * t880 + (t397 * t4 + (parameters[ZZ7] * t535 - t19 * t543));
+    const wam7_real_t t882 = WAM7_C(0.9996900960702182) * (t881 + t3 * t571);
+    const wam7_real_t t883 = t874 + t651 * t875 + t658 * t878 + t669 * t882;
+    ddq_by_q[5] = t883;
+    const wam7_real_t t884 = t671 * t869 - t672 * t871 + t674 * t872 - t676 * t873;
+    const wam7_real_t t885 = t884 + t679 * t875 + t681 * t878 + t683 * t882;
+    ddq_by_q[12] = t885;
+    const wam7_real_t t886 = t685 * t869 - t674 * t871 + t686 * t872 - t688 * t873;
+    const wam7_real_t t887 = t886 + t691 * t875 + t693 * t878 + t695 * t882;
+    ddq_by_q[19] = t887;
+    const wam7_real_t t888 = t697 * t869 - t698 * t871 + t699 * t872 - t701 * t873;
+    const wam7_real_t t889 = t888 + t704 * t875 + t706 * t878 + t708 * t882;
+    ddq_by_q[26] = t889;
+    const wam7_real_t t890 = t710 * t869 - t711 * t871 + t712 * t872 - t713 * t873;
+    const wam7_real_t t891 = t890 + t716 * t875 + t719 * t878 + t722 * t882;
+    ddq_by_q[33] = t891;
+    const wam7_real_t t892 = t724 * t869 - t725 * t871 + t726 * t872 - t727 * t873;
+    const wam7_real_t t893 = t892 + t719 * t875 + t730 * t878 + t733 * t882;
+    ddq_by_q[40] = t893;
+    const wam7_real_t t894 = t735 * t869 - t736 * t871 + t737 * t872 - t738 * t873;
+    const wam7_real_t t895 = t894 + t740 * t875 + t741 * t878 + t744 * t882;
+    ddq_by_q[47] = t895;
+    const wam7_real_t t896 = parameters[ZZ6] + t803;
     /* link j7: inertia, momentum beyond */
-    const wam7_real_t t561 = t272 * parameters[XY6] + t264 * t544 - (t554 - t514 + t19 * t523);
-    const wam7_real_t t562 = t1 * t535 + t2 * t536;
-    const wam7_real_t t563 = t1 * t533 + t2 * t534 + (WAM7_C(0.06) * t562 + t48 * t523);
-    const wam7_real_t t564 = t563 - (t264 * parameters[XY6] + t272 * t540);
-    const wam7_real_t t565 = parameters[XX5] + t558;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t566 = t231 * parameters[XZ5] + t259 * t565 - (t18 * t561 + t22 * t564);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t567 = t39 * (t550 - t553) - t42 * (t560 + t566);
-    const wam7_real_t t568 = t39 * t567;
+    const wam7_real_t t897 = t263 * t896 - t264 * parameters[YZ6] + (t580 + t834 + t3 * t808);
+    const wam7_real_t t898 = WAM7_C(2.0) * t897 + (t15 * t806 + t20 * t816); /* link j6: derivatives */
     /* link j7: inertia, momentum beyond */
-    const wam7_real_t t569 = t265 * parameters[MY6] - t264 * parameters[MZ6] + (t537 + parameters[M7] * t519);
-    const wam7_real_t t570 = t265 * parameters[MX6] + t272 * parameters[MZ6] + t521;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t571 = t259 * parameters[MY5] - t232 * parameters[MZ5] + (t18 * t569 + t22 * t570);
+    const wam7_real_t t899 = t264 * parameters[XZ6] + t271 * t896 + (t1 * t609 + t2 * t610);
+    const wam7_real_t t900 = WAM7_C(2.0) * t899 + (t20 * t806 + t16 * t816); /* link j6: derivatives */
+    const wam7_real_t t901 = t17 * t898 - t21 * t900;
     /* link j7: inertia, momentum beyond */
-    const wam7_real_t t572 = t562 + parameters[M7] * t523 - (t272 * parameters[MY6] + t264 * parameters[MX6]);
+    const wam7_real_t t902 = t824 + t814 + (t812 + (t823 - t576 + t811));
+    const wam7_real_t t903 = WAM7_C(2.0) * t902; /* link j6: derivatives */
+    const wam7_real_t t904 = t903 + (t29 * t806 + t28 * t816);
+    const wam7_real_t t905 = WAM7_C(2.0) * t853 - t43 * t816;
+    const wam7_real_t t906 = WAM7_C(2.0) * t854 + t43 * t806;
+    const wam7_real_t t907 = t17 * t905 - t21 * t906;
+    const wam7_real_t t908 = t45 * t816 - t47 * t806;
+    const wam7_real_t t909 = t40 * t907 + t37 * t908;
+    const wam7_real_t t910 = t37 * t901 + t40 * t904 + WAM7_C(0.3) * t909;
+    const wam7_real_t t911 = t21 * t898 + t17 * t900;
+    const wam7_real_t t912 = WAM7_C(0.045) * t909;
+    const wam7_real_t t913 = t912 - t911;
+    const wam7_real_t t914 = t84 * t910 + t81 * t913;
+    const wam7_real_t t915 = t21 * t905 + t17 * t906;
+    const wam7_real_t t916 = t40 * t908 - t37 * t907;
+    const wam7_real_t t917 = t40 * t901 - t37 * t904 + (WAM7_C(0.045) * t915 + WAM7_C(0.3) * t916);
+    const wam7_real_t t918 = WAM7_C(0.045) * (t84 * t915 - t81 * t916) - t917;
+    const wam7_real_t t919 = t84 * t916 + t81 * t915;
+    const wam7_real_t t920 = t130 * t914 - t126 * t918 + WAM7_C(0.55) * (t126 * t919 + t130 * t909);
+    const wam7_real_t t921 = WAM7_C(0.07745783389167521) * t920;
+    const wam7_real_t t922 = t126 * t914 + t130 * t918 + WAM7_C(0.55) * (t126 * t909 - t130 * t919);
+    const wam7_real_t t923 = t912 + (t81 * t910 - t84 * t913);
+    const wam7_real_t t924 = WAM7_C(0.05209961446285298) * (t182 * t922 + t184 * t923);
+    const wam7_real_t t925 = WAM7_C(0.07745783389167521) * t923;
+    const wam7_real_t t926 = WAM7_C(0.12156576707999026) * t917;
+    const wam7_real_t t927 = t924 * t633 - t921 * t637 + t925 * t640 - t926 * t644;
+    const wam7_real_t t928 = WAM7_C(0.4469713223199599) * t911;
+    const wam7_real_t t929 = WAM7_C(0.4469713223199599) * (t903 + WAM7_C(2.0) * (t263 * t29 + t271 * t28));
+    const wam7_real_t t930 = WAM7_C(-40.16949152542373) * parameters[FV6] + t929;
+    const wam7_real_t t931 = t1 * t659 + t2 * t660; /* link j7: derivatives */
+    const wam7_real_t t932 = WAM7_C(0.9996900960702182) * (t931 + WAM7_C(2.0) * (t263 * t19
+        + t271 * parameters[ZZ7]));
+    const wam7_real_t t933 = t927 + t928 * t651 + t930 * t658 + t932 * t669;
+    ddq_by_dq[5] = t933;
+    const wam7_real_t t934 = t924 * t671 - t921 * t672 + t925 * t674 - t926 * t676;
+    const wam7_real_t t935 = t934 + t928 * t679 + t930 * t681 + t932 * t683;
+    ddq_by_dq[12] = t935;
+    const wam7_real_t t936 = t924 * t685 - t921 * t674 + t925 * t686 - t926 * t688;
+    const wam7_real_t t937 = t936 + t928 * t691 + t930 * t693 + t932 * t695;
+    ddq_by_dq[19] = t937;
+    const wam7_real_t t938 = t924 * t697 - t921 * t698 + t925 * t699 - t926 * t701;
+    const wam7_real_t t939 = t938 + t928 * t704 + t930 * t706 + t932 * t708;
+    ddq_by_dq[26] = t939;
+    const wam7_real_t t940 = t924 * t710 - t921 * t711 + t925 * t712 - t926 * t713;
+    const wam7_real_t t941 = t940 + t928 * t716 + t930 * t719 + t932 * t722;
+    ddq_by_dq[33] = t941;
+    const wam7_real_t t942 = t924 * t724 - t921 * t725 + t925 * t726 - t926 * t727;
+    const wam7_real_t t943 = t942 + t928 * t719 + t930 * t730 + t932 * t733;
+    ddq_by_dq[40] = t943;
+    const wam7_real_t t944 = t924 * t735 - t921 * t736 + t925 * t737 - t926 * t738;
+    const wam7_real_t t945 = t944 + t928 * t740 + t930 * t741 + t932 * t744;
+    ddq_by_dq[47] = t945;
+    ddq_by_input[5] = t658;
+    ddq_by_input[12] = t681;
+    ddq_by_input[19] = t693;
+    ddq_by_input[26] = t706;
+    ddq_by_input[33] = t719;
+    ddq_by_input[40] = t730;
+    ddq_by_input[47] = t741;
+    const wam7_real_t t946 = t376 + parameters[ZZ6] * t526 + parameters[YZ6] * t543 + parameters[XZ6] * t535;
+    const wam7_real_t t947 = t378 + t946 - (parameters[MX6] * t571 + parameters[MY6] * t565) + (t1 * t589
+        + t2 * t573 + WAM7_C(0.06) * t841);
+    const wam7_real_t t948 = t380 + parameters[YY5] * t525 + parameters[XY5] * t534 - parameters[YZ5] * t531;
+    const wam7_real_t t949 = t383 + t948 + (parameters[MZ5] * t561 - parameters[MX5] * t564) + t947;
     /* link j6: inertia, momentum beyond */
-    const wam7_real_t t573 = t259 * parameters[MX5] + t231 * parameters[MZ5] + t572;
-    const wam7_real_t t574 = t39 * t571 + t42 * t573; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t575 = WAM7_C(-0.045) * t574;
-    const wam7_real_t t576 = WAM7_C(-0.3) * t230; /* link j5: velocity of its origin */
-    const wam7_real_t t577 = t111 * t576; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t950 = t17 * (t825 - t815) + t21 * (t829 - t805);
+    const wam7_real_t t951 = t17 * t950;
+    const wam7_real_t t952 = t231 * parameters[XZ5];
+    const wam7_real_t t953 = t258 * parameters[XY5];
+    const wam7_real_t t954 = t952 - t953 + (t815 + t951);
+    const wam7_real_t t955 = WAM7_C(2.0) * t231; /* link j5: derivatives */
+    const wam7_real_t t956 = WAM7_C(-0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const wam7_real_t t957 = parameters[YY5] + t956;
     /* link j6: inertia, momentum beyond */
-    const wam7_real_t t578 = t22 * t569 - t18 * t570 - (t231 * parameters[MY5] + t232 * parameters[MX5]);
-    const wam7_real_t t579 = WAM7_C(0.3) * t578; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t580 = WAM7_C(0.045) * t230; /* link j5: velocity of its origin */
-    const wam7_real_t t581 = t116 * t580; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t582 = WAM7_C(0.3) * t228 + WAM7_C(-0.045) * t248; /* link j5: velocity of its origin */
-    const wam7_real_t t583 = t75 * t582; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t584 = t579 - t575 + (t577 + t581 - t583);
-    const wam7_real_t t585 = t248 * parameters[XZ4];
-    const wam7_real_t t586 = t230 * parameters[XY4];
-    const wam7_real_t t587 = t584 + (t553 + t568 + (t575 - t577)) - (t585 + t586);
-    const wam7_real_t t588 = t548 + t552 + (t547 - t528); /* link j6: inertia, momentum beyond */
-    const wam7_real_t t589 = t228 * parameters[YZ4];
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t590 = t586 + t589 - (t588 + (t579 + t581) - t584);
-    const wam7_real_t t591 = t22 * t546; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t592 = parameters[ZZ5] + t558;
-    const wam7_real_t t593 = t232 * t592 - t259 * parameters[YZ5] + (t541 - t591);
-    const wam7_real_t t594 = t18 * t564 - t22 * t561 - (t259 * parameters[XZ5] + t231 * t592);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t595 = t39 * t593 + t42 * t594 + (WAM7_C(0.3) * t574 + t116 * t576);
-    const wam7_real_t t596 = WAM7_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const wam7_real_t t597 = parameters[YY4] + t596;
-    const wam7_real_t t598 = t248 * parameters[YZ4] + t230 * t597 + t595;
+    const wam7_real_t t958 = t231 * parameters[YZ5] - t258 * t957 + (t17 * t897 - t21 * t899);
+    const wam7_real_t t959 = WAM7_C(2.0) * t230; /* link j5: derivatives */
+    const wam7_real_t t960 = t954 * t955 + t958 * t959 + (t422 * t71 + (t39 * t532 - t35 * t524));
+    const wam7_real_t t961 = t949 + (t960 - t56 * t561);
+    const wam7_real_t t962 = t269 - t525;
+    const wam7_real_t t963 = t232 - t530;
+    const wam7_real_t t964 = t367 + parameters[XX5] * t533 - parameters[XY5] * t962 + parameters[XZ5] * t963;
+    const wam7_real_t t965 = t373 + t964 + (parameters[MY5] * t564 + parameters[MZ5] * t567) + (t17 * t802
+        - t21 * t821);
+    const wam7_real_t t966 = parameters[XX5] + t956;
     /* link j6: inertia, momentum beyond */
-    const wam7_real_t t599 = t231 * parameters[XY5] + t232 * t565 + (t545 + t591);
-    const wam7_real_t t600 = t232 * parameters[XY5] + t231 * t559 + (t22 * t556 + t18 * t557);
+    const wam7_real_t t967 = t230 * parameters[XZ5] + t258 * t966 - (t17 * t835 + t21 * t838);
+    const wam7_real_t t968 = t230 * parameters[YZ5];
+    const wam7_real_t t969 = t953 + t968 - t902;
+    const wam7_real_t t970 = t967 * t955 + t969 * t959 - (t422 * t72 - (t36 * t532 - t39 * t524));
+    const wam7_real_t t971 = t970 + t56 * t567 - t965;
+    const wam7_real_t t972 = parameters[M6] * t567 - (t398 + (parameters[MY6] * t537
+        - parameters[MX6] * t799));
+    const wam7_real_t t973 = parameters[M5] * t567 - (t400 + parameters[MX5] * t963 - parameters[MZ5] * t532);
+    const wam7_real_t t974 = t973 + (t972 + t798);
+    const wam7_real_t t975 = t21 * t854 - t17 * t853 - (t230 * parameters[MY5] + t231 * parameters[MX5]);
+    const wam7_real_t t976 = t975 * t959 + t52 * t567 + (t422 * t44 + t56 * t532);
+    const wam7_real_t t977 = t974 - t976;
+    const wam7_real_t t978 = parameters[M5] * t561 + (t394 + parameters[MY5] * t531 + parameters[MZ5] * t524);
+    const wam7_real_t t979 = t978 + (t17 * t843 + t21 * t849);
+    const wam7_real_t t980 = t975 * t955 - t52 * t561 - (t422 * t49 + t56 * t524);
+    const wam7_real_t t981 = t979 + t980;
+    const wam7_real_t t982 = t40 * t977 + t37 * t981;
+    const wam7_real_t t983 = t37 * t961 - t40 * t971 + WAM7_C(0.3) * t982;
+    const wam7_real_t t984 = WAM7_C(0.045) * t982;
+    const wam7_real_t t985 = t49 * t561 + t44 * t567;
+    const wam7_real_t t986 = t422 * t24 - (t71 * t524 + t72 * t532);
+    const wam7_real_t t987 = t21 * t950;
+    const wam7_real_t t988 = t230 * parameters[XY5] + t231 * t966 + (t805 + t987);
+    const wam7_real_t t989 = t231 * parameters[XY5] + t230 * t957 + (t21 * t897 + t17 * t899);
+    const wam7_real_t t990 = t988 * t955 + t989 * t959 + t986 + t985 - t984;
+    const wam7_real_t t991 = t84 * t983 - t81 * t990;
+    const wam7_real_t t992 = t40 * t981 - t37 * t977;
+    const wam7_real_t t993 = t258 * parameters[MY5] - t231 * parameters[MZ5] + (t17 * t854 + t21 * t853);
+    const wam7_real_t t994 = t258 * parameters[MX5] + t230 * parameters[MZ5] + t844;
+    const wam7_real_t t995 = t994 * t955 + t993 * t959 + (t49 * t532 - t44 * t524);
+    const wam7_real_t t996 = t40 * t961 + t37 * t971 + (WAM7_C(0.045) * t995 + WAM7_C(0.3) * t992);
+    const wam7_real_t t997 = t996 - WAM7_C(0.045) * (t84 * t995 - t81 * t992);
+    const wam7_real_t t998 = t84 * t992 + t81 * t995;
+    const wam7_real_t t999 = t126 * t991 - t130 * t997 + WAM7_C(0.55) * (t126 * t982 - t130 * t998);
+    const wam7_real_t t1000 = t984 + (t81 * t983 + t84 * t990);
+    const wam7_real_t t1001 = WAM7_C(0.05209961446285298) * (t182 * t999 + t184 * t1000);
+    const wam7_real_t t1002 = t130 * t991 + t126 * t997 + WAM7_C(0.55) * (t126 * t998 + t130 * t982);
+    const wam7_real_t t1003 = WAM7_C(0.07745783389167521) * t1002;
+    const wam7_real_t t1004 = WAM7_C(0.07745783389167521) * t1000;
+    const wam7_real_t t1005 = WAM7_C(0.12156576707999026) * t996;
+    const wam7_real_t t1006 = t633 * t1001 - t637 * t1003 + t640 * t1004 - t644 * t1005;
+    const wam7_real_t t1007 = WAM7_C(2.0) * t988; /* link j5: derivatives */
+    const wam7_real_t t1008 = WAM7_C(2.0) * t989;
+    const wam7_real_t t1009 = WAM7_C(0.4469713223199599) * (t985 + (t231 * t1007 + t230 * t1008 + t986));
+    const wam7_real_t t1010 = t17 * t876 + t21 * t877; /* link j6: derivatives */
+    const wam7_real_t t1011 = t231 * t1010 + t230 * t903 + (t422 * t30 - (t38 * t524 + t12 * t532));
+    const wam7_real_t t1012 = WAM7_C(0.4469713223199599) * (t1011 + t55 * t567);
+    const wam7_real_t t1013 = t17 * t879 + t21 * t880; /* link j7: derivatives */
+    const wam7_real_t t1014 = t231 * t1013 + t230 * t931 + (t422 * t26 - (t61 * t524 + t4 * t532));
+    const wam7_real_t t1015 = WAM7_C(0.9996900960702182) * (t1014 + (t62 * t567 + t18 * t561));
+    const wam7_real_t t1016 = t1006 + t651 * t1009 + t658 * t1012 + t669 * t1015;
+    ddq_by_q[4] = t1016;
+    const wam7_real_t t1017 = t671 * t1001 - t672 * t1003 + t674 * t1004 - t676 * t1005;
+    const wam7_real_t t1018 = t1017 + t679 * t1009 + t681 * t1012 + t683 * t1015;
+    ddq_by_q[11] = t1018;
+    const wam7_real_t t1019 = t685 * t1001 - t674 * t1003 + t686 * t1004 - t688 * t1005;
+    const wam7_real_t t1020 = t1019 + t691 * t1009 + t693 * t1012 + t695 * t1015;
+    ddq_by_q[18] = t1020;
+    const wam7_real_t t1021 = t697 * t1001 - t698 * t1003 + t699 * t1004 - t701 * t1005;
+    const wam7_real_t t1022 = t1021 + t704 * t1009 + t706 * t1012 + t708 * t1015;
+    ddq_by_q[25] = t1022;
+    const wam7_real_t t1023 = t710 * t1001 - t711 * t1003 + t712 * t1004 - t713 * t1005;
+    const wam7_real_t t1024 = t1023 + t716 * t1009 + t719 * t1012 + t722 * t1015;
+    ddq_by_q[32] = t1024;
+    const wam7_real_t t1025 = t724 * t1001 - t725 * t1003 + t726 * t1004 - t727 * t1005;
+    const wam7_real_t t1026 = t1025 + t719 * t1009 + t730 * t1012 + t733 * t1015;
+    ddq_by_q[39] = t1026;
+    const wam7_real_t t1027 = t735 * t1001 - t736 * t1003 + t737 * t1004 - t738 * t1005;
+    const wam7_real_t t1028 = t1027 + t740 * t1009 + t741 * t1012 + t744 * t1015;
+    ddq_by_q[46] = t1028;
+    const wam7_real_t t1029 = parameters[ZZ5] + t956;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t1030 = t231 * t1029 - t258 * parameters[YZ5] + (t829 - t987);
+    const wam7_real_t t1031 = WAM7_C(2.0) * t1030 + (t35 * t955 + t39 * t959); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t1032 = t17 * t838 - t21 * t835 - (t258 * parameters[XZ5] + t230 * t1029);
+    const wam7_real_t t1033 = WAM7_C(-2.0) * t1032 + (t39 * t955 + t36 * t959); /* link j5: derivatives */
+    const wam7_real_t t1034 = WAM7_C(2.0) * t993 + t56 * t955;
+    const wam7_real_t t1035 = WAM7_C(2.0) * t994 - t56 * t959;
+    const wam7_real_t t1036 = t40 * t1035 + t37 * t1034;
+    const wam7_real_t t1037 = t37 * t1031 - t40 * t1033 + WAM7_C(0.3) * t1036;
+    const wam7_real_t t1038 = t952 + t968 + (t951 - t825); /* link j6: inertia, momentum beyond */
+    const wam7_real_t t1039 = WAM7_C(2.0) * t1038; /* link j5: derivatives */
+    const wam7_real_t t1040 = WAM7_C(0.045) * t1036;
+    const wam7_real_t t1041 = t1039 - (t72 * t959 - t71 * t955) - t1040;
+    const wam7_real_t t1042 = t84 * t1037 - t81 * t1041;
+    const wam7_real_t t1043 = t40 * t1034 - t37 * t1035;
+    const wam7_real_t t1044 = t44 * t955 + t49 * t959;
+    const wam7_real_t t1045 = t40 * t1031 + t37 * t1033 + (WAM7_C(0.045) * t1044 + WAM7_C(0.3) * t1043);
+    const wam7_real_t t1046 = WAM7_C(0.045) * (t84 * t1044 - t81 * t1043) - t1045;
+    const wam7_real_t t1047 = t84 * t1043 + t81 * t1044;
+    const wam7_real_t t1048 = t130 * t1042 - t126 * t1046 + WAM7_C(0.55) * (t126 * t1047 + t130 * t1036);
+    const wam7_real_t t1049 = WAM7_C(0.07745783389167521) * t1048;
+    const wam7_real_t t1050 = t126 * t1042 + t130 * t1046 + WAM7_C(0.55) * (t126 * t1036 - t130 * t1047);
+    const wam7_real_t t1051 = t1040 + (t81 * t1037 + t84 * t1041);
+    const wam7_real_t t1052 = WAM7_C(0.05209961446285298) * (t182 * t1050 + t184 * t1051);
+    const wam7_real_t t1053 = WAM7_C(0.07745783389167521) * t1051;
+    const wam7_real_t t1054 = WAM7_C(0.12156576707999026) * t1045;
+    const wam7_real_t t1055 = t1052 * t633 - t1049 * t637 + t1053 * t640 - t1054 * t644;
+    const wam7_real_t t1056 = WAM7_C(0.4469713223199599) * (t1039 + WAM7_C(2.0) * (t231 * t71 - t230 * t72));
+    const wam7_real_t t1057 = WAM7_C(-40.16949152542373) * parameters[FV5] + t1056;
+    const wam7_real_t t1058 = t17 * t877 - t21 * t876; /* link j6: derivatives */
+    const wam7_real_t t1059 = WAM7_C(0.4469713223199599) * (t1058 + WAM7_C(2.0) * (t231 * t38 - t230 * t12));
+    const wam7_real_t t1060 = t17 * t880 - t21 * t879; /* link j7: derivatives */
+    const wam7_real_t t1061 = WAM7_C(0.9996900960702182) * (t1060 + WAM7_C(2.0) * (t231 * t61 - t230 * t4));
+    const wam7_real_t t1062 = t1055 + t1057 * t651 + t1059 * t658 + t1061 * t669;
+    ddq_by_dq[4] = t1062;
+    const wam7_real_t t1063 = t1052 * t671 - t1049 * t672 + t1053 * t674 - t1054 * t676;
+    const wam7_real_t t1064 = t1063 + t1057 * t679 + t1059 * t681 + t1061 * t683;
+    ddq_by_dq[11] = t1064;
+    const wam7_real_t t1065 = t1052 * t685 - t1049 * t674 + t1053 * t686 - t1054 * t688;
+    const wam7_real_t t1066 = t1065 + t1057 * t691 + t1059 * t693 + t1061 * t695;
+    ddq_by_dq[18] = t1066;
+    const wam7_real_t t1067 = t1052 * t697 - t1049 * t698 + t1053 * t699 - t1054 * t701;
+    const wam7_real_t t1068 = t1067 + t1057 * t704 + t1059 * t706 + t1061 * t708;
+    ddq_by_dq[25] = t1068;
+    const wam7_real_t t1069 = t1052 * t710 - t1049 * t711 + t1053 * t712 - t1054 * t713;
+    const wam7_real_t t1070 = t1069 + t1057 * t716 + t1059 * t719 + t1061 * t722;
+    ddq_by_dq[32] = t1070;
+    const wam7_real_t t1071 = t1052 * t724 - t1049 * t725 + t1053 * t726 - t1054 * t727;
+    const wam7_real_t t1072 = t1071 + t1057 * t719 + t1059 * t730 + t1061 * t733;
+    ddq_by_dq[39] = t1072;
+    const wam7_real_t t1073 = t1052 * t735 - t1049 * t736 + t1053 * t737 - t1054 * t738;
+    const wam7_real_t t1074 = t1073 + t1057 * t740 + t1059 * t741 + t1061 * t744;
+    ddq_by_dq[46] = t1074;
+    ddq_by_input[4] = t651;
+    ddq_by_input[11] = t679;
+    ddq_by_input[18] = t691;
+    ddq_by_input[25] = t704;
+    ddq_by_input[32] = t716;
+    ddq_by_input[39] = t719;
+    ddq_by_input[46] = t740;
+    const wam7_real_t t1075 = t408 + parameters[ZZ5] * t530 - parameters[YZ5] * t524 - parameters[XZ5] * t532;
+    const wam7_real_t t1076 = t410 + t1075 + (parameters[MX5] * t567 + parameters[MY5] * t561) + (t21 * t802
+        + t17 * t821);
+    const wam7_real_t t1077 = t40 * t979 - t37 * t974;
+    const wam7_real_t t1078 = t412 + parameters[YY4] * t529 + parameters[XY4] * t523 + parameters[YZ4] * t513;
+    const wam7_real_t t1079 = t414 + t1078 + (parameters[MZ4] * t554 + parameters[MX4] * t559) + (t1076
+        + WAM7_C(0.045) * t1077);
     /* link j5: inertia, momentum beyond */
-    const wam7_real_t t601 = t39 * t599 - t42 * t600 + (WAM7_C(-0.045) * t578 - t111 * t580);
-    const wam7_real_t t602 = parameters[XX4] + t596;
-    const wam7_real_t t603 = t228 * parameters[XZ4] + t230 * t602 + t601;
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t604 = t87 * (t587 - t590) + t84 * (t598 - t603);
-    const wam7_real_t t605 = t87 * t604;
+    const wam7_real_t t1080 = t37 * (t954 - t969) - t40 * (t958 + t967);
+    const wam7_real_t t1081 = t37 * t1080;
+    const wam7_real_t t1082 = t37 * t993 + t40 * t994;
+    const wam7_real_t t1083 = WAM7_C(-0.045) * t1082;
+    const wam7_real_t t1084 = WAM7_C(-0.3) * t229; /* link j5: velocity of its origin */
+    const wam7_real_t t1085 = t108 * t1084; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1086 = WAM7_C(0.3) * t975;
+    const wam7_real_t t1087 = WAM7_C(0.045) * t229; /* link j5: velocity of its origin */
+    const wam7_real_t t1088 = t113 * t1087; /* link j5: inertia, momentum beyond */
+    /* link j5: velocity of its origin */
+    const wam7_real_t t1089 = WAM7_C(0.3) * t227 + WAM7_C(-0.045) * t247;
+    const wam7_real_t t1090 = t73 * t1089; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1091 = t1086 - t1083 + (t1085 + t1088 - t1090);
+    const wam7_real_t t1092 = t247 * parameters[XZ4];
+    const wam7_real_t t1093 = t229 * parameters[XY4];
+    const wam7_real_t t1094 = t1091 + (t969 + t1081 + (t1083 - t1085)) - (t1092 + t1093);
+    const wam7_real_t t1095 = WAM7_C(-2.0) * t247; /* link j4: derivatives */
     /* link j5: inertia, momentum beyond */
-    const wam7_real_t t606 = t248 * parameters[MZ4] + t230 * parameters[MY4] + (t574 + t54 * t576);
-    const wam7_real_t t607 = t578 + t54 * t580 - (t230 * parameters[MX4] + t228 * parameters[MZ4]);
-    const wam7_real_t t608 = t87 * t606 - t84 * t607; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t609 = WAM7_C(0.045) * t608;
-    const wam7_real_t t610 = WAM7_C(0.045) * t227; /* link j4: velocity of its origin */
-    const wam7_real_t t611 = t132 * t610; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t612 = WAM7_C(0.045) * t229; /* link j4: velocity of its origin */
-    const wam7_real_t t613 = t137 * t612; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t614 = t613 - t611 - t609;
-    const wam7_real_t t615 = t229 * parameters[XZ3];
-    const wam7_real_t t616 = t227 * parameters[XY3];
-    const wam7_real_t t617 = t615 - t616 + (t614 + (t590 + t605 + t609));
+    const wam7_real_t t1096 = t37 * t1030 + t40 * t1032 + (WAM7_C(0.3) * t1082 + t113 * t1084);
+    const wam7_real_t t1097 = WAM7_C(-0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const wam7_real_t t1098 = parameters[YY4] + t1097;
+    const wam7_real_t t1099 = t247 * parameters[YZ4] + t229 * t1098 + t1096;
+    const wam7_real_t t1100 = WAM7_C(2.0) * t227; /* link j4: derivatives */
+    const wam7_real_t t1101 = t1094 * t1095 - t1099 * t1100 + (t109 * t521 - t106 * t528 - t446 * t98);
+    const wam7_real_t t1102 = t1079 + (t1101 + t128 * t554);
+    const wam7_real_t t1103 = t404 + parameters[XX4] * t522 - parameters[XY4] * t556 + parameters[XZ4] * t563;
+    const wam7_real_t t1104 = t406 - t1103 + (parameters[MY4] * t559 - parameters[MZ4] * t562) + (t40 * t949
+        - t37 * t965 + WAM7_C(0.3) * t1077);
     /* link j5: inertia, momentum beyond */
-    const wam7_real_t t618 = t585 - t589 + (t584 + (t550 - t568 + t583));
-    const wam7_real_t t619 = t225 * parameters[YZ3];
-    const wam7_real_t t620 = t616 + t619 + (t614 + (t618 + t611)); /* link j4: inertia, momentum beyond */
-    const wam7_real_t t621 = t42 * t567; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t622 = parameters[ZZ4] + t596;
-    const wam7_real_t t623 = t560 + t621 - t75 * t576 - (t230 * parameters[YZ4] + t248 * t622);
-    const wam7_real_t t624 = t230 * parameters[XZ4] + t228 * t622 + (t42 * t599 + t39 * t600 - t75 * t580);
-    const wam7_real_t t625 = WAM7_C(-0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const wam7_real_t t626 = parameters[YY3] + t625;
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t627 = t229 * parameters[YZ3] - t227 * t626 + (t87 * t623 - t84 * t624);
-    const wam7_real_t t628 = t39 * t573 - t42 * t571; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t629 = t248 * t602 - t228 * parameters[XY4] + (t566 + t621 + (WAM7_C(0.045) * t628
-        + t111 * t582));
-    const wam7_real_t t630 = t39 * t594 - t42 * t593 + (WAM7_C(0.3) * t628 + t116 * t582);
-    const wam7_real_t t631 = t228 * t597 - t248 * parameters[XY4] - t630;
-    const wam7_real_t t632 = t248 * parameters[MX4] - t228 * parameters[MY4] + (t628 + t54 * t582);
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t633 = t87 * t629 + t84 * t631 + (WAM7_C(-0.045) * t632 - t176 * t610);
-    const wam7_real_t t634 = parameters[XX3] + t625;
-    const wam7_real_t t635 = t225 * parameters[XZ3] + t227 * t634 + t633;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t636 = t130 * (t620 - t617) + t134 * (t627 + t635);
-    const wam7_real_t t637 = t130 * t636;
-    const wam7_real_t t638 = WAM7_C(-0.55) * dq[1]; /* link j3: velocity of its origin */
-    const wam7_real_t t639 = t204 * t638; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t640 = t84 * t606 + t87 * t607; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t641 = t640 - t119 * t612 - (t225 * parameters[MY3] + t229 * parameters[MX3]);
-    const wam7_real_t t642 = WAM7_C(-0.55) * t641; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t643 = WAM7_C(-0.55) * t224; /* link j3: velocity of its origin */
-    const wam7_real_t t644 = t178 * t643; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t645 = t642 + (t639 - t644);
-    const wam7_real_t t646 = t226 * parameters[XZ2];
-    const wam7_real_t t647 = dq[1] * parameters[XY2];
-    const wam7_real_t t648 = t646 + t647 + (t645 + (t637 - t620 - t639));
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t649 = t615 + t619 + (t605 - t587 + t613 - t614);
-    const wam7_real_t t650 = t224 * parameters[YZ2];
-    const wam7_real_t t651 = t645 + (t649 - t642) - (t647 + t650); /* link j3: inertia, momentum beyond */
-    const wam7_real_t t652 = t84 * t604; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t653 = parameters[ZZ3] + t625;
-    const wam7_real_t t654 = t229 * t653 - t227 * parameters[YZ3] + (t598 - t652);
-    const wam7_real_t t655 = t84 * t629 - t87 * t631 - t137 * t610 - (t227 * parameters[XZ3] + t225 * t653);
-    const wam7_real_t t656 = t227 * parameters[MY3] - t229 * parameters[MZ3] + t608;
-    const wam7_real_t t657 = t227 * parameters[MX3] + t225 * parameters[MZ3] + (t632 + t119 * t610);
-    const wam7_real_t t658 = t138 + t140; /* link j3: inertia of it and all beyond */
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t659 = WAM7_C(0.55) * (t130 * t656 + t134 * t657) - t658 * t638;
-    const wam7_real_t t660 = WAM7_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const wam7_real_t t661 = parameters[YY2] - t660;
-    const wam7_real_t t662 = t226 * parameters[YZ2] + dq[1] * t661 + (t130 * t654 + t134 * t655 + t659);
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t663 = t225 * parameters[XY3] + t229 * t634 + (t603 + t652 + (WAM7_C(0.045) * t640
-        - t176 * t612));
-    const wam7_real_t t664 = t229 * parameters[XY3] + t225 * t626 + (t84 * t623 + t87 * t624 + t132 * t612);
-    const wam7_real_t t665 = t660 - parameters[XX2];
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t666 = dq[1] * t665 - t224 * parameters[XZ2] + (t134 * t664 - t130 * t663);
-    /* link j2: inertia, momentum beyond */
-    const wam7_real_t t667 = t189 * (t189 * (t651 - t648) + t187 * (t662 + t666));
-    const wam7_real_t t668 = WAM7_C(-91.90371991247264) * parameters[FV1]
-        + WAM7_C(0.10419922892570596) * (t648 + t667);
-    const wam7_real_t t669 = wam7_bounded(WAM7_C(19.194) * t496);
-    const wam7_real_t t670 = t210 * t496;
-    const wam7_real_t t671 = wam7_bounded(WAM7_C(-12.910250000000001) * t670);
-    const wam7_real_t t672 = t134 * t636; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t673 = t224 * parameters[XY2] + t226 * t665 + (t672 - t635 - t204 * t643);
-    const wam7_real_t t674 = WAM7_C(2.0) * t673; /* link j2: derivatives */
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t675 = WAM7_C(0.55) * (t130 * t657 - t134 * t656) + t658 * t643;
-    const wam7_real_t t676 = t226 * parameters[XY2] - t224 * t661 + (t130 * t655 - t134 * t654 + t675);
-    const wam7_real_t t677 = WAM7_C(2.0) * t676; /* link j2: derivatives */
-    const wam7_real_t t678 = WAM7_C(0.07745783389167521) * (t187 * t674 - t189 * t677);
-    const wam7_real_t t679 = t496 * (t221 + t183 * t210);
-    const wam7_real_t t680 = wam7_bounded(WAM7_C(12.910250000000001) * t679);
-    const wam7_real_t t681 = WAM7_C(2.0) * t663; /* link j3: derivatives */
-    const wam7_real_t t682 = WAM7_C(2.0) * t664;
-    const wam7_real_t t683 = t134 * t682 - t130 * t681;
-    const wam7_real_t t684 = WAM7_C(2.0) * t649;
-    const wam7_real_t t685 = WAM7_C(1.1) * t224; /* link j7: derivatives */
-    const wam7_real_t t686 = WAM7_C(1.1) * dq[1];
-    const wam7_real_t t687 = t684 - (t204 * t686 - t178 * t685); /* link j3: derivatives */
-    const wam7_real_t t688 = WAM7_C(0.07745783389167521) * (t187 * t683 + t189 * t687);
-    const wam7_real_t t689 = t172 - t106 * t183;
-    const wam7_real_t t690 = t496 * (t220 + t106 * t221 - t210 * t689);
-    const wam7_real_t t691 = wam7_bounded(WAM7_C(8.226) * t690);
-    const wam7_real_t t692 = WAM7_C(2.0) * t629; /* link j4: derivatives */
-    const wam7_real_t t693 = WAM7_C(2.0) * t631;
-    const wam7_real_t t694 = WAM7_C(-0.09) * t227; /* link j7: derivatives */
-    const wam7_real_t t695 = t87 * t692 + t84 * t693 + t118 * t694; /* link j4: derivatives */
-    const wam7_real_t t696 = WAM7_C(2.0) * t618;
-    const wam7_real_t t697 = WAM7_C(0.09) * t229; /* link j7: derivatives */
-    const wam7_real_t t698 = t696 + t137 * t697; /* link j4: derivatives */
-    const wam7_real_t t699 = t134 * t698 - t130 * t695 + t118 * t685;
-    const wam7_real_t t700 = t87 * t693 - t84 * t692 - t137 * t694;
-    const wam7_real_t t701 = t700 + (t169 * t685 - t200 * t686);
-    const wam7_real_t t702 = WAM7_C(0.12156576707999026) * (t187 * t699 + t189 * t701);
-    const wam7_real_t t703 = t668 * t669 - t678 * t671 + t688 * t680 - t702 * t691;
-    const wam7_real_t t704 = t107 + t79 * t106;
-    const wam7_real_t t705 = t166 - t79 * t172 + t183 * t704;
-    const wam7_real_t t706 = t218 + t79 * t220 + t221 * t704 + t210 * t705;
-    const wam7_real_t t707 = t496 * t706;
-    const wam7_real_t t708 = wam7_bounded(WAM7_C(2.23728) * t707);
-    const wam7_real_t t709 = WAM7_C(2.0) * t599; /* link j5: derivatives */
-    const wam7_real_t t710 = WAM7_C(2.0) * t600;
-    const wam7_real_t t711 = WAM7_C(0.09) * t230; /* link j7: derivatives */
-    const wam7_real_t t712 = t39 * t709 - t42 * t710 - t52 * t711; /* link j5: derivatives */
-    const wam7_real_t t713 = WAM7_C(2.0) * t588;
-    const wam7_real_t t714 = WAM7_C(-2.0) * t582; /* link j7: derivatives */
-    const wam7_real_t t715 = WAM7_C(0.6) * t230;
-    const wam7_real_t t716 = t713 + (t52 * t715 - t75 * t714); /* link j5: derivatives */
-    const wam7_real_t t717 = t87 * t712 + t84 * t716 + (t52 * t697 - t160 * t694);
-    const wam7_real_t t718 = t42 * t709 + t39 * t710 - t75 * t711;
-    const wam7_real_t t719 = t718 + t162 * t697;
-    const wam7_real_t t720 = t134 * t719 - t130 * t717 - t160 * t685;
-    const wam7_real_t t721 = t87 * t716 - t84 * t712 - t162 * t694;
-    const wam7_real_t t722 = t721 + (t163 * t685 + t197 * t686);
-    const wam7_real_t t723 = WAM7_C(0.4469713223199599) * (t187 * t720 + t189 * t722);
-    const wam7_real_t t724 = t72 + t34 * t79;
-    const wam7_real_t t725 = t124 + t34 * t107 + t106 * t724;
-    const wam7_real_t t726 = t158 + t34 * t166 - t172 * t724 + t183 * t725;
-    const wam7_real_t t727 = t217 + t34 * t218 + t220 * t724 + t221 * t725;
-    const wam7_real_t t728 = t496 * (t727 + t210 * t726);
-    const wam7_real_t t729 = wam7_bounded(WAM7_C(2.23728) * t728);
-    const wam7_real_t t730 = WAM7_C(2.0) * t561; /* link j6: derivatives */
-    const wam7_real_t t731 = WAM7_C(2.0) * t564;
-    const wam7_real_t t732 = t18 * t730 + t22 * t731;
-    const wam7_real_t t733 = WAM7_C(2.0) * t551;
-    const wam7_real_t t734 = t39 * t732 - t42 * t733 + (t50 * t714 - t94 * t711);
-    const wam7_real_t t735 = t18 * t731 - t22 * t730;
-    const wam7_real_t t736 = t735 + (t69 * t714 + t94 * t715);
-    const wam7_real_t t737 = t87 * t734 + t84 * t736 + (t152 * t694 + t94 * t697);
-    const wam7_real_t t738 = t42 * t732 + t39 * t733 + (t50 * t715 + t69 * t711);
-    const wam7_real_t t739 = t738 + t154 * t697;
-    const wam7_real_t t740 = t134 * t739 - t130 * t737 + t152 * t685;
-    const wam7_real_t t741 = t87 * t736 - t84 * t734 - t154 * t694;
-    const wam7_real_t t742 = t741 + (t155 * t685 + t193 * t686);
-    const wam7_real_t t743 = WAM7_C(0.4469713223199599) * (t187 * t740 + t189 * t742);
-    const wam7_real_t t744 = t28 + t6 * t34;
-    const wam7_real_t t745 = t68 - t6 * t72 - t79 * t744;
-    const wam7_real_t t746 = t106 * t745 - (t108 + t6 * t124 + t107 * t744);
-    const wam7_real_t t747 = t150 - t6 * t158 - t166 * t744 - t172 * t745;
-    const wam7_real_t t748 = t747 + t183 * t746;
-    const wam7_real_t t749 = t216 - t6 * t217 - t218 * t744 + t220 * t745;
-    const wam7_real_t t750 = t496 * (t749 + t221 * t746 + t210 * t748);
-    const wam7_real_t t751 = WAM7_C(1.00031) * t750;
-    const wam7_real_t t752 = WAM7_C(2.0) * t542; /* link j7: derivatives */
-    const wam7_real_t t753 = WAM7_C(2.0) * t543;
-    const wam7_real_t t754 = t2 * t752 - t1 * t753;
-    const wam7_real_t t755 = WAM7_C(2.0) * t529;
-    const wam7_real_t t756 = t755 + (t3 * (WAM7_C(-0.12) * t272) + t19 * (WAM7_C(0.12) * t265));
-    const wam7_real_t t757 = t18 * t754 + t22 * t756;
-    const wam7_real_t t758 = t1 * t752 + t2 * t753;
-    const wam7_real_t t759 = t39 * t757 - t42 * t758 + (t66 * t714 - t89 * t711);
-    const wam7_real_t t760 = t18 * t756 - t22 * t754;
-    const wam7_real_t t761 = t760 + (t65 * t714 + t89 * t715);
-    const wam7_real_t t762 = t87 * t759 + t84 * t761 + (t145 * t694 + t89 * t697);
-    const wam7_real_t t763 = t42 * t757 + t39 * t758 + (t66 * t715 + t65 * t711);
-    const wam7_real_t t764 = t763 + t147 * t697;
-    const wam7_real_t t765 = t134 * t764 - t130 * t762 + t145 * t685;
-    const wam7_real_t t766 = t87 * t761 - t84 * t759 - t147 * t694;
-    const wam7_real_t t767 = t766 + (t148 * t685 + t190 * t686);
-    const wam7_real_t t768 = WAM7_C(0.9996900960702182) * (t187 * t765 + t189 * t767);
-    const wam7_real_t t769 = t703 + t723 * t708 + t743 * t729 + t768 * t751;
-    ddq_by_dq[0] = t769;
-    const wam7_real_t t770 = wam7_bounded(WAM7_C(-19.194) * t670);
-    const wam7_real_t t771 = wam7_bounded(WAM7_C(12.910250000000001) * (t209 + t210 * t670));
-    const wam7_real_t t772 = t183 * t209 + t210 * t679;
-    const wam7_real_t t773 = wam7_bounded(WAM7_C(-12.910250000000001) * t772);
-    const wam7_real_t t774 = t210 * t690 - t209 * t689;
-    const wam7_real_t t775 = wam7_bounded(WAM7_C(-8.226) * t774);
-    const wam7_real_t t776 = t668 * t770 - t678 * t771 + t688 * t773 - t702 * t775;
-    const wam7_real_t t777 = t209 * t705 + t210 * t707;
-    const wam7_real_t t778 = wam7_bounded(WAM7_C(-2.23728) * t777);
-    const wam7_real_t t779 = t209 * t726 + t210 * t728;
-    const wam7_real_t t780 = wam7_bounded(WAM7_C(-2.23728) * t779);
-    const wam7_real_t t781 = t209 * t748 + t210 * t750;
-    const wam7_real_t t782 = WAM7_C(-1.00031) * t781;
-    const wam7_real_t t783 = t776 + t723 * t778 + t743 * t780 + t768 * t782;
-    ddq_by_dq[7] = t783;
-    const wam7_real_t t784 = wam7_bounded(WAM7_C(19.194) * t679);
-    const wam7_real_t t785 = wam7_bounded(WAM7_C(12.910250000000001) * (t182 + t221 * t679 + t183 * t772));
-    const wam7_real_t t786 = t106 * t182 + t221 * t690 + t183 * t774;
-    const wam7_real_t t787 = wam7_bounded(WAM7_C(8.226) * t786);
-    const wam7_real_t t788 = t668 * t784 - t678 * t773 + t688 * t785 - t702 * t787;
-    const wam7_real_t t789 = t182 * t704 + t221 * t707 + t183 * t777;
-    const wam7_real_t t790 = wam7_bounded(WAM7_C(2.23728) * t789);
-    const wam7_real_t t791 = t182 * t725 + t221 * t728 + t183 * t779;
-    const wam7_real_t t792 = wam7_bounded(WAM7_C(2.23728) * t791);
-    const wam7_real_t t793 = t182 * t746 + t221 * t750 + t183 * t781;
-    const wam7_real_t t794 = WAM7_C(1.00031) * t793;
-    const wam7_real_t t795 = t788 + t723 * t790 + t743 * t792 + t768 * t794;
-    ddq_by_dq[14] = t795;
-    const wam7_real_t t796 = wam7_bounded(WAM7_C(19.194) * t690);
-    const wam7_real_t t797 = wam7_bounded(WAM7_C(-12.910250000000001) * t774);
-    const wam7_real_t t798 = wam7_bounded(WAM7_C(12.910250000000001) * t786);
-    const wam7_real_t t799 = t105 + t220 * t690 - t172 * t774 + t106 * t786;
-    const wam7_real_t t800 = wam7_bounded(WAM7_C(8.226) * t799);
-    const wam7_real_t t801 = t668 * t796 - t678 * t797 + t688 * t798 - t702 * t800;
-    const wam7_real_t t802 = t79 * t105 + t220 * t707 - t172 * t777 + t106 * t789;
-    const wam7_real_t t803 = wam7_bounded(WAM7_C(2.23728) * t802);
-    const wam7_real_t t804 = t172 * t779 - (t105 * t724 + t220 * t728) - t106 * t791;
-    const wam7_real_t t805 = wam7_bounded(WAM7_C(-2.23728) * t804);
-    const wam7_real_t t806 = t172 * t781 - (t105 * t745 + t220 * t750) - t106 * t793;
-    const wam7_real_t t807 = WAM7_C(-1.00031) * t806;
-    const wam7_real_t t808 = t801 + t723 * t803 + t743 * t805 + t768 * t807;
-    ddq_by_dq[21] = t808;
-    const wam7_real_t t809 = wam7_bounded(WAM7_C(19.194) * t707);
-    const wam7_real_t t810 = wam7_bounded(WAM7_C(-12.910250000000001) * t777);
-    const wam7_real_t t811 = wam7_bounded(WAM7_C(12.910250000000001) * t789);
-    const wam7_real_t t812 = wam7_bounded(WAM7_C(8.226) * t802);
-    const wam7_real_t t813 = t668 * t809 - t678 * t810 + t688 * t811 - t702 * t812;
-    const wam7_real_t t814 = t78 + t218 * t707 + t166 * t777 + t107 * t789;
-    const wam7_real_t t815 = wam7_bounded(WAM7_C(2.23728) * (t814 + t79 * t802));
-    const wam7_real_t t816 = t34 * t78 + t218 * t728 + t166 * t779 + t107 * t791;
-    const wam7_real_t t817 = t816 - t79 * t804;
-    const wam7_real_t t818 = wam7_bounded(WAM7_C(2.23728) * t817);
-    const wam7_real_t t819 = t218 * t750 - t78 * t744 + t166 * t781 + t107 * t793;
-    const wam7_real_t t820 = t819 - t79 * t806;
-    const wam7_real_t t821 = WAM7_C(1.00031) * t820;
-    const wam7_real_t t822 = t813 + t723 * t815 + t743 * t818 + t768 * t821;
-    ddq_by_dq[28] = t822;
-    const wam7_real_t t823 = wam7_bounded(WAM7_C(19.194) * t728);
-    const wam7_real_t t824 = wam7_bounded(WAM7_C(-12.910250000000001) * t779);
-    const wam7_real_t t825 = wam7_bounded(WAM7_C(12.910250000000001) * t791);
-    const wam7_real_t t826 = wam7_bounded(WAM7_C(-8.226) * t804);
-    const wam7_real_t t827 = t668 * t823 - t678 * t824 + t688 * t825 - t702 * t826;
-    const wam7_real_t t828 = t33 + t217 * t728 + t158 * t779 + t124 * t791;
-    const wam7_real_t t829 = wam7_bounded(WAM7_C(2.23728) * (t828 - t72 * t804 + t34 * t817));
-    const wam7_real_t t830 = t217 * t750 - t6 * t33 + t158 * t781 + t124 * t793;
-    const wam7_real_t t831 = t830 - t72 * t806 + t34 * t820;
-    const wam7_real_t t832 = WAM7_C(1.00031) * t831;
-    const wam7_real_t t833 = t827 + t723 * t818 + t743 * t829 + t768 * t832;
-    ddq_by_dq[35] = t833;
-    const wam7_real_t t834 = wam7_bounded(WAM7_C(19.194) * t750);
-    const wam7_real_t t835 = wam7_bounded(WAM7_C(-12.910250000000001) * t781);
-    const wam7_real_t t836 = wam7_bounded(WAM7_C(12.910250000000001) * t793);
-    const wam7_real_t t837 = wam7_bounded(WAM7_C(-8.226) * t806);
-    const wam7_real_t t838 = t668 * t834 - t678 * t835 + t688 * t836 - t702 * t837;
-    const wam7_real_t t839 = wam7_bounded(WAM7_C(2.23728) * t820);
-    const wam7_real_t t840 = wam7_bounded(WAM7_C(2.23728) * t831);
-    const wam7_real_t t841 = t5 + t216 * t750 + t150 * t781 - t108 * t793;
-    const wam7_real_t t842 = t841 - t68 * t806 - t28 * t820 - t6 * t831;
-    const wam7_real_t t843 = WAM7_C(1.00031) * t842;
-    const wam7_real_t t844 = t838 + t723 * t839 + t743 * t840 + t768 * t843;
-    ddq_by_dq[42] = t844;
-    ddq_by_input[0] = t669;
-    ddq_by_input[7] = t770;
-    ddq_by_input[14] = t784;
-    ddq_by_input[21] = t796;
-    ddq_by_input[28] = t809;
-    ddq_by_input[35] = t823;
-    ddq_by_input[42] = t834;
-    const wam7_real_t t845 = t238 - t498;
-    const wam7_real_t t846 = t187 * t497;
-    const wam7_real_t t847 = t239 + t846;
-    const wam7_real_t t848 = t239 + t847;
-    const wam7_real_t t849 = t130 * t845 - t134 * t848;
-    const wam7_real_t t850 = t849 - t250;
-    const wam7_real_t t851 = t850 - t500;
-    const wam7_real_t t852 = t249 + t851;
-    const wam7_real_t t853 = t189 * t497;
-    const wam7_real_t t854 = t853 - t235;
-    const wam7_real_t t855 = t499 + t854;
-    const wam7_real_t t856 = t234 + t855;
-    const wam7_real_t t857 = t134 * t845 + t130 * t848;
-    const wam7_real_t t858 = t857 - t237;
-    const wam7_real_t t859 = t858 - t237;
-    const wam7_real_t t860 = t84 * t856 + t87 * t859;
-    const wam7_real_t t861 = t255 + t860;
-    const wam7_real_t t862 = t255 + t861;
-    const wam7_real_t t863 = t39 * t852 - t42 * t862;
-    const wam7_real_t t864 = t863 - t270;
-    const wam7_real_t t865 = t864 - t504;
-    const wam7_real_t t866 = t273 - t865;
-    const wam7_real_t t867 = t87 * t856 - t84 * t859;
-    const wam7_real_t t868 = t867 - t245;
-    const wam7_real_t t869 = t502 + t868;
-    const wam7_real_t t870 = t233 + t869;
-    const wam7_real_t t871 = t42 * t852 + t39 * t862;
-    const wam7_real_t t872 = t871 - t260;
-    const wam7_real_t t873 = t872 - t260;
-    const wam7_real_t t874 = t22 * t870 + t18 * t873;
-    const wam7_real_t t875 = t874 - t266;
-    const wam7_real_t t876 = t875 - t266;
-    const wam7_real_t t877 = t1 * t866 - t2 * t876;
-    const wam7_real_t t878 = t278 - t877;
-    const wam7_real_t t879 = t2 * t866 + t1 * t876;
-    const wam7_real_t t880 = t879 - t283;
-    const wam7_real_t t881 = t880 - t283;
-    const wam7_real_t t882 = t18 * t870 - t22 * t873;
-    const wam7_real_t t883 = t882 - t287;
-    const wam7_real_t t884 = t506 + t883;
-    const wam7_real_t t885 = t289 - t884;
-    const wam7_real_t t886 = parameters[XX7] * t878 - t280 - parameters[XY7] * t881 + parameters[XZ7] * t885;
-    const wam7_real_t t887 = t303 + WAM7_C(0.55) * t845;
-    const wam7_real_t t888 = WAM7_C(0.55) * t848;
-    const wam7_real_t t889 = t130 * t887 - t134 * t888;
-    const wam7_real_t t890 = t302 + t889;
-    const wam7_real_t t891 = t250 - t850;
-    const wam7_real_t t892 = t312 - WAM7_C(0.045) * t891;
-    const wam7_real_t t893 = t87 * t890 + t84 * t892;
-    const wam7_real_t t894 = t893 + (WAM7_C(0.3) * t852 - t298);
-    const wam7_real_t t895 = t245 - t868;
-    const wam7_real_t t896 = t134 * t887 + t130 * t888;
-    const wam7_real_t t897 = t234 - t855;
-    const wam7_real_t t898 = t896 - WAM7_C(0.045) * t897;
-    const wam7_real_t t899 = t898 + (WAM7_C(0.045) * t895 - WAM7_C(-0.3) * t862);
-    const wam7_real_t t900 = t39 * t894 - t42 * t899;
-    const wam7_real_t t901 = t84 * t890 - t87 * t892;
-    const wam7_real_t t902 = t851 - t249;
-    const wam7_real_t t903 = t901 + (t326 + WAM7_C(0.045) * t902);
-    const wam7_real_t t904 = t18 * t900 - t22 * t903;
-    const wam7_real_t t905 = t904 + WAM7_C(-0.06) * t866;
-    const wam7_real_t t906 = t42 * t894 + t39 * t899;
-    const wam7_real_t t907 = t906 + WAM7_C(0.06) * t876;
-    const wam7_real_t t908 = t1 * t905 + t2 * t907;
-    const wam7_real_t t909 = parameters[MZ7] * t908;
-    const wam7_real_t t910 = t22 * t900 + t18 * t903;
-    const wam7_real_t t911 = t337 + t910;
-    const wam7_real_t t912 = t294 + t886 + (parameters[MY7] * t911 + t909);
-    const wam7_real_t t913 = t278 + t878;
-    const wam7_real_t t914 = t289 + t884;
-    const wam7_real_t t915 = parameters[XY7] * t913 - (t340 + parameters[YY7] * t880)
-        - parameters[YZ7] * t914;
-    const wam7_real_t t916 = t2 * t905 - t1 * t907;
-    const wam7_real_t t917 = parameters[MZ7] * t916;
-    const wam7_real_t t918 = t345 + t915 + (t917 - parameters[MX7] * t911);
-    const wam7_real_t t919 = parameters[M7] * t916;
-    const wam7_real_t t920 = parameters[MZ7] * t879;
-    const wam7_real_t t921 = t919 + (t348 + parameters[MY7] * t914 - t920);
-    const wam7_real_t t922 = parameters[M7] * t908;
-    const wam7_real_t t923 = parameters[MZ7] * t877;
-    const wam7_real_t t924 = t922 - (t350 + parameters[MX7] * t885 + t923);
-    const wam7_real_t t925 = t2 * t924 - t1 * t921;
-    const wam7_real_t t926 = t883 - t287;
-    const wam7_real_t t927 = t273 + t865;
-    const wam7_real_t t928 = t353 + parameters[XX6] * t875 + parameters[XY6] * t926 + parameters[XZ6] * t927;
-    const wam7_real_t t929 = t928 - t358 + (parameters[MZ6] * t910 - parameters[MY6] * t906) + (t2 * t912
-        - t1 * t918 + WAM7_C(0.06) * t925);
-    const wam7_real_t t930 = parameters[ZZ7] * t884 - t363 + parameters[YZ7] * t879 + parameters[XZ7] * t877;
-    const wam7_real_t t931 = t360 + parameters[YY6] * t883 + parameters[XY6] * t876 - parameters[YZ6] * t866;
-    const wam7_real_t t932 = t362 + t931 + (parameters[MZ6] * t904 + parameters[MX6] * t906) + (t365 + t930
-        + (parameters[MX7] * t908 + parameters[MY7] * t916));
-    const wam7_real_t t933 = t270 - t864;
-    const wam7_real_t t934 = t233 - t869;
-    const wam7_real_t t935 = t368 + parameters[XX5] * t872 - parameters[XY5] * t933 + parameters[XZ5] * t934;
-    const wam7_real_t t936 = t374 + t935 + (parameters[MY5] * t903 + parameters[MZ5] * t906) + (t18 * t929
-        - t22 * t932);
-    const wam7_real_t t937 = t2 * t921 + t1 * t924;
-    const wam7_real_t t938 = t377 + parameters[ZZ6] * t865 + parameters[YZ6] * t882 + parameters[XZ6] * t874;
-    const wam7_real_t t939 = t379 + t938 - (parameters[MX6] * t910 + parameters[MY6] * t904) + (t1 * t912
-        + t2 * t918 + WAM7_C(0.06) * t937);
-    const wam7_real_t t940 = t381 + parameters[YY5] * t864 + parameters[XY5] * t873 - parameters[YZ5] * t870;
-    const wam7_real_t t941 = t384 + t940 + (parameters[MZ5] * t900 - parameters[MX5] * t903) + t939;
-    const wam7_real_t t942 = parameters[M6] * t904 + (t386 + parameters[MY6] * t866 + parameters[MZ6] * t882);
-    const wam7_real_t t943 = t942 + t937;
-    const wam7_real_t t944 = parameters[M7] * t911 + (t392 + (parameters[MX7] * t881
-        + parameters[MY7] * t913));
-    const wam7_real_t t945 = parameters[M6] * t910 + (parameters[MZ6] * t874 - (t389
-        + parameters[MX6] * t927));
-    const wam7_real_t t946 = t945 + t944;
-    const wam7_real_t t947 = parameters[M5] * t900 + (t395 + parameters[MY5] * t870 + parameters[MZ5] * t863);
-    const wam7_real_t t948 = t947 + (t18 * t943 + t22 * t946);
-    const wam7_real_t t949 = parameters[M6] * t906 - (t399 + (parameters[MY6] * t876
-        - parameters[MX6] * t926));
-    const wam7_real_t t950 = parameters[M5] * t906 - (t401 + parameters[MX5] * t934 - parameters[MZ5] * t871);
-    const wam7_real_t t951 = t950 + (t949 + t925);
-    const wam7_real_t t952 = t42 * t948 - t39 * t951;
-    const wam7_real_t t953 = t405 + parameters[XX4] * t861 - parameters[XY4] * t895 + parameters[XZ4] * t902;
-    const wam7_real_t t954 = t407 - t953 + (parameters[MY4] * t898 - parameters[MZ4] * t901) + (t42 * t941
-        - t39 * t936 + WAM7_C(0.3) * t952);
-    const wam7_real_t t955 = t409 + parameters[ZZ5] * t869 - parameters[YZ5] * t863 - parameters[XZ5] * t871;
-    const wam7_real_t t956 = t411 + t955 + (parameters[MX5] * t906 + parameters[MY5] * t900) + (t22 * t929
-        + t18 * t932);
-    const wam7_real_t t957 = t413 + parameters[YY4] * t868 + parameters[XY4] * t862 + parameters[YZ4] * t852;
-    const wam7_real_t t958 = t415 + t957 + (parameters[MZ4] * t893 + parameters[MX4] * t898) + (t956
-        + WAM7_C(0.045) * t952);
-    const wam7_real_t t959 = t448 + (parameters[MX4] * t895 + parameters[MY4] * t862) - parameters[M4] * t898;
-    const wam7_real_t t960 = t959 + t952;
-    const wam7_real_t t961 = t461 + parameters[ZZ3] * t855 - parameters[YZ3] * t849 - parameters[XZ3] * t857;
-    const wam7_real_t t962 = t460 + t961 + (parameters[MX3] * t896 + parameters[MY3] * t889) + (t87 * t958
-        - t84 * t954 + WAM7_C(-0.045) * t960);
-    const wam7_real_t t963 = t464 + parameters[YY2] * t854 + parameters[XY2] * t848 + parameters[YZ2] * t845;
-    const wam7_real_t t964 = t309 + t457; /* link j3: motion */
-    const wam7_real_t t965 = WAM7_C(-2.0) * t226; /* link j2: derivatives */
-    const wam7_real_t t966 = WAM7_C(2.0) * t224;
-    const wam7_real_t t967 = t964 * t186 + (t211 * t853 + t213 * t846) - (t648 * t965 + t662 * t966);
-    const wam7_real_t t968 = t178 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t969 = t467 + (t466 + t963) + t962 + (t303 * t968 + t967);
-    const wam7_real_t t970 = t417 - parameters[XX3] * t858 + parameters[XY3] * t891 - parameters[XZ3] * t897;
-    const wam7_real_t t971 = t419 + t970 + (t420 - parameters[MZ3] * t896) + (t87 * t954 + t84 * t958);
-    const wam7_real_t t972 = t39 * t948 + t42 * t951;
-    const wam7_real_t t973 = parameters[M5] * t903 + (t424 + (parameters[MX5] * t933
-        + parameters[MY5] * t873));
-    const wam7_real_t t974 = t973 + (t18 * t946 - t22 * t943);
-    const wam7_real_t t975 = t42 * t936 + t39 * t941 + (WAM7_C(0.045) * t974 + WAM7_C(0.3) * t972);
-    const wam7_real_t t976 = parameters[ZZ4] * t851 - t428 + parameters[YZ4] * t867 + parameters[XZ4] * t860;
-    const wam7_real_t t977 = t430 + t976 - (parameters[MX4] * t901 + parameters[MY4] * t893) + t975;
-    const wam7_real_t t978 = parameters[M4] * t893 + (t432 - parameters[MY4] * t852 + parameters[MZ4] * t867);
-    const wam7_real_t t979 = t978 + t972;
-    const wam7_real_t t980 = parameters[M4] * t901 - (t435 + parameters[MX4] * t902 - parameters[MZ4] * t860);
-    const wam7_real_t t981 = t980 + t974;
-    const wam7_real_t t982 = t438 + parameters[YY3] * t850 + parameters[XY3] * t859 - parameters[YZ3] * t856;
-    const wam7_real_t t983 = t441 + t982 + (t442 + parameters[MZ3] * t889) + (t977
-        + WAM7_C(0.045) * (t84 * t979 - t87 * t981));
-    const wam7_real_t t984 = parameters[M3] * t889 + (t444 + parameters[MY3] * t856 + parameters[MZ3] * t849);
-    const wam7_real_t t985 = t984 + (t87 * t979 + t84 * t981);
-    const wam7_real_t t986 = t451 + parameters[MX3] * t897 - parameters[MZ3] * t857 - parameters[M3] * t896;
-    const wam7_real_t t987 = t986 + t960;
-    const wam7_real_t t988 = t130 * t971 + t134 * t983 + WAM7_C(0.55) * (t134 * t985 + t130 * t987);
-    const wam7_real_t t989 = t455 - parameters[XX2] * t847 + parameters[XY2] * (t235 - t854)
-        + parameters[XZ2] * (t238 + t498);
-    const wam7_real_t t990 = t212 * t846 - t213 * t853 - t964 * t188 - (t666 * t965 + t651 * t966);
-    const wam7_real_t t991 = t459 + (t458 + t989) + t988 + (t311 * t968 + t990);
-    const wam7_real_t t992 = WAM7_C(0.05209961446285298) * (t187 * t969 + t189 * t991);
-    const wam7_real_t t993 = t226 * t674 + t224 * t677 + (t186 * t853 + t188 * t846 - t964 * t142);
-    const wam7_real_t t994 = t303 * (parameters[MX2] + t204) + t311 * (parameters[MY2] + t658) + t993;
-    const wam7_real_t t995 = WAM7_C(0.07745783389167521) * t994;
-    const wam7_real_t t996 = t226 * t683 - t224 * t687 + (t964 * t179 + (t205 * t853 + t122 * t846));
-    const wam7_real_t t997 = WAM7_C(0.07745783389167521) * (t311 * t178 + t996);
-    const wam7_real_t t998 = t226 * t699 - t224 * t701 + (t964 * t170 + (t201 * t853 + t103 * t846));
-    const wam7_real_t t999 = WAM7_C(0.12156576707999026) * (t311 * t169 + t303 * t118 + t998);
-    const wam7_real_t t1000 = t669 * t992 - t671 * t995 + t680 * t997 - t691 * t999;
-    const wam7_real_t t1001 = t226 * t720 - t224 * t722 + (t964 * t164 + (t198 * t853 + t88 * t846));
-    const wam7_real_t t1002 = WAM7_C(0.4469713223199599) * (t311 * t163 - t303 * t160 + t1001);
-    const wam7_real_t t1003 = t226 * t740 - t224 * t742 + (t964 * t156 + (t194 * t853 + t98 * t846));
-    const wam7_real_t t1004 = WAM7_C(0.4469713223199599) * (t311 * t155 + t303 * t152 + t1003);
-    const wam7_real_t t1005 = t226 * t765 - t224 * t767 + (t964 * t149 + (t191 * t853 + t93 * t846));
-    const wam7_real_t t1006 = WAM7_C(0.9996900960702182) * (t311 * t148 + t303 * t145 + t1005);
-    const wam7_real_t t1007 = t1000 + t708 * t1002 + t729 * t1004 + t751 * t1006;
-    ddq_by_q[1] = t1007;
-    const wam7_real_t t1008 = t770 * t992 - t771 * t995 + t773 * t997 - t775 * t999;
-    const wam7_real_t t1009 = t1008 + t778 * t1002 + t780 * t1004 + t782 * t1006;
-    ddq_by_q[8] = t1009;
-    const wam7_real_t t1010 = t784 * t992 - t773 * t995 + t785 * t997 - t787 * t999;
-    const wam7_real_t t1011 = t1010 + t790 * t1002 + t792 * t1004 + t794 * t1006;
-    ddq_by_q[15] = t1011;
-    const wam7_real_t t1012 = t796 * t992 - t797 * t995 + t798 * t997 - t800 * t999;
-    const wam7_real_t t1013 = t1012 + t803 * t1002 + t805 * t1004 + t807 * t1006;
-    ddq_by_q[22] = t1013;
-    const wam7_real_t t1014 = t809 * t992 - t810 * t995 + t811 * t997 - t812 * t999;
-    const wam7_real_t t1015 = t1014 + t815 * t1002 + t818 * t1004 + t821 * t1006;
-    ddq_by_q[29] = t1015;
-    const wam7_real_t t1016 = t823 * t992 - t824 * t995 + t825 * t997 - t826 * t999;
-    const wam7_real_t t1017 = t1016 + t818 * t1002 + t829 * t1004 + t832 * t1006;
-    ddq_by_q[36] = t1017;
-    const wam7_real_t t1018 = t834 * t992 - t835 * t995 + t836 * t997 - t837 * t999;
-    const wam7_real_t t1019 = t1018 + t839 * t1002 + t840 * t1004 + t843 * t1006;
-    ddq_by_q[43] = t1019;
-    /* link j2: derivatives */
-    const wam7_real_t t1020 = WAM7_C(2.0) * (t646 - t650 + (t617 + t637 - t644 - t645));
-    const wam7_real_t t1021 = WAM7_C(0.07745783389167521) * (t1020 + WAM7_C(2.0) * (t226 * t186
-        + t224 * t188));
-    const wam7_real_t t1022 = WAM7_C(61.81619256017505) * parameters[FV2] + t1021;
-    const wam7_real_t t1023 = parameters[ZZ2] - t660;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t1024 = t627 - t672 - t178 * t638 - (dq[1] * parameters[YZ2] + t226 * t1023);
-    /* link j2: derivatives */
-    const wam7_real_t t1025 = t187 * (WAM7_C(2.0) * t1024 + (t213 * t966 - t211 * t965));
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t1026 = dq[1] * parameters[XZ2] + t224 * t1023 + (t134 * t663 + t130 * t664);
-    /* link j2: derivatives */
-    const wam7_real_t t1027 = t189 * (WAM7_C(2.0) * t1026 + (t213 * t965 + t212 * t966));
-    const wam7_real_t t1028 = WAM7_C(0.05209961446285298) * (t1025 + t1027);
-    /* link j3: derivatives */
-    const wam7_real_t t1029 = t134 * t681 + t130 * t682 + WAM7_C(2.0) * (t226 * t205 + t224 * t122);
-    const wam7_real_t t1030 = WAM7_C(0.07745783389167521) * t1029;
-    /* link j4: derivatives */
-    const wam7_real_t t1031 = t134 * t695 + t130 * t698 + t118 * t686 + WAM7_C(2.0) * (t226 * t201
-        + t224 * t103);
-    const wam7_real_t t1032 = WAM7_C(0.12156576707999026) * t1031;
-    const wam7_real_t t1033 = t1028 * t669 - t1022 * t671 + t1030 * t680 - t1032 * t691;
-    /* link j5: derivatives */
-    const wam7_real_t t1034 = t134 * t717 + t130 * t719 - t160 * t686 + WAM7_C(2.0) * (t226 * t198
-        + t224 * t88);
-    const wam7_real_t t1035 = WAM7_C(0.4469713223199599) * t1034;
+    const wam7_real_t t1105 = t37 * t988 - t40 * t989 + (WAM7_C(-0.045) * t975 - t108 * t1087);
+    const wam7_real_t t1106 = parameters[XX4] + t1097;
+    const wam7_real_t t1107 = t227 * parameters[XZ4] + t229 * t1106 + t1105;
+    const wam7_real_t t1108 = t227 * parameters[YZ4];
+    const wam7_real_t t1109 = t1093 + t1108 - (t1038 + (t1086 + t1088) - t1091);
+    const wam7_real_t t1110 = t1107 * t1095 + t1109 * t1100 - (t446 * t99 + (t109 * t528 - t107 * t521));
+    const wam7_real_t t1111 = t1104 + (t1110 - t128 * t562);
+    const wam7_real_t t1112 = t84 * t1102 - t81 * t1111;
+    const wam7_real_t t1113 = t37 * t979 + t40 * t974;
+    const wam7_real_t t1114 = parameters[M4] * t554 + (t431 - parameters[MY4] * t513
+        + parameters[MZ4] * t528);
+    const wam7_real_t t1115 = t1114 + t1113;
+    const wam7_real_t t1116 = t37 * t994 - t40 * t993;
+    const wam7_real_t t1117 = t247 * parameters[MX4] - t227 * parameters[MY4] + (t1116 + t52 * t1089);
+    const wam7_real_t t1118 = t116 * t554 - t1117 * t1095 - (t446 * t112 + t128 * t528);
+    const wam7_real_t t1119 = t1115 - t1118;
+    const wam7_real_t t1120 = parameters[M5] * t564 + (t423 + (parameters[MX5] * t962
+        + parameters[MY5] * t534));
+    const wam7_real_t t1121 = t1120 + (t17 * t849 - t21 * t843);
+    const wam7_real_t t1122 = parameters[M4] * t562 - (t434 + parameters[MX4] * t563
+        - parameters[MZ4] * t521);
+    const wam7_real_t t1123 = t1122 + t1121;
+    const wam7_real_t t1124 = t446 * t114 + t128 * t521 - (t1117 * t1100 + t116 * t562);
+    const wam7_real_t t1125 = t1123 + t1124;
+    const wam7_real_t t1126 = t99 * t521 - t98 * t528 - t446 * t59;
+    const wam7_real_t t1127 = t40 * t1080;
+    const wam7_real_t t1128 = t247 * t1106 - t227 * parameters[XY4] + (t967 + t1127 + (WAM7_C(0.045) * t1116
+        + t108 * t1089));
+    const wam7_real_t t1129 = t37 * t1032 - t40 * t1030 + (WAM7_C(0.3) * t1116 + t113 * t1089);
+    const wam7_real_t t1130 = t227 * t1098 - t247 * parameters[XY4] - t1129;
+    const wam7_real_t t1131 = t112 * t554 + t114 * t562;
+    const wam7_real_t t1132 = t1130 * t1100 - t1128 * t1095 - t1126 - t1131 + WAM7_C(0.045) * (t81 * t1125
+        + t84 * t1119);
+    const wam7_real_t t1133 = t84 * t1125 - t81 * t1119;
+    const wam7_real_t t1134 = t975 + t52 * t1087 - (t229 * parameters[MX4] + t227 * parameters[MZ4]);
+    const wam7_real_t t1135 = t247 * parameters[MZ4] + t229 * parameters[MY4] + (t1082 + t52 * t1084);
+    const wam7_real_t t1136 = t1134 * t1095 - t1135 * t1100 + (t112 * t521 - t114 * t528);
+    const wam7_real_t t1137 = t126 * t1112 + t130 * t1132 + WAM7_C(0.55) * (t130 * t1133 + t126 * t1136);
+    const wam7_real_t t1138 = t81 * t1102 + t84 * t1111 + WAM7_C(0.045) * t1136;
+    const wam7_real_t t1139 = WAM7_C(0.05209961446285298) * (t182 * t1137 + t184 * t1138);
+    const wam7_real_t t1140 = t130 * t1112 - t126 * t1132 + WAM7_C(0.55) * (t130 * t1136 - t126 * t1133);
+    const wam7_real_t t1141 = WAM7_C(0.07745783389167521) * t1140;
+    const wam7_real_t t1142 = WAM7_C(0.07745783389167521) * t1138;
+    const wam7_real_t t1143 = WAM7_C(2.0) * t1128; /* link j4: derivatives */
+    const wam7_real_t t1144 = WAM7_C(2.0) * t1130;
+    const wam7_real_t t1145 = WAM7_C(0.12156576707999026) * (t1131 + (t1126 - (t247 * t1143 + t227 * t1144)));
+    const wam7_real_t t1146 = t633 * t1139 - t637 * t1141 + t640 * t1142 - t644 * t1145;
+    const wam7_real_t t1147 = WAM7_C(0.09) * t229; /* link j7: derivatives */
+    const wam7_real_t t1148 = t37 * t1007 - t40 * t1008 - t50 * t1147; /* link j5: derivatives */
+    const wam7_real_t t1149 = WAM7_C(-2.0) * t1089; /* link j7: derivatives */
+    const wam7_real_t t1150 = WAM7_C(0.6) * t229;
+    const wam7_real_t t1151 = t1039 + (t50 * t1150 - t73 * t1149); /* link j5: derivatives */
+    const wam7_real_t t1152 = t80 * t528 + t83 * t521 - t446 * t74 - (t247 * t1148 + t227 * t1151);
+    const wam7_real_t t1153 = WAM7_C(0.4469713223199599) * (t1152 - t73 * t562);
     /* link j6: derivatives */
-    const wam7_real_t t1036 = t134 * t737 + t130 * t739 + t152 * t686 + WAM7_C(2.0) * (t226 * t194
-        + t224 * t98);
-    const wam7_real_t t1037 = WAM7_C(0.4469713223199599) * t1036;
+    const wam7_real_t t1154 = t37 * t1010 - t40 * t903 + (t48 * t1149 - t91 * t1147);
+    const wam7_real_t t1155 = t1058 + (t67 * t1149 + t91 * t1150);
+    const wam7_real_t t1156 = t92 * t528 + t94 * t521 - t446 * t68 - (t247 * t1154 + t227 * t1155);
+    const wam7_real_t t1157 = WAM7_C(0.4469713223199599) * (t1156 + (t67 * t562 + t48 * t554));
     /* link j7: derivatives */
-    const wam7_real_t t1038 = t134 * t762 + t130 * t764 + t145 * t686 + WAM7_C(2.0) * (t226 * t191
-        + t224 * t93);
-    const wam7_real_t t1039 = WAM7_C(0.9996900960702182) * t1038;
-    const wam7_real_t t1040 = t1033 + t1035 * t708 + t1037 * t729 + t1039 * t751;
-    ddq_by_dq[1] = t1040;
-    const wam7_real_t t1041 = t1028 * t770 - t1022 * t771 + t1030 * t773 - t1032 * t775;
-    const wam7_real_t t1042 = t1041 + t1035 * t778 + t1037 * t780 + t1039 * t782;
-    ddq_by_dq[8] = t1042;
-    const wam7_real_t t1043 = t1028 * t784 - t1022 * t773 + t1030 * t785 - t1032 * t787;
-    const wam7_real_t t1044 = t1043 + t1035 * t790 + t1037 * t792 + t1039 * t794;
-    ddq_by_dq[15] = t1044;
-    const wam7_real_t t1045 = t1028 * t796 - t1022 * t797 + t1030 * t798 - t1032 * t800;
-    const wam7_real_t t1046 = t1045 + t1035 * t803 + t1037 * t805 + t1039 * t807;
-    ddq_by_dq[22] = t1046;
-    const wam7_real_t t1047 = t1028 * t809 - t1022 * t810 + t1030 * t811 - t1032 * t812;
-    const wam7_real_t t1048 = t1047 + t1035 * t815 + t1037 * t818 + t1039 * t821;
-    ddq_by_dq[29] = t1048;
-    const wam7_real_t t1049 = t1028 * t823 - t1022 * t824 + t1030 * t825 - t1032 * t826;
-    const wam7_real_t t1050 = t1049 + t1035 * t818 + t1037 * t829 + t1039 * t832;
-    ddq_by_dq[36] = t1050;
-    const wam7_real_t t1051 = t1028 * t834 - t1022 * t835 + t1030 * t836 - t1032 * t837;
-    const wam7_real_t t1052 = t1051 + t1035 * t839 + t1037 * t840 + t1039 * t843;
-    ddq_by_dq[43] = t1052;
-    ddq_by_input[1] = t671;
-    ddq_by_input[8] = t771;
-    ddq_by_input[15] = t773;
-    ddq_by_input[22] = t797;
-    ddq_by_input[29] = t810;
-    ddq_by_input[36] = t824;
-    ddq_by_input[43] = t835;
-    const wam7_real_t t1053 = t440 + t299; /* link j4: motion */
-    const wam7_real_t t1054 = WAM7_C(2.0) * t229; /* link j3: derivatives */
-    const wam7_real_t t1055 = WAM7_C(2.0) * t225;
-    const wam7_real_t t1056 = t635 * t1054 + t620 * t1055 - (t133 * t849 - t129 * t857 - t1053 * t174);
-    const wam7_real_t t1057 = t971 + (t1056 - t138 * t896);
-    const wam7_real_t t1058 = t617 * t1054 + t627 * t1055 + (t133 * t857 - t128 * t849 - t1053 * t173);
-    const wam7_real_t t1059 = t983 + (t1058 + t138 * t889);
-    const wam7_real_t t1060 = t1053 * t175 + t138 * t857 - (t641 * t1055 + t139 * t896);
-    const wam7_real_t t1061 = t1060 - t987;
-    const wam7_real_t t1062 = t641 * t1054 - t139 * t889 + (t1053 * t177 + t138 * t849);
-    const wam7_real_t t1063 = t985 + t1062;
-    const wam7_real_t t1064 = t130 * t1059 - t134 * t1057 + WAM7_C(0.55) * (t134 * t1061 + t130 * t1063);
-    const wam7_real_t t1065 = t1053 * t122 + (t173 * t849 + t174 * t857);
-    const wam7_real_t t1066 = t177 * t889 + t175 * t896;
-    const wam7_real_t t1067 = t189 * (t663 * t1054 + t664 * t1055 + t1065 - t1066);
-    const wam7_real_t t1068 = WAM7_C(0.05209961446285298) * (t187 * t1064 + t1067);
-    const wam7_real_t t1069 = t134 * t1059 + t130 * t1057 + WAM7_C(0.55) * (t134 * t1063 - t130 * t1061);
-    const wam7_real_t t1070 = WAM7_C(0.07745783389167521) * t1069;
-    const wam7_real_t t1071 = WAM7_C(0.07745783389167521) * (t229 * t681 + t225 * t682 + t1065 - t1066);
-    const wam7_real_t t1072 = t229 * t695 + t225 * t698 + (t1053 * t103 + (t168 * t857 - t131 * t849));
-    const wam7_real_t t1073 = WAM7_C(0.12156576707999026) * (t1072 - t137 * t896);
-    const wam7_real_t t1074 = t669 * t1068 - t671 * t1070 + t680 * t1071 - t691 * t1073;
-    const wam7_real_t t1075 = t229 * t717 + t225 * t719 + (t1053 * t88 + (t159 * t849 + t161 * t857));
-    const wam7_real_t t1076 = WAM7_C(0.4469713223199599) * (t1075 + (t52 * t889 - t162 * t896));
-    const wam7_real_t t1077 = t229 * t737 + t225 * t739 + (t1053 * t98 + (t151 * t849 + t153 * t857));
-    const wam7_real_t t1078 = WAM7_C(0.4469713223199599) * (t1077 + (t94 * t889 - t154 * t896));
-    const wam7_real_t t1079 = t229 * t762 + t225 * t764 + (t1053 * t93 + (t144 * t849 + t146 * t857));
-    const wam7_real_t t1080 = WAM7_C(0.9996900960702182) * (t1079 + (t89 * t889 - t147 * t896));
-    const wam7_real_t t1081 = t1074 + t708 * t1076 + t729 * t1078 + t751 * t1080;
-    ddq_by_q[2] = t1081;
-    const wam7_real_t t1082 = t770 * t1068 - t771 * t1070 + t773 * t1071 - t775 * t1073;
-    const wam7_real_t t1083 = t1082 + t778 * t1076 + t780 * t1078 + t782 * t1080;
-    ddq_by_q[9] = t1083;
-    const wam7_real_t t1084 = t784 * t1068 - t773 * t1070 + t785 * t1071 - t787 * t1073;
-    const wam7_real_t t1085 = t1084 + t790 * t1076 + t792 * t1078 + t794 * t1080;
-    ddq_by_q[16] = t1085;
-    const wam7_real_t t1086 = t796 * t1068 - t797 * t1070 + t798 * t1071 - t800 * t1073;
-    const wam7_real_t t1087 = t1086 + t803 * t1076 + t805 * t1078 + t807 * t1080;
-    ddq_by_q[23] = t1087;
-    const wam7_real_t t1088 = t809 * t1068 - t810 * t1070 + t811 * t1071 - t812 * t1073;
-    const wam7_real_t t1089 = t1088 + t815 * t1076 + t818 * t1078 + t821 * t1080;
-    ddq_by_q[30] = t1089;
-    const wam7_real_t t1090 = t823 * t1068 - t824 * t1070 + t825 * t1071 - t826 * t1073;
-    const wam7_real_t t1091 = t1090 + t818 * t1076 + t829 * t1078 + t832 * t1080;
-    ddq_by_q[37] = t1091;
-    const wam7_real_t t1092 = t834 * t1068 - t835 * t1070 + t836 * t1071 - t837 * t1073;
-    const wam7_real_t t1093 = t1092 + t839 * t1076 + t840 * t1078 + t843 * t1080;
-    ddq_by_q[44] = t1093;
-    const wam7_real_t t1094 = WAM7_C(2.0) * t654 + (t128 * t1054 + t133 * t1055);
-    const wam7_real_t t1095 = WAM7_C(-2.0) * t655 + (t133 * t1054 + t129 * t1055);
-    const wam7_real_t t1096 = WAM7_C(2.0) * t656 - t138 * t1054;
-    const wam7_real_t t1097 = WAM7_C(2.0) * t657 + t138 * t1055;
-    const wam7_real_t t1098 = t134 * t1094 + t130 * t1095 + WAM7_C(0.55) * (t134 * t1096 - t130 * t1097);
-    const wam7_real_t t1099 = WAM7_C(0.07745783389167521) * t1098;
-    const wam7_real_t t1100 = t130 * t1094 - t134 * t1095 + WAM7_C(0.55) * (t134 * t1097 + t130 * t1096);
-    const wam7_real_t t1101 = t187 * t1100 + t189 * (t684 + (t174 * t1055 - t173 * t1054));
-    const wam7_real_t t1102 = WAM7_C(0.05209961446285298) * t1101;
-    const wam7_real_t t1103 = WAM7_C(0.07745783389167521) * (t684 + WAM7_C(2.0) * (t225 * t174
-        - t229 * t173));
-    const wam7_real_t t1104 = WAM7_C(-61.81619256017505) * parameters[FV3] + t1103;
-    const wam7_real_t t1105 = WAM7_C(0.12156576707999026) * (t700 + WAM7_C(2.0) * (t229 * t131
-        + t225 * t168));
-    const wam7_real_t t1106 = t1102 * t669 - t1099 * t671 + t1104 * t680 - t1105 * t691;
-    const wam7_real_t t1107 = WAM7_C(0.4469713223199599) * (t721 + WAM7_C(2.0) * (t225 * t161 - t229 * t159));
-    const wam7_real_t t1108 = WAM7_C(0.4469713223199599) * (t741 + WAM7_C(2.0) * (t225 * t153 - t229 * t151));
-    const wam7_real_t t1109 = WAM7_C(0.9996900960702182) * (t766 + WAM7_C(2.0) * (t225 * t146 - t229 * t144));
-    const wam7_real_t t1110 = t1106 + t1107 * t708 + t1108 * t729 + t1109 * t751;
-    ddq_by_dq[2] = t1110;
-    const wam7_real_t t1111 = t1102 * t770 - t1099 * t771 + t1104 * t773 - t1105 * t775;
-    const wam7_real_t t1112 = t1111 + t1107 * t778 + t1108 * t780 + t1109 * t782;
-    ddq_by_dq[9] = t1112;
-    const wam7_real_t t1113 = t1102 * t784 - t1099 * t773 + t1104 * t785 - t1105 * t787;
-    const wam7_real_t t1114 = t1113 + t1107 * t790 + t1108 * t792 + t1109 * t794;
-    ddq_by_dq[16] = t1114;
-    const wam7_real_t t1115 = t1102 * t796 - t1099 * t797 + t1104 * t798 - t1105 * t800;
-    const wam7_real_t t1116 = t1115 + t1107 * t803 + t1108 * t805 + t1109 * t807;
-    ddq_by_dq[23] = t1116;
-    const wam7_real_t t1117 = t1102 * t809 - t1099 * t810 + t1104 * t811 - t1105 * t812;
-    const wam7_real_t t1118 = t1117 + t1107 * t815 + t1108 * t818 + t1109 * t821;
-    ddq_by_dq[30] = t1118;
-    const wam7_real_t t1119 = t1102 * t823 - t1099 * t824 + t1104 * t825 - t1105 * t826;
-    const wam7_real_t t1120 = t1119 + t1107 * t818 + t1108 * t829 + t1109 * t832;
-    ddq_by_dq[37] = t1120;
-    const wam7_real_t t1121 = t1102 * t834 - t1099 * t835 + t1104 * t836 - t1105 * t837;
-    const wam7_real_t t1122 = t1121 + t1107 * t839 + t1108 * t840 + t1109 * t843;
-    ddq_by_dq[44] = t1122;
-    ddq_by_input[2] = t680;
-    ddq_by_input[9] = t773;
-    ddq_by_input[16] = t785;
-    ddq_by_input[23] = t798;
-    ddq_by_input[30] = t811;
-    ddq_by_input[37] = t825;
-    ddq_by_input[44] = t836;
-    const wam7_real_t t1123 = WAM7_C(-2.0) * t248; /* link j4: derivatives */
-    const wam7_real_t t1124 = WAM7_C(2.0) * t228;
-    const wam7_real_t t1125 = t587 * t1123 - t598 * t1124 + (t112 * t860 - t109 * t867 - t447 * t101);
-    const wam7_real_t t1126 = t958 + (t1125 + t132 * t893);
-    const wam7_real_t t1127 = t603 * t1123 + t590 * t1124 - (t447 * t102 + (t112 * t867 - t110 * t860));
-    const wam7_real_t t1128 = t954 + (t1127 - t132 * t901);
-    const wam7_real_t t1129 = t87 * t1126 - t84 * t1128;
-    const wam7_real_t t1130 = t119 * t893 - t632 * t1123 - (t447 * t115 + t132 * t867);
-    const wam7_real_t t1131 = t979 - t1130;
-    const wam7_real_t t1132 = t447 * t117 + t132 * t860 - (t632 * t1124 + t119 * t901);
-    const wam7_real_t t1133 = t981 + t1132;
-    const wam7_real_t t1134 = t102 * t860 - t101 * t867 - t447 * t61;
-    const wam7_real_t t1135 = t115 * t893 + t117 * t901;
-    const wam7_real_t t1136 = t631 * t1124 - t629 * t1123 - t1134 - t1135 + WAM7_C(0.045) * (t84 * t1133
-        + t87 * t1131);
-    const wam7_real_t t1137 = t87 * t1133 - t84 * t1131;
-    const wam7_real_t t1138 = t607 * t1123 - t606 * t1124 + (t115 * t860 - t117 * t867);
-    const wam7_real_t t1139 = t130 * t1129 + t134 * t1136 + WAM7_C(0.55) * (t134 * t1137 + t130 * t1138);
-    const wam7_real_t t1140 = t84 * t1126 + t87 * t1128 + WAM7_C(0.045) * t1138;
-    const wam7_real_t t1141 = WAM7_C(0.05209961446285298) * (t187 * t1139 + t189 * t1140);
-    const wam7_real_t t1142 = t134 * t1129 - t130 * t1136 + WAM7_C(0.55) * (t134 * t1138 - t130 * t1137);
-    const wam7_real_t t1143 = WAM7_C(0.07745783389167521) * t1142;
-    const wam7_real_t t1144 = WAM7_C(0.07745783389167521) * t1140;
-    const wam7_real_t t1145 = WAM7_C(0.12156576707999026) * (t1135 + (t1134 - (t248 * t692 + t228 * t693)));
-    const wam7_real_t t1146 = t669 * t1141 - t671 * t1143 + t680 * t1144 - t691 * t1145;
-    const wam7_real_t t1147 = t83 * t867 + t86 * t860 - t447 * t76 - (t248 * t712 + t228 * t716);
-    const wam7_real_t t1148 = WAM7_C(0.4469713223199599) * (t1147 - t75 * t901);
-    const wam7_real_t t1149 = t95 * t867 + t97 * t860 - t447 * t70 - (t248 * t734 + t228 * t736);
-    const wam7_real_t t1150 = WAM7_C(0.4469713223199599) * (t1149 + (t69 * t901 + t50 * t893));
-    const wam7_real_t t1151 = t90 * t867 + t92 * t860 - t447 * t67 - (t248 * t759 + t228 * t761);
-    const wam7_real_t t1152 = WAM7_C(0.9996900960702182) * (t1151 + (t65 * t901 + t66 * t893));
-    const wam7_real_t t1153 = t1146 + t708 * t1148 + t729 * t1150 + t751 * t1152;
-    ddq_by_q[3] = t1153;
-    const wam7_real_t t1154 = t770 * t1141 - t771 * t1143 + t773 * t1144 - t775 * t1145;
-    const wam7_real_t t1155 = t1154 + t778 * t1148 + t780 * t1150 + t782 * t1152;
-    ddq_by_q[10] = t1155;
-    const wam7_real_t t1156 = t784 * t1141 - t773 * t1143 + t785 * t1144 - t787 * t1145;
-    const wam7_real_t t1157 = t1156 + t790 * t1148 + t792 * t1150 + t794 * t1152;
-    ddq_by_q[17] = t1157;
-    const wam7_real_t t1158 = t796 * t1141 - t797 * t1143 + t798 * t1144 - t800 * t1145;
-    const wam7_real_t t1159 = t1158 + t803 * t1148 + t805 * t1150 + t807 * t1152;
-    ddq_by_q[24] = t1159;
-    const wam7_real_t t1160 = t809 * t1141 - t810 * t1143 + t811 * t1144 - t812 * t1145;
-    const wam7_real_t t1161 = t1160 + t815 * t1148 + t818 * t1150 + t821 * t1152;
-    ddq_by_q[31] = t1161;
-    const wam7_real_t t1162 = t823 * t1141 - t824 * t1143 + t825 * t1144 - t826 * t1145;
-    const wam7_real_t t1163 = t1162 + t818 * t1148 + t829 * t1150 + t832 * t1152;
-    ddq_by_q[38] = t1163;
-    const wam7_real_t t1164 = t834 * t1141 - t835 * t1143 + t836 * t1144 - t837 * t1145;
-    const wam7_real_t t1165 = t1164 + t839 * t1148 + t840 * t1150 + t843 * t1152;
-    ddq_by_q[45] = t1165;
-    const wam7_real_t t1166 = WAM7_C(2.0) * t623 + (t109 * t1123 + t112 * t1124);
-    const wam7_real_t t1167 = WAM7_C(2.0) * t624 + (t112 * t1123 + t110 * t1124);
-    const wam7_real_t t1168 = t87 * t1166 - t84 * t1167;
-    const wam7_real_t t1169 = WAM7_C(-2.0) * t607 + t132 * t1124;
-    const wam7_real_t t1170 = WAM7_C(-2.0) * t606 + t132 * t1123;
-    const wam7_real_t t1171 = WAM7_C(0.045) * (t84 * t1169 - t87 * t1170) - (t696 + (t101 * t1123
-        + t102 * t1124));
-    const wam7_real_t t1172 = t87 * t1169 + t84 * t1170;
-    const wam7_real_t t1173 = t117 * t1123 + t115 * t1124;
-    const wam7_real_t t1174 = t134 * t1168 - t130 * t1171 + WAM7_C(0.55) * (t134 * t1173 - t130 * t1172);
-    const wam7_real_t t1175 = WAM7_C(0.07745783389167521) * t1174;
-    const wam7_real_t t1176 = t130 * t1168 + t134 * t1171 + WAM7_C(0.55) * (t134 * t1172 + t130 * t1173);
-    const wam7_real_t t1177 = t84 * t1166 + t87 * t1167 + WAM7_C(0.045) * t1173;
-    const wam7_real_t t1178 = WAM7_C(0.05209961446285298) * (t187 * t1176 + t189 * t1177);
-    const wam7_real_t t1179 = WAM7_C(0.07745783389167521) * t1177;
-    const wam7_real_t t1180 = WAM7_C(0.12156576707999026) * (t696 + WAM7_C(2.0) * (t228 * t102
-        - t248 * t101));
-    const wam7_real_t t1181 = WAM7_C(39.387308533916844) * parameters[FV4] + t1180;
-    const wam7_real_t t1182 = t1178 * t669 - t1175 * t671 + t1179 * t680 - t1181 * t691;
-    const wam7_real_t t1183 = WAM7_C(0.4469713223199599) * (t718 + WAM7_C(2.0) * (t248 * t83 + t228 * t86));
-    const wam7_real_t t1184 = WAM7_C(0.4469713223199599) * (t738 + WAM7_C(2.0) * (t248 * t95 + t228 * t97));
-    const wam7_real_t t1185 = WAM7_C(0.9996900960702182) * (t763 + WAM7_C(2.0) * (t248 * t90 + t228 * t92));
-    const wam7_real_t t1186 = t1182 + t1183 * t708 + t1184 * t729 + t1185 * t751;
-    ddq_by_dq[3] = t1186;
-    const wam7_real_t t1187 = t1178 * t770 - t1175 * t771 + t1179 * t773 - t1181 * t775;
-    const wam7_real_t t1188 = t1187 + t1183 * t778 + t1184 * t780 + t1185 * t782;
-    ddq_by_dq[10] = t1188;
-    const wam7_real_t t1189 = t1178 * t784 - t1175 * t773 + t1179 * t785 - t1181 * t787;
-    const wam7_real_t t1190 = t1189 + t1183 * t790 + t1184 * t792 + t1185 * t794;
-    ddq_by_dq[17] = t1190;
-    const wam7_real_t t1191 = t1178 * t796 - t1175 * t797 + t1179 * t798 - t1181 * t800;
-    const wam7_real_t t1192 = t1191 + t1183 * t803 + t1184 * t805 + t1185 * t807;
-    ddq_by_dq[24] = t1192;
-    const wam7_real_t t1193 = t1178 * t809 - t1175 * t810 + t1179 * t811 - t1181 * t812;
-    const wam7_real_t t1194 = t1193 + t1183 * t815 + t1184 * t818 + t1185 * t821;
-    ddq_by_dq[31] = t1194;
-    const wam7_real_t t1195 = t1178 * t823 - t1175 * t824 + t1179 * t825 - t1181 * t826;
-    const wam7_real_t t1196 = t1195 + t1183 * t818 + t1184 * t829 + t1185 * t832;
-    ddq_by_dq[38] = t1196;
-    const wam7_real_t t1197 = t1178 * t834 - t1175 * t835 + t1179 * t836 - t1181 * t837;
-    const wam7_real_t t1198 = t1197 + t1183 * t839 + t1184 * t840 + t1185 * t843;
-    ddq_by_dq[45] = t1198;
-    ddq_by_input[3] = t691;
-    ddq_by_input[10] = t775;
-    ddq_by_input[17] = t787;
-    ddq_by_input[24] = t800;
-    ddq_by_input[31] = t812;
-    ddq_by_input[38] = t826;
-    ddq_by_input[45] = t837;
-    const wam7_real_t t1199 = WAM7_C(2.0) * t232; /* link j5: derivatives */
-    const wam7_real_t t1200 = WAM7_C(2.0) * t231;
-    const wam7_real_t t1201 = t550 * t1199 + t560 * t1200 + (t423 * t73 + (t41 * t871 - t37 * t863));
-    const wam7_real_t t1202 = t941 + (t1201 - t58 * t900);
-    const wam7_real_t t1203 = t566 * t1199 + t553 * t1200 - (t423 * t74 - (t38 * t871 - t41 * t863));
-    const wam7_real_t t1204 = t1203 + t58 * t906 - t936;
-    const wam7_real_t t1205 = t578 * t1200 + t54 * t906 + (t423 * t46 + t58 * t871);
-    const wam7_real_t t1206 = t951 - t1205;
-    const wam7_real_t t1207 = t578 * t1199 - t54 * t900 - (t423 * t51 + t58 * t863);
-    const wam7_real_t t1208 = t948 + t1207;
-    const wam7_real_t t1209 = t42 * t1206 + t39 * t1208;
-    const wam7_real_t t1210 = t39 * t1202 - t42 * t1204 + WAM7_C(0.3) * t1209;
-    const wam7_real_t t1211 = WAM7_C(0.045) * t1209;
-    const wam7_real_t t1212 = t51 * t900 + t46 * t906;
-    const wam7_real_t t1213 = t423 * t25 - (t73 * t863 + t74 * t871);
-    const wam7_real_t t1214 = t599 * t1199 + t600 * t1200 + t1213 + t1212 - t1211;
-    const wam7_real_t t1215 = t87 * t1210 - t84 * t1214;
-    const wam7_real_t t1216 = t42 * t1208 - t39 * t1206;
-    const wam7_real_t t1217 = t573 * t1199 + t571 * t1200 + (t51 * t871 - t46 * t863);
-    const wam7_real_t t1218 = t42 * t1202 + t39 * t1204 + (WAM7_C(0.045) * t1217 + WAM7_C(0.3) * t1216);
-    const wam7_real_t t1219 = t1218 - WAM7_C(0.045) * (t87 * t1217 - t84 * t1216);
-    const wam7_real_t t1220 = t87 * t1216 + t84 * t1217;
-    const wam7_real_t t1221 = t130 * t1215 - t134 * t1219 + WAM7_C(0.55) * (t130 * t1209 - t134 * t1220);
-    const wam7_real_t t1222 = t1211 + (t84 * t1210 + t87 * t1214);
-    const wam7_real_t t1223 = WAM7_C(0.05209961446285298) * (t187 * t1221 + t189 * t1222);
-    const wam7_real_t t1224 = t134 * t1215 + t130 * t1219 + WAM7_C(0.55) * (t130 * t1220 + t134 * t1209);
-    const wam7_real_t t1225 = WAM7_C(0.07745783389167521) * t1224;
-    const wam7_real_t t1226 = WAM7_C(0.07745783389167521) * t1222;
-    const wam7_real_t t1227 = WAM7_C(0.12156576707999026) * t1218;
-    const wam7_real_t t1228 = t669 * t1223 - t671 * t1225 + t680 * t1226 - t691 * t1227;
-    const wam7_real_t t1229 = WAM7_C(0.4469713223199599) * (t1212 + (t232 * t709 + t231 * t710 + t1213));
-    const wam7_real_t t1230 = t232 * t732 + t231 * t733 + (t423 * t31 - (t40 * t863 + t12 * t871));
-    const wam7_real_t t1231 = WAM7_C(0.4469713223199599) * (t1230 + t57 * t906);
-    const wam7_real_t t1232 = t232 * t757 + t231 * t758 + (t423 * t27 - (t63 * t863 + t4 * t871));
-    const wam7_real_t t1233 = WAM7_C(0.9996900960702182) * (t1232 + (t64 * t906 + t19 * t900));
-    const wam7_real_t t1234 = t1228 + t708 * t1229 + t729 * t1231 + t751 * t1233;
-    ddq_by_q[4] = t1234;
-    const wam7_real_t t1235 = t770 * t1223 - t771 * t1225 + t773 * t1226 - t775 * t1227;
-    const wam7_real_t t1236 = t1235 + t778 * t1229 + t780 * t1231 + t782 * t1233;
-    ddq_by_q[11] = t1236;
-    const wam7_real_t t1237 = t784 * t1223 - t773 * t1225 + t785 * t1226 - t787 * t1227;
-    const wam7_real_t t1238 = t1237 + t790 * t1229 + t792 * t1231 + t794 * t1233;
-    ddq_by_q[18] = t1238;
-    const wam7_real_t t1239 = t796 * t1223 - t797 * t1225 + t798 * t1226 - t800 * t1227;
-    const wam7_real_t t1240 = t1239 + t803 * t1229 + t805 * t1231 + t807 * t1233;
-    ddq_by_q[25] = t1240;
-    const wam7_real_t t1241 = t809 * t1223 - t810 * t1225 + t811 * t1226 - t812 * t1227;
-    const wam7_real_t t1242 = t1241 + t815 * t1229 + t818 * t1231 + t821 * t1233;
-    ddq_by_q[32] = t1242;
-    const wam7_real_t t1243 = t823 * t1223 - t824 * t1225 + t825 * t1226 - t826 * t1227;
-    const wam7_real_t t1244 = t1243 + t818 * t1229 + t829 * t1231 + t832 * t1233;
-    ddq_by_q[39] = t1244;
-    const wam7_real_t t1245 = t834 * t1223 - t835 * t1225 + t836 * t1226 - t837 * t1227;
-    const wam7_real_t t1246 = t1245 + t839 * t1229 + t840 * t1231 + t843 * t1233;
-    ddq_by_q[46] = t1246;
-    const wam7_real_t t1247 = WAM7_C(2.0) * t593 + (t37 * t1199 + t41 * t1200);
-    const wam7_real_t t1248 = WAM7_C(-2.0) * t594 + (t41 * t1199 + t38 * t1200);
-    const wam7_real_t t1249 = WAM7_C(2.0) * t571 + t58 * t1199;
-    const wam7_real_t t1250 = WAM7_C(2.0) * t573 - t58 * t1200;
-    const wam7_real_t t1251 = t42 * t1250 + t39 * t1249;
-    const wam7_real_t t1252 = t39 * t1247 - t42 * t1248 + WAM7_C(0.3) * t1251;
-    const wam7_real_t t1253 = WAM7_C(0.045) * t1251;
-    const wam7_real_t t1254 = t713 - (t74 * t1200 - t73 * t1199) - t1253;
-    const wam7_real_t t1255 = t87 * t1252 - t84 * t1254;
-    const wam7_real_t t1256 = t42 * t1249 - t39 * t1250;
-    const wam7_real_t t1257 = t46 * t1199 + t51 * t1200;
-    const wam7_real_t t1258 = t42 * t1247 + t39 * t1248 + (WAM7_C(0.045) * t1257 + WAM7_C(0.3) * t1256);
-    const wam7_real_t t1259 = WAM7_C(0.045) * (t87 * t1257 - t84 * t1256) - t1258;
-    const wam7_real_t t1260 = t87 * t1256 + t84 * t1257;
-    const wam7_real_t t1261 = t134 * t1255 - t130 * t1259 + WAM7_C(0.55) * (t130 * t1260 + t134 * t1251);
-    const wam7_real_t t1262 = WAM7_C(0.07745783389167521) * t1261;
-    const wam7_real_t t1263 = t130 * t1255 + t134 * t1259 + WAM7_C(0.55) * (t130 * t1251 - t134 * t1260);
-    const wam7_real_t t1264 = t1253 + (t84 * t1252 + t87 * t1254);
-    const wam7_real_t t1265 = WAM7_C(0.05209961446285298) * (t187 * t1263 + t189 * t1264);
-    const wam7_real_t t1266 = WAM7_C(0.07745783389167521) * t1264;
-    const wam7_real_t t1267 = WAM7_C(0.12156576707999026) * t1258;
-    const wam7_real_t t1268 = t1265 * t669 - t1262 * t671 + t1266 * t680 - t1267 * t691;
-    const wam7_real_t t1269 = WAM7_C(0.4469713223199599) * (t713 + WAM7_C(2.0) * (t232 * t73 - t231 * t74));
-    const wam7_real_t t1270 = WAM7_C(-40.16949152542373) * parameters[FV5] + t1269;
-    const wam7_real_t t1271 = WAM7_C(0.4469713223199599) * (t735 + WAM7_C(2.0) * (t232 * t40 - t231 * t12));
-    const wam7_real_t t1272 = WAM7_C(0.9996900960702182) * (t760 + WAM7_C(2.0) * (t232 * t63 - t231 * t4));
-    const wam7_real_t t1273 = t1268 + t1270 * t708 + t1271 * t729 + t1272 * t751;
-    ddq_by_dq[4] = t1273;
-    const wam7_real_t t1274 = t1265 * t770 - t1262 * t771 + t1266 * t773 - t1267 * t775;
-    const wam7_real_t t1275 = t1274 + t1270 * t778 + t1271 * t780 + t1272 * t782;
-    ddq_by_dq[11] = t1275;
-    const wam7_real_t t1276 = t1265 * t784 - t1262 * t773 + t1266 * t785 - t1267 * t787;
-    const wam7_real_t t1277 = t1276 + t1270 * t790 + t1271 * t792 + t1272 * t794;
-    ddq_by_dq[18] = t1277;
-    const wam7_real_t t1278 = t1265 * t796 - t1262 * t797 + t1266 * t798 - t1267 * t800;
-    const wam7_real_t t1279 = t1278 + t1270 * t803 + t1271 * t805 + t1272 * t807;
-    ddq_by_dq[25] = t1279;
-    const wam7_real_t t1280 = t1265 * t809 - t1262 * t810 + t1266 * t811 - t1267 * t812;
-    const wam7_real_t t1281 = t1280 + t1270 * t815 + t1271 * t818 + t1272 * t821;
-    ddq_by_dq[32] = t1281;
-    const wam7_real_t t1282 = t1265 * t823 - t1262 * t824 + t1266 * t825 - t1267 * t826;
-    const wam7_real_t t1283 = t1282 + t1270 * t818 + t1271 * t829 + t1272 * t832;
-    ddq_by_dq[39] = t1283;
-    const wam7_real_t t1284 = t1265 * t834 - t1262 * t835 + t1266 * t836 - t1267 * t837;
-    const wam7_real_t t1285 = t1284 + t1270 * t839 + t1271 * t840 + t1272 * t843;
-    ddq_by_dq[46] = t1285;
-    ddq_by_input[4] = t708;
-    ddq_by_input[11] = t778;
-    ddq_by_input[18] = t790;
-    ddq_by_input[25] = t803;
-    ddq_by_input[32] = t815;
-    ddq_by_input[39] = t818;
-    ddq_by_input[46] = t839;
-    const wam7_real_t t1286 = WAM7_C(2.0) * t264; /* link j6: derivatives */
-    const wam7_real_t t1287 = WAM7_C(2.0) * t272;
-    const wam7_real_t t1288 = t545 * t1286 + t531 * t1287 - (t21 * t882 - t17 * t874 - t398 * t29);
-    const wam7_real_t t1289 = t1288 + t45 * t910 - t929;
-    const wam7_real_t t1290 = t528 * t1286 - t541 * t1287 + (t398 * t30 + (t21 * t874 - t16 * t882));
-    const wam7_real_t t1291 = t932 + (t1290 - t45 * t904);
-    const wam7_real_t t1292 = t18 * t1291 - t22 * t1289;
-    const wam7_real_t t1293 = t398 * t12 + (t29 * t874 - t30 * t882);
-    const wam7_real_t t1294 = t49 * t910 - t47 * t904;
-    const wam7_real_t t1295 = t561 * t1286 - t564 * t1287 + t1293 + t1294;
-    const wam7_real_t t1296 = t572 * t1286 - t53 * t904 + (t398 * t47 - t45 * t882);
-    const wam7_real_t t1297 = t943 + t1296;
-    const wam7_real_t t1298 = t572 * t1287 + t53 * t910 + (t398 * t49 + t45 * t874);
-    const wam7_real_t t1299 = t946 - t1298;
-    const wam7_real_t t1300 = t18 * t1299 - t22 * t1297;
-    const wam7_real_t t1301 = t49 * t882 + t47 * t874 - (t570 * t1286 + t569 * t1287);
-    const wam7_real_t t1302 = t42 * t1300 + t39 * t1301;
-    const wam7_real_t t1303 = t39 * t1292 + t42 * t1295 + WAM7_C(0.3) * t1302;
-    const wam7_real_t t1304 = t22 * t1291 + t18 * t1289;
-    const wam7_real_t t1305 = WAM7_C(0.045) * t1302;
-    const wam7_real_t t1306 = t1304 - t1305;
-    const wam7_real_t t1307 = t87 * t1303 - t84 * t1306;
-    const wam7_real_t t1308 = t22 * t1299 + t18 * t1297;
-    const wam7_real_t t1309 = t42 * t1301 - t39 * t1300;
-    const wam7_real_t t1310 = t42 * t1292 - t39 * t1295 + (WAM7_C(0.045) * t1308 + WAM7_C(0.3) * t1309);
-    const wam7_real_t t1311 = t1310 - WAM7_C(0.045) * (t87 * t1308 - t84 * t1309);
-    const wam7_real_t t1312 = t87 * t1309 + t84 * t1308;
-    const wam7_real_t t1313 = t130 * t1307 - t134 * t1311 + WAM7_C(0.55) * (t130 * t1302 - t134 * t1312);
-    const wam7_real_t t1314 = t1305 + (t84 * t1303 + t87 * t1306);
-    const wam7_real_t t1315 = WAM7_C(0.05209961446285298) * (t187 * t1313 + t189 * t1314);
-    const wam7_real_t t1316 = t134 * t1307 + t130 * t1311 + WAM7_C(0.55) * (t130 * t1312 + t134 * t1302);
+    const wam7_real_t t1158 = t37 * t1013 - t40 * t931 + (t64 * t1149 - t86 * t1147);
+    const wam7_real_t t1159 = t1060 + (t63 * t1149 + t86 * t1150);
+    const wam7_real_t t1160 = t87 * t528 + t89 * t521 - t446 * t65 - (t247 * t1158 + t227 * t1159);
+    const wam7_real_t t1161 = WAM7_C(0.9996900960702182) * (t1160 + (t63 * t562 + t64 * t554));
+    const wam7_real_t t1162 = t1146 + t651 * t1153 + t658 * t1157 + t669 * t1161;
+    ddq_by_q[3] = t1162;
+    const wam7_real_t t1163 = t671 * t1139 - t672 * t1141 + t674 * t1142 - t676 * t1145;
+    const wam7_real_t t1164 = t1163 + t679 * t1153 + t681 * t1157 + t683 * t1161;
+    ddq_by_q[10] = t1164;
+    const wam7_real_t t1165 = t685 * t1139 - t674 * t1141 + t686 * t1142 - t688 * t1145;
+    const wam7_real_t t1166 = t1165 + t691 * t1153 + t693 * t1157 + t695 * t1161;
+    ddq_by_q[17] = t1166;
+    const wam7_real_t t1167 = t697 * t1139 - t698 * t1141 + t699 * t1142 - t701 * t1145;
+    const wam7_real_t t1168 = t1167 + t704 * t1153 + t706 * t1157 + t708 * t1161;
+    ddq_by_q[24] = t1168;
+    const wam7_real_t t1169 = t710 * t1139 - t711 * t1141 + t712 * t1142 - t713 * t1145;
+    const wam7_real_t t1170 = t1169 + t716 * t1153 + t719 * t1157 + t722 * t1161;
+    ddq_by_q[31] = t1170;
+    const wam7_real_t t1171 = t724 * t1139 - t725 * t1141 + t726 * t1142 - t727 * t1145;
+    const wam7_real_t t1172 = t1171 + t719 * t1153 + t730 * t1157 + t733 * t1161;
+    ddq_by_q[38] = t1172;
+    const wam7_real_t t1173 = t735 * t1139 - t736 * t1141 + t737 * t1142 - t738 * t1145;
+    const wam7_real_t t1174 = t1173 + t740 * t1153 + t741 * t1157 + t744 * t1161;
+    ddq_by_q[45] = t1174;
+    const wam7_real_t t1175 = parameters[ZZ4] + t1097;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1176 = t958 + t1127 - t73 * t1084 - (t229 * parameters[YZ4] + t247 * t1175);
+    const wam7_real_t t1177 = WAM7_C(2.0) * t1176 + (t106 * t1095 + t109 * t1100); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1178 = t229 * parameters[XZ4] + t227 * t1175 + (t40 * t988 + t37 * t989 - t73 * t1087);
+    const wam7_real_t t1179 = WAM7_C(2.0) * t1178 + (t109 * t1095 + t107 * t1100); /* link j4: derivatives */
+    const wam7_real_t t1180 = t84 * t1177 - t81 * t1179;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t1181 = t1092 - t1108 + (t1091 + (t954 - t1081 + t1090));
+    const wam7_real_t t1182 = WAM7_C(2.0) * t1181; /* link j4: derivatives */
+    const wam7_real_t t1183 = WAM7_C(-2.0) * t1134 + t128 * t1100;
+    const wam7_real_t t1184 = WAM7_C(-2.0) * t1135 + t128 * t1095;
+    const wam7_real_t t1185 = WAM7_C(0.045) * (t81 * t1183 - t84 * t1184) - (t1182 + (t98 * t1095
+        + t99 * t1100));
+    const wam7_real_t t1186 = t84 * t1183 + t81 * t1184;
+    const wam7_real_t t1187 = t114 * t1095 + t112 * t1100;
+    const wam7_real_t t1188 = t130 * t1180 - t126 * t1185 + WAM7_C(0.55) * (t130 * t1187 - t126 * t1186);
+    const wam7_real_t t1189 = WAM7_C(0.07745783389167521) * t1188;
+    const wam7_real_t t1190 = t126 * t1180 + t130 * t1185 + WAM7_C(0.55) * (t130 * t1186 + t126 * t1187);
+    const wam7_real_t t1191 = t81 * t1177 + t84 * t1179 + WAM7_C(0.045) * t1187;
+    const wam7_real_t t1192 = WAM7_C(0.05209961446285298) * (t182 * t1190 + t184 * t1191);
+    const wam7_real_t t1193 = WAM7_C(0.07745783389167521) * t1191;
+    const wam7_real_t t1194 = WAM7_C(0.12156576707999026) * (t1182 + WAM7_C(2.0) * (t227 * t99 - t247 * t98));
+    const wam7_real_t t1195 = WAM7_C(39.387308533916844) * parameters[FV4] + t1194;
+    const wam7_real_t t1196 = t1192 * t633 - t1189 * t637 + t1193 * t640 - t1195 * t644;
+    const wam7_real_t t1197 = t40 * t1007 + t37 * t1008 - t73 * t1147; /* link j5: derivatives */
+    const wam7_real_t t1198 = WAM7_C(0.4469713223199599) * (t1197 + WAM7_C(2.0) * (t247 * t80 + t227 * t83));
+    /* link j6: derivatives */
+    const wam7_real_t t1199 = t40 * t1010 + t37 * t903 + (t48 * t1150 + t67 * t1147);
+    const wam7_real_t t1200 = WAM7_C(0.4469713223199599) * (t1199 + WAM7_C(2.0) * (t247 * t92 + t227 * t94));
+    /* link j7: derivatives */
+    const wam7_real_t t1201 = t40 * t1013 + t37 * t931 + (t64 * t1150 + t63 * t1147);
+    const wam7_real_t t1202 = WAM7_C(0.9996900960702182) * (t1201 + WAM7_C(2.0) * (t247 * t87 + t227 * t89));
+    const wam7_real_t t1203 = t1196 + t1198 * t651 + t1200 * t658 + t1202 * t669;
+    ddq_by_dq[3] = t1203;
+    const wam7_real_t t1204 = t1192 * t671 - t1189 * t672 + t1193 * t674 - t1195 * t676;
+    const wam7_real_t t1205 = t1204 + t1198 * t679 + t1200 * t681 + t1202 * t683;
+    ddq_by_dq[10] = t1205;
+    const wam7_real_t t1206 = t1192 * t685 - t1189 * t674 + t1193 * t686 - t1195 * t688;
+    const wam7_real_t t1207 = t1206 + t1198 * t691 + t1200 * t693 + t1202 * t695;
+    ddq_by_dq[17] = t1207;
+    const wam7_real_t t1208 = t1192 * t697 - t1189 * t698 + t1193 * t699 - t1195 * t701;
+    const wam7_real_t t1209 = t1208 + t1198 * t704 + t1200 * t706 + t1202 * t708;
+    ddq_by_dq[24] = t1209;
+    const wam7_real_t t1210 = t1192 * t710 - t1189 * t711 + t1193 * t712 - t1195 * t713;
+    const wam7_real_t t1211 = t1210 + t1198 * t716 + t1200 * t719 + t1202 * t722;
+    ddq_by_dq[31] = t1211;
+    const wam7_real_t t1212 = t1192 * t724 - t1189 * t725 + t1193 * t726 - t1195 * t727;
+    const wam7_real_t t1213 = t1212 + t1198 * t719 + t1200 * t730 + t1202 * t733;
+    ddq_by_dq[38] = t1213;
+    const wam7_real_t t1214 = t1192 * t735 - t1189 * t736 + t1193 * t737 - t1195 * t738;
+    const wam7_real_t t1215 = t1214 + t1198 * t740 + t1200 * t741 + t1202 * t744;
+    ddq_by_dq[45] = t1215;
+    ddq_by_input[3] = t644;
+    ddq_by_input[10] = t676;
+    ddq_by_input[17] = t688;
+    ddq_by_input[24] = t701;
+    ddq_by_input[31] = t713;
+    ddq_by_input[38] = t727;
+    ddq_by_input[45] = t738;
+    const wam7_real_t t1216 = t416 - parameters[XX3] * t519 + parameters[XY3] * t552 - parameters[XZ3] * t558;
+    const wam7_real_t t1217 = t418 + t1216 + (t419 - parameters[MZ3] * t557) + (t84 * t1104 + t81 * t1079);
+    const wam7_real_t t1218 = t439 + t298; /* link j4: motion */
+    const wam7_real_t t1219 = WAM7_C(0.045) * t226; /* link j4: velocity of its origin */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1220 = t84 * t1128 + t81 * t1130 + (WAM7_C(-0.045) * t1117 - t172 * t1219);
+    const wam7_real_t t1221 = WAM7_C(-0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const wam7_real_t t1222 = parameters[XX3] + t1221;
+    const wam7_real_t t1223 = t224 * parameters[XZ3] + t226 * t1222 + t1220;
+    const wam7_real_t t1224 = WAM7_C(2.0) * t228; /* link j3: derivatives */
+    const wam7_real_t t1225 = t128 * t1219; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1226 = t84 * t1135 - t81 * t1134;
+    const wam7_real_t t1227 = WAM7_C(0.045) * t1226;
+    const wam7_real_t t1228 = WAM7_C(0.045) * t228; /* link j4: velocity of its origin */
+    const wam7_real_t t1229 = t133 * t1228; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1230 = t1229 - t1225 - t1227;
+    const wam7_real_t t1231 = t224 * parameters[YZ3];
+    const wam7_real_t t1232 = t226 * parameters[XY3];
+    const wam7_real_t t1233 = t1232 + t1231 + (t1230 + (t1181 + t1225));
+    const wam7_real_t t1234 = WAM7_C(2.0) * t224; /* link j3: derivatives */
+    const wam7_real_t t1235 = t1223 * t1224 + t1233 * t1234 - (t129 * t510 - t125 * t518 - t1218 * t170);
+    const wam7_real_t t1236 = t1217 + (t1235 - t134 * t557);
+    const wam7_real_t t1237 = t40 * t965 + t37 * t949 + (WAM7_C(0.045) * t1121 + WAM7_C(0.3) * t1113);
+    const wam7_real_t t1238 = parameters[ZZ4] * t512 - t427 + parameters[YZ4] * t528 + parameters[XZ4] * t521;
+    const wam7_real_t t1239 = t429 + t1238 - (parameters[MX4] * t562 + parameters[MY4] * t554) + t1237;
+    const wam7_real_t t1240 = t437 + parameters[YY3] * t511 + parameters[XY3] * t520 - parameters[YZ3] * t517;
+    const wam7_real_t t1241 = t440 + t1240 + (t441 + parameters[MZ3] * t550) + (t1239
+        + WAM7_C(0.045) * (t81 * t1115 - t84 * t1123));
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1242 = t84 * (t1094 - t1109) + t81 * (t1099 - t1107);
+    const wam7_real_t t1243 = t84 * t1242;
+    const wam7_real_t t1244 = t228 * parameters[XZ3];
+    const wam7_real_t t1245 = t1244 - t1232 + (t1230 + (t1109 + t1243 + t1227));
+    const wam7_real_t t1246 = parameters[YY3] + t1221;
+    const wam7_real_t t1247 = t228 * parameters[YZ3] - t226 * t1246 + (t84 * t1176 - t81 * t1178);
+    const wam7_real_t t1248 = t1245 * t1224 + t1247 * t1234 + (t129 * t518 - t124 * t510 - t1218 * t169);
+    const wam7_real_t t1249 = t1241 + (t1248 + t134 * t550);
+    const wam7_real_t t1250 = t447 + (parameters[MX4] * t556 + parameters[MY4] * t523)
+        - parameters[M4] * t559;
+    const wam7_real_t t1251 = t1250 + t1077;
+    const wam7_real_t t1252 = t450 + parameters[MX3] * t558 - parameters[MZ3] * t518 - parameters[M3] * t557;
+    const wam7_real_t t1253 = t1252 + t1251;
+    const wam7_real_t t1254 = t81 * t1135 + t84 * t1134;
+    const wam7_real_t t1255 = t1254 - t116 * t1228 - (t224 * parameters[MY3] + t228 * parameters[MX3]);
+    const wam7_real_t t1256 = t1218 * t171 + t134 * t518 - (t1255 * t1234 + t135 * t557);
+    const wam7_real_t t1257 = t1256 - t1253;
+    const wam7_real_t t1258 = parameters[M3] * t550 + (t443 + parameters[MY3] * t517
+        + parameters[MZ3] * t510);
+    const wam7_real_t t1259 = t1258 + (t84 * t1115 + t81 * t1123);
+    const wam7_real_t t1260 = t1255 * t1224 - t135 * t550 + (t1218 * t173 + t134 * t510);
+    const wam7_real_t t1261 = t1259 + t1260;
+    const wam7_real_t t1262 = t126 * t1249 - t130 * t1236 + WAM7_C(0.55) * (t130 * t1257 + t126 * t1261);
+    const wam7_real_t t1263 = t1218 * t119 + (t169 * t510 + t170 * t518);
+    const wam7_real_t t1264 = t81 * t1242;
+    const wam7_real_t t1265 = t224 * parameters[XY3] + t228 * t1222 + (t1107 + t1264 + (WAM7_C(0.045) * t1254
+        - t172 * t1228));
+    const wam7_real_t t1266 = t228 * parameters[XY3] + t224 * t1246 + (t81 * t1176 + t84 * t1178
+        + t128 * t1228);
+    const wam7_real_t t1267 = t173 * t550 + t171 * t557;
+    const wam7_real_t t1268 = t184 * (t1265 * t1224 + t1266 * t1234 + t1263 - t1267);
+    const wam7_real_t t1269 = WAM7_C(0.05209961446285298) * (t182 * t1262 + t1268);
+    const wam7_real_t t1270 = t130 * t1249 + t126 * t1236 + WAM7_C(0.55) * (t130 * t1261 - t126 * t1257);
+    const wam7_real_t t1271 = WAM7_C(0.07745783389167521) * t1270;
+    const wam7_real_t t1272 = WAM7_C(2.0) * t1265; /* link j3: derivatives */
+    const wam7_real_t t1273 = WAM7_C(2.0) * t1266;
+    const wam7_real_t t1274 = WAM7_C(0.07745783389167521) * (t228 * t1272 + t224 * t1273 + t1263 - t1267);
+    const wam7_real_t t1275 = WAM7_C(-0.09) * t226; /* link j7: derivatives */
+    const wam7_real_t t1276 = t84 * t1143 + t81 * t1144 + t115 * t1275; /* link j4: derivatives */
+    const wam7_real_t t1277 = WAM7_C(0.09) * t228; /* link j7: derivatives */
+    const wam7_real_t t1278 = t1182 + t133 * t1277; /* link j4: derivatives */
+    const wam7_real_t t1279 = t228 * t1276 + t224 * t1278 + (t1218 * t100 + (t164 * t518 - t127 * t510));
+    const wam7_real_t t1280 = WAM7_C(0.12156576707999026) * (t1279 - t133 * t557);
+    const wam7_real_t t1281 = t633 * t1269 - t637 * t1271 + t640 * t1274 - t644 * t1280;
+    /* link j5: derivatives */
+    const wam7_real_t t1282 = t84 * t1148 + t81 * t1151 + (t50 * t1277 - t156 * t1275);
+    const wam7_real_t t1283 = t1197 + t158 * t1277;
+    const wam7_real_t t1284 = t228 * t1282 + t224 * t1283 + (t1218 * t85 + (t155 * t510 + t157 * t518));
+    const wam7_real_t t1285 = WAM7_C(0.4469713223199599) * (t1284 + (t50 * t550 - t158 * t557));
+    /* link j6: derivatives */
+    const wam7_real_t t1286 = t84 * t1154 + t81 * t1155 + (t148 * t1275 + t91 * t1277);
+    const wam7_real_t t1287 = t1199 + t150 * t1277;
+    const wam7_real_t t1288 = t228 * t1286 + t224 * t1287 + (t1218 * t95 + (t147 * t510 + t149 * t518));
+    const wam7_real_t t1289 = WAM7_C(0.4469713223199599) * (t1288 + (t91 * t550 - t150 * t557));
+    /* link j7: derivatives */
+    const wam7_real_t t1290 = t84 * t1158 + t81 * t1159 + (t141 * t1275 + t86 * t1277);
+    const wam7_real_t t1291 = t1201 + t143 * t1277;
+    const wam7_real_t t1292 = t228 * t1290 + t224 * t1291 + (t1218 * t90 + (t140 * t510 + t142 * t518));
+    const wam7_real_t t1293 = WAM7_C(0.9996900960702182) * (t1292 + (t86 * t550 - t143 * t557));
+    const wam7_real_t t1294 = t1281 + t651 * t1285 + t658 * t1289 + t669 * t1293;
+    ddq_by_q[2] = t1294;
+    const wam7_real_t t1295 = t671 * t1269 - t672 * t1271 + t674 * t1274 - t676 * t1280;
+    const wam7_real_t t1296 = t1295 + t679 * t1285 + t681 * t1289 + t683 * t1293;
+    ddq_by_q[9] = t1296;
+    const wam7_real_t t1297 = t685 * t1269 - t674 * t1271 + t686 * t1274 - t688 * t1280;
+    const wam7_real_t t1298 = t1297 + t691 * t1285 + t693 * t1289 + t695 * t1293;
+    ddq_by_q[16] = t1298;
+    const wam7_real_t t1299 = t697 * t1269 - t698 * t1271 + t699 * t1274 - t701 * t1280;
+    const wam7_real_t t1300 = t1299 + t704 * t1285 + t706 * t1289 + t708 * t1293;
+    ddq_by_q[23] = t1300;
+    const wam7_real_t t1301 = t710 * t1269 - t711 * t1271 + t712 * t1274 - t713 * t1280;
+    const wam7_real_t t1302 = t1301 + t716 * t1285 + t719 * t1289 + t722 * t1293;
+    ddq_by_q[30] = t1302;
+    const wam7_real_t t1303 = t724 * t1269 - t725 * t1271 + t726 * t1274 - t727 * t1280;
+    const wam7_real_t t1304 = t1303 + t719 * t1285 + t730 * t1289 + t733 * t1293;
+    ddq_by_q[37] = t1304;
+    const wam7_real_t t1305 = t735 * t1269 - t736 * t1271 + t737 * t1274 - t738 * t1280;
+    const wam7_real_t t1306 = t1305 + t740 * t1285 + t741 * t1289 + t744 * t1293;
+    ddq_by_q[44] = t1306;
+    const wam7_real_t t1307 = parameters[ZZ3] + t1221;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1308 = t228 * t1307 - t226 * parameters[YZ3] + (t1099 - t1264);
+    const wam7_real_t t1309 = WAM7_C(2.0) * t1308 + (t124 * t1224 + t129 * t1234); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1310 = t81 * t1128 - t84 * t1130 - t133 * t1219 - (t226 * parameters[XZ3]
+        + t224 * t1307);
+    const wam7_real_t t1311 = WAM7_C(-2.0) * t1310 + (t129 * t1224 + t125 * t1234); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1312 = t226 * parameters[MY3] - t228 * parameters[MZ3] + t1226;
+    const wam7_real_t t1313 = WAM7_C(2.0) * t1312 - t134 * t1224; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1314 = t226 * parameters[MX3] + t224 * parameters[MZ3] + (t1117 + t116 * t1219);
+    const wam7_real_t t1315 = WAM7_C(2.0) * t1314 + t134 * t1234; /* link j3: derivatives */
+    const wam7_real_t t1316 = t130 * t1309 + t126 * t1311 + WAM7_C(0.55) * (t130 * t1313 - t126 * t1315);
     const wam7_real_t t1317 = WAM7_C(0.07745783389167521) * t1316;
-    const wam7_real_t t1318 = WAM7_C(0.07745783389167521) * t1314;
-    const wam7_real_t t1319 = WAM7_C(0.12156576707999026) * t1310;
-    const wam7_real_t t1320 = t669 * t1315 - t671 * t1317 + t680 * t1318 - t691 * t1319;
-    const wam7_real_t t1321 = WAM7_C(0.4469713223199599) * t1304;
-    const wam7_real_t t1322 = WAM7_C(0.4469713223199599) * (t1294 + (t264 * t730 - t272 * t731 + t1293));
-    const wam7_real_t t1323 = t264 * t754 - t272 * t756 + (t398 * t4 + (parameters[ZZ7] * t874 - t20 * t882));
-    const wam7_real_t t1324 = WAM7_C(0.9996900960702182) * (t1323 + t3 * t910);
-    const wam7_real_t t1325 = t1320 + t708 * t1321 + t729 * t1322 + t751 * t1324;
-    ddq_by_q[5] = t1325;
-    const wam7_real_t t1326 = t770 * t1315 - t771 * t1317 + t773 * t1318 - t775 * t1319;
-    const wam7_real_t t1327 = t1326 + t778 * t1321 + t780 * t1322 + t782 * t1324;
-    ddq_by_q[12] = t1327;
-    const wam7_real_t t1328 = t784 * t1315 - t773 * t1317 + t785 * t1318 - t787 * t1319;
-    const wam7_real_t t1329 = t1328 + t790 * t1321 + t792 * t1322 + t794 * t1324;
-    ddq_by_q[19] = t1329;
-    const wam7_real_t t1330 = t796 * t1315 - t797 * t1317 + t798 * t1318 - t800 * t1319;
-    const wam7_real_t t1331 = t1330 + t803 * t1321 + t805 * t1322 + t807 * t1324;
-    ddq_by_q[26] = t1331;
-    const wam7_real_t t1332 = t809 * t1315 - t810 * t1317 + t811 * t1318 - t812 * t1319;
-    const wam7_real_t t1333 = t1332 + t815 * t1321 + t818 * t1322 + t821 * t1324;
-    ddq_by_q[33] = t1333;
-    const wam7_real_t t1334 = t823 * t1315 - t824 * t1317 + t825 * t1318 - t826 * t1319;
-    const wam7_real_t t1335 = t1334 + t818 * t1321 + t829 * t1322 + t832 * t1324;
-    ddq_by_q[40] = t1335;
-    const wam7_real_t t1336 = t834 * t1315 - t835 * t1317 + t836 * t1318 - t837 * t1319;
-    const wam7_real_t t1337 = t1336 + t839 * t1321 + t840 * t1322 + t843 * t1324;
-    ddq_by_q[47] = t1337;
-    const wam7_real_t t1338 = WAM7_C(2.0) * t556 + (t16 * t1286 + t21 * t1287);
-    const wam7_real_t t1339 = WAM7_C(2.0) * t557 + (t21 * t1286 + t17 * t1287);
-    const wam7_real_t t1340 = t18 * t1338 - t22 * t1339;
-    const wam7_real_t t1341 = t733 + (t30 * t1286 + t29 * t1287);
-    const wam7_real_t t1342 = WAM7_C(2.0) * t570 - t45 * t1287;
-    const wam7_real_t t1343 = WAM7_C(2.0) * t569 + t45 * t1286;
-    const wam7_real_t t1344 = t18 * t1342 - t22 * t1343;
-    const wam7_real_t t1345 = t47 * t1287 - t49 * t1286;
-    const wam7_real_t t1346 = t42 * t1344 + t39 * t1345;
-    const wam7_real_t t1347 = t39 * t1340 + t42 * t1341 + WAM7_C(0.3) * t1346;
-    const wam7_real_t t1348 = t22 * t1338 + t18 * t1339;
-    const wam7_real_t t1349 = WAM7_C(0.045) * t1346;
-    const wam7_real_t t1350 = t1349 - t1348;
-    const wam7_real_t t1351 = t87 * t1347 + t84 * t1350;
-    const wam7_real_t t1352 = t22 * t1342 + t18 * t1343;
-    const wam7_real_t t1353 = t42 * t1345 - t39 * t1344;
-    const wam7_real_t t1354 = t42 * t1340 - t39 * t1341 + (WAM7_C(0.045) * t1352 + WAM7_C(0.3) * t1353);
-    const wam7_real_t t1355 = WAM7_C(0.045) * (t87 * t1352 - t84 * t1353) - t1354;
-    const wam7_real_t t1356 = t87 * t1353 + t84 * t1352;
-    const wam7_real_t t1357 = t134 * t1351 - t130 * t1355 + WAM7_C(0.55) * (t130 * t1356 + t134 * t1346);
-    const wam7_real_t t1358 = WAM7_C(0.07745783389167521) * t1357;
-    const wam7_real_t t1359 = t130 * t1351 + t134 * t1355 + WAM7_C(0.55) * (t130 * t1346 - t134 * t1356);
-    const wam7_real_t t1360 = t1349 + (t84 * t1347 - t87 * t1350);
-    const wam7_real_t t1361 = WAM7_C(0.05209961446285298) * (t187 * t1359 + t189 * t1360);
-    const wam7_real_t t1362 = WAM7_C(0.07745783389167521) * t1360;
-    const wam7_real_t t1363 = WAM7_C(0.12156576707999026) * t1354;
-    const wam7_real_t t1364 = t1361 * t669 - t1358 * t671 + t1362 * t680 - t1363 * t691;
-    const wam7_real_t t1365 = WAM7_C(0.4469713223199599) * t1348;
-    const wam7_real_t t1366 = WAM7_C(0.4469713223199599) * (t733 + WAM7_C(2.0) * (t264 * t30 + t272 * t29));
-    const wam7_real_t t1367 = WAM7_C(-40.16949152542373) * parameters[FV6] + t1366;
-    const wam7_real_t t1368 = WAM7_C(0.9996900960702182) * (t758 + WAM7_C(2.0) * (t264 * t20
-        + t272 * parameters[ZZ7]));
-    const wam7_real_t t1369 = t1364 + t1365 * t708 + t1367 * t729 + t1368 * t751;
-    ddq_by_dq[5] = t1369;
-    const wam7_real_t t1370 = t1361 * t770 - t1358 * t771 + t1362 * t773 - t1363 * t775;
-    const wam7_real_t t1371 = t1370 + t1365 * t778 + t1367 * t780 + t1368 * t782;
-    ddq_by_dq[12] = t1371;
-    const wam7_real_t t1372 = t1361 * t784 - t1358 * t773 + t1362 * t785 - t1363 * t787;
-    const wam7_real_t t1373 = t1372 + t1365 * t790 + t1367 * t792 + t1368 * t794;
-    ddq_by_dq[19] = t1373;
-    const wam7_real_t t1374 = t1361 * t796 - t1358 * t797 + t1362 * t798 - t1363 * t800;
-    const wam7_real_t t1375 = t1374 + t1365 * t803 + t1367 * t805 + t1368 * t807;
-    ddq_by_dq[26] = t1375;
-    const wam7_real_t t1376 = t1361 * t809 - t1358 * t810 + t1362 * t811 - t1363 * t812;
-    const wam7_real_t t1377 = t1376 + t1365 * t815 + t1367 * t818 + t1368 * t821;
-    ddq_by_dq[33] = t1377;
-    const wam7_real_t t1378 = t1361 * t823 - t1358 * t824 + t1362 * t825 - t1363 * t826;
-    const wam7_real_t t1379 = t1378 + t1365 * t818 + t1367 * t829 + t1368 * t832;
-    ddq_by_dq[40] = t1379;
-    const wam7_real_t t1380 = t1361 * t834 - t1358 * t835 + t1362 * t836 - t1363 * t837;
-    const wam7_real_t t1381 = t1380 + t1365 * t839 + t1367 * t840 + t1368 * t843;
-    ddq_by_dq[47] = t1381;
-    ddq_by_input[5] = t729;
-    ddq_by_input[12] = t780;
-    ddq_by_input[19] = t792;
-    ddq_by_input[26] = t805;
-    ddq_by_input[33] = t818;
-    ddq_by_input[40] = t829;
-    ddq_by_input[47] = t840;
-    const wam7_real_t t1382 = WAM7_C(2.0) * t276; /* link j7: derivatives */
-    const wam7_real_t t1383 = WAM7_C(-2.0) * t282;
-    const wam7_real_t t1384 = t509 * t1382 - t516 * t1383 - (t391 * parameters[XZ7] - (parameters[XX7] * t879
-        - parameters[XY7] * t877));
-    const wam7_real_t t1385 = t918 - (t917 - t1384);
-    const wam7_real_t t1386 = t514 * t1382 - t511 * t1383 + (t391 * parameters[YZ7] + (parameters[YY7] * t877
-        - parameters[XY7] * t879));
-    const wam7_real_t t1387 = t912 + (t1386 - t909);
-    const wam7_real_t t1388 = t924 + (t923 - t391 * parameters[MY7] - (t521 * t1383 + t922));
-    const wam7_real_t t1389 = t921 - (t521 * t1382 + t919 - (t391 * parameters[MX7] + t920));
-    const wam7_real_t t1390 = t1 * t1388 + t2 * t1389;
-    const wam7_real_t t1391 = t2 * t1385 + t1 * t1387 + WAM7_C(0.06) * t1390;
-    const wam7_real_t t1392 = parameters[MY7] * t908 - parameters[MX7] * t916;
-    const wam7_real_t t1393 = t391 * parameters[ZZ7] + (parameters[YZ7] * t877 - parameters[XZ7] * t879);
-    const wam7_real_t t1394 = t542 * t1382 - t543 * t1383 + t1393 + t1392;
-    const wam7_real_t t1395 = t18 * t1391 - t22 * t1394;
-    const wam7_real_t t1396 = t2 * t1388 - t1 * t1389;
-    const wam7_real_t t1397 = t2 * t1387 - t1 * t1385 + WAM7_C(0.06) * t1396;
-    const wam7_real_t t1398 = t536 * t1382 + t535 * t1383 + (parameters[MY7] * t879 + parameters[MX7] * t877);
-    const wam7_real_t t1399 = t18 * t1396 - t22 * t1398;
-    const wam7_real_t t1400 = t42 * t1399 + t39 * t1390;
-    const wam7_real_t t1401 = t39 * t1395 + t42 * t1397 + WAM7_C(0.3) * t1400;
-    const wam7_real_t t1402 = t22 * t1391 + t18 * t1394;
-    const wam7_real_t t1403 = WAM7_C(0.045) * t1400;
-    const wam7_real_t t1404 = t1402 - t1403;
-    const wam7_real_t t1405 = t87 * t1401 - t84 * t1404;
-    const wam7_real_t t1406 = t42 * t1390 - t39 * t1399;
-    const wam7_real_t t1407 = t22 * t1396 + t18 * t1398;
-    const wam7_real_t t1408 = t42 * t1395 - t39 * t1397 + (WAM7_C(0.045) * t1407 + WAM7_C(0.3) * t1406);
-    const wam7_real_t t1409 = t1408 - WAM7_C(0.045) * (t87 * t1407 - t84 * t1406);
-    const wam7_real_t t1410 = t87 * t1406 + t84 * t1407;
-    const wam7_real_t t1411 = t130 * t1405 - t134 * t1409 + WAM7_C(0.55) * (t130 * t1400 - t134 * t1410);
-    const wam7_real_t t1412 = t1403 + (t84 * t1401 + t87 * t1404);
-    const wam7_real_t t1413 = WAM7_C(0.05209961446285298) * (t187 * t1411 + t189 * t1412);
-    const wam7_real_t t1414 = t134 * t1405 + t130 * t1409 + WAM7_C(0.55) * (t130 * t1410 + t134 * t1400);
-    const wam7_real_t t1415 = WAM7_C(0.07745783389167521) * t1414;
-    const wam7_real_t t1416 = WAM7_C(0.07745783389167521) * t1412;
-    const wam7_real_t t1417 = WAM7_C(0.12156576707999026) * t1408;
-    const wam7_real_t t1418 = t669 * t1413 - t671 * t1415 + t680 * t1416 - t691 * t1417;
-    const wam7_real_t t1419 = WAM7_C(0.4469713223199599) * t1402;
-    const wam7_real_t t1420 = WAM7_C(0.4469713223199599) * t1397;
-    const wam7_real_t t1421 = WAM7_C(0.9996900960702182) * (t1392 + (t276 * t752 + t282 * t753 + t1393));
-    const wam7_real_t t1422 = t1418 + t708 * t1419 + t729 * t1420 + t751 * t1421;
-    ddq_by_q[6] = t1422;
-    const wam7_real_t t1423 = t770 * t1413 - t771 * t1415 + t773 * t1416 - t775 * t1417;
-    const wam7_real_t t1424 = t1423 + t778 * t1419 + t780 * t1420 + t782 * t1421;
-    ddq_by_q[13] = t1424;
-    const wam7_real_t t1425 = t784 * t1413 - t773 * t1415 + t785 * t1416 - t787 * t1417;
-    const wam7_real_t t1426 = t1425 + t790 * t1419 + t792 * t1420 + t794 * t1421;
-    ddq_by_q[20] = t1426;
-    const wam7_real_t t1427 = t796 * t1413 - t797 * t1415 + t798 * t1416 - t800 * t1417;
-    const wam7_real_t t1428 = t1427 + t803 * t1419 + t805 * t1420 + t807 * t1421;
-    ddq_by_q[27] = t1428;
-    const wam7_real_t t1429 = t809 * t1413 - t810 * t1415 + t811 * t1416 - t812 * t1417;
-    const wam7_real_t t1430 = t1429 + t815 * t1419 + t818 * t1420 + t821 * t1421;
-    ddq_by_q[34] = t1430;
-    const wam7_real_t t1431 = t823 * t1413 - t824 * t1415 + t825 * t1416 - t826 * t1417;
-    const wam7_real_t t1432 = t1431 + t818 * t1419 + t829 * t1420 + t832 * t1421;
-    ddq_by_q[41] = t1432;
-    const wam7_real_t t1433 = t834 * t1413 - t835 * t1415 + t836 * t1416 - t837 * t1417;
-    const wam7_real_t t1434 = t1433 + t839 * t1419 + t840 * t1420 + t843 * t1421;
-    ddq_by_q[48] = t1434;
-    const wam7_real_t t1435 = WAM7_C(2.0) * t533 - (parameters[XX7] * t1382 - parameters[XY7] * t1383);
-    const wam7_real_t t1436 = WAM7_C(2.0) * t534 + (parameters[YY7] * t1383 - parameters[XY7] * t1382);
-    const wam7_real_t t1437 = WAM7_C(2.0) * t536 + parameters[MZ7] * t1383;
-    const wam7_real_t t1438 = WAM7_C(2.0) * t535 - parameters[MZ7] * t1382;
-    const wam7_real_t t1439 = t1 * t1437 - t2 * t1438;
-    const wam7_real_t t1440 = t1 * t1436 - t2 * t1435 + WAM7_C(0.06) * t1439;
-    const wam7_real_t t1441 = t755 - (parameters[XZ7] * t1382 - parameters[YZ7] * t1383);
-    const wam7_real_t t1442 = t18 * t1440 - t22 * t1441;
-    const wam7_real_t t1443 = t2 * t1437 + t1 * t1438;
-    const wam7_real_t t1444 = t1 * t1435 + t2 * t1436 + WAM7_C(0.06) * t1443;
-    const wam7_real_t t1445 = parameters[MY7] * t1382 + parameters[MX7] * t1383;
-    const wam7_real_t t1446 = t18 * t1443 - t22 * t1445;
-    const wam7_real_t t1447 = t42 * t1446 + t39 * t1439;
-    const wam7_real_t t1448 = t39 * t1442 + t42 * t1444 + WAM7_C(0.3) * t1447;
-    const wam7_real_t t1449 = t22 * t1440 + t18 * t1441;
-    const wam7_real_t t1450 = WAM7_C(0.045) * t1447;
-    const wam7_real_t t1451 = t1450 - t1449;
-    const wam7_real_t t1452 = t87 * t1448 + t84 * t1451;
-    const wam7_real_t t1453 = t42 * t1439 - t39 * t1446;
-    const wam7_real_t t1454 = t22 * t1443 + t18 * t1445;
-    const wam7_real_t t1455 = t42 * t1442 - t39 * t1444 + (WAM7_C(0.045) * t1454 + WAM7_C(0.3) * t1453);
-    const wam7_real_t t1456 = WAM7_C(0.045) * (t87 * t1454 - t84 * t1453) - t1455;
-    const wam7_real_t t1457 = t87 * t1453 + t84 * t1454;
-    const wam7_real_t t1458 = t134 * t1452 - t130 * t1456 + WAM7_C(0.55) * (t130 * t1457 + t134 * t1447);
-    const wam7_real_t t1459 = WAM7_C(0.07745783389167521) * t1458;
-    const wam7_real_t t1460 = t130 * t1452 + t134 * t1456 + WAM7_C(0.55) * (t130 * t1447 - t134 * t1457);
-    const wam7_real_t t1461 = t1450 + (t84 * t1448 - t87 * t1451);
-    const wam7_real_t t1462 = WAM7_C(0.05209961446285298) * (t187 * t1460 + t189 * t1461);
-    const wam7_real_t t1463 = WAM7_C(0.07745783389167521) * t1461;
-    const wam7_real_t t1464 = WAM7_C(0.12156576707999026) * t1455;
-    const wam7_real_t t1465 = t1462 * t669 - t1459 * t671 + t1463 * t680 - t1464 * t691;
-    const wam7_real_t t1466 = WAM7_C(0.4469713223199599) * t1449;
-    const wam7_real_t t1467 = WAM7_C(0.4469713223199599) * t1444;
-    const wam7_real_t t1468 = WAM7_C(-222.83582089552237) * parameters[FV7];
-    const wam7_real_t t1469 = t1465 + t1466 * t708 + t1467 * t729 + t1468 * t751;
-    ddq_by_dq[6] = t1469;
-    const wam7_real_t t1470 = t1462 * t770 - t1459 * t771 + t1463 * t773 - t1464 * t775;
-    const wam7_real_t t1471 = t1470 + t1466 * t778 + t1467 * t780 + t1468 * t782;
-    ddq_by_dq[13] = t1471;
-    const wam7_real_t t1472 = t1462 * t784 - t1459 * t773 + t1463 * t785 - t1464 * t787;
-    const wam7_real_t t1473 = t1472 + t1466 * t790 + t1467 * t792 + t1468 * t794;
-    ddq_by_dq[20] = t1473;
-    const wam7_real_t t1474 = t1462 * t796 - t1459 * t797 + t1463 * t798 - t1464 * t800;
-    const wam7_real_t t1475 = t1474 + t1466 * t803 + t1467 * t805 + t1468 * t807;
-    ddq_by_dq[27] = t1475;
-    const wam7_real_t t1476 = t1462 * t809 - t1459 * t810 + t1463 * t811 - t1464 * t812;
-    const wam7_real_t t1477 = t1476 + t1466 * t815 + t1467 * t818 + t1468 * t821;
-    ddq_by_dq[34] = t1477;
-    const wam7_real_t t1478 = t1462 * t823 - t1459 * t824 + t1463 * t825 - t1464 * t826;
-    const wam7_real_t t1479 = t1478 + t1466 * t818 + t1467 * t829 + t1468 * t832;
-    ddq_by_dq[41] = t1479;
-    const wam7_real_t t1480 = t1462 * t834 - t1459 * t835 + t1463 * t836 - t1464 * t837;
-    const wam7_real_t t1481 = t1480 + t1466 * t839 + t1467 * t840 + t1468 * t843;
-    ddq_by_dq[48] = t1481;
-    ddq_by_input[6] = t751;
-    ddq_by_input[13] = t782;
-    ddq_by_input[20] = t794;
-    ddq_by_input[27] = t807;
-    ddq_by_input[34] = t821;
-    ddq_by_input[41] = t832;
-    ddq_by_input[48] = t843;
+    const wam7_real_t t1318 = t126 * t1309 - t130 * t1311 + WAM7_C(0.55) * (t130 * t1315 + t126 * t1313);
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t1319 = t1244 + t1231 + (t1243 - t1094 + t1229 - t1230);
+    const wam7_real_t t1320 = WAM7_C(2.0) * t1319; /* link j3: derivatives */
+    const wam7_real_t t1321 = t182 * t1318 + t184 * (t1320 + (t170 * t1234 - t169 * t1224));
+    const wam7_real_t t1322 = WAM7_C(0.05209961446285298) * t1321;
+    const wam7_real_t t1323 = WAM7_C(0.07745783389167521) * (t1320 + WAM7_C(2.0) * (t224 * t170
+        - t228 * t169));
+    const wam7_real_t t1324 = WAM7_C(-61.81619256017505) * parameters[FV3] + t1323;
+    const wam7_real_t t1325 = t84 * t1144 - t81 * t1143 - t133 * t1275; /* link j4: derivatives */
+    const wam7_real_t t1326 = WAM7_C(0.12156576707999026) * (t1325 + WAM7_C(2.0) * (t228 * t127
+        + t224 * t164));
+    const wam7_real_t t1327 = t1322 * t633 - t1317 * t637 + t1324 * t640 - t1326 * t644;
+    const wam7_real_t t1328 = t84 * t1151 - t81 * t1148 - t158 * t1275; /* link j5: derivatives */
+    const wam7_real_t t1329 = WAM7_C(0.4469713223199599) * (t1328 + WAM7_C(2.0) * (t224 * t157
+        - t228 * t155));
+    const wam7_real_t t1330 = t84 * t1155 - t81 * t1154 - t150 * t1275; /* link j6: derivatives */
+    const wam7_real_t t1331 = WAM7_C(0.4469713223199599) * (t1330 + WAM7_C(2.0) * (t224 * t149
+        - t228 * t147));
+    const wam7_real_t t1332 = t84 * t1159 - t81 * t1158 - t143 * t1275; /* link j7: derivatives */
+    const wam7_real_t t1333 = WAM7_C(0.9996900960702182) * (t1332 + WAM7_C(2.0) * (t224 * t142
+        - t228 * t140));
+    const wam7_real_t t1334 = t1327 + t1329 * t651 + t1331 * t658 + t1333 * t669;
+    ddq_by_dq[2] = t1334;
+    const wam7_real_t t1335 = t1322 * t671 - t1317 * t672 + t1324 * t674 - t1326 * t676;
+    const wam7_real_t t1336 = t1335 + t1329 * t679 + t1331 * t681 + t1333 * t683;
+    ddq_by_dq[9] = t1336;
+    const wam7_real_t t1337 = t1322 * t685 - t1317 * t674 + t1324 * t686 - t1326 * t688;
+    const wam7_real_t t1338 = t1337 + t1329 * t691 + t1331 * t693 + t1333 * t695;
+    ddq_by_dq[16] = t1338;
+    const wam7_real_t t1339 = t1322 * t697 - t1317 * t698 + t1324 * t699 - t1326 * t701;
+    const wam7_real_t t1340 = t1339 + t1329 * t704 + t1331 * t706 + t1333 * t708;
+    ddq_by_dq[23] = t1340;
+    const wam7_real_t t1341 = t1322 * t710 - t1317 * t711 + t1324 * t712 - t1326 * t713;
+    const wam7_real_t t1342 = t1341 + t1329 * t716 + t1331 * t719 + t1333 * t722;
+    ddq_by_dq[30] = t1342;
+    const wam7_real_t t1343 = t1322 * t724 - t1317 * t725 + t1324 * t726 - t1326 * t727;
+    const wam7_real_t t1344 = t1343 + t1329 * t719 + t1331 * t730 + t1333 * t733;
+    ddq_by_dq[37] = t1344;
+    const wam7_real_t t1345 = t1322 * t735 - t1317 * t736 + t1324 * t737 - t1326 * t738;
+    const wam7_real_t t1346 = t1345 + t1329 * t740 + t1331 * t741 + t1333 * t744;
+    ddq_by_dq[44] = t1346;
+    ddq_by_input[2] = t640;
+    ddq_by_input[9] = t674;
+    ddq_by_input[16] = t686;
+    ddq_by_input[23] = t699;
+    ddq_by_input[30] = t712;
+    ddq_by_input[37] = t726;
+    ddq_by_input[44] = t737;
+    const wam7_real_t t1347 = t460 + parameters[ZZ3] * t516 - parameters[YZ3] * t510 - parameters[XZ3] * t518;
+    const wam7_real_t t1348 = t459 + t1347 + (parameters[MX3] * t557 + parameters[MY3] * t550) + (t84 * t1079
+        - t81 * t1104 + WAM7_C(-0.045) * t1251);
+    const wam7_real_t t1349 = t463 + parameters[YY2] * t515 + parameters[XY2] * t509 + parameters[YZ2] * t506;
+    const wam7_real_t t1350 = t308 + t456; /* link j3: motion */
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1351 = t126 * (t1233 - t1245) + t130 * (t1247 + t1223);
+    const wam7_real_t t1352 = t126 * t1351;
+    const wam7_real_t t1353 = WAM7_C(-0.55) * dq[1]; /* link j3: velocity of its origin */
+    const wam7_real_t t1354 = t199 * t1353; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1355 = WAM7_C(-0.55) * t1255;
+    const wam7_real_t t1356 = WAM7_C(-0.55) * t223; /* link j3: velocity of its origin */
+    const wam7_real_t t1357 = t174 * t1356; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1358 = t1355 + (t1354 - t1357);
+    const wam7_real_t t1359 = t225 * parameters[XZ2];
+    const wam7_real_t t1360 = dq[1] * parameters[XY2];
+    const wam7_real_t t1361 = t1359 + t1360 + (t1358 + (t1352 - t1233 - t1354));
+    const wam7_real_t t1362 = WAM7_C(-2.0) * t225; /* link j2: derivatives */
+    const wam7_real_t t1363 = t134 + t136; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1364 = WAM7_C(0.55) * (t126 * t1312 + t130 * t1314) - t1363 * t1353;
+    const wam7_real_t t1365 = WAM7_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const wam7_real_t t1366 = parameters[YY2] - t1365;
+    const wam7_real_t t1367 = t225 * parameters[YZ2] + dq[1] * t1366 + (t126 * t1308 + t130 * t1310 + t1364);
+    const wam7_real_t t1368 = WAM7_C(2.0) * t223; /* link j2: derivatives */
+    const wam7_real_t t1369 = t1350 * t181 + (t206 * t514 + t208 * t507) - (t1361 * t1362 + t1367 * t1368);
+    const wam7_real_t t1370 = t174 - parameters[MZ2]; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t1371 = t466 + (t465 + t1349) + t1348 + (t302 * t1370 + t1369);
+    const wam7_real_t t1372 = t126 * t1217 + t130 * t1241 + WAM7_C(0.55) * (t130 * t1259 + t126 * t1253);
+    const wam7_real_t t1373 = t454 - parameters[XX2] * t508 + parameters[XY2] * (t234 - t515)
+        + parameters[XZ2] * (t237 + t497);
+    const wam7_real_t t1374 = t1365 - parameters[XX2];
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1375 = dq[1] * t1374 - t223 * parameters[XZ2] + (t130 * t1266 - t126 * t1265);
+    const wam7_real_t t1376 = t223 * parameters[YZ2];
+    const wam7_real_t t1377 = t1358 + (t1319 - t1355) - (t1360 + t1376);
+    const wam7_real_t t1378 = t207 * t507 - t208 * t514 - t1350 * t183 - (t1375 * t1362 + t1377 * t1368);
+    const wam7_real_t t1379 = t458 + (t457 + t1373) + t1372 + (t310 * t1370 + t1378);
+    const wam7_real_t t1380 = WAM7_C(0.05209961446285298) * (t182 * t1371 + t184 * t1379);
+    const wam7_real_t t1381 = t130 * t1351;
+    const wam7_real_t t1382 = t223 * parameters[XY2] + t225 * t1374 + (t1381 - t1223 - t199 * t1356);
+    const wam7_real_t t1383 = WAM7_C(2.0) * t1382; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1384 = WAM7_C(0.55) * (t126 * t1314 - t130 * t1312) + t1363 * t1356;
+    const wam7_real_t t1385 = t225 * parameters[XY2] - t223 * t1366 + (t126 * t1310 - t130 * t1308 + t1384);
+    const wam7_real_t t1386 = WAM7_C(2.0) * t1385; /* link j2: derivatives */
+    const wam7_real_t t1387 = t225 * t1383 + t223 * t1386 + (t181 * t514 + t183 * t507 - t1350 * t138);
+    const wam7_real_t t1388 = t302 * (parameters[MX2] + t199) + t310 * (parameters[MY2] + t1363) + t1387;
+    const wam7_real_t t1389 = WAM7_C(0.07745783389167521) * t1388;
+    const wam7_real_t t1390 = t130 * t1273 - t126 * t1272; /* link j3: derivatives */
+    const wam7_real_t t1391 = WAM7_C(1.1) * t223; /* link j7: derivatives */
+    const wam7_real_t t1392 = WAM7_C(1.1) * dq[1];
+    const wam7_real_t t1393 = t1320 - (t199 * t1392 - t174 * t1391); /* link j3: derivatives */
+    const wam7_real_t t1394 = t225 * t1390 - t223 * t1393 + (t1350 * t175 + (t200 * t514 + t119 * t507));
+    const wam7_real_t t1395 = WAM7_C(0.07745783389167521) * (t310 * t174 + t1394);
+    const wam7_real_t t1396 = t130 * t1278 - t126 * t1276 + t115 * t1391; /* link j4: derivatives */
+    const wam7_real_t t1397 = t1325 + (t165 * t1391 - t195 * t1392);
+    const wam7_real_t t1398 = t225 * t1396 - t223 * t1397 + (t1350 * t166 + (t196 * t514 + t100 * t507));
+    const wam7_real_t t1399 = WAM7_C(0.12156576707999026) * (t310 * t165 + t302 * t115 + t1398);
+    const wam7_real_t t1400 = t633 * t1380 - t637 * t1389 + t640 * t1395 - t644 * t1399;
+    const wam7_real_t t1401 = t130 * t1283 - t126 * t1282 - t156 * t1391; /* link j5: derivatives */
+    const wam7_real_t t1402 = t1328 + (t159 * t1391 + t192 * t1392);
+    const wam7_real_t t1403 = t225 * t1401 - t223 * t1402 + (t1350 * t160 + (t193 * t514 + t85 * t507));
+    const wam7_real_t t1404 = WAM7_C(0.4469713223199599) * (t310 * t159 - t302 * t156 + t1403);
+    const wam7_real_t t1405 = t130 * t1287 - t126 * t1286 + t148 * t1391; /* link j6: derivatives */
+    const wam7_real_t t1406 = t1330 + (t151 * t1391 + t188 * t1392);
+    const wam7_real_t t1407 = t225 * t1405 - t223 * t1406 + (t1350 * t152 + (t189 * t514 + t95 * t507));
+    const wam7_real_t t1408 = WAM7_C(0.4469713223199599) * (t310 * t151 + t302 * t148 + t1407);
+    const wam7_real_t t1409 = t130 * t1291 - t126 * t1290 + t141 * t1391; /* link j7: derivatives */
+    const wam7_real_t t1410 = t1332 + (t144 * t1391 + t185 * t1392);
+    const wam7_real_t t1411 = t225 * t1409 - t223 * t1410 + (t1350 * t145 + (t186 * t514 + t90 * t507));
+    const wam7_real_t t1412 = WAM7_C(0.9996900960702182) * (t310 * t144 + t302 * t141 + t1411);
+    const wam7_real_t t1413 = t1400 + t651 * t1404 + t658 * t1408 + t669 * t1412;
+    ddq_by_q[1] = t1413;
+    const wam7_real_t t1414 = t671 * t1380 - t672 * t1389 + t674 * t1395 - t676 * t1399;
+    const wam7_real_t t1415 = t1414 + t679 * t1404 + t681 * t1408 + t683 * t1412;
+    ddq_by_q[8] = t1415;
+    const wam7_real_t t1416 = t685 * t1380 - t674 * t1389 + t686 * t1395 - t688 * t1399;
+    const wam7_real_t t1417 = t1416 + t691 * t1404 + t693 * t1408 + t695 * t1412;
+    ddq_by_q[15] = t1417;
+    const wam7_real_t t1418 = t697 * t1380 - t698 * t1389 + t699 * t1395 - t701 * t1399;
+    const wam7_real_t t1419 = t1418 + t704 * t1404 + t706 * t1408 + t708 * t1412;
+    ddq_by_q[22] = t1419;
+    const wam7_real_t t1420 = t710 * t1380 - t711 * t1389 + t712 * t1395 - t713 * t1399;
+    const wam7_real_t t1421 = t1420 + t716 * t1404 + t719 * t1408 + t722 * t1412;
+    ddq_by_q[29] = t1421;
+    const wam7_real_t t1422 = t724 * t1380 - t725 * t1389 + t726 * t1395 - t727 * t1399;
+    const wam7_real_t t1423 = t1422 + t719 * t1404 + t730 * t1408 + t733 * t1412;
+    ddq_by_q[36] = t1423;
+    const wam7_real_t t1424 = t735 * t1380 - t736 * t1389 + t737 * t1395 - t738 * t1399;
+    const wam7_real_t t1425 = t1424 + t740 * t1404 + t741 * t1408 + t744 * t1412;
+    ddq_by_q[43] = t1425;
+    /* link j2: derivatives */
+    const wam7_real_t t1426 = WAM7_C(2.0) * (t1359 - t1376 + (t1245 + t1352 - t1357 - t1358));
+    const wam7_real_t t1427 = WAM7_C(0.07745783389167521) * (t1426 + WAM7_C(2.0) * (t225 * t181
+        + t223 * t183));
+    const wam7_real_t t1428 = WAM7_C(61.81619256017505) * parameters[FV2] + t1427;
+    const wam7_real_t t1429 = parameters[ZZ2] - t1365;
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1430 = t1247 - t1381 - t174 * t1353 - (dq[1] * parameters[YZ2] + t225 * t1429);
+    /* link j2: derivatives */
+    const wam7_real_t t1431 = t182 * (WAM7_C(2.0) * t1430 + (t208 * t1368 - t206 * t1362));
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t1432 = dq[1] * parameters[XZ2] + t223 * t1429 + (t130 * t1265 + t126 * t1266);
+    /* link j2: derivatives */
+    const wam7_real_t t1433 = t184 * (WAM7_C(2.0) * t1432 + (t208 * t1362 + t207 * t1368));
+    const wam7_real_t t1434 = WAM7_C(0.05209961446285298) * (t1431 + t1433);
+    /* link j3: derivatives */
+    const wam7_real_t t1435 = t130 * t1272 + t126 * t1273 + WAM7_C(2.0) * (t225 * t200 + t223 * t119);
+    const wam7_real_t t1436 = WAM7_C(0.07745783389167521) * t1435;
+    /* link j4: derivatives */
+    const wam7_real_t t1437 = t130 * t1276 + t126 * t1278 + t115 * t1392 + WAM7_C(2.0) * (t225 * t196
+        + t223 * t100);
+    const wam7_real_t t1438 = WAM7_C(0.12156576707999026) * t1437;
+    const wam7_real_t t1439 = t1434 * t633 - t1428 * t637 + t1436 * t640 - t1438 * t644;
+    /* link j5: derivatives */
+    const wam7_real_t t1440 = t130 * t1282 + t126 * t1283 - t156 * t1392 + WAM7_C(2.0) * (t225 * t193
+        + t223 * t85);
+    const wam7_real_t t1441 = WAM7_C(0.4469713223199599) * t1440;
+    /* link j6: derivatives */
+    const wam7_real_t t1442 = t130 * t1286 + t126 * t1287 + t148 * t1392 + WAM7_C(2.0) * (t225 * t189
+        + t223 * t95);
+    const wam7_real_t t1443 = WAM7_C(0.4469713223199599) * t1442;
+    /* link j7: derivatives */
+    const wam7_real_t t1444 = t130 * t1290 + t126 * t1291 + t141 * t1392 + WAM7_C(2.0) * (t225 * t186
+        + t223 * t90);
+    const wam7_real_t t1445 = WAM7_C(0.9996900960702182) * t1444;
+    const wam7_real_t t1446 = t1439 + t1441 * t651 + t1443 * t658 + t1445 * t669;
+    ddq_by_dq[1] = t1446;
+    const wam7_real_t t1447 = t1434 * t671 - t1428 * t672 + t1436 * t674 - t1438 * t676;
+    const wam7_real_t t1448 = t1447 + t1441 * t679 + t1443 * t681 + t1445 * t683;
+    ddq_by_dq[8] = t1448;
+    const wam7_real_t t1449 = t1434 * t685 - t1428 * t674 + t1436 * t686 - t1438 * t688;
+    const wam7_real_t t1450 = t1449 + t1441 * t691 + t1443 * t693 + t1445 * t695;
+    ddq_by_dq[15] = t1450;
+    const wam7_real_t t1451 = t1434 * t697 - t1428 * t698 + t1436 * t699 - t1438 * t701;
+    const wam7_real_t t1452 = t1451 + t1441 * t704 + t1443 * t706 + t1445 * t708;
+    ddq_by_dq[22] = t1452;
+    const wam7_real_t t1453 = t1434 * t710 - t1428 * t711 + t1436 * t712 - t1438 * t713;
+    const wam7_real_t t1454 = t1453 + t1441 * t716 + t1443 * t719 + t1445 * t722;
+    ddq_by_dq[29] = t1454;
+    const wam7_real_t t1455 = t1434 * t724 - t1428 * t725 + t1436 * t726 - t1438 * t727;
+    const wam7_real_t t1456 = t1455 + t1441 * t719 + t1443 * t730 + t1445 * t733;
+    ddq_by_dq[36] = t1456;
+    const wam7_real_t t1457 = t1434 * t735 - t1428 * t736 + t1436 * t737 - t1438 * t738;
+    const wam7_real_t t1458 = t1457 + t1441 * t740 + t1443 * t741 + t1445 * t744;
+    ddq_by_dq[43] = t1458;
+    ddq_by_input[1] = t637;
+    ddq_by_input[8] = t672;
+    ddq_by_input[15] = t674;
+    ddq_by_input[22] = t698;
+    ddq_by_input[29] = t711;
+    ddq_by_input[36] = t725;
+    ddq_by_input[43] = t736;
+    /* link j2: inertia, momentum beyond */
+    const wam7_real_t t1459 = t184 * (t184 * (t1377 - t1361) + t182 * (t1367 + t1375));
+    const wam7_real_t t1460 = WAM7_C(-91.90371991247264) * parameters[FV1]
+        + WAM7_C(0.10419922892570596) * (t1361 + t1459);
+    const wam7_real_t t1461 = WAM7_C(0.07745783389167521) * (t182 * t1383 - t184 * t1386);
+    const wam7_real_t t1462 = WAM7_C(0.07745783389167521) * (t182 * t1390 + t184 * t1393);
+    const wam7_real_t t1463 = WAM7_C(0.12156576707999026) * (t182 * t1396 + t184 * t1397);
+    const wam7_real_t t1464 = t1460 * t633 - t1461 * t637 + t1462 * t640 - t1463 * t644;
+    const wam7_real_t t1465 = WAM7_C(0.4469713223199599) * (t182 * t1401 + t184 * t1402);
+    const wam7_real_t t1466 = WAM7_C(0.4469713223199599) * (t182 * t1405 + t184 * t1406);
+    const wam7_real_t t1467 = WAM7_C(0.9996900960702182) * (t182 * t1409 + t184 * t1410);
+    const wam7_real_t t1468 = t1464 + t1465 * t651 + t1466 * t658 + t1467 * t669;
+    ddq_by_dq[0] = t1468;
+    const wam7_real_t t1469 = t1460 * t671 - t1461 * t672 + t1462 * t674 - t1463 * t676;
+    const wam7_real_t t1470 = t1469 + t1465 * t679 + t1466 * t681 + t1467 * t683;
+    ddq_by_dq[7] = t1470;
+    const wam7_real_t t1471 = t1460 * t685 - t1461 * t674 + t1462 * t686 - t1463 * t688;
+    const wam7_real_t t1472 = t1471 + t1465 * t691 + t1466 * t693 + t1467 * t695;
+    ddq_by_dq[14] = t1472;
+    const wam7_real_t t1473 = t1460 * t697 - t1461 * t698 + t1462 * t699 - t1463 * t701;
+    const wam7_real_t t1474 = t1473 + t1465 * t704 + t1466 * t706 + t1467 * t708;
+    ddq_by_dq[21] = t1474;
+    const wam7_real_t t1475 = t1460 * t710 - t1461 * t711 + t1462 * t712 - t1463 * t713;
+    const wam7_real_t t1476 = t1475 + t1465 * t716 + t1466 * t719 + t1467 * t722;
+    ddq_by_dq[28] = t1476;
+    const wam7_real_t t1477 = t1460 * t724 - t1461 * t725 + t1462 * t726 - t1463 * t727;
+    const wam7_real_t t1478 = t1477 + t1465 * t719 + t1466 * t730 + t1467 * t733;
+    ddq_by_dq[35] = t1478;
+    const wam7_real_t t1479 = t1460 * t735 - t1461 * t736 + t1462 * t737 - t1463 * t738;
+    const wam7_real_t t1480 = t1479 + t1465 * t740 + t1466 * t741 + t1467 * t744;
+    ddq_by_dq[42] = t1480;
+    ddq_by_input[0] = t633;
+    ddq_by_input[7] = t671;
+    ddq_by_input[14] = t685;
+    ddq_by_input[21] = t697;
+    ddq_by_input[28] = t710;
+    ddq_by_input[35] = t724;
+    ddq_by_input[42] = t735;
     /* always zero */
     ddq_by_q[0] = WAM7_C(0.0);
     ddq_by_q[7] = WAM7_C(0.0);
@@ -2008,10 +1988,10 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     ddq_by_q[28] = WAM7_C(0.0);
     ddq_by_q[35] = WAM7_C(0.0);
     ddq_by_q[42] = WAM7_C(0.0);
-    if (!wam7_all_bounded(ddq, 7)
-        || !wam7_all_bounded(ddq_by_q, 49)
-        || !wam7_all_bounded(ddq_by_dq, 49)
-        || !wam7_all_bounded(ddq_by_input, 49)) {
+    if (!wam7_bounded(ddq, 7)
+        || !wam7_bounded(ddq_by_q, 49)
+        || !wam7_bounded(ddq_by_dq, 49)
+        || !wam7_bounded(ddq_by_input, 49)) {
         wam7_zero(ddq, 7);
         wam7_zero(ddq_by_q, 49);
         wam7_zero(ddq_by_dq, 49);

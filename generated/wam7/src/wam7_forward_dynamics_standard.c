@@ -6,7 +6,7 @@
  * Arm wam7, description 552353c9ea1f05cf.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1370 (720 mul, 650 add, 0 neg), 7 div, 12 trig, 7 other calls (sign, select and the like).
+ * Operations: 1370 (720 mul, 650 add, 0 neg), 7 div, 12 trig, 12 other calls (sign, select and the like).
  *
  * @param[in]   q           [7]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [7]   [rad/s]    joint velocities; norm at most 100000
@@ -121,7 +121,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -150,19 +150,19 @@ wam7_status_t wam7_forward_dynamics_standard(
         return status;
     }
 
-    wam7_real_t t169, t170;
-    WAM7_SINCOS(q[1], &t169, &t170);
-    wam7_real_t t130, t126;
-    WAM7_SINCOS(q[2], &t130, &t126);
-    wam7_real_t t81, t84;
-    WAM7_SINCOS(q[3], &t81, &t84);
-    wam7_real_t t42, t39;
-    WAM7_SINCOS(q[4], &t42, &t39);
-    wam7_real_t t22, t18;
-    WAM7_SINCOS(q[5], &t22, &t18);
+    wam7_real_t t164, t165;
+    WAM7_SINCOS(q[1], &t164, &t165);
+    wam7_real_t t126, t122;
+    WAM7_SINCOS(q[2], &t126, &t122);
+    wam7_real_t t78, t81;
+    WAM7_SINCOS(q[3], &t78, &t81);
+    wam7_real_t t40, t37;
+    WAM7_SINCOS(q[4], &t40, &t37);
+    wam7_real_t t21, t17;
+    WAM7_SINCOS(q[5], &t21, &t17);
     wam7_real_t t1, t2;
     WAM7_SINCOS(q[6], &t1, &t2);
-    const wam7_real_t t0 = wam7_bounded(parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7]);
+    const wam7_real_t t0 = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
     if (!(t0 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
@@ -179,600 +179,579 @@ wam7_status_t wam7_forward_dynamics_standard(
     const wam7_real_t t11 = WAM7_C(0.06) * (t10 + WAM7_C(2.0) * parameters[MZ7]);
     const wam7_real_t t12 = parameters[ZZ6] + (parameters[XX7] + t9 + t11);
     const wam7_real_t t13 = t12 + WAM7_C(89.8704) * parameters[IA6];
-    const wam7_real_t t14 = wam7_bounded(t13 + t4 * t6);
+    const wam7_real_t t14 = t13 + t4 * t6;
     if (!(t14 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t15 = t14 + WAM7_C(-1.0e-9) * t13;
-    if (!(t15 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t16 = parameters[XX6] + (parameters[YY7] - t9 + t11);
-    const wam7_real_t t17 = parameters[YY6] + parameters[ZZ7];
+    const wam7_real_t t15 = parameters[XX6] + (parameters[YY7] - t9 + t11);
+    const wam7_real_t t16 = parameters[YY6] + parameters[ZZ7];
     /* link j7: column of the mass matrix */
-    const wam7_real_t t19 = t2 * parameters[MX7] - t1 * parameters[MY7];
-    const wam7_real_t t20 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + WAM7_C(0.06) * t19;
-    const wam7_real_t t21 = parameters[XY6] + t20; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t18 = t2 * parameters[MX7] - t1 * parameters[MY7];
+    const wam7_real_t t19 = t1 * parameters[YZ7] - t2 * parameters[XZ7] + WAM7_C(0.06) * t18;
+    const wam7_real_t t20 = parameters[XY6] + t19; /* link j7: inertia of it and all beyond */
     /* link j6: inertia of it and all beyond */
-    const wam7_real_t t23 = t18 * (t16 - t17) + t21 * (WAM7_C(-2.0) * t22);
-    const wam7_real_t t24 = t18 * t23;
-    const wam7_real_t t25 = parameters[ZZ5] + (t16 - t24);
-    const wam7_real_t t26 = t25 + WAM7_C(89.8704) * parameters[IA5];
-    const wam7_real_t t27 = t22 * t20 + t18 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t28 = t27 * t5;
-    const wam7_real_t t29 = parameters[YZ6] + t4; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t30 = t1 * t8 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t31 = t18 * t29 - t22 * t30; /* link j6: column of the mass matrix */
-    const wam7_real_t t32 = t31 + t27 * t6;
-    const wam7_real_t t33 = WAM7_C(1.0) / t14;
-    const wam7_real_t t34 = t32 * t33;
-    const wam7_real_t t35 = wam7_bounded(t26 + t27 * t28 - t32 * t34);
-    if (!(t35 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t22 = t17 * (t15 - t16) + t20 * (WAM7_C(-2.0) * t21);
+    const wam7_real_t t23 = t17 * t22;
+    const wam7_real_t t24 = parameters[ZZ5] + (t15 - t23);
+    const wam7_real_t t25 = t24 + WAM7_C(89.8704) * parameters[IA5];
+    const wam7_real_t t26 = t21 * t19 + t17 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const wam7_real_t t27 = t26 * t5;
+    const wam7_real_t t28 = parameters[YZ6] + t4; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t29 = t1 * t8 - parameters[XY7] - parameters[XZ6];
+    const wam7_real_t t30 = t17 * t28 - t21 * t29; /* link j6: column of the mass matrix */
+    const wam7_real_t t31 = t30 + t26 * t6;
+    const wam7_real_t t32 = WAM7_C(1.0) / t14;
+    const wam7_real_t t33 = t31 * t32;
+    const wam7_real_t t34 = t25 + t26 * t27 - t31 * t33;
+    if (!(t34 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t36 = t35 + WAM7_C(-1.0e-9) * t26;
-    if (!(t36 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t37 = parameters[XX5] + (t17 + t24); /* link j6: inertia of it and all beyond */
-    const wam7_real_t t38 = parameters[YY5] + t12;
-    const wam7_real_t t40 = t18 * t30 + t22 * t29; /* link j6: column of the mass matrix */
-    const wam7_real_t t41 = parameters[XY5] - t40; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t35 = parameters[XX5] + (t16 + t23); /* link j6: inertia of it and all beyond */
+    const wam7_real_t t36 = parameters[YY5] + t12;
+    const wam7_real_t t38 = t17 * t29 + t21 * t28; /* link j6: column of the mass matrix */
+    const wam7_real_t t39 = parameters[XY5] - t38; /* link j6: inertia of it and all beyond */
     /* link j5: inertia of it and all beyond */
-    const wam7_real_t t43 = t39 * (t37 - t38) - t41 * (WAM7_C(2.0) * t42);
-    const wam7_real_t t44 = t39 * t43;
+    const wam7_real_t t41 = t37 * (t35 - t36) - t39 * (WAM7_C(2.0) * t40);
+    const wam7_real_t t42 = t37 * t41;
     /* link j6: inertia of it and all beyond */
-    const wam7_real_t t45 = parameters[MY5] + (parameters[MZ6] + t3);
-    const wam7_real_t t46 = parameters[MX6] + t19; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t47 = parameters[MZ7] + t10 - parameters[MY6];
-    const wam7_real_t t48 = t22 * t47 + t18 * t46; /* link j6: column of the mass matrix */
-    const wam7_real_t t49 = parameters[MX5] + t48; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t50 = t39 * t49 - t42 * t45; /* link j5: column of the mass matrix */
+    const wam7_real_t t43 = parameters[MY5] + (parameters[MZ6] + t3);
+    const wam7_real_t t44 = parameters[MX6] + t18; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t45 = parameters[MZ7] + t10 - parameters[MY6];
+    const wam7_real_t t46 = t21 * t45 + t17 * t44; /* link j6: column of the mass matrix */
+    const wam7_real_t t47 = parameters[MX5] + t46; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t48 = t37 * t47 - t40 * t43; /* link j5: column of the mass matrix */
     /* link j6: inertia of it and all beyond */
-    const wam7_real_t t51 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const wam7_real_t t52 = WAM7_C(0.045) * t51; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t53 = WAM7_C(0.045) * (t52 + WAM7_C(-2.0) * t50);
-    const wam7_real_t t54 = t18 * t47 - t22 * t46; /* link j6: column of the mass matrix */
-    const wam7_real_t t55 = parameters[MZ5] + t54; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t56 = WAM7_C(0.3) * t51; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t57 = WAM7_C(0.3) * (t56 + WAM7_C(2.0) * t55);
-    const wam7_real_t t58 = parameters[ZZ4] + (t37 - t44 + (t53 + t57));
-    const wam7_real_t t59 = t58 + WAM7_C(324.0) * parameters[IA4];
-    const wam7_real_t t60 = t18 * t20 - t22 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t61 = t18 * t3;
-    const wam7_real_t t62 = t39 * t61 + t42 * t19;
-    const wam7_real_t t63 = t22 * t3;
-    const wam7_real_t t64 = t42 * t60 + t39 * t4 + (WAM7_C(-0.045) * t63 + WAM7_C(0.3) * t62);
-    const wam7_real_t t65 = t64 * t5;
-    const wam7_real_t t66 = t39 * t54; /* link j6: column of the mass matrix */
-    const wam7_real_t t67 = t42 * t40 - t39 * t12 + (WAM7_C(0.045) * t48 + WAM7_C(-0.3) * t66);
-    const wam7_real_t t68 = t67 - t64 * t6;
-    const wam7_real_t t69 = t68 * t33;
-    const wam7_real_t t70 = t21 + t22 * t23 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t71 = parameters[YZ5] - t31;
-    const wam7_real_t t72 = t39 * t45 + t42 * t49; /* link j5: column of the mass matrix */
-    const wam7_real_t t73 = t42 * t70 - t39 * t71 + WAM7_C(0.3) * t72;
-    const wam7_real_t t74 = t73 + t64 * t28 + t68 * t34;
-    const wam7_real_t t75 = WAM7_C(1.0) / t35;
-    const wam7_real_t t76 = t74 * t75;
-    const wam7_real_t t77 = wam7_bounded(t59 + t64 * t65 - t68 * t69 - t74 * t76);
-    if (!(t77 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t49 = parameters[M5] + (parameters[M6] + parameters[M7]);
+    const wam7_real_t t50 = WAM7_C(0.045) * t49; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t51 = WAM7_C(0.045) * (t50 + WAM7_C(-2.0) * t48);
+    const wam7_real_t t52 = t17 * t45 - t21 * t44; /* link j6: column of the mass matrix */
+    const wam7_real_t t53 = parameters[MZ5] + t52; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t54 = WAM7_C(0.3) * t49; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t55 = WAM7_C(0.3) * (t54 + WAM7_C(2.0) * t53);
+    const wam7_real_t t56 = parameters[ZZ4] + (t35 - t42 + (t51 + t55));
+    const wam7_real_t t57 = t56 + WAM7_C(324.0) * parameters[IA4];
+    const wam7_real_t t58 = t17 * t19 - t21 * parameters[ZZ7]; /* link j7: column of the mass matrix */
+    const wam7_real_t t59 = t17 * t3;
+    const wam7_real_t t60 = t37 * t59 + t40 * t18;
+    const wam7_real_t t61 = t21 * t3;
+    const wam7_real_t t62 = t40 * t58 + t37 * t4 + (WAM7_C(-0.045) * t61 + WAM7_C(0.3) * t60);
+    const wam7_real_t t63 = t62 * t5;
+    const wam7_real_t t64 = t37 * t52; /* link j6: column of the mass matrix */
+    const wam7_real_t t65 = t40 * t38 - t37 * t12 + (WAM7_C(0.045) * t46 + WAM7_C(-0.3) * t64);
+    const wam7_real_t t66 = t65 - t62 * t6;
+    const wam7_real_t t67 = t66 * t32;
+    const wam7_real_t t68 = t20 + t21 * t22 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t69 = parameters[YZ5] - t30;
+    const wam7_real_t t70 = t37 * t43 + t40 * t47; /* link j5: column of the mass matrix */
+    const wam7_real_t t71 = t40 * t68 - t37 * t69 + WAM7_C(0.3) * t70;
+    const wam7_real_t t72 = t71 + t62 * t27 + t66 * t33;
+    const wam7_real_t t73 = WAM7_C(1.0) / t34;
+    const wam7_real_t t74 = t72 * t73;
+    const wam7_real_t t75 = t57 + t62 * t63 - t66 * t67 - t72 * t74;
+    if (!(t75 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t78 = t77 + WAM7_C(-1.0e-9) * t59;
-    if (!(t78 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t79 = t39 * t70 + t42 * t71;
-    const wam7_real_t t80 = t79 + WAM7_C(0.3) * t50;
-    const wam7_real_t t82 = WAM7_C(0.045) * t50;
-    const wam7_real_t t83 = t82 - t25;
-    const wam7_real_t t85 = t84 * t83 - t81 * t80 - t82;
-    const wam7_real_t t86 = t39 * t19 - t42 * t61; /* link j7: column of the mass matrix */
-    const wam7_real_t t87 = t39 * t60 - t42 * t4 + WAM7_C(0.3) * t86;
-    const wam7_real_t t88 = WAM7_C(0.045) * t86;
-    const wam7_real_t t89 = t88 - t27;
-    const wam7_real_t t90 = t84 * t89 - t81 * t87 - t88;
-    const wam7_real_t t91 = t42 * t54; /* link j6: column of the mass matrix */
-    const wam7_real_t t92 = t39 * t40 + t42 * t12 + WAM7_C(0.3) * t91;
-    const wam7_real_t t93 = WAM7_C(0.045) * t91;
-    const wam7_real_t t94 = t31 + t93;
-    const wam7_real_t t95 = t84 * t94 - t81 * t92 - t93;
-    const wam7_real_t t96 = t95 - t90 * t6;
-    const wam7_real_t t97 = t85 + t90 * t28 + t96 * t34;
+    const wam7_real_t t76 = t37 * t68 + t40 * t69;
+    const wam7_real_t t77 = t76 + WAM7_C(0.3) * t48;
+    const wam7_real_t t79 = WAM7_C(0.045) * t48;
+    const wam7_real_t t80 = t79 - t24;
+    const wam7_real_t t82 = t81 * t80 - t78 * t77 - t79;
+    const wam7_real_t t83 = t37 * t18 - t40 * t59; /* link j7: column of the mass matrix */
+    const wam7_real_t t84 = t37 * t58 - t40 * t4 + WAM7_C(0.3) * t83;
+    const wam7_real_t t85 = WAM7_C(0.045) * t83;
+    const wam7_real_t t86 = t85 - t26;
+    const wam7_real_t t87 = t81 * t86 - t78 * t84 - t85;
+    const wam7_real_t t88 = t40 * t52; /* link j6: column of the mass matrix */
+    const wam7_real_t t89 = t37 * t38 + t40 * t12 + WAM7_C(0.3) * t88;
+    const wam7_real_t t90 = WAM7_C(0.045) * t88;
+    const wam7_real_t t91 = t30 + t90;
+    const wam7_real_t t92 = t81 * t91 - t78 * t89 - t90;
+    const wam7_real_t t93 = t92 - t87 * t6;
+    const wam7_real_t t94 = t82 + t87 * t27 + t93 * t33;
     /* link j5: inertia of it and all beyond */
-    const wam7_real_t t98 = parameters[XZ4] + (t41 + t42 * t43 + WAM7_C(0.045) * t72);
-    const wam7_real_t t99 = parameters[YZ4] + t73;
-    const wam7_real_t t100 = t81 * t98 + t84 * t99; /* link j4: column of the mass matrix */
-    const wam7_real_t t101 = t90 * t65 - t100 - t96 * t69 - t97 * t76;
-    const wam7_real_t t102 = WAM7_C(1.0) / t77;
-    const wam7_real_t t103 = t101 * t102;
-    const wam7_real_t t104 = t97 * t75;
-    const wam7_real_t t105 = t90 * t5;
-    const wam7_real_t t106 = parameters[XX4] + (t38 + t44 + t57); /* link j5: inertia of it and all beyond */
-    const wam7_real_t t107 = parameters[YY4] + (t25 + t53);
-    const wam7_real_t t108 = t50 - t52;
-    const wam7_real_t t109 = parameters[XY4] + (t79 + (WAM7_C(-0.045) * t55 + WAM7_C(0.3) * t108));
+    const wam7_real_t t95 = parameters[XZ4] + (t39 + t40 * t41 + WAM7_C(0.045) * t70);
+    const wam7_real_t t96 = parameters[YZ4] + t71;
+    const wam7_real_t t97 = t78 * t95 + t81 * t96; /* link j4: column of the mass matrix */
+    const wam7_real_t t98 = t87 * t63 - t97 - t93 * t67 - t94 * t74;
+    const wam7_real_t t99 = WAM7_C(1.0) / t75;
+    const wam7_real_t t100 = t98 * t99;
+    const wam7_real_t t101 = t94 * t73;
+    const wam7_real_t t102 = t87 * t5;
+    const wam7_real_t t103 = parameters[XX4] + (t36 + t42 + t55); /* link j5: inertia of it and all beyond */
+    const wam7_real_t t104 = parameters[YY4] + (t24 + t51);
+    const wam7_real_t t105 = t48 - t50;
+    const wam7_real_t t106 = parameters[XY4] + (t76 + (WAM7_C(-0.045) * t53 + WAM7_C(0.3) * t105));
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t110 = t84 * (t106 - t107) - t109 * (WAM7_C(2.0) * t81);
-    const wam7_real_t t111 = t84 * t110;
-    const wam7_real_t t112 = parameters[MX4] + t108; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t113 = t55 + t56 - parameters[MY4];
-    const wam7_real_t t114 = t81 * t113 + t84 * t112; /* link j4: column of the mass matrix */
-    const wam7_real_t t115 = parameters[M4] + t51; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t116 = WAM7_C(0.045) * t115; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t117 = WAM7_C(0.045) * (t116 + WAM7_C(2.0) * t114);
-    const wam7_real_t t118 = parameters[ZZ3] + (t106 - t111 + t117);
-    const wam7_real_t t119 = t118 + WAM7_C(798.0625) * parameters[IA3];
-    const wam7_real_t t120 = t96 * t33;
-    const wam7_real_t t121 = t119 + t90 * t105 - t96 * t120 - t97 * t104;
-    const wam7_real_t t122 = wam7_bounded(t121 - t101 * t103);
-    if (!(t122 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t107 = t81 * (t103 - t104) - t106 * (WAM7_C(2.0) * t78);
+    const wam7_real_t t108 = t81 * t107;
+    const wam7_real_t t109 = parameters[MX4] + t105; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t110 = t53 + t54 - parameters[MY4];
+    const wam7_real_t t111 = t78 * t110 + t81 * t109; /* link j4: column of the mass matrix */
+    const wam7_real_t t112 = parameters[M4] + t49; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t113 = WAM7_C(0.045) * t112; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t114 = WAM7_C(0.045) * (t113 + WAM7_C(2.0) * t111);
+    const wam7_real_t t115 = parameters[ZZ3] + (t103 - t108 + t114);
+    const wam7_real_t t116 = t115 + WAM7_C(798.0625) * parameters[IA3];
+    const wam7_real_t t117 = t93 * t32;
+    const wam7_real_t t118 = t116 + t87 * t102 - t93 * t117 - t94 * t101;
+    const wam7_real_t t119 = t118 - t98 * t100;
+    if (!(t119 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t123 = t122 + WAM7_C(-1.0e-9) * t119;
-    if (!(t123 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t124 = parameters[XX3] + (t107 + t111);
-    const wam7_real_t t125 = parameters[YY3] + (t58 + t117);
-    const wam7_real_t t127 = t84 * t98 - t81 * t99; /* link j4: column of the mass matrix */
-    const wam7_real_t t128 = parameters[MZ4] + t72; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t120 = parameters[XX3] + (t104 + t108);
+    const wam7_real_t t121 = parameters[YY3] + (t56 + t114);
+    const wam7_real_t t123 = t81 * t95 - t78 * t96; /* link j4: column of the mass matrix */
+    const wam7_real_t t124 = parameters[MZ4] + t70; /* link j5: inertia of it and all beyond */
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t129 = parameters[XY3] + (t127 + WAM7_C(-0.045) * t128);
+    const wam7_real_t t125 = parameters[XY3] + (t123 + WAM7_C(-0.045) * t124);
     /* link j3: inertia of it and all beyond */
-    const wam7_real_t t131 = t126 * (t125 - t124) + t129 * (WAM7_C(2.0) * t130);
-    const wam7_real_t t132 = t126 * t131;
-    const wam7_real_t t133 = t84 * t113 - t81 * t112; /* link j4: column of the mass matrix */
+    const wam7_real_t t127 = t122 * (t121 - t120) + t125 * (WAM7_C(2.0) * t126);
+    const wam7_real_t t128 = t122 * t127;
+    const wam7_real_t t129 = t81 * t110 - t78 * t109; /* link j4: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const wam7_real_t t134 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t115)
-        + WAM7_C(2.0) * (parameters[MZ3] + t133));
-    const wam7_real_t t135 = parameters[ZZ2] + (t124 + t132 + t134) + WAM7_C(798.0625) * parameters[IA2];
-    const wam7_real_t t136 = t84 * t87 + t81 * t89; /* link j7: column of the mass matrix */
-    const wam7_real_t t137 = t64 + WAM7_C(0.045) * (t81 * t62 + t84 * t63);
-    const wam7_real_t t138 = t84 * t62 - t81 * t63;
-    const wam7_real_t t139 = t130 * t136 + t126 * t137 + WAM7_C(0.55) * (t126 * t138 + t130 * t86);
-    const wam7_real_t t140 = t139 * t5;
-    const wam7_real_t t141 = t84 * t92 + t81 * t94; /* link j6: column of the mass matrix */
-    const wam7_real_t t142 = t67 + WAM7_C(-0.045) * (t81 * t66 + t84 * t48);
-    const wam7_real_t t143 = t81 * t48 - t84 * t66;
-    const wam7_real_t t144 = t130 * t141 + t126 * t142 + WAM7_C(0.55) * (t126 * t143 + t130 * t91);
-    const wam7_real_t t145 = t144 - t139 * t6;
-    const wam7_real_t t146 = t145 * t33;
-    const wam7_real_t t147 = t84 * t80 + t81 * t83; /* link j5: column of the mass matrix */
-    const wam7_real_t t148 = t73 + WAM7_C(0.045) * (t81 * t72);
-    const wam7_real_t t149 = t84 * t72;
-    const wam7_real_t t150 = t130 * t147 + t126 * t148 + WAM7_C(0.55) * (t126 * t149 + t130 * t50);
-    const wam7_real_t t151 = t150 + t139 * t28 + t145 * t34;
-    const wam7_real_t t152 = t151 * t75;
-    const wam7_real_t t153 = t135 + t139 * t140 - t145 * t146 - t151 * t152;
-    const wam7_real_t t154 = WAM7_C(-0.045) * t114 - t58; /* link j4: column of the mass matrix */
-    const wam7_real_t t155 = t126 * t154 - t130 * t127 + WAM7_C(-0.55) * (t126 * t133);
-    const wam7_real_t t156 = t155 - t139 * t65 + t145 * t69 + t151 * t76;
-    const wam7_real_t t157 = t156 * t102;
+    const wam7_real_t t130 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t112)
+        + WAM7_C(2.0) * (parameters[MZ3] + t129));
+    const wam7_real_t t131 = parameters[ZZ2] + (t120 + t128 + t130) + WAM7_C(798.0625) * parameters[IA2];
+    const wam7_real_t t132 = t81 * t84 + t78 * t86; /* link j7: column of the mass matrix */
+    const wam7_real_t t133 = t62 + WAM7_C(0.045) * (t78 * t60 + t81 * t61);
+    const wam7_real_t t134 = t81 * t60 - t78 * t61;
+    const wam7_real_t t135 = t126 * t132 + t122 * t133 + WAM7_C(0.55) * (t122 * t134 + t126 * t83);
+    const wam7_real_t t136 = t135 * t5;
+    const wam7_real_t t137 = t81 * t89 + t78 * t91; /* link j6: column of the mass matrix */
+    const wam7_real_t t138 = t65 + WAM7_C(-0.045) * (t78 * t64 + t81 * t46);
+    const wam7_real_t t139 = t78 * t46 - t81 * t64;
+    const wam7_real_t t140 = t126 * t137 + t122 * t138 + WAM7_C(0.55) * (t122 * t139 + t126 * t88);
+    const wam7_real_t t141 = t140 - t135 * t6;
+    const wam7_real_t t142 = t141 * t32;
+    const wam7_real_t t143 = t81 * t77 + t78 * t80; /* link j5: column of the mass matrix */
+    const wam7_real_t t144 = t71 + WAM7_C(0.045) * (t78 * t70);
+    const wam7_real_t t145 = t81 * t70;
+    const wam7_real_t t146 = t126 * t143 + t122 * t144 + WAM7_C(0.55) * (t122 * t145 + t126 * t48);
+    const wam7_real_t t147 = t146 + t135 * t27 + t141 * t33;
+    const wam7_real_t t148 = t147 * t73;
+    const wam7_real_t t149 = t131 + t135 * t136 - t141 * t142 - t147 * t148;
+    const wam7_real_t t150 = WAM7_C(-0.045) * t111 - t56; /* link j4: column of the mass matrix */
+    const wam7_real_t t151 = t122 * t150 - t126 * t123 + WAM7_C(-0.55) * (t122 * t129);
+    const wam7_real_t t152 = t151 - t135 * t63 + t141 * t67 + t147 * t74;
+    const wam7_real_t t153 = t152 * t99;
     /* link j4: inertia of it and all beyond */
-    const wam7_real_t t158 = t109 + t81 * t110 + WAM7_C(0.045) * t133 - parameters[XZ3];
-    const wam7_real_t t159 = parameters[YZ3] - t100;
-    const wam7_real_t t160 = parameters[MY3] + t128;
-    const wam7_real_t t161 = parameters[MX3] + (t114 + t116);
+    const wam7_real_t t154 = t106 + t78 * t107 + WAM7_C(0.045) * t129 - parameters[XZ3];
+    const wam7_real_t t155 = parameters[YZ3] - t97;
+    const wam7_real_t t156 = parameters[MY3] + t124;
+    const wam7_real_t t157 = parameters[MX3] + (t111 + t113);
     /* link j3: column of the mass matrix */
-    const wam7_real_t t162 = t130 * t158 - t126 * t159 + WAM7_C(0.55) * (t126 * t160 + t130 * t161);
-    const wam7_real_t t163 = t162 - t139 * t105 + t145 * t120 + t151 * t104;
-    const wam7_real_t t164 = t163 - t156 * t103;
-    const wam7_real_t t165 = WAM7_C(1.0) / t122;
-    const wam7_real_t t166 = t164 * t165;
-    const wam7_real_t t167 = wam7_bounded(t153 - t156 * t157 - t164 * t166);
-    if (!(t167 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t168 = t167 + WAM7_C(-1.0e-9) * t135;
-    if (!(t168 > WAM7_C(1.0e-12))) {
+    const wam7_real_t t158 = t126 * t154 - t122 * t155 + WAM7_C(0.55) * (t122 * t156 + t126 * t157);
+    const wam7_real_t t159 = t158 - t135 * t102 + t141 * t117 + t147 * t101;
+    const wam7_real_t t160 = t159 - t152 * t100;
+    const wam7_real_t t161 = WAM7_C(1.0) / t119;
+    const wam7_real_t t162 = t160 * t161;
+    const wam7_real_t t163 = t149 - t152 * t153 - t160 * t162;
+    if (!(t163 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
     /* link j2: column of the mass matrix */
-    const wam7_real_t t171 = t169 * (parameters[XZ2] + (t129 - t130 * t131)) + t170 * (parameters[YZ2]
-        + t162);
+    const wam7_real_t t166 = t164 * (parameters[XZ2] + (t125 - t126 * t127)) + t165 * (parameters[YZ2]
+        + t158);
     /* link j7: column of the mass matrix */
-    const wam7_real_t t172 = t130 * t137 - t126 * t136 + WAM7_C(0.55) * (t130 * t138 - t126 * t86);
-    const wam7_real_t t173 = t169 * t172 + t170 * t90;
+    const wam7_real_t t167 = t126 * t133 - t122 * t132 + WAM7_C(0.55) * (t126 * t134 - t122 * t83);
+    const wam7_real_t t168 = t164 * t167 + t165 * t87;
     /* link j6: column of the mass matrix */
-    const wam7_real_t t174 = t130 * t142 - t126 * t141 + WAM7_C(0.55) * (t130 * t143 - t126 * t91);
-    const wam7_real_t t175 = t169 * t174 + t170 * t95 - t173 * t6;
+    const wam7_real_t t169 = t126 * t138 - t122 * t137 + WAM7_C(0.55) * (t126 * t139 - t122 * t88);
+    const wam7_real_t t170 = t164 * t169 + t165 * t92 - t168 * t6;
     /* link j5: column of the mass matrix */
-    const wam7_real_t t176 = t130 * t148 - t126 * t147 + WAM7_C(0.55) * (t130 * t149 - t126 * t50);
-    const wam7_real_t t177 = t169 * t176 + t170 * t85 + t173 * t28 + t175 * t34;
-    const wam7_real_t t178 = t171 - t173 * t140 + t175 * t146 + t177 * t152;
+    const wam7_real_t t171 = t126 * t144 - t122 * t143 + WAM7_C(0.55) * (t126 * t145 - t122 * t48);
+    const wam7_real_t t172 = t164 * t171 + t165 * t82 + t168 * t27 + t170 * t33;
+    const wam7_real_t t173 = t166 - t168 * t136 + t170 * t142 + t172 * t148;
     /* link j4: column of the mass matrix */
-    const wam7_real_t t179 = t126 * t127 + t130 * t154 + WAM7_C(-0.55) * (t130 * t133);
-    const wam7_real_t t180 = t169 * t179 + t170 * t100 - t173 * t65 + t175 * t69;
-    const wam7_real_t t181 = t180 + t177 * t76;
+    const wam7_real_t t174 = t122 * t123 + t126 * t150 + WAM7_C(-0.55) * (t126 * t129);
+    const wam7_real_t t175 = t164 * t174 + t165 * t97 - t168 * t63 + t170 * t67;
+    const wam7_real_t t176 = t175 + t172 * t74;
     /* link j3: column of the mass matrix */
-    const wam7_real_t t182 = t126 * t158 + t130 * t159 + WAM7_C(0.55) * (t126 * t161 - t130 * t160);
-    const wam7_real_t t183 = t169 * t182 + t170 * t118 + t173 * t105 - t175 * t120;
-    const wam7_real_t t184 = t177 * t104 - t183 - t181 * t103;
-    const wam7_real_t t185 = t178 + t181 * t157 + t184 * t166;
-    const wam7_real_t t186 = WAM7_C(1.0) / t167;
-    const wam7_real_t t187 = t185 * t186;
+    const wam7_real_t t177 = t122 * t154 + t126 * t155 + WAM7_C(0.55) * (t122 * t157 - t126 * t156);
+    const wam7_real_t t178 = t164 * t177 + t165 * t115 + t168 * t102 - t170 * t117;
+    const wam7_real_t t179 = t172 * t101 - t178 - t176 * t100;
+    const wam7_real_t t180 = t173 + t176 * t153 + t179 * t162;
+    const wam7_real_t t181 = WAM7_C(1.0) / t163;
+    const wam7_real_t t182 = t180 * t181;
     /* link j3: inertia of it and all beyond */
-    const wam7_real_t t188 = parameters[XX2] + (t125 - t132 + t134);
+    const wam7_real_t t183 = parameters[XX2] + (t121 - t128 + t130);
     /* link j2: inertia of it and all beyond */
-    const wam7_real_t t189 = t170 * (parameters[YY2] + t118 - t188) + (parameters[XY2]
-        + t182) * (WAM7_C(2.0) * t169);
-    const wam7_real_t t190 = parameters[ZZ1] + (t188 + t170 * t189) + WAM7_C(1764.0) * parameters[IA1];
-    const wam7_real_t t191 = t173 * t5;
-    const wam7_real_t t192 = t175 * t33;
-    const wam7_real_t t193 = t177 * t75;
-    const wam7_real_t t194 = t190 + t173 * t191 - t175 * t192 - t177 * t193;
-    const wam7_real_t t195 = t181 * t102;
-    const wam7_real_t t196 = t184 * t165;
-    const wam7_real_t t197 = wam7_bounded(t194 - t181 * t195 - t184 * t196 - t185 * t187);
+    const wam7_real_t t184 = t165 * (parameters[YY2] + t115 - t183) + (parameters[XY2]
+        + t177) * (WAM7_C(2.0) * t164);
+    const wam7_real_t t185 = parameters[ZZ1] + (t183 + t165 * t184) + WAM7_C(1764.0) * parameters[IA1];
+    const wam7_real_t t186 = t168 * t5;
+    const wam7_real_t t187 = t170 * t32;
+    const wam7_real_t t188 = t172 * t73;
+    const wam7_real_t t189 = t185 + t168 * t186 - t170 * t187 - t172 * t188;
+    const wam7_real_t t190 = t176 * t99;
+    const wam7_real_t t191 = t179 * t161;
+    const wam7_real_t t192 = t189 - t176 * t190 - t179 * t191 - t180 * t182;
+    if (!(t192 > WAM7_C(1.0e-12))) {
+        wam7_zero(out, 7);
+        return WAM7_STATUS_PIVOT;
+    }
+    const wam7_real_t t193 = wam7_min(t14 + WAM7_C(-1.0e-9) * t13, t34 + WAM7_C(-1.0e-9) * t25);
+    const wam7_real_t t194 = wam7_min(t193, t75 + WAM7_C(-1.0e-9) * t57);
+    const wam7_real_t t195 = wam7_min(t194, t119 + WAM7_C(-1.0e-9) * t116);
+    const wam7_real_t t196 = wam7_min(t195, t163 + WAM7_C(-1.0e-9) * t131);
+    const wam7_real_t t197 = wam7_min(t196, t192 + WAM7_C(-1.0e-9) * t185);
     if (!(t197 > WAM7_C(1.0e-12))) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }
-    const wam7_real_t t198 = t197 + WAM7_C(-1.0e-9) * t190;
-    if (!(t198 > WAM7_C(1.0e-12))) {
-        wam7_zero(out, 7);
-        return WAM7_STATUS_PIVOT;
-    }
-    const wam7_real_t t199 = t169 * dq[0]; /* link j2: motion */
-    const wam7_real_t t200 = t126 * t199 - t130 * dq[1]; /* link j3: motion */
-    const wam7_real_t t201 = t170 * dq[0]; /* link j2: motion */
-    const wam7_real_t t202 = dq[2] + t201; /* link j3: motion */
-    const wam7_real_t t203 = t84 * t200 + t81 * t202; /* link j4: motion */
-    const wam7_real_t t204 = t130 * t199 + t126 * dq[1]; /* link j3: motion */
-    const wam7_real_t t205 = dq[3] + t204; /* link j4: motion */
-    const wam7_real_t t206 = t39 * t203 - t42 * t205; /* link j5: motion */
-    const wam7_real_t t207 = t42 * t203 + t39 * t205;
-    const wam7_real_t t208 = t206 * t207;
-    const wam7_real_t t209 = t200 * t204; /* link j3: motion */
-    const wam7_real_t t210 = dq[1] * t199; /* link j2: motion */
-    const wam7_real_t t211 = t209 - t210; /* link j4: motion */
-    const wam7_real_t t212 = t204 * t202; /* link j3: motion */
-    const wam7_real_t t213 = t199 * t201; /* link j2: motion */
-    const wam7_real_t t214 = dq[1] * t201;
-    const wam7_real_t t215 = WAM7_C(2.0) * t214;
-    const wam7_real_t t216 = t130 * t213 + t126 * t215; /* link j3: motion */
-    const wam7_real_t t217 = t216 - t212;
-    const wam7_real_t t218 = t217 - t212; /* link j4: motion */
-    const wam7_real_t t219 = t81 * t218 - t84 * t211;
-    const wam7_real_t t220 = t203 * t205;
-    const wam7_real_t t221 = t220 + t219;
-    const wam7_real_t t222 = t221 - t208; /* link j6: motion */
-    const wam7_real_t t223 = t81 * t200 - t84 * t202; /* link j4: motion */
-    const wam7_real_t t224 = t203 * t223;
-    const wam7_real_t t225 = t200 * t202; /* link j3: motion */
-    const wam7_real_t t226 = t126 * t213 - t130 * t215;
-    const wam7_real_t t227 = t225 - t226;
-    const wam7_real_t t228 = t224 + t227; /* link j5: motion */
-    const wam7_real_t t229 = t81 * t211 + t84 * t218; /* link j4: motion */
-    const wam7_real_t t230 = t223 * t205;
-    const wam7_real_t t231 = t229 - t230;
-    const wam7_real_t t232 = t231 - t230; /* link j5: motion */
-    const wam7_real_t t233 = t39 * t232 - t42 * t228;
-    const wam7_real_t t234 = t223 - dq[4];
-    const wam7_real_t t235 = t207 * t234;
-    const wam7_real_t t236 = t235 + t233;
-    const wam7_real_t t237 = t235 + t236; /* link j6: motion */
-    const wam7_real_t t238 = t18 * t237 - t22 * t222;
-    const wam7_real_t t239 = t22 * t206 + t18 * t234;
-    const wam7_real_t t240 = dq[5] + t207;
-    const wam7_real_t t241 = t239 * t240;
-    const wam7_real_t t242 = t241 - t238;
-    const wam7_real_t t243 = t241 + t242; /* link j7: motion */
-    const wam7_real_t t244 = t39 * t228 + t42 * t232; /* link j5: motion */
-    const wam7_real_t t245 = t206 * t234;
-    const wam7_real_t t246 = t244 - t245;
-    const wam7_real_t t247 = t22 * t234 - t18 * t206; /* link j6: motion */
-    const wam7_real_t t248 = t247 * t239;
-    const wam7_real_t t249 = t246 - t248; /* link j7: motion */
-    const wam7_real_t t250 = t1 * t249 + t2 * t243;
-    const wam7_real_t t251 = t2 * t240 - t1 * t247;
-    const wam7_real_t t252 = dq[6] - t239;
-    const wam7_real_t t253 = t251 * t252;
-    const wam7_real_t t254 = t253 + t250;
-    const wam7_real_t t255 = t2 * t249 - t1 * t243;
-    const wam7_real_t t256 = t2 * t247 + t1 * t240;
-    const wam7_real_t t257 = t256 * t252;
-    const wam7_real_t t258 = t255 - t257;
-    const wam7_real_t t259 = t258 - t257; /* link j7: force and moment */
-    const wam7_real_t t260 = parameters[XX7] * t254 - t253 * (parameters[YY7] - parameters[ZZ7])
-        + parameters[XY7] * t259;
-    const wam7_real_t t261 = t18 * t222 + t22 * t237; /* link j6: motion */
-    const wam7_real_t t262 = t247 * t240;
-    const wam7_real_t t263 = t261 - t262;
-    const wam7_real_t t264 = t256 * t251; /* link j7: motion */
-    const wam7_real_t t265 = t263 - t264; /* link j7: force and moment */
-    const wam7_real_t t266 = t251 * t251; /* link j7: motion */
-    const wam7_real_t t267 = t252 * t252;
-    const wam7_real_t t268 = t223 * t223; /* link j4: motion */
-    const wam7_real_t t269 = t205 * t205;
-    const wam7_real_t t270 = t268 + t269; /* link j5: motion */
-    const wam7_real_t t271 = t204 * t204; /* link j3: motion */
-    const wam7_real_t t272 = t202 * t202;
-    const wam7_real_t t273 = t271 + t272; /* link j4: motion */
-    const wam7_real_t t274 = WAM7_C(-9.81) * t169; /* link j2: motion */
-    const wam7_real_t t275 = t274 + WAM7_C(-0.55) * t213; /* link j3: motion */
-    const wam7_real_t t276 = WAM7_C(1.1) * t214;
-    const wam7_real_t t277 = t126 * t275 + t130 * t276;
-    const wam7_real_t t278 = WAM7_C(-0.045) * t273 + t277; /* link j4: motion */
-    const wam7_real_t t279 = t225 + t227;
-    const wam7_real_t t280 = t199 * t199; /* link j2: motion */
-    const wam7_real_t t281 = dq[1] * dq[1];
-    const wam7_real_t t282 = WAM7_C(9.81) * t170;
-    const wam7_real_t t283 = t282 + WAM7_C(-0.55) * (t280 + t281); /* link j3: motion */
-    const wam7_real_t t284 = t283 - WAM7_C(0.045) * t279; /* link j4: motion */
-    const wam7_real_t t285 = t84 * t278 - t81 * t284;
-    const wam7_real_t t286 = t285 + (WAM7_C(0.045) * t270 + WAM7_C(0.3) * t228); /* link j5: motion */
-    const wam7_real_t t287 = t220 + t221;
-    const wam7_real_t t288 = t210 + t209; /* link j4: motion */
-    const wam7_real_t t289 = t130 * t275 - t126 * t276; /* link j3: motion */
-    const wam7_real_t t290 = t289 + WAM7_C(0.045) * t288; /* link j4: motion */
-    const wam7_real_t t291 = WAM7_C(0.045) * t287 - WAM7_C(-0.3) * t232 - t290; /* link j5: motion */
-    const wam7_real_t t292 = t42 * t286 - t39 * t291;
-    const wam7_real_t t293 = t292 + WAM7_C(0.06) * t243; /* link j7: motion */
-    const wam7_real_t t294 = t39 * t286 + t42 * t291; /* link j5: motion */
-    const wam7_real_t t295 = t203 * t203; /* link j4: motion */
-    const wam7_real_t t296 = t295 + t269; /* link j5: motion */
-    const wam7_real_t t297 = t227 - t224;
-    const wam7_real_t t298 = t81 * t278 + t84 * t284; /* link j4: motion */
-    const wam7_real_t t299 = WAM7_C(0.3) * t296 + WAM7_C(-0.045) * t297 - t298; /* link j5: motion */
-    const wam7_real_t t300 = t18 * t294 + t22 * t299; /* link j6: motion */
-    const wam7_real_t t301 = t300 + WAM7_C(0.06) * t249; /* link j7: motion */
-    const wam7_real_t t302 = t1 * t301 + t2 * t293;
-    const wam7_real_t t303 = t22 * t294 - t18 * t299; /* link j6: motion */
-    const wam7_real_t t304 = t247 * t247;
-    const wam7_real_t t305 = t240 * t240;
-    const wam7_real_t t306 = t304 + t305; /* link j7: motion */
-    const wam7_real_t t307 = WAM7_C(0.06) * t306 - t303;
+    const wam7_real_t t198 = t164 * dq[0]; /* link j2: motion */
+    const wam7_real_t t199 = t122 * t198 - t126 * dq[1]; /* link j3: motion */
+    const wam7_real_t t200 = t165 * dq[0]; /* link j2: motion */
+    const wam7_real_t t201 = dq[2] + t200; /* link j3: motion */
+    const wam7_real_t t202 = t81 * t199 + t78 * t201; /* link j4: motion */
+    const wam7_real_t t203 = t126 * t198 + t122 * dq[1]; /* link j3: motion */
+    const wam7_real_t t204 = dq[3] + t203; /* link j4: motion */
+    const wam7_real_t t205 = t37 * t202 - t40 * t204; /* link j5: motion */
+    const wam7_real_t t206 = t40 * t202 + t37 * t204;
+    const wam7_real_t t207 = t205 * t206;
+    const wam7_real_t t208 = t199 * t203; /* link j3: motion */
+    const wam7_real_t t209 = dq[1] * t198; /* link j2: motion */
+    const wam7_real_t t210 = t208 - t209; /* link j4: motion */
+    const wam7_real_t t211 = t203 * t201; /* link j3: motion */
+    const wam7_real_t t212 = t198 * t200; /* link j2: motion */
+    const wam7_real_t t213 = dq[1] * t200;
+    const wam7_real_t t214 = WAM7_C(2.0) * t213;
+    const wam7_real_t t215 = t126 * t212 + t122 * t214; /* link j3: motion */
+    const wam7_real_t t216 = t215 - t211;
+    const wam7_real_t t217 = t216 - t211; /* link j4: motion */
+    const wam7_real_t t218 = t78 * t217 - t81 * t210;
+    const wam7_real_t t219 = t202 * t204;
+    const wam7_real_t t220 = t219 + t218;
+    const wam7_real_t t221 = t220 - t207; /* link j6: motion */
+    const wam7_real_t t222 = t78 * t199 - t81 * t201; /* link j4: motion */
+    const wam7_real_t t223 = t202 * t222;
+    const wam7_real_t t224 = t199 * t201; /* link j3: motion */
+    const wam7_real_t t225 = t122 * t212 - t126 * t214;
+    const wam7_real_t t226 = t224 - t225;
+    const wam7_real_t t227 = t223 + t226; /* link j5: motion */
+    const wam7_real_t t228 = t78 * t210 + t81 * t217; /* link j4: motion */
+    const wam7_real_t t229 = t222 * t204;
+    const wam7_real_t t230 = t228 - t229;
+    const wam7_real_t t231 = t230 - t229; /* link j5: motion */
+    const wam7_real_t t232 = t37 * t231 - t40 * t227;
+    const wam7_real_t t233 = t222 - dq[4];
+    const wam7_real_t t234 = t206 * t233;
+    const wam7_real_t t235 = t234 + t232;
+    const wam7_real_t t236 = t234 + t235; /* link j6: motion */
+    const wam7_real_t t237 = t17 * t236 - t21 * t221;
+    const wam7_real_t t238 = t21 * t205 + t17 * t233;
+    const wam7_real_t t239 = dq[5] + t206;
+    const wam7_real_t t240 = t238 * t239;
+    const wam7_real_t t241 = t240 - t237;
+    const wam7_real_t t242 = t240 + t241; /* link j7: motion */
+    const wam7_real_t t243 = t37 * t227 + t40 * t231; /* link j5: motion */
+    const wam7_real_t t244 = t205 * t233;
+    const wam7_real_t t245 = t243 - t244;
+    const wam7_real_t t246 = t21 * t233 - t17 * t205; /* link j6: motion */
+    const wam7_real_t t247 = t246 * t238;
+    const wam7_real_t t248 = t245 - t247; /* link j7: motion */
+    const wam7_real_t t249 = t1 * t248 + t2 * t242;
+    const wam7_real_t t250 = t2 * t239 - t1 * t246;
+    const wam7_real_t t251 = dq[6] - t238;
+    const wam7_real_t t252 = t250 * t251;
+    const wam7_real_t t253 = t252 + t249;
+    const wam7_real_t t254 = t2 * t248 - t1 * t242;
+    const wam7_real_t t255 = t2 * t246 + t1 * t239;
+    const wam7_real_t t256 = t255 * t251;
+    const wam7_real_t t257 = t254 - t256;
+    const wam7_real_t t258 = t257 - t256; /* link j7: force and moment */
+    const wam7_real_t t259 = parameters[XX7] * t253 - t252 * (parameters[YY7] - parameters[ZZ7])
+        + parameters[XY7] * t258;
+    const wam7_real_t t260 = t17 * t221 + t21 * t236; /* link j6: motion */
+    const wam7_real_t t261 = t246 * t239;
+    const wam7_real_t t262 = t260 - t261;
+    const wam7_real_t t263 = t255 * t250; /* link j7: motion */
+    const wam7_real_t t264 = t262 - t263; /* link j7: force and moment */
+    const wam7_real_t t265 = t250 * t250; /* link j7: motion */
+    const wam7_real_t t266 = t251 * t251;
+    const wam7_real_t t267 = t222 * t222; /* link j4: motion */
+    const wam7_real_t t268 = t204 * t204;
+    const wam7_real_t t269 = t267 + t268; /* link j5: motion */
+    const wam7_real_t t270 = t203 * t203; /* link j3: motion */
+    const wam7_real_t t271 = t201 * t201;
+    const wam7_real_t t272 = t270 + t271; /* link j4: motion */
+    const wam7_real_t t273 = WAM7_C(-9.81) * t164; /* link j2: motion */
+    const wam7_real_t t274 = t273 + WAM7_C(-0.55) * t212; /* link j3: motion */
+    const wam7_real_t t275 = WAM7_C(1.1) * t213;
+    const wam7_real_t t276 = t122 * t274 + t126 * t275;
+    const wam7_real_t t277 = WAM7_C(-0.045) * t272 + t276; /* link j4: motion */
+    const wam7_real_t t278 = t224 + t226;
+    const wam7_real_t t279 = t198 * t198; /* link j2: motion */
+    const wam7_real_t t280 = dq[1] * dq[1];
+    const wam7_real_t t281 = WAM7_C(9.81) * t165;
+    const wam7_real_t t282 = t281 + WAM7_C(-0.55) * (t279 + t280); /* link j3: motion */
+    const wam7_real_t t283 = t282 - WAM7_C(0.045) * t278; /* link j4: motion */
+    const wam7_real_t t284 = t81 * t277 - t78 * t283;
+    const wam7_real_t t285 = t284 + (WAM7_C(0.045) * t269 + WAM7_C(0.3) * t227); /* link j5: motion */
+    const wam7_real_t t286 = t219 + t220;
+    const wam7_real_t t287 = t209 + t208; /* link j4: motion */
+    const wam7_real_t t288 = t126 * t274 - t122 * t275; /* link j3: motion */
+    const wam7_real_t t289 = t288 + WAM7_C(0.045) * t287; /* link j4: motion */
+    const wam7_real_t t290 = WAM7_C(0.045) * t286 - WAM7_C(-0.3) * t231 - t289; /* link j5: motion */
+    const wam7_real_t t291 = t40 * t285 - t37 * t290;
+    const wam7_real_t t292 = t291 + WAM7_C(0.06) * t242; /* link j7: motion */
+    const wam7_real_t t293 = t37 * t285 + t40 * t290; /* link j5: motion */
+    const wam7_real_t t294 = t202 * t202; /* link j4: motion */
+    const wam7_real_t t295 = t294 + t268; /* link j5: motion */
+    const wam7_real_t t296 = t226 - t223;
+    const wam7_real_t t297 = t78 * t277 + t81 * t283; /* link j4: motion */
+    const wam7_real_t t298 = WAM7_C(0.3) * t295 + WAM7_C(-0.045) * t296 - t297; /* link j5: motion */
+    const wam7_real_t t299 = t17 * t293 + t21 * t298; /* link j6: motion */
+    const wam7_real_t t300 = t299 + WAM7_C(0.06) * t248; /* link j7: motion */
+    const wam7_real_t t301 = t1 * t300 + t2 * t292;
+    const wam7_real_t t302 = t21 * t293 - t17 * t298; /* link j6: motion */
+    const wam7_real_t t303 = t246 * t246;
+    const wam7_real_t t304 = t239 * t239;
+    const wam7_real_t t305 = t303 + t304; /* link j7: motion */
+    const wam7_real_t t306 = WAM7_C(0.06) * t305 - t302;
     /* link j7: force and moment */
-    const wam7_real_t t308 = t260 - parameters[XZ7] * t265 + (t266 - t267) * parameters[YZ7]
-        - (parameters[MY7] * t307 - parameters[MZ7] * t302);
-    const wam7_real_t t309 = t253 + t254;
-    const wam7_real_t t310 = parameters[YY7] * t258 + t257 * (parameters[XX7] - parameters[ZZ7])
-        + parameters[XY7] * t309;
-    const wam7_real_t t311 = t264 + t263;
-    const wam7_real_t t312 = t256 * t256; /* link j7: motion */
-    const wam7_real_t t313 = t1 * t293 - t2 * t301;
+    const wam7_real_t t307 = t259 - parameters[XZ7] * t264 + (t265 - t266) * parameters[YZ7]
+        - (parameters[MY7] * t306 - parameters[MZ7] * t301);
+    const wam7_real_t t308 = t252 + t253;
+    const wam7_real_t t309 = parameters[YY7] * t257 + t256 * (parameters[XX7] - parameters[ZZ7])
+        + parameters[XY7] * t308;
+    const wam7_real_t t310 = t263 + t262;
+    const wam7_real_t t311 = t255 * t255; /* link j7: motion */
+    const wam7_real_t t312 = t1 * t292 - t2 * t300;
     /* link j7: force and moment */
-    const wam7_real_t t314 = parameters[YZ7] * t311 - t310 + (t312 - t267) * parameters[XZ7]
-        + (parameters[MZ7] * t313 - parameters[MX7] * t307);
-    const wam7_real_t t315 = (t266 + t267) * parameters[MX7] - parameters[MY7] * t311
-        - parameters[MZ7] * t255;
-    const wam7_real_t t316 = parameters[M7] * t313 + t315;
-    const wam7_real_t t317 = parameters[MX7] * t265 + (t312 + t267) * parameters[MY7]
-        + parameters[MZ7] * t250;
-    const wam7_real_t t318 = parameters[M7] * t302 + t317;
-    const wam7_real_t t319 = t1 * t316 + t2 * t318; /* link j7: what it passes on */
-    const wam7_real_t t320 = t263 - t262; /* link j7: motion */
+    const wam7_real_t t313 = parameters[YZ7] * t310 - t309 + (t311 - t266) * parameters[XZ7]
+        + (parameters[MZ7] * t312 - parameters[MX7] * t306);
+    const wam7_real_t t314 = (t265 + t266) * parameters[MX7] - parameters[MY7] * t310
+        - parameters[MZ7] * t254;
+    const wam7_real_t t315 = parameters[M7] * t312 + t314;
+    const wam7_real_t t316 = parameters[MX7] * t264 + (t311 + t266) * parameters[MY7]
+        + parameters[MZ7] * t249;
+    const wam7_real_t t317 = parameters[M7] * t301 + t316;
+    const wam7_real_t t318 = t1 * t315 + t2 * t317; /* link j7: what it passes on */
+    const wam7_real_t t319 = t262 - t261; /* link j7: motion */
     /* link j6: force and moment */
-    const wam7_real_t t321 = parameters[XX6] * t242 + t241 * (parameters[ZZ6] - parameters[YY6])
-        + parameters[XY6] * t320;
-    const wam7_real_t t322 = t248 + t246; /* link j7: motion */
-    const wam7_real_t t323 = t239 * t239; /* link j6: motion */
+    const wam7_real_t t320 = parameters[XX6] * t241 + t240 * (parameters[ZZ6] - parameters[YY6])
+        + parameters[XY6] * t319;
+    const wam7_real_t t321 = t247 + t245; /* link j7: motion */
+    const wam7_real_t t322 = t238 * t238; /* link j6: motion */
     /* link j6: force and moment */
-    const wam7_real_t t324 = t321 + parameters[XZ6] * t322 + (t323 - t305) * parameters[YZ6]
-        + (parameters[MZ6] * t303 - parameters[MY6] * t292);
+    const wam7_real_t t323 = t320 + parameters[XZ6] * t321 + (t322 - t304) * parameters[YZ6]
+        + (parameters[MZ6] * t302 - parameters[MY6] * t291);
     /* link j7: what it passes on */
-    const wam7_real_t t325 = t324 + (t2 * t308 + t1 * t314 + WAM7_C(0.06) * t319);
+    const wam7_real_t t324 = t323 + (t2 * t307 + t1 * t313 + WAM7_C(0.06) * t318);
     /* link j6: force and moment */
-    const wam7_real_t t326 = parameters[YY6] * t263 - t262 * (parameters[ZZ6] - parameters[XX6])
-        + parameters[XY6] * t243;
-    const wam7_real_t t327 = t326 + parameters[YZ6] * t249 + (t305 - t304) * parameters[XZ6]
-        + (parameters[MZ6] * t300 + parameters[MX6] * t292);
+    const wam7_real_t t325 = parameters[YY6] * t262 - t261 * (parameters[ZZ6] - parameters[XX6])
+        + parameters[XY6] * t242;
+    const wam7_real_t t326 = t325 + parameters[YZ6] * t248 + (t304 - t303) * parameters[XZ6]
+        + (parameters[MZ6] * t299 + parameters[MX6] * t291);
     /* link j7: force and moment */
-    const wam7_real_t t328 = parameters[ZZ7] * t263 - t264 * t7 - parameters[YZ7] * t255
-        - parameters[XZ7] * t250;
-    const wam7_real_t t329 = t328 + (t266 - t312) * parameters[XY7] + (parameters[MX7] * t302
-        - parameters[MY7] * t313);
-    const wam7_real_t t330 = t327 + t329; /* link j7: what it passes on */
-    const wam7_real_t t331 = t246 - t245; /* link j6: motion */
+    const wam7_real_t t327 = parameters[ZZ7] * t262 - t263 * t7 - parameters[YZ7] * t254
+        - parameters[XZ7] * t249;
+    const wam7_real_t t328 = t327 + (t265 - t311) * parameters[XY7] + (parameters[MX7] * t301
+        - parameters[MY7] * t312);
+    const wam7_real_t t329 = t326 + t328; /* link j7: what it passes on */
+    const wam7_real_t t330 = t245 - t244; /* link j6: motion */
     /* link j5: force and moment */
-    const wam7_real_t t332 = t235 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t236
-        + parameters[XY5] * t331;
-    const wam7_real_t t333 = t208 + t221; /* link j6: motion */
-    const wam7_real_t t334 = t207 * t207; /* link j5: motion */
-    const wam7_real_t t335 = t234 * t234;
+    const wam7_real_t t331 = t234 * (parameters[YY5] - parameters[ZZ5]) - parameters[XX5] * t235
+        + parameters[XY5] * t330;
+    const wam7_real_t t332 = t207 + t220; /* link j6: motion */
+    const wam7_real_t t333 = t206 * t206; /* link j5: motion */
+    const wam7_real_t t334 = t233 * t233;
     /* link j5: force and moment */
-    const wam7_real_t t336 = t332 - parameters[XZ5] * t333 + (t334 - t335) * parameters[YZ5]
-        - (parameters[MY5] * t299 - parameters[MZ5] * t292);
-    const wam7_real_t t337 = t336 + (t18 * t325 - t22 * t330); /* link j6: what it passes on */
-    const wam7_real_t t338 = t2 * t316 - t1 * t318; /* link j7: what it passes on */
+    const wam7_real_t t335 = t331 - parameters[XZ5] * t332 + (t333 - t334) * parameters[YZ5]
+        - (parameters[MY5] * t298 - parameters[MZ5] * t291);
+    const wam7_real_t t336 = t335 + (t17 * t324 - t21 * t329); /* link j6: what it passes on */
+    const wam7_real_t t337 = t2 * t315 - t1 * t317; /* link j7: what it passes on */
     /* link j6: force and moment */
-    const wam7_real_t t339 = parameters[ZZ6] * t246 + t248 * (parameters[YY6] - parameters[XX6])
-        + parameters[YZ6] * t261;
-    const wam7_real_t t340 = parameters[XZ6] * t238 - t339 + (t323 - t304) * parameters[XY6]
-        + (parameters[MX6] * t303 + parameters[MY6] * t300);
+    const wam7_real_t t338 = parameters[ZZ6] * t245 + t247 * (parameters[YY6] - parameters[XX6])
+        + parameters[YZ6] * t260;
+    const wam7_real_t t339 = parameters[XZ6] * t237 - t338 + (t322 - t303) * parameters[XY6]
+        + (parameters[MX6] * t302 + parameters[MY6] * t299);
     /* link j7: what it passes on */
-    const wam7_real_t t341 = t340 + (t2 * t314 - t1 * t308 + WAM7_C(0.06) * t338);
+    const wam7_real_t t340 = t339 + (t2 * t313 - t1 * t307 + WAM7_C(0.06) * t337);
     /* link j5: force and moment */
-    const wam7_real_t t342 = parameters[XY5] * t237 - (parameters[YY5] * t246 + t245 * (parameters[XX5]
+    const wam7_real_t t341 = parameters[XY5] * t236 - (parameters[YY5] * t245 + t244 * (parameters[XX5]
         - parameters[ZZ5]));
-    const wam7_real_t t343 = t206 * t206; /* link j5: motion */
+    const wam7_real_t t342 = t205 * t205; /* link j5: motion */
     /* link j5: force and moment */
-    const wam7_real_t t344 = t342 + parameters[YZ5] * t222 + (t343 - t335) * parameters[XZ5]
-        - (parameters[MZ5] * t294 + parameters[MX5] * t299);
-    const wam7_real_t t345 = t344 + t341; /* link j6: what it passes on */
+    const wam7_real_t t343 = t341 + parameters[YZ5] * t221 + (t342 - t334) * parameters[XZ5]
+        - (parameters[MZ5] * t293 + parameters[MX5] * t298);
+    const wam7_real_t t344 = t343 + t340; /* link j6: what it passes on */
     /* link j6: force and moment */
-    const wam7_real_t t346 = (t323 + t305) * parameters[MX6] + parameters[MY6] * t249
-        - parameters[MZ6] * t261;
-    const wam7_real_t t347 = t346 - parameters[M6] * t300 + t338; /* link j7: what it passes on */
+    const wam7_real_t t345 = (t322 + t304) * parameters[MX6] + parameters[MY6] * t248
+        - parameters[MZ6] * t260;
+    const wam7_real_t t346 = t345 - parameters[M6] * t299 + t337; /* link j7: what it passes on */
     /* link j6: force and moment */
-    const wam7_real_t t348 = parameters[MX6] * t322 - t306 * parameters[MY6] + parameters[MZ6] * t238
-        - parameters[M6] * t303;
+    const wam7_real_t t347 = parameters[MX6] * t321 - t305 * parameters[MY6] + parameters[MZ6] * t237
+        - parameters[M6] * t302;
     /* link j7: force and moment */
-    const wam7_real_t t349 = parameters[MX7] * t259 - parameters[MY7] * t309 + (t312
-        + t266) * parameters[MZ7];
-    const wam7_real_t t350 = t348 + (parameters[M7] * t307 + t349); /* link j7: what it passes on */
+    const wam7_real_t t348 = parameters[MX7] * t258 - parameters[MY7] * t308 + (t311
+        + t265) * parameters[MZ7];
+    const wam7_real_t t349 = t347 + (parameters[M7] * t306 + t348); /* link j7: what it passes on */
     /* link j5: force and moment */
-    const wam7_real_t t351 = (t334 + t335) * parameters[MX5] - parameters[MY5] * t222
-        - parameters[MZ5] * t244;
+    const wam7_real_t t350 = (t333 + t334) * parameters[MX5] - parameters[MY5] * t221
+        - parameters[MZ5] * t243;
     /* link j6: what it passes on */
-    const wam7_real_t t352 = t351 - parameters[M5] * t294 + (t18 * t347 + t22 * t350);
+    const wam7_real_t t351 = t350 - parameters[M5] * t293 + (t17 * t346 + t21 * t349);
     /* link j6: force and moment */
-    const wam7_real_t t353 = parameters[MX6] * t320 - parameters[MY6] * t243 + (t304
-        + t323) * parameters[MZ6];
+    const wam7_real_t t352 = parameters[MX6] * t319 - parameters[MY6] * t242 + (t303
+        + t322) * parameters[MZ6];
     /* link j5: force and moment */
-    const wam7_real_t t354 = parameters[MX5] * t333 + (t343 + t335) * parameters[MY5]
-        - parameters[MZ5] * t233;
+    const wam7_real_t t353 = parameters[MX5] * t332 + (t342 + t334) * parameters[MY5]
+        - parameters[MZ5] * t232;
     /* link j6: what it passes on */
-    const wam7_real_t t355 = parameters[M5] * t292 + t354 + (parameters[M6] * t292 + t353 + t319);
-    const wam7_real_t t356 = t42 * t352 + t39 * t355; /* link j5: what it passes on */
+    const wam7_real_t t354 = parameters[M5] * t291 + t353 + (parameters[M6] * t291 + t352 + t318);
+    const wam7_real_t t355 = t40 * t351 + t37 * t354; /* link j5: what it passes on */
     /* link j4: force and moment */
-    const wam7_real_t t357 = t230 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t231
-        + parameters[XY4] * t287;
-    const wam7_real_t t358 = t357 + parameters[XZ4] * t297 + (t268 - t269) * parameters[YZ4]
-        + (parameters[MZ4] * t298 - parameters[MY4] * t290);
+    const wam7_real_t t356 = t229 * (parameters[ZZ4] - parameters[YY4]) - parameters[XX4] * t230
+        + parameters[XY4] * t286;
+    const wam7_real_t t357 = t356 + parameters[XZ4] * t296 + (t267 - t268) * parameters[YZ4]
+        + (parameters[MZ4] * t297 - parameters[MY4] * t289);
     /* link j5: what it passes on */
-    const wam7_real_t t359 = t358 + (t39 * t337 + t42 * t345 + WAM7_C(0.3) * t356);
+    const wam7_real_t t358 = t357 + (t37 * t336 + t40 * t344 + WAM7_C(0.3) * t355);
     /* link j5: force and moment */
-    const wam7_real_t t360 = parameters[ZZ5] * t221 + t208 * (parameters[YY5] - parameters[XX5])
-        - parameters[YZ5] * t244;
-    const wam7_real_t t361 = t360 + parameters[XZ5] * t233 + (t334 - t343) * parameters[XY5]
-        + (parameters[MX5] * t292 + parameters[MY5] * t294);
-    const wam7_real_t t362 = t361 + (t22 * t325 + t18 * t330); /* link j6: what it passes on */
+    const wam7_real_t t359 = parameters[ZZ5] * t220 + t207 * (parameters[YY5] - parameters[XX5])
+        - parameters[YZ5] * t243;
+    const wam7_real_t t360 = t359 + parameters[XZ5] * t232 + (t333 - t342) * parameters[XY5]
+        + (parameters[MX5] * t291 + parameters[MY5] * t293);
+    const wam7_real_t t361 = t360 + (t21 * t324 + t17 * t329); /* link j6: what it passes on */
     /* link j4: force and moment */
-    const wam7_real_t t363 = parameters[YY4] * t221 + t220 * (parameters[ZZ4] - parameters[XX4])
-        - parameters[XY4] * t232;
-    const wam7_real_t t364 = t363 + parameters[YZ4] * t228 + (t269 - t295) * parameters[XZ4]
-        + (parameters[MZ4] * t285 + parameters[MX4] * t290);
-    const wam7_real_t t365 = t364 + (t362 + WAM7_C(-0.045) * t356); /* link j5: what it passes on */
+    const wam7_real_t t362 = parameters[YY4] * t220 + t219 * (parameters[ZZ4] - parameters[XX4])
+        - parameters[XY4] * t231;
+    const wam7_real_t t363 = t362 + parameters[YZ4] * t227 + (t268 - t294) * parameters[XZ4]
+        + (parameters[MZ4] * t284 + parameters[MX4] * t289);
+    const wam7_real_t t364 = t363 + (t361 + WAM7_C(-0.045) * t355); /* link j5: what it passes on */
     /* link j3: force and moment */
-    const wam7_real_t t366 = parameters[XY3] * t279 - (parameters[XX3] * t217 + t212 * (parameters[YY3]
+    const wam7_real_t t365 = parameters[XY3] * t278 - (parameters[XX3] * t216 + t211 * (parameters[YY3]
         - parameters[ZZ3]));
-    const wam7_real_t t367 = t366 - parameters[XZ3] * t288 + (t271 - t272) * parameters[YZ3]
-        + (t283 * parameters[MY3] + parameters[MZ3] * t289);
-    const wam7_real_t t368 = t367 + (t84 * t359 - t81 * t365); /* link j4: what it passes on */
-    const wam7_real_t t369 = t39 * t352 - t42 * t355; /* link j5: what it passes on */
+    const wam7_real_t t366 = t365 - parameters[XZ3] * t287 + (t270 - t271) * parameters[YZ3]
+        + (t282 * parameters[MY3] + parameters[MZ3] * t288);
+    const wam7_real_t t367 = t366 + (t81 * t358 - t78 * t364); /* link j4: what it passes on */
+    const wam7_real_t t368 = t37 * t351 - t40 * t354; /* link j5: what it passes on */
     /* link j5: force and moment */
-    const wam7_real_t t370 = parameters[MX5] * t331 + parameters[MY5] * t237 + (t343
-        + t334) * parameters[MZ5];
+    const wam7_real_t t369 = parameters[MX5] * t330 + parameters[MY5] * t236 + (t342
+        + t333) * parameters[MZ5];
     /* link j6: what it passes on */
-    const wam7_real_t t371 = parameters[M5] * t299 + t370 + (t18 * t350 - t22 * t347);
+    const wam7_real_t t370 = parameters[M5] * t298 + t369 + (t17 * t349 - t21 * t346);
     /* link j5: what it passes on */
-    const wam7_real_t t372 = t39 * t345 - t42 * t337 + (WAM7_C(0.045) * t371 + WAM7_C(0.3) * t369);
+    const wam7_real_t t371 = t37 * t344 - t40 * t336 + (WAM7_C(0.045) * t370 + WAM7_C(0.3) * t368);
     /* link j4: force and moment */
-    const wam7_real_t t373 = t224 * (parameters[YY4] - parameters[XX4]) - parameters[ZZ4] * t227
-        - parameters[YZ4] * t219;
-    const wam7_real_t t374 = t373 + parameters[XZ4] * t229 + (t268 - t295) * parameters[XY4]
-        + (parameters[MX4] * t298 + parameters[MY4] * t285);
-    const wam7_real_t t375 = t374 + t372; /* link j5: what it passes on */
+    const wam7_real_t t372 = t223 * (parameters[YY4] - parameters[XX4]) - parameters[ZZ4] * t226
+        - parameters[YZ4] * t218;
+    const wam7_real_t t373 = t372 + parameters[XZ4] * t228 + (t267 - t294) * parameters[XY4]
+        + (parameters[MX4] * t297 + parameters[MY4] * t284);
+    const wam7_real_t t374 = t373 + t371; /* link j5: what it passes on */
     /* link j4: force and moment */
-    const wam7_real_t t376 = t270 * parameters[MX4] + parameters[MY4] * t228 - parameters[MZ4] * t219
-        - parameters[M4] * t285;
-    const wam7_real_t t377 = t376 + t369; /* link j5: what it passes on */
+    const wam7_real_t t375 = t269 * parameters[MX4] + parameters[MY4] * t227 - parameters[MZ4] * t218
+        - parameters[M4] * t284;
+    const wam7_real_t t376 = t375 + t368; /* link j5: what it passes on */
     /* link j4: force and moment */
-    const wam7_real_t t378 = parameters[M4] * t298 + (t296 * parameters[MY4] - parameters[MX4] * t297
-        - parameters[MZ4] * t229);
-    const wam7_real_t t379 = t371 - t378; /* link j5: what it passes on */
+    const wam7_real_t t377 = parameters[M4] * t297 + (t295 * parameters[MY4] - parameters[MX4] * t296
+        - parameters[MZ4] * t228);
+    const wam7_real_t t378 = t370 - t377; /* link j5: what it passes on */
     /* link j3: force and moment */
-    const wam7_real_t t380 = t225 * (parameters[XX3] - parameters[ZZ3]) - parameters[YY3] * t227
-        + parameters[XY3] * t218;
-    const wam7_real_t t381 = t200 * t200; /* link j3: motion */
+    const wam7_real_t t379 = t224 * (parameters[XX3] - parameters[ZZ3]) - parameters[YY3] * t226
+        + parameters[XY3] * t217;
+    const wam7_real_t t380 = t199 * t199; /* link j3: motion */
     /* link j3: force and moment */
-    const wam7_real_t t382 = t380 - parameters[YZ3] * t211 + (t381 - t272) * parameters[XZ3]
-        + (t283 * parameters[MX3] - parameters[MZ3] * t277);
+    const wam7_real_t t381 = t379 - parameters[YZ3] * t210 + (t380 - t271) * parameters[XZ3]
+        + (t282 * parameters[MX3] - parameters[MZ3] * t276);
     /* link j4: what it passes on */
-    const wam7_real_t t383 = t382 + (t375 + WAM7_C(0.045) * (t81 * t377 - t84 * t379));
+    const wam7_real_t t382 = t381 + (t374 + WAM7_C(0.045) * (t78 * t376 - t81 * t378));
     /* link j3: force and moment */
-    const wam7_real_t t384 = t273 * parameters[MX3] + parameters[MY3] * t211 + parameters[MZ3] * t226
-        - parameters[M3] * t277;
-    const wam7_real_t t385 = t384 + (t84 * t377 + t81 * t379); /* link j4: what it passes on */
+    const wam7_real_t t383 = t272 * parameters[MX3] + parameters[MY3] * t210 + parameters[MZ3] * t225
+        - parameters[M3] * t276;
+    const wam7_real_t t384 = t383 + (t81 * t376 + t78 * t378); /* link j4: what it passes on */
     /* link j4: force and moment */
-    const wam7_real_t t386 = parameters[MX4] * t287 + parameters[MY4] * t232 + (t295
-        + t268) * parameters[MZ4];
-    const wam7_real_t t387 = parameters[M4] * t290 + t386 + t356; /* link j5: what it passes on */
+    const wam7_real_t t385 = parameters[MX4] * t286 + parameters[MY4] * t231 + (t294
+        + t267) * parameters[MZ4];
+    const wam7_real_t t386 = parameters[M4] * t289 + t385 + t355; /* link j5: what it passes on */
     /* link j3: force and moment */
-    const wam7_real_t t388 = parameters[MX3] * t288 + (t381 + t272) * parameters[MY3]
-        - parameters[MZ3] * t216;
-    const wam7_real_t t389 = parameters[M3] * t289 + t388 + t387; /* link j4: what it passes on */
+    const wam7_real_t t387 = parameters[MX3] * t287 + (t380 + t271) * parameters[MY3]
+        - parameters[MZ3] * t215;
+    const wam7_real_t t388 = parameters[M3] * t288 + t387 + t386; /* link j4: what it passes on */
     /* link j3: what it passes on */
-    const wam7_real_t t390 = t126 * t368 + t130 * t383 + WAM7_C(0.55) * (t130 * t385 + t126 * t389);
+    const wam7_real_t t389 = t122 * t367 + t126 * t382 + WAM7_C(0.55) * (t126 * t384 + t122 * t388);
     /* link j2: force and moment */
-    const wam7_real_t t391 = t214 * (parameters[YY2] - parameters[ZZ2]) - t214 * parameters[XX2]
-        + WAM7_C(2.0) * t210 * parameters[XY2];
-    const wam7_real_t t392 = t201 * t201; /* link j2: motion */
+    const wam7_real_t t390 = t213 * (parameters[YY2] - parameters[ZZ2]) - t213 * parameters[XX2]
+        + WAM7_C(2.0) * t209 * parameters[XY2];
+    const wam7_real_t t391 = t200 * t200; /* link j2: motion */
     /* link j2: force and moment */
-    const wam7_real_t t393 = t391 + t213 * parameters[XZ2] + (t392 - t281) * parameters[YZ2]
-        + t282 * parameters[MZ2];
+    const wam7_real_t t392 = t390 + t212 * parameters[XZ2] + (t391 - t280) * parameters[YZ2]
+        + t281 * parameters[MZ2];
     /* link j3: force and moment */
-    const wam7_real_t t394 = t210 * parameters[ZZ3] + t209 * (parameters[YY3] - parameters[XX3])
-        + parameters[YZ3] * t226;
-    const wam7_real_t t395 = t394 + parameters[XZ3] * t216 + (t271 - t381) * parameters[XY3]
-        + (parameters[MX3] * t289 + parameters[MY3] * t277);
+    const wam7_real_t t393 = t209 * parameters[ZZ3] + t208 * (parameters[YY3] - parameters[XX3])
+        + parameters[YZ3] * t225;
+    const wam7_real_t t394 = t393 + parameters[XZ3] * t215 + (t270 - t380) * parameters[XY3]
+        + (parameters[MX3] * t288 + parameters[MY3] * t276);
     /* link j4: what it passes on */
-    const wam7_real_t t396 = t395 + (t81 * t359 + t84 * t365 + WAM7_C(0.045) * t387);
+    const wam7_real_t t395 = t394 + (t78 * t358 + t81 * t364 + WAM7_C(0.045) * t386);
     /* link j2: force and moment */
-    const wam7_real_t t397 = t210 * parameters[YY2] + t210 * (parameters[ZZ2] - parameters[XX2])
-        - t215 * parameters[XY2];
-    const wam7_real_t t398 = t397 - t213 * parameters[YZ2] + (t281 - t280) * parameters[XZ2]
-        + t274 * parameters[MZ2];
-    const wam7_real_t t399 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
-    const wam7_real_t t400 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1] - t399 * parameters[FC1])
-        + (t169 * (t393 + t390) + t170 * (t398 + t396));
-    const wam7_real_t t401 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
-    const wam7_real_t t402 = WAM7_C(14.93) * (WAM7_C(-14.93) * dq[6] * parameters[FV7]
-        - t401 * parameters[FC7]) + t329;
-    const wam7_real_t t403 = WAM7_C(1.00031) * input[6] + t402;
-    const wam7_real_t t404 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
-    const wam7_real_t t405 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[5] * parameters[FV6] - t404 * parameters[FC6])
-        + t341;
-    const wam7_real_t t406 = WAM7_C(2.23728) * input[5] + t405 - t403 * t6;
-    const wam7_real_t t407 = WAM7_C(19.194) * input[0] + t400 - t403 * t191 + t406 * t192;
-    const wam7_real_t t408 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
-    const wam7_real_t t409 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[4] * parameters[FV5] - t408 * parameters[FC5])
-        + t362;
-    const wam7_real_t t410 = WAM7_C(2.23728) * input[4] + t409 + t403 * t28 + t406 * t34;
-    const wam7_real_t t411 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
-    const wam7_real_t t412 = WAM7_C(18.0) * (WAM7_C(-18.0) * dq[3] * parameters[FV4] - t411 * parameters[FC4])
-        + t375;
-    const wam7_real_t t413 = WAM7_C(8.226) * input[3] + t412 - t403 * t65 + t406 * t69;
-    const wam7_real_t t414 = t413 + t410 * t76;
-    const wam7_real_t t415 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
-    const wam7_real_t t416 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[2] * parameters[FV3]
-        - t415 * parameters[FC3]) + t396;
-    const wam7_real_t t417 = WAM7_C(12.910250000000001) * input[2] + t416 - t403 * t105 + t406 * t120;
-    const wam7_real_t t418 = t417 + t410 * t104 - t414 * t103;
-    const wam7_real_t t419 = t407 + t410 * t193 + t414 * t195 + t418 * t196;
+    const wam7_real_t t396 = t209 * parameters[YY2] + t209 * (parameters[ZZ2] - parameters[XX2])
+        - t214 * parameters[XY2];
+    const wam7_real_t t397 = t396 - t212 * parameters[YZ2] + (t280 - t279) * parameters[XZ2]
+        + t273 * parameters[MZ2];
+    const wam7_real_t t398 = wam7_sign(dq[0]); /* joint j1: coulomb_friction */
+    const wam7_real_t t399 = WAM7_C(42.0) * (WAM7_C(-42.0) * dq[0] * parameters[FV1] - t398 * parameters[FC1])
+        + (t164 * (t392 + t389) + t165 * (t397 + t395));
+    const wam7_real_t t400 = wam7_sign(dq[6]); /* joint j7: coulomb_friction */
+    const wam7_real_t t401 = WAM7_C(14.93) * (WAM7_C(-14.93) * dq[6] * parameters[FV7]
+        - t400 * parameters[FC7]) + t328;
+    const wam7_real_t t402 = WAM7_C(1.00031) * input[6] + t401;
+    const wam7_real_t t403 = wam7_sign(dq[5]); /* joint j6: coulomb_friction */
+    const wam7_real_t t404 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[5] * parameters[FV6] - t403 * parameters[FC6])
+        + t340;
+    const wam7_real_t t405 = WAM7_C(2.23728) * input[5] + t404 - t402 * t6;
+    const wam7_real_t t406 = WAM7_C(19.194) * input[0] + t399 - t402 * t186 + t405 * t187;
+    const wam7_real_t t407 = wam7_sign(dq[4]); /* joint j5: coulomb_friction */
+    const wam7_real_t t408 = WAM7_C(9.48) * (WAM7_C(-9.48) * dq[4] * parameters[FV5] - t407 * parameters[FC5])
+        + t361;
+    const wam7_real_t t409 = WAM7_C(2.23728) * input[4] + t408 + t402 * t27 + t405 * t33;
+    const wam7_real_t t410 = wam7_sign(dq[3]); /* joint j4: coulomb_friction */
+    const wam7_real_t t411 = WAM7_C(18.0) * (WAM7_C(-18.0) * dq[3] * parameters[FV4] - t410 * parameters[FC4])
+        + t374;
+    const wam7_real_t t412 = WAM7_C(8.226) * input[3] + t411 - t402 * t63 + t405 * t67;
+    const wam7_real_t t413 = t412 + t409 * t74;
+    const wam7_real_t t414 = wam7_sign(dq[2]); /* joint j3: coulomb_friction */
+    const wam7_real_t t415 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[2] * parameters[FV3]
+        - t414 * parameters[FC3]) + t395;
+    const wam7_real_t t416 = WAM7_C(12.910250000000001) * input[2] + t415 - t402 * t102 + t405 * t117;
+    const wam7_real_t t417 = t416 + t409 * t101 - t413 * t100;
+    const wam7_real_t t418 = t406 + t409 * t188 + t413 * t190 + t417 * t191;
     /* link j3: what it passes on */
-    const wam7_real_t t420 = t126 * t383 - t130 * t368 + WAM7_C(0.55) * (t126 * t385 - t130 * t389);
+    const wam7_real_t t419 = t122 * t382 - t126 * t367 + WAM7_C(0.55) * (t122 * t384 - t126 * t388);
     /* link j2: force and moment */
-    const wam7_real_t t421 = t213 * (parameters[XX2] - parameters[YY2]) + (t392 - t280) * parameters[XY2]
-        + (t282 * parameters[MX2] + t274 * parameters[MY2]);
-    const wam7_real_t t422 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
-    const wam7_real_t t423 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[1] * parameters[FV2]
-        - t422 * parameters[FC2]) + (t421 + t420);
-    const wam7_real_t t424 = WAM7_C(12.910250000000001) * input[1] + t423 - t403 * t140 + t406 * t146;
-    const wam7_real_t t425 = t424 + t410 * t152 + t414 * t157 + t418 * t166;
-    const wam7_real_t t426 = WAM7_C(1.0) / t197;
-    const wam7_real_t t427 = wam7_bounded((t419 + t425 * t187) * t426);
-    out[0] = t427;
-    const wam7_real_t t428 = wam7_bounded(t425 * t186 + t187 * t427);
-    out[1] = t428;
-    const wam7_real_t t429 = wam7_bounded(t418 * t165 + t196 * t427 + t166 * t428);
-    out[2] = t429;
-    const wam7_real_t t430 = wam7_bounded(t414 * t102 + t195 * t427 + t157 * t428 - t103 * t429);
-    out[3] = t430;
-    const wam7_real_t t431 = t410 * t75 + t193 * t427 + t152 * t428 + t104 * t429;
-    const wam7_real_t t432 = wam7_bounded(t431 + t76 * t430);
-    out[4] = t432;
-    const wam7_real_t t433 = t406 * t33 + t192 * t427 + t146 * t428 + t120 * t429;
-    const wam7_real_t t434 = wam7_bounded(t433 + t69 * t430 + t34 * t432);
-    out[5] = t434;
-    const wam7_real_t t435 = t403 * t5 + t191 * t427 + t140 * t428 + t105 * t429;
-    const wam7_real_t t436 = t28 * t432 - (t435 + t65 * t430) - t6 * t434;
-    out[6] = t436;
-    if (!wam7_all_bounded(out, 7)) {
+    const wam7_real_t t420 = t212 * (parameters[XX2] - parameters[YY2]) + (t391 - t279) * parameters[XY2]
+        + (t281 * parameters[MX2] + t273 * parameters[MY2]);
+    const wam7_real_t t421 = wam7_sign(dq[1]); /* joint j2: coulomb_friction */
+    const wam7_real_t t422 = WAM7_C(28.25) * (WAM7_C(-28.25) * dq[1] * parameters[FV2]
+        - t421 * parameters[FC2]) + (t420 + t419);
+    const wam7_real_t t423 = WAM7_C(12.910250000000001) * input[1] + t422 - t402 * t136 + t405 * t142;
+    const wam7_real_t t424 = t423 + t409 * t148 + t413 * t153 + t417 * t162;
+    const wam7_real_t t425 = WAM7_C(1.0) / t192;
+    const wam7_real_t t426 = wam7_held((t418 + t424 * t182) * t425);
+    out[0] = t426;
+    const wam7_real_t t427 = wam7_held(t424 * t181 + t182 * t426);
+    out[1] = t427;
+    const wam7_real_t t428 = wam7_held(t417 * t161 + t191 * t426 + t162 * t427);
+    out[2] = t428;
+    const wam7_real_t t429 = wam7_held(t413 * t99 + t190 * t426 + t153 * t427 - t100 * t428);
+    out[3] = t429;
+    const wam7_real_t t430 = t409 * t73 + t188 * t426 + t148 * t427 + t101 * t428;
+    const wam7_real_t t431 = wam7_held(t430 + t74 * t429);
+    out[4] = t431;
+    const wam7_real_t t432 = t405 * t32 + t187 * t426 + t142 * t427 + t117 * t428;
+    const wam7_real_t t433 = wam7_held(t432 + t67 * t429 + t33 * t431);
+    out[5] = t433;
+    const wam7_real_t t434 = t402 * t5 + t186 * t426 + t136 * t427 + t102 * t428;
+    const wam7_real_t t435 = t27 * t431 - (t434 + t63 * t429) - t6 * t433;
+    out[6] = t435;
+    if (!wam7_bounded(out, 7)) {
         wam7_zero(out, 7);
         return WAM7_STATUS_PIVOT;
     }

@@ -95,7 +95,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -428,835 +428,822 @@ wam7_status_t wam7_inverse_dynamics_derivatives(
     const wam7_real_t t212 = parameters[FV7] * (WAM7_C(14.93) * dq[6]) + parameters[FC7] * t211
         + parameters[IA7] * (WAM7_C(14.93) * ddq[6]);
     input[6] = WAM7_C(14.925373134328357) * t212 + WAM7_C(-0.9996900960702182) * t138;
-    const wam7_real_t t213 = parameters[XZ7R] * t73;
-    const wam7_real_t t214 = parameters[XY7] * t74;
-    const wam7_real_t t215 = t213 + t214;
-    const wam7_real_t t216 = parameters[YZ7R] * t78;
-    const wam7_real_t t217 = t214 - t216;
-    const wam7_real_t t218 = WAM7_C(-0.5) * (parameters[XX7R] + parameters[ZZ7]);
-    const wam7_real_t t219 = parameters[XX7R] + t218;
-    const wam7_real_t t220 = t74 * t219 - parameters[XZ7R] * t78;
-    const wam7_real_t t221 = parameters[YZ7R] * t73 + t74 * t218;
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t222 = t63 * (t215 + t217) + t71 * (t220 - t221);
-    const wam7_real_t t223 = t63 * t222;
-    const wam7_real_t t224 = parameters[XZ6] * t58;
-    const wam7_real_t t225 = parameters[XY6] * t59;
-    const wam7_real_t t226 = t224 + t225 + (t223 - t217);
-    const wam7_real_t t227 = t213 + t216;
-    const wam7_real_t t228 = parameters[YZ6] * t68;
-    const wam7_real_t t229 = t225 - t228 + t227;
-    const wam7_real_t t230 = parameters[XY7] * t78 + t73 * t219;
-    const wam7_real_t t231 = parameters[XY7] * t73 + t78 * t218;
-    const wam7_real_t t232 = WAM7_C(0.5) * (parameters[XX6R] + parameters[ZZ6R]);
-    const wam7_real_t t233 = t232 - parameters[XX6R];
-    const wam7_real_t t234 = parameters[XZ6] * t68 + t59 * t233 + (t63 * t230 - t71 * t231);
-    const wam7_real_t t235 = parameters[ZZ7] + t218;
-    const wam7_real_t t236 = parameters[YZ7R] * t74 + t73 * t235;
-    const wam7_real_t t237 = parameters[XZ7R] * t74 - t78 * t235;
-    const wam7_real_t t238 = t59 * t232 - parameters[YZ6] * t58 + (t63 * t236 + t71 * t237);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t239 = t56 * (t226 + t229) + t39 * (t238 - t234);
-    const wam7_real_t t240 = t56 * t239;
-    const wam7_real_t t241 = parameters[XZ5] * t16;
-    const wam7_real_t t242 = parameters[XY5] * t52;
-    const wam7_real_t t243 = t241 - t242 + (t229 - t240);
-    const wam7_real_t t244 = t224 + t228 + (t223 - t215); /* link j7: inertia, momentum beyond */
-    const wam7_real_t t245 = parameters[YZ5] * t15;
-    const wam7_real_t t246 = t242 - t245 + t244; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t247 = t71 * t222; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t248 = t232 - parameters[ZZ6R];
-    const wam7_real_t t249 = parameters[YZ6] * t59 - t58 * t248 + (t221 + t247);
-    const wam7_real_t t250 = t71 * t230 + t63 * t231 - (parameters[XZ6] * t59 + t68 * t248);
-    const wam7_real_t t251 = WAM7_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t252 = parameters[YZ5] * t16 - t52 * t251 - (t56 * t249 - t39 * t250);
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t253 = parameters[XY6] * t68 - t58 * t233 + (t220 - t247);
-    const wam7_real_t t254 = t68 * t232 - parameters[XY6] * t58 + (t63 * t237 - t71 * t236);
-    const wam7_real_t t255 = parameters[XX5R] + t251;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t256 = t52 * t255 - parameters[XZ5] * t15 + (t56 * t253 + t39 * t254);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t257 = t11 * (t246 - t243) + t14 * (t252 + t256);
-    const wam7_real_t t258 = t11 * t257;
-    const wam7_real_t t259 = parameters[MY7] * t78 + parameters[MX7] * t73;
-    const wam7_real_t t260 = parameters[MX6] * t59 - t259; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t261 = parameters[MY7] * t74;
-    const wam7_real_t t262 = parameters[MX7] * t74;
-    const wam7_real_t t263 = parameters[MY6R] * t59 + (t63 * t261 + t71 * t262);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t264 = parameters[MY5R] * t52 + (t56 * t263 + t39 * t260);
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t265 = parameters[MY6R] * t68 + parameters[MX6] * t58 + (t63 * t262 - t71 * t261);
-    const wam7_real_t t266 = parameters[MX5] * t52 + t265; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t267 = t11 * t264 + t14 * t266; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t268 = WAM7_C(0.045) * t267;
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t269 = t63 * parameters[MY7] + t71 * parameters[MX7];
-    const wam7_real_t t270 = parameters[MY5R] + t269; /* link j6: inertia of it and all beyond */
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t271 = t63 * parameters[MX7] - t71 * parameters[MY7];
-    const wam7_real_t t272 = parameters[MX6] + t271; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t273 = t56 * t272 - t39 * parameters[MY6R]; /* link j6: column of the mass matrix */
-    const wam7_real_t t274 = parameters[MX5] + t273; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t275 = t11 * t274 - t14 * t270; /* link j5: column of the mass matrix */
-    const wam7_real_t t276 = WAM7_C(-0.3) * t13; /* link j5: velocity of its origin */
-    const wam7_real_t t277 = t275 * t276; /* link j5: inertia, momentum beyond */
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t278 = parameters[MY5R] * t15 - parameters[MX5] * t16 + (t39 * t263 - t56 * t260);
-    const wam7_real_t t279 = WAM7_C(-0.3) * t278; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t280 = t56 * parameters[MY6R] + t39 * t272; /* link j6: column of the mass matrix */
-    const wam7_real_t t281 = WAM7_C(0.045) * t13; /* link j5: velocity of its origin */
-    const wam7_real_t t282 = t280 * t281; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t283 = t11 * t270 + t14 * t274; /* link j5: column of the mass matrix */
-    const wam7_real_t t284 = WAM7_C(0.3) * t10 + WAM7_C(-0.045) * t40; /* link j5: velocity of its origin */
-    const wam7_real_t t285 = t283 * t284; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t286 = t268 - t279 + (t285 - (t277 + t282));
-    const wam7_real_t t287 = parameters[XZ4] * t40;
-    const wam7_real_t t288 = parameters[XY4R] * t13;
-    const wam7_real_t t289 = t287 + t288 + (t258 - t246 + (t268 - t277) - t286);
-    const wam7_real_t t290 = t245 - t241 + (t240 - t226); /* link j6: inertia, momentum beyond */
-    const wam7_real_t t291 = parameters[YZ4] * t10;
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t292 = t288 + t291 + (t286 + (t290 + (t279 + t282)));
-    const wam7_real_t t293 = t39 * t239; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t294 = parameters[XY5] * t15 - t16 * t255 + (t234 + t293);
-    const wam7_real_t t295 = t15 * t251 - parameters[XY5] * t16 + (t39 * t249 + t56 * t250);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t296 = t11 * t294 - t14 * t295 + (WAM7_C(0.045) * t278 - t275 * t281);
-    const wam7_real_t t297 = WAM7_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
-    const wam7_real_t t298 = t297 - parameters[XX4R];
-    const wam7_real_t t299 = t13 * t298 - parameters[XZ4] * t10 + t296;
-    const wam7_real_t t300 = parameters[ZZ5R] + t251;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t301 = parameters[YZ5] * t52 - t16 * t300 + (t238 - t293);
-    const wam7_real_t t302 = parameters[XZ5] * t52 - t15 * t300 + (t56 * t254 - t39 * t253);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t303 = t11 * t301 + t14 * t302 + (WAM7_C(-0.3) * t267 + t280 * t276);
-    const wam7_real_t t304 = t13 * t297 - parameters[YZ4] * t40 + t303;
-    const wam7_real_t t305 = t5 * (t289 + t292) + t9 * (t304 - t299); /* link j4: inertia, momentum beyond */
-    const wam7_real_t t306 = t5 * t305;
-    const wam7_real_t t307 = parameters[MY4R] * t13 + t267; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t308 = t278 - parameters[MX4R] * t13;
-    const wam7_real_t t309 = t9 * t308 - t5 * t307; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t310 = WAM7_C(0.045) * t309;
-    const wam7_real_t t311 = WAM7_C(0.045) * t8; /* link j4: velocity of its origin */
-    const wam7_real_t t312 = t283 * t311; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t313 = parameters[MX4R] + t275; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t314 = parameters[MY4R] + t280;
-    const wam7_real_t t315 = t5 * t314 + t9 * t313; /* link j4: column of the mass matrix */
-    const wam7_real_t t316 = WAM7_C(0.045) * t12; /* link j4: velocity of its origin */
-    const wam7_real_t t317 = t315 * t316; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t318 = t310 + (t312 + t317);
-    const wam7_real_t t319 = parameters[XZ3] * t12;
-    const wam7_real_t t320 = parameters[XY3R] * t8;
-    const wam7_real_t t321 = t319 - t320 + (t318 + (t292 - t306 - t310));
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t322 = t287 - t291 + (t286 + (t243 + t258 - t285));
-    const wam7_real_t t323 = parameters[YZ3] * t4;
-    const wam7_real_t t324 = t320 + t323 + (t318 + (t322 - t312)); /* link j4: inertia, momentum beyond */
-    const wam7_real_t t325 = t14 * t257; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t326 = t297 - parameters[ZZ4R];
-    const wam7_real_t t327 = parameters[YZ4] * t13 - t40 * t326 + (t325 - t252 - t283 * t276);
-    const wam7_real_t t328 = t10 * t326 - parameters[XZ4] * t13 + (t14 * t294 + t11 * t295 - t283 * t281);
-    const wam7_real_t t329 = WAM7_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t330 = parameters[YZ3] * t12 + t8 * t329 - (t5 * t327 - t9 * t328);
-    const wam7_real_t t331 = t14 * t264 - t11 * t266; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t332 = t256 - t325 + (WAM7_C(-0.045) * t331 - t275 * t284) - (parameters[XY4R] * t10
-        + t40 * t298);
-    const wam7_real_t t333 = t11 * t302 - t14 * t301 + (WAM7_C(0.3) * t331 + t280 * t284);
-    const wam7_real_t t334 = t333 - (parameters[XY4R] * t40 + t10 * t297);
-    const wam7_real_t t335 = parameters[MY4R] * t10 - parameters[MX4R] * t40 + t331;
-    const wam7_real_t t336 = t5 * t313 - t9 * t314; /* link j4: column of the mass matrix */
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t337 = t5 * t332 + t9 * t334 + (WAM7_C(0.045) * t335 - t336 * t311);
-    const wam7_real_t t338 = parameters[XX3R] - t329;
-    const wam7_real_t t339 = parameters[XZ3] * t4 + t8 * t338 + t337;
-    const wam7_real_t t340 = t2 * (t324 - t321) + t3 * (t330 + t339); /* link j3: inertia, momentum beyond */
-    const wam7_real_t t341 = t2 * t340;
-    const wam7_real_t t342 = parameters[MY3R] + t283; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t343 = parameters[MX3R] + t336;
-    const wam7_real_t t344 = t2 * t343 - t3 * t342; /* link j3: column of the mass matrix */
-    const wam7_real_t t345 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
-    const wam7_real_t t346 = t344 * t345; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t347 = t9 * t307 + t5 * t308; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t348 = t347 - (parameters[MY3R] * t4 + parameters[MX3R] * t12);
-    const wam7_real_t t349 = WAM7_C(-0.55) * t348; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t350 = t2 * t342 + t3 * t343; /* link j3: column of the mass matrix */
-    const wam7_real_t t351 = WAM7_C(-0.55) * t1; /* link j3: velocity of its origin */
-    const wam7_real_t t352 = t350 * t351; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t353 = t346 - t352 - t349;
-    const wam7_real_t t354 = parameters[XZ2] * t7;
-    const wam7_real_t t355 = parameters[XY2] * dq[1];
-    const wam7_real_t t356 = t353 + (t324 - t341 - t346) - (t354 + t355);
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t357 = t318 + (t306 - t289 - t317) - (t319 + t323);
-    const wam7_real_t t358 = parameters[YZ2] * t1;
-    const wam7_real_t t359 = t355 + t358 + (t353 + (t357 + t349)); /* link j3: inertia, momentum beyond */
-    const wam7_real_t t360 = t9 * t305; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t361 = t299 + t360 + (WAM7_C(-0.045) * t347 + t336 * t316) - (parameters[XY3R] * t4
-        + t12 * t338);
-    const wam7_real_t t362 = t4 * t329 - parameters[XY3R] * t12 + (t9 * t327 + t5 * t328 + t283 * t316);
-    const wam7_real_t t363 = WAM7_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const wam7_real_t t364 = parameters[XX2R] - t363;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t365 = parameters[XZ2] * t1 + dq[1] * t364 + (t3 * t362 - t2 * t361);
-    const wam7_real_t t366 = parameters[ZZ3R] - t329;
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t367 = parameters[YZ3] * t8 - t12 * t366 + (t304 - t360);
-    const wam7_real_t t368 = parameters[XZ3] * t8 + t4 * t366 + (t5 * t334 - t9 * t332 + t315 * t311);
-    const wam7_real_t t369 = t309 - parameters[MY3R] * t8;
-    const wam7_real_t t370 = t335 - parameters[MX3R] * t8;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t371 = WAM7_C(0.55) * (t2 * t369 + t3 * t370) - t315 * t345;
-    const wam7_real_t t372 = dq[1] * t363 - parameters[YZ2] * t7 + (t2 * t367 + t3 * t368 + t371);
-    /* link j2: inertia, momentum beyond */
-    const wam7_real_t t373 = t6 * (t6 * (t359 - t356) + t0 * (t372 + t365));
-    input_by_dq[0] = WAM7_C(91.90371991247264) * parameters[FV1] + WAM7_C(0.10419922892570596) * (t356
-        + t373);
-    const wam7_real_t t374 = t3 * t340; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t375 = parameters[XY2] * t1 - t7 * t364 + (t374 - t339 - t344 * t351);
-    const wam7_real_t t376 = WAM7_C(2.0) * t375; /* link j2: derivatives */
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t377 = WAM7_C(0.55) * (t2 * t370 - t3 * t369) - t315 * t351;
-    const wam7_real_t t378 = parameters[XY2] * t7 + t1 * t363 + (t3 * t367 - t2 * t368 - t377);
-    const wam7_real_t t379 = WAM7_C(2.0) * t378; /* link j2: derivatives */
-    input_by_dq[7] = WAM7_C(0.07745783389167521) * (t0 * t376 - t6 * t379);
-    const wam7_real_t t380 = WAM7_C(2.0) * t361; /* link j3: derivatives */
-    const wam7_real_t t381 = WAM7_C(2.0) * t362;
-    const wam7_real_t t382 = t3 * t381 - t2 * t380;
-    const wam7_real_t t383 = WAM7_C(2.0) * t357;
-    const wam7_real_t t384 = WAM7_C(-1.1) * t1; /* link j7: derivatives */
-    const wam7_real_t t385 = WAM7_C(-1.1) * dq[1];
-    const wam7_real_t t386 = t350 * t384 + t344 * t385 - t383; /* link j3: derivatives */
-    input_by_dq[14] = WAM7_C(0.07745783389167521) * (t0 * t382 - t6 * t386);
-    const wam7_real_t t387 = WAM7_C(2.0) * t332; /* link j4: derivatives */
-    const wam7_real_t t388 = WAM7_C(2.0) * t334;
-    const wam7_real_t t389 = WAM7_C(0.09) * t8; /* link j7: derivatives */
-    const wam7_real_t t390 = t5 * t387 + t9 * t388 - t336 * t389; /* link j4: derivatives */
-    const wam7_real_t t391 = WAM7_C(2.0) * t322;
-    const wam7_real_t t392 = WAM7_C(0.09) * t12; /* link j7: derivatives */
-    const wam7_real_t t393 = t391 + t315 * t392; /* link j4: derivatives */
-    const wam7_real_t t394 = t3 * t393 - t2 * t390 - t336 * t384;
-    const wam7_real_t t395 = t5 * t388 - t9 * t387 + t315 * t389;
-    const wam7_real_t t396 = t2 * t315; /* link j4: column of the mass matrix */
-    const wam7_real_t t397 = t3 * t315;
-    const wam7_real_t t398 = t395 + (t397 * t385 - t396 * t384); /* link j4: derivatives */
-    input_by_dq[21] = WAM7_C(0.12156576707999026) * (t0 * t394 + t6 * t398);
-    const wam7_real_t t399 = WAM7_C(2.0) * t294; /* link j5: derivatives */
-    const wam7_real_t t400 = WAM7_C(2.0) * t295;
-    const wam7_real_t t401 = WAM7_C(0.09) * t13; /* link j7: derivatives */
-    const wam7_real_t t402 = t11 * t399 - t14 * t400 - t275 * t401; /* link j5: derivatives */
-    const wam7_real_t t403 = WAM7_C(2.0) * t290;
-    const wam7_real_t t404 = WAM7_C(2.0) * t284; /* link j7: derivatives */
-    const wam7_real_t t405 = WAM7_C(-0.6) * t13;
-    const wam7_real_t t406 = t403 + (t283 * t404 - t275 * t405); /* link j5: derivatives */
-    const wam7_real_t t407 = t9 * t283; /* link j5: column of the mass matrix */
-    const wam7_real_t t408 = t5 * t402 + t9 * t406 + (t407 * t389 + t275 * t392); /* link j5: derivatives */
-    const wam7_real_t t409 = t14 * t399 + t11 * t400 - t283 * t401;
-    const wam7_real_t t410 = t5 * t283; /* link j5: column of the mass matrix */
-    const wam7_real_t t411 = t409 + t410 * t392; /* link j5: derivatives */
-    const wam7_real_t t412 = t3 * t411 - t2 * t408 + t407 * t384;
-    const wam7_real_t t413 = t5 * t406 - t9 * t402 + t410 * t389;
-    const wam7_real_t t414 = t2 * t410 + t3 * t275; /* link j5: column of the mass matrix */
-    const wam7_real_t t415 = t2 * t275 - t3 * t410;
-    const wam7_real_t t416 = t413 - (t414 * t384 + t415 * t385); /* link j5: derivatives */
-    input_by_dq[28] = WAM7_C(0.4469713223199599) * (t0 * t412 + t6 * t416);
-    const wam7_real_t t417 = WAM7_C(2.0) * t253; /* link j6: derivatives */
-    const wam7_real_t t418 = WAM7_C(2.0) * t254;
-    const wam7_real_t t419 = t56 * t417 + t39 * t418;
-    const wam7_real_t t420 = WAM7_C(2.0) * t244;
-    const wam7_real_t t421 = t14 * t280; /* link j6: column of the mass matrix */
-    const wam7_real_t t422 = t11 * t419 - t14 * t420 + (t421 * t401 - t273 * t404); /* link j6: derivatives */
-    const wam7_real_t t423 = t56 * t418 - t39 * t417;
-    const wam7_real_t t424 = t11 * t280; /* link j6: column of the mass matrix */
-    const wam7_real_t t425 = t423 + (t424 * t404 + t421 * t405); /* link j6: derivatives */
-    const wam7_real_t t426 = t5 * t273 - t9 * t424; /* link j6: column of the mass matrix */
-    const wam7_real_t t427 = t5 * t422 + t9 * t425 - (t426 * t389 + t421 * t392); /* link j6: derivatives */
-    const wam7_real_t t428 = t14 * t419 + t11 * t420 - (t273 * t405 + t424 * t401);
-    const wam7_real_t t429 = t5 * t424 + t9 * t273; /* link j6: column of the mass matrix */
-    const wam7_real_t t430 = t428 + t429 * t392; /* link j6: derivatives */
-    const wam7_real_t t431 = t3 * t430 - t2 * t427 - t426 * t384;
-    const wam7_real_t t432 = t5 * t425 - t9 * t422 + t429 * t389;
-    const wam7_real_t t433 = t2 * t429 - t3 * t421; /* link j6: column of the mass matrix */
-    const wam7_real_t t434 = t3 * t429 + t2 * t421;
-    const wam7_real_t t435 = t432 + (t434 * t385 - t433 * t384); /* link j6: derivatives */
-    input_by_dq[35] = WAM7_C(0.4469713223199599) * (t0 * t431 + t6 * t435);
-    const wam7_real_t t436 = WAM7_C(2.0) * t230; /* link j7: derivatives */
-    const wam7_real_t t437 = WAM7_C(2.0) * t231;
-    const wam7_real_t t438 = t63 * t436 - t71 * t437;
-    const wam7_real_t t439 = WAM7_C(2.0) * t227;
-    const wam7_real_t t440 = t56 * t438 + t39 * t439;
-    const wam7_real_t t441 = t71 * t436 + t63 * t437;
-    const wam7_real_t t442 = t56 * t269; /* link j7: column of the mass matrix */
-    const wam7_real_t t443 = t11 * t271 - t14 * t442;
-    const wam7_real_t t444 = t39 * t269;
-    const wam7_real_t t445 = t11 * t440 - t14 * t441 + (t444 * t404 - t443 * t401); /* link j7: derivatives */
-    const wam7_real_t t446 = t56 * t439 - t39 * t438;
-    const wam7_real_t t447 = t11 * t442 + t14 * t271; /* link j7: column of the mass matrix */
-    const wam7_real_t t448 = t446 + (t447 * t404 - t443 * t405); /* link j7: derivatives */
-    const wam7_real_t t449 = t9 * t447 + t5 * t444; /* link j7: column of the mass matrix */
-    const wam7_real_t t450 = t5 * t445 + t9 * t448 + (t449 * t389 + t443 * t392); /* link j7: derivatives */
-    const wam7_real_t t451 = t14 * t440 + t11 * t441 + (t444 * t405 - t447 * t401);
-    const wam7_real_t t452 = t5 * t447 - t9 * t444; /* link j7: column of the mass matrix */
-    const wam7_real_t t453 = t451 + t452 * t392; /* link j7: derivatives */
-    const wam7_real_t t454 = t3 * t453 - t2 * t450 + t449 * t384;
-    const wam7_real_t t455 = t5 * t448 - t9 * t445 + t452 * t389;
-    const wam7_real_t t456 = t2 * t452 + t3 * t443; /* link j7: column of the mass matrix */
-    const wam7_real_t t457 = t2 * t443 - t3 * t452;
-    const wam7_real_t t458 = t455 - (t456 * t384 + t457 * t385); /* link j7: derivatives */
-    input_by_dq[42] = WAM7_C(0.9996900960702182) * (t0 * t454 + t6 * t458);
-    /* link j7: inertia of it and all beyond */
-    const wam7_real_t t459 = t63 * parameters[XX7R] + parameters[XY7] * (WAM7_C(-2.0) * t71);
-    const wam7_real_t t460 = t63 * t459;
-    const wam7_real_t t461 = parameters[XX6R] + t460;
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t462 = t63 * parameters[XZ7R] - t71 * parameters[YZ7R];
-    const wam7_real_t t463 = t462 - parameters[XY6]; /* link j7: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const wam7_real_t t464 = t56 * (parameters[ZZ7] - t461) - t463 * (WAM7_C(2.0) * t39);
-    const wam7_real_t t465 = t56 * t464;
-    const wam7_real_t t466 = parameters[ZZ5R] + (t461 + t465);
-    const wam7_real_t t467 = WAM7_C(-0.09) * t275; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t468 = t466 + t467;
-    /* link j6: inertia of it and all beyond */
-    const wam7_real_t t469 = parameters[XX5R] + (parameters[ZZ7] - t465);
-    /* link j7: inertia of it and all beyond */
-    const wam7_real_t t470 = t460 - parameters[XX7R] - parameters[ZZ6R];
-    const wam7_real_t t471 = parameters[XZ6] + (parameters[XY7] + t71 * t459);
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t472 = t71 * parameters[XZ7R] + t63 * parameters[YZ7R];
-    const wam7_real_t t473 = parameters[YZ6] - t472; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t474 = t56 * t471 - t39 * t473; /* link j6: column of the mass matrix */
-    const wam7_real_t t475 = parameters[XY5] + t474; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t476 = t475 * (WAM7_C(2.0) * t14) - t11 * (t470 + t469);
-    const wam7_real_t t477 = t11 * t476;
-    const wam7_real_t t478 = WAM7_C(0.6) * t280;
-    const wam7_real_t t479 = t470 + t477 + t478 - parameters[XX4R];
-    /* link j6: inertia of it and all beyond */
-    const wam7_real_t t480 = parameters[XZ5] + (t463 + t39 * t464);
-    const wam7_real_t t481 = t39 * t471 + t56 * t473; /* link j6: column of the mass matrix */
-    const wam7_real_t t482 = parameters[YZ5] - t481; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t483 = t11 * t480 - t14 * t482; /* link j5: column of the mass matrix */
-    const wam7_real_t t484 = WAM7_C(-0.3) * t275;
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t485 = t483 + (t484 + WAM7_C(-0.045) * t280) - parameters[XY4R];
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t486 = t5 * (t468 + t479) - t485 * (WAM7_C(2.0) * t9);
-    const wam7_real_t t487 = t5 * t486;
-    const wam7_real_t t488 = parameters[XX3R] + (t468 - t487);
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t489 = parameters[ZZ4R] + (t469 + t477 + (t467 - t478));
-    const wam7_real_t t490 = WAM7_C(0.09) * t336; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t491 = t489 + t490;
-    const wam7_real_t t492 = WAM7_C(0.045) * t283; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t493 = parameters[XZ4] + (t475 - t14 * t476 + t492);
-    /* link j5: column of the mass matrix */
-    const wam7_real_t t494 = t14 * t480 + t11 * t482 + WAM7_C(-0.3) * t283;
-    const wam7_real_t t495 = parameters[YZ4] - t494; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t496 = t5 * t493 - t9 * t495; /* link j4: column of the mass matrix */
-    const wam7_real_t t497 = parameters[XY3R] - (t492 - t496); /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const wam7_real_t t498 = t2 * (t491 - t488) + t497 * (WAM7_C(2.0) * t3);
-    const wam7_real_t t499 = t2 * t498;
-    const wam7_real_t t500 = WAM7_C(-1.1) * t315;
-    const wam7_real_t t501 = parameters[XX2R] + (t491 - t499 + t500);
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t502 = parameters[ZZ3R] + (t487 - t479 + t490);
-    const wam7_real_t t503 = parameters[XZ3] + (t485 + t9 * t486 + WAM7_C(0.045) * t315);
-    const wam7_real_t t504 = t9 * t493 + t5 * t495; /* link j4: column of the mass matrix */
-    const wam7_real_t t505 = parameters[YZ3] - t504; /* link j4: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const wam7_real_t t506 = t3 * t505 - t2 * t503 + WAM7_C(0.55) * t344;
-    const wam7_real_t t507 = parameters[XY2] + t506; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia of it and all beyond */
-    const wam7_real_t t508 = t6 * (t6 * (t502 - t501) + t507 * (WAM7_C(2.0) * t0));
-    input_by_ddq[0] = WAM7_C(0.05209961446285298) * (parameters[ZZ1R] + (t501 + t508));
-    const wam7_real_t t509 = t3 * t498 - t497 - parameters[XZ2]; /* link j3: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const wam7_real_t t510 = WAM7_C(0.55) * t350 - (t3 * t503 + t2 * t505);
-    const wam7_real_t t511 = parameters[YZ2] + t510; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t512 = t0 * t509 - t6 * t511; /* link j2: column of the mass matrix */
-    input_by_ddq[7] = WAM7_C(0.07745783389167521) * t512;
-    const wam7_real_t t513 = t0 * t506 + t6 * t502; /* link j3: column of the mass matrix */
-    input_by_ddq[14] = WAM7_C(0.07745783389167521) * t513;
-    const wam7_real_t t514 = t489 + WAM7_C(0.045) * t336; /* link j4: column of the mass matrix */
-    const wam7_real_t t515 = t3 * t514 - t2 * t496 + WAM7_C(-0.55) * t397;
-    const wam7_real_t t516 = t0 * t515 - t6 * t504;
-    input_by_ddq[21] = WAM7_C(0.12156576707999026) * t516;
-    const wam7_real_t t517 = t483 + t484; /* link j5: column of the mass matrix */
-    const wam7_real_t t518 = WAM7_C(0.045) * t275;
-    const wam7_real_t t519 = t518 - t466;
-    const wam7_real_t t520 = t5 * t517 - t9 * t519;
-    const wam7_real_t t521 = t494 + WAM7_C(-0.045) * t407;
-    const wam7_real_t t522 = t3 * t521 - t2 * t520 + WAM7_C(0.55) * t415;
-    const wam7_real_t t523 = t9 * t517 + t5 * t519 - t518;
-    const wam7_real_t t524 = t0 * t522 - t6 * t523;
-    input_by_ddq[28] = WAM7_C(0.4469713223199599) * t524;
-    /* link j6: column of the mass matrix */
-    const wam7_real_t t525 = t11 * t474 + t14 * t470 + WAM7_C(0.3) * t421;
-    const wam7_real_t t526 = WAM7_C(-0.045) * t421;
-    const wam7_real_t t527 = t481 + t526;
-    const wam7_real_t t528 = t5 * t525 - t9 * t527;
-    const wam7_real_t t529 = t14 * t474 - t11 * t470 + (WAM7_C(-0.045) * t273 + WAM7_C(-0.3) * t424);
-    const wam7_real_t t530 = t529 + WAM7_C(0.045) * t426;
-    const wam7_real_t t531 = t3 * t530 - t2 * t528 + WAM7_C(-0.55) * t434;
-    const wam7_real_t t532 = t9 * t525 + t5 * t527 - t526;
-    const wam7_real_t t533 = t0 * t531 - t6 * t532;
-    input_by_ddq[35] = WAM7_C(0.4469713223199599) * t533;
-    const wam7_real_t t534 = t56 * t462 + t39 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t535 = t11 * t534 - t14 * t472 + WAM7_C(-0.3) * t443;
-    const wam7_real_t t536 = WAM7_C(0.045) * t443;
-    const wam7_real_t t537 = t39 * t462 - t56 * parameters[ZZ7];
-    const wam7_real_t t538 = t537 + t536;
-    const wam7_real_t t539 = t5 * t535 - t9 * t538;
-    const wam7_real_t t540 = t14 * t534 + t11 * t472 + (WAM7_C(0.045) * t444 + WAM7_C(-0.3) * t447);
-    const wam7_real_t t541 = t540 + WAM7_C(-0.045) * t449;
-    const wam7_real_t t542 = t3 * t541 - t2 * t539 + WAM7_C(0.55) * t457;
-    const wam7_real_t t543 = t9 * t535 + t5 * t538 - t536;
-    const wam7_real_t t544 = t0 * t542 - t6 * t543;
-    input_by_ddq[42] = WAM7_C(0.9996900960702182) * t544;
-    const wam7_real_t t545 = WAM7_C(2.0) * t7; /* link j2: derivatives */
-    const wam7_real_t t546 = WAM7_C(-2.0) * t1;
-    const wam7_real_t t547 = t102 + t187; /* link j3: motion */
-    /* link j2: derivatives */
-    const wam7_real_t t548 = t356 * t545 + t372 * t546 + (t501 * t20 - t507 * t27 - t509 * t547);
-    const wam7_real_t t549 = t502 * t27; /* link j3: derivatives */
-    /* link j2: derivatives */
-    const wam7_real_t t550 = t365 * t545 + t359 * t546 + (t507 * t20 - t549 + t511 * t547);
-    const wam7_real_t t551 = t350 * t104; /* link j3: derivatives */
-    /* link j2: derivatives */
-    const wam7_real_t t552 = t0 * (t194 + (t548 - t350 * t96)) + t6 * (t189 + (t551 + t550));
-    input_by_q[1] = WAM7_C(0.05209961446285298) * t552;
-    /* link j3: inertia of it and all beyond */
-    const wam7_real_t t553 = parameters[ZZ2R] + (t488 + t499 + t500);
-    /* link j2: derivatives */
-    const wam7_real_t t554 = t509 * t20 + t511 * t27 - t553 * t547 + (t7 * t376 + t1 * t379);
-    const wam7_real_t t555 = (parameters[MY2R] + t315) * t104 - (parameters[MX2] + t344) * t96 + t554;
-    input_by_q[8] = WAM7_C(0.07745783389167521) * t555;
-    /* link j3: derivatives */
-    const wam7_real_t t556 = t7 * t382 + t1 * t386 + (t506 * t20 - t549 + t510 * t547);
-    input_by_q[15] = WAM7_C(0.07745783389167521) * (t556 + t551);
-    /* link j4: column of the mass matrix */
-    const wam7_real_t t557 = t3 * t496 + t2 * t514 + WAM7_C(-0.55) * t396;
-    /* link j4: derivatives */
-    const wam7_real_t t558 = t7 * t394 - t1 * t398 + (t515 * t20 + t504 * t27 - t557 * t547);
-    input_by_q[22] = WAM7_C(0.12156576707999026) * (t558 + (t396 * t104 - t336 * t96));
-    /* link j5: column of the mass matrix */
-    const wam7_real_t t559 = t3 * t520 + t2 * t521 + WAM7_C(-0.55) * t414;
-    /* link j5: derivatives */
-    const wam7_real_t t560 = t7 * t412 - t1 * t416 + (t522 * t20 + t523 * t27 - t559 * t547);
-    input_by_q[29] = WAM7_C(0.4469713223199599) * (t560 + (t414 * t104 + t407 * t96));
-    /* link j6: column of the mass matrix */
-    const wam7_real_t t561 = t3 * t528 + t2 * t530 + WAM7_C(-0.55) * t433;
-    /* link j6: derivatives */
-    const wam7_real_t t562 = t7 * t431 - t1 * t435 + (t531 * t20 + t532 * t27 - t561 * t547);
-    input_by_q[36] = WAM7_C(0.4469713223199599) * (t562 + (t433 * t104 - t426 * t96));
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t563 = t3 * t539 + t2 * t541 + WAM7_C(-0.55) * t456;
+    const wam7_real_t t213 = parameters[MX7] * t136 + parameters[MY7] * t135; /* link j7: derivatives */
+    const wam7_real_t t214 = t125 + t88; /* link j7: force and moment */
     /* link j7: derivatives */
-    const wam7_real_t t564 = t7 * t454 - t1 * t458 + (t542 * t20 + t543 * t27 - t563 * t547);
-    input_by_q[43] = WAM7_C(0.9996900960702182) * (t564 + (t456 * t104 + t449 * t96));
-    const wam7_real_t t565 = parameters[ZZ2R] - t363;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t566 = parameters[YZ2] * dq[1] + t7 * t565 + (t374 - t330 + t350 * t345);
-    /* link j2: derivatives */
-    const wam7_real_t t567 = t0 * (WAM7_C(2.0) * t566 + (t501 * t545 + t507 * t546));
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t568 = t3 * t361 + t2 * t362 - (parameters[XZ2] * dq[1] + t1 * t565);
-    /* link j2: derivatives */
-    const wam7_real_t t569 = t6 * (WAM7_C(2.0) * t568 + (t507 * t545 + t502 * t546));
-    input_by_dq[1] = WAM7_C(0.05209961446285298) * (t567 + t569);
-    const wam7_real_t t570 = WAM7_C(2.0) * (t354 - t358 + (t353 + (t321 + t341 + t352)));
-    const wam7_real_t t571 = WAM7_C(0.07745783389167521) * (t570 + WAM7_C(2.0) * (t509 * t7 + t511 * t1));
-    input_by_dq[8] = WAM7_C(61.81619256017505) * parameters[FV2] + t571;
-    /* link j3: derivatives */
-    const wam7_real_t t572 = t3 * t380 + t2 * t381 + WAM7_C(2.0) * (t506 * t7 - t502 * t1);
-    input_by_dq[15] = WAM7_C(0.07745783389167521) * t572;
-    /* link j4: derivatives */
-    const wam7_real_t t573 = t3 * t390 + t2 * t393 - t336 * t385 + WAM7_C(2.0) * (t515 * t7 + t504 * t1);
-    input_by_dq[22] = WAM7_C(0.12156576707999026) * t573;
-    /* link j5: derivatives */
-    const wam7_real_t t574 = t3 * t408 + t2 * t411 + t407 * t385 + WAM7_C(2.0) * (t522 * t7 + t523 * t1);
-    input_by_dq[29] = WAM7_C(0.4469713223199599) * t574;
-    /* link j6: derivatives */
-    const wam7_real_t t575 = t3 * t427 + t2 * t430 - t426 * t385 + WAM7_C(2.0) * (t531 * t7 + t532 * t1);
-    input_by_dq[36] = WAM7_C(0.4469713223199599) * t575;
-    /* link j7: derivatives */
-    const wam7_real_t t576 = t3 * t450 + t2 * t453 + t449 * t385 + WAM7_C(2.0) * (t542 * t7 + t543 * t1);
-    input_by_dq[43] = WAM7_C(0.9996900960702182) * t576;
-    input_by_ddq[1] = WAM7_C(0.05209961446285298) * t512;
-    input_by_ddq[8] = WAM7_C(0.07745783389167521) * t553;
-    const wam7_real_t t577 = WAM7_C(-0.07745783389167521) * t510;
-    input_by_ddq[15] = t577;
-    input_by_ddq[22] = WAM7_C(0.12156576707999026) * t557;
-    input_by_ddq[29] = WAM7_C(0.4469713223199599) * t559;
-    input_by_ddq[36] = WAM7_C(0.4469713223199599) * t561;
-    input_by_ddq[43] = WAM7_C(0.9996900960702182) * t563;
-    const wam7_real_t t578 = WAM7_C(2.0) * t12; /* link j3: derivatives */
-    const wam7_real_t t579 = WAM7_C(2.0) * t4;
-    const wam7_real_t t580 = t180 + t93; /* link j4: motion */
-    /* link j3: derivatives */
-    const wam7_real_t t581 = t321 * t578 + t330 * t579 + (t488 * t42 + t497 * t30 - t503 * t580);
-    const wam7_real_t t582 = t581 - t315 * t99 - t181;
-    const wam7_real_t t583 = t339 * t578 + t324 * t579 + (t497 * t42 + t491 * t30 - t505 * t580);
-    const wam7_real_t t584 = t315 * t110; /* link j4: derivatives */
-    const wam7_real_t t585 = t170 + (t584 + t583); /* link j3: derivatives */
-    const wam7_real_t t586 = t184 + (t348 * t579 + (t342 * t580 - t315 * t30));
-    const wam7_real_t t587 = t348 * t578 + (t343 * t580 - t315 * t42) - t182;
-    const wam7_real_t t588 = t3 * t585 - t2 * t582 + WAM7_C(0.55) * (t3 * t586 - t2 * t587);
-    const wam7_real_t t589 = t503 * t42 + t505 * t30 - t502 * t580;
-    const wam7_real_t t590 = t342 * t110 - t343 * t99;
-    const wam7_real_t t591 = t6 * (t361 * t578 + t362 * t579 + t589 + t590);
-    input_by_q[2] = WAM7_C(0.05209961446285298) * (t0 * t588 + t591);
-    const wam7_real_t t592 = t3 * t582 + t2 * t585 + WAM7_C(0.55) * (t2 * t586 + t3 * t587);
-    input_by_q[9] = WAM7_C(0.07745783389167521) * t592;
-    const wam7_real_t t593 = WAM7_C(0.07745783389167521) * (t590 + (t589 + (t12 * t380 + t4 * t381)));
-    input_by_q[16] = t593;
-    /* link j4: derivatives */
-    const wam7_real_t t594 = t12 * t390 + t4 * t393 + (t496 * t42 + t514 * t30 + t504 * t580);
-    input_by_q[23] = WAM7_C(0.12156576707999026) * (t594 + t584);
-    /* link j5: derivatives */
-    const wam7_real_t t595 = t12 * t408 + t4 * t411 + (t520 * t42 + t521 * t30 + t523 * t580);
-    input_by_q[30] = WAM7_C(0.4469713223199599) * (t595 + (t410 * t110 - t275 * t99));
-    /* link j6: derivatives */
-    const wam7_real_t t596 = t12 * t427 + t4 * t430 + (t528 * t42 + t530 * t30 + t532 * t580);
-    input_by_q[37] = WAM7_C(0.4469713223199599) * (t596 + (t429 * t110 + t421 * t99));
-    /* link j7: derivatives */
-    const wam7_real_t t597 = t12 * t450 + t4 * t453 + (t539 * t42 + t541 * t30 + t543 * t580);
-    input_by_q[44] = WAM7_C(0.9996900960702182) * (t597 + (t452 * t110 - t443 * t99));
-    const wam7_real_t t598 = WAM7_C(2.0) * t367 - (t488 * t578 + t497 * t579); /* link j3: derivatives */
-    const wam7_real_t t599 = WAM7_C(2.0) * t368 + (t497 * t578 + t491 * t579);
-    const wam7_real_t t600 = WAM7_C(2.0) * t370 - t315 * t579;
-    const wam7_real_t t601 = WAM7_C(-2.0) * t369 - t315 * t578;
-    const wam7_real_t t602 = t2 * t598 + t3 * t599 + WAM7_C(0.55) * (t3 * t600 - t2 * t601);
-    const wam7_real_t t603 = t0 * t602 + t6 * (t383 + (t503 * t578 + t505 * t579));
-    input_by_dq[2] = WAM7_C(0.05209961446285298) * t603;
-    const wam7_real_t t604 = t2 * t599 - t3 * t598 + WAM7_C(0.55) * (t2 * t600 + t3 * t601);
-    input_by_dq[9] = WAM7_C(0.07745783389167521) * t604;
-    const wam7_real_t t605 = WAM7_C(0.07745783389167521) * (t383 + WAM7_C(2.0) * (t503 * t12 + t505 * t4));
-    input_by_dq[16] = WAM7_C(61.81619256017505) * parameters[FV3] + t605;
-    const wam7_real_t t606 = WAM7_C(0.12156576707999026) * (t395 + WAM7_C(2.0) * (t496 * t12 + t514 * t4));
-    input_by_dq[23] = t606;
-    const wam7_real_t t607 = WAM7_C(0.4469713223199599) * (t413 + WAM7_C(2.0) * (t520 * t12 + t521 * t4));
-    input_by_dq[30] = t607;
-    const wam7_real_t t608 = WAM7_C(0.4469713223199599) * (t432 + WAM7_C(2.0) * (t528 * t12 + t530 * t4));
-    input_by_dq[37] = t608;
-    const wam7_real_t t609 = WAM7_C(0.9996900960702182) * (t455 + WAM7_C(2.0) * (t539 * t12 + t541 * t4));
-    input_by_dq[44] = t609;
-    input_by_ddq[2] = WAM7_C(0.05209961446285298) * t513;
-    input_by_ddq[9] = t577;
-    input_by_ddq[16] = WAM7_C(61.81619256017505) * parameters[IA3] + WAM7_C(0.07745783389167521) * t502;
-    input_by_ddq[23] = WAM7_C(-0.12156576707999026) * t504;
-    input_by_ddq[30] = WAM7_C(-0.4469713223199599) * t523;
-    input_by_ddq[37] = WAM7_C(-0.4469713223199599) * t532;
-    input_by_ddq[44] = WAM7_C(-0.9996900960702182) * t543;
-    const wam7_real_t t610 = WAM7_C(2.0) * t40; /* link j4: derivatives */
-    const wam7_real_t t611 = WAM7_C(-2.0) * t10;
-    const wam7_real_t t612 = t115 + t90; /* link j5: motion */
-    /* link j4: derivatives */
-    const wam7_real_t t613 = t304 * t611 - t289 * t610 + (t479 * t34 + t485 * t47 + t493 * t612);
-    const wam7_real_t t614 = t168 + (t613 - t283 * t107);
-    const wam7_real_t t615 = t292 * t611 - t299 * t610 + (t485 * t34 - t468 * t47 + t495 * t612);
-    const wam7_real_t t616 = t283 * t118; /* link j5: derivatives */
-    const wam7_real_t t617 = t616 + t615 - t163; /* link j4: derivatives */
-    const wam7_real_t t618 = t9 * t617 - t5 * t614;
-    const wam7_real_t t619 = t335 * t610 + (t313 * t612 + t283 * t34) - t177;
-    const wam7_real_t t620 = t178 + (t335 * t611 + (t283 * t47 + t314 * t612));
-    const wam7_real_t t621 = t493 * t34 + t495 * t47 - t489 * t612;
-    const wam7_real_t t622 = t314 * t118 - t313 * t107;
-    const wam7_real_t t623 = t334 * t611 - t332 * t610 + t621 + t622 + WAM7_C(0.045) * (t9 * t620
-        - t5 * t619);
-    const wam7_real_t t624 = t5 * t620 + t9 * t619;
-    const wam7_real_t t625 = t308 * t610 - t307 * t611 + (t314 * t34 - t313 * t47);
-    const wam7_real_t t626 = t3 * t623 - t2 * t618 + WAM7_C(0.55) * (t3 * t624 + t2 * t625);
-    const wam7_real_t t627 = t9 * t614 + t5 * t617 + WAM7_C(0.045) * t625;
-    input_by_q[3] = WAM7_C(0.05209961446285298) * (t0 * t626 + t6 * t627);
-    const wam7_real_t t628 = t3 * t618 + t2 * t623 + WAM7_C(0.55) * (t2 * t624 - t3 * t625);
-    input_by_q[10] = WAM7_C(0.07745783389167521) * t628;
-    input_by_q[17] = WAM7_C(0.07745783389167521) * t627;
-    const wam7_real_t t629 = WAM7_C(0.12156576707999026) * (t622 + (t621 - (t40 * t387 + t10 * t388)));
-    input_by_q[24] = t629;
-    /* link j5: derivatives */
-    const wam7_real_t t630 = t517 * t34 + t519 * t47 - t494 * t612 - (t40 * t402 + t10 * t406);
-    input_by_q[31] = WAM7_C(0.4469713223199599) * (t630 + t616);
-    /* link j6: derivatives */
-    const wam7_real_t t631 = t525 * t34 + t527 * t47 - t529 * t612 - (t40 * t422 + t10 * t425);
-    input_by_q[38] = WAM7_C(0.4469713223199599) * (t631 + (t424 * t118 - t273 * t107));
-    /* link j7: derivatives */
-    const wam7_real_t t632 = t535 * t34 + t538 * t47 - t540 * t612 - (t40 * t445 + t10 * t448);
-    input_by_q[45] = WAM7_C(0.9996900960702182) * (t632 + (t447 * t118 + t444 * t107));
-    const wam7_real_t t633 = WAM7_C(2.0) * t327 - (t479 * t610 + t485 * t611); /* link j4: derivatives */
-    const wam7_real_t t634 = WAM7_C(2.0) * t328 + (t468 * t611 - t485 * t610);
-    const wam7_real_t t635 = t5 * t633 - t9 * t634;
-    const wam7_real_t t636 = WAM7_C(2.0) * t307 - t283 * t610;
-    const wam7_real_t t637 = WAM7_C(2.0) * t308 - t283 * t611;
-    const wam7_real_t t638 = t391 - (t493 * t610 + t495 * t611) + WAM7_C(0.045) * (t9 * t637 - t5 * t636);
-    const wam7_real_t t639 = t5 * t637 + t9 * t636;
-    const wam7_real_t t640 = t313 * t611 - t314 * t610;
-    const wam7_real_t t641 = t2 * t635 + t3 * t638 + WAM7_C(0.55) * (t3 * t639 + t2 * t640);
-    const wam7_real_t t642 = t9 * t633 + t5 * t634 + WAM7_C(0.045) * t640;
-    input_by_dq[3] = WAM7_C(0.05209961446285298) * (t0 * t641 + t6 * t642);
-    const wam7_real_t t643 = t2 * t638 - t3 * t635 + WAM7_C(0.55) * (t2 * t639 - t3 * t640);
-    input_by_dq[10] = WAM7_C(0.07745783389167521) * t643;
-    input_by_dq[17] = WAM7_C(0.07745783389167521) * t642;
-    const wam7_real_t t644 = WAM7_C(0.12156576707999026) * (t391 + WAM7_C(2.0) * (t495 * t10 - t493 * t40));
-    input_by_dq[24] = WAM7_C(39.387308533916844) * parameters[FV4] + t644;
-    const wam7_real_t t645 = WAM7_C(0.4469713223199599) * (t409 + WAM7_C(2.0) * (t519 * t10 - t517 * t40));
-    input_by_dq[31] = t645;
-    const wam7_real_t t646 = WAM7_C(0.4469713223199599) * (t428 + WAM7_C(2.0) * (t527 * t10 - t525 * t40));
-    input_by_dq[38] = t646;
-    const wam7_real_t t647 = WAM7_C(0.9996900960702182) * (t451 + WAM7_C(2.0) * (t538 * t10 - t535 * t40));
-    input_by_dq[45] = t647;
-    input_by_ddq[3] = WAM7_C(0.05209961446285298) * t516;
-    input_by_ddq[10] = WAM7_C(0.07745783389167521) * t557;
-    input_by_ddq[17] = WAM7_C(-0.07745783389167521) * t504;
-    input_by_ddq[24] = WAM7_C(39.387308533916844) * parameters[IA4] + WAM7_C(0.12156576707999026) * t489;
-    input_by_ddq[31] = WAM7_C(0.4469713223199599) * t494;
-    input_by_ddq[38] = WAM7_C(0.4469713223199599) * t529;
-    input_by_ddq[45] = WAM7_C(0.9996900960702182) * t540;
-    const wam7_real_t t648 = WAM7_C(2.0) * t16; /* link j5: derivatives */
-    const wam7_real_t t649 = WAM7_C(-2.0) * t15;
-    const wam7_real_t t650 = t152 + t145; /* link j6: motion */
-    /* link j5: derivatives */
-    const wam7_real_t t651 = t243 * t648 + t252 * t649 + (t469 * t64 - t475 * t51 - t480 * t650);
-    const wam7_real_t t652 = t651 - t280 * t114 - t153;
-    const wam7_real_t t653 = t470 * t51; /* link j6: derivatives */
-    /* link j5: derivatives */
-    const wam7_real_t t654 = t256 * t648 + t246 * t649 + (t653 + t475 * t64 - t482 * t650);
-    const wam7_real_t t655 = t280 * t132; /* link j6: derivatives */
-    const wam7_real_t t656 = t147 + (t655 + t654); /* link j5: derivatives */
-    const wam7_real_t t657 = t160 + (t278 * t649 + (t280 * t51 + t270 * t650));
-    const wam7_real_t t658 = t158 + (t278 * t648 + (t274 * t650 - t280 * t64));
-    const wam7_real_t t659 = t14 * t657 - t11 * t658;
-    const wam7_real_t t660 = t14 * t656 - t11 * t652 + WAM7_C(0.3) * t659;
-    const wam7_real_t t661 = WAM7_C(0.045) * t659;
-    const wam7_real_t t662 = t480 * t64 - t482 * t51 - t466 * t650;
-    const wam7_real_t t663 = t270 * t132 - t274 * t114;
-    const wam7_real_t t664 = t294 * t648 + t295 * t649 + t662 + t663 - t661;
-    const wam7_real_t t665 = t9 * t664 - t5 * t660;
-    const wam7_real_t t666 = t11 * t657 + t14 * t658;
-    const wam7_real_t t667 = t266 * t648 + t264 * t649 + (t270 * t64 + t274 * t51);
-    const wam7_real_t t668 = t14 * t652 + t11 * t656 + (WAM7_C(0.045) * t667 + WAM7_C(0.3) * t666);
-    const wam7_real_t t669 = t668 + WAM7_C(0.045) * (t9 * t666 - t5 * t667);
-    const wam7_real_t t670 = t5 * t666 + t9 * t667;
-    const wam7_real_t t671 = t3 * t669 - t2 * t665 + WAM7_C(0.55) * (t3 * t670 + t2 * t659);
-    const wam7_real_t t672 = t661 + (t9 * t660 + t5 * t664);
-    input_by_q[4] = WAM7_C(0.05209961446285298) * (t0 * t671 + t6 * t672);
-    const wam7_real_t t673 = t3 * t665 + t2 * t669 + WAM7_C(0.55) * (t2 * t670 - t3 * t659);
-    input_by_q[11] = WAM7_C(0.07745783389167521) * t673;
-    input_by_q[18] = WAM7_C(0.07745783389167521) * t672;
-    input_by_q[25] = WAM7_C(0.12156576707999026) * t668;
-    const wam7_real_t t674 = WAM7_C(0.4469713223199599) * (t663 + (t662 + (t16 * t399 - t15 * t400)));
-    input_by_q[32] = t674;
-    /* link j6: derivatives */
-    const wam7_real_t t675 = t16 * t419 - t15 * t420 + (t474 * t64 + t653 + t481 * t650);
-    input_by_q[39] = WAM7_C(0.4469713223199599) * (t675 + t655);
-    /* link j7: derivatives */
-    const wam7_real_t t676 = t16 * t440 - t15 * t441 + (t534 * t64 - t472 * t51 + t537 * t650);
-    input_by_q[46] = WAM7_C(0.9996900960702182) * (t676 + (t442 * t132 - t271 * t114));
-    const wam7_real_t t677 = WAM7_C(2.0) * t301 - (t469 * t648 + t475 * t649); /* link j5: derivatives */
-    const wam7_real_t t678 = WAM7_C(2.0) * t302 + (t475 * t648 - t470 * t649);
-    const wam7_real_t t679 = WAM7_C(-2.0) * t266 - t280 * t649;
-    const wam7_real_t t680 = WAM7_C(2.0) * t264 - t280 * t648;
-    const wam7_real_t t681 = t14 * t679 - t11 * t680;
-    const wam7_real_t t682 = t11 * t677 + t14 * t678 + WAM7_C(0.3) * t681;
-    const wam7_real_t t683 = WAM7_C(-0.045) * t681;
-    const wam7_real_t t684 = t403 + (t480 * t648 + t482 * t649) + t683;
-    const wam7_real_t t685 = t5 * t682 - t9 * t684;
-    const wam7_real_t t686 = t11 * t679 + t14 * t680;
-    const wam7_real_t t687 = t270 * t648 - t274 * t649;
-    const wam7_real_t t688 = t11 * t678 - t14 * t677 + (WAM7_C(0.045) * t687 + WAM7_C(0.3) * t686);
-    const wam7_real_t t689 = t688 + WAM7_C(0.045) * (t9 * t686 - t5 * t687);
-    const wam7_real_t t690 = t5 * t686 + t9 * t687;
-    const wam7_real_t t691 = t2 * t685 + t3 * t689 + WAM7_C(0.55) * (t3 * t690 + t2 * t681);
-    const wam7_real_t t692 = t9 * t682 + t5 * t684 - t683;
-    input_by_dq[4] = WAM7_C(0.05209961446285298) * (t0 * t691 + t6 * t692);
-    const wam7_real_t t693 = t2 * t689 - t3 * t685 + WAM7_C(0.55) * (t2 * t690 - t3 * t681);
-    input_by_dq[11] = WAM7_C(0.07745783389167521) * t693;
-    input_by_dq[18] = WAM7_C(0.07745783389167521) * t692;
-    input_by_dq[25] = WAM7_C(0.12156576707999026) * t688;
-    const wam7_real_t t694 = WAM7_C(0.4469713223199599) * (t403 + WAM7_C(2.0) * (t480 * t16 - t482 * t15));
-    input_by_dq[32] = WAM7_C(40.16949152542373) * parameters[FV5] + t694;
-    const wam7_real_t t695 = WAM7_C(0.4469713223199599) * (t423 + WAM7_C(2.0) * (t474 * t16 + t470 * t15));
-    input_by_dq[39] = t695;
-    const wam7_real_t t696 = WAM7_C(0.9996900960702182) * (t446 + WAM7_C(2.0) * (t534 * t16 - t472 * t15));
-    input_by_dq[46] = t696;
-    input_by_ddq[4] = WAM7_C(0.05209961446285298) * t524;
-    input_by_ddq[11] = WAM7_C(0.07745783389167521) * t559;
-    input_by_ddq[18] = WAM7_C(-0.07745783389167521) * t523;
-    input_by_ddq[25] = WAM7_C(0.12156576707999026) * t494;
-    input_by_ddq[32] = WAM7_C(40.16949152542373) * parameters[IA5] + WAM7_C(0.4469713223199599) * t466;
-    const wam7_real_t t697 = WAM7_C(-0.4469713223199599) * t481;
-    input_by_ddq[39] = t697;
-    input_by_ddq[46] = WAM7_C(-0.9996900960702182) * t537;
-    const wam7_real_t t698 = t140 + t130; /* link j7: motion */
-    const wam7_real_t t699 = WAM7_C(2.0) * t58; /* link j6: derivatives */
-    const wam7_real_t t700 = WAM7_C(2.0) * t68;
-    const wam7_real_t t701 = t238 * t700 - t226 * t699 + (t471 * t698 - (t461 * t81 + t463 * t57));
-    const wam7_real_t t702 = t141 + (t701 + t269 * t134);
-    const wam7_real_t t703 = parameters[ZZ7] * t57; /* link j7: derivatives */
-    /* link j6: derivatives */
-    const wam7_real_t t704 = t229 * t700 - t234 * t699 + (t703 + t463 * t81 + t473 * t698);
-    const wam7_real_t t705 = t269 * t120; /* link j7: derivatives */
-    const wam7_real_t t706 = t705 + t704 - t133; /* link j6: derivatives */
-    const wam7_real_t t707 = t39 * t706 - t56 * t702;
-    const wam7_real_t t708 = t471 * t81 - t473 * t57 + t470 * t698;
-    const wam7_real_t t709 = t272 * t134 + parameters[MY6R] * t120;
-    const wam7_real_t t710 = t254 * t700 - t253 * t699 + t708 + t709;
-    const wam7_real_t t711 = t157 - (t265 * t700 - (parameters[MY6R] * t698 - t269 * t57));
-    const wam7_real_t t712 = t156 + (t272 * t698 + t269 * t81 - t265 * t699);
-    const wam7_real_t t713 = t56 * t711 + t39 * t712;
-    const wam7_real_t t714 = parameters[MY6R] * t81 + t272 * t57 - (t260 * t699 + t263 * t700);
-    const wam7_real_t t715 = t14 * t713 + t11 * t714;
-    const wam7_real_t t716 = t14 * t710 - t11 * t707 + WAM7_C(0.3) * t715;
-    const wam7_real_t t717 = t39 * t702 + t56 * t706;
-    const wam7_real_t t718 = WAM7_C(0.045) * t715;
-    const wam7_real_t t719 = t717 - t718;
-    const wam7_real_t t720 = t9 * t719 - t5 * t716;
-    const wam7_real_t t721 = t56 * t712 - t39 * t711;
-    const wam7_real_t t722 = t11 * t713 - t14 * t714;
-    const wam7_real_t t723 = t14 * t707 + t11 * t710 + (WAM7_C(0.045) * t721 + WAM7_C(0.3) * t722);
-    const wam7_real_t t724 = t723 + WAM7_C(0.045) * (t9 * t722 - t5 * t721);
-    const wam7_real_t t725 = t5 * t722 + t9 * t721;
-    const wam7_real_t t726 = t3 * t724 - t2 * t720 + WAM7_C(0.55) * (t3 * t725 + t2 * t715);
-    const wam7_real_t t727 = t718 + (t9 * t716 + t5 * t719);
-    input_by_q[5] = WAM7_C(0.05209961446285298) * (t0 * t726 + t6 * t727);
-    const wam7_real_t t728 = t3 * t720 + t2 * t724 + WAM7_C(0.55) * (t2 * t725 - t3 * t715);
-    input_by_q[12] = WAM7_C(0.07745783389167521) * t728;
-    input_by_q[19] = WAM7_C(0.07745783389167521) * t727;
-    input_by_q[26] = WAM7_C(0.12156576707999026) * t723;
-    input_by_q[33] = WAM7_C(0.4469713223199599) * t717;
-    const wam7_real_t t729 = WAM7_C(0.4469713223199599) * (t709 + (t708 + (t68 * t418 - t58 * t417)));
-    input_by_q[40] = t729;
-    /* link j7: derivatives */
-    const wam7_real_t t730 = t68 * t439 - t58 * t438 + (t462 * t81 + t703 - t472 * t698);
-    input_by_q[47] = WAM7_C(0.9996900960702182) * (t730 + t705);
-    const wam7_real_t t731 = WAM7_C(2.0) * t249 + (t461 * t699 - t463 * t700); /* link j6: derivatives */
-    const wam7_real_t t732 = WAM7_C(2.0) * t250 + (parameters[ZZ7] * t700 - t463 * t699);
-    const wam7_real_t t733 = t56 * t731 - t39 * t732;
-    const wam7_real_t t734 = t420 - (t471 * t699 + t473 * t700);
-    const wam7_real_t t735 = WAM7_C(2.0) * t260 + t269 * t700;
-    const wam7_real_t t736 = WAM7_C(2.0) * t263 - t269 * t699;
-    const wam7_real_t t737 = t39 * t736 - t56 * t735;
-    const wam7_real_t t738 = t272 * t700 - parameters[MY6R] * t699;
-    const wam7_real_t t739 = t14 * t737 + t11 * t738;
-    const wam7_real_t t740 = t11 * t733 + t14 * t734 + WAM7_C(0.3) * t739;
-    const wam7_real_t t741 = t39 * t731 + t56 * t732;
-    const wam7_real_t t742 = WAM7_C(-0.045) * t739;
-    const wam7_real_t t743 = t741 + t742;
-    const wam7_real_t t744 = t5 * t740 - t9 * t743;
-    const wam7_real_t t745 = t39 * t735 + t56 * t736;
-    const wam7_real_t t746 = t11 * t737 - t14 * t738;
-    const wam7_real_t t747 = t11 * t734 - t14 * t733 + (WAM7_C(0.045) * t745 + WAM7_C(0.3) * t746);
-    const wam7_real_t t748 = t747 + WAM7_C(0.045) * (t9 * t746 - t5 * t745);
-    const wam7_real_t t749 = t5 * t746 + t9 * t745;
-    const wam7_real_t t750 = t2 * t744 + t3 * t748 + WAM7_C(0.55) * (t3 * t749 + t2 * t739);
-    const wam7_real_t t751 = t9 * t740 + t5 * t743 - t742;
-    input_by_dq[5] = WAM7_C(0.05209961446285298) * (t0 * t750 + t6 * t751);
-    const wam7_real_t t752 = t2 * t748 - t3 * t744 + WAM7_C(0.55) * (t2 * t749 - t3 * t739);
-    input_by_dq[12] = WAM7_C(0.07745783389167521) * t752;
-    input_by_dq[19] = WAM7_C(0.07745783389167521) * t751;
-    input_by_dq[26] = WAM7_C(0.12156576707999026) * t747;
-    input_by_dq[33] = WAM7_C(0.4469713223199599) * t741;
-    const wam7_real_t t753 = WAM7_C(0.4469713223199599) * (t420 + WAM7_C(-2.0) * (t471 * t58 + t473 * t68));
-    input_by_dq[40] = WAM7_C(40.16949152542373) * parameters[FV6] + t753;
-    const wam7_real_t t754 = WAM7_C(0.9996900960702182) * (t441 + WAM7_C(2.0) * (parameters[ZZ7] * t68
-        - t462 * t58));
-    input_by_dq[47] = t754;
-    input_by_ddq[5] = WAM7_C(0.05209961446285298) * t533;
-    input_by_ddq[12] = WAM7_C(0.07745783389167521) * t561;
-    input_by_ddq[19] = WAM7_C(-0.07745783389167521) * t532;
-    input_by_ddq[26] = WAM7_C(0.12156576707999026) * t529;
-    input_by_ddq[33] = t697;
-    input_by_ddq[40] = WAM7_C(40.16949152542373) * parameters[IA6] + WAM7_C(-0.4469713223199599) * t470;
-    input_by_ddq[47] = WAM7_C(0.9996900960702182) * t472;
-    const wam7_real_t t755 = t125 + t88; /* link j7: force and moment */
-    const wam7_real_t t756 = WAM7_C(-2.0) * t73; /* link j7: derivatives */
-    const wam7_real_t t757 = WAM7_C(-2.0) * t78;
-    const wam7_real_t t758 = parameters[XX7R] * t77 - parameters[XY7] * t72 - parameters[XZ7R] * t755
-        - (t215 * t756 + t221 * t757);
-    const wam7_real_t t759 = t758 - t126;
-    const wam7_real_t t760 = t220 * t756 + t217 * t757 + (parameters[XY7] * t77 - parameters[YZ7R] * t755);
-    const wam7_real_t t761 = t121 + t760;
-    const wam7_real_t t762 = t71 * t761 - t63 * t759;
-    const wam7_real_t t763 = parameters[MX7] * t136 + parameters[MY7] * t135;
-    const wam7_real_t t764 = parameters[XZ7R] * t77 - parameters[YZ7R] * t72 - parameters[ZZ7] * t755;
-    const wam7_real_t t765 = t230 * t756 + t231 * t757 + t764 + t763;
-    const wam7_real_t t766 = t39 * t765 - t56 * t762;
-    const wam7_real_t t767 = t71 * t759 + t63 * t761;
-    const wam7_real_t t768 = t155 + (t259 * t757 + parameters[MY7] * t755);
-    const wam7_real_t t769 = t154 + (t259 * t756 + parameters[MX7] * t755);
-    const wam7_real_t t770 = t63 * t768 + t71 * t769;
-    const wam7_real_t t771 = t262 * t756 + t261 * t757 + (parameters[MY7] * t77 + parameters[MX7] * t72);
-    const wam7_real_t t772 = t56 * t770 + t39 * t771;
-    const wam7_real_t t773 = t71 * t768 - t63 * t769;
-    const wam7_real_t t774 = t14 * t772 + t11 * t773;
-    const wam7_real_t t775 = t14 * t767 - t11 * t766 + WAM7_C(0.3) * t774;
-    const wam7_real_t t776 = t39 * t762 + t56 * t765;
-    const wam7_real_t t777 = WAM7_C(0.045) * t774;
-    const wam7_real_t t778 = t776 - t777;
-    const wam7_real_t t779 = t9 * t778 - t5 * t775;
-    const wam7_real_t t780 = t11 * t772 - t14 * t773;
-    const wam7_real_t t781 = t56 * t771 - t39 * t770;
-    const wam7_real_t t782 = t14 * t766 + t11 * t767 + (WAM7_C(0.045) * t781 + WAM7_C(0.3) * t780);
-    const wam7_real_t t783 = t782 + WAM7_C(0.045) * (t9 * t780 - t5 * t781);
-    const wam7_real_t t784 = t5 * t780 + t9 * t781;
-    const wam7_real_t t785 = t3 * t783 - t2 * t779 + WAM7_C(0.55) * (t3 * t784 + t2 * t774);
-    const wam7_real_t t786 = t777 + (t9 * t775 + t5 * t778);
-    input_by_q[6] = WAM7_C(0.05209961446285298) * (t0 * t785 + t6 * t786);
-    const wam7_real_t t787 = t3 * t779 + t2 * t783 + WAM7_C(0.55) * (t2 * t784 - t3 * t774);
-    input_by_q[13] = WAM7_C(0.07745783389167521) * t787;
-    input_by_q[20] = WAM7_C(0.07745783389167521) * t786;
-    input_by_q[27] = WAM7_C(0.12156576707999026) * t782;
-    input_by_q[34] = WAM7_C(0.4469713223199599) * t776;
-    input_by_q[41] = WAM7_C(0.4469713223199599) * t767;
-    const wam7_real_t t788 = WAM7_C(0.9996900960702182) * (t763 + (t764 - (t73 * t436 + t78 * t437)));
-    input_by_q[48] = t788;
-    const wam7_real_t t789 = WAM7_C(2.0) * t236 - (parameters[XX7R] * t756 + parameters[XY7] * t757);
-    const wam7_real_t t790 = WAM7_C(2.0) * t237 + parameters[XY7] * t756;
-    const wam7_real_t t791 = t63 * t789 + t71 * t790;
-    const wam7_real_t t792 = t439 + (parameters[XZ7R] * t756 + parameters[YZ7R] * t757);
-    const wam7_real_t t793 = t56 * t791 - t39 * t792;
-    const wam7_real_t t794 = t63 * t790 - t71 * t789;
-    const wam7_real_t t795 = parameters[MY7] * t756 - parameters[MX7] * t757;
-    const wam7_real_t t796 = WAM7_C(2.0) * t262;
-    const wam7_real_t t797 = WAM7_C(2.0) * t261;
-    const wam7_real_t t798 = t63 * t796 - t71 * t797;
-    const wam7_real_t t799 = t39 * t795 - t56 * t798;
-    const wam7_real_t t800 = t71 * t796 + t63 * t797;
-    const wam7_real_t t801 = t14 * t799 - t11 * t800;
-    const wam7_real_t t802 = t11 * t793 + t14 * t794 + WAM7_C(0.3) * t801;
-    const wam7_real_t t803 = t39 * t791 + t56 * t792;
-    const wam7_real_t t804 = WAM7_C(-0.045) * t801;
-    const wam7_real_t t805 = t803 + t804;
-    const wam7_real_t t806 = t5 * t802 - t9 * t805;
-    const wam7_real_t t807 = t39 * t798 + t56 * t795;
-    const wam7_real_t t808 = t11 * t799 + t14 * t800;
-    const wam7_real_t t809 = t11 * t794 - t14 * t793 + (WAM7_C(0.045) * t807 + WAM7_C(0.3) * t808);
-    const wam7_real_t t810 = t809 + WAM7_C(0.045) * (t9 * t808 - t5 * t807);
-    const wam7_real_t t811 = t5 * t808 + t9 * t807;
-    const wam7_real_t t812 = t2 * t806 + t3 * t810 + WAM7_C(0.55) * (t3 * t811 + t2 * t801);
-    const wam7_real_t t813 = t9 * t802 + t5 * t805 - t804;
-    input_by_dq[6] = WAM7_C(0.05209961446285298) * (t0 * t812 + t6 * t813);
-    const wam7_real_t t814 = t2 * t810 - t3 * t806 + WAM7_C(0.55) * (t2 * t811 - t3 * t801);
-    input_by_dq[13] = WAM7_C(0.07745783389167521) * t814;
-    input_by_dq[20] = WAM7_C(0.07745783389167521) * t813;
-    input_by_dq[27] = WAM7_C(0.12156576707999026) * t809;
-    input_by_dq[34] = WAM7_C(0.4469713223199599) * t803;
-    input_by_dq[41] = WAM7_C(0.4469713223199599) * t794;
+    const wam7_real_t t215 = parameters[XZ7R] * t77 - parameters[YZ7R] * t72 - parameters[ZZ7] * t214;
+    const wam7_real_t t216 = WAM7_C(-0.5) * (parameters[XX7R] + parameters[ZZ7]);
+    const wam7_real_t t217 = parameters[XX7R] + t216;
+    const wam7_real_t t218 = parameters[XY7] * t78 + t73 * t217;
+    const wam7_real_t t219 = WAM7_C(2.0) * t218;
+    const wam7_real_t t220 = parameters[XY7] * t73 + t78 * t216;
+    const wam7_real_t t221 = WAM7_C(2.0) * t220;
+    const wam7_real_t t222 = WAM7_C(0.9996900960702182) * (t213 + (t215 - (t73 * t219 + t78 * t221)));
+    input_by_q[48] = t222;
+    const wam7_real_t t223 = parameters[XZ7R] * t73;
+    const wam7_real_t t224 = parameters[XY7] * t74;
+    const wam7_real_t t225 = t223 + t224;
+    const wam7_real_t t226 = WAM7_C(-2.0) * t73;
+    const wam7_real_t t227 = parameters[YZ7R] * t73 + t74 * t216;
+    const wam7_real_t t228 = WAM7_C(-2.0) * t78;
+    const wam7_real_t t229 = parameters[XX7R] * t77 - parameters[XY7] * t72 - parameters[XZ7R] * t214
+        - (t225 * t226 + t227 * t228);
+    const wam7_real_t t230 = t229 - t126;
+    const wam7_real_t t231 = t74 * t217 - parameters[XZ7R] * t78;
+    const wam7_real_t t232 = parameters[YZ7R] * t78;
+    const wam7_real_t t233 = t224 - t232;
+    const wam7_real_t t234 = t231 * t226 + t233 * t228 + (parameters[XY7] * t77 - parameters[YZ7R] * t214);
+    const wam7_real_t t235 = t121 + t234;
+    const wam7_real_t t236 = t71 * t230 + t63 * t235;
+    input_by_q[41] = WAM7_C(0.4469713223199599) * t236;
+    const wam7_real_t t237 = t71 * t235 - t63 * t230;
+    const wam7_real_t t238 = t218 * t226 + t220 * t228 + t215 + t213;
+    const wam7_real_t t239 = t39 * t237 + t56 * t238;
+    input_by_q[34] = WAM7_C(0.4469713223199599) * t239;
+    const wam7_real_t t240 = t39 * t238 - t56 * t237;
+    const wam7_real_t t241 = parameters[MY7] * t78 + parameters[MX7] * t73;
+    const wam7_real_t t242 = t155 + (t241 * t228 + parameters[MY7] * t214);
+    const wam7_real_t t243 = t154 + (t241 * t226 + parameters[MX7] * t214);
+    const wam7_real_t t244 = t63 * t242 + t71 * t243;
+    const wam7_real_t t245 = parameters[MX7] * t74;
+    const wam7_real_t t246 = parameters[MY7] * t74;
+    const wam7_real_t t247 = t245 * t226 + t246 * t228 + (parameters[MY7] * t77 + parameters[MX7] * t72);
+    const wam7_real_t t248 = t56 * t244 + t39 * t247;
+    const wam7_real_t t249 = t71 * t242 - t63 * t243;
+    const wam7_real_t t250 = t11 * t248 - t14 * t249;
+    const wam7_real_t t251 = t56 * t247 - t39 * t244;
+    const wam7_real_t t252 = t14 * t240 + t11 * t236 + (WAM7_C(0.045) * t251 + WAM7_C(0.3) * t250);
+    input_by_q[27] = WAM7_C(0.12156576707999026) * t252;
+    const wam7_real_t t253 = t14 * t248 + t11 * t249;
+    const wam7_real_t t254 = t14 * t236 - t11 * t240 + WAM7_C(0.3) * t253;
+    const wam7_real_t t255 = WAM7_C(0.045) * t253;
+    const wam7_real_t t256 = t239 - t255;
+    const wam7_real_t t257 = t255 + (t9 * t254 + t5 * t256);
+    input_by_q[20] = WAM7_C(0.07745783389167521) * t257;
+    const wam7_real_t t258 = t9 * t256 - t5 * t254;
+    const wam7_real_t t259 = t252 + WAM7_C(0.045) * (t9 * t250 - t5 * t251);
+    const wam7_real_t t260 = t5 * t250 + t9 * t251;
+    const wam7_real_t t261 = t3 * t258 + t2 * t259 + WAM7_C(0.55) * (t2 * t260 - t3 * t253);
+    input_by_q[13] = WAM7_C(0.07745783389167521) * t261;
+    const wam7_real_t t262 = t3 * t259 - t2 * t258 + WAM7_C(0.55) * (t3 * t260 + t2 * t253);
+    input_by_q[6] = WAM7_C(0.05209961446285298) * (t0 * t262 + t6 * t257);
     input_by_dq[48] = WAM7_C(222.83582089552237) * parameters[FV7];
-    input_by_ddq[6] = WAM7_C(0.05209961446285298) * t544;
-    input_by_ddq[13] = WAM7_C(0.07745783389167521) * t563;
-    input_by_ddq[20] = WAM7_C(-0.07745783389167521) * t543;
-    input_by_ddq[27] = WAM7_C(0.12156576707999026) * t540;
-    input_by_ddq[34] = WAM7_C(-0.4469713223199599) * t537;
-    input_by_ddq[41] = WAM7_C(0.4469713223199599) * t472;
+    const wam7_real_t t263 = parameters[ZZ7] + t216;
+    const wam7_real_t t264 = parameters[YZ7R] * t74 + t73 * t263;
+    const wam7_real_t t265 = WAM7_C(2.0) * t264 - (parameters[XX7R] * t226 + parameters[XY7] * t228);
+    const wam7_real_t t266 = parameters[XZ7R] * t74 - t78 * t263;
+    const wam7_real_t t267 = WAM7_C(2.0) * t266 + parameters[XY7] * t226;
+    const wam7_real_t t268 = t63 * t267 - t71 * t265;
+    input_by_dq[41] = WAM7_C(0.4469713223199599) * t268;
+    const wam7_real_t t269 = t63 * t265 + t71 * t267;
+    const wam7_real_t t270 = t223 + t232;
+    const wam7_real_t t271 = WAM7_C(2.0) * t270;
+    const wam7_real_t t272 = t271 + (parameters[XZ7R] * t226 + parameters[YZ7R] * t228);
+    const wam7_real_t t273 = t39 * t269 + t56 * t272;
+    input_by_dq[34] = WAM7_C(0.4469713223199599) * t273;
+    const wam7_real_t t274 = t56 * t269 - t39 * t272;
+    const wam7_real_t t275 = parameters[MY7] * t226 - parameters[MX7] * t228;
+    const wam7_real_t t276 = WAM7_C(2.0) * t245;
+    const wam7_real_t t277 = WAM7_C(2.0) * t246;
+    const wam7_real_t t278 = t63 * t276 - t71 * t277;
+    const wam7_real_t t279 = t39 * t278 + t56 * t275;
+    const wam7_real_t t280 = t39 * t275 - t56 * t278;
+    const wam7_real_t t281 = t71 * t276 + t63 * t277;
+    const wam7_real_t t282 = t11 * t280 + t14 * t281;
+    const wam7_real_t t283 = t11 * t268 - t14 * t274 + (WAM7_C(0.045) * t279 + WAM7_C(0.3) * t282);
+    input_by_dq[27] = WAM7_C(0.12156576707999026) * t283;
+    const wam7_real_t t284 = t14 * t280 - t11 * t281;
+    const wam7_real_t t285 = t11 * t274 + t14 * t268 + WAM7_C(0.3) * t284;
+    const wam7_real_t t286 = WAM7_C(-0.045) * t284;
+    const wam7_real_t t287 = t273 + t286;
+    const wam7_real_t t288 = t9 * t285 + t5 * t287 - t286;
+    input_by_dq[20] = WAM7_C(0.07745783389167521) * t288;
+    const wam7_real_t t289 = t5 * t285 - t9 * t287;
+    const wam7_real_t t290 = t283 + WAM7_C(0.045) * (t9 * t282 - t5 * t279);
+    const wam7_real_t t291 = t5 * t282 + t9 * t279;
+    const wam7_real_t t292 = t2 * t290 - t3 * t289 + WAM7_C(0.55) * (t2 * t291 - t3 * t284);
+    input_by_dq[13] = WAM7_C(0.07745783389167521) * t292;
+    const wam7_real_t t293 = t2 * t289 + t3 * t290 + WAM7_C(0.55) * (t3 * t291 + t2 * t284);
+    input_by_dq[6] = WAM7_C(0.05209961446285298) * (t0 * t293 + t6 * t288);
     input_by_ddq[48] = WAM7_C(222.83582089552237) * parameters[IA7]
         + WAM7_C(0.9996900960702182) * parameters[ZZ7];
+    /* link j7: column of the mass matrix */
+    const wam7_real_t t294 = t71 * parameters[XZ7R] + t63 * parameters[YZ7R];
+    input_by_ddq[41] = WAM7_C(0.4469713223199599) * t294;
+    const wam7_real_t t295 = t63 * parameters[XZ7R] - t71 * parameters[YZ7R];
+    const wam7_real_t t296 = t39 * t295 - t56 * parameters[ZZ7];
+    input_by_ddq[34] = WAM7_C(-0.4469713223199599) * t296;
+    const wam7_real_t t297 = t56 * t295 + t39 * parameters[ZZ7];
+    const wam7_real_t t298 = t63 * parameters[MY7] + t71 * parameters[MX7];
+    const wam7_real_t t299 = t56 * t298;
+    const wam7_real_t t300 = t63 * parameters[MX7] - t71 * parameters[MY7];
+    const wam7_real_t t301 = t11 * t299 + t14 * t300;
+    const wam7_real_t t302 = t39 * t298;
+    const wam7_real_t t303 = t14 * t297 + t11 * t294 + (WAM7_C(0.045) * t302 + WAM7_C(-0.3) * t301);
+    input_by_ddq[27] = WAM7_C(0.12156576707999026) * t303;
+    const wam7_real_t t304 = t11 * t300 - t14 * t299;
+    const wam7_real_t t305 = t11 * t297 - t14 * t294 + WAM7_C(-0.3) * t304;
+    const wam7_real_t t306 = WAM7_C(0.045) * t304;
+    const wam7_real_t t307 = t296 + t306;
+    const wam7_real_t t308 = t9 * t305 + t5 * t307 - t306;
+    input_by_ddq[20] = WAM7_C(-0.07745783389167521) * t308;
+    const wam7_real_t t309 = t5 * t305 - t9 * t307;
+    const wam7_real_t t310 = t9 * t301 + t5 * t302;
+    const wam7_real_t t311 = t303 + WAM7_C(-0.045) * t310;
+    const wam7_real_t t312 = t5 * t301 - t9 * t302;
+    const wam7_real_t t313 = t2 * t312 + t3 * t304;
+    const wam7_real_t t314 = t3 * t309 + t2 * t311 + WAM7_C(-0.55) * t313;
+    input_by_ddq[13] = WAM7_C(0.07745783389167521) * t314;
+    const wam7_real_t t315 = t2 * t304 - t3 * t312;
+    const wam7_real_t t316 = t3 * t311 - t2 * t309 + WAM7_C(0.55) * t315;
+    const wam7_real_t t317 = t0 * t316 - t6 * t308;
+    input_by_ddq[6] = WAM7_C(0.05209961446285298) * t317;
+    const wam7_real_t t318 = parameters[ZZ7] * t57; /* link j7: derivatives */
+    const wam7_real_t t319 = t140 + t130; /* link j7: motion */
+    const wam7_real_t t320 = t63 * t219 - t71 * t221; /* link j7: derivatives */
+    const wam7_real_t t321 = t68 * t271 - t58 * t320 + (t295 * t81 + t318 - t294 * t319);
+    const wam7_real_t t322 = t298 * t120;
+    input_by_q[47] = WAM7_C(0.9996900960702182) * (t321 + t322);
+    const wam7_real_t t323 = t56 * t320 + t39 * t271;
+    const wam7_real_t t324 = t71 * t219 + t63 * t221;
+    const wam7_real_t t325 = t152 + t145; /* link j6: motion */
+    /* link j7: derivatives */
+    const wam7_real_t t326 = t16 * t323 - t15 * t324 + (t297 * t64 - t294 * t51 + t296 * t325);
+    input_by_q[46] = WAM7_C(0.9996900960702182) * (t326 + (t299 * t132 - t300 * t114));
+    const wam7_real_t t327 = WAM7_C(0.09) * t13;
+    const wam7_real_t t328 = WAM7_C(0.3) * t10 + WAM7_C(-0.045) * t40; /* link j5: velocity of its origin */
+    const wam7_real_t t329 = WAM7_C(2.0) * t328; /* link j7: derivatives */
+    const wam7_real_t t330 = t11 * t323 - t14 * t324 + (t302 * t329 - t304 * t327);
+    const wam7_real_t t331 = t56 * t271 - t39 * t320;
+    const wam7_real_t t332 = WAM7_C(-0.6) * t13;
+    const wam7_real_t t333 = t331 + (t301 * t329 - t304 * t332);
+    const wam7_real_t t334 = t115 + t90; /* link j5: motion */
+    /* link j7: derivatives */
+    const wam7_real_t t335 = t305 * t34 + t307 * t47 - t303 * t334 - (t40 * t330 + t10 * t333);
+    input_by_q[45] = WAM7_C(0.9996900960702182) * (t335 + (t301 * t118 + t302 * t107));
+    const wam7_real_t t336 = WAM7_C(0.09) * t8;
+    const wam7_real_t t337 = WAM7_C(0.09) * t12;
+    const wam7_real_t t338 = t5 * t330 + t9 * t333 + (t310 * t336 + t304 * t337);
+    const wam7_real_t t339 = t14 * t323 + t11 * t324 + (t302 * t332 - t301 * t327);
+    const wam7_real_t t340 = t339 + t312 * t337;
+    const wam7_real_t t341 = t180 + t93; /* link j4: motion */
+    /* link j7: derivatives */
+    const wam7_real_t t342 = t12 * t338 + t4 * t340 + (t309 * t42 + t311 * t30 + t308 * t341);
+    input_by_q[44] = WAM7_C(0.9996900960702182) * (t342 + (t312 * t110 - t304 * t99));
+    const wam7_real_t t343 = WAM7_C(-1.1) * t1;
+    const wam7_real_t t344 = t3 * t340 - t2 * t338 + t310 * t343;
+    const wam7_real_t t345 = t5 * t333 - t9 * t330 + t312 * t336;
+    const wam7_real_t t346 = WAM7_C(-1.1) * dq[1];
+    const wam7_real_t t347 = t345 - (t313 * t343 + t315 * t346);
+    const wam7_real_t t348 = t102 + t187; /* link j3: motion */
+    /* link j7: derivatives */
+    const wam7_real_t t349 = t7 * t344 - t1 * t347 + (t316 * t20 + t308 * t27 - t314 * t348);
+    input_by_q[43] = WAM7_C(0.9996900960702182) * (t349 + (t313 * t104 + t310 * t96));
+    const wam7_real_t t350 = WAM7_C(0.9996900960702182) * (t324 + WAM7_C(2.0) * (parameters[ZZ7] * t68
+        - t295 * t58));
+    input_by_dq[47] = t350;
+    const wam7_real_t t351 = WAM7_C(0.9996900960702182) * (t331 + WAM7_C(2.0) * (t297 * t16 - t294 * t15));
+    input_by_dq[46] = t351;
+    const wam7_real_t t352 = WAM7_C(0.9996900960702182) * (t339 + WAM7_C(2.0) * (t307 * t10 - t305 * t40));
+    input_by_dq[45] = t352;
+    const wam7_real_t t353 = WAM7_C(0.9996900960702182) * (t345 + WAM7_C(2.0) * (t309 * t12 + t311 * t4));
+    input_by_dq[44] = t353;
+    const wam7_real_t t354 = t3 * t338 + t2 * t340 + t310 * t346 + WAM7_C(2.0) * (t316 * t7 + t308 * t1);
+    input_by_dq[43] = WAM7_C(0.9996900960702182) * t354;
+    input_by_dq[42] = WAM7_C(0.9996900960702182) * (t0 * t344 + t6 * t347);
+    input_by_ddq[47] = WAM7_C(0.9996900960702182) * t294;
+    input_by_ddq[46] = WAM7_C(-0.9996900960702182) * t296;
+    input_by_ddq[45] = WAM7_C(0.9996900960702182) * t303;
+    input_by_ddq[44] = WAM7_C(-0.9996900960702182) * t308;
+    input_by_ddq[43] = WAM7_C(0.9996900960702182) * t314;
+    input_by_ddq[42] = WAM7_C(0.9996900960702182) * t317;
+    const wam7_real_t t355 = parameters[MX6] + t300; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t356 = t355 * t134 + parameters[MY6R] * t120; /* link j6: derivatives */
+    /* link j7: inertia of it and all beyond */
+    const wam7_real_t t357 = t63 * parameters[XX7R] + parameters[XY7] * (WAM7_C(-2.0) * t71);
+    const wam7_real_t t358 = parameters[XZ6] + (parameters[XY7] + t71 * t357);
+    const wam7_real_t t359 = parameters[YZ6] - t294;
+    const wam7_real_t t360 = t63 * t357;
+    const wam7_real_t t361 = t360 - parameters[XX7R] - parameters[ZZ6R];
+    const wam7_real_t t362 = t358 * t81 - t359 * t57 + t361 * t319; /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t363 = t63 * (t225 + t233) + t71 * (t231 - t227);
+    const wam7_real_t t364 = t71 * t363;
+    const wam7_real_t t365 = WAM7_C(0.5) * (parameters[XX6R] + parameters[ZZ6R]);
+    const wam7_real_t t366 = t365 - parameters[XX6R];
+    const wam7_real_t t367 = parameters[XY6] * t68 - t58 * t366 + (t231 - t364);
+    const wam7_real_t t368 = WAM7_C(2.0) * t367; /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t369 = t68 * t365 - parameters[XY6] * t58 + (t63 * t266 - t71 * t264);
+    const wam7_real_t t370 = WAM7_C(2.0) * t369; /* link j6: derivatives */
+    const wam7_real_t t371 = WAM7_C(0.4469713223199599) * (t356 + (t362 + (t68 * t370 - t58 * t368)));
+    input_by_q[40] = t371;
+    const wam7_real_t t372 = parameters[XX6R] + t360; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t373 = t295 - parameters[XY6];
+    const wam7_real_t t374 = t63 * t363; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t375 = parameters[XZ6] * t58;
+    const wam7_real_t t376 = parameters[XY6] * t59;
+    const wam7_real_t t377 = t375 + t376 + (t374 - t233);
+    const wam7_real_t t378 = WAM7_C(2.0) * t58; /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t379 = t59 * t365 - parameters[YZ6] * t58 + (t63 * t264 + t71 * t266);
+    const wam7_real_t t380 = WAM7_C(2.0) * t68; /* link j6: derivatives */
+    const wam7_real_t t381 = t379 * t380 - t377 * t378 + (t358 * t319 - (t372 * t81 + t373 * t57));
+    const wam7_real_t t382 = t141 + (t381 + t298 * t134);
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t383 = parameters[XZ6] * t68 + t59 * t366 + (t63 * t218 - t71 * t220);
+    const wam7_real_t t384 = parameters[YZ6] * t68;
+    const wam7_real_t t385 = t376 - t384 + t270;
+    /* link j6: derivatives */
+    const wam7_real_t t386 = t385 * t380 - t383 * t378 + (t318 + t373 * t81 + t359 * t319);
+    const wam7_real_t t387 = t322 + t386 - t133;
+    const wam7_real_t t388 = t39 * t382 + t56 * t387;
+    input_by_q[33] = WAM7_C(0.4469713223199599) * t388;
+    const wam7_real_t t389 = t39 * t387 - t56 * t382;
+    const wam7_real_t t390 = t369 * t380 - t367 * t378 + t362 + t356;
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t391 = parameters[MY6R] * t68 + parameters[MX6] * t58 + (t63 * t245 - t71 * t246);
+    /* link j6: derivatives */
+    const wam7_real_t t392 = t157 - (t391 * t380 - (parameters[MY6R] * t319 - t298 * t57));
+    const wam7_real_t t393 = t156 + (t355 * t319 + t298 * t81 - t391 * t378);
+    const wam7_real_t t394 = t56 * t393 - t39 * t392;
+    const wam7_real_t t395 = t56 * t392 + t39 * t393;
+    const wam7_real_t t396 = parameters[MX6] * t59 - t241; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t397 = parameters[MY6R] * t59 + (t63 * t246 + t71 * t245);
+    /* link j6: derivatives */
+    const wam7_real_t t398 = parameters[MY6R] * t81 + t355 * t57 - (t396 * t378 + t397 * t380);
+    const wam7_real_t t399 = t11 * t395 - t14 * t398;
+    const wam7_real_t t400 = t14 * t389 + t11 * t390 + (WAM7_C(0.045) * t394 + WAM7_C(0.3) * t399);
+    input_by_q[26] = WAM7_C(0.12156576707999026) * t400;
+    const wam7_real_t t401 = t14 * t395 + t11 * t398;
+    const wam7_real_t t402 = t14 * t390 - t11 * t389 + WAM7_C(0.3) * t401;
+    const wam7_real_t t403 = WAM7_C(0.045) * t401;
+    const wam7_real_t t404 = t388 - t403;
+    const wam7_real_t t405 = t403 + (t9 * t402 + t5 * t404);
+    input_by_q[19] = WAM7_C(0.07745783389167521) * t405;
+    const wam7_real_t t406 = t9 * t404 - t5 * t402;
+    const wam7_real_t t407 = t400 + WAM7_C(0.045) * (t9 * t399 - t5 * t394);
+    const wam7_real_t t408 = t5 * t399 + t9 * t394;
+    const wam7_real_t t409 = t3 * t406 + t2 * t407 + WAM7_C(0.55) * (t2 * t408 - t3 * t401);
+    input_by_q[12] = WAM7_C(0.07745783389167521) * t409;
+    const wam7_real_t t410 = t3 * t407 - t2 * t406 + WAM7_C(0.55) * (t3 * t408 + t2 * t401);
+    input_by_q[5] = WAM7_C(0.05209961446285298) * (t0 * t410 + t6 * t405);
+    const wam7_real_t t411 = t375 + t384 + (t374 - t225); /* link j7: inertia, momentum beyond */
+    const wam7_real_t t412 = WAM7_C(2.0) * t411; /* link j6: derivatives */
+    const wam7_real_t t413 = WAM7_C(0.4469713223199599) * (t412 + WAM7_C(-2.0) * (t358 * t58 + t359 * t68));
+    input_by_dq[40] = WAM7_C(40.16949152542373) * parameters[FV6] + t413;
+    const wam7_real_t t414 = t365 - parameters[ZZ6R];
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t415 = parameters[YZ6] * t59 - t58 * t414 + (t227 + t364);
+    const wam7_real_t t416 = WAM7_C(2.0) * t415 + (t372 * t378 - t373 * t380); /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t417 = t71 * t218 + t63 * t220 - (parameters[XZ6] * t59 + t68 * t414);
+    /* link j6: derivatives */
+    const wam7_real_t t418 = WAM7_C(2.0) * t417 + (parameters[ZZ7] * t380 - t373 * t378);
+    const wam7_real_t t419 = t39 * t416 + t56 * t418;
+    input_by_dq[33] = WAM7_C(0.4469713223199599) * t419;
+    const wam7_real_t t420 = t56 * t416 - t39 * t418;
+    const wam7_real_t t421 = t412 - (t358 * t378 + t359 * t380);
+    const wam7_real_t t422 = WAM7_C(2.0) * t396 + t298 * t380;
+    const wam7_real_t t423 = WAM7_C(2.0) * t397 - t298 * t378;
+    const wam7_real_t t424 = t39 * t422 + t56 * t423;
+    const wam7_real_t t425 = t39 * t423 - t56 * t422;
+    const wam7_real_t t426 = t355 * t380 - parameters[MY6R] * t378;
+    const wam7_real_t t427 = t11 * t425 - t14 * t426;
+    const wam7_real_t t428 = t11 * t421 - t14 * t420 + (WAM7_C(0.045) * t424 + WAM7_C(0.3) * t427);
+    input_by_dq[26] = WAM7_C(0.12156576707999026) * t428;
+    const wam7_real_t t429 = t14 * t425 + t11 * t426;
+    const wam7_real_t t430 = t11 * t420 + t14 * t421 + WAM7_C(0.3) * t429;
+    const wam7_real_t t431 = WAM7_C(-0.045) * t429;
+    const wam7_real_t t432 = t419 + t431;
+    const wam7_real_t t433 = t9 * t430 + t5 * t432 - t431;
+    input_by_dq[19] = WAM7_C(0.07745783389167521) * t433;
+    const wam7_real_t t434 = t5 * t430 - t9 * t432;
+    const wam7_real_t t435 = t428 + WAM7_C(0.045) * (t9 * t427 - t5 * t424);
+    const wam7_real_t t436 = t5 * t427 + t9 * t424;
+    const wam7_real_t t437 = t2 * t435 - t3 * t434 + WAM7_C(0.55) * (t2 * t436 - t3 * t429);
+    input_by_dq[12] = WAM7_C(0.07745783389167521) * t437;
+    const wam7_real_t t438 = t2 * t434 + t3 * t435 + WAM7_C(0.55) * (t3 * t436 + t2 * t429);
+    input_by_dq[5] = WAM7_C(0.05209961446285298) * (t0 * t438 + t6 * t433);
+    input_by_ddq[40] = WAM7_C(40.16949152542373) * parameters[IA6] + WAM7_C(-0.4469713223199599) * t361;
+    const wam7_real_t t439 = t39 * t358 + t56 * t359; /* link j6: column of the mass matrix */
+    const wam7_real_t t440 = WAM7_C(-0.4469713223199599) * t439;
+    input_by_ddq[33] = t440;
+    const wam7_real_t t441 = t56 * t358 - t39 * t359;
+    const wam7_real_t t442 = t56 * t355 - t39 * parameters[MY6R];
+    const wam7_real_t t443 = t56 * parameters[MY6R] + t39 * t355;
+    const wam7_real_t t444 = t11 * t443;
+    const wam7_real_t t445 = t14 * t441 - t11 * t361 + (WAM7_C(-0.045) * t442 + WAM7_C(-0.3) * t444);
+    input_by_ddq[26] = WAM7_C(0.12156576707999026) * t445;
+    const wam7_real_t t446 = t14 * t443;
+    const wam7_real_t t447 = t11 * t441 + t14 * t361 + WAM7_C(0.3) * t446;
+    const wam7_real_t t448 = WAM7_C(-0.045) * t446;
+    const wam7_real_t t449 = t439 + t448;
+    const wam7_real_t t450 = t9 * t447 + t5 * t449 - t448;
+    input_by_ddq[19] = WAM7_C(-0.07745783389167521) * t450;
+    const wam7_real_t t451 = t5 * t447 - t9 * t449;
+    const wam7_real_t t452 = t5 * t442 - t9 * t444;
+    const wam7_real_t t453 = t445 + WAM7_C(0.045) * t452;
+    const wam7_real_t t454 = t5 * t444 + t9 * t442;
+    const wam7_real_t t455 = t2 * t454 - t3 * t446;
+    const wam7_real_t t456 = t3 * t451 + t2 * t453 + WAM7_C(-0.55) * t455;
+    input_by_ddq[12] = WAM7_C(0.07745783389167521) * t456;
+    const wam7_real_t t457 = t3 * t454 + t2 * t446;
+    const wam7_real_t t458 = t3 * t453 - t2 * t451 + WAM7_C(-0.55) * t457;
+    const wam7_real_t t459 = t0 * t458 - t6 * t450;
+    input_by_ddq[5] = WAM7_C(0.05209961446285298) * t459;
+    const wam7_real_t t460 = t56 * t368 + t39 * t370; /* link j6: derivatives */
+    const wam7_real_t t461 = t361 * t51;
+    const wam7_real_t t462 = t16 * t460 - t15 * t412 + (t441 * t64 + t461 + t439 * t325);
+    const wam7_real_t t463 = t443 * t132;
+    input_by_q[39] = WAM7_C(0.4469713223199599) * (t462 + t463);
+    const wam7_real_t t464 = t11 * t460 - t14 * t412 + (t446 * t327 - t442 * t329);
+    const wam7_real_t t465 = t56 * t370 - t39 * t368;
+    const wam7_real_t t466 = t465 + (t444 * t329 + t446 * t332);
+    const wam7_real_t t467 = t447 * t34 + t449 * t47 - t445 * t334 - (t40 * t464 + t10 * t466);
+    input_by_q[38] = WAM7_C(0.4469713223199599) * (t467 + (t444 * t118 - t442 * t107));
+    const wam7_real_t t468 = t5 * t464 + t9 * t466 - (t452 * t336 + t446 * t337);
+    const wam7_real_t t469 = t14 * t460 + t11 * t412 - (t442 * t332 + t444 * t327);
+    const wam7_real_t t470 = t469 + t454 * t337;
+    const wam7_real_t t471 = t12 * t468 + t4 * t470 + (t451 * t42 + t453 * t30 + t450 * t341);
+    input_by_q[37] = WAM7_C(0.4469713223199599) * (t471 + (t454 * t110 + t446 * t99));
+    const wam7_real_t t472 = t3 * t470 - t2 * t468 - t452 * t343;
+    const wam7_real_t t473 = t5 * t466 - t9 * t464 + t454 * t336;
+    const wam7_real_t t474 = t473 + (t457 * t346 - t455 * t343);
+    const wam7_real_t t475 = t7 * t472 - t1 * t474 + (t458 * t20 + t450 * t27 - t456 * t348);
+    input_by_q[36] = WAM7_C(0.4469713223199599) * (t475 + (t455 * t104 - t452 * t96));
+    const wam7_real_t t476 = WAM7_C(0.4469713223199599) * (t465 + WAM7_C(2.0) * (t441 * t16 + t361 * t15));
+    input_by_dq[39] = t476;
+    const wam7_real_t t477 = WAM7_C(0.4469713223199599) * (t469 + WAM7_C(2.0) * (t449 * t10 - t447 * t40));
+    input_by_dq[38] = t477;
+    const wam7_real_t t478 = WAM7_C(0.4469713223199599) * (t473 + WAM7_C(2.0) * (t451 * t12 + t453 * t4));
+    input_by_dq[37] = t478;
+    const wam7_real_t t479 = t3 * t468 + t2 * t470 - t452 * t346 + WAM7_C(2.0) * (t458 * t7 + t450 * t1);
+    input_by_dq[36] = WAM7_C(0.4469713223199599) * t479;
+    input_by_dq[35] = WAM7_C(0.4469713223199599) * (t0 * t472 + t6 * t474);
+    input_by_ddq[39] = t440;
+    input_by_ddq[38] = WAM7_C(0.4469713223199599) * t445;
+    input_by_ddq[37] = WAM7_C(-0.4469713223199599) * t450;
+    input_by_ddq[36] = WAM7_C(0.4469713223199599) * t456;
+    input_by_ddq[35] = WAM7_C(0.4469713223199599) * t459;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t480 = t56 * (t377 + t385) + t39 * (t379 - t383);
+    const wam7_real_t t481 = t39 * t480;
+    const wam7_real_t t482 = WAM7_C(-0.5) * (parameters[XX5R] + parameters[ZZ5R]);
+    const wam7_real_t t483 = parameters[XX5R] + t482;
+    const wam7_real_t t484 = parameters[XY5] * t15 - t16 * t483 + (t383 + t481);
+    const wam7_real_t t485 = WAM7_C(2.0) * t484; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t486 = t15 * t482 - parameters[XY5] * t16 + (t39 * t415 + t56 * t417);
+    const wam7_real_t t487 = WAM7_C(2.0) * t486; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const wam7_real_t t488 = t56 * (parameters[ZZ7] - t372) - t373 * (WAM7_C(2.0) * t39);
+    const wam7_real_t t489 = parameters[XZ5] + (t373 + t39 * t488);
+    const wam7_real_t t490 = parameters[YZ5] - t439;
+    const wam7_real_t t491 = t56 * t488;
+    const wam7_real_t t492 = parameters[ZZ5R] + (t372 + t491);
+    const wam7_real_t t493 = t489 * t64 - t490 * t51 - t492 * t325; /* link j5: derivatives */
+    const wam7_real_t t494 = parameters[MX5] + t442; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t495 = parameters[MY5R] + t298;
+    const wam7_real_t t496 = t495 * t132 - t494 * t114; /* link j5: derivatives */
+    const wam7_real_t t497 = WAM7_C(0.4469713223199599) * (t496 + (t493 + (t16 * t485 - t15 * t487)));
+    input_by_q[32] = t497;
+    const wam7_real_t t498 = t56 * t480; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t499 = parameters[XZ5] * t16;
+    const wam7_real_t t500 = parameters[XY5] * t52;
+    const wam7_real_t t501 = t499 - t500 + (t385 - t498);
+    const wam7_real_t t502 = WAM7_C(2.0) * t16; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t503 = parameters[YZ5] * t16 - t52 * t482 - (t56 * t415 - t39 * t417);
+    const wam7_real_t t504 = WAM7_C(-2.0) * t15; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const wam7_real_t t505 = parameters[XX5R] + (parameters[ZZ7] - t491);
+    const wam7_real_t t506 = parameters[XY5] + t441;
+    /* link j5: derivatives */
+    const wam7_real_t t507 = t501 * t502 + t503 * t504 + (t505 * t64 - t506 * t51 - t489 * t325);
+    const wam7_real_t t508 = t507 - t443 * t114 - t153;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t509 = t52 * t483 - parameters[XZ5] * t15 + (t56 * t367 + t39 * t369);
+    const wam7_real_t t510 = parameters[YZ5] * t15;
+    const wam7_real_t t511 = t500 - t510 + t411;
+    /* link j5: derivatives */
+    const wam7_real_t t512 = t509 * t502 + t511 * t504 + (t461 + t506 * t64 - t490 * t325);
+    const wam7_real_t t513 = t147 + (t463 + t512);
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t514 = parameters[MY5R] * t15 - parameters[MX5] * t16 + (t39 * t397 - t56 * t396);
+    const wam7_real_t t515 = t160 + (t514 * t504 + (t443 * t51 + t495 * t325)); /* link j5: derivatives */
+    const wam7_real_t t516 = t158 + (t514 * t502 + (t494 * t325 - t443 * t64));
+    const wam7_real_t t517 = t11 * t515 + t14 * t516;
+    const wam7_real_t t518 = parameters[MX5] * t52 + t391; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t519 = parameters[MY5R] * t52 + (t56 * t397 + t39 * t396);
+    const wam7_real_t t520 = t518 * t502 + t519 * t504 + (t495 * t64 + t494 * t51); /* link j5: derivatives */
+    const wam7_real_t t521 = t14 * t508 + t11 * t513 + (WAM7_C(0.045) * t520 + WAM7_C(0.3) * t517);
+    input_by_q[25] = WAM7_C(0.12156576707999026) * t521;
+    const wam7_real_t t522 = t14 * t515 - t11 * t516;
+    const wam7_real_t t523 = t14 * t513 - t11 * t508 + WAM7_C(0.3) * t522;
+    const wam7_real_t t524 = WAM7_C(0.045) * t522;
+    const wam7_real_t t525 = t484 * t502 + t486 * t504 + t493 + t496 - t524;
+    const wam7_real_t t526 = t524 + (t9 * t523 + t5 * t525);
+    input_by_q[18] = WAM7_C(0.07745783389167521) * t526;
+    const wam7_real_t t527 = t9 * t525 - t5 * t523;
+    const wam7_real_t t528 = t521 + WAM7_C(0.045) * (t9 * t517 - t5 * t520);
+    const wam7_real_t t529 = t5 * t517 + t9 * t520;
+    const wam7_real_t t530 = t3 * t527 + t2 * t528 + WAM7_C(0.55) * (t2 * t529 - t3 * t522);
+    input_by_q[11] = WAM7_C(0.07745783389167521) * t530;
+    const wam7_real_t t531 = t3 * t528 - t2 * t527 + WAM7_C(0.55) * (t3 * t529 + t2 * t522);
+    input_by_q[4] = WAM7_C(0.05209961446285298) * (t0 * t531 + t6 * t526);
+    const wam7_real_t t532 = t510 - t499 + (t498 - t377); /* link j6: inertia, momentum beyond */
+    const wam7_real_t t533 = WAM7_C(2.0) * t532; /* link j5: derivatives */
+    const wam7_real_t t534 = WAM7_C(0.4469713223199599) * (t533 + WAM7_C(2.0) * (t489 * t16 - t490 * t15));
+    input_by_dq[32] = WAM7_C(40.16949152542373) * parameters[FV5] + t534;
+    const wam7_real_t t535 = parameters[ZZ5R] + t482;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t536 = parameters[YZ5] * t52 - t16 * t535 + (t379 - t481);
+    const wam7_real_t t537 = WAM7_C(2.0) * t536 - (t505 * t502 + t506 * t504); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t538 = parameters[XZ5] * t52 - t15 * t535 + (t56 * t369 - t39 * t367);
+    const wam7_real_t t539 = WAM7_C(2.0) * t538 + (t506 * t502 - t361 * t504); /* link j5: derivatives */
+    const wam7_real_t t540 = WAM7_C(-2.0) * t518 - t443 * t504;
+    const wam7_real_t t541 = WAM7_C(2.0) * t519 - t443 * t502;
+    const wam7_real_t t542 = t11 * t540 + t14 * t541;
+    const wam7_real_t t543 = t495 * t502 - t494 * t504;
+    const wam7_real_t t544 = t11 * t539 - t14 * t537 + (WAM7_C(0.045) * t543 + WAM7_C(0.3) * t542);
+    input_by_dq[25] = WAM7_C(0.12156576707999026) * t544;
+    const wam7_real_t t545 = t14 * t540 - t11 * t541;
+    const wam7_real_t t546 = t11 * t537 + t14 * t539 + WAM7_C(0.3) * t545;
+    const wam7_real_t t547 = WAM7_C(-0.045) * t545;
+    const wam7_real_t t548 = t533 + (t489 * t502 + t490 * t504) + t547;
+    const wam7_real_t t549 = t9 * t546 + t5 * t548 - t547;
+    input_by_dq[18] = WAM7_C(0.07745783389167521) * t549;
+    const wam7_real_t t550 = t5 * t546 - t9 * t548;
+    const wam7_real_t t551 = t544 + WAM7_C(0.045) * (t9 * t542 - t5 * t543);
+    const wam7_real_t t552 = t5 * t542 + t9 * t543;
+    const wam7_real_t t553 = t2 * t551 - t3 * t550 + WAM7_C(0.55) * (t2 * t552 - t3 * t545);
+    input_by_dq[11] = WAM7_C(0.07745783389167521) * t553;
+    const wam7_real_t t554 = t2 * t550 + t3 * t551 + WAM7_C(0.55) * (t3 * t552 + t2 * t545);
+    input_by_dq[4] = WAM7_C(0.05209961446285298) * (t0 * t554 + t6 * t549);
+    input_by_ddq[32] = WAM7_C(40.16949152542373) * parameters[IA5] + WAM7_C(0.4469713223199599) * t492;
+    const wam7_real_t t555 = t11 * t495 + t14 * t494; /* link j5: column of the mass matrix */
+    const wam7_real_t t556 = t14 * t489 + t11 * t490 + WAM7_C(-0.3) * t555;
+    input_by_ddq[25] = WAM7_C(0.12156576707999026) * t556;
+    const wam7_real_t t557 = t11 * t489 - t14 * t490;
+    const wam7_real_t t558 = t11 * t494 - t14 * t495;
+    const wam7_real_t t559 = WAM7_C(-0.3) * t558;
+    const wam7_real_t t560 = t557 + t559;
+    const wam7_real_t t561 = WAM7_C(0.045) * t558;
+    const wam7_real_t t562 = t561 - t492;
+    const wam7_real_t t563 = t9 * t560 + t5 * t562 - t561;
+    input_by_ddq[18] = WAM7_C(-0.07745783389167521) * t563;
+    const wam7_real_t t564 = t5 * t560 - t9 * t562;
+    const wam7_real_t t565 = t9 * t555;
+    const wam7_real_t t566 = t556 + WAM7_C(-0.045) * t565;
+    const wam7_real_t t567 = t5 * t555;
+    const wam7_real_t t568 = t2 * t567 + t3 * t558;
+    const wam7_real_t t569 = t3 * t564 + t2 * t566 + WAM7_C(-0.55) * t568;
+    input_by_ddq[11] = WAM7_C(0.07745783389167521) * t569;
+    const wam7_real_t t570 = t2 * t558 - t3 * t567;
+    const wam7_real_t t571 = t3 * t566 - t2 * t564 + WAM7_C(0.55) * t570;
+    const wam7_real_t t572 = t0 * t571 - t6 * t563;
+    input_by_ddq[4] = WAM7_C(0.05209961446285298) * t572;
+    const wam7_real_t t573 = t11 * t485 - t14 * t487 - t558 * t327; /* link j5: derivatives */
+    const wam7_real_t t574 = t533 + (t555 * t329 - t558 * t332);
+    const wam7_real_t t575 = t560 * t34 + t562 * t47 - t556 * t334 - (t40 * t573 + t10 * t574);
+    const wam7_real_t t576 = t555 * t118;
+    input_by_q[31] = WAM7_C(0.4469713223199599) * (t575 + t576);
+    const wam7_real_t t577 = t5 * t573 + t9 * t574 + (t565 * t336 + t558 * t337);
+    const wam7_real_t t578 = t14 * t485 + t11 * t487 - t555 * t327;
+    const wam7_real_t t579 = t578 + t567 * t337;
+    const wam7_real_t t580 = t12 * t577 + t4 * t579 + (t564 * t42 + t566 * t30 + t563 * t341);
+    input_by_q[30] = WAM7_C(0.4469713223199599) * (t580 + (t567 * t110 - t558 * t99));
+    const wam7_real_t t581 = t3 * t579 - t2 * t577 + t565 * t343;
+    const wam7_real_t t582 = t5 * t574 - t9 * t573 + t567 * t336;
+    const wam7_real_t t583 = t582 - (t568 * t343 + t570 * t346);
+    const wam7_real_t t584 = t7 * t581 - t1 * t583 + (t571 * t20 + t563 * t27 - t569 * t348);
+    input_by_q[29] = WAM7_C(0.4469713223199599) * (t584 + (t568 * t104 + t565 * t96));
+    const wam7_real_t t585 = WAM7_C(0.4469713223199599) * (t578 + WAM7_C(2.0) * (t562 * t10 - t560 * t40));
+    input_by_dq[31] = t585;
+    const wam7_real_t t586 = WAM7_C(0.4469713223199599) * (t582 + WAM7_C(2.0) * (t564 * t12 + t566 * t4));
+    input_by_dq[30] = t586;
+    const wam7_real_t t587 = t3 * t577 + t2 * t579 + t565 * t346 + WAM7_C(2.0) * (t571 * t7 + t563 * t1);
+    input_by_dq[29] = WAM7_C(0.4469713223199599) * t587;
+    input_by_dq[28] = WAM7_C(0.4469713223199599) * (t0 * t581 + t6 * t583);
+    input_by_ddq[31] = WAM7_C(0.4469713223199599) * t556;
+    input_by_ddq[30] = WAM7_C(-0.4469713223199599) * t563;
+    input_by_ddq[29] = WAM7_C(0.4469713223199599) * t569;
+    input_by_ddq[28] = WAM7_C(0.4469713223199599) * t572;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t588 = t11 * (t511 - t501) + t14 * (t503 + t509);
+    const wam7_real_t t589 = t14 * t588;
+    const wam7_real_t t590 = t14 * t519 - t11 * t518;
+    const wam7_real_t t591 = WAM7_C(0.5) * (parameters[XX4R] + parameters[ZZ4R]);
+    const wam7_real_t t592 = t591 - parameters[XX4R];
+    const wam7_real_t t593 = t509 - t589 + (WAM7_C(-0.045) * t590 - t558 * t328) - (parameters[XY4R] * t10
+        + t40 * t592);
+    const wam7_real_t t594 = WAM7_C(2.0) * t593; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t595 = t11 * t538 - t14 * t536 + (WAM7_C(0.3) * t590 + t443 * t328);
+    const wam7_real_t t596 = t595 - (parameters[XY4R] * t40 + t10 * t591);
+    const wam7_real_t t597 = WAM7_C(2.0) * t596; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const wam7_real_t t598 = t506 * (WAM7_C(2.0) * t14) - t11 * (t361 + t505);
+    const wam7_real_t t599 = WAM7_C(0.045) * t555;
+    const wam7_real_t t600 = parameters[XZ4] + (t506 - t14 * t598 + t599);
+    const wam7_real_t t601 = parameters[YZ4] - t556;
+    const wam7_real_t t602 = t11 * t598;
+    const wam7_real_t t603 = WAM7_C(-0.09) * t558;
+    const wam7_real_t t604 = WAM7_C(0.6) * t443;
+    const wam7_real_t t605 = parameters[ZZ4R] + (t505 + t602 + (t603 - t604));
+    const wam7_real_t t606 = t600 * t34 + t601 * t47 - t605 * t334; /* link j4: derivatives */
+    const wam7_real_t t607 = parameters[MX4R] + t558; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t608 = parameters[MY4R] + t443;
+    const wam7_real_t t609 = t608 * t118 - t607 * t107; /* link j4: derivatives */
+    const wam7_real_t t610 = WAM7_C(0.12156576707999026) * (t609 + (t606 - (t40 * t594 + t10 * t597)));
+    input_by_q[24] = t610;
+    const wam7_real_t t611 = t11 * t588; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t612 = t11 * t519 + t14 * t518;
+    const wam7_real_t t613 = WAM7_C(0.045) * t612;
+    const wam7_real_t t614 = WAM7_C(-0.3) * t13; /* link j5: velocity of its origin */
+    const wam7_real_t t615 = t558 * t614; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t616 = WAM7_C(-0.3) * t514;
+    const wam7_real_t t617 = WAM7_C(0.045) * t13; /* link j5: velocity of its origin */
+    const wam7_real_t t618 = t443 * t617; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t619 = t555 * t328;
+    const wam7_real_t t620 = t613 - t616 + (t619 - (t615 + t618));
+    const wam7_real_t t621 = parameters[XZ4] * t40;
+    const wam7_real_t t622 = parameters[XY4R] * t13;
+    const wam7_real_t t623 = t621 + t622 + (t611 - t511 + (t613 - t615) - t620);
+    const wam7_real_t t624 = WAM7_C(2.0) * t40; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t625 = t11 * t536 + t14 * t538 + (WAM7_C(-0.3) * t612 + t443 * t614);
+    const wam7_real_t t626 = t13 * t591 - parameters[YZ4] * t40 + t625;
+    const wam7_real_t t627 = WAM7_C(-2.0) * t10; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const wam7_real_t t628 = t361 + t602 + t604 - parameters[XX4R];
+    const wam7_real_t t629 = t557 + (t559 + WAM7_C(-0.045) * t443) - parameters[XY4R];
+    /* link j4: derivatives */
+    const wam7_real_t t630 = t626 * t627 - t623 * t624 + (t628 * t34 + t629 * t47 + t600 * t334);
+    const wam7_real_t t631 = t168 + (t630 - t555 * t107);
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t632 = t11 * t484 - t14 * t486 + (WAM7_C(0.045) * t514 - t558 * t617);
+    const wam7_real_t t633 = t13 * t592 - parameters[XZ4] * t10 + t632;
+    const wam7_real_t t634 = parameters[YZ4] * t10;
+    const wam7_real_t t635 = t622 + t634 + (t620 + (t532 + (t616 + t618)));
+    const wam7_real_t t636 = t492 + t603; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const wam7_real_t t637 = t635 * t627 - t633 * t624 + (t629 * t34 - t636 * t47 + t601 * t334);
+    const wam7_real_t t638 = t576 + t637 - t163;
+    const wam7_real_t t639 = parameters[MY4R] * t13 + t612; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t640 = t514 - parameters[MX4R] * t13;
+    const wam7_real_t t641 = t640 * t624 - t639 * t627 + (t608 * t34 - t607 * t47); /* link j4: derivatives */
+    const wam7_real_t t642 = t9 * t631 + t5 * t638 + WAM7_C(0.045) * t641;
+    input_by_q[17] = WAM7_C(0.07745783389167521) * t642;
+    const wam7_real_t t643 = t9 * t638 - t5 * t631;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t644 = parameters[MY4R] * t10 - parameters[MX4R] * t40 + t590;
+    const wam7_real_t t645 = t644 * t624 + (t607 * t334 + t555 * t34) - t177; /* link j4: derivatives */
+    const wam7_real_t t646 = t178 + (t644 * t627 + (t555 * t47 + t608 * t334));
+    const wam7_real_t t647 = t596 * t627 - t593 * t624 + t606 + t609 + WAM7_C(0.045) * (t9 * t646
+        - t5 * t645);
+    const wam7_real_t t648 = t5 * t646 + t9 * t645;
+    const wam7_real_t t649 = t3 * t643 + t2 * t647 + WAM7_C(0.55) * (t2 * t648 - t3 * t641);
+    input_by_q[10] = WAM7_C(0.07745783389167521) * t649;
+    const wam7_real_t t650 = t3 * t647 - t2 * t643 + WAM7_C(0.55) * (t3 * t648 + t2 * t641);
+    input_by_q[3] = WAM7_C(0.05209961446285298) * (t0 * t650 + t6 * t642);
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t651 = t621 - t634 + (t620 + (t501 + t611 - t619));
+    const wam7_real_t t652 = WAM7_C(2.0) * t651; /* link j4: derivatives */
+    const wam7_real_t t653 = WAM7_C(0.12156576707999026) * (t652 + WAM7_C(2.0) * (t601 * t10 - t600 * t40));
+    input_by_dq[24] = WAM7_C(39.387308533916844) * parameters[FV4] + t653;
+    const wam7_real_t t654 = t591 - parameters[ZZ4R];
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t655 = parameters[YZ4] * t13 - t40 * t654 + (t589 - t503 - t555 * t614);
+    const wam7_real_t t656 = WAM7_C(2.0) * t655 - (t628 * t624 + t629 * t627); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t657 = t10 * t654 - parameters[XZ4] * t13 + (t14 * t484 + t11 * t486 - t555 * t617);
+    const wam7_real_t t658 = WAM7_C(2.0) * t657 + (t636 * t627 - t629 * t624); /* link j4: derivatives */
+    const wam7_real_t t659 = t607 * t627 - t608 * t624;
+    const wam7_real_t t660 = t9 * t656 + t5 * t658 + WAM7_C(0.045) * t659;
+    input_by_dq[17] = WAM7_C(0.07745783389167521) * t660;
+    const wam7_real_t t661 = t5 * t656 - t9 * t658;
+    const wam7_real_t t662 = WAM7_C(2.0) * t639 - t555 * t624;
+    const wam7_real_t t663 = WAM7_C(2.0) * t640 - t555 * t627;
+    const wam7_real_t t664 = t652 - (t600 * t624 + t601 * t627) + WAM7_C(0.045) * (t9 * t663 - t5 * t662);
+    const wam7_real_t t665 = t5 * t663 + t9 * t662;
+    const wam7_real_t t666 = t2 * t664 - t3 * t661 + WAM7_C(0.55) * (t2 * t665 - t3 * t659);
+    input_by_dq[10] = WAM7_C(0.07745783389167521) * t666;
+    const wam7_real_t t667 = t2 * t661 + t3 * t664 + WAM7_C(0.55) * (t3 * t665 + t2 * t659);
+    input_by_dq[3] = WAM7_C(0.05209961446285298) * (t0 * t667 + t6 * t660);
+    input_by_ddq[24] = WAM7_C(39.387308533916844) * parameters[IA4] + WAM7_C(0.12156576707999026) * t605;
+    const wam7_real_t t668 = t9 * t600 + t5 * t601; /* link j4: column of the mass matrix */
+    input_by_ddq[17] = WAM7_C(-0.07745783389167521) * t668;
+    const wam7_real_t t669 = t5 * t600 - t9 * t601;
+    const wam7_real_t t670 = t5 * t607 - t9 * t608;
+    const wam7_real_t t671 = t605 + WAM7_C(0.045) * t670;
+    const wam7_real_t t672 = t5 * t608 + t9 * t607;
+    const wam7_real_t t673 = t2 * t672;
+    const wam7_real_t t674 = t3 * t669 + t2 * t671 + WAM7_C(-0.55) * t673;
+    input_by_ddq[10] = WAM7_C(0.07745783389167521) * t674;
+    const wam7_real_t t675 = t3 * t672;
+    const wam7_real_t t676 = t3 * t671 - t2 * t669 + WAM7_C(-0.55) * t675;
+    const wam7_real_t t677 = t0 * t676 - t6 * t668;
+    input_by_ddq[3] = WAM7_C(0.05209961446285298) * t677;
+    const wam7_real_t t678 = t5 * t594 + t9 * t597 - t670 * t336; /* link j4: derivatives */
+    const wam7_real_t t679 = t652 + t672 * t337;
+    const wam7_real_t t680 = t12 * t678 + t4 * t679 + (t669 * t42 + t671 * t30 + t668 * t341);
+    const wam7_real_t t681 = t672 * t110;
+    input_by_q[23] = WAM7_C(0.12156576707999026) * (t680 + t681);
+    const wam7_real_t t682 = t3 * t679 - t2 * t678 - t670 * t343;
+    const wam7_real_t t683 = t5 * t597 - t9 * t594 + t672 * t336;
+    const wam7_real_t t684 = t683 + (t675 * t346 - t673 * t343);
+    const wam7_real_t t685 = t7 * t682 - t1 * t684 + (t676 * t20 + t668 * t27 - t674 * t348);
+    input_by_q[22] = WAM7_C(0.12156576707999026) * (t685 + (t673 * t104 - t670 * t96));
+    const wam7_real_t t686 = WAM7_C(0.12156576707999026) * (t683 + WAM7_C(2.0) * (t669 * t12 + t671 * t4));
+    input_by_dq[23] = t686;
+    const wam7_real_t t687 = t3 * t678 + t2 * t679 - t670 * t346 + WAM7_C(2.0) * (t676 * t7 + t668 * t1);
+    input_by_dq[22] = WAM7_C(0.12156576707999026) * t687;
+    input_by_dq[21] = WAM7_C(0.12156576707999026) * (t0 * t682 + t6 * t684);
+    input_by_ddq[23] = WAM7_C(-0.12156576707999026) * t668;
+    input_by_ddq[22] = WAM7_C(0.12156576707999026) * t674;
+    input_by_ddq[21] = WAM7_C(0.12156576707999026) * t677;
+    const wam7_real_t t688 = t5 * (t623 + t635) + t9 * (t626 - t633); /* link j4: inertia, momentum beyond */
+    const wam7_real_t t689 = t9 * t688;
+    const wam7_real_t t690 = t9 * t639 + t5 * t640;
+    const wam7_real_t t691 = WAM7_C(0.045) * t12; /* link j4: velocity of its origin */
+    const wam7_real_t t692 = WAM7_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const wam7_real_t t693 = parameters[XX3R] - t692;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t694 = t633 + t689 + (WAM7_C(-0.045) * t690 + t670 * t691) - (parameters[XY3R] * t4
+        + t12 * t693);
+    const wam7_real_t t695 = WAM7_C(2.0) * t694; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t696 = t4 * t692 - parameters[XY3R] * t12 + (t9 * t655 + t5 * t657 + t555 * t691);
+    const wam7_real_t t697 = WAM7_C(2.0) * t696; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const wam7_real_t t698 = t5 * (t636 + t628) - t629 * (WAM7_C(2.0) * t9);
+    const wam7_real_t t699 = parameters[XZ3] + (t629 + t9 * t698 + WAM7_C(0.045) * t672);
+    const wam7_real_t t700 = parameters[YZ3] - t668;
+    const wam7_real_t t701 = t5 * t698;
+    const wam7_real_t t702 = WAM7_C(0.09) * t670;
+    const wam7_real_t t703 = parameters[ZZ3R] + (t701 - t628 + t702);
+    const wam7_real_t t704 = t699 * t42 + t700 * t30 - t703 * t341; /* link j3: derivatives */
+    const wam7_real_t t705 = parameters[MX3R] + t670; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t706 = parameters[MY3R] + t555;
+    const wam7_real_t t707 = t706 * t110 - t705 * t99; /* link j3: derivatives */
+    const wam7_real_t t708 = WAM7_C(0.07745783389167521) * (t707 + (t704 + (t12 * t695 + t4 * t697)));
+    input_by_q[16] = t708;
+    const wam7_real_t t709 = t5 * t688; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t710 = t9 * t640 - t5 * t639;
+    const wam7_real_t t711 = WAM7_C(0.045) * t710;
+    const wam7_real_t t712 = WAM7_C(0.045) * t8; /* link j4: velocity of its origin */
+    const wam7_real_t t713 = t555 * t712; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t714 = t672 * t691;
+    const wam7_real_t t715 = t711 + (t713 + t714);
+    const wam7_real_t t716 = parameters[XZ3] * t12;
+    const wam7_real_t t717 = parameters[XY3R] * t8;
+    const wam7_real_t t718 = t716 - t717 + (t715 + (t635 - t709 - t711));
+    const wam7_real_t t719 = WAM7_C(2.0) * t12; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t720 = parameters[YZ3] * t12 + t8 * t692 - (t5 * t655 - t9 * t657);
+    const wam7_real_t t721 = WAM7_C(2.0) * t4; /* link j3: derivatives */
+    const wam7_real_t t722 = parameters[XX3R] + (t636 - t701); /* link j4: inertia of it and all beyond */
+    const wam7_real_t t723 = parameters[XY3R] - (t599 - t669);
+    /* link j3: derivatives */
+    const wam7_real_t t724 = t718 * t719 + t720 * t721 + (t722 * t42 + t723 * t30 - t699 * t341);
+    const wam7_real_t t725 = t724 - t672 * t99 - t181;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t726 = t5 * t593 + t9 * t596 + (WAM7_C(0.045) * t644 - t670 * t712);
+    const wam7_real_t t727 = parameters[XZ3] * t4 + t8 * t693 + t726;
+    const wam7_real_t t728 = parameters[YZ3] * t4;
+    const wam7_real_t t729 = t717 + t728 + (t715 + (t651 - t713));
+    const wam7_real_t t730 = t605 + t702; /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const wam7_real_t t731 = t727 * t719 + t729 * t721 + (t723 * t42 + t730 * t30 - t700 * t341);
+    const wam7_real_t t732 = t170 + (t681 + t731);
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t733 = t690 - (parameters[MY3R] * t4 + parameters[MX3R] * t12);
+    const wam7_real_t t734 = t184 + (t733 * t721 + (t706 * t341 - t672 * t30)); /* link j3: derivatives */
+    const wam7_real_t t735 = t733 * t719 + (t705 * t341 - t672 * t42) - t182;
+    const wam7_real_t t736 = t3 * t725 + t2 * t732 + WAM7_C(0.55) * (t2 * t734 + t3 * t735);
+    input_by_q[9] = WAM7_C(0.07745783389167521) * t736;
+    const wam7_real_t t737 = t3 * t732 - t2 * t725 + WAM7_C(0.55) * (t3 * t734 - t2 * t735);
+    const wam7_real_t t738 = t6 * (t694 * t719 + t696 * t721 + t704 + t707);
+    input_by_q[2] = WAM7_C(0.05209961446285298) * (t0 * t737 + t738);
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t739 = t715 + (t709 - t623 - t714) - (t716 + t728);
+    const wam7_real_t t740 = WAM7_C(2.0) * t739; /* link j3: derivatives */
+    const wam7_real_t t741 = WAM7_C(0.07745783389167521) * (t740 + WAM7_C(2.0) * (t699 * t12 + t700 * t4));
+    input_by_dq[16] = WAM7_C(61.81619256017505) * parameters[FV3] + t741;
+    const wam7_real_t t742 = parameters[ZZ3R] - t692;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t743 = parameters[YZ3] * t8 - t12 * t742 + (t626 - t689);
+    const wam7_real_t t744 = WAM7_C(2.0) * t743 - (t722 * t719 + t723 * t721); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t745 = parameters[XZ3] * t8 + t4 * t742 + (t5 * t596 - t9 * t593 + t672 * t712);
+    const wam7_real_t t746 = WAM7_C(2.0) * t745 + (t723 * t719 + t730 * t721); /* link j3: derivatives */
+    const wam7_real_t t747 = t644 - parameters[MX3R] * t8; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t748 = WAM7_C(2.0) * t747 - t672 * t721; /* link j3: derivatives */
+    const wam7_real_t t749 = t710 - parameters[MY3R] * t8; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t750 = WAM7_C(-2.0) * t749 - t672 * t719; /* link j3: derivatives */
+    const wam7_real_t t751 = t2 * t746 - t3 * t744 + WAM7_C(0.55) * (t2 * t748 + t3 * t750);
+    input_by_dq[9] = WAM7_C(0.07745783389167521) * t751;
+    const wam7_real_t t752 = t2 * t744 + t3 * t746 + WAM7_C(0.55) * (t3 * t748 - t2 * t750);
+    const wam7_real_t t753 = t0 * t752 + t6 * (t740 + (t699 * t719 + t700 * t721));
+    input_by_dq[2] = WAM7_C(0.05209961446285298) * t753;
+    input_by_ddq[16] = WAM7_C(61.81619256017505) * parameters[IA3] + WAM7_C(0.07745783389167521) * t703;
+    const wam7_real_t t754 = t2 * t706 + t3 * t705; /* link j3: column of the mass matrix */
+    const wam7_real_t t755 = WAM7_C(0.55) * t754 - (t3 * t699 + t2 * t700);
+    const wam7_real_t t756 = WAM7_C(-0.07745783389167521) * t755;
+    input_by_ddq[9] = t756;
+    const wam7_real_t t757 = t2 * t705 - t3 * t706;
+    const wam7_real_t t758 = t3 * t700 - t2 * t699 + WAM7_C(0.55) * t757;
+    const wam7_real_t t759 = t0 * t758 + t6 * t703;
+    input_by_ddq[2] = WAM7_C(0.05209961446285298) * t759;
+    const wam7_real_t t760 = t3 * t697 - t2 * t695; /* link j3: derivatives */
+    const wam7_real_t t761 = t754 * t343 + t757 * t346 - t740;
+    const wam7_real_t t762 = t703 * t27;
+    const wam7_real_t t763 = t7 * t760 + t1 * t761 + (t758 * t20 - t762 + t755 * t348);
+    const wam7_real_t t764 = t754 * t104;
+    input_by_q[15] = WAM7_C(0.07745783389167521) * (t763 + t764);
+    const wam7_real_t t765 = t3 * t695 + t2 * t697 + WAM7_C(2.0) * (t758 * t7 - t703 * t1);
+    input_by_dq[15] = WAM7_C(0.07745783389167521) * t765;
+    input_by_dq[14] = WAM7_C(0.07745783389167521) * (t0 * t760 - t6 * t761);
+    input_by_ddq[15] = t756;
+    input_by_ddq[14] = WAM7_C(0.07745783389167521) * t759;
+    const wam7_real_t t766 = t2 * (t729 - t718) + t3 * (t720 + t727); /* link j3: inertia, momentum beyond */
+    const wam7_real_t t767 = t3 * t766;
+    const wam7_real_t t768 = WAM7_C(-0.55) * t1; /* link j3: velocity of its origin */
+    const wam7_real_t t769 = WAM7_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const wam7_real_t t770 = parameters[XX2R] - t769;
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t771 = parameters[XY2] * t1 - t7 * t770 + (t767 - t727 - t757 * t768);
+    const wam7_real_t t772 = WAM7_C(2.0) * t771; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t773 = WAM7_C(0.55) * (t2 * t747 - t3 * t749) - t672 * t768;
+    const wam7_real_t t774 = parameters[XY2] * t7 + t1 * t769 + (t3 * t743 - t2 * t745 - t773);
+    const wam7_real_t t775 = WAM7_C(2.0) * t774; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const wam7_real_t t776 = t2 * (t730 - t722) + t723 * (WAM7_C(2.0) * t3);
+    const wam7_real_t t777 = t3 * t776 - t723 - parameters[XZ2];
+    const wam7_real_t t778 = parameters[YZ2] + t755;
+    const wam7_real_t t779 = t2 * t776;
+    const wam7_real_t t780 = WAM7_C(-1.1) * t672;
+    const wam7_real_t t781 = parameters[ZZ2R] + (t722 + t779 + t780);
+    /* link j2: derivatives */
+    const wam7_real_t t782 = t777 * t20 + t778 * t27 - t781 * t348 + (t7 * t772 + t1 * t775);
+    const wam7_real_t t783 = (parameters[MY2R] + t672) * t104 - (parameters[MX2] + t757) * t96 + t782;
+    input_by_q[8] = WAM7_C(0.07745783389167521) * t783;
+    const wam7_real_t t784 = t2 * t766; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t785 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
+    const wam7_real_t t786 = t757 * t785; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t787 = WAM7_C(-0.55) * t733;
+    const wam7_real_t t788 = t754 * t768;
+    const wam7_real_t t789 = t786 - t788 - t787;
+    const wam7_real_t t790 = parameters[XZ2] * t7;
+    const wam7_real_t t791 = parameters[XY2] * dq[1];
+    const wam7_real_t t792 = t789 + (t729 - t784 - t786) - (t790 + t791);
+    const wam7_real_t t793 = WAM7_C(2.0) * t7; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t794 = WAM7_C(0.55) * (t2 * t749 + t3 * t747) - t672 * t785;
+    const wam7_real_t t795 = dq[1] * t769 - parameters[YZ2] * t7 + (t2 * t743 + t3 * t745 + t794);
+    const wam7_real_t t796 = WAM7_C(-2.0) * t1; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const wam7_real_t t797 = parameters[XX2R] + (t730 - t779 + t780);
+    const wam7_real_t t798 = parameters[XY2] + t758;
+    /* link j2: derivatives */
+    const wam7_real_t t799 = t792 * t793 + t795 * t796 + (t797 * t20 - t798 * t27 - t777 * t348);
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t800 = parameters[XZ2] * t1 + dq[1] * t770 + (t3 * t696 - t2 * t694);
+    const wam7_real_t t801 = parameters[YZ2] * t1;
+    const wam7_real_t t802 = t791 + t801 + (t789 + (t739 + t787));
+    /* link j2: derivatives */
+    const wam7_real_t t803 = t800 * t793 + t802 * t796 + (t798 * t20 - t762 + t778 * t348);
+    const wam7_real_t t804 = t0 * (t194 + (t799 - t754 * t96)) + t6 * (t189 + (t764 + t803));
+    input_by_q[1] = WAM7_C(0.05209961446285298) * t804;
+    const wam7_real_t t805 = WAM7_C(2.0) * (t790 - t801 + (t789 + (t718 + t784 + t788)));
+    const wam7_real_t t806 = WAM7_C(0.07745783389167521) * (t805 + WAM7_C(2.0) * (t777 * t7 + t778 * t1));
+    input_by_dq[8] = WAM7_C(61.81619256017505) * parameters[FV2] + t806;
+    const wam7_real_t t807 = parameters[ZZ2R] - t769;
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t808 = parameters[YZ2] * dq[1] + t7 * t807 + (t767 - t720 + t754 * t785);
+    /* link j2: derivatives */
+    const wam7_real_t t809 = t0 * (WAM7_C(2.0) * t808 + (t797 * t793 + t798 * t796));
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t810 = t3 * t694 + t2 * t696 - (parameters[XZ2] * dq[1] + t1 * t807);
+    /* link j2: derivatives */
+    const wam7_real_t t811 = t6 * (WAM7_C(2.0) * t810 + (t798 * t793 + t703 * t796));
+    input_by_dq[1] = WAM7_C(0.05209961446285298) * (t809 + t811);
+    input_by_ddq[8] = WAM7_C(0.07745783389167521) * t781;
+    const wam7_real_t t812 = t0 * t777 - t6 * t778; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = WAM7_C(0.05209961446285298) * t812;
+    input_by_dq[7] = WAM7_C(0.07745783389167521) * (t0 * t772 - t6 * t775);
+    input_by_ddq[7] = WAM7_C(0.07745783389167521) * t812;
+    /* link j2: inertia, momentum beyond */
+    const wam7_real_t t813 = t6 * (t6 * (t802 - t792) + t0 * (t795 + t800));
+    input_by_dq[0] = WAM7_C(91.90371991247264) * parameters[FV1] + WAM7_C(0.10419922892570596) * (t792
+        + t813);
+    /* link j2: inertia of it and all beyond */
+    const wam7_real_t t814 = t6 * (t6 * (t703 - t797) + t798 * (WAM7_C(2.0) * t0));
+    input_by_ddq[0] = WAM7_C(0.05209961446285298) * (parameters[ZZ1R] + (t797 + t814));
     /* always zero */
     input_by_q[0] = WAM7_C(0.0);
     input_by_q[7] = WAM7_C(0.0);

@@ -124,7 +124,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -513,876 +513,865 @@ wam7_status_t wam7_inverse_dynamics_derivatives_standard(
     const wam7_real_t t250 = WAM7_C(14.93) * dq[6] * parameters[FV7] + t249 * parameters[FC7]
         + WAM7_C(14.93) * ddq[6] * parameters[IA7];
     input[6] = WAM7_C(14.925373134328357) * t250 + WAM7_C(-0.9996900960702182) * t157;
-    const wam7_real_t t251 = t73 * parameters[XZ7];
-    const wam7_real_t t252 = t74 * parameters[XY7];
-    const wam7_real_t t253 = t251 - t252;
-    const wam7_real_t t254 = t78 * parameters[YZ7];
-    const wam7_real_t t255 = t252 - t254;
-    const wam7_real_t t256 = WAM7_C(0.5) * (parameters[ZZ7] + (parameters[XX7] + parameters[YY7]));
-    const wam7_real_t t257 = parameters[XX7] - t256;
-    const wam7_real_t t258 = t74 * t257 - t78 * parameters[XZ7];
-    const wam7_real_t t259 = t256 - parameters[YY7];
-    const wam7_real_t t260 = t73 * parameters[YZ7] + t74 * t259;
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t261 = t63 * (t255 - t253) + t71 * (t258 + t260);
-    const wam7_real_t t262 = t63 * t261;
-    const wam7_real_t t263 = WAM7_C(0.06) * t59; /* link j7: velocity of its origin */
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t264 = t63 * parameters[MX7] - t71 * parameters[MY7];
-    const wam7_real_t t265 = t264 * t263; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t266 = t78 * parameters[MY7] - t73 * parameters[MX7];
-    const wam7_real_t t267 = WAM7_C(-0.06) * t266;
-    const wam7_real_t t268 = WAM7_C(0.06) * t68; /* link j7: velocity of its origin */
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t269 = t63 * parameters[MY7] + t71 * parameters[MX7];
-    const wam7_real_t t270 = t269 * t268; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t271 = t265 + t270 - t267;
-    const wam7_real_t t272 = t58 * parameters[XZ6];
-    const wam7_real_t t273 = t59 * parameters[XY6];
-    const wam7_real_t t274 = t272 + t273 + (t262 - t255 + t265 - t271);
-    const wam7_real_t t275 = t254 - t251;
-    const wam7_real_t t276 = t68 * parameters[YZ6];
-    const wam7_real_t t277 = t273 + t276 + (t271 + (t275 + t267));
-    const wam7_real_t t278 = parameters[ZZ7] - t256;
-    const wam7_real_t t279 = t74 * parameters[YZ7] - t73 * t278;
-    const wam7_real_t t280 = t74 * parameters[XZ7] - t78 * t278;
-    const wam7_real_t t281 = t74 * parameters[MY7] - t73 * parameters[MZ7];
-    const wam7_real_t t282 = t74 * parameters[MX7] - t78 * parameters[MZ7];
-    const wam7_real_t t283 = t63 * t281 + t71 * t282;
-    const wam7_real_t t284 = WAM7_C(0.06) * parameters[M7]; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t285 = parameters[MZ7] + t284;
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t286 = t63 * t279 + t71 * t280 + (WAM7_C(-0.06) * t283 + t285 * t263);
-    const wam7_real_t t287 = WAM7_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
-    const wam7_real_t t288 = parameters[YY6] - t287;
-    const wam7_real_t t289 = t286 - (t58 * parameters[YZ6] + t59 * t288);
-    const wam7_real_t t290 = t78 * parameters[XY7] - t73 * t257;
-    const wam7_real_t t291 = t73 * parameters[XY7] + t78 * t259;
-    const wam7_real_t t292 = t287 - parameters[XX6];
-    const wam7_real_t t293 = t59 * t292 - t68 * parameters[XZ6] + (t63 * t290 + t71 * t291);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t294 = t56 * (t274 + t277) + t39 * (t289 - t293);
-    const wam7_real_t t295 = t56 * t294;
-    const wam7_real_t t296 = t36 * parameters[XZ5];
-    const wam7_real_t t297 = t52 * parameters[XY5];
-    const wam7_real_t t298 = t296 - t297 + (t277 - t295);
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t299 = t272 - t276 + (t271 + (t253 + t262 - t270));
-    const wam7_real_t t300 = t35 * parameters[YZ5];
-    const wam7_real_t t301 = t297 - t300 + t299; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t302 = t71 * t261; /* link j7: inertia, momentum beyond */
-    const wam7_real_t t303 = t287 - parameters[ZZ6];
-    const wam7_real_t t304 = t59 * parameters[YZ6] - t58 * t303 + (t302 - t260 + t269 * t263);
-    const wam7_real_t t305 = t68 * t303 - t59 * parameters[XZ6] + (t71 * t290 - t63 * t291);
-    const wam7_real_t t306 = WAM7_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
-    const wam7_real_t t307 = t306 - parameters[YY5];
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t308 = t36 * parameters[YZ5] + t52 * t307 - (t56 * t304 - t39 * t305);
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t309 = t258 - t302 - t264 * t268 - (t68 * parameters[XY6] + t58 * t292);
-    const wam7_real_t t310 = t63 * t282 - t71 * t281;
-    const wam7_real_t t311 = t63 * t280 - t71 * t279 + (WAM7_C(-0.06) * t310 - t285 * t268);
-    const wam7_real_t t312 = t68 * t288 - t58 * parameters[XY6] + t311;
-    const wam7_real_t t313 = parameters[XX5] - t306;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t314 = t52 * t313 - t35 * parameters[XZ5] + (t56 * t309 + t39 * t312);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t315 = t33 * (t301 - t298) + t34 * (t308 + t314);
-    const wam7_real_t t316 = t33 * t315;
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t317 = t58 * parameters[MZ6] + t59 * parameters[MY6] + (t283 - parameters[M7] * t263);
-    const wam7_real_t t318 = t59 * parameters[MX6] + t68 * parameters[MZ6] - t266;
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t319 = t52 * parameters[MY5] - t36 * parameters[MZ5] + (t56 * t317 + t39 * t318);
-    /* link j7: inertia, momentum beyond */
-    const wam7_real_t t320 = t58 * parameters[MX6] - t68 * parameters[MY6] + (t310 + parameters[M7] * t268);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t321 = t52 * parameters[MX5] - t35 * parameters[MZ5] + t320;
-    const wam7_real_t t322 = t33 * t319 + t34 * t321; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t323 = WAM7_C(0.045) * t322;
-    const wam7_real_t t324 = parameters[MZ6] + t269; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t325 = parameters[MY5] + t324; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t326 = parameters[MX6] + t264; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t327 = t285 - parameters[MY6];
-    const wam7_real_t t328 = t39 * t327 + t56 * t326; /* link j6: column of the mass matrix */
-    const wam7_real_t t329 = parameters[MX5] + t328; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t330 = t33 * t329 - t34 * t325; /* link j5: column of the mass matrix */
-    const wam7_real_t t331 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t332 = parameters[M5] + t331; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t333 = WAM7_C(0.045) * t332; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t334 = t333 - t330;
-    const wam7_real_t t335 = WAM7_C(0.3) * t29; /* link j5: velocity of its origin */
-    const wam7_real_t t336 = t334 * t335; /* link j5: inertia, momentum beyond */
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t337 = t35 * parameters[MY5] - t36 * parameters[MX5] + (t39 * t317 - t56 * t318);
-    const wam7_real_t t338 = WAM7_C(-0.3) * t337; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t339 = t56 * t327 - t39 * t326; /* link j6: column of the mass matrix */
-    const wam7_real_t t340 = parameters[MZ5] + t339; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t341 = WAM7_C(0.3) * t332; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t342 = t340 + t341;
-    const wam7_real_t t343 = WAM7_C(0.045) * t29; /* link j5: velocity of its origin */
-    const wam7_real_t t344 = t342 * t343; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t345 = t33 * t325 + t34 * t329; /* link j5: column of the mass matrix */
-    const wam7_real_t t346 = WAM7_C(-0.3) * t28 + WAM7_C(-0.045) * t44; /* link j5: velocity of its origin */
-    const wam7_real_t t347 = t345 * t346; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t348 = t323 - t338 + (t344 - t336 + t347);
-    const wam7_real_t t349 = t44 * parameters[XZ4];
-    const wam7_real_t t350 = t29 * parameters[XY4];
-    const wam7_real_t t351 = t349 + t350 + (t316 - t301 + (t323 - t336) - t348);
-    const wam7_real_t t352 = t300 - t296 + (t295 - t274); /* link j6: inertia, momentum beyond */
-    const wam7_real_t t353 = t28 * parameters[YZ4];
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t354 = t350 - t353 + (t348 + (t352 + (t338 - t344)));
-    const wam7_real_t t355 = t39 * t294; /* link j6: inertia, momentum beyond */
-    const wam7_real_t t356 = parameters[ZZ5] - t306;
-    const wam7_real_t t357 = t52 * parameters[YZ5] - t36 * t356 + (t289 - t355);
-    const wam7_real_t t358 = t52 * parameters[XZ5] - t35 * t356 + (t56 * t312 - t39 * t309);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t359 = t33 * t357 + t34 * t358 + (WAM7_C(-0.3) * t322 + t342 * t335);
-    const wam7_real_t t360 = WAM7_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const wam7_real_t t361 = parameters[YY4] - t360;
-    const wam7_real_t t362 = t359 - (t44 * parameters[YZ4] + t29 * t361);
-    /* link j6: inertia, momentum beyond */
-    const wam7_real_t t363 = t35 * parameters[XY5] - t36 * t313 + (t293 + t355);
-    const wam7_real_t t364 = t39 * t304 + t56 * t305 - (t36 * parameters[XY5] + t35 * t307);
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t365 = t33 * t363 - t34 * t364 + (WAM7_C(0.045) * t337 + t334 * t343);
-    const wam7_real_t t366 = t360 - parameters[XX4];
-    const wam7_real_t t367 = t28 * parameters[XZ4] + t29 * t366 + t365;
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t368 = t13 * (t351 + t354) + t26 * (t362 - t367);
-    const wam7_real_t t369 = t13 * t368;
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t370 = t44 * parameters[MZ4] + t29 * parameters[MY4] + (t322 - t332 * t335);
-    const wam7_real_t t371 = t28 * parameters[MZ4] - t29 * parameters[MX4] + (t337 + t332 * t343);
-    const wam7_real_t t372 = t26 * t371 - t13 * t370; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t373 = WAM7_C(0.045) * t372;
-    const wam7_real_t t374 = parameters[MZ4] + t345; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t375 = WAM7_C(0.045) * t22; /* link j4: velocity of its origin */
-    const wam7_real_t t376 = t374 * t375; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t377 = parameters[MX4] - t334; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t378 = parameters[MY4] - t342;
-    const wam7_real_t t379 = t13 * t378 + t26 * t377; /* link j4: column of the mass matrix */
-    const wam7_real_t t380 = WAM7_C(-0.045) * t5; /* link j4: velocity of its origin */
-    const wam7_real_t t381 = t379 * t380; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t382 = t373 + (t376 - t381);
-    const wam7_real_t t383 = t5 * parameters[XZ3];
-    const wam7_real_t t384 = t22 * parameters[XY3];
-    const wam7_real_t t385 = t383 - t384 + (t382 + (t354 - t369 - t373));
-    /* link j5: inertia, momentum beyond */
-    const wam7_real_t t386 = t349 + t353 + (t348 + (t298 + t316 - t347));
-    const wam7_real_t t387 = t4 * parameters[YZ3];
-    const wam7_real_t t388 = t384 - t387 + (t382 + (t386 - t376)); /* link j4: inertia, momentum beyond */
-    const wam7_real_t t389 = t34 * t315; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t390 = t360 - parameters[ZZ4];
-    const wam7_real_t t391 = t29 * parameters[YZ4] - t44 * t390 + (t389 - t308 + t345 * t335);
-    const wam7_real_t t392 = t34 * t363 + t33 * t364 - t345 * t343 - (t29 * parameters[XZ4] + t28 * t390);
-    const wam7_real_t t393 = WAM7_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const wam7_real_t t394 = t393 - parameters[YY3];
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t395 = t5 * parameters[YZ3] + t22 * t394 - (t13 * t391 - t26 * t392);
-    const wam7_real_t t396 = t34 * t319 - t33 * t321; /* link j5: inertia, momentum beyond */
-    const wam7_real_t t397 = t28 * parameters[XY4] - t44 * t366 + (t314 - t389 + (WAM7_C(-0.045) * t396
-        + t334 * t346));
-    const wam7_real_t t398 = t33 * t358 - t34 * t357 + (WAM7_C(0.3) * t396 - t342 * t346);
-    const wam7_real_t t399 = t398 - (t44 * parameters[XY4] + t28 * t361);
-    const wam7_real_t t400 = t396 - t332 * t346 - (t28 * parameters[MY4] + t44 * parameters[MX4]);
-    const wam7_real_t t401 = t13 * t377 - t26 * t378; /* link j4: column of the mass matrix */
-    const wam7_real_t t402 = parameters[M4] + t332; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t403 = WAM7_C(0.045) * t402; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t404 = t401 + t403;
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t405 = t13 * t397 + t26 * t399 + (WAM7_C(0.045) * t400 - t404 * t375);
-    const wam7_real_t t406 = parameters[XX3] - t393;
-    const wam7_real_t t407 = t22 * t406 - t4 * parameters[XZ3] + t405;
-    const wam7_real_t t408 = t2 * (t388 - t385) + t3 * (t395 + t407); /* link j3: inertia, momentum beyond */
-    const wam7_real_t t409 = t2 * t408;
-    const wam7_real_t t410 = parameters[MY3] + t374; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t411 = parameters[MX3] + t404;
-    const wam7_real_t t412 = t2 * t411 - t3 * t410; /* link j3: column of the mass matrix */
-    const wam7_real_t t413 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
-    const wam7_real_t t414 = t412 * t413; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t415 = t26 * t370 + t13 * t371; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t416 = t4 * parameters[MY3] - t5 * parameters[MX3] + (t415 + t402 * t380);
-    const wam7_real_t t417 = WAM7_C(-0.55) * t416; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t418 = t2 * t410 + t3 * t411; /* link j3: column of the mass matrix */
-    const wam7_real_t t419 = WAM7_C(-0.55) * t1; /* link j3: velocity of its origin */
-    const wam7_real_t t420 = t418 * t419; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t421 = t414 - t420 - t417;
-    const wam7_real_t t422 = t14 * parameters[XZ2];
-    const wam7_real_t t423 = dq[1] * parameters[XY2];
-    const wam7_real_t t424 = t421 + (t388 - t409 - t414) - (t422 + t423);
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t425 = t387 - t383 + (t382 + (t369 - t351 + t381));
-    const wam7_real_t t426 = t1 * parameters[YZ2];
-    const wam7_real_t t427 = t423 + t426 + (t421 + (t425 + t417)); /* link j3: inertia, momentum beyond */
-    const wam7_real_t t428 = t26 * t368; /* link j4: inertia, momentum beyond */
-    const wam7_real_t t429 = parameters[ZZ3] - t393;
-    const wam7_real_t t430 = t22 * parameters[YZ3] - t5 * t429 + (t362 - t428);
-    const wam7_real_t t431 = t22 * parameters[XZ3] - t4 * t429 + (t13 * t399 - t26 * t397 + t379 * t375);
-    const wam7_real_t t432 = t5 * parameters[MZ3] - t22 * parameters[MY3] + t372;
-    const wam7_real_t t433 = t4 * parameters[MZ3] - t22 * parameters[MX3] + (t400 - t402 * t375);
-    const wam7_real_t t434 = parameters[MZ3] - t379; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t435 = parameters[M3] + t402;
-    const wam7_real_t t436 = WAM7_C(0.55) * t435; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t437 = t434 + t436;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t438 = WAM7_C(0.55) * (t2 * t432 + t3 * t433) + t437 * t413;
-    const wam7_real_t t439 = WAM7_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const wam7_real_t t440 = t439 - parameters[YY2];
-    const wam7_real_t t441 = dq[1] * t440 - t14 * parameters[YZ2] + (t2 * t430 + t3 * t431 + t438);
-    /* link j4: inertia, momentum beyond */
-    const wam7_real_t t442 = t4 * parameters[XY3] - t5 * t406 + (t367 + t428 + (WAM7_C(-0.045) * t415
-        - t404 * t380));
-    const wam7_real_t t443 = t26 * t391 + t13 * t392 - t374 * t380 - (t5 * parameters[XY3] + t4 * t394);
-    const wam7_real_t t444 = parameters[XX2] - t439;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t445 = t1 * parameters[XZ2] + dq[1] * t444 + (t3 * t443 - t2 * t442);
-    /* link j2: inertia, momentum beyond */
-    const wam7_real_t t446 = t7 * (t7 * (t427 - t424) + t0 * (t441 + t445));
-    input_by_dq[0] = WAM7_C(91.90371991247264) * parameters[FV1] + WAM7_C(0.10419922892570596) * (t424
-        + t446);
-    const wam7_real_t t447 = t3 * t408; /* link j3: inertia, momentum beyond */
-    const wam7_real_t t448 = t1 * parameters[XY2] - t14 * t444 + (t447 - t407 - t412 * t419);
-    const wam7_real_t t449 = WAM7_C(2.0) * t448; /* link j2: derivatives */
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t450 = WAM7_C(0.55) * (t3 * t432 - t2 * t433) - t437 * t419;
-    const wam7_real_t t451 = t14 * parameters[XY2] + t1 * t440 + (t3 * t430 - t2 * t431 + t450);
-    const wam7_real_t t452 = WAM7_C(2.0) * t451; /* link j2: derivatives */
-    input_by_dq[7] = WAM7_C(0.07745783389167521) * (t0 * t449 - t7 * t452);
-    const wam7_real_t t453 = WAM7_C(2.0) * t442; /* link j3: derivatives */
-    const wam7_real_t t454 = WAM7_C(2.0) * t443;
-    const wam7_real_t t455 = t3 * t454 - t2 * t453;
-    const wam7_real_t t456 = WAM7_C(2.0) * t425;
-    const wam7_real_t t457 = WAM7_C(-1.1) * t1; /* link j7: derivatives */
-    const wam7_real_t t458 = WAM7_C(-1.1) * dq[1];
-    const wam7_real_t t459 = t418 * t457 + t412 * t458 - t456; /* link j3: derivatives */
-    input_by_dq[14] = WAM7_C(0.07745783389167521) * (t0 * t455 - t7 * t459);
-    const wam7_real_t t460 = WAM7_C(2.0) * t397; /* link j4: derivatives */
-    const wam7_real_t t461 = WAM7_C(2.0) * t399;
-    const wam7_real_t t462 = WAM7_C(0.09) * t22; /* link j7: derivatives */
-    const wam7_real_t t463 = t13 * t460 + t26 * t461 - t401 * t462; /* link j4: derivatives */
-    const wam7_real_t t464 = WAM7_C(2.0) * t386;
-    const wam7_real_t t465 = WAM7_C(0.09) * t5; /* link j7: derivatives */
-    const wam7_real_t t466 = t464 + t379 * t465; /* link j4: derivatives */
-    const wam7_real_t t467 = t3 * t466 - t2 * t463 - t401 * t457;
-    const wam7_real_t t468 = t13 * t461 - t26 * t460 + t379 * t462;
-    const wam7_real_t t469 = t2 * t379; /* link j4: column of the mass matrix */
-    const wam7_real_t t470 = t3 * t379;
-    const wam7_real_t t471 = t468 + (t470 * t458 - t469 * t457); /* link j4: derivatives */
-    input_by_dq[21] = WAM7_C(0.12156576707999026) * (t0 * t467 + t7 * t471);
-    const wam7_real_t t472 = WAM7_C(2.0) * t363; /* link j5: derivatives */
-    const wam7_real_t t473 = WAM7_C(2.0) * t364;
-    const wam7_real_t t474 = WAM7_C(0.09) * t29; /* link j7: derivatives */
-    const wam7_real_t t475 = t33 * t472 - t34 * t473 - t330 * t474; /* link j5: derivatives */
-    const wam7_real_t t476 = WAM7_C(2.0) * t352;
-    const wam7_real_t t477 = WAM7_C(2.0) * t346; /* link j7: derivatives */
-    const wam7_real_t t478 = WAM7_C(-0.6) * t29;
-    const wam7_real_t t479 = t476 + (t345 * t477 - t330 * t478); /* link j5: derivatives */
-    const wam7_real_t t480 = t26 * t345; /* link j5: column of the mass matrix */
-    const wam7_real_t t481 = t13 * t475 + t26 * t479 + (t480 * t462 + t330 * t465); /* link j5: derivatives */
-    const wam7_real_t t482 = t34 * t472 + t33 * t473 - t345 * t474;
-    const wam7_real_t t483 = t13 * t345; /* link j5: column of the mass matrix */
-    const wam7_real_t t484 = t482 + t483 * t465; /* link j5: derivatives */
-    const wam7_real_t t485 = t3 * t484 - t2 * t481 + t480 * t457;
-    const wam7_real_t t486 = t13 * t479 - t26 * t475 + t483 * t462;
-    const wam7_real_t t487 = t2 * t483 + t3 * t330; /* link j5: column of the mass matrix */
-    const wam7_real_t t488 = t2 * t330 - t3 * t483;
-    const wam7_real_t t489 = t486 - (t487 * t457 + t488 * t458); /* link j5: derivatives */
-    input_by_dq[28] = WAM7_C(0.4469713223199599) * (t0 * t485 + t7 * t489);
-    const wam7_real_t t490 = WAM7_C(2.0) * t309; /* link j6: derivatives */
-    const wam7_real_t t491 = WAM7_C(2.0) * t312;
-    const wam7_real_t t492 = t56 * t490 + t39 * t491;
-    const wam7_real_t t493 = WAM7_C(2.0) * t299;
-    const wam7_real_t t494 = t34 * t339; /* link j6: column of the mass matrix */
-    const wam7_real_t t495 = t33 * t492 - t34 * t493 - (t494 * t474 + t328 * t477); /* link j6: derivatives */
-    const wam7_real_t t496 = t56 * t491 - t39 * t490;
-    const wam7_real_t t497 = t33 * t339; /* link j6: column of the mass matrix */
-    const wam7_real_t t498 = t496 - (t497 * t477 + t494 * t478); /* link j6: derivatives */
-    const wam7_real_t t499 = t26 * t497 + t13 * t328; /* link j6: column of the mass matrix */
-    const wam7_real_t t500 = t13 * t495 + t26 * t498 + (t494 * t465 - t499 * t462); /* link j6: derivatives */
-    const wam7_real_t t501 = t34 * t492 + t33 * t493 + (t497 * t474 - t328 * t478);
-    const wam7_real_t t502 = t26 * t328 - t13 * t497; /* link j6: column of the mass matrix */
-    const wam7_real_t t503 = t501 + t502 * t465; /* link j6: derivatives */
-    const wam7_real_t t504 = t3 * t503 - t2 * t500 - t499 * t457;
-    const wam7_real_t t505 = t13 * t498 - t26 * t495 + t502 * t462;
-    const wam7_real_t t506 = t2 * t502 + t3 * t494; /* link j6: column of the mass matrix */
-    const wam7_real_t t507 = t2 * t494 - t3 * t502;
-    const wam7_real_t t508 = t505 - (t506 * t457 + t507 * t458); /* link j6: derivatives */
-    input_by_dq[35] = WAM7_C(0.4469713223199599) * (t0 * t504 + t7 * t508);
-    const wam7_real_t t509 = WAM7_C(2.0) * t290; /* link j7: derivatives */
-    const wam7_real_t t510 = WAM7_C(-2.0) * t291;
-    const wam7_real_t t511 = t63 * t509 - t71 * t510;
-    const wam7_real_t t512 = WAM7_C(2.0) * t275;
-    const wam7_real_t t513 = t512 + (t269 * (WAM7_C(0.12) * t68) - t264 * (WAM7_C(-0.12) * t59));
-    const wam7_real_t t514 = t56 * t511 + t39 * t513;
-    const wam7_real_t t515 = t71 * t509 + t63 * t510;
-    const wam7_real_t t516 = t56 * t269; /* link j7: column of the mass matrix */
-    const wam7_real_t t517 = t33 * t264 - t34 * t516;
-    const wam7_real_t t518 = t39 * t269;
-    const wam7_real_t t519 = t33 * t514 - t34 * t515 + (t518 * t477 - t517 * t474); /* link j7: derivatives */
-    const wam7_real_t t520 = t56 * t513 - t39 * t511;
-    const wam7_real_t t521 = t33 * t516 + t34 * t264; /* link j7: column of the mass matrix */
-    const wam7_real_t t522 = t520 + (t521 * t477 - t517 * t478); /* link j7: derivatives */
-    const wam7_real_t t523 = t26 * t521 + t13 * t518; /* link j7: column of the mass matrix */
-    const wam7_real_t t524 = t13 * t519 + t26 * t522 + (t523 * t462 + t517 * t465); /* link j7: derivatives */
-    const wam7_real_t t525 = t34 * t514 + t33 * t515 + (t518 * t478 - t521 * t474);
-    const wam7_real_t t526 = t13 * t521 - t26 * t518; /* link j7: column of the mass matrix */
-    const wam7_real_t t527 = t525 + t526 * t465; /* link j7: derivatives */
-    const wam7_real_t t528 = t3 * t527 - t2 * t524 + t523 * t457;
-    const wam7_real_t t529 = t13 * t522 - t26 * t519 + t526 * t462;
-    const wam7_real_t t530 = t2 * t526 + t3 * t517; /* link j7: column of the mass matrix */
-    const wam7_real_t t531 = t2 * t517 - t3 * t526;
-    const wam7_real_t t532 = t529 - (t530 * t457 + t531 * t458); /* link j7: derivatives */
-    input_by_dq[42] = WAM7_C(0.9996900960702182) * (t0 * t528 + t7 * t532);
-    /* link j7: inertia of it and all beyond */
-    const wam7_real_t t533 = t63 * t155 + parameters[XY7] * (WAM7_C(-2.0) * t71);
-    const wam7_real_t t534 = t63 * t533;
-    const wam7_real_t t535 = WAM7_C(0.06) * (WAM7_C(-2.0) * parameters[MZ7] - t284);
-    const wam7_real_t t536 = t535 - (parameters[YY7] + t534) - parameters[XX6];
-    const wam7_real_t t537 = parameters[YY6] + parameters[ZZ7];
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t538 = t63 * parameters[XZ7] - t71 * parameters[YZ7] + WAM7_C(-0.06) * t264;
-    const wam7_real_t t539 = t538 - parameters[XY6]; /* link j7: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const wam7_real_t t540 = t539 * (WAM7_C(2.0) * t39) - t56 * (t536 + t537);
-    const wam7_real_t t541 = t56 * t540;
-    const wam7_real_t t542 = parameters[XX5] + (t537 + t541);
-    /* link j7: inertia of it and all beyond */
-    const wam7_real_t t543 = t534 - parameters[XX7] + t535 - parameters[ZZ6];
-    const wam7_real_t t544 = t543 - parameters[YY5]; /* link j6: inertia of it and all beyond */
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t545 = WAM7_C(0.06) * t269 - (t71 * parameters[XZ7] + t63 * parameters[YZ7]);
-    const wam7_real_t t546 = parameters[YZ6] + t545; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t547 = parameters[XZ6] + (parameters[XY7] + t71 * t533);
-    const wam7_real_t t548 = t56 * t547 - t39 * t546; /* link j6: column of the mass matrix */
-    const wam7_real_t t549 = parameters[XY5] + t548; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t550 = t33 * (t542 + t544) - t549 * (WAM7_C(2.0) * t34);
-    const wam7_real_t t551 = t33 * t550;
-    const wam7_real_t t552 = WAM7_C(0.3) * (t341 + WAM7_C(2.0) * t340);
-    const wam7_real_t t553 = t544 - t551 - t552 - parameters[XX4];
-    const wam7_real_t t554 = t536 + t541 - parameters[ZZ5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t555 = WAM7_C(0.045) * (t333 + WAM7_C(-2.0) * t330);
-    const wam7_real_t t556 = t554 - t555 - parameters[YY4];
-    /* link j6: inertia of it and all beyond */
-    const wam7_real_t t557 = parameters[XZ5] + (t539 - t39 * t540);
-    const wam7_real_t t558 = t39 * t547 + t56 * t546; /* link j6: column of the mass matrix */
-    const wam7_real_t t559 = parameters[YZ5] - t558; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t560 = t33 * t557 - t34 * t559; /* link j5: column of the mass matrix */
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t561 = t560 + (WAM7_C(0.045) * t340 + WAM7_C(0.3) * t334) - parameters[XY4];
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t562 = t13 * (t556 - t553) + t561 * (WAM7_C(2.0) * t26);
-    const wam7_real_t t563 = t13 * t562;
-    const wam7_real_t t564 = parameters[XX3] + (t563 - t556);
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t565 = parameters[ZZ4] + (t542 - t551 + (t555 + t552));
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t566 = WAM7_C(0.045) * (t403 - WAM7_C(-2.0) * t401);
-    const wam7_real_t t567 = parameters[YY3] + (t565 + t566);
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t568 = parameters[XZ4] + (t549 + t34 * t550 + WAM7_C(0.045) * t345);
-    /* link j5: column of the mass matrix */
-    const wam7_real_t t569 = t34 * t557 + t33 * t559 + WAM7_C(-0.3) * t345;
-    const wam7_real_t t570 = parameters[YZ4] - t569; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t571 = t13 * t568 - t26 * t570; /* link j4: column of the mass matrix */
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t572 = parameters[XY3] + (t571 - WAM7_C(0.045) * t374);
-    /* link j3: inertia of it and all beyond */
-    const wam7_real_t t573 = t2 * (t564 - t567) - t572 * (WAM7_C(2.0) * t3);
-    const wam7_real_t t574 = t2 * t573;
-    const wam7_real_t t575 = WAM7_C(0.55) * (t436 + WAM7_C(2.0) * t434);
-    const wam7_real_t t576 = parameters[XX2] + (t567 + t574 + t575);
-    const wam7_real_t t577 = t553 + t563 - t566 - parameters[ZZ3]; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t578 = parameters[YY2] - t577; /* link j3: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t579 = parameters[XZ3] + (t561 - t26 * t562 + WAM7_C(0.045) * t379);
-    const wam7_real_t t580 = t26 * t568 + t13 * t570; /* link j4: column of the mass matrix */
-    const wam7_real_t t581 = parameters[YZ3] - t580; /* link j4: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const wam7_real_t t582 = t3 * t581 - t2 * t579 + WAM7_C(0.55) * t412;
-    const wam7_real_t t583 = parameters[XY2] + t582; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia of it and all beyond */
-    const wam7_real_t t584 = t7 * (t7 * (t578 - t576) + t583 * (WAM7_C(2.0) * t0));
-    input_by_ddq[0] = WAM7_C(91.90371991247264) * parameters[IA1]
-        + WAM7_C(0.05209961446285298) * (parameters[ZZ1] + (t576 + t584));
-    const wam7_real_t t585 = parameters[XZ2] + (t572 + t3 * t573); /* link j3: inertia of it and all beyond */
-    /* link j3: column of the mass matrix */
-    const wam7_real_t t586 = WAM7_C(0.55) * t418 - (t3 * t579 + t2 * t581);
-    const wam7_real_t t587 = parameters[YZ2] + t586; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t588 = t0 * t585 + t7 * t587; /* link j2: column of the mass matrix */
-    input_by_ddq[7] = WAM7_C(-0.07745783389167521) * t588;
-    const wam7_real_t t589 = t0 * t582 - t7 * t577; /* link j3: column of the mass matrix */
-    input_by_ddq[14] = WAM7_C(0.07745783389167521) * t589;
-    const wam7_real_t t590 = t565 + WAM7_C(0.045) * t401; /* link j4: column of the mass matrix */
-    const wam7_real_t t591 = t3 * t590 - t2 * t571 + WAM7_C(-0.55) * t470;
-    const wam7_real_t t592 = t0 * t591 - t7 * t580;
-    input_by_ddq[21] = WAM7_C(0.12156576707999026) * t592;
-    const wam7_real_t t593 = t560 + WAM7_C(-0.3) * t330; /* link j5: column of the mass matrix */
-    const wam7_real_t t594 = WAM7_C(0.045) * t330;
-    const wam7_real_t t595 = t554 + t594;
-    const wam7_real_t t596 = t13 * t593 - t26 * t595;
-    const wam7_real_t t597 = t569 + WAM7_C(-0.045) * t480;
-    const wam7_real_t t598 = t3 * t597 - t2 * t596 + WAM7_C(0.55) * t488;
-    const wam7_real_t t599 = t26 * t593 + t13 * t595 - t594;
-    const wam7_real_t t600 = t0 * t598 - t7 * t599;
-    input_by_ddq[28] = WAM7_C(0.4469713223199599) * t600;
-    /* link j6: column of the mass matrix */
-    const wam7_real_t t601 = t33 * t548 + t34 * t543 + WAM7_C(-0.3) * t494;
-    const wam7_real_t t602 = WAM7_C(0.045) * t494;
-    const wam7_real_t t603 = t558 + t602;
-    const wam7_real_t t604 = t13 * t601 - t26 * t603;
-    const wam7_real_t t605 = t34 * t548 - t33 * t543 + (WAM7_C(-0.045) * t328 + WAM7_C(0.3) * t497);
-    const wam7_real_t t606 = t605 + WAM7_C(0.045) * t499;
-    const wam7_real_t t607 = t3 * t606 - t2 * t604 + WAM7_C(0.55) * t507;
-    const wam7_real_t t608 = t26 * t601 + t13 * t603 - t602;
-    const wam7_real_t t609 = t0 * t607 - t7 * t608;
-    input_by_ddq[35] = WAM7_C(0.4469713223199599) * t609;
-    const wam7_real_t t610 = t56 * t538 + t39 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t611 = t33 * t610 + t34 * t545 + WAM7_C(-0.3) * t517;
-    const wam7_real_t t612 = t39 * t538 - t56 * parameters[ZZ7];
-    const wam7_real_t t613 = WAM7_C(0.045) * t517;
-    const wam7_real_t t614 = t612 + t613;
-    const wam7_real_t t615 = t13 * t611 - t26 * t614;
-    const wam7_real_t t616 = t34 * t610 - t33 * t545 + (WAM7_C(0.045) * t518 + WAM7_C(-0.3) * t521);
-    const wam7_real_t t617 = t616 + WAM7_C(-0.045) * t523;
-    const wam7_real_t t618 = t3 * t617 - t2 * t615 + WAM7_C(0.55) * t531;
-    const wam7_real_t t619 = t26 * t611 + t13 * t614 - t613;
-    const wam7_real_t t620 = t0 * t618 - t7 * t619;
-    input_by_ddq[42] = WAM7_C(0.9996900960702182) * t620;
-    const wam7_real_t t621 = WAM7_C(2.0) * t14; /* link j2: derivatives */
-    const wam7_real_t t622 = WAM7_C(-2.0) * t1;
-    const wam7_real_t t623 = t103 + t224; /* link j3: motion */
-    /* link j2: derivatives */
-    const wam7_real_t t624 = t424 * t621 + t441 * t622 + (t8 * t576 - t17 * t583 + t623 * t585);
-    const wam7_real_t t625 = parameters[MZ2] + t418; /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const wam7_real_t t626 = t445 * t621 + t427 * t622 + (t8 * t583 - t17 * t578 + t623 * t587);
-    const wam7_real_t t627 = t0 * (t232 + (t624 - t94 * t625)) + t7 * (t226 + (t626 + t105 * t625));
-    input_by_q[1] = WAM7_C(0.05209961446285298) * t627;
-    /* link j3: inertia of it and all beyond */
-    const wam7_real_t t628 = parameters[ZZ2] + (t564 - t574 + t575);
-    /* link j2: derivatives */
-    const wam7_real_t t629 = t17 * t587 - t8 * t585 - t623 * t628 + (t14 * t449 + t1 * t452);
-    const wam7_real_t t630 = t105 * (parameters[MY2] - t437) - t94 * (parameters[MX2] + t412) + t629;
-    input_by_q[8] = WAM7_C(0.07745783389167521) * t630;
-    /* link j3: derivatives */
-    const wam7_real_t t631 = t14 * t455 + t1 * t459 + (t8 * t582 + t17 * t577 + t623 * t586);
-    input_by_q[15] = WAM7_C(0.07745783389167521) * (t631 + t105 * t418);
-    /* link j4: column of the mass matrix */
-    const wam7_real_t t632 = t3 * t571 + t2 * t590 + WAM7_C(-0.55) * t469;
-    /* link j4: derivatives */
-    const wam7_real_t t633 = t14 * t467 - t1 * t471 + (t8 * t591 + t17 * t580 - t623 * t632);
-    input_by_q[22] = WAM7_C(0.12156576707999026) * (t633 + (t105 * t469 - t94 * t401));
-    /* link j5: column of the mass matrix */
-    const wam7_real_t t634 = t3 * t596 + t2 * t597 + WAM7_C(-0.55) * t487;
-    /* link j5: derivatives */
-    const wam7_real_t t635 = t14 * t485 - t1 * t489 + (t8 * t598 + t17 * t599 - t623 * t634);
-    input_by_q[29] = WAM7_C(0.4469713223199599) * (t635 + (t105 * t487 + t94 * t480));
-    /* link j6: column of the mass matrix */
-    const wam7_real_t t636 = t3 * t604 + t2 * t606 + WAM7_C(-0.55) * t506;
-    /* link j6: derivatives */
-    const wam7_real_t t637 = t14 * t504 - t1 * t508 + (t8 * t607 + t17 * t608 - t623 * t636);
-    input_by_q[36] = WAM7_C(0.4469713223199599) * (t637 + (t105 * t506 - t94 * t499));
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t638 = t3 * t615 + t2 * t617 + WAM7_C(-0.55) * t530;
-    /* link j7: derivatives */
-    const wam7_real_t t639 = t14 * t528 - t1 * t532 + (t8 * t618 + t17 * t619 - t623 * t638);
-    input_by_q[43] = WAM7_C(0.9996900960702182) * (t639 + (t105 * t530 + t94 * t523));
-    const wam7_real_t t640 = parameters[ZZ2] - t439;
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t641 = dq[1] * parameters[YZ2] + t14 * t640 + (t447 - t395 + t418 * t413);
-    /* link j2: derivatives */
-    const wam7_real_t t642 = t0 * (WAM7_C(2.0) * t641 + (t576 * t621 + t583 * t622));
-    /* link j3: inertia, momentum beyond */
-    const wam7_real_t t643 = t3 * t442 + t2 * t443 - (dq[1] * parameters[XZ2] + t1 * t640);
-    /* link j2: derivatives */
-    const wam7_real_t t644 = t7 * (WAM7_C(2.0) * t643 + (t583 * t621 + t578 * t622));
-    input_by_dq[1] = WAM7_C(0.05209961446285298) * (t642 + t644);
-    const wam7_real_t t645 = WAM7_C(2.0) * (t422 - t426 + (t421 + (t385 + t409 + t420)));
-    const wam7_real_t t646 = WAM7_C(0.07745783389167521) * (t645 + WAM7_C(2.0) * (t1 * t587 - t14 * t585));
-    input_by_dq[8] = WAM7_C(61.81619256017505) * parameters[FV2] + t646;
-    /* link j3: derivatives */
-    const wam7_real_t t647 = t3 * t453 + t2 * t454 + WAM7_C(2.0) * (t14 * t582 + t1 * t577);
-    input_by_dq[15] = WAM7_C(0.07745783389167521) * t647;
-    /* link j4: derivatives */
-    const wam7_real_t t648 = t3 * t463 + t2 * t466 - t401 * t458 + WAM7_C(2.0) * (t14 * t591 + t1 * t580);
-    input_by_dq[22] = WAM7_C(0.12156576707999026) * t648;
-    /* link j5: derivatives */
-    const wam7_real_t t649 = t3 * t481 + t2 * t484 + t480 * t458 + WAM7_C(2.0) * (t14 * t598 + t1 * t599);
-    input_by_dq[29] = WAM7_C(0.4469713223199599) * t649;
-    /* link j6: derivatives */
-    const wam7_real_t t650 = t3 * t500 + t2 * t503 - t499 * t458 + WAM7_C(2.0) * (t14 * t607 + t1 * t608);
-    input_by_dq[36] = WAM7_C(0.4469713223199599) * t650;
-    /* link j7: derivatives */
-    const wam7_real_t t651 = t3 * t524 + t2 * t527 + t523 * t458 + WAM7_C(2.0) * (t14 * t618 + t1 * t619);
-    input_by_dq[43] = WAM7_C(0.9996900960702182) * t651;
-    input_by_ddq[1] = WAM7_C(-0.05209961446285298) * t588;
-    input_by_ddq[8] = WAM7_C(61.81619256017505) * parameters[IA2] + WAM7_C(0.07745783389167521) * t628;
-    const wam7_real_t t652 = WAM7_C(-0.07745783389167521) * t586;
-    input_by_ddq[15] = t652;
-    input_by_ddq[22] = WAM7_C(0.12156576707999026) * t632;
-    input_by_ddq[29] = WAM7_C(0.4469713223199599) * t634;
-    input_by_ddq[36] = WAM7_C(0.4469713223199599) * t636;
-    input_by_ddq[43] = WAM7_C(0.9996900960702182) * t638;
-    const wam7_real_t t653 = WAM7_C(2.0) * t5; /* link j3: derivatives */
-    const wam7_real_t t654 = WAM7_C(-2.0) * t4;
-    const wam7_real_t t655 = t212 + t98; /* link j4: motion */
-    /* link j3: derivatives */
-    const wam7_real_t t656 = t407 * t653 + t388 * t654 + (t40 * t572 + t21 * t567 - t655 * t581);
-    const wam7_real_t t657 = t198 + (t656 - t111 * t434);
-    const wam7_real_t t658 = t385 * t653 + t395 * t654 + (t40 * t564 + t21 * t572 - t655 * t579);
-    const wam7_real_t t659 = t658 + t97 * t434 - t214;
-    const wam7_real_t t660 = t416 * t654 - t111 * t435 + (t21 * t434 + t655 * t410);
-    const wam7_real_t t661 = t221 + t660;
-    const wam7_real_t t662 = t416 * t653 + t97 * t435 + (t655 * t411 + t40 * t434);
-    const wam7_real_t t663 = t662 - t216;
-    const wam7_real_t t664 = t3 * t657 - t2 * t659 + WAM7_C(0.55) * (t3 * t661 - t2 * t663);
-    const wam7_real_t t665 = t40 * t579 + t21 * t581 + t655 * t577;
-    const wam7_real_t t666 = t111 * t410 - t97 * t411;
-    const wam7_real_t t667 = t7 * (t442 * t653 + t443 * t654 + t665 + t666);
-    input_by_q[2] = WAM7_C(0.05209961446285298) * (t0 * t664 + t667);
-    const wam7_real_t t668 = t3 * t659 + t2 * t657 + WAM7_C(0.55) * (t2 * t661 + t3 * t663);
-    input_by_q[9] = WAM7_C(0.07745783389167521) * t668;
-    const wam7_real_t t669 = WAM7_C(0.07745783389167521) * (t666 + (t665 + (t5 * t453 - t4 * t454)));
-    input_by_q[16] = t669;
-    /* link j4: derivatives */
-    const wam7_real_t t670 = t5 * t463 - t4 * t466 + (t40 * t571 + t21 * t590 + t655 * t580);
-    input_by_q[23] = WAM7_C(0.12156576707999026) * (t670 + t111 * t379);
-    /* link j5: derivatives */
-    const wam7_real_t t671 = t5 * t481 - t4 * t484 + (t40 * t596 + t21 * t597 + t655 * t599);
-    input_by_q[30] = WAM7_C(0.4469713223199599) * (t671 + (t111 * t483 - t97 * t330));
-    /* link j6: derivatives */
-    const wam7_real_t t672 = t5 * t500 - t4 * t503 + (t40 * t604 + t21 * t606 + t655 * t608);
-    input_by_q[37] = WAM7_C(0.4469713223199599) * (t672 + (t111 * t502 - t97 * t494));
-    /* link j7: derivatives */
-    const wam7_real_t t673 = t5 * t524 - t4 * t527 + (t40 * t615 + t21 * t617 + t655 * t619);
-    input_by_q[44] = WAM7_C(0.9996900960702182) * (t673 + (t111 * t526 - t97 * t517));
-    const wam7_real_t t674 = WAM7_C(2.0) * t430 - (t564 * t653 + t572 * t654); /* link j3: derivatives */
-    const wam7_real_t t675 = WAM7_C(2.0) * t431 + (t572 * t653 + t567 * t654);
-    const wam7_real_t t676 = WAM7_C(2.0) * t432 - t434 * t653;
-    const wam7_real_t t677 = WAM7_C(2.0) * t433 + t434 * t654;
-    const wam7_real_t t678 = t2 * t674 + t3 * t675 + WAM7_C(0.55) * (t3 * t677 + t2 * t676);
-    const wam7_real_t t679 = t0 * t678 + t7 * (t456 + (t579 * t653 + t581 * t654));
-    input_by_dq[2] = WAM7_C(0.05209961446285298) * t679;
-    const wam7_real_t t680 = t2 * t675 - t3 * t674 + WAM7_C(0.55) * (t2 * t677 - t3 * t676);
-    input_by_dq[9] = WAM7_C(0.07745783389167521) * t680;
-    const wam7_real_t t681 = WAM7_C(0.07745783389167521) * (t456 + WAM7_C(2.0) * (t5 * t579 - t4 * t581));
-    input_by_dq[16] = WAM7_C(61.81619256017505) * parameters[FV3] + t681;
-    const wam7_real_t t682 = WAM7_C(0.12156576707999026) * (t468 + WAM7_C(2.0) * (t5 * t571 - t4 * t590));
-    input_by_dq[23] = t682;
-    const wam7_real_t t683 = WAM7_C(0.4469713223199599) * (t486 + WAM7_C(2.0) * (t5 * t596 - t4 * t597));
-    input_by_dq[30] = t683;
-    const wam7_real_t t684 = WAM7_C(0.4469713223199599) * (t505 + WAM7_C(2.0) * (t5 * t604 - t4 * t606));
-    input_by_dq[37] = t684;
-    const wam7_real_t t685 = WAM7_C(0.9996900960702182) * (t529 + WAM7_C(2.0) * (t5 * t615 - t4 * t617));
-    input_by_dq[44] = t685;
-    input_by_ddq[2] = WAM7_C(0.05209961446285298) * t589;
-    input_by_ddq[9] = t652;
-    input_by_ddq[16] = WAM7_C(61.81619256017505) * parameters[IA3] + WAM7_C(-0.07745783389167521) * t577;
-    input_by_ddq[23] = WAM7_C(-0.12156576707999026) * t580;
-    input_by_ddq[30] = WAM7_C(-0.4469713223199599) * t599;
-    input_by_ddq[37] = WAM7_C(-0.4469713223199599) * t608;
-    input_by_ddq[44] = WAM7_C(-0.9996900960702182) * t619;
-    const wam7_real_t t686 = WAM7_C(2.0) * t44; /* link j4: derivatives */
-    const wam7_real_t t687 = WAM7_C(2.0) * t28;
-    const wam7_real_t t688 = t362 * t687 - t351 * t686 + (t27 * t553 - t47 * t561 + t217 * t568);
-    const wam7_real_t t689 = t195 + (t688 - t108 * t374);
-    const wam7_real_t t690 = t354 * t687 - t367 * t686 + (t27 * t561 - t47 * t556 + t217 * t570);
-    const wam7_real_t t691 = t690 + t121 * t374 - t189;
-    const wam7_real_t t692 = t26 * t691 - t13 * t689;
-    const wam7_real_t t693 = t400 * t686 + t108 * t402 + (t217 * t377 + t27 * t374);
-    const wam7_real_t t694 = t693 - t208;
-    const wam7_real_t t695 = t400 * t687 - t121 * t402 + (t217 * t378 - t47 * t374);
-    const wam7_real_t t696 = t210 + t695;
-    const wam7_real_t t697 = t27 * t568 - t47 * t570 - t217 * t565;
-    const wam7_real_t t698 = t121 * t378 - t108 * t377;
-    const wam7_real_t t699 = t399 * t687 - t397 * t686 + t697 + t698 + WAM7_C(0.045) * (t26 * t696
-        - t13 * t694);
-    const wam7_real_t t700 = t13 * t696 + t26 * t694;
-    const wam7_real_t t701 = t371 * t686 - t370 * t687 + (t27 * t378 + t47 * t377);
-    const wam7_real_t t702 = t3 * t699 - t2 * t692 + WAM7_C(0.55) * (t3 * t700 + t2 * t701);
-    const wam7_real_t t703 = t26 * t689 + t13 * t691 + WAM7_C(0.045) * t701;
-    input_by_q[3] = WAM7_C(0.05209961446285298) * (t0 * t702 + t7 * t703);
-    const wam7_real_t t704 = t3 * t692 + t2 * t699 + WAM7_C(0.55) * (t2 * t700 - t3 * t701);
-    input_by_q[10] = WAM7_C(0.07745783389167521) * t704;
-    input_by_q[17] = WAM7_C(0.07745783389167521) * t703;
-    const wam7_real_t t705 = WAM7_C(0.12156576707999026) * (t698 + (t697 + (t28 * t461 - t44 * t460)));
-    input_by_q[24] = t705;
-    /* link j5: derivatives */
-    const wam7_real_t t706 = t28 * t479 - t44 * t475 + (t27 * t593 - t47 * t595 - t217 * t569);
-    input_by_q[31] = WAM7_C(0.4469713223199599) * (t706 + t121 * t345);
-    /* link j6: derivatives */
-    const wam7_real_t t707 = t28 * t498 - t44 * t495 + (t27 * t601 - t47 * t603 - t217 * t605);
-    input_by_q[38] = WAM7_C(0.4469713223199599) * (t707 - (t121 * t497 + t108 * t328));
-    /* link j7: derivatives */
-    const wam7_real_t t708 = t28 * t522 - t44 * t519 + (t27 * t611 - t47 * t614 - t217 * t616);
-    input_by_q[45] = WAM7_C(0.9996900960702182) * (t708 + (t121 * t521 + t108 * t518));
-    const wam7_real_t t709 = WAM7_C(2.0) * t391 - (t553 * t686 + t561 * t687); /* link j4: derivatives */
-    const wam7_real_t t710 = WAM7_C(2.0) * t392 - (t561 * t686 + t556 * t687);
-    const wam7_real_t t711 = t13 * t709 - t26 * t710;
-    const wam7_real_t t712 = WAM7_C(2.0) * t371 - t374 * t687;
-    const wam7_real_t t713 = WAM7_C(-2.0) * t370 + t374 * t686;
-    const wam7_real_t t714 = t464 - (t568 * t686 + t570 * t687) + WAM7_C(0.045) * (t26 * t712 + t13 * t713);
-    const wam7_real_t t715 = t13 * t712 - t26 * t713;
-    const wam7_real_t t716 = t377 * t687 - t378 * t686;
-    const wam7_real_t t717 = t2 * t711 + t3 * t714 + WAM7_C(0.55) * (t3 * t715 + t2 * t716);
-    const wam7_real_t t718 = t26 * t709 + t13 * t710 + WAM7_C(0.045) * t716;
-    input_by_dq[3] = WAM7_C(0.05209961446285298) * (t0 * t717 + t7 * t718);
-    const wam7_real_t t719 = t2 * t714 - t3 * t711 + WAM7_C(0.55) * (t2 * t715 - t3 * t716);
-    input_by_dq[10] = WAM7_C(0.07745783389167521) * t719;
-    input_by_dq[17] = WAM7_C(0.07745783389167521) * t718;
-    const wam7_real_t t720 = WAM7_C(0.12156576707999026) * (t464 + WAM7_C(-2.0) * (t44 * t568 + t28 * t570));
-    input_by_dq[24] = WAM7_C(39.387308533916844) * parameters[FV4] + t720;
-    const wam7_real_t t721 = WAM7_C(0.4469713223199599) * (t482 + WAM7_C(-2.0) * (t44 * t593 + t28 * t595));
-    input_by_dq[31] = t721;
-    const wam7_real_t t722 = WAM7_C(0.4469713223199599) * (t501 + WAM7_C(-2.0) * (t44 * t601 + t28 * t603));
-    input_by_dq[38] = t722;
-    const wam7_real_t t723 = WAM7_C(0.9996900960702182) * (t525 + WAM7_C(-2.0) * (t44 * t611 + t28 * t614));
-    input_by_dq[45] = t723;
-    input_by_ddq[3] = WAM7_C(0.05209961446285298) * t592;
-    input_by_ddq[10] = WAM7_C(0.07745783389167521) * t632;
-    input_by_ddq[17] = WAM7_C(-0.07745783389167521) * t580;
-    input_by_ddq[24] = WAM7_C(39.387308533916844) * parameters[IA4] + WAM7_C(0.12156576707999026) * t565;
-    input_by_ddq[31] = WAM7_C(0.4469713223199599) * t569;
-    input_by_ddq[38] = WAM7_C(0.4469713223199599) * t605;
-    input_by_ddq[45] = WAM7_C(0.9996900960702182) * t616;
-    const wam7_real_t t724 = WAM7_C(2.0) * t36; /* link j5: derivatives */
-    const wam7_real_t t725 = WAM7_C(-2.0) * t35;
-    const wam7_real_t t726 = t298 * t724 + t308 * t725 + (t64 * t542 + t51 * t549 - t200 * t557);
-    const wam7_real_t t727 = t726 + t117 * t340 - t173;
-    const wam7_real_t t728 = t314 * t724 + t301 * t725 + (t64 * t549 - t51 * t544 - t200 * t559);
-    const wam7_real_t t729 = t165 + (t728 - t115 * t340);
-    const wam7_real_t t730 = t337 * t725 - t115 * t332 + (t51 * t340 + t200 * t325);
-    const wam7_real_t t731 = t185 + t730;
-    const wam7_real_t t732 = t337 * t724 + t117 * t332 + (t200 * t329 + t64 * t340);
-    const wam7_real_t t733 = t181 + t732;
-    const wam7_real_t t734 = t34 * t731 - t33 * t733;
-    const wam7_real_t t735 = t34 * t729 - t33 * t727 + WAM7_C(0.3) * t734;
-    const wam7_real_t t736 = WAM7_C(-0.045) * t734;
-    const wam7_real_t t737 = t64 * t557 + t51 * t559 + t200 * t554;
-    const wam7_real_t t738 = t115 * t325 - t117 * t329;
-    const wam7_real_t t739 = t363 * t724 + t364 * t725 + t737 + t738 + t736;
-    const wam7_real_t t740 = t26 * t739 - t13 * t735;
-    const wam7_real_t t741 = t33 * t731 + t34 * t733;
-    const wam7_real_t t742 = t321 * t724 + t319 * t725 + (t64 * t325 - t51 * t329);
-    const wam7_real_t t743 = t34 * t727 + t33 * t729 + (WAM7_C(0.045) * t742 + WAM7_C(0.3) * t741);
-    const wam7_real_t t744 = t743 + WAM7_C(0.045) * (t26 * t741 - t13 * t742);
-    const wam7_real_t t745 = t13 * t741 + t26 * t742;
-    const wam7_real_t t746 = t3 * t744 - t2 * t740 + WAM7_C(0.55) * (t3 * t745 + t2 * t734);
-    const wam7_real_t t747 = t26 * t735 + t13 * t739 - t736;
-    input_by_q[4] = WAM7_C(0.05209961446285298) * (t0 * t746 + t7 * t747);
-    const wam7_real_t t748 = t3 * t740 + t2 * t744 + WAM7_C(0.55) * (t2 * t745 - t3 * t734);
-    input_by_q[11] = WAM7_C(0.07745783389167521) * t748;
-    input_by_q[18] = WAM7_C(0.07745783389167521) * t747;
-    input_by_q[25] = WAM7_C(0.12156576707999026) * t743;
-    const wam7_real_t t749 = WAM7_C(0.4469713223199599) * (t738 + (t737 + (t36 * t472 - t35 * t473)));
-    input_by_q[32] = t749;
-    /* link j6: derivatives */
-    const wam7_real_t t750 = t36 * t492 - t35 * t493 + (t64 * t548 - t51 * t543 + t200 * t558);
-    input_by_q[39] = WAM7_C(0.4469713223199599) * (t750 - t115 * t339);
-    /* link j7: derivatives */
-    const wam7_real_t t751 = t36 * t514 - t35 * t515 + (t64 * t610 - t51 * t545 + t200 * t612);
-    input_by_q[46] = WAM7_C(0.9996900960702182) * (t751 + (t115 * t516 - t117 * t264));
-    const wam7_real_t t752 = WAM7_C(2.0) * t357 - (t542 * t724 + t549 * t725); /* link j5: derivatives */
-    const wam7_real_t t753 = WAM7_C(2.0) * t358 + (t549 * t724 - t544 * t725);
-    const wam7_real_t t754 = WAM7_C(-2.0) * t319 - t340 * t724;
-    const wam7_real_t t755 = WAM7_C(-2.0) * t321 + t340 * t725;
-    const wam7_real_t t756 = t34 * t755 + t33 * t754;
-    const wam7_real_t t757 = t33 * t752 + t34 * t753 + WAM7_C(0.3) * t756;
-    const wam7_real_t t758 = WAM7_C(-0.045) * t756;
-    const wam7_real_t t759 = t476 + (t557 * t724 + t559 * t725) + t758;
-    const wam7_real_t t760 = t13 * t757 - t26 * t759;
-    const wam7_real_t t761 = t33 * t755 - t34 * t754;
-    const wam7_real_t t762 = t325 * t724 - t329 * t725;
-    const wam7_real_t t763 = t33 * t753 - t34 * t752 + (WAM7_C(0.045) * t762 + WAM7_C(0.3) * t761);
-    const wam7_real_t t764 = t763 + WAM7_C(0.045) * (t26 * t761 - t13 * t762);
-    const wam7_real_t t765 = t13 * t761 + t26 * t762;
-    const wam7_real_t t766 = t2 * t760 + t3 * t764 + WAM7_C(0.55) * (t3 * t765 + t2 * t756);
-    const wam7_real_t t767 = t26 * t757 + t13 * t759 - t758;
-    input_by_dq[4] = WAM7_C(0.05209961446285298) * (t0 * t766 + t7 * t767);
-    const wam7_real_t t768 = t2 * t764 - t3 * t760 + WAM7_C(0.55) * (t2 * t765 - t3 * t756);
-    input_by_dq[11] = WAM7_C(0.07745783389167521) * t768;
-    input_by_dq[18] = WAM7_C(0.07745783389167521) * t767;
-    input_by_dq[25] = WAM7_C(0.12156576707999026) * t763;
-    const wam7_real_t t769 = WAM7_C(0.4469713223199599) * (t476 + WAM7_C(2.0) * (t36 * t557 - t35 * t559));
-    input_by_dq[32] = WAM7_C(40.16949152542373) * parameters[FV5] + t769;
-    const wam7_real_t t770 = WAM7_C(0.4469713223199599) * (t496 + WAM7_C(2.0) * (t36 * t548 + t35 * t543));
-    input_by_dq[39] = t770;
-    const wam7_real_t t771 = WAM7_C(0.9996900960702182) * (t520 + WAM7_C(2.0) * (t36 * t610 + t35 * t545));
-    input_by_dq[46] = t771;
-    input_by_ddq[4] = WAM7_C(0.05209961446285298) * t600;
-    input_by_ddq[11] = WAM7_C(0.07745783389167521) * t634;
-    input_by_ddq[18] = WAM7_C(-0.07745783389167521) * t599;
-    input_by_ddq[25] = WAM7_C(0.12156576707999026) * t569;
-    input_by_ddq[32] = WAM7_C(40.16949152542373) * parameters[IA5] + WAM7_C(-0.4469713223199599) * t554;
-    const wam7_real_t t772 = WAM7_C(-0.4469713223199599) * t558;
-    input_by_ddq[39] = t772;
-    input_by_ddq[46] = WAM7_C(-0.9996900960702182) * t612;
-    const wam7_real_t t773 = WAM7_C(2.0) * t58; /* link j6: derivatives */
-    const wam7_real_t t774 = WAM7_C(-2.0) * t68;
-    const wam7_real_t t775 = t277 * t774 - t293 * t773 + (t83 * t539 + t57 * t537 + t182 * t546);
-    const wam7_real_t t776 = t775 + t127 * t324 - t152;
-    const wam7_real_t t777 = t289 * t774 - t274 * t773 + (t83 * t536 - t57 * t539 + t182 * t547);
-    const wam7_real_t t778 = t158 + (t777 + t123 * t324);
-    const wam7_real_t t779 = t39 * t776 - t56 * t778;
-    const wam7_real_t t780 = t83 * t547 - t57 * t546 + t182 * t543;
-    const wam7_real_t t781 = t123 * t326 - t127 * t327;
-    const wam7_real_t t782 = t312 * t774 - t309 * t773 + t780 + t781;
-    const wam7_real_t t783 = t182 * t326 + t83 * t324 - (t320 * t773 + t123 * t331);
-    const wam7_real_t t784 = t175 + t783;
-    const wam7_real_t t785 = t320 * t774 + t127 * t331 + (t57 * t324 + t182 * t327);
-    const wam7_real_t t786 = t785 - t179;
-    const wam7_real_t t787 = t39 * t784 - t56 * t786;
-    const wam7_real_t t788 = t318 * t773 + t317 * t774 + (t83 * t327 - t57 * t326);
-    const wam7_real_t t789 = t34 * t787 - t33 * t788;
-    const wam7_real_t t790 = t34 * t782 - t33 * t779 + WAM7_C(0.3) * t789;
-    const wam7_real_t t791 = t39 * t778 + t56 * t776;
-    const wam7_real_t t792 = WAM7_C(-0.045) * t789;
-    const wam7_real_t t793 = t791 + t792;
-    const wam7_real_t t794 = t26 * t793 - t13 * t790;
-    const wam7_real_t t795 = t39 * t786 + t56 * t784;
-    const wam7_real_t t796 = t33 * t787 + t34 * t788;
-    const wam7_real_t t797 = t34 * t779 + t33 * t782 + (WAM7_C(0.045) * t795 + WAM7_C(0.3) * t796);
-    const wam7_real_t t798 = t797 + WAM7_C(0.045) * (t26 * t796 - t13 * t795);
-    const wam7_real_t t799 = t13 * t796 + t26 * t795;
-    const wam7_real_t t800 = t3 * t798 - t2 * t794 + WAM7_C(0.55) * (t3 * t799 + t2 * t789);
-    const wam7_real_t t801 = t26 * t790 + t13 * t793 - t792;
-    input_by_q[5] = WAM7_C(0.05209961446285298) * (t0 * t800 + t7 * t801);
-    const wam7_real_t t802 = t3 * t794 + t2 * t798 + WAM7_C(0.55) * (t2 * t799 - t3 * t789);
-    input_by_q[12] = WAM7_C(0.07745783389167521) * t802;
-    input_by_q[19] = WAM7_C(0.07745783389167521) * t801;
-    input_by_q[26] = WAM7_C(0.12156576707999026) * t797;
-    input_by_q[33] = WAM7_C(0.4469713223199599) * t791;
-    const wam7_real_t t803 = WAM7_C(0.4469713223199599) * (t781 + (t780 - (t58 * t490 + t68 * t491)));
-    input_by_q[40] = t803;
-    /* link j7: derivatives */
-    const wam7_real_t t804 = t83 * t538 + t57 * parameters[ZZ7] + t182 * t545 - (t58 * t511 + t68 * t513);
-    input_by_q[47] = WAM7_C(0.9996900960702182) * (t804 + t127 * t269);
-    const wam7_real_t t805 = WAM7_C(2.0) * t304 - (t536 * t773 + t539 * t774); /* link j6: derivatives */
-    const wam7_real_t t806 = WAM7_C(2.0) * t305 + (t537 * t774 - t539 * t773);
-    const wam7_real_t t807 = t56 * t805 - t39 * t806;
-    const wam7_real_t t808 = t493 - (t547 * t773 + t546 * t774);
-    const wam7_real_t t809 = WAM7_C(2.0) * t318 + t324 * t774;
-    const wam7_real_t t810 = WAM7_C(2.0) * t317 - t324 * t773;
-    const wam7_real_t t811 = t39 * t810 - t56 * t809;
-    const wam7_real_t t812 = t327 * t773 + t326 * t774;
-    const wam7_real_t t813 = t34 * t811 + t33 * t812;
-    const wam7_real_t t814 = t33 * t807 + t34 * t808 + WAM7_C(0.3) * t813;
-    const wam7_real_t t815 = t39 * t805 + t56 * t806;
-    const wam7_real_t t816 = WAM7_C(-0.045) * t813;
-    const wam7_real_t t817 = t815 + t816;
-    const wam7_real_t t818 = t13 * t814 - t26 * t817;
-    const wam7_real_t t819 = t39 * t809 + t56 * t810;
-    const wam7_real_t t820 = t33 * t811 - t34 * t812;
-    const wam7_real_t t821 = t33 * t808 - t34 * t807 + (WAM7_C(0.045) * t819 + WAM7_C(0.3) * t820);
-    const wam7_real_t t822 = t821 + WAM7_C(0.045) * (t26 * t820 - t13 * t819);
-    const wam7_real_t t823 = t13 * t820 + t26 * t819;
-    const wam7_real_t t824 = t2 * t818 + t3 * t822 + WAM7_C(0.55) * (t3 * t823 + t2 * t813);
-    const wam7_real_t t825 = t26 * t814 + t13 * t817 - t816;
-    input_by_dq[5] = WAM7_C(0.05209961446285298) * (t0 * t824 + t7 * t825);
-    const wam7_real_t t826 = t2 * t822 - t3 * t818 + WAM7_C(0.55) * (t2 * t823 - t3 * t813);
-    input_by_dq[12] = WAM7_C(0.07745783389167521) * t826;
-    input_by_dq[19] = WAM7_C(0.07745783389167521) * t825;
-    input_by_dq[26] = WAM7_C(0.12156576707999026) * t821;
-    input_by_dq[33] = WAM7_C(0.4469713223199599) * t815;
-    const wam7_real_t t827 = WAM7_C(0.4469713223199599) * (t493 + WAM7_C(2.0) * (t68 * t546 - t58 * t547));
-    input_by_dq[40] = WAM7_C(40.16949152542373) * parameters[FV6] + t827;
-    const wam7_real_t t828 = WAM7_C(0.9996900960702182) * (t515 + WAM7_C(-2.0) * (t58 * t538
-        + t68 * parameters[ZZ7]));
-    input_by_dq[47] = t828;
-    input_by_ddq[5] = WAM7_C(0.05209961446285298) * t609;
-    input_by_ddq[12] = WAM7_C(0.07745783389167521) * t636;
-    input_by_ddq[19] = WAM7_C(-0.07745783389167521) * t608;
-    input_by_ddq[26] = WAM7_C(0.12156576707999026) * t605;
-    input_by_ddq[33] = t772;
-    input_by_ddq[40] = WAM7_C(40.16949152542373) * parameters[IA6] + WAM7_C(-0.4469713223199599) * t543;
-    input_by_ddq[47] = WAM7_C(-0.9996900960702182) * t545;
-    const wam7_real_t t829 = WAM7_C(2.0) * t73; /* link j7: derivatives */
-    const wam7_real_t t830 = WAM7_C(-2.0) * t78;
-    const wam7_real_t t831 = t253 * t829 + t260 * t830 + (t77 * parameters[XX7] - t72 * parameters[XY7]
+    const wam7_real_t t251 = t137 * parameters[MX7] + t125 * parameters[MY7]; /* link j7: derivatives */
+    const wam7_real_t t252 = t77 * parameters[XZ7] - t72 * parameters[YZ7] - t177 * parameters[ZZ7];
+    const wam7_real_t t253 = WAM7_C(0.5) * (parameters[ZZ7] + (parameters[XX7] + parameters[YY7]));
+    const wam7_real_t t254 = parameters[XX7] - t253;
+    const wam7_real_t t255 = t78 * parameters[XY7] - t73 * t254;
+    const wam7_real_t t256 = WAM7_C(2.0) * t255;
+    const wam7_real_t t257 = t253 - parameters[YY7];
+    const wam7_real_t t258 = t73 * parameters[XY7] + t78 * t257;
+    const wam7_real_t t259 = WAM7_C(-2.0) * t258;
+    const wam7_real_t t260 = WAM7_C(0.9996900960702182) * (t251 + (t252 + (t73 * t256 - t78 * t259)));
+    input_by_q[48] = t260;
+    const wam7_real_t t261 = t73 * parameters[XZ7];
+    const wam7_real_t t262 = t74 * parameters[XY7];
+    const wam7_real_t t263 = t261 - t262;
+    const wam7_real_t t264 = WAM7_C(2.0) * t73;
+    const wam7_real_t t265 = t73 * parameters[YZ7] + t74 * t257;
+    const wam7_real_t t266 = WAM7_C(-2.0) * t78;
+    const wam7_real_t t267 = t263 * t264 + t265 * t266 + (t77 * parameters[XX7] - t72 * parameters[XY7]
         - t177 * parameters[XZ7]);
-    const wam7_real_t t832 = t139 + (t138 - t831);
-    const wam7_real_t t833 = t258 * t829 + t255 * t830 + (t77 * parameters[XY7] - t72 * parameters[YY7]
+    const wam7_real_t t268 = t139 + (t138 - t267);
+    const wam7_real_t t269 = t74 * t254 - t78 * parameters[XZ7];
+    const wam7_real_t t270 = t78 * parameters[YZ7];
+    const wam7_real_t t271 = t262 - t270;
+    const wam7_real_t t272 = t269 * t264 + t271 * t266 + (t77 * parameters[XY7] - t72 * parameters[YY7]
         - t177 * parameters[YZ7]);
-    const wam7_real_t t834 = t132 + (t833 - t126);
-    const wam7_real_t t835 = t145 + (t266 * t830 - t143 + (t177 * parameters[MY7] - t144));
-    const wam7_real_t t836 = t142 - (t140 - t266 * t829 - (t141 + t177 * parameters[MX7]));
-    const wam7_real_t t837 = t71 * t835 - t63 * t836;
-    const wam7_real_t t838 = t63 * t832 + t71 * t834 + WAM7_C(0.06) * t837;
-    const wam7_real_t t839 = t137 * parameters[MX7] + t125 * parameters[MY7];
-    const wam7_real_t t840 = t77 * parameters[XZ7] - t72 * parameters[YZ7] - t177 * parameters[ZZ7];
-    const wam7_real_t t841 = t290 * t829 - t291 * t830 + t840 + t839;
-    const wam7_real_t t842 = t39 * t841 - t56 * t838;
-    const wam7_real_t t843 = t63 * t835 + t71 * t836;
-    const wam7_real_t t844 = t63 * t834 - t71 * t832 + WAM7_C(0.06) * t843;
-    const wam7_real_t t845 = t282 * t829 + t281 * t830 + (t77 * parameters[MY7] + t72 * parameters[MX7]);
-    const wam7_real_t t846 = t56 * t843 + t39 * t845;
-    const wam7_real_t t847 = t34 * t846 + t33 * t837;
-    const wam7_real_t t848 = t34 * t844 - t33 * t842 + WAM7_C(0.3) * t847;
-    const wam7_real_t t849 = t39 * t838 + t56 * t841;
-    const wam7_real_t t850 = WAM7_C(-0.045) * t847;
-    const wam7_real_t t851 = t849 + t850;
-    const wam7_real_t t852 = t26 * t851 - t13 * t848;
-    const wam7_real_t t853 = t33 * t846 - t34 * t837;
-    const wam7_real_t t854 = t56 * t845 - t39 * t843;
-    const wam7_real_t t855 = t34 * t842 + t33 * t844 + (WAM7_C(0.045) * t854 + WAM7_C(0.3) * t853);
-    const wam7_real_t t856 = t855 + WAM7_C(0.045) * (t26 * t853 - t13 * t854);
-    const wam7_real_t t857 = t13 * t853 + t26 * t854;
-    const wam7_real_t t858 = t3 * t856 - t2 * t852 + WAM7_C(0.55) * (t3 * t857 + t2 * t847);
-    const wam7_real_t t859 = t26 * t848 + t13 * t851 - t850;
-    input_by_q[6] = WAM7_C(0.05209961446285298) * (t0 * t858 + t7 * t859);
-    const wam7_real_t t860 = t3 * t852 + t2 * t856 + WAM7_C(0.55) * (t2 * t857 - t3 * t847);
-    input_by_q[13] = WAM7_C(0.07745783389167521) * t860;
-    input_by_q[20] = WAM7_C(0.07745783389167521) * t859;
-    input_by_q[27] = WAM7_C(0.12156576707999026) * t855;
-    input_by_q[34] = WAM7_C(0.4469713223199599) * t849;
-    input_by_q[41] = WAM7_C(0.4469713223199599) * t844;
-    const wam7_real_t t861 = WAM7_C(0.9996900960702182) * (t839 + (t840 + (t73 * t509 - t78 * t510)));
-    input_by_q[48] = t861;
-    const wam7_real_t t862 = WAM7_C(2.0) * t279 - (parameters[XX7] * t829 + parameters[XY7] * t830);
-    const wam7_real_t t863 = WAM7_C(2.0) * t280 + (parameters[XY7] * t829 + parameters[YY7] * t830);
-    const wam7_real_t t864 = WAM7_C(-2.0) * t282 + parameters[MZ7] * t830;
-    const wam7_real_t t865 = WAM7_C(-2.0) * t281 - parameters[MZ7] * t829;
-    const wam7_real_t t866 = t71 * t864 + t63 * t865;
-    const wam7_real_t t867 = t63 * t862 + t71 * t863 + WAM7_C(0.06) * t866;
-    const wam7_real_t t868 = t512 + (parameters[XZ7] * t829 + parameters[YZ7] * t830);
-    const wam7_real_t t869 = t56 * t867 - t39 * t868;
-    const wam7_real_t t870 = t63 * t864 - t71 * t865;
-    const wam7_real_t t871 = t63 * t863 - t71 * t862 + WAM7_C(0.06) * t870;
-    const wam7_real_t t872 = parameters[MY7] * t829 - parameters[MX7] * t830;
-    const wam7_real_t t873 = t56 * t870 + t39 * t872;
-    const wam7_real_t t874 = t34 * t873 + t33 * t866;
-    const wam7_real_t t875 = t33 * t869 + t34 * t871 + WAM7_C(0.3) * t874;
-    const wam7_real_t t876 = t39 * t867 + t56 * t868;
-    const wam7_real_t t877 = WAM7_C(-0.045) * t874;
-    const wam7_real_t t878 = t876 + t877;
-    const wam7_real_t t879 = t13 * t875 - t26 * t878;
-    const wam7_real_t t880 = t33 * t873 - t34 * t866;
-    const wam7_real_t t881 = t56 * t872 - t39 * t870;
-    const wam7_real_t t882 = t33 * t871 - t34 * t869 + (WAM7_C(0.045) * t881 + WAM7_C(0.3) * t880);
-    const wam7_real_t t883 = t882 + WAM7_C(0.045) * (t26 * t880 - t13 * t881);
-    const wam7_real_t t884 = t13 * t880 + t26 * t881;
-    const wam7_real_t t885 = t2 * t879 + t3 * t883 + WAM7_C(0.55) * (t3 * t884 + t2 * t874);
-    const wam7_real_t t886 = t26 * t875 + t13 * t878 - t877;
-    input_by_dq[6] = WAM7_C(0.05209961446285298) * (t0 * t885 + t7 * t886);
-    const wam7_real_t t887 = t2 * t883 - t3 * t879 + WAM7_C(0.55) * (t2 * t884 - t3 * t874);
-    input_by_dq[13] = WAM7_C(0.07745783389167521) * t887;
-    input_by_dq[20] = WAM7_C(0.07745783389167521) * t886;
-    input_by_dq[27] = WAM7_C(0.12156576707999026) * t882;
-    input_by_dq[34] = WAM7_C(0.4469713223199599) * t876;
-    input_by_dq[41] = WAM7_C(0.4469713223199599) * t871;
+    const wam7_real_t t273 = t132 + (t272 - t126);
+    const wam7_real_t t274 = t78 * parameters[MY7] - t73 * parameters[MX7];
+    const wam7_real_t t275 = t145 + (t274 * t266 - t143 + (t177 * parameters[MY7] - t144));
+    const wam7_real_t t276 = t142 - (t140 - t274 * t264 - (t141 + t177 * parameters[MX7]));
+    const wam7_real_t t277 = t63 * t275 + t71 * t276;
+    const wam7_real_t t278 = t63 * t273 - t71 * t268 + WAM7_C(0.06) * t277;
+    input_by_q[41] = WAM7_C(0.4469713223199599) * t278;
+    const wam7_real_t t279 = t71 * t275 - t63 * t276;
+    const wam7_real_t t280 = t63 * t268 + t71 * t273 + WAM7_C(0.06) * t279;
+    const wam7_real_t t281 = t255 * t264 - t258 * t266 + t252 + t251;
+    const wam7_real_t t282 = t39 * t280 + t56 * t281;
+    input_by_q[34] = WAM7_C(0.4469713223199599) * t282;
+    const wam7_real_t t283 = t39 * t281 - t56 * t280;
+    const wam7_real_t t284 = t74 * parameters[MX7] - t78 * parameters[MZ7];
+    const wam7_real_t t285 = t74 * parameters[MY7] - t73 * parameters[MZ7];
+    const wam7_real_t t286 = t284 * t264 + t285 * t266 + (t77 * parameters[MY7] + t72 * parameters[MX7]);
+    const wam7_real_t t287 = t56 * t277 + t39 * t286;
+    const wam7_real_t t288 = t33 * t287 - t34 * t279;
+    const wam7_real_t t289 = t56 * t286 - t39 * t277;
+    const wam7_real_t t290 = t34 * t283 + t33 * t278 + (WAM7_C(0.045) * t289 + WAM7_C(0.3) * t288);
+    input_by_q[27] = WAM7_C(0.12156576707999026) * t290;
+    const wam7_real_t t291 = t34 * t287 + t33 * t279;
+    const wam7_real_t t292 = t34 * t278 - t33 * t283 + WAM7_C(0.3) * t291;
+    const wam7_real_t t293 = WAM7_C(-0.045) * t291;
+    const wam7_real_t t294 = t282 + t293;
+    const wam7_real_t t295 = t26 * t292 + t13 * t294 - t293;
+    input_by_q[20] = WAM7_C(0.07745783389167521) * t295;
+    const wam7_real_t t296 = t26 * t294 - t13 * t292;
+    const wam7_real_t t297 = t290 + WAM7_C(0.045) * (t26 * t288 - t13 * t289);
+    const wam7_real_t t298 = t13 * t288 + t26 * t289;
+    const wam7_real_t t299 = t3 * t296 + t2 * t297 + WAM7_C(0.55) * (t2 * t298 - t3 * t291);
+    input_by_q[13] = WAM7_C(0.07745783389167521) * t299;
+    const wam7_real_t t300 = t3 * t297 - t2 * t296 + WAM7_C(0.55) * (t3 * t298 + t2 * t291);
+    input_by_q[6] = WAM7_C(0.05209961446285298) * (t0 * t300 + t7 * t295);
     input_by_dq[48] = WAM7_C(222.83582089552237) * parameters[FV7];
-    input_by_ddq[6] = WAM7_C(0.05209961446285298) * t620;
-    input_by_ddq[13] = WAM7_C(0.07745783389167521) * t638;
-    input_by_ddq[20] = WAM7_C(-0.07745783389167521) * t619;
-    input_by_ddq[27] = WAM7_C(0.12156576707999026) * t616;
-    input_by_ddq[34] = WAM7_C(-0.4469713223199599) * t612;
-    input_by_ddq[41] = WAM7_C(-0.4469713223199599) * t545;
+    const wam7_real_t t301 = parameters[ZZ7] - t253;
+    const wam7_real_t t302 = t74 * parameters[YZ7] - t73 * t301;
+    const wam7_real_t t303 = WAM7_C(2.0) * t302 - (parameters[XX7] * t264 + parameters[XY7] * t266);
+    const wam7_real_t t304 = t74 * parameters[XZ7] - t78 * t301;
+    const wam7_real_t t305 = WAM7_C(2.0) * t304 + (parameters[XY7] * t264 + parameters[YY7] * t266);
+    const wam7_real_t t306 = WAM7_C(-2.0) * t284 + parameters[MZ7] * t266;
+    const wam7_real_t t307 = WAM7_C(-2.0) * t285 - parameters[MZ7] * t264;
+    const wam7_real_t t308 = t63 * t306 - t71 * t307;
+    const wam7_real_t t309 = t63 * t305 - t71 * t303 + WAM7_C(0.06) * t308;
+    input_by_dq[41] = WAM7_C(0.4469713223199599) * t309;
+    const wam7_real_t t310 = t71 * t306 + t63 * t307;
+    const wam7_real_t t311 = t63 * t303 + t71 * t305 + WAM7_C(0.06) * t310;
+    const wam7_real_t t312 = t270 - t261;
+    const wam7_real_t t313 = WAM7_C(2.0) * t312;
+    const wam7_real_t t314 = t313 + (parameters[XZ7] * t264 + parameters[YZ7] * t266);
+    const wam7_real_t t315 = t39 * t311 + t56 * t314;
+    input_by_dq[34] = WAM7_C(0.4469713223199599) * t315;
+    const wam7_real_t t316 = t56 * t311 - t39 * t314;
+    const wam7_real_t t317 = parameters[MY7] * t264 - parameters[MX7] * t266;
+    const wam7_real_t t318 = t56 * t308 + t39 * t317;
+    const wam7_real_t t319 = t33 * t318 - t34 * t310;
+    const wam7_real_t t320 = t56 * t317 - t39 * t308;
+    const wam7_real_t t321 = t33 * t309 - t34 * t316 + (WAM7_C(0.045) * t320 + WAM7_C(0.3) * t319);
+    input_by_dq[27] = WAM7_C(0.12156576707999026) * t321;
+    const wam7_real_t t322 = t34 * t318 + t33 * t310;
+    const wam7_real_t t323 = t33 * t316 + t34 * t309 + WAM7_C(0.3) * t322;
+    const wam7_real_t t324 = WAM7_C(-0.045) * t322;
+    const wam7_real_t t325 = t315 + t324;
+    const wam7_real_t t326 = t26 * t323 + t13 * t325 - t324;
+    input_by_dq[20] = WAM7_C(0.07745783389167521) * t326;
+    const wam7_real_t t327 = t13 * t323 - t26 * t325;
+    const wam7_real_t t328 = t321 + WAM7_C(0.045) * (t26 * t319 - t13 * t320);
+    const wam7_real_t t329 = t13 * t319 + t26 * t320;
+    const wam7_real_t t330 = t2 * t328 - t3 * t327 + WAM7_C(0.55) * (t2 * t329 - t3 * t322);
+    input_by_dq[13] = WAM7_C(0.07745783389167521) * t330;
+    const wam7_real_t t331 = t2 * t327 + t3 * t328 + WAM7_C(0.55) * (t3 * t329 + t2 * t322);
+    input_by_dq[6] = WAM7_C(0.05209961446285298) * (t0 * t331 + t7 * t326);
     input_by_ddq[48] = WAM7_C(222.83582089552237) * parameters[IA7]
         + WAM7_C(0.9996900960702182) * parameters[ZZ7];
+    /* link j7: column of the mass matrix */
+    const wam7_real_t t332 = t63 * parameters[MY7] + t71 * parameters[MX7];
+    const wam7_real_t t333 = WAM7_C(0.06) * t332 - (t71 * parameters[XZ7] + t63 * parameters[YZ7]);
+    input_by_ddq[41] = WAM7_C(-0.4469713223199599) * t333;
+    const wam7_real_t t334 = t63 * parameters[MX7] - t71 * parameters[MY7];
+    const wam7_real_t t335 = t63 * parameters[XZ7] - t71 * parameters[YZ7] + WAM7_C(-0.06) * t334;
+    const wam7_real_t t336 = t39 * t335 - t56 * parameters[ZZ7];
+    input_by_ddq[34] = WAM7_C(-0.4469713223199599) * t336;
+    const wam7_real_t t337 = t56 * t335 + t39 * parameters[ZZ7];
+    const wam7_real_t t338 = t56 * t332;
+    const wam7_real_t t339 = t33 * t338 + t34 * t334;
+    const wam7_real_t t340 = t39 * t332;
+    const wam7_real_t t341 = t34 * t337 - t33 * t333 + (WAM7_C(0.045) * t340 + WAM7_C(-0.3) * t339);
+    input_by_ddq[27] = WAM7_C(0.12156576707999026) * t341;
+    const wam7_real_t t342 = t33 * t334 - t34 * t338;
+    const wam7_real_t t343 = t33 * t337 + t34 * t333 + WAM7_C(-0.3) * t342;
+    const wam7_real_t t344 = WAM7_C(0.045) * t342;
+    const wam7_real_t t345 = t336 + t344;
+    const wam7_real_t t346 = t26 * t343 + t13 * t345 - t344;
+    input_by_ddq[20] = WAM7_C(-0.07745783389167521) * t346;
+    const wam7_real_t t347 = t13 * t343 - t26 * t345;
+    const wam7_real_t t348 = t26 * t339 + t13 * t340;
+    const wam7_real_t t349 = t341 + WAM7_C(-0.045) * t348;
+    const wam7_real_t t350 = t13 * t339 - t26 * t340;
+    const wam7_real_t t351 = t2 * t350 + t3 * t342;
+    const wam7_real_t t352 = t3 * t347 + t2 * t349 + WAM7_C(-0.55) * t351;
+    input_by_ddq[13] = WAM7_C(0.07745783389167521) * t352;
+    const wam7_real_t t353 = t2 * t342 - t3 * t350;
+    const wam7_real_t t354 = t3 * t349 - t2 * t347 + WAM7_C(0.55) * t353;
+    const wam7_real_t t355 = t0 * t354 - t7 * t346;
+    input_by_ddq[6] = WAM7_C(0.05209961446285298) * t355;
+    const wam7_real_t t356 = t63 * t256 - t71 * t259; /* link j7: derivatives */
+    const wam7_real_t t357 = t313 + (t332 * (WAM7_C(0.12) * t68) - t334 * (WAM7_C(-0.12) * t59));
+    const wam7_real_t t358 = t83 * t335 + t57 * parameters[ZZ7] + t182 * t333 - (t58 * t356 + t68 * t357);
+    input_by_q[47] = WAM7_C(0.9996900960702182) * (t358 + t127 * t332);
+    const wam7_real_t t359 = t56 * t356 + t39 * t357;
+    const wam7_real_t t360 = t71 * t256 + t63 * t259;
+    const wam7_real_t t361 = t36 * t359 - t35 * t360 + (t64 * t337 - t51 * t333 + t200 * t336);
+    input_by_q[46] = WAM7_C(0.9996900960702182) * (t361 + (t115 * t338 - t117 * t334));
+    const wam7_real_t t362 = WAM7_C(0.09) * t29;
+    const wam7_real_t t363 = WAM7_C(-0.3) * t28 + WAM7_C(-0.045) * t44; /* link j5: velocity of its origin */
+    const wam7_real_t t364 = WAM7_C(2.0) * t363; /* link j7: derivatives */
+    const wam7_real_t t365 = t33 * t359 - t34 * t360 + (t340 * t364 - t342 * t362);
+    const wam7_real_t t366 = t56 * t357 - t39 * t356;
+    const wam7_real_t t367 = WAM7_C(-0.6) * t29;
+    const wam7_real_t t368 = t366 + (t339 * t364 - t342 * t367);
+    const wam7_real_t t369 = t28 * t368 - t44 * t365 + (t27 * t343 - t47 * t345 - t217 * t341);
+    input_by_q[45] = WAM7_C(0.9996900960702182) * (t369 + (t121 * t339 + t108 * t340));
+    const wam7_real_t t370 = WAM7_C(0.09) * t22;
+    const wam7_real_t t371 = WAM7_C(0.09) * t5;
+    const wam7_real_t t372 = t13 * t365 + t26 * t368 + (t348 * t370 + t342 * t371);
+    const wam7_real_t t373 = t34 * t359 + t33 * t360 + (t340 * t367 - t339 * t362);
+    const wam7_real_t t374 = t373 + t350 * t371;
+    const wam7_real_t t375 = t212 + t98; /* link j4: motion */
+    /* link j7: derivatives */
+    const wam7_real_t t376 = t5 * t372 - t4 * t374 + (t40 * t347 + t21 * t349 + t375 * t346);
+    input_by_q[44] = WAM7_C(0.9996900960702182) * (t376 + (t111 * t350 - t97 * t342));
+    const wam7_real_t t377 = WAM7_C(-1.1) * t1;
+    const wam7_real_t t378 = t3 * t374 - t2 * t372 + t348 * t377;
+    const wam7_real_t t379 = t13 * t368 - t26 * t365 + t350 * t370;
+    const wam7_real_t t380 = WAM7_C(-1.1) * dq[1];
+    const wam7_real_t t381 = t379 - (t351 * t377 + t353 * t380);
+    const wam7_real_t t382 = t103 + t224; /* link j3: motion */
+    /* link j7: derivatives */
+    const wam7_real_t t383 = t14 * t378 - t1 * t381 + (t8 * t354 + t17 * t346 - t382 * t352);
+    input_by_q[43] = WAM7_C(0.9996900960702182) * (t383 + (t105 * t351 + t94 * t348));
+    const wam7_real_t t384 = WAM7_C(0.9996900960702182) * (t360 + WAM7_C(-2.0) * (t58 * t335
+        + t68 * parameters[ZZ7]));
+    input_by_dq[47] = t384;
+    const wam7_real_t t385 = WAM7_C(0.9996900960702182) * (t366 + WAM7_C(2.0) * (t36 * t337 + t35 * t333));
+    input_by_dq[46] = t385;
+    const wam7_real_t t386 = WAM7_C(0.9996900960702182) * (t373 + WAM7_C(-2.0) * (t44 * t343 + t28 * t345));
+    input_by_dq[45] = t386;
+    const wam7_real_t t387 = WAM7_C(0.9996900960702182) * (t379 + WAM7_C(2.0) * (t5 * t347 - t4 * t349));
+    input_by_dq[44] = t387;
+    const wam7_real_t t388 = t3 * t372 + t2 * t374 + t348 * t380 + WAM7_C(2.0) * (t14 * t354 + t1 * t346);
+    input_by_dq[43] = WAM7_C(0.9996900960702182) * t388;
+    input_by_dq[42] = WAM7_C(0.9996900960702182) * (t0 * t378 + t7 * t381);
+    input_by_ddq[47] = WAM7_C(-0.9996900960702182) * t333;
+    input_by_ddq[46] = WAM7_C(-0.9996900960702182) * t336;
+    input_by_ddq[45] = WAM7_C(0.9996900960702182) * t341;
+    input_by_ddq[44] = WAM7_C(-0.9996900960702182) * t346;
+    input_by_ddq[43] = WAM7_C(0.9996900960702182) * t352;
+    input_by_ddq[42] = WAM7_C(0.9996900960702182) * t355;
+    /* link j7: inertia of it and all beyond */
+    const wam7_real_t t389 = t63 * t155 + parameters[XY7] * (WAM7_C(-2.0) * t71);
+    const wam7_real_t t390 = parameters[XZ6] + (parameters[XY7] + t71 * t389);
+    const wam7_real_t t391 = parameters[YZ6] + t333;
+    const wam7_real_t t392 = t63 * t389;
+    const wam7_real_t t393 = WAM7_C(0.06) * parameters[M7];
+    const wam7_real_t t394 = WAM7_C(0.06) * (WAM7_C(-2.0) * parameters[MZ7] - t393);
+    const wam7_real_t t395 = t392 - parameters[XX7] + t394 - parameters[ZZ6];
+    const wam7_real_t t396 = t83 * t390 - t57 * t391 + t182 * t395; /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t397 = t63 * (t271 - t263) + t71 * (t269 + t265);
+    const wam7_real_t t398 = t71 * t397;
+    const wam7_real_t t399 = WAM7_C(0.06) * t68; /* link j7: velocity of its origin */
+    const wam7_real_t t400 = WAM7_C(0.5) * (parameters[ZZ6] + (parameters[XX6] + parameters[YY6]));
+    const wam7_real_t t401 = t400 - parameters[XX6];
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t402 = t269 - t398 - t334 * t399 - (t68 * parameters[XY6] + t58 * t401);
+    const wam7_real_t t403 = WAM7_C(2.0) * t402; /* link j6: derivatives */
+    const wam7_real_t t404 = t63 * t284 - t71 * t285; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t405 = parameters[MZ7] + t393; /* link j7: inertia of it and all beyond */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t406 = t63 * t304 - t71 * t302 + (WAM7_C(-0.06) * t404 - t405 * t399);
+    const wam7_real_t t407 = parameters[YY6] - t400;
+    const wam7_real_t t408 = t68 * t407 - t58 * parameters[XY6] + t406;
+    const wam7_real_t t409 = WAM7_C(2.0) * t408; /* link j6: derivatives */
+    const wam7_real_t t410 = parameters[MX6] + t334; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t411 = t405 - parameters[MY6];
+    const wam7_real_t t412 = t123 * t410 - t127 * t411; /* link j6: derivatives */
+    const wam7_real_t t413 = WAM7_C(0.4469713223199599) * (t412 + (t396 - (t58 * t403 + t68 * t409)));
+    input_by_q[40] = t413;
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t414 = t59 * t401 - t68 * parameters[XZ6] + (t63 * t255 + t71 * t258);
+    const wam7_real_t t415 = WAM7_C(2.0) * t58; /* link j6: derivatives */
+    const wam7_real_t t416 = WAM7_C(-0.06) * t274; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t417 = WAM7_C(0.06) * t59; /* link j7: velocity of its origin */
+    const wam7_real_t t418 = t334 * t417; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t419 = t332 * t399;
+    const wam7_real_t t420 = t418 + t419 - t416;
+    const wam7_real_t t421 = t59 * parameters[XY6];
+    const wam7_real_t t422 = t68 * parameters[YZ6];
+    const wam7_real_t t423 = t421 + t422 + (t420 + (t312 + t416));
+    const wam7_real_t t424 = WAM7_C(-2.0) * t68; /* link j6: derivatives */
+    const wam7_real_t t425 = t335 - parameters[XY6]; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t426 = parameters[YY6] + parameters[ZZ7];
+    /* link j6: derivatives */
+    const wam7_real_t t427 = t423 * t424 - t414 * t415 + (t83 * t425 + t57 * t426 + t182 * t391);
+    const wam7_real_t t428 = parameters[MZ6] + t332; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t429 = t427 + t127 * t428 - t152; /* link j6: derivatives */
+    const wam7_real_t t430 = t63 * t397; /* link j7: inertia, momentum beyond */
+    const wam7_real_t t431 = t58 * parameters[XZ6];
+    const wam7_real_t t432 = t431 + t421 + (t430 - t271 + t418 - t420);
+    const wam7_real_t t433 = t63 * t285 + t71 * t284;
+    const wam7_real_t t434 = t63 * t302 + t71 * t304 + (WAM7_C(-0.06) * t433 + t405 * t417);
+    const wam7_real_t t435 = t434 - (t58 * parameters[YZ6] + t59 * t407);
+    /* link j7: inertia of it and all beyond */
+    const wam7_real_t t436 = t394 - (parameters[YY7] + t392) - parameters[XX6];
+    /* link j6: derivatives */
+    const wam7_real_t t437 = t435 * t424 - t432 * t415 + (t83 * t436 - t57 * t425 + t182 * t390);
+    const wam7_real_t t438 = t158 + (t437 + t123 * t428);
+    const wam7_real_t t439 = t39 * t438 + t56 * t429;
+    input_by_q[33] = WAM7_C(0.4469713223199599) * t439;
+    const wam7_real_t t440 = t39 * t429 - t56 * t438;
+    const wam7_real_t t441 = t408 * t424 - t402 * t415 + t396 + t412;
+    const wam7_real_t t442 = parameters[M6] + parameters[M7]; /* link j7: inertia of it and all beyond */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t443 = t58 * parameters[MX6] - t68 * parameters[MY6] + (t404 + parameters[M7] * t399);
+    /* link j6: derivatives */
+    const wam7_real_t t444 = t182 * t410 + t83 * t428 - (t443 * t415 + t123 * t442);
+    const wam7_real_t t445 = t175 + t444;
+    const wam7_real_t t446 = t443 * t424 + t127 * t442 + (t57 * t428 + t182 * t411);
+    const wam7_real_t t447 = t446 - t179;
+    const wam7_real_t t448 = t39 * t447 + t56 * t445;
+    const wam7_real_t t449 = t39 * t445 - t56 * t447;
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t450 = t59 * parameters[MX6] + t68 * parameters[MZ6] - t274;
+    const wam7_real_t t451 = t58 * parameters[MZ6] + t59 * parameters[MY6] + (t433 - parameters[M7] * t417);
+    const wam7_real_t t452 = t450 * t415 + t451 * t424 + (t83 * t411 - t57 * t410); /* link j6: derivatives */
+    const wam7_real_t t453 = t33 * t449 + t34 * t452;
+    const wam7_real_t t454 = t34 * t440 + t33 * t441 + (WAM7_C(0.045) * t448 + WAM7_C(0.3) * t453);
+    input_by_q[26] = WAM7_C(0.12156576707999026) * t454;
+    const wam7_real_t t455 = t34 * t449 - t33 * t452;
+    const wam7_real_t t456 = t34 * t441 - t33 * t440 + WAM7_C(0.3) * t455;
+    const wam7_real_t t457 = WAM7_C(-0.045) * t455;
+    const wam7_real_t t458 = t439 + t457;
+    const wam7_real_t t459 = t26 * t456 + t13 * t458 - t457;
+    input_by_q[19] = WAM7_C(0.07745783389167521) * t459;
+    const wam7_real_t t460 = t26 * t458 - t13 * t456;
+    const wam7_real_t t461 = t454 + WAM7_C(0.045) * (t26 * t453 - t13 * t448);
+    const wam7_real_t t462 = t13 * t453 + t26 * t448;
+    const wam7_real_t t463 = t3 * t460 + t2 * t461 + WAM7_C(0.55) * (t2 * t462 - t3 * t455);
+    input_by_q[12] = WAM7_C(0.07745783389167521) * t463;
+    const wam7_real_t t464 = t3 * t461 - t2 * t460 + WAM7_C(0.55) * (t3 * t462 + t2 * t455);
+    input_by_q[5] = WAM7_C(0.05209961446285298) * (t0 * t464 + t7 * t459);
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t465 = t431 - t422 + (t420 + (t263 + t430 - t419));
+    const wam7_real_t t466 = WAM7_C(2.0) * t465; /* link j6: derivatives */
+    const wam7_real_t t467 = WAM7_C(0.4469713223199599) * (t466 + WAM7_C(2.0) * (t68 * t391 - t58 * t390));
+    input_by_dq[40] = WAM7_C(40.16949152542373) * parameters[FV6] + t467;
+    const wam7_real_t t468 = t400 - parameters[ZZ6];
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t469 = t59 * parameters[YZ6] - t58 * t468 + (t398 - t265 + t332 * t417);
+    const wam7_real_t t470 = WAM7_C(2.0) * t469 - (t436 * t415 + t425 * t424); /* link j6: derivatives */
+    /* link j7: inertia, momentum beyond */
+    const wam7_real_t t471 = t68 * t468 - t59 * parameters[XZ6] + (t71 * t255 - t63 * t258);
+    const wam7_real_t t472 = WAM7_C(2.0) * t471 + (t426 * t424 - t425 * t415); /* link j6: derivatives */
+    const wam7_real_t t473 = t39 * t470 + t56 * t472;
+    input_by_dq[33] = WAM7_C(0.4469713223199599) * t473;
+    const wam7_real_t t474 = t56 * t470 - t39 * t472;
+    const wam7_real_t t475 = t466 - (t390 * t415 + t391 * t424);
+    const wam7_real_t t476 = WAM7_C(2.0) * t450 + t428 * t424;
+    const wam7_real_t t477 = WAM7_C(2.0) * t451 - t428 * t415;
+    const wam7_real_t t478 = t39 * t476 + t56 * t477;
+    const wam7_real_t t479 = t39 * t477 - t56 * t476;
+    const wam7_real_t t480 = t411 * t415 + t410 * t424;
+    const wam7_real_t t481 = t33 * t479 - t34 * t480;
+    const wam7_real_t t482 = t33 * t475 - t34 * t474 + (WAM7_C(0.045) * t478 + WAM7_C(0.3) * t481);
+    input_by_dq[26] = WAM7_C(0.12156576707999026) * t482;
+    const wam7_real_t t483 = t34 * t479 + t33 * t480;
+    const wam7_real_t t484 = t33 * t474 + t34 * t475 + WAM7_C(0.3) * t483;
+    const wam7_real_t t485 = WAM7_C(-0.045) * t483;
+    const wam7_real_t t486 = t473 + t485;
+    const wam7_real_t t487 = t26 * t484 + t13 * t486 - t485;
+    input_by_dq[19] = WAM7_C(0.07745783389167521) * t487;
+    const wam7_real_t t488 = t13 * t484 - t26 * t486;
+    const wam7_real_t t489 = t482 + WAM7_C(0.045) * (t26 * t481 - t13 * t478);
+    const wam7_real_t t490 = t13 * t481 + t26 * t478;
+    const wam7_real_t t491 = t2 * t489 - t3 * t488 + WAM7_C(0.55) * (t2 * t490 - t3 * t483);
+    input_by_dq[12] = WAM7_C(0.07745783389167521) * t491;
+    const wam7_real_t t492 = t2 * t488 + t3 * t489 + WAM7_C(0.55) * (t3 * t490 + t2 * t483);
+    input_by_dq[5] = WAM7_C(0.05209961446285298) * (t0 * t492 + t7 * t487);
+    input_by_ddq[40] = WAM7_C(40.16949152542373) * parameters[IA6] + WAM7_C(-0.4469713223199599) * t395;
+    const wam7_real_t t493 = t39 * t390 + t56 * t391; /* link j6: column of the mass matrix */
+    const wam7_real_t t494 = WAM7_C(-0.4469713223199599) * t493;
+    input_by_ddq[33] = t494;
+    const wam7_real_t t495 = t56 * t390 - t39 * t391;
+    const wam7_real_t t496 = t39 * t411 + t56 * t410;
+    const wam7_real_t t497 = t56 * t411 - t39 * t410;
+    const wam7_real_t t498 = t33 * t497;
+    const wam7_real_t t499 = t34 * t495 - t33 * t395 + (WAM7_C(-0.045) * t496 + WAM7_C(0.3) * t498);
+    input_by_ddq[26] = WAM7_C(0.12156576707999026) * t499;
+    const wam7_real_t t500 = t34 * t497;
+    const wam7_real_t t501 = t33 * t495 + t34 * t395 + WAM7_C(-0.3) * t500;
+    const wam7_real_t t502 = WAM7_C(0.045) * t500;
+    const wam7_real_t t503 = t493 + t502;
+    const wam7_real_t t504 = t26 * t501 + t13 * t503 - t502;
+    input_by_ddq[19] = WAM7_C(-0.07745783389167521) * t504;
+    const wam7_real_t t505 = t13 * t501 - t26 * t503;
+    const wam7_real_t t506 = t26 * t498 + t13 * t496;
+    const wam7_real_t t507 = t499 + WAM7_C(0.045) * t506;
+    const wam7_real_t t508 = t26 * t496 - t13 * t498;
+    const wam7_real_t t509 = t2 * t508 + t3 * t500;
+    const wam7_real_t t510 = t3 * t505 + t2 * t507 + WAM7_C(-0.55) * t509;
+    input_by_ddq[12] = WAM7_C(0.07745783389167521) * t510;
+    const wam7_real_t t511 = t2 * t500 - t3 * t508;
+    const wam7_real_t t512 = t3 * t507 - t2 * t505 + WAM7_C(0.55) * t511;
+    const wam7_real_t t513 = t0 * t512 - t7 * t504;
+    input_by_ddq[5] = WAM7_C(0.05209961446285298) * t513;
+    const wam7_real_t t514 = t56 * t403 + t39 * t409; /* link j6: derivatives */
+    const wam7_real_t t515 = t36 * t514 - t35 * t466 + (t64 * t495 - t51 * t395 + t200 * t493);
+    input_by_q[39] = WAM7_C(0.4469713223199599) * (t515 - t115 * t497);
+    const wam7_real_t t516 = t33 * t514 - t34 * t466 - (t500 * t362 + t496 * t364);
+    const wam7_real_t t517 = t56 * t409 - t39 * t403;
+    const wam7_real_t t518 = t517 - (t498 * t364 + t500 * t367);
+    const wam7_real_t t519 = t28 * t518 - t44 * t516 + (t27 * t501 - t47 * t503 - t217 * t499);
+    input_by_q[38] = WAM7_C(0.4469713223199599) * (t519 - (t121 * t498 + t108 * t496));
+    const wam7_real_t t520 = t13 * t516 + t26 * t518 + (t500 * t371 - t506 * t370);
+    const wam7_real_t t521 = t34 * t514 + t33 * t466 + (t498 * t362 - t496 * t367);
+    const wam7_real_t t522 = t521 + t508 * t371;
+    const wam7_real_t t523 = t5 * t520 - t4 * t522 + (t40 * t505 + t21 * t507 + t375 * t504);
+    input_by_q[37] = WAM7_C(0.4469713223199599) * (t523 + (t111 * t508 - t97 * t500));
+    const wam7_real_t t524 = t3 * t522 - t2 * t520 - t506 * t377;
+    const wam7_real_t t525 = t13 * t518 - t26 * t516 + t508 * t370;
+    const wam7_real_t t526 = t525 - (t509 * t377 + t511 * t380);
+    const wam7_real_t t527 = t14 * t524 - t1 * t526 + (t8 * t512 + t17 * t504 - t382 * t510);
+    input_by_q[36] = WAM7_C(0.4469713223199599) * (t527 + (t105 * t509 - t94 * t506));
+    const wam7_real_t t528 = WAM7_C(0.4469713223199599) * (t517 + WAM7_C(2.0) * (t36 * t495 + t35 * t395));
+    input_by_dq[39] = t528;
+    const wam7_real_t t529 = WAM7_C(0.4469713223199599) * (t521 + WAM7_C(-2.0) * (t44 * t501 + t28 * t503));
+    input_by_dq[38] = t529;
+    const wam7_real_t t530 = WAM7_C(0.4469713223199599) * (t525 + WAM7_C(2.0) * (t5 * t505 - t4 * t507));
+    input_by_dq[37] = t530;
+    const wam7_real_t t531 = t3 * t520 + t2 * t522 - t506 * t380 + WAM7_C(2.0) * (t14 * t512 + t1 * t504);
+    input_by_dq[36] = WAM7_C(0.4469713223199599) * t531;
+    input_by_dq[35] = WAM7_C(0.4469713223199599) * (t0 * t524 + t7 * t526);
+    input_by_ddq[39] = t494;
+    input_by_ddq[38] = WAM7_C(0.4469713223199599) * t499;
+    input_by_ddq[37] = WAM7_C(-0.4469713223199599) * t504;
+    input_by_ddq[36] = WAM7_C(0.4469713223199599) * t510;
+    input_by_ddq[35] = WAM7_C(0.4469713223199599) * t513;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t532 = t56 * (t432 + t423) + t39 * (t435 - t414);
+    const wam7_real_t t533 = t39 * t532;
+    const wam7_real_t t534 = WAM7_C(0.5) * (parameters[ZZ5] + (parameters[XX5] + parameters[YY5]));
+    const wam7_real_t t535 = parameters[XX5] - t534;
+    const wam7_real_t t536 = t35 * parameters[XY5] - t36 * t535 + (t414 + t533);
+    const wam7_real_t t537 = WAM7_C(2.0) * t536; /* link j5: derivatives */
+    const wam7_real_t t538 = t534 - parameters[YY5];
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t539 = t39 * t469 + t56 * t471 - (t36 * parameters[XY5] + t35 * t538);
+    const wam7_real_t t540 = WAM7_C(2.0) * t539; /* link j5: derivatives */
+    /* link j6: inertia of it and all beyond */
+    const wam7_real_t t541 = t425 * (WAM7_C(2.0) * t39) - t56 * (t436 + t426);
+    const wam7_real_t t542 = parameters[XZ5] + (t425 - t39 * t541);
+    const wam7_real_t t543 = parameters[YZ5] - t493;
+    const wam7_real_t t544 = t56 * t541;
+    const wam7_real_t t545 = t436 + t544 - parameters[ZZ5];
+    const wam7_real_t t546 = t64 * t542 + t51 * t543 + t200 * t545; /* link j5: derivatives */
+    const wam7_real_t t547 = parameters[MX5] + t496; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t548 = parameters[MY5] + t428;
+    const wam7_real_t t549 = t115 * t548 - t117 * t547; /* link j5: derivatives */
+    const wam7_real_t t550 = WAM7_C(0.4469713223199599) * (t549 + (t546 + (t36 * t537 - t35 * t540)));
+    input_by_q[32] = t550;
+    const wam7_real_t t551 = t56 * t532; /* link j6: inertia, momentum beyond */
+    const wam7_real_t t552 = t36 * parameters[XZ5];
+    const wam7_real_t t553 = t52 * parameters[XY5];
+    const wam7_real_t t554 = t552 - t553 + (t423 - t551);
+    const wam7_real_t t555 = WAM7_C(2.0) * t36; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t556 = t36 * parameters[YZ5] + t52 * t538 - (t56 * t469 - t39 * t471);
+    const wam7_real_t t557 = WAM7_C(-2.0) * t35; /* link j5: derivatives */
+    const wam7_real_t t558 = parameters[XX5] + (t426 + t544); /* link j6: inertia of it and all beyond */
+    const wam7_real_t t559 = parameters[XY5] + t495;
+    /* link j5: derivatives */
+    const wam7_real_t t560 = t554 * t555 + t556 * t557 + (t64 * t558 + t51 * t559 - t200 * t542);
+    const wam7_real_t t561 = parameters[MZ5] + t497; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t562 = t560 + t117 * t561 - t173; /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t563 = t52 * t535 - t35 * parameters[XZ5] + (t56 * t402 + t39 * t408);
+    const wam7_real_t t564 = t35 * parameters[YZ5];
+    const wam7_real_t t565 = t553 - t564 + t465;
+    const wam7_real_t t566 = t395 - parameters[YY5]; /* link j6: inertia of it and all beyond */
+    /* link j5: derivatives */
+    const wam7_real_t t567 = t563 * t555 + t565 * t557 + (t64 * t559 - t51 * t566 - t200 * t543);
+    const wam7_real_t t568 = t165 + (t567 - t115 * t561);
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t569 = t35 * parameters[MY5] - t36 * parameters[MX5] + (t39 * t451 - t56 * t450);
+    const wam7_real_t t570 = parameters[M5] + t442; /* link j6: inertia of it and all beyond */
+    /* link j5: derivatives */
+    const wam7_real_t t571 = t569 * t557 - t115 * t570 + (t51 * t561 + t200 * t548);
+    const wam7_real_t t572 = t185 + t571;
+    const wam7_real_t t573 = t569 * t555 + t117 * t570 + (t200 * t547 + t64 * t561);
+    const wam7_real_t t574 = t181 + t573;
+    const wam7_real_t t575 = t33 * t572 + t34 * t574;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t576 = t52 * parameters[MY5] - t36 * parameters[MZ5] + (t56 * t451 + t39 * t450);
+    const wam7_real_t t577 = t52 * parameters[MX5] - t35 * parameters[MZ5] + t443;
+    const wam7_real_t t578 = t577 * t555 + t576 * t557 + (t64 * t548 - t51 * t547); /* link j5: derivatives */
+    const wam7_real_t t579 = t34 * t562 + t33 * t568 + (WAM7_C(0.045) * t578 + WAM7_C(0.3) * t575);
+    input_by_q[25] = WAM7_C(0.12156576707999026) * t579;
+    const wam7_real_t t580 = t34 * t572 - t33 * t574;
+    const wam7_real_t t581 = t34 * t568 - t33 * t562 + WAM7_C(0.3) * t580;
+    const wam7_real_t t582 = WAM7_C(-0.045) * t580;
+    const wam7_real_t t583 = t536 * t555 + t539 * t557 + t546 + t549 + t582;
+    const wam7_real_t t584 = t26 * t581 + t13 * t583 - t582;
+    input_by_q[18] = WAM7_C(0.07745783389167521) * t584;
+    const wam7_real_t t585 = t26 * t583 - t13 * t581;
+    const wam7_real_t t586 = t579 + WAM7_C(0.045) * (t26 * t575 - t13 * t578);
+    const wam7_real_t t587 = t13 * t575 + t26 * t578;
+    const wam7_real_t t588 = t3 * t585 + t2 * t586 + WAM7_C(0.55) * (t2 * t587 - t3 * t580);
+    input_by_q[11] = WAM7_C(0.07745783389167521) * t588;
+    const wam7_real_t t589 = t3 * t586 - t2 * t585 + WAM7_C(0.55) * (t3 * t587 + t2 * t580);
+    input_by_q[4] = WAM7_C(0.05209961446285298) * (t0 * t589 + t7 * t584);
+    const wam7_real_t t590 = t564 - t552 + (t551 - t432); /* link j6: inertia, momentum beyond */
+    const wam7_real_t t591 = WAM7_C(2.0) * t590; /* link j5: derivatives */
+    const wam7_real_t t592 = WAM7_C(0.4469713223199599) * (t591 + WAM7_C(2.0) * (t36 * t542 - t35 * t543));
+    input_by_dq[32] = WAM7_C(40.16949152542373) * parameters[FV5] + t592;
+    const wam7_real_t t593 = parameters[ZZ5] - t534;
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t594 = t52 * parameters[YZ5] - t36 * t593 + (t435 - t533);
+    const wam7_real_t t595 = WAM7_C(2.0) * t594 - (t558 * t555 + t559 * t557); /* link j5: derivatives */
+    /* link j6: inertia, momentum beyond */
+    const wam7_real_t t596 = t52 * parameters[XZ5] - t35 * t593 + (t56 * t408 - t39 * t402);
+    const wam7_real_t t597 = WAM7_C(2.0) * t596 + (t559 * t555 - t566 * t557); /* link j5: derivatives */
+    const wam7_real_t t598 = WAM7_C(-2.0) * t576 - t561 * t555;
+    const wam7_real_t t599 = WAM7_C(-2.0) * t577 + t561 * t557;
+    const wam7_real_t t600 = t33 * t599 - t34 * t598;
+    const wam7_real_t t601 = t548 * t555 - t547 * t557;
+    const wam7_real_t t602 = t33 * t597 - t34 * t595 + (WAM7_C(0.045) * t601 + WAM7_C(0.3) * t600);
+    input_by_dq[25] = WAM7_C(0.12156576707999026) * t602;
+    const wam7_real_t t603 = t34 * t599 + t33 * t598;
+    const wam7_real_t t604 = t33 * t595 + t34 * t597 + WAM7_C(0.3) * t603;
+    const wam7_real_t t605 = WAM7_C(-0.045) * t603;
+    const wam7_real_t t606 = t591 + (t542 * t555 + t543 * t557) + t605;
+    const wam7_real_t t607 = t26 * t604 + t13 * t606 - t605;
+    input_by_dq[18] = WAM7_C(0.07745783389167521) * t607;
+    const wam7_real_t t608 = t13 * t604 - t26 * t606;
+    const wam7_real_t t609 = t602 + WAM7_C(0.045) * (t26 * t600 - t13 * t601);
+    const wam7_real_t t610 = t13 * t600 + t26 * t601;
+    const wam7_real_t t611 = t2 * t609 - t3 * t608 + WAM7_C(0.55) * (t2 * t610 - t3 * t603);
+    input_by_dq[11] = WAM7_C(0.07745783389167521) * t611;
+    const wam7_real_t t612 = t2 * t608 + t3 * t609 + WAM7_C(0.55) * (t3 * t610 + t2 * t603);
+    input_by_dq[4] = WAM7_C(0.05209961446285298) * (t0 * t612 + t7 * t607);
+    input_by_ddq[32] = WAM7_C(40.16949152542373) * parameters[IA5] + WAM7_C(-0.4469713223199599) * t545;
+    const wam7_real_t t613 = t33 * t548 + t34 * t547; /* link j5: column of the mass matrix */
+    const wam7_real_t t614 = t34 * t542 + t33 * t543 + WAM7_C(-0.3) * t613;
+    input_by_ddq[25] = WAM7_C(0.12156576707999026) * t614;
+    const wam7_real_t t615 = t33 * t542 - t34 * t543;
+    const wam7_real_t t616 = t33 * t547 - t34 * t548;
+    const wam7_real_t t617 = t615 + WAM7_C(-0.3) * t616;
+    const wam7_real_t t618 = WAM7_C(0.045) * t616;
+    const wam7_real_t t619 = t545 + t618;
+    const wam7_real_t t620 = t26 * t617 + t13 * t619 - t618;
+    input_by_ddq[18] = WAM7_C(-0.07745783389167521) * t620;
+    const wam7_real_t t621 = t13 * t617 - t26 * t619;
+    const wam7_real_t t622 = t26 * t613;
+    const wam7_real_t t623 = t614 + WAM7_C(-0.045) * t622;
+    const wam7_real_t t624 = t13 * t613;
+    const wam7_real_t t625 = t2 * t624 + t3 * t616;
+    const wam7_real_t t626 = t3 * t621 + t2 * t623 + WAM7_C(-0.55) * t625;
+    input_by_ddq[11] = WAM7_C(0.07745783389167521) * t626;
+    const wam7_real_t t627 = t2 * t616 - t3 * t624;
+    const wam7_real_t t628 = t3 * t623 - t2 * t621 + WAM7_C(0.55) * t627;
+    const wam7_real_t t629 = t0 * t628 - t7 * t620;
+    input_by_ddq[4] = WAM7_C(0.05209961446285298) * t629;
+    const wam7_real_t t630 = t33 * t537 - t34 * t540 - t616 * t362; /* link j5: derivatives */
+    const wam7_real_t t631 = t591 + (t613 * t364 - t616 * t367);
+    const wam7_real_t t632 = t28 * t631 - t44 * t630 + (t27 * t617 - t47 * t619 - t217 * t614);
+    input_by_q[31] = WAM7_C(0.4469713223199599) * (t632 + t121 * t613);
+    const wam7_real_t t633 = t13 * t630 + t26 * t631 + (t622 * t370 + t616 * t371);
+    const wam7_real_t t634 = t34 * t537 + t33 * t540 - t613 * t362;
+    const wam7_real_t t635 = t634 + t624 * t371;
+    const wam7_real_t t636 = t5 * t633 - t4 * t635 + (t40 * t621 + t21 * t623 + t375 * t620);
+    input_by_q[30] = WAM7_C(0.4469713223199599) * (t636 + (t111 * t624 - t97 * t616));
+    const wam7_real_t t637 = t3 * t635 - t2 * t633 + t622 * t377;
+    const wam7_real_t t638 = t13 * t631 - t26 * t630 + t624 * t370;
+    const wam7_real_t t639 = t638 - (t625 * t377 + t627 * t380);
+    const wam7_real_t t640 = t14 * t637 - t1 * t639 + (t8 * t628 + t17 * t620 - t382 * t626);
+    input_by_q[29] = WAM7_C(0.4469713223199599) * (t640 + (t105 * t625 + t94 * t622));
+    const wam7_real_t t641 = WAM7_C(0.4469713223199599) * (t634 + WAM7_C(-2.0) * (t44 * t617 + t28 * t619));
+    input_by_dq[31] = t641;
+    const wam7_real_t t642 = WAM7_C(0.4469713223199599) * (t638 + WAM7_C(2.0) * (t5 * t621 - t4 * t623));
+    input_by_dq[30] = t642;
+    const wam7_real_t t643 = t3 * t633 + t2 * t635 + t622 * t380 + WAM7_C(2.0) * (t14 * t628 + t1 * t620);
+    input_by_dq[29] = WAM7_C(0.4469713223199599) * t643;
+    input_by_dq[28] = WAM7_C(0.4469713223199599) * (t0 * t637 + t7 * t639);
+    input_by_ddq[31] = WAM7_C(0.4469713223199599) * t614;
+    input_by_ddq[30] = WAM7_C(-0.4469713223199599) * t620;
+    input_by_ddq[29] = WAM7_C(0.4469713223199599) * t626;
+    input_by_ddq[28] = WAM7_C(0.4469713223199599) * t629;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t644 = t33 * (t565 - t554) + t34 * (t556 + t563);
+    const wam7_real_t t645 = t34 * t644;
+    const wam7_real_t t646 = t34 * t576 - t33 * t577;
+    const wam7_real_t t647 = WAM7_C(0.045) * t570; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t648 = t647 - t616;
+    const wam7_real_t t649 = WAM7_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const wam7_real_t t650 = t649 - parameters[XX4];
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t651 = t28 * parameters[XY4] - t44 * t650 + (t563 - t645 + (WAM7_C(-0.045) * t646
+        + t648 * t363));
+    const wam7_real_t t652 = WAM7_C(2.0) * t651; /* link j4: derivatives */
+    const wam7_real_t t653 = WAM7_C(0.3) * t570; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t654 = t561 + t653;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t655 = t33 * t596 - t34 * t594 + (WAM7_C(0.3) * t646 - t654 * t363);
+    const wam7_real_t t656 = parameters[YY4] - t649;
+    const wam7_real_t t657 = t655 - (t44 * parameters[XY4] + t28 * t656);
+    const wam7_real_t t658 = WAM7_C(2.0) * t657; /* link j4: derivatives */
+    /* link j5: inertia of it and all beyond */
+    const wam7_real_t t659 = t33 * (t558 + t566) - t559 * (WAM7_C(2.0) * t34);
+    const wam7_real_t t660 = parameters[XZ4] + (t559 + t34 * t659 + WAM7_C(0.045) * t613);
+    const wam7_real_t t661 = parameters[YZ4] - t614;
+    const wam7_real_t t662 = t33 * t659;
+    const wam7_real_t t663 = WAM7_C(0.045) * (t647 + WAM7_C(-2.0) * t616);
+    const wam7_real_t t664 = WAM7_C(0.3) * (t653 + WAM7_C(2.0) * t561);
+    const wam7_real_t t665 = parameters[ZZ4] + (t558 - t662 + (t663 + t664));
+    const wam7_real_t t666 = t27 * t660 - t47 * t661 - t217 * t665; /* link j4: derivatives */
+    const wam7_real_t t667 = parameters[MX4] - t648; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t668 = parameters[MY4] - t654;
+    const wam7_real_t t669 = t121 * t668 - t108 * t667; /* link j4: derivatives */
+    const wam7_real_t t670 = WAM7_C(0.12156576707999026) * (t669 + (t666 + (t28 * t658 - t44 * t652)));
+    input_by_q[24] = t670;
+    const wam7_real_t t671 = t33 * t644; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t672 = t33 * t576 + t34 * t577;
+    const wam7_real_t t673 = WAM7_C(0.045) * t672;
+    const wam7_real_t t674 = WAM7_C(0.3) * t29; /* link j5: velocity of its origin */
+    const wam7_real_t t675 = t648 * t674; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t676 = WAM7_C(-0.3) * t569;
+    const wam7_real_t t677 = WAM7_C(0.045) * t29; /* link j5: velocity of its origin */
+    const wam7_real_t t678 = t654 * t677; /* link j5: inertia, momentum beyond */
+    const wam7_real_t t679 = t613 * t363;
+    const wam7_real_t t680 = t673 - t676 + (t678 - t675 + t679);
+    const wam7_real_t t681 = t44 * parameters[XZ4];
+    const wam7_real_t t682 = t29 * parameters[XY4];
+    const wam7_real_t t683 = t681 + t682 + (t671 - t565 + (t673 - t675) - t680);
+    const wam7_real_t t684 = WAM7_C(2.0) * t44; /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t685 = t33 * t594 + t34 * t596 + (WAM7_C(-0.3) * t672 + t654 * t674);
+    const wam7_real_t t686 = t685 - (t44 * parameters[YZ4] + t29 * t656);
+    const wam7_real_t t687 = WAM7_C(2.0) * t28; /* link j4: derivatives */
+    const wam7_real_t t688 = t566 - t662 - t664 - parameters[XX4]; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t689 = t615 + (WAM7_C(0.045) * t561 + WAM7_C(0.3) * t648) - parameters[XY4];
+    /* link j4: derivatives */
+    const wam7_real_t t690 = t686 * t687 - t683 * t684 + (t27 * t688 - t47 * t689 + t217 * t660);
+    const wam7_real_t t691 = parameters[MZ4] + t613; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t692 = t195 + (t690 - t108 * t691); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t693 = t33 * t536 - t34 * t539 + (WAM7_C(0.045) * t569 + t648 * t677);
+    const wam7_real_t t694 = t28 * parameters[XZ4] + t29 * t650 + t693;
+    const wam7_real_t t695 = t28 * parameters[YZ4];
+    const wam7_real_t t696 = t682 - t695 + (t680 + (t590 + (t676 - t678)));
+    const wam7_real_t t697 = t545 - t663 - parameters[YY4]; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const wam7_real_t t698 = t696 * t687 - t694 * t684 + (t27 * t689 - t47 * t697 + t217 * t661);
+    const wam7_real_t t699 = t698 + t121 * t691 - t189;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t700 = t28 * parameters[MZ4] - t29 * parameters[MX4] + (t569 + t570 * t677);
+    const wam7_real_t t701 = t44 * parameters[MZ4] + t29 * parameters[MY4] + (t672 - t570 * t674);
+    const wam7_real_t t702 = t700 * t684 - t701 * t687 + (t27 * t668 + t47 * t667); /* link j4: derivatives */
+    const wam7_real_t t703 = t26 * t692 + t13 * t699 + WAM7_C(0.045) * t702;
+    input_by_q[17] = WAM7_C(0.07745783389167521) * t703;
+    const wam7_real_t t704 = t26 * t699 - t13 * t692;
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t705 = t646 - t570 * t363 - (t28 * parameters[MY4] + t44 * parameters[MX4]);
+    const wam7_real_t t706 = parameters[M4] + t570; /* link j5: inertia of it and all beyond */
+    /* link j4: derivatives */
+    const wam7_real_t t707 = t705 * t684 + t108 * t706 + (t217 * t667 + t27 * t691);
+    const wam7_real_t t708 = t707 - t208;
+    const wam7_real_t t709 = t705 * t687 - t121 * t706 + (t217 * t668 - t47 * t691);
+    const wam7_real_t t710 = t210 + t709;
+    const wam7_real_t t711 = t657 * t687 - t651 * t684 + t666 + t669 + WAM7_C(0.045) * (t26 * t710
+        - t13 * t708);
+    const wam7_real_t t712 = t13 * t710 + t26 * t708;
+    const wam7_real_t t713 = t3 * t704 + t2 * t711 + WAM7_C(0.55) * (t2 * t712 - t3 * t702);
+    input_by_q[10] = WAM7_C(0.07745783389167521) * t713;
+    const wam7_real_t t714 = t3 * t711 - t2 * t704 + WAM7_C(0.55) * (t3 * t712 + t2 * t702);
+    input_by_q[3] = WAM7_C(0.05209961446285298) * (t0 * t714 + t7 * t703);
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t715 = t681 + t695 + (t680 + (t554 + t671 - t679));
+    const wam7_real_t t716 = WAM7_C(2.0) * t715; /* link j4: derivatives */
+    const wam7_real_t t717 = WAM7_C(0.12156576707999026) * (t716 + WAM7_C(-2.0) * (t44 * t660 + t28 * t661));
+    input_by_dq[24] = WAM7_C(39.387308533916844) * parameters[FV4] + t717;
+    const wam7_real_t t718 = t649 - parameters[ZZ4];
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t719 = t29 * parameters[YZ4] - t44 * t718 + (t645 - t556 + t613 * t674);
+    const wam7_real_t t720 = WAM7_C(2.0) * t719 - (t688 * t684 + t689 * t687); /* link j4: derivatives */
+    /* link j5: inertia, momentum beyond */
+    const wam7_real_t t721 = t34 * t536 + t33 * t539 - t613 * t677 - (t29 * parameters[XZ4] + t28 * t718);
+    const wam7_real_t t722 = WAM7_C(2.0) * t721 - (t689 * t684 + t697 * t687); /* link j4: derivatives */
+    const wam7_real_t t723 = t667 * t687 - t668 * t684;
+    const wam7_real_t t724 = t26 * t720 + t13 * t722 + WAM7_C(0.045) * t723;
+    input_by_dq[17] = WAM7_C(0.07745783389167521) * t724;
+    const wam7_real_t t725 = t13 * t720 - t26 * t722;
+    const wam7_real_t t726 = WAM7_C(2.0) * t700 - t691 * t687;
+    const wam7_real_t t727 = WAM7_C(-2.0) * t701 + t691 * t684;
+    const wam7_real_t t728 = t716 - (t660 * t684 + t661 * t687) + WAM7_C(0.045) * (t26 * t726 + t13 * t727);
+    const wam7_real_t t729 = t13 * t726 - t26 * t727;
+    const wam7_real_t t730 = t2 * t728 - t3 * t725 + WAM7_C(0.55) * (t2 * t729 - t3 * t723);
+    input_by_dq[10] = WAM7_C(0.07745783389167521) * t730;
+    const wam7_real_t t731 = t2 * t725 + t3 * t728 + WAM7_C(0.55) * (t3 * t729 + t2 * t723);
+    input_by_dq[3] = WAM7_C(0.05209961446285298) * (t0 * t731 + t7 * t724);
+    input_by_ddq[24] = WAM7_C(39.387308533916844) * parameters[IA4] + WAM7_C(0.12156576707999026) * t665;
+    const wam7_real_t t732 = t26 * t660 + t13 * t661; /* link j4: column of the mass matrix */
+    input_by_ddq[17] = WAM7_C(-0.07745783389167521) * t732;
+    const wam7_real_t t733 = t13 * t660 - t26 * t661;
+    const wam7_real_t t734 = t13 * t667 - t26 * t668;
+    const wam7_real_t t735 = t665 + WAM7_C(0.045) * t734;
+    const wam7_real_t t736 = t13 * t668 + t26 * t667;
+    const wam7_real_t t737 = t2 * t736;
+    const wam7_real_t t738 = t3 * t733 + t2 * t735 + WAM7_C(-0.55) * t737;
+    input_by_ddq[10] = WAM7_C(0.07745783389167521) * t738;
+    const wam7_real_t t739 = t3 * t736;
+    const wam7_real_t t740 = t3 * t735 - t2 * t733 + WAM7_C(-0.55) * t739;
+    const wam7_real_t t741 = t0 * t740 - t7 * t732;
+    input_by_ddq[3] = WAM7_C(0.05209961446285298) * t741;
+    const wam7_real_t t742 = t13 * t652 + t26 * t658 - t734 * t370; /* link j4: derivatives */
+    const wam7_real_t t743 = t716 + t736 * t371;
+    const wam7_real_t t744 = t5 * t742 - t4 * t743 + (t40 * t733 + t21 * t735 + t375 * t732);
+    input_by_q[23] = WAM7_C(0.12156576707999026) * (t744 + t111 * t736);
+    const wam7_real_t t745 = t3 * t743 - t2 * t742 - t734 * t377;
+    const wam7_real_t t746 = t13 * t658 - t26 * t652 + t736 * t370;
+    const wam7_real_t t747 = t746 + (t739 * t380 - t737 * t377);
+    const wam7_real_t t748 = t14 * t745 - t1 * t747 + (t8 * t740 + t17 * t732 - t382 * t738);
+    input_by_q[22] = WAM7_C(0.12156576707999026) * (t748 + (t105 * t737 - t94 * t734));
+    const wam7_real_t t749 = WAM7_C(0.12156576707999026) * (t746 + WAM7_C(2.0) * (t5 * t733 - t4 * t735));
+    input_by_dq[23] = t749;
+    const wam7_real_t t750 = t3 * t742 + t2 * t743 - t734 * t380 + WAM7_C(2.0) * (t14 * t740 + t1 * t732);
+    input_by_dq[22] = WAM7_C(0.12156576707999026) * t750;
+    input_by_dq[21] = WAM7_C(0.12156576707999026) * (t0 * t745 + t7 * t747);
+    input_by_ddq[23] = WAM7_C(-0.12156576707999026) * t732;
+    input_by_ddq[22] = WAM7_C(0.12156576707999026) * t738;
+    input_by_ddq[21] = WAM7_C(0.12156576707999026) * t741;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t751 = t13 * (t683 + t696) + t26 * (t686 - t694);
+    const wam7_real_t t752 = t26 * t751;
+    const wam7_real_t t753 = t26 * t701 + t13 * t700;
+    const wam7_real_t t754 = WAM7_C(0.045) * t706; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t755 = t734 + t754;
+    const wam7_real_t t756 = WAM7_C(-0.045) * t5; /* link j4: velocity of its origin */
+    const wam7_real_t t757 = WAM7_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const wam7_real_t t758 = parameters[XX3] - t757;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t759 = t4 * parameters[XY3] - t5 * t758 + (t694 + t752 + (WAM7_C(-0.045) * t753
+        - t755 * t756));
+    const wam7_real_t t760 = WAM7_C(2.0) * t759; /* link j3: derivatives */
+    const wam7_real_t t761 = t757 - parameters[YY3];
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t762 = t26 * t719 + t13 * t721 - t691 * t756 - (t5 * parameters[XY3] + t4 * t761);
+    const wam7_real_t t763 = WAM7_C(2.0) * t762; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const wam7_real_t t764 = t13 * (t697 - t688) + t689 * (WAM7_C(2.0) * t26);
+    const wam7_real_t t765 = parameters[XZ3] + (t689 - t26 * t764 + WAM7_C(0.045) * t736);
+    const wam7_real_t t766 = parameters[YZ3] - t732;
+    const wam7_real_t t767 = t13 * t764;
+    const wam7_real_t t768 = WAM7_C(0.045) * (t754 - WAM7_C(-2.0) * t734);
+    const wam7_real_t t769 = t688 + t767 - t768 - parameters[ZZ3];
+    const wam7_real_t t770 = t40 * t765 + t21 * t766 + t375 * t769; /* link j3: derivatives */
+    const wam7_real_t t771 = parameters[MX3] + t755; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t772 = parameters[MY3] + t691;
+    const wam7_real_t t773 = t111 * t772 - t97 * t771; /* link j3: derivatives */
+    const wam7_real_t t774 = WAM7_C(0.07745783389167521) * (t773 + (t770 + (t5 * t760 - t4 * t763)));
+    input_by_q[16] = t774;
+    const wam7_real_t t775 = WAM7_C(0.045) * t22; /* link j4: velocity of its origin */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t776 = t13 * t651 + t26 * t657 + (WAM7_C(0.045) * t705 - t755 * t775);
+    const wam7_real_t t777 = t22 * t758 - t4 * parameters[XZ3] + t776;
+    const wam7_real_t t778 = WAM7_C(2.0) * t5; /* link j3: derivatives */
+    const wam7_real_t t779 = t691 * t775; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t780 = t26 * t700 - t13 * t701;
+    const wam7_real_t t781 = WAM7_C(0.045) * t780;
+    const wam7_real_t t782 = t736 * t756;
+    const wam7_real_t t783 = t781 + (t779 - t782);
+    const wam7_real_t t784 = t4 * parameters[YZ3];
+    const wam7_real_t t785 = t22 * parameters[XY3];
+    const wam7_real_t t786 = t785 - t784 + (t783 + (t715 - t779));
+    const wam7_real_t t787 = WAM7_C(-2.0) * t4; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const wam7_real_t t788 = parameters[XY3] + (t733 - WAM7_C(0.045) * t691);
+    const wam7_real_t t789 = parameters[YY3] + (t665 + t768);
+    /* link j3: derivatives */
+    const wam7_real_t t790 = t777 * t778 + t786 * t787 + (t40 * t788 + t21 * t789 - t375 * t766);
+    const wam7_real_t t791 = parameters[MZ3] - t736; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t792 = t198 + (t790 - t111 * t791); /* link j3: derivatives */
+    const wam7_real_t t793 = t13 * t751; /* link j4: inertia, momentum beyond */
+    const wam7_real_t t794 = t5 * parameters[XZ3];
+    const wam7_real_t t795 = t794 - t785 + (t783 + (t696 - t793 - t781));
+    const wam7_real_t t796 = t5 * parameters[YZ3] + t22 * t761 - (t13 * t719 - t26 * t721);
+    const wam7_real_t t797 = parameters[XX3] + (t767 - t697); /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const wam7_real_t t798 = t795 * t778 + t796 * t787 + (t40 * t797 + t21 * t788 - t375 * t765);
+    const wam7_real_t t799 = t798 + t97 * t791 - t214;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t800 = t4 * parameters[MY3] - t5 * parameters[MX3] + (t753 + t706 * t756);
+    const wam7_real_t t801 = parameters[M3] + t706; /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const wam7_real_t t802 = t800 * t787 - t111 * t801 + (t21 * t791 + t375 * t772);
+    const wam7_real_t t803 = t221 + t802;
+    const wam7_real_t t804 = t800 * t778 + t97 * t801 + (t375 * t771 + t40 * t791);
+    const wam7_real_t t805 = t804 - t216;
+    const wam7_real_t t806 = t3 * t799 + t2 * t792 + WAM7_C(0.55) * (t2 * t803 + t3 * t805);
+    input_by_q[9] = WAM7_C(0.07745783389167521) * t806;
+    const wam7_real_t t807 = t3 * t792 - t2 * t799 + WAM7_C(0.55) * (t3 * t803 - t2 * t805);
+    const wam7_real_t t808 = t7 * (t759 * t778 + t762 * t787 + t770 + t773);
+    input_by_q[2] = WAM7_C(0.05209961446285298) * (t0 * t807 + t808);
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t809 = t784 - t794 + (t783 + (t793 - t683 + t782));
+    const wam7_real_t t810 = WAM7_C(2.0) * t809; /* link j3: derivatives */
+    const wam7_real_t t811 = WAM7_C(0.07745783389167521) * (t810 + WAM7_C(2.0) * (t5 * t765 - t4 * t766));
+    input_by_dq[16] = WAM7_C(61.81619256017505) * parameters[FV3] + t811;
+    const wam7_real_t t812 = parameters[ZZ3] - t757;
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t813 = t22 * parameters[YZ3] - t5 * t812 + (t686 - t752);
+    const wam7_real_t t814 = WAM7_C(2.0) * t813 - (t797 * t778 + t788 * t787); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t815 = t22 * parameters[XZ3] - t4 * t812 + (t13 * t657 - t26 * t651 + t736 * t775);
+    const wam7_real_t t816 = WAM7_C(2.0) * t815 + (t788 * t778 + t789 * t787); /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t817 = t5 * parameters[MZ3] - t22 * parameters[MY3] + t780;
+    const wam7_real_t t818 = WAM7_C(2.0) * t817 - t791 * t778; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const wam7_real_t t819 = t4 * parameters[MZ3] - t22 * parameters[MX3] + (t705 - t706 * t775);
+    const wam7_real_t t820 = WAM7_C(2.0) * t819 + t791 * t787; /* link j3: derivatives */
+    const wam7_real_t t821 = t2 * t816 - t3 * t814 + WAM7_C(0.55) * (t2 * t820 - t3 * t818);
+    input_by_dq[9] = WAM7_C(0.07745783389167521) * t821;
+    const wam7_real_t t822 = t2 * t814 + t3 * t816 + WAM7_C(0.55) * (t3 * t820 + t2 * t818);
+    const wam7_real_t t823 = t0 * t822 + t7 * (t810 + (t765 * t778 + t766 * t787));
+    input_by_dq[2] = WAM7_C(0.05209961446285298) * t823;
+    input_by_ddq[16] = WAM7_C(61.81619256017505) * parameters[IA3] + WAM7_C(-0.07745783389167521) * t769;
+    const wam7_real_t t824 = t2 * t772 + t3 * t771; /* link j3: column of the mass matrix */
+    const wam7_real_t t825 = WAM7_C(0.55) * t824 - (t3 * t765 + t2 * t766);
+    const wam7_real_t t826 = WAM7_C(-0.07745783389167521) * t825;
+    input_by_ddq[9] = t826;
+    const wam7_real_t t827 = t2 * t771 - t3 * t772;
+    const wam7_real_t t828 = t3 * t766 - t2 * t765 + WAM7_C(0.55) * t827;
+    const wam7_real_t t829 = t0 * t828 - t7 * t769;
+    input_by_ddq[2] = WAM7_C(0.05209961446285298) * t829;
+    const wam7_real_t t830 = t3 * t763 - t2 * t760; /* link j3: derivatives */
+    const wam7_real_t t831 = t824 * t377 + t827 * t380 - t810;
+    const wam7_real_t t832 = t14 * t830 + t1 * t831 + (t8 * t828 + t17 * t769 + t382 * t825);
+    input_by_q[15] = WAM7_C(0.07745783389167521) * (t832 + t105 * t824);
+    const wam7_real_t t833 = t3 * t760 + t2 * t763 + WAM7_C(2.0) * (t14 * t828 + t1 * t769);
+    input_by_dq[15] = WAM7_C(0.07745783389167521) * t833;
+    input_by_dq[14] = WAM7_C(0.07745783389167521) * (t0 * t830 - t7 * t831);
+    input_by_ddq[15] = t826;
+    input_by_ddq[14] = WAM7_C(0.07745783389167521) * t829;
+    const wam7_real_t t834 = t2 * (t786 - t795) + t3 * (t796 + t777); /* link j3: inertia, momentum beyond */
+    const wam7_real_t t835 = t3 * t834;
+    const wam7_real_t t836 = WAM7_C(-0.55) * t1; /* link j3: velocity of its origin */
+    const wam7_real_t t837 = WAM7_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const wam7_real_t t838 = parameters[XX2] - t837;
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t839 = t1 * parameters[XY2] - t14 * t838 + (t835 - t777 - t827 * t836);
+    const wam7_real_t t840 = WAM7_C(2.0) * t839; /* link j2: derivatives */
+    const wam7_real_t t841 = WAM7_C(0.55) * t801; /* link j3: inertia of it and all beyond */
+    const wam7_real_t t842 = t791 + t841;
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t843 = WAM7_C(0.55) * (t3 * t817 - t2 * t819) - t842 * t836;
+    const wam7_real_t t844 = t837 - parameters[YY2];
+    const wam7_real_t t845 = t14 * parameters[XY2] + t1 * t844 + (t3 * t813 - t2 * t815 + t843);
+    const wam7_real_t t846 = WAM7_C(2.0) * t845; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const wam7_real_t t847 = t2 * (t797 - t789) - t788 * (WAM7_C(2.0) * t3);
+    const wam7_real_t t848 = parameters[XZ2] + (t788 + t3 * t847);
+    const wam7_real_t t849 = parameters[YZ2] + t825;
+    const wam7_real_t t850 = t2 * t847;
+    const wam7_real_t t851 = WAM7_C(0.55) * (t841 + WAM7_C(2.0) * t791);
+    const wam7_real_t t852 = parameters[ZZ2] + (t797 - t850 + t851);
+    /* link j2: derivatives */
+    const wam7_real_t t853 = t17 * t849 - t8 * t848 - t382 * t852 + (t14 * t840 + t1 * t846);
+    const wam7_real_t t854 = t105 * (parameters[MY2] - t842) - t94 * (parameters[MX2] + t827) + t853;
+    input_by_q[8] = WAM7_C(0.07745783389167521) * t854;
+    const wam7_real_t t855 = t2 * t834; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t856 = WAM7_C(0.55) * dq[1]; /* link j3: velocity of its origin */
+    const wam7_real_t t857 = t827 * t856; /* link j3: inertia, momentum beyond */
+    const wam7_real_t t858 = WAM7_C(-0.55) * t800;
+    const wam7_real_t t859 = t824 * t836;
+    const wam7_real_t t860 = t857 - t859 - t858;
+    const wam7_real_t t861 = t14 * parameters[XZ2];
+    const wam7_real_t t862 = dq[1] * parameters[XY2];
+    const wam7_real_t t863 = t860 + (t786 - t855 - t857) - (t861 + t862);
+    const wam7_real_t t864 = WAM7_C(2.0) * t14; /* link j2: derivatives */
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t865 = WAM7_C(0.55) * (t2 * t817 + t3 * t819) + t842 * t856;
+    const wam7_real_t t866 = dq[1] * t844 - t14 * parameters[YZ2] + (t2 * t813 + t3 * t815 + t865);
+    const wam7_real_t t867 = WAM7_C(-2.0) * t1; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const wam7_real_t t868 = parameters[XX2] + (t789 + t850 + t851);
+    const wam7_real_t t869 = parameters[XY2] + t828;
+    /* link j2: derivatives */
+    const wam7_real_t t870 = t863 * t864 + t866 * t867 + (t8 * t868 - t17 * t869 + t382 * t848);
+    const wam7_real_t t871 = parameters[MZ2] + t824; /* link j3: inertia of it and all beyond */
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t872 = t1 * parameters[XZ2] + dq[1] * t838 + (t3 * t762 - t2 * t759);
+    const wam7_real_t t873 = t1 * parameters[YZ2];
+    const wam7_real_t t874 = t862 + t873 + (t860 + (t809 + t858));
+    const wam7_real_t t875 = parameters[YY2] - t769; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
+    const wam7_real_t t876 = t872 * t864 + t874 * t867 + (t8 * t869 - t17 * t875 + t382 * t849);
+    const wam7_real_t t877 = t0 * (t232 + (t870 - t94 * t871)) + t7 * (t226 + (t876 + t105 * t871));
+    input_by_q[1] = WAM7_C(0.05209961446285298) * t877;
+    const wam7_real_t t878 = WAM7_C(2.0) * (t861 - t873 + (t860 + (t795 + t855 + t859)));
+    const wam7_real_t t879 = WAM7_C(0.07745783389167521) * (t878 + WAM7_C(2.0) * (t1 * t849 - t14 * t848));
+    input_by_dq[8] = WAM7_C(61.81619256017505) * parameters[FV2] + t879;
+    const wam7_real_t t880 = parameters[ZZ2] - t837;
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t881 = dq[1] * parameters[YZ2] + t14 * t880 + (t835 - t796 + t824 * t856);
+    /* link j2: derivatives */
+    const wam7_real_t t882 = t0 * (WAM7_C(2.0) * t881 + (t868 * t864 + t869 * t867));
+    /* link j3: inertia, momentum beyond */
+    const wam7_real_t t883 = t3 * t759 + t2 * t762 - (dq[1] * parameters[XZ2] + t1 * t880);
+    /* link j2: derivatives */
+    const wam7_real_t t884 = t7 * (WAM7_C(2.0) * t883 + (t869 * t864 + t875 * t867));
+    input_by_dq[1] = WAM7_C(0.05209961446285298) * (t882 + t884);
+    input_by_ddq[8] = WAM7_C(61.81619256017505) * parameters[IA2] + WAM7_C(0.07745783389167521) * t852;
+    const wam7_real_t t885 = t0 * t848 + t7 * t849; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = WAM7_C(-0.05209961446285298) * t885;
+    input_by_dq[7] = WAM7_C(0.07745783389167521) * (t0 * t840 - t7 * t846);
+    input_by_ddq[7] = WAM7_C(-0.07745783389167521) * t885;
+    /* link j2: inertia, momentum beyond */
+    const wam7_real_t t886 = t7 * (t7 * (t874 - t863) + t0 * (t866 + t872));
+    input_by_dq[0] = WAM7_C(91.90371991247264) * parameters[FV1] + WAM7_C(0.10419922892570596) * (t863
+        + t886);
+    /* link j2: inertia of it and all beyond */
+    const wam7_real_t t887 = t7 * (t7 * (t875 - t868) + t869 * (WAM7_C(2.0) * t0));
+    input_by_ddq[0] = WAM7_C(91.90371991247264) * parameters[IA1]
+        + WAM7_C(0.05209961446285298) * (parameters[ZZ1] + (t868 + t887));
     /* always zero */
     input_by_q[0] = WAM7_C(0.0);
     input_by_q[7] = WAM7_C(0.0);

@@ -92,7 +92,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_joint_effort.c are of different generations: generate the arm again"
 #endif
 

@@ -89,7 +89,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -113,199 +113,188 @@ wam7_status_t wam7_mass_matrix(
         return status;
     }
 
-    wam7_real_t t74, t67;
-    WAM7_SINCOS(q[1], &t74, &t67);
-    wam7_real_t t60, t52;
-    WAM7_SINCOS(q[2], &t60, &t52);
-    wam7_real_t t42, t35;
-    WAM7_SINCOS(q[3], &t42, &t35);
-    wam7_real_t t14, t19;
-    WAM7_SINCOS(q[4], &t14, &t19);
-    wam7_real_t t8, t5;
-    WAM7_SINCOS(q[5], &t8, &t5);
-    wam7_real_t t1, t0;
-    WAM7_SINCOS(q[6], &t1, &t0);
-    /* link j7: inertia of it and all beyond */
-    const wam7_real_t t2 = parameters[XY7] * (WAM7_C(2.0) * t1) - t0 * parameters[XX7R];
-    const wam7_real_t t3 = t0 * t2;
-    const wam7_real_t t4 = parameters[XX6R] - t3;
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t6 = t1 * parameters[YZ7R] - t0 * parameters[XZ7R];
-    const wam7_real_t t7 = parameters[XY6] + t6; /* link j7: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const wam7_real_t t9 = t5 * (parameters[ZZ7] - t4) + t7 * (WAM7_C(2.0) * t8);
-    const wam7_real_t t10 = t5 * t9;
-    const wam7_real_t t11 = parameters[ZZ5R] + (t4 + t10);
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t12 = t0 * parameters[MY7] + t1 * parameters[MX7];
-    const wam7_real_t t13 = parameters[MY5R] + t12; /* link j6: inertia of it and all beyond */
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t15 = t1 * parameters[MY7] - t0 * parameters[MX7];
-    const wam7_real_t t16 = t15 - parameters[MX6]; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t17 = t8 * parameters[MY6R] + t5 * t16; /* link j6: column of the mass matrix */
-    const wam7_real_t t18 = t17 - parameters[MX5]; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t20 = t14 * t13 + t19 * t18; /* link j5: column of the mass matrix */
-    const wam7_real_t t21 = WAM7_C(0.09) * t20; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t22 = t11 + t21;
-    /* link j6: inertia of it and all beyond */
-    const wam7_real_t t23 = parameters[XX5R] + (parameters[ZZ7] - t10);
-    /* link j7: inertia of it and all beyond */
-    const wam7_real_t t24 = parameters[ZZ6R] + (parameters[XX7R] + t3);
-    const wam7_real_t t25 = t1 * t2 - parameters[XY7] - parameters[XZ6];
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t26 = t1 * parameters[XZ7R] + t0 * parameters[YZ7R];
-    const wam7_real_t t27 = parameters[YZ6] - t26; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t28 = t5 * t25 + t8 * t27; /* link j6: column of the mass matrix */
-    const wam7_real_t t29 = t28 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t30 = t19 * (t24 - t23) - t29 * (WAM7_C(2.0) * t14);
-    const wam7_real_t t31 = t19 * t30;
-    const wam7_real_t t32 = t8 * t16 - t5 * parameters[MY6R]; /* link j6: column of the mass matrix */
-    const wam7_real_t t33 = WAM7_C(0.6) * t32; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t34 = parameters[XX4R] + (t24 - t31 + t33);
-    const wam7_real_t t36 = parameters[XZ5] - (t7 - t8 * t9); /* link j6: inertia of it and all beyond */
-    const wam7_real_t t37 = t8 * t25 - t5 * t27; /* link j6: column of the mass matrix */
-    const wam7_real_t t38 = parameters[YZ5] + t37; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t39 = t14 * t38 - t19 * t36; /* link j5: column of the mass matrix */
-    const wam7_real_t t40 = WAM7_C(-0.3) * t20;
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t41 = parameters[XY4R] + (t39 + (t40 + WAM7_C(-0.045) * t32));
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t43 = t35 * (t22 - t34) + t41 * (WAM7_C(2.0) * t42);
-    const wam7_real_t t44 = t35 * t43;
-    const wam7_real_t t45 = parameters[XX3R] + (t22 - t44);
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t46 = parameters[ZZ4R] + (t23 + t31 + (t21 + t33));
-    const wam7_real_t t47 = parameters[MX4R] - t20;
-    const wam7_real_t t48 = t32 - parameters[MY4R];
-    const wam7_real_t t49 = t42 * t48 + t35 * t47; /* link j4: column of the mass matrix */
-    const wam7_real_t t50 = WAM7_C(0.09) * t49; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t51 = t46 + t50;
-    const wam7_real_t t53 = t14 * t18 - t19 * t13; /* link j5: column of the mass matrix */
-    const wam7_real_t t54 = WAM7_C(-0.045) * t53; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t55 = t29 + t14 * t30 - t54 - parameters[XZ4];
-    /* link j5: column of the mass matrix */
-    const wam7_real_t t56 = t14 * t36 + t19 * t38 + WAM7_C(0.3) * t53;
-    const wam7_real_t t57 = parameters[YZ4] - t56; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t58 = t35 * t55 + t42 * t57; /* link j4: column of the mass matrix */
-    const wam7_real_t t59 = t54 + t58 - parameters[XY3R]; /* link j4: inertia of it and all beyond */
-    /* link j3: inertia of it and all beyond */
-    const wam7_real_t t61 = t52 * (t51 - t45) - t59 * (WAM7_C(2.0) * t60);
-    const wam7_real_t t62 = t52 * t61;
-    const wam7_real_t t63 = t35 * t48 - t42 * t47; /* link j4: column of the mass matrix */
-    const wam7_real_t t64 = WAM7_C(1.1) * t63; /* link j3: inertia of it and all beyond */
-    const wam7_real_t t65 = parameters[XX2R] + (t51 - t62 + t64);
-    const wam7_real_t t66 = parameters[ZZ3R] + (t34 + t44 + t50); /* link j4: inertia of it and all beyond */
-    const wam7_real_t t68 = parameters[XZ3] - (t41 - t42 * t43 - WAM7_C(-0.045) * t63);
-    const wam7_real_t t69 = t42 * t55 - t35 * t57; /* link j4: column of the mass matrix */
-    const wam7_real_t t70 = parameters[YZ3] + t69; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t71 = t53 - parameters[MY3R];
-    const wam7_real_t t72 = parameters[MX3R] + t49;
-    /* link j3: column of the mass matrix */
-    const wam7_real_t t73 = t60 * t70 - t52 * t68 + WAM7_C(0.55) * (t60 * t71 + t52 * t72);
-    /* link j2: inertia of it and all beyond */
-    const wam7_real_t t75 = t67 * (t66 - t65) + (parameters[XY2] + t73) * (WAM7_C(2.0) * t74);
-    out[0] = parameters[ZZ1R] + (t65 + t67 * t75);
-    /* link j3: column of the mass matrix */
-    const wam7_real_t t76 = t60 * t68 + t52 * t70 + WAM7_C(0.55) * (t52 * t71 - t60 * t72);
-    /* link j2: column of the mass matrix */
-    const wam7_real_t t77 = t74 * (t59 + t60 * t61 - parameters[XZ2]) + t67 * (t76 - parameters[YZ2]);
-    out[1] = t77;
-    const wam7_real_t t78 = t74 * t73 + t67 * t66; /* link j3: column of the mass matrix */
-    out[2] = t78;
-    const wam7_real_t t79 = t46 + WAM7_C(0.045) * t49; /* link j4: column of the mass matrix */
-    const wam7_real_t t80 = t52 * t58 + t60 * t79 + WAM7_C(0.55) * (t60 * t63);
-    const wam7_real_t t81 = t74 * t80 + t67 * t69;
-    out[3] = t81;
-    const wam7_real_t t82 = t39 + t40; /* link j5: column of the mass matrix */
-    const wam7_real_t t83 = WAM7_C(0.045) * t20;
-    const wam7_real_t t84 = t11 + t83;
-    const wam7_real_t t85 = t42 * t84 - t35 * t82;
-    const wam7_real_t t86 = t56 + WAM7_C(0.045) * (t42 * t53);
-    const wam7_real_t t87 = t35 * t53;
-    const wam7_real_t t88 = t60 * t86 - t52 * t85 + WAM7_C(0.55) * (t60 * t87 - t52 * t20);
-    const wam7_real_t t89 = t42 * t82 + t35 * t84 - t83;
-    const wam7_real_t t90 = t74 * t88 + t67 * t89;
-    out[4] = t90;
-    const wam7_real_t t91 = t14 * t32; /* link j6: column of the mass matrix */
-    const wam7_real_t t92 = t19 * t28 + t14 * t24 + WAM7_C(0.3) * t91;
-    const wam7_real_t t93 = WAM7_C(-0.045) * t91;
-    const wam7_real_t t94 = t37 + t93;
-    const wam7_real_t t95 = t42 * t94 - t35 * t92;
-    const wam7_real_t t96 = t19 * t32;
-    const wam7_real_t t97 = t19 * t24 - t14 * t28 + (WAM7_C(0.045) * t17 + WAM7_C(0.3) * t96);
-    const wam7_real_t t98 = t97 + WAM7_C(0.045) * (t42 * t96 - t35 * t17);
-    const wam7_real_t t99 = t35 * t96 + t42 * t17;
-    const wam7_real_t t100 = t60 * t98 - t52 * t95 + WAM7_C(0.55) * (t60 * t99 + t52 * t91);
-    const wam7_real_t t101 = t42 * t92 + t35 * t94 - t93;
-    const wam7_real_t t102 = t74 * t100 + t67 * t101;
-    out[5] = t102;
-    const wam7_real_t t103 = t8 * parameters[ZZ7] - t5 * t6; /* link j7: column of the mass matrix */
-    const wam7_real_t t104 = t5 * t12;
-    const wam7_real_t t105 = t14 * t104 + t19 * t15;
-    const wam7_real_t t106 = t14 * t26 - t19 * t103 + WAM7_C(-0.3) * t105;
-    const wam7_real_t t107 = WAM7_C(0.045) * t105;
-    const wam7_real_t t108 = t8 * t6 + t5 * parameters[ZZ7];
-    const wam7_real_t t109 = t108 + t107;
-    const wam7_real_t t110 = t42 * t109 - t35 * t106;
-    const wam7_real_t t111 = t14 * t15 - t19 * t104;
-    const wam7_real_t t112 = t8 * t12;
-    const wam7_real_t t113 = t14 * t103 + t19 * t26 + (WAM7_C(0.045) * t112 + WAM7_C(0.3) * t111);
-    const wam7_real_t t114 = t113 + WAM7_C(0.045) * (t42 * t111 - t35 * t112);
-    const wam7_real_t t115 = t35 * t111 + t42 * t112;
-    const wam7_real_t t116 = t60 * t114 - t52 * t110 + WAM7_C(0.55) * (t60 * t115 - t52 * t105);
-    const wam7_real_t t117 = t42 * t106 + t35 * t109 - t107;
-    const wam7_real_t t118 = t74 * t116 + t67 * t117;
-    out[6] = t118;
-    out[7] = t77;
-    out[8] = parameters[ZZ2R] + (t45 + t62 + t64);
-    out[9] = t76;
-    /* link j4: column of the mass matrix */
-    const wam7_real_t t119 = t52 * t79 - t60 * t58 + WAM7_C(0.55) * (t52 * t63);
-    out[10] = t119;
-    /* link j5: column of the mass matrix */
-    const wam7_real_t t120 = t60 * t85 + t52 * t86 + WAM7_C(0.55) * (t52 * t87 + t60 * t20);
-    out[11] = t120;
-    /* link j6: column of the mass matrix */
-    const wam7_real_t t121 = t60 * t95 + t52 * t98 + WAM7_C(0.55) * (t52 * t99 - t60 * t91);
-    out[12] = t121;
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t122 = t60 * t110 + t52 * t114 + WAM7_C(0.55) * (t52 * t115 + t60 * t105);
-    out[13] = t122;
-    out[14] = t78;
-    out[15] = t76;
-    out[16] = t66 + WAM7_C(798.0625) * parameters[IA3];
-    out[17] = t69;
-    out[18] = t89;
-    out[19] = t101;
-    out[20] = t117;
-    out[21] = t81;
-    out[22] = t119;
-    out[23] = t69;
-    out[24] = t46 + WAM7_C(324.0) * parameters[IA4];
-    out[25] = t56;
-    out[26] = t97;
-    out[27] = t113;
-    out[28] = t90;
-    out[29] = t120;
-    out[30] = t89;
-    out[31] = t56;
-    out[32] = t11 + WAM7_C(89.8704) * parameters[IA5];
-    out[33] = t37;
-    out[34] = t108;
-    out[35] = t102;
-    out[36] = t121;
-    out[37] = t101;
-    out[38] = t97;
-    out[39] = t37;
-    out[40] = t24 + WAM7_C(89.8704) * parameters[IA6];
-    out[41] = t26;
-    out[42] = t118;
-    out[43] = t122;
-    out[44] = t117;
-    out[45] = t113;
-    out[46] = t108;
-    out[47] = t26;
+    wam7_real_t t30, t31;
+    WAM7_SINCOS(q[1], &t30, &t31);
+    wam7_real_t t24, t26;
+    WAM7_SINCOS(q[2], &t24, &t26);
+    wam7_real_t t18, t21;
+    WAM7_SINCOS(q[3], &t18, &t21);
+    wam7_real_t t8, t9;
+    WAM7_SINCOS(q[4], &t8, &t9);
+    wam7_real_t t4, t5;
+    WAM7_SINCOS(q[5], &t4, &t5);
+    wam7_real_t t0, t1;
+    WAM7_SINCOS(q[6], &t0, &t1);
     out[48] = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
+    /* link j7: column of the mass matrix */
+    const wam7_real_t t2 = t0 * parameters[XZ7R] + t1 * parameters[YZ7R];
+    out[41] = t2;
+    const wam7_real_t t3 = t0 * parameters[YZ7R] - t1 * parameters[XZ7R];
+    const wam7_real_t t6 = t4 * t3 + t5 * parameters[ZZ7];
+    out[34] = t6;
+    const wam7_real_t t7 = t4 * parameters[ZZ7] - t5 * t3;
+    const wam7_real_t t10 = t1 * parameters[MY7] + t0 * parameters[MX7];
+    const wam7_real_t t11 = t5 * t10;
+    const wam7_real_t t12 = t0 * parameters[MY7] - t1 * parameters[MX7];
+    const wam7_real_t t13 = t8 * t12 - t9 * t11;
+    const wam7_real_t t14 = t4 * t10;
+    const wam7_real_t t15 = t8 * t7 + t9 * t2 + (WAM7_C(0.045) * t14 + WAM7_C(0.3) * t13);
+    out[27] = t15;
+    const wam7_real_t t16 = t8 * t11 + t9 * t12;
+    const wam7_real_t t17 = t8 * t2 - t9 * t7 + WAM7_C(-0.3) * t16;
+    const wam7_real_t t19 = WAM7_C(0.045) * t16;
+    const wam7_real_t t20 = t6 + t19;
+    const wam7_real_t t22 = t18 * t17 + t21 * t20 - t19;
+    out[20] = t22;
+    const wam7_real_t t23 = t18 * t20 - t21 * t17;
+    const wam7_real_t t25 = t15 + WAM7_C(0.045) * (t18 * t13 - t21 * t14);
+    const wam7_real_t t27 = t21 * t13 + t18 * t14;
+    const wam7_real_t t28 = t24 * t23 + t26 * t25 + WAM7_C(0.55) * (t26 * t27 + t24 * t16);
+    out[13] = t28;
+    const wam7_real_t t29 = t24 * t25 - t26 * t23 + WAM7_C(0.55) * (t24 * t27 - t26 * t16);
+    const wam7_real_t t32 = t30 * t29 + t31 * t22;
+    out[6] = t32;
+    out[47] = t2;
+    out[46] = t6;
+    out[45] = t15;
+    out[44] = t22;
+    out[43] = t28;
+    out[42] = t32;
+    /* link j7: inertia of it and all beyond */
+    const wam7_real_t t33 = parameters[XY7] * (WAM7_C(2.0) * t0) - t1 * parameters[XX7R];
+    const wam7_real_t t34 = t1 * t33;
+    const wam7_real_t t35 = parameters[ZZ6R] + (parameters[XX7R] + t34);
+    out[40] = t35 + WAM7_C(89.8704) * parameters[IA6];
+    const wam7_real_t t36 = t0 * t33 - parameters[XY7] - parameters[XZ6];
+    const wam7_real_t t37 = parameters[YZ6] - t2;
+    const wam7_real_t t38 = t4 * t36 - t5 * t37; /* link j6: column of the mass matrix */
+    out[33] = t38;
+    const wam7_real_t t39 = t5 * t36 + t4 * t37;
+    const wam7_real_t t40 = t12 - parameters[MX6]; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t41 = t4 * parameters[MY6R] + t5 * t40; /* link j6: column of the mass matrix */
+    const wam7_real_t t42 = t4 * t40 - t5 * parameters[MY6R];
+    const wam7_real_t t43 = t9 * t42;
+    const wam7_real_t t44 = t9 * t35 - t8 * t39 + (WAM7_C(0.045) * t41 + WAM7_C(0.3) * t43);
+    out[26] = t44;
+    const wam7_real_t t45 = t8 * t42;
+    const wam7_real_t t46 = t9 * t39 + t8 * t35 + WAM7_C(0.3) * t45;
+    const wam7_real_t t47 = WAM7_C(-0.045) * t45;
+    const wam7_real_t t48 = t38 + t47;
+    const wam7_real_t t49 = t18 * t46 + t21 * t48 - t47;
+    out[19] = t49;
+    const wam7_real_t t50 = t18 * t48 - t21 * t46;
+    const wam7_real_t t51 = t44 + WAM7_C(0.045) * (t18 * t43 - t21 * t41);
+    const wam7_real_t t52 = t21 * t43 + t18 * t41;
+    const wam7_real_t t53 = t24 * t50 + t26 * t51 + WAM7_C(0.55) * (t26 * t52 - t24 * t45);
+    out[12] = t53;
+    const wam7_real_t t54 = t24 * t51 - t26 * t50 + WAM7_C(0.55) * (t24 * t52 + t26 * t45);
+    const wam7_real_t t55 = t30 * t54 + t31 * t49;
+    out[5] = t55;
+    out[39] = t38;
+    out[38] = t44;
+    out[37] = t49;
+    out[36] = t53;
+    out[35] = t55;
+    const wam7_real_t t56 = parameters[XX6R] - t34; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t57 = parameters[XY6] + t3;
+    /* link j6: inertia of it and all beyond */
+    const wam7_real_t t58 = t5 * (parameters[ZZ7] - t56) + t57 * (WAM7_C(2.0) * t4);
+    const wam7_real_t t59 = t5 * t58;
+    const wam7_real_t t60 = parameters[ZZ5R] + (t56 + t59);
+    out[32] = t60 + WAM7_C(89.8704) * parameters[IA5];
+    const wam7_real_t t61 = parameters[XZ5] - (t57 - t4 * t58);
+    const wam7_real_t t62 = parameters[YZ5] + t38;
+    const wam7_real_t t63 = parameters[MY5R] + t10;
+    const wam7_real_t t64 = t41 - parameters[MX5];
+    const wam7_real_t t65 = t8 * t64 - t9 * t63; /* link j5: column of the mass matrix */
+    const wam7_real_t t66 = t8 * t61 + t9 * t62 + WAM7_C(0.3) * t65;
+    out[25] = t66;
+    const wam7_real_t t67 = t8 * t62 - t9 * t61;
+    const wam7_real_t t68 = t8 * t63 + t9 * t64;
+    const wam7_real_t t69 = WAM7_C(-0.3) * t68;
+    const wam7_real_t t70 = t67 + t69;
+    const wam7_real_t t71 = WAM7_C(0.045) * t68;
+    const wam7_real_t t72 = t60 + t71;
+    const wam7_real_t t73 = t18 * t70 + t21 * t72 - t71;
+    out[18] = t73;
+    const wam7_real_t t74 = t18 * t72 - t21 * t70;
+    const wam7_real_t t75 = t66 + WAM7_C(0.045) * (t18 * t65);
+    const wam7_real_t t76 = t21 * t65;
+    const wam7_real_t t77 = t24 * t74 + t26 * t75 + WAM7_C(0.55) * (t26 * t76 + t24 * t68);
+    out[11] = t77;
+    const wam7_real_t t78 = t24 * t75 - t26 * t74 + WAM7_C(0.55) * (t24 * t76 - t26 * t68);
+    const wam7_real_t t79 = t30 * t78 + t31 * t73;
+    out[4] = t79;
+    out[31] = t66;
+    out[30] = t73;
+    out[29] = t77;
+    out[28] = t79;
+    /* link j6: inertia of it and all beyond */
+    const wam7_real_t t80 = parameters[XX5R] + (parameters[ZZ7] - t59);
+    const wam7_real_t t81 = t39 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
+    const wam7_real_t t82 = t9 * (t35 - t80) - t81 * (WAM7_C(2.0) * t8);
+    const wam7_real_t t83 = t9 * t82;
+    const wam7_real_t t84 = WAM7_C(0.09) * t68;
+    const wam7_real_t t85 = WAM7_C(0.6) * t42;
+    const wam7_real_t t86 = parameters[ZZ4R] + (t80 + t83 + (t84 + t85));
+    out[24] = t86 + WAM7_C(324.0) * parameters[IA4];
+    const wam7_real_t t87 = WAM7_C(-0.045) * t65;
+    const wam7_real_t t88 = t81 + t8 * t82 - t87 - parameters[XZ4];
+    const wam7_real_t t89 = parameters[YZ4] - t66;
+    const wam7_real_t t90 = t18 * t88 - t21 * t89; /* link j4: column of the mass matrix */
+    out[17] = t90;
+    const wam7_real_t t91 = t21 * t88 + t18 * t89;
+    const wam7_real_t t92 = parameters[MX4R] - t68; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t93 = t42 - parameters[MY4R];
+    const wam7_real_t t94 = t18 * t93 + t21 * t92; /* link j4: column of the mass matrix */
+    const wam7_real_t t95 = t86 + WAM7_C(0.045) * t94;
+    const wam7_real_t t96 = t21 * t93 - t18 * t92;
+    const wam7_real_t t97 = t26 * t95 - t24 * t91 + WAM7_C(0.55) * (t26 * t96);
+    out[10] = t97;
+    const wam7_real_t t98 = t26 * t91 + t24 * t95 + WAM7_C(0.55) * (t24 * t96);
+    const wam7_real_t t99 = t30 * t98 + t31 * t90;
+    out[3] = t99;
+    out[23] = t90;
+    out[22] = t97;
+    out[21] = t99;
+    const wam7_real_t t100 = t60 + t84; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t101 = parameters[XX4R] + (t35 - t83 + t85);
+    const wam7_real_t t102 = parameters[XY4R] + (t67 + (t69 + WAM7_C(-0.045) * t42));
+    /* link j4: inertia of it and all beyond */
+    const wam7_real_t t103 = t21 * (t100 - t101) + t102 * (WAM7_C(2.0) * t18);
+    const wam7_real_t t104 = t21 * t103;
+    const wam7_real_t t105 = WAM7_C(0.09) * t94;
+    const wam7_real_t t106 = parameters[ZZ3R] + (t101 + t104 + t105);
+    out[16] = t106 + WAM7_C(798.0625) * parameters[IA3];
+    const wam7_real_t t107 = parameters[XZ3] - (t102 - t18 * t103 - WAM7_C(-0.045) * t96);
+    const wam7_real_t t108 = parameters[YZ3] + t90;
+    const wam7_real_t t109 = t65 - parameters[MY3R];
+    const wam7_real_t t110 = parameters[MX3R] + t94;
+    /* link j3: column of the mass matrix */
+    const wam7_real_t t111 = t24 * t107 + t26 * t108 + WAM7_C(0.55) * (t26 * t109 - t24 * t110);
+    out[9] = t111;
+    const wam7_real_t t112 = t24 * t108 - t26 * t107 + WAM7_C(0.55) * (t24 * t109 + t26 * t110);
+    const wam7_real_t t113 = t30 * t112 + t31 * t106;
+    out[2] = t113;
+    out[15] = t111;
+    out[14] = t113;
+    const wam7_real_t t114 = parameters[XX3R] + (t100 - t104); /* link j4: inertia of it and all beyond */
+    const wam7_real_t t115 = t86 + t105;
+    const wam7_real_t t116 = t87 + t91 - parameters[XY3R];
+    /* link j3: inertia of it and all beyond */
+    const wam7_real_t t117 = t26 * (t115 - t114) - t116 * (WAM7_C(2.0) * t24);
+    const wam7_real_t t118 = t26 * t117;
+    const wam7_real_t t119 = WAM7_C(1.1) * t96;
+    out[8] = parameters[ZZ2R] + (t114 + t118 + t119);
+    /* link j2: column of the mass matrix */
+    const wam7_real_t t120 = t30 * (t116 + t24 * t117 - parameters[XZ2]) + t31 * (t111 - parameters[YZ2]);
+    out[1] = t120;
+    out[7] = t120;
+    /* link j3: inertia of it and all beyond */
+    const wam7_real_t t121 = parameters[XX2R] + (t115 - t118 + t119);
+    /* link j2: inertia of it and all beyond */
+    const wam7_real_t t122 = t31 * (t106 - t121) + (parameters[XY2] + t112) * (WAM7_C(2.0) * t30);
+    out[0] = parameters[ZZ1R] + (t121 + t31 * t122);
     return WAM7_STATUS_OK;
 }

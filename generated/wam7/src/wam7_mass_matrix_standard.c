@@ -118,7 +118,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x0E2B7B26UL
+#if WAM7_GENERATION != 0x741DCFF0UL
 #error "wam7.h and wam7_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -143,211 +143,202 @@ wam7_status_t wam7_mass_matrix_standard(
         return status;
     }
 
-    wam7_real_t t85, t78;
-    WAM7_SINCOS(q[1], &t85, &t78);
-    wam7_real_t t71, t63;
-    WAM7_SINCOS(q[2], &t71, &t63);
-    wam7_real_t t51, t44;
-    WAM7_SINCOS(q[3], &t51, &t44);
-    wam7_real_t t25, t18;
-    WAM7_SINCOS(q[4], &t25, &t18);
-    wam7_real_t t12, t8;
-    WAM7_SINCOS(q[5], &t12, &t8);
-    wam7_real_t t1, t0;
-    WAM7_SINCOS(q[6], &t1, &t0);
-    /* link j7: inertia of it and all beyond */
-    const wam7_real_t t2 = t0 * (parameters[YY7] - parameters[XX7]) + parameters[XY7] * (WAM7_C(2.0) * t1);
-    const wam7_real_t t3 = t0 * t2;
-    const wam7_real_t t4 = WAM7_C(0.06) * parameters[M7];
-    const wam7_real_t t5 = WAM7_C(0.06) * (t4 + WAM7_C(2.0) * parameters[MZ7]);
-    const wam7_real_t t6 = parameters[XX6] + (parameters[YY7] - t3 + t5);
-    const wam7_real_t t7 = parameters[YY6] + parameters[ZZ7];
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t9 = t1 * parameters[MY7] - t0 * parameters[MX7];
-    const wam7_real_t t10 = t1 * parameters[YZ7] - t0 * parameters[XZ7] + WAM7_C(-0.06) * t9;
-    const wam7_real_t t11 = parameters[XY6] + t10; /* link j7: inertia of it and all beyond */
-    /* link j6: inertia of it and all beyond */
-    const wam7_real_t t13 = t8 * (t7 - t6) + t11 * (WAM7_C(2.0) * t12);
-    const wam7_real_t t14 = t8 * t13;
-    const wam7_real_t t15 = parameters[XX5] + (t7 - t14);
-    /* link j7: inertia of it and all beyond */
-    const wam7_real_t t16 = parameters[ZZ6] + (parameters[XX7] + t3 + t5);
-    const wam7_real_t t17 = parameters[YY5] + t16; /* link j6: inertia of it and all beyond */
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t19 = t0 * parameters[MY7] + t1 * parameters[MX7];
-    const wam7_real_t t20 = t1 * parameters[XZ7] + t0 * parameters[YZ7] + WAM7_C(-0.06) * t19;
-    const wam7_real_t t21 = parameters[YZ6] - t20; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t22 = t1 * t2 - parameters[XY7] - parameters[XZ6];
-    const wam7_real_t t23 = t8 * t22 + t12 * t21; /* link j6: column of the mass matrix */
-    const wam7_real_t t24 = t23 - parameters[XY5]; /* link j6: inertia of it and all beyond */
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t26 = t18 * (t17 - t15) - t24 * (WAM7_C(2.0) * t25);
-    const wam7_real_t t27 = t18 * t26;
-    const wam7_real_t t28 = t9 - parameters[MX6]; /* link j7: inertia of it and all beyond */
-    const wam7_real_t t29 = parameters[MY6] - (parameters[MZ7] + t4);
-    const wam7_real_t t30 = t12 * t28 - t8 * t29; /* link j6: column of the mass matrix */
-    const wam7_real_t t31 = parameters[MZ5] + t30; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t32 = parameters[M5] + (parameters[M6] + parameters[M7]);
-    const wam7_real_t t33 = WAM7_C(0.3) * t32; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t34 = WAM7_C(0.3) * (t33 + WAM7_C(2.0) * t31);
-    const wam7_real_t t35 = parameters[XX4] + (t17 - t27 + t34);
-    const wam7_real_t t36 = parameters[ZZ5] + (t6 + t14); /* link j6: inertia of it and all beyond */
-    const wam7_real_t t37 = parameters[MY5] + (parameters[MZ6] + t19);
-    const wam7_real_t t38 = t12 * t29 + t8 * t28; /* link j6: column of the mass matrix */
-    const wam7_real_t t39 = parameters[MX5] - t38; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t40 = t18 * t39 - t25 * t37; /* link j5: column of the mass matrix */
-    const wam7_real_t t41 = WAM7_C(0.045) * t32; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t42 = WAM7_C(0.045) * (t41 + WAM7_C(-2.0) * t40);
-    const wam7_real_t t43 = parameters[YY4] + (t36 + t42);
-    const wam7_real_t t45 = parameters[XZ5] - (t11 - t12 * t13); /* link j6: inertia of it and all beyond */
-    const wam7_real_t t46 = t12 * t22 - t8 * t21; /* link j6: column of the mass matrix */
-    const wam7_real_t t47 = parameters[YZ5] + t46; /* link j6: inertia of it and all beyond */
-    const wam7_real_t t48 = t25 * t47 - t18 * t45; /* link j5: column of the mass matrix */
-    const wam7_real_t t49 = t40 - t41; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t50 = parameters[XY4] + (t48 + (WAM7_C(-0.045) * t31 + WAM7_C(0.3) * t49));
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t52 = t44 * (t43 - t35) + t50 * (WAM7_C(2.0) * t51);
-    const wam7_real_t t53 = t44 * t52;
-    const wam7_real_t t54 = parameters[XX3] + (t43 - t53);
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t55 = parameters[ZZ4] + (t15 + t27 + (t42 + t34));
-    const wam7_real_t t56 = parameters[MX4] + t49;
-    const wam7_real_t t57 = t31 + t33 - parameters[MY4];
-    const wam7_real_t t58 = t51 * t57 + t44 * t56; /* link j4: column of the mass matrix */
-    const wam7_real_t t59 = parameters[M4] + t32; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t60 = WAM7_C(0.045) * t59; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t61 = WAM7_C(0.045) * (t60 + WAM7_C(2.0) * t58);
-    const wam7_real_t t62 = parameters[YY3] + (t55 + t61);
-    const wam7_real_t t64 = t18 * t37 + t25 * t39; /* link j5: column of the mass matrix */
-    /* link j5: inertia of it and all beyond */
-    const wam7_real_t t65 = t24 + t25 * t26 + WAM7_C(-0.045) * t64 - parameters[XZ4];
-    /* link j5: column of the mass matrix */
-    const wam7_real_t t66 = t25 * t45 + t18 * t47 + WAM7_C(-0.3) * t64;
-    const wam7_real_t t67 = parameters[YZ4] - t66; /* link j5: inertia of it and all beyond */
-    const wam7_real_t t68 = t44 * t65 + t51 * t67; /* link j4: column of the mass matrix */
-    const wam7_real_t t69 = parameters[MZ4] + t64; /* link j5: inertia of it and all beyond */
-    /* link j4: inertia of it and all beyond */
-    const wam7_real_t t70 = t68 + WAM7_C(0.045) * t69 - parameters[XY3];
-    /* link j3: inertia of it and all beyond */
-    const wam7_real_t t72 = t63 * (t62 - t54) - t70 * (WAM7_C(2.0) * t71);
-    const wam7_real_t t73 = t63 * t72;
-    const wam7_real_t t74 = t44 * t57 - t51 * t56; /* link j4: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const wam7_real_t t75 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t59)
-        + WAM7_C(2.0) * (parameters[MZ3] + t74));
-    const wam7_real_t t76 = parameters[XX2] + (t62 - t73 + t75);
-    const wam7_real_t t77 = parameters[ZZ3] + (t35 + t53 + t61); /* link j4: inertia of it and all beyond */
-    const wam7_real_t t79 = parameters[XZ3] - (t50 - t51 * t52 - WAM7_C(-0.045) * t74);
-    const wam7_real_t t80 = t51 * t65 - t44 * t67; /* link j4: column of the mass matrix */
-    const wam7_real_t t81 = parameters[YZ3] + t80; /* link j4: inertia of it and all beyond */
-    const wam7_real_t t82 = parameters[MY3] + t69;
-    const wam7_real_t t83 = parameters[MX3] + (t58 + t60);
-    /* link j3: column of the mass matrix */
-    const wam7_real_t t84 = t71 * t81 - t63 * t79 + WAM7_C(0.55) * (t63 * t83 - t71 * t82);
-    /* link j2: inertia of it and all beyond */
-    const wam7_real_t t86 = t78 * (parameters[YY2] + t77 - t76) + (parameters[XY2]
-        + t84) * (WAM7_C(2.0) * t85);
-    out[0] = parameters[ZZ1] + (t76 + t78 * t86) + WAM7_C(1764.0) * parameters[IA1];
-    /* link j3: column of the mass matrix */
-    const wam7_real_t t87 = t71 * t79 + t63 * t81 + WAM7_C(-0.55) * (t63 * t82 + t71 * t83);
-    /* link j2: column of the mass matrix */
-    const wam7_real_t t88 = t85 * (t70 + t71 * t72 - parameters[XZ2]) + t78 * (t87 - parameters[YZ2]);
-    out[1] = t88;
-    const wam7_real_t t89 = t85 * t84 + t78 * t77; /* link j3: column of the mass matrix */
-    out[2] = t89;
-    const wam7_real_t t90 = t55 + WAM7_C(0.045) * t58; /* link j4: column of the mass matrix */
-    const wam7_real_t t91 = t63 * t68 + t71 * t90 + WAM7_C(0.55) * (t71 * t74);
-    const wam7_real_t t92 = t85 * t91 + t78 * t80;
-    out[3] = t92;
-    const wam7_real_t t93 = t48 + WAM7_C(0.3) * t40; /* link j5: column of the mass matrix */
-    const wam7_real_t t94 = WAM7_C(-0.045) * t40;
-    const wam7_real_t t95 = t36 + t94;
-    const wam7_real_t t96 = t51 * t95 - t44 * t93;
-    const wam7_real_t t97 = t66 + WAM7_C(-0.045) * (t51 * t64);
-    const wam7_real_t t98 = t44 * t64;
-    const wam7_real_t t99 = t71 * t97 - t63 * t96 + WAM7_C(0.55) * (t63 * t40 - t71 * t98);
-    const wam7_real_t t100 = t51 * t93 + t44 * t95 - t94;
-    const wam7_real_t t101 = t85 * t99 + t78 * t100;
-    out[4] = t101;
-    const wam7_real_t t102 = t25 * t30; /* link j6: column of the mass matrix */
-    const wam7_real_t t103 = t18 * t23 + t25 * t16 + WAM7_C(0.3) * t102;
-    const wam7_real_t t104 = WAM7_C(-0.045) * t102;
-    const wam7_real_t t105 = t46 + t104;
-    const wam7_real_t t106 = t51 * t105 - t44 * t103;
-    const wam7_real_t t107 = t18 * t30;
-    const wam7_real_t t108 = t18 * t16 - t25 * t23 + (WAM7_C(0.045) * t38 + WAM7_C(0.3) * t107);
-    const wam7_real_t t109 = t108 + WAM7_C(0.045) * (t51 * t107 - t44 * t38);
-    const wam7_real_t t110 = t44 * t107 + t51 * t38;
-    const wam7_real_t t111 = t71 * t109 - t63 * t106 + WAM7_C(0.55) * (t71 * t110 + t63 * t102);
-    const wam7_real_t t112 = t51 * t103 + t44 * t105 - t104;
-    const wam7_real_t t113 = t85 * t111 + t78 * t112;
-    out[5] = t113;
-    const wam7_real_t t114 = t12 * parameters[ZZ7] - t8 * t10; /* link j7: column of the mass matrix */
-    const wam7_real_t t115 = t8 * t19;
-    const wam7_real_t t116 = t25 * t115 + t18 * t9;
-    const wam7_real_t t117 = t25 * t20 - t18 * t114 + WAM7_C(-0.3) * t116;
-    const wam7_real_t t118 = t12 * t10 + t8 * parameters[ZZ7];
-    const wam7_real_t t119 = WAM7_C(0.045) * t116;
-    const wam7_real_t t120 = t118 + t119;
-    const wam7_real_t t121 = t51 * t120 - t44 * t117;
-    const wam7_real_t t122 = t25 * t9 - t18 * t115;
-    const wam7_real_t t123 = t12 * t19;
-    const wam7_real_t t124 = t25 * t114 + t18 * t20 + (WAM7_C(0.045) * t123 + WAM7_C(0.3) * t122);
-    const wam7_real_t t125 = t124 + WAM7_C(0.045) * (t51 * t122 - t44 * t123);
-    const wam7_real_t t126 = t44 * t122 + t51 * t123;
-    const wam7_real_t t127 = t71 * t125 - t63 * t121 + WAM7_C(0.55) * (t71 * t126 - t63 * t116);
-    const wam7_real_t t128 = t51 * t117 + t44 * t120 - t119;
-    const wam7_real_t t129 = t85 * t127 + t78 * t128;
-    out[6] = t129;
-    out[7] = t88;
-    out[8] = parameters[ZZ2] + (t54 + t73 + t75) + WAM7_C(798.0625) * parameters[IA2];
-    out[9] = t87;
-    /* link j4: column of the mass matrix */
-    const wam7_real_t t130 = t63 * t90 - t71 * t68 + WAM7_C(0.55) * (t63 * t74);
-    out[10] = t130;
-    /* link j5: column of the mass matrix */
-    const wam7_real_t t131 = t71 * t96 + t63 * t97 + WAM7_C(-0.55) * (t63 * t98 + t71 * t40);
-    out[11] = t131;
-    /* link j6: column of the mass matrix */
-    const wam7_real_t t132 = t71 * t106 + t63 * t109 + WAM7_C(0.55) * (t63 * t110 - t71 * t102);
-    out[12] = t132;
-    /* link j7: column of the mass matrix */
-    const wam7_real_t t133 = t71 * t121 + t63 * t125 + WAM7_C(0.55) * (t63 * t126 + t71 * t116);
-    out[13] = t133;
-    out[14] = t89;
-    out[15] = t87;
-    out[16] = t77 + WAM7_C(798.0625) * parameters[IA3];
-    out[17] = t80;
-    out[18] = t100;
-    out[19] = t112;
-    out[20] = t128;
-    out[21] = t92;
-    out[22] = t130;
-    out[23] = t80;
-    out[24] = t55 + WAM7_C(324.0) * parameters[IA4];
-    out[25] = t66;
-    out[26] = t108;
-    out[27] = t124;
-    out[28] = t101;
-    out[29] = t131;
-    out[30] = t100;
-    out[31] = t66;
-    out[32] = t36 + WAM7_C(89.8704) * parameters[IA5];
-    out[33] = t46;
-    out[34] = t118;
-    out[35] = t113;
-    out[36] = t132;
-    out[37] = t112;
-    out[38] = t108;
-    out[39] = t46;
-    out[40] = t16 + WAM7_C(89.8704) * parameters[IA6];
-    out[41] = t20;
-    out[42] = t129;
-    out[43] = t133;
-    out[44] = t128;
-    out[45] = t124;
-    out[46] = t118;
-    out[47] = t20;
+    wam7_real_t t30, t31;
+    WAM7_SINCOS(q[1], &t30, &t31);
+    wam7_real_t t24, t26;
+    WAM7_SINCOS(q[2], &t24, &t26);
+    wam7_real_t t18, t21;
+    WAM7_SINCOS(q[3], &t18, &t21);
+    wam7_real_t t10, t11;
+    WAM7_SINCOS(q[4], &t10, &t11);
+    wam7_real_t t6, t7;
+    WAM7_SINCOS(q[5], &t6, &t7);
+    wam7_real_t t0, t1;
+    WAM7_SINCOS(q[6], &t0, &t1);
     out[48] = parameters[ZZ7] + WAM7_C(222.9049) * parameters[IA7];
+    /* link j7: column of the mass matrix */
+    const wam7_real_t t2 = t1 * parameters[MY7] + t0 * parameters[MX7];
+    const wam7_real_t t3 = t0 * parameters[XZ7] + t1 * parameters[YZ7] + WAM7_C(-0.06) * t2;
+    out[41] = t3;
+    const wam7_real_t t4 = t0 * parameters[MY7] - t1 * parameters[MX7];
+    const wam7_real_t t5 = t0 * parameters[YZ7] - t1 * parameters[XZ7] + WAM7_C(-0.06) * t4;
+    const wam7_real_t t8 = t6 * t5 + t7 * parameters[ZZ7];
+    out[34] = t8;
+    const wam7_real_t t9 = t6 * parameters[ZZ7] - t7 * t5;
+    const wam7_real_t t12 = t7 * t2;
+    const wam7_real_t t13 = t10 * t4 - t11 * t12;
+    const wam7_real_t t14 = t6 * t2;
+    const wam7_real_t t15 = t10 * t9 + t11 * t3 + (WAM7_C(0.045) * t14 + WAM7_C(0.3) * t13);
+    out[27] = t15;
+    const wam7_real_t t16 = t10 * t12 + t11 * t4;
+    const wam7_real_t t17 = t10 * t3 - t11 * t9 + WAM7_C(-0.3) * t16;
+    const wam7_real_t t19 = WAM7_C(0.045) * t16;
+    const wam7_real_t t20 = t8 + t19;
+    const wam7_real_t t22 = t18 * t17 + t21 * t20 - t19;
+    out[20] = t22;
+    const wam7_real_t t23 = t18 * t20 - t21 * t17;
+    const wam7_real_t t25 = t15 + WAM7_C(0.045) * (t18 * t13 - t21 * t14);
+    const wam7_real_t t27 = t21 * t13 + t18 * t14;
+    const wam7_real_t t28 = t24 * t23 + t26 * t25 + WAM7_C(0.55) * (t26 * t27 + t24 * t16);
+    out[13] = t28;
+    const wam7_real_t t29 = t24 * t25 - t26 * t23 + WAM7_C(0.55) * (t24 * t27 - t26 * t16);
+    const wam7_real_t t32 = t30 * t29 + t31 * t22;
+    out[6] = t32;
+    out[47] = t3;
+    out[46] = t8;
+    out[45] = t15;
+    out[44] = t22;
+    out[43] = t28;
+    out[42] = t32;
+    /* link j7: inertia of it and all beyond */
+    const wam7_real_t t33 = t1 * (parameters[YY7] - parameters[XX7]) + parameters[XY7] * (WAM7_C(2.0) * t0);
+    const wam7_real_t t34 = t1 * t33;
+    const wam7_real_t t35 = WAM7_C(0.06) * parameters[M7];
+    const wam7_real_t t36 = WAM7_C(0.06) * (t35 + WAM7_C(2.0) * parameters[MZ7]);
+    const wam7_real_t t37 = parameters[ZZ6] + (parameters[XX7] + t34 + t36);
+    out[40] = t37 + WAM7_C(89.8704) * parameters[IA6];
+    const wam7_real_t t38 = parameters[YZ6] - t3;
+    const wam7_real_t t39 = t0 * t33 - parameters[XY7] - parameters[XZ6];
+    const wam7_real_t t40 = t6 * t39 - t7 * t38; /* link j6: column of the mass matrix */
+    out[33] = t40;
+    const wam7_real_t t41 = t7 * t39 + t6 * t38;
+    const wam7_real_t t42 = t4 - parameters[MX6]; /* link j7: inertia of it and all beyond */
+    const wam7_real_t t43 = parameters[MY6] - (parameters[MZ7] + t35);
+    const wam7_real_t t44 = t6 * t43 + t7 * t42; /* link j6: column of the mass matrix */
+    const wam7_real_t t45 = t6 * t42 - t7 * t43;
+    const wam7_real_t t46 = t11 * t45;
+    const wam7_real_t t47 = t11 * t37 - t10 * t41 + (WAM7_C(0.045) * t44 + WAM7_C(0.3) * t46);
+    out[26] = t47;
+    const wam7_real_t t48 = t10 * t45;
+    const wam7_real_t t49 = t11 * t41 + t10 * t37 + WAM7_C(0.3) * t48;
+    const wam7_real_t t50 = WAM7_C(-0.045) * t48;
+    const wam7_real_t t51 = t40 + t50;
+    const wam7_real_t t52 = t18 * t49 + t21 * t51 - t50;
+    out[19] = t52;
+    const wam7_real_t t53 = t18 * t51 - t21 * t49;
+    const wam7_real_t t54 = t47 + WAM7_C(0.045) * (t18 * t46 - t21 * t44);
+    const wam7_real_t t55 = t21 * t46 + t18 * t44;
+    const wam7_real_t t56 = t24 * t53 + t26 * t54 + WAM7_C(0.55) * (t26 * t55 - t24 * t48);
+    out[12] = t56;
+    const wam7_real_t t57 = t24 * t54 - t26 * t53 + WAM7_C(0.55) * (t24 * t55 + t26 * t48);
+    const wam7_real_t t58 = t30 * t57 + t31 * t52;
+    out[5] = t58;
+    out[39] = t40;
+    out[38] = t47;
+    out[37] = t52;
+    out[36] = t56;
+    out[35] = t58;
+    /* link j7: inertia of it and all beyond */
+    const wam7_real_t t59 = parameters[XX6] + (parameters[YY7] - t34 + t36);
+    const wam7_real_t t60 = parameters[YY6] + parameters[ZZ7];
+    const wam7_real_t t61 = parameters[XY6] + t5;
+    /* link j6: inertia of it and all beyond */
+    const wam7_real_t t62 = t7 * (t60 - t59) + t61 * (WAM7_C(2.0) * t6);
+    const wam7_real_t t63 = t7 * t62;
+    const wam7_real_t t64 = parameters[ZZ5] + (t59 + t63);
+    out[32] = t64 + WAM7_C(89.8704) * parameters[IA5];
+    const wam7_real_t t65 = parameters[XZ5] - (t61 - t6 * t62);
+    const wam7_real_t t66 = parameters[YZ5] + t40;
+    const wam7_real_t t67 = parameters[MY5] + (parameters[MZ6] + t2);
+    const wam7_real_t t68 = parameters[MX5] - t44;
+    const wam7_real_t t69 = t11 * t67 + t10 * t68; /* link j5: column of the mass matrix */
+    const wam7_real_t t70 = t10 * t65 + t11 * t66 + WAM7_C(-0.3) * t69;
+    out[25] = t70;
+    const wam7_real_t t71 = t10 * t66 - t11 * t65;
+    const wam7_real_t t72 = t11 * t68 - t10 * t67;
+    const wam7_real_t t73 = t71 + WAM7_C(0.3) * t72;
+    const wam7_real_t t74 = WAM7_C(-0.045) * t72;
+    const wam7_real_t t75 = t64 + t74;
+    const wam7_real_t t76 = t18 * t73 + t21 * t75 - t74;
+    out[18] = t76;
+    const wam7_real_t t77 = t18 * t75 - t21 * t73;
+    const wam7_real_t t78 = t70 + WAM7_C(-0.045) * (t18 * t69);
+    const wam7_real_t t79 = t21 * t69;
+    const wam7_real_t t80 = t24 * t77 + t26 * t78 + WAM7_C(-0.55) * (t26 * t79 + t24 * t72);
+    out[11] = t80;
+    const wam7_real_t t81 = t24 * t78 - t26 * t77 + WAM7_C(0.55) * (t26 * t72 - t24 * t79);
+    const wam7_real_t t82 = t30 * t81 + t31 * t76;
+    out[4] = t82;
+    out[31] = t70;
+    out[30] = t76;
+    out[29] = t80;
+    out[28] = t82;
+    const wam7_real_t t83 = parameters[XX5] + (t60 - t63); /* link j6: inertia of it and all beyond */
+    const wam7_real_t t84 = parameters[YY5] + t37;
+    const wam7_real_t t85 = t41 - parameters[XY5];
+    /* link j5: inertia of it and all beyond */
+    const wam7_real_t t86 = t11 * (t84 - t83) - t85 * (WAM7_C(2.0) * t10);
+    const wam7_real_t t87 = t11 * t86;
+    /* link j6: inertia of it and all beyond */
+    const wam7_real_t t88 = parameters[M5] + (parameters[M6] + parameters[M7]);
+    const wam7_real_t t89 = WAM7_C(0.045) * t88; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t90 = WAM7_C(0.045) * (t89 + WAM7_C(-2.0) * t72);
+    const wam7_real_t t91 = parameters[MZ5] + t45; /* link j6: inertia of it and all beyond */
+    const wam7_real_t t92 = WAM7_C(0.3) * t88; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t93 = WAM7_C(0.3) * (t92 + WAM7_C(2.0) * t91);
+    const wam7_real_t t94 = parameters[ZZ4] + (t83 + t87 + (t90 + t93));
+    out[24] = t94 + WAM7_C(324.0) * parameters[IA4];
+    const wam7_real_t t95 = t85 + t10 * t86 + WAM7_C(-0.045) * t69 - parameters[XZ4];
+    const wam7_real_t t96 = parameters[YZ4] - t70;
+    const wam7_real_t t97 = t18 * t95 - t21 * t96; /* link j4: column of the mass matrix */
+    out[17] = t97;
+    const wam7_real_t t98 = t21 * t95 + t18 * t96;
+    const wam7_real_t t99 = t72 - t89; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t100 = parameters[MX4] + t99;
+    const wam7_real_t t101 = t91 + t92 - parameters[MY4];
+    const wam7_real_t t102 = t18 * t101 + t21 * t100; /* link j4: column of the mass matrix */
+    const wam7_real_t t103 = t94 + WAM7_C(0.045) * t102;
+    const wam7_real_t t104 = t21 * t101 - t18 * t100;
+    const wam7_real_t t105 = t26 * t103 - t24 * t98 + WAM7_C(0.55) * (t26 * t104);
+    out[10] = t105;
+    const wam7_real_t t106 = t26 * t98 + t24 * t103 + WAM7_C(0.55) * (t24 * t104);
+    const wam7_real_t t107 = t30 * t106 + t31 * t97;
+    out[3] = t107;
+    out[23] = t97;
+    out[22] = t105;
+    out[21] = t107;
+    const wam7_real_t t108 = parameters[XX4] + (t84 - t87 + t93); /* link j5: inertia of it and all beyond */
+    const wam7_real_t t109 = parameters[YY4] + (t64 + t90);
+    const wam7_real_t t110 = parameters[XY4] + (t71 + (WAM7_C(-0.045) * t91 + WAM7_C(0.3) * t99));
+    /* link j4: inertia of it and all beyond */
+    const wam7_real_t t111 = t21 * (t109 - t108) + t110 * (WAM7_C(2.0) * t18);
+    const wam7_real_t t112 = t21 * t111;
+    const wam7_real_t t113 = parameters[M4] + t88; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t114 = WAM7_C(0.045) * t113; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t115 = WAM7_C(0.045) * (t114 + WAM7_C(2.0) * t102);
+    const wam7_real_t t116 = parameters[ZZ3] + (t108 + t112 + t115);
+    out[16] = t116 + WAM7_C(798.0625) * parameters[IA3];
+    const wam7_real_t t117 = parameters[XZ3] - (t110 - t18 * t111 - WAM7_C(-0.045) * t104);
+    const wam7_real_t t118 = parameters[YZ3] + t97;
+    const wam7_real_t t119 = parameters[MZ4] + t69; /* link j5: inertia of it and all beyond */
+    const wam7_real_t t120 = parameters[MY3] + t119; /* link j4: inertia of it and all beyond */
+    const wam7_real_t t121 = parameters[MX3] + (t102 + t114);
+    /* link j3: column of the mass matrix */
+    const wam7_real_t t122 = t24 * t117 + t26 * t118 + WAM7_C(-0.55) * (t26 * t120 + t24 * t121);
+    out[9] = t122;
+    const wam7_real_t t123 = t24 * t118 - t26 * t117 + WAM7_C(0.55) * (t26 * t121 - t24 * t120);
+    const wam7_real_t t124 = t30 * t123 + t31 * t116;
+    out[2] = t124;
+    out[15] = t122;
+    out[14] = t124;
+    const wam7_real_t t125 = parameters[XX3] + (t109 - t112); /* link j4: inertia of it and all beyond */
+    const wam7_real_t t126 = parameters[YY3] + (t94 + t115);
+    const wam7_real_t t127 = t98 + WAM7_C(0.045) * t119 - parameters[XY3];
+    /* link j3: inertia of it and all beyond */
+    const wam7_real_t t128 = t26 * (t126 - t125) - t127 * (WAM7_C(2.0) * t24);
+    const wam7_real_t t129 = t26 * t128;
+    const wam7_real_t t130 = WAM7_C(0.55) * (WAM7_C(0.55) * (parameters[M3] + t113)
+        + WAM7_C(2.0) * (parameters[MZ3] + t104));
+    out[8] = parameters[ZZ2] + (t125 + t129 + t130) + WAM7_C(798.0625) * parameters[IA2];
+    /* link j2: column of the mass matrix */
+    const wam7_real_t t131 = t30 * (t127 + t24 * t128 - parameters[XZ2]) + t31 * (t122 - parameters[YZ2]);
+    out[1] = t131;
+    out[7] = t131;
+    /* link j3: inertia of it and all beyond */
+    const wam7_real_t t132 = parameters[XX2] + (t126 - t129 + t130);
+    /* link j2: inertia of it and all beyond */
+    const wam7_real_t t133 = t31 * (parameters[YY2] + t116 - t132) + (parameters[XY2]
+        + t123) * (WAM7_C(2.0) * t30);
+    out[0] = parameters[ZZ1] + (t132 + t31 * t133) + WAM7_C(1764.0) * parameters[IA1];
     return WAM7_STATUS_OK;
 }

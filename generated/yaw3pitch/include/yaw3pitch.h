@@ -51,7 +51,7 @@
 #define YAW3PITCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define YAW3PITCH_GENERATION 0x14CEE2C4UL
+#define YAW3PITCH_GENERATION 0x32302FFDUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define YAW3PITCH_MODEL "839ceb1d876030e9f1e9ebe843a695b9ac89cde5dc1ab9d51167fc98b5e5466f"
@@ -310,7 +310,7 @@ yaw3pitch_status_t yaw3pitch_mass_matrix(
  * @param[out]  out         [4]   [rad/s^2]  joint accelerations
  * @return YAW3PITCH_STATUS_OK or status bits
  *
- * Operations: 397 (219 mul, 178 add, 0 neg), 4 div, 6 trig.
+ * Operations: 397 (219 mul, 178 add, 0 neg), 4 div, 6 trig, 2 other calls (sign, select and the like).
  */
 yaw3pitch_status_t yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
@@ -489,7 +489,7 @@ yaw3pitch_status_t yaw3pitch_mass_matrix_standard(
  * @param[out]  out         [4]   [rad/s^2]  joint accelerations
  * @return YAW3PITCH_STATUS_OK or status bits
  *
- * Operations: 463 (245 mul, 218 add, 0 neg), 4 div, 6 trig.
+ * Operations: 463 (245 mul, 218 add, 0 neg), 4 div, 6 trig, 2 other calls (sign, select and the like).
  */
 yaw3pitch_status_t yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
@@ -643,7 +643,7 @@ yaw3pitch_status_t yaw3pitch_inverse_dynamics_derivatives(
  * @param[out]  ddq_by_input  [16]  [(rad/s^2) per N m]      d ddq / d input; 4 x 4, row-major
  * @return YAW3PITCH_STATUS_OK or status bits
  *
- * Operations: 1498 (826 mul, 664 add, 8 neg), 4 div, 6 trig.
+ * Operations: 1498 (826 mul, 664 add, 8 neg), 4 div, 6 trig, 2 other calls (sign, select and the like).
  */
 yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],
@@ -696,7 +696,7 @@ yaw3pitch_status_t yaw3pitch_inverse_dynamics_derivatives_standard(
  * @param[out]  ddq_by_input  [16]  [(rad/s^2) per N m]      d ddq / d input; 4 x 4, row-major
  * @return YAW3PITCH_STATUS_OK or status bits
  *
- * Operations: 1675 (900 mul, 767 add, 8 neg), 4 div, 6 trig.
+ * Operations: 1675 (900 mul, 767 add, 8 neg), 4 div, 6 trig, 2 other calls (sign, select and the like).
  */
 yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t q[YAW3PITCH_N_JOINTS],

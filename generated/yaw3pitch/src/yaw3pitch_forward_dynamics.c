@@ -6,7 +6,7 @@
  * Arm yaw3pitch, description 839ceb1d876030e9.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 397 (219 mul, 178 add, 0 neg), 4 div, 6 trig.
+ * Operations: 397 (219 mul, 178 add, 0 neg), 4 div, 6 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
@@ -49,7 +49,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 
@@ -75,10 +75,10 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics(
         return status;
     }
 
-    yaw3pitch_real_t t35, t33;
-    YAW3PITCH_SINCOS(q[1], &t35, &t33);
-    yaw3pitch_real_t t12, t14;
-    YAW3PITCH_SINCOS(q[2], &t12, &t14);
+    yaw3pitch_real_t t33, t31;
+    YAW3PITCH_SINCOS(q[1], &t33, &t31);
+    yaw3pitch_real_t t11, t13;
+    YAW3PITCH_SINCOS(q[2], &t11, &t13);
     yaw3pitch_real_t t0, t1;
     YAW3PITCH_SINCOS(q[3], &t0, &t1);
     if (!(parameters[ZZ4] > YAW3PITCH_C(1.0e-12))) {
@@ -92,197 +92,189 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics(
     const yaw3pitch_real_t t5 = t3 * t4;
     const yaw3pitch_real_t t6 = YAW3PITCH_C(-1.4) * t2; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t7 = parameters[ZZ3R] + (parameters[ZZ4] + t6);
-    const yaw3pitch_real_t t8 = yaw3pitch_bounded(t7 + t3 * t5);
+    const yaw3pitch_real_t t8 = t7 + t3 * t5;
     if (!(t8 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t9 = t8 + YAW3PITCH_C(-1.0e-9) * t7;
-    if (!(t9 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t10 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const yaw3pitch_real_t t11 = parameters[MY3] + t10; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t13 = parameters[MX3R] - t2;
-    const yaw3pitch_real_t t15 = t14 * t13 - t12 * t11; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t9 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const yaw3pitch_real_t t10 = parameters[MY3] + t9; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t12 = parameters[MX3R] - t2;
+    const yaw3pitch_real_t t14 = t13 * t12 - t11 * t10; /* link j3: column of the mass matrix */
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t16 = t3 + YAW3PITCH_C(0.8) * (t12 * t10 + t14 * t2);
-    const yaw3pitch_real_t t17 = YAW3PITCH_C(-0.8) * t15 - t7 - t16 * t5;
-    const yaw3pitch_real_t t18 = YAW3PITCH_C(1.0) / t8;
-    const yaw3pitch_real_t t19 = t17 * t18;
-    const yaw3pitch_real_t t20 = t16 * t4;
-    const yaw3pitch_real_t t21 = YAW3PITCH_C(1.6) * t15; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t22 = parameters[ZZ2R] + (t7 + t21);
-    const yaw3pitch_real_t t23 = yaw3pitch_bounded(t22 + t16 * t20 - t17 * t19);
-    if (!(t23 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t24 = t23 + YAW3PITCH_C(-1.0e-9) * t22;
-    if (!(t24 > YAW3PITCH_C(1.0e-12))) {
+    const yaw3pitch_real_t t15 = t3 + YAW3PITCH_C(0.8) * (t11 * t9 + t13 * t2);
+    const yaw3pitch_real_t t16 = YAW3PITCH_C(-0.8) * t14 - t7 - t15 * t5;
+    const yaw3pitch_real_t t17 = YAW3PITCH_C(1.0) / t8;
+    const yaw3pitch_real_t t18 = t16 * t17;
+    const yaw3pitch_real_t t19 = t15 * t4;
+    const yaw3pitch_real_t t20 = YAW3PITCH_C(1.6) * t14; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t21 = parameters[ZZ2R] + (t7 + t20);
+    const yaw3pitch_real_t t22 = t21 + t15 * t19 - t16 * t18;
+    if (!(t22 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
     /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t25 = t1 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
-    const yaw3pitch_real_t t26 = t1 * t25;
-    const yaw3pitch_real_t t27 = parameters[XX4R] - t26 + t6;
-    const yaw3pitch_real_t t28 = parameters[XX3R] + t26;
-    const yaw3pitch_real_t t29 = parameters[XY3] + (parameters[XY4] + t0 * t25 + YAW3PITCH_C(-0.7) * t10);
+    const yaw3pitch_real_t t23 = t1 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
+    const yaw3pitch_real_t t24 = t1 * t23;
+    const yaw3pitch_real_t t25 = parameters[XX4R] - t24 + t6;
+    const yaw3pitch_real_t t26 = parameters[XX3R] + t24;
+    const yaw3pitch_real_t t27 = parameters[XY3] + (parameters[XY4] + t0 * t23 + YAW3PITCH_C(-0.7) * t9);
     /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t30 = t14 * (t27 - t28) + t29 * (YAW3PITCH_C(2.0) * t12);
-    const yaw3pitch_real_t t31 = t14 * t30;
-    const yaw3pitch_real_t t32 = parameters[XX2R] + (t27 - t31);
-    const yaw3pitch_real_t t34 = t14 * t11 + t12 * t13; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t28 = t13 * (t25 - t26) + t27 * (YAW3PITCH_C(2.0) * t11);
+    const yaw3pitch_real_t t29 = t13 * t28;
+    const yaw3pitch_real_t t30 = parameters[XX2R] + (t25 - t29);
+    const yaw3pitch_real_t t32 = t13 * t10 + t11 * t12; /* link j3: column of the mass matrix */
     /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t36 = (parameters[XY2] + (t29 - t12 * t30
-        + YAW3PITCH_C(-0.8) * t34)) * (YAW3PITCH_C(2.0) * t35);
-    const yaw3pitch_real_t t37 = t33 * (t33 * (t28 + t31 + t21 - t32) + t36);
-    const yaw3pitch_real_t t38 = YAW3PITCH_C(0.24) * (t33 * (parameters[MX2R] + t15) - t35 * (parameters[MY2]
-        + t34));
-    const yaw3pitch_real_t t39 = parameters[ZZ1R] + (t32 + t37 + t38);
+    const yaw3pitch_real_t t34 = (parameters[XY2] + (t27 - t11 * t28
+        + YAW3PITCH_C(-0.8) * t32)) * (YAW3PITCH_C(2.0) * t33);
+    const yaw3pitch_real_t t35 = t31 * (t31 * (t26 + t29 + t20 - t30) + t34);
+    const yaw3pitch_real_t t36 = YAW3PITCH_C(0.24) * (t31 * (parameters[MX2R] + t14) - t33 * (parameters[MY2]
+        + t32));
+    const yaw3pitch_real_t t37 = parameters[ZZ1R] + (t30 + t35 + t36);
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t40 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
-    const yaw3pitch_real_t t41 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
-    const yaw3pitch_real_t t42 = t33 * (t14 * t41 - t12 * t40) - t35 * (t14 * t40 + t12 * t41);
-    const yaw3pitch_real_t t43 = t42 * t4;
-    const yaw3pitch_real_t t44 = t40 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t45 = parameters[YZ3] + t41;
-    const yaw3pitch_real_t t46 = t14 * t44 + t12 * t45; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t47 = t12 * t44 - t14 * t45;
-    const yaw3pitch_real_t t48 = t35 * t46 + t33 * t47 + t42 * t5;
-    const yaw3pitch_real_t t49 = t48 * t18;
-    const yaw3pitch_real_t t50 = t35 * (t46 - parameters[XZ2R]) + t33 * (t47 - parameters[YZ2]) + t42 * t20;
-    const yaw3pitch_real_t t51 = t50 + t48 * t19;
-    const yaw3pitch_real_t t52 = YAW3PITCH_C(1.0) / t23;
-    const yaw3pitch_real_t t53 = t51 * t52;
-    const yaw3pitch_real_t t54 = yaw3pitch_bounded(t39 + t42 * t43 - t48 * t49 - t51 * t53);
+    const yaw3pitch_real_t t38 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
+    const yaw3pitch_real_t t39 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
+    const yaw3pitch_real_t t40 = t31 * (t13 * t39 - t11 * t38) - t33 * (t13 * t38 + t11 * t39);
+    const yaw3pitch_real_t t41 = t40 * t4;
+    const yaw3pitch_real_t t42 = t38 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t43 = parameters[YZ3] + t39;
+    const yaw3pitch_real_t t44 = t13 * t42 + t11 * t43; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t45 = t11 * t42 - t13 * t43;
+    const yaw3pitch_real_t t46 = t33 * t44 + t31 * t45 + t40 * t5;
+    const yaw3pitch_real_t t47 = t46 * t17;
+    const yaw3pitch_real_t t48 = t33 * (t44 - parameters[XZ2R]) + t31 * (t45 - parameters[YZ2]) + t40 * t19;
+    const yaw3pitch_real_t t49 = t48 + t46 * t18;
+    const yaw3pitch_real_t t50 = YAW3PITCH_C(1.0) / t22;
+    const yaw3pitch_real_t t51 = t49 * t50;
+    const yaw3pitch_real_t t52 = t37 + t40 * t41 - t46 * t47 - t49 * t51;
+    if (!(t52 > YAW3PITCH_C(1.0e-12))) {
+        yaw3pitch_zero(out, 4);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
+    const yaw3pitch_real_t t53 = yaw3pitch_min(t8 + YAW3PITCH_C(-1.0e-9) * t7, t22
+        + YAW3PITCH_C(-1.0e-9) * t21);
+    const yaw3pitch_real_t t54 = yaw3pitch_min(t53, t52 + YAW3PITCH_C(-1.0e-9) * t37);
     if (!(t54 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t55 = t54 + YAW3PITCH_C(-1.0e-9) * t39;
-    if (!(t55 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t56 = t35 * dq[0]; /* link j2: motion */
-    const yaw3pitch_real_t t57 = t33 * dq[0];
-    const yaw3pitch_real_t t58 = t14 * t56 + t12 * t57; /* link j3: motion */
-    const yaw3pitch_real_t t59 = t12 * t56 - t14 * t57;
-    const yaw3pitch_real_t t60 = t0 * t58 + t1 * t59; /* link j4: motion */
-    const yaw3pitch_real_t t61 = dq[1] + dq[2]; /* link j3: motion */
-    const yaw3pitch_real_t t62 = dq[3] + t61; /* link j4: motion */
-    const yaw3pitch_real_t t63 = t60 * t62;
-    const yaw3pitch_real_t t64 = t1 * t58 - t0 * t59;
-    const yaw3pitch_real_t t65 = t64 * t62;
-    const yaw3pitch_real_t t66 = YAW3PITCH_C(2.0) * t65; /* link j4: force and moment */
-    const yaw3pitch_real_t t67 = t64 * t60; /* link j4: motion */
+    const yaw3pitch_real_t t55 = t33 * dq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t56 = t31 * dq[0];
+    const yaw3pitch_real_t t57 = t13 * t55 + t11 * t56; /* link j3: motion */
+    const yaw3pitch_real_t t58 = t11 * t55 - t13 * t56;
+    const yaw3pitch_real_t t59 = t0 * t57 + t1 * t58; /* link j4: motion */
+    const yaw3pitch_real_t t60 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t61 = dq[3] + t60; /* link j4: motion */
+    const yaw3pitch_real_t t62 = t59 * t61;
+    const yaw3pitch_real_t t63 = t1 * t57 - t0 * t58;
+    const yaw3pitch_real_t t64 = t63 * t61;
+    const yaw3pitch_real_t t65 = YAW3PITCH_C(2.0) * t64; /* link j4: force and moment */
+    const yaw3pitch_real_t t66 = t63 * t59; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t68 = parameters[XX4R] * t63 + parameters[ZZ4] * t63 + parameters[XY4] * t66
-        + parameters[XZ4] * t67;
-    const yaw3pitch_real_t t69 = t60 * t60; /* link j4: motion */
-    const yaw3pitch_real_t t70 = t62 * t62;
-    const yaw3pitch_real_t t71 = t58 * t61; /* link j3: motion */
-    const yaw3pitch_real_t t72 = dq[1] * t56; /* link j2: motion */
-    const yaw3pitch_real_t t73 = YAW3PITCH_C(-1.6) * t72; /* link j3: motion */
-    const yaw3pitch_real_t t74 = t73 + YAW3PITCH_C(-1.4) * t71; /* link j4: motion */
+    const yaw3pitch_real_t t67 = parameters[XX4R] * t62 + parameters[ZZ4] * t62 + parameters[XY4] * t65
+        + parameters[XZ4] * t66;
+    const yaw3pitch_real_t t68 = t59 * t59; /* link j4: motion */
+    const yaw3pitch_real_t t69 = t61 * t61;
+    const yaw3pitch_real_t t70 = t57 * t60; /* link j3: motion */
+    const yaw3pitch_real_t t71 = dq[1] * t55; /* link j2: motion */
+    const yaw3pitch_real_t t72 = YAW3PITCH_C(-1.6) * t71; /* link j3: motion */
+    const yaw3pitch_real_t t73 = t72 + YAW3PITCH_C(-1.4) * t70; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t75 = t68 + parameters[YZ4] * (t70 - t69) + parameters[MY4] * t74;
-    const yaw3pitch_real_t t76 = YAW3PITCH_C(-2.0) * t63;
-    const yaw3pitch_real_t t77 = t65 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t76
-        + parameters[YZ4] * t67;
-    const yaw3pitch_real_t t78 = t64 * t64; /* link j4: motion */
+    const yaw3pitch_real_t t74 = t67 + parameters[YZ4] * (t69 - t68) + parameters[MY4] * t73;
+    const yaw3pitch_real_t t75 = YAW3PITCH_C(-2.0) * t62;
+    const yaw3pitch_real_t t76 = t64 * (parameters[XX4R] - parameters[ZZ4]) + parameters[XY4] * t75
+        + parameters[YZ4] * t66;
+    const yaw3pitch_real_t t77 = t63 * t63; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t79 = t77 + parameters[XZ4] * (t70 - t78) + parameters[MX4] * t74;
-    const yaw3pitch_real_t t80 = t59 * t61; /* link j3: motion */
-    const yaw3pitch_real_t t81 = YAW3PITCH_C(2.0) * t71; /* link j4: motion */
-    const yaw3pitch_real_t t82 = t58 * t59; /* link j3: motion */
+    const yaw3pitch_real_t t78 = t76 + parameters[XZ4] * (t69 - t77) + parameters[MX4] * t73;
+    const yaw3pitch_real_t t79 = t58 * t60; /* link j3: motion */
+    const yaw3pitch_real_t t80 = YAW3PITCH_C(2.0) * t70; /* link j4: motion */
+    const yaw3pitch_real_t t81 = t57 * t58; /* link j3: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t83 = parameters[XX3R] * t80 + parameters[ZZ3R] * t80 + parameters[XY3] * t81
-        + parameters[XZ3R] * t82;
-    const yaw3pitch_real_t t84 = t59 * t59; /* link j3: motion */
-    const yaw3pitch_real_t t85 = t61 * t61;
+    const yaw3pitch_real_t t82 = parameters[XX3R] * t79 + parameters[ZZ3R] * t79 + parameters[XY3] * t80
+        + parameters[XZ3R] * t81;
+    const yaw3pitch_real_t t83 = t58 * t58; /* link j3: motion */
+    const yaw3pitch_real_t t84 = t60 * t60;
     /* link j4: what it passes on */
-    const yaw3pitch_real_t t86 = t83 + parameters[YZ3] * (t85 - t84) + parameters[MY3] * t73 + (t1 * t75
-        + t0 * t79);
+    const yaw3pitch_real_t t85 = t82 + parameters[YZ3] * (t84 - t83) + parameters[MY3] * t72 + (t1 * t74
+        + t0 * t78);
     /* link j4: force and moment */
-    const yaw3pitch_real_t t87 = parameters[MX4] * t66 + parameters[MY4] * t76;
-    const yaw3pitch_real_t t88 = YAW3PITCH_C(-2.0) * t80; /* link j4: motion */
+    const yaw3pitch_real_t t86 = parameters[MX4] * t65 + parameters[MY4] * t75;
+    const yaw3pitch_real_t t87 = YAW3PITCH_C(-2.0) * t79; /* link j4: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t89 = t71 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t88
-        + parameters[YZ3] * t82;
-    const yaw3pitch_real_t t90 = t58 * t58; /* link j3: motion */
+    const yaw3pitch_real_t t88 = t70 * (parameters[XX3R] - parameters[ZZ3R]) + parameters[XY3] * t87
+        + parameters[YZ3] * t81;
+    const yaw3pitch_real_t t89 = t57 * t57; /* link j3: motion */
     /* link j4: what it passes on */
-    const yaw3pitch_real_t t91 = t89 - parameters[XZ3R] * (t90 - t85) + parameters[MX3R] * t73 - (t0 * t75
-        - t1 * t79 + YAW3PITCH_C(0.7) * t87);
-    const yaw3pitch_real_t t92 = dq[1] * t57; /* link j2: motion */
-    const yaw3pitch_real_t t93 = YAW3PITCH_C(2.0) * t72;
-    const yaw3pitch_real_t t94 = t56 * t57;
+    const yaw3pitch_real_t t90 = t88 - parameters[XZ3R] * (t89 - t84) + parameters[MX3R] * t72 - (t0 * t74
+        - t1 * t78 + YAW3PITCH_C(0.7) * t86);
+    const yaw3pitch_real_t t91 = dq[1] * t56; /* link j2: motion */
+    const yaw3pitch_real_t t92 = YAW3PITCH_C(2.0) * t71;
+    const yaw3pitch_real_t t93 = t55 * t56;
     /* link j2: force and moment */
-    const yaw3pitch_real_t t95 = parameters[XY2] * t93 - (parameters[XX2R] * t92 + parameters[ZZ2R] * t92)
-        - parameters[XZ2R] * t94;
-    const yaw3pitch_real_t t96 = t57 * t57; /* link j2: motion */
-    const yaw3pitch_real_t t97 = dq[1] * dq[1];
+    const yaw3pitch_real_t t94 = parameters[XY2] * t92 - (parameters[XX2R] * t91 + parameters[ZZ2R] * t91)
+        - parameters[XZ2R] * t93;
+    const yaw3pitch_real_t t95 = t56 * t56; /* link j2: motion */
+    const yaw3pitch_real_t t96 = dq[1] * dq[1];
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t98 = t95 + parameters[YZ2] * (t97 - t96) + (t14 * t86 + t12 * t91);
+    const yaw3pitch_real_t t97 = t94 + parameters[YZ2] * (t96 - t95) + (t13 * t85 + t11 * t90);
     /* link j4: what it passes on */
-    const yaw3pitch_real_t t99 = parameters[MX3R] * t81 + parameters[MY3] * t88 + t87;
-    const yaw3pitch_real_t t100 = YAW3PITCH_C(2.0) * t92; /* link j2: motion */
+    const yaw3pitch_real_t t98 = parameters[MX3R] * t80 + parameters[MY3] * t87 + t86;
+    const yaw3pitch_real_t t99 = YAW3PITCH_C(2.0) * t91; /* link j2: motion */
     /* link j2: force and moment */
-    const yaw3pitch_real_t t101 = t72 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t100
-        + parameters[YZ2] * t94;
-    const yaw3pitch_real_t t102 = t56 * t56; /* link j2: motion */
+    const yaw3pitch_real_t t100 = t71 * (parameters[ZZ2R] - parameters[XX2R]) - parameters[XY2] * t99
+        + parameters[YZ2] * t93;
+    const yaw3pitch_real_t t101 = t55 * t55; /* link j2: motion */
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t103 = t101 + parameters[XZ2R] * (t102 - t97) + (t12 * t86 - t14 * t91
-        + YAW3PITCH_C(0.8) * t99);
+    const yaw3pitch_real_t t102 = t100 + parameters[XZ2R] * (t101 - t96) + (t11 * t85 - t13 * t90
+        + YAW3PITCH_C(0.8) * t98);
     /* link j2: what it passes on */
-    const yaw3pitch_real_t t104 = t35 * t98 + t33 * t103 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t93
-        + parameters[MY2] * t100 + t99);
-    const yaw3pitch_real_t t105 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]); /* link j2: motion */
-    const yaw3pitch_real_t t106 = t33 * t105 - YAW3PITCH_C(9.81) * t35;
-    const yaw3pitch_real_t t107 = t106 + YAW3PITCH_C(0.8) * (t96 + t97); /* link j3: motion */
-    const yaw3pitch_real_t t108 = t35 * t105 + YAW3PITCH_C(9.81) * t33; /* link j2: motion */
-    const yaw3pitch_real_t t109 = t108 + YAW3PITCH_C(0.8) * t94; /* link j3: motion */
-    const yaw3pitch_real_t t110 = t14 * t107 - t12 * t109;
-    const yaw3pitch_real_t t111 = t84 + t85; /* link j4: motion */
-    const yaw3pitch_real_t t112 = t110 + YAW3PITCH_C(0.7) * t111;
-    const yaw3pitch_real_t t113 = t12 * t107 + t14 * t109; /* link j3: motion */
-    const yaw3pitch_real_t t114 = t113 - YAW3PITCH_C(0.7) * t82; /* link j4: motion */
+    const yaw3pitch_real_t t103 = t33 * t97 + t31 * t102 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t92
+        + parameters[MY2] * t99 + t98);
+    const yaw3pitch_real_t t104 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]); /* link j2: motion */
+    const yaw3pitch_real_t t105 = t31 * t104 - YAW3PITCH_C(9.81) * t33;
+    const yaw3pitch_real_t t106 = t105 + YAW3PITCH_C(0.8) * (t95 + t96); /* link j3: motion */
+    const yaw3pitch_real_t t107 = t33 * t104 + YAW3PITCH_C(9.81) * t31; /* link j2: motion */
+    const yaw3pitch_real_t t108 = t107 + YAW3PITCH_C(0.8) * t93; /* link j3: motion */
+    const yaw3pitch_real_t t109 = t13 * t106 - t11 * t108;
+    const yaw3pitch_real_t t110 = t83 + t84; /* link j4: motion */
+    const yaw3pitch_real_t t111 = t109 + YAW3PITCH_C(0.7) * t110;
+    const yaw3pitch_real_t t112 = t11 * t106 + t13 * t108; /* link j3: motion */
+    const yaw3pitch_real_t t113 = t112 - YAW3PITCH_C(0.7) * t81; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t115 = parameters[MX4] * (t0 * t112 + t1 * t114) + parameters[MY4] * (t1 * t112
-        - t0 * t114);
-    const yaw3pitch_real_t t116 = parameters[XX4R] * t67 + parameters[XY4] * (t78 - t69) + t115;
-    const yaw3pitch_real_t t117 = input[3] - t116;
-    const yaw3pitch_real_t t118 = parameters[MX4] * (t69 + t70) + parameters[MY4] * t67;
-    const yaw3pitch_real_t t119 = parameters[MX4] * t67 + parameters[MY4] * (t78 + t70);
-    const yaw3pitch_real_t t120 = t0 * t118 + t1 * t119; /* link j4: what it passes on */
+    const yaw3pitch_real_t t114 = parameters[MX4] * (t0 * t111 + t1 * t113) + parameters[MY4] * (t1 * t111
+        - t0 * t113);
+    const yaw3pitch_real_t t115 = parameters[XX4R] * t66 + parameters[XY4] * (t77 - t68) + t114;
+    const yaw3pitch_real_t t116 = input[3] - t115;
+    const yaw3pitch_real_t t117 = parameters[MX4] * (t68 + t69) + parameters[MY4] * t66;
+    const yaw3pitch_real_t t118 = parameters[MX4] * t66 + parameters[MY4] * (t77 + t69);
+    const yaw3pitch_real_t t119 = t0 * t117 + t1 * t118; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t121 = parameters[XX3R] * t82 + parameters[XY3] * (t90 - t84)
-        + (parameters[MX3R] * t113 + parameters[MY3] * t110);
-    const yaw3pitch_real_t t122 = t121 + (t116 - YAW3PITCH_C(0.7) * t120); /* link j4: what it passes on */
-    const yaw3pitch_real_t t123 = input[2] - t122 - t117 * t5;
-    const yaw3pitch_real_t t124 = parameters[MX3R] * t111 + parameters[MY3] * t82 + (t1 * t118 - t0 * t119);
+    const yaw3pitch_real_t t120 = parameters[XX3R] * t81 + parameters[XY3] * (t89 - t83)
+        + (parameters[MX3R] * t112 + parameters[MY3] * t109);
+    const yaw3pitch_real_t t121 = t120 + (t115 - YAW3PITCH_C(0.7) * t119); /* link j4: what it passes on */
+    const yaw3pitch_real_t t122 = input[2] - t121 - t116 * t5;
+    const yaw3pitch_real_t t123 = parameters[MX3R] * t110 + parameters[MY3] * t81 + (t1 * t117 - t0 * t118);
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t125 = t14 * (parameters[MX3R] * t82 + parameters[MY3] * (t90 + t85) + t120);
+    const yaw3pitch_real_t t124 = t13 * (parameters[MX3R] * t81 + parameters[MY3] * (t89 + t84) + t119);
     /* link j2: force and moment */
-    const yaw3pitch_real_t t126 = parameters[XX2R] * t94 - parameters[XY2] * (t102 - t96)
-        - (parameters[MX2R] * t108 + parameters[MY2] * t106);
-    const yaw3pitch_real_t t127 = input[1] + (t126 - (t122 - YAW3PITCH_C(0.8) * (t12 * t124 + t125)));
-    const yaw3pitch_real_t t128 = t127 - t117 * t20 + t123 * t19;
-    const yaw3pitch_real_t t129 = input[0] + t104 + t117 * t43 + t123 * t49 + t128 * t53;
-    const yaw3pitch_real_t t130 = YAW3PITCH_C(1.0) / t54;
-    const yaw3pitch_real_t t131 = yaw3pitch_bounded(t129 * t130);
-    out[0] = t131;
-    const yaw3pitch_real_t t132 = yaw3pitch_bounded(t128 * t52 + t53 * t131);
-    out[1] = t132;
-    const yaw3pitch_real_t t133 = yaw3pitch_bounded(t123 * t18 + t49 * t131 + t19 * t132);
-    out[2] = t133;
-    const yaw3pitch_real_t t134 = t43 * t131 - t117 * t4 - t20 * t132 - t5 * t133;
-    out[3] = t134;
-    if (!yaw3pitch_all_bounded(out, 4)) {
+    const yaw3pitch_real_t t125 = parameters[XX2R] * t93 - parameters[XY2] * (t101 - t95)
+        - (parameters[MX2R] * t107 + parameters[MY2] * t105);
+    const yaw3pitch_real_t t126 = input[1] + (t125 - (t121 - YAW3PITCH_C(0.8) * (t11 * t123 + t124)));
+    const yaw3pitch_real_t t127 = t126 - t116 * t19 + t122 * t18;
+    const yaw3pitch_real_t t128 = input[0] + t103 + t116 * t41 + t122 * t47 + t127 * t51;
+    const yaw3pitch_real_t t129 = YAW3PITCH_C(1.0) / t52;
+    const yaw3pitch_real_t t130 = yaw3pitch_held(t128 * t129);
+    out[0] = t130;
+    const yaw3pitch_real_t t131 = yaw3pitch_held(t127 * t50 + t51 * t130);
+    out[1] = t131;
+    const yaw3pitch_real_t t132 = yaw3pitch_held(t122 * t17 + t47 * t130 + t18 * t131);
+    out[2] = t132;
+    const yaw3pitch_real_t t133 = t41 * t130 - t116 * t4 - t19 * t131 - t5 * t132;
+    out[3] = t133;
+    if (!yaw3pitch_bounded(out, 4)) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }

@@ -7,7 +7,7 @@
  * Arm yaw3pitch, description 839ceb1d876030e9.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1498 (826 mul, 664 add, 8 neg), 4 div, 6 trig.
+ * Operations: 1498 (826 mul, 664 add, 8 neg), 4 div, 6 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [4]   [rad/s]                  joint velocities; norm at most 100000
@@ -53,7 +53,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -85,10 +85,10 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
         return status;
     }
 
-    yaw3pitch_real_t t39, t36;
-    YAW3PITCH_SINCOS(q[1], &t39, &t36);
-    yaw3pitch_real_t t12, t14;
-    YAW3PITCH_SINCOS(q[2], &t12, &t14);
+    yaw3pitch_real_t t37, t34;
+    YAW3PITCH_SINCOS(q[1], &t37, &t34);
+    yaw3pitch_real_t t11, t13;
+    YAW3PITCH_SINCOS(q[2], &t11, &t13);
     yaw3pitch_real_t t0, t1;
     YAW3PITCH_SINCOS(q[3], &t0, &t1);
     if (!(parameters[ZZ4] > YAW3PITCH_C(1.0e-12))) {
@@ -105,7 +105,7 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t5 = t3 * t4;
     const yaw3pitch_real_t t6 = YAW3PITCH_C(1.4) * t2; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t7 = parameters[ZZ3R] - (t6 - parameters[ZZ4]);
-    const yaw3pitch_real_t t8 = yaw3pitch_bounded(t7 - t3 * t5);
+    const yaw3pitch_real_t t8 = t7 - t3 * t5;
     if (!(t8 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -113,38 +113,22 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t9 = t8 + YAW3PITCH_C(-1.0e-9) * t7;
-    if (!(t9 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t10 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const yaw3pitch_real_t t11 = parameters[MY3] + t10; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t13 = t2 - parameters[MX3R];
-    const yaw3pitch_real_t t15 = t12 * t11 + t14 * t13; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t16 = YAW3PITCH_C(0.8) * t15 - t7;
-    const yaw3pitch_real_t t17 = t12 * t10 + t14 * t2; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t18 = t3 + YAW3PITCH_C(0.8) * t17;
-    const yaw3pitch_real_t t19 = t16 + t18 * t5;
-    const yaw3pitch_real_t t20 = YAW3PITCH_C(-1.0) / t8;
-    const yaw3pitch_real_t t21 = t19 * t20;
-    const yaw3pitch_real_t t22 = t18 * t4;
-    const yaw3pitch_real_t t23 = YAW3PITCH_C(1.6) * t15; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t24 = parameters[ZZ2R] - (t23 - t7);
-    const yaw3pitch_real_t t25 = yaw3pitch_bounded(t24 - t18 * t22 + t19 * t21);
-    if (!(t25 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t26 = t25 + YAW3PITCH_C(-1.0e-9) * t24;
-    if (!(t26 > YAW3PITCH_C(1.0e-12))) {
+    const yaw3pitch_real_t t9 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const yaw3pitch_real_t t10 = parameters[MY3] + t9; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t12 = t2 - parameters[MX3R];
+    const yaw3pitch_real_t t14 = t11 * t10 + t13 * t12; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t15 = YAW3PITCH_C(0.8) * t14 - t7;
+    const yaw3pitch_real_t t16 = t11 * t9 + t13 * t2; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t17 = t3 + YAW3PITCH_C(0.8) * t16;
+    const yaw3pitch_real_t t18 = t15 + t17 * t5;
+    const yaw3pitch_real_t t19 = YAW3PITCH_C(-1.0) / t8;
+    const yaw3pitch_real_t t20 = t18 * t19;
+    const yaw3pitch_real_t t21 = t17 * t4;
+    const yaw3pitch_real_t t22 = YAW3PITCH_C(1.6) * t14; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t23 = parameters[ZZ2R] - (t22 - t7);
+    const yaw3pitch_real_t t24 = t23 - t17 * t21 + t18 * t20;
+    if (!(t24 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
         yaw3pitch_zero(ddq_by_dq, 16);
@@ -152,45 +136,55 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
         return YAW3PITCH_STATUS_PIVOT;
     }
     /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t27 = parameters[XY4] * (YAW3PITCH_C(2.0) * t0) - t1 * parameters[XX4R];
-    const yaw3pitch_real_t t28 = t1 * t27;
-    const yaw3pitch_real_t t29 = parameters[XX4R] + t28 - t6;
-    const yaw3pitch_real_t t30 = parameters[XX3R] - t28;
-    const yaw3pitch_real_t t31 = t0 * t27 - parameters[XY4] + YAW3PITCH_C(0.7) * t10 - parameters[XY3];
+    const yaw3pitch_real_t t25 = parameters[XY4] * (YAW3PITCH_C(2.0) * t0) - t1 * parameters[XX4R];
+    const yaw3pitch_real_t t26 = t1 * t25;
+    const yaw3pitch_real_t t27 = parameters[XX4R] + t26 - t6;
+    const yaw3pitch_real_t t28 = parameters[XX3R] - t26;
+    const yaw3pitch_real_t t29 = t0 * t25 - parameters[XY4] + YAW3PITCH_C(0.7) * t9 - parameters[XY3];
     /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t32 = t14 * (t30 - t29) - t31 * (YAW3PITCH_C(-2.0) * t12);
-    const yaw3pitch_real_t t33 = t14 * t32;
-    const yaw3pitch_real_t t34 = t30 - t33 - t23;
-    const yaw3pitch_real_t t35 = parameters[XX2R] + (t29 + t33);
-    const yaw3pitch_real_t t37 = t12 * t13 - t14 * t11; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t30 = t13 * (t28 - t27) - t29 * (YAW3PITCH_C(-2.0) * t11);
+    const yaw3pitch_real_t t31 = t13 * t30;
+    const yaw3pitch_real_t t32 = t28 - t31 - t22;
+    const yaw3pitch_real_t t33 = parameters[XX2R] + (t27 + t31);
+    const yaw3pitch_real_t t35 = t11 * t12 - t13 * t10; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t38 = parameters[XY2] + (t12 * t32 - t31 + YAW3PITCH_C(0.8) * t37);
+    const yaw3pitch_real_t t36 = parameters[XY2] + (t11 * t30 - t29 + YAW3PITCH_C(0.8) * t35);
     /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t40 = t36 * (t36 * (t34 - t35) + t38 * (YAW3PITCH_C(2.0) * t39));
-    const yaw3pitch_real_t t41 = t37 - parameters[MY2]; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t42 = parameters[MX2R] - t15;
+    const yaw3pitch_real_t t38 = t34 * (t34 * (t32 - t33) + t36 * (YAW3PITCH_C(2.0) * t37));
+    const yaw3pitch_real_t t39 = t35 - parameters[MY2]; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t40 = parameters[MX2R] - t14;
     /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t43 = t35 + t40 + YAW3PITCH_C(0.24) * (t39 * t41 + t36 * t42);
-    const yaw3pitch_real_t t44 = parameters[ZZ1R] + t43;
+    const yaw3pitch_real_t t41 = t33 + t38 + YAW3PITCH_C(0.24) * (t37 * t39 + t34 * t40);
+    const yaw3pitch_real_t t42 = parameters[ZZ1R] + t41;
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t45 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
-    const yaw3pitch_real_t t46 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
-    const yaw3pitch_real_t t47 = t14 * t45 + t12 * t46;
-    const yaw3pitch_real_t t48 = t12 * t45 - t14 * t46;
-    const yaw3pitch_real_t t49 = t39 * t47 + t36 * t48;
-    const yaw3pitch_real_t t50 = t49 * t4;
-    const yaw3pitch_real_t t51 = t45 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t52 = parameters[YZ3] + t46;
-    const yaw3pitch_real_t t53 = t14 * t51 + t12 * t52; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t54 = t12 * t51 - t14 * t52;
-    const yaw3pitch_real_t t55 = t39 * t53 + t36 * t54 + t49 * t5;
-    const yaw3pitch_real_t t56 = t55 * t20;
-    const yaw3pitch_real_t t57 = parameters[XZ2R] - t53; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t58 = t54 - parameters[YZ2];
-    const yaw3pitch_real_t t59 = t39 * t57 - t36 * t58 - t49 * t22 + t55 * t21;
-    const yaw3pitch_real_t t60 = YAW3PITCH_C(1.0) / t25;
-    const yaw3pitch_real_t t61 = t59 * t60;
-    const yaw3pitch_real_t t62 = yaw3pitch_bounded(t44 - t49 * t50 + t55 * t56 - t59 * t61);
+    const yaw3pitch_real_t t43 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
+    const yaw3pitch_real_t t44 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
+    const yaw3pitch_real_t t45 = t13 * t43 + t11 * t44;
+    const yaw3pitch_real_t t46 = t11 * t43 - t13 * t44;
+    const yaw3pitch_real_t t47 = t37 * t45 + t34 * t46;
+    const yaw3pitch_real_t t48 = t47 * t4;
+    const yaw3pitch_real_t t49 = t43 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t50 = parameters[YZ3] + t44;
+    const yaw3pitch_real_t t51 = t13 * t49 + t11 * t50; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t52 = t11 * t49 - t13 * t50;
+    const yaw3pitch_real_t t53 = t37 * t51 + t34 * t52 + t47 * t5;
+    const yaw3pitch_real_t t54 = t53 * t19;
+    const yaw3pitch_real_t t55 = parameters[XZ2R] - t51; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t56 = t52 - parameters[YZ2];
+    const yaw3pitch_real_t t57 = t37 * t55 - t34 * t56 - t47 * t21 + t53 * t20;
+    const yaw3pitch_real_t t58 = YAW3PITCH_C(1.0) / t24;
+    const yaw3pitch_real_t t59 = t57 * t58;
+    const yaw3pitch_real_t t60 = t42 - t47 * t48 + t53 * t54 - t57 * t59;
+    if (!(t60 > YAW3PITCH_C(1.0e-12))) {
+        yaw3pitch_zero(ddq, 4);
+        yaw3pitch_zero(ddq_by_q, 16);
+        yaw3pitch_zero(ddq_by_dq, 16);
+        yaw3pitch_zero(ddq_by_input, 16);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
+    const yaw3pitch_real_t t61 = yaw3pitch_min(t8 + YAW3PITCH_C(-1.0e-9) * t7, t24
+        + YAW3PITCH_C(-1.0e-9) * t23);
+    const yaw3pitch_real_t t62 = yaw3pitch_min(t61, t60 + YAW3PITCH_C(-1.0e-9) * t42);
     if (!(t62 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -198,503 +192,495 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t63 = t62 + YAW3PITCH_C(-1.0e-9) * t44;
-    if (!(t63 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t64 = t39 * dq[0]; /* link j2: motion */
-    const yaw3pitch_real_t t65 = t36 * dq[0];
-    const yaw3pitch_real_t t66 = t14 * t64 + t12 * t65; /* link j3: motion */
-    const yaw3pitch_real_t t67 = t12 * t64 - t14 * t65;
-    const yaw3pitch_real_t t68 = t0 * t66 + t1 * t67; /* link j4: motion */
-    const yaw3pitch_real_t t69 = dq[1] + dq[2]; /* link j3: motion */
-    const yaw3pitch_real_t t70 = dq[3] + t69; /* link j4: motion */
-    const yaw3pitch_real_t t71 = t68 * t70;
-    const yaw3pitch_real_t t72 = t1 * t66 - t0 * t67;
-    const yaw3pitch_real_t t73 = t72 * t70;
-    const yaw3pitch_real_t t74 = YAW3PITCH_C(2.0) * t73; /* link j4: force and moment */
-    const yaw3pitch_real_t t75 = t72 * t68; /* link j4: motion */
+    const yaw3pitch_real_t t63 = t37 * dq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t64 = t34 * dq[0];
+    const yaw3pitch_real_t t65 = t13 * t63 + t11 * t64; /* link j3: motion */
+    const yaw3pitch_real_t t66 = t11 * t63 - t13 * t64;
+    const yaw3pitch_real_t t67 = t0 * t65 + t1 * t66; /* link j4: motion */
+    const yaw3pitch_real_t t68 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t69 = dq[3] + t68; /* link j4: motion */
+    const yaw3pitch_real_t t70 = t67 * t69;
+    const yaw3pitch_real_t t71 = t1 * t65 - t0 * t66;
+    const yaw3pitch_real_t t72 = t71 * t69;
+    const yaw3pitch_real_t t73 = YAW3PITCH_C(2.0) * t72; /* link j4: force and moment */
+    const yaw3pitch_real_t t74 = t71 * t67; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t76 = parameters[XX4R] * t71 + parameters[ZZ4] * t71 + parameters[XY4] * t74
-        + parameters[XZ4] * t75;
-    const yaw3pitch_real_t t77 = t68 * t68; /* link j4: motion */
-    const yaw3pitch_real_t t78 = t70 * t70;
-    const yaw3pitch_real_t t79 = t66 * t69; /* link j3: motion */
-    const yaw3pitch_real_t t80 = dq[1] * t64; /* link j2: motion */
-    const yaw3pitch_real_t t81 = YAW3PITCH_C(-1.6) * t80; /* link j3: motion */
-    const yaw3pitch_real_t t82 = t81 + YAW3PITCH_C(-1.4) * t79; /* link j4: motion */
+    const yaw3pitch_real_t t75 = parameters[XX4R] * t70 + parameters[ZZ4] * t70 + parameters[XY4] * t73
+        + parameters[XZ4] * t74;
+    const yaw3pitch_real_t t76 = t67 * t67; /* link j4: motion */
+    const yaw3pitch_real_t t77 = t69 * t69;
+    const yaw3pitch_real_t t78 = t65 * t68; /* link j3: motion */
+    const yaw3pitch_real_t t79 = dq[1] * t63; /* link j2: motion */
+    const yaw3pitch_real_t t80 = YAW3PITCH_C(-1.6) * t79; /* link j3: motion */
+    const yaw3pitch_real_t t81 = t80 + YAW3PITCH_C(-1.4) * t78; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t83 = t76 + parameters[YZ4] * (t78 - t77) + parameters[MY4] * t82;
-    const yaw3pitch_real_t t84 = parameters[XX4R] - parameters[ZZ4];
-    const yaw3pitch_real_t t85 = YAW3PITCH_C(-2.0) * t71;
-    const yaw3pitch_real_t t86 = t72 * t72; /* link j4: motion */
+    const yaw3pitch_real_t t82 = t75 + parameters[YZ4] * (t77 - t76) + parameters[MY4] * t81;
+    const yaw3pitch_real_t t83 = parameters[XX4R] - parameters[ZZ4];
+    const yaw3pitch_real_t t84 = YAW3PITCH_C(-2.0) * t70;
+    const yaw3pitch_real_t t85 = t71 * t71; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t87 = t73 * t84 + parameters[XY4] * t85 + parameters[YZ4] * t75
-        + parameters[XZ4] * (t78 - t86);
-    const yaw3pitch_real_t t88 = t87 + parameters[MX4] * t82;
-    const yaw3pitch_real_t t89 = t67 * t69; /* link j3: motion */
-    const yaw3pitch_real_t t90 = YAW3PITCH_C(2.0) * t79; /* link j4: motion */
-    const yaw3pitch_real_t t91 = t66 * t67; /* link j3: motion */
+    const yaw3pitch_real_t t86 = t72 * t83 + parameters[XY4] * t84 + parameters[YZ4] * t74
+        + parameters[XZ4] * (t77 - t85);
+    const yaw3pitch_real_t t87 = t86 + parameters[MX4] * t81;
+    const yaw3pitch_real_t t88 = t66 * t68; /* link j3: motion */
+    const yaw3pitch_real_t t89 = YAW3PITCH_C(2.0) * t78; /* link j4: motion */
+    const yaw3pitch_real_t t90 = t65 * t66; /* link j3: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t92 = parameters[XX3R] * t89 + parameters[ZZ3R] * t89 + parameters[XY3] * t90
-        + parameters[XZ3R] * t91;
-    const yaw3pitch_real_t t93 = t67 * t67; /* link j3: motion */
-    const yaw3pitch_real_t t94 = t69 * t69;
+    const yaw3pitch_real_t t91 = parameters[XX3R] * t88 + parameters[ZZ3R] * t88 + parameters[XY3] * t89
+        + parameters[XZ3R] * t90;
+    const yaw3pitch_real_t t92 = t66 * t66; /* link j3: motion */
+    const yaw3pitch_real_t t93 = t68 * t68;
     /* link j4: what it passes on */
-    const yaw3pitch_real_t t95 = t92 + parameters[YZ3] * (t94 - t93) + parameters[MY3] * t81 + (t1 * t83
-        + t0 * t88);
+    const yaw3pitch_real_t t94 = t91 + parameters[YZ3] * (t93 - t92) + parameters[MY3] * t80 + (t1 * t82
+        + t0 * t87);
     /* link j4: force and moment */
-    const yaw3pitch_real_t t96 = parameters[MX4] * t74 + parameters[MY4] * t85;
-    const yaw3pitch_real_t t97 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
-    const yaw3pitch_real_t t98 = YAW3PITCH_C(-2.0) * t89; /* link j4: motion */
-    const yaw3pitch_real_t t99 = t66 * t66; /* link j3: motion */
+    const yaw3pitch_real_t t95 = parameters[MX4] * t73 + parameters[MY4] * t84;
+    const yaw3pitch_real_t t96 = parameters[ZZ3R] - parameters[XX3R]; /* link j3: force and moment */
+    const yaw3pitch_real_t t97 = YAW3PITCH_C(-2.0) * t88; /* link j4: motion */
+    const yaw3pitch_real_t t98 = t65 * t65; /* link j3: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t100 = parameters[XY3] * t98 - t79 * t97 + parameters[YZ3] * t91
-        - parameters[XZ3R] * (t99 - t94);
+    const yaw3pitch_real_t t99 = parameters[XY3] * t97 - t78 * t96 + parameters[YZ3] * t90
+        - parameters[XZ3R] * (t98 - t93);
     /* link j4: what it passes on */
-    const yaw3pitch_real_t t101 = t100 + parameters[MX3R] * t81 - (t0 * t83 - t1 * t88
-        + YAW3PITCH_C(0.7) * t96);
-    const yaw3pitch_real_t t102 = dq[1] * t65; /* link j2: motion */
-    const yaw3pitch_real_t t103 = parameters[ZZ2R] * t102; /* link j2: force and moment */
-    const yaw3pitch_real_t t104 = YAW3PITCH_C(2.0) * t80; /* link j2: motion */
-    const yaw3pitch_real_t t105 = t64 * t65;
+    const yaw3pitch_real_t t100 = t99 + parameters[MX3R] * t80 - (t0 * t82 - t1 * t87
+        + YAW3PITCH_C(0.7) * t95);
+    const yaw3pitch_real_t t101 = dq[1] * t64; /* link j2: motion */
+    const yaw3pitch_real_t t102 = parameters[ZZ2R] * t101; /* link j2: force and moment */
+    const yaw3pitch_real_t t103 = YAW3PITCH_C(2.0) * t79; /* link j2: motion */
+    const yaw3pitch_real_t t104 = t63 * t64;
     /* link j2: force and moment */
-    const yaw3pitch_real_t t106 = parameters[XY2] * t104 - (parameters[XX2R] * t102 + t103)
-        - parameters[XZ2R] * t105;
-    const yaw3pitch_real_t t107 = t65 * t65; /* link j2: motion */
-    const yaw3pitch_real_t t108 = dq[1] * dq[1];
-    const yaw3pitch_real_t t109 = parameters[YZ2] * (t107 - t108); /* link j2: force and moment */
+    const yaw3pitch_real_t t105 = parameters[XY2] * t103 - (parameters[XX2R] * t101 + t102)
+        - parameters[XZ2R] * t104;
+    const yaw3pitch_real_t t106 = t64 * t64; /* link j2: motion */
+    const yaw3pitch_real_t t107 = dq[1] * dq[1];
+    const yaw3pitch_real_t t108 = parameters[YZ2] * (t106 - t107); /* link j2: force and moment */
     /* link j2: what it passes on */
-    const yaw3pitch_real_t t110 = t39 * (t106 - t109 + (t14 * t95 + t12 * t101));
+    const yaw3pitch_real_t t109 = t37 * (t105 - t108 + (t13 * t94 + t11 * t100));
     /* link j4: what it passes on */
-    const yaw3pitch_real_t t111 = parameters[MX3R] * t90 + parameters[MY3] * t98 + t96;
-    const yaw3pitch_real_t t112 = t80 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
-    const yaw3pitch_real_t t113 = YAW3PITCH_C(2.0) * t102; /* link j2: motion */
-    const yaw3pitch_real_t t114 = t64 * t64;
-    const yaw3pitch_real_t t115 = parameters[XZ2R] * (t114 - t108); /* link j2: force and moment */
+    const yaw3pitch_real_t t110 = parameters[MX3R] * t89 + parameters[MY3] * t97 + t95;
+    const yaw3pitch_real_t t111 = t79 * (parameters[ZZ2R] - parameters[XX2R]); /* link j2: force and moment */
+    const yaw3pitch_real_t t112 = YAW3PITCH_C(2.0) * t101; /* link j2: motion */
+    const yaw3pitch_real_t t113 = t63 * t63;
+    const yaw3pitch_real_t t114 = parameters[XZ2R] * (t113 - t107); /* link j2: force and moment */
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t116 = t112 - parameters[XY2] * t113 + parameters[YZ2] * t105 + t115 + (t12 * t95
-        - t14 * t101 + YAW3PITCH_C(0.8) * t111);
+    const yaw3pitch_real_t t115 = t111 - parameters[XY2] * t112 + parameters[YZ2] * t104 + t114 + (t11 * t94
+        - t13 * t100 + YAW3PITCH_C(0.8) * t110);
     /* link j2: what it passes on */
-    const yaw3pitch_real_t t117 = t110 + t36 * t116 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t104
-        + parameters[MY2] * t113 + t111);
-    const yaw3pitch_real_t t118 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
-    const yaw3pitch_real_t t119 = t36 * t118 + YAW3PITCH_C(9.81) * t39;
-    const yaw3pitch_real_t t120 = t119 + YAW3PITCH_C(-0.8) * (t107 + t108); /* link j3: motion */
-    const yaw3pitch_real_t t121 = t14 * t120;
-    const yaw3pitch_real_t t122 = t39 * t118 + YAW3PITCH_C(-9.81) * t36; /* link j2: motion */
-    const yaw3pitch_real_t t123 = YAW3PITCH_C(0.8) * t105 - t122; /* link j3: motion */
-    const yaw3pitch_real_t t124 = t121 + t12 * t123;
-    const yaw3pitch_real_t t125 = t93 + t94; /* link j4: motion */
-    const yaw3pitch_real_t t126 = YAW3PITCH_C(0.7) * t125 - t124;
-    const yaw3pitch_real_t t127 = t12 * t120; /* link j3: motion */
-    const yaw3pitch_real_t t128 = t14 * t123 - t127;
-    const yaw3pitch_real_t t129 = t128 - YAW3PITCH_C(0.7) * t91; /* link j4: motion */
+    const yaw3pitch_real_t t116 = t109 + t34 * t115 + YAW3PITCH_C(0.12) * (parameters[MX2R] * t103
+        + parameters[MY2] * t112 + t110);
+    const yaw3pitch_real_t t117 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
+    const yaw3pitch_real_t t118 = t34 * t117 + YAW3PITCH_C(9.81) * t37;
+    const yaw3pitch_real_t t119 = t118 + YAW3PITCH_C(-0.8) * (t106 + t107); /* link j3: motion */
+    const yaw3pitch_real_t t120 = t13 * t119;
+    const yaw3pitch_real_t t121 = t37 * t117 + YAW3PITCH_C(-9.81) * t34; /* link j2: motion */
+    const yaw3pitch_real_t t122 = YAW3PITCH_C(0.8) * t104 - t121; /* link j3: motion */
+    const yaw3pitch_real_t t123 = t120 + t11 * t122;
+    const yaw3pitch_real_t t124 = t92 + t93; /* link j4: motion */
+    const yaw3pitch_real_t t125 = YAW3PITCH_C(0.7) * t124 - t123;
+    const yaw3pitch_real_t t126 = t11 * t119; /* link j3: motion */
+    const yaw3pitch_real_t t127 = t13 * t122 - t126;
+    const yaw3pitch_real_t t128 = t127 - YAW3PITCH_C(0.7) * t90; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t130 = parameters[MX4] * (t0 * t126 + t1 * t129) + parameters[MY4] * (t1 * t126
-        - t0 * t129);
-    const yaw3pitch_real_t t131 = parameters[XX4R] * t75 + parameters[XY4] * (t86 - t77) + t130;
-    const yaw3pitch_real_t t132 = input[3] - t131;
-    const yaw3pitch_real_t t133 = parameters[MX4] * (t77 + t78) + parameters[MY4] * t75;
-    const yaw3pitch_real_t t134 = parameters[MX4] * t75 + parameters[MY4] * (t86 + t78);
-    const yaw3pitch_real_t t135 = t0 * t133 + t1 * t134; /* link j4: what it passes on */
+    const yaw3pitch_real_t t129 = parameters[MX4] * (t0 * t125 + t1 * t128) + parameters[MY4] * (t1 * t125
+        - t0 * t128);
+    const yaw3pitch_real_t t130 = parameters[XX4R] * t74 + parameters[XY4] * (t85 - t76) + t129;
+    const yaw3pitch_real_t t131 = input[3] - t130;
+    const yaw3pitch_real_t t132 = parameters[MX4] * (t76 + t77) + parameters[MY4] * t74;
+    const yaw3pitch_real_t t133 = parameters[MX4] * t74 + parameters[MY4] * (t85 + t77);
+    const yaw3pitch_real_t t134 = t0 * t132 + t1 * t133; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t136 = parameters[XX3R] * t91 + parameters[XY3] * (t99 - t93)
-        + (parameters[MX3R] * t128 - parameters[MY3] * t124);
-    const yaw3pitch_real_t t137 = t136 + (t131 - YAW3PITCH_C(0.7) * t135); /* link j4: what it passes on */
-    const yaw3pitch_real_t t138 = input[2] - t137 + t132 * t5;
-    const yaw3pitch_real_t t139 = parameters[MX3R] * t125 + parameters[MY3] * t91 + (t1 * t133 - t0 * t134);
+    const yaw3pitch_real_t t135 = parameters[XX3R] * t90 + parameters[XY3] * (t98 - t92)
+        + (parameters[MX3R] * t127 - parameters[MY3] * t123);
+    const yaw3pitch_real_t t136 = t135 + (t130 - YAW3PITCH_C(0.7) * t134); /* link j4: what it passes on */
+    const yaw3pitch_real_t t137 = input[2] - t136 + t131 * t5;
+    const yaw3pitch_real_t t138 = parameters[MX3R] * t124 + parameters[MY3] * t90 + (t1 * t132 - t0 * t133);
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t140 = t14 * (parameters[MX3R] * t91 + parameters[MY3] * (t99 + t94) + t135);
+    const yaw3pitch_real_t t139 = t13 * (parameters[MX3R] * t90 + parameters[MY3] * (t98 + t93) + t134);
     /* link j2: force and moment */
-    const yaw3pitch_real_t t141 = parameters[XX2R] * t105 - parameters[XY2] * (t114 - t107)
-        + (parameters[MX2R] * t122 + parameters[MY2] * t119);
-    const yaw3pitch_real_t t142 = input[1] + (t141 - (t137 - YAW3PITCH_C(0.8) * (t12 * t139 + t140)));
-    const yaw3pitch_real_t t143 = t142 + t132 * t22 - t138 * t21;
-    const yaw3pitch_real_t t144 = input[0] + t117 + t132 * t50 - t138 * t56 - t143 * t61;
-    const yaw3pitch_real_t t145 = yaw3pitch_bounded(YAW3PITCH_C(1.0) / t62);
-    const yaw3pitch_real_t t146 = yaw3pitch_bounded(t144 * t145);
-    ddq[0] = t146;
-    const yaw3pitch_real_t t147 = yaw3pitch_bounded(t143 * t60 - t61 * t146);
-    ddq[1] = t147;
-    const yaw3pitch_real_t t148 = t138 * t20 + t56 * t146 + t21 * t147;
-    ddq[2] = -t148;
-    const yaw3pitch_real_t t149 = yaw3pitch_bounded(t132 * t4 + t50 * t146 + t22 * t147 - t5 * t148);
-    ddq[3] = t149;
-    const yaw3pitch_real_t t150 = t39 * t14 + t36 * t12; /* link j3: motion */
-    const yaw3pitch_real_t t151 = t36 * t14 - t39 * t12;
-    const yaw3pitch_real_t t152 = t0 * t150 - t1 * t151; /* link j4: motion */
-    const yaw3pitch_real_t t153 = dq[0] * t152;
-    const yaw3pitch_real_t t154 = parameters[XZ4] * t153;
-    const yaw3pitch_real_t t155 = parameters[XY4] * t70;
-    const yaw3pitch_real_t t156 = t154 + t155;
-    const yaw3pitch_real_t t157 = t1 * t150 + t0 * t151;
-    const yaw3pitch_real_t t158 = dq[0] * t157;
-    const yaw3pitch_real_t t159 = parameters[YZ4] * t158;
-    const yaw3pitch_real_t t160 = t155 - t159;
-    const yaw3pitch_real_t t161 = YAW3PITCH_C(0.5) * (parameters[XX4R] + parameters[ZZ4]);
-    const yaw3pitch_real_t t162 = parameters[XX4R] - t161;
-    const yaw3pitch_real_t t163 = t70 * t162 - parameters[XZ4] * t158;
-    const yaw3pitch_real_t t164 = parameters[YZ4] * t153 - t70 * t161;
+    const yaw3pitch_real_t t140 = parameters[XX2R] * t104 - parameters[XY2] * (t113 - t106)
+        + (parameters[MX2R] * t121 + parameters[MY2] * t118);
+    const yaw3pitch_real_t t141 = input[1] + (t140 - (t136 - YAW3PITCH_C(0.8) * (t11 * t138 + t139)));
+    const yaw3pitch_real_t t142 = t141 + t131 * t21 - t137 * t20;
+    const yaw3pitch_real_t t143 = input[0] + t116 + t131 * t48 - t137 * t54 - t142 * t59;
+    const yaw3pitch_real_t t144 = yaw3pitch_held(YAW3PITCH_C(1.0) / t60);
+    const yaw3pitch_real_t t145 = yaw3pitch_held(t143 * t144);
+    ddq[0] = t145;
+    const yaw3pitch_real_t t146 = yaw3pitch_held(t142 * t58 - t59 * t145);
+    ddq[1] = t146;
+    const yaw3pitch_real_t t147 = t137 * t19 + t54 * t145 + t20 * t146;
+    ddq[2] = -t147;
+    const yaw3pitch_real_t t148 = yaw3pitch_held(t131 * t4 + t48 * t145 + t21 * t146 - t5 * t147);
+    ddq[3] = t148;
+    const yaw3pitch_real_t t149 = t146 - t147;
+    const yaw3pitch_real_t t150 = t148 + t149;
+    const yaw3pitch_real_t t151 = t37 * t13 + t34 * t11; /* link j3: motion */
+    const yaw3pitch_real_t t152 = t34 * t13 - t37 * t11;
+    const yaw3pitch_real_t t153 = t1 * t151 + t0 * t152; /* link j4: motion */
+    const yaw3pitch_real_t t154 = dq[0] * t153;
+    const yaw3pitch_real_t t155 = t0 * t151 - t1 * t152;
+    const yaw3pitch_real_t t156 = dq[0] * t155;
+    const yaw3pitch_real_t t157 = t154 * t156;
+    const yaw3pitch_real_t t158 = t157 + t150;
+    const yaw3pitch_real_t t159 = t145 * t153;
+    const yaw3pitch_real_t t160 = t69 * t156;
+    const yaw3pitch_real_t t161 = t160 - t159;
+    const yaw3pitch_real_t t162 = t160 + t161;
+    const yaw3pitch_real_t t163 = t69 * t154;
+    const yaw3pitch_real_t t164 = t154 * t154;
+    const yaw3pitch_real_t t165 = parameters[XZ4] * (t164 - t77) + (parameters[XY4] * t162 - t83 * t163
+        - parameters[YZ4] * t158);
+    const yaw3pitch_real_t t166 = YAW3PITCH_C(-0.12) * t145;
+    const yaw3pitch_real_t t167 = t34 * t145;
+    const yaw3pitch_real_t t168 = t79 + (t79 - t167);
+    const yaw3pitch_real_t t169 = t166 + YAW3PITCH_C(0.8) * t168;
+    const yaw3pitch_real_t t170 = t145 * t152;
+    const yaw3pitch_real_t t171 = dq[0] * t151; /* link j3: motion */
+    const yaw3pitch_real_t t172 = t68 * t171;
+    const yaw3pitch_real_t t173 = t172 + (t172 - t170);
+    const yaw3pitch_real_t t174 = t169 + YAW3PITCH_C(0.7) * t173;
+    const yaw3pitch_real_t t175 = t165 + parameters[MX4] * t174;
+    const yaw3pitch_real_t t176 = t145 * t155;
+    const yaw3pitch_real_t t177 = t156 * t156; /* link j4: motion */
+    const yaw3pitch_real_t t178 = t164 + t177; /* link j4: force and moment */
+    const yaw3pitch_real_t t179 = YAW3PITCH_C(2.0) * t156;
+    const yaw3pitch_real_t t180 = parameters[XZ4] * t156;
+    const yaw3pitch_real_t t181 = parameters[XY4] * t69;
+    const yaw3pitch_real_t t182 = t180 + t181;
+    const yaw3pitch_real_t t183 = YAW3PITCH_C(2.0) * t154;
+    const yaw3pitch_real_t t184 = YAW3PITCH_C(0.5) * (parameters[XX4R] + parameters[ZZ4]);
+    const yaw3pitch_real_t t185 = parameters[YZ4] * t156 - t69 * t184;
+    const yaw3pitch_real_t t186 = t179 * t182 + t183 * t185 - (parameters[XZ4] * t178
+        + (parameters[XX4R] * t176 + parameters[XY4] * t159));
+    const yaw3pitch_real_t t187 = t175 + t186;
+    const yaw3pitch_real_t t188 = t157 - t150;
+    const yaw3pitch_real_t t189 = t163 + (t163 + t176);
+    const yaw3pitch_real_t t190 = parameters[ZZ4] * t160 + parameters[XX4R] * t161 + parameters[XY4] * t189
+        + parameters[XZ4] * t188;
+    const yaw3pitch_real_t t191 = parameters[YZ4] * (t77 - t177) + t190 - parameters[MY4] * t174;
+    const yaw3pitch_real_t t192 = parameters[XX4R] - t184;
+    const yaw3pitch_real_t t193 = t69 * t192 - parameters[XZ4] * t154;
+    const yaw3pitch_real_t t194 = parameters[YZ4] * t154;
+    const yaw3pitch_real_t t195 = t181 - t194;
+    const yaw3pitch_real_t t196 = t179 * t193 + t183 * t195 + (parameters[YZ4] * t178
+        + parameters[XY4] * t176);
+    const yaw3pitch_real_t t197 = t191 + t196;
+    const yaw3pitch_real_t t198 = t1 * t187 + t0 * t197;
+    const yaw3pitch_real_t t199 = parameters[MX4] * t69;
+    const yaw3pitch_real_t t200 = parameters[MY4] * t69;
+    const yaw3pitch_real_t t201 = t179 * t199 + t183 * t200 + (parameters[MY4] * t176
+        - parameters[MX4] * t159);
+    const yaw3pitch_real_t t202 = t1 * t197 - t0 * t187 - YAW3PITCH_C(0.7) * t201;
+    const yaw3pitch_real_t t203 = t34 * (t11 * t198 - t13 * t202 + YAW3PITCH_C(0.8) * t201);
+    const yaw3pitch_real_t t204 = t37 * (t13 * t198 + t11 * t202) + t203 + YAW3PITCH_C(0.12) * t201;
+    const yaw3pitch_real_t t205 = parameters[MY4] * (t77 + t164) + parameters[MX4] * t188;
+    const yaw3pitch_real_t t206 = parameters[MY4] * t154 + parameters[MX4] * t156;
+    const yaw3pitch_real_t t207 = parameters[MY4] * t178 - t183 * t206 + t205;
+    const yaw3pitch_real_t t208 = parameters[MX4] * (t77 + t177) + parameters[MY4] * t158;
+    const yaw3pitch_real_t t209 = t179 * t206 - parameters[MX4] * t178 - t208;
+    const yaw3pitch_real_t t210 = t0 * t207 + t1 * t209;
+    const yaw3pitch_real_t t211 = t11 * (t1 * t207 - t0 * t209) + t13 * t210;
+    const yaw3pitch_real_t t212 = dq[0] * t152; /* link j3: motion */
+    const yaw3pitch_real_t t213 = t171 * t212;
+    const yaw3pitch_real_t t214 = t213 + t149;
+    const yaw3pitch_real_t t215 = t104 + t146;
+    const yaw3pitch_real_t t216 = t121 + YAW3PITCH_C(-0.8) * t215;
+    const yaw3pitch_real_t t217 = t126 + t13 * t216;
+    const yaw3pitch_real_t t218 = t217 + YAW3PITCH_C(-0.7) * t214;
+    const yaw3pitch_real_t t219 = t11 * t216 - t120;
+    const yaw3pitch_real_t t220 = t212 * t212;
+    const yaw3pitch_real_t t221 = t93 + t220; /* link j4: motion */
+    const yaw3pitch_real_t t222 = YAW3PITCH_C(0.7) * t221 + t219;
+    const yaw3pitch_real_t t223 = parameters[MX4] * (t1 * t222 + t0 * t218) + parameters[MY4] * (t1 * t218
+        - t0 * t222);
+    const yaw3pitch_real_t t224 = parameters[ZZ4] * t178 + (parameters[YZ4] * t159 + parameters[XZ4] * t176);
+    const yaw3pitch_real_t t225 = parameters[XY4] * t154 + t156 * t192;
+    const yaw3pitch_real_t t226 = t154 * t184 - parameters[XY4] * t156;
+    const yaw3pitch_real_t t227 = t223 + (t183 * t226 - t179 * t225 - t224) + YAW3PITCH_C(0.7) * t210;
+    const yaw3pitch_real_t t228 = t227 + YAW3PITCH_C(0.8) * t211;
+    const yaw3pitch_real_t t229 = t59 * t144;
+    const yaw3pitch_real_t t230 = t144 * (t54 - t20 * t59);
+    const yaw3pitch_real_t t231 = YAW3PITCH_C(-2.0) * t225; /* link j4: derivatives */
+    const yaw3pitch_real_t t232 = YAW3PITCH_C(2.0) * t226;
+    const yaw3pitch_real_t t233 = t223 + (t156 * t231 + t154 * t232 - t224);
+    const yaw3pitch_real_t t234 = t21 - t5 * t20;
+    const yaw3pitch_real_t t235 = yaw3pitch_held(t144 * (t48 - t5 * t54 - t59 * t234));
+    const yaw3pitch_real_t t236 = t229 * t228 - t144 * t204 + t230 * t227 - t235 * t233;
+    ddq_by_q[3] = t236;
+    const yaw3pitch_real_t t237 = yaw3pitch_held(t58 + t59 * t229);
+    const yaw3pitch_real_t t238 = yaw3pitch_held(t59 * t230 - t20 * t58);
+    const yaw3pitch_real_t t239 = yaw3pitch_held(t58 * t234 - t59 * t235);
+    const yaw3pitch_real_t t240 = t229 * t204 - t237 * t228 - t238 * t227 - t239 * t233;
+    ddq_by_q[7] = t240;
+    const yaw3pitch_real_t t241 = t19 - t54 * t230 + t20 * t238;
+    const yaw3pitch_real_t t242 = t5 * t19 + t54 * t235 + t20 * t239;
+    const yaw3pitch_real_t t243 = t242 * t233 - (t238 * t228 - t230 * t204 - t241 * t227);
+    ddq_by_q[11] = t243;
+    const yaw3pitch_real_t t244 = yaw3pitch_held(t4 + t48 * t235 + t21 * t239 - t5 * t242);
+    const yaw3pitch_real_t t245 = t242 * t227 - (t235 * t204 + t239 * t228) - t244 * t233;
+    ddq_by_q[15] = t245;
+    const yaw3pitch_real_t t246 = parameters[ZZ4] - t184;
+    const yaw3pitch_real_t t247 = parameters[YZ4] * t69 + t156 * t246;
+    const yaw3pitch_real_t t248 = YAW3PITCH_C(-2.0) * t247 - (parameters[XY4] * t183
+        + parameters[XX4R] * t179);
+    const yaw3pitch_real_t t249 = t154 * t246 - parameters[XZ4] * t69;
+    const yaw3pitch_real_t t250 = parameters[XY4] * t179 + YAW3PITCH_C(2.0) * t249;
+    const yaw3pitch_real_t t251 = t1 * t248 + t0 * t250;
+    const yaw3pitch_real_t t252 = parameters[MY4] * t179 - parameters[MX4] * t183;
+    const yaw3pitch_real_t t253 = YAW3PITCH_C(-0.7) * t252 + (t1 * t250 - t0 * t248);
+    const yaw3pitch_real_t t254 = t34 * (YAW3PITCH_C(0.8) * t252 + (t11 * t251 - t13 * t253));
+    const yaw3pitch_real_t t255 = YAW3PITCH_C(0.12) * t252 + (t37 * (t13 * t251 + t11 * t253) + t254);
+    const yaw3pitch_real_t t256 = t180 + t194;
+    const yaw3pitch_real_t t257 = YAW3PITCH_C(2.0) * t256;
+    const yaw3pitch_real_t t258 = YAW3PITCH_C(-2.0) * t199;
+    const yaw3pitch_real_t t259 = YAW3PITCH_C(2.0) * t200;
+    const yaw3pitch_real_t t260 = t0 * t258 - t1 * t259;
+    const yaw3pitch_real_t t261 = t257 - (parameters[XZ4] * t179 + parameters[YZ4] * t183)
+        + YAW3PITCH_C(0.7) * t260;
+    const yaw3pitch_real_t t262 = t11 * (t1 * t258 + t0 * t259) + t13 * t260;
+    const yaw3pitch_real_t t263 = t261 + YAW3PITCH_C(0.8) * t262;
+    ddq_by_dq[3] = t263 * t229 - t144 * t255 + t261 * t230;
+    ddq_by_dq[7] = t255 * t229 - t263 * t237 - t261 * t238;
+    ddq_by_dq[11] = t261 * t241 - (t263 * t238 - t255 * t230);
+    ddq_by_dq[15] = t261 * t242 - (t255 * t235 + t263 * t239);
+    ddq_by_input[3] = t235;
+    ddq_by_input[7] = t239;
+    ddq_by_input[11] = -t242;
+    ddq_by_input[15] = t244;
+    const yaw3pitch_real_t t264 = parameters[MX4] * t189 - parameters[MY4] * t162;
+    const yaw3pitch_real_t t265 = t213 - t149;
+    const yaw3pitch_real_t t266 = t145 * t151;
+    const yaw3pitch_real_t t267 = t68 * t212; /* link j3: motion */
+    const yaw3pitch_real_t t268 = t267 + t266;
+    const yaw3pitch_real_t t269 = t267 + t268;
+    const yaw3pitch_real_t t270 = t171 * t171;
+    const yaw3pitch_real_t t271 = parameters[XZ3R] * (t270 - t93) + (t96 * t172 - parameters[XY3] * t269
+        + parameters[YZ3] * t265);
+    const yaw3pitch_real_t t272 = parameters[MX3R] * t169 + t271 + (t0 * t191 + t1 * t175
+        + YAW3PITCH_C(0.7) * t264);
+    const yaw3pitch_real_t t273 = t270 + t220; /* link j4: motion */
     /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t165 = t1 * (t156 + t160) + t0 * (t163 - t164);
-    const yaw3pitch_real_t t166 = t1 * t165;
-    const yaw3pitch_real_t t167 = parameters[MY4] * t70;
-    const yaw3pitch_real_t t168 = parameters[MX4] * t70;
-    const yaw3pitch_real_t t169 = t1 * t167 + t0 * t168;
-    const yaw3pitch_real_t t170 = YAW3PITCH_C(0.7) * t169;
-    const yaw3pitch_real_t t171 = YAW3PITCH_C(0.7) * t69; /* link j4: velocity of its origin */
-    const yaw3pitch_real_t t172 = t10 * t171; /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t173 = t172 - t170;
-    const yaw3pitch_real_t t174 = dq[0] * t151; /* link j3: motion */
-    const yaw3pitch_real_t t175 = parameters[XZ3R] * t174;
-    const yaw3pitch_real_t t176 = parameters[XY3] * t69;
+    const yaw3pitch_real_t t274 = t1 * (t182 + t195) + t0 * (t193 - t185);
+    const yaw3pitch_real_t t275 = t1 * t274;
+    const yaw3pitch_real_t t276 = t1 * t200 + t0 * t199;
+    const yaw3pitch_real_t t277 = YAW3PITCH_C(0.7) * t276;
+    const yaw3pitch_real_t t278 = YAW3PITCH_C(0.7) * t68; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t279 = t9 * t278; /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t280 = t279 - t277;
+    const yaw3pitch_real_t t281 = parameters[XZ3R] * t212;
+    const yaw3pitch_real_t t282 = parameters[XY3] * t68;
+    const yaw3pitch_real_t t283 = t281 - t282 + (t280 + (t195 - t275 + t277));
+    const yaw3pitch_real_t t284 = YAW3PITCH_C(-2.0) * t212;
+    const yaw3pitch_real_t t285 = t0 * t274;
+    const yaw3pitch_real_t t286 = YAW3PITCH_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const yaw3pitch_real_t t287 = t185 + t285 - (parameters[YZ3] * t212 + t68 * t286);
+    const yaw3pitch_real_t t288 = YAW3PITCH_C(-2.0) * t171;
+    const yaw3pitch_real_t t289 = t49 * t273 + (t28 * t170 + t29 * t266) - (t284 * t283 + t288 * t287);
+    const yaw3pitch_real_t t290 = t272 + t289;
+    const yaw3pitch_real_t t291 = parameters[XY3] * t173 - (parameters[ZZ3R] * t267 + parameters[XX3R] * t268)
+        - parameters[XZ3R] * t214;
+    const yaw3pitch_real_t t292 = parameters[YZ3] * (t93 - t220) + t291 - parameters[MY3] * t169 + (t1 * t191
+        - t0 * t175);
+    const yaw3pitch_real_t t293 = t0 * t200 - t1 * t199;
+    const yaw3pitch_real_t t294 = parameters[XX3R] - t286;
+    const yaw3pitch_real_t t295 = t68 * t294 - parameters[XZ3R] * t171 + (t193 - t285
+        + (YAW3PITCH_C(0.7) * t293 + t2 * t278));
+    const yaw3pitch_real_t t296 = parameters[YZ3] * t171;
+    const yaw3pitch_real_t t297 = t282 - t296 - (t182 - t275 + t279 - t280);
+    const yaw3pitch_real_t t298 = t284 * t295 - t288 * t297 + (t50 * t273 + (t29 * t170 + t27 * t266));
+    const yaw3pitch_real_t t299 = t292 + t298;
+    const yaw3pitch_real_t t300 = t293 - parameters[MX3R] * t68;
+    const yaw3pitch_real_t t301 = parameters[MY3] * t68 + t276;
+    const yaw3pitch_real_t t302 = t12 * t266 - t10 * t170 - (t284 * t300 + t288 * t301);
+    const yaw3pitch_real_t t303 = t34 * (t11 * t290 - t13 * t299 + YAW3PITCH_C(0.8) * t302);
+    const yaw3pitch_real_t t304 = t37 * (t13 * t290 + t11 * t299) + t303 + YAW3PITCH_C(0.12) * t302;
+    const yaw3pitch_real_t t305 = parameters[MY3] * (t93 + t270) - parameters[MX3R] * t214 + (t0 * t208
+        + t1 * t205);
+    const yaw3pitch_real_t t306 = parameters[MX3R] * t212 - parameters[MY3] * t171 - t206;
+    const yaw3pitch_real_t t307 = parameters[MY3] * t265 - parameters[MX3R] * t221 + (t0 * t205 - t1 * t208);
+    const yaw3pitch_real_t t308 = t11 * (t10 * t273 - t288 * t306 + t305) + t13 * (t12 * t273 - t284 * t306
+        + t307);
+    const yaw3pitch_real_t t309 = t7 * t273 + (t49 * t170 + t50 * t266);
+    const yaw3pitch_real_t t310 = YAW3PITCH_C(-0.7) * t212;
+    const yaw3pitch_real_t t311 = t1 * t225 + t0 * t226 - (YAW3PITCH_C(0.7) * t206 - t2 * t310);
+    const yaw3pitch_real_t t312 = parameters[XY3] * t171 - t212 * t294 + t311;
+    const yaw3pitch_real_t t313 = t171 * t286 + parameters[XY3] * t212 + (t1 * t226 - t0 * t225 + t9 * t310);
+    const yaw3pitch_real_t t314 = t10 * t217 - t12 * t219;
+    const yaw3pitch_real_t t315 = t314 - (t284 * t312 + t288 * t313 + t309) + YAW3PITCH_C(0.8) * t308;
+    const yaw3pitch_real_t t316 = YAW3PITCH_C(2.0) * t312; /* link j3: derivatives */
+    const yaw3pitch_real_t t317 = YAW3PITCH_C(2.0) * t313;
+    const yaw3pitch_real_t t318 = t314 + (t212 * t316 + t171 * t317 - t309);
+    const yaw3pitch_real_t t319 = YAW3PITCH_C(-1.4) * t212; /* link j4: derivatives */
+    const yaw3pitch_real_t t320 = t0 * t232 - t1 * t231 + t2 * t319;
+    const yaw3pitch_real_t t321 = t0 * t231 + t1 * t232 + t9 * t319;
+    const yaw3pitch_real_t t322 = t212 * t320 + t171 * t321 + (t3 * t273 - (t43 * t170 + t44 * t266));
+    const yaw3pitch_real_t t323 = t322 + (t9 * t217 - t2 * t219);
+    const yaw3pitch_real_t t324 = t229 * t315 - t144 * t304 + t230 * t318 - t235 * t323;
+    ddq_by_q[2] = t324;
+    const yaw3pitch_real_t t325 = t229 * t304 - t237 * t315 - t238 * t318 - t239 * t323;
+    ddq_by_q[6] = t325;
+    const yaw3pitch_real_t t326 = t242 * t323 - (t238 * t315 - t230 * t304 - t241 * t318);
+    ddq_by_q[10] = t326;
+    const yaw3pitch_real_t t327 = t242 * t318 - (t235 * t304 + t239 * t315) - t244 * t323;
+    ddq_by_q[14] = t327;
+    const yaw3pitch_real_t t328 = t286 - parameters[ZZ3R];
     /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t177 = t175 - t176 + (t173 + (t160 - t166 + t170));
-    const yaw3pitch_real_t t178 = dq[0] * t150; /* link j3: motion */
-    const yaw3pitch_real_t t179 = parameters[YZ3] * t178;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t180 = t176 - t179 - (t156 - t166 + t172 - t173);
-    const yaw3pitch_real_t t181 = t0 * t165;
-    const yaw3pitch_real_t t182 = YAW3PITCH_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const yaw3pitch_real_t t183 = t164 + t181 - (parameters[YZ3] * t174 + t69 * t182);
-    const yaw3pitch_real_t t184 = t0 * t167 - t1 * t168;
-    const yaw3pitch_real_t t185 = parameters[XX3R] - t182;
-    const yaw3pitch_real_t t186 = t69 * t185 - parameters[XZ3R] * t178 + (t163 - t181
-        + (YAW3PITCH_C(0.7) * t184 + t2 * t171));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t187 = t14 * (t177 - t180) + t12 * (t183 - t186);
-    const yaw3pitch_real_t t188 = t14 * t187;
-    const yaw3pitch_real_t t189 = parameters[MY3] * t69 + t169; /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t190 = t184 - parameters[MX3R] * t69;
-    const yaw3pitch_real_t t191 = t14 * t189 - t12 * t190; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t192 = YAW3PITCH_C(0.8) * t191;
-    const yaw3pitch_real_t t193 = YAW3PITCH_C(0.8) * dq[1]; /* link j3: velocity of its origin */
-    const yaw3pitch_real_t t194 = t37 * t193; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t195 = t192 + t194;
-    const yaw3pitch_real_t t196 = parameters[XZ2R] * t65;
-    const yaw3pitch_real_t t197 = parameters[XY2] * dq[1];
-    const yaw3pitch_real_t t198 = t196 - t197 + (t180 + t188 + t192 - t195);
-    const yaw3pitch_real_t t199 = parameters[YZ2] * t64;
-    const yaw3pitch_real_t t200 = t197 - t199 + (t177 - t188 + t194 - t195);
-    const yaw3pitch_real_t t201 = t12 * t187;
-    const yaw3pitch_real_t t202 = YAW3PITCH_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const yaw3pitch_real_t t203 = parameters[YZ2] * t65 + dq[1] * t202 + (t201 - t183);
-    const yaw3pitch_real_t t204 = t12 * t189 + t14 * t190;
-    const yaw3pitch_real_t t205 = parameters[XX2R] - t202;
-    const yaw3pitch_real_t t206 = dq[1] * t205 - parameters[XZ2R] * t64 + (t186 + t201
-        + (YAW3PITCH_C(0.8) * t204 + t15 * t193));
-    /* link j2: inertia, momentum beyond */
-    const yaw3pitch_real_t t207 = t36 * (t36 * (t200 - t198) + t39 * (t203 + t206));
-    const yaw3pitch_real_t t208 = parameters[MY2] * dq[1] + t191; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t209 = t204 - parameters[MX2R] * dq[1];
-    /* link j2: inertia, momentum beyond */
-    const yaw3pitch_real_t t210 = t198 + t207 + YAW3PITCH_C(0.12) * (t39 * t209 - t36 * t208);
-    const yaw3pitch_real_t t211 = YAW3PITCH_C(2.0) * t210; /* link j1: derivatives */
-    const yaw3pitch_real_t t212 = t61 * t145;
-    const yaw3pitch_real_t t213 = parameters[XY4] * t158 + t153 * t162;
-    const yaw3pitch_real_t t214 = t158 * t161 - parameters[XY4] * t153;
-    const yaw3pitch_real_t t215 = parameters[MY4] * t158 + parameters[MX4] * t153;
-    const yaw3pitch_real_t t216 = YAW3PITCH_C(-0.7) * t174;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t217 = t1 * t213 + t0 * t214 - (YAW3PITCH_C(0.7) * t215 - t2 * t216);
-    const yaw3pitch_real_t t218 = parameters[XY3] * t178 - t174 * t185 + t217;
-    const yaw3pitch_real_t t219 = t178 * t182 + parameters[XY3] * t174 + (t1 * t214 - t0 * t213 + t10 * t216);
-    const yaw3pitch_real_t t220 = parameters[MX3R] * t174 - parameters[MY3] * t178 - t215;
-    const yaw3pitch_real_t t221 = YAW3PITCH_C(-0.8) * t65; /* link j3: velocity of its origin */
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t222 = t14 * t218 + t12 * t219 + (YAW3PITCH_C(0.8) * t220 + t15 * t221);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t223 = YAW3PITCH_C(2.0) * (parameters[XY2] * t64 - t65 * t205 + t222);
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t224 = parameters[XY2] * t65 + t64 * t202 - (t12 * t218 - t14 * t219 + t37 * t221);
-    const yaw3pitch_real_t t225 = YAW3PITCH_C(2.0) * t224; /* link j2: derivatives */
-    const yaw3pitch_real_t t226 = YAW3PITCH_C(0.24) * dq[0];
-    const yaw3pitch_real_t t227 = t39 * t223 - t36 * t225 + (t39 * t42 - t36 * t41) * t226;
-    const yaw3pitch_real_t t228 = t145 * (t56 - t21 * t61);
-    const yaw3pitch_real_t t229 = YAW3PITCH_C(2.0) * t218; /* link j3: derivatives */
-    const yaw3pitch_real_t t230 = YAW3PITCH_C(2.0) * t219;
-    const yaw3pitch_real_t t231 = YAW3PITCH_C(-1.6) * t65; /* link j4: derivatives */
-    const yaw3pitch_real_t t232 = t14 * t229 + t12 * t230 + t15 * t231; /* link j3: derivatives */
-    const yaw3pitch_real_t t233 = t12 * t229 - t14 * t230 + t37 * t231;
-    const yaw3pitch_real_t t234 = t39 * t232 + t36 * t233 - (t36 * t37 + t39 * t15) * t226;
-    const yaw3pitch_real_t t235 = t22 - t5 * t21;
-    const yaw3pitch_real_t t236 = yaw3pitch_bounded(t145 * (t50 - t5 * t56 - t61 * t235));
-    const yaw3pitch_real_t t237 = YAW3PITCH_C(-2.0) * t213; /* link j4: derivatives */
-    const yaw3pitch_real_t t238 = YAW3PITCH_C(2.0) * t214;
-    const yaw3pitch_real_t t239 = YAW3PITCH_C(-1.4) * t174;
-    const yaw3pitch_real_t t240 = t0 * t238 - t1 * t237 + t2 * t239;
-    const yaw3pitch_real_t t241 = t0 * t237 + t1 * t238 + t10 * t239;
-    const yaw3pitch_real_t t242 = t14 * t240 + t12 * t241 + t17 * t231;
-    const yaw3pitch_real_t t243 = t14 * t10 - t12 * t2; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t244 = t12 * t240 - t14 * t241 - t243 * t231; /* link j4: derivatives */
-    const yaw3pitch_real_t t245 = t39 * t242 + t36 * t244 + (t36 * t243 - t39 * t17) * t226;
-    const yaw3pitch_real_t t246 = t227 * t212 - t145 * t211 + t234 * t228 - t245 * t236;
-    ddq_by_dq[0] = t246;
-    const yaw3pitch_real_t t247 = yaw3pitch_bounded(t60 + t61 * t212);
-    const yaw3pitch_real_t t248 = yaw3pitch_bounded(t61 * t228 - t21 * t60);
-    const yaw3pitch_real_t t249 = yaw3pitch_bounded(t60 * t235 - t61 * t236);
-    const yaw3pitch_real_t t250 = t211 * t212 - t227 * t247 - t234 * t248 - t245 * t249;
-    ddq_by_dq[4] = t250;
-    const yaw3pitch_real_t t251 = t20 - t56 * t228 + t21 * t248;
-    const yaw3pitch_real_t t252 = t5 * t20 + t56 * t236 + t21 * t249;
-    const yaw3pitch_real_t t253 = t245 * t252 - (t227 * t248 - t211 * t228 - t234 * t251);
-    ddq_by_dq[8] = t253;
-    const yaw3pitch_real_t t254 = t4 + t50 * t236 + t22 * t249 - t5 * t252;
-    const yaw3pitch_real_t t255 = t234 * t252 - (t211 * t236 + t227 * t249) - t245 * t254;
-    ddq_by_dq[12] = t255;
-    ddq_by_input[0] = t145;
-    ddq_by_input[4] = -t212;
-    ddq_by_input[8] = -t228;
-    ddq_by_input[12] = t236;
-    const yaw3pitch_real_t t256 = t147 - t148;
-    const yaw3pitch_real_t t257 = t149 + t256;
-    const yaw3pitch_real_t t258 = t158 * t153; /* link j4: motion */
-    const yaw3pitch_real_t t259 = t258 - t257;
-    const yaw3pitch_real_t t260 = t146 * t157;
-    const yaw3pitch_real_t t261 = t70 * t153;
-    const yaw3pitch_real_t t262 = t261 - t260;
-    const yaw3pitch_real_t t263 = t146 * t152;
-    const yaw3pitch_real_t t264 = t70 * t158;
-    const yaw3pitch_real_t t265 = t264 + (t264 + t263);
-    const yaw3pitch_real_t t266 = parameters[ZZ4] * t261 + parameters[XX4R] * t262 + parameters[XY4] * t265
-        + parameters[XZ4] * t259;
-    const yaw3pitch_real_t t267 = t153 * t153;
-    const yaw3pitch_real_t t268 = YAW3PITCH_C(-0.12) * t146;
-    const yaw3pitch_real_t t269 = t36 * t146;
-    const yaw3pitch_real_t t270 = t80 + (t80 - t269);
-    const yaw3pitch_real_t t271 = t268 + YAW3PITCH_C(0.8) * t270;
-    const yaw3pitch_real_t t272 = t146 * t151;
-    const yaw3pitch_real_t t273 = t69 * t178; /* link j3: motion */
-    const yaw3pitch_real_t t274 = t273 + (t273 - t272);
-    const yaw3pitch_real_t t275 = t271 + YAW3PITCH_C(0.7) * t274;
-    const yaw3pitch_real_t t276 = parameters[YZ4] * (t78 - t267) + t266 - parameters[MY4] * t275;
-    const yaw3pitch_real_t t277 = t258 + t257;
-    const yaw3pitch_real_t t278 = t261 + t262;
-    const yaw3pitch_real_t t279 = t158 * t158; /* link j4: motion */
-    const yaw3pitch_real_t t280 = parameters[XZ4] * (t279 - t78) + (parameters[XY4] * t278 - t84 * t264
-        - parameters[YZ4] * t277);
-    const yaw3pitch_real_t t281 = t280 + parameters[MX4] * t275;
-    const yaw3pitch_real_t t282 = t146 * t150;
-    const yaw3pitch_real_t t283 = t69 * t174; /* link j3: motion */
-    const yaw3pitch_real_t t284 = t283 + t282;
-    const yaw3pitch_real_t t285 = t178 * t174;
-    const yaw3pitch_real_t t286 = t285 + t256;
-    const yaw3pitch_real_t t287 = parameters[XY3] * t274 - (parameters[ZZ3R] * t283 + parameters[XX3R] * t284)
-        - parameters[XZ3R] * t286;
-    const yaw3pitch_real_t t288 = t174 * t174;
-    const yaw3pitch_real_t t289 = parameters[YZ3] * (t94 - t288) + t287 - parameters[MY3] * t271 + (t1 * t276
-        - t0 * t281);
-    const yaw3pitch_real_t t290 = parameters[MX4] * t265 - parameters[MY4] * t278;
-    const yaw3pitch_real_t t291 = t285 - t256;
-    const yaw3pitch_real_t t292 = t283 + t284;
-    const yaw3pitch_real_t t293 = t178 * t178;
-    const yaw3pitch_real_t t294 = parameters[XZ3R] * (t293 - t94) + (t97 * t273 - parameters[XY3] * t292
-        + parameters[YZ3] * t291);
-    const yaw3pitch_real_t t295 = parameters[MX3R] * t271 + t294 + (t0 * t276 + t1 * t281
-        + YAW3PITCH_C(0.7) * t290);
-    const yaw3pitch_real_t t296 = t12 * t289 + t14 * t295 + YAW3PITCH_C(0.8) * (parameters[MX3R] * t274
-        + parameters[MY3] * t292 + t290);
-    const yaw3pitch_real_t t297 = t39 * t146;
-    const yaw3pitch_real_t t298 = t102 + t297;
-    const yaw3pitch_real_t t299 = t112 - parameters[XY2] * (t102 + t298) + parameters[YZ2] * (t105 - t147);
-    const yaw3pitch_real_t t300 = t114 + t107;
-    const yaw3pitch_real_t t301 = YAW3PITCH_C(2.0) * t65;
-    const yaw3pitch_real_t t302 = YAW3PITCH_C(-2.0) * t64;
-    const yaw3pitch_real_t t303 = t301 * t198 + t302 * t203 + (t35 * t269 - t38 * t297 - t57 * t300);
-    const yaw3pitch_real_t t304 = t39 * (t115 + t299 + parameters[MX2R] * t268 + t296 + t303);
-    const yaw3pitch_real_t t305 = t105 + t147;
-    const yaw3pitch_real_t t306 = t103 + parameters[XX2R] * t298 - parameters[XY2] * t270
-        + parameters[XZ2R] * t305;
-    const yaw3pitch_real_t t307 = t109 + t306 + parameters[MY2] * t268 + (t12 * t295 - t14 * t289);
-    const yaw3pitch_real_t t308 = t301 * t206 + t302 * t200 + (t58 * t300 + (t38 * t269 - t34 * t297));
-    const yaw3pitch_real_t t309 = t301 * t209 - t302 * t208 + (t41 * t269 - t42 * t297);
-    const yaw3pitch_real_t t310 = t304 + t36 * (t307 + t308) + YAW3PITCH_C(0.12) * t309;
-    const yaw3pitch_real_t t311 = t65 * t223 + t64 * t225 + (t57 * t269 + t58 * t297 - t24 * t300);
-    const yaw3pitch_real_t t312 = t311 - (t42 * t119 + t41 * t122);
-    const yaw3pitch_real_t t313 = t65 * t232 - t64 * t233 + (t16 * t300 + (t54 * t297 - t53 * t269));
-    const yaw3pitch_real_t t314 = t15 * t119 - t37 * t122 + t313;
-    const yaw3pitch_real_t t315 = t65 * t242 - t64 * t244 + (t18 * t300 + (t48 * t297 - t47 * t269));
-    const yaw3pitch_real_t t316 = t243 * t122 + t17 * t119 + t315;
-    const yaw3pitch_real_t t317 = t212 * t312 - t145 * t310 + t228 * t314 - t236 * t316;
-    ddq_by_q[1] = t317;
-    const yaw3pitch_real_t t318 = t212 * t310 - t247 * t312 - t248 * t314 - t249 * t316;
-    ddq_by_q[5] = t318;
-    const yaw3pitch_real_t t319 = t252 * t316 - (t248 * t312 - t228 * t310 - t251 * t314);
-    ddq_by_q[9] = t319;
-    const yaw3pitch_real_t t320 = t252 * t314 - (t236 * t310 + t249 * t312) - t254 * t316;
-    ddq_by_q[13] = t320;
-    const yaw3pitch_real_t t321 = parameters[ZZ4] - t161;
-    const yaw3pitch_real_t t322 = parameters[YZ4] * t70 + t153 * t321;
-    const yaw3pitch_real_t t323 = t158 * t321 - parameters[XZ4] * t70;
-    const yaw3pitch_real_t t324 = t182 - parameters[ZZ3R];
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t325 = t0 * t323 - t1 * t322 - (parameters[YZ3] * t69 + t174 * t324);
-    const yaw3pitch_real_t t326 = parameters[XZ3R] * t69 + t178 * t324 - (t0 * t322 + t1 * t323);
-    const yaw3pitch_real_t t327 = parameters[ZZ2R] - t202;
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t328 = t65 * t327 - parameters[YZ2] * dq[1] + (t14 * t325 - t12 * t326);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t329 = t39 * (YAW3PITCH_C(2.0) * t328 + (t35 * t301 + t38 * t302));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t330 = parameters[XZ2R] * dq[1] - t64 * t327 + (t12 * t325 + t14 * t326);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t331 = t36 * (YAW3PITCH_C(2.0) * t330 + (t38 * t301 + t34 * t302));
-    const yaw3pitch_real_t t332 = t329 + t331 + YAW3PITCH_C(0.12) * (t41 * t301 + t42 * t302);
-    const yaw3pitch_real_t t333 = t154 + t159;
-    const yaw3pitch_real_t t334 = t179 - t175 + (t333 + t173); /* link j4: inertia, momentum beyond */
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t335 = YAW3PITCH_C(2.0) * (t199 - t196 + (t334 - t195))
-        + YAW3PITCH_C(2.0) * (t57 * t65 + t58 * t64);
-    const yaw3pitch_real_t t336 = YAW3PITCH_C(2.0) * t334; /* link j3: derivatives */
-    const yaw3pitch_real_t t337 = YAW3PITCH_C(1.6) * dq[1];
-    const yaw3pitch_real_t t338 = t336 - t37 * t337 + YAW3PITCH_C(2.0) * (t54 * t64 - t53 * t65);
-    const yaw3pitch_real_t t339 = YAW3PITCH_C(2.0) * t333; /* link j4: derivatives */
-    const yaw3pitch_real_t t340 = t339 + t10 * (YAW3PITCH_C(1.4) * t69);
-    const yaw3pitch_real_t t341 = t340 + t243 * t337 + YAW3PITCH_C(2.0) * (t48 * t64 - t47 * t65);
-    const yaw3pitch_real_t t342 = t335 * t212 - t145 * t332 + t338 * t228 - t341 * t236;
-    ddq_by_dq[1] = t342;
-    const yaw3pitch_real_t t343 = t332 * t212 - t335 * t247 - t338 * t248 - t341 * t249;
-    ddq_by_dq[5] = t343;
-    const yaw3pitch_real_t t344 = t341 * t252 - (t335 * t248 - t332 * t228 - t338 * t251);
-    ddq_by_dq[9] = t344;
-    const yaw3pitch_real_t t345 = t338 * t252 - (t332 * t236 + t335 * t249) - t341 * t254;
-    ddq_by_dq[13] = t345;
-    ddq_by_input[1] = -t212;
-    ddq_by_input[5] = t247;
-    ddq_by_input[9] = t248;
-    ddq_by_input[13] = t249;
-    const yaw3pitch_real_t t346 = t293 + t288; /* link j4: motion */
-    const yaw3pitch_real_t t347 = YAW3PITCH_C(-2.0) * t174;
-    const yaw3pitch_real_t t348 = YAW3PITCH_C(-2.0) * t178;
-    const yaw3pitch_real_t t349 = t51 * t346 + (t30 * t272 + t31 * t282) - (t347 * t177 + t348 * t183);
-    const yaw3pitch_real_t t350 = t295 + t349;
-    const yaw3pitch_real_t t351 = t347 * t186 - t348 * t180 + (t52 * t346 + (t31 * t272 + t29 * t282));
-    const yaw3pitch_real_t t352 = t289 + t351;
-    const yaw3pitch_real_t t353 = t13 * t282 - t11 * t272 - (t347 * t190 + t348 * t189);
-    const yaw3pitch_real_t t354 = t36 * (t12 * t350 - t14 * t352 + YAW3PITCH_C(0.8) * t353);
-    const yaw3pitch_real_t t355 = t39 * (t14 * t350 + t12 * t352) + t354 + YAW3PITCH_C(0.12) * t353;
-    const yaw3pitch_real_t t356 = parameters[MX4] * (t78 + t267) + parameters[MY4] * t277;
-    const yaw3pitch_real_t t357 = parameters[MY4] * (t78 + t279) + parameters[MX4] * t259;
-    const yaw3pitch_real_t t358 = parameters[MY3] * (t94 + t293) - parameters[MX3R] * t286 + (t0 * t356
-        + t1 * t357);
-    const yaw3pitch_real_t t359 = t94 + t288;
-    const yaw3pitch_real_t t360 = parameters[MY3] * t291 - parameters[MX3R] * t359 + (t0 * t357 - t1 * t356);
-    const yaw3pitch_real_t t361 = t12 * (t11 * t346 - t348 * t220 + t358) + t14 * (t13 * t346 - t347 * t220
-        + t360);
-    const yaw3pitch_real_t t362 = t7 * t346 + (t51 * t272 + t52 * t282);
-    const yaw3pitch_real_t t363 = t122 + YAW3PITCH_C(-0.8) * t305;
-    const yaw3pitch_real_t t364 = t12 * t363 - t121;
-    const yaw3pitch_real_t t365 = t127 + t14 * t363;
-    const yaw3pitch_real_t t366 = t11 * t365 - t13 * t364;
-    const yaw3pitch_real_t t367 = t366 - (t347 * t218 + t348 * t219 + t362) + YAW3PITCH_C(0.8) * t361;
-    const yaw3pitch_real_t t368 = t366 + (t174 * t229 + t178 * t230 - t362);
-    const yaw3pitch_real_t t369 = t174 * t240 + t178 * t241 + (t3 * t346 - (t45 * t272 + t46 * t282));
-    const yaw3pitch_real_t t370 = t369 + (t10 * t365 - t2 * t364);
-    const yaw3pitch_real_t t371 = t212 * t367 - t145 * t355 + t228 * t368 - t236 * t370;
-    ddq_by_q[2] = t371;
-    const yaw3pitch_real_t t372 = t212 * t355 - t247 * t367 - t248 * t368 - t249 * t370;
-    ddq_by_q[6] = t372;
-    const yaw3pitch_real_t t373 = t252 * t370 - (t248 * t367 - t228 * t355 - t251 * t368);
-    ddq_by_q[10] = t373;
-    const yaw3pitch_real_t t374 = t252 * t368 - (t236 * t355 + t249 * t367) - t254 * t370;
-    ddq_by_q[14] = t374;
+    const yaw3pitch_real_t t329 = t0 * t249 - t1 * t247 - (parameters[YZ3] * t68 + t212 * t328);
     /* link j3: derivatives */
-    const yaw3pitch_real_t t375 = YAW3PITCH_C(2.0) * t325 - (t30 * t347 + t31 * t348);
-    const yaw3pitch_real_t t376 = YAW3PITCH_C(2.0) * t326 + (t31 * t347 + t29 * t348);
-    const yaw3pitch_real_t t377 = t11 * t347 - t13 * t348;
-    const yaw3pitch_real_t t378 = t36 * (t12 * t375 + t14 * t376 + YAW3PITCH_C(0.8) * t377);
-    const yaw3pitch_real_t t379 = t39 * (t14 * t375 - t12 * t376) + t378 + YAW3PITCH_C(0.12) * t377;
-    const yaw3pitch_real_t t380 = YAW3PITCH_C(0.8) * (t12 * (YAW3PITCH_C(2.0) * t190)
-        + t14 * (YAW3PITCH_C(-2.0) * t189));
-    const yaw3pitch_real_t t381 = t336 + (t51 * t347 + t52 * t348) + t380;
-    const yaw3pitch_real_t t382 = t336 + YAW3PITCH_C(-2.0) * (t51 * t174 + t52 * t178);
+    const yaw3pitch_real_t t330 = YAW3PITCH_C(2.0) * t329 - (t28 * t284 + t29 * t288);
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t331 = parameters[XZ3R] * t68 + t171 * t328 - (t0 * t247 + t1 * t249);
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t332 = YAW3PITCH_C(2.0) * t331 + (t29 * t284 + t27 * t288);
+    const yaw3pitch_real_t t333 = t10 * t284 - t12 * t288;
+    const yaw3pitch_real_t t334 = t34 * (t11 * t330 + t13 * t332 + YAW3PITCH_C(0.8) * t333);
+    const yaw3pitch_real_t t335 = t37 * (t13 * t330 - t11 * t332) + t334 + YAW3PITCH_C(0.12) * t333;
+    const yaw3pitch_real_t t336 = t296 - t281 + (t256 + t280); /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t337 = YAW3PITCH_C(2.0) * t336; /* link j3: derivatives */
+    const yaw3pitch_real_t t338 = YAW3PITCH_C(0.8) * (t11 * (YAW3PITCH_C(2.0) * t300)
+        + t13 * (YAW3PITCH_C(-2.0) * t301));
+    const yaw3pitch_real_t t339 = t337 + (t49 * t284 + t50 * t288) + t338;
+    const yaw3pitch_real_t t340 = t337 + YAW3PITCH_C(-2.0) * (t49 * t212 + t50 * t171);
+    const yaw3pitch_real_t t341 = t257 + t9 * (YAW3PITCH_C(1.4) * t68); /* link j4: derivatives */
+    const yaw3pitch_real_t t342 = t341 + YAW3PITCH_C(-2.0) * (t43 * t212 + t44 * t171);
+    const yaw3pitch_real_t t343 = t339 * t229 - t144 * t335 + t340 * t230 - t342 * t235;
+    ddq_by_dq[2] = t343;
+    const yaw3pitch_real_t t344 = t335 * t229 - t339 * t237 - t340 * t238 - t342 * t239;
+    ddq_by_dq[6] = t344;
+    const yaw3pitch_real_t t345 = t342 * t242 - (t339 * t238 - t335 * t230 - t340 * t241);
+    ddq_by_dq[10] = t345;
+    const yaw3pitch_real_t t346 = t340 * t242 - (t335 * t235 + t339 * t239) - t342 * t244;
+    ddq_by_dq[14] = t346;
+    ddq_by_input[2] = -t230;
+    ddq_by_input[6] = t238;
+    ddq_by_input[10] = -t241;
+    ddq_by_input[14] = -t242;
+    const yaw3pitch_real_t t347 = t11 * t292 + t13 * t272 + YAW3PITCH_C(0.8) * (parameters[MX3R] * t173
+        + parameters[MY3] * t269 + t264);
+    const yaw3pitch_real_t t348 = t37 * t145;
+    const yaw3pitch_real_t t349 = t101 + t348;
+    const yaw3pitch_real_t t350 = t111 - parameters[XY2] * (t101 + t349) + parameters[YZ2] * (t104 - t146);
+    const yaw3pitch_real_t t351 = t113 + t106; /* link j3: motion */
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t352 = t13 * (t283 - t297) + t11 * (t287 - t295);
+    const yaw3pitch_real_t t353 = t13 * t352;
+    const yaw3pitch_real_t t354 = t13 * t301 - t11 * t300;
+    const yaw3pitch_real_t t355 = YAW3PITCH_C(0.8) * t354;
+    const yaw3pitch_real_t t356 = YAW3PITCH_C(0.8) * dq[1]; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t357 = t35 * t356; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t358 = t355 + t357;
+    const yaw3pitch_real_t t359 = parameters[XZ2R] * t64;
+    const yaw3pitch_real_t t360 = parameters[XY2] * dq[1];
+    const yaw3pitch_real_t t361 = t359 - t360 + (t297 + t353 + t355 - t358);
+    const yaw3pitch_real_t t362 = YAW3PITCH_C(2.0) * t64;
+    const yaw3pitch_real_t t363 = t11 * t352;
+    const yaw3pitch_real_t t364 = YAW3PITCH_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const yaw3pitch_real_t t365 = parameters[YZ2] * t64 + dq[1] * t364 + (t363 - t287);
+    const yaw3pitch_real_t t366 = YAW3PITCH_C(-2.0) * t63;
+    const yaw3pitch_real_t t367 = t362 * t361 + t366 * t365 + (t33 * t167 - t36 * t348 - t55 * t351);
+    const yaw3pitch_real_t t368 = t37 * (t114 + t350 + parameters[MX2R] * t166 + t347 + t367);
+    const yaw3pitch_real_t t369 = t102 + parameters[XX2R] * t349 - parameters[XY2] * t168
+        + parameters[XZ2R] * t215;
+    const yaw3pitch_real_t t370 = t108 + t369 + parameters[MY2] * t166 + (t11 * t272 - t13 * t292);
+    const yaw3pitch_real_t t371 = t11 * t301 + t13 * t300;
+    const yaw3pitch_real_t t372 = parameters[XX2R] - t364;
+    const yaw3pitch_real_t t373 = dq[1] * t372 - parameters[XZ2R] * t63 + (t295 + t363
+        + (YAW3PITCH_C(0.8) * t371 + t14 * t356));
+    const yaw3pitch_real_t t374 = parameters[YZ2] * t63;
+    const yaw3pitch_real_t t375 = t360 - t374 + (t283 - t353 + t357 - t358);
+    const yaw3pitch_real_t t376 = t362 * t373 + t366 * t375 + (t56 * t351 + (t36 * t167 - t32 * t348));
+    const yaw3pitch_real_t t377 = t371 - parameters[MX2R] * dq[1];
+    const yaw3pitch_real_t t378 = parameters[MY2] * dq[1] + t354;
+    const yaw3pitch_real_t t379 = t362 * t377 - t366 * t378 + (t39 * t167 - t40 * t348);
+    const yaw3pitch_real_t t380 = t368 + t34 * (t370 + t376) + YAW3PITCH_C(0.12) * t379;
+    const yaw3pitch_real_t t381 = YAW3PITCH_C(-0.8) * t64; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t382 = t13 * t312 + t11 * t313 + (YAW3PITCH_C(0.8) * t306 + t14 * t381);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t383 = YAW3PITCH_C(2.0) * (parameters[XY2] * t63 - t64 * t372 + t382);
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t384 = parameters[XY2] * t64 + t63 * t364 - (t11 * t312 - t13 * t313 + t35 * t381);
+    const yaw3pitch_real_t t385 = YAW3PITCH_C(2.0) * t384; /* link j2: derivatives */
+    const yaw3pitch_real_t t386 = t64 * t383 + t63 * t385 + (t55 * t167 + t56 * t348 - t23 * t351);
+    const yaw3pitch_real_t t387 = t386 - (t40 * t118 + t39 * t121);
+    const yaw3pitch_real_t t388 = YAW3PITCH_C(-1.6) * t64; /* link j4: derivatives */
+    const yaw3pitch_real_t t389 = t13 * t316 + t11 * t317 + t14 * t388; /* link j3: derivatives */
+    const yaw3pitch_real_t t390 = t11 * t316 - t13 * t317 + t35 * t388;
+    const yaw3pitch_real_t t391 = t64 * t389 - t63 * t390 + (t15 * t351 + (t52 * t348 - t51 * t167));
+    const yaw3pitch_real_t t392 = t14 * t118 - t35 * t121 + t391;
+    const yaw3pitch_real_t t393 = t13 * t320 + t11 * t321 + t16 * t388; /* link j4: derivatives */
+    const yaw3pitch_real_t t394 = t13 * t9 - t11 * t2; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t395 = t11 * t320 - t13 * t321 - t394 * t388; /* link j4: derivatives */
+    const yaw3pitch_real_t t396 = t64 * t393 - t63 * t395 + (t17 * t351 + (t46 * t348 - t45 * t167));
+    const yaw3pitch_real_t t397 = t394 * t121 + t16 * t118 + t396;
+    const yaw3pitch_real_t t398 = t229 * t387 - t144 * t380 + t230 * t392 - t235 * t397;
+    ddq_by_q[1] = t398;
+    const yaw3pitch_real_t t399 = t229 * t380 - t237 * t387 - t238 * t392 - t239 * t397;
+    ddq_by_q[5] = t399;
+    const yaw3pitch_real_t t400 = t242 * t397 - (t238 * t387 - t230 * t380 - t241 * t392);
+    ddq_by_q[9] = t400;
+    const yaw3pitch_real_t t401 = t242 * t392 - (t235 * t380 + t239 * t387) - t244 * t397;
+    ddq_by_q[13] = t401;
+    const yaw3pitch_real_t t402 = parameters[ZZ2R] - t364;
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t403 = t64 * t402 - parameters[YZ2] * dq[1] + (t13 * t329 - t11 * t331);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t404 = t37 * (YAW3PITCH_C(2.0) * t403 + (t33 * t362 + t36 * t366));
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t405 = parameters[XZ2R] * dq[1] - t63 * t402 + (t11 * t329 + t13 * t331);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t406 = t34 * (YAW3PITCH_C(2.0) * t405 + (t36 * t362 + t32 * t366));
+    const yaw3pitch_real_t t407 = t404 + t406 + YAW3PITCH_C(0.12) * (t39 * t362 + t40 * t366);
+    const yaw3pitch_real_t t408 = YAW3PITCH_C(2.0) * (t374 - t359 + (t336 - t358))
+        + YAW3PITCH_C(2.0) * (t55 * t64 + t56 * t63);
+    const yaw3pitch_real_t t409 = YAW3PITCH_C(1.6) * dq[1];
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t410 = t337 - t35 * t409 + YAW3PITCH_C(2.0) * (t52 * t63 - t51 * t64);
     /* link j4: derivatives */
-    const yaw3pitch_real_t t383 = t340 + YAW3PITCH_C(-2.0) * (t45 * t174 + t46 * t178);
-    const yaw3pitch_real_t t384 = t381 * t212 - t145 * t379 + t382 * t228 - t383 * t236;
-    ddq_by_dq[2] = t384;
-    const yaw3pitch_real_t t385 = t379 * t212 - t381 * t247 - t382 * t248 - t383 * t249;
-    ddq_by_dq[6] = t385;
-    const yaw3pitch_real_t t386 = t383 * t252 - (t381 * t248 - t379 * t228 - t382 * t251);
-    ddq_by_dq[10] = t386;
-    const yaw3pitch_real_t t387 = t382 * t252 - (t379 * t236 + t381 * t249) - t383 * t254;
-    ddq_by_dq[14] = t387;
-    ddq_by_input[2] = -t228;
-    ddq_by_input[6] = t248;
-    ddq_by_input[10] = -t251;
-    ddq_by_input[14] = -t252;
-    const yaw3pitch_real_t t388 = t279 + t267; /* link j4: force and moment */
-    const yaw3pitch_real_t t389 = YAW3PITCH_C(2.0) * t153;
-    const yaw3pitch_real_t t390 = YAW3PITCH_C(2.0) * t158;
-    const yaw3pitch_real_t t391 = t389 * t156 + t390 * t164 - (parameters[XZ4] * t388
-        + (parameters[XX4R] * t263 + parameters[XY4] * t260));
-    const yaw3pitch_real_t t392 = t281 + t391;
-    const yaw3pitch_real_t t393 = t389 * t163 + t390 * t160 + (parameters[YZ4] * t388
-        + parameters[XY4] * t263);
-    const yaw3pitch_real_t t394 = t276 + t393;
-    const yaw3pitch_real_t t395 = t1 * t392 + t0 * t394;
-    const yaw3pitch_real_t t396 = t389 * t168 + t390 * t167 + (parameters[MY4] * t263
-        - parameters[MX4] * t260);
-    const yaw3pitch_real_t t397 = t1 * t394 - t0 * t392 - YAW3PITCH_C(0.7) * t396;
-    const yaw3pitch_real_t t398 = t36 * (t12 * t395 - t14 * t397 + YAW3PITCH_C(0.8) * t396);
-    const yaw3pitch_real_t t399 = t39 * (t14 * t395 + t12 * t397) + t398 + YAW3PITCH_C(0.12) * t396;
-    const yaw3pitch_real_t t400 = parameters[MY4] * t388 - t390 * t215 + t357;
-    const yaw3pitch_real_t t401 = t389 * t215 - parameters[MX4] * t388 - t356;
-    const yaw3pitch_real_t t402 = t0 * t400 + t1 * t401;
-    const yaw3pitch_real_t t403 = t12 * (t1 * t400 - t0 * t401) + t14 * t402;
-    const yaw3pitch_real_t t404 = t365 + YAW3PITCH_C(-0.7) * t286;
-    const yaw3pitch_real_t t405 = YAW3PITCH_C(0.7) * t359 + t364;
-    const yaw3pitch_real_t t406 = parameters[MX4] * (t1 * t405 + t0 * t404) + parameters[MY4] * (t1 * t404
-        - t0 * t405);
-    const yaw3pitch_real_t t407 = parameters[ZZ4] * t388 + (parameters[YZ4] * t260 + parameters[XZ4] * t263);
-    const yaw3pitch_real_t t408 = t406 + (t390 * t214 - t389 * t213 - t407) + YAW3PITCH_C(0.7) * t402;
-    const yaw3pitch_real_t t409 = t408 + YAW3PITCH_C(0.8) * t403;
-    const yaw3pitch_real_t t410 = t406 + (t153 * t237 + t158 * t238 - t407);
-    const yaw3pitch_real_t t411 = t212 * t409 - t145 * t399 + t228 * t408 - t236 * t410;
-    ddq_by_q[3] = t411;
-    const yaw3pitch_real_t t412 = t212 * t399 - t247 * t409 - t248 * t408 - t249 * t410;
-    ddq_by_q[7] = t412;
-    const yaw3pitch_real_t t413 = t252 * t410 - (t248 * t409 - t228 * t399 - t251 * t408);
-    ddq_by_q[11] = t413;
-    const yaw3pitch_real_t t414 = t252 * t408 - (t236 * t399 + t249 * t409) - t254 * t410;
-    ddq_by_q[15] = t414;
+    const yaw3pitch_real_t t411 = t341 + t394 * t409 + YAW3PITCH_C(2.0) * (t46 * t63 - t45 * t64);
+    const yaw3pitch_real_t t412 = t408 * t229 - t144 * t407 + t410 * t230 - t411 * t235;
+    ddq_by_dq[1] = t412;
+    const yaw3pitch_real_t t413 = t407 * t229 - t408 * t237 - t410 * t238 - t411 * t239;
+    ddq_by_dq[5] = t413;
+    const yaw3pitch_real_t t414 = t411 * t242 - (t408 * t238 - t407 * t230 - t410 * t241);
+    ddq_by_dq[9] = t414;
+    const yaw3pitch_real_t t415 = t410 * t242 - (t407 * t235 + t408 * t239) - t411 * t244;
+    ddq_by_dq[13] = t415;
+    ddq_by_input[1] = -t229;
+    ddq_by_input[5] = t237;
+    ddq_by_input[9] = t238;
+    ddq_by_input[13] = t239;
+    /* link j2: inertia, momentum beyond */
+    const yaw3pitch_real_t t416 = t34 * (t34 * (t375 - t361) + t37 * (t365 + t373));
+    const yaw3pitch_real_t t417 = t361 + t416 + YAW3PITCH_C(0.12) * (t37 * t377 - t34 * t378);
+    const yaw3pitch_real_t t418 = YAW3PITCH_C(2.0) * t417; /* link j1: derivatives */
+    const yaw3pitch_real_t t419 = YAW3PITCH_C(0.24) * dq[0];
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t420 = t37 * t383 - t34 * t385 + (t37 * t40 - t34 * t39) * t419;
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t421 = t37 * t389 + t34 * t390 - (t34 * t35 + t37 * t14) * t419;
     /* link j4: derivatives */
-    const yaw3pitch_real_t t415 = YAW3PITCH_C(-2.0) * t322 - (parameters[XY4] * t390
-        + parameters[XX4R] * t389);
-    const yaw3pitch_real_t t416 = parameters[XY4] * t389 + YAW3PITCH_C(2.0) * t323;
-    const yaw3pitch_real_t t417 = t1 * t415 + t0 * t416;
-    const yaw3pitch_real_t t418 = parameters[MY4] * t389 - parameters[MX4] * t390;
-    const yaw3pitch_real_t t419 = YAW3PITCH_C(-0.7) * t418 + (t1 * t416 - t0 * t415);
-    const yaw3pitch_real_t t420 = t36 * (YAW3PITCH_C(0.8) * t418 + (t12 * t417 - t14 * t419));
-    const yaw3pitch_real_t t421 = YAW3PITCH_C(0.12) * t418 + (t39 * (t14 * t417 + t12 * t419) + t420);
-    const yaw3pitch_real_t t422 = YAW3PITCH_C(-2.0) * t168;
-    const yaw3pitch_real_t t423 = YAW3PITCH_C(2.0) * t167;
-    const yaw3pitch_real_t t424 = t0 * t422 - t1 * t423;
-    const yaw3pitch_real_t t425 = t339 - (parameters[XZ4] * t389 + parameters[YZ4] * t390)
-        + YAW3PITCH_C(0.7) * t424;
-    const yaw3pitch_real_t t426 = t12 * (t1 * t422 + t0 * t423) + t14 * t424;
-    const yaw3pitch_real_t t427 = t425 + YAW3PITCH_C(0.8) * t426;
-    ddq_by_dq[3] = t427 * t212 - t145 * t421 + t425 * t228;
-    ddq_by_dq[7] = t421 * t212 - t427 * t247 - t425 * t248;
-    ddq_by_dq[11] = t425 * t251 - (t427 * t248 - t421 * t228);
-    ddq_by_dq[15] = t425 * t252 - (t421 * t236 + t427 * t249);
-    ddq_by_input[3] = t236;
-    ddq_by_input[7] = t249;
-    ddq_by_input[11] = -t252;
-    ddq_by_input[15] = t254;
+    const yaw3pitch_real_t t422 = t37 * t393 + t34 * t395 + (t34 * t394 - t37 * t16) * t419;
+    const yaw3pitch_real_t t423 = t420 * t229 - t144 * t418 + t421 * t230 - t422 * t235;
+    ddq_by_dq[0] = t423;
+    const yaw3pitch_real_t t424 = t418 * t229 - t420 * t237 - t421 * t238 - t422 * t239;
+    ddq_by_dq[4] = t424;
+    const yaw3pitch_real_t t425 = t422 * t242 - (t420 * t238 - t418 * t230 - t421 * t241);
+    ddq_by_dq[8] = t425;
+    const yaw3pitch_real_t t426 = t421 * t242 - (t418 * t235 + t420 * t239) - t422 * t244;
+    ddq_by_dq[12] = t426;
+    ddq_by_input[0] = t144;
+    ddq_by_input[4] = -t229;
+    ddq_by_input[8] = -t230;
+    ddq_by_input[12] = t235;
     /* always zero */
     ddq_by_q[0] = YAW3PITCH_C(0.0);
     ddq_by_q[4] = YAW3PITCH_C(0.0);
     ddq_by_q[8] = YAW3PITCH_C(0.0);
     ddq_by_q[12] = YAW3PITCH_C(0.0);
-    if (!yaw3pitch_all_bounded(ddq, 4)
-        || !yaw3pitch_all_bounded(ddq_by_q, 16)
-        || !yaw3pitch_all_bounded(ddq_by_dq, 16)
-        || !yaw3pitch_all_bounded(ddq_by_input, 16)) {
+    if (!yaw3pitch_bounded(ddq, 4)
+        || !yaw3pitch_bounded(ddq_by_q, 16)
+        || !yaw3pitch_bounded(ddq_by_dq, 16)
+        || !yaw3pitch_bounded(ddq_by_input, 16)) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
         yaw3pitch_zero(ddq_by_dq, 16);

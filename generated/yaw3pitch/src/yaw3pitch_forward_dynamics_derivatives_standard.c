@@ -7,7 +7,7 @@
  * Arm yaw3pitch, description 839ceb1d876030e9.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 1675 (900 mul, 767 add, 8 neg), 4 div, 6 trig.
+ * Operations: 1675 (900 mul, 767 add, 8 neg), 4 div, 6 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q             [4]   [rad]                    joint coordinates; norm at most 10000
  * @param[in]   dq            [4]   [rad/s]                  joint velocities; norm at most 100000
@@ -71,7 +71,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -104,10 +104,10 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
         return status;
     }
 
-    yaw3pitch_real_t t44, t41;
-    YAW3PITCH_SINCOS(q[1], &t44, &t41);
-    yaw3pitch_real_t t13, t16;
-    YAW3PITCH_SINCOS(q[2], &t13, &t16);
+    yaw3pitch_real_t t42, t39;
+    YAW3PITCH_SINCOS(q[1], &t42, &t39);
+    yaw3pitch_real_t t12, t15;
+    YAW3PITCH_SINCOS(q[2], &t12, &t15);
     yaw3pitch_real_t t0, t1;
     YAW3PITCH_SINCOS(q[3], &t0, &t1);
     if (!(parameters[ZZ4] > YAW3PITCH_C(1.0e-12))) {
@@ -126,7 +126,7 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t6 = YAW3PITCH_C(-0.7) * parameters[M4];
     const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 + YAW3PITCH_C(2.0) * t2);
     const yaw3pitch_real_t t8 = parameters[ZZ3] - (t7 - parameters[ZZ4]);
-    const yaw3pitch_real_t t9 = yaw3pitch_bounded(t8 - t3 * t5);
+    const yaw3pitch_real_t t9 = t8 - t3 * t5;
     if (!(t9 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -134,41 +134,25 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t10 = t9 + YAW3PITCH_C(-1.0e-9) * t8;
-    if (!(t10 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t11 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const yaw3pitch_real_t t12 = parameters[MY3] + t11; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t14 = t2 + t6;
-    const yaw3pitch_real_t t15 = t14 - parameters[MX3];
-    const yaw3pitch_real_t t17 = t13 * t12 + t16 * t15; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t18 = YAW3PITCH_C(0.8) * t17 - t8;
-    const yaw3pitch_real_t t19 = t13 * t11 + t16 * t2; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t20 = t3 + YAW3PITCH_C(0.8) * t19;
-    const yaw3pitch_real_t t21 = t18 + t20 * t5;
-    const yaw3pitch_real_t t22 = YAW3PITCH_C(-1.0) / t9;
-    const yaw3pitch_real_t t23 = t21 * t22;
-    const yaw3pitch_real_t t24 = t20 * t4;
-    const yaw3pitch_real_t t25 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t26 = YAW3PITCH_C(0.8) * t25; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t27 = YAW3PITCH_C(0.8) * (t26 - YAW3PITCH_C(2.0) * t17);
-    const yaw3pitch_real_t t28 = parameters[ZZ2] + (t8 + t27);
-    const yaw3pitch_real_t t29 = yaw3pitch_bounded(t28 - t20 * t24 + t21 * t23);
-    if (!(t29 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t30 = t29 + YAW3PITCH_C(-1.0e-9) * t28;
-    if (!(t30 > YAW3PITCH_C(1.0e-12))) {
+    const yaw3pitch_real_t t10 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const yaw3pitch_real_t t11 = parameters[MY3] + t10; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t13 = t2 + t6;
+    const yaw3pitch_real_t t14 = t13 - parameters[MX3];
+    const yaw3pitch_real_t t16 = t12 * t11 + t15 * t14; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t17 = YAW3PITCH_C(0.8) * t16 - t8;
+    const yaw3pitch_real_t t18 = t12 * t10 + t15 * t2; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t19 = t3 + YAW3PITCH_C(0.8) * t18;
+    const yaw3pitch_real_t t20 = t17 + t19 * t5;
+    const yaw3pitch_real_t t21 = YAW3PITCH_C(-1.0) / t9;
+    const yaw3pitch_real_t t22 = t20 * t21;
+    const yaw3pitch_real_t t23 = t19 * t4;
+    const yaw3pitch_real_t t24 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t25 = YAW3PITCH_C(0.8) * t24; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t26 = YAW3PITCH_C(0.8) * (t25 - YAW3PITCH_C(2.0) * t16);
+    const yaw3pitch_real_t t27 = parameters[ZZ2] + (t8 + t26);
+    const yaw3pitch_real_t t28 = t27 - t19 * t23 + t20 * t22;
+    if (!(t28 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
         yaw3pitch_zero(ddq_by_dq, 16);
@@ -176,52 +160,62 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
         return YAW3PITCH_STATUS_PIVOT;
     }
     /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t31 = parameters[YY4] - parameters[XX4];
-    const yaw3pitch_real_t t32 = t1 * t31 + parameters[XY4] * (YAW3PITCH_C(2.0) * t0);
-    const yaw3pitch_real_t t33 = t1 * t32;
-    const yaw3pitch_real_t t34 = parameters[YY3] + (parameters[XX4] + t33 - t7);
-    const yaw3pitch_real_t t35 = parameters[XX3] + (parameters[YY4] - t33);
-    const yaw3pitch_real_t t36 = t0 * t32 - parameters[XY4] + YAW3PITCH_C(0.7) * t11 - parameters[XY3];
+    const yaw3pitch_real_t t29 = parameters[YY4] - parameters[XX4];
+    const yaw3pitch_real_t t30 = t1 * t29 + parameters[XY4] * (YAW3PITCH_C(2.0) * t0);
+    const yaw3pitch_real_t t31 = t1 * t30;
+    const yaw3pitch_real_t t32 = parameters[YY3] + (parameters[XX4] + t31 - t7);
+    const yaw3pitch_real_t t33 = parameters[XX3] + (parameters[YY4] - t31);
+    const yaw3pitch_real_t t34 = t0 * t30 - parameters[XY4] + YAW3PITCH_C(0.7) * t10 - parameters[XY3];
     /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t37 = t16 * (t35 - t34) - t36 * (YAW3PITCH_C(-2.0) * t13);
-    const yaw3pitch_real_t t38 = t16 * t37;
-    const yaw3pitch_real_t t39 = parameters[XX2] + (t34 + t38);
-    const yaw3pitch_real_t t40 = parameters[YY2] + (t35 - t38 + t27);
-    const yaw3pitch_real_t t42 = t13 * t15 - t16 * t12; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t35 = t15 * (t33 - t32) - t34 * (YAW3PITCH_C(-2.0) * t12);
+    const yaw3pitch_real_t t36 = t15 * t35;
+    const yaw3pitch_real_t t37 = parameters[XX2] + (t32 + t36);
+    const yaw3pitch_real_t t38 = parameters[YY2] + (t33 - t36 + t26);
+    const yaw3pitch_real_t t40 = t12 * t14 - t15 * t11; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t43 = parameters[XY2] + (t13 * t37 - t36 + YAW3PITCH_C(0.8) * t42);
+    const yaw3pitch_real_t t41 = parameters[XY2] + (t12 * t35 - t34 + YAW3PITCH_C(0.8) * t40);
     /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t45 = t41 * (t41 * (t40 - t39) + t43 * (YAW3PITCH_C(2.0) * t44));
-    const yaw3pitch_real_t t46 = t42 - parameters[MY2]; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t47 = t26 - t17;
-    const yaw3pitch_real_t t48 = parameters[MX2] + t47;
+    const yaw3pitch_real_t t43 = t39 * (t39 * (t38 - t37) + t41 * (YAW3PITCH_C(2.0) * t42));
+    const yaw3pitch_real_t t44 = t40 - parameters[MY2]; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t45 = t25 - t16;
+    const yaw3pitch_real_t t46 = parameters[MX2] + t45;
     /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t49 = YAW3PITCH_C(0.12) * (parameters[M2] + t25) + YAW3PITCH_C(2.0) * (t44 * t46
-        + t41 * t48);
-    const yaw3pitch_real_t t50 = parameters[ZZ1] + (t39 + t45 + YAW3PITCH_C(0.12) * t49);
+    const yaw3pitch_real_t t47 = YAW3PITCH_C(0.12) * (parameters[M2] + t24) + YAW3PITCH_C(2.0) * (t42 * t44
+        + t39 * t46);
+    const yaw3pitch_real_t t48 = parameters[ZZ1] + (t37 + t43 + YAW3PITCH_C(0.12) * t47);
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t51 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
-    const yaw3pitch_real_t t52 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
-    const yaw3pitch_real_t t53 = t16 * t51 + t13 * t52;
-    const yaw3pitch_real_t t54 = t13 * t51 - t16 * t52;
-    const yaw3pitch_real_t t55 = t44 * t53 + t41 * t54;
-    const yaw3pitch_real_t t56 = t55 * t4;
+    const yaw3pitch_real_t t49 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
+    const yaw3pitch_real_t t50 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
+    const yaw3pitch_real_t t51 = t15 * t49 + t12 * t50;
+    const yaw3pitch_real_t t52 = t12 * t49 - t15 * t50;
+    const yaw3pitch_real_t t53 = t42 * t51 + t39 * t52;
+    const yaw3pitch_real_t t54 = t53 * t4;
     /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t57 = t51 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
-    const yaw3pitch_real_t t58 = parameters[YZ3] + t52;
-    const yaw3pitch_real_t t59 = t16 * t57 + t13 * t58; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t60 = t13 * t57 - t16 * t58;
-    const yaw3pitch_real_t t61 = t44 * t59 + t41 * t60 + t55 * t5;
-    const yaw3pitch_real_t t62 = t61 * t22;
+    const yaw3pitch_real_t t55 = t49 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
+    const yaw3pitch_real_t t56 = parameters[YZ3] + t50;
+    const yaw3pitch_real_t t57 = t15 * t55 + t12 * t56; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t58 = t12 * t55 - t15 * t56;
+    const yaw3pitch_real_t t59 = t42 * t57 + t39 * t58 + t53 * t5;
+    const yaw3pitch_real_t t60 = t59 * t21;
     /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t63 = parameters[MZ3] + parameters[MZ4];
+    const yaw3pitch_real_t t61 = parameters[MZ3] + parameters[MZ4];
     /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t64 = parameters[XZ2] + (YAW3PITCH_C(-0.8) * t63 - t59);
-    const yaw3pitch_real_t t65 = t60 - parameters[YZ2];
-    const yaw3pitch_real_t t66 = t44 * t64 - t41 * t65 - t55 * t24 + t61 * t23;
-    const yaw3pitch_real_t t67 = YAW3PITCH_C(1.0) / t29;
-    const yaw3pitch_real_t t68 = t66 * t67;
-    const yaw3pitch_real_t t69 = yaw3pitch_bounded(t50 - t55 * t56 + t61 * t62 - t66 * t68);
+    const yaw3pitch_real_t t62 = parameters[XZ2] + (YAW3PITCH_C(-0.8) * t61 - t57);
+    const yaw3pitch_real_t t63 = t58 - parameters[YZ2];
+    const yaw3pitch_real_t t64 = t42 * t62 - t39 * t63 - t53 * t23 + t59 * t22;
+    const yaw3pitch_real_t t65 = YAW3PITCH_C(1.0) / t28;
+    const yaw3pitch_real_t t66 = t64 * t65;
+    const yaw3pitch_real_t t67 = t48 - t53 * t54 + t59 * t60 - t64 * t66;
+    if (!(t67 > YAW3PITCH_C(1.0e-12))) {
+        yaw3pitch_zero(ddq, 4);
+        yaw3pitch_zero(ddq_by_q, 16);
+        yaw3pitch_zero(ddq_by_dq, 16);
+        yaw3pitch_zero(ddq_by_input, 16);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
+    const yaw3pitch_real_t t68 = yaw3pitch_min(t9 + YAW3PITCH_C(-1.0e-9) * t8, t28
+        + YAW3PITCH_C(-1.0e-9) * t27);
+    const yaw3pitch_real_t t69 = yaw3pitch_min(t68, t67 + YAW3PITCH_C(-1.0e-9) * t48);
     if (!(t69 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
@@ -229,557 +223,548 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
         yaw3pitch_zero(ddq_by_input, 16);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t70 = t69 + YAW3PITCH_C(-1.0e-9) * t50;
-    if (!(t70 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(ddq, 4);
-        yaw3pitch_zero(ddq_by_q, 16);
-        yaw3pitch_zero(ddq_by_dq, 16);
-        yaw3pitch_zero(ddq_by_input, 16);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t71 = t44 * dq[0]; /* link j2: motion */
-    const yaw3pitch_real_t t72 = t41 * dq[0];
-    const yaw3pitch_real_t t73 = t16 * t71 + t13 * t72; /* link j3: motion */
-    const yaw3pitch_real_t t74 = t16 * t72 - t13 * t71;
-    const yaw3pitch_real_t t75 = t1 * t74 - t0 * t73; /* link j4: motion */
-    const yaw3pitch_real_t t76 = dq[1] + dq[2]; /* link j3: motion */
-    const yaw3pitch_real_t t77 = dq[3] + t76; /* link j4: motion */
-    const yaw3pitch_real_t t78 = t77 * t75;
-    const yaw3pitch_real_t t79 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
-    const yaw3pitch_real_t t80 = t1 * t73 + t0 * t74; /* link j4: motion */
-    const yaw3pitch_real_t t81 = t77 * t80;
-    const yaw3pitch_real_t t82 = YAW3PITCH_C(2.0) * t81; /* link j4: force and moment */
-    const yaw3pitch_real_t t83 = t80 * t75; /* link j4: motion */
+    const yaw3pitch_real_t t70 = t42 * dq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t71 = t39 * dq[0];
+    const yaw3pitch_real_t t72 = t15 * t70 + t12 * t71; /* link j3: motion */
+    const yaw3pitch_real_t t73 = t15 * t71 - t12 * t70;
+    const yaw3pitch_real_t t74 = t1 * t73 - t0 * t72; /* link j4: motion */
+    const yaw3pitch_real_t t75 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t76 = dq[3] + t75; /* link j4: motion */
+    const yaw3pitch_real_t t77 = t76 * t74;
+    const yaw3pitch_real_t t78 = parameters[ZZ4] - parameters[YY4]; /* link j4: force and moment */
+    const yaw3pitch_real_t t79 = t1 * t72 + t0 * t73; /* link j4: motion */
+    const yaw3pitch_real_t t80 = t76 * t79;
+    const yaw3pitch_real_t t81 = YAW3PITCH_C(2.0) * t80; /* link j4: force and moment */
+    const yaw3pitch_real_t t82 = t79 * t74; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t84 = parameters[XY4] * t82 - (parameters[XX4] * t78 + t78 * t79)
-        - parameters[XZ4] * t83;
-    const yaw3pitch_real_t t85 = t75 * t75; /* link j4: motion */
-    const yaw3pitch_real_t t86 = t77 * t77;
-    const yaw3pitch_real_t t87 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
-    const yaw3pitch_real_t t88 = t41 * t87 + YAW3PITCH_C(9.81) * t44;
-    const yaw3pitch_real_t t89 = t72 * t72;
-    const yaw3pitch_real_t t90 = dq[1] * dq[1];
-    const yaw3pitch_real_t t91 = YAW3PITCH_C(0.8) * (t89 + t90) - t88; /* link j3: motion */
-    const yaw3pitch_real_t t92 = t16 * t91;
-    const yaw3pitch_real_t t93 = t44 * t87 + YAW3PITCH_C(-9.81) * t41; /* link j2: motion */
-    const yaw3pitch_real_t t94 = t71 * t72;
-    const yaw3pitch_real_t t95 = YAW3PITCH_C(0.8) * t94 - t93; /* link j3: motion */
-    const yaw3pitch_real_t t96 = t92 - t13 * t95;
-    const yaw3pitch_real_t t97 = t74 * t74;
-    const yaw3pitch_real_t t98 = t76 * t76;
-    const yaw3pitch_real_t t99 = t98 + t97; /* link j4: motion */
-    const yaw3pitch_real_t t100 = t96 + YAW3PITCH_C(0.7) * t99;
-    const yaw3pitch_real_t t101 = t13 * t91; /* link j3: motion */
-    const yaw3pitch_real_t t102 = t101 + t16 * t95;
-    const yaw3pitch_real_t t103 = t73 * t74;
-    const yaw3pitch_real_t t104 = t102 + YAW3PITCH_C(0.7) * t103; /* link j4: motion */
-    const yaw3pitch_real_t t105 = t0 * t100 + t1 * t104;
-    const yaw3pitch_real_t t106 = t76 * t73; /* link j3: motion */
-    const yaw3pitch_real_t t107 = dq[1] * t71; /* link j2: motion */
-    const yaw3pitch_real_t t108 = YAW3PITCH_C(-1.6) * t107; /* link j3: motion */
-    const yaw3pitch_real_t t109 = t108 + YAW3PITCH_C(-1.4) * t106; /* link j4: motion */
+    const yaw3pitch_real_t t83 = parameters[XY4] * t81 - (parameters[XX4] * t77 + t77 * t78)
+        - parameters[XZ4] * t82;
+    const yaw3pitch_real_t t84 = t74 * t74; /* link j4: motion */
+    const yaw3pitch_real_t t85 = t76 * t76;
+    const yaw3pitch_real_t t86 = YAW3PITCH_C(-0.12) * (dq[0] * dq[0]); /* link j2: motion */
+    const yaw3pitch_real_t t87 = t39 * t86 + YAW3PITCH_C(9.81) * t42;
+    const yaw3pitch_real_t t88 = t71 * t71;
+    const yaw3pitch_real_t t89 = dq[1] * dq[1];
+    const yaw3pitch_real_t t90 = YAW3PITCH_C(0.8) * (t88 + t89) - t87; /* link j3: motion */
+    const yaw3pitch_real_t t91 = t15 * t90;
+    const yaw3pitch_real_t t92 = t42 * t86 + YAW3PITCH_C(-9.81) * t39; /* link j2: motion */
+    const yaw3pitch_real_t t93 = t70 * t71;
+    const yaw3pitch_real_t t94 = YAW3PITCH_C(0.8) * t93 - t92; /* link j3: motion */
+    const yaw3pitch_real_t t95 = t91 - t12 * t94;
+    const yaw3pitch_real_t t96 = t73 * t73;
+    const yaw3pitch_real_t t97 = t75 * t75;
+    const yaw3pitch_real_t t98 = t97 + t96; /* link j4: motion */
+    const yaw3pitch_real_t t99 = t95 + YAW3PITCH_C(0.7) * t98;
+    const yaw3pitch_real_t t100 = t12 * t90; /* link j3: motion */
+    const yaw3pitch_real_t t101 = t100 + t15 * t94;
+    const yaw3pitch_real_t t102 = t72 * t73;
+    const yaw3pitch_real_t t103 = t101 + YAW3PITCH_C(0.7) * t102; /* link j4: motion */
+    const yaw3pitch_real_t t104 = t0 * t99 + t1 * t103;
+    const yaw3pitch_real_t t105 = t75 * t72; /* link j3: motion */
+    const yaw3pitch_real_t t106 = dq[1] * t70; /* link j2: motion */
+    const yaw3pitch_real_t t107 = YAW3PITCH_C(-1.6) * t106; /* link j3: motion */
+    const yaw3pitch_real_t t108 = t107 + YAW3PITCH_C(-1.4) * t105; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t110 = t84 + parameters[YZ4] * (t86 - t85) + (parameters[MY4] * t109
-        + parameters[MZ4] * t105);
-    const yaw3pitch_real_t t111 = parameters[XX4] - parameters[ZZ4];
-    const yaw3pitch_real_t t112 = YAW3PITCH_C(2.0) * t78;
-    const yaw3pitch_real_t t113 = t81 * t111 - parameters[YY4] * t81 + parameters[XY4] * t112
-        - parameters[YZ4] * t83;
-    const yaw3pitch_real_t t114 = t80 * t80; /* link j4: motion */
-    const yaw3pitch_real_t t115 = t0 * t104 - t1 * t100;
+    const yaw3pitch_real_t t109 = t83 + parameters[YZ4] * (t85 - t84) + (parameters[MY4] * t108
+        + parameters[MZ4] * t104);
+    const yaw3pitch_real_t t110 = parameters[XX4] - parameters[ZZ4];
+    const yaw3pitch_real_t t111 = YAW3PITCH_C(2.0) * t77;
+    const yaw3pitch_real_t t112 = t80 * t110 - parameters[YY4] * t80 + parameters[XY4] * t111
+        - parameters[YZ4] * t82;
+    const yaw3pitch_real_t t113 = t79 * t79; /* link j4: motion */
+    const yaw3pitch_real_t t114 = t0 * t103 - t1 * t99;
     /* link j4: force and moment */
-    const yaw3pitch_real_t t116 = t113 + parameters[XZ4] * (t86 - t114) + (parameters[MZ4] * t115
-        + parameters[MX4] * t109);
-    const yaw3pitch_real_t t117 = t76 * t74; /* link j3: motion */
-    const yaw3pitch_real_t t118 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
-    const yaw3pitch_real_t t119 = YAW3PITCH_C(2.0) * t106; /* link j4: motion */
+    const yaw3pitch_real_t t115 = t112 + parameters[XZ4] * (t85 - t113) + (parameters[MZ4] * t114
+        + parameters[MX4] * t108);
+    const yaw3pitch_real_t t116 = t75 * t73; /* link j3: motion */
+    const yaw3pitch_real_t t117 = parameters[ZZ3] - parameters[YY3]; /* link j3: force and moment */
+    const yaw3pitch_real_t t118 = YAW3PITCH_C(2.0) * t105; /* link j4: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t120 = parameters[XY3] * t119 - (parameters[XX3] * t117 + t117 * t118)
-        - parameters[XZ3] * t103;
-    const yaw3pitch_real_t t121 = t120 + parameters[YZ3] * (t98 - t97) + (parameters[MY3] * t108
-        + parameters[MZ3] * t102);
-    const yaw3pitch_real_t t122 = t121 + (t1 * t110 + t0 * t116); /* link j4: what it passes on */
+    const yaw3pitch_real_t t119 = parameters[XY3] * t118 - (parameters[XX3] * t116 + t116 * t117)
+        - parameters[XZ3] * t102;
+    const yaw3pitch_real_t t120 = t119 + parameters[YZ3] * (t97 - t96) + (parameters[MY3] * t107
+        + parameters[MZ3] * t101);
+    const yaw3pitch_real_t t121 = t120 + (t1 * t109 + t0 * t115); /* link j4: what it passes on */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t123 = parameters[MX4] * t82 + parameters[MY4] * t112 - parameters[MZ4] * (t114
-        + t85);
-    const yaw3pitch_real_t t124 = t123 - parameters[M4] * t109;
-    const yaw3pitch_real_t t125 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
-    const yaw3pitch_real_t t126 = YAW3PITCH_C(2.0) * t117; /* link j4: motion */
+    const yaw3pitch_real_t t122 = parameters[MX4] * t81 + parameters[MY4] * t111 - parameters[MZ4] * (t113
+        + t84);
+    const yaw3pitch_real_t t123 = t122 - parameters[M4] * t108;
+    const yaw3pitch_real_t t124 = parameters[ZZ3] - parameters[XX3]; /* link j3: force and moment */
+    const yaw3pitch_real_t t125 = YAW3PITCH_C(2.0) * t116; /* link j4: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t127 = parameters[YY3] * t106 + t106 * t125 - parameters[XY3] * t126
-        + parameters[YZ3] * t103;
-    const yaw3pitch_real_t t128 = t73 * t73; /* link j3: motion */
+    const yaw3pitch_real_t t126 = parameters[YY3] * t105 + t105 * t124 - parameters[XY3] * t125
+        + parameters[YZ3] * t102;
+    const yaw3pitch_real_t t127 = t72 * t72; /* link j3: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t129 = t127 - parameters[XZ3] * (t98 - t128) + (parameters[MZ3] * t96
-        - parameters[MX3] * t108);
+    const yaw3pitch_real_t t128 = t126 - parameters[XZ3] * (t97 - t127) + (parameters[MZ3] * t95
+        - parameters[MX3] * t107);
     /* link j4: what it passes on */
-    const yaw3pitch_real_t t130 = t129 + (t0 * t110 - t1 * t116 + YAW3PITCH_C(0.7) * t124);
-    const yaw3pitch_real_t t131 = dq[1] * t72; /* link j2: motion */
-    const yaw3pitch_real_t t132 = t131 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
-    const yaw3pitch_real_t t133 = YAW3PITCH_C(2.0) * t107; /* link j2: motion */
+    const yaw3pitch_real_t t129 = t128 + (t0 * t109 - t1 * t115 + YAW3PITCH_C(0.7) * t123);
+    const yaw3pitch_real_t t130 = dq[1] * t71; /* link j2: motion */
+    const yaw3pitch_real_t t131 = t130 * (parameters[YY2] - parameters[ZZ2]); /* link j2: force and moment */
+    const yaw3pitch_real_t t132 = YAW3PITCH_C(2.0) * t106; /* link j2: motion */
     /* link j2: force and moment */
-    const yaw3pitch_real_t t134 = t132 - t131 * parameters[XX2] + t133 * parameters[XY2]
-        - t94 * parameters[XZ2];
-    const yaw3pitch_real_t t135 = (t89 - t90) * parameters[YZ2];
-    const yaw3pitch_real_t t136 = t93 * parameters[MZ2];
+    const yaw3pitch_real_t t133 = t131 - t130 * parameters[XX2] + t132 * parameters[XY2]
+        - t93 * parameters[XZ2];
+    const yaw3pitch_real_t t134 = (t88 - t89) * parameters[YZ2];
+    const yaw3pitch_real_t t135 = t92 * parameters[MZ2];
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t137 = t134 - t135 - t136 + (t16 * t122 - t13 * t130);
+    const yaw3pitch_real_t t136 = t133 - t134 - t135 + (t15 * t121 - t12 * t129);
     /* link j3: force and moment */
-    const yaw3pitch_real_t t138 = parameters[MX3] * t119 + parameters[MY3] * t126 - parameters[MZ3] * (t128
-        + t97);
-    const yaw3pitch_real_t t139 = t138 - parameters[M3] * t108 + t124; /* link j4: what it passes on */
-    const yaw3pitch_real_t t140 = t107 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
-    const yaw3pitch_real_t t141 = YAW3PITCH_C(2.0) * t131; /* link j2: motion */
+    const yaw3pitch_real_t t137 = parameters[MX3] * t118 + parameters[MY3] * t125 - parameters[MZ3] * (t127
+        + t96);
+    const yaw3pitch_real_t t138 = t137 - parameters[M3] * t107 + t123; /* link j4: what it passes on */
+    const yaw3pitch_real_t t139 = t106 * (parameters[ZZ2] - parameters[XX2]); /* link j2: force and moment */
+    const yaw3pitch_real_t t140 = YAW3PITCH_C(2.0) * t130; /* link j2: motion */
     /* link j2: force and moment */
-    const yaw3pitch_real_t t142 = t107 * parameters[YY2] + t140 - t141 * parameters[XY2]
-        + t94 * parameters[YZ2];
-    const yaw3pitch_real_t t143 = t71 * t71; /* link j2: motion */
-    const yaw3pitch_real_t t144 = (t143 - t90) * parameters[XZ2]; /* link j2: force and moment */
-    const yaw3pitch_real_t t145 = t88 * parameters[MZ2];
+    const yaw3pitch_real_t t141 = t106 * parameters[YY2] + t139 - t140 * parameters[XY2]
+        + t93 * parameters[YZ2];
+    const yaw3pitch_real_t t142 = t70 * t70; /* link j2: motion */
+    const yaw3pitch_real_t t143 = (t142 - t89) * parameters[XZ2]; /* link j2: force and moment */
+    const yaw3pitch_real_t t144 = t87 * parameters[MZ2];
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t146 = t142 + t144 - t145 + (t13 * t122 + t16 * t130 + YAW3PITCH_C(0.8) * t139);
-    const yaw3pitch_real_t t147 = t143 + t89; /* link j3: motion */
+    const yaw3pitch_real_t t145 = t141 + t143 - t144 + (t12 * t121 + t15 * t129 + YAW3PITCH_C(0.8) * t138);
+    const yaw3pitch_real_t t146 = t142 + t88; /* link j3: motion */
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t148 = t133 * parameters[MX2] + t141 * parameters[MY2] - t147 * parameters[MZ2]
-        + t139;
-    const yaw3pitch_real_t t149 = input[0] + (t44 * t137 + t41 * t146 + YAW3PITCH_C(0.12) * t148);
+    const yaw3pitch_real_t t147 = t132 * parameters[MX2] + t140 * parameters[MY2] - t146 * parameters[MZ2]
+        + t138;
+    const yaw3pitch_real_t t148 = input[0] + (t42 * t136 + t39 * t145 + YAW3PITCH_C(0.12) * t147);
     /* link j4: force and moment */
-    const yaw3pitch_real_t t150 = t31 * t83 + parameters[XY4] * (t114 - t85) + (parameters[MX4] * t105
-        - parameters[MY4] * t115);
-    const yaw3pitch_real_t t151 = input[3] - t150;
-    const yaw3pitch_real_t t152 = parameters[MX4] * (t86 + t85) - parameters[MY4] * t83
-        - parameters[M4] * t115;
-    const yaw3pitch_real_t t153 = parameters[M4] * t105 - (parameters[MY4] * (t86 + t114)
-        - parameters[MX4] * t83);
-    const yaw3pitch_real_t t154 = t0 * t152 - t1 * t153; /* link j4: what it passes on */
+    const yaw3pitch_real_t t149 = t29 * t82 + parameters[XY4] * (t113 - t84) + (parameters[MX4] * t104
+        - parameters[MY4] * t114);
+    const yaw3pitch_real_t t150 = input[3] - t149;
+    const yaw3pitch_real_t t151 = parameters[MX4] * (t85 + t84) - parameters[MY4] * t82
+        - parameters[M4] * t114;
+    const yaw3pitch_real_t t152 = parameters[M4] * t104 - (parameters[MY4] * (t85 + t113)
+        - parameters[MX4] * t82);
+    const yaw3pitch_real_t t153 = t0 * t151 - t1 * t152; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t155 = parameters[XY3] * (t128 - t97) - t103 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MX3] * t102 + parameters[MY3] * t96);
-    const yaw3pitch_real_t t156 = t155 + (t150 - YAW3PITCH_C(0.7) * t154); /* link j4: what it passes on */
-    const yaw3pitch_real_t t157 = input[2] - t156 + t151 * t5;
-    const yaw3pitch_real_t t158 = parameters[M3] * t96 + (parameters[MX3] * t99 - parameters[MY3] * t103)
-        + (t1 * t152 + t0 * t153);
+    const yaw3pitch_real_t t154 = parameters[XY3] * (t127 - t96) - t102 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MX3] * t101 + parameters[MY3] * t95);
+    const yaw3pitch_real_t t155 = t154 + (t149 - YAW3PITCH_C(0.7) * t153); /* link j4: what it passes on */
+    const yaw3pitch_real_t t156 = input[2] - t155 + t150 * t5;
+    const yaw3pitch_real_t t157 = parameters[M3] * t95 + (parameters[MX3] * t98 - parameters[MY3] * t102)
+        + (t1 * t151 + t0 * t152);
     /* link j3: force and moment */
-    const yaw3pitch_real_t t159 = parameters[M3] * t102 - (parameters[MY3] * (t98 + t128)
-        - parameters[MX3] * t103);
+    const yaw3pitch_real_t t158 = parameters[M3] * t101 - (parameters[MY3] * (t97 + t127)
+        - parameters[MX3] * t102);
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t160 = t156 - YAW3PITCH_C(0.8) * (t13 * t158 - t16 * (t159 - t154));
+    const yaw3pitch_real_t t159 = t155 - YAW3PITCH_C(0.8) * (t12 * t157 - t15 * (t158 - t153));
     /* link j2: force and moment */
-    const yaw3pitch_real_t t161 = t94 * (parameters[XX2] - parameters[YY2]) - (t143 - t89) * parameters[XY2]
-        + (t93 * parameters[MX2] + t88 * parameters[MY2]);
-    const yaw3pitch_real_t t162 = input[1] + (t161 - t160) + t151 * t24 - t157 * t23;
-    const yaw3pitch_real_t t163 = t149 + t151 * t56 - t157 * t62 - t162 * t68;
-    const yaw3pitch_real_t t164 = yaw3pitch_bounded(YAW3PITCH_C(1.0) / t69);
-    const yaw3pitch_real_t t165 = yaw3pitch_bounded(t163 * t164);
-    ddq[0] = t165;
-    const yaw3pitch_real_t t166 = yaw3pitch_bounded(t162 * t67 - t68 * t165);
-    ddq[1] = t166;
-    const yaw3pitch_real_t t167 = t157 * t22 + t62 * t165 + t23 * t166;
-    ddq[2] = -t167;
-    const yaw3pitch_real_t t168 = yaw3pitch_bounded(t151 * t4 + t56 * t165 + t24 * t166 - t5 * t167);
-    ddq[3] = t168;
-    const yaw3pitch_real_t t169 = t44 * t16 + t41 * t13; /* link j3: motion */
-    const yaw3pitch_real_t t170 = t44 * t13 - t41 * t16;
-    const yaw3pitch_real_t t171 = t0 * t169 + t1 * t170; /* link j4: motion */
-    const yaw3pitch_real_t t172 = dq[0] * t171;
-    const yaw3pitch_real_t t173 = t172 * parameters[XZ4];
-    const yaw3pitch_real_t t174 = t77 * parameters[XY4];
-    const yaw3pitch_real_t t175 = t173 + t174;
-    const yaw3pitch_real_t t176 = t0 * t170 - t1 * t169;
-    const yaw3pitch_real_t t177 = dq[0] * t176;
-    const yaw3pitch_real_t t178 = t177 * parameters[YZ4];
-    const yaw3pitch_real_t t179 = t174 + t178;
-    const yaw3pitch_real_t t180 = YAW3PITCH_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const yaw3pitch_real_t t181 = parameters[XX4] - t180;
-    const yaw3pitch_real_t t182 = t77 * t181 + t177 * parameters[XZ4];
-    const yaw3pitch_real_t t183 = parameters[YY4] - t180;
-    const yaw3pitch_real_t t184 = t172 * parameters[YZ4] + t77 * t183;
+    const yaw3pitch_real_t t160 = t93 * (parameters[XX2] - parameters[YY2]) - (t142 - t88) * parameters[XY2]
+        + (t92 * parameters[MX2] + t87 * parameters[MY2]);
+    const yaw3pitch_real_t t161 = input[1] + (t160 - t159) + t150 * t23 - t156 * t22;
+    const yaw3pitch_real_t t162 = t148 + t150 * t54 - t156 * t60 - t161 * t66;
+    const yaw3pitch_real_t t163 = yaw3pitch_held(YAW3PITCH_C(1.0) / t67);
+    const yaw3pitch_real_t t164 = yaw3pitch_held(t162 * t163);
+    ddq[0] = t164;
+    const yaw3pitch_real_t t165 = yaw3pitch_held(t161 * t65 - t66 * t164);
+    ddq[1] = t165;
+    const yaw3pitch_real_t t166 = t156 * t21 + t60 * t164 + t22 * t165;
+    ddq[2] = -t166;
+    const yaw3pitch_real_t t167 = yaw3pitch_held(t150 * t4 + t54 * t164 + t23 * t165 - t5 * t166);
+    ddq[3] = t167;
+    const yaw3pitch_real_t t168 = t165 - t166;
+    const yaw3pitch_real_t t169 = t167 + t168;
+    const yaw3pitch_real_t t170 = t42 * t15 + t39 * t12; /* link j3: motion */
+    const yaw3pitch_real_t t171 = t42 * t12 - t39 * t15;
+    const yaw3pitch_real_t t172 = t0 * t171 - t1 * t170; /* link j4: motion */
+    const yaw3pitch_real_t t173 = dq[0] * t172;
+    const yaw3pitch_real_t t174 = t0 * t170 + t1 * t171;
+    const yaw3pitch_real_t t175 = dq[0] * t174;
+    const yaw3pitch_real_t t176 = t173 * t175;
+    const yaw3pitch_real_t t177 = t176 - t169;
+    const yaw3pitch_real_t t178 = t174 * t164;
+    const yaw3pitch_real_t t179 = t173 * t76;
+    const yaw3pitch_real_t t180 = t178 - t179;
+    const yaw3pitch_real_t t181 = t172 * t164;
+    const yaw3pitch_real_t t182 = t175 * t76;
+    const yaw3pitch_real_t t183 = t182 + t181;
+    const yaw3pitch_real_t t184 = t182 + t183;
+    const yaw3pitch_real_t t185 = t179 * t110 + parameters[YY4] * t180 + parameters[XY4] * t184
+        + parameters[YZ4] * t177;
+    const yaw3pitch_real_t t186 = t173 * t173;
+    const yaw3pitch_real_t t187 = dq[0] * t170; /* link j3: motion */
+    const yaw3pitch_real_t t188 = dq[0] * t171;
+    const yaw3pitch_real_t t189 = t187 * t188;
+    const yaw3pitch_real_t t190 = t189 - t168;
+    const yaw3pitch_real_t t191 = t93 + t165;
+    const yaw3pitch_real_t t192 = t92 + YAW3PITCH_C(-0.8) * t191;
+    const yaw3pitch_real_t t193 = t15 * t192 - t100;
+    const yaw3pitch_real_t t194 = t193 + YAW3PITCH_C(0.7) * t190;
+    const yaw3pitch_real_t t195 = t91 + t12 * t192;
+    const yaw3pitch_real_t t196 = t188 * t188;
+    const yaw3pitch_real_t t197 = t196 + t97; /* link j4: motion */
+    const yaw3pitch_real_t t198 = YAW3PITCH_C(0.7) * t197 + t195;
+    const yaw3pitch_real_t t199 = t1 * t198 + t0 * t194;
+    const yaw3pitch_real_t t200 = parameters[MZ4] * t199;
+    const yaw3pitch_real_t t201 = YAW3PITCH_C(-0.12) * t164;
+    const yaw3pitch_real_t t202 = t39 * t164;
+    const yaw3pitch_real_t t203 = t106 - t202;
+    const yaw3pitch_real_t t204 = t106 + t203;
+    const yaw3pitch_real_t t205 = t201 + YAW3PITCH_C(0.8) * t204;
+    const yaw3pitch_real_t t206 = t171 * t164;
+    const yaw3pitch_real_t t207 = t187 * t75; /* link j3: motion */
+    const yaw3pitch_real_t t208 = t207 + t206;
+    const yaw3pitch_real_t t209 = t207 + t208;
+    const yaw3pitch_real_t t210 = t205 + YAW3PITCH_C(0.7) * t209;
+    const yaw3pitch_real_t t211 = (t186 - t85) * parameters[XZ4] + t185 + (t200 + parameters[MX4] * t210);
+    const yaw3pitch_real_t t212 = t175 * t175; /* link j4: motion */
+    const yaw3pitch_real_t t213 = t186 + t212; /* link j4: columns */
+    const yaw3pitch_real_t t214 = YAW3PITCH_C(2.0) * t175;
+    const yaw3pitch_real_t t215 = t175 * parameters[XZ4];
+    const yaw3pitch_real_t t216 = t76 * parameters[XY4];
+    const yaw3pitch_real_t t217 = t215 + t216;
+    const yaw3pitch_real_t t218 = YAW3PITCH_C(2.0) * t173;
+    const yaw3pitch_real_t t219 = YAW3PITCH_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const yaw3pitch_real_t t220 = parameters[YY4] - t219;
+    const yaw3pitch_real_t t221 = t175 * parameters[YZ4] + t76 * t220;
+    const yaw3pitch_real_t t222 = t214 * t217 - t218 * t221 + (parameters[XY4] * t181 - parameters[XX4] * t178
+        - t213 * parameters[XZ4]);
+    const yaw3pitch_real_t t223 = t211 + (t222 - t200);
+    const yaw3pitch_real_t t224 = t176 + t169;
+    const yaw3pitch_real_t t225 = t180 - t179;
+    const yaw3pitch_real_t t226 = t182 * t78 + parameters[XX4] * t183 + parameters[XY4] * t225
+        - parameters[XZ4] * t224;
+    const yaw3pitch_real_t t227 = t1 * t194 - t0 * t198;
+    const yaw3pitch_real_t t228 = parameters[MZ4] * t227;
+    const yaw3pitch_real_t t229 = (t85 - t212) * parameters[YZ4] + t226 - (parameters[MY4] * t210 + t228);
+    const yaw3pitch_real_t t230 = parameters[XX4] - t219;
+    const yaw3pitch_real_t t231 = t76 * t230 + t173 * parameters[XZ4];
+    const yaw3pitch_real_t t232 = t173 * parameters[YZ4];
+    const yaw3pitch_real_t t233 = t216 + t232;
+    const yaw3pitch_real_t t234 = t214 * t231 - t218 * t233 + (t213 * parameters[YZ4]
+        + (parameters[XY4] * t178 - parameters[YY4] * t181));
+    const yaw3pitch_real_t t235 = t229 + (t228 + t234);
+    const yaw3pitch_real_t t236 = t1 * t223 + t0 * t235;
+    const yaw3pitch_real_t t237 = t76 * parameters[MX4] + t173 * parameters[MZ4];
+    const yaw3pitch_real_t t238 = t175 * parameters[MZ4] + t76 * parameters[MY4];
+    const yaw3pitch_real_t t239 = t214 * t237 - t218 * t238 + (parameters[MY4] * t178
+        + parameters[MX4] * t181);
+    const yaw3pitch_real_t t240 = t0 * t223 - t1 * t235 + YAW3PITCH_C(0.7) * t239;
+    const yaw3pitch_real_t t241 = t39 * (t12 * t236 + t15 * t240 + YAW3PITCH_C(0.8) * t239);
+    const yaw3pitch_real_t t242 = t42 * (t15 * t236 - t12 * t240) + t241 + YAW3PITCH_C(0.12) * t239;
+    const yaw3pitch_real_t t243 = parameters[MZ4] * t181;
+    const yaw3pitch_real_t t244 = parameters[M4] * t227;
+    const yaw3pitch_real_t t245 = t244 + ((t186 + t85) * parameters[MY4] - parameters[MX4] * t224 - t243);
+    const yaw3pitch_real_t t246 = t173 * parameters[MY4] - t175 * parameters[MX4];
+    const yaw3pitch_real_t t247 = t245 + (t213 * parameters[MY4] + t243 - (t218 * t246 + t244));
+    const yaw3pitch_real_t t248 = parameters[MZ4] * t178;
+    const yaw3pitch_real_t t249 = parameters[M4] * t199;
+    const yaw3pitch_real_t t250 = t249 + ((t212 + t85) * parameters[MX4] - parameters[MY4] * t177 + t248);
+    const yaw3pitch_real_t t251 = t250 - (t249 - t214 * t246 - (t213 * parameters[MX4] - t248));
+    const yaw3pitch_real_t t252 = t0 * t247 - t1 * t251;
+    const yaw3pitch_real_t t253 = t12 * (t1 * t247 + t0 * t251) + t15 * t252;
+    const yaw3pitch_real_t t254 = parameters[MX4] * t199 + parameters[MY4] * t227;
+    const yaw3pitch_real_t t255 = parameters[YZ4] * t181 - parameters[XZ4] * t178 - t213 * parameters[ZZ4];
+    const yaw3pitch_real_t t256 = t173 * parameters[XY4] - t175 * t230;
+    const yaw3pitch_real_t t257 = t173 * t220 - t175 * parameters[XY4];
+    const yaw3pitch_real_t t258 = t254 + (t214 * t256 - t218 * t257 + t255) + YAW3PITCH_C(0.7) * t252;
+    const yaw3pitch_real_t t259 = t258 + YAW3PITCH_C(0.8) * t253;
+    const yaw3pitch_real_t t260 = t66 * t163;
+    const yaw3pitch_real_t t261 = t163 * (t60 - t22 * t66);
+    const yaw3pitch_real_t t262 = YAW3PITCH_C(2.0) * t256; /* link j4: derivatives */
+    const yaw3pitch_real_t t263 = YAW3PITCH_C(2.0) * t257;
+    const yaw3pitch_real_t t264 = t254 + (t175 * t262 - t173 * t263 + t255);
+    const yaw3pitch_real_t t265 = t23 - t5 * t22;
+    const yaw3pitch_real_t t266 = yaw3pitch_held(t163 * (t54 - t5 * t60 - t66 * t265));
+    const yaw3pitch_real_t t267 = t260 * t259 - t163 * t242 + t261 * t258 - t266 * t264;
+    ddq_by_q[3] = t267;
+    const yaw3pitch_real_t t268 = yaw3pitch_held(t65 + t66 * t260);
+    const yaw3pitch_real_t t269 = yaw3pitch_held(t66 * t261 - t22 * t65);
+    const yaw3pitch_real_t t270 = yaw3pitch_held(t65 * t265 - t66 * t266);
+    const yaw3pitch_real_t t271 = t260 * t242 - t268 * t259 - t269 * t258 - t270 * t264;
+    ddq_by_q[7] = t271;
+    const yaw3pitch_real_t t272 = t21 - t60 * t261 + t22 * t269;
+    const yaw3pitch_real_t t273 = t5 * t21 + t60 * t266 + t22 * t270;
+    const yaw3pitch_real_t t274 = t273 * t264 - (t269 * t259 - t261 * t242 - t272 * t258);
+    ddq_by_q[11] = t274;
+    const yaw3pitch_real_t t275 = yaw3pitch_held(t4 + t54 * t266 + t23 * t270 - t5 * t273);
+    const yaw3pitch_real_t t276 = t273 * t258 - (t266 * t242 + t270 * t259) - t275 * t264;
+    ddq_by_q[15] = t276;
+    const yaw3pitch_real_t t277 = parameters[ZZ4] - t219;
+    const yaw3pitch_real_t t278 = t76 * parameters[YZ4] + t175 * t277;
+    const yaw3pitch_real_t t279 = YAW3PITCH_C(-2.0) * t278 + (parameters[XY4] * t218
+        - parameters[XX4] * t214);
+    const yaw3pitch_real_t t280 = t76 * parameters[XZ4] + t173 * t277;
+    const yaw3pitch_real_t t281 = YAW3PITCH_C(-2.0) * t280 + (parameters[XY4] * t214
+        - parameters[YY4] * t218);
+    const yaw3pitch_real_t t282 = t1 * t279 + t0 * t281;
+    const yaw3pitch_real_t t283 = parameters[MX4] * t218 + parameters[MY4] * t214;
+    const yaw3pitch_real_t t284 = YAW3PITCH_C(-0.7) * t283 + (t1 * t281 - t0 * t279);
+    const yaw3pitch_real_t t285 = t39 * (YAW3PITCH_C(0.8) * t283 + (t12 * t282 - t15 * t284));
+    const yaw3pitch_real_t t286 = YAW3PITCH_C(0.12) * t283 + (t42 * (t15 * t282 + t12 * t284) + t285);
+    const yaw3pitch_real_t t287 = t215 - t232;
+    const yaw3pitch_real_t t288 = YAW3PITCH_C(2.0) * t287;
+    const yaw3pitch_real_t t289 = YAW3PITCH_C(-2.0) * t237 + parameters[MZ4] * t218;
+    const yaw3pitch_real_t t290 = YAW3PITCH_C(2.0) * t238 - parameters[MZ4] * t214;
+    const yaw3pitch_real_t t291 = t0 * t289 - t1 * t290;
+    const yaw3pitch_real_t t292 = t288 + (parameters[YZ4] * t218 - parameters[XZ4] * t214)
+        + YAW3PITCH_C(0.7) * t291;
+    const yaw3pitch_real_t t293 = t12 * (t1 * t289 + t0 * t290) + t15 * t291;
+    const yaw3pitch_real_t t294 = t292 + YAW3PITCH_C(0.8) * t293;
+    ddq_by_dq[3] = t294 * t260 - t163 * t286 + t292 * t261;
+    ddq_by_dq[7] = t286 * t260 - t294 * t268 - t292 * t269;
+    ddq_by_dq[11] = t292 * t272 - (t294 * t269 - t286 * t261);
+    ddq_by_dq[15] = t292 * t273 - (t286 * t266 + t294 * t270);
+    ddq_by_input[3] = t266;
+    ddq_by_input[7] = t270;
+    ddq_by_input[11] = -t273;
+    ddq_by_input[15] = t275;
+    const yaw3pitch_real_t t295 = parameters[M4] * t210 + (parameters[MX4] * t225 - parameters[MY4] * t184
+        - t213 * parameters[MZ4]);
+    const yaw3pitch_real_t t296 = t170 * t164;
+    const yaw3pitch_real_t t297 = t188 * t75; /* link j3: motion */
+    const yaw3pitch_real_t t298 = t297 - t296;
+    const yaw3pitch_real_t t299 = t297 + t298;
+    const yaw3pitch_real_t t300 = t189 + t168;
+    const yaw3pitch_real_t t301 = t207 * t124 + parameters[YY3] * t208 + parameters[XY3] * t299
+        - parameters[YZ3] * t300;
+    const yaw3pitch_real_t t302 = t187 * t187;
+    const yaw3pitch_real_t t303 = parameters[MZ3] * t195 + parameters[MX3] * t205 + ((t302
+        - t97) * parameters[XZ3] + t301);
+    const yaw3pitch_real_t t304 = t303 + (t0 * t229 + t1 * t211 + YAW3PITCH_C(0.7) * t295);
+    const yaw3pitch_real_t t305 = t302 + t196; /* link j4: motion */
     /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t185 = t1 * (t175 + t179) + t0 * (t182 - t184);
-    const yaw3pitch_real_t t186 = t1 * t185;
-    const yaw3pitch_real_t t187 = t172 * parameters[MZ4] + t77 * parameters[MY4];
-    const yaw3pitch_real_t t188 = t77 * parameters[MX4] + t177 * parameters[MZ4];
-    const yaw3pitch_real_t t189 = t1 * t187 + t0 * t188;
-    const yaw3pitch_real_t t190 = YAW3PITCH_C(0.7) * t189;
-    const yaw3pitch_real_t t191 = YAW3PITCH_C(0.7) * t76; /* link j4: velocity of its origin */
-    const yaw3pitch_real_t t192 = t11 * t191; /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t193 = dq[0] * t170; /* link j3: motion */
-    const yaw3pitch_real_t t194 = YAW3PITCH_C(0.7) * t193;
-    const yaw3pitch_real_t t195 = parameters[MZ4] * t194; /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t196 = t192 + t195 - t190;
-    const yaw3pitch_real_t t197 = t193 * parameters[XZ3];
-    const yaw3pitch_real_t t198 = t76 * parameters[XY3];
-    const yaw3pitch_real_t t199 = t196 + (t179 - t186 + t190) - (t197 + t198);
-    const yaw3pitch_real_t t200 = dq[0] * t169; /* link j3: motion */
-    const yaw3pitch_real_t t201 = t200 * parameters[YZ3];
+    const yaw3pitch_real_t t306 = t1 * (t217 + t233) + t0 * (t231 - t221);
+    const yaw3pitch_real_t t307 = t1 * t306;
+    const yaw3pitch_real_t t308 = t1 * t238 + t0 * t237;
+    const yaw3pitch_real_t t309 = YAW3PITCH_C(0.7) * t308;
+    const yaw3pitch_real_t t310 = YAW3PITCH_C(0.7) * t75; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t311 = t10 * t310; /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t312 = YAW3PITCH_C(0.7) * t188;
+    const yaw3pitch_real_t t313 = parameters[MZ4] * t312;
+    const yaw3pitch_real_t t314 = t311 + t313 - t309;
+    const yaw3pitch_real_t t315 = t188 * parameters[XZ3];
+    const yaw3pitch_real_t t316 = t75 * parameters[XY3];
+    const yaw3pitch_real_t t317 = t314 + (t233 - t307 + t309) - (t315 + t316);
+    const yaw3pitch_real_t t318 = YAW3PITCH_C(2.0) * t188;
+    const yaw3pitch_real_t t319 = t0 * t306;
+    const yaw3pitch_real_t t320 = YAW3PITCH_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const yaw3pitch_real_t t321 = parameters[YY3] - t320;
+    const yaw3pitch_real_t t322 = t188 * parameters[YZ3] + t75 * t321 + (t221 + t319);
+    const yaw3pitch_real_t t323 = YAW3PITCH_C(-2.0) * t187;
+    const yaw3pitch_real_t t324 = t305 * t55 + (t34 * t296 - t33 * t206) - (t318 * t317 + t323 * t322);
+    const yaw3pitch_real_t t325 = t304 + (t324 - t61 * t195);
+    const yaw3pitch_real_t t326 = t297 * t117 + parameters[XX3] * t298 + parameters[XY3] * t209
+        + parameters[XZ3] * t190;
+    const yaw3pitch_real_t t327 = parameters[MY3] * t205 + parameters[MZ3] * t193 + ((t196
+        - t97) * parameters[YZ3] - t326);
+    const yaw3pitch_real_t t328 = t327 + (t0 * t211 - t1 * t229);
+    const yaw3pitch_real_t t329 = t0 * t238 - t1 * t237;
+    const yaw3pitch_real_t t330 = parameters[XX3] - t320;
+    const yaw3pitch_real_t t331 = t75 * t330 - t187 * parameters[XZ3] + (t231 - t319
+        + (YAW3PITCH_C(0.7) * t329 + t13 * t310));
+    const yaw3pitch_real_t t332 = t187 * parameters[YZ3];
+    const yaw3pitch_real_t t333 = t316 - t332 - (t217 - t307 + t311 - t314);
+    const yaw3pitch_real_t t334 = t318 * t331 - t323 * t333 + (t305 * t56 + (t32 * t296 - t34 * t206));
+    const yaw3pitch_real_t t335 = t334 + t61 * t193 - t328;
+    const yaw3pitch_real_t t336 = t187 * parameters[MZ3] - t75 * parameters[MX3] + (t329
+        - parameters[M4] * t310);
+    const yaw3pitch_real_t t337 = t188 * parameters[MZ3] + t75 * parameters[MY3] + t308;
+    const yaw3pitch_real_t t338 = t11 * t206 + t14 * t296 - (t318 * t336 + t323 * t337);
+    const yaw3pitch_real_t t339 = t39 * (t12 * t325 - t15 * t335 + YAW3PITCH_C(0.8) * t338);
+    const yaw3pitch_real_t t340 = t42 * (t15 * t325 + t12 * t335) + t339 + YAW3PITCH_C(0.12) * t338;
+    const yaw3pitch_real_t t341 = (t302 + t97) * parameters[MY3] + parameters[MX3] * t190
+        + parameters[MZ3] * t296;
+    const yaw3pitch_real_t t342 = parameters[M3] * t193 + t341 + (t0 * t250 + t1 * t245);
+    const yaw3pitch_real_t t343 = t246 - parameters[M4] * t312 - (t187 * parameters[MY3]
+        + t188 * parameters[MX3]);
+    const yaw3pitch_real_t t344 = t305 * t11 - t61 * t296 - (t323 * t343 + t24 * t193);
+    const yaw3pitch_real_t t345 = parameters[M3] * t195 + (t197 * parameters[MX3] + parameters[MY3] * t300
+        + parameters[MZ3] * t206);
+    const yaw3pitch_real_t t346 = t24 * t195 - t318 * t343 + (t305 * t14 + t61 * t206);
+    const yaw3pitch_real_t t347 = t15 * (t0 * t245 - t1 * t250 - t345 + t346);
+    const yaw3pitch_real_t t348 = t55 * t206 - t56 * t296 - t305 * t8;
+    const yaw3pitch_real_t t349 = t0 * t257 - t1 * t256 - (YAW3PITCH_C(-0.7) * t246 - t13 * t312);
+    const yaw3pitch_real_t t350 = t187 * parameters[XY3] + t188 * t330 + t349;
+    const yaw3pitch_real_t t351 = t0 * t256 + t1 * t257 + t10 * t312 - (t187 * t321 + t188 * parameters[XY3]);
+    const yaw3pitch_real_t t352 = t11 * t193 - t14 * t195;
+    const yaw3pitch_real_t t353 = t348 - (t318 * t350 + t323 * t351) + t352 + YAW3PITCH_C(0.8) * (t12 * (t342
+        + t344) + t347);
+    const yaw3pitch_real_t t354 = YAW3PITCH_C(2.0) * t350; /* link j3: derivatives */
+    const yaw3pitch_real_t t355 = YAW3PITCH_C(2.0) * t351;
+    const yaw3pitch_real_t t356 = t352 + (t187 * t355 - t188 * t354 + t348);
+    const yaw3pitch_real_t t357 = YAW3PITCH_C(1.4) * t188; /* link j4: derivatives */
+    const yaw3pitch_real_t t358 = t0 * t263 - t1 * t262 + t2 * t357;
+    const yaw3pitch_real_t t359 = t0 * t262 + t1 * t263 + t10 * t357;
+    const yaw3pitch_real_t t360 = t187 * t359 - t188 * t358 + (t305 * t3 + (t49 * t206 - t50 * t296));
+    const yaw3pitch_real_t t361 = t360 + (t10 * t193 - t2 * t195);
+    const yaw3pitch_real_t t362 = t260 * t353 - t163 * t340 + t261 * t356 - t266 * t361;
+    ddq_by_q[2] = t362;
+    const yaw3pitch_real_t t363 = t260 * t340 - t268 * t353 - t269 * t356 - t270 * t361;
+    ddq_by_q[6] = t363;
+    const yaw3pitch_real_t t364 = t273 * t361 - (t269 * t353 - t261 * t340 - t272 * t356);
+    ddq_by_q[10] = t364;
+    const yaw3pitch_real_t t365 = t273 * t356 - (t266 * t340 + t270 * t353) - t275 * t361;
+    ddq_by_q[14] = t365;
+    const yaw3pitch_real_t t366 = t320 - parameters[ZZ3];
     /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t202 = t198 - t201 - (t175 - t186 + t192 - t196);
-    const yaw3pitch_real_t t203 = t0 * t185;
-    const yaw3pitch_real_t t204 = YAW3PITCH_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const yaw3pitch_real_t t205 = parameters[YY3] - t204;
-    const yaw3pitch_real_t t206 = t193 * parameters[YZ3] + t76 * t205 + (t184 + t203);
-    const yaw3pitch_real_t t207 = t0 * t187 - t1 * t188;
-    const yaw3pitch_real_t t208 = parameters[XX3] - t204;
-    const yaw3pitch_real_t t209 = t76 * t208 - t200 * parameters[XZ3] + (t182 - t203
-        + (YAW3PITCH_C(0.7) * t207 + t14 * t191));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t210 = t16 * (t199 - t202) + t13 * (t206 - t209);
-    const yaw3pitch_real_t t211 = t16 * t210;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t212 = t193 * parameters[MZ3] + t76 * parameters[MY3] + t189;
-    const yaw3pitch_real_t t213 = t200 * parameters[MZ3] - t76 * parameters[MX3] + (t207
-        - parameters[M4] * t191);
-    const yaw3pitch_real_t t214 = t16 * t212 - t13 * t213; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t215 = YAW3PITCH_C(0.8) * t214;
-    const yaw3pitch_real_t t216 = YAW3PITCH_C(-0.8) * dq[1]; /* link j3: velocity of its origin */
-    const yaw3pitch_real_t t217 = t42 * t216; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t218 = YAW3PITCH_C(-0.8) * t72; /* link j3: velocity of its origin */
-    const yaw3pitch_real_t t219 = t63 * t218; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t220 = t217 + t219 - t215;
-    const yaw3pitch_real_t t221 = t72 * parameters[XZ2];
-    const yaw3pitch_real_t t222 = dq[1] * parameters[XY2];
-    const yaw3pitch_real_t t223 = t221 - t222 + (t220 + (t202 + t211 + t215));
-    const yaw3pitch_real_t t224 = t71 * parameters[YZ2];
-    const yaw3pitch_real_t t225 = t222 - t224 + (t220 + (t199 - t211 - t217));
-    const yaw3pitch_real_t t226 = t13 * t210;
-    const yaw3pitch_real_t t227 = YAW3PITCH_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const yaw3pitch_real_t t228 = t227 - parameters[YY2];
-    const yaw3pitch_real_t t229 = t72 * parameters[YZ2] + dq[1] * t228 + (t226 - t206);
-    const yaw3pitch_real_t t230 = t13 * t212 + t16 * t213;
-    const yaw3pitch_real_t t231 = parameters[XX2] - t227;
-    const yaw3pitch_real_t t232 = dq[1] * t231 - t71 * parameters[XZ2] + (t209 + t226
-        + (YAW3PITCH_C(0.8) * t230 + t47 * t216));
-    /* link j2: inertia, momentum beyond */
-    const yaw3pitch_real_t t233 = t41 * (t41 * (t225 - t223) + t44 * (t229 + t232));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t234 = t72 * parameters[MZ2] - dq[1] * parameters[MY2] - t214;
-    const yaw3pitch_real_t t235 = t71 * parameters[MZ2] - dq[1] * parameters[MX2] + (t230 + t25 * t216);
-    const yaw3pitch_real_t t236 = parameters[MZ2] + t63; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia, momentum beyond */
-    const yaw3pitch_real_t t237 = YAW3PITCH_C(0.12) * (t41 * t234 + t44 * t235)
-        + t236 * (YAW3PITCH_C(-0.12) * dq[0]);
-    const yaw3pitch_real_t t238 = YAW3PITCH_C(2.0) * (t223 + t233 + t237); /* link j1: derivatives */
-    const yaw3pitch_real_t t239 = t68 * t164;
-    const yaw3pitch_real_t t240 = t177 * parameters[XY4] - t172 * t181;
-    const yaw3pitch_real_t t241 = t177 * t183 - t172 * parameters[XY4];
-    const yaw3pitch_real_t t242 = t177 * parameters[MY4] - t172 * parameters[MX4];
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t243 = t0 * t241 - t1 * t240 - (YAW3PITCH_C(-0.7) * t242 - t14 * t194);
-    const yaw3pitch_real_t t244 = t200 * parameters[XY3] + t193 * t208 + t243;
-    const yaw3pitch_real_t t245 = t0 * t240 + t1 * t241 + t11 * t194 - (t200 * t205 + t193 * parameters[XY3]);
-    const yaw3pitch_real_t t246 = t242 - parameters[M4] * t194 - (t200 * parameters[MY3]
-        + t193 * parameters[MX3]);
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t247 = t16 * t244 + t13 * t245 + (YAW3PITCH_C(0.8) * t246 - t47 * t218);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t248 = YAW3PITCH_C(2.0) * (t71 * parameters[XY2] - t72 * t231 + t247);
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t249 = t72 * parameters[XY2] + t71 * t228 - (t13 * t244 - t16 * t245 + t42 * t218);
-    const yaw3pitch_real_t t250 = YAW3PITCH_C(2.0) * t249; /* link j2: derivatives */
-    const yaw3pitch_real_t t251 = YAW3PITCH_C(0.24) * dq[0];
-    const yaw3pitch_real_t t252 = t44 * t248 - t41 * t250 + (t44 * t48 - t41 * t46) * t251;
-    const yaw3pitch_real_t t253 = t164 * (t62 - t23 * t68);
-    const yaw3pitch_real_t t254 = YAW3PITCH_C(2.0) * t244; /* link j3: derivatives */
-    const yaw3pitch_real_t t255 = YAW3PITCH_C(2.0) * t245;
-    const yaw3pitch_real_t t256 = YAW3PITCH_C(-1.6) * t72; /* link j4: derivatives */
-    const yaw3pitch_real_t t257 = t16 * t254 + t13 * t255 + t17 * t256; /* link j3: derivatives */
-    const yaw3pitch_real_t t258 = t13 * t254 - t16 * t255 + t42 * t256;
-    const yaw3pitch_real_t t259 = t44 * t257 + t41 * t258 - (t41 * t42 + t44 * t17) * t251;
-    const yaw3pitch_real_t t260 = t24 - t5 * t23;
-    const yaw3pitch_real_t t261 = yaw3pitch_bounded(t164 * (t56 - t5 * t62 - t68 * t260));
-    const yaw3pitch_real_t t262 = YAW3PITCH_C(2.0) * t240; /* link j4: derivatives */
-    const yaw3pitch_real_t t263 = YAW3PITCH_C(2.0) * t241;
-    const yaw3pitch_real_t t264 = YAW3PITCH_C(1.4) * t193;
-    const yaw3pitch_real_t t265 = t0 * t263 - t1 * t262 + t2 * t264;
-    const yaw3pitch_real_t t266 = t0 * t262 + t1 * t263 + t11 * t264;
-    const yaw3pitch_real_t t267 = t16 * t265 + t13 * t266 + t19 * t256;
-    const yaw3pitch_real_t t268 = t16 * t11 - t13 * t2; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t269 = t13 * t265 - t16 * t266 - t268 * t256; /* link j4: derivatives */
-    const yaw3pitch_real_t t270 = t44 * t267 + t41 * t269 + (t41 * t268 - t44 * t19) * t251;
-    const yaw3pitch_real_t t271 = t252 * t239 - t164 * t238 + t259 * t253 - t270 * t261;
-    ddq_by_dq[0] = t271;
-    const yaw3pitch_real_t t272 = yaw3pitch_bounded(t67 + t68 * t239);
-    const yaw3pitch_real_t t273 = yaw3pitch_bounded(t68 * t253 - t23 * t67);
-    const yaw3pitch_real_t t274 = yaw3pitch_bounded(t67 * t260 - t68 * t261);
-    const yaw3pitch_real_t t275 = t238 * t239 - t252 * t272 - t259 * t273 - t270 * t274;
-    ddq_by_dq[4] = t275;
-    const yaw3pitch_real_t t276 = t22 - t62 * t253 + t23 * t273;
-    const yaw3pitch_real_t t277 = t5 * t22 + t62 * t261 + t23 * t274;
-    const yaw3pitch_real_t t278 = t270 * t277 - (t252 * t273 - t238 * t253 - t259 * t276);
-    ddq_by_dq[8] = t278;
-    const yaw3pitch_real_t t279 = t4 + t56 * t261 + t24 * t274 - t5 * t277;
-    const yaw3pitch_real_t t280 = t259 * t277 - (t238 * t261 + t252 * t274) - t270 * t279;
-    ddq_by_dq[12] = t280;
-    ddq_by_input[0] = t164;
-    ddq_by_input[4] = -t239;
-    ddq_by_input[8] = -t253;
-    ddq_by_input[12] = t261;
-    const yaw3pitch_real_t t281 = t166 - t167;
-    const yaw3pitch_real_t t282 = t168 + t281;
-    const yaw3pitch_real_t t283 = t177 * t172; /* link j4: motion */
-    const yaw3pitch_real_t t284 = t283 + t282;
-    const yaw3pitch_real_t t285 = t176 * t165;
-    const yaw3pitch_real_t t286 = t172 * t77;
-    const yaw3pitch_real_t t287 = t286 + t285;
-    const yaw3pitch_real_t t288 = t171 * t165;
-    const yaw3pitch_real_t t289 = t177 * t77;
-    const yaw3pitch_real_t t290 = t288 - t289;
-    const yaw3pitch_real_t t291 = t290 - t289;
-    const yaw3pitch_real_t t292 = t286 * t79 + parameters[XX4] * t287 + parameters[XY4] * t291
-        - parameters[XZ4] * t284;
-    const yaw3pitch_real_t t293 = t172 * t172;
-    const yaw3pitch_real_t t294 = YAW3PITCH_C(-0.12) * t165;
-    const yaw3pitch_real_t t295 = t41 * t165;
-    const yaw3pitch_real_t t296 = t107 - t295;
-    const yaw3pitch_real_t t297 = t107 + t296;
-    const yaw3pitch_real_t t298 = t294 + YAW3PITCH_C(0.8) * t297;
-    const yaw3pitch_real_t t299 = t170 * t165;
-    const yaw3pitch_real_t t300 = t200 * t76; /* link j3: motion */
-    const yaw3pitch_real_t t301 = t300 + t299;
-    const yaw3pitch_real_t t302 = t300 + t301;
-    const yaw3pitch_real_t t303 = t298 + YAW3PITCH_C(0.7) * t302;
-    const yaw3pitch_real_t t304 = t200 * t193;
-    const yaw3pitch_real_t t305 = t304 - t281;
-    const yaw3pitch_real_t t306 = t94 + t166;
-    const yaw3pitch_real_t t307 = t93 + YAW3PITCH_C(-0.8) * t306;
-    const yaw3pitch_real_t t308 = t16 * t307 - t101;
-    const yaw3pitch_real_t t309 = t308 + YAW3PITCH_C(0.7) * t305;
-    const yaw3pitch_real_t t310 = t92 + t13 * t307;
-    const yaw3pitch_real_t t311 = t193 * t193;
-    const yaw3pitch_real_t t312 = t311 + t98; /* link j4: motion */
-    const yaw3pitch_real_t t313 = YAW3PITCH_C(0.7) * t312 + t310;
-    const yaw3pitch_real_t t314 = t1 * t309 - t0 * t313;
-    const yaw3pitch_real_t t315 = parameters[MZ4] * t314;
-    const yaw3pitch_real_t t316 = (t86 - t293) * parameters[YZ4] + t292 - (parameters[MY4] * t303 + t315);
-    const yaw3pitch_real_t t317 = t283 - t282;
-    const yaw3pitch_real_t t318 = t286 + t287;
-    const yaw3pitch_real_t t319 = t289 * t111 + parameters[YY4] * t290 + parameters[XY4] * t318
-        + parameters[YZ4] * t317;
-    const yaw3pitch_real_t t320 = t177 * t177;
-    const yaw3pitch_real_t t321 = t1 * t313 + t0 * t309;
-    const yaw3pitch_real_t t322 = parameters[MZ4] * t321;
-    const yaw3pitch_real_t t323 = (t320 - t86) * parameters[XZ4] + t319 + (t322 + parameters[MX4] * t303);
-    const yaw3pitch_real_t t324 = t169 * t165;
-    const yaw3pitch_real_t t325 = t193 * t76; /* link j3: motion */
-    const yaw3pitch_real_t t326 = t325 - t324;
-    const yaw3pitch_real_t t327 = t325 * t118 + parameters[XX3] * t326 + parameters[XY3] * t302
-        + parameters[XZ3] * t305;
-    const yaw3pitch_real_t t328 = parameters[MY3] * t298 + parameters[MZ3] * t308 + ((t311
-        - t98) * parameters[YZ3] - t327);
-    const yaw3pitch_real_t t329 = t328 + (t0 * t323 - t1 * t316);
-    const yaw3pitch_real_t t330 = t320 + t293; /* link j4: columns */
-    const yaw3pitch_real_t t331 = parameters[M4] * t303 + (parameters[MX4] * t291 - parameters[MY4] * t318
-        - t330 * parameters[MZ4]);
-    const yaw3pitch_real_t t332 = t325 + t326;
-    const yaw3pitch_real_t t333 = t304 + t281;
-    const yaw3pitch_real_t t334 = t300 * t125 + parameters[YY3] * t301 + parameters[XY3] * t332
-        - parameters[YZ3] * t333;
-    const yaw3pitch_real_t t335 = t200 * t200; /* link j3: motion */
-    const yaw3pitch_real_t t336 = parameters[MZ3] * t310 + parameters[MX3] * t298 + ((t335
-        - t98) * parameters[XZ3] + t334);
-    const yaw3pitch_real_t t337 = t336 + (t0 * t316 + t1 * t323 + YAW3PITCH_C(0.7) * t331);
-    const yaw3pitch_real_t t338 = t335 + t311; /* link j4: motion */
-    const yaw3pitch_real_t t339 = parameters[M3] * t298 + (parameters[MX3] * t302 - parameters[MY3] * t332
-        - t338 * parameters[MZ3]);
-    const yaw3pitch_real_t t340 = t16 * t337 - t13 * t329 + YAW3PITCH_C(0.8) * (t339 + t331);
-    const yaw3pitch_real_t t341 = t44 * t165;
-    const yaw3pitch_real_t t342 = t131 + t341;
-    const yaw3pitch_real_t t343 = t140 + parameters[YY2] * t296 - parameters[XY2] * (t131 + t342)
-        + parameters[YZ2] * (t94 - t166);
-    const yaw3pitch_real_t t344 = YAW3PITCH_C(2.0) * t72;
-    const yaw3pitch_real_t t345 = YAW3PITCH_C(-2.0) * t71;
-    const yaw3pitch_real_t t346 = t344 * t223 + t345 * t229 + (t39 * t295 - t43 * t341 - t147 * t64);
-    const yaw3pitch_real_t t347 = t144 + t343 + (parameters[MX2] * t294 - t145) + t340 + (t88 * t236 + t346);
-    const yaw3pitch_real_t t348 = parameters[XX2] * t342 - t132 - parameters[XY2] * t297
-        + parameters[XZ2] * t306;
-    const yaw3pitch_real_t t349 = t135 + t348 + (t136 + parameters[MY2] * t294) + (t16 * t329 + t13 * t337);
-    const yaw3pitch_real_t t350 = t344 * t232 + t345 * t225 + (t147 * t65 + (t43 * t295 - t40 * t341));
-    const yaw3pitch_real_t t351 = t44 * t347 + t41 * (t349 + (t350 - t93 * t236));
-    const yaw3pitch_real_t t352 = t344 * t235 + t345 * t234 + (t46 * t295 - t48 * t341);
-    const yaw3pitch_real_t t353 = t351 + YAW3PITCH_C(0.12) * t352;
-    const yaw3pitch_real_t t354 = t72 * t248 + t71 * t250 + (t64 * t295 + t65 * t341 - t147 * t28);
-    const yaw3pitch_real_t t355 = t354 - (t88 * t48 + t93 * t46);
-    const yaw3pitch_real_t t356 = t72 * t257 - t71 * t258 + (t147 * t18 + (t60 * t341 - t59 * t295));
-    const yaw3pitch_real_t t357 = t88 * t17 - t93 * t42 + t356;
-    const yaw3pitch_real_t t358 = t72 * t267 - t71 * t269 + (t147 * t20 + (t54 * t341 - t53 * t295));
-    const yaw3pitch_real_t t359 = t93 * t268 + t88 * t19 + t358;
-    const yaw3pitch_real_t t360 = t239 * t355 - t164 * t353 + t253 * t357 - t261 * t359;
-    ddq_by_q[1] = t360;
-    const yaw3pitch_real_t t361 = t239 * t353 - t272 * t355 - t273 * t357 - t274 * t359;
-    ddq_by_q[5] = t361;
-    const yaw3pitch_real_t t362 = t277 * t359 - (t273 * t355 - t253 * t353 - t276 * t357);
-    ddq_by_q[9] = t362;
-    const yaw3pitch_real_t t363 = t277 * t357 - (t261 * t353 + t274 * t355) - t279 * t359;
-    ddq_by_q[13] = t363;
-    const yaw3pitch_real_t t364 = parameters[ZZ4] - t180;
-    const yaw3pitch_real_t t365 = t77 * parameters[YZ4] + t172 * t364;
-    const yaw3pitch_real_t t366 = t77 * parameters[XZ4] + t177 * t364;
-    const yaw3pitch_real_t t367 = t204 - parameters[ZZ3];
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t368 = t193 * t367 - t76 * parameters[YZ3] - (t1 * t365 + t0 * t366);
-    const yaw3pitch_real_t t369 = t76 * parameters[XZ3] + t200 * t367 - (t0 * t365 - t1 * t366
-        + parameters[MZ4] * t191);
-    const yaw3pitch_real_t t370 = parameters[ZZ2] - t227;
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t371 = t72 * t370 - dq[1] * parameters[YZ2] + (t16 * t368 - t13 * t369);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t372 = t44 * (YAW3PITCH_C(2.0) * t371 + (t39 * t344 + t43 * t345));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t373 = dq[1] * parameters[XZ2] - t71 * t370 + (t13 * t368 + t16 * t369
-        + t63 * t216);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t374 = t41 * (YAW3PITCH_C(2.0) * t373 + (t43 * t344 + t40 * t345));
-    const yaw3pitch_real_t t375 = t372 + t374 + YAW3PITCH_C(0.12) * (t46 * t344 + t48 * t345);
-    const yaw3pitch_real_t t376 = t173 - t178;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t377 = t197 + t201 + (t196 + (t376 - t195));
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t378 = YAW3PITCH_C(2.0) * (t224 - t221 + (t220 + (t377 - t219)))
-        + YAW3PITCH_C(2.0) * (t72 * t64 + t71 * t65);
-    const yaw3pitch_real_t t379 = YAW3PITCH_C(2.0) * t377; /* link j3: derivatives */
-    const yaw3pitch_real_t t380 = YAW3PITCH_C(1.6) * dq[1];
-    const yaw3pitch_real_t t381 = t379 - t42 * t380 + YAW3PITCH_C(2.0) * (t71 * t60 - t72 * t59);
-    const yaw3pitch_real_t t382 = YAW3PITCH_C(2.0) * t376; /* link j4: derivatives */
-    const yaw3pitch_real_t t383 = t382 + t11 * (YAW3PITCH_C(1.4) * t76);
-    const yaw3pitch_real_t t384 = t383 + t268 * t380 + YAW3PITCH_C(2.0) * (t71 * t54 - t72 * t53);
-    const yaw3pitch_real_t t385 = t378 * t239 - t164 * t375 + t381 * t253 - t384 * t261;
-    ddq_by_dq[1] = t385;
-    const yaw3pitch_real_t t386 = t375 * t239 - t378 * t272 - t381 * t273 - t384 * t274;
-    ddq_by_dq[5] = t386;
-    const yaw3pitch_real_t t387 = t384 * t277 - (t378 * t273 - t375 * t253 - t381 * t276);
-    ddq_by_dq[9] = t387;
-    const yaw3pitch_real_t t388 = t381 * t277 - (t375 * t261 + t378 * t274) - t384 * t279;
-    ddq_by_dq[13] = t388;
-    ddq_by_input[1] = -t239;
-    ddq_by_input[5] = t272;
-    ddq_by_input[9] = t273;
-    ddq_by_input[13] = t274;
-    const yaw3pitch_real_t t389 = YAW3PITCH_C(2.0) * t193;
-    const yaw3pitch_real_t t390 = YAW3PITCH_C(-2.0) * t200;
-    const yaw3pitch_real_t t391 = t338 * t57 + (t36 * t324 - t35 * t299) - (t389 * t199 + t390 * t206);
-    const yaw3pitch_real_t t392 = t337 + (t391 - t63 * t310);
-    const yaw3pitch_real_t t393 = t389 * t209 - t390 * t202 + (t338 * t58 + (t34 * t324 - t36 * t299));
-    const yaw3pitch_real_t t394 = t393 + t63 * t308 - t329;
-    const yaw3pitch_real_t t395 = t12 * t299 + t15 * t324 - (t389 * t213 + t390 * t212);
-    const yaw3pitch_real_t t396 = t41 * (t13 * t392 - t16 * t394 + YAW3PITCH_C(0.8) * t395);
-    const yaw3pitch_real_t t397 = t44 * (t16 * t392 + t13 * t394) + t396 + YAW3PITCH_C(0.12) * t395;
-    const yaw3pitch_real_t t398 = parameters[MZ4] * t288;
-    const yaw3pitch_real_t t399 = parameters[M4] * t321;
-    const yaw3pitch_real_t t400 = t399 + ((t293 + t86) * parameters[MX4] - parameters[MY4] * t317 + t398);
-    const yaw3pitch_real_t t401 = parameters[MZ4] * t285;
-    const yaw3pitch_real_t t402 = parameters[M4] * t314;
-    const yaw3pitch_real_t t403 = t402 + ((t320 + t86) * parameters[MY4] - parameters[MX4] * t284 - t401);
-    const yaw3pitch_real_t t404 = (t335 + t98) * parameters[MY3] + parameters[MX3] * t305
-        + parameters[MZ3] * t324;
-    const yaw3pitch_real_t t405 = parameters[M3] * t308 + t404 + (t0 * t400 + t1 * t403);
-    const yaw3pitch_real_t t406 = t338 * t12 - t63 * t324 - (t390 * t246 + t25 * t308);
-    const yaw3pitch_real_t t407 = parameters[M3] * t310 + (t312 * parameters[MX3] + parameters[MY3] * t333
-        + parameters[MZ3] * t299);
-    const yaw3pitch_real_t t408 = t25 * t310 - t389 * t246 + (t338 * t15 + t63 * t299);
-    const yaw3pitch_real_t t409 = t16 * (t0 * t403 - t1 * t400 - t407 + t408);
-    const yaw3pitch_real_t t410 = t57 * t299 - t58 * t324 - t338 * t8;
-    const yaw3pitch_real_t t411 = t12 * t308 - t15 * t310;
-    const yaw3pitch_real_t t412 = t410 - (t389 * t244 + t390 * t245) + t411 + YAW3PITCH_C(0.8) * (t13 * (t405
-        + t406) + t409);
-    const yaw3pitch_real_t t413 = t411 + (t200 * t255 - t193 * t254 + t410);
-    const yaw3pitch_real_t t414 = t200 * t266 - t193 * t265 + (t338 * t3 + (t51 * t299 - t52 * t324));
-    const yaw3pitch_real_t t415 = t414 + (t11 * t308 - t2 * t310);
-    const yaw3pitch_real_t t416 = t239 * t412 - t164 * t397 + t253 * t413 - t261 * t415;
-    ddq_by_q[2] = t416;
-    const yaw3pitch_real_t t417 = t239 * t397 - t272 * t412 - t273 * t413 - t274 * t415;
-    ddq_by_q[6] = t417;
-    const yaw3pitch_real_t t418 = t277 * t415 - (t273 * t412 - t253 * t397 - t276 * t413);
-    ddq_by_q[10] = t418;
-    const yaw3pitch_real_t t419 = t277 * t413 - (t261 * t397 + t274 * t412) - t279 * t415;
-    ddq_by_q[14] = t419;
+    const yaw3pitch_real_t t367 = t188 * t366 - t75 * parameters[YZ3] - (t1 * t278 + t0 * t280);
     /* link j3: derivatives */
-    const yaw3pitch_real_t t420 = YAW3PITCH_C(2.0) * t368 - (t35 * t389 + t36 * t390);
-    const yaw3pitch_real_t t421 = YAW3PITCH_C(2.0) * t369 + (t36 * t389 + t34 * t390);
-    const yaw3pitch_real_t t422 = t12 * t389 - t15 * t390;
-    const yaw3pitch_real_t t423 = t41 * (t13 * t420 + t16 * t421 + YAW3PITCH_C(0.8) * t422);
-    const yaw3pitch_real_t t424 = t44 * (t16 * t420 - t13 * t421) + t423 + YAW3PITCH_C(0.12) * t422;
-    const yaw3pitch_real_t t425 = t13 * (YAW3PITCH_C(2.0) * t213 + t63 * t390)
-        + t16 * (YAW3PITCH_C(-2.0) * t212 + t63 * t389);
-    const yaw3pitch_real_t t426 = t379 + (t57 * t389 + t58 * t390) + YAW3PITCH_C(0.8) * t425;
-    const yaw3pitch_real_t t427 = t379 + YAW3PITCH_C(2.0) * (t193 * t57 - t200 * t58);
+    const yaw3pitch_real_t t368 = YAW3PITCH_C(2.0) * t367 - (t33 * t318 + t34 * t323);
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t369 = t75 * parameters[XZ3] + t187 * t366 - (t0 * t278 - t1 * t280
+        + parameters[MZ4] * t310);
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t370 = YAW3PITCH_C(2.0) * t369 + (t34 * t318 + t32 * t323);
+    const yaw3pitch_real_t t371 = t11 * t318 - t14 * t323;
+    const yaw3pitch_real_t t372 = t39 * (t12 * t368 + t15 * t370 + YAW3PITCH_C(0.8) * t371);
+    const yaw3pitch_real_t t373 = t42 * (t15 * t368 - t12 * t370) + t372 + YAW3PITCH_C(0.12) * t371;
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t374 = t315 + t332 + (t314 + (t287 - t313));
+    const yaw3pitch_real_t t375 = YAW3PITCH_C(2.0) * t374; /* link j3: derivatives */
+    const yaw3pitch_real_t t376 = t12 * (YAW3PITCH_C(2.0) * t336 + t61 * t323)
+        + t15 * (YAW3PITCH_C(-2.0) * t337 + t61 * t318);
+    const yaw3pitch_real_t t377 = t375 + (t55 * t318 + t56 * t323) + YAW3PITCH_C(0.8) * t376;
+    const yaw3pitch_real_t t378 = t375 + YAW3PITCH_C(2.0) * (t188 * t55 - t187 * t56);
+    const yaw3pitch_real_t t379 = t288 + t10 * (YAW3PITCH_C(1.4) * t75); /* link j4: derivatives */
+    const yaw3pitch_real_t t380 = t379 + YAW3PITCH_C(2.0) * (t188 * t49 - t187 * t50);
+    const yaw3pitch_real_t t381 = t377 * t260 - t163 * t373 + t378 * t261 - t380 * t266;
+    ddq_by_dq[2] = t381;
+    const yaw3pitch_real_t t382 = t373 * t260 - t377 * t268 - t378 * t269 - t380 * t270;
+    ddq_by_dq[6] = t382;
+    const yaw3pitch_real_t t383 = t380 * t273 - (t377 * t269 - t373 * t261 - t378 * t272);
+    ddq_by_dq[10] = t383;
+    const yaw3pitch_real_t t384 = t378 * t273 - (t373 * t266 + t377 * t270) - t380 * t275;
+    ddq_by_dq[14] = t384;
+    ddq_by_input[2] = -t261;
+    ddq_by_input[6] = t269;
+    ddq_by_input[10] = -t272;
+    ddq_by_input[14] = -t273;
+    const yaw3pitch_real_t t385 = parameters[M3] * t205 + (parameters[MX3] * t209 - parameters[MY3] * t299
+        - t305 * parameters[MZ3]);
+    const yaw3pitch_real_t t386 = t15 * t304 - t12 * t328 + YAW3PITCH_C(0.8) * (t385 + t295);
+    const yaw3pitch_real_t t387 = t42 * t164;
+    const yaw3pitch_real_t t388 = t130 + t387;
+    const yaw3pitch_real_t t389 = t139 + parameters[YY2] * t203 - parameters[XY2] * (t130 + t388)
+        + parameters[YZ2] * (t93 - t165);
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t390 = t15 * (t317 - t333) + t12 * (t322 - t331);
+    const yaw3pitch_real_t t391 = t15 * t390;
+    const yaw3pitch_real_t t392 = t15 * t337 - t12 * t336;
+    const yaw3pitch_real_t t393 = YAW3PITCH_C(0.8) * t392;
+    const yaw3pitch_real_t t394 = YAW3PITCH_C(-0.8) * dq[1]; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t395 = t40 * t394; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t396 = YAW3PITCH_C(-0.8) * t71; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t397 = t61 * t396; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t398 = t395 + t397 - t393;
+    const yaw3pitch_real_t t399 = t71 * parameters[XZ2];
+    const yaw3pitch_real_t t400 = dq[1] * parameters[XY2];
+    const yaw3pitch_real_t t401 = t399 - t400 + (t398 + (t333 + t391 + t393));
+    const yaw3pitch_real_t t402 = YAW3PITCH_C(2.0) * t71;
+    const yaw3pitch_real_t t403 = t12 * t390;
+    const yaw3pitch_real_t t404 = YAW3PITCH_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const yaw3pitch_real_t t405 = t404 - parameters[YY2];
+    const yaw3pitch_real_t t406 = t71 * parameters[YZ2] + dq[1] * t405 + (t403 - t322);
+    const yaw3pitch_real_t t407 = YAW3PITCH_C(-2.0) * t70;
+    const yaw3pitch_real_t t408 = t402 * t401 + t407 * t406 + (t37 * t202 - t41 * t387 - t146 * t62);
+    const yaw3pitch_real_t t409 = parameters[MZ2] + t61; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t410 = t143 + t389 + (parameters[MX2] * t201 - t144) + t386 + (t87 * t409 + t408);
+    const yaw3pitch_real_t t411 = parameters[XX2] * t388 - t131 - parameters[XY2] * t204
+        + parameters[XZ2] * t191;
+    const yaw3pitch_real_t t412 = t134 + t411 + (t135 + parameters[MY2] * t201) + (t15 * t328 + t12 * t304);
+    const yaw3pitch_real_t t413 = t12 * t337 + t15 * t336; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t414 = parameters[XX2] - t404;
+    const yaw3pitch_real_t t415 = dq[1] * t414 - t70 * parameters[XZ2] + (t331 + t403
+        + (YAW3PITCH_C(0.8) * t413 + t45 * t394));
+    const yaw3pitch_real_t t416 = t70 * parameters[YZ2];
+    const yaw3pitch_real_t t417 = t400 - t416 + (t398 + (t317 - t391 - t395));
+    const yaw3pitch_real_t t418 = t402 * t415 + t407 * t417 + (t146 * t63 + (t41 * t202 - t38 * t387));
+    const yaw3pitch_real_t t419 = t42 * t410 + t39 * (t412 + (t418 - t92 * t409));
+    const yaw3pitch_real_t t420 = t70 * parameters[MZ2] - dq[1] * parameters[MX2] + (t413 + t24 * t394);
+    const yaw3pitch_real_t t421 = t71 * parameters[MZ2] - dq[1] * parameters[MY2] - t392;
+    const yaw3pitch_real_t t422 = t402 * t420 + t407 * t421 + (t44 * t202 - t46 * t387);
+    const yaw3pitch_real_t t423 = t419 + YAW3PITCH_C(0.12) * t422;
+    const yaw3pitch_real_t t424 = t15 * t350 + t12 * t351 + (YAW3PITCH_C(0.8) * t343 - t45 * t396);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t425 = YAW3PITCH_C(2.0) * (t70 * parameters[XY2] - t71 * t414 + t424);
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t426 = t71 * parameters[XY2] + t70 * t405 - (t12 * t350 - t15 * t351 + t40 * t396);
+    const yaw3pitch_real_t t427 = YAW3PITCH_C(2.0) * t426; /* link j2: derivatives */
+    const yaw3pitch_real_t t428 = t71 * t425 + t70 * t427 + (t62 * t202 + t63 * t387 - t146 * t27);
+    const yaw3pitch_real_t t429 = t428 - (t87 * t46 + t92 * t44);
+    const yaw3pitch_real_t t430 = YAW3PITCH_C(-1.6) * t71; /* link j4: derivatives */
+    const yaw3pitch_real_t t431 = t15 * t354 + t12 * t355 + t16 * t430; /* link j3: derivatives */
+    const yaw3pitch_real_t t432 = t12 * t354 - t15 * t355 + t40 * t430;
+    const yaw3pitch_real_t t433 = t71 * t431 - t70 * t432 + (t146 * t17 + (t58 * t387 - t57 * t202));
+    const yaw3pitch_real_t t434 = t87 * t16 - t92 * t40 + t433;
+    const yaw3pitch_real_t t435 = t15 * t358 + t12 * t359 + t18 * t430; /* link j4: derivatives */
+    const yaw3pitch_real_t t436 = t15 * t10 - t12 * t2; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t437 = t12 * t358 - t15 * t359 - t436 * t430; /* link j4: derivatives */
+    const yaw3pitch_real_t t438 = t71 * t435 - t70 * t437 + (t146 * t19 + (t52 * t387 - t51 * t202));
+    const yaw3pitch_real_t t439 = t92 * t436 + t87 * t18 + t438;
+    const yaw3pitch_real_t t440 = t260 * t429 - t163 * t423 + t261 * t434 - t266 * t439;
+    ddq_by_q[1] = t440;
+    const yaw3pitch_real_t t441 = t260 * t423 - t268 * t429 - t269 * t434 - t270 * t439;
+    ddq_by_q[5] = t441;
+    const yaw3pitch_real_t t442 = t273 * t439 - (t269 * t429 - t261 * t423 - t272 * t434);
+    ddq_by_q[9] = t442;
+    const yaw3pitch_real_t t443 = t273 * t434 - (t266 * t423 + t270 * t429) - t275 * t439;
+    ddq_by_q[13] = t443;
+    const yaw3pitch_real_t t444 = parameters[ZZ2] - t404;
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t445 = t71 * t444 - dq[1] * parameters[YZ2] + (t15 * t367 - t12 * t369);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t446 = t42 * (YAW3PITCH_C(2.0) * t445 + (t37 * t402 + t41 * t407));
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t447 = dq[1] * parameters[XZ2] - t70 * t444 + (t12 * t367 + t15 * t369
+        + t61 * t394);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t448 = t39 * (YAW3PITCH_C(2.0) * t447 + (t41 * t402 + t38 * t407));
+    const yaw3pitch_real_t t449 = t446 + t448 + YAW3PITCH_C(0.12) * (t44 * t402 + t46 * t407);
+    const yaw3pitch_real_t t450 = YAW3PITCH_C(2.0) * (t416 - t399 + (t398 + (t374 - t397)))
+        + YAW3PITCH_C(2.0) * (t71 * t62 + t70 * t63);
+    const yaw3pitch_real_t t451 = YAW3PITCH_C(1.6) * dq[1];
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t452 = t375 - t40 * t451 + YAW3PITCH_C(2.0) * (t70 * t58 - t71 * t57);
     /* link j4: derivatives */
-    const yaw3pitch_real_t t428 = t383 + YAW3PITCH_C(2.0) * (t193 * t51 - t200 * t52);
-    const yaw3pitch_real_t t429 = t426 * t239 - t164 * t424 + t427 * t253 - t428 * t261;
-    ddq_by_dq[2] = t429;
-    const yaw3pitch_real_t t430 = t424 * t239 - t426 * t272 - t427 * t273 - t428 * t274;
-    ddq_by_dq[6] = t430;
-    const yaw3pitch_real_t t431 = t428 * t277 - (t426 * t273 - t424 * t253 - t427 * t276);
-    ddq_by_dq[10] = t431;
-    const yaw3pitch_real_t t432 = t427 * t277 - (t424 * t261 + t426 * t274) - t428 * t279;
-    ddq_by_dq[14] = t432;
-    ddq_by_input[2] = -t253;
-    ddq_by_input[6] = t273;
-    ddq_by_input[10] = -t276;
-    ddq_by_input[14] = -t277;
-    const yaw3pitch_real_t t433 = YAW3PITCH_C(2.0) * t172;
-    const yaw3pitch_real_t t434 = YAW3PITCH_C(2.0) * t177;
-    const yaw3pitch_real_t t435 = t433 * t175 - t434 * t184 + (parameters[XY4] * t285 - parameters[XX4] * t288
-        - t330 * parameters[XZ4]);
-    const yaw3pitch_real_t t436 = t323 + (t435 - t322);
-    const yaw3pitch_real_t t437 = t433 * t182 - t434 * t179 + (t330 * parameters[YZ4]
-        + (parameters[XY4] * t288 - parameters[YY4] * t285));
-    const yaw3pitch_real_t t438 = t316 + (t315 + t437);
-    const yaw3pitch_real_t t439 = t1 * t436 + t0 * t438;
-    const yaw3pitch_real_t t440 = t433 * t188 - t434 * t187 + (parameters[MY4] * t288
-        + parameters[MX4] * t285);
-    const yaw3pitch_real_t t441 = t0 * t436 - t1 * t438 + YAW3PITCH_C(0.7) * t440;
-    const yaw3pitch_real_t t442 = t41 * (t13 * t439 + t16 * t441 + YAW3PITCH_C(0.8) * t440);
-    const yaw3pitch_real_t t443 = t44 * (t16 * t439 - t13 * t441) + t442 + YAW3PITCH_C(0.12) * t440;
-    const yaw3pitch_real_t t444 = t403 + (t330 * parameters[MY4] + t401 - (t434 * t242 + t402));
-    const yaw3pitch_real_t t445 = t400 - (t399 - t433 * t242 - (t330 * parameters[MX4] - t398));
-    const yaw3pitch_real_t t446 = t0 * t444 - t1 * t445;
-    const yaw3pitch_real_t t447 = t13 * (t1 * t444 + t0 * t445) + t16 * t446;
-    const yaw3pitch_real_t t448 = parameters[MX4] * t321 + parameters[MY4] * t314;
-    const yaw3pitch_real_t t449 = parameters[YZ4] * t285 - parameters[XZ4] * t288 - t330 * parameters[ZZ4];
-    const yaw3pitch_real_t t450 = t448 + (t433 * t240 - t434 * t241 + t449) + YAW3PITCH_C(0.7) * t446;
-    const yaw3pitch_real_t t451 = t450 + YAW3PITCH_C(0.8) * t447;
-    const yaw3pitch_real_t t452 = t448 + (t172 * t262 - t177 * t263 + t449);
-    const yaw3pitch_real_t t453 = t239 * t451 - t164 * t443 + t253 * t450 - t261 * t452;
-    ddq_by_q[3] = t453;
-    const yaw3pitch_real_t t454 = t239 * t443 - t272 * t451 - t273 * t450 - t274 * t452;
-    ddq_by_q[7] = t454;
-    const yaw3pitch_real_t t455 = t277 * t452 - (t273 * t451 - t253 * t443 - t276 * t450);
-    ddq_by_q[11] = t455;
-    const yaw3pitch_real_t t456 = t277 * t450 - (t261 * t443 + t274 * t451) - t279 * t452;
-    ddq_by_q[15] = t456;
-    const yaw3pitch_real_t t457 = YAW3PITCH_C(-2.0) * t365 + (parameters[XY4] * t434
-        - parameters[XX4] * t433);
-    const yaw3pitch_real_t t458 = YAW3PITCH_C(-2.0) * t366 + (parameters[XY4] * t433
-        - parameters[YY4] * t434);
-    const yaw3pitch_real_t t459 = t1 * t457 + t0 * t458;
-    const yaw3pitch_real_t t460 = parameters[MX4] * t434 + parameters[MY4] * t433;
-    const yaw3pitch_real_t t461 = YAW3PITCH_C(-0.7) * t460 + (t1 * t458 - t0 * t457);
-    const yaw3pitch_real_t t462 = t41 * (YAW3PITCH_C(0.8) * t460 + (t13 * t459 - t16 * t461));
-    const yaw3pitch_real_t t463 = YAW3PITCH_C(0.12) * t460 + (t44 * (t16 * t459 + t13 * t461) + t462);
-    const yaw3pitch_real_t t464 = YAW3PITCH_C(-2.0) * t188 + parameters[MZ4] * t434;
-    const yaw3pitch_real_t t465 = YAW3PITCH_C(2.0) * t187 - parameters[MZ4] * t433;
-    const yaw3pitch_real_t t466 = t0 * t464 - t1 * t465;
-    const yaw3pitch_real_t t467 = t382 + (parameters[YZ4] * t434 - parameters[XZ4] * t433)
-        + YAW3PITCH_C(0.7) * t466;
-    const yaw3pitch_real_t t468 = t13 * (t1 * t464 + t0 * t465) + t16 * t466;
-    const yaw3pitch_real_t t469 = t467 + YAW3PITCH_C(0.8) * t468;
-    ddq_by_dq[3] = t469 * t239 - t164 * t463 + t467 * t253;
-    ddq_by_dq[7] = t463 * t239 - t469 * t272 - t467 * t273;
-    ddq_by_dq[11] = t467 * t276 - (t469 * t273 - t463 * t253);
-    ddq_by_dq[15] = t467 * t277 - (t463 * t261 + t469 * t274);
-    ddq_by_input[3] = t261;
-    ddq_by_input[7] = t274;
-    ddq_by_input[11] = -t277;
-    ddq_by_input[15] = t279;
+    const yaw3pitch_real_t t453 = t379 + t436 * t451 + YAW3PITCH_C(2.0) * (t70 * t52 - t71 * t51);
+    const yaw3pitch_real_t t454 = t450 * t260 - t163 * t449 + t452 * t261 - t453 * t266;
+    ddq_by_dq[1] = t454;
+    const yaw3pitch_real_t t455 = t449 * t260 - t450 * t268 - t452 * t269 - t453 * t270;
+    ddq_by_dq[5] = t455;
+    const yaw3pitch_real_t t456 = t453 * t273 - (t450 * t269 - t449 * t261 - t452 * t272);
+    ddq_by_dq[9] = t456;
+    const yaw3pitch_real_t t457 = t452 * t273 - (t449 * t266 + t450 * t270) - t453 * t275;
+    ddq_by_dq[13] = t457;
+    ddq_by_input[1] = -t260;
+    ddq_by_input[5] = t268;
+    ddq_by_input[9] = t269;
+    ddq_by_input[13] = t270;
+    /* link j2: inertia, momentum beyond */
+    const yaw3pitch_real_t t458 = t39 * (t39 * (t417 - t401) + t42 * (t406 + t415));
+    const yaw3pitch_real_t t459 = YAW3PITCH_C(0.12) * (t39 * t421 + t42 * t420)
+        + t409 * (YAW3PITCH_C(-0.12) * dq[0]);
+    const yaw3pitch_real_t t460 = YAW3PITCH_C(2.0) * (t401 + t458 + t459); /* link j1: derivatives */
+    const yaw3pitch_real_t t461 = YAW3PITCH_C(0.24) * dq[0];
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t462 = t42 * t425 - t39 * t427 + (t42 * t46 - t39 * t44) * t461;
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t463 = t42 * t431 + t39 * t432 - (t39 * t40 + t42 * t16) * t461;
+    /* link j4: derivatives */
+    const yaw3pitch_real_t t464 = t42 * t435 + t39 * t437 + (t39 * t436 - t42 * t18) * t461;
+    const yaw3pitch_real_t t465 = t462 * t260 - t163 * t460 + t463 * t261 - t464 * t266;
+    ddq_by_dq[0] = t465;
+    const yaw3pitch_real_t t466 = t460 * t260 - t462 * t268 - t463 * t269 - t464 * t270;
+    ddq_by_dq[4] = t466;
+    const yaw3pitch_real_t t467 = t464 * t273 - (t462 * t269 - t460 * t261 - t463 * t272);
+    ddq_by_dq[8] = t467;
+    const yaw3pitch_real_t t468 = t463 * t273 - (t460 * t266 + t462 * t270) - t464 * t275;
+    ddq_by_dq[12] = t468;
+    ddq_by_input[0] = t163;
+    ddq_by_input[4] = -t260;
+    ddq_by_input[8] = -t261;
+    ddq_by_input[12] = t266;
     /* always zero */
     ddq_by_q[0] = YAW3PITCH_C(0.0);
     ddq_by_q[4] = YAW3PITCH_C(0.0);
     ddq_by_q[8] = YAW3PITCH_C(0.0);
     ddq_by_q[12] = YAW3PITCH_C(0.0);
-    if (!yaw3pitch_all_bounded(ddq, 4)
-        || !yaw3pitch_all_bounded(ddq_by_q, 16)
-        || !yaw3pitch_all_bounded(ddq_by_dq, 16)
-        || !yaw3pitch_all_bounded(ddq_by_input, 16)) {
+    if (!yaw3pitch_bounded(ddq, 4)
+        || !yaw3pitch_bounded(ddq_by_q, 16)
+        || !yaw3pitch_bounded(ddq_by_dq, 16)
+        || !yaw3pitch_bounded(ddq_by_input, 16)) {
         yaw3pitch_zero(ddq, 4);
         yaw3pitch_zero(ddq_by_q, 16);
         yaw3pitch_zero(ddq_by_dq, 16);

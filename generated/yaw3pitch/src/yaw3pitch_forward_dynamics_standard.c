@@ -6,7 +6,7 @@
  * Arm yaw3pitch, description 839ceb1d876030e9.
  * SPDX-License-Identifier: 0BSD
  *
- * Operations: 463 (245 mul, 218 add, 0 neg), 4 div, 6 trig.
+ * Operations: 463 (245 mul, 218 add, 0 neg), 4 div, 6 trig, 2 other calls (sign, select and the like).
  *
  * @param[in]   q           [4]   [rad]      joint coordinates; norm at most 10000
  * @param[in]   dq          [4]   [rad/s]    joint velocities; norm at most 100000
@@ -67,7 +67,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -94,10 +94,10 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_standard(
         return status;
     }
 
-    yaw3pitch_real_t t39, t37;
-    YAW3PITCH_SINCOS(q[1], &t39, &t37);
-    yaw3pitch_real_t t13, t15;
-    YAW3PITCH_SINCOS(q[2], &t13, &t15);
+    yaw3pitch_real_t t37, t35;
+    YAW3PITCH_SINCOS(q[1], &t37, &t35);
+    yaw3pitch_real_t t12, t14;
+    YAW3PITCH_SINCOS(q[2], &t12, &t14);
     yaw3pitch_real_t t0, t1;
     YAW3PITCH_SINCOS(q[3], &t0, &t1);
     if (!(parameters[ZZ4] > YAW3PITCH_C(1.0e-12))) {
@@ -112,223 +112,215 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_standard(
     const yaw3pitch_real_t t6 = YAW3PITCH_C(0.7) * parameters[M4]; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 + YAW3PITCH_C(-2.0) * t2);
     const yaw3pitch_real_t t8 = parameters[ZZ3] + (parameters[ZZ4] + t7);
-    const yaw3pitch_real_t t9 = yaw3pitch_bounded(t8 + t3 * t5);
+    const yaw3pitch_real_t t9 = t8 + t3 * t5;
     if (!(t9 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t10 = t9 + YAW3PITCH_C(-1.0e-9) * t8;
-    if (!(t10 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t11 = t1 * parameters[MY4] + t0 * parameters[MX4];
-    const yaw3pitch_real_t t12 = parameters[MY3] + t11; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t14 = parameters[MX3] - (t2 - t6);
-    const yaw3pitch_real_t t16 = t15 * t14 - t13 * t12; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t10 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const yaw3pitch_real_t t11 = parameters[MY3] + t10; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t13 = parameters[MX3] - (t2 - t6);
+    const yaw3pitch_real_t t15 = t14 * t13 - t12 * t11; /* link j3: column of the mass matrix */
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t17 = t3 + YAW3PITCH_C(0.8) * (t13 * t11 + t15 * t2);
-    const yaw3pitch_real_t t18 = YAW3PITCH_C(-0.8) * t16 - t8 - t17 * t5;
-    const yaw3pitch_real_t t19 = YAW3PITCH_C(1.0) / t9;
-    const yaw3pitch_real_t t20 = t18 * t19;
-    const yaw3pitch_real_t t21 = t17 * t4;
-    const yaw3pitch_real_t t22 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t23 = YAW3PITCH_C(0.8) * t22; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t24 = YAW3PITCH_C(0.8) * (t23 + YAW3PITCH_C(2.0) * t16);
-    const yaw3pitch_real_t t25 = parameters[ZZ2] + (t8 + t24);
-    const yaw3pitch_real_t t26 = yaw3pitch_bounded(t25 + t17 * t21 - t18 * t20);
-    if (!(t26 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t27 = t26 + YAW3PITCH_C(-1.0e-9) * t25;
-    if (!(t27 > YAW3PITCH_C(1.0e-12))) {
+    const yaw3pitch_real_t t16 = t3 + YAW3PITCH_C(0.8) * (t12 * t10 + t14 * t2);
+    const yaw3pitch_real_t t17 = YAW3PITCH_C(-0.8) * t15 - t8 - t16 * t5;
+    const yaw3pitch_real_t t18 = YAW3PITCH_C(1.0) / t9;
+    const yaw3pitch_real_t t19 = t17 * t18;
+    const yaw3pitch_real_t t20 = t16 * t4;
+    const yaw3pitch_real_t t21 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t22 = YAW3PITCH_C(0.8) * t21; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t23 = YAW3PITCH_C(0.8) * (t22 + YAW3PITCH_C(2.0) * t15);
+    const yaw3pitch_real_t t24 = parameters[ZZ2] + (t8 + t23);
+    const yaw3pitch_real_t t25 = t24 + t16 * t20 - t17 * t19;
+    if (!(t25 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
     /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t28 = parameters[XX4] - parameters[YY4];
-    const yaw3pitch_real_t t29 = t1 * t28 + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
-    const yaw3pitch_real_t t30 = t1 * t29;
-    const yaw3pitch_real_t t31 = parameters[YY3] + (parameters[XX4] - t30 + t7);
-    const yaw3pitch_real_t t32 = parameters[XX3] + (parameters[YY4] + t30);
-    const yaw3pitch_real_t t33 = parameters[XY3] + (parameters[XY4] + t0 * t29 + YAW3PITCH_C(-0.7) * t11);
+    const yaw3pitch_real_t t26 = parameters[XX4] - parameters[YY4];
+    const yaw3pitch_real_t t27 = t1 * t26 + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
+    const yaw3pitch_real_t t28 = t1 * t27;
+    const yaw3pitch_real_t t29 = parameters[YY3] + (parameters[XX4] - t28 + t7);
+    const yaw3pitch_real_t t30 = parameters[XX3] + (parameters[YY4] + t28);
+    const yaw3pitch_real_t t31 = parameters[XY3] + (parameters[XY4] + t0 * t27 + YAW3PITCH_C(-0.7) * t10);
     /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t34 = t15 * (t32 - t31) - t33 * (YAW3PITCH_C(2.0) * t13);
-    const yaw3pitch_real_t t35 = t15 * t34;
-    const yaw3pitch_real_t t36 = parameters[XX2] + (t31 + t35);
-    const yaw3pitch_real_t t38 = t15 * t12 + t13 * t14; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t32 = t14 * (t30 - t29) - t31 * (YAW3PITCH_C(2.0) * t12);
+    const yaw3pitch_real_t t33 = t14 * t32;
+    const yaw3pitch_real_t t34 = parameters[XX2] + (t29 + t33);
+    const yaw3pitch_real_t t36 = t14 * t11 + t12 * t13; /* link j3: column of the mass matrix */
     /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t40 = (parameters[XY2] + (t33 + t13 * t34
-        + YAW3PITCH_C(-0.8) * t38)) * (YAW3PITCH_C(2.0) * t39);
-    const yaw3pitch_real_t t41 = t37 * (parameters[YY2] + (t32 - t35 + t24) - t36) + t40;
+    const yaw3pitch_real_t t38 = (parameters[XY2] + (t31 + t12 * t32
+        + YAW3PITCH_C(-0.8) * t36)) * (YAW3PITCH_C(2.0) * t37);
+    const yaw3pitch_real_t t39 = t35 * (parameters[YY2] + (t30 - t33 + t23) - t34) + t38;
     /* link j2: column of the mass matrix */
-    const yaw3pitch_real_t t42 = t37 * (parameters[MX2] + (t16 + t23)) - t39 * (parameters[MY2] + t38);
+    const yaw3pitch_real_t t40 = t35 * (parameters[MX2] + (t15 + t22)) - t37 * (parameters[MY2] + t36);
     /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t43 = t36 + t37 * t41 + YAW3PITCH_C(0.12) * (YAW3PITCH_C(0.12) * (parameters[M2]
-        + t22) + YAW3PITCH_C(2.0) * t42);
-    const yaw3pitch_real_t t44 = parameters[ZZ1] + t43;
+    const yaw3pitch_real_t t41 = t34 + t35 * t39 + YAW3PITCH_C(0.12) * (YAW3PITCH_C(0.12) * (parameters[M2]
+        + t21) + YAW3PITCH_C(2.0) * t40);
+    const yaw3pitch_real_t t42 = parameters[ZZ1] + t41;
     /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t45 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
-    const yaw3pitch_real_t t46 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
-    const yaw3pitch_real_t t47 = t37 * (t15 * t46 - t13 * t45) - t39 * (t15 * t45 + t13 * t46);
-    const yaw3pitch_real_t t48 = t47 * t4;
+    const yaw3pitch_real_t t43 = t0 * parameters[YZ4] - t1 * parameters[XZ4];
+    const yaw3pitch_real_t t44 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
+    const yaw3pitch_real_t t45 = t35 * (t14 * t44 - t12 * t43) - t37 * (t14 * t43 + t12 * t44);
+    const yaw3pitch_real_t t46 = t45 * t4;
     /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t49 = t45 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
-    const yaw3pitch_real_t t50 = parameters[YZ3] + t46;
-    const yaw3pitch_real_t t51 = t15 * t49 + t13 * t50; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t52 = t13 * t49 - t15 * t50;
-    const yaw3pitch_real_t t53 = t39 * t51 + t37 * t52 + t47 * t5;
-    const yaw3pitch_real_t t54 = t53 * t19;
+    const yaw3pitch_real_t t47 = t43 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
+    const yaw3pitch_real_t t48 = parameters[YZ3] + t44;
+    const yaw3pitch_real_t t49 = t14 * t47 + t12 * t48; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t50 = t12 * t47 - t14 * t48;
+    const yaw3pitch_real_t t51 = t37 * t49 + t35 * t50 + t45 * t5;
+    const yaw3pitch_real_t t52 = t51 * t18;
     /* link j2: column of the mass matrix */
-    const yaw3pitch_real_t t55 = t39 * (t51 + YAW3PITCH_C(0.8) * (parameters[MZ3] + parameters[MZ4])
-        - parameters[XZ2]) + t37 * (t52 - parameters[YZ2]);
-    const yaw3pitch_real_t t56 = t55 + t47 * t21 + t53 * t20;
-    const yaw3pitch_real_t t57 = YAW3PITCH_C(1.0) / t26;
-    const yaw3pitch_real_t t58 = t56 * t57;
-    const yaw3pitch_real_t t59 = yaw3pitch_bounded(t44 + t47 * t48 - t53 * t54 - t56 * t58);
+    const yaw3pitch_real_t t53 = t37 * (t49 + YAW3PITCH_C(0.8) * (parameters[MZ3] + parameters[MZ4])
+        - parameters[XZ2]) + t35 * (t50 - parameters[YZ2]);
+    const yaw3pitch_real_t t54 = t53 + t45 * t20 + t51 * t19;
+    const yaw3pitch_real_t t55 = YAW3PITCH_C(1.0) / t25;
+    const yaw3pitch_real_t t56 = t54 * t55;
+    const yaw3pitch_real_t t57 = t42 + t45 * t46 - t51 * t52 - t54 * t56;
+    if (!(t57 > YAW3PITCH_C(1.0e-12))) {
+        yaw3pitch_zero(out, 4);
+        return YAW3PITCH_STATUS_PIVOT;
+    }
+    const yaw3pitch_real_t t58 = yaw3pitch_min(t9 + YAW3PITCH_C(-1.0e-9) * t8, t25
+        + YAW3PITCH_C(-1.0e-9) * t24);
+    const yaw3pitch_real_t t59 = yaw3pitch_min(t58, t57 + YAW3PITCH_C(-1.0e-9) * t42);
     if (!(t59 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }
-    const yaw3pitch_real_t t60 = t59 + YAW3PITCH_C(-1.0e-9) * t44;
-    if (!(t60 > YAW3PITCH_C(1.0e-12))) {
-        yaw3pitch_zero(out, 4);
-        return YAW3PITCH_STATUS_PIVOT;
-    }
-    const yaw3pitch_real_t t61 = t39 * dq[0]; /* link j2: motion */
-    const yaw3pitch_real_t t62 = t37 * dq[0];
-    const yaw3pitch_real_t t63 = t15 * t61 + t13 * t62; /* link j3: motion */
-    const yaw3pitch_real_t t64 = t15 * t62 - t13 * t61;
-    const yaw3pitch_real_t t65 = t1 * t64 - t0 * t63; /* link j4: motion */
-    const yaw3pitch_real_t t66 = dq[1] + dq[2]; /* link j3: motion */
-    const yaw3pitch_real_t t67 = dq[3] + t66; /* link j4: motion */
-    const yaw3pitch_real_t t68 = t67 * t65;
-    const yaw3pitch_real_t t69 = t1 * t63 + t0 * t64;
-    const yaw3pitch_real_t t70 = t67 * t69;
-    const yaw3pitch_real_t t71 = YAW3PITCH_C(2.0) * t70; /* link j4: force and moment */
-    const yaw3pitch_real_t t72 = parameters[XY4] * t71 - (parameters[XX4] * t68 + t68 * (parameters[ZZ4]
+    const yaw3pitch_real_t t60 = t37 * dq[0]; /* link j2: motion */
+    const yaw3pitch_real_t t61 = t35 * dq[0];
+    const yaw3pitch_real_t t62 = t14 * t60 + t12 * t61; /* link j3: motion */
+    const yaw3pitch_real_t t63 = t14 * t61 - t12 * t60;
+    const yaw3pitch_real_t t64 = t1 * t63 - t0 * t62; /* link j4: motion */
+    const yaw3pitch_real_t t65 = dq[1] + dq[2]; /* link j3: motion */
+    const yaw3pitch_real_t t66 = dq[3] + t65; /* link j4: motion */
+    const yaw3pitch_real_t t67 = t66 * t64;
+    const yaw3pitch_real_t t68 = t1 * t62 + t0 * t63;
+    const yaw3pitch_real_t t69 = t66 * t68;
+    const yaw3pitch_real_t t70 = YAW3PITCH_C(2.0) * t69; /* link j4: force and moment */
+    const yaw3pitch_real_t t71 = parameters[XY4] * t70 - (parameters[XX4] * t67 + t67 * (parameters[ZZ4]
         - parameters[YY4]));
-    const yaw3pitch_real_t t73 = t69 * t65; /* link j4: motion */
-    const yaw3pitch_real_t t74 = t65 * t65;
-    const yaw3pitch_real_t t75 = t67 * t67;
-    const yaw3pitch_real_t t76 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]); /* link j2: motion */
-    const yaw3pitch_real_t t77 = t37 * t76 + YAW3PITCH_C(-9.81) * t39;
-    const yaw3pitch_real_t t78 = t62 * t62;
-    const yaw3pitch_real_t t79 = dq[1] * dq[1];
-    const yaw3pitch_real_t t80 = t77 + YAW3PITCH_C(0.8) * (t78 + t79); /* link j3: motion */
-    const yaw3pitch_real_t t81 = t39 * t76 + YAW3PITCH_C(9.81) * t37; /* link j2: motion */
-    const yaw3pitch_real_t t82 = t61 * t62;
-    const yaw3pitch_real_t t83 = t81 + YAW3PITCH_C(0.8) * t82; /* link j3: motion */
-    const yaw3pitch_real_t t84 = t15 * t80 - t13 * t83;
-    const yaw3pitch_real_t t85 = t64 * t64;
-    const yaw3pitch_real_t t86 = t66 * t66;
-    const yaw3pitch_real_t t87 = t86 + t85; /* link j4: motion */
-    const yaw3pitch_real_t t88 = t84 + YAW3PITCH_C(0.7) * t87;
-    const yaw3pitch_real_t t89 = t13 * t80 + t15 * t83; /* link j3: motion */
-    const yaw3pitch_real_t t90 = t63 * t64;
-    const yaw3pitch_real_t t91 = t89 + YAW3PITCH_C(0.7) * t90; /* link j4: motion */
-    const yaw3pitch_real_t t92 = t0 * t88 + t1 * t91;
-    const yaw3pitch_real_t t93 = t66 * t63; /* link j3: motion */
-    const yaw3pitch_real_t t94 = dq[1] * t61; /* link j2: motion */
-    const yaw3pitch_real_t t95 = YAW3PITCH_C(-1.6) * t94; /* link j3: motion */
-    const yaw3pitch_real_t t96 = t95 + YAW3PITCH_C(-1.4) * t93; /* link j4: motion */
+    const yaw3pitch_real_t t72 = t68 * t64; /* link j4: motion */
+    const yaw3pitch_real_t t73 = t64 * t64;
+    const yaw3pitch_real_t t74 = t66 * t66;
+    const yaw3pitch_real_t t75 = YAW3PITCH_C(0.12) * (dq[0] * dq[0]); /* link j2: motion */
+    const yaw3pitch_real_t t76 = t35 * t75 + YAW3PITCH_C(-9.81) * t37;
+    const yaw3pitch_real_t t77 = t61 * t61;
+    const yaw3pitch_real_t t78 = dq[1] * dq[1];
+    const yaw3pitch_real_t t79 = t76 + YAW3PITCH_C(0.8) * (t77 + t78); /* link j3: motion */
+    const yaw3pitch_real_t t80 = t37 * t75 + YAW3PITCH_C(9.81) * t35; /* link j2: motion */
+    const yaw3pitch_real_t t81 = t60 * t61;
+    const yaw3pitch_real_t t82 = t80 + YAW3PITCH_C(0.8) * t81; /* link j3: motion */
+    const yaw3pitch_real_t t83 = t14 * t79 - t12 * t82;
+    const yaw3pitch_real_t t84 = t63 * t63;
+    const yaw3pitch_real_t t85 = t65 * t65;
+    const yaw3pitch_real_t t86 = t85 + t84; /* link j4: motion */
+    const yaw3pitch_real_t t87 = t83 + YAW3PITCH_C(0.7) * t86;
+    const yaw3pitch_real_t t88 = t12 * t79 + t14 * t82; /* link j3: motion */
+    const yaw3pitch_real_t t89 = t62 * t63;
+    const yaw3pitch_real_t t90 = t88 + YAW3PITCH_C(0.7) * t89; /* link j4: motion */
+    const yaw3pitch_real_t t91 = t0 * t87 + t1 * t90;
+    const yaw3pitch_real_t t92 = t65 * t62; /* link j3: motion */
+    const yaw3pitch_real_t t93 = dq[1] * t60; /* link j2: motion */
+    const yaw3pitch_real_t t94 = YAW3PITCH_C(-1.6) * t93; /* link j3: motion */
+    const yaw3pitch_real_t t95 = t94 + YAW3PITCH_C(-1.4) * t92; /* link j4: motion */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t97 = t72 - parameters[XZ4] * t73 + parameters[YZ4] * (t75 - t74)
-        + (parameters[MY4] * t96 + parameters[MZ4] * t92);
-    const yaw3pitch_real_t t98 = YAW3PITCH_C(2.0) * t68;
-    const yaw3pitch_real_t t99 = t70 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t70
-        + parameters[XY4] * t98;
-    const yaw3pitch_real_t t100 = t69 * t69; /* link j4: motion */
-    const yaw3pitch_real_t t101 = t0 * t91 - t1 * t88;
+    const yaw3pitch_real_t t96 = t71 - parameters[XZ4] * t72 + parameters[YZ4] * (t74 - t73)
+        + (parameters[MY4] * t95 + parameters[MZ4] * t91);
+    const yaw3pitch_real_t t97 = YAW3PITCH_C(2.0) * t67;
+    const yaw3pitch_real_t t98 = t69 * (parameters[XX4] - parameters[ZZ4]) - parameters[YY4] * t69
+        + parameters[XY4] * t97;
+    const yaw3pitch_real_t t99 = t68 * t68; /* link j4: motion */
+    const yaw3pitch_real_t t100 = t0 * t90 - t1 * t87;
     /* link j4: force and moment */
-    const yaw3pitch_real_t t102 = t99 - parameters[YZ4] * t73 + parameters[XZ4] * (t75 - t100)
-        + (parameters[MZ4] * t101 + parameters[MX4] * t96);
-    const yaw3pitch_real_t t103 = t66 * t64; /* link j3: motion */
-    const yaw3pitch_real_t t104 = YAW3PITCH_C(2.0) * t93; /* link j4: motion */
+    const yaw3pitch_real_t t101 = t98 - parameters[YZ4] * t72 + parameters[XZ4] * (t74 - t99)
+        + (parameters[MZ4] * t100 + parameters[MX4] * t95);
+    const yaw3pitch_real_t t102 = t65 * t63; /* link j3: motion */
+    const yaw3pitch_real_t t103 = YAW3PITCH_C(2.0) * t92; /* link j4: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t105 = parameters[XY3] * t104 - (parameters[XX3] * t103 + t103 * (parameters[ZZ3]
+    const yaw3pitch_real_t t104 = parameters[XY3] * t103 - (parameters[XX3] * t102 + t102 * (parameters[ZZ3]
         - parameters[YY3]));
-    const yaw3pitch_real_t t106 = t105 - parameters[XZ3] * t90 + parameters[YZ3] * (t86 - t85)
-        + (parameters[MY3] * t95 + parameters[MZ3] * t89);
-    const yaw3pitch_real_t t107 = t106 + (t1 * t97 + t0 * t102); /* link j4: what it passes on */
+    const yaw3pitch_real_t t105 = t104 - parameters[XZ3] * t89 + parameters[YZ3] * (t85 - t84)
+        + (parameters[MY3] * t94 + parameters[MZ3] * t88);
+    const yaw3pitch_real_t t106 = t105 + (t1 * t96 + t0 * t101); /* link j4: what it passes on */
     /* link j4: force and moment */
-    const yaw3pitch_real_t t108 = parameters[MX4] * t71 + parameters[MY4] * t98 - parameters[MZ4] * (t100
-        + t74);
-    const yaw3pitch_real_t t109 = t108 - parameters[M4] * t96;
-    const yaw3pitch_real_t t110 = YAW3PITCH_C(2.0) * t103; /* link j4: motion */
+    const yaw3pitch_real_t t107 = parameters[MX4] * t70 + parameters[MY4] * t97 - parameters[MZ4] * (t99
+        + t73);
+    const yaw3pitch_real_t t108 = t107 - parameters[M4] * t95;
+    const yaw3pitch_real_t t109 = YAW3PITCH_C(2.0) * t102; /* link j4: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t111 = parameters[YY3] * t93 - t93 * (parameters[XX3] - parameters[ZZ3])
-        - parameters[XY3] * t110;
-    const yaw3pitch_real_t t112 = t63 * t63; /* link j3: motion */
+    const yaw3pitch_real_t t110 = parameters[YY3] * t92 - t92 * (parameters[XX3] - parameters[ZZ3])
+        - parameters[XY3] * t109;
+    const yaw3pitch_real_t t111 = t62 * t62; /* link j3: motion */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t113 = t111 + parameters[YZ3] * t90 - parameters[XZ3] * (t86 - t112)
-        + (parameters[MZ3] * t84 - parameters[MX3] * t95);
+    const yaw3pitch_real_t t112 = t110 + parameters[YZ3] * t89 - parameters[XZ3] * (t85 - t111)
+        + (parameters[MZ3] * t83 - parameters[MX3] * t94);
     /* link j4: what it passes on */
-    const yaw3pitch_real_t t114 = t113 + (t0 * t97 - t1 * t102 + YAW3PITCH_C(0.7) * t109);
-    const yaw3pitch_real_t t115 = dq[1] * t62; /* link j2: motion */
-    const yaw3pitch_real_t t116 = YAW3PITCH_C(2.0) * t94;
+    const yaw3pitch_real_t t113 = t112 + (t0 * t96 - t1 * t101 + YAW3PITCH_C(0.7) * t108);
+    const yaw3pitch_real_t t114 = dq[1] * t61; /* link j2: motion */
+    const yaw3pitch_real_t t115 = YAW3PITCH_C(2.0) * t93;
     /* link j2: force and moment */
-    const yaw3pitch_real_t t117 = t115 * (parameters[YY2] - parameters[ZZ2]) - t115 * parameters[XX2]
-        + t116 * parameters[XY2];
-    const yaw3pitch_real_t t118 = t117 - t82 * parameters[XZ2] + (t79 - t78) * parameters[YZ2]
-        + t81 * parameters[MZ2];
+    const yaw3pitch_real_t t116 = t114 * (parameters[YY2] - parameters[ZZ2]) - t114 * parameters[XX2]
+        + t115 * parameters[XY2];
+    const yaw3pitch_real_t t117 = t116 - t81 * parameters[XZ2] + (t78 - t77) * parameters[YZ2]
+        + t80 * parameters[MZ2];
     /* link j3: force and moment */
-    const yaw3pitch_real_t t119 = parameters[MX3] * t104 + parameters[MY3] * t110 - parameters[MZ3] * (t112
-        + t85);
-    const yaw3pitch_real_t t120 = t119 - parameters[M3] * t95 + t109; /* link j4: what it passes on */
-    const yaw3pitch_real_t t121 = YAW3PITCH_C(2.0) * t115; /* link j2: motion */
+    const yaw3pitch_real_t t118 = parameters[MX3] * t103 + parameters[MY3] * t109 - parameters[MZ3] * (t111
+        + t84);
+    const yaw3pitch_real_t t119 = t118 - parameters[M3] * t94 + t108; /* link j4: what it passes on */
+    const yaw3pitch_real_t t120 = YAW3PITCH_C(2.0) * t114; /* link j2: motion */
     /* link j2: force and moment */
-    const yaw3pitch_real_t t122 = t94 * parameters[YY2] + t94 * (parameters[ZZ2] - parameters[XX2])
-        - t121 * parameters[XY2];
-    const yaw3pitch_real_t t123 = t61 * t61; /* link j2: motion */
+    const yaw3pitch_real_t t121 = t93 * parameters[YY2] + t93 * (parameters[ZZ2] - parameters[XX2])
+        - t120 * parameters[XY2];
+    const yaw3pitch_real_t t122 = t60 * t60; /* link j2: motion */
     /* link j2: force and moment */
-    const yaw3pitch_real_t t124 = t122 + t82 * parameters[YZ2] + (t123 - t79) * parameters[XZ2]
-        + t77 * parameters[MZ2];
+    const yaw3pitch_real_t t123 = t121 + t81 * parameters[YZ2] + (t122 - t78) * parameters[XZ2]
+        + t76 * parameters[MZ2];
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t125 = t124 + (t13 * t107 + t15 * t114 + YAW3PITCH_C(0.8) * t120);
+    const yaw3pitch_real_t t124 = t123 + (t12 * t106 + t14 * t113 + YAW3PITCH_C(0.8) * t119);
     /* link j2: what it passes on */
-    const yaw3pitch_real_t t126 = t39 * (t118 + (t15 * t107 - t13 * t114)) + t37 * t125;
+    const yaw3pitch_real_t t125 = t37 * (t117 + (t14 * t106 - t12 * t113)) + t35 * t124;
     /* link j2: force and moment */
-    const yaw3pitch_real_t t127 = t116 * parameters[MX2] + t121 * parameters[MY2] - (t123
-        + t78) * parameters[MZ2];
+    const yaw3pitch_real_t t126 = t115 * parameters[MX2] + t120 * parameters[MY2] - (t122
+        + t77) * parameters[MZ2];
     /* link j4: force and moment */
-    const yaw3pitch_real_t t128 = parameters[XY4] * (t100 - t74) - t28 * t73 + (parameters[MX4] * t92
-        - parameters[MY4] * t101);
-    const yaw3pitch_real_t t129 = input[3] - t128;
-    const yaw3pitch_real_t t130 = input[0] + (t126 + YAW3PITCH_C(0.12) * (t127 + t120)) + t129 * t48;
-    const yaw3pitch_real_t t131 = parameters[MX4] * (t75 + t74) - parameters[MY4] * t73
-        - parameters[M4] * t101;
-    const yaw3pitch_real_t t132 = parameters[M4] * t92 - (parameters[MY4] * (t75 + t100)
-        - parameters[MX4] * t73);
-    const yaw3pitch_real_t t133 = t0 * t131 - t1 * t132; /* link j4: what it passes on */
+    const yaw3pitch_real_t t127 = parameters[XY4] * (t99 - t73) - t26 * t72 + (parameters[MX4] * t91
+        - parameters[MY4] * t100);
+    const yaw3pitch_real_t t128 = input[3] - t127;
+    const yaw3pitch_real_t t129 = input[0] + (t125 + YAW3PITCH_C(0.12) * (t126 + t119)) + t128 * t46;
+    const yaw3pitch_real_t t130 = parameters[MX4] * (t74 + t73) - parameters[MY4] * t72
+        - parameters[M4] * t100;
+    const yaw3pitch_real_t t131 = parameters[M4] * t91 - (parameters[MY4] * (t74 + t99)
+        - parameters[MX4] * t72);
+    const yaw3pitch_real_t t132 = t0 * t130 - t1 * t131; /* link j4: what it passes on */
     /* link j3: force and moment */
-    const yaw3pitch_real_t t134 = parameters[XY3] * (t112 - t85) - t90 * (parameters[XX3] - parameters[YY3])
-        + (parameters[MX3] * t89 + parameters[MY3] * t84);
-    const yaw3pitch_real_t t135 = t134 + (t128 - YAW3PITCH_C(0.7) * t133); /* link j4: what it passes on */
-    const yaw3pitch_real_t t136 = input[2] - t135 - t129 * t5;
-    const yaw3pitch_real_t t137 = parameters[M3] * t84 + (parameters[MX3] * t87 - parameters[MY3] * t90)
-        + (t1 * t131 + t0 * t132);
+    const yaw3pitch_real_t t133 = parameters[XY3] * (t111 - t84) - t89 * (parameters[XX3] - parameters[YY3])
+        + (parameters[MX3] * t88 + parameters[MY3] * t83);
+    const yaw3pitch_real_t t134 = t133 + (t127 - YAW3PITCH_C(0.7) * t132); /* link j4: what it passes on */
+    const yaw3pitch_real_t t135 = input[2] - t134 - t128 * t5;
+    const yaw3pitch_real_t t136 = parameters[M3] * t83 + (parameters[MX3] * t86 - parameters[MY3] * t89)
+        + (t1 * t130 + t0 * t131);
     /* link j3: force and moment */
-    const yaw3pitch_real_t t138 = parameters[M3] * t89 - (parameters[MY3] * (t86 + t112)
-        - parameters[MX3] * t90);
+    const yaw3pitch_real_t t137 = parameters[M3] * t88 - (parameters[MY3] * (t85 + t111)
+        - parameters[MX3] * t89);
     /* link j3: what it passes on */
-    const yaw3pitch_real_t t139 = t135 - YAW3PITCH_C(0.8) * (t13 * t137 - t15 * (t138 - t133));
+    const yaw3pitch_real_t t138 = t134 - YAW3PITCH_C(0.8) * (t12 * t136 - t14 * (t137 - t132));
     /* link j2: force and moment */
-    const yaw3pitch_real_t t140 = t82 * (parameters[XX2] - parameters[YY2]) - (t123 - t78) * parameters[XY2]
-        - (t81 * parameters[MX2] + t77 * parameters[MY2]);
-    const yaw3pitch_real_t t141 = input[1] + (t140 - t139) - t129 * t21 + t136 * t20;
-    const yaw3pitch_real_t t142 = YAW3PITCH_C(1.0) / t59;
-    const yaw3pitch_real_t t143 = yaw3pitch_bounded((t130 + t136 * t54 + t141 * t58) * t142);
-    out[0] = t143;
-    const yaw3pitch_real_t t144 = yaw3pitch_bounded(t141 * t57 + t58 * t143);
-    out[1] = t144;
-    const yaw3pitch_real_t t145 = yaw3pitch_bounded(t136 * t19 + t54 * t143 + t20 * t144);
-    out[2] = t145;
-    const yaw3pitch_real_t t146 = t48 * t143 - t129 * t4 - t21 * t144 - t5 * t145;
-    out[3] = t146;
-    if (!yaw3pitch_all_bounded(out, 4)) {
+    const yaw3pitch_real_t t139 = t81 * (parameters[XX2] - parameters[YY2]) - (t122 - t77) * parameters[XY2]
+        - (t80 * parameters[MX2] + t76 * parameters[MY2]);
+    const yaw3pitch_real_t t140 = input[1] + (t139 - t138) - t128 * t20 + t135 * t19;
+    const yaw3pitch_real_t t141 = YAW3PITCH_C(1.0) / t57;
+    const yaw3pitch_real_t t142 = yaw3pitch_held((t129 + t135 * t52 + t140 * t56) * t141);
+    out[0] = t142;
+    const yaw3pitch_real_t t143 = yaw3pitch_held(t140 * t55 + t56 * t142);
+    out[1] = t143;
+    const yaw3pitch_real_t t144 = yaw3pitch_held(t135 * t18 + t52 * t142 + t19 * t143);
+    out[2] = t144;
+    const yaw3pitch_real_t t145 = t46 * t142 - t128 * t4 - t20 * t143 - t5 * t144;
+    out[3] = t145;
+    if (!yaw3pitch_bounded(out, 4)) {
         yaw3pitch_zero(out, 4);
         return YAW3PITCH_STATUS_PIVOT;
     }

@@ -52,7 +52,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -223,300 +223,298 @@ yaw3pitch_status_t yaw3pitch_inverse_dynamics_derivatives(
     input[1] = t100;
     input[2] = t95;
     input[3] = t89;
-    const yaw3pitch_real_t t101 = parameters[XZ4] * t9;
-    const yaw3pitch_real_t t102 = parameters[XY4] * t11;
-    const yaw3pitch_real_t t103 = t102 - t101;
-    const yaw3pitch_real_t t104 = parameters[YZ4] * t16;
-    const yaw3pitch_real_t t105 = t102 - t104;
-    const yaw3pitch_real_t t106 = YAW3PITCH_C(0.5) * (parameters[XX4R] + parameters[ZZ4]);
-    const yaw3pitch_real_t t107 = parameters[XX4R] - t106;
-    const yaw3pitch_real_t t108 = t11 * t107 - parameters[XZ4] * t16;
-    const yaw3pitch_real_t t109 = parameters[YZ4] * t9 + t11 * t106;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t110 = t7 * (t103 + t105) + t5 * (t108 + t109);
-    const yaw3pitch_real_t t111 = t7 * t110;
-    const yaw3pitch_real_t t112 = parameters[MY4] * t11;
-    const yaw3pitch_real_t t113 = parameters[MX4] * t11;
-    const yaw3pitch_real_t t114 = t7 * t112 + t5 * t113;
-    const yaw3pitch_real_t t115 = YAW3PITCH_C(0.7) * t114;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t116 = t7 * parameters[MY4] + t5 * parameters[MX4];
-    const yaw3pitch_real_t t117 = YAW3PITCH_C(0.7) * t10; /* link j4: velocity of its origin */
-    const yaw3pitch_real_t t118 = t116 * t117; /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t119 = t118 - t115;
-    const yaw3pitch_real_t t120 = parameters[XZ3R] * t44;
-    const yaw3pitch_real_t t121 = parameters[XY3] * t10;
-    const yaw3pitch_real_t t122 = t120 - t121 + (t119 + (t105 - t111 + t115));
-    const yaw3pitch_real_t t123 = parameters[YZ3] * t27;
-    const yaw3pitch_real_t t124 = t121 - t123 - (t103 - t111 + t118 - t119);
-    const yaw3pitch_real_t t125 = t5 * t110;
-    const yaw3pitch_real_t t126 = YAW3PITCH_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
-    const yaw3pitch_real_t t127 = t125 - t109 - (parameters[YZ3] * t44 + t10 * t126);
-    const yaw3pitch_real_t t128 = t5 * t112 - t7 * t113;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t129 = t7 * parameters[MX4] - t5 * parameters[MY4];
-    const yaw3pitch_real_t t130 = parameters[XX3R] - t126;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t131 = t10 * t130 - parameters[XZ3R] * t27 + (t108 - t125
-        + (YAW3PITCH_C(0.7) * t128 - t129 * t117));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t132 = t1 * (t122 - t124) + t3 * (t127 - t131);
-    const yaw3pitch_real_t t133 = t1 * t132;
-    const yaw3pitch_real_t t134 = parameters[MY3] * t10 + t114; /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t135 = t128 - parameters[MX3R] * t10;
-    const yaw3pitch_real_t t136 = t1 * t134 - t3 * t135; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t137 = YAW3PITCH_C(0.8) * t136;
-    const yaw3pitch_real_t t138 = parameters[MY3] + t116; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t139 = parameters[MX3R] + t129;
-    const yaw3pitch_real_t t140 = t1 * t138 + t3 * t139; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t141 = YAW3PITCH_C(0.8) * dq[1]; /* link j3: velocity of its origin */
-    const yaw3pitch_real_t t142 = t140 * t141; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t143 = t142 - t137;
-    const yaw3pitch_real_t t144 = parameters[XZ2R] * t60;
-    const yaw3pitch_real_t t145 = parameters[XY2] * dq[1];
-    const yaw3pitch_real_t t146 = t144 - t145 + (t143 + (t124 + t133 + t137));
-    const yaw3pitch_real_t t147 = parameters[YZ2] * t31;
-    const yaw3pitch_real_t t148 = t145 - t147 + (t143 + (t122 - t133 - t142));
-    const yaw3pitch_real_t t149 = t3 * t132;
-    const yaw3pitch_real_t t150 = YAW3PITCH_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
-    const yaw3pitch_real_t t151 = parameters[YZ2] * t60 + dq[1] * t150 + (t149 - t127);
-    const yaw3pitch_real_t t152 = t3 * t134 + t1 * t135;
-    const yaw3pitch_real_t t153 = t1 * t139 - t3 * t138; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t154 = parameters[XX2R] - t150;
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t155 = dq[1] * t154 - parameters[XZ2R] * t31 + (t131 + t149
-        + (YAW3PITCH_C(0.8) * t152 - t153 * t141));
-    /* link j2: inertia, momentum beyond */
-    const yaw3pitch_real_t t156 = t2 * (t2 * (t148 - t146) + t0 * (t151 + t155));
-    const yaw3pitch_real_t t157 = parameters[MY2] * dq[1] + t136; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t158 = t152 - parameters[MX2R] * dq[1];
-    /* link j2: inertia, momentum beyond */
-    const yaw3pitch_real_t t159 = t146 + t156 + YAW3PITCH_C(0.12) * (t0 * t158 - t2 * t157);
-    input_by_dq[0] = YAW3PITCH_C(2.0) * t159;
-    const yaw3pitch_real_t t160 = t9 * t107 - parameters[XY4] * t16;
-    const yaw3pitch_real_t t161 = t16 * t106 + parameters[XY4] * t9;
-    const yaw3pitch_real_t t162 = parameters[MX4] * t9 - parameters[MY4] * t16;
-    const yaw3pitch_real_t t163 = YAW3PITCH_C(-0.7) * t44;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t164 = t5 * t161 - t7 * t160 - (YAW3PITCH_C(-0.7) * t162 + t129 * t163);
-    const yaw3pitch_real_t t165 = parameters[XY3] * t27 - t44 * t130 + t164;
-    const yaw3pitch_real_t t166 = t27 * t126 + parameters[XY3] * t44 + (t5 * t160 + t7 * t161 + t116 * t163);
-    const yaw3pitch_real_t t167 = parameters[MX3R] * t44 - parameters[MY3] * t27 + t162;
-    const yaw3pitch_real_t t168 = YAW3PITCH_C(-0.8) * t60; /* link j3: velocity of its origin */
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t169 = t1 * t165 + t3 * t166 + (YAW3PITCH_C(0.8) * t167 - t153 * t168);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t170 = YAW3PITCH_C(2.0) * (parameters[XY2] * t31 - t60 * t154 + t169);
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t171 = parameters[XY2] * t60 + t31 * t150 - (t3 * t165 - t1 * t166 - t140 * t168);
-    const yaw3pitch_real_t t172 = YAW3PITCH_C(2.0) * t171; /* link j2: derivatives */
-    const yaw3pitch_real_t t173 = parameters[MY2] + t140; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t174 = parameters[MX2R] + t153;
-    const yaw3pitch_real_t t175 = YAW3PITCH_C(0.24) * dq[0];
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t176 = t0 * t170 - t2 * t172 + (t2 * t173 + t0 * t174) * t175;
-    input_by_dq[4] = t176;
-    const yaw3pitch_real_t t177 = YAW3PITCH_C(2.0) * t165; /* link j3: derivatives */
-    const yaw3pitch_real_t t178 = YAW3PITCH_C(2.0) * t166;
-    const yaw3pitch_real_t t179 = YAW3PITCH_C(-1.6) * t60; /* link j4: derivatives */
-    const yaw3pitch_real_t t180 = t1 * t177 + t3 * t178 - t153 * t179; /* link j3: derivatives */
-    const yaw3pitch_real_t t181 = t3 * t177 - t1 * t178 - t140 * t179;
-    const yaw3pitch_real_t t182 = t0 * t180 + t2 * t181 + (t2 * t140 + t0 * t153) * t175;
-    input_by_dq[8] = t182;
-    const yaw3pitch_real_t t183 = YAW3PITCH_C(2.0) * t160; /* link j4: derivatives */
-    const yaw3pitch_real_t t184 = YAW3PITCH_C(2.0) * t161;
-    const yaw3pitch_real_t t185 = YAW3PITCH_C(-1.4) * t44;
-    const yaw3pitch_real_t t186 = t5 * t184 - t7 * t183 - t129 * t185;
-    const yaw3pitch_real_t t187 = t5 * t183 + t7 * t184 + t116 * t185;
-    const yaw3pitch_real_t t188 = t1 * t129 - t3 * t116; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t189 = t1 * t186 + t3 * t187 - t188 * t179; /* link j4: derivatives */
-    const yaw3pitch_real_t t190 = t1 * t116 + t3 * t129; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t191 = t3 * t186 - t1 * t187 - t190 * t179; /* link j4: derivatives */
-    const yaw3pitch_real_t t192 = t0 * t189 + t2 * t191 + (t2 * t190 + t0 * t188) * t175;
-    input_by_dq[12] = t192;
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t193 = parameters[XY4] * (YAW3PITCH_C(2.0) * t5) - t7 * parameters[XX4R];
-    const yaw3pitch_real_t t194 = t7 * t193;
-    const yaw3pitch_real_t t195 = YAW3PITCH_C(1.4) * t129;
-    const yaw3pitch_real_t t196 = parameters[XX4R] + t194 + t195;
-    const yaw3pitch_real_t t197 = parameters[XX3R] - t194;
-    const yaw3pitch_real_t t198 = t5 * t193 - parameters[XY4] + YAW3PITCH_C(0.7) * t116 - parameters[XY3];
-    /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t199 = t1 * (t197 - t196) - t198 * (YAW3PITCH_C(-2.0) * t3);
-    const yaw3pitch_real_t t200 = t1 * t199;
-    const yaw3pitch_real_t t201 = YAW3PITCH_C(1.6) * t153;
-    const yaw3pitch_real_t t202 = t197 - t200 + t201;
-    const yaw3pitch_real_t t203 = parameters[XX2R] + (t196 + t200);
-    const yaw3pitch_real_t t204 = parameters[XY2] + (t3 * t199 - t198 + YAW3PITCH_C(-0.8) * t140);
-    /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t205 = t2 * (t2 * (t202 - t203) + t204 * (YAW3PITCH_C(2.0) * t0));
-    const yaw3pitch_real_t t206 = t203 + t205 + YAW3PITCH_C(0.24) * (t2 * t174 - t0 * t173);
-    input_by_ddq[0] = parameters[ZZ1R] + t206;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t207 = t5 * parameters[YZ4] - t7 * parameters[XZ4];
-    const yaw3pitch_real_t t208 = t207 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t209 = t5 * parameters[XZ4] + t7 * parameters[YZ4];
-    const yaw3pitch_real_t t210 = parameters[YZ3] + t209; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t211 = t1 * t208 + t3 * t210; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t212 = parameters[XZ2R] - t211; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t213 = t1 * t210 - t3 * t208; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t214 = parameters[YZ2] + t213; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t215 = t0 * t212 + t2 * t214; /* link j2: column of the mass matrix */
-    input_by_ddq[4] = t215;
-    const yaw3pitch_real_t t216 = t2 * t213 - t0 * t211; /* link j3: column of the mass matrix */
-    input_by_ddq[8] = t216;
-    const yaw3pitch_real_t t217 = t1 * t207 + t3 * t209; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t218 = t1 * t209 - t3 * t207;
-    const yaw3pitch_real_t t219 = t2 * t218 - t0 * t217;
-    input_by_ddq[12] = t219;
-    const yaw3pitch_real_t t220 = YAW3PITCH_C(2.0) * t60;
-    const yaw3pitch_real_t t221 = YAW3PITCH_C(-2.0) * t31;
-    const yaw3pitch_real_t t222 = t73 + t67; /* link j3: motion */
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t223 = t220 * t146 + t221 * t151 + (t203 * t33 - t204 * t62 - t212 * t222);
-    const yaw3pitch_real_t t224 = t220 * t155 + t221 * t148 + (t204 * t33 - t202 * t62 - t214 * t222);
-    const yaw3pitch_real_t t225 = t220 * t158 - t221 * t157 - (t173 * t33 + t174 * t62);
-    const yaw3pitch_real_t t226 = t0 * (t74 + t223) + t2 * (t69 + t224) + YAW3PITCH_C(0.12) * t225;
-    input_by_q[1] = t226;
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t227 = parameters[ZZ3R] + (parameters[ZZ4] + t195);
-    /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t228 = parameters[ZZ2R] + (t227 + t201);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t229 = t212 * t33 - t214 * t62 - t228 * t222 + (t60 * t170 + t31 * t172);
-    input_by_q[5] = t173 * t79 - t174 * t77 + t229;
-    const yaw3pitch_real_t t230 = t227 + YAW3PITCH_C(0.8) * t153; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const yaw3pitch_real_t t231 = t60 * t180 - t31 * t181 - (t211 * t33 + t213 * t62 + t230 * t222);
-    input_by_q[9] = t231 + (t140 * t79 - t153 * t77);
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t232 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t129;
-    const yaw3pitch_real_t t233 = t232 + YAW3PITCH_C(0.8) * t188;
+    const yaw3pitch_real_t t101 = parameters[MX4] * t87 - parameters[MY4] * t86;
+    const yaw3pitch_real_t t102 = t42 + t25; /* link j4: force and moment */
     /* link j4: derivatives */
-    const yaw3pitch_real_t t234 = t60 * t189 - t31 * t191 - (t217 * t33 + t218 * t62 + t233 * t222);
-    input_by_q[13] = t234 + (t190 * t79 - t188 * t77);
-    const yaw3pitch_real_t t235 = parameters[ZZ4] - t106;
-    const yaw3pitch_real_t t236 = t9 * t235 - parameters[YZ4] * t11;
-    const yaw3pitch_real_t t237 = t16 * t235 - parameters[XZ4] * t11;
-    const yaw3pitch_real_t t238 = t126 - parameters[ZZ3R];
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t239 = t7 * t236 + t5 * t237 - (parameters[YZ3] * t10 + t44 * t238);
-    const yaw3pitch_real_t t240 = parameters[XZ3R] * t10 + t27 * t238 - (t7 * t237 - t5 * t236);
-    const yaw3pitch_real_t t241 = parameters[ZZ2R] - t150;
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t242 = t60 * t241 - parameters[YZ2] * dq[1] + (t1 * t239 - t3 * t240);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t243 = t0 * (YAW3PITCH_C(2.0) * t242 + (t203 * t220 + t204 * t221));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t244 = parameters[XZ2R] * dq[1] - t31 * t241 + (t3 * t239 + t1 * t240);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t245 = t2 * (YAW3PITCH_C(2.0) * t244 + (t204 * t220 + t202 * t221));
-    const yaw3pitch_real_t t246 = t243 + t245 + YAW3PITCH_C(0.12) * (t174 * t221 - t173 * t220);
-    input_by_dq[1] = t246;
-    const yaw3pitch_real_t t247 = t104 - t101;
-    const yaw3pitch_real_t t248 = t123 - t120 + (t247 + t119); /* link j4: inertia, momentum beyond */
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t249 = YAW3PITCH_C(2.0) * (t147 - t144 + (t248 + t143))
-        + YAW3PITCH_C(2.0) * (t212 * t60 - t214 * t31);
-    input_by_dq[5] = t249;
-    const yaw3pitch_real_t t250 = YAW3PITCH_C(2.0) * t248; /* link j3: derivatives */
-    const yaw3pitch_real_t t251 = YAW3PITCH_C(1.6) * dq[1];
-    const yaw3pitch_real_t t252 = t250 + t140 * t251 + YAW3PITCH_C(-2.0) * (t211 * t60 + t213 * t31);
-    input_by_dq[9] = t252;
-    const yaw3pitch_real_t t253 = YAW3PITCH_C(2.0) * t247; /* link j4: derivatives */
-    const yaw3pitch_real_t t254 = t253 + t116 * (YAW3PITCH_C(1.4) * t10);
-    const yaw3pitch_real_t t255 = t254 + t190 * t251 + YAW3PITCH_C(-2.0) * (t217 * t60 + t218 * t31);
-    input_by_dq[13] = t255;
-    input_by_ddq[1] = t215;
-    input_by_ddq[5] = t228;
-    input_by_ddq[9] = t230;
-    input_by_ddq[13] = t233;
-    const yaw3pitch_real_t t256 = YAW3PITCH_C(-2.0) * t44;
-    const yaw3pitch_real_t t257 = YAW3PITCH_C(-2.0) * t27;
-    const yaw3pitch_real_t t258 = t58 + t51; /* link j4: motion */
-    /* link j3: derivatives */
-    const yaw3pitch_real_t t259 = t197 * t29 + t198 * t46 + t208 * t258 - (t256 * t122 + t257 * t127);
-    const yaw3pitch_real_t t260 = t59 + t259;
-    const yaw3pitch_real_t t261 = t256 * t131 - t257 * t124 + (t198 * t29 + t196 * t46 + t210 * t258);
-    const yaw3pitch_real_t t262 = t53 + t261;
-    const yaw3pitch_real_t t263 = t256 * t135 + t257 * t134 + (t138 * t29 + t139 * t46);
-    const yaw3pitch_real_t t264 = t2 * (t3 * t260 - t1 * t262 + YAW3PITCH_C(-0.8) * t263);
-    const yaw3pitch_real_t t265 = t0 * (t1 * t260 + t3 * t262) + t264 + YAW3PITCH_C(-0.12) * t263;
-    input_by_q[2] = t265;
-    const yaw3pitch_real_t t266 = t3 * (t97 + (t138 * t258 - t257 * t167)) + t1 * (t96 - (t256 * t167
-        + t139 * t258));
-    const yaw3pitch_real_t t267 = t208 * t29 + t210 * t46 + t227 * t258;
-    const yaw3pitch_real_t t268 = t139 * t81 + t138 * t84;
-    const yaw3pitch_real_t t269 = t268 - (t256 * t165 + t257 * t166 + t267) + YAW3PITCH_C(0.8) * t266;
-    input_by_q[6] = t269;
-    input_by_q[10] = t268 + (t44 * t177 + t27 * t178 - t267);
-    /* link j4: derivatives */
-    const yaw3pitch_real_t t270 = t44 * t186 + t27 * t187 - (t207 * t29 + t209 * t46 + t232 * t258);
-    input_by_q[14] = t270 + (t116 * t84 + t129 * t81);
-    /* link j3: derivatives */
-    const yaw3pitch_real_t t271 = YAW3PITCH_C(2.0) * t239 - (t197 * t256 + t198 * t257);
-    const yaw3pitch_real_t t272 = YAW3PITCH_C(2.0) * t240 + (t198 * t256 + t196 * t257);
-    const yaw3pitch_real_t t273 = t138 * t256 + t139 * t257;
-    const yaw3pitch_real_t t274 = t2 * (t3 * t271 + t1 * t272 + YAW3PITCH_C(0.8) * t273);
-    const yaw3pitch_real_t t275 = t0 * (t1 * t271 - t3 * t272) + t274 + YAW3PITCH_C(0.12) * t273;
-    input_by_dq[2] = t275;
-    const yaw3pitch_real_t t276 = YAW3PITCH_C(0.8) * (t3 * (YAW3PITCH_C(2.0) * t135)
-        + t1 * (YAW3PITCH_C(-2.0) * t134));
-    input_by_dq[6] = t250 + (t208 * t256 + t210 * t257) + t276;
-    input_by_dq[10] = t250 + YAW3PITCH_C(-2.0) * (t208 * t44 + t210 * t27);
-    input_by_dq[14] = t254 + YAW3PITCH_C(-2.0) * (t207 * t44 + t209 * t27);
-    input_by_ddq[2] = t216;
-    input_by_ddq[6] = t230;
-    input_by_ddq[10] = t227;
-    input_by_ddq[14] = t232;
-    const yaw3pitch_real_t t277 = YAW3PITCH_C(-2.0) * t9;
-    const yaw3pitch_real_t t278 = YAW3PITCH_C(2.0) * t16;
-    const yaw3pitch_real_t t279 = t42 + t25; /* link j4: force and moment */
-    /* link j4: derivatives */
-    const yaw3pitch_real_t t280 = t277 * t103 - t278 * t109 + (parameters[XX4R] * t18 - parameters[XY4] * t14
-        - parameters[XZ4] * t279);
-    const yaw3pitch_real_t t281 = t43 + t280;
-    const yaw3pitch_real_t t282 = t277 * t108 + t278 * t105 + (parameters[YZ4] * t279
+    const yaw3pitch_real_t t103 = parameters[XZ4] * t18 - parameters[YZ4] * t14 - parameters[ZZ4] * t102;
+    const yaw3pitch_real_t t104 = YAW3PITCH_C(0.5) * (parameters[XX4R] + parameters[ZZ4]);
+    const yaw3pitch_real_t t105 = parameters[XX4R] - t104;
+    const yaw3pitch_real_t t106 = t9 * t105 - parameters[XY4] * t16;
+    const yaw3pitch_real_t t107 = YAW3PITCH_C(2.0) * t106;
+    const yaw3pitch_real_t t108 = t16 * t104 + parameters[XY4] * t9;
+    const yaw3pitch_real_t t109 = YAW3PITCH_C(2.0) * t108;
+    input_by_q[15] = t101 + (t103 + (t16 * t109 - t9 * t107));
+    const yaw3pitch_real_t t110 = YAW3PITCH_C(-2.0) * t9;
+    const yaw3pitch_real_t t111 = YAW3PITCH_C(2.0) * t16;
+    const yaw3pitch_real_t t112 = parameters[MX4] * t9 - parameters[MY4] * t16;
+    const yaw3pitch_real_t t113 = t91 + (t111 * t112 + parameters[MY4] * t102);
+    const yaw3pitch_real_t t114 = t90 + (t110 * t112 + parameters[MX4] * t102);
+    const yaw3pitch_real_t t115 = t5 * t113 - t7 * t114;
+    const yaw3pitch_real_t t116 = t101 + (t110 * t106 + t111 * t108 + t103) + YAW3PITCH_C(0.7) * t115;
+    input_by_q[11] = t116;
+    const yaw3pitch_real_t t117 = t3 * (t7 * t113 + t5 * t114) + t1 * t115;
+    input_by_q[7] = t116 + YAW3PITCH_C(0.8) * t117;
+    const yaw3pitch_real_t t118 = parameters[XZ4] * t9;
+    const yaw3pitch_real_t t119 = parameters[XY4] * t11;
+    const yaw3pitch_real_t t120 = t119 - t118;
+    const yaw3pitch_real_t t121 = parameters[YZ4] * t9 + t11 * t104;
+    const yaw3pitch_real_t t122 = t110 * t120 - t111 * t121 + (parameters[XX4R] * t18 - parameters[XY4] * t14
+        - parameters[XZ4] * t102);
+    const yaw3pitch_real_t t123 = t43 + t122;
+    const yaw3pitch_real_t t124 = t11 * t105 - parameters[XZ4] * t16;
+    const yaw3pitch_real_t t125 = parameters[YZ4] * t16;
+    const yaw3pitch_real_t t126 = t119 - t125;
+    const yaw3pitch_real_t t127 = t110 * t124 + t111 * t126 + (parameters[YZ4] * t102
         - parameters[XY4] * t18);
-    const yaw3pitch_real_t t283 = t38 + t282;
-    const yaw3pitch_real_t t284 = t7 * t281 + t5 * t283;
-    const yaw3pitch_real_t t285 = t277 * t113 + t278 * t112 - (parameters[MY4] * t18 + parameters[MX4] * t14);
-    const yaw3pitch_real_t t286 = t7 * t283 - t5 * t281 - YAW3PITCH_C(0.7) * t285;
-    const yaw3pitch_real_t t287 = t2 * (t3 * t284 - t1 * t286 + YAW3PITCH_C(0.8) * t285);
-    const yaw3pitch_real_t t288 = t0 * (t1 * t284 + t3 * t286) + t287 + YAW3PITCH_C(0.12) * t285;
-    input_by_q[3] = t288;
-    const yaw3pitch_real_t t289 = parameters[MX4] * t87 - parameters[MY4] * t86;
-    const yaw3pitch_real_t t290 = parameters[XZ4] * t18 - parameters[YZ4] * t14 - parameters[ZZ4] * t279;
-    const yaw3pitch_real_t t291 = t91 + (t278 * t162 + parameters[MY4] * t279);
-    const yaw3pitch_real_t t292 = t90 + (t277 * t162 + parameters[MX4] * t279);
-    const yaw3pitch_real_t t293 = t5 * t291 - t7 * t292;
-    const yaw3pitch_real_t t294 = t289 + (t277 * t160 + t278 * t161 + t290) + YAW3PITCH_C(0.7) * t293;
-    const yaw3pitch_real_t t295 = t3 * (t7 * t291 + t5 * t292) + t1 * t293;
-    input_by_q[7] = t294 + YAW3PITCH_C(0.8) * t295;
-    input_by_q[11] = t294;
-    input_by_q[15] = t289 + (t290 + (t16 * t184 - t9 * t183));
-    const yaw3pitch_real_t t296 = YAW3PITCH_C(2.0) * t236 - (parameters[XY4] * t278
-        + parameters[XX4R] * t277);
-    const yaw3pitch_real_t t297 = parameters[XY4] * t277 + YAW3PITCH_C(2.0) * t237;
-    const yaw3pitch_real_t t298 = t7 * t296 + t5 * t297;
-    const yaw3pitch_real_t t299 = parameters[MY4] * t277 - parameters[MX4] * t278;
-    const yaw3pitch_real_t t300 = YAW3PITCH_C(-0.7) * t299 + (t7 * t297 - t5 * t296);
-    const yaw3pitch_real_t t301 = t2 * (YAW3PITCH_C(0.8) * t299 + (t3 * t298 - t1 * t300));
-    const yaw3pitch_real_t t302 = YAW3PITCH_C(0.12) * t299 + (t0 * (t1 * t298 + t3 * t300) + t301);
-    input_by_dq[3] = t302;
-    const yaw3pitch_real_t t303 = YAW3PITCH_C(-2.0) * t113;
-    const yaw3pitch_real_t t304 = YAW3PITCH_C(2.0) * t112;
-    const yaw3pitch_real_t t305 = t5 * t303 - t7 * t304;
-    const yaw3pitch_real_t t306 = t253 - (parameters[XZ4] * t277 + parameters[YZ4] * t278)
-        + YAW3PITCH_C(0.7) * t305;
-    const yaw3pitch_real_t t307 = t3 * (t7 * t303 + t5 * t304) + t1 * t305;
-    input_by_dq[7] = t306 + YAW3PITCH_C(0.8) * t307;
-    input_by_dq[11] = t306;
-    input_by_ddq[3] = t219;
-    input_by_ddq[7] = t233;
-    input_by_ddq[11] = t232;
+    const yaw3pitch_real_t t128 = t38 + t127;
+    const yaw3pitch_real_t t129 = t7 * t123 + t5 * t128;
+    const yaw3pitch_real_t t130 = parameters[MX4] * t11;
+    const yaw3pitch_real_t t131 = parameters[MY4] * t11;
+    const yaw3pitch_real_t t132 = t110 * t130 + t111 * t131 - (parameters[MY4] * t18 + parameters[MX4] * t14);
+    const yaw3pitch_real_t t133 = t7 * t128 - t5 * t123 - YAW3PITCH_C(0.7) * t132;
+    const yaw3pitch_real_t t134 = t2 * (t3 * t129 - t1 * t133 + YAW3PITCH_C(0.8) * t132);
+    const yaw3pitch_real_t t135 = t0 * (t1 * t129 + t3 * t133) + t134 + YAW3PITCH_C(0.12) * t132;
+    input_by_q[3] = t135;
+    const yaw3pitch_real_t t136 = t125 - t118;
+    const yaw3pitch_real_t t137 = YAW3PITCH_C(2.0) * t136;
+    const yaw3pitch_real_t t138 = YAW3PITCH_C(-2.0) * t130;
+    const yaw3pitch_real_t t139 = YAW3PITCH_C(2.0) * t131;
+    const yaw3pitch_real_t t140 = t5 * t138 - t7 * t139;
+    const yaw3pitch_real_t t141 = t137 - (parameters[XZ4] * t110 + parameters[YZ4] * t111)
+        + YAW3PITCH_C(0.7) * t140;
+    input_by_dq[11] = t141;
+    const yaw3pitch_real_t t142 = t3 * (t7 * t138 + t5 * t139) + t1 * t140;
+    input_by_dq[7] = t141 + YAW3PITCH_C(0.8) * t142;
+    const yaw3pitch_real_t t143 = parameters[ZZ4] - t104;
+    const yaw3pitch_real_t t144 = t9 * t143 - parameters[YZ4] * t11;
+    const yaw3pitch_real_t t145 = YAW3PITCH_C(2.0) * t144 - (parameters[XY4] * t111
+        + parameters[XX4R] * t110);
+    const yaw3pitch_real_t t146 = t16 * t143 - parameters[XZ4] * t11;
+    const yaw3pitch_real_t t147 = parameters[XY4] * t110 + YAW3PITCH_C(2.0) * t146;
+    const yaw3pitch_real_t t148 = t7 * t145 + t5 * t147;
+    const yaw3pitch_real_t t149 = parameters[MY4] * t110 - parameters[MX4] * t111;
+    const yaw3pitch_real_t t150 = YAW3PITCH_C(-0.7) * t149 + (t7 * t147 - t5 * t145);
+    const yaw3pitch_real_t t151 = t2 * (YAW3PITCH_C(0.8) * t149 + (t3 * t148 - t1 * t150));
+    const yaw3pitch_real_t t152 = YAW3PITCH_C(0.12) * t149 + (t0 * (t1 * t148 + t3 * t150) + t151);
+    input_by_dq[3] = t152;
     input_by_ddq[15] = parameters[ZZ4];
+    /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t153 = t7 * parameters[MX4] - t5 * parameters[MY4];
+    const yaw3pitch_real_t t154 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t153;
+    input_by_ddq[11] = t154;
+    const yaw3pitch_real_t t155 = t7 * parameters[MY4] + t5 * parameters[MX4];
+    const yaw3pitch_real_t t156 = t1 * t153 - t3 * t155;
+    const yaw3pitch_real_t t157 = t154 + YAW3PITCH_C(0.8) * t156;
+    input_by_ddq[7] = t157;
+    const yaw3pitch_real_t t158 = t5 * parameters[YZ4] - t7 * parameters[XZ4];
+    const yaw3pitch_real_t t159 = t5 * parameters[XZ4] + t7 * parameters[YZ4];
+    const yaw3pitch_real_t t160 = t1 * t158 + t3 * t159;
+    const yaw3pitch_real_t t161 = t1 * t159 - t3 * t158;
+    const yaw3pitch_real_t t162 = t2 * t161 - t0 * t160;
+    input_by_ddq[3] = t162;
+    const yaw3pitch_real_t t163 = YAW3PITCH_C(-1.4) * t44; /* link j4: derivatives */
+    const yaw3pitch_real_t t164 = t5 * t109 - t7 * t107 - t153 * t163;
+    const yaw3pitch_real_t t165 = t5 * t107 + t7 * t109 + t155 * t163;
+    const yaw3pitch_real_t t166 = t58 + t51; /* link j4: motion */
+    /* link j4: derivatives */
+    const yaw3pitch_real_t t167 = t44 * t164 + t27 * t165 - (t158 * t29 + t159 * t46 + t154 * t166);
+    input_by_q[14] = t167 + (t155 * t84 + t153 * t81);
+    const yaw3pitch_real_t t168 = YAW3PITCH_C(-1.6) * t60;
+    const yaw3pitch_real_t t169 = t1 * t164 + t3 * t165 - t156 * t168;
+    const yaw3pitch_real_t t170 = t1 * t155 + t3 * t153; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t171 = t3 * t164 - t1 * t165 - t170 * t168; /* link j4: derivatives */
+    const yaw3pitch_real_t t172 = t73 + t67; /* link j3: motion */
+    /* link j4: derivatives */
+    const yaw3pitch_real_t t173 = t60 * t169 - t31 * t171 - (t160 * t33 + t161 * t62 + t157 * t172);
+    input_by_q[13] = t173 + (t170 * t79 - t156 * t77);
+    const yaw3pitch_real_t t174 = t137 + t155 * (YAW3PITCH_C(1.4) * t10);
+    input_by_dq[14] = t174 + YAW3PITCH_C(-2.0) * (t158 * t44 + t159 * t27);
+    const yaw3pitch_real_t t175 = YAW3PITCH_C(1.6) * dq[1];
+    const yaw3pitch_real_t t176 = t174 + t170 * t175 + YAW3PITCH_C(-2.0) * (t160 * t60 + t161 * t31);
+    input_by_dq[13] = t176;
+    const yaw3pitch_real_t t177 = YAW3PITCH_C(0.24) * dq[0];
+    const yaw3pitch_real_t t178 = t0 * t169 + t2 * t171 + (t2 * t170 + t0 * t156) * t177;
+    input_by_dq[12] = t178;
+    input_by_ddq[14] = t154;
+    input_by_ddq[13] = t157;
+    input_by_ddq[12] = t162;
+    const yaw3pitch_real_t t179 = YAW3PITCH_C(-0.7) * t44;
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t180 = t5 * t108 - t7 * t106 - (YAW3PITCH_C(-0.7) * t112 + t153 * t179);
+    const yaw3pitch_real_t t181 = YAW3PITCH_C(0.5) * (parameters[XX3R] + parameters[ZZ3R]);
+    const yaw3pitch_real_t t182 = parameters[XX3R] - t181;
+    const yaw3pitch_real_t t183 = parameters[XY3] * t27 - t44 * t182 + t180;
+    const yaw3pitch_real_t t184 = YAW3PITCH_C(2.0) * t183; /* link j3: derivatives */
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t185 = t27 * t181 + parameters[XY3] * t44 + (t5 * t106 + t7 * t108 + t155 * t179);
+    const yaw3pitch_real_t t186 = YAW3PITCH_C(2.0) * t185; /* link j3: derivatives */
+    const yaw3pitch_real_t t187 = t158 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t188 = parameters[YZ3] + t159;
+    const yaw3pitch_real_t t189 = YAW3PITCH_C(1.4) * t153;
+    const yaw3pitch_real_t t190 = parameters[ZZ3R] + (parameters[ZZ4] + t189);
+    const yaw3pitch_real_t t191 = t187 * t29 + t188 * t46 + t190 * t166; /* link j3: derivatives */
+    const yaw3pitch_real_t t192 = parameters[MX3R] + t153; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t193 = parameters[MY3] + t155;
+    const yaw3pitch_real_t t194 = t192 * t81 + t193 * t84; /* link j3: derivatives */
+    input_by_q[10] = t194 + (t44 * t184 + t27 * t186 - t191);
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t195 = parameters[MX3R] * t44 - parameters[MY3] * t27 + t112;
+    const yaw3pitch_real_t t196 = YAW3PITCH_C(-2.0) * t27;
+    const yaw3pitch_real_t t197 = YAW3PITCH_C(-2.0) * t44;
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t198 = t3 * (t97 + (t193 * t166 - t196 * t195)) + t1 * (t96 - (t197 * t195
+        + t192 * t166));
+    const yaw3pitch_real_t t199 = t194 - (t197 * t183 + t196 * t185 + t191) + YAW3PITCH_C(0.8) * t198;
+    input_by_q[6] = t199;
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t200 = t7 * (t120 + t126) + t5 * (t124 + t121);
+    const yaw3pitch_real_t t201 = t7 * t200;
+    const yaw3pitch_real_t t202 = t7 * t131 + t5 * t130;
+    const yaw3pitch_real_t t203 = YAW3PITCH_C(0.7) * t202;
+    const yaw3pitch_real_t t204 = YAW3PITCH_C(0.7) * t10; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t205 = t155 * t204; /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t206 = t205 - t203;
+    const yaw3pitch_real_t t207 = parameters[XZ3R] * t44;
+    const yaw3pitch_real_t t208 = parameters[XY3] * t10;
+    const yaw3pitch_real_t t209 = t207 - t208 + (t206 + (t126 - t201 + t203));
+    const yaw3pitch_real_t t210 = t5 * t200;
+    const yaw3pitch_real_t t211 = t210 - t121 - (parameters[YZ3] * t44 + t10 * t181);
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t212 = parameters[XY4] * (YAW3PITCH_C(2.0) * t5) - t7 * parameters[XX4R];
+    const yaw3pitch_real_t t213 = t7 * t212;
+    const yaw3pitch_real_t t214 = parameters[XX3R] - t213;
+    const yaw3pitch_real_t t215 = t5 * t212 - parameters[XY4] + YAW3PITCH_C(0.7) * t155 - parameters[XY3];
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t216 = t214 * t29 + t215 * t46 + t187 * t166 - (t197 * t209 + t196 * t211);
+    const yaw3pitch_real_t t217 = t59 + t216;
+    const yaw3pitch_real_t t218 = t5 * t131 - t7 * t130; /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t219 = t10 * t182 - parameters[XZ3R] * t27 + (t124 - t210
+        + (YAW3PITCH_C(0.7) * t218 - t153 * t204));
+    const yaw3pitch_real_t t220 = parameters[YZ3] * t27;
+    const yaw3pitch_real_t t221 = t208 - t220 - (t120 - t201 + t205 - t206);
+    const yaw3pitch_real_t t222 = parameters[XX4R] + t213 + t189; /* link j4: inertia of it and all beyond */
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t223 = t197 * t219 - t196 * t221 + (t215 * t29 + t222 * t46 + t188 * t166);
+    const yaw3pitch_real_t t224 = t53 + t223;
+    const yaw3pitch_real_t t225 = t218 - parameters[MX3R] * t10; /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t226 = parameters[MY3] * t10 + t202;
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t227 = t197 * t225 + t196 * t226 + (t193 * t29 + t192 * t46);
+    const yaw3pitch_real_t t228 = t2 * (t3 * t217 - t1 * t224 + YAW3PITCH_C(-0.8) * t227);
+    const yaw3pitch_real_t t229 = t0 * (t1 * t217 + t3 * t224) + t228 + YAW3PITCH_C(-0.12) * t227;
+    input_by_q[2] = t229;
+    const yaw3pitch_real_t t230 = t220 - t207 + (t136 + t206); /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t231 = YAW3PITCH_C(2.0) * t230; /* link j3: derivatives */
+    input_by_dq[10] = t231 + YAW3PITCH_C(-2.0) * (t187 * t44 + t188 * t27);
+    const yaw3pitch_real_t t232 = YAW3PITCH_C(0.8) * (t3 * (YAW3PITCH_C(2.0) * t225)
+        + t1 * (YAW3PITCH_C(-2.0) * t226));
+    input_by_dq[6] = t231 + (t187 * t197 + t188 * t196) + t232;
+    const yaw3pitch_real_t t233 = t181 - parameters[ZZ3R];
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t234 = t7 * t144 + t5 * t146 - (parameters[YZ3] * t10 + t44 * t233);
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t235 = YAW3PITCH_C(2.0) * t234 - (t214 * t197 + t215 * t196);
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t236 = parameters[XZ3R] * t10 + t27 * t233 - (t7 * t146 - t5 * t144);
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t237 = YAW3PITCH_C(2.0) * t236 + (t215 * t197 + t222 * t196);
+    const yaw3pitch_real_t t238 = t193 * t197 + t192 * t196;
+    const yaw3pitch_real_t t239 = t2 * (t3 * t235 + t1 * t237 + YAW3PITCH_C(0.8) * t238);
+    const yaw3pitch_real_t t240 = t0 * (t1 * t235 - t3 * t237) + t239 + YAW3PITCH_C(0.12) * t238;
+    input_by_dq[2] = t240;
+    input_by_ddq[10] = t190;
+    const yaw3pitch_real_t t241 = t1 * t192 - t3 * t193; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t242 = t190 + YAW3PITCH_C(0.8) * t241;
+    input_by_ddq[6] = t242;
+    const yaw3pitch_real_t t243 = t1 * t187 + t3 * t188;
+    const yaw3pitch_real_t t244 = t1 * t188 - t3 * t187;
+    const yaw3pitch_real_t t245 = t2 * t244 - t0 * t243;
+    input_by_ddq[2] = t245;
+    const yaw3pitch_real_t t246 = t1 * t184 + t3 * t186 - t241 * t168; /* link j3: derivatives */
+    const yaw3pitch_real_t t247 = t1 * t193 + t3 * t192; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t248 = t3 * t184 - t1 * t186 - t247 * t168; /* link j3: derivatives */
+    const yaw3pitch_real_t t249 = t60 * t246 - t31 * t248 - (t243 * t33 + t244 * t62 + t242 * t172);
+    input_by_q[9] = t249 + (t247 * t79 - t241 * t77);
+    const yaw3pitch_real_t t250 = t231 + t247 * t175 + YAW3PITCH_C(-2.0) * (t243 * t60 + t244 * t31);
+    input_by_dq[9] = t250;
+    const yaw3pitch_real_t t251 = t0 * t246 + t2 * t248 + (t2 * t247 + t0 * t241) * t177;
+    input_by_dq[8] = t251;
+    input_by_ddq[9] = t242;
+    input_by_ddq[8] = t245;
+    const yaw3pitch_real_t t252 = YAW3PITCH_C(-0.8) * t60; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t253 = t1 * t183 + t3 * t185 + (YAW3PITCH_C(0.8) * t195 - t241 * t252);
+    const yaw3pitch_real_t t254 = YAW3PITCH_C(0.5) * (parameters[XX2R] + parameters[ZZ2R]);
+    const yaw3pitch_real_t t255 = parameters[XX2R] - t254;
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t256 = YAW3PITCH_C(2.0) * (parameters[XY2] * t31 - t60 * t255 + t253);
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t257 = parameters[XY2] * t60 + t31 * t254 - (t3 * t183 - t1 * t185 - t247 * t252);
+    const yaw3pitch_real_t t258 = YAW3PITCH_C(2.0) * t257; /* link j2: derivatives */
+    const yaw3pitch_real_t t259 = parameters[XZ2R] - t243; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t260 = parameters[YZ2] + t244;
+    const yaw3pitch_real_t t261 = YAW3PITCH_C(1.6) * t241;
+    const yaw3pitch_real_t t262 = parameters[ZZ2R] + (t190 + t261);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t263 = t259 * t33 - t260 * t62 - t262 * t172 + (t60 * t256 + t31 * t258);
+    const yaw3pitch_real_t t264 = parameters[MX2R] + t241; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t265 = parameters[MY2] + t247;
+    input_by_q[5] = t265 * t79 - t264 * t77 + t263;
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t266 = t1 * (t209 - t221) + t3 * (t211 - t219);
+    const yaw3pitch_real_t t267 = t1 * t266;
+    const yaw3pitch_real_t t268 = t1 * t226 - t3 * t225;
+    const yaw3pitch_real_t t269 = YAW3PITCH_C(0.8) * t268;
+    const yaw3pitch_real_t t270 = YAW3PITCH_C(0.8) * dq[1]; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t271 = t247 * t270; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t272 = t271 - t269;
+    const yaw3pitch_real_t t273 = parameters[XZ2R] * t60;
+    const yaw3pitch_real_t t274 = parameters[XY2] * dq[1];
+    const yaw3pitch_real_t t275 = t273 - t274 + (t272 + (t221 + t267 + t269));
+    const yaw3pitch_real_t t276 = YAW3PITCH_C(2.0) * t60;
+    const yaw3pitch_real_t t277 = t3 * t266;
+    const yaw3pitch_real_t t278 = parameters[YZ2] * t60 + dq[1] * t254 + (t277 - t211);
+    const yaw3pitch_real_t t279 = YAW3PITCH_C(-2.0) * t31;
+    /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t280 = t1 * (t214 - t222) - t215 * (YAW3PITCH_C(-2.0) * t3);
+    const yaw3pitch_real_t t281 = t1 * t280;
+    const yaw3pitch_real_t t282 = parameters[XX2R] + (t222 + t281);
+    const yaw3pitch_real_t t283 = parameters[XY2] + (t3 * t280 - t215 + YAW3PITCH_C(-0.8) * t247);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t284 = t276 * t275 + t279 * t278 + (t282 * t33 - t283 * t62 - t259 * t172);
+    const yaw3pitch_real_t t285 = t3 * t226 + t1 * t225; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t286 = dq[1] * t255 - parameters[XZ2R] * t31 + (t219 + t277
+        + (YAW3PITCH_C(0.8) * t285 - t241 * t270));
+    const yaw3pitch_real_t t287 = parameters[YZ2] * t31;
+    const yaw3pitch_real_t t288 = t274 - t287 + (t272 + (t209 - t267 - t271));
+    const yaw3pitch_real_t t289 = t214 - t281 + t261; /* link j3: inertia of it and all beyond */
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t290 = t276 * t286 + t279 * t288 + (t283 * t33 - t289 * t62 - t260 * t172);
+    const yaw3pitch_real_t t291 = t285 - parameters[MX2R] * dq[1]; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t292 = parameters[MY2] * dq[1] + t268;
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t293 = t276 * t291 - t279 * t292 - (t265 * t33 + t264 * t62);
+    const yaw3pitch_real_t t294 = t0 * (t74 + t284) + t2 * (t69 + t290) + YAW3PITCH_C(0.12) * t293;
+    input_by_q[1] = t294;
+    const yaw3pitch_real_t t295 = YAW3PITCH_C(2.0) * (t287 - t273 + (t230 + t272))
+        + YAW3PITCH_C(2.0) * (t259 * t60 - t260 * t31);
+    input_by_dq[5] = t295;
+    const yaw3pitch_real_t t296 = parameters[ZZ2R] - t254;
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t297 = t60 * t296 - parameters[YZ2] * dq[1] + (t1 * t234 - t3 * t236);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t298 = t0 * (YAW3PITCH_C(2.0) * t297 + (t282 * t276 + t283 * t279));
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t299 = parameters[XZ2R] * dq[1] - t31 * t296 + (t3 * t234 + t1 * t236);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t300 = t2 * (YAW3PITCH_C(2.0) * t299 + (t283 * t276 + t289 * t279));
+    const yaw3pitch_real_t t301 = t298 + t300 + YAW3PITCH_C(0.12) * (t264 * t279 - t265 * t276);
+    input_by_dq[1] = t301;
+    input_by_ddq[5] = t262;
+    const yaw3pitch_real_t t302 = t0 * t259 + t2 * t260; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = t302;
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t303 = t0 * t256 - t2 * t258 + (t2 * t265 + t0 * t264) * t177;
+    input_by_dq[4] = t303;
+    input_by_ddq[4] = t302;
+    /* link j2: inertia, momentum beyond */
+    const yaw3pitch_real_t t304 = t2 * (t2 * (t288 - t275) + t0 * (t278 + t286));
+    const yaw3pitch_real_t t305 = t275 + t304 + YAW3PITCH_C(0.12) * (t0 * t291 - t2 * t292);
+    input_by_dq[0] = YAW3PITCH_C(2.0) * t305;
+    /* link j2: inertia of it and all beyond */
+    const yaw3pitch_real_t t306 = t2 * (t2 * (t289 - t282) + t283 * (YAW3PITCH_C(2.0) * t0));
+    const yaw3pitch_real_t t307 = t282 + t306 + YAW3PITCH_C(0.24) * (t2 * t264 - t0 * t265);
+    input_by_ddq[0] = parameters[ZZ1R] + t307;
     /* always zero */
     input_by_q[0] = YAW3PITCH_C(0.0);
     input_by_q[4] = YAW3PITCH_C(0.0);

@@ -70,7 +70,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -274,324 +274,322 @@ yaw3pitch_status_t yaw3pitch_inverse_dynamics_derivatives_standard(
     input[1] = t121;
     input[2] = t118;
     input[3] = t115;
-    const yaw3pitch_real_t t122 = t11 * parameters[XZ4];
-    const yaw3pitch_real_t t123 = t13 * parameters[XY4];
-    const yaw3pitch_real_t t124 = t122 + t123;
-    const yaw3pitch_real_t t125 = t17 * parameters[YZ4];
-    const yaw3pitch_real_t t126 = t123 - t125;
-    const yaw3pitch_real_t t127 = YAW3PITCH_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
-    const yaw3pitch_real_t t128 = parameters[XX4] - t127;
-    const yaw3pitch_real_t t129 = t13 * t128 - t17 * parameters[XZ4];
-    const yaw3pitch_real_t t130 = parameters[YY4] - t127;
-    const yaw3pitch_real_t t131 = t11 * parameters[YZ4] + t13 * t130;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t132 = t5 * (t124 + t126) + t7 * (t129 - t131);
-    const yaw3pitch_real_t t133 = t5 * t132;
-    const yaw3pitch_real_t t134 = t11 * parameters[MZ4] + t13 * parameters[MY4];
-    const yaw3pitch_real_t t135 = t13 * parameters[MX4] - t17 * parameters[MZ4];
-    const yaw3pitch_real_t t136 = t5 * t134 + t7 * t135;
-    const yaw3pitch_real_t t137 = YAW3PITCH_C(0.7) * t136;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t138 = t5 * parameters[MY4] + t7 * parameters[MX4];
-    const yaw3pitch_real_t t139 = YAW3PITCH_C(0.7) * t12; /* link j4: velocity of its origin */
-    const yaw3pitch_real_t t140 = t138 * t139; /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t141 = YAW3PITCH_C(-0.7) * t40;
-    const yaw3pitch_real_t t142 = parameters[MZ4] * t141;
-    const yaw3pitch_real_t t143 = t140 + t142 - t137;
-    const yaw3pitch_real_t t144 = t40 * parameters[XZ3];
-    const yaw3pitch_real_t t145 = t12 * parameters[XY3];
-    const yaw3pitch_real_t t146 = t144 - t145 + (t143 + (t126 - t133 + t137));
-    const yaw3pitch_real_t t147 = t46 * parameters[YZ3];
-    const yaw3pitch_real_t t148 = t145 - t147 - (t124 - t133 + t140 - t143);
-    const yaw3pitch_real_t t149 = t7 * t132;
-    const yaw3pitch_real_t t150 = YAW3PITCH_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
-    const yaw3pitch_real_t t151 = parameters[YY3] - t150;
-    const yaw3pitch_real_t t152 = t12 * t151 - t40 * parameters[YZ3] + (t131 + t149);
-    const yaw3pitch_real_t t153 = t7 * t134 - t5 * t135;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t154 = t5 * parameters[MX4] - t7 * parameters[MY4];
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t155 = YAW3PITCH_C(0.7) * parameters[M4];
-    const yaw3pitch_real_t t156 = t154 + t155;
-    const yaw3pitch_real_t t157 = parameters[XX3] - t150;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t158 = t12 * t157 - t46 * parameters[XZ3] + (t129 - t149 + (YAW3PITCH_C(0.7) * t153
-        - t156 * t139));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t159 = t1 * (t146 - t148) + t3 * (t152 - t158);
-    const yaw3pitch_real_t t160 = t1 * t159;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t161 = t12 * parameters[MY3] - t40 * parameters[MZ3] + t136;
-    const yaw3pitch_real_t t162 = t46 * parameters[MZ3] - t12 * parameters[MX3] + (t153
-        - parameters[M4] * t139);
-    const yaw3pitch_real_t t163 = t1 * t161 - t3 * t162; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t164 = YAW3PITCH_C(0.8) * t163;
-    const yaw3pitch_real_t t165 = parameters[MY3] + t138; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t166 = parameters[MX3] + t156;
-    const yaw3pitch_real_t t167 = t1 * t165 + t3 * t166; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t168 = YAW3PITCH_C(-0.8) * dq[1]; /* link j3: velocity of its origin */
-    const yaw3pitch_real_t t169 = t167 * t168; /* link j3: inertia, momentum beyond */
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t170 = parameters[MZ3] + parameters[MZ4];
-    const yaw3pitch_real_t t171 = YAW3PITCH_C(-0.8) * t30; /* link j3: velocity of its origin */
-    const yaw3pitch_real_t t172 = t170 * t171; /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t173 = t172 - t169 - t164;
-    const yaw3pitch_real_t t174 = t30 * parameters[XZ2];
-    const yaw3pitch_real_t t175 = dq[1] * parameters[XY2];
-    const yaw3pitch_real_t t176 = t174 - t175 + (t173 + (t148 + t160 + t164));
-    const yaw3pitch_real_t t177 = t35 * parameters[YZ2];
-    const yaw3pitch_real_t t178 = t175 - t177 + (t173 + (t146 - t160 + t169));
-    const yaw3pitch_real_t t179 = t3 * t159;
-    const yaw3pitch_real_t t180 = YAW3PITCH_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
-    const yaw3pitch_real_t t181 = t180 - parameters[YY2];
-    const yaw3pitch_real_t t182 = t30 * parameters[YZ2] + dq[1] * t181 + (t179 - t152);
-    const yaw3pitch_real_t t183 = t3 * t161 + t1 * t162;
-    const yaw3pitch_real_t t184 = t1 * t166 - t3 * t165; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t185 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t186 = YAW3PITCH_C(0.8) * t185; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t187 = t184 + t186;
-    const yaw3pitch_real_t t188 = parameters[XX2] - t180;
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t189 = dq[1] * t188 - t35 * parameters[XZ2] + (t158 + t179
-        + (YAW3PITCH_C(0.8) * t183 + t187 * t168));
-    /* link j2: inertia, momentum beyond */
-    const yaw3pitch_real_t t190 = t2 * (t2 * (t178 - t176) + t0 * (t182 + t189));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t191 = t30 * parameters[MZ2] - dq[1] * parameters[MY2] - t163;
-    const yaw3pitch_real_t t192 = t35 * parameters[MZ2] - dq[1] * parameters[MX2] + (t183 + t185 * t168);
-    const yaw3pitch_real_t t193 = parameters[MZ2] + t170; /* link j3: inertia of it and all beyond */
-    /* link j2: inertia, momentum beyond */
-    const yaw3pitch_real_t t194 = YAW3PITCH_C(0.12) * (t2 * t191 + t0 * t192)
-        + t193 * (YAW3PITCH_C(-0.12) * dq[0]);
-    input_by_dq[0] = YAW3PITCH_C(2.0) * (t176 + t190 + t194);
-    const yaw3pitch_real_t t195 = t17 * parameters[XY4] + t11 * t128;
-    const yaw3pitch_real_t t196 = t17 * t130 + t11 * parameters[XY4];
-    const yaw3pitch_real_t t197 = t17 * parameters[MY4] + t11 * parameters[MX4];
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t198 = t5 * t195 - t7 * t196 - (YAW3PITCH_C(0.7) * t197 + t156 * t141);
-    const yaw3pitch_real_t t199 = t46 * parameters[XY3] - t40 * t157 + t198;
-    const yaw3pitch_real_t t200 = t40 * parameters[XY3] - t46 * t151 + (t138 * t141 - (t7 * t195
-        + t5 * t196));
-    const yaw3pitch_real_t t201 = t40 * parameters[MX3] - t46 * parameters[MY3] - (t197
-        + parameters[M4] * t141);
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t202 = t1 * t199 + t3 * t200 + (YAW3PITCH_C(0.8) * t201 - t187 * t171);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t203 = YAW3PITCH_C(2.0) * (t35 * parameters[XY2] - t30 * t188 + t202);
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t204 = t30 * parameters[XY2] + t35 * t181 - (t3 * t199 - t1 * t200 - t167 * t171);
-    const yaw3pitch_real_t t205 = YAW3PITCH_C(2.0) * t204; /* link j2: derivatives */
-    const yaw3pitch_real_t t206 = parameters[MY2] + t167; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t207 = parameters[MX2] + t187;
-    const yaw3pitch_real_t t208 = YAW3PITCH_C(0.24) * dq[0];
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t209 = t0 * t203 - t2 * t205 + (t2 * t206 + t0 * t207) * t208;
-    input_by_dq[4] = t209;
-    const yaw3pitch_real_t t210 = YAW3PITCH_C(2.0) * t199; /* link j3: derivatives */
-    const yaw3pitch_real_t t211 = YAW3PITCH_C(2.0) * t200;
-    const yaw3pitch_real_t t212 = YAW3PITCH_C(-1.6) * t30; /* link j4: derivatives */
-    const yaw3pitch_real_t t213 = t1 * t210 + t3 * t211 - t184 * t212; /* link j3: derivatives */
-    const yaw3pitch_real_t t214 = t3 * t210 - t1 * t211 - t167 * t212;
-    const yaw3pitch_real_t t215 = t0 * t213 + t2 * t214 + (t2 * t167 + t0 * t184) * t208;
-    input_by_dq[8] = t215;
-    const yaw3pitch_real_t t216 = YAW3PITCH_C(-2.0) * t195; /* link j4: derivatives */
-    const yaw3pitch_real_t t217 = YAW3PITCH_C(-2.0) * t196;
-    const yaw3pitch_real_t t218 = YAW3PITCH_C(-1.4) * t40;
-    const yaw3pitch_real_t t219 = t7 * t217 - t5 * t216 - t154 * t218;
-    const yaw3pitch_real_t t220 = t7 * t216 + t5 * t217 + t138 * t218;
-    const yaw3pitch_real_t t221 = t1 * t154 - t3 * t138; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t222 = t1 * t219 + t3 * t220 - t221 * t212; /* link j4: derivatives */
-    const yaw3pitch_real_t t223 = t1 * t138 + t3 * t154; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t224 = t3 * t219 - t1 * t220 - t223 * t212; /* link j4: derivatives */
-    const yaw3pitch_real_t t225 = t0 * t222 + t2 * t224 + (t2 * t223 + t0 * t221) * t208;
-    input_by_dq[12] = t225;
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t226 = parameters[XY4] * (YAW3PITCH_C(2.0) * t7) - t5 * t113;
-    const yaw3pitch_real_t t227 = t5 * t226;
-    const yaw3pitch_real_t t228 = YAW3PITCH_C(0.7) * (t155 + YAW3PITCH_C(2.0) * t154);
-    const yaw3pitch_real_t t229 = parameters[YY3] + (parameters[XX4] + t227 + t228);
-    const yaw3pitch_real_t t230 = parameters[XX3] + (parameters[YY4] - t227);
-    const yaw3pitch_real_t t231 = t7 * t226 - parameters[XY4] + YAW3PITCH_C(0.7) * t138 - parameters[XY3];
-    /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t232 = t1 * (t230 - t229) - t231 * (YAW3PITCH_C(-2.0) * t3);
-    const yaw3pitch_real_t t233 = t1 * t232;
-    const yaw3pitch_real_t t234 = parameters[XX2] + (t229 + t233);
-    const yaw3pitch_real_t t235 = YAW3PITCH_C(0.8) * (t186 + YAW3PITCH_C(2.0) * t184);
-    const yaw3pitch_real_t t236 = parameters[YY2] + (t230 - t233 + t235);
-    const yaw3pitch_real_t t237 = parameters[XY2] + (t3 * t232 - t231 + YAW3PITCH_C(-0.8) * t167);
-    /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t238 = t2 * (t2 * (t236 - t234) + t237 * (YAW3PITCH_C(2.0) * t0));
-    const yaw3pitch_real_t t239 = YAW3PITCH_C(0.12) * (parameters[M2] + t185) + YAW3PITCH_C(2.0) * (t2 * t207
-        - t0 * t206);
-    input_by_ddq[0] = parameters[ZZ1] + (t234 + t238 + YAW3PITCH_C(0.12) * t239);
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t240 = t7 * parameters[YZ4] - t5 * parameters[XZ4];
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t241 = t240 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t242 = t7 * parameters[XZ4] + t5 * parameters[YZ4];
-    const yaw3pitch_real_t t243 = parameters[YZ3] + t242; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t244 = t1 * t241 + t3 * t243; /* link j3: column of the mass matrix */
-    /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t245 = parameters[XZ2] + (YAW3PITCH_C(-0.8) * t170 - t244);
-    const yaw3pitch_real_t t246 = t1 * t243 - t3 * t241; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t247 = parameters[YZ2] + t246; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t248 = t0 * t245 + t2 * t247; /* link j2: column of the mass matrix */
-    input_by_ddq[4] = t248;
-    const yaw3pitch_real_t t249 = t2 * t246 - t0 * t244; /* link j3: column of the mass matrix */
-    input_by_ddq[8] = t249;
-    const yaw3pitch_real_t t250 = t1 * t240 + t3 * t242; /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t251 = t1 * t242 - t3 * t240;
-    const yaw3pitch_real_t t252 = t2 * t251 - t0 * t250;
-    input_by_ddq[12] = t252;
-    const yaw3pitch_real_t t253 = YAW3PITCH_C(2.0) * t30;
-    const yaw3pitch_real_t t254 = YAW3PITCH_C(-2.0) * t35;
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t255 = t253 * t176 + t254 * t182 + (t56 * t234 - t86 * t237 - t99 * t245);
-    const yaw3pitch_real_t t256 = t253 * t189 + t254 * t178 + (t56 * t237 - t86 * t236 - t99 * t247);
-    const yaw3pitch_real_t t257 = t0 * (t98 + (t255 + t29 * t193)) + t2 * (t90 + (t256 - t34 * t193));
-    const yaw3pitch_real_t t258 = t253 * t192 + t254 * t191 - (t56 * t206 + t86 * t207);
-    input_by_q[1] = t257 + YAW3PITCH_C(0.12) * t258;
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t259 = parameters[ZZ3] + (parameters[ZZ4] + t228);
-    const yaw3pitch_real_t t260 = parameters[ZZ2] + (t259 + t235); /* link j3: inertia of it and all beyond */
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t261 = t56 * t245 - t86 * t247 - t99 * t260 + (t30 * t203 + t35 * t205);
-    input_by_q[5] = t34 * t206 - t29 * t207 + t261;
-    const yaw3pitch_real_t t262 = t259 + YAW3PITCH_C(0.8) * t184; /* link j3: column of the mass matrix */
-    /* link j3: derivatives */
-    const yaw3pitch_real_t t263 = t30 * t213 - t35 * t214 - (t56 * t244 + t86 * t246 + t99 * t262);
-    input_by_q[9] = t263 + (t34 * t167 - t29 * t184);
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t264 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t154;
-    const yaw3pitch_real_t t265 = t264 + YAW3PITCH_C(0.8) * t221;
+    const yaw3pitch_real_t t122 = t68 * parameters[MX4] - t50 * parameters[MY4];
     /* link j4: derivatives */
-    const yaw3pitch_real_t t266 = t30 * t222 - t35 * t224 - (t56 * t250 + t86 * t251 + t99 * t265);
-    input_by_q[13] = t266 + (t34 * t223 - t29 * t221);
-    const yaw3pitch_real_t t267 = parameters[ZZ4] - t127;
-    const yaw3pitch_real_t t268 = t13 * parameters[YZ4] + t11 * t267;
-    const yaw3pitch_real_t t269 = t17 * t267 - t13 * parameters[XZ4];
-    const yaw3pitch_real_t t270 = t150 - parameters[ZZ3];
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t271 = t7 * t269 - t5 * t268 - (t12 * parameters[YZ3] + t40 * t270);
-    const yaw3pitch_real_t t272 = t12 * parameters[XZ3] + t46 * t270 - (t7 * t268 + t5 * t269
-        + parameters[MZ4] * t139);
-    const yaw3pitch_real_t t273 = parameters[ZZ2] - t180;
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t274 = t30 * t273 - dq[1] * parameters[YZ2] + (t1 * t271 - t3 * t272);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t275 = t0 * (YAW3PITCH_C(2.0) * t274 + (t234 * t253 + t237 * t254));
-    /* link j3: inertia, momentum beyond */
-    const yaw3pitch_real_t t276 = dq[1] * parameters[XZ2] - t35 * t273 + (t3 * t271 + t1 * t272
-        + t170 * t168);
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t277 = t2 * (YAW3PITCH_C(2.0) * t276 + (t237 * t253 + t236 * t254));
-    const yaw3pitch_real_t t278 = t275 + t277 + YAW3PITCH_C(0.12) * (t207 * t254 - t206 * t253);
-    input_by_dq[1] = t278;
-    const yaw3pitch_real_t t279 = t122 + t125;
-    /* link j4: inertia, momentum beyond */
-    const yaw3pitch_real_t t280 = t147 - t144 + (t143 + (t279 - t142));
-    /* link j2: derivatives */
-    const yaw3pitch_real_t t281 = YAW3PITCH_C(2.0) * (t177 - t174 + (t173 + (t280 - t172)))
-        + YAW3PITCH_C(2.0) * (t30 * t245 - t35 * t247);
-    input_by_dq[5] = t281;
-    const yaw3pitch_real_t t282 = YAW3PITCH_C(2.0) * t280; /* link j3: derivatives */
-    const yaw3pitch_real_t t283 = YAW3PITCH_C(1.6) * dq[1];
-    const yaw3pitch_real_t t284 = t282 + t167 * t283 + YAW3PITCH_C(-2.0) * (t30 * t244 + t35 * t246);
-    input_by_dq[9] = t284;
-    const yaw3pitch_real_t t285 = YAW3PITCH_C(2.0) * t279; /* link j4: derivatives */
-    const yaw3pitch_real_t t286 = t285 + t138 * (YAW3PITCH_C(1.4) * t12);
-    const yaw3pitch_real_t t287 = t286 + t223 * t283 + YAW3PITCH_C(-2.0) * (t30 * t250 + t35 * t251);
-    input_by_dq[13] = t287;
-    input_by_ddq[1] = t248;
-    input_by_ddq[5] = t260;
-    input_by_ddq[9] = t262;
-    input_by_ddq[13] = t265;
-    const yaw3pitch_real_t t288 = YAW3PITCH_C(-2.0) * t40;
-    const yaw3pitch_real_t t289 = YAW3PITCH_C(-2.0) * t46;
-    /* link j3: derivatives */
-    const yaw3pitch_real_t t290 = t52 * t230 + t71 * t231 + t91 * t241 - (t288 * t146 + t289 * t152);
-    const yaw3pitch_real_t t291 = t84 + (t290 - t39 * t170);
-    const yaw3pitch_real_t t292 = t288 * t158 - t289 * t148 + (t52 * t231 + t71 * t229 + t91 * t243);
-    const yaw3pitch_real_t t293 = t76 + (t292 + t45 * t170);
-    const yaw3pitch_real_t t294 = t288 * t162 + t289 * t161 + (t52 * t165 + t71 * t166);
-    const yaw3pitch_real_t t295 = t2 * (t3 * t291 - t1 * t293 + YAW3PITCH_C(-0.8) * t294);
-    const yaw3pitch_real_t t296 = t0 * (t1 * t291 + t3 * t293) + t295 + YAW3PITCH_C(-0.12) * t294;
-    input_by_q[2] = t296;
-    const yaw3pitch_real_t t297 = t91 * t165 - t71 * t170 - (t289 * t201 + t45 * t185);
-    const yaw3pitch_real_t t298 = t39 * t185 - t288 * t201 - (t91 * t166 + t52 * t170);
-    const yaw3pitch_real_t t299 = YAW3PITCH_C(0.8) * (t3 * (t112 + t297) + t1 * (t109 + t298));
-    const yaw3pitch_real_t t300 = t52 * t241 + t71 * t243 + t91 * t259;
-    const yaw3pitch_real_t t301 = t39 * t166 + t45 * t165;
-    const yaw3pitch_real_t t302 = t301 - (t288 * t199 + t289 * t200 + t300) + t299;
-    input_by_q[6] = t302;
-    input_by_q[10] = t301 + (t40 * t210 + t46 * t211 - t300);
-    /* link j4: derivatives */
-    const yaw3pitch_real_t t303 = t40 * t219 + t46 * t220 - (t52 * t240 + t71 * t242 + t91 * t264);
-    input_by_q[14] = t303 + (t45 * t138 + t39 * t154);
-    /* link j3: derivatives */
-    const yaw3pitch_real_t t304 = YAW3PITCH_C(2.0) * t271 - (t230 * t288 + t231 * t289);
-    const yaw3pitch_real_t t305 = YAW3PITCH_C(2.0) * t272 + (t231 * t288 + t229 * t289);
-    const yaw3pitch_real_t t306 = t165 * t288 + t166 * t289;
-    const yaw3pitch_real_t t307 = t2 * (t3 * t304 + t1 * t305 + YAW3PITCH_C(0.8) * t306);
-    const yaw3pitch_real_t t308 = t0 * (t1 * t304 - t3 * t305) + t307 + YAW3PITCH_C(0.12) * t306;
-    input_by_dq[2] = t308;
-    const yaw3pitch_real_t t309 = t3 * (YAW3PITCH_C(2.0) * t162 + t170 * t289)
-        + t1 * (YAW3PITCH_C(-2.0) * t161 + t170 * t288);
-    const yaw3pitch_real_t t310 = t282 + (t241 * t288 + t243 * t289) + YAW3PITCH_C(0.8) * t309;
-    input_by_dq[6] = t310;
-    input_by_dq[10] = t282 + YAW3PITCH_C(-2.0) * (t40 * t241 + t46 * t243);
-    input_by_dq[14] = t286 + YAW3PITCH_C(-2.0) * (t40 * t240 + t46 * t242);
-    input_by_ddq[2] = t249;
-    input_by_ddq[6] = t262;
-    input_by_ddq[10] = t259;
-    input_by_ddq[14] = t264;
-    const yaw3pitch_real_t t311 = YAW3PITCH_C(2.0) * t11;
-    const yaw3pitch_real_t t312 = YAW3PITCH_C(-2.0) * t17;
-    /* link j4: derivatives */
-    const yaw3pitch_real_t t313 = t311 * t124 - t312 * t131 - (t16 * parameters[XX4] + t9 * parameters[XY4]
+    const yaw3pitch_real_t t123 = t9 * parameters[YZ4] + t16 * parameters[XZ4] + t77 * parameters[ZZ4];
+    const yaw3pitch_real_t t124 = YAW3PITCH_C(0.5) * (parameters[ZZ4] + (parameters[XX4] + parameters[YY4]));
+    const yaw3pitch_real_t t125 = parameters[XX4] - t124;
+    const yaw3pitch_real_t t126 = t17 * parameters[XY4] + t11 * t125;
+    const yaw3pitch_real_t t127 = YAW3PITCH_C(-2.0) * t126;
+    const yaw3pitch_real_t t128 = parameters[YY4] - t124;
+    const yaw3pitch_real_t t129 = t17 * t128 + t11 * parameters[XY4];
+    const yaw3pitch_real_t t130 = YAW3PITCH_C(-2.0) * t129;
+    input_by_q[15] = t122 + (t11 * t127 + t17 * t130 - t123);
+    const yaw3pitch_real_t t131 = t17 * parameters[MY4] + t11 * parameters[MX4];
+    const yaw3pitch_real_t t132 = YAW3PITCH_C(-2.0) * t17;
+    const yaw3pitch_real_t t133 = t107 + (t105 + t132 * t131 + (t77 * parameters[MY4] - t106));
+    const yaw3pitch_real_t t134 = YAW3PITCH_C(2.0) * t11;
+    const yaw3pitch_real_t t135 = t104 - (t102 + t134 * t131 + (t103 - t77 * parameters[MX4]));
+    const yaw3pitch_real_t t136 = t7 * t133 - t5 * t135;
+    const yaw3pitch_real_t t137 = t122 + (t132 * t129 - t134 * t126 - t123) + YAW3PITCH_C(0.7) * t136;
+    input_by_q[11] = t137;
+    const yaw3pitch_real_t t138 = t3 * (t5 * t133 + t7 * t135) + t1 * t136;
+    input_by_q[7] = t137 + YAW3PITCH_C(0.8) * t138;
+    const yaw3pitch_real_t t139 = t11 * parameters[XZ4];
+    const yaw3pitch_real_t t140 = t13 * parameters[XY4];
+    const yaw3pitch_real_t t141 = t139 + t140;
+    const yaw3pitch_real_t t142 = t11 * parameters[YZ4] + t13 * t128;
+    const yaw3pitch_real_t t143 = t134 * t141 - t132 * t142 - (t16 * parameters[XX4] + t9 * parameters[XY4]
         + t77 * parameters[XZ4]);
-    const yaw3pitch_real_t t314 = t70 + (t313 - t69);
-    const yaw3pitch_real_t t315 = t311 * t129 - t312 * t126 + (t16 * parameters[XY4] + t9 * parameters[YY4]
+    const yaw3pitch_real_t t144 = t70 + (t143 - t69);
+    const yaw3pitch_real_t t145 = t13 * t125 - t17 * parameters[XZ4];
+    const yaw3pitch_real_t t146 = t17 * parameters[YZ4];
+    const yaw3pitch_real_t t147 = t140 - t146;
+    const yaw3pitch_real_t t148 = t134 * t145 - t132 * t147 + (t16 * parameters[XY4] + t9 * parameters[YY4]
         + t77 * parameters[YZ4]);
-    const yaw3pitch_real_t t316 = t63 + (t315 - t51);
-    const yaw3pitch_real_t t317 = t5 * t314 + t7 * t316;
-    const yaw3pitch_real_t t318 = t311 * t135 - t312 * t134 + (t16 * parameters[MY4] - t9 * parameters[MX4]);
-    const yaw3pitch_real_t t319 = t7 * t314 - t5 * t316 + YAW3PITCH_C(0.7) * t318;
-    const yaw3pitch_real_t t320 = t2 * (t3 * t317 + t1 * t319 + YAW3PITCH_C(0.8) * t318);
-    const yaw3pitch_real_t t321 = t0 * (t1 * t317 - t3 * t319) + t320 + YAW3PITCH_C(0.12) * t318;
-    input_by_q[3] = t321;
-    const yaw3pitch_real_t t322 = t107 + (t105 + t312 * t197 + (t77 * parameters[MY4] - t106));
-    const yaw3pitch_real_t t323 = t104 - (t102 + t311 * t197 + (t103 - t77 * parameters[MX4]));
-    const yaw3pitch_real_t t324 = t7 * t322 - t5 * t323;
-    const yaw3pitch_real_t t325 = t3 * (t5 * t322 + t7 * t323) + t1 * t324;
-    const yaw3pitch_real_t t326 = t68 * parameters[MX4] - t50 * parameters[MY4];
-    const yaw3pitch_real_t t327 = t9 * parameters[YZ4] + t16 * parameters[XZ4] + t77 * parameters[ZZ4];
-    const yaw3pitch_real_t t328 = t326 + (t312 * t196 - t311 * t195 - t327) + YAW3PITCH_C(0.7) * t324;
-    input_by_q[7] = t328 + YAW3PITCH_C(0.8) * t325;
-    input_by_q[11] = t328;
-    input_by_q[15] = t326 + (t11 * t216 + t17 * t217 - t327);
-    const yaw3pitch_real_t t329 = YAW3PITCH_C(-2.0) * t268 + (parameters[XY4] * t312
-        - parameters[XX4] * t311);
-    const yaw3pitch_real_t t330 = YAW3PITCH_C(2.0) * t269 + (parameters[XY4] * t311 - parameters[YY4] * t312);
-    const yaw3pitch_real_t t331 = t5 * t329 + t7 * t330;
-    const yaw3pitch_real_t t332 = parameters[MX4] * t312 + parameters[MY4] * t311;
-    const yaw3pitch_real_t t333 = YAW3PITCH_C(-0.7) * t332 + (t5 * t330 - t7 * t329);
-    const yaw3pitch_real_t t334 = t2 * (YAW3PITCH_C(0.8) * t332 + (t3 * t331 - t1 * t333));
-    const yaw3pitch_real_t t335 = YAW3PITCH_C(0.12) * t332 + (t0 * (t1 * t331 + t3 * t333) + t334);
-    input_by_dq[3] = t335;
-    const yaw3pitch_real_t t336 = YAW3PITCH_C(-2.0) * t135 + parameters[MZ4] * t312;
-    const yaw3pitch_real_t t337 = YAW3PITCH_C(2.0) * t134 - parameters[MZ4] * t311;
-    const yaw3pitch_real_t t338 = t7 * t336 - t5 * t337;
-    const yaw3pitch_real_t t339 = t285 + (parameters[YZ4] * t312 - parameters[XZ4] * t311)
-        + YAW3PITCH_C(0.7) * t338;
-    const yaw3pitch_real_t t340 = t3 * (t5 * t336 + t7 * t337) + t1 * t338;
-    input_by_dq[7] = t339 + YAW3PITCH_C(0.8) * t340;
-    input_by_dq[11] = t339;
-    input_by_ddq[3] = t252;
-    input_by_ddq[7] = t265;
-    input_by_ddq[11] = t264;
+    const yaw3pitch_real_t t149 = t63 + (t148 - t51);
+    const yaw3pitch_real_t t150 = t5 * t144 + t7 * t149;
+    const yaw3pitch_real_t t151 = t13 * parameters[MX4] - t17 * parameters[MZ4];
+    const yaw3pitch_real_t t152 = t11 * parameters[MZ4] + t13 * parameters[MY4];
+    const yaw3pitch_real_t t153 = t134 * t151 - t132 * t152 + (t16 * parameters[MY4] - t9 * parameters[MX4]);
+    const yaw3pitch_real_t t154 = t7 * t144 - t5 * t149 + YAW3PITCH_C(0.7) * t153;
+    const yaw3pitch_real_t t155 = t2 * (t3 * t150 + t1 * t154 + YAW3PITCH_C(0.8) * t153);
+    const yaw3pitch_real_t t156 = t0 * (t1 * t150 - t3 * t154) + t155 + YAW3PITCH_C(0.12) * t153;
+    input_by_q[3] = t156;
+    const yaw3pitch_real_t t157 = t139 + t146;
+    const yaw3pitch_real_t t158 = YAW3PITCH_C(2.0) * t157;
+    const yaw3pitch_real_t t159 = YAW3PITCH_C(-2.0) * t151 + parameters[MZ4] * t132;
+    const yaw3pitch_real_t t160 = YAW3PITCH_C(2.0) * t152 - parameters[MZ4] * t134;
+    const yaw3pitch_real_t t161 = t7 * t159 - t5 * t160;
+    const yaw3pitch_real_t t162 = t158 + (parameters[YZ4] * t132 - parameters[XZ4] * t134)
+        + YAW3PITCH_C(0.7) * t161;
+    input_by_dq[11] = t162;
+    const yaw3pitch_real_t t163 = t3 * (t5 * t159 + t7 * t160) + t1 * t161;
+    input_by_dq[7] = t162 + YAW3PITCH_C(0.8) * t163;
+    const yaw3pitch_real_t t164 = parameters[ZZ4] - t124;
+    const yaw3pitch_real_t t165 = t13 * parameters[YZ4] + t11 * t164;
+    const yaw3pitch_real_t t166 = YAW3PITCH_C(-2.0) * t165 + (parameters[XY4] * t132
+        - parameters[XX4] * t134);
+    const yaw3pitch_real_t t167 = t17 * t164 - t13 * parameters[XZ4];
+    const yaw3pitch_real_t t168 = YAW3PITCH_C(2.0) * t167 + (parameters[XY4] * t134 - parameters[YY4] * t132);
+    const yaw3pitch_real_t t169 = t5 * t166 + t7 * t168;
+    const yaw3pitch_real_t t170 = parameters[MX4] * t132 + parameters[MY4] * t134;
+    const yaw3pitch_real_t t171 = YAW3PITCH_C(-0.7) * t170 + (t5 * t168 - t7 * t166);
+    const yaw3pitch_real_t t172 = t2 * (YAW3PITCH_C(0.8) * t170 + (t3 * t169 - t1 * t171));
+    const yaw3pitch_real_t t173 = YAW3PITCH_C(0.12) * t170 + (t0 * (t1 * t169 + t3 * t171) + t172);
+    input_by_dq[3] = t173;
     input_by_ddq[15] = parameters[ZZ4];
+    /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t174 = t5 * parameters[MX4] - t7 * parameters[MY4];
+    const yaw3pitch_real_t t175 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t174;
+    input_by_ddq[11] = t175;
+    const yaw3pitch_real_t t176 = t5 * parameters[MY4] + t7 * parameters[MX4];
+    const yaw3pitch_real_t t177 = t1 * t174 - t3 * t176;
+    const yaw3pitch_real_t t178 = t175 + YAW3PITCH_C(0.8) * t177;
+    input_by_ddq[7] = t178;
+    const yaw3pitch_real_t t179 = t7 * parameters[YZ4] - t5 * parameters[XZ4];
+    const yaw3pitch_real_t t180 = t7 * parameters[XZ4] + t5 * parameters[YZ4];
+    const yaw3pitch_real_t t181 = t1 * t179 + t3 * t180;
+    const yaw3pitch_real_t t182 = t1 * t180 - t3 * t179;
+    const yaw3pitch_real_t t183 = t2 * t182 - t0 * t181;
+    input_by_ddq[3] = t183;
+    const yaw3pitch_real_t t184 = YAW3PITCH_C(-1.4) * t40; /* link j4: derivatives */
+    const yaw3pitch_real_t t185 = t7 * t130 - t5 * t127 - t174 * t184;
+    const yaw3pitch_real_t t186 = t7 * t127 + t5 * t130 + t176 * t184;
+    const yaw3pitch_real_t t187 = t40 * t185 + t46 * t186 - (t52 * t179 + t71 * t180 + t91 * t175);
+    input_by_q[14] = t187 + (t45 * t176 + t39 * t174);
+    const yaw3pitch_real_t t188 = YAW3PITCH_C(-1.6) * t30;
+    const yaw3pitch_real_t t189 = t1 * t185 + t3 * t186 - t177 * t188;
+    const yaw3pitch_real_t t190 = t1 * t176 + t3 * t174; /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t191 = t3 * t185 - t1 * t186 - t190 * t188; /* link j4: derivatives */
+    const yaw3pitch_real_t t192 = t30 * t189 - t35 * t191 - (t56 * t181 + t86 * t182 + t99 * t178);
+    input_by_q[13] = t192 + (t34 * t190 - t29 * t177);
+    const yaw3pitch_real_t t193 = t158 + t176 * (YAW3PITCH_C(1.4) * t12);
+    input_by_dq[14] = t193 + YAW3PITCH_C(-2.0) * (t40 * t179 + t46 * t180);
+    const yaw3pitch_real_t t194 = YAW3PITCH_C(1.6) * dq[1];
+    const yaw3pitch_real_t t195 = t193 + t190 * t194 + YAW3PITCH_C(-2.0) * (t30 * t181 + t35 * t182);
+    input_by_dq[13] = t195;
+    const yaw3pitch_real_t t196 = YAW3PITCH_C(0.24) * dq[0];
+    const yaw3pitch_real_t t197 = t0 * t189 + t2 * t191 + (t2 * t190 + t0 * t177) * t196;
+    input_by_dq[12] = t197;
+    input_by_ddq[14] = t175;
+    input_by_ddq[13] = t178;
+    input_by_ddq[12] = t183;
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t198 = YAW3PITCH_C(0.7) * parameters[M4];
+    const yaw3pitch_real_t t199 = t174 + t198;
+    const yaw3pitch_real_t t200 = YAW3PITCH_C(-0.7) * t40;
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t201 = t5 * t126 - t7 * t129 - (YAW3PITCH_C(0.7) * t131 + t199 * t200);
+    const yaw3pitch_real_t t202 = YAW3PITCH_C(0.5) * (parameters[ZZ3] + (parameters[XX3] + parameters[YY3]));
+    const yaw3pitch_real_t t203 = parameters[XX3] - t202;
+    const yaw3pitch_real_t t204 = t46 * parameters[XY3] - t40 * t203 + t201;
+    const yaw3pitch_real_t t205 = YAW3PITCH_C(2.0) * t204; /* link j3: derivatives */
+    const yaw3pitch_real_t t206 = parameters[YY3] - t202;
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t207 = t40 * parameters[XY3] - t46 * t206 + (t176 * t200 - (t7 * t126
+        + t5 * t129));
+    const yaw3pitch_real_t t208 = YAW3PITCH_C(2.0) * t207; /* link j3: derivatives */
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t209 = t179 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
+    const yaw3pitch_real_t t210 = parameters[YZ3] + t180;
+    const yaw3pitch_real_t t211 = YAW3PITCH_C(0.7) * (t198 + YAW3PITCH_C(2.0) * t174);
+    const yaw3pitch_real_t t212 = parameters[ZZ3] + (parameters[ZZ4] + t211);
+    const yaw3pitch_real_t t213 = t52 * t209 + t71 * t210 + t91 * t212; /* link j3: derivatives */
+    const yaw3pitch_real_t t214 = parameters[MX3] + t199; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t215 = parameters[MY3] + t176;
+    const yaw3pitch_real_t t216 = t39 * t214 + t45 * t215; /* link j3: derivatives */
+    input_by_q[10] = t216 + (t40 * t205 + t46 * t208 - t213);
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t217 = t40 * parameters[MX3] - t46 * parameters[MY3] - (t131
+        + parameters[M4] * t200);
+    const yaw3pitch_real_t t218 = YAW3PITCH_C(-2.0) * t46;
+    const yaw3pitch_real_t t219 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t220 = parameters[MZ3] + parameters[MZ4];
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t221 = t91 * t215 - t71 * t220 - (t218 * t217 + t45 * t219);
+    const yaw3pitch_real_t t222 = YAW3PITCH_C(-2.0) * t40;
+    const yaw3pitch_real_t t223 = t39 * t219 - t222 * t217 - (t91 * t214 + t52 * t220);
+    const yaw3pitch_real_t t224 = YAW3PITCH_C(0.8) * (t3 * (t112 + t221) + t1 * (t109 + t223));
+    const yaw3pitch_real_t t225 = t216 - (t222 * t204 + t218 * t207 + t213) + t224;
+    input_by_q[6] = t225;
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t226 = t5 * (t141 + t147) + t7 * (t145 - t142);
+    const yaw3pitch_real_t t227 = t5 * t226;
+    const yaw3pitch_real_t t228 = t5 * t152 + t7 * t151;
+    const yaw3pitch_real_t t229 = YAW3PITCH_C(0.7) * t228;
+    const yaw3pitch_real_t t230 = YAW3PITCH_C(0.7) * t12; /* link j4: velocity of its origin */
+    const yaw3pitch_real_t t231 = t176 * t230; /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t232 = parameters[MZ4] * t200;
+    const yaw3pitch_real_t t233 = t231 + t232 - t229;
+    const yaw3pitch_real_t t234 = t40 * parameters[XZ3];
+    const yaw3pitch_real_t t235 = t12 * parameters[XY3];
+    const yaw3pitch_real_t t236 = t234 - t235 + (t233 + (t147 - t227 + t229));
+    const yaw3pitch_real_t t237 = t7 * t226;
+    const yaw3pitch_real_t t238 = t12 * t206 - t40 * parameters[YZ3] + (t142 + t237);
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t239 = parameters[XY4] * (YAW3PITCH_C(2.0) * t7) - t5 * t113;
+    const yaw3pitch_real_t t240 = t5 * t239;
+    const yaw3pitch_real_t t241 = parameters[XX3] + (parameters[YY4] - t240);
+    const yaw3pitch_real_t t242 = t7 * t239 - parameters[XY4] + YAW3PITCH_C(0.7) * t176 - parameters[XY3];
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t243 = t52 * t241 + t71 * t242 + t91 * t209 - (t222 * t236 + t218 * t238);
+    const yaw3pitch_real_t t244 = t84 + (t243 - t39 * t220);
+    const yaw3pitch_real_t t245 = t7 * t152 - t5 * t151; /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t246 = t12 * t203 - t46 * parameters[XZ3] + (t145 - t237 + (YAW3PITCH_C(0.7) * t245
+        - t199 * t230));
+    const yaw3pitch_real_t t247 = t46 * parameters[YZ3];
+    const yaw3pitch_real_t t248 = t235 - t247 - (t141 - t227 + t231 - t233);
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t249 = parameters[YY3] + (parameters[XX4] + t240 + t211);
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t250 = t222 * t246 - t218 * t248 + (t52 * t242 + t71 * t249 + t91 * t210);
+    const yaw3pitch_real_t t251 = t76 + (t250 + t45 * t220);
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t252 = t46 * parameters[MZ3] - t12 * parameters[MX3] + (t245
+        - parameters[M4] * t230);
+    const yaw3pitch_real_t t253 = t12 * parameters[MY3] - t40 * parameters[MZ3] + t228;
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t254 = t222 * t252 + t218 * t253 + (t52 * t215 + t71 * t214);
+    const yaw3pitch_real_t t255 = t2 * (t3 * t244 - t1 * t251 + YAW3PITCH_C(-0.8) * t254);
+    const yaw3pitch_real_t t256 = t0 * (t1 * t244 + t3 * t251) + t255 + YAW3PITCH_C(-0.12) * t254;
+    input_by_q[2] = t256;
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t257 = t247 - t234 + (t233 + (t157 - t232));
+    const yaw3pitch_real_t t258 = YAW3PITCH_C(2.0) * t257; /* link j3: derivatives */
+    input_by_dq[10] = t258 + YAW3PITCH_C(-2.0) * (t40 * t209 + t46 * t210);
+    const yaw3pitch_real_t t259 = t3 * (YAW3PITCH_C(2.0) * t252 + t220 * t218)
+        + t1 * (YAW3PITCH_C(-2.0) * t253 + t220 * t222);
+    const yaw3pitch_real_t t260 = t258 + (t209 * t222 + t210 * t218) + YAW3PITCH_C(0.8) * t259;
+    input_by_dq[6] = t260;
+    const yaw3pitch_real_t t261 = t202 - parameters[ZZ3];
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t262 = t7 * t167 - t5 * t165 - (t12 * parameters[YZ3] + t40 * t261);
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t263 = YAW3PITCH_C(2.0) * t262 - (t241 * t222 + t242 * t218);
+    /* link j4: inertia, momentum beyond */
+    const yaw3pitch_real_t t264 = t12 * parameters[XZ3] + t46 * t261 - (t7 * t165 + t5 * t167
+        + parameters[MZ4] * t230);
+    /* link j3: derivatives */
+    const yaw3pitch_real_t t265 = YAW3PITCH_C(2.0) * t264 + (t242 * t222 + t249 * t218);
+    const yaw3pitch_real_t t266 = t215 * t222 + t214 * t218;
+    const yaw3pitch_real_t t267 = t2 * (t3 * t263 + t1 * t265 + YAW3PITCH_C(0.8) * t266);
+    const yaw3pitch_real_t t268 = t0 * (t1 * t263 - t3 * t265) + t267 + YAW3PITCH_C(0.12) * t266;
+    input_by_dq[2] = t268;
+    input_by_ddq[10] = t212;
+    const yaw3pitch_real_t t269 = t1 * t214 - t3 * t215; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t270 = t212 + YAW3PITCH_C(0.8) * t269;
+    input_by_ddq[6] = t270;
+    const yaw3pitch_real_t t271 = t1 * t209 + t3 * t210;
+    const yaw3pitch_real_t t272 = t1 * t210 - t3 * t209;
+    const yaw3pitch_real_t t273 = t2 * t272 - t0 * t271;
+    input_by_ddq[2] = t273;
+    const yaw3pitch_real_t t274 = t1 * t205 + t3 * t208 - t269 * t188; /* link j3: derivatives */
+    const yaw3pitch_real_t t275 = t1 * t215 + t3 * t214; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t276 = t3 * t205 - t1 * t208 - t275 * t188; /* link j3: derivatives */
+    const yaw3pitch_real_t t277 = t30 * t274 - t35 * t276 - (t56 * t271 + t86 * t272 + t99 * t270);
+    input_by_q[9] = t277 + (t34 * t275 - t29 * t269);
+    const yaw3pitch_real_t t278 = t258 + t275 * t194 + YAW3PITCH_C(-2.0) * (t30 * t271 + t35 * t272);
+    input_by_dq[9] = t278;
+    const yaw3pitch_real_t t279 = t0 * t274 + t2 * t276 + (t2 * t275 + t0 * t269) * t196;
+    input_by_dq[8] = t279;
+    input_by_ddq[9] = t270;
+    input_by_ddq[8] = t273;
+    const yaw3pitch_real_t t280 = YAW3PITCH_C(0.8) * t219; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t281 = t269 + t280;
+    const yaw3pitch_real_t t282 = YAW3PITCH_C(-0.8) * t30; /* link j3: velocity of its origin */
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t283 = t1 * t204 + t3 * t207 + (YAW3PITCH_C(0.8) * t217 - t281 * t282);
+    const yaw3pitch_real_t t284 = YAW3PITCH_C(0.5) * (parameters[ZZ2] + (parameters[XX2] + parameters[YY2]));
+    const yaw3pitch_real_t t285 = parameters[XX2] - t284;
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t286 = YAW3PITCH_C(2.0) * (t35 * parameters[XY2] - t30 * t285 + t283);
+    const yaw3pitch_real_t t287 = t284 - parameters[YY2];
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t288 = t30 * parameters[XY2] + t35 * t287 - (t3 * t204 - t1 * t207 - t275 * t282);
+    const yaw3pitch_real_t t289 = YAW3PITCH_C(2.0) * t288; /* link j2: derivatives */
+    /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t290 = parameters[XZ2] + (YAW3PITCH_C(-0.8) * t220 - t271);
+    const yaw3pitch_real_t t291 = parameters[YZ2] + t272;
+    const yaw3pitch_real_t t292 = YAW3PITCH_C(0.8) * (t280 + YAW3PITCH_C(2.0) * t269);
+    const yaw3pitch_real_t t293 = parameters[ZZ2] + (t212 + t292);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t294 = t56 * t290 - t86 * t291 - t99 * t293 + (t30 * t286 + t35 * t289);
+    const yaw3pitch_real_t t295 = parameters[MX2] + t281; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t296 = parameters[MY2] + t275;
+    input_by_q[5] = t34 * t296 - t29 * t295 + t294;
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t297 = t1 * (t236 - t248) + t3 * (t238 - t246);
+    const yaw3pitch_real_t t298 = t1 * t297;
+    const yaw3pitch_real_t t299 = t1 * t253 - t3 * t252;
+    const yaw3pitch_real_t t300 = YAW3PITCH_C(0.8) * t299;
+    const yaw3pitch_real_t t301 = YAW3PITCH_C(-0.8) * dq[1]; /* link j3: velocity of its origin */
+    const yaw3pitch_real_t t302 = t275 * t301; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t303 = t220 * t282;
+    const yaw3pitch_real_t t304 = t303 - t302 - t300;
+    const yaw3pitch_real_t t305 = t30 * parameters[XZ2];
+    const yaw3pitch_real_t t306 = dq[1] * parameters[XY2];
+    const yaw3pitch_real_t t307 = t305 - t306 + (t304 + (t248 + t298 + t300));
+    const yaw3pitch_real_t t308 = YAW3PITCH_C(2.0) * t30;
+    const yaw3pitch_real_t t309 = t3 * t297;
+    const yaw3pitch_real_t t310 = t30 * parameters[YZ2] + dq[1] * t287 + (t309 - t238);
+    const yaw3pitch_real_t t311 = YAW3PITCH_C(-2.0) * t35;
+    /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t312 = t1 * (t241 - t249) - t242 * (YAW3PITCH_C(-2.0) * t3);
+    const yaw3pitch_real_t t313 = t1 * t312;
+    const yaw3pitch_real_t t314 = parameters[XX2] + (t249 + t313);
+    const yaw3pitch_real_t t315 = parameters[XY2] + (t3 * t312 - t242 + YAW3PITCH_C(-0.8) * t275);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t316 = t308 * t307 + t311 * t310 + (t56 * t314 - t86 * t315 - t99 * t290);
+    const yaw3pitch_real_t t317 = parameters[MZ2] + t220; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t318 = t3 * t253 + t1 * t252; /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t319 = dq[1] * t285 - t35 * parameters[XZ2] + (t246 + t309
+        + (YAW3PITCH_C(0.8) * t318 + t281 * t301));
+    const yaw3pitch_real_t t320 = t35 * parameters[YZ2];
+    const yaw3pitch_real_t t321 = t306 - t320 + (t304 + (t236 - t298 + t302));
+    /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t322 = parameters[YY2] + (t241 - t313 + t292);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t323 = t308 * t319 + t311 * t321 + (t56 * t315 - t86 * t322 - t99 * t291);
+    const yaw3pitch_real_t t324 = t0 * (t98 + (t316 + t29 * t317)) + t2 * (t90 + (t323 - t34 * t317));
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t325 = t35 * parameters[MZ2] - dq[1] * parameters[MX2] + (t318 + t219 * t301);
+    const yaw3pitch_real_t t326 = t30 * parameters[MZ2] - dq[1] * parameters[MY2] - t299;
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t327 = t308 * t325 + t311 * t326 - (t56 * t296 + t86 * t295);
+    input_by_q[1] = t324 + YAW3PITCH_C(0.12) * t327;
+    const yaw3pitch_real_t t328 = YAW3PITCH_C(2.0) * (t320 - t305 + (t304 + (t257 - t303)))
+        + YAW3PITCH_C(2.0) * (t30 * t290 - t35 * t291);
+    input_by_dq[5] = t328;
+    const yaw3pitch_real_t t329 = parameters[ZZ2] - t284;
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t330 = t30 * t329 - dq[1] * parameters[YZ2] + (t1 * t262 - t3 * t264);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t331 = t0 * (YAW3PITCH_C(2.0) * t330 + (t314 * t308 + t315 * t311));
+    /* link j3: inertia, momentum beyond */
+    const yaw3pitch_real_t t332 = dq[1] * parameters[XZ2] - t35 * t329 + (t3 * t262 + t1 * t264
+        + t220 * t301);
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t333 = t2 * (YAW3PITCH_C(2.0) * t332 + (t315 * t308 + t322 * t311));
+    const yaw3pitch_real_t t334 = t331 + t333 + YAW3PITCH_C(0.12) * (t295 * t311 - t296 * t308);
+    input_by_dq[1] = t334;
+    input_by_ddq[5] = t293;
+    const yaw3pitch_real_t t335 = t0 * t290 + t2 * t291; /* link j2: column of the mass matrix */
+    input_by_ddq[1] = t335;
+    /* link j2: derivatives */
+    const yaw3pitch_real_t t336 = t0 * t286 - t2 * t289 + (t2 * t296 + t0 * t295) * t196;
+    input_by_dq[4] = t336;
+    input_by_ddq[4] = t335;
+    /* link j2: inertia, momentum beyond */
+    const yaw3pitch_real_t t337 = t2 * (t2 * (t321 - t307) + t0 * (t310 + t319));
+    const yaw3pitch_real_t t338 = YAW3PITCH_C(0.12) * (t2 * t326 + t0 * t325)
+        + t317 * (YAW3PITCH_C(-0.12) * dq[0]);
+    input_by_dq[0] = YAW3PITCH_C(2.0) * (t307 + t337 + t338);
+    /* link j2: inertia of it and all beyond */
+    const yaw3pitch_real_t t339 = t2 * (t2 * (t322 - t314) + t315 * (YAW3PITCH_C(2.0) * t0));
+    const yaw3pitch_real_t t340 = YAW3PITCH_C(0.12) * (parameters[M2] + t219) + YAW3PITCH_C(2.0) * (t2 * t295
+        - t0 * t296);
+    input_by_ddq[0] = parameters[ZZ1] + (t314 + t339 + YAW3PITCH_C(0.12) * t340);
     /* always zero */
     input_by_q[0] = YAW3PITCH_C(0.0);
     input_by_q[4] = YAW3PITCH_C(0.0);

@@ -46,7 +46,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_mass_matrix.c are of different generations: generate the arm again"
 #endif
 
@@ -68,73 +68,66 @@ yaw3pitch_status_t yaw3pitch_mass_matrix(
         return status;
     }
 
-    yaw3pitch_real_t t21, t19;
-    YAW3PITCH_SINCOS(q[1], &t21, &t19);
-    yaw3pitch_real_t t11, t8;
-    YAW3PITCH_SINCOS(q[2], &t11, &t8);
-    yaw3pitch_real_t t1, t0;
-    YAW3PITCH_SINCOS(q[3], &t1, &t0);
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t2 = t0 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t1);
-    const yaw3pitch_real_t t3 = t0 * t2;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t4 = t0 * parameters[MX4] - t1 * parameters[MY4];
-    const yaw3pitch_real_t t5 = YAW3PITCH_C(1.4) * t4; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t6 = parameters[XX4R] - t3 + t5;
-    const yaw3pitch_real_t t7 = parameters[XX3R] + t3;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t9 = t0 * parameters[MY4] + t1 * parameters[MX4];
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t10 = parameters[XY3] + (parameters[XY4] + t1 * t2 + YAW3PITCH_C(-0.7) * t9);
-    /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t12 = t8 * (t6 - t7) + t10 * (YAW3PITCH_C(2.0) * t11);
-    const yaw3pitch_real_t t13 = t8 * t12;
-    const yaw3pitch_real_t t14 = parameters[MY3] + t9; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t15 = parameters[MX3R] + t4;
-    const yaw3pitch_real_t t16 = t8 * t15 - t11 * t14; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t17 = YAW3PITCH_C(1.6) * t16; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t18 = parameters[XX2R] + (t6 - t13);
-    const yaw3pitch_real_t t20 = t8 * t14 + t11 * t15; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t22 = (parameters[XY2] + (t10 - t11 * t12
-        + YAW3PITCH_C(-0.8) * t20)) * (YAW3PITCH_C(2.0) * t21);
-    const yaw3pitch_real_t t23 = t19 * (t19 * (t7 + t13 + t17 - t18) + t22);
-    const yaw3pitch_real_t t24 = YAW3PITCH_C(0.24) * (t19 * (parameters[MX2R] + t16) - t21 * (parameters[MY2]
-        + t20));
-    out[0] = parameters[ZZ1R] + (t18 + t23 + t24);
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t25 = t0 * parameters[XZ4] - t1 * parameters[YZ4];
-    const yaw3pitch_real_t t26 = parameters[XZ3R] + t25; /* link j4: inertia of it and all beyond */
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t27 = t1 * parameters[XZ4] + t0 * parameters[YZ4];
-    const yaw3pitch_real_t t28 = parameters[YZ3] + t27; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t29 = t8 * t26 - t11 * t28; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t30 = t11 * t26 + t8 * t28;
-    /* link j2: column of the mass matrix */
-    const yaw3pitch_real_t t31 = t21 * (parameters[XZ2R] + t29) + t19 * (parameters[YZ2] + t30);
-    out[1] = t31;
-    const yaw3pitch_real_t t32 = t21 * t29 + t19 * t30; /* link j3: column of the mass matrix */
-    out[2] = t32;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t33 = t21 * (t8 * t25 - t11 * t27) + t19 * (t11 * t25 + t8 * t27);
-    out[3] = t33;
-    out[4] = t31;
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t34 = parameters[ZZ3R] + (parameters[ZZ4] + t5);
-    out[5] = parameters[ZZ2R] + (t34 + t17);
-    const yaw3pitch_real_t t35 = t34 + YAW3PITCH_C(0.8) * t16; /* link j3: column of the mass matrix */
-    out[6] = t35;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t36 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t4;
-    const yaw3pitch_real_t t37 = t36 + YAW3PITCH_C(0.8) * (t8 * t4 - t11 * t9);
-    out[7] = t37;
-    out[8] = t32;
-    out[9] = t35;
-    out[10] = t34;
-    out[11] = t36;
-    out[12] = t33;
-    out[13] = t37;
-    out[14] = t36;
+    yaw3pitch_real_t t10, t11;
+    YAW3PITCH_SINCOS(q[1], &t10, &t11);
+    yaw3pitch_real_t t5, t6;
+    YAW3PITCH_SINCOS(q[2], &t5, &t6);
+    yaw3pitch_real_t t0, t1;
+    YAW3PITCH_SINCOS(q[3], &t0, &t1);
     out[15] = parameters[ZZ4];
+    /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t2 = t1 * parameters[MX4] - t0 * parameters[MY4];
+    const yaw3pitch_real_t t3 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t2;
+    out[11] = t3;
+    const yaw3pitch_real_t t4 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const yaw3pitch_real_t t7 = t3 + YAW3PITCH_C(0.8) * (t6 * t2 - t5 * t4);
+    out[7] = t7;
+    const yaw3pitch_real_t t8 = t1 * parameters[XZ4] - t0 * parameters[YZ4];
+    const yaw3pitch_real_t t9 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
+    const yaw3pitch_real_t t12 = t10 * (t6 * t8 - t5 * t9) + t11 * (t5 * t8 + t6 * t9);
+    out[3] = t12;
+    out[14] = t3;
+    out[13] = t7;
+    out[12] = t12;
+    const yaw3pitch_real_t t13 = YAW3PITCH_C(1.4) * t2; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t14 = parameters[ZZ3R] + (parameters[ZZ4] + t13);
+    out[10] = t14;
+    const yaw3pitch_real_t t15 = parameters[MY3] + t4;
+    const yaw3pitch_real_t t16 = parameters[MX3R] + t2;
+    const yaw3pitch_real_t t17 = t6 * t16 - t5 * t15; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t18 = t14 + YAW3PITCH_C(0.8) * t17;
+    out[6] = t18;
+    const yaw3pitch_real_t t19 = parameters[XZ3R] + t8; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t20 = parameters[YZ3] + t9;
+    const yaw3pitch_real_t t21 = t6 * t19 - t5 * t20; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t22 = t5 * t19 + t6 * t20;
+    const yaw3pitch_real_t t23 = t10 * t21 + t11 * t22;
+    out[2] = t23;
+    out[9] = t18;
+    out[8] = t23;
+    const yaw3pitch_real_t t24 = YAW3PITCH_C(1.6) * t17; /* link j3: inertia of it and all beyond */
+    out[5] = parameters[ZZ2R] + (t14 + t24);
+    /* link j2: column of the mass matrix */
+    const yaw3pitch_real_t t25 = t10 * (parameters[XZ2R] + t21) + t11 * (parameters[YZ2] + t22);
+    out[1] = t25;
+    out[4] = t25;
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t26 = t1 * parameters[XX4R] + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
+    const yaw3pitch_real_t t27 = t1 * t26;
+    const yaw3pitch_real_t t28 = parameters[XX4R] - t27 + t13;
+    const yaw3pitch_real_t t29 = parameters[XX3R] + t27;
+    const yaw3pitch_real_t t30 = parameters[XY3] + (parameters[XY4] + t0 * t26 + YAW3PITCH_C(-0.7) * t4);
+    /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t31 = t6 * (t28 - t29) + t30 * (YAW3PITCH_C(2.0) * t5);
+    const yaw3pitch_real_t t32 = t6 * t31;
+    const yaw3pitch_real_t t33 = parameters[XX2R] + (t28 - t32);
+    const yaw3pitch_real_t t34 = t6 * t15 + t5 * t16; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
+    const yaw3pitch_real_t t35 = (parameters[XY2] + (t30 - t5 * t31
+        + YAW3PITCH_C(-0.8) * t34)) * (YAW3PITCH_C(2.0) * t10);
+    const yaw3pitch_real_t t36 = t11 * (t11 * (t29 + t32 + t24 - t33) + t35);
+    const yaw3pitch_real_t t37 = YAW3PITCH_C(0.24) * (t11 * (parameters[MX2R] + t17) - t10 * (parameters[MY2]
+        + t34));
+    out[0] = parameters[ZZ1R] + (t33 + t36 + t37);
     return YAW3PITCH_STATUS_OK;
 }

@@ -64,7 +64,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_mass_matrix_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -87,82 +87,76 @@ yaw3pitch_status_t yaw3pitch_mass_matrix_standard(
         return status;
     }
 
-    yaw3pitch_real_t t24, t22;
-    YAW3PITCH_SINCOS(q[1], &t24, &t22);
-    yaw3pitch_real_t t12, t9;
-    YAW3PITCH_SINCOS(q[2], &t12, &t9);
-    yaw3pitch_real_t t1, t0;
-    YAW3PITCH_SINCOS(q[3], &t1, &t0);
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t2 = t0 * (parameters[XX4] - parameters[YY4])
-        + parameters[XY4] * (YAW3PITCH_C(-2.0) * t1);
-    const yaw3pitch_real_t t3 = t0 * t2;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t4 = t0 * parameters[MX4] - t1 * parameters[MY4];
-    const yaw3pitch_real_t t5 = YAW3PITCH_C(0.7) * parameters[M4]; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t6 = YAW3PITCH_C(0.7) * (t5 + YAW3PITCH_C(2.0) * t4);
-    const yaw3pitch_real_t t7 = parameters[YY3] + (parameters[XX4] - t3 + t6);
-    const yaw3pitch_real_t t8 = parameters[XX3] + (parameters[YY4] + t3);
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t10 = t0 * parameters[MY4] + t1 * parameters[MX4];
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t11 = parameters[XY3] + (parameters[XY4] + t1 * t2 + YAW3PITCH_C(-0.7) * t10);
-    /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t13 = t9 * (t8 - t7) - t11 * (YAW3PITCH_C(2.0) * t12);
-    const yaw3pitch_real_t t14 = t9 * t13;
-    const yaw3pitch_real_t t15 = parameters[XX2] + (t7 + t14);
-    const yaw3pitch_real_t t16 = parameters[MY3] + t10; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t17 = parameters[MX3] + (t4 + t5);
-    const yaw3pitch_real_t t18 = t9 * t17 - t12 * t16; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t19 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t20 = YAW3PITCH_C(0.8) * t19; /* link j3: inertia of it and all beyond */
-    const yaw3pitch_real_t t21 = YAW3PITCH_C(0.8) * (t20 + YAW3PITCH_C(2.0) * t18);
-    const yaw3pitch_real_t t23 = t9 * t16 + t12 * t17; /* link j3: column of the mass matrix */
-    /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t25 = (parameters[XY2] + (t11 + t12 * t13
-        + YAW3PITCH_C(-0.8) * t23)) * (YAW3PITCH_C(2.0) * t24);
-    const yaw3pitch_real_t t26 = t22 * (parameters[YY2] + (t8 - t14 + t21) - t15) + t25;
-    /* link j2: column of the mass matrix */
-    const yaw3pitch_real_t t27 = t22 * (parameters[MX2] + (t18 + t20)) - t24 * (parameters[MY2] + t23);
-    /* link j2: inertia of it and all beyond */
-    const yaw3pitch_real_t t28 = t15 + t22 * t26 + YAW3PITCH_C(0.12) * (YAW3PITCH_C(0.12) * (parameters[M2]
-        + t19) + YAW3PITCH_C(2.0) * t27);
-    out[0] = parameters[ZZ1] + t28;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t29 = t0 * parameters[XZ4] - t1 * parameters[YZ4];
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t30 = parameters[XZ3] + (t29 + YAW3PITCH_C(-0.7) * parameters[MZ4]);
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t31 = t1 * parameters[XZ4] + t0 * parameters[YZ4];
-    const yaw3pitch_real_t t32 = parameters[YZ3] + t31; /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t33 = t9 * t30 - t12 * t32; /* link j3: column of the mass matrix */
-    const yaw3pitch_real_t t34 = t12 * t30 + t9 * t32;
-    /* link j2: column of the mass matrix */
-    const yaw3pitch_real_t t35 = t24 * (parameters[XZ2] + (t33 + YAW3PITCH_C(-0.8) * (parameters[MZ3]
-        + parameters[MZ4]))) + t22 * (parameters[YZ2] + t34);
-    out[1] = t35;
-    const yaw3pitch_real_t t36 = t24 * t33 + t22 * t34; /* link j3: column of the mass matrix */
-    out[2] = t36;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t37 = t24 * (t9 * t29 - t12 * t31) + t22 * (t12 * t29 + t9 * t31);
-    out[3] = t37;
-    out[4] = t35;
-    /* link j4: inertia of it and all beyond */
-    const yaw3pitch_real_t t38 = parameters[ZZ3] + (parameters[ZZ4] + t6);
-    out[5] = parameters[ZZ2] + (t38 + t21);
-    const yaw3pitch_real_t t39 = t38 + YAW3PITCH_C(0.8) * t18; /* link j3: column of the mass matrix */
-    out[6] = t39;
-    /* link j4: column of the mass matrix */
-    const yaw3pitch_real_t t40 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t4;
-    const yaw3pitch_real_t t41 = t40 + YAW3PITCH_C(0.8) * (t9 * t4 - t12 * t10);
-    out[7] = t41;
-    out[8] = t36;
-    out[9] = t39;
-    out[10] = t38;
-    out[11] = t40;
-    out[12] = t37;
-    out[13] = t41;
-    out[14] = t40;
+    yaw3pitch_real_t t10, t11;
+    YAW3PITCH_SINCOS(q[1], &t10, &t11);
+    yaw3pitch_real_t t5, t6;
+    YAW3PITCH_SINCOS(q[2], &t5, &t6);
+    yaw3pitch_real_t t0, t1;
+    YAW3PITCH_SINCOS(q[3], &t0, &t1);
     out[15] = parameters[ZZ4];
+    /* link j4: column of the mass matrix */
+    const yaw3pitch_real_t t2 = t1 * parameters[MX4] - t0 * parameters[MY4];
+    const yaw3pitch_real_t t3 = parameters[ZZ4] + YAW3PITCH_C(0.7) * t2;
+    out[11] = t3;
+    const yaw3pitch_real_t t4 = t1 * parameters[MY4] + t0 * parameters[MX4];
+    const yaw3pitch_real_t t7 = t3 + YAW3PITCH_C(0.8) * (t6 * t2 - t5 * t4);
+    out[7] = t7;
+    const yaw3pitch_real_t t8 = t1 * parameters[XZ4] - t0 * parameters[YZ4];
+    const yaw3pitch_real_t t9 = t0 * parameters[XZ4] + t1 * parameters[YZ4];
+    const yaw3pitch_real_t t12 = t10 * (t6 * t8 - t5 * t9) + t11 * (t5 * t8 + t6 * t9);
+    out[3] = t12;
+    out[14] = t3;
+    out[13] = t7;
+    out[12] = t12;
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t13 = YAW3PITCH_C(0.7) * parameters[M4];
+    const yaw3pitch_real_t t14 = YAW3PITCH_C(0.7) * (t13 + YAW3PITCH_C(2.0) * t2);
+    const yaw3pitch_real_t t15 = parameters[ZZ3] + (parameters[ZZ4] + t14);
+    out[10] = t15;
+    const yaw3pitch_real_t t16 = parameters[MY3] + t4;
+    const yaw3pitch_real_t t17 = parameters[MX3] + (t2 + t13);
+    const yaw3pitch_real_t t18 = t6 * t17 - t5 * t16; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t19 = t15 + YAW3PITCH_C(0.8) * t18;
+    out[6] = t19;
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t20 = parameters[XZ3] + (t8 + YAW3PITCH_C(-0.7) * parameters[MZ4]);
+    const yaw3pitch_real_t t21 = parameters[YZ3] + t9;
+    const yaw3pitch_real_t t22 = t6 * t20 - t5 * t21; /* link j3: column of the mass matrix */
+    const yaw3pitch_real_t t23 = t5 * t20 + t6 * t21;
+    const yaw3pitch_real_t t24 = t10 * t22 + t11 * t23;
+    out[2] = t24;
+    out[9] = t19;
+    out[8] = t24;
+    const yaw3pitch_real_t t25 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t26 = YAW3PITCH_C(0.8) * t25; /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t27 = YAW3PITCH_C(0.8) * (t26 + YAW3PITCH_C(2.0) * t18);
+    out[5] = parameters[ZZ2] + (t15 + t27);
+    /* link j2: column of the mass matrix */
+    const yaw3pitch_real_t t28 = t10 * (parameters[XZ2] + (t22 + YAW3PITCH_C(-0.8) * (parameters[MZ3]
+        + parameters[MZ4]))) + t11 * (parameters[YZ2] + t23);
+    out[1] = t28;
+    out[4] = t28;
+    /* link j4: inertia of it and all beyond */
+    const yaw3pitch_real_t t29 = t1 * (parameters[XX4] - parameters[YY4])
+        + parameters[XY4] * (YAW3PITCH_C(-2.0) * t0);
+    const yaw3pitch_real_t t30 = t1 * t29;
+    const yaw3pitch_real_t t31 = parameters[YY3] + (parameters[XX4] - t30 + t14);
+    const yaw3pitch_real_t t32 = parameters[XX3] + (parameters[YY4] + t30);
+    const yaw3pitch_real_t t33 = parameters[XY3] + (parameters[XY4] + t0 * t29 + YAW3PITCH_C(-0.7) * t4);
+    /* link j3: inertia of it and all beyond */
+    const yaw3pitch_real_t t34 = t6 * (t32 - t31) - t33 * (YAW3PITCH_C(2.0) * t5);
+    const yaw3pitch_real_t t35 = t6 * t34;
+    const yaw3pitch_real_t t36 = parameters[XX2] + (t31 + t35);
+    const yaw3pitch_real_t t37 = t6 * t16 + t5 * t17; /* link j3: column of the mass matrix */
+    /* link j2: inertia of it and all beyond */
+    const yaw3pitch_real_t t38 = (parameters[XY2] + (t33 + t5 * t34
+        + YAW3PITCH_C(-0.8) * t37)) * (YAW3PITCH_C(2.0) * t10);
+    const yaw3pitch_real_t t39 = t11 * (parameters[YY2] + (t32 - t35 + t27) - t36) + t38;
+    /* link j2: column of the mass matrix */
+    const yaw3pitch_real_t t40 = t11 * (parameters[MX2] + (t18 + t26)) - t10 * (parameters[MY2] + t37);
+    /* link j2: inertia of it and all beyond */
+    const yaw3pitch_real_t t41 = t36 + t11 * t39 + YAW3PITCH_C(0.12) * (YAW3PITCH_C(0.12) * (parameters[M2]
+        + t25) + YAW3PITCH_C(2.0) * t40);
+    out[0] = parameters[ZZ1] + t41;
     return YAW3PITCH_STATUS_OK;
 }

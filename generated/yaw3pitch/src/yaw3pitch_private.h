@@ -13,7 +13,7 @@
 
 #include "yaw3pitch.h"
 
-#if YAW3PITCH_GENERATION != 0x14CEE2C4UL
+#if YAW3PITCH_GENERATION != 0x32302FFDUL
 #error "yaw3pitch.h and yaw3pitch_private.h are of different generations: generate the arm again"
 #endif
 
@@ -102,15 +102,24 @@ static inline void yaw3pitch_sine_cosine(yaw3pitch_real_t x, yaw3pitch_real_t *s
 }
 #endif
 
-/* Whether the sum of squares is at most limit; false where an element is not a number. */
+/*
+ * Whether the sum of squares is at most limit; false where an element is not a number. Four sums at a time wait
+ * less for one another, and fill a vector where the processor has them.
+ */
 static inline int yaw3pitch_within(const yaw3pitch_real_t x[], int n, yaw3pitch_real_t limit)
 {
-    yaw3pitch_real_t sum = YAW3PITCH_C(0.0);
-    int i;
-    for (i = 0; i < n; ++i) {
-        sum += x[i] * x[i];
+    yaw3pitch_real_t a = YAW3PITCH_C(0.0), b = YAW3PITCH_C(0.0), c = YAW3PITCH_C(0.0), d = YAW3PITCH_C(0.0);
+    int i = 0;
+    for (; n - i >= 4; i += 4) {
+        a += x[i] * x[i];
+        b += x[i + 1] * x[i + 1];
+        c += x[i + 2] * x[i + 2];
+        d += x[i + 3] * x[i + 3];
     }
-    return sum <= limit;
+    for (; n - i >= 1; ++i) {
+        a += x[i] * x[i];
+    }
+    return (a + b) + (c + d) <= limit;
 }
 
 /* The same for a vector with an element for each joint. */
@@ -119,22 +128,28 @@ static inline int yaw3pitch_within_joints(const yaw3pitch_real_t x[], yaw3pitch_
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] <= limit;
 }
 
-/* x, or a number beyond the limit of a result where x is beyond it or is not a number. */
-static inline yaw3pitch_real_t yaw3pitch_bounded(yaw3pitch_real_t x)
+/* x held within twice the limit of a result, above it where x is not a number: what builds on it is finite. */
+static inline yaw3pitch_real_t yaw3pitch_held(yaw3pitch_real_t x)
 {
-    return x >= YAW3PITCH_C(-1.0e15) && x <= YAW3PITCH_C(1.0e15) ? x : YAW3PITCH_C(2.0e15);
+    const yaw3pitch_real_t below = x < YAW3PITCH_C(2.0e15) ? x : YAW3PITCH_C(2.0e15);
+    return below > -YAW3PITCH_C(2.0e15) ? below : -YAW3PITCH_C(2.0e15);
 }
 
-/* Whether every element of a result is within the limit; false where one is not a number. */
-static inline int yaw3pitch_all_bounded(const yaw3pitch_real_t x[], int n)
+/* Whether the magnitudes of a result's elements add up to its limit at most; false where one is not a number. */
+static inline int yaw3pitch_bounded(const yaw3pitch_real_t x[], int n)
 {
-    int i;
-    for (i = 0; i < n; ++i) {
-        if (!(x[i] >= YAW3PITCH_C(-1.0e15) && x[i] <= YAW3PITCH_C(1.0e15))) {
-            return 0;
-        }
+    yaw3pitch_real_t a = YAW3PITCH_C(0.0), b = YAW3PITCH_C(0.0), c = YAW3PITCH_C(0.0), d = YAW3PITCH_C(0.0);
+    int i = 0;
+    for (; n - i >= 4; i += 4) {
+        a += YAW3PITCH_ABS(x[i]);
+        b += YAW3PITCH_ABS(x[i + 1]);
+        c += YAW3PITCH_ABS(x[i + 2]);
+        d += YAW3PITCH_ABS(x[i + 3]);
     }
-    return 1;
+    for (; n - i >= 1; ++i) {
+        a += YAW3PITCH_ABS(x[i]);
+    }
+    return (a + b) + (c + d) <= YAW3PITCH_C(1.0e15);
 }
 
 /* Left out of every call with -DYAW3PITCH_PARAMETERS_CHECKED, for parameters that yaw3pitch_check_parameters has seen. */

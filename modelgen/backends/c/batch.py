@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from modelgen.backends.body import body, unset
-from modelgen.backends.c.dialect import INDENT, CDialect, arrays, literal
+from modelgen.backends.c.dialect import INDENT, OUTPUT_LIMIT, CDialect, arrays, literal
 from modelgen.backends.c.lengths import argument_length
 from modelgen.backends.c.pairs import Pair, pairs
 from modelgen.backends.c.source import checked_output
@@ -140,12 +140,16 @@ def _block(model: Model, function: Function) -> list[str]:
     first = conditions[0] if conditions else f"{dialect.constant(0.0)} <= {dialect.constant(0.0)}"
     lines.append(wrapped_code(f"{arm}_lanes_bits_t good = {first};", INDENT, INDENT * 2))
     lines += [wrapped_code(f"good &= {c};", INDENT, INDENT * 2) for c in conditions[1:]]
+    if dialect.checked:
+        lines.append(f"{INDENT}{arm}_lanes_t total = {dialect.constant(0.0)};")
     maybe = ["n", *(a.name for a in function.arguments if a.size and a.name in SHARED)]
     lines += [f"{INDENT}(void){name};" for name in maybe]
     lines += [dialect.pair(pair) for pair in together]
     lines += body(replace(function, program=rest), dialect.named, dialect)
     for output, missing in unset(function).items():
         lines += [dialect.zero(output, index) for index in missing]
+    if dialect.checked:  # as `bounded` of the private header has it of every output
+        lines.append(f"{INDENT}good &= total <= {dialect.constant(OUTPUT_LIMIT)};")
     return [*lines, f"{INDENT}return {arm}_lanes_every(good);"]
 
 
@@ -196,8 +200,8 @@ class _Lanes(CDialect):
         )
 
     def store(self, output: str, index: int, text: str) -> str:
-        """Store an element, and take note where it is beyond what a result may be."""
-        put = f"good &= {self.arm}_lanes_put" if self.checked else f"{self.arm}_lanes_store"
+        """Store an element, and add up the magnitudes where they are tested."""
+        put = f"total += {self.arm}_lanes_put" if self.checked else f"{self.arm}_lanes_store"
         return wrapped_code(f"{put}({self._place(output, index)}, {text});", INDENT, INDENT * 2)
 
     def zero(self, output: str, index: int) -> str:

@@ -19,6 +19,7 @@ from modelgen.graph import read
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
 INDENT = "    "
+OUTPUT_LIMIT = 1e15  # what the magnitudes of an output's elements may add up to where they are tested
 
 # Normal numbers of IEEE 754 single precision: every constant must be one, or zero.
 _SMALLEST, _LARGEST = 1.1754943508222875e-38, 3.4028234663852886e38
@@ -62,22 +63,25 @@ def arrays(function: Function) -> dict[str, int]:
     return lengths
 
 
-def _read_on(function: Function) -> frozenset[int]:
-    """Temporaries that are elements of outputs and that later statements read."""
+def _built_on(function: Function) -> frozenset[int]:
+    """Temporaries that are elements of outputs and that other statements read."""
     stored: set[int] = set()
-    found: set[int] = set()
+    used: set[int] = set()
     for statement in function.program.statements:
-        found |= stored.intersection(read(statement.term))
-        if statement.term[0] == "let" and isinstance(statement.target, tuple):
+        target = statement.target
+        element = isinstance(target, tuple) and target[0] != "guard"
+        if element and statement.term[0] == "let":
             stored.add(statement.term[1])
-    return frozenset(found)
+        else:
+            used.update(read(statement.term))
+    return frozenset(stored & used)
 
 
 class CDialect:
     """Statements of one function in C99.
 
     checked: whether the function tests its outputs at the end; those elements on which it builds before are
-    bounded where they are defined.
+    held where they are defined.
     """
 
     def __init__(
@@ -89,7 +93,7 @@ class CDialect:
         checked: bool = False,
     ) -> None:
         self.arm = arm
-        self.bounded = _read_on(function) if checked else frozenset()
+        self.held = _built_on(function) if checked else frozenset()
         self.macro = arm.upper()
         self.named = named
         self.places = destinations(function)
@@ -139,7 +143,7 @@ class CDialect:
 
     def let(self, number: int, text: str) -> str:
         """An intermediate value is defined once and never changes."""
-        text = f"{self.arm}_bounded({text})" if number in self.bounded else text
+        text = f"{self.arm}_held({text})" if number in self.held else text
         return wrapped_code(f"{self.real} t{number} = {text};", INDENT, INDENT * 2)
 
     def pair(self, pair: Pair) -> str:

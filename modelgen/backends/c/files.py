@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from modelgen.backends.c.batch import BATCH, batches, lane_by_lane
 from modelgen.backends.c.declarations import FunctionText, function_text, header_values, parameter_checks
-from modelgen.backends.c.dialect import INDENT, literal
+from modelgen.backends.c.dialect import INDENT, OUTPUT_LIMIT, literal
 from modelgen.backends.c.levels import levels
 from modelgen.backends.c.source import statements, unrolled
 from modelgen.backends.c.strokes import strokes
@@ -48,7 +48,9 @@ def c_files(model: Model, provenance: Provenance) -> dict[str, str]:
             model=_identity(model, provenance),
             real=provenance.real,
         ),
-        f"src/{arm}_private.h": render("c/private.h.j2", **common, squares=_squares(model)),
+        f"src/{arm}_private.h": render(
+            "c/private.h.j2", **common, squares=_squares(model), limits=_limits(model)
+        ),
         f"src/{arm}_check_parameters.c": render("c/check_parameters.c.j2", **common),
         f"src/{arm}_model.c": render("c/model.c.j2", **common),
         f"src/{arm}_sincos.c": render("c/sincos.c.j2", **common),
@@ -87,6 +89,12 @@ def c_symbols(arm: str, files: Mapping[str, str]) -> set[str]:
 def _identity(model: Model, provenance: Provenance) -> str:
     """The description's hash, and the version where the description has one."""
     return f"{provenance.description} {model.arm.version}".rstrip()
+
+
+def _limits(model: Model) -> dict[str, str]:
+    """What the magnitudes of an output's elements may add up to, and at what values are held on the way."""
+    arm = model.arm.name
+    return {"output": literal(arm, OUTPUT_LIMIT), "held": literal(arm, 2 * OUTPUT_LIMIT)}
 
 
 def _squares(model: Model) -> str:

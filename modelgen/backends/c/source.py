@@ -37,7 +37,7 @@ def statements(
     lines += body(replace(function, program=rest), named, dialect)
     lines += _zeros(arm, function, dialect)
     if status:
-        tests = [f"!{arm}_all_bounded({array}, {size})" for array, size in arrays(function).items()]
+        tests = [f"!{arm}_bounded({array}, {size})" for array, size in arrays(function).items()]
         outside = f"\n{INDENT * 2}|| ".join(tests)
         lines.append(dialect.leave(outside, f"{macro}_STATUS_{STATUS[status]}"))
     lines.append(f"{INDENT}return {macro}_STATUS_OK;")
