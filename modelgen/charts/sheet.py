@@ -9,31 +9,45 @@ from modelgen.charts.chart import Chart, labels
 from modelgen.charts.drawn import HEIGHT, WIDTH, drawn
 from modelgen.resources import templates_folder
 
-_LETTER, _STRIP, _TITLE = 6.8, 26, 18
+_LETTER, _LINE, _STRIP, _TITLE = 6.8, 18, 8, 18
 
 
-def sheet(charts: Sequence[Chart], columns: int) -> str:
-    """SVG text that stands alone: rows of that many charts below a legend."""
+def sheet(charts: Sequence[Chart], columns: int, size: tuple[int, int] = (WIDTH, HEIGHT)) -> str:
+    """SVG text that stands alone: rows of that many charts of `size` [pixel] below a legend."""
     style = (templates_folder() / "report" / "chart.css").read_text(encoding="utf-8")
     entries = labels(charts)
-    cell = HEIGHT + _TITLE
-    height = _STRIP + cell * -(-len(charts) // columns)
-    width = WIDTH * columns
+    wide, cell = size[0], size[1] + _TITLE
+    width = wide * columns
+    legend, lines = _legend(entries, width)
+    strip = _STRIP + _LINE * lines
+    height = strip + cell * -(-len(charts) // columns)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" class="sheet" viewBox="0 0 {width} {height}" '
         f'width="{width}" height="{height}">\n<style>\n{style}</style>',
         f'<rect class="paper" width="{width}" height="{height}"/>',
     ]
-    at = 10.0
-    for role, label, dotted in entries:
-        kind = "dots" if dotted else "line"
-        parts.append(
-            f'<path class="{kind} {role}" d="M{at + (10 if dotted else 0):g} 14h{0 if dotted else 22}"/>'
-        )
-        parts.append(f'<text class="label" x="{at + 28:g}" y="18">{escape(label)}</text>')
-        at += 28 + _LETTER * len(label) + 22
+    parts += legend
     for k, chart in enumerate(charts):
-        x, y = WIDTH * (k % columns), _STRIP + cell * (k // columns)
+        x, y = wide * (k % columns), strip + cell * (k // columns)
         parts.append(f'<text class="title" x="{x + 4}" y="{y + 12}">{escape(chart.title)}</text>')
-        parts.append(f'<svg x="{x}" y="{y + _TITLE}" width="{WIDTH}" height="{HEIGHT}">{drawn(chart)}</svg>')
+        parts.append(
+            f'<svg x="{x}" y="{y + _TITLE}" width="{wide}" height="{size[1]}">{drawn(chart, size)}</svg>'
+        )
     return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def _legend(entries: Sequence[tuple[str, str, bool]], width: int) -> tuple[list[str], int]:
+    """What was drawn, on as many lines as the width asks for; and how many those are."""
+    parts, at, lines = [], 10.0, 1 if entries else 0
+    for role, label, dotted in entries:
+        room = 28 + _LETTER * len(label)
+        if at > 10.0 and at + room > width:
+            at, lines = 10.0, lines + 1
+        y = _LINE * lines
+        parts.append(
+            f'<path class="{"dots" if dotted else "line"} {role}" '
+            f'd="M{at + (10 if dotted else 0):g} {y - 4}h{0 if dotted else 22}"/>'
+        )
+        parts.append(f'<text class="label" x="{at + 28:g}" y="{y}">{escape(label)}</text>')
+        at += room + 22
+    return parts, lines

@@ -26,6 +26,7 @@ __all__ = [
     "ANY",
     "POSITIVE",
     "BodyEffect",
+    "Characteristic",
     "Definition",
     "DescriptionEffect",
     "Effect",
@@ -39,14 +40,26 @@ __all__ = [
 ]
 
 
+@dataclass(frozen=True)
+class Characteristic:
+    """A law over a variable that no motion has. name, unit: of the variable, with {x} for that of the
+    coordinate; reach: largest value that is drawn; force: over the variable.
+    """
+
+    variable: sp.Symbol
+    name: str
+    unit: str
+    reach: float
+    force: sp.Expr
+
+
 class Definition(Traits):
     """One entry of the catalogue: what every kind of effect has.
 
     text: what it is, in a phrase; finding: the clause that says it is there, with {joint}, {drive} or
     {place} for where and values by their names, as {coefficient:%}. scope: whether it stands at a "joint", at
     the "arm", or at "either". confused_with: effects that look alike in many records; experiment: what tells
-    them apart. shown: values for its picture in docs/effects.md, in the units of the motor coordinates
-    [rad, N m].
+    them apart. shown: values for the sketch of its law, in the units of the motor coordinates [rad, N m].
     """
 
     text: ClassVar[str]
@@ -64,6 +77,10 @@ class Definition(Traits):
         """Nominal values of the linear parameters from the description's, where it gives them."""
         names = {parameter.name for parameter in self.linear}
         return {name: value for name, value in given.items() if name in names}
+
+    def characteristic(self, p: Values) -> Characteristic | None:
+        """Its law over a variable of its own; None for most, whose law is one over the arm's motion."""
+        return None
 
     @classmethod
     def simulated(cls, values: Numbers) -> Mapping[str, float]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from statistics import median
-from typing import Any
+from typing import Any, ClassVar
 
 from modelgen.diagnosis.result import VERDICTS
 from modelgen.fleet.store import Row
-from modelgen.report.page import rendered
+from modelgen.report.page import Lines, Part, Run, Text, page
+from modelgen.report.parts import line
 
 FAILED = "failed"
 WORDS = {
@@ -24,28 +26,73 @@ _HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", "less error %", "lack
 _LOOKS = 7  # colours that are told apart
 _URGENT = 8  # units that are listed first
 
-Part = tuple[str, int, str]  # word, count, look
+_WIDEST = 80.0  # percent of the room, of a bar
+_NOTHING = "Every unit could be diagnosed, and nothing is left unexplained."
+_READING = (
+    "Less error: on the test record over all joints, with the causes than without. Lack of fit: over its "
+    "threshold; above 1, something deterministic remains. A click on a heading sorts."
+)
+
+Piece = tuple[str, int, str]  # word, count, look
 
 
 def overview(rows: Sequence[Row]) -> str:
     """HTML that needs nothing beside it but the reports that it links to."""
-    counts = verdicts(rows)
-    named = cause_bars(rows)
-    return rendered(
-        "fleet.html.j2",
-        heading=f"Fleet of {len(rows)} unit{'' if len(rows) == 1 else 's'}",
-        verdicts=[
-            (WORDS[key], [(WORDS[key], counts[key], "k0")], counts[key]) for key in WORDS if counts[key]
-        ],
-        most=max(counts.values(), default=1),
-        causes=named,
-        most_named=max((total for _, _, total in named), default=1),
-        worth=_worth(rows),
-        urgent=list(_urgent(rows)),
-        heads=_HEADS,
-        rows=[_row(row) for row in rows],
-        minutes=f"{sum(row.get('cpu_seconds') or 0.0 for row in rows) / 60:.3g}",
-    )
+    counts, named, worth = verdicts(rows), cause_bars(rows), _worth(rows)
+    found = [(WORDS[key], [(WORDS[key], counts[key], "k0")], counts[key]) for key in WORDS if counts[key]]
+    urgent = list(_urgent(rows))
+    answers: list[tuple[str, list[Part]]] = [("What was found", [Bars("Verdicts", "verdict", found)])]
+    if named:
+        answers.append(("What is missing", [Bars("Causes named, by joint", "cause", named)]))
+    if worth:
+        answers.append(("What it is worth", [Text(worth)]))
+    answers.append(("What to look at next", [Lines(urgent) if urgent else Text(_NOTHING)]))
+    minutes = sum(row.get("cpu_seconds") or 0.0 for row in rows) / 60
+    units = [
+        Units([_row(row) for row in rows]),
+        Text(f"{_READING} {minutes:.3g} min of processor time.", "quiet"),
+    ]
+    heading = f"Fleet of {len(rows)} unit{'' if len(rows) == 1 else 's'}"
+    return page(heading, "Diagnosis of many arms", answers, [("Units", units)], own="fleet")
+
+
+@dataclass(frozen=True)
+class Bars(Part):
+    """Horizontal bars of counts. head: of their labels; rows: label, pieces and total of each."""
+
+    kind: ClassVar[str] = "bars"
+    caption: str
+    head: str
+    rows: Sequence[tuple[str, Sequence[Piece], int]]
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        most = max((total for _, _, total in self.rows), default=1)
+        bars = [
+            {
+                "label": label,
+                "pieces": [
+                    {"look": look, "width": f"{_WIDEST * count / most:.4g}%", "text": f"{word}: {count}"}
+                    for word, count, look in pieces
+                ],
+                "total": total,
+                "said": ", ".join(f"{word}: {count}" for word, count, _ in pieces if len(pieces) > 1),
+            }
+            for label, pieces, total in self.rows
+        ]
+        return {"caption": self.caption, "head": self.head, "bars": bars}
+
+
+@dataclass(frozen=True)
+class Units(Part):
+    """The table of all units, which can be sorted and filtered."""
+
+    kind: ClassVar[str] = "units"
+    rows: Sequence[Mapping[str, Any]]
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        return {"heads": _HEADS, "rows": self.rows}
 
 
 def verdicts(rows: Sequence[Row]) -> Counter[str]:
@@ -66,7 +113,7 @@ def causes(rows: Sequence[Row]) -> Counter[tuple[str, int | None]]:
     )
 
 
-def cause_bars(rows: Sequence[Row]) -> list[tuple[str, list[Part], int]]:
+def cause_bars(rows: Sequence[Row]) -> list[tuple[str, list[Piece], int]]:
     """Named causes, the most frequent one first, each with its joints and how often in all."""
     found = causes(rows)
     effects = Counter[str]()
@@ -100,16 +147,21 @@ def _worth(rows: Sequence[Row]) -> str:
     return said + (f"; it is larger in {worse}." if worse else ".")
 
 
-def _urgent(rows: Sequence[Row]) -> Iterator[tuple[str, str | None, str]]:
-    """Units that failed or were left unexplained: name, report, why."""
+def _urgent(rows: Sequence[Row]) -> Iterator[list[Run]]:
+    """Units that failed or were left unexplained, each with its report, and why."""
     open_ends = [FAILED, "outside_catalogue", "suspected", "cannot_tell"]
     wanting = [row for row in rows if verdict(row) in open_ends]
     wanting.sort(key=lambda row: open_ends.index(verdict(row)))
     for row in wanting[:_URGENT]:
         text = row.get("error") or row.get("reason") or ""
-        yield row["unit"], row.get("report"), f"{WORDS[verdict(row)]}, {text}"
+        yield [_unit(row), Run(f": {WORDS[verdict(row)]}, {text}")]
     if len(wanting) > _URGENT:
-        yield f"{len(wanting) - _URGENT} more", None, "see the table"
+        yield [Run(f"{len(wanting) - _URGENT} more: see the table")]
+
+
+def _unit(row: Row) -> Run:
+    """The name of a unit, which leads to its report."""
+    return Run(row["unit"], target=row.get("report") or "")
 
 
 def _row(row: Row) -> dict[str, Any]:
@@ -119,8 +171,7 @@ def _row(row: Row) -> dict[str, Any]:
         row.get("causes") or (), row.get("joint_names") or (), row.get("ambiguous_with") or (), strict=True
     )
     return {
-        "unit": row["unit"],
-        "report": row.get("report"),
+        "unit": line([_unit(row)]),
         "arm": row["arm"] or "",
         "verdict": WORDS[found],
         "order": list(WORDS).index(found),

@@ -2,46 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator
 
-import numpy as np
-from markupsafe import Markup
-
-from modelgen.charts import number, sheet
-from modelgen.diagnosis.extended import NamedCause
+from modelgen.charts import sheet
 from modelgen.diagnosis.result import Diagnosis
-from modelgen.diagnosis.validation import Check
-from modelgen.effects import CATALOGUE
+from modelgen.report.cause_parts import about, law_found, suspected
+from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import efforts, replayed, residuals
-from modelgen.report.diagnosis_sentences import (
-    assumptions,
-    checked,
-    compared,
-    harms,
-    missing,
-    remains,
-    rivals,
-    worth,
-)
+from modelgen.report.diagnosis_sentences import assumptions, compared, rivals
 from modelgen.report.experiment import described
-from modelgen.report.following import following
-from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.named_joints import named_joints
-from modelgen.report.page import block, rendered
+from modelgen.report.page import Folded, Grid, Heading, Lines, Part, Run, Section, Text, block, page
 from modelgen.report.ranking import rankings
-from modelgen.report.words import at, by_name, finding, joint_name, law, sentence
+from modelgen.report.words import by_name, joint_name
 
 # By whether the test record is a free motion.
-_ERRORS = {
-    True: "RMSE of the simulated free motion, from the release on,",
-    False: "RMSE of the effort",
-}
 _SIMULATED = {
     True: "The test record simulated from its release on",
     False: "Windows of the test record simulated from their measured initial states with the measured inputs",
 }
+_FIT = (
+    "goodness of fit 100 (1 - |y - y\N{COMBINING CIRCUMFLEX ACCENT}| / |y - mean y|), mean absolute error "
+    "and RMSE in rad or m, before and after."
+)
 _SHEET = ("speed", "position", "load (size of the effort)")  # of the residuals that stand in a file
+_RIVALS = (("cause", "left"), ("rival", "left"), ("why not", "left"))
+_CANDIDATES = (
+    ("effect", "left"),
+    ("place", "left"),
+    ("delta BIC", "right"),
+    ("gain %", "right"),
+    ("expected %", "right"),
+    ("answer", "left"),
+)
+_MOTION = (
+    ("joint", "left"),
+    ("F_gof before", "right"),
+    ("after", "right"),
+    ("MAE before", "right"),
+    ("after", "right"),
+    ("RMSE before", "right"),
+    ("after", "right"),
+)
+_PARAMETERS = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"))
+_RECORDS = (("record", "left"), ("use", "left"), ("samples", "right"), ("rate [Hz]", "right"))
 
 
 def pictures(d: Diagnosis) -> dict[str, str]:
@@ -53,139 +57,68 @@ def pictures(d: Diagnosis) -> dict[str, str]:
 
 def report(d: Diagnosis) -> str:
     """HTML that needs nothing beside it."""
-    free = d.test.prepared.input is None
-    replay = replayed(d)
-    return rendered(
-        "diagnosis.html.j2",
-        arm=d.arm.name,
-        verdict=d.verdict,
-        missing=missing(d),
-        reason=sentence(by_name(d.arm, d.reason)),
-        causes=[_cause(d, k) for k in range(len(d.causes))],
-        suspects=[_as_shown(d, c, f"suspect{k}") for k, c in enumerate(d.suspects)],
-        worth=sentence(worth(d)) if d.causes else "",
-        following=following(d),
-        arm_drawing=named_joints(d),
-        harms=harms(d),
-        assumptions=[*assumptions(d), *compared(d)],
-        remains=remains(d),
-        errors=_errors(d),
-        unit=d.errors.unit,
-        simulation=_simulation(d),
-        efforts=block(efforts(d)),
-        residuals=[(name, block(charts)) for name, charts in residuals(d).items()],
-        replay=block(replay) if replay else None,
-        rivals=rivals(d),
-        rankings=rankings(d.arm, d.ranking),
-        error_text=_ERRORS[free],
-        simulation_text=_SIMULATED[free],
-        parameters=[(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()],
-        hidden=[(name, by_name(d.arm, why)) for name, why in d.not_identifiable],
-        experiment=described(d),
-        log=d.log.lines(),
-        records=[
-            (r["name"], r["use"], str(r["samples"]), f"{r['rate']:g}") for r in d.log.to_json()["records"]
-        ],
-        settings=[(name, _said(value)) for name, value in d.settings.items()],
+    return page(f"{d.arm.name}: what its model lacks", "Diagnosis", answers(d), list(_sections(d)))
+
+
+def _sections(d: Diagnosis) -> Iterator[Section]:
+    drawing = named_joints(d)
+    if drawing:
+        title = "The arm, to turn and move, with the joints that are named"
+        yield Section("", [Folded(title, [drawing], screen=True)])
+    yield from (law_found(d, k) for k in range(len(d.causes)))
+    yield from _others(d)
+    experiment = described(d)
+    if experiment:
+        yield Section("Next experiment", experiment)
+    yield Section("The log, and what is assumed about it", _log(d))
+    yield Section(
+        "Measured against predicted, the whole test record", [block(efforts(d)), _over_abscissae(d)]
     )
+    motion = _simulation(d)
+    if motion:
+        yield Section("Simulated motion", motion)
+    yield Section("Parameters, settings and files", _files(d))
+    yield from about(d)
 
 
-def _said(value: object) -> str:
-    """A setting for a person."""
-    if isinstance(value, list):
-        return ", ".join(_said(v) for v in value)
-    return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+def _others(d: Diagnosis) -> Iterator[Section]:
+    """Rivals, suspects, and every candidate of every turn below the last of them."""
+    against, turns = rivals(d), rankings(d.arm, d.ranking)
+    found: list[Section] = []
+    if against or (turns and not d.suspects):
+        title = "Rivals, and why not" if d.causes else "What was tried"
+        found.append(Section(title, [Grid("Rivals", _RIVALS, against)] if against else []))
+    if d.suspects:
+        parts = [part for k in range(len(d.suspects)) for part in suspected(d, k)]
+        found.append(Section("Suspects", parts))
+    if turns:
+        parts = []
+        for heading, rows in turns:
+            parts += [Heading(heading), Grid(heading, _CANDIDATES, rows)]
+        last = found.pop()
+        folded = Folded("All candidates, and why each is no cause", parts)
+        found.append(last._replace(parts=[*last.parts, folded]))
+    yield from found
 
 
-def _cause(d: Diagnosis, k: int) -> dict[str, Any]:
-    """A cause for the page, with its law over the data."""
-    c = d.causes[k]
-    size = law_size(d, k)
-    said = ""
-    if size is not None:
-        where = d.arm.coordinate_names[judged_joint(d, k)]
-        sizes = f"{number(size[0], 2)} of the {number(size[1], 2)} {size[2]}"
-        said = f"Its size on the test record: {sizes} of {where} (RMS)."
-    return _as_shown(d, c, f"cause{k}") | {"size": said, "charts": block(law_charts(d, k))}
+def _log(d: Diagnosis) -> list[Part]:
+    hidden = [f"{name}: {by_name(d.arm, why)}" for name, why in d.not_identifiable]
+    said: list[Part] = [Lines([*d.log.lines(), *assumptions(d), *compared(d)])]
+    return [*said, Heading("What these records cannot show"), Lines(hidden)] if hidden else said
 
 
-def _as_shown(d: Diagnosis, c: NamedCause, key: str) -> dict[str, Any]:
-    """What the page says of a cause or a suspect."""
-    definition = CATALOGUE[c.effect]
-    meanings = {p.name: p.text for p in definition.accepted()}
-    return {
-        "key": key,
-        "effect": c.effect,
-        "title": at(d.arm, c.effect, c.joint),
-        "finding": sentence(finding(d.arm, c.effect, c.joint, c.parameters)),
-        "text": sentence(definition.text),
-        "law": law(c.effect),
-        "parameters": [
-            (
-                n,
-                f"{e.value:.4g}",
-                "" if np.isnan(e.std) else f"{e.std:.2g}",
-                "" if e.unit == "1" else e.unit,
-                meanings.get(n, ""),
-            )
-            for n, e in c.parameters.items()
-        ],
-        "delta_bic": f"{c.delta_bic:.1f}",
-        "gain": f"{c.cross_gain:.1f}",
-        "expected": f"{c.expected_gain:.1f}",
-        "share": _share(c),
-        "marks": [_mark(d, check) for check in c.checks],
-        "failed": [
-            f"{x.name} ({by_name(d.arm, x.text)})" for x in c.checks if x.decides and x.passed is False
-        ],
-        "confused_with": ", ".join(definition.confused_with),
-        "experiment": sentence(definition.experiment),
-        "reference": definition.reference,
-    }
+def _over_abscissae(d: Diagnosis) -> Folded:
+    parts: list[Part] = [Text("Means over bins of the test record.")]
+    for name, charts in residuals(d).items():
+        parts += [Heading(f"Over {name}"), block(charts)]
+    return Folded("Residuals over speed, position, load and more", parts)
 
 
-def _mark(d: Diagnosis, c: Check) -> tuple[str, str, str, str]:
-    """Sign, class, name and figures of a check."""
-    name, _, text = checked(d.arm, c)
-    sign, kind = ("–", "unasked") if c.passed is None else ("✓", "yes") if c.passed else ("✗", "no")
-    if not c.decides:
-        text += "; reported, decides nothing"
-    return sign, kind, name, text
-
-
-def _share(c: NamedCause) -> str:
-    """Effect of the cause on the error of the test record; empty where it is not known."""
-    s = c.share
-    if np.isnan(s.gain):
-        return ""
-    size, low, high, word = (
-        (s.gain, s.low, s.high, "less") if s.gain >= 0 else (-s.gain, -s.high, -s.low, "more")
-    )
-    return f"{size:.1f} % {word} error on the test record than without it ({low:.1f} to {high:.1f} %)"
-
-
-def _errors(d: Diagnosis) -> list[Sequence[str]]:
-    e = d.errors
-    if not d.causes:
-        return [(joint_name(d.arm, j + 1), number(e.before[j])) for j in range(len(e.before))]
-    return [
-        (
-            joint_name(d.arm, j + 1),
-            number(e.before[j]),
-            number(e.after[j]),
-            Markup("{} <small>({} to {})</small>").format(
-                *(f"{x:.1f}" for x in (e.gain[j], e.low[j], e.high[j]))
-            ),
-        )
-        for j in range(len(e.before))
-    ]
-
-
-def _simulation(d: Diagnosis) -> list[Sequence[str]]:
+def _simulation(d: Diagnosis) -> list[Part]:
     one, two = d.simulation
     if one is None or two is None:
         return []
-    return [
+    rows = [
         (
             joint_name(d.arm, j + 1),
             f"{one.f_gof[j]:.2f}",
@@ -197,3 +130,44 @@ def _simulation(d: Diagnosis) -> list[Sequence[str]]:
         )
         for j in range(len(one.f_gof))
     ]
+    text = f"{_SIMULATED[d.test.prepared.input is None]}: {_FIT}"
+    return [Text(text), Grid("Simulated motion", _MOTION, rows), block(replayed(d))]
+
+
+def _files(d: Diagnosis) -> list[Part]:
+    values = [(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()]
+    records = [(r["name"], r["use"], str(r["samples"]), f"{r['rate']:g}") for r in d.log.to_json()["records"]]
+    settings = [(name, _said(value)) for name, value in d.settings.items()]
+    extended, identified = f"{d.arm.name}_extended.yaml", f"{d.arm.name}_parameters.yaml"
+    beside = [
+        Run("Beside this page: "),
+        Run("diagnosis.json", target="diagnosis.json"),
+        Run(" has all of it as data, verdict "),
+        Run(d.verdict, "code"),
+        Run("; "),
+        Run(extended, target=extended),
+        Run(f" is the description{' with the causes' if d.causes else ''}, "),
+        Run(identified, target=identified),
+        Run(" its parameters; "),
+        Run("effort.svg", target="effort.svg"),
+        Run(" and "),
+        Run("residuals.svg", target="residuals.svg"),
+        Run(" are pictures."),
+    ]
+    model = "extended model" if d.causes else "model"
+    tables = [
+        Grid("Records", _RECORDS, records),
+        Grid("Settings", (("setting", "left"), ("value", "left")), settings),
+    ]
+    return [
+        Folded(f"Parameters of the {model}", [Grid("Parameters", _PARAMETERS, values)]),
+        Folded("Records and settings", tables),
+        Text(beside),
+    ]
+
+
+def _said(value: object) -> str:
+    """A setting for a person."""
+    if isinstance(value, list):
+        return ", ".join(_said(v) for v in value)
+    return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

@@ -11,6 +11,7 @@ from modelgen.diagnosis.result import Diagnosis
 from modelgen.numeric import Array
 
 _WINDOWS = 24  # of the simulated motion that are shown
+BINS = 24  # over an abscissa
 HELD = 5  # samples, at least, that a mean is made of
 BEFORE, AFTER = "model as described", "extended model"
 
@@ -72,7 +73,7 @@ def against(d: Diagnosis) -> dict[str, tuple[Array, list[str]]]:
 
 def bins_of(name: str) -> int:
     """Number of bins over an abscissa: what repeats with the motor's turns asks for many."""
-    return 120 if name == "motor position" else 24
+    return 120 if name == "motor position" else BINS
 
 
 def residuals(d: Diagnosis) -> dict[str, list[Chart]]:
@@ -95,7 +96,7 @@ def residuals(d: Diagnosis) -> dict[str, list[Chart]]:
     return found
 
 
-def binned(x: Array, y: Array, bins: int = 24) -> tuple[Array, Array]:
+def binned(x: Array, y: Array, bins: int = BINS) -> tuple[Array, Array]:
     """Means over bins of equal width that hold five samples at least; of a short record over five each."""
     if len(x) < HELD:
         return np.zeros(0), np.zeros(0)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+import re
 
 import numpy as np
 
 from modelgen.charts import Band, Chart, Curve, sheet
 from modelgen.description import Arm
-from modelgen.diagnosis.experiment import STEM, Experiment, differences
+from modelgen.diagnosis.experiment import STEM, Experiment, Proposal, differences
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.excitation.writing import set_points, trajectory
-from modelgen.report.page import block
-from modelgen.report.words import at
+from modelgen.report.page import Grid, Part, Run, Text, block
+from modelgen.report.words import at, by_name, sentence
 
 NAMES = (f"{STEM}.csv", f"{STEM}_set_points.csv", f"{STEM}.svg")
+_PAIRS = (("if this is there", "left"), ("against", "left"), ("expected delta BIC", "right"))
+_TESTS = (("on the bench", "left"), ("expected delta BIC", "right"))
 _LINES = 7  # looks of lines that are told apart
 
 
@@ -29,19 +31,24 @@ def followed(e: Experiment) -> str:
     return f"{e.best}{said}"
 
 
-def described(d: Diagnosis) -> dict[str, Any] | None:
-    """For the page."""
+def described(d: Diagnosis) -> list[Part]:
+    """Parts of the page; none where nothing is to be separated."""
     e = d.next_experiment
     if e is None:
-        return None
-    return {
-        "separates": " from ".join(at(d.arm, effect, joint) for effect, joint in e.separates),
-        "best": followed(e)[0].upper() + followed(e)[1:] + ".",
-        "trajectory": _trajectory(e),
-        "pairs": _pairs(d.arm, e),
-        "charts": block(charts(d.arm, e)),
-        "tests": [(t.text, "" if t.evidence is None else f"{t.evidence:.3g}") for t in e.tests],
-    }
+        return []
+    separates = " from ".join(at(d.arm, effect, joint) for effect, joint in e.separates)
+    best = _kept(sentence(by_name(d.arm, followed(e))))
+    parts: list[Part] = [Text(f"It separates {separates}."), Text([Run(best, "strong")])]
+    if e.proposal is not None:
+        drawn = charts(d.arm, e)
+        parts += [
+            Text(_trajectory(e, e.proposal)),
+            Grid("Expected evidence", _PAIRS, _pairs(d.arm, e, e.proposal)),
+            block(drawn[:1]),
+            block(drawn[1:]),
+        ]
+    tests = [(_kept(by_name(d.arm, t.text)), _evidence(t.evidence)) for t in e.tests]
+    return [*parts, Grid("Tests on the bench", _TESTS, tests)] if tests else parts
 
 
 def plans(d: Diagnosis) -> dict[str, str]:
@@ -75,7 +82,8 @@ def charts(arm: Arm, e: Experiment) -> list[Chart]:
     t = rows.prepared.t
     shown = (t >= period) & (t < 2 * period) if e.run > 1 else np.ones(len(t), dtype=bool)
     unit = rows.prepared.effort_unit
-    for text, joint, left, noise in differences(e, e.proposal):
+    for true, wrong, joint, left, noise in differences(e, e.proposal):
+        text = f"{at(arm, *true)}, fitted as {at(arm, *wrong)}"
         curves = [Curve(t[shown] - t[shown][0], left[shown], "after", "residual of the wrong cause")]
         y_label = f"residual at {names[joint]} [{unit[joint] if joint < len(unit) else 'A'}]"
         bands = [Band(-noise, noise, "noise")]
@@ -83,11 +91,9 @@ def charts(arm: Arm, e: Experiment) -> list[Chart]:
     return found
 
 
-def _trajectory(e: Experiment) -> str:
-    if e.proposal is None:
-        return ""
-    s = e.proposal.excitation.problem.settings
-    used = max(e.proposal.excitation.usage.values(), default=0.0)
+def _trajectory(e: Experiment, p: Proposal) -> str:
+    s = p.excitation.problem.settings
+    used = max(p.excitation.usage.values(), default=0.0)
     text = (
         f"{STEM}.csv holds a period of {s.period:.4g} s, {STEM}_set_points.csv the same for a position "
         f"controller in motor coordinates; {100 * used:.0f} % of the tightest limit is used. The evidence is "
@@ -99,14 +105,22 @@ def _trajectory(e: Experiment) -> str:
     return text
 
 
-def _pairs(arm: Arm, e: Experiment) -> list[tuple[str, str, str]]:
-    if e.proposal is None:
-        return []
+def _pairs(arm: Arm, e: Experiment, p: Proposal) -> list[tuple[str, str, str]]:
     names = [at(arm, *h.candidate.place) for h in e.members]
     count = range(len(names))
     return [
-        (names[i], names[j], f"{e.proposal.evidence[i, j]:.3g}")
+        (names[i], names[j], _evidence(float(p.evidence[i, j])))
         for i in count
         for j in count
-        if np.isfinite(e.proposal.evidence[i, j])
+        if np.isfinite(p.evidence[i, j])
     ]
+
+
+def _evidence(value: float | None) -> str:
+    """A delta BIC, of which less than a tenth says nothing."""
+    return "" if value is None else f"{value:.1f}"
+
+
+def _kept(text: str) -> str:
+    """A text whose numbers keep their units on one line."""
+    return re.sub(r"(\d) (s|deg|mm|g|mrad)\b", "\\1\N{NO-BREAK SPACE}\\2", text)

@@ -179,7 +179,7 @@ def _parameters(found: Identification) -> list[Any]:
                 "Each parameter times the RMS of what one unit of it adds to the effort, where it shows "
                 "most: a dot with its 95 % interval, and a ring where the description has it."
             ),
-            Block(charts, kind="charts"),
+            Block(charts),
         ]
     heads = [("parameter", "left"), *((h, "right") for h in ("value", "std", "nominal", "std %"))]
     heads += [("unit", "left"), ("essential", "left")]

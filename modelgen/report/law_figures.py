@@ -9,14 +9,18 @@ import numpy as np
 
 from modelgen.charts import Chart, Curve
 from modelgen.diagnosis.result import Diagnosis
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, Definition, InputEffect
 from modelgen.numeric import Array
-from modelgen.report.diagnosis_figures import HELD, against, binned, bins_of, measured_efforts, units_of
+from modelgen.report.diagnosis_figures import BINS, HELD, against, binned, bins_of, measured_efforts, units_of
 
 _SAMPLES = 500  # of the residuals that are drawn
 _GROUPS = 80  # of samples, through whose means a law is drawn
+_WAVES = 3  # groups for a bin
 _NEAR = 0.9  # of the best abscissa's share that the usual one needs
-_OVER = {"velocity": "speed", "position": "position", "acceleration": "acceleration"}
+_CLEAR = 0.5  # of the best share: a law that any motion makes a curve over time is drawn over something else
+_OVER = {"velocity": "speed", "position": "position", "acceleration": "acceleration", "time": "time"}
+_FEW = 0.005  # of the samples, that lie far out at either end: impacts
+_FAR = 2.0  # times the span of the others, by which they are left out
 
 
 @dataclass(frozen=True)
@@ -62,18 +66,21 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
     best = _abscissa(d, k, j)
     name, unit = d.arm.coordinate_names[j], units_of(d)[j]
     against_motion = "" if (best.side > 0).all() else " against the motion"
-    x_label, bins = f"{best.name} [{best.unit}]", bins_of(best.name)
+    x_label = f"{best.name} [{best.unit}]"
     turned = best.side if np.mean(law[m, j] * best.side) >= 0.0 or not against_motion else -best.side
-    old, new, own = (x[m, j] * turned for x in (*d.residuals, law))
+    kept = _inner(best.x)
+    x = best.x[kept]
+    old, new, own = ((r[m, j] * turned)[kept] for r in (*d.residuals, law))
     some = np.linspace(0, len(own) - 1, min(_SAMPLES, len(own))).astype(int)
     effect, over = d.causes[k].effect, best.name
+    bins = _bins(effect, over)
     found = Chart(
         f"{name}: the law found",
         x_label,
         f"effort{against_motion} [{unit}]",
         [
-            Curve(best.x[some], (own + new)[some], "measured", "effort without the rest of the model", True),
-            Curve(*_curve(best.x, own), "law", "law of the cause"),
+            Curve(x[some], (own + new)[some], "measured", "effort without the rest of the model", True),
+            Curve(*_curve(x, own, _groups(effect, over)), "law", "law of the cause"),
         ],
         f"The law of {effect} over {over}, with what the rest of the model leaves of the effort of {name}.",
     )
@@ -82,46 +89,74 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
         x_label,
         f"residual{against_motion} [{unit}]",
         [
-            Curve(*binned(best.x, old, bins), "before", "mean residual without the cause", True),
-            Curve(*binned(best.x, new, bins), "after", "mean residual with the cause", True),
+            Curve(*binned(x, old, bins), "before", "mean residual without the cause", True),
+            Curve(*binned(x, new, bins), "after", "mean residual with the cause", True),
         ],
         f"Mean residual of {name} over {over}, without and with {effect}.",
     )
     return [found, left]
 
 
+def _inner(x: Array) -> Array:
+    """Flags of all samples but few that lie far out."""
+    low, high = np.quantile(x, [_FEW, 1.0 - _FEW])
+    if np.ptp(x) <= _FAR * (high - low):
+        return np.ones(len(x), dtype=bool)
+    return np.asarray((x >= low) & (x <= high))
+
+
 def _abscissa(d: Diagnosis, k: int, j: int) -> _Abscissa:
     """Over what the law is most nearly a curve; what the catalogue says, where that is as good."""
     m = d.test.moving[:, j]
     y = d.laws[k][m, j]
-    tried = list(_tried(d, j))
-    shares = [_share(a, y * a.side) for a in tried]
-    best = max(shares)
-    usual = _OVER.get(CATALOGUE[d.causes[k].effect].seen_over, "")
-    near = [a for a, s in zip(tried, shares, strict=True) if s >= _NEAR * best]
-    first = [a for a in near if a.name == usual and (a.side > 0).all()]
-    return first[0] if first else tried[int(np.argmax(shares))]
+    definition = CATALOGUE[d.causes[k].effect]
+    usual = "motor position" if definition.periodic else _OVER.get(definition.seen_over, "")
+    effect = definition.name
+    tried = _tried(d, j, definition)
+    found = [(_share(a, y * a.side, _groups(effect, a.name)), a) for a in tried]
+    timeless = [(share, a) for share, a in found if a.name != "time"]
+    if usual != "time" and max(share for share, _ in timeless) >= _CLEAR * max(share for share, _ in found):
+        found = timeless
+    best, first = max(found, key=lambda pair: pair[0])
+    near = [a for share, a in found if share >= _NEAR * best and a.name == usual]
+    # over time the motion itself is seen, unless it is taken out
+    plain = [a for a in near if (a.side > 0).all() == (usual != "time")]
+    return plain[0] if plain else first
 
 
-def _tried(d: Diagnosis, j: int) -> Iterator[_Abscissa]:
+def _tried(d: Diagnosis, j: int, definition: type[Definition]) -> Iterator[_Abscissa]:
     p, m = d.test.prepared, d.test.moving[:, j]
     direction = np.sign(p.picked(p.dq)[m, j])
-    for name, (x, units) in against(d).items():
+    abscissae = against(d)
+    if issubclass(definition, InputEffect):
+        abscissae["effort"] = (measured_efforts(d.test), units_of(d))
+    for name, (x, units) in abscissae.items():
         for side in (np.ones(len(direction)), direction):
             yield _Abscissa(name, units[j], x[m, j], side)
     time = p.t[m] - p.t[0]
-    yield _Abscissa("time", "s", time, np.ones(len(time)))
+    for side in (np.ones(len(time)), direction):
+        yield _Abscissa("time", "s", time, side)
 
 
-def _curve(x: Array, y: Array) -> tuple[Array, Array]:
+def _bins(effect: str, over: str) -> int:
+    """Number of bins over an abscissa: what repeats with it asks for many."""
+    return bins_of(over) if CATALOGUE[effect].periodic else BINS
+
+
+def _groups(effect: str, over: str) -> int:
+    """Number of groups over an abscissa, likewise."""
+    return max(_GROUPS, _WAVES * _bins(effect, over))
+
+
+def _curve(x: Array, y: Array, groups: int) -> tuple[Array, Array]:
     """Means over groups of neighbours, equally many in each."""
-    groups = np.array_split(np.argsort(x, kind="stable"), max(1, min(_GROUPS, len(x) // HELD)))
-    return np.array([x[g].mean() for g in groups]), np.array([y[g].mean() for g in groups])
+    parts = np.array_split(np.argsort(x, kind="stable"), max(1, min(groups, len(x) // HELD)))
+    return np.array([x[g].mean() for g in parts]), np.array([y[g].mean() for g in parts])
 
 
-def _share(a: _Abscissa, y: Array) -> float:
+def _share(a: _Abscissa, y: Array, groups: int) -> float:
     """Share of the mean square that the means over bins have."""
-    x, means = _curve(a.x, y)
+    x, means = _curve(a.x, y, groups)
     total = float(np.mean(y**2))
     if not len(x) or total <= 0.0:
         return 0.0

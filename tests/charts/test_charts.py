@@ -119,6 +119,25 @@ def test_a_sheet_is_one_picture_with_a_legend_and_the_same_again() -> None:
     assert [float(v) for v in root.attrib["viewBox"].split()][2] == 2 * 440
 
 
+def test_a_legend_stays_within_its_sheet() -> None:
+    """On as many lines as it takes; a letter is seven pixels wide, or less. The charts lie below it."""
+    t = np.linspace(0.0, 1.0, 20)
+    words = ("effort without the rest of the model", "law of the cause", "as described")
+    curves = [
+        Curve(t, t, role, label) for role, label in zip(("measured", "law", "before"), words, strict=True)
+    ]
+    root = ElementTree.fromstring(sheet([Chart("one", "time [s]", "q [rad]", curves)], 1, (350, 210)))
+    width, height = (float(v) for v in root.attrib["viewBox"].split()[2:])
+    places = {e.text: (float(e.attrib["x"]), float(e.attrib["y"])) for e in root.iter(f"{SVG}text")}
+    assert width == 350.0
+    assert all(places[word][0] + 7.0 * len(word) <= width for word in words)
+    lines = {places[word][1] for word in words}
+    assert len(lines) == 2
+    (chart,) = [e for e in root if e.tag == f"{SVG}svg"]
+    assert max(lines) < places["one"][1] < float(chart.attrib["y"])
+    assert float(chart.attrib["y"]) + 210.0 <= height
+
+
 def test_an_interval_lies_about_its_value_and_beside_what_was_expected() -> None:
     rows = [Interval("MX1", 2.0, 1.5, 2.5, 1.0), Interval("FC1", -1.0, -1.2, -0.8)]
     svg = intervals(rows, "effort [A]", "parameters")

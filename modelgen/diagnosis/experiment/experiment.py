@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from modelgen.diagnosis.candidates import Place
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.experiment.bench_tests import Test, least, readings, tests
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis, hypothesis
@@ -160,9 +161,9 @@ def _rounded(value: float | None) -> float | None:
     return None if value is None or not np.isfinite(value) else float(f"{value:.4g}")
 
 
-def differences(e: Experiment, p: Proposal) -> list[tuple[str, int, Array, float]]:
-    """By ordered pair: text, joint from 0, what the wrong one would leave there (M,) over all
-    periods, and the noise's standard deviation.
+def differences(e: Experiment, p: Proposal) -> list[tuple[Place, Place, int, Array, float]]:
+    """By ordered pair: the true and the wrong one, joint from 0, what the wrong one would leave there (M,)
+    over all periods, and the noise's standard deviation.
     """
     assert e.judge is not None
     result = []
@@ -171,9 +172,6 @@ def differences(e: Experiment, p: Proposal) -> list[tuple[str, int, Array, float
             if i != j and np.isfinite(p.evidence[i, j]):
                 left, sizes = e.judge.left_over(true, other, p.rows)
                 k = int(np.argmax(np.nan_to_num(left**2).mean(axis=0) / sizes**2))
-                result.append((f"{_text(true)}, fitted as {_text(other)}", k, left[:, k], float(sizes[k])))
+                pair = true.candidate.place, other.candidate.place
+                result.append((*pair, k, left[:, k], float(sizes[k])))
     return result
-
-
-def _text(h: Hypothesis) -> str:
-    return h.candidate.effect + ("" if h.candidate.joint is None else f" {h.candidate.joint}")

@@ -15,7 +15,7 @@ from dataclasses import replace
 import sympy as sp
 
 from modelgen.description.objects import Arm
-from modelgen.effects.base import POSITIVE, Effect, Parameter, Values, at
+from modelgen.effects.base import POSITIVE, Characteristic, Effect, Parameter, Values, at
 from modelgen.effects.traits import Added, Family, Numbers, Reading, Seen, Shows
 from modelgen.effects.variables import Variables
 from modelgen.numeric import Array
@@ -31,6 +31,7 @@ DAMPING = Parameter("damping", "{f} s/{x}", "damping between drive and link", de
 STIFFNESSES = (3.0, 8.0, 20.0, 50.0, 120.0, 300.0, 800.0, 3000.0)
 HARD = 200.0  # of a spring in which something else shows first
 RELAXATION = Parameter("relaxation", "s", "damping over stiffness", grid=(0.02,))
+REACH = 0.012  # of the stretch that is drawn
 RINGS = replace(RELAXATION, grid=(0.005,))  # behind a link's own position the drive rings within less
 
 
@@ -88,6 +89,11 @@ class Compliance(Effect):
             p.name: found[p.name] for p in cls.nonlinear if p.name in found and p not in (STIFFNESS, DAMPING)
         }
         return {**own, "stiffness": found["stiffness"], "damping": found["relaxation"] * found["stiffness"]}
+
+    def characteristic(self, p: Values) -> Characteristic:
+        """Force of the spring over its stretch."""
+        stretch = sp.Symbol("stretch", real=True)
+        return Characteristic(stretch, "stretch", "{x}", REACH, self.spring(stretch, p)[0])
 
     @abstractmethod
     def spring(self, stretch: sp.Expr, p: Values) -> tuple[sp.Expr, sp.Expr]:

@@ -179,7 +179,7 @@ class FrictionWarmUp(Friction):
     needs_effort = True
     confused_with = ("payload_change",)
     experiment = "the same motion cold and warm"
-    shown = at(dry=0.1, viscous=0.0003, time=5.0, speed=25.0)
+    shown = at(dry=0.1, viscous=0.0003, time=5.0, speed=36.0)
 
     @classmethod
     def impossible(cls, arm: Arm, number: int | None, values: Numbers) -> str:
@@ -209,6 +209,7 @@ class Presliding(Friction):
     """Dry friction that builds up over a distance after each reversal."""
 
     name = "presliding"
+    seen_over = "position"
     text = "dry friction that builds up over a distance after a reversal"
     finding = "friction in {drive} builds up over a distance after each reversal"
     reference = "Dahl 1968"

@@ -1,0 +1,132 @@
+"""What the page of a diagnosis says of one cause or suspect."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modelgen.charts import number
+from modelgen.diagnosis.extended import NamedCause
+from modelgen.diagnosis.result import Diagnosis
+from modelgen.diagnosis.validation import Check
+from modelgen.effects import CATALOGUE
+from modelgen.report.diagnosis_sentences import checked
+from modelgen.report.law_figures import judged_joint, law_charts, law_size
+from modelgen.report.law_sketch import sketch
+from modelgen.report.page import Grid, Heading, Marks, Part, Run, Section, Text, block
+from modelgen.report.words import at, by_name, finding, law, sentence
+
+_VALUES = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"), ("meaning", "left"))
+
+
+def found(d: Diagnosis, c: NamedCause) -> str:
+    """The sentence that says it is there."""
+    return sentence(finding(d.arm, c.effect, c.joint, c.parameters))
+
+
+def marks(d: Diagnosis, c: NamedCause, key: str) -> Marks:
+    """Its checks."""
+    return Marks(key, [_mark(d, check) for check in c.checks])
+
+
+def failed(d: Diagnosis, c: NamedCause) -> str:
+    """The checks that keep it from its name."""
+    lost = [x for x in c.checks if x.decides and x.passed is False]
+    return "; ".join(f"{x.name} ({by_name(d.arm, x.text)})" for x in lost)
+
+
+def law_found(d: Diagnosis, k: int) -> Section:
+    """The law of cause k over the data, with its values and its evidence."""
+    c = d.causes[k]
+    reference = Run(f"{CATALOGUE[c.effect].reference}.", "quiet")
+    text = [Run(f"{_law(c.effect)} "), reference, Run(" "), _more(c)]
+    parts: list[Part] = [Text(text), *_size(d, k), block(law_charts(d, k)), _values(d, c)]
+    evidence = (
+        f"Evidence: delta BIC {c.delta_bic:.1f}; {c.cross_gain:.1f} % less error on training records that "
+        f"its fit had not seen, {c.expected_gain:.1f} % expected there{_share(c)}."
+    )
+    return Section(f"The law found: {at(d.arm, c.effect, c.joint)}", [*parts, Text(evidence)], f"cause{k}")
+
+
+def suspected(d: Diagnosis, k: int) -> list[Part]:
+    """Suspect k, with its values and what keeps it from its name."""
+    c = d.suspects[k]
+    evidence = f"Evidence: delta BIC {c.delta_bic:.1f}. It is not named: {failed(d, c)}."
+    return [
+        Heading(at(d.arm, c.effect, c.joint), f"suspect{k}"),
+        Text([Run(f"{_law(c.effect)} "), _more(c)]),
+        Text(evidence),
+        _values(d, c),
+    ]
+
+
+def about(d: Diagnosis) -> list[Section]:
+    """Every effect that is named or suspected: its law as a sketch, and what resembles it."""
+    effects = dict.fromkeys(c.effect for c in (*d.causes, *d.suspects))
+    return [Section(f"About {effect}", _about(effect), f"about-{effect}") for effect in effects]
+
+
+def _about(effect: str) -> list[Part]:
+    definition = CATALOGUE[effect]
+    seen = f"Seen by itself in: {sentence(definition.experiment)}"
+    if definition.confused_with:
+        seen += f" Confused with: {', '.join(definition.confused_with)}."
+    where = f"The picture is of an example. In the documentation: effects.md#{effect}. All effects: "
+    return [
+        Text(_law(effect)),
+        Text(f"{seen} Reference: {definition.reference}."),
+        block([sketch(effect)]),
+        Text([Run(where), Run("modelgen effects", "code")], "quiet"),
+    ]
+
+
+def _law(effect: str) -> str:
+    stated = law(effect)
+    return f"{sentence(CATALOGUE[effect].text)}{f' Law: {stated}' if stated else ''}"
+
+
+def _more(c: NamedCause) -> Run:
+    return Run("More about it", target=f"#about-{c.effect}")
+
+
+def _size(d: Diagnosis, k: int) -> list[Part]:
+    size = law_size(d, k)
+    if size is None:
+        return []
+    where = d.arm.coordinate_names[judged_joint(d, k)]
+    sizes = f"{number(size[0], 2)} of the {number(size[1], 2)} {size[2]}"
+    return [Text(f"Its size on the test record: {sizes} of {where} (RMS).")]
+
+
+def _values(d: Diagnosis, c: NamedCause) -> Grid:
+    meanings = {p.name: p.text for p in CATALOGUE[c.effect].accepted()}
+    rows: Sequence[Sequence[str]] = [
+        (
+            name,
+            f"{e.value:.4g}",
+            "" if np.isnan(e.std) else f"{e.std:.2g}",
+            "" if e.unit == "1" else e.unit,
+            meanings.get(name, ""),
+        )
+        for name, e in c.parameters.items()
+    ]
+    return Grid(f"Values of {at(d.arm, c.effect, c.joint)}", _VALUES, rows)
+
+
+def _mark(d: Diagnosis, c: Check) -> tuple[str, str, str]:
+    """Class, name and figures of a check."""
+    name, _, text = checked(d.arm, c)
+    kind = "unasked" if c.passed is None else "yes" if c.passed else "no"
+    return kind, name, text if c.decides else f"{text}; reported, decides nothing"
+
+
+def _share(c: NamedCause) -> str:
+    """Effect of the cause on the error of the test record; empty where it is not known."""
+    s = c.share
+    if np.isnan(s.gain):
+        return ""
+    size, low, high, word = (
+        (s.gain, s.low, s.high, "less") if s.gain >= 0 else (-s.gain, -s.high, -s.low, "more")
+    )
+    return f"; {size:.1f} % {word} error on the test record than without it ({low:.1f} to {high:.1f} %)"

@@ -1,0 +1,207 @@
+"""What pages are put together of: each part has a template of its own, and hands it what stands there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, ClassVar
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from modelgen.charts import Chart, drawn, labels
+from modelgen.resources import templates_folder
+
+_ANSWERS = {"yes": "passed", "no": "failed", "unasked": "not asked"}
+
+
+class Part:
+    """A part of a page. kind: name of its template, which finds `values` by their names."""
+
+    kind: ClassVar[str]
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        return vars(self)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A piece of a line. look: "strong", "quiet", "code" or none; target: of a link, empty for none."""
+
+    text: str
+    look: str = ""
+    target: str = ""
+
+
+Line = str | Sequence[Run]
+
+
+@dataclass(frozen=True)
+class Text(Part):
+    """A paragraph. look: class of its style."""
+
+    kind: ClassVar[str] = "text"
+    text: Line
+    look: str = ""
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        return {"text": line(self.text), "look": self.look}
+
+
+@dataclass(frozen=True)
+class Heading(Part):
+    """A heading below that of a section. anchor: by which links find it, empty for none."""
+
+    kind: ClassVar[str] = "heading"
+    text: str
+    anchor: str = ""
+
+
+@dataclass(frozen=True)
+class Command(Part):
+    """A command to copy."""
+
+    kind: ClassVar[str] = "command"
+    text: str
+
+
+@dataclass(frozen=True)
+class Lines(Part):
+    """A list."""
+
+    kind: ClassVar[str] = "list"
+    lines: Sequence[Line]
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        return {"lines": [line(each) for each in self.lines]}
+
+
+@dataclass(frozen=True)
+class Grid(Part):
+    """A table. heads: each with the side that its cells stand at. Of two texts in a cell one is small."""
+
+    kind: ClassVar[str] = "table"
+    caption: str
+    heads: Sequence[tuple[str, str]]
+    rows: Sequence[Sequence[str | tuple[str, str]]]
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        looks = ["n" if side == "right" else "u" if head == "unit" else "" for head, side in self.heads]
+        heads = [{"text": head, "look": "n" if side == "right" else ""} for head, side in self.heads]
+        rows = [[_cell(cell, look) for cell, look in zip(row, looks, strict=True)] for row in self.rows]
+        return {"caption": self.caption, "heads": heads, "rows": rows}
+
+
+@dataclass(frozen=True)
+class Block(Part):
+    """Charts with one legend. charts: title and SVG; legend: role, label and whether it is dots of each."""
+
+    kind: ClassVar[str] = "charts"
+    charts: Sequence[tuple[str, Markup]]
+    legend: Sequence[tuple[str, str, bool]] = ()
+    zooms: bool = False
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        legend = [
+            {
+                "label": label,
+                "band": role == "noise",
+                "look": "" if role == "noise" else f"{'dots' if dotted else 'line'} {role}",
+                "path": "M13 5h0" if dotted else "M1 5h24",
+            }
+            for role, label, dotted in self.legend
+        ]
+        return {"charts": self.charts, "legend": legend, "zooms": self.zooms}
+
+
+@dataclass(frozen=True)
+class Marks(Part):
+    """Answers of checks in a row, each with its figures on hover, tap or focus.
+
+    marks: "yes", "no" or "unasked", name and figures. key: by which the page tells them from others.
+    """
+
+    kind: ClassVar[str] = "marks"
+    key: str
+    marks: Sequence[tuple[str, str, str]]
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        signs = {"yes": "✓", "no": "✗", "unasked": "–"}
+        marks = [
+            {
+                "look": look,
+                "sign": signs[look],
+                "name": name,
+                "answer": _ANSWERS[look],
+                "text": text,
+                "anchor": f"{self.key}-{k}",
+            }
+            for k, (look, name, text) in enumerate(self.marks, 1)
+        ]
+        return {"marks": marks}
+
+
+@dataclass(frozen=True)
+class Folded(Part):
+    """What is folded away until it is asked for. screen: not on paper, and no section of the page."""
+
+    kind: ClassVar[str] = "folded"
+    title: str
+    parts: Sequence[Part | str]
+    screen: bool = False
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        look = "section screen" if self.screen else "section"
+        return {"title": self.title, "parts": html(self.parts), "look": look}
+
+
+def html(parts: Sequence[Part | str]) -> list[Markup]:
+    """Every part by its template; what is text already as it is."""
+    return [_filled(p.kind, p.values()) if isinstance(p, Part) else Markup.escape(p) for p in parts]
+
+
+def line(text: Line) -> Markup:
+    """A line by its template."""
+    runs = [Run(text)] if isinstance(text, str) else text
+    return _filled("line", {"runs": [_looks(run) for run in runs]})
+
+
+def block(charts: Sequence[Chart]) -> Block:
+    """Drawn charts that stand beside and below each other."""
+    return Block([(c.title, Markup(drawn(c))) for c in charts], labels(charts), any(c.zoom for c in charts))
+
+
+@cache
+def environment() -> Environment:
+    """Environment of the templates of pages."""
+    return Environment(
+        loader=FileSystemLoader(templates_folder() / "report"),
+        undefined=StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def _filled(kind: str, values: Mapping[str, Any]) -> Markup:
+    return Markup(environment().get_template(f"{kind}.html.j2").render(values).rstrip("\n"))
+
+
+def _looks(run: Run) -> dict[str, Any]:
+    kinds = {"strong": run.look == "strong", "code": run.look == "code"}
+    plain = not run.target and not any(kinds.values())
+    linked, quiet = bool(run.target), run.look == "quiet"
+    return {"text": run.text, "target": run.target, "linked": linked, "quiet": quiet, "plain": plain, **kinds}
+
+
+def _cell(cell: str | tuple[str, str], look: str) -> dict[str, str]:
+    text, small = (cell, "") if isinstance(cell, str) else cell
+    return {"text": text, "small": small, "look": look}
