@@ -1,10 +1,10 @@
-"""Derivatives and combined functions, and MuJoCo's dynamics alone beside its pipelines.
+"""Derivatives and combined functions beside Pinocchio, and MuJoCo's dynamics alone beside its pipelines.
 
     python benchmarks/control.py [ARM ...]     print the tables
     python benchmarks/control.py --accept      write benchmarks/control.json, for the page of `make bench`
 
 The three bench arms, rigid links, parameters folded in, x86-64-v3; instructions per call counted by callgrind
-over 50 states, results compared to 1e-10.
+over 50 states, results compared to 1e-10. Compiling Pinocchio takes minutes, once (build/bench).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 
 from peers import build, mujoco_model, pages_control
 from peers.arms import BENCH, names, subject
-from peers.control import measured
+from peers.control import Programs, measured
 
 ROOT = Path(__file__).resolve().parent.parent
 _SAMPLES = 50
@@ -38,11 +38,15 @@ def main(arguments: Sequence[str]) -> int:
         parser.error(f"needs {missing[0]} (Debian: build-essential, valgrind)")
     bench = ROOT / "build" / "bench"
     bench.mkdir(parents=True, exist_ok=True)
-    mujoco = mujoco_model.harness(bench) if build.package("mujoco") else None
+    programs = Programs(
+        mujoco_model.harness(bench) if build.package("mujoco") else None,
+        build.derivatives(bench),
+        build.tracer(bench),
+    )
     result = {}
     for name in given.arm or BENCH:
         print(name, file=sys.stderr, flush=True)
-        result[name] = measured(subject(name, _SAMPLES), mujoco, ROOT / "build" / "control" / name)
+        result[name] = measured(subject(name, _SAMPLES), programs, ROOT / "build" / "control" / name)
     print("\n".join(pages_control.lines(result)))
     if given.accept:
         text = json.dumps(result, indent=1) + "\n"

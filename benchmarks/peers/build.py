@@ -94,6 +94,14 @@ def pinocchio(folder: Path) -> Path | None:
     return program(folder / "pinocchio", [compiled])
 
 
+def derivatives(folder: Path) -> Path | None:
+    """The harness with Pinocchio's derivatives; takes a minute to compile."""
+    flags = pinocchio_flags()
+    if flags is None:
+        return None
+    return program(folder / "derivatives", [_once(folder, HERE / "pinocchio_derivatives.cpp", *flags)])
+
+
 def tracer(folder: Path) -> Path | None:
     """The program that writes Pinocchio's algorithms as C, through CasADi; takes minutes to compile."""
     flags = pinocchio_flags()

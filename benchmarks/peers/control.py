@@ -1,9 +1,9 @@
-"""What optimisers and control ticks call: derivatives and combined functions; MuJoCo's dynamics alone."""
+"""What optimisers and control ticks call: derivatives and combined functions, beside Pinocchio and MuJoCo."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from modelgen.description.objects import Combined
 from modelgen.functions import Function, Model, build_model, nominal_base
-from peers import mujoco_model, ours
+from peers import mujoco_model, ours, pinocchio_control
 from peers.arms import LINKS_ALONE, Subject
 from peers.build import object_file, program
 from peers.harness_source import harness_source
@@ -25,14 +25,26 @@ COMBINED = {
 DERIVATIVES = ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")
 PARTS = ("inverse_dynamics", "mass_matrix", "forward_dynamics")
 OURS, MUJOCO = "modelgen", "MuJoCo"
+PINOCCHIO, TRACED = "Pinocchio, C++", "Pinocchio, traced with CasADi"
+SAME = "traced, with modelgen's sine and cosine"
 _THIRD = ("ddq", "input")
 _AGREEMENT = 1e-10
 
 
-def measured(case: Subject, mujoco: Path | None, folder: Path) -> dict[str, dict[str, dict[str, float]]]:
+@dataclass(frozen=True)
+class Programs:
+    """What others compute with; None where a package is missing."""
+
+    mujoco: Path | None = None
+    derivatives: Path | None = None
+    tracer: Path | None = None
+
+
+def measured(case: Subject, programs: Programs, folder: Path) -> dict[str, dict[str, dict[str, float]]]:
     """Instructions per call and operations by who computes, by function. Raises RuntimeError where results
     differ.
     """
+    mujoco = programs.mujoco
     folder.mkdir(parents=True, exist_ok=True)
     model = _model(case)
     mine = _ours(case, model, folder / "modelgen")
@@ -42,6 +54,13 @@ def measured(case: Subject, mujoco: Path | None, folder: Path) -> dict[str, dict
     if mujoco:
         mujoco_model.save(case, folder / "model.mjb")
         calls[MUJOCO] = Call(mujoco, folder, case, folder / "model.mjb")
+    if programs.derivatives:
+        calls[PINOCCHIO] = Call(programs.derivatives, folder, case)
+    if programs.tracer:
+        model_file = Path(mine.command()[1])
+        given = programs.tracer, case, model_file
+        calls[TRACED] = pinocchio_control.traced(*given, folder / "traced")
+        calls[SAME] = pinocchio_control.traced(*given, folder / "same", folder / "modelgen")
     found = {}
     for who, call in calls.items():
         if who != OURS:
@@ -66,7 +85,7 @@ def _functions(model: Model) -> dict[str, Function]:
     """What is called, by its name in the tables."""
     functions = {f.name: f for f in model.functions}
     folded = {key: functions[f"{key}_identified"] for key in (*PARTS, *DERIVATIVES, *COMBINED)}
-    return {**folded, "regressor": functions["regressor"]}
+    return {**folded, **{key: functions[key] for key in ("regressor", "regressor_standard")}}
 
 
 def _ours(case: Subject, model: Model, folder: Path) -> Call:
@@ -93,8 +112,12 @@ def _ours(case: Subject, model: Model, folder: Path) -> Call:
 
 def _agree(case: Subject, who: str, mine: Mapping[str, Array], theirs: Mapping[str, Array]) -> None:
     """Their results are ours, to 1e-10 of the largest."""
-    for name, found in theirs.items():
-        reference = mine[name.removesuffix("_alone")]
+    for name, value in theirs.items():
+        if who == MUJOCO:
+            found, reference = value, mine[name.removesuffix("_alone")]
+        else:
+            found = pinocchio_control.compared(case, name, value)
+            reference = pinocchio_control.expected(case, name, mine)[:, : found.shape[1]]
         difference = np.abs(reference - found).max() / np.abs(reference).max()
         if not difference < _AGREEMENT:
             raise RuntimeError(f"{case.arm.name}: {who} and modelgen differ by {difference:.1e} in {name}")

@@ -133,7 +133,7 @@ def _agree(case: Subject, model: Model, results: Mapping[str, Mapping[str, Array
                 if peer == OURS:
                     theirs = value.reshape(len(mine), n, -1) @ np.array(list(nominal_base(model).values()))
                 else:  # by columns
-                    parameters = np.concatenate([_pinocchio(body) for body in case.bodies])
+                    parameters = np.concatenate([pinocchio_parameters(body) for body in case.bodies])
                     theirs = np.einsum("spn,p->sn", value.reshape(len(mine), -1, n), parameters)
             difference = np.abs(mine - theirs).max() / np.abs(mine).max()
             if not difference < _AGREEMENT:
@@ -141,7 +141,7 @@ def _agree(case: Subject, model: Model, results: Mapping[str, Mapping[str, Array
                 raise RuntimeError(f"{name}: {peer} and modelgen differ by {difference:.1e} in {function}")
 
 
-def _pinocchio(body: Body) -> Array:
+def pinocchio_parameters(body: Body) -> Array:
     """Parameters in Pinocchio's order: m, first moments, xx, xy, yy, xz, yz, zz about the joint's frame."""
     t = body.tensor
     return np.array([body.mass, *body.first, t[0, 0], t[0, 1], t[1, 1], t[0, 2], t[1, 2], t[2, 2]])

@@ -4,9 +4,11 @@
 
 #include "pinocchio_model.hpp"
 
+#include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/regressor.hpp>
+#include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
 using casadi::SX;
@@ -27,6 +29,12 @@ template <typename Matrix> SX symbols(const Matrix &matrix)
     SX result(matrix.rows(), matrix.cols());
     pinocchio::casadi::copy(matrix, result);
     return result;
+}
+
+// elements of a matrix, row after row
+template <typename Matrix> SX rows(const Matrix &matrix)
+{
+    return vec(symbols(matrix).T());
 }
 } // namespace
 
@@ -64,5 +72,19 @@ int main(int argc, char **argv)
     if (wanted("regressor"))
         pinocchio::computeJointTorqueRegressor(model, data, q, dq, third);
     add("regressor", symbols(data.jointTorqueRegressor));
+    if (wanted("inverse_dynamics_derivatives")) {
+        pinocchio::computeRNEADerivatives(model, data, q, dq, third);
+        data.M.triangularView<Eigen::StrictlyLower>() =
+            data.M.transpose().triangularView<Eigen::StrictlyLower>();
+        add("inverse_dynamics_derivatives",
+            vertcat(symbols(data.tau), rows(data.dtau_dq), rows(data.dtau_dv), rows(data.M)));
+    }
+    if (wanted("forward_dynamics_derivatives")) {
+        pinocchio::computeABADerivatives(model, data, q, dq, third);
+        data.Minv.triangularView<Eigen::StrictlyLower>() =
+            data.Minv.transpose().triangularView<Eigen::StrictlyLower>();
+        add("forward_dynamics_derivatives",
+            vertcat(symbols(data.ddq), rows(data.ddq_dq), rows(data.ddq_dv), rows(data.Minv)));
+    }
     std::ofstream(argv[2]) << code.dump();
 }

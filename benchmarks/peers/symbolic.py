@@ -18,17 +18,25 @@ _INPUTS = {
 
 TRACED = tuple(_INPUTS)
 TRACED_BESIDES = ("mass_matrix_world", "forward_dynamics_world")  # in Pinocchio's default convention
+TRACED_DERIVATIVES = ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")
 
 
 def sizes(joints: int, functions: Iterable[str] = _INPUTS) -> dict[str, int]:
     """Elements of the results."""
     squares = {"mass_matrix": joints**2, "regressor": 10 * joints**2}
+    squares |= dict.fromkeys(TRACED_DERIVATIVES, joints + 3 * joints**2)
     return {name: squares.get(name.removesuffix("_world"), joints) for name in functions}
 
 
-def traced(sources: Sequence[Path], joints: int) -> Built:
-    """C that CasADi wrote: of TRACED and of TRACED_BESIDES, whose size does not count."""
-    made = sizes(joints, (*TRACED, *TRACED_BESIDES))
+def traced(
+    sources: Sequence[Path],
+    joints: int,
+    names: Sequence[str] = (*TRACED, *TRACED_BESIDES),
+    flags: Sequence[str] = (),
+) -> Built:
+    """C that CasADi wrote of the functions `names`, by default TRACED and TRACED_BESIDES, whose size does not
+    count. flags: of the compiler, besides its own."""
+    made = sizes(joints, names)
     declared = "int traced_{0}(const double **, double **, long long *, double *, int);"
     head = "\n".join(declared.format(name) for name in made)
     calls = {
@@ -39,7 +47,7 @@ def traced(sources: Sequence[Path], joints: int) -> Built:
         )
         for name, size in made.items()
     }
-    return _linked(head, calls, sources)
+    return _linked(head, calls, sources, flags)
 
 
 def kane(source: Path, joints: int) -> Built:
@@ -81,10 +89,13 @@ def symforce(folder: Path, joints: int) -> Built:
     return Built(program(folder / "program", [code]), [code])
 
 
-def _linked(head: str, calls: Mapping[str, tuple[str, int]], sources: Sequence[Path]) -> Built:
+def _linked(
+    head: str, calls: Mapping[str, tuple[str, int]], sources: Sequence[Path], flags: Sequence[str] = ()
+) -> Built:
     """The harness with the sources; the first one's object is what counts."""
     folder = sources[0].parent
     wrapper = folder / "wrapper.c"
     wrapper.write_text(harness_source(head, calls), encoding="utf-8")
-    objects = [object_file(path, folder / f"{path.stem}.o") for path in (*sources, wrapper)]
+    objects = [object_file(path, folder / f"{path.stem}.o", *flags) for path in sources]
+    objects.append(object_file(wrapper, folder / "wrapper.o"))
     return Built(program(folder / "program", objects), objects[:1])

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from math import erf, exp, pi, sqrt
 
 import numpy as np
-from scipy.integrate import quad
-from scipy.optimize import brentq
 
 from modelgen.functions.assembly import Assembly
 from modelgen.functions.monitor import monitored_parameters
@@ -68,6 +66,9 @@ def passage_level(bandwidth: float, duration: float) -> float:
     Of the process of Ornstein and Uhlenbeck, from 0 (Darling and Siegert 1953):
     bandwidth duration = int_0^z exp(x^2/2) int_0^x exp(-y^2/2) dy dx.
     """
+    # A third of what importing the functions takes, for arms with an identification alone.
+    from scipy.integrate import quad  # noqa: PLC0415
+    from scipy.optimize import brentq  # noqa: PLC0415
 
     def beyond(z: float) -> float:
         found, _ = quad(lambda x: exp(0.5 * (x * x - z * z)) * sqrt(pi / 2) * erf(x / sqrt(2)), 0.0, z)

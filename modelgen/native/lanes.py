@@ -4,7 +4,7 @@ from __future__ import annotations
 
 LANES = 8
 # Vectors are an extension of C that gcc and clang share. Sine and cosine: the angle less the nearest multiple
-# of pi/2 in parts (Cody and Waite, 1980), the polynomials of FreeBSD's msun; to 2e-16 where |x| < 1e5.
+# of pi/2 in parts (Cody and Waite, 1980), the polynomials of FreeBSD's msun; to 2.1e-16 where |x| <= 1e5.
 _HEAD = """\
 #include <math.h>
 enum { LANES = 8 };

@@ -262,7 +262,10 @@ def test_sine_and_cosine_are_as_exact_as_is_stated(contraction: str, real: str, 
     for limit, allowed in (
         (2 * np.pi, {"double": 2e-16, "float": 1.2e-7}),
         (1e4, {"double": 2e-16, "float": 2e-7}),
+        (1e5, {"double": 2e-16}),
     ):
+        if real not in allowed:
+            continue
         centres = (np.arange(-int(limit * 4 / np.pi), int(limit * 4 / np.pi) + 1) * np.pi / 4).astype(kind)
         near = (centres[:, None] + np.arange(-3, 4) * np.spacing(np.abs(centres))[:, None]).ravel()
         x = np.concatenate([np.linspace(-limit, limit, 1_000_001), near]).astype(kind)
