@@ -18,6 +18,7 @@
 #   make fuzz    libFuzzer on five arms, FUZZ_SECONDS each (needs clang)
 #   make hidden  diagnose two dozen simulated recordings with hidden effects (a part of make test)
 #   make blind   diagnose the full matrix of hidden effects (SEED=n, TRAIN=4 records; hours), write docs/diagnosis.md
+#   make gallery  hide every effect of the catalogue in simulated records and draw what it does: docs/gallery.md (ONLY=names)
 #   make mutations  defects put into the diagnosis, one after the other: its tests must see each
 #   make clean   remove the environment and the caches
 
@@ -29,7 +30,7 @@ INSTALLED := $(VENV)/.installed
 TESTED := $(VENV)/.installed-test
 
 .PHONY: run check test pytest lint format bench bench-scale bench-identification bench-generation bench-robots bench-fleet docs size \
-    run-examples prove fuzz hidden blind mutations clean
+    run-examples prove fuzz hidden blind gallery mutations clean
 
 EXAMPLE := examples/diagnosis
 
@@ -112,6 +113,10 @@ hidden: $(TESTED)
 blind: $(TESTED)
 	PYTHONPATH=tests $(BIN)/python -m hidden.blind $(if $(SEED),--seed $(SEED)) $(if $(TRAIN),--train $(TRAIN)) \
 	    $(if $(ONLY),--only $(ONLY))
+
+gallery: $(TESTED)
+	$(BIN)/python -m modelgen effects --pages docs
+	PYTHONPATH=tests $(BIN)/python -m hidden.gallery $(if $(ONLY),--only $(ONLY))
 
 mutations: $(TESTED)
 	PYTHONPATH=tests $(BIN)/python -m architecture.mutations

@@ -67,7 +67,15 @@ GUIDES = {
     "Motions": ["excitation", "simulation", "fleet"],
     "The code": ["packaging", "safety"],
     "What is measured": ["diagnosis", "benchmarks", "sizes", "imported-robots"],
-    "How it works": ["effects", "diagnosis_method", "thresholds", "theory", "architecture", "glossary"],
+    "How it works": [
+        "effects",
+        "gallery",
+        "diagnosis_method",
+        "thresholds",
+        "theory",
+        "architecture",
+        "glossary",
+    ],
 }
 
 

@@ -26,7 +26,8 @@ What `effects` in arms.yaml may name, and what `modelgen diagnose` looks for. x 
 motor or of the joint, as said with each; F the force or torque that does work on it. Linear parameters have
 a column of the regressor each, the others are fixed by the description. The pictures are of an example: the
 torque while one joint of a planar arm swings slowly, a geared one where the effect needs no lever; of what
-bends a drive's input, what comes of a sinusoidal one.
+bends a drive's input, what comes of a sinusoidal one. [The gallery](gallery.md) shows what each does to a
+log.
 """
 
 
@@ -44,7 +45,8 @@ def _section(effect: type[Definition], shown: str) -> str:
             f"- States: {', '.join(effect.states)}{'' if effect.held({}) else ', not with the defaults'}."
         )
     lines.append(f"- Confused with: {', '.join(effect.confused_with)}.")
-    lines += [f"- Separated by: {effect.experiment}.", f"- {effect.reference}.", ""]
+    lines += [f"- Separated by: {effect.experiment}.", f"- {effect.reference}."]
+    lines += [f"- [What it does to a log](gallery.md#{effect.name}).", ""]
     return "\n".join(lines)
 
 

@@ -72,7 +72,10 @@ def _about(effect: str) -> list[Part]:
     seen = f"Seen by itself in: {sentence(definition.experiment)}"
     if definition.confused_with:
         seen += f" Confused with: {', '.join(definition.confused_with)}."
-    where = f"The picture is of an example. In the documentation: effects.md#{effect}. All effects: "
+    where = (
+        f"The picture is of an example. In the documentation: gallery.md#{effect} shows what it does to a "
+        f"log, effects.md#{effect} lists its parameters. All effects: "
+    )
     return [
         Text(_law(effect)),
         Text(f"{seen} Reference: {definition.reference}."),

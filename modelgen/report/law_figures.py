@@ -128,6 +128,8 @@ def _tried(d: Diagnosis, j: int, definition: type[Definition]) -> Iterator[_Absc
     p, m = d.test.prepared, d.test.moving[:, j]
     direction = np.sign(p.picked(p.dq)[m, j])
     abscissae = against(d)
+    if not definition.periodic:
+        del abscissae["motor position"]  # what is a curve over it is one over the joint's position
     if issubclass(definition, InputEffect):
         abscissae["effort"] = (measured_efforts(d.test), units_of(d))
     for name, (x, units) in abscissae.items():

@@ -57,7 +57,20 @@ class Effect:
     later: bool = False  # absent in the first record
     fine: bool = False  # needs small steps
     outside: bool = False  # no entry of the catalogue
+    described: bool = False  # every driven joint has it: it is hidden by a description without it
     most: float = 12.0  # largest magnitude that is still a plausible arm
+
+
+def _viscous(p: Plant, s: Site, m: float) -> None:
+    p["viscous"][s.joint] *= 1.0 + m
+
+
+def _dry(p: Plant, s: Site, m: float) -> None:
+    p["dry"][s.joint] *= 1.0 + m
+
+
+def _rotor(p: Plant, s: Site, m: float) -> None:
+    p["rotor"][s.joint] *= 1.0 + 5.0 * m
 
 
 def _offset(p: Plant, s: Site, m: float) -> None:
@@ -227,6 +240,9 @@ def _hose(p: Plant, s: Site, m: float) -> None:
 
 
 EFFECTS: dict[str, Effect] = {
+    "viscous_friction": Effect(_viscous, described=True),
+    "coulomb_friction": Effect(_dry, described=True),
+    "drive_inertia": Effect(_rotor, "lever", described=True),  # elsewhere the link's inertia absorbs it
     "friction_offset": Effect(_offset),
     "asymmetric_viscous_friction": Effect(_asymmetric),
     "stribeck_friction": Effect(_stribeck, "any", most=3.0),  # four times the Coulomb friction at rest
@@ -255,7 +271,7 @@ EFFECTS: dict[str, Effect] = {
     "external_contact": Effect(_floor, whole=True, outside=True, most=20.0),
     "taut_hose": Effect(_hose, "chain", whole=True, outside=True),
 }
-CATALOGUE = tuple(name for name, effect in EFFECTS.items() if not effect.outside)
+CATALOGUE = tuple(name for name, effect in EFFECTS.items() if not (effect.outside or effect.described))
 OUTSIDE = tuple(name for name, effect in EFFECTS.items() if effect.outside)
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import math
+from pathlib import Path
 from typing import Any
 
 Line = dict[str, Any]
+RUNS = Path(__file__).resolve().parent / "runs"
 COMPLIANT = ("backlash", "joint_flexibility")
 
 
@@ -22,6 +25,12 @@ def wilson(hits: int, total: int, z: float = 1.96) -> tuple[float, float]:
 def answered(lines: list[Line]) -> list[Line]:
     """Those that were drawn and diagnosed."""
     return [line for line in lines if "result" in line]
+
+
+def measured() -> list[Line]:
+    """Lines of the last blind run, of what was answered."""
+    (path,) = (p for p in RUNS.glob("*.jsonl") if p.stem.isdigit())
+    return answered([json.loads(row) for row in path.read_text(encoding="utf-8").splitlines()])
 
 
 def of(
