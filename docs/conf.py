@@ -72,7 +72,7 @@ def _inline(translator: Any, node: Any) -> None:
 def _block(translator: Any, node: Any) -> None:
     style = "margin: 1em 0; padding: 2px 0; overflow-x: auto; overflow-y: hidden"
     made = convert(node.astext(), display="block").replace("<math ", '<math style="overflow: visible" ', 1)
-    translator.body.append(f'<div style="{style}">{made}</div>')
+    translator.body.append(f'<div style="{style}" tabindex="0">{made}</div>')
     raise nodes.SkipNode
 
 

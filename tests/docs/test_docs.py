@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from browser_support import SCHEMES, WIDTHS, opened, violations, wider
 
 ROOT = Path(__file__).parents[2]
 
@@ -45,3 +46,12 @@ def test_nothing_comes_from_the_network(site: Path) -> None:
         text = page.read_text(encoding="utf-8")
         assert 'src="http' not in text, page
         assert 'rel="stylesheet" href="http' not in text, page
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("width", "scheme"), list(zip(WIDTHS, SCHEMES, strict=True)))
+def test_pages_hold_to_the_rules_of_accessibility_at_any_width(site: Path, width: int, scheme: str) -> None:
+    for name in ("index", "diagnosing", "case-studies", "theory"):
+        with opened(site / f"{name}.html", width, scheme, alone=False) as page:
+            assert not violations(page), name
+            assert wider(page) == 0, name
