@@ -13,10 +13,9 @@ from modelgen.diagnosis.adequacy import (
     aliases,
     examined,
     lack_of_fit,
-    smooth_functions,
+    most_like,
     verdict_of,
     without_indistinguishable,
-    without_stand_ins,
 )
 from modelgen.diagnosis.candidates import Candidate, asked, at_motor, candidates
 from modelgen.diagnosis.equations import Band, Equations, feigned, harmless
@@ -55,8 +54,6 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     equations = band.equations
     pool = _pool(band, options)
     selection = forward_selection(equations, pool, progress, options.where)
-    functions = [] if equations.free else list(smooth_functions(selection.system))
-    selection, stand_ins, likeness = without_stand_ins(selection, equations, functions)
     before, every = selection, examined(selection, equations)
     suspects = [e for e in every if e.failed]
     selection = selection.without([e.cause for e in suspects], SUSPECT) if suspects else selection
@@ -64,17 +61,16 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     equal = aliases(named, pool, equations, selection.system.base) if named else []
     selection, unclear = without_indistinguishable(selection, equal)
     if unclear:
-        equal, likeness = [], None
+        equal = []
     system = selection.system
     fit, correlated, left = lack_of_fit(system), endogeneity(system), mean_squares(system)
     remains = Remains(
-        stand_ins=stand_ins,
         suspects=suspects,
         unclear=unclear,
         fit=fit,
         feigned=feigned(equations.blur, left),
         correlated=None if harmless(equations, left) else correlated,
-        likeness=likeness,
+        likeness=None if unclear else most_like(system),
         counted=equations.free and fit is None and _counted(equations, left),
         asked=bool(options.effects),
     )

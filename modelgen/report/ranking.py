@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.description import Arm
-from modelgen.diagnosis.selection import COARSE, EXCHANGED, STANDS_IN, SUPERFLUOUS, SUSPECT, History, Ranked
+from modelgen.diagnosis.selection import COARSE, EXCHANGED, SUPERFLUOUS, SUSPECT, History, Ranked
 from modelgen.report.words import place_of
 
 # Why a candidate is no cause, by the condition that it missed, or why it did not stay one.
@@ -21,7 +21,6 @@ _REFUSED = {
     "near rest": "its exponent is the least that is searched: friction near rest, for which there is a law",
     EXCHANGED: "chosen, then exchanged: another one explains more with all values found anew",
     SUPERFLUOUS: "chosen, then superfluous beside the others",
-    STANDS_IN: "chosen, then dropped: it imitates something that the catalogue lacks",
     SUSPECT: "chosen, then dropped: it failed a check, see the suspects",
     COARSE: "chosen, then dropped: the positions are too coarse to separate it from others",
 }

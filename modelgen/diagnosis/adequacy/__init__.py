@@ -1,10 +1,9 @@
-"""Is what is left explained: lack of fit, smooth functions, stand-ins, causes that cannot be told apart."""
+"""Is what is left explained: lack of fit, smooth functions, checks, causes that cannot be told apart."""
 
 from modelgen.diagnosis.adequacy.checks import Examined, confirmed, examined
 from modelgen.diagnosis.adequacy.distinguishable import aliases, without_indistinguishable
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit, place
-from modelgen.diagnosis.adequacy.smooth_functions import smooth_functions
-from modelgen.diagnosis.adequacy.stand_ins import Likeness, without_stand_ins
+from modelgen.diagnosis.adequacy.smooth_functions import Likeness, most_like
 from modelgen.diagnosis.adequacy.verdict import Remains, verdict_of
 
 __all__ = [
@@ -16,9 +15,8 @@ __all__ = [
     "confirmed",
     "examined",
     "lack_of_fit",
+    "most_like",
     "place",
-    "smooth_functions",
     "verdict_of",
     "without_indistinguishable",
-    "without_stand_ins",
 ]

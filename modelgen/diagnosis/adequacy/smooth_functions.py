@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from modelgen.dataset.drives import gains
+from modelgen.diagnosis.adequacy.null_distribution import NULLS
 from modelgen.diagnosis.evidence import StackedEquations, System
+from modelgen.diagnosis.options.thresholds import AdequacyThresholds
 from modelgen.numeric import Array
 
 SHAPE = "shape"  # among the nulls
@@ -35,6 +37,14 @@ class SmoothFunction:
 
 
 @dataclass(frozen=True)
+class Likeness:
+    """A function that what the causes leave is most like, with its evidence (delta BIC)."""
+
+    shape: SmoothFunction
+    evidence: float
+
+
+@dataclass(frozen=True)
 class Worth:
     """evidence, slow: delta BIC in the system's fair equations and in the plain ones, in which slow functions
     are worth too much and fast errors nothing; percent: of the RMSE of the joints that it acts on.
@@ -43,6 +53,25 @@ class Worth:
     evidence: float
     slow: float
     percent: float
+
+
+def most_like(system: System) -> Likeness | None:
+    """What the causes leave is most like this function of no law; None where it is like none.
+
+    None as well of free motions, which show little but forces that depend on where the arm is.
+    """
+    limits = system.equations.thresholds
+    if system.equations.free:
+        return None
+    least, worth = like_delta_bic(limits.adequacy), limits.validation.min_gain_percent
+    found = [(shape, log_evidence(shape, system)) for shape in smooth_functions(system)]
+    like = [Likeness(shape, w.evidence) for shape, w in found if w.evidence > least and w.percent > worth]
+    return max(like, key=lambda likeness: likeness.evidence, default=None)
+
+
+def like_delta_bic(limits: AdequacyThresholds) -> float:
+    """Evidence from which what is left is called like a function of no law."""
+    return float(np.quantile(NULLS[SHAPE], limits.null_share))
 
 
 def smooth_functions(system: System) -> Iterator[SmoothFunction]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from modelgen.diagnosis.adequacy.checks import Examined
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, place
-from modelgen.diagnosis.adequacy.stand_ins import Likeness
+from modelgen.diagnosis.adequacy.smooth_functions import Likeness
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.evidence import Endogeneity
 from modelgen.diagnosis.selection import Cause, Selection
@@ -20,16 +20,13 @@ from modelgen.numeric import Array
 class Remains:
     """Findings that speak for a verdict besides the causes.
 
-    suspects: what has evidence and failed a check; stand_ins: what gained something and left most of what
-    repeats, or explained less than a function of no law; unclear: what coarse positions do not tell from its
-    rivals; fit: lack of fit, None where nothing repeats; feigned: percent of the RMSE by joint that errors of
+    suspects: what has evidence and failed a check; unclear: what coarse positions do not tell from its rivals; fit: lack of fit, None where nothing repeats; feigned: percent of the RMSE by joint that errors of
     the positions could feign; correlated: what the test of Durbin, Wu and Hausman says, None where it has no
     say; likeness: what is left is most like; counted: whether the encoders' counts are all the noise there
     is, and what remains is no more than that; asked: whether some effects alone were asked for.
     """
 
     suspects: Sequence[Examined]
-    stand_ins: Sequence[Cause]
     unclear: Sequence[Cause]
     fit: LackOfFit | None
     feigned: Array
@@ -81,12 +78,10 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
         )
     if fit.found or likeness is not None:
-        near = max(remains.stand_ins, key=lambda c: c.delta_bic, default=None)
-        more = "" if near is None else f"; {_title(near.trial.candidate)} comes nearest"
         pool = "none of the effects asked for" if remains.asked else "no effect of the catalogue"
         return (
             "outside_catalogue",
-            f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}{more}",
+            f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
 

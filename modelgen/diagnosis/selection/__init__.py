@@ -5,7 +5,6 @@ from modelgen.diagnosis.selection.compliance import alternatives, best_beside
 from modelgen.diagnosis.selection.history import (
     COARSE,
     EXCHANGED,
-    STANDS_IN,
     SUPERFLUOUS,
     SUSPECT,
     History,
@@ -18,7 +17,6 @@ from modelgen.diagnosis.selection.stepwise import Report, forward_selection, nee
 __all__ = [
     "COARSE",
     "EXCHANGED",
-    "STANDS_IN",
     "SUPERFLUOUS",
     "SUSPECT",
     "Cause",

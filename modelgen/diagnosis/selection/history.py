@@ -9,7 +9,7 @@ from modelgen.diagnosis.candidates import FittedCandidate, Place
 from modelgen.diagnosis.validation import Judgement
 
 # Why what was taken is no cause in the end.
-EXCHANGED, SUPERFLUOUS, STANDS_IN, COARSE = "exchanged", "superfluous", "stand-in", "coarse positions"
+EXCHANGED, SUPERFLUOUS, COARSE = "exchanged", "superfluous", "coarse positions"
 SUSPECT = "suspect"
 
 
