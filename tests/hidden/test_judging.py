@@ -10,7 +10,7 @@ from hidden.judging import FOUND, MISSED, WRONG, judge
 from modelgen.diagnosis.adequacy.lack_of_fit import PART, WHOLE, inflation
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
 from modelgen.diagnosis.adequacy.smooth_functions import SHAPE
-from modelgen.diagnosis.adequacy.stand_ins import like_delta_bic
+from modelgen.diagnosis.adequacy.smooth_functions import like_delta_bic
 from modelgen.diagnosis.options.thresholds import AdequacyThresholds
 
 
