@@ -2,7 +2,7 @@
 
 from modelgen.diagnosis.selection.history import (
     EXCHANGED,
-    STANDS_IN,
+    SUSPECT,
     Ranked,
     best_of_each,
     taken_back,
@@ -25,10 +25,10 @@ def test_what_was_taken_back_says_why_in_its_own_turn_alone() -> None:
         best_of_each([entry(SPRING, 60.0), entry(DELAY, 50.0)], SPRING),
         best_of_each([entry(DELAY, 40.0)], DELAY),
     ]
-    found = taken_back(turns, DELAY, STANDS_IN)
+    found = taken_back(turns, DELAY, SUSPECT)
     assert found[0] == turns[0]
-    assert [(r.refused, r.taken) for r in found[1]] == [(STANDS_IN, True)]
-    assert taken_back(turns, DRY, STANDS_IN) == turns
+    assert [(r.refused, r.taken) for r in found[1]] == [(SUSPECT, True)]
+    assert taken_back(turns, DRY, SUSPECT) == turns
 
 
 def test_an_exchange_names_both() -> None:

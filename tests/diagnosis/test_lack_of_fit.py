@@ -8,14 +8,9 @@ from diagnosis_support import BARE, UNUSED, system_of
 from numpy.random import Generator, default_rng
 from scipy.signal import lfilter
 
-from modelgen.diagnosis.adequacy.lack_of_fit import PART, WHOLE, in_parts, lack_of_fit, ratios
-from modelgen.diagnosis.adequacy.stand_ins import doubtful
-from modelgen.diagnosis.candidates.candidate import Candidate
-from modelgen.diagnosis.candidates.fitted import FittedCandidate
+from modelgen.diagnosis.adequacy.lack_of_fit import PART, WHOLE, lack_of_fit, ratios
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
-from modelgen.diagnosis.selection.cause import Cause, Selection
-from modelgen.diagnosis.validation.gates import Judgement
 from modelgen.numeric import Array
 
 PERIOD, PERIODS = 480, 3
@@ -105,33 +100,3 @@ def test_errors_of_the_positions_that_repeat_are_no_lack_of_fit() -> None:
         fit = lack_of_fit(system_of(told, periods=made.periods))
         assert fit is not None
         assert not fit.found
-
-
-def test_excess_is_the_power_that_repeats() -> None:
-    """In units of the noise's variance, summed over the rows of a part."""
-    found = np.mean([max(t.excess for t in in_parts(system(k, bump(6.0)))) for k in range(10)])
-    assert found == pytest.approx(PERIODS * float((bump(6.0) ** 2).sum()), rel=0.2)
-
-
-def cause(column: Array, s: System) -> Cause:
-    """As if it had passed every gate."""
-    columns = [np.tile(column, PERIODS)[:, None, None] for _ in s.rows]
-    gain = s.gain(columns)
-    assert gain is not None
-    judged = Judgement(5.0, 5.0, "")
-    trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain)
-    return Cause(trial, gain.delta_bic, judged.gain, judged.expected)
-
-
-@pytest.mark.parametrize(("right", "kept"), [(True, 1), (False, 0)])
-def test_a_cause_that_leaves_the_contact_stands_in_for_it(right: bool, kept: bool) -> None:
-    """A wave over all the period explains a share of it only."""
-    s = system(1, bump(8.0))
-    wave = bump(0.2) + np.cos(2 * np.pi * (np.arange(PERIOD) - 225) / PERIOD) ** 8
-    one = cause(bump(1.0) if right else wave, s)
-    rows, tables = (
-        s.rows,
-        [np.concatenate([r.columns, c], axis=2) for r, c in zip(s.rows, one.trial.columns, strict=True)],
-    )
-    doubted = doubtful(Selection([one], system_of(rows, tables, s.periods), []), s.equations)
-    assert len(doubted) == 1 - kept

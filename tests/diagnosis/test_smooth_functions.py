@@ -11,14 +11,18 @@ from numpy.random import default_rng
 from scipy.signal import lfilter
 from scipy.stats import multivariate_normal
 
-from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, functions, log_evidence
-from modelgen.diagnosis.adequacy.stand_ins import without_stand_ins
+from modelgen.diagnosis.adequacy.free_form import ahead
+from modelgen.diagnosis.adequacy.smooth_functions import (
+    Likeness,
+    SmoothFunction,
+    functions,
+    likeness,
+    log_evidence,
+)
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
-from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.noise import Whitener
 from modelgen.diagnosis.options.thresholds import EvidenceThresholds, SelectionThresholds
-from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.rivals import left_to
 from modelgen.numeric import Array
 
@@ -35,69 +39,54 @@ def step(x: Array) -> Array:
     return np.asarray(0.6 * np.tanh((x - 0.3) / 0.2))
 
 
-def judged(rows: list[Rows], q: list[Array], periods: list[int | None], *laws: Any) -> tuple[Any, ...]:
-    """`outdone`, of causes with these columns that were taken one after the other."""
-    causes: list[Cause] = []
-    system = system_of(rows, [r.columns for r in rows], periods)
-    tables = [r.columns for r in rows]
-    for name, law in zip(("friction_offset", "asymmetric_viscous_friction"), laws, strict=False):
-        columns = [law(x[:, 0])[:, None, None] for x in q]
-        gain = system.gain(columns)
+BY_PLACE = "by place"
+
+
+def judged(force: Any, seed: int, *laws: Any) -> tuple[float, Likeness | None]:
+    """How far a function of the place is ahead of laws, and what is left beside them is most like."""
+    rows, q, periods = made(force, seed)
+    bare = system_of(rows, [r.columns for r in rows], periods)
+    every = [np.stack([law(x[:, 0]) for law in laws], axis=1)[:, None] for x in q]
+    tables = [np.concatenate([r.columns, c], axis=2) for r, c in zip(rows, every, strict=True)]
+    system = system_of(rows, tables, periods)
+    without = system_of(rows, [r.columns for r in rows], periods, noise=system)
+    trials = []
+    for k in range(len(laws)):
+        columns = [c[:, :, [k]] for c in every]
+        gain = bare.gain(columns)
         assert gain is not None
-        trial = FittedCandidate(Candidate(name, 1), {}, columns, gain)
-        causes.append(Cause(trial, gain.delta_bic, 5.0, 5.0))
-        tables = [np.concatenate([t, c], axis=2) for t, c in zip(tables, columns, strict=True)]
-        system = system_of(rows, tables, periods)
-    return without_stand_ins(
-        Selection(causes, system, []), system.equations, [SmoothFunction("by place", {0: functions(q, 0.2)})]
-    )
+        trials.append(FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain))
+    shape = SmoothFunction(BY_PLACE, {0: functions(q, 0.2)})
+    return ahead([shape], trials, without), likeness([shape], system)
 
 
-def test_a_law_that_is_there_stays() -> None:
+def test_a_law_that_is_there_is_ahead_of_a_function() -> None:
     for seed in range(10):
-        rows, q, periods = made(offset, seed)
-        selection, dropped, likeness = judged(rows, q, periods, offset)
-        assert len(selection.causes) == 1
-        assert not dropped
-        assert likeness is None
+        more, like = judged(offset, seed, offset)
+        assert more < -5.0
+        assert like is None
 
 
-def test_a_law_that_stands_for_a_place_goes() -> None:
+def test_a_function_of_the_place_is_ahead_of_a_law_in_its_stead() -> None:
     """And what is left is like a function of the place."""
     for seed in range(10):
-        rows, q, periods = made(spot, seed)
-        selection, dropped, likeness = judged(rows, q, periods, offset)
-        assert not selection.causes
-        assert len(dropped) == 1
-        assert likeness is not None
-        assert likeness.shape.text == "by place"
+        more, like = judged(spot, seed, offset)
+        assert more > 0.0
+        assert like is not None
+        assert like.shape.text == BY_PLACE
 
 
-def test_laws_that_stand_for_a_place_together_go() -> None:
-    """Of a step, an offset and a cubic law leave too little to be seen beside them in 6 of 30."""
-    left = []
-    for seed in range(30):
-        rows, q, periods = made(step, seed)
-        left.append(len(judged(rows, q, periods, offset, cubic)[0].causes))
-    assert left.count(2) <= 1  # 2 if the second law had no price
+def test_a_function_is_ahead_of_laws_that_make_up_one_together() -> None:
+    """Of a step, an offset and a cubic law."""
+    more = [judged(step, seed, offset, cubic)[0] for seed in range(30)]
+    assert sum(x > 0.0 for x in more) >= 24
 
 
-def test_a_law_alone_goes_where_a_function_has_clearly_more_and_something_beside() -> None:
-    """By what it leaves beside it alone, a cubic law in the place of a step would stay in 16 of 30."""
-    left = []
-    for seed in range(30):
-        rows, q, periods = made(step, seed)
-        left.append(len(judged(rows, q, periods, cubic)[0].causes))
-    assert left.count(1) <= 14
-
-
-def test_two_laws_that_are_there_stay() -> None:
+def test_two_laws_that_are_there_are_ahead_together() -> None:
     for size in (0.5, 1.0):
         for seed in range(10):
-            rows, q, periods = made(lambda x, size=size: size * (offset(x) + 0.2 * cubic(x)), seed)
-            selection, dropped, _ = judged(rows, q, periods, offset, cubic)
-            assert len(selection.causes) == 2
-            assert not dropped
+            both = judged(lambda x, size=size: size * (offset(x) + 0.2 * cubic(x)), seed, offset, cubic)
+            assert both[0] < 0.0
 
 
 def test_a_rival_loses_its_evidence_beside_the_cause_and_another_cause_keeps_it() -> None:
@@ -124,11 +113,8 @@ def test_a_rival_loses_its_evidence_beside_the_cause_and_another_cause_keeps_it(
 
 def test_beside_a_law_that_is_there_the_rest_is_still_called_what_it_is() -> None:
     """Ten times the spot's share of the power is the law's."""
-    rows, q, periods = made(lambda x: 6.0 * offset(x) + spot(x))
-    selection, dropped, likeness = judged(rows, q, periods, offset)
-    assert len(selection.causes) == 1
-    assert not dropped
-    assert likeness is not None
+    _, like = judged(lambda x: 6.0 * offset(x) + spot(x), 0, offset)
+    assert like is not None
 
 
 def known_noise(*sizes: float) -> Any:
@@ -179,8 +165,7 @@ def test_a_function_at_one_joint_that_sets_a_parameter_free_is_worth_what_the_ot
 
 
 def test_slow_noise_is_no_function_of_the_place() -> None:
-    """By the plain equations it would be in 3 of 40."""
-    slow, fair = [], []
+    fair = []
     for seed in range(40):
         random = default_rng([7, seed])
         noise = lfilter([0.25], [1.0, -0.97], random.normal(size=(2, PERIOD * PERIODS + 500)))[:, 500:]
@@ -189,10 +174,8 @@ def test_slow_noise_is_no_function_of_the_place() -> None:
         found = log_evidence(
             SmoothFunction("", {0: functions(q, 0.2)}), system_of(red, [r.columns for r in red], periods)
         )
-        slow.append(found.slow)
         fair.append(found.evidence)
     assert max(fair) < 3.0
-    assert sum(x > 10.0 for x in slow) >= 3
 
 
 def test_the_whitened_equations_leave_white_noise_where_errors_repeat_whose_size_is_known() -> None:

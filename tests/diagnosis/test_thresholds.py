@@ -21,8 +21,7 @@ from modelgen.diagnosis.adequacy import lack_of_fit
 from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.adequacy.free_form import further_terms
 from modelgen.diagnosis.adequacy.lack_of_fit import in_parts
-from modelgen.diagnosis.adequacy.smooth_functions import smooth_functions
-from modelgen.diagnosis.adequacy.smooth_functions import like_delta_bic
+from modelgen.diagnosis.adequacy.smooth_functions import like_delta_bic, smooth_functions
 from modelgen.diagnosis.candidates import FittedCandidate, asked, candidates, check_one_arm, cold
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import sensible

@@ -9,8 +9,7 @@ from hidden.cases import Label
 from hidden.judging import FOUND, MISSED, WRONG, judge
 from modelgen.diagnosis.adequacy.lack_of_fit import PART, WHOLE, inflation
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
-from modelgen.diagnosis.adequacy.smooth_functions import SHAPE
-from modelgen.diagnosis.adequacy.smooth_functions import like_delta_bic
+from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, like_delta_bic
 from modelgen.diagnosis.options.thresholds import AdequacyThresholds
 
 

@@ -12,21 +12,18 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
-from diagnosis_support import ARM, BARE, PERIOD, UNUSED, equations_of, made, positions
-from numpy.random import default_rng
+from diagnosis_support import ARM, made
 from threshold_support import Seen, known, law, real, valued
 
 from modelgen.description import Inertial
-from modelgen.diagnosis.adequacy import stand_ins
 from modelgen.diagnosis.adequacy.checks import _stable, significant
 from modelgen.diagnosis.adequacy.distinguishable import aliases
 from modelgen.diagnosis.adequacy.dominance import dominance
 from modelgen.diagnosis.adequacy.free_form import free_forms
-from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, Worth
 from modelgen.diagnosis.candidates import FittedCandidate, candidates
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.search import Search
-from modelgen.diagnosis.equations import Equations, Rows
+from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.experiment import experiment, next_experiment, setup
 from modelgen.diagnosis.experiment.discrimination import Discriminator, hypothesis
@@ -155,63 +152,6 @@ def turns(limits: Thresholds) -> int:
 
 
 # Adequacy
-
-
-def outdone(
-    limits: Thresholds,
-    own: float,
-    instead: tuple[float, float],
-    added: tuple[float, float],
-    causes: int = 2,
-) -> bool:
-    """Whether a function takes the place of a cause. own: the cause's evidence; instead, added: the
-    function's, in the fair and in the plain equations, in its place and beside it.
-    """
-    equations = known(limits)
-    found = selected(equations, *[law(equations, constant)] * causes, delta_bic=own)
-    shape = SmoothFunction("", {})
-    with (
-        patch.object(stand_ins, "together", return_value=own),
-        patch.object(stand_ins, "log_evidence", return_value=Worth(*instead, 5.0)),
-    ):
-        return stand_ins._outdone(found.causes[0], found, equations, [(shape, Worth(*added, 5.0))], False)
-
-
-def outdone_together(limits: Thresholds) -> bool:
-    """Whether a function of evidence 103 outdoes two causes that have 54 each."""
-    equations = known(limits)
-    found = selected(equations, law(equations, constant), law(equations, np.sin))
-    with (
-        patch.object(stand_ins, "together", lambda some, *_, **__: 54.0 * len(some)),
-        patch.object(stand_ins, "log_evidence", return_value=Worth(103.0, 103.0, 5.0)),
-    ):
-        return stand_ins._outdone_together(found, equations, [SmoothFunction("", {})])
-
-
-def doubted(
-    limits: Thresholds, effect: str = "friction_offset", column: Any = constant, **others: Value
-) -> bool:
-    """Whether a cause that takes away a part of a hidden force is held against functions."""
-    equations = known(
-        limits.with_values({f"adequacy.{name}": value for name, value in others.items()}),
-        lambda x: 0.6 + 1.2 * np.sin(3.0 * x),
-    )
-    return bool(stand_ins.doubtful(selected(equations, law(equations, column, effect)), equations))
-
-
-def doubted_by_another_joint(limits: Thresholds) -> bool:
-    """Whether a cause that leaves nothing of a force at its own joint is doubted for one at the other."""
-    rows = []
-    for seed in (1, 2):
-        x = positions(seed)[:, 0]
-        noise = default_rng([3, seed]).normal(size=(len(x), 2))
-        effort = np.column_stack([x + 0.6, x + 3.0 * np.sin(3.0 * x)]) + noise
-        table = np.zeros((len(x), 2, 2))
-        table[:, 0, 0], table[:, 1, 1] = x, x
-        rows.append(Rows(UNUSED, effort, table, np.ones((len(x), 2), dtype=bool), BARE))
-    equations = replace(equations_of(rows, [PERIOD, PERIOD]), thresholds=limits)
-    trial = at_first_joint(equations, [np.ones(len(r.effort)) for r in rows])
-    return bool(stand_ins.doubtful(selected(equations, trial), equations))
 
 
 def equal(limits: Thresholds) -> Any:
@@ -366,19 +306,6 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "selection.max_refit_growth": (0.1, anew),
     "selection.max_causes": (9, turns),
     "selection.max_causes_per_joint": (9, turns),
-    "adequacy.beside_delta_bic": (9.0, lambda t: outdone(t, 50.0, (52.0, 50.0), (8.0, 8.0))),
-    "adequacy.lone_cause_delta_bic": (3.0, lambda t: outdone(t, 50.0, (55.0, 50.0), (5.0, 5.0), causes=1)),
-    "adequacy.detail_ratio": (4.0, lambda t: outdone(t, 20.0, (10.0, 10.0), (50.0, 50.0))),
-    "adequacy.slow_delta_bic": (60.0, lambda t: outdone(t, 50.0, (48.0, 100.0), (1.0, 50.0))),
-    "adequacy.as_good_delta_bic": (1.0, lambda t: outdone(t, 50.0, (48.0, 100.0), (1.0, 50.0))),
-    "adequacy.as_good_share": (0.1, lambda t: outdone(t, 100.0, (92.0, 150.0), (1.0, 50.0))),
-    "adequacy.behind_delta_bic": (5.0, lambda t: outdone(t, 50.0, (52.0, 40.0), (8.0, 8.0))),
-    "adequacy.further_cause_price": (1.0, outdone_together),
-    "adequacy.min_explained_repeating": (0.1, lambda t: doubted(t, max_left_in_part=9.0)),
-    "adequacy.max_left_in_part": (9.0, lambda t: doubted(t, min_explained_repeating=0.0)),
-    "adequacy.clear_part_ratio": (9.0, doubted_by_another_joint),
-    "adequacy.min_repeating_share": (9.0, lambda t: doubted(t, max_left_in_part=9.0)),
-    "adequacy.rough_delta_bic": (10.0, lambda t: doubted(t, "backlash")),
     "adequacy.max_alias_angle": (2.0, equal),
     "adequacy.min_absorbed_share": (2.0, absorbed),
     "adequacy.max_behind_refused": (30.0, dominated),

@@ -7,14 +7,21 @@ of its few parameters; one that is not ahead of the function has nothing but the
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, Worth, functions, log_evidence
-from modelgen.diagnosis.candidates import system_of
+from modelgen.diagnosis.adequacy.smooth_functions import (
+    SmoothFunction,
+    Worth,
+    functions,
+    log_evidence,
+    spots,
+)
+from modelgen.diagnosis.candidates import FittedCandidate, system_of
 from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection import Selection, together
 
 
@@ -50,15 +57,21 @@ def free_forms(
             continue
         others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
         without = system_of(equations, others, selection.system)
-        evidence = together(own, without, fair=True)
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
             rest = max(rest, terms[joint].evidence)
         known = selection.system.noise_known
         most = 0.0 if known else limits.max_free_form_ahead
-        best = max(log_evidence(shape, without).evidence for shape in _functions(joint - 1, equations))
-        found[joint] = FreeForm(best - evidence - rest, most)
+        found[joint] = FreeForm(ahead(_functions(joint - 1, equations), own, without) - rest, most)
     return found
+
+
+def ahead(shapes: Iterable[SmoothFunction], own: Sequence[FittedCandidate], without: System) -> float:
+    """Delta BIC by which the best of these functions is ahead of all causes `own`, beside the others.
+
+    without: the system of the others, with the noise that all causes leave: what they explain is none.
+    """
+    return max(log_evidence(shape, without).evidence for shape in shapes) - together(own, without, fair=True)
 
 
 def further_terms(selection: Selection) -> dict[int, Worth]:
@@ -81,7 +94,7 @@ def further_terms(selection: Selection) -> dict[int, Worth]:
 
 
 def _functions(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:
-    """Functions of position and speed of joint j (from 0), of every bend length.
+    """Functions of position and speed of joint j (from 0), of every bend length, and a fine one of position.
 
     series: of the position, times the direction.
     """
@@ -95,3 +108,5 @@ def _functions(j: int, equations: Equations, series: bool = False) -> Iterator[S
             turned = x * np.sign(speed)
             tables.append(r.equation(j, turned if series else np.hstack([x, turned])))
         yield SmoothFunction(name, {j: tables})
+    if not series:
+        yield spots(j, equations)

@@ -33,8 +33,7 @@ class Test:
     """Statistic and quantile of F. kind: WHOLE or PART; joint from 0; inflation: of what the quantile has
     above one, as complete models have it.
 
-    record, begin, end: of a part, its record and its phases in rows of the period; excess: sum of
-    squares by which it repeats there, less noise [effort^2].
+    record, begin, end: of a part, its record and its phases in rows of the period.
     """
 
     kind: str
@@ -45,7 +44,6 @@ class Test:
     record: int = -1
     begin: int = 0
     end: int = 0
-    excess: float = 0.0
 
     @property
     def threshold(self) -> float:
@@ -161,9 +159,8 @@ class _Sums:
                 if count < limits.min_part_rows:
                     continue
                 statistic = (float(squares[phases].sum()) / count) / self.chance
-                excess = float(squares[phases].sum()) * (1.0 - 1.0 / statistic) if statistic > 0 else 0.0
                 quantile = self._quantile(count, tests)
-                yield Test(PART, joint, statistic, quantile, size, record, begin, end, excess)
+                yield Test(PART, joint, statistic, quantile, size, record, begin, end)
 
     def _quantile(self, free: float, tests: int) -> float:
         return float(special.fdtri(free, self.free_within, 1 - self.limits.lack_of_fit_significance / tests))
@@ -185,11 +182,6 @@ def lack_of_fit(system: System) -> LackOfFit | None:
         return None
     worst = max(found, key=lambda t: t.statistic / t.threshold)
     return LackOfFit(worst, found, most)
-
-
-def in_parts(system: System) -> list[Test]:
-    """Test every part of the period of every joint and record."""
-    return [t for t in _tests(system)[0] if t.kind == PART]
 
 
 def place(fit: LackOfFit, rows: Sequence[Rows]) -> tuple[str, float, float] | None:
@@ -235,29 +227,6 @@ def _tests(system: System) -> tuple[list[Test], int]:
             sums[j].add(i, table, share, error)
     found = [s.whole(j, n) for j, s in enumerate(sums)]
     return found + [t for j, s in enumerate(sums) for t in s.parts(j, n)], most
-
-
-def repeating(system: System) -> Array:
-    """Mean square of what repeats from period to period in the residuals of each joint (n,), less noise."""
-    n = system.n
-    found = np.zeros(n)
-    for j in range(n):
-        between, within, means, scatter = 0.0, 0.0, 0, 0
-        for residual, r, rows in zip(system.residuals, system.rows, system.periods, strict=True):
-            if rows is None:
-                continue
-            table = folded(np.where(r.moving[:, j], residual[:, j], np.nan), rows)
-            count = np.isfinite(table).sum(axis=0)
-            part, k = table[:, count >= 2], count[count >= 2]
-            if not len(k):
-                continue
-            mean = np.nanmean(part, axis=0)
-            between += float((k * mean**2).sum())
-            within += float(np.nansum((part - mean) ** 2))
-            means, scatter = means + len(k), scatter + int((k - 1).sum())
-        if scatter:
-            found[j] = max(0.0, (between - means * within / scatter) / (means + scatter))
-    return found
 
 
 def independent_rows(table: Array, limits: EvidenceThresholds) -> float:

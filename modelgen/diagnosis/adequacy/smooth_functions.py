@@ -8,7 +8,7 @@ parameters only (Rasmussen and Williams 2006, 2.7 and 5.4.1; with inducing point
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from scipy.spatial.distance import cdist
 
 from modelgen.dataset.drives import gains
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
+from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import StackedEquations, System
 from modelgen.diagnosis.options.thresholds import AdequacyThresholds
 from modelgen.numeric import Array
@@ -46,12 +47,9 @@ class Likeness:
 
 @dataclass(frozen=True)
 class Worth:
-    """evidence, slow: delta BIC in the system's fair equations and in the plain ones, in which slow functions
-    are worth too much and fast errors nothing; percent: of the RMSE of the joints that it acts on.
-    """
+    """evidence: delta BIC in the fair equations; percent: of the RMSE of the joints that it acts on."""
 
     evidence: float
-    slow: float
     percent: float
 
 
@@ -60,13 +58,16 @@ def most_like(system: System) -> Likeness | None:
 
     None as well of free motions, which show little but forces that depend on where the arm is.
     """
+    return None if system.equations.free else likeness(smooth_functions(system), system)
+
+
+def likeness(shapes: Iterable[SmoothFunction], system: System) -> Likeness | None:
+    """What the causes leave is most like this one of them; None where none has the evidence and a share."""
     limits = system.equations.thresholds
-    if system.equations.free:
-        return None
     least, worth = like_delta_bic(limits.adequacy), limits.validation.min_gain_percent
-    found = [(shape, log_evidence(shape, system)) for shape in smooth_functions(system)]
+    found = [(shape, log_evidence(shape, system)) for shape in shapes]
     like = [Likeness(shape, w.evidence) for shape, w in found if w.evidence > least and w.percent > worth]
-    return max(like, key=lambda likeness: likeness.evidence, default=None)
+    return max(like, key=lambda one: one.evidence, default=None)
 
 
 def like_delta_bic(limits: AdequacyThresholds) -> float:
@@ -84,9 +85,7 @@ def smooth_functions(system: System) -> Iterator[SmoothFunction]:
         for r, u in zip(rows, inputs, strict=True)
     ]
     for j in range(n):
-        alone = functions([r.prepared.q[:, [j]] for r in rows], limits.spot_length)
-        spots = [r.equation(j, x) for r, x in zip(rows, alone, strict=True)]
-        yield SmoothFunction(f"a force at joint {j + 1} that depends on its position", {j: spots})
+        yield spots(j, equations)
     for bend in limits.bend_lengths:
         free = functions([r.prepared.q for r in rows], bend)
         for j in range(n):
@@ -98,6 +97,14 @@ def smooth_functions(system: System) -> Iterator[SmoothFunction]:
             for j in range(n)
         }
         yield SmoothFunction("a gain of all drives that depends on the power that they take", columns)
+
+
+def spots(j: int, equations: Equations) -> SmoothFunction:
+    """A fine function of the position of joint j (from 0), for hard spots."""
+    positions = [r.prepared.q[:, [j]] for r in equations.rows]
+    over = functions(positions, equations.thresholds.adequacy.spot_length)
+    columns = [r.equation(j, x) for r, x in zip(equations.rows, over, strict=True)]
+    return SmoothFunction(f"a force at joint {j + 1} that depends on its position", {j: columns})
 
 
 def functions(values: Sequence[Array], bend: float) -> list[Array]:
@@ -141,11 +148,10 @@ def log_evidence(shape: SmoothFunction, system: System) -> Worth:
     acted = np.array([j in shape.columns for j in range(system.n)])
     evidence, function = _likelihood(system.fair, columns, acted)
     plain = system.plain
-    slow = evidence if plain is system.fair else _likelihood(plain, columns, acted)[0]
     taken = plain.stacked([table @ function[:, None] for table in columns])[:, 0]
     left = plain.by_group(plain.left - taken + plain.basis @ (plain.basis.T @ taken))[: len(acted)]
     share = float(left[acted].sum() / max(plain.rss[acted].sum(), 1e-300))
-    return Worth(evidence, slow, 100.0 * (1.0 - float(np.sqrt(share))))
+    return Worth(evidence, 100.0 * (1.0 - float(np.sqrt(share))))
 
 
 def _likelihood(

@@ -20,7 +20,8 @@ from modelgen.numeric import Array
 class Remains:
     """Findings that speak for a verdict besides the causes.
 
-    suspects: what has evidence and failed a check; unclear: what coarse positions do not tell from its rivals; fit: lack of fit, None where nothing repeats; feigned: percent of the RMSE by joint that errors of
+    suspects: what has evidence and failed a check; unclear: what coarse positions do not tell from its
+    rivals; fit: lack of fit, None where nothing repeats; feigned: percent of the RMSE by joint that errors of
     the positions could feign; correlated: what the test of Durbin, Wu and Hausman says, None where it has no
     say; likeness: what is left is most like; counted: whether the encoders' counts are all the noise there
     is, and what remains is no more than that; asked: whether some effects alone were asked for.

@@ -95,16 +95,15 @@ class StackedEquations:
         extra: float = 0.0,
         positive: Sequence[bool] = (),
         *,
-        alike: bool = False,
         passing: bool = False,
     ) -> Evidence | None:
         """Evidence of columns (M, n, k) of each record; None where they add nothing of their own.
 
         extra: parameters that were searched for besides. positive: (k,), columns whose value may not be
-        negative; empty for none. alike: as if noise hid columns of all colours alike. passing: they do not
+        negative; empty for none. passing: they do not
         repeat with the periods, and their part in what differs between these is not noise.
         """
-        return explained(self.stacked(columns), self, extra, positive, alike=alike, passing=passing)
+        return explained(self.stacked(columns), self, extra, positive, passing=passing)
 
 
 @dataclass(frozen=True)
@@ -171,12 +170,11 @@ def explained(
     extra: float = 0.0,
     positive: Sequence[bool] = (),
     *,
-    alike: bool = False,
     passing: bool = False,
 ) -> Evidence | None:
     """Evidence of columns (R + D, k) in what the stack's baseline leaves.
 
-    positive: columns whose value may not be negative: it is zero where it would be. alike, passing: as of
+    positive: columns whose value may not be negative: it is zero where it would be. passing: as of
     `StackedEquations.gain`.
     """
     basis, left, n = stack.basis, stack.left, len(stack.counts)
@@ -207,7 +205,7 @@ def explained(
     rss0, rss1 = stack.squares, stack.by_group(after)
     rank = int(kept.sum())
     used, weights = stack.weights > 0, stack.weights.copy()
-    if stack.colour is not None and not alike:
+    if stack.colour is not None:
         colour = stack.colour.of(after) if passing else stack.colour
         weights[:n] *= _unhidden(u[:, kept], scores, stack, colour, passing=passing)
     drop = (weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()

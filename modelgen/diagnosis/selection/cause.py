@@ -30,19 +30,13 @@ class Cause:
     lesser: list[tuple[FittedCandidate, float]] = field(default_factory=list)
 
 
-def together(
-    trials: Sequence[FittedCandidate], rest: System, *, fair: bool = False, alike: bool = False
-) -> float:
-    """Delta BIC of all of them. rest: the system without them; fair: of its `fair` equations; alike: of its
-    plain ones, as if noise hid columns of all colours alike, as that of functions of no law is.
-    """
+def together(trials: Sequence[FittedCandidate], rest: System, *, fair: bool = False) -> float:
+    """Delta BIC of all of them. rest: the system without them; fair: of its `fair` equations."""
     columns = [np.concatenate([t.columns[k] for t in trials], axis=2) for k in range(len(rest.rows))]
     positive = [above for t in trials for above in t.candidate.positive]
     extra = float(sum(len(t.values) for t in trials))
     passing = any(t.candidate.passing for t in trials)
-    if alike:
-        gain = rest.plain.gain(columns, extra, positive, alike=True)
-    elif fair:
+    if fair:
         gain = rest.fair.gain(columns, extra, positive)
     else:
         gain = rest.gain(columns, extra, positive, passing=passing)
