@@ -10,6 +10,7 @@ from diagnosis_support import ARM, PERIOD, equations_of, made, offset, system_of
 
 from modelgen.dataset import Record
 from modelgen.description import DirectDrive
+from modelgen.diagnosis.adequacy import explained as explaining
 from modelgen.diagnosis.adequacy.checks import (
     Examined,
     admissible,
@@ -18,7 +19,7 @@ from modelgen.diagnosis.adequacy.checks import (
     significant,
 )
 from modelgen.diagnosis.adequacy.dominance import dominance
-from modelgen.diagnosis.adequacy.explained import explained
+from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, functions
 from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
@@ -66,22 +67,28 @@ def test_a_law_outside_the_catalogue_lends_its_evidence_to_no_name(joint: int) -
     assert found.verdict in ("suspected", "outside_catalogue")
 
 
+@pytest.mark.parametrize("repeats", [True, False])
 @pytest.mark.parametrize(("wave", "passed"), [(0.0, True), (0.8, False)])
-def test_a_law_that_leaves_much_of_what_repeats_lends_it_no_name(wave: float, passed: bool) -> None:
+def test_a_law_that_leaves_much_of_what_is_not_noise_lends_it_no_name(
+    wave: float, passed: bool, repeats: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A constant beside a wave over the position, that no cause explains; in noise of unit size."""
     rows, q, periods = made(lambda x: 0.6 + wave * np.sin(5.0 * x))
+    if not repeats:
+        rows, periods = [replace(r, prepared=PREPARED) for r in rows], [None] * len(periods)
+        by_place = SmoothFunction("by place", {0: functions(q, 0.2)})
+        monkeypatch.setattr(explaining, "smooth_functions", lambda system: [by_place])
+        monkeypatch.setattr(explaining, "functions_of", lambda j, equations: [])
     equations, bare = equations_of(rows, periods), system_of(rows, periods=periods)
     columns = [np.ones_like(x[:, :1])[:, None] for x in q]
     gain = bare.gain(columns)
     assert gain is not None
     trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain)
     system = system_of(rows, with_causes(equations, [trial]), periods)
-    (check,) = explained(Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []), {})
+    (check,) = explaining.explained(Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []), {})
     assert check.decides
     assert check.passed is passed
     assert gain.delta_bic > 50.0  # it has evidence all the same
-    nothing = system_of(rows, with_causes(equations, [trial]))
-    assert explained(Selection([Cause(trial, 0.0, 0.0, 0.0)], nothing, []), {})[0].passed is None
 
 
 @pytest.mark.parametrize("harmonic", [0.25, 1.0 / 3.0, 2.0])

@@ -20,7 +20,6 @@ from modelgen.description import Inertial
 from modelgen.diagnosis.adequacy import lack_of_fit
 from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.adequacy.free_form import further_terms
-from modelgen.diagnosis.adequacy.lack_of_fit import in_parts
 from modelgen.diagnosis.adequacy.smooth_functions import like_delta_bic, smooth_functions
 from modelgen.diagnosis.candidates import FittedCandidate, asked, candidates, check_one_arm, cold
 from modelgen.diagnosis.candidates.candidate import Candidate
@@ -254,7 +253,7 @@ def repeats(limits: Thresholds) -> Any:
     """Tests of lack of fit."""
     system = System(known(limits))
     fit = lack_of_fit(system)
-    return (fit and (fit.statistic, fit.threshold, fit.by_joint.tolist()), len(in_parts(system)))
+    return fit and (fit.statistic, fit.threshold, fit.by_joint.tolist(), len(fit.tests))
 
 
 def bending(limits: Thresholds) -> Any:

@@ -19,6 +19,7 @@ from modelgen.description import Inertial
 from modelgen.diagnosis.adequacy.checks import _stable, significant
 from modelgen.diagnosis.adequacy.distinguishable import aliases
 from modelgen.diagnosis.adequacy.dominance import dominance
+from modelgen.diagnosis.adequacy.explained import left_smoothly
 from modelgen.diagnosis.adequacy.free_form import free_forms
 from modelgen.diagnosis.candidates import FittedCandidate, candidates
 from modelgen.diagnosis.candidates.candidate import Candidate
@@ -197,6 +198,19 @@ def freely(limits: Thresholds, column: Any) -> bool:
     return free_forms(selected(equations, trial), equations, {})[1].as_good
 
 
+def left_beside(limits: Thresholds) -> Any:
+    """What functions of no law explain beside a cause of a part of a wave, where nothing repeats."""
+    equations = replace(real(limits), periods=[None] * len(real(limits).rows))
+    hidden = [np.sin(3.0 * r.prepared.picked(r.prepared.q)[:, 0]) for r in equations.rows]
+    given = [
+        replace(r, effort=r.effort + 0.5 * x[:, None] * [1.0, 0.0])
+        for r, x in zip(equations.rows, hidden, strict=True)
+    ]
+    equations = equations.with_rows(given)
+    trial = at_first_joint(equations, [np.ones(len(x)) for x in hidden])
+    return bool(left_smoothly(selected(equations, trial).system)[0] > 0.0)
+
+
 def claimed(limits: Thresholds) -> Any:
     equations = known(limits)
     trial = law(equations, constant, "payload_change")
@@ -310,6 +324,7 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "adequacy.min_absorbed_share": (2.0, absorbed),
     "adequacy.max_behind_refused": (30.0, dominated),
     "adequacy.max_free_form_ahead": (1e6, lambda t: freely(t, constant)),
+    "adequacy.min_evidence_in_noise": (1e6, left_beside),
     "adequacy.min_claimed_deviations": (1e3, claimed),
     "adequacy.min_stable_probability": (2.0, stable),
     "extended.min_inertia_share": (0.4, split),

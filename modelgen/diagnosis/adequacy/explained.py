@@ -14,8 +14,9 @@ import numpy as np
 from scipy import ndimage
 
 from modelgen.dataset.processing.periods import folded
+from modelgen.diagnosis.adequacy.free_form import functions_of
 from modelgen.diagnosis.adequacy.lack_of_fit import lack_of_fit
-from modelgen.diagnosis.adequacy.smooth_functions import Worth
+from modelgen.diagnosis.adequacy.smooth_functions import Worth, log_evidence, smooth_functions
 from modelgen.diagnosis.evidence import System, mean_squares
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.validation import Check
@@ -30,24 +31,45 @@ def explained(selection: Selection, terms: Mapping[int, Worth]) -> list[Check]:
 
     What errors of the positions repeat is no lack of the model, and what the further terms of a law that is
     the first ones of a series explain is its own, where they are the lesser part. Passed as well where no
-    more repeats than noise leaves by chance. terms: by joint, see `further_terms`.
+    more repeats than noise leaves by chance. Where nothing repeats, what the best function of no law explains
+    beside the causes is not noise. Not asked of free motions that do not repeat. terms: by joint, see
+    `further_terms`.
     """
     system, limits = selection.system, selection.system.equations.thresholds.adequacy
     equations, least = system.equations, limits.min_explained_share
     text = "share of what is not noise at its joints that the causes there explain together"
     fit = lack_of_fit(system)
-    if fit is None:
+    if fit is None and equations.free:
         return [Check("explains", None, True, float("nan"), least, text) for _ in selection.causes]
     sizes, theta = mean_squares(system), weighted_fit(equations.rows, equations.columns)
     gained = (rmse(equations.rows, equations.columns, theta) ** 2 - sizes) / sizes
-    rest = np.maximum(0.0, left_alike(system, theta) - _of_further_terms(selection, terms)) / sizes
+    left = left_smoothly(system) if fit is None else left_alike(system, theta)
+    rest = np.maximum(0.0, left - _of_further_terms(selection, terms)) / sizes
     found = []
     for cause in selection.causes:
         joints = cause.trial.candidate.joints(system.n)
         more, less = float(gained[joints].sum()), float(rest[joints].sum())
         share = more / (more + less) if more + less > 0.0 else 0.0
-        passed = share >= least or fit.usual(joints, limits.usual_null_share)
+        passed = share >= least or (fit is not None and fit.usual(joints, limits.usual_null_share))
         found.append(Check("explains", passed, True, share, least, text))
+    return found
+
+
+def left_smoothly(system: System) -> Array:
+    """Mean squares (n,) that a function of no law explains beside the causes, the best of each joint.
+
+    Of its position and speed, or of where the arm is. Only of one that has more evidence than slow noise,
+    whose colour is not known here, is worth to it.
+    """
+    equations, sizes, found = system.equations, mean_squares(system), np.zeros(system.n)
+    least = equations.thresholds.adequacy.min_evidence_in_noise
+    alone = [shape for shape in smooth_functions(system) if len(shape.columns) == 1]
+    of_joints = [shape for j in range(system.n) for shape in functions_of(j, equations)]
+    for shape in [*alone, *of_joints]:
+        (j,) = shape.columns
+        worth = log_evidence(shape, system)
+        if worth.evidence > least:
+            found[j] = max(found[j], sizes[j] * (1.0 - (1.0 - worth.percent / 100.0) ** 2))
     return found
 
 

@@ -62,7 +62,7 @@ def free_forms(
             rest = max(rest, terms[joint].evidence)
         known = selection.system.noise_known
         most = 0.0 if known else limits.max_free_form_ahead
-        found[joint] = FreeForm(ahead(_functions(joint - 1, equations), own, without) - rest, most)
+        found[joint] = FreeForm(ahead(functions_of(joint - 1, equations), own, without) - rest, most)
     return found
 
 
@@ -86,14 +86,14 @@ def further_terms(selection: Selection) -> dict[int, Worth]:
         return {}
     return {
         joint: max(
-            (log_evidence(shape, system) for shape in _functions(joint - 1, system.equations, series=True)),
+            (log_evidence(shape, system) for shape in functions_of(joint - 1, system.equations, series=True)),
             key=lambda worth: worth.evidence,
         )
         for joint in sorted(j for j in joints if j is not None)
     }
 
 
-def _functions(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:
+def functions_of(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:
     """Functions of position and speed of joint j (from 0), of every bend length, and a fine one of position.
 
     series: of the position, times the direction.

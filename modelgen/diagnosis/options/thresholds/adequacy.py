@@ -83,6 +83,12 @@ class AdequacyThresholds(Group):
         "frequencies at which they act.",
         OTHERS,
     )
+    min_evidence_in_noise: float = entry(
+        40.0,
+        "delta BIC",
+        "Where nothing repeats, what a function of no law explains beside the causes with more is not noise.",
+        "in noise of unknown colour functions beside complete models have 37 once in 200",
+    )
     usual_null_share: float = entry(
         0.9,
         "of complete models",
