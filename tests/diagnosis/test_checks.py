@@ -68,7 +68,7 @@ def test_a_law_outside_the_catalogue_lends_its_evidence_to_no_name(joint: int) -
 
 
 @pytest.mark.parametrize("repeats", [True, False])
-@pytest.mark.parametrize(("wave", "passed"), [(0.0, True), (0.8, False)])
+@pytest.mark.parametrize(("wave", "passed"), [(0.0, True), (1.6, False)])
 def test_a_law_that_leaves_much_of_what_is_not_noise_lends_it_no_name(
     wave: float, passed: bool, repeats: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -88,7 +88,7 @@ def test_a_law_that_leaves_much_of_what_is_not_noise_lends_it_no_name(
     (check,) = explaining.explained(Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []), {})
     assert check.decides
     assert check.passed is passed
-    assert gain.delta_bic > 50.0  # it has evidence all the same
+    assert gain.delta_bic > 20.0  # it has evidence all the same
 
 
 @pytest.mark.parametrize("harmonic", [0.25, 1.0 / 3.0, 2.0])

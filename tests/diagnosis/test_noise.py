@@ -77,7 +77,9 @@ def evidence(
         columns.append(np.zeros((LONG, n, 1)))
         columns[-1][:, 0, 0] = own
     plain = system_of(rows, [r.columns for r in rows], [PERIOD] * 2).plain
-    found = [plain.gain(columns, alike=alike, passing=drift) for alike in (False, True)]
+    found = [plain.gain(columns, passing=drift)]
+    plain.colour = None
+    found.append(plain.gain(columns, passing=drift))
     return [x.delta_bic + float(np.log(plain.counts.sum())) for x in found if x is not None]
 
 
