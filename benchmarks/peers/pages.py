@@ -27,7 +27,8 @@ precision, with parameters folded in where the tool can do that. modelgen's figu
 - **instructions** per call, counted by callgrind, sine and cosine included; mean over the states. They do not
   depend on the load of the machine.
 - **time**: blocks of calls, CPU time as a ratio to modelgen's median in the same round; median, in brackets
-  10 to 90 % of the blocks, then the lowest and highest median of five rounds.
+  10 to 90 % of the blocks, then the lowest and highest median of five rounds. Times are those of the last whole run;
+  `compare.py --own` counts modelgen's instructions and operations anew without one.
 - Pinocchio, C++: `rnea`, `crba`, `aba` (the convention with fewer instructions), `computeJointTorqueRegressor`,
   built from its headers. Its regressor has 10 n columns, modelgen's those of the base parameters.
 - Pinocchio, traced with CasADi: the same algorithms on symbols, with CasADi's elimination of common

@@ -40,7 +40,6 @@ TAKEN = frozenset(
         "sincos",
         "sine_cosine",
         "status_t",
-        "turns",
         "within",
         "within_joints",
         "zero",

@@ -13,21 +13,20 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x24FD4A54UL
+#if ARIANE4_FREE_GENERATION != 0x059BF041UL
 #error "ariane4_free.h and ariane4_free_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if ARIANE4_FREE_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const ariane4_free_real_t ariane4_free_turns[5] = {
-    ARIANE4_FREE_C(0.0), ARIANE4_FREE_C(1.0), ARIANE4_FREE_C(0.0), ARIANE4_FREE_C(-1.0), ARIANE4_FREE_C(0.0)
-};
-
 ariane4_free_pair_t ariane4_free_sincos(ariane4_free_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const ariane4_free_real_t turns[5] = {
+        ARIANE4_FREE_C(0.0), ARIANE4_FREE_C(1.0), ARIANE4_FREE_C(0.0), ARIANE4_FREE_C(-1.0), ARIANE4_FREE_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const ariane4_free_real_t turns = x * ARIANE4_FREE_C(0.63661977236758134) + ARIANE4_FREE_C(16384.5);
-    const long quarter = (long)turns;
+    const ariane4_free_real_t quarters = x * ARIANE4_FREE_C(0.63661977236758134) + ARIANE4_FREE_C(16384.5);
+    const long quarter = (long)quarters;
     const ariane4_free_real_t k = (ariane4_free_real_t)quarter - ARIANE4_FREE_C(16384.0);
 #if ARIANE4_FREE_SINGLE
     const ariane4_free_real_t r = x - k * ARIANE4_FREE_C(1.5703125) - k * ARIANE4_FREE_C(4.83826792e-4);
@@ -48,7 +47,7 @@ ariane4_free_pair_t ariane4_free_sincos(ariane4_free_real_t x)
         + z * (ARIANE4_FREE_C(-2.75573143513906633035e-7) + z * (ARIANE4_FREE_C(2.08757232129817482790e-9)
         - z * ARIANE4_FREE_C(1.13596475577881948265e-11)))))));
 #endif
-    const ariane4_free_real_t *const turn = &ariane4_free_turns[(unsigned)quarter & 3U];
+    const ariane4_free_real_t *const turn = &turns[(unsigned)quarter & 3U];
     ariane4_free_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

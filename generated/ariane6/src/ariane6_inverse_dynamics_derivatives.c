@@ -86,7 +86,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xB9B44F76UL
+#if ARIANE6_GENERATION != 0x04A8163CUL
 #error "ariane6.h and ariane6_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 

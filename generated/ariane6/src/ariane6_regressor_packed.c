@@ -32,7 +32,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xB9B44F76UL
+#if ARIANE6_GENERATION != 0x04A8163CUL
 #error "ariane6.h and ariane6_regressor_packed.c are of different generations: generate the arm again"
 #endif
 

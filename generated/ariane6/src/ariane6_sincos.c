@@ -13,21 +13,20 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0xB9B44F76UL
+#if ARIANE6_GENERATION != 0x04A8163CUL
 #error "ariane6.h and ariane6_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if ARIANE6_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const ariane6_real_t ariane6_turns[5] = {
-    ARIANE6_C(0.0), ARIANE6_C(1.0), ARIANE6_C(0.0), ARIANE6_C(-1.0), ARIANE6_C(0.0)
-};
-
 ariane6_pair_t ariane6_sincos(ariane6_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const ariane6_real_t turns[5] = {
+        ARIANE6_C(0.0), ARIANE6_C(1.0), ARIANE6_C(0.0), ARIANE6_C(-1.0), ARIANE6_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const ariane6_real_t turns = x * ARIANE6_C(0.63661977236758134) + ARIANE6_C(16384.5);
-    const long quarter = (long)turns;
+    const ariane6_real_t quarters = x * ARIANE6_C(0.63661977236758134) + ARIANE6_C(16384.5);
+    const long quarter = (long)quarters;
     const ariane6_real_t k = (ariane6_real_t)quarter - ARIANE6_C(16384.0);
 #if ARIANE6_SINGLE
     const ariane6_real_t r = x - k * ARIANE6_C(1.5703125) - k * ARIANE6_C(4.83826792e-4);
@@ -48,7 +47,7 @@ ariane6_pair_t ariane6_sincos(ariane6_real_t x)
         + z * (ARIANE6_C(-2.75573143513906633035e-7) + z * (ARIANE6_C(2.08757232129817482790e-9)
         - z * ARIANE6_C(1.13596475577881948265e-11)))))));
 #endif
-    const ariane6_real_t *const turn = &ariane6_turns[(unsigned)quarter & 3U];
+    const ariane6_real_t *const turn = &turns[(unsigned)quarter & 3U];
     ariane6_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

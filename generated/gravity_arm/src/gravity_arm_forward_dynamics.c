@@ -35,7 +35,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
+#if GRAVITY_ARM_GENERATION != 0x1D1055FAUL
 #error "gravity_arm.h and gravity_arm_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 

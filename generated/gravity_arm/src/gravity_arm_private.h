@@ -13,7 +13,7 @@
 
 #include "gravity_arm.h"
 
-#if GRAVITY_ARM_GENERATION != 0x839E3E9CUL
+#if GRAVITY_ARM_GENERATION != 0x1D1055FAUL
 #error "gravity_arm.h and gravity_arm_private.h are of different generations: generate the arm again"
 #endif
 

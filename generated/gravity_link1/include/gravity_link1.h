@@ -30,7 +30,7 @@
 #define GRAVITY_LINK1_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_GENERATION 0x08652BC1UL
+#define GRAVITY_LINK1_GENERATION 0x623C1C01UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK1_MODEL "e56ff0e07e464bfef58a0f9831f2c8207c525071b6209ad434ed6783885b3a0a"

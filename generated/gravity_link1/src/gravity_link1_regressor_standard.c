@@ -24,7 +24,7 @@
  */
 #include "gravity_link1_private.h"
 
-#if GRAVITY_LINK1_GENERATION != 0x08652BC1UL
+#if GRAVITY_LINK1_GENERATION != 0x623C1C01UL
 #error "gravity_link1.h and gravity_link1_regressor_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -30,7 +30,7 @@
 #define GRAVITY_LINK1_LOADED_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK1_LOADED_GENERATION 0x24948438UL
+#define GRAVITY_LINK1_LOADED_GENERATION 0xDAD07F53UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK1_LOADED_MODEL "35cb3f0e339eb026e7d13df10e390c03982cefd083db334d922518eb90e3f495"

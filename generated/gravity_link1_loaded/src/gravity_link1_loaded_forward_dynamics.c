@@ -28,7 +28,7 @@
  */
 #include "gravity_link1_loaded_private.h"
 
-#if GRAVITY_LINK1_LOADED_GENERATION != 0x24948438UL
+#if GRAVITY_LINK1_LOADED_GENERATION != 0xDAD07F53UL
 #error "gravity_link1_loaded.h and gravity_link1_loaded_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 

@@ -30,7 +30,7 @@
 #define GRAVITY_LINK2_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_LINK2_GENERATION 0xE7DA1B03UL
+#define GRAVITY_LINK2_GENERATION 0xA3869E4CUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_LINK2_MODEL "1ddde3a17ccda7a0e65720f8a04e520c2a47c634edf20149046c6a68c38abc01"

@@ -32,7 +32,7 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xE7DA1B03UL
+#if GRAVITY_LINK2_GENERATION != 0xA3869E4CUL
 #error "gravity_link2.h and gravity_link2_inverse_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 

@@ -13,21 +13,20 @@
  */
 #include "gravity_link2_private.h"
 
-#if GRAVITY_LINK2_GENERATION != 0xE7DA1B03UL
+#if GRAVITY_LINK2_GENERATION != 0xA3869E4CUL
 #error "gravity_link2.h and gravity_link2_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if GRAVITY_LINK2_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const gravity_link2_real_t gravity_link2_turns[5] = {
-    GRAVITY_LINK2_C(0.0), GRAVITY_LINK2_C(1.0), GRAVITY_LINK2_C(0.0), GRAVITY_LINK2_C(-1.0), GRAVITY_LINK2_C(0.0)
-};
-
 gravity_link2_pair_t gravity_link2_sincos(gravity_link2_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const gravity_link2_real_t turns[5] = {
+        GRAVITY_LINK2_C(0.0), GRAVITY_LINK2_C(1.0), GRAVITY_LINK2_C(0.0), GRAVITY_LINK2_C(-1.0), GRAVITY_LINK2_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const gravity_link2_real_t turns = x * GRAVITY_LINK2_C(0.63661977236758134) + GRAVITY_LINK2_C(16384.5);
-    const long quarter = (long)turns;
+    const gravity_link2_real_t quarters = x * GRAVITY_LINK2_C(0.63661977236758134) + GRAVITY_LINK2_C(16384.5);
+    const long quarter = (long)quarters;
     const gravity_link2_real_t k = (gravity_link2_real_t)quarter - GRAVITY_LINK2_C(16384.0);
 #if GRAVITY_LINK2_SINGLE
     const gravity_link2_real_t r = x - k * GRAVITY_LINK2_C(1.5703125) - k * GRAVITY_LINK2_C(4.83826792e-4);
@@ -48,7 +47,7 @@ gravity_link2_pair_t gravity_link2_sincos(gravity_link2_real_t x)
         + z * (GRAVITY_LINK2_C(-2.75573143513906633035e-7) + z * (GRAVITY_LINK2_C(2.08757232129817482790e-9)
         - z * GRAVITY_LINK2_C(1.13596475577881948265e-11)))))));
 #endif
-    const gravity_link2_real_t *const turn = &gravity_link2_turns[(unsigned)quarter & 3U];
+    const gravity_link2_real_t *const turn = &turns[(unsigned)quarter & 3U];
     gravity_link2_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

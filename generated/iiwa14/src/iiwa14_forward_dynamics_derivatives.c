@@ -96,7 +96,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xF4E95A26UL
+#if IIWA14_GENERATION != 0xCCB5960FUL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 

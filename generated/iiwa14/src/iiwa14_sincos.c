@@ -13,21 +13,20 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xF4E95A26UL
+#if IIWA14_GENERATION != 0xCCB5960FUL
 #error "iiwa14.h and iiwa14_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if IIWA14_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const iiwa14_real_t iiwa14_turns[5] = {
-    IIWA14_C(0.0), IIWA14_C(1.0), IIWA14_C(0.0), IIWA14_C(-1.0), IIWA14_C(0.0)
-};
-
 iiwa14_pair_t iiwa14_sincos(iiwa14_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const iiwa14_real_t turns[5] = {
+        IIWA14_C(0.0), IIWA14_C(1.0), IIWA14_C(0.0), IIWA14_C(-1.0), IIWA14_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const iiwa14_real_t turns = x * IIWA14_C(0.63661977236758134) + IIWA14_C(16384.5);
-    const long quarter = (long)turns;
+    const iiwa14_real_t quarters = x * IIWA14_C(0.63661977236758134) + IIWA14_C(16384.5);
+    const long quarter = (long)quarters;
     const iiwa14_real_t k = (iiwa14_real_t)quarter - IIWA14_C(16384.0);
 #if IIWA14_SINGLE
     const iiwa14_real_t r = x - k * IIWA14_C(1.5703125) - k * IIWA14_C(4.83826792e-4);
@@ -48,7 +47,7 @@ iiwa14_pair_t iiwa14_sincos(iiwa14_real_t x)
         + z * (IIWA14_C(-2.75573143513906633035e-7) + z * (IIWA14_C(2.08757232129817482790e-9)
         - z * IIWA14_C(1.13596475577881948265e-11)))))));
 #endif
-    const iiwa14_real_t *const turn = &iiwa14_turns[(unsigned)quarter & 3U];
+    const iiwa14_real_t *const turn = &turns[(unsigned)quarter & 3U];
     iiwa14_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

@@ -13,21 +13,20 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0xB20AC45DUL
+#if PUMA560_GENERATION != 0x045A9366UL
 #error "puma560.h and puma560_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if PUMA560_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const puma560_real_t puma560_turns[5] = {
-    PUMA560_C(0.0), PUMA560_C(1.0), PUMA560_C(0.0), PUMA560_C(-1.0), PUMA560_C(0.0)
-};
-
 puma560_pair_t puma560_sincos(puma560_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const puma560_real_t turns[5] = {
+        PUMA560_C(0.0), PUMA560_C(1.0), PUMA560_C(0.0), PUMA560_C(-1.0), PUMA560_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const puma560_real_t turns = x * PUMA560_C(0.63661977236758134) + PUMA560_C(16384.5);
-    const long quarter = (long)turns;
+    const puma560_real_t quarters = x * PUMA560_C(0.63661977236758134) + PUMA560_C(16384.5);
+    const long quarter = (long)quarters;
     const puma560_real_t k = (puma560_real_t)quarter - PUMA560_C(16384.0);
 #if PUMA560_SINGLE
     const puma560_real_t r = x - k * PUMA560_C(1.5703125) - k * PUMA560_C(4.83826792e-4);
@@ -48,7 +47,7 @@ puma560_pair_t puma560_sincos(puma560_real_t x)
         + z * (PUMA560_C(-2.75573143513906633035e-7) + z * (PUMA560_C(2.08757232129817482790e-9)
         - z * PUMA560_C(1.13596475577881948265e-11)))))));
 #endif
-    const puma560_real_t *const turn = &puma560_turns[(unsigned)quarter & 3U];
+    const puma560_real_t *const turn = &turns[(unsigned)quarter & 3U];
     puma560_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

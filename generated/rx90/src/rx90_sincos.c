@@ -13,21 +13,20 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x1B6CDAA1UL
+#if RX90_GENERATION != 0x60343B33UL
 #error "rx90.h and rx90_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if RX90_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const rx90_real_t rx90_turns[5] = {
-    RX90_C(0.0), RX90_C(1.0), RX90_C(0.0), RX90_C(-1.0), RX90_C(0.0)
-};
-
 rx90_pair_t rx90_sincos(rx90_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const rx90_real_t turns[5] = {
+        RX90_C(0.0), RX90_C(1.0), RX90_C(0.0), RX90_C(-1.0), RX90_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const rx90_real_t turns = x * RX90_C(0.63661977236758134) + RX90_C(16384.5);
-    const long quarter = (long)turns;
+    const rx90_real_t quarters = x * RX90_C(0.63661977236758134) + RX90_C(16384.5);
+    const long quarter = (long)quarters;
     const rx90_real_t k = (rx90_real_t)quarter - RX90_C(16384.0);
 #if RX90_SINGLE
     const rx90_real_t r = x - k * RX90_C(1.5703125) - k * RX90_C(4.83826792e-4);
@@ -48,7 +47,7 @@ rx90_pair_t rx90_sincos(rx90_real_t x)
         + z * (RX90_C(-2.75573143513906633035e-7) + z * (RX90_C(2.08757232129817482790e-9)
         - z * RX90_C(1.13596475577881948265e-11)))))));
 #endif
-    const rx90_real_t *const turn = &rx90_turns[(unsigned)quarter & 3U];
+    const rx90_real_t *const turn = &turns[(unsigned)quarter & 3U];
     rx90_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

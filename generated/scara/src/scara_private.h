@@ -13,7 +13,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0x743B3253UL
+#if SCARA_GENERATION != 0x71397351UL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 

@@ -13,21 +13,20 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x743B3253UL
+#if SCARA_GENERATION != 0x71397351UL
 #error "scara.h and scara_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if SCARA_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const scara_real_t scara_turns[5] = {
-    SCARA_C(0.0), SCARA_C(1.0), SCARA_C(0.0), SCARA_C(-1.0), SCARA_C(0.0)
-};
-
 scara_pair_t scara_sincos(scara_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const scara_real_t turns[5] = {
+        SCARA_C(0.0), SCARA_C(1.0), SCARA_C(0.0), SCARA_C(-1.0), SCARA_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const scara_real_t turns = x * SCARA_C(0.63661977236758134) + SCARA_C(16384.5);
-    const long quarter = (long)turns;
+    const scara_real_t quarters = x * SCARA_C(0.63661977236758134) + SCARA_C(16384.5);
+    const long quarter = (long)quarters;
     const scara_real_t k = (scara_real_t)quarter - SCARA_C(16384.0);
 #if SCARA_SINGLE
     const scara_real_t r = x - k * SCARA_C(1.5703125) - k * SCARA_C(4.83826792e-4);
@@ -48,7 +47,7 @@ scara_pair_t scara_sincos(scara_real_t x)
         + z * (SCARA_C(-2.75573143513906633035e-7) + z * (SCARA_C(2.08757232129817482790e-9)
         - z * SCARA_C(1.13596475577881948265e-11)))))));
 #endif
-    const scara_real_t *const turn = &scara_turns[(unsigned)quarter & 3U];
+    const scara_real_t *const turn = &turns[(unsigned)quarter & 3U];
     scara_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

@@ -30,7 +30,7 @@
 #define SCREW_AXIS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCREW_AXIS_GENERATION 0x88953F49UL
+#define SCREW_AXIS_GENERATION 0x29523220UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCREW_AXIS_MODEL "9d21e4307785b4a34c4e1b8ce4a51c6dc39e1230071915159dd74f3b2739f09b"

@@ -8,7 +8,7 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x88953F49UL
+#if SCREW_AXIS_GENERATION != 0x29523220UL
 #error "screw_axis.h and screw_axis_model.c are of different generations: generate the arm again"
 #endif
 

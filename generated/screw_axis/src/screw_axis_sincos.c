@@ -13,21 +13,20 @@
  */
 #include "screw_axis_private.h"
 
-#if SCREW_AXIS_GENERATION != 0x88953F49UL
+#if SCREW_AXIS_GENERATION != 0x29523220UL
 #error "screw_axis.h and screw_axis_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if SCREW_AXIS_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const screw_axis_real_t screw_axis_turns[5] = {
-    SCREW_AXIS_C(0.0), SCREW_AXIS_C(1.0), SCREW_AXIS_C(0.0), SCREW_AXIS_C(-1.0), SCREW_AXIS_C(0.0)
-};
-
 screw_axis_pair_t screw_axis_sincos(screw_axis_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const screw_axis_real_t turns[5] = {
+        SCREW_AXIS_C(0.0), SCREW_AXIS_C(1.0), SCREW_AXIS_C(0.0), SCREW_AXIS_C(-1.0), SCREW_AXIS_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const screw_axis_real_t turns = x * SCREW_AXIS_C(0.63661977236758134) + SCREW_AXIS_C(16384.5);
-    const long quarter = (long)turns;
+    const screw_axis_real_t quarters = x * SCREW_AXIS_C(0.63661977236758134) + SCREW_AXIS_C(16384.5);
+    const long quarter = (long)quarters;
     const screw_axis_real_t k = (screw_axis_real_t)quarter - SCREW_AXIS_C(16384.0);
 #if SCREW_AXIS_SINGLE
     const screw_axis_real_t r = x - k * SCREW_AXIS_C(1.5703125) - k * SCREW_AXIS_C(4.83826792e-4);
@@ -48,7 +47,7 @@ screw_axis_pair_t screw_axis_sincos(screw_axis_real_t x)
         + z * (SCREW_AXIS_C(-2.75573143513906633035e-7) + z * (SCREW_AXIS_C(2.08757232129817482790e-9)
         - z * SCREW_AXIS_C(1.13596475577881948265e-11)))))));
 #endif
-    const screw_axis_real_t *const turn = &screw_axis_turns[(unsigned)quarter & 3U];
+    const screw_axis_real_t *const turn = &turns[(unsigned)quarter & 3U];
     screw_axis_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

@@ -97,7 +97,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
+#if TWO_FINGERS_GENERATION != 0x993B9A60UL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 

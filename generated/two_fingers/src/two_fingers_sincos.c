@@ -13,21 +13,20 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x3DBB4375UL
+#if TWO_FINGERS_GENERATION != 0x993B9A60UL
 #error "two_fingers.h and two_fingers_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if TWO_FINGERS_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const two_fingers_real_t two_fingers_turns[5] = {
-    TWO_FINGERS_C(0.0), TWO_FINGERS_C(1.0), TWO_FINGERS_C(0.0), TWO_FINGERS_C(-1.0), TWO_FINGERS_C(0.0)
-};
-
 two_fingers_pair_t two_fingers_sincos(two_fingers_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const two_fingers_real_t turns[5] = {
+        TWO_FINGERS_C(0.0), TWO_FINGERS_C(1.0), TWO_FINGERS_C(0.0), TWO_FINGERS_C(-1.0), TWO_FINGERS_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const two_fingers_real_t turns = x * TWO_FINGERS_C(0.63661977236758134) + TWO_FINGERS_C(16384.5);
-    const long quarter = (long)turns;
+    const two_fingers_real_t quarters = x * TWO_FINGERS_C(0.63661977236758134) + TWO_FINGERS_C(16384.5);
+    const long quarter = (long)quarters;
     const two_fingers_real_t k = (two_fingers_real_t)quarter - TWO_FINGERS_C(16384.0);
 #if TWO_FINGERS_SINGLE
     const two_fingers_real_t r = x - k * TWO_FINGERS_C(1.5703125) - k * TWO_FINGERS_C(4.83826792e-4);
@@ -48,7 +47,7 @@ two_fingers_pair_t two_fingers_sincos(two_fingers_real_t x)
         + z * (TWO_FINGERS_C(-2.75573143513906633035e-7) + z * (TWO_FINGERS_C(2.08757232129817482790e-9)
         - z * TWO_FINGERS_C(1.13596475577881948265e-11)))))));
 #endif
-    const two_fingers_real_t *const turn = &two_fingers_turns[(unsigned)quarter & 3U];
+    const two_fingers_real_t *const turn = &turns[(unsigned)quarter & 3U];
     two_fingers_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

@@ -13,21 +13,20 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x39EF5DCBUL
+#if UR10E_GENERATION != 0x0B982018UL
 #error "ur10e.h and ur10e_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if UR10E_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const ur10e_real_t ur10e_turns[5] = {
-    UR10E_C(0.0), UR10E_C(1.0), UR10E_C(0.0), UR10E_C(-1.0), UR10E_C(0.0)
-};
-
 ur10e_pair_t ur10e_sincos(ur10e_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const ur10e_real_t turns[5] = {
+        UR10E_C(0.0), UR10E_C(1.0), UR10E_C(0.0), UR10E_C(-1.0), UR10E_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const ur10e_real_t turns = x * UR10E_C(0.63661977236758134) + UR10E_C(16384.5);
-    const long quarter = (long)turns;
+    const ur10e_real_t quarters = x * UR10E_C(0.63661977236758134) + UR10E_C(16384.5);
+    const long quarter = (long)quarters;
     const ur10e_real_t k = (ur10e_real_t)quarter - UR10E_C(16384.0);
 #if UR10E_SINGLE
     const ur10e_real_t r = x - k * UR10E_C(1.5703125) - k * UR10E_C(4.83826792e-4);
@@ -48,7 +47,7 @@ ur10e_pair_t ur10e_sincos(ur10e_real_t x)
         + z * (UR10E_C(-2.75573143513906633035e-7) + z * (UR10E_C(2.08757232129817482790e-9)
         - z * UR10E_C(1.13596475577881948265e-11)))))));
 #endif
-    const ur10e_real_t *const turn = &ur10e_turns[(unsigned)quarter & 3U];
+    const ur10e_real_t *const turn = &turns[(unsigned)quarter & 3U];
     ur10e_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

@@ -92,7 +92,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x741DCFF0UL
+#if WAM7_GENERATION != 0x2C28EF5FUL
 #error "wam7.h and wam7_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 

@@ -13,21 +13,20 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x741DCFF0UL
+#if WAM7_GENERATION != 0x2C28EF5FUL
 #error "wam7.h and wam7_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if WAM7_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const wam7_real_t wam7_turns[5] = {
-    WAM7_C(0.0), WAM7_C(1.0), WAM7_C(0.0), WAM7_C(-1.0), WAM7_C(0.0)
-};
-
 wam7_pair_t wam7_sincos(wam7_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const wam7_real_t turns[5] = {
+        WAM7_C(0.0), WAM7_C(1.0), WAM7_C(0.0), WAM7_C(-1.0), WAM7_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const wam7_real_t turns = x * WAM7_C(0.63661977236758134) + WAM7_C(16384.5);
-    const long quarter = (long)turns;
+    const wam7_real_t quarters = x * WAM7_C(0.63661977236758134) + WAM7_C(16384.5);
+    const long quarter = (long)quarters;
     const wam7_real_t k = (wam7_real_t)quarter - WAM7_C(16384.0);
 #if WAM7_SINGLE
     const wam7_real_t r = x - k * WAM7_C(1.5703125) - k * WAM7_C(4.83826792e-4);
@@ -48,7 +47,7 @@ wam7_pair_t wam7_sincos(wam7_real_t x)
         + z * (WAM7_C(-2.75573143513906633035e-7) + z * (WAM7_C(2.08757232129817482790e-9)
         - z * WAM7_C(1.13596475577881948265e-11)))))));
 #endif
-    const wam7_real_t *const turn = &wam7_turns[(unsigned)quarter & 3U];
+    const wam7_real_t *const turn = &turns[(unsigned)quarter & 3U];
     wam7_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];

@@ -13,21 +13,20 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x32302FFDUL
+#if YAW3PITCH_GENERATION != 0x1F006D80UL
 #error "yaw3pitch.h and yaw3pitch_sincos.c are of different generations: generate the arm again"
 #endif
 
 #if YAW3PITCH_OWN_SINCOS
-/* Sine of each quarter turn, and behind it the cosine: to turn back by them is exact and takes no branch. */
-static const yaw3pitch_real_t yaw3pitch_turns[5] = {
-    YAW3PITCH_C(0.0), YAW3PITCH_C(1.0), YAW3PITCH_C(0.0), YAW3PITCH_C(-1.0), YAW3PITCH_C(0.0)
-};
-
 yaw3pitch_pair_t yaw3pitch_sincos(yaw3pitch_real_t x)
 {
+    /* Sine of each quarter turn, behind it the cosine: to turn back by them is exact and takes no branch. */
+    static const yaw3pitch_real_t turns[5] = {
+        YAW3PITCH_C(0.0), YAW3PITCH_C(1.0), YAW3PITCH_C(0.0), YAW3PITCH_C(-1.0), YAW3PITCH_C(0.0)
+    };
     /* Rounded to the nearest quarter turn by truncating a positive number; 16384 is a multiple of 4. */
-    const yaw3pitch_real_t turns = x * YAW3PITCH_C(0.63661977236758134) + YAW3PITCH_C(16384.5);
-    const long quarter = (long)turns;
+    const yaw3pitch_real_t quarters = x * YAW3PITCH_C(0.63661977236758134) + YAW3PITCH_C(16384.5);
+    const long quarter = (long)quarters;
     const yaw3pitch_real_t k = (yaw3pitch_real_t)quarter - YAW3PITCH_C(16384.0);
 #if YAW3PITCH_SINGLE
     const yaw3pitch_real_t r = x - k * YAW3PITCH_C(1.5703125) - k * YAW3PITCH_C(4.83826792e-4);
@@ -48,7 +47,7 @@ yaw3pitch_pair_t yaw3pitch_sincos(yaw3pitch_real_t x)
         + z * (YAW3PITCH_C(-2.75573143513906633035e-7) + z * (YAW3PITCH_C(2.08757232129817482790e-9)
         - z * YAW3PITCH_C(1.13596475577881948265e-11)))))));
 #endif
-    const yaw3pitch_real_t *const turn = &yaw3pitch_turns[(unsigned)quarter & 3U];
+    const yaw3pitch_real_t *const turn = &turns[(unsigned)quarter & 3U];
     yaw3pitch_pair_t pair;
     pair.sine = s * turn[1] + c * turn[0];
     pair.cosine = c * turn[1] - s * turn[0];
