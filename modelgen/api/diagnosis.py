@@ -22,7 +22,7 @@ from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
-from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, suspicions
+from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, interval, suspicions
 from modelgen.report.experiment import followed
 from modelgen.report.words import at, joint_name, place_of, sized
 from modelgen.report.writing import write
@@ -125,7 +125,7 @@ class Diagnosis(Shown):
                 f"{e.before[j]:.4g}",
                 f"{e.after[j]:.4g}",
                 f"{e.gain[j]:.1f}",
-                f"{e.low[j]:.1f} to {e.high[j]:.1f}",
+                interval(e.low[j], e.high[j]),
             ]
             for j in range(len(e.before))
         ]

@@ -11,7 +11,7 @@ from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
-from modelgen.report.diagnosis_sentences import checked
+from modelgen.report.diagnosis_sentences import checked, interval
 from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.law_sketch import sketch
 from modelgen.report.page import Grid, Heading, Marks, Part, Run, Section, Text, block
@@ -132,4 +132,4 @@ def _share(c: NamedCause) -> str:
     size, low, high, word = (
         (s.gain, s.low, s.high, "less") if s.gain >= 0 else (-s.gain, -s.high, -s.low, "more")
     )
-    return f"; {size:.1f} % {word} error on the test record than without it ({low:.1f} to {high:.1f} %)"
+    return f"; {size:.1f} % {word} error on the test record than without it" + interval(low, high, " ({} %)")

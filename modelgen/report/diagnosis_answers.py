@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from modelgen.charts import number
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.cause_parts import failed, found, marks
-from modelgen.report.diagnosis_sentences import harms, missing, remains, worth
+from modelgen.report.diagnosis_sentences import harms, interval, missing, remains, worth
 from modelgen.report.following import following
 from modelgen.report.page import Command, Grid, Part, Run, Section, Text
 from modelgen.report.words import at, by_name, joint_name, sentence
@@ -95,7 +95,7 @@ def _gains(d: Diagnosis) -> list[tuple[str, str, str, tuple[str, str]]]:
             joint_name(d.arm, j + 1),
             number(e.before[j]),
             number(e.after[j]),
-            (f"{e.gain[j]:.1f}", f"({e.low[j]:.1f} to {e.high[j]:.1f})"),
+            (f"{e.gain[j]:.1f}", interval(e.low[j], e.high[j], "({})")),
         )
         for j in range(len(e.before))
     ]

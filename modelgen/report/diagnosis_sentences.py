@@ -50,9 +50,9 @@ def worth(d: Diagnosis) -> str:
     if np.isnan(e.overall):
         return "the test record cannot tell what that is worth"
     joints = " over all joints" if len(e.gain) > 1 else ""
-    interval = "" if np.isnan(low) else f" ({low:.1f} to {high:.1f} %)"
+    between = interval(low, high, " ({} %)")
     if e.overall >= _VISIBLE:
-        said = f"{e.overall:.1f} % less error on the test record{joints}{interval}"
+        said = f"{e.overall:.1f} % less error on the test record{joints}{between}"
     elif e.overall <= -_VISIBLE:
         said = f"the test record has {-e.overall:.1f} % more error{joints}"
     else:
@@ -62,6 +62,11 @@ def worth(d: Diagnosis) -> str:
     doubted = [c for c in d.causes if any(k.name == "confirmed" and k.passed is False for k in c.checks)]
     names = [at(d.arm, c.effect, c.joint) for c in doubted]
     return said + (f"; that record does not confirm {listed(names)}" if names else "")
+
+
+def interval(low: float, high: float, around: str = "{}") -> str:
+    """Of a gain [%], put into `around`; empty where the test record is too short for one."""
+    return "" if np.isnan(low) else around.format(f"{low:.1f} to {high:.1f}")
 
 
 def harms(d: Diagnosis) -> list[str]:

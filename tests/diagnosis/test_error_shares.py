@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnosis_support import ARM, record, three
+from numpy.random import default_rng
 
 from modelgen.dataset import Record
+from modelgen.diagnosis.extended.test_errors import compared
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
 from modelgen.report.diagnosis import report
@@ -50,3 +53,13 @@ def test_what_does_harm_there_is_said_and_kept() -> None:
     assert said in report(found)
     told = to_json(found)["error"]["by_cause"]
     assert [c["effect"] for c in told if c["gain_interval_percent"][1] < 0.0] == ["torque_ripple"]
+
+
+@pytest.mark.parametrize(("rows", "interval"), [(400, True), (12, False)])
+def test_a_short_test_record_has_errors_and_no_interval(rows: int, interval: bool) -> None:
+    before = default_rng(5).normal(size=rows)
+    old, new, gain, low, high = compared(before, 0.5 * before, USUAL.extended)
+    assert (old, new) == pytest.approx((np.sqrt((before**2).mean()), 0.5 * old))
+    assert gain == pytest.approx(50.0)
+    assert np.isfinite([low, high]).all() == interval
+    assert np.isnan(compared(before[:0], before[:0], USUAL.extended)).all()

@@ -58,14 +58,20 @@ def _errors(unit: str, found: Array, interval: tuple[float, float]) -> Errors:
 
 
 def compared(before: Array, after: Array, limits: ExtendedThresholds) -> tuple[float, ...]:
-    """RMSE before and after, gain in percent and its interval, from errors (M,) in order of time."""
+    """RMSE before and after, gain in percent and its interval, from errors (M,) in order of time.
+
+    The interval is not a number where there are fewer rows than blocks, all of them are where there is none.
+    """
     count = limits.bootstrap_blocks
-    if len(before) < count:
+    if not len(before):
         return (np.nan,) * 5
     old, new = np.sqrt((before**2).mean()), np.sqrt((after**2).mean())
+    found = float(old), float(new), float(100 * (1 - new / old))
+    if len(before) < count:
+        return *found, np.nan, np.nan
     gains = 100 * (1 - np.sqrt(_ratios(before, after, count)))
     low, high = np.quantile(gains, limits.interval_quantiles)
-    return float(old), float(new), float(100 * (1 - new / old)), float(low), float(high)
+    return *found, float(low), float(high)
 
 
 def overall_interval(pairs: Sequence[tuple[Array, Array]], limits: ExtendedThresholds) -> tuple[float, float]:
