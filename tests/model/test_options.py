@@ -189,9 +189,15 @@ def test_forward_dynamics_guards_every_pivot() -> None:
     function = case.folded.functions["forward_dynamics"]
     given = {key: list(value[0]) for key, value in case.inputs(function).items() if key != "parameters"}
     good = run(function.program, {**given, "parameters": list(case.base)})
-    # Every pivot, and all but the first by what they exceed a share of their diagonal element.
-    assert [bit for bit, _ in good.guards] == [STATUS_PIVOT] * (4 + 3)
-    assert all(value > 0 for _, value in good.guards)
+    # Every pivot from the last joint on, then the least of what all but the first exceed 1e-9 of their
+    # diagonal element by; the product of the pivots is the determinant of the mass matrix.
+    assert [bit for bit, _ in good.guards] == [STATUS_PIVOT] * (4 + 1)
+    *pivots, left = [value for _, value in good.guards]
+    mass = case.folded("mass_matrix", q=np.array(given["q"]), parameters=case.base).reshape(4, 4)
+    assert np.prod(pivots) == pytest.approx(np.linalg.det(mass), rel=1e-9)
+    exceeded = [x - 1e-9 * mass[k, k] for x, k in zip(pivots[1:], (2, 1, 0), strict=True)]
+    assert left == pytest.approx(min(exceeded), rel=1e-12)
+    assert min(*pivots, left) > 0
     weightless = run(function.program, {**given, "parameters": list(-case.base)})
     assert any(value < 0 for _, value in weightless.guards)
 
