@@ -5,7 +5,7 @@
     python benchmarks/compare.py --own         count modelgen's own instructions anew, write them and the page
     python benchmarks/compare.py --page        write the page and its pictures from the files of figures
 
-Needs gcc, valgrind and the packages of `pip install 'modelgen[bench]'`; compiling against Pinocchio's headers
+Needs gcc, valgrind and the packages of `pip install -e '.[bench]'`; compiling against Pinocchio's headers
 takes minutes and 5 GB of memory, once (build/bench). Reports; fails only where results differ.
 """
 

@@ -106,7 +106,7 @@ def serialised(tables: Mapping[str, Table], code: Mapping[str, str]) -> str:
 def tools() -> list[str]:
     """The compilers at hand."""
     if missing := python_tools_missing():
-        raise SystemExit(f"size.py needs the Python package {missing}: pip install 'modelgen[test]'")
+        raise SystemExit(f"size.py needs the Python package {missing}: pip install -e '.[test]'")
     return ["gcc", "zig"] if shutil.which(M4F.gcc) else ["zig"]
 
 

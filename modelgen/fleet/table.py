@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from modelgen.errors import InputError
+from modelgen.extras import missing
 from modelgen.fleet.store import Row
 
 NAME = "fleet.parquet"
@@ -19,7 +20,7 @@ def library() -> Any:
         importlib.import_module("pyarrow.parquet")
         return importlib.import_module("pyarrow")
     except ImportError:
-        raise InputError("a fleet needs pyarrow: pip install 'pyarrow>=15'") from None
+        raise missing("a fleet needs", "pyarrow") from None
 
 
 def write_table(rows: Sequence[Row], path: Path) -> None:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
 from modelgen.errors import InputError
+from modelgen.extras import missing as missing_library
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -64,7 +65,7 @@ def _library() -> Any:
     try:
         return importlib.import_module("distributed")
     except ImportError:
-        raise InputError("--dask needs the library dask.distributed: pip install 'modelgen[dask]'") from None
+        raise missing_library("--dask needs", "distributed") from None
 
 
 def _connected(distributed: Any, address: str) -> Any:

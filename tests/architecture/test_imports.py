@@ -8,6 +8,7 @@ from architecture.house import circles, file_graph, files, floors, imports, room
 ORDER = (
     "version",
     "errors",
+    "extras",
     "thresholds",
     "numeric",
     "progress",

@@ -32,9 +32,7 @@ def imported(name: str) -> ModuleType:
     """The package, or a skip that says how to get it."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        module: ModuleType = pytest.importorskip(
-            name, reason=f"{name} is missing: pip install 'modelgen[mpc]'"
-        )
+        module: ModuleType = pytest.importorskip(name, reason=f"{name} is missing: pip install -e '.[mpc]'")
     return module
 
 

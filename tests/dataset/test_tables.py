@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from modelgen.dataset import check_separate, read, read_columns
-from modelgen.dataset.reading.extras import NEEDED
 from modelgen.description import loads
 from modelgen.errors import InputError
+from modelgen.extras import DASK, LOGS
 
 ARM = loads(
     """
@@ -246,4 +246,6 @@ def test_times_of_every_type_in_parquet(kind: str, tmp_path: Path) -> None:
 
 def test_what_stands_beside_modelgen_names_the_libraries_of_the_project() -> None:
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))
-    assert sorted(NEEDED.values()) == sorted(project["project"]["optional-dependencies"]["logs"])
+    extras = project["project"]["optional-dependencies"]
+    assert sorted(LOGS.values()) == sorted(extras["logs"])
+    assert sorted(DASK.values()) == sorted(extras["dask"])

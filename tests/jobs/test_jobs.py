@@ -136,5 +136,5 @@ def test_a_cluster_that_goes_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_without_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(InputError, match=r"pip install 'modelgen\[dask\]'"):
+    with pytest.raises(InputError, match=r"--dask needs distributed: pip install 'dask\[distributed\]>="):
         list(run(square, range(2), Where(dask="tcp://127.0.0.1:8786")))

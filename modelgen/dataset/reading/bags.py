@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from modelgen.dataset.reading.bag_messages import Messages, messages_of
-from modelgen.dataset.reading.extras import missing
 from modelgen.dataset.reading.messages import columns_of, labels, number_at
 from modelgen.dataset.reading.specs import unreadable
 from modelgen.dataset.reading.turns import in_turn
 from modelgen.errors import InputError
+from modelgen.extras import missing
 from modelgen.numeric import Array
 
 PEEK = 200  # messages of a topic that its columns are taken from

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.dataset.reading.extras import missing
 from modelgen.dataset.reading.specs import unreadable
 from modelgen.dataset.reading.turns import in_turn
 from modelgen.errors import InputError
+from modelgen.extras import missing
 from modelgen.numeric import Array
 
 HEAD = 4096  # rows that blank columns are told by
