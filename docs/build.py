@@ -66,7 +66,7 @@ GUIDES = {
     "The arm": ["describing", "importing", "drawing", "calibration", "exporting"],
     "Motions": ["excitation", "simulation", "fleet"],
     "The code": ["packaging", "safety"],
-    "What is measured": ["diagnosis", "benchmarks", "sizes", "imported-robots"],
+    "What is measured": ["diagnosis", "strangers", "benchmarks", "sizes", "imported-robots"],
     "How it works": [
         "effects",
         "gallery",
