@@ -158,6 +158,16 @@ def test_the_runner_up_is_not_the_name(
         assert found.place == other[:2]
 
 
+@pytest.mark.parametrize(("constant", "dominated"), [(104.0, True), (96.0, False)])
+def test_a_law_varies_only_where_the_constant_one_explains_less(constant: float, dominated: bool) -> None:
+    """Where positions could feign the constant law, and not what fades, the latter is no more its name."""
+    own = ("friction_warm_up", 1, 100.0, "", True)
+    refused = ("coulomb_friction", 1, constant, "positions", False)
+    elsewhere = ("coulomb_friction", 2, 200.0, "positions", False)
+    found = dominance(*chosen(turn(own, refused, elsewhere), effect="friction_warm_up"))
+    assert (found.ahead > found.most) == dominated
+
+
 def test_what_is_refused_in_the_end_is_held_against_the_cause_too() -> None:
     found = dominance(*chosen(turn(OWN), turn(("presliding", 1, 130.0, "gain", False))))
     assert found.ahead == pytest.approx(30.0)

@@ -9,6 +9,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import Candidate, Place
 from modelgen.diagnosis.selection import EXCHANGED, SUPERFLUOUS, Cause, Ranked, Selection, lets_vary
+from modelgen.effects import CATALOGUE
 
 # Refusals for want of evidence, of values that can be, or of a form of itself: they leave a cause its name.
 _LESSER = ("", "evidence", "values", "near rest", "one joint", EXCHANGED, SUPERFLUOUS)
@@ -28,8 +29,9 @@ class Dominance:
 def dominance(cause: Cause, selection: Selection) -> Dominance:
     """The candidate that is ahead of the cause by most, of those that a gate refused.
 
-    At the cause's turn, or beside all causes in the end: at its joint or of the whole arm. None of a free
-    motion.
+    At the cause's turn, or beside all causes in the end: at its joint or of the whole arm. A constant law
+    that the cause lets vary may not be ahead at all: what explains as much without varying shows no
+    variation. None of a free motion.
     """
     equations = selection.system.equations
     most = equations.thresholds.adequacy.max_behind_refused
@@ -41,14 +43,16 @@ def dominance(cause: Cause, selection: Selection) -> Dominance:
     for turn in selection.turns:
         own = next((r for r in turn if r.taken and r.place == c.place), None)
         if own is not None:
-            found += [_over(r, own.delta_bic, most) for r in turn if _dominates(r, c, named)]
+            found += [_over(r, own.delta_bic, c, most) for r in turn if _dominates(r, c, named)]
     if not any(r.taken for r in selection.turns[-1]):
-        found += [_over(r, cause.delta_bic, most) for r in selection.turns[-1] if _dominates(r, c, named)]
-    return max(found, key=lambda d: d.ahead)
+        last = [r for r in selection.turns[-1] if _dominates(r, c, named)]
+        found += [_over(r, cause.delta_bic, c, most) for r in last]
+    return max(found, key=lambda d: d.ahead - d.most)
 
 
-def _over(r: Ranked, evidence: float, most: float) -> Dominance:
-    return Dominance(r.delta_bic - evidence, most, r.place)
+def _over(r: Ranked, evidence: float, c: Candidate, most: float) -> Dominance:
+    constant = r.joint == c.joint and CATALOGUE[r.effect] in c.definition.varies
+    return Dominance(r.delta_bic - evidence, 0.0 if constant else most, r.place)
 
 
 def _dominates(r: Ranked, c: Candidate, named: Collection[Place]) -> bool:
