@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from modelgen.charts import sheet
 from modelgen.diagnosis.result import Diagnosis
@@ -87,7 +88,7 @@ def _others(d: Diagnosis) -> Iterator[Section]:
     found: list[Section] = []
     if against or (turns and not d.suspects):
         title = "Rivals, and why not" if d.causes else "What was tried"
-        found.append(Section(title, [Grid("Rivals", _RIVALS, against)] if against else []))
+        found.append(Section(title, [Grid("Rivals", _RIVALS, against, folds=True)] if against else []))
     if d.suspects:
         parts = [part for k in range(len(d.suspects)) for part in suspected(d, k)]
         found.append(Section("Suspects", parts))
@@ -108,10 +109,15 @@ def _log(d: Diagnosis) -> list[Part]:
 
 
 def _over_abscissae(d: Diagnosis) -> Folded:
+    title = "Residuals over speed, position, load and more"
     parts: list[Part] = [Text("Means over bins of the test record.")]
-    for name, charts in residuals(d).items():
+    over = residuals(d)
+    if len(d.arm.coordinates) == 1:  # one beside the other, each with what it is over as its title
+        parts.append(block([replace(chart, title=f"over {name}") for name, (chart,) in over.items()]))
+        return Folded(title, parts)
+    for name, charts in over.items():
         parts += [Heading(f"Over {name}"), block(charts)]
-    return Folded("Residuals over speed, position, load and more", parts)
+    return Folded(title, parts)
 
 
 def _simulation(d: Diagnosis) -> list[Part]:

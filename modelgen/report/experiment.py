@@ -43,12 +43,12 @@ def described(d: Diagnosis) -> list[Part]:
         drawn = charts(d.arm, e)
         parts += [
             Text(_trajectory(e, e.proposal)),
-            Grid("Expected evidence", _PAIRS, _pairs(d.arm, e, e.proposal)),
+            Grid("Expected evidence", _PAIRS, _pairs(d.arm, e, e.proposal), folds=True),
             block(drawn[:1]),
             block(drawn[1:]),
         ]
     tests = [(_kept(by_name(d.arm, t.text)), _evidence(t.evidence)) for t in e.tests]
-    return [*parts, Grid("Tests on the bench", _TESTS, tests)] if tests else parts
+    return [*parts, Grid("Tests on the bench", _TESTS, tests, folds=True)] if tests else parts
 
 
 def plans(d: Diagnosis) -> dict[str, str]:

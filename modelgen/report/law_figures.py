@@ -16,6 +16,9 @@ from modelgen.report.diagnosis_figures import BINS, HELD, against, binned, bins_
 _SAMPLES = 500  # of the residuals that are drawn
 _GROUPS = 80  # of samples, through whose means a law is drawn
 _WAVES = 3  # groups for a bin
+_FINE = 12  # groups for a wave of a law that repeats: their means keep 99 % of its amplitude
+_DOTS = 6  # bins for a wave
+_SEEN = 40  # waves that are told from each other in a chart
 _NEAR = 0.9  # of the best abscissa's share that the usual one needs
 _CLEAR = 0.5  # of the best share: a law that any motion makes a curve over time is drawn over something else
 _OVER = {"velocity": "speed", "position": "position", "acceleration": "acceleration", "time": "time"}
@@ -68,19 +71,29 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
     against_motion = "" if (best.side > 0).all() else " against the motion"
     x_label = f"{best.name} [{best.unit}]"
     turned = best.side if np.mean(law[m, j] * best.side) >= 0.0 or not against_motion else -best.side
+    effect, over = d.causes[k].effect, best.name
+    wave = _wave(d, k, j, best)
     kept = _inner(best.x)
+    waves = float(np.ptp(best.x[kept])) / wave
+    shown = ""
+    if waves > _SEEN:
+        kept = np.logical_and(kept, _amid(best.x, _SEEN * wave))
+        shown, waves = f", {_SEEN} of its {waves:.0f} waves", _SEEN
     x = best.x[kept]
     old, new, own = ((r[m, j] * turned)[kept] for r in (*d.residuals, law))
     some = np.linspace(0, len(own) - 1, min(_SAMPLES, len(own))).astype(int)
-    effect, over = d.causes[k].effect, best.name
-    bins = _bins(effect, over)
+    bins = max(_bins(effect, over), int(_DOTS * waves))
+    groups = max(_groups(effect, over), int(_FINE * waves))
+    # the law has no noise: where there are too few samples for means, each is drawn
+    drawn = _curve(x, own, groups) if groups <= len(x) // HELD else _curve(x, own, len(x), 1)
     found = Chart(
-        f"{name}: the law found",
+        f"{name}: the law found{shown}",
         x_label,
         f"effort{against_motion} [{unit}]",
         [
             Curve(x[some], (own + new)[some], "measured", "effort without the rest of the model", True),
-            Curve(*_curve(x, own, _groups(effect, over)), "law", "law of the cause"),
+            # fewer samples than make a wave a curve are points
+            Curve(*drawn, "law", "law of the cause", len(x) < _FINE * waves),
         ],
         f"The law of {effect} over {over}, with what the rest of the model leaves of the effort of {name}.",
     )
@@ -103,6 +116,22 @@ def _inner(x: Array) -> Array:
     if np.ptp(x) <= _FAR * (high - low):
         return np.ones(len(x), dtype=bool)
     return np.asarray((x >= low) & (x <= high))
+
+
+def _wave(d: Diagnosis, k: int, j: int, a: _Abscissa) -> float:
+    """Length of a wave of a law that repeats with the motor's position; infinite of any other."""
+    values, p = d.causes[k].parameters, d.test.prepared
+    if not CATALOGUE[d.causes[k].effect].periodic or a.name not in ("motor position", "position", "time"):
+        return np.inf
+    motor = p.picked(p.motor)[d.test.moving[:, j], j]
+    way = float(np.abs(np.diff(motor)).sum() if a.name == "time" else np.ptp(motor))
+    scale = float(np.ptp(a.x)) / way if way > 0.0 else 0.0
+    return (scale * values["revolution"].value / values["harmonic"].value) or np.inf
+
+
+def _amid(x: Array, length: float) -> Array:
+    """Flags of the samples within that length about the median."""
+    return np.asarray(np.abs(x - np.median(x)) <= length / 2)
 
 
 def _abscissa(d: Diagnosis, k: int, j: int) -> _Abscissa:
@@ -150,9 +179,9 @@ def _groups(effect: str, over: str) -> int:
     return max(_GROUPS, _WAVES * _bins(effect, over))
 
 
-def _curve(x: Array, y: Array, groups: int) -> tuple[Array, Array]:
-    """Means over groups of neighbours, equally many in each."""
-    parts = np.array_split(np.argsort(x, kind="stable"), max(1, min(groups, len(x) // HELD)))
+def _curve(x: Array, y: Array, groups: int, held: int = HELD) -> tuple[Array, Array]:
+    """Means over groups of neighbours, equally many in each, `held` at least."""
+    parts = np.array_split(np.argsort(x, kind="stable"), max(1, min(groups, len(x) // held)))
     return np.array([x[g].mean() for g in parts]), np.array([y[g].mean() for g in parts])
 
 

@@ -82,19 +82,26 @@ class Lines(Part):
 
 @dataclass(frozen=True)
 class Grid(Part):
-    """A table. heads: each with the side that its cells stand at. Of two texts in a cell one is small."""
+    """A table. heads: each with the side that its cells stand at. Of two texts in a cell one is small.
+
+    folds: on a narrow screen every row is a list of its cells, each behind its head.
+    """
 
     kind: ClassVar[str] = "table"
     caption: str
     heads: Sequence[tuple[str, str]]
     rows: Sequence[Sequence[str | tuple[str, str]]]
+    folds: bool = False
 
     def values(self) -> Mapping[str, Any]:
         """For the template."""
         looks = ["n" if side == "right" else "u" if head == "unit" else "" for head, side in self.heads]
         heads = [{"text": head, "look": "n" if side == "right" else ""} for head, side in self.heads]
-        rows = [[_cell(cell, look) for cell, look in zip(row, looks, strict=True)] for row in self.rows]
-        return {"caption": self.caption, "heads": heads, "rows": rows}
+        rows = [
+            [_cell(cell, look, head) for cell, look, (head, _) in zip(row, looks, self.heads, strict=True)]
+            for row in self.rows
+        ]
+        return {"caption": self.caption, "heads": heads, "rows": rows, "folds": self.folds}
 
 
 @dataclass(frozen=True)
@@ -202,6 +209,6 @@ def _looks(run: Run) -> dict[str, Any]:
     return {"text": run.text, "target": run.target, "linked": linked, "quiet": quiet, "plain": plain, **kinds}
 
 
-def _cell(cell: str | tuple[str, str], look: str) -> dict[str, str]:
+def _cell(cell: str | tuple[str, str], look: str, head: str) -> dict[str, str]:
     text, small = (cell, "") if isinstance(cell, str) else cell
-    return {"text": text, "small": small, "look": look}
+    return {"text": text, "small": small, "look": look, "head": head}

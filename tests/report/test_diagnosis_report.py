@@ -163,6 +163,35 @@ def test_the_law_is_drawn_over_what_it_explains(found: Diagnosis) -> None:
     assert law.x_label == "speed [rad/s]"  # a Stribeck curve is one over the speed
 
 
+@pytest.mark.parametrize("waves", [20.0, 35.0, 120.0])
+def test_every_wave_of_a_ripple_is_drawn(found: Diagnosis, waves: float) -> None:
+    """Each that is shown, at its height; of more than can be told apart, forty."""
+    j, p = 1, found.test.prepared
+    motor = p.picked(p.motor)[:, j]
+    harmonic = waves * 2 * np.pi / np.ptp(motor[found.test.moving[:, j]])
+    law = np.zeros_like(found.residuals[1])
+    law[:, j] = np.sin(harmonic * motor)
+    values = {"revolution": 2 * np.pi, "harmonic": harmonic}
+    cause = replace(
+        found.causes[0],
+        effect="torque_ripple",
+        parameters={name: Estimate(value, np.nan, "1") for name, value in values.items()},
+    )
+    rippled = replace(
+        found, causes=(cause,), laws=(law,), residuals=(found.residuals[1] + law, found.residuals[1])
+    )
+    drawn, left = law_charts(rippled, 0)
+    _, curve = drawn.curves
+    assert drawn.x_label.startswith("motor position")
+    shown = np.ptp(curve.x) * harmonic / (2 * np.pi)
+    assert shown == pytest.approx(min(waves, 40.0), abs=2.0)
+    assert np.count_nonzero(np.diff(np.sign(curve.y))) == pytest.approx(2 * shown, abs=2.0)
+    assert np.quantile(curve.y, 0.9) > 0.93  # of a sine: 0.951
+    np.testing.assert_allclose(curve.y, np.sin(harmonic * curve.x), atol=0.15)
+    without, _ = left.curves
+    assert np.sqrt(np.mean(without.y**2)) > 0.6  # of a sine: 0.707
+
+
 def test_the_page_is_small_and_drawn_in_no_time(found: Diagnosis, written: Path) -> None:
     assert written.stat().st_size < 1_500_000
     begin = time.process_time()
