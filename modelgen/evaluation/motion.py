@@ -27,14 +27,11 @@ class Motion:
     cutoff: float = 0.0
     before: Motion | None = field(default=None, repr=False)
 
-    @property
-    def rest(self) -> Motion | None:
-        """The rest between the motion before and this one: one step from where that one ended (2 samples)."""
-        if self.before is None:
-            return None
-        old, still = self.before, np.zeros((2, self.q.shape[1]))
-        t = np.array([old.t[-1], self.t[0]])
-        return Motion(t, np.repeat(old.q[-1:], 2, axis=0), still, still, old.motor_side, old.cutoff)
+    def rest_until(self, end: float) -> Motion:
+        """A rest from where this motion ends up to a time [s], as one step (2 samples)."""
+        still = np.zeros((2, self.q.shape[1]))
+        t, q = np.array([self.t[-1], end]), np.repeat(self.q[-1:], 2, axis=0)
+        return Motion(t, q, still, still, self.motor_side, self.cutoff)
 
     @property
     def step(self) -> float:

@@ -124,10 +124,11 @@ class Series:
 
         Elastic transmissions begin where their load holds them.
         """
-        start, rest = None, motion.rest
-        if motion.before is not None and rest is not None and not self.lags:
-            start = self.run(motion.before, free, parameters)[-2]
-            start = self(self.head(rest, parameters), free, rest, start)[1]
+        start = None
+        if motion.before is not None and not self.lags:
+            ended = self.run(motion.before, free, parameters)[-2]
+            rest = motion.before.rest_until(float(motion.t[0]))
+            start = self(self.head(rest, parameters), free, rest, ended)[1]
         head = self._recent.along("head", motion, parameters, lambda: self.head(motion, parameters))
         return self(head, free, motion, start)
 

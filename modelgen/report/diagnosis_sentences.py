@@ -73,7 +73,7 @@ def harms(d: Diagnosis) -> list[str]:
     """Warnings about causes that make the test record worse."""
     return [
         f"With {at(d.arm, c.effect, c.joint)} the error on the test record is {-c.share.gain:.1f} % "
-        f"larger ({-c.share.high:.1f} to {-c.share.low:.1f} %): what was found does not carry over to that "
+        f"larger ({interval(-c.share.high, -c.share.low)} %): what was found does not carry over to that "
         f"record.{CATALOGUE[c.effect].caveat}"
         for c in d.causes
         if c.share.high < 0.0

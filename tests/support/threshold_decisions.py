@@ -183,9 +183,9 @@ def dominated(limits: Thresholds) -> bool:
     return found.ahead > found.most
 
 
-def freely(limits: Thresholds, column: Any) -> bool:
-    """Whether a free function of a joint's position outdoes a cause with this law of the right one, where
-    nothing repeats.
+def waving(limits: Thresholds) -> tuple[Equations, list[Array]]:
+    """Equations with half of a wave over the first joint's position in its effort, where nothing repeats; and
+    the wave in every record.
     """
     equations = replace(real(limits), periods=[None] * len(real(limits).rows))
     hidden = [np.sin(3.0 * r.prepared.picked(r.prepared.q)[:, 0]) for r in equations.rows]
@@ -193,20 +193,21 @@ def freely(limits: Thresholds, column: Any) -> bool:
         replace(r, effort=r.effort + 0.5 * x[:, None] * [1.0, 0.0])
         for r, x in zip(equations.rows, hidden, strict=True)
     ]
-    equations = equations.with_rows(given)
+    return equations.with_rows(given), hidden
+
+
+def freely(limits: Thresholds, column: Any) -> bool:
+    """Whether a free function of a joint's position outdoes a cause with this law of the right one, where
+    nothing repeats.
+    """
+    equations, hidden = waving(limits)
     trial = at_first_joint(equations, [column(x) for x in hidden])
     return free_forms(selected(equations, trial), equations, {})[1].as_good
 
 
 def left_beside(limits: Thresholds) -> Any:
     """What functions of no law explain beside a cause of a part of a wave, where nothing repeats."""
-    equations = replace(real(limits), periods=[None] * len(real(limits).rows))
-    hidden = [np.sin(3.0 * r.prepared.picked(r.prepared.q)[:, 0]) for r in equations.rows]
-    given = [
-        replace(r, effort=r.effort + 0.5 * x[:, None] * [1.0, 0.0])
-        for r, x in zip(equations.rows, hidden, strict=True)
-    ]
-    equations = equations.with_rows(given)
+    equations, hidden = waving(limits)
     trial = at_first_joint(equations, [np.ones(len(x)) for x in hidden])
     return bool(left_smoothly(selected(equations, trial).system)[0] > 0.0)
 

@@ -21,6 +21,7 @@ from blind.family_b.logger import Record, command, record
 from blind.family_b.outside import OUTSIDE
 from blind.family_b.plan import SETTINGS, Plan
 from blind.family_b.world import World
+from blind.sized import check_asked, first_met
 
 __all__ = ["KINDS", "SETTINGS", "make"]
 
@@ -35,7 +36,6 @@ KNOWN = 0.25  # share of the arms with a known Stribeck friction
 RUN_ON = 0.3  # share of the cases of warm-up whose records follow each other without a pause
 TRIES = 8  # runs of the plant in search of a strength
 CLOSE = 0.03  # share of s - 1 to which a size is met
-MET = 0.1  # the same, to which an arm is taken
 ATTEMPTS = 4  # arms drawn, where one runs away or cannot show the effect in the size asked for
 
 
@@ -45,24 +45,19 @@ def make(seed: int, kind: str, *, size: float | None = None, setting: str = "fou
     kind: one of KINDS. size: RMSE without over RMSE with the effect; None: a strength drawn from its range.
     setting: one of SETTINGS. Raises ValueError for another kind or setting, or a size of at most 1.
     """
-    if kind not in KINDS:
-        raise ValueError(f"unknown kind {kind!r}: one of {', '.join(KINDS)}")
-    if size is not None and size <= 1:
-        raise ValueError("a size is above 1")
-    best: Case | None = None
-    for attempt in range(ATTEMPTS):
-        try:
-            case = _make(seed, attempt, kind, size, setting)
-        except Unstable:
-            continue
-        got = case.truth.size
-        if size is None or got is None or abs(got - size) < MET * (size - 1):
-            return case
-        if best is None or abs(got - size) < abs((best.truth.size or 0) - size):
-            best = case
+    check_asked(kind, KINDS, size)
+    best = first_met((_attempted(seed, k, kind, size, setting) for k in range(ATTEMPTS)), size)
     if best is None:
         raise ValueError(f"no arm of seed {seed} stands {kind} in setting {setting}")
     return best
+
+
+def _attempted(seed: int, attempt: int, kind: str, size: float | None, setting: str) -> Case | None:
+    """The case of an attempt, None where its arm runs away."""
+    try:
+        return _make(seed, attempt, kind, size, setting)
+    except Unstable:
+        return None
 
 
 def _make(seed: int, attempt: int, kind: str, size: float | None, setting: str) -> Case:

@@ -69,7 +69,7 @@ def left_smoothly(system: System) -> Array:
         (j,) = shape.columns
         worth = log_evidence(shape, system)
         if worth.evidence > least:
-            found[j] = max(found[j], sizes[j] * (1.0 - (1.0 - worth.percent / 100.0) ** 2))
+            found[j] = max(found[j], sizes[j] * worth.share)
     return found
 
 
@@ -157,5 +157,5 @@ def _of_further_terms(selection: Selection, terms: Mapping[int, Worth]) -> Array
             continue
         best = terms[c.joint]
         if 0.0 < best.evidence < most * cause.delta_bic:
-            found[c.joint - 1] = sizes[c.joint - 1] * (1.0 - (1.0 - best.percent / 100.0) ** 2)
+            found[c.joint - 1] = sizes[c.joint - 1] * best.share
     return found

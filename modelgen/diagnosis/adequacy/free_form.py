@@ -62,7 +62,8 @@ def free_forms(
             rest = max(rest, terms[joint].evidence)
         known = selection.system.noise_known
         most = 0.0 if known else limits.max_free_form_ahead
-        found[joint] = FreeForm(ahead(functions_of(joint - 1, equations), own, without) - rest, most)
+        shapes = [*functions_of(joint - 1, equations), spots(joint - 1, equations)]
+        found[joint] = FreeForm(ahead(shapes, own, without) - rest, most)
     return found
 
 
@@ -94,7 +95,7 @@ def further_terms(selection: Selection) -> dict[int, Worth]:
 
 
 def functions_of(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:
-    """Functions of position and speed of joint j (from 0), of every bend length, and a fine one of position.
+    """Functions of position and speed of joint j (from 0), of every bend length.
 
     series: of the position, times the direction.
     """
@@ -108,5 +109,3 @@ def functions_of(j: int, equations: Equations, series: bool = False) -> Iterator
             turned = x * np.sign(speed)
             tables.append(r.equation(j, turned if series else np.hstack([x, turned])))
         yield SmoothFunction(name, {j: tables})
-    if not series:
-        yield spots(j, equations)

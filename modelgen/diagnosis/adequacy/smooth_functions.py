@@ -52,6 +52,11 @@ class Worth:
     evidence: float
     percent: float
 
+    @property
+    def share(self) -> float:
+        """Of the mean squares of those joints."""
+        return 1.0 - (1.0 - self.percent / 100.0) ** 2
+
 
 def most_like(system: System) -> Likeness | None:
     """What the causes leave is most like this function of no law; None where it is like none.
