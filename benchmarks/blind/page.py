@@ -10,16 +10,21 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from blind.ablation import Answered
 from blind.ablation import table as checks_table
 from blind.judge import answers, counted
+from blind.others.method import method
+from blind.others.table import Score, picture, scores
+from blind.others.table import table as others_table
 
 HERE = Path(__file__).resolve().parent
 RUNS = HERE / "runs"
 PAGE = HERE.parents[1] / "docs" / "strangers.md"
+PICTURE = PAGE.with_suffix(".svg")
 
 INTRODUCTION = """\
 # Strangers' arms: measured
@@ -36,6 +41,33 @@ intervals. Every answer is kept in `benchmarks/blind/runs`.
 Exact is the right name at the right joint and nothing else; where nothing that the catalogue knows is
 hidden, it is nothing named. Answers that name nothing there are "I cannot tell", "something outside the
 catalogue", or a suspect with the check that it failed.
+"""
+OTHERS = """\
+## What others name
+
+The same records, and other ways to choose. All get the same filtered equations, those of the band that
+modelgen asks first, and the same columns: every candidate of [the catalogue](effects.md) at every place, with
+those values at which it explains most alone beside the user's model. So what is compared is the choice, not
+the filtering, and the others are spared a search for values that they do not have. The parameters of the
+user's model are fitted beside whatever is chosen. None of them has modelgen's checks. The judge is the same,
+and aliases count for all.
+
+![Exact names, false names and error removed, by method](strangers.svg)
+
+Error removed is on the test record, which no method has seen: of the mean square error that the hidden
+effect adds to the noise, at its joint, the part that the extended model removes; all cases together, with
+an interval by a bootstrap of the cases. Who names nothing removes nothing, and a false name can add error.
+The network names nothing. It learns what the user's model leaves.
+"""
+ADDING = """\
+A method of your own is a class of a few lines in a module of `benchmarks/blind/others/methods`; it is found
+by the module's name. `benchmarks/blind/README.md` shows one. From `benchmarks`,
+
+```sh
+pip install -e "..[others]"
+python -m blind.others.runner mine --seconds 600   # goes on where it ended
+python -m blind.page                               # this page with its row
+```
 """
 CHECKS = """\
 ## What each check is worth
@@ -103,8 +135,28 @@ def page() -> str:
         rows += [_row(name, row) for row in counted(cases) if row["family"] != "all"]
     table = "\n".join(f"| {' | '.join(row)} |" for row in rows)
     texts = "\n".join(f"- `{name}`: {text}" for name, (text, _) in sets.items())
-    every = [case for _, cases in sets.values() for case in cases]
-    return "\n".join([INTRODUCTION, texts, "", table, "", CHECKS, checks_table(every), ""])
+    every = every_case()
+    parts = [INTRODUCTION, texts, "", table, "", *_others(every), CHECKS, checks_table(every), ""]
+    return "\n".join(parts)
+
+
+def every_case() -> list[Answered]:
+    """Truths and answers of all kept sets."""
+    return [case for path in sorted(RUNS.glob("*.jsonl")) for case in kept(path.stem)[1]]
+
+
+def _others(every: list[Answered]) -> list[str]:
+    """What other methods do on the same cases; empty where none has an answer."""
+    rows = compared(every)
+    if not rows:
+        return []
+    tuned = [f"- {by.title}: {by.tuning}" for by in (method(row.name) for row in rows[1:])]
+    return [OTHERS, others_table(rows), "", *tuned, "", ADDING]
+
+
+def compared(every: Sequence[Answered]) -> list[Score]:
+    """Scores of modelgen, from its kept answers, and of the other methods, on the cases of all."""
+    return scores([{"truth": said, "answer": answer} for said, answer in every])
 
 
 def _row(name: str, row: dict[str, Any]) -> tuple[str, ...]:
@@ -128,6 +180,9 @@ def main() -> None:
         name, text, folder = given.keep
         keep(name, text, Path(folder))
     PAGE.write_text(page(), encoding="utf-8")
+    rows = compared(every_case())
+    if rows:
+        PICTURE.write_text(picture(rows), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,1 @@
+"""What others would do on the cases of the blind benchmark: methods, one a module, and how they are run."""

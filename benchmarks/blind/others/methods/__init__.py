@@ -1,0 +1,1 @@
+"""Methods, one a module, each with its `METHOD`."""
