@@ -123,6 +123,14 @@ MUTATIONS = (
     Mutation(
         "extended",
         "uncertainty.py",
+        "spread[name] > most",
+        "spread[name] < most",
+        "what is well determined has no interval",
+        ("test_uncertainty.py",),
+    ),
+    Mutation(
+        "selection",
+        "deviations.py",
         "back @ noise @ back.T",
         "back @ back.T",
         "intervals take coloured noise for white",

@@ -71,7 +71,6 @@ CONSTANTS = {
         "LEAST": ACCURACY,
     },
     "extended/test_errors.py": {"DRAWS": ACCURACY, "SEED": SEED},
-    "extended/uncertainty.py": {"STEP": ACCURACY, "OPEN": ROUNDING},
     "selection/compliance.py": {
         "STARTS": START,
         "FIRST": ACCURACY,
@@ -84,6 +83,7 @@ CONSTANTS = {
         "SINGULAR": ROUNDING,
         "LEAST": ROUNDING,
     },
+    "selection/deviations.py": {"STEP": ACCURACY, "OPEN": ROUNDING},
     "selection/refit.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "WORSE": ROUNDING},
     "selection/refit_stiffness.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "LEAST": BUDGET, "MOST": BUDGET},
     "validation/agreement.py": {"DRAWS": ACCURACY, "SEED": SEED},

@@ -1,6 +1,7 @@
 """A cause is named only where every check that decides lets it: the same checks for all."""
 
 from dataclasses import replace
+from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
 
@@ -21,6 +22,7 @@ from modelgen.diagnosis.adequacy.checks import (
 from modelgen.diagnosis.adequacy.dominance import dominance
 from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, functions
 from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
+from modelgen.diagnosis.equations import Unknowns
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
 from modelgen.diagnosis.selection import Cause, Ranked, Selection
@@ -236,6 +238,42 @@ def test_a_payload_has_a_mass_or_moments_that_one_within_reach_can_have(
     described = replace(system.equations, evaluator=SimpleNamespace(arm=ARM))
     check = significant(0, Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []), described)
     assert (check.name, check.decides, check.passed) == ("significant", True, passed)
+
+
+@pytest.mark.parametrize(("compliance", "passed"), [(0.05, False), (0.3, True)])
+def test_an_elastic_joint_is_not_as_good_as_rigid(
+    compliance: float, passed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In noise of unit size and 1200 rows the deviation of the reciprocal of the stiffness is 0.03, whatever
+    the stiffness that the search left it with.
+    """
+    random = np.random.default_rng(6)
+    rows, _, periods = made(lambda x: 0.0 * x)
+    shapes = [random.normal(size=(len(r.effort), 1, 1)) for r in rows]
+    own = Unknowns(np.zeros(2), np.eye(2))
+    soft = [
+        replace(r, effort=r.effort + compliance * c[:, :, 0], baseline=own)
+        for r, c in zip(rows, shapes, strict=True)
+    ]
+
+    def simulated(candidate: Candidate, values: dict[str, float], *of: Any) -> list[np.ndarray]:
+        return [c / values["stiffness"] for c in shapes]
+
+    for module in ("deviations", "refit_stiffness"):
+        where = import_module(f"modelgen.diagnosis.selection.{module}")
+        monkeypatch.setattr(where, "candidate_columns", simulated)
+    bare = system_of(soft, periods=periods)
+    searched = {"stiffness": 2.0 / compliance, "relaxation": 0.005}
+    columns = simulated(Candidate("joint_flexibility", 1), searched)
+    gain = bare.gain(columns)
+    assert gain is not None
+    trial = FittedCandidate(Candidate("joint_flexibility", 1), searched, columns, gain)
+    system = system_of(soft, with_causes(bare.equations, [trial]), periods)
+    model = SimpleNamespace(grouping=SimpleNamespace(base=()))
+    described = replace(system.equations, evaluator=SimpleNamespace(arm=ARM), model=model)
+    check = significant(0, Selection([Cause(trial, 20.0, 5.0, 5.0)], system, []), described)
+    assert (check.name, check.decides, check.passed) == ("significant", True, passed)
+    assert check.value == pytest.approx(compliance / 0.03, rel=0.15, abs=1.5)
 
 
 def test_the_test_record_confirms_or_does_not_and_decides_nothing() -> None:

@@ -1,5 +1,6 @@
 """Elastic joints and play behind a link's own encoder: what they add, and that they are named."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ from arms_support import base_vector, standard_vector
 from hidden.cases import Case, Hidden, make
 from hidden.judging import FOUND
 from hidden.running import run_here
+from scipy.optimize import brentq
 
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint, load
 from modelgen.diagnosis.options.thresholds import USUAL
@@ -26,6 +28,7 @@ ARM = Arm(
     (None, None),
     (0.0, 0.0, -9.81),
 )
+WAVES = ((0.2, 1, 0.0), (0.1, 2, 0.9), (0.05, 3, 2.0))  # amplitude [rad], harmonic, phase
 
 
 def test_the_drive_of_an_elastic_joint_leads_by_what_moves_the_link() -> None:
@@ -62,6 +65,53 @@ def weight(evaluator: Evaluator, motion: Motion, base: np.ndarray) -> float:
     still = np.zeros((2, 2))
     held = evaluator.inputs(Motion(motion.t[:2], motion.q[:2], still, still), base)
     return float(held[0, 1]) * RATIO * CONSTANT
+
+
+@pytest.mark.parametrize("stiffness", [300.0, 450.0, 700.0, 1500.0])
+def test_dry_friction_turns_when_the_drive_does_by_fractions_of_a_sample(stiffness: float) -> None:
+    """The drive, ahead of the link by inertia times acceleration over stiffness, turns back earlier or later
+    than the link: dry friction has changed by twice its size for that long, to a part of a sample.
+    """
+    rubbing = (*EFFECTS, EffectUse("coulomb_friction"))
+    arm = replace(
+        ARM, joints=(ARM.joints[0], replace(ARM.joints[1], effects=rubbing)), gravity=(0.0, 0.0, 0.0)
+    )
+    model, evaluator = build_model(arm), Evaluator(arm)
+    step, w = 0.01, 2 * np.pi * 0.5
+    t = np.arange(0.0, 12.0, step)
+
+    def moved(order: int, at: np.ndarray = t) -> np.ndarray:
+        sines = (
+            size * (k * w) ** order * np.sin(k * w * at + phase + order * np.pi / 2)
+            for size, k, phase in WAVES
+        )
+        return np.sum(list(sines), axis=0)
+
+    still = np.zeros_like(t)
+    motion = Motion(t, *(np.column_stack([still, moved(order)]) for order in (0, 1, 2)), (False, False), 20.0)
+    standard = standard_vector(model, np.random.default_rng(3))
+    names = [p.name for p in model.standard]
+    values = {"stiffness": stiffness, "damping": 0.0}
+    size, found = 4.0, []
+    for friction in (0.0, size):
+        standard[names.index("FC2")] = friction
+        found.append(
+            evaluator.contribution("joint_flexibility", 2, motion, values, base_vector(model, standard))
+        )
+    added = (found[1] - found[0])[:, 1]
+    turns = np.flatnonzero(np.diff(np.sign(motion.dq[:, 1])))
+    turns = turns[(turns > 200) & (turns < len(t) - 200)]
+    assert len(turns) > 8
+    inertia = standard[names.index("ZZ2")]
+    for turn in turns:
+        link, drive = (
+            brentq(lambda at, lag=lag: moved(1, at) + lag * moved(3, at), t[turn - 3], t[turn + 4])
+            for lag in (0.0, inertia / stiffness)
+        )
+        acceleration = moved(2, np.array(link))
+        change = 2 * size / CONSTANT * np.sign(acceleration)  # of the current, where the drive turns
+        near = slice(turn - 6, turn + 8)
+        assert -added[near].sum() / change == pytest.approx((drive - link) / step, abs=1 / 24)
 
 
 def test_play_is_asked_for_where_the_link_is_loose_up_to_half_of_the_time() -> None:

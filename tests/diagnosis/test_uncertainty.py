@@ -5,10 +5,15 @@ from diagnosis_support import BARE, UNUSED, system_of
 from numpy.random import Generator, default_rng
 from scipy.optimize import curve_fit
 from scipy.signal import lfilter
+from threshold_decisions import selected
+from threshold_support import real
 
+from modelgen.diagnosis.candidates import Search, candidates
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.system import System
-from modelgen.diagnosis.extended.uncertainty import covariance_of
+from modelgen.diagnosis.extended import cause_estimates
+from modelgen.diagnosis.options.thresholds import USUAL
+from modelgen.diagnosis.selection import covariance_of, deviations
 from modelgen.numeric import Array
 
 PERIOD, PERIODS, DRAWS = 500, 3, 60
@@ -58,3 +63,16 @@ def test_what_is_searched_for_is_not_known_to_the_others() -> None:
     scatter = np.std(found, axis=0)
     np.testing.assert_allclose(scatter, np.mean(stated, axis=0), rtol=0.25)
     assert np.mean(bold) < 0.75 * scatter[0]
+
+
+def test_what_is_hardly_determined_has_no_interval() -> None:
+    """A velocity of Stribeck's law where there is no such friction: more than half of it is its deviation."""
+    equations = real(USUAL)
+    candidate = next(c for c in candidates(equations) if c.place == ("stribeck_friction", 1))
+    trial = Search(System(equations)).trial(candidate)
+    assert trial is not None
+    selection = selected(equations, trial)
+    (raw,), (said,) = deviations(selection, equations), cause_estimates(selection, equations)
+    assert raw["velocity"] > 0.5 * said["velocity"].value
+    assert np.isnan(said["velocity"].std)
+    assert said["magnitude"].std == raw["magnitude"]

@@ -30,7 +30,7 @@ from modelgen.diagnosis.experiment import experiment, next_experiment, setup
 from modelgen.diagnosis.experiment.discrimination import Discriminator, hypothesis
 from modelgen.diagnosis.experiment.trajectory import as_run
 from modelgen.diagnosis.extended import drive_inertia, extended_model
-from modelgen.diagnosis.extended.uncertainty import deviations
+from modelgen.diagnosis.extended.uncertainty import cause_estimates
 from modelgen.diagnosis.options import Thresholds
 from modelgen.diagnosis.selection import stepwise
 from modelgen.diagnosis.selection.backward import backward_elimination
@@ -247,8 +247,8 @@ def determined(limits: Thresholds) -> Any:
     trial = next(c for c in candidates(equations) if c.place == ("stribeck_friction", 1))
     found = Search(System(equations)).trial(trial)
     assert found is not None
-    (spread,) = deviations(selected(equations, found), equations)
-    return {name: bool(np.isfinite(value)) for name, value in spread.items()}
+    (estimates,) = cause_estimates(selected(equations, found), equations)
+    return {name: bool(np.isfinite(estimate.std)) for name, estimate in estimates.items()}
 
 
 def windows(limits: Thresholds) -> Any:

@@ -14,7 +14,14 @@ from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import covariance
 from modelgen.diagnosis.options.thresholds import in_band
-from modelgen.diagnosis.selection import SUSPECT, Cause, Selection, needed_evidence
+from modelgen.diagnosis.selection import (
+    SUSPECT,
+    Cause,
+    Selection,
+    deviations,
+    needed_evidence,
+    refit_stiffness,
+)
 from modelgen.diagnosis.validation import Check, agreement
 
 
@@ -138,22 +145,37 @@ def significant(k: int, selection: Selection, equations: Equations) -> Check:
     cause = selection.causes[k]
     least = selection.system.equations.thresholds.adequacy.min_claimed_deviations
     c = cause.trial.candidate
-    claims = [name for name in c.names if name in c.definition.claims]
+    claims = [name for name in c.definition.claims if name in (*c.names, *cause.trial.values)]
     if not claims:
         text = "its evidence is that of all its parameters together"
         return Check("significant", True, True, float("nan"), float("nan"), text)
-    found = c.definition.above_zero(equations.arm, *_estimated(k, selection))
-    text = f"standard deviations that its {' and '.join(claims)} is above zero"
+    of = _searched if any(name in cause.trial.values for name in claims) else _estimated
+    found = c.definition.above_zero(equations.arm, *of(k, selection, equations))
+    text = f"standard deviations by which its {' and '.join(claims)} differs from that of an arm without it"
     return Check("significant", found >= least, True, found, least, text)
 
 
-def _estimated(k: int, selection: Selection) -> tuple[Mapping[str, float], Mapping[str, float]]:
+def _estimated(
+    k: int, selection: Selection, equations: Equations
+) -> tuple[Mapping[str, float], Mapping[str, float]]:
     """Values and standard deviations of what was estimated of the cause number k, by name."""
     system, own = selection.system, selection.columns[k]
     names = selection.causes[k].trial.candidate.names
     spread = np.sqrt(np.maximum(0.0, np.diag(covariance(system))))
     values = zip(names, system.theta[own].tolist(), strict=True)
     return dict(values), dict(zip(names, spread[own].tolist(), strict=True))
+
+
+def _searched(
+    k: int, selection: Selection, equations: Equations
+) -> tuple[Mapping[str, float], Mapping[str, float]]:
+    """The same of its own parameters, which follow from what was searched for, as they are beside the arm's;
+    nothing of those whose slope cannot be had.
+    """
+    settled = refit_stiffness(selection, equations)
+    values, spread = settled.causes[k].trial.parameters, deviations(settled, equations)[k]
+    known = {name: std for name, std in spread.items() if np.isfinite(std)}
+    return {name: values[name] for name in known}, known
 
 
 def admissible(cause: Cause, equations: Equations) -> Check:

@@ -2,6 +2,7 @@
 
 from modelgen.diagnosis.selection.cause import Cause, Selection, together
 from modelgen.diagnosis.selection.compliance import alternatives, best_beside
+from modelgen.diagnosis.selection.deviations import covariance_of, deviations
 from modelgen.diagnosis.selection.history import (
     COARSE,
     EXCHANGED,
@@ -26,6 +27,8 @@ __all__ = [
     "Selection",
     "alternatives",
     "best_beside",
+    "covariance_of",
+    "deviations",
     "forward_selection",
     "lets_vary",
     "needed_evidence",

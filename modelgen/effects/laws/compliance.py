@@ -147,6 +147,9 @@ class JointFlexibility(Compliance):
     finding = "the transmission of {joint} is elastic"
     reference = "Spong 1987"
     nonlinear = (STIFFNESS, DAMPING)
+    claims = (
+        "stiffness",
+    )  # which is as far from infinite, in its deviations, as its reciprocal is from zero
 
     @classmethod
     def sought(cls, behind_link: bool) -> tuple[Parameter, ...]:

@@ -70,7 +70,8 @@ class AdequacyThresholds(Group):
     min_claimed_deviations: float = entry(
         3.0,
         "standard deviations",
-        "What an effect claims, as a payload does a mass, must be above zero by so many.",
+        "What an effect claims, as a payload its mass or an elastic joint its compliance, must be above zero "
+        "by so many.",
         STRANGERS,
     )
     min_stable_probability: float = entry(

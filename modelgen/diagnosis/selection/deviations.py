@@ -1,0 +1,109 @@
+"""How far the values of causes may be off: of weighted least squares in coloured noise.
+
+The estimate is that of the plain equations, rows weighted by joint, whose errors have the noise's colour: its
+covariance is R^-1 V R^-T, with the equations X = Q R and V the variance of such noise along Q (Newey and
+West 1987). What is searched for has a column as well, the slope of what its cause adds (Gauss and Newton;
+Bates and Watts 1988, 2.2): what is said of the others then counts that it is not known either.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns
+from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.evidence import System
+from modelgen.diagnosis.selection.cause import Cause, Selection
+from modelgen.numeric import Array
+
+STEP = 0.01  # of a value, over which slopes are taken
+OPEN = 1e-9  # of the largest singular value: below, the rows say nothing
+
+
+def covariance_of(system: System, slopes: Sequence[Array] = (), known: Sequence[int] = ()) -> Array:
+    """Covariance of the least squares estimate of a system's columns (p), and of what has these slopes (M,
+    n, m) of each record: (p + m, p + m). known: columns whose factor is.
+    """
+    plain = system.plain
+    matrix = plain.matrix.copy()
+    matrix[:, list(known)] = 0.0
+    if slopes:
+        matrix = np.hstack([matrix, plain.records(slopes)])
+    norms = np.linalg.norm(matrix, axis=0)
+    norms[norms == 0] = 1.0
+    u, s, vt = np.linalg.svd(matrix / norms, full_matrices=False)
+    kept = s > OPEN * s.max(initial=0.0)
+    along = u[:, kept]
+    noise = np.eye(int(kept.sum())) / plain.share if plain.colour is None else plain.colour.variance(along)
+    back = (vt[kept].T / s[kept]) / norms[:, None]
+    return np.asarray(back @ noise @ back.T)
+
+
+def deviations(selection: Selection, equations: Equations) -> list[dict[str, float]]:
+    """Standard deviations of the causes' parameters by name; nan of what was fixed.
+
+    equations: whose arm further columns are made for.
+    """
+    if not selection.causes:
+        return []
+    system, rows = selection.system, selection.system.rows
+    of_arm = system.equations.with_evaluator(equations.evaluator)
+    slopes = [_slopes(c, of_arm, system.base) for c in selection.causes]
+    together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
+    places = selection.columns
+    compliant = [c.trial.candidate.elastic for c in selection.causes]
+    held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
+    whole = covariance_of(system, together if together[0].shape[2] else (), held)
+    searched, found = len(system.theta), []
+    for cause, own, slope in zip(selection.causes, places, slopes, strict=True):
+        last = searched + slope[0].shape[2]
+        at = np.r_[own, searched:last]
+        found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
+        searched = last
+    return found
+
+
+def _slopes(cause: Cause, equations: Equations, base: Array) -> list[Array]:
+    """Slopes (M, n, m) of the cause's columns by each value that was searched for, of every record."""
+    trial = cause.trial
+    theta = np.ones(1) if trial.candidate.elastic else trial.gain.values
+    parts: list[list[Array]] = [[] for _ in equations.rows]
+    for name, value in trial.values.items():
+        step = STEP * (abs(value) or 1.0)
+        ends = [
+            candidate_columns(trial.candidate, {**trial.values, **trial.around, name: x}, equations, base)
+            for x in (value - step, value + step)
+        ]
+        for k, part in enumerate(parts):
+            if ends[0] is None or ends[1] is None:
+                part.append(np.zeros(trial.columns[k].shape[:2]))
+            else:
+                part.append((ends[1][k] - ends[0][k]) @ theta / (2 * step))
+    return [
+        np.stack(part, axis=2) if part else np.zeros((*c.shape[:2], 0))
+        for part, c in zip(parts, trial.columns, strict=True)
+    ]
+
+
+def _physical(trial: FittedCandidate, covariance: Array, linear: int) -> dict[str, float]:
+    """Deviations of the effect's own parameters, by how they follow from what was estimated and searched."""
+    names, now = list(trial.values), trial.parameters
+    moved: list[dict[str, float]] = []
+    sizes: Array = np.sqrt(np.maximum(0.0, np.diag(covariance)))
+    for k in range(linear):
+        values = trial.gain.values.copy()
+        values[k] += sizes[k]
+        moved.append(replace(trial, gain=replace(trial.gain, values=values)).parameters)
+    for name, size in zip(names, sizes[linear:], strict=True):
+        moved.append(replace(trial, values={**trial.values, name: trial.values[name] + size}).parameters)
+    safe = np.where(sizes > 0, sizes, 1.0)
+    found = {}
+    for name, value in now.items():
+        slope = np.array([other.get(name, value) - value for other in moved]) / safe
+        std = math.sqrt(max(0.0, float(slope @ covariance @ slope)))
+        found[name] = np.nan if std == 0.0 else std
+    return found
