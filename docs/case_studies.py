@@ -84,13 +84,12 @@ def bars(rows: dict[str, list[float]], joints: list[str], unit: str) -> str:
 def ur10() -> str:
     """The bars of the table of the UR10."""
     page = (HERE / "case-studies.md").read_text(encoding="utf-8")
-    section = page[page.index("## UR10") :]
+    section = page[page.index("## UR10") : page.index("## EMPS")]
     table = re.findall(r"^\|[ -].*\|$", section, re.MULTILINE)
     head, _, *rest = [[cell.strip() for cell in line.strip("|").split("|")] for line in table]
-    rows = {row[0]: [float(cell) for cell in row[2:]] for row in rest if re.fullmatch(r"0?\.\d+", row[-1])}
-    chosen = {name: values for name, values in rows.items() if not name.endswith("at 10.4 Hz")}
-    joints = [name.removeprefix("shoulder_").replace("_", " ") for name in head[2:]]
-    return bars(chosen, joints, "A")
+    rows = {row[0]: [float(cell) for cell in row[1:]] for row in rest}
+    joints = [name.removeprefix("shoulder_").replace("_", " ") for name in head[1:]]
+    return bars(rows, joints, "A")
 
 
 def _alone(title: str, chart: str, key: list[tuple[str, str]]) -> str:

@@ -20,7 +20,8 @@ _FINE = 12  # groups for a wave of a law that repeats: their means keep 99 % of 
 _DOTS = 6  # bins for a wave
 _SEEN = 40  # waves that are told from each other in a chart
 _NEAR = 0.9  # of the best abscissa's share that the usual one needs
-_CLEAR = 0.5  # of the best share: a law that any motion makes a curve over time is drawn over something else
+_CURVED = 0.7  # share of a law that the means over its abscissa have; with less it is no curve over that
+_STRETCH = 150  # samples of a stretch of the record: as many as are told from each other in a chart
 _OVER = {"velocity": "speed", "position": "position", "acceleration": "acceleration", "time": "time"}
 _FEW = 0.005  # of the samples, that lie far out at either end: impacts
 _FAR = 2.0  # times the span of the others, by which they are left out
@@ -59,20 +60,23 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
 
     The first has as points the law and the residual together (a component-plus-residual plot, Ezekiel 1924;
     Cook and Weisberg 1982). The abscissa is the one over which the law is most nearly a curve; what turns its
-    sign with the motion is drawn against the motion.
+    sign with the motion is drawn against the motion. A law that remembers, or joins the motions of several
+    joints, is a curve over none: it is drawn over the stretch of time in which most is explained.
     """
     law = d.laws[k]
     j = judged_joint(d, k)
     m = d.test.moving[:, j]
     if not law.size or not m.any():
         return []
-    best = _abscissa(d, k, j)
+    best, share = _abscissa(d, k, j)
+    if share < _CURVED and best.name not in ("time", "motor position"):
+        return _over_a_stretch(d, k, j)
     name, unit = d.arm.coordinate_names[j], units_of(d)[j]
     against_motion = "" if (best.side > 0).all() else " against the motion"
     x_label = f"{best.name} [{best.unit}]"
     turned = best.side if np.mean(law[m, j] * best.side) >= 0.0 or not against_motion else -best.side
     effect, over = d.causes[k].effect, best.name
-    wave = _wave(d, k, j, best)
+    wave = _wave(d, k)
     kept = _inner(best.x)
     waves = float(np.ptp(best.x[kept])) / wave
     shown = ""
@@ -97,17 +101,63 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
         ],
         f"The law of {effect} over {over}, with what the rest of the model leaves of the effort of {name}.",
     )
+    it, what = _added(d)
     left = Chart(
-        f"{name}: residual without and with it",
+        f"{name}: residual without and with {it}",
         x_label,
         f"residual{against_motion} [{unit}]",
         [
-            Curve(*binned(x, old, bins), "before", "mean residual without the cause", True),
-            Curve(*binned(x, new, bins), "after", "mean residual with the cause", True),
+            Curve(*binned(x, old, bins), "before", f"mean residual without {what}", True),
+            Curve(*binned(x, new, bins), "after", f"mean residual with {what}", True),
         ],
-        f"Mean residual of {name} over {over}, without and with {effect}.",
+        f"Mean residual of {name} over {over}, without and with {_named(d, k)}.",
     )
     return [found, left]
+
+
+def _over_a_stretch(d: Diagnosis, k: int, j: int) -> list[Chart]:
+    """The two charts over time, where the sum of squares falls most. At rest there is no residual."""
+    p, m, unit = d.test.prepared, d.test.moving[:, j], units_of(d)[j]
+    t = p.t - p.t[0]
+    old, new, own = (np.where(m, r[:, j], np.nan) for r in (*d.residuals, d.laws[k]))
+    explained = np.concatenate([[0.0], np.cumsum(np.nan_to_num(old**2 - new**2))])
+    length = min(_STRETCH, len(t))
+    begin = int(np.argmax(explained[length:] - explained[:-length]))
+    t, old, new, own = (v[begin : begin + length] for v in (t, old, new, own))
+    effect, name = d.causes[k].effect, d.arm.coordinate_names[j]
+    span = f"{np.ptp(t):.2g} s"
+    it, what = _added(d)
+    found = Chart(
+        f"{name}: the law found, {span} of the record",
+        "time [s]",
+        f"effort [{unit}]",
+        [
+            Curve(t, own + new, "measured", "effort without the rest of the model", True),
+            Curve(t, own, "law", "law of the cause"),
+        ],
+        f"The law of {effect} over {span} of the record, with what the rest of the model leaves of the "
+        f"effort of {name}.",
+    )
+    left = Chart(
+        f"{name}: residual without and with {it}",
+        "time [s]",
+        f"residual [{unit}]",
+        [
+            Curve(t, old, "before", f"residual without {what}"),
+            Curve(t, new, "after", f"residual with {what}"),
+        ],
+        f"Residual of {name} over {span} of the record, without and with {_named(d, k)}.",
+    )
+    return [found, left]
+
+
+def _added(d: Diagnosis) -> tuple[str, str]:
+    """What the residuals are drawn without and with, for a title and for a legend: all causes together."""
+    return ("it", "the cause") if len(d.causes) == 1 else ("all causes", "all causes")
+
+
+def _named(d: Diagnosis, k: int) -> str:
+    return d.causes[k].effect if len(d.causes) == 1 else "all causes"
 
 
 def _inner(x: Array) -> Array:
@@ -118,15 +168,12 @@ def _inner(x: Array) -> Array:
     return np.asarray((x >= low) & (x <= high))
 
 
-def _wave(d: Diagnosis, k: int, j: int, a: _Abscissa) -> float:
-    """Length of a wave of a law that repeats with the motor's position; infinite of any other."""
-    values, p = d.causes[k].parameters, d.test.prepared
-    if not CATALOGUE[d.causes[k].effect].periodic or a.name not in ("motor position", "position", "time"):
+def _wave(d: Diagnosis, k: int) -> float:
+    """Length of a wave of a law that repeats, over the motor's position; infinite of any other."""
+    values = d.causes[k].parameters
+    if not CATALOGUE[d.causes[k].effect].periodic:
         return np.inf
-    motor = p.picked(p.motor)[d.test.moving[:, j], j]
-    way = float(np.abs(np.diff(motor)).sum() if a.name == "time" else np.ptp(motor))
-    scale = float(np.ptp(a.x)) / way if way > 0.0 else 0.0
-    return (scale * values["revolution"].value / values["harmonic"].value) or np.inf
+    return (values["revolution"].value / values["harmonic"].value) or np.inf
 
 
 def _amid(x: Array, length: float) -> Array:
@@ -134,31 +181,32 @@ def _amid(x: Array, length: float) -> Array:
     return np.asarray(np.abs(x - np.median(x)) <= length / 2)
 
 
-def _abscissa(d: Diagnosis, k: int, j: int) -> _Abscissa:
-    """Over what the law is most nearly a curve; what the catalogue says, where that is as good."""
+def _abscissa(d: Diagnosis, k: int, j: int) -> tuple[_Abscissa, float]:
+    """Over what the law is most nearly a curve, and how nearly, see _share; what the catalogue says, where
+    that is as good. Over time any motion makes a curve of a law: that is for what the catalogue shows so.
+    """
     m = d.test.moving[:, j]
     y = d.laws[k][m, j]
     definition = CATALOGUE[d.causes[k].effect]
     usual = "motor position" if definition.periodic else _OVER.get(definition.seen_over, "")
     effect = definition.name
-    tried = _tried(d, j, definition)
-    found = [(_share(a, y * a.side, _groups(effect, a.name)), a) for a in tried]
-    timeless = [(share, a) for share, a in found if a.name != "time"]
-    if usual != "time" and max(share for share, _ in timeless) >= _CLEAR * max(share for share, _ in found):
-        found = timeless
-    best, first = max(found, key=lambda pair: pair[0])
-    near = [a for share, a in found if share >= _NEAR * best and a.name == usual]
+    tried = [a for a in _tried(d, j, definition) if usual == "time" or a.name != "time"]
+    found = [(a, _share(a, y * a.side, _groups(effect, a.name))) for a in tried]
+    best = max(found, key=lambda pair: pair[1])
+    near = [pair for pair in found if pair[1] >= _NEAR * best[1] and pair[0].name == usual]
     # over time the motion itself is seen, unless it is taken out
-    plain = [a for a in near if (a.side > 0).all() == (usual != "time")]
-    return plain[0] if plain else first
+    plain = [pair for pair in near if (pair[0].side > 0).all() == (usual != "time")]
+    return plain[0] if plain else best
 
 
 def _tried(d: Diagnosis, j: int, definition: type[Definition]) -> Iterator[_Abscissa]:
     p, m = d.test.prepared, d.test.moving[:, j]
     direction = np.sign(p.picked(p.dq)[m, j])
     abscissae = against(d)
-    if not definition.periodic:
-        del abscissae["motor position"]  # what is a curve over it is one over the joint's position
+    # what is a curve over the motor's position is one over the joint's, but for what repeats with the motor
+    motor = abscissae.pop("motor position")
+    if definition.periodic:
+        abscissae = {"motor position": motor}
     if issubclass(definition, InputEffect):
         abscissae["effort"] = (measured_efforts(d.test), units_of(d))
     for name, (x, units) in abscissae.items():

@@ -51,7 +51,23 @@ def test_nothing_comes_from_the_network(site: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("width", "scheme"), list(zip(WIDTHS, SCHEMES, strict=True)))
 def test_pages_hold_to_the_rules_of_accessibility_at_any_width(site: Path, width: int, scheme: str) -> None:
-    for name in ("index", "diagnosing", "case-studies", "theory"):
+    for name in ("index", "diagnosing", "case-studies", "gallery", "theory"):
         with opened(site / f"{name}.html", width, scheme, alone=False) as page:
             assert not violations(page), name
             assert wider(page) == 0, name
+
+
+def test_every_case_study_is_one_screen(site: Path) -> None:
+    """From its question to its command, on a desk's screen of 1280 by 800."""
+    with opened(site / "case-studies.html", alone=False) as page:
+        studies = page.locator("#case-studies > section")
+        assert studies.count() == 6
+        for k in range(6):
+            study = studies.nth(k)
+            box = study.bounding_box()
+            assert box is not None
+            assert box["height"] <= 800, study.locator("h2").inner_text()
+            words = study.inner_text()
+            places = [words.index(word) for word in ("Question.", "Log.", "Answer.", "modelgen diagnose")]
+            assert places == sorted(places)
+            assert study.locator("img").count() == 1

@@ -12,6 +12,7 @@ import pytest
 from browser_support import SCHEMES, WIDTHS, letters, opened, violations, wider
 from diagnosis_support import ARM, three
 
+from modelgen.charts import drawn
 from modelgen.description import DirectDrive
 from modelgen.diagnosis.extended import Estimate
 from modelgen.diagnosis.pipeline import diagnose
@@ -163,26 +164,33 @@ def test_the_law_is_drawn_over_what_it_explains(found: Diagnosis) -> None:
     assert law.x_label == "speed [rad/s]"  # a Stribeck curve is one over the speed
 
 
+def with_law(found: Diagnosis, effect: str, values: dict[str, float], law: np.ndarray) -> Diagnosis:
+    """As if the second joint's cause were this one: its law, (M,), is all that the extension explains."""
+    own = np.zeros_like(found.residuals[1])
+    own[:, 1] = law
+    parameters = {name: Estimate(value, np.nan, "1") for name, value in values.items()}
+    cause = replace(found.causes[0], effect=effect, parameters=parameters)
+    after = found.residuals[1]
+    return replace(found, causes=(cause,), laws=(own,), residuals=(after + own, after))
+
+
+def with_a_ripple(found: Diagnosis, waves: float) -> tuple[Diagnosis, float]:
+    """A sine of so many waves over the way of the second joint's motor, and its harmonic."""
+    p = found.test.prepared
+    motor = p.picked(p.motor)[:, 1]
+    harmonic = waves * 2 * np.pi / np.ptp(motor[found.test.moving[:, 1]])
+    values = {"revolution": 2 * np.pi, "harmonic": harmonic}
+    return with_law(found, "torque_ripple", values, np.sin(harmonic * motor)), harmonic
+
+
 @pytest.mark.parametrize("waves", [20.0, 35.0, 120.0])
 def test_every_wave_of_a_ripple_is_drawn(found: Diagnosis, waves: float) -> None:
     """Each that is shown, at its height; of more than can be told apart, forty."""
-    j, p = 1, found.test.prepared
-    motor = p.picked(p.motor)[:, j]
-    harmonic = waves * 2 * np.pi / np.ptp(motor[found.test.moving[:, j]])
-    law = np.zeros_like(found.residuals[1])
-    law[:, j] = np.sin(harmonic * motor)
-    values = {"revolution": 2 * np.pi, "harmonic": harmonic}
-    cause = replace(
-        found.causes[0],
-        effect="torque_ripple",
-        parameters={name: Estimate(value, np.nan, "1") for name, value in values.items()},
-    )
-    rippled = replace(
-        found, causes=(cause,), laws=(law,), residuals=(found.residuals[1] + law, found.residuals[1])
-    )
-    drawn, left = law_charts(rippled, 0)
-    _, curve = drawn.curves
-    assert drawn.x_label.startswith("motor position")
+    rippled, harmonic = with_a_ripple(found, waves)
+    chart, left = law_charts(rippled, 0)
+    _, curve = chart.curves
+    assert not curve.dots
+    assert chart.x_label.startswith("motor position")
     shown = np.ptp(curve.x) * harmonic / (2 * np.pi)
     assert shown == pytest.approx(min(waves, 40.0), abs=2.0)
     assert np.count_nonzero(np.diff(np.sign(curve.y))) == pytest.approx(2 * shown, abs=2.0)
@@ -190,6 +198,51 @@ def test_every_wave_of_a_ripple_is_drawn(found: Diagnosis, waves: float) -> None
     np.testing.assert_allclose(curve.y, np.sin(harmonic * curve.x), atol=0.15)
     without, _ = left.curves
     assert np.sqrt(np.mean(without.y**2)) > 0.6  # of a sine: 0.707
+
+
+def test_waves_that_the_samples_cannot_follow_are_drawn_as_points(found: Diagnosis) -> None:
+    """With a sample or two in a wave a line from one to the next would be a wave that is not there: each
+    sample is a point where the law is at its place, and so it is in the picture.
+    """
+    rippled, harmonic = with_a_ripple(found, 3000.0)
+    chart, _ = law_charts(rippled, 0)
+    _, points = chart.curves
+    motor = rippled.test.prepared
+    places = motor.picked(motor.motor)[rippled.test.moving[:, 1], 1]
+    waves = np.ptp(points.x) * harmonic / (2 * np.pi)
+    assert points.dots
+    assert 5 < len(points.x) < 12 * waves
+    among = (places >= points.x.min()) & (places <= points.x.max())
+    np.testing.assert_array_equal(np.sort(places[among]), points.x)
+    np.testing.assert_allclose(points.y, np.sin(harmonic * points.x), atol=1e-6)
+    (path,) = re.findall(r'<path class="dots law"[^>]* d="([^"]*)"', drawn(chart))
+    assert len(re.findall(r"M-?\d+ -?\d+h0", path)) == len(points.x)
+    assert 'class="line law"' not in drawn(chart)
+
+
+def test_a_law_that_no_coordinate_makes_a_curve_is_drawn_over_time(found: Diagnosis) -> None:
+    """Impacts that come in two of the record's seconds, at no particular speed, place or load: these seconds
+    are drawn, and in them the law to the last sample.
+    """
+    t = found.test.prepared.t - found.test.prepared.t[0]
+    middle = t[-1] / 2
+    struck = np.abs(t - middle) < 1.0
+    law = np.where(struck, np.random.default_rng(4).choice((-1.0, 1.0), len(t)), 0.0)
+    hit = with_law(found, "backlash", {"play": 0.01}, law)
+    chart, left = law_charts(hit, 0)
+    moving = hit.test.moving[:, 1]
+    for c in (chart, left):
+        assert c.x_label == "time [s]"
+        assert c.curves[0].x.min() <= t[struck & moving].min()
+        assert c.curves[0].x.max() >= t[struck & moving].max()
+    points, line = chart.curves
+    assert (points.dots, line.dots) == (True, False)
+    at = np.searchsorted(t, line.x)
+    np.testing.assert_array_equal(t[at], line.x)
+    np.testing.assert_array_equal(line.y, np.where(moving, law, np.nan)[at])
+    np.testing.assert_allclose((points.y - line.y)[moving[at]], hit.residuals[1][at, 1][moving[at]])
+    without, after = left.curves
+    np.testing.assert_allclose((without.y - after.y)[moving[at]], law[at][moving[at]], atol=1e-12)
 
 
 def test_the_page_is_small_and_drawn_in_no_time(found: Diagnosis, written: Path) -> None:
