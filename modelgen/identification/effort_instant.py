@@ -51,7 +51,7 @@ def effort_instant(
         return known
     delay, std, alike = found
     fits = fitting(delay, std, first.step, limits) if alike else None
-    said = EffortInstant(known.hold, known.known, known.step, delay, std, fits)
+    said = EffortInstant(known.hold, known.known, known.step, delay, std, fits, alike)
     if fits is None or known.known or fits == known.hold:
         return said
     return EffortInstant(fits, "data", known.step, delay, std, fits)

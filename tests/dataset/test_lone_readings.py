@@ -11,8 +11,16 @@ import modelgen as mg
 T = times(10.0, 200.0)
 
 
-@pytest.mark.parametrize(("name", "by"), [("q1", 0.4), ("qm2", -500.0), ("i1", 6.0)])
-@pytest.mark.parametrize("place", [2, 700, len(T) - 3])
+ENDS = [0, 1, len(T) - 2, len(T) - 1]
+
+
+@pytest.mark.parametrize(
+    ("name", "by", "place"),
+    [
+        *((name, by, k) for name, by in (("q1", 0.4), ("qm2", -500.0), ("i1", 6.0)) for k in (2, 700, 1997)),
+        *((name, by, k) for name, by in (("q1", 0.4), ("qm2", -500.0)) for k in ENDS),
+    ],
+)
 def test_a_wrong_digit_is_mended_and_said(name: str, by: float, place: int) -> None:
     right = columns(T)
     wrong = right | {name: right[name] + by * (np.arange(len(T)) == place)}
@@ -22,6 +30,12 @@ def test_a_wrong_digit_is_mended_and_said(name: str, by: float, place: int) -> N
     (remark,) = set(found.remarks) - set(whole.remarks)
     assert f"{name} has a reading that those beside it rule out: {wrong[name][place]:.9g}" in remark
     assert f"in sample {place + 1};" in remark
+
+
+def test_an_effort_may_begin_with_a_step() -> None:
+    right = columns(T)
+    table = right | {"i1": right["i1"] + 6.0 * (np.arange(len(T)) == 0)}
+    assert not any("rule out" in remark for remark in mg.read_log(table, DRIVEN).remarks)
 
 
 @pytest.mark.parametrize("seed", range(5))

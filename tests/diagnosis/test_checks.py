@@ -23,6 +23,7 @@ from modelgen.diagnosis.adequacy.dominance import dominance
 from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, functions
 from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
 from modelgen.diagnosis.equations import Unknowns
+from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
 from modelgen.diagnosis.selection import Cause, Ranked, Selection
@@ -282,27 +283,62 @@ def test_the_test_record_confirms_or_does_not_and_decides_nothing() -> None:
         assert (check.passed, check.decides) == (passed, False)
 
 
-@pytest.mark.parametrize(
-    ("joint", "delay", "joints", "passed"),
-    [
-        (2, 0.004, 2, False),  # channels read one after the other within a sample
-        (2, -0.0099, 2, False),
-        (2, 0.0101, 2, True),
-        (None, 0.004, 2, True),  # of all alike: none is out of step with another
-        (1, 0.004, 1, True),
-    ],
-)
-def test_a_delay_of_one_joint_within_a_sample_may_be_the_log_s(
-    joint: int | None, delay: float, joints: int, passed: bool
-) -> None:
+def check_of_delay(joint: int | None, delay: float, joints: int, hold: float, known: str) -> Check:
+    """The check of a delay [s]. hold: of the log [s], whose sampling period is 0.01 s; known: from what."""
     cause, _ = chosen(effect="time_delay")
     found = replace(cause.trial.gain, values=np.array([delay]))
     trial = replace(
         cause.trial, candidate=Candidate("time_delay", joint), values={"delay": delay}, gain=found
     )
-    row = SimpleNamespace(prepared=SimpleNamespace(record=SimpleNamespace(step=0.01)))
-    equations: Any = SimpleNamespace(arm=ARM, n=joints, rows=[row])
+    record = SimpleNamespace(step=0.01, hold=hold, hold_known=known)
+    rows = [SimpleNamespace(prepared=SimpleNamespace(record=record))]
+    equations: Any = SimpleNamespace(arm=ARM, n=joints, rows=rows, thresholds=USUAL)
     check = admissible(replace(cause, trial=trial), equations)
     assert check.decides
+    return check
+
+
+@pytest.mark.parametrize(
+    ("joint", "delay", "passed"),
+    [
+        (2, 0.004, False),  # channels read one after the other within a sample
+        (2, -0.0099, False),
+        (2, 0.0101, True),
+    ],
+)
+def test_a_delay_of_one_joint_within_a_sample_may_be_the_log_s(
+    joint: int, delay: float, passed: bool
+) -> None:
+    check = check_of_delay(joint, delay, 2, 0.005, "")
     assert check.passed == passed
     assert passed or "is less than a sample of 0.01 s" in check.text
+
+
+@pytest.mark.parametrize("known", ["", "data", "mapping"])
+@pytest.mark.parametrize(
+    ("hold", "delay", "passed"),
+    [
+        (0.005, -0.005, False),  # the log reads both at one instant
+        (0.0, 0.005, False),  # a controller's output, held
+        (0.0, -0.005, False),
+        (-0.005, 0.01, False),
+        (0.0, 0.0145, False),
+        (0.005, 0.0145, True),  # no log is so late
+        (-0.005, -0.0076, True),  # none is earlier than the interval before
+        (0.0, 0.05, True),
+    ],
+)
+def test_a_delay_of_all_joints_that_a_log_may_have_is_the_log_s(
+    hold: float, delay: float, passed: bool, known: str
+) -> None:
+    check = check_of_delay(None, delay, 2, hold, known)
+    assert check.passed == passed
+    assert passed or "`hold` of the mapping says when" in check.text
+
+
+@pytest.mark.parametrize("joint", [None, 1])
+@pytest.mark.parametrize(("known", "passed"), [("mapping", True), ("", False), ("data", False)])
+def test_of_a_single_joint_the_mapping_says_whose_a_delay_is(
+    known: str, passed: bool, joint: int | None
+) -> None:
+    assert check_of_delay(joint, 0.007, 1, 0.0, known).passed == passed

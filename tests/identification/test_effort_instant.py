@@ -86,6 +86,7 @@ def test_the_convention_of_a_log_is_found(hold: str | float, samples: float, arm
     if isinstance(hold, str):
         assert found["hold"] == about["fits"] == hold
     else:
+        assert about["data"] == "found"
         assert found["hold"] == pytest.approx(hold, abs=4 * about["std_samples"] * STEP)
     lines = [x for x in result.shown() if isinstance(x, str) and "the effort counts as" in x]
     assert len(lines) == 1
@@ -111,12 +112,14 @@ def test_one_late_joint_is_no_convention_of_the_log(arm: mg.Arm) -> None:
     about = found.to_json()["log"]["effort_instant"]
     assert about["hold"] == "following"
     assert about["fits"] is None
+    assert about["data"] == "joints_differ"
 
 
 def test_a_delay_of_several_samples_stays_in_the_log(arm: mg.Arm) -> None:
     found = mg.identify(arm, log(arm, 3 * STEP, 1), log(arm, 3 * STEP, 2)).to_json()["log"]["effort_instant"]
     assert found["hold"] == "following"
     assert found["delay_samples"] == pytest.approx(3.0, abs=0.1)
+    assert found["data"] == "beyond_a_sample"
 
 
 def test_what_noise_hides_is_said_to_be_hidden(arm: mg.Arm) -> None:
@@ -125,23 +128,48 @@ def test_what_noise_hides_is_said_to_be_hidden(arm: mg.Arm) -> None:
     assert about["hold"] == "following"
     assert about["known_from"] == "default"
     assert about["fits"] is None
+    assert about["data"] == "cannot_tell"
     assert any("the data cannot tell" in x for x in result.shown() if isinstance(x, str))
+
+
+def stating(hold: str, folder: Path) -> Path:
+    """A mapping file that says `hold`."""
+    joints = ", ".join(
+        f"{{position: {{column: q{k}, unit: rad}}, effort: {{column: i{k}, unit: A}}}}" for k in (1, 2)
+    )
+    mapping = folder / "m.yaml"
+    mapping.write_text(f"schema: 1\nhold: {hold}\njoints: [{joints}]\n", encoding="utf-8")
+    return mapping
 
 
 @pytest.mark.parametrize("stated", ["instant", "previous"])
 def test_what_the_mapping_says_is_used_and_checked(stated: str, arm: mg.Arm, tmp_path: Path) -> None:
-    joints = ", ".join(
-        f"{{position: {{column: q{k}, unit: rad}}, effort: {{column: i{k}, unit: A}}}}" for k in (1, 2)
-    )
-    mapping = tmp_path / "m.yaml"
-    mapping.write_text(f"schema: 1\nhold: {stated}\njoints: [{joints}]\n", encoding="utf-8")
+    mapping = stating(stated, tmp_path)
     result = mg.identify(arm, log(arm, "instant", 1), log(arm, "instant", 2), mapping=mapping)
     about = result.to_json()["log"]["effort_instant"]
     assert about["hold"] == stated
     assert about["known_from"] == "mapping"
     assert about["fits"] == "instant"
+    assert about["data"] == ("agree" if stated == "instant" else "disagree")
     (line,) = [x for x in result.shown() if isinstance(x, str) and "the effort counts as" in x]
     assert ("but the data say" in line) == (stated != "instant")
+
+
+def test_another_convention_than_the_mapping_says_is_no_cause(arm: mg.Arm, tmp_path: Path) -> None:
+    train, test = [log(arm, "instant", 1), log(arm, "instant", 3)], log(arm, "instant", 2)
+    mapping = stating("following", tmp_path)
+    found = mg.diagnose(
+        arm, train, test, mapping=mapping, experiment=False, effects=["time_delay", "friction_offset"]
+    )
+    data = found.to_json()
+    assert data["log"]["effort_instant"]["hold"] == "following"
+    assert data["log"]["effort_instant"]["fits"] == "instant"
+    assert not data["causes"]
+    (suspect,) = data["suspects"]
+    assert (suspect["effect"], suspect["joint"]) == ("time_delay", None)
+    (check,) = [c for c in suspect["checks"] if c["passed"] is False]
+    assert check["name"] == "admissible"
+    assert "which a log may have by when it reads them" in check["text"]
 
 
 def test_a_stream_is_read_as_the_whole_is(arm: mg.Arm, tmp_path: Path) -> None:

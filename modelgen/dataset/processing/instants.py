@@ -19,7 +19,7 @@ class EffortInstant:
     hold: as used, one of CONVENTIONS or a delay [s]. known: what says so: "mapping", "readings", "data", or
     nothing, where it is the default. delay, std: of the efforts' samples after the positions' stamps as the
     data have it [sampling periods]; None where they do not say. fits: what that is, a convention or a delay
-    [s]; None where the data cannot tell. step: sampling period [s].
+    [s]; None where the data cannot tell. step: sampling period [s]. alike: whether the joints agree.
     """
 
     hold: str | float
@@ -28,6 +28,18 @@ class EffortInstant:
     delay: float | None = None
     std: float | None = None
     fits: str | float | None = None
+    alike: bool = True
+
+    @property
+    def answer(self) -> str:
+        """What the data say to what is used: one of ANSWERS."""
+        if self.known == "data":
+            return "found"
+        if self.fits is not None:
+            return "agree" if agrees(self) else "disagree"
+        if self.std is None or self.std > USUAL.max_instant_std:
+            return "cannot_tell"
+        return "beyond_a_sample" if self.alike else "joints_differ"
 
     def to_json(self) -> dict[str, Any]:
         """`log.effort_instant` of identification.json and diagnosis.json."""
@@ -37,6 +49,7 @@ class EffortInstant:
             "delay_samples": None if self.delay is None else round(self.delay, 4),
             "std_samples": None if self.std is None else float(f"{self.std:.3g}"),
             "fits": self.fits,
+            "data": self.answer,
         }
 
     def line(self) -> str:
@@ -47,15 +60,20 @@ class EffortInstant:
         source = {"mapping": ", as the mapping says", "readings": ": it is new where the position is"}
         text += f" (hold: {self.hold if isinstance(self.hold, str) else f'{self.hold:.4g}'})"
         text += source.get(self.known, "")
-        if self.known == "data":
-            return f"{text}, found from the data: {measured}"
-        if self.fits is None:
-            return f"{text}; the data cannot tell" + (f": {measured}" if measured else "")
-        if agrees(self):
-            return f"{text}; the data agree: {measured}"
-        other = f"hold: {self.fits if isinstance(self.fits, str) else f'{self.fits:.4g}'}"
-        return f"{text}; but the data say {measured}, {other}"
+        if self.fits is not None and self.answer == "disagree":
+            measured += f", hold: {self.fits if isinstance(self.fits, str) else f'{self.fits:.4g}'}"
+        return text + ANSWERS[self.answer] + (f": {measured}" if measured else "")
 
+
+# What the data may say of when the efforts were read, and how a line goes on then.
+ANSWERS = {
+    "found": ", found from the data",
+    "agree": "; the data agree",
+    "disagree": "; but the data say otherwise",
+    "cannot_tell": "; the data cannot tell",
+    "joints_differ": "; the data cannot tell, for the joints differ; on average",
+    "beyond_a_sample": "; the data have a delay that is no log's convention",
+}
 
 _WORDS = {
     "following": "held over the interval after the position's stamp",

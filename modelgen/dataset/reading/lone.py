@@ -12,6 +12,7 @@ from modelgen.numeric import Array
 
 STEPS = 3.0  # of the resolution, that rounding alone may put a reading off
 NAMED = 3  # readings that a remark names
+ALONE = 0.1  # of what a reading at an end is off, that those beside it may be off the cubic through theirs
 
 
 def without_lone(
@@ -24,12 +25,13 @@ def without_lone(
     """A table (N, k) whose lone readings stand on the cubic through the four beside them, and remarks.
 
     positions, efforts: names of these columns, by number. An effort may jump for a sample, by a small part of
-    its range. Where readings are off often, that is their noise, and nothing is changed.
+    its range, and begin or end with a step, which no position does. Where readings are off often, that is
+    their noise, and nothing is changed.
     """
     remarks, result = [], table
     for k, name in [*positions.items(), *efforts.items()]:
         column = table[:, k]
-        places, by = lone(column, limits)
+        places, by = lone(column, limits, ends=k in positions)
         if k in efforts and len(places):
             low, high = np.quantile(column, (0.01, 0.99))
             large = np.abs(by) > limits.lone_effort * (high - low)
@@ -47,10 +49,11 @@ def without_lone(
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a wrong digit makes any number
-def lone(values: Array, limits: DatasetThresholds) -> tuple[np.ndarray, Array]:
+def lone(values: Array, limits: DatasetThresholds, *, ends: bool = False) -> tuple[np.ndarray, Array]:
     """Places of lone readings among `values` (N,), and how far each is off the cubic through four neighbours.
 
-    One that begins a step, and one of several in a row, is none: those beside it do not agree.
+    One that begins a step, and one of several in a row, is none: those beside it do not agree. ends: whether
+    the two readings at either end are asked too, where a step cannot be told from a lone one.
     """
     nothing = np.empty(0, dtype=int), np.empty(0)
     if len(values) < limits.min_lone_samples:
@@ -68,4 +71,25 @@ def lone(values: Array, limits: DatasetThresholds) -> tuple[np.ndarray, Array]:
     largest = size >= np.max(np.lib.stride_tricks.sliding_window_view(np.pad(size, 2), 5), axis=1)
     found &= largest & (np.abs(after - before - 0.5 * far) < 0.5 * size)
     places = np.flatnonzero(found)
-    return places + 2, off[places]
+    own, by = places + 2, off[places]
+    if ends:
+        least = max(limits.lone_reading * usual, STEPS * step)
+        for place, apart in (*_at_begin(off, least), *((-1 - k, x) for k, x in _at_begin(off[::-1], least))):
+            own, by = np.append(own, place % len(values)), np.append(by, apart)
+    return own, by
+
+
+def _at_begin(off: Array, least: float) -> list[tuple[int, float]]:
+    """The first or the second reading where it is lone, and how far it is off the cubic through those beside.
+
+    off: of the third reading and those after it. A lone one is in the fourth difference of five readings with
+    the weights 1, -4, 6, -4 and 1, by its place among them.
+    """
+    first, second, third = 6.0 * off[:3]
+    if not abs(first) > 6.0 * least:
+        return []
+    if abs(second) < ALONE * abs(first):
+        return [(0, float(first))]
+    if abs(second + first / 4.0) < ALONE * abs(first) and abs(third) < ALONE * abs(first):
+        return [(1, float(-first / 4.0))]
+    return []

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from modelgen.dataset.processing.instants import fitting
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
@@ -188,17 +189,38 @@ def admissible(cause: Cause, equations: Equations) -> Check:
 
 
 def _out_of_step(cause: Cause, equations: Equations) -> str:
-    """Why a delay of one joint among others is none of the arm: a log may read its channels in turn."""
+    """Why a delay is none of the arm: a log may read its channels in turn, or efforts and positions apart.
+
+    A delay that all joints share is the log's where a log may have it that nobody has said anything of. Where
+    the mapping says when the efforts were read, a single joint has nothing to share it with: its delay is
+    then what the mapping does not explain.
+    """
     c = cause.trial.candidate
     delay = c.definition.delays(cause.trial.parameters)
-    if delay is None or c.joint is None or equations.n == 1:
+    if delay is None:
         return ""
+    if c.joint is None or equations.n == 1:
+        return _of_the_log(delay, equations)
     interval = max(r.prepared.record.step for r in equations.rows)
     if abs(delay) >= interval:
         return ""
     return (
         f"{delay:.2g} s at one joint is less than a sample of {interval:.2g} s, in which a log "
         "may read one channel after the other; log faster to tell"
+    )
+
+
+def _of_the_log(delay: float, equations: Equations) -> str:
+    """Why a delay [s] of all joints is a convention of the log, empty where it is none."""
+    record = equations.rows[0].prepared.record
+    if equations.n == 1 and record.hold_known == "mapping":
+        return ""
+    after = (record.hold + delay) / record.step
+    if fitting(after, 0.0, record.step, equations.thresholds.dataset) is None:
+        return ""
+    return (
+        f"with {delay:.2g} s the efforts of all joints lie {after:.2f} samples after the positions' stamps, "
+        "which a log may have by when it reads them: `hold` of the mapping says when"
     )
 
 
