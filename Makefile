@@ -3,6 +3,7 @@
 #   make check   lint and the fast tests, for while one works
 #   make test    lint, then every test
 #   make pytest  every test
+#   make slow    time every test, and write those that make check leaves out into tests/slow.txt
 #   make lint    ruff and mypy
 #   make format  let ruff rewrite the layout
 #   make bench   beside Pinocchio, MuJoCo, SymForce, SymPy and FIGAROH, and variants: docs/benchmarks.md (needs valgrind)
@@ -29,7 +30,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 TESTED := $(VENV)/.installed-test
 
-.PHONY: run check test pytest lint format bench bench-scale bench-identification bench-generation bench-robots bench-fleet docs size \
+.PHONY: run check test pytest slow lint format bench bench-scale bench-identification bench-generation bench-robots bench-fleet docs size \
     run-examples prove fuzz hidden blind gallery mutations clean
 
 EXAMPLE := examples/diagnosis
@@ -47,6 +48,14 @@ test: lint pytest
 
 pytest: $(TESTED)
 	$(BIN)/python -m pytest -n auto --dist loadgroup
+
+# What a session shares falls on the first test that asks for it: those of the fast ones that pay without the slow
+# ones are found by a second run.
+slow: $(TESTED)
+	$(BIN)/python -m pytest -q -n auto --dist loadgroup --processor-times build/times.txt
+	$(BIN)/python tests/support/slow_tests.py build/times.txt
+	$(BIN)/python -m pytest -q -n auto --dist loadgroup --processor-times build/times-fast.txt -m "not slow"
+	$(BIN)/python tests/support/slow_tests.py build/times.txt build/times-fast.txt
 
 lint: $(TESTED)
 	$(BIN)/ruff check .

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import hypothesis
 import pytest
+from slow_tests import function_of, listed
+
+pytest_plugins = ["processor_times"]
 
 # pytest-xdist already fills the cores. NumPy's libraries read this when they are loaded, after this file.
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -15,6 +18,15 @@ os.environ.setdefault("MODELGEN_PROGRESS", "0")
 
 hypothesis.settings.register_profile("reproducible", derandomize=True, deadline=None)
 hypothesis.settings.load_profile("reproducible")
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest chooses by mark and pytest-xdist adds groups to the ids
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What tests/slow.txt lists is marked slow."""
+    names = listed()
+    for item in items:
+        if function_of(item.nodeid) in names:
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session")

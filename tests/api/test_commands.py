@@ -142,7 +142,6 @@ COMMANDS: dict[str, tuple[str, Callable[[mg.Arm, Path], Any]]] = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_function_writes_and_says_what_its_command_does(command: str, arm: mg.Arm, tmp_path: Path) -> None:
     arguments, function = COMMANDS[command]

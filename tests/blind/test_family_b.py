@@ -201,7 +201,6 @@ def test_the_inverse_is_the_plant_s() -> None:
     assert np.abs(effort + rotor)[1:-1].max() < 1e-3 * np.abs(effort).max()
 
 
-@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes() -> None:
     first, again = (make(3, "torque_ripple", size=None, setting="two") for _ in range(2))
     assert first.arms == again.arms
@@ -223,7 +222,6 @@ def test_a_size_that_is_no_size_is_refused() -> None:
     assert len(set(KINDS)) == len(KINDS)
 
 
-@pytest.mark.slow
 def test_what_is_hidden_has_the_size_that_was_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """The error of the user's model, over the noise that was put into the currents."""
     taken: dict[str, Any] = {}
@@ -245,7 +243,6 @@ def test_what_is_hidden_has_the_size_that_was_asked_for(monkeypatch: pytest.Monk
         assert got == pytest.approx(size, rel=0.06)
 
 
-@pytest.mark.slow
 def test_modelgen_s_own_fit_finds_what_is_hidden(tmp_path: Path) -> None:
     """Other equations, from the written description and records, give the value back."""
     case = make(1, "asymmetric_viscous_friction", size=1.3, setting="two")

@@ -348,7 +348,6 @@ def test_every_kind_is_tested_or_is_there_from_the_start() -> None:
     assert sum(k.startswith("outside:") for k in KINDS) >= 10
 
 
-@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_in_a_few_seconds() -> None:
     begin = time.process_time()
     first, again = (make(3, "torque_ripple", size=1.3, setting="two") for _ in range(2))
@@ -368,7 +367,6 @@ def test_what_is_no_kind_no_size_or_no_setting_is_refused() -> None:
         make(0, "spring", size=1.1, setting="five")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
 def test_of_a_plain_arm_nothing_is_left_but_the_noise(seed: int) -> None:
     """A fit of the user's model leaves what the noise alone leaves in the same band."""
@@ -390,7 +388,6 @@ def test_of_a_plain_arm_nothing_is_left_but_the_noise(seed: int) -> None:
     assert left == pytest.approx(0.03 * noise * passed, rel=0.12)
 
 
-@pytest.mark.slow
 def test_modelgen_s_own_fit_finds_what_is_hidden(tmp_path: Path) -> None:
     """Other equations, from the written description and records, give the value back."""
     case = make(1, "friction_offset", size=1.3, setting="two")

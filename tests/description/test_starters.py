@@ -44,7 +44,6 @@ def test_every_starter_has_its_pose_tested() -> None:
     assert set(HOME) == set(STARTERS)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", STARTERS)
 def test_a_starter_stands_where_its_comments_say_and_can_be_simulated(kind: str) -> None:
     (arm,) = loads(mg.starter("arm", kind), "arms.yaml", known_effects()).values()

@@ -198,7 +198,6 @@ def _run(call: Call, folder: Path) -> None:
     assert not [line for line in page_commands.lines(call.printed) if line not in printed], done.stdout
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("page", [p for p in CALLING if p not in ELSEWHERE])
 def test_commands_run(page: str, given: Path, tmp_path: Path) -> None:
     (tmp_path / "noted").mkdir()

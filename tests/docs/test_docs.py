@@ -48,7 +48,6 @@ def test_nothing_comes_from_the_network(site: Path) -> None:
         assert 'rel="stylesheet" href="http' not in text, page
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("width", "scheme"), list(zip(WIDTHS, SCHEMES, strict=True)))
 def test_pages_hold_to_the_rules_of_accessibility_at_any_width(site: Path, width: int, scheme: str) -> None:
     for name in ("index", "diagnosing", "case-studies", "gallery", "theory"):

@@ -53,7 +53,6 @@ def test_the_cylinder_is_as_long_as_from_pin_to_pin(loader: mg.Arm) -> None:
     assert f"= {math.degrees(math.atan(0.08 / 0.50) - math.atan(0.45 / 0.10)):.1f} deg" in PAGE
 
 
-@pytest.mark.slow
 def test_the_picture_is_that_of_the_description(loader: mg.Arm) -> None:
     committed = (DOCS / "from-a-drawing.svg").read_text(encoding="utf-8")
     ElementTree.fromstring(committed)

@@ -34,7 +34,6 @@ def done(line: str) -> str:
     return ran.stdout
 
 
-@pytest.mark.slow
 def test_the_way_leads_from_a_urdf_to_a_simulator_that_moves_as_the_robot(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -11,8 +11,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 NOTEBOOK = ROOT / "examples" / "notebook.ipynb"
@@ -38,7 +36,6 @@ def run(code: str, folder: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.slow
 def test_the_page_goes_from_a_data_frame_to_c_code(tmp_path: Path) -> None:
     (described,) = blocks(PAGE, "yaml")
     (tmp_path / "arms.yaml").write_text(described, encoding="utf-8")
@@ -58,7 +55,6 @@ assert abs(diagnosis.parameters["MX1R"].value - 1.7) < 4 * diagnosis.parameters[
     assert json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text("utf-8"))["verdict"] == "named"
 
 
-@pytest.mark.slow
 def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     (code,) = blocks((ROOT / "README.md").read_text(encoding="utf-8"), "python")
     # The experiment that would come next takes most of the time, and the text does not speak of it.
@@ -76,7 +72,6 @@ def cells() -> list[dict[str, object]]:
     return [cell for cell in found["cells"] if cell["cell_type"] == "code"]
 
 
-@pytest.mark.slow
 def test_the_notebook_runs_and_shows_tables(tmp_path: Path) -> None:
     # Its cells one after the other, the last expression shown as a notebook shows it: no kernel is needed.
     programs = []

@@ -145,7 +145,6 @@ const said = (key) => {
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("width", [1280, 500])
 def test_a_browser_moves_the_arm(width: int, ariane: mg.Arm, tmp_path: Path) -> None:
     shown = in_browser(page(ariane).replace("</body>", USED + "</body>"), tmp_path, width)

@@ -14,7 +14,7 @@ from mpc_horizon import Horizon
 from mpc_loop import closed_loop
 from mpc_plant import Plant, compiled
 
-pytestmark = [pytest.mark.xdist_group("mpc"), pytest.mark.slow]
+pytestmark = pytest.mark.xdist_group("mpc")
 
 Program = Callable[[float], Path]
 

@@ -23,7 +23,6 @@ def example() -> ModuleType:
     return module
 
 
-@pytest.mark.slow
 def test_it_is_quiet_and_sees_what_happens(example: ModuleType, tmp_path: Path) -> None:
     found = example.figures(0.05, tmp_path)
     assert found["quiet"]["alarms"] == 0

@@ -30,10 +30,7 @@ ARMS = mg.load_arms(Path(__file__).parents[2] / "arms.yaml")
 RATE, SAMPLES = 500.0, 101
 VERSIONS = ("2.0", "3.0")
 
-pytestmark = [
-    pytest.mark.skipif(compiler() is None, reason="needs a C compiler"),
-    pytest.mark.slow,  # every unit is compiled
-]
+pytestmark = pytest.mark.skipif(compiler() is None, reason="needs a C compiler")
 
 
 class Unit:

@@ -16,10 +16,7 @@ from modelgen.exporting.states import States
 SHIPPED = mg.load_arms(Path(__file__).parents[2] / "arms.yaml")
 
 
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(k, marks=pytest.mark.slow) if len(a.coordinates) > 4 else k for k, a in SHIPPED.items()],
-)
+@pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_arm_accelerates_as_its_equations_say(name: str) -> None:
     arm = only_exact(SHIPPED[name], mg.export(SHIPPED[name], to="mjcf"))
     model = mg.export(arm, to="mjcf")

@@ -18,23 +18,24 @@ from modelgen.functions.levels import BETWEEN_FALSE_ALARMS, MARGIN, passage_leve
 ARM = "ariane4"
 
 
+NOISE: dict[str, Any] = {
+    "input": [0.02, 0.03, 0.02],
+    "correlation_s": [0.05, 0.04, 0.02],
+    "rest_speed": [0.01, 0.02, 0.03],
+    "observer": {"gain": 20.0, "rms": [1.0, 2.0, 1.0], "largest": [3.0, 6.0, 8.0], "duration_s": 60.0},
+}
+
+
 def identification() -> dict[str, Any]:
     nominal = mg.build_model(ARMS[ARM]).nominal
     assert nominal is not None
     parameters = [{"name": k, "value": v, "std": 0.02 * abs(v) or None} for k, v in nominal.items()]
-    noise = {
-        "input": [0.02, 0.03, 0.02],
-        "correlation_s": [0.05, 0.04, 0.02],
-        "rest_speed": [0.01, 0.02, 0.03],
-        "observer": {"gain": 20.0, "rms": [1.0, 2.0, 1.0], "largest": [3.0, 6.0, 8.0], "duration_s": 60.0},
-    }
-    return {"schema": 1, "arm": ARM, "parameters": parameters, "noise": noise}
+    return {"schema": 1, "arm": ARM, "parameters": parameters, "noise": NOISE}
 
 
 def observer(**values: Any) -> dict[str, Any]:
     """The identification's noise, the observer's part of it changed."""
-    noise = identification()["noise"]
-    return {"noise": {**noise, "observer": {**noise["observer"], **values}}}
+    return {"noise": {**NOISE, "observer": {**NOISE["observer"], **values}}}
 
 
 @pytest.mark.parametrize("z", [1.0, 2.0])

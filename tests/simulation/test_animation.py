@@ -72,7 +72,6 @@ document.body.append(out);
 """
 
 
-@pytest.mark.slow
 def test_a_browser_plays_it(tmp_path: Path) -> None:
     made = shipped("gravity_link1")
     text = animation(made.arm, np.linspace(0.0, 1.0, 31), np.linspace(0.0, 3.0, 31)[:, None])
