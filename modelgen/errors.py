@@ -37,6 +37,10 @@ class InputError(Exception):
         super().__init__(f"{where}: {self.message}" if where else self.message)
 
 
+class DamagedFileError(InputError):
+    """A file that began as one of its kind and cannot be read on."""
+
+
 def suggest(name: str, options: Iterable[str]) -> str:
     """The nearest of the names that exist, and all of them where there are few or none comes near."""
     known = list(options)

@@ -187,7 +187,8 @@ def inspect_log(log: Log, arm: Arm | None = None, *, mapping: Path | str | None 
         With it the columns are those that are read for the arm, in its units, and its model says when the
         efforts were read. Default: all columns as they stand in the log.
     mapping : Path or str, optional
-        A mapping file that renames and scales the columns of a foreign log; it needs the arm.
+        A mapping file that renames and scales the columns of a foreign log. Without an arm they are those of
+        joints without limits and gears.
 
     Returns
     -------
@@ -201,16 +202,19 @@ def inspect_log(log: Log, arm: Arm | None = None, *, mapping: Path | str | None 
     """
     (one,) = listed(log, "log")
     found = inspect(one, arm, mapping)
-    return Inspection(found, None if arm is None else effort_instant([read(one, arm, mapping)], arm))
+    if arm is None or found.record is None:
+        return Inspection(found)
+    return Inspection(found, effort_instant([found.record], arm))
 
 
-def mapping_skeleton(log: Log, arm: Arm | None = None) -> str:
+def mapping_skeleton(log: Log | Inspection, arm: Arm | None = None) -> str:
     """Guess a mapping file from the names and numbers of a log's columns; every guess is marked as one.
 
     Parameters
     ----------
-    log : log
-        A path, "FILE@t0:t1" [s], or a table of columns.
+    log : log or Inspection
+        A path, "FILE@t0:t1" [s], or a table of columns; or what `inspect_log` found in one without arm and
+        mapping.
     arm : Arm, optional
         Whose joints the mapping is for. Default: as many joints as columns look like positions.
 
@@ -224,6 +228,8 @@ def mapping_skeleton(log: Log, arm: Arm | None = None) -> str:
     InputError
         For a log that cannot be opened, and where too few columns look like positions.
     """
+    if isinstance(log, Inspection):
+        return skeleton(log.found, arm)
     (one,) = listed(log, "log")
     return skeleton(one, arm)
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import modelgen as mg
+from modelgen.api.inspect import mapping_skeleton
 
 ARM = """
 schema: 1
@@ -98,8 +99,38 @@ def test_a_log_without_time_and_one_that_is_missing(tmp_path: Path, arm: mg.Arm)
     assert found.channels[0].high == 4.0
     with pytest.raises(mg.InputError, match="there is no such log"):
         mg.inspect_log(tmp_path / "absent.csv")
-    with pytest.raises(mg.InputError, match="expected an arm too"):
-        mg.inspect_log({"q1": [1.0]}, mapping="mapping.yaml")
+
+
+def test_a_mapping_is_enough_to_look_at_a_log(tmp_path: Path, log: dict[str, np.ndarray]) -> None:
+    mapping = tmp_path / "m.yaml"
+    joints = (
+        "{position: {column: q1, unit: deg, side: motor}, effort: {column: i1, unit: mA}}",
+        "{position: {column: q2, unit: mm}, effort: {column: tau2, unit: kN}}",
+    )
+    mapping.write_text(f"schema: 1\nhold: instant\njoints: [{', '.join(joints)}]\n", encoding="utf-8")
+    found = mg.inspect_log(log, mapping=mapping)
+    by_name = {c.name: c for c in found.channels}
+    assert {name: c.unit for name, c in by_name.items()} == {"q1": "rad", "q2": "m", "i1": "A", "tau2": "N"}
+    assert by_name["q1"].high == pytest.approx(math.radians(log["q1"].max()))
+    assert by_name["q2"].high == pytest.approx(1e-3 * log["q2"].max())
+    assert by_name["i1"].high == pytest.approx(1e-3 * log["i1"].max())
+    assert by_name["tau2"].high == pytest.approx(1e3 * log["tau2"].max())
+    assert found.to_json()["effort_instant"] is None  # for which a model is needed
+
+
+@pytest.mark.parametrize("position", ["unit: counts, side: motor", "unit: mm, side: motor"])
+def test_what_a_drive_alone_gives_a_meaning_needs_the_arm(position: str, tmp_path: Path) -> None:
+    mapping = tmp_path / "m.yaml"
+    mapping.write_text(
+        f"schema: 1\njoints:\n  - {{position: {{column: q1, {position}}}}}\n", encoding="utf-8"
+    )
+    with pytest.raises(mg.InputError, match=r"m\.yaml:3:.*expected an arm too: modelgen inspect LOG ARMS"):
+        mg.inspect_log({"t": [0.0, 1.0], "q1": [1.0, 2.0]}, mapping=mapping)
+
+
+def test_a_skeleton_of_what_was_inspected_is_that_of_the_log(log: dict[str, np.ndarray]) -> None:
+    for table in (log, {"header.stamp": 1e9 * log["t"]} | {k: x for k, x in log.items() if k != "t"}):
+        assert mapping_skeleton(mg.inspect_log(table)) == mapping_skeleton(table)
 
 
 def test_the_columns_of_a_record_are_a_log(arm: mg.Arm, log: dict[str, np.ndarray]) -> None:

@@ -51,6 +51,18 @@ def test_what_is_no_log_is_one_line(tmp_path: Path) -> None:
     assert "there is no such log" in result.stderr
 
 
+def test_a_mapping_needs_no_arm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    t = times()
+    q, dq, _ = motion(t)
+    file = write_csv(tmp_path / "a.csv", {"t": t, "hip_pos": q[:, 0], "hip_current": dq[:, 0]})
+    called(file, "--skeleton", "m.yaml")
+    shown = called(file, "--mapping", "m.yaml")
+    assert "1600 samples from 0 s to 7.995 s at 200 Hz" in shown
+    assert "q1" in shown
+    assert "rad " in shown
+
+
 def test_the_picture_is_written(tmp_path: Path) -> None:
     called(write_csv(tmp_path / "a.csv", columns(times())), "--plot", str(tmp_path / "a.svg"))
     assert (tmp_path / "a.svg").read_text(encoding="utf-8").startswith("<?xml")

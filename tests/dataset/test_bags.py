@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from modelgen.dataset import read
+from modelgen.dataset.inspection import inspect
 from modelgen.description import loads
 from modelgen.errors import InputError
 
@@ -82,6 +83,21 @@ def test_messages_without_the_named_joints_are_passed_over(tmp_path: Path) -> No
     assert record.q == pytest.approx(Q)
     assert record.input == pytest.approx(2 * Q)
     assert any("151 of 301 messages have none of the columns" in remark for remark in record.remarks)
+
+
+@pytest.mark.parametrize("part", ["", "@0:2"])
+@pytest.mark.parametrize("jitter", [0.0, 0.001])
+def test_messages_without_the_named_joints_do_not_count_for_the_rate(
+    part: str, jitter: float, tmp_path: Path
+) -> None:
+    gripper = [(float(t) + 0.004, ["finger"], [0.02]) for t in T]
+    late = jitter * (np.arange(len(T)) % 3 == 1)
+    arm = [(t + x, names, q) for (t, names, q), x in zip(states(["a", "b"]), late, strict=True)]
+    log = f"{bag(tmp_path, sorted([*arm, *gripper]))}{part}"
+    seen = inspect(log, ARM, mapping(tmp_path, "a", "b"))
+    assert seen.samples == (100 if part else len(T))
+    assert seen.rate == pytest.approx(50.0, rel=0.06)
+    assert 1.0 / read(log, ARM, mapping(tmp_path, "a", "b")).step == pytest.approx(50.0, rel=0.06)
 
 
 def test_joints_of_two_publishers_are_joined(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ import pytest
 from dataset_support import AXIS, DRIVEN, columns, motion, times, write_csv
 
 from modelgen.dataset import Stream, read
+from modelgen.dataset.inspection import inspect
 from modelgen.errors import InputError
 
 pyarrow = pytest.importorskip("pyarrow")
@@ -181,6 +182,17 @@ def test_parquet_that_cannot_be_meant_is_refused(tmp_path: Path) -> None:
     (tmp_path / "c.parquet").write_bytes(b"nothing")
     with pytest.raises(InputError, match="this is no Parquet file"):
         read(str(tmp_path / "c.parquet"), AXIS)
+
+
+def test_damaged_parquet_is_no_column_without_numbers(tmp_path: Path) -> None:
+    t = times()
+    file = tmp_path / "a.parquet"
+    parquet.write_table(pyarrow.table(columns(t)), file, compression="none", write_page_checksum=True)
+    data, place = file.read_bytes(), 8 * len(t)  # of a reading of the first columns
+    file.write_bytes(data[:place] + b"\x55" + data[place + 1 :])
+    for asked in (lambda: read(str(file), DRIVEN), lambda: inspect(str(file))):
+        with pytest.raises(InputError, match="cannot be read on"):
+            asked()
 
 
 @pytest.mark.parametrize(("library", "file"), [("pyarrow", "a.parquet"), ("rosbags", "a.bag")])

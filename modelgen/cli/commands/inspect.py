@@ -52,13 +52,15 @@ def inspect(
     from modelgen.cli.output import print_result
     from modelgen.files import check_writable, write_new, write_together
 
-    found = one(arms, arm) if arms is not None or arm or mapping is not None else None
-    if skeleton is not None:
-        check_writable("--skeleton", skeleton)
+    found = one(arms, arm) if arms is not None or arm else None
+    for option, path in (("--skeleton", skeleton), ("--plot", plot)):
+        if path is not None:
+            check_writable(option, path)
+    if skeleton is not None and (found is not None or mapping is not None):
         write_new(skeleton, mapping_skeleton(log, found))
-    if plot is not None:
-        check_writable("--plot", plot)
     result = inspect_log(log, found, mapping=mapping)
+    if skeleton is not None and found is None and mapping is None:
+        write_new(skeleton, mapping_skeleton(result))
     if plot is not None:
         write_together("--plot", plot.parent, {plot.name: result.picture()})
     print_result(result, as_json=as_json)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from modelgen.dataset.drives import drives_of
+from modelgen.dataset.inspection.bare_arm import arm_of
 from modelgen.dataset.inspection.guesses import guessed_unit, kind_of, time_of, unit_of_time
 from modelgen.dataset.mapping.units import TIMES
 from modelgen.dataset.objects import Reader, Record
@@ -18,14 +19,14 @@ from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.processing.rounding import resolution
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.plausible import doubtful_unit
-from modelgen.dataset.reading.read import read
+from modelgen.dataset.reading.read import read_with_stamps
 from modelgen.dataset.reading.renamed import in_small_letters
 from modelgen.dataset.reading.repeats import refresh_of
-from modelgen.dataset.reading.sources import BLOCK, open_source, opened
+from modelgen.dataset.reading.sources import BLOCK, opened
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.thresholds import USUAL
 from modelgen.description import Arm
-from modelgen.errors import InputError
+from modelgen.errors import DamagedFileError, InputError
 from modelgen.numeric import Array
 
 _POSITION = re.compile(r"qm?[1-9][0-9]*")
@@ -66,8 +67,8 @@ class Inspected:
 
     jitter: largest deviation of that time from its median, in medians. backwards: stamps that are not after
     the one before. period: of the motion [s], None where it does not repeat. without_numbers: columns of
-    something else. t, columns: stamps (N,) [s] and readings (N,) by name. Rate, jitter and period are NaN or
-    None where the log has no stamps.
+    something else. t, columns: stamps (N,) [s] and readings (N,) by name. record: what was read for an arm.
+    Rate, jitter and period are NaN or None where the log has no stamps.
     """
 
     name: str
@@ -83,24 +84,26 @@ class Inspected:
     t: Array = field(default_factory=lambda: np.empty(0), compare=False, repr=False)
     columns: Mapping[str, Array] = field(default_factory=dict, compare=False, repr=False)
     remarks: tuple[str, ...] = ()
+    record: Record | None = field(default=None, compare=False, repr=False)
 
 
 def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None) -> Inspected:
     """A log as it is: without an arm all its columns, with an arm those that are read for it, in its units.
 
-    Raises InputError for a log that cannot be opened, and with an arm also as `read` does.
+    A mapping file without an arm makes columns of joints without limits and gears. Raises InputError for a
+    log that cannot be opened, and with an arm or a mapping also as `read` does.
     """
     if isinstance(log, Record):
         return _of_record(log)
+    if arm is None and mapping is not None:
+        arm = arm_of(mapping)
     if arm is not None:
-        return _of_record(read(log, arm, mapping), _raw(log, arm, mapping))
-    if mapping is not None:
-        raise InputError(f"{parse(log).text}: a mapping file makes columns of an arm, expected an arm too")
+        return _of_record(*read_with_stamps(log, arm, mapping))
     spec = parse(log)
     reader = in_small_letters(opened(spec))
     columns, rest = _columns(spec, reader)
     remarks = list(reader.remarks)
-    t = columns.pop("t", None)
+    t = columns.get("t")
     stamps = time_of(columns) if t is None else None
     if stamps is not None:
         unit = unit_of_time(columns[stamps])
@@ -108,16 +111,17 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
         remarks.append(
             f"no column t: times are those of {stamps}, in {unit} by a guess, from the first one on"
         )
-    measured = [x for x in columns.values() if np.isfinite(x).all()]
+    readings = {name: x for name, x in columns.items() if name != "t"}
+    measured = [x for x in readings.values() if np.isfinite(x).all()]
     refresh = refresh_of(np.stack(measured, axis=1)) if measured else None
     if refresh is not None:
         remarks.append(
             f"every reading stands there {refresh.every:.4g} times: the source is slower than the log"
         )
-    moving = {name: x for name, x in columns.items() if name != stamps and kind_of(name) == "position"}
-    named = [values for name, values in columns.items() if _POSITION.fullmatch(name)]
+    moving = {name: x for name, x in readings.items() if name != stamps and kind_of(name) == "position"}
+    named = [values for name, values in readings.items() if _POSITION.fullmatch(name)]
     positions = named or [x for x in moving.values() if np.ptp(x) > 0.0]
-    found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in columns.items()], positions)
+    found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in readings.items()], positions)
     doubt = "" if math.isnan(found.rate) else doubtful_unit(1.0 / found.rate, USUAL)
     axis = np.arange(len(next(iter(columns.values()))), dtype=np.float64) if t is None else t
     found = replace(found, t=np.asarray(axis, dtype=np.float64), columns=columns)
@@ -161,13 +165,9 @@ def _of_record(record: Record, t: Array | None = None) -> Inspected:
     found = _inspected(record.name, record.t if t is None else t, channels, [])
     period = period_of(record, None)
     seconds = None if period is None else period * record.step
-    return replace(found, period=seconds, remarks=record.remarks, t=record.t, columns=record.columns)
-
-
-def _raw(log: Log, arm: Arm, mapping: Path | str | None) -> Array:
-    """The stamps (N,) [s] as logged."""
-    blocks = list(open_source(log, arm, mapping).blocks(time_alone=True))
-    return np.concatenate(blocks)[:, 0]
+    return replace(
+        found, period=seconds, remarks=record.remarks, t=record.t, columns=record.columns, record=record
+    )
 
 
 def _columns(spec: Spec, reader: Reader) -> tuple[dict[str, Array], tuple[str, ...]]:
@@ -195,6 +195,8 @@ def _one_by_one(reader: Reader, names: Sequence[str]) -> tuple[Array, tuple[str,
     for name in names:
         try:
             found[name] = _table(reader, (name,))[:, 0]
+        except DamagedFileError:  # which has not said what it holds
+            raise
         except InputError:
             continue
     table = np.stack(list(found.values()), axis=1) if found else np.empty((0, 0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from modelgen.dataset.inspection.channels import columns_of_log
+from modelgen.dataset.inspection.channels import Inspected, columns_of_log
 from modelgen.dataset.inspection.guesses import kind_of, time_of, unit_of_angle, unit_of_time
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.specs import parse
@@ -12,10 +12,15 @@ from modelgen.description import Arm
 from modelgen.errors import InputError
 
 
-def skeleton(log: Log, arm: Arm | None = None) -> str:
-    """A mapping file (YAML) for a log; every guess is marked as one. Raises InputError where nothing fits."""
-    text = parse(log).text
-    columns, _ = columns_of_log(log)
+def skeleton(log: Log | Inspected, arm: Arm | None = None) -> str:
+    """A mapping file (YAML) for a log; every guess is marked as one. Raises InputError where nothing fits.
+
+    log: also as `inspect` has found it without an arm, whose columns are those of the log.
+    """
+    if isinstance(log, Inspected):
+        text, columns = log.name, dict(log.columns)
+    else:
+        text, columns = parse(log).text, columns_of_log(log)[0]
     found: dict[str, list[str]] = {}
     time = time_of(columns)
     for name in columns:

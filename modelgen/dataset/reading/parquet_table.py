@@ -10,7 +10,7 @@ import numpy as np
 
 from modelgen.dataset.reading.specs import unreadable
 from modelgen.dataset.reading.turns import in_turn
-from modelgen.errors import InputError
+from modelgen.errors import DamagedFileError, InputError
 from modelgen.extras import missing
 from modelgen.numeric import Array
 
@@ -97,7 +97,7 @@ class ParquetReader:
             if filled:
                 yield held[:filled]
         except (OSError, ValueError, pyarrow.ArrowException) as error:
-            raise InputError(f"{self.path}: cannot be read on: {str(error).splitlines()[0]}") from None
+            raise DamagedFileError(f"{self.path}: cannot be read on: {str(error).splitlines()[0]}") from None
 
     def _sparse(self) -> frozenset[str]:
         """Columns that are blank in many of the first rows but not in all."""

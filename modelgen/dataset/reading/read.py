@@ -41,14 +41,27 @@ def read(
     record is given back as it is; one of another arm is refused. still: whether some joints, not all, may
     stand throughout, with a remark.
     """
+    return read_with_stamps(log, arm, mapping, thresholds, still=still)[0]
+
+
+def read_with_stamps(
+    log: Log,
+    arm: Arm,
+    mapping: Path | str | None = None,
+    thresholds: DatasetThresholds = USUAL,
+    *,
+    still: bool = False,
+) -> tuple[Record, Array]:
+    """The record of a log as `read` has it, and its stamps (N,) [s] as they were logged."""
     if isinstance(log, Record):
-        return _of_arm(log, arm)
+        return _of_arm(log, arm), log.t
     source = open_source(log, arm, mapping, thresholds)
     spec = source.spec.text
     blocks = list(source.blocks())
     table = np.concatenate(blocks) if blocks else np.empty((0, len(source.wanted)))
     checks.check_length(spec, len(table), thresholds.min_samples)
     checks.check_finite(spec, table[:, 0], source.wanted, table)
+    stamps = table[:, 0]
     table, found, repeats = _true_instants(source, table)
     positions, efforts = (
         {k: name for k, name in enumerate(source.wanted) if name in part}
@@ -82,7 +95,7 @@ def read(
         record = replace(
             record, remarks=(*record.remarks, f"{spec}: left out for {names}, at rest throughout")
         )
-    return record
+    return record, stamps
 
 
 def _rate_of_file(source: Source) -> float | None:
@@ -91,7 +104,8 @@ def _rate_of_file(source: Source) -> float | None:
     if (spec.begin, spec.end) == (-math.inf, math.inf):
         return None
     whole = replace(source, spec=replace(spec, begin=-math.inf, end=math.inf))
-    stamps = np.concatenate(list(whole.blocks(time_alone=True)))[:, 0]
+    # in a bag the messages of others on the topic are no samples
+    stamps = np.concatenate(list(whole.blocks(time_alone=not source.of_messages)))[:, 0]
     steps = np.diff(stamps[np.isfinite(stamps)])
     steps = steps[steps > 0.0]
     return 1.0 / float(np.median(steps)) if len(steps) else None

@@ -55,6 +55,11 @@ class Source:
         return self.reader.remarks
 
     @property
+    def of_messages(self) -> bool:
+        """Whether rows are messages, of which some may hold none of the columns."""
+        return isinstance(getattr(self.reader, "reader", None), BagReader)
+
+    @property
     def wanted(self) -> tuple[str, ...]:
         """Names of the columns that are read, the time first."""
         return tuple(dict.fromkeys(self.signals.wanted))
