@@ -105,6 +105,8 @@ def accessible(html: str) -> str:
         '<aside class="sidebar-drawer">', '<aside class="sidebar-drawer" aria-label="All pages">'
     )
     html = re.sub(r'<aside class="toc-drawer[^"]*"', r'\g<0> aria-label="This page"', html)
+    # A long name breaks between its words.
+    html = re.sub(r"(<h[12]>)(\w+)(?=<)", lambda m: m[1] + m[2].replace("_", "_<wbr>"), html)
     # A cell above the names of the rows heads nothing.
     return re.sub(r'<th class="head([^"]*)">(?:<p></p>)?</th>', r'<td class="head\1"></td>', html)
 

@@ -78,8 +78,8 @@ def _about(effect: str) -> list[Part]:
     )
     return [
         Text(_law(effect)),
-        Text(f"{seen} Reference: {definition.reference}."),
         block([sketch(effect)]),
+        Text(f"{seen} Reference: {definition.reference}."),
         Text([Run(where), Run("modelgen effects", "code")], "quiet"),
     ]
 

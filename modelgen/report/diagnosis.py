@@ -127,8 +127,8 @@ def _simulation(d: Diagnosis) -> list[Part]:
     rows = [
         (
             joint_name(d.arm, j + 1),
-            f"{one.f_gof[j]:.2f}",
-            f"{two.f_gof[j]:.2f}",
+            _fit(one.f_gof[j]),
+            _fit(two.f_gof[j]),
             f"{one.mae[j]:.3g}",
             f"{two.mae[j]:.3g}",
             f"{one.rmse[j]:.3g}",
@@ -138,6 +138,11 @@ def _simulation(d: Diagnosis) -> list[Part]:
     ]
     text = f"{_SIMULATED[d.test.prepared.input is None]}: {_FIT}"
     return [Text(text), Grid("Simulated motion", _MOTION, rows), block(replayed(d))]
+
+
+def _fit(percent: float) -> str:
+    """A goodness of fit, short also where the simulated motion runs away."""
+    return f"{percent:.2f}" if abs(percent) < 1e5 else f"{percent:.0e}"
 
 
 def _files(d: Diagnosis) -> list[Part]:

@@ -112,7 +112,9 @@ def binned(x: Array, y: Array, bins: int = BINS) -> tuple[Array, Array]:
 
 
 def replayed(d: Diagnosis) -> list[Chart]:
-    """Measured and simulated positions of windows of the test record, and their difference."""
+    """Measured and simulated positions of windows of the test record, and their difference. Of a simulated
+    motion that runs away as much is drawn as leaves the measured one legible.
+    """
     shown = [s for s in d.simulation if s is not None]
     if not shown:
         return []
@@ -132,11 +134,23 @@ def replayed(d: Diagnosis) -> list[Chart]:
                 left.append(Curve(t, truth, "measured", "measured"))
             left.append(Curve(t, path, role, label))
             right.append(Curve(t, path - truth, role, label))
+        low, high = float(np.nanmin(left[0].y)), float(np.nanmax(left[0].y))
         text = f"Position of {name}, measured and simulated window by window."
-        charts.append(Chart(name, "time [s]", f"position [{unit[j]}]", left, text, zoom=True))
+        near = _within(left, 2 * low - high, 2 * high - low)
+        charts.append(Chart(name, "time [s]", f"position [{unit[j]}]", left, text, (), True, near))
         text = f"Simulated less measured position of {name}."
-        charts.append(Chart(f"{name}, error", "time [s]", f"error [{unit[j]}]", right, text, zoom=True))
+        near = _within(right, low - high, high - low)
+        charts.append(Chart(f"{name}, error", "time [s]", f"error [{unit[j]}]", right, text, (), True, near))
     return charts
+
+
+def _within(curves: list[Curve], low: float, high: float) -> tuple[float, float] | None:
+    """What curves span of an ordinate between limits, with room; None where they stay between them."""
+    lowest, highest = (f([f(c.y[np.isfinite(c.y)]) for c in curves]) for f in (np.min, np.max))
+    if (low <= lowest and highest <= high) or not low < high:
+        return None
+    room = 0.05 * (high - low)
+    return max(float(lowest), low) - room, min(float(highest), high) + room
 
 
 def _joined(windows: Array) -> Array:

@@ -19,7 +19,7 @@ from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
 from modelgen.report.diagnosis import report
-from modelgen.report.diagnosis_figures import binned, efforts, residuals
+from modelgen.report.diagnosis_figures import binned, efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import remains, worth
 from modelgen.report.law_figures import judged_joint, law_charts
 from modelgen.report.words import by_name, finding, sentence
@@ -253,6 +253,24 @@ def test_the_page_is_small_and_drawn_in_no_time(found: Diagnosis, written: Path)
     begin = time.process_time()
     diagnose(ARM, three("stribeck_friction", 2, 0.5))
     assert drawing < 0.2 * (time.process_time() - begin)
+
+
+def test_a_simulated_motion_that_runs_away_leaves_the_measured_one_legible(found: Diagnosis) -> None:
+    """The description's own model is made to end beyond all bounds."""
+    before, after = found.simulation
+    assert before is not None
+    path = before.simulated.copy()
+    path[0, -1] = 1e16
+    away = replace(found, simulation=(replace(before, simulated=path, f_gof=-7e18 * before.f_gof), after))
+    charts = replayed(away)
+    for moved, error in zip(charts[::2], charts[1::2], strict=True):
+        measured = moved.curves[0].y[np.isfinite(moved.curves[0].y)]
+        for chart in (moved, error):
+            low, high = chart.spans()[1]
+            assert high - low < 3.5 * np.ptp(measured)
+        low, high = moved.spans()[1]
+        assert low < measured.min() < measured.max() < high
+    assert "e+20" in report(away)
 
 
 def test_means_over_a_short_record_are_not_few() -> None:
