@@ -47,17 +47,18 @@ OTHERS = """\
 
 The same records, and other ways to choose. All get the same filtered equations, those of the band that
 modelgen asks first, and the same columns: every candidate of [the catalogue](effects.md) at every place, with
-those values at which it explains most alone beside the user's model. So what is compared is the choice, not
-the filtering, and the others are spared a search for values that they do not have. The parameters of the
-user's model are fitted beside whatever is chosen. None of them has modelgen's checks. The judge is the same,
-and aliases count for all.
+the values at which it explains most alone beside the user's model. modelgen's search finds these, so that the
+others need none. What is compared is the choice, not the filtering. The parameters of the user's model are
+fitted beside whatever is chosen. None of the others has modelgen's checks. The judge is the same, and
+aliases count for all.
 
 ![Exact names, false names and error removed, by method](strangers.svg)
 
 Error removed is on the test record, which no method has seen: of the mean square error that the hidden
 effect adds to the noise, at its joint, the part that the extended model removes; all cases together, with
-an interval by a bootstrap of the cases. Who names nothing removes nothing, and a false name can add error.
-The network names nothing. It learns what the user's model leaves.
+an interval of 95 % by a bootstrap of the cases. Who names nothing removes nothing. A near relative of what is
+hidden, or several of them together, can predict as well as the right name: an error removed is no proof of
+a name. The network names nothing; it learns what the user's model leaves.
 """
 ADDING = """\
 A method of your own is a class of a few lines in a module of `benchmarks/blind/others/methods`; it is found
@@ -151,7 +152,8 @@ def _others(every: list[Answered]) -> list[str]:
     if not rows:
         return []
     tuned = [f"- {by.title}: {by.tuning}" for by in (method(row.name) for row in rows[1:])]
-    return [OTHERS, others_table(rows), "", *tuned, "", ADDING]
+    count = f"Counted on {rows[0].false[1]} of the {len(every)} cases.\n"
+    return [OTHERS, count, others_table(rows), "", *tuned, "", ADDING]
 
 
 def compared(every: Sequence[Answered]) -> list[Score]:

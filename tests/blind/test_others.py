@@ -233,6 +233,8 @@ def test_scores_are_of_the_cases_that_all_have_answered(tmp_path: Path) -> None:
 def test_answers_to_other_records_do_not_count(tmp_path: Path) -> None:
     ours = [line(e, [], 1.0) for e in ENTRIES[:2]]
     others = json.loads(json.dumps(ours))
+    ours[1]["answer"]["diagnosis"]["error"]["before"] = [2.0, None]  # a joint that rests
+    others[1]["answer"]["diagnosis"]["error"]["before"] = [2.0, 0.0]
     others[0]["answer"]["diagnosis"]["error"]["before"] = [2.1, 1.0]
     answers.keep("bic", {answers.entry_of(x["truth"]): x for x in others}, tmp_path)
     assert table.scores(ours, tmp_path)[0].hidden[1] == 1
@@ -273,3 +275,17 @@ def test_the_runner_goes_on_and_keeps_what_fails(
     assert runner.run(ENTRIES[:2], methods, retry=True, folder=tmp_path) == 0
     assert seen[4:] == [methods["frols"]] * 2
     assert "bic 1, frols failed" in capsys.readouterr().out
+
+
+def test_cases_come_by_lot_and_each_once() -> None:
+    found = runner.entries()
+    every = {answers.entry_of(truth) for truth, _ in page.every_case()}
+    assert len(found) == len(every)
+    assert set(found) == every
+    half = found[: len(found) // 2]
+    assert {e.family for e in half} == {e.family for e in every}
+    assert {e.setting for e in half} == {e.setting for e in every}
+
+
+def test_the_picture_is_that_of_the_kept_answers() -> None:
+    assert page.PICTURE.read_text(encoding="utf-8") == table.picture(page.compared(page.every_case()))

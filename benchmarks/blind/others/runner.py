@@ -13,6 +13,7 @@ import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from zlib import crc32
 
 from blind.case import Case
 from blind.cases import Entry
@@ -24,10 +25,9 @@ from modelgen.errors import InputError
 
 
 def entries() -> list[Entry]:
-    """Cases that are kept, every set in turn, so that a part of them is a part of each."""
-    sets = [[entry_of(said) for said, _ in kept(path.stem)[1]] for path in sorted(RUNS.glob("*.jsonl"))]
-    placed = [(k / len(found), number, e) for number, found in enumerate(sets) for k, e in enumerate(found)]
-    return list(dict.fromkeys(e for _, _, e in sorted(placed, key=lambda p: p[:2])))
+    """Cases that are kept, in an order by lot, the same each time: the first of them are a sample of all."""
+    found = [entry_of(said) for path in sorted(RUNS.glob("*.jsonl")) for said, _ in kept(path.stem)[1]]
+    return sorted(dict.fromkeys(found), key=lambda e: (crc32(e.name.encode()), e.name))
 
 
 def answers_of(case: Case, methods: Sequence[Method]) -> list[Line]:

@@ -28,7 +28,7 @@ COLUMNS = (
     "false names a case",
     "error removed, %",
 )
-WIDTH, LEFT, ROW, TOP, PANEL, GAP = 700, 214, 26, 46, 146, 14  # of the picture
+WIDTH, LEFT, ROW, TOP, PANEL, GAP = 740, 186, 26, 46, 160, 28  # of the picture
 Answered = Mapping[Entry, Line]
 
 
@@ -62,22 +62,24 @@ def scores(own: Sequence[Line], folder: Path = OTHERS) -> list[Score]:
     entries = [e for e in ours if all(e in found and same(ours[e], found[e]) for found in others.values())]
     truths = {e: next(iter(others.values()))[e]["truth"] for e in entries}
     rows = [score("", OWN, ours, truths, names=True)]
-    for name, answers in others.items():
+    for name in sorted(others, key=lambda name: not method(name).names):
         by = method(name)
-        rows.append(score(name, by.title, answers, truths, names=by.names))
+        rows.append(score(name, by.title, others[name], truths, names=by.names))
     return rows
 
 
 def same(one: Line, other: Line) -> bool:
     """Whether two answers are to the same records: the user's model leaves the same, or one has no error."""
-    before, again = (_before(line["answer"]) for line in (one, other))
-    if not before or not again:
+    before, again = (_errors(line["answer"], "before") for line in (one, other))
+    if not before.any() or not again.any():
         return True
     return len(before) == len(again) and bool(np.allclose(before, again, rtol=SAME, atol=0.0))
 
 
-def _before(answer: Mapping[str, Any]) -> list[float]:
-    return ((answer.get("diagnosis") or {}).get("error") or {}).get("before") or []
+def _errors(answer: Mapping[str, Any], when: str) -> Array:
+    """Errors of an answer by joint (n,), 0 of one that does not move; (0,) where there are none."""
+    found = ((answer.get("diagnosis") or {}).get("error") or {}).get(when) or []
+    return np.array([x or 0.0 for x in found], dtype=float)
 
 
 def score(
@@ -112,8 +114,7 @@ def part(said: Mapping[str, Any], answer: Mapping[str, Any]) -> tuple[float, flo
     """
     truth = said["truth"]
     adds = 1.0 - 1.0 / max(float(truth["met"]), 1.0) ** 2
-    error = (answer.get("diagnosis") or {}).get("error") or {}
-    before, after = (np.array(error.get(k) or [], dtype=float) for k in ("before", "after"))
+    before, after = (_errors(answer, when) for when in ("before", "after"))
     places = [j - 1 for j in truth["joints"] if j is not None and j <= len(before)]
     where = places or [j for j, b in enumerate(before) if b]
     if not len(before) or not before[where].all():
@@ -165,8 +166,8 @@ def picture(rows: Sequence[Score]) -> str:
             f"{escape(s.title.replace('`', ''))}</text>"
         )
     panels = [
-        ("exact names, %", [(k, *_percent(s.hidden)) for k, s in enumerate(rows) if s.names]),
-        ("a false name, % of cases", [(k, *_percent(s.false)) for k, s in enumerate(rows) if s.names]),
+        ("exact, % of hidden", [(k, *_percent(s.hidden)) for k, s in enumerate(rows) if s.names]),
+        ("a false name, % of all", [(k, *_percent(s.false)) for k, s in enumerate(rows) if s.names]),
         ("error removed, %", [(k, *s.removed) for k, s in enumerate(rows)]),
     ]
     for number, (title, points) in enumerate(panels):

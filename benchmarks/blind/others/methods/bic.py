@@ -20,8 +20,8 @@ class ForwardBic(Method):
     coefficients, searched values counted.
     """
 
-    title = "forward selection, BIC"
-    tuning = "has none: ends at the first term that no longer lowers the criterion"
+    title = "forward selection (BIC)"
+    tuning = "one candidate after the other, until none lowers the criterion; there is nothing to tune"
 
     def answer(self, problem: Problem) -> Answer:
         """Answer for one case."""

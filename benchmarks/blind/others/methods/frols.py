@@ -16,8 +16,8 @@ MOST = 20  # terms that the criterion is computed for
 class Frols(Method):
     """One column after the other, the one with the largest error reduction ratio; BIC says how many."""
 
-    title = "orthogonal forward regression (FROLS, SysIdentPy)"
-    tuning = f"the number of terms, up to {MOST}, by SysIdentPy's search for the least BIC"
+    title = "FROLS (SysIdentPy)"
+    tuning = f"orthogonal forward regression; as many columns, up to {MOST}, as SysIdentPy finds by BIC"
 
     def answer(self, problem: Problem) -> Answer:
         """Answer for one case."""

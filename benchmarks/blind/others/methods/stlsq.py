@@ -16,10 +16,10 @@ THRESHOLDS = np.geomspace(0.003, 1.0, 20)  # of the length of the target, column
 class Stlsq(Method):
     """Small coefficients of a ridge regression become zero, the rest is fitted again, until none is small."""
 
-    title = "thresholded least squares (PySINDy)"
+    title = "STLSQ (PySINDy)"
     tuning = (
-        "columns of unit length, PySINDy's usual ridge; the largest threshold within one standard error of "
-        "the least error on 10 held-out blocks of time"
+        "sequentially thresholded least squares; columns of unit length, PySINDy's usual ridge, the largest "
+        "threshold within one standard error of the least error on 10 held-out blocks of time"
     )
 
     def answer(self, problem: Problem) -> Answer:
