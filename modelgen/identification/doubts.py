@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,39 @@ def doubts(
     return [*found, *(weight or _one_link(model, along * gain[:, :, None], links, theta, determined))]
 
 
+def check_sign(
+    train: Sequence[Prepared],
+    model: Model,
+    evaluator: Evaluator,
+    theta: Array,
+    covariance: Array,
+    determined: NDArray[np.bool_],
+    driving: Sequence[int],
+) -> None:
+    """Refuse efforts that are counted the other way, by a joint's friction and its inertia or weight.
+
+    One of them alone may be what the model lacks. driving: numbers of the coordinates, from 1, whose friction
+    is below zero. Raises InputError.
+    """
+    if not driving:
+        return
+    several = [np.concatenate(x) for x in zip(*map(_motion, train), strict=True)]
+    q, ddq, efforts = (x[:: max(1, len(x) // POSES)] for x in several)
+    at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
+    below = _below_zero(model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined)
+    links = _links(model)
+    if links[1]:
+        scales = _weights(model, gains(model.arm, q), at_rest, links, theta, determined)
+        below += [j for j, scale in scales.items() if scale < -1.0 / FACTOR]
+    both = [model.arm.joints[model.arm.coordinates[j - 1]].name for j in driving if j - 1 in below]
+    if both:
+        raise InputError(
+            f"{train[0].record.name}: friction at {', '.join(both)} comes out below zero, and inertia or "
+            "weight with the other sign; expected efforts that act in the direction of the positions: is "
+            "their sign the other way round, or that of torque_constant?"
+        )
+
+
 def _motion(p: Prepared) -> tuple[Array, Array, Array]:
     """Positions, accelerations and inputs at the rows of a record, (M, n) each."""
     return p.picked(p.q), p.picked(p.ddq), p.effort
@@ -63,7 +97,20 @@ def _columns(model: Model, evaluator: Evaluator, q: Array, ddq: Array, theta: Ar
     return np.asarray(evaluator.regressor(model, motion, theta))
 
 
-def _inertia(
+def _inertia(*given: Any) -> list[str]:
+    """The question about joints whose own inertia is below zero."""
+    model = given[0]
+    found = [model.arm.joints[model.arm.coordinates[j]].name for j in _below_zero(*given)]
+    if not found:
+        return []
+    return [
+        f"Impossible: the inertia at {', '.join(found)} comes out below zero. Is the sign of the efforts the "
+        "other way round, are positions and efforts of one joint and instant, are the positions too coarse, "
+        "or does the model lack an effect (modelgen diagnose)?"
+    ]
+
+
+def _below_zero(
     model: Model,
     evaluator: Evaluator,
     motion: tuple[Array, Array, Array],
@@ -71,8 +118,8 @@ def _inertia(
     theta: Array,
     covariance: Array,
     determined: NDArray[np.bool_],
-) -> list[str]:
-    """Joints whose own inertia is below zero clearly, at most of the poses: no body has that.
+) -> list[int]:
+    """Coordinates whose own inertia is below zero clearly, at most of the poses: no body has that.
 
     Where what it does is a small part of the efforts, errors of the model that are larger may hide in it.
     """
@@ -89,14 +136,8 @@ def _inertia(
             continue
         size = np.sqrt(np.maximum(np.einsum("ki,ij,kj->k", row, covariance, row), 0.0))
         if np.mean(row @ theta < -CLEARLY * size) > 0.5:
-            found.append(model.arm.joints[model.arm.coordinates[j]].name)
-    if not found:
-        return []
-    return [
-        f"Impossible: the inertia at {', '.join(found)} comes out below zero. Is the sign of the efforts the "
-        "other way round, are positions and efforts of one joint and instant, are the positions too coarse, "
-        "or does the model lack an effect (modelgen diagnose)?"
-    ]
+            found.append(j)
+    return found
 
 
 def _links(model: Model) -> tuple[NDArray[np.bool_], list[Array]]:
@@ -154,27 +195,11 @@ def _one_link(
     ]
 
 
-def _weight(
-    model: Model,
-    gain: Array,
-    at_rest: Array,
-    links: tuple[NDArray[np.bool_], list[Array]],
-    theta: Array,
-    determined: NDArray[np.bool_],
-) -> list[str]:
+def _weight(model: Model, *given: Any) -> list[str]:
     """Joints whose weight is far from that of the nominal links, where the description has all of them."""
-    of_links, own = links
-    nominal = np.sum(own, axis=0)
-    described, seen = (at_rest[:, :, of_links] @ x[of_links] for x in (nominal, theta))
-    lost = np.asarray(at_rest[:, :, of_links & ~determined].any(axis=(0, 2)))
-    power = ((described * gain) ** 2).mean(axis=0)
-    notable = np.maximum(power, ((seen * gain) ** 2).mean(axis=0))
     said = []
-    for j, i in enumerate(model.arm.coordinates):
-        if lost[j] or notable[j] <= NOTABLE**2 * notable.max() or power[j] <= 0.0:
-            continue
-        weight = described[:, j]
-        scale, name = float(weight @ seen[:, j] / (weight @ weight)), model.arm.joints[i].name
+    for j, scale in _weights(model, *given).items():
+        name = model.arm.joints[model.arm.coordinates[j]].name
         if scale < -1.0 / FACTOR:
             said.append(
                 f"The weight at {name} comes out {scale:.3g} times that of the nominal links, of the other "
@@ -186,3 +211,25 @@ def _weight(
                 "another one, of masses and lengths there, of the efforts, or of torque_constant and ratio?"
             )
     return said
+
+
+def _weights(
+    model: Model,
+    gain: Array,
+    at_rest: Array,
+    links: tuple[NDArray[np.bool_], list[Array]],
+    theta: Array,
+    determined: NDArray[np.bool_],
+) -> dict[int, float]:
+    """By coordinate, what the weight there is of that of the nominal links, where it is notable."""
+    of_links, own = links
+    nominal = np.sum(own, axis=0)
+    described, seen = (at_rest[:, :, of_links] @ x[of_links] for x in (nominal, theta))
+    lost = np.asarray(at_rest[:, :, of_links & ~determined].any(axis=(0, 2)))
+    power = ((described * gain) ** 2).mean(axis=0)
+    notable = np.maximum(power, ((seen * gain) ** 2).mean(axis=0))
+    asked = ~lost & (notable > NOTABLE**2 * notable.max()) & (power > 0.0)
+    return {
+        int(j): float(described[:, j] @ seen[:, j] / (described[:, j] @ described[:, j]))
+        for j in np.flatnonzero(asked)
+    }

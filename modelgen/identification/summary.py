@@ -65,10 +65,10 @@ def _doubtful(found: Identification, k: int) -> str:
     return f"{e.name} ({size:.2g} {test.unit[j]}, {share:.1f} % of the effort of {name})"
 
 
-def impossible(estimates: Sequence[Estimate]) -> list[str]:
-    """A question where parameters of effects that are never negative come out below zero clearly."""
+def driving(estimates: Sequence[Estimate]) -> list[Estimate]:
+    """Parameters of effects that are never negative, and come out below zero clearly."""
     limited = {p.symbol for effect in CATALOGUE.values() for p in effect.linear if p.bounds[0] >= 0.0}
-    negative = [
+    return [
         e
         for e in estimates
         if e.std is not None
@@ -76,6 +76,11 @@ def impossible(estimates: Sequence[Estimate]) -> list[str]:
         and e.name.rstrip("0123456789") in limited
         and e.value < -CLEARLY * e.std
     ]
+
+
+def impossible(estimates: Sequence[Estimate]) -> list[str]:
+    """A question where parameters of effects that are never negative come out below zero clearly."""
+    negative = driving(estimates)
     if not negative:
         return []
     joints = ", ".join(str(j) for j in sorted({e.joint for e in negative}))

@@ -32,7 +32,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification.doubts import doubts
+from modelgen.identification.doubts import check_sign, doubts
 from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
@@ -42,6 +42,7 @@ from modelgen.identification.objects import Identification
 from modelgen.identification.output import errors, to_json
 from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.streamed import identify_streamed
+from modelgen.identification.summary import driving
 from modelgen.identification.without_drives import Alternative, without_drives
 from modelgen.options import IdentificationOptions
 from modelgen.progress import Progress, silent
@@ -219,8 +220,11 @@ def _at_the_origin(logs: Sequence[Any]) -> str:
 
 
 def _doubts(train: Sequence[Prepared], found: Identification, evaluator: Evaluator) -> tuple[str, ...]:
-    """Questions about what was found."""
+    """Questions about what was found. Raises InputError where the efforts are counted the other way."""
     s = found.solution  # as the data have it: consistent parameters hide what is impossible
+    plain = [replace(e, value=float(x)) for e, x in zip(found.estimates, s.theta, strict=True)]
+    joints = sorted({e.joint for e in driving(plain)})
+    check_sign(train, found.model, evaluator, s.theta, s.covariance, s.determined, joints)
     return tuple(doubts(train, found.model, evaluator, s.theta, s.covariance, s.determined))
 
 

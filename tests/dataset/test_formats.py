@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import builtins
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -182,6 +182,22 @@ def test_parquet_that_cannot_be_meant_is_refused(tmp_path: Path) -> None:
     (tmp_path / "c.parquet").write_bytes(b"nothing")
     with pytest.raises(InputError, match="this is no Parquet file"):
         read(str(tmp_path / "c.parquet"), AXIS)
+
+
+def test_columns_of_several_lengths_are_a_damaged_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Halved:
+        """A reader whose columns can be read one by one alone, the last of them to its half."""
+
+        names, by_column, remarks = ("t", "q1"), True, ()
+
+        def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[np.ndarray]:
+            if len(wanted) > 1:
+                raise InputError("columns differ")
+            yield times()[: 800 if wanted == ("q1",) else 1600, None]
+
+    monkeypatch.setattr("modelgen.dataset.inspection.channels.opened", lambda spec: Halved())
+    with pytest.raises(InputError, match="the column q1 has 800 readings, others 1600"):
+        inspect("a.parquet")
 
 
 def test_damaged_parquet_is_no_column_without_numbers(tmp_path: Path) -> None:

@@ -145,6 +145,26 @@ def test_an_inertia_below_zero_is_called_impossible(arm: mg.Arm, logs: list[Tabl
     assert any(doubt.startswith("Impossible: the inertia at ") for doubt in doubts)
 
 
+@pytest.mark.parametrize("turned", [("i1", "i2"), ("i2",)])
+@pytest.mark.parametrize("consistent", [False, True])
+def test_efforts_counted_the_other_way_are_refused(
+    turned: tuple[str, ...], consistent: bool, arm: mg.Arm, logs: list[Table]
+) -> None:
+    wrong = [x | {k: -x[k] for k in turned} for x in logs]
+    with pytest.raises(mg.InputError) as refused:
+        mg.identify(arm, *wrong, consistent=consistent)
+    joints = "elbow" if turned == ("i2",) else "shoulder, elbow"
+    assert f"friction at {joints} comes out below zero, and inertia or weight" in str(refused.value)
+    assert "is their sign the other way round, or that of torque_constant?" in str(refused.value)
+
+
+def test_friction_below_zero_is_a_doubt(arm: mg.Arm, logs: list[Table]) -> None:
+    """A shoulder that something drives the harder the faster it turns."""
+    driven = [x | {"i1": x["i1"] - 0.5 * np.sign(np.gradient(x["q1"]))} for x in logs]
+    doubts = mg.identify(arm, *driven).to_json()["doubts"]
+    assert any("below zero, which would drive joint 1." in doubt for doubt in doubts)
+
+
 def test_diagnose_has_the_doubts_of_identify(logs: list[Table]) -> None:
     other = loads(ARMS.replace("mass: 2,", "mass: 0.1,"), "arms.yaml", known_effects())["two"]
     found = mg.diagnose(other, *logs, experiment=False, effects=["friction_offset:1"])
@@ -196,8 +216,8 @@ def test_a_spring_that_the_model_lacks_is_not_taken_for_another_reading(
 
 
 def test_consistent_parameters_hide_no_question(arm: mg.Arm, logs: list[Table]) -> None:
-    train, test = ({k: -x if k[0] == "i" else x for k, x in table.items()} for table in logs)
-    found = mg.identify(arm, train, test, consistent=True)
+    late = [x | {k: np.roll(x[k], 25) for k in ("i1", "i2")} for x in logs]
+    found = mg.identify(arm, *late, consistent=True)
     assert any("sign of the efforts the other way round" in doubt for doubt in found.to_json()["doubts"])
 
 

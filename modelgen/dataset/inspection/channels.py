@@ -179,7 +179,7 @@ def _columns(spec: Spec, reader: Reader) -> tuple[dict[str, Array], tuple[str, .
     try:
         table = _table(reader, names)
     except InputError:
-        table, names, rest = _one_by_one(reader, names)
+        table, names, rest = _one_by_one(spec.text, reader, names)
     columns = dict(zip(names, table.T, strict=True))
     if "t" in columns:
         inside = (columns["t"] >= spec.begin) & (columns["t"] < spec.end)
@@ -189,8 +189,10 @@ def _columns(spec: Spec, reader: Reader) -> tuple[dict[str, Array], tuple[str, .
     return columns, rest
 
 
-def _one_by_one(reader: Reader, names: Sequence[str]) -> tuple[Array, tuple[str, ...], tuple[str, ...]]:
-    """Columns that are numbers (N, k), their names, and the names of the others."""
+def _one_by_one(
+    file: str, reader: Reader, names: Sequence[str]
+) -> tuple[Array, tuple[str, ...], tuple[str, ...]]:
+    """Columns that are numbers (N, k), their names, and the names of the others. Raises DamagedFileError."""
     found: dict[str, Array] = {}
     for name in names:
         try:
@@ -199,6 +201,12 @@ def _one_by_one(reader: Reader, names: Sequence[str]) -> tuple[Array, tuple[str,
             raise
         except InputError:
             continue
+    lengths = {name: len(x) for name, x in found.items()}
+    if len(set(lengths.values())) > 1:
+        few = min(lengths, key=lambda name: lengths[name])
+        raise DamagedFileError(
+            f"{file}: the column {few} has {lengths[few]} readings, others {max(lengths.values())}"
+        )
     table = np.stack(list(found.values()), axis=1) if found else np.empty((0, 0))
     return table, tuple(found), tuple(name for name in names if name not in found)
 
