@@ -1,6 +1,8 @@
 """Settings that every test shares: one thread per worker, and the same examples in every run."""
 
 import os
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import hypothesis
@@ -33,3 +35,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def checkout() -> Path:
     """The folder that holds pyproject.toml."""
     return Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _closed_browser() -> Iterator[None]:
+    """The tests of a module share a browser, and none stays open for the next module."""
+    yield
+    if support := sys.modules.get("browser_support"):
+        support.close()
