@@ -7,12 +7,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from arms_support import ARMS
+from arms_support import ARMS, generated
 from command_support import Done, called
 
 from modelgen.errors import InputError
 from modelgen.functions import Options
-from modelgen.generation import TARGETS, Budget, GeneratedArm, generate, generate_arm
+from modelgen.generation import TARGETS, Budget, GeneratedArm, generate
 from modelgen.generation.budget import sizes
 
 ARM = "ariane4"
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.xdist_group(ARM)
 
 @pytest.fixture(scope="module")
 def made() -> GeneratedArm:
-    return generate_arm(ARMS[ARM], Options())
+    return generated(ARM)
 
 
 def installed(target: str) -> bool:

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from arms_support import ARMS, EVERY_ARM
+from arms_support import ARMS, EVERY_ARM, generated
 from c_support import C_COMPILERS, WARNINGS, one_source
 from c_support import write as write_files
 from ruamel.yaml import YAML
@@ -24,7 +24,7 @@ VERSION = re.compile(r"\d+\.\d+\.\d+")
 
 @pytest.fixture(scope="module")
 def made() -> GeneratedArm:
-    return generate_arm(ARMS[ARM], Options())
+    return generated(ARM)
 
 
 @pytest.fixture
@@ -51,7 +51,7 @@ def self_tested(folder: Path, name: str, real: str, target: Path) -> int:
 
 @pytest.mark.parametrize("name", EVERY_ARM)
 def test_the_self_test_agrees_in_float_and_double(name: str, tmp_path: Path) -> None:
-    write_files(generate_arm(ARMS[name], Options()).files, tmp_path)
+    write_files(generated(name).files, tmp_path)
     for real in ("float", "double"):
         assert self_tested(tmp_path, name, real, tmp_path / real) == 0, real
 
@@ -318,7 +318,7 @@ def test_the_readme_lists_every_function(made: GeneratedArm) -> None:
 
 @pytest.mark.parametrize("name", SOME)
 def test_the_example_of_the_readme_compiles(name: str, tmp_path: Path) -> None:
-    files = generate_arm(ARMS[name], Options()).files
+    files = generated(name).files
     write_files(files, tmp_path)
     (block,) = re.findall(r"```c\n(.*?)```", files["README.md"], re.DOTALL)
     include, _, body = block.partition("\n")

@@ -16,6 +16,8 @@ from modelgen.description import LeveredDrive, Scalar, load
 from modelgen.effects import known_effects
 from modelgen.evaluation import with_effect
 from modelgen.functions import Function, Model, Options, build_model
+from modelgen.generation import GeneratedArm
+from modelgen.generation.arm import print_model, shown_options
 from modelgen.resources import shipped_arms
 from modelgen.transmission import of_joint
 
@@ -64,6 +66,12 @@ def model(name: str, variant: str = "default") -> Model:
     for effect, joint, values in EFFECTS if variant == "effects" else ():
         arm = with_effect(arm, effect, joint, values)
     return build_model(arm, VARIANTS[variant])
+
+
+@cache
+def generated(name: str) -> GeneratedArm:
+    """What `generate_arm` gives without options, printed from the model that other tests of the arm have."""
+    return print_model(model(name), ARMS[name], shown_options(Options()))
 
 
 def standard_vector(made: Model, rng: np.random.Generator) -> np.ndarray:

@@ -28,6 +28,7 @@ WARNINGS = [
     "-Wcast-qual",
     "-Werror",
 ]
+KEPT = 100  # functions, more than an arm has
 C_COMPILERS = [c for c in ("gcc", "clang") if shutil.which(c)] or ["cc"]
 CXX_COMPILERS = [c for c in ("g++", "clang++") if shutil.which(c)] or ["c++"]
 
@@ -101,10 +102,23 @@ def flat(function: Function, outputs: object) -> np.ndarray:
     return np.concatenate(arrays_)
 
 
+_made: dict[int, NumpyFunction] = {}
+
+
+def in_numpy(function: Function) -> NumpyFunction:
+    """The function in NumPy, translated once while the tests of an arm evaluate it again and again."""
+    found = _made.get(id(function))  # which no other has: what was made of a function keeps it
+    if found is None:
+        if len(_made) > KEPT:
+            _made.clear()
+        found = _made[id(function)] = NumpyFunction(function)
+    return found
+
+
 def evaluated(function: Function, samples: Sequence[Sequence[np.ndarray]]) -> np.ndarray:
     """Outputs of NumPy for samples of the inputs, one row a sample, in the order of the C arrays."""
     columns = [np.array([given[i] for given in samples]) for i in range(len(function.arguments))]
-    found = NumpyFunction(function)(*columns)
+    found = in_numpy(function)(*columns)
     several = found if isinstance(found, tuple) else (found,)
     return np.concatenate([np.reshape(part, (len(samples), -1)) for part in several], axis=1)
 
