@@ -18,7 +18,7 @@ from modelgen.evaluation.delay import acting, added
 from modelgen.evaluation.inertia_floor import carried
 from modelgen.evaluation.lever_ratio import gain, leverage, reread
 from modelgen.evaluation.link_encoder import LinkSide, at_link, lagging, led_by, rigid
-from modelgen.evaluation.motion import Motion, given_for
+from modelgen.evaluation.motion import Motion, evaluated, given_for
 from modelgen.evaluation.programs import (
     Links,
     columns_of,
@@ -87,8 +87,8 @@ class Evaluator:
         if "load" in names:
             made = self._function(model, "load")
             loads = np.asarray(made(**given_for(made.function, motion, parameters, states=states)))
-        found = function(**given_for(function.function, motion, parameters, loads=loads, states=states))
-        return np.asarray(found).reshape(len(motion.t), self.n, -1)
+        given = given_for(function.function, motion, parameters, loads=loads, states=states)
+        return evaluated(function, given, motion).reshape(len(motion.t), self.n, -1)
 
     def unseen(self, motion: Motion, columns: Array, parameters: Array) -> Array:
         """Inputs (N, n) that the regressor (N, n, p) leaves out: those of elastic joints and play behind
@@ -251,7 +251,8 @@ class Evaluator:
     def _inputs_of(self, changed: Changed, motion: Motion, parameters: Array) -> Array:
         if changed.geometry is not None:
             call = self._varied.call
-            return np.asarray(call(**given_for(call.function, motion, parameters, geometry=changed.geometry)))
+            given = given_for(call.function, motion, parameters, geometry=changed.geometry)
+            return evaluated(call, given, motion)
         if changed.key not in self._arms:
             self._arms[changed.key] = Equations(slid(changed.arm), lazy=True)
         return self._along(changed.key, self._arms[changed.key], motion, parameters)
@@ -262,7 +263,7 @@ class Evaluator:
             self._made["inputs", key] = NumpyFunction(inputs_of(e, self.base))
         call = self._made["inputs", key]
         states = self._states(e, motion, (), parameters) if e.state_names() else None
-        return np.asarray(call(**given_for(call.function, motion, parameters, states=states)))
+        return evaluated(call, given_for(call.function, motion, parameters, states=states), motion)
 
     def _of_effect(self, effect: str, joint: int | None, values: Values) -> Equations:
         """Equations of the arm with this effect alone, what is not fixed left free."""
@@ -296,9 +297,8 @@ class Evaluator:
 
             loads = self._recent.along("loads", motion, parameters, inputs)
         states = self._states(e, motion, free, parameters) if e.state_names() else None
-        return np.asarray(
-            call(**given_for(function, motion, parameters, free=free, loads=loads, states=states))
-        )
+        given = given_for(function, motion, parameters, free=free, loads=loads, states=states)
+        return evaluated(call, given, motion)
 
     def _free(self, e: Equations, values: Values) -> tuple[float, ...]:
         """Values of what was left free, in order."""

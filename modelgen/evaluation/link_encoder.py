@@ -21,7 +21,7 @@ from modelgen.base_parameters import Grouping
 from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE, Family
 from modelgen.evaluation.cache import Recent
-from modelgen.evaluation.motion import Motion
+from modelgen.evaluation.motion import Motion, evaluated
 from modelgen.evaluation.programs import at_motors, links_alone
 from modelgen.model.equations import Equations
 from modelgen.numeric import Array
@@ -33,7 +33,6 @@ TOLD = 0.02  # of the links' inertia: a drive's below it is not told apart from 
 GUESS = 0.2  # of the links' inertia: the drive's that is assumed then
 OFTEN = 0.5  # of the time: a link that is loose for longer is not told from an elastic one
 KEPT = 6  # motions
-PARTS = (np.arange(32) + 0.5) / 32 - 0.5  # of a sample around it, over which friction is evened out
 
 
 def at_link(motion: Motion, joint: int | None) -> bool:
@@ -109,7 +108,7 @@ class LinkSide:
             return found
         # friction turns with the sign of a speed, which noise must not; inertia is linear: all of it counts
         moved = replace(self.moved(joint, motion, values, parameters), ddq=motion.ddq)
-        found[:, j] = self._evened(joint, moved, parameters) - self._evened(joint, motion, parameters)
+        found[:, j] = (self.drives(moved, parameters) - self.drives(motion, parameters))[:, j]
         lead = _relaxed(t["links"] / t["lever"] ** 2, values, motion.step)
         found[:, j] += t["inertia"] * _second(lead, motion.step) / t["gain"]
         return found
@@ -145,32 +144,18 @@ class LinkSide:
         return found
 
     def drives(self, motion: Motion, parameters: Array) -> Array:
-        """Inputs that what acts at the motors takes, (N, n); what has states or reads loads at zero."""
+        """Inputs that what acts at the motors takes, (N, n); what has states or reads loads at zero.
+
+        Within a sample fractions of it decide when a drive turns back, by how far it leads: always as means,
+        since what is added would jump with the stiffness else.
+        """
         known = {"q": motion.q, "dq": motion.dq, "ddq": motion.ddq, "time": motion.t[:, None]}
         known["parameters"] = np.asarray(parameters, dtype=float)
         given = {
             a.name: known[a.name] if a.name in known else np.zeros((len(motion.t), a.size))
             for a in self._drives.function.arguments
         }
-        return np.asarray(self._drives(**given))
-
-    def _evened(self, joint: int, motion: Motion, parameters: Array) -> Array:
-        """What acts at the motor of a coordinate takes (N,), evened out over samples in which it turns back.
-
-        Friction jumps there: fractions of a sample decide on which side of it, and what is added would jump
-        with the stiffness.
-        """
-        j = joint - 1
-        found, change = self.drives(motion, parameters)[:, j], np.gradient(motion.dq[:, j])
-        turns = np.flatnonzero(np.abs(motion.dq[:, j]) < np.abs(change) / 2)
-        if not len(turns):
-            return found
-        around = np.repeat(turns, len(PARTS))
-        dq = motion.dq[around]
-        dq[:, j] += np.tile(PARTS, len(turns)) * change[around]
-        within = replace(motion, t=motion.t[around], q=motion.q[around], dq=dq, ddq=motion.ddq[around])
-        found[turns] = self.drives(within, parameters)[:, j].reshape(len(turns), -1).mean(axis=1)
-        return found
+        return evaluated(self._drives, given, motion, means=True)
 
     def _loose(self, t: dict[str, Array], motion: Motion, play: float) -> NDArray[np.bool_]:
         """Samples at which the link may be loose, or be hit: around changes of sign, while T is small."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
+from modelgen.backends.numpy import NumpyFunction
+from modelgen.evaluation.reversals import Pieces, pieces_of
 from modelgen.functions.objects import Function
 from modelgen.numeric import Array
 
@@ -26,12 +30,18 @@ class Motion:
     motor_side: tuple[bool, ...] = ()
     cutoff: float = 0.0
     before: Motion | None = field(default=None, repr=False)
+    held: bool = False
 
     def rest_until(self, end: float) -> Motion:
         """A rest from where this motion ends up to a time [s], as one step (2 samples)."""
         still = np.zeros((2, self.q.shape[1]))
         t, q = np.array([self.t[-1], end]), np.repeat(self.q[-1:], 2, axis=0)
         return Motion(t, q, still, still, self.motor_side, self.cutoff)
+
+    @cached_property
+    def pieces(self) -> Pieces | None:
+        """Parts of the samples within which joints turn back, None where none does."""
+        return pieces_of(self.dq)
 
     @property
     def step(self) -> float:
@@ -65,3 +75,20 @@ def given_for(
         "input": np.zeros((count, n)),
     }
     return {a.name: known[a.name] for a in function.arguments}
+
+
+def evaluated(
+    call: NumpyFunction, given: Mapping[str, Array], motion: Motion, *, means: bool = False
+) -> Array:
+    """Values of a function along a motion, from its arguments (N, .) or (.,) by name; with `means`, or where
+    efforts are held, the mean over the sample of samples within which a joint turns back.
+    """
+    found = np.asarray(call(**given))
+    pieces = motion.pieces if (means or motion.held) and "dq" in given else None
+    if pieces is None:
+        return found
+    within = {name: x[pieces.sample] if x.ndim == 2 else x for name, x in given.items()}
+    within["dq"] = pieces.speeds(motion.dq)
+    samples, values = pieces.means(np.asarray(call(**within)))
+    found[samples] = values
+    return found

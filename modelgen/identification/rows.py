@@ -62,10 +62,33 @@ class Rows:
             inputs = [p.q, p.dq, p.ddq, *([] if awake is None else [awake.astype(np.float64)])]
             made, d = self._compiled[awake is not None], p.decimation
             with suppress(RuntimeError):  # a compiler that knows no vectors, say
-                return effort, made.filtered(inputs, **vars(d)) if d else p.parallel(made.values(inputs))
+                columns = made.filtered(inputs, **vars(d)) if d else p.parallel(made.values(inputs))
+                return effort, columns + self._turned(p, motion, awake)
             self._compiled = {}
         full = np.asarray(self.evaluator.regressor(self.model, motion, theta))[:, self.joint, self.parameter]
         return effort, p.parallel(full if awake is None else full * awake[:, self.joint])
+
+    def _turned(self, p: Prepared, motion: Motion, awake: NDArray[np.bool_] | None) -> Array | float:
+        """Columns (M, c) to be added for joints that turn back in a sample over which efforts are means."""
+        pieces = motion.pieces if motion.held else None
+        if pieces is None:
+            return 0.0
+
+        def columns(samples: NDArray[np.intp], dq: Array) -> Array:
+            within = Motion(motion.t[samples], motion.q[samples], dq, motion.ddq[samples])
+            made = np.asarray(self.evaluator.regressor(self.model, within, np.zeros(self.p)))
+            return made[:, self.joint, self.parameter]
+
+        samples, means = pieces.means(columns(pieces.sample, pieces.speeds(motion.dq)))
+        more = means - columns(samples, motion.dq[samples])
+        if awake is not None:
+            more *= awake[samples][:, self.joint]
+        changed = more.any(axis=0)
+        full = np.zeros((len(motion.t), int(changed.sum())))
+        full[samples] = more[:, changed]
+        found = np.zeros((len(p.rows), len(self.joint)))
+        found[:, changed] = p.parallel(full)
+        return found
 
     def moving(self, p: Prepared) -> NDArray[np.bool_]:
         """Rows (M, n) that count: joints move there, and most of what the filter has taken is left."""
@@ -88,4 +111,5 @@ class Rows:
 
 def _motion(p: Prepared) -> Motion:
     """The record's motion, and those that it runs on from."""
-    return Motion(p.time, p.q, p.dq, p.ddq, before=None if p.before is None else _motion(p.before))
+    before = None if p.before is None else _motion(p.before)
+    return Motion(p.time, p.q, p.dq, p.ddq, before=before, held=p.record.held)

@@ -67,12 +67,12 @@ def differences(x: Array, step: float, half_width: int) -> tuple[Array, Array]:
 def advanced(x: Array, delay: float, held: bool) -> Array:
     """x (N, k) at the instants of the stamps, where its samples lie `delay` periods after them.
 
-    With |delay| = 1/2 and `held`, x is constant from one sample to the next: what is returned has the gain of
-    that hold, sinc(f step), up to the fourth power of f. Else cubic interpolation (Lagrange).
+    With |delay| = 1/2 and `held`, a sample is the mean over the period that it is in the middle of: what is
+    returned has these means, of a cubic. Else cubic interpolation (Lagrange).
     """
     if held and abs(abs(delay) - 0.5) < 1e-9:
-        # Response 2 a cos(3 w/2) + 2 b cos(w/2) = sinc(w/2) up to w^4: a = -1/24, b = 13/24.
-        taps, first = np.array([-1.0, 13.0, 13.0, -1.0]) / 24.0, -2 if delay > 0 else -1
+        # Response 2 a cos(3 w/2) + 2 b cos(w/2) = 1 / sinc(w/2) up to w^4: a = -1/12, b = 7/12.
+        taps, first = np.array([-1.0, 7.0, 7.0, -1.0]) / 12.0, -2 if delay > 0 else -1
     else:
         whole = math.floor(-delay)
         f = -delay - whole

@@ -16,7 +16,7 @@ from modelgen.dataset.drives import drives_of
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.decimation import Decimation, decimation, kept
 from modelgen.dataset.processing.filters import advanced, differences, low_pass
-from modelgen.dataset.processing.rest import moving_samples, samples_away_from_rest
+from modelgen.dataset.processing.rest import directed, moving_samples, samples_away_from_rest
 from modelgen.dataset.processing.settings import Chosen, Settings, choose
 from modelgen.errors import InputError
 from modelgen.numeric import Array
@@ -168,9 +168,17 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
 
 
 def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
-    """Samples (N, n) away from rest, for speeds dq (N, n), of joints and of what turns with two of them."""
+    """Samples (N, n) away from rest, for speeds dq (N, n), of joints and of what turns with two of them.
+
+    Nor do those count at which a joint turns back before or after its effort was read, nobody knows which:
+    within what the instants of readings are known to, or within a period where one lies between two of them.
+    A held effort is a mean, and tells of either side.
+    """
     rate = 1.0 / record.step
     awake = samples_away_from_rest(dq, chosen, rate)
+    if not record.held:
+        between = abs(record.hold * rate - round(record.hold * rate)) > 1e-9
+        awake &= directed(dq, 1.0 if between else chosen.thresholds.max_instant_std)
     for part in () if record.arm is None else couplings_of(record.arm):
         own = replace(chosen, gates=(part.gate(chosen.gates),))
         awake[:, [part.one, part.other]] &= samples_away_from_rest(part.speed(dq), own, rate)

@@ -42,6 +42,15 @@ def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarr
     return np.asarray(~long & ~_resting(slow, moment * rate))
 
 
+def directed(dq: Array, within: float) -> np.ndarray:
+    """Samples (N, n) where the direction of speeds (N, n) is known, if the instant of the effort beside them
+    is to `within` sampling periods: where the joint does not turn back in that time.
+    """
+    if len(dq) < 2:
+        return np.ones(dq.shape, dtype=bool)
+    return np.asarray(np.abs(dq) >= within * np.abs(np.gradient(dq, axis=0)))
+
+
 def _resting(slow: np.ndarray, longest: float) -> np.ndarray:
     """Flags (N, n) of slow samples, in runs of `longest` samples or more."""
     return np.stack([long_runs(column, max(2, round(longest))) for column in slow.T], axis=1)

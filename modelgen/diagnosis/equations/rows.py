@@ -72,7 +72,7 @@ def motion_of(prepared: Prepared) -> Motion:
     p = prepared
     sides = p.record.motor_side or (False,) * p.n
     before = None if p.before is None else motion_of(p.before)
-    return Motion(p.time, p.q, p.dq, p.ddq, sides, p.settings.cutoff, before)
+    return Motion(p.time, p.q, p.dq, p.ddq, sides, p.settings.cutoff, before, p.record.held)
 
 
 def rows_of(
