@@ -93,7 +93,7 @@ class Setup:
         nothing = np.zeros(q.shape)
         record = Record(
             "next", self.times(len(q)), q, motor, nothing, nothing + 1.0,
-            motor_side=first.record.motor_side, arm=first.record.arm,
+            motor_side=first.record.motor_side, arm=first.record.arm, held=first.record.held,
         )  # fmt: skip
         try:
             prepared = prepare(record, settings)
