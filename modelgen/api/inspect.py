@@ -15,6 +15,8 @@ from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.description import Arm
 from modelgen.identification.effort_instant import effort_instant
 
+_ROUNDING = 1e-6  # of a period: what is left of stamps in decimal digits
+
 
 class Inspection(Shown):
     """What a log of N samples says about itself.
@@ -142,7 +144,8 @@ class Inspection(Shown):
         x = self.found
         if math.isnan(x.rate):
             return f"{x.name}: {len(x.channels)} columns, no time t that runs"
-        jitter = f"time between samples varies by up to {x.jitter:.2g} periods"
+        varies = f"time between samples varies by up to {x.jitter:.2g} periods"
+        jitter = "evenly sampled" if x.jitter < _ROUNDING else varies
         time = f"{x.samples} samples from {x.begin:.6g} s to {x.end:.6g} s at {x.rate:.6g} Hz"
         return f"{x.name}: {time}, {jitter}"
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any, ClassVar
 
+from markupsafe import Markup, escape
+
 from modelgen.diagnosis.result import VERDICTS
 from modelgen.fleet.store import Row
 from modelgen.report.page import Lines, Part, Run, Text, page
@@ -70,7 +72,7 @@ class Bars(Part):
         most = max((total for _, _, total in self.rows), default=1)
         bars = [
             {
-                "label": label,
+                "label": Markup(escape(label).replace("_", "_<wbr>")),  # where a long name may break
                 "pieces": [
                     {"look": look, "width": f"{_WIDEST * count / most:.4g}%", "text": f"{word}: {count}"}
                     for word, count, look in pieces

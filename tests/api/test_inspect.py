@@ -63,6 +63,7 @@ def test_what_was_put_into_a_log_is_found(with_arm: bool, arm: mg.Arm, log: dict
     units = {"q1": "rad", "q2": "m", "i1": "A", "tau2": "N"}
     assert all(c.unit == (units[c.name] if with_arm else "") for c in found.channels)
     assert "1600 samples" in repr(found)
+    assert "evenly sampled" in repr(found)
     assert len(repr(found)) < 200
     assert "<table>" in found._repr_html_()
 
@@ -73,6 +74,7 @@ def test_time_that_jitters_and_runs_backwards_is_said(log: dict[str, np.ndarray]
     t[500] = t[498]
     found = mg.inspect_log({"t": t, "q1": log["q1"]})
     assert found.to_json()["backwards"] == 1
+    assert "varies by up to 2 periods" in repr(found)
     assert found.jitter == pytest.approx(2.0)  # from 498 to 500 and on to 501
     found = mg.inspect_log({"t": np.delete(log["t"], [100, 101]), "q1": np.delete(log["q1"], [100, 101])})
     assert found.jitter == pytest.approx(2.0)

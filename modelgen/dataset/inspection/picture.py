@@ -26,6 +26,8 @@ def inspection_svg(found: Inspected) -> str:
     axes = panels[len(named)]
     axes.plot(*_envelope(t[1:], 1e3 * np.diff(t)), color=COLOURS[1], linewidth=0.7)
     axes.set_ylabel("time between\nsamples [ms]")
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))  # what varies is seen against the period
+    axes.margins(y=0.2)
     for axes in panels[len(named) + 1 :]:
         axes.set_axis_off()
     for axes in panels[max(0, len(named) - 1) : len(named) + 1]:
