@@ -34,12 +34,12 @@ ENOUGH = USUAL.selection.rival_margin_bic  # of a test that separates two causes
 HEAD = """\
 # Gallery of effects
 
-*What does each effect of the [catalogue](effects.md) do to a log, what looks like it, and how do I tell the
-two apart?* The first picture of an entry is the law with the values of an example. The other two are of
-simulated records in which the effect was hidden, over what shows it best: what the rest of the model leaves of the
-effort, with the law that `modelgen diagnose --effect` finds; and the mean residual without and with it. What
-remembers, or has to do with other joints, is drawn over those seconds of the test record in which it explains
-most.
+*What does each effect of the [catalogue](effects.md) do to a log, what looks like it, and how do I tell
+the two apart?* The first picture of an entry is the law with the values of an example. The other two are
+of simulated records in which the effect was hidden, over what shows it best: what the rest of the model
+leaves of the effort, with the law that `modelgen diagnose --effect` finds; and the mean residual without
+and with it. What remembers, or has to do with other joints, is drawn over those seconds of the test record
+in which it explains most.
 
 The evidence of a look-alike is what it explains of the same records in place of the effect that is there: one
 near 100 % cannot be separated from it by them. Of the tests on the bench, the one is named of which `modelgen
