@@ -116,10 +116,12 @@ def test_a_folder_without_metadata_is_its_files(tmp_path: Path) -> None:
     assert read(str(folder), ARM, mapping(tmp_path, "a", "b")).q == pytest.approx(Q)
 
 
-def json_file(folder: Path, before: int = 0, other: str = "") -> Path:
+def json_file(
+    folder: Path, before: int = 0, other: str = "", compression: Any = mcap.CompressionType.ZSTD
+) -> Path:
     path = folder / "a.mcap"
     with path.open("wb") as stream:
-        writer = mcap.Writer(stream, chunk_size=2000)
+        writer = mcap.Writer(stream, chunk_size=2000, compression=compression)
         writer.start()
         schema = writer.register_schema(name="any", encoding="jsonschema", data=b"{}")
         kinds = {"/imu": other or "json", "/js": "json"}
@@ -154,6 +156,19 @@ def test_a_file_that_is_cut_off_is_read_up_to_there(tmp_path: Path) -> None:
     file = json_file(tmp_path)
     whole = file.read_bytes()
     file.write_bytes(whole[: len(whole) * 6 // 10])
+    record = read(str(file), ARM, mapping(tmp_path, "a", "b", time="log_time"))
+    assert 40 < len(record.t) < 150
+    assert record.q == pytest.approx(Q[: len(record.t)])
+    assert any("the file is cut off or damaged after" in remark for remark in record.remarks)
+
+
+def test_a_chunk_that_has_changed_is_not_read(tmp_path: Path) -> None:
+    """Its bytes are JSON as before, with another digit in a position; the chunk's checksum says so."""
+    file = json_file(tmp_path, compression=mcap.CompressionType.NONE)
+    whole = file.read_bytes()
+    place = whole.index(b'"position": [0.', len(whole) // 2) + len(b'"position": [0.')
+    changed = b"%d" % ((whole[place] - ord("0") + 5) % 10)
+    file.write_bytes(whole[:place] + changed + whole[place + 1 :])
     record = read(str(file), ARM, mapping(tmp_path, "a", "b", time="log_time"))
     assert 40 < len(record.t) < 150
     assert record.q == pytest.approx(Q[: len(record.t)])

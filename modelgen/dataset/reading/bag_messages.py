@@ -77,7 +77,7 @@ def _mcap_messages(stream: Any, topics: Sequence[str] | None, remark: Remark) ->
     decoders: dict[int, Callable[[bytes], Any]] = {}
     count = 0
     try:
-        for record in StreamReader(stream).records:
+        for record in StreamReader(stream, validate_crcs=True).records:
             if isinstance(record, Schema):
                 schemas[record.id] = record
             elif isinstance(record, Channel):
