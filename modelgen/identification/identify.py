@@ -20,6 +20,7 @@ from modelgen.identification.essential import essential, only, part, refit
 from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, compared
 from modelgen.identification.objects import Estimate, Identification, Validation
+from modelgen.identification.rounded_efforts import with_rounding
 from modelgen.identification.validation import regression_of, validate
 from modelgen.numeric import Array
 from modelgen.regression.instruments import Instrument, of_period
@@ -97,6 +98,7 @@ def identify(
                 "record (see modelgen excite), or --instrument simulated"
             )
         solution = both.solution
+    solution = with_rounding(solution, regression, train, model, evaluator)
     found = concluded(arm, model, evaluator, method, solution, test, physical=physical, added=added)
     return replace(found, comparison=both)
 

@@ -1,0 +1,76 @@
+"""Deviations hold where efforts have coarse steps and change slowly; noise of a step's size needs no more."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import modelgen as mg
+from modelgen.description import loads
+from modelgen.effects import known_effects
+
+# A pendulum whose current is a few amperes, and its weight most of it.
+ARM = loads(
+    """
+schema: 1
+convention: khalil_kleinfinger
+arms:
+  one:
+    gravity: [0, -9.81, 0]
+    joints:
+      - {name: hip, drive: {type: direct, ratio: 50, torque_constant: 0.1},
+         effects: [{viscous_friction: {coefficient: 2.0e-4}}, {coulomb_friction: {magnitude: 0.02}}]}
+    links:
+      hip: {mass: 4, com: [0.25, 0, 0], inertia: [0.01, 0, 0, 0.2, 0, 0.2]}
+""",
+    "arms.yaml",
+    known_effects(),
+)["one"]
+RATE, SECONDS = 200.0, 10.0
+Table = dict[str, np.ndarray]
+
+
+def log(seed: int, step: float, noise: float) -> Table:
+    """A motion of five harmonics about the horizontal."""
+    random, t = np.random.default_rng(seed), np.arange(int(RATE * SECONDS)) / RATE
+    w = 2 * np.pi * np.arange(1, 6) / SECONDS
+    size, phase = random.uniform(0.1, 0.35, 5) / np.sqrt(np.arange(1, 6)), random.uniform(0, 6.28, 5)
+    q, dq, ddq = (
+        (size * w**k * np.sin(t[:, None] * w + phase + k * np.pi / 2)).sum(axis=1) for k in range(3)
+    )
+    model = mg.build_model(ARM)
+    current = model.functions["inverse_dynamics"](
+        q=q[:, None], dq=dq[:, None], ddq=ddq[:, None], parameters=np.array(list(model.nominal.values()))
+    )[:, 0]
+    current = current + noise * random.normal(size=len(t))
+    return {"t": t, "q1": q, "i1": step * np.rint(current / step) if step else current}
+
+
+def errors(step: float, noise: float, seeds: range) -> np.ndarray:
+    """Errors of the parameters in their deviations, by log."""
+    truth, found = mg.build_model(ARM).nominal, []
+    for seed in seeds:
+        result = mg.identify(ARM, log(seed, step, noise), log(seed + 1000, step, noise))
+        found.append([(e.value - truth[name]) / e.std for name, e in result.parameters.items()])
+    return np.array(found)
+
+
+@pytest.mark.parametrize("step", [0.25, 0.5])
+def test_deviations_hold_what_rounding_does(step: float) -> None:
+    apart = errors(step, 0.01, range(12))
+    assert (np.abs(apart) < 1.96).mean() >= 0.9
+    assert np.abs(apart).max() < 4.5
+
+
+def test_fine_efforts_have_the_deviations_of_their_noise() -> None:
+    logs = [[log(seed, step, 0.02) for seed in (1, 1001)] for step in (0.0, 0.001)]
+    plain, fine = ([e.std for e in mg.identify(ARM, *x).parameters.values()] for x in logs)
+    assert fine == pytest.approx(plain, rel=0.02)
+
+
+def test_noise_of_a_step_makes_rounding_noise() -> None:
+    """Then deviations are those of both noises, and no more."""
+    logs = [[log(seed, step, 0.3) for seed in (1, 1001)] for step in (0.0, 0.3)]
+    plain, rounded = (np.array([e.std for e in mg.identify(ARM, *x).parameters.values()]) for x in logs)
+    both = np.sqrt(1.0 + 1.0 / 12.0)
+    assert rounded == pytest.approx(both * plain, rel=0.3)
