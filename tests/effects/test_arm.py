@@ -24,6 +24,7 @@ from modelgen.effects import (
     Parameter,
     Point,
     PointVariables,
+    Seen,
     Values,
     catalogue,
     described,
@@ -311,6 +312,20 @@ def test_places_on_a_link_are_in_its_frame_as_drawn(name: str) -> None:
 
 
 # -- changes of the description -------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["fluid_drag", "added_mass"])
+def test_what_is_not_looked_for_is_said(name: str) -> None:
+    """A fluid's force needs the arm's end: from its nominal inertials, or told with the effect."""
+    effect, seen = CATALOGUE[name], Seen(whole=True, still=(), unsided=(), coarse=False)
+    bare = replace(PLANAR, links=(LIMB, None))
+    told = with_arm(bare, EffectUse(name, dict(zip(("tip_x", "tip_y", "tip_z"), TIP, strict=True))))
+    said = effect.hidden(bare, seen, named=False)
+    assert len(said) == 1
+    assert said[0].endswith(": j2")
+    assert not effect.stands_at(bare, None)
+    for arm in (PLANAR, told, replace(PLANAR, links=(None, LIMB))):
+        assert effect.hidden(arm, seen, named=False) == []
 
 
 def test_an_encoder_offset_shifts_the_joint() -> None:

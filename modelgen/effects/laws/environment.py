@@ -52,12 +52,29 @@ class Strips(LinkEffect):
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
         """It stands where links that carry no other have nominal inertials, from which their end is taken."""
-        carrying = {joint.antecedent for joint in arm.joints}
-        return all(link is not None for i, link in enumerate(arm.links) if i not in carrying)
+        return not _endless(arm)
+
+    @classmethod
+    def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
+        """It was not looked for where nobody knows where the arm ends."""
+        there = named or any(use.name == cls.name for use in arm.effects)
+        ends = "" if there else ", ".join(_endless(arm))
+        text = f"it is not looked for where links that carry no other have no nominal inertials: {ends}"
+        return [text] if ends else []
 
     def points(self, p: Values) -> Sequence[Point]:
         """The nodes of the quadrature."""
         return [Point(fraction=place, part=weight) for place, weight in _NODES]
+
+
+def _endless(arm: Arm) -> list[str]:
+    """Links that carry no other and have no nominal inertials, by the names of their joints."""
+    carrying = {joint.antecedent for joint in arm.joints}
+    return [
+        joint.name
+        for i, (joint, link) in enumerate(zip(arm.joints, arm.links, strict=True))
+        if i not in carrying and link is None
+    ]
 
 
 class FluidDrag(Strips):
