@@ -10,7 +10,6 @@ from itertools import combinations
 import numpy as np
 
 from modelgen.dataset import Prepared, Record, drives_of, prepare
-from modelgen.dataset.reading.plausible import cut_off
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
@@ -45,7 +44,6 @@ def check_reading(train: Sequence[Prepared], model: Model, evaluator: Evaluator)
     left = _unexplained(record, train[0], model, evaluator)
     if left is None:
         return
-    _check_cut_off(record, left)
     if not (left > POOR).any():
         return
     total, found = float(np.sqrt(np.mean(left**2))), []
@@ -59,21 +57,6 @@ def check_reading(train: Sequence[Prepared], model: Model, evaluator: Evaluator)
             f"{first.name}: {question}? Then {100 * best:.2g} % of the efforts are left unexplained, as "
             f"the log stands {100 * total:.2g} %; a mapping file (--mapping) says what each column is"
         )
-
-
-def _check_cut_off(record: Record, left: Array) -> None:
-    """Raises InputError where an effort ends at one reading, and much of it is unexplained."""
-    assert record.input is not None
-    assert record.gain is not None
-    for k in np.flatnonzero(left > SOME):
-        ends = cut_off(record.input[:, k] * record.gain[:, k], record.q[:, k])
-        if ends is not None:
-            most, share = f"{ends[0]:.6g} {record.effort_unit[k]}", f"{100 * ends[1]:.2g} %"
-            raise InputError(
-                f"{record.name}: the effort of joint {k + 1} stands at {most} in {share} of the moving "
-                f"samples and never beyond, and {100 * left[k]:.2g} % of it are left unexplained: is it cut "
-                "off there? Use parts without, FILE@t0:t1, or a wider range of the sensor"
-            )
 
 
 def _unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluator) -> Array | None:

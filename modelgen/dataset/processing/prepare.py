@@ -17,6 +17,7 @@ from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.decimation import Decimation, decimation, kept
 from modelgen.dataset.processing.filters import advanced, differences, low_pass
 from modelgen.dataset.processing.rest import directed, moving_samples, samples_away_from_rest
+from modelgen.dataset.processing.saturation import saturated
 from modelgen.dataset.processing.settings import Chosen, Settings, choose
 from modelgen.errors import InputError
 from modelgen.numeric import Array
@@ -33,9 +34,10 @@ class Prepared:
     unit, moved to the instants of the positions, not filtered; None for a free motion. gain: (N, n), input
     times gain is what the log carried, in `effort_unit` by joint. temperature: (N, n) [deg C] or None.
     rows: (M,) indices of the samples that are kept. t: (M,) their times [s]. moving: (M, n), whether the
-    joint moves there, away from rest. awake: (N, n), whether it does so at all samples, and so does what it
-    turns with another joint, rests of a moment counted; at all of a free motion. settings: as used, every
-    choice made. before: the record that this one runs on from, see `in_sequence`; None: it begins cold.
+    joint moves there, away from rest, and its effort is not cut off. awake: (N, n), whether that is so at all
+    samples, and so does what it turns with another joint, rests of a moment counted; at all of a free motion.
+    settings: as used, every choice made. before: the record that this one runs on from, see `in_sequence`;
+    None: it begins cold.
     """
 
     record: Record
@@ -146,6 +148,7 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
             f"{record.name}: found {len(record.t) * step:.4g} s, too short a record: with the cut-off "
             f"{chosen.cutoff:.4g} Hz only {len(rows)} rows remain, expected at least {least}"
         )
+    cut = _cut_off(record)
     return Prepared(
         record=record,
         settings=chosen,
@@ -161,9 +164,9 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
         effort_unit=record.effort_unit,
         temperature=record.temperature,
         rows=rows,
-        moving=moving_samples(dq, rows, chosen, rate),
+        moving=moving_samples(dq, rows, chosen, rate) & ~cut[rows],
         # a swing turns slowly, and what is known of its friction is there
-        awake=np.ones(dq.shape, dtype=bool) if given is None else _awake(record, dq, chosen),
+        awake=np.ones(dq.shape, dtype=bool) if given is None else _awake(record, dq, chosen) & ~cut,
     )
 
 
@@ -183,6 +186,16 @@ def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
         own = replace(chosen, gates=(part.gate(chosen.gates),))
         awake[:, [part.one, part.other]] &= samples_away_from_rest(part.speed(dq), own, rate)
     return awake
+
+
+def _cut_off(record: Record) -> np.ndarray:
+    """Samples (N, n) at which an effort is cut off: they say no more of it than those that hold a joint."""
+    found = np.zeros(record.q.shape, dtype=bool)
+    if record.input is not None:
+        gain = np.ones_like(record.input) if record.gain is None else record.gain
+        for k, logged in enumerate((record.input * gain).T):
+            found[:, k] = saturated(logged, record.q[:, k])
+    return found
 
 
 def _smoothed(columns: Array, step: float, chosen: Chosen) -> tuple[Array, Array, Array]:

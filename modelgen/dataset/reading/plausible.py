@@ -9,15 +9,13 @@ import numpy as np
 from modelgen.dataset.drives import NumericDrive
 from modelgen.dataset.mapping.units import plausible_times
 from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.saturation import cut_off
 from modelgen.dataset.thresholds import DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 BITS = (16, 24, 32, 12, 10, 8)
-BESIDE = 5  # levels below the highest, to which it is compared
-CUT_OFF = 0.01  # of the readings that move, at their highest level, if they are cut off there
-OFTENER = 6.0  # times as many as at the levels beside
 
 
 def doubtful_unit(step: float, limits: DatasetThresholds) -> str:
@@ -56,27 +54,6 @@ def check_unsigned(file: str, name: str, values: Array) -> None:
             f"in the middle: negative values read as unsigned, so that -1 is {2**bits - 1}; declare "
             f"`bits: {bits}` for it in a mapping file (--mapping)"
         )
-
-
-def cut_off(values: Array, positions: Array) -> tuple[float, float] | None:
-    """Reading at which an effort (N,) seems to be cut off, and its share of the moving ones, or None.
-
-    A signal passes its highest level, and stands there no more often than at those below. One that is
-    switched between two levels, and one at rest, is no case of this.
-    """
-    speed = np.abs(np.gradient(positions))
-    moving = values[speed > 0.01 * np.quantile(speed, 0.99)]
-    levels, counts = np.unique(moving, return_counts=True)
-    if len(levels) < 2 * BESIDE or counts[0] + counts[-1] > 0.9 * len(moving):
-        return None
-    ends = [
-        (counts[-1], counts[-1 - BESIDE : -1], levels[-1]),
-        (counts[0], counts[1 : 1 + BESIDE], levels[0]),
-    ]
-    for count, beside, level in ends:
-        if count >= max(20, CUT_OFF * len(moving)) and count > OFTENER * max(1.0, float(np.mean(beside))):
-            return float(level), float(count / len(moving))
-    return None
 
 
 def check_efforts(
@@ -133,7 +110,7 @@ def check_efforts(
         if ends is not None:
             remarks.append(
                 f"{name} stands at {ends[0]:.6g} {record.effort_unit[k]} in {100 * ends[1]:.2g} % of the "
-                "moving samples and never beyond: what was cut off is lost"
+                "moving samples and never beyond: it seems to be cut off there, and they are left out"
             )
         usual = float(np.quantile(size, 0.999))
         beside = max((float(size[j]) for j in (m - 2, m + 2) if 0 <= j < len(size)), default=0.0)
