@@ -152,7 +152,10 @@ def _others(every: list[Answered]) -> list[str]:
     if not rows:
         return []
     tuned = [f"- {by.title}: {by.tuning}" for by in (method(row.name) for row in rows[1:])]
-    count = f"Counted on {rows[0].false[1]} of the {len(every)} cases.\n"
+    count = (
+        f"Counted on {rows[0].false[1]} of the {len(every)} cases: those that all have answered, and in "
+        "which the user's model leaves the same error in the band of either.\n"
+    )
     return [OTHERS, count, others_table(rows), "", *tuned, "", ADDING]
 
 
