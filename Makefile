@@ -49,8 +49,8 @@ test: lint pytest
 pytest: $(TESTED)
 	$(BIN)/python -m pytest -n auto --dist loadgroup
 
-# What a session shares falls on the first test that asks for it: those of the fast ones that pay without the slow
-# ones are found by a second run.
+# What a process keeps, a model for one, falls on the first test that asks for it: the fast ones that pay when the
+# slow ones are left out are found by a second run.
 slow: $(TESTED)
 	$(BIN)/python -m pytest -q -n auto --dist loadgroup --processor-times build/times.txt
 	$(BIN)/python tests/support/slow_tests.py build/times.txt

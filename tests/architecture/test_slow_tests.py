@@ -1,5 +1,8 @@
 """The list of slow tests: every name in it is a test, and what is in it is marked."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -47,3 +50,49 @@ def test_what_is_listed_is_marked(request: pytest.FixtureRequest) -> None:
     marked = {item.nodeid for item in request.session.items if item.get_closest_marker("slow")}
     assert {i.nodeid for i in request.session.items if function_of(i.nodeid) in names} <= marked
     assert request.node.nodeid not in marked
+
+
+SHARING = """
+import time
+import pytest
+
+
+def burn(seconds):
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+
+
+@pytest.fixture(scope="module")
+def inner():
+    burn(0.6)
+
+
+@pytest.fixture(scope="module")
+def outer(inner):
+    burn(0.3)
+
+
+@pytest.mark.parametrize("k", range(3))
+def test_three_share_both(k, outer):
+    burn(0.3)
+
+
+def test_one_more_shares_the_inner(inner):
+    pass
+"""
+
+
+def test_what_is_shared_counts_in_equal_parts(checkout: Path, tmp_path: Path) -> None:
+    (tmp_path / "test_sharing.py").write_text(SHARING, encoding="utf-8")
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST")}
+    environment["PYTHONPATH"] = str(checkout / "tests" / "support")
+    options = ["-p", "processor_times", "-p", "no:cacheprovider", "--processor-times", "times.txt"]
+    command = [sys.executable, "-m", "pytest", "-q", *options, "test_sharing.py"]
+    subprocess.run(command, cwd=tmp_path, env=environment, check=True, capture_output=True)
+    rows = (line.split() for line in (tmp_path / "times.txt").read_text(encoding="utf-8").splitlines())
+    found = {(when, node.partition("::test_")[2]): float(time.removesuffix("s")) for time, when, node in rows}
+    for k in range(3):
+        assert found["setup", f"three_share_both[{k}]"] == pytest.approx(0.6 / 4 + 0.3 / 3, abs=0.05)
+        assert found["call", f"three_share_both[{k}]"] == pytest.approx(0.3, abs=0.05)
+    assert found["setup", "one_more_shares_the_inner"] == pytest.approx(0.6 / 4, abs=0.05)
