@@ -8,7 +8,7 @@ from dataclasses import replace
 from modelgen.charts import sheet
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.cause_parts import about, law_found, suspected
-from modelgen.report.diagnosis_answers import answers
+from modelgen.report.diagnosis_answers import answers, by_worth
 from modelgen.report.diagnosis_figures import efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import assumptions, compared, rivals
 from modelgen.report.experiment import described
@@ -66,7 +66,7 @@ def _sections(d: Diagnosis) -> Iterator[Section]:
     if drawing:
         title = "The arm, to turn and move, with the joints that are named"
         yield Section("", [Folded(title, [drawing], screen=True)])
-    yield from (law_found(d, k) for k in range(len(d.causes)))
+    yield from (law_found(d, k) for k in by_worth(d))
     yield from _others(d)
     experiment = described(d)
     if experiment:

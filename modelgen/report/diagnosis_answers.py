@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+
+import numpy as np
 
 from modelgen.charts import number
+from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.cause_parts import failed, found, marks
 from modelgen.report.diagnosis_sentences import harms, interval, missing, remains, worth
 from modelgen.report.following import following
-from modelgen.report.page import Command, Grid, Part, Run, Section, Text
-from modelgen.report.words import at, by_name, joint_name, sentence
+from modelgen.report.page import Command, Folded, Grid, Part, Run, Section, Text
+from modelgen.report.words import at, by_name, joint_name, listed, sentence
 
 # By whether the test record is a free motion.
 _ERRORS = {
@@ -18,6 +21,8 @@ _ERRORS = {
     False: "RMSE of the effort",
 }
 _NOTHING = "Nothing is named, so nothing is gained. The model as described misses, on the test record:"
+_SHOWN = 4  # causes in full: more would leave the other answers no place on the first screen
+_SUSPECTS = 2  # in full, where nothing is named
 
 
 def answers(d: Diagnosis) -> list[Section]:
@@ -31,45 +36,82 @@ def answers(d: Diagnosis) -> list[Section]:
 
 
 def _missing(d: Diagnosis) -> Iterator[Part]:
-    for k, text in enumerate(missing(d)):
-        said = [Run(text, "strong")]
-        if d.causes:
-            effect = d.causes[k].effect
-            said += [Run(" "), Run(effect, "quiet", f"#about-{effect}")]
-        yield Text(said)
-    if not d.causes and not d.suspects:
-        yield Text(_reason(d))
+    if not d.causes:
+        yield Text([Run(text, "strong") for text in missing(d)])
+        if not d.suspects:
+            yield Text(_reason(d))
+        return
+    order, texts = by_worth(d), missing(d)
+    said = [Text([Run(texts[k], "strong"), Run(" "), _linked(d.causes[k].effect)]) for k in order]
+    yield from said[:_SHOWN]
+    if said[_SHOWN:]:
+        others = [d.causes[k] for k in order[_SHOWN:]]
+        yield Folded(f"And {len(others)} more: {_names(d, others)}", said[_SHOWN:])
+
+
+def by_worth(d: Diagnosis) -> list[int]:
+    """Numbers of the causes, that of most worth on the test record first, those without a figure last."""
+    gains = [c.share.gain for c in d.causes]
+    return sorted(range(len(gains)), key=lambda k: np.inf if np.isnan(gains[k]) else -gains[k])
+
+
+def _linked(effect: str) -> Run:
+    return Run(effect, "quiet", f"#about-{effect}")
+
+
+def _names(d: Diagnosis, causes: Sequence[NamedCause]) -> str:
+    return listed(at(d.arm, c.effect, c.joint) for c in causes)
 
 
 def _sure(d: Diagnosis) -> Iterator[Part]:
-    for k, c in enumerate(d.causes):
-        if len(d.causes) > 1:
-            yield Text(at(d.arm, c.effect, c.joint))
-        yield marks(d, c, f"cause{k}")
-    for k, c in enumerate(d.suspects):
-        title = at(d.arm, c.effect, c.joint)
-        yield Text(f"{found(d, c)} {title} is suspected and not named, for want of: {failed(d, c)}.")
-        yield marks(d, c, f"suspect{k}")
+    checks = [[Text(at(d.arm, c.effect, c.joint)), marks(d, c, f"cause{k}")] for k, c in enumerate(d.causes)]
+    if len(checks) == 1:
+        yield checks[0][1]
+    elif checks:
+        yield Text(_passed(d.causes))
+        yield Folded("The checks of each cause", [part for k in by_worth(d) for part in checks[k]])
+    suspects = [_suspect(d, k) for k in range(len(d.suspects))]
+    shown = 0 if d.causes else _SUSPECTS
+    for parts in suspects[:shown]:
+        yield from parts
+    if suspects[shown:]:
+        title = "And suspected too" if shown else "Suspected, and not named"
+        names = _names(d, d.suspects[shown:])
+        yield Folded(f"{title}: {names}", [part for parts in suspects[shown:] for part in parts])
     yield Text(f"{_reason(d)} {remains(d)}", "quiet") if d.causes else Text(remains(d))
+
+
+def _passed(causes: Sequence[NamedCause]) -> str:
+    """What holds of the checks of all causes."""
+    lost = [x.name for c in causes for x in c.checks if not x.decides and x.passed is False]
+    counts = [f"{name} failed for {lost.count(name)}" for name in dict.fromkeys(lost)]
+    said = f"All {len(causes)} causes passed every check that decides."
+    return f"{said} Of the checks that decide nothing, {listed(counts)}." if counts else said
+
+
+def _suspect(d: Diagnosis, k: int) -> list[Part]:
+    c = d.suspects[k]
+    title = at(d.arm, c.effect, c.joint)
+    text = f"{found(d, c)} {title} is suspected and not named, for want of: {failed(d, c)}."
+    return [Text(text), marks(d, c, f"suspect{k}")]
 
 
 def _worth(d: Diagnosis) -> Iterator[Part]:
     unit, caption = d.errors.unit, "Error on the test record by joint"
     if d.causes:
         yield Text(sentence(worth(d)))
-        for text in harms(d):
-            yield Text([Run(text, "strong")])
+        yield from _warned(d)
         heads = (
             ("joint", "left"),
             (f"before [{unit}]", "right"),
             (f"after [{unit}]", "right"),
             ("less % (95 %)", "right"),
         )
-        yield Grid(caption, heads, _gains(d))
+        yield Grid(caption, heads, _gains(d), beside=True)
     else:
         before = [(joint_name(d.arm, j), number(x)) for j, x in enumerate(d.errors.before, 1)]
         yield Text(_NOTHING)
-        yield Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), before)
+        yield Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), before, beside=True)
     how = "; intervals from a block bootstrap" if d.causes else ""
     measured = _ERRORS[d.test.prepared.input is None]
     yield Text(
@@ -77,11 +119,27 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
     )
 
 
+def _warned(d: Diagnosis) -> Iterator[Part]:
+    """Warnings about causes that make the test record worse; of several their names alone, unless asked."""
+    texts = [Text([Run(text, "strong")]) for text in harms(d)]
+    if len(texts) > 1:
+        worse = [c for c in d.causes if c.share.high < 0.0]
+        yield Folded(f"The error on the test record is larger with {_names(d, worse)}", texts)
+    else:
+        yield from texts
+
+
 def _next(d: Diagnosis) -> Iterator[Part]:
-    for step in following(d):
-        yield Text(step.text)
+    steps = following(d)
+    alone = [Text(step.text) for step in steps if not step.command]
+    for step in steps:
         if step.command:
+            yield Text(step.text)
             yield Command(step.command)
+    if len(alone) > 1:
+        yield Folded("Experiments that show each effect by itself", alone)
+    else:
+        yield from alone
 
 
 def _reason(d: Diagnosis) -> str:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
 from modelgen.report.experiment import followed
-from modelgen.report.words import at
+from modelgen.report.words import at, listed, place_of
 
 _BETTER_LOGS = (
     "Record a motion that moves every joint over its range, several periods in a row. This computes one; "
@@ -46,9 +47,19 @@ def following(d: Diagnosis) -> list[Step]:
     if d.next_experiment is not None:
         steps.append(Step(f"To separate the cause from its rivals: {followed(d.next_experiment)}."))
     else:
+        places: dict[str, list[int | None]] = {}
+        for c in (*d.causes, *d.suspects):
+            places.setdefault(c.effect, []).append(c.joint)
         steps += [
-            Step(f"To see {at(d.arm, c.effect, c.joint)} by itself: {CATALOGUE[c.effect].experiment}.")
-            for c in (*d.causes, *d.suspects)
-            if CATALOGUE[c.effect].experiment
+            Step(f"To see {_wherever(d, effect, joints)} by itself: {CATALOGUE[effect].experiment}.")
+            for effect, joints in places.items()
+            if CATALOGUE[effect].experiment
         ]
     return steps
+
+
+def _wherever(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> str:
+    """An effect at every place where it acts."""
+    if len(joints) == 1:
+        return at(d.arm, effect, joints[0])
+    return f"{effect} at {listed(place_of(d.arm, joint) for joint in joints)}"

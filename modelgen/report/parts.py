@@ -84,7 +84,8 @@ class Lines(Part):
 class Grid(Part):
     """A table. heads: each with the side that its cells stand at. Of two texts in a cell one is small.
 
-    folds: on a narrow screen every row is a list of its cells, each behind its head.
+    folds: on a narrow screen every row is a list of its cells, each behind its head. beside: on a wide screen
+    it stands beside the texts of its answer.
     """
 
     kind: ClassVar[str] = "table"
@@ -92,6 +93,7 @@ class Grid(Part):
     heads: Sequence[tuple[str, str]]
     rows: Sequence[Sequence[str | tuple[str, str]]]
     folds: bool = False
+    beside: bool = False
 
     def values(self) -> Mapping[str, Any]:
         """For the template."""
@@ -101,7 +103,8 @@ class Grid(Part):
             [_cell(cell, look, head) for cell, look, (head, _) in zip(row, looks, self.heads, strict=True)]
             for row in self.rows
         ]
-        return {"caption": self.caption, "heads": heads, "rows": rows, "folds": self.folds}
+        looks_of_all = {"folds": self.folds, "beside": self.beside}
+        return {"caption": self.caption, "heads": heads, "rows": rows, **looks_of_all}
 
 
 @dataclass(frozen=True)

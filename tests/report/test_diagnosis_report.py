@@ -19,12 +19,21 @@ from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
 from modelgen.report.diagnosis import report
+from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import binned, efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import remains, worth
 from modelgen.report.law_figures import judged_joint, law_charts
-from modelgen.report.words import by_name, finding, sentence
+from modelgen.report.page import page
+from modelgen.report.words import at, by_name, finding, sentence
 
 WORDS = ("stribeck_friction", "at j2", "over all joints", "What these records cannot show")
+FRICTIONS = (
+    "stribeck_friction",
+    "presliding",
+    "nonlinear_viscous_friction",
+    "load_dependent_friction",
+    "torque_ripple",
+)
 ASKED = ("What is missing", "How sure", "What it is worth", "What to do next")
 
 
@@ -91,6 +100,72 @@ def test_the_first_screen_answers_what_how_sure_how_much_and_what_next(written: 
             box = page.locator("dl.answer > div").nth(last - 1).bounding_box()
             assert box is not None
             assert box["y"] + box["height"] < 900
+
+
+def ten(found: Diagnosis) -> Diagnosis:
+    """As if ten causes were named and two suspected; each cause is worth more than the one before it."""
+    (cause,), (law,) = found.causes, found.laws
+    checks = tuple(replace(c, passed=False) if c.name == "confirmed" else c for c in cause.checks)
+    many = [
+        replace(
+            cause,
+            effect=effect,
+            joint=joint,
+            parameters={p.name: Estimate(0.5, np.nan, p.unit) for p in CATALOGUE[effect].accepted()},
+            share=replace(cause.share, gain=float(5 * k), low=float(k), high=float(9 * k)),
+            checks=checks if k % 3 == 0 else cause.checks,
+        )
+        for k, (effect, joint) in enumerate(((e, j) for j in (1, 2) for e in FRICTIONS), 1)
+    ]
+    failed = tuple(replace(c, passed=False) if c.name == "form" else c for c in cause.checks)
+    suspects = tuple(replace(cause, effect="friction_offset", joint=j, checks=failed) for j in (1, 2))
+    return replace(found, causes=tuple(many), laws=(law,) * len(many), suspects=suspects)
+
+
+def of_seven_joints(d: Diagnosis) -> Diagnosis:
+    """As if the arm had seven joints, with the errors of the two again and again."""
+    names = ("shoulder_pan", "shoulder_lift", "upper_arm_roll", "elbow", "wrist_1", "wrist_2", "wrist_3")
+    joints = tuple(replace(d.arm.joints[k % 2], name=name) for k, name in enumerate(names))
+    tables = {
+        name: np.resize(getattr(d.errors, name), 7) for name in ("before", "after", "gain", "low", "high")
+    }
+    arm = replace(d.arm, joints=joints, links=(None,) * 7)
+    return replace(d, arm=arm, errors=replace(d.errors, **tables))
+
+
+def test_ten_causes_leave_all_four_answers_on_the_first_screen(found: Diagnosis, tmp_path: Path) -> None:
+    """The four of most worth stand there in full, that of most worth first; the others are named, and shown
+    on demand and on paper.
+    """
+    d, path = ten(found), tmp_path / "report.html"
+    wide = of_seven_joints(d)
+    pages = report(d), page("seven: what its model lacks", "Diagnosis", answers(wide), [])
+    for of, text in zip((d, wide), pages, strict=True):
+        sentences = [sentence(finding(of.arm, c.effect, c.joint, c.parameters)) for c in of.causes][::-1]
+        path.write_text(text, encoding="utf-8")
+        with opened(path) as window:
+            window.set_viewport_size({"width": 1280, "height": 800})
+            assert window.locator("dl.answer dt").all_inner_texts() == list(ASKED)
+            box = window.locator("dl.answer").bounding_box()
+            assert box is not None
+            assert box["y"] + box["height"] <= 800
+            first = window.locator("dl.answer > div").first
+            shown = first.locator("dd > p")
+            assert [t.split(".")[0] for t in shown.all_inner_texts()] == [s[:-1] for s in sentences[:4]]
+            others = first.locator("details")
+            for c in of.causes[:6]:
+                assert at(of.arm, c.effect, c.joint) in others.locator("summary").inner_text()
+            folded = others.locator("p")
+            assert folded.count() == 6
+            assert not any(p.is_visible() for p in folded.all())
+            others.locator("summary").press("Enter")
+            assert all(p.is_visible() for p in folded.all())
+            window.reload()
+            assert not folded.first.is_visible()
+            window.evaluate("dispatchEvent(new Event('beforeprint'))")
+            assert all(p.is_visible() for p in window.locator("dl.answer p, dl.answer ul.marks").all())
+            assert window.locator("dl.answer ul.marks").count() == 12
+            assert violations(window) == []
 
 
 def test_every_check_shows_its_figure_to_the_pointer_and_to_the_keyboard(
