@@ -63,6 +63,8 @@ class Record:
     counts : tuple of float
         Step of the logged positions by joint, in the unit that was logged, 0 where there is none; empty: not
         known, to be read off the samples.
+    begins : float, optional
+        First stamp in seconds since 1970, UTC; None where the stamps do not count from then.
 
     Attributes
     ----------
@@ -98,6 +100,7 @@ class Record:
     effort_hold: str | float = "following"
     hold_known: str = ""
     counts: tuple[float, ...] = ()
+    begins: float | None = None
 
     @property
     def n(self) -> int:
@@ -187,6 +190,7 @@ class Record:
             ddq=cut(self.ddq),
             temperature=cut(self.temperature),
             core=None,
+            begins=None if self.begins is None else self.begins + float(self.t[begin] - self.t[0]),
         )
 
 

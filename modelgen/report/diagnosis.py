@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from datetime import UTC, datetime
 
 from modelgen.charts import sheet
 from modelgen.diagnosis.result import Diagnosis
@@ -47,6 +48,7 @@ _MOTION = (
 )
 _PARAMETERS = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"))
 _RECORDS = (("record", "left"), ("use", "left"), ("samples", "right"), ("rate [Hz]", "right"))
+_BEGINS = ("begins (UTC)", "left")
 
 
 def pictures(d: Diagnosis) -> dict[str, str]:
@@ -147,7 +149,6 @@ def _fit(percent: float) -> str:
 
 def _files(d: Diagnosis) -> list[Part]:
     values = [(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()]
-    records = [(r["name"], r["use"], str(r["samples"]), f"{r['rate']:g}") for r in d.log.to_json()["records"]]
     settings = [(name, _said(value)) for name, value in d.settings.items()]
     extended, identified = f"{d.arm.name}_extended.yaml", f"{d.arm.name}_parameters.yaml"
     beside = [
@@ -167,7 +168,7 @@ def _files(d: Diagnosis) -> list[Part]:
     ]
     model = "extended model" if d.causes else "model"
     tables = [
-        Grid("Records", _RECORDS, records),
+        _records(d),
         Grid("Settings", (("setting", "left"), ("value", "left")), settings),
     ]
     return [
@@ -175,6 +176,21 @@ def _files(d: Diagnosis) -> list[Part]:
         Folded("Records and settings", tables),
         Text(beside),
     ]
+
+
+def _records(d: Diagnosis) -> Grid:
+    """The records, with when they begin where their stamps tell."""
+    every = (*d.log.train, *d.log.test)
+    rows = [(r["name"], r["use"], str(r["samples"]), f"{r['rate']:g}") for r in d.log.to_json()["records"]]
+    if all(x.begins is None for x in every):
+        return Grid("Records", _RECORDS, rows)
+    dated = [(*row, _instant(x.begins)) for row, x in zip(rows, every, strict=True)]
+    return Grid("Records", (*_RECORDS, _BEGINS), dated)
+
+
+def _instant(begins: float | None) -> str:
+    """ISO 8601 of seconds since 1970, UTC, to the second; empty where they are not known."""
+    return "" if begins is None else f"{datetime.fromtimestamp(int(begins), UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
 def _said(value: object) -> str:

@@ -76,6 +76,14 @@ def test_a_name_made_of_digits_is_a_name(tmp_path: Path) -> None:
         read(str(tmp_path / "bag"), ARM, mapping(tmp_path, "0", "1"))
 
 
+@pytest.mark.parametrize("time", ["header.stamp", "log_time"])
+def test_a_bag_says_when_it_began(tmp_path: Path, time: str) -> None:
+    """By the stamp of the message, and by the instant at which it was recorded."""
+    record = read(bag(tmp_path, states(["a", "b"])), ARM, mapping(tmp_path, "a", "b", time=time))
+    assert record.t[0] == pytest.approx(0.0, abs=1e-6)
+    assert record.begins == pytest.approx(1e-9 * EPOCH, abs=1e-3)
+
+
 def test_messages_without_the_named_joints_are_passed_over(tmp_path: Path) -> None:
     gripper = [(float(t) + 0.004, ["finger"], [0.02]) for t in T]
     mixed = sorted([*states(["a", "b"]), *gripper, (-0.001, ["finger"], [0.02])])

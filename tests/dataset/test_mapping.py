@@ -127,6 +127,7 @@ def test_time_may_count_from_the_first_sample(tmp_path: Path) -> None:
     record = read(write_csv(tmp_path / "a.csv", table) + "@1:3", AXIS, written(tmp_path, text))
     assert record.t[0] == pytest.approx(1.0, abs=1e-5)
     assert len(record.t) == 400
+    assert record.begins == pytest.approx(1.7e9 + 1.0, abs=1e-3)
 
 
 def test_a_sensor_that_starts_anew_is_made_continuous(tmp_path: Path) -> None:

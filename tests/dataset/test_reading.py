@@ -344,3 +344,19 @@ def test_every_shipped_arm_reads_its_log(name: str, tmp_path: Path) -> None:
     assert record.q == pytest.approx(np.stack(joints, axis=1), abs=1e-9)
     prepared = prepare(record)
     assert np.isfinite(prepared.ddmotor).all()
+
+
+@pytest.mark.parametrize(("origin", "known"), [(1_700_000_000.0, True), (86_400.0, False), (0.0, False)])
+def test_when_a_record_began_is_known_from_stamps_that_count_from_1970(
+    tmp_path: Path, origin: float, known: bool
+) -> None:
+    """A clock that counts from its own start says nothing of the day."""
+    file = write_csv(tmp_path / "a.csv", columns(T) | {"t": origin + T})
+    record = read(f"{file}@{origin + 2:.1f}:{origin + 6:.1f}", DRIVEN)
+    later = record.part(200, 600)
+    if known:
+        assert record.begins == pytest.approx(1_700_000_002.0, abs=1e-3)
+        assert later.begins == pytest.approx(1_700_000_003.0, abs=1e-3)
+    else:
+        assert record.begins is None
+        assert later.begins is None

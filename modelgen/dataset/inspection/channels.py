@@ -68,6 +68,7 @@ class Inspected:
     jitter: largest deviation of that time from its median, in medians. backwards: stamps that are not after
     the one before. period: of the motion [s], None where it does not repeat. without_numbers: columns of
     something else. t, columns: stamps (N,) [s] and readings (N,) by name. record: what was read for an arm.
+    begins: first stamp in seconds since 1970, None where the stamps do not count from then.
     Rate, jitter and period are NaN or None where the log has no stamps.
     """
 
@@ -85,6 +86,7 @@ class Inspected:
     columns: Mapping[str, Array] = field(default_factory=dict, compare=False, repr=False)
     remarks: tuple[str, ...] = ()
     record: Record | None = field(default=None, compare=False, repr=False)
+    begins: float | None = None
 
 
 def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None) -> Inspected:
@@ -155,7 +157,14 @@ def inspect_record(record: Record, lag: float | None, samples: int | None = None
     found = _inspected(record.name, record.t, channels, [])
     period = None if lag is None else lag * record.step
     count = found.samples if samples is None else samples
-    return replace(found, samples=count, jitter=record.jitter, period=period, remarks=record.remarks)
+    return replace(
+        found,
+        samples=count,
+        jitter=record.jitter,
+        period=period,
+        remarks=record.remarks,
+        begins=record.begins,
+    )
 
 
 def _of_record(record: Record, t: Array | None = None) -> Inspected:

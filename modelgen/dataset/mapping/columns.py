@@ -77,6 +77,8 @@ class MappedReader:
             factor = 1.0  # a date has its own unit
         stamped = formula("0", ()) if self._rate else self._formula(time.column, ["time", "column"])
         self._time = Signal(stamped, factor, 0.0)
+        self._counted: float = getattr(reader, "origins", {}).get(time.column, 0.0)
+        self.origin = self._counted  # of the time t, in what the log's own stamps count from [s]
         self._signals: dict[str, Signal] = {}
         self._groups: dict[str, list[str]] = {}  # coupled columns by kind, in the order of the joints
         for k, joint in enumerate(document.joints):
@@ -125,6 +127,7 @@ class MappedReader:
             if start is None:
                 raw = self._time.formula(columns)
                 start = float(raw.flat[0]) if self.foreign.document.time.relative else 0.0
+                self.origin = self._counted + self._time.factor * start
             made = self._block(wanted, columns, start, last, len(block))
             if self._rate:
                 made[:, [i for i, name in enumerate(wanted) if name == "t"]] = (

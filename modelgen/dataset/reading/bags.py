@@ -42,6 +42,11 @@ class BagReader:
         self.names = tuple(f"{topic}.{name}" for topic, columns in self._topics.items() for name in columns)
 
     @property
+    def origins(self) -> dict[str, float]:
+        """What the columns of instants at which messages were recorded count from [s since 1970, UTC]."""
+        return {f"{topic}.{LOG_TIME}": 1e-9 * (self._start or 0) for topic in self._topics}
+
+    @property
     def remarks(self) -> tuple[str, ...]:
         """What was found out about the file, and left out."""
         return tuple(self._found)

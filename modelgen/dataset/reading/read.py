@@ -25,6 +25,10 @@ from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
+# Seconds since 1970 that a log can have begun at: from September 2001 to October 2096. No clock that counts
+# from its own start comes so far.
+_EPOCH = (1e9, 4e9)
+
 
 def read(
     log: Log,
@@ -227,9 +231,16 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         effort_hold=source.hold,
         hold_known="mapping" if source.stated else "",
         counts=counts,
+        begins=_begins(source, float(t[0])) if len(t) else None,
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged
+
+
+def _begins(source: Source, first: float) -> float | None:
+    """First stamp in seconds since 1970; None where it is too small or too large to count from then."""
+    since_1970 = float(getattr(source.reader, "origin", 0.0)) + first
+    return since_1970 if _EPOCH[0] <= since_1970 < _EPOCH[1] else None
 
 
 def effort_units(source: Source, arm: Arm) -> tuple[str, ...]:
