@@ -31,7 +31,7 @@ def to_json(found: Identification) -> dict[str, Any]:
         ],
         "test": None if test is None else errors(test),
         "verdict": verdict(found),
-        "doubts": [*impossible(found.estimates), *found.doubts],
+        "doubts": [*impossible(found), *found.doubts],
         "least_squares": _least_squares(found.comparison),
         **_noise(found),
         **_gains(found),

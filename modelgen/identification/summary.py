@@ -24,7 +24,7 @@ def verdict(found: Identification) -> str:
     poor = [e for _, e in worse]
     dropped = [e.name for e in found.estimates if e.dropped]
     good = len(found.estimates) - len(lost) - len(poor) - len(dropped)
-    text = [*impossible(found.estimates), *found.doubts]
+    text = [*impossible(found), *found.doubts]
     enough = f", or to {MATTERS:g} % of the effort" if found.test is not None else ""
     text += [f"{good} of {len(found.estimates)} parameters are determined to {POOR:g} %{enough}, or better."]
     if poor:
@@ -46,9 +46,10 @@ def verdict(found: Identification) -> str:
             else "Physically consistent, as the plain solution is."
         )
     if found.gains:
-        gains = ", ".join(f"joint {g.joint} {g.value / g.described:.3f}" for g in found.gains)
+        names = found.arm.coordinate_names
+        gains = ", ".join(f"{names[g.joint - 1]} {g.value / g.described:.3f}" for g in found.gains)
         text.append(f"Torque constants over those of the description: {gains}.")
-    advice = experiment([*lost, *poor])
+    advice = experiment([*lost, *poor], found.arm.coordinate_names)
     if advice:
         text.append(f"What would help: {'; '.join(advice)}. See modelgen excite.")
     return " ".join(text)
@@ -78,20 +79,20 @@ def driving(estimates: Sequence[Estimate]) -> list[Estimate]:
     ]
 
 
-def impossible(estimates: Sequence[Estimate]) -> list[str]:
+def impossible(found: Identification) -> list[str]:
     """A question where parameters of effects that are never negative come out below zero clearly."""
-    negative = driving(estimates)
+    negative = driving(found.estimates)
     if not negative:
         return []
-    joints = ", ".join(str(j) for j in sorted({e.joint for e in negative}))
+    joints = ", ".join(found.arm.coordinate_names[j - 1] for j in sorted({e.joint for e in negative}))
     return [
-        f"Impossible: {', '.join(e.name for e in negative)} below zero, which would drive joint {joints}. "
+        f"Impossible: {', '.join(e.name for e in negative)} below zero, which would drive {joints}. "
         "Is the sign of the efforts the other way round, or that of torque_constant?"
     ]
 
 
-def experiment(wanting: Sequence[Estimate]) -> list[str]:
-    """Experiments that would show the parameters, joint after joint."""
+def experiment(wanting: Sequence[Estimate], names: Sequence[str]) -> list[str]:
+    """Experiments that would show the parameters, joint after joint. names: of the coordinates."""
     found: dict[str, set[int]] = {}
     for e in wanting:
         name = e.standard or e.name
@@ -99,7 +100,7 @@ def experiment(wanting: Sequence[Estimate]) -> list[str]:
         found.setdefault(kind, set()).add(e.joint)
     order = [what for _, what in _SHOWN_BY] + ["faster motion"]
     return [
-        f"{what} of joint{'s' if len(found[what]) > 1 else ''} {', '.join(map(str, sorted(found[what])))}"
+        f"{what}, of {', '.join(names[joint - 1] for joint in sorted(found[what]))}"
         for what in order
         if what in found
     ]

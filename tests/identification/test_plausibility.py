@@ -162,7 +162,7 @@ def test_friction_below_zero_is_a_doubt(arm: mg.Arm, logs: list[Table]) -> None:
     """A shoulder that something drives the harder the faster it turns."""
     driven = [x | {"i1": x["i1"] - 0.5 * np.sign(np.gradient(x["q1"]))} for x in logs]
     doubts = mg.identify(arm, *driven).to_json()["doubts"]
-    assert any("below zero, which would drive joint 1." in doubt for doubt in doubts)
+    assert any("below zero, which would drive shoulder." in doubt for doubt in doubts)
 
 
 def test_diagnose_has_the_doubts_of_identify(logs: list[Table]) -> None:
