@@ -40,8 +40,7 @@ def doubts(
     determined: flags (p,). whole: whether nothing is known to be missing in the model; what is would show in
     its inertia.
     """
-    several = [np.concatenate(x) for x in zip(*map(_motion, train), strict=True)]
-    q, ddq, efforts = (x[:: max(1, len(x) // POSES)] for x in several)
+    q, ddq, efforts = _poses(train)
     at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
     given = model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined
     found, links = _inertia(*given) if whole else [], _links(model)
@@ -69,8 +68,7 @@ def check_sign(
     """
     if not driving:
         return
-    several = [np.concatenate(x) for x in zip(*map(_motion, train), strict=True)]
-    q, ddq, efforts = (x[:: max(1, len(x) // POSES)] for x in several)
+    q, ddq, efforts = _poses(train)
     at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
     below = _below_zero(model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined)
     links = _links(model)
@@ -86,9 +84,12 @@ def check_sign(
         )
 
 
-def _motion(p: Prepared) -> tuple[Array, Array, Array]:
-    """Positions, accelerations and inputs at the rows of a record, (M, n) each."""
-    return p.picked(p.q), p.picked(p.ddq), p.effort
+def _poses(train: Sequence[Prepared]) -> tuple[Array, Array, Array]:
+    """Positions, accelerations and inputs at some rows of the records, (N, n) each."""
+    rows = [(p.picked(p.q), p.picked(p.ddq), p.effort) for p in train]
+    q, ddq, efforts = (np.concatenate(x) for x in zip(*rows, strict=True))
+    every = slice(None, None, max(1, len(q) // POSES))
+    return q[every], ddq[every], efforts[every]
 
 
 def _columns(model: Model, evaluator: Evaluator, q: Array, ddq: Array, theta: Array) -> Array:
