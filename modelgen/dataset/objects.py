@@ -72,6 +72,8 @@ class Record:
         Number of coordinates.
     step : float
         Sampling period [s].
+    logged_effort : ndarray, optional
+        Efforts (N, n) as the log carried them, in `effort_unit`; None for a free motion.
     columns : dict of str to ndarray
         Samples (N,) by the names of a log: t, q<n>, dq<n>, ddq<n>, i<n> or tau<n>, temperature<n>.
     units : dict of str to str
@@ -111,6 +113,13 @@ class Record:
     def step(self) -> float:
         """Sampling period [s]."""
         return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)
+
+    @property
+    def logged_effort(self) -> Array | None:
+        """Efforts (N, n) as the log carried them, in `effort_unit`; None for a free motion."""
+        if self.input is None or self.gain is None:
+            return self.input
+        return self.input * self.gain
 
     @property
     def columns(self) -> dict[str, Array]:

@@ -47,14 +47,13 @@ def with_rounding(
 
 def _steps(p: Prepared) -> Array:
     """Steps (n,) of the logged efforts that are coarse, 0 where they are fine or have none."""
-    found = np.zeros(p.n)
-    if p.record.input is None:
+    found, logged = np.zeros(p.n), p.record.logged_effort
+    if logged is None:
         return found
-    gain = np.ones_like(p.record.input) if p.record.gain is None else p.record.gain
-    for k, logged in enumerate((p.record.input * gain)[:LONGEST].T):
-        levels = np.unique(logged)
-        step = float(np.ptp(levels)) if len(levels) == 2 else resolution(logged)
-        if step is not None and step / np.sqrt(12.0) > COARSE * np.sqrt(np.mean(logged**2)):
+    for k, effort in enumerate(logged[:LONGEST].T):
+        levels = np.unique(effort)
+        step = float(np.ptp(levels)) if len(levels) == 2 else resolution(effort)
+        if step is not None and step / np.sqrt(12.0) > COARSE * np.sqrt(np.mean(effort**2)):
             found[k] = step
     return found
 

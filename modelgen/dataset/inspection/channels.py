@@ -149,11 +149,11 @@ def inspect_record(record: Record, lag: float | None, samples: int | None = None
             channels.append(_channel(f"qm{k + 1}", drives[k].unit if drives else "", record.motor[:, k]))
         else:
             channels.append(_channel(f"q{k + 1}", units[f"q{k + 1}"], record.q[:, k]))
-    if record.input is not None:
-        gain = np.ones_like(record.input) if record.gain is None else record.gain
+    logged = record.logged_effort
+    if logged is not None:
         for k, unit in enumerate(record.effort_unit):
             name = f"{'i' if unit == 'A' else 'tau'}{k + 1}"
-            channels.append(_channel(name, unit, record.input[:, k] * gain[:, k]))
+            channels.append(_channel(name, unit, logged[:, k]))
     found = _inspected(record.name, record.t, channels, [])
     period = None if lag is None else lag * record.step
     count = found.samples if samples is None else samples

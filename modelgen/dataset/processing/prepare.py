@@ -190,11 +190,10 @@ def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
 
 def _cut_off(record: Record) -> np.ndarray:
     """Samples (N, n) at which an effort is cut off: they say no more of it than those that hold a joint."""
-    found = np.zeros(record.q.shape, dtype=bool)
-    if record.input is not None:
-        gain = np.ones_like(record.input) if record.gain is None else record.gain
-        for k, logged in enumerate((record.input * gain).T):
-            found[:, k] = saturated(logged, record.q[:, k])
+    found, logged = np.zeros(record.q.shape, dtype=bool), record.logged_effort
+    if logged is not None:
+        for k, effort in enumerate(logged.T):
+            found[:, k] = saturated(effort, record.q[:, k])
     return found
 
 
