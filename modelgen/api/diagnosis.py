@@ -203,7 +203,7 @@ def diagnosed(
     progress("reading", 0, None)
     found = diagnose_records(
         arm,
-        records(arm, train, test, options.mapping, thresholds.dataset),
+        records(arm, train, test, options.mapping, thresholds.dataset, options.period),
         cutoff=options.cutoff,
         period=options.period,
         progress=progress,

@@ -5,11 +5,12 @@ from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.prepare import Prepared, prepare
 from modelgen.dataset.processing.settings import PRESETS, Chosen, Settings, choose, preset
 from modelgen.dataset.processing.spectra import described, spectra, spectra_svg
+from modelgen.dataset.processing.splitting import split
 from modelgen.dataset.reading.column_table import ColumnTable, Log, named
 from modelgen.dataset.reading.gathering import check_different, gather, several
 from modelgen.dataset.reading.read import read
 from modelgen.dataset.reading.sources import read_columns
-from modelgen.dataset.reading.specs import Spec, check_separate, last_quarter_out, parse, split
+from modelgen.dataset.reading.specs import Spec, check_separate, last_quarter_out, parse
 from modelgen.dataset.streaming import Stream
 from modelgen.dataset.thresholds import DatasetThresholds
 

@@ -65,6 +65,8 @@ class Record:
         known, to be read off the samples.
     begins : float, optional
         First stamp in seconds since 1970, UTC; None where the stamps do not count from then.
+    period : float, optional
+        Samples in a period of the motion, as the log that this is a part of shows it; None: to be looked for.
 
     Attributes
     ----------
@@ -103,6 +105,7 @@ class Record:
     hold_known: str = ""
     counts: tuple[float, ...] = ()
     begins: float | None = None
+    period: float | None = None
 
     @property
     def n(self) -> int:

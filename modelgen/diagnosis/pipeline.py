@@ -83,8 +83,9 @@ def records(
     test: Sequence[str],
     mapping: Path | str | None,
     thresholds: DatasetThresholds,
+    period: float | None = None,
 ) -> list[Record]:
-    """Training records, the last is the test record; a single training record gives two.
+    """Training records, the last is the test record; a single training record gives two. period: of it [s].
 
     Raises InputError where records overlap, are missing, or do not fit the arm.
     """
@@ -98,5 +99,5 @@ def records(
         raise InputError(f"found {len(test)} test records, expected one: --test LOG")
     found = several(train, arm, mapping, thresholds)
     if len(found) == 1:
-        found = split(found[0])
+        found = split(found[0], period, thresholds)
     return [*found, read(test[0], arm, mapping, thresholds)]

@@ -20,6 +20,7 @@ from modelgen.dataset import (
     parse,
     prepare,
     read,
+    several,
     split,
 )
 from modelgen.dataset import preset as processing
@@ -146,16 +147,16 @@ def _whole(
     progress: Progress,
 ) -> Outcome:
     """All records at once."""
-    if o.folds is not None and not test:
-        training = [read(spec, arm, o.mapping) for spec in train]
-        testing: list[Record] = []
-    else:
+    testing: list[Record] = []
+    if test:
         training, testing = gather(train, test, arm, o.mapping)
-    if not testing and o.folds is None:
-        if len(training) > 1:
-            raise InputError("found no test record, expected one: --test LOG")
-        one, two = split(training[0])
-        training, testing = [one], [two]
+    else:
+        if o.folds is None and len(train) != 1:
+            check_separate(train, test)
+        training = several(train, arm, o.mapping)
+        if o.folds is None:
+            one, two = split(training[0])
+            training, testing = [one], [two]
     payloads = _payloads(o.payload, [*train, *test])
     instant = effort_instant([r for k, r in enumerate(training) if k not in payloads] or training, arm)
     training, testing = at_instants(training, instant), at_instants(testing, instant)

@@ -20,6 +20,9 @@ WHOLE = 2.0
 FARTHEST = 20  # periods over which a part of a sample is told
 OFF = 0.25  # of a sample, by which a whole number may be off over a record
 BESIDE = 0.1  # of a sample a period, by which rows may drift from the same phase
+PIECES = 16  # of a record, of which the first ones may not repeat
+SETTLED = 1e-4  # of the power, by which a sample may differ from that a period later
+ALIKE = 2.0  # times the most in the last period, by which it may as well
 FEWEST = 4  # samples a row, so that half a sample of a row's place is little
 
 
@@ -31,6 +34,8 @@ def period_of(record: Record, given: float | None, limits: DatasetThresholds = U
     """
     if given is not None:
         return _checked(record, given, limits)
+    if record.period is not None:
+        return record.period if _holds_two(record, record.period) else None
     count = len(record.t)
     coarse = max(1, count // 3000)
     q = record.q[::coarse] - record.q.mean(axis=0)
@@ -51,6 +56,38 @@ def period_of(record: Record, given: float | None, limits: DatasetThresholds = U
     near = range(max(1, about - 2 * coarse), min(about + 2 * coarse, count // 2) + 1)
     exact = [_differs(record.q, lag) for lag in near]
     return _between(record.q, near[int(np.argmin(exact))])
+
+
+def _holds_two(record: Record, period: float) -> bool:
+    """Whether a record holds two periods [samples], but for a sample."""
+    return 2 * period <= len(record.t) + 1
+
+
+def repetition(
+    record: Record, given: float | None = None, limits: DatasetThresholds = USUAL
+) -> tuple[int, float] | None:
+    """First sample from which the motion repeats, and samples in a period of it; None where nothing does.
+
+    A beginning that does not repeat, on the way into the motion, is shorter than a period. given: period [s].
+    Raises InputError for a given period that is none.
+    """
+    period = period_of(record, given, limits)
+    if period is not None or given is not None:
+        return None if period is None else (0, period)
+    count = len(record.t)
+    for end in range(count // PIECES, count // 2 + 1, max(1, count // PIECES)):
+        period = period_of(record.part(end, count), None, limits)
+        if period is not None:
+            break
+    else:
+        return None
+    lag = round(period)
+    power = np.maximum(2 * record.q[end:].var(axis=0), 1e-300)
+    differing = (((record.q[lag:] - record.q[:-lag]) ** 2) / power).max(axis=1)
+    other = np.flatnonzero(differing[:lag] > max(SETTLED, ALIKE * differing[-lag:].max()))
+    begin = int(other[-1]) + 1 if len(other) else 0
+    period = period_of(record.part(begin, count), None, limits)
+    return None if period is None else (begin, period)
 
 
 def _differs(q: Array, lag: int) -> float:
@@ -86,7 +123,7 @@ def _checked(record: Record, given: float, limits: DatasetThresholds) -> float |
             f"{shortest * record.step:.3g} s"
         )
     lag = round(min(given / record.step, len(record.t)))
-    if 2 * lag > len(record.t) + 1:
+    if not _holds_two(record, lag):
         return None
     differs = float(_differing(record.q, lag)[_differing(record.q, 1) < loose].max(initial=0.0))
     if differs > loose:

@@ -8,7 +8,6 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 
 from modelgen.dataset.objects import Record
@@ -150,15 +149,8 @@ def _instant(t: float, step: float) -> str:
     return f"{t:.{min(digits, 17)}g}"
 
 
-def split(record: Record, parts: int = 2) -> list[Record]:
-    """A record in consecutive blocks of equal length, named after their times. Raises InputError."""
-    edges = [round(len(record.t) * k / parts) for k in range(parts + 1)]
-    file = parse(record.name).path
-    blocks = []
-    for begin, end in pairwise(edges):
-        if end - begin < 2:
-            raise InputError(f"{record.name}: {len(record.t)} samples cannot be split into {parts} blocks")
-        first, last = record.t[begin], record.t[end - 1] + record.step
-        name = f"{file}@{_instant(first, record.step)}:{_instant(last, record.step)}"
-        blocks.append(record.part(begin, end, name))
-    return blocks
+def cut(record: Record, begin: int, end: int) -> Record:
+    """Samples begin to end (exclusive) of a record, named after their times, FILE@t0:t1."""
+    first, last = record.t[begin], record.t[end - 1] + record.step
+    name = f"{parse(record.name).path}@{_instant(first, record.step)}:{_instant(last, record.step)}"
+    return record.part(begin, end, name)

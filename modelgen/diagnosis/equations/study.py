@@ -55,7 +55,10 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
         for record in found[:-1]
     ]
     if period is not None and all(p is None for p in lengths):
-        raise InputError(f"--period: found {period:g} s, expected one of which a training record holds two")
+        raise InputError(
+            f"--period: found {period:g} s, expected one of which a training record holds two, "
+            "or three where it is the only one, which is split in two"
+        )
     instant = effort_instant(found[:-1], arm, thresholds.dataset)
     return Study(
         model=build_model(arm, EVALUATED),

@@ -1,0 +1,44 @@
+"""A single record in two: at a boundary of its periods where the motion repeats, else in the middle."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.periods import repetition
+from modelgen.dataset.reading.specs import cut
+from modelgen.dataset.thresholds import USUAL, DatasetThresholds
+from modelgen.errors import InputError
+
+REPEATING = 3  # periods of which two can stay together, which shows what is noise
+
+
+def split(record: Record, period: float | None = None, limits: DatasetThresholds = USUAL) -> list[Record]:
+    """A record in two consecutive parts, named after their times, with a remark on where they meet.
+
+    Where the motion repeats they meet after half of its whole periods, or half a period later: three give two
+    and one. What comes before it repeats is left out. period: [s], where it is given. Raises InputError for
+    fewer than four samples, and for a given period that is none.
+    """
+    count = len(record.t)
+    if count < 4:
+        raise InputError(f"{record.name}: {count} samples cannot be split into two parts")
+    found = repetition(record, period, limits)
+    if found is None:
+        return _parts(record, 0, count // 2, "the motion does not repeat")
+    begin, lag = found
+    whole = int((count - begin + 1) / lag)
+    first = whole - whole // 2
+    known = replace(record, period=lag)
+    counts = f"{whole} periods of {lag * record.step:.6g} s"
+    late = f" from t = {record.t[begin]:.6g} s on, what is before is left out" if begin else ""
+    said = f"{counts}{late}, {first} before and {whole - first} after"
+    if whole < REPEATING:
+        said += ": neither part repeats, so that noise is not measured; record three periods, or another log"
+    return _parts(known, begin, begin + round(first * lag), said)
+
+
+def _parts(record: Record, begin: int, middle: int, said: str) -> list[Record]:
+    remark = f"{record.name}: a single training log, split in two at t = {record.t[middle]:.6g} s: {said}"
+    told = replace(record, remarks=(remark, *record.remarks))
+    return [cut(told, begin, middle), cut(told, middle, len(record.t))]
