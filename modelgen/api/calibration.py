@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from modelgen.api.logs import Log, listed
@@ -15,6 +16,7 @@ from modelgen.description import Arm, loads
 from modelgen.effects import known_effects
 from modelgen.options import CalibrationOptions, changed
 from modelgen.report.calibration import picture, report
+from modelgen.report.call import Call
 from modelgen.report.words import joint_name
 
 
@@ -50,8 +52,13 @@ class Calibration(Result):
         """
         return data(self.arm, self.found)
 
-    def files(self) -> Mapping[str, str]:
+    def files(self, folder: Path | str = "") -> Mapping[str, str]:
         """Text of every file that `modelgen calibrate` writes.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where they will be, which the commands on the page need. Default: the current folder.
 
         Returns
         -------
@@ -70,7 +77,7 @@ class Calibration(Result):
             "calibration.json": json.dumps(self.to_json(), indent=2, allow_nan=False) + "\n",
             name: described,
             "calibration.svg": picture(self.arm, c),
-            "report.html": report(self.arm, c),
+            "report.html": report(self.arm, c, Call(self.arm, folder=Path(folder))),
         }
 
     def shown(self) -> Sequence[str | Table]:

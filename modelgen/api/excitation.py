@@ -15,6 +15,7 @@ from modelgen.files import check_folder, write_together
 from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions, changed
 from modelgen.progress import Progress, silent
+from modelgen.report.call import Call
 from modelgen.report.excitation import picture, report
 
 
@@ -56,11 +57,13 @@ class Excitation(Result):
         """
         return data(self.found)
 
-    def files(self, stem: str = "trajectory") -> Mapping[str, str]:
+    def files(self, folder: Path | str = "", stem: str = "trajectory") -> Mapping[str, str]:
         """Text of every file that `modelgen excite` writes.
 
         Parameters
         ----------
+        folder : Path or str
+            Where they will be, which the commands on the page need. Default: the current folder.
         stem : str
             What their names begin with.
 
@@ -69,7 +72,8 @@ class Excitation(Result):
         mapping of str to str
             Text by name: the trajectory, the set-points, JSON, a picture and a page.
         """
-        pages = {f"{stem}.svg": picture(self.found), f"{stem}.html": report(self.found, stem)}
+        call = Call(self.arm, folder=Path(folder))
+        pages = {f"{stem}.svg": picture(self.found), f"{stem}.html": report(self.found, stem, call)}
         return files(self.found, stem) | pages
 
     def write(self, folder: Path | str, stem: str = "trajectory") -> None:
@@ -89,7 +93,7 @@ class Excitation(Result):
         """
         out = Path(folder)
         check_folder("--out", out)
-        write_together("--out", out, self.files(stem))
+        write_together("--out", out, self.files(out, stem))
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and tables of `modelgen excite`.

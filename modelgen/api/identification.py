@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
@@ -18,6 +21,7 @@ from modelgen.identification import Estimate, Validation
 from modelgen.identification.workflow import Outcome, identify_logs
 from modelgen.options import IdentificationOptions, changed
 from modelgen.progress import Progress, silent
+from modelgen.report.call import Call, files_of
 from modelgen.report.identification import models, picture, report, table
 from modelgen.report.words import joint_name
 
@@ -29,6 +33,8 @@ class Identification(Result):
     ----------
     outcome : modelgen.identification.workflow.Outcome
         What the identification gives back.
+    call : modelgen.report.call.Call
+        The arm as described, and what it was asked for with.
 
     Attributes
     ----------
@@ -40,8 +46,8 @@ class Identification(Result):
         Errors on the test logs by joint: rmse (n,) in `unit`, nrmse_percent (n,).
     """
 
-    def __init__(self, outcome: Outcome) -> None:
-        self.outcome = outcome
+    def __init__(self, outcome: Outcome, call: Call) -> None:
+        self.outcome, self.call = outcome, call
         self.arm: Arm = outcome.found.arm
         self.parameters: Named[Estimate] = Named({e.name: e for e in outcome.found.estimates})
         self.test: Validation | None = outcome.found.test
@@ -56,25 +62,28 @@ class Identification(Result):
         """
         return self.outcome.data
 
-    def files(self) -> Mapping[str, str]:
+    def files(self, folder: Path | str = "") -> Mapping[str, str]:
         """Text of every file that `modelgen identify` writes.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where they will be, which the commands on the page need. Default: the current folder.
 
         Returns
         -------
         mapping of str to str
             Text by name.
         """
-        return self._files
-
-    @cached_property
-    def _files(self) -> dict[str, str]:
         o, found, data = self.outcome, self.outcome.found, self.outcome.data
         name, drawn = found.arm.name, spectra(o.first)
+        call = replace(self.call, folder=Path(folder))
+        speeds = np.abs(o.first.picked(o.first.dq)).max(axis=0).tolist()
         files = {
             "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
             f"{name}_parameters.yaml": parameters_yaml(name, {e.name: e.value for e in found.estimates}),
             "spectra.svg": sheet(drawn, 2),
-            "report.html": report(found, o.others, data["verdict"], _processing(o), drawn),
+            "report.html": report(found, o.others, data["verdict"], _processing(o), drawn, call, speeds),
         }
         if found.test is not None:
             files["test.svg"] = picture(found.test, found.arm.coordinate_names, o.others)
@@ -171,7 +180,9 @@ def identify(
     instrumental variable approach for industrial robot identification, 2014.
     """
     chosen = changed(options or IdentificationOptions(), changes)
-    return Identification(identify_logs(arm, listed(train, "train"), listed(test, "test"), chosen, progress))
+    outcome = identify_logs(arm, listed(train, "train"), listed(test, "test"), chosen, progress)
+    fitted, held = (files_of(x.name for x in part) for part in (outcome.log.train, outcome.log.test))
+    return Identification(outcome, Call(arm, fitted, held, chosen))
 
 
 def _processing(o: Outcome) -> list[str]:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
+from modelgen.dataset import parse
 from modelgen.description import Arm
 from modelgen.functions.parameters_file import parameters_yaml
 from modelgen.identification.output_error.refine import Refined
@@ -15,6 +18,7 @@ from modelgen.identification.output_error.refine import Refinement as Found
 from modelgen.identification.refinement import refine_logs, to_json
 from modelgen.options import RefinementOptions, changed
 from modelgen.progress import Progress, silent
+from modelgen.report.call import Call, files_of
 from modelgen.report.refinement import picture, report
 
 
@@ -25,6 +29,8 @@ class Refinement(Result):
     ----------
     found : modelgen.identification.output_error.refine.Refinement
         What the refinement gives back.
+    call : modelgen.report.call.Call
+        The arm as described, and what it was asked for with.
 
     Attributes
     ----------
@@ -36,8 +42,8 @@ class Refinement(Result):
         Whether no step is left that lowers the errors by what is worth it; `found.stopped` says why not.
     """
 
-    def __init__(self, found: Found) -> None:
-        self.found = found
+    def __init__(self, found: Found, call: Call) -> None:
+        self.found, self.call = found, call
         self.arm: Arm = found.plant.arm
         self.parameters: Named[Refined] = Named({x.name: x for x in found.parameters})
         self.converged = found.converged
@@ -52,8 +58,13 @@ class Refinement(Result):
         """
         return to_json(self.found)
 
-    def files(self) -> Mapping[str, str]:
+    def files(self, folder: Path | str = "") -> Mapping[str, str]:
         """Text of every file that `modelgen refine` writes.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where they will be, which the commands on the page need. Default: the current folder.
 
         Returns
         -------
@@ -67,7 +78,7 @@ class Refinement(Result):
                 name, {x.name: x.value for x in self.found.parameters}
             ),
             "refinement.svg": picture(self.found),
-            "report.html": report(self.found),
+            "report.html": report(self.found, replace(self.call, folder=Path(folder))),
         }
 
     def shown(self) -> Sequence[str | Table]:
@@ -138,4 +149,7 @@ def refine(
     Bock, Recent advances in parameter identification techniques for ODE, 1983.
     """
     chosen = changed(options or RefinementOptions(), changes)
-    return Refinement(refine_logs(arm, listed(log, "log"), chosen, progress))
+    logs = listed(log, "log")
+    names = files_of(parse(each).text for each in logs)
+    call = Call(arm, names[:-1], names[-1:], chosen)
+    return Refinement(refine_logs(arm, logs, chosen, progress), call)

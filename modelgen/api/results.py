@@ -77,8 +77,19 @@ class Result(Shown):
     """Base of what functions find from an arm and its logs."""
 
     @abstractmethod
-    def files(self) -> Mapping[str, str]:
-        """Name to text of every file that the command writes."""
+    def files(self, folder: Path | str = "") -> Mapping[str, str]:
+        """Text of every file that the command writes.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where they will be, which the commands on the page need. Default: the current folder.
+
+        Returns
+        -------
+        mapping of str to str
+            Text by name.
+        """
 
     def write(self, folder: Path | str) -> None:
         """Write the files of the command into a folder, all of them or none.
@@ -95,7 +106,7 @@ class Result(Shown):
         """
         out = Path(folder)
         check_folder("--out", out)
-        write_together(f"--out {out}", out, self.files())
+        write_together(f"--out {out}", out, self.files(out))
 
 
 class Named(Mapping[str, V]):

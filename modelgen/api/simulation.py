@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from modelgen.api.logs import Log, listed
-from modelgen.api.results import Result, Table
+from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
 from modelgen.files import check_folder, write_together
 from modelgen.numeric import Array
@@ -18,7 +18,7 @@ from modelgen.simulation.output import log_table, picture, table
 from modelgen.simulation.workflow import Simulated, simulated
 
 
-class Simulation(Result):
+class Simulation(Shown):
     """S samples of a simulated motion of n joints, and how it does against logs where there are any.
 
     Parameters

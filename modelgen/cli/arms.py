@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path
@@ -27,13 +26,6 @@ def selected(path: Path | None, names: Sequence[str]) -> tuple[str, list[Arm]]:
             raise InputError(f"{file}: found no arm '{name}'{hint} (available: {', '.join(arms)})")
     chosen = [arms[name] for name in dict.fromkeys(names)] if names else list(arms.values())
     return str(file), chosen
-
-
-def command(name: str, path: Path | None, arm: str, *words: str) -> str:
-    """A command of modelgen for an arm of a description, to be typed as it stands. words: further ones."""
-    file = [] if path is None else [str(path)]
-    named = ["--arm", arm] if arm else []
-    return shlex.join(["modelgen", name, *file, *named, *words])
 
 
 def one(path: Path | None, name: str) -> Arm:

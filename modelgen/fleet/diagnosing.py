@@ -13,20 +13,24 @@ from modelgen.api.diagnosis import Diagnosis, diagnose
 from modelgen.description import Arm
 from modelgen.diagnosis.result import rounded
 from modelgen.errors import InputError, suggest
-from modelgen.fleet.store import Row, fingerprint, keep, written
+from modelgen.fleet.store import Row, fingerprint, folder, keep, written
 from modelgen.fleet.units import Unit
 from modelgen.options import DiagnosisOptions
+from modelgen.report.writing import write
 
 CRASHED = "the process ended: out of memory, or a crash"
 
 
 @dataclass(frozen=True)
 class Job:
-    """A unit, the fleet's folder, and whether the extended model's code is wanted."""
+    """A unit, the fleet's folder, and whether the extended model's code is wanted. called: the folder as it
+    was given, which the commands of the unit's page name.
+    """
 
     unit: Unit
     out: str
     code: bool = False
+    called: str = ""
 
 
 def done(job: Job) -> Row:
@@ -38,7 +42,7 @@ def done(job: Job) -> Row:
         try:
             made_of = fingerprint(unit)
             d = _diagnosed(unit)
-            d.write(new, code=job.code)
+            write(d.found, new, code=job.code, called=folder(Path(job.called or job.out), unit.name))
             row |= _found(d)
             row["report"] = f"units/{unit.name}/report.html"
         except InputError as error:

@@ -103,7 +103,7 @@ def _diagnosed(
         if row and (not again if row.get("error") else not code or (store.folder(out, name) / CODE).is_dir())
     }
     kept = len(rows)
-    jobs = [Job(u, str(out.absolute()), code) for u in units if u.name not in rows]
+    jobs = [Job(u, str(out.absolute()), code, str(out)) for u in units if u.name not in rows]
     if progress:
         progress(kept, len(units))
     for _, row in run(done, jobs, where, crashed):

@@ -3,7 +3,7 @@
 from modelgen.options.calibration import CalibrationOptions
 from modelgen.options.diagnosis import DiagnosisOptions
 from modelgen.options.excitation import COORDINATES, CRITERIA, Box, ExcitationOptions, box
-from modelgen.options.field import Option, changed, option, options_of
+from modelgen.options.field import Option, changed, option, options_of, words_of
 from modelgen.options.generation import GenerationOptions
 from modelgen.options.identification import IdentificationOptions
 from modelgen.options.model import GAINS, PARTS, ModelOptions
@@ -28,4 +28,5 @@ __all__ = [
     "changed",
     "option",
     "options_of",
+    "words_of",
 ]

@@ -21,6 +21,12 @@ class Box:
     low: tuple[float, float, float]
     high: tuple[float, float, float]
 
+    def __str__(self) -> str:
+        """As `box` reads it."""
+        ends = zip(self.low, self.high, strict=True)
+        ranges = [":".join(f"{x:.12g}" if math.isfinite(x) else "" for x in pair) for pair in ends]
+        return f"{self.link}={','.join(ranges)}"
+
 
 @documented()
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 from inspect import cleandoc
+from os import PathLike, fspath
 from typing import Any, TypeVar
 
 from modelgen.errors import InputError, suggest
@@ -100,3 +101,28 @@ def changed(options: T, changes: Mapping[str, Any]) -> T:
         if f.type in ("float", "float | None") and type(value := getattr(made, f.name)) is int
     }
     return replace(made, **whole) if whole else made  # type: ignore[type-var]
+
+
+def words_of(options: Any, names: Collection[str] | None = None) -> list[str]:
+    """Options other than their defaults, as the command line spells them; of these names alone, if given.
+
+    What no command line has, a table say, is left out.
+    """
+    words: list[str] = []
+    known = options_of(options)
+    for f in fields(options):
+        value = getattr(options, f.name)
+        if f.name not in known or (names is not None and f.name not in names) or value == f.default:
+            continue
+        flag = next(iter(known[f.name].flags[-1:]), f"--{f.name.replace('_', '-')}")
+        if isinstance(value, bool):
+            words.append(flag)
+        elif isinstance(value, frozenset):
+            words += [flag, ",".join(sorted(value))] if value else []
+        elif isinstance(value, tuple | list):
+            words += [word for each in value for word in (flag, str(each))]
+        elif isinstance(value, float):
+            words += [flag, f"{value:.12g}"]
+        elif isinstance(value, str | int | PathLike):
+            words += [flag, str(fspath(value) if isinstance(value, PathLike) else value)]
+    return words

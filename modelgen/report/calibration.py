@@ -7,8 +7,9 @@ import numpy as np
 from modelgen.calibration import Calibration
 from modelgen.charts import Chart, Curve, number, sheet
 from modelgen.description import Arm
-from modelgen.report.page import Command, Grid, Parts, Text, block, page
-from modelgen.report.words import joint_name
+from modelgen.report.call import WHERE, Call
+from modelgen.report.page import Command, Grid, Part, Parts, Run, Text, block, page
+from modelgen.report.words import joint_name, sentence
 
 _BEFORE, _AFTER = "as described", "calibrated"
 
@@ -50,7 +51,7 @@ def picture(arm: Arm, c: Calibration) -> str:
     return sheet(charts(arm, c), 2)
 
 
-def report(arm: Arm, c: Calibration) -> str:
+def report(arm: Arm, c: Calibration, call: Call) -> str:
     """HTML that needs nothing beside it."""
     name = joint_name(arm, c.joint)
     before, after = (number(float(np.degrees(x))) for x in (c.rms_before, c.rms_after))
@@ -61,7 +62,6 @@ def report(arm: Arm, c: Calibration) -> str:
         left = number(float(np.degrees(c.candidates[c.before.rev])))
         branch = [Text(f"rev is {c.after.rev:+d}: the other branch leaves {left} deg.")]
     weak = [Text(f"Not determined: {words}.") for words in c.weak]
-    calibrated = f"{arm.name}_calibrated.yaml"
     heads = [("value", "left"), *((h, "right") for h in ("described", "calibrated", "std", "moved by std"))]
     heads.append(("unit", "left"))
     rows = [
@@ -81,13 +81,23 @@ def report(arm: Arm, c: Calibration) -> str:
         ("What is uncertain", weak or [Text("The angles and the measured lengths determine every value.")]),
         (
             "What to do next",
-            [
-                Text("Use the description with this lever, in the folder of this report:"),
-                Command(
-                    f"modelgen identify {calibrated} --arm {arm.name} --train A --test B --out identified"
-                ),
-            ],
+            _following(call),
         ),
     ]
     sections: Parts = [("Measured angles and both levers", [block(charts(arm, c))])]
     return page(f"{arm.name}: lever of {name}", "Calibration", answers, sections)
+
+
+def _following(call: Call) -> list[Part | str]:
+    """The description with this lever in what follows: a motion, then the parameters."""
+    described = call.beside(f"{call.arm.name}_calibrated.yaml")
+    used = [
+        Run(described, "code"),
+        Run(" is the description with this lever: "),
+        Run("modelgen identify", "code"),
+        Run(" finds the parameters with it, from records of a motion that determines them."),
+    ]
+    excite = call.exciting(call.beside("trajectory.csv"), description=described)
+    if not excite:
+        return [Text(used)]
+    return [Text(used), Text(sentence(f"this computes such a motion, {WHERE}")), Command(excite)]

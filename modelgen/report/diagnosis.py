@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 
 from modelgen.charts import sheet
 from modelgen.diagnosis.result import Diagnosis
@@ -58,9 +59,10 @@ def pictures(d: Diagnosis) -> dict[str, str]:
     return {"effort.svg": sheet(efforts(d), 2), "residuals.svg": sheet(rows, len(_SHEET))}
 
 
-def report(d: Diagnosis) -> str:
-    """HTML that needs nothing beside it."""
-    return page(f"{d.arm.name}: what its model lacks", "Diagnosis", answers(d), list(_sections(d)))
+def report(d: Diagnosis, folder: Path | None = None) -> str:
+    """HTML that needs nothing beside it. folder: that it is written into, as modelgen was given it."""
+    asked = answers(d, folder or Path())
+    return page(f"{d.arm.name}: what its model lacks", "Diagnosis", asked, list(_sections(d)))
 
 
 def _sections(d: Diagnosis) -> Iterator[Section]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -25,13 +26,13 @@ _SHOWN = 4  # causes in full: more would leave the other answers no place on the
 _SUSPECTS = 2  # in full, where nothing is named
 
 
-def answers(d: Diagnosis) -> list[Section]:
-    """The four questions with their answers."""
+def answers(d: Diagnosis, folder: Path) -> list[Section]:
+    """The four questions with their answers. folder: of the report, as modelgen was given it."""
     return [
         Section("What is missing", list(_missing(d))),
         Section("How sure", list(_sure(d))),
         Section("What it is worth", list(_worth(d))),
-        Section("What to do next", list(_next(d))),
+        Section("What to do next", list(_next(d, folder))),
     ]
 
 
@@ -129,8 +130,8 @@ def _warned(d: Diagnosis) -> Iterator[Part]:
         yield from texts
 
 
-def _next(d: Diagnosis) -> Iterator[Part]:
-    steps = following(d)
+def _next(d: Diagnosis, folder: Path) -> Iterator[Part]:
+    steps = following(d, folder)
     alone = [Text(step.text) for step in steps if not step.command]
     for step in steps:
         if step.command:

@@ -7,12 +7,15 @@ import numpy as np
 from modelgen.charts import Chart, Curve, number, sheet
 from modelgen.dataset.drives import drives_of
 from modelgen.excitation import Excitation
-from modelgen.report.page import Command, Grid, Lines, Parts, Text, block, page
+from modelgen.options import ExcitationOptions, options_of, words_of
+from modelgen.report.call import WHERE, Call
+from modelgen.report.page import Command, Grid, Lines, Part, Parts, Text, block, page
 
 _GOOD, _FAIR = (
     30.0,
     100.0,
 )  # condition numbers with columns of unit norm (Schroeer 1993; Gautier and Khalil 1992)
+_ELSEWHERE = ("processes", "dask")  # options that say where the work is done
 _SIDES = (
     ("q", "position", "", "joint"),
     ("dq", "speed", "/s", "joint"),
@@ -50,9 +53,9 @@ def picture(e: Excitation) -> str:
     return sheet(charts(e), len(_SIDES))
 
 
-def report(e: Excitation, stem: str) -> str:
+def report(e: Excitation, stem: str, call: Call) -> str:
     """HTML that needs nothing beside it. stem: what the names of the files beside it begin with."""
-    s, name = e.problem.settings, e.arm.name
+    s = e.problem.settings
     grade = "well" if e.condition <= _GOOD else "fairly" if e.condition <= _FAIR else "badly"
     said = (
         f"The motion separates the {len(e.problem.names)} base parameters {grade}: condition number "
@@ -80,17 +83,7 @@ def report(e: Excitation, stem: str) -> str:
                 *([Lines(remarks)] if remarks else []),
             ],
         ),
-        (
-            "What to do next",
-            [
-                Text(
-                    f"Give {stem}_set_points.csv to the position controller, two periods or more in a row, "
-                    "and record positions and efforts; then once more, a motion of another --seed, for the "
-                    "test record. The parameters:"
-                ),
-                Command(f"modelgen identify arms.yaml --arm {name} --train A --test B --out identified"),
-            ],
-        ),
+        ("What to do next", _following(e, stem, call)),
     ]
     sections: Parts = [
         ("The motion", [block(charts(e))]),
@@ -102,4 +95,24 @@ def report(e: Excitation, stem: str) -> str:
             ],
         ),
     ]
-    return page(f"{name}: excitation trajectory", "Excitation", answers, sections)
+    return page(f"{e.arm.name}: excitation trajectory", "Excitation", answers, sections)
+
+
+def _following(e: Excitation, stem: str, call: Call) -> list[Part | str]:
+    """Two records of two motions, and what makes parameters of them."""
+    train, test = (call.beside(f"{stem}{word}_record.csv") for word in ("", "_test"))
+    names = [name for name in options_of(ExcitationOptions) if name not in (*_ELSEWHERE, "seed")]
+    again = words_of(e.problem.settings, names)
+    seed = str(e.problem.settings.seed + 1)
+    other = call.command("excite", *again, "--seed", seed, "--out", call.beside(f"{stem}_test.csv"))
+    records = ["--train", train, "--test", test, "--out", call.beside("identified")]
+    return [
+        Text(
+            f"{call.first}Give {stem}_set_points.csv to the position controller, two periods or more in a "
+            f"row, and record positions and efforts as {train}. A second motion is for the test record, "
+            f"{test}; this computes it, {WHERE}:"
+        ),
+        Command(other),
+        Text("With both records, the parameters:"),
+        Command(call.command("identify", *records)),
+    ]

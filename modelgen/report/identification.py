@@ -13,7 +13,9 @@ from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
+from modelgen.options import words_of
 from modelgen.report.arm_drawing import arm_drawing
+from modelgen.report.call import WHERE, Call
 from modelgen.report.page import Block, Command, Folded, Grid, Lines, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
@@ -57,8 +59,10 @@ def report(
     words: str,
     processing: Sequence[str],
     spectra: Sequence[Chart],
+    call: Call,
+    speeds: Sequence[float],
 ) -> str:
-    """HTML that needs nothing beside it. words: the verdict."""
+    """HTML that needs nothing beside it. words: the verdict. speeds: largest (n,) of the records [per s]."""
     arm, test = found.arm, found.test
     names = arm.coordinate_names
     errors: list[Any] = [Text("There is no test record: nothing says how well the model predicts.")]
@@ -76,7 +80,7 @@ def report(
         ("What was found", [Text(sentence(words))]),
         ("How well it predicts", errors),
         ("What is uncertain", _uncertain(found)),
-        ("What to do next", _following(found)),
+        ("What to do next", _following(found, call, speeds)),
     ]
     sections: list[tuple[str, Sequence[Any]]] = [("Parameters", _parameters(found))]
     if found.gains:
@@ -130,23 +134,27 @@ def _uncertain(found: Identification) -> list[Any]:
     return parts or [Text("No parameter is uncertain by what would matter in the effort.")]
 
 
-def _following(found: Identification) -> list[Any]:
+def _following(found: Identification, call: Call, speeds: Sequence[float]) -> list[Any]:
+    """The code, what the model lacks, a better motion."""
     name = found.arm.name
-    values = f"{name}_parameters.yaml"
-    parts = [
-        Text("Generate code with these values folded in; arms.yaml is the description:"),
-        Command(f"modelgen generate arms.yaml --arm {name} --parameters {values}"),
+    described = call.beside(f"{name}_identified.yaml") if found.gains else None
+    left_out = words_of(call.options, ("without",))
+    scaled = words_of(call.options, ("gains",)) if not found.gains else []
+    values = ["--parameters", call.beside(f"{name}_parameters.yaml")]
+    generate = call.command("generate", *values, *left_out, *scaled, description=described)
+    parts: list[Any] = [
+        Text(f"{call.first}{sentence(f'generate code with these values folded in, {WHERE}')}"),
+        Command(generate),
     ]
-    if found.test is not None:
+    diagnose = call.diagnosing()
+    if found.test is not None and diagnose:
         parts += [
-            Text("Where the error is larger than the noise the model lacks something; this names the cause:"),
-            Command(f"modelgen diagnose arms.yaml --arm {name} --train A --test B --out diagnosis"),
+            Text("Where the error is larger than the noise the model lacks something; this names the cause."),
+            Command(diagnose),
         ]
-    if found.poor():
-        parts += [
-            Text("A motion that determines the parameters better:"),
-            Command(f"modelgen excite arms.yaml --arm {name} --out trajectory.csv"),
-        ]
+    excite = call.exciting(call.beside("trajectory.csv"), speeds)
+    if found.poor() and excite:
+        parts += [Text("A motion that determines the parameters better:"), Command(excite)]
     return parts
 
 

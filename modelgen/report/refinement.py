@@ -9,8 +9,9 @@ import numpy as np
 from modelgen.charts import Chart, Curve, number, sheet
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
-from modelgen.report.page import Command, Grid, Parts, Text, block, page
-from modelgen.report.words import listed
+from modelgen.report.call import WHERE, Call
+from modelgen.report.page import Command, Grid, Part, Parts, Run, Text, block, page
+from modelgen.report.words import listed, sentence
 
 _FAR = 2.0  # standard deviations
 
@@ -39,7 +40,7 @@ def picture(found: Refinement) -> str:
     return sheet(motion(found), 2)
 
 
-def report(found: Refinement) -> str:
+def report(found: Refinement, call: Call) -> str:
     """HTML that needs nothing beside it."""
     arm = found.plant.arm
     name, names = arm.name, arm.coordinate_names
@@ -79,12 +80,7 @@ def report(found: Refinement) -> str:
         ("What moved", [Text(_moved(free))]),
         (
             "What to do next",
-            [
-                Text("Generate code with these values folded in; arms.yaml is the description:"),
-                Command(f"modelgen generate arms.yaml --arm {name} --parameters {name}_parameters.yaml"),
-                Text("Where the motion still differs by more than its noise, this names the cause:"),
-                Command(f"modelgen diagnose arms.yaml --arm {name} --train A --test B --out diagnosis"),
-            ],
+            _following(call),
         ),
     ]
     table = [
@@ -105,6 +101,33 @@ def report(found: Refinement) -> str:
         ("Parameters", [Grid("Parameters", columns, table)]),
     ]
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
+
+
+def _following(call: Call) -> list[Part | str]:
+    """The code, and what the model lacks."""
+    generate = call.command("generate", "--parameters", call.beside(f"{call.arm.name}_parameters.yaml"))
+    diagnose = call.diagnosing()
+    parts: list[Part | str] = [
+        Text(f"{call.first}{sentence(f'generate code with these values folded in, {WHERE}')}"),
+        Command(generate),
+    ]
+    if diagnose:
+        return [
+            *parts,
+            Text("Where the motion still differs by more than its noise, this names the cause."),
+            Command(diagnose),
+        ]
+    named = [
+        Run("Where the motion still differs by more than its noise, record a second motion, which nothing "),
+        Run("is fitted to, and let "),
+        Run("modelgen diagnose", "code"),
+        Run(" name the cause: this record is for "),
+        Run("--train", "code"),
+        Run(", the second for "),
+        Run("--test", "code"),
+        Run("."),
+    ]
+    return [*parts, Text(named)]
 
 
 def _moved(free: list[Any]) -> str:

@@ -18,12 +18,13 @@ from modelgen.report.diagnosis import pictures, report
 from modelgen.report.experiment import NAMES, plans
 
 
-def write(d: Diagnosis, out: Path, *, code: bool = True) -> None:
+def write(d: Diagnosis, out: Path, *, code: bool = True, called: Path | None = None) -> None:
     """diagnosis.json, report.html, the extended description, its parameters and its code into `out`.
 
     All of them, or none.
 
-    code: False leaves the code out. Raises InputError.
+    code: False leaves the code out. called: the folder where they will be in the end, if that is not `out`.
+    Raises InputError.
     """
     name = d.arm.name
     new, there = out / ".new", out.exists()  # on the file system of `out`, whatever that is
@@ -40,7 +41,7 @@ def write(d: Diagnosis, out: Path, *, code: bool = True) -> None:
             generate([arm], new / "generated", Options(identified=values), processes=1)
         text = json.dumps(to_json(d), indent=2, allow_nan=False) + "\n"
         (new / "diagnosis.json").write_text(text, encoding="utf-8", newline="\n")
-        (new / "report.html").write_text(report(d), encoding="utf-8", newline="\n")
+        (new / "report.html").write_text(report(d, called or out), encoding="utf-8", newline="\n")
         for picture, text in {**pictures(d), **plans(d)}.items():
             (new / picture).write_text(text, encoding="utf-8", newline="\n")
         for stale in NAMES:  # of a diagnosis before

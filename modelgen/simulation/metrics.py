@@ -28,10 +28,12 @@ def scores(measured: Array, simulated: Array) -> Scores:
     """
     y = measured.reshape(-1, measured.shape[-1])
     e = y - simulated.reshape(-1, simulated.shape[-1])
-    with np.errstate(invalid="ignore", divide="ignore"):
+    # a motion that runs away may leave what can be squared
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         ratio = np.linalg.norm(e, axis=0) / np.linalg.norm(y - y.mean(axis=0), axis=0)
+        rmse = np.sqrt((e**2).mean(axis=0))
     ratio[~np.isfinite(ratio)] = np.nan
-    return Scores(100.0 * (1.0 - ratio), np.abs(e).mean(axis=0), np.sqrt((e**2).mean(axis=0)))
+    return Scores(100.0 * (1.0 - ratio), np.abs(e).mean(axis=0), rmse)
 
 
 def repeated(runs: Sequence[Array]) -> tuple[Array, Array]:

@@ -84,7 +84,13 @@ def arm(bench: Path, monkeypatch: pytest.MonkeyPatch) -> mg.Arm:
 
 
 def content(folder: Path) -> dict[str, bytes]:
-    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+    """Every file by its name, with one name in place of the folder's, which the commands of pages have."""
+    own = str(folder).encode()
+    return {
+        p.relative_to(folder).as_posix(): p.read_bytes().replace(own, b"OUT")
+        for p in folder.rglob("*")
+        if p.is_file()
+    }
 
 
 def generated(arm: mg.Arm, out: Path) -> mg.Generated:

@@ -179,8 +179,12 @@ def test_killed_in_the_middle_and_taken_up_on_a_cluster(file: Path, out: Path, t
     names = ["diagnosis.json", "report.html", "effort.svg", "arm_extended.yaml"]
     for unit in ("one", "two"):
         for name in names:
-            here, there_ = (folder / "units" / unit / name for folder in (out, other))
-            assert here.read_bytes() == there_.read_bytes(), f"{unit}/{name}"
+            # the page's commands name the folder
+            here, there_ = (
+                (folder / "units" / unit / name).read_bytes().replace(str(folder).encode(), b"OUT")
+                for folder in (out, other)
+            )
+            assert here == there_, f"{unit}/{name}"
 
 
 def test_what_has_not_changed_is_kept_and_what_has_is_made_anew(

@@ -139,7 +139,7 @@ def test_ten_causes_leave_all_four_answers_on_the_first_screen(found: Diagnosis,
     """
     d, path = ten(found), tmp_path / "report.html"
     wide = of_seven_joints(d)
-    pages = report(d), page("seven: what its model lacks", "Diagnosis", answers(wide), [])
+    pages = report(d), page("seven: what its model lacks", "Diagnosis", answers(wide, Path("diagnosis")), [])
     for of, text in zip((d, wide), pages, strict=True):
         sentences = [sentence(finding(of.arm, c.effect, c.joint, c.parameters)) for c in of.causes][::-1]
         path.write_text(text, encoding="utf-8")

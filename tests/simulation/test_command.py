@@ -124,6 +124,10 @@ def test_scores_by_their_definitions() -> None:
     assert found.mae[0] == pytest.approx(0.1)
     assert found.rmse[0] == pytest.approx(0.1)
     assert np.isnan(scores(np.ones((4, 1)), y).f_gof[0])
+    # what runs away so far that its square is none: no score, and no warning
+    away = scores(y, y + 1e200)
+    assert np.isnan(away.f_gof[0])
+    assert np.isinf(away.rmse[0])
 
 
 def test_repeated_runs_give_the_noise_floor() -> None:

@@ -31,10 +31,11 @@ def diagnose(
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
     from modelgen.api.diagnosis import diagnosed
-    from modelgen.cli.arms import command, one
+    from modelgen.cli.arms import one
     from modelgen.cli.output import print_result, progress_bar
     from modelgen.files import check_folder
     from modelgen.generation.folders import check_output
+    from modelgen.report.call import command
 
     found = one(arms, arm)
     check_folder("--out", out)
@@ -46,6 +47,7 @@ def diagnose(
     print_result(result, as_json=as_json)
     if not as_json:
         typer.echo(f"report: {out / 'report.html'}")
+    if not as_json and result.causes:
         extended = out / f"{found.name}_extended.yaml"
         values = ["--parameters", str(out / f"{found.name}_parameters.yaml")]
         words = [*values, *(word for log in (test or []) for word in ("--log", log))]

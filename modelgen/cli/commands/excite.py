@@ -45,5 +45,5 @@ def excite(
     result.write(out.parent, out.stem)
     print_result(result, as_json=as_json)
     if not as_json:
-        for name in result.files(out.stem):
+        for name in result.files(out.parent, out.stem):
             typer.echo(f"wrote {out.parent / name}")

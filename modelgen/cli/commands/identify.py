@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -32,7 +33,7 @@ def identify(
 ) -> None:
     """Find the base parameters from logs, with their uncertainty, and validate them on other logs."""
     from modelgen.api.identification import identify as identified
-    from modelgen.cli.arms import command, one
+    from modelgen.cli.arms import one
     from modelgen.cli.output import print_result, progress_bar
     from modelgen.files import check_folder
 
@@ -42,8 +43,6 @@ def identify(
         result = identified(found, train, test or [], options, progress=progress)
     result.write(out)
     print_result(result, as_json=as_json)
-    if not as_json and test:
-        words = [word for log in train for word in ("--train", log)] + ["--test", test[0]]
-        words += [] if options.mapping is None else ["--mapping", str(options.mapping)]
-        following = command("diagnose", arms, arm, *words, "--out", str(out / "diagnosis"))
+    following = replace(result.call, folder=out).diagnosing()
+    if not as_json and following:
         typer.echo(f"what the model lacks: {following}")

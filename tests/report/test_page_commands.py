@@ -1,0 +1,198 @@
+"""The commands on the pages, copied as they stand: they run in the folder in which modelgen was called."""
+
+import re
+import shlex
+from collections.abc import Mapping
+from contextlib import chdir
+from dataclasses import replace
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from command_support import called
+from diagnosis_support import record
+from typer.main import get_command
+
+import modelgen as mg
+from modelgen.calibration.lever import lever_of
+from modelgen.cli.app import app
+from modelgen.options import DiagnosisOptions, ExcitationOptions, words_of
+from modelgen.report.call import Call
+
+# The arm of diagnosis_support, with the effort in mA and without a limit of speed.
+DESCRIPTION = """schema: 1
+convention: khalil_kleinfinger
+arms:
+  bench:
+    gravity: [0, -9.81, 0]
+    joints:
+      - {name: shoulder, drive: {type: direct, ratio: 80, torque_constant: 0.05}}
+      - {name: elbow, d: 0.45, antecedent: shoulder, drive: {type: direct, ratio: 60, torque_constant: 0.04}}
+"""
+MAPPING = """schema: 1
+hold: instant
+joints:
+  - {position: {column: q1, unit: rad}, effort: {column: i1, unit: mA}}
+  - {position: {column: q2, unit: rad}, effort: {column: i2, unit: mA}}
+"""
+FILES = {"ARMS", "LOG", "FILE"}  # placeholders of values that are files, but for what is written
+SHORT = {
+    "excite": ("--period", "5", "--starts", "1", "--iterations", "5", "--jobs", "1"),
+    "diagnose": ("--effect", "friction_offset", "--no-experiment", "--jobs", "1"),
+}
+
+
+def commands(page: Path) -> list[list[str]]:
+    """Words of every command of a page, as a shell splits them."""
+    found = re.findall(r"<pre><code>(.*?)</code>", page.read_text(encoding="utf-8"), re.DOTALL)
+    lines = [shlex.split(unescape(text)) for text in found]
+    assert all(line[0] == "modelgen" for line in lines)
+    return [line[1:] for line in lines]
+
+
+def parsed(words: list[str], folder: Path) -> Mapping[str, Any]:
+    """Values by name, of a command through the parser; every file that it reads is there."""
+    group: Any = get_command(app)
+    context = group.context_class(group, info_name="modelgen")
+    name, command, rest = group.resolve_command(context, words)
+    values: dict[str, Any] = command.make_context(name, rest, parent=context).params
+    for parameter in command.params:
+        given = values.get(parameter.name)
+        if parameter.name == "out" or not given or parameter.metavar not in FILES:
+            continue
+        for text in given if isinstance(given, list | tuple) else [given]:
+            assert (folder / str(text).partition("@")[0]).is_file(), (words, text)
+    return values
+
+
+def run(words: list[str], folder: Path) -> None:
+    """The command itself, in the folder, with options that make it quick."""
+    done = called(*words, *SHORT.get(words[0], ()), cwd=folder)
+    assert done.returncode == 0, (words, done.stderr)
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a description, a mapping and three logs, and what identify makes of two of them."""
+    folder = tmp_path_factory.mktemp("bench")
+    (folder / "logs of may").mkdir()
+    (folder / "my arm.yaml").write_text(DESCRIPTION, encoding="utf-8")
+    (folder / "columns.yaml").write_text(MAPPING, encoding="utf-8")
+    for k, name in enumerate(("one", "two", "test")):
+        r = record("friction_offset", 2, 0.5, k, name)
+        assert r.input is not None
+        table = np.column_stack([r.t, r.q, 1e3 * r.input])
+        path = folder / "logs of may" / f"{name}.csv"
+        np.savetxt(path, table, fmt="%.9g", delimiter=",", header="t,q1,q2,i1,i2", comments="")
+    logs = ["--train", "logs of may/one.csv", "--train", "logs of may/two.csv", "--test"]
+    logs += ["logs of may/test.csv", "--mapping", "columns.yaml", "--cutoff", "7.5"]
+    run(["identify", "my arm.yaml", *logs, "--out", "what was found"], folder)
+    return folder
+
+
+def test_what_identify_and_diagnose_propose_runs_as_it_is_copied(bench: Path) -> None:
+    found = {words[0]: words for words in commands(bench / "what was found" / "report.html")}
+    assert {"generate", "diagnose"} <= found.keys() <= {"generate", "diagnose", "excite"}
+    for words in found.values():
+        assert words[1] == "my arm.yaml"
+        parsed(words, bench)
+    asked = parsed(found["diagnose"], bench)
+    assert asked["train"] == ["logs of may/one.csv", "logs of may/two.csv"]
+    assert (asked["mapping"], asked["cutoff"]) == (Path("columns.yaml"), 7.5)
+    run(found["generate"], bench)
+    assert (bench / "generated" / "bench" / "include" / "bench.h").is_file()
+    run(found["diagnose"], bench)
+    ((generate, *words),) = commands(bench / "what was found" / "diagnosis" / "report.html")
+    parsed([generate, *words], bench)
+    run([generate, *words, "--out", "extended code"], bench)
+    sizes = []
+    for folder in ("generated", "extended code"):
+        header = (bench / folder / "bench" / "include" / "bench.h").read_text(encoding="utf-8")
+        sizes.append(int(re.findall(r"BENCH_N_PARAMETERS\b\D*(\d+)", header)[0]))
+    assert sizes[1] == sizes[0] + 1  # the offset
+
+
+def test_an_arm_without_limits_gets_those_of_its_records(bench: Path) -> None:
+    """In a speed limit that is the least of the largest speeds, since one option is for all joints."""
+    arm = mg.load_arms(bench / "my arm.yaml")["bench"]
+    with chdir(bench):
+        assert Call(arm).exciting("trajectory.csv") == ""
+        words = shlex.split(Call(arm).exciting("trajectory.csv", [0.81, 0.52]))[1:]
+    assert parsed(words, bench)["velocity"] == 0.52
+    run(words, bench)
+    assert (bench / "trajectory.csv").is_file()
+
+
+def test_an_excitation_is_followed_by_another_and_by_its_records(bench: Path) -> None:
+    asked = ["excite", "my arm.yaml", *SHORT["excite"], "--velocity", "0.5", "--seed", "3"]
+    asked += ["--box", "elbow=:,:,-0.5:", "--out", "motions/first.csv"]
+    run(asked, bench)
+    page = bench / "motions" / "first.html"
+    other, identify = commands(page)
+    again, first = parsed(other, bench), parsed(asked, bench)
+    # the same motion but for its seed
+    same = {name for name in first if first[name] == again[name]}
+    assert first.keys() - same == {"arm", "seed", "out", "processes"}
+    assert (again["arm"], again["seed"]) == ("bench", 4)
+    run(other, bench)
+    assert (bench / "motions" / "first_test_set_points.csv").is_file()
+    said = unescape(page.read_text(encoding="utf-8"))
+    for name in ("motions/first_record.csv", "motions/first_test_record.csv"):
+        assert f" {name}" in said  # what does not exist yet is named in words
+        (bench / name).write_text("t,q1,q2,i1,i2\n", encoding="utf-8")
+    assert parsed(identify, bench)["test"] == ["motions/first_test_record.csv"]
+
+
+def test_what_refine_and_calibrate_propose_runs_as_it_is_copied(tmp_path: Path) -> None:
+    """For arms that modelgen ships, in a folder that has no description."""
+    swing = mg.simulate(mg.load_arms()["gravity_link2"], q0="20 deg", duration=2.0, rate=200.0)
+    noise = 1e-3 * np.random.default_rng(0).standard_normal((2, len(swing.t)))
+    for name, e in zip(("a", "b"), noise, strict=True):
+        table = np.column_stack([swing.t, swing.q[:, 0] + e])
+        np.savetxt(tmp_path / f"{name}.csv", table, delimiter=",", header="t,q1", comments="")
+    run(["refine", "--arm", "gravity_link2", "--log", "a.csv", "--out", "one"], tmp_path)
+    (generate,) = commands(tmp_path / "one" / "report.html")
+    run(generate, tmp_path)
+    assert (tmp_path / "generated" / "gravity_link2").is_dir()
+    assert "for <code>--test</code>" in (tmp_path / "one" / "report.html").read_text(encoding="utf-8")
+    run(["refine", "--arm", "gravity_link2", "--log", "a.csv", "--log", "b.csv", "--out", "two"], tmp_path)
+    _, diagnose = commands(tmp_path / "two" / "report.html")
+    asked = parsed(diagnose, tmp_path)
+    assert (asked["train"], asked["test"]) == (["a.csv"], ["b.csv"])
+
+    arm, motor = mg.load_arms()["ariane4"], np.linspace(0.0, 20_000.0, 300)
+    angle = lever_of(arm, 3).angle(motor) + 0.02
+    table = np.column_stack([0.05 * np.arange(300), motor, angle])
+    np.savetxt(tmp_path / "lever.csv", table, delimiter=",", header="t,qm3,q3", comments="")
+    run(["calibrate", "lever.csv", "--arm", "ariane4", "--joint", "3", "--out", "lever"], tmp_path)
+    (excite,) = commands(tmp_path / "lever" / "report.html")
+    assert parsed(excite, tmp_path)["arms"] == Path("lever/ariane4_calibrated.yaml")
+    run(excite, tmp_path)
+    assert (tmp_path / "lever" / "trajectory_set_points.csv").is_file()
+
+
+def test_options_are_spelled_as_the_command_line_reads_them() -> None:
+    made = ExcitationOptions(period=12.5, rest=True, boxes=("j4=:,:,0.1:", "j2=-1:1,:,:"), processes=2)  # type: ignore[arg-type]
+    words = ["excite", *words_of(made)]
+    values = parsed(words, Path())
+    assert (values["period"], values["rest"], values["processes"]) == (12.5, True, 2)
+    assert ExcitationOptions(boxes=tuple(values["boxes"])).boxes == made.boxes
+    asked = ["diagnose", "--train", "a@", "--out", "x", *words_of(DiagnosisOptions(experiment=False))]
+    group: Any = get_command(app)
+    context = group.context_class(group, info_name="modelgen")
+    name, command, rest = group.resolve_command(context, asked)
+    assert command.make_context(name, rest, parent=context).params["experiment"] is True  # the flag is given
+    assert words_of(DiagnosisOptions()) == []
+    assert words_of(DiagnosisOptions(thresholds={"min_gain_percent": 1.0})) == []
+
+
+def test_a_description_that_no_file_has_is_to_be_written_first(tmp_path: Path) -> None:
+    with chdir(tmp_path):
+        arm = mg.load_arms()["ariane4"]
+        assert Call(arm).description == ""
+        assert Call(arm).first == ""
+        made = Call(replace(arm, where=None))
+        assert made.description == "arms.yaml"
+        assert "arms.yaml" in made.first
