@@ -121,9 +121,9 @@ def main() -> None:
 
 def _cause_bars(rows: Sequence[dict[str, Any]]) -> str:
     """Named causes by effect, the joints in shades, as SVG."""
-    found = causes(rows)
-    effects = Counter[str]()
-    for (effect, _), count in found.items():
+    found, effects = Counter[tuple[str, int | None]](), Counter[str]()
+    for (effect, joint, _), count in causes(rows).items():
+        found[effect, joint] += count
         effects[effect] += count
     order = sorted(effects, key=lambda name: (effects[name], name))
     joints = sorted({joint for _, joint in found if joint is not None})

@@ -91,19 +91,19 @@ class Calibration(Result):
         c = self.found
         parts: list[str | Table] = [
             f"{self.arm.name}, {joint_name(self.arm, c.joint)}: "
-            f"RMSE of the angle {c.rms_before:.4g} -> {c.rms_after:.4g} rad "
-            f"({c.improvement_percent:.1f} % better), {len(c.motor)} samples"
+            f"RMSE of the angle {c.rms_before:z.4g} -> {c.rms_after:z.4g} rad "
+            f"({c.improvement_percent:z.1f} % better), {len(c.motor)} samples"
         ]
         if c.after.rev != c.before.rev:
             left = c.candidates[c.before.rev]
-            parts.append(f"rev is {c.after.rev:+d}: the other branch leaves {left:.4g} rad")
-        rows = [[e.name, f"{e.before:.6g}", f"{e.value:.6g}", f"{e.std:.2g}", e.unit] for e in c.estimates]
+            parts.append(f"rev is {c.after.rev:+d}: the other branch leaves {left:z.4g} rad")
+        rows = [[e.name, f"{e.before:z.6g}", f"{e.value:z.6g}", f"{e.std:z.2g}", e.unit] for e in c.estimates]
         sides = {"": "left", "described": "right", "calibrated": "right", "std": "right", "unit": "left"}
         return [*parts, Table("", sides, rows), *(f"not determined: {words}" for words in c.weak)]
 
     def __repr__(self) -> str:
         c = self.found
-        errors = f"RMSE {c.rms_before:.4g} -> {c.rms_after:.4g} rad"
+        errors = f"RMSE {c.rms_before:z.4g} -> {c.rms_after:z.4g} rad"
         return f"Calibration of {self.arm.name}, {joint_name(self.arm, c.joint)}: {errors}"
 
 

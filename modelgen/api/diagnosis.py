@@ -18,13 +18,14 @@ from modelgen.diagnosis.result import Diagnosis as Found
 from modelgen.diagnosis.result import to_json
 from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
+from modelgen.effects.placement import titled
 from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, interval, suspicions
 from modelgen.report.experiment import followed
-from modelgen.report.words import at, joint_name, place_of, sized
+from modelgen.report.words import joint_name, place_of, sized
 from modelgen.report.writing import write
 
 
@@ -122,9 +123,9 @@ class Diagnosis(Shown):
         errors = [
             [
                 joint_name(d.arm, j + 1),
-                f"{e.before[j]:.4g}",
-                f"{e.after[j]:.4g}",
-                f"{e.gain[j]:.1f}",
+                f"{e.before[j]:z.4g}",
+                f"{e.after[j]:z.4g}",
+                f"{e.gain[j]:z.1f}",
                 interval(e.low[j], e.high[j]),
             ]
             for j in range(len(e.before))
@@ -225,7 +226,7 @@ def _place(text: str) -> tuple[str, int | None]:
 
 def _row(arm: Arm, c: NamedCause) -> list[str]:
     values = ", ".join(f"{n} {sized(e.value, e.unit, 4)}" for n, e in c.parameters.items())
-    rivals = ", ".join(at(arm, e, j) for e, j, _ in c.ambiguous_with)
-    same = ", ".join(at(arm, e, j) for e, j in c.aliases)
-    gains = f"{c.cross_gain:.1f}", "" if isnan(c.share.gain) else f"{c.share.gain:.1f}"
-    return [c.effect, place_of(arm, c.joint), values, f"{c.delta_bic:.1f}", *gains, rivals, same]
+    rivals = ", ".join(titled(arm, e, j) for e, j, _ in c.ambiguous_with)
+    same = ", ".join(titled(arm, e, j) for e, j in c.aliases)
+    gains = f"{c.cross_gain:z.1f}", "" if isnan(c.share.gain) else f"{c.share.gain:z.1f}"
+    return [c.effect, place_of(arm, c.joint), values, f"{c.delta_bic:z.1f}", *gains, rivals, same]

@@ -105,18 +105,19 @@ class Excitation(Result):
         """
         e, made = self.found, self.to_json()
         reached = made["condition_numbers_of_starts"]
-        rows = [[name, f"{100 * share:.1f}"] for name, share in e.usage.items()]
+        rows = [[name, f"{100 * share:z.1f}"] for name, share in e.usage.items()]
         return [
             *(f"note: {remark}" for remark in made["remarks"]),
-            f"{e.arm.name}: condition number {e.condition:.4g} with columns of unit norm ({e.raw:.3g} in the "
-            f"parameters' own units), {made['base_parameters']} base parameters, {made['samples']} samples",
-            f"starts: {len(reached)}, from {reached[0]:.4g} to {reached[-1]:.4g}",
+            f"{e.arm.name}: condition number {e.condition:z.4g} with columns of unit norm ({e.raw:z.3g} in "
+            f"the parameters' own units), {made['base_parameters']} base parameters, "
+            f"{made['samples']} samples",
+            f"starts: {len(reached)}, from {reached[0]:z.4g} to {reached[-1]:z.4g}",
             Table("limits", {"limit": "left", "used %": "right"}, rows),
         ]
 
     def __repr__(self) -> str:
         period = self.found.problem.settings.period
-        return f"Excitation of {self.arm.name}: condition number {self.condition:.4g}, period {period:g} s"
+        return f"Excitation of {self.arm.name}: condition number {self.condition:z.4g}, period {period:g} s"
 
 
 def excite(

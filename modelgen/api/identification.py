@@ -104,9 +104,9 @@ class Identification(Result):
         rows = [
             [
                 e.name,
-                f"{e.value:.5g}",
-                "" if e.std is None else f"{e.std:.2g}",
-                "" if e.relative is None else f"{e.relative:.1f}",
+                f"{e.value:z.5g}",
+                "" if e.std is None else f"{e.std:z.2g}",
+                "" if e.relative is None else f"{e.relative:z.1f}",
                 e.unit,
                 "yes" if e.essential else "left out" if e.dropped else "no",
             ]
@@ -116,7 +116,7 @@ class Identification(Result):
         parts: list[str | Table] = [Table("", dict.fromkeys(headings, "right"), rows)]
         if found.gains:
             rows = [
-                [joint_name(self.arm, g.joint), f"{g.described:.6g}", f"{g.value:.6g}", f"{g.std:.2g}"]
+                [joint_name(self.arm, g.joint), f"{g.described:z.6g}", f"{g.value:z.6g}", f"{g.std:z.2g}"]
                 for g in found.gains
             ]
             columns = dict.fromkeys(("joint", "described", "found", "std"), "right")
@@ -125,8 +125,8 @@ class Identification(Result):
             parts += _test_tables(found.test, o)
         if o.folds is not None:
             heads = {"held out": "left"} | dict.fromkeys(self.arm.coordinate_names, "right")
-            rows = [[name, *(f"{x:.1f}" for x in part.nrmse_percent)] for name, part in o.folds.parts]
-            rows.append(["all together", *(f"{x:.1f}" for x in o.folds.nrmse_percent)])
+            rows = [[name, *(f"{x:z.1f}" for x in part.nrmse_percent)] for name, part in o.folds.parts]
+            rows.append(["all together", *(f"{x:z.1f}" for x in o.folds.nrmse_percent)])
             title = "NRMSE % of parts of the training records, each held out in its turn"
             parts.append(Table(title, heads, rows))
         return [*parts, *_processing(o), o.data["verdict"]]
@@ -134,7 +134,7 @@ class Identification(Result):
     def __repr__(self) -> str:
         errors = ""
         if self.test is not None:
-            errors = f", test NRMSE {', '.join(f'{x:.1f}' for x in self.test.nrmse_percent)} %"
+            errors = f", test NRMSE {', '.join(f'{x:z.1f}' for x in self.test.nrmse_percent)} %"
         return f"Identification of {self.arm.name}: {len(self.parameters)} base parameters{errors}"
 
 

@@ -112,16 +112,16 @@ class Inspection(Shown):
         if x.backwards:
             parts.append(f"time stands still or runs backwards {x.backwards} times")
         if not math.isnan(x.rate):
-            parts.append("the motion does not repeat" if x.period is None else f"period {x.period:.6g} s")
+            parts.append("the motion does not repeat" if x.period is None else f"period {x.period:z.6g} s")
         rows = [
             [
                 c.name,
                 c.unit or (f"{c.guess}?" if c.guess else ""),
-                f"{c.low:.6g}",
-                f"{c.high:.6g}",
-                "" if c.resolution is None else f"{c.resolution:.4g}",
-                f"{100 * c.repeated:.1f}",
-                "" if c.at_rest is None else f"{100 * c.at_rest:.0f}",
+                f"{c.low:z.6g}",
+                f"{c.high:z.6g}",
+                "" if c.resolution is None else f"{c.resolution:z.4g}",
+                f"{100 * c.repeated:z.1f}",
+                "" if c.at_rest is None else f"{100 * c.at_rest:z.0f}",
                 str(c.spikes or ""),
                 str(c.missing or ""),
             ]
@@ -144,9 +144,9 @@ class Inspection(Shown):
         x = self.found
         if math.isnan(x.rate):
             return f"{x.name}: {len(x.channels)} columns, no time t that runs"
-        varies = f"time between samples varies by up to {x.jitter:.2g} periods"
+        varies = f"time between samples varies by up to {x.jitter:z.2g} periods"
         jitter = "evenly sampled" if x.jitter < _ROUNDING else varies
-        time = f"{x.samples} samples from {x.begin:.6g} s to {x.end:.6g} s at {x.rate:.6g} Hz"
+        time = f"{x.samples} samples from {x.begin:z.6g} s to {x.end:z.6g} s at {x.rate:z.6g} Hz"
         return f"{x.name}: {time}, {jitter}"
 
 

@@ -96,7 +96,7 @@ class Model(Shown):
         base, nominal = model.grouping.base, self.nominal
         known = {} if nominal is None else {"nominal": "right"}
         rows = [
-            [str(i), _equation(p), *([f"{nominal[p.name]:.6g}"] if nominal else []), p.unit]
+            [str(i), _equation(p), *([f"{nominal[p.name]:z.6g}"] if nominal else []), p.unit]
             for i, p in enumerate(base)
         ]
         columns = {"": "right", "base parameter": "left", **known, "unit": "left"}

@@ -90,12 +90,18 @@ class Refinement(Result):
             In the order in which they are printed.
         """
         rows = [
-            [x.name, f"{x.start:.5g}", f"{x.value:.5g}", "held" if x.std is None else f"{x.std:.2g}", x.unit]
+            [
+                x.name,
+                f"{x.start:z.5g}",
+                f"{x.value:z.5g}",
+                "held" if x.std is None else f"{x.std:z.2g}",
+                x.unit,
+            ]
             for x in self.found.parameters
         ]
         keys = ("f_gof_before", "f_gof", "rmse_before", "rmse")
         joints = [
-            [name, *(f"{j[k]:.4g}" for k in keys), j["unit"]]
+            [name, *(f"{j[k]:z.4g}" for k in keys), j["unit"]]
             for name, j in zip(self.arm.coordinate_names, self.to_json()["joints"], strict=True)
         ]
         headings = ("joint", "F_gof % before", "after", "RMSE before", "after ", "unit")
@@ -107,7 +113,7 @@ class Refinement(Result):
 
     def __repr__(self) -> str:
         free = sum(x.std is not None for x in self.found.parameters)
-        after = ", ".join(f"{x:.1f}" for x in self.found.after.f_gof)
+        after = ", ".join(f"{x:z.1f}" for x in self.found.after.f_gof)
         return f"Refinement of {self.arm.name}: {free} parameters tuned, F_gof {after} %"
 
 

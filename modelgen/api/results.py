@@ -139,5 +139,5 @@ class Named(Mapping[str, V]):
         for name, value in self._values.items():
             std, unit = getattr(value, "std", None), getattr(value, "unit", "")
             number = float(getattr(value, "value", value))  # type: ignore[arg-type]
-            rows.append([name, f"{number:.6g}", "" if std is None else f"± {std:.2g}", unit])
+            rows.append([name, f"{number:z.6g}", "" if std is None else f"± {std:z.2g}", unit])
         return rows

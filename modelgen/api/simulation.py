@@ -189,7 +189,7 @@ def simulate(
 def _motion(s: Simulated) -> list[str | Table]:
     p, data, q = s.plant, s.data, s.q
     rows = [
-        [name, f"{q0:.6g}", f"{q1:.6g}", f"{low:.6g}", f"{high:.6g}", unit]
+        [name, f"{q0:z.6g}", f"{q1:z.6g}", f"{low:z.6g}", f"{high:z.6g}", unit]
         for name, q0, q1, low, high, unit in zip(
             p.names, q[0], q[-1], q.min(axis=0), q.max(axis=0), p.arm.coordinate_units, strict=True
         )
@@ -198,8 +198,8 @@ def _motion(s: Simulated) -> list[str | Table]:
     rest, energy = data["at_rest_from"], data["energy"]
     return [
         Table("", headings | {"unit": "left"}, rows),
-        "moves until the end" if rest is None else f"at rest from {rest:.6g} s on",
-        f"energy {energy['begin']:.6g} J at the beginning, {energy['end'] - energy['begin']:+.6g} J since",
+        "moves until the end" if rest is None else f"at rest from {rest:z.6g} s on",
+        f"energy {energy['begin']:z.6g} J at the beginning, {energy['end'] - energy['begin']:+z.6g} J since",
     ]
 
 
@@ -220,7 +220,7 @@ def _scores(s: Simulated) -> list[str | Table]:
             rows.append([*([name] if several else []), *row, j["unit"]])
     shown: list[str | Table] = [Table("", columns, rows)]
     if several:
-        said = ", ".join(f"{j['scatter']:.3g} {j['unit']}" for j in data["joints"])
+        said = ", ".join(f"{j['scatter']:z.3g} {j['unit']}" for j in data["joints"])
         shown.append(Table("", {"scatter of the runs, which no model can explain": "left"}, [[said]]))
     return shown
 

@@ -36,7 +36,7 @@ def written(values: list[float]) -> list[str]:
 def number(value: float, digits: int = 3) -> str:
     """A number in a sentence: significant digits, no exponent where that can be read without."""
     if value == 0.0 or not math.isfinite(value):
-        return f"{value:g}"
+        return f"{value:zg}"
     if not _SMALL <= abs(value) < _LARGE:
         return f"{value:.{digits}g}"
     return f"{value:.{max(0, digits - 1 - math.floor(math.log10(abs(value))))}f}"

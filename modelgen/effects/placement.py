@@ -31,6 +31,11 @@ def admitted(effect: str, values: Mapping[str, float]) -> dict[str, float]:
     return found
 
 
+def titled(arm: Arm, effect: str, joint: int | None) -> str:
+    """An effect and where it acts, as people read it. joint: a coordinate from 1, None for the whole arm."""
+    return f"{effect} {'of the whole arm' if joint is None else f'at {arm.coordinate_names[joint - 1]}'}"
+
+
 def places(arm: Arm, name: str) -> list[int | None]:
     """Numbers of the coordinates (from 1) at which the effect can stand and does not yet; None: the arm.
 

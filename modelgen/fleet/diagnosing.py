@@ -12,6 +12,7 @@ from modelgen.api.description import load_arms
 from modelgen.api.diagnosis import Diagnosis, diagnose
 from modelgen.description import Arm
 from modelgen.diagnosis.result import rounded
+from modelgen.effects.placement import titled
 from modelgen.errors import InputError, suggest
 from modelgen.fleet.store import Row, fingerprint, folder, keep, written
 from modelgen.fleet.units import Unit
@@ -110,8 +111,8 @@ def _found(d: Diagnosis) -> Row:
         "joint_names": [c["joint_name"] for c in said["causes"]],
         "delta_bic": [c["evidence"]["delta_bic"] for c in said["causes"]],
         "cross_gain_percent": [c["evidence"]["cross_gain_percent"] for c in said["causes"]],
-        "ambiguous_with": [_places(c["ambiguous_with"]) for c in said["causes"]],
-        "aliases": [_places(c["aliases"]) for c in said["causes"]],
+        "ambiguous_with": [_places(d.arm, c["ambiguous_with"]) for c in said["causes"]],
+        "aliases": [_places(d.arm, c["aliases"]) for c in said["causes"]],
         "cause_parameters": [
             {"cause": c["effect"], "joint": c["joint"], "name": name, **value}
             for c in said["causes"]
@@ -133,5 +134,5 @@ def _found(d: Diagnosis) -> Row:
     }
 
 
-def _places(causes: list[dict[str, Any]]) -> list[str]:
-    return [c["effect"] if c["joint"] is None else f"{c['effect']} at joint {c['joint']}" for c in causes]
+def _places(arm: Arm, causes: list[dict[str, Any]]) -> list[str]:
+    return [titled(arm, c["effect"], c["joint"]) for c in causes]

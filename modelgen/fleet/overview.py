@@ -52,7 +52,7 @@ def overview(rows: Sequence[Row]) -> str:
     minutes = sum(row.get("cpu_seconds") or 0.0 for row in rows) / 60
     units = [
         Units([_row(row) for row in rows]),
-        Text(f"{_READING} {minutes:.3g} min of processor time.", "quiet"),
+        Text(f"{_READING} {minutes:z.3g} min of processor time.", "quiet"),
     ]
     heading = f"Fleet of {len(rows)} unit{'' if len(rows) == 1 else 's'}"
     return page(heading, "Diagnosis of many arms", answers, [("Units", units)], own="fleet")
@@ -74,7 +74,7 @@ class Bars(Part):
             {
                 "label": Markup(escape(label).replace("_", "_<wbr>")),  # where a long name may break
                 "pieces": [
-                    {"look": look, "width": f"{_WIDEST * count / most:.4g}%", "text": f"{word}: {count}"}
+                    {"look": look, "width": f"{_WIDEST * count / most:z.4g}%", "text": f"{word}: {count}"}
                     for word, count, look in pieces
                 ],
                 "total": total,
@@ -108,10 +108,13 @@ def verdict(row: Row) -> str:
     return found if found in VERDICTS else FAILED
 
 
-def causes(rows: Sequence[Row]) -> Counter[tuple[str, int | None]]:
-    """How often each cause is named, by effect and joint."""
+def causes(rows: Sequence[Row]) -> Counter[tuple[str, int | None, str]]:
+    """How often each cause is named, by effect, joint and its name, which is empty of the whole arm."""
+    lists = ("causes", "joints", "joint_names")
     return Counter(
-        pair for row in rows for pair in zip(row.get("causes") or (), row.get("joints") or (), strict=True)
+        (effect, joint, name or "")
+        for row in rows
+        for effect, joint, name in zip(*(row.get(key) or () for key in lists), strict=True)
     )
 
 
@@ -119,18 +122,18 @@ def cause_bars(rows: Sequence[Row]) -> list[tuple[str, list[Piece], int]]:
     """Named causes, the most frequent one first, each with its joints and how often in all."""
     found = causes(rows)
     effects = Counter[str]()
-    for (effect, _), count in found.items():
+    for (effect, _, _), count in found.items():
         effects[effect] += count
-    joints = sorted({joint for _, joint in found if joint is not None})
+    joints = sorted({(joint, name) for _, joint, name in found if joint is not None})
     bars = []
     for effect in sorted(effects, key=lambda name: (-effects[name], name)):
         parts = [
-            (f"joint {joint}", found[effect, joint], f"k{k % _LOOKS}")
-            for k, joint in enumerate(joints)
-            if found[effect, joint]
+            (name, found[effect, joint, name], f"k{k % _LOOKS}")
+            for k, (joint, name) in enumerate(joints)
+            if found[effect, joint, name]
         ]
-        if found[effect, None]:
-            parts.append(("whole arm", found[effect, None], "k4"))
+        if found[effect, None, ""]:
+            parts.append(("whole arm", found[effect, None, ""], "k4"))
         bars.append((effect, parts, effects[effect]))
     return bars
 
@@ -142,9 +145,9 @@ def _worth(rows: Sequence[Row]) -> str:
     if not gains:
         return ""
     worse = sum(g < 0.0 for g in gains)
-    said = f"With the causes the error on the test records is {median(gains):.1f} % less over all joints"
+    said = f"With the causes the error on the test records is {median(gains):z.1f} % less over all joints"
     said += (
-        f" (median of {len(gains)} units, {min(gains):.1f} to {max(gains):.1f} %)" if len(gains) > 1 else ""
+        f" (median of {len(gains)} units, {min(gains):z.1f} to {max(gains):z.1f} %)" if len(gains) > 1 else ""
     )
     return said + (f"; it is larger in {worse}." if worse else ".")
 
@@ -179,8 +182,8 @@ def _row(row: Row) -> dict[str, Any]:
         "order": list(WORDS).index(found),
         "causes": [(e if j is None else f"{e} at {j}", ", ".join(rivals)) for e, j, rivals in named],
         "figures": [
-            _number(max(row.get("delta_bic") or (), default=None), ".1f"),
-            _number(row.get("overall_gain_percent") if row.get("causes") else None, ".1f"),
+            _number(max(row.get("delta_bic") or (), default=None), "z.1f"),
+            _number(row.get("overall_gain_percent") if row.get("causes") else None, "z.1f"),
             _number(None if fit is None else fit / threshold, ".2f"),
             _number(row.get("seconds"), ".1f"),
         ],
@@ -190,4 +193,4 @@ def _row(row: Row) -> dict[str, Any]:
 
 def _number(value: float | None, form: str) -> tuple[str, str]:
     """Return the number as sorted and as shown."""
-    return ("", "") if value is None else (f"{value:.9g}", f"{value:{form}}")
+    return ("", "") if value is None else (f"{value:z.9g}", f"{value:{form}}")

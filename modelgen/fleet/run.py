@@ -40,7 +40,10 @@ class Fleet(Shown):
             "units": len(self.rows),
             "kept": self.kept,
             "verdicts": {key: counts[key] for key in WORDS},
-            "causes": [{"effect": effect, "joint": joint, "units": n} for (effect, joint), n in named],
+            "causes": [
+                {"effect": effect, "joint": joint, "joint_name": name or None, "units": n}
+                for (effect, joint, name), n in named
+            ],
             "failed": [{"unit": r["unit"], "error": r["error"]} for r in self.rows if r.get("error")],
             "cpu_seconds": round(sum(r.get("cpu_seconds") or 0.0 for r in self.rows), 1),
             "table": str(self.out / NAME),
@@ -51,8 +54,7 @@ class Fleet(Shown):
         """Lines and tables of `modelgen fleet`."""
         said = self.to_json()
         rows = [
-            [c["effect"], "arm" if c["joint"] is None else str(c["joint"]), str(c["units"])]
-            for c in said["causes"][:SHOWN]
+            [c["effect"], c["joint_name"] or "the whole arm", str(c["units"])] for c in said["causes"][:SHOWN]
         ]
         columns = {"cause": "left", "joint": "left", "units": "right"}
         tables = [Table("", columns, rows)] if rows else []

@@ -56,7 +56,7 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
     name = joint_name(arm, c.joint)
     before, after = (number(float(np.degrees(x))) for x in (c.rms_before, c.rms_after))
     said = f"The lever of {name} explains the angle to {after} deg instead of {before} deg (RMSE): "
-    said += f"{c.improvement_percent:.0f} % less, over {len(c.motor)} samples."
+    said += f"{c.improvement_percent:z.0f} % less, over {len(c.motor)} samples."
     branch = []
     if c.after.rev != c.before.rev:
         left = number(float(np.degrees(c.candidates[c.before.rev])))
@@ -67,10 +67,10 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
     rows = [
         (
             e.name,
-            f"{e.before:.6g}",
-            f"{e.value:.6g}",
-            f"{e.std:.2g}",
-            f"{(e.value - e.before) / e.std:+.1f}" if e.std > 0 else "",
+            f"{e.before:z.6g}",
+            f"{e.value:z.6g}",
+            f"{e.std:z.2g}",
+            f"{(e.value - e.before) / e.std:+z.1f}" if e.std > 0 else "",
             e.unit,
         )
         for e in c.estimates

@@ -106,7 +106,7 @@ def _limits(arm: Arm, speeds: Sequence[float]) -> list[str] | None:
     joints = [arm.joints[i] for i in arm.coordinates]
     free = [k for k, j in enumerate(joints) if j.limits.velocity is None and j.drive.limits.velocity is None]
     least = float(np.min(np.asarray(speeds)[free])) if free and len(speeds) else None
-    words = [] if least is None else ["--velocity", f"{least:.2g}"]
+    words = [] if least is None else ["--velocity", f"{least:z.2g}"]
     try:
         bounds(arm, ExcitationOptions(velocity=least))
     except InputError:

@@ -11,11 +11,12 @@ from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
+from modelgen.effects.placement import titled
 from modelgen.report.diagnosis_sentences import checked, interval
 from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.law_sketch import sketch
 from modelgen.report.page import Grid, Heading, Marks, Part, Run, Section, Text, block
-from modelgen.report.words import at, by_name, finding, law, sentence
+from modelgen.report.words import finding, law, sentence
 
 _VALUES = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"), ("meaning", "left"))
 
@@ -25,15 +26,15 @@ def found(d: Diagnosis, c: NamedCause) -> str:
     return sentence(finding(d.arm, c.effect, c.joint, c.parameters))
 
 
-def marks(d: Diagnosis, c: NamedCause, key: str) -> Marks:
+def marks(c: NamedCause, key: str) -> Marks:
     """Its checks."""
-    return Marks(key, [_mark(d, check) for check in c.checks])
+    return Marks(key, [_mark(check) for check in c.checks])
 
 
 def failed(d: Diagnosis, c: NamedCause) -> str:
     """The checks that keep it from its name."""
     lost = [x for x in c.checks if x.decides and x.passed is False]
-    return "; ".join(f"{x.name} ({by_name(d.arm, x.text)})" for x in lost)
+    return "; ".join(f"{x.name} ({x.text})" for x in lost)
 
 
 def law_found(d: Diagnosis, k: int) -> Section:
@@ -43,18 +44,20 @@ def law_found(d: Diagnosis, k: int) -> Section:
     text = [Run(f"{_law(c.effect)} "), reference, Run(" "), _more(c)]
     parts: list[Part] = [Text(text), *_size(d, k), block(law_charts(d, k)), _values(d, c)]
     evidence = (
-        f"Evidence: delta BIC {c.delta_bic:.1f}; {c.cross_gain:.1f} % less error on training records that "
-        f"its fit had not seen, {c.expected_gain:.1f} % expected there{_share(c)}."
+        f"Evidence: delta BIC {c.delta_bic:z.1f}; {c.cross_gain:z.1f} % less error on training records that "
+        f"its fit had not seen, {c.expected_gain:z.1f} % expected there{_share(c)}."
     )
-    return Section(f"The law found: {at(d.arm, c.effect, c.joint)}", [*parts, Text(evidence)], f"cause{k}")
+    return Section(
+        f"The law found: {titled(d.arm, c.effect, c.joint)}", [*parts, Text(evidence)], f"cause{k}"
+    )
 
 
 def suspected(d: Diagnosis, k: int) -> list[Part]:
     """Suspect k, with its values and what keeps it from its name."""
     c = d.suspects[k]
-    evidence = f"Evidence: delta BIC {c.delta_bic:.1f}. It is not named: {failed(d, c)}."
+    evidence = f"Evidence: delta BIC {c.delta_bic:z.1f}. It is not named: {failed(d, c)}."
     return [
-        Heading(at(d.arm, c.effect, c.joint), f"suspect{k}"),
+        Heading(titled(d.arm, c.effect, c.joint), f"suspect{k}"),
         Text([Run(f"{_law(c.effect)} "), _more(c)]),
         Text(evidence),
         _values(d, c),
@@ -107,19 +110,19 @@ def _values(d: Diagnosis, c: NamedCause) -> Grid:
     rows: Sequence[Sequence[str]] = [
         (
             name,
-            f"{e.value:.4g}",
-            "" if np.isnan(e.std) else f"{e.std:.2g}",
+            f"{e.value:z.4g}",
+            "" if np.isnan(e.std) else f"{e.std:z.2g}",
             "" if e.unit == "1" else e.unit,
             meanings.get(name, ""),
         )
         for name, e in c.parameters.items()
     ]
-    return Grid(f"Values of {at(d.arm, c.effect, c.joint)}", _VALUES, rows)
+    return Grid(f"Values of {titled(d.arm, c.effect, c.joint)}", _VALUES, rows)
 
 
-def _mark(d: Diagnosis, c: Check) -> tuple[str, str, str]:
+def _mark(c: Check) -> tuple[str, str, str]:
     """Class, name and figures of a check."""
-    name, _, text = checked(d.arm, c)
+    name, _, text = checked(c)
     kind = "unasked" if c.passed is None else "yes" if c.passed else "no"
     return kind, name, text if c.decides else f"{text}; reported, decides nothing"
 
@@ -132,4 +135,4 @@ def _share(c: NamedCause) -> str:
     size, low, high, word = (
         (s.gain, s.low, s.high, "less") if s.gain >= 0 else (-s.gain, -s.high, -s.low, "more")
     )
-    return f"; {size:.1f} % {word} error on the test record than without it" + interval(low, high, " ({} %)")
+    return f"; {size:z.1f} % {word} error on the test record than without it" + interval(low, high, " ({} %)")

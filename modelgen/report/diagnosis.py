@@ -17,7 +17,7 @@ from modelgen.report.experiment import described
 from modelgen.report.named_joints import named_joints
 from modelgen.report.page import Folded, Grid, Heading, Lines, Part, Run, Section, Text, block, page
 from modelgen.report.ranking import rankings
-from modelgen.report.words import by_name, joint_name
+from modelgen.report.words import joint_name
 
 # By whether the test record is a free motion.
 _SIMULATED = {
@@ -107,7 +107,7 @@ def _others(d: Diagnosis) -> Iterator[Section]:
 
 
 def _log(d: Diagnosis) -> list[Part]:
-    hidden = [f"{name}: {by_name(d.arm, why)}" for name, why in d.not_identifiable]
+    hidden = [f"{name}: {why}" for name, why in d.not_identifiable]
     said: list[Part] = [Lines([*d.log.lines(), *assumptions(d), *compared(d)])]
     return [*said, Heading("What these records cannot show"), Lines(hidden)] if hidden else said
 
@@ -133,10 +133,10 @@ def _simulation(d: Diagnosis) -> list[Part]:
             joint_name(d.arm, j + 1),
             _fit(one.f_gof[j]),
             _fit(two.f_gof[j]),
-            f"{one.mae[j]:.3g}",
-            f"{two.mae[j]:.3g}",
-            f"{one.rmse[j]:.3g}",
-            f"{two.rmse[j]:.3g}",
+            f"{one.mae[j]:z.3g}",
+            f"{two.mae[j]:z.3g}",
+            f"{one.rmse[j]:z.3g}",
+            f"{two.rmse[j]:z.3g}",
         )
         for j in range(len(one.f_gof))
     ]
@@ -146,11 +146,11 @@ def _simulation(d: Diagnosis) -> list[Part]:
 
 def _fit(percent: float) -> str:
     """A goodness of fit, short also where the simulated motion runs away."""
-    return f"{percent:.2f}" if abs(percent) < 1e5 else f"{percent:.0e}"
+    return f"{percent:z.2f}" if abs(percent) < 1e5 else f"{percent:.0e}"
 
 
 def _files(d: Diagnosis) -> list[Part]:
-    values = [(name, f"{e.value:.6g}", f"{e.std:.2g}", e.unit) for name, e in d.parameters.items()]
+    values = [(name, f"{e.value:z.6g}", f"{e.std:z.2g}", e.unit) for name, e in d.parameters.items()]
     settings = [(name, _said(value)) for name, value in d.settings.items()]
     extended, identified = f"{d.arm.name}_extended.yaml", f"{d.arm.name}_parameters.yaml"
     beside = [

@@ -10,11 +10,12 @@ import numpy as np
 from modelgen.charts import number
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
+from modelgen.effects.placement import titled
 from modelgen.report.cause_parts import failed, found, marks
 from modelgen.report.diagnosis_sentences import harms, interval, missing, remains, worth
 from modelgen.report.following import following
 from modelgen.report.page import Command, Folded, Grid, Part, Run, Section, Text
-from modelgen.report.words import at, by_name, joint_name, listed, sentence
+from modelgen.report.words import joint_name, listed, sentence
 
 # By whether the test record is a free motion.
 _ERRORS = {
@@ -61,11 +62,11 @@ def _linked(effect: str) -> Run:
 
 
 def _names(d: Diagnosis, causes: Sequence[NamedCause]) -> str:
-    return listed(at(d.arm, c.effect, c.joint) for c in causes)
+    return listed(titled(d.arm, c.effect, c.joint) for c in causes)
 
 
 def _sure(d: Diagnosis) -> Iterator[Part]:
-    checks = [[Text(at(d.arm, c.effect, c.joint)), marks(d, c, f"cause{k}")] for k, c in enumerate(d.causes)]
+    checks = [[Text(titled(d.arm, c.effect, c.joint)), marks(c, f"cause{k}")] for k, c in enumerate(d.causes)]
     if len(checks) == 1:
         yield checks[0][1]
     elif checks:
@@ -92,9 +93,9 @@ def _passed(causes: Sequence[NamedCause]) -> str:
 
 def _suspect(d: Diagnosis, k: int) -> list[Part]:
     c = d.suspects[k]
-    title = at(d.arm, c.effect, c.joint)
+    title = titled(d.arm, c.effect, c.joint)
     text = f"{found(d, c)} {title} is suspected and not named, for want of: {failed(d, c)}."
-    return [Text(text), marks(d, c, f"suspect{k}")]
+    return [Text(text), marks(c, f"suspect{k}")]
 
 
 def _worth(d: Diagnosis) -> Iterator[Part]:
@@ -144,7 +145,7 @@ def _next(d: Diagnosis, folder: Path) -> Iterator[Part]:
 
 
 def _reason(d: Diagnosis) -> str:
-    return sentence(by_name(d.arm, d.reason))
+    return sentence(d.reason)
 
 
 def _gains(d: Diagnosis) -> list[tuple[str, str, str, tuple[str, str]]]:
@@ -154,7 +155,7 @@ def _gains(d: Diagnosis) -> list[tuple[str, str, str, tuple[str, str]]]:
             joint_name(d.arm, j + 1),
             number(e.before[j]),
             number(e.after[j]),
-            (f"{e.gain[j]:.1f}", interval(e.low[j], e.high[j], "({})")),
+            (f"{e.gain[j]:z.1f}", interval(e.low[j], e.high[j], "({})")),
         )
         for j in range(len(e.before))
     ]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.charts import number
-from modelgen.description import Arm
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE, Family
-from modelgen.report.words import at, by_name, finding, joint_name, listed, sentence
+from modelgen.effects.placement import titled
+from modelgen.report.words import finding, joint_name, listed, sentence
 
 _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
@@ -38,9 +38,9 @@ def unnamed(d: Diagnosis) -> str:
 def headline(d: Diagnosis) -> str:
     """The verdict in one sentence with what it is worth, or with its reason."""
     if d.verdict == "named":
-        names = listed(at(d.arm, c.effect, c.joint) for c in d.causes)
+        names = listed(titled(d.arm, c.effect, c.joint) for c in d.causes)
         return f"The model lacks {names}: {worth(d)}."
-    return f"{unnamed(d)} {sentence(by_name(d.arm, d.reason))}"
+    return f"{unnamed(d)} {sentence(d.reason)}"
 
 
 def worth(d: Diagnosis) -> str:
@@ -52,27 +52,27 @@ def worth(d: Diagnosis) -> str:
     joints = " over all joints" if len(e.gain) > 1 else ""
     between = interval(low, high, " ({} %)")
     if e.overall >= _VISIBLE:
-        said = f"{e.overall:.1f} % less error on the test record{joints}{between}"
+        said = f"{e.overall:z.1f} % less error on the test record{joints}{between}"
     elif e.overall <= -_VISIBLE:
-        said = f"the test record has {-e.overall:.1f} % more error{joints}"
+        said = f"the test record has {-e.overall:z.1f} % more error{joints}"
     else:
         said = f"the test record is predicted no better{joints}"
     if e.gain[worst] <= -_VISIBLE:
-        said += f", {-e.gain[worst]:.1f} % more at {joint_name(d.arm, worst + 1)}"
+        said += f", {-e.gain[worst]:z.1f} % more at {joint_name(d.arm, worst + 1)}"
     doubted = [c for c in d.causes if any(k.name == "confirmed" and k.passed is False for k in c.checks)]
-    names = [at(d.arm, c.effect, c.joint) for c in doubted]
+    names = [titled(d.arm, c.effect, c.joint) for c in doubted]
     return said + (f"; that record does not confirm {listed(names)}" if names else "")
 
 
 def interval(low: float, high: float, around: str = "{}") -> str:
     """Of a gain [%], put into `around`; empty where the test record is too short for one."""
-    return "" if np.isnan(low) else around.format(f"{low:.1f} to {high:.1f}")
+    return "" if np.isnan(low) else around.format(f"{low:z.1f} to {high:z.1f}")
 
 
 def harms(d: Diagnosis) -> list[str]:
     """Warnings about causes that make the test record worse."""
     return [
-        f"With {at(d.arm, c.effect, c.joint)} the error on the test record is {-c.share.gain:.1f} % "
+        f"With {titled(d.arm, c.effect, c.joint)} the error on the test record is {-c.share.gain:z.1f} % "
         f"larger ({interval(-c.share.high, -c.share.low)} %): what was found does not carry over to that "
         f"record.{CATALOGUE[c.effect].caveat}"
         for c in d.causes
@@ -88,9 +88,9 @@ def remains(d: Diagnosis) -> str:
     where = joint_name(d.arm, f.worst.joint + 1)
     part = d.lack_of_fit_part
     if part is not None:
-        where += f", {part[0]} from {part[1]:.2f} to {part[2]:.2f} s"
+        where += f", {part[0]} from {part[1]:z.2f} to {part[2]:z.2f} s"
     said = (
-        f"Lack of fit over {f.periods} repeated periods: {f.statistic:.2f}, threshold {f.threshold:.2f} "
+        f"Lack of fit over {f.periods} repeated periods: {f.statistic:z.2f}, threshold {f.threshold:z.2f} "
         f"(1 for a complete model), largest at {where}."
     )
     return f"{said} {_size(d)}".rstrip() if f.found else said
@@ -124,7 +124,7 @@ def _unit(d: Diagnosis, j: int) -> str:
 def assumptions(d: Diagnosis) -> list[str]:
     """Values of the description that no record shows, what is missing there, and doubts."""
     used = [
-        f"The drive's inertia at {joint_name(d.arm, k)} is set to {e.value:.3g} {e.unit}, what was "
+        f"The drive's inertia at {joint_name(d.arm, k)} is set to {e.value:z.3g} {e.unit}, what was "
         "identified of drive and link together beyond the link's nominal inertials: stiffness and play are "
         "found with it. A value under drive_inertia in the description is used instead."
         for k, e in d.inertias.items()
@@ -137,7 +137,7 @@ def assumptions(d: Diagnosis) -> list[str]:
         for drive in d.after.model.grouping.drives
         if drive.nominal is None and (k := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
-    return used + unknown + ([] if d.identified is None else [by_name(d.arm, x) for x in d.identified.doubts])
+    return used + unknown + ([] if d.identified is None else list(d.identified.doubts))
 
 
 def compared(d: Diagnosis) -> list[str]:
@@ -150,37 +150,32 @@ def compared(d: Diagnosis) -> list[str]:
     rested = bool((np.abs(rmse - before) > _SAME * rmse)[known].any())
     if not rested and abs(usual - cutoff) <= _SAME * cutoff:
         return []
-    numbers = ", ".join(f"{x:.4g}" for x in rmse)
+    numbers = ", ".join(f"{x:z.4g}" for x in rmse)
     at_rest = "fitted with what the filter carries from samples at rest, as identify does, it is"
     counted = f"; {at_rest} {numbers} {d.errors.unit}" if rested else ""
-    other = f", identify chooses {usual:.4g} Hz" if abs(usual - cutoff) > _SAME * cutoff else ""
+    other = f", identify chooses {usual:z.4g} Hz" if abs(usual - cutoff) > _SAME * cutoff else ""
     return [
-        f"The error is that up to {cutoff:.6g} Hz, fitted and judged while the joint moves{counted}{other}; "
-        f"modelgen identify --cutoff {cutoff:.6g} has this band."
+        f"The error is that up to {cutoff:z.6g} Hz, fitted and judged while the joint moves{counted}{other}; "
+        f"modelgen identify --cutoff {cutoff:z.6g} has this band."
     ]
 
 
 def suspicions(d: Diagnosis) -> list[str]:
     """What has evidence and is not named, each with the check that it failed."""
     return [
-        f"Suspected: {at(d.arm, c.effect, c.joint)}, evidence {c.delta_bic:.1f}. It is not named: "
-        + "; ".join(
-            f"{name}, {text}" for name, mark, text in (checked(d.arm, k) for k in c.checks) if mark == "no"
-        )
+        f"Suspected: {titled(d.arm, c.effect, c.joint)}, evidence {c.delta_bic:z.1f}. It is not named: "
+        + "; ".join(f"{name}: {text}" for name, mark, text in (checked(k) for k in c.checks) if mark == "no")
         + "."
         for c in d.suspects
     ]
 
 
-def checked(arm: Arm, c: Check) -> tuple[str, str, str]:
+def checked(c: Check) -> tuple[str, str, str]:
     """Name, answer and figures of a check."""
     mark = "not asked" if c.passed is None else "yes" if c.passed else "no"
     if not c.decides and c.passed is False:
         mark = "no, which does not decide"
-    figures = (
-        f" ({c.value:.3g}, threshold {c.threshold:.3g})" if np.isfinite([c.value, c.threshold]).all() else ""
-    )
-    return c.name, mark, by_name(arm, c.text) + figures
+    return c.name, mark, c.text
 
 
 def rivals(d: Diagnosis) -> list[tuple[str, str, str]]:
@@ -188,16 +183,16 @@ def rivals(d: Diagnosis) -> list[tuple[str, str, str]]:
     found = []
     further = "" if d.next_experiment is None else "; the next experiment separates them"
     for c in d.causes:
-        own = at(d.arm, c.effect, c.joint)
+        own = titled(d.arm, c.effect, c.joint)
         found += [
-            (own, at(d.arm, e, j), "no motion of this arm separates the two: it is named by convention")
+            (own, titled(d.arm, e, j), "no motion of this arm separates the two: it is named by convention")
             for e, j in c.aliases
         ]
         found += [
             (
                 own,
-                at(d.arm, e, j),
-                f"delta BIC {behind:.1f} behind: nearly as good{further}",
+                titled(d.arm, e, j),
+                f"delta BIC {behind:z.1f} behind: nearly as good{further}",
             )
             for e, j, behind in c.ambiguous_with
         ]

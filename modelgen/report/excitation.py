@@ -66,7 +66,7 @@ def report(e: Excitation, stem: str, call: Call) -> str:
         said += f" {len(reached)} starts ended between {number(min(reached))} and {number(max(reached))}."
     remarks = [*e.arm.notes, *e.problem.remarks]
     tight = sorted(e.usage.items(), key=lambda item: -item[1])
-    rows = [(limit, f"{100 * share:.1f}") for limit, share in tight]
+    rows = [(limit, f"{100 * share:z.1f}") for limit, share in tight]
     answers: Parts = [
         ("What was found", [Text(said)]),
         (
@@ -76,7 +76,7 @@ def report(e: Excitation, stem: str, call: Call) -> str:
                     f"One period of {s.period:g} s, {s.rate:g} set-points a second, {s.harmonics} harmonics."
                 ),
                 *(
-                    [Text(f"Tightest limit: {tight[0][0]}, {100 * tight[0][1]:.0f} % of it used.")]
+                    [Text(f"Tightest limit: {tight[0][0]}, {100 * tight[0][1]:z.0f} % of it used.")]
                     if tight
                     else []
                 ),

@@ -10,9 +10,10 @@ from modelgen.charts import Band, Chart, Curve, sheet
 from modelgen.description import Arm
 from modelgen.diagnosis.experiment import STEM, Experiment, Proposal, differences
 from modelgen.diagnosis.result import Diagnosis
+from modelgen.effects.placement import titled
 from modelgen.excitation.writing import set_points, trajectory
 from modelgen.report.page import Grid, Part, Run, Text, block
-from modelgen.report.words import at, by_name, sentence
+from modelgen.report.words import sentence
 
 NAMES = (f"{STEM}.csv", f"{STEM}_set_points.csv", f"{STEM}.svg")
 _PAIRS = (("if this is there", "left"), ("against", "left"), ("expected delta BIC", "right"))
@@ -27,7 +28,7 @@ def followed(e: Experiment) -> str:
     figure = e.evidence if by_trajectory else first
     if by_trajectory and figure is not None:
         figure *= e.periods / e.run
-    said = "" if figure is None else f"; expected delta BIC {figure:.3g}"
+    said = "" if figure is None else f"; expected delta BIC {figure:z.3g}"
     return f"{e.best}{said}"
 
 
@@ -36,8 +37,8 @@ def described(d: Diagnosis) -> list[Part]:
     e = d.next_experiment
     if e is None:
         return []
-    separates = " from ".join(at(d.arm, effect, joint) for effect, joint in e.separates)
-    best = _kept(sentence(by_name(d.arm, followed(e))))
+    separates = " from ".join(titled(d.arm, effect, joint) for effect, joint in e.separates)
+    best = _kept(sentence(followed(e)))
     parts: list[Part] = [Text(f"It separates {separates}."), Text([Run(best, "strong")])]
     if e.proposal is not None:
         drawn = charts(d.arm, e)
@@ -47,7 +48,7 @@ def described(d: Diagnosis) -> list[Part]:
             block(drawn[:1]),
             block(drawn[1:]),
         ]
-    tests = [(_kept(by_name(d.arm, t.text)), _evidence(t.evidence)) for t in e.tests]
+    tests = [(_kept(t.text), _evidence(t.evidence)) for t in e.tests]
     return [*parts, Grid("Tests on the bench", _TESTS, tests, folds=True)] if tests else parts
 
 
@@ -83,7 +84,7 @@ def charts(arm: Arm, e: Experiment) -> list[Chart]:
     shown = (t >= period) & (t < 2 * period) if e.run > 1 else np.ones(len(t), dtype=bool)
     unit = rows.prepared.effort_unit
     for true, wrong, joint, left, noise in differences(e, e.proposal):
-        text = f"{at(arm, *true)}, fitted as {at(arm, *wrong)}"
+        text = f"{titled(arm, *true)}, fitted as {titled(arm, *wrong)}"
         curves = [Curve(t[shown] - t[shown][0], left[shown], "after", "residual of the wrong cause")]
         y_label = f"residual at {names[joint]} [{unit[joint] if joint < len(unit) else 'A'}]"
         bands = [Band(-noise, noise, "noise")]
@@ -95,9 +96,9 @@ def _trajectory(e: Experiment, p: Proposal) -> str:
     s = p.excitation.problem.settings
     used = max(p.excitation.usage.values(), default=0.0)
     text = (
-        f"{STEM}.csv holds a period of {s.period:.4g} s, {STEM}_set_points.csv the same for a position "
-        f"controller in motor coordinates; {100 * used:.0f} % of the tightest limit is used. The evidence is "
-        f"that of {e.run} periods with the noise of the training records"
+        f"{STEM}.csv holds a period of {s.period:z.4g} s, {STEM}_set_points.csv the same for a position "
+        f"controller in motor coordinates; {100 * used:z.0f} % of the tightest limit is used. The evidence "
+        f"is that of {e.run} periods with the noise of the training records"
     )
     text += "." if e.periods == e.run else f"; {e.periods} separate the causes."
     if e.assumed:
@@ -106,7 +107,7 @@ def _trajectory(e: Experiment, p: Proposal) -> str:
 
 
 def _pairs(arm: Arm, e: Experiment, p: Proposal) -> list[tuple[str, str, str]]:
-    names = [at(arm, *h.candidate.place) for h in e.members]
+    names = [titled(arm, *h.candidate.place) for h in e.members]
     count = range(len(names))
     return [
         (names[i], names[j], _evidence(float(p.evidence[i, j])))
@@ -118,7 +119,7 @@ def _pairs(arm: Arm, e: Experiment, p: Proposal) -> list[tuple[str, str, str]]:
 
 def _evidence(value: float | None) -> str:
     """A delta BIC, of which less than a tenth says nothing."""
-    return "" if value is None else f"{value:.1f}"
+    return "" if value is None else f"{value:z.1f}"
 
 
 def _kept(text: str) -> str:

@@ -10,9 +10,10 @@ import numpy as np
 
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
+from modelgen.effects.placement import titled
 from modelgen.report.call import WHERE, Call
 from modelgen.report.experiment import followed
-from modelgen.report.words import at, listed, place_of
+from modelgen.report.words import listed, place_of
 
 _BETTER_LOGS = "Record a motion that moves every joint over its range, several periods in a row."
 
@@ -59,7 +60,7 @@ def following(d: Diagnosis, folder: Path) -> list[Step]:
 def _wherever(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> str:
     """An effect at every place where it acts."""
     if len(joints) == 1:
-        return at(d.arm, effect, joints[0])
+        return titled(d.arm, effect, joints[0])
     return f"{effect} at {listed(place_of(d.arm, joint) for joint in joints)}"
 
 

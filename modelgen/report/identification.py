@@ -68,7 +68,7 @@ def report(
     errors: list[Any] = [Text("There is no test record: nothing says how well the model predicts.")]
     if test is not None:
         heads = [("model", "left"), *((f"{n} [{u}]", "right") for n, u in zip(names, test.unit, strict=True))]
-        share = listed(f"{x:.1f} % at {n}" for x, n in zip(test.nrmse_percent, names, strict=True))
+        share = listed(f"{x:z.1f} % at {n}" for x, n in zip(test.nrmse_percent, names, strict=True))
         errors = [
             Text(f"On records that it has not seen, the model misses {share} of the effort (NRMSE)."),
             Grid("Errors on the test records", heads, [(t, *cells) for t, cells in models(test, others)]),
@@ -86,7 +86,8 @@ def report(
     if found.gains:
         heads = [("joint", "left"), *((h, "right") for h in ("described", "found", "std"))]
         rows = [
-            (names[g.joint - 1], f"{g.described:.6g}", f"{g.value:.6g}", f"{g.std:.2g}") for g in found.gains
+            (names[g.joint - 1], f"{g.described:z.6g}", f"{g.value:z.6g}", f"{g.std:z.2g}")
+            for g in found.gains
         ]
         sections.append(("Torque constants", [Grid("Torque constants", heads, rows)]))
     if test is not None:
@@ -99,7 +100,7 @@ def report(
 
 
 def _method(found: Identification) -> Text:
-    condition = f"{found.solution.condition:.4g}"
+    condition = f"{found.solution.condition:z.4g}"
     return Text(
         f"Method {found.method}; condition number of the columns at unit length {condition}.", "quiet"
     )
@@ -120,7 +121,7 @@ def _uncertain(found: Identification) -> list[Any]:
             where = "" if j is None else found.arm.coordinate_names[j]
             unit = "" if j is None else test.unit[j]
             value = f"{number(e.value)} ± {number(e.std or 0.0, 2)} {e.unit}"
-            rows.append((e.name, value, f"± {number(size, 2)} {unit}", f"{share:.1f} % at {where}"))
+            rows.append((e.name, value, f"± {number(size, 2)} {unit}", f"{share:z.1f} % at {where}"))
         heads = [
             ("parameter", "left"),
             ("value", "right"),
@@ -196,15 +197,15 @@ def _parameters(found: Identification) -> list[Any]:
 
 
 def _parameter(e: Any, nominal: float | None) -> tuple[str, ...]:
-    std = "left out" if e.dropped else "not determined" if e.std is None else f"{e.std:.2g}"
-    share = "" if e.relative is None else f"{e.relative:.1f}"
-    described = "" if nominal is None else f"{nominal:.5g}"
-    return e.name, f"{e.value:.5g}", std, described, share, e.unit, "yes" if e.essential else "no"
+    std = "left out" if e.dropped else "not determined" if e.std is None else f"{e.std:z.2g}"
+    share = "" if e.relative is None else f"{e.relative:z.1f}"
+    described = "" if nominal is None else f"{nominal:z.5g}"
+    return e.name, f"{e.value:z.5g}", std, described, share, e.unit, "yes" if e.essential else "no"
 
 
 def table(test: Validation) -> list[tuple[str, str]]:
     """RMSE and NRMSE in %, joint by joint."""
-    return [(f"{a:.4g}", f"{b:.1f}") for a, b in zip(test.rmse, test.nrmse_percent, strict=True)]
+    return [(f"{a:z.4g}", f"{b:z.1f}") for a, b in zip(test.rmse, test.nrmse_percent, strict=True)]
 
 
 def models(test: Validation, others: Sequence[Alternative]) -> list[tuple[str, list[str]]]:
@@ -212,7 +213,7 @@ def models(test: Validation, others: Sequence[Alternative]) -> list[tuple[str, l
     rows = [(AS_DESCRIBED, [f"{a} ({b})" for a, b in table(test)])]
     for other in others:
         change = 100.0 * (test.rmse / np.maximum(other.test.rmse, 1e-300) - 1.0)
-        cells = [f"{a} ({b}) {c:+.0f} %" for (a, b), c in zip(table(other.test), change, strict=True)]
+        cells = [f"{a} ({b}) {c:+z.0f} %" for (a, b), c in zip(table(other.test), change, strict=True)]
         rows.append((other.name, cells))
     return rows
 

@@ -82,7 +82,7 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
     shown = ""
     if waves > _SEEN:
         kept = np.logical_and(kept, _amid(best.x, _SEEN * wave))
-        shown, waves = f", {_SEEN} of its {waves:.0f} waves", _SEEN
+        shown, waves = f", {_SEEN} of its {waves:z.0f} waves", _SEEN
     x = best.x[kept]
     old, new, own = ((r[m, j] * turned)[kept] for r in (*d.residuals, law))
     some = np.linspace(0, len(own) - 1, min(_SAMPLES, len(own))).astype(int)
@@ -125,7 +125,7 @@ def _over_a_stretch(d: Diagnosis, k: int, j: int) -> list[Chart]:
     begin = int(np.argmax(explained[length:] - explained[:-length]))
     t, old, new, own = (v[begin : begin + length] for v in (t, old, new, own))
     effect, name = d.causes[k].effect, d.arm.coordinate_names[j]
-    span = f"{np.ptp(t):.2g} s"
+    span = f"{np.ptp(t):z.2g} s"
     it, what = _added(d)
     found = Chart(
         f"{name}: the law found, {span} of the record",

@@ -40,8 +40,8 @@ def _rows(arm: Arm, turn: Sequence[Ranked]) -> list[Sequence[str]]:
     chosen = next((r for r in turn if r.taken), None)
     for r in turn[:_SHOWN]:
         word = _REFUSED.get(r.refused) or _passed(r, chosen)
-        gains = ["" if g is None or np.isnan(g) else f"{g:.1f}" for g in (r.cross_gain, r.expected_gain)]
-        rows.append((r.effect, place_of(arm, r.joint), f"{r.delta_bic:.1f}", *gains, word))
+        gains = ["" if g is None or np.isnan(g) else f"{g:z.1f}" for g in (r.cross_gain, r.expected_gain)]
+        rows.append((r.effect, place_of(arm, r.joint), f"{r.delta_bic:z.1f}", *gains, word))
     return rows
 
 
@@ -50,5 +50,5 @@ def _passed(r: Ranked, chosen: Ranked | None) -> str:
     if r.taken:
         return "chosen"
     if chosen is not None and r.delta_bic < chosen.delta_bic:
-        return f"explains less than {chosen.effect}, by {chosen.delta_bic - r.delta_bic:.0f}"
+        return f"explains less than {chosen.effect}, by {chosen.delta_bic - r.delta_bic:z.0f}"
     return "meets every condition too"

@@ -48,8 +48,8 @@ def report(found: Refinement, call: Call) -> str:
     rows = [
         (
             joint,
-            f"{found.before.f_gof[k]:.2f}",
-            f"{found.after.f_gof[k]:.2f}",
+            f"{found.before.f_gof[k]:z.2f}",
+            f"{found.after.f_gof[k]:z.2f}",
             f"{number(found.before.rmse[k])} {units[k]}",
             f"{number(found.after.rmse[k])} {units[k]}",
         )
@@ -86,10 +86,10 @@ def report(found: Refinement, call: Call) -> str:
     table = [
         (
             x.name,
-            f"{x.start:.5g}",
-            f"{x.value:.5g}",
-            "held" if x.std is None else f"{x.std:.2g}",
-            "" if not x.std else f"{(x.value - x.start) / x.std:+.1f}",
+            f"{x.start:z.5g}",
+            f"{x.value:z.5g}",
+            "held" if x.std is None else f"{x.std:z.2g}",
+            "" if not x.std else f"{(x.value - x.start) / x.std:+z.1f}",
             x.unit,
         )
         for x in found.parameters

@@ -48,7 +48,7 @@ def _section(stage: str, group: Group) -> Iterator[str]:
 
 def _value(value: Value) -> str:
     """Numbers as a person writes them."""
-    return ", ".join(f"{x:.4g}" for x in value) if isinstance(value, tuple) else f"{value:.4g}"
+    return ", ".join(f"{x:z.4g}" for x in value) if isinstance(value, tuple) else f"{value:z.4g}"
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 from modelgen.charts import number
 from modelgen.description import Arm
 from modelgen.effects import CATALOGUE
+from modelgen.effects.placement import titled
 
 
 class Said(float):
@@ -55,39 +55,22 @@ def place_of(arm: Arm, joint: int | None) -> str:
     return "the whole arm" if joint is None else joint_name(arm, joint)
 
 
-def at(arm: Arm, effect: str, joint: int | None) -> str:
-    """An effect and where it acts, by its name in the catalogue."""
-    return f"{effect} {'of the whole arm' if joint is None else f'at {joint_name(arm, joint)}'}"
-
-
 def finding(arm: Arm, effect: str, joint: int | None, parameters: Mapping[str, Any]) -> str:
     """The clause that says what is there, with its values. parameters: value and unit by name."""
     definition, place = CATALOGUE[effect], place_of(arm, joint)
     values = {name: Said(e.value, e.unit) for name, e in parameters.items()}
     drive = f"the drive of {place}"
     try:
-        return definition.finding.format(joint=place, place=place, drive=drive, **values) or at(
-            arm, effect, joint
-        )
+        said = definition.finding.format(joint=place, place=place, drive=drive, **values)
     except KeyError:  # a form of it without that value
         return f"{definition.text} acts at {place}"
+    return said or titled(arm, effect, joint)
 
 
 def sentence(clause: str) -> str:
     """With a capital letter, unless a name of the catalogue comes first, and a full stop."""
     first = clause[:1] if "_" in clause.partition(" ")[0] else clause[:1].upper()
     return f"{first}{clause[1:]}{'' if clause.endswith(('.', '?')) else '.'}"
-
-
-def by_name(arm: Arm, text: str) -> str:
-    """A text of the diagnosis with its joints' names in place of their numbers."""
-    names = arm.coordinate_names
-
-    def name(found: re.Match[str]) -> str:
-        k = int(found[1])
-        return names[k - 1] if 1 <= k <= len(names) else found[0]
-
-    return re.sub(r"\bjoint (\d+)\b", name, text)
 
 
 def listed(words: Iterable[str]) -> str:

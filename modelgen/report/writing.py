@@ -33,7 +33,7 @@ def write(d: Diagnosis, out: Path, *, code: bool = True, called: Path | None = N
         new.mkdir(parents=True)
         extended = extended_yaml(d.arm, d.added)
         (new / f"{name}_extended.yaml").write_text(extended, encoding="utf-8", newline="\n")
-        values = {key: float(f"{e.value:.12g}") for key, e in d.parameters.items()}
+        values = {key: float(f"{e.value:z.12g}") for key, e in d.parameters.items()}
         text = parameters_yaml(name, values)
         (new / f"{name}_parameters.yaml").write_text(text, encoding="utf-8", newline="\n")
         if code:

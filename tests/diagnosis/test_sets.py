@@ -26,8 +26,8 @@ def test_coarse_positions_do_not_tell_a_lever_from_a_torque_constant(tmp_path: P
     answer = diagnosed_here(tmp_path / "case", case.name)
     assert answer["verdict"] == "cannot_tell"
     assert answer["causes"] == []
-    assert "drive_gain_error at joint 2" in answer["reason"]
-    assert "lever_geometry at joint 2" in answer["reason"]
+    assert "drive_gain_error at j2" in answer["reason"]
+    assert "lever_geometry at j2" in answer["reason"]
 
 
 def test_rounding_that_by_chance_leaves_more_than_a_draw_of_it_is_no_delay(tmp_path: Path) -> None:

@@ -70,3 +70,11 @@ def test_a_word_of_insiders_is_seen() -> None:
     source = 'def f():\n    """It is taken."""\n    return "the cause was taken back"\n'
     ((line, text),) = texts(source)
     assert (line, WORDS.findall(text)) == (3, ["taken"])
+
+
+def test_every_check_of_a_cause_is_in_the_glossary(checkout: Path) -> None:
+    """By the names under which diagnosis.json and the pages have them."""
+    source = "".join(p.read_text(encoding="utf-8") for p in (checkout / "modelgen/diagnosis").rglob("*.py"))
+    names = set(re.findall(r'\bCheck\(\s*"(\w+)"', source))
+    assert {"evidence", "undominated", "confirmed"} <= names
+    assert names <= terms_of(checkout)

@@ -22,7 +22,7 @@ from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.effects import CATALOGUE, Definition
 from modelgen.jobs import one_thread
 from modelgen.report.law_figures import judged_joint, law_charts, law_size
-from modelgen.report.words import by_name, finding, law, listed, sentence
+from modelgen.report.words import finding, law, listed, sentence
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -110,7 +110,7 @@ def _lookalikes(f: Found) -> list[dict[str, Any]]:
         {
             "effect": x.effect,
             "share": round(x.share, 4),
-            "test": None if x.test is None else by_name(f.diagnosis.arm, x.test.text),
+            "test": None if x.test is None else x.test.text,
             "evidence": None if x.test is None else number(x.test.evidence or 0.0, 2),
         }
         for x in f.lookalikes

@@ -18,13 +18,14 @@ from modelgen.diagnosis.extended import Estimate
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
+from modelgen.effects.placement import titled
 from modelgen.report.diagnosis import report
 from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import binned, efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import remains, worth
 from modelgen.report.law_figures import judged_joint, law_charts
 from modelgen.report.page import page
-from modelgen.report.words import at, by_name, finding, sentence
+from modelgen.report.words import finding, sentence
 
 WORDS = ("stribeck_friction", "at j2", "over all joints", "What these records cannot show")
 FRICTIONS = (
@@ -154,7 +155,7 @@ def test_ten_causes_leave_all_four_answers_on_the_first_screen(found: Diagnosis,
             assert [t.split(".")[0] for t in shown.all_inner_texts()] == [s[:-1] for s in sentences[:4]]
             others = first.locator("details")
             for c in of.causes[:6]:
-                assert at(of.arm, c.effect, c.joint) in others.locator("summary").inner_text()
+                assert titled(of.arm, c.effect, c.joint) in others.locator("summary").inner_text()
             folded = others.locator("p")
             assert folded.count() == 6
             assert not any(p.is_visible() for p in folded.all())
@@ -178,6 +179,24 @@ def test_the_files_say_when_their_records_began(found: Diagnosis) -> None:
     assert said.count("2023-11-14T22:13:20Z") == 1
 
 
+def test_every_check_says_its_figure_and_its_threshold_in_words(found: Diagnosis) -> None:
+    """And why more evidence is asked than the settings say, where it is."""
+    (cause,) = found.causes
+    for check in cause.checks:
+        said = [float(x) for x in re.findall(r"\d+(?:\.\d+)?", check.text)]
+        for figure in (check.value, check.threshold):
+            if np.isfinite(figure):
+                near = [x == pytest.approx(abs(figure) * s, rel=0.06, abs=0.06) for x in said for s in (1, 100)]
+                assert any(near) or "must not be ahead" in check.text, check
+        assert said or not np.isfinite([check.value, check.threshold]).any(), check
+        assert "threshold" not in check.text
+    by_name = {check.name: check for check in cause.checks}
+    assert {"significant", "admissible"} <= by_name.keys()
+    assert "velocity is 8" in by_name["admissible"].text
+    usual = found.settings["evidence_threshold"]
+    assert by_name["evidence"].threshold == usual or f"{usual:g} of others" in by_name["evidence"].text
+
+
 def test_every_check_shows_its_figure_to_the_pointer_and_to_the_keyboard(
     found: Diagnosis, written: Path
 ) -> None:
@@ -190,7 +209,7 @@ def test_every_check_shows_its_figure_to_the_pointer_and_to_the_keyboard(
             assert not tip.is_visible()
             marks.nth(k).locator("button").focus()
             assert tip.is_visible()
-            assert by_name(found.arm, check.text) in tip.inner_text()
+            assert check.text in tip.inner_text()
             page.evaluate("document.activeElement.blur()")
             marks.nth(k).hover()
             assert tip.is_visible()
@@ -375,7 +394,7 @@ def other(found: Diagnosis, verdict: str) -> Diagnosis:
     failed = tuple(replace(c, passed=False) if c.name == "form" else c for c in cause.checks)
     suspects = (replace(cause, checks=failed),) if verdict == "suspected" else ()
     residuals = (found.residuals[0], found.residuals[0])
-    reason = "something deterministic remains at joint 2 that no effect of the catalogue explains"
+    reason = "something deterministic remains at j2 that no effect of the catalogue explains"
     bare = replace(found, verdict=verdict, causes=(), laws=(), residuals=residuals, reason=reason)
     fit = found.lack_of_fit
     assert fit is not None
@@ -400,6 +419,7 @@ def test_a_page_without_a_cause_answers_the_same_questions(
         said = page.locator("dl.answer").inner_text()
     assert "less %" not in said
     assert "joint 2" not in said  # by its name
+    assert ("remains at j2" in said) == (verdict != "suspected")
     assert ("form" in said) == (verdict == "suspected")
 
 

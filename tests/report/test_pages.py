@@ -26,7 +26,7 @@ ROW = {
     "causes": ["load_dependent_friction"],
     "joints": [2],
     "joint_names": ["stick"],
-    "ambiguous_with": [["encoder_offset at joint 2"]],
+    "ambiguous_with": [["encoder_offset at stick"]],
     "delta_bic": [289.3],
     "overall_gain_percent": 12.6,
     "lack_of_fit": 0.95,

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from modelgen.charts import number
 from modelgen.dataset.processing.instants import fitting
+from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
@@ -22,8 +24,10 @@ from modelgen.diagnosis.selection import (
     deviations,
     needed_evidence,
     refit_stiffness,
+    threshold,
 )
 from modelgen.diagnosis.validation import Check, agreement
+from modelgen.effects.placement import titled
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,7 @@ def examined(selection: Selection, equations: Equations) -> list[Examined]:
                 significant(k, selection, equations),
                 admissible(cause, equations),
                 _gain(cause, equations),
-                _undominated(dominance(cause, selection)),
+                _undominated(dominance(cause, selection), equations.arm),
                 *complete,
                 _stable(k, selection),
             ),
@@ -113,28 +117,40 @@ def _behind(check: Check, suspect: Cause, cause: Cause) -> Check:
     """The check `undominated` of a cause that was taken beside a suspect of its joint."""
     if check.name != "undominated":
         return check
-    text = f"delta BIC by which {suspect.trial.candidate.effect}, a suspect at its joint, is ahead"
-    return replace(check, passed=False, value=suspect.delta_bic - cause.delta_bic, text=text)
+    ahead = suspect.delta_bic - cause.delta_bic
+    text = (
+        f"{suspect.trial.candidate.effect}, a suspect at its joint, is "
+        f"{number(abs(ahead))} {'ahead of' if ahead > 0.0 else 'behind'} it in delta BIC: what is found "
+        "beside a suspect explains what that leaves"
+    )
+    return replace(check, passed=False, value=ahead, text=text)
 
 
 def confirmed(gain: float, low: float) -> Check:
     """Whether a cause lowers the error on the test record. gain, low: its share and the lower bound [%]."""
     asked = bool(np.isfinite(low))
-    return Check(
-        "confirmed",
-        low > 0.0 if asked else None,
-        False,
-        low,
-        0.0,
-        f"it takes {gain:.1f} % off the error on the test record, at least {low:.1f} %"
-        if asked
-        else "the test record cannot tell what it is worth there",
-    )
+    text = "the test record cannot tell what it is worth there"
+    if asked:
+        text = (
+            f"{abs(gain):.1f} % {'less' if gain >= 0.0 else 'more'} error on the test record with it, "
+            f"{low:z.1f} % less at the lower end of the 95 % interval; more than 0 % less confirms it"
+        )
+    return Check("confirmed", low > 0.0 if asked else None, False, low, 0.0, text)
 
 
 def _evidence(cause: Cause, selection: Selection) -> Check:
-    least = needed_evidence(cause.trial, selection.system)
-    text = "evidence (delta BIC) beside all other causes"
+    trial, system = cause.trial, selection.system
+    least, usual = needed_evidence(trial, system), threshold(system)
+    limits = system.equations.thresholds.selection
+    why = "" if system.coloured else ", since no period repeats by which the noise could be measured"
+    if least > usual:
+        single = least == limits.single_parameter_delta_bic and not trial.candidate.passing
+        whose = "a cause with a single parameter" if single else "what fades within a record"
+        why = f" of {whose}, {number(usual)} of others"
+    text = (
+        f"{number(cause.delta_bic)} of delta BIC, the evidence for it beside all other causes; "
+        f"{number(least)} is asked{why}"
+    )
     return Check("evidence", cause.delta_bic >= least, True, cause.delta_bic, least, text)
 
 
@@ -148,12 +164,24 @@ def significant(k: int, selection: Selection, equations: Equations) -> Check:
     c = cause.trial.candidate
     claims = [name for name in c.definition.claims if name in (*c.names, *cause.trial.values)]
     if not claims:
-        text = "its evidence is that of all its parameters together"
-        return Check("significant", True, True, float("nan"), float("nan"), text)
+        found = _largest(*_estimated(k, selection, equations))
+        text = "its parameters count together, by the evidence"
+        if np.isfinite(found):
+            text += f"; the clearest of them is {number(found)} standard deviations from zero, none need be"
+        return Check("significant", True, True, found, float("nan"), text)
     of = _searched if any(name in cause.trial.values for name in claims) else _estimated
     found = c.definition.above_zero(equations.arm, *of(k, selection, equations))
-    text = f"standard deviations by which its {' and '.join(claims)} differs from that of an arm without it"
+    text = (
+        f"its {' and '.join(claims)} differs by {number(found)} standard deviations from that of an arm "
+        f"without it; {number(least)} is asked"
+    )
     return Check("significant", found >= least, True, found, least, text)
+
+
+def _largest(values: Mapping[str, float], spread: Mapping[str, float]) -> float:
+    """How many standard deviations from zero the clearest parameter is, not a number where none has any."""
+    found = [abs(value) / spread[name] for name, value in values.items() if spread[name] > 0.0]
+    return max(found, default=float("nan"))
 
 
 def _estimated(
@@ -184,8 +212,26 @@ def admissible(cause: Cause, equations: Equations) -> Check:
     c = cause.trial.candidate
     why = c.definition.impossible(equations.arm, c.joint, cause.trial.parameters)
     why = why or _out_of_step(cause, equations)
-    text = why or "nothing in its values speaks against it"
-    return Check("admissible", not why, True, float("nan"), float("nan"), text)
+    return Check("admissible", not why, True, float("nan"), float("nan"), why or _possible(cause))
+
+
+def _possible(cause: Cause) -> str:
+    """Its values, each with what it may be."""
+    c, values = cause.trial.candidate, cause.trial.parameters
+    said = [
+        f"{p.name} is {number(values[p.name])}, may be {_range(*p.bounds)}"
+        for p in c.definition.accepted()
+        if p.name in values
+    ]
+    return f"its values can be those of an arm: {'; '.join(said)}" if said else "it has no values of its own"
+
+
+def _range(low: float, high: float) -> str:
+    if not np.isfinite(low) and not np.isfinite(high):
+        return "anything"
+    if not np.isfinite(high):
+        return f"{number(low)} or more"
+    return f"{number(high)} or less" if not np.isfinite(low) else f"{number(low)} to {number(high)}"
 
 
 def _out_of_step(cause: Cause, equations: Equations) -> str:
@@ -227,26 +273,38 @@ def _of_the_log(delay: float, equations: Equations) -> str:
 def _gain(cause: Cause, equations: Equations) -> Check:
     least = in_band(equations.thresholds.validation.min_gain_percent, equations.narrowed)
     found = max(x for x in (cause.cross_gain, cause.expected_gain) if not np.isnan(x))
-    text = "percent less error on rows that its fit has not seen"
+    hoped = "" if np.isnan(cause.expected_gain) else f", {cause.expected_gain:z.1f} % expected there"
+    text = (
+        f"{cause.cross_gain:z.1f} % less error on rows that its fit has not seen{hoped}; "
+        f"one of them must be {number(least)} % at least"
+    )
     return Check("gain", True, True, found, least, text)
 
 
-def _undominated(by: Dominance) -> Check:
-    text = "delta BIC by which a refused candidate of its turn is ahead"
+def _undominated(by: Dominance, arm: Arm) -> Check:
+    text = "nothing else explains as much at its joint"
     if by.place is not None:
-        effect, joint = by.place
-        text = (
-            f"delta BIC by which {effect} {'of the arm' if joint is None else f'at joint {joint}'} is ahead"
-        )
+        text = f"{titled(arm, *by.place)}, which failed a condition, {_ahead(by.ahead, by.most)}"
     return Check("undominated", by.ahead <= by.most, True, by.ahead, by.most, text)
+
+
+def _ahead(ahead: float, most: float) -> str:
+    """How far something is before or behind a cause in delta BIC, and how far it may be."""
+    where = f"{number(ahead)} ahead of it" if ahead > 0.0 else f"{number(-ahead)} behind it"
+    may = f"may be {number(most)} ahead" if most > 0.0 else "must not be ahead"
+    return f"is {where} in delta BIC; it {may}"
 
 
 def _form(by: FreeForm | None) -> Check:
     if by is None:
-        text = "no function of position and speed does as well"
+        text = "no free function of the joint's position and speed is set against it: none acts as it does"
         return Check("form", True, True, float("nan"), float("nan"), text)
-    text = "delta BIC by which a free function of the joint's position and speed is ahead"
+    text = f"a free function of the joint's position and speed {_ahead(by.ahead, by.most)}"
     return Check("form", not by.as_good, True, by.ahead, by.most, text)
+
+
+def _percent(share: float) -> str:
+    return f"{number(100.0 * share, 2)} %"
 
 
 def _stable(k: int, selection: Selection) -> Check:
@@ -258,5 +316,10 @@ def _stable(k: int, selection: Selection) -> Check:
     columns = with_causes(system.equations, [*others, trial])  # the cause's own at the end
     own = columns[0].shape[2] - trial.columns[0].shape[2]
     found = agreement(parts, system.equations, columns, own) if len(parts) > 1 else float("nan")
-    text = "probability of records that differ as much in its size where that is the same in all"
+    text = "one record cannot tell whether its size is the same in all"
+    if not np.isnan(found):
+        text = (
+            f"records differ in its size as much as these in {_percent(found)} of cases where it is the same "
+            f"in all; {_percent(least)} is asked"
+        )
     return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)

@@ -37,9 +37,9 @@ def explained(selection: Selection, terms: Mapping[int, Worth]) -> list[Check]:
     """
     system, limits = selection.system, selection.system.equations.thresholds.adequacy
     equations, least = system.equations, limits.min_explained_share
-    text = "share of what is not noise at its joints that the causes there explain together"
     fit = lack_of_fit(system)
     if fit is None and equations.free:
+        text = "a free motion that does not repeat cannot tell how much is left to explain"
         return [Check("explains", None, True, float("nan"), least, text) for _ in selection.causes]
     sizes, theta = mean_squares(system), weighted_fit(equations.rows, equations.columns)
     gained = (rmse(equations.rows, equations.columns, theta) ** 2 - sizes) / sizes
@@ -51,6 +51,12 @@ def explained(selection: Selection, terms: Mapping[int, Worth]) -> list[Check]:
         more, less = float(gained[joints].sum()), float(rest[joints].sum())
         share = more / (more + less) if more + less > 0.0 else 0.0
         passed = share >= least or (fit is not None and fit.usual(joints, limits.usual_null_share))
+        text = (
+            f"the causes at its joints explain {100.0 * share:.0f} % of what is not noise there together; "
+            f"{100.0 * least:.0f} % is asked"
+        )
+        if passed and share < least:
+            text += ", or that no more repeats than noise leaves by chance, as here"
         found.append(Check("explains", passed, True, share, least, text))
     return found
 

@@ -99,7 +99,7 @@ def functions_of(j: int, equations: Equations, series: bool = False) -> Iterator
 
     series: of the position, times the direction.
     """
-    name = f"a force at joint {j + 1} over its position and speed"
+    name = f"a force at {equations.arm.coordinate_names[j]} over its position and speed"
     positions = [r.prepared.q[:, [j]] for r in equations.rows]
     speeds = [r.prepared.dq[:, [j]] for r in equations.rows]
     over = positions if series else [np.hstack(state) for state in zip(positions, speeds, strict=True)]

@@ -83,7 +83,7 @@ def like_delta_bic(limits: AdequacyThresholds) -> float:
 def smooth_functions(system: System) -> Iterator[SmoothFunction]:
     """Functions for driven arms, with the inputs that follow from the system's parameters."""
     equations, rows, n = system.equations, system.rows, system.n
-    limits = equations.thresholds.adequacy
+    limits, names = equations.thresholds.adequacy, equations.arm.coordinate_names
     inputs = [equations.evaluator.inputs(r.motion, system.base) for r in rows]
     power = [
         np.abs(gains(equations.arm, r.prepared.q) * u * r.prepared.dq).sum(axis=1, keepdims=True)
@@ -95,7 +95,7 @@ def smooth_functions(system: System) -> Iterator[SmoothFunction]:
         free = functions([r.prepared.q for r in rows], bend)
         for j in range(n):
             where = [r.equation(j, x) for r, x in zip(rows, free, strict=True)]
-            yield SmoothFunction(f"a force at joint {j + 1} that depends on where the arm is", {j: where})
+            yield SmoothFunction(f"a force at {names[j]} that depends on where the arm is", {j: where})
         taken = functions(power, bend)
         columns = {
             j: [r.equation(j, u[:, [j]] * x) for r, u, x in zip(rows, inputs, taken, strict=True)]
@@ -109,7 +109,8 @@ def spots(j: int, equations: Equations) -> SmoothFunction:
     positions = [r.prepared.q[:, [j]] for r in equations.rows]
     over = functions(positions, equations.thresholds.adequacy.spot_length)
     columns = [r.equation(j, x) for r, x in zip(equations.rows, over, strict=True)]
-    return SmoothFunction(f"a force at joint {j + 1} that depends on its position", {j: columns})
+    name = equations.arm.coordinate_names[j]
+    return SmoothFunction(f"a force at {name} that depends on its position", {j: columns})
 
 
 def functions(values: Sequence[Array], bend: float) -> list[Array]:

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.checks import Examined
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.adequacy.smooth_functions import Likeness
 from modelgen.diagnosis.candidates import Candidate
 from modelgen.diagnosis.evidence import Endogeneity
 from modelgen.diagnosis.selection import Cause, Selection
+from modelgen.effects.placement import titled
 from modelgen.numeric import Array
 
 
@@ -41,6 +43,8 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
     """Which of the five, and why."""
     fit, likeness, correlated = remains.fit, remains.likeness, remains.correlated
     least = selection.system.equations.thresholds.validation.min_gain_percent
+    arm = selection.system.equations.arm
+    names = arm.coordinate_names
     like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
         left = like or (fit is not None and fit.found)
@@ -48,10 +52,11 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"; something deterministic remains beside it{like}" if left else ""
         )
     if remains.suspects:
-        return "suspected", "; ".join(map(_suspected, remains.suspects))
+        return "suspected", "; ".join(_suspected(arm, e) for e in remains.suspects)
     if remains.unclear:
+        rivals = " and ".join(_rivals(arm, c) for c in remains.unclear)
         return "cannot_tell", (
-            f"the positions are too coarse to tell {' and '.join(map(_rivals, remains.unclear))}: each "
+            f"the positions are too coarse to tell {rivals}: each "
             "explains what is missing nearly as well; finer encoders, or encoders at the motors, can tell"
         )
     if remains.counted:
@@ -60,10 +65,10 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             "takes finer ones to see"
         )
     if remains.feigned.max() > least:
-        joint = int(np.argmax(remains.feigned)) + 1
+        joint = names[int(np.argmax(remains.feigned))]
         return "cannot_tell", (
             "the positions are too coarse or too noisy: their errors alone could feign a gain of "
-            f"{remains.feigned.max():.1f} % at joint {joint}, and nothing explains more; "
+            f"{remains.feigned.max():.1f} % at {joint}, and nothing explains more; "
             "finer encoders, or encoders at the motors, can tell"
         )
     if fit is None:
@@ -72,11 +77,11 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             "two or more identical periods (--period gives their length where it is not found)"
         )
     if correlated is not None and correlated.found and correlated.cost.max() > least:
-        joint = int(np.argmax(correlated.cost)) + 1
+        joint = names[int(np.argmax(correlated.cost))]
         return "cannot_tell", (
             "the positions are too noisy: the regressor is correlated with the residuals (test of Durbin, Wu "
             f"and Hausman, {correlated.statistic:.0f} over a threshold of {correlated.threshold:.0f}), which "
-            f"costs {correlated.cost.max():.1f} % at joint {joint}; better encoders can tell"
+            f"costs {correlated.cost.max():.1f} % at {joint}; better encoders can tell"
         )
     if fit.found or likeness is not None:
         pool = "none of the effects asked for" if remains.asked else "no effect of the catalogue"
@@ -87,9 +92,9 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
 
 
-def _suspected(e: Examined) -> str:
+def _suspected(arm: Arm, e: Examined) -> str:
     why = " and ".join(f"{c.name} ({c.text})" for c in e.failed)
-    return f"{_title(e.cause.trial.candidate)} has evidence and fails a check: {why}"
+    return f"{_title(arm, e.cause.trial.candidate)} has evidence and fails a check: {why}"
 
 
 def _where(fit: LackOfFit, selection: Selection) -> str:
@@ -99,12 +104,13 @@ def _where(fit: LackOfFit, selection: Selection) -> str:
     part = ""
     if where is not None:
         part = f", most from {where[1]:.2f} to {where[2]:.2f} s of {where[0]} and whenever that repeats,"
-    return f" at joint {fit.worst.joint + 1}{part}"
+    return f" at {selection.system.equations.arm.coordinate_names[fit.worst.joint]}{part}"
 
 
-def _rivals(cause: Cause) -> str:
-    return f"{_title(cause.trial.candidate)} from {' or '.join(_title(t.candidate) for t, _ in cause.rivals)}"
+def _rivals(arm: Arm, cause: Cause) -> str:
+    others = " or ".join(_title(arm, t.candidate) for t, _ in cause.rivals)
+    return f"{_title(arm, cause.trial.candidate)} from {others}"
 
 
-def _title(c: Candidate) -> str:
-    return c.effect if c.joint is None else f"{c.effect} at joint {c.joint}"
+def _title(arm: Arm, c: Candidate) -> str:
+    return titled(arm, c.effect, c.joint)

@@ -40,11 +40,11 @@ def check_one_arm(band: Band) -> None:
         wrong = both > limits.max_record_disagreement * apart
         wrong &= both > limits.min_record_disagreement * size
         if wrong.any():
-            joints = ", ".join(str(j + 1) for j in np.flatnonzero(wrong))
+            joints = ", ".join(arm.coordinate_names[j] for j in np.flatnonzero(wrong))
             ratio = float((both / np.maximum(apart, 1e-300))[wrong].max())
             names = " and ".join(x.prepared.record.name for x in pair)
             raise InputError(
-                f"{names}: no one model of {arm.name} fits both, at joint {joints} it leaves {ratio:.1f} "
+                f"{names}: no one model of {arm.name} fits both, at {joints} it leaves {ratio:.1f} "
                 "times what a model of each leaves; expected records of one arm, their columns in one order"
             )
 
@@ -96,7 +96,7 @@ def _text(place: Place) -> str:
 def _absent(arm: Arm, effect: str, joint: int | None) -> str:
     places = [joint] if joint is not None else list(range(1, len(arm.coordinates) + 1))
     uses = [*arm.effects, *(u for n in places for u in arm.joints[arm.coordinates[n - 1]].effects)]
-    where = "the arm" if joint is None else f"joint {joint}"
+    where = "the arm" if joint is None else arm.coordinate_names[joint - 1]
     if any(u.name == effect for u in uses):
         return f"the model of {where} has it already; its parameters are estimated, see modelgen identify"
     return f"it cannot stand at {where} of {arm.name}, or not with these records"
@@ -110,7 +110,9 @@ def _resting(c: Candidate, equations: Equations) -> bool:
 def _hidden(there: Sequence[Candidate], equations: Equations) -> str:
     still = sorted({c.joint for c in there if c.joint is not None and _resting(c, equations)})
     if still:
-        return f"joint {', '.join(map(str, still))} rests in the training records, which cannot show it"
+        names = ", ".join(equations.arm.coordinate_names[joint - 1] for joint in still)
+        rests = "rests" if len(still) == 1 else "rest"
+        return f"{names} {rests} in the training records, which cannot show it"
     return "the motion of the training records cannot show it: the model's own parameters absorb all of it"
 
 

@@ -102,15 +102,15 @@ def check_efforts(equations: Equations) -> None:
         turned = np.flatnonzero(known & (_rms(r, -theta) < limits.max_turned_share * _rms(r, theta)))
         if len(turned):
             raise InputError(
-                f"{r.prepared.record.name}: the efforts of joint {_numbers(turned)} fit those of the other "
-                "records with the other sign; expected one sign in all of them"
+                f"{r.prepared.record.name}: the efforts of {_names(equations, turned)} fit those of the "
+                "other records with the other sign; expected one sign in all of them"
             )
     driving = np.flatnonzero(_work_of_effects(equations) < -limits.max_driving_friction)
     if len(driving):
         raise InputError(
-            f"{rows[0].prepared.record.name}: friction at joint {_numbers(driving)} would drive the motion "
-            "there; expected efforts that act in the direction of the positions: is their sign the other way "
-            "round, or that of torque_constant?"
+            f"{rows[0].prepared.record.name}: friction at {_names(equations, driving)} would drive the "
+            "motion there; expected efforts that act in the direction of the positions: is their sign the "
+            "other way round, or that of torque_constant?"
         )
 
 
@@ -119,8 +119,8 @@ def _rms(r: Rows, theta: Array) -> Array:
     return rmse([r], [r.columns], theta)
 
 
-def _numbers(joints: Sequence[int] | NDArray[np.intp]) -> str:
-    return ", ".join(str(j + 1) for j in joints)
+def _names(equations: Equations, joints: Sequence[int] | NDArray[np.intp]) -> str:
+    return ", ".join(equations.arm.coordinate_names[j] for j in joints)
 
 
 def _work_of_effects(equations: Equations) -> Array:

@@ -72,7 +72,7 @@ def readings(
         reading = CATALOGUE[effect].reading
         if reading is None:
             continue
-        place = "" if joint is None else f"joint {joint}: "
+        place = "" if joint is None else f"{stage.arm.coordinate_names[joint - 1]}: "
         size = float(np.sqrt(sum(values.get(name, 0.0) ** 2 for name in reading.names)))
         if reading.std is not None:
             evidence = (size / reading.std) ** 2
@@ -107,7 +107,7 @@ def _motions(stage: Setup, k: int) -> Iterator[tuple[str, Array]]:
     for name, wave in waves.items():
         q = np.tile(middle, (len(t), 1))
         q[:, k] += wave
-        yield f"joint {k + 1} alone: {name}, {duration:g} s", q
+        yield f"{stage.arm.coordinate_names[k]} alone: {name}, {duration:g} s", q
 
 
 def _staircase(t: Array, speed: float, half: float, levels: Sequence[float]) -> Array:

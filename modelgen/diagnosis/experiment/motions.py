@@ -132,7 +132,7 @@ def setup(arm: Arm, equations: Equations, base: Array) -> Setup:
             "acceleration": own.acceleration or _largest([p.ddq[p.rows, n] for p in prepared]),
         }
         given = {name: value for name, value in missing.items() if not getattr(own, name) and value}
-        assumed += [f"{name} of joint {n + 1}" for name in given]
+        assumed += [f"{name} of {joints[i].name}" for name in given]
         joints[i] = replace(joints[i], limits=replace(own, **given), effects=effects)  # type: ignore[arg-type]
     kept = tuple(u for u in arm.effects if not CATALOGUE[u.name].held(u.values))
     return Setup(replace(arm, joints=tuple(joints), effects=kept), equations, base, tuple(assumed))

@@ -145,7 +145,7 @@ def _check(c: Check) -> dict[str, Any]:
 
 def rounded(value: float) -> float | None:
     """Six digits; None for what is no number."""
-    return float(f"{value:.6g}") if np.isfinite(value) else None
+    return float(f"{value:z.6g}") if np.isfinite(value) else None
 
 
 def numbers(values: Array) -> list[float | None]:

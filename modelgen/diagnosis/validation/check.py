@@ -10,7 +10,7 @@ class Check:
     """One check of a cause.
 
     passed: None where it could not be asked. decides: whether a cause that fails it is none. value,
-    threshold: the figures that it compares, not a number where it compares none. text: what they are.
+    threshold: the figures that it compares, not a number where it compares none. text: both in words.
     """
 
     name: str

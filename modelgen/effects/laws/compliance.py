@@ -62,7 +62,7 @@ class Compliance(Effect):
         if not unsided:
             return []
         reason = "has no drive, or was measured now at the motor, now at the link"
-        joints = "joint " + ", ".join(str(n) for n in unsided)
+        joints = ", ".join(arm.coordinate_names[n - 1] for n in unsided)
         return [f"the position of {joints} {'is too coarse to show it' if seen.coarse else reason}"]
 
     @classmethod

@@ -83,7 +83,7 @@ class CoulombFriction(Effect):
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
         """A joint at rest hides it."""
-        return [f"joint {n} does not move in the training records" for n in seen.still]
+        return [f"{arm.coordinate_names[n - 1]} does not move in the training records" for n in seen.still]
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
         """FC sign(v)."""
