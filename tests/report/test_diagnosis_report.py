@@ -186,7 +186,9 @@ def test_every_check_says_its_figure_and_its_threshold_in_words(found: Diagnosis
         said = [float(x) for x in re.findall(r"\d+(?:\.\d+)?", check.text)]
         for figure in (check.value, check.threshold):
             if np.isfinite(figure):
-                near = [x == pytest.approx(abs(figure) * s, rel=0.06, abs=0.06) for x in said for s in (1, 100)]
+                near = [
+                    x == pytest.approx(abs(figure) * s, rel=0.06, abs=0.06) for x in said for s in (1, 100)
+                ]
                 assert any(near) or "must not be ahead" in check.text, check
         assert said or not np.isfinite([check.value, check.threshold]).any(), check
         assert "threshold" not in check.text

@@ -12,6 +12,7 @@ from modelgen.dataset.processing.instants import fitting
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.explained import explained
+from modelgen.diagnosis.adequacy.figures_said import ahead_of, percent, possible
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
 from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
@@ -212,26 +213,7 @@ def admissible(cause: Cause, equations: Equations) -> Check:
     c = cause.trial.candidate
     why = c.definition.impossible(equations.arm, c.joint, cause.trial.parameters)
     why = why or _out_of_step(cause, equations)
-    return Check("admissible", not why, True, float("nan"), float("nan"), why or _possible(cause))
-
-
-def _possible(cause: Cause) -> str:
-    """Its values, each with what it may be."""
-    c, values = cause.trial.candidate, cause.trial.parameters
-    said = [
-        f"{p.name} is {number(values[p.name])}, may be {_range(*p.bounds)}"
-        for p in c.definition.accepted()
-        if p.name in values
-    ]
-    return f"its values can be those of an arm: {'; '.join(said)}" if said else "it has no values of its own"
-
-
-def _range(low: float, high: float) -> str:
-    if not np.isfinite(low) and not np.isfinite(high):
-        return "anything"
-    if not np.isfinite(high):
-        return f"{number(low)} or more"
-    return f"{number(high)} or less" if not np.isfinite(low) else f"{number(low)} to {number(high)}"
+    return Check("admissible", not why, True, float("nan"), float("nan"), why or possible(cause))
 
 
 def _out_of_step(cause: Cause, equations: Equations) -> str:
@@ -284,27 +266,16 @@ def _gain(cause: Cause, equations: Equations) -> Check:
 def _undominated(by: Dominance, arm: Arm) -> Check:
     text = "nothing else explains as much at its joint"
     if by.place is not None:
-        text = f"{titled(arm, *by.place)}, which failed a condition, {_ahead(by.ahead, by.most)}"
+        text = f"{titled(arm, *by.place)}, which failed a condition, {ahead_of(by.ahead, by.most)}"
     return Check("undominated", by.ahead <= by.most, True, by.ahead, by.most, text)
-
-
-def _ahead(ahead: float, most: float) -> str:
-    """How far something is before or behind a cause in delta BIC, and how far it may be."""
-    where = f"{number(ahead)} ahead of it" if ahead > 0.0 else f"{number(-ahead)} behind it"
-    may = f"may be {number(most)} ahead" if most > 0.0 else "must not be ahead"
-    return f"is {where} in delta BIC; it {may}"
 
 
 def _form(by: FreeForm | None) -> Check:
     if by is None:
         text = "no free function of the joint's position and speed is set against it: none acts as it does"
         return Check("form", True, True, float("nan"), float("nan"), text)
-    text = f"a free function of the joint's position and speed {_ahead(by.ahead, by.most)}"
+    text = f"a free function of the joint's position and speed {ahead_of(by.ahead, by.most)}"
     return Check("form", not by.as_good, True, by.ahead, by.most, text)
-
-
-def _percent(share: float) -> str:
-    return f"{number(100.0 * share, 2)} %"
 
 
 def _stable(k: int, selection: Selection) -> Check:
@@ -319,7 +290,7 @@ def _stable(k: int, selection: Selection) -> Check:
     text = "one record cannot tell whether its size is the same in all"
     if not np.isnan(found):
         text = (
-            f"records differ in its size as much as these in {_percent(found)} of cases where it is the same "
-            f"in all; {_percent(least)} is asked"
+            f"records differ in its size as much as these in {percent(found)} of cases where it is the same "
+            f"in all; {percent(least)} is asked"
         )
     return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)

@@ -1,0 +1,40 @@
+"""Figures of checks in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from modelgen.charts import number
+from modelgen.diagnosis.selection import Cause
+
+
+def possible(cause: Cause) -> str:
+    """Its values, each with what it may be."""
+    c, values = cause.trial.candidate, cause.trial.parameters
+    said = [
+        f"{p.name} is {number(values[p.name])}, may be {range_said(*p.bounds)}"
+        for p in c.definition.accepted()
+        if p.name in values
+    ]
+    return f"its values can be those of an arm: {'; '.join(said)}" if said else "it has no values of its own"
+
+
+def range_said(low: float, high: float) -> str:
+    """What a value may be between bounds of which either may be infinite."""
+    if not np.isfinite(low) and not np.isfinite(high):
+        return "anything"
+    if not np.isfinite(high):
+        return f"{number(low)} or more"
+    return f"{number(high)} or less" if not np.isfinite(low) else f"{number(low)} to {number(high)}"
+
+
+def ahead_of(ahead: float, most: float) -> str:
+    """How far something is before or behind a cause in delta BIC, and how far it may be."""
+    where = f"{number(ahead)} ahead of it" if ahead > 0.0 else f"{number(-ahead)} behind it"
+    may = f"may be {number(most)} ahead" if most > 0.0 else "must not be ahead"
+    return f"is {where} in delta BIC; it {may}"
+
+
+def percent(share: float) -> str:
+    """A share in percent."""
+    return f"{number(100.0 * share, 2)} %"
