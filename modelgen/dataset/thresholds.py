@@ -207,6 +207,20 @@ class DatasetThresholds(Group):
         "So much is trimmed at both ends of a record, where filters have no past or future.",
         _CHOICE,
     )
+    direction_deviations: float = entry(
+        2.0,
+        "standard deviations",
+        "A joint whose speed is within this of zero, by the rounding of its position, moves nobody knows "
+        "which way: its samples do not count.",
+        "one in 20 of a normal distribution",
+    )
+    max_acceleration_noise: float = entry(
+        0.5,
+        "of their power",
+        "Accelerations of more noise would bring it into the band of the equations at sharp edges of what is "
+        "left out: the weight of samples falls slowly there.",
+        _CHOICE,
+    )
     rest_speed: float = entry(
         0.01,
         "of its 99 % quantile",

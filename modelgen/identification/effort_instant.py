@@ -129,7 +129,7 @@ class _Fit:
         pairs = list(zip(self.records, self.motions, strict=True))
         self.full = [np.asarray(self.evaluator.regressor(self.model, m, theta)) for _, m in pairs]
         self.columns = [
-            r.parallel(full * r.awake[:, :, None]) for r, full in zip(self.records, self.full, strict=True)
+            r.parallel(full * r.weights[:, :, None]) for r, full in zip(self.records, self.full, strict=True)
         ]
 
     def delays(self) -> tuple[Array, Array]:
@@ -159,7 +159,7 @@ class _Fit:
         """Parameters, and the changes of the delays after them."""
         columns = []
         for r, own, full in zip(self.records, self.columns, self.full, strict=True):
-            slope = r.parallel(np.gradient(full @ theta, axis=0) * r.awake)
+            slope = r.parallel(np.gradient(full @ theta, axis=0) * r.weights)
             more = np.zeros((len(slope), self.n, self.n))
             more[:, range(self.n), range(self.n)] = slope
             columns.append(np.concatenate([own, more], axis=2))
@@ -176,5 +176,5 @@ class _Fit:
                     for x, d in zip(r.record.input.T, delays, strict=True)
                 ]
             )
-            found.append(r.parallel(self.evaluator.ideal(self.model, motion, given) * r.awake))
+            found.append(r.parallel(self.evaluator.ideal(self.model, motion, given) * r.weights))
         return found

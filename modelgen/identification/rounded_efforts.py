@@ -76,4 +76,4 @@ def _rounding(p: Prepared, ideal: Array, steps: Array, random: np.random.Generat
         place = step * random.uniform()
         noisy = logged + noise * random.normal(size=len(logged)) + place
         errors[:, k] = (step * np.rint(noisy / step) - noisy) / gain[:, k]
-    return np.asarray(p.parallel(errors * p.awake))
+    return np.asarray(p.parallel(errors * p.weights))

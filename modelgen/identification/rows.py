@@ -59,7 +59,7 @@ class Rows:
         effort = self.evaluator.ideal(self.model, motion, p.input)
         effort = np.asarray(p.parallel(effort if awake is None else effort * awake))
         if self._compiled and RegressorColumns.fit(p.q):
-            inputs = [p.q, p.dq, p.ddq, *([] if awake is None else [awake.astype(np.float64)])]
+            inputs = [p.q, p.dq, p.ddq, *([] if awake is None else [awake])]
             made, d = self._compiled[awake is not None], p.decimation
             with suppress(RuntimeError):  # a compiler that knows no vectors, say
                 columns = made.filtered(inputs, **vars(d)) if d else p.parallel(made.values(inputs))
@@ -68,7 +68,7 @@ class Rows:
         full = np.asarray(self.evaluator.regressor(self.model, motion, theta))[:, self.joint, self.parameter]
         return effort, p.parallel(full if awake is None else full * awake[:, self.joint])
 
-    def _turned(self, p: Prepared, motion: Motion, awake: NDArray[np.bool_] | None) -> Array | float:
+    def _turned(self, p: Prepared, motion: Motion, awake: Array | None) -> Array | float:
         """Columns (M, c) to be added for joints that turn back in a sample over which efforts are means."""
         pieces = motion.pieces if motion.held else None
         if pieces is None:
@@ -93,14 +93,14 @@ class Rows:
     def moving(self, p: Prepared) -> NDArray[np.bool_]:
         """Rows (M, n) that count: joints move there, and most of what the filter has taken is left."""
         awake = self._awake(p)
-        return p.moving if awake is None else p.moving & (p.parallel(awake.astype(np.float64)) > LEFT)
+        return p.moving if awake is None else p.moving & (p.parallel(awake) > LEFT)
 
-    def _awake(self, p: Prepared) -> NDArray[np.bool_] | None:
-        """Samples (N, n) that count, None: all. Those of joints that never move, which hold, do."""
+    def _awake(self, p: Prepared) -> Array | None:
+        """Weights (N, n) of samples, None: all count. Those of joints that never move, which hold, do."""
         if self.all_samples or not p.settings.cutoff:  # without a filter nothing is carried
             return None
         awake = p.awake | self.slides | ~p.moving.any(axis=0)
-        return None if awake.all() else awake
+        return None if awake.all() else p.weighted(awake)
 
     def whole(self, columns: Array) -> Array:
         """The columns (M, c) as a matrix by sample (M, n, p)."""

@@ -51,7 +51,7 @@ MUTATIONS = (
     Mutation(
         "equations",
         "rows.py",
-        " * self.prepared.awake[:, joints]",
+        " * self.prepared.weights[:, joints]",
         "",
         "dry friction of a joint at rest reaches the rows beside",
         ("test_sticking.py::test_what_the_effort_is_while_a_joint_rests_changes_no_equation",),

@@ -104,8 +104,8 @@ def moving(limits: DatasetThresholds) -> Any:
     return prepare(replace(RECORD, q=q, motor=motor), Settings(thresholds=limits)).moving.tolist()
 
 
-def awake(limits: DatasetThresholds) -> Any:
-    return prepare(RECORD, Settings(cutoff=5.0, thresholds=limits)).awake.tolist()
+def awake(limits: DatasetThresholds, r: Record = RECORD) -> Any:
+    return prepare(r, Settings(cutoff=5.0, thresholds=limits)).awake.tolist()
 
 
 def of_rates(limits: DatasetThresholds) -> Any:
@@ -189,6 +189,8 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "max_position_cutoff": (0.01, lambda limits: chosen(limits, cutoff=5.0)),
         "row_rate_over_cutoff": (5.0, lambda limits: chosen(limits, cutoff=5.0)),
         "trimmed_cutoff_periods": (3.0, lambda limits: chosen(limits, cutoff=5.0)),
+        "direction_deviations": (20.0, lambda limits: awake(limits, coarse(RECORD))),
+        "max_acceleration_noise": (1e-9, lambda limits: chosen(limits, coarse(RECORD), cutoff=5.0)),
         "rest_speed": (0.1, lambda limits: chosen(limits, cutoff=5.0)),
         "max_readings_at_rest": (50, few_readings),
         "rest_cutoff_periods": (0.5, lambda limits: chosen(limits, cutoff=5.0)),

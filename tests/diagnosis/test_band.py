@@ -32,8 +32,9 @@ def test_coarse_positions_alone_narrow_the_band() -> None:
     assert exact.chosen.cutoff == wide.chosen.cutoff == 18.0
     assert seen.equations.narrowed == pytest.approx(18.0 / seen.chosen.cutoff)
     assert seen.equations.narrowed > 2.0
-    # Errors of the positions lose more than what is white: power of accelerations grows as f^5.
-    assert (seen.equations.blur < wide.equations.blur / seen.equations.narrowed**2).all()
+    # Errors of the positions lose more than what is white, since power of accelerations grows as f^5; what
+    # comes down through samples that are left out loses less.
+    assert (seen.equations.blur < wide.equations.blur / (2.0 * seen.equations.narrowed)).all()
 
 
 def test_no_more_than_the_blur_comes_of_the_errors() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from arms_support import base_vector, standard_vector
 
+from modelgen.dataset import Record, prepare
 from modelgen.dataset.processing.rest import directed
 from modelgen.description import Arm, DirectDrive, EffectUse, Joint
 from modelgen.evaluation import Evaluator, Motion
@@ -74,17 +75,33 @@ def test_several_joints_may_turn_back_in_one_sample() -> None:
 def test_the_direction_is_not_known_within_the_time_that_an_instant_is(within: float) -> None:
     t = np.arange(0.0, 6.0, STEP)
     dq = moved(t, 1)
-    known = directed(dq, within)
+    known = directed(dq, (0.0, 0.0), within)
     early, late = (np.sign(moved(t + side * 0.98 * within * STEP, 1)) for side in (-1, 1))
     assert not known[early != late].any()
     early, late = (np.sign(moved(t + side * 1.05 * within * STEP, 1)) for side in (-1, 1))
     assert known[early == late][1:-1].all()
 
 
+@pytest.mark.parametrize("step", [3e-4, 1.5e-3, 6e-3])
+def test_directions_that_rounded_positions_feign_do_not_count(step: float) -> None:
+    """Where counts say the wrong way, or all but, against the motion itself; and little else is left out."""
+    t = np.arange(0.0, 60.0, STEP / 4)
+    q = moved(t, 0)
+    read = step * np.rint(q / step)
+    prepared = prepare(Record("a", t, read, read, input=np.zeros(q.shape), effort_unit=("N m",) * 2))
+    true = np.sign(moved(t, 1))
+    wrong = np.sign(prepared.dq) != true
+    known = directed(prepared.dq, prepared.settings.noise, 0.0)
+    inner = slice(100, -100)  # derivatives of the ends are one-sided
+    assert wrong[inner].sum() > 5
+    assert (wrong & known)[inner].sum() <= 0.1 * wrong[inner].sum()
+    slow = np.abs(moved(t, 1)) < 2.5 * np.array(prepared.settings.noise)
+    assert not (~known & ~slow)[inner].any()
+    assert (~known)[inner].mean() < 0.05
+
+
 def test_compiled_columns_have_the_same_means() -> None:
     """Of a record, through the filter, by the compiled regressor and by NumPy."""
-    from modelgen.dataset import Record, prepare  # noqa: PLC0415
-
     t = np.arange(0.0, 20.0, STEP)
     q = moved(t, 0)
     record = Record("held", t, q, q, q, held=True, hold=STEP / 2)

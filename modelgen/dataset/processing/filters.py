@@ -64,6 +64,14 @@ def differences(x: Array, step: float, half_width: int) -> tuple[Array, Array]:
     return first, second
 
 
+def smoothed(
+    columns: Array, step: float, cutoff: float, order: int, half_width: int
+) -> tuple[Array, Array, Array]:
+    """Columns (N, k) through the filter of the positions, 0 Hz: none, and their first two derivatives."""
+    values = low_pass(columns, cutoff, 1.0 / step, order) if cutoff else columns.copy(order="K")
+    return values, *differences(values, step, half_width)
+
+
 def advanced(x: Array, delay: float, held: bool) -> Array:
     """x (N, k) at the instants of the stamps, where its samples lie `delay` periods after them.
 

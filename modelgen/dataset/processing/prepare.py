@@ -8,6 +8,7 @@ robots with power model"; Pham, Gautier and Poignet, 2001).
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -15,8 +16,8 @@ from modelgen.dataset.couplings import couplings_of
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.decimation import Decimation, decimation, kept
-from modelgen.dataset.processing.filters import advanced, differences, low_pass
-from modelgen.dataset.processing.rest import directed, moving_samples, samples_away_from_rest
+from modelgen.dataset.processing.filters import advanced, smoothed
+from modelgen.dataset.processing.rest import directed, moving_samples, samples_away_from_rest, weights
 from modelgen.dataset.processing.saturation import saturated
 from modelgen.dataset.processing.settings import Chosen, Settings, choose
 from modelgen.errors import InputError
@@ -93,6 +94,15 @@ class Prepared:
             result[:, k : k + COLUMNS] = kept(part, self.rows, chosen.cutoff, rate, chosen.order)
         return result.reshape((len(self.rows), *columns.shape[1:]))
 
+    @cached_property
+    def weights(self) -> Array:
+        """Weights (N, n) of the samples that are awake, by which columns are multiplied before the filter."""
+        return self.weighted(self.awake)
+
+    def weighted(self, flags: np.ndarray) -> Array:
+        """Weights (N, n), for samples that count (N, n)."""
+        return weights(flags, self.settings, 1.0 / self.record.step)
+
     def picked(self, columns: Array) -> Array:
         """Columns (N, ...) at the rows, not filtered: (M, ...)."""
         return np.asarray(columns[self.rows])
@@ -117,13 +127,14 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
     sides = record.motor_side or (False,) * record.n
     # Quantisation is even in the coordinate that was logged: that one is filtered, the other follows.
     logged = np.where(sides, record.motor, record.q) if any(sides) else record.q
-    q, dq, ddq = _smoothed(logged, step, chosen)
+    light = (chosen.position_cutoff, chosen.position_order, chosen.half_width)
+    q, dq, ddq = smoothed(logged, step, *light)
     if drives:
         both = zip(drives, sides, strict=True)
         ratios = np.array([1.0 if side or d.ratio is None else d.ratio for d, side in both])
         motor, dmotor, ddmotor = q * ratios, dq * ratios, ddq * ratios
     else:
-        motor, dmotor, ddmotor = _smoothed(record.motor, step, chosen)
+        motor, dmotor, ddmotor = smoothed(record.motor, step, *light)
     for k, drive in enumerate(drives):
         if sides[k]:
             q[:, k] = drive.joint(motor[:, k])
@@ -173,15 +184,15 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
 def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
     """Samples (N, n) away from rest, for speeds dq (N, n), of joints and of what turns with two of them.
 
-    Nor do those count at which a joint turns back before or after its effort was read, nobody knows which:
-    within what the instants of readings are known to, or within a period where one lies between two of them.
-    A held effort is a mean, and tells of either side.
+    Nor do those count at which nobody knows which way a joint moves: it is slower than the rounding of its
+    position lets see, or turns back within what the instants of the efforts are known to, a period where
+    they lie between two readings. A held effort is a mean, and tells of either side.
     """
     rate = 1.0 / record.step
-    awake = samples_away_from_rest(dq, chosen, rate)
-    if not record.held:
-        between = abs(record.hold * rate - round(record.hold * rate)) > 1e-9
-        awake &= directed(dq, 1.0 if between else chosen.thresholds.max_instant_std)
+    between = abs(record.hold * rate - round(record.hold * rate)) > 1e-9
+    within = 0.0 if record.held else 1.0 if between else chosen.thresholds.max_instant_std
+    awake: np.ndarray = samples_away_from_rest(dq, chosen, rate)
+    awake &= directed(dq, chosen.noise, within)
     for part in () if record.arm is None else couplings_of(record.arm):
         own = replace(chosen, gates=(part.gate(chosen.gates),))
         awake[:, [part.one, part.other]] &= samples_away_from_rest(part.speed(dq), own, rate)
@@ -195,15 +206,6 @@ def _cut_off(record: Record) -> np.ndarray:
         for k, effort in enumerate(logged.T):
             found[:, k] = saturated(effort, record.q[:, k])
     return found
-
-
-def _smoothed(columns: Array, step: float, chosen: Chosen) -> tuple[Array, Array, Array]:
-    """Filtered columns (N, k) and their first two derivatives."""
-    cutoff = chosen.position_cutoff
-    values = (
-        low_pass(columns, cutoff, 1.0 / step, chosen.position_order) if cutoff else columns.copy(order="K")
-    )
-    return values, *differences(values, step, chosen.half_width)
 
 
 def kept_rows(record: Record, settings: Chosen) -> np.ndarray:

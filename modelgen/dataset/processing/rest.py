@@ -42,13 +42,32 @@ def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarr
     return np.asarray(~long & ~_resting(slow, moment * rate))
 
 
-def directed(dq: Array, within: float) -> np.ndarray:
-    """Samples (N, n) where the direction of speeds (N, n) is known, if the instant of the effort beside them
-    is to `within` sampling periods: where the joint does not turn back in that time.
+def directed(dq: Array, noise: tuple[float, ...], within: float) -> np.ndarray:
+    """Samples (N, n) where the direction of speeds (N, n) is known.
+
+    noise: speeds (n,) that the rounding of the positions may feign. within: sampling periods to which the
+    instants of the efforts beside are known; the joint turned back earlier or comes to it later.
     """
     if len(dq) < 2:
         return np.ones(dq.shape, dtype=bool)
-    return np.asarray(np.abs(dq) >= within * np.abs(np.gradient(dq, axis=0)))
+    return np.asarray(np.abs(dq) >= np.maximum(noise, within * np.abs(np.gradient(dq, axis=0))))
+
+
+def weights(flags: np.ndarray, settings: Chosen, rate: float) -> Array:
+    """Weights (N, n) of samples by which columns are multiplied before a filter: 0 where flags (N, n) are not
+    set, 1 away from there.
+
+    Accelerations carry most of their noise near the cut-off of the positions, and sharp edges of what is left
+    out mix it down into the band of the equations. Where it is large, edges are as long as a period there, a
+    Hann window laid inside: less than half of that comes down. Longer ones would cost more of the motion than
+    they bring, and so would any where there is little noise.
+    """
+    if flags.all():
+        return np.ones(flags.shape)
+    half = round(0.5 * rate * settings.edge)
+    window = np.hanning(2 * half + 3)[1:-1, None]
+    inside = ndimage.binary_erosion(flags, np.ones((2 * half + 1, 1)), border_value=1)
+    return np.asarray(ndimage.convolve(inside.astype(np.float64), window / window.sum(), mode="nearest"))
 
 
 def _resting(slow: np.ndarray, longest: float) -> np.ndarray:

@@ -9,10 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.dataset.objects import Record
-from modelgen.dataset.processing.content import chosen_cutoff, quiet_speeds
-from modelgen.dataset.processing.filters import differences, low_pass
+from modelgen.dataset.processing.content import chosen_cutoff, quiet_speeds, white_noise
+from modelgen.dataset.processing.filters import smoothed
+from modelgen.dataset.processing.rounding import position_steps
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)
@@ -43,8 +45,9 @@ class Settings:
 class Chosen:
     """Settings with every choice made, meanings and units as there.
 
-    spacing: samples between rows where the periods of the motion ask for no whole number of them: a row is
-    the sample nearest to its place.
+    noise: speeds [rad/s, m/s] by joint that the rounding of the positions may feign. edge: over which the
+    weight of samples falls to what is left out [s]. spacing: samples between rows where the periods of the
+    motion ask for no whole number of them: a row is the sample nearest to its place.
     """
 
     cutoff: float
@@ -56,6 +59,8 @@ class Chosen:
     trim: float
     gates: tuple[float, ...]
     rest_time: float
+    noise: tuple[float, ...]
+    edge: float
     thresholds: DatasetThresholds = USUAL
     spacing: float | None = None
 
@@ -124,15 +129,16 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
     if trim is None:
         lowest = min((f for f in (cutoff, position) if f), default=np.inf)
         trim = limits.trimmed_cutoff_periods / lowest + settings.half_width * first.step
-    gates = settings.rest_gate
+    gates, light = settings.rest_gate, replace(settings, position_cutoff=position)
     if gates is None:
-        chosen = replace(settings, position_cutoff=position)
-        found = [chosen_gates(r, chosen) for r in several]
+        found = [chosen_gates(r, light) for r in several]
         gates = tuple(max(column) for column in zip(*found, strict=True))
     elif isinstance(gates, float | int):
         gates = (float(gates),) * first.n
     if len(gates) != first.n:
         raise InputError(f"{first.name}: found {len(gates)} rest thresholds, expected one or {first.n}")
+    noise = [noise_of(r, light) for r in several]
+    noisy = bool(np.max([n.accelerations for n in noise]) > limits.max_acceleration_noise)
     time = settings.rest_time
     if time is None:
         time = max(limits.rest_cutoff_periods / cutoff, limits.min_rest_time) if cutoff else 3 * first.step
@@ -146,6 +152,8 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         trim=trim,
         gates=gates,
         rest_time=time,
+        noise=tuple(np.max([n.speeds for n in noise], axis=0).tolist()),
+        edge=1.0 / (position or 0.5 * rate) if noisy else 0.0,
         thresholds=limits,
     )
 
@@ -166,10 +174,42 @@ def chosen_gates(record: Record, settings: Settings) -> tuple[float, ...]:
 
     settings: whose filter of the positions, which is chosen, and differences make the speeds.
     """
-    cutoff, limits = settings.position_cutoff, settings.thresholds
-    q = low_pass(record.q, cutoff, 1.0 / record.step, settings.position_order) if cutoff else record.q
-    speed, _ = differences(q, record.step, settings.half_width)
+    limits = settings.thresholds
+    _, speed, _ = smoothed(record.q, record.step, *_light(settings))
     high = np.quantile(np.abs(speed), 0.99, axis=0)
     still = [len(np.unique(q)) <= limits.max_readings_at_rest for q in record.q.T]
     gate = limits.rest_speed
     return tuple(np.where(still, (1.0 + gate) * np.abs(speed).max(axis=0), gate * high).tolist())
+
+
+@dataclass(frozen=True)
+class Noise:
+    """speeds: (n,) that the rounding of positions may feign [rad/s, m/s]. accelerations: (n,), the share of
+    their power that noise of the positions makes.
+    """
+
+    speeds: Array
+    accelerations: Array
+
+
+def noise_of(record: Record, settings: Settings) -> Noise:
+    """What the noise of a record's positions makes of their derivatives, white noise (Bennett 1948).
+
+    Of their accelerations that is all that their spectrum shows; of speeds near zero the rounding alone,
+    since jitter of the stamps, say, is noise of a joint that moves. settings: as of `chosen_gates`.
+    """
+    impulse = np.zeros((len(record.t), 1))
+    impulse[len(impulse) // 2] = 1.0
+    _, speed, acceleration = smoothed(impulse, record.step, *_light(settings))
+    rounding = position_steps(record) / math.sqrt(12.0)
+    deviations = np.maximum(rounding, [white_noise(q, 1.0 / record.step) for q in record.q.T])
+    _, _, logged = smoothed(record.q, record.step, *_light(settings))
+    power = np.maximum(np.mean(logged**2, axis=0), 1e-300)
+    return Noise(
+        settings.thresholds.direction_deviations * np.linalg.norm(speed) * rounding,
+        (np.linalg.norm(acceleration) * deviations) ** 2 / power,
+    )
+
+
+def _light(settings: Settings) -> tuple[float, int, int]:
+    return settings.position_cutoff or 0.0, settings.position_order, settings.half_width

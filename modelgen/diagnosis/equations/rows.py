@@ -64,7 +64,7 @@ class Rows:
         carries of it to the rows beside would look like a law of friction.
         """
         with np.errstate(over="ignore", invalid="ignore"):  # states of a law that does not hold here
-            return self.prepared.parallel(columns * self.prepared.awake[:, joints])
+            return self.prepared.parallel(columns * self.prepared.weights[:, joints])
 
 
 def motion_of(prepared: Prepared) -> Motion:
