@@ -71,7 +71,7 @@ class Definition(Traits):
     confused_with: ClassVar[tuple[str, ...]] = ()
     experiment: ClassVar[str] = ""
     caveat: ClassVar[str] = ""  # what its values depend on besides the arm, a sentence after a blank
-    seen_over: ClassVar[str] = "velocity"  # what shows it best: velocity, position, acceleration or time
+    seen_over: ClassVar[str] = "velocity"  # what shows it best: velocity, position, acceleration, load, time
 
     def values(self, given: Mapping[str, float]) -> dict[str, float]:
         """Nominal values of the linear parameters from the description's, where it gives them."""

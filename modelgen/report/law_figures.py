@@ -7,9 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelgen.backends.numpy import NumpyFunction
 from modelgen.charts import Chart, Curve
+from modelgen.diagnosis.equations.checks import columns_of_effects
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE, Definition, InputEffect
+from modelgen.functions import Model
 from modelgen.numeric import Array
 from modelgen.report.diagnosis_figures import BINS, HELD, against, binned, bins_of, measured_efforts, units_of
 
@@ -22,7 +25,15 @@ _SEEN = 40  # waves that are told from each other in a chart
 _NEAR = 0.9  # of the best abscissa's share that the usual one needs
 _CURVED = 0.7  # share of a law that the means over its abscissa have; with less it is no curve over that
 _STRETCH = 150  # samples of a stretch of the record: as many as are told from each other in a chart
-_OVER = {"velocity": "speed", "position": "position", "acceleration": "acceleration", "time": "time"}
+_WEIGHT, _CARRIED = "load by the weight of the links", "load by all that moves the links"
+# By what the catalogue says that shows a law best.
+_OVER = {
+    "velocity": ("speed",),
+    "position": ("position",),
+    "acceleration": ("acceleration",),
+    "load": (_WEIGHT, _CARRIED),
+    "time": ("time",),
+}
 _FEW = 0.005  # of the samples, that lie far out at either end: impacts
 _FAR = 2.0  # times the span of the others, by which they are left out
 
@@ -188,15 +199,16 @@ def _abscissa(d: Diagnosis, k: int, j: int) -> tuple[_Abscissa, float]:
     m = d.test.moving[:, j]
     y = d.laws[k][m, j]
     definition = CATALOGUE[d.causes[k].effect]
-    usual = "motor position" if definition.periodic else _OVER.get(definition.seen_over, "")
-    effect = definition.name
-    tried = [a for a in _tried(d, j, definition) if usual == "time" or a.name != "time"]
+    usual = ("motor position",) if definition.periodic else _OVER.get(definition.seen_over, ())
+    effect, over_time = definition.name, "time" in usual
+    tried = [a for a in _tried(d, j, definition) if over_time or a.name != "time"]
     found = [(a, _share(a, y * a.side, _groups(effect, a.name))) for a in tried]
     best = max(found, key=lambda pair: pair[1])
-    near = [pair for pair in found if pair[1] >= _NEAR * best[1] and pair[0].name == usual]
-    # over time the motion itself is seen, unless it is taken out
-    plain = [pair for pair in near if (pair[0].side > 0).all() == (usual != "time")]
-    return plain[0] if plain else best
+    near = [pair for pair in found if pair[1] >= _NEAR * best[1] and pair[0].name in usual]
+    # over time the motion itself is seen, unless it is taken out, and over a load the friction's two signs
+    turned = over_time or definition.seen_over == "load"
+    plain = [pair for pair in near if (pair[0].side > 0).all() != turned]
+    return max(plain, key=lambda pair: pair[1]) if plain else best
 
 
 def _tried(d: Diagnosis, j: int, definition: type[Definition]) -> Iterator[_Abscissa]:
@@ -207,6 +219,8 @@ def _tried(d: Diagnosis, j: int, definition: type[Definition]) -> Iterator[_Absc
     motor = abscissae.pop("motor position")
     if definition.periodic:
         abscissae = {"motor position": motor}
+    if definition.seen_over == "load":
+        abscissae |= {name: (x, units_of(d)) for name, x in _loads(d).items()}
     if issubclass(definition, InputEffect):
         abscissae["effort"] = (measured_efforts(d.test), units_of(d))
     for name, (x, units) in abscissae.items():
@@ -215,6 +229,24 @@ def _tried(d: Diagnosis, j: int, definition: type[Definition]) -> Iterator[_Absc
     time = p.t[m] - p.t[0]
     for side in (np.ones(len(time)), direction):
         yield _Abscissa("time", "s", time, side)
+
+
+def _loads(d: Diagnosis) -> dict[str, Array]:
+    """What the links ask of their drives, in size, in the unit of the log (M, n): friction is not in it."""
+    test, model = d.test, d.after.model
+    function = next(f for f in model.functions if f.name == "gravity")
+    given = {"q": test.prepared.picked(test.prepared.q)}
+    given["parameters"] = np.where(_of_links(model), d.after.theta, 0.0)
+    given |= {a.name: np.zeros(a.size) for a in function.arguments if a.name not in given}
+    weight = np.asarray(NumpyFunction(function)(**given), dtype=float).reshape(test.moving.shape)
+    own = _of_links(d.before.model)
+    carried = test.columns[:, :, own] @ d.before.theta[own]
+    return {_WEIGHT: np.abs(weight * test.gain), _CARRIED: np.abs(carried * test.gain)}
+
+
+def _of_links(model: Model) -> np.ndarray:
+    """Flags (p,) of the base parameters in which a link has a part."""
+    return ~np.isin(np.arange(len(model.grouping.base)), columns_of_effects(model))
 
 
 def _bins(effect: str, over: str) -> int:

@@ -116,6 +116,8 @@ def _abscissa(definition: type[Definition], along: Motion, moved: int) -> tuple[
     drive, q, dq, ddq = drives_of(ARM)[moved], *(v[:, moved] for v in (along.q, along.dq, along.ddq))
     if definition.seen_over == "time":
         return "time [s]", along.t
+    if definition.seen_over == "load":
+        return "size of the load, signed by the motion [N m]", np.abs(_weight(along, moved)) * np.sign(dq)
     if definition.seen_over == "position":
         if definition.periodic:
             return "position of the motor [rad]", np.asarray(drive.motor(q))
@@ -125,6 +127,14 @@ def _abscissa(definition: type[Definition], along: Motion, moved: int) -> tuple[
     if definition.seen_over == "acceleration":
         return f"acceleration{word} [rad/s^2]", np.asarray(ratio * ddq)
     return f"speed{word} [rad/s]", np.asarray(ratio * dq)
+
+
+def _weight(along: Motion, moved: int) -> Array:
+    """Torque at the motor that the links' weight takes (N,)."""
+    evaluator, base = _bench()
+    rest = np.zeros_like(along.q)
+    current = evaluator.inputs(Motion(along.t, along.q, rest, rest), base)[:, moved]
+    return np.asarray(current * drives_of(ARM)[moved].torque_constant)
 
 
 def _of_variable(effect: str, own: Characteristic) -> Chart:

@@ -289,6 +289,20 @@ def with_a_ripple(found: Diagnosis, waves: float) -> tuple[Diagnosis, float]:
     return with_law(found, "torque_ripple", values, np.sin(harmonic * motor)), harmonic
 
 
+def test_friction_by_load_is_drawn_over_the_load_as_a_line() -> None:
+    """Whose slope is the coefficient, from no load on; not over the position, where it has two signs."""
+    records, asked = three("load_dependent_friction", 2, 0.3), [("load_dependent_friction", 2)]
+    d = diagnose(ARM, records, effects=asked, experiment=False)
+    (cause,) = d.causes
+    law, left = law_charts(d, 0)
+    assert law.x_label == left.x_label == "load by the weight of the links [A]"
+    assert law.y_label == "effort against the motion [A]"
+    (curve,) = [c for c in law.curves if c.role == "law"]
+    coefficient = cause.parameters["coefficient"].value
+    np.testing.assert_allclose(curve.y, coefficient * curve.x, rtol=0, atol=0.02 * curve.y.max())
+    assert curve.x.min() < 0.05 * curve.x.max()
+
+
 @pytest.mark.parametrize("waves", [20.0, 35.0, 120.0])
 def test_every_wave_of_a_ripple_is_drawn(found: Diagnosis, waves: float) -> None:
     """Each that is shown, at its height; of more than can be told apart, forty."""

@@ -39,6 +39,7 @@ LAWS = {
     "stribeck_friction": lambda v: 0.1 * np.exp(-((v / 8.0) ** 2)) * np.sign(v),
     "nonlinear_viscous_friction": lambda v: 0.1 * np.abs(v / 100.0) ** 0.6 * np.sign(v),
     "friction_offset": lambda q: 0.05 + 0.0 * q,
+    "load_dependent_friction": lambda load: 0.15 * load,
     "drive_inertia": lambda a: 0.0005 * a,
     "torque_ripple": lambda x: 0.05 * np.sin(0.25 * x),
     "spring": lambda q: 8.0 * q - 4.0,

@@ -67,7 +67,7 @@ class LoadDependentFriction(Friction):
     """Dry friction in proportion to the load that the transmission carries."""
 
     name = "load_dependent_friction"
-    seen_over = "position"
+    seen_over = "load"
     text = "dry friction in proportion to the load that the transmission carries"
     finding = "friction in {drive} grows with the load: {coefficient:%} of it"
     reference = "Gogoussis and Donath 1988; Hamon, Gautier and Garrec 2010"
