@@ -169,7 +169,7 @@ def diagnose(
     options : DiagnosisOptions, optional
         Band, period, effects to ask for, thresholds.
     progress : callable, optional
-        It is told what is done, how much of it, and of how much.
+        It is called with what is done, how much of it, and of how much.
     **changes
         Fields of the options, by name.
 

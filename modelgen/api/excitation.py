@@ -132,7 +132,7 @@ def excite(
     options : ExcitationOptions, optional
         Period, harmonics, criterion, boxes.
     progress : callable, optional
-        It is told how many starts are done, and of how many.
+        It is called with how many starts are done, and of how many.
     **changes
         Fields of the options, by name.
 

@@ -136,7 +136,7 @@ def generate(
     check : bool
         Compare with what is there and write nothing.
     progress : callable, optional
-        It is told the name of each arm that is done, how many are done, and of how many.
+        It is called with the name of each arm that is done, how many are done, and of how many.
 
     Returns
     -------

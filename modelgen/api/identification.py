@@ -160,7 +160,7 @@ def identify(
     options : IdentificationOptions, optional
         Method, processing, torque constants.
     progress : callable, optional
-        It is told what is done, how much of it, and of how much (None where that is not known).
+        It is called with what is done, how much of it, and of how much (None where that is not known).
     **changes
         Fields of the options, by name.
 

@@ -188,7 +188,7 @@ def inspect_log(log: Log, arm: Arm | None = None, *, mapping: Path | str | None 
         A path, "FILE@t0:t1" [s], a record, or a table of columns. Stamps t are in s.
     arm : Arm, optional
         With it the columns are those that are read for the arm, in its units, and its model says when the
-        efforts were read. Default: all columns as they stand in the log.
+        efforts were read. Default: all columns as the log has them.
     mapping : Path or str, optional
         A mapping file that renames and scales the columns of a foreign log. Without an arm they are those of
         joints without limits and gears.

@@ -136,7 +136,7 @@ def refine(
     options : RefinementOptions, optional
         Which parameters are free, and where they start.
     progress : callable, optional
-        It is told the step.
+        It is called with the step.
     **changes
         Fields of the options, by name.
 

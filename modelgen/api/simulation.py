@@ -167,7 +167,7 @@ def simulate(
     options : SimulationOptions, optional
         Initial state [rad, m; /s], duration [s], control, integrator.
     progress : callable, optional
-        It is told the simulated time [s], and of how much.
+        It is called with the simulated time [s], and of how much.
     **changes
         Fields of the options, by name.
 

@@ -65,7 +65,7 @@ def table(rows: Iterable[Sequence[str]], width: int = WIDTH - 3) -> list[str]:
 
 
 def plain(text: str) -> str:
-    """Text of a user as one line that can stand in any comment or docstring."""
+    """Text of a user as one line that fits into any comment or docstring."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     for ends, harmless in _ENDS.items():
         line = line.replace(ends, harmless)

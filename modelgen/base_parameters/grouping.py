@@ -124,7 +124,7 @@ def fluid_remarks(equations: Equations, grouping: Grouping) -> list[str]:
     """Remarks on what a fluid makes identifiable: volumes alone, and those seen only with the mass.
 
     Gravity sees M - density V, inertia sees M: where a first moment of the mass shows in the inertia
-    as well, that of the volume can be told from it.
+    as well, that of the volume follows from it.
     """
     if not equations.arm.fluid_density:
         return []

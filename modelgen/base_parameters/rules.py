@@ -116,7 +116,7 @@ def slid(arm: Arm) -> Arm:
     """The arm with the frames of its last links moved along z to the foot of the common normal.
 
     How far a last link's frame sits along its own axis is a choice of drawing, not of dynamics. Its
-    base parameters are taken about the foot, which spares every function the offset r. What is given in the
+    base parameters are those about the foot, which spares every function the offset r. What is given in the
     frame as it is drawn, the joint's `lift` takes there.
     """
     carrying = {joint.antecedent for joint in arm.joints}

@@ -1,4 +1,4 @@
-"""Least squares of a lever's geometry; what the angles leave open is taken from the lengths as measured.
+"""Least squares of a lever's geometry; what the angles leave open comes from the lengths as measured.
 
 The joint angle is a function of three combinations of the four lengths (their common scale leaves it as it
 is) and of the offset. The lengths of the description, known to a few millimetres, enter as a Gaussian prior

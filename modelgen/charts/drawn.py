@@ -1,4 +1,4 @@
-"""A chart as an SVG element, whose classes are styled by the page that it stands in."""
+"""A chart as an SVG element, whose classes are styled by the page around it."""
 
 from __future__ import annotations
 

@@ -208,7 +208,7 @@ class Record:
 
 @dataclass(frozen=True)
 class Layout:
-    """How a table stands in a text file, as far as somebody has said it; the rest is found out.
+    """How a text file holds a table, as far as somebody has said it; the rest is found out.
 
     columns: names where there is no header. delimiter: between cells, " " for blanks. decimal: its sign.
     encoding: of the text. skip_lines: lines passed over at the beginning.

@@ -77,7 +77,7 @@ def within_reach(
 ) -> Range | None:
     """The joint range, cut to the drive's reach where they disagree a little.
 
-    Raises InputError where by more. Without a joint range, the drive's is taken. kind: of the joint's
+    Raises InputError where by more. Without a joint range, the drive's counts. kind: of the joint's
     coordinate, "angle" or "length".
     """
     reach = drive.numeric(context.symbols).reach()

@@ -1,4 +1,4 @@
-"""Names that become part of generated code, and names that are taken."""
+"""Names that become part of generated code, and names that are in use."""
 
 from __future__ import annotations
 

@@ -177,7 +177,7 @@ class Arm:
     version : str
         Version of the description, "" where it has none.
     where : Location, optional
-        Where the arm stands in its file.
+        Place of the arm in its file.
     document : str
         The text of the description that the arm was read from, in YAML.
     """

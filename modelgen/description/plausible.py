@@ -18,7 +18,7 @@ _ASKED = {
 
 
 def ask_unit(context: Context, raw: float | str, kind: str, steps: Steps) -> None:
-    """A plain number must be of a size that its unit makes likely; one with its unit is taken at its word.
+    """A plain number must be of a size that its unit makes likely; one with its unit is believed.
 
     kind: "angle" [rad] of a frame, "range" [rad] of a joint, or "length" [m]. Raises InputError.
     """

@@ -32,7 +32,7 @@ class Decision:
     """What one band says.
 
     causes: those of the selection with their checks; suspects: what failed one of them, in the order in which
-    it was taken; before: the selection with the suspects; equal: aliases of every cause; remains: what the
+    it was chosen; before: the selection with the suspects; equal: aliases of every cause; remains: what the
     causes leave; correlated: what the test of Durbin, Wu and Hausman says,
     whether it has a say or not.
     """

@@ -1,4 +1,4 @@
-"""The page that shows a scene: its styles and scripts stand in it."""
+"""The page that shows a scene: its styles and scripts are inside."""
 
 from __future__ import annotations
 

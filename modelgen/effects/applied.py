@@ -266,7 +266,7 @@ def _hint(name: str, known: Mapping[str, object]) -> str:
 
 
 def described(arm: Arm) -> Arm:
-    """The arm with its effects on the description carried out and taken off its lists.
+    """The arm with its effects on the description carried out and off its lists.
 
     Raises InputError for values that the arm does not admit, and as `applied_effects` does.
     """

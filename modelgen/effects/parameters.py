@@ -24,7 +24,7 @@ class Parameter:
 
     What a diagnosis does with it. grid: where it begins to look for the value of a nonlinear parameter, in
     units of `scale`: "speed" (95 % of the coordinate's speeds are below), "span" (of the coordinate), "time"
-    (the record's length), "stiffness" (largest effort over the span) or "1"; a grid of one value is taken as
+    (the record's length), "stiffness" (largest effort over the span) or "1"; a grid of one value is used as
     it is. turns: an angle, whose grid goes once round in equal steps, above zero; a value less a turn is the
     same. forms: values that are tried one by one, as different forms of the law; None leaves the default.
     step: of the slope about zero by which a parameter is estimated that is neither linear nor searched for;

@@ -18,7 +18,7 @@ from modelgen.numeric import Array
 class Motion:
     """N samples of one record at a uniform rate: t (N,) [s], q, dq, ddq (N, n) [rad, m and rates].
 
-    motor_side: by coordinate, whether q was derived from a reading at the motor; empty: not known, q is taken
+    motor_side: by coordinate, whether q was derived from a reading at the motor; empty: not known, q is used
     as the drive's. cutoff: of the filter that regressors will pass [Hz]; 0: none. before: the motion that
     this one runs on from, with a rest between them where the times are apart; None: states begin at zero.
     """

@@ -181,7 +181,7 @@ class Account:
 
 
 def described_rows(arm: Arm) -> list[Row]:
-    """Effects that the description itself has taken in."""
+    """Effects that the description itself has."""
     return [
         Row(
             use.name,

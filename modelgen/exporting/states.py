@@ -109,7 +109,7 @@ def force(signal: Signal, properties: Mapping[str, float]) -> Array:
 class Efforts:
     """Efforts of effects at the joints, from the arm's own inverse dynamics.
 
-    values: standard parameters by name; zero is taken for one that is not there.
+    values: standard parameters by name; zero is used for one that is not there.
     """
 
     def __init__(self, arm: Arm, states: States, values: Mapping[str, float]) -> None:

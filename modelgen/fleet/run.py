@@ -1,4 +1,4 @@
-"""A fleet from its units to one table and one page, taken up again where it was left."""
+"""A fleet from its units to one table and one page, which goes on where it was interrupted."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ class Assembly:
     def ranges(self, inputs: Sequence[str]) -> tuple[InputRange, ...]:
         """Strokes of the levers, a little widened, on q or q_m where the function has it.
 
-        With run-time geometry the range of q is not known before: `stroke_guards` stands in for it.
+        With run-time geometry the range of q is not known before: `stroke_guards` replaces it.
         """
         result = []
         for n, drive in enumerate(self.real.drives):

@@ -52,7 +52,7 @@ ENDS = (*SUFFIXES, "_batch", "_float", "_lanes", "_nearest", "_one")
 def combined_functions(arm: Arm, functions: Sequence[Function]) -> list[Function]:
     """What `arm.combined` asks for, for every way of giving parameters that there is.
 
-    Raises InputError for functions that do not exist, and for a name that is taken.
+    Raises InputError for functions that do not exist, and for a name that is in use.
     """
     known = {f.name: f for f in functions}
     found: list[Function] = []

@@ -29,7 +29,7 @@ class Dynamics:
     values: Sequence[Expr]
 
     def cheapest(self, form: Callable[[Frames], list[Expr]]) -> list[Expr]:
-        """The form whose frames make it cheaper: common factors taken out of what is turned, or not."""
+        """The form whose frames make it cheaper: common factors put outside of what is turned, or not."""
         e = self.equations
         forms = [form(frames) for frames in (e.frames, e.frames_factored)]
         return min(forms, key=lambda outputs: cost(e.graph, outputs))

@@ -96,7 +96,7 @@ def monitor(
 
         L = forgetting L + W'W / noise^2, h = forgetting h + W'(input - inverse dynamics) / noise^2, L x = h
 
-    What there is no information of is taken as unchanged, so that an arm at rest spoils nothing. Rows of
+    What there is no information of counts as unchanged, so that an arm at rest spoils nothing. Rows of
     joints that rest are left out where dry friction acts.
     """
     a = replace(a, more={"monitor_state": state_argument(names)})

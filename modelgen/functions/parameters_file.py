@@ -37,7 +37,7 @@ def values_of(given: Path | str | Mapping[str, Any] | None, arms: Sequence[str])
 def values_beside(arms: Sequence[Arm], options: ModelOptions) -> dict[str, dict[str, float]]:
     """Values by arm, from the <arm>_parameters.yaml files that lie beside the description.
 
-    They belong to the arm as described: with parts left out, or gains of each row's own, none is taken.
+    They belong to the arm as described: with parts left out, or gains of each row's own, none is used.
     Raises InputError for a file that does not fit.
     """
     if options.without or options.gains == "row_wise":

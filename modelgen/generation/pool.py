@@ -24,7 +24,7 @@ def generate_arms(
     artefacts: Collection[str] = (),
     identified: Mapping[str, Mapping[str, float]] | None = None,
 ) -> list[GeneratedArm]:
-    """Every arm's files, in the order of the arms; `done` is told the name of each that is ready.
+    """Every arm's files, in the order of the arms; `done` is called with the name of each that is ready.
 
     identified: values of base parameters by name, by arm; those of the options for the others.
     Raises InputError of the first arm, in that order, that has one.

@@ -26,7 +26,7 @@ def turn_z(pair: Pair, v: Vector) -> Vector:
 
 
 def turn_z_factored(pair: Pair, v: Vector) -> Vector:
-    """Rot(z) v, with a factor common to both components taken out first.
+    """Rot(z) v, with a factor common to both components put outside first.
 
     A vector known up to a factor (the first axis of an arm, say) is then turned once for all that is
     proportional to it.

@@ -95,7 +95,7 @@ class Expr:
 class Graph:
     """The nodes of one or several functions that share their sub-expressions.
 
-    `notes` says of each node what it is a part of, as far as that was told when it was made: see `noted`.
+    `notes` says of each node what it is a part of, as far as that was said when it was made: see `noted`.
     """
 
     def __init__(self) -> None:

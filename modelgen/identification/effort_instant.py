@@ -40,7 +40,7 @@ def effort_instant(
 ) -> EffortInstant | None:
     """When the efforts of the records, which are read alike, were read; None of free motions.
 
-    What nobody has said is taken as the data say it, where they can tell, and as the default else.
+    What nobody has said is as the data say, where they can tell, and as the default else.
     """
     first = records[0]
     if any(r.input is None for r in records):

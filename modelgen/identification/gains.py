@@ -2,7 +2,7 @@
 
 With g the true torque constant over the described one, row j says g_j i_j = w_j (theta + payload), w_j the
 regressor in the described constants. Everything but the payload scales: its known mass fixes the scale
-(Gautier and Briot 2014, who solve by total least squares). Here the currents alone are taken as noisy, so
+(Gautier and Briot 2014, who solve by total least squares). Here the currents alone count as noisy, so
 that i_j = b_j w_j (theta + payload), b = 1/g, is fitted by Gauss and Newton's method, with weights and
 standard deviations as in every other fit.
 """
@@ -45,7 +45,7 @@ def estimated(
 ) -> tuple[Solution, tuple[Gain, ...]]:
     """Base parameters in the scale of the gains that were found, and those. method: "ols", "wls", "robust".
 
-    regression: in the described constants, payloads not taken off. carried: what each record's payload adds
+    regression: in the described constants, payloads not subtracted. carried: what each record's payload adds
     to the inputs (M, n), in the described constants too. Raises InputError without a drive, without a
     payload, and for a gain that these records do not determine.
     """

@@ -24,7 +24,7 @@ class Rows:
     """Rows of a model's regressor for records, with the efforts.
 
     While a joint rests, be it for a moment, dry friction is whatever holds it. The filter would carry that to
-    rows beside, where it looks like other friction: effort and columns of such samples are taken out before.
+    rows beside, where it looks like other friction: effort and columns of such samples are removed before.
     Friction whose sign is smoothed holds no joint, and says as much there as elsewhere.
     all_samples: they stay, for rows that are to be looked at.
     joint, parameter: (c,), places in the regressor of the c columns that are computed; those of a joint
@@ -91,7 +91,7 @@ class Rows:
         return found
 
     def moving(self, p: Prepared) -> NDArray[np.bool_]:
-        """Rows (M, n) that count: joints move there, and most of what the filter has taken is left."""
+        """Rows (M, n) that count: joints move there, and most of what the filter has drawn in is there."""
         awake = self._awake(p)
         return p.moving if awake is None else p.moving & (p.parallel(awake) > LEFT)
 

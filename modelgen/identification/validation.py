@@ -74,7 +74,7 @@ def regression_of(
 ) -> Regression:
     """Rows of the records. theta: for columns that depend on the load [base]. all_samples: as for `Rows`.
 
-    added: base parameters (p,) that each record has in addition, of a payload: what they take is taken off
+    added: base parameters (p,) that each record has in addition, of a payload: what they take is subtracted
     the effort.
     """
     made = Rows(model, evaluator, all_samples=all_samples)

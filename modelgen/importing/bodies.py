@@ -1,4 +1,4 @@
-"""Rigid bodies: moved to other frames, taken together, and looked at: could matter be spread that way?"""
+"""Rigid bodies: moved to other frames, joined, and looked at: could matter be spread that way?"""
 
 from __future__ import annotations
 

@@ -105,7 +105,7 @@ def columns_of(header: Sequence[Cell]) -> dict[str, Column]:
 
 
 def without_variable(cell: Cell) -> Cell | None:
-    """The cell with the joint's variable (q1, theta_1, d3*, *) taken out, None where it has none.
+    """The cell with the joint's variable (q1, theta_1, d3*, *) removed, None where it has none.
 
     Raises InputError where it is not simply added.
     """

@@ -11,9 +11,9 @@ from modelgen.errors import InputError
 _TAKEN = "base"  # the arm's own base
 
 
-def joint_names(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
-    """A name for each that a joint or a tool may have, all of them and those `taken` different."""
-    used = {_TAKEN, *taken}
+def joint_names(names: Iterable[str], used_before: Iterable[str] = ()) -> list[str]:
+    """A name for each that a joint or a tool may have, all of them and those `used_before` different."""
+    used = {_TAKEN, *used_before}
     found = []
     for name in names:
         plain = re.sub(r"[^A-Za-z0-9_-]+", "_", name) or "joint"

@@ -22,11 +22,11 @@ _FINE = 4  # the same of another multiple of 15 degrees: 0.7854
 class Rounding:
     """What is made of rounded figures while a source is read. exact: they stay as they are.
 
-    taken: by the text of a figure, how far [rad] it was from what it is taken for.
+    read: by the text of a figure, how far [rad] it was from what it stands for.
     """
 
     exact: bool = False
-    taken: dict[str, float] = field(default_factory=dict)
+    read: dict[str, float] = field(default_factory=dict)
 
     def angle(self, token: str, value: float) -> float:
         """The angle [rad] that `token`, with the value `value`, stands for."""
@@ -34,17 +34,17 @@ class Rounding:
             return value
         meant = _angle_of(token, value)
         if abs(meant - value) > NOISE:
-            self.taken[token] = abs(meant - value)
+            self.read[token] = abs(meant - value)
         return meant
 
     def remarks(self) -> list[str]:
         """What the user must know of it."""
-        if not self.taken:
+        if not self.read:
             return []
-        shown = ", ".join(sorted(self.taken, key=lambda token: -self.taken[token])[:4])
+        shown = ", ".join(sorted(self.read, key=lambda token: -self.read[token])[:4])
         return [
-            f"rounded angles are read as multiples of 15 deg, {max(self.taken.values()):.1e} rad off at "
-            f"most ({shown}{', …' if len(self.taken) > 4 else ''}); --exact keeps them"
+            f"rounded angles are read as multiples of 15 deg, {max(self.read.values()):.1e} rad off at "
+            f"most ({shown}{', …' if len(self.read) > 4 else ''}); --exact keeps them"
         ]
 
 

@@ -22,25 +22,25 @@ MOST = 2000  # jobs whose numbers a pipe holds
 
 
 def forked(
-    job: Callable[[int], T], count: int, where: Where, told: Callable[[int], None] | None = None
+    job: Callable[[int], T], count: int, where: Where, called: Callable[[int], None] | None = None
 ) -> list[T]:
     """Results of job(0) to job(count - 1), in order, by this process and forks on the other processors.
 
     Whoever is free takes the next one. Jobs must not depend on another one. What a fork did not answer,
-    because it was killed say, is done here. told: called with the number of every job that starts here.
+    because it was killed say, is done here. called: with the number of every job that starts here.
     Linear algebra has one thread in each.
     Where there are no forks, or these are not safe (macOS, Windows), all is done here.
     """
     forks = where.count(count) - 1 if sys.platform == "linux" and count <= MOST else 0
     if forks < 1:
-        return [_told(job, k, told) for k in range(count)]
+        return [_called(job, k, called) for k in range(count)]
     with one_thread():
-        found = _together(job, count, forks, told)
-    return [found[k] if k in found else _told(job, k, told) for k in range(count)]
+        found = _together(job, count, forks, called)
+    return [found[k] if k in found else _called(job, k, called) for k in range(count)]
 
 
 def _together(
-    job: Callable[[int], T], count: int, forks: int, told: Callable[[int], None] | None
+    job: Callable[[int], T], count: int, forks: int, called: Callable[[int], None] | None
 ) -> dict[int, T]:
     """Answers of this process and of that many forks."""
     numbers, end = os.pipe()
@@ -51,7 +51,7 @@ def _together(
         for _ in range(forks):
             with suppress(OSError):  # no process to be had: as without one
                 helpers.append(_started(job, numbers))
-        found = _answers(numbers, lambda k: _told(job, k, told))
+        found = _answers(numbers, lambda k: _called(job, k, called))
         for _, answers in helpers:
             with suppress(EOFError, OSError, pickle.UnpicklingError):
                 found.update(answers.recv())
@@ -96,7 +96,7 @@ def _answers(numbers: int, job: Callable[[int], T], found: dict[int, T] | None =
     return found
 
 
-def _told(job: Callable[[int], T], k: int, told: Callable[[int], None] | None) -> T:
-    if told is not None:
-        told(k)
+def _called(job: Callable[[int], T], k: int, called: Callable[[int], None] | None) -> T:
+    if called is not None:
+        called(k)
     return job(k)

@@ -153,7 +153,7 @@ class Equations:
 
     def link_line(self, index: int) -> tuple[Vector, Vector]:
         """Ends of a link in its frame [m]: it begins at its origin as drawn, and at the next link's, or
-        at the tip given for the last. A slide that it carries is taken where it stands at zero: the link is
+        at the tip given for the last. A slide that it carries counts where it is at zero: the link is
         rigid.
         """
         begin = self.drawn(index, (self.graph.zero, self.graph.zero, self.graph.zero))

@@ -31,7 +31,7 @@ class Plan:
 
     slid: at the foot of the common normal, then moved along z. back: number of frames to turn the
     forces back before they meet the velocities. derived: parameters (3 YY, 8 MZ, 9 M; for a prismatic
-    or fixed joint others) taken from the antecedent's columns.
+    or fixed joint others) copied from the antecedent's columns.
     """
 
     slid: bool = False

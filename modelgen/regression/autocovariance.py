@@ -1,7 +1,7 @@
 """Covariance of least-squares parameters whose residuals hang together from row to row.
 
 A sandwich B (sum of X' G X) B: B the inverse of the weighted normal matrix, G the covariance of each joint's
-noise, an autoregressive model. Residuals are not the noise: the fit has taken a part of it, most of it at the
+noise, an autoregressive model. Residuals are not the noise: the fit has absorbed a part, most of it at the
 slow frequencies at which the columns live, and their autocovariance alone claims too much. What the fit takes
 follows from the model of the noise itself; it is added to what is seen, by fixed-point iteration. Where
 few rows are left the power of the noise is uncertain too: deviations are those of Student's distribution.
@@ -29,7 +29,7 @@ def sandwich(columns: Sequence[Array], residuals: Sequence[Array], weights: Sequ
     """Covariance (p, p) of the parameters.
 
     By record: columns (M, n, p), residuals (M, n), weights (M, n), zero where a row does not count.
-    Residuals of different joints are taken as independent.
+    Residuals of different joints count as independent.
     """
     n, p = columns[0].shape[1:]
     x = [[c[:, j] * w[:, j, None] for c, w in zip(columns, weights, strict=True)] for j in range(n)]

@@ -20,7 +20,7 @@ PANEL = 4  # columns that LAPACK's dtpqrt takes together: the fastest for the te
 
 
 class Triangle:
-    """Rows (M, p) and right sides (M,) taken in block by block, kept as one triangle (p + 1, p + 1).
+    """Rows (M, p) and right sides (M,) added block by block, kept as one triangle (p + 1, p + 1).
 
     Sequential blocked QR (Demmel, Grigori, Hoemmen and Langou 2012): memory does not grow with the rows.
     """
@@ -61,7 +61,7 @@ class Triangle:
 class Solution:
     """theta: (p,); covariance: (p, p), zero for what is not determined; determined: (p,); condition: of
     the weighted columns at unit length; sigma: (n,) residuals' size by joint; precision: (p, p), normal
-    matrix of the weighted rows. left_out: (p,), what was taken out of the fit, None: nothing.
+    matrix of the weighted rows. left_out: (p,), what was removed from the fit, None: nothing.
     """
 
     theta: Array
@@ -74,7 +74,7 @@ class Solution:
 
     @property
     def dropped(self) -> NDArray[np.bool_]:
-        """Flags (p,) of what was taken out of the fit."""
+        """Flags (p,) of what was removed from the fit."""
         return np.zeros(len(self.theta), dtype=bool) if self.left_out is None else self.left_out
 
 

@@ -87,7 +87,7 @@ def pictured(rows: Sequence[Interval], x_label: str, text: str, title: str = "")
 
 
 def inline(text: str) -> Markup:
-    """A picture from its svg element on, which stands in the page as it is."""
+    """A picture from its svg element on, which the page holds as it is."""
     return Markup(text[text.index("<svg") :])
 
 

@@ -37,7 +37,7 @@ def rankings(arm: Arm, turns: History) -> list[tuple[str, list[Sequence[str]]]]:
 def _rows(arm: Arm, turn: Sequence[Ranked]) -> list[Sequence[str]]:
     """The candidates of one turn with their evidence, the losing ones too."""
     rows: list[Sequence[str]] = []
-    chosen = next((r for r in turn if r.taken), None)
+    chosen = next((r for r in turn if r.chosen), None)
     for r in turn[:_SHOWN]:
         word = _REFUSED.get(r.refused) or _passed(r, chosen)
         gains = ["" if g is None or np.isnan(g) else f"{g:z.1f}" for g in (r.cross_gain, r.expected_gain)]
@@ -47,7 +47,7 @@ def _rows(arm: Arm, turn: Sequence[Ranked]) -> list[Sequence[str]]:
 
 def _passed(r: Ranked, chosen: Ranked | None) -> str:
     """Why a candidate that meets every condition was not chosen in its turn, if it was not."""
-    if r.taken:
+    if r.chosen:
         return "chosen"
     if chosen is not None and r.delta_bic < chosen.delta_bic:
         return f"explains less than {chosen.effect}, by {chosen.delta_bic - r.delta_bic:z.0f}"

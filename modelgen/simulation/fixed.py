@@ -29,7 +29,7 @@ ENDS = {
 
 
 class Stepper:
-    """Classical Runge-Kutta steps with constant inputs, ended and taken up again where friction changes.
+    """Classical Runge-Kutta steps with constant inputs, ended and begun again where friction changes.
 
     A step ends where a joint comes to rest or tears loose, which is located to rounding. Raises RuntimeError
     without a C compiler.

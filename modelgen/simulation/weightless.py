@@ -18,7 +18,7 @@ TAKES_PART = 0.1
 def check_inertia(plant: Plant, q: Array) -> None:
     """Raises InputError where joints at q (n,) can move together without moving any inertia.
 
-    The mass matrix is taken in units of its own diagonal, so that the arm's size does not matter.
+    The mass matrix is in units of its own diagonal, so that the arm's size does not matter.
     """
     matrix = _mass_matrix(plant, q)
     own = np.diag(matrix)

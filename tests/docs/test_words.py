@@ -78,3 +78,47 @@ def test_every_check_of_a_cause_is_in_the_glossary(checkout: Path) -> None:
     names = set(re.findall(r'\bCheck\(\s*"(\w+)"', source))
     assert {"evidence", "undominated", "confirmed"} <= names
     assert names <= terms_of(checkout)
+
+
+def docstrings(source: str) -> Iterator[tuple[int, str]]:
+    """Line and docstring of a module, its public functions and classes, and their public methods."""
+
+    def below(node: ast.AST) -> Iterator[tuple[int, str]]:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.FunctionDef | ast.ClassDef) and not child.name.startswith("_"):
+                yield child.lineno, ast.get_docstring(child) or ""
+                if isinstance(child, ast.ClassDef):
+                    yield from below(child)
+
+    tree = ast.parse(source)
+    yield 1, ast.get_docstring(tree) or ""
+    yield from below(tree)
+
+
+def keys(source: str) -> Iterator[tuple[int, str]]:
+    """Line and words of every key of a dictionary that is written out: what becomes JSON."""
+    for node in ast.walk(ast.parse(source)):
+        for key in node.keys if isinstance(node, ast.Dict) else ():
+            if isinstance(key, ast.Constant) and isinstance(key.value, str) and key.value.isidentifier():
+                yield key.lineno, key.value.replace("_", " ")
+
+
+def test_the_reference_and_the_keys_of_json_have_the_words_of_the_glossary(checkout: Path) -> None:
+    """The reference is made of docstrings; those of commands are what --help prints."""
+    terms = terms_of(checkout)
+    found = []
+    for path in sorted((checkout / "modelgen").rglob("*.py")):
+        source = path.read_text(encoding="utf-8")
+        for line, text in [*docstrings(source), *keys(source)]:
+            found += [
+                f"{path.relative_to(checkout)}:{line}: '{word}' in {text[:70]!r}"
+                for word in WORDS.findall(text)
+                if word.lower().removesuffix("s") not in terms
+            ]
+    assert not found, "\n".join(found)
+
+
+def test_a_word_of_insiders_is_seen_in_a_docstring_and_in_a_key() -> None:
+    source = 'def f():\n    """It is taken."""\n    return {"rest_gates": 1, "taken": 2}\n'
+    assert [w for _, text in docstrings(source) for w in WORDS.findall(text)] == ["taken"]
+    assert [w for _, text in keys(source) for w in WORDS.findall(text)] == ["gates", "taken"]

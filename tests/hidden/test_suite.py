@@ -71,7 +71,7 @@ def title(case: Case | str) -> str:
 def test_the_ranking_tells_the_story_of_what_is_named(case: Case, outcome: Any) -> None:
     """One candidate is taken at a turn; those that nothing took back are the causes."""
     found = outcome(case)
-    taken = [[r for r in turn if r["taken"]] for turn in found["ranking"]]
+    taken = [[r for r in turn if r["chosen"]] for turn in found["ranking"]]
     assert all(len(turn) <= 1 for turn in taken)
     stayed = [[r["effect"], r["joint"]] for turn in taken for r in turn if r["refused"] is None]
     assert sorted(stayed, key=str) == sorted(found["named"], key=str)

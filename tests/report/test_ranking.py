@@ -10,7 +10,7 @@ NONE = float("nan")
 
 def test_a_candidate_that_meets_every_condition_is_behind_the_one_chosen() -> None:
     turn = [
-        Ranked("load_dependent_friction", 2, 289.6, 11.0, 12.0, "", taken=True),
+        Ranked("load_dependent_friction", 2, 289.6, 11.0, 12.0, "", chosen=True),
         Ranked("torque_constant_saturation", 2, 163.6, 11.2, NONE, ""),
         Ranked("position_dependent_friction", 2, 33.6, 0.4, NONE, "gain"),
     ]

@@ -178,7 +178,7 @@ def dominated(limits: Thresholds) -> bool:
     equations = real(limits)
     cause = Cause(valued(50.0), 50.0, 5.0, 5.0)
     refused = Ranked("spring", 1, 70.0, 1.0, 1.0, "gain")
-    taken = Ranked(*cause.trial.candidate.place, 50.0, 5.0, 5.0, "", taken=True)
+    taken = Ranked(*cause.trial.candidate.place, 50.0, 5.0, 5.0, "", chosen=True)
     found = dominance(cause, Selection([cause], System(equations), [[refused, taken]]))
     return found.ahead > found.most
 

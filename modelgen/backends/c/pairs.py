@@ -20,7 +20,7 @@ def pairs(program: Program) -> tuple[list[Pair], Program]:
     """The pairs in order of their angles, and the program without the statements that they replace.
 
     Both functions of an angle take the same reduction, so that the second one is cheap. Pairs of inputs
-    alone are taken: they can be computed before anything else, so that no other value has to be kept
+    alone count: they can be computed before anything else, so that no other value has to be kept
     over a call.
     """
     found: dict[Term, dict[str, int]] = {}

@@ -32,7 +32,7 @@ def fleet(
     code: Code = False,
     as_json: Json = False,
 ) -> None:
-    """Diagnose the logs of many arms as one job that can be taken up again: one table, one page."""
+    """Diagnose the logs of many arms as one job, which goes on after an interruption: one table, one page."""
     from modelgen.cli.output import print_result, progress_bar
     from modelgen.fleet.units import load_fleet
 

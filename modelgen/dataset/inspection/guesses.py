@@ -1,4 +1,4 @@
-"""What columns seem to be, by their names and numbers; nothing is taken for more than a guess."""
+"""What columns seem to be, by their names and numbers; nothing is more than a guess."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
 
     A joint is at rest where its speed stays below its gate for longer than `settings.rest_time`; a reversal
     passes faster. A row counts as moving where its own speed is above the gate and the parallel filter has
-    taken no more than a fiftieth of its weight from samples at rest.
+    drawn no more than a fiftieth of its weight from samples at rest.
     """
     slow = np.abs(dq) < np.array(settings.gates)
     rest = _resting(slow, settings.rest_time * rate)

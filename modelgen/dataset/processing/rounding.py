@@ -47,7 +47,7 @@ def position_steps(record: Record) -> Array:
 def rounding_power(step: float, rate: float, f: Array) -> Array:
     """Power per Hz of the speed that rounding to a step feigns, at frequencies f [Hz].
 
-    Rounding errors are uniform over a step and taken as white (Bennett 1948); central differences of one
+    Rounding errors are uniform over a step and counted as white (Bennett 1948); central differences of one
     sample make speeds of them.
     """
     return np.asarray(step**2 / (6.0 * rate) * (np.sin(2 * np.pi * f / rate) * rate) ** 2)

@@ -11,7 +11,7 @@ from modelgen.numeric import Array
 def true_stamps(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[Array, str | None]:
     """Stamps (N,) [s], or evenly spaced ones where the positions (N, n) say so; a remark on that.
 
-    Samples taken evenly and stamped late, in bursts or coarsely, make a motion rough that is smooth over
+    Samples at even times and stamped late, in bursts or coarsely, make a motion rough that is smooth over
     evenly spaced instants; stamps that are true make it smoother than those.
     """
     steps, count = np.diff(t), len(t)

@@ -100,7 +100,7 @@ class Survey:
 
 
 def survey(found: Survey, stamps: Array, block: int) -> Axis:
-    """The uniform axis of stamps (N,) [s], taken `block` at a time. Raises InputError as Survey does."""
+    """The uniform axis of stamps (N,) [s], `block` at a time. Raises InputError as Survey does."""
     for begin, end in pairwise([*range(0, len(stamps), block), len(stamps)]):
         found.add(stamps[begin:end])
     return found.axis()

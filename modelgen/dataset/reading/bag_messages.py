@@ -19,7 +19,7 @@ READ = ("json", "cdr")  # encodings of messages in MCAP files
 
 @contextmanager
 def messages_of(path: Path, topics: Sequence[str] | None, remark: Remark) -> Iterator[Messages]:
-    """The messages of a file or folder, of some topics or of all; remark: told what is left out.
+    """The messages of a file or folder, of some topics or of all; remark: called with what is left out.
 
     Raises whatever the libraries raise.
     """

@@ -21,7 +21,7 @@ from modelgen.numeric import Array
 
 
 class CsvReader:
-    """A table in a text file, whose shape is taken from its first lines.
+    """A table in a text file, whose shape follows from its first lines.
 
     Lines that begin with # and empty lines are skipped. Raises InputError where there is no header, and where
     the shape is uncertain.

@@ -53,7 +53,7 @@ def lone(values: Array, limits: DatasetThresholds, *, ends: bool = False) -> tup
     """Places of lone readings among `values` (N,), and how far each is off the cubic through four neighbours.
 
     One that begins a step, and one of several in a row, is none: those beside it do not agree. ends: whether
-    the two readings at either end are asked too, where a step cannot be told from a lone one.
+    the two readings at either end are asked too, where a step cannot be distinguished from a lone one.
     """
     nothing = np.empty(0, dtype=int), np.empty(0)
     if len(values) < limits.min_lone_samples:

@@ -34,7 +34,7 @@ def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | N
     """The rows of columns (N, k) at which new readings stand; None where readings do not repeat.
 
     They do where all columns change together, at instants a refresh apart. A coarse encoder that turns slowly
-    is told from that: it changes by one step of its resolution, and not after equal times.
+    is distinguished from that: it changes by one step of its resolution, and not after equal times.
     """
     changed = np.any(np.diff(columns, axis=0) != 0.0, axis=1)
     rows = np.flatnonzero(changed) + 1

@@ -1,6 +1,6 @@
 """The shape of a table in a text file: where its header is, and what stands between its cells.
 
-It is taken from the first lines. What is certain is taken with a remark; what could be meant in two ways is
+It follows from the first lines. What is certain is used with a remark; what could be meant in two ways is
 refused, with the key of a mapping file that decides.
 """
 
@@ -34,7 +34,7 @@ _UNITS = frozenset(
 class Shape:
     """encoding: of the text. delimiter: between cells, None for blanks. decimal: sign. names: of the columns.
 
-    header: number of the last line before the samples. quoted: whether cells stand in quotes. trailing:
+    header: number of the last line before the samples. quoted: whether cells have quotes. trailing:
     whether every row ends with a delimiter. sparse: columns that are blank in many rows, by number. units: by
     column, where a row of the file says them.
     """

@@ -50,7 +50,7 @@ class Spec:
 def parse(log: Log) -> Spec:
     """`FILE` or `FILE@t0:t1`; t0 or t1 may be left out. Raises InputError.
 
-    A file whose own name has the form FILE@a:b is taken as a file. A log in memory is whole.
+    A file whose own name has the form FILE@a:b is a file. A log in memory is whole.
     """
     if isinstance(log, Record | ColumnTable):
         return Spec(log.name, Path(log.name), held=log)

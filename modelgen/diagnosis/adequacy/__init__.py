@@ -1,4 +1,4 @@
-"""Is what is left explained: lack of fit, smooth functions, checks, causes that cannot be told apart."""
+"""Is what is left explained: lack of fit, smooth functions, checks, causes that cannot be distinguished."""
 
 from modelgen.diagnosis.adequacy.checks import Examined, confirmed, examined
 from modelgen.diagnosis.adequacy.distinguishable import aliases, without_indistinguishable

@@ -98,7 +98,7 @@ def _complete(selection: Selection, equations: Equations) -> list[tuple[Check, C
 def ended_by_suspects(every: Sequence[Examined]) -> list[Examined]:
     """The same where a suspect ends the naming at its joint: what is found beside it explains what it leaves.
 
-    every: in the order in which they were taken.
+    every: in the order in which they were chosen.
     """
     found: list[Examined] = []
     suspects: dict[int | None, Cause] = {}

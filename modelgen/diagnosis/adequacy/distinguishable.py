@@ -1,7 +1,7 @@
 """Effects that no motion of this arm can tell apart, and those that the base parameters absorb.
 
 Derived from the model along a synthetic motion, before any data are seen: equal spans of the columns,
-once what the base parameters explain is taken off.
+once what the base parameters explain is subtracted.
 """
 
 from __future__ import annotations

@@ -41,10 +41,10 @@ def dominance(cause: Cause, selection: Selection) -> Dominance:
     named = {other.trial.candidate.place for other in selection.causes}
     found = [Dominance(-np.inf, most)]
     for turn in selection.turns:
-        own = next((r for r in turn if r.taken and r.place == c.place), None)
+        own = next((r for r in turn if r.chosen and r.place == c.place), None)
         if own is not None:
             found += [_over(r, own.delta_bic, c, most) for r in turn if _dominates(r, c, named)]
-    if not any(r.taken for r in selection.turns[-1]):
+    if not any(r.chosen for r in selection.turns[-1]):
         last = [r for r in selection.turns[-1] if _dominates(r, c, named)]
         found += [_over(r, cause.delta_bic, c, most) for r in last]
     return max(found, key=lambda d: d.ahead - d.most)

@@ -1,7 +1,7 @@
 """How much of what is not noise the causes of a joint explain together.
 
 What still repeats from period to period is not noise. It counts at the frequencies at which the causes act: a
-law that stands in for another leaves a part of what that one does, at the same frequencies. Elsewhere it is
+law that replaces another leaves a part of what that one does, at the same frequencies. Elsewhere it is
 of another origin: a jolt of another joint between two samples repeats as well, and spreads over the band.
 """
 

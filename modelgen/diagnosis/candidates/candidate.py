@@ -72,7 +72,7 @@ class Candidate:
 
     @property
     def curved(self) -> bool:
-        """Whether its columns are slopes, which are taken about values."""
+        """Whether its columns are slopes, which belong to values."""
         return not self.definition.linear and not self.elastic
 
     def joints(self, n: int) -> list[int]:
@@ -202,7 +202,7 @@ def grid_unit(kind: str, name: str, joint: int | None, equations: Equations) -> 
 
 
 def without_rests(equations: Equations, candidate: Candidate) -> Equations:
-    """Equations of the rows at which a taken cause moves; of all where it has no rest of its own."""
+    """Equations of the rows at which a chosen cause moves; of all where it has no rest of its own."""
     pair = candidate.definition.coupled(candidate.fixed)
     if pair is None or candidate.joint is None:
         return equations

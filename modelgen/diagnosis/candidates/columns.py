@@ -31,7 +31,7 @@ def candidate_columns(
     candidate: Candidate, values: Values, equations: Equations, base: Array
 ) -> list[Array] | None:
     """Its columns (M, n, k) in every record of the equations for values of what is searched, or about which a
-    column that follows no line is taken; None where it cannot stand. base: base parameters (p,).
+    column that follows no line counts; None where it cannot stand. base: base parameters (p,).
     """
     try:
         found = [

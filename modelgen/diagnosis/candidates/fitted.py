@@ -22,7 +22,7 @@ class FittedCandidate:
     """A candidate with values for what is searched. columns: (M, n, k) of every training record.
 
     gain: its evidence, after `prior_penalty` (see `prior_odds`). around: values at which columns
-    that follow no line were taken.
+    that follow no line were made.
     """
 
     candidate: Candidate

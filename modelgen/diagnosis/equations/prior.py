@@ -37,7 +37,7 @@ class NominalPrior:
 
 
 def told(model: Model, limits: EquationThresholds) -> NominalPrior | None:
-    """Of the links; what drives and effects have is not told, nor what a link has nothing of. None where a
+    """Of the links; what drives and effects have is not given, nor what a link has nothing of. None where a
     link has no inertials.
     """
     try:

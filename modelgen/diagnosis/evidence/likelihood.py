@@ -37,11 +37,11 @@ class StackedEquations:
     matrix, right: (R, b), (R,), of the records alone; joint: (R,), from 0; counts, rss: (n,), how many of a
     joint's equations are independent, and sums of squares of what is left of them; share: of all rows, those
     that are independent. basis: (R + D, b), orthonormal, of the baseline; left, groups: (R + D,); weights,
-    squares: (n or n + 1,), as joint, counts and rss, but with what is told as if it were one more joint.
+    squares: (n or n + 1,), as joint, counts and rss, but with what is given as if it were one more joint.
 
     stacked: columns (M, n, k) of each record to (R, k); joint: (R,); columns, efforts: of each record, (M, n,
     p) and (M, n); said: of the first of the columns. alone: (R, b), as basis, of the records alone, None
-    where nothing is told. colour: of the noise, None where it is white or not known.
+    where nothing is given. colour: of the noise, None where it is white or not known.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class StackedEquations:
         self.rss = self.squares[: len(counts)]
 
     def stacked(self, columns: Sequence[Array]) -> Array:
-        """Columns (M, n, k) of each record, of which nothing is told: (R + D, k)."""
+        """Columns (M, n, k) of each record, of which nothing is given: (R + D, k)."""
         found = self.records(columns)
         return np.vstack([found, np.zeros((len(self.groups) - len(found), found.shape[1]))])
 
@@ -108,7 +108,7 @@ class StackedEquations:
 
 @dataclass(frozen=True)
 class Belief:
-    """Belief in what is told beside some equations. weight: one over its scatter among them; count: of it,
+    """Belief in what is given beside some equations. weight: one over its scatter among them; count: of it,
     what the records could contradict; faith: measurements that the scatter expected is worth.
     """
 
@@ -118,11 +118,11 @@ class Belief:
 
 
 def believed(matrix: Array, right: Array, said: NominalPrior, share: float) -> Belief:
-    """Find the belief in what is told beside equations (R, b), (R,), of which `share` are independent.
+    """Find the belief in what is given beside equations (R, b), (R,), of which `share` are independent.
     said: of all b columns.
 
     The likeliest scatter, begun with the records alone: what contradicts them has no say. What the records
-    leave open agrees with all that is told, and says nothing about its scatter.
+    leave open agrees with all that is given, and says nothing about its scatter.
     """
     rows, further = said.rows, said.right
     norms = np.linalg.norm(np.vstack([matrix, rows]), axis=0)

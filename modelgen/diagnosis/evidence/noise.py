@@ -42,7 +42,7 @@ class Autocorrelation:
             self.length += len(flags) + self.lags
 
     def of(self, left: Array) -> Autocorrelation:
-        """Autocorrelation of what is left, (R,), once what does not repeat is taken off."""
+        """Autocorrelation of what is left, (R,), once what does not repeat is subtracted."""
         residuals = [np.zeros(flags.shape) for flags in self.moving]
         ends = np.cumsum([len(flags) + self.lags for flags in self.moving])
         for j, places in enumerate(self.places):

@@ -107,7 +107,7 @@ class System:
 
     @property
     def noise_known(self) -> bool:
-        """Whether periods repeat, by which noise is told from what the model lacks."""
+        """Whether periods repeat, by which noise is distinguished from what the model lacks."""
         return any(p is not None for p in self.periods)
 
     @property

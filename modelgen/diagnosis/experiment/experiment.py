@@ -30,7 +30,7 @@ STEM = "next_experiment"
 @dataclass(frozen=True)
 class Experiment:
     """For one ambiguity set. separates: its members, the named cause first; proposal: the trajectory, for
-    `members`; tests: on the bench, most evidence first; assumed: limits that were taken from the records.
+    `members`; tests: on the bench, most evidence first; assumed: limits that come from the records.
     thresholds: by which it was chosen.
     """
 

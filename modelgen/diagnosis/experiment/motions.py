@@ -25,7 +25,7 @@ class Setup:
     """The arm with the processing of its training records.
 
     arm: with a limit wherever the description has none, and without effects that have states. equations: of
-    the training records. base: base parameters (p,) of their model. assumed: limits that were taken from the
+    the training records. base: base parameters (p,) of their model. assumed: limits that come from the
     records. every: sampling periods of the records between two samples of a motion; where there are several
     it must be slow, and its positions are not filtered.
     """

@@ -88,7 +88,7 @@ def _rank(r: Ranked) -> dict[str, Any]:
         "delta_bic": rounded(r.delta_bic),
         "cross_gain_percent": None if r.cross_gain is None else rounded(r.cross_gain),
         "expected_gain_percent": None if r.expected_gain is None else rounded(r.expected_gain),
-        "taken": r.taken,
+        "chosen": r.chosen,
         "refused": r.refused or None,
     }
 

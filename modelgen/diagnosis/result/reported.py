@@ -136,7 +136,7 @@ def _settings(study: Study, decision: Decision, selection: Selection, options: O
         "cutoff_hz": chosen.cutoff,
         "position_cutoff_hz": chosen.position_cutoff,
         "factor": chosen.factor,
-        "rest_gates": [float(f"{gate:.6g}") for gate in chosen.gates],
+        "rest_speeds": [float(f"{gate:.6g}") for gate in chosen.gates],
         "period_s": [None if p is None else float(f"{p * r.step:.9g}") for p, r in periods],
         "evidence_threshold": threshold(selection.system),
         "practical_gain_percent": round(least, 3),

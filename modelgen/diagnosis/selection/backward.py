@@ -1,4 +1,4 @@
-"""Causes that were taken, and which of them the others make superfluous."""
+"""Causes that were chosen, and which of them the others make superfluous."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ SUSPECT = "suspect"
 class Ranked:
     """A candidate's evidence at one turn, and why it is no cause: empty for what passed every gate.
 
-    cross_gain, expected_gain: as a cause's, None where that was not asked; taken: at this turn,
+    cross_gain, expected_gain: as a cause's, None where that was not asked; chosen: at this turn,
     after an exchange the one that stayed.
     """
 
@@ -27,7 +27,7 @@ class Ranked:
     cross_gain: float | None
     expected_gain: float | None
     refused: str
-    taken: bool = False
+    chosen: bool = False
 
     @property
     def place(self) -> Place:
@@ -48,7 +48,7 @@ def best_of_each(ranking: Sequence[Ranked], taken: Place | None) -> list[Ranked]
     """Best first; of an effect that was tried in several forms at a joint the one that came farthest."""
     best: dict[Place, Ranked] = {}
     for r in sorted(ranking, key=lambda r: (bool(r.refused), -r.delta_bic)):
-        best.setdefault(r.place, replace(r, taken=r.place == taken))
+        best.setdefault(r.place, replace(r, chosen=r.place == taken))
     return sorted(best.values(), key=lambda r: -r.delta_bic)
 
 
@@ -56,11 +56,11 @@ def taken_back(turns: History, place: Place, why: str, instead: Place | None = N
     """The turns, where one took `place`, with the reason why it did not stay; and took `instead`."""
     return [
         [_with_taken(r, place, why, instead or place) for r in turn]
-        if any(r.taken and r.place == place for r in turn)
+        if any(r.chosen and r.place == place for r in turn)
         else turn
         for turn in turns
     ]
 
 
 def _with_taken(r: Ranked, lost: Place, why: str, taken: Place) -> Ranked:
-    return replace(r, refused=why if r.place == lost else r.refused, taken=r.place == taken)
+    return replace(r, refused=why if r.place == lost else r.refused, chosen=r.place == taken)

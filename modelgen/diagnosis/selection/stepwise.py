@@ -45,7 +45,7 @@ def forward_selection(
 ) -> Selection:
     """Causes in the order in which they were found. where: processes among which candidates are shared.
 
-    One cause after the other is taken; then each gives its place to the rival with which all have more
+    One cause after the other is chosen; then each gives its place to the rival with which all have more
     evidence; then those leave that the others have made superfluous.
     """
     steps = _Steps(equations, pool, report, where)

@@ -1,4 +1,4 @@
-"""The form of taken causes leaves something for others: no law is that of the arm to the last."""
+"""The form of chosen causes leaves something for others: no law is that of the arm to the last."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from modelgen.regression.weighted import rmse, weighted_fit
 
 
 class Forms:
-    """Form errors of the causes taken before, whose columns stand in the system beside the baseline's."""
+    """Form errors of the causes chosen before, whose columns are in the system beside the baseline's."""
 
     def __init__(self, before: Sequence[FittedCandidate], system: System) -> None:
         self.before = before

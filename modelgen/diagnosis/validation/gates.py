@@ -38,7 +38,7 @@ class Judgement:
 class Gates:
     """Gates of one step of the selection.
 
-    system: with the causes that were taken `before`; last: what is judged was taken before those, which
+    system: with the causes that were chosen `before`; last: what is judged was chosen before those, which
     cannot have left it anything of theirs.
     """
 

@@ -2,7 +2,7 @@
 
 The coordinate is the drive's, by which logs and controllers know the joint. The state is how far the
 link stays behind it; its acceleration follows from the effort that a rigid joint would transmit, the
-links' inertia about the joint and what the spring transmits instead. The links' equations are taken
+links' inertia about the joint and what the spring transmits instead. The links' equations are used
 where the links are.
 """
 
@@ -112,7 +112,7 @@ class Compliance(Effect):
         return (here / there - 1) * self._effort(x, p)
 
     def step(self, x: Variables, p: Values, dt: sp.Symbol) -> Mapping[str, sp.Expr]:
-        """The implicit midpoint rule, the spring taken as linear over the step: stable for any stiffness."""
+        """The implicit midpoint rule, the spring linear over the step: stable for any stiffness."""
         lag, rate = x.state["lag"], x.state["rate"]
         stretch, lever = self._stretch(x)
         force, touching = self.spring(stretch, p)

@@ -51,7 +51,7 @@ class Strips(LinkEffect):
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """It stands where links that carry no other have nominal inertials, from which their end is taken."""
+        """It stands where links that carry no other have nominal inertials, from which their end follows."""
         return not _endless(arm)
 
     @classmethod

@@ -122,7 +122,7 @@ class FrictionOffset(Effect):
         return p["offset"]
 
     def potential(self, x: Variables, p: Values) -> sp.Expr:
-        """FO x: a constant force is conservative, and cannot be told from a spring's preload."""
+        """FO x: a constant force is conservative, and cannot be distinguished from a spring's preload."""
         return p["offset"] * x.position
 
 

@@ -14,14 +14,14 @@ from modelgen.identification.output_error.sensitivities import Sensitive
 from modelgen.numeric import Array
 from modelgen.simulation.metrics import Scores, scores
 
-SINGULAR = 1e7  # condition of the scaled columns, beyond which values are not told apart
+SINGULAR = 1e7  # condition of the scaled columns, beyond which values are not separated
 
 
 @dataclass(frozen=True)
 class Step:
     """Changes of the parameters (f,) and, by part, of the states at the beginnings of its intervals.
 
-    promised: cost where everything is as linear as it is taken for.
+    promised: cost where everything is as linear as is assumed.
     """
 
     parameters: Array
@@ -68,7 +68,7 @@ class Linear:
     def step(self, weights: Array, names: Sequence[str], free: NDArray[np.bool_]) -> Step:
         """Gauss-Newton, over the parameters `free` (f,) alone.
 
-        Raises InputError where those of the parameters `names` are not told apart.
+        Raises InputError where those of the parameters `names` are not separated.
         """
         errors, columns, _ = self._projected(weights)
         a = np.concatenate([c.reshape(-1, c.shape[2]) for c in columns])[:, free]

@@ -63,7 +63,7 @@ class Compiler:
         return element.angles(name, size, self.rounding)
 
     def pose(self, element: Element) -> Array:
-        """Pose (4, 4) of an element in what it stands in."""
+        """Pose (4, 4) of an element in what holds it."""
         return pose(self._turn(element), element.vector("pos", 3, np.zeros(3)))
 
     def _turn(self, element: Element) -> Array:
