@@ -192,6 +192,11 @@ class Traits(ABC):
         ]
 
     @classmethod
+    def conditional(cls, fixed: Numbers) -> tuple[str, ...]:
+        """Names of what is estimated if values that are not searched for are as they are guessed."""
+        return ()
+
+    @classmethod
     def subsets(cls, arm: Arm, number: int | None) -> tuple[tuple[str, ...], ...]:
         """Names of the parameters that are estimated at a place, one try after the other; () for all."""
         return ((), *cls.parts)

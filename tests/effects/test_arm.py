@@ -315,15 +315,23 @@ def test_places_on_a_link_are_in_its_frame_as_drawn(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["fluid_drag", "added_mass"])
-def test_what_is_not_looked_for_is_said(name: str) -> None:
-    """A fluid's force needs the arm's end: from its nominal inertials, or told with the effect."""
+def test_what_is_guessed_or_not_looked_for_is_said(name: str) -> None:
+    """A fluid needs the arm's end: from its nominal inertials, or told with the effect, else a guess."""
     effect, seen = CATALOGUE[name], Seen(whole=True, still=(), unsided=(), coarse=False)
     bare = replace(PLANAR, links=(LIMB, None))
     told = with_arm(bare, EffectUse(name, dict(zip(("tip_x", "tip_y", "tip_z"), TIP, strict=True))))
-    said = effect.hidden(bare, seen, named=False)
-    assert len(said) == 1
-    assert said[0].endswith(": j2")
-    assert not effect.stands_at(bare, None)
+    for named in (False, True):
+        (said,) = effect.hidden(bare, seen, named=named)
+        assert said.endswith("where j2 ends")
+    assert effect.stands_at(bare, None)
+    ends = [[form[f"tip_{axis}"] for axis in "xyz"] for form in effect.variants(bare, None)]
+    length = float(np.hypot(PLANAR.joints[1].d, PLANAR.joints[1].r))
+    assert np.linalg.norm(ends, axis=1) == pytest.approx(length)
+    assert len({tuple(end) for end in ends}) == 4
+    pointed = replace(bare, joints=(bare.joints[0], replace(bare.joints[1], d=0.0, r=0.0)))
+    (said,) = effect.hidden(pointed, seen, named=False)
+    assert said.endswith(": j2")
+    assert not effect.stands_at(pointed, None)
     for arm in (PLANAR, told, replace(PLANAR, links=(None, LIMB))):
         assert effect.hidden(arm, seen, named=False) == []
 

@@ -32,13 +32,17 @@ def valued(selection: Selection) -> Selection:
 
 
 def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str, Estimate]]:
-    """Estimates of the causes' own parameters; what was fixed, or is not determined, has no deviation."""
+    """Estimates of the causes' own parameters; what was fixed, is not determined or hangs on a guess has no
+    deviation.
+    """
     most = equations.thresholds.extended.max_relative_deviation
     found = []
     for cause, spread in zip(selection.causes, deviations(selection, equations), strict=True):
         units = _units(equations.arm, *cause.trial.candidate.place)
         values, searched = cause.trial.parameters, cause.trial.values
-        open_ = {name for name in searched if name in values and spread[name] > most * abs(values[name])}
+        c = cause.trial.candidate
+        open_ = {*c.definition.conditional(c.fixed)}
+        open_ |= {name for name in searched if name in values and spread[name] > most * abs(values[name])}
         found.append(
             {
                 name: Estimate(v, float("nan") if name in open_ else spread[name], units.get(name, ""))

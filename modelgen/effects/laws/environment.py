@@ -51,30 +51,63 @@ class Strips(LinkEffect):
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """It stands where links that carry no other have nominal inertials, from which their end follows."""
-        return not _endless(arm)
+        """It stands where the end of links that carry no other is known or can be guessed."""
+        return not _endless(arm) or _guessed_end(arm) > 0.0
+
+    @classmethod
+    def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
+        """An end that nobody knows is as far away as the longest link's, across the joint's axis."""
+        away = _guessed_end(arm)
+        if not away:
+            return super().variants(arm, number)
+        unknown = {f"tip_{axis}": 0.0 for axis in "xyz"}
+        return [unknown | {f"tip_{axis}": side * away} for axis in "xy" for side in (1.0, -1.0)]
+
+    @classmethod
+    def conditional(cls, fixed: Numbers) -> tuple[str, ...]:
+        """What is estimated by length of a link that is a guess."""
+        return cls.estimated() if "tip_x" in fixed else ()
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
-        """It was not looked for where nobody knows where the arm ends."""
-        there = named or any(use.name == cls.name for use in arm.effects)
-        ends = "" if there else ", ".join(_endless(arm))
-        text = f"it is not looked for where links that carry no other have no nominal inertials: {ends}"
-        return [text] if ends else []
+        """What is said of it where nobody knows where the arm ends."""
+        ends = ", ".join(_endless(arm))
+        if not ends or any(use.name == cls.name for use in arm.effects):
+            return []
+        known = f"nominal inertials, or tip_x, tip_y and tip_z, say where {ends} ends"
+        if named:
+            return [f"its size is that of a link whose end is a guess: {known}"]
+        away = _guessed_end(arm)
+        if not away:
+            return [f"it is not looked for where links that carry no other have no nominal inertials: {ends}"]
+        return [f"it is looked for as if the end were {away:.3g} m from the joint: {known}"]
 
     def points(self, p: Values) -> Sequence[Point]:
         """The nodes of the quadrature."""
         return [Point(fraction=place, part=weight) for place, weight in _NODES]
 
 
-def _endless(arm: Arm) -> list[str]:
-    """Links that carry no other and have no nominal inertials, by the names of their joints."""
+def _ends(arm: Arm) -> list[tuple[str, bool]]:
+    """Links that carry no other, by the names of their joints, and whether they have nominal inertials."""
     carrying = {joint.antecedent for joint in arm.joints}
     return [
-        joint.name
+        (joint.name, link is not None)
         for i, (joint, link) in enumerate(zip(arm.joints, arm.links, strict=True))
-        if i not in carrying and link is None
+        if i not in carrying
     ]
+
+
+def _endless(arm: Arm) -> list[str]:
+    """Links that carry no other and have no nominal inertials, by the names of their joints."""
+    return [name for name, known in _ends(arm) if not known]
+
+
+def _guessed_end(arm: Arm) -> float:
+    """Length [m] of the longest link, where no end is known; 0 where some are, or no link has a length."""
+    if any(known for _, known in _ends(arm)):
+        return 0.0
+    moved = [j for j in arm.joints if j.antecedent is not None]
+    return max((math.hypot(*(value_of(x, arm.symbols) for x in (j.d, j.r, j.b))) for j in moved), default=0.0)
 
 
 class FluidDrag(Strips):
