@@ -1,11 +1,14 @@
 """How often the true values lie within the 95 % intervals of `modelgen identify`, by encoder and log.
 
-    python benchmarks/deviations.py [--seeds 50] [--bits 8,10,12,14,16] [--repeats 0,6,20] [--current 0]
+    python benchmarks/deviations.py [--seeds 50] [--first 0] [--bits 8,10,12,14,16] [--repeats 0,6,20]
+                                    [--current 0] [--limit 1] [--scale 1]
 
 A planar arm of two joints moves along random Fourier series for 10 s, 500 rows a second. Positions are
-rounded to turns of 2^bits; readings stand there `repeats` times, so that 20 is a source of 25 Hz; currents
-have noise of 20 mA and are rounded to `current` [A]. Prints intervals that hold the truth [%], over all
-parameters and for the worst one, and how many logs are refused. Intervals are 1.96 standard deviations.
+rounded to turns of 2^bits; readings stand there `repeats` times, so that 20 is a source of 25 Hz; currents,
+`scale` times those of the arm, have noise of 20 mA, end at `limit` times what each joint needs at most, and
+are rounded to `current` [A]. Seeds are those from `first` on: some to choose by, others for the proof. Prints
+intervals that hold the truth [%], over all parameters and for the worst one, and how many logs are refused.
+Intervals are 1.96 standard deviations.
 """
 
 from __future__ import annotations
@@ -45,11 +48,15 @@ NOISE = 0.02  # A
 
 @dataclass(frozen=True)
 class Encoder:
-    """bits: of a turn of the joint. repeats: rows per reading; 0 and 1: one. current: step of it [A]."""
+    """bits: of a turn of the joint. repeats: rows per reading; 0 and 1: one. current: step of it [A].
+
+    limit: of the largest current of each joint, where it is cut off.
+    """
 
     bits: int
     repeats: int = 0
     current: float = 0.0
+    limit: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -61,9 +68,10 @@ class Covered:
     refused: tuple[str, ...]
 
 
-def arm() -> mg.Arm:
-    """The arm that made the logs."""
-    return loads(ARM, "arm.yaml", known_effects())["two"]
+def arm(scale: float = 1.0) -> mg.Arm:
+    """The arm that made the logs. scale: of its currents, by the constants of its motors."""
+    text = ARM.replace("torque_constant: 0.05", f"torque_constant: {0.05 / scale:.6g}")
+    return loads(text, "arm.yaml", known_effects())["two"]
 
 
 def log(model: mg.Model, encoder: Encoder, seed: int) -> dict[str, Array]:
@@ -84,7 +92,10 @@ def log(model: mg.Model, encoder: Encoder, seed: int) -> dict[str, Array]:
     q, dq, ddq = motion(t + 0.5 / ROWS) if every == 1 else motion(t)
     function = model.functions["inverse_dynamics"]
     current = np.asarray(function(q=q, dq=dq, ddq=ddq, parameters=truth))
+    most = encoder.limit * np.abs(current).max(axis=0)
     current = current + NOISE * random.normal(size=current.shape)
+    if encoder.limit < 1.0:
+        current = np.clip(current, -most, most)
     if encoder.current:
         current = encoder.current * np.rint(current / encoder.current)
     step = 2 * np.pi / 2**encoder.bits
@@ -94,9 +105,9 @@ def log(model: mg.Model, encoder: Encoder, seed: int) -> dict[str, Array]:
     return {"t": np.arange(len(table)) / ROWS} | dict(zip(("q1", "q2", "i1", "i2"), table.T, strict=True))
 
 
-def covered(encoder: Encoder, seeds: Sequence[int]) -> Covered:
-    """Intervals that hold the truth, over logs of these seeds."""
-    subject = arm()
+def covered(encoder: Encoder, seeds: Sequence[int], scale: float = 1.0) -> Covered:
+    """Intervals that hold the truth, over logs of these seeds. scale: as for `arm`."""
+    subject = arm(scale)
     model = mg.build_model(subject)
     assert model.nominal is not None
     hits, cutoffs, refused = [], [], []
@@ -126,15 +137,19 @@ def main() -> int:
     assert __doc__ is not None
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--seeds", type=int, default=50)
+    parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--bits", type=_numbers, default=[8, 9, 10, 11, 12, 14, 16])
     parser.add_argument("--repeats", type=_numbers, default=[0, 6, 20])
     parser.add_argument("--current", type=float, default=0.0)
+    parser.add_argument("--limit", type=float, default=1.0)
+    parser.add_argument("--scale", type=float, default=1.0)
     given = parser.parse_args()
     good = True
     sys.stdout.write("bits  repeats  logs  refused  cut-off [Hz]   within 95 % intervals [%]   worst\n")
     for bits in given.bits:
         for repeats in given.repeats:
-            found = covered(Encoder(bits, repeats, given.current), range(given.seeds))
+            encoder = Encoder(bits, repeats, given.current, given.limit)
+            found = covered(encoder, range(given.first, given.first + given.seeds), given.scale)
             head = f"{bits:4}  {repeats:7}  {len(found.hits):4}  {len(found.refused):7}"
             if len(found.hits):
                 share, worst = 100 * found.hits.mean(), 100 * found.hits.mean(axis=0).min()

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field, replace
 from html import escape
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from modelgen.description import Arm
 from modelgen.numeric import Array
 
@@ -67,6 +70,8 @@ class Record:
         First stamp in seconds since 1970, UTC; None where the stamps do not count from then.
     period : float, optional
         Samples in a period of the motion, as the log that this is a part of shows it; None: to be looked for.
+    cut_off : ndarray of bool, optional
+        Samples (N, n) at which an effort is cut off; None: to be read off the efforts.
 
     Attributes
     ----------
@@ -106,6 +111,7 @@ class Record:
     counts: tuple[float, ...] = ()
     begins: float | None = None
     period: float | None = None
+    cut_off: NDArray[np.bool_] | None = None
 
     @property
     def n(self) -> int:
@@ -202,6 +208,7 @@ class Record:
             ddq=cut(self.ddq),
             temperature=cut(self.temperature),
             core=None,
+            cut_off=None if self.cut_off is None else self.cut_off[begin:end],
             begins=None if self.begins is None else self.begins + float(self.t[begin] - self.t[0]),
         )
 

@@ -33,6 +33,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
+from modelgen.identification.cut_off import without_cut_off
 from modelgen.identification.doubts import check_sign, doubts
 from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
@@ -158,11 +159,13 @@ def _whole(
             one, two = split(training[0])
             training, testing = [one], [two]
     payloads = _payloads(o.payload, [*train, *test])
-    instant = effort_instant([r for k, r in enumerate(training) if k not in payloads] or training, arm)
-    training, testing = at_instants(training, instant), at_instants(testing, instant)
     asked = _settings(o)(1 / training[0].step)
     periods = [period_of(x, None) for x in training]
     chosen = with_whole_rows(choose(training, asked), periods)
+    if not payloads:
+        training, testing = without_cut_off(training, testing, chosen, arm)
+    instant = effort_instant([r for k, r in enumerate(training) if k not in payloads] or training, arm)
+    training, testing = at_instants(training, instant), at_instants(testing, instant)
     if o.cutoff is None and o.preset == "default":
         for record in training:
             check_coarse(record, chosen.cutoff)

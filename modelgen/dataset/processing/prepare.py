@@ -201,6 +201,8 @@ def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
 
 def _cut_off(record: Record) -> np.ndarray:
     """Samples (N, n) at which an effort is cut off: they say no more of it than those that hold a joint."""
+    if record.cut_off is not None:
+        return record.cut_off
     found, logged = np.zeros(record.q.shape, dtype=bool), record.logged_effort
     if logged is not None:
         for k, effort in enumerate(logged.T):

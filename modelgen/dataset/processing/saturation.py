@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from modelgen.numeric import Array
 
 BESIDE = 5  # levels below the highest, to which it is compared
+FEWEST = 20  # readings
 CUT_OFF = 0.01  # of the readings that move, at their highest level, if they are cut off there
 OFTENER = 6.0  # times as many as at the levels beside
 
@@ -18,21 +19,21 @@ def cut_off(values: Array, positions: Array) -> tuple[float, float] | None:
     A signal passes its highest level, and stands there no more often than at those below. One that is
     switched between two levels, and one at rest, is no case of this.
     """
-    return next(iter(_ends(values, positions)), None)
+    return next(iter(ends_of(values, positions)), None)
 
 
 def saturated(values: Array, positions: Array) -> NDArray[np.bool_]:
     """Samples (N,) of an effort at a reading at which it seems to be cut off, and those beside them."""
     found = np.zeros(len(values), dtype=bool)
-    for level, _ in _ends(values, positions):
+    for level, _ in ends_of(values, positions):
         found |= values == level
     # an effort that is moved to the instants of the positions has a part of its neighbours
     beside = np.append(found[1:], False) | np.append(False, found[:-1])
     return np.asarray(found | beside, dtype=bool)
 
 
-def _ends(values: Array, positions: Array) -> list[tuple[float, float]]:
-    """Readings at which an effort is cut off, and their shares of the moving ones."""
+def ends_of(values: Array, positions: Array) -> list[tuple[float, float]]:
+    """Readings at which an effort (N,) is cut off as they alone show it, with their shares."""
     speed = np.abs(np.gradient(positions))
     moving = values[speed > 0.01 * np.quantile(speed, 0.99)]
     levels, counts = np.unique(moving, return_counts=True)
@@ -45,5 +46,5 @@ def _ends(values: Array, positions: Array) -> list[tuple[float, float]]:
     return [
         (float(level), float(count / len(moving)))
         for count, beside, level in ends
-        if count >= max(20, CUT_OFF * len(moving)) and count > OFTENER * max(1.0, float(np.mean(beside)))
+        if count >= max(FEWEST, CUT_OFF * len(moving)) and count > OFTENER * max(1.0, float(np.mean(beside)))
     ]

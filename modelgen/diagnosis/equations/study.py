@@ -16,6 +16,7 @@ from modelgen.diagnosis.options.thresholds import Thresholds
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import EVALUATED, Model, build_model
+from modelgen.identification.cut_off import without_cut_off
 from modelgen.identification.effort_instant import at_instants, effort_instant
 
 
@@ -59,6 +60,8 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
             f"--period: found {period:g} s, expected one of which a training record holds two, "
             "or three where it is the only one, which is split in two"
         )
+    train, test = without_cut_off(found[:-1], found[-1:], settings, arm)
+    found = [*train, *test]
     instant = effort_instant(found[:-1], arm, thresholds.dataset)
     return Study(
         model=build_model(arm, EVALUATED),
