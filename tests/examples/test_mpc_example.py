@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mpc_arm import ControlledArm, controlled, described, perturbed, smallest_eigenvalue
+from mpc_arm import ControlledArm, described, perturbed, smallest_eigenvalue
 from mpc_horizon import Horizon, Solution
 from mpc_loop import closed_loop, reference
-from mpc_plant import Plant, compiled
+from mpc_plant import Plant
+from mpc_support import example
 
 from modelgen.description import LeveredDrive
 
@@ -18,15 +19,13 @@ START = np.concatenate([reference(np.zeros(1))[0, :3], np.zeros(3)])
 
 
 @pytest.fixture(scope="module")
-def arm(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> ControlledArm:
-    file = checkout / "examples" / "mpc" / "arms.yaml"
-    return controlled(described(file, "ariane4_mpc"), tmp_path_factory.mktemp("generated"))
+def arm(tmp_path_factory: pytest.TempPathFactory) -> ControlledArm:
+    return example(tmp_path_factory).arm
 
 
 @pytest.fixture(scope="module")
-def library(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The C in the repository, dry friction with a sign."""
-    return compiled(checkout / "generated", "ariane4", tmp_path_factory.mktemp("plant"))
+def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return example(tmp_path_factory).library
 
 
 @pytest.fixture(scope="module")

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mpc_arm import ControlledArm, controlled, described, perturbed
+from mpc_arm import ControlledArm, perturbed
 from mpc_c import built, closed_loop_in_c, daqp
 from mpc_horizon import Horizon
 from mpc_loop import closed_loop
-from mpc_plant import Plant, compiled
+from mpc_plant import Plant
+from mpc_support import example
 
 pytestmark = pytest.mark.xdist_group("mpc")
 
@@ -25,32 +26,42 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def arm(checkout: Path, folder: Path) -> ControlledArm:
-    return controlled(described(checkout / "examples" / "mpc" / "arms.yaml", "ariane4_mpc"), folder)
+def arm(tmp_path_factory: pytest.TempPathFactory) -> ControlledArm:
+    return example(tmp_path_factory).arm
 
 
 @pytest.fixture(scope="module")
-def program(checkout: Path, folder: Path, arm: ControlledArm) -> Program:
+def program(
+    checkout: Path, folder: Path, arm: ControlledArm, tmp_path_factory: pytest.TempPathFactory
+) -> Program:
     """The closed loop, by the least descent of a step."""
     try:
         sources = daqp(folder)
     except RuntimeError as error:
         pytest.skip(str(error))
-    generated = (folder / arm.name, checkout / "generated" / "ariane4")
+    generated = (example(tmp_path_factory).generated, checkout / "generated" / "ariane4")
     return cache(lambda least: built(arm, generated, sources, folder / f"{least:g}", least))
 
 
 @pytest.fixture(scope="module")
-def plant(checkout: Path, folder: Path, arm: ControlledArm) -> Plant:
-    return Plant(compiled(checkout / "generated", "ariane4", folder), "ariane4", perturbed(arm, 1), 3)
+def plant(arm: ControlledArm, tmp_path_factory: pytest.TempPathFactory) -> Plant:
+    return Plant(example(tmp_path_factory).library, "ariane4", perturbed(arm, 1), 3)
+
+
+@pytest.fixture(scope="module")
+def horizon(arm: ControlledArm) -> Horizon:
+    """Another formulation, to the last digits; what it plans depends on what it is given alone."""
+    return Horizon(arm, "forward", "fatrop", tolerance=1e-9)
 
 
 # In motion; where the current of joint 1 is not enough; where its reference is beyond the stroke.
 @pytest.mark.parametrize("begin", [2.0, 9.0, 15.0])
-def test_both_drive_the_arm_alike(arm: ControlledArm, program: Program, plant: Plant, begin: float) -> None:
+def test_both_drive_the_arm_alike(
+    arm: ControlledArm, program: Program, plant: Plant, horizon: Horizon, begin: float
+) -> None:
     """Each solved as far as it goes: what is left is the solvers' rounding, grown by the loop."""
     mine = closed_loop_in_c(program(1e-12), arm, perturbed(arm, 1), 0.3, begin)
-    other = closed_loop(Horizon(arm, "forward", "fatrop", tolerance=1e-9), plant, 0.3, begin=begin)
+    other = closed_loop(horizon, plant, 0.3, begin=begin)
     assert other.failures == 0
     moved = abs(np.diff(other.states[:, :3], axis=0)).max()
     assert moved > 1e-3

@@ -3,8 +3,6 @@
 import json
 import re
 import shutil
-from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +11,10 @@ import size
 from arms_support import ARMS, model
 from firmware.build import Object, compile_arm, read_object, write, zig_program
 from firmware.machine import Machine
-from firmware.sizes import Size, compiler, grown, measure
+from firmware.sizes import Size, compiler, grown
 from firmware.targets import M4F
+from firmware_support import measured
 
-from modelgen.functions import Model
 from modelgen.generation.sizes import code_digest, size_rows
 
 # What the compilers' run-time libraries do for them; the square root is one instruction.
@@ -41,25 +39,6 @@ BOUNDS = {
 }
 FLASH_BOUND = 7172
 
-Measured = Callable[[str, str], tuple[dict[str, Size], Path]]
-
-
-@cache
-def sized(name: str) -> Model:
-    return size.sized_model(ARMS[name]) if name in size.FOLDED else model(name)
-
-
-@pytest.fixture(scope="session")
-def measured(tmp_path_factory: pytest.TempPathFactory) -> Measured:
-    """Sizes of an arm, and the folder of its objects; each arm is compiled once."""
-
-    @cache
-    def call(name: str, tool: str) -> tuple[dict[str, Size], Path]:
-        folder = tmp_path_factory.mktemp(f"{name}-{tool}")
-        return measure(sized(name), folder, tool), folder / "objects"
-
-    return call
-
 
 def undefined(folder: Path, name: str) -> set[str]:
     """Symbols that the objects of an arm need from elsewhere."""
@@ -70,9 +49,9 @@ def undefined(folder: Path, name: str) -> set[str]:
 
 @pytest.mark.parametrize(("name", "tool"), COMPILED)
 def test_float_code_needs_nothing_double_no_memory_and_no_output(
-    measured: Measured, name: str, tool: str
+    tmp_path_factory: pytest.TempPathFactory, name: str, tool: str
 ) -> None:
-    needed = undefined(measured(name, tool)[1], name)
+    needed = undefined(measured(name, tool, tmp_path_factory)[1] / "objects", name)
     assert not [symbol for symbol in needed if FORBIDDEN.fullmatch(symbol)]
     assert needed <= ALLOWED
 
@@ -113,11 +92,13 @@ def test_what_is_no_fault_is_not_taken_for_one(symbol: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "tool"), COMPILED)
-def test_no_function_has_grown_by_more_than_three_percent(measured: Measured, name: str, tool: str) -> None:
+def test_no_function_has_grown_by_more_than_three_percent(
+    tmp_path_factory: pytest.TempPathFactory, name: str, tool: str
+) -> None:
     known = size.accepted()
     if compiler(tool) not in known:
         pytest.skip(f"sizes.json holds the figures of {' and '.join(known)}, not of {compiler(tool)}")
-    sizes, _ = measured(name, tool)
+    sizes, _ = measured(name, tool, tmp_path_factory)
     before = known[compiler(tool)].get(name, {})
     assert set(before) == set(sizes), "python benchmarks/size.py --accept"
     lines = grown(before, sizes)
@@ -149,9 +130,11 @@ def test_the_table_in_the_documentation_is_the_accepted_one() -> None:
 
 @pytest.mark.xdist_group("yaw3pitch")
 @pytest.mark.parametrize("tool", TOOLS[:1])
-def test_four_functions_of_a_bench_arm_stay_below_their_bounds(measured: Measured, tool: str) -> None:
+def test_four_functions_of_a_bench_arm_stay_below_their_bounds(
+    tmp_path_factory: pytest.TempPathFactory, tool: str
+) -> None:
     """The most of any state with q in [-pi, pi]; the flash with what they share."""
-    sizes, _ = measured("yaw3pitch", tool)
+    sizes, _ = measured("yaw3pitch", tool, tmp_path_factory)
     for name, most in BOUNDS.items():
         assert sizes[name].instructions <= most, name
     assert sum(sizes[name].flash for name in (*BOUNDS, "sincos")) <= FLASH_BOUND

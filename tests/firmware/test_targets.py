@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arms_support import model
-from firmware.build import compile_arm, write, zig_program
+from firmware.build import Object, compile_arm, read_object, write, zig_program
 from firmware.exchange import Call, on_board, program
 from firmware.machine import Machine
 from firmware.states import Inputs
 from firmware.targets import M4F, M7_DOUBLE, TARGETS, Target
+from firmware_support import measured, sized
 
 from modelgen.backends import NumpyFunction, Provenance, c_files
 from modelgen.backends.c.dialect import arrays
@@ -81,14 +82,36 @@ def check(errors: dict[str, tuple[float, float]], real: str) -> None:
         assert by_element <= ELEMENT_TOLERANCE[real], (function, by_element)
 
 
+def by_gcc(
+    target: Target, name: str, folder: Path, folders: pytest.TempPathFactory
+) -> tuple[Path, list[Object]]:
+    """The folder of an arm's sources and its objects: those of which the sizes are measured, where there are
+    such.
+    """
+    if target is M4F and sized(name) is model(name):
+        folder = measured(name, "gcc", folders)[1]
+        return folder, [read_object(file) for file in sorted((folder / "objects").glob("*.o"))]
+    write(c_files(model(name), Provenance("modelgen test", "0" * 64)), folder)
+    return folder, compile_arm(target, name, folder, folder / "objects")
+
+
+def by_zig(target: Target, name: str, folder: Path, folders: pytest.TempPathFactory) -> Path:
+    """A program of an arm's functions: that of which the sizes are measured, where there is such."""
+    if target is M4F and sized(name) is model(name):
+        return measured(name, "zig", folders)[1] / "objects" / "program.elf"
+    write(c_files(model(name), Provenance("modelgen test", "0" * 64)), folder)
+    return zig_program(target, name, folder, folder / "objects")[1]
+
+
 @pytest.mark.parametrize("name", TRIED)
 @pytest.mark.parametrize("target", TARGETS, ids=lambda t: f"qemu-{t.name}-{t.real}")
-def test_a_board_in_qemu_computes_what_the_host_does(target: Target, name: str, tmp_path: Path) -> None:
+def test_a_board_in_qemu_computes_what_the_host_does(
+    target: Target, name: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     if target.missing:
         pytest.skip(f"{target.missing} not installed (.ci/run installs it)")
-    write(c_files(model(name), Provenance("modelgen test", "0" * 64)), tmp_path)
-    objects = compile_arm(target, name, tmp_path, tmp_path / "objects")
-    binary = program(target, model(name), tmp_path, objects, tmp_path / "program")
+    folder, objects = by_gcc(target, name, tmp_path, tmp_path_factory)
+    binary = program(target, model(name), folder, objects, tmp_path / "program")
     calls, expected = cases(name, target.real)
     errors = worst(name, calls, expected, on_board(target, model(name), binary, calls, tmp_path / "run"))
     check(errors, target.real)
@@ -97,10 +120,9 @@ def test_a_board_in_qemu_computes_what_the_host_does(target: Target, name: str, 
 @pytest.mark.parametrize("name", TRIED)
 @pytest.mark.parametrize("target", [M4F, M7_DOUBLE], ids=lambda t: f"python-{t.name}-{t.real}")
 def test_a_processor_within_python_computes_what_the_host_does(
-    target: Target, name: str, tmp_path: Path
+    target: Target, name: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    write(c_files(model(name), Provenance("modelgen test", "0" * 64)), tmp_path)
-    _, binary = zig_program(target, name, tmp_path, tmp_path / "objects")
+    binary = by_zig(target, name, tmp_path, tmp_path_factory)
     machine = Machine(binary, target)
     calls, expected = cases(name, target.real)
     functions = model(name).functions
