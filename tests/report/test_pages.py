@@ -2,12 +2,15 @@
 
 import re
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 from browser_support import SCHEMES, WIDTHS, letters, opened, violations, wider
 from diagnosis_support import ARM, three
+from matplotlib.image import imread
+from playwright.sync_api import Locator
 
 import modelgen as mg
 from modelgen.calibration.lever import lever_of
@@ -108,6 +111,37 @@ def test_a_page_can_be_read_by_everybody(
         assert wider(page) == 0
         if page.locator("svg.chart").count():
             assert letters(page, "svg.chart text") > 10.0
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_table_shows_at_its_edge_that_it_goes_on(scheme: str, pages: Mapping[str, Path]) -> None:
+    """By a shade at the right, then at the left; none at an end, and none of a table that has room."""
+
+    def shades(table: Locator) -> tuple[bool, bool]:
+        image = imread(BytesIO(table.screenshot()))[..., :3].mean(axis=2)
+        # what most rows of a column of pixels have: no letter, no line
+        away = np.abs(np.median(image, axis=0) - np.median(image)) > 0.06
+        return bool(away[:5].any()), bool(away[-5:].any())
+
+    with opened(pages["identify"], 400, scheme) as page:
+        tables = page.locator(".table")
+        wide = [k for k in range(tables.count()) if _beyond(tables.nth(k)) > 40]
+        assert wide
+        table = tables.nth(wide[-1])
+        assert shades(table) == (False, True)
+        table.evaluate("t => t.scrollLeft = 20")
+        assert shades(table) == (True, True)
+        table.evaluate("t => t.scrollLeft = t.scrollWidth")
+        assert shades(table) == (True, False)
+    with opened(pages["identify"], 1280, scheme) as page:
+        table = page.locator(".table").last
+        assert _beyond(table) == 0
+        assert shades(table) == (False, False)
+
+
+def _beyond(table: Locator) -> int:
+    found: int = table.evaluate("t => t.scrollWidth - t.clientWidth")
+    return found
 
 
 @pytest.mark.parametrize("name", QUESTIONS)
