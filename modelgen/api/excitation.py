@@ -17,6 +17,7 @@ from modelgen.options import ExcitationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call
 from modelgen.report.excitation import picture, report
+from modelgen.report.words import limit_name
 
 
 class Excitation(Result):
@@ -105,7 +106,7 @@ class Excitation(Result):
         """
         e, made = self.found, self.to_json()
         reached = made["condition_numbers_of_starts"]
-        rows = [[name, f"{100 * share:z.1f}"] for name, share in e.usage.items()]
+        rows = [[limit_name(e.arm, name), f"{100 * share:z.1f}"] for name, share in e.usage.items()]
         return [
             *(f"note: {remark}" for remark in made["remarks"]),
             f"{e.arm.name}: condition number {e.condition:z.4g} with columns of unit norm ({e.raw:z.3g} in "

@@ -83,7 +83,7 @@ class Identification(Result):
             "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
             f"{name}_parameters.yaml": parameters_yaml(name, {e.name: e.value for e in found.estimates}),
             "spectra.svg": sheet(drawn, 2),
-            "report.html": report(found, o.others, data["verdict"], _processing(o), drawn, call, speeds),
+            "report.html": report(found, o.others, _processing(o), drawn, call, speeds),
         }
         if found.test is not None:
             files["test.svg"] = picture(found.test, found.arm.coordinate_names, o.others)

@@ -19,18 +19,31 @@ _SHOWN_BY = (
 
 def verdict(found: Identification) -> str:
     """Which parameters are well determined, which are not, and what experiment would help."""
-    lost = [e for e in found.estimates if e.std is None and not e.dropped]
-    worse = found.poor()
-    poor = [e for _, e in worse]
-    dropped = [e.name for e in found.estimates if e.dropped]
-    good = len(found.estimates) - len(lost) - len(poor) - len(dropped)
-    text = [*impossible(found), *found.doubts]
-    enough = f", or to {MATTERS:g} % of the effort" if found.test is not None else ""
-    text += [f"{good} of {len(found.estimates)} parameters are determined to {POOR:g} %{enough}, or better."]
-    if poor:
+    worse, lost = found.poor(), _lost(found)
+    text = [*questions(found), headline(found)]
+    if worse:
         text.append(f"Poorly determined: {', '.join(_doubtful(found, k) for k, _ in worse)}.")
     if lost:
         text.append(f"Not determined by these records, set to zero: {', '.join(e.name for e in lost)}.")
+    return " ".join([*text, *remarks(found), *helpful(found)])
+
+
+def headline(found: Identification) -> str:
+    """How many parameters are well determined."""
+    dropped = sum(e.dropped for e in found.estimates)
+    good = len(found.estimates) - len(_lost(found)) - len(found.poor()) - dropped
+    enough = f", or to {MATTERS:g} % of the effort" if found.test is not None else ""
+    return f"{good} of {len(found.estimates)} parameters are determined to {POOR:g} %{enough}, or better."
+
+
+def questions(found: Identification) -> list[str]:
+    """What makes the description or the records doubtful."""
+    return [*impossible(found), *found.doubts]
+
+
+def remarks(found: Identification) -> list[str]:
+    """What else there is to know of how the parameters were found."""
+    text, dropped = list[str](), [e.name for e in found.estimates if e.dropped]
     if dropped:
         text.append(f"Left out, since the records do not support them: {', '.join(dropped)}.")
     if found.comparison is not None and found.comparison.biased:
@@ -49,10 +62,18 @@ def verdict(found: Identification) -> str:
         names = found.arm.coordinate_names
         gains = ", ".join(f"{names[g.joint - 1]} {g.value / g.described:.3f}" for g in found.gains)
         text.append(f"Torque constants over those of the description: {gains}.")
-    advice = experiment([*lost, *poor], found.arm.coordinate_names)
-    if advice:
-        text.append(f"What would help: {'; '.join(advice)}. See modelgen excite.")
-    return " ".join(text)
+    return text
+
+
+def helpful(found: Identification) -> list[str]:
+    """What would determine the parameters that are not."""
+    wanting = [*_lost(found), *(e for _, e in found.poor())]
+    advice = experiment(wanting, found.arm.coordinate_names)
+    return [f"What would help: {'; '.join(advice)}. See modelgen excite."] if advice else []
+
+
+def _lost(found: Identification) -> list[Estimate]:
+    return [e for e in found.estimates if e.std is None and not e.dropped]
 
 
 def _doubtful(found: Identification, k: int) -> str:

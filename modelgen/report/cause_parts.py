@@ -15,9 +15,20 @@ from modelgen.effects.placement import titled
 from modelgen.report.diagnosis_sentences import checked, interval
 from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.law_sketch import sketch
-from modelgen.report.page import Grid, Heading, Marks, Part, Run, Section, Text, block
+from modelgen.report.page import Folded, Grid, Heading, Line, Marks, Part, Run, Section, Text, block
 from modelgen.report.words import finding, law, sentence
 
+_LOOKALIKES = (("confused with", "left"), ("what that is", "left"), ("seen by itself in", "left"))
+_DEFINED = (("parameter", "left"), ("unit", "left"), ("meaning", "left"))
+_DOCUMENTED: Line = [
+    Run(
+        "More, with what each effect does to a log: docs/gallery.md in the source of modelgen, a page of its "
+    ),
+    Run("documentation, which "),
+    Run("make docs", "code"),
+    Run(" builds there. All effects: "),
+    Run("modelgen effects", "code"),
+]
 _VALUES = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"), ("meaning", "left"))
 
 
@@ -71,20 +82,25 @@ def about(d: Diagnosis) -> list[Section]:
 
 
 def _about(effect: str) -> list[Part]:
+    """What the documentation says of it, as far as it stands on its own."""
     definition = CATALOGUE[effect]
-    seen = f"Seen by itself in: {sentence(definition.experiment)}"
-    if definition.confused_with:
-        seen += f" Confused with: {', '.join(definition.confused_with)}."
-    where = (
-        f"The picture is of an example. In the documentation: gallery.md#{effect} shows what it does to a "
-        f"log, effects.md#{effect} lists its parameters. All effects: "
-    )
-    return [
+    parts: list[Part] = [
         Text(_law(effect)),
         block([sketch(effect)]),
-        Text(f"{seen} Reference: {definition.reference}."),
-        Text([Run(where), Run("modelgen effects", "code")], "quiet"),
+        Text("The picture is of an example.", "quiet"),
+        Text(f"Seen by itself in: {sentence(definition.experiment)} Reference: {definition.reference}."),
     ]
+    if definition.confused_with:
+        rows = [
+            (other, CATALOGUE[other].text, CATALOGUE[other].experiment) for other in definition.confused_with
+        ]
+        parts.append(Grid(f"What {effect} is confused with", _LOOKALIKES, rows, folds=True))
+    values = [(p.name, p.unit.format(f="F", x="x"), p.text) for p in definition.accepted()]
+    parts += [
+        Folded(f"Parameters of {effect}", [Grid(f"Parameters of {effect}", _DEFINED, values, folds=True)]),
+        Text(_DOCUMENTED, "quiet"),
+    ]
+    return parts
 
 
 def _law(effect: str) -> str:

@@ -10,6 +10,7 @@ from modelgen.excitation import Excitation
 from modelgen.options import ExcitationOptions, options_of, words_of
 from modelgen.report.call import WHERE, Call
 from modelgen.report.page import Command, Grid, Lines, Part, Parts, Text, block, page
+from modelgen.report.words import limit_name
 
 _GOOD, _FAIR = (
     30.0,
@@ -66,7 +67,7 @@ def report(e: Excitation, stem: str, call: Call) -> str:
         said += f" {len(reached)} starts ended between {number(min(reached))} and {number(max(reached))}."
     remarks = [*e.arm.notes, *e.problem.remarks]
     tight = sorted(e.usage.items(), key=lambda item: -item[1])
-    rows = [(limit, f"{100 * share:z.1f}") for limit, share in tight]
+    rows = [(limit_name(e.arm, limit), f"{100 * share:z.1f}") for limit, share in tight]
     answers: Parts = [
         ("What was found", [Text(said)]),
         (
@@ -76,7 +77,7 @@ def report(e: Excitation, stem: str, call: Call) -> str:
                     f"One period of {s.period:g} s, {s.rate:g} set-points a second, {s.harmonics} harmonics."
                 ),
                 *(
-                    [Text(f"Tightest limit: {tight[0][0]}, {100 * tight[0][1]:z.0f} % of it used.")]
+                    [Text(f"Tightest limit: {rows[0][0]}, {100 * tight[0][1]:z.0f} % of it used.")]
                     if tight
                     else []
                 ),
@@ -91,7 +92,6 @@ def report(e: Excitation, stem: str, call: Call) -> str:
             "Limits",
             [
                 Grid("Limits", [("limit", "left"), ("used %", "right")], rows),
-                Text("q, dq, ddq: of the joint; qm, dqm, ddqm: of the motor.", "quiet"),
             ],
         ),
     ]

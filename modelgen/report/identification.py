@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from modelgen.charts import Chart, Curve, Interval, number, sheet
 from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
+from modelgen.identification.summary import headline, helpful, questions, remarks
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.options import words_of
@@ -56,13 +57,12 @@ def picture(found: Validation, names: Sequence[str], others: Sequence[Alternativ
 def report(
     found: Identification,
     others: Sequence[Alternative],
-    words: str,
     processing: Sequence[str],
     spectra: Sequence[Chart],
     call: Call,
     speeds: Sequence[float],
 ) -> str:
-    """HTML that needs nothing beside it. words: the verdict. speeds: largest (n,) of the records [per s]."""
+    """HTML that needs nothing beside it. speeds: largest (n,) of the records [per s]."""
     arm, test = found.arm, found.test
     names = arm.coordinate_names
     errors: list[Any] = [Text("There is no test record: nothing says how well the model predicts.")]
@@ -77,7 +77,7 @@ def report(
         if others:
             errors.append(Text("Below it: by how much the arm as described is below or above.", "quiet"))
     answers = [
-        ("What was found", [Text(sentence(words))]),
+        ("What was found", _found(found)),
         ("How well it predicts", errors),
         ("What is uncertain", _uncertain(found)),
         ("What to do next", _following(found, call, speeds)),
@@ -97,6 +97,12 @@ def report(
     drawing = Folded("The arm, to turn and move", [arm_drawing(arm)], screen=True)
     sections.append(("The arm", [drawing, _method(found)]))
     return page(f"{arm.name}: identified parameters", "Identification", answers, sections)
+
+
+def _found(found: Identification) -> list[Any]:
+    """One line, and below it what is doubtful or remarkable."""
+    more = [*questions(found), *remarks(found)]
+    return [Text(headline(found)), *([Lines(more)] if more else [])]
 
 
 def _method(found: Identification) -> Text:
@@ -132,6 +138,7 @@ def _uncertain(found: Identification) -> list[Any]:
             Text("What the standard deviation of these parameters moves in the effort:"),
             Grid("Poorly determined parameters", heads, rows),
         ]
+    parts += [Text(text) for text in helpful(found)]
     return parts or [Text("No parameter is uncertain by what would matter in the effort.")]
 
 

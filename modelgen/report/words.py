@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -11,6 +12,17 @@ from modelgen.charts import number
 from modelgen.description import Arm
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import titled
+
+_LIMITED = {
+    "q": "position",
+    "dq": "speed",
+    "ddq": "acceleration",
+    "qm": "motor position",
+    "dqm": "motor speed",
+    "ddqm": "motor acceleration",
+    "input": "input",
+    "effort": "effort",
+}
 
 
 class Said(float):
@@ -89,3 +101,11 @@ def law(effect: str) -> str:
             first = text.strip().splitlines()[0]
             return first if first.endswith(".") else f"{first}."
     return ""
+
+
+def limit_name(arm: Arm, key: str) -> str:
+    """A limit of an excitation in words: "motor speed of elbow" for dqm2; a box as it is."""
+    found = re.fullmatch(r"([a-z]+)(\d+)", key)
+    if found is None or found[1] not in _LIMITED:
+        return key
+    return f"{_LIMITED[found[1]]} of {joint_name(arm, int(found[2]))}"

@@ -4,7 +4,7 @@ import json
 import re
 import time
 from dataclasses import replace
-from html import unescape
+from html import escape, unescape
 from pathlib import Path
 
 import numpy as np
@@ -50,6 +50,10 @@ def test_the_report_stands_alone_and_is_the_same_again(found: Diagnosis) -> None
         assert outside not in page
     assert page.count('<svg class="chart"') >= 5
     assert all(word in page for word in WORDS)
+    # what resembles it is explained without the documentation
+    for other in CATALOGUE["stribeck_friction"].confused_with:
+        assert escape(CATALOGUE[other].text) in page
+        assert escape(CATALOGUE[other].experiment) in page
 
 
 def test_the_arm_is_drawn_with_the_joint_that_is_named(found: Diagnosis) -> None:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from matplotlib.image import imread
 from playwright.sync_api import Locator
 
 import modelgen as mg
+from modelgen.api.identification import Identification
 from modelgen.calibration.lever import lever_of
 from modelgen.fleet.overview import overview
 
@@ -194,3 +196,29 @@ def test_the_effort_of_a_parameter_is_what_it_adds(pages: Mapping[str, Path]) ->
     theta = np.array([e.value for e in found.estimates])
     # no column alone is larger than a few times what all of them make together
     assert (found.test.sizes * np.abs(theta) < 5.0 * whole[:, None]).all()
+
+
+def test_what_identify_found_is_one_line_and_questions_stand_below_it(tmp_path: Path) -> None:
+    train, _, test = three(None, 1, 0.0)
+    result = mg.identify(ARM, train=train, test=test)
+    doubts = tuple(f"Is joint {name} what the description says? " + 12 * "So it is asked. " for name in "abc")
+    outcome = replace(result.outcome, found=replace(result.outcome.found, doubts=doubts))
+    path = tmp_path / "report.html"
+    path.write_text(Identification(outcome, result.call).files()["report.html"], encoding="utf-8")
+    with opened(path) as page:
+        first = page.locator("dl.answer > div").first
+        assert first.locator("p").count() == 1
+        box = first.locator("p").bounding_box()
+        assert box is not None
+        assert box["height"] < 35  # pixel, a line of this size
+        assert first.locator("li").count() == 3
+        last = page.locator("dl.answer > div").last.bounding_box()
+        assert last is not None
+        assert last["y"] < 900
+
+
+def test_limits_of_an_excitation_are_called_by_their_names(pages: Mapping[str, Path]) -> None:
+    with opened(pages["excite"]) as page:
+        said = page.locator("dl.answer").inner_text() + page.locator("table").last.inner_text()
+    assert "motor speed of j3" in said
+    assert not re.search(r"\bd*qm?\d\b", said)
