@@ -79,7 +79,7 @@ class SelectionThresholds(Group):
         "what runs on belongs to another law; " + SIMULATED,
     )
     max_causes: int = entry(
-        4, "causes", "So many causes are looked for at most, or `max_causes_per_joint`.", JUDGED
+        6, "causes", "So many causes are looked for at most, or `max_causes_per_joint`.", JUDGED
     )
     max_causes_per_joint: int = entry(
         2, "causes", "So many are looked for at each joint, if that is more than `max_causes`.", JUDGED
