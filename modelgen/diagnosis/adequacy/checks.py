@@ -270,11 +270,15 @@ def _undominated(by: Dominance, arm: Arm) -> Check:
     return Check("undominated", by.ahead <= by.most, True, by.ahead, by.most, text)
 
 
+_FREE = "a free function of the joint's position and speed"
+
+
 def _form(by: FreeForm | None) -> Check:
     if by is None:
-        text = "no free function of the joint's position and speed is set against it: none acts as it does"
+        text = f"nothing like {_FREE} is set against it: none acts as it does"
         return Check("form", True, True, float("nan"), float("nan"), text)
-    text = f"a free function of the joint's position and speed {ahead_of(by.ahead, by.most)}"
+    what = "the same with a size of its own at each joint" if by.apart else _FREE
+    text = f"{what} {ahead_of(by.ahead, by.most)}"
     return Check("form", not by.as_good, True, by.ahead, by.most, text)
 
 

@@ -1,8 +1,10 @@
-"""Whether a free function of a joint's position and speed explains as much as the causes there.
+"""Whether a function of no law, or a law that is not one of several joints, explains as much as the causes.
 
-The function is a Gaussian process with a jump where the speed changes its sign (Rasmussen and Williams 2006):
-whatever a friction or a force over the joint does, it can. A law that is there explains as much at the price
-of its few parameters; one that is not ahead of the function has nothing but the function's shape for itself.
+At a joint the function is of its position and speed, a Gaussian process with a jump where the speed changes
+its sign (Rasmussen and Williams 2006): whatever a friction or a force over the joint does, it can. A law that
+is there explains as much at the price of its few parameters; one that is not ahead of the function has only
+the function's shape for itself. A law that acts on several joints says how much on each: where each has a
+size of its own, it is not the law.
 """
 
 from __future__ import annotations
@@ -23,14 +25,19 @@ from modelgen.diagnosis.candidates import FittedCandidate, system_of
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection import Selection, together
+from modelgen.effects import Family
+from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)
 class FreeForm:
-    """ahead: delta BIC by which the function is ahead of a joint's causes; most: by which it may be."""
+    """ahead: delta BIC by which what has no law is ahead of the causes at a joint, or of the whole arm; most:
+    by which it may be. apart: it is the law itself, with a size of its own at every joint.
+    """
 
     ahead: float
     most: float
+    apart: bool = False
 
     @property
     def as_good(self) -> bool:
@@ -51,6 +58,8 @@ def free_forms(
         return {}
     limits = equations.thresholds.adequacy
     found: dict[int | None, FreeForm] = {}
+    if any(c.trial.candidate.joint is None for c in selection.causes):
+        found |= {None: _apart(None, selection, equations)}
     for joint in sorted({c.trial.candidate.joint or 0 for c in selection.causes} - {0}):
         own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
         if any(t.candidate.elastic for t in own):
@@ -63,8 +72,38 @@ def free_forms(
         known = selection.system.noise_known
         most = 0.0 if known else limits.max_free_form_ahead
         shapes = [*functions_of(joint - 1, equations), spots(joint - 1, equations)]
-        found[joint] = FreeForm(ahead(shapes, own, without) - rest, most)
+        one = FreeForm(ahead(shapes, own, without) - rest, most)
+        other = _apart(joint, selection, equations)
+        found[joint] = max(one, other, key=lambda form: form.ahead - form.most)
     return found
+
+
+def _apart(joint: int | None, selection: Selection, equations: Equations) -> FreeForm:
+    """Delta BIC by which the causes of a joint, or of the whole arm, are ahead of themselves with a size of
+    their own at each joint that they act on. Those that do so by the law of a fluid, of which arms differ, or
+    by what is a guess, keep one size.
+    """
+    most = equations.thresholds.adequacy.max_free_form_ahead
+    own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
+    columns = [_by_joint(t) for t in own]
+    if all(split is t.columns for split, t in zip(columns, own, strict=True)):
+        return FreeForm(-np.inf, most, apart=True)
+    others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
+    without = system_of(equations, others, selection.system)
+    beside = [np.concatenate(tables, axis=2) for tables in zip(*columns, strict=True)]
+    gain = without.fair.gain(beside, float(sum(len(t.values) for t in own)), ())
+    alone = together(own, without, fair=True)
+    return FreeForm(-np.inf if gain is None else gain.delta_bic - alone, most, apart=True)
+
+
+def _by_joint(trial: FittedCandidate) -> Sequence[Array]:
+    """Columns (M, n, k) of every record; of a law that acts on several joints (M, n, m k), by joint."""
+    c = trial.candidate
+    acts = np.any([t.any(axis=(0, 2)) for t in trial.columns], axis=0)
+    if acts.sum() < 2 or c.definition.family is Family.FLUID or c.elastic:
+        return trial.columns
+    places = np.eye(len(acts))[acts]
+    return [np.concatenate([t * place[:, None] for place in places], axis=2) for t in trial.columns]
 
 
 def ahead(shapes: Iterable[SmoothFunction], own: Sequence[FittedCandidate], without: System) -> float:

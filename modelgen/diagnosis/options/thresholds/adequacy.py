@@ -64,7 +64,8 @@ class AdequacyThresholds(Group):
         15.0,
         "delta BIC",
         "A free function of position and speed that is ahead of a joint's causes outdoes them; where nothing "
-        "repeats, one that is ahead by more: slow noise is worth something to it there.",
+        "repeats, one that is ahead by more: slow noise is worth something to it there. So does their own "
+        "law with a size of its own at every joint that it acts on, if it is ahead by more.",
         STRANGERS,
     )
     min_claimed_deviations: float = entry(
