@@ -315,11 +315,24 @@ def test_places_on_a_link_are_in_its_frame_as_drawn(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["fluid_drag", "added_mass"])
-def test_what_is_guessed_or_not_looked_for_is_said(name: str) -> None:
-    """A fluid needs the arm's end: from its nominal inertials, or told with the effect, else a guess."""
+def test_what_is_not_looked_for_is_said(name: str) -> None:
+    """A fluid's force needs the arm's end: from its nominal inertials, or given with the effect."""
     effect, seen = CATALOGUE[name], Seen(whole=True, still=(), unsided=(), coarse=False)
     bare = replace(PLANAR, links=(LIMB, None))
-    told = with_arm(bare, EffectUse(name, dict(zip(("tip_x", "tip_y", "tip_z"), TIP, strict=True))))
+    pointed = replace(bare, joints=(bare.joints[0], replace(bare.joints[1], d=0.0, r=0.0)))
+    for arm in (pointed, bare) if name == "added_mass" else (pointed,):
+        (said,) = effect.hidden(arm, seen, named=False)
+        assert said.endswith(": j2")
+        assert not effect.stands_at(arm, None)
+    given = with_arm(bare, EffectUse(name, dict(zip(("tip_x", "tip_y", "tip_z"), TIP, strict=True))))
+    for arm in (PLANAR, given, replace(PLANAR, links=(None, LIMB))):
+        assert effect.hidden(arm, seen, named=False) == []
+
+
+def test_the_end_of_an_arm_in_a_fluid_is_guessed() -> None:
+    """As far away as the longest link is long, in four directions, and it is said to be a guess."""
+    effect, seen = CATALOGUE["fluid_drag"], Seen(whole=True, still=(), unsided=(), coarse=False)
+    bare = replace(PLANAR, links=(LIMB, None))
     for named in (False, True):
         (said,) = effect.hidden(bare, seen, named=named)
         assert said.endswith("where j2 ends")
@@ -328,12 +341,6 @@ def test_what_is_guessed_or_not_looked_for_is_said(name: str) -> None:
     length = float(np.hypot(PLANAR.joints[1].d, PLANAR.joints[1].r))
     assert np.linalg.norm(ends, axis=1) == pytest.approx(length)
     assert len({tuple(end) for end in ends}) == 4
-    pointed = replace(bare, joints=(bare.joints[0], replace(bare.joints[1], d=0.0, r=0.0)))
-    (said,) = effect.hidden(pointed, seen, named=False)
-    assert said.endswith(": j2")
-    assert not effect.stands_at(pointed, None)
-    for arm in (PLANAR, told, replace(PLANAR, links=(None, LIMB))):
-        assert effect.hidden(arm, seen, named=False) == []
 
 
 def test_an_encoder_offset_shifts_the_joint() -> None:

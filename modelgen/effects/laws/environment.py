@@ -51,36 +51,16 @@ class Strips(LinkEffect):
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """It stands where the end of links that carry no other is known or can be guessed."""
-        return not _endless(arm) or _guessed_end(arm) > 0.0
-
-    @classmethod
-    def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
-        """An end that nobody knows is as far away as the longest link's, across the joint's axis."""
-        away = _guessed_end(arm)
-        if not away:
-            return super().variants(arm, number)
-        unknown = {f"tip_{axis}": 0.0 for axis in "xyz"}
-        return [unknown | {f"tip_{axis}": side * away} for axis in "xy" for side in (1.0, -1.0)]
-
-    @classmethod
-    def conditional(cls, fixed: Numbers) -> tuple[str, ...]:
-        """What is estimated by length of a link that is a guess."""
-        return cls.estimated() if "tip_x" in fixed else ()
+        """It stands where links that carry no other have nominal inertials, from which their end follows."""
+        return not _endless(arm)
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
-        """What is said of it where nobody knows where the arm ends."""
-        ends = ", ".join(_endless(arm))
-        if not ends or any(use.name == cls.name for use in arm.effects):
-            return []
-        known = f"nominal inertials, or tip_x, tip_y and tip_z, say where {ends} ends"
-        if named:
-            return [f"its size is that of a link whose end is a guess: {known}"]
-        away = _guessed_end(arm)
-        if not away:
-            return [f"it is not looked for where links that carry no other have no nominal inertials: {ends}"]
-        return [f"it is looked for as if the end were {away:.3g} m from the joint: {known}"]
+        """It was not looked for where nobody knows where the arm ends."""
+        there = named or any(use.name == cls.name for use in arm.effects)
+        ends = "" if there else ", ".join(_endless(arm))
+        text = f"it is not looked for where links that carry no other have no nominal inertials: {ends}"
+        return [text] if ends else []
 
     def points(self, p: Values) -> Sequence[Point]:
         """The nodes of the quadrature."""
@@ -123,6 +103,36 @@ class FluidDrag(Strips):
     confused_with = ("nonlinear_viscous_friction", "added_mass")
     experiment = "the same motion in air and in the fluid, the arm folded and straight"
     shown = at(coefficient=60.0)
+
+    @classmethod
+    def stands_at(cls, arm: Arm, number: int | None) -> bool:
+        """It stands where the end of links that carry no other is known or can be guessed."""
+        return super().stands_at(arm, number) or _guessed_end(arm) > 0.0
+
+    @classmethod
+    def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
+        """An end that nobody knows is as far away as the longest link's, across the joint's axis."""
+        away = _guessed_end(arm)
+        if not away:
+            return super().variants(arm, number)
+        unknown = {f"tip_{axis}": 0.0 for axis in "xyz"}
+        return [unknown | {f"tip_{axis}": side * away} for axis in "xy" for side in (1.0, -1.0)]
+
+    @classmethod
+    def conditional(cls, fixed: Numbers) -> tuple[str, ...]:
+        """What is estimated by length of a link that is a guess."""
+        return cls.estimated() if "tip_x" in fixed else ()
+
+    @classmethod
+    def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
+        """What is said of it where nobody knows where the arm ends."""
+        away, ends = _guessed_end(arm), ", ".join(_endless(arm))
+        if not away or any(use.name == cls.name for use in arm.effects):
+            return super().hidden(arm, seen, named)
+        known = f"nominal inertials, or tip_x, tip_y and tip_z, say where {ends} ends"
+        if named:
+            return [f"its size is that of a link whose end is a guess: {known}"]
+        return [f"it is looked for as if the end were {away:.3g} m from the joint: {known}"]
 
     def force(self, x: PointVariables, p: Values) -> sp.Matrix:
         """CD |v| v by length, v the velocity across the link."""
