@@ -146,6 +146,7 @@ ONES = np.linspace(0, 1, len(T))
             scaled("q1", 50.0),
             "these look like degrees or the motor's positions; declare `unit: deg` or `side: motor`",
         ),
+        (setting("q1", slice(2, None), 3.0), "q1 runs from .* correct unit, sign or offset"),
         (scaled("q1", 1000.0), "q1 runs from .* correct unit, sign or offset"),
         (scaled("qm2", 2.0), "qm2 runs from .* joint knee from 0 to 20000 motor units"),
     ],

@@ -130,6 +130,9 @@ def check_range(
     return remarks
 
 
+_MOVED = 0.05  # of its range, that a joint moves in a unit of which a log is suspected
+
+
 def _unit_hint(
     found: tuple[float, float],
     allowed: tuple[float, float],
@@ -137,7 +140,8 @@ def _unit_hint(
     also: str,
     ratio: float | None,
 ) -> str:
-    """The unit in which the values would be allowed, else what may be wrong, `also` besides the limits.
+    """The unit in which the values would be allowed and the joint would move by a part of its range that is
+    worth a log, else what may be wrong, `also` besides the limits.
 
     ratio: of the gear before the joint whose side these should not be, None where there is none.
     """
@@ -150,7 +154,7 @@ def _unit_hint(
     fitting = []
     for words, key, factor in options:
         low, high = sorted((found[0] * factor, found[1] * factor))
-        if low >= allowed[0] and high <= allowed[1]:
+        if low >= allowed[0] and high <= allowed[1] and high - low >= _MOVED * (allowed[1] - allowed[0]):
             fitting.append((words, key))
     if fitting:
         words, keys = (" or ".join(x) for x in zip(*fitting, strict=True))
