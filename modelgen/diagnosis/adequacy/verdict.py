@@ -48,7 +48,7 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
     like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
         left = like or (fit is not None and fit.found)
-        return "named", "a cause passed every check" + (
+        return "named", "a cause passed every check that decides" + (
             f"; something deterministic remains beside it{like}" if left else ""
         )
     if remains.suspects:
