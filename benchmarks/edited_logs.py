@@ -106,7 +106,9 @@ class Subject:
             self.whole = mg.identify(self.arm, [self.record], self.test)
             self.remarks = self._said(self.whole)
         else:
-            self.seen = mg.inspect_log(str(self.log))
+            # of a mapping what it makes of the log, else the log's own columns
+            self.read_with = self.mapping if kind == "mapping" else None
+            self.seen = mg.inspect_log(str(self.log), mapping=self.read_with)
             self.quantiles = {name: _quantiles(x) for name, x in self.seen.found.columns.items()}
 
     def verdict(self, seed: int) -> str:
@@ -143,7 +145,7 @@ class Subject:
         return f"{word} {name} {far:.2g} deviations away {sorted(new)[:1]}"
 
     def _inspected(self) -> str:
-        found = mg.inspect_log(str(self.log))
+        found = mg.inspect_log(str(self.log), mapping=self.read_with)
         missing = any(c.missing for c in found.channels)
         if set(found.to_json()["remarks"]) - set(self.seen.to_json()["remarks"]) or missing:
             return "remarked"

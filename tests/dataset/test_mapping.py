@@ -267,3 +267,50 @@ def test_the_report_says_what_a_voltage_puts_into_the_viscous_friction(tmp_path:
     write_csv(tmp_path / "log.csv", AXIS_LOG)
     lines = described(prepare(read(str(tmp_path / "log.csv"), AXIS, mapping=tmp_path / "map.yaml")))
     assert lines[-1].startswith("slide: the effort is a voltage [V]: back-EMF sits in the viscous friction")
+
+
+PAIR_MAPPING = """
+schema: 1
+joints:
+  - position: {column: a, unit: rad}
+    effort: {column: i, unit: A}
+    temperature: {column: warm, unit: degC}
+  - position: {column: b, unit: rad}
+    effort: {column: k, unit: A}
+    temperature: {column: warm, unit: degC}
+"""
+PAIR_LOG = {
+    "t": T,
+    "a": Q[:, 0],
+    "b": Q[:, 1],
+    "i": np.cos(T),
+    "k": np.sin(T),
+    "warm": 30 + T,
+}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (
+            "column: k,",
+            "column: i,",
+            r"joints\.1\.effort\.column: found the column 'i', which joints\.0\.effort",
+        ),
+        ("column: b,", "column: a,", r"joints\.1\.position\.column: .* joints\.0\.position is read from too"),
+        ("column: k,", "column: a,", r"joints\.1\.effort\.column: .* joints\.0\.position is read from too"),
+        ("column: k, unit: A", "column: i, unit: mA", None),
+        ("column: b, unit: rad", "column: a, unit: rad, scale: -1", None),
+        ("column: k,", "column: 0 * i,", None),
+    ],
+)
+def test_a_column_is_read_once(old: str, new: str, said: str | None, tmp_path: Path) -> None:
+    """A copied line of a mapping gives two joints one motion; one that follows another has its own scale."""
+    log, mapping = write_csv(tmp_path / "a.csv", PAIR_LOG), written(tmp_path, PAIR_MAPPING)
+    assert read(log, DRIVEN, mapping).temperature[:, 1] == pytest.approx(30 + T)
+    mapping = written(tmp_path, PAIR_MAPPING.replace(old, new))
+    if said is None:
+        open_source(log, DRIVEN, mapping)
+    else:
+        with pytest.raises(InputError, match=said):
+            read(log, DRIVEN, mapping)

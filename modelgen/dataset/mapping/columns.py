@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,36 +12,13 @@ from modelgen.dataset.mapping import units
 from modelgen.dataset.mapping.files import Foreign, listed
 from modelgen.dataset.mapping.formula import Formula, FormulaError, formula
 from modelgen.dataset.mapping.schema import ColumnModel, JointModel
+from modelgen.dataset.mapping.signals import Signal, check_once
 from modelgen.dataset.objects import Reader
 from modelgen.description import Arm
 from modelgen.description.document import Steps
 from modelgen.description.messages import describe
 from modelgen.errors import suggest
 from modelgen.numeric import Array
-
-
-@dataclass(frozen=True)
-class Signal:
-    """One column to be made: factor * formula + offset. bits: of a counter that was logged as unsigned."""
-
-    formula: Formula
-    factor: float
-    offset: float
-    wrap: float | None = None
-    bits: int | None = None
-
-    def __call__(self, columns: dict[str, Array], last: dict[Signal, float]) -> Array:
-        """Its values (N,); `last` keeps its last value from block to block where it wraps."""
-        raw = self.formula(columns)
-        if self.bits is not None:
-            raw = np.where(raw >= 2.0 ** (self.bits - 1), raw - 2.0**self.bits, raw)
-        values = self.factor * raw + self.offset
-        if self.wrap is None:
-            return values
-        before = last.get(self, float(values[0]))
-        values = np.unwrap(np.concatenate([[before], values]), period=self.wrap)[1:]
-        last[self] = float(values[-1])
-        return values
 
 
 class MappedReader:
@@ -83,6 +60,7 @@ class MappedReader:
         self._groups: dict[str, list[str]] = {}  # coupled columns by kind, in the order of the joints
         for k, joint in enumerate(document.joints):
             self._joint(k, joint)
+        check_once(foreign, self._signals, self._aliases)
         self._coupling = foreign.matrices(n)
         if self._coupling is not None:
             self._couple(n)
