@@ -3,7 +3,9 @@
 The delay of each joint's efforts is fitted beside the parameters by Gauss and Newton's steps. Its column is
 the slope of the efforts as the model has them, in which their noise has no part. The columns of inertia and
 friction are slopes of others, and what is left for the delay is little: its deviation says how little. What
-the rounding of the positions does to it is seen by rounding them once more (Cook and Stefanski 1994).
+the rounding of the positions does to it is seen by rounding them again (Cook and Stefanski 1994). What the
+model lacks is no noise, and pulls the delays of all parts of a log the same way: the deviation holds how much
+they change where every joint may have any law of its own position, speed and load (Hausman 1978).
 """
 
 from __future__ import annotations
@@ -24,12 +26,14 @@ from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.options import prepared as reduced
 from modelgen.numeric import Array
-from modelgen.regression.least_squares import Regression, Solution
+from modelgen.regression.least_squares import Regression
 
 STEPS = 10  # of Gauss and Newton, at most
 LONGEST = 2.0  # samples, of a step
 SETTLED = 0.02  # samples, or this part of the deviation, at which they end
 ELEMENTS = 25_000_000  # of the regressor at full rate, beyond which the beginnings of the records do
+WAVES = (0.5, 1, 1.5, 2, 3)  # in the range of a joint, of which its free law of position is made
+SLOW = (0.05, 0.2)  # of the highest speed, below which a law of friction may be another
 DRAWS = 4  # of further roundings of the positions, where the data would tell without
 ALIKE = 0.25  # samples, half of what is between two conventions: joints that are so near agree
 APART = 4.0  # deviations by which a joint may be from all, if it is a matter of the log
@@ -83,7 +87,7 @@ def _delay(
             square = np.zeros(n)
             for seed in range(DRAWS):
                 again = [prepare(_rounded_anew(r, seed), settings) for r in prepared]
-                square += (_Fit(again, model, evaluator).delays()[0] - delays) ** 2 / DRAWS
+                square += (_Fit(again, model, evaluator).delays(free=False)[0] - delays) ** 2 / DRAWS
             deviations = np.sqrt(deviations**2 + np.where(np.isfinite(square), square, np.inf))
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return None  # what is wrong is said where the parameters are found
@@ -132,8 +136,11 @@ class _Fit:
             r.parallel(full * r.weights[:, :, None]) for r, full in zip(self.records, self.full, strict=True)
         ]
 
-    def delays(self) -> tuple[Array, Array]:
-        """Delays of the joints (n,) and their deviations [samples], infinite for those that do not tell."""
+    def delays(self, *, free: bool = True) -> tuple[Array, Array]:
+        """Delays of the joints (n,) and their deviations [samples], infinite for those that do not tell.
+
+        free: whether these hold what free laws beside the model change.
+        """
         first = self.records[0].record
         delays = np.full(self.n, first.hold / first.step)
         efforts = self._efforts(delays)
@@ -143,7 +150,8 @@ class _Fit:
         self._evaluate(theta)
         told, deviations = np.ones(self.n, dtype=bool), np.full(self.n, np.inf)
         for _ in range(STEPS):
-            solution = self._step(efforts, theta)
+            columns = self._with_delays(theta)
+            solution = Regression(efforts, columns, self.moving).solve("wls")
             theta, moved = solution.theta[: self.p], solution.theta[self.p :]
             told = solution.determined[self.p :] & np.isfinite(moved)
             deviations = np.sqrt(np.maximum(np.diag(solution.covariance)[self.p :], 0.0))
@@ -153,17 +161,40 @@ class _Fit:
             efforts = self._efforts(delays)
         else:
             told &= np.abs(moved) <= deviations
+        if free:
+            deviations = np.hypot(deviations, self._beside_free_laws(efforts, columns, theta, solution.sigma))
         return delays, np.where(told & (deviations > 0.0), deviations, np.inf)
 
-    def _step(self, efforts: Sequence[Array], theta: Array) -> Solution:
-        """Parameters, and the changes of the delays after them."""
+    def _with_delays(self, theta: Array) -> list[Array]:
+        """Columns (M, n, p + n) of each record: those of the model, and the slopes of its efforts."""
         columns = []
         for r, own, full in zip(self.records, self.columns, self.full, strict=True):
             slope = r.parallel(np.gradient(full @ theta, axis=0) * r.weights)
             more = np.zeros((len(slope), self.n, self.n))
             more[:, range(self.n), range(self.n)] = slope
             columns.append(np.concatenate([own, more], axis=2))
-        return Regression(efforts, columns, self.moving).solve("wls")
+        return columns
+
+    def _beside_free_laws(
+        self, efforts: Sequence[Array], columns: Sequence[Array], theta: Array, sigma: Array
+    ) -> Array:
+        """Changes of the delays (n,) where each joint may have any law of its position, speed and load."""
+        low = np.min([r.q.min(axis=0) for r in self.records], axis=0)
+        high = np.max([r.q.max(axis=0) for r in self.records], axis=0)
+        fast = np.max([np.abs(r.dq).max(axis=0) for r in self.records], axis=0)
+        freer = []
+        for r, own, full in zip(self.records, columns, self.full, strict=True):
+            laws = _laws(
+                (r.q - low) / np.maximum(high - low, 1e-300), r.dq / np.maximum(fast, 1e-300), full @ theta
+            )
+            count = laws.shape[2]
+            more = np.zeros((len(own), self.n, self.n * count))
+            for j in range(self.n):
+                more[:, j, j * count : (j + 1) * count] = r.parallel(laws[:, j] * r.weights[:, j, None])
+            freer.append(np.concatenate([own, more], axis=2))
+        weighted = [x / sigma[:, None] for x in freer], [y / sigma for y in efforts]
+        moved = Regression(weighted[1], weighted[0], self.moving).least_squares()
+        return moved[self.p : self.p + self.n]
 
     def _efforts(self, delays: Array) -> list[Array]:
         """Efforts (M, n) at the positions' instants, where their samples lie `delays` samples after them."""
@@ -178,3 +209,13 @@ class _Fit:
             )
             found.append(r.parallel(self.evaluator.ideal(self.model, motion, given) * r.weights))
         return found
+
+
+def _laws(q: Array, dq: Array, effort: Array) -> Array:
+    """Laws (N, n, k) of positions in their range [0, 1], speeds over the highest, and loads, (N, n) each."""
+    sign = np.sign(dq)
+    waves = [f(2 * np.pi * k * q) for k in WAVES for f in (np.sin, np.cos)]
+    drags = [sign * np.abs(dq) ** k for k in (2, 3)]
+    stops = [sign * np.exp(-((dq / v) ** 2)) for v in SLOW]
+    loads = [effort * dq, np.abs(effort) * sign, sign * q, sign * q**2]
+    return np.stack([*waves, *drags, *stops, *loads, np.ones_like(q)], axis=2)
