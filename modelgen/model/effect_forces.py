@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 import sympy as sp
 
@@ -151,7 +152,7 @@ class EffectForces:
         moved = port.rows[: len(port.accelerations)]
         for row, force in zip(port.rows[: len(part.forces)], part.forces, strict=True):
             for other, acceleration in zip(moved, port.accelerations, strict=True):
-                slope = sp.diff(force, acceleration)
+                slope = _slope(force, acceleration)
                 if slope == 0:
                     continue
                 mass = self.in_graph(effect, part, slope)
@@ -190,3 +191,8 @@ class EffectForces:
     def _states(self, effect: AppliedEffect) -> dict[sp.Symbol, Expr]:
         names = self.e.state_names()
         return {s: self.graph.input("state", names.index(s.name)) for s in effect.states.values()}
+
+
+@lru_cache(maxsize=1024)
+def _slope(force: sp.Expr, by: sp.Symbol) -> sp.Expr:
+    return sp.diff(force, by)

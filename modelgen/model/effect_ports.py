@@ -23,6 +23,7 @@ from modelgen.model.bodies import Swinging, body_port
 from modelgen.model.equations import Equations
 from modelgen.model.motion import LinkMotion, Rates, link_motions, of_links
 from modelgen.model.ports import Port, Surroundings, origin_velocities, point_rows
+from modelgen.model.screws import PartialVelocities, Screw
 
 Lazy = Callable[[], Expr]
 
@@ -38,6 +39,7 @@ class Ports:
 
     def __init__(self, equations: Equations, rates: Rates, around: Surroundings) -> None:
         self.e, self.graph, self.rates, self.around = equations, equations.graph, rates, around
+        self._made: dict[int, tuple[Part, Port]] = {}  # by the place of a part, which stays, in memory
 
     def converted(self, part: Part, expression: sp.Expr, known: Mapping[sp.Symbol, Expr]) -> Expr:
         """An expression in the graph, the joint's sine and cosine as they are elsewhere."""
@@ -67,8 +69,17 @@ class Ports:
             return self._velocities
         return origin_velocities(self.e.frames, rates.reference, [m.reference for m in self._motions])
 
+    @cached_property
+    def _screws(self) -> list[dict[int, Screw]]:
+        return PartialVelocities(self.e.frames).of_link
+
     def of(self, effect: AppliedEffect, part: Part) -> Port:
         """Place at which one part of an effect acts; effects at an input have none."""
+        if id(part) not in self._made:
+            self._made[id(part)] = part, self._port(effect, part)
+        return self._made[id(part)][1]
+
+    def _port(self, effect: AppliedEffect, part: Part) -> Port:
         x = part.variables
         if isinstance(x, PointVariables):
             return self._point_port(x, part)
@@ -126,7 +137,7 @@ class Ports:
             (x.line, line),
         ):
             bound |= dict(zip(symbols, vector, strict=True))
-        return Port(point_rows(self.e.frames, i, place), bound, tuple(x.acceleration))
+        return Port(point_rows(self._screws[i], place), bound, tuple(x.acceleration))
 
     def _swinging(self, x: BodyVariables, part: Part) -> Swinging:
         n, swing = number(self.e, part), part.swing

@@ -13,7 +13,7 @@ from modelgen.graph.vectors import Vector, add, cross
 from modelgen.model.composite import mass_matrix
 from modelgen.model.dynamics import joint_efforts
 from modelgen.model.motion import Rates, link_motions
-from modelgen.model.screws import PartialVelocities
+from modelgen.model.screws import Screw
 
 
 @dataclass(frozen=True)
@@ -101,9 +101,10 @@ def origin_velocities(frames: Frames, dq: Sequence[Expr], spins: Sequence[Vector
     return [found[i] for i in range(len(spins))]
 
 
-def point_rows(frames: Frames, link: int, place: Vector) -> tuple[Mapping[int, Expr], ...]:
-    """Rows of the velocity x, y, z of a point of the link, then of the link's spin, in its axes."""
-    screws = PartialVelocities(frames).of_link[link]
+def point_rows(screws: Mapping[int, Screw], place: Vector) -> tuple[Mapping[int, Expr], ...]:
+    """Rows of the velocity x, y, z of a point of a link, then of the link's spin, in its axes. screws: of the
+    link, by coordinate.
+    """
     velocities = {n: (*add(v, cross(e, place)), *e) for n, (e, v) in screws.items()}
     rows = [{n: v[axis] for n, v in velocities.items()} for axis in range(6)]
     return tuple({n: e for n, e in row.items() if not e.is_zero} for row in rows)
