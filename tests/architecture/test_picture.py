@@ -9,6 +9,8 @@ import pytest
 from architecture.house import ROOT, Graph, circles, file_graph, rooms
 from architecture.picture import NAME, PICTURES, arrange, drawn, layered, reduced
 
+pytestmark = pytest.mark.xdist_group("picture")
+
 SVG = "{http://www.w3.org/2000/svg}"
 
 

@@ -19,6 +19,8 @@ from modelgen.errors import InputError
 from modelgen.functions import EVALUATED, Options, build_model
 from modelgen.generation.arm import print_model
 
+pytestmark = pytest.mark.xdist_group("c_identity")
+
 TEXT = """schema: 1
 convention: khalil_kleinfinger
 arms:

@@ -15,6 +15,8 @@ from modelgen.functions import Function, Model, Options, build_model
 from modelgen.functions.objects import STATUS_INPUT, STATUS_STROKE
 from modelgen.generation.arm import print_model
 
+pytestmark = pytest.mark.xdist_group("c_nearest")
+
 ARM = "ariane4"
 Built = tuple[Model, ctypes.CDLL, Path]
 

@@ -14,6 +14,8 @@ from modelgen.errors import InputError
 from modelgen.functions import Model, Options, build_model, nominal_standard
 from modelgen.generation.arm import print_model
 
+pytestmark = pytest.mark.xdist_group("c_nominal")
+
 FOLDED = ["inverse_dynamics", "gravity", "bias", "mass_matrix", "forward_dynamics"]
 ELASTIC = """
 schema: 1

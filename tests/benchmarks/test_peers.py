@@ -10,7 +10,10 @@ from peers import cost, field, mujoco_model, operations, ours, symbolic, sympy_k
 from peers.build import Built, pinocchio_flags
 from peers.measure import Call, heap, instructions, values
 
-pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
+pytestmark = [
+    pytest.mark.xdist_group("peers"),
+    pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc"),
+]
 HEADER = Path("/usr/include/valgrind/callgrind.h")
 
 

@@ -19,6 +19,8 @@ from blind.others.method import Answer, Method, Motion, Problem, Record, Term, k
 from blind.others.problem import Asked, asked, said
 from blind.others.regression import BLOCKS, Regression, blocks, sparsest
 
+pytestmark = pytest.mark.xdist_group("others")
+
 EFFECT = "asymmetric_viscous_friction"
 README = Path(page.__file__).with_name("README.md")
 

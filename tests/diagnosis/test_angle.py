@@ -23,6 +23,8 @@ from modelgen.functions import build_model
 from modelgen.numeric import Array
 from modelgen.regression.weighted import weighted_fit
 
+pytestmark = pytest.mark.xdist_group("angle")
+
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[Equations, Array, Candidate]:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from arms_support import ARMS, standard_vector
 from hidden.cases import Case, Hidden, make, seal
-from hidden.running import diagnose, diagnosed_here
+from hidden.judging import FOUND
+from hidden.running import diagnose, diagnosed_here, judged
 
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.description import EffectUse, load
@@ -68,6 +69,10 @@ def test_stiffness_of_a_first_joint_is_that_of_its_spring(encoder: str, tmp_path
     case = Case("direct2", 863385758, (Hidden("joint_flexibility", 1, 1.3, magnitude),), encoder)
     seal(make(case, tmp_path / "case"), tmp_path / "case.sealed")
     answer, _ = diagnose(tmp_path / "case", case.name)
+    outcome, _ = judged(case, tmp_path / "case", answer)
+    assert outcome.result == FOUND, outcome
+    assert outcome.recovered is not None
+    assert outcome.recovered > 0.5
     (cause,) = answer["causes"]
     assert (cause["effect"], cause["joint"]) == ("joint_flexibility", 1)
     truth = 400.0 / magnitude  # N m/rad, as the plant has it

@@ -19,6 +19,8 @@ from modelgen import Arm, build_model, load_arms
 from modelgen.cli.app import app
 from modelgen.transmission import of_joint
 
+pytestmark = pytest.mark.xdist_group("commands")
+
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
     "optional-dependencies"
 ]

@@ -16,6 +16,8 @@ from modelgen.errors import InputError
 from modelgen.functions import Function, Model, Options, build_model
 from modelgen.generation.arm import print_model
 
+pytestmark = pytest.mark.xdist_group("combined")
+
 COMBINED = {
     "tick": ("inverse_dynamics", "mass_matrix"),
     "adapt": ("slotine_li_regressor", "gravity", "bias"),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import jobs_support
 import pytest
+from command_support import called
 from jobs_support import cluster, deadly, lost, process, refused, square
 
 from modelgen.errors import InputError
@@ -16,6 +17,7 @@ from modelgen.jobs import Where, run
 pytestmark = pytest.mark.xdist_group("dask")
 SQUARES = {k: k * k for k in range(8)}
 EXCITE = ("excite", "--arm", "gravity_link1", "--velocity", "3", "--period", "10", "--starts", "3")
+EXCITE += ("--iterations", "10", "--out", "t.csv")
 
 
 @pytest.fixture(scope="module")
@@ -24,10 +26,15 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield found
 
 
-def command(folder: Path, *more: str) -> subprocess.CompletedProcess[str]:
+# A scheduler that is there answers at once.
+IMPATIENT = "import modelgen.jobs.cluster as c; c.CONNECT = 1.0; from modelgen.cli import main; main()"
+
+
+def impatient(folder: Path, *more: str) -> subprocess.CompletedProcess[str]:
+    """The command in a process of its own, all that any library prints included."""
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[2])}
     return subprocess.run(
-        [sys.executable, "-m", "modelgen", *EXCITE, "--iterations", "10", "--out", "t.csv", *more],
+        [sys.executable, "-c", IMPATIENT, *EXCITE, *more],
         cwd=folder,
         env=environment,
         capture_output=True,
@@ -100,7 +107,7 @@ def test_a_trajectory_is_the_same_in_one_process_two_and_on_a_cluster(address: s
     for name, where in {"one": ["-j", "1"], "two": ["-j", "2"], "dask": ["--dask", address]}.items():
         folder = tmp_path / name
         folder.mkdir()
-        answer = command(folder, *where)
+        answer = called(*EXCITE, *where, cwd=folder)
         assert answer.returncode == 0, answer.stderr
         files[name] = {file.name: file.read_bytes() for file in folder.iterdir()}
     assert len(files["one"]) == 5
@@ -108,7 +115,7 @@ def test_a_trajectory_is_the_same_in_one_process_two_and_on_a_cluster(address: s
 
 
 def test_an_address_where_nothing_answers(tmp_path: Path) -> None:
-    answer = one_line(command(tmp_path, "--dask", "tcp://127.0.0.1:1"))
+    answer = one_line(impatient(tmp_path, "--dask", "tcp://127.0.0.1:1"))
     assert "--dask tcp://127.0.0.1:1: no scheduler answers there" in answer
     assert "dask scheduler" in answer
     assert not list(tmp_path.iterdir())

@@ -27,6 +27,8 @@ from modelgen.report.law_figures import judged_joint, law_charts
 from modelgen.report.page import page
 from modelgen.report.words import finding, sentence
 
+pytestmark = pytest.mark.xdist_group("diagnosis_report")
+
 WORDS = ("stribeck_friction", "at j2", "over all joints", "What these records cannot show")
 FRICTIONS = (
     "stribeck_friction",

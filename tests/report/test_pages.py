@@ -18,6 +18,8 @@ from modelgen.api.identification import Identification
 from modelgen.calibration.lever import lever_of
 from modelgen.fleet.overview import overview
 
+pytestmark = pytest.mark.xdist_group("pages")
+
 QUESTIONS = {
     "identify": "What was found, How well it predicts, What is uncertain, What to do next",
     "refine": "What was found, How well it moves, What moved, What to do next",

@@ -21,6 +21,8 @@ import pytest
 from c_support import shared_library
 from scipy.integrate import solve_ivp
 
+pytestmark = pytest.mark.xdist_group("made_up_drive")
+
 CRANK, RATIO, MIDDLE, CONSTANT = 0.12, 90.0, 0.3, 0.08
 MASS, INERTIA, VISCOUS, DRY, GRAVITY = 20.0, 5e-5, 1e-3, 0.03, 9.81
 STIFFNESS = 1500.0  # of a spring that the description does not know
