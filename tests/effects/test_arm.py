@@ -4,12 +4,13 @@ import itertools
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 import sympy as sp
 from scipy.integrate import solve_ivp
-from witness.arms import ARMS, Emitted, build
+from witness.arms import ARMS, WHOLE, Emitted, build
 from witness.bodies import random_bodies
 from witness.compare import agree
 from witness.levers import Drive
@@ -161,7 +162,7 @@ def test_a_payload_is_a_point_mass_of_the_last_link() -> None:
     place, mass = np.array([0.3, -0.05, 0.1]), 1.7
     use = EffectUse("payload_change", {"mass": mass, **dict(zip("xyz", place, strict=True))})
     for name in ("ur10e", "two_fingers", "ariane4"):
-        emitted, bare = build(with_arm(ARMS[name], use), Options()), build(ARMS[name], Options())
+        emitted, bare = build(with_arm(ARMS[name], use), WHOLE), build(ARMS[name], WHOLE)
         q, dq, ddq = states(emitted.arm, 5)
         theta = links_vector(emitted)
         heavier = theta.copy()
@@ -261,13 +262,24 @@ def derivative(
 
 SIXTH = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
 TIP = (0.3, -0.05, 0.12)
-IN_WATER = [PLANAR, ARMS["ur10e"], ARMS["scara"]]
+IN_WATER = {"planar": PLANAR, "ur10e": ARMS["ur10e"], "scara": ARMS["scara"]}
 IN_FLUID = EffectUse("added_mass", dict(zip(("tip_x", "tip_y", "tip_z"), TIP, strict=True)))
 
 
-@pytest.mark.parametrize("arm", IN_WATER, ids=lambda arm: arm.name)
-def test_added_mass_is_the_fluid_s_kinetic_energy(arm: Arm) -> None:
-    emitted, bare = build(with_arm(arm, IN_FLUID), Options()), build(arm, Options())
+together = pytest.mark.xdist_group("in_water")
+
+
+@cache
+def in_water(name: str) -> Emitted:
+    """An arm with the mass that the fluid adds, built once."""
+    return build(with_arm(IN_WATER[name], IN_FLUID), WHOLE)
+
+
+@together
+@pytest.mark.parametrize("name", IN_WATER)
+def test_added_mass_is_the_fluid_s_kinetic_energy(name: str) -> None:
+    arm = IN_WATER[name]
+    emitted, bare = in_water(name), build(arm, WHOLE)
     assert emitted.model.standard[-1].name == "CM"
     fluid = Fluid(arm, TIP)
     q, dq, ddq = states(emitted.arm, 6)
@@ -280,10 +292,11 @@ def test_added_mass_is_the_fluid_s_kinetic_energy(arm: Arm) -> None:
     agree(emitted("forward_dynamics_standard", q, dq, given, theta), ddq)
 
 
-@pytest.mark.parametrize("arm", IN_WATER, ids=lambda arm: arm.name)
-def test_added_mass_keeps_the_coriolis_matrix_passive(arm: Arm) -> None:
+@together
+@pytest.mark.parametrize("name", IN_WATER)
+def test_added_mass_keeps_the_coriolis_matrix_passive(name: str) -> None:
     """dM/dt - 2 C is skew-symmetric, C through unit reference velocities."""
-    emitted = build(with_arm(arm, IN_FLUID), Options())
+    emitted = in_water(name)
     theta = emitted.base(links_vector(emitted))
     q, dq, _ = states(emitted.arm, 4)
 
@@ -298,11 +311,13 @@ def test_added_mass_keeps_the_coriolis_matrix_passive(arm: Arm) -> None:
     assert np.abs(skew + np.swapaxes(skew, 1, 2)).max() <= 1e-8 * np.abs(rate).max()
 
 
+@together
 @pytest.mark.parametrize("name", ["added_mass", "fluid_drag", "payload_change"])
 def test_places_on_a_link_are_in_its_frame_as_drawn(name: str) -> None:
     """Base parameters stand about the foot of the last link's common normal, 0.12 m from ur10e's frame."""
     values = {"mass": 1.2, "x": 0.1, "z": 0.2} if name == "payload_change" else dict(IN_FLUID.values)
-    emitted = build(with_arm(ARMS["ur10e"], EffectUse(name, values)), Options())
+    other = name != IN_FLUID.name
+    emitted = build(with_arm(ARMS["ur10e"], EffectUse(name, values)), WHOLE) if other else in_water("ur10e")
     q, dq, ddq = states(emitted.arm, 4)
     theta = links_vector(emitted)
     agree(
@@ -346,10 +361,8 @@ def test_the_end_of_an_arm_in_a_fluid_is_guessed() -> None:
 def test_an_encoder_offset_shifts_the_joint() -> None:
     for name, joint in (("ariane4", 1), ("ur10e", 2), ("scara", 2), ("gravity_arm", 0)):
         offset = 0.013
-        emitted = build(
-            with_joint(ARMS[name], joint, EffectUse("encoder_offset", {"offset": offset})), Options()
-        )
-        bare = build(ARMS[name], Options())
+        emitted = build(with_joint(ARMS[name], joint, EffectUse("encoder_offset", {"offset": offset})), WHOLE)
+        bare = build(ARMS[name], WHOLE)
         q, dq, ddq = states(bare.arm, 6)
         q = 0.8 * q + 0.2 * q.mean(axis=0)
         true = q.copy()

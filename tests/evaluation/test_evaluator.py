@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from evaluation_support import motion
-from witness.arms import ARMS, Emitted, build, shipped
+from witness.arms import ARMS, WHOLE, Emitted, build, shipped
 from witness.compare import agree
 from witness.mechanism import states
 
@@ -15,7 +15,6 @@ from modelgen.backends.casadi.function import casadi_function
 from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion, places, with_effect
 from modelgen.evaluation import states as series
-from modelgen.functions import Options
 
 VALUES = {
     "stribeck_friction": {"velocity": 4e3},
@@ -85,7 +84,7 @@ def test_an_effect_adds_what_the_arm_with_it_does(
         else evaluator(arm)
     )
     m = motion(arm)
-    emitted = build(with_effect(ARMS[arm], effect, joint, values), Options())
+    emitted = build(with_effect(ARMS[arm], effect, joint, values), WHOLE)
     before = shipped(arm)
     names = [s.name for s in before.model.standard]
     theta = np.ones(len(emitted.model.standard))
@@ -143,7 +142,7 @@ def test_places_follow_the_drives() -> None:
 
 
 def test_a_function_in_memory_is_the_emitted_one() -> None:
-    emitted = build(ARMS["ariane4"], Options())
+    emitted = build(ARMS["ariane4"], WHOLE)
     q, dq, ddq = states(ARMS["ariane4"], 3)
     for name, inputs in (("regressor", (q, dq, ddq)), ("motor_from_joint", (q, dq, ddq))):
         function = casadi_function(emitted.functions[name])

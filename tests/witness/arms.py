@@ -28,6 +28,7 @@ from witness.geometry import number
 
 # Without derivatives, which have tests of their own and take as long as all the rest.
 BARE = Options(without=frozenset({"drives", "effects"}), derivatives=False)
+WHOLE = Options(derivatives=False)
 
 
 class Emitted:
