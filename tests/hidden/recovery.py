@@ -16,6 +16,7 @@ from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import records
 from modelgen.evaluation import Evaluator
 from modelgen.functions import build_model
+from modelgen.functions.options import EVALUATED
 from modelgen.regression.weighted import weighted_fit
 
 
@@ -32,7 +33,7 @@ def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[flo
     found = records(arm, paths[:-1], paths[-1:], None, USUAL.dataset)
     lengths = [period_of(record, None) for record in found[:-1]]
     settings = with_whole_rows(choose(found[:-1], settings_for(found, cutoff, USUAL)), lengths)
-    model, evaluator = build_model(arm), Evaluator(arm)
+    model, evaluator = build_model(arm, EVALUATED), Evaluator(arm)
     *train, test = rows_twice(
         evaluator, model, [prepare(r, settings) for r in found], estimated(model, USUAL.equations)
     )

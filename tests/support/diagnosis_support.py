@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,8 @@ from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion
-from modelgen.functions import build_model
+from modelgen.functions import Model, build_model
+from modelgen.functions.options import EVALUATED
 from modelgen.numeric import Array
 
 UNUSED: Any = None  # records, of which nothing is asked
@@ -34,6 +36,11 @@ ARM = Arm(
 )
 
 
+@cache
+def bench() -> tuple[Model, Evaluator]:
+    return build_model(ARM, EVALUATED), Evaluator(ARM)
+
+
 def record(effect: str | None, joint: int, size: float, seed: int, name: str) -> Record:
     """Three periods of five harmonics at 250 Hz, the current with 3 % of white noise."""
     random = np.random.default_rng(seed)
@@ -44,7 +51,7 @@ def record(effect: str | None, joint: int, size: float, seed: int, name: str) ->
     q = np.cos(phase) @ a.T + np.sin(phase) @ b.T
     dq = (np.cos(phase) * w) @ b.T - (np.sin(phase) * w) @ a.T
     ddq = -(np.cos(phase) * w**2) @ a.T - (np.sin(phase) * w**2) @ b.T
-    model, evaluator = build_model(ARM), Evaluator(ARM)
+    model, evaluator = bench()
     base = base_vector(model, standard_vector(model, np.random.default_rng(5)))
     motion = Motion(t, q, dq, ddq)
     given = evaluator.inputs(motion, base)
