@@ -77,7 +77,7 @@ def report(found: Refinement, call: Call) -> str:
                 ),
             ],
         ),
-        ("What moved", [Text(_moved(free))]),
+        ("What moved", [Text(_moved(free)), *_uncertain(found)]),
         (
             "What to do next",
             _following(call),
@@ -91,11 +91,12 @@ def report(found: Refinement, call: Call) -> str:
             "held" if x.std is None else f"{x.std:z.2g}",
             "" if not x.std else f"{(x.value - x.start) / x.std:+z.1f}",
             x.unit,
+            "" if not x.std else f"{number(x.moves, 2)} {units[x.shown_by]} at {names[x.shown_by]}",
         )
         for x in found.parameters
     ]
     columns = [("parameter", "left"), ("start", "right"), ("refined", "right"), ("std", "right")]
-    columns += [("moved by std", "right"), ("unit", "left")]
+    columns += [("moved by std", "right"), ("unit", "left"), ("std moves the motion by (RMS)", "left")]
     sections: Parts = [
         ("Measured against simulated motion", [block(motion(found))]),
         ("Parameters", [Grid("Parameters", columns, table)]),
@@ -141,6 +142,24 @@ def _moved(free: list[Any]) -> str:
     said = listed(f"{x.name} {number(x.start)} → {number(x.value)} {x.unit}".rstrip() for x in far[:6])
     more = f", and {len(far) - 6} more" if len(far) > 6 else ""
     return f"By more than {_FAR:g} standard deviations: {said}{more}."
+
+
+def _uncertain(found: Refinement) -> list[Part]:
+    """The parameter whose uncertainty moves the motion most, beside the errors that are there anyway."""
+    errors = found.after.rmse
+    free = [x for x in found.parameters if x.std]
+    if not free:
+        return []
+    worst = max(free, key=lambda x: x.moves / max(float(errors[x.shown_by]), 1e-300))
+    arm = found.plant.arm
+    unit, name = arm.coordinate_units[worst.shown_by], arm.coordinate_names[worst.shown_by]
+    return [
+        Text(
+            f"Most uncertain in the motion is {worst.name}: its standard deviation moves {name} by "
+            f"{number(worst.moves, 2)} {unit} (RMS), beside an error of {number(errors[worst.shown_by], 2)} "
+            f"{unit}."
+        )
+    ]
 
 
 def _joined(found: Refinement) -> tuple[Array, Array, Array]:

@@ -224,3 +224,24 @@ def test_limits_of_an_excitation_are_called_by_their_names(pages: Mapping[str, P
         said = page.locator("dl.answer").inner_text() + page.locator("table").last.inner_text()
     assert "motor speed of j3" in said
     assert not re.search(r"\bd*qm?\d\b", said)
+
+
+def test_what_is_uncertain_of_a_refinement_is_said_in_its_motion() -> None:
+    """By the motion simulated anew with a parameter that differs by its standard deviation."""
+    arm = mg.load_arms()["gravity_link2"]
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
+    noise = 1e-3 * np.random.default_rng(0).standard_normal(len(swing.t))
+    found = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0] + noise})
+    values = {x.name: x.value for x in found.parameters.values()}
+    for x in found.parameters.values():
+        if x.std is None:
+            continue
+        pair = [
+            mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0, parameters=values | {x.name: value})
+            for value in (x.value, x.value + x.std)
+        ]
+        moved = float(np.sqrt(np.mean((pair[1].q - pair[0].q) ** 2)))
+        assert x.moves == pytest.approx(moved, rel=0.05)
+        assert x.moves < 1e-3  # rad, the noise: so many samples tell more than one
+    page = found.files()["report.html"]
+    assert "Most uncertain in the motion is" in page

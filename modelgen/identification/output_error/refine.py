@@ -32,13 +32,19 @@ UNKEPT = 0.01  # of the cost: where a step promises more and brings less than th
 
 @dataclass(frozen=True)
 class Refined:
-    """A base parameter before and after; std None where it was held."""
+    """A base parameter before and after; std None where it was held.
+
+    moves: how far its standard deviation moves the simulated positions (RMS [rad, m]) of the coordinate
+    `shown_by` (from 0), at which it shows most beside the errors.
+    """
 
     name: str
     unit: str
     start: float
     value: float
     std: float | None
+    moves: float = 0.0
+    shown_by: int = 0
 
 
 @dataclass(frozen=True)
@@ -134,22 +140,25 @@ def refine(
             if progress is not None:
                 progress(rounds, cost)
     final = fit.linear(p, guesses)
-    std = final.deviations(final.weights())
+    weights = final.weights()
+    std = final.deviations(weights)
+    per_unit = np.sqrt((np.concatenate(final.columns) ** 2).mean(axis=0))  # (n, f)
+    shown = np.argmax(per_unit * weights[:, None], axis=0)
     runs = [fit.through(p, g, part) for g, part in zip(guesses, every, strict=True)]
     base = plant.model.grouping.base
-    found = tuple(
-        Refined(
-            b.name,
-            b.unit,
-            float(plant.parameters[k]),
-            float(p[k]),
-            float(std[chosen.index(k)]) if k in chosen else None,
-        )
-        for k, b in enumerate(base)
-    )
+    found = []
+    for k, b in enumerate(base):
+        start, value = float(plant.parameters[k]), float(p[k])
+        if k not in chosen:
+            found.append(Refined(b.name, b.unit, start, value, None))
+            continue
+        i = chosen.index(k)
+        j = int(shown[i])
+        moves = float(std[i] * per_unit[j, i])
+        found.append(Refined(b.name, b.unit, start, value, float(std[i]), moves, j))
     return Refinement(
         Plant(plant.slip, p, p),
-        found,
+        tuple(found),
         before,
         scored(every, runs),
         tuple(part.t for part in every),
