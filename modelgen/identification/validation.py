@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.dataset import Prepared
+from modelgen.dataset.processing.filters import row_autocorrelation
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
@@ -14,6 +15,8 @@ from modelgen.identification.objects import Validation
 from modelgen.identification.rows import Rows
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
+
+LAGS = 13  # rows after which filtered noise hangs together no more
 
 
 def validate(
@@ -85,4 +88,8 @@ def regression_of(
         whole = made.whole(w)
         effort.append(y - whole @ more if more.any() else y)
         columns.append(whole)
-    return Regression(effort, columns, [made.moving(p) for p in records])
+    chosen, rate = records[0].settings, 1.0 / records[0].record.step
+    white = None
+    if chosen.cutoff:
+        white = row_autocorrelation(chosen.cutoff, rate, chosen.order, chosen.stride, LAGS)
+    return Regression(effort, columns, [made.moving(p) for p in records], white)

@@ -22,14 +22,22 @@ ORDER = 12  # of the autoregressive models
 ROUNDS = 30  # of the iteration, at most
 CHANGE = 1e-3  # of the power, at which it ends
 FEW = 4.0  # degrees of freedom of a joint's noise, at least
+TOLD = 100  # rows of a joint, by fewer of which the colour of its noise is not known
+LEFT = 0.02  # of the noise's power, that a fit leaves at least
 MANY = 1000  # rows per parameter, beyond which the fit has taken nothing that counts
 
 
-def sandwich(columns: Sequence[Array], residuals: Sequence[Array], weights: Sequence[Array]) -> Array:
+def sandwich(
+    columns: Sequence[Array],
+    residuals: Sequence[Array],
+    weights: Sequence[Array],
+    white: Array | None = None,
+) -> Array:
     """Covariance (p, p) of the parameters.
 
     By record: columns (M, n, p), residuals (M, n), weights (M, n), zero where a row does not count.
-    Residuals of different joints count as independent.
+    Residuals of different joints count as independent. white: (lags,) autocorrelation that white noise of the
+    samples has in the rows, from lag 0; None: not known.
     """
     n, p = columns[0].shape[1:]
     x = [[c[:, j] * w[:, j, None] for c, w in zip(columns, weights, strict=True)] for j in range(n)]
@@ -45,8 +53,43 @@ def sandwich(columns: Sequence[Array], residuals: Sequence[Array], weights: Sequ
         before, noise = noise, [a + b for a, b in zip(seen, taken, strict=True)]
         if all(abs(a[0] - b[0]) <= CHANGE * a[0] for a, b in zip(noise, before, strict=True)):
             break
+    found = _covariance(x, noise, bread, count)
+    if white is None or min((number for number in count if number), default=TOLD) >= TOLD:
+        return found
+    # A fit that takes most of few rows leaves what lies beside the band that the filter passes.
+    other = np.diag(_covariance(x, _of_white(x, seen, bread, count, white), bread, count))
+    larger = np.sqrt(np.maximum(other / np.maximum(np.diag(found), 1e-300), 1.0))
+    return np.asarray(found * np.outer(larger, larger))
+
+
+def _covariance(
+    x: Sequence[Sequence[Array]], noise: Sequence[Array], bread: Array, count: Sequence[int]
+) -> Array:
     few = [r * _student(own, r, bread, number) for own, r, number in zip(x, noise, count, strict=True)]
     return np.asarray(bread @ _meat(x, few)[0] @ bread)
+
+
+def _of_white(
+    x: Sequence[Sequence[Array]],
+    seen: Sequence[Array],
+    bread: Array,
+    count: Sequence[int],
+    white: Array,
+) -> list[Array]:
+    """Autocovariances by joint of filtered white noise, of which the fit leaves as much as is seen."""
+    lags = [white[: max(1, min(len(white), number // 2))] for number in count]
+    power = [float(r[0]) for r in seen]
+    for _ in range(ROUNDS):
+        noise = [p * shape for p, shape in zip(power, lags, strict=True)]
+        taken = [float(lost[0]) for lost in _taken(x, noise, bread, count)]
+        before = power
+        power = [
+            p * float(r[0]) / max(p - lost, LEFT * p) if p > 0.0 else 0.0
+            for p, r, lost in zip(power, seen, taken, strict=True)
+        ]
+        if all(abs(a - b) <= CHANGE * a for a, b in zip(power, before, strict=True)):
+            break
+    return [p * shape for p, shape in zip(power, lags, strict=True)]
 
 
 def _student(own: Sequence[Array], r: Array, bread: Array, count: int) -> float:

@@ -80,11 +80,15 @@ class Solution:
 
 @dataclass(frozen=True)
 class Regression:
-    """Rows of several records. effort: (M, n) each; columns: (M, n, p); moving: (M, n), rows that count."""
+    """Rows of several records. effort: (M, n) each; columns: (M, n, p); moving: (M, n), rows that count.
+
+    white: (lags,) autocorrelation that white noise of the samples has in the rows; None: not known.
+    """
 
     effort: Sequence[Array]
     columns: Sequence[Array]
     moving: Sequence[NDArray[np.bool_]]
+    white: Array | None = None
 
     def solve(self, method: str = "wls") -> Solution:
         """By "ols", "wls" (weights from the residuals of each joint), "robust" (Huber's on top), or "gls".
@@ -190,7 +194,7 @@ class Regression:
     def _covariance(self, theta: Array, known: NDArray[np.bool_], weights: Sequence[Array]) -> Array:
         result = np.zeros((len(known), len(known)))
         columns = [c[:, :, known] for c in self.columns]
-        result[np.ix_(known, known)] = sandwich(columns, self.residuals(theta), weights)
+        result[np.ix_(known, known)] = sandwich(columns, self.residuals(theta), weights, self.white)
         return result
 
 

@@ -43,6 +43,15 @@ def reach(cutoff: float, rate: float, order: int, remainder: float) -> int:
     return math.ceil(math.log(remainder) / math.log(float(np.max(np.abs(poles)))))
 
 
+@lru_cache(maxsize=64)
+def row_autocorrelation(cutoff: float, rate: float, order: int, stride: float, lags: int) -> Array:
+    """Autocorrelation (lags,), from lag 0, of white noise through `low_pass`, at every `stride`-th sample."""
+    f = (np.arange(1 << 14) + 0.5) / (1 << 15)  # of the rate
+    power = (1.0 + (np.tan(np.pi * f) / np.tan(np.pi * cutoff / rate)) ** (2 * order)) ** -2.0
+    found = np.cos(2 * np.pi * np.outer(np.arange(lags) * stride, f)) @ power
+    return np.asarray(found / found[0])
+
+
 def differences(x: Array, step: float, half_width: int) -> tuple[Array, Array]:
     """First and second derivative of x (N, k) by central differences of order 2 half_width.
 
