@@ -188,6 +188,19 @@ def test_a_suspect_ends_the_naming_at_its_joint(joint: int, ended: bool) -> None
     assert [c.value for c in second.failed] == ([40.0] if ended else [])
 
 
+@pytest.mark.parametrize("guessed", [True, False])
+def test_a_law_whose_form_is_a_guess_ends_the_naming(guessed: bool) -> None:
+    """A fluid about an arm whose end nobody knows leaves what other laws follow."""
+    cause, _ = chosen(turn(OWN))
+    end = {"tip_x": 0.4, "tip_y": 0.0, "tip_z": 0.0} if guessed else {}
+    fluid = Candidate("fluid_drag", None, end)
+    first = replace(cause, trial=replace(cause.trial, candidate=fluid))
+    every = [Examined(one, (Check("undominated", True, True, 0.0, 15.0, ""),)) for one in (first, cause)]
+    drag, beside = ended_by_suspects(every)
+    assert not drag.failed
+    assert bool(beside.failed) == guessed
+
+
 @pytest.mark.parametrize(
     ("effect", "values", "possible"),
     [

@@ -96,33 +96,39 @@ def _complete(selection: Selection, equations: Equations) -> list[tuple[Check, C
 
 
 def ended_by_suspects(every: Sequence[Examined]) -> list[Examined]:
-    """The same where a suspect ends the naming at its joint: what is found beside it explains what it leaves.
-
-    every: in the order in which they were chosen.
+    """The same where a suspect ends the naming at its joint, and a law whose form is a guess at any: what is
+    found beside it explains what it leaves. every: in the order in which they were chosen.
     """
     found: list[Examined] = []
     suspects: dict[int | None, Cause] = {}
+    guess: Cause | None = None
     for one in every:
-        joint = one.cause.trial.candidate.joint
-        if joint is not None and joint in suspects and not one.failed:
-            checks = tuple(_behind(check, suspects[joint], one.cause) for check in one.checks)
+        c = one.cause.trial.candidate
+        before = guess if c.joint is None or c.joint not in suspects else suspects[c.joint]
+        if before is not None and not one.failed:
+            checks = tuple(_behind(check, before, one.cause, guess) for check in one.checks)
             found.append(replace(one, checks=checks))
             continue
         found.append(one)
         if one.failed:
-            suspects.setdefault(joint, one.cause)
+            suspects.setdefault(c.joint, one.cause)
+        elif c.definition.conditional(c.fixed):
+            guess = one.cause
     return found
 
 
-def _behind(check: Check, suspect: Cause, cause: Cause) -> Check:
-    """The check `undominated` of a cause that was taken beside a suspect of its joint."""
+def _behind(check: Check, before: Cause, cause: Cause, guess: Cause | None) -> Check:
+    """The check `undominated` of a cause that was chosen beside a suspect of its joint, or beside a guess."""
     if check.name != "undominated":
         return check
-    ahead = suspect.delta_bic - cause.delta_bic
+    ahead = before.delta_bic - cause.delta_bic
+    what, other = (
+        ("whose form is a guess", "guess") if before is guess else ("a suspect at its joint", "suspect")
+    )
     text = (
-        f"{suspect.trial.candidate.effect}, a suspect at its joint, is "
+        f"{before.trial.candidate.effect}, {what}, is "
         f"{number(abs(ahead))} {'ahead of' if ahead > 0.0 else 'behind'} it in delta BIC: what is found "
-        "beside a suspect explains what that leaves"
+        f"beside a {other} explains what that leaves"
     )
     return replace(check, passed=False, value=ahead, text=text)
 
