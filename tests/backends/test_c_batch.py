@@ -66,8 +66,21 @@ def batched(name: str, variant: str) -> Model:
     return replace(made, functions=few, batch=tuple(f.name for f in few))
 
 
+_written: dict[tuple[str, str], Path] = {}
+
+
+def written(name: str, variant: str, folders: pytest.TempPathFactory) -> Path:
+    """Folder of an arm's files, which no test changes."""
+    if (name, variant) not in _written:
+        folder = folders.mktemp(f"{name}-{variant}")
+        write(c_files(batched(name, variant), PROVENANCE), folder)
+        _written[name, variant] = folder
+    return _written[name, variant]
+
+
+@cache
 def library(folder: Path, name: str, real: str, width: int, *more: str) -> ctypes.CDLL:
-    out = folder / f"{real}{width}.so"
+    out = folder / f"{real}{width}{''.join(more)}.so"
     macros = [f"-D{name.upper()}_REAL={real}", f"-D{name.upper()}_LANE_BYTES={width}"]
     flags = [
         "-O0",
@@ -137,15 +150,16 @@ def spoilt(f: Function, given: list[np.ndarray], k: int) -> list[np.ndarray]:
 
 @vectors
 @pytest.mark.parametrize(("name", "variant"), KINDS)
-def test_every_state_has_what_the_function_gives(name: str, variant: str, tmp_path: Path) -> None:
-    made = batched(name, variant)
-    write(c_files(made, PROVENANCE), tmp_path)
+def test_every_state_has_what_the_function_gives(
+    name: str, variant: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    made, folder = batched(name, variant), written(name, variant, tmp_path_factory)
     rng = np.random.default_rng(3)
     builds = [("double", 32)]
     if (name, variant) == ("two_fingers", "default"):
         builds += [("double", 64), ("double", 16), ("double", 0), ("float", 32)]
     for real, width in builds:
-        built = library(tmp_path, name, real, width)
+        built = library(folder, name, real, width)
         for f in made.functions:
             called = Called(built, name, f, {"double": "float64", "float": "float32"}[real])
             for n in COUNTS if (real, width) == ("double", 32) else COUNTS[-1:]:
@@ -176,11 +190,11 @@ def _compare(called: Called, states: list[list[np.ndarray]], wrong: list[int], a
 
 
 @vectors
-def test_parameters_that_cannot_be_used_are_every_states(tmp_path: Path) -> None:
-    made = batched("ariane4", "default")
-    write(c_files(made, PROVENANCE), tmp_path)
+@pytest.mark.xdist_group("ariane4")
+def test_parameters_that_cannot_be_used_are_every_states(tmp_path_factory: pytest.TempPathFactory) -> None:
+    made, folder = batched("ariane4", "default"), written("ariane4", "default", tmp_path_factory)
     (f,) = [f for f in made.functions if f.name == "gravity"]
-    called = Called(library(tmp_path, "ariane4", "double", 32), "ariane4", f, "float64")
+    called = Called(library(folder, "ariane4", "double", 32), "ariane4", f, "float64")
     states = [inputs(made, f, np.random.default_rng(1)) for _ in range(9)]
     parameters = states[0][1]
     parameters[3] = np.nan
@@ -188,17 +202,17 @@ def test_parameters_that_cannot_be_used_are_every_states(tmp_path: Path) -> None
     assert returned == 4
     assert (status == 4).all()
     assert not found.any()
-    trusting = library(tmp_path, "ariane4", "double", 64, "-DARIANE4_PARAMETERS_CHECKED")
+    trusting = library(folder, "ariane4", "double", 64, "-DARIANE4_PARAMETERS_CHECKED")
     parameters[3] = 0.0
     assert Called(trusting, "ariane4", f, "float64").all(states)[0] == 0
 
 
-def test_a_state_that_is_wrong_leaves_its_neighbours(tmp_path: Path) -> None:
+@pytest.mark.xdist_group("two_fingers")
+def test_a_state_that_is_wrong_leaves_its_neighbours(tmp_path_factory: pytest.TempPathFactory) -> None:
     """In a block of four, what a vanishing pivot divides by is not what the other states divide by."""
-    made = batched("two_fingers", "default")
-    write(c_files(made, PROVENANCE), tmp_path)
+    made, folder = batched("two_fingers", "default"), written("two_fingers", "default", tmp_path_factory)
     (f,) = [f for f in made.functions if f.name == "forward_dynamics_standard"]
-    called = Called(library(tmp_path, "two_fingers", "double", 32), "two_fingers", f, "float64")
+    called = Called(library(folder, "two_fingers", "double", 32), "two_fingers", f, "float64")
     states = [inputs(made, f, np.random.default_rng(1)) for _ in range(8)]
     states[0][-1][:] = 0.0  # nothing has mass, in any state
     returned, status, found = called.all(states)
