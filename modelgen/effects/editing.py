@@ -11,6 +11,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from modelgen.description import Arm
 from modelgen.effects.placement import Found, admitted, extended_arm
+from modelgen.errors import InputError
 
 __all__ = ["Found", "extended_arm", "extended_yaml", "with_torque_constants"]
 
@@ -57,7 +58,12 @@ def with_torque_constants(arm: Arm, values: Mapping[int, float]) -> str:
 
 
 def _read(arm: Arm) -> tuple[CommentedMap, CommentedMap]:
-    """The description, and the arm's part of it."""
+    """The description, and the arm's part of it. Raises InputError for an arm that has none."""
+    if not arm.document:
+        raise InputError(
+            f"{arm.name}: found an arm without the text of a description, into which what is found is "
+            "written; expected one that load_arms has read"
+        )
     whole = _yaml().load(arm.document)
     return whole, whole["arms"][arm.name]
 

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from modelgen.description import load
+from modelgen.description import Arm, Joint, load
 from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
+from modelgen.errors import InputError
 
 TEXT = """schema: 1
 convention: khalil_kleinfinger
@@ -30,3 +31,8 @@ def test_a_list_of_effects_that_joints_share(tmp_path: Path, joint: int) -> None
     found = [[use.name for use in j.effects] for j in again.joints]
     plain = ["viscous_friction", "coulomb_friction"]
     assert found == [[*plain, "spring"] if n == joint else plain for n in (1, 2, 3)]
+
+
+def test_an_arm_without_a_description_has_nowhere_to_write_it() -> None:
+    with pytest.raises(InputError, match=r"arm without the text of a description.*load_arms"):
+        extended_yaml(Arm("bare", (Joint("j1", "revolute"),), (None,)), [("spring", 1, {"stiffness": 1.0})])
