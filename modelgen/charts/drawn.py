@@ -8,7 +8,7 @@ import numpy as np
 
 from modelgen.charts.chart import Chart
 from modelgen.charts.paths import dots, line
-from modelgen.charts.ticks import ticks, written
+from modelgen.charts.ticks import anchored, ticks, written
 from modelgen.numeric import Array
 
 WIDTH, HEIGHT = 440, 220
@@ -48,9 +48,7 @@ def drawn(chart: Chart, size: tuple[int, int] = (WIDTH, HEIGHT)) -> str:
     for value, word in zip(*_ticks(chart, x0, x1, 6), strict=True):
         at = left + float(across(np.array(value)))
         parts.append(f'<path class="grid" d="M{at:.1f} {_TOP}v{high}"/>')
-        parts.append(
-            f'<text class="tick" x="{at:.1f}" y="{_TOP + high + 15}" text-anchor="middle">{word}</text>'
-        )
+        parts.append(f'<text class="tick" {anchored(at, word, width)} y="{_TOP + high + 15}">{word}</text>')
     parts.append("</g>")
     parts.append(f'<svg x="{left}" y="{_TOP}" width="{wide}" height="{high}"><g class="curves">')
     for band in chart.bands:

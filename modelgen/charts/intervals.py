@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from modelgen.charts.ticks import ticks, written
+from modelgen.charts.ticks import anchored, ticks, written
 
 WIDTH = 440
 _LINE, _TOP, _BOTTOM = 19, 6, 40
@@ -50,9 +50,8 @@ def intervals(rows: Sequence[Interval], x_label: str, text: str) -> str:
     for value, word in zip(places, written(places), strict=True):
         strong = " zero" if abs(value) < 1e-9 * (high - low) else ""
         parts.append(f'<path class="grid{strong}" d="M{across(value):.1f} {_TOP}V{bottom}"/>')
-        parts.append(
-            f'<text class="tick" x="{across(value):.1f}" y="{bottom + 15}" text-anchor="middle">{word}</text>'
-        )
+        place = anchored(across(value), word, WIDTH)
+        parts.append(f'<text class="tick" {place} y="{bottom + 15}">{word}</text>')
     for k, r in enumerate(rows):
         y = _TOP + _LINE * (k + 0.5)
         parts.append(

@@ -6,6 +6,7 @@ import math
 
 _LEAST = 3  # ticks of an axis
 _WIDER = 2.0  # than asked for a step may be
+_DIGIT = 7.0  # px, of a digit at the most
 _LARGE, _SMALL = 1e5, 1e-4  # beyond which numbers are written with an exponent
 
 
@@ -31,6 +32,14 @@ def written(values: list[float]) -> list[str]:
         return [f"{0.0 if abs(v) < 0.5 * step else v:.3g}" for v in values]
     digits = max(0, -math.floor(math.log10(step) + 1e-9))
     return [f"{0.0 if abs(v) < 0.5 * step else v:.{digits}f}" for v in values]
+
+
+def anchored(at: float, word: str, width: float) -> str:
+    """Attributes x and text-anchor of a number under its tick, inside a picture of this width [px]."""
+    half = 0.5 * _DIGIT * len(word)
+    if at + half > width:
+        return f'x="{width:g}" text-anchor="end"'
+    return 'x="0" text-anchor="start"' if at < half else f'x="{at:.1f}" text-anchor="middle"'
 
 
 def number(value: float, digits: int = 3) -> str:

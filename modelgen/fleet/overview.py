@@ -72,7 +72,7 @@ class Bars(Part):
         most = max((total for _, _, total in self.rows), default=1)
         bars = [
             {
-                "label": Markup(escape(label).replace("_", "_<wbr>")),  # where a long name may break
+                "label": escape(label).replace("_", Markup("_<wbr>")),  # where a long name may break
                 "pieces": [
                     {"look": look, "width": f"{_WIDEST * count / most:z.4g}%", "text": f"{word}: {count}"}
                     for word, count, look in pieces

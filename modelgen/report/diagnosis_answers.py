@@ -12,7 +12,7 @@ from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects.placement import titled
 from modelgen.report.cause_parts import failed, found, marks
-from modelgen.report.diagnosis_sentences import harms, interval, missing, remains, worth
+from modelgen.report.diagnosis_sentences import harmful, harms, interval, missing, remains, worth
 from modelgen.report.following import following
 from modelgen.report.page import Command, Folded, Grid, Part, Run, Section, Text
 from modelgen.report.words import joint_name, listed, sentence
@@ -114,7 +114,9 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
         before = [(joint_name(d.arm, j), number(x)) for j, x in enumerate(d.errors.before, 1)]
         yield Text(_NOTHING)
         yield Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), before, beside=True)
-    how = "; intervals from a block bootstrap" if d.causes else ""
+    known = bool(np.isfinite(d.errors.low).any())
+    how = "; intervals from a block bootstrap" if known else "; the record is too short for intervals"
+    how = how if d.causes else ""
     measured = _ERRORS[d.test.prepared.input is None]
     yield Text(
         f"{measured} on the test record, which nothing of the choice or the fit has seen{how}.", "quiet"
@@ -125,8 +127,7 @@ def _warned(d: Diagnosis) -> Iterator[Part]:
     """Warnings about causes that make the test record worse; of several their names alone, unless asked."""
     texts = [Text([Run(text, "strong")]) for text in harms(d)]
     if len(texts) > 1:
-        worse = [c for c in d.causes if c.share.high < 0.0]
-        yield Folded(f"The error on the test record is larger with {_names(d, worse)}", texts)
+        yield Folded(f"The error on the test record is larger with {_names(d, harmful(d))}", texts)
     else:
         yield from texts
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.charts import number
+from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE, Family
@@ -64,6 +65,9 @@ def worth(d: Diagnosis) -> str:
     return said + (f"; that record does not confirm {listed(names)}" if names else "")
 
 
+_MARKED = 1.0  # %, of harm that no interval says to be more than chance
+
+
 def interval(low: float, high: float, around: str = "{}") -> str:
     """Of a gain [%], put into `around`; empty where the test record is too short for one."""
     return "" if np.isnan(low) else around.format(f"{low:z.1f} to {high:z.1f}")
@@ -71,13 +75,18 @@ def interval(low: float, high: float, around: str = "{}") -> str:
 
 def harms(d: Diagnosis) -> list[str]:
     """Warnings about causes that make the test record worse."""
+    short = "it is too short for an interval"
     return [
         f"With {titled(d.arm, c.effect, c.joint)} the error on the test record is {-c.share.gain:z.1f} % "
-        f"larger ({interval(-c.share.high, -c.share.low)} %): what was found does not carry over to that "
-        f"record.{CATALOGUE[c.effect].caveat}"
-        for c in d.causes
-        if c.share.high < 0.0
+        f"larger ({interval(-c.share.high, -c.share.low, '{} %') or short}): what was found does not carry "
+        f"over to that record.{CATALOGUE[c.effect].caveat}"
+        for c in harmful(d)
     ]
+
+
+def harmful(d: Diagnosis) -> list[NamedCause]:
+    """Causes that make the test record worse, by their interval or, where it is too short for one, at all."""
+    return [c for c in d.causes if c.share.high < 0.0 or (np.isnan(c.share.high) and c.share.gain < -_MARKED)]
 
 
 def remains(d: Diagnosis) -> str:

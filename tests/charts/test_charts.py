@@ -104,6 +104,20 @@ def test_words_stand_inside_their_picture_and_outside_the_curves(span: tuple[flo
         assert 7.0 * len(word) <= float(x) < left
 
 
+@pytest.mark.parametrize("most", [10.0, 20_000.0, 0.0002])
+def test_numbers_below_a_picture_stand_inside_it(most: float) -> None:
+    """The last one under an axis of positions in motor units, say; a letter is seven pixels wide, or less."""
+    t = np.linspace(0.0, most, 50)
+    bars = [Interval("x", most, 0.0, most)]
+    for svg in (drawn(chart(t, np.sin(t))), intervals(bars, "effort [A]", "parameters")):
+        wide = float(re.findall(r'viewBox="0 0 ([\d.]+)', svg)[0])
+        found = re.findall(r'<text class="tick" x="([\d.]+)" text-anchor="(\w+)" y="[^"]*">([^<]*)<', svg)
+        assert len(found) >= 3
+        for x, anchor, word in found:
+            before = {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * 7.0 * len(word)
+            assert before <= float(x) <= wide - 7.0 * len(word) + before
+
+
 def test_a_sheet_is_one_picture_with_a_legend_and_the_same_again() -> None:
     t = np.linspace(0.0, 1.0, 20)
     one = Chart(

@@ -348,6 +348,14 @@ def test_a_cluster_that_is_not_reached_leaves_nothing(file: Path, tmp_path: Path
     assert not (tmp_path / "out").exists()
 
 
+def test_names_of_effects_are_read_as_they_are() -> None:
+    named = {"causes": ["load_dependent_friction"], "joints": [1], "joint_names": ["j1"]}
+    named["ambiguous_with"] = [[]]
+    text = overview([{"unit": "u", "arm": "a", "verdict": "named", **named}])
+    assert "&lt;wbr&gt;" not in text
+    assert "load_<wbr>dependent_<wbr>friction" in text
+
+
 def test_words_of_a_log_are_no_markup() -> None:
     text = overview([{"unit": "u", "arm": "a", "error": "<script>alert(1)</script> & more"}])
     assert "<script>alert" not in text

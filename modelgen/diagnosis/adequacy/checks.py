@@ -137,11 +137,12 @@ def confirmed(gain: float, low: float) -> Check:
     """Whether a cause lowers the error on the test record. gain, low: its share and the lower bound [%]."""
     asked = bool(np.isfinite(low))
     text = "the test record cannot tell what it is worth there"
-    if asked:
-        text = (
-            f"{abs(gain):.1f} % {'less' if gain >= 0.0 else 'more'} error on the test record with it, "
-            f"{low:z.1f} % less at the lower end of the 95 % interval; more than 0 % less confirms it"
-        )
+    if np.isfinite(gain):
+        end = "which is too short for an interval"
+        if asked:
+            end = f"{low:z.1f} % less at the lower end of the 95 % interval; more than 0 % less confirms it"
+        sense = "less" if gain >= 0.0 else "more"
+        text = f"{abs(gain):.1f} % {sense} error on the test record with it, {end}"
     return Check("confirmed", low > 0.0 if asked else None, False, low, 0.0, text)
 
 
