@@ -50,6 +50,7 @@ _MOTION = (
 _PARAMETERS = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"))
 _RECORDS = (("record", "left"), ("use", "left"), ("samples", "right"), ("rate [Hz]", "right"))
 _BEGINS = ("begins (UTC)", "left")
+_UNDATED = "Their stamps do not count from 1970, and do not say when they were made."
 
 
 def pictures(d: Diagnosis) -> dict[str, str]:
@@ -185,7 +186,7 @@ def _records(d: Diagnosis) -> Grid:
     every = (*d.log.train, *d.log.test)
     rows = [(r["name"], r["use"], str(r["samples"]), f"{r['rate']:g}") for r in d.log.to_json()["records"]]
     if all(x.begins is None for x in every):
-        return Grid("Records", _RECORDS, rows)
+        return Grid(f"Records. {_UNDATED}", _RECORDS, rows)
     dated = [(*row, _instant(x.begins)) for row, x in zip(rows, every, strict=True)]
     return Grid("Records", (*_RECORDS, _BEGINS), dated)
 

@@ -178,6 +178,7 @@ def test_ten_causes_leave_all_four_answers_on_the_first_screen(found: Diagnosis,
 def test_the_files_say_when_their_records_began(found: Diagnosis) -> None:
     """1 700 000 000 s after the beginning of 1970; no column where no stamp says so."""
     assert "begins (UTC)" not in report(found)
+    assert "do not say when they were made" in report(found)
     first, *others = found.log.train
     dated = replace(found.log, train=(replace(first, begins=1_700_000_000.9), *others))
     said = report(replace(found, log=dated))

@@ -152,7 +152,7 @@ class NonlinearViscousFriction(Friction):
     finding = "friction in {drive} does not grow in proportion to the speed"
     reference = "Grotjahn, Daemi and Heimann 2001; Wolf and Iskandar 2018"
     varies = (ViscousFriction,)
-    linear = (Parameter("coefficient", "{f}", "friction at the speed `scale`", "FN", bounds=ANY),)
+    linear = (Parameter("coefficient", "{f}", "friction at the speed of its scale", "FN", bounds=ANY),)
     nonlinear = (
         Parameter(
             "exponent",
