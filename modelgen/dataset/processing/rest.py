@@ -65,6 +65,8 @@ def weights(flags: np.ndarray, settings: Chosen, rate: float) -> Array:
     if flags.all():
         return np.ones(flags.shape)
     half = round(0.5 * rate * settings.edge)
+    if not half:
+        return flags.astype(np.float64)
     window = np.hanning(2 * half + 3)[1:-1, None]
     inside = ndimage.binary_erosion(flags, np.ones((2 * half + 1, 1)), border_value=1)
     return np.asarray(ndimage.convolve(inside.astype(np.float64), window / window.sum(), mode="nearest"))

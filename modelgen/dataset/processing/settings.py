@@ -129,15 +129,17 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
     if trim is None:
         lowest = min((f for f in (cutoff, position) if f), default=np.inf)
         trim = limits.trimmed_cutoff_periods / lowest + settings.half_width * first.step
-    gates, light = settings.rest_gate, replace(settings, position_cutoff=position)
+    light = (position, settings.position_order, settings.half_width)
+    moved = [smoothed(r.q, r.step, *light)[1:] for r in several]
+    gates = settings.rest_gate
     if gates is None:
-        found = [chosen_gates(r, light) for r in several]
+        found = [chosen_gates(r, speed, limits) for r, (speed, _) in zip(several, moved, strict=True)]
         gates = tuple(max(column) for column in zip(*found, strict=True))
     elif isinstance(gates, float | int):
         gates = (float(gates),) * first.n
     if len(gates) != first.n:
         raise InputError(f"{first.name}: found {len(gates)} rest thresholds, expected one or {first.n}")
-    noise = [noise_of(r, light) for r in several]
+    noise = [noise_of(r, a, light, limits) for r, (_, a) in zip(several, moved, strict=True)]
     noisy = bool(np.max([n.accelerations for n in noise]) > limits.max_acceleration_noise)
     time = settings.rest_time
     if time is None:
@@ -168,14 +170,10 @@ def _check(record: Record, cutoff: float, position_cutoff: float) -> None:
             )
 
 
-def chosen_gates(record: Record, settings: Settings) -> tuple[float, ...]:
-    """Speeds [rad/s, m/s] below which the joints are at rest: 1 % of their high speeds, and all of their
-    speeds where they have a few readings alone.
-
-    settings: whose filter of the positions, which is chosen, and differences make the speeds.
+def chosen_gates(record: Record, speed: Array, limits: DatasetThresholds) -> tuple[float, ...]:
+    """Speeds [rad/s, m/s] below which the joints are at rest: 1 % of their high speeds (N, n), and all of
+    their speeds where they have a few readings alone.
     """
-    limits = settings.thresholds
-    _, speed, _ = smoothed(record.q, record.step, *_light(settings))
     high = np.quantile(np.abs(speed), 0.99, axis=0)
     still = [len(np.unique(q)) <= limits.max_readings_at_rest for q in record.q.T]
     gate = limits.rest_speed
@@ -192,24 +190,20 @@ class Noise:
     accelerations: Array
 
 
-def noise_of(record: Record, settings: Settings) -> Noise:
+def noise_of(record: Record, ddq: Array, light: tuple[float, int, int], limits: DatasetThresholds) -> Noise:
     """What the noise of a record's positions makes of their derivatives, white noise (Bennett 1948).
 
     Of their accelerations that is all that their spectrum shows; of speeds near zero the rounding alone,
-    since jitter of the stamps, say, is noise of a joint that moves. settings: as of `chosen_gates`.
+    since jitter of the stamps, say, is noise of a joint that moves. ddq: accelerations (N, n), as `smoothed`
+    makes them of the positions; light: cut-off [Hz], order and half-width by which it does.
     """
     impulse = np.zeros((len(record.t), 1))
     impulse[len(impulse) // 2] = 1.0
-    _, speed, acceleration = smoothed(impulse, record.step, *_light(settings))
+    _, speed, acceleration = smoothed(impulse, record.step, *light)
     rounding = position_steps(record) / math.sqrt(12.0)
     deviations = np.maximum(rounding, [white_noise(q, 1.0 / record.step) for q in record.q.T])
-    _, _, logged = smoothed(record.q, record.step, *_light(settings))
-    power = np.maximum(np.mean(logged**2, axis=0), 1e-300)
+    power = np.maximum(np.mean(ddq**2, axis=0), 1e-300)
     return Noise(
-        settings.thresholds.direction_deviations * np.linalg.norm(speed) * rounding,
+        limits.direction_deviations * np.linalg.norm(speed) * rounding,
         (np.linalg.norm(acceleration) * deviations) ** 2 / power,
     )
-
-
-def _light(settings: Settings) -> tuple[float, int, int]:
-    return settings.position_cutoff or 0.0, settings.position_order, settings.half_width

@@ -48,48 +48,46 @@ class FreeForm:
 def free_forms(
     selection: Selection, equations: Equations, terms: Mapping[int, Worth]
 ) -> dict[int | None, FreeForm]:
-    """Find, for each joint with causes, the free function that is ahead of them by most.
+    """Find, for each joint with causes, the free function that is ahead of them by most, and for it and the
+    whole arm by how much their own laws are with a size at every joint.
 
     Asked for all causes of a joint together; a cause whose law is the first terms of a series counts with the
     function that the series would come to. Not of elastic joints and play, whose own laws are none of the
-    joint's motion, of causes of the whole arm, or of free motions. terms: by joint, see `further_terms`.
+    joint's motion, or of free motions. terms: by joint, see `further_terms`.
     """
     if equations.free:
         return {}
     limits = equations.thresholds.adequacy
+    most = 0.0 if selection.system.noise_known else limits.max_free_form_ahead
     found: dict[int | None, FreeForm] = {}
-    if any(c.trial.candidate.joint is None for c in selection.causes):
-        found |= {None: _apart(None, selection, equations)}
-    for joint in sorted({c.trial.candidate.joint or 0 for c in selection.causes} - {0}):
+    for joint in {c.trial.candidate.joint: None for c in selection.causes}:
         own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
         if any(t.candidate.elastic for t in own):
             continue
         others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
         without = system_of(equations, others, selection.system)
+        found[joint] = _apart(own, without)
+        if joint is None:
+            continue
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
             rest = max(rest, terms[joint].evidence)
-        known = selection.system.noise_known
-        most = 0.0 if known else limits.max_free_form_ahead
         shapes = [*functions_of(joint - 1, equations), spots(joint - 1, equations)]
-        one = FreeForm(ahead(shapes, own, without) - rest, most)
-        other = _apart(joint, selection, equations)
-        found[joint] = max(one, other, key=lambda form: form.ahead - form.most)
+        free = FreeForm(ahead(shapes, own, without) - rest, most)
+        found[joint] = max(free, found[joint], key=lambda form: form.ahead - form.most)
     return found
 
 
-def _apart(joint: int | None, selection: Selection, equations: Equations) -> FreeForm:
-    """Delta BIC by which the causes of a joint, or of the whole arm, are ahead of themselves with a size of
-    their own at each joint that they act on. Those that do so by the law of a fluid, of which arms differ, or
-    by what is a guess, keep one size.
+def _apart(own: Sequence[FittedCandidate], without: System) -> FreeForm:
+    """Delta BIC by which causes are ahead of themselves with a size of their own at each joint that they act
+    on. Those that do so by the law of a fluid, of which arms differ, or by what is a guess, keep one size.
+
+    own: of a joint, or of the whole arm; without: the system of the others.
     """
-    most = equations.thresholds.adequacy.max_free_form_ahead
-    own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
+    most = without.equations.thresholds.adequacy.max_free_form_ahead
     columns = [_by_joint(t) for t in own]
     if all(split is t.columns for split, t in zip(columns, own, strict=True)):
         return FreeForm(-np.inf, most, apart=True)
-    others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
-    without = system_of(equations, others, selection.system)
     beside = [np.concatenate(tables, axis=2) for tables in zip(*columns, strict=True)]
     gain = without.fair.gain(beside, float(sum(len(t.values) for t in own)), ())
     alone = together(own, without, fair=True)

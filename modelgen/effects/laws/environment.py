@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import sympy as sp
 
-from modelgen.description.objects import Arm
+from modelgen.description.objects import Arm, Joint
 from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter, Point, Values, at
 from modelgen.effects.traits import Added, Family, Numbers, Presence, Reading, Seen
 from modelgen.effects.variables import PointVariables
@@ -86,8 +86,12 @@ def _guessed_end(arm: Arm) -> float:
     """Length [m] of the longest link, where no end is known; 0 where some are, or no link has a length."""
     if any(known for _, known in _ends(arm)):
         return 0.0
-    moved = [j for j in arm.joints if j.antecedent is not None]
-    return max((math.hypot(*(value_of(x, arm.symbols) for x in (j.d, j.r, j.b))) for j in moved), default=0.0)
+    return max((_away(arm, j) for j in arm.joints if j.antecedent is not None), default=0.0)
+
+
+def _away(arm: Arm, joint: Joint) -> float:
+    """Distance [m] of a joint's frame from its antecedent's."""
+    return math.hypot(*(value_of(x, arm.symbols) for x in (joint.d, joint.r, joint.b)))
 
 
 class FluidDrag(Strips):
@@ -272,8 +276,7 @@ def _reach(arm: Arm) -> float:
     """Distance from the last joint within which a payload may be [m]: twice the arm's length up to there, for
     a description ends at the last joint; any where that is 0.
     """
-    lengths = [math.hypot(*(value_of(x, arm.symbols) for x in (j.d, j.r, j.b))) for j in arm.joints]
-    return 2.0 * sum(lengths)
+    return 2.0 * sum(_away(arm, joint) for joint in arm.joints)
 
 
 def _turn(axis: str) -> Parameter:
