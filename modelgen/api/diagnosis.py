@@ -23,6 +23,7 @@ from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
+from modelgen.report.call import Call, given
 from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, interval, suspicions
 from modelgen.report.experiment import followed
 from modelgen.report.words import joint_name, place_of, sized
@@ -36,6 +37,8 @@ class Diagnosis(Shown):
     ----------
     found : modelgen.diagnosis.result.Diagnosis
         What the diagnosis gives back.
+    call : modelgen.report.call.Call, optional
+        How it was asked for, which the commands on the page need.
 
     Attributes
     ----------
@@ -53,8 +56,8 @@ class Diagnosis(Shown):
         Base parameters (p,) of the extended arm by name: value, std, unit.
     """
 
-    def __init__(self, found: Found) -> None:
-        self.found = found
+    def __init__(self, found: Found, call: Call | None = None) -> None:
+        self.found, self.call = found, call or Call(found.arm)
         self.arm: Arm = found.arm
         self.verdict, self.reason = found.verdict, found.reason
         self.causes: tuple[NamedCause, ...] = found.causes
@@ -85,7 +88,8 @@ class Diagnosis(Shown):
         ----------
         folder : Path or str
             It gets diagnosis.json, report.html with its pictures, <arm>_extended.yaml with the values of its
-            parameters in <arm>_parameters.yaml, and the extended model's code in `generated`.
+            parameters in <arm>_parameters.yaml, and the extended model's code in `generated`; where causes
+            make the test record worse, <arm>_reduced.yaml without them.
         code : bool
             False leaves the code out.
 
@@ -94,7 +98,7 @@ class Diagnosis(Shown):
         InputError
             Where the folder cannot be written.
         """
-        write(self.found, Path(folder), code=code)
+        write(self.found, Path(folder), code=code, call=self.call)
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and tables of `modelgen diagnose`.
@@ -213,7 +217,7 @@ def diagnosed(
         effects=wanted,
         where=Where(options.processes),
     )
-    return Diagnosis(found)
+    return Diagnosis(found, given(arm, train, test, options))
 
 
 def _place(text: str) -> tuple[str, int | None]:

@@ -43,7 +43,8 @@ def done(job: Job) -> Row:
         try:
             made_of = fingerprint(unit)
             d = _diagnosed(unit)
-            write(d.found, new, code=job.code, called=folder(Path(job.called or job.out), unit.name))
+            called = folder(Path(job.called or job.out), unit.name)
+            write(d.found, new, code=job.code, called=called, call=d.call)
             row |= _found(d)
             row["report"] = f"units/{unit.name}/report.html"
         except InputError as error:

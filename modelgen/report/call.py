@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +69,16 @@ class Call:
         records = [*_repeated("--train", self.train), "--test", self.test[0]]
         return self.command("diagnose", *records, *self.kept(), "--out", self.beside("diagnosis"))
 
+    def identifying(self, out: str, description: str, cutoff: float) -> str:
+        """The command that fits a description to the same records in a band [Hz]; empty where they are no
+        files.
+        """
+        if not self.train:
+            return ""
+        records = [*_repeated("--train", self.train), *_repeated("--test", self.test)]
+        kept = [*words_of(self.options, ("mapping", "period")), "--cutoff", f"{cutoff:.6g}"]
+        return self.command("identify", *records, *kept, "--out", self.beside(out), description=description)
+
     def exciting(self, out: str, speeds: Sequence[float] = (), description: str | None = None) -> str:
         """The command for a motion that determines the parameters; empty where the arm lacks limits.
 
@@ -89,6 +100,14 @@ def command(name: str, path: Path | str | None, arm: str, *words: str) -> str:
     """A command of modelgen for an arm of a description, to be typed as it stands. words: further ones."""
     named = ["--arm", arm] if arm else []
     return shlex.join(["modelgen", name, *([str(path)] if path else []), *named, *words])
+
+
+def given(arm: Arm, train: Sequence[Any], test: Sequence[Any], options: Any) -> Call:
+    """How a result was asked for, with its logs as they were given; without them where one is no file."""
+    every = [*train, *test]
+    if not all(isinstance(log, str | PathLike) for log in every) or not files_of(map(fspath, every)):
+        return Call(arm, options=options)
+    return Call(arm, tuple(map(fspath, train)), tuple(map(fspath, test)), options)
 
 
 def files_of(names: Iterable[str]) -> tuple[str, ...]:

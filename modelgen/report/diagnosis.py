@@ -9,6 +9,7 @@ from pathlib import Path
 
 from modelgen.charts import sheet
 from modelgen.diagnosis.result import Diagnosis
+from modelgen.report.call import Call
 from modelgen.report.cause_parts import about, law_found, suspected
 from modelgen.report.diagnosis_answers import answers, by_worth
 from modelgen.report.diagnosis_figures import efforts, replayed, residuals
@@ -60,9 +61,12 @@ def pictures(d: Diagnosis) -> dict[str, str]:
     return {"effort.svg": sheet(efforts(d), 2), "residuals.svg": sheet(rows, len(_SHEET))}
 
 
-def report(d: Diagnosis, folder: Path | None = None) -> str:
-    """HTML that needs nothing beside it. folder: that it is written into, as modelgen was given it."""
-    asked = answers(d, folder or Path())
+def report(d: Diagnosis, folder: Path | None = None, call: Call | None = None) -> str:
+    """HTML that needs nothing beside it.
+
+    folder: that it is written into, as modelgen was given it. call: how the diagnosis was asked for.
+    """
+    asked = answers(d, replace(call or Call(d.arm), folder=folder or Path()))
     return page(f"{d.arm.name}: what its model lacks", "Diagnosis", asked, list(_sections(d)))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 import numpy as np
 
@@ -11,10 +10,11 @@ from modelgen.charts import number
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects.placement import titled
+from modelgen.report.call import Call
 from modelgen.report.cause_parts import failed, found, marks
-from modelgen.report.diagnosis_sentences import harmful, harms, interval, missing, remains, worth
+from modelgen.report.diagnosis_sentences import doubted, harmful, harms, interval, missing, remains, worth
 from modelgen.report.following import following
-from modelgen.report.page import Command, Folded, Grid, Part, Run, Section, Text
+from modelgen.report.page import Checks, Command, Folded, Grid, Part, Run, Section, Text
 from modelgen.report.words import joint_name, listed, sentence
 
 # By whether the test record is a free motion.
@@ -27,13 +27,13 @@ _SHOWN = 4  # causes in full: more would leave the other answers no place on the
 _SUSPECTS = 2  # in full, where nothing is named
 
 
-def answers(d: Diagnosis, folder: Path) -> list[Section]:
-    """The four questions with their answers. folder: of the report, as modelgen was given it."""
+def answers(d: Diagnosis, call: Call) -> list[Section]:
+    """The four questions with their answers. call: how they were asked, with the folder of the report."""
     return [
         Section("What is missing", list(_missing(d))),
         Section("How sure", list(_sure(d))),
         Section("What it is worth", list(_worth(d))),
-        Section("What to do next", list(_next(d, folder))),
+        Section("What to do next", list(_next(d, call))),
     ]
 
 
@@ -47,8 +47,7 @@ def _missing(d: Diagnosis) -> Iterator[Part]:
     said = [Text([Run(texts[k], "strong"), Run(" "), _linked(d.causes[k].effect)]) for k in order]
     yield from said[:_SHOWN]
     if said[_SHOWN:]:
-        others = [d.causes[k] for k in order[_SHOWN:]]
-        yield Folded(f"And {len(others)} more: {_names(d, others)}", said[_SHOWN:])
+        yield Folded(f"And {len(said) - _SHOWN} more", said[_SHOWN:])
 
 
 def by_worth(d: Diagnosis) -> list[int]:
@@ -66,12 +65,21 @@ def _names(d: Diagnosis, causes: Sequence[NamedCause]) -> str:
 
 
 def _sure(d: Diagnosis) -> Iterator[Part]:
-    checks = [[Text(titled(d.arm, c.effect, c.joint)), marks(c, f"cause{k}")] for k, c in enumerate(d.causes)]
-    if len(checks) == 1:
-        yield checks[0][1]
-    elif checks:
-        yield Text(_passed(d.causes))
-        yield Folded("The checks of each cause", [part for k in by_worth(d) for part in checks[k]])
+    if len(d.causes) == 1:
+        yield marks(d.causes[0], "cause0")
+    elif d.causes:
+        rows = [
+            (
+                titled(d.arm, d.causes[k].effect, d.causes[k].joint),
+                f"#cause{k}",
+                marks(d.causes[k], f"mark{k}"),
+            )
+            for k in by_worth(d)
+        ]
+        yield Checks("Checks of each cause", rows)
+        yield Text([Run(_passed(d.causes)), *_doubted(d)])
+    if len(d.causes) == 1 and doubted(d):
+        yield Text(_doubted(d))
     suspects = [_suspect(d, k) for k in range(len(d.suspects))]
     shown = 0 if d.causes else _SUSPECTS
     for parts in suspects[:shown]:
@@ -80,15 +88,22 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
         title = "And suspected too" if shown else "Suspected, and not named"
         names = _names(d, d.suspects[shown:])
         yield Folded(f"{title}: {names}", [part for parts in suspects[shown:] for part in parts])
-    yield Text(f"{_reason(d)} {remains(d)}", "quiet") if d.causes else Text(remains(d))
+    yield Text(f"{_beside(d)} {remains(d)}".strip(), "quiet") if d.causes else Text(remains(d))
+
+
+def _beside(d: Diagnosis) -> str:
+    """The reason without that the checks are passed, which the marks say; empty where it says no more."""
+    more = d.reason.partition("; ")[2]
+    return sentence(more) if more else ""
 
 
 def _passed(causes: Sequence[NamedCause]) -> str:
-    """What holds of the checks of all causes."""
-    lost = [x.name for c in causes for x in c.checks if not x.decides and x.passed is False]
-    counts = [f"{name} failed for {lost.count(name)}" for name in dict.fromkeys(lost)]
-    said = f"All {len(causes)} causes passed every check that decides."
-    return f"{said} Of the checks that decide nothing, {listed(counts)}." if counts else said
+    others = dict.fromkeys(c.name for cause in causes for c in cause.checks if not c.decides)
+    return f"All {len(causes)} passed the checks that decide; {listed(others)} decide nothing. "
+
+
+def _doubted(d: Diagnosis) -> list[Run]:
+    return [Run(" ".join(doubted(d)), "strong")]
 
 
 def _suspect(d: Diagnosis, k: int) -> list[Part]:
@@ -132,8 +147,8 @@ def _warned(d: Diagnosis) -> Iterator[Part]:
         yield from texts
 
 
-def _next(d: Diagnosis, folder: Path) -> Iterator[Part]:
-    steps = following(d, folder)
+def _next(d: Diagnosis, call: Call) -> Iterator[Part]:
+    steps = following(d, call)
     alone = [Text(step.text) for step in steps if not step.command]
     for step in steps:
         if step.command:

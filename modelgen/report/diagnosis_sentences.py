@@ -40,7 +40,7 @@ def headline(d: Diagnosis) -> str:
     """The verdict in one sentence with what it is worth, or with its reason."""
     if d.verdict == "named":
         names = listed(titled(d.arm, c.effect, c.joint) for c in d.causes)
-        return f"The model lacks {names}: {worth(d)}."
+        return " ".join([f"The model lacks {names}: {worth(d)}.", *doubted(d)])
     return f"{unnamed(d)} {sentence(d.reason)}"
 
 
@@ -60,9 +60,7 @@ def worth(d: Diagnosis) -> str:
         said = f"the test record is predicted no better{joints}"
     if e.gain[worst] <= -_VISIBLE:
         said += f", {-e.gain[worst]:z.1f} % more at {joint_name(d.arm, worst + 1)}"
-    doubted = [c for c in d.causes if any(k.name == "confirmed" and k.passed is False for k in c.checks)]
-    names = [titled(d.arm, c.effect, c.joint) for c in doubted]
-    return said + (f"; that record does not confirm {listed(names)}" if names else "")
+    return said
 
 
 _MARKED = 1.0  # %, of harm that no interval says to be more than chance
@@ -87,6 +85,24 @@ def harms(d: Diagnosis) -> list[str]:
 def harmful(d: Diagnosis) -> list[NamedCause]:
     """Causes that make the test record worse, by their interval or, where it is too short for one, at all."""
     return [c for c in d.causes if c.share.high < 0.0 or (np.isnan(c.share.high) and c.share.gain < -_MARKED)]
+
+
+def doubted(d: Diagnosis) -> list[str]:
+    """The causes that failed a check that decides nothing, or harm the test record, a sentence a kind."""
+    worse = harmful(d)
+    unconfirmed = [c for c in _failing(d, "confirmed") if not any(c is w for w in worse)]
+    kinds = (
+        ("The test record is predicted worse with {}.", worse),
+        ("The test record does not confirm {}.", unconfirmed),
+        ("Not stable, the training records differ in its size: {}.", _failing(d, "stable")),
+    )
+    return [
+        text.format(listed(titled(d.arm, c.effect, c.joint) for c in lost)) for text, lost in kinds if lost
+    ]
+
+
+def _failing(d: Diagnosis, name: str) -> list[NamedCause]:
+    return [c for c in d.causes if any(k.name == name and k.passed is False for k in c.checks)]
 
 
 def remains(d: Diagnosis) -> str:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
-from modelgen.effects.placement import titled
+from modelgen.effects.placement import Found, titled
 from modelgen.report.call import WHERE, Call
+from modelgen.report.diagnosis_sentences import harmful
 from modelgen.report.experiment import followed
 from modelgen.report.words import listed, place_of
 
+# What is without the causes that make the test record worse: a description, a folder beside the page.
+REDUCED = "reduced"
 _BETTER_LOGS = "Record a motion that moves every joint over its range, several periods in a row."
 
 
@@ -26,15 +28,12 @@ class Step:
     command: str = ""
 
 
-def following(d: Diagnosis, folder: Path) -> list[Step]:
-    """Steps, the first one first. folder: of the report, as modelgen was given it."""
-    name, call = d.arm.name, Call(d.arm, folder=folder)
-    description = call.beside(f"{name}_extended.yaml")
-    values = "--parameters", call.beside(f"{name}_parameters.yaml")
-    code = call.command("generate", *values, description=description)
+def following(d: Diagnosis, call: Call) -> list[Step]:
+    """Steps, the first one first. call: how the diagnosis was asked for, with the folder of its report."""
+    code = _generating(d, call, call.beside(f"{d.arm.name}_extended.yaml"))
     steps = []
     if d.verdict == "named":
-        steps.append(Step(f"Generate the code of the extended model, {WHERE}:", code))
+        steps += carried(d, call) or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
     elif d.verdict == "nothing_missing":
         text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
         steps.append(Step(text, code))
@@ -55,6 +54,41 @@ def following(d: Diagnosis, folder: Path) -> list[Step]:
             if CATALOGUE[effect].experiment
         ]
     return steps
+
+
+def carried(d: Diagnosis, call: Call) -> list[Step]:
+    """Steps to a model without the causes that make the test record worse; none where no cause does."""
+    worse = harmful(d)
+    if not worse:
+        return []
+    names = listed(titled(d.arm, c.effect, c.joint) for c in worse)
+    reduced = reduced_name(d)
+    description = call.beside(reduced) if reduced else call.description
+    what = f"{reduced}, the description without {names}" if reduced else f"the description, without {names}"
+    fit = call.identifying(REDUCED, description, float(d.settings["cutoff_hz"]))
+    if not fit:
+        return [Step(f"Fit {what}, to the records by modelgen identify, and generate its code.")]
+    return [
+        Step(f"Fit {what}, to the records, {WHERE}:", fit),
+        Step("Then generate its code:", _generating(d, call, description, REDUCED)),
+    ]
+
+
+def reduced_name(d: Diagnosis) -> str:
+    """File of the description with all causes but those that harm; empty where there is none."""
+    return f"{d.arm.name}_{REDUCED}.yaml" if 0 < len(harmful(d)) < len(d.causes) else ""
+
+
+def reduced_causes(d: Diagnosis) -> list[Found]:
+    """What the description is extended by, without the causes that harm the test record."""
+    worse = [(c.effect, c.joint) for c in harmful(d)]
+    return [found for found in d.added if found[:2] not in worse]
+
+
+def _generating(d: Diagnosis, call: Call, description: str, folder: str = "") -> str:
+    """The command for the code of a description, with the parameters in a folder beside the page."""
+    values = call.beside(f"{folder}/{d.arm.name}_parameters.yaml".lstrip("/"))
+    return call.command("generate", "--parameters", values, description=description)
 
 
 def _wherever(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> str:

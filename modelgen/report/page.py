@@ -10,6 +10,7 @@ from markupsafe import Markup
 from modelgen.charts import Interval, intervals
 from modelgen.report.parts import (
     Block,
+    Checks,
     Command,
     Folded,
     Grid,
@@ -29,6 +30,7 @@ from modelgen.version import __version__
 
 __all__ = [
     "Block",
+    "Checks",
     "Command",
     "Folded",
     "Grid",

@@ -143,19 +143,28 @@ class Marks(Part):
 
     def values(self) -> Mapping[str, Any]:
         """For the template."""
-        signs = {"yes": "✓", "no": "✗", "unasked": "–"}
-        marks = [
-            {
-                "look": look,
-                "sign": signs[look],
-                "name": name,
-                "answer": _ANSWERS[look],
-                "text": text,
-                "anchor": f"{self.key}-{k}",
-            }
-            for k, (look, name, text) in enumerate(self.marks, 1)
+        return {"marks": _signed(self.key, self.marks)}
+
+
+@dataclass(frozen=True)
+class Checks(Part):
+    """Answers of the same checks of several things: a row of marks for each, a column for each check.
+
+    rows: text, target of its link, and marks.
+    """
+
+    kind: ClassVar[str] = "checks"
+    caption: str
+    rows: Sequence[tuple[str, str, Marks]]
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        rows = [
+            {"text": text, "target": target, "marks": _signed(marks.key, marks.marks)}
+            for text, target, marks in self.rows
         ]
-        return {"marks": marks}
+        heads = [name for _, name, _ in self.rows[0][2].marks]
+        return {"caption": self.caption, "heads": heads, "rows": rows}
 
 
 @dataclass(frozen=True)
@@ -171,6 +180,21 @@ class Folded(Part):
         """For the template."""
         look = "section screen" if self.screen else "section"
         return {"title": self.title, "parts": html(self.parts), "look": look}
+
+
+def _signed(key: str, marks: Sequence[tuple[str, str, str]]) -> list[dict[str, str]]:
+    signs = {"yes": "✓", "no": "✗", "unasked": "–"}
+    return [
+        {
+            "look": look,
+            "sign": signs[look],
+            "name": name,
+            "answer": _ANSWERS[look],
+            "text": text,
+            "anchor": f"{key}-{k}",
+        }
+        for k, (look, name, text) in enumerate(marks, 1)
+    ]
 
 
 def html(parts: Sequence[Part | str]) -> list[Markup]:

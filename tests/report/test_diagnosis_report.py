@@ -19,10 +19,11 @@ from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import titled
+from modelgen.report.call import Call
 from modelgen.report.diagnosis import report
 from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import binned, efforts, replayed, residuals
-from modelgen.report.diagnosis_sentences import remains, worth
+from modelgen.report.diagnosis_sentences import doubted, headline, remains, worth
 from modelgen.report.law_figures import judged_joint, law_charts
 from modelgen.report.page import page
 from modelgen.report.words import finding, sentence
@@ -141,12 +142,13 @@ def of_seven_joints(d: Diagnosis) -> Diagnosis:
 
 
 def test_ten_causes_leave_all_four_answers_on_the_first_screen(found: Diagnosis, tmp_path: Path) -> None:
-    """The four of most worth stand there in full, that of most worth first; the others are named, and shown
-    on demand and on paper.
+    """The four of most worth stand there in full, that of most worth first, the others on demand and on
+    paper; every one has its row of marks.
     """
     d, path = ten(found), tmp_path / "report.html"
     wide = of_seven_joints(d)
-    pages = report(d), page("seven: what its model lacks", "Diagnosis", answers(wide, Path("diagnosis")), [])
+    asked = answers(wide, Call(wide.arm, folder=Path("diagnosis")))
+    pages = report(d), page("seven: what its model lacks", "Diagnosis", asked, [])
     for of, text in zip((d, wide), pages, strict=True):
         sentences = [sentence(finding(of.arm, c.effect, c.joint, c.parameters)) for c in of.causes][::-1]
         path.write_text(text, encoding="utf-8")
@@ -160,8 +162,15 @@ def test_ten_causes_leave_all_four_answers_on_the_first_screen(found: Diagnosis,
             shown = first.locator("dd > p")
             assert [t.split(".")[0] for t in shown.all_inner_texts()] == [s[:-1] for s in sentences[:4]]
             others = first.locator("details")
-            for c in of.causes[:6]:
-                assert titled(of.arm, c.effect, c.joint) in others.locator("summary").inner_text()
+            rows = window.locator("dl.answer .checks tbody tr")
+            assert [r.locator("th").inner_text() for r in rows.all()] == [
+                titled(of.arm, c.effect, c.joint) for c in of.causes[::-1]
+            ]
+            for row, c in zip(rows.all(), of.causes[::-1], strict=True):
+                signs = row.locator("td button > span:first-child")
+                assert all(sign.is_visible() for sign in signs.all())
+                passed = [{True: "✓", False: "✗", None: "–"}[check.passed] for check in c.checks]
+                assert signs.all_inner_texts() == passed
             folded = others.locator("p")
             assert folded.count() == 6
             assert not any(p.is_visible() for p in folded.all())
@@ -171,8 +180,68 @@ def test_ten_causes_leave_all_four_answers_on_the_first_screen(found: Diagnosis,
             assert not folded.first.is_visible()
             window.evaluate("dispatchEvent(new Event('beforeprint'))")
             assert all(p.is_visible() for p in window.locator("dl.answer p, dl.answer ul.marks").all())
-            assert window.locator("dl.answer ul.marks").count() == 12
+            assert window.locator("dl.answer ul.marks").count() == 2  # of the suspects
             assert violations(window) == []
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_marks_of_many_causes_are_rows_on_a_phone_too(scheme: str, found: Diagnosis, tmp_path: Path) -> None:
+    """What fails has its name beside its sign; all have their figures on focus."""
+    d, path = ten(found), tmp_path / "report.html"
+    path.write_text(report(d), encoding="utf-8")
+    with opened(path, 400, scheme) as window:
+        assert wider(window) == 0
+        rows = window.locator("dl.answer .checks tbody tr")
+        assert rows.count() == len(d.causes)
+        for row, c in zip(rows.all(), d.causes[::-1], strict=True):
+            failed = [check.name for check in c.checks if check.passed is False]
+            assert [name.inner_text().strip() for name in row.locator(".no .name").all()] == failed
+        cell = rows.first.locator("td").first
+        assert not cell.locator(".tip").is_visible()
+        cell.locator("button").focus()
+        assert cell.locator(".tip").is_visible()
+        box = cell.locator(".tip").bounding_box()
+        assert box is not None
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= 400
+        assert violations(window) == []
+
+
+def test_the_table_of_errors_needs_no_scrolling_on_a_phone(found: Diagnosis, tmp_path: Path) -> None:
+    """Each interval stands below its value there, of numbers as wide as they become."""
+    d, path = of_seven_joints(found), tmp_path / "report.html"
+    errors = replace(d.errors, low=np.full(7, -100.4), high=np.full(7, 100.4))
+    asked = answers(replace(d, errors=errors), Call(d.arm))
+    path.write_text(page("seven: what its model lacks", "Diagnosis", asked, []), encoding="utf-8")
+    with opened(path, 400) as window:
+        table = window.get_by_role("region", name="Error on the test record by joint")
+        assert table.evaluate("t => t.scrollWidth - t.clientWidth") == 0
+        for cell in table.locator("tbody td:last-child").all():
+            value, interval = cell.bounding_box(), cell.locator("small").bounding_box()
+            assert value is not None
+            assert interval is not None
+            assert interval["y"] > value["y"] + 10
+            assert interval["x"] + interval["width"] <= 400
+
+
+def test_what_fails_a_reported_check_is_named(found: Diagnosis) -> None:
+    """Beside "passed": by name, for each check that decides nothing, and what harms the test record."""
+    d = ten(found)
+    names = [titled(d.arm, c.effect, c.joint) for c in d.causes]
+    assert doubted(replace(d, causes=d.causes[:2])) == []
+    (unconfirmed,) = doubted(d)  # every third
+    assert [name in unconfirmed for name in names] == [k % 3 == 0 for k in range(1, 11)]
+    checks = tuple(replace(c, passed=False) if c.name == "stable" else c for c in d.causes[1].checks)
+    harm = replace(d.causes[2], share=replace(d.causes[2].share, gain=-9.0, low=-12.0, high=-6.0))
+    mixed = replace(d, causes=(d.causes[0], replace(d.causes[1], checks=checks), harm))
+    worse, unstable = doubted(mixed)
+    assert names[2] in worse
+    assert "worse" in worse
+    assert names[1] in unstable
+    assert "stable" in unstable
+    for text in (worse, unstable):
+        assert escape(text) in report(mixed)
+        assert text in headline(mixed)
 
 
 def test_the_files_say_when_their_records_began(found: Diagnosis) -> None:

@@ -16,6 +16,7 @@ from diagnosis_support import record
 from typer.main import get_command
 
 import modelgen as mg
+from modelgen.api.diagnosis import Diagnosis
 from modelgen.calibration.lever import lever_of
 from modelgen.cli.app import app
 from modelgen.options import DiagnosisOptions, ExcitationOptions, words_of
@@ -112,6 +113,49 @@ def test_what_identify_and_diagnose_propose_runs_as_it_is_copied(bench: Path) ->
         header = (bench / folder / "bench" / "include" / "bench.h").read_text(encoding="utf-8")
         sizes.append(int(re.findall(r"BENCH_N_PARAMETERS\b\D*(\d+)", header)[0]))
     assert sizes[1] == sizes[0] + 1  # the offset
+
+
+def test_a_cause_that_harms_the_test_record_is_left_out_of_what_is_proposed(bench: Path) -> None:
+    """A description has the others alone; where there are none, the arm as described is fitted."""
+    logs = [f"logs of may/{name}.csv" for name in ("one", "two", "test")]
+    with chdir(bench):
+        arm = mg.load_arms("my arm.yaml")["bench"]
+        asked = {"mapping": "columns.yaml", "cutoff": 7.5, "effects": ("friction_offset",)}
+        d = mg.diagnose(arm, logs[:2], logs[2], experiment=False, processes=1, **asked)
+    (cause,) = d.causes
+    harm = replace(cause, share=replace(cause.share, gain=-9.0, low=-12.0, high=-6.0))
+    other, added = replace(harm, joint=1), d.found.added[-1]
+    cases = (
+        (
+            "beside others",
+            (cause, other),
+            (*d.found.added, (added[0], 1, added[2])),
+            "beside others/bench_reduced.yaml",
+        ),
+        ("alone", (harm,), d.found.added, "my arm.yaml"),
+    )
+    for folder, causes, effects, description in cases:
+        found = replace(d.found, causes=causes, laws=d.found.laws * len(causes), added=effects)
+        with chdir(bench):
+            Diagnosis(found, d.call).write(folder, code=False)
+        identify, generate = commands(bench / folder / "report.html")
+        values = parsed(identify, bench)
+        assert (identify[0], values["train"], values["test"]) == ("identify", logs[:2], logs[2:])
+        assert (values["mapping"], values["cutoff"]) == (Path("columns.yaml"), 7.5)
+        assert identify[1] == generate[1] == description
+        run(identify, bench)
+        run([*generate, "--out", f"{folder}/code"], bench)
+        assert (bench / folder / "code" / "bench" / "include" / "bench.h").is_file()
+    assert not (bench / "alone" / "bench_reduced.yaml").exists()
+    reduced = mg.load_arms(bench / "beside others" / "bench_reduced.yaml")["bench"]
+    assert [[u.name for u in j.effects].count("friction_offset") for j in reduced.joints] == [0, 1]
+    both = mg.load_arms(bench / "beside others" / "bench_extended.yaml")["bench"]
+    assert [[u.name for u in j.effects].count("friction_offset") for j in both.joints] == [1, 1]
+    with chdir(bench):  # of a diagnosis without harm nothing remains of the one before
+        d.write("beside others", code=False)
+    assert not (bench / "beside others" / "bench_reduced.yaml").exists()
+    first, *_ = commands(bench / "beside others" / "report.html")
+    assert first[:2] == ["generate", "beside others/bench_extended.yaml"]
 
 
 def test_an_arm_without_limits_gets_those_of_its_records(bench: Path) -> None:

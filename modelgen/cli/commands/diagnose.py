@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -36,6 +37,7 @@ def diagnose(
     from modelgen.files import check_folder
     from modelgen.generation.folders import check_output
     from modelgen.report.call import command
+    from modelgen.report.following import carried
 
     found = one(arms, arm)
     check_folder("--out", out)
@@ -47,6 +49,8 @@ def diagnose(
     print_result(result, as_json=as_json)
     if not as_json:
         typer.echo(f"report: {out / 'report.html'}")
+        for step in carried(result.found, replace(result.call, folder=out)):
+            typer.echo(step.text if not step.command else f"{step.text} {step.command}")
     if not as_json and result.causes:
         extended = out / f"{found.name}_extended.yaml"
         values = ["--parameters", str(out / f"{found.name}_parameters.yaml")]
