@@ -72,6 +72,8 @@ class Record:
         Samples in a period of the motion, as the log that this is a part of shows it; None: to be looked for.
     cut_off : ndarray of bool, optional
         Samples (N, n) at which an effort is cut off; None: to be read off the efforts.
+    jump : str
+        Where a position of the log jumps as no motion does, and what to do; empty where none does.
 
     Attributes
     ----------
@@ -112,6 +114,7 @@ class Record:
     begins: float | None = None
     period: float | None = None
     cut_off: NDArray[np.bool_] | None = None
+    jump: str = ""
 
     @property
     def n(self) -> int:

@@ -95,6 +95,12 @@ class DatasetThresholds(Group):
         "A reading farther from the cubic through the four beside it is lone, and read as they say.",
         "no position of the example logs has one; an encoder's bit that is read wrongly is larger",
     )
+    jump: float = entry(
+        6.0,
+        "of the 90 % quantile",
+        "A position that jumps by so many times its usual steps, and those beside, is refused.",
+        "no position of the example logs jumps by 4; an encoder that starts anew does by far more",
+    )
     lone_effort: float = entry(
         0.01, "of the range", "An effort that is less far from them stays as it is.", _GUARD
     )

@@ -17,7 +17,7 @@ import numpy as np
 
 from modelgen.dataset import Prepared, Record, Settings, choose, drives_of, prepare
 from modelgen.dataset.processing.filters import advanced
-from modelgen.dataset.processing.instants import EffortInstant, fitting, with_hold
+from modelgen.dataset.processing.instants import EffortInstant, beyond, fitting, with_hold
 from modelgen.dataset.processing.rounding import position_steps
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
@@ -28,7 +28,7 @@ from modelgen.functions.options import prepared as reduced
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
-STEPS = 10  # of Gauss and Newton, at most
+STEPS = 20  # of Gauss and Newton, at most
 LONGEST = 2.0  # samples, of a step
 SETTLED = 0.02  # samples, or this part of the deviation, at which they end
 ELEMENTS = 25_000_000  # of the regressor at full rate, beyond which the beginnings of the records do
@@ -53,9 +53,10 @@ def effort_instant(
     found = _delay(records, arm, limits)
     if found is None:
         return known
-    delay, std, alike = found
+    delay, std, alike, joints = found
     fits = fitting(delay, std, first.step, limits) if alike else None
-    said = EffortInstant(known.hold, known.known, known.step, delay, std, fits, alike)
+    late = tuple((name, d) for name, d, s in joints if beyond(d, s, first.hold / first.step))
+    said = EffortInstant(known.hold, known.known, known.step, delay, std, fits, alike, late)
     if fits is None or known.known or fits == known.hold:
         return said
     return EffortInstant(fits, "data", known.step, delay, std, fits)
@@ -70,8 +71,10 @@ def at_instants(records: Sequence[Record], found: EffortInstant | None) -> list[
 
 def _delay(
     records: Sequence[Record], arm: Arm, limits: DatasetThresholds
-) -> tuple[float, float, bool] | None:
-    """Common delay and its deviation [samples], and whether the joints agree; None where there is none."""
+) -> tuple[float, float, bool, list[tuple[str, float, float]]] | None:
+    """Common delay and its deviation [samples], whether the joints agree, and name, delay and deviation of
+    each that tells; None where there is none.
+    """
     chosen = Options().evaluated
     model, evaluator = build_model(arm, chosen), Evaluator(reduced(arm, chosen))
     n, p = records[0].n, len(model.grouping.base)
@@ -96,7 +99,9 @@ def _delay(
         return None
     common, std = _common(delays, deviations)
     apart = np.maximum(APART * deviations, ALIKE)
-    return common, std, bool((np.abs(delays - common) <= apart)[told].all())
+    names = np.array(arm.coordinate_names)[told].tolist()
+    joints = list(zip(names, delays[told].tolist(), deviations[told].tolist(), strict=True))
+    return common, std, bool((np.abs(delays - common) <= apart)[told].all()), joints
 
 
 def _common(delays: Array, deviations: Array) -> tuple[float, float]:

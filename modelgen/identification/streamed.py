@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, Stream, prepare
+from modelgen.dataset.reading.jumps import check_jumps
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
@@ -118,6 +119,7 @@ class _Blocks:
                 number += 1
                 if number % step:
                     continue
+                check_jumps([record])
                 p = prepare(record, stream.settings)
                 effort, columns = self.rows.of(p, zero)
                 yield number, (effort, columns, self.rows.moving(p))

@@ -28,6 +28,7 @@ from modelgen.dataset.inspection import RecordsInspected, inspect_records
 from modelgen.dataset.processing.content import check_coarse
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.dataset.processing.sequence import in_sequence
+from modelgen.dataset.reading.jumps import check_jumps
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
@@ -158,6 +159,7 @@ def _whole(
         if o.folds is None:
             one, two = split(training[0])
             training, testing = [one], [two]
+    check_jumps([*training, *testing])
     payloads = _payloads(o.payload, [*train, *test])
     asked = _settings(o)(1 / training[0].step)
     periods = [period_of(x, None) for x in training]
@@ -198,6 +200,8 @@ def _whole(
     found = identified(fitted, held)
     if options == Options():
         found = replace(found, doubts=_doubts(fitted, found, evaluator))
+    if instant is not None:
+        found = replace(found, doubts=(*found.doubts, *instant.questions()))
     points = [log for k, log in enumerate([*train, *test]) if len(payloads.get(k, ())) == 1]
     if points:
         found = replace(found, doubts=(*found.doubts, _at_the_origin(points)))
@@ -289,6 +293,7 @@ def _streamed(
     streams = [first, *(Stream(spec, arm, chosen, o.mapping) for spec in train[1:])]
     instant = effort_instant([first.beginning], arm)
     tests = at_instants([read(spec, arm, o.mapping) for spec in test], instant)
+    check_jumps(tests)
     if instant is not None and instant.known == "data":
         streams = [stream.at_instants(instant.hold) for stream in streams]
     testing = in_sequence([prepare(record, chosen) for record in tests])
@@ -303,6 +308,8 @@ def _streamed(
         physical=o.consistent,
         progress=lambda done, total: progress(doing, done, total),
     )
+    if instant is not None:
+        found = replace(found, doubts=(*found.doubts, *instant.questions()))
     found = with_noise(found, options, testing, False)
     heads = [next(iter(stream)) for stream in streams]
     samples = [stream.samples for stream in streams]

@@ -25,6 +25,7 @@ from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.processing.sequence import in_sequence
 from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Survey
+from modelgen.dataset.reading.jumps import jumps
 from modelgen.dataset.reading.lone import without_lone
 from modelgen.dataset.reading.plausible import check_efforts
 from modelgen.dataset.reading.repeats import refresh_of
@@ -169,6 +170,7 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "outlying_effort": (50.0, efforts(np.inf, 30.0, 0.0005)),
         "min_lone_samples": (5000, wrong_readings),
         "lone_reading": (1e30, wrong_readings),
+        "jump": (1e3, jumping),
         "lone_effort": (1.0, wrong_readings),
         "misread_efforts": (0.15, efforts(2.0, 10.0, 0.1)),
         "milliampere_readings": (1.5, efforts(0.1)),
@@ -226,6 +228,12 @@ def wrong_readings(limits: DatasetThresholds) -> Any:
     table = np.column_stack([t, np.sin(t), np.cos(t)])
     table[[150, 250], [1, 2]] += 0.1
     return without_lone("log", table, {1: "q1"}, {2: "i1"}, limits)[1]
+
+
+def jumping(limits: DatasetThresholds) -> Any:
+    """A position that jumps by thirty of its usual steps."""
+    t = STEP * np.arange(2000.0)
+    return len(jumps(t, np.sin(t) + 30 * STEP * (t > t[700]), limits)[0])
 
 
 def efforts(limit: float, high: float = 1.0, share: float = 1.0) -> Seen:

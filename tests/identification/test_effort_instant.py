@@ -137,6 +137,32 @@ def test_a_delay_of_several_samples_stays_in_the_log(arm: mg.Arm) -> None:
     assert found["data"] == "beyond_a_sample"
 
 
+@pytest.mark.parametrize("late", [-12, 7])
+def test_efforts_far_from_their_positions_are_asked_about_and_the_hold_that_is_named_mends_them(
+    late: int, arm: mg.Arm, tmp_path: Path
+) -> None:
+    truth = mg.build_model(arm).nominal
+    train, test = (log(arm, late * STEP, seed, noise=0.02) for seed in (1, 2))
+    found = mg.identify(arm, train, test)
+    assert found.to_json()["log"]["effort_instant"]["data"] == "beyond_a_sample"
+    (asked,) = (x for x in found.to_json()["doubts"] if "older than" in x)
+    assert ("efforts" if late < 0 else "positions") in asked.split(" are ")[0]
+    hold = asked.split("`")[1].removeprefix("hold: ")
+    assert float(hold) == pytest.approx(late * STEP, abs=0.5 * STEP)
+    mended = mg.identify(arm, train, test, mapping=stating(hold, tmp_path))
+    assert not [x for x in mended.to_json()["doubts"] if "older than" in x]
+    assert mended.to_json()["log"]["effort_instant"]["data"] == "agree"
+    for name, e in mended.parameters.items():
+        assert abs(e.value - truth[name]) < 5 * e.std, name
+
+
+def test_one_joint_far_from_its_positions_is_named(arm: mg.Arm) -> None:
+    train, test = (log(arm, "following", seed, late=-9.0) for seed in (1, 2))
+    (asked,) = (x for x in mg.identify(arm, train, test).to_json()["doubts"] if "older than" in x)
+    assert asked.startswith(f"The efforts at {arm.coordinate_names[1]} are")
+    assert "hold" not in asked
+
+
 def test_what_noise_hides_is_said_to_be_hidden(arm: mg.Arm) -> None:
     result = mg.identify(arm, log(arm, "instant", 1, noise=3.0), log(arm, "instant", 2, noise=3.0))
     about = result.to_json()["log"]["effort_instant"]

@@ -8,6 +8,8 @@ from typing import Any
 from modelgen.dataset.objects import Record
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 
+CLEARLY = 5.0  # deviations by which a delay is beyond a sample
+
 # Sampling periods by which what an effort's sample stands for lies after the position's stamp.
 CONVENTIONS = {"following": 0.5, "instant": 0.0, "previous": -0.5}
 
@@ -19,7 +21,8 @@ class EffortInstant:
     hold: as used, one of CONVENTIONS or a delay [s]. known: what says so: "mapping", "readings", "data", or
     nothing, where it is the default. delay, std: of the efforts' samples after the positions' stamps as the
     data have it [sampling periods]; None where they do not say. fits: what that is, a convention or a delay
-    [s]; None where the data cannot tell. step: sampling period [s]. alike: whether the joints agree.
+    [s]; None where the data cannot tell. step: sampling period [s]. alike: whether the joints agree. late:
+    names of joints whose efforts are clearly more than a sample away from what is used, each with its delay.
     """
 
     hold: str | float
@@ -29,6 +32,7 @@ class EffortInstant:
     std: float | None = None
     fits: str | float | None = None
     alike: bool = True
+    late: tuple[tuple[str, float], ...] = ()
 
     @property
     def answer(self) -> str:
@@ -37,9 +41,18 @@ class EffortInstant:
             return "found"
         if self.fits is not None:
             return "agree" if agrees(self) else "disagree"
-        if self.std is None or self.std > USUAL.max_instant_std:
+        if self._beyond_and_so():
+            return "agree"
+        if self.std is None or (self.std > USUAL.max_instant_std and not self.late):
             return "cannot_tell"
         return "beyond_a_sample" if self.alike else "joints_differ"
+
+    def _beyond_and_so(self) -> bool:
+        """Whether a stated delay that is no convention is what the data say, to a part of a sample."""
+        if self.delay is None or self.std is None or isinstance(self.hold, str) or not self.alike:
+            return False
+        off = abs(self.delay - self.hold / self.step)
+        return self.std < 0.5 and off <= _tolerance(self.std, USUAL)
 
     def to_json(self) -> dict[str, Any]:
         """`log.effort_instant` of identification.json and diagnosis.json."""
@@ -52,9 +65,29 @@ class EffortInstant:
             "data": self.answer,
         }
 
+    def questions(self) -> tuple[str, ...]:
+        """A question for efforts that are clearly late or early, of all joints together where they agree."""
+        if self.answer not in ("beyond_a_sample", "joints_differ") or not self.late:
+            return ()
+        groups = [(", ".join(name for name, _ in self.late), self.delay)] if self.alike else self.late
+        said = []
+        for names, delay in groups:
+            assert delay is not None
+            old, young = ("efforts", "positions") if delay < 0 else ("positions", "efforts")
+            how = f"; `hold: {delay * self.step:.4g}` in a mapping file reads them so" if self.alike else ""
+            said.append(
+                f"The {old} at {names} are {abs(delay) * self.step * 1e3:.3g} ms ({abs(delay):.2g} samples) "
+                f"older than the {young} beside them: are they filtered, or sent late? Parameters may be "
+                f"wrong by that{how}."
+            )
+        return tuple(said)
+
     def line(self) -> str:
         """One line on it."""
-        said = _WORDS[self.hold] if isinstance(self.hold, str) else f"{self.hold * 1e3:.4g} ms after it"
+        if isinstance(self.hold, str):
+            said = _WORDS[self.hold]
+        else:
+            said = f"{abs(self.hold) * 1e3:.4g} ms {'before' if self.hold < 0 else 'after'} it"
         text = f"the effort counts as {'read ' if not isinstance(self.hold, str) else ''}{said}"
         measured = "" if self.delay is None else f"{self.delay:.2f} ± {self.std:.2g} samples after it"
         source = {"mapping": ", as the mapping says", "readings": ": it is new where the position is"}
@@ -101,6 +134,11 @@ def fitting(delay: float, std: float, step: float, limits: DatasetThresholds = U
     if apart <= _tolerance(std, limits):
         return name
     return delay * step if abs(delay - CONVENTIONS["following"]) <= 1.0 + std else None
+
+
+def beyond(delay: float, std: float, used: float) -> bool:
+    """Whether a delay is clearly more than a sample from the one used, all in sampling periods."""
+    return abs(delay - used) - 1.0 > CLEARLY * std
 
 
 def with_hold(record: Record, hold: str | float) -> Record:

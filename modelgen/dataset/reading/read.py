@@ -16,6 +16,7 @@ from modelgen.dataset.processing.stamps import true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.column_table import Log
+from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.lone import without_lone
 from modelgen.dataset.reading.plausible import check_efforts, check_unsigned, doubtful_unit
 from modelgen.dataset.reading.repeats import refresh_of
@@ -180,9 +181,11 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         else:
             motor[:, k] = drive.motor(logged[:, k])
     checks.check_jumps(file, arm, signals.position, q, t, limits.steady_step)
+    as_read = table[:, [source.wanted.index(name) for name in signals.position]]
+    jump = jump_of(signals.position, table[:, 0], as_read, limits)
     margin = limits.max_range_excess
     left = checks.check_range(file, arm, drives, signals.position, logged, q, margin)
-    remarks = [*source.remarks, *left]
+    remarks = [*source.remarks, *left, *([jump] if jump else [])]
     if axis.method != "none":
         remarks.append(
             f"time between samples varies by up to {axis.jitter:.2g} periods: "
@@ -232,6 +235,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         hold_known="mapping" if source.stated else "",
         counts=counts,
         begins=_begins(source, float(t[0])) if len(t) else None,
+        jump=jump,
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged

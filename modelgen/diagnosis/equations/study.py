@@ -9,6 +9,7 @@ from modelgen.dataset import Record, Settings
 from modelgen.dataset.processing.content import quiet_cutoff
 from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.dataset.processing.periods import period_of
+from modelgen.dataset.reading.jumps import check_jumps
 from modelgen.description import Arm
 from modelgen.diagnosis.equations.free_motion import released, settings_of_swings
 from modelgen.diagnosis.options import Options
@@ -43,6 +44,7 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
 
     Raises InputError where records do not fit together, or none holds the period that is given.
     """
+    check_jumps(found)
     free, period, thresholds = found[0].input is None, options.period, options.thresholds
     other = next((r for r in found if (r.input is None) != free), None)
     if other is not None:
