@@ -8,7 +8,7 @@ from typing import Protocol
 from modelgen.backends.elements import Element
 from modelgen.backends.printing import Dialect, expression
 from modelgen.functions.objects import Function
-from modelgen.graph import Term
+from modelgen.graph import inputs
 
 
 class Statements(Dialect, Protocol):
@@ -39,7 +39,7 @@ def body(
     loaded: set[tuple[str, int]] = set()
     said = ""
     for statement in function.program.statements:
-        for vector, index in _inputs(statement.term):
+        for vector, index in inputs(statement.term):
             elements = named.get(vector, ())
             element = elements[index] if elements else None
             if element is not None and (vector, index) not in loaded:
@@ -59,15 +59,6 @@ def body(
                 yield guard
         else:
             yield dialect.store(*statement.target, text)
-
-
-def _inputs(term: Term) -> Iterator[tuple[str, int]]:
-    if term[0] == "in":
-        yield term[1], term[2]
-        return
-    for part in term[1:]:
-        if isinstance(part, tuple):
-            yield from _inputs(part)
 
 
 def unset(function: Function) -> dict[str, list[int]]:

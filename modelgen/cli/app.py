@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from modelgen.cli.collection import collect_no_more, collect_rarely
 from modelgen.cli.commands import (
     calibrate,
     cmake_dir,
@@ -74,4 +75,8 @@ for _command in (
 
 def main() -> None:
     """Entry of the command `modelgen`. Ends the process with its exit status."""
-    app(prog_name="modelgen")
+    collect_rarely()
+    try:
+        app(prog_name="modelgen")
+    finally:
+        collect_no_more()

@@ -12,7 +12,8 @@ from modelgen.base_parameters import Grouping
 from modelgen.functions.arguments import arguments
 from modelgen.functions.objects import STATUS_STROKE, Argument, Function, InputRange, Output
 from modelgen.functions.options import Options
-from modelgen.graph import Expr, Program, Term, count_operations, lower
+from modelgen.graph import Expr, Program, count_operations, lower
+from modelgen.graph import inputs as read_inputs
 from modelgen.graph.from_sympy import from_sympy
 from modelgen.model.equations import Equations
 from modelgen.transmission import STROKE_MARGIN, Transmission
@@ -93,10 +94,8 @@ class Assembly:
                 names += ["sin_q", "cos_q"]
         if self.options.runtime_geometry and self.real.arm.symbols:
             names.append("geometry")
-        read: set[str] = set()
-        for statement in program.statements:
-            _collect(statement.term, read)
-        names += [x for x in ("state", "time", "load", "ddq", "input") if x in read and x not in names]
+        used = {vector for statement in program.statements for vector, _ in read_inputs(statement.term)}
+        names += [x for x in ("state", "time", "load", "ddq", "input") if x in used and x not in names]
         found = []
         for name in names:
             if name == "standard_parameters":  # the same place in every signature
@@ -146,16 +145,6 @@ class Assembly:
             {**equations.scalars.symbols, t.q: graph.input("q", n), t.q_m: graph.input("q_m", n)},
             lambda angle: equations.trigonometry.lookup(n, t.q, angle),
         )
-
-
-def _collect(term: Term, names: set[str]) -> None:
-    """Add the names of the inputs of which a term uses an element."""
-    if term[0] == "in":
-        names.add(term[1])
-        return
-    for part in term:
-        if isinstance(part, tuple):
-            _collect(part, names)
 
 
 def _range(name: str, index: int, span: tuple[float, float], margin: float) -> InputRange:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import copyreg
-import multiprocessing
 import signal
 from collections.abc import Callable, Collection, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
@@ -38,6 +36,10 @@ def generate_arms(
             results.append(generate_arm(arm, own, artefacts))
             done(arm.name)
         return results
+    # One arm needs no processes, and is done before they would be loaded.
+    import multiprocessing  # noqa: PLC0415
+    from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415
+
     # A frozen mapping is pickled by its content.
     copyreg.pickle(MappingProxyType, _by_content)
     # Forked from a clean server where that exists: a fork of this process would inherit its threads' locks.

@@ -23,7 +23,8 @@ def code_digest(model: Model) -> str:
 def size_rows(model: Model) -> list[tuple[str, ...]]:
     """Table of the sizes measured for exactly this code, its heading first; empty where there are none."""
     known = _known()
-    if known.get("code", {}).get(model.arm.name) != code_digest(model):
+    digest = known.get("code", {}).get(model.arm.name)
+    if digest is None or digest != code_digest(model):
         return []
     _, tool = list(known)[:2]
     sizes = known[tool][model.arm.name]

@@ -2,7 +2,7 @@
 
 from modelgen.graph.cut import cut
 from modelgen.graph.graph import Expr, Graph, Number
-from modelgen.graph.lowering import Program, Statement, Term, lower, read
+from modelgen.graph.lowering import Program, Statement, Term, inputs, lower, read
 from modelgen.graph.operations import OPERATION_KINDS, count_operations
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Term",
     "count_operations",
     "cut",
+    "inputs",
     "lower",
     "read",
 ]

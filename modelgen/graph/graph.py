@@ -53,11 +53,13 @@ class Expr:
 
     def __add__(self, other: Expr | Number) -> Expr:
         graph = self.graph
-        return Expr(graph, graph.add(self.key, graph.key(other)))
+        key = other.key if isinstance(other, Expr) else graph.key(other)
+        return Expr(graph, graph.add(self.key, key))
 
     def __sub__(self, other: Expr | Number) -> Expr:
         graph = self.graph
-        return Expr(graph, graph.add(self.key, graph.key(other) ^ 1))
+        key = other.key if isinstance(other, Expr) else graph.key(other)
+        return Expr(graph, graph.add(self.key, key ^ 1))
 
     def __rsub__(self, other: Number) -> Expr:
         graph = self.graph
@@ -65,7 +67,8 @@ class Expr:
 
     def __mul__(self, other: Expr | Number) -> Expr:
         graph = self.graph
-        return Expr(graph, graph.mul(self.key, graph.key(other)))
+        key = other.key if isinstance(other, Expr) else graph.key(other)
+        return Expr(graph, graph.mul(self.key, key))
 
     def __truediv__(self, other: Expr | Number) -> Expr:
         graph = self.graph
@@ -151,10 +154,12 @@ class Graph:
 
     def constant(self, key: int) -> float | None:
         """The value of a constant's reference, else None."""
-        node = key >> 1
-        if self.op[node] != CONST:
-            return None
-        return -self.number[node] if key & 1 else self.number[node]
+        return self._number(key) if self.op[key >> 1] == CONST else None
+
+    def _number(self, key: int) -> float:
+        """The value of a reference to a constant."""
+        number = self.number[key >> 1]
+        return -number if key & 1 else number
 
     def _const(self, value: Number) -> int:
         value = float(value)
@@ -171,9 +176,8 @@ class Graph:
         node = key >> 1
         if self.op[node] == MUL:
             left, right = self.args[node]
-            number = self.constant(left)
-            if number is not None:
-                return sign * number, right
+            if self.op[left >> 1] == CONST:
+                return sign * self._number(left), right
         return sign, key & ~1
 
     def common_factor(self, x: Expr, y: Expr) -> tuple[Expr, Expr, Expr] | None:
@@ -196,12 +200,12 @@ class Graph:
         if x == y ^ 1:
             return 0
         op, args = self.op, self.args
-        a, b = self.constant(x), self.constant(y)
-        if a is not None and b is not None:
-            return self._const(a + b)
-        if x >> 1 > y >> 1:
-            x, y = y, x
-            a, b = b, a
+        i, j = x >> 1, y >> 1
+        if i > j:
+            x, y, i, j = y, x, j, i
+        number = op[i] == CONST
+        if number and op[j] == CONST:
+            return self._const(self._number(x) + self._number(y))
         # (u + v) - v and constants met again in a sum
         for inner, other in ((x, y), (y, x)):
             if op[inner >> 1] == ADD:
@@ -211,10 +215,9 @@ class Graph:
                     return v
                 if other == v ^ 1:
                     return u
-                value, first = self.constant(other), self.constant(u)
-                if value is not None and first is not None:
-                    return self.add(self._const(first + value), v)
-        if a is None:
+                if op[other >> 1] == CONST and op[u >> 1] == CONST:
+                    return self.add(self._const(self._number(u) + self._number(other)), v)
+        if not number:
             cx, ux = self._factored(x)
             cy, uy = self._factored(y)
             if ux == uy:
@@ -234,17 +237,17 @@ class Graph:
             return y | sign
         if y == 2:
             return x | sign
-        if self.op[y >> 1] == CONST or (self.op[x >> 1] != CONST and x > y):
+        op = self.op
+        if op[y >> 1] == CONST or (op[x >> 1] != CONST and x > y):
             x, y = y, x
-        a = self.constant(x)
-        if a is not None:
-            b = self.constant(y)
-            if b is not None:
-                return self._const(a * b) ^ sign
-            if self.op[y >> 1] == MUL:
-                c = self.constant(self.args[y >> 1][0])
-                if c is not None:
-                    return self.mul(self._const(a * c), self.args[y >> 1][1]) ^ sign
+        if op[x >> 1] == CONST:
+            a, of_y = self.number[x >> 1], op[y >> 1]
+            if of_y == CONST:
+                return self._const(a * self.number[y >> 1]) ^ sign
+            if of_y == MUL:
+                left, right = self.args[y >> 1]
+                if op[left >> 1] == CONST:
+                    return self.mul(self._const(a * self.number[left >> 1]), right) ^ sign
         return self._node((MUL, x, y), MUL, (x, y)) | sign
 
     def div(self, x: int, y: int) -> int:

@@ -16,6 +16,8 @@ from modelgen.graph.polarity import choose_polarity
 # ("call", function, t, ...)
 Term: TypeAlias = tuple[Any, ...]
 
+LEAVES = frozenset({"const", "in", "let"})
+BINARY = frozenset({ADD, MUL, DIV})
 INLINE_SIZE = 6  # leaves of an expression printed on one line
 
 
@@ -33,10 +35,25 @@ class Statement:
 
 
 def read(term: Term) -> list[int]:
-    """Numbers of the temporaries in a term."""
-    if term[0] == "let":
-        return [term[1]]
-    return [number for part in term[1:] if isinstance(part, tuple) for number in read(part)]
+    """Numbers of the temporaries in a term, from the left."""
+    return [number for tag, number, *_ in _leaves(term) if tag == "let"]
+
+
+def inputs(term: Term) -> list[tuple[str, int]]:
+    """Elements of inputs in a term, from the left."""
+    return [(leaf[1], leaf[2]) for leaf in _leaves(term) if leaf[0] == "in"]
+
+
+def _leaves(term: Term) -> list[Term]:
+    found = []
+    stack = [term]
+    while stack:
+        term = stack.pop()
+        if term[0] in LEAVES:
+            found.append(term)
+        else:
+            stack += term[: 1 if term[0] == "call" else 0 : -1]
+    return found
 
 
 @dataclass(frozen=True)
@@ -65,8 +82,13 @@ def _registers(graph: Graph, nodes: Sequence[int]) -> dict[int, int]:
     """How many registers each node takes if nothing is shared (Sethi, Ullman, 1970); `nodes` by index."""
     count: dict[int, int] = {}
     for node in nodes:
-        operands = sorted((count[key >> 1] for key in graph.args[node]), reverse=True)
-        count[node] = max((needed + kept for kept, needed in enumerate(operands)), default=1)
+        keys = graph.args[node]
+        if graph.op[node] in BINARY:
+            x, y = count[keys[0] >> 1], count[keys[1] >> 1]
+            count[node] = x + 1 if x == y else max(x, y)
+        else:
+            operands = sorted((count[key >> 1] for key in keys), reverse=True)
+            count[node] = max((needed + kept for kept, needed in enumerate(operands)), default=1)
     return count
 
 
@@ -77,11 +99,12 @@ class _Lowering:
         nodes = reachable(graph, roots)
         self.polarity = choose_polarity(graph, nodes, roots)
         self.uses: dict[int, int] = dict.fromkeys(nodes, 0)
+        uses, args = self.uses, graph.args
         for node in nodes:
-            for key in graph.args[node]:
-                self.uses[key >> 1] += 1
+            for key in args[node]:
+                uses[key >> 1] += 1
         for key in roots:
-            self.uses[key >> 1] += 1
+            uses[key >> 1] += 1
         self.registers = _registers(graph, nodes)
         self.number: dict[int, int] = {}
         self.terms: dict[int, tuple[Term, int]] = {}
@@ -98,7 +121,7 @@ class _Lowering:
                 stack.append((node, True))
                 operands = [key >> 1 for key in reversed(self.graph.args[node])]
                 operands.sort(key=self.registers.__getitem__)
-                stack.extend((operand, False) for operand in operands)
+                stack += [(operand, False) for operand in operands if operand not in self.terms]
                 continue
             term, size = self._term(node)
             op = self.graph.op[node]

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from modelgen.graph.lowering import Program, Term
+from modelgen.graph.lowering import LEAVES, Program, Term
 
 OPERATION_KINDS = ("mul", "add", "neg", "div", "sqrt", "trig", "other")
 _TRIGONOMETRIC = frozenset({"sin", "cos", "tan", "asin", "acos", "atan", "atan2"})
 
 
-def _kind(term: Term) -> str | None:
-    tag = term[0]
-    if tag in ("add", "sub"):
-        return "add"
-    if tag in ("mul", "div", "neg"):
-        return str(tag)
+def _kind(term: Term) -> str:
+    """Of what is no leaf."""
+    tag, name, *_ = term
     if tag == "call":
-        name = term[1]
         return "sqrt" if name == "sqrt" else "trig" if name in _TRIGONOMETRIC else "other"
-    return None
+    return "add" if tag == "sub" else str(tag)
 
 
 def count_operations(program: Program) -> Mapping[str, int]:
@@ -28,8 +24,7 @@ def count_operations(program: Program) -> Mapping[str, int]:
     stack = [statement.term for statement in program.statements]
     while stack:
         term = stack.pop()
-        kind = _kind(term)
-        if kind:
-            counts[kind] += 1
-        stack.extend(part for part in term[1:] if isinstance(part, tuple))
+        if term[0] not in LEAVES:
+            counts[_kind(term)] += 1
+            stack.extend(term[2:] if term[0] == "call" else term[1:])
     return counts

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 
 from modelgen.graph.graph import ADD, CALL, CONST, DIV, EVEN, INPUT, MUL, ODD, Graph
 
+_SHARES = {ADD: 0.5, MUL: 0.25, DIV: 0.25}  # of a node's vote, for each of its operands
+_ODD_OR_EVEN = ODD | EVEN
 _SEARCH = 24  # choices tried for one negation
 
 
@@ -21,13 +23,14 @@ class _Polarity:
         self.sign = dict.fromkeys(nodes, 0)
         self.users: dict[int, list[int]] = {node: [] for node in nodes}
         self.demands: dict[int, list[int]] = {}  # node -> signs that outputs and functions want
+        users, ops, args = self.users, graph.op, graph.args
         for node in nodes:
-            fixed = graph.op[node] == CALL and graph.name[node] not in ODD | EVEN
-            for key in graph.args[node]:
-                if fixed:
+            if ops[node] == CALL and graph.name[node] not in _ODD_OR_EVEN:
+                for key in args[node]:
                     self.demands.setdefault(key >> 1, []).append(key & 1)
-                else:
-                    self.users[key >> 1].append(node)
+            else:
+                for key in args[node]:
+                    users[key >> 1].append(node)
         for key in roots:
             if graph.op[key >> 1] != CONST:
                 self.demands.setdefault(key >> 1, []).append(key & 1)
@@ -41,11 +44,15 @@ class _Polarity:
         graph = self.graph
         votes = dict.fromkeys(nodes, 0.0)
         for node in reversed(nodes):
-            votes[node] += sum(4.0 if want else -4.0 for want in self.demands.get(node, ()))
+            for want in self.demands.get(node, ()):
+                votes[node] += 4.0 if want else -4.0
             weight = (votes[node] > 0) - (votes[node] < 0)
-            share = {ADD: 0.5, MUL: 0.25, DIV: 0.25}.get(graph.op[node], 0.0) * weight
+            op = graph.op[node]
+            share = _SHARES.get(op, 0.0) * weight
+            if not share:
+                continue
             for key in graph.args[node]:
-                votes[key >> 1] += -share if graph.op[node] == ADD and key & 1 else share
+                votes[key >> 1] += -share if op == ADD and key & 1 else share
         return votes
 
     def forced(self, node: int) -> int | None:
@@ -55,20 +62,19 @@ class _Polarity:
         if op in (CONST, INPUT):
             return 0
         args = graph.args[node]
+        if op == CALL:
+            return sign[args[0] >> 1] if graph.name[node] in ODD else 0
+        x, y = args
+        constant = graph.op[x >> 1] == CONST
         if op == ADD:
-            if graph.op[args[0] >> 1] == CONST:
-                return (args[1] & 1) ^ sign[args[1] >> 1]
-            first, second = ((key & 1) ^ sign[key >> 1] for key in args)
-            return first if first == second else None
-        if op in (MUL, DIV):
-            if graph.op[args[0] >> 1] == CONST:
-                return None
-            return sign[args[0] >> 1] ^ sign[args[1] >> 1]
-        return sign[args[0] >> 1] if graph.name[node] in ODD else 0
+            second = (y & 1) ^ sign[y >> 1]
+            return second if constant or second == (x & 1) ^ sign[x >> 1] else None
+        return None if constant else sign[x >> 1] ^ sign[y >> 1]
 
     def cost(self, node: int) -> int:
         """Negations at the uses of `node` that demand a sign."""
-        return sum(want != self.sign[node] for want in self.demands.get(node, ()))
+        wants = self.demands.get(node)
+        return len(wants) - wants.count(self.sign[node]) if wants else 0
 
     def flip(self, choice: int) -> tuple[int, list[int]]:
         """Take the choice the other way; returns the change in cost and the nodes changed."""
