@@ -43,7 +43,7 @@ def intervals(rows: Sequence[Interval], x_label: str, text: str) -> str:
 
     bottom = height - _BOTTOM
     parts = [
-        f'<svg class="chart" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img"'
+        f'<svg class="chart rows" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img"'
         f' aria-label="{escape(text)}">'
     ]
     places = ticks(low, high, 5)

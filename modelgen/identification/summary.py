@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from modelgen.effects import CATALOGUE
+from modelgen.functions.nominal import known_base
 from modelgen.identification.objects import MATTERS, POOR, Estimate, Identification
 
 CLEARLY = 3.0  # standard deviations
+_NAMED = 4  # parameters beside the worst
 # What shows a parameter, by the letters that its standard parameter begins with; the first that fits.
 _SHOWN_BY = (
     (("FV", "FA", "FN"), "a wider range of speeds"),
@@ -42,8 +44,8 @@ def questions(found: Identification) -> list[str]:
 
 
 def remarks(found: Identification) -> list[str]:
-    """What else there is to know of how the parameters were found."""
-    text, dropped = list[str](), [e.name for e in found.estimates if e.dropped]
+    """What else there is to know of the parameters, and of how they were found."""
+    text, dropped = contradicting(found), [e.name for e in found.estimates if e.dropped]
     if dropped:
         text.append(f"Left out, since the records do not support them: {', '.join(dropped)}.")
     if found.comparison is not None and found.comparison.biased:
@@ -63,6 +65,49 @@ def remarks(found: Identification) -> list[str]:
         gains = ", ".join(f"{names[g.joint - 1]} {g.value / g.described:.3f}" for g in found.gains)
         text.append(f"Torque constants over those of the description: {gains}.")
     return text
+
+
+def contradicting(found: Identification) -> list[str]:
+    """The parameters that are clearly not the nominal ones, and differ by what matters in the effort.
+
+    Without a test record nothing says what matters: each that differs clearly counts.
+    """
+    nominal = known_base(found.model)
+    apart = list[tuple[float, str, str]]()
+    for k, e in enumerate(found.estimates):
+        if not e.std or e.dropped or e.name not in nominal:
+            continue
+        away = e.value - nominal[e.name]
+        times = abs(away) / e.std
+        share, size = _in_effort(found, k, away)
+        if times > CLEARLY and (not size or share > MATTERS):
+            apart.append((share if size else times, e.name, f"{times:.0f} standard deviations{size}"))
+    if not apart:
+        return []
+    (_, name, worst), *rest = sorted(apart, reverse=True)
+    if not rest:
+        return [f"{name} differs from its nominal value by {worst}."]
+    others = ", ".join(other for _, other, _ in rest[:_NAMED])
+    more = f" and {len(rest) - _NAMED} more" if len(rest) > _NAMED else ""
+    return [
+        f"{len(apart)} of the {len(nominal)} parameters with nominal values differ from these clearly: "
+        f"{name} most, by {worst}; then {others}{more}."
+    ]
+
+
+def _in_effort(found: Identification, k: int, value: float) -> tuple[float, str]:
+    """Share of the effort in % that `value` of parameter k makes, and the words for it; none where no test
+    record says so.
+    """
+    test = found.test
+    if test is None or test.sizes is None:
+        return 0.0, ""
+    j = test.shown_by(k)
+    if j is None:
+        return 0.0, " in no effort"
+    size, share = test.in_effort(k, value)
+    of = f"{share:.2g} % of the effort of {found.arm.coordinate_names[j]}"
+    return share, f" or {size:.2g} {test.unit[j]}, {of}"
 
 
 def helpful(found: Identification) -> list[str]:

@@ -96,8 +96,9 @@ def _about(effect: str) -> list[Part]:
         ]
         parts.append(Grid(f"What {effect} is confused with", _LOOKALIKES, rows, folds=True))
     values = [(p.name, p.unit.format(f="F", x="x"), p.text) for p in definition.accepted()]
+    defined = Grid(f"Parameters of {effect}", _DEFINED, values, folds=True)
     parts += [
-        Folded(f"Parameters of {effect}", [Grid(f"Parameters of {effect}", _DEFINED, values, folds=True)]),
+        Folded(f"Parameters of {effect}", [defined], printed=False),
         Text(_DOCUMENTED, "quiet"),
     ]
     return parts

@@ -106,7 +106,7 @@ def _others(d: Diagnosis) -> Iterator[Section]:
         for heading, rows in turns:
             parts += [Heading(heading), Grid(heading, _CANDIDATES, rows)]
         last = found.pop()
-        folded = Folded("All candidates, and why each is no cause", parts)
+        folded = Folded("All candidates, and why each is no cause", parts, printed=False)
         found.append(last._replace(parts=[*last.parts, folded]))
     yield from found
 
@@ -179,7 +179,7 @@ def _files(d: Diagnosis) -> list[Part]:
         Grid("Settings", (("setting", "left"), ("value", "left")), settings),
     ]
     return [
-        Folded(f"Parameters of the {model}", [Grid("Parameters", _PARAMETERS, values)]),
+        Folded(f"Parameters of the {model}", [Grid("Parameters", _PARAMETERS, values, long=True)]),
         Folded("Records and settings", tables),
         Text(beside),
     ]

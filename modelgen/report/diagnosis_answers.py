@@ -12,7 +12,16 @@ from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects.placement import titled
 from modelgen.report.call import Call
 from modelgen.report.cause_parts import failed, found, marks
-from modelgen.report.diagnosis_sentences import doubted, harmful, harms, interval, missing, remains, worth
+from modelgen.report.diagnosis_sentences import (
+    doubted,
+    efforts_of,
+    harmful,
+    harms,
+    interval,
+    missing,
+    remains,
+    worth,
+)
 from modelgen.report.following import following
 from modelgen.report.page import Checks, Command, Folded, Grid, Part, Run, Section, Text
 from modelgen.report.words import joint_name, listed, sentence
@@ -20,7 +29,7 @@ from modelgen.report.words import joint_name, listed, sentence
 # By whether the test record is a free motion.
 _ERRORS = {
     True: "RMSE of the simulated free motion, from the release on,",
-    False: "RMSE of the effort",
+    False: "RMS of the error, of that of the effort,",
 }
 _NOTHING = "Nothing is named, so nothing is gained. The model as described misses, on the test record:"
 _SHOWN = 4  # causes in full: more would leave the other answers no place on the first screen
@@ -126,9 +135,9 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
         )
         yield Grid(caption, heads, _gains(d), beside=True)
     else:
-        before = [(joint_name(d.arm, j), number(x)) for j, x in enumerate(d.errors.before, 1)]
         yield Text(_NOTHING)
-        yield Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), before, beside=True)
+        rows = [(joint_name(d.arm, j), x) for j, x in enumerate(_before(d), 1)]
+        yield Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), rows, beside=True)
     known = bool(np.isfinite(d.errors.low).any())
     how = "; intervals from a block bootstrap" if known else "; the record is too short for intervals"
     how = how if d.causes else ""
@@ -136,6 +145,15 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
     yield Text(
         f"{measured} on the test record, which nothing of the choice or the fit has seen{how}.", "quiet"
     )
+
+
+def _before(d: Diagnosis) -> list[tuple[str, str]]:
+    """Error of every joint, and small the effort that it is of."""
+    efforts = efforts_of(d) or [np.nan] * len(d.errors.before)
+    return [
+        (number(x), "" if np.isnan(effort) else f"of {number(effort)}")
+        for x, effort in zip(d.errors.before, efforts, strict=True)
+    ]
 
 
 def _warned(d: Diagnosis) -> Iterator[Part]:
@@ -164,14 +182,14 @@ def _reason(d: Diagnosis) -> str:
     return sentence(d.reason)
 
 
-def _gains(d: Diagnosis) -> list[tuple[str, str, str, tuple[str, str]]]:
+def _gains(d: Diagnosis) -> list[tuple[str, tuple[str, str], str, tuple[str, str]]]:
     e = d.errors
     return [
         (
             joint_name(d.arm, j + 1),
-            number(e.before[j]),
+            before,
             number(e.after[j]),
             (f"{e.gain[j]:z.1f}", interval(e.low[j], e.high[j], "({})")),
         )
-        for j in range(len(e.before))
+        for j, before in enumerate(_before(d))
     ]

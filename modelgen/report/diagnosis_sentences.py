@@ -109,7 +109,8 @@ def remains(d: Diagnosis) -> str:
     """What repeats in the residuals beside the noise, with its size where something deterministic is left."""
     f = d.lack_of_fit
     if f is None:
-        return "No period repeats in the training records, so the noise could not be measured."
+        unknown = "No period repeats in the training records, so the noise could not be measured."
+        return f"{unknown} {_left(d)}".rstrip()
     where = joint_name(d.arm, f.worst.joint + 1)
     part = d.lack_of_fit_part
     if part is not None:
@@ -121,23 +122,47 @@ def remains(d: Diagnosis) -> str:
     return f"{said} {_size(d)}".rstrip() if f.found else said
 
 
+def efforts_of(d: Diagnosis) -> list[float] | None:
+    """RMS (n,) of the efforts of the test record while joints move; None of a free motion."""
+    held = d.test
+    if held.prepared.input is None:
+        return None
+    effort = held.prepared.effort * held.gain
+    moving = [held.moving[:, j] for j in range(effort.shape[1])]
+    return [float(np.sqrt(np.mean(effort[m, j] ** 2))) if m.any() else np.nan for j, m in enumerate(moving)]
+
+
+def _left(d: Diagnosis) -> str:
+    """How large the error that is left is of the effort, noise and all, where that is the largest share."""
+    efforts = efforts_of(d)
+    if efforts is None:
+        return ""
+    left = d.errors.after if d.causes else d.errors.before
+    shares = np.array([x / e if e > 0.0 else np.nan for x, e in zip(left, efforts, strict=True)])
+    if not np.isfinite(shares).any():
+        return ""
+    j = int(np.nanargmax(shares))
+    sizes = f"{number(left[j], 2)} of {number(efforts[j], 2)} {_unit(d, j)}"
+    where = f" at {joint_name(d.arm, j + 1)}" if len(shares) > 1 else ""
+    most = f", {100.0 * shares[j]:z.2g} % of the effort{', the largest share of all joints' if where else ''}"
+    return f"What is left on the test record, noise and all, is {sizes} (RMS){where}{most}."
+
+
 def _size(d: Diagnosis) -> str:
     """About how large what is deterministic in the residuals of all rows is, of the effort, by joint.
 
     Its mean square adds to the noise's, and k periods that repeat make (F - 1) / k of the noise's of it.
     """
-    f, held = d.lack_of_fit, d.test
-    if f is None or held.prepared.input is None:
+    f, held, efforts = d.lack_of_fit, d.test, efforts_of(d)
+    if f is None or efforts is None:
         return ""
     said = []
-    effort = held.effort * held.gain
     for j, name in enumerate(d.arm.coordinate_names):
         moving = held.moving[:, j]
         share = max(float(f.by_joint[j]) - 1.0, 0.0) / f.periods
         if share and moving.any():
             left = float(np.sqrt(np.mean(d.residuals[1][moving, j] ** 2) * share / (1.0 + share)))
-            whole = float(np.sqrt(np.mean(effort[moving, j] ** 2)))
-            said.append(f"{number(left, 2)} of {number(whole, 2)} {_unit(d, j)} at {name}")
+            said.append(f"{number(left, 2)} of {number(efforts[j], 2)} {_unit(d, j)} at {name}")
     return f"About {listed(said)} repeats (RMS)." if said else ""
 
 

@@ -88,12 +88,7 @@ def report(e: Excitation, stem: str, call: Call) -> str:
     ]
     sections: Parts = [
         ("The motion", [block(charts(e))]),
-        (
-            "Limits",
-            [
-                Grid("Limits", [("limit", "left"), ("used %", "right")], rows),
-            ],
-        ),
+        ("Limits", [Grid("Limits", [("limit", "left"), ("used %", "right")], rows, long=True)]),
     ]
     return page(f"{e.arm.name}: excitation trajectory", "Excitation", answers, sections)
 

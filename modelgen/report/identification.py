@@ -21,6 +21,7 @@ from modelgen.report.page import Block, Command, Folded, Grid, Lines, Text, bloc
 from modelgen.report.words import listed, sentence
 
 AS_DESCRIBED = "the arm as described"
+_SHOWN = 5  # poorly determined parameters in full: more would leave the other answers no place
 _WIDE = 1.96  # standard deviations of a 95 % interval
 _LOOKS = ("s1", "s2", "s3")  # of models beside
 
@@ -82,7 +83,7 @@ def report(
         ("What is uncertain", _uncertain(found)),
         ("What to do next", _following(found, call, speeds)),
     ]
-    sections: list[tuple[str, Sequence[Any]]] = [("Parameters", _parameters(found))]
+    sections: list[tuple[str, Sequence[Any]]] = [("Parameters", [*_parameters(found), _method(found)])]
     if found.gains:
         heads = [("joint", "left"), *((h, "right") for h in ("described", "found", "std"))]
         rows = [
@@ -95,7 +96,7 @@ def report(
         sections.append((title, [block(predictions(names, test, others))]))
     sections.append(("Processing of the logs", [Lines(processing), block(spectra)]))
     drawing = Folded("The arm, to turn and move", [arm_drawing(arm)], screen=True)
-    sections.append(("The arm", [drawing, _method(found)]))
+    sections.append(("The arm", [drawing]))
     return page(f"{arm.name}: identified parameters", "Identification", answers, sections)
 
 
@@ -127,17 +128,22 @@ def _uncertain(found: Identification) -> list[Any]:
             where = "" if j is None else found.arm.coordinate_names[j]
             unit = "" if j is None else test.unit[j]
             value = f"{number(e.value)} ± {number(e.std or 0.0, 2)} {e.unit}"
-            rows.append((e.name, value, f"± {number(size, 2)} {unit}", f"{share:z.1f} % at {where}"))
+            rows.append((share, e.name, value, f"± {number(size, 2)} {unit}", f"{share:z.1f} % at {where}"))
         heads = [
             ("parameter", "left"),
             ("value", "right"),
             ("in effort", "right"),
             ("of the effort", "right"),
         ]
+        rows.sort(key=lambda row: -row[0])
+        table = [row[1:] for row in rows]
         parts += [
             Text("What the standard deviation of these parameters moves in the effort:"),
-            Grid("Poorly determined parameters", heads, rows),
+            Grid("Poorly determined parameters", heads, table[:_SHOWN]),
         ]
+        if table[_SHOWN:]:
+            more = Grid("Further poorly determined parameters", heads, table[_SHOWN:])
+            parts.append(Folded(f"And {len(table) - _SHOWN} more, that move less", [more], printed=False))
     parts += [Text(text) for text in helpful(found)]
     return parts or [Text("No parameter is uncertain by what would matter in the effort.")]
 

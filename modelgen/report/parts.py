@@ -85,7 +85,7 @@ class Grid(Part):
     """A table. heads: each with the side that its cells stand at. Of two texts in a cell one is small.
 
     folds: on a narrow screen every row is a list of its cells, each behind its head. beside: on a wide screen
-    it stands beside the texts of its answer.
+    it stands beside the texts of its answer. long: narrow and of many rows, in columns on paper.
     """
 
     kind: ClassVar[str] = "table"
@@ -94,6 +94,7 @@ class Grid(Part):
     rows: Sequence[Sequence[str | tuple[str, str]]]
     folds: bool = False
     beside: bool = False
+    long: bool = False
 
     def values(self) -> Mapping[str, Any]:
         """For the template."""
@@ -103,7 +104,7 @@ class Grid(Part):
             [_cell(cell, look, head) for cell, look, (head, _) in zip(row, looks, self.heads, strict=True)]
             for row in self.rows
         ]
-        looks_of_all = {"folds": self.folds, "beside": self.beside}
+        looks_of_all = {"folds": self.folds, "beside": self.beside, "long": self.long}
         return {"caption": self.caption, "heads": heads, "rows": rows, **looks_of_all}
 
 
@@ -169,16 +170,20 @@ class Checks(Part):
 
 @dataclass(frozen=True)
 class Folded(Part):
-    """What is folded away until it is asked for. screen: not on paper, and no section of the page."""
+    """What is folded away until it is asked for.
+
+    screen: not on paper, and no section of the page. printed: whether it is on paper, unfolded.
+    """
 
     kind: ClassVar[str] = "folded"
     title: str
     parts: Sequence[Part | str]
     screen: bool = False
+    printed: bool = True
 
     def values(self) -> Mapping[str, Any]:
         """For the template."""
-        look = "section screen" if self.screen else "section"
+        look = "section screen" if self.screen else "section" if self.printed else "section unprinted"
         return {"title": self.title, "parts": html(self.parts), "look": look}
 
 

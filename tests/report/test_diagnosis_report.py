@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser_support import SCHEMES, WIDTHS, letters, opened, violations, wider
+from browser_support import SCHEMES, WIDTHS, letters, on_few_sheets, on_paper, opened, violations, wider
 from diagnosis_support import ARM, three
 
-from modelgen.charts import drawn
+from modelgen.charts import drawn, number
 from modelgen.description import DirectDrive
 from modelgen.diagnosis.extended import Estimate
 from modelgen.diagnosis.pipeline import diagnose
@@ -138,7 +138,12 @@ def of_seven_joints(d: Diagnosis) -> Diagnosis:
         name: np.resize(getattr(d.errors, name), 7) for name in ("before", "after", "gain", "low", "high")
     }
     arm = replace(d.arm, joints=joints, links=(None,) * 7)
-    return replace(d, arm=arm, errors=replace(d.errors, **tables))
+    again = [k % 2 for k in range(7)]
+    gain = None if d.test.prepared.gain is None else d.test.prepared.gain[:, again]
+    assert d.test.prepared.input is not None
+    prepared = replace(d.test.prepared, gain=gain, input=d.test.prepared.input[:, again])
+    test = replace(d.test, prepared=prepared, effort=d.test.effort[:, again], moving=d.test.moving[:, again])
+    return replace(d, arm=arm, errors=replace(d.errors, **tables), test=test)
 
 
 def test_ten_causes_leave_all_four_answers_on_the_first_screen(found: Diagnosis, tmp_path: Path) -> None:
@@ -205,6 +210,24 @@ def test_marks_of_many_causes_are_rows_on_a_phone_too(scheme: str, found: Diagno
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= 400
         assert violations(window) == []
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_the_page_is_printed_on_few_sheets_and_whole(many: bool, found: Diagnosis, tmp_path: Path) -> None:
+    """Candidates by the dozen stay on the screen, and parameters that the values of causes explain; what is
+    folded besides is unfolded.
+    """
+    path = tmp_path / "report.html"
+    path.write_text(report(ten(found) if many else found), encoding="utf-8")
+    with opened(path) as window:
+        on_few_sheets(window)
+        with on_paper(window):
+            for folded in window.locator("details:not(.screen)").all():
+                shown = folded.locator("table, p, ul").first.is_visible()
+                title = folded.locator("summary").text_content() or ""
+                assert shown != title.startswith(
+                    ("All candidates", *(f"Parameters of {e}" for e in CATALOGUE))
+                )
 
 
 def test_the_table_of_errors_needs_no_scrolling_on_a_phone(found: Diagnosis, tmp_path: Path) -> None:
@@ -524,6 +547,27 @@ def test_the_size_of_what_repeats_is_said(found: Diagnosis) -> None:
     (size, unit) = re.findall(r"About ([\d.]+) of [\d.]+ (\S+) at j2 repeats", said)[0]
     assert float(size) == pytest.approx(rms * np.sqrt(8 / 11), rel=0.05)
     assert unit == "A"
+
+
+def test_the_size_of_what_is_left_is_said_where_nothing_repeats(found: Diagnosis) -> None:
+    """Of the joint where it is the largest share of the effort, by the log's own currents."""
+    rows, moving = found.test.prepared.rows, found.test.moving
+    measured = found.test.prepared.record.input
+    assert measured is not None
+    efforts = [np.sqrt(np.mean(found.test.prepared.effort[moving[:, j], j] ** 2)) for j in range(2)]
+    raw = [np.sqrt(np.mean(measured[:, j] ** 2)) for j in range(2)]
+    assert len(rows) == len(moving)
+    for d in (replace(found, lack_of_fit=None), other(found, "cannot_tell")):
+        left = d.errors.after if d.causes else d.errors.before
+        j = int(np.argmax(left / efforts))
+        ((size, whole, unit, name, share),) = re.findall(
+            r"is ([\d.]+) of ([\d.]+) (\S+) \(RMS\) at (\w+), ([\d.]+) % of the effort", remains(d)
+        )
+        assert (unit, name) == ("A", f"j{j + 1}")
+        assert float(size) == pytest.approx(left[j], rel=0.06)
+        assert float(whole) == pytest.approx(raw[j], rel=0.1)
+        assert float(share) == pytest.approx(100 * left[j] / efforts[j], rel=0.06)
+        assert all(f"of {number(x)}" in report(d) for x in efforts)
 
 
 def test_named_never_stands_beside_no_less_error(found: Diagnosis) -> None:

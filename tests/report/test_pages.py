@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser_support import SCHEMES, WIDTHS, letters, opened, violations, wider
+from browser_support import SCHEMES, WIDTHS, letters, on_few_sheets, opened, violations, wider
 from diagnosis_support import ARM, three
 from matplotlib.image import imread
 from playwright.sync_api import Locator
@@ -115,6 +115,12 @@ def test_a_page_can_be_read_by_everybody(
         assert wider(page) == 0
         if page.locator("svg.chart").count():
             assert letters(page, "svg.chart text") > 10.0
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_a_page_is_printed_on_few_sheets_and_whole(name: str, pages: Mapping[str, Path]) -> None:
+    with opened(pages[name]) as page:
+        on_few_sheets(page)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.resources import files
@@ -92,5 +93,73 @@ def letters(page: Page, selector: str) -> float:
         ".map(e => parseFloat(getComputedStyle(e).fontSize)"
         " * (e.ownerSVGElement ? e.getScreenCTM().a : 1)))",
         selector,
+    )
+    return found
+
+
+SHEET = 1039.0  # pixels of A4 between the margins that the pages ask for
+PAPER = 703  # wide
+
+
+def printed(page: Page) -> tuple[int, float]:
+    """Number of sheets of A4 that the page is printed on, and the share of them that is filled."""
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    sheets = len(re.findall(rb"/Type\s*/Page\b", page.pdf(format="A4")))
+    with on_paper(page):
+        high: float = page.evaluate("document.body.getBoundingClientRect().height")
+    return sheets, high / (sheets * SHEET)
+
+
+@contextmanager
+def on_paper(page: Page) -> Iterator[None]:
+    """The page as it is laid out for paper, on one endless sheet."""
+    size = page.viewport_size
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": PAPER, "height": 900})
+    yield
+    page.emulate_media(media="screen")
+    page.set_viewport_size(size or {"width": WIDTHS[0], "height": 900})
+
+
+_BROKEN = """() => {
+  const found = [];
+  for (const cell of document.querySelectorAll("th, td")) {
+    const walker = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+    for (let node; (node = walker.nextNode());) {
+      for (const word of node.data.matchAll(/[^\\s\\/@-]+/g)) {
+        const range = document.createRange();
+        range.setStart(node, word.index);
+        range.setEnd(node, word.index + word[0].length);
+        const lines = new Set([...range.getClientRects()].filter(r => r.width).map(r => Math.round(r.top)));
+        if (lines.size > 1) found.push(word[0]);
+      }
+    }
+  }
+  return found;
+}"""
+
+
+def broken(page: Page) -> list[str]:
+    """Words of tables that go on in another line."""
+    found: list[str] = page.evaluate(_BROKEN)
+    return found
+
+
+def on_few_sheets(page: Page) -> None:
+    """Sheets are full, no table is cut off nor a word of one broken, letters of charts have 4.5 pt."""
+    sheets, filled = printed(page)
+    assert sheets == 1 or filled > 0.7
+    with on_paper(page):
+        assert cut(page) == []
+        assert broken(page) == []
+        if page.locator("svg.chart").count():
+            assert letters(page, "svg.chart text") * 0.75 > 4.5
+
+
+def cut(page: Page) -> list[str]:
+    """Tables that are wider than the place they have."""
+    found: list[str] = page.evaluate(
+        "[...document.querySelectorAll('.table')].filter(t => t.scrollWidth > t.clientWidth + 1)"
+        ".map(t => t.getAttribute('aria-label'))"
     )
     return found
