@@ -141,11 +141,21 @@ class Diagnosis(Shown):
             *harms(d),
             *assumptions(d),
             *compared(d),
-            *(f"log: {line}" for line in d.log.lines()),
+            *(f"log: {line}" for line in d.log.brief()[0]),
         ]
         if d.next_experiment is not None:
             parts.append(f"next: {followed(d.next_experiment)}")
         return parts
+
+    def details(self) -> Sequence[str]:
+        """Remarks on the logs that `shown` leaves out, as `modelgen diagnose --verbose` prints them.
+
+        Returns
+        -------
+        sequence of str
+            A line each.
+        """
+        return [f"log: {line}" for line in self.found.log.brief()[1]]
 
     def __repr__(self) -> str:
         return f"Diagnosis of {self.arm.name}: {self.verdict}. {headline(self.found)}"

@@ -83,7 +83,7 @@ class Identification(Result):
             "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
             f"{name}_parameters.yaml": parameters_yaml(name, {e.name: e.value for e in found.estimates}),
             "spectra.svg": sheet(drawn, 2),
-            "report.html": report(found, o.others, _processing(o), drawn, call, speeds),
+            "report.html": report(found, o.others, _processing(o, every=True), drawn, call, speeds),
         }
         if found.test is not None:
             files["test.svg"] = picture(found.test, found.arm.coordinate_names, o.others)
@@ -130,6 +130,16 @@ class Identification(Result):
             title = "NRMSE % of parts of the training records, each held out in its turn"
             parts.append(Table(title, heads, rows))
         return [*parts, *_processing(o), o.data["verdict"]]
+
+    def details(self) -> Sequence[str]:
+        """Remarks on the logs that `shown` leaves out, as `modelgen identify --verbose` prints them.
+
+        Returns
+        -------
+        sequence of str
+            A line each.
+        """
+        return [f"log: {line}" for line in self.outcome.log.brief()[1]]
 
     def __repr__(self) -> str:
         errors = ""
@@ -185,10 +195,11 @@ def identify(
     return Identification(outcome, Call(arm, fitted, held, chosen))
 
 
-def _processing(o: Outcome) -> list[str]:
-    """What was found out about the logs, and how they were processed."""
+def _processing(o: Outcome, *, every: bool = False) -> list[str]:
+    """What was found out about the logs, in few lines or every one, and how they were processed."""
     steps = [line for line in o.data["processing"] if line not in o.log.remarks]
-    return [*(f"log: {line}" for line in o.log.lines()), *steps]
+    lines = o.log.lines() if every else o.log.brief()[0]
+    return [*(f"log: {line}" for line in lines), *steps]
 
 
 def _test_tables(test: Validation, o: Outcome) -> list[str | Table]:

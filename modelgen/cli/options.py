@@ -49,6 +49,7 @@ Dask = Annotated[
         show_default=False,
     ),
 ]
+Verbose = Annotated[bool, typer.Option("--verbose", help="Every remark on the logs too.")]
 Json = Annotated[bool, typer.Option("--json", help="Print machine-readable data.")]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 import threading
 import time
@@ -35,6 +36,7 @@ _WIDTH = 120  # columns where stdout is no terminal
 _NOTHING: tuple[str, float, float | None] = ("", 0.0, None)
 _ENDLESS = 10_000  # columns, more than any table has
 _EVERY = 20.0  # seconds between two lines on the progress
+_UNIT = re.compile(r"(\d) (?=(?:deg|rad|Hz|ms|mm|s|m|A|N)\b|%)")  # what stays beside its number
 
 
 def print_result(result: Shown, *, as_json: bool) -> None:
@@ -46,7 +48,22 @@ def print_result(result: Shown, *, as_json: bool) -> None:
         if isinstance(part, Table):
             print_table(part)
         else:
-            typer.echo(part)
+            say(part)
+
+
+def say(text: str, command: str = "") -> None:
+    """A sentence on stdout, wrapped where there is a width to keep to: that of COLUMNS or of a terminal.
+
+    command: follows on it; where lines are wrapped it has a line of its own, which is copied as it is.
+    """
+    width = _width() if _asked() else Console().width if sys.stdout.isatty() else 0
+    if not width:
+        typer.echo(f"{text} {command}".rstrip())
+        return
+    kept = _UNIT.sub("\\1\N{NO-BREAK SPACE}", text)
+    lines = wrap(kept, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+    lines = [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
+    typer.echo("\n".join([*lines, *([f"  {command}"] if command else [])]))
 
 
 def print_table(table: Table) -> None:
@@ -67,17 +84,22 @@ def print_table(table: Table) -> None:
 
 def _width() -> int | None:
     """Columns of the output: those of COLUMNS, else of the terminal (None), else 120."""
-    asked = os.environ.get("COLUMNS", "")
-    if asked.isdecimal() and int(asked) > 0:
-        return int(asked)
+    if _asked():
+        return _asked()
     return None if sys.stdout.isatty() else _WIDTH
+
+
+def _asked() -> int:
+    """Columns that COLUMNS asks for, 0 where it does not."""
+    asked = os.environ.get("COLUMNS", "")
+    return int(asked) if asked.isdecimal() else 0
 
 
 def _below(table: Table, width: int) -> str:
     """A line or more for each filled cell, rows apart."""
     headings = [" ".join(heading.split()) for heading in table.columns]
     wide = max(map(len, headings))
-    lines = [table.title] if table.title else []
+    lines = wrap(table.title, width)
     for row in table.rows:
         lines.append("")
         for heading, cell in zip(headings, row, strict=True):

@@ -1,13 +1,16 @@
 """What a terminal shows: tables as wide as it is, progress where there is none."""
 
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from diagnosis_support import ARM, three
 from typer.testing import CliRunner
 
 import modelgen as mg
+from modelgen.api.identification import Identification
 from modelgen.api.results import Table
 from modelgen.calibration.lever import lever_of
 from modelgen.cli import output
@@ -42,6 +45,83 @@ def test_a_table_fits_and_breaks_no_word(
     assert max(map(len, lines)) <= width
     words = {word for cell in CAUSE.values() for word in cell.split()}
     assert words <= {word for line in lines for word in line.split()}
+
+
+SENTENCE = "the extended model against the test record, " + 8 * "which is a long sentence, " + "ends"
+COMMAND = "modelgen simulate found/digger_extended.yaml --parameters found/digger_parameters.yaml --log b.csv"
+
+
+@pytest.mark.parametrize("width", range(60, 161, 20))
+def test_sentences_are_wrapped_and_commands_are_not(
+    width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(width))
+    output.say(SENTENCE, COMMAND)
+    *text, command = capsys.readouterr().out.splitlines()
+    assert command.strip() == COMMAND
+    assert max(map(len, text)) <= width
+    assert len(text) == pytest.approx(len(SENTENCE) / width, abs=1.5)
+    assert " ".join(" ".join(text).split()) == SENTENCE.strip()
+    output.say(" ".join(f"{k} %, {k} N m," for k in range(100)))
+    assert not any(line.split()[0] in ("%,", "N") for line in capsys.readouterr().out.splitlines())
+
+
+def test_nothing_is_wrapped_for_a_program(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """That reads stdout, or a message on stderr: one line each."""
+    monkeypatch.delenv("COLUMNS", raising=False)
+    output.say(SENTENCE, COMMAND)
+    assert capsys.readouterr().out == f"{SENTENCE} {COMMAND}\n"
+    words = ["identify", "--train", f"{60 * 'a'}.csv", "--out", "x", "--arm", "ariane4"]
+    done = CliRunner().invoke(app, words, env={"COLUMNS": "60"})
+    assert done.exit_code == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert len(done.stderr) > 80
+
+
+EXAMPLE = ROOT / "examples" / "diagnosis"
+LOGS = [
+    *("--train", str(EXAMPLE / "train_a.csv"), "--train", str(EXAMPLE / "train_b.csv")),
+    *("--test", str(EXAMPLE / "test.csv")),
+]
+COMMANDS = {
+    "identify": [str(EXAMPLE / "arms.yaml"), *LOGS, "--verbose"],
+    "diagnose": [str(EXAMPLE / "arms.yaml"), *LOGS, "--effect", "load_dependent_friction", "-j", "1"],
+    "excite": ["--arm", "ariane4", "--period", "5", "--starts", "1", "--iterations", "3", "-j", "1"],
+    "show": [str(EXAMPLE / "arms.yaml")],
+    "inspect": [str(EXAMPLE / "test.csv")],
+    "effects": [],
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_what_a_command_prints_fits_sixty_columns(name: str, tmp_path: Path) -> None:
+    """But for commands and paths, which are copied in one piece."""
+    out = {"excite": ["--out", str(tmp_path / "a.csv")], "identify": ["--out", str(tmp_path)]}
+    out["diagnose"] = out["identify"]
+    words = [name, *COMMANDS[name], *out.get(name, [])]
+    done = CliRunner().invoke(app, words, env={"COLUMNS": "60"})
+    assert done.exit_code == 0, done.output
+    long = [line for line in done.stdout.splitlines() if len(line) > 60]
+    assert [x for x in long if not x.startswith("  modelgen ") and "/" not in max(x.split(), key=len)] == []
+
+
+def test_remarks_that_are_left_out_are_shown_on_demand() -> None:
+    """Of ten, as many as six lines have room for, then how many more there are; the report has all."""
+    train, _, test = three(None, 1, 0.0)
+    found = mg.identify(ARM, train=train, test=test)
+    log = found.outcome.log
+    first = replace(log.train[0], remarks=tuple(f"remark {k}" for k in range(10)))
+    result = Identification(
+        replace(found.outcome, log=replace(log, train=(first, *log.train[1:]))), found.call
+    )
+    lines = [part for part in result.shown() if isinstance(part, str) and part.startswith("log: ")]
+    assert len(lines) == 6
+    shown = [line for line in lines if "remark " in line]
+    assert f"{10 - len(shown)} more remarks: --verbose" in lines[-1]
+    assert [*shown, *result.details()] == [f"log: remark {k}" for k in range(10)]
+    assert all(f"remark {k}" in result.files()["report.html"] for k in range(10))
 
 
 def test_columns_without_a_word_are_left_out(
@@ -93,8 +173,10 @@ def test_the_help_names_every_exit_status() -> None:
 
 
 def widest(text: str) -> int:
-    """Length of the longest line of tables: of all that does not begin at the edge as sentences do."""
-    return max(len(line) for line in text.splitlines() if line.startswith(" "))
+    """Length of the longest line of tables: of all that does not begin at the edge as sentences do, and is
+    no path, which goes on in one piece.
+    """
+    return max(len(line) for line in text.splitlines() if line.startswith(" ") and "/" not in line)
 
 
 def test_the_table_of_a_calibration_fits_sixty_columns(tmp_path: Path) -> None:

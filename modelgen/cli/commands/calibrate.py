@@ -38,7 +38,7 @@ def calibrate(
     """Fit a lever's geometry to motor counts and measured joint angles."""
     from modelgen.api.calibration import calibrate as calibrated
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result
+    from modelgen.cli.output import print_result, say
     from modelgen.errors import InputError
     from modelgen.files import check_folder
 
@@ -50,6 +50,4 @@ def calibrate(
     result.write(out)
     print_result(result, as_json=as_json)
     if not as_json:
-        typer.echo(
-            f"wrote {out / 'calibration.json'}, {found.name}_calibrated.yaml, calibration.svg, report.html"
-        )
+        say(f"wrote {out / 'calibration.json'}, {found.name}_calibrated.yaml, calibration.svg, report.html")

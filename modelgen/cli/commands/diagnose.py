@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from modelgen.cli.guard import guarded
-from modelgen.cli.options import Arms, Folder, Json, OneArm, Train, with_options
+from modelgen.cli.options import Arms, Folder, Json, OneArm, Train, Verbose, with_options
 from modelgen.options import DiagnosisOptions
 
 # ruff: noqa: PLC0415 - the help is quick
@@ -28,12 +28,13 @@ def diagnose(
     arms: Arms = None,
     arm: OneArm = "",
     options: DiagnosisOptions,
+    verbose: Verbose = False,
     as_json: Json = False,
 ) -> None:
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
     from modelgen.api.diagnosis import diagnosed
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result, progress_bar
+    from modelgen.cli.output import print_result, progress_bar, say
     from modelgen.files import check_folder
     from modelgen.generation.folders import check_output
     from modelgen.report.call import command
@@ -47,13 +48,16 @@ def diagnose(
         progress("writing", 0, None)
         result.write(out)
     print_result(result, as_json=as_json)
-    if not as_json:
-        typer.echo(f"report: {out / 'report.html'}")
-        for step in carried(result.found, replace(result.call, folder=out)):
-            typer.echo(step.text if not step.command else f"{step.text} {step.command}")
-    if not as_json and result.causes:
+    if as_json:
+        return
+    for line in result.details() if verbose else []:
+        say(line)
+    say(f"report: {out / 'report.html'}")
+    for step in carried(result.found, replace(result.call, folder=out)):
+        say(step.text, step.command)
+    if result.causes:
         extended = out / f"{found.name}_extended.yaml"
         values = ["--parameters", str(out / f"{found.name}_parameters.yaml")]
         words = [*values, *(word for log in (test or []) for word in ("--log", log))]
         words += [] if options.mapping is None else ["--mapping", str(options.mapping)]
-        typer.echo(f"the extended model against the test record: {command('simulate', extended, '', *words)}")
+        say("the extended model against the test record:", command("simulate", extended, "", *words))

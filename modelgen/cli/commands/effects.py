@@ -33,4 +33,6 @@ def effects(as_json: Json = False, pages: Pages = None) -> None:
         path = pages / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8", newline="\n")
-    typer.echo(f"wrote {pages / 'effects.md'}")
+    from modelgen.cli.output import say
+
+    say(f"wrote {pages / 'effects.md'}")

@@ -31,7 +31,7 @@ def excite(
     """Compute a trajectory that determines the base parameters well, within the arm's limits."""
     from modelgen.api.excitation import excite as excited
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result, progress_bar
+    from modelgen.cli.output import print_result, progress_bar, say
     from modelgen.errors import InputError
     from modelgen.files import check_writable
 
@@ -46,4 +46,4 @@ def excite(
     print_result(result, as_json=as_json)
     if not as_json:
         for name in result.files(out.parent, out.stem):
-            typer.echo(f"wrote {out.parent / name}")
+            say(f"wrote {out.parent / name}")

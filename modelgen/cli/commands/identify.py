@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from modelgen.cli.guard import guarded
-from modelgen.cli.options import Arms, Folder, Json, OneArm, Train, with_options
+from modelgen.cli.options import Arms, Folder, Json, OneArm, Train, Verbose, with_options
 from modelgen.options import IdentificationOptions
 
 # ruff: noqa: PLC0415 - the help is quick
@@ -29,12 +29,13 @@ def identify(
     arms: Arms = None,
     arm: OneArm = "",
     options: IdentificationOptions,
+    verbose: Verbose = False,
     as_json: Json = False,
 ) -> None:
     """Find the base parameters from logs, with their uncertainty, and validate them on other logs."""
     from modelgen.api.identification import identify as identified
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result, progress_bar
+    from modelgen.cli.output import print_result, progress_bar, say
     from modelgen.files import check_folder
 
     found = one(arms, arm)
@@ -43,6 +44,10 @@ def identify(
         result = identified(found, train, test or [], options, progress=progress)
     result.write(out)
     print_result(result, as_json=as_json)
+    if as_json:
+        return
+    for line in result.details() if verbose else []:
+        say(line)
     following = replace(result.call, folder=out).diagnosing()
-    if not as_json and following:
-        typer.echo(f"what the model lacks: {following}")
+    if following:
+        say("what the model lacks:", following)

@@ -91,7 +91,19 @@ class RecordsInspected:
         }
 
     def lines(self) -> list[str]:
-        """What is worth saying of it, in six lines at most."""
+        """What is worth saying of it."""
+        return [*self._facts(), *self.remarks]
+
+    def brief(self) -> tuple[list[str], list[str]]:
+        """The same in six lines at most, and the remarks that these leave out."""
+        said = self._facts()
+        free = LINES - len(said)
+        if len(self.remarks) <= free:
+            return [*said, *self.remarks], []
+        shown, left = self.remarks[: free - 1], self.remarks[free - 1 :]
+        return [*said, *shown, f"{len(left)} more remarks: --verbose, or the report"], list(left)
+
+    def _facts(self) -> list[str]:
         many = f"{len(self.train)} training records" if len(self.train) > 1 else "training record"
         period = "the motion does not repeat" if self.period is None else f"period {self.period:.6g} s"
         said = [f"{many}: {self.samples} samples at {self.train[0].rate:.6g} Hz, {period}"]
@@ -106,11 +118,7 @@ class RecordsInspected:
         if (shares > RESTING).any():
             joints = ", ".join(f"{100 * share:.0f} %" for share in shares)
             said.append(f"left out at rest and at the ends, joint by joint: {joints}")
-        free = LINES - len(said)
-        more = self.remarks
-        if len(more) > free:
-            more = (*more[: free - 1], f"{len(more) - free + 1} more remarks, see log in the JSON file")
-        return [*said, *more]
+        return said
 
     @property
     def _channels(self) -> list[Channel]:
