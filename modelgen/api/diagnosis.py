@@ -26,7 +26,7 @@ from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, given
 from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, interval, suspicions
 from modelgen.report.experiment import followed
-from modelgen.report.words import joint_name, place_of, sized
+from modelgen.report.words import joint_name, legible, place_of, sized
 from modelgen.report.writing import write
 
 
@@ -239,7 +239,7 @@ def _place(text: str) -> tuple[str, int | None]:
 
 
 def _row(arm: Arm, c: NamedCause) -> list[str]:
-    values = ", ".join(f"{n} {sized(e.value, e.unit, 4)}" for n, e in c.parameters.items())
+    values = ", ".join(f"{n} {sized(e.value, e.unit, 4)}" for n, e in legible(c.parameters).items())
     rivals = ", ".join(titled(arm, e, j) for e, j, _ in c.ambiguous_with)
     same = ", ".join(titled(arm, e, j) for e, j in c.aliases)
     gains = f"{c.cross_gain:z.1f}", "" if isnan(c.share.gain) else f"{c.share.gain:z.1f}"

@@ -153,6 +153,6 @@ def excite(
     """
     chosen = changed(options or ExcitationOptions(), changes)
     chosen.checked()
-    text = f"{arm.name}: starts"
+    text = f"{arm.name}: starts done"
     progress(text, 0, chosen.starts)
     return Excitation(optimise(arm, chosen, lambda done, total: progress(text, done, total)))

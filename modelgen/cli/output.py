@@ -139,7 +139,7 @@ def progress_bar(*, counted: bool = True) -> Iterator[Progress]:
     """
     console = Console(stderr=True)
     if not console.is_terminal:
-        with _progress_lines(_seconds()) as lines:
+        with _progress_lines(_seconds(), counted) as lines:
             yield lines
         return
     how: ProgressColumn = MofNCompleteColumn() if counted else TaskProgressColumn()
@@ -162,7 +162,7 @@ def _seconds() -> float:
 
 
 @contextmanager
-def _progress_lines(every: float) -> Iterator[Progress]:
+def _progress_lines(every: float, counted: bool) -> Iterator[Progress]:
     """A line on stderr every so many seconds: the time since the begin, the stage, how much is done."""
     begin, stage, ended = time.monotonic(), [_NOTHING], threading.Event()
     if not every:
@@ -175,7 +175,8 @@ def _progress_lines(every: float) -> Iterator[Progress]:
     def report() -> None:
         while not ended.wait(every):
             text, done, total = stage[0]
-            share = f", {100.0 * done / total:.0f} %" if total else ""
+            of = f"{done:g} of {total:g}" if counted and total else ""
+            share = f", {of or f'{100.0 * done / total:.0f} %'}" if total else ""
             typer.echo(f"{time.monotonic() - begin:.0f} s: {text or 'working'}{share}", err=True)
 
     lines = threading.Thread(target=report, daemon=True)

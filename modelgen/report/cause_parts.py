@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.charts import number
-from modelgen.diagnosis.extended import NamedCause
+from modelgen.diagnosis.extended import NamedCause, units_at
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
@@ -16,7 +16,7 @@ from modelgen.report.diagnosis_sentences import checked, interval
 from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.law_sketch import sketch
 from modelgen.report.page import Folded, Grid, Heading, Line, Marks, Part, Run, Section, Text, block
-from modelgen.report.words import finding, law, sentence
+from modelgen.report.words import finding, law, legible, sentence
 
 _LOOKALIKES = (("confused with", "left"), ("what that is", "left"), ("seen by itself in", "left"))
 _DEFINED = (("parameter", "left"), ("unit", "left"), ("meaning", "left"))
@@ -77,11 +77,16 @@ def suspected(d: Diagnosis, k: int) -> list[Part]:
 
 def about(d: Diagnosis) -> list[Section]:
     """Every effect that is named or suspected: its law as a sketch, and what resembles it."""
-    effects = dict.fromkeys(c.effect for c in (*d.causes, *d.suspects))
-    return [Section(f"About {effect}", _about(effect), f"about-{effect}") for effect in effects]
+    places: dict[str, list[int | None]] = {}
+    for c in (*d.causes, *d.suspects):
+        places.setdefault(c.effect, []).append(c.joint)
+    return [
+        Section(f"About {effect}", _about(d, effect, joints), f"about-{effect}")
+        for effect, joints in places.items()
+    ]
 
 
-def _about(effect: str) -> list[Part]:
+def _about(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> list[Part]:
     """What the documentation says of it, as far as it stands on its own."""
     definition = CATALOGUE[effect]
     parts: list[Part] = [
@@ -95,7 +100,10 @@ def _about(effect: str) -> list[Part]:
             (other, CATALOGUE[other].text, CATALOGUE[other].experiment) for other in definition.confused_with
         ]
         parts.append(Grid(f"What {effect} is confused with", _LOOKALIKES, rows, folds=True))
-    values = [(p.name, p.unit.format(f="F", x="x"), p.text) for p in definition.accepted()]
+    units = [units_at(d.arm, effect, joint) for joint in joints]
+    values = [
+        (p.name, " or ".join(dict.fromkeys(u[p.name] for u in units)), p.text) for p in definition.accepted()
+    ]
     defined = Grid(f"Parameters of {effect}", _DEFINED, values, folds=True)
     parts += [
         Folded(f"Parameters of {effect}", [defined], printed=False),
@@ -132,7 +140,7 @@ def _values(d: Diagnosis, c: NamedCause) -> Grid:
             "" if e.unit == "1" else e.unit,
             meanings.get(name, ""),
         )
-        for name, e in c.parameters.items()
+        for name, e in legible(c.parameters).items()
     ]
     return Grid(f"Values of {titled(d.arm, c.effect, c.joint)}", _VALUES, rows)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,8 @@ _LIMITED = {
     "input": "input",
     "effort": "effort",
 }
+_BELOW = 1e-3  # of a deviation, of which two digits are printed
+_DIGITS = 1e-12  # of a value, which a computation of doubles leaves of zero
 
 
 class Said(float):
@@ -67,10 +70,23 @@ def place_of(arm: Arm, joint: int | None) -> str:
     return "the whole arm" if joint is None else joint_name(arm, joint)
 
 
+def legible(parameters: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Estimates by name, zero where a value is far below what is printed of its deviation.
+
+    Where no deviation is known, below the digits of the largest value that has its unit.
+    """
+    found = {}
+    for name, e in parameters.items():
+        peers = max(abs(o.value) for o in parameters.values() if o.unit == e.unit)
+        least = _BELOW * e.std if e.std > 0.0 else _DIGITS * peers
+        found[name] = replace(e, value=0.0) if abs(e.value) < least else e
+    return found
+
+
 def finding(arm: Arm, effect: str, joint: int | None, parameters: Mapping[str, Any]) -> str:
     """The clause that says what is there, with its values. parameters: value and unit by name."""
     definition, place = CATALOGUE[effect], place_of(arm, joint)
-    values = {name: Said(e.value, e.unit) for name, e in parameters.items()}
+    values = {name: Said(e.value, e.unit) for name, e in legible(parameters).items()}
     drive = f"the drive of {place}"
     try:
         said = definition.finding.format(joint=place, place=place, drive=drive, **values)

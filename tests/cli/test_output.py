@@ -145,7 +145,23 @@ def test_progress_is_a_line_now_and_then_where_there_is_no_terminal(
     assert said.out == ""
     lines = said.err.splitlines()
     assert 2 <= len(lines) <= 9
-    assert all(line.endswith("s: trying candidates, 25 %") for line in lines)
+    assert all(line.endswith("s: trying candidates, 3 of 12") for line in lines)
+    with output.progress_bar(counted=False) as progress:
+        progress("reading", 0.5, 2.0)
+        time.sleep(0.2)
+    assert all(line.endswith("s: reading, 25 %") for line in capsys.readouterr().err.splitlines())
+
+
+def test_a_single_start_of_an_excitation_says_that_it_runs(tmp_path: Path) -> None:
+    """Every so many seconds, however long it takes: it is not done before the command ends."""
+    words = ["excite", "--arm", "ariane4", "--period", "20", "--starts", "1", "--iterations", "30"]
+    done = CliRunner().invoke(
+        app, [*words, "-j", "1", "--out", str(tmp_path / "a.csv")], env={"MODELGEN_PROGRESS": "0.2"}
+    )
+    assert done.exit_code == 0
+    lines = [line for line in done.stderr.splitlines() if "starts" in line]
+    assert len(lines) >= 3
+    assert all(line.endswith("s: ariane4: starts done, 0 of 1") for line in lines[:-1])
 
 
 def test_a_quick_command_says_nothing_of_its_progress(

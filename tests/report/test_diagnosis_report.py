@@ -12,8 +12,10 @@ import pytest
 from browser_support import SCHEMES, WIDTHS, letters, on_few_sheets, on_paper, opened, violations, wider
 from diagnosis_support import ARM, three
 
+from modelgen.api.diagnosis import Diagnosis as Shown
+from modelgen.api.results import Table
 from modelgen.charts import drawn, number
-from modelgen.description import DirectDrive
+from modelgen.description import DirectDrive, NoDrive
 from modelgen.diagnosis.extended import Estimate
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import Diagnosis
@@ -26,7 +28,7 @@ from modelgen.report.diagnosis_figures import binned, efforts, replayed, residua
 from modelgen.report.diagnosis_sentences import doubted, headline, remains, worth
 from modelgen.report.law_figures import judged_joint, law_charts
 from modelgen.report.page import page
-from modelgen.report.words import finding, sentence
+from modelgen.report.words import finding, legible, sentence
 
 pytestmark = pytest.mark.xdist_group("diagnosis_report")
 
@@ -580,6 +582,42 @@ def test_named_never_stands_beside_no_less_error(found: Diagnosis) -> None:
     )
     assert "more error over all joints" in worth(replace(found, errors=lost))
     assert "3.0 % more at j1" in worth(replace(found, errors=lost))
+
+
+def test_a_value_that_is_zero_within_its_deviation_is_printed_as_zero(found: Diagnosis) -> None:
+    """In the sentence, in the table of values and on the terminal; what is small and known well is kept."""
+    (cause,) = found.causes
+    noise, known = Estimate(-2.1e-17, 0.11, "N"), Estimate(2.3e-9, 1e-10, "N")
+    rounding, clear = Estimate(7.3e-18, np.nan, "m"), Estimate(0.0271, np.nan, "m")
+    values = {"sine": noise, "cosine": known, "harmonic": rounding, "revolution": clear}
+    assert {name: e.value for name, e in legible(values).items()} == {
+        "sine": 0.0,
+        "cosine": 2.3e-9,
+        "harmonic": 0.0,
+        "revolution": 0.0271,
+    }
+    assert legible(values)["sine"].std == 0.11
+    d = replace(found, causes=(replace(cause, effect="torque_ripple", parameters=values),))
+    printed = Shown(d).shown()
+    (table, *_) = [part for part in printed if isinstance(part, Table)]
+    for text in (report(d), *(cell for row in table.rows for cell in row)):
+        assert "e-17" not in text
+        assert "e-18" not in text
+    assert "0.0271" in report(d)
+    assert "2.3e-09" in report(d)
+
+
+@pytest.mark.parametrize(("unit", "joint"), [("N m s/rad", "revolute"), ("N s/m", "prismatic")])
+def test_units_of_an_effect_are_those_of_its_joint(unit: str, joint: str, found: Diagnosis) -> None:
+    """Spelled: no placeholder for a coordinate or a force."""
+    first, second = found.arm.joints
+    moved = replace(second, type=joint, drive=NoDrive())
+    cause = replace(found.causes[0], effect="viscous_friction")
+    d = replace(found, arm=replace(found.arm, joints=(first, moved)), suspects=(cause,))
+    (table,) = re.findall(r'aria-label="Parameters of viscous_friction">.*?</table>', report(d), re.DOTALL)
+    assert f">{unit}<" in table
+    units = re.findall(r'data-head="unit">([^<]*)<', report(d))
+    assert not {"x", "F", "s", "x/s", "F s/x", "F/x"} & set(units) - {"s"}
 
 
 @pytest.mark.parametrize("effect", CATALOGUE)

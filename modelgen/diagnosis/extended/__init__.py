@@ -11,7 +11,7 @@ from modelgen.diagnosis.extended.extended_model import (
 )
 from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions, Share
 from modelgen.diagnosis.extended.test_errors import errors, motion_errors, shares
-from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates
+from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates, units_at
 
 __all__ = [
     "Errors",
@@ -31,4 +31,5 @@ __all__ = [
     "residuals",
     "shares",
     "unit_of_efforts",
+    "units_at",
 ]

@@ -38,7 +38,7 @@ def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str
     most = equations.thresholds.extended.max_relative_deviation
     found = []
     for cause, spread in zip(selection.causes, deviations(selection, equations), strict=True):
-        units = _units(equations.arm, *cause.trial.candidate.place)
+        units = units_at(equations.arm, *cause.trial.candidate.place)
         values, searched = cause.trial.parameters, cause.trial.values
         c = cause.trial.candidate
         open_ = {*c.definition.conditional(c.fixed)}
@@ -52,7 +52,8 @@ def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str
     return found
 
 
-def _units(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
+def units_at(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
+    """Units of an effect's parameters by name, at a coordinate (from 1) or for the whole arm."""
     coordinate = "m"
     if joint is not None:
         described = arm.joints[arm.coordinates[joint - 1]]
