@@ -77,7 +77,7 @@ def bars(rows: dict[str, list[float]], joints: list[str], unit: str) -> str:
             f'<text class="tick" x="{middle:.1f}" y="{HEIGHT - 8}" text-anchor="middle">'
             f"{escape(joint)}</text>"
         )
-    key = [(f"line {role}", name) for role, name in zip(ROLES, rows, strict=True)]
+    key = [(f"bar {role}", name) for role, name in zip(ROLES, rows, strict=True)]
     return _alone(f"RMSE on the held-out record [{unit}]", "".join(parts), key)
 
 
@@ -104,8 +104,11 @@ def _alone(title: str, chart: str, key: list[tuple[str, str]]) -> str:
     ]
     at = 4.0
     for role, label in key:
-        dots = role.startswith("dots")
-        parts.append(f'<path class="{role}" d="M{at + (10 if dots else 0):g} 32h{0 if dots else 20}"/>')
+        dots, bar = role.startswith("dots"), role.removeprefix("bar ")
+        if bar != role:  # as the bars are: an area of their colour
+            parts.append(f'<rect x="{at + 7:g}" y="26" width="13" height="11" style="fill: var(--{bar})"/>')
+        else:
+            parts.append(f'<path class="{role}" d="M{at + (10 if dots else 0):g} 32h{0 if dots else 20}"/>')
         parts.append(f'<text class="label" x="{at + 26:g}" y="36">{escape(label)}</text>')
         at += 26 + 6.3 * len(label) + 16
     parts.append(f'<svg y="{STRIP}" width="{WIDTH}" height="{HEIGHT}">{chart}</svg>')

@@ -78,11 +78,18 @@ class Bars(Part):
                     for word, count, look in pieces
                 ],
                 "total": total,
-                "said": ", ".join(f"{word}: {count}" for word, count, _ in pieces if len(pieces) > 1),
+                "said": _said(label, pieces),
             }
             for label, pieces, total in self.rows
         ]
         return {"caption": self.caption, "head": self.head, "bars": bars}
+
+
+def _said(label: str, pieces: Sequence[Piece]) -> str:
+    """What the pieces of a bar are, unless its label says so; of a single piece no count."""
+    if len(pieces) > 1:
+        return ", ".join(f"{word}: {count}" for word, count, _ in pieces)
+    return "".join(word for word, _, _ in pieces if word != label)
 
 
 @dataclass(frozen=True)
@@ -146,9 +153,11 @@ def _worth(rows: Sequence[Row]) -> str:
         return ""
     worse = sum(g < 0.0 for g in gains)
     said = f"With the causes the error on the test records is {median(gains):z.1f} % less over all joints"
-    said += (
-        f" (median of {len(gains)} units, {min(gains):z.1f} to {max(gains):z.1f} %)" if len(gains) > 1 else ""
-    )
+    low, high = f"{min(gains):z.1f}", f"{max(gains):z.1f}"
+    if low != high:
+        said += f" (median of {len(gains)} units, {low} to {high} %)"
+    elif len(gains) > 1:
+        said += f" in each of {len(gains)} units"
     return said + (f"; it is larger in {worse}." if worse else ".")
 
 

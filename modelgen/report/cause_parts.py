@@ -13,7 +13,7 @@ from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import titled
 from modelgen.report.diagnosis_sentences import checked, interval
-from modelgen.report.law_figures import judged_joint, law_charts, law_size
+from modelgen.report.law_figures import judged_joint, law_charts, law_size, seen
 from modelgen.report.law_sketch import sketch
 from modelgen.report.page import Folded, Grid, Heading, Line, Marks, Part, Run, Section, Text, block
 from modelgen.report.words import finding, law, legible, sentence
@@ -53,7 +53,8 @@ def law_found(d: Diagnosis, k: int) -> Section:
     c = d.causes[k]
     reference = Run(f"{CATALOGUE[c.effect].reference}.", "quiet")
     text = [Run(f"{_law(c.effect)} "), reference, Run(" "), _more(c)]
-    parts: list[Part] = [Text(text), *_size(d, k), block(law_charts(d, k)), _values(d, c)]
+    charts = law_charts(d, k)
+    parts: list[Part] = [Text(text), Text(f"{_size(d, k)}{seen(charts)}"), block(charts), _values(d, c)]
     evidence = (
         f"Evidence: delta BIC {c.delta_bic:z.1f}; {c.cross_gain:z.1f} % less error on training records that "
         f"its fit had not seen, {c.expected_gain:z.1f} % expected there{_share(c)}."
@@ -121,13 +122,13 @@ def _more(c: NamedCause) -> Run:
     return Run("More about it", target=f"#about-{c.effect}")
 
 
-def _size(d: Diagnosis, k: int) -> list[Part]:
+def _size(d: Diagnosis, k: int) -> str:
     size = law_size(d, k)
     if size is None:
-        return []
+        return ""
     where = d.arm.coordinate_names[judged_joint(d, k)]
     sizes = f"{number(size[0], 2)} of the {number(size[1], 2)} {size[2]}"
-    return [Text(f"Its size on the test record: {sizes} of {where} (RMS).")]
+    return f"Its size on the test record: {sizes} of {where} (RMS). "
 
 
 def _values(d: Diagnosis, c: NamedCause) -> Grid:

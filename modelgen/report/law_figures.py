@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from modelgen.backends.numpy import NumpyFunction
-from modelgen.charts import Chart, Curve
+from modelgen.charts import Chart, Curve, number
 from modelgen.diagnosis.equations.checks import columns_of_effects
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE, Definition, InputEffect
@@ -34,6 +34,7 @@ _OVER = {
     "load": (_WEIGHT, _CARRIED),
     "time": ("time",),
 }
+_FLAT = 0.02  # of its mean, by which the line of a law varies that is called flat
 _FEW = 0.005  # of the samples, that lie far out at either end: impacts
 _FAR = 2.0  # times the span of the others, by which they are left out
 
@@ -124,6 +125,24 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
         f"Mean residual of {name} over {over}, without and with {_named(d, k)}.",
     )
     return [found, left]
+
+
+def seen(charts: Sequence[Chart]) -> str:
+    """What the charts of a law show, in a sentence; empty where there are none."""
+    if not charts:
+        return ""
+    law = charts[0].curves[1]
+    name, _, unit = charts[0].y_label.rstrip("]").rpartition(" [")
+    known = law.y[np.isfinite(law.y)]
+    middle, dots = float(np.mean(known)), f"the {name} that the rest of the model leaves"
+    if float(np.ptp(known)) <= _FLAT * abs(middle):
+        flat = f"{number(abs(middle), 2)} {unit} {'above' if middle > 0.0 else 'below'} zero"
+        return (
+            f"The law is the same everywhere, so its line is flat, {flat}: the dots, {dots}, lie about it "
+            "and not about zero."
+        )
+    where = "points" if law.dots else "line"
+    return f"The dots are {dots}; where the law is right they lie about its {where}."
 
 
 def _over_a_stretch(d: Diagnosis, k: int, j: int) -> list[Chart]:

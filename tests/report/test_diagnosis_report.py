@@ -26,7 +26,7 @@ from modelgen.report.diagnosis import report
 from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import binned, efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import doubted, headline, remains, worth
-from modelgen.report.law_figures import judged_joint, law_charts
+from modelgen.report.law_figures import judged_joint, law_charts, seen
 from modelgen.report.page import page
 from modelgen.report.words import finding, legible, sentence
 
@@ -369,6 +369,19 @@ def test_the_law_is_drawn_over_what_it_explains(found: Diagnosis) -> None:
     without, after = left.curves
     assert np.mean(after.y**2) < 0.5 * np.mean(without.y**2)
     assert law.x_label == "speed [rad/s]"  # a Stribeck curve is one over the speed
+
+
+def test_a_sentence_says_what_the_picture_of_a_law_shows(found: Diagnosis) -> None:
+    """That a constant one is a flat line, at which height and in which unit."""
+    m = found.test.moving[:, 1]
+    flat = with_law(found, "friction_offset", {"offset": -0.37}, np.where(m, -0.37, 0.0))
+    said = seen(law_charts(flat, 0))
+    assert "its line is flat, 0.37 A below zero" in said
+    assert said in unescape(report(flat))
+    curved = seen(law_charts(found, 0))
+    assert "flat" not in curved
+    assert "lie about its line" in curved
+    assert curved in unescape(report(found))
 
 
 def with_law(found: Diagnosis, effect: str, values: dict[str, float], law: np.ndarray) -> Diagnosis:

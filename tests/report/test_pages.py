@@ -179,6 +179,25 @@ def test_units_are_sorted_and_found_by_the_keyboard(pages: Mapping[str, Path]) -
         assert page.locator("#units tbody tr:visible").count() == 1
 
 
+def test_bars_of_a_fleet_name_joints_and_no_range_is_a_single_value(pages: Mapping[str, Path]) -> None:
+    with opened(pages["fleet"]) as page:
+        bar = page.get_by_role("table", name="Causes named, by joint").locator("tbody tr")
+        assert bar.inner_text().split() == ["load_dependent_friction", "3", "(stick)"]
+        verdicts = page.get_by_role("table", name="Verdicts").locator("tbody tr")
+        assert [row.inner_text().split() for row in verdicts.all()] == [
+            ["cause", "named", "3"],
+            ["failed", "1"],
+        ]
+        worth = page.locator("dl.answer").inner_text()
+    assert "12.6 to 12.6" not in worth
+    assert "12.6 % less over all joints in each of 3 units." in worth
+    other = {"unit": "u3", "verdict": "named", "report": "r", **ROW, "joints": [3], "joint_names": ["bucket"]}
+    named = [{"unit": "u0", "verdict": "named", "report": "r"} | ROW, other | {"overall_gain_percent": 8.0}]
+    said = overview(named)
+    assert "(stick: 1, bucket: 1)" in said
+    assert "(median of 2 units, 8.0 to 12.6 %)" in said
+
+
 def test_what_is_uncertain_is_said_in_effort(pages: Mapping[str, Path]) -> None:
     """A first moment of zero with a standard deviation that moves nothing is no complaint."""
     train, _, test = three(None, 1, 0.0)
