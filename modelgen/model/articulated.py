@@ -244,8 +244,11 @@ def _difference(a: Matrix, b: Matrix) -> Matrix:
 
 
 def _mirrored(x: Matrix) -> Matrix:
-    """Symmetric, by what is on and above the diagonal."""
-    return ((x[0][0], x[0][1], x[0][2]), (x[0][1], x[1][1], x[1][2]), (x[0][2], x[1][2], x[2][2]))
+    """Symmetric, by what is on and below the diagonal.
+
+    A joint without inertia of its own makes the last row exactly zero, the last column but for rounding.
+    """
+    return ((x[0][0], x[1][0], x[2][0]), (x[1][0], x[1][1], x[2][1]), (x[2][0], x[2][1], x[2][2]))
 
 
 def _matrix(rows: Sequence[Sequence[Expr]]) -> Matrix:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from arms_support import ARMS, inputs, model
 from c_support import C_COMPILERS, CXX_COMPILERS, WARNINGS, one_source, run, write
+from peers import growing
 
 from modelgen.backends import Provenance, c_files
 from modelgen.backends.c.batch import SHARED
@@ -187,6 +188,16 @@ def _compare(called: Called, states: list[list[np.ndarray]], wrong: list[int], a
         assert error <= allowed * np.linalg.norm(expected), (called.function.name, k)
         union |= expected_status
     assert returned == union
+
+
+@vectors
+def test_every_row_of_a_long_arms_regressor_is_found(tmp_path: Path) -> None:
+    made = build_model(growing.arm("chain", 18), Options(derivatives=False, watch=False))
+    (f,) = [f for f in made.functions if f.name == "regressor"]
+    made = replace(made, functions=(f,), batch=(f.name,))
+    write(c_files(made, PROVENANCE), tmp_path)
+    called = Called(library(tmp_path, made.arm.name, "double", 32), made.arm.name, f, "float64")
+    _compare(called, [inputs(made, f, np.random.default_rng(5)) for _ in range(9)], [], AGREEMENT["double"])
 
 
 @vectors

@@ -15,6 +15,7 @@ from modelgen.backends.c.dialect import INDENT, OUTPUT_LIMIT, CDialect, arrays, 
 from modelgen.backends.c.lengths import argument_length
 from modelgen.backends.c.pairs import Pair, pairs
 from modelgen.backends.c.source import checked_output
+from modelgen.backends.c.walk import column_walk
 from modelgen.backends.elements import Element, local_names
 from modelgen.backends.text import wrapped_code
 from modelgen.functions.objects import Argument, Function, Model, least_guarded
@@ -144,10 +145,15 @@ def _block(model: Model, function: Function) -> list[str]:
         lines.append(f"{INDENT}{arm}_lanes_t total = {dialect.constant(0.0)};")
     maybe = ["n", *(a.name for a in function.arguments if a.size and a.name in SHARED)]
     lines += [f"{INDENT}(void){name};" for name in maybe]
+    lines += dialect.walk.begin() if dialect.walk else []
     lines += [dialect.pair(pair) for pair in together]
     lines += body(replace(function, program=rest), dialect.named, dialect)
-    for output, missing in unset(function).items():
-        lines += [dialect.zero(output, index) for index in missing]
+    if dialect.walk:
+        lines += [line for column in list(dialect.walk.zeros) for line in dialect.walk.to(column)]
+    else:
+        lines += [
+            dialect.zero(output, index) for output, missing in unset(function).items() for index in missing
+        ]
     if dialect.checked:  # as `bounded` of the private header has it of every output
         lines.append(f"{INDENT}good &= total <= {dialect.constant(OUTPUT_LIMIT)};")
     return [*lines, f"{INDENT}return {arm}_lanes_every(good);"]
@@ -181,6 +187,7 @@ class _Lanes(CDialect):
         super().__init__(arm, function, named)
         self.real = f"const {arm}_lanes_t"
         self.checked = checked
+        self.walk = column_walk(arm, function)
 
     def constant(self, value: float) -> str:
         """Write a number as a literal in every lane."""
@@ -202,7 +209,11 @@ class _Lanes(CDialect):
     def store(self, output: str, index: int, text: str) -> str:
         """Store an element, and add up the magnitudes where they are tested."""
         put = f"total += {self.arm}_lanes_put" if self.checked else f"{self.arm}_lanes_store"
-        return wrapped_code(f"{put}({self._place(output, index)}, {text});", INDENT, INDENT * 2)
+        before, place = [], self._place(output, index)
+        if self.walk:
+            row, column = self.walk.split(index)
+            before, place = self.walk.to(column), self.walk.place(row)
+        return "\n".join([*before, wrapped_code(f"{put}({place}, {text});", INDENT, INDENT * 2)])
 
     def zero(self, output: str, index: int) -> str:
         """Store an element that is always zero."""
