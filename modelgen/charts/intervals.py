@@ -10,7 +10,7 @@ from modelgen.charts.ticks import anchored, ticks, written
 
 WIDTH = 440
 _LINE, _TOP, _BOTTOM = 19, 6, 40
-_LETTER = 6.8
+_LETTER = 8.6  # width of a capital, as large as narrow screens have it [pixel]
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
     ]
     answers: Parts = [
         ("What was found", [Text(said), *branch]),
-        ("Described and calibrated", [Grid("Lever as described and calibrated", heads, rows)]),
+        ("Described and calibrated", [Grid("Lever as described and calibrated", heads, rows, folds=True)]),
         ("What is uncertain", weak or [Text("The angles and the measured lengths determine every value.")]),
         (
             "What to do next",

@@ -143,7 +143,7 @@ def _values(d: Diagnosis, c: NamedCause) -> Grid:
         )
         for name, e in legible(c.parameters).items()
     ]
-    return Grid(f"Values of {titled(d.arm, c.effect, c.joint)}", _VALUES, rows)
+    return Grid(f"Values of {titled(d.arm, c.effect, c.joint)}", _VALUES, rows, folds=True)
 
 
 def _mark(c: Check) -> tuple[str, str, str]:

@@ -42,11 +42,11 @@ _CANDIDATES = (
 _MOTION = (
     ("joint", "left"),
     ("F_gof before", "right"),
-    ("after", "right"),
+    ("F_gof after", "right"),
     ("MAE before", "right"),
-    ("after", "right"),
+    ("MAE after", "right"),
     ("RMSE before", "right"),
-    ("after", "right"),
+    ("RMSE after", "right"),
 )
 _PARAMETERS = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"))
 _RECORDS = (("record", "left"), ("use", "left"), ("samples", "right"), ("rate [Hz]", "right"))
@@ -146,7 +146,7 @@ def _simulation(d: Diagnosis) -> list[Part]:
         for j in range(len(one.f_gof))
     ]
     text = f"{_SIMULATED[d.test.prepared.input is None]}: {_FIT}"
-    return [Text(text), Grid("Simulated motion", _MOTION, rows), block(replayed(d))]
+    return [Text(text), Grid("Simulated motion", _MOTION, rows, folds=True), block(replayed(d))]
 
 
 def _fit(percent: float) -> str:
@@ -190,9 +190,9 @@ def _records(d: Diagnosis) -> Grid:
     every = (*d.log.train, *d.log.test)
     rows = [(r["name"], r["use"], str(r["samples"]), f"{r['rate']:g}") for r in d.log.to_json()["records"]]
     if all(x.begins is None for x in every):
-        return Grid(f"Records. {_UNDATED}", _RECORDS, rows)
+        return Grid(f"Records. {_UNDATED}", _RECORDS, rows, folds=True)
     dated = [(*row, _instant(x.begins)) for row, x in zip(rows, every, strict=True)]
-    return Grid("Records", (*_RECORDS, _BEGINS), dated)
+    return Grid("Records", (*_RECORDS, _BEGINS), dated, folds=True)
 
 
 def _instant(begins: float | None) -> str:

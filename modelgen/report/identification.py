@@ -72,7 +72,12 @@ def report(
         share = listed(f"{x:z.1f} % at {n}" for x, n in zip(test.nrmse_percent, names, strict=True))
         errors = [
             Text(f"On records that it has not seen, the model misses {share} of the effort (NRMSE)."),
-            Grid("Errors on the test records", heads, [(t, *cells) for t, cells in models(test, others)]),
+            Grid(
+                "Errors on the test records",
+                heads,
+                [(t, *cells) for t, cells in models(test, others)],
+                folds=True,
+            ),
             Text("RMSE, in brackets NRMSE in % of the effort.", "quiet"),
         ]
         if others:
@@ -139,10 +144,10 @@ def _uncertain(found: Identification) -> list[Any]:
         table = [row[1:] for row in rows]
         parts += [
             Text("What the standard deviation of these parameters moves in the effort:"),
-            Grid("Poorly determined parameters", heads, table[:_SHOWN]),
+            Grid("Poorly determined parameters", heads, table[:_SHOWN], folds=True),
         ]
         if table[_SHOWN:]:
-            more = Grid("Further poorly determined parameters", heads, table[_SHOWN:])
+            more = Grid("Further poorly determined parameters", heads, table[_SHOWN:], folds=True)
             parts.append(Folded(f"And {len(table) - _SHOWN} more, that move less", [more], printed=False))
     parts += [Text(text) for text in helpful(found)]
     return parts or [Text("No parameter is uncertain by what would matter in the effort.")]

@@ -55,8 +55,8 @@ def report(found: Refinement, call: Call) -> str:
         )
         for k, joint in enumerate(names)
     ]
-    heads = [("joint", "left"), ("F_gof % before", "right"), ("after", "right")]
-    heads += [("RMSE before", "right"), ("after", "right")]
+    heads = [("joint", "left"), ("F_gof % before", "right"), ("F_gof % after", "right")]
+    heads += [("RMSE before", "right"), ("RMSE after", "right")]
     free = [x for x in found.parameters if x.std is not None]
     tuned = f"{len(free)} of {len(found.parameters)}"
     steps = f"after {found.rounds} steps"
@@ -69,7 +69,7 @@ def report(found: Refinement, call: Call) -> str:
         (
             "How well it moves",
             [
-                Grid("Simulated motion", heads, rows),
+                Grid("Simulated motion", heads, rows, folds=True),
                 Text(
                     "Goodness of fit 100 (1 - |y - simulated| / |y - mean y|), and RMSE of the positions, of "
                     "whole parts simulated from their beginning.",
@@ -99,7 +99,7 @@ def report(found: Refinement, call: Call) -> str:
     columns += [("moved by std", "right"), ("unit", "left"), ("std moves the motion by (RMS)", "left")]
     sections: Parts = [
         ("Measured against simulated motion", [block(motion(found))]),
-        ("Parameters", [Grid("Parameters", columns, table)]),
+        ("Parameters", [Grid("Parameters", columns, table, folds=True)]),
     ]
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
 

@@ -149,6 +149,23 @@ def test_a_table_shows_at_its_edge_that_it_goes_on(scheme: str, pages: Mapping[s
         assert shades(table) == (False, False)
 
 
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_no_table_of_an_answer_needs_scrolling_on_a_phone(name: str, pages: Mapping[str, Path]) -> None:
+    with opened(pages[name], 400) as page:
+        for table in page.locator("dl.answer .table").all():
+            assert _beyond(table) == 0
+
+
+def test_names_beside_their_values_are_whole_on_a_phone(pages: Mapping[str, Path]) -> None:
+    with opened(pages["identify"], 400) as page:
+        picture = page.locator("svg.rows").first.bounding_box()
+        assert picture is not None
+        for name in page.locator("svg.rows text[text-anchor=end]").all():
+            box = name.bounding_box()
+            assert box is not None
+            assert box["x"] >= picture["x"]
+
+
 def _beyond(table: Locator) -> int:
     found: int = table.evaluate("t => t.scrollWidth - t.clientWidth")
     return found
