@@ -10,6 +10,7 @@ from modelgen.identification.objects import MATTERS, POOR, Estimate, Identificat
 
 CLEARLY = 3.0  # standard deviations
 _NAMED = 4  # parameters beside the worst
+_WORST = 5  # poorly determined parameters that are named with their effort
 # What shows a parameter, by the letters that its standard parameter begins with; the first that fits.
 _SHOWN_BY = (
     (("FV", "FA", "FN"), "a wider range of speeds"),
@@ -24,7 +25,10 @@ def verdict(found: Identification) -> str:
     worse, lost = found.poor(), _lost(found)
     text = [*questions(found), headline(found)]
     if worse:
-        text.append(f"Poorly determined: {', '.join(_doubtful(found, k) for k, _ in worse)}.")
+        worst = sorted(worse, key=lambda pair: -_moved(found, *pair))
+        named = ", ".join(_doubtful(found, k) for k, _ in worst[:_WORST])
+        left = ", ".join(e.name for _, e in worst[_WORST:])
+        text.append(f"Poorly determined: {named}{f'; less in the effort: {left}' if left else ''}.")
     if lost:
         text.append(f"Not determined by these records, set to zero: {', '.join(e.name for e in lost)}.")
     return " ".join([*text, *remarks(found), *helpful(found)])
@@ -119,6 +123,11 @@ def helpful(found: Identification) -> list[str]:
 
 def _lost(found: Identification) -> list[Estimate]:
     return [e for e in found.estimates if e.std is None and not e.dropped]
+
+
+def _moved(found: Identification, k: int, e: Estimate) -> float:
+    """Share of the effort in % that a standard deviation moves, zero where no test record says so."""
+    return 0.0 if found.test is None else found.test.in_effort(k, e.std or 0.0)[1]
 
 
 def _doubtful(found: Identification, k: int) -> str:

@@ -54,6 +54,19 @@ def test_the_worst_is_named_with_what_it_makes_of_the_effort(found: Identificati
     assert said.startswith(f"2 of the {len(names)} parameters")
 
 
+def test_of_many_poorly_determined_parameters_the_worst_have_their_effort(found: Identification) -> None:
+    """Every one is named, those that move the effort most first."""
+    poor = replace(found, estimates=tuple(replace(e, std=5.0 * abs(e.value)) for e in found.estimates))
+    assert poor.test is not None
+    moved = {e.name: poor.test.in_effort(k, e.std or 0.0)[1] for k, e in poor.poor()}
+    worst = sorted(moved, key=lambda name: -moved[name])
+    assert len(worst) > 5
+    text = verdict(poor).partition("Poorly determined: ")[2]
+    first, _, rest = text.partition("; less in the effort: ")
+    assert [part.split(" (")[0] for part in first.split("), ")] == worst[:5]
+    assert rest.partition(".")[0].split(", ") == worst[5:]
+
+
 def test_what_moves_no_effort_or_may_be_chance_is_not_named(found: Identification) -> None:
     assert contradicting(shifted(found, MX2R=2.9)) == []
     assert found.test is not None
