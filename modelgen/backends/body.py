@@ -35,11 +35,12 @@ def body(
     named: Mapping[str, Sequence[Element | None]],
     dialect: Statements,
 ) -> Iterator[str]:
-    """The statements in print. An element with a name gets it right before its first use."""
+    """The statements in print. An element with a name in `named` gets it right before its first use."""
     loaded: set[tuple[str, int]] = set()
     said = ""
+    loads = any(element is not None for elements in named.values() for element in elements)
     for statement in function.program.statements:
-        for vector, index in inputs(statement.term):
+        for vector, index in inputs(statement.term) if loads else ():
             elements = named.get(vector, ())
             element = elements[index] if elements else None
             if element is not None and (vector, index) not in loaded:

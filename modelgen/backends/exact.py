@@ -116,7 +116,11 @@ class ExactFunction:
         values = [_ZERO] * len(self._steps) + [Decimal(float(x)) for x in reversed(leaves)]
         with localcontext(CONTEXT):
             for place, (call, operands) in enumerate(self._steps):
-                values[place] = call(*[values[operand] for operand in operands])
+                match operands:
+                    case x, y:
+                        values[place] = call(values[x], values[y])
+                    case _:
+                        values[place] = call(*[values[operand] for operand in operands])
             if not all(values[place] > least for place, least in self._guards):
                 return None
         places = [self._outputs.get((o.name, i)) for o in self.function.outputs for i in range(o.size)]

@@ -21,7 +21,7 @@ BINARY = frozenset({ADD, MUL, DIV})
 INLINE_SIZE = 6  # leaves of an expression printed on one line
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Statement:
     """`target` is a temporary's number, (output name, element), or ("guard", bit).
 
@@ -31,7 +31,11 @@ class Statement:
 
     target: int | tuple[str, int]
     term: Term
-    note: str = field(default="", compare=False, repr=False)
+    note: str = field(default="", compare=False)
+
+    def __repr__(self) -> str:
+        """As a dataclass has it, without the note."""
+        return f"Statement(target={self.target!r}, term={self.term!r})"
 
 
 def read(term: Term) -> list[int]:

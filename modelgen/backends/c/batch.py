@@ -147,7 +147,7 @@ def _block(model: Model, function: Function) -> list[str]:
     lines += [f"{INDENT}(void){name};" for name in maybe]
     lines += dialect.walk.begin() if dialect.walk else []
     lines += [dialect.pair(pair) for pair in together]
-    lines += body(replace(function, program=rest), dialect.named, dialect)
+    lines += body(replace(function, program=rest), {}, dialect)
     if dialect.walk:
         lines += [line for column in list(dialect.walk.zeros) for line in dialect.walk.to(column)]
     else:

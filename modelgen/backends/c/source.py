@@ -34,7 +34,7 @@ def statements(
     lines += [dialect.leave(f"status != {macro}_STATUS_OK", "status"), ""]
     together, rest = pairs(function.program)
     lines += [dialect.pair(pair) for pair in together]
-    lines += body(replace(function, program=rest), named, dialect)
+    lines += body(replace(function, program=rest), {}, dialect)  # names are enumerators, see `indices`
     lines += _zeros(arm, function, dialect)
     if status:
         tests = [f"!{arm}_bounded({array}, {size})" for array, size in arrays(function).items()]
