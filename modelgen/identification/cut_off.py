@@ -12,14 +12,14 @@ Amemiya 1973).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Chosen, Prepared, Record, Settings, choose, prepare
 from modelgen.dataset.processing.rounding import LONGEST, resolution
-from modelgen.dataset.processing.saturation import CUT_OFF, FEWEST, ends_of, saturated
+from modelgen.dataset.processing.saturation import CUT_OFF, FEWEST, ends_of, saturated, standing_at
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
@@ -30,6 +30,11 @@ from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
 from modelgen.regression.censored import Samples, censored
 from modelgen.regression.least_squares import Solution
+
+
+class CutOffError(InputError):
+    """Efforts that are cut off so often that the rest does not determine the parameters."""
+
 
 BETTER = 0.85  # of the squares that a fit to all samples leaves, that clipping may leave to be believed
 LEVELS = 4  # of an effort, with fewer of which nothing is known of what is between
@@ -44,35 +49,76 @@ def without_cut_off(
 ) -> tuple[list[Record], list[Record]]:
     """The records with the samples named at which efforts are cut off, and a remark where the model says so.
 
-    Records as they are where no effort stands at its highest or lowest reading, or these cannot tell.
+    Records as they are where no effort stands at its highest or lowest reading, or these cannot tell. Raises
+    InputError where the others do not determine the parameters.
     """
     found = list(train), list(test)
     if any(r.input is None for r in train):
         return found
     try:
         chosen = choose(train, settings)
-        prepared, tested = ([_whole(r, chosen) for r in part] for part in (train, test))
-        ends = list(_ends(prepared))
-        if not ends:
-            return found
-        options = Options().evaluated
-        model, evaluator = build_model(arm, options), Evaluator(reduced(arm, options))
-        fit = _Fit(prepared, ends, model, evaluator)
-        ends = fit.cut()
-        beyond = fit.without(ends) if ends else None
+        prepared, tested = ([uncut(r, chosen) for r in part] for part in (train, test))
+        limits = limits_of(prepared, list(ends_in(prepared)), arm)
+    except CutOffError:
+        raise
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return found  # what is wrong is said where the parameters are found
-    if beyond is None:
+    if limits is None:
         return found
-    flags, unseen = ([_left_out(p, beyond.of(p), ends) for p in part] for part in (prepared, tested))
-    names = [model.arm.joints[i].name for i in model.arm.coordinates]
-    said = tuple(_remarks(prepared, flags, ends, names))
+    flags, unseen = ([limits.of(p) for p in part] for part in (prepared, tested))
+    said = limits.remarks(prepared, flags)
     fitted = [replace(r, cut_off=x, remarks=(*r.remarks, *said)) for r, x in zip(train, flags, strict=True)]
     held = [replace(r, cut_off=x) for r, x in zip(test, unseen, strict=True)]
     return fitted, held
 
 
-def _whole(record: Record, chosen: Chosen) -> Prepared:
+@dataclass(frozen=True)
+class Limits:
+    """Ends at which efforts are cut off, and what tells the samples. names: of the joints."""
+
+    ends: Sequence[End]
+    beyond: Beyond
+    names: Sequence[str]
+
+    def of(self, p: Prepared, levels: Sequence[Sequence[float]] | None = None) -> NDArray[np.bool_]:
+        """Samples (N, n) beyond the limits, and those of the other joints as the readings alone show them.
+
+        levels: readings by joint at which these show it; None: to be read off the record.
+        """
+        found = self.beyond.of(p)
+        for j in set(range(p.n)) - {e.joint for e in self.ends}:
+            logged = logged_of(p)[:, j]
+            found[:, j] = (
+                saturated(logged, p.record.q[:, j]) if levels is None else standing_at(logged, levels[j])
+            )
+        return found
+
+    def remarks(self, prepared: Sequence[Prepared], flags: Sequence[NDArray[np.bool_]]) -> tuple[str, ...]:
+        """What is left out of records, of which flags (N, n) say what it is."""
+        return tuple(_remarks(prepared, flags, self.ends, self.names))
+
+
+def limits_of(prepared: Sequence[Prepared], ends: Sequence[End], arm: Arm) -> Limits | None:
+    """Limits among the ends that the model shows in records; None where there are none.
+
+    Raises CutOffError where what is not cut off does not determine the parameters.
+    """
+    if not ends:
+        return None
+    options = Options().evaluated
+    model, evaluator = build_model(arm, options), Evaluator(reduced(arm, options))
+    fit = _Fit(prepared, ends, model, evaluator)
+    shown = fit.cut()
+    if not shown:
+        return None
+    names = model.arm.coordinate_names
+    beyond = fit.without(shown)
+    if beyond is None:
+        raise CutOffError(f"{prepared[0].record.name}: {_too_much(prepared, shown, names)}")
+    return Limits(shown, beyond, names)
+
+
+def uncut(record: Record, chosen: Chosen) -> Prepared:
     """The record, prepared as if no effort were cut off, and with positions as smooth as the rows are: what a
     single sample asks for has all noise of its acceleration.
     """
@@ -80,15 +126,7 @@ def _whole(record: Record, chosen: Chosen) -> Prepared:
     return prepare(replace(record, cut_off=np.zeros(record.q.shape, dtype=bool)), smooth)
 
 
-def _left_out(p: Prepared, beyond: NDArray[np.bool_], ends: Sequence[End]) -> NDArray[np.bool_]:
-    """Samples (N, n) beyond the limits, and those of the other joints as the readings alone show them."""
-    found = beyond.copy()
-    for j in set(range(p.n)) - {e.joint for e in ends}:
-        found[:, j] = saturated(logged_of(p)[:, j], p.record.q[:, j])
-    return found
-
-
-def _ends(prepared: Sequence[Prepared]) -> Iterator[End]:
+def ends_in(prepared: Sequence[Prepared]) -> Iterator[End]:
     """Readings at which an effort stands as often as one that is cut off does at least."""
     for j in range(prepared[0].n):
         logged = np.concatenate([logged_of(p)[p.awake[:, j], j] for p in prepared])
@@ -105,6 +143,21 @@ def _ends(prepared: Sequence[Prepared]) -> Iterator[End]:
                 yield End(j, sign, float(levels[at]), step, float(levels[at]) in shown)
 
 
+def _too_much(prepared: Sequence[Prepared], ends: Sequence[End], names: Sequence[str]) -> str:
+    """What there is to say where what is not cut off does not determine the parameters."""
+    said = []
+    for e in ends:
+        logged = np.concatenate([logged_of(p)[p.awake[:, e.joint], e.joint] for p in prepared])
+        share = 100.0 * float(np.mean(logged == e.reading))
+        said.append(
+            f"{names[e.joint]} at {e.reading:.6g} {prepared[0].effort_unit[e.joint]} in {share:.2g} %"
+        )
+    return (
+        f"efforts are cut off, that of {', of '.join(said)} of the moving samples, and the others do not "
+        "determine the parameters; record motions with smaller efforts, or a wider range of the readings"
+    )
+
+
 def _remarks(
     prepared: Sequence[Prepared],
     flags: Sequence[NDArray[np.bool_]],
@@ -118,7 +171,7 @@ def _remarks(
         readings = " and ".join(f"{x:.6g}" for x in own)
         yield (
             f"the effort of {names[j]} is cut off at {readings} {unit}: the model asks for more, or may, in "
-            f"{100 * share:.2g} % of the samples, which are left out"
+            f"{100 * share:.3g} % of the samples, which are left out"
         )
 
 

@@ -14,6 +14,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model, grouped
 from modelgen.functions.nominal import nominal_links
+from modelgen.identification.objects import Identification
 from modelgen.numeric import Array
 
 POSES = 60  # of the records, at which inertia and weight are looked at
@@ -22,6 +23,8 @@ CLEARLY = 3.0  # standard deviations
 FACTOR = 5.0  # between the weight found and that of the nominal links, from which on it is asked about
 ALONE = 0.8  # of the power of what differs, that another size of one link explains if it is asked about
 NOTABLE = 0.02  # of the largest weight at a joint [N m, N], below which that at another is not compared
+WORSE = 3.0  # times the error of what was fitted, from which on that of the test records is asked about
+LARGE = 10.0  # % of the effort, likewise
 LINK = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
 
 
@@ -50,6 +53,25 @@ def doubts(
     gain = gains(model.arm, q)
     weight = _weight(model, gain, at_rest, links, theta, determined)
     return [*found, *(weight or _one_link(model, along * gain[:, :, None], links, theta, determined))]
+
+
+def worse_on_test(found: Identification, train: Sequence[Prepared]) -> list[str]:
+    """The question about joints whose efforts are predicted far worse on test records than those fitted."""
+    test = found.test
+    if test is None or not np.all(np.isfinite(found.solution.sigma)):
+        return []
+    names, said = found.arm.coordinate_names, []
+    for j, name in enumerate(names):
+        gain = 1.0 if train[0].gain is None else float(np.sqrt(np.mean(train[0].gain[:, j] ** 2)))
+        fitted = float(found.solution.sigma[j]) * gain
+        times = float(test.rmse[j]) / max(fitted, 1e-300)
+        if times > WORSE and test.nrmse_percent[j] > LARGE:
+            said.append(
+                f"The error at {name} is {test.nrmse_percent[j]:.0f} % of its effort on the test records, "
+                f"{times:.0f} times what it is on those fitted: are they of the same arm, read alike, and "
+                "what does the description lack (modelgen diagnose)?"
+            )
+    return said
 
 
 def check_sign(

@@ -3,119 +3,113 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import combinations
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from modelgen.dataset import Prepared, Record, drives_of, prepare
+from modelgen.dataset import Prepared
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
-from modelgen.identification.validation import regression_of
+from modelgen.identification.readings import ZERO, amounts, readings
+from modelgen.identification.unexplained import POOR, Unexplained, unexplained
 from modelgen.numeric import Array
 
-POOR = 0.15  # of the efforts of a joint, unexplained, from which on another reading is asked for
-SOME = 0.05  # of them, that are unexplained at either joint of two that may be exchanged
 BETTER = 0.33  # of what is unexplained, that another reading may leave to be believed
-TURN = 2 * math.pi  # rad, or m
+HARDLY = 0.5  # of the changes of a joint's efforts, unexplained, that is asked about
+APART = 3.0  # times what fits to each record leave, from which on one to all is asked about
+NOTABLE = 2.0  # % of the effort, likewise
 ROWS = 100  # per parameter, of a record that is asked
 
 
 @dataclass(frozen=True)
-class _Reading:
-    record: Record
-    question: str
-
-
-def check_reading(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> None:
-    """Ask about positions in degrees, motor angles named joint angles, and exchanged columns of two joints.
-
-    Where the model explains little of the efforts of a joint, each such reading of the first record is fitted
-    too, and believed where it leaves far less. Raises InputError with the question.
+class Asked:
+    """questions: about what the records hold. alone: RMS (n,) that fits to each record alone leave of the
+    inputs, through the filter; None where they were not fitted so, or there is one record alone.
     """
-    first = train[0].record
-    if first.input is None or first.arm is None:
-        return
-    chosen = train[0].settings
-    enough = 2 * chosen.trimmed(first.step) + ROWS * len(model.grouping.base) * chosen.factor
-    record = first.part(0, min(len(first.t), enough))
-    left = _unexplained(record, train[0], model, evaluator)
-    if left is None:
-        return
-    if not (left > POOR).any():
-        return
-    total, found = float(np.sqrt(np.mean(left**2))), []
-    for reading in _readings(record, left):
-        other = _unexplained(reading.record, train[0], model, evaluator)
+
+    questions: tuple[str, ...] = ()
+    alone: Array | None = None
+
+
+def check_reading(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> Asked:
+    """Ask about positions in degrees, motor angles named joint angles or the other way round, positions
+    counted the other way, efforts without their sign, and exchanged columns of two joints.
+
+    Where the model explains little of the efforts of a joint in a record, each such reading of it is fitted
+    too, and believed where it leaves far less. Questions about joints of which hardly anything is explained,
+    however the log is read. Raises InputError with the question.
+    """
+    if any(p.record.input is None or p.record.arm is None for p in train):
+        return Asked()
+    fits = [_fit(p, model, evaluator) for p in train]
+    questions = [x for p, fit in zip(train, fits, strict=True) if fit is not None for x in _hardly(p, fit)]
+    known = [fit for fit in fits if fit is not None]
+    if len(train) < 2 or len(known) < len(train):
+        return Asked(tuple(questions))
+    return Asked(tuple(questions), np.sqrt(np.mean([fit.error**2 for fit in known], axis=0)))
+
+
+def _fit(p: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:
+    """What a fit to a record leaves, None where it moves too little. Raises InputError with a question."""
+    chosen, whole = p.settings, p.record
+    enough = 2 * chosen.trimmed(whole.step) + ROWS * len(model.grouping.base) * chosen.factor
+    record = whole.part(0, min(len(whole.t), enough))
+    fit = unexplained(record, p, model, evaluator)
+    if fit is None or not fit.poor.any():
+        return fit
+    total, found = float(np.sqrt(np.mean(fit.share**2))), []
+    for reading in (*readings(record, fit), *amounts(record, fit, p, model, evaluator)):
+        other = unexplained(reading.record, p, model, evaluator)
         if other is not None:
-            found.append((float(np.sqrt(np.mean(other**2))), reading.question))
+            found.append((float(np.sqrt(np.mean(other.share**2))), reading.question))
     best, question = min(found, default=(math.inf, ""))
     if best < min(BETTER * total, POOR):
         raise InputError(
-            f"{first.name}: {question}? Then {100 * best:.2g} % of the efforts are left unexplained, as "
+            f"{whole.name}: {question}? Then {100 * best:.2g} % of the efforts are left unexplained, as "
             f"the log stands {100 * total:.2g} %; a mapping file (--mapping) says what each column is"
         )
+    return fit
 
 
-def _unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluator) -> Array | None:
-    """RMS left of the efforts over theirs (n,), 0 for joints at rest; None where they cannot be read so."""
-    try:
-        prepared = prepare(record, like.settings)
-        p = len(model.grouping.base)
-        regression = regression_of(evaluator, model, [prepared], np.zeros(p))
-        if sum(int(m.sum()) for m in regression.moving) < 3 * p:
-            return None
-        theta = regression.least_squares()
-    except (InputError, np.linalg.LinAlgError, FloatingPointError):
-        return None
-    error, effort, moving = regression.residuals(theta)[0], regression.effort[0], regression.moving[0]
-    shares = np.zeros(record.n)
-    for j in range(record.n):
-        rows = moving[:, j]
-        if rows.any():
-            size = max(float(np.linalg.norm(effort[rows, j])), 1e-300)
-            shares[j] = float(np.linalg.norm(error[rows, j])) / size
-    return shares
-
-
-def _readings(record: Record, left: Array) -> Iterator[_Reading]:
-    """Other readings of a record, each with its question. left: share of the efforts (n,) unexplained."""
-    arm = record.arm
-    assert arm is not None
-    assert record.input is not None
-    assert record.gain is not None
-    joints = [arm.joints[i] for i in arm.coordinates]
-    sides = record.motor_side or (False,) * record.n
-    # Of small positions the model is linear in them, as a spring is: none but wide motions are asked.
-    wide = [bool(np.ptp(record.q[:, k]) > TURN) and not sides[k] for k in range(record.n)]
-    angles = [k for k, j in enumerate(joints) if j.type == "revolute" and wide[k]]
-    if angles:
-        q = record.q.copy()
-        q[:, angles] *= math.pi / 180
-        yield _Reading(replace(record, q=q), "are the positions in degrees")
-    geared = [
-        k
-        for k, drive in enumerate(drives_of(arm))
-        if wide[k] and drive.ratio is not None and abs(drive.ratio) > 1.0
-    ]
-    for some in [geared, *([k] for k in geared if len(geared) > 1)]:
-        if some:
-            q = record.q.copy()
-            q[:, some] /= np.array([drives_of(arm)[k].ratio for k in some], dtype=float)
-            names = ", ".join(f"q{k + 1}" for k in some)
-            yield _Reading(replace(record, q=q), f"are the positions {names} those of the motors (qm<n>)")
-    for a, b in combinations(range(record.n), 2):
-        if max(left[a], left[b]) <= POOR or min(left[a], left[b]) <= SOME:
+def _hardly(p: Prepared, fit: Unexplained) -> list[str]:
+    """Questions about joints of whose efforts' changes hardly anything is explained that is not noise."""
+    questions, logged = [], p.record.logged_effort
+    assert p.record.arm is not None
+    assert logged is not None
+    for j, name in enumerate(p.record.arm.coordinate_names):
+        moving = logged[p.awake[:, j], j]
+        if not len(moving) or not fit.changes[j]:
             continue
-        both = f"joints {joints[a].name} and {joints[b].name}"
-        order = list(range(record.n))
-        order[a], order[b] = b, a
-        logged = (record.input * record.gain)[:, order]
-        yield _Reading(replace(record, input=logged / record.gain), f"are the efforts of {both} exchanged")
-        if sides[a] == sides[b]:
-            q, motor = record.q[:, order], record.motor[:, order]
-            yield _Reading(replace(record, q=q, motor=motor), f"are the positions of {both} exchanged")
-            swapped = replace(record, q=q, motor=motor, input=logged / record.gain)
-            yield _Reading(swapped, f"are the columns of {both} exchanged")
+        least, share = float(moving.min()), fit.error[j] / fit.changes[j]
+        if share > HARDLY and fit.no_noise[j]:
+            one_side = 0.0 <= least < ZERO * float(moving.max())
+            lost = f" They are never below {least:.3g}: is their sign lost?" if one_side else ""
+            questions.append(
+                f"{p.record.name}: the model leaves {100 * min(share, 1.0):.0f} % of the changes of the "
+                f"effort of {name} unexplained: are its columns what they are read as, and what does the "
+                f"description lack (modelgen diagnose)?{lost}"
+            )
+    return questions
+
+
+def disagreeing(train: Sequence[Prepared], alone: Array | None, together: Array) -> list[str]:
+    """The question about joints of which fits to each record alone leave far less than one to all.
+
+    alone, together: RMS (n,) of the inputs that they leave, through the filter.
+    """
+    if alone is None or train[0].record.arm is None:
+        return []
+    said = []
+    for j, name in enumerate(train[0].record.arm.coordinate_names):
+        efforts = np.concatenate([p.effort[p.moving[:, j], j] for p in train])
+        size = float(np.sqrt(np.mean(efforts**2))) if len(efforts) else 0.0
+        one, all_ = (100.0 * float(x[j]) / max(size, 1e-300) for x in (alone, together))
+        if all_ > max(APART * one, NOTABLE):
+            said.append(
+                f"The training records disagree at {name}: fitted each alone, {one:.2g} % of the effort is "
+                f"left unexplained, together {all_:.2g} %. Are they of one arm, with the same units, signs "
+                "and zeros, and what changes between them?"
+            )
+    return said

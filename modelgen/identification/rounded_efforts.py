@@ -11,11 +11,17 @@ from modelgen.dataset import Prepared
 from modelgen.dataset.processing.rounding import LONGEST, resolution
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
+from modelgen.identification.effort_limits import gain_of, logged_of, motion_of
 from modelgen.numeric import Array
+from modelgen.regression.censored import Samples, censored
 from modelgen.regression.least_squares import Regression, Solution
 
 COARSE = 0.002  # of the efforts' RMS, that rounding is from which on it is looked at
 DRAWS = 6  # of further roundings
+ROUGH = 0.5  # of an effort's deviation, from which on its steps are no noise (Widrow 1961)
+LEVELS = 4  # of an effort, with fewer of which nobody sees whether it is cut off
+SIZES = 4  # rounds of a fit and the size of what it leaves
+SAMPLES = 50_000  # that these fits look at
 
 
 def with_rounding(
@@ -42,7 +48,57 @@ def with_rounding(
         ]
         moved = Regression(errors, columns, regression.moving).least_squares()
         spread[np.ix_(kept, kept)] += np.outer(moved, moved) / DRAWS
+    changed = _by_steps(train, model, evaluator, solution.theta, np.max(steps, axis=0))
+    if changed is not None:
+        spread[np.ix_(kept, kept)] += np.outer(changed[kept], changed[kept])
     return replace(solution, covariance=solution.covariance + spread)
+
+
+def _by_steps(
+    train: Sequence[Prepared], model: Model, evaluator: Evaluator, theta: Array, steps: Array
+) -> Array | None:
+    """What parameters (p,) change where rough efforts are known to be within their steps, not as they stand.
+
+    Both fits are to the same samples before the filter, so that their difference is that of the reading
+    (Hausman 1978). None where no effort has steps (n,) that are large beside what it does.
+    """
+    every = max(1, sum(int(p.awake.sum()) for p in train) // SAMPLES)
+    stepped, plain, rough = [], [], False
+    for j in range(train[0].n):
+        parts = []
+        for p in train:
+            full = np.asarray(evaluator.regressor(model, motion_of(p), theta))[:, j]
+            at = np.flatnonzero(p.awake[:, j])[::every]
+            parts.append((full[at] * gain_of(p)[at, j, None], logged_of(p)[at, j]))
+        columns, effort = (np.concatenate(x) for x in zip(*parts, strict=True))
+        plain.append(Samples(columns, effort, np.zeros(len(effort), dtype=np.intp)))
+        large = bool(steps[j] > ROUGH * np.std(effort)) if len(effort) else False
+        stepped.append(_within(plain[-1], float(steps[j])) if large else plain[-1])
+        rough |= large
+    if not rough:
+        return None
+    one, other = theta, theta
+    for _ in range(SIZES):
+        one, other = censored(stepped, one), censored(plain, other)
+    return np.asarray(one - other)
+
+
+def _within(x: Samples, step: float) -> Samples:
+    """Readings that say within which step the truth was.
+
+    Where there are so few that nobody sees whether they are cut off, the highest and the lowest of them say
+    so much, or so little, at least.
+    """
+    side = np.ones(len(x.value), dtype=np.intp)
+    width = np.full(len(x.value), step)
+    value = x.value - step / 2.0
+    levels = np.unique(x.value)
+    if len(levels) < LEVELS:
+        highest, lowest = x.value == levels[-1], x.value == levels[0]
+        width[highest | lowest] = np.inf
+        side[lowest] = -1
+        value[lowest] += step
+    return Samples(x.columns, value, side, width)
 
 
 def _steps(p: Prepared) -> Array:

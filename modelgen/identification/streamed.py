@@ -19,6 +19,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
+from modelgen.identification.cut_off_streamed import StreamedLimits
 from modelgen.identification.identify import concluded
 from modelgen.identification.objects import Identification
 from modelgen.identification.rows import Rows
@@ -40,12 +41,13 @@ def identify_streamed(
     test: Sequence[Prepared] = (),
     method: str = "wls",
     physical: bool = False,
+    limits: StreamedLimits | None = None,
     progress: Progress | None = None,
 ) -> Identification:
     """Identify as `identify` does, with memory that does not depend on the samples; method "ols" or "wls".
 
-    progress: called with the number of blocks done and of all. Raises InputError as `identify` does, and for
-    a method or an effect that needs all rows at once.
+    limits: what is left out where efforts are cut off. progress: called with the number of blocks done and of
+    all. Raises InputError as `identify` does, and for a method or an effect that needs all rows at once.
     """
     if method not in ("ols", "wls"):
         raise InputError(f"--method {method}: a streamed log knows ols and wls only; give a part, FILE@t0:t1")
@@ -56,7 +58,7 @@ def identify_streamed(
     if {"load", "state"} & {a.name for a in function.arguments}:
         raise InputError(f"{arm.name}: an effect with states or loads needs the whole log; give a part of it")
     n, p = rows.n, rows.p
-    blocks = _Blocks(train, rows, progress)
+    blocks = _Blocks(train, rows, limits, progress)
     own = [Triangle(s.stop - s.start) for s in rows.of_joint]
     for effort, columns, moving in blocks:
         for j, triangle in enumerate(own):
@@ -86,8 +88,10 @@ class _Blocks:
     Those of `part` are kept from the first time on where they fit into KEPT bytes, else computed again.
     """
 
-    def __init__(self, streams: Sequence[Stream], rows: Rows, progress: Progress | None) -> None:
-        self.streams, self.rows, self.progress = streams, rows, progress
+    def __init__(
+        self, streams: Sequence[Stream], rows: Rows, limits: StreamedLimits | None, progress: Progress | None
+    ) -> None:
+        self.streams, self.rows, self.limits, self.progress = streams, rows, limits, progress
         self.count = sum(len(s) for s in streams)
         self.step = max(1, -(-self.count // PART))  # of the blocks that `part` takes
         self.done, self.total = 0, self.count
@@ -120,7 +124,8 @@ class _Blocks:
                 if number % step:
                     continue
                 check_jumps([record])
-                p = prepare(record, stream.settings)
+                whole = record if self.limits is None else self.limits.without(record)
+                p = prepare(whole, stream.settings)
                 effort, columns = self.rows.of(p, zero)
                 yield number, (effort, columns, self.rows.moving(p))
                 self.done += 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -26,23 +26,25 @@ from modelgen.dataset import (
 from modelgen.dataset import preset as processing
 from modelgen.dataset.inspection import RecordsInspected, inspect_records
 from modelgen.dataset.processing.content import check_coarse
-from modelgen.dataset.processing.periods import period_of, with_whole_rows
+from modelgen.dataset.processing.periods import repetition, with_whole_rows
 from modelgen.dataset.processing.sequence import in_sequence
+from modelgen.dataset.processing.splitting import repeats_from
 from modelgen.dataset.reading.jumps import check_jumps
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
-from modelgen.functions import Options, build_model
+from modelgen.functions import Model, Options, build_model
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification.cut_off import without_cut_off
-from modelgen.identification.doubts import check_sign, doubts
+from modelgen.identification.cut_off_streamed import streamed_limits
+from modelgen.identification.doubts import check_sign, doubts, worse_on_test
 from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
-from modelgen.identification.misread import check_reading
+from modelgen.identification.misread import Asked, check_reading, disagreeing
 from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
 from modelgen.identification.output import errors, to_json
+from modelgen.identification.payloads import at_the_origin, payloads_of, without_cut_off_by_payload
 from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.streamed import identify_streamed
 from modelgen.identification.summary import driving
@@ -50,7 +52,6 @@ from modelgen.identification.without_drives import Alternative, without_drives
 from modelgen.options import IdentificationOptions
 from modelgen.progress import Progress, silent
 from modelgen.simulation.tables import reference_of
-from modelgen.simulation.values import numbers
 
 STREAMED = 512 * 1024**2  # bytes of training logs beyond which they are streamed
 
@@ -160,12 +161,16 @@ def _whole(
             one, two = split(training[0])
             training, testing = [one], [two]
     check_jumps([*training, *testing])
-    payloads = _payloads(o.payload, [*train, *test])
+    payloads = payloads_of(o.payload, [*train, *test])
     asked = _settings(o)(1 / training[0].step)
-    periods = [period_of(x, None) for x in training]
+    repeated = [repetition(x) for x in training]
+    periods = [None if found is None else found[1] for found in repeated]
+    training = [
+        x if found is None or not found[0] else replace(x, remarks=(*x.remarks, repeats_from(x, found)))
+        for x, found in zip(training, repeated, strict=True)
+    ]
     chosen = with_whole_rows(choose(training, asked), periods)
-    if not payloads:
-        training, testing = without_cut_off(training, testing, chosen, arm)
+    training, testing = without_cut_off_by_payload(training, testing, payloads, chosen, arm)
     instant = effort_instant([r for k, r in enumerate(training) if k not in payloads] or training, arm)
     training, testing = at_instants(training, instant), at_instants(testing, instant)
     if o.cutoff is None and o.preset == "default":
@@ -195,16 +200,17 @@ def _whole(
         )
 
     model, evaluator = build_model(arm, options.evaluated), Evaluator(reduced(arm, options))
-    if options == Options():
-        check_reading(fitted, model, evaluator)
+    asked_of = _misread(fitted, held, model, evaluator) if options == Options() else Asked()
     found = identified(fitted, held)
     if options == Options():
-        found = replace(found, doubts=_doubts(fitted, found, evaluator))
+        apart = [] if payloads else disagreeing(fitted, asked_of.alone, found.solution.sigma)
+        found = replace(found, doubts=(*asked_of.questions, *apart, *_doubts(fitted, found, evaluator)))
     if instant is not None:
         found = replace(found, doubts=(*found.doubts, *instant.questions()))
+    found = replace(found, doubts=(*found.doubts, *worse_on_test(found, fitted)))
     points = [log for k, log in enumerate([*train, *test]) if len(payloads.get(k, ())) == 1]
     if points:
-        found = replace(found, doubts=(*found.doubts, _at_the_origin(points)))
+        found = replace(found, doubts=(*found.doubts, at_the_origin(points)))
     found = with_noise(found, options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()
     if o.compare_drives:
@@ -218,13 +224,17 @@ def _whole(
     return Outcome(found, others, fitted[0], chosen, log, parts)
 
 
-def _at_the_origin(logs: Sequence[Any]) -> str:
-    """What is assumed of payloads of which the mass alone is given."""
-    names = ", ".join(log if isinstance(log, str) else getattr(log, "name", "a table") for log in logs)
-    return (
-        f"The payload of {names} counts as a point at the origin of the last link's frame: where is it? "
-        "--payload LOG=KG,X,Y,Z says so, in metres in that frame."
-    )
+def _misread(
+    train: Sequence[Prepared], test: Sequence[Prepared], model: Model, evaluator: Evaluator
+) -> Asked:
+    """Questions about training records that may hold something else than is read; test records are asked too.
+
+    Raises InputError.
+    """
+    asked = check_reading(train, model, evaluator)
+    if test:
+        check_reading(test, model, evaluator)
+    return asked
 
 
 def _doubts(train: Sequence[Prepared], found: Identification, evaluator: Evaluator) -> tuple[str, ...]:
@@ -234,35 +244,6 @@ def _doubts(train: Sequence[Prepared], found: Identification, evaluator: Evaluat
     joints = sorted({e.joint for e in driving(plain)})
     check_sign(train, found.model, evaluator, s.theta, s.covariance, s.determined, joints)
     return tuple(doubts(train, found.model, evaluator, s.theta, s.covariance, s.determined))
-
-
-def _payloads(
-    given: Sequence[str] | Mapping[str | int, float | Sequence[float]], logs: Sequence[Any]
-) -> dict[int, list[float]]:
-    """Mass [kg] and, if wanted, x, y, z [m] by number of the log, training logs first.
-
-    given: LOG=M[,X,Y,Z] each, or logs (by what they were given as, or by number) with their values.
-    """
-    pairs: list[tuple[str, str | float | Sequence[float], str]]
-    if isinstance(given, Mapping):
-        pairs = [(str(log), values, f"{log}") for log, values in given.items()]
-    else:
-        pairs = [(text.rpartition("=")[0], text.rpartition("=")[2], text) for text in given]
-    named = [log if isinstance(log, str) else getattr(log, "name", str(k)) for k, log in enumerate(logs)]
-    found: dict[int, list[float]] = {}
-    for log, values, text in pairs:
-        places = [k for k, name in enumerate(named) if log in (name, str(parse(name).path))]
-        if isinstance(given, Mapping) and not places and log.isdecimal() and int(log) < len(named):
-            places = [int(log)]
-        if not log or not places:
-            raise InputError(
-                f"--payload {text}: expected LOG=KG or LOG=KG,X,Y,Z with one of the logs {', '.join(named)}"
-            )
-        mass = numbers("--payload", values)
-        if not mass or mass[0] <= 0:
-            raise InputError(f"--payload {text}: expected a mass above 0 kg")
-        found |= dict.fromkeys(places, mass)
-    return found
 
 
 def _streamed(
@@ -291,8 +272,9 @@ def _streamed(
     first = head.settled(_settings(o)(1 / head.axis.step))
     chosen = first.settings
     streams = [first, *(Stream(spec, arm, chosen, o.mapping) for spec in train[1:])]
-    instant = effort_instant([first.beginning], arm)
-    tests = at_instants([read(spec, arm, o.mapping) for spec in test], instant)
+    limits = streamed_limits(streams, arm)
+    instant = effort_instant([limits.without(first.beginning)], arm)
+    tests = at_instants([limits.beyond(read(spec, arm, o.mapping)) for spec in test], instant)
     check_jumps(tests)
     if instant is not None and instant.known == "data":
         streams = [stream.at_instants(instant.hold) for stream in streams]
@@ -306,12 +288,21 @@ def _streamed(
         test=testing,
         method=o.method,
         physical=o.consistent,
+        limits=limits,
         progress=lambda done, total: progress(doing, done, total),
     )
+    begun = [replace(next(stream.records()), name=stream.spec) for stream in streams]
+    heads = [prepare(limits.without(record), chosen) for record in begun]
+    if options == Options():
+        evaluator = Evaluator(reduced(arm, options))
+        asked_of = _misread(heads, testing, found.model, evaluator)
+        apart = disagreeing(heads, asked_of.alone, found.solution.sigma)
+        about = (*asked_of.questions, *apart, *_doubts(heads, found, evaluator))
+        found = replace(found, doubts=(*about, *worse_on_test(found, heads)))
     if instant is not None:
         found = replace(found, doubts=(*found.doubts, *instant.questions()))
     found = with_noise(found, options, testing, False)
-    heads = [next(iter(stream)) for stream in streams]
+    heads[0] = replace(heads[0], record=limits.remarked(heads[0].record))
     samples = [stream.samples for stream in streams]
     log = inspect_records(heads, tests, chosen, [None] * len(heads), samples, instant)
     return Outcome(found, (), heads[0], chosen, log)

@@ -15,19 +15,21 @@ STEPS = 30  # of Newton's method, at most
 SETTLED = 1e-6  # of the likelihood's logarithm, by which a step changes it at the end
 FAR = 1e6  # deviations: nothing is beyond
 NORMAL = 1.4826  # of normal noise, over the median of its size
+PART = 0.03  # of the width of bounds, that noise is at least where nothing else says how large it is
 SINGULAR = 1e-10  # of the largest eigenvalue, below which samples say nothing of a direction
 
 
 @dataclass(frozen=True)
 class Samples:
     """Samples of one joint. columns: (M, p); value: (M,); side: (M,), 1 where the truth is `value` or more,
-    -1 where it is that or less, 0 where it is what was read. width: by how much more or less at most.
+    -1 where it is that or less, 0 where it is what was read. width: by how much more or less at most, (M,) or
+    one for all.
     """
 
     columns: Array
     value: Array
     side: NDArray[np.intp]
-    width: float = np.inf
+    width: float | Array = np.inf
 
 
 def censored(samples: Sequence[Samples], theta: Array) -> Array:
@@ -57,9 +59,20 @@ def censored(samples: Sequence[Samples], theta: Array) -> Array:
 
 
 def _size(x: Samples, theta: Array) -> float:
-    """Size of what is left of the samples that were read, as few that are far off do not change it."""
-    left = np.abs(x.value - x.columns @ theta)[x.side == 0]
-    return max(NORMAL * float(np.median(left)), 1e-300) if len(left) else 1.0
+    """Size of what is left of the samples that were read, as few that are far off do not change it.
+
+    Where all are known between bounds alone, by how much the fit leaves these, and a part of their width.
+    """
+    off = x.value - x.columns @ theta
+    plain = x.side == 0
+    if plain.any():
+        return max(NORMAL * float(np.median(np.abs(off[plain]))), 1e-300)
+    least = float(np.min(x.width, initial=np.inf))
+    if not np.isfinite(least) or not len(off):
+        return 1.0
+    inside = -x.side * off
+    beyond = np.maximum(np.maximum(-inside, inside - x.width), 0.0)
+    return max(float(np.sqrt(np.mean(beyond**2))), PART * least)
 
 
 def _likelihood(
@@ -72,7 +85,7 @@ def _likelihood(
         plain, sided = x.side == 0, x.side != 0
         total -= 0.5 * float(z[plain] @ z[plain])
         side = x.side[sided]
-        u, width = side * z[sided], min(x.width / size, FAR)
+        u, width = side * z[sided], np.minimum(np.broadcast_to(x.width, z.shape)[sided] / size, FAR)
         share = _log_share(u, width)
         total += float(share.sum())
         near, far = (np.exp(-0.5 * v**2 - 0.5 * np.log(2 * np.pi) - share) for v in (u, u - width))
@@ -84,8 +97,8 @@ def _likelihood(
     return total, slope, bend
 
 
-def _log_share(u: Array, width: float) -> Array:
-    """Logarithm of the share of normal noise between u - width and u, (M,)."""
+def _log_share(u: Array, width: Array) -> Array:
+    """Logarithm of the share of normal noise between u - width and u, (M,) each."""
     # of two bounds on the same side of the mean those below it are told apart
     above = u > width
     high, low = np.where(above, width - u, u), np.where(above, -u, u - width)

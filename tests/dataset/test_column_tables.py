@@ -164,7 +164,10 @@ def test_a_table_is_refused_with_the_words_for_its_file(how: str, arm: Arm, tmp_
         (columns() | {"q1": np.zeros(3)}, "differ in length"),
         (columns() | {"i1": ["a"] * 400}, "in the column i1, expected numbers"),
         (columns() | {"i1": np.zeros((400, 2))}, "found 2 dimensions in the column i1"),
-        (columns() | {"t": np.arange(400).astype("datetime64[ms]")}, "expected numbers; t is in seconds"),
+        (
+            columns() | {"t": np.arange(400).astype(complex)},
+            "found complex128 in the column t, expected numbers",
+        ),
     ],
 )
 def test_what_is_no_table_of_numbers_is_refused(log: Any, words: str, arm: Arm) -> None:
@@ -223,3 +226,56 @@ def test_a_table_imports_no_library_of_tables() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def dated(kind: str, t: np.ndarray) -> Any:
+    """Times (N,) [s] as dates or times of day from a moment of 2026 on."""
+    ns = np.rint(1e9 * t).astype(np.int64)
+    stamps = np.datetime64("2026-03-29T00:59:58", "ns") + ns.astype("timedelta64[ns]")
+    return {
+        "numpy": stamps,
+        "microseconds": stamps.astype("datetime64[us]"),
+        "timedelta": ns.astype("timedelta64[ns]"),
+        "pandas": pandas.Series(stamps),
+        "zone": pandas.Series(stamps).dt.tz_localize("UTC").dt.tz_convert("Europe/Paris"),  # its clock jumps
+        "index": pandas.DatetimeIndex(stamps).tz_localize("UTC").tz_convert("Europe/Paris"),
+        "python": np.array([x.to_pydatetime() for x in pandas.Series(stamps)], dtype=object),
+        "python, zone": [
+            x.to_pydatetime() for x in pandas.Series(stamps).dt.tz_localize("UTC").dt.tz_convert("Asia/Tokyo")
+        ],
+        "pyarrow": pyarrow.chunked_array([pyarrow.array(stamps)]),
+        "pyarrow, zone": pyarrow.array(stamps, type=pyarrow.timestamp("us", tz="Europe/Paris")),
+    }[kind]
+
+
+DATES = ("numpy", "microseconds", "timedelta", "pandas", "zone", "index", "python", "python, zone", "pyarrow")
+
+
+@pytest.mark.parametrize("kind", [*DATES, "pyarrow, zone"])
+def test_dates_are_seconds_from_the_first_one(kind: str, arm: Arm) -> None:
+    table = columns()
+    plain = read(named(table, "log"), arm)
+    found = read(named({**table, "t": dated(kind, table["t"])}, "log"), arm)
+    assert found.t == pytest.approx(plain.t - plain.t[0], abs=1e-9)
+    assert np.array_equal(found.q, plain.q)
+    assert any("t is a date or time: seconds are counted from the first one" in x for x in found.remarks)
+
+
+def test_a_clock_that_was_put_back_is_refused(arm: Arm) -> None:
+    """Local times without their zone on the night that has an hour twice."""
+    table = columns()
+    stamps = dated("numpy", table["t"])
+    stamps[200:] -= np.timedelta64(1, "h")
+    with pytest.raises(InputError, match=r"time runs backwards after t = 1\.99 s"):
+        read(named({**table, "t": stamps}, "log"), arm)
+    stamps[200:] += np.timedelta64(2, "h")
+    with pytest.raises(InputError, match=r"found a gap of 3600 s after t = 1\.99 s"):
+        read(named({**table, "t": stamps}, "log"), arm)
+
+
+def test_a_blank_date_is_refused(arm: Arm) -> None:
+    table = columns()
+    stamps = dated("numpy", table["t"])
+    stamps[7] = np.datetime64("NaT")
+    with pytest.raises(InputError, match="found nan in the column t"):
+        read(named({**table, "t": stamps}, "log"), arm)

@@ -5,8 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from modelgen.dataset import Record, split
+from modelgen.dataset import ColumnTable, Record, split
+from modelgen.dataset.inspection.channels import inspect
 from modelgen.dataset.processing.periods import period_of
+from modelgen.dataset.processing.splitting import repeating
+from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 RATE = 100.0
@@ -79,3 +82,36 @@ def test_a_period_that_is_given_sets_the_boundary() -> None:
     record = moving(6.0, 5.0, 3)
     assert split(record)[1].t[0] == pytest.approx(15.0)
     assert split(record, 10.0)[1].t[0] == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize("given", [False, True])
+@pytest.mark.parametrize("late", [0.05, 0.3, 0.7])
+@pytest.mark.parametrize("period", [10.0, 40 / 3])
+def test_a_record_begins_where_its_motion_repeats(period: float, late: float, given: bool) -> None:
+    """The way into the motion is left out, its periods are not."""
+    record = moving(3.0, period, 3, late * period)
+    part, lag = repeating(record, period if given else None)
+    assert lag == pytest.approx(period * RATE, abs=0.1)
+    assert 0.0 < part.t[0] <= late * period
+    assert np.array_equal(part.q, record.q[len(record.t) - len(part.t) :])
+    assert period_of(part, None) == lag
+    (said,) = part.remarks
+    assert f"every {lag / RATE:.6g} s from t = {part.t[0]:.9g} s on" in said
+    with pytest.raises(InputError, match="does not repeat"):
+        repeating(record, 0.77 * period)
+
+
+@pytest.mark.parametrize("periods", [1.5, 3.0])
+def test_a_record_without_a_way_in_is_as_it_was(periods: float) -> None:
+    record = moving(periods, 10.0, 3)
+    part, lag = repeating(record)
+    assert part is record
+    assert lag == (None if periods < 2 else pytest.approx(10.0 * RATE, abs=0.1))
+
+
+def test_inspect_says_from_where_a_motion_repeats() -> None:
+    record = moving(3.0, 10.0, 3, 4.0)
+    for log in (record, {"t": record.t, "q1": record.q[:, 0], "q2": record.q[:, 1]}):
+        found = inspect(log if isinstance(log, Record) else ColumnTable(log, "log"))
+        assert found.period == pytest.approx(10.0, abs=0.01)
+        assert any("the motion repeats every 10 s from t = " in remark for remark in found.remarks)

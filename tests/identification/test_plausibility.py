@@ -40,14 +40,14 @@ def logs(arm: mg.Arm) -> list[Table]:
     return [log(arm, seed) for seed in (1, 2)]
 
 
-def log(arm: mg.Arm, seed: int) -> Table:
-    """20 s at 100 Hz of the arm as described."""
+def log(arm: mg.Arm, seed: int, centre: float = 0.0) -> Table:
+    """20 s at 100 Hz of the arm as described, about a position of the shoulder."""
     random = np.random.default_rng(seed)
     t = np.arange(2000) / 100
     w = 2 * np.pi * np.outer([0.1, 0.2, 0.3, 0.5], [1.0, 1.1])
     size, phase = random.uniform(0.1, 0.4, w.shape), random.uniform(0, 6, w.shape)
     angle = t[:, None, None] * w + phase
-    q = (size * np.sin(angle)).sum(axis=1)
+    q = (size * np.sin(angle)).sum(axis=1) + np.array([centre, 0.0])
     dq, ddq = (size * w * np.cos(angle)).sum(axis=1), (-size * w**2 * np.sin(angle)).sum(axis=1)
     model = mg.build_model(arm)
     current = np.asarray(
@@ -88,7 +88,92 @@ WRONG: dict[str, Any] = {
         lambda x: x | {"q2": 30 * x["q2"]},
         "are the positions q2 those of the motors",
     ),
+    "joint angles named motor angles": (
+        lambda x: {k.replace("q", "qm"): v for k, v in x.items()},
+        "are the positions qm1, qm2 those of the joints",
+    ),
+    "an encoder that counts the other way": (
+        lambda x: x | {"q2": -x["q2"]},
+        "are the positions of elbow counted the other way",
+    ),
+    "a drive that counts the other way": (
+        lambda x: x | {"q1": -x["q1"], "i1": -x["i1"]},
+        "are positions and efforts of shoulder counted the other way",
+    ),
+    "angles against the base": (
+        lambda x: x | {"q2": x["q1"] + x["q2"]},
+        "are the positions of elbow those of its link against the base, not against shoulder",
+    ),
 }
+
+
+@pytest.mark.parametrize("part", ["train", "test"])
+def test_efforts_without_their_sign_are_asked_about(part: str, arm: mg.Arm) -> None:
+    """Of an arm that hangs, whose efforts are on either side."""
+    logs = {name: log(arm, seed, -np.pi / 2) for name, seed in (("train", 1), ("test", 2))}
+    assert mg.identify(arm, logs["train"], logs["test"]).to_json()["doubts"] == []
+    logs[part] = logs[part] | {name: np.abs(logs[part][name]) for name in ("i1", "i2")}
+    with pytest.raises(mg.InputError, match=f"{part}: are the efforts of .* amounts without their sign"):
+        mg.identify(arm, logs["train"], logs["test"])
+
+
+def test_an_effort_that_is_switched_is_none_of_these(arm: mg.Arm) -> None:
+    """A drive that is switched between two efforts, and moves as the model says."""
+    bang = mg.read_log(switched(arm, 1), arm)
+    found = mg.identify(arm, bang, mg.read_log(switched(arm, 2), arm))
+    truth = mg.build_model(arm).nominal
+    for name, e in found.parameters.items():
+        assert abs(e.value - truth[name]) < 5 * e.std, name
+
+
+def switched(arm: mg.Arm, seed: int) -> Table:
+    """20 s from hanging at rest, both currents switched between two values at random."""
+    random, t = np.random.default_rng(seed), np.arange(2001) / 100
+    signs = np.sign(np.repeat(random.normal(size=(201, 2)), 10, axis=0)[: len(t)])
+    made = mg.simulate(
+        arm,
+        q0=[-np.pi / 2, 0.0],
+        duration=20.0,
+        rate=100.0,
+        inputs={"t": t, "i1": 1.5 * signs[:, 0], "i2": 0.8 * signs[:, 1]},
+        encoder="1048576",
+    )
+    return {name: np.asarray(x) for name, x in made.log.items()}
+
+
+@pytest.mark.parametrize("name", ["i1", "i2", "q2"])
+def test_records_that_disagree_are_asked_about(name: str, arm: mg.Arm, logs: list[Table]) -> None:
+    """Another sign, another unit, another zero in the second of two records, which explain themselves."""
+    other = log(arm, 3)
+    assert mg.identify(arm, [logs[0], other], logs[1]).to_json()["doubts"] == []
+    changed = {"i1": -other["i1"], "i2": 1.3 * other["i2"], "q2": other["q2"] + 0.2}[name]
+    doubts = mg.identify(arm, [logs[0], other | {name: changed}], logs[1]).to_json()["doubts"]
+    joint = "shoulder" if name == "i1" else "elbow"
+    assert any(f"The training records disagree at {joint}" in x for x in doubts)
+
+
+def test_a_record_that_was_read_wrongly_is_asked_about_where_another_was_not(
+    arm: mg.Arm, logs: list[Table]
+) -> None:
+    other = log(arm, 3)
+    with pytest.raises(mg.InputError, match=r"train\[1\]: are the positions of elbow counted the other way"):
+        mg.identify(arm, [logs[0], other | {"q2": -other["q2"]}], logs[1])
+
+
+def test_a_test_record_of_another_arm_is_asked_about(arm: mg.Arm, logs: list[Table]) -> None:
+    train, test = logs
+    doubts = mg.identify(arm, train, test | {"i1": -test["i1"]}).to_json()["doubts"]
+    assert any("The error at shoulder is 200 % of its effort on the test records" in x for x in doubts)
+
+
+def test_an_effort_of_which_nothing_is_explained_is_asked_about(arm: mg.Arm, logs: list[Table]) -> None:
+    random = np.random.default_rng(5)
+    other = np.sin(17.0 * logs[0]["t"]) + 0.1 * random.normal(size=len(logs[0]["t"]))
+    doubts = mg.identify(arm, logs[0] | {"i2": other}, logs[1]).to_json()["doubts"]
+    assert any("of the changes of the effort of elbow unexplained" in x for x in doubts)
+    noise = 0.02 * random.normal(size=(2, len(logs[0]["t"])))
+    doubts = mg.identify(arm, logs[0] | {"i2": logs[0]["i2"] + noise[0]}, logs[1]).to_json()["doubts"]
+    assert not any("unexplained" in x for x in doubts)
 
 
 @pytest.mark.parametrize("name", WRONG)

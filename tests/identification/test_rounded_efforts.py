@@ -62,6 +62,26 @@ def test_deviations_hold_what_rounding_does(step: float) -> None:
     assert np.abs(apart).max() < 4.5
 
 
+@pytest.mark.parametrize(("step", "top"), [(0.5, 2.0), (0.5, np.inf), (0.8, np.inf)])
+def test_deviations_hold_where_few_readings_do_not_show_whether_they_are_cut_off(
+    step: float, top: float
+) -> None:
+    """Two or three readings in steps as large as what the efforts do, be they cut off at `top` [A] or not."""
+    truth, apart = mg.build_model(ARM).nominal, []
+    for seed in range(10):
+        logs = [log(seed + more, step, 0.01) for more in (0, 1000)]
+        for table in logs:
+            table["i1"] = np.minimum(table["i1"], top)
+        assert len(np.unique(logs[0]["i1"])) <= 6
+        if min(np.sort(np.unique(x["i1"], return_counts=True)[1])[:-1].sum() for x in logs) < 100:
+            continue  # hardly ever another reading than one
+        found = mg.identify(ARM, *logs)
+        apart += [(e.value - truth[name]) / e.std for name, e in found.parameters.items()]
+    assert len(apart) >= 20
+    assert (np.abs(apart) < 1.96).mean() >= 0.85
+    assert np.abs(apart).max() < 5.0
+
+
 def test_fine_efforts_have_the_deviations_of_their_noise() -> None:
     logs = [[log(seed, step, 0.02) for seed in (1, 1001)] for step in (0.0, 0.001)]
     plain, fine = ([e.std for e in mg.identify(ARM, *x).parameters.values()] for x in logs)

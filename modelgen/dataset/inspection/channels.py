@@ -15,9 +15,11 @@ from modelgen.dataset.inspection.bare_arm import arm_of
 from modelgen.dataset.inspection.guesses import guessed_unit, kind_of, time_of, unit_of_time
 from modelgen.dataset.mapping.units import TIMES
 from modelgen.dataset.objects import Reader, Record
-from modelgen.dataset.processing.periods import period_of
+from modelgen.dataset.processing.periods import repetition
 from modelgen.dataset.processing.rounding import resolution
+from modelgen.dataset.processing.splitting import repeats_from
 from modelgen.dataset.reading.column_table import Log
+from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.plausible import doubtful_unit
 from modelgen.dataset.reading.read import read_with_stamps
 from modelgen.dataset.reading.renamed import in_small_letters
@@ -127,6 +129,10 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
     doubt = "" if math.isnan(found.rate) else doubtful_unit(1.0 / found.rate, USUAL)
     axis = np.arange(len(next(iter(columns.values()))), dtype=np.float64) if t is None else t
     found = replace(found, t=np.asarray(axis, dtype=np.float64), columns=columns)
+    remarks += found.remarks
+    if t is not None and np.isfinite(t).all() and (np.diff(t) > 0.0).all():
+        finite = [(name, x) for name, x in moving.items() if np.isfinite(x).all()]
+        remarks += [said for name, x in finite if (said := jump_of((name,), t, x[:, None], USUAL))]
     return replace(found, without_numbers=rest, remarks=(*remarks, *([doubt] if doubt else [])))
 
 
@@ -172,11 +178,17 @@ def _of_record(record: Record, t: Array | None = None) -> Inspected:
     units = record.units
     channels = [_channel(k, units[k], x) for k, x in record.columns.items() if k != "t"]
     found = _inspected(record.name, record.t if t is None else t, channels, [])
-    period = period_of(record, None)
-    seconds = None if period is None else period * record.step
-    return replace(
-        found, period=seconds, remarks=record.remarks, t=record.t, columns=record.columns, record=record
-    )
+    period, said = _period(record)
+    remarks = (*record.remarks, *said)
+    return replace(found, period=period, remarks=remarks, t=record.t, columns=record.columns, record=record)
+
+
+def _period(record: Record) -> tuple[float | None, tuple[str, ...]]:
+    """Period of a record's motion [s], and a remark where that begins later than the record."""
+    found = repetition(record)
+    if found is None:
+        return None, ()
+    return found[1] * record.step, (repeats_from(record, found),) if found[0] else ()
 
 
 def _columns(spec: Spec, reader: Reader) -> tuple[dict[str, Array], tuple[str, ...]]:
@@ -235,14 +247,14 @@ def _inspected(
     median = float(np.median(steps))
     jitter = float(np.max(np.abs(steps - median)) / median) if median > 0.0 else nan
     rate = 1.0 / median if median > 0.0 else nan
-    period = None
-    if positions and median > 0.0 and np.isfinite(positions).all():
+    period, remarks = None, tuple[str, ...]()
+    if positions and median > 0.0 and np.isfinite(positions).all() and len(t) > 8:
         q = np.stack(positions, axis=1)
-        lag = period_of(Record(name, t, q, q), None) if len(t) > 8 else None
-        period = None if lag is None else lag * float(t[-1] - t[0]) / (len(t) - 1)
+        period, remarks = _period(Record(name, t, q, q))
     backwards = int(np.count_nonzero(steps <= 0.0))
     begin, end = float(t[0]), float(t[-1])
-    return Inspected(name, len(t), begin, end, rate, jitter, backwards, period, tuple(channels))
+    about = Inspected(name, len(t), begin, end, rate, jitter, backwards, period, tuple(channels))
+    return replace(about, remarks=remarks)
 
 
 def _channel(name: str, unit: str, values: Array) -> Channel:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -71,23 +72,37 @@ def repetition(
     A beginning that does not repeat, on the way into the motion, is shorter than a period. given: period [s].
     Raises InputError for a given period that is none.
     """
-    period = period_of(record, given, limits)
-    if period is not None or given is not None:
-        return None if period is None else (0, period)
+    period: float | None = None
+    refused: InputError | None = None
+    try:
+        period = period_of(record, given, limits)
+    except InputError as error:  # of a given period, which what comes later may have
+        refused = error
+    if period is not None:  # a given one may be missed by more than noise makes
+        begin = 0 if given is None else _settled(record.q, round(period))
+        later = period_of(record.part(begin, len(record.t)), given, limits) if begin else None
+        return (0, period) if later is None else (begin, later)
     count = len(record.t)
     for end in range(count // PIECES, count // 2 + 1, max(1, count // PIECES)):
-        period = period_of(record.part(end, count), None, limits)
+        with suppress(InputError):
+            period = period_of(record.part(end, count), given, limits)
         if period is not None:
             break
     else:
+        if refused is not None:
+            raise refused
         return None
-    lag = round(period)
-    power = np.maximum(2 * record.q[end:].var(axis=0), 1e-300)
-    differing = (((record.q[lag:] - record.q[:-lag]) ** 2) / power).max(axis=1)
-    other = np.flatnonzero(differing[:lag] > max(SETTLED, ALIKE * differing[-lag:].max()))
-    begin = int(other[-1]) + 1 if len(other) else 0
-    period = period_of(record.part(begin, count), None, limits)
+    begin = _settled(record.q, round(period), end)
+    period = period_of(record.part(begin, count), given, limits)
     return None if period is None else (begin, period)
+
+
+def _settled(q: Array, lag: int, end: int = 0) -> int:
+    """First sample from which positions (N, n) repeat after a lag; `end`: one by which they do."""
+    power = np.maximum(2 * q[end:].var(axis=0), 1e-300)
+    differing = (((q[lag:] - q[:-lag]) ** 2) / power).max(axis=1)
+    other = np.flatnonzero(differing[:lag] > max(SETTLED, ALIKE * differing[-lag:].max()))
+    return int(other[-1]) + 1 if len(other) else 0
 
 
 def _differs(q: Array, lag: int) -> float:

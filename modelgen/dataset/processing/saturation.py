@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,7 @@ from modelgen.numeric import Array
 BESIDE = 5  # levels below the highest, to which it is compared
 FEWEST = 20  # readings
 CUT_OFF = 0.01  # of the readings that move, at their highest level, if they are cut off there
+SWITCHED = 0.05  # of the readings at either end, where an effort is switched between two
 OFTENER = 6.0  # times as many as at the levels beside
 
 
@@ -24,8 +27,13 @@ def cut_off(values: Array, positions: Array) -> tuple[float, float] | None:
 
 def saturated(values: Array, positions: Array) -> NDArray[np.bool_]:
     """Samples (N,) of an effort at a reading at which it seems to be cut off, and those beside them."""
+    return standing_at(values, [level for level, _ in ends_of(values, positions)])
+
+
+def standing_at(values: Array, levels: Sequence[float]) -> NDArray[np.bool_]:
+    """Samples (N,) of an effort at some readings, and those beside them."""
     found = np.zeros(len(values), dtype=bool)
-    for level, _ in ends_of(values, positions):
+    for level in levels:
         found |= values == level
     # an effort that is moved to the instants of the positions has a part of its neighbours
     beside = np.append(found[1:], False) | np.append(False, found[:-1])
@@ -37,7 +45,8 @@ def ends_of(values: Array, positions: Array) -> list[tuple[float, float]]:
     speed = np.abs(np.gradient(positions))
     moving = values[speed > 0.01 * np.quantile(speed, 0.99)]
     levels, counts = np.unique(moving, return_counts=True)
-    if len(levels) < 2 * BESIDE or counts[0] + counts[-1] > 0.9 * len(moving):
+    switched = min(counts[0], counts[-1]) > SWITCHED * len(moving) if len(levels) else True
+    if len(levels) < 2 * BESIDE or (switched and counts[0] + counts[-1] > 0.9 * len(moving)):
         return []
     ends = [
         (counts[-1], counts[-1 - BESIDE : -1], levels[-1]),

@@ -1,4 +1,4 @@
-"""A single record in two: at a boundary of its periods where the motion repeats, else in the middle."""
+"""A record from where its motion repeats, and in two: at a boundary of its periods, else in the middle."""
 
 from __future__ import annotations
 
@@ -11,6 +11,29 @@ from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 
 REPEATING = 3  # periods of which two can stay together, which shows what is noise
+
+
+def repeating(
+    record: Record, period: float | None = None, limits: DatasetThresholds = USUAL
+) -> tuple[Record, float | None]:
+    """The record from where its motion repeats, and samples in a period; as it is, and None, where none does.
+
+    A way into the motion that is left out so is remarked on. period: [s], where it is given. Raises
+    InputError for a given period that is none.
+    """
+    found = repetition(record, period, limits)
+    if found is None or not found[0]:
+        return record, None if found is None else found[1]
+    begin, lag = found
+    remark = f"{record.name}: {repeats_from(record, found)}, what is before is left out"
+    part = cut(replace(record, remarks=(*record.remarks, remark), period=lag), begin, len(record.t))
+    return part, lag
+
+
+def repeats_from(record: Record, found: tuple[int, float]) -> str:
+    """Where the motion of a record repeats from. found: as `repetition` has it."""
+    begin, lag = found
+    return f"the motion repeats every {lag * record.step:.6g} s from t = {record.t[begin]:.9g} s on"
 
 
 def split(record: Record, period: float | None = None, limits: DatasetThresholds = USUAL) -> list[Record]:
@@ -31,7 +54,7 @@ def split(record: Record, period: float | None = None, limits: DatasetThresholds
     first = whole - whole // 2
     known = replace(record, period=lag)
     counts = f"{whole} periods of {lag * record.step:.6g} s"
-    late = f" from t = {record.t[begin]:.6g} s on, what is before is left out" if begin else ""
+    late = f" from t = {record.t[begin]:.9g} s on, what is before is left out" if begin else ""
     said = f"{counts}{late}, {first} before and {whole - first} after"
     if whole < REPEATING:
         said += ": neither part repeats, so that noise is not measured; record three periods, or another log"
@@ -39,6 +62,6 @@ def split(record: Record, period: float | None = None, limits: DatasetThresholds
 
 
 def _parts(record: Record, begin: int, middle: int, said: str) -> list[Record]:
-    remark = f"{record.name}: a single training log, split in two at t = {record.t[middle]:.6g} s: {said}"
+    remark = f"{record.name}: a single training log, split in two at t = {record.t[middle]:.9g} s: {said}"
     told = replace(record, remarks=(remark, *record.remarks))
     return [cut(told, begin, middle), cut(told, middle, len(record.t))]

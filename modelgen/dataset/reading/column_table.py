@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator, Mapping
+from datetime import UTC, date, timedelta
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -15,14 +16,14 @@ from modelgen.numeric import Array
 
 
 class ColumnTable:
-    """Columns of N numbers by name; a missing value is NaN.
+    """Columns of N numbers, dates or times by name; a missing value is NaN.
 
+    A date or time becomes seconds since the first one.
     columns: a mapping, a data frame of pandas or polars, a table of pyarrow, or an array with fields. name:
     what messages call it. Raises InputError where it is no such table.
     """
 
     by_column = True
-    remarks: tuple[str, ...] = ()
 
     def __init__(self, columns: Any, name: str) -> None:
         self.name, self._columns = name, columns
@@ -40,6 +41,17 @@ class ColumnTable:
         self.names: tuple[str, ...] = tuple(str(x) for x in names)
         if not self.names:
             raise InputError(f"{name}: the table has no columns, expected t, q1, i1 and so on")
+        self._found: dict[str, None] = {}
+
+    @property
+    def instants(self) -> frozenset[str]:
+        """Names of the columns that are dates or times."""
+        return frozenset(name for name in self.names if self._values(name).dtype.kind in "mM")
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was found out about the columns that were read."""
+        return tuple(self._found)
 
     def __str__(self) -> str:
         return self.name
@@ -66,33 +78,61 @@ class ColumnTable:
                 digest.update(repr(self._columns[name]).encode())
         return digest.hexdigest()
 
-    def _column(self, name: str) -> Array:
-        """A column as numbers (N,). Raises InputError."""
+    def _values(self, name: str) -> np.ndarray:
+        """A column as an array; objects as numbers or dates where they are."""
         column = self._columns[name]
-        if isinstance(column, np.ma.MaskedArray):
+        if isinstance(column, np.ma.MaskedArray) and column.dtype.kind in "iuf":
             column = np.ma.filled(column.astype(float), np.nan)
         values = np.asarray(column)
-        if values.dtype.kind == "O":
-            values = _numbers(column, values)
+        return _numbers(column, values) if values.dtype.kind == "O" else values
+
+    def _column(self, name: str) -> Array:
+        """A column as numbers (N,). Raises InputError."""
+        values = self._values(name)
         if values.ndim != 1:
             raise InputError(
                 f"{self.name}: found {values.ndim} dimensions in the column {name}, "
                 "expected one number per sample"
             )
+        if values.dtype.kind in "mM":
+            self._found[f"{name} is a date or time: seconds are counted from the first one"] = None
+            return _seconds(values)
         if values.dtype.kind not in "iuf":
-            hint = "; t is in seconds" if values.dtype.kind in "mM" else ""
-            raise InputError(
-                f"{self.name}: found {values.dtype} in the column {name}, expected numbers{hint}"
-            )
+            raise InputError(f"{self.name}: found {values.dtype} in the column {name}, expected numbers")
         return np.ascontiguousarray(values, dtype=np.float64)
 
 
+def _seconds(values: np.ndarray) -> Array:
+    """Dates or times (N,) as seconds since the first of them; blank ones are NaN."""
+    there = ~np.isnat(values)
+    if not there.any():
+        return np.full(len(values), np.nan)
+    # The difference of integers is exact; nanoseconds since 1970 have more digits than a float.
+    apart = (values - values[there][0]).astype("timedelta64[ns]").astype(np.int64)
+    return np.where(there, 1e-9 * apart, np.nan)
+
+
 def _numbers(column: Any, values: np.ndarray) -> np.ndarray:
-    """Objects as numbers, missing values as NaN; as they are where they are no numbers."""
+    """Objects as numbers or dates, missing values as NaN or NaT; as they are where they are neither."""
+    first = next((x for x in values.flat if x is not None), None)
+    if isinstance(first, date | timedelta):
+        return _dates(column, values)
     try:
         if hasattr(column, "isna"):  # pandas' missing value is no float
             return np.asarray(column.to_numpy(dtype=float, na_value=np.nan))
         return values.astype(float)
+    except (TypeError, ValueError):
+        return values
+
+
+def _dates(column: Any, values: np.ndarray) -> np.ndarray:
+    """Python's dates and times, those of a zone by UTC, as NumPy's; as they are where they differ in kind."""
+    try:
+        if hasattr(column, "tz") or hasattr(getattr(column, "dt", None), "tz"):  # pandas, of a zone
+            return np.asarray(column, dtype="datetime64[ns]")
+        zoned = [x.astimezone(UTC).replace(tzinfo=None) if getattr(x, "tzinfo", None) else x for x in values]
+        kind = "timedelta64[us]" if isinstance(zoned[0], timedelta) else "datetime64[us]"
+        return np.array(zoned, dtype=kind)
     except (TypeError, ValueError):
         return values
 

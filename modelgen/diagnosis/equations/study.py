@@ -9,6 +9,7 @@ from modelgen.dataset import Record, Settings
 from modelgen.dataset.processing.content import quiet_cutoff
 from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.dataset.processing.periods import period_of
+from modelgen.dataset.processing.splitting import repeating
 from modelgen.dataset.reading.jumps import check_jumps
 from modelgen.description import Arm
 from modelgen.diagnosis.equations.free_motion import released, settings_of_swings
@@ -50,13 +51,15 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
     if other is not None:
         here, there = ("an effort", "none") if free else ("no effort", "one")
         raise InputError(f"{other.name}: found {here}, {found[0].name} has {there}; expected all alike")
+    lengths: list[float | None] = [None] * (len(found) - 1)
+    if not free:
+        trained, lengths = _repeating(found[:-1], period, thresholds)
+        found = [*trained, found[-1]]
     settings = settings_for(found, options.cutoff, thresholds)
     if free:
         found = [released(record, settings) for record in found]
-    lengths = [
-        None if free and period is None else period_of(record, period, thresholds.dataset)
-        for record in found[:-1]
-    ]
+        if period is not None:
+            lengths = [period_of(record, period, thresholds.dataset) for record in found[:-1]]
     if period is not None and all(p is None for p in lengths):
         raise InputError(
             f"--period: found {period:g} s, expected one of which a training record holds two, "
@@ -75,6 +78,14 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
         narrower=options.cutoff is None and not free,
         instant=instant,
     )
+
+
+def _repeating(
+    train: Sequence[Record], period: float | None, thresholds: Thresholds
+) -> tuple[list[Record], list[float | None]]:
+    """Records from where their motions repeat, and samples in a period of each."""
+    found = [repeating(record, period, thresholds.dataset) for record in train]
+    return [record for record, _ in found], [lag for _, lag in found]
 
 
 def settings_for(found: Sequence[Record], cutoff: float | None, thresholds: Thresholds) -> Settings:

@@ -37,6 +37,7 @@ from modelgen.diagnosis.validation import Check
 from modelgen.errors import InputError
 from modelgen.identification.doubts import doubts
 from modelgen.identification.identify import errors_of
+from modelgen.identification.misread import check_reading
 from modelgen.numeric import Array
 
 
@@ -116,8 +117,9 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
         return None
     chosen = choose(list(study.records[:-1]), Settings(thresholds=study.thresholds.dataset))
     fit = solution.theta, solution.covariance, solution.determined
+    asked = check_reading(train, study.model, study.evaluator).questions
     about = doubts(train, study.model, study.evaluator, *fit, whole=decision.verdict != "named")
-    return AsIdentified(found.rmse, chosen.cutoff, tuple(about))
+    return AsIdentified(found.rmse, chosen.cutoff, (*asked, *about))
 
 
 def _settings(study: Study, decision: Decision, selection: Selection, options: Options) -> dict[str, object]:

@@ -1,0 +1,74 @@
+"""Payloads that an arm carries in some of its records, as the user gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from modelgen.dataset import Chosen, Record, parse
+from modelgen.description import Arm
+from modelgen.errors import InputError
+from modelgen.identification.cut_off import without_cut_off
+from modelgen.simulation.values import numbers
+
+
+def payloads_of(
+    given: Sequence[str] | Mapping[str | int, float | Sequence[float]], logs: Sequence[Any]
+) -> dict[int, list[float]]:
+    """Mass [kg] and, if wanted, x, y, z [m] by number of the log, training logs first.
+
+    given: LOG=M[,X,Y,Z] each, or logs (by what they were given as, or by number) with their values.
+    """
+    pairs: list[tuple[str, str | float | Sequence[float], str]]
+    if isinstance(given, Mapping):
+        pairs = [(str(log), values, f"{log}") for log, values in given.items()]
+    else:
+        pairs = [(text.rpartition("=")[0], text.rpartition("=")[2], text) for text in given]
+    named = [log if isinstance(log, str) else getattr(log, "name", str(k)) for k, log in enumerate(logs)]
+    found: dict[int, list[float]] = {}
+    for log, values, text in pairs:
+        places = [k for k, name in enumerate(named) if log in (name, str(parse(name).path))]
+        if isinstance(given, Mapping) and not places and log.isdecimal() and int(log) < len(named):
+            places = [int(log)]
+        if not log or not places:
+            raise InputError(
+                f"--payload {text}: expected LOG=KG or LOG=KG,X,Y,Z with one of the logs {', '.join(named)}"
+            )
+        mass = numbers("--payload", values)
+        if not mass or mass[0] <= 0:
+            raise InputError(f"--payload {text}: expected a mass above 0 kg")
+        found |= dict.fromkeys(places, mass)
+    return found
+
+
+def at_the_origin(logs: Sequence[Any]) -> str:
+    """What is assumed of payloads of which the mass alone is given."""
+    names = ", ".join(log if isinstance(log, str) else getattr(log, "name", "a table") for log in logs)
+    return (
+        f"The payload of {names} counts as a point at the origin of the last link's frame: where is it? "
+        "--payload LOG=KG,X,Y,Z says so, in metres in that frame."
+    )
+
+
+def without_cut_off_by_payload(
+    train: Sequence[Record],
+    test: Sequence[Record],
+    payloads: Mapping[int, Sequence[float]],
+    chosen: Chosen,
+    arm: Arm,
+) -> tuple[list[Record], list[Record]]:
+    """The records with the samples named at which efforts are cut off.
+
+    Records with one payload are those of an arm of their own, whose last link is another.
+    """
+    every = [*train, *test]
+    own = [tuple(payloads.get(k, ())) for k in range(len(every))]
+    for payload in dict.fromkeys(own[: len(train)]):
+        some = [k for k, x in enumerate(own) if x == payload]
+        fitted = [k for k in some if k < len(train)]
+        parts = without_cut_off(
+            [every[k] for k in fitted], [every[k] for k in some[len(fitted) :]], chosen, arm
+        )
+        for k, record in zip(some, [*parts[0], *parts[1]], strict=True):
+            every[k] = record
+    return every[: len(train)], every[len(train) :]

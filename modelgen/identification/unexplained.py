@@ -1,0 +1,70 @@
+"""What a fit leaves of the efforts of a record, joint by joint, and whether that is much."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.dataset import Prepared, Record, prepare
+from modelgen.dataset.processing.content import white_noise
+from modelgen.errors import InputError
+from modelgen.evaluation import Evaluator
+from modelgen.functions import Model
+from modelgen.identification.validation import regression_of
+from modelgen.numeric import Array
+
+POOR = 0.15  # of the efforts of a joint, unexplained, from which on another reading is asked for
+CHANGES = 0.25  # of their changes, likewise
+FAR = 3.0  # times what noise is through the filter, that is none
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    """share: RMS left of the efforts over theirs (n,), 0 for joints at rest. error: what is left, changes:
+    the deviation of the efforts from their mean, noise: that of white noise, (n,) each, after the filter.
+    """
+
+    share: Array
+    error: Array
+    changes: Array
+    noise: Array
+
+    @property
+    def poor(self) -> NDArray[np.bool_]:
+        """Joints (n,) of which little is explained, of all or of the changes."""
+        changes = self.error > CHANGES * np.maximum(self.changes, 1e-300)
+        return (self.share > POOR) | (changes & self.no_noise)
+
+    @property
+    def no_noise(self) -> NDArray[np.bool_]:
+        """Joints (n,) of which more is left than noise."""
+        return np.asarray(self.error > FAR * self.noise)
+
+
+def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:
+    """What a fit leaves of the efforts of a record; None where they cannot be read so."""
+    try:
+        prepared = prepare(record, like.settings)
+        p = len(model.grouping.base)
+        regression = regression_of(evaluator, model, [prepared], np.zeros(p))
+        if sum(int(m.sum()) for m in regression.moving) < 3 * p:
+            return None
+        theta = regression.least_squares()
+    except (InputError, np.linalg.LinAlgError, FloatingPointError):
+        return None
+    error, effort, moving = regression.residuals(theta)[0], regression.effort[0], regression.moving[0]
+    n, rate, cutoff = record.n, 1.0 / record.step, like.settings.cutoff
+    shares, left, changes = np.zeros(n), np.zeros(n), np.zeros(n)
+    for j in range(n):
+        rows = moving[:, j]
+        if rows.any():
+            size = max(float(np.linalg.norm(effort[rows, j])), 1e-300)
+            shares[j] = float(np.linalg.norm(error[rows, j])) / size
+            left[j], changes[j] = float(np.sqrt(np.mean(error[rows, j] ** 2))), float(np.std(effort[rows, j]))
+    assert record.input is not None
+    band = min(1.0, 2.0 * cutoff / rate) if cutoff else 1.0
+    noise = [math.sqrt(band) * white_noise(x, rate) for x in record.input.T]
+    return Unexplained(shares, left, changes, np.array(noise))
