@@ -191,10 +191,13 @@ def _row(row: Row) -> dict[str, Any]:
         "order": list(WORDS).index(found),
         "causes": [(e if j is None else f"{e} at {j}", ", ".join(rivals)) for e, j, rivals in named],
         "figures": [
-            _number(max(row.get("delta_bic") or (), default=None), "z.1f"),
-            _number(row.get("overall_gain_percent") if row.get("causes") else None, "z.1f"),
-            _number(None if fit is None else fit / threshold, ".2f"),
-            _number(row.get("seconds"), ".1f"),
+            (*_number(value, form), head)
+            for value, form, head in (
+                (max(row.get("delta_bic") or (), default=None), "z.1f", "delta BIC"),
+                (row.get("overall_gain_percent") if row.get("causes") else None, "z.1f", "less error %"),
+                (None if fit is None else fit / threshold, ".2f", "lack of fit"),
+                (row.get("seconds"), ".1f", "s"),
+            )
         ],
         "said": row.get("error") or row.get("reason") or "",
     }

@@ -127,7 +127,13 @@ def _size(d: Diagnosis, k: int) -> str:
     if size is None:
         return ""
     where = d.arm.coordinate_names[judged_joint(d, k)]
-    sizes = f"{number(size[0], 2)} of the {number(size[1], 2)} {size[2]}"
+    own, whole = number(size[0], 2), number(size[1], 2)
+    if size[0] > size[1]:
+        return (
+            f"Its size on the test record is {own} {size[2]} (RMS), more than the effort of {where} itself, "
+            f"{whole} {size[2]}: other parameters of the model act against it. "
+        )
+    sizes = f"{own} of the {whole} {size[2]}"
     return f"Its size on the test record: {sizes} of {where} (RMS). "
 
 

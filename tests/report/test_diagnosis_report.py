@@ -384,6 +384,17 @@ def test_a_sentence_says_what_the_picture_of_a_law_shows(found: Diagnosis) -> No
     assert curved in unescape(report(found))
 
 
+def test_a_law_that_is_larger_than_the_effort_is_no_part_of_it(found: Diagnosis) -> None:
+    """As where a friction that was fitted beside it takes most of it back."""
+    m = found.test.moving[:, 1]
+    large = with_law(found, "friction_offset", {"offset": 52.0}, np.where(m, 52.0, 0.0))
+    assert "Its size on the test record is 52 A (RMS), more than the effort of j2 itself, 13 A" in report(
+        large
+    )
+    small = with_law(found, "friction_offset", {"offset": 5.2}, np.where(m, 5.2, 0.0))
+    assert "Its size on the test record: 5.2 of the 13 A of j2 (RMS)" in report(small)
+
+
 def with_law(found: Diagnosis, effect: str, values: dict[str, float], law: np.ndarray) -> Diagnosis:
     """As if the second joint's cause were this one: its law, (M,), is all that the extension explains."""
     own = np.zeros_like(found.residuals[1])

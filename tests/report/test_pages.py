@@ -186,6 +186,17 @@ def test_a_command_is_copied(pages: Mapping[str, Path]) -> None:
         command.get_by_role("button", name="Copied").wait_for()
 
 
+def test_units_fold_on_a_phone_and_are_sorted_there(pages: Mapping[str, Path]) -> None:
+    with opened(pages["fleet"], 400) as page:
+        table = page.get_by_role("region", name="Units")
+        assert _beyond(table) == 0
+        page.get_by_role("button", name="unit").press("Enter")
+        first = page.locator("#units tbody tr").first
+        assert "broken" in first.inner_text()
+        heads = first.locator("td:not(:empty)").evaluate_all("c => c.map(x => x.dataset.head)")
+        assert heads == ["unit", "arm", "verdict", "said"]
+
+
 def test_units_are_sorted_and_found_by_the_keyboard(pages: Mapping[str, Path]) -> None:
     with opened(pages["fleet"]) as page:
         first = page.locator("#units tbody tr").first
