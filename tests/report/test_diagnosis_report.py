@@ -222,7 +222,7 @@ def test_the_page_is_printed_on_few_sheets_and_whole(many: bool, found: Diagnosi
     path = tmp_path / "report.html"
     path.write_text(report(ten(found) if many else found), encoding="utf-8")
     with opened(path) as window:
-        on_few_sheets(window)
+        on_few_sheets(window, 7 if many else 3)
         with on_paper(window):
             for folded in window.locator("details:not(.screen)").all():
                 shown = folded.locator("table, p, ul").first.is_visible()

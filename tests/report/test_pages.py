@@ -120,7 +120,7 @@ def test_a_page_can_be_read_by_everybody(
 @pytest.mark.parametrize("name", QUESTIONS)
 def test_a_page_is_printed_on_few_sheets_and_whole(name: str, pages: Mapping[str, Path]) -> None:
     with opened(pages[name]) as page:
-        on_few_sheets(page)
+        on_few_sheets(page, 1)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
