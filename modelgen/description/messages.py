@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from modelgen.description.document import Node, Steps, one_line
+from modelgen.description.schema import VERSION
 from modelgen.errors import InputError, suggest
 from modelgen.transmission import KINDS
 
@@ -83,9 +84,11 @@ def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[int, int], Inp
         message = f"found {describe(value)}{_one_of(value, options)}"
     elif kind == "string_pattern_mismatch":
         key = entry["loc"][-1] == "[key]"
-        expected = "a letter, then letters, digits and _"
+        expected = "a name: a letter, then letters, digits and _"
         expected += " and -" if "-" in context["pattern"].split("0-9")[-1] else ""
-        message = f"found {describe(value)}, expected a name: {expected} (ASCII)"
+        if context["pattern"] == VERSION:
+            expected = "a version: at most 64 letters, digits and . + _ -"
+        message = f"found {describe(value)}, expected {expected} (ASCII)"
     elif kind in ("too_short", "too_long"):
         message = _length(value, context)
     elif kind == "string_too_short":

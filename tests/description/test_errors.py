@@ -296,6 +296,12 @@ def test_the_good_text_is_good() -> None:
         ("  arm:", "  _arm:", "expected a name: a letter"),
         ("  arm:", "  my-arm:", "expected a name: a letter, then letters, digits and _"),
         ("  arm:", "  a__b:", "holds two _ in a row"),
+        (
+            "fluid_density: 0",
+            "version: 1.2 beta",
+            "arm.version: found '1.2 beta', expected a version: at most 64 letters, digits and . + _ -",
+        ),
+        ("fluid_density: 0", "version: 1.2", "arm.version: found 1.2, expected text (put quotes around it)"),
         # symbols
         ("{d3: 0.443}", "{pi: 3}", "7:15: arm.symbols.pi: 'pi' belongs to the expressions themselves"),
         ("{d3: 0.443}", "{cos: 3}", "'cos' belongs to the expressions themselves"),
