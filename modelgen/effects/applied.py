@@ -86,6 +86,11 @@ class AppliedEffect:
         """Whether it lies between a drive and its link, which then lags."""
         return any(part.place == "transmission" for part in self.parts)
 
+    @property
+    def constant(self) -> bool:
+        """Whether it adds a force that no parameter scales, as a payload of known mass does."""
+        return not self.parameters and any(p.place not in ("input", "transmission") for p in self.parts)
+
     def depends_on(self, name: str) -> bool:
         """Whether forces or steps use the variable `name` of `Variables`."""
         for part in self.parts:

@@ -43,7 +43,7 @@ class Presence(Enum):
     """When it is there."""
 
     ALWAYS = "always"
-    LATER = "later"  # not in the first record: it came between two of them
+    SOME = "some"  # in some of the records and not in others: it comes or goes between two of them
     FADING = "fading"  # most at the begin of a log: it does not repeat with the excitation
 
 

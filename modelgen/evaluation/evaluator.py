@@ -100,8 +100,25 @@ class Evaluator:
             return np.zeros(motion.q.shape)
         return self.inputs(motion, parameters) - columns @ parameters
 
+    def constant(self, motion: Motion) -> Array:
+        """Inputs of ideal drives (N, n) that no base parameter scales: what the regressor lacks."""
+        found = np.zeros(motion.q.shape)
+        for applied in self._own.effects:
+            if applied.constant:
+                joint = None if applied.joint is None else self.arm.coordinates.index(applied.joint) + 1
+                values = {p.name: float(applied.values[p.name]) for p in applied.effect.nonlinear}
+                e = self._of_effect(applied.effect.name, joint, values)
+                call = self._with_links(e)
+                found += self._run(call, e, call.function, motion, values, np.zeros(len(self.base.base)))
+        return found
+
     def ideal(self, model: Model, motion: Motion, given: Array) -> Array:
-        """Inputs of ideal drives with the efforts of the measured ones (N, n)."""
+        """Inputs of ideal drives with the efforts of the measured ones (N, n), less what is `constant`: what
+        the regressor times the base parameters is to be.
+        """
+        return self._effective(model, motion, given) - self.constant(motion)
+
+    def _effective(self, model: Model, motion: Motion, given: Array) -> Array:
         given = acting(self.arm, motion.t, given)
         if not any(f.name == "effective_input" for f in model.functions):
             return given
@@ -181,13 +198,17 @@ class Evaluator:
         if joint is not None and at_link(motion, joint):
             return self.link_side.added(joint, motion, dict(values), parameters)
         e = self._of_effect(effect, joint, values)
-        if (e, "added") not in self._made:
-            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
-        call = self._made[e, "added"]
+        call = self._with_links(e)
         if joint is not None:
             parameters = self._carried(joint, motion, parameters)
         found = self._run(call, e, call.function, motion, values, parameters)
         return found - self._links(motion, links_alone(self.arm, self.base, joint, parameters))
+
+    def _with_links(self, e: Equations) -> NumpyFunction:
+        """Inputs of the links and of the effect of these equations."""
+        if (e, "added") not in self._made:
+            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
+        return self._made[e, "added"]
 
     def _by_change(
         self,

@@ -59,7 +59,9 @@ def gain_of(p: Prepared) -> Array:
 
 def ideal_of(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """What the log would carry of the model's efforts (N, n)."""
-    return np.asarray(evaluator.regressor(model, motion_of(p), theta) @ theta) * gain_of(p)
+    motion = motion_of(p)
+    made = evaluator.regressor(model, motion, theta) @ theta + evaluator.constant(motion)
+    return np.asarray(made * gain_of(p))
 
 
 def motion_of(p: Prepared) -> Motion:
@@ -97,8 +99,9 @@ class Beyond:
         Those that the model does not know about are among them, and those that were read far below are not,
         whatever it says.
         """
-        columns = self.evaluator.regressor(self.model, motion_of(p), self.theta)
-        ideal, logged, gain = columns @ self.theta * gain_of(p), logged_of(p), gain_of(p)
+        motion, logged, gain = motion_of(p), logged_of(p), gain_of(p)
+        columns = self.evaluator.regressor(self.model, motion, self.theta)
+        ideal = (columns @ self.theta + self.evaluator.constant(motion)) * gain
         found = np.zeros(p.q.shape, dtype=bool)
         for e in self.ends:
             j, x = e.joint, columns[:, e.joint] * gain[:, e.joint, None]

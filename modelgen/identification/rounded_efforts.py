@@ -116,8 +116,8 @@ def _steps(p: Prepared) -> Array:
 
 def _ideal(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """Inputs (N, n) of the model along a record."""
-    full = evaluator.regressor(model, Motion(p.time, p.q, p.dq, p.ddq), theta)
-    return np.asarray(full @ theta)
+    motion = Motion(p.time, p.q, p.dq, p.ddq)
+    return np.asarray(evaluator.regressor(model, motion, theta) @ theta + evaluator.constant(motion))
 
 
 def _rounding(p: Prepared, ideal: Array, steps: Array, random: np.random.Generator) -> Array:

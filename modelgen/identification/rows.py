@@ -55,7 +55,7 @@ class Rows:
         """
         if p.input is None:
             raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
-        motion, awake = _motion(p), self._awake(p)
+        motion, awake = motion_of(p), self._awake(p)
         effort = self.evaluator.ideal(self.model, motion, p.input)
         effort = np.asarray(p.parallel(effort if awake is None else effort * awake))
         if self._compiled and RegressorColumns.fit(p.q):
@@ -109,7 +109,7 @@ class Rows:
         return result
 
 
-def _motion(p: Prepared) -> Motion:
+def motion_of(p: Prepared) -> Motion:
     """The record's motion, and those that it runs on from."""
-    before = None if p.before is None else _motion(p.before)
+    before = None if p.before is None else motion_of(p.before)
     return Motion(p.time, p.q, p.dq, p.ddq, before=before, held=p.record.held)

@@ -12,7 +12,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.identification.objects import Validation
-from modelgen.identification.rows import Rows
+from modelgen.identification.rows import Rows, motion_of
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
@@ -33,7 +33,8 @@ def validate(
     regression = regression_of(evaluator, model, records, theta, added, all_samples=True)
     gain = [np.ones(p.effort.shape) if p.gain is None else p.gain[p.rows] for p in records]
     more = [np.zeros_like(theta)] * len(records) if added is None else added
-    whole = [y + c @ m for y, c, m in zip(regression.effort, regression.columns, more, strict=True)]
+    parts = zip(records, regression.effort, regression.columns, more, strict=True)
+    whole = [y + c @ m + p.parallel(evaluator.constant(motion_of(p))) for p, y, c, m in parts]
     measured = np.concatenate([y * g for y, g in zip(whole, gain, strict=True)])
     wrong = np.concatenate([e * g for e, g in zip(regression.residuals(theta), gain, strict=True)])
     moving = np.concatenate(regression.moving)

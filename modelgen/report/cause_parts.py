@@ -34,7 +34,7 @@ _VALUES = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit",
 
 def found(d: Diagnosis, c: NamedCause) -> str:
     """The sentence that says it is there."""
-    return sentence(finding(d.arm, c.effect, c.joint, c.parameters))
+    return sentence(finding(d.arm, c.effect, c.joint, c.parameters, c.records))
 
 
 def marks(c: NamedCause, key: str) -> Marks:

@@ -25,7 +25,7 @@ _SAME = 0.01  # of an error or a cut-off, that needs no word
 def missing(d: Diagnosis) -> list[str]:
     """What is missing, a sentence for each cause; one that says so where none is named."""
     if d.verdict == "named":
-        return [sentence(finding(d.arm, c.effect, c.joint, c.parameters)) for c in d.causes]
+        return [sentence(finding(d.arm, c.effect, c.joint, c.parameters, c.records)) for c in d.causes]
     return [unnamed(d)]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -83,16 +84,26 @@ def legible(parameters: Mapping[str, Any]) -> Mapping[str, Any]:
     return found
 
 
-def finding(arm: Arm, effect: str, joint: int | None, parameters: Mapping[str, Any]) -> str:
-    """The clause that says what is there, with its values. parameters: value and unit by name."""
+def finding(
+    arm: Arm,
+    effect: str,
+    joint: int | None,
+    parameters: Mapping[str, Any],
+    records: Sequence[str] | None = None,
+) -> str:
+    """The clause that says what is there, with its values.
+
+    parameters: value and unit by name. records: those that have it, None for all.
+    """
     definition, place = CATALOGUE[effect], place_of(arm, joint)
     values = {name: Said(e.value, e.unit) for name, e in legible(parameters).items()}
     drive = f"the drive of {place}"
     try:
         said = definition.finding.format(joint=place, place=place, drive=drive, **values)
     except KeyError:  # a form of it without that value
-        return f"{definition.text} acts at {place}"
-    return said or titled(arm, effect, joint)
+        said = f"{definition.text} acts at {place}"
+    where = "" if records is None else f", in {listed(Path(r).name for r in records)} alone"
+    return (said or titled(arm, effect, joint)) + where
 
 
 def sentence(clause: str) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ from modelgen.diagnosis.equations import Band, Rows, bands, study_of
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.pipeline import records
-from modelgen.effects import Presence, known_effects
+from modelgen.effects import known_effects
 from modelgen.jobs import HERE
 
 
@@ -109,11 +109,10 @@ def _record(r: Rows, terms: Sequence[Array]) -> Record:
 
 def _along(trial: FittedCandidate, test: Rows, band: Band) -> Array | None:
     """Columns (M, n, k) of a term along the test record; None where it cannot be there."""
-    # a payload that came between the records stays
-    later = trial.candidate.definition.presence is Presence.LATER
-    equations = band.equations.with_rows([test, test] if later else [test])
-    found = candidate_columns(trial.candidate, {**trial.values, **trial.around}, equations, band.base)
-    return None if found is None else found[-1]
+    candidate = replace(trial.candidate, absent=frozenset())  # as if a payload of some records is there
+    values = {**trial.values, **trial.around}
+    found = candidate_columns(candidate, values, band.equations.with_rows([test]), band.base)
+    return None if found is None else found[0]
 
 
 def answered(ask: Asked, by: Method) -> dict[str, Any]:

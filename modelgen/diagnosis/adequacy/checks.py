@@ -27,7 +27,7 @@ from modelgen.diagnosis.selection import (
     refit_stiffness,
     threshold,
 )
-from modelgen.diagnosis.validation import Check, agreement
+from modelgen.diagnosis.validation import Check, Part, Split, agreement, folds
 from modelgen.effects.placement import titled
 
 
@@ -133,8 +133,12 @@ def _behind(check: Check, before: Cause, cause: Cause, guess: Cause | None) -> C
     return replace(check, passed=False, value=ahead, text=text)
 
 
-def confirmed(gain: float, low: float) -> Check:
-    """Whether a cause lowers the error on the test record. gain, low: its share and the lower bound [%]."""
+def confirmed(gain: float, low: float, there: bool = True) -> Check:
+    """Whether a cause lowers the error on the test record.
+
+    gain, low: its share and the lower bound [%]. there: whether the record has it, or is predicted better by
+    an arm without it.
+    """
     asked = bool(np.isfinite(low))
     text = "the test record cannot tell what it is worth there"
     if np.isfinite(gain):
@@ -142,7 +146,8 @@ def confirmed(gain: float, low: float) -> Check:
         if asked:
             end = f"{low:z.1f} % less at the lower end of the 95 % interval; more than 0 % less confirms it"
         sense = "less" if gain >= 0.0 else "more"
-        text = f"{abs(gain):.1f} % {sense} error on the test record with it, {end}"
+        how = "with it" if there else "where it is not, once the training records are fitted with it"
+        text = f"{abs(gain):.1f} % {sense} error on the test record {how}, {end}"
     return Check("confirmed", low > 0.0 if asked else None, False, low, 0.0, text)
 
 
@@ -292,8 +297,12 @@ def _form(by: FreeForm | None) -> Check:
 def _stable(k: int, selection: Selection) -> Check:
     system = selection.system
     least = system.equations.thresholds.adequacy.min_stable_probability
-    parts = [([row], [i]) for i, row in enumerate(system.rows)]
     trial = selection.causes[k].trial
+    limits, what = system.equations.thresholds.validation, "records"
+    parts: list[Part] = [([row], [i]) for i, row in enumerate(system.rows)]
+    if trial.candidate.coming:  # which some records are without
+        split, what = Split(limits.max_records_one_by_one, halves=True), "halves of the records"
+        parts = [part for _, part in folds(system.rows, split)]
     others = [c.trial for i, c in enumerate(selection.causes) if i != k]
     columns = with_causes(system.equations, [*others, trial])  # the cause's own at the end
     own = columns[0].shape[2] - trial.columns[0].shape[2]
@@ -301,7 +310,7 @@ def _stable(k: int, selection: Selection) -> Check:
     text = "one record cannot tell whether its size is the same in all"
     if not np.isnan(found):
         text = (
-            f"records differ in its size as much as these in {percent(found)} of cases where it is the same "
+            f"{what} differ in its size as much as these in {percent(found)} of cases where it is the same "
             f"in all; {percent(least)} is asked"
         )
     return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)

@@ -93,7 +93,7 @@ class _Motion:
     def span(self, c: Candidate, values: Values) -> Array | None:
         """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
         effect = c.definition  # states follow one another
-        if effect.held(c.fixed) or effect.presence is Presence.LATER or effect.periodic:
+        if effect.held(c.fixed) or effect.presence is Presence.SOME or effect.periodic:
             return None
         given = {**c.fixed, **values}
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -15,13 +16,15 @@ from modelgen.evaluation import places
 
 Values = Mapping[str, float]
 Place = tuple[str, int | None]  # effect and joint
+SPLIT = 4  # records that are divided in every way into those with an effect and those without: a budget
 
 
 @dataclass(frozen=True)
 class Candidate:
     """An effect at a place. fixed: values that are not searched for; searched: nonlinear parameters that are;
     part: of the parameters that are estimated, those that are asked for, empty for all; forms: how many
-    candidates there are for the effect at the place; places: how many places the effect is asked for at.
+    candidates there are for the effect at the place; places: how many places the effect is asked for at;
+    absent: records (from 0) without it.
 
     joint counts coordinates from 1, None for the whole arm.
     """
@@ -33,6 +36,7 @@ class Candidate:
     part: tuple[str, ...] = ()
     forms: int = 1
     places: int = 1
+    absent: frozenset[int] = frozenset()
 
     @property
     def place(self) -> Place:
@@ -75,6 +79,11 @@ class Candidate:
         """Whether its columns are slopes, which belong to values."""
         return not self.definition.linear and not self.elastic
 
+    @property
+    def coming(self) -> bool:
+        """Whether it may be in some of the records and not in others."""
+        return self.definition.presence is Presence.SOME
+
     def joints(self, n: int) -> list[int]:
         """Coordinates (from 0) that it is judged by."""
         return self.definition.judged_at(self.joint, self.fixed, n)
@@ -86,7 +95,7 @@ def candidates(equations: Equations) -> list[Candidate]:
     arm, rows = equations.arm, equations.rows
     free = all(r.prepared.input is None for r in rows)
     for name, effect in CATALOGUE.items():
-        if effect.presence is Presence.LATER and len(rows) < 2:
+        if effect.presence is Presence.SOME and len(rows) < 2:
             continue
         if free and effect.needs_effort:
             continue
@@ -97,14 +106,31 @@ def candidates(equations: Equations) -> list[Candidate]:
             there = [joint for joint in there if joint is None or joint_of(arm, joint).drive.driven]
         for joint in there:
             forms = [
-                (fixed, part)
+                (fixed, part, absent)
                 for fixed in _fixed(effect, joint, equations)
                 for part in effect.subsets(arm, joint)
+                for absent in without(effect, len(rows))
             ]
-            for fixed, part in forms:
+            for fixed, part, absent in forms:
                 searched = tuple(p for p in effect.searched() if p.name not in fixed)
-                found.append(Candidate(name, joint, fixed, searched, part, len(forms), len(there)))
+                found.append(Candidate(name, joint, fixed, searched, part, len(forms), len(there), absent))
     return found
+
+
+def without(effect: type[Definition], count: int) -> list[frozenset[int]]:
+    """Records (from 0) of `count` that may be without an effect, by form; none where it is in all.
+
+    The first one is among them: what is there in that one alone is missing in all others. Of more records
+    than SPLIT those that have it follow one another.
+    """
+    if effect.presence is not Presence.SOME:
+        return [frozenset()]
+    every = range(count)
+    if count <= SPLIT:
+        having = [set(some) for k in range(1, count) for some in combinations(every[1:], k)]
+    else:
+        having = [set(every[a:b]) for a in every[1:] for b in range(a + 1, count + 1)]
+    return [frozenset(every) - some for some in having]
 
 
 def _seen(effect: type[Definition], joint: int | None, rows: Sequence[Rows]) -> bool:

@@ -12,7 +12,6 @@ import numpy as np
 
 from modelgen.diagnosis.candidates.candidate import Candidate, Values
 from modelgen.diagnosis.equations import Equations, Rows
-from modelgen.effects import Presence
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.numeric import Array
@@ -35,15 +34,14 @@ def candidate_columns(
     """
     try:
         found = [
-            r.filtered(_at_full_rate(candidate, values, r, k, equations.evaluator, base))
-            for k, r in enumerate(equations.rows)
+            r.filtered(_at_full_rate(candidate, values, r, equations.evaluator, base)) for r in equations.rows
         ]
     except InputError:
         return None
     if candidate.elastic:  # the tail of a filter, of what lies outside the rows, is nothing
         largest = max((np.abs(table).max(initial=0.0) for table in found), default=0.0)
         found = [t if np.abs(t).max(initial=0.0) > TAIL * largest else np.zeros_like(t) for t in found]
-    return of_part(candidate, found) if candidate.definition.linear else found
+    return where_there(candidate, of_part(candidate, found) if candidate.definition.linear else found)
 
 
 def of_part(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
@@ -54,11 +52,12 @@ def of_part(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
     return [table[:, :, kept] for table in tables]
 
 
-def _at_full_rate(
-    c: Candidate, values: Values, r: Rows, record: int, evaluator: Evaluator, base: Array
-) -> Array:
-    if c.definition.presence is Presence.LATER and not record:
-        return np.zeros((*r.prepared.q.shape, len(c.names)))
+def where_there(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
+    """Columns (M, n, k) of all records, zero in those without the effect."""
+    return [np.zeros_like(t) if k in candidate.absent else t for k, t in enumerate(tables)]
+
+
+def _at_full_rate(c: Candidate, values: Values, r: Rows, evaluator: Evaluator, base: Array) -> Array:
     given = {**c.fixed, **values}
     if c.definition.linear:
         return evaluator.columns(c.effect, c.joint, r.motion, given, base)

@@ -49,6 +49,12 @@ def named(candidate: Candidate, values: Array) -> dict[str, float]:
     return dict(zip(candidate.names, (float(v) for v in values), strict=False))
 
 
+def below_zero(trial: FittedCandidate) -> bool:
+    """Whether what the effect claims was estimated below zero."""
+    found = named(trial.candidate, trial.gain.values)
+    return any(found.get(name, 0.0) < 0.0 for name in trial.candidate.definition.claims)
+
+
 def with_causes(equations: Equations, trials: Sequence[FittedCandidate]) -> list[Array]:
     """The model's own columns and the causes' side by side, by record."""
     return [

@@ -50,11 +50,11 @@ def check_one_arm(band: Band) -> None:
 
 
 def coming_later(arm: Arm) -> list[Candidate]:
-    """Candidates that may come between two records, with all their parameters."""
+    """What may be in the second of two records and not in the first, with all its parameters."""
     return [
-        Candidate(name, place)
+        Candidate(name, place, absent=frozenset({0}))
         for name, effect in CATALOGUE.items()
-        if effect.presence is Presence.LATER
+        if effect.presence is Presence.SOME
         for place in ([None] if effect.scope != "joint" else range(1, len(arm.coordinates) + 1))
     ]
 

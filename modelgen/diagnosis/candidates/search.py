@@ -18,8 +18,8 @@ from modelgen.diagnosis.candidates.candidate import (
     richer_instead,
     search_of,
 )
-from modelgen.diagnosis.candidates.columns import candidate_columns, of_part, unchanging
-from modelgen.diagnosis.candidates.fitted import FittedCandidate, named
+from modelgen.diagnosis.candidates.columns import candidate_columns, of_part, unchanging, where_there
+from modelgen.diagnosis.candidates.fitted import FittedCandidate, below_zero, named
 from modelgen.diagnosis.candidates.periodogram import waves
 from modelgen.diagnosis.candidates.prior_odds import prior_penalty
 from modelgen.diagnosis.evidence import System
@@ -63,7 +63,17 @@ class Search:
         self.renewed: set[object] = set()  # made with the parameters of this search
 
     def trial(self, candidate: Candidate) -> FittedCandidate | None:
-        """The best that the candidate can do; None where it adds nothing of its own."""
+        """The best that the candidate can do; None where it adds nothing of its own.
+
+        What some records have too little of, the others have too much of.
+        """
+        found = self._tried(candidate)
+        if found is None or not candidate.coming or not below_zero(found):
+            return found
+        every = frozenset(range(len(self.rows)))
+        return self._tried(replace(candidate, absent=every - candidate.absent))
+
+    def _tried(self, candidate: Candidate) -> FittedCandidate | None:
         self.fresh, self.aged = False, False
         found = self._trial(candidate)
         if found is not None and self.aged and found.gain.delta_bic >= self.limits.min_refined_delta_bic:
@@ -136,13 +146,13 @@ class Search:
         key = *candidate.place, tuple(sorted(given.items()))
         stays = unchanging(candidate, self.equations.evaluator)
         if key not in self.known or (self.fresh and not stays and key not in self.renewed):
-            every = replace(candidate, part=())
+            every = replace(candidate, part=(), absent=frozenset())
             self.known[key] = candidate_columns(every, values, self.equations, self.base)
             self.renewed.add(key)
         elif not stays and key not in self.renewed:
             self.aged = True
         found = self.known[key]
-        return None if found is None else of_part(candidate, found)
+        return None if found is None else where_there(candidate, of_part(candidate, found))
 
     def _refined(
         self, candidate: Candidate, name: str, low: float, high: float, best: FittedCandidate, extra: float

@@ -6,11 +6,11 @@ from modelgen.diagnosis.extended.extended_model import (
     FittedModel,
     extend,
     replay,
-    residuals,
     unit_of_efforts,
+    without,
 )
 from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions, Share
-from modelgen.diagnosis.extended.test_errors import errors, motion_errors, shares
+from modelgen.diagnosis.extended.test_errors import errors, motion_errors, on_test, residuals, shares
 from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates, units_at
 
 __all__ = [
@@ -27,9 +27,11 @@ __all__ = [
     "errors",
     "extend",
     "motion_errors",
+    "on_test",
     "replay",
     "residuals",
     "shares",
     "unit_of_efforts",
     "units_at",
+    "without",
 ]

@@ -9,14 +9,13 @@ import numpy as np
 
 from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
-from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns
 from modelgen.diagnosis.equations import Equations, Rows, Unknowns, estimated, held, rows_of, rows_twice
 from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
 from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.extended.uncertainty import valued
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
 from modelgen.diagnosis.selection import Selection, refit_stiffness
-from modelgen.effects import CATALOGUE, Family, Presence, described
+from modelgen.effects import CATALOGUE, Family, described
 from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
 from modelgen.functions import EVALUATED, Model, build_model
@@ -91,20 +90,50 @@ def extended(before: FittedModel, selection: Selection, equations: Equations) ->
     values = {b.name: value for b, value in beside}
     first = np.array([values.get(b.name, 0.0) for b in model.grouping.base])
     start = None if equations.free else first
-    seen = [_seen_by(r.prepared, bigger) for r in equations.rows]
+    seen = [seen_by(r.prepared, bigger) for r in equations.rows]
     if any(CATALOGUE[effect].family is Family.ELASTIC for effect, _, _ in causes):
         rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
         return FittedModel(bigger, model, *settled(bigger, model, seen, known, first, rigid))
     own = rows_twice(Evaluator(bigger), model, seen, known, start)
-    if (
-        any(CATALOGUE[effect].presence is Presence.LATER for effect, _, _ in causes)
-        and own[0].columns.shape == before.rows[0].columns.shape
-    ):
-        own = [before.rows[0], *own[1:]]  # the first record is without it
-    return fitted(bigger, model, own)
+    return fitted(bigger, model, _as_there(own, before, selection, equations, start))
 
 
-def _seen_by(prepared: Prepared, arm: Arm) -> Prepared:
+def _as_there(
+    own: Sequence[Rows], before: FittedModel, selection: Selection, equations: Equations, start: Array | None
+) -> list[Rows]:
+    """The equations of the records, without those causes that are not in one; `own` where all are there."""
+    trials, found = [c.trial for c in selection.causes], list(own)
+    for k, rows in enumerate(own):
+        there = [t for t in trials if k not in t.candidate.absent]
+        if len(there) == len(trials):
+            continue
+        if not there:
+            less = before.rows[k]
+        else:
+            arm = extended_arm(equations.arm, [(*t.candidate.place, t.parameters) for t in there])
+            model = build_model(arm, EVALUATED)
+            known = held(model) if equations.free else estimated(model, equations.thresholds.equations)
+            (less,) = rows_twice(Evaluator(arm), model, [seen_by(rows.prepared, arm)], known, start)
+        if less.columns.shape == rows.columns.shape:
+            found[k] = less
+    return found
+
+
+def without(extension: Extension, there: Sequence[bool]) -> FittedModel:
+    """The extended model without the causes that are not there; its parameters are those of the arm without
+    them. there: of each cause.
+    """
+    after, causes = extension.after, extension.selection.causes
+    if all(there):
+        return after
+    kept = [(*c.trial.candidate.place, c.trial.parameters) for c, so in zip(causes, there, strict=True) if so]
+    arm = extended_arm(extension.equations.arm, kept) if kept else extension.before.arm
+    model = build_model(arm, EVALUATED)
+    alike = len(model.grouping.base) == len(after.parameters)
+    return replace(after, arm=arm, model=model) if alike else after
+
+
+def seen_by(prepared: Prepared, arm: Arm) -> Prepared:
     """The record as this arm reads it: its levers make other angles of the same motor coordinates."""
     record = prepared.record
     if not any(CATALOGUE[u.name].rereads for j in arm.joints for u in j.effects) or not any(
@@ -143,37 +172,6 @@ def replay(fitted: FittedModel, rows: Rows, limits: ExtendedThresholds) -> Windo
         )  # what the model's coordinates are
         p = replace(p, q=moved.q, dq=moved.dq, ddq=moved.ddq)
     return simulated_windows(fitted.model, fitted.parameters, states, p, starts, length)
-
-
-def residuals(test: Rows, extension: Extension) -> tuple[Array, Array]:
-    """On the test record (M, n), in the unit of its efforts: before and after."""
-    selection, before, after = extension.selection, extension.before, extension.after
-    old = (test.effort - test.columns @ before.theta) * test.gain
-    if not selection.causes:
-        return old, old
-    if any(c.trial.candidate.definition.presence is Presence.LATER for c in selection.causes):
-        table = [test.columns]
-        for cause in selection.causes:
-            found = columns_of(cause.trial, test, extension)
-            assert found is not None
-            table.append(found)
-        left = test.effort - np.concatenate(table, axis=2) @ selection.system.theta
-        return old, left * test.gain
-    seen = _seen_by(test.prepared, after.arm)
-    rows = rows_of(Evaluator(after.arm), after.model, seen, after.theta, after.rows[0].baseline)
-    return old, (rows.effort - rows.columns @ after.theta) * test.gain
-
-
-def columns_of(trial: FittedCandidate, test: Rows, extension: Extension) -> Array | None:
-    """Columns (M, n, k) of a cause on another record than those it was fitted to; None where it cannot stand
-    there.
-    """
-    # a payload that came between the records stays
-    later = trial.candidate.definition.presence is Presence.LATER
-    records = [test, test] if later else [test]
-    equations, values = extension.equations.with_rows(records), {**trial.values, **trial.around}
-    found = candidate_columns(trial.candidate, values, equations, extension.base)
-    return None if found is None else found[-1]
 
 
 def unit_of_efforts(test: Prepared) -> str:

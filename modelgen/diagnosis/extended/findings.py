@@ -38,7 +38,8 @@ class NamedCause:
     how far their evidence lies behind; aliases: effects that no motion tells apart from it. cross_gain,
     expected_gain: percent of the RMSE on rows that its fit had not seen, measured, and due to it as found.
     share: of the gain on the test record. joint_name: of the description, None for the whole arm. checks: the
-    same for every cause.
+    same for every cause. records: those that have it, where others do not, the test record among them; None
+    where all do.
     """
 
     effect: str
@@ -52,6 +53,7 @@ class NamedCause:
     share: Share = Share()
     joint_name: str | None = None
     checks: tuple[Check, ...] = ()
+    records: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,18 @@ Blocks keep the colour of the residuals (Kuensch 1989).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
 from modelgen.dataset import Record
-from modelgen.diagnosis.candidates import with_causes
-from modelgen.diagnosis.equations import Rows
-from modelgen.diagnosis.extended.extended_model import Extension, columns_of
+from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns, with_causes
+from modelgen.diagnosis.equations import Rows, rows_of
+from modelgen.diagnosis.extended.extended_model import Extension, seen_by
 from modelgen.diagnosis.extended.findings import Errors, Share
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
+from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
 from modelgen.regression.weighted import rmse, weighted_fit
 from modelgen.simulation.windows import Windows
@@ -98,11 +101,65 @@ def _ratios(before: Array, after: Array, count: int) -> Array:
     return np.asarray(drawn[:, 1] / drawn[:, 0])
 
 
-def shares(extension: Extension, test: Rows) -> list[Share]:
+def residuals(test: Rows, extension: Extension, there: Sequence[bool]) -> tuple[Array, Array]:
+    """On the test record (M, n), in the unit of its efforts: before and after.
+
+    there: of each cause, whether the record has it, `on_test`.
+    """
+    selection, before, after = extension.selection, extension.before, extension.after
+    old = (test.effort - test.columns @ before.theta) * test.gain
+    if not selection.causes:
+        return old, old
+    if any(c.trial.candidate.coming for c in selection.causes):
+        return old, _left(test, extension, there) * test.gain
+    seen = seen_by(test.prepared, after.arm)
+    rows = rows_of(Evaluator(after.arm), after.model, seen, after.theta, after.rows[0].baseline)
+    return old, (rows.effort - rows.columns @ after.theta) * test.gain
+
+
+def on_test(extension: Extension, test: Rows) -> tuple[bool, ...]:
+    """Whether each cause is there on the test record. Of what comes and goes between records nobody has said
+    it: it is there where it leaves less, in units of the noise.
+    """
+    trials = [c.trial for c in extension.selection.causes]
+    if not any(t.candidate.coming for t in trials):
+        return (True,) * len(trials)
+    sizes = np.maximum(extension.selection.system.sizes, 1e-300)
+
+    def size(there: tuple[bool, ...]) -> float:
+        return float((((_left(test, extension, there) / sizes) ** 2)[test.moving]).sum())
+
+    return min(product(*((True, False) if t.candidate.coming else (True,) for t in trials)), key=size)
+
+
+def _left(test: Rows, extension: Extension, there: Sequence[bool]) -> Array:
+    """What the causes that are there leave of the test record's efforts (M, n)."""
+    selection = extension.selection
+    table = [test.columns]
+    for cause, so in zip(selection.causes, there, strict=True):
+        found = columns_of(cause.trial, test, extension)
+        assert found is not None
+        table.append(found if so else np.zeros_like(found))
+    return np.asarray(test.effort - np.concatenate(table, axis=2) @ selection.system.theta)
+
+
+def columns_of(trial: FittedCandidate, test: Rows, extension: Extension) -> Array | None:
+    """Columns (M, n, k) of a cause on another record than those it was fitted to, as if it is there.
+
+    None where it cannot stand there.
+    """
+    equations, values = extension.equations.with_rows([test]), {**trial.values, **trial.around}
+    candidate = replace(trial.candidate, absent=frozenset())
+    found = candidate_columns(candidate, values, equations, extension.base)
+    return None if found is None else found[0]
+
+
+def shares(extension: Extension, test: Rows, on: Sequence[bool]) -> list[Share]:
     """Shares of the causes, over the joints where each acts, in units of what all causes leave there.
 
     The model is fitted to the training records, with all causes and with all but this one; values that were
-    searched for stay. Not a number where one of them cannot stand on that record.
+    searched for stay. on: of each cause, whether it is there, `on_test`. Where it is not, its share is what
+    the arm's parameters are better for. Not a number where one of them cannot stand on that record.
     """
     selection, limits = extension.selection, extension.equations.thresholds.extended
     equations, trials = selection.system.equations, [cause.trial for cause in selection.causes]
@@ -110,6 +167,7 @@ def shares(extension: Extension, test: Rows) -> list[Share]:
     there = [table for table in made if table is not None and np.isfinite(table).all()]
     if len(there) < len(trials):
         return [Share()] * len(trials)
+    there = [table if so else np.zeros_like(table) for table, so in zip(there, on, strict=True)]
 
     def left(kept: Sequence[int]) -> tuple[Array, Array]:
         """Residuals (M, n) of the model with these causes, and their RMSE by joint (n,)."""

@@ -114,6 +114,7 @@ def _cause(c: NamedCause) -> dict[str, Any]:
         "effect": c.effect,
         "joint": c.joint,
         "joint_name": c.joint_name,
+        **({} if c.records is None else {"records": list(c.records)}),
         "parameters": {
             name: {"value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
             for name, e in c.parameters.items()

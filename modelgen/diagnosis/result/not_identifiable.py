@@ -19,7 +19,7 @@ def not_identifiable(arm: Arm, equations: Equations, selection: Selection) -> tu
     still = [j + 1 for j in range(n) if not any(r.moving[:, j].any() for r in rows)]
     seen = Seen(cold(equations), tuple(still), tuple(unsided), coarse)
     named = {c.trial.candidate.effect for c in selection.causes}
-    presences = [Presence.LATER, Presence.FADING, Presence.ALWAYS]
+    presences = [Presence.SOME, Presence.FADING, Presence.ALWAYS]
     order = sorted(
         CATALOGUE.values(),
         key=lambda e: (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from modelgen.dataset.inspection import inspect_records
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy import confirmed, place
 from modelgen.diagnosis.decision import Decision
-from modelgen.diagnosis.equations import Rows, Study
+from modelgen.diagnosis.equations import Equations, Rows, Study
 from modelgen.diagnosis.extended import (
     Estimate,
     Extension,
@@ -23,10 +23,12 @@ from modelgen.diagnosis.extended import (
     described_by,
     errors,
     motion_errors,
+    on_test,
     replay,
     residuals,
     shares,
     unit_of_efforts,
+    without,
 )
 from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.options.thresholds import USUAL, in_band
@@ -46,14 +48,18 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
     band, selection, arm = decision.band, extension.selection, extension.before.arm
     equations, limits = extension.equations, extension.equations.thresholds.extended
     test = equations.of_record(band.test, extension.before.theta)
-    pair = residuals(test, extension)
+    there = on_test(extension, test)
+    pair = residuals(test, extension, there)
     causes = _named(decision, extension)
     if causes and not equations.free:
-        worth = shares(extension, test)
+        worth = shares(extension, test, there)
         causes = tuple(replace(cause, share=share) for cause, share in zip(causes, worth, strict=True))
-    causes = tuple(replace(c, checks=(*c.checks, confirmed(c.share.gain, c.share.low))) for c in causes)
+    causes = tuple(
+        replace(c, checks=(*c.checks, confirmed(c.share.gain, c.share.low, so)), records=_having(c, so, test))
+        for c, so in zip(causes, there, strict=True)
+    )
     described = replay(extension.before, test, limits)
-    played = described, replay(extension.after, test, limits) if causes else described
+    played = described, replay(without(extension, there), test, limits) if causes else described
     after, fit = extension.after, decision.remains.fit
     values = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
     added = *described_by(extension.inertias), *values
@@ -92,6 +98,13 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         positions=Positions(decision.remains.feigned, decision.correlated),
         inertias=extension.inertias,
     )
+
+
+def _having(cause: NamedCause, there: bool, test: Rows) -> tuple[str, ...] | None:
+    """Names of the records that have a cause, the test record among them where it is there."""
+    if cause.records is None or not there:
+        return cause.records
+    return (*cause.records, test.prepared.record.name)
 
 
 def _law(cause: Cause, test: Rows, extension: Extension) -> Array:
@@ -152,13 +165,14 @@ def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
     if not causes:
         return ()
     estimates = cause_estimates(extension.selection, extension.equations)
+    records = _names(extension.equations)
     result = []
     for cause, same, values, asked in zip(causes, decision.equal, estimates, decision.causes, strict=True):
         aliases = tuple(other.place for other in same)
         rivals = tuple(
             (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in aliases
         )
-        named = _as_named(arm, cause, values, asked.checks)
+        named = _as_named(arm, cause, values, asked.checks, records)
         result.append(replace(named, aliases=aliases, ambiguous_with=rivals))
     return tuple(result)
 
@@ -170,16 +184,27 @@ def _suspects(decision: Decision, arm: Arm) -> tuple[NamedCause, ...]:
     before, unmeasured = decision.before, confirmed(float("nan"), float("nan"))
     found = zip(before.causes, cause_estimates(before, before.system.equations), strict=True)
     estimates = {id(cause): values for cause, values in found}
+    records = _names(before.system.equations)
     return tuple(
-        _as_named(arm, e.cause, estimates[id(e.cause)], (*e.checks, unmeasured)) for e in decision.suspects
+        _as_named(arm, e.cause, estimates[id(e.cause)], (*e.checks, unmeasured), records)
+        for e in decision.suspects
     )
 
 
+def _names(equations: Equations) -> list[str]:
+    return [r.prepared.record.name for r in equations.rows]
+
+
 def _as_named(
-    arm: Arm, cause: Cause, values: Mapping[str, Estimate], checks: tuple[Check, ...]
+    arm: Arm,
+    cause: Cause,
+    values: Mapping[str, Estimate],
+    checks: tuple[Check, ...],
+    records: Sequence[str],
 ) -> NamedCause:
     """A cause with its values and checks, without what only the test record or its rivals say."""
     c = cause.trial.candidate
+    having = [name for k, name in enumerate(records) if k not in c.absent]
     return NamedCause(
         effect=c.effect,
         joint=c.joint,
@@ -189,4 +214,5 @@ def _as_named(
         expected_gain=cause.expected_gain,
         joint_name=None if c.joint is None else arm.joints[arm.coordinates[c.joint - 1]].name,
         checks=checks,
+        records=tuple(having) if c.absent else None,
     )

@@ -74,7 +74,7 @@ class Gates:
         new = with_causes(self.equations, [*self.before, trial])
         # what shows between records, or in some of them alone: halves of all are tried instead
         effect = trial.candidate.definition
-        halves = effect.presence is Presence.LATER or self._somewhere(trial)
+        halves = trial.candidate.coming or self._somewhere(trial)
         within = (trial.candidate.joint or 1) - 1 if Shows.PLACES in effect.shows else None
         split = Split(self.limits.max_records_one_by_one, halves, within)
         whole, again = np.stack([self._without(split), self._with(new, split)], axis=1)
@@ -207,7 +207,7 @@ def _feignable(c: Candidate) -> bool:
 
     It must gain all of it where the rest is fitted anew.
     """
-    return c.elastic or _lags(c) or c.definition.presence is Presence.LATER
+    return c.elastic or _lags(c) or c.coming
 
 
 def _reverses(c: Candidate) -> bool:
@@ -231,7 +231,7 @@ def instrumented(trial: FittedCandidate, system: System) -> bool:
     presence = trial.candidate.definition.presence
     if presence is Presence.FADING:  # passes while errors of the positions repeat with the excitation
         return True
-    if presence is Presence.LATER:  # does not repeat
+    if trial.candidate.coming:  # does not repeat
         return False
     if trial.candidate.elastic:  # searched for over what makes a filter of any errors
         return False

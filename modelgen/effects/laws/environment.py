@@ -190,7 +190,7 @@ class PayloadChange(LinkEffect):
     )
     parts = (("mass", "moment_x"),)  # held along the last link
     exact = True
-    presence = Presence.LATER
+    presence = Presence.SOME
     claims = ("mass",)
     confused_with = ("friction_warm_up", "base_tilt")
     reading = Reading("what the last link carries on a balance, to 10 g", ("mass",), 0.01)
