@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
 from modelgen.calibration import Calibration as Found
@@ -139,5 +140,6 @@ def calibrate(
     ----------
     Beck and Arnold, Parameter Estimation in Engineering and Science, 1977, chapter 6.
     """
+    an_arm(arm)
     (one,) = listed(log, "log")
     return Calibration(arm, calibrate_log(arm, joint, one, changed(options or CalibrationOptions(), changes)))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from modelgen.description import Arm, load
 from modelgen.effects import known_effects
+from modelgen.errors import InputError
 from modelgen.resources import shipped_arms
 
 
@@ -37,3 +38,19 @@ def description_file(path: Path | str | None) -> Path:
         return Path(path)
     here = Path("arms.yaml")
     return here if here.exists() else shipped_arms()
+
+
+def an_arm(given: object) -> Arm:
+    """The arm that a function was given.
+
+    Raises InputError for what is none: a path, or all arms of a file.
+    """
+    if isinstance(given, Arm):
+        return given
+    if isinstance(given, dict) and all(isinstance(each, Arm) for each in given.values()):
+        found, way = f"{len(given)} arms, {', '.join(map(str, given))}", "arms[NAME]"
+    elif isinstance(given, str | Path):
+        found, way = f"the text '{given}'", f"load_arms('{given}')[NAME]"
+    else:
+        found, way = f"{type(given).__name__}", "load_arms(FILE)[NAME]"
+    raise InputError(f"arm: found {found}; expected an arm, as {way} gives")

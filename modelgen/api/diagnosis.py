@@ -7,6 +7,7 @@ from math import isnan
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Shown, Table
 from modelgen.description import Arm, loads
@@ -201,6 +202,7 @@ def diagnose(
     ----------
     The sources of each step are in docs/diagnosis_method.md.
     """
+    an_arm(arm)
     chosen = changed(options or DiagnosisOptions(), changes)
     return diagnosed(arm, listed(train, "train"), listed(test, "test"), chosen, progress)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
 from modelgen.drawing import framed, page, start
@@ -113,6 +114,7 @@ def draw(arm: Arm, out: Path | str | None = None, q: str | float | Sequence[floa
     InputError
         For coordinates outside the joints' ranges, and where the file cannot be written.
     """
+    an_arm(arm)
     if out is not None:
         check_writable("--out", Path(out))
     names = arm.coordinate_names

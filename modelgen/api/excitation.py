@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.results import Result, Table
 from modelgen.description import Arm
 from modelgen.excitation import Excitation as Found
@@ -151,6 +152,7 @@ def excite(
     ----------
     Swevers, Ganseman, Tukel, De Schutter and Van Brussel, Optimal robot excitation and identification, 1997.
     """
+    an_arm(arm)
     chosen = changed(options or ExcitationOptions(), changes)
     chosen.checked()
     text = f"{arm.name}: starts done"

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
 from modelgen.exporting import Exported, Row, check_file, check_format, export_model
@@ -143,6 +144,7 @@ def export(
         For a format or a version that does not exist, links without inertials, parameters that are not the
         arm's, and a file that cannot be written.
     """
+    an_arm(arm)
     check_format(to, fmi)
     if out is not None:
         check_file("--out", Path(out))

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.model import total
 from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
@@ -104,7 +105,7 @@ class Generated(Shown):
 
 
 def generate(
-    arms: Arm | Sequence[Arm],
+    arms: Arm | Sequence[Arm] | Mapping[str, Arm],
     out: Path | str = "generated",
     options: ModelOptions | None = None,
     generation: GenerationOptions | None = None,
@@ -118,7 +119,7 @@ def generate(
 
     Parameters
     ----------
-    arms : Arm or sequence of Arm
+    arms : Arm, sequence of Arm, or mapping of str to Arm
         As `load_arms` gives them.
     out : Path or str
         The folder that gets one folder per arm.
@@ -149,7 +150,8 @@ def generate(
         For an arm without a model, names that collide, and a folder that cannot be written.
     """
     chosen, more = options or ModelOptions(), generation or GenerationOptions()
-    wanted = [arms] if isinstance(arms, Arm) else list(arms)
+    every = arms.values() if isinstance(arms, Mapping) else arms
+    wanted = [an_arm(each) for each in ([every] if isinstance(every, Arm | str | Path) else every)]
     budget = _budget(more)
     own = values_beside(wanted, chosen) if parameters is None and identification is None else {}
     names = [arm.name for arm in wanted]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
 from modelgen.charts import sheet
@@ -189,6 +190,7 @@ def identify(
     Gautier, Dynamic identification of robots with power model, 1997. Janot, Vandanjon and Gautier, A generic
     instrumental variable approach for industrial robot identification, 2014.
     """
+    an_arm(arm)
     chosen = changed(options or IdentificationOptions(), changes)
     outcome = identify_logs(arm, listed(train, "train"), listed(test, "test"), chosen, progress)
     fitted, held = (files_of(x.name for x in part) for part in (outcome.log.train, outcome.log.test))

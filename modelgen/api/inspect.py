@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Shown, Table
 from modelgen.dataset import Record, read
@@ -175,6 +176,7 @@ def read_log(log: Log, arm: Arm, *, mapping: Path | str | None = None) -> Record
     InputError
         For a log that cannot be read, and for columns that are missing, doubled, not finite or out of range.
     """
+    an_arm(arm)
     (one,) = listed(log, "log")
     return read(one, arm, mapping)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.results import Named, Shown, Table
 from modelgen.backends import NumpyFunction
 from modelgen.base_parameters import BaseParameter, for_reading
@@ -172,6 +173,7 @@ def build_model(arm: Arm, options: ModelOptions | None = None, **changes: Any) -
     ----------
     Khalil and Dombre, Modeling, Identification and Control of Robots, 2002.
     """
+    an_arm(arm)
     return Model(build(arm, changed(options or ModelOptions(), changes)))
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
 from modelgen.dataset import parse
@@ -154,6 +155,7 @@ def refine(
     ----------
     Bock, Recent advances in parameter identification techniques for ODE, 1983.
     """
+    an_arm(arm)
     chosen = changed(options or RefinementOptions(), changes)
     logs = listed(log, "log")
     names = files_of(parse(each).text for each in logs)

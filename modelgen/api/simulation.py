@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
@@ -182,6 +183,7 @@ def simulate(
     InputError
         For options that do not go together, missing nominal values and a state outside the stroke.
     """
+    an_arm(arm)
     chosen = changed(options or SimulationOptions(), changes)
     return Simulation(simulated(arm, listed(log, "log"), chosen, progress))
 

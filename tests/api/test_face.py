@@ -43,3 +43,29 @@ def test_type_checkers_see_the_names_that_are_imported_lazily() -> None:
     }
     assert seen == modelgen._HOME
     assert sorted({*seen, "InputError", "__version__"}) == sorted(modelgen.__all__)
+
+
+@pytest.mark.parametrize(
+    ("given", "found"),
+    [("arms.yaml", r"the text 'arms.yaml'.*load_arms\('arms.yaml'\)\[NAME\]"), ({}, "0 arms"), (3, "int")],
+)
+def test_what_is_no_arm_is_told_from_one(given: object, found: str) -> None:
+    """In every function that is about one."""
+    calls = {
+        "identify": (["a.csv"], ["b.csv"]),
+        "diagnose": (["a.csv", "b.csv"], "c.csv"),
+        "simulate": (),
+        "excite": (),
+        "calibrate": (1, "a.csv"),
+        "refine": ("a.csv",),
+        "draw": (),
+        "build_model": (),
+    }
+    for name, more in calls.items():
+        with pytest.raises(modelgen.InputError, match=f"arm: found {found}"):
+            getattr(modelgen, name)(given, *more)
+    with pytest.raises(modelgen.InputError, match=f"arm: found {found}"):
+        modelgen.export(given, to="urdf")
+    if isinstance(given, str):
+        with pytest.raises(modelgen.InputError, match=f"arm: found {found}"):
+            modelgen.generate(given, "nowhere")

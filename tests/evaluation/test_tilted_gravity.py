@@ -11,6 +11,7 @@ from witness.rigid_bodies import RigidBodies
 
 from modelgen.description import Arm
 from modelgen.effects import described
+from modelgen.effects.laws.environment import BaseTilt
 from modelgen.evaluation import Evaluator, with_effect
 from modelgen.functions.nominal import grouped, nominal_links
 
@@ -50,3 +51,13 @@ def test_without_nominal_links_it_weighs_what_the_records_tell() -> None:
     assert np.isfinite(told).all()
     # the first link hangs on the first joint alone, and all that others carry weighs there as well
     assert np.abs((known - told)[:, 0]).max() > 1e-3 * np.abs(known).max()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_turns_that_are_estimated_lean_gravity_in_two_directions(seed: int) -> None:
+    """Wherever it points: the third turn would add none, since gravity turns about itself (e x g)."""
+    gravity = 9.81 * np.random.default_rng(seed).normal(size=3)
+    (names,) = BaseTilt.subsets(replace(ARMS["ur10e"], gravity=tuple(gravity)), None)
+    first, second = (np.cross(np.eye(3)["xyz".index(name)], gravity) for name in names)
+    spanned = np.linalg.norm(np.cross(first, second)) / (gravity @ gravity)
+    assert spanned > 0.57  # 1 / sqrt(3) where gravity lies between all three axes

@@ -301,6 +301,12 @@ class BaseTilt(DescriptionEffect):
     experiment = "an inclinometer, or a second mounting of the base"
     shown = at(z=0.05)
 
+    @classmethod
+    def subsets(cls, arm: Arm, number: int | None) -> tuple[tuple[str, ...], ...]:
+        """Two turns, without that about the axis next to gravity: gravity leans in two directions."""
+        along = max(range(3), key=lambda axis: abs(float(arm.gravity[axis])))
+        return (tuple(name for axis, name in enumerate("xyz") if axis != along),)
+
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """Gravity as the turned base sees it: Rz' Ry' Rx' g."""
         g = sp.Matrix(arm.gravity)
