@@ -72,6 +72,7 @@ def best_beside(
 
 def refined(
     trials: Sequence[FittedCandidate],
+    astray: Sequence[FittedCandidate],
     causes: Sequence[Cause],
     system: System,
     where: Where = HERE,
@@ -79,7 +80,9 @@ def refined(
     """Find the best values of elastic joints and gaps at a joint where one of them is ahead of all trials.
 
     Where a rigid joint leaves less than all of them, whatever is ahead of the other trials. None beside
-    another one: what is left of that looks like the next. where: processes among which they are shared.
+    another one: what is left of that looks like the next. astray: those whose search ended at senseless
+    values; one begins again where a law that comes to it at a limit was found. where: processes among which
+    they are shared.
     """
     others = [c.trial for c in causes]
     if any(t.candidate.elastic for t in others):
@@ -88,6 +91,7 @@ def refined(
     while left and left[0].candidate.elastic:
         joint = left[0].candidate.joint
         there = [t for t in left if "stiffness" in t.values and t.candidate.joint == joint]
+        there += [t for t in astray if t.candidate.joint == joint and _of_richer(t, there)]
         better = _better(there, [_Beside(system.equations, others, t) for t in there], where)
         gains = [beside(t, system) for t in better]
         found = [replace(t, gain=gain) for t, gain in zip(better, gains, strict=True) if gain]
@@ -101,7 +105,11 @@ def _better(
     trials: Sequence[FittedCandidate], places: Sequence[_Beside], where: Where
 ) -> list[FittedCandidate]:
     """Keep the trials that leave less than a rigid joint, with their best values."""
-    begins = [(k, values) for k, trial in enumerate(trials) for values in (trial.values, *_starts(trial))]
+    begins = [
+        (k, values)
+        for k, trial in enumerate(trials)
+        for values in (trial.values, *_starts(trial), *_of_richer(trial, trials))
+    ]
 
     def begun(number: int) -> _Begun:
         k, values = begins[number]
@@ -145,6 +153,15 @@ def _starts(trial: FittedCandidate) -> list[dict[str, float]]:
         {**trial.values, **{n: trial.values[n] * f for n, f in zip(names, factors, strict=True)}}
         for factors in product(*(STARTS[name] for name in names))
     ]
+
+
+def _of_richer(trial: FittedCandidate, trials: Sequence[FittedCandidate]) -> list[dict[str, float]]:
+    """Values of a law that comes to this one at a limit: a gap of no width is an elastic joint. Its
+    search, over more values, may have found a resonance that this one's has missed.
+    """
+    law = trial.candidate.definition
+    richer = [t.values for t in trials if t.candidate.definition.simpler is law]
+    return [{n: v[n] for n in trial.values} for v in richer if v.keys() >= trial.values.keys()]
 
 
 class _Beside:

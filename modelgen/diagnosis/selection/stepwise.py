@@ -85,8 +85,8 @@ class _Steps:
 
     def take(self) -> bool:
         """Take the best candidate that passes every gate; False where none does."""
-        trials, faint, ranking = self._fitted()
-        settled = refined(trials, self.causes, self.system, self.where)
+        trials, faint, astray, ranking = self._fitted()
+        settled = refined(trials, astray, self.causes, self.system, self.where)
         gates = Gates(self.system, self.trials)
         judged = self._judged(sorted([*trials, *settled], key=lambda t: -t.odds), gates)
         ranking += [ranked(t, by, by.refused) for t, by in judged]
@@ -108,14 +108,18 @@ class _Steps:
         self.system = system_of(equations, self.trials)
         return True
 
-    def _fitted(self) -> tuple[list[FittedCandidate], list[FittedCandidate], list[Ranked]]:
-        """Candidates with evidence, those with too little of it, and what evidence or values refuse."""
+    def _fitted(
+        self,
+    ) -> tuple[list[FittedCandidate], list[FittedCandidate], list[FittedCandidate], list[Ranked]]:
+        """Candidates with evidence, those with too little of it, elastic ones with senseless values, and what
+        evidence or values refuse.
+        """
         elastic = {t.candidate.joint for t in self.trials if t.candidate.elastic}
         search = Search(self.system, self.known, elastic)
         taken = {t.candidate.place for t in self.trials}
         left = [c for c in self.pool if c.place not in taken]
         told = None if self.report is None else partial(self.report, f"cause {len(self.causes) + 1}")
-        trials, faint, refused = [], [], []
+        trials, faint, astray, refused = [], [], [], []
         for found in fit_pool(left, search, self.where, told):
             if found is None:
                 continue
@@ -125,9 +129,10 @@ class _Steps:
                     faint.append(found)
             elif not sensible(found, self.equations):
                 refused.append(ranked(found, None, "values"))
+                astray += [found] if found.candidate.elastic else []
             else:
                 trials.append(found)
-        return trials, faint, refused
+        return trials, faint, astray, refused
 
     def _judged(self, trials: Sequence[FittedCandidate], gates: Gates) -> list[Judged]:
         """Judge the trials by the gates; some of those that pass give way to others."""
