@@ -89,7 +89,7 @@ class AppliedEffect:
     @property
     def constant(self) -> bool:
         """Whether it adds a force that no parameter scales, as a payload of known mass does."""
-        return not self.parameters and any(p.place not in ("input", "transmission") for p in self.parts)
+        return not self.parameters and all(p.place not in ("input", "transmission") for p in self.parts)
 
     def depends_on(self, name: str) -> bool:
         """Whether forces or steps use the variable `name` of `Variables`."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from modelgen.description.objects import Arm
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, AppliedEffect
 from modelgen.numeric import Array
 
 
@@ -28,3 +30,14 @@ def added(t: Array, now: Array, delay: float, joint: int | None) -> Array:
     if joint is not None:
         later[:, [k for k in range(now.shape[1]) if k != joint - 1]] = 0.0
     return later
+
+
+def undone(effects: Sequence[AppliedEffect], arm: Arm, names: Sequence[str], given: Array) -> Array:
+    """States (N, s), by `names`, in which inputs (N, n) that `acting` has shifted are not delayed again."""
+    states = np.zeros((len(given), max(1, len(names))))
+    for e in effects:
+        values = dict.fromkeys((p.name for p in e.effect.nonlinear), 0.0)
+        for symbol in e.states.values() if e.effect.delays(values) is not None else []:
+            assert e.joint is not None
+            states[:, names.index(symbol.name)] = given[:, arm.coordinates.index(e.joint)]
+    return states

@@ -14,8 +14,9 @@ from modelgen.effects import CATALOGUE, Definition, DescriptionEffect, InputEffe
 from modelgen.effects.placement import with_effect
 from modelgen.evaluation.cache import Recent
 from modelgen.evaluation.changed_description import Changed, Changes, Variations
-from modelgen.evaluation.delay import acting, added
+from modelgen.evaluation.delay import acting, added, undone
 from modelgen.evaluation.inertia_floor import carried
+from modelgen.evaluation.known_forces import KnownForces
 from modelgen.evaluation.lever_ratio import gain, leverage, reread
 from modelgen.evaluation.link_encoder import LinkSide, at_link, lagging, led_by, rigid
 from modelgen.evaluation.motion import Motion, evaluated, given_for
@@ -100,44 +101,26 @@ class Evaluator:
             return np.zeros(motion.q.shape)
         return self.inputs(motion, parameters) - columns @ parameters
 
-    def constant(self, motion: Motion) -> Array:
-        """Inputs of ideal drives (N, n) that no base parameter scales: what the regressor lacks."""
-        found = np.zeros(motion.q.shape)
-        for applied in self._own.effects:
-            if applied.constant:
-                joint = None if applied.joint is None else self.arm.coordinates.index(applied.joint) + 1
-                values = {p.name: float(applied.values[p.name]) for p in applied.effect.nonlinear}
-                e = self._of_effect(applied.effect.name, joint, values)
-                call = self._with_links(e)
-                found += self._run(call, e, call.function, motion, values, np.zeros(len(self.base.base)))
-        return found
-
     def ideal(self, model: Model, motion: Motion, given: Array) -> Array:
-        """Inputs of ideal drives with the efforts of the measured ones (N, n), less what is `constant`: what
-        the regressor times the base parameters is to be.
+        """Inputs of ideal drives with the efforts of the measured ones (N, n), less those of `known` forces:
+        what the regressor times the base parameters is to be.
         """
-        return self._effective(model, motion, given) - self.constant(motion)
-
-    def _effective(self, model: Model, motion: Motion, given: Array) -> Array:
         given = acting(self.arm, motion.t, given)
-        if not any(f.name == "effective_input" for f in model.functions):
-            return given
-        function = self._function(model, "effective_input")
-        states = np.zeros((len(given), max(1, len(model.states))))
-        for e in self._own.effects:
-            values = dict.fromkeys((p.name for p in e.effect.nonlinear), 0.0)
-            lags = e.states.values() if e.effect.delays(values) is not None else []
-            for symbol in lags:  # undone by the shift
-                assert e.joint is not None
-                k = model.states.index(symbol.name)
-                states[:, k] = given[:, self.arm.coordinates.index(e.joint)]
-        known = {"input": given, "state": states}
-        return np.asarray(function(**{a.name: known[a.name] for a in function.function.arguments}))
+        if any(f.name == "effective_input" for f in model.functions):
+            function = self._function(model, "effective_input")
+            known = {"input": given, "state": undone(self._own.effects, self.arm, model.states, given)}
+            given = np.asarray(function(**{a.name: known[a.name] for a in function.function.arguments}))
+        return given - self.known.inputs(motion)
 
     def states(self, motion: Motion, parameters: Array) -> Array:
         """States of the arm's own effects at every sample (N, s), from zero at the first."""
         found = self._states(self._own, motion, (), parameters)
         return lagging(found, self._own, motion, self.link_side.at_drives(motion, parameters))
+
+    @cached_property
+    def known(self) -> KnownForces:
+        """What has no column in the regressor."""
+        return KnownForces(self.arm)
 
     @cached_property
     def link_side(self) -> LinkSide:
@@ -198,17 +181,13 @@ class Evaluator:
         if joint is not None and at_link(motion, joint):
             return self.link_side.added(joint, motion, dict(values), parameters)
         e = self._of_effect(effect, joint, values)
-        call = self._with_links(e)
+        if (e, "added") not in self._made:
+            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
+        call = self._made[e, "added"]
         if joint is not None:
             parameters = self._carried(joint, motion, parameters)
         found = self._run(call, e, call.function, motion, values, parameters)
         return found - self._links(motion, links_alone(self.arm, self.base, joint, parameters))
-
-    def _with_links(self, e: Equations) -> NumpyFunction:
-        """Inputs of the links and of the effect of these equations."""
-        if (e, "added") not in self._made:
-            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
-        return self._made[e, "added"]
 
     def _by_change(
         self,

@@ -60,7 +60,7 @@ def gain_of(p: Prepared) -> Array:
 def ideal_of(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """What the log would carry of the model's efforts (N, n)."""
     motion = motion_of(p)
-    made = evaluator.regressor(model, motion, theta) @ theta + evaluator.constant(motion)
+    made = evaluator.regressor(model, motion, theta) @ theta + evaluator.known.inputs(motion)
     return np.asarray(made * gain_of(p))
 
 
@@ -101,7 +101,7 @@ class Beyond:
         """
         motion, logged, gain = motion_of(p), logged_of(p), gain_of(p)
         columns = self.evaluator.regressor(self.model, motion, self.theta)
-        ideal = (columns @ self.theta + self.evaluator.constant(motion)) * gain
+        ideal = (columns @ self.theta + self.evaluator.known.inputs(motion)) * gain
         found = np.zeros(p.q.shape, dtype=bool)
         for e in self.ends:
             j, x = e.joint, columns[:, e.joint] * gain[:, e.joint, None]

@@ -117,7 +117,7 @@ def _steps(p: Prepared) -> Array:
 def _ideal(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """Inputs (N, n) of the model along a record."""
     motion = Motion(p.time, p.q, p.dq, p.ddq)
-    return np.asarray(evaluator.regressor(model, motion, theta) @ theta + evaluator.constant(motion))
+    return np.asarray(evaluator.regressor(model, motion, theta) @ theta + evaluator.known.inputs(motion))
 
 
 def _rounding(p: Prepared, ideal: Array, steps: Array, random: np.random.Generator) -> Array:

@@ -83,12 +83,19 @@ CONSTANTS = {
         "SINGULAR": ROUNDING,
         "LEAST": ROUNDING,
     },
-    "selection/deviations.py": {"STEP": ACCURACY, "OPEN": ROUNDING},
+    "selection/deviations.py": {"STEP": ACCURACY, "LEAST": ACCURACY, "OPEN": ROUNDING},
     "selection/refit.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "WORSE": ROUNDING},
-    "selection/refit_stiffness.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "LEAST": BUDGET, "MOST": BUDGET},
+    "selection/elastic_fit.py": {
+        "STEPS": BUDGET,
+        "CLOSE": ACCURACY,
+        "TOUCH": ACCURACY,
+        "LEAST": ACCURACY,
+        "ASTRAY": "a misfit that no comparison exceeds",
+    },
     "validation/agreement.py": {"DRAWS": ACCURACY, "SEED": SEED},
 }
 LITERALS: dict[str, dict[float, str]] = {
+    "adequacy/free_form.py": {3: "of two records a size in each is the size in one of them"},
     "adequacy/distinguishable.py": {
         400: ACCURACY,
         0.01: "the sampling period of a made-up motion",

@@ -229,15 +229,15 @@ def test_values_that_no_arm_has(effect: str, values: dict[str, float], possible:
         (0.0, 2.0, False),
         (-0.5, 2.0, False),
         (0.5, 2.0, True),
-        (0.06, 2.0, False),  # no mass that it could have is within reach of such a moment
-        (0.06, 0.12, True),
+        (0.5, 0.0, True),
+        (0.06, 2.0, False),
         (0.06, 0.0, False),
     ],
 )
-def test_a_payload_has_a_mass_or_moments_that_one_within_reach_can_have(
-    mass: float, moment: float, passed: bool
-) -> None:
-    """In noise of unit size and 1200 rows the deviations of mass and moment are 0.03, the reach is 0.9 m."""
+def test_a_payload_has_a_mass(mass: float, moment: float, passed: bool) -> None:
+    """In noise of unit size and 1200 rows the deviations of mass and moment are 0.03. Moments alone may be
+    those of a tilt, or of an encoder that was set anew between two records.
+    """
     random = np.random.default_rng(4)
     rows, _, periods = made(lambda x: 0.0 * x)
     columns = [random.normal(size=(len(r.effort), 1, 2)) for r in rows]
@@ -273,7 +273,7 @@ def test_an_elastic_joint_is_not_as_good_as_rigid(
     def simulated(candidate: Candidate, values: dict[str, float], *of: Any) -> list[np.ndarray]:
         return [c / values["stiffness"] for c in shapes]
 
-    for module in ("deviations", "refit_stiffness"):
+    for module in ("deviations", "elastic_fit"):
         where = import_module(f"modelgen.diagnosis.selection.{module}")
         monkeypatch.setattr(where, "candidate_columns", simulated)
     bare = system_of(soft, periods=periods)

@@ -24,7 +24,7 @@ from modelgen.diagnosis.selection import (
     Selection,
     deviations,
     needed_evidence,
-    refit_stiffness,
+    refit_elastic,
     threshold,
 )
 from modelgen.diagnosis.validation import Check, Part, Split, agreement, folds
@@ -214,7 +214,7 @@ def _searched(
     """The same of its own parameters, which follow from what was searched for, as they are beside the arm's;
     nothing of those whose slope cannot be had.
     """
-    settled = refit_stiffness(selection, equations)
+    settled = refit_elastic(selection, equations)
     values, spread = settled.causes[k].trial.parameters, deviations(settled, equations)[k]
     known = {name: std for name, std in spread.items() if np.isfinite(std)}
     return {name: values[name] for name in known}, known

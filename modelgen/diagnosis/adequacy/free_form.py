@@ -10,7 +10,7 @@ size of its own, it is not the law.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from modelgen.diagnosis.adequacy.smooth_functions import (
     log_evidence,
     spots,
 )
-from modelgen.diagnosis.candidates import FittedCandidate, system_of
+from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns, system_of
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection import Selection, together
@@ -32,7 +32,7 @@ from modelgen.numeric import Array
 @dataclass(frozen=True)
 class FreeForm:
     """ahead: delta BIC by which what has no law is ahead of the causes at a joint, or of the whole arm; most:
-    by which it may be. apart: it is the law itself, with a size of its own at every joint.
+    by which it may be. apart: it is the law itself, with a size of its own at every joint, or record.
     """
 
     ahead: float
@@ -80,12 +80,13 @@ def free_forms(
 
 def _apart(own: Sequence[FittedCandidate], without: System) -> FreeForm:
     """Delta BIC by which causes are ahead of themselves with a size of their own at each joint that they act
-    on. Those that do so by the law of a fluid, of which arms differ, or by what is a guess, keep one size.
+    on; what some records have, with one in each record. Those that act on several joints by the law of a
+    fluid, of which arms differ, or by what is a guess, keep one size.
 
     own: of a joint, or of the whole arm; without: the system of the others.
     """
     most = without.equations.thresholds.adequacy.max_free_form_ahead
-    columns = [_by_joint(t) for t in own]
+    columns = [_by_record(t, without) if t.candidate.coming else _by_joint(t) for t in own]
     if all(split is t.columns for split, t in zip(columns, own, strict=True)):
         return FreeForm(-np.inf, most, apart=True)
     beside = [np.concatenate(tables, axis=2) for tables in zip(*columns, strict=True)]
@@ -102,6 +103,16 @@ def _by_joint(trial: FittedCandidate) -> Sequence[Array]:
         return trial.columns
     places = np.eye(len(acts))[acts]
     return [np.concatenate([t * place[:, None] for place in places], axis=2) for t in trial.columns]
+
+
+def _by_record(trial: FittedCandidate, without: System) -> Sequence[Array]:
+    """Columns of what some records have, (M, n, (r - 1) k) with a size of its own in each but one."""
+    every = replace(trial.candidate, absent=frozenset())
+    made = candidate_columns(every, {**trial.values, **trial.around}, without.equations, without.base)
+    if made is None or len(made) < 3:  # two records differ in one way
+        return trial.columns
+    places = np.eye(len(made))[:, 1:]
+    return [np.concatenate([t * x for x in place], axis=2) for t, place in zip(made, places, strict=True)]
 
 
 def ahead(shapes: Iterable[SmoothFunction], own: Sequence[FittedCandidate], without: System) -> float:

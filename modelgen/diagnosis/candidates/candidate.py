@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from modelgen.evaluation import places
 
 Values = Mapping[str, float]
 Place = tuple[str, int | None]  # effect and joint
-SPLIT = 4  # records that are divided in every way into those with an effect and those without: a budget
 
 
 @dataclass(frozen=True)
@@ -118,19 +116,14 @@ def candidates(equations: Equations) -> list[Candidate]:
 
 
 def without(effect: type[Definition], count: int) -> list[frozenset[int]]:
-    """Records (from 0) of `count` that may be without an effect, by form; none where it is in all.
+    """Records (from 0) of `count` that are without an effect, by form; none where it is in all.
 
-    The first one is among them: what is there in that one alone is missing in all others. Of more records
-    than SPLIT those that have it follow one another.
+    It comes once, between two of them. Where it goes instead, what the first ones have is what the others
+    have less of.
     """
     if effect.presence is not Presence.SOME:
         return [frozenset()]
-    every = range(count)
-    if count <= SPLIT:
-        having = [set(some) for k in range(1, count) for some in combinations(every[1:], k)]
-    else:
-        having = [set(every[a:b]) for a in every[1:] for b in range(a + 1, count + 1)]
-    return [frozenset(every) - some for some in having]
+    return [frozenset(range(k)) for k in range(1, count)]
 
 
 def _seen(effect: type[Definition], joint: int | None, rows: Sequence[Rows]) -> bool:

@@ -32,10 +32,11 @@ def candidate_columns(
     """Its columns (M, n, k) in every record of the equations for values of what is searched, or about which a
     column that follows no line counts; None where it cannot stand. base: base parameters (p,).
     """
+    evaluator = equations.evaluator
+    if candidate.elastic and equations.apart is not None:
+        evaluator = equations.apart
     try:
-        found = [
-            r.filtered(_at_full_rate(candidate, values, r, equations.evaluator, base)) for r in equations.rows
-        ]
+        found = [r.filtered(_at_full_rate(candidate, values, r, evaluator, base)) for r in equations.rows]
     except InputError:
         return None
     if candidate.elastic:  # the tail of a filter, of what lies outside the rows, is nothing

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import TypeAlias
 
 import numpy as np
@@ -165,7 +165,10 @@ class Search:
         return golden(at, math.log(low), math.log(high), best)
 
     def _compliant(self, candidate: Candidate) -> FittedCandidate | None:
-        """A scan over the first value, then a section over each in turn."""
+        """A scan over the grids, then a section over each value in turn.
+
+        Where some values let the records have about as much as was simulated, those are kept to.
+        """
         search = search_of(candidate, self.rows)
         units = {
             p.name: grid_unit(p.scale, candidate.effect, candidate.joint, self.equations) for p in search
@@ -173,10 +176,18 @@ class Search:
         if not all(unit > 0 for unit in units.values()):
             return None
         extra = float(len(search))
-        start = {p.name: units[p.name] * p.grid[len(p.grid) // 2] for p in search}
-        first = search[0].name
-        scanned = [self._at(candidate, {**start, first: units[first] * g}, extra) for g in search[0].grid]
-        best = _best([self._if_whole(t) for t in scanned]) or self._between(scanned, first, extra)
+        first, *others = (p.name for p in search)
+        along, *across = ([units[p.name] * g for g in p.grid] for p in search)
+        scanned, found = [], []
+        for values in product(*across):
+            held = dict(zip(others, values, strict=True))
+            line = [self._at(candidate, {first: x, **held}, extra) for x in along]
+            own: list[FittedCandidate | None] = [t for t in line if t is not None and self._whole(t)]
+            found += own or [self._between(line, first, extra)]
+            scanned += line
+        best, whole = _best(found), True
+        if best is None and not at_links(candidate.joint, self.rows):
+            best, whole = _best(scanned), False
         if best is None or best.gain.delta_bic < self.limits.min_refined_delta_bic:
             return best
         for turn in range(ROUNDS):
@@ -184,21 +195,17 @@ class Search:
                 reach = (REACH if name == first or turn else FAR) ** (0.5**turn)
 
                 def at(x: float, name: str = name, held: FittedCandidate = best) -> FittedCandidate | None:
-                    return self._whole(candidate, {**held.values, name: math.exp(x)}, extra)
+                    found = self._at(candidate, {**held.values, name: math.exp(x)}, extra)
+                    return found if found is None or not whole or self._whole(found) else None
 
                 middle = math.log(best.values[name])
                 best = golden(at, middle - math.log(reach), middle + math.log(reach), best, SECTIONS)
         return best
 
-    def _whole(self, candidate: Candidate, values: Values, extra: float) -> FittedCandidate | None:
-        return self._if_whole(self._at(candidate, values, extra))
-
-    def _if_whole(self, found: FittedCandidate | None) -> FittedCandidate | None:
-        """Behind a link's own position, only what is found about as large as it was simulated."""
-        if found is None or not at_links(found.candidate.joint, self.rows):
-            return found
+    def _whole(self, found: FittedCandidate) -> bool:
+        """Whether about as much was found as was simulated."""
         low, high = self.limits.compliant_share
-        return found if low < found.gain.values[0] < high else None
+        return bool(low < found.gain.values[0] < high)
 
     def _between(
         self, scanned: Sequence[FittedCandidate | None], name: str, extra: float
@@ -217,7 +224,7 @@ class Search:
         for _ in range(HALVINGS):
             middle = math.sqrt(low.values[name] * high.values[name])
             found = self._at(low.candidate, {**low.values, name: middle}, extra)
-            if found is None or self._if_whole(found) is not None:
+            if found is None or self._whole(found):
                 return found
             if found.gain.values[0] < 1.0:
                 low = found

@@ -2,6 +2,7 @@
 
 from modelgen.diagnosis.equations.band import Band, bands, rows_twice
 from modelgen.diagnosis.equations.checks import check_efforts, columns_of_effects, weights_of_efforts
+from modelgen.diagnosis.equations.drive_inertia import described_by, hidden_inertias
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.free_motion import released
 from modelgen.diagnosis.equations.position_errors import feigned, harmless, repeating_errors, with_errors
@@ -19,10 +20,12 @@ __all__ = [
     "bands",
     "check_efforts",
     "columns_of_effects",
+    "described_by",
     "estimated",
     "feigned",
     "harmless",
     "held",
+    "hidden_inertias",
     "released",
     "repeating_errors",
     "rows_of",

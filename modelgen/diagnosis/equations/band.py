@@ -18,12 +18,14 @@ from modelgen.dataset.processing.content import motion_bandwidth
 from modelgen.dataset.processing.periods import rows_in, with_whole_rows
 from modelgen.dataset.processing.sequence import in_sequence
 from modelgen.diagnosis.equations.checks import check_excitation, check_motion, check_test
+from modelgen.diagnosis.equations.drive_inertia import described_by, hidden_inertias
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.free_motion import away_from_rest
 from modelgen.diagnosis.equations.position_errors import feigned, with_errors
 from modelgen.diagnosis.equations.prior import Unknowns, estimated, held
 from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.equations.study import Study
+from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.numeric import Array
@@ -90,7 +92,15 @@ def _band(study: Study, settings: Settings) -> Band:
     check_motion(equations)
     check_excitation(equations)
     theta = weighted_fit(rows, equations.columns)
-    return Band(with_errors(equations, theta), chosen, prepared[-1], theta)
+    equations = replace(with_errors(equations, theta), apart=_apart(equations, theta))
+    return Band(equations, chosen, prepared[-1], theta)
+
+
+def _apart(equations: Equations, theta: Array) -> Evaluator | None:
+    """Evaluator of the arm whose drives have the inertia that its parameters hold with their links'."""
+    every, least = range(1, equations.n + 1), equations.thresholds.extended.min_inertia_share
+    found = hidden_inertias(equations.model, equations.base(theta), every, least)
+    return Evaluator(extended_arm(equations.arm, described_by(found))) if found else None
 
 
 def rows_twice(

@@ -25,6 +25,8 @@ class Equations:
     records' motions. rows: of each record. periods: rows in a period of each record, None where nothing
     repeats. blur: what errors of the positions leave in the residuals, mean squares by joint (n,). narrowed:
     the usual cut-off over that of these equations. thresholds: by which everything made of them decides.
+    apart: of the arm with the inertia of drives that its parameters hold with their links', None where there
+    is none: what is elastic lies between the two.
     """
 
     model: Model
@@ -34,6 +36,7 @@ class Equations:
     thresholds: Thresholds
     blur: Array = field(default_factory=lambda: np.zeros(1))
     narrowed: float = 1.0
+    apart: Evaluator | None = None
 
     @property
     def arm(self) -> Arm:
@@ -84,4 +87,4 @@ class Equations:
 
     def with_evaluator(self, evaluator: Evaluator) -> Equations:
         """Equations whose further columns are made for another arm."""
-        return replace(self, evaluator=evaluator)
+        return replace(self, evaluator=evaluator, apart=None)

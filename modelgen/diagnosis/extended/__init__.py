@@ -1,6 +1,5 @@
 """The model with the causes: refitted values, their uncertainty, errors on the test record."""
 
-from modelgen.diagnosis.extended.drive_inertia import described_by
 from modelgen.diagnosis.extended.extended_model import (
     Extension,
     FittedModel,
@@ -23,7 +22,6 @@ __all__ = [
     "Share",
     "base_estimates",
     "cause_estimates",
-    "described_by",
     "errors",
     "extend",
     "motion_errors",

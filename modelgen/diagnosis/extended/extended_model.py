@@ -14,7 +14,7 @@ from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
 from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.extended.uncertainty import valued
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
-from modelgen.diagnosis.selection import Selection, refit_stiffness
+from modelgen.diagnosis.selection import Selection, refit_elastic
 from modelgen.effects import CATALOGUE, Family, described
 from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
@@ -67,7 +67,7 @@ def extend(arm: Arm, selection: Selection, equations: Equations) -> Extension:
     """Refit the causes' values beside the arm's parameters; fit the arm as described and with the causes."""
     base = selection.system.base
     inertias, selection, split = split_drive_inertia(selection, equations)
-    selection = valued(refit_stiffness(selection, split))
+    selection = valued(refit_elastic(selection, split))
     before = fitted(arm, equations.model, equations.rows)
     return Extension(selection, split, base, inertias, before, extended(before, selection, split))
 

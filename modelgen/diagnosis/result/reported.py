@@ -12,7 +12,7 @@ from modelgen.dataset.inspection import inspect_records
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy import confirmed, place
 from modelgen.diagnosis.decision import Decision
-from modelgen.diagnosis.equations import Equations, Rows, Study
+from modelgen.diagnosis.equations import Equations, Rows, Study, described_by
 from modelgen.diagnosis.extended import (
     Estimate,
     Extension,
@@ -20,7 +20,6 @@ from modelgen.diagnosis.extended import (
     Positions,
     base_estimates,
     cause_estimates,
-    described_by,
     errors,
     motion_errors,
     on_test,
@@ -62,7 +61,8 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
     played = described, replay(without(extension, there), test, limits) if causes else described
     after, fit = extension.after, decision.remains.fit
     values = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
-    added = *described_by(extension.inertias), *values
+    split = {number: e.value for number, e in extension.inertias.items()}
+    added = *described_by(split), *values
     return Diagnosis(
         arm=arm,
         verdict=decision.verdict,

@@ -3,6 +3,7 @@
 from modelgen.diagnosis.selection.cause import Cause, Selection, together
 from modelgen.diagnosis.selection.compliance import alternatives, best_beside
 from modelgen.diagnosis.selection.deviations import covariance_of, deviations
+from modelgen.diagnosis.selection.elastic_fit import refit_elastic, with_trials
 from modelgen.diagnosis.selection.history import (
     COARSE,
     EXCHANGED,
@@ -12,7 +13,6 @@ from modelgen.diagnosis.selection.history import (
     Ranked,
 )
 from modelgen.diagnosis.selection.marginality import lets_vary
-from modelgen.diagnosis.selection.refit_stiffness import refit_stiffness, with_trials
 from modelgen.diagnosis.selection.stepwise import Report, forward_selection, needed_evidence, threshold
 
 __all__ = [
@@ -32,7 +32,7 @@ __all__ = [
     "forward_selection",
     "lets_vary",
     "needed_evidence",
-    "refit_stiffness",
+    "refit_elastic",
     "threshold",
     "together",
     "with_trials",

@@ -30,6 +30,7 @@ from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.options.thresholds import Thresholds
 from modelgen.diagnosis.selection.cause import Cause
+from modelgen.diagnosis.selection.elastic_fit import ElasticFit, smooth
 from modelgen.diagnosis.validation import Judgement
 from modelgen.jobs import HERE, Where, forked
 from modelgen.numeric import Array
@@ -173,7 +174,7 @@ class _Beside:
         others: Sequence[FittedCandidate],
         trial: FittedCandidate,
     ) -> None:
-        self.equations, self.trial = equations, trial
+        self.equations, self.trial, self.others = equations, trial, others
         self.rows = rows = equations.rows
         table, whole = with_causes(equations, others), with_causes(equations, [*others, trial])
         self.weights = weights_of(rows, whole, weighted_fit(rows, whole))
@@ -202,6 +203,8 @@ class _Beside:
         values, least, near = min(begun, key=lambda b: b[1])
         if len(begun) > 1 and least > self.least:
             return None
+        if smooth(self.trial):
+            return self._fitted(values, near)
         names = sorted(values)
 
         def leaves(logarithms: Array) -> float:
@@ -220,6 +223,14 @@ class _Beside:
             return None
         made = self._columns(values, near)
         return self.trial if made is None else replace(self.trial, values=values, columns=made)
+
+    def _fitted(self, values: Values, near: Array) -> FittedCandidate | None:
+        """The best of values that change what it does slightly, together with the parameters."""
+        (found,), theta = ElasticFit(self.equations, [replace(self.trial, values=values)], self.others).fit(
+            near
+        )
+        least = self._left(self.right - self.left @ theta - self._stacked(found.columns))
+        return None if least > self.least else found
 
     def at(self, values: Values, theta: Array, turns: int) -> tuple[float, Array]:
         """Least sum over the joints of the logarithm of what is left, on the way of the parameters (k,) from

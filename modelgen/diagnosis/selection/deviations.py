@@ -18,19 +18,26 @@ from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
+from modelgen.diagnosis.selection.elastic_fit import smooth
 from modelgen.numeric import Array
 
 STEP = 0.01  # of a value, over which slopes are taken
+LEAST = 1e-6  # of a parameter's own unit
 OPEN = 1e-9  # of the largest singular value: below, the rows say nothing
 
 
-def covariance_of(system: System, slopes: Sequence[Array] = (), known: Sequence[int] = ()) -> Array:
+def covariance_of(
+    system: System, slopes: Sequence[Array] = (), known: Sequence[int] = (), carried: Sequence[Array] = ()
+) -> Array:
     """Covariance of the least squares estimate of a system's columns (p), and of what has these slopes (M,
-    n, m) of each record: (p + m, p + m). known: columns whose factor is.
+    n, m) of each record: (p + m, p + m). known: columns whose factor is. carried: (M, n, k) of each record,
+    what simulated columns change by the arm's own parameters.
     """
     plain = system.plain
     matrix = plain.matrix.copy()
     matrix[:, list(known)] = 0.0
+    if carried:
+        matrix[:, : carried[0].shape[2]] += plain.records(carried)
     if slopes:
         matrix = np.hstack([matrix, plain.records(slopes)])
     norms = np.linalg.norm(matrix, axis=0)
@@ -51,19 +58,39 @@ def deviations(selection: Selection, equations: Equations) -> list[dict[str, flo
     if not selection.causes:
         return []
     system, rows = selection.system, selection.system.rows
-    of_arm = system.equations.with_evaluator(equations.evaluator)
+    of_arm = equations.with_rows(rows)
     slopes = [_slopes(c, of_arm, system.base) for c in selection.causes]
     together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
     places = selection.columns
     compliant = [c.trial.candidate.elastic for c in selection.causes]
     held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
-    whole = covariance_of(system, together if together[0].shape[2] else (), held)
+    carried = _carried(selection, of_arm)
+    whole = covariance_of(system, together if together[0].shape[2] else (), held, carried)
     searched, found = len(system.theta), []
     for cause, own, slope in zip(selection.causes, places, slopes, strict=True):
         last = searched + slope[0].shape[2]
         at = np.r_[own, searched:last]
         found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
         searched = last
+    return found
+
+
+def _carried(selection: Selection, equations: Equations) -> list[Array]:
+    """What elastic joints add changes so by the arm's own parameters, (M, n, k) of each record."""
+    elastic = [c.trial for c in selection.causes if smooth(c.trial)]
+    if not elastic:
+        return []
+    theta = selection.system.theta[: equations.unknowns]
+    found = [np.zeros((*r.effort.shape, len(theta))) for r in equations.rows]
+    for trial in elastic:
+        here = candidate_columns(trial.candidate, trial.values, equations, equations.base(theta))
+        for i, value in enumerate(theta):
+            step = max(STEP * abs(float(value)), LEAST)
+            moved = equations.base(theta + step * (np.arange(len(theta)) == i))
+            there = candidate_columns(trial.candidate, trial.values, equations, moved)
+            if here is not None and there is not None:
+                for table, a, b in zip(found, here, there, strict=True):
+                    table[:, :, i] += (b - a)[:, :, 0] / step
     return found
 
 

@@ -32,6 +32,7 @@ STIFFNESSES = (3.0, 8.0, 20.0, 50.0, 120.0, 300.0, 800.0, 3000.0)
 HARD = 200.0  # of a spring in which something else shows first
 RELAXATION = Parameter("relaxation", "s", "damping over stiffness", grid=(0.02,))
 REACH = 0.012  # of the stretch that is drawn
+LIGHT = replace(RELAXATION, grid=(0.002, 0.02))  # a link rings for long, or hardly
 RINGS = replace(RELAXATION, grid=(0.005,))  # behind a link's own position the drive rings within less
 
 
@@ -154,7 +155,7 @@ class JointFlexibility(Compliance):
     @classmethod
     def sought(cls, behind_link: bool) -> tuple[Parameter, ...]:
         """Stiffness and relaxation."""
-        return stiffness(*STIFFNESSES), RINGS if behind_link else RELAXATION
+        return stiffness(*STIFFNESSES), RINGS if behind_link else LIGHT
 
     confused_with = ("backlash", "time_delay")
     experiment = "a chirp up to the resonance, with encoders on motor and link"

@@ -27,7 +27,6 @@ _NODES = tuple(
         (1, 0.9061798459386640, 0.2369268850561891),
     )
 )
-MASS_DEVIATIONS = 3.0  # of a payload's mass, up to which it may be more than was found
 PLACE = 1e-3  # m, step of the slopes by a payload's place
 STILL = 1e-12  # [m^2/s^2] added under the root of a speed squared, so that its slope exists at rest
 TIP = tuple(
@@ -201,17 +200,6 @@ class PayloadChange(LinkEffect):
     def estimated(cls) -> tuple[str, ...]:
         """Mass and first moments, of which its force is a sum."""
         return "mass", "moment_x", "moment_y", "moment_z"
-
-    @classmethod
-    def above_zero(cls, arm: Arm, values: Numbers, spread: Numbers) -> float:
-        """Of the mass, or of the first moments where a mass within three deviations of the estimate has them
-        in reach: slow motions show moments well and the mass itself little.
-        """
-        mass, own = values["mass"], spread["mass"]
-        moments = {name: values[name] for name in cls.estimated()[1:] if name in values}
-        in_reach = math.hypot(*moments.values()) <= (mass + MASS_DEVIATIONS * own) * _reach(arm)
-        found = [abs(x) / max(spread[name], 1e-300) for name, x in moments.items() if in_reach and mass > 0.0]
-        return max([mass / max(own, 1e-300), *found])
 
     @classmethod
     def impossible(cls, arm: Arm, number: int | None, values: Numbers) -> str:
