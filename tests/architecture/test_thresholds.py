@@ -92,6 +92,7 @@ CONSTANTS = {
         "LEAST": ACCURACY,
         "ASTRAY": "a misfit that no comparison exceeds",
     },
+    "selection/refit_elastic.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "LEAST": BUDGET, "MOST": BUDGET},
     "validation/agreement.py": {"DRAWS": ACCURACY, "SEED": SEED},
 }
 LITERALS: dict[str, dict[float, str]] = {

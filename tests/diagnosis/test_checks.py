@@ -273,7 +273,9 @@ def test_an_elastic_joint_is_not_as_good_as_rigid(
     def simulated(candidate: Candidate, values: dict[str, float], *of: Any) -> list[np.ndarray]:
         return [c / values["stiffness"] for c in shapes]
 
-    for module in ("deviations", "elastic_fit"):
+    measured = import_module("modelgen.diagnosis.selection.elastic_fit")
+    monkeypatch.setattr(measured, "at_links", lambda *_: False)
+    for module in ("deviations", "elastic_fit", "refit_elastic"):
         where = import_module(f"modelgen.diagnosis.selection.{module}")
         monkeypatch.setattr(where, "candidate_columns", simulated)
     bare = system_of(soft, periods=periods)

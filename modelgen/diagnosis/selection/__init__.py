@@ -1,9 +1,8 @@
 """Forward selection, exchange and backward elimination of causes."""
 
-from modelgen.diagnosis.selection.cause import Cause, Selection, together
+from modelgen.diagnosis.selection.cause import Cause, Selection, together, with_trials
 from modelgen.diagnosis.selection.compliance import alternatives, best_beside
 from modelgen.diagnosis.selection.deviations import covariance_of, deviations
-from modelgen.diagnosis.selection.elastic_fit import refit_elastic, with_trials
 from modelgen.diagnosis.selection.history import (
     COARSE,
     EXCHANGED,
@@ -13,6 +12,7 @@ from modelgen.diagnosis.selection.history import (
     Ranked,
 )
 from modelgen.diagnosis.selection.marginality import lets_vary
+from modelgen.diagnosis.selection.refit_elastic import refit_elastic
 from modelgen.diagnosis.selection.stepwise import Report, forward_selection, needed_evidence, threshold
 
 __all__ = [

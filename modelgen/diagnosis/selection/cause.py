@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
 
 from modelgen.diagnosis.candidates import FittedCandidate, system_of
+from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection.history import History, taken_back
 
@@ -66,3 +67,10 @@ class Selection:
         for c in lost:
             turns = taken_back(turns, c.trial.candidate.place, why)
         return Selection(kept, system, turns)
+
+
+def with_trials(selection: Selection, trials: Sequence[FittedCandidate], equations: Equations) -> Selection:
+    """The selection with other values of its causes, in these equations."""
+    system = system_of(equations, trials)
+    causes = [replace(c, trial=t) for c, t in zip(selection.causes, trials, strict=True)]
+    return replace(selection, causes=causes, system=system)

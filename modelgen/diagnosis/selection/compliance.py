@@ -203,7 +203,7 @@ class _Beside:
         values, least, near = min(begun, key=lambda b: b[1])
         if len(begun) > 1 and least > self.least:
             return None
-        if smooth(self.trial):
+        if smooth(self.trial, self.equations):
             return self._fitted(values, near)
         names = sorted(values)
 

@@ -77,7 +77,7 @@ def deviations(selection: Selection, equations: Equations) -> list[dict[str, flo
 
 def _carried(selection: Selection, equations: Equations) -> list[Array]:
     """What elastic joints add changes so by the arm's own parameters, (M, n, k) of each record."""
-    elastic = [c.trial for c in selection.causes if smooth(c.trial)]
+    elastic = [c.trial for c in selection.causes if smooth(c.trial, equations)]
     if not elastic:
         return []
     theta = selection.system.theta[: equations.unknowns]

@@ -14,9 +14,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns, system_of, with_causes
+from modelgen.diagnosis.candidates import FittedCandidate, at_links, candidate_columns, with_causes
 from modelgen.diagnosis.equations import Equations
-from modelgen.diagnosis.selection.cause import Selection
 from modelgen.effects import Shows
 from modelgen.numeric import Array
 from modelgen.regression.weighted import stacked, weighted_fit, weights_of
@@ -29,10 +28,17 @@ LEAST = 1e-7  # of a parameter's own unit
 ASTRAY = 1e6  # times what a rigid joint leaves, where nothing can be simulated
 
 
-def smooth(trial: FittedCandidate) -> bool:
-    """Whether a slight change of its values changes what it does slightly: an elastic joint, and no gap."""
+def elastic(trial: FittedCandidate) -> bool:
+    """Whether it is an elastic joint, and no gap: of what rattles nothing follows from a slope."""
     c = trial.candidate
     return c.elastic and bool(trial.values) and Shows.IMPACTS not in c.definition.shows
+
+
+def smooth(trial: FittedCandidate, equations: Equations) -> bool:
+    """Whether it is an elastic joint whose drive's position was measured: slopes by the arm's parameters tell
+    what it does.
+    """
+    return elastic(trial) and not at_links(trial.candidate.joint, equations.rows)
 
 
 class ElasticFit:
@@ -121,22 +127,3 @@ class ElasticFit:
                 return None
             found += stacked(self.equations.rows, made, self.weights)[0][:, 0]
         return found
-
-
-def refit_elastic(selection: Selection, equations: Equations) -> Selection:
-    """The selection with the values of its elastic joints found anew, together with the arm's parameters."""
-    trials = [c.trial for c in selection.causes]
-    moving = [t for t in trials if smooth(t)]
-    if not moving:
-        return selection
-    beside = [t for t in trials if not smooth(t)]
-    fitted, _ = ElasticFit(equations, moving, beside).fit()
-    anew = iter(fitted)
-    return with_trials(selection, [next(anew) if smooth(t) else t for t in trials], equations)
-
-
-def with_trials(selection: Selection, trials: Sequence[FittedCandidate], equations: Equations) -> Selection:
-    """The selection with other values of its causes, in these equations."""
-    system = system_of(equations, trials)
-    causes = [replace(c, trial=t) for c, t in zip(selection.causes, trials, strict=True)]
-    return replace(selection, causes=causes, system=system)
