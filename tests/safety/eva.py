@@ -42,7 +42,6 @@ COMMAND = (
 PHYSICAL: Mapping[str, float] = {"dq": 100.0, "input": 1e4, "parameters": 20.0}
 # Inertia of a drive in its motor's units: radians before a gear, increments of a levered one.
 DRIVE_INERTIA = {False: (1e-6, 1e-2), True: (1e-10, 1e-6)}
-FEW_PIVOTS = 4  # whose bounds derivatives of the forward dynamics keep within the range of double
 CELLS = 3  # a stroke is cut into so many pieces: sine and cosine of an interval are independent for EVA
 PIECES = 64  # of a turn, in the table of sines below
 SLACK = 1e-6  # that far may the target's sine and cosine be from the true ones
@@ -83,14 +82,11 @@ class Proof:
 def claims(function: Function) -> list[Claim]:
     """What is claimed of a function: bounds on what pivots divide are out of EVA's reach.
 
-    In float those of six pivots of the forward dynamics, in double those of its derivatives, where the
-    inverse of the mass matrix meets what the accelerations make of them; and always those of the monitor,
+    In float those of six pivots of the forward dynamics and its derivatives, and always those of the monitor,
     which knows nothing of the information that its state holds.
     """
     solves, estimates = "forward_dynamics" in function.name, "monitor_step" in function.name
-    (joints, *_) = [a.size for a in function.arguments if a.name in ("q", "q_m")] or [0]
-    far = "forward_dynamics_derivatives" in function.name and joints > FEW_PIVOTS
-    return [Claim("float", finite=not (solves or estimates)), Claim("double", finite=not (far or estimates))]
+    return [Claim("float", finite=not (solves or estimates)), Claim("double", finite=not estimates)]
 
 
 def intervals(model: Model, function: Function, *, finite: bool) -> dict[str, list[Interval]]:

@@ -23,6 +23,7 @@ SELECTED = [
     ("ariane4", "monitor_step"),
     ("ur10e", "inverse_dynamics"),
     ("ur10e", "forward_dynamics"),
+    ("ur10e", "forward_dynamics_derivatives"),
     ("ur10e", "jacobian"),
 ]
 

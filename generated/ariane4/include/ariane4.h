@@ -62,7 +62,7 @@
 #define ARIANE4_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_GENERATION 0x59BBA0F1UL
+#define ARIANE4_GENERATION 0x92B87DB7UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_MODEL "5ed7fb32121b496f9a81ec9c47c88af48af61a30038001833754bd36783ec35a"

@@ -49,7 +49,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x59BBA0F1UL
+#if ARIANE4_GENERATION != 0x92B87DB7UL
 #error "ariane4.h and ariane4_bias.c are of different generations: generate the arm again"
 #endif
 

@@ -55,7 +55,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x59BBA0F1UL
+#if ARIANE4_GENERATION != 0x92B87DB7UL
 #error "ariane4.h and ariane4_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -127,7 +127,7 @@ ariane4_status_t ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t20 = ARIANE4_C(-1.0) / t8;
     /* link j3: column of the mass matrix */
     const ariane4_real_t t21 = ARIANE4_C(-0.443) * t17 - parameters[ZZ3R];
-    const ariane4_real_t t22 = t21 * t20;
+    const ariane4_real_t t22 = ariane4_held(t21 * t20);
     const ariane4_real_t t23 = t19 + t21 * t22;
     if (!(t23 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
@@ -160,10 +160,10 @@ ariane4_status_t ariane4_forward_dynamics_derivatives(
     const ariane4_real_t t40 = t1 * parameters[XZ3R] - t0 * parameters[YZ3R];
     const ariane4_real_t t41 = t0 * parameters[XZ3R] + t1 * parameters[YZ3R];
     const ariane4_real_t t42 = t9 * t40 + t10 * t41;
-    const ariane4_real_t t43 = t42 * t20;
+    const ariane4_real_t t43 = ariane4_held(t42 * t20);
     const ariane4_real_t t44 = ARIANE4_C(1.0) / t23;
     const ariane4_real_t t45 = t9 * (parameters[XZ2R] + t40) + t10 * (parameters[YZ2] + t41) - t42 * t22;
-    const ariane4_real_t t46 = t45 * t44;
+    const ariane4_real_t t46 = ariane4_held(t45 * t44);
     const ariane4_real_t t47 = t39 + t42 * t43 - t45 * t46;
     if (!(t47 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);

@@ -79,7 +79,7 @@
  */
 #include "ariane4_private.h"
 
-#if ARIANE4_GENERATION != 0x59BBA0F1UL
+#if ARIANE4_GENERATION != 0x92B87DB7UL
 #error "ariane4.h and ariane4_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -162,7 +162,7 @@ ariane4_status_t ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t31 = t30 + t21 * t21 * parameters[IA2];
     const ariane4_real_t t32 = ARIANE4_C(-1.0) / t13;
     const ariane4_real_t t33 = ARIANE4_C(-0.443) * t26 - t12; /* link j3: column of the mass matrix */
-    const ariane4_real_t t34 = t33 * t32;
+    const ariane4_real_t t34 = ariane4_held(t33 * t32);
     const ariane4_real_t t35 = t31 + t33 * t34;
     if (!(t35 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);
@@ -207,14 +207,14 @@ ariane4_status_t ariane4_forward_dynamics_derivatives_standard(
     const ariane4_real_t t61 = t1 * t59 - t0 * t60; /* link j3: column of the mass matrix */
     const ariane4_real_t t62 = t0 * t59 + t1 * t60;
     const ariane4_real_t t63 = t14 * t61 + t15 * t62;
-    const ariane4_real_t t64 = t63 * t32;
+    const ariane4_real_t t64 = ariane4_held(t63 * t32);
     const ariane4_real_t t65 = ARIANE4_C(1.0) / t35;
     const ariane4_real_t t66 = parameters[MY4] - parameters[MZ3]; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
     const ariane4_real_t t67 = t61 + ARIANE4_C(-0.443) * t66 - parameters[XZ2];
     const ariane4_real_t t68 = t62 - parameters[YZ2];
     const ariane4_real_t t69 = t63 * t34 - (t14 * t67 + t15 * t68);
-    const ariane4_real_t t70 = t69 * t65;
+    const ariane4_real_t t70 = ariane4_held(t69 * t65);
     const ariane4_real_t t71 = t58 + t63 * t64 - t69 * t70;
     if (!(t71 > ARIANE4_C(1.0e-12))) {
         ariane4_zero(ddq, 3);

@@ -13,7 +13,7 @@
 
 #include "ariane4.h"
 
-#if ARIANE4_GENERATION != 0x59BBA0F1UL
+#if ARIANE4_GENERATION != 0x92B87DB7UL
 #error "ariane4.h and ariane4_private.h are of different generations: generate the arm again"
 #endif
 

@@ -70,7 +70,7 @@
 #define ARIANE4_FREE_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE4_FREE_GENERATION 0x059BF041UL
+#define ARIANE4_FREE_GENERATION 0xF9ECB862UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE4_FREE_MODEL "79391f27012d8ce47144bfbc151d699a1e5dab86799c694096ed4c590478ba07"

@@ -77,7 +77,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x059BF041UL
+#if ARIANE4_FREE_GENERATION != 0xF9ECB862UL
 #error "ariane4_free.h and ariane4_free_bias_standard.c are of different generations: generate the arm again"
 #endif
 

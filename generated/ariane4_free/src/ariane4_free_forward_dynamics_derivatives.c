@@ -65,7 +65,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x059BF041UL
+#if ARIANE4_FREE_GENERATION != 0xF9ECB862UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -139,7 +139,7 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
     /* link j4: column of the mass matrix */
     const ariane4_free_real_t t17 = t10 * parameters[XZ4R] + t9 * parameters[YZ4R];
     const ariane4_free_real_t t18 = ARIANE4_FREE_C(1.0) / t0;
-    const ariane4_free_real_t t19 = t17 * t18;
+    const ariane4_free_real_t t19 = ariane4_free_held(t17 * t18);
     const ariane4_free_real_t t20 = t16 - t17 * t19;
     if (!(t20 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
@@ -167,12 +167,12 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t34 = t9 * parameters[MY4] + t10 * parameters[MX4];
     const ariane4_free_real_t t35 = t1 * t34;
     const ariane4_free_real_t t36 = t17 + ARIANE4_FREE_C(0.443) * t35;
-    const ariane4_free_real_t t37 = t36 * t18;
+    const ariane4_free_real_t t37 = ariane4_free_held(t36 * t18);
     /* link j3: column of the mass matrix */
     const ariane4_free_real_t t38 = ARIANE4_FREE_C(-0.443) * t30 - t15;
     const ariane4_free_real_t t39 = t38 + t36 * t19;
     const ariane4_free_real_t t40 = ARIANE4_FREE_C(-1.0) / t20;
-    const ariane4_free_real_t t41 = t39 * t40;
+    const ariane4_free_real_t t41 = ariane4_free_held(t39 * t40);
     const ariane4_free_real_t t42 = t33 - t36 * t37 + t39 * t41;
     if (!(t42 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
@@ -216,20 +216,20 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives(
     const ariane4_free_real_t t67 = t2 * t45 - t1 * t66;
     const ariane4_free_real_t t68 = t1 * t45 + t2 * t66 - ARIANE4_FREE_C(0.443) * t13;
     const ariane4_free_real_t t69 = t21 * t67 + t22 * t68 - ARIANE4_FREE_C(0.116) * t13;
-    const ariane4_free_real_t t70 = t69 * t18;
+    const ariane4_free_real_t t70 = ariane4_free_held(t69 * t18);
     /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t71 = parameters[XY4] + t10 * t11 + ARIANE4_FREE_C(0.1) * t34 - parameters[XZ3];
     const ariane4_free_real_t t72 = parameters[YZ3] - t17;
     const ariane4_free_real_t t73 = t2 * t71 + t1 * t72; /* link j3: column of the mass matrix */
     const ariane4_free_real_t t74 = t1 * t71 - t2 * t72;
     const ariane4_free_real_t t75 = t69 * t19 - (t21 * t73 + t22 * t74);
-    const ariane4_free_real_t t76 = t75 * t40;
+    const ariane4_free_real_t t76 = ariane4_free_held(t75 * t40);
     /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t77 = t73 + ARIANE4_FREE_C(-0.443) * t34 - parameters[XZ2R];
     const ariane4_free_real_t t78 = t74 - parameters[YZ2];
     const ariane4_free_real_t t79 = t75 * t41 - (t69 * t37 - (t21 * t77 + t22 * t78));
     const ariane4_free_real_t t80 = ARIANE4_FREE_C(1.0) / t42;
-    const ariane4_free_real_t t81 = t79 * t80;
+    const ariane4_free_real_t t81 = ariane4_free_held(t79 * t80);
     const ariane4_free_real_t t82 = t65 - t69 * t70 + t75 * t76 - t79 * t81;
     if (!(t82 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);

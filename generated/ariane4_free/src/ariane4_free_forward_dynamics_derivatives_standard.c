@@ -83,7 +83,7 @@
  */
 #include "ariane4_free_private.h"
 
-#if ARIANE4_FREE_GENERATION != 0x059BF041UL
+#if ARIANE4_FREE_GENERATION != 0xF9ECB862UL
 #error "ariane4_free.h and ariane4_free_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -164,7 +164,7 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t22 = ARIANE4_FREE_C(0.436) * t21 - (t9 * parameters[XZ4]
         + t10 * parameters[YZ4]);
     const ariane4_free_real_t t23 = ARIANE4_FREE_C(1.0) / t0;
-    const ariane4_free_real_t t24 = t22 * t23;
+    const ariane4_free_real_t t24 = ariane4_free_held(t22 * t23);
     const ariane4_free_real_t t25 = t20 - t22 * t24;
     if (!(t25 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
@@ -196,12 +196,12 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t43 = t42 + t33 * t33 * parameters[IA2];
     const ariane4_free_real_t t44 = t1 * t21; /* link j4: column of the mass matrix */
     const ariane4_free_real_t t45 = ARIANE4_FREE_C(0.443) * t44 - t22;
-    const ariane4_free_real_t t46 = t45 * t23;
+    const ariane4_free_real_t t46 = ariane4_free_held(t45 * t23);
     const ariane4_free_real_t t47 = ARIANE4_FREE_C(-1.0) / t25;
     /* link j3: column of the mass matrix */
     const ariane4_free_real_t t48 = ARIANE4_FREE_C(-0.443) * t38 - t19;
     const ariane4_free_real_t t49 = t48 - t45 * t24;
-    const ariane4_free_real_t t50 = t49 * t47;
+    const ariane4_free_real_t t50 = ariane4_free_held(t49 * t47);
     const ariane4_free_real_t t51 = t43 - t45 * t46 + t49 * t50;
     if (!(t51 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);
@@ -252,21 +252,21 @@ ariane4_free_status_t ariane4_free_forward_dynamics_derivatives_standard(
     const ariane4_free_real_t t78 = t2 * t76 - t1 * t77;
     const ariane4_free_real_t t79 = t1 * t76 + t2 * t77 - ARIANE4_FREE_C(0.443) * t11;
     const ariane4_free_real_t t80 = t26 * t78 + t27 * t79 - ARIANE4_FREE_C(0.116) * t11;
-    const ariane4_free_real_t t81 = t80 * t23;
+    const ariane4_free_real_t t81 = ariane4_free_held(t80 * t23);
     /* link j4: inertia of it and all beyond */
     const ariane4_free_real_t t82 = parameters[XY4] + t9 * t17 + ARIANE4_FREE_C(0.1) * t21 - parameters[XZ3];
     const ariane4_free_real_t t83 = parameters[YZ3] + t22;
     const ariane4_free_real_t t84 = t2 * t82 + t1 * t83; /* link j3: column of the mass matrix */
     const ariane4_free_real_t t85 = t1 * t82 - t2 * t83;
     const ariane4_free_real_t t86 = t26 * t84 + t27 * t85 + t80 * t24;
-    const ariane4_free_real_t t87 = t86 * t47;
+    const ariane4_free_real_t t87 = ariane4_free_held(t86 * t47);
     const ariane4_free_real_t t88 = t21 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
     const ariane4_free_real_t t89 = t84 + ARIANE4_FREE_C(-0.443) * t88 - parameters[XZ2];
     const ariane4_free_real_t t90 = t85 - parameters[YZ2];
     const ariane4_free_real_t t91 = t80 * t46 - (t26 * t89 + t27 * t90) + t86 * t50;
     const ariane4_free_real_t t92 = ARIANE4_FREE_C(1.0) / t51;
-    const ariane4_free_real_t t93 = t91 * t92;
+    const ariane4_free_real_t t93 = ariane4_free_held(t91 * t92);
     const ariane4_free_real_t t94 = t75 - t80 * t81 + t86 * t87 - t91 * t93;
     if (!(t94 > ARIANE4_FREE_C(1.0e-12))) {
         ariane4_free_zero(ddq, 4);

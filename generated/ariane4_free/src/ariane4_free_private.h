@@ -13,7 +13,7 @@
 
 #include "ariane4_free.h"
 
-#if ARIANE4_FREE_GENERATION != 0x059BF041UL
+#if ARIANE4_FREE_GENERATION != 0xF9ECB862UL
 #error "ariane4_free.h and ariane4_free_private.h are of different generations: generate the arm again"
 #endif
 

@@ -87,7 +87,7 @@
 #define ARIANE6_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define ARIANE6_GENERATION 0x04A8163CUL
+#define ARIANE6_GENERATION 0xE2E25F41UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define ARIANE6_MODEL "ac2a59ce556c2f1c818a485f9d0c6d4da754ef25a07a354dfa818a9b37990eec"

@@ -87,7 +87,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x04A8163CUL
+#if ARIANE6_GENERATION != 0xE2E25F41UL
 #error "ariane6.h and ariane6_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -158,7 +158,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
     /* link j6: column of the mass matrix */
     const ariane6_real_t t13 = t2 * parameters[XZ6R] + t1 * parameters[YZ6R];
     const ariane6_real_t t14 = ARIANE6_C(1.0) / t0;
-    const ariane6_real_t t15 = t13 * t14;
+    const ariane6_real_t t15 = ariane6_held(t13 * t14);
     const ariane6_real_t t16 = t12 - t13 * t15;
     if (!(t16 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
@@ -176,7 +176,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t21 = t6 * t20 + t10 * parameters[ZZ6];
     const ariane6_real_t t22 = t19 - t21 * t15;
     const ariane6_real_t t23 = ARIANE6_C(1.0) / t16;
-    const ariane6_real_t t24 = t22 * t23;
+    const ariane6_real_t t24 = ariane6_held(t22 * t23);
     const ariane6_real_t t25 = parameters[XX5R] + t4; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t26 = parameters[XY5] + t20;
     /* link j5: inertia of it and all beyond */
@@ -184,7 +184,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t28 = t10 * t27;
     const ariane6_real_t t29 = parameters[ZZ4R] + (t25 + t28);
     const ariane6_real_t t30 = t29 + ARIANE6_C(1.0e4) * parameters[IA4];
-    const ariane6_real_t t31 = t21 * t14;
+    const ariane6_real_t t31 = ariane6_held(t21 * t14);
     const ariane6_real_t t32 = t30 - t21 * t31 - t22 * t24;
     if (!(t32 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
@@ -225,18 +225,18 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t62 = t34 * t61 + t37 * t42;
     const ariane6_real_t t63 = t6 * t40;
     const ariane6_real_t t64 = ARIANE6_C(0.17) * t63 + ARIANE6_C(0.488) * t62 - (t37 * t60 + t34 * t13);
-    const ariane6_real_t t65 = t64 * t14;
+    const ariane6_real_t t65 = ariane6_held(t64 * t14);
     const ariane6_real_t t66 = t34 * t48; /* link j5: column of the mass matrix */
     const ariane6_real_t t67 = t34 * t5 - t37 * t35 + (ARIANE6_C(0.17) * t44 + ARIANE6_C(0.488) * t66);
     const ariane6_real_t t68 = t67 + t64 * t15;
-    const ariane6_real_t t69 = t68 * t23;
+    const ariane6_real_t t69 = ariane6_held(t68 * t23);
     const ariane6_real_t t70 = t6 * t27 - t26 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const ariane6_real_t t71 = parameters[YZ4] + t19;
     const ariane6_real_t t72 = t34 * t41 - t37 * t45; /* link j4: column of the mass matrix */
     const ariane6_real_t t73 = t34 * t71 - t37 * t70 - ARIANE6_C(0.488) * t72;
     const ariane6_real_t t74 = t73 + t64 * t31 - t68 * t24;
     const ariane6_real_t t75 = ARIANE6_C(1.0) / t32;
-    const ariane6_real_t t76 = t74 * t75;
+    const ariane6_real_t t76 = ariane6_held(t74 * t75);
     const ariane6_real_t t77 = t59 - t64 * t65 - t68 * t69 - t74 * t76;
     if (!(t77 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
@@ -260,20 +260,20 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t91 = t82 + parameters[IA2] * (t90 * t90);
     const ariane6_real_t t92 = t51 * t62 + t52 * t63; /* link j6: column of the mass matrix */
     const ariane6_real_t t93 = t64 + ARIANE6_C(-0.685) * t92;
-    const ariane6_real_t t94 = t93 * t14;
+    const ariane6_real_t t94 = ariane6_held(t93 * t14);
     const ariane6_real_t t95 = t51 * t66 + t52 * t44; /* link j5: column of the mass matrix */
     const ariane6_real_t t96 = t67 + ARIANE6_C(-0.685) * t95;
     const ariane6_real_t t97 = t96 + t93 * t15;
-    const ariane6_real_t t98 = t97 * t23;
+    const ariane6_real_t t98 = ariane6_held(t97 * t23);
     const ariane6_real_t t99 = t51 * t72; /* link j4: column of the mass matrix */
     const ariane6_real_t t100 = t73 + ARIANE6_C(0.685) * t99;
     const ariane6_real_t t101 = t100 + t93 * t31 - t97 * t24;
-    const ariane6_real_t t102 = t101 * t75;
+    const ariane6_real_t t102 = ariane6_held(t101 * t75);
     const ariane6_real_t t103 = t91 - t93 * t94 - t97 * t98 - t101 * t102;
     const ariane6_real_t t104 = ARIANE6_C(1.0) / t77;
     const ariane6_real_t t105 = ARIANE6_C(0.685) * t80 - t50; /* link j3: column of the mass matrix */
     const ariane6_real_t t106 = t105 + t93 * t65 + t97 * t69 + t101 * t76;
-    const ariane6_real_t t107 = t106 * t104;
+    const ariane6_real_t t107 = ariane6_held(t106 * t104);
     const ariane6_real_t t108 = t103 - t106 * t107;
     if (!(t108 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
@@ -314,21 +314,21 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t134 = t51 * t133 - t52 * t132;
     const ariane6_real_t t135 = t51 * t132 + t52 * t133 + ARIANE6_C(-0.685) * t131;
     const ariane6_real_t t136 = t84 * t135 - t83 * t134 + ARIANE6_C(-0.18) * t131;
-    const ariane6_real_t t137 = t136 * t14;
+    const ariane6_real_t t137 = ariane6_held(t136 * t14);
     const ariane6_real_t t138 = t37 * t48; /* link j5: column of the mass matrix */
     const ariane6_real_t t139 = t34 * t35 + t37 * t5 + ARIANE6_C(0.488) * t138;
     const ariane6_real_t t140 = ARIANE6_C(0.17) * t138 - t19;
     const ariane6_real_t t141 = t51 * t140 - t52 * t139;
     const ariane6_real_t t142 = t51 * t139 + t52 * t140 + ARIANE6_C(-0.685) * t138;
     const ariane6_real_t t143 = t84 * t142 - t83 * t141 + ARIANE6_C(-0.18) * t138 + t136 * t15;
-    const ariane6_real_t t144 = t143 * t23;
+    const ariane6_real_t t144 = ariane6_held(t143 * t23);
     const ariane6_real_t t145 = t111 + t112; /* link j4: column of the mass matrix */
     const ariane6_real_t t146 = t29 + ARIANE6_C(0.17) * t46;
     const ariane6_real_t t147 = t52 * t145 + t51 * t146;
     const ariane6_real_t t148 = t51 * t145 - t52 * t146 + ARIANE6_C(0.685) * t46;
     const ariane6_real_t t149 = t83 * t147 + t84 * t148 + ARIANE6_C(0.18) * t46 + t136 * t31;
     const ariane6_real_t t150 = t149 - t143 * t24;
-    const ariane6_real_t t151 = t150 * t75;
+    const ariane6_real_t t151 = ariane6_held(t150 * t75);
     const ariane6_real_t t152 = t130 - t136 * t137 - t143 * t144 - t150 * t151;
     /* link j4: inertia of it and all beyond */
     const ariane6_real_t t153 = parameters[XZ3] + (t37 * t38 - t36 + ARIANE6_C(-0.17) * t72);
@@ -337,14 +337,14 @@ ariane6_status_t ariane6_forward_dynamics_derivatives(
     const ariane6_real_t t156 = t51 * t153 + t52 * t154;
     const ariane6_real_t t157 = t84 * t156 - t83 * t155 - t136 * t65 - t143 * t69;
     const ariane6_real_t t158 = t157 - t150 * t76;
-    const ariane6_real_t t159 = t158 * t104;
+    const ariane6_real_t t159 = ariane6_held(t158 * t104);
     /* link j3: inertia of it and all beyond */
     const ariane6_real_t t160 = t155 + ARIANE6_C(-0.685) * t72 - parameters[XZ2R];
     const ariane6_real_t t161 = parameters[YZ2] + t156;
     const ariane6_real_t t162 = t84 * t161 - t83 * t160 - t136 * t94 - t143 * t98;
     const ariane6_real_t t163 = t162 - t150 * t102 + t158 * t107;
     const ariane6_real_t t164 = ARIANE6_C(1.0) / t108;
-    const ariane6_real_t t165 = t163 * t164;
+    const ariane6_real_t t165 = ariane6_held(t163 * t164);
     const ariane6_real_t t166 = t152 - t158 * t159 - t163 * t165;
     if (!(t166 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);

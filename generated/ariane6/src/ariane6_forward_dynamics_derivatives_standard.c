@@ -111,7 +111,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x04A8163CUL
+#if ARIANE6_GENERATION != 0xE2E25F41UL
 #error "ariane6.h and ariane6_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -175,7 +175,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t3 = t2 * parameters[MY6] + t1 * parameters[MX6];
     const ariane6_real_t t4 = ARIANE6_C(0.3) * t3 - (t1 * parameters[XZ6] + t2 * parameters[YZ6]);
     const ariane6_real_t t5 = ARIANE6_C(1.0) / t0;
-    const ariane6_real_t t6 = t4 * t5;
+    const ariane6_real_t t6 = ariane6_held(t4 * t5);
     const ariane6_real_t t7 = parameters[XX6] - parameters[YY6]; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t8 = t2 * t7 - parameters[XY6] * (ARIANE6_C(2.0) * t1);
     const ariane6_real_t t9 = t2 * t8;
@@ -209,13 +209,13 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t28 = parameters[ZZ4] + (t21 + t27);
     const ariane6_real_t t29 = t28 + ARIANE6_C(1.0e4) * parameters[IA4];
     const ariane6_real_t t30 = t17 * parameters[ZZ6] - t13 * t24; /* link j6: column of the mass matrix */
-    const ariane6_real_t t31 = t30 * t5;
+    const ariane6_real_t t31 = ariane6_held(t30 * t5);
     const ariane6_real_t t32 = parameters[YZ5] + t4; /* link j6: inertia of it and all beyond */
     const ariane6_real_t t33 = parameters[XY6] + t1 * t8 - parameters[XZ5];
     const ariane6_real_t t34 = t13 * t33 - t17 * t32; /* link j5: column of the mass matrix */
     const ariane6_real_t t35 = t34 + t30 * t6;
     const ariane6_real_t t36 = ARIANE6_C(1.0) / t20;
-    const ariane6_real_t t37 = t35 * t36;
+    const ariane6_real_t t37 = ariane6_held(t35 * t36);
     const ariane6_real_t t38 = t29 - t30 * t31 - t35 * t37;
     if (!(t38 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
@@ -261,18 +261,18 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t75 = t41 * t74 - t44 * t23;
     const ariane6_real_t t76 = t13 * t3;
     const ariane6_real_t t77 = t44 * t73 + t41 * t4 + (ARIANE6_C(0.17) * t76 + ARIANE6_C(0.488) * t75);
-    const ariane6_real_t t78 = t77 * t5;
+    const ariane6_real_t t78 = ariane6_held(t77 * t5);
     const ariane6_real_t t79 = t41 * t59; /* link j5: column of the mass matrix */
     const ariane6_real_t t80 = t44 * t42 + t41 * t12 + (ARIANE6_C(0.17) * t52 + ARIANE6_C(0.488) * t79);
     const ariane6_real_t t81 = t77 * t6 - t80;
-    const ariane6_real_t t82 = t81 * t36;
+    const ariane6_real_t t82 = ariane6_held(t81 * t36);
     const ariane6_real_t t83 = t25 + t13 * t26 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const ariane6_real_t t84 = parameters[YZ4] + t34;
     const ariane6_real_t t85 = t41 * t48 - t44 * t53; /* link j4: column of the mass matrix */
     const ariane6_real_t t86 = t41 * t84 - t44 * t83 - ARIANE6_C(0.488) * t85;
     const ariane6_real_t t87 = t86 + t77 * t31 + t81 * t37;
     const ariane6_real_t t88 = ARIANE6_C(1.0) / t38;
-    const ariane6_real_t t89 = t87 * t88;
+    const ariane6_real_t t89 = ariane6_held(t87 * t88);
     const ariane6_real_t t90 = t72 - t77 * t78 - t81 * t82 - t87 * t89;
     if (!(t90 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);
@@ -297,7 +297,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t104 = t103 + t98 * t31 + t101 * t37;
     const ariane6_real_t t105 = t96 + t98 * t78 + t101 * t82 + t104 * t89;
     const ariane6_real_t t106 = ARIANE6_C(1.0) / t90;
-    const ariane6_real_t t107 = t105 * t106;
+    const ariane6_real_t t107 = ariane6_held(t105 * t106);
     const ariane6_real_t t108 = parameters[M3] + t56; /* link j4: inertia of it and all beyond */
     const ariane6_real_t t109 = ARIANE6_C(0.685) * t108; /* link j3: inertia of it and all beyond */
     const ariane6_real_t t110 = ARIANE6_C(0.685) * (t109 + ARIANE6_C(-2.0) * t95);
@@ -310,9 +310,9 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t118 = ARIANE6_C(12691.800000000003) * t117;
     const ariane6_real_t t119 = t114 * t118;
     const ariane6_real_t t120 = t111 + t119 * t119 * parameters[IA2];
-    const ariane6_real_t t121 = t98 * t5;
-    const ariane6_real_t t122 = t101 * t36;
-    const ariane6_real_t t123 = t104 * t88;
+    const ariane6_real_t t121 = ariane6_held(t98 * t5);
+    const ariane6_real_t t122 = ariane6_held(t101 * t36);
+    const ariane6_real_t t123 = ariane6_held(t104 * t88);
     const ariane6_real_t t124 = t120 - t98 * t121 - t101 * t122 - t104 * t123;
     const ariane6_real_t t125 = t124 - t105 * t107;
     if (!(t125 > ARIANE6_C(1.0e-12))) {
@@ -328,7 +328,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t129 = t64 * t128 - t65 * t127;
     const ariane6_real_t t130 = t64 * t127 + t65 * t128 + ARIANE6_C(-0.685) * t126;
     const ariane6_real_t t131 = t113 * t130 - t112 * t129 + ARIANE6_C(-0.18) * t126;
-    const ariane6_real_t t132 = t131 * t5;
+    const ariane6_real_t t132 = ariane6_held(t131 * t5);
     /* link j4: inertia of it and all beyond */
     const ariane6_real_t t133 = parameters[XX3] + (t40 - t46 + t62);
     const ariane6_real_t t134 = parameters[YY3] + (t28 + t58);
@@ -364,14 +364,14 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t158 = t64 * t157 - t65 * t156;
     const ariane6_real_t t159 = t64 * t156 + t65 * t157 + ARIANE6_C(-0.685) * t155;
     const ariane6_real_t t160 = t113 * t159 - t112 * t158 + ARIANE6_C(-0.18) * t155 - t131 * t6;
-    const ariane6_real_t t161 = t160 * t36;
+    const ariane6_real_t t161 = ariane6_held(t160 * t36);
     const ariane6_real_t t162 = t135 + ARIANE6_C(-0.488) * t54; /* link j4: column of the mass matrix */
     const ariane6_real_t t163 = t28 + ARIANE6_C(0.17) * t54;
     const ariane6_real_t t164 = t65 * t162 + t64 * t163;
     const ariane6_real_t t165 = t64 * t162 - t65 * t163 + ARIANE6_C(0.685) * t54;
     const ariane6_real_t t166 = t112 * t164 + t113 * t165 + ARIANE6_C(0.18) * t54 + t131 * t31;
     const ariane6_real_t t167 = t166 - t160 * t37;
-    const ariane6_real_t t168 = t167 * t88;
+    const ariane6_real_t t168 = ariane6_held(t167 * t88);
     const ariane6_real_t t169 = t154 - t131 * t132 - t160 * t161 - t167 * t168;
     /* link j4: inertia of it and all beyond */
     const ariane6_real_t t170 = parameters[XZ3] + (t44 * t45 - t43 + ARIANE6_C(-0.17) * t85);
@@ -380,7 +380,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t173 = t64 * t170 + t65 * t171;
     const ariane6_real_t t174 = t113 * t173 - t112 * t172 - t131 * t78 + t160 * t82;
     const ariane6_real_t t175 = t174 - t167 * t89;
-    const ariane6_real_t t176 = t175 * t106;
+    const ariane6_real_t t176 = ariane6_held(t175 * t106);
     const ariane6_real_t t177 = t85 - parameters[MZ3]; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
     const ariane6_real_t t178 = t172 + ARIANE6_C(-0.685) * t177 - parameters[XZ2];
@@ -388,7 +388,7 @@ ariane6_status_t ariane6_forward_dynamics_derivatives_standard(
     const ariane6_real_t t180 = t113 * t179 - t112 * t178 - t131 * t121 + t160 * t122;
     const ariane6_real_t t181 = t180 - t167 * t123 + t175 * t107;
     const ariane6_real_t t182 = ARIANE6_C(1.0) / t125;
-    const ariane6_real_t t183 = t181 * t182;
+    const ariane6_real_t t183 = ariane6_held(t181 * t182);
     const ariane6_real_t t184 = t169 - t175 * t176 - t181 * t183;
     if (!(t184 > ARIANE6_C(1.0e-12))) {
         ariane6_zero(ddq, 6);

@@ -22,7 +22,7 @@
  */
 #include "ariane6_private.h"
 
-#if ARIANE6_GENERATION != 0x04A8163CUL
+#if ARIANE6_GENERATION != 0xE2E25F41UL
 #error "ariane6.h and ariane6_jacobian.c are of different generations: generate the arm again"
 #endif
 

@@ -38,7 +38,7 @@
 #define GRAVITY_ARM_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define GRAVITY_ARM_GENERATION 0x1D1055FAUL
+#define GRAVITY_ARM_GENERATION 0xCAD143A7UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define GRAVITY_ARM_MODEL "61deec9d45de431e2e63e171a7898e38e261561ed5e7a2fea1451953288e9321"

@@ -39,7 +39,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x1D1055FAUL
+#if GRAVITY_ARM_GENERATION != 0xCAD143A7UL
 #error "gravity_arm.h and gravity_arm_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -85,7 +85,7 @@ gravity_arm_status_t gravity_arm_forward_dynamics_derivatives(
     const gravity_arm_real_t t2 = t0 * parameters[MY2] - t1 * parameters[MX2];
     const gravity_arm_real_t t3 = GRAVITY_ARM_C(0.538534) * t2 - parameters[ZZ2];
     const gravity_arm_real_t t4 = GRAVITY_ARM_C(1.0) / parameters[ZZ2];
-    const gravity_arm_real_t t5 = t3 * t4;
+    const gravity_arm_real_t t5 = gravity_arm_held(t3 * t4);
     /* link j2: inertia of it and all beyond */
     const gravity_arm_real_t t6 = parameters[ZZ1R] + (parameters[ZZ2] + GRAVITY_ARM_C(-1.077068) * t2);
     const gravity_arm_real_t t7 = t6 - t3 * t5;

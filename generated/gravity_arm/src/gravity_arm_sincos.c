@@ -13,7 +13,7 @@
  */
 #include "gravity_arm_private.h"
 
-#if GRAVITY_ARM_GENERATION != 0x1D1055FAUL
+#if GRAVITY_ARM_GENERATION != 0xCAD143A7UL
 #error "gravity_arm.h and gravity_arm_sincos.c are of different generations: generate the arm again"
 #endif
 

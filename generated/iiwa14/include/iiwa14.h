@@ -95,7 +95,7 @@
 #define IIWA14_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define IIWA14_GENERATION 0xCCB5960FUL
+#define IIWA14_GENERATION 0x933AE7FFUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define IIWA14_MODEL "4f01a5afe35e97fd79f71d51c6869d227bc33b1f7e6bd5668229ee16abfa0d3e"

@@ -96,7 +96,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xCCB5960FUL
+#if IIWA14_GENERATION != 0x933AE7FFUL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -153,7 +153,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     /* link j7: column of the mass matrix */
     const iiwa14_real_t t3 = t1 * parameters[XZ7R] + t2 * parameters[YZ7R];
     const iiwa14_real_t t4 = IIWA14_C(1.0) / t0;
-    const iiwa14_real_t t5 = t3 * t4;
+    const iiwa14_real_t t5 = iiwa14_held(t3 * t4);
     /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t6 = parameters[XY7] * (IIWA14_C(2.0) * t1) - t2 * parameters[XX7R];
     const iiwa14_real_t t7 = t2 * t6;
@@ -175,7 +175,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t17 = t12 * t16 + t14 * parameters[ZZ7];
     const iiwa14_real_t t18 = t17 * t5 - t15;
     const iiwa14_real_t t19 = IIWA14_C(1.0) / t10;
-    const iiwa14_real_t t20 = t18 * t19;
+    const iiwa14_real_t t20 = iiwa14_held(t18 * t19);
     const iiwa14_real_t t21 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t22 = parameters[XY6] + t16;
     /* link j6: inertia of it and all beyond */
@@ -183,7 +183,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t24 = t14 * t23;
     const iiwa14_real_t t25 = parameters[ZZ5R] + (t21 - t24);
     const iiwa14_real_t t26 = t25 + IIWA14_C(1.0e4) * parameters[IA5];
-    const iiwa14_real_t t27 = t17 * t4;
+    const iiwa14_real_t t27 = iiwa14_held(t17 * t4);
     const iiwa14_real_t t28 = t26 - t17 * t27 - t18 * t20;
     if (!(t28 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
@@ -215,8 +215,8 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t49 = t44 * t5 - t48;
     const iiwa14_real_t t50 = t44 * t27 - t40 + t49 * t20;
     const iiwa14_real_t t51 = IIWA14_C(1.0) / t28;
-    const iiwa14_real_t t52 = t50 * t51;
-    const iiwa14_real_t t53 = t44 * t4;
+    const iiwa14_real_t t52 = iiwa14_held(t50 * t51);
+    const iiwa14_real_t t53 = iiwa14_held(t44 * t4);
     /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t54 = parameters[XX5R] + (parameters[ZZ7] + t24);
     const iiwa14_real_t t55 = parameters[XY5] + t45;
@@ -226,7 +226,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t58 = IIWA14_C(-0.8) * t46;
     const iiwa14_real_t t59 = parameters[ZZ4R] + (t54 - t57 + t58);
     const iiwa14_real_t t60 = t59 + IIWA14_C(2.56e4) * parameters[IA4];
-    const iiwa14_real_t t61 = t49 * t19;
+    const iiwa14_real_t t61 = iiwa14_held(t49 * t19);
     const iiwa14_real_t t62 = t60 - t44 * t53 - t49 * t61 - t50 * t52;
     if (!(t62 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
@@ -247,22 +247,22 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t73 = t30 * t42 - t32 * t35; /* link j7: column of the mass matrix */
     const iiwa14_real_t t74 = t32 * t41 + t30 * t3 + IIWA14_C(-0.4) * t73;
     const iiwa14_real_t t75 = t64 * t17 - t68 * t74;
-    const iiwa14_real_t t76 = t75 * t4;
+    const iiwa14_real_t t76 = iiwa14_held(t75 * t4);
     const iiwa14_real_t t77 = t30 * t46; /* link j6: column of the mass matrix */
     const iiwa14_real_t t78 = t30 * t8 - t32 * t45 + IIWA14_C(-0.4) * t77;
     const iiwa14_real_t t79 = t64 * t15 - t68 * t78;
     const iiwa14_real_t t80 = t79 - t75 * t5;
-    const iiwa14_real_t t81 = t80 * t19;
+    const iiwa14_real_t t81 = iiwa14_held(t80 * t19);
     const iiwa14_real_t t82 = t64 * t25 - t68 * t66; /* link j5: column of the mass matrix */
     const iiwa14_real_t t83 = t82 - t75 * t27 + t80 * t20;
-    const iiwa14_real_t t84 = t83 * t51;
+    const iiwa14_real_t t84 = iiwa14_held(t83 * t51);
     const iiwa14_real_t t85 = t72 - t75 * t76 - t80 * t81 - t83 * t84;
     const iiwa14_real_t t86 = t55 + t30 * t56 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t87 = parameters[YZ4] + t40;
     const iiwa14_real_t t88 = t64 * t87 - t68 * t86; /* link j4: column of the mass matrix */
     const iiwa14_real_t t89 = t88 - t75 * t53 + t80 * t61 + t83 * t52;
     const iiwa14_real_t t90 = IIWA14_C(1.0) / t62;
-    const iiwa14_real_t t91 = t89 * t90;
+    const iiwa14_real_t t91 = iiwa14_held(t89 * t90);
     const iiwa14_real_t t92 = t85 - t89 * t91;
     if (!(t92 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
@@ -303,7 +303,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t124 = t123 - t108 * t53 + t113 * t61 + t118 * t52;
     const iiwa14_real_t t125 = t119 - t124 * t91;
     const iiwa14_real_t t126 = IIWA14_C(1.0) / t92;
-    const iiwa14_real_t t127 = t125 * t126;
+    const iiwa14_real_t t127 = iiwa14_held(t125 * t126);
     const iiwa14_real_t t128 = t70 - t25 - parameters[XX3R]; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t129 = parameters[XY3] + t120;
     /* link j3: inertia of it and all beyond */
@@ -311,11 +311,11 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t131 = t96 * t130;
     const iiwa14_real_t t132 = IIWA14_C(-0.84) * t121;
     const iiwa14_real_t t133 = parameters[ZZ2R] + (t131 - t128 - t132);
-    const iiwa14_real_t t134 = t108 * t4;
-    const iiwa14_real_t t135 = t113 * t19;
-    const iiwa14_real_t t136 = t118 * t51;
+    const iiwa14_real_t t134 = iiwa14_held(t108 * t4);
+    const iiwa14_real_t t135 = iiwa14_held(t113 * t19);
+    const iiwa14_real_t t136 = iiwa14_held(t118 * t51);
     const iiwa14_real_t t137 = t133 - t108 * t134 - t113 * t135 - t118 * t136;
-    const iiwa14_real_t t138 = t124 * t90;
+    const iiwa14_real_t t138 = iiwa14_held(t124 * t90);
     const iiwa14_real_t t139 = t137 - t124 * t138 - t125 * t127;
     if (!(t139 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
@@ -334,31 +334,31 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives(
     const iiwa14_real_t t148 = t94 * t106 + t96 * t73; /* link j7: column of the mass matrix */
     const iiwa14_real_t t149 = t94 * t44 - t96 * t104 + IIWA14_C(0.42) * t148;
     const iiwa14_real_t t150 = t145 * t149 - t141 * t75;
-    const iiwa14_real_t t151 = t150 * t4;
+    const iiwa14_real_t t151 = iiwa14_held(t150 * t4);
     const iiwa14_real_t t152 = t94 * t110 + t96 * t77; /* link j6: column of the mass matrix */
     const iiwa14_real_t t153 = t94 * t48 - t96 * t109 + IIWA14_C(0.42) * t152;
     const iiwa14_real_t t154 = t145 * t153 - t141 * t79 - t150 * t5;
-    const iiwa14_real_t t155 = t154 * t19;
+    const iiwa14_real_t t155 = iiwa14_held(t154 * t19);
     const iiwa14_real_t t156 = t94 * t115 - t96 * t65; /* link j5: column of the mass matrix */
     const iiwa14_real_t t157 = t94 * t40 - t96 * t114 + IIWA14_C(0.42) * t156;
     const iiwa14_real_t t158 = t145 * t157 - t141 * t82 - t150 * t27 + t154 * t20;
-    const iiwa14_real_t t159 = t158 * t51;
+    const iiwa14_real_t t159 = iiwa14_held(t158 * t51);
     const iiwa14_real_t t160 = t147 - t150 * t151 - t154 * t155 - t158 * t159;
     const iiwa14_real_t t161 = t94 * t121; /* link j4: column of the mass matrix */
     const iiwa14_real_t t162 = t94 * t59 - t96 * t120 + IIWA14_C(0.42) * t161;
     const iiwa14_real_t t163 = t145 * t162 - t141 * t88 - t150 * t53 + t154 * t61;
     const iiwa14_real_t t164 = t163 + t158 * t52;
-    const iiwa14_real_t t165 = t164 * t90;
+    const iiwa14_real_t t165 = iiwa14_held(t164 * t90);
     const iiwa14_real_t t166 = t145 * t143 + t141 * t71 + t150 * t76 + t154 * t81;
     const iiwa14_real_t t167 = t166 + t158 * t84 + t164 * t91;
-    const iiwa14_real_t t168 = t167 * t126;
+    const iiwa14_real_t t168 = iiwa14_held(t167 * t126);
     /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t169 = t94 * t130 - t129 - parameters[XZ2];
     const iiwa14_real_t t170 = parameters[YZ2] + t103;
     const iiwa14_real_t t171 = t145 * t169 - t141 * t170 - t150 * t134 - t154 * t135;
     const iiwa14_real_t t172 = t171 - t158 * t136 - t164 * t138 + t167 * t127;
     const iiwa14_real_t t173 = IIWA14_C(1.0) / t139;
-    const iiwa14_real_t t174 = t172 * t173;
+    const iiwa14_real_t t174 = iiwa14_held(t172 * t173);
     const iiwa14_real_t t175 = t160 - t164 * t165 - t167 * t168 - t172 * t174;
     if (!(t175 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);

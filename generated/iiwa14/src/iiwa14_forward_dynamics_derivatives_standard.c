@@ -125,7 +125,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xCCB5960FUL
+#if IIWA14_GENERATION != 0x933AE7FFUL
 #error "iiwa14.h and iiwa14_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -184,7 +184,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t3 = t2 * parameters[MY7] + t1 * parameters[MX7];
     const iiwa14_real_t t4 = IIWA14_C(0.126) * t3 - (t1 * parameters[XZ7] + t2 * parameters[YZ7]);
     const iiwa14_real_t t5 = IIWA14_C(1.0) / t0;
-    const iiwa14_real_t t6 = t4 * t5;
+    const iiwa14_real_t t6 = iiwa14_held(t4 * t5);
     const iiwa14_real_t t7 = parameters[YY7] - parameters[XX7]; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t8 = t2 * t7 + parameters[XY7] * (IIWA14_C(2.0) * t1);
     const iiwa14_real_t t9 = t2 * t8;
@@ -212,13 +212,13 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t24 = parameters[ZZ5] + (t15 - t23);
     const iiwa14_real_t t25 = t24 + IIWA14_C(1.0e4) * parameters[IA5];
     const iiwa14_real_t t26 = t21 * t19 + t17 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const iiwa14_real_t t27 = t26 * t5;
+    const iiwa14_real_t t27 = iiwa14_held(t26 * t5);
     const iiwa14_real_t t28 = parameters[YZ6] + t4; /* link j7: inertia of it and all beyond */
     const iiwa14_real_t t29 = t1 * t8 - parameters[XY7] - parameters[XZ6];
     const iiwa14_real_t t30 = t17 * t28 - t21 * t29; /* link j6: column of the mass matrix */
     const iiwa14_real_t t31 = t30 - t26 * t6;
     const iiwa14_real_t t32 = IIWA14_C(1.0) / t14;
-    const iiwa14_real_t t33 = t31 * t32;
+    const iiwa14_real_t t33 = iiwa14_held(t31 * t32);
     const iiwa14_real_t t34 = t25 - t26 * t27 - t31 * t33;
     if (!(t34 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
@@ -249,11 +249,11 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t55 = t17 * t3;
     const iiwa14_real_t t56 = t37 * t55 + t40 * t18;
     const iiwa14_real_t t57 = t40 * t54 + t37 * t4 + IIWA14_C(0.4) * t56;
-    const iiwa14_real_t t58 = t57 * t5;
+    const iiwa14_real_t t58 = iiwa14_held(t57 * t5);
     const iiwa14_real_t t59 = t37 * t46; /* link j6: column of the mass matrix */
     const iiwa14_real_t t60 = t40 * t38 - t37 * t12 + IIWA14_C(-0.4) * t59;
     const iiwa14_real_t t61 = t60 + t57 * t6;
-    const iiwa14_real_t t62 = t61 * t32;
+    const iiwa14_real_t t62 = iiwa14_held(t61 * t32);
     const iiwa14_real_t t63 = t20 + t21 * t22 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
     const iiwa14_real_t t64 = t30 - parameters[YZ5];
     const iiwa14_real_t t65 = parameters[MZ6] + t3; /* link j7: inertia of it and all beyond */
@@ -264,7 +264,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t70 = t40 * t63 + t37 * t64 + IIWA14_C(0.4) * t69;
     const iiwa14_real_t t71 = t57 * t27 - t70 - t61 * t33;
     const iiwa14_real_t t72 = IIWA14_C(1.0) / t34;
-    const iiwa14_real_t t73 = t71 * t72;
+    const iiwa14_real_t t73 = iiwa14_held(t71 * t72);
     const iiwa14_real_t t74 = t53 - t57 * t58 - t61 * t62 - t71 * t73;
     if (!(t74 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
@@ -289,7 +289,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t90 = t89 - t82 * t27 + t86 * t33;
     const iiwa14_real_t t91 = t79 - t82 * t58 - t86 * t62 + t90 * t73;
     const iiwa14_real_t t92 = IIWA14_C(1.0) / t74;
-    const iiwa14_real_t t93 = t91 * t92;
+    const iiwa14_real_t t93 = iiwa14_held(t91 * t92);
     const iiwa14_real_t t94 = parameters[XX4] + (t36 + t42 + t51); /* link j5: inertia of it and all beyond */
     const iiwa14_real_t t95 = parameters[YY4] + t24;
     const iiwa14_real_t t96 = t88 - parameters[XY4];
@@ -298,9 +298,9 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t98 = t78 * t97;
     const iiwa14_real_t t99 = parameters[ZZ3] + (t94 + t98);
     const iiwa14_real_t t100 = t99 + IIWA14_C(2.56e4) * parameters[IA3];
-    const iiwa14_real_t t101 = t82 * t5;
-    const iiwa14_real_t t102 = t86 * t32;
-    const iiwa14_real_t t103 = t90 * t72;
+    const iiwa14_real_t t101 = iiwa14_held(t82 * t5);
+    const iiwa14_real_t t102 = iiwa14_held(t86 * t32);
+    const iiwa14_real_t t103 = iiwa14_held(t90 * t72);
     const iiwa14_real_t t104 = t100 - t82 * t101 - t86 * t102 - t90 * t103;
     const iiwa14_real_t t105 = t104 - t91 * t93;
     if (!(t105 > IIWA14_C(1.0e-12))) {
@@ -333,24 +333,24 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t127 = t78 * t56 + t76 * t126;
     const iiwa14_real_t t128 = t108 * t127 - t111 * t80;
     const iiwa14_real_t t129 = t111 * t125 + t108 * t57 + IIWA14_C(0.42) * t128;
-    const iiwa14_real_t t130 = t129 * t5;
+    const iiwa14_real_t t130 = iiwa14_held(t129 * t5);
     const iiwa14_real_t t131 = t76 * t30 - t78 * t84; /* link j6: column of the mass matrix */
     const iiwa14_real_t t132 = t78 * t59 + t76 * t67;
     const iiwa14_real_t t133 = t111 * t83 - t108 * t132;
     const iiwa14_real_t t134 = t108 * t60 - t111 * t131 + IIWA14_C(0.42) * t133;
     const iiwa14_real_t t135 = t134 + t129 * t6;
-    const iiwa14_real_t t136 = t135 * t32;
+    const iiwa14_real_t t136 = iiwa14_held(t135 * t32);
     const iiwa14_real_t t137 = t78 * t88 + t76 * t24; /* link j5: column of the mass matrix */
     const iiwa14_real_t t138 = t78 * t69;
     const iiwa14_real_t t139 = t108 * t138 + t111 * t87;
     const iiwa14_real_t t140 = t111 * t137 + t108 * t70 + IIWA14_C(0.42) * t139;
     const iiwa14_real_t t141 = t140 - t129 * t27 + t135 * t33;
-    const iiwa14_real_t t142 = t141 * t72;
+    const iiwa14_real_t t142 = iiwa14_held(t141 * t72);
     const iiwa14_real_t t143 = t124 - t129 * t130 - t135 * t136 - t141 * t142;
     const iiwa14_real_t t144 = t108 * t117; /* link j4: column of the mass matrix */
     const iiwa14_real_t t145 = t111 * t109 + t108 * t52 + IIWA14_C(0.42) * t144;
     const iiwa14_real_t t146 = t145 - t129 * t58 - t135 * t62 + t141 * t73;
-    const iiwa14_real_t t147 = t146 * t92;
+    const iiwa14_real_t t147 = iiwa14_held(t146 * t92);
     const iiwa14_real_t t148 = t96 + t76 * t97 - parameters[XZ3]; /* link j4: inertia of it and all beyond */
     const iiwa14_real_t t149 = parameters[YZ3] - t79;
     const iiwa14_real_t t150 = parameters[MZ4] - t69; /* link j5: inertia of it and all beyond */
@@ -362,7 +362,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t156 = t155 - t129 * t101 - t135 * t102 - t141 * t103;
     const iiwa14_real_t t157 = t156 - t146 * t93;
     const iiwa14_real_t t158 = IIWA14_C(1.0) / t105;
-    const iiwa14_real_t t159 = t157 * t158;
+    const iiwa14_real_t t159 = iiwa14_held(t157 * t158);
     const iiwa14_real_t t160 = t143 - t146 * t147 - t157 * t159;
     if (!(t160 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);
@@ -394,7 +394,7 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     const iiwa14_real_t t182 = t181 + t174 * t103 + t178 * t93;
     const iiwa14_real_t t183 = t171 - t174 * t142 - t178 * t147 + t182 * t159;
     const iiwa14_real_t t184 = IIWA14_C(1.0) / t160;
-    const iiwa14_real_t t185 = t183 * t184;
+    const iiwa14_real_t t185 = iiwa14_held(t183 * t184);
     /* link j3: inertia of it and all beyond */
     const iiwa14_real_t t186 = t113 - t107 - t122 - parameters[XX2];
     const iiwa14_real_t t187 = parameters[YY2] + t99;
@@ -402,12 +402,12 @@ iiwa14_status_t iiwa14_forward_dynamics_derivatives_standard(
     /* link j2: inertia of it and all beyond */
     const iiwa14_real_t t189 = t164 * (t164 * (t186 + t187) + t188 * (IIWA14_C(2.0) * t162));
     const iiwa14_real_t t190 = parameters[ZZ1] + (t189 - t186) + IIWA14_C(2.56e4) * parameters[IA1];
-    const iiwa14_real_t t191 = t167 * t5;
-    const iiwa14_real_t t192 = t170 * t32;
-    const iiwa14_real_t t193 = t174 * t72;
+    const iiwa14_real_t t191 = iiwa14_held(t167 * t5);
+    const iiwa14_real_t t192 = iiwa14_held(t170 * t32);
+    const iiwa14_real_t t193 = iiwa14_held(t174 * t72);
     const iiwa14_real_t t194 = t190 - t167 * t191 - t170 * t192 - t174 * t193;
-    const iiwa14_real_t t195 = t178 * t92;
-    const iiwa14_real_t t196 = t182 * t158;
+    const iiwa14_real_t t195 = iiwa14_held(t178 * t92);
+    const iiwa14_real_t t196 = iiwa14_held(t182 * t158);
     const iiwa14_real_t t197 = t194 - t178 * t195 - t182 * t196 - t183 * t185;
     if (!(t197 > IIWA14_C(1.0e-12))) {
         iiwa14_zero(ddq, 7);

@@ -124,7 +124,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xCCB5960FUL
+#if IIWA14_GENERATION != 0x933AE7FFUL
 #error "iiwa14.h and iiwa14_inverse_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 

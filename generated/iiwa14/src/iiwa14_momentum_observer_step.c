@@ -98,7 +98,7 @@
  */
 #include "iiwa14_private.h"
 
-#if IIWA14_GENERATION != 0xCCB5960FUL
+#if IIWA14_GENERATION != 0x933AE7FFUL
 #error "iiwa14.h and iiwa14_momentum_observer_step.c are of different generations: generate the arm again"
 #endif
 

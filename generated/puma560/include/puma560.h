@@ -86,7 +86,7 @@
 #define PUMA560_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define PUMA560_GENERATION 0x045A9366UL
+#define PUMA560_GENERATION 0x28E26474UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define PUMA560_MODEL "e8eb13fe224405b26bd20c4ed5e9d26e90682bc514ecddfa30f598ec8b9ba255"

@@ -86,7 +86,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x045A9366UL
+#if PUMA560_GENERATION != 0x28E26474UL
 #error "puma560.h and puma560_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -140,7 +140,7 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     /* link j6: column of the mass matrix */
     const puma560_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const puma560_real_t t4 = PUMA560_C(1.0) / t0;
-    const puma560_real_t t5 = t3 * t4;
+    const puma560_real_t t5 = puma560_held(t3 * t4);
     /* link j6: inertia of it and all beyond */
     const puma560_real_t t6 = t2 * parameters[XX6R] - parameters[XY6] * (PUMA560_C(2.0) * t1);
     const puma560_real_t t7 = t2 * t6;
@@ -162,7 +162,7 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t t17 = t12 * t16 + t14 * parameters[ZZ6];
     const puma560_real_t t18 = t15 + t17 * t5;
     const puma560_real_t t19 = PUMA560_C(1.0) / t10;
-    const puma560_real_t t20 = t18 * t19;
+    const puma560_real_t t20 = puma560_held(t18 * t19);
     const puma560_real_t t21 = parameters[XX5R] + t7; /* link j6: inertia of it and all beyond */
     const puma560_real_t t22 = parameters[XY5] + t16;
     /* link j5: inertia of it and all beyond */
@@ -170,7 +170,7 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t t24 = t14 * t23;
     const puma560_real_t t25 = parameters[ZZ4R] + (t21 - t24);
     const puma560_real_t t26 = t25 + PUMA560_C(5781.53412496) * parameters[IA4];
-    const puma560_real_t t27 = t17 * t4;
+    const puma560_real_t t27 = puma560_held(t17 * t4);
     const puma560_real_t t28 = t26 - t17 * t27 - t18 * t20;
     if (!(t28 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
@@ -204,9 +204,9 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t t51 = t50 + t46 * t5;
     const puma560_real_t t52 = t41 + t46 * t27 + t51 * t20;
     const puma560_real_t t53 = PUMA560_C(1.0) / t28;
-    const puma560_real_t t54 = t52 * t53;
-    const puma560_real_t t55 = t51 * t19;
-    const puma560_real_t t56 = t46 * t4;
+    const puma560_real_t t54 = puma560_held(t52 * t53);
+    const puma560_real_t t55 = puma560_held(t51 * t19);
+    const puma560_real_t t56 = puma560_held(t46 * t4);
     /* link j5: inertia of it and all beyond */
     const puma560_real_t t57 = parameters[XX4R] + (parameters[ZZ6] + t24);
     const puma560_real_t t58 = parameters[XY4] + t47;
@@ -240,10 +240,10 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t t80 = PUMA560_C(0.4318) * t79 - t64;
     const puma560_real_t t81 = t80 + t72 * t56 + t75 * t55 + t76 * t54;
     const puma560_real_t t82 = PUMA560_C(-1.0) / t66;
-    const puma560_real_t t83 = t81 * t82;
-    const puma560_real_t t84 = t76 * t53;
-    const puma560_real_t t85 = t75 * t19;
-    const puma560_real_t t86 = t72 * t4;
+    const puma560_real_t t83 = puma560_held(t81 * t82);
+    const puma560_real_t t84 = puma560_held(t76 * t53);
+    const puma560_real_t t85 = puma560_held(t75 * t19);
+    const puma560_real_t t86 = puma560_held(t72 * t4);
     const puma560_real_t t87 = PUMA560_C(-0.8636) * t79; /* link j3: inertia of it and all beyond */
     const puma560_real_t t88 = parameters[ZZ2R] + (t64 + t87);
     const puma560_real_t t89 = t88 - t72 * t86 - t75 * t85 - t76 * t84;
@@ -281,7 +281,7 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t t112 = t67 * t109 + t70 * t110 - (t108 + PUMA560_C(-0.1254) * t111);
     const puma560_real_t t113 = t70 * t109 - t67 * t110 + PUMA560_C(0.1254) * t71;
     const puma560_real_t t114 = t104 * t113 + t101 * t112;
-    const puma560_real_t t115 = t114 * t4;
+    const puma560_real_t t115 = puma560_held(t114 * t4);
     const puma560_real_t t116 = t30 * t48; /* link j5: column of the mass matrix */
     const puma560_real_t t117 = PUMA560_C(0.4318) * t116;
     const puma560_real_t t118 = t30 * t8 - t32 * t47 + t117;
@@ -290,14 +290,14 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t t121 = t67 * t37 - t70 * t49;
     const puma560_real_t t122 = t67 * t118 + t70 * t119 - (t117 + PUMA560_C(-0.1254) * t121);
     const puma560_real_t t123 = t104 * t120 + t101 * t122 + t114 * t5;
-    const puma560_real_t t124 = t123 * t19;
+    const puma560_real_t t124 = puma560_held(t123 * t19);
     const puma560_real_t t125 = t93 + t94; /* link j4: column of the mass matrix */
     const puma560_real_t t126 = t25 - PUMA560_C(0.0203) * t61;
     const puma560_real_t t127 = t67 * t126 - t70 * t125 + PUMA560_C(-0.1254) * t68;
     const puma560_real_t t128 = t70 * t39;
     const puma560_real_t t129 = t94 + PUMA560_C(0.1254) * t128 - (t67 * t125 + t70 * t126);
     const puma560_real_t t130 = t104 * t127 + t101 * t129 + t114 * t27 + t123 * t20;
-    const puma560_real_t t131 = t130 * t53;
+    const puma560_real_t t131 = puma560_held(t130 * t53);
     const puma560_real_t t132 = t106 - t114 * t115 - t123 * t124 - t130 * t131;
     /* link j4: inertia of it and all beyond */
     const puma560_real_t t133 = t58 + t30 * t59 + PUMA560_C(-0.0203) * t39 - parameters[XZ3];
@@ -308,14 +308,14 @@ puma560_status_t puma560_forward_dynamics_derivatives(
     const puma560_real_t t138 = t67 * t133 + t70 * t134 + PUMA560_C(-0.1254) * t102;
     const puma560_real_t t139 = t104 * t137 + t101 * t138 + t114 * t56 + t123 * t55;
     const puma560_real_t t140 = t139 + t130 * t54;
-    const puma560_real_t t141 = t140 * t82;
+    const puma560_real_t t141 = puma560_held(t140 * t82);
     /* link j3: inertia of it and all beyond */
     const puma560_real_t t142 = t135 + (t40 + t136) - parameters[XZ2R];
     const puma560_real_t t143 = t138 - parameters[YZ2];
     const puma560_real_t t144 = t104 * t142 + t101 * t143 + t114 * t86 + t123 * t85;
     const puma560_real_t t145 = t140 * t83 - (t144 + t130 * t84);
     const puma560_real_t t146 = PUMA560_C(1.0) / t90;
-    const puma560_real_t t147 = t145 * t146;
+    const puma560_real_t t147 = puma560_held(t145 * t146);
     const puma560_real_t t148 = t132 + t140 * t141 - t145 * t147;
     if (!(t148 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);

@@ -111,7 +111,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x045A9366UL
+#if PUMA560_GENERATION != 0x28E26474UL
 #error "puma560.h and puma560_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -166,7 +166,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     /* link j6: column of the mass matrix */
     const puma560_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const puma560_real_t t4 = PUMA560_C(1.0) / t0;
-    const puma560_real_t t5 = t3 * t4;
+    const puma560_real_t t5 = puma560_held(t3 * t4);
     const puma560_real_t t6 = parameters[YY6] - parameters[XX6]; /* link j6: inertia of it and all beyond */
     const puma560_real_t t7 = parameters[XY6] * (PUMA560_C(-2.0) * t1) - t2 * t6;
     const puma560_real_t t8 = t2 * t7;
@@ -188,7 +188,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t18 = t13 * t17 - t15 * parameters[ZZ6];
     const puma560_real_t t19 = t18 * t5 - t16;
     const puma560_real_t t20 = PUMA560_C(1.0) / t11;
-    const puma560_real_t t21 = t19 * t20;
+    const puma560_real_t t21 = puma560_held(t19 * t20);
     /* link j6: inertia of it and all beyond */
     const puma560_real_t t22 = parameters[XX5] + (parameters[YY6] + t8);
     const puma560_real_t t23 = parameters[YY5] + parameters[ZZ6];
@@ -198,7 +198,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t26 = t15 * t25;
     const puma560_real_t t27 = parameters[ZZ4] + (t22 - t26);
     const puma560_real_t t28 = t27 + PUMA560_C(5781.53412496) * parameters[IA4];
-    const puma560_real_t t29 = t18 * t4;
+    const puma560_real_t t29 = puma560_held(t18 * t4);
     const puma560_real_t t30 = t28 - t18 * t29 - t19 * t21;
     if (!(t30 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);
@@ -233,9 +233,9 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t54 = t53 + t49 * t5;
     const puma560_real_t t55 = t49 * t29 - t44 + t54 * t21;
     const puma560_real_t t56 = PUMA560_C(1.0) / t30;
-    const puma560_real_t t57 = t55 * t56;
-    const puma560_real_t t58 = t54 * t20;
-    const puma560_real_t t59 = t49 * t4;
+    const puma560_real_t t57 = puma560_held(t55 * t56);
+    const puma560_real_t t58 = puma560_held(t54 * t20);
+    const puma560_real_t t59 = puma560_held(t49 * t4);
     const puma560_real_t t60 = parameters[XX4] + (t23 + t26); /* link j5: inertia of it and all beyond */
     const puma560_real_t t61 = parameters[YY4] + t9;
     const puma560_real_t t62 = parameters[XY4] + t50;
@@ -276,10 +276,10 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t91 = PUMA560_C(0.4318) * t90 - t73;
     const puma560_real_t t92 = t91 + t81 * t59 + t84 * t58 - t85 * t57;
     const puma560_real_t t93 = PUMA560_C(-1.0) / t75;
-    const puma560_real_t t94 = t92 * t93;
-    const puma560_real_t t95 = t85 * t56;
-    const puma560_real_t t96 = t84 * t20;
-    const puma560_real_t t97 = t81 * t4;
+    const puma560_real_t t94 = puma560_held(t92 * t93);
+    const puma560_real_t t95 = puma560_held(t85 * t56);
+    const puma560_real_t t96 = puma560_held(t84 * t20);
+    const puma560_real_t t97 = puma560_held(t81 * t4);
     const puma560_real_t t98 = parameters[M3] + t67; /* link j4: inertia of it and all beyond */
     const puma560_real_t t99 = PUMA560_C(0.4318) * t98; /* link j3: inertia of it and all beyond */
     const puma560_real_t t100 = PUMA560_C(0.4318) * (t99 + PUMA560_C(-2.0) * t90);
@@ -323,7 +323,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t127 = t76 * t124 - t79 * t125 - (t123 + PUMA560_C(-0.1254) * t126);
     const puma560_real_t t128 = t79 * t124 + t76 * t125 + PUMA560_C(0.1254) * t80;
     const puma560_real_t t129 = t119 * t128 + t116 * t127;
-    const puma560_real_t t130 = t129 * t4;
+    const puma560_real_t t130 = puma560_held(t129 * t4);
     const puma560_real_t t131 = t32 * t51; /* link j5: column of the mass matrix */
     const puma560_real_t t132 = PUMA560_C(0.4318) * t131;
     const puma560_real_t t133 = t32 * t9 - t34 * t50 + t132;
@@ -332,7 +332,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t136 = t76 * t41 - t79 * t52;
     const puma560_real_t t137 = t76 * t133 + t79 * t134 - (t132 + PUMA560_C(-0.1254) * t136);
     const puma560_real_t t138 = t119 * t135 + t116 * t137 + t129 * t5;
-    const puma560_real_t t139 = t138 * t20;
+    const puma560_real_t t139 = puma560_held(t138 * t20);
     const puma560_real_t t140 = PUMA560_C(0.4318) * t65; /* link j4: column of the mass matrix */
     const puma560_real_t t141 = t107 + t140;
     const puma560_real_t t142 = t27 - PUMA560_C(0.0203) * t65;
@@ -340,7 +340,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t144 = t79 * t43;
     const puma560_real_t t145 = t140 + PUMA560_C(0.1254) * t144 - (t76 * t141 + t79 * t142);
     const puma560_real_t t146 = t119 * t143 + t116 * t145 - t129 * t29 - t138 * t21;
-    const puma560_real_t t147 = t146 * t56;
+    const puma560_real_t t147 = puma560_held(t146 * t56);
     const puma560_real_t t148 = t121 - t129 * t130 - t138 * t139 - t146 * t147;
     /* link j4: inertia of it and all beyond */
     const puma560_real_t t149 = t62 + t32 * t63 + PUMA560_C(-0.0203) * t43 - parameters[XZ3];
@@ -350,7 +350,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t153 = t76 * t149 + t79 * t150 + PUMA560_C(-0.1254) * t117;
     const puma560_real_t t154 = t119 * t152 + t116 * t153 + t129 * t59 + t138 * t58;
     const puma560_real_t t155 = t154 - t146 * t57;
-    const puma560_real_t t156 = t155 * t93;
+    const puma560_real_t t156 = puma560_held(t155 * t93);
     const puma560_real_t t157 = t90 - t99; /* link j3: inertia of it and all beyond */
     const puma560_real_t t158 = t151 + (PUMA560_C(-0.4318) * t111 + PUMA560_C(-0.1254) * t157)
         - parameters[XZ2];
@@ -358,7 +358,7 @@ puma560_status_t puma560_forward_dynamics_derivatives_standard(
     const puma560_real_t t160 = t119 * t158 + t116 * t159 + t129 * t97 + t138 * t96;
     const puma560_real_t t161 = t155 * t94 - (t160 + t146 * t95);
     const puma560_real_t t162 = PUMA560_C(1.0) / t104;
-    const puma560_real_t t163 = t161 * t162;
+    const puma560_real_t t163 = puma560_held(t161 * t162);
     const puma560_real_t t164 = t148 + t155 * t156 - t161 * t163;
     if (!(t164 > PUMA560_C(1.0e-12))) {
         puma560_zero(ddq, 6);

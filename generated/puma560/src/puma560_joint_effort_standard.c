@@ -107,7 +107,7 @@
  */
 #include "puma560_private.h"
 
-#if PUMA560_GENERATION != 0x045A9366UL
+#if PUMA560_GENERATION != 0x28E26474UL
 #error "puma560.h and puma560_joint_effort_standard.c are of different generations: generate the arm again"
 #endif
 

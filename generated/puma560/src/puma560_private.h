@@ -13,7 +13,7 @@
 
 #include "puma560.h"
 
-#if PUMA560_GENERATION != 0x045A9366UL
+#if PUMA560_GENERATION != 0x28E26474UL
 #error "puma560.h and puma560_private.h are of different generations: generate the arm again"
 #endif
 

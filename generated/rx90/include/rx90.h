@@ -83,7 +83,7 @@
 #define RX90_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define RX90_GENERATION 0x60343B33UL
+#define RX90_GENERATION 0x3F0653A6UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define RX90_MODEL "10f0505273a073e2836fd5196308da2ff0e26815099ce8f081f39fd9e627e546"

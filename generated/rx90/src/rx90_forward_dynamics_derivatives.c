@@ -85,7 +85,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x60343B33UL
+#if RX90_GENERATION != 0x3F0653A6UL
 #error "rx90.h and rx90_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -139,7 +139,7 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     /* link j6: column of the mass matrix */
     const rx90_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const rx90_real_t t4 = RX90_C(1.0) / t0;
-    const rx90_real_t t5 = t3 * t4;
+    const rx90_real_t t5 = rx90_held(t3 * t4);
     /* link j6: inertia of it and all beyond */
     const rx90_real_t t6 = parameters[XY6] * (RX90_C(2.0) * t1) - t2 * parameters[XX6R];
     const rx90_real_t t7 = t2 * t6;
@@ -161,7 +161,7 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t t17 = t12 * t16 + t14 * parameters[ZZ6];
     const rx90_real_t t18 = t15 + t17 * t5;
     const rx90_real_t t19 = RX90_C(1.0) / t10;
-    const rx90_real_t t20 = t18 * t19;
+    const rx90_real_t t20 = rx90_held(t18 * t19);
     const rx90_real_t t21 = parameters[XX5R] - t7; /* link j6: inertia of it and all beyond */
     const rx90_real_t t22 = parameters[XY5] + t16;
     /* link j5: inertia of it and all beyond */
@@ -169,7 +169,7 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t t24 = t14 * t23;
     const rx90_real_t t25 = parameters[ZZ4R] + (t21 + t24);
     const rx90_real_t t26 = t25 + RX90_C(2.5e3) * parameters[IA4];
-    const rx90_real_t t27 = t17 * t4;
+    const rx90_real_t t27 = rx90_held(t17 * t4);
     const rx90_real_t t28 = t26 - t17 * t27 - t18 * t20;
     if (!(t28 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
@@ -202,8 +202,8 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t t50 = t49 + t45 * t5;
     const rx90_real_t t51 = t41 + t45 * t27 + t50 * t20;
     const rx90_real_t t52 = RX90_C(1.0) / t28;
-    const rx90_real_t t53 = t51 * t52;
-    const rx90_real_t t54 = t45 * t4;
+    const rx90_real_t t53 = rx90_held(t51 * t52);
+    const rx90_real_t t54 = rx90_held(t45 * t4);
     /* link j5: inertia of it and all beyond */
     const rx90_real_t t55 = t24 - parameters[ZZ6] - parameters[XX4R];
     const rx90_real_t t56 = parameters[XY4] - t46;
@@ -213,7 +213,7 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t t59 = RX90_C(0.9) * t47;
     const rx90_real_t t60 = parameters[ZZ3R] + (t58 - t55 + t59);
     const rx90_real_t t61 = t60 + RX90_C(1.0e4) * parameters[IA3];
-    const rx90_real_t t62 = t50 * t19;
+    const rx90_real_t t62 = rx90_held(t50 * t19);
     const rx90_real_t t63 = t61 - t45 * t54 - t50 * t62 - t51 * t53;
     if (!(t63 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
@@ -238,10 +238,10 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t t79 = RX90_C(0.45) * t78 - t60;
     const rx90_real_t t80 = t79 + t70 * t54 + t73 * t62 + t74 * t53;
     const rx90_real_t t81 = RX90_C(1.0) / t63;
-    const rx90_real_t t82 = t80 * t81;
-    const rx90_real_t t83 = t74 * t52;
-    const rx90_real_t t84 = t73 * t19;
-    const rx90_real_t t85 = t70 * t4;
+    const rx90_real_t t82 = rx90_held(t80 * t81);
+    const rx90_real_t t83 = rx90_held(t74 * t52);
+    const rx90_real_t t84 = rx90_held(t73 * t19);
+    const rx90_real_t t85 = rx90_held(t70 * t4);
     const rx90_real_t t86 = RX90_C(-0.9) * t78; /* link j3: inertia of it and all beyond */
     const rx90_real_t t87 = parameters[ZZ2R] + (t60 + t86);
     const rx90_real_t t88 = t87 - t70 * t85 - t73 * t84 - t74 * t83;
@@ -274,18 +274,18 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t t107 = t64 * t17 - t68 * t106;
     const rx90_real_t t108 = t64 * t106 + t68 * t17 - t105;
     const rx90_real_t t109 = t98 * t108 - t101 * t107;
-    const rx90_real_t t110 = t109 * t4;
+    const rx90_real_t t110 = rx90_held(t109 * t4);
     const rx90_real_t t111 = t30 * t47; /* link j5: column of the mass matrix */
     const rx90_real_t t112 = RX90_C(0.45) * t111;
     const rx90_real_t t113 = t32 * t46 + t30 * t8 + t112;
     const rx90_real_t t114 = t64 * t15 - t68 * t113;
     const rx90_real_t t115 = t64 * t113 + t68 * t15 - t112;
     const rx90_real_t t116 = t98 * t115 - t101 * t114 + t109 * t5;
-    const rx90_real_t t117 = t116 * t19;
+    const rx90_real_t t117 = rx90_held(t116 * t19);
     const rx90_real_t t118 = t68 * t92 + t64 * t25; /* link j4: column of the mass matrix */
     const rx90_real_t t119 = t91 + (t64 * t92 - t68 * t25);
     const rx90_real_t t120 = t101 * t118 + t98 * t119 + t109 * t27 + t116 * t20;
-    const rx90_real_t t121 = t120 * t52;
+    const rx90_real_t t121 = rx90_held(t120 * t52);
     const rx90_real_t t122 = t103 - t109 * t110 - t116 * t117 - t120 * t121;
     const rx90_real_t t123 = parameters[XZ3] + (t30 * t57 - t56); /* link j4: inertia of it and all beyond */
     const rx90_real_t t124 = parameters[YZ3] - t41;
@@ -293,13 +293,13 @@ rx90_status_t rx90_forward_dynamics_derivatives(
     const rx90_real_t t126 = t64 * t123 + t68 * t124;
     const rx90_real_t t127 = t98 * t126 - t101 * t125 - t109 * t54 - t116 * t62;
     const rx90_real_t t128 = t127 - t120 * t53;
-    const rx90_real_t t129 = t128 * t81;
+    const rx90_real_t t129 = rx90_held(t128 * t81);
     const rx90_real_t t130 = t40 + t125 - parameters[XZ2R]; /* link j3: inertia of it and all beyond */
     const rx90_real_t t131 = parameters[YZ2] + t126;
     const rx90_real_t t132 = t98 * t131 - t101 * t130 - t109 * t85 - t116 * t84;
     const rx90_real_t t133 = t132 - t120 * t83 + t128 * t82;
     const rx90_real_t t134 = RX90_C(1.0) / t89;
-    const rx90_real_t t135 = t133 * t134;
+    const rx90_real_t t135 = rx90_held(t133 * t134);
     const rx90_real_t t136 = t122 - t128 * t129 - t133 * t135;
     if (!(t136 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);

@@ -111,7 +111,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x60343B33UL
+#if RX90_GENERATION != 0x3F0653A6UL
 #error "rx90.h and rx90_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -166,7 +166,7 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     /* link j6: column of the mass matrix */
     const rx90_real_t t3 = t1 * parameters[XZ6] + t2 * parameters[YZ6];
     const rx90_real_t t4 = RX90_C(1.0) / t0;
-    const rx90_real_t t5 = t3 * t4;
+    const rx90_real_t t5 = rx90_held(t3 * t4);
     const rx90_real_t t6 = parameters[YY6] - parameters[XX6]; /* link j6: inertia of it and all beyond */
     const rx90_real_t t7 = t2 * t6 + parameters[XY6] * (RX90_C(2.0) * t1);
     const rx90_real_t t8 = t2 * t7;
@@ -188,7 +188,7 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t18 = t13 * t17 + t15 * parameters[ZZ6];
     const rx90_real_t t19 = t16 + t18 * t5;
     const rx90_real_t t20 = RX90_C(1.0) / t11;
-    const rx90_real_t t21 = t19 * t20;
+    const rx90_real_t t21 = rx90_held(t19 * t20);
     /* link j6: inertia of it and all beyond */
     const rx90_real_t t22 = parameters[XX5] + (parameters[YY6] - t8);
     const rx90_real_t t23 = parameters[YY5] + parameters[ZZ6];
@@ -198,7 +198,7 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t26 = t15 * t25;
     const rx90_real_t t27 = parameters[ZZ4] + (t22 + t26);
     const rx90_real_t t28 = t27 + RX90_C(2.5e3) * parameters[IA4];
-    const rx90_real_t t29 = t18 * t4;
+    const rx90_real_t t29 = rx90_held(t18 * t4);
     const rx90_real_t t30 = t28 - t18 * t29 - t19 * t21;
     if (!(t30 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
@@ -232,8 +232,8 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t53 = t52 + t48 * t5;
     const rx90_real_t t54 = t44 + t48 * t29 + t53 * t21;
     const rx90_real_t t55 = RX90_C(1.0) / t30;
-    const rx90_real_t t56 = t54 * t55;
-    const rx90_real_t t57 = t48 * t4;
+    const rx90_real_t t56 = rx90_held(t54 * t55);
+    const rx90_real_t t57 = rx90_held(t48 * t4);
     const rx90_real_t t58 = t26 - t23 - parameters[XX4]; /* link j5: inertia of it and all beyond */
     const rx90_real_t t59 = parameters[YY4] + t9;
     const rx90_real_t t60 = t49 - parameters[XY4];
@@ -247,7 +247,7 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t67 = RX90_C(0.45) * (t66 + RX90_C(2.0) * t63);
     const rx90_real_t t68 = parameters[ZZ3] + (t62 - t58 + t67);
     const rx90_real_t t69 = t68 + RX90_C(1.0e4) * parameters[IA3];
-    const rx90_real_t t70 = t53 * t20;
+    const rx90_real_t t70 = rx90_held(t53 * t20);
     const rx90_real_t t71 = t69 - t48 * t57 - t53 * t70 - t54 * t56;
     if (!(t71 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);
@@ -273,10 +273,10 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t88 = RX90_C(0.45) * t87 - t68;
     const rx90_real_t t89 = t88 + t78 * t57 + t81 * t70 + t82 * t56;
     const rx90_real_t t90 = RX90_C(1.0) / t71;
-    const rx90_real_t t91 = t89 * t90;
-    const rx90_real_t t92 = t82 * t55;
-    const rx90_real_t t93 = t81 * t20;
-    const rx90_real_t t94 = t78 * t4;
+    const rx90_real_t t91 = rx90_held(t89 * t90);
+    const rx90_real_t t92 = rx90_held(t82 * t55);
+    const rx90_real_t t93 = rx90_held(t81 * t20);
+    const rx90_real_t t94 = rx90_held(t78 * t4);
     const rx90_real_t t95 = parameters[M3] + t65; /* link j4: inertia of it and all beyond */
     const rx90_real_t t96 = RX90_C(0.45) * t95; /* link j3: inertia of it and all beyond */
     const rx90_real_t t97 = RX90_C(0.45) * (t96 + RX90_C(-2.0) * t87);
@@ -313,18 +313,18 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t120 = t72 * t18 - t76 * t119;
     const rx90_real_t t121 = t72 * t119 + t76 * t18 - t118;
     const rx90_real_t t122 = t111 * t121 - t114 * t120;
-    const rx90_real_t t123 = t122 * t4;
+    const rx90_real_t t123 = rx90_held(t122 * t4);
     const rx90_real_t t124 = t32 * t50; /* link j5: column of the mass matrix */
     const rx90_real_t t125 = RX90_C(0.45) * t124;
     const rx90_real_t t126 = t34 * t49 + t32 * t9 + t125;
     const rx90_real_t t127 = t72 * t16 - t76 * t126;
     const rx90_real_t t128 = t72 * t126 + t76 * t16 - t125;
     const rx90_real_t t129 = t111 * t128 - t114 * t127 + t122 * t5;
-    const rx90_real_t t130 = t129 * t20;
+    const rx90_real_t t130 = rx90_held(t129 * t20);
     const rx90_real_t t131 = t76 * t105 + t72 * t27; /* link j4: column of the mass matrix */
     const rx90_real_t t132 = t104 + (t72 * t105 - t76 * t27);
     const rx90_real_t t133 = t114 * t131 + t111 * t132 + t122 * t29 + t129 * t21;
-    const rx90_real_t t134 = t133 * t55;
+    const rx90_real_t t134 = rx90_held(t133 * t55);
     const rx90_real_t t135 = t116 - t122 * t123 - t129 * t130 - t133 * t134;
     const rx90_real_t t136 = parameters[XZ3] + (t60 + t32 * t61); /* link j4: inertia of it and all beyond */
     const rx90_real_t t137 = parameters[YZ3] - t44;
@@ -332,7 +332,7 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t139 = t72 * t136 + t76 * t137;
     const rx90_real_t t140 = t111 * t139 - t114 * t138 - t122 * t57 - t129 * t70;
     const rx90_real_t t141 = t140 - t133 * t56;
-    const rx90_real_t t142 = t141 * t90;
+    const rx90_real_t t142 = rx90_held(t141 * t90);
     const rx90_real_t t143 = parameters[MZ3] - t43; /* link j4: inertia of it and all beyond */
     /* link j3: inertia of it and all beyond */
     const rx90_real_t t144 = t138 + RX90_C(0.45) * t143 - parameters[XZ2];
@@ -340,7 +340,7 @@ rx90_status_t rx90_forward_dynamics_derivatives_standard(
     const rx90_real_t t146 = t111 * t145 - t114 * t144 - t122 * t94 - t129 * t93;
     const rx90_real_t t147 = t146 - t133 * t92 + t141 * t91;
     const rx90_real_t t148 = RX90_C(1.0) / t101;
-    const rx90_real_t t149 = t147 * t148;
+    const rx90_real_t t149 = rx90_held(t147 * t148);
     const rx90_real_t t150 = t135 - t141 * t142 - t147 * t149;
     if (!(t150 > RX90_C(1.0e-12))) {
         rx90_zero(ddq, 6);

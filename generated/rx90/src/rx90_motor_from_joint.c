@@ -26,7 +26,7 @@
  */
 #include "rx90_private.h"
 
-#if RX90_GENERATION != 0x60343B33UL
+#if RX90_GENERATION != 0x3F0653A6UL
 #error "rx90.h and rx90_motor_from_joint.c are of different generations: generate the arm again"
 #endif
 

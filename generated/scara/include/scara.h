@@ -54,7 +54,7 @@
 #define SCARA_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define SCARA_GENERATION 0x71397351UL
+#define SCARA_GENERATION 0xB1AB03C4UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define SCARA_MODEL "c1d518ff4a0020fbd2ee0fb14fc12a05e9368b5ecb740059a83582da6419b7fa"

@@ -87,7 +87,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x71397351UL
+#if SCARA_GENERATION != 0xB1AB03C4UL
 #error "scara.h and scara_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -143,7 +143,7 @@ scara_status_t scara_forward_dynamics_derivatives(
     const scara_real_t t4 = t3 * parameters[MX4] - t2 * parameters[MY4];
     const scara_real_t t5 = parameters[ZZ4] + SCARA_C(0.275) * t4;
     const scara_real_t t6 = SCARA_C(1.0) / t1;
-    const scara_real_t t7 = t5 * t6;
+    const scara_real_t t7 = scara_held(t5 * t6);
     const scara_real_t t8 = SCARA_C(0.275) * parameters[M3R]; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
     const scara_real_t t9 = parameters[ZZ2R] + (parameters[ZZ4] + SCARA_C(0.275) * (SCARA_C(2.0) * t4 + t8));
@@ -165,8 +165,8 @@ scara_status_t scara_forward_dynamics_derivatives(
     const scara_real_t t18 = t5 + SCARA_C(0.325) * (t14 * t12 + t16 * t4);
     const scara_real_t t19 = SCARA_C(0.325) * t17 - t9 + t18 * t7;
     const scara_real_t t20 = SCARA_C(1.0) / t11;
-    const scara_real_t t21 = t19 * t20;
-    const scara_real_t t22 = t18 * t6;
+    const scara_real_t t21 = scara_held(t19 * t20);
+    const scara_real_t t22 = scara_held(t18 * t6);
     /* link j2: inertia of it and all beyond */
     const scara_real_t t23 = parameters[ZZ1R] + (t9 + SCARA_C(0.325) * (SCARA_C(0.325) * parameters[M3R]
         + SCARA_C(-2.0) * t17));

@@ -120,7 +120,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x71397351UL
+#if SCARA_GENERATION != 0xB1AB03C4UL
 #error "scara.h and scara_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -178,7 +178,7 @@ scara_status_t scara_forward_dynamics_derivatives_standard(
     const scara_real_t t5 = t4 * parameters[MX4] - t3 * parameters[MY4];
     const scara_real_t t6 = parameters[ZZ4] + SCARA_C(0.275) * t5;
     const scara_real_t t7 = SCARA_C(1.0) / t2;
-    const scara_real_t t8 = t6 * t7;
+    const scara_real_t t8 = scara_held(t6 * t7);
     const scara_real_t t9 = parameters[MX3] + t5; /* link j4: inertia of it and all beyond */
     const scara_real_t t10 = SCARA_C(0.275) * t0; /* link j3: column of the mass matrix */
     /* link j3: inertia of it and all beyond */
@@ -203,8 +203,8 @@ scara_status_t scara_forward_dynamics_derivatives_standard(
     const scara_real_t t21 = t6 + SCARA_C(0.325) * (t17 * t14 + t19 * t5);
     const scara_real_t t22 = SCARA_C(0.325) * t20 - t11 + t21 * t8;
     const scara_real_t t23 = SCARA_C(1.0) / t13;
-    const scara_real_t t24 = t22 * t23;
-    const scara_real_t t25 = t21 * t7;
+    const scara_real_t t24 = scara_held(t22 * t23);
+    const scara_real_t t25 = scara_held(t21 * t7);
     const scara_real_t t26 = parameters[M2] + t0; /* link j3: inertia of it and all beyond */
     /* link j2: inertia of it and all beyond */
     const scara_real_t t27 = parameters[ZZ1] + (t11 + SCARA_C(0.325) * (SCARA_C(0.325) * t26

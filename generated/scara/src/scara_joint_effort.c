@@ -46,7 +46,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x71397351UL
+#if SCARA_GENERATION != 0xB1AB03C4UL
 #error "scara.h and scara_joint_effort.c are of different generations: generate the arm again"
 #endif
 

@@ -91,7 +91,7 @@
  */
 #include "scara_private.h"
 
-#if SCARA_GENERATION != 0x71397351UL
+#if SCARA_GENERATION != 0xB1AB03C4UL
 #error "scara.h and scara_momentum_observer_step_standard.c are of different generations: generate the arm again"
 #endif
 

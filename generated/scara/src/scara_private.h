@@ -13,7 +13,7 @@
 
 #include "scara.h"
 
-#if SCARA_GENERATION != 0x71397351UL
+#if SCARA_GENERATION != 0xB1AB03C4UL
 #error "scara.h and scara_private.h are of different generations: generate the arm again"
 #endif
 

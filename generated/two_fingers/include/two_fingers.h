@@ -72,7 +72,7 @@
 #define TWO_FINGERS_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define TWO_FINGERS_GENERATION 0x993B9A60UL
+#define TWO_FINGERS_GENERATION 0xAFFC21FBUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define TWO_FINGERS_MODEL "a6b389943be5f64e02da02beae8c9b13d86a3cb7770757fcfde02c5d63e64a26"

@@ -74,7 +74,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x993B9A60UL
+#if TWO_FINGERS_GENERATION != 0xAFFC21FBUL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -135,7 +135,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t4 = t2 * parameters[MY5] - t3 * parameters[MX5];
     const two_fingers_real_t t5 = parameters[ZZ5] - TWO_FINGERS_C(0.045) * t4;
     const two_fingers_real_t t6 = TWO_FINGERS_C(1.0) / t1;
-    const two_fingers_real_t t7 = t5 * t6;
+    const two_fingers_real_t t7 = two_fingers_held(t5 * t6);
     const two_fingers_real_t t8 = TWO_FINGERS_C(-0.09) * t4; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t9 = parameters[ZZ4R] + (parameters[ZZ5] + t8);
     const two_fingers_real_t t10 = t9 - t5 * t7;
@@ -150,7 +150,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t13 = t11 * parameters[MY3] - t12 * parameters[MX3];
     const two_fingers_real_t t14 = TWO_FINGERS_C(0.05) * t13 - parameters[ZZ3];
     const two_fingers_real_t t15 = TWO_FINGERS_C(1.0) / t0;
-    const two_fingers_real_t t16 = t14 * t15;
+    const two_fingers_real_t t16 = two_fingers_held(t14 * t15);
     const two_fingers_real_t t17 = TWO_FINGERS_C(-0.1) * t13; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t18 = parameters[ZZ2R] + (parameters[ZZ3] + t17);
     const two_fingers_real_t t19 = t18 - t14 * t16;
@@ -199,25 +199,25 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives(
     const two_fingers_real_t t46 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
     const two_fingers_real_t t47 = t27 * t4 - t24 * t25;
     const two_fingers_real_t t48 = t27 * t45 - t24 * t46 + TWO_FINGERS_C(8.673617379884035e-19) * t47;
-    const two_fingers_real_t t49 = t48 * t6;
+    const two_fingers_real_t t49 = two_fingers_held(t48 * t6);
     const two_fingers_real_t t50 = t45 - parameters[XZ4R]; /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t51 = parameters[YZ4] + t46;
     const two_fingers_real_t t52 = t27 * t30 - t24 * t29; /* link right_1: column of the mass matrix */
     const two_fingers_real_t t53 = t27 * t50 - t24 * t51 + TWO_FINGERS_C(8.673617379884035e-19) * t52
         - t48 * t7;
     const two_fingers_real_t t54 = TWO_FINGERS_C(1.0) / t10;
-    const two_fingers_real_t t55 = t53 * t54;
+    const two_fingers_real_t t55 = two_fingers_held(t53 * t54);
     /* link left_2: column of the mass matrix */
     const two_fingers_real_t t56 = t11 * parameters[YZ3] - t12 * parameters[XZ3];
     const two_fingers_real_t t57 = t11 * parameters[XZ3] + t12 * parameters[YZ3];
     const two_fingers_real_t t58 = t39 * t56 - t36 * t57;
-    const two_fingers_real_t t59 = t58 * t15;
+    const two_fingers_real_t t59 = two_fingers_held(t58 * t15);
     const two_fingers_real_t t60 = t44 - t48 * t49 - t53 * t55 - t58 * t59;
     const two_fingers_real_t t61 = t56 - parameters[XZ2R]; /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t62 = parameters[YZ2] + t57;
     const two_fingers_real_t t63 = t39 * t61 - t36 * t62 + t58 * t16;
     const two_fingers_real_t t64 = TWO_FINGERS_C(1.0) / t19;
-    const two_fingers_real_t t65 = t63 * t64;
+    const two_fingers_real_t t65 = two_fingers_held(t63 * t64);
     const two_fingers_real_t t66 = t60 - t63 * t65;
     if (!(t66 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);

@@ -97,7 +97,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x993B9A60UL
+#if TWO_FINGERS_GENERATION != 0xAFFC21FBUL
 #error "two_fingers.h and two_fingers_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -159,7 +159,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t4 = t2 * parameters[MY5] - t3 * parameters[MX5];
     const two_fingers_real_t t5 = parameters[ZZ5] - TWO_FINGERS_C(0.045) * t4;
     const two_fingers_real_t t6 = TWO_FINGERS_C(1.0) / t1;
-    const two_fingers_real_t t7 = t5 * t6;
+    const two_fingers_real_t t7 = two_fingers_held(t5 * t6);
     /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t8 = TWO_FINGERS_C(0.045) * parameters[M5];
     const two_fingers_real_t t9 = TWO_FINGERS_C(0.045) * (t8 + TWO_FINGERS_C(-2.0) * t4);
@@ -177,7 +177,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t15 = t13 * parameters[MY3] - t14 * parameters[MX3];
     const two_fingers_real_t t16 = TWO_FINGERS_C(0.05) * t15 - parameters[ZZ3];
     const two_fingers_real_t t17 = TWO_FINGERS_C(1.0) / t0;
-    const two_fingers_real_t t18 = t16 * t17;
+    const two_fingers_real_t t18 = two_fingers_held(t16 * t17);
     /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t19 = TWO_FINGERS_C(0.05) * parameters[M3];
     const two_fingers_real_t t20 = TWO_FINGERS_C(0.05) * (t19 + TWO_FINGERS_C(-2.0) * t15);
@@ -249,7 +249,7 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t62 = t2 * parameters[XZ5] + t3 * parameters[YZ5];
     const two_fingers_real_t t63 = t32 * t4 - t29 * t30;
     const two_fingers_real_t t64 = t32 * t61 - t29 * t62 + TWO_FINGERS_C(8.673617379884035e-19) * t63;
-    const two_fingers_real_t t65 = t64 * t6;
+    const two_fingers_real_t t65 = two_fingers_held(t64 * t6);
     /* link right_2: inertia of it and all beyond */
     const two_fingers_real_t t66 = t61 + TWO_FINGERS_C(0.045) * parameters[MZ5] - parameters[XZ4];
     const two_fingers_real_t t67 = parameters[YZ4] + t62;
@@ -257,19 +257,19 @@ two_fingers_status_t two_fingers_forward_dynamics_derivatives_standard(
     const two_fingers_real_t t69 = t32 * t66 - t29 * t67 + TWO_FINGERS_C(8.673617379884035e-19) * t68
         - t64 * t7;
     const two_fingers_real_t t70 = TWO_FINGERS_C(1.0) / t12;
-    const two_fingers_real_t t71 = t69 * t70;
+    const two_fingers_real_t t71 = two_fingers_held(t69 * t70);
     /* link left_2: column of the mass matrix */
     const two_fingers_real_t t72 = t13 * parameters[YZ3] - t14 * parameters[XZ3];
     const two_fingers_real_t t73 = t13 * parameters[XZ3] + t14 * parameters[YZ3];
     const two_fingers_real_t t74 = t53 * t72 - t50 * t73;
-    const two_fingers_real_t t75 = t74 * t17;
+    const two_fingers_real_t t75 = two_fingers_held(t74 * t17);
     const two_fingers_real_t t76 = t60 - t64 * t65 - t69 * t71 - t74 * t75;
     /* link left_2: inertia of it and all beyond */
     const two_fingers_real_t t77 = t72 + TWO_FINGERS_C(0.05) * parameters[MZ3] - parameters[XZ2];
     const two_fingers_real_t t78 = parameters[YZ2] + t73;
     const two_fingers_real_t t79 = t53 * t77 - t50 * t78 + t74 * t18;
     const two_fingers_real_t t80 = TWO_FINGERS_C(1.0) / t23;
-    const two_fingers_real_t t81 = t79 * t80;
+    const two_fingers_real_t t81 = two_fingers_held(t79 * t80);
     const two_fingers_real_t t82 = t76 - t79 * t81;
     if (!(t82 > TWO_FINGERS_C(1.0e-12))) {
         two_fingers_zero(ddq, 5);

@@ -33,7 +33,7 @@
  */
 #include "two_fingers_private.h"
 
-#if TWO_FINGERS_GENERATION != 0x993B9A60UL
+#if TWO_FINGERS_GENERATION != 0xAFFC21FBUL
 #error "two_fingers.h and two_fingers_regressor_standard.c are of different generations: generate the arm again"
 #endif
 

@@ -84,7 +84,7 @@
 #define UR10E_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define UR10E_GENERATION 0x0B982018UL
+#define UR10E_GENERATION 0x5DE61187UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define UR10E_MODEL "0615fad907f568ac00d3b2df22af4c08533d3fe15e3186011fcc1354d2d059ad"

@@ -8,7 +8,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x0B982018UL
+#if UR10E_GENERATION != 0x5DE61187UL
 #error "ur10e.h and ur10e_check_parameters.c are of different generations: generate the arm again"
 #endif
 

@@ -86,7 +86,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x0B982018UL
+#if UR10E_GENERATION != 0x5DE61187UL
 #error "ur10e.h and ur10e_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -140,7 +140,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     /* link j6: column of the mass matrix */
     const ur10e_real_t t3 = t1 * parameters[XZ6R] + t2 * parameters[YZ6R];
     const ur10e_real_t t4 = UR10E_C(1.0) / t0;
-    const ur10e_real_t t5 = t3 * t4;
+    const ur10e_real_t t5 = ur10e_held(t3 * t4);
     /* link j6: inertia of it and all beyond */
     const ur10e_real_t t6 = parameters[XY6] * (UR10E_C(2.0) * t1) - t2 * parameters[XX6R];
     const ur10e_real_t t7 = t2 * t6;
@@ -168,8 +168,8 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t22 = t12 * t19 - t14 * parameters[ZZ6] + UR10E_C(0.11985) * t21;
     const ur10e_real_t t23 = t18 + t22 * t5;
     const ur10e_real_t t24 = UR10E_C(1.0) / t10;
-    const ur10e_real_t t25 = t23 * t24;
-    const ur10e_real_t t26 = t22 * t4;
+    const ur10e_real_t t25 = ur10e_held(t23 * t24);
+    const ur10e_real_t t26 = ur10e_held(t22 * t4);
     const ur10e_real_t t27 = t7 - parameters[XX5R]; /* link j6: inertia of it and all beyond */
     const ur10e_real_t t28 = t19 - parameters[XY5];
     /* link j5: inertia of it and all beyond */
@@ -198,12 +198,12 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t46 = t45 + t43 * t5;
     const ur10e_real_t t47 = t41 + t43 * t26 + t46 * t25;
     const ur10e_real_t t48 = UR10E_C(1.0) / t34;
-    const ur10e_real_t t49 = t47 * t48;
-    const ur10e_real_t t50 = t43 * t4;
+    const ur10e_real_t t49 = ur10e_held(t47 * t48);
+    const ur10e_real_t t50 = ur10e_held(t43 * t4);
     const ur10e_real_t t51 = UR10E_C(-1.1431) * t40; /* link j4: inertia of it and all beyond */
     const ur10e_real_t t52 = t32 + t51 - parameters[ZZ3R];
     const ur10e_real_t t53 = UR10E_C(10201.0) * parameters[IA3] - t52;
-    const ur10e_real_t t54 = t46 * t24;
+    const ur10e_real_t t54 = ur10e_held(t46 * t24);
     const ur10e_real_t t55 = t53 - t43 * t50 - t46 * t54 - t47 * t49;
     if (!(t55 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
@@ -215,7 +215,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t56 = t39 * t21 - t36 * t15; /* link j6: column of the mass matrix */
     const ur10e_real_t t59 = t57 * t56 + t58 * t42;
     const ur10e_real_t t60 = UR10E_C(0.6127) * t59 - t43;
-    const ur10e_real_t t61 = t60 * t4;
+    const ur10e_real_t t61 = ur10e_held(t60 * t4);
     const ur10e_real_t t62 = t36 * t38 - t39 * t35; /* link j4: column of the mass matrix */
     const ur10e_real_t t63 = t62 - parameters[MY3]; /* link j4: inertia of it and all beyond */
     const ur10e_real_t t64 = parameters[MX3R] - t40;
@@ -226,16 +226,16 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t69 = t57 * t68 + t58 * t44;
     const ur10e_real_t t70 = UR10E_C(0.6127) * t69 - t45;
     const ur10e_real_t t71 = t70 + t60 * t5;
-    const ur10e_real_t t72 = t71 * t24;
+    const ur10e_real_t t72 = ur10e_held(t71 * t24);
     const ur10e_real_t t73 = t58 * t40 - t57 * t62; /* link j4: column of the mass matrix */
     const ur10e_real_t t74 = t41 + UR10E_C(-0.6127) * t73;
     const ur10e_real_t t75 = t74 - t60 * t26 - t71 * t25;
-    const ur10e_real_t t76 = t75 * t48;
+    const ur10e_real_t t76 = ur10e_held(t75 * t48);
     const ur10e_real_t t77 = t67 - t60 * t61 - t71 * t72 - t75 * t76;
     const ur10e_real_t t78 = t52 + UR10E_C(0.6127) * t65; /* link j3: column of the mass matrix */
     const ur10e_real_t t79 = t60 * t50 - t78 + t71 * t54 - t75 * t49;
     const ur10e_real_t t80 = UR10E_C(1.0) / t55;
-    const ur10e_real_t t81 = t79 * t80;
+    const ur10e_real_t t81 = ur10e_held(t79 * t80);
     const ur10e_real_t t82 = t77 - t79 * t81;
     if (!(t82 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
@@ -251,7 +251,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t87 = t57 * t86 - t58 * t85;
     const ur10e_real_t t89 = t57 * t85 + t58 * t86 + UR10E_C(0.6127) * t83;
     const ur10e_real_t t91 = t90 * t89 - t88 * t87;
-    const ur10e_real_t t92 = t91 * t4;
+    const ur10e_real_t t92 = ur10e_held(t91 * t4);
     /* link j5: inertia of it and all beyond */
     const ur10e_real_t t93 = t30 - parameters[ZZ6] + t31 - parameters[XX4R];
     /* link j5: column of the mass matrix */
@@ -281,7 +281,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t112 = t57 * t110 - t58 * t111;
     const ur10e_real_t t113 = t57 * t111 + t58 * t110 + UR10E_C(0.6127) * t37;
     const ur10e_real_t t114 = t90 * t113 - t88 * t112 + t91 * t5;
-    const ur10e_real_t t115 = t114 * t24;
+    const ur10e_real_t t115 = ur10e_held(t114 * t24);
     const ur10e_real_t t116 = t28 + t12 * t29 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const ur10e_real_t t117 = parameters[YZ4] + t18;
     const ur10e_real_t t118 = t39 * t116 + t36 * t117; /* link j4: column of the mass matrix */
@@ -291,7 +291,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t122 = t57 * t121 - t58 * t120;
     const ur10e_real_t t123 = t57 * t120 + t58 * t121;
     const ur10e_real_t t124 = t90 * t123 - t88 * t122 + t91 * t26 + t114 * t25;
-    const ur10e_real_t t125 = t124 * t48;
+    const ur10e_real_t t125 = ur10e_held(t124 * t48);
     const ur10e_real_t t126 = t109 - t91 * t92 - t114 * t115 - t124 * t125;
     /* link j4: inertia of it and all beyond */
     const ur10e_real_t t127 = t118 + (t119 + UR10E_C(-0.57155) * t17) - parameters[XZ3R];
@@ -300,14 +300,14 @@ ur10e_status_t ur10e_forward_dynamics_derivatives(
     const ur10e_real_t t130 = t57 * t127 + t58 * t128;
     const ur10e_real_t t131 = t88 * t129 - t90 * t130 - t91 * t50 - t114 * t54;
     const ur10e_real_t t132 = t131 - t124 * t49;
-    const ur10e_real_t t133 = t132 * t80;
+    const ur10e_real_t t133 = ur10e_held(t132 * t80);
     /* link j3: inertia of it and all beyond */
     const ur10e_real_t t134 = parameters[XZ2R] + (t129 + UR10E_C(0.6127) * t17);
     const ur10e_real_t t135 = t130 - parameters[YZ2];
     const ur10e_real_t t136 = t90 * t135 - t88 * t134 - t91 * t61 - t114 * t72;
     const ur10e_real_t t137 = t136 + t124 * t76 + t132 * t81;
     const ur10e_real_t t138 = UR10E_C(1.0) / t82;
-    const ur10e_real_t t139 = t137 * t138;
+    const ur10e_real_t t139 = ur10e_held(t137 * t138);
     const ur10e_real_t t140 = t126 - t132 * t133 - t137 * t139;
     if (!(t140 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);

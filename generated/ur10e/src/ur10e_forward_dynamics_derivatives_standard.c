@@ -111,7 +111,7 @@
  */
 #include "ur10e_private.h"
 
-#if UR10E_GENERATION != 0x0B982018UL
+#if UR10E_GENERATION != 0x5DE61187UL
 #error "ur10e.h and ur10e_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -167,7 +167,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t3 = t2 * parameters[MY6] + t1 * parameters[MX6];
     const ur10e_real_t t4 = t1 * parameters[XZ6] + t2 * parameters[YZ6] + UR10E_C(-0.11655) * t3;
     const ur10e_real_t t5 = UR10E_C(1.0) / t0;
-    const ur10e_real_t t6 = t4 * t5;
+    const ur10e_real_t t6 = ur10e_held(t4 * t5);
     const ur10e_real_t t7 = parameters[XX6] - parameters[YY6]; /* link j6: inertia of it and all beyond */
     const ur10e_real_t t8 = t2 * t7 - parameters[XY6] * (UR10E_C(2.0) * t1);
     const ur10e_real_t t9 = t2 * t8;
@@ -200,7 +200,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t29 = t28 + UR10E_C(10201.0) * parameters[IA4];
     const ur10e_real_t t30 = t17 * t3; /* link j6: column of the mass matrix */
     const ur10e_real_t t31 = t21 * t19 - t17 * parameters[ZZ6] + UR10E_C(0.11985) * t30;
-    const ur10e_real_t t32 = t31 * t5;
+    const ur10e_real_t t32 = ur10e_held(t31 * t5);
     const ur10e_real_t t33 = t4 - parameters[YZ5]; /* link j6: inertia of it and all beyond */
     const ur10e_real_t t34 = parameters[XY6] + t1 * t8 - parameters[XZ5];
     const ur10e_real_t t35 = t18 - parameters[MX5];
@@ -210,7 +210,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t39 = t21 * t34 + t17 * t33 + UR10E_C(0.11985) * t38;
     const ur10e_real_t t40 = t39 + t31 * t6;
     const ur10e_real_t t41 = UR10E_C(1.0) / t14;
-    const ur10e_real_t t42 = t40 * t41;
+    const ur10e_real_t t42 = ur10e_held(t40 * t41);
     const ur10e_real_t t43 = t29 - t31 * t32 - t40 * t42;
     if (!(t43 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
@@ -232,14 +232,14 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t56 = t55 + t53 * t6;
     const ur10e_real_t t57 = t51 + t53 * t32 + t56 * t42;
     const ur10e_real_t t58 = UR10E_C(1.0) / t43;
-    const ur10e_real_t t59 = t57 * t58;
-    const ur10e_real_t t60 = t53 * t5;
+    const ur10e_real_t t59 = ur10e_held(t57 * t58);
+    const ur10e_real_t t60 = ur10e_held(t53 * t5);
     const ur10e_real_t t61 = parameters[M4] + t25; /* link j5: inertia of it and all beyond */
     const ur10e_real_t t62 = UR10E_C(0.57155) * t61; /* link j4: inertia of it and all beyond */
     const ur10e_real_t t63 = UR10E_C(0.57155) * (t62 + UR10E_C(2.0) * t50);
     const ur10e_real_t t64 = parameters[ZZ3] + (t28 + t63);
     const ur10e_real_t t65 = t64 + UR10E_C(10201.0) * parameters[IA3];
-    const ur10e_real_t t66 = t56 * t41;
+    const ur10e_real_t t66 = ur10e_held(t56 * t41);
     const ur10e_real_t t67 = t65 - t53 * t60 - t56 * t66 - t57 * t59;
     if (!(t67 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);
@@ -266,15 +266,15 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t85 = UR10E_C(0.6127) * t84 - t64;
     const ur10e_real_t t86 = t75 * t60 - t85 + t79 * t66 - t80 * t59;
     const ur10e_real_t t87 = UR10E_C(1.0) / t67;
-    const ur10e_real_t t88 = t86 * t87;
-    const ur10e_real_t t89 = t80 * t58;
-    const ur10e_real_t t90 = t75 * t5;
+    const ur10e_real_t t88 = ur10e_held(t86 * t87);
+    const ur10e_real_t t89 = ur10e_held(t80 * t58);
+    const ur10e_real_t t90 = ur10e_held(t75 * t5);
     const ur10e_real_t t91 = parameters[M3] + t61; /* link j4: inertia of it and all beyond */
     const ur10e_real_t t92 = UR10E_C(0.6127) * t91; /* link j3: inertia of it and all beyond */
     const ur10e_real_t t93 = UR10E_C(0.6127) * (t92 + UR10E_C(-2.0) * t84);
     const ur10e_real_t t94 = parameters[ZZ2] + (t64 + t93);
     const ur10e_real_t t95 = t94 + UR10E_C(10201.0) * parameters[IA2];
-    const ur10e_real_t t96 = t79 * t41;
+    const ur10e_real_t t96 = ur10e_held(t79 * t41);
     const ur10e_real_t t97 = t95 - t75 * t90 - t79 * t96 - t80 * t89;
     const ur10e_real_t t98 = t97 - t86 * t88;
     if (!(t98 > UR10E_C(1.0e-12))) {
@@ -316,14 +316,14 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t125 = t69 * t124 - t70 * t123;
     const ur10e_real_t t126 = t69 * t123 + t70 * t124 + UR10E_C(0.6127) * t121;
     const ur10e_real_t t127 = t115 * t126 - t118 * t125;
-    const ur10e_real_t t128 = t127 * t5;
+    const ur10e_real_t t128 = ur10e_held(t127 * t5);
     /* link j5: column of the mass matrix */
     const ur10e_real_t t129 = t49 * t101 - t46 * t12 + UR10E_C(-0.17415) * t54;
     const ur10e_real_t t130 = t46 * t101 + t49 * t12 + (UR10E_C(0.17415) * t76 + UR10E_C(0.57155) * t47);
     const ur10e_real_t t131 = t69 * t130 - t70 * t129;
     const ur10e_real_t t132 = t69 * t129 + t70 * t130 + UR10E_C(0.6127) * t47;
     const ur10e_real_t t133 = t115 * t132 - t118 * t131 + t127 * t6;
-    const ur10e_real_t t134 = t133 * t41;
+    const ur10e_real_t t134 = ur10e_held(t133 * t41);
     const ur10e_real_t t135 = t20 + t21 * t22 - parameters[XZ4]; /* link j5: inertia of it and all beyond */
     const ur10e_real_t t136 = parameters[YZ4] + t39;
     const ur10e_real_t t137 = t49 * t135 + t46 * t136; /* link j4: column of the mass matrix */
@@ -332,7 +332,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t140 = t69 * t139 - t70 * t138;
     const ur10e_real_t t141 = t69 * t138 + t70 * t139;
     const ur10e_real_t t142 = t115 * t141 - t118 * t140 + t127 * t32 + t133 * t42;
-    const ur10e_real_t t143 = t142 * t58;
+    const ur10e_real_t t143 = ur10e_held(t142 * t58);
     const ur10e_real_t t144 = t120 - t127 * t128 - t133 * t134 - t142 * t143;
     /* link j4: inertia of it and all beyond */
     const ur10e_real_t t145 = t137 + (UR10E_C(-0.57155) * t105 + UR10E_C(-0.17415) * t82) - parameters[XZ3];
@@ -341,7 +341,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t148 = t69 * t145 + t70 * t146;
     const ur10e_real_t t149 = t118 * t147 - t115 * t148 - t127 * t60 - t133 * t66;
     const ur10e_real_t t150 = t149 - t142 * t59;
-    const ur10e_real_t t151 = t150 * t87;
+    const ur10e_real_t t151 = ur10e_held(t150 * t87);
     const ur10e_real_t t152 = t105 + t106; /* link j4: inertia of it and all beyond */
     const ur10e_real_t t153 = parameters[MZ3] + t152;
     /* link j3: inertia of it and all beyond */
@@ -350,7 +350,7 @@ ur10e_status_t ur10e_forward_dynamics_derivatives_standard(
     const ur10e_real_t t156 = t115 * t155 - t118 * t154 - t127 * t90 - t133 * t96;
     const ur10e_real_t t157 = t156 + t142 * t89 + t150 * t88;
     const ur10e_real_t t158 = UR10E_C(1.0) / t98;
-    const ur10e_real_t t159 = t157 * t158;
+    const ur10e_real_t t159 = ur10e_held(t157 * t158);
     const ur10e_real_t t160 = t144 - t150 * t151 - t157 * t159;
     if (!(t160 > UR10E_C(1.0e-12))) {
         ur10e_zero(ddq, 6);

@@ -97,7 +97,7 @@
 #define WAM7_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define WAM7_GENERATION 0x2C28EF5FUL
+#define WAM7_GENERATION 0xF5D5FB45UL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define WAM7_MODEL "552353c9ea1f05cf3522da2330779db9d5ae95abc9b7ddc1779c790670b7dd0e"

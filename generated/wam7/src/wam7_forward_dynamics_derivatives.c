@@ -96,7 +96,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x2C28EF5FUL
+#if WAM7_GENERATION != 0xF5D5FB45UL
 #error "wam7.h and wam7_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -153,7 +153,7 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     /* link j7: column of the mass matrix */
     const wam7_real_t t3 = t1 * parameters[XZ7R] + t2 * parameters[YZ7R];
     const wam7_real_t t4 = WAM7_C(1.0) / t0;
-    const wam7_real_t t5 = t3 * t4;
+    const wam7_real_t t5 = wam7_held(t3 * t4);
     /* link j7: inertia of it and all beyond */
     const wam7_real_t t6 = parameters[XY7] * (WAM7_C(2.0) * t1) - t2 * parameters[XX7R];
     const wam7_real_t t7 = t2 * t6;
@@ -175,7 +175,7 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t17 = t12 * t16 + t14 * parameters[ZZ7];
     const wam7_real_t t18 = t17 * t5 - t15;
     const wam7_real_t t19 = WAM7_C(1.0) / t10;
-    const wam7_real_t t20 = t18 * t19;
+    const wam7_real_t t20 = wam7_held(t18 * t19);
     const wam7_real_t t21 = parameters[XX6R] - t7; /* link j7: inertia of it and all beyond */
     const wam7_real_t t22 = parameters[XY6] + t16;
     /* link j6: inertia of it and all beyond */
@@ -183,7 +183,7 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t24 = t14 * t23;
     const wam7_real_t t25 = parameters[ZZ5R] + (t21 - t24);
     const wam7_real_t t26 = t25 + WAM7_C(89.8704) * parameters[IA5];
-    const wam7_real_t t27 = t17 * t4;
+    const wam7_real_t t27 = wam7_held(t17 * t4);
     const wam7_real_t t28 = t26 - t17 * t27 - t18 * t20;
     if (!(t28 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
@@ -216,9 +216,9 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t50 = t49 - t45 * t5;
     const wam7_real_t t51 = t40 - t45 * t27 + t50 * t20;
     const wam7_real_t t52 = WAM7_C(1.0) / t28;
-    const wam7_real_t t53 = t51 * t52;
-    const wam7_real_t t54 = t50 * t19;
-    const wam7_real_t t55 = t45 * t4;
+    const wam7_real_t t53 = wam7_held(t51 * t52);
+    const wam7_real_t t54 = wam7_held(t50 * t19);
+    const wam7_real_t t55 = wam7_held(t45 * t4);
     /* link j6: inertia of it and all beyond */
     const wam7_real_t t56 = parameters[XX5R] + (parameters[ZZ7] + t24);
     const wam7_real_t t57 = parameters[XY5] - t46;
@@ -262,7 +262,7 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t89 = t76 * t27 - t88 + t82 * t20;
     const wam7_real_t t90 = t71 - t76 * t55 + t82 * t54 + t89 * t53;
     const wam7_real_t t91 = WAM7_C(1.0) / t65;
-    const wam7_real_t t92 = t90 * t91;
+    const wam7_real_t t92 = wam7_held(t90 * t91);
     const wam7_real_t t93 = t25 + t61; /* link j5: inertia of it and all beyond */
     const wam7_real_t t94 = parameters[XX4R] + (t8 - t59 + t62);
     const wam7_real_t t95 = parameters[XY4R] + (t83 + (t84 + WAM7_C(0.045) * t47));
@@ -275,9 +275,9 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t101 = WAM7_C(0.09) * t100; /* link j4: inertia of it and all beyond */
     const wam7_real_t t102 = parameters[ZZ3R] + (t94 + t97 + t101);
     const wam7_real_t t103 = t102 + WAM7_C(798.0625) * parameters[IA3];
-    const wam7_real_t t104 = t76 * t4;
-    const wam7_real_t t105 = t82 * t19;
-    const wam7_real_t t106 = t89 * t52;
+    const wam7_real_t t104 = wam7_held(t76 * t4);
+    const wam7_real_t t105 = wam7_held(t82 * t19);
+    const wam7_real_t t106 = wam7_held(t89 * t52);
     const wam7_real_t t107 = t103 - t76 * t104 - t82 * t105 - t89 * t106;
     const wam7_real_t t108 = t107 - t90 * t92;
     if (!(t108 > WAM7_C(1.0e-12))) {
@@ -303,7 +303,7 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t123 = t68 * t44 - t70 * t43;
     const wam7_real_t t124 = t111 * t123 + t114 * t72;
     const wam7_real_t t125 = t114 * t120 - t111 * t122 - WAM7_C(-0.55) * t124;
-    const wam7_real_t t126 = t125 * t4;
+    const wam7_real_t t126 = wam7_held(t125 * t4);
     const wam7_real_t t127 = t70 * t78 + t68 * t80; /* link j6: column of the mass matrix */
     const wam7_real_t t128 = t68 * t48 + t70 * t37;
     const wam7_real_t t129 = t49 + WAM7_C(0.045) * t128;
@@ -311,7 +311,7 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t131 = t111 * t130 + t114 * t77;
     const wam7_real_t t132 = t114 * t127 - t111 * t129 + WAM7_C(0.55) * t131;
     const wam7_real_t t133 = t132 - t125 * t5;
-    const wam7_real_t t134 = t133 * t19;
+    const wam7_real_t t134 = wam7_held(t133 * t19);
     const wam7_real_t t135 = t68 * t87 - t70 * t85; /* link j5: column of the mass matrix */
     const wam7_real_t t136 = t68 * t39;
     const wam7_real_t t137 = t40 + WAM7_C(-0.045) * t136;
@@ -319,13 +319,13 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t139 = t111 * t138 + t114 * t60;
     const wam7_real_t t140 = t114 * t135 - t111 * t137 + WAM7_C(0.55) * t139;
     const wam7_real_t t141 = t140 - t125 * t27 + t133 * t20;
-    const wam7_real_t t142 = t141 * t52;
+    const wam7_real_t t142 = wam7_held(t141 * t52);
     const wam7_real_t t143 = t119 - t125 * t126 - t133 * t134 - t141 * t142;
     const wam7_real_t t144 = t63 + WAM7_C(0.045) * t100; /* link j4: column of the mass matrix */
     const wam7_real_t t145 = t111 * t117;
     const wam7_real_t t146 = WAM7_C(0.55) * t145 - (t114 * t112 + t111 * t144);
     const wam7_real_t t147 = t146 - t125 * t55 - t133 * t54 - t141 * t53;
-    const wam7_real_t t148 = t147 * t91;
+    const wam7_real_t t148 = wam7_held(t147 * t91);
     /* link j4: inertia of it and all beyond */
     const wam7_real_t t149 = parameters[XZ3] - (t95 - t68 * t96 - WAM7_C(0.045) * t117);
     const wam7_real_t t150 = t71 - parameters[YZ3];
@@ -336,7 +336,7 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t155 = t154 - t125 * t104 + t133 * t105 + t141 * t106;
     const wam7_real_t t156 = t155 - t147 * t92;
     const wam7_real_t t157 = WAM7_C(1.0) / t108;
-    const wam7_real_t t158 = t156 * t157;
+    const wam7_real_t t158 = wam7_held(t156 * t157);
     const wam7_real_t t159 = t143 - t147 * t148 - t156 * t158;
     if (!(t159 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
@@ -367,19 +367,19 @@ wam7_status_t wam7_forward_dynamics_derivatives(
     const wam7_real_t t181 = t180 + t173 * t106 + t177 * t92;
     const wam7_real_t t182 = t170 + t173 * t142 - t177 * t148 + t181 * t158;
     const wam7_real_t t183 = WAM7_C(1.0) / t159;
-    const wam7_real_t t184 = t182 * t183;
+    const wam7_real_t t184 = wam7_held(t182 * t183);
     /* link j3: inertia of it and all beyond */
     const wam7_real_t t185 = t116 - t110 + t118 - parameters[XX2R];
     const wam7_real_t t186 = parameters[XY2] - t179;
     /* link j2: inertia of it and all beyond */
     const wam7_real_t t187 = t163 * (t163 * (t102 + t185) + t186 * (WAM7_C(2.0) * t161));
     const wam7_real_t t188 = parameters[ZZ1R] + (t187 - t185);
-    const wam7_real_t t189 = t166 * t4;
-    const wam7_real_t t190 = t169 * t19;
-    const wam7_real_t t191 = t173 * t52;
+    const wam7_real_t t189 = wam7_held(t166 * t4);
+    const wam7_real_t t190 = wam7_held(t169 * t19);
+    const wam7_real_t t191 = wam7_held(t173 * t52);
     const wam7_real_t t192 = t188 - t166 * t189 - t169 * t190 - t173 * t191;
-    const wam7_real_t t193 = t177 * t91;
-    const wam7_real_t t194 = t181 * t157;
+    const wam7_real_t t193 = wam7_held(t177 * t91);
+    const wam7_real_t t194 = wam7_held(t181 * t157);
     const wam7_real_t t195 = t192 - t177 * t193 - t181 * t194 - t182 * t184;
     if (!(t195 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);

@@ -125,7 +125,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x2C28EF5FUL
+#if WAM7_GENERATION != 0xF5D5FB45UL
 #error "wam7.h and wam7_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -184,7 +184,7 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t3 = t2 * parameters[MY7] + t1 * parameters[MX7];
     const wam7_real_t t4 = t1 * parameters[XZ7] + t2 * parameters[YZ7] - WAM7_C(0.06) * t3;
     const wam7_real_t t5 = WAM7_C(1.0) / t0;
-    const wam7_real_t t6 = t4 * t5;
+    const wam7_real_t t6 = wam7_held(t4 * t5);
     const wam7_real_t t7 = parameters[YY7] - parameters[XX7]; /* link j7: inertia of it and all beyond */
     const wam7_real_t t8 = t2 * t7 + parameters[XY7] * (WAM7_C(2.0) * t1);
     const wam7_real_t t9 = t2 * t8;
@@ -212,13 +212,13 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t24 = parameters[ZZ5] + (t15 - t23);
     const wam7_real_t t25 = t24 + WAM7_C(89.8704) * parameters[IA5];
     const wam7_real_t t26 = t21 * t19 + t17 * parameters[ZZ7]; /* link j7: column of the mass matrix */
-    const wam7_real_t t27 = t26 * t5;
+    const wam7_real_t t27 = wam7_held(t26 * t5);
     const wam7_real_t t28 = t4 - parameters[YZ6]; /* link j7: inertia of it and all beyond */
     const wam7_real_t t29 = t1 * t8 - parameters[XY7] - parameters[XZ6];
     const wam7_real_t t30 = t21 * t29 + t17 * t28; /* link j6: column of the mass matrix */
     const wam7_real_t t31 = t26 * t6 - t30;
     const wam7_real_t t32 = WAM7_C(1.0) / t14;
-    const wam7_real_t t33 = t31 * t32;
+    const wam7_real_t t33 = wam7_held(t31 * t32);
     const wam7_real_t t34 = t25 - t26 * t27 - t31 * t33;
     if (!(t34 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
@@ -257,18 +257,18 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t63 = t37 * t62 - t40 * t18;
     const wam7_real_t t64 = t21 * t3;
     const wam7_real_t t65 = t40 * t61 - t37 * t4 + (WAM7_C(-0.045) * t64 + WAM7_C(0.3) * t63);
-    const wam7_real_t t66 = t65 * t5;
+    const wam7_real_t t66 = wam7_held(t65 * t5);
     const wam7_real_t t67 = t37 * t55; /* link j6: column of the mass matrix */
     const wam7_real_t t68 = t40 * t38 - t37 * t12 + (WAM7_C(-0.045) * t48 + WAM7_C(0.3) * t67);
     const wam7_real_t t69 = t68 - t65 * t6;
-    const wam7_real_t t70 = t69 * t32;
+    const wam7_real_t t70 = wam7_held(t69 * t32);
     const wam7_real_t t71 = t20 + t21 * t22 - parameters[XZ5]; /* link j6: inertia of it and all beyond */
     const wam7_real_t t72 = parameters[YZ5] + t30;
     const wam7_real_t t73 = t40 * t49 - t37 * t44; /* link j5: column of the mass matrix */
     const wam7_real_t t74 = t40 * t71 - t37 * t72 + WAM7_C(-0.3) * t73;
     const wam7_real_t t75 = t74 - t65 * t27 + t69 * t33;
     const wam7_real_t t76 = WAM7_C(1.0) / t34;
-    const wam7_real_t t77 = t75 * t76;
+    const wam7_real_t t77 = wam7_held(t75 * t76);
     const wam7_real_t t78 = t60 - t65 * t66 - t69 * t70 - t75 * t77;
     if (!(t78 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
@@ -300,9 +300,9 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t100 = t81 * t98 + t84 * t99; /* link j4: column of the mass matrix */
     const wam7_real_t t101 = t100 - t90 * t66 + t96 * t70 + t97 * t77;
     const wam7_real_t t102 = WAM7_C(1.0) / t78;
-    const wam7_real_t t103 = t101 * t102;
-    const wam7_real_t t104 = t97 * t76;
-    const wam7_real_t t105 = t90 * t5;
+    const wam7_real_t t103 = wam7_held(t101 * t102);
+    const wam7_real_t t104 = wam7_held(t97 * t76);
+    const wam7_real_t t105 = wam7_held(t90 * t5);
     const wam7_real_t t106 = parameters[XX4] + (t36 - t42 + t58); /* link j5: inertia of it and all beyond */
     const wam7_real_t t107 = parameters[YY4] + (t24 + t54);
     const wam7_real_t t108 = t50 + t53;
@@ -319,7 +319,7 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t118 = WAM7_C(0.045) * (t117 + WAM7_C(2.0) * t115);
     const wam7_real_t t119 = parameters[ZZ3] + (t106 + t111 + t118);
     const wam7_real_t t120 = t119 + WAM7_C(798.0625) * parameters[IA3];
-    const wam7_real_t t121 = t96 * t32;
+    const wam7_real_t t121 = wam7_held(t96 * t32);
     const wam7_real_t t122 = t120 - t90 * t105 - t96 * t121 - t97 * t104;
     const wam7_real_t t123 = t122 - t101 * t103;
     if (!(t123 > WAM7_C(1.0e-12))) {
@@ -351,7 +351,7 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t143 = t81 * t64 - t84 * t63;
     const wam7_real_t t144 = t126 * t143 + t130 * t86;
     const wam7_real_t t145 = t130 * t140 - t126 * t142 - WAM7_C(-0.55) * t144;
-    const wam7_real_t t146 = t145 * t5;
+    const wam7_real_t t146 = wam7_held(t145 * t5);
     const wam7_real_t t147 = t84 * t92 + t81 * t94; /* link j6: column of the mass matrix */
     const wam7_real_t t148 = t81 * t67 + t84 * t48;
     const wam7_real_t t149 = t68 + WAM7_C(0.045) * t148;
@@ -359,7 +359,7 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t151 = t126 * t150 + t130 * t91;
     const wam7_real_t t152 = t130 * t147 - t126 * t149 + WAM7_C(0.55) * t151;
     const wam7_real_t t153 = t152 - t145 * t6;
-    const wam7_real_t t154 = t153 * t32;
+    const wam7_real_t t154 = wam7_held(t153 * t32);
     const wam7_real_t t155 = t84 * t80 + t81 * t83; /* link j5: column of the mass matrix */
     const wam7_real_t t156 = t81 * t73;
     const wam7_real_t t157 = t74 + WAM7_C(-0.045) * t156;
@@ -367,13 +367,13 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t159 = t126 * t158 + t130 * t50;
     const wam7_real_t t160 = t130 * t155 - t126 * t157 + WAM7_C(0.55) * t159;
     const wam7_real_t t161 = t160 - t145 * t27 + t153 * t33;
-    const wam7_real_t t162 = t161 * t76;
+    const wam7_real_t t162 = wam7_held(t161 * t76);
     const wam7_real_t t163 = t139 - t145 * t146 - t153 * t154 - t161 * t162;
     const wam7_real_t t164 = t59 + WAM7_C(0.045) * t115; /* link j4: column of the mass matrix */
     const wam7_real_t t165 = t126 * t133;
     const wam7_real_t t166 = WAM7_C(0.55) * t165 - (t130 * t127 + t126 * t164);
     const wam7_real_t t167 = t166 - t145 * t66 - t153 * t70 - t161 * t77;
-    const wam7_real_t t168 = t167 * t102;
+    const wam7_real_t t168 = wam7_held(t167 * t102);
     /* link j4: inertia of it and all beyond */
     const wam7_real_t t169 = parameters[XZ3] - (t109 - t81 * t110 - WAM7_C(0.045) * t133);
     const wam7_real_t t170 = t100 - parameters[YZ3];
@@ -385,7 +385,7 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t176 = t175 - t145 * t105 + t153 * t121 + t161 * t104;
     const wam7_real_t t177 = t176 - t167 * t103;
     const wam7_real_t t178 = WAM7_C(1.0) / t123;
-    const wam7_real_t t179 = t177 * t178;
+    const wam7_real_t t179 = wam7_held(t177 * t178);
     const wam7_real_t t180 = t163 - t167 * t168 - t177 * t179;
     if (!(t180 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);
@@ -416,19 +416,19 @@ wam7_status_t wam7_forward_dynamics_derivatives_standard(
     const wam7_real_t t202 = t201 + t194 * t104 + t198 * t103;
     const wam7_real_t t203 = t191 + t194 * t162 - t198 * t168 + t202 * t179;
     const wam7_real_t t204 = WAM7_C(1.0) / t180;
-    const wam7_real_t t205 = t203 * t204;
+    const wam7_real_t t205 = wam7_held(t203 * t204);
     const wam7_real_t t206 = t132 - t125 - t137 - parameters[XX2]; /* link j3: inertia of it and all beyond */
     const wam7_real_t t207 = parameters[YY2] + t119;
     const wam7_real_t t208 = parameters[XY2] - t200;
     /* link j2: inertia of it and all beyond */
     const wam7_real_t t209 = t184 * (t184 * (t206 + t207) + t208 * (WAM7_C(2.0) * t182));
     const wam7_real_t t210 = parameters[ZZ1] + (t209 - t206) + WAM7_C(1764.0) * parameters[IA1];
-    const wam7_real_t t211 = t187 * t5;
-    const wam7_real_t t212 = t190 * t32;
-    const wam7_real_t t213 = t194 * t76;
+    const wam7_real_t t211 = wam7_held(t187 * t5);
+    const wam7_real_t t212 = wam7_held(t190 * t32);
+    const wam7_real_t t213 = wam7_held(t194 * t76);
     const wam7_real_t t214 = t210 - t187 * t211 - t190 * t212 - t194 * t213;
-    const wam7_real_t t215 = t198 * t102;
-    const wam7_real_t t216 = t202 * t178;
+    const wam7_real_t t215 = wam7_held(t198 * t102);
+    const wam7_real_t t216 = wam7_held(t202 * t178);
     const wam7_real_t t217 = t214 - t198 * t215 - t202 * t216 - t203 * t205;
     if (!(t217 > WAM7_C(1.0e-12))) {
         wam7_zero(ddq, 7);

@@ -98,7 +98,7 @@
  */
 #include "wam7_private.h"
 
-#if WAM7_GENERATION != 0x2C28EF5FUL
+#if WAM7_GENERATION != 0xF5D5FB45UL
 #error "wam7.h and wam7_momentum_observer_step.c are of different generations: generate the arm again"
 #endif
 

@@ -51,7 +51,7 @@
 #define YAW3PITCH_H
 
 /** Number of this generation: header and sources of different ones do not compile together. */
-#define YAW3PITCH_GENERATION 0x1F006D80UL
+#define YAW3PITCH_GENERATION 0x7C16393AUL
 
 /** SHA-256 of the description that this is the model of, then after a blank the description's version, if any. */
 #define YAW3PITCH_MODEL "839ceb1d876030e9f1e9ebe843a695b9ac89cde5dc1ab9d51167fc98b5e5466f"

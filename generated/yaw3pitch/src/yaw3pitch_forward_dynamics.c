@@ -49,7 +49,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x1F006D80UL
+#if YAW3PITCH_GENERATION != 0x7C16393AUL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics.c are of different generations: generate the arm again"
 #endif
 

@@ -53,7 +53,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x1F006D80UL
+#if YAW3PITCH_GENERATION != 0x7C16393AUL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives.c are of different generations: generate the arm again"
 #endif
 
@@ -102,7 +102,7 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
     const yaw3pitch_real_t t3 = YAW3PITCH_C(0.7) * t2 - parameters[ZZ4];
     const yaw3pitch_real_t t4 = YAW3PITCH_C(1.0) / parameters[ZZ4];
-    const yaw3pitch_real_t t5 = t3 * t4;
+    const yaw3pitch_real_t t5 = yaw3pitch_held(t3 * t4);
     const yaw3pitch_real_t t6 = YAW3PITCH_C(1.4) * t2; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t7 = parameters[ZZ3R] - (t6 - parameters[ZZ4]);
     const yaw3pitch_real_t t8 = t7 - t3 * t5;
@@ -123,8 +123,8 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t17 = t3 + YAW3PITCH_C(0.8) * t16;
     const yaw3pitch_real_t t18 = t15 + t17 * t5;
     const yaw3pitch_real_t t19 = YAW3PITCH_C(-1.0) / t8;
-    const yaw3pitch_real_t t20 = t18 * t19;
-    const yaw3pitch_real_t t21 = t17 * t4;
+    const yaw3pitch_real_t t20 = yaw3pitch_held(t18 * t19);
+    const yaw3pitch_real_t t21 = yaw3pitch_held(t17 * t4);
     const yaw3pitch_real_t t22 = YAW3PITCH_C(1.6) * t14; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t23 = parameters[ZZ2R] - (t22 - t7);
     const yaw3pitch_real_t t24 = t23 - t17 * t21 + t18 * t20;
@@ -162,18 +162,18 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives(
     const yaw3pitch_real_t t45 = t13 * t43 + t11 * t44;
     const yaw3pitch_real_t t46 = t11 * t43 - t13 * t44;
     const yaw3pitch_real_t t47 = t37 * t45 + t34 * t46;
-    const yaw3pitch_real_t t48 = t47 * t4;
+    const yaw3pitch_real_t t48 = yaw3pitch_held(t47 * t4);
     const yaw3pitch_real_t t49 = t43 - parameters[XZ3R]; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t50 = parameters[YZ3] + t44;
     const yaw3pitch_real_t t51 = t13 * t49 + t11 * t50; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t52 = t11 * t49 - t13 * t50;
     const yaw3pitch_real_t t53 = t37 * t51 + t34 * t52 + t47 * t5;
-    const yaw3pitch_real_t t54 = t53 * t19;
+    const yaw3pitch_real_t t54 = yaw3pitch_held(t53 * t19);
     const yaw3pitch_real_t t55 = parameters[XZ2R] - t51; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t56 = t52 - parameters[YZ2];
     const yaw3pitch_real_t t57 = t37 * t55 - t34 * t56 - t47 * t21 + t53 * t20;
     const yaw3pitch_real_t t58 = YAW3PITCH_C(1.0) / t24;
-    const yaw3pitch_real_t t59 = t57 * t58;
+    const yaw3pitch_real_t t59 = yaw3pitch_held(t57 * t58);
     const yaw3pitch_real_t t60 = t42 - t47 * t48 + t53 * t54 - t57 * t59;
     if (!(t60 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);

@@ -71,7 +71,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x1F006D80UL
+#if YAW3PITCH_GENERATION != 0x7C16393AUL
 #error "yaw3pitch.h and yaw3pitch_forward_dynamics_derivatives_standard.c are of different generations: generate the arm again"
 #endif
 
@@ -121,7 +121,7 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t2 = t0 * parameters[MY4] - t1 * parameters[MX4];
     const yaw3pitch_real_t t3 = YAW3PITCH_C(0.7) * t2 - parameters[ZZ4];
     const yaw3pitch_real_t t4 = YAW3PITCH_C(1.0) / parameters[ZZ4];
-    const yaw3pitch_real_t t5 = t3 * t4;
+    const yaw3pitch_real_t t5 = yaw3pitch_held(t3 * t4);
     /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t6 = YAW3PITCH_C(-0.7) * parameters[M4];
     const yaw3pitch_real_t t7 = YAW3PITCH_C(0.7) * (t6 + YAW3PITCH_C(2.0) * t2);
@@ -145,8 +145,8 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t19 = t3 + YAW3PITCH_C(0.8) * t18;
     const yaw3pitch_real_t t20 = t17 + t19 * t5;
     const yaw3pitch_real_t t21 = YAW3PITCH_C(-1.0) / t9;
-    const yaw3pitch_real_t t22 = t20 * t21;
-    const yaw3pitch_real_t t23 = t19 * t4;
+    const yaw3pitch_real_t t22 = yaw3pitch_held(t20 * t21);
+    const yaw3pitch_real_t t23 = yaw3pitch_held(t19 * t4);
     const yaw3pitch_real_t t24 = parameters[M3] + parameters[M4]; /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t25 = YAW3PITCH_C(0.8) * t24; /* link j3: inertia of it and all beyond */
     const yaw3pitch_real_t t26 = YAW3PITCH_C(0.8) * (t25 - YAW3PITCH_C(2.0) * t16);
@@ -189,14 +189,14 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t51 = t15 * t49 + t12 * t50;
     const yaw3pitch_real_t t52 = t12 * t49 - t15 * t50;
     const yaw3pitch_real_t t53 = t42 * t51 + t39 * t52;
-    const yaw3pitch_real_t t54 = t53 * t4;
+    const yaw3pitch_real_t t54 = yaw3pitch_held(t53 * t4);
     /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t55 = t49 + YAW3PITCH_C(0.7) * parameters[MZ4] - parameters[XZ3];
     const yaw3pitch_real_t t56 = parameters[YZ3] + t50;
     const yaw3pitch_real_t t57 = t15 * t55 + t12 * t56; /* link j3: column of the mass matrix */
     const yaw3pitch_real_t t58 = t12 * t55 - t15 * t56;
     const yaw3pitch_real_t t59 = t42 * t57 + t39 * t58 + t53 * t5;
-    const yaw3pitch_real_t t60 = t59 * t21;
+    const yaw3pitch_real_t t60 = yaw3pitch_held(t59 * t21);
     /* link j4: inertia of it and all beyond */
     const yaw3pitch_real_t t61 = parameters[MZ3] + parameters[MZ4];
     /* link j3: inertia of it and all beyond */
@@ -204,7 +204,7 @@ yaw3pitch_status_t yaw3pitch_forward_dynamics_derivatives_standard(
     const yaw3pitch_real_t t63 = t58 - parameters[YZ2];
     const yaw3pitch_real_t t64 = t42 * t62 - t39 * t63 - t53 * t23 + t59 * t22;
     const yaw3pitch_real_t t65 = YAW3PITCH_C(1.0) / t28;
-    const yaw3pitch_real_t t66 = t64 * t65;
+    const yaw3pitch_real_t t66 = yaw3pitch_held(t64 * t65);
     const yaw3pitch_real_t t67 = t48 - t53 * t54 + t59 * t60 - t64 * t66;
     if (!(t67 > YAW3PITCH_C(1.0e-12))) {
         yaw3pitch_zero(ddq, 4);

@@ -55,7 +55,7 @@
  */
 #include "yaw3pitch_private.h"
 
-#if YAW3PITCH_GENERATION != 0x1F006D80UL
+#if YAW3PITCH_GENERATION != 0x7C16393AUL
 #error "yaw3pitch.h and yaw3pitch_momentum_observer_step.c are of different generations: generate the arm again"
 #endif
 

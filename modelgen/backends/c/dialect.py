@@ -15,7 +15,7 @@ from modelgen.functions.objects import (
     Function,
     least_guarded,
 )
-from modelgen.graph import read
+from modelgen.graph import Term, read
 
 STATUS = {STATUS_STROKE: "STROKE", STATUS_PIVOT: "PIVOT", STATUS_INPUT: "INPUT"}
 INDENT = "    "
@@ -77,11 +77,29 @@ def _built_on(function: Function) -> frozenset[int]:
     return frozenset(stored & used)
 
 
+def _factors(function: Function) -> frozenset[int]:
+    """Temporaries that are one over a pivot, before the last pivot is known: L of a matrix L D L'."""
+    statements = function.program.statements
+    guards = [k for k, s in enumerate(statements) if isinstance(s.target, tuple) and s.target[0] == "guard"]
+    before = statements[: max(guards, default=0)]
+    pivots = {statements[k].term for k in guards}
+    inverses: set[Term] = set()
+    found = set()
+    for target, term in ((s.target, s.term) for s in before if isinstance(s.target, int)):
+        if term[0] == "div" and term[2] in pivots:
+            inverses.add(("let", target))
+        elif term[0] == "mul" and not inverses.isdisjoint(term[1:]):
+            found.add(target)
+    return frozenset(found)
+
+
 class CDialect:
     """Statements of one function in C99.
 
-    checked: whether the function tests its outputs at the end; those elements on which it builds before are
-    held where they are defined.
+    checked: whether the function tests its outputs at the end. Those elements on which it builds before are
+    then held where they are defined. Where one output is built on another, as derivatives on accelerations,
+    so are the factors with which equations are solved again: none comes near the limit where a solution
+    exists, but a proof by intervals does not know it.
     """
 
     def __init__(
@@ -94,6 +112,8 @@ class CDialect:
     ) -> None:
         self.arm = arm
         self.held = _built_on(function) if checked else frozenset()
+        if self.held and len(function.outputs) > 1:
+            self.held |= _factors(function)
         self.macro = arm.upper()
         self.named = named
         self.places = destinations(function)
