@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.evaluation.reversals import Pieces, pieces_of
 from modelgen.functions.objects import Function
 from modelgen.numeric import Array
+
+# An implicit midpoint rule makes what rings at f slower by (pi f step)^2 / 3: 0.8 % at 10 Hz in FINE steps.
+FINE, SHORT = 0.005, 0.002  # s
 
 
 @dataclass(frozen=True)
@@ -42,6 +47,20 @@ class Motion:
     def pieces(self) -> Pieces | None:
         """Parts of the samples within which joints turn back, None where none does."""
         return pieces_of(self.dq)
+
+    @cached_property
+    def finer(self) -> tuple[Motion, int]:
+        """The motion in the middle of finer steps, and how many of these make one; itself where it is short.
+
+        What rings is simulated in these: a long step holds the load of its begin, half a step late.
+        """
+        if self.step <= SHORT:
+            return self, 1
+        count = math.ceil(self.step / FINE - 1e-9)
+        begins = np.linspace(self.t[0], self.t[-1], (len(self.t) - 1) * count + 1)
+        t = np.minimum(begins + self.step / count / 2, self.t[-1])
+        q, dq = (CubicHermiteSpline(self.t, *x)(t) for x in ((self.q, self.dq), (self.dq, self.ddq)))
+        return replace(self, t=begins, q=q, dq=dq, ddq=CubicSpline(self.t, self.ddq)(t), before=None), count
 
     @property
     def step(self) -> float:

@@ -122,8 +122,13 @@ class Series:
     def run(self, motion: Motion, free: Sequence[float], parameters: Array) -> Array:
         """States (N + 1, s), from where the motion before and the rest after it left them, else from zero.
 
-        Elastic transmissions begin where their load holds them.
+        Elastic transmissions begin where their load holds them, and ring in finer steps than the samples'.
         """
+        finer, count = motion.finer if self.lags else (motion, 1)
+        if finer is not motion:
+            head = self._recent.along("head", finer, parameters, lambda: self.head(finer, parameters))
+            found = self(head, free, finer)
+            return np.concatenate([found[:-1:count], found[-1:]])
         start = None
         if motion.before is not None and not self.lags:
             ended = self.run(motion.before, free, parameters)[-2]
