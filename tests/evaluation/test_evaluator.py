@@ -127,9 +127,9 @@ def test_an_effect_adds_what_the_arm_with_it_does(
 def test_a_delay_moves_the_inputs_in_time() -> None:
     p, m = evaluator("ur10e"), motion("ur10e")
     base = np.ones(len(p.base.base))
-    found = p.contribution("time_delay", None, m, {"delay": 0.03}, base)
+    found = p.contribution("time_delay", None, m, {"delay": 15 * m.step}, base)
     now = p.inputs(m, base)
-    np.testing.assert_allclose(found[:-3], now[3:] - now[:-3], atol=1e-9 * np.abs(now).max())
+    np.testing.assert_allclose(found[:-15], now[15:] - now[:-15], atol=1e-9 * np.abs(now).max())
 
 
 def test_places_follow_the_drives() -> None:
