@@ -13,7 +13,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.identification.readings import ZERO, amounts, readings
-from modelgen.identification.unexplained import POOR, Unexplained, unexplained
+from modelgen.identification.unexplained import FAR, POOR, Unexplained, unexplained
 from modelgen.numeric import Array
 
 BETTER = 0.33  # of what is unexplained, that another reading may leave to be believed
@@ -44,8 +44,8 @@ def check_reading(train: Sequence[Prepared], model: Model, evaluator: Evaluator)
     if any(p.record.input is None or p.record.arm is None for p in train):
         return Asked()
     fits = [_fit(p, model, evaluator) for p in train]
-    questions = [x for p, fit in zip(train, fits, strict=True) if fit is not None for x in _hardly(p, fit)]
     known = [fit for fit in fits if fit is not None]
+    questions = _hardly([p for p, fit in zip(train, fits, strict=True) if fit is not None], known)
     if len(train) < 2 or len(known) < len(train):
         return Asked(tuple(questions))
     return Asked(tuple(questions), np.sqrt(np.mean([fit.error**2 for fit in known], axis=0)))
@@ -73,24 +73,32 @@ def _fit(p: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:
     return fit
 
 
-def _hardly(p: Prepared, fit: Unexplained) -> list[str]:
-    """Questions about joints of whose efforts' changes hardly anything is explained that is not noise."""
-    questions, logged = [], p.record.logged_effort
-    assert p.record.arm is not None
-    assert logged is not None
-    for j, name in enumerate(p.record.arm.coordinate_names):
-        moving = logged[p.awake[:, j], j]
-        if not len(moving) or not fit.changes[j]:
+def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[str]:
+    """Questions about joints of whose efforts' changes hardly anything is explained that is not noise.
+
+    fits: of each record. What is little in one record beside others is asked of all of them.
+    """
+    if not fits:
+        return []
+    error, changes, noise = (
+        np.sqrt(np.mean([x**2 for x in part], axis=0))
+        for part in zip(*((fit.error, fit.changes, fit.noise) for fit in fits), strict=True)
+    )
+    first, questions = train[0].record, []
+    assert first.arm is not None
+    for j, name in enumerate(first.arm.coordinate_names):
+        share = error[j] / max(changes[j], 1e-300)
+        if not changes[j] or share <= HARDLY or error[j] <= FAR * noise[j]:
             continue
-        least, share = float(moving.min()), fit.error[j] / fit.changes[j]
-        if share > HARDLY and fit.no_noise[j]:
-            one_side = 0.0 <= least < ZERO * float(moving.max())
-            lost = f" They are never below {least:.3g}: is their sign lost?" if one_side else ""
-            questions.append(
-                f"{p.record.name}: the model leaves {100 * min(share, 1.0):.0f} % of the changes of the "
-                f"effort of {name} unexplained: are its columns what they are read as, and what does the "
-                f"description lack (modelgen diagnose)?{lost}"
-            )
+        logged = [x[p.awake[:, j], j] for p in train if (x := p.record.logged_effort) is not None]
+        moving = np.concatenate(logged)
+        one_side = len(moving) > 0 and 0.0 <= moving.min() < ZERO * moving.max()
+        lost = f" They are never below {moving.min():.3g}: is their sign lost?" if one_side else ""
+        questions.append(
+            f"The model leaves {100 * min(share, 1.0):.0f} % of the changes of the effort of {name} "
+            "unexplained: are its columns what they are read as, and what does the description lack "
+            f"(modelgen diagnose)?{lost}"
+        )
     return questions
 
 

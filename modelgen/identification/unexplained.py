@@ -36,12 +36,7 @@ class Unexplained:
     def poor(self) -> NDArray[np.bool_]:
         """Joints (n,) of which little is explained, of all or of the changes."""
         changes = self.error > CHANGES * np.maximum(self.changes, 1e-300)
-        return (self.share > POOR) | (changes & self.no_noise)
-
-    @property
-    def no_noise(self) -> NDArray[np.bool_]:
-        """Joints (n,) of which more is left than noise."""
-        return np.asarray(self.error > FAR * self.noise)
+        return (self.share > POOR) | (changes & (self.error > FAR * self.noise))
 
 
 def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:

@@ -8,7 +8,7 @@ import pytest
 from modelgen.dataset import ColumnTable, Record, split
 from modelgen.dataset.inspection.channels import inspect
 from modelgen.dataset.processing.periods import period_of
-from modelgen.dataset.processing.splitting import repeating
+from modelgen.dataset.processing.splitting import as_given, repeating
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
@@ -115,3 +115,15 @@ def test_inspect_says_from_where_a_motion_repeats() -> None:
         found = inspect(log if isinstance(log, Record) else ColumnTable(log, "log"))
         assert found.period == pytest.approx(10.0, abs=0.01)
         assert any("the motion repeats every 10 s from t = " in remark for remark in found.remarks)
+
+
+@pytest.mark.parametrize("periods", [1.5, 4.0])
+def test_parts_are_joined_to_what_they_were(periods: float) -> None:
+    record = moving(periods, 10.0, 3)
+    (whole,) = as_given(split(record))
+    for name in ("t", "q", "motor", "input"):
+        one, other = getattr(whole, name), getattr(record, name)
+        assert one is other is None or np.array_equal(one, other)
+    parts = [record, moving(periods, 10.0, 4)]
+    assert as_given(parts) == parts
+    assert as_given([record]) == [record]

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.periods import repetition
 from modelgen.dataset.reading.specs import cut
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
+from modelgen.numeric import Array
 
+_COLUMNS = ("t", "q", "motor", "input", "gain", "dq", "ddq", "temperature", "cut_off")
 REPEATING = 3  # periods of which two can stay together, which shows what is noise
 
 
@@ -65,3 +70,17 @@ def _parts(record: Record, begin: int, middle: int, said: str) -> list[Record]:
     remark = f"{record.name}: a single training log, split in two at t = {record.t[middle]:.9g} s: {said}"
     told = replace(record, remarks=(remark, *record.remarks))
     return [cut(told, begin, middle), cut(told, middle, len(record.t))]
+
+
+def as_given(parts: Sequence[Record]) -> list[Record]:
+    """Records as they were before `split`: two parts of which one goes on where the other ends are one."""
+    if len(parts) != 2 or not any("a single training log, split in two" in x for x in parts[0].remarks):
+        return list(parts)
+    one, two = parts
+
+    def both(name: str) -> Array | None:
+        first, second = getattr(one, name), getattr(two, name)
+        return None if first is None or second is None else np.concatenate([first, second])
+
+    columns = {name: both(name) for name in _COLUMNS}
+    return [replace(one, **columns)]  # type: ignore[arg-type]

@@ -9,6 +9,7 @@ import numpy as np
 
 from modelgen.dataset import Settings, choose
 from modelgen.dataset.inspection import inspect_records
+from modelgen.dataset.processing.splitting import as_given
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy import confirmed, place
 from modelgen.diagnosis.decision import Decision
@@ -128,7 +129,7 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
         solution, found = errors_of(train, [test], study.model, study.evaluator)
     except InputError:
         return None
-    chosen = choose(list(study.records[:-1]), Settings(thresholds=study.thresholds.dataset))
+    chosen = choose(as_given(study.records[:-1]), Settings(thresholds=study.thresholds.dataset))
     fit = solution.theta, solution.covariance, solution.determined
     asked = check_reading(train, study.model, study.evaluator).questions
     about = doubts(train, study.model, study.evaluator, *fit, whole=decision.verdict != "named")
