@@ -166,6 +166,17 @@ def test_a_test_record_of_another_arm_is_asked_about(arm: mg.Arm, logs: list[Tab
     assert any("The error at shoulder is 200 % of its effort on the test records" in x for x in doubts)
 
 
+def test_efforts_whose_zero_is_off_are_asked_about(arm: mg.Arm, logs: list[Table]) -> None:
+    """What a constant explains of the rest is named with its size, in the unit of the log."""
+    shifted = [x | {"i2": x["i2"] + 0.4} for x in logs]
+    doubts = mg.identify(arm, *shifted).to_json()["doubts"]
+    (said,) = (x for x in doubts if x.startswith("A constant effort of"))
+    size, unit = said.split()[4:6]
+    assert float(size) == pytest.approx(0.4, rel=0.05)
+    assert unit == "A"
+    assert "at elbow explains" in said
+
+
 def test_an_effort_of_which_nothing_is_explained_is_asked_about(arm: mg.Arm, logs: list[Table]) -> None:
     random = np.random.default_rng(5)
     other = np.sin(17.0 * logs[0]["t"]) + 0.1 * random.normal(size=len(logs[0]["t"]))
