@@ -164,7 +164,8 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     for k, column in enumerate(source.wanted):
         if column in signals.effort or column in (signals.dq or ()):
             factor, offset = scales.get(column, (1.0, 0.0))
-            check_unsigned(file, column, np.round((table[:, k] - offset) / factor, 6))
+            with np.errstate(over="ignore"):  # a wrong digit makes any number
+                check_unsigned(file, column, np.round((table[:, k] - offset) / factor, 6))
     on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
     counts: tuple[float, ...] = ()
