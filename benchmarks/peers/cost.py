@@ -51,13 +51,15 @@ def generation(make: Callable[[], object]) -> None:
 def launched(command: Sequence[str]) -> tuple[float, float, str]:
     """CPU time [s], most memory [MB] and standard output of a command. Raises Stopped where it fails."""
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+    # The modelgen of this process, whatever folder the command runs in.
+    path = os.pathsep.join(str(Path(folder).resolve()) for folder in sys.path if folder)
     done = subprocess.run(
         [sys.executable, "-S", "-E", "-c", _LAUNCHER, *command],
         capture_output=True,
         text=True,
         check=False,
         cwd=HERE.parent,  # where `-m` finds this package
-        env=os.environ | threads,
+        env=os.environ | threads | {"PYTHONPATH": path},
     )
     if done.returncode:
         raise RuntimeError(done.stderr[-3000:])
