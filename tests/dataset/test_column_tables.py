@@ -279,3 +279,10 @@ def test_a_blank_date_is_refused(arm: Arm) -> None:
     stamps[7] = np.datetime64("NaT")
     with pytest.raises(InputError, match="found nan in the column t"):
         read(named({**table, "t": stamps}, "log"), arm)
+
+
+def test_a_time_with_its_unit_in_its_name_is_asked_about(arm: Arm) -> None:
+    table = columns()
+    table["t [s]"] = table.pop("t")
+    with pytest.raises(InputError, match=r"did you mean the column 't \[s\]'"):
+        read(named(table, "log"), arm)

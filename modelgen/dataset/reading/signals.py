@@ -133,7 +133,7 @@ def _some(names: Sequence[str], kind: str, n: int) -> tuple[str | None, ...] | N
 def _near(name: str, names: Sequence[str]) -> str:
     near = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.5)
     if name == "t":
-        near = [n.lower() for n in names if "time" in n.lower() or "stamp" in n.lower()]
+        near = [n.lower() for n in names if re.search(r"time|stamp|^t\b", n.lower())]
     original = next((n for n in names if near and n.lower() == near[0]), None)
     return (
         f", did you mean the column '{original}'? a mapping file (--mapping) renames it" if original else ""
