@@ -72,12 +72,12 @@ def launched(command: Sequence[str]) -> tuple[float, float, str]:
 def limited(command: Sequence[str], seconds: int) -> tuple[float, float] | None:
     """CPU time [s] and most memory [MB] of a command, None where it takes longer than `seconds` of CPU time.
 
-    Raises RuntimeError where it fails of itself. A compiler driver reports its killed child as a failure.
+    Raises RuntimeError where it fails of itself. A shell or a compiler reports a killed child as a failure.
     """
     try:
         spent, memory, _ = launched(["sh", "-c", f'ulimit -t {seconds}; "$@"', "sh", *command])
     except Stopped as stopped:
-        if stopped.seconds < 0.95 * seconds and "Killed signal" not in str(stopped):
+        if stopped.seconds < 0.95 * seconds and "Killed" not in str(stopped):
             raise
         return None
     return spent, memory
