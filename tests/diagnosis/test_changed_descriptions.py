@@ -1,6 +1,7 @@
 """Columns of effects in which nothing is linear, against the laws that they stand for, written out."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -37,17 +38,31 @@ def evaluator() -> tuple[Evaluator, Array]:
 
 
 @pytest.mark.parametrize("error", [0.3, -0.2])
-def test_a_secant_is_the_whole_change(error: float) -> None:
-    """A larger torque constant asks for less current; a slope is off by the error's share."""
+def test_a_torque_constant_asks_for_current_in_proportion(error: float) -> None:
+    """A larger one asks for less: the column is the current itself, whatever the error it is made at."""
     own, base = evaluator()
     motion = Motion(TIMES, *swing(TIMES, 1))
     current = own.inputs(motion, base)
-    change = current / (1 + error) - current
     cause = Candidate("drive_gain_error", 1)
-    column = slopes(cause, {"error": error}, motion, own, base)[:, :, 0]
-    np.testing.assert_allclose(error * column, change, atol=1e-9 * np.abs(change).max())
+    for made_at in ({}, {"error": error}):
+        column = slopes(cause, made_at, motion, own, base)[:, :, 0]
+        np.testing.assert_allclose(column, current, atol=1e-9 * np.abs(current).max())
+    surplus = 1 / (1 + error) - 1
+    assert cause.definition.physical({"surplus": surplus})["error"] == pytest.approx(error)
+
+
+@pytest.mark.parametrize("offset", [0.5, -0.4])
+def test_a_secant_is_the_whole_change(offset: float) -> None:
+    """Of the currents where the joint really is; a slope is off by much of that."""
+    own, base = evaluator()
+    motion = Motion(TIMES, *swing(TIMES, 1))
+    moved = replace(motion, q=motion.q + offset)
+    change = own.inputs(moved, base) - own.inputs(motion, base)
+    cause = Candidate("encoder_offset", 1)
+    column = slopes(cause, {"offset": offset}, motion, own, base)[:, :, 0]
+    np.testing.assert_allclose(offset * column, change, atol=1e-9 * np.abs(change).max())
     slope = slopes(cause, {}, motion, own, base)[:, :, 0]
-    assert np.abs(error * slope - change).max() > 0.15 * np.abs(change).max()
+    assert np.abs(offset * slope - change).max() > 0.1 * np.abs(change).max()
 
 
 def test_a_payload_where_it_was_found_has_its_inertia() -> None:

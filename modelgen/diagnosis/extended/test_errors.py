@@ -111,7 +111,7 @@ def residuals(test: Rows, extension: Extension, there: Sequence[bool]) -> tuple[
     if not selection.causes:
         return old, old
     if any(c.trial.candidate.coming for c in selection.causes):
-        return old, _left(test, extension, there) * test.gain
+        return old, _left(test, extension, there, _alike(extension)[1]) * test.gain
     seen = seen_by(test.prepared, after.arm)
     rows = rows_of(Evaluator(after.arm), after.model, seen, after.theta, after.rows[0].baseline)
     return old, (rows.effort - rows.columns @ after.theta) * test.gain
@@ -125,14 +125,30 @@ def on_test(extension: Extension, test: Rows) -> tuple[bool, ...]:
     if not any(t.candidate.coming for t in trials):
         return (True,) * len(trials)
     sizes = np.maximum(extension.selection.system.sizes, 1e-300)
+    _, theta = _alike(extension)
 
     def size(there: tuple[bool, ...]) -> float:
-        return float((((_left(test, extension, there) / sizes) ** 2)[test.moving]).sum())
+        return float((((_left(test, extension, there, theta) / sizes) ** 2)[test.moving]).sum())
 
     return min(product(*((True, False) if t.candidate.coming else (True,) for t in trials)), key=size)
 
 
-def _left(test: Rows, extension: Extension, there: Sequence[bool]) -> Array:
+def _alike(extension: Extension) -> tuple[list[FittedCandidate], Array]:
+    """The causes with columns of the training records made at the reported parameters, as those of the test
+    record are, and the unknowns with which they leave least there.
+    """
+    selection = extension.selection
+    own = selection.system.equations
+    equations, trials = extension.equations.with_rows(own.rows), []
+    for trial in (c.trial for c in selection.causes):
+        values = {**trial.values, **trial.around}
+        made = candidate_columns(trial.candidate, values, equations, extension.base)
+        sound = made is not None and all(np.isfinite(table).all() for table in made)
+        trials.append(replace(trial, columns=made) if sound and made is not None else trial)
+    return trials, weighted_fit(own.rows, with_causes(own, trials))
+
+
+def _left(test: Rows, extension: Extension, there: Sequence[bool], theta: Array) -> Array:
     """What the causes that are there leave of the test record's efforts (M, n)."""
     selection = extension.selection
     table = [test.columns]
@@ -140,7 +156,7 @@ def _left(test: Rows, extension: Extension, there: Sequence[bool]) -> Array:
         found = columns_of(cause.trial, test, extension)
         assert found is not None
         table.append(found if so else np.zeros_like(found))
-    return np.asarray(test.effort - np.concatenate(table, axis=2) @ selection.system.theta)
+    return np.asarray(test.effort - np.concatenate(table, axis=2) @ theta)
 
 
 def columns_of(trial: FittedCandidate, test: Rows, extension: Extension) -> Array | None:
@@ -162,7 +178,7 @@ def shares(extension: Extension, test: Rows, on: Sequence[bool]) -> list[Share]:
     the arm's parameters are better for. Not a number where one of them cannot stand on that record.
     """
     selection, limits = extension.selection, extension.equations.thresholds.extended
-    equations, trials = selection.system.equations, [cause.trial for cause in selection.causes]
+    equations, (trials, _) = selection.system.equations, _alike(extension)
     made = [columns_of(trial, test, extension) for trial in trials]
     there = [table for table in made if table is not None and np.isfinite(table).all()]
     if len(there) < len(trials):

@@ -38,6 +38,8 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
     farthest = equations.thresholds.selection.max_refit_growth
     trials = [c.trial for c in causes]
     best, least, last, most = trials, np.inf, np.zeros(0), np.full(1, np.inf)
+    at: list[Array] = [np.zeros(0)] * len(trials)  # values that columns were made at
+    ways: list[Array] = [np.zeros(0)] * len(trials)  # by which they went there
     for turn in range(TURNS):
         table = with_causes(equations, trials)
         theta = weighted_fit(rows, table)
@@ -57,11 +59,29 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
             break
         most = most if turn else farthest * np.array(sizes)
         base, last = equations.base(theta), theta[own:]
-        trials = [_anew(t, v, equations, base) for t, v in zip(best, values, strict=True)]
+        for k, (trial, found) in enumerate(zip(best, values, strict=True)):
+            at[k], ways[k] = (
+                (found, np.zeros(0)) if not trial.candidate.curved else _towards(found, at[k], ways[k])
+            )
+        trials = [_anew(t, v, equations, base) for t, v in zip(best, at, strict=True)]
         if all(new is old for new, old in zip(trials, best, strict=True)):
             break
     for cause, trial in zip(causes, best, strict=True):
         cause.trial = trial
+
+
+def _towards(found: Array, at: Array, way: Array) -> tuple[Array, Array]:
+    """Values (k,) to make columns at, and the way there from those that they were made at.
+
+    found: what was estimated with them. Where that lies back on the way that led there, half is gone: a law
+    that bends much would swing from one side to the other for ever.
+    """
+    if not len(at):
+        return found, found
+    step = found - at
+    if len(way):
+        step = np.where(step * way < 0.0, step / 2, step)
+    return at + step, step
 
 
 def _anew(trial: FittedCandidate, values: Array, equations: Equations, base: Array) -> FittedCandidate:

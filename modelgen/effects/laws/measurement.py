@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -10,13 +10,16 @@ import sympy as sp
 
 from modelgen.description.objects import Arm
 from modelgen.effects.base import ANY, POSITIVE, DescriptionEffect, InputEffect, Parameter, Values, at
-from modelgen.effects.traits import Family, Numbers, Reading, Seen, Shows, joint_of
+from modelgen.effects.traits import Added, Family, Numbers, Reading, Seen, Shows, joint_of
 from modelgen.effects.variables import InputVariables
+from modelgen.numeric import Array
 from modelgen.symbolic import number as figure
 
 # Of the greatest torque, two roundings of single precision below it: there the current's slope has no bound.
 NEAR_TOP = 1.0 - 2.0**-22
 MEASURED = 0.03  # of a length, as drawings and tapes leave it
+SMALL_ERROR = 1e-4  # of a torque constant, over which a slope is taken
+VANISHING = 1e-9  # of a torque constant, no more than none
 
 
 class EncoderOffset(DescriptionEffect):
@@ -133,6 +136,30 @@ class DriveGainError(DescriptionEffect):
     def scales(cls, values: Numbers) -> float | None:
         """It scales the input where nothing else bends that."""
         return 1 / (1 + values["error"])
+
+    @classmethod
+    def estimated(cls) -> tuple[str, ...]:
+        """What the inputs are more than a drive as described would need, over those: it is in proportion."""
+        return ("surplus",)
+
+    @classmethod
+    def slopes(cls, names: Sequence[str], values: Numbers, added: Added) -> Array:
+        """Inputs per unit of the surplus."""
+        error = values.get("error", 0.0) or SMALL_ERROR
+        return added({"error": error})[:, :, None] / (1 / (1 + error) - 1)
+
+    @classmethod
+    def physical(cls, found: Numbers) -> dict[str, float]:
+        """The torque constant from the surplus; far beyond its bounds where none has that much."""
+        if "surplus" not in found:
+            return dict(found)
+        return {"error": 1 / max(1 + found["surplus"], VANISHING) - 1}
+
+    @classmethod
+    def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:
+        """Alike of both, as errors usually are small."""
+        found = super().usual(arm, number)
+        return {**found, "surplus": found["error"]}
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
