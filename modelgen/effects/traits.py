@@ -233,10 +233,7 @@ class Traits(ABC):
             else:
                 behind = added({**held, name: -step})
                 parts.append((ahead - behind) / (2 * step))
-        together = np.stack(parts, axis=2)
-        # what differences leave of an effect that does not show is no column
-        sizes = np.abs(together).max(axis=(0, 1))
-        return np.where(sizes > INVISIBLE * sizes.max(initial=0.0), together, 0.0)
+        return visible(np.stack(parts, axis=2))
 
     @classmethod
     def physical(cls, found: Numbers) -> dict[str, float]:
@@ -296,6 +293,12 @@ class Traits(ABC):
     def usual(cls, arm: Arm, number: int | None) -> Mapping[str, float]:
         """Sizes of its parameters that arms usually have, of those alone of which something is known."""
         return {p.name: p.usual for p in cls.nonlinear if p.usual is not None}
+
+
+def visible(columns: Array) -> Array:
+    """Columns (N, n, k), zero where differences have left nothing but rounding of what does not show."""
+    sizes = np.abs(columns).max(axis=(0, 1), initial=0.0)
+    return np.where(sizes > INVISIBLE * sizes.max(initial=0.0), columns, 0.0)
 
 
 def joint_of(arm: Arm, number: int) -> Joint:

@@ -11,7 +11,7 @@ import sympy as sp
 
 from modelgen.description.objects import Arm, Joint
 from modelgen.effects.base import ANY, DescriptionEffect, LinkEffect, Parameter, Point, Values, at
-from modelgen.effects.traits import Added, Family, Numbers, Presence, Reading, Seen
+from modelgen.effects.traits import Added, Family, Numbers, Presence, Reading, Seen, visible
 from modelgen.effects.variables import PointVariables
 from modelgen.numeric import Array
 from modelgen.symbolic import number as value_of
@@ -227,7 +227,7 @@ class PayloadChange(LinkEffect):
             moments.append((ahead - behind) / (2 * PLACE))
         mass = of() - sum(place[a] * moment for a, moment in zip("xyz", moments, strict=True))
         columns = dict(zip(cls.estimated(), (mass, *moments), strict=True))
-        return np.stack([columns[name] for name in names], axis=2)
+        return visible(np.stack([columns[name] for name in names], axis=2))
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
