@@ -9,6 +9,7 @@ import pytest
 from made_up_plants import CONSTANT, PLAIN, description, log
 
 import modelgen as mg
+from modelgen.charts import number
 from modelgen.description import loads
 from modelgen.effects import known_effects
 
@@ -28,5 +29,7 @@ def test_a_torque_constant_is_found_however_far_it_is_off(error: float, tmp_path
     # of either drive, by the other one
     true = error if cause["joint"] == 2 else 1 / (1 + error) - 1
     assert abs(value["value"] - true) < 4 * value["std"] < 0.2 * abs(true)
-    (check,) = (c for c in cause["checks"] if c["name"] == "confirmed")
-    assert check["passed"]
+    checks = {c["name"]: c for c in cause["checks"]}
+    assert checks["confirmed"]["passed"]
+    # the figure of a check is that of the table
+    assert f"error is {number(value['value'])}," in checks["admissible"]["text"]

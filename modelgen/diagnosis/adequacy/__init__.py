@@ -2,6 +2,7 @@
 
 from modelgen.diagnosis.adequacy.checks import Examined, confirmed, examined
 from modelgen.diagnosis.adequacy.distinguishable import aliases, without_indistinguishable
+from modelgen.diagnosis.adequacy.figures_said import possible
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit, place
 from modelgen.diagnosis.adequacy.smooth_functions import Likeness, most_like
 from modelgen.diagnosis.adequacy.verdict import Remains, verdict_of
@@ -17,6 +18,7 @@ __all__ = [
     "lack_of_fit",
     "most_like",
     "place",
+    "possible",
     "verdict_of",
     "without_indistinguishable",
 ]

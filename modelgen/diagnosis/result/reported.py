@@ -11,7 +11,7 @@ from modelgen.dataset import Settings, choose
 from modelgen.dataset.inspection import inspect_records
 from modelgen.dataset.processing.splitting import as_given
 from modelgen.description import Arm
-from modelgen.diagnosis.adequacy import confirmed, place
+from modelgen.diagnosis.adequacy import confirmed, place, possible
 from modelgen.diagnosis.decision import Decision
 from modelgen.diagnosis.equations import Equations, Rows, Study, described_by
 from modelgen.diagnosis.extended import (
@@ -173,9 +173,17 @@ def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
         rivals = tuple(
             (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in aliases
         )
-        named = _as_named(arm, cause, values, asked.checks, records)
+        named = _as_named(arm, cause, values, _as_reported(asked.checks, cause), records)
         result.append(replace(named, aliases=aliases, ambiguous_with=rivals))
     return tuple(result)
+
+
+def _as_reported(checks: Sequence[Check], cause: Cause) -> tuple[Check, ...]:
+    """Checks of a cause that say the values of the extended model, which were found anew."""
+    return tuple(
+        replace(check, text=possible(cause)) if check.name == "admissible" and check.passed else check
+        for check in checks
+    )
 
 
 def _suspects(decision: Decision, arm: Arm) -> tuple[NamedCause, ...]:
