@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelgen.description import Arm
 from modelgen.functions import Model
@@ -48,6 +49,7 @@ class Validation:
 
     t: (M,) [s]; measured, predicted: (M, n), records one after the other. rows: (n,), how many were judged.
     noise: of the inputs there. sizes: (n, p), RMS of what one unit of each parameter adds to the efforts.
+    judged: (M, n), samples that were; at rest an effort is whatever holds the joint. None: all.
     """
 
     unit: tuple[str, ...]
@@ -59,6 +61,7 @@ class Validation:
     predicted: Array
     noise: Noise | None = None
     sizes: Array | None = None
+    judged: NDArray[np.bool_] | None = None
 
     def shown_by(self, k: int) -> int | None:
         """Joint (from 0) in whose effort parameter k weighs most; None where it shows in none."""

@@ -40,10 +40,11 @@ def validate(
     moving = np.concatenate(regression.moving)
     if not moving.any():
         raise InputError(f"{records[0].record.name}: no joint moves in the test records; expected a motion")
+    # A joint that rests throughout is judged by all its rows: holding is an effort too.
+    asked = moving | ~moving.any(axis=0)
     rmse, share, judged = [], [], []
     for j in range(measured.shape[1]):
-        # A joint that rests throughout is judged by all its rows: holding is an effort too.
-        rows = moving[:, j] if moving[:, j].any() else np.ones(len(moving), dtype=bool)
+        rows = asked[:, j]
         e, y = wrong[rows, j], measured[rows, j]
         rmse.append(float(np.sqrt(np.mean(e**2))))
         judged.append(float(rows.sum()))
@@ -52,7 +53,15 @@ def validate(
     unit = records[0].effort_unit or ("",) * measured.shape[1]
     sizes = _sizes(regression, gain)
     return Validation(
-        unit, np.array(rmse), np.array(share), np.array(judged), t, measured, measured - wrong, sizes=sizes
+        unit=unit,
+        rmse=np.array(rmse),
+        nrmse_percent=np.array(share),
+        rows=np.array(judged),
+        t=t,
+        measured=measured,
+        predicted=measured - wrong,
+        sizes=sizes,
+        judged=asked,
     )
 
 

@@ -38,16 +38,20 @@ def predictions(names: Sequence[str], found: Validation, others: Sequence[Altern
     for j, name in enumerate(names):
         unit = found.unit[j]
         left = [Curve(t, _cut(found.measured[:, j], breaks), "measured", "measured")]
-        left += [Curve(t, _cut(m.predicted[:, j], breaks), look, word) for word, m, look in models]
-        right = [
-            Curve(t, _cut(m.measured[:, j] - m.predicted[:, j], breaks), look, word)
-            for word, m, look in models
-        ]
-        text = f"Effort of {name} over the test records, measured and predicted."
+        made = [(word, m.measured[:, j], _judged(m, j), look) for word, m, look in models]
+        left += [Curve(t, _cut(x, breaks), look, word) for word, _, x, look in made]
+        right = [Curve(t, _cut(y - x, breaks), look, word) for word, y, x, look in made]
+        text = f"Effort of {name} over the test records, measured and predicted, with gaps where it rests."
         charts.append(Chart(name, "time [s]", f"effort [{unit}]", left, text, zoom=True))
         text = f"Residual of {name} over the test records."
         charts.append(Chart(f"{name}, residual", "time [s]", f"residual [{unit}]", right, text, zoom=True))
     return charts
+
+
+def _judged(found: Validation, j: int) -> Array:
+    """Predicted effort of joint j (M,), nan where it is not judged."""
+    predicted = found.predicted[:, j]
+    return predicted if found.judged is None else np.where(found.judged[:, j], predicted, np.nan)
 
 
 def picture(found: Validation, names: Sequence[str], others: Sequence[Alternative] = ()) -> str:
@@ -98,7 +102,9 @@ def report(
         sections.append(("Torque constants", [Grid("Torque constants", heads, rows)]))
     if test is not None:
         title = "Measured against predicted, the whole test records"
-        sections.append((title, [block(predictions(names, test, others))]))
+        rests = test.judged is not None and not test.judged.all()
+        said = [Text("Gaps: the joint rests there, and its effort is whatever holds it; that is not judged.")]
+        sections.append((title, [*(said if rests else []), block(predictions(names, test, others))]))
     sections.append(("Processing of the logs", [Lines(processing), block(spectra)]))
     drawing = Folded("The arm, to turn and move", [arm_drawing(arm)], screen=True)
     sections.append(("The arm", [drawing]))
