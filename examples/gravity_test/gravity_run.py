@@ -70,7 +70,7 @@ def settling_times() -> dict[tuple[str, int], float]:
 def implied(link: str, name: str, found: dict[tuple[str, int], Trajectory]) -> list[list[float]]:
     """By angle: simulated spread, error that the published F_gof makes of it [deg], MAE over that error.
 
-    The spread of the measurement is not published; that of the simulation stands in for it.
+    The spread of the measurement is not published; that of the simulation replaces it.
     """
     rows = []
     for degrees, (f_gof, mae) in PUBLISHED[link].items():

@@ -228,7 +228,7 @@ def _constant_parameters(function: ca.Function) -> ca.Function:
 
 
 def _soft_limits(motor: ca.Function, drives: Drives, q: ca.MX, slack: ca.MX) -> ca.MX:
-    """Place in the stroke, 0 to 1: with the slack added for its lower end, taken off for its upper end.
+    """Place in the stroke, 0 to 1: with the slack added for its lower end, subtracted for its upper end.
 
     Soft, since the plant may carry the arm beyond a limit and the next plan must still exist.
     """

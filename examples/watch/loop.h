@@ -1,4 +1,4 @@
-/** What the loop is told, and what it tells. */
+/** Inputs and outputs of the closed loop. */
 #ifndef LOOP_H
 #define LOOP_H
 

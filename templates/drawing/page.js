@@ -169,7 +169,8 @@ function buildPanel() {
   for (const id of Object.keys(tables)) {
     const box = document.getElementById(id);
     if (id === "pose") box.append(frameChoice, element("p", { class: "quiet" }, `Axes and origin in the ${arm.base ? "world" : "base frame"}.`));
-    box.append(element("div", { class: "scroll" }));
+    // wide tables scroll on a phone: with the keys as well, once they have the focus
+    box.append(element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": box.querySelector("summary").textContent }));
     box.addEventListener("toggle", redraw);
   }
   if (!arm.joints.some((j) => j.link)) document.getElementById("masses").remove(), delete tables.masses;

@@ -66,6 +66,24 @@ def test_the_documentation_has_the_words_of_the_glossary(checkout: Path) -> None
     assert not found, "\n".join(found)
 
 
+READ = {".c", ".h", ".py", ".sh", ".yaml"}  # what a user opens in examples: comments, texts and all
+
+
+def test_examples_and_descriptions_have_the_words_of_the_glossary(checkout: Path) -> None:
+    """Comments too; the text of a description goes on into what is generated from it."""
+    terms = terms_of(checkout)
+    files = [p for p in sorted((checkout / "examples").rglob("*")) if p.suffix in READ]
+    assert {p.suffix for p in files} >= {".c", ".h", ".py", ".yaml"}
+    found = [
+        f"{path.relative_to(checkout)}:{number}: '{word}' in {line.strip()[:70]!r}"
+        for path in [checkout / "arms.yaml", *files]
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        for word in WORDS.findall(line)
+        if word.lower().removesuffix("s") not in terms
+    ]
+    assert not found, "\n".join(found)
+
+
 def test_a_word_of_insiders_is_seen() -> None:
     source = 'def f():\n    """It is taken."""\n    return "the cause was taken back"\n'
     ((line, text),) = texts(source)

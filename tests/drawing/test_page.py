@@ -8,18 +8,20 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from html import unescape
 from pathlib import Path
 
 import numpy as np
 import pytest
+from browser_support import SCHEMES, WIDTHS, close, on_paper, opened, printed, violations
 from drawing_support import in_browser
 from typer.testing import CliRunner
 
 import modelgen as mg
 from modelgen.cli.app import app
-from modelgen.drawing import page
+from modelgen.drawing import framed, moving_page, page
 
 
 @pytest.fixture(scope="module")
@@ -166,3 +168,60 @@ def test_a_browser_moves_the_arm(width: int, ariane: mg.Arm, tmp_path: Path) -> 
     assert found["colours"] > 500  # shaded bodies, not an empty picture
     assert found["rows"] == 5 + 5 + 4
     assert found["wide"]  # nothing runs out of the page
+
+
+@pytest.fixture(scope="module")
+def pages(ariane: mg.Arm, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Path]]:
+    """A drawing, a motion that plays, and a page that shows a drawing in a frame."""
+    folder, t = tmp_path_factory.mktemp("pages"), np.linspace(0.0, 1.0, 20)
+    start = np.array(mg.draw(ariane).q)
+    moves = start + 0.05 * np.sin(2.0 * np.pi * t)[:, None]
+    inner = framed(page(ariane), "arm", 500)
+    outer = f'<!DOCTYPE html><html lang="en"><title>o</title><main><h1>o</h1>{inner}</main></html>'
+    texts = {"drawing": page(ariane), "motion": moving_page(ariane, t, moves), "frame": outer}
+    for name, text in texts.items():
+        (folder / f"{name}.html").write_text(text, encoding="utf-8")
+    yield {name: folder / f"{name}.html" for name in texts}
+    close()
+
+
+@pytest.mark.parametrize(
+    ("name", "width", "scheme"),
+    [
+        *(("drawing", w, s) for w in WIDTHS for s in SCHEMES),
+        ("motion", 400, "light"),
+        ("frame", 1280, "dark"),
+    ],
+)
+def test_the_page_can_be_used_by_everybody(
+    name: str, width: int, scheme: str, pages: dict[str, Path]
+) -> None:
+    """The rules of axe-core, folded and unfolded; a table that is scrolled has the focus first."""
+    with opened(pages[name], width, scheme) as window:
+        inner = window.frames[-1]
+        assert violations(window) == []
+        inner.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
+        inner.wait_for_function("document.querySelectorAll('#table tr').length > 1")
+        assert violations(window) == []
+        inner.locator("#table .scroll").focus()
+        assert inner.evaluate("document.activeElement.getAttribute('aria-label')") == (
+            "Denavit-Hartenberg parameters"
+        )
+
+
+@pytest.mark.parametrize("name", ["ariane4", "wam7"])
+def test_a_drawing_is_printed_on_one_sheet_without_controls(name: str, tmp_path: Path) -> None:
+    """The picture and the coordinates it is drawn at, with their units."""
+    path = tmp_path / "draw.html"
+    path.write_text(page(mg.load_arms()[name]), encoding="utf-8")
+    with opened(path) as window:
+        sheets, filled = printed(window)
+        assert sheets == 1
+        assert filled < 1.0
+        with on_paper(window):
+            shown = window.locator("button, select, summary, input[type=range], input[type=checkbox]")
+            assert not [e for e in shown.all() if e.is_visible()]
+            assert window.locator("canvas#view").is_visible()
+            numbers = window.locator(".value input")
+            assert numbers.count() == len(mg.load_arms()[name].coordinates)
+            assert all(e.is_visible() for e in numbers.all())

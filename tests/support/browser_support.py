@@ -70,8 +70,10 @@ def opened(path: Path, width: int = 1280, scheme: str = "light", *, alone: bool 
 
 
 def violations(page: Page) -> list[str]:
-    """What axe-core finds wrong, a line for each rule and element."""
-    page.evaluate(files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8"))
+    """What axe-core finds wrong in a page and its frames, a line for each rule and element."""
+    rules = files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
+    for frame in page.frames:
+        frame.evaluate(rules)
     found: list[dict[str, Any]] = page.evaluate("axe.run().then(r => r.violations)")
     return [
         f"{rule['id']}: {node['target']} {node.get('failureSummary', '')[:300]}"
