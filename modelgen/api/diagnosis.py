@@ -19,7 +19,7 @@ from modelgen.diagnosis.result import Diagnosis as Found
 from modelgen.diagnosis.result import to_json
 from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
-from modelgen.effects.placement import titled
+from modelgen.effects.placement import joint_meant, titled
 from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
@@ -241,7 +241,10 @@ def _place(text: str) -> tuple[str, int | None]:
 
 
 def _row(arm: Arm, c: NamedCause) -> list[str]:
-    values = ", ".join(f"{n} {sized(e.value, e.unit, 4)}" for n, e in legible(c.parameters).items())
+    values = ", ".join(
+        f"{n} {joint_meant(arm, c.effect, n, e.value) or sized(e.value, e.unit, 4)}"
+        for n, e in legible(c.parameters).items()
+    )
     rivals = ", ".join(titled(arm, e, j) for e, j, _ in c.ambiguous_with)
     same = ", ".join(titled(arm, e, j) for e, j in c.aliases)
     gains = f"{c.cross_gain:z.1f}", "" if isnan(c.share.gain) else f"{c.share.gain:z.1f}"

@@ -57,9 +57,10 @@ class Definition(Traits):
     """One entry of the catalogue: what every kind of effect has.
 
     text: what it is, in a phrase; finding: the clause that says it is there, with {joint}, {drive} or
-    {place} for where and values by their names, as {coefficient:%}. scope: whether it stands at a "joint", at
-    the "arm", or at "either". confused_with: effects that look alike in many records; experiment: what tells
-    them apart. shown: values for the sketch of its law, in the units of the motor coordinates [rad, N m].
+    {place} for where and values by their names, as {coefficient:%}, a joint's number as its name. scope:
+    whether it stands at a "joint", at the "arm", or at "either". confused_with: effects that look alike in
+    many records; experiment: what tells them apart. shown: values for the sketch of its law, in the units of
+    the motor coordinates [rad, N m].
     """
 
     text: ClassVar[str]

@@ -20,7 +20,8 @@ class Parameter:
     unit: {f} stands for the unit of the generalised force, {x} for that of the coordinate. symbol: its
     name among the standard parameters, before the joint's number (linear parameters only). default:
     None where the description must give a value for a nonlinear parameter. bounds: sensible values.
-    structural: chooses the form of the law, or where it acts; no program leaves it open.
+    structural: chooses the form of the law, or where it acts; no program leaves it open. joint: it is the
+    number of a coordinate, from 1, for which people read the joint's name.
 
     What a diagnosis does with it. grid: where it begins to look for the value of a nonlinear parameter, in
     units of `scale`: "speed" (95 % of the coordinate's speeds are below), "span" (of the coordinate), "time"
@@ -39,6 +40,7 @@ class Parameter:
     default: float | None = None
     bounds: tuple[float, float] = (0.0, float("inf"))
     structural: bool = False
+    joint: bool = False
     scale: str = "1"
     grid: tuple[float, ...] = ()
     turns: bool = False

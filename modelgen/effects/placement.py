@@ -36,6 +36,12 @@ def titled(arm: Arm, effect: str, joint: int | None) -> str:
     return f"{effect} {'of the whole arm' if joint is None else f'at {arm.coordinate_names[joint - 1]}'}"
 
 
+def joint_meant(arm: Arm, effect: str, parameter: str, value: float) -> str:
+    """Name of the joint whose number the parameter's value is; empty where the parameter is none."""
+    joints = {p.name for p in CATALOGUE[effect].accepted() if p.joint}
+    return arm.coordinate_names[round(value) - 1] if parameter in joints else ""
+
+
 def places(arm: Arm, name: str) -> list[int | None]:
     """Numbers of the coordinates (from 1) at which the effect can stand and does not yet; None: the arm.
 

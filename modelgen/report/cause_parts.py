@@ -11,7 +11,7 @@ from modelgen.diagnosis.extended import NamedCause, units_at
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
-from modelgen.effects.placement import titled
+from modelgen.effects.placement import joint_meant, titled
 from modelgen.report.diagnosis_sentences import checked, interval
 from modelgen.report.law_figures import judged_joint, law_charts, law_size, seen
 from modelgen.report.law_sketch import sketch
@@ -142,7 +142,7 @@ def _values(d: Diagnosis, c: NamedCause) -> Grid:
     rows: Sequence[Sequence[str]] = [
         (
             name,
-            f"{e.value:z.4g}",
+            joint_meant(d.arm, c.effect, name, e.value) or f"{e.value:z.4g}",
             "" if np.isnan(e.std) else f"{e.std:z.2g}",
             "" if e.unit == "1" else e.unit,
             meanings.get(name, ""),

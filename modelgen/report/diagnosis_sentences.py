@@ -119,7 +119,19 @@ def remains(d: Diagnosis) -> str:
         f"Lack of fit over {f.periods} repeated periods: {f.statistic:z.2f}, threshold {f.threshold:z.2f} "
         f"(1 for a complete model), largest at {where}."
     )
-    return f"{said} {_size(d)}".rstrip() if f.found else said
+    sizes = _sizes(d) if f.found else {}
+    repeats = f"About {listed(sizes.values())} repeats (RMS)." if sizes else ""
+    joints = _spoken_of(d)
+    left = _left(d) if joints and not joints & sizes.keys() else ""
+    return " ".join(part for part in (said, repeats, left) if part)
+
+
+def _spoken_of(d: Diagnosis) -> set[int]:
+    """Joints (from 0) at which the reason says that something is left; empty where it says none or all."""
+    if d.likeness is None or d.verdict not in ("named", "outside_catalogue"):
+        return set()
+    joints = set(d.likeness.shape.columns)
+    return joints if len(joints) < len(d.arm.coordinates) else set()
 
 
 def efforts_of(d: Diagnosis) -> list[float] | None:
@@ -133,7 +145,10 @@ def efforts_of(d: Diagnosis) -> list[float] | None:
 
 
 def _left(d: Diagnosis) -> str:
-    """How large the error that is left is of the effort, noise and all, where that is the largest share."""
+    """How large the error that is left is of the effort, noise and all.
+
+    Where that is the largest share, of the joints of which the reason speaks if it speaks of some.
+    """
     efforts = efforts_of(d)
     if efforts is None:
         return ""
@@ -141,29 +156,33 @@ def _left(d: Diagnosis) -> str:
     shares = np.array([x / e if e > 0.0 else np.nan for x, e in zip(left, efforts, strict=True)])
     if not np.isfinite(shares).any():
         return ""
-    j = int(np.nanargmax(shares))
+    most = int(np.nanargmax(shares))
+    j = max((k for k in _spoken_of(d) if np.isfinite(shares[k])), key=lambda k: shares[k], default=most)
     sizes = f"{number(left[j], 2)} of {number(efforts[j], 2)} {_unit(d, j)}"
     where = f" at {joint_name(d.arm, j + 1)}" if len(shares) > 1 else ""
-    most = f", {100.0 * shares[j]:z.2g} % of the effort{', the largest share of all joints' if where else ''}"
-    return f"What is left on the test record, noise and all, is {sizes} (RMS){where}{most}."
+    largest = ", the largest share of all joints" if where and j == most else ""
+    share = f", {100.0 * shares[j]:z.2g} % of the effort{largest}"
+    return f"What is left on the test record, noise and all, is {sizes} (RMS){where}{share}."
 
 
-def _size(d: Diagnosis) -> str:
-    """About how large what is deterministic in the residuals of all rows is, of the effort, by joint.
+def _sizes(d: Diagnosis) -> dict[int, str]:
+    """About how large what is deterministic in the residuals of all rows is, of the effort.
 
+    By joint (from 0), first those of which the reason speaks.
     Its mean square adds to the noise's, and k periods that repeat make (F - 1) / k of the noise's of it.
     """
     f, held, efforts = d.lack_of_fit, d.test, efforts_of(d)
     if f is None or efforts is None:
-        return ""
-    said = []
+        return {}
+    said = {}
     for j, name in enumerate(d.arm.coordinate_names):
         moving = held.moving[:, j]
         share = max(float(f.by_joint[j]) - 1.0, 0.0) / f.periods
         if share and moving.any():
             left = float(np.sqrt(np.mean(d.residuals[1][moving, j] ** 2) * share / (1.0 + share)))
-            said.append(f"{number(left, 2)} of {number(efforts[j], 2)} {_unit(d, j)} at {name}")
-    return f"About {listed(said)} repeats (RMS)." if said else ""
+            said[j] = f"{number(left, 2)} of {number(efforts[j], 2)} {_unit(d, j)} at {name}"
+    first = _spoken_of(d)
+    return {j: said[j] for j in sorted(said, key=lambda j: j not in first)}
 
 
 def _unit(d: Diagnosis, j: int) -> str:

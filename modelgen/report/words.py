@@ -13,7 +13,7 @@ import numpy as np
 from modelgen.charts import number
 from modelgen.description import Arm
 from modelgen.effects import CATALOGUE
-from modelgen.effects.placement import titled
+from modelgen.effects.placement import joint_meant, titled
 
 _LIMITED = {
     "q": "position",
@@ -96,7 +96,10 @@ def finding(
     parameters: value and unit by name. records: those that have it, None for all.
     """
     definition, place = CATALOGUE[effect], place_of(arm, joint)
-    values = {name: Said(e.value, e.unit) for name, e in legible(parameters).items()}
+    values = {
+        name: joint_meant(arm, effect, name, e.value) or Said(e.value, e.unit)
+        for name, e in legible(parameters).items()
+    }
     drive = f"the drive of {place}"
     try:
         said = definition.finding.format(joint=place, place=place, drive=drive, **values)

@@ -298,6 +298,18 @@ def test_the_test_record_confirms_or_does_not_and_decides_nothing() -> None:
         assert (check.passed, check.decides) == (passed, False)
 
 
+def test_a_joint_that_a_value_means_is_called_by_its_name() -> None:
+    cause, _ = chosen(effect="viscous_friction")
+    pair = Candidate("transmission_coupling", 2, {"other": 1.0, "ratio": -1.0}, part=("dry",))
+    gain = replace(cause.trial.gain, values=np.array([0.5]))
+    trial = replace(cause.trial, candidate=pair, values={}, gain=gain)
+    equations: Any = SimpleNamespace(arm=ARM, n=2, rows=[], thresholds=USUAL)
+    check = admissible(replace(cause, trial=trial), equations)
+    assert check.passed
+    assert "other is j1;" in check.text
+    assert "dry is 0.500, may be 0" in check.text
+
+
 def check_of_delay(joint: int | None, delay: float, joints: int, hold: float, known: str) -> Check:
     """The check of a delay [s]. hold: of the log [s], whose sampling period is 0.01 s; known: from what."""
     cause, _ = chosen(effect="time_delay")

@@ -16,9 +16,10 @@ from modelgen.api.diagnosis import Diagnosis as Shown
 from modelgen.api.results import Table
 from modelgen.charts import drawn, number
 from modelgen.description import DirectDrive, NoDrive
+from modelgen.diagnosis.adequacy.smooth_functions import Likeness, SmoothFunction
 from modelgen.diagnosis.extended import Estimate
 from modelgen.diagnosis.pipeline import diagnose
-from modelgen.diagnosis.result import Diagnosis
+from modelgen.diagnosis.result import Diagnosis, to_json
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import titled
 from modelgen.report.call import Call
@@ -596,6 +597,40 @@ def test_the_size_of_what_is_left_is_said_where_nothing_repeats(found: Diagnosis
         assert all(f"of {number(x)}" in report(d) for x in efforts)
 
 
+def like(d: Diagnosis, verdict: str, *joints: int) -> Diagnosis:
+    """As if what is left were most like a function at these joints (from 0)."""
+    shape = SmoothFunction("a force that depends on where the arm is", dict.fromkeys(joints, ()))
+    return replace(d, verdict=verdict, likeness=Likeness(shape, 50.0))
+
+
+def test_the_size_of_what_is_left_is_that_of_the_joint_that_the_reason_names(found: Diagnosis) -> None:
+    """Whether or not it repeats there, and whether or not more is left at another joint."""
+    size_at = r"is ([\d.]+) of [\d.]+ A \(RMS\) at (\w+), [\d.]+ % of the effort(, the largest share)?"
+    after, n = found.errors.after, len(found.errors.after)
+    d = replace(found, lack_of_fit=None)
+    said = [re.findall(size_at, remains(like(d, "named", j)))[0] for j in range(n)]
+    assert [name for _, name, _ in said] == ["j1", "j2"]
+    assert [float(size) for size, _, _ in said] == pytest.approx(list(after), rel=0.06)
+    assert sorted(bool(largest) for _, _, largest in said) == [False, True]
+    # one of all joints is of none alone
+    (usual,) = re.findall(size_at, remains(d))
+    assert re.findall(size_at, remains(like(d, "named", *range(n)))) == [usual]
+    # where nothing but another joint's repeats
+    left = other(found, "outside_catalogue")
+    assert "j1" not in remains(like(left, "outside_catalogue", 1))
+    both = remains(like(left, "outside_catalogue", 0))
+    assert re.findall(r"A at (\w+) repeats", both) == ["j2"]
+    ((size, name, _),) = re.findall(size_at, both)
+    assert name == "j1"
+    assert float(size) == pytest.approx(left.errors.before[0], rel=0.06)
+    # where it repeats at both, that joint comes first
+    assert left.lack_of_fit is not None
+    tests = [replace(t, statistic=9.0) for t in left.lack_of_fit.tests]
+    every = replace(left, lack_of_fit=replace(left.lack_of_fit, tests=tests))
+    for j, order in enumerate((["j1", "j2"], ["j2", "j1"])):
+        assert re.findall(r"A at (\w+)", remains(like(every, "outside_catalogue", j))) == order
+
+
 def test_named_never_stands_beside_no_less_error(found: Diagnosis) -> None:
     none = np.zeros_like(found.errors.gain)
     same = replace(found.errors, after=found.errors.before, gain=none)
@@ -647,10 +682,35 @@ def test_units_of_an_effect_are_those_of_its_joint(unit: str, joint: str, found:
 @pytest.mark.parametrize("effect", CATALOGUE)
 def test_every_effect_says_in_words_that_it_is_there(effect: str) -> None:
     definition = CATALOGUE[effect]
-    values = {p.name: Estimate(0.05, 0.01, p.unit.format(f="N m", x="rad")) for p in definition.accepted()}
+    values = {
+        p.name: Estimate(2.0 if p.joint else 0.05, 0.01, p.unit.format(f="N m", x="rad"))
+        for p in definition.accepted()
+    }
     joint = None if definition.scope == "arm" else 1
     said = sentence(finding(ARM, effect, joint, values))
     assert said[0].isupper()
     assert "{" not in said
     assert "_" not in effect or effect not in said
     assert joint is None or "j1" in said
+    assert "j2" in said or not any(p.joint for p in definition.accepted())
+
+
+def test_another_joint_is_called_by_its_name_and_by_its_number_in_json(found: Diagnosis) -> None:
+    arm = replace(found.arm, joints=(replace(found.arm.joints[0], name="elbow"), found.arm.joints[1]))
+    values = {
+        "dry": Estimate(0.3, 0.01, "N m"),
+        "other": Estimate(1.0, np.nan, "1"),
+        "ratio": Estimate(-1.0, np.nan, "1"),
+    }
+    cause = replace(found.causes[0], effect="transmission_coupling", joint=2, parameters=values)
+    d = replace(found, arm=arm, causes=(cause,))
+    (_, table, *_) = Shown(d).shown()
+    assert isinstance(table, Table)
+    assert table.rows[0][2] == "dry 0.3000 N m, other elbow, ratio -1.000"
+    text = unescape(report(d))
+    assert "A part of the transmission turns with j2 and elbow." in text
+    (values_of,) = re.findall(
+        r'aria-label="Values of transmission_coupling at j2">.*?</table>', text, re.DOTALL
+    )
+    assert re.search(r">other<.*?>elbow<", values_of)
+    assert to_json(d)["causes"][0]["parameters"]["other"]["value"] == 1.0

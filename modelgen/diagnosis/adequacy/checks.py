@@ -225,7 +225,8 @@ def admissible(cause: Cause, equations: Equations) -> Check:
     c = cause.trial.candidate
     why = c.definition.impossible(equations.arm, c.joint, cause.trial.parameters)
     why = why or _out_of_step(cause, equations)
-    return Check("admissible", not why, True, float("nan"), float("nan"), why or possible(cause))
+    said = why or possible(cause, equations.arm)
+    return Check("admissible", not why, True, float("nan"), float("nan"), said)
 
 
 def _out_of_step(cause: Cause, equations: Equations) -> str:

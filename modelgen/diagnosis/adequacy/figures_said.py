@@ -5,14 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.charts import number
+from modelgen.description import Arm
 from modelgen.diagnosis.selection import Cause
+from modelgen.effects.placement import joint_meant
 
 
-def possible(cause: Cause) -> str:
-    """Its values, each with what it may be."""
+def possible(cause: Cause, arm: Arm) -> str:
+    """Its values, each with what it may be; a joint by its name alone, which was one of those to choose."""
     c, values = cause.trial.candidate, cause.trial.parameters
     said = [
-        f"{p.name} is {number(values[p.name])}, may be {range_said(*p.bounds)}"
+        f"{p.name} is {joint_meant(arm, c.effect, p.name, values[p.name])}"
+        if p.joint
+        else f"{p.name} is {number(values[p.name])}, may be {range_said(*p.bounds)}"
         for p in c.definition.accepted()
         if p.name in values
     ]

@@ -173,15 +173,15 @@ def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
         rivals = tuple(
             (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in aliases
         )
-        named = _as_named(arm, cause, values, _as_reported(asked.checks, cause), records)
+        named = _as_named(arm, cause, values, _as_reported(asked.checks, cause, arm), records)
         result.append(replace(named, aliases=aliases, ambiguous_with=rivals))
     return tuple(result)
 
 
-def _as_reported(checks: Sequence[Check], cause: Cause) -> tuple[Check, ...]:
+def _as_reported(checks: Sequence[Check], cause: Cause, arm: Arm) -> tuple[Check, ...]:
     """Checks of a cause that say the values of the extended model, which were found anew."""
     return tuple(
-        replace(check, text=possible(cause)) if check.name == "admissible" and check.passed else check
+        replace(check, text=possible(cause, arm)) if check.name == "admissible" and check.passed else check
         for check in checks
     )
 

@@ -166,7 +166,7 @@ class TransmissionCoupling(Effect):
 
     name = "transmission_coupling"
     text = "inertia and friction of a part that turns with this joint and with another"
-    finding = "a part of the transmission turns with {joint} and another joint"
+    finding = "a part of the transmission turns with {joint} and {other}"
     reference = "Gautier and Janot 2013; Khalil and Dombre 2002, chapter 9"
     place = "pair"
     linear = (
@@ -176,7 +176,12 @@ class TransmissionCoupling(Effect):
     )
     nonlinear = (
         Parameter(
-            "other", "1", "number of the other joint's coordinate", bounds=(1.0, 1000.0), structural=True
+            "other",
+            "1",
+            "the other joint; a description has the number of its coordinate",
+            bounds=(1.0, 1000.0),
+            structural=True,
+            joint=True,
         ),
         Parameter(
             "ratio", "1", "turns per turn of the other joint", default=1.0, bounds=ANY, structural=True
