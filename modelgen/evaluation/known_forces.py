@@ -26,6 +26,11 @@ class KnownForces:
     def __init__(self, arm: Arm) -> None:
         self.arm = described(arm)
 
+    @property
+    def any(self) -> bool:
+        """Whether there are some."""
+        return self._call is not None
+
     def inputs(self, motion: Motion) -> Array:
         """Inputs of ideal drives (N, n) that they take, beside the regressor times the base parameters."""
         if self._call is None:

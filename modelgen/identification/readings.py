@@ -159,7 +159,7 @@ def amounts(
     known = known_base(model)
     theta = np.array([known.get(b.name, 0.0) for b in model.grouping.base])
     for _ in range(ROUNDS):
-        made = np.asarray(evaluator.regressor(model, motion, theta) @ theta)
+        made = np.asarray(evaluator.regressor(model, motion, theta) @ theta + evaluator.known.inputs(motion))
         given = record.input.copy()
         given[:, found] = np.where(made[:, found] < 0.0, -1.0, 1.0) * record.input[:, found]
         signed = replace(record, input=given)

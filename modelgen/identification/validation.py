@@ -34,7 +34,10 @@ def validate(
     gain = [np.ones(p.effort.shape) if p.gain is None else p.gain[p.rows] for p in records]
     more = [np.zeros_like(theta)] * len(records) if added is None else added
     parts = zip(records, regression.effort, regression.columns, more, strict=True)
-    whole = [y + c @ m + p.parallel(evaluator.known.inputs(motion_of(p))) for p, y, c, m in parts]
+    known = evaluator.known
+    whole = [
+        y + c @ m + (p.parallel(known.inputs(motion_of(p))) if known.any else 0.0) for p, y, c, m in parts
+    ]
     measured = np.concatenate([y * g for y, g in zip(whole, gain, strict=True)])
     wrong = np.concatenate([e * g for e, g in zip(regression.residuals(theta), gain, strict=True)])
     moving = np.concatenate(regression.moving)

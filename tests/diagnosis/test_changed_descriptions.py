@@ -12,6 +12,7 @@ from modelgen.description import Arm, DirectDrive, EffectUse, Joint
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.columns import slopes
 from modelgen.diagnosis.pipeline import diagnose
+from modelgen.diagnosis.selection.refit import TURNS, _towards
 from modelgen.effects import CATALOGUE
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import build_model
@@ -107,3 +108,16 @@ def test_a_torque_constant_that_grows_is_no_saturation() -> None:
         for name, estimate in cause.parameters.items():
             assert bounds[name][0] <= estimate.value <= bounds[name][1]
     assert "torque_constant_saturation" not in [c.effect for c in found.causes]
+
+
+@pytest.mark.parametrize("bend", [0.9, 1.5])
+def test_secants_that_swing_come_to_rest(bend: float) -> None:
+    """What is estimated at x is -bend (1 + x), as of a reciprocal: by itself it swings on and on."""
+    true = -bend / (1.0 + bend)
+    at, way, plain = np.zeros(0), np.zeros(0), 0.0
+    for _ in range(TURNS):
+        found = -bend * (1.0 + (at if len(at) else np.zeros(1)))
+        at, way = _towards(found, at, way)
+        plain = -bend * (1.0 + plain)
+    assert abs(at[0] - true) < 0.01 * abs(true)
+    assert abs(plain - true) > 0.3 * abs(true)

@@ -26,7 +26,6 @@ from modelgen.diagnosis.candidates import (
 )
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.selection import COARSE, Cause, Selection, alternatives
-from modelgen.effects import Presence
 from modelgen.errors import InputError
 from modelgen.evaluation import Motion
 from modelgen.functions import Model
@@ -93,7 +92,7 @@ class _Motion:
     def span(self, c: Candidate, values: Values) -> Array | None:
         """An orthonormal basis of what the candidate adds; None where the motion is no motion for it."""
         effect = c.definition  # states follow one another
-        if effect.held(c.fixed) or effect.presence is Presence.SOME or effect.periodic:
+        if effect.held(c.fixed) or c.coming or effect.periodic:
             return None
         given = {**c.fixed, **values}
         try:
