@@ -28,7 +28,7 @@ CHART = re.compile(
     re.DOTALL,
 )
 LAW = re.compile(r"<figure><figcaption>(.*?)</figcaption>(<svg class=\"chart\".*?)</figure>", re.DOTALL)
-ROLES = ("s4", "before", "after")  # colours of the bars: published, as described, extended
+ROLES = ("measured", "before", "after")  # looks of the bars: published, as described, extended
 
 
 def law(folder: Path, number: int) -> str:
@@ -68,10 +68,7 @@ def bars(rows: dict[str, list[float]], joints: list[str], unit: str) -> str:
         left = 40 + group * j
         for k, (role, values) in enumerate(zip(ROLES, rows.values(), strict=True)):
             high = (HEIGHT - 44) * values[j] / highest
-            parts.append(
-                f'<rect x="{left + wide * k:.1f}" y="{HEIGHT - 24 - high:.1f}" width="{wide - 1:.1f}" '
-                f'height="{high:.1f}" style="fill: var(--{role})"/>'
-            )
+            parts.append(_bar(role, left + wide * k, HEIGHT - 24 - high, wide - 1.0, high))
         middle = left + 0.4 * group
         parts.append(
             f'<text class="tick" x="{middle:.1f}" y="{HEIGHT - 8}" text-anchor="middle">'
@@ -79,6 +76,15 @@ def bars(rows: dict[str, list[float]], joints: list[str], unit: str) -> str:
         )
     key = [(f"bar {role}", name) for role, name in zip(ROLES, rows, strict=True)]
     return _alone(f"RMSE on the held-out record [{unit}]", "".join(parts), key)
+
+
+def _bar(role: str, x: float, y: float, wide: float, high: float) -> str:
+    """A bar, light, dark or hollow: on paper without colours too."""
+    look = f"fill: var(--{role})"
+    if role == "after":
+        x, y, wide, high = x + 1.0, y + 1.0, wide - 2.0, max(high - 1.0, 0.5)
+        look = f"fill: none; stroke: var(--{role}); stroke-width: 2px"
+    return f'<rect x="{x:.1f}" y="{y:.1f}" width="{wide:.1f}" height="{high:.1f}" style="{look}"/>'
 
 
 def ur10() -> str:
@@ -106,7 +112,7 @@ def _alone(title: str, chart: str, key: list[tuple[str, str]]) -> str:
     for role, label in key:
         dots, bar = role.startswith("dots"), role.removeprefix("bar ")
         if bar != role:  # as the bars are: an area of their colour
-            parts.append(f'<rect x="{at + 7:g}" y="26" width="13" height="11" style="fill: var(--{bar})"/>')
+            parts.append(_bar(bar, at + 7, 26.0, 13.0, 11.0))
         else:
             parts.append(f'<path class="{role}" d="M{at + (10 if dots else 0):g} 32h{0 if dots else 20}"/>')
         parts.append(f'<text class="label" x="{at + 26:g}" y="36">{escape(label)}</text>')

@@ -3,6 +3,7 @@
 from modelgen.charts.chart import ROLES, Band, Chart, Curve, labels
 from modelgen.charts.drawn import drawn
 from modelgen.charts.intervals import Interval, intervals
+from modelgen.charts.paths import mark
 from modelgen.charts.sheet import sheet
 from modelgen.charts.ticks import number, ticks
 
@@ -15,6 +16,7 @@ __all__ = [
     "drawn",
     "intervals",
     "labels",
+    "mark",
     "number",
     "sheet",
     "ticks",

@@ -58,7 +58,7 @@ def drawn(chart: Chart, size: tuple[int, int] = (WIDTH, HEIGHT)) -> str:
         )
     for curve in chart.curves:
         x, y = across(chart.along(curve.x)), down(chart.along(curve.y))
-        path = dots(x, y) if curve.dots else line(x, y)
+        path = dots(x, y, curve.role) if curve.dots else line(x, y)
         kind = "dots" if curve.dots else "line"
         parts.append(f'<path class="{kind} {curve.role}" transform="scale(.1)" d="{path}"/>')
     parts.append("</g></svg>")

@@ -6,6 +6,7 @@ import numpy as np
 
 from modelgen.numeric import Array
 
+TRIANGLES = ("after", "law")  # roles whose points lie among the dots of another
 MOST = 2400  # points of a curve; of more, the least and the largest of equal parts are drawn
 
 
@@ -25,11 +26,20 @@ def line(x: Array, y: Array) -> str:
     return "".join(parts)
 
 
-def dots(x: Array, y: Array) -> str:
-    """Points (N,) [pixel] as lines of no length, which round ends make dots."""
+def dots(x: Array, y: Array, role: str = "") -> str:
+    """Points (N,) [pixel], each with the mark of its role."""
     known = np.isfinite(x) & np.isfinite(y)
     places = np.rint(10.0 * np.stack([x[known], y[known]], axis=1)).astype(np.int64)
-    return "".join(f"M{a} {b}h0" for a, b in places.tolist())
+    return "".join(mark(role, a, b) for a, b in places.tolist())
+
+
+def mark(role: str, x: float, y: float, pixel: float = 10.0) -> str:
+    """A point at a place, in units of which a pixel has so many: a triangle for what is no dot in grey
+    too, else a line of no length, which round ends make a dot.
+    """
+    if role not in TRIANGLES:
+        return f"M{x:.9g} {y:.9g}h0"
+    return f"M{x:.9g} {y - 3.3 * pixel:.9g}l{2.9 * pixel:g} {5.0 * pixel:g}h{-5.8 * pixel:g}z"
 
 
 def thinned(x: Array, y: Array, most: int = MOST) -> tuple[Array, Array]:

@@ -7,6 +7,7 @@ from html import escape
 
 from modelgen.charts.chart import Chart, labels
 from modelgen.charts.drawn import HEIGHT, WIDTH, drawn
+from modelgen.charts.paths import mark
 from modelgen.resources import templates_folder
 
 _LETTER, _LINE, _STRIP, _TITLE = 6.8, 18, 8, 18
@@ -44,10 +45,8 @@ def _legend(entries: Sequence[tuple[str, str, bool]], width: int) -> tuple[list[
         if at > 10.0 and at + room > width:
             at, lines = 10.0, lines + 1
         y = _LINE * lines
-        parts.append(
-            f'<path class="{"dots" if dotted else "line"} {role}" '
-            f'd="M{at + (10 if dotted else 0):g} {y - 4}h{0 if dotted else 22}"/>'
-        )
+        path = mark(role, at + 10, y - 4, 1.0) if dotted else f"M{at:g} {y - 4}h22"
+        parts.append(f'<path class="{"dots" if dotted else "line"} {role}" d="{path}"/>')
         parts.append(f'<text class="label" x="{at + 28:g}" y="{y}">{escape(label)}</text>')
         at += room + 22
     return parts, lines

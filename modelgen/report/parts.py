@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from modelgen.charts import Chart, drawn, labels
+from modelgen.charts import Chart, drawn, labels, mark
 from modelgen.resources import templates_folder
 
 _ANSWERS = {"yes": "passed", "no": "failed", "unasked": "not asked"}
@@ -124,7 +124,7 @@ class Block(Part):
                 "label": label,
                 "band": role == "noise",
                 "look": "" if role == "noise" else f"{'dots' if dotted else 'line'} {role}",
-                "path": "M13 5h0" if dotted else "M1 5h24",
+                "path": mark(role, 13, 5, 1.0) if dotted else "M1 5h24",
             }
             for role, label, dotted in self.legend
         ]

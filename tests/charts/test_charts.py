@@ -12,6 +12,7 @@ from modelgen.charts import Band, Chart, Curve, Interval, drawn, intervals, numb
 
 SVG = "{http://www.w3.org/2000/svg}"
 NUMBERS = re.compile(r"-?\d+")
+NUMBERS_OF_A_PATH = re.compile(r"-?[\d.]+")
 
 
 def chart(x: np.ndarray, y: np.ndarray, **more: object) -> Chart:
@@ -165,3 +166,34 @@ def test_an_interval_lies_about_its_value_and_beside_what_was_expected() -> None
     pixels_per_ampere = (spans[0][1] - spans[0][0]) / 1.0
     assert (at[0] - rings[0]) / pixels_per_ampere == pytest.approx(1.0, abs=0.02)
     assert (at[0] - at[1]) / pixels_per_ampere == pytest.approx(3.0, abs=0.02)
+
+
+def test_what_is_compared_is_told_apart_without_colours() -> None:
+    """Points have other outlines, in the chart as in the legend; no two lines have the same dashes."""
+    x = np.array([0.0, 1.0, 2.0])
+    roles = ("before", "after")
+    text = sheet(
+        [Chart("one", "speed [rad/s]", "r [A]", [Curve(x, x, role, role, dots=True) for role in roles])], 1
+    )
+    forms = {}
+    for role in roles:
+        drawn_ones = re.findall(rf'<path class="dots {role}"[^>]* d="([^"]*)"', text)
+        assert len(drawn_ones) == 2
+        legend, curve = (
+            [p.partition("h" if "l" not in p else "l")[2] for p in d.split("M")[1:]] for d in drawn_ones
+        )
+        assert len(curve) == 3
+        assert len(set(curve)) == 1
+        steps = [NUMBERS_OF_A_PATH.findall(form) for form in (legend[0], curve[0])]
+        assert [10.0 * float(v) for v in steps[0]] == [float(v) for v in steps[1]]
+        forms[role] = curve[0]
+    assert forms["before"] != forms["after"]
+    style = text[: text.index("</style>")]
+    dashes = {
+        role: "".join(re.findall(rf"\.{role} {{[^}}]*stroke-dasharray: ([^;}}]*)", style))
+        for role in ("before", "after", *(f"s{k}" for k in range(7)))
+    }
+    assert not dashes["before"]
+    assert dashes["after"]
+    lines = [dashes[f"s{k}"].strip() for k in range(7)]
+    assert len(set(lines)) == 7

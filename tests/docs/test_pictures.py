@@ -10,8 +10,15 @@ from xml.etree import ElementTree
 
 import pytest
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
 NAMES = sorted(path.name for path in (DOCS / "case-studies").glob("*.svg"))
+CHARTS = sorted(
+    path
+    for folder in (DOCS, ROOT / "examples" / "diagnosis")
+    for path in folder.rglob("*.svg")
+    if 'class="sheet"' in path.read_text(encoding="utf-8")
+)
 
 
 def script(name: str) -> ModuleType:
@@ -63,3 +70,14 @@ def test_pictures_of_the_case_studies_have_day_and_night(name: str) -> None:
     assert "prefers-color-scheme: dark" in text
     assert re.search(r'<rect class="paper" width="\d+" height="\d+"/>', text)
     assert name in (DOCS / "case-studies.md").read_text(encoding="utf-8")
+
+
+def test_charts_that_are_kept_look_as_those_that_are_drawn() -> None:
+    """Their style is today's, and points of before and after have forms of their own."""
+    style = (ROOT / "templates" / "report" / "chart.css").read_text(encoding="utf-8")
+    assert len(CHARTS) > 80
+    for path in CHARTS:
+        text = path.read_text(encoding="utf-8")
+        assert text.split("<style>\n", 1)[1].split("</style>", 1)[0] == style, path
+        for role, form in re.findall(r'<path class="dots (before|after)"[^>]* d="M[\d. -]+([^"M]*)', text):
+            assert form.endswith("z") == (role == "after"), path
