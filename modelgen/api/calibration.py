@@ -13,6 +13,7 @@ from modelgen.api.results import Named, Result, Table
 from modelgen.calibration import Calibration as Found
 from modelgen.calibration import Estimate, calibrated_yaml
 from modelgen.calibration.workflow import calibrate_log, data
+from modelgen.charts import apart
 from modelgen.description import Arm, loads
 from modelgen.effects import known_effects
 from modelgen.options import CalibrationOptions, changed
@@ -90,21 +91,22 @@ class Calibration(Result):
             In the order in which they are printed.
         """
         c = self.found
+        before, after = apart(c.rms_before, c.rms_after, 4)
         parts: list[str | Table] = [
             f"{self.arm.name}, {joint_name(self.arm, c.joint)}: "
-            f"RMSE of the angle {c.rms_before:z.4g} -> {c.rms_after:z.4g} rad "
+            f"RMSE of the angle {before} -> {after} rad "
             f"({c.improvement_percent:z.1f} % better), {len(c.motor)} samples"
         ]
         if c.after.rev != c.before.rev:
             left = c.candidates[c.before.rev]
             parts.append(f"rev is {c.after.rev:+d}: the other branch leaves {left:z.4g} rad")
-        rows = [[e.name, f"{e.before:z.6g}", f"{e.value:z.6g}", f"{e.std:z.2g}", e.unit] for e in c.estimates]
+        rows = [[e.name, *apart(e.before, e.value, 6), f"{e.std:z.2g}", e.unit] for e in c.estimates]
         sides = {"": "left", "described": "right", "calibrated": "right", "std": "right", "unit": "left"}
         return [*parts, Table("", sides, rows), *(f"not determined: {words}" for words in c.weak)]
 
     def __repr__(self) -> str:
         c = self.found
-        errors = f"RMSE {c.rms_before:z.4g} -> {c.rms_after:z.4g} rad"
+        errors = f"RMSE {' -> '.join(apart(c.rms_before, c.rms_after, 4))} rad"
         return f"Calibration of {self.arm.name}, {joint_name(self.arm, c.joint)}: {errors}"
 
 

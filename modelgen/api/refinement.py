@@ -11,6 +11,7 @@ from typing import Any
 from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
+from modelgen.charts import apart
 from modelgen.dataset import parse
 from modelgen.description import Arm
 from modelgen.functions.parameters_file import parameters_yaml
@@ -93,16 +94,19 @@ class Refinement(Result):
         rows = [
             [
                 x.name,
-                f"{x.start:z.5g}",
-                f"{x.value:z.5g}",
+                *apart(x.start, x.value, 5),
                 "held" if x.std is None else f"{x.std:z.2g}",
                 x.unit,
             ]
             for x in self.found.parameters
         ]
-        keys = ("f_gof_before", "f_gof", "rmse_before", "rmse")
         joints = [
-            [name, *(f"{j[k]:z.4g}" for k in keys), j["unit"]]
+            [
+                name,
+                *apart(j["f_gof_before"], j["f_gof"], 4),
+                *apart(j["rmse_before"], j["rmse"], 4),
+                j["unit"],
+            ]
             for name, j in zip(self.arm.coordinate_names, self.to_json()["joints"], strict=True)
         ]
         headings = ("joint", "F_gof % before", "after", "RMSE before", "after ", "unit")

@@ -5,7 +5,7 @@ from modelgen.charts.drawn import drawn
 from modelgen.charts.intervals import Interval, intervals
 from modelgen.charts.paths import mark
 from modelgen.charts.sheet import sheet
-from modelgen.charts.ticks import number, ticks
+from modelgen.charts.ticks import apart, number, ticks
 
 __all__ = [
     "ROLES",
@@ -13,6 +13,7 @@ __all__ = [
     "Chart",
     "Curve",
     "Interval",
+    "apart",
     "drawn",
     "intervals",
     "labels",

@@ -7,6 +7,7 @@ import math
 _LEAST = 3  # ticks of an axis
 _WIDER = 2.0  # than asked for a step may be
 _DIGIT = 7.0  # px, of a digit at the most
+_MOST = 9  # digits of one of two numbers that hardly differ
 _LARGE, _SMALL = 1e5, 1e-4  # beyond which numbers are written with an exponent
 
 
@@ -40,6 +41,15 @@ def anchored(at: float, word: str, width: float) -> str:
     if at + half > width:
         return f'x="{width:g}" text-anchor="end"'
     return 'x="0" text-anchor="start"' if at < half else f'x="{at:.1f}" text-anchor="middle"'
+
+
+def apart(before: float, after: float, digits: int = 3) -> tuple[str, str]:
+    """Two numbers in a row with that many digits, or with as many more as tell them apart."""
+    for more in range(digits, _MOST + 1):
+        texts = number(before, more), number(after, more)
+        if texts[0] != texts[1]:
+            return texts
+    return number(before, digits), number(after, digits)
 
 
 def number(value: float, digits: int = 3) -> str:

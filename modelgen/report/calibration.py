@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from modelgen.calibration import Calibration
-from modelgen.charts import Chart, Curve, number, sheet
+from modelgen.calibration import Calibration, Estimate
+from modelgen.charts import Chart, Curve, Interval, apart, number, sheet
 from modelgen.description import Arm
 from modelgen.report.call import WHERE, Call
-from modelgen.report.page import Command, Grid, Part, Parts, Run, Text, block, page
-from modelgen.report.words import joint_name, sentence
+from modelgen.report.page import Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
+from modelgen.report.words import joint_name, listed, sentence
 
 _BEFORE, _AFTER = "as described", "calibrated"
+_WIDE = 1.96  # standard deviations of a 95 % interval
+_MM = {"m": (1e3, "mm")}  # as which lengths are said
 
 
 def charts(arm: Arm, c: Calibration) -> list[Chart]:
@@ -54,7 +56,7 @@ def picture(arm: Arm, c: Calibration) -> str:
 def report(arm: Arm, c: Calibration, call: Call) -> str:
     """HTML that needs nothing beside it."""
     name = joint_name(arm, c.joint)
-    before, after = (number(float(np.degrees(x))) for x in (c.rms_before, c.rms_after))
+    before, after = apart(float(np.degrees(c.rms_before)), float(np.degrees(c.rms_after)))
     said = f"The lever of {name} explains the angle to {after} deg instead of {before} deg (RMSE): "
     said += f"{c.improvement_percent:z.0f} % less, over {len(c.motor)} samples."
     branch = []
@@ -67,25 +69,53 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
     rows = [
         (
             e.name,
-            f"{e.before:z.6g}",
-            f"{e.value:z.6g}",
-            f"{e.std:z.2g}",
+            *apart(size * e.before, size * e.value, 5),
+            number(size * e.std, 2),
             f"{(e.value - e.before) / e.std:+z.1f}" if e.std > 0 else "",
-            e.unit,
+            unit,
         )
-        for e in c.estimates
+        for e, size, unit in _sized(c)
     ]
     answers: Parts = [
         ("What was found", [Text(said), *branch]),
         ("Described and calibrated", [Grid("Lever as described and calibrated", heads, rows, folds=True)]),
-        ("What is uncertain", weak or [Text("The angles and the measured lengths determine every value.")]),
+        ("What is uncertain", [Text(_uncertain(c)), *weak]),
         (
             "What to do next",
             _following(call),
         ),
     ]
-    sections: Parts = [("Measured angles and both levers", [block(charts(arm, c))])]
+    sections: Parts = [
+        ("Values", _pictured(c)),
+        ("Measured angles and both levers", [block(charts(arm, c))]),
+    ]
     return page(f"{arm.name}: lever of {name}", "Calibration", answers, sections)
+
+
+def _sized(c: Calibration) -> list[tuple[Estimate, float, str]]:
+    """Estimates with the factor and the unit in which they are said: lengths in mm."""
+    return [(e, *_MM.get(e.unit, (1.0, e.unit))) for e in c.estimates]
+
+
+def _uncertain(c: Calibration) -> str:
+    """Every value's interval in its unit."""
+    said = listed(f"{e.name} ± {number(_WIDE * size * e.std, 2)} {unit}" for e, size, unit in _sized(c))
+    more = "" if c.weak else " The angles and the measured lengths determine every value."
+    return f"95 % intervals: {said}.{more}"
+
+
+def _pictured(c: Calibration) -> list[Part | str]:
+    """A picture of every unit: what a value moved by, with its interval, beside the description."""
+    groups: dict[str, list[Interval]] = {}
+    for e, size, unit in _sized(c):
+        moved, half = size * (e.value - e.before), _WIDE * size * e.std
+        groups.setdefault(unit, []).append(Interval(e.name, moved, moved - half, moved + half, 0.0))
+    said = "How far each value is from the description: a dot with its 95 % interval, a ring as described."
+    words = "How far each value is from the description, with its interval."
+    return [
+        Text(said),
+        Block([pictured(rows, f"found less described [{unit}]", words) for unit, rows in groups.items()]),
+    ]
 
 
 def _following(call: Call) -> list[Part | str]:

@@ -6,14 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.charts import Chart, Curve, number, sheet
+from modelgen.charts import Chart, Curve, Interval, apart, number, sheet
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
 from modelgen.report.call import WHERE, Call
-from modelgen.report.page import Command, Grid, Part, Parts, Run, Text, block, page
+from modelgen.report.page import Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
 _FAR = 2.0  # standard deviations
+_WIDE = 1.96  # standard deviations of a 95 % interval
+_NAMED = 6  # parameters that moved, in a sentence
 
 
 def motion(found: Refinement) -> list[Chart]:
@@ -25,11 +27,11 @@ def motion(found: Refinement) -> list[Chart]:
         unit = arm.coordinate_units[j]
         curves = [
             Curve(t, measured[:, j], "measured", "measured"),
-            Curve(t, simulated[:, j], "after", "simulated, refined"),
+            Curve(t, simulated[:, j], "before", "simulated, refined"),
         ]
         text = f"Position of {name}, measured and simulated."
         charts.append(Chart(name, "time [s]", f"position [{unit}]", curves, text, zoom=True))
-        error = [Curve(t, simulated[:, j] - measured[:, j], "after", "simulated, refined")]
+        error = [Curve(t, simulated[:, j] - measured[:, j], "before", "simulated, refined")]
         text = f"Simulated less measured position of {name}."
         charts.append(Chart(f"{name}, error", "time [s]", f"error [{unit}]", error, text, zoom=True))
     return charts
@@ -48,10 +50,8 @@ def report(found: Refinement, call: Call) -> str:
     rows = [
         (
             joint,
-            f"{found.before.f_gof[k]:z.2f}",
-            f"{found.after.f_gof[k]:z.2f}",
-            f"{number(found.before.rmse[k])} {units[k]}",
-            f"{number(found.after.rmse[k])} {units[k]}",
+            *apart(found.before.f_gof[k], found.after.f_gof[k], 4),
+            *(f"{x} {units[k]}" for x in apart(found.before.rmse[k], found.after.rmse[k])),
         )
         for k, joint in enumerate(names)
     ]
@@ -86,8 +86,7 @@ def report(found: Refinement, call: Call) -> str:
     table = [
         (
             x.name,
-            f"{x.start:z.5g}",
-            f"{x.value:z.5g}",
+            *apart(x.start, x.value, 5),
             "held" if x.std is None else f"{x.std:z.2g}",
             "" if not x.std else f"{(x.value - x.start) / x.std:+z.1f}",
             x.unit,
@@ -99,7 +98,7 @@ def report(found: Refinement, call: Call) -> str:
     columns += [("moved by std", "right"), ("unit", "left"), ("std moves the motion by (RMS)", "left")]
     sections: Parts = [
         ("Measured against simulated motion", [block(motion(found))]),
-        ("Parameters", [Grid("Parameters", columns, table, folds=True)]),
+        ("Parameters", [*_pictured(found), Grid("Parameters", columns, table, folds=True)]),
     ]
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
 
@@ -139,9 +138,37 @@ def _moved(free: list[Any]) -> str:
     )
     if not far:
         return f"No parameter left its start by more than {_FAR:g} standard deviations."
-    said = listed(f"{x.name} {number(x.start)} → {number(x.value)} {x.unit}".rstrip() for x in far[:6])
-    more = f", and {len(far) - 6} more" if len(far) > 6 else ""
+    said = listed(f"{x.name} {' → '.join(apart(x.start, x.value))} {x.unit}".rstrip() for x in far[:_NAMED])
+    more = f", and {len(far) - _NAMED} more" if len(far) > _NAMED else ""
     return f"By more than {_FAR:g} standard deviations: {said}{more}."
+
+
+def _pictured(found: Refinement) -> list[Part]:
+    """A picture of every unit of motion: what a parameter moved by, with its interval, beside its start."""
+    arm = found.plant.arm
+    groups: dict[str, list[Interval]] = {}
+    for x in found.parameters:
+        if not x.std:
+            continue
+        size = x.moves / x.std
+        moved, half = (x.value - x.start) * size, _WIDE * x.moves
+        groups.setdefault(arm.coordinate_units[x.shown_by], []).append(
+            Interval(x.name, moved, moved - half, moved + half, 0.0)
+        )
+    charts = [
+        pictured(
+            rows,
+            f"change of the motion, RMS [{unit}]",
+            "What each parameter moved by, in the motion, with its interval and its start at zero.",
+            "" if len(groups) == 1 else f"parameters that show in {unit}",
+        )
+        for unit, rows in groups.items()
+    ]
+    said = (
+        "How far each parameter went from its start, times what one unit of it moves the motion by (RMS), "
+        "where it shows most: a dot with its 95 % interval, and a ring at the start."
+    )
+    return [Text(said), Block(charts)] if charts else []
 
 
 def _uncertain(found: Refinement) -> list[Part]:

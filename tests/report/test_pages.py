@@ -15,6 +15,7 @@ from playwright.sync_api import Locator
 
 import modelgen as mg
 from modelgen.api.identification import Identification
+from modelgen.api.results import Table
 from modelgen.calibration.lever import lever_of
 from modelgen.fleet.overview import overview
 
@@ -298,3 +299,51 @@ def test_what_is_uncertain_of_a_refinement_is_said_in_its_motion() -> None:
         assert x.moves < 1e-3  # rad, the noise: so many samples tell more than one
     page = found.files()["report.html"]
     assert "Most uncertain in the motion is" in page
+
+
+@pytest.mark.parametrize("name", ["identify", "refine", "calibrate"])
+def test_parameters_stand_with_their_intervals_in_a_picture(name: str, pages: Mapping[str, Path]) -> None:
+    """A dot within its interval for each, beside a ring at what was known before."""
+    with opened(pages[name]) as page:
+        pictures = page.locator("svg.rows")
+        units = {"calibrate": ["[mm]", "[rad]"], "refine": ["[rad]"], "identify": ["[A]"]}[name]
+        labels = [text.split()[-1] for text in pictures.locator(".label").all_text_contents()]
+        assert labels == units
+        for picture in pictures.all():
+            spans, dots = picture.locator(".span").all(), picture.locator(".dot").all()
+            assert len(spans) == len(dots) > 0
+            assert picture.locator(".ring").count() == (0 if name == "identify" else len(dots))
+            for span, dot in zip(spans, dots, strict=True):
+                low, high = re.findall(r"[MH]([\d.]+)", span.get_attribute("d") or "")
+                assert float(low) < float(dot.get_attribute("cx") or "nan") < float(high)
+
+
+def test_what_moved_is_written_with_the_digits_that_tell_it_from_before(tmp_path: Path) -> None:
+    arm = mg.load_arms()["gravity_link2"]
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
+    result = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
+    (own,) = [x for x in result.found.parameters if x.name == "FV1"]
+    moved = replace(own, start=2.02481, value=2.02484, std=1e-6)
+    others = [x for x in result.found.parameters if x.name != "FV1"]
+    result.found = replace(result.found, parameters=(moved, *others))
+    text = result.files()["report.html"]
+    assert "FV1 2.02481 → 2.02484 " in text
+    assert ">2.02481</td>" in text
+    assert ">2.02484</td>" in text
+    (parameters, _) = result.shown()
+    assert isinstance(parameters, Table)
+    assert ["FV1", "2.02481", "2.02484"] in [row[:3] for row in parameters.rows]
+
+
+def test_what_a_calibration_leaves_open_is_said_in_its_units(pages: Mapping[str, Path]) -> None:
+    with opened(pages["calibrate"]) as page:
+        said = page.locator("dl.answer > div").nth(2).inner_text()
+        values = page.get_by_role("region", name="Lever as described and calibrated")
+        stds = {
+            row.locator("td").first.inner_text(): row.locator("td").nth(3).inner_text()
+            for row in values.locator("tbody tr").all()
+        }
+    found = dict(re.findall(r"(\w+) ± ([\d.]+) (?:mm|rad)", said))
+    assert found.keys() == stds.keys()
+    for name, half in found.items():
+        assert float(half) == pytest.approx(1.96 * float(stds[name]), rel=0.06)
