@@ -10,6 +10,7 @@ from typing import Any
 from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Shown, Table
+from modelgen.charts import apart
 from modelgen.description import Arm, loads
 from modelgen.diagnosis.extended import Estimate, NamedCause
 from modelgen.diagnosis.options.thresholds import USUAL
@@ -128,8 +129,7 @@ class Diagnosis(Shown):
         errors = [
             [
                 joint_name(d.arm, j + 1),
-                f"{e.before[j]:z.4g}",
-                f"{e.after[j]:z.4g}",
+                *apart(e.before[j], e.after[j], 4),
                 f"{e.gain[j]:z.1f}",
                 interval(e.low[j], e.high[j]),
             ]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from modelgen.charts import number
+from modelgen.charts import apart, number
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects.placement import titled
@@ -32,6 +32,8 @@ _ERRORS = {
     False: "RMS of the error, of that of the effort,",
 }
 _NOTHING = "Nothing is named, so nothing is gained. The model as described misses, on the test record:"
+_CHECKS = "Checks of each cause"
+_ROWS = 2  # of a table that a phone has room for beside the other answers
 _SHOWN = 4  # causes in full: more would leave the other answers no place on the first screen
 _SUSPECTS = 2  # in full, where nothing is named
 
@@ -85,7 +87,8 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
             )
             for k in by_worth(d)
         ]
-        yield Checks("Checks of each cause", rows)
+        checks = Checks(_CHECKS, rows)
+        yield Folded(_CHECKS, [checks], narrow=True) if len(rows) > _ROWS else checks
         yield Text([Run(_passed(d.causes)), *_doubted(d)])
     if len(d.causes) == 1 and doubted(d):
         yield Text(_doubted(d))
@@ -97,7 +100,12 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
         title = "And suspected too" if shown else "Suspected, and not named"
         names = _names(d, d.suspects[shown:])
         yield Folded(f"{title}: {names}", [part for parts in suspects[shown:] for part in parts])
-    yield Text(f"{_beside(d)} {remains(d)}".strip(), "quiet") if d.causes else Text(remains(d))
+    if not d.causes:
+        yield Text(remains(d))
+        return
+    f, left = d.lack_of_fit, Text(f"{_beside(d)} {remains(d)}".strip(), "quiet")
+    size = "" if f is None else f": lack of fit {f.statistic:z.2f}, threshold {f.threshold:z.2f}"
+    yield Folded(f"What is left{size}", [left], narrow=True) if len(d.causes) > 1 else left
 
 
 def _beside(d: Diagnosis) -> str:
@@ -133,7 +141,9 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
             (f"after [{unit}]", "right"),
             ("less % (95 %)", "right"),
         )
-        yield Grid(caption, heads, _gains(d), beside=True)
+        errors = Grid(caption, heads, _gains(d), beside=True)
+        many = len(d.causes) > 1 or len(errors.rows) > _ROWS
+        yield Folded(caption, [errors], narrow=True) if many else errors
     else:
         yield Text(_NOTHING)
         rows = [(joint_name(d.arm, j), x) for j, x in enumerate(_before(d), 1)]
@@ -142,9 +152,9 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
     how = "; intervals from a block bootstrap" if known else "; the record is too short for intervals"
     how = how if d.causes else ""
     measured = _ERRORS[d.test.prepared.input is None]
-    yield Text(
-        f"{measured} on the test record, which nothing of the choice or the fit has seen{how}.", "quiet"
-    )
+    said = f"{measured} on the test record, which nothing of the choice or the fit has seen{how}."
+    note = Text(said, "quiet")
+    yield Folded("How the error was measured", [note], narrow=True) if d.causes else note
 
 
 def _before(d: Diagnosis) -> list[tuple[str, str]]:
@@ -187,9 +197,10 @@ def _gains(d: Diagnosis) -> list[tuple[str, tuple[str, str], str, tuple[str, str
     return [
         (
             joint_name(d.arm, j + 1),
-            before,
-            number(e.after[j]),
+            (value, of),
+            after,
             (f"{e.gain[j]:z.1f}", interval(e.low[j], e.high[j], "({})")),
         )
-        for j, before in enumerate(_before(d))
+        for j, (_, of) in enumerate(_before(d))
+        for value, after in [apart(e.before[j], e.after[j])]
     ]

@@ -10,7 +10,8 @@ import numpy as np
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import Found, titled
-from modelgen.report.call import WHERE, Call
+from modelgen.options import words_of
+from modelgen.report.call import WHERE, Call, command
 from modelgen.report.diagnosis_sentences import harmful
 from modelgen.report.experiment import followed
 from modelgen.report.words import listed, place_of
@@ -72,6 +73,26 @@ def carried(d: Diagnosis, call: Call) -> list[Step]:
         Step(f"Fit {what}, to the records, {WHERE}:", fit),
         Step("Then generate its code:", _generating(d, call, description, REDUCED)),
     ]
+
+
+def replaying(d: Diagnosis, call: Call) -> list[Step]:
+    """The model that the diagnosis offers, simulated along the test record; none where nothing is named.
+
+    Where a cause makes that record worse, it is the model without it, once that is fitted.
+    """
+    if not d.causes:
+        return []
+    worse, folder = bool(harmful(d)), ""
+    description = call.beside(f"{d.arm.name}_extended.yaml")
+    text = "the extended model against the test record:"
+    if worse:
+        reduced, folder = reduced_name(d), f"{REDUCED}/"
+        description = call.beside(reduced) if reduced else call.description
+        text = "Once that is fitted, it against the test record:"
+    words = ["--parameters", call.beside(f"{folder}{d.arm.name}_parameters.yaml")]
+    words += [word for log in call.test for word in ("--log", log)]
+    words += words_of(call.options, ("mapping",))
+    return [Step(text, command("simulate", description, "" if description else d.arm.name, *words))]
 
 
 def reduced_name(d: Diagnosis) -> str:

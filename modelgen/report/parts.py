@@ -172,7 +172,8 @@ class Checks(Part):
 class Folded(Part):
     """What is folded away until it is asked for.
 
-    screen: not on paper, and no section of the page. printed: whether it is on paper, unfolded.
+    screen: not on paper, and no section of the page. printed: whether it is on paper, unfolded. narrow: it is
+    folded on narrow screens alone.
     """
 
     kind: ClassVar[str] = "folded"
@@ -180,11 +181,15 @@ class Folded(Part):
     parts: Sequence[Part | str]
     screen: bool = False
     printed: bool = True
+    narrow: bool = False
 
     def values(self) -> Mapping[str, Any]:
         """For the template."""
         look = "section screen" if self.screen else "section" if self.printed else "section unprinted"
-        return {"title": self.title, "parts": html(self.parts), "look": look}
+        if self.narrow:
+            beside = any(isinstance(p, Grid) and p.beside for p in self.parts)
+            look += " narrow beside" if beside else " narrow"
+        return {"title": self.title, "parts": html(self.parts), "look": look, "narrow": self.narrow}
 
 
 def _signed(key: str, marks: Sequence[tuple[str, str, str]]) -> list[dict[str, str]]:

@@ -24,6 +24,13 @@ for (const pre of document.querySelectorAll("pre")) {
 addEventListener("beforeprint", () => {
   for (const one of document.querySelectorAll("details:not(.screen)")) one.open = true;
 });
+// What has its place on a wide screen is folded away on a narrow one.
+const narrow = matchMedia("screen and (max-width: 899px)");
+function fit() {
+  for (const one of document.querySelectorAll("details.narrow")) one.open = !narrow.matches;
+}
+narrow.addEventListener("change", fit);
+fit();
 document.addEventListener("keydown", e => {
   if (e.key === "Escape") document.activeElement.closest(".marks")?.ownerDocument.activeElement.blur();
 });

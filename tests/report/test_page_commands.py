@@ -21,6 +21,7 @@ from modelgen.calibration.lever import lever_of
 from modelgen.cli.app import app
 from modelgen.options import DiagnosisOptions, ExcitationOptions, words_of
 from modelgen.report.call import Call
+from modelgen.report.following import replaying
 
 # The arm of diagnosis_support, with the effort in mA and without a limit of speed.
 DESCRIPTION = """schema: 1
@@ -146,6 +147,12 @@ def test_a_cause_that_harms_the_test_record_is_left_out_of_what_is_proposed(benc
         run(identify, bench)
         run([*generate, "--out", f"{folder}/code"], bench)
         assert (bench / folder / "code" / "bench" / "include" / "bench.h").is_file()
+        with chdir(bench):  # what the terminal offers last
+            (step,) = replaying(found, replace(d.call, folder=Path(folder)))
+        words = shlex.split(step.command)[1:]
+        assert words[:2] == ["simulate", description]
+        assert parsed(words, bench)["log"] == logs[2:]
+        run(words, bench)
     assert not (bench / "alone" / "bench_reduced.yaml").exists()
     reduced = mg.load_arms(bench / "beside others" / "bench_reduced.yaml")["bench"]
     assert [[u.name for u in j.effects].count("friction_offset") for j in reduced.joints] == [0, 1]
@@ -156,6 +163,8 @@ def test_a_cause_that_harms_the_test_record_is_left_out_of_what_is_proposed(benc
     assert not (bench / "beside others" / "bench_reduced.yaml").exists()
     first, *_ = commands(bench / "beside others" / "report.html")
     assert first[:2] == ["generate", "beside others/bench_extended.yaml"]
+    (step,) = replaying(d.found, replace(d.call, folder=Path("beside others")))
+    assert shlex.split(step.command)[1:3] == ["simulate", "beside others/bench_extended.yaml"]
 
 
 def test_an_arm_without_limits_gets_those_of_its_records(bench: Path) -> None:

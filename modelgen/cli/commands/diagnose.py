@@ -37,8 +37,7 @@ def diagnose(
     from modelgen.cli.output import print_result, progress_bar, say
     from modelgen.files import check_folder
     from modelgen.generation.folders import check_output
-    from modelgen.report.call import command
-    from modelgen.report.following import carried
+    from modelgen.report.following import carried, replaying
 
     found = one(arms, arm)
     check_folder("--out", out)
@@ -53,11 +52,6 @@ def diagnose(
     for line in result.details() if verbose else []:
         say(line)
     say(f"report: {out / 'report.html'}")
-    for step in carried(result.found, replace(result.call, folder=out)):
+    call = replace(result.call, folder=out)
+    for step in (*carried(result.found, call), *replaying(result.found, call)):
         say(step.text, step.command)
-    if result.causes:
-        extended = out / f"{found.name}_extended.yaml"
-        values = ["--parameters", str(out / f"{found.name}_parameters.yaml")]
-        words = [*values, *(word for log in (test or []) for word in ("--log", log))]
-        words += [] if options.mapping is None else ["--mapping", str(options.mapping)]
-        say("the extended model against the test record:", command("simulate", extended, "", *words))
