@@ -3,6 +3,7 @@
     python benchmarks/variants.py              print the tables
     python benchmarks/variants.py --accept     write benchmarks/variants.json, for the page of `make bench`
     python benchmarks/variants.py --many       with --accept or without: many states in one call alone
+    python benchmarks/variants.py --counts     the same, instructions alone: times are those of the run before
 
 The three bench arms, parameters folded in, x86-64-v3, counted by callgrind; on a Cortex-M4F where
 arm-none-eabi-gcc is installed; and many states in one call, in vectors of four. Results are compared to those
@@ -89,15 +90,18 @@ def main(arguments: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(description="Variants of the generated functions.")
     parser.add_argument("--accept", action="store_true", help="write benchmarks/variants.json")
     parser.add_argument("--many", action="store_true", help="measure many states in one call alone")
+    parser.add_argument("--counts", action="store_true", help="of many states in one call the instructions")
     given = parser.parse_args(arguments)
     if missing := [tool for tool in ("gcc", "g++", "valgrind") if shutil.which(tool) is None]:
         parser.error(f"needs {missing[0]} (Debian: build-essential, valgrind)")
     cases = {name: subject(name, _SAMPLES) for name in BENCH}
     accepted = ROOT / "benchmarks" / "variants.json"
-    whole = json.loads(accepted.read_text(encoding="utf-8")) if given.many else {"variants": compared(cases)}
+    before: dict[str, Any] = json.loads(accepted.read_text(encoding="utf-8"))
+    whole: dict[str, Any] = before if given.many or given.counts else {"variants": compared(cases)}
     for name in cases:
         (WORK / name).mkdir(parents=True, exist_ok=True)
-    whole["vectors"] = {name: packed(case, WORK / name) for name, case in cases.items()}
+    found = {name: packed(case, WORK / name, timed=not given.counts) for name, case in cases.items()}
+    whole["vectors"] = {name: before["vectors"].get(name, {}) | one for name, one in found.items()}
     print("\n".join(pages_variants.lines(whole)))
     if given.accept:
         accepted.write_text(json.dumps(whole, indent=1) + "\n", encoding="utf-8")

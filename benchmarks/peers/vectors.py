@@ -45,27 +45,25 @@ def _head(arm: str, joints: int, largest: int) -> str:
 
 
 def _calls(arm: str, functions: Mapping[str, Function]) -> dict[str, tuple[str, int]]:
-    """Each function in one state, and in many; of those the last one's result."""
-    calls = {"nothing": ("fill(q, dq, third);\n    out[0] = 0.0", 1)}
+    """Each function in one state, and in many; of those the last one's result; and what is done around it."""
+    calls: dict[str, tuple[str, int]] = {}
     for key, f in functions.items():
         names = ["third" if a.name in _THIRD else a.name for a in f.arguments]
         size = f.outputs[0].size
         calls[f"{key}_one"] = (f"{arm}_{f.name}({', '.join(names)}, out)", size)
         given = ", ".join(["N", *(f"v_{name}" for name in names), "v_out", "status"])
-        lines = [
-            "fill(q, dq, third)",
-            f"{arm}_{f.name}_batch({given})",
-            f"for (int k = 0; k < {size}; k++)\n        out[k] = v_out[k * N + N - 1]",
-        ]
-        calls[f"{key}_many"] = (";\n    ".join(lines), size)
+        before = "fill(q, dq, third)"
+        after = f"for (int k = 0; k < {size}; k++)\n        out[k] = v_out[k * N + N - 1]"
+        calls[f"{key}_many"] = (f"{before};\n    {arm}_{f.name}_batch({given});\n    {after}", size)
+        calls[f"{key}_around"] = (f"{before};\n    {after}", size)
     return calls
 
 
-def packed(case: Subject, folder: Path) -> dict[str, dict[str, dict[str, float]]]:
+def packed(case: Subject, folder: Path, *, timed: bool = True) -> dict[str, dict[str, dict[str, float]]]:
     """Instructions and nanoseconds per state of each function, states one by one and many in one call.
 
-    All that a call does is in them: sine and cosine, the tests of inputs, pivots and results. Raises
-    RuntimeError where the results differ.
+    Without `timed` the instructions alone. All that a call does is in them: sine and cosine, the tests of
+    inputs, pivots and results. Raises RuntimeError where the results differ.
     """
     folder = folder / "vectors"
     model = build_model(case.arm, LINKS_ALONE)
@@ -89,16 +87,16 @@ def packed(case: Subject, folder: Path) -> dict[str, dict[str, dict[str, float]]
         one, many = found[f"{key}_one"], found[f"{key}_many"]
         if not np.abs(many - one).max() < _AGREEMENT * np.abs(one).max():
             raise RuntimeError(f"{arm}: {key} in vectors differs")
-    counts, times = instructions(call), nanoseconds(call, _SECONDS)
-    return {
-        "instructions": _by_state(made, counts),
-        "time": _by_state(made, {key: float(np.median(blocks)) for key, blocks in times.items()}),
-    }
+    result = {"instructions": _by_state(made, instructions(call))}
+    if timed:
+        times = {key: float(np.median(blocks)) for key, blocks in nanoseconds(call, _SECONDS).items()}
+        result["time"] = _by_state(made, times)
+    return result
 
 
 def _by_state(made: Mapping[str, Function], found: Mapping[str, float]) -> dict[str, dict[str, float]]:
-    """A state's share of what was measured: what fills the arrays is no part of it."""
+    """A state's share of what was measured: what fills arrays and reads results is no part of it."""
     return {
         "one": {key: round(found[f"{key}_one"], 1) for key in made},
-        "many": {key: round((found[f"{key}_many"] - found["nothing"]) / _STATES, 1) for key in made},
+        "many": {key: round((found[f"{key}_many"] - found[f"{key}_around"]) / _STATES, 1) for key in made},
     }

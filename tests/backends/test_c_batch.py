@@ -201,6 +201,29 @@ def test_every_row_of_a_long_arms_regressor_is_found(tmp_path: Path) -> None:
 
 
 @vectors
+@pytest.mark.slow
+@pytest.mark.xdist_group("two_fingers")
+def test_states_near_every_bound_at_once_are_states(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Each input within its bound and all together beyond the sum of squares that a block is tested by."""
+    made, folder = batched("two_fingers", "default"), written("two_fingers", "default", tmp_path_factory)
+    (f,) = [f for f in made.functions if f.name == "inverse_dynamics"]
+    called = Called(library(folder, "two_fingers", "double", 32), "two_fingers", f, "float64")
+    rng = np.random.default_rng(4)
+    states = [inputs(made, f, rng) for _ in range(9)]
+    for given in states:
+        given[-1] = states[0][-1]
+    for i, a in enumerate(f.arguments):
+        if a.name not in SHARED:
+            states[5][i] = states[5][i] / np.linalg.norm(states[5][i]) * 0.9 * a.bound
+    _compare(called, states, [], AGREEMENT["double"])
+    for i, a in enumerate(f.arguments):
+        if a.name not in SHARED:
+            wrong = [x.copy() for x in states[5]]
+            wrong[i] *= 1.2
+            _compare(called, [*states[:5], wrong, *states[6:]], [5], AGREEMENT["double"])
+
+
+@vectors
 @pytest.mark.xdist_group("ariane4")
 def test_parameters_that_cannot_be_used_are_every_states(tmp_path_factory: pytest.TempPathFactory) -> None:
     made, folder = batched("ariane4", "default"), written("ariane4", "default", tmp_path_factory)

@@ -39,6 +39,7 @@ class Batch:
     one: tuple[str, ...]
     block: tuple[str, ...]
     spread: tuple[str, ...]
+    index: str
     load: tuple[str, ...]
 
 
@@ -77,6 +78,7 @@ def _batch(model: Model, function: Function) -> Batch:
         one=tuple(_one(arm, function)),
         block=tuple(_block(model, function)),
         spread=tuple(_spread(arm, function)),
+        index=_index(arm, function),
         load=tuple(_load(arm, function)),
     )
 
@@ -106,11 +108,20 @@ def _spread(arm: str, function: Function) -> list[str]:
     shared = [a for a in function.arguments if a.size and a.name in SHARED]
     lines = [f"{INDENT}{arm}_lanes_t all_{a.name}[{a.size}];" for a in shared]
     usable = [_usable(arm, a) for a in shared]
-    lines.append(f"{INDENT}const int usable = {' && '.join(usable) or '1'};")
+    whole = f"n - n % {arm.upper()}_LANES"
+    if usable:
+        whole = f"{' && '.join(usable)} ? {whole} : 0"
+    lines.append(wrapped_code(f"const size_t whole = {whole};", INDENT, INDENT * 2))
     lines += [f"{INDENT}size_t k;"]
     for a in shared:
         lines += _each(a.size, f"all_{a.name}[k] = {arm}_lanes_all({a.name}[k]);")
     return lines
+
+
+def _index(arm: str, function: Function) -> str:
+    """Where the block's states begin in every row; unknown to the compiler where it would keep sums of it."""
+    walk = column_walk(arm, function)
+    return f"{arm}_lanes_distance(i)" if walk and walk.wide else "i"
 
 
 def _load(arm: str, function: Function) -> list[str]:
@@ -119,9 +130,9 @@ def _load(arm: str, function: Function) -> list[str]:
     inner = INDENT * 2
     lines = [f"{inner}{arm}_lanes_t block_{a.name}[{a.size}];" for a in own]
     for a in own:
-        lines += _each(a.size, f"block_{a.name}[k] = {arm}_lanes_load({a.name} + k * n + i);", inner)
+        lines += _each(a.size, f"block_{a.name}[k] = {arm}_lanes_load({a.name} + k * n + at);", inner)
     given = [f"{'block' if a in own else 'all'}_{a.name}" for a in function.arguments if a.size]
-    given += [f"{name} + i" for name in arrays(function)]
+    given += [f"{name} + at" for name in arrays(function)]
     call = f"const int good = {arm}_{function.name}_lanes(n, {', '.join(given)});"
     return [*lines, wrapped_code(call, inner, INDENT * 3)]
 
@@ -160,12 +171,22 @@ def _block(model: Model, function: Function) -> list[str]:
 
 
 def _conditions(arm: str, function: Function) -> list[str]:
-    """What has to hold of the inputs that every state has of its own."""
-    found = []
-    for a in function.arguments:
-        if a.size and a.name not in SHARED:
-            limit = _in_lanes(arm, a.bound * a.bound)
-            found.append(f"{arm}_lanes_squares({a.name}, {a.size}) <= {limit}")
+    """What has to hold of the inputs that every state has of its own.
+
+    One sum of squares, each input's in proportion to its bound's, holds less than every bound alone: a block
+    within all bounds and beyond that sum goes state after state.
+    """
+    found: list[str] = []
+    own = sorted((a for a in function.arguments if a.size and a.name not in SHARED), key=lambda a: -a.bound)
+    for i, a in enumerate(own):
+        squares = f"{arm}_lanes_squares({a.name}, {a.size})"
+        if i:
+            factor = _in_lanes(arm, a.bound**2 / own[i - 1].bound ** 2)
+            before = found.pop()
+            squares = f"{f'({before})' if i > 1 else before} * {factor} + {squares}"
+        found.append(squares)
+    if own:
+        found.append(f"{found.pop()} <= {_in_lanes(arm, own[-1].bound ** 2)}")
     for r in function.ranges:
         element = f"{r.argument}[{r.index}]"
         low, high = _in_lanes(arm, r.low), _in_lanes(arm, r.high)
@@ -212,7 +233,7 @@ class _Lanes(CDialect):
         before, place = [], self._place(output, index)
         if self.walk:
             row, column = self.walk.split(index)
-            before, place = self.walk.to(column), self.walk.place(row)
+            before, place = self.walk.to(column), self.walk.place(row, column)
         return "\n".join([*before, wrapped_code(f"{put}({place}, {text});", INDENT, INDENT * 2)])
 
     def zero(self, output: str, index: int) -> str:
