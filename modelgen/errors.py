@@ -41,15 +41,15 @@ class DamagedFileError(InputError):
     """A file that began as one of its kind and cannot be read on."""
 
 
-def suggest(name: str, options: Iterable[str]) -> str:
-    """The nearest of the names that exist, and all of them where there are few or none comes near."""
+def suggest(name: str, options: Iterable[str], *, listed: bool = False) -> str:
+    """The nearest of the names that exist; all if `listed`, where there are few or none comes near."""
     known = list(options)
     if not known:
         return ""
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
     if not near:
         near = [known_name for known_name in known if known_name.lower() == name.lower()]
-    listed = "available: " + ", ".join(known)
+    available = "available: " + ", ".join(known)
     if near:
-        return f", did you mean '{near[0]}'?" + (f" ({listed})" if len(known) <= 12 else "")
-    return f", {listed}"
+        return f", did you mean '{near[0]}'?" + (f" ({available})" if listed or len(known) <= 12 else "")
+    return f", {available}"

@@ -78,7 +78,8 @@ def _check(one: Combined, known: Mapping[str, Function]) -> None:
         where = one.where[k] if one.where else one.at
         if _plain(name, known) is None:
             raise InputError(
-                f"combined '{one.name}': found '{name}', expected functions of the arm{suggest(name, plain)}",
+                f"combined '{one.name}': found '{name}', expected functions of the arm"
+                f"{suggest(name, plain, listed=True)}",
                 where,
             )
         if name in one.functions[:k]:

@@ -66,7 +66,7 @@ def monitored_parameters(a: Assembly) -> list[Monitored]:
             known = [*numbers, *(name for name in standard if name not in numbers)]
             raise InputError(
                 f"monitor: found '{use.name}', expected base or standard parameters of the arm"
-                f"{suggest(use.name, known)}",
+                f"{suggest(use.name, known, listed=True)}",
                 use.where,
             )
         i = standard[use.name]

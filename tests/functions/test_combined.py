@@ -129,7 +129,7 @@ arms:
         (
             "tick: [gravity, inverse_dynamix]",
             "arms.yaml:8:23: combined 'tick': found 'inverse_dynamix', expected functions of the arm, "
-            "did you mean 'inverse_dynamics'?",
+            "did you mean 'inverse_dynamics'? (available: inverse_dynamics, gravity, ",
         ),
         ("tick: [gravity, gravity]", "arms.yaml:8:23: combined 'tick': found 'gravity' twice, expected"),
         ("bias: [gravity]", "arms.yaml:8:7: 'bias' is in use"),

@@ -231,7 +231,7 @@ arms:
         (
             "FC1, FC3",
             "arms.yaml:5:20: monitor: found 'FC3', expected base or standard parameters of the arm, did you "
-            "mean 'FC1'?",
+            "mean 'FC1'? (available: ",
         ),
         ("FC1, M2, FC1", "arms.yaml:5:24: monitor: found 'FC1' twice, expected each once"),
         ("XX1", "arms.yaml:5:15: monitor: XX1 has no effect on the inputs of this arm"),
