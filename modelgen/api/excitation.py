@@ -134,7 +134,8 @@ def excite(
     options : ExcitationOptions, optional
         Period, harmonics, criterion, boxes.
     progress : callable, optional
-        It is called with how many starts are done, and of how many.
+        It is called, from a thread of its own, with the starts that are done, iterations of all starts, and
+        their most.
     **changes
         Fields of the options, by name.
 
@@ -155,6 +156,9 @@ def excite(
     an_arm(arm)
     chosen = changed(options or ExcitationOptions(), changes)
     chosen.checked()
-    text = f"{arm.name}: starts done"
-    progress(text, 0, chosen.starts)
-    return Excitation(optimise(arm, chosen, lambda done, total: progress(text, done, total)))
+    progress(f"{arm.name}: writing the programme", 0, None)
+
+    def iterated(ended: int, done: int, most: int) -> None:
+        progress(f"{arm.name}: {ended} of {chosen.starts} starts done, iterations", done, most)
+
+    return Excitation(optimise(arm, chosen, None if progress is silent else iterated))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from modelgen.excitation.counting import one_more
 from modelgen.excitation.problem import GRID, MARGIN, Problem
 from modelgen.excitation.random_motion import feasible, shrunk
 from modelgen.excitation.spectrum import Criterion, condition, log_determinant
@@ -49,7 +51,12 @@ class Optimiser:
         # Kept: CasADi holds no reference to a callback.
         self._criterion = Criterion(problem.settings.criterion, len(scale))
         nlp: Any = {"x": z, "f": self._criterion(ca.mtimes(w, w.T)), "g": ca.vec(limits)}
-        options: Any = {**_OPTIONS, "ipopt.max_iter": problem.settings.iterations}
+        self._iterations = _Iterations({"x": z.numel(), "g": limits.numel()})
+        options: Any = {
+            **_OPTIONS,
+            "ipopt.max_iter": problem.settings.iterations,
+            "iteration_callback": self._iterations,
+        }
         self._solver = ca.nlpsol("excitation", "ipopt", nlp, options)
 
     def _scale(self, t: Array) -> Array:
@@ -58,9 +65,12 @@ class Optimiser:
         norms = np.linalg.norm(self.problem.observation(z, t)[0], axis=0)
         return np.where(norms > 0, norms, 1.0)
 
-    def start(self, seed: int) -> Array | None:
-        """Coefficients z (n, size) from the random start `seed`, within all limits; None where it failed."""
-        p = self.problem
+    def start(self, seed: int, count: str = "") -> Array | None:
+        """Coefficients z (n, size) from the random start `seed`, within all limits; None where it failed.
+
+        count: file that counts the iterations, empty for none.
+        """
+        p, self._iterations.file = self.problem, count
         rng = np.random.default_rng([p.settings.seed, seed])
         first = feasible(p, rng, 2 * MARGIN)
         bound = 1 - MARGIN
@@ -71,6 +81,30 @@ class Optimiser:
             return first
         z = shrunk(p, z, fine, 1.0)
         return better(p, z, shrunk(p, first, fine, 1.0))
+
+
+class _Iterations(ca.Callback):
+    """Counts the iterations of a programme into a file. sizes: of its variables x and its constraints g."""
+
+    def __init__(self, sizes: dict[str, int]) -> None:
+        ca.Callback.__init__(self)
+        self._sizes, self.file = sizes, ""
+        self.construct("iterations", {})
+
+    def get_n_in(self) -> int:
+        return int(ca.nlpsol_n_out())
+
+    def get_n_out(self) -> int:
+        return 1
+
+    def get_sparsity_in(self, k: int) -> ca.Sparsity:
+        name = ca.nlpsol_out(k)
+        return ca.Sparsity.dense(1 if name == "f" else self._sizes.get(name.removeprefix("lam_"), 0), 1)
+
+    def eval(self, _: Sequence[ca.DM]) -> list[float]:
+        """Zero: go on."""
+        one_more(self.file)
+        return [0.0]
 
 
 def better(problem: Problem, a: Array | None, b: Array | None) -> Array | None:

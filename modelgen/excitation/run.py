@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import casadi as ca
@@ -10,6 +9,7 @@ import numpy as np
 
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.excitation.counting import Progress, counted
 from modelgen.excitation.optimisation import Optimiser, merit
 from modelgen.excitation.problem import SIGNALS, Problem, problem, smooth
 from modelgen.excitation.random_motion import feasible
@@ -17,8 +17,6 @@ from modelgen.excitation.spectrum import condition
 from modelgen.jobs import Where, run
 from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -52,13 +50,13 @@ def excite(arm: Arm, settings: ExcitationOptions, progress: Progress | None = No
     p = problem(arm, settings)
     found: list[Array | None] = [None] * settings.starts
     where = Where(settings.processes, settings.dask)
-    # One job per start, so that progress is seen; a worker keeps the programme that it has built.
+    # One job per start; a worker keeps the programme that it has built.
     eased = smooth(arm, settings)
-    starts = [(p, eased, k) for k in range(settings.starts)]
-    for done, (k, z) in enumerate(run(_one, starts, where), 1):
-        found[k] = z
-        if progress:
-            progress(done, settings.starts)
+    with counted(settings.starts, settings.iterations, progress) as counts:
+        starts = [(p, eased, k, counts.file(k)) for k in range(settings.starts)]
+        for k, z in run(_one, starts, where):
+            found[k] = z
+            counts.ended(k)
     merits = [np.inf if z is None else merit(p, z) for z in found]
     best = found[int(np.argmin(merits))]
     if best is None or not np.isfinite(min(merits)):
@@ -89,10 +87,10 @@ def random_conditions(p: Problem, count: int, seed: int) -> Array:
 _kept: list[tuple[tuple[str | bytes | ExcitationOptions, ...], Optimiser]] = []
 
 
-def _one(start: tuple[Problem, ca.Function, int]) -> Array | None:
-    p, eased, k = start
+def _one(start: tuple[Problem, ca.Function, int, str]) -> Array | None:
+    p, eased, k, count = start
     # Of another arm the names may be the same: the programme itself is compared.
     key = (p.settings, eased.serialize(), p.middle.tobytes(), p.amplitude.tobytes())
     if not _kept or _kept[0][0] != key:
         _kept[:] = [(key, Optimiser(p, eased))]
-    return _kept[0][1].start(k)
+    return _kept[0][1].start(k, count)

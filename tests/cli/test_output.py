@@ -1,5 +1,6 @@
 """What a terminal shows: tables as wide as it is, progress where there is none."""
 
+import re
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -152,16 +153,20 @@ def test_progress_is_a_line_now_and_then_where_there_is_no_terminal(
     assert all(line.endswith("s: reading, 25 %") for line in capsys.readouterr().err.splitlines())
 
 
-def test_a_single_start_of_an_excitation_says_that_it_runs(tmp_path: Path) -> None:
-    """Every so many seconds, however long it takes: it is not done before the command ends."""
-    words = ["excite", "--arm", "ariane4", "--period", "20", "--starts", "1", "--iterations", "30"]
+@pytest.mark.parametrize("processes", [1, 2])
+def test_an_excitation_says_how_far_its_starts_are(processes: int, tmp_path: Path) -> None:
+    """Every so many seconds, by the iterations of all of them, wherever they run."""
+    starts = ["--starts", str(processes), "-j", str(processes)]
+    words = ["excite", "--arm", "ariane4", "--period", "20", "--iterations", "60", *starts]
     done = CliRunner().invoke(
-        app, [*words, "-j", "1", "--out", str(tmp_path / "a.csv")], env={"MODELGEN_PROGRESS": "0.2"}
+        app, [*words, "--out", str(tmp_path / "a.csv")], env={"MODELGEN_PROGRESS": "0.5"}
     )
     assert done.exit_code == 0
-    lines = [line for line in done.stderr.splitlines() if "starts" in line]
-    assert len(lines) >= 3
-    assert all(line.endswith("s: ariane4: starts done, 0 of 1") for line in lines[:-1])
+    said = rf"s: ariane4: 0 of {processes} starts done, iterations, (\d+) of {60 * processes}$"
+    found = re.findall(said, done.stderr, re.MULTILINE)
+    within = [int(n) for n in found if 0 < int(n) < 60 * processes]
+    assert len(within) >= 2
+    assert within == sorted(within)
 
 
 def test_a_quick_command_says_nothing_of_its_progress(
