@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from modelgen.description import Arm
 from modelgen.description.objects import EffectUse
@@ -31,9 +32,17 @@ def admitted(effect: str, values: Mapping[str, float]) -> dict[str, float]:
     return found
 
 
-def titled(arm: Arm, effect: str, joint: int | None) -> str:
-    """An effect and where it acts, as people read it. joint: a coordinate from 1, None for the whole arm."""
-    return f"{effect} {'of the whole arm' if joint is None else f'at {arm.coordinate_names[joint - 1]}'}"
+def titled(
+    arm: Arm, effect: str, joint: int | None, values: Mapping[str, float] = MappingProxyType({})
+) -> str:
+    """An effect and where it acts, as people read it.
+
+    joint: a coordinate from 1, None for the whole arm. values: of its parameters, of which some may be the
+    numbers of further joints that it has to do with.
+    """
+    place = "of the whole arm" if joint is None else f"at {arm.coordinate_names[joint - 1]}"
+    others = [joint_meant(arm, effect, name, value) for name, value in values.items()]
+    return " and ".join([f"{effect} {place}", *(name for name in others if name)])
 
 
 def joint_meant(arm: Arm, effect: str, parameter: str, value: float) -> str:

@@ -17,6 +17,7 @@ from modelgen.errors import InputError, suggest
 from modelgen.fleet.store import Row, fingerprint, folder, keep, written
 from modelgen.fleet.units import Unit
 from modelgen.options import DiagnosisOptions
+from modelgen.report.diagnosis_sentences import cause_title, harmful
 from modelgen.report.writing import write
 
 CRASHED = "the process ended: out of memory, or a crash"
@@ -103,6 +104,7 @@ def _found(d: Diagnosis) -> Row:
     said = d.to_json()
     fit, error = said["lack_of_fit"], said["error"]
     gains = [g for g in error["gain_percent"] if g is not None]
+    worse = harmful(d.found)
     return {
         "arm": said["arm"],
         "verdict": said["verdict"],
@@ -110,6 +112,8 @@ def _found(d: Diagnosis) -> Row:
         "causes": [c["effect"] for c in said["causes"]],
         "joints": [c["joint"] for c in said["causes"]],
         "joint_names": [c["joint_name"] for c in said["causes"]],
+        "titles": [cause_title(d.found, c) for c in d.found.causes],
+        "harms": [c in worse for c in d.found.causes],
         "delta_bic": [c["evidence"]["delta_bic"] for c in said["causes"]],
         "cross_gain_percent": [c["evidence"]["cross_gain_percent"] for c in said["causes"]],
         "ambiguous_with": [_places(d.arm, c["ambiguous_with"]) for c in said["causes"]],

@@ -14,6 +14,7 @@ from modelgen.diagnosis.result import VERDICTS
 from modelgen.fleet.store import Row
 from modelgen.report.page import Lines, Part, Run, Text, page
 from modelgen.report.parts import line
+from modelgen.report.words import listed
 
 FAILED = "failed"
 WORDS = {
@@ -30,6 +31,7 @@ _URGENT = 8  # units that are listed first
 
 _WIDEST = 80.0  # percent of the room, of a bar
 _NOTHING = "Every unit could be diagnosed, and nothing is left unexplained."
+_HARM = "makes its test record worse"
 _READING = (
     "Less error: on the test record over all joints, with the causes than without. Lack of fit: over its "
     "threshold; above 1, something deterministic remains. A click on a heading sorts."
@@ -158,19 +160,38 @@ def _worth(rows: Sequence[Row]) -> str:
         said += f" (median of {len(gains)} units, {low} to {high} %)"
     elif len(gains) > 1:
         said += f" in each of {len(gains)} units"
-    return said + (f"; it is larger in {worse}." if worse else ".")
+    said += f"; it is larger in {worse}." if worse else "."
+    harmed = sum(any(row.get("harms") or ()) for row in rows)
+    if not harmed:
+        return said
+    units = "In one unit" if harmed == 1 else f"In {harmed} units"
+    return f"{said} {units} a cause {_HARM}, though all together may make it better."
 
 
 def _urgent(rows: Sequence[Row]) -> Iterator[list[Run]]:
-    """Units that failed or were left unexplained, each with its report, and why."""
+    """Units that failed or were left unexplained, or of which a cause harms the test record: each with its
+    report, and why.
+    """
     open_ends = [FAILED, "outside_catalogue", "suspected", "cannot_tell"]
     wanting = [row for row in rows if verdict(row) in open_ends]
     wanting.sort(key=lambda row: open_ends.index(verdict(row)))
-    for row in wanting[:_URGENT]:
-        text = row.get("error") or row.get("reason") or ""
-        yield [_unit(row), Run(f": {WORDS[verdict(row)]}, {text}")]
-    if len(wanting) > _URGENT:
-        yield [Run(f"{len(wanting) - _URGENT} more: see the table")]
+    lines = [
+        [_unit(row), Run(f": {WORDS[verdict(row)]}, {row.get('error') or row.get('reason') or ''}")]
+        for row in wanting
+    ]
+    for row in rows:
+        worse = [title for title, harm in zip(_titles(row), row.get("harms") or (), strict=False) if harm]
+        if worse:
+            lines.append([_unit(row), Run(f": {listed(worse)} {_HARM}; its page has the model without")])
+    yield from lines[:_URGENT]
+    if len(lines) > _URGENT:
+        yield [Run(f"{len(lines) - _URGENT} more: see the table")]
+
+
+def _titles(row: Row) -> list[str]:
+    """Causes with their joints."""
+    named = zip(row.get("causes") or (), row.get("joint_names") or (), strict=True)
+    return row.get("titles") or [e if j is None else f"{e} at {j}" for e, j in named]
 
 
 def _unit(row: Row) -> Run:
@@ -181,15 +202,15 @@ def _unit(row: Row) -> Run:
 def _row(row: Row) -> dict[str, Any]:
     found = verdict(row)
     fit, threshold = row.get("lack_of_fit"), row.get("lack_of_fit_threshold")
-    named = zip(
-        row.get("causes") or (), row.get("joint_names") or (), row.get("ambiguous_with") or (), strict=True
-    )
+    titles = _titles(row)
+    harms = row.get("harms") or [False] * len(titles)
+    named = zip(titles, row.get("ambiguous_with") or (), harms, strict=True)
     return {
         "unit": line([_unit(row)]),
         "arm": row["arm"] or "",
         "verdict": WORDS[found],
         "order": list(WORDS).index(found),
-        "causes": [(e if j is None else f"{e} at {j}", ", ".join(rivals)) for e, j, rivals in named],
+        "causes": [(title, ", ".join(rivals), f"✗ {_HARM}" if harm else "") for title, rivals, harm in named],
         "figures": [
             (*_number(value, form), head)
             for value, form, head in (

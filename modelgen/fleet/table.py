@@ -50,6 +50,8 @@ def schema() -> Any:
             ("causes", texts),
             ("joints", pa.list_(whole)),
             ("joint_names", texts),
+            ("titles", texts),
+            ("harms", pa.list_(pa.bool_())),
             ("delta_bic", numbers),
             ("cross_gain_percent", numbers),
             ("ambiguous_with", pa.list_(texts)),

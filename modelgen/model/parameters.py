@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from modelgen.description.objects import Arm
-from modelgen.effects import AppliedEffect
+from modelgen.effects import CATALOGUE, AppliedEffect
 from modelgen.transmission import of_joint
 
 LINK_PARAMETERS = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
@@ -65,6 +65,18 @@ def effect_parameters(arm: Arm, effect: AppliedEffect) -> list[StandardParameter
         )
         for parameter, symbol in effect.parameters
     ]
+
+
+def units_at(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
+    """Units of an effect's parameters by name, at a coordinate (from 1) or for the whole arm."""
+    coordinate = "m"
+    if joint is not None:
+        described = arm.joints[arm.coordinates[joint - 1]]
+        drive = of_joint(arm, described)
+        coordinate = described.unit
+        if CATALOGUE[effect].side == "motor" and drive.driven:
+            coordinate = drive.unit
+    return {p.name: unit_of(p.unit, coordinate) for p in CATALOGUE[effect].accepted()}
 
 
 def coordinate_unit(arm: Arm, effect: AppliedEffect) -> str:

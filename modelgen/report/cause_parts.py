@@ -7,12 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.charts import number
-from modelgen.diagnosis.extended import NamedCause, units_at
+from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
-from modelgen.effects.placement import joint_meant, titled
-from modelgen.report.diagnosis_sentences import checked, interval
+from modelgen.effects.placement import joint_meant
+from modelgen.model.parameters import units_at
+from modelgen.report.diagnosis_sentences import cause_title, checked, interval
 from modelgen.report.law_figures import judged_joint, law_charts, law_size, seen
 from modelgen.report.law_sketch import sketch
 from modelgen.report.page import Folded, Grid, Heading, Line, Marks, Part, Run, Section, Text, block
@@ -59,9 +60,7 @@ def law_found(d: Diagnosis, k: int) -> Section:
         f"Evidence: delta BIC {c.delta_bic:z.1f}; {c.cross_gain:z.1f} % less error on training records that "
         f"its fit had not seen, {c.expected_gain:z.1f} % expected there{_share(c)}."
     )
-    return Section(
-        f"The law found: {titled(d.arm, c.effect, c.joint)}", [*parts, Text(evidence)], f"cause{k}"
-    )
+    return Section(f"The law found: {cause_title(d, c)}", [*parts, Text(evidence)], f"cause{k}")
 
 
 def suspected(d: Diagnosis, k: int) -> list[Part]:
@@ -69,7 +68,7 @@ def suspected(d: Diagnosis, k: int) -> list[Part]:
     c = d.suspects[k]
     evidence = f"Evidence: delta BIC {c.delta_bic:z.1f}. It is not named: {failed(d, c)}."
     return [
-        Heading(titled(d.arm, c.effect, c.joint), f"suspect{k}"),
+        Heading(cause_title(d, c), f"suspect{k}"),
         Text([Run(f"{_law(c.effect)} "), _more(c)]),
         Text(evidence),
         _values(d, c),
@@ -149,7 +148,7 @@ def _values(d: Diagnosis, c: NamedCause) -> Grid:
         )
         for name, e in legible(c.parameters).items()
     ]
-    return Grid(f"Values of {titled(d.arm, c.effect, c.joint)}", _VALUES, rows, folds=True)
+    return Grid(f"Values of {cause_title(d, c)}", _VALUES, rows, folds=True)
 
 
 def _mark(c: Check) -> tuple[str, str, str]:

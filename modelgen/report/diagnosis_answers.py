@@ -9,10 +9,10 @@ import numpy as np
 from modelgen.charts import apart, number
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
-from modelgen.effects.placement import titled
 from modelgen.report.call import Call
 from modelgen.report.cause_parts import failed, found, marks
 from modelgen.report.diagnosis_sentences import (
+    cause_title,
     doubted,
     efforts_of,
     harmful,
@@ -72,7 +72,7 @@ def _linked(effect: str) -> Run:
 
 
 def _names(d: Diagnosis, causes: Sequence[NamedCause]) -> str:
-    return listed(titled(d.arm, c.effect, c.joint) for c in causes)
+    return listed(cause_title(d, c) for c in causes)
 
 
 def _sure(d: Diagnosis) -> Iterator[Part]:
@@ -81,7 +81,7 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
     elif d.causes:
         rows = [
             (
-                titled(d.arm, d.causes[k].effect, d.causes[k].joint),
+                cause_title(d, d.causes[k]),
                 f"#cause{k}",
                 marks(d.causes[k], f"mark{k}"),
             )
@@ -125,7 +125,7 @@ def _doubted(d: Diagnosis) -> list[Run]:
 
 def _suspect(d: Diagnosis, k: int) -> list[Part]:
     c = d.suspects[k]
-    title = titled(d.arm, c.effect, c.joint)
+    title = cause_title(d, c)
     text = f"{found(d, c)} {title} is suspected and not named, for want of: {failed(d, c)}."
     return [Text(text), marks(c, f"suspect{k}")]
 

@@ -22,6 +22,11 @@ _VISIBLE = 0.05  # percent: less is 0.0 in print
 _SAME = 0.01  # of an error or a cut-off, that needs no word
 
 
+def cause_title(d: Diagnosis, c: NamedCause) -> str:
+    """A cause or suspect, and the joints that it has to do with."""
+    return titled(d.arm, c.effect, c.joint, {name: e.value for name, e in c.parameters.items()})
+
+
 def missing(d: Diagnosis) -> list[str]:
     """What is missing, a sentence for each cause; one that says so where none is named."""
     if d.verdict == "named":
@@ -39,7 +44,7 @@ def unnamed(d: Diagnosis) -> str:
 def headline(d: Diagnosis) -> str:
     """The verdict in one sentence with what it is worth, or with its reason."""
     if d.verdict == "named":
-        names = listed(titled(d.arm, c.effect, c.joint) for c in d.causes)
+        names = listed(cause_title(d, c) for c in d.causes)
         return " ".join([f"The model lacks {names}: {worth(d)}.", *doubted(d)])
     return f"{unnamed(d)} {sentence(d.reason)}"
 
@@ -75,7 +80,7 @@ def harms(d: Diagnosis) -> list[str]:
     """Warnings about causes that make the test record worse."""
     short = "it is too short for an interval"
     return [
-        f"With {titled(d.arm, c.effect, c.joint)} the error on the test record is {-c.share.gain:z.1f} % "
+        f"With {cause_title(d, c)} the error on the test record is {-c.share.gain:z.1f} % "
         f"larger ({interval(-c.share.high, -c.share.low, '{} %') or short}): what was found does not carry "
         f"over to that record.{CATALOGUE[c.effect].caveat}"
         for c in harmful(d)
@@ -96,9 +101,7 @@ def doubted(d: Diagnosis) -> list[str]:
         ("The test record does not confirm {}.", unconfirmed),
         ("Not stable, the training records differ in its size: {}.", _failing(d, "stable")),
     )
-    return [
-        text.format(listed(titled(d.arm, c.effect, c.joint) for c in lost)) for text, lost in kinds if lost
-    ]
+    return [text.format(listed(cause_title(d, c) for c in lost)) for text, lost in kinds if lost]
 
 
 def _failing(d: Diagnosis, name: str) -> list[NamedCause]:
@@ -232,7 +235,7 @@ def compared(d: Diagnosis) -> list[str]:
 def suspicions(d: Diagnosis) -> list[str]:
     """What has evidence and is not named, each with the check that it failed."""
     return [
-        f"Suspected: {titled(d.arm, c.effect, c.joint)}, evidence {c.delta_bic:z.1f}. It is not named: "
+        f"Suspected: {cause_title(d, c)}, evidence {c.delta_bic:z.1f}. It is not named: "
         + "; ".join(f"{name}: {text}" for name, mark, text in (checked(k) for k in c.checks) if mark == "no")
         + "."
         for c in d.suspects
@@ -252,7 +255,7 @@ def rivals(d: Diagnosis) -> list[tuple[str, str, str]]:
     found = []
     further = "" if d.next_experiment is None else "; the next experiment separates them"
     for c in d.causes:
-        own = titled(d.arm, c.effect, c.joint)
+        own = cause_title(d, c)
         found += [
             (own, titled(d.arm, e, j), "no motion of this arm separates the two: it is named by convention")
             for e, j in c.aliases

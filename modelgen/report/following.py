@@ -12,7 +12,7 @@ from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import Found, titled
 from modelgen.options import words_of
 from modelgen.report.call import WHERE, Call, command
-from modelgen.report.diagnosis_sentences import harmful
+from modelgen.report.diagnosis_sentences import cause_title, harmful
 from modelgen.report.experiment import followed
 from modelgen.report.words import listed, place_of
 
@@ -62,7 +62,7 @@ def carried(d: Diagnosis, call: Call) -> list[Step]:
     worse = harmful(d)
     if not worse:
         return []
-    names = listed(titled(d.arm, c.effect, c.joint) for c in worse)
+    names = listed(cause_title(d, c) for c in worse)
     reduced = reduced_name(d)
     description = call.beside(reduced) if reduced else call.description
     what = f"{reduced}, the description without {names}" if reduced else f"the description, without {names}"

@@ -105,7 +105,8 @@ def report(
         rests = test.judged is not None and not test.judged.all()
         said = [Text("Gaps: the joint rests there, and its effort is whatever holds it; that is not judged.")]
         sections.append((title, [*(said if rests else []), block(predictions(names, test, others))]))
-    sections.append(("Processing of the logs", [Lines(processing), block(spectra)]))
+    shown = Folded("Spectra before and after the filters", [block(spectra)], printed=False, narrow=True)
+    sections.append(("Processing of the logs", [Lines(processing), shown]))
     drawing = Folded("The arm, to turn and move", [arm_drawing(arm)], screen=True)
     sections.append(("The arm", [drawing]))
     return page(f"{arm.name}: identified parameters", "Identification", answers, sections)

@@ -307,7 +307,8 @@ def test_a_joint_that_a_value_means_is_called_by_its_name() -> None:
     check = admissible(replace(cause, trial=trial), equations)
     assert check.passed
     assert "other is j1;" in check.text
-    assert "dry is 0.500, may be 0" in check.text
+    assert "dry is 0.500 N m, may be 0" in check.text
+    assert "ratio is -1.00, may be" in check.text
 
 
 def check_of_delay(joint: int | None, delay: float, joints: int, hold: float, known: str) -> Check:

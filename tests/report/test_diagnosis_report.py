@@ -743,8 +743,9 @@ def test_another_joint_is_called_by_its_name_and_by_its_number_in_json(found: Di
     assert table.rows[0][2] == "dry 0.3000 N m, other elbow, ratio -1.000"
     text = unescape(report(d))
     assert "A part of the transmission turns with j2 and elbow." in text
+    assert headline(d).startswith("The model lacks transmission_coupling at j2 and elbow: ")
     (values_of,) = re.findall(
-        r'aria-label="Values of transmission_coupling at j2">.*?</table>', text, re.DOTALL
+        r'aria-label="Values of transmission_coupling at j2 and elbow">.*?</table>', text, re.DOTALL
     )
     assert re.search(r">other<.*?>elbow<", values_of)
     assert to_json(d)["causes"][0]["parameters"]["other"]["value"] == 1.0

@@ -227,6 +227,30 @@ def test_bars_of_a_fleet_name_joints_and_no_range_is_a_single_value(pages: Mappi
     assert "(median of 2 units, 8.0 to 12.6 %)" in said
 
 
+def test_a_cause_that_harms_its_test_record_is_marked_in_a_fleet(tmp_path: Path) -> None:
+    """In its row, in what it is worth and in what to look at next, by its name; the others are not."""
+    row = {"unit": "u1", "verdict": "named", "report": "units/u1/report.html"} | ROW
+    both = {
+        "causes": ["load_dependent_friction", "spring"],
+        "joints": [2, 1],
+        "joint_names": ["stick", "boom"],
+        "titles": ["load_dependent_friction at stick", "spring at boom"],
+        "ambiguous_with": [[], []],
+        "harms": [False, True],
+    }
+    path = tmp_path / "overview.html"
+    path.write_text(overview([row | {"unit": "u0"}, row | both]), encoding="utf-8")
+    with opened(path) as page:
+        assert violations(page) == []
+        marked = page.locator("#units strong")
+        assert marked.all_inner_texts() == ["✗ makes its test record worse"]
+        assert "spring at boom" in marked.locator("..").inner_text()
+        worth, following = (page.locator("dl.answer > div").nth(k).inner_text() for k in (2, 3))
+    assert "In one unit a cause makes its test record worse" in worth
+    assert "u1: spring at boom makes its test record worse" in following
+    assert "u0" not in following
+
+
 def test_what_is_uncertain_is_said_in_effort(pages: Mapping[str, Path]) -> None:
     """A first moment of zero with a standard deviation that moves nothing is no complaint."""
     train, _, test = three(None, 1, 0.0)

@@ -149,7 +149,7 @@ def broken(page: Page) -> list[str]:
 
 def on_few_sheets(page: Page, most: int) -> None:
     """No more sheets than that, and only the last one with room to spare; no table is cut off nor a word of
-    one broken, and letters of charts have 4.5 pt.
+    one broken; letters of charts have 4.5 pt and lie on the sheet.
     """
     sheets, filled = printed(page)
     assert sheets <= most
@@ -159,6 +159,18 @@ def on_few_sheets(page: Page, most: int) -> None:
         assert broken(page) == []
         if page.locator("svg.chart").count():
             assert letters(page, "svg.chart text") * 0.75 > 4.5
+            assert beyond(page) == []
+
+
+def beyond(page: Page) -> list[str]:
+    """Words of charts that begin or end beyond the paper's margins."""
+    found: list[str] = page.evaluate(
+        "[...document.querySelectorAll('svg.chart text')]"
+        ".map(t => [t.textContent, t.getBoundingClientRect()])"
+        ".filter(([, b]) => b.width && (b.left < -0.1 || b.right > document.body.clientWidth + 0.1))"
+        ".map(([text]) => text)"
+    )
+    return found
 
 
 def cut(page: Page) -> list[str]:

@@ -8,19 +8,26 @@ from modelgen.charts import number
 from modelgen.description import Arm
 from modelgen.diagnosis.selection import Cause
 from modelgen.effects.placement import joint_meant
+from modelgen.model.parameters import units_at
 
 
 def possible(cause: Cause, arm: Arm) -> str:
     """Its values, each with what it may be; a joint by its name alone, which was one of those to choose."""
     c, values = cause.trial.candidate, cause.trial.parameters
+    units = units_at(arm, *c.place)
     said = [
         f"{p.name} is {joint_meant(arm, c.effect, p.name, values[p.name])}"
         if p.joint
-        else f"{p.name} is {number(values[p.name])}, may be {range_said(*p.bounds)}"
+        else f"{p.name} is {with_unit(values[p.name], units[p.name])}, may be {range_said(*p.bounds)}"
         for p in c.definition.accepted()
         if p.name in values
     ]
     return f"its values can be those of an arm: {'; '.join(said)}" if said else "it has no values of its own"
+
+
+def with_unit(value: float, unit: str) -> str:
+    """A value with its unit; that of a ratio is not written."""
+    return f"{number(value)} {'' if unit == '1' else unit}".rstrip()
 
 
 def range_said(low: float, high: float) -> str:

@@ -10,7 +10,7 @@ from modelgen.diagnosis.extended.extended_model import (
 )
 from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions, Share
 from modelgen.diagnosis.extended.test_errors import errors, motion_errors, on_test, residuals, shares
-from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates, units_at
+from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates
 
 __all__ = [
     "Errors",
@@ -30,6 +30,5 @@ __all__ = [
     "residuals",
     "shares",
     "unit_of_efforts",
-    "units_at",
     "without",
 ]

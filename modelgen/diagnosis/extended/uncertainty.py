@@ -7,16 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.description import Arm
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.selection import Selection, covariance_of, deviations
-from modelgen.effects import CATALOGUE
 from modelgen.functions import Model
-from modelgen.model.parameters import unit_of
+from modelgen.model.parameters import units_at
 from modelgen.numeric import Array
-from modelgen.transmission import of_joint
 
 
 def valued(selection: Selection) -> Selection:
@@ -50,18 +47,6 @@ def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str
             }
         )
     return found
-
-
-def units_at(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
-    """Units of an effect's parameters by name, at a coordinate (from 1) or for the whole arm."""
-    coordinate = "m"
-    if joint is not None:
-        described = arm.joints[arm.coordinates[joint - 1]]
-        drive = of_joint(arm, described)
-        coordinate = described.unit
-        if CATALOGUE[effect].side == "motor" and drive.driven:
-            coordinate = drive.unit
-    return {p.name: unit_of(p.unit, coordinate) for p in CATALOGUE[effect].accepted()}
 
 
 def base_estimates(model: Model, theta: Array, equations: Equations) -> Mapping[str, Estimate]:
