@@ -105,6 +105,7 @@ def accessible(html: str) -> str:
         '<aside class="sidebar-drawer">', '<aside class="sidebar-drawer" aria-label="All pages">'
     )
     html = re.sub(r'<aside class="toc-drawer[^"]*"', r'\g<0> aria-label="This page"', html)
+    html = html.replace('<div id="search-results">', '<h1>Search</h1>\n<div id="search-results">')
     # A long name breaks between its words.
     html = re.sub(r"(<h[12]>)(\w+)(?=<)", lambda m: m[1] + m[2].replace("_", "_<wbr>"), html)
     # A cell above the names of the rows heads nothing.

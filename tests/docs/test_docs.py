@@ -43,6 +43,14 @@ def test_the_reference_has_docstrings_and_the_help(site: Path) -> None:
     assert "--train" in commands
 
 
+def test_every_page_has_one_heading_of_its_own(site: Path) -> None:
+    """That of the search and of the index too, which the theme makes."""
+    pages = list(site.rglob("*.html"))
+    assert site / "search.html" in pages
+    for page in pages:
+        assert page.read_text(encoding="utf-8").count("<h1") == 1, page
+
+
 def test_nothing_comes_from_the_network(site: Path) -> None:
     for page in site.rglob("*.html"):
         text = page.read_text(encoding="utf-8")
@@ -52,7 +60,7 @@ def test_nothing_comes_from_the_network(site: Path) -> None:
 
 @pytest.mark.parametrize(("width", "scheme"), list(zip(WIDTHS, SCHEMES, strict=True)))
 def test_pages_hold_to_the_rules_of_accessibility_at_any_width(site: Path, width: int, scheme: str) -> None:
-    for name in ("index", "diagnosing", "case-studies", "gallery", "theory"):
+    for name in ("index", "search", "diagnosing", "case-studies", "gallery", "theory"):
         with opened(site / f"{name}.html", width, scheme, alone=False) as page:
             assert not violations(page), name
             assert wider(page) == 0, name
