@@ -81,7 +81,8 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
     if not law.size or not m.any():
         return []
     best, share = _abscissa(d, k, j)
-    if share < _CURVED and best.name not in ("time", "motor position"):
+    joins = any(p.joint for p in CATALOGUE[d.causes[k].effect].accepted())
+    if joins or (share < _CURVED and best.name not in ("time", "motor position")):
         return _over_a_stretch(d, k, j)
     name, unit = d.arm.coordinate_names[j], units_of(d)[j]
     against_motion = "" if (best.side > 0).all() else " against the motion"

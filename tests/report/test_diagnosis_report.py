@@ -525,6 +525,14 @@ def test_a_law_that_no_coordinate_makes_a_curve_is_drawn_over_time(found: Diagno
     np.testing.assert_allclose((without.y - after.y)[moving[at]], law[at][moving[at]], atol=1e-12)
 
 
+def test_what_two_joints_make_together_is_a_curve_over_neither(found: Diagnosis) -> None:
+    """Though over the speed of one it may nearly be one, where the other moves little."""
+    p = found.test.prepared
+    values = {"other": 1.0, "ratio": -1.0, "viscous": 0.3}
+    coupled = with_law(found, "transmission_coupling", values, 0.3 * p.picked(p.dq)[:, 1])
+    assert [chart.x_label for chart in law_charts(coupled, 0)] == ["time [s]", "time [s]"]
+
+
 def test_the_page_is_small_and_drawn_in_no_time(found: Diagnosis, written: Path) -> None:
     assert written.stat().st_size < 1_500_000
     begin = time.process_time()
