@@ -15,12 +15,14 @@ from modelgen.graph.graph import ADD, CALL, CONST, DIV, EVEN, INPUT, MUL, ODD, G
 _SHARES = {ADD: 0.5, MUL: 0.25, DIV: 0.25}  # of a node's vote, for each of its operands
 _ODD_OR_EVEN = ODD | EVEN
 _SEARCH = 24  # choices tried for one negation
+_EFFORT = 16  # changes of sign tried for each node, all choices together: arms of 20 joints take 11 at most
 
 
 class _Polarity:
     def __init__(self, graph: Graph, nodes: Sequence[int], roots: Sequence[int]) -> None:
         self.graph = graph
         self.sign = dict.fromkeys(nodes, 0)
+        self.left = _EFFORT * len(nodes)  # of the effort
         self.users: dict[int, list[int]] = {node: [] for node in nodes}
         self.demands: dict[int, list[int]] = {}  # node -> signs that outputs and functions want
         users, ops, args = self.users, graph.op, graph.args
@@ -77,7 +79,11 @@ class _Polarity:
         return len(wants) - wants.count(self.sign[node]) if wants else 0
 
     def flip(self, choice: int) -> tuple[int, list[int]]:
-        """Take the choice the other way; returns the change in cost and the nodes changed."""
+        """Take the choice the other way; returns the change in cost and the nodes changed.
+
+        A node that several ways lead to may change several times, in a large tree without end in sight: where
+        the effort is used up all is left as it was.
+        """
         changed, gain = [choice], -self.cost(choice)
         self.sign[choice] ^= 1
         gain += self.cost(choice)
@@ -94,7 +100,13 @@ class _Polarity:
             self.sign[node] = sign
             gain += self.cost(node)
             changed.append(node)
+            if len(changed) > self.left:
+                self.flip_back(changed)
+                gain, changed = 0, []
+                self.left = 0
+                break
             queue.extend(self.users[node])
+        self.left -= len(changed)
         return gain, changed
 
     def choices_below(self, node: int) -> list[int]:
@@ -117,13 +129,15 @@ class _Polarity:
         return found
 
     def improve(self) -> None:
-        """Flip choices as long as one saves negations."""
+        """Flip choices as long as one saves negations and the effort lasts."""
         for _ in range(4):
             better = False
             for node in self.demands:
                 if self.cost(node) == 0:
                     continue
                 for choice in self.choices_below(node):
+                    if self.left <= 0:
+                        return
                     gain, changed = self.flip(choice)
                     if gain < 0:
                         better = True

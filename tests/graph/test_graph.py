@@ -369,3 +369,14 @@ def test_what_cannot_be_emitted_is_named(expression: sp.Expr, error: type[Except
     graph = Graph()
     with pytest.raises(error, match=message):
         from_sympy(graph, expression, {X: graph.input("v", 0), Y: graph.input("v", 1)})
+
+
+def test_a_value_to_which_a_billion_billion_ways_lead_is_written_in_time() -> None:
+    """In each of 60 steps two ways part and meet again, and the first difference may have either sign."""
+    graph = Graph()
+    a, b, c, d = (graph.input("x", i) for i in range(4))
+    x = a - b
+    for _ in range(60):
+        x = (x * c) * (x * d)
+    done = run(lower({"y": [-x]}), {"x": [0.75, 0.25, 4.0, 0.5]})
+    assert done.outputs["y", 0] == -0.5
