@@ -10,6 +10,7 @@ import numpy as np
 from modelgen.figures import COLOURS, figure, svg
 
 _OURS = "modelgen"
+_HATCHES = ("", "//////", "......", "------")  # of bars, for paper without colours
 _COLOURS = (*COLOURS, "#b8860b", "#20a0a0")
 
 
@@ -59,7 +60,8 @@ def _costs(arms: dict[str, Any]) -> str:
                 if key in (cost := peers.get(name, {}).get("costs", {}))
             }
             where = np.array(list(found)) + 0.2 * (k - (len(names) - 1) / 2)
-            axis.bar(where, list(found.values()), 0.18, color=_COLOURS[k], label=name)
+            look = {"color": _COLOURS[k], "edgecolor": "white", "linewidth": 0, "hatch": _HATCHES[k]}
+            axis.bar(where, list(found.values()), 0.18, label=name, **look)
         axis.set_yscale("log")
         axis.set_ylabel(title)
         axis.set_xticks(range(len(arms)), list(arms), rotation=30, ha="right")

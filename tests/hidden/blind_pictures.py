@@ -46,6 +46,7 @@ def power(runs: dict[int, list[Line]], path: Path) -> None:
                 linestyle=("-", "--", ":")[place % 3],
                 capsize=4,
                 color=colour,
+                markerfacecolor="white" if compliant else colour,
                 label=f"{label}, {train} training records",
             )
         for effect in CATALOGUE if not place else ():
