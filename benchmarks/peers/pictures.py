@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.figures import COLOURS, figure, svg
 
 _OURS = "modelgen"
-_HATCHES = ("", "//////", "......", "------")  # of bars, for paper without colours
+_HATCHES = ("", "//////", "xxxx", "------")  # of bars, for paper without colours
 _COLOURS = (*COLOURS, "#b8860b", "#20a0a0")
 
 

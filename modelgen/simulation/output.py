@@ -96,13 +96,13 @@ def picture(p: Plant, t: Array, q: Array, dq: Array, measured: Array | None) -> 
     made, axes = figure(p.n, 2, (9.0, 1.7 * p.n + 0.3))
     for k, (name, unit) in enumerate(zip(p.names, p.arm.coordinate_units, strict=True)):
         if measured is not None:
-            axes[k, 0].plot(t, measured[:, k], color="#999999", label="measured")
+            axes[k, 0].plot(t, measured[:, k], color="#999999", linewidth=2.4, label="measured")
         axes[k, 0].plot(t, q[:, k], color=COLOURS[0], label="simulated")
         axes[k, 1].plot(t, dq[:, k], color=COLOURS[0])
         axes[k, 0].set_ylabel(f"{name} [{unit}]")
         axes[k, 1].set_ylabel(f"[{unit}/s]")
     if measured is not None:
-        axes[0, 0].legend(loc="upper right", fontsize=7)
+        made.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=2, fontsize=7)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")
     return svg(made)
