@@ -24,10 +24,11 @@ class Parameter:
     number of a coordinate, from 1, for which people read the joint's name.
 
     What a diagnosis does with it. grid: where it begins to look for the value of a nonlinear parameter, in
-    units of `scale`: "speed" (95 % of the coordinate's speeds are below), "span" (of the coordinate), "time"
-    (the record's length), "stiffness" (largest effort over the span) or "1"; a grid of one value is used as
-    it is. turns: an angle, whose grid goes once round in equal steps, above zero; a value less a turn is the
-    same. forms: values that are tried one by one, as different forms of the law; None leaves the default.
+    units of `scale`, ascending, of either sign: "speed" (95 % of the coordinate's speeds are below), "span"
+    (of the coordinate), "time" (the record's length), "stiffness" (largest effort over the span) or "1"; a
+    grid of one value is used as it is. turns: an angle, whose grid goes once round in equal steps, above
+    zero; a value less a turn is the same. forms: values that are tried one by one, as different forms of the
+    law; None leaves the default.
     step: of the slope about zero by which a parameter is estimated that is neither linear nor searched for;
     without one, a thousandth of the value that `Traits.shown` has. usual: size that a description's error
     usually has; None where nothing is known of it.

@@ -1,5 +1,7 @@
 """Standard deviations of estimates: what they scatter by over many draws of the noise."""
 
+from dataclasses import replace
+
 import numpy as np
 from diagnosis_support import BARE, UNUSED, system_of
 from numpy.random import Generator, default_rng
@@ -76,3 +78,20 @@ def test_what_is_hardly_determined_has_no_interval() -> None:
     assert raw["velocity"] > 0.5 * said["velocity"].value
     assert np.isnan(said["velocity"].std)
     assert said["magnitude"].std == raw["magnitude"]
+
+
+def test_what_a_bound_holds_at_zero_is_as_unsure_as_elsewhere() -> None:
+    """Its columns are zero in the fit; that no less than zero is possible makes nobody sure of zero."""
+    equations = real(USUAL)
+    candidate = next(c for c in candidates(equations) if c.place == ("load_dependent_friction", 1))
+    free = Search(System(equations)).trial(candidate)
+    assert free is not None
+    held = replace(
+        free,
+        columns=[np.zeros_like(c) for c in free.columns],
+        gain=replace(free.gain, values=np.zeros(1)),
+    )
+    (stated,) = deviations(selected(equations, free), equations)
+    (bound,) = deviations(selected(equations, held), equations)
+    assert np.isclose(bound["coefficient"], stated["coefficient"], rtol=0.1)
+    assert cause_estimates(selected(equations, held), equations)[0]["coefficient"].std > 0.0

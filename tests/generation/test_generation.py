@@ -3,6 +3,8 @@
 import hashlib
 import json
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +20,7 @@ from modelgen.generation import generate, generate_arm, print_model, refuse_coll
 from modelgen.generation.arm import shown_options
 from modelgen.generation.canonical import canonical, description_hash
 
+ROOT = Path(__file__).parents[2]
 SMALL = ["gravity_link1", "screw_axis", "gravity_arm"]
 
 YAML = """
@@ -107,6 +110,21 @@ def test_processes_do_not_show(tmp_path: Path) -> None:
     generate(arms, tmp_path / "many", Options(), processes=3, progress=seen.append)
     assert content(tmp_path / "one") == content(tmp_path / "many")
     assert seen == SMALL
+
+
+def test_a_script_generates_several_arms_without_a_guard_for_its_children(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import modelgen as mg\n"
+        f"every = mg.load_arms({str(ROOT / 'arms.yaml')!r})\n"
+        f"two = [every[name] for name in {SMALL[:2]}]\n"
+        "print(len(mg.generate(two, 'out', generation=mg.GenerationOptions(processes=2)).arms))\n",
+        encoding="utf-8",
+    )
+    call = [sys.executable, str(script)]
+    ended = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "2\n", "")
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == sorted(SMALL[:2])
 
 
 def test_nothing_is_written_where_one_arm_fails(tmp_path: Path) -> None:

@@ -71,26 +71,30 @@ def of_those_that_stay(
 ) -> list[Examined]:
     """The same where causes that stay explain what is there without the suspects.
 
-    What a suspect explained nothing explains: `form` and `explains` are asked again of the others alone,
-    until none more becomes a suspect.
+    What a suspect explained nothing explains, and is no noise: `form` and `explains` are asked again of the
+    others alone, until none more becomes a suspect.
     """
     found = list(every)
     while True:
         staying = [k for k, e in enumerate(found) if not e.failed]
         if len(staying) in (0, len(found)):
             return found
-        kept = selection.without([e.cause for e in found if e.failed], SUSPECT)
-        for k, complete in zip(staying, _complete(kept, equations), strict=True):
+        suspects = [e.cause for e in found if e.failed]
+        kept = selection.without(suspects, SUSPECT)
+        for k, complete in zip(staying, _complete(kept, equations, suspects), strict=True):
             again = {check.name: check for check in complete}
             found[k] = replace(found[k], checks=tuple(again.get(c.name, c) for c in found[k].checks))
         if not any(found[k].failed for k in staying):
             return found
 
 
-def _complete(selection: Selection, equations: Equations) -> list[tuple[Check, Check]]:
+def _complete(
+    selection: Selection, equations: Equations, suspects: Sequence[Cause] = ()
+) -> list[tuple[Check, Check]]:
     """For every cause, whether those of its joints say all that is to say there: `form` and `explains`."""
     terms = further_terms(selection)
-    forms, shares = free_forms(selection, equations, terms), explained(selection, terms)
+    forms = free_forms(selection, equations, terms)
+    shares = explained(selection, terms, [c.trial for c in suspects])
     own = (forms.get(c.trial.candidate.joint) for c in selection.causes)
     return [(_form(form), share) for form, share in zip(own, shares, strict=True)]
 
@@ -232,9 +236,8 @@ def admissible(cause: Cause, equations: Equations) -> Check:
 def _out_of_step(cause: Cause, equations: Equations) -> str:
     """Why a delay is none of the arm: a log may read its channels in turn, or efforts and positions apart.
 
-    A delay that all joints share is the log's where a log may have it that nobody has said anything of. Where
-    the mapping says when the efforts were read, a single joint has nothing to share it with: its delay is
-    then what the mapping does not explain.
+    A delay that all joints share is the log's where a log may have it that nobody has said anything of. A
+    single joint has nothing to share it with where the mapping says when the efforts were read.
     """
     c = cause.trial.candidate
     delay = c.definition.delays(cause.trial.parameters)
@@ -252,7 +255,7 @@ def _out_of_step(cause: Cause, equations: Equations) -> str:
 
 
 def _of_the_log(delay: float, equations: Equations) -> str:
-    """Why a delay [s] of all joints is a convention of the log, empty where it is none."""
+    """Why a delay [s] of all joints is the log's own, empty where it is not."""
     record = equations.rows[0].prepared.record
     if equations.n == 1 and record.hold_known == "mapping":
         return ""

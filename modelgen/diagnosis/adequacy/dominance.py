@@ -11,8 +11,9 @@ from modelgen.diagnosis.candidates import Candidate, Place
 from modelgen.diagnosis.selection import EXCHANGED, SUPERFLUOUS, Cause, Ranked, Selection, lets_vary
 from modelgen.effects import CATALOGUE
 
-# Refusals for want of evidence, of values that can be, or of a form of itself: they leave a cause its name.
-_LESSER = ("", "evidence", "values", "near rest", "one joint", EXCHANGED, SUPERFLUOUS)
+# Refusals for want of evidence or of a form of itself: they leave a cause its name. What explains more by
+# values that no arm has is not there, and the cause that explains less is not what is.
+_LESSER = ("", "evidence", "near rest", "one joint", EXCHANGED, SUPERFLUOUS)
 
 
 @dataclass(frozen=True)

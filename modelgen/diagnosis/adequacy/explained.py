@@ -17,6 +17,7 @@ from modelgen.dataset.processing.periods import folded
 from modelgen.diagnosis.adequacy.free_form import functions_of
 from modelgen.diagnosis.adequacy.lack_of_fit import lack_of_fit
 from modelgen.diagnosis.adequacy.smooth_functions import Worth, log_evidence, smooth_functions
+from modelgen.diagnosis.candidates import FittedCandidate, with_causes
 from modelgen.diagnosis.evidence import System, mean_squares
 from modelgen.diagnosis.selection import Selection
 from modelgen.diagnosis.validation import Check
@@ -26,14 +27,16 @@ from modelgen.regression.weighted import rmse, weighted_fit
 NEIGHBOURS = 3  # lines of a spectrum over which what a cause does is evened
 
 
-def explained(selection: Selection, terms: Mapping[int, Worth]) -> list[Check]:
+def explained(
+    selection: Selection, terms: Mapping[int, Worth], suspects: Sequence[FittedCandidate] = ()
+) -> list[Check]:
     """Whether the causes at the joints of each cause explain most of what is not noise there.
 
     What errors of the positions repeat is no lack of the model, and what the further terms of a law that is
     the first ones of a series explain is its own, where they are the lesser part. Passed as well where no
     more repeats than noise leaves by chance. Where nothing repeats, what the best function of no law explains
-    beside the causes is not noise. Not asked of free motions that do not repeat. terms: by joint, see
-    `further_terms`.
+    beside the causes is not noise, nor is what suspects explain. Not asked of free motions that do not
+    repeat. terms: by joint, see `further_terms`; suspects: that are not among the causes.
     """
     system, limits = selection.system, selection.system.equations.thresholds.adequacy
     equations, least = system.equations, limits.min_explained_share
@@ -43,7 +46,10 @@ def explained(selection: Selection, terms: Mapping[int, Worth]) -> list[Check]:
         return [Check("explains", None, True, float("nan"), least, text) for _ in selection.causes]
     sizes, theta = mean_squares(system), weighted_fit(equations.rows, equations.columns)
     gained = (rmse(equations.rows, equations.columns, theta) ** 2 - sizes) / sizes
-    left = left_smoothly(system) if fit is None else left_alike(system, theta)
+    if fit is None:
+        left = np.maximum(left_smoothly(system), _of_suspects(selection, suspects))
+    else:
+        left = left_alike(system, theta)
     rest = np.maximum(0.0, left - _of_further_terms(selection, terms)) / sizes
     found = []
     for cause in selection.causes:
@@ -59,6 +65,16 @@ def explained(selection: Selection, terms: Mapping[int, Worth]) -> list[Check]:
             text += ", or that no more repeats than noise leaves by chance, as here"
         found.append(Check("explains", passed, True, share, least, text))
     return found
+
+
+def _of_suspects(selection: Selection, suspects: Sequence[FittedCandidate]) -> Array:
+    """Mean squares (n,) that suspects explain beside the causes, zero where they explain nothing."""
+    if not suspects:
+        return np.zeros(selection.system.n)
+    equations = selection.system.equations
+    columns = with_causes(equations, [*(c.trial for c in selection.causes), *suspects])
+    theta = weighted_fit(equations.rows, columns)
+    return np.maximum(0.0, mean_squares(selection.system) - rmse(equations.rows, columns, theta) ** 2)
 
 
 def left_smoothly(system: System) -> Array:

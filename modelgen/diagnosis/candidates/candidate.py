@@ -220,9 +220,12 @@ def grid_unit(kind: str, name: str, joint: int | None, equations: Equations) -> 
     return float(np.quantile(np.concatenate(efforts), 0.95)) / max(span, 1e-12)
 
 
-def without_rests(equations: Equations, candidate: Candidate) -> Equations:
-    """Equations of the rows at which a chosen cause moves; of all where it has no rest of its own."""
-    pair = candidate.definition.coupled(candidate.fixed)
+def without_rests(equations: Equations, candidate: Candidate, values: Values) -> Equations:
+    """Equations of the rows at which a chosen cause moves; of all where it has no rest of its own.
+
+    values: of all its parameters.
+    """
+    pair = candidate.definition.coupled(values)
     if pair is None or candidate.joint is None:
         return equations
     rows = equations.rows

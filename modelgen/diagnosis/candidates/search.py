@@ -119,7 +119,9 @@ class Search:
         best = _best(trials)
         if best is None or best.gain.delta_bic < self.limits.min_refined_delta_bic:
             return best
-        low, high = bracket(grid, trials.index(best), turns=parameter.turns)
+        value = grid[trials.index(best)]
+        alike = sorted(abs(x) for x in grid if (x < 0.0) == (value < 0.0))
+        low, high = bracket(alike, alike.index(abs(value)), turns=parameter.turns)
         return self._refined(candidate, parameter.name, low, high, best, 1.0)
 
     def _at(
@@ -134,8 +136,8 @@ class Search:
         gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.passing)
         if gain is None:
             return None
-        held = np.array(candidate.positive) & (gain.values == 0.0)
-        if held.any():  # stays zero in every fit to come
+        held = gain.values == 0.0
+        if held.any():  # by its bounds, or for the records cannot show it: stays zero in every fit to come
             columns = [np.where(held, 0.0, c) for c in columns]
         charged = prior_penalty(candidate, named(candidate, gain.values), self.equations.arm)
         gain = replace(gain, delta_bic=gain.delta_bic - charged)
@@ -157,10 +159,11 @@ class Search:
     def _refined(
         self, candidate: Candidate, name: str, low: float, high: float, best: FittedCandidate, extra: float
     ) -> FittedCandidate:
-        """Golden section over the logarithm."""
+        """Golden section over the logarithm of values with the sign of the best."""
+        sign = math.copysign(1.0, best.values[name])
 
         def at(x: float) -> FittedCandidate | None:
-            return self._at(candidate, {**best.values, name: math.exp(x)}, extra)
+            return self._at(candidate, {**best.values, name: sign * math.exp(x)}, extra)
 
         return golden(at, math.log(low), math.log(high), best)
 

@@ -1,7 +1,14 @@
 """Evidence of columns beyond the noise: whitening, likelihood ratios, instruments."""
 
 from modelgen.diagnosis.evidence.instruments import Endogeneity, Pairs, endogeneity
-from modelgen.diagnosis.evidence.likelihood import NEGLIGIBLE, Evidence, StackedEquations, joints_of, weighted
+from modelgen.diagnosis.evidence.likelihood import (
+    NEGLIGIBLE,
+    Evidence,
+    StackedEquations,
+    independent_of,
+    joints_of,
+    weighted,
+)
 from modelgen.diagnosis.evidence.noise import Autocorrelation, whitened
 from modelgen.diagnosis.evidence.system import System, covariance, independent, mean_squares, whitened_fit
 
@@ -16,6 +23,7 @@ __all__ = [
     "covariance",
     "endogeneity",
     "independent",
+    "independent_of",
     "joints_of",
     "mean_squares",
     "weighted",

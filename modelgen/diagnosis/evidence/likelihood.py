@@ -9,6 +9,7 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import qr
 
 from modelgen.diagnosis.equations import NominalPrior
 from modelgen.diagnosis.evidence.noise import Autocorrelation
@@ -183,17 +184,16 @@ def explained(
         return None
     there = norms > 0
     unit = stacked[:, there] / norms[there]
-    apart = np.eye(unit.shape[1])
-    if stack.alone is not None:  # what the records cannot show is none, whatever is told
-        records = unit[: len(stack.alone)]
-        _, s, vt = np.linalg.svd(records - stack.alone @ (stack.alone.T @ records), full_matrices=False)
-        apart = vt[s > NEGLIGIBLE]
-        unit = unit @ apart.T
+    # what the records cannot show is none, whatever is told
+    count, apart = (len(basis), basis) if stack.alone is None else (len(stack.alone), stack.alone)
+    shown = independent_of(unit[:count], apart)
+    there[there] = shown
+    if not there.any():
+        return None
+    unit = unit[:, shown]
     own = unit - basis @ (basis.T @ unit)
     u, s, vt = np.linalg.svd(own, full_matrices=False)
-    kept, vt = s > NEGLIGIBLE, vt @ apart
-    if not kept.any():
-        return None
+    kept = s > NEGLIGIBLE
     scores = u[:, kept].T @ left
     found, values = vt[kept].T @ (scores / s[kept]), np.zeros(len(norms))
     limited = np.flatnonzero(np.asarray(positive or [False] * len(norms))[there])
@@ -211,6 +211,18 @@ def explained(
     drop = (weights[used] * np.log(rss0[used] / np.maximum(rss1[used], 1e-300))).sum()
     penalty = (rank + extra) * math.log(max(2.0, float(stack.counts.sum())))
     return Evidence(float(drop - penalty), values, rss0[:n], rss1[:n], rank)
+
+
+def independent_of(columns: Array, basis: Array) -> NDArray[np.bool_]:
+    """Flags (k,) of columns (R, k) of unit length that show something of their own beside an orthonormal
+    basis (R, b), and beside each other. Of those that depend on each other the clearest have it.
+    """
+    own = columns - basis @ (basis.T @ columns)
+    r, order = qr(own, mode="r", pivoting=True)
+    sizes = np.abs(np.diagonal(r))
+    found = np.zeros(columns.shape[1], dtype=bool)
+    found[order[: len(sizes)]] = sizes > NEGLIGIBLE
+    return found
 
 
 def _unhidden(

@@ -16,7 +16,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns
 from modelgen.diagnosis.equations import Equations
-from modelgen.diagnosis.evidence import System
+from modelgen.diagnosis.evidence import System, independent_of
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.elastic_fit import smooth
 from modelgen.numeric import Array
@@ -41,17 +41,20 @@ def covariance_of(
     if slopes:
         matrix = np.hstack([matrix, plain.records(slopes)])
     norms = np.linalg.norm(matrix, axis=0)
-    norms[norms == 0] = 1.0
+    empty = norms == 0
+    norms[empty] = 1.0
     u, s, vt = np.linalg.svd(matrix / norms, full_matrices=False)
     kept = s > OPEN * s.max(initial=0.0)
     along = u[:, kept]
     noise = np.eye(int(kept.sum())) / plain.share if plain.colour is None else plain.colour.variance(along)
     back = (vt[kept].T / s[kept]) / norms[:, None]
+    back[empty] = 0.0
     return np.asarray(back @ noise @ back.T)
 
 
 def deviations(selection: Selection, equations: Equations) -> list[dict[str, float]]:
-    """Standard deviations of the causes' parameters by name; nan of what was fixed.
+    """Standard deviations of the causes' parameters by name; nan of what was fixed, and of what the records
+    cannot show.
 
     equations: whose arm further columns are made for.
     """
@@ -60,19 +63,42 @@ def deviations(selection: Selection, equations: Equations) -> list[dict[str, flo
     system, rows = selection.system, selection.system.rows
     of_arm = equations.with_rows(rows)
     slopes = [_slopes(c, of_arm, system.base) for c in selection.causes]
-    together = [np.concatenate([s[k] for s in slopes], axis=2) for k in range(len(rows))]
+    zero = [_at_zero(c, of_arm, system) for c in selection.causes]
+    further = [table for pair in zip(slopes, (tables for _, tables in zero), strict=True) for table in pair]
+    together = [np.concatenate([s[k] for s in further], axis=2) for k in range(len(rows))]
     places = selection.columns
     compliant = [c.trial.candidate.elastic for c in selection.causes]
     held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
     carried = _carried(selection, of_arm)
     whole = covariance_of(system, together if together[0].shape[2] else (), held, carried)
     searched, found = len(system.theta), []
-    for cause, own, slope in zip(selection.causes, places, slopes, strict=True):
+    for cause, own, slope, (columns, tables) in zip(selection.causes, places, slopes, zero, strict=True):
         last = searched + slope[0].shape[2]
         at = np.r_[own, searched:last]
+        at[columns] = np.arange(last, last + tables[0].shape[2])
         found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
-        searched = last
+        searched = last + tables[0].shape[2]
     return found
+
+
+def _at_zero(cause: Cause, equations: Equations, system: System) -> tuple[list[int], list[Array]]:
+    """Numbers (h) of the cause's columns that its bounds hold at zero, and what they would be, (M, n, h) of
+    every record: nobody knows that a value is zero because less is not possible.
+
+    Not of those that the records cannot show beside all others.
+    """
+    trial = cause.trial
+    c, tables = trial.candidate, trial.columns
+    held = [] if c.elastic else np.flatnonzero(~np.any([t.any(axis=(0, 1)) for t in tables], axis=0)).tolist()
+    nothing = [np.zeros((*t.shape[:2], 0)) for t in tables]
+    made = candidate_columns(c, {**trial.values, **trial.around}, equations, system.base) if held else None
+    if made is None:
+        return [], nothing
+    stacked = system.plain.stacked([t[:, :, held] for t in made])
+    norms = np.linalg.norm(stacked, axis=0)
+    shown = independent_of(stacked / np.where(norms > 0.0, norms, 1.0), system.plain.basis)
+    open_ = [k for k, there in zip(held, shown, strict=True) if there]
+    return open_, [t[:, :, open_] for t in made]
 
 
 def _carried(selection: Selection, equations: Equations) -> list[Array]:

@@ -101,7 +101,7 @@ class _Steps:
         self.causes.append(
             Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals, lesser)
         )
-        equations = without_rests(self.equations, best.candidate)
+        equations = without_rests(self.equations, best.candidate, best.parameters)
         refit(self.causes, equations)
         if not own:
             refine(self.causes, equations)

@@ -184,7 +184,12 @@ class TransmissionCoupling(Effect):
             joint=True,
         ),
         Parameter(
-            "ratio", "1", "turns per turn of the other joint", default=1.0, bounds=ANY, structural=True
+            "ratio",
+            "1",
+            "turns per turn of the other joint",
+            default=1.0,
+            bounds=ANY,
+            grid=(-4.0, -1.0, -0.25, 0.25, 1.0, 4.0),
         ),
     )
     confused_with = ("fluid_drag",)
@@ -201,9 +206,10 @@ class TransmissionCoupling(Effect):
 
     @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
-        """Couple it with every joint before this one, in either direction."""
+        """Couple it with every joint before this one: turn for turn, in either direction, or by any ratio."""
         assert number is not None
-        return [{"other": float(k), "ratio": r} for k in range(1, number) for r in (1.0, -1.0)]
+        ratios: tuple[dict[str, float], ...] = ({"ratio": 1.0}, {"ratio": -1.0}, {})
+        return [{"other": float(k), **ratio} for k in range(1, number) for ratio in ratios]
 
     @classmethod
     def simulated(cls, values: Numbers) -> Mapping[str, float]:
