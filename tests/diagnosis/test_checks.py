@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from diagnosis_support import ARM, PERIOD, equations_of, made, offset, system_of, three
+from threshold_decisions import elastic_while
 
 from modelgen.dataset import Record
 from modelgen.description import DirectDrive
@@ -186,6 +187,13 @@ def test_a_suspect_ends_the_naming_at_its_joint(joint: int, ended: bool) -> None
     first, second = ended_by_suspects([Examined(cause, (checks[0],)), Examined(later, (checks[1],))])
     assert first.failed
     assert [c.value for c in second.failed] == ([40.0] if ended else [])
+
+
+@pytest.mark.parametrize("slow", [True, False])
+def test_an_elastic_joint_that_shows_only_near_rest_is_a_form_of_friction(slow: bool) -> None:
+    form = elastic_while(USUAL, slow)
+    assert form.slow
+    assert form.as_good == slow
 
 
 @pytest.mark.parametrize("guessed", [True, False])

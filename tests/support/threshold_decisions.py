@@ -20,7 +20,7 @@ from modelgen.diagnosis.adequacy.checks import _stable, significant
 from modelgen.diagnosis.adequacy.distinguishable import aliases
 from modelgen.diagnosis.adequacy.dominance import dominance
 from modelgen.diagnosis.adequacy.explained import left_smoothly
-from modelgen.diagnosis.adequacy.free_form import free_forms
+from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms
 from modelgen.diagnosis.candidates import FittedCandidate, candidates
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.search import Search
@@ -196,6 +196,24 @@ def waving(limits: Thresholds) -> tuple[Equations, list[Array]]:
     return equations.with_rows(given), hidden
 
 
+def elastic_while(limits: Thresholds, slow: bool) -> FreeForm:
+    """The form of an elastic joint that explains what is there only while its joint is slow, or always."""
+    bare, rows, columns = real(limits), [], []
+    speeds = [np.abs(r.prepared.picked(r.prepared.dq)[:, 0]) for r in bare.rows]
+    moving = np.concatenate([x[r.moving[:, 0]] for x, r in zip(speeds, bare.rows, strict=True)])
+    for r, speed in zip(bare.rows, speeds, strict=True):
+        where = speed < np.quantile(moving, 0.05) if slow else speed >= 0.0
+        column = np.zeros((*r.effort.shape, 1))
+        column[:, 0, 0] = where * np.sin(np.arange(len(where)))
+        columns.append(column)
+        rows.append(replace(r, effort=r.effort + 10.0 * r.effort[:, 0].std() * column[:, :, 0]))
+    equations = bare.with_rows(rows)
+    gain = System(equations).gain(columns)
+    assert gain is not None
+    trial = FittedCandidate(Candidate("joint_flexibility", 1), {}, columns, gain)
+    return free_forms(selected(equations, trial), equations, {})[1]
+
+
 def freely(limits: Thresholds, column: Any) -> bool:
     """Whether a free function of a joint's position outdoes a cause with this law of the right one, where
     nothing repeats.
@@ -325,6 +343,7 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "adequacy.min_absorbed_share": (2.0, absorbed),
     "adequacy.max_behind_refused": (30.0, dominated),
     "adequacy.max_free_form_ahead": (1e6, lambda t: freely(t, constant)),
+    "adequacy.slow_rows_share": (0.01, lambda t: elastic_while(t, slow=True).ahead),
     "adequacy.min_evidence_in_noise": (1e6, left_beside),
     "adequacy.min_claimed_deviations": (1e3, claimed),
     "adequacy.min_stable_probability": (2.0, stable),

@@ -12,7 +12,7 @@ from modelgen.dataset.processing.instants import fitting
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.explained import explained
-from modelgen.diagnosis.adequacy.figures_said import ahead_of, percent, possible
+from modelgen.diagnosis.adequacy.figures_said import FREE_FUNCTION, ahead_of, form_said, percent, possible
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
 from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
@@ -286,16 +286,12 @@ def _undominated(by: Dominance, arm: Arm) -> Check:
     return Check("undominated", by.ahead <= by.most, True, by.ahead, by.most, text)
 
 
-_FREE = "a free function of the joint's position and speed"
-
-
 def _form(by: FreeForm | None) -> Check:
     if by is None:
-        text = f"nothing like {_FREE} is set against it: none acts as it does"
+        text = f"nothing like {FREE_FUNCTION} is set against it: none acts as it does"
         return Check("form", True, True, float("nan"), float("nan"), text)
-    what = "the same with a size of its own at each joint" if by.apart else _FREE
-    text = f"{what} {ahead_of(by.ahead, by.most)}"
-    return Check("form", not by.as_good, True, by.ahead, by.most, text)
+    value, asked = (-by.ahead, -by.most) if by.slow else (by.ahead, by.most)
+    return Check("form", not by.as_good, True, value, asked, form_said(by))
 
 
 def _stable(k: int, selection: Selection) -> Check:

@@ -6,9 +6,12 @@ import numpy as np
 
 from modelgen.charts import number
 from modelgen.description import Arm
+from modelgen.diagnosis.adequacy.free_form import FreeForm
 from modelgen.diagnosis.selection import Cause
 from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
+
+FREE_FUNCTION = "a free function of the joint's position and speed"
 
 
 def possible(cause: Cause, arm: Arm) -> str:
@@ -44,6 +47,17 @@ def ahead_of(ahead: float, most: float) -> str:
     where = f"{number(ahead)} ahead of it" if ahead > 0.0 else f"{number(-ahead)} behind it"
     may = f"may be {number(most)} ahead" if most > 0.0 else "must not be ahead"
     return f"is {where} in delta BIC; it {may}"
+
+
+def form_said(by: FreeForm) -> str:
+    """What the form of a cause was held against, and how it does."""
+    if by.slow:
+        return (
+            f"{number(-by.ahead)} of delta BIC are left for it without the rows at which its joint is "
+            f"slowest, where friction changes; {number(-by.most)} is asked"
+        )
+    what = "the same with a size of its own at each joint" if by.apart else FREE_FUNCTION
+    return f"{what} {ahead_of(by.ahead, by.most)}"
 
 
 def percent(share: float) -> str:

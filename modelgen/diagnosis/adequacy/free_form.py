@@ -4,7 +4,8 @@ At a joint the function is of its position and speed, a Gaussian process with a 
 its sign (Rasmussen and Williams 2006): whatever a friction or a force over the joint does, it can. A law that
 is there explains as much at the price of its few parameters; one that is not ahead of the function has only
 the function's shape for itself. A law that acts on several joints says how much on each: where each has a
-size of its own, it is not the law.
+size of its own, it is not the law. What bends or has play acts wherever its load changes: if it explains
+only rows at which its joint nearly rests, what is there is a form of friction.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ from modelgen.diagnosis.adequacy.smooth_functions import (
     log_evidence,
     spots,
 )
-from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns, system_of
+from modelgen.diagnosis.candidates import FittedCandidate, beside, candidate_columns, system_of
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
-from modelgen.diagnosis.selection import Selection, together
+from modelgen.diagnosis.selection import Selection, threshold, together
 from modelgen.effects import Family
 from modelgen.numeric import Array
 
@@ -32,12 +33,15 @@ from modelgen.numeric import Array
 @dataclass(frozen=True)
 class FreeForm:
     """ahead: delta BIC by which what has no law is ahead of the causes at a joint, or of the whole arm; most:
-    by which it may be. apart: it is the law itself, with a size of its own at every joint, or record.
+    by which it may be. apart: it is the law itself, with a size of its own at every joint, or record; slow:
+    nothing, while the joint is not at its slowest, so that `ahead` is the evidence that the cause has there,
+    below zero.
     """
 
     ahead: float
     most: float
     apart: bool = False
+    slow: bool = False
 
     @property
     def as_good(self) -> bool:
@@ -52,8 +56,9 @@ def free_forms(
     whole arm by how much their own laws are with a size at every joint.
 
     Asked for all causes of a joint together; a cause whose law is the first terms of a series counts with the
-    function that the series would come to. Not of elastic joints and play, whose own laws are none of the
-    joint's motion, or of free motions. terms: by joint, see `further_terms`.
+    function that the series would come to. The laws of elastic joints and play are none of the joint's
+    motion: at their joints it is asked what they explain while these are not at their slowest. Not of free
+    motions. terms: by joint, see `further_terms`.
     """
     if equations.free:
         return {}
@@ -62,7 +67,9 @@ def free_forms(
     found: dict[int | None, FreeForm] = {}
     for joint in {c.trial.candidate.joint: None for c in selection.causes}:
         own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
-        if any(t.candidate.elastic for t in own):
+        elastic = [t for t in own if t.candidate.elastic]
+        if elastic and joint is not None:
+            found[joint] = max((_slowest_out(t, selection) for t in elastic), key=lambda form: form.ahead)
             continue
         others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
         without = system_of(equations, others, selection.system)
@@ -76,6 +83,25 @@ def free_forms(
         free = FreeForm(ahead(shapes, own, without) - rest, most)
         found[joint] = max(free, found[joint], key=lambda form: form.ahead - form.most)
     return found
+
+
+def _slowest_out(trial: FittedCandidate, selection: Selection) -> FreeForm:
+    """Evidence of an elastic joint or play, below zero, without the rows at which its joint is slowest."""
+    equations = selection.system.equations
+    j = (trial.candidate.joint or 1) - 1
+    speeds = [np.abs(r.prepared.picked(r.prepared.dq)[:, j]) for r in equations.rows]
+    moving = [x[r.moving[:, j]] for x, r in zip(speeds, equations.rows, strict=True)]
+    least = np.quantile(np.concatenate(moving), equations.thresholds.adequacy.slow_rows_share)
+    kept = []
+    for r, speed in zip(equations.rows, speeds, strict=True):
+        flags = r.moving.copy()
+        flags[:, j] &= speed >= least
+        kept.append(replace(r, moving=flags))
+    faster = equations.with_rows(kept)
+    others = [c.trial for c in selection.causes if c.trial is not trial]
+    gain = beside(trial, system_of(faster, others))
+    evidence = -np.inf if gain is None else gain.delta_bic
+    return FreeForm(-evidence, -threshold(selection.system), slow=True)
 
 
 def _apart(own: Sequence[FittedCandidate], without: System) -> FreeForm:

@@ -21,10 +21,7 @@ HEAVY = 0.3  # of the mass of all links, of one actuator
 
 
 class DriveInertia(Effect):
-    """Inertia of everything that moves in proportion to the motor coordinate.
-
-    Rotor, gears, the turning and the travelling parts of a screw: all merge in one coefficient.
-    """
+    """Inertia of all that moves in proportion to the motor coordinate: rotor, gears, the parts of a screw."""
 
     name = "drive_inertia"
     seen_over = "acceleration"
@@ -207,9 +204,8 @@ class TransmissionCoupling(Effect):
     @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
         """Couple it with every joint before this one: turn for turn, in either direction, or by any ratio."""
-        assert number is not None
-        ratios: tuple[dict[str, float], ...] = ({"ratio": 1.0}, {"ratio": -1.0}, {})
-        return [{"other": float(k), **ratio} for k in range(1, number) for ratio in ratios]
+        found = [{"other": float(k)} for k in range(1, number or 1)]
+        return [f | r for f in found for r in ({"ratio": 1.0}, {"ratio": -1.0}, {})]
 
     @classmethod
     def simulated(cls, values: Numbers) -> Mapping[str, float]:

@@ -45,6 +45,12 @@ class AdequacyThresholds(Group):
         "Functions of one joint's position bend over this length, for hard spots.",
         SIMULATED,
     )
+    slow_rows_share: float = entry(
+        0.1,
+        "of the rows",
+        "Without so many, at which its joint is slowest, an elastic joint or play must keep its evidence.",
+        STRANGERS,
+    )
     max_alias_angle: float = entry(
         1e-6, "rad", "Effects whose columns span spaces at a smaller principal angle are aliases.", "rounding"
     )
