@@ -43,14 +43,16 @@ def generate_arms(
     copyreg.pickle(MappingProxyType, _by_content)
     made: dict[int, GeneratedArm | InputError] = {}
     jobs = [(arm, own, artefacts) for arm, own in zip(arms, by_arm, strict=True)]
+    failed = False
     for k, result in run(_generated, jobs, Where(workers)):
         made[k] = result
-        while len(results) in made:  # in the order of the arms, in which they are told
-            ready = made[len(results)]
-            if isinstance(ready, InputError):
-                raise ready
+        failed = failed or isinstance(result, InputError)
+        while not failed and isinstance(ready := made.get(len(results)), GeneratedArm):
             results.append(ready)
-            done(arm.name)
+            done(ready.name)
+    for k in range(len(jobs)):  # in the order of the arms, in which they are told
+        if isinstance(error := made[k], InputError):
+            raise error
     return results
 
 
