@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any, ClassVar
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from modelgen.charts import Chart, drawn, labels, mark
 from modelgen.resources import templates_folder
@@ -161,7 +161,12 @@ class Checks(Part):
     def values(self) -> Mapping[str, Any]:
         """For the template."""
         rows = [
-            {"text": text, "target": target, "marks": _signed(marks.key, marks.marks)}
+            # where a long name may break
+            {
+                "text": escape(text).replace("_", Markup("_<wbr>")),
+                "target": target,
+                "marks": _signed(marks.key, marks.marks),
+            }
             for text, target, marks in self.rows
         ]
         heads = [name for _, name, _ in self.rows[0][2].marks]
