@@ -6,7 +6,8 @@ import os
 import re
 import threading
 import tomllib
-from datetime import UTC, datetime, timedelta
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 
 import numpy as np
@@ -249,3 +250,33 @@ def test_what_stands_beside_modelgen_names_the_libraries_of_the_project() -> Non
     extras = project["project"]["optional-dependencies"]
     assert sorted(LOGS.values()) == sorted(extras["logs"])
     assert sorted(DASK.values()) == sorted(extras["dask"])
+
+
+@pytest.mark.parametrize(
+    ("date", "between"),
+    [
+        (lambda x: x.isoformat(timespec="microseconds"), ","),
+        (lambda x: x.astimezone(timezone(timedelta(hours=5.5))).isoformat(sep=" "), ";"),
+        (lambda x: x.strftime("%Y/%m/%d %H:%M:%S.%f"), ","),
+        (lambda x: x.isoformat(timespec="microseconds").replace("+00:00", "Z"), "\t"),
+    ],
+)
+def test_dates_are_times(tmp_path: Path, date: Callable[[datetime], str], between: str) -> None:
+    """Over midnight, in any zone."""
+    begin = datetime(2026, 2, 28, 23, 59, 59, 250000, tzinfo=UTC)
+    dates = [date(begin + timedelta(seconds=float(row[0]))) for row in ROWS]
+    rows = [(d, *row[1:]) for d, row in zip(dates, ROWS, strict=True)]
+    found = read(file_of(tmp_path, table(between.join(("t", "q1", "i1")), rows, between)), ARM)
+    np.testing.assert_allclose(found.t - found.t[0], T, atol=2e-6)
+    np.testing.assert_allclose(found.q[:, 0], Q, atol=1e-6)
+    assert found.begins == pytest.approx(begin.timestamp(), abs=1e-6)
+    assert any("t holds dates" in remark for remark in found.remarks)
+
+
+def test_a_date_that_is_none_is_refused_at_its_place(tmp_path: Path) -> None:
+    begin = datetime(2026, 3, 1, tzinfo=UTC)
+    rows = [((begin + timedelta(seconds=float(row[0]))).isoformat(), *row[1:]) for row in ROWS]
+    rows[200] = ("2026-02-30T00:00:01", *rows[200][1:])
+    path = file_of(tmp_path, table("t,q1,i1", rows))
+    with pytest.raises(InputError, match=r"a.csv:202:1: found '2026-02-30T00:00:01' .* expected a date"):
+        read(path, ARM)

@@ -13,7 +13,7 @@ from modelgen.dataset.objects import Layout
 from modelgen.dataset.reading.pipes import plain_file
 from modelgen.dataset.reading.shape import Shape, shape_of, wrong_count
 from modelgen.dataset.reading.specs import unreadable
-from modelgen.dataset.reading.text import cells_of, lines_of, number
+from modelgen.dataset.reading.text import cells_of, lines_of, moment, number
 from modelgen.dataset.reading.turns import in_turn
 from modelgen.description.document import one_line
 from modelgen.errors import InputError, Location
@@ -39,6 +39,16 @@ class CsvReader:
         self.names = self.shape.names
         self.units = self.shape.units
         self._found: dict[str, None] = dict.fromkeys(self.shape.remarks)
+
+    @property
+    def origins(self) -> dict[str, float]:
+        """What columns of dates count from [s since 1970, UTC]."""
+        return {self.names[k]: date.timestamp() for k, date in self.shape.dates.items()}
+
+    @property
+    def origin(self) -> float:
+        """What the column t counts from, the same."""
+        return self.origins.get("t", 0.0)
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -119,8 +129,11 @@ class CsvReader:
 
     def _number(self, cells: Sequence[str], text: str, line: int, index: int) -> float:
         cell = cells[index]
+        begin = self.shape.dates.get(index)
+        if begin is not None and (date := moment(cell)) is not None:
+            return (date - begin).total_seconds()
         value = number(cell, self.shape.decimal)
-        if value is not None:
+        if value is not None and begin is None:
             return value
         if not cell and index in self.shape.sparse:
             return np.nan
@@ -133,7 +146,8 @@ class CsvReader:
             if "," in cell or self.shape.decimal == ","
             else ""
         )
+        expected = f"a number{hint}" if begin is None else "a date, as in the rows before"
         raise InputError(
-            f"found '{said}' in the column {self.names[index]}, expected a number{hint}",
+            f"found '{said}' in the column {self.names[index]}, expected {expected}",
             Location(str(self.path), line, column),
         )

@@ -10,10 +10,11 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 from modelgen.dataset.objects import Layout
-from modelgen.dataset.reading.text import cells_of, encoding_of, head_of, number
+from modelgen.dataset.reading.text import cells_of, encoding_of, head_of, moment, number
 from modelgen.errors import InputError, Location
 
 DELIMITERS: tuple[str | None, ...] = (",", ";", "\t", "|", None)  # None: blanks
@@ -36,7 +37,8 @@ class Shape:
 
     header: number of the last line before the samples. quoted: whether cells have quotes. trailing:
     whether every row ends with a delimiter. sparse: columns that are blank in many rows, by number. units: by
-    column, where a row of the file says them.
+    column, where a row of the file says them. dates: of the first sample, by the number of its column, where
+    columns hold dates.
     """
 
     encoding: str
@@ -47,6 +49,7 @@ class Shape:
     trailing: bool
     sparse: frozenset[int]
     units: dict[str, str]
+    dates: dict[int, datetime]
     remarks: tuple[str, ...]
 
 
@@ -97,7 +100,11 @@ def shape_of(path: Path, file: Path, layout: Layout) -> Shape:
     last = rows[first - 1][0] if first else layout.skip_lines
     blank = [sum(not row[k] for row in body if len(row) == width) for k in range(min(width, len(names)))]
     sparse = frozenset(k for k, count in enumerate(blank) if count >= 10 and count > 0.2 * len(body))
-    return Shape(encoding, found, decimal, names, last, trailing, sparse, units, tuple(remarks))
+    begin = rows[first][1][: len(names)] if first < len(rows) else []
+    dates = {k: date for k, cell in enumerate(begin) if (date := moment(cell)) is not None}
+    for k, date in dates.items():
+        remarks.append(f"{names[k]} holds dates, in UTC where they name no zone: it counts from {date}")
+    return Shape(encoding, found, decimal, names, last, trailing, sparse, units, dates, tuple(remarks))
 
 
 def _delimiter(lines: Sequence[str], decimal: str | None) -> str | None:

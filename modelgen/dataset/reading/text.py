@@ -7,6 +7,7 @@ import csv
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
@@ -24,6 +25,7 @@ _MARKS = (
 )
 _POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?(\d+(,\d+)?|,\d+)([eEdD][+-]?\d+)?")
+_DATE = re.compile(r"\d{4}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d.*", re.IGNORECASE)
 _WORDS = ("nan", "inf", "+inf", "-inf", "infinity", "-infinity")
 
 
@@ -94,3 +96,17 @@ def number(cell: str, decimal: str = ".") -> float | None:
     if form.fullmatch(cell):
         return float(cell.replace(",", ".").replace("d", "e").replace("D", "e"))
     return float(cell) if cell.lower() in _WORDS else None
+
+
+def moment(cell: str) -> datetime | None:
+    """The date and time of day that a cell is (ISO 8601), in UTC where it names no zone; None for others.
+
+    Digits of a second beyond the sixth are cut off.
+    """
+    if not _DATE.fullmatch(cell):
+        return None
+    try:
+        found = datetime.fromisoformat(cell.replace("/", "-"))
+    except ValueError:
+        return None
+    return found if found.tzinfo else found.replace(tzinfo=UTC)
