@@ -146,7 +146,9 @@ OWN = ("friction_offset", 1, 100.0, "", True)
     [
         (("time_delay", None, 120.0, "gain", False), True),  # what explains most was refused
         (("presliding", 1, 120.0, "positions", False), True),
-        (("presliding", 1, 120.0, "values", False), True),  # it cannot be there itself, nor is what is less
+        (("presliding", 1, 120.0, "values", False), False),  # it cannot be there itself
+        (("joint_flexibility", 1, 120.0, "values", False), True),  # it swings, by whatever values
+        (("joint_flexibility", 2, 120.0, "values", False), False),
         (("presliding", 2, 120.0, "gain", False), False),  # at another joint
         (("time_delay", None, 112.0, "gain", False), False),  # not clearly ahead
         (("time_delay", None, 120.0, "evidence", False), False),  # asks for more evidence itself

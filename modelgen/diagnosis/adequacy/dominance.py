@@ -9,11 +9,10 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import Candidate, Place
 from modelgen.diagnosis.selection import EXCHANGED, SUPERFLUOUS, Cause, Ranked, Selection, lets_vary
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, Family
 
-# Refusals for want of evidence or of a form of itself: they leave a cause its name. What explains more by
-# values that no arm has is not there, and the cause that explains less is not what is.
-_LESSER = ("", "evidence", "near rest", "one joint", EXCHANGED, SUPERFLUOUS)
+# Refusals for want of evidence, of values that can be, or of a form of itself: they leave a cause its name.
+_LESSER = ("", "evidence", "values", "near rest", "one joint", EXCHANGED, SUPERFLUOUS)
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,8 @@ def dominance(cause: Cause, selection: Selection) -> Dominance:
     for turn in selection.turns:
         own = next((r for r in turn if r.chosen and r.place == c.place), None)
         if own is not None:
-            found += [_over(r, own.delta_bic, c, most) for r in turn if _dominates(r, c, named)]
+            there = [r for r in turn if _dominates(r, c, named) or _swings(r, c)]
+            found += [_over(r, own.delta_bic, c, most) for r in there]
     if not any(r.chosen for r in selection.turns[-1]):
         last = [r for r in selection.turns[-1] if _dominates(r, c, named)]
         found += [_over(r, cause.delta_bic, c, most) for r in last]
@@ -61,3 +61,11 @@ def _dominates(r: Ranked, c: Candidate, named: Collection[Place]) -> bool:
     if r.refused in _LESSER or r.place in named or lets_vary(r.effect, r.joint, c):
         return False
     return r.joint is None or r.joint == c.joint
+
+
+def _swings(r: Ranked, c: Candidate) -> bool:
+    """Whether a joint bends or has play by values that no arm has, where the candidate does not: what such a
+    law explains comes late or swings, and has the form of neither.
+    """
+    elastic = CATALOGUE[r.effect].family is Family.ELASTIC
+    return r.refused == "values" and elastic and not c.elastic and r.joint == c.joint
