@@ -19,12 +19,12 @@ def link_1(found: Found, times: Mapping[tuple[str, int], float]) -> str:
     made, axes = figure(3, 1, (7.0, 6.6))
     for row, degrees in enumerate((20, 30, 40)):
         a = axes[row, 0]
-        for name, text, colour in (
-            ("gravity_link1_loaded", "carrying link 2", COLOURS[1]),
-            ("gravity_link1", "bare", COLOURS[4]),
+        for name, text, colour, line in (
+            ("gravity_link1_loaded", "carrying link 2", COLOURS[1], "-"),
+            ("gravity_link1", "bare", COLOURS[4], "--"),
         ):
             run = found[name, degrees]
-            a.plot(run.t, np.degrees(run.q[:, 0]), color=colour, label=f"link 1 {text}")
+            a.plot(run.t, np.degrees(run.q[:, 0]), line, color=colour, label=f"link 1 {text}")
             at = times[name, degrees]
             if at <= run.t[-1]:
                 a.axvline(at, color=colour, linewidth=0.8, linestyle=":")
@@ -48,7 +48,9 @@ def link_2(
         runs, mean, fit, _ = held[degrees]
         a.plot(run.t, np.degrees(runs.T), color="#bbbbbb", linewidth=0.6)
         a.plot(run.t, np.degrees(mean), color=COLOURS[0], label="mean of ten, hidden spring and stiction")
-        a.plot(run.t, np.degrees(run.q[:, 0]), color=COLOURS[1], label="simulated, document's parameters")
+        a.plot(
+            run.t, np.degrees(run.q[:, 0]), "--", color=COLOURS[1], label="simulated, document's parameters"
+        )
         a.axvline(times["gravity_link2", degrees], color=COLOURS[1], linewidth=0.8, linestyle=":")
         a.set_xlim(-0.1, 8.0)
         a.set_ylabel(f"q1 from {degrees} deg [deg]")

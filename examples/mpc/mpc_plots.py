@@ -73,17 +73,16 @@ def _tracking(arm: ControlledArm, run: Run) -> Any:
 
 def _errors(runs: Mapping[str, Run]) -> Any:
     labels = {
-        "wrong": ("parameters wrong by up to 10 %", ORANGE),
-        "exact": ("exact parameters", BLUE),
-        "smoothed": ("exact parameters, dry friction smooth in the plant too", GREEN),
+        "wrong": ("parameters wrong by up to 10 %", ORANGE, "-"),
+        "exact": ("exact parameters", BLUE, "--"),
+        "smoothed": ("exact parameters, dry friction smooth in the plant too", GREEN, ":"),
     }
     figure, axes = plt.subplots(1, 3, figsize=(9.5, 2.9), layout="constrained")
     for j, axis in enumerate(axes):
         axis.set_title(JOINTS[j])
-        for name, (label, colour) in labels.items():
-            axis.plot(
-                runs[name].t, np.rad2deg(runs[name].error[:, j]), color=colour, label=label, linewidth=1.1
-            )
+        for name, (label, colour, line) in labels.items():
+            error = np.rad2deg(runs[name].error[:, j])
+            axis.plot(runs[name].t, error, line, color=colour, label=label, linewidth=1.1)
         axis.set_xlabel("time [s]")
     axes[0].set_ylabel("angle less reference [deg]")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
