@@ -10,7 +10,7 @@ from typing import Any
 from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Shown, Table
-from modelgen.charts import apart
+from modelgen.charts import apart, sized
 from modelgen.description import Arm, loads
 from modelgen.diagnosis.extended import Estimate, NamedCause
 from modelgen.diagnosis.options.thresholds import USUAL
@@ -28,7 +28,7 @@ from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, given
 from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, interval, suspicions
 from modelgen.report.experiment import followed
-from modelgen.report.words import joint_name, legible, place_of, sized
+from modelgen.report.words import joint_name, legible, place_of
 from modelgen.report.writing import write
 
 

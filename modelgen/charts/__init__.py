@@ -5,7 +5,7 @@ from modelgen.charts.drawn import drawn
 from modelgen.charts.intervals import Interval, intervals
 from modelgen.charts.paths import mark
 from modelgen.charts.sheet import sheet
-from modelgen.charts.ticks import apart, number, ticks
+from modelgen.charts.ticks import apart, number, sized, ticks
 
 __all__ = [
     "ROLES",
@@ -20,5 +20,6 @@ __all__ = [
     "mark",
     "number",
     "sheet",
+    "sized",
     "ticks",
 ]

@@ -43,6 +43,11 @@ def anchored(at: float, word: str, width: float) -> str:
     return 'x="0" text-anchor="start"' if at < half else f'x="{at:.1f}" text-anchor="middle"'
 
 
+def sized(value: float, unit: str, digits: int = 3) -> str:
+    """A number with its unit; that of a ratio is not written."""
+    return f"{number(value, digits)} {'' if unit == '1' else unit}".rstrip()
+
+
 def apart(before: float, after: float, digits: int = 3) -> tuple[str, str]:
     """Two numbers in a row with that many digits, or with as many more as tell them apart."""
     for more in range(digits, _MOST + 1):

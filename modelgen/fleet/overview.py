@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any, ClassVar
 
-from markupsafe import Markup, escape
-
 from modelgen.diagnosis.result import VERDICTS
 from modelgen.fleet.store import Row
 from modelgen.report.page import Lines, Part, Run, Text, page
-from modelgen.report.parts import line
+from modelgen.report.parts import breaking, line
 from modelgen.report.words import listed
 
 FAILED = "failed"
@@ -74,7 +72,7 @@ class Bars(Part):
         most = max((total for _, _, total in self.rows), default=1)
         bars = [
             {
-                "label": escape(label).replace("_", Markup("_<wbr>")),  # where a long name may break
+                "label": breaking(label),
                 "pieces": [
                     {"look": look, "width": f"{_WIDEST * count / most:z.4g}%", "text": f"{word}: {count}"}
                     for word, count, look in pieces

@@ -8,11 +8,10 @@ from modelgen.calibration import Calibration, Estimate
 from modelgen.charts import Chart, Curve, Interval, apart, number, sheet
 from modelgen.description import Arm
 from modelgen.report.call import WHERE, Call
-from modelgen.report.page import Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
+from modelgen.report.page import WIDE, Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
 from modelgen.report.words import joint_name, listed, sentence
 
 _BEFORE, _AFTER = "as described", "calibrated"
-_WIDE = 1.96  # standard deviations of a 95 % interval
 _MM = {"m": (1e3, "mm")}  # as which lengths are said
 
 
@@ -99,7 +98,7 @@ def _sized(c: Calibration) -> list[tuple[Estimate, float, str]]:
 
 def _uncertain(c: Calibration) -> str:
     """Every value's interval in its unit."""
-    said = listed(f"{e.name} ± {number(_WIDE * size * e.std, 2)} {unit}" for e, size, unit in _sized(c))
+    said = listed(f"{e.name} ± {number(WIDE * size * e.std, 2)} {unit}" for e, size, unit in _sized(c))
     more = "" if c.weak else " The angles and the measured lengths determine every value."
     return f"95 % intervals: {said}.{more}"
 
@@ -108,7 +107,7 @@ def _pictured(c: Calibration) -> list[Part | str]:
     """A picture of every unit: what a value moved by, with its interval, beside the description."""
     groups: dict[str, list[Interval]] = {}
     for e, size, unit in _sized(c):
-        moved, half = size * (e.value - e.before), _WIDE * size * e.std
+        moved, half = size * (e.value - e.before), WIDE * size * e.std
         groups.setdefault(unit, []).append(Interval(e.name, moved, moved - half, moved + half, 0.0))
     said = "How far each value is from the description: a dot with its 95 % interval, a ring as described."
     words = "How far each value is from the description, with its interval."

@@ -17,12 +17,11 @@ from modelgen.numeric import Array
 from modelgen.options import words_of
 from modelgen.report.arm_drawing import arm_drawing
 from modelgen.report.call import WHERE, Call
-from modelgen.report.page import Block, Command, Folded, Grid, Lines, Text, block, page, pictured
+from modelgen.report.page import WIDE, Block, Command, Folded, Grid, Lines, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
 AS_DESCRIBED = "the arm as described"
 _SHOWN = 5  # poorly determined parameters in full: more would leave the other answers no place
-_WIDE = 1.96  # standard deviations of a 95 % interval
 _LOOKS = ("s1", "s2", "s3")  # of models beside
 
 
@@ -195,7 +194,7 @@ def _parameters(found: Identification) -> list[Any]:
             if j is None or e.std is None:
                 continue
             size, expected = float(test.sizes[j, k]), nominal.get(e.name)
-            half = _WIDE * e.std
+            half = WIDE * e.std
             ends = (e.value - half) * size, (e.value + half) * size
             described = None if expected is None else expected * size
             groups.setdefault(test.unit[j], []).append(Interval(e.name, e.value * size, *ends, described))

@@ -29,6 +29,7 @@ from modelgen.resources import templates_folder
 from modelgen.version import __version__
 
 __all__ = [
+    "WIDE",
     "Block",
     "Checks",
     "Command",
@@ -48,6 +49,8 @@ __all__ = [
     "page",
     "pictured",
 ]
+
+WIDE = 1.96  # standard deviations of a 95 % interval
 
 
 class Section(NamedTuple):

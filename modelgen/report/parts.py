@@ -161,12 +161,7 @@ class Checks(Part):
     def values(self) -> Mapping[str, Any]:
         """For the template."""
         rows = [
-            # where a long name may break
-            {
-                "text": escape(text).replace("_", Markup("_<wbr>")),
-                "target": target,
-                "marks": _signed(marks.key, marks.marks),
-            }
+            {"text": breaking(text), "target": target, "marks": _signed(marks.key, marks.marks)}
             for text, target, marks in self.rows
         ]
         heads = [name for _, name, _ in self.rows[0][2].marks]
@@ -195,6 +190,11 @@ class Folded(Part):
             beside = any(isinstance(p, Grid) and p.beside for p in self.parts)
             look += " narrow beside" if beside else " narrow"
         return {"title": self.title, "parts": html(self.parts), "look": look, "narrow": self.narrow}
+
+
+def breaking(name: str) -> Markup:
+    """A name that may break between its words."""
+    return escape(name).replace("_", Markup("_<wbr>"))
 
 
 def _signed(key: str, marks: Sequence[tuple[str, str, str]]) -> list[dict[str, str]]:

@@ -10,11 +10,10 @@ from modelgen.charts import Chart, Curve, Interval, apart, number, sheet
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
 from modelgen.report.call import WHERE, Call
-from modelgen.report.page import Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
+from modelgen.report.page import WIDE, Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
 _FAR = 2.0  # standard deviations
-_WIDE = 1.96  # standard deviations of a 95 % interval
 _NAMED = 6  # parameters that moved, in a sentence
 
 
@@ -151,7 +150,7 @@ def _pictured(found: Refinement) -> list[Part]:
         if not x.std:
             continue
         size = x.moves / x.std
-        moved, half = (x.value - x.start) * size, _WIDE * x.moves
+        moved, half = (x.value - x.start) * size, WIDE * x.moves
         groups.setdefault(arm.coordinate_units[x.shown_by], []).append(
             Interval(x.name, moved, moved - half, moved + half, 0.0)
         )

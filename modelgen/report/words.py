@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.charts import number
+from modelgen.charts import number, sized
 from modelgen.description import Arm
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import joint_meant, titled
@@ -53,12 +53,7 @@ class Said(float):
             return f"{number(1e3 * value, 2)} ms"
         if self.unit == "m" and abs(value) < 0.1:
             return f"{number(1e3 * value, 2)} mm"
-        return sized(value, self.unit)
-
-
-def sized(value: float, unit: str, digits: int = 2) -> str:
-    """A number with its unit; that of a ratio is not written."""
-    return f"{number(value, digits)} {'' if unit == '1' else unit}".rstrip()
+        return sized(value, self.unit, 2)
 
 
 def joint_name(arm: Arm, number: int) -> str:

@@ -12,7 +12,7 @@ from hidden.cases import Case, Hidden, make
 from hidden.native import Plant
 from hidden.running import diagnosed_here
 
-from modelgen.diagnosis.evidence import independent_of
+from modelgen.diagnosis.evidence.likelihood import independent_of
 
 RATIO = -0.4  # turns of the joint before per turn of the part
 

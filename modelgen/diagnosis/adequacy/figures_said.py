@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from modelgen.charts import number
+from modelgen.charts import number, sized
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.free_form import FreeForm
 from modelgen.diagnosis.selection import Cause
@@ -21,16 +21,11 @@ def possible(cause: Cause, arm: Arm) -> str:
     said = [
         f"{p.name} is {joint_meant(arm, c.effect, p.name, values[p.name])}"
         if p.joint
-        else f"{p.name} is {with_unit(values[p.name], units[p.name])}, may be {range_said(*p.bounds)}"
+        else f"{p.name} is {sized(values[p.name], units[p.name])}, may be {range_said(*p.bounds)}"
         for p in c.definition.accepted()
         if p.name in values
     ]
     return f"its values can be those of an arm: {'; '.join(said)}" if said else "it has no values of its own"
-
-
-def with_unit(value: float, unit: str) -> str:
-    """A value with its unit; that of a ratio is not written."""
-    return f"{number(value)} {'' if unit == '1' else unit}".rstrip()
 
 
 def range_said(low: float, high: float) -> str:

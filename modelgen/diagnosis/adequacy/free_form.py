@@ -69,7 +69,9 @@ def free_forms(
         own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
         elastic = [t for t in own if t.candidate.elastic]
         if elastic and joint is not None:
-            found[joint] = max((_slowest_out(t, selection) for t in elastic), key=lambda form: form.ahead)
+            found[joint] = max(
+                (_slowest_out(t, joint - 1, selection) for t in elastic), key=lambda form: form.ahead
+            )
             continue
         others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
         without = system_of(equations, others, selection.system)
@@ -85,10 +87,11 @@ def free_forms(
     return found
 
 
-def _slowest_out(trial: FittedCandidate, selection: Selection) -> FreeForm:
-    """Evidence of an elastic joint or play, below zero, without the rows at which its joint is slowest."""
+def _slowest_out(trial: FittedCandidate, j: int, selection: Selection) -> FreeForm:
+    """Evidence of an elastic joint or play, below zero, without the rows at which its joint j (from 0) is
+    slowest.
+    """
     equations = selection.system.equations
-    j = (trial.candidate.joint or 1) - 1
     speeds = [np.abs(r.prepared.picked(r.prepared.dq)[:, j]) for r in equations.rows]
     moving = [x[r.moving[:, j]] for x, r in zip(speeds, equations.rows, strict=True)]
     least = np.quantile(np.concatenate(moving), equations.thresholds.adequacy.slow_rows_share)

@@ -5,7 +5,6 @@ from modelgen.diagnosis.evidence.likelihood import (
     NEGLIGIBLE,
     Evidence,
     StackedEquations,
-    independent_of,
     joints_of,
     weighted,
 )
@@ -23,7 +22,6 @@ __all__ = [
     "covariance",
     "endogeneity",
     "independent",
-    "independent_of",
     "joints_of",
     "mean_squares",
     "weighted",

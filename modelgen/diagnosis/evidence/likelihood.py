@@ -85,6 +85,13 @@ class StackedEquations:
         found = self.records(columns)
         return np.vstack([found, np.zeros((len(self.groups) - len(found), found.shape[1]))])
 
+    def shown(self, unit: Array) -> NDArray[np.bool_]:
+        """Flags (k,) of stacked columns (R + D, k) of unit length of which the records show something, beside
+        the baseline and each other: what they cannot show is none, whatever the description says.
+        """
+        basis = self.basis if self.alone is None else self.alone
+        return independent_of(unit[: len(basis)], basis)
+
     def by_group(self, left: Array) -> Array:
         """Sums of squares of (R + D,), as `squares`."""
         found = np.bincount(self.groups, weights=left**2, minlength=len(self.weights))
@@ -184,9 +191,7 @@ def explained(
         return None
     there = norms > 0
     unit = stacked[:, there] / norms[there]
-    # what the records cannot show is none, whatever is told
-    count, apart = (len(basis), basis) if stack.alone is None else (len(stack.alone), stack.alone)
-    shown = independent_of(unit[:count], apart)
+    shown = stack.shown(unit)
     there[there] = shown
     if not there.any():
         return None

@@ -16,7 +16,7 @@ import numpy as np
 
 from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns
 from modelgen.diagnosis.equations import Equations
-from modelgen.diagnosis.evidence import System, independent_of
+from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.elastic_fit import smooth
 from modelgen.numeric import Array
@@ -96,7 +96,7 @@ def _at_zero(cause: Cause, equations: Equations, system: System) -> tuple[list[i
         return [], nothing
     stacked = system.plain.stacked([t[:, :, held] for t in made])
     norms = np.linalg.norm(stacked, axis=0)
-    shown = independent_of(stacked / np.where(norms > 0.0, norms, 1.0), system.plain.basis)
+    shown = system.plain.shown(stacked / np.where(norms > 0.0, norms, 1.0))
     open_ = [k for k, there in zip(held, shown, strict=True) if there]
     return open_, [t[:, :, open_] for t in made]
 
