@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import count
 
 import sympy as sp
 
@@ -29,6 +32,20 @@ _CALLS = {
 }
 
 
+@dataclass(frozen=True)
+class _Call:
+    """What an expression is evaluated with, and the values of its parts that are known."""
+
+    graph: Graph
+    bindings: Mapping[sp.Symbol, Expr]
+    trigonometry: Trigonometry | None
+    known: dict[int, Expr] = field(default_factory=dict)
+
+
+_Step = Callable[[_Call], Expr]
+REMEMBERED = 2048  # expressions: a law is asked for at many places of many functions
+
+
 def from_sympy(
     graph: Graph,
     expression: sp.Expr,
@@ -40,45 +57,84 @@ def from_sympy(
     `trigonometry` may supply sine and cosine of an argument, so that an angle of the arm is not
     looked up twice. Raises KeyError for an unbound symbol and TypeError for an unknown function.
     """
-    cache: dict[sp.Basic, Expr] = {}
-    expression = sp.sympify(expression)
+    return _steps(sp.sympify(expression))(_Call(graph, bindings, trigonometry))
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _steps(expression: sp.Expr) -> _Step:
+    """How an expression is evaluated in any graph. What SymPy is asked for is asked once."""
+    steps: dict[sp.Basic, _Step] = {}
+    numbers = count()
     # What stands under a root is divided by through one reciprocal root: divisions are dear.
     rooted = {power.base for power in expression.atoms(sp.Pow) if _halves(power.exp) and 2 * power.exp % 2}
 
-    def convert(node: sp.Basic) -> Expr:
-        if node not in cache:
-            cache[node] = build(node)
-        return cache[node]
-
-    def build(node: sp.Basic) -> Expr:
-        if isinstance(node, sp.Symbol):
-            return bindings[node]
-        if node.is_number:
-            return graph.const(float(node))
-        if isinstance(node, sp.Add):
-            return _sum([convert(a) for a in node.args])
-        if isinstance(node, sp.Mul):
-            return _product(graph, node, convert, rooted)
-        if isinstance(node, sp.Pow):
-            return _power(graph, node, convert, rooted)
-        if isinstance(node, sp.sin | sp.cos) and trigonometry:
-            known = trigonometry(node.args[0])
-            if known:
-                return known[0 if isinstance(node, sp.sin) else 1]
-        if isinstance(node, sp.Piecewise):
-            return _piecewise(graph, node, convert)
-        name = _CALLS.get(type(node))
-        if name is None:
-            raise TypeError(f"{type(node).__name__} has no counterpart in generated code")
-        arguments = [convert(a) for a in node.args]
-        if name in ("max", "min"):
-            result = arguments[0]
-            for argument in arguments[1:]:
-                result = graph.call(name, result, argument)
-            return result
-        return graph.call(name, *arguments)
+    def convert(node: sp.Basic) -> _Step:
+        if node not in steps:
+            steps[node] = _once(next(numbers), _step(node, convert, rooted))
+        return steps[node]
 
     return convert(expression)
+
+
+def _once(number: int, step: _Step) -> _Step:
+    """The step of a part that may stand at several places of its expression."""
+
+    def value(call: _Call) -> Expr:
+        found = call.known.get(number)
+        if found is None:
+            found = call.known[number] = step(call)
+        return found
+
+    return value
+
+
+_Convert = Callable[[sp.Basic], _Step]
+
+
+def _step(node: sp.Basic, convert: _Convert, rooted: Collection[sp.Expr]) -> _Step:
+    if isinstance(node, sp.Symbol):
+        return lambda call: call.bindings[node]
+    if node.is_number:
+        number = float(node)
+        return lambda call: call.graph.const(number)
+    if isinstance(node, sp.Add):
+        return _sum([convert(a) for a in node.args])
+    if isinstance(node, sp.Mul):
+        return _product(node, convert, rooted)
+    if isinstance(node, sp.Pow):
+        return _power(node, convert, rooted)
+    if isinstance(node, sp.Piecewise):
+        return _piecewise(node, convert)
+    name = _CALLS.get(type(node))
+    if name is None:
+        raise TypeError(f"{type(node).__name__} has no counterpart in generated code")
+    arguments = [convert(a) for a in node.args]
+    if isinstance(node, sp.sin | sp.cos):
+        return _of_angle(name, node.args[0], arguments[0])
+    return _extreme(name, arguments) if name in ("max", "min") else _called(name, arguments)
+
+
+def _called(name: str, arguments: list[_Step]) -> _Step:
+    return lambda call: call.graph.call(name, *(a(call) for a in arguments))
+
+
+def _of_angle(name: str, angle: sp.Expr, argument: _Step) -> _Step:
+    def step(call: _Call) -> Expr:
+        known = call.trigonometry(angle) if call.trigonometry else None
+        return known[name == "cos"] if known else call.graph.call(name, argument(call))
+
+    return step
+
+
+def _extreme(name: str, arguments: list[_Step]) -> _Step:
+    def step(call: _Call) -> Expr:
+        values = [a(call) for a in arguments]
+        result = values[0]
+        for value in values[1:]:
+            result = call.graph.call(name, result, value)
+        return result
+
+    return step
 
 
 def _halves(exponent: sp.Expr) -> bool:
@@ -86,63 +142,83 @@ def _halves(exponent: sp.Expr) -> bool:
     return bool(exponent.is_number and (2 * exponent).is_integer and abs(2 * exponent) <= 16)
 
 
-def _sum(terms: list[Expr]) -> Expr:
-    total = terms[0]
-    for term in terms[1:]:
-        total = total + term
-    return total
+def _sum(terms: list[_Step]) -> _Step:
+    def step(call: _Call) -> Expr:
+        values = [term(call) for term in terms]
+        total = values[0]
+        for value in values[1:]:
+            total = total + value
+        return total
+
+    return step
 
 
-def _product(
-    graph: Graph, node: sp.Mul, convert: Callable[[sp.Basic], Expr], rooted: Collection[sp.Expr]
-) -> Expr:
+def _product(node: sp.Mul, convert: _Convert, rooted: Collection[sp.Expr]) -> _Step:
     """Numerator over denominator, so that a product has at most one division."""
-    over, under = graph.one, graph.one
+    factors: list[tuple[bool, _Step]] = []
     for factor in node.args:
         negative = isinstance(factor, sp.Pow) and factor.exp.is_number and factor.exp < 0
-        if negative and factor.base not in rooted:
-            under = under * convert(sp.Pow(factor.base, -factor.exp))
-        else:
-            over = over * convert(factor)
-    return over / under
+        below = negative and factor.base not in rooted
+        factors.append((below, convert(sp.Pow(factor.base, -factor.exp) if below else factor)))
+
+    def step(call: _Call) -> Expr:
+        over, under = call.graph.one, call.graph.one
+        for below, factor in factors:
+            if below:
+                under = under * factor(call)
+            else:
+                over = over * factor(call)
+        return over / under
+
+    return step
 
 
-def _power(
-    graph: Graph, node: sp.Pow, convert: Callable[[sp.Basic], Expr], rooted: Collection[sp.Expr]
-) -> Expr:
-    base, exponent = node.base, node.exp
+def _power(node: sp.Pow, convert: _Convert, rooted: Collection[sp.Expr]) -> _Step:
+    base, exponent = convert(node.base), node.exp
     if not _halves(exponent):
-        return graph.call("pow", convert(base), convert(exponent))
-    value, count = convert(base), abs(int(2 * exponent))
-    if exponent < 0 and base in rooted:
-        inverse = graph.one / graph.sqrt(value)
-        return _repeated(graph, inverse, count)
-    result = _repeated(graph, value, count // 2)
-    if count % 2:
-        result = result * graph.sqrt(value)
-    return graph.one / result if exponent < 0 else result
+        return _called("pow", [base, convert(exponent)])
+    halves, negative, root = abs(int(2 * exponent)), exponent < 0, node.base in rooted
+
+    def step(call: _Call) -> Expr:
+        value, graph = base(call), call.graph
+        if negative and root:
+            return _repeated(graph, graph.one / graph.sqrt(value), halves)
+        result = _repeated(graph, value, halves // 2)
+        if halves % 2:
+            result = result * graph.sqrt(value)
+        return graph.one / result if negative else result
+
+    return step
 
 
-def _repeated(graph: Graph, value: Expr, count: int) -> Expr:
-    """value to the power `count` by squaring."""
+def _repeated(graph: Graph, value: Expr, power: int) -> Expr:
+    """value to that power by squaring."""
     result = graph.one
-    while count:
-        if count & 1:
+    while power:
+        if power & 1:
             result = result * value
         value = value * value
-        count >>= 1
+        power >>= 1
     return result
 
 
-def _piecewise(graph: Graph, node: sp.Piecewise, convert: Callable[[sp.Basic], Expr]) -> Expr:
+def _piecewise(node: sp.Piecewise, convert: _Convert) -> _Step:
     *cases, (last, _) = node.args
-    result = convert(last)
+    otherwise, choices = convert(last), []
     for value, condition in reversed(cases):
         if not isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan | sp.Ge | sp.Le):
             raise TypeError(f"condition {condition} has no counterpart in generated code")
-        difference = convert(condition.gts) - convert(condition.lts)
-        if isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan):
-            result = graph.call("select", difference, convert(value), result)
-        else:
-            result = graph.call("select", -difference, result, convert(value))
-    return result
+        strict = isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan)
+        choices.append((convert(condition.gts), convert(condition.lts), convert(value), strict))
+
+    def step(call: _Call) -> Expr:
+        result = otherwise(call)
+        for greater, less, value, strict in choices:
+            difference = greater(call) - less(call)
+            if strict:
+                result = call.graph.call("select", difference, value(call), result)
+            else:
+                result = call.graph.call("select", -difference, result, value(call))
+        return result
+
+    return step
