@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -31,6 +32,7 @@ from modelgen.errors import InputError, Location
 MAX_CHARACTERS = 1_000_000
 MAX_DEPTH = 24
 MAX_NODES = 100_000
+KEPT = 8  # texts
 
 Steps: TypeAlias = Sequence[str | int]
 
@@ -114,8 +116,11 @@ def read_text(path: Path) -> str:
         raise InputError(f"found the byte 0x{data[error.start]:02x}, expected UTF-8 text", where) from None
 
 
+@lru_cache(maxsize=KEPT)
 def parse(text: str, file: str) -> Node:
-    """The tree of one YAML document. Raises InputError with the place of the first mistake."""
+    """The tree of one YAML document; a text that is read again in a process is not parsed again, and
+    nobody changes a tree. Raises InputError with the place of the first mistake.
+    """
     start = Location(file, 1, 1)
     if len(text) > MAX_CHARACTERS:
         raise InputError(f"found {len(text)} characters, at most {MAX_CHARACTERS} are read", start)
