@@ -20,8 +20,8 @@ sys.path[:0] = [str(HERE), str(HERE.parent.parent / "benchmarks")]
 
 import numpy as np  # noqa: E402
 from firmware.targets import M4F  # noqa: E402
-from tracking_board import controller  # noqa: E402
-from tracking_loop import MODES, Plant, Record, closed_loop  # noqa: E402
+from tracking_board import controller, program  # noqa: E402
+from tracking_loop import MODES, Plant, Record, closed_loop, plant_library  # noqa: E402
 from tracking_plot import plot  # noqa: E402
 from tracking_values import CURRENT_LIMIT, model, values  # noqa: E402
 
@@ -30,12 +30,15 @@ DURATION = 15.0  # s
 
 def runs(qemu: bool, duration: float) -> list[Record]:
     """The same motion in every mode."""
-    made = model()
-    v = values(made)
+    v = values(model())
     records = []
-    for mode in range(len(MODES)):
-        with tempfile.TemporaryDirectory() as name, controller(v, Path(name), qemu=qemu) as board:
-            records.append(closed_loop(board, Plant(made, v, Path(name)), mode, duration))
+    with tempfile.TemporaryDirectory() as name:
+        compiled, library = program(v, Path(name), qemu=qemu), plant_library(Path(name))
+        for mode in range(len(MODES)):
+            folder = Path(name) / str(mode)
+            folder.mkdir()
+            with controller(compiled, folder, qemu=qemu) as board:
+                records.append(closed_loop(board, Plant(v, library), mode, duration))
     return records
 
 

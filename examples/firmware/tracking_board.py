@@ -36,9 +36,7 @@ class Controller(Protocol):
 class _InPython:
     """The controller in a processor within Python."""
 
-    def __init__(self, folder: Path) -> None:
-        sources = [*sorted((GENERATED / "src").glob("*.c")), HERE / "controller.c"]
-        _, program = zig_link(M4F, sources, [*_FLAGS, f"-I{folder}"], folder)
+    def __init__(self, program: Path) -> None:
         self.machine = Machine(program, M4F)
 
     def step(self, given: Array) -> Array:
@@ -49,9 +47,7 @@ class _InPython:
 class _OnBoard:
     """The controller on a board in QEMU, in lock step over two named pipes."""
 
-    def __init__(self, folder: Path) -> None:
-        sources = [*sorted((GENERATED / "src").glob("*.c")), HERE / "controller.c", HERE / "main.c"]
-        program = link(M4F, [], sources, folder / "controller.elf", [*_FLAGS, f"-I{folder}"])
+    def __init__(self, program: Path, folder: Path) -> None:
         self.pipes = []
         for name in ("measured", "commanded"):
             os.mkfifo(folder / name)
@@ -78,14 +74,25 @@ class _OnBoard:
             os.close(pipe)
 
 
-@contextmanager
-def controller(v: Values, folder: Path, *, qemu: bool) -> Iterator[Controller]:
-    """The controller with its numbers; `folder` takes sources and programs. Raises RuntimeError."""
+def program(v: Values, folder: Path, *, qemu: bool) -> Path:
+    """The controller with its numbers, compiled below `folder`. Raises RuntimeError where that fails."""
     (folder / "values.h").write_text(header(v), encoding="utf-8")
+    sources, flags = (
+        [*sorted((GENERATED / "src").glob("*.c")), HERE / "controller.c"],
+        [*_FLAGS, f"-I{folder}"],
+    )
+    if qemu:
+        return link(M4F, [], [*sources, HERE / "main.c"], folder / "controller.elf", flags)
+    return zig_link(M4F, sources, flags, folder)[1]
+
+
+@contextmanager
+def controller(program: Path, folder: Path, *, qemu: bool) -> Iterator[Controller]:
+    """A controller at its beginning; `folder` takes its pipes. Raises RuntimeError."""
     if not qemu:
-        yield _InPython(folder)
+        yield _InPython(program)
         return
-    board = _OnBoard(folder)
+    board = _OnBoard(program, folder)
     try:
         yield board
     finally:

@@ -12,9 +12,6 @@ from numpy.typing import NDArray
 from tracking_board import GENERATED, HERE, Controller, message
 from tracking_values import ARM, STEP, Values, reference
 
-from modelgen.backends import NumpyFunction
-from modelgen.functions import Model
-
 MODES = ("feedback alone", "with gravity", "with the model")
 SUBSTEPS = 20  # of the plant in a step of the controller
 
@@ -37,23 +34,31 @@ class Record:
         return rms
 
 
-class Plant:
-    """The arm with parameters that the controller does not know; a compiled library below `folder`."""
+def plant_library(folder: Path) -> Path:
+    """The simulated arm as a library below `folder`. Raises RuntimeError where it does not compile."""
+    library = folder / "plant.so"
+    sources = [HERE / "plant.c", *sorted((GENERATED / "src").glob("*.c"))]
+    flags = ["-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", f"-I{GENERATED / 'include'}"]
+    run(["cc", *flags, *sources, "-o", library, "-lm"])
+    return library
 
-    def __init__(self, made: Model, v: Values, folder: Path) -> None:
-        library = folder / "plant.so"
-        sources = [HERE / "plant.c", *sorted((GENERATED / "src").glob("*.c"))]
-        flags = ["-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", f"-I{GENERATED / 'include'}"]
-        run(["cc", *flags, *sources, "-o", library, "-lm"])
-        self._advance = ctypes.CDLL(str(library)).plant_advance
+
+class Plant:
+    """The arm with parameters that the controller does not know, at its beginning."""
+
+    def __init__(self, v: Values, library: Path) -> None:
+        functions = ctypes.CDLL(str(library))
+        self._advance, self._motor = functions.plant_advance, functions.ariane4_motor_from_joint
         self._parameters = v.plant_parameters.astype(np.float64)
-        (motor,) = (f for f in made.functions if f.name == "motor_from_joint")
-        self._motor = NumpyFunction(motor)
         self.q, self.dq, _ = reference(0.0)
 
     def encoders(self) -> tuple[Array, Array]:
-        """Motor coordinates and speeds, in whole increments [1, 1/s]."""
-        q_m, dq_m, _ = self._motor(self.q, self.dq, np.zeros_like(self.q))
+        """Motor coordinates and speeds, in whole increments [1, 1/s]. Raises RuntimeError beyond a stroke."""
+        q_m, dq_m, ddq_m, ddq = np.zeros((4, len(self.q)))
+        pointers = [ctypes.c_void_p(x.ctypes.data) for x in (self.q, self.dq, ddq, q_m, dq_m, ddq_m)]
+        status = self._motor(*pointers)
+        if status:
+            raise RuntimeError(f"{ARM}: the drives returned the status {status} at q = {self.q}")
         return np.round(q_m), np.round(dq_m)
 
     def advance(self, current: Array) -> None:

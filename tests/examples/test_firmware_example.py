@@ -2,47 +2,50 @@
 
 import json
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 from firmware.targets import M4F
-from tracking_board import controller
-from tracking_loop import MODES, Plant, Record, closed_loop
+from tracking_board import controller, program
+from tracking_loop import MODES, Plant, Record, closed_loop, plant_library
 from tracking_values import CURRENT_LIMIT, Values, model, values
-
-from modelgen.functions import Model
 
 pytestmark = pytest.mark.xdist_group("ariane4")
 
 
+@dataclass(frozen=True)
+class Given:
+    """What every run begins with: the numbers, the plant, the controller for the emulator within Python."""
+
+    values: Values
+    plant: Path
+    program: Path
+
+    def record(self, mode: int, seconds: float) -> Record:
+        with controller(self.program, self.program.parent, qemu=False) as board:
+            return closed_loop(board, Plant(self.values, self.plant), mode, seconds)
+
+
 @pytest.fixture(scope="module")
-def given() -> tuple[Model, Values]:
-    made = model()
-    return made, values(made)
+def given(tmp_path_factory: pytest.TempPathFactory) -> Given:
+    v, folder = values(model()), tmp_path_factory.mktemp("firmware")
+    return Given(v, plant_library(folder), program(v, folder, qemu=False))
 
 
-def record(given: tuple[Model, Values], folder: Path, mode: int, seconds: float, *, qemu: bool) -> Record:
-    made, v = given
-    folder.mkdir()
-    with controller(v, folder, qemu=qemu) as board:
-        return closed_loop(board, Plant(made, v, folder), mode, seconds)
-
-
-def test_the_model_lowers_the_error_in_every_joint(given: tuple[Model, Values], tmp_path: Path) -> None:
-    alone, gravity, whole = (
-        record(given, tmp_path / str(mode), mode, 3.0, qemu=False) for mode in range(len(MODES))
-    )
+def test_the_model_lowers_the_error_in_every_joint(given: Given) -> None:
+    alone, gravity, whole = (given.record(mode, 3.0) for mode in range(len(MODES)))
     assert (whole.rms < 0.4 * alone.rms).all()
     assert (whole.rms < 0.4 * gravity.rms).all()
     assert (gravity.rms[1:] < alone.rms[1:]).all()  # the first axis is vertical: no gravity there
     assert (np.degrees(whole.rms) < 0.5).all()
 
 
-def test_strokes_and_currents_stay_within_their_limits(given: tuple[Model, Values], tmp_path: Path) -> None:
+def test_strokes_and_currents_stay_within_their_limits(given: Given) -> None:
     """Over the whole motion, which asks joint 1 for more than its stroke and joint 2 for more current."""
-    run = record(given, tmp_path / "run", 2, 9.0, qemu=False)
-    low, high = given[1].low, given[1].high
+    run = given.record(2, 9.0)
+    low, high = given.values.low, given.values.high
     assert (run.reference >= low - 1e-6).all()
     assert (run.reference <= high + 1e-6).all()
     assert np.isclose(run.reference[:, 0].max(), high[0])  # the end is reached
@@ -52,10 +55,11 @@ def test_strokes_and_currents_stay_within_their_limits(given: tuple[Model, Value
 
 
 @pytest.mark.skipif(bool(M4F.missing), reason=f"{M4F.missing} not installed (.ci/run installs it)")
-def test_the_board_in_qemu_does_the_same(given: tuple[Model, Values], tmp_path: Path) -> None:
+def test_the_board_in_qemu_does_the_same(given: Given, tmp_path: Path) -> None:
     """Another compiler, another emulator: a few increments of the encoders apart."""
-    in_python = record(given, tmp_path / "python", 2, 1.0, qemu=False)
-    on_board = record(given, tmp_path / "board", 2, 1.0, qemu=True)
+    in_python = given.record(2, 1.0)
+    with controller(program(given.values, tmp_path, qemu=True), tmp_path, qemu=True) as board:
+        on_board = closed_loop(board, Plant(given.values, given.plant), 2, 1.0)
     assert np.abs(in_python.q - on_board.q).max() < 1e-4
     assert np.abs(in_python.current - on_board.current).max() < 0.05
 
