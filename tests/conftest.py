@@ -1,5 +1,6 @@
 """Settings that every test shares: one thread per worker, and the same examples in every run."""
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
@@ -9,6 +10,8 @@ import hypothesis
 import pytest
 from slow_tests import function_of, listed
 
+from modelgen.cli.collection import collect_rarely
+
 pytest_plugins = ["processor_times"]
 
 # pytest-xdist already fills the cores. NumPy's libraries read this when they are loaded, after this file.
@@ -17,6 +20,10 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 # A command that is slow on a busy machine says no more than on an idle one.
 os.environ.setdefault("MODELGEN_PROGRESS", "0")
+
+# Models and imports are objects by the hundred thousand that stay: Python looks for cycles among them
+# as rarely as in a command.
+collect_rarely()
 
 hypothesis.settings.register_profile("reproducible", derandomize=True, deadline=None)
 hypothesis.settings.load_profile("reproducible")
@@ -29,6 +36,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if function_of(item.nodeid) in names:
             item.add_marker(pytest.mark.slow)
+
+
+def pytest_collection_finish() -> None:
+    """What is imported and collected stays, and is not looked through again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

@@ -7,7 +7,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from arms_support import ARMS, EVERY_ARM, VARIANTS, inputs, model
+from arms_support import ARMS, EVERY_ARM, VARIANTS, c_text, inputs, library, model
 from c_support import (
     C_COMPILERS,
     CXX_COMPILERS,
@@ -34,7 +34,7 @@ SAMPLES = 10
 
 @cache
 def files(name: str, variant: str = "default") -> dict[str, str]:
-    return c_files(model(name, variant), PROVENANCE)
+    return c_text(name) if variant == "default" else c_files(model(name, variant), PROVENANCE)
 
 
 Compiled = Callable[..., dict[str, Library]]
@@ -46,9 +46,11 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
 
     @cache
     def call(name: str, variant: str = "default") -> dict[str, Library]:
+        made = model(name, variant)
+        if variant == "default":
+            return {real: Library(library(name, real, tmp_path_factory), made, real) for real in TOLERANCE}
         folder = tmp_path_factory.mktemp(name)
         write(files(name, variant), folder)
-        made = model(name, variant)
         return {real: Library(shared_library(folder, name, real), made, real) for real in TOLERANCE}
 
     return call
@@ -87,12 +89,12 @@ def check_values(name: str, variant: str, libraries: dict[str, Library]) -> None
             by_casadi = flat(f, casadi[f"{name}_{f.name}"](*x))  # type: ignore[operator]
             allowed = max(TOLERANCE["double"], 50 * EPSILON["double"] * factor)
             assert np.linalg.norm(by_casadi - right) <= allowed * np.linalg.norm(right), f.name
-        for real, library in libraries.items():
+        for real, built in libraries.items():
             # What float cannot hold of the inputs is no error of the code.
-            rounded = [[v.astype(library.type).astype(float) for v in x] for x in samples]
+            rounded = [[v.astype(built.type).astype(float) for v in x] for x in samples]
             references = evaluated(f, rounded)
             for x, reference, factor in zip(rounded, references, factors, strict=True):
-                status, result = library.call(f.name, *x)
+                status, result = built.call(f.name, *x)
                 assert status == 0, f.name
                 allowed = max(TOLERANCE[real], 50 * EPSILON[real] * factor)
                 error = np.linalg.norm(flat_c(result) - reference)
@@ -151,16 +153,16 @@ def test_no_input_gives_a_number_that_is_none(name: str, compiled: Compiled) -> 
                 if a.name not in ("q", "q_m") or not f.ranges:
                     sign = rng.choice([-1.0, 1.0], a.size)
                     x[i] = 0.999 * a.bound / np.sqrt(max(a.size, 1)) * sign
-            for library in compiled(name).values():
-                status, result = library.call(f.name, *x)
+            for built in compiled(name).values():
+                status, result = built.call(f.name, *x)
                 assert np.isfinite(flat_c(result)).all(), f.name
                 assert status == 0 or not flat_c(result).any(), f.name
 
 
 @pytest.mark.parametrize("name", EVERY_ARM)
 def test_float_code_calls_nothing_double_and_has_no_state(name: str, compiled: Compiled) -> None:
-    library = compiled(name)["float"]
-    symbols = [line.split()[:2] for line in run(["nm", "-P", str(library.path)]).splitlines()]
+    built = compiled(name)["float"]
+    symbols = [line.split()[:2] for line in run(["nm", "-P", str(built.path)]).splitlines()]
     math = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log", "tanh", "fabs", "pow"}
     called = {symbol.split("@")[0] for symbol, kind in symbols if kind in "Uw"}
     assert not called & (math | {"sincos", "malloc", "calloc", "free"})

@@ -8,10 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
-from arms_support import ARMS, inputs, model
-
-from modelgen.functions import Options
-from modelgen.generation import generate_arm
+from arms_support import generated, inputs, model
 
 pytestmark = pytest.mark.xdist_group("ariane4")
 
@@ -22,9 +19,9 @@ class AcadosModel:
     __slots__ = ("f_expl_expr", "f_impl_expr", "name", "p", "u", "x", "xdot")
 
 
-def module(name: str, options: Options) -> Any:
+def module(name: str, variant: str) -> Any:
     made: Any = ModuleType("generated")
-    exec(generate_arm(ARMS[name], options).files[f"{name}_casadi.py"], made.__dict__)  # noqa: S102 - the text under test
+    exec(generated(name, variant).files[f"{name}_casadi.py"], made.__dict__)  # noqa: S102 - the text under test
     return made
 
 
@@ -35,22 +32,18 @@ def stub(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "acados_template", acados)
 
 
-def exported(name: str, options: Options) -> AcadosModel:
-    made: AcadosModel = getattr(module(name, options), f"export_{name}_model")()
+def exported(name: str, variant: str) -> AcadosModel:
+    made: AcadosModel = getattr(module(name, variant), f"export_{name}_model")()
     return made
 
 
-VARIANTS = [
-    pytest.param(Options(), id="default"),
-    pytest.param(Options(sincos=True), id="sincos"),
-    pytest.param(Options(runtime_geometry=True), id="geometry"),
-]
+VARIANTS = ("default", "sincos", "runtime_geometry")
 
 
 @pytest.mark.usefixtures("stub")
-@pytest.mark.parametrize("options", VARIANTS)
-def test_everything_is_sx_and_of_the_right_shape(options: Options) -> None:
-    made: Any = exported("ariane4", options)
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_everything_is_sx_and_of_the_right_shape(variant: str) -> None:
+    made: Any = exported("ariane4", variant)
     assert made.name == "ariane4"
     for name, shape in {
         "x": (6, 1),
@@ -70,9 +63,9 @@ def test_everything_is_sx_and_of_the_right_shape(options: Options) -> None:
 
 
 @pytest.mark.usefixtures("stub")
-@pytest.mark.parametrize("options", VARIANTS)
-def test_the_implicit_form_vanishes_where_the_explicit_one_says(options: Options) -> None:
-    made: Any = exported("ariane4", options)
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_the_implicit_form_vanishes_where_the_explicit_one_says(variant: str) -> None:
+    made: Any = exported("ariane4", variant)
     f = ca.Function("f", [made.x, made.u, made.p], [made.f_expl_expr])
     g = ca.Function("g", [made.x, made.xdot, made.u, made.p], [made.f_impl_expr])
     plain = model("ariane4")
@@ -81,9 +74,8 @@ def test_the_implicit_form_vanishes_where_the_explicit_one_says(options: Options
     for _ in range(5):
         q, dq, u, parameters = inputs(plain, dynamics, rng)
         p = parameters
-        if options.runtime_geometry:
-            prepared = generate_symbols(options)
-            p = np.concatenate([parameters, prepared])
+        if variant == "runtime_geometry":
+            p = np.concatenate([parameters, geometry()])
         x = np.concatenate([q, dq])
         xdot = f(x, u, p)
         np.testing.assert_allclose(xdot[:3].full().ravel(), dq)
@@ -91,25 +83,23 @@ def test_the_implicit_form_vanishes_where_the_explicit_one_says(options: Options
         assert abs(g(x, xdot + 1, u, p).full()).min() > 1e-3, "the implicit form must depend on xdot"
 
 
-def generate_symbols(options: Options) -> np.ndarray:
+def geometry() -> np.ndarray:
     """Values of the run-time geometry, in the order of its input."""
-    from modelgen.functions import build_model  # noqa: PLC0415 - only this variant needs another model
-
-    made = build_model(ARMS["ariane4"], options)
+    made = model("ariane4", "runtime_geometry")
     return np.array([made.arm.symbols[name] for name in made.geometry])
 
 
 @pytest.mark.usefixtures("stub")
-@pytest.mark.parametrize("options", VARIANTS)
-def test_with_the_emitted_derivatives_it_is_the_same_model(options: Options) -> None:
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_with_the_emitted_derivatives_it_is_the_same_model(variant: str) -> None:
     """What acados asks of an explicit model: the slope, and its sensitivities along given directions."""
-    plain: Any = exported("ariane4", options)
-    called: Any = module("ariane4", options).export_ariane4_model(custom_jacobian=True)
+    plain: Any = exported("ariane4", variant)
+    called: Any = module("ariane4", variant).export_ariane4_model(custom_jacobian=True)
     rng = np.random.default_rng(4)
     q, dq, u, parameters = inputs(
         model("ariane4"), next(f for f in model("ariane4").functions if f.name == "forward_dynamics"), rng
     )
-    p = np.concatenate([parameters, generate_symbols(options)]) if options.runtime_geometry else parameters
+    p = np.concatenate([parameters, geometry()]) if variant == "runtime_geometry" else parameters
     seeds, found = rng.uniform(-1, 1, (6, 9)), []
     for made in (plain, called):
         for name in ("x", "xdot", "u", "p"):
@@ -126,12 +116,12 @@ def test_with_the_emitted_derivatives_it_is_the_same_model(options: Options) -> 
 
 @pytest.mark.parametrize("name", ["ariane4", "scara"])
 def test_importing_the_module_does_not_need_acados(checkout: Path, name: str) -> None:
-    assert module(name, Options()).functions()
+    assert module(name, "default").functions()
     text = (checkout / "generated" / name / f"{name}_casadi.py").read_text()
     assert f"def export_{name}_model(" in text
     with pytest.raises(ImportError, match="acados_template"):
-        exported(name, Options())
+        exported(name, "default")
 
 
 def test_row_wise_gains_leave_no_state_space_model() -> None:
-    assert not hasattr(module("gravity_arm", Options(gains="row_wise")), "export_gravity_arm_model")
+    assert not hasattr(module("gravity_arm", "row_wise"), "export_gravity_arm_model")

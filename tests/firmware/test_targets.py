@@ -135,11 +135,11 @@ def test_a_processor_within_python_computes_what_the_host_does(
 
 
 @pytest.mark.parametrize("name", TRIED[:1])
-def test_beyond_its_stroke_a_lever_gives_the_status_and_zeros(name: str, tmp_path: Path) -> None:
+def test_beyond_its_stroke_a_lever_gives_the_status_and_zeros(
+    name: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     """On the target as on the host; and a comparison that always held would not see a wrong result."""
-    write(c_files(model(name), Provenance("modelgen test", "0" * 64)), tmp_path)
-    _, binary = zig_program(M4F, name, tmp_path, tmp_path / "objects")
-    machine = Machine(binary, M4F)
+    machine = Machine(by_zig(M4F, name, tmp_path, tmp_path_factory), M4F)
     (f,) = [f for f in model(name).functions if f.name == "inverse_dynamics"]
     x = Inputs(model(name), 1)(f)
     _, good = machine.call(f"{name}_{f.name}", x, [3])

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
+from c_support import shared_library, write
 from firmware.states import monitor_state
 from peers.arms import described
 
@@ -27,6 +29,7 @@ SHIPPED = list(load(shipped_arms(), known_effects()))
 EVERY_ARM = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in ARMS]
 
 
+KEPT = 20  # models whose factors are known
 VARIANTS = {
     "default": Options(),
     "row_wise": Options(gains="row_wise"),
@@ -69,9 +72,27 @@ def model(name: str, variant: str = "default") -> Model:
 
 
 @cache
-def generated(name: str) -> GeneratedArm:
-    """What `generate_arm` gives without options, printed from the model that other tests of the arm have."""
-    return print_model(model(name), ARMS[name], shown_options(Options()))
+def generated(name: str, variant: str = "default") -> GeneratedArm:
+    """What `generate_arm` gives with these options, printed from the model that other tests have."""
+    assert variant != "effects", "not an arm of a description"
+    return print_model(model(name, variant), ARMS[name], shown_options(VARIANTS[variant]))
+
+
+def c_text(name: str) -> dict[str, str]:
+    """Headers and sources of the arm generated without options, by path."""
+    return {p: text for p, text in generated(name).files.items() if p.startswith(("include/", "src/"))}
+
+
+_libraries: dict[tuple[str, str], Path] = {}
+
+
+def library(name: str, real: str, folders: pytest.TempPathFactory) -> Path:
+    """The arm generated without options as a library, compiled once for the tests of an arm."""
+    if (name, real) not in _libraries:
+        folder = folders.mktemp(f"{name}-{real}")
+        write(c_text(name), folder)
+        _libraries[name, real] = shared_library(folder, name, real)
+    return _libraries[name, real]
 
 
 def standard_vector(made: Model, rng: np.random.Generator) -> np.ndarray:
@@ -99,14 +120,25 @@ def number(factor: Scalar, values: Mapping[str, float]) -> float:
     return float(factor)
 
 
+_factors: dict[int, tuple[Model, list[list[tuple[int, float]]]]] = {}
+
+
+def _terms(made: Model) -> list[list[tuple[int, float]]]:
+    """Of every base parameter the standard ones and their factors, as numbers."""
+    if id(made) not in _factors:  # a model that is kept has its place to itself
+        if len(_factors) > KEPT:
+            _factors.clear()
+        symbols = made.arm.symbols
+        _factors[id(made)] = (
+            made,
+            [[(i, number(f, symbols)) for i, f in parameter.terms] for parameter in made.grouping.base],
+        )
+    return _factors[id(made)][1]
+
+
 def base_vector(made: Model, standard: np.ndarray) -> np.ndarray:
     """Base parameters by the factors of their grouping."""
-    return np.array(
-        [
-            sum(standard[i] * number(factor, made.arm.symbols) for i, factor in parameter.terms)
-            for parameter in made.grouping.base
-        ]
-    )
+    return np.array([sum(standard[i] * factor for i, factor in terms) for terms in _terms(made)])
 
 
 def inputs(made: Model, function: Function, rng: np.random.Generator) -> list[np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 from arms_support import ARMS, standard_vector
@@ -14,13 +15,27 @@ from modelgen.functions import grouped
 from modelgen.simulation import Plant, plant
 from modelgen.simulation.friction_set import Slip, slip
 
+KEPT = 4  # of the arms that were asked for last
+_slips: list[tuple[Arm, Slip]] = []
 
+
+def slip_of(arm: Arm) -> Slip:
+    """The functions of an arm, made once for tests that follow each other; it is found by its identity."""
+    for known, made in _slips:
+        if known is arm:
+            return made
+    _slips.append((arm, slip(arm)))
+    del _slips[:-KEPT]
+    return _slips[-1][1]
+
+
+@cache
 def shipped(name: str, seed: int = 1) -> Plant:
-    """A shipped arm with its nominal values, random ones where the description has none."""
+    """A shipped arm with its nominal values, random ones where the description has none; built once."""
     try:
         return plant(ARMS[name])
     except InputError:
-        made = slip(ARMS[name])
+        made = slip_of(ARMS[name])
         standard = standard_vector(made.model, np.random.default_rng(seed))
         return of_base(made, list(grouped(made.model, standard.tolist()).values()))
 
@@ -36,7 +51,7 @@ def middle(plant: Plant, otherwise: float = 0.3) -> np.ndarray:
 
 def with_bodies(arm: Arm, bodies: Sequence[Body], effects: dict[str, np.ndarray]) -> Plant:
     """The arm with these links; effects: standard parameters of the effects by symbol, by coordinate."""
-    made = slip(arm)
+    made = slip_of(arm)
     numbers = [str(i + 1) for i in arm.coordinates]
     values = {
         f"{symbol}{k}": x for symbol, all_ in effects.items() for k, x in zip(numbers, all_, strict=True)
