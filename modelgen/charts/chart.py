@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -64,6 +65,17 @@ class Chart:
             return np.asarray(values, dtype=float)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.log10(values))
+
+
+def over_time(
+    title: str, y_label: str, curves: Sequence[Curve], text: str, begin: float, **others: Any
+) -> Chart:
+    """A chart over time [s] since `begin`, whatever the stamps count from: those of a clock have ten digits.
+
+    The curves have the stamps as abscissae. others: further fields of the chart.
+    """
+    since = [replace(c, x=c.x - begin) for c in curves]
+    return Chart(title, "time [s]", y_label, since, text, **others)
 
 
 def labels(charts: Sequence[Chart]) -> list[tuple[str, str, bool]]:

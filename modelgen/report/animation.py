@@ -20,4 +20,4 @@ def animation(arm: Arm, t: Array, q: Array) -> str:
     count = min(_MOST, max(2, round(float(t[-1] - t[0]) * _FRAMES_PER_SECOND) + 1))
     at = np.linspace(t[0], t[-1], count)
     shown = np.stack([np.interp(at, t, column) for column in q.T], axis=1)
-    return moving_page(arm, at, shown)
+    return moving_page(arm, at - t[0], shown)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from modelgen.charts import Chart, Curve
+from modelgen.charts import Chart, Curve, over_time
 from modelgen.dataset.drives import drives_of
 from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.result import Diagnosis
@@ -18,7 +18,7 @@ BEFORE, AFTER = "model as described", "extended model"
 
 def efforts(d: Diagnosis) -> list[Chart]:
     """Measured and predicted effort and the residual of every joint, over the whole test record."""
-    held, t = d.test, d.test.prepared.t - d.test.prepared.t[0]
+    held, t = d.test, d.test.prepared.t
     measured, free = measured_efforts(held), held.prepared.input is None
     # at rest dry friction has any value: nothing is predicted
     missed = [np.where(held.moving, r, np.nan) for r in d.residuals]
@@ -32,9 +32,10 @@ def efforts(d: Diagnosis) -> list[Chart]:
             curves.append(Curve(t, measured[:, j] - missed[1][:, j], "after", AFTER))
             left.append(Curve(t, missed[1][:, j], "after", AFTER))
         text = f"Effort of {name} over the test record, measured and predicted."
-        charts.append(Chart(name, "time [s]", f"effort [{units[j]}]", curves, text, zoom=True))
+        charts.append(over_time(name, f"effort [{units[j]}]", curves, text, t[0], zoom=True))
         text = f"Residual of {name} over the test record, measured less predicted effort."
-        charts.append(Chart(f"{name}, residual", "time [s]", f"residual [{units[j]}]", left, text, zoom=True))
+        title, label = f"{name}, residual", f"residual [{units[j]}]"
+        charts.append(over_time(title, label, left, text, t[0], zoom=True))
     return charts
 
 
@@ -118,7 +119,7 @@ def replayed(d: Diagnosis) -> list[Chart]:
     shown = [s for s in d.simulation if s is not None]
     if not shown:
         return []
-    unit, charts = d.arm.coordinate_units, []
+    unit, charts, begin = d.arm.coordinate_units, [], d.test.prepared.t[0]
     for j, name in enumerate(d.arm.coordinate_names):
         left: list[Curve] = []
         right: list[Curve] = []
@@ -137,10 +138,12 @@ def replayed(d: Diagnosis) -> list[Chart]:
         low, high = float(np.nanmin(left[0].y)), float(np.nanmax(left[0].y))
         text = f"Position of {name}, measured and simulated window by window."
         near = _within(left, 2 * low - high, 2 * high - low)
-        charts.append(Chart(name, "time [s]", f"position [{unit[j]}]", left, text, (), True, near))
+        label = f"position [{unit[j]}]"
+        charts.append(over_time(name, label, left, text, begin, zoom=True, y_range=near))
         text = f"Simulated less measured position of {name}."
         near = _within(right, low - high, high - low)
-        charts.append(Chart(f"{name}, error", "time [s]", f"error [{unit[j]}]", right, text, (), True, near))
+        title, label = f"{name}, error", f"error [{unit[j]}]"
+        charts.append(over_time(title, label, right, text, begin, zoom=True, y_range=near))
     return charts
 
 

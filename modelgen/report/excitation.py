@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from modelgen.charts import Chart, Curve, number, sheet
+from modelgen.charts import Chart, Curve, number, over_time, sheet
 from modelgen.dataset.drives import drives_of
 from modelgen.excitation import Excitation
 from modelgen.options import ExcitationOptions, options_of, words_of
@@ -37,12 +37,12 @@ def charts(e: Excitation) -> list[Chart]:
             y = e.signals[signal][:, k]
             y = np.degrees(y) if unit == "deg" else y
             found.append(
-                Chart(
+                over_time(
                     f"{name}, {word}",
-                    "time [s]",
                     f"{word} [{unit}{per}]",
                     [Curve(e.t, y, "before" if side == "joint" else "after", f"{side} side")],
                     f"{word.capitalize()} of {name} over one period.",
+                    e.t[0],
                     zoom=True,
                 )
             )

@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from modelgen.charts import Band, Chart, Curve, sheet
+from modelgen.charts import Band, Chart, Curve, over_time, sheet
 from modelgen.description import Arm
 from modelgen.diagnosis.experiment import STEM, Experiment, Proposal, differences
 from modelgen.diagnosis.result import Diagnosis
@@ -71,12 +71,12 @@ def charts(arm: Arm, e: Experiment) -> list[Chart]:
     positions = [Curve(made.t, q[:, k], f"s{k % _LINES}", name) for k, name in enumerate(names)]
     units = dict.fromkeys(arm.coordinate_units)
     found = [
-        Chart(
+        over_time(
             "the trajectory",
-            "time [s]",
             f"position [{', '.join(units)}]",
             positions,
             "Positions of the joints over a period.",
+            made.t[0],
         )
     ]
     period = made.problem.settings.period
@@ -85,10 +85,11 @@ def charts(arm: Arm, e: Experiment) -> list[Chart]:
     unit = rows.prepared.effort_unit
     for true, wrong, joint, left, noise in differences(e, e.proposal):
         text = f"{titled(arm, *true)}, fitted as {titled(arm, *wrong)}"
-        curves = [Curve(t[shown] - t[shown][0], left[shown], "after", "residual of the wrong cause")]
+        curves = [Curve(t[shown], left[shown], "after", "residual of the wrong cause")]
         y_label = f"residual at {names[joint]} [{unit[joint] if joint < len(unit) else 'A'}]"
         bands = [Band(-noise, noise, "noise")]
-        found.append(Chart(text, "time [s]", y_label, curves, f"Residual: {text}.", bands))
+        begin = t[shown][0]
+        found.append(over_time(text, y_label, curves, f"Residual: {text}.", begin, bands=bands))
     return found
 
 

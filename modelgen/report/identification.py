@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.charts import Chart, Curve, Interval, number, sheet
+from modelgen.charts import Chart, Curve, Interval, number, over_time, sheet
 from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
 from modelgen.identification.summary import headline, helpful, questions, remarks
@@ -41,9 +41,10 @@ def predictions(names: Sequence[str], found: Validation, others: Sequence[Altern
         left += [Curve(t, _cut(x, breaks), look, word) for word, _, x, look in made]
         right = [Curve(t, _cut(y - x, breaks), look, word) for word, y, x, look in made]
         text = f"Effort of {name} over the test records, measured and predicted, with gaps where it rests."
-        charts.append(Chart(name, "time [s]", f"effort [{unit}]", left, text, zoom=True))
+        charts.append(over_time(name, f"effort [{unit}]", left, text, t[0], zoom=True))
         text = f"Residual of {name} over the test records."
-        charts.append(Chart(f"{name}, residual", "time [s]", f"residual [{unit}]", right, text, zoom=True))
+        title, label = f"{name}, residual", f"residual [{unit}]"
+        charts.append(over_time(title, label, right, text, t[0], zoom=True))
     return charts
 
 

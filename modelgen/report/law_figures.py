@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.backends.numpy import NumpyFunction
-from modelgen.charts import Chart, Curve, number
+from modelgen.charts import Chart, Curve, number, over_time
 from modelgen.diagnosis.equations.checks import columns_of_effects
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE, Definition, InputEffect
@@ -149,7 +149,7 @@ def seen(charts: Sequence[Chart]) -> str:
 def _over_a_stretch(d: Diagnosis, k: int, j: int) -> list[Chart]:
     """The two charts over time, where the sum of squares falls most. At rest there is no residual."""
     p, m, unit = d.test.prepared, d.test.moving[:, j], units_of(d)[j]
-    t = p.t - p.t[0]
+    t, start = p.t, p.t[0]
     old, new, own = (np.where(m, r[:, j], np.nan) for r in (*d.residuals, d.laws[k]))
     explained = np.concatenate([[0.0], np.cumsum(np.nan_to_num(old**2 - new**2))])
     length = min(_STRETCH, len(t))
@@ -158,9 +158,8 @@ def _over_a_stretch(d: Diagnosis, k: int, j: int) -> list[Chart]:
     effect, name = d.causes[k].effect, d.arm.coordinate_names[j]
     span = f"{np.ptp(t):z.2g} s"
     it, what = _added(d)
-    found = Chart(
+    found = over_time(
         f"{name}: the law found, {span} of the record",
-        "time [s]",
         f"effort [{unit}]",
         [
             Curve(t, own + new, "measured", "effort without the rest of the model", True),
@@ -168,16 +167,17 @@ def _over_a_stretch(d: Diagnosis, k: int, j: int) -> list[Chart]:
         ],
         f"The law of {effect} over {span} of the record, with what the rest of the model leaves of the "
         f"effort of {name}.",
+        start,
     )
-    left = Chart(
+    left = over_time(
         f"{name}: residual without and with {it}",
-        "time [s]",
         f"residual [{unit}]",
         [
             Curve(t, old, "before", f"residual without {what}"),
             Curve(t, new, "after", f"residual with {what}"),
         ],
         f"Residual of {name} over {span} of the record, without and with {_named(d, k)}.",
+        start,
     )
     return [found, left]
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from modelgen.charts import Chart, Curve, Interval, apart, number, sheet
+from modelgen.charts import Chart, Curve, Interval, apart, number, over_time, sheet
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
 from modelgen.report.call import WHERE, Call
@@ -29,10 +29,11 @@ def motion(found: Refinement) -> list[Chart]:
             Curve(t, simulated[:, j], "before", "simulated, refined"),
         ]
         text = f"Position of {name}, measured and simulated."
-        charts.append(Chart(name, "time [s]", f"position [{unit}]", curves, text, zoom=True))
+        charts.append(over_time(name, f"position [{unit}]", curves, text, t[0], zoom=True))
         error = [Curve(t, simulated[:, j] - measured[:, j], "before", "simulated, refined")]
         text = f"Simulated less measured position of {name}."
-        charts.append(Chart(f"{name}, error", "time [s]", f"error [{unit}]", error, text, zoom=True))
+        title, label = f"{name}, error", f"error [{unit}]"
+        charts.append(over_time(title, label, error, text, t[0], zoom=True))
     return charts
 
 

@@ -93,6 +93,7 @@ def log_table(log: Mapping[str, Array]) -> str:
 
 def picture(p: Plant, t: Array, q: Array, dq: Array, measured: Array | None) -> str:
     """Position and speed of every joint over time, as SVG."""
+    t = t - t[0]  # as every axis of time
     made, axes = figure(p.n, 2, (9.0, 1.7 * p.n + 0.3))
     for k, (name, unit) in enumerate(zip(p.names, p.arm.coordinate_units, strict=True)):
         if measured is not None:

@@ -30,6 +30,7 @@ from modelgen.report.diagnosis_sentences import doubted, headline, remains, wort
 from modelgen.report.law_figures import judged_joint, law_charts, seen
 from modelgen.report.page import page
 from modelgen.report.words import finding, legible, sentence
+from modelgen.simulation.windows import Windows
 
 pytestmark = pytest.mark.xdist_group("diagnosis_report")
 
@@ -379,6 +380,37 @@ def test_the_whole_record_is_shown_and_can_be_enlarged(found: Diagnosis, written
         assert low < narrower[0] < narrower[1] < high
         group.get_by_role("button", name="Whole record").click()
         assert group.locator(".abscissa .tick").all_text_contents() == before
+
+
+@pytest.mark.parametrize("causes", [1, 2, 4])
+def test_no_page_scrolls_sideways(causes: int, found: Diagnosis, tmp_path: Path) -> None:
+    """As it opens and all unfolded, on every phone: what is hidden from sight widens nothing either."""
+    many, path = ten(found), tmp_path / "report.html"
+    path.write_text(report(replace(many, causes=many.causes[-causes:], laws=many.laws[-causes:])))
+    for width in (360, 400, 440, 500):
+        with opened(path, width) as page:
+            assert wider(page) == 0
+            page.evaluate("document.querySelectorAll('details:not(.screen)').forEach(d => d.open = true)")
+            assert wider(page) == 0
+
+
+def test_time_counts_from_the_begin_of_the_record(found: Diagnosis) -> None:
+    """Stamps since 1970 are no labels: the axes of a record that has them are those of one that has not."""
+    since = 1.764e9
+
+    def later(scores: Windows | None) -> Windows | None:
+        return None if scores is None else replace(scores, t=scores.t + since)
+
+    prepared = found.test.prepared
+    stamped = replace(found.test, prepared=replace(prepared, time=prepared.time + since))
+    before, after = found.simulation
+    late = replace(found, test=stamped, simulation=(later(before), later(after)))
+    for drawn_of in (efforts, replayed, lambda d: law_charts(d, 0)):
+        for chart, same in zip(drawn_of(late), drawn_of(found), strict=True):
+            for curve, other in zip(chart.curves, same.curves, strict=True):
+                if chart.x_label == "time [s]":
+                    np.testing.assert_allclose(curve.x, other.x, atol=1e-5)
+                    assert 0.0 <= np.nanmin(curve.x) < np.nanmax(curve.x) < np.ptp(prepared.t) + 1.0
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -14,7 +14,8 @@ POINTS = 600  # pairs of lowest and highest readings of a curve: the picture sta
 
 def inspection_svg(found: Inspected) -> str:
     """The picture as SVG text, the same in every run: a panel for each channel, the last for the stamps."""
-    t, named = found.t, [c for c in found.channels if c.name in found.columns][:PANELS]
+    # as every axis of time: stamps of a clock have ten digits
+    t, named = found.t - found.t[0], [c for c in found.channels if c.name in found.columns][:PANELS]
     rows = (len(named) + 2) // 2
     made, grid = figure(rows, 2, (10.0, 1.5 * rows + 0.5))
     panels = grid.ravel()

@@ -67,7 +67,9 @@ def split(record: Record, period: float | None = None, limits: DatasetThresholds
 
 
 def _parts(record: Record, begin: int, middle: int, said: str) -> list[Record]:
-    remark = f"{record.name}: a single training log, split in two at t = {record.t[middle]:.9g} s: {said}"
+    t = record.t[middle]
+    at = f"{t:.9g}" if abs(t) < 1e6 else f"{t:.3f}"  # stamps of a clock have ten digits before the point
+    remark = f"{record.name}: a single training log, split in two at t = {at} s: {said}"
     told = replace(record, remarks=(remark, *record.remarks))
     return [cut(told, begin, middle), cut(told, middle, len(record.t))]
 
