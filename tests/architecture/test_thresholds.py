@@ -26,6 +26,7 @@ CONSTANTS = {
     "adequacy/distinguishable.py": {"SEED": SEED},
     "adequacy/explained.py": {"NEIGHBOURS": ACCURACY},
     "adequacy/null_distribution.py": {"NULLS": MEASURED},
+    "adequacy/motion_functions.py": {"EVEN": ACCURACY, "MEMORIES": ACCURACY, "WAYS": ACCURACY},
     "adequacy/smooth_functions.py": {
         "POINTS": ACCURACY,
         "SAMPLES": ACCURACY,

@@ -82,7 +82,7 @@ def test_a_law_that_leaves_much_of_what_is_not_noise_lends_it_no_name(
         rows, periods = [replace(r, prepared=PREPARED) for r in rows], [None] * len(periods)
         by_place = SmoothFunction("by place", {0: functions(q, 0.2)})
         monkeypatch.setattr(explaining, "smooth_functions", lambda system: [by_place])
-        monkeypatch.setattr(explaining, "functions_of", lambda j, equations: [])
+        monkeypatch.setattr(explaining, "shapes_at", lambda j, equations: [])
     equations, bare = equations_of(rows, periods), system_of(rows, periods=periods)
     columns = [np.ones_like(x[:, :1])[:, None] for x in q]
     gain = bare.gain(columns)

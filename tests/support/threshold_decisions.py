@@ -223,11 +223,24 @@ def freely(limits: Thresholds, column: Any) -> bool:
     return free_forms(selected(equations, trial), equations, {})[1].as_good
 
 
-def left_beside(limits: Thresholds) -> Any:
-    """What functions of no law explain beside a cause of a part of a wave, where nothing repeats."""
+def left_beside(limits: Thresholds) -> bool:
+    """Whether functions of no law explain something beside a cause of a part of a wave, where nothing
+    repeats.
+    """
     equations, hidden = waving(limits)
     trial = at_first_joint(equations, [np.ones(len(x)) for x in hidden])
-    return bool(left_smoothly(selected(equations, trial).system)[0] > 0.0)
+    return bool(left_smoothly(selected(equations, trial).system, [0])[0] > 0.0)
+
+
+def at_both_joints(limits: Thresholds) -> bool:
+    """Whether a law of two joints, of which one has it, is outdone by itself with a size at each."""
+    equations, hidden = waving(limits)
+    tables = [x[:, None, None] * np.ones((2, 1)) for x in hidden]
+    gain = System(equations).gain(tables)
+    assert gain is not None
+    trial = FittedCandidate(Candidate("friction_offset", 1), {}, tables, gain)
+    form = free_forms(selected(equations, trial), equations, {})[1]
+    return form.apart and form.as_good
 
 
 def claimed(limits: Thresholds) -> Any:
@@ -342,8 +355,9 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "adequacy.max_alias_angle": (2.0, equal),
     "adequacy.min_absorbed_share": (2.0, absorbed),
     "adequacy.max_behind_refused": (30.0, dominated),
-    "adequacy.max_free_form_ahead": (1e6, lambda t: freely(t, constant)),
+    "adequacy.max_apart_ahead": (1e6, at_both_joints),
     "adequacy.slow_rows_share": (0.01, lambda t: elastic_while(t, slow=True).ahead),
+    "adequacy.min_clear_evidence": (1e6, lambda t: freely(t, constant)),
     "adequacy.min_evidence_in_noise": (1e6, left_beside),
     "adequacy.min_claimed_deviations": (1e3, claimed),
     "adequacy.min_stable_probability": (2.0, stable),

@@ -288,7 +288,7 @@ def _undominated(by: Dominance, arm: Arm) -> Check:
 
 def _form(by: FreeForm | None) -> Check:
     if by is None:
-        text = f"nothing like {FREE_FUNCTION} is set against it: none acts as it does"
+        text = f"nothing like {FREE_FUNCTION} of the joint's motion is set against it: none acts as it does"
         return Check("form", True, True, float("nan"), float("nan"), text)
     value, asked = (-by.ahead, -by.most) if by.slow else (by.ahead, by.most)
     return Check("form", not by.as_good, True, value, asked, form_said(by))

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from scipy import ndimage
 
 from modelgen.dataset.processing.periods import folded
-from modelgen.diagnosis.adequacy.free_form import functions_of
+from modelgen.diagnosis.adequacy.free_form import shapes_at
 from modelgen.diagnosis.adequacy.lack_of_fit import lack_of_fit
 from modelgen.diagnosis.adequacy.smooth_functions import Worth, log_evidence, smooth_functions
 from modelgen.diagnosis.candidates import FittedCandidate, with_causes
@@ -47,7 +48,8 @@ def explained(
     sizes, theta = mean_squares(system), weighted_fit(equations.rows, equations.columns)
     gained = (rmse(equations.rows, equations.columns, theta) ** 2 - sizes) / sizes
     if fit is None:
-        left = np.maximum(left_smoothly(system), _of_suspects(selection, suspects))
+        at = {j for c in selection.causes for j in c.trial.candidate.joints(system.n)}
+        left = np.maximum(left_smoothly(system, sorted(at)), _of_suspects(selection, suspects))
     else:
         left = left_alike(system, theta)
     rest = np.maximum(0.0, left - _of_further_terms(selection, terms)) / sizes
@@ -77,18 +79,20 @@ def _of_suspects(selection: Selection, suspects: Sequence[FittedCandidate]) -> A
     return np.maximum(0.0, mean_squares(selection.system) - rmse(equations.rows, columns, theta) ** 2)
 
 
-def left_smoothly(system: System) -> Array:
-    """Mean squares (n,) that a function of no law explains beside the causes, the best of each joint.
+def left_smoothly(system: System, joints: Sequence[int]) -> Array:
+    """Mean squares (n,) that a function of no law explains beside the causes, the best of each of these
+    joints (from 0).
 
-    Of its position and speed, or of where the arm is. Only of one that has more evidence than slow noise,
-    whose colour is not known here, is worth to it.
+    Of where the arm is, or of what is set against causes there. Only of one that has more evidence than slow
+    noise, whose colour is not known here, is worth to it.
     """
     equations, sizes, found = system.equations, mean_squares(system), np.zeros(system.n)
     least = equations.thresholds.adequacy.min_evidence_in_noise
     alone = [shape for shape in smooth_functions(system) if len(shape.columns) == 1]
-    of_joints = [shape for j in range(system.n) for shape in functions_of(j, equations)]
-    for shape in [*alone, *of_joints]:
+    for shape in chain(alone, *(shapes_at(j, equations) for j in joints)):
         (j,) = shape.columns
+        if j not in joints:
+            continue
         worth = log_evidence(shape, system)
         if worth.evidence > least:
             found[j] = max(found[j], sizes[j] * worth.share)

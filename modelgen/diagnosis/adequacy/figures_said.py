@@ -11,7 +11,7 @@ from modelgen.diagnosis.selection import Cause
 from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
 
-FREE_FUNCTION = "a free function of the joint's position and speed"
+FREE_FUNCTION = "a free function"
 
 
 def possible(cause: Cause, arm: Arm) -> str:
@@ -51,7 +51,7 @@ def form_said(by: FreeForm) -> str:
             f"{number(-by.ahead)} of delta BIC are left for it without the rows at which its joint is "
             f"slowest, where friction changes; {number(-by.most)} is asked"
         )
-    what = "the same with a size of its own at each joint" if by.apart else FREE_FUNCTION
+    what = "the same with a size of its own at each joint" if by.apart else f"{FREE_FUNCTION} of {by.what}"
     return f"{what} {ahead_of(by.ahead, by.most)}"
 
 

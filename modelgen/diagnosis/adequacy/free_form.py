@@ -1,11 +1,12 @@
 """Whether a function of no law, or a law that is not one of several joints, explains as much as the causes.
 
-At a joint the function is of its position and speed, a Gaussian process with a jump where the speed changes
-its sign (Rasmussen and Williams 2006): whatever a friction or a force over the joint does, it can. A law that
-is there explains as much at the price of its few parameters; one that is not ahead of the function has only
-the function's shape for itself. A law that acts on several joints says how much on each: where each has a
-size of its own, it is not the law. What bends or has play acts wherever its load changes: if it explains
-only rows at which its joint nearly rests, what is there is a form of friction.
+At a joint the functions are of its position and speed, of another joint's beside them, or of what the
+joint did before; Gaussian processes with a jump where the speed changes its sign (Rasmussen and Williams
+2006): whatever a friction or a force over these does, one of them can. A law that is there explains as
+much at the price of its few parameters; one that is not ahead of the functions has only their shape for
+itself. A law that acts on several joints says how much on each: where each has a size of its own, it is
+not the law. What bends or has play acts wherever its load changes: if it explains only rows at which its
+joint nearly rests, what is there is a form of friction.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from modelgen.diagnosis.adequacy.motion_functions import of_late, of_others, of_state, of_way
 from modelgen.diagnosis.adequacy.smooth_functions import (
     SmoothFunction,
     Worth,
-    functions,
     log_evidence,
     spots,
 )
@@ -35,11 +36,12 @@ class FreeForm:
     """ahead: delta BIC by which what has no law is ahead of the causes at a joint, or of the whole arm; most:
     by which it may be. apart: it is the law itself, with a size of its own at every joint, or record; slow:
     nothing, while the joint is not at its slowest, so that `ahead` is the evidence that the cause has there,
-    below zero.
+    below zero. what: else, what the function is of.
     """
 
     ahead: float
     most: float
+    what: str = ""
     apart: bool = False
     slow: bool = False
 
@@ -63,7 +65,7 @@ def free_forms(
     if equations.free:
         return {}
     limits = equations.thresholds.adequacy
-    most = 0.0 if selection.system.noise_known else limits.max_free_form_ahead
+    most = 0.0 if selection.system.noise_known else limits.min_clear_evidence
     found: dict[int | None, FreeForm] = {}
     for joint in {c.trial.candidate.joint: None for c in selection.causes}:
         own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
@@ -81,8 +83,9 @@ def free_forms(
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
             rest = max(rest, terms[joint].evidence)
-        shapes = [*functions_of(joint - 1, equations), spots(joint - 1, equations)]
-        free = FreeForm(ahead(shapes, own, without) - rest, most)
+        shapes = [*shapes_at(joint - 1, equations), of_late(joint - 1, equations)]
+        by, shape = ahead(shapes, own, without)
+        free = FreeForm(by - rest, most, what=shape.text)
         found[joint] = max(free, found[joint], key=lambda form: form.ahead - form.most)
     return found
 
@@ -114,7 +117,7 @@ def _apart(own: Sequence[FittedCandidate], without: System) -> FreeForm:
 
     own: of a joint, or of the whole arm; without: the system of the others.
     """
-    most = without.equations.thresholds.adequacy.max_free_form_ahead
+    most = without.equations.thresholds.adequacy.max_apart_ahead
     columns = [_by_record(t, without) if t.candidate.coming else _by_joint(t) for t in own]
     if all(split is t.columns for split, t in zip(columns, own, strict=True)):
         return FreeForm(-np.inf, most, apart=True)
@@ -144,12 +147,24 @@ def _by_record(trial: FittedCandidate, without: System) -> Sequence[Array]:
     return [np.concatenate([t * x for x in place], axis=2) for t, place in zip(made, places, strict=True)]
 
 
-def ahead(shapes: Iterable[SmoothFunction], own: Sequence[FittedCandidate], without: System) -> float:
-    """Delta BIC by which the best of these functions is ahead of all causes `own`, beside the others.
+def shapes_at(j: int, equations: Equations) -> Iterator[SmoothFunction]:
+    """Functions of no law of what a force at joint j (from 0) may depend on, but of when."""
+    yield from of_state(j, equations)
+    yield spots(j, equations)
+    yield from of_others(j, equations)
+    yield of_way(j, equations)
+
+
+def ahead(
+    shapes: Iterable[SmoothFunction], own: Sequence[FittedCandidate], without: System
+) -> tuple[float, SmoothFunction]:
+    """Delta BIC by which the best of these functions is ahead of all causes `own`, beside the others; which.
 
     without: the system of the others, with the noise that all causes leave: what they explain is none.
     """
-    return max(log_evidence(shape, without).evidence for shape in shapes) - together(own, without, fair=True)
+    worth = [(log_evidence(shape, without).evidence, shape) for shape in shapes]
+    best, shape = max(worth, key=lambda one: one[0])
+    return best - together(own, without, fair=True), shape
 
 
 def further_terms(selection: Selection) -> dict[int, Worth]:
@@ -164,25 +179,8 @@ def further_terms(selection: Selection) -> dict[int, Worth]:
         return {}
     return {
         joint: max(
-            (log_evidence(shape, system) for shape in functions_of(joint - 1, system.equations, series=True)),
+            (log_evidence(shape, system) for shape in of_state(joint - 1, system.equations, series=True)),
             key=lambda worth: worth.evidence,
         )
         for joint in sorted(j for j in joints if j is not None)
     }
-
-
-def functions_of(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:
-    """Functions of position and speed of joint j (from 0), of every bend length.
-
-    series: of the position, times the direction.
-    """
-    name = f"a force at {equations.arm.coordinate_names[j]} over its position and speed"
-    positions = [r.prepared.q[:, [j]] for r in equations.rows]
-    speeds = [r.prepared.dq[:, [j]] for r in equations.rows]
-    over = positions if series else [np.hstack(state) for state in zip(positions, speeds, strict=True)]
-    for bend in equations.thresholds.adequacy.bend_lengths:
-        tables = []
-        for r, x, speed in zip(equations.rows, functions(over, bend), speeds, strict=True):
-            turned = x * np.sign(speed)
-            tables.append(r.equation(j, turned if series else np.hstack([x, turned])))
-        yield SmoothFunction(name, {j: tables})

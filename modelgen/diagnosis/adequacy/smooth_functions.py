@@ -167,18 +167,28 @@ def _likelihood(
 
     Over that without them; the price of the size is that of one parameter. acted: joints (n,) with columns.
     """
-    own = stack.stacked(columns)
-    own = own - stack.basis @ (stack.basis.T @ own)
-    sizes, vectors = np.linalg.eigh(own.T @ own)
-    sizes, own = stack.share * np.maximum(sizes, 0.0), own @ vectors
+    # of the rows of the joints acted on: elsewhere the columns are zero, and have what the baseline takes up
+    there = np.isin(stack.groups, np.flatnonzero(acted))
+    own = stack.stacked(columns)[there]
+    through = stack.basis[there].T @ own
+    sizes, vectors = np.linalg.eigh(own.T @ own - through.T @ through)
+    sizes, own, through = stack.share * np.maximum(sizes, 0.0), own @ vectors, through @ vectors
     best, function = -np.inf, np.zeros(len(vectors))
     if not (sizes.max() > 0 and stack.rss.any()):
         return best, function
-    places = [stack.groups == j for j in range(len(stack.weights))]
-    grams = [own[there].T @ own[there] for there in places]
-    rights = [own[there].T @ stack.left[there] for there in places]
+    grams, rights = [], []
+    for j in range(len(stack.weights)):
+        place = stack.groups == j
+        basis, left = stack.basis[place], stack.left[place]
+        gram, right = through.T @ (basis.T @ basis) @ through, -through.T @ (basis.T @ left)
+        if j < len(acted) and acted[j]:
+            part = own[place[there]]
+            cross = part.T @ basis @ through
+            gram, right = gram + part.T @ part - cross - cross.T, right + part.T @ left
+        grams.append(gram)
+        rights.append(right)
     used = stack.squares > 0
-    acting = np.zeros(len(places))
+    acting = np.zeros(len(grams))
     acting[: len(acted)] = acted / acted.sum()
     for scale in SIZES / sizes.max():
         weights = scale * stack.share / (1.0 + scale * sizes) * sum(rights)

@@ -66,12 +66,11 @@ class AdequacyThresholds(Group):
         "A cause is a suspect where a refused candidate that could be there instead is ahead by more.",
         STRANGERS,
     )
-    max_free_form_ahead: float = entry(
+    max_apart_ahead: float = entry(
         15.0,
         "delta BIC",
-        "A free function of position and speed that is ahead of a joint's causes outdoes them; where nothing "
-        "repeats, one that is ahead by more: slow noise is worth something to it there. So does their own "
-        "law with a size of its own at every joint that it acts on, if it is ahead by more.",
+        "A law that acts on several joints is outdone by itself with a size of its own at every one, if that "
+        "is ahead by more; what some records have, by itself with a size of its own in each.",
         STRANGERS,
     )
     min_claimed_deviations: float = entry(
@@ -90,6 +89,13 @@ class AdequacyThresholds(Group):
         "Causes are suspects where those at a joint explain less of what is missing there together, at the "
         "frequencies at which they act.",
         OTHERS,
+    )
+    min_clear_evidence: float = entry(
+        10.0,
+        "delta BIC",
+        "A function of no law that is ahead of a joint's causes outdoes them; where nothing repeats, and "
+        "noise is not known, one that is ahead by more.",
+        "very strong evidence (Kass and Raftery 1995)",
     )
     min_evidence_in_noise: float = entry(
         40.0,
