@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from identification_support import model_of
 
 import modelgen as mg
 from modelgen.dataset import Settings, Stream, choose, read
@@ -60,7 +61,7 @@ def log(arm: mg.Arm, seed: int, seconds: float = 20.0, growing: float = 0.0) -> 
     q, dq, ddq = ((size * w**k * np.sin(angle + k * np.pi / 2)).sum(axis=1) for k in range(3))
     g, slope = (1.0 - growing + growing * t / seconds)[:, None], growing / seconds
     q, dq, ddq = g * q, g * dq + slope * q, g * ddq + 2 * slope * dq
-    model = mg.build_model(arm)
+    model = model_of(arm)
     values = np.array(list(model.nominal.values()))
     current = np.asarray(model.functions["inverse_dynamics"](q=q, dq=dq, ddq=ddq, parameters=values))
     current = current + 1e-3 * random.normal(size=current.shape)
@@ -110,7 +111,7 @@ def test_blocks_leave_out_what_the_whole_log_does(
 def test_a_streamed_log_that_is_cut_off_gives_what_the_arm_has(arm: mg.Arm, tmp_path: Path) -> None:
     train = written(cut(log(arm, 1, 80.0), 0.7), tmp_path / "a.csv")
     test = written(log(arm, 2), tmp_path / "b.csv")
-    truth = mg.build_model(arm).nominal
+    truth = model_of(arm).nominal
     for stream in (False, True):
         found = mg.identify(arm, train, test, stream=stream)
         for name, e in found.parameters.items():
@@ -137,7 +138,7 @@ def test_what_is_cut_off_with_a_payload_is_left_out(share: float, arm: mg.Arm) -
     """A record with the payload, and one without, both cut off: parameters are those of the arm."""
     light, heavy = cut(log(arm, 1), share), cut(log(loaded(0.8, (0.2, 0.05)), 3), share)
     found = mg.identify(arm, [light, heavy], log(arm, 2), payload={"1": (0.8, 0.2, 0.05, 0.0)})
-    truth = mg.build_model(arm).nominal
+    truth = model_of(arm).nominal
     for name, e in found.parameters.items():
         assert abs(e.value - truth[name]) < 5 * e.std, name
     said = [x for x in found.to_json()["log"]["remarks"] if "the effort of shoulder is cut off at" in x]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from identification_support import model_of
 
 import modelgen as mg
 from modelgen.description import loads
@@ -46,7 +47,7 @@ class Motion:
         random = np.random.default_rng(seed)
         self.w = 2 * np.pi * np.outer([0.2, 0.7, 1.3, 2.1], [1.0, 1.1])
         self.size, self.phase = random.uniform(0.05, 0.25, self.w.shape), random.uniform(0, 6, self.w.shape)
-        model = mg.build_model(arm)
+        model = model_of(arm)
         self.dynamics = model.functions["inverse_dynamics"]
         self.values = np.array(list(model.nominal.values()))
         self.besides: Law | None = None
@@ -106,7 +107,7 @@ def test_the_convention_of_a_log_is_found(hold: str | float, samples: float, arm
     lines = [x for x in result.shown() if isinstance(x, str) and "the effort counts as" in x]
     assert len(lines) == 1
     # Readings of the right instants leave noise alone: parameters lie within their deviations.
-    truth = mg.build_model(arm).nominal
+    truth = model_of(arm).nominal
     for name, e in result.parameters.items():
         assert abs(e.value - truth[name]) < 5 * e.std, name
 
@@ -141,7 +142,7 @@ def test_a_delay_of_several_samples_stays_in_the_log(arm: mg.Arm) -> None:
 def test_efforts_far_from_their_positions_are_asked_about_and_the_hold_that_is_named_mends_them(
     late: int, arm: mg.Arm, tmp_path: Path
 ) -> None:
-    truth = mg.build_model(arm).nominal
+    truth = model_of(arm).nominal
     train, test = (log(arm, late * STEP, seed, noise=0.02) for seed in (1, 2))
     found = mg.identify(arm, train, test)
     assert found.to_json()["log"]["effort_instant"]["data"] == "beyond_a_sample"

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from identification_support import model_of
 
 import modelgen as mg
 from modelgen.description import loads
@@ -49,7 +50,7 @@ def log(arm: mg.Arm, seed: int, centre: float = 0.0) -> Table:
     angle = t[:, None, None] * w + phase
     q = (size * np.sin(angle)).sum(axis=1) + np.array([centre, 0.0])
     dq, ddq = (size * w * np.cos(angle)).sum(axis=1), (-size * w**2 * np.sin(angle)).sum(axis=1)
-    model = mg.build_model(arm)
+    model = model_of(arm)
     current = np.asarray(
         model.functions["inverse_dynamics"](
             q=q, dq=dq, ddq=ddq, parameters=np.array(list(model.nominal.values()))
@@ -121,7 +122,7 @@ def test_an_effort_that_is_switched_is_none_of_these(arm: mg.Arm) -> None:
     """A drive that is switched between two efforts, and moves as the model says."""
     bang = mg.read_log(switched(arm, 1), arm)
     found = mg.identify(arm, bang, mg.read_log(switched(arm, 2), arm))
-    truth = mg.build_model(arm).nominal
+    truth = model_of(arm).nominal
     for name, e in found.parameters.items():
         assert abs(e.value - truth[name]) < 5 * e.std, name
 
@@ -281,7 +282,7 @@ def test_a_joint_that_stands_in_one_record_is_left_out_there(
     found = getattr(mg, command)(arm, [logs[0], held], logs[1], **more)
     remarks = found.to_json()["log"]["remarks"]
     assert any("left out for elbow, at rest throughout" in remark for remark in remarks)
-    nominal = mg.build_model(arm).nominal
+    nominal = model_of(arm).nominal
     for name in ("MX1R", "MX2", "ZZ2"):
         assert found.parameters[name].value == pytest.approx(nominal[name], rel=0.05)
     with pytest.raises(mg.InputError, match=r"joint elbow stands at 0\.4 in all samples of all records"):
@@ -294,7 +295,7 @@ def standing(arm: mg.Arm, table: Table) -> Table:
     q = np.column_stack([table["q1"], np.full(len(t), 0.4)])
     dq = np.gradient(q, t, axis=0, edge_order=2)
     ddq = np.gradient(dq, t, axis=0, edge_order=2)
-    model = mg.build_model(arm)
+    model = model_of(arm)
     values = np.array(list(model.nominal.values()))
     current = np.asarray(model.functions["inverse_dynamics"](q=q, dq=dq, ddq=ddq, parameters=values))
     noise = 1e-3 * np.random.default_rng(9).normal(size=len(t))
@@ -329,7 +330,7 @@ def test_what_is_cut_off_of_an_effort_is_left_out(share: float, arm: mg.Arm, log
     train, test = logs
     top = share * float(np.abs(train["i1"]).max())
     cut = train | {"i1": np.clip(train["i1"], -top, top)}
-    found, truth = mg.identify(arm, cut, test), mg.build_model(arm).nominal
+    found, truth = mg.identify(arm, cut, test), model_of(arm).nominal
     assert any("it seems to be cut off there" in x for x in found.to_json()["log"]["remarks"])
     for name, e in found.parameters.items():
         assert abs(e.value - truth[name]) < 5 * e.std, name
@@ -349,6 +350,6 @@ def test_coarse_currents_are_not_cut_off(step: float, arm: mg.Arm, logs: list[Ta
     coarse = [{k: step * np.rint(x / step) if k[0] == "i" else x for k, x in t.items()} for t in logs]
     found = mg.identify(arm, *coarse)
     assert not any("cut off" in remark for remark in found.to_json()["log"]["remarks"])
-    truth = mg.build_model(arm).nominal
+    truth = model_of(arm).nominal
     hits = [abs(e.value - truth[name]) < 3 * e.std for name, e in found.parameters.items()]
     assert sum(hits) >= len(hits) - 1

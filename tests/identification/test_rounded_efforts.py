@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from identification_support import model_of
 
 import modelgen as mg
 from modelgen.description import loads
@@ -38,7 +39,7 @@ def log(seed: int, step: float, noise: float) -> Table:
     q, dq, ddq = (
         (size * w**k * np.sin(t[:, None] * w + phase + k * np.pi / 2)).sum(axis=1) for k in range(3)
     )
-    model = mg.build_model(ARM)
+    model = model_of(ARM)
     current = model.functions["inverse_dynamics"](
         q=q[:, None], dq=dq[:, None], ddq=ddq[:, None], parameters=np.array(list(model.nominal.values()))
     )[:, 0]
@@ -48,7 +49,7 @@ def log(seed: int, step: float, noise: float) -> Table:
 
 def errors(step: float, noise: float, seeds: range) -> np.ndarray:
     """Errors of the parameters in their deviations, by log."""
-    truth, found = mg.build_model(ARM).nominal, []
+    truth, found = model_of(ARM).nominal, []
     for seed in seeds:
         result = mg.identify(ARM, log(seed, step, noise), log(seed + 1000, step, noise))
         found.append([(e.value - truth[name]) / e.std for name, e in result.parameters.items()])
@@ -67,7 +68,7 @@ def test_deviations_hold_where_few_readings_do_not_show_whether_they_are_cut_off
     step: float, top: float
 ) -> None:
     """Two or three readings in steps as large as what the efforts do, be they cut off at `top` [A] or not."""
-    truth, apart = mg.build_model(ARM).nominal, []
+    truth, apart = model_of(ARM).nominal, []
     for seed in range(10):
         logs = [log(seed + more, step, 0.01) for more in (0, 1000)]
         for table in logs:

@@ -22,12 +22,14 @@ from modelgen.resources import shipped_arms
 ARMS = ("ariane4", "ariane6", "ur10e", "two_fingers", "scara")
 
 
-def fuzz(model: Model, real: str, seconds: int, folder: Path) -> subprocess.CompletedProcess[str]:
+def fuzz(
+    model: Model, real: str, seconds: int, folder: Path, optimise: str = "-O1"
+) -> subprocess.CompletedProcess[str]:
     """Build the target in `folder`, which holds the arm's C files, and run it."""
     source = exercise.write(model, real, folder)
     target = folder / f"fuzz_{real}"
     sanitizers = exercise.SANITIZERS.replace("=", "=fuzzer,", 1)
-    command = ["clang", "-O1", "-g", "-DFUZZER", sanitizers, "-fno-sanitize-recover=all"]
+    command = ["clang", optimise, "-g", "-DFUZZER", sanitizers, "-fno-sanitize-recover=all"]
     command += [*exercise.flags(model, real, folder), str(source), "-o", str(target), "-lm"]
     built = subprocess.run(command, capture_output=True, text=True, check=False)
     if built.returncode != 0:

@@ -6,11 +6,26 @@ import numpy as np
 from arms_support import ARMS
 from witness.bodies import Body, random_bodies
 
+import modelgen as mg
 from modelgen.description import Arm, Inertial
 from modelgen.functions import Options
 from modelgen.functions.options import prepared as reduced
 
 RATE = 200.0
+
+
+KEPT = 4  # of the arms that were asked for last
+_models: list[tuple[Arm, mg.Model]] = []
+
+
+def model_of(arm: Arm) -> mg.Model:
+    """The model of an arm, built once for tests that follow each other; it is found by its identity."""
+    for known, made in _models:
+        if known is arm:
+            return made
+    _models.append((arm, mg.build_model(arm)))
+    del _models[:-KEPT]
+    return _models[-1][1]
 
 
 def tapering(seed: int) -> list[Body]:
