@@ -17,7 +17,7 @@ from modelgen.report.diagnosis_sentences import cause_title, checked, interval
 from modelgen.report.law_figures import judged_joint, law_charts, law_size, seen
 from modelgen.report.law_sketch import sketch
 from modelgen.report.page import Folded, Grid, Heading, Line, Marks, Part, Run, Section, Text, block
-from modelgen.report.words import finding, law, legible, sentence
+from modelgen.report.words import law, legible, sentence
 
 _LOOKALIKES = (("confused with", "left"), ("what that is", "left"), ("seen by itself in", "left"))
 _DEFINED = (("parameter", "left"), ("unit", "left"), ("meaning", "left"))
@@ -31,11 +31,6 @@ _DOCUMENTED: Line = [
     Run("modelgen effects", "code"),
 ]
 _VALUES = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"), ("meaning", "left"))
-
-
-def found(d: Diagnosis, c: NamedCause) -> str:
-    """The sentence that says it is there."""
-    return sentence(finding(d.arm, c.effect, c.joint, c.parameters, c.records))
 
 
 def marks(c: NamedCause, key: str) -> Marks:

@@ -10,7 +10,7 @@ from modelgen.charts import apart, number
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.call import Call
-from modelgen.report.cause_parts import failed, found, marks
+from modelgen.report.cause_parts import marks
 from modelgen.report.diagnosis_sentences import (
     cause_title,
     doubted,
@@ -35,7 +35,7 @@ _NOTHING = "Nothing is named, so nothing is gained. The model as described misse
 _CHECKS = "Checks of each cause"
 _ROWS = 2  # of a table that a phone has room for beside the other answers
 _SHOWN = 4  # causes in full: more would leave the other answers no place on the first screen
-_SUSPECTS = 2  # in full, where nothing is named
+_SUSPECTS = 1  # in full, where nothing is named
 
 
 def answers(d: Diagnosis, call: Call) -> list[Section]:
@@ -101,7 +101,8 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
         names = _names(d, d.suspects[shown:])
         yield Folded(f"{title}: {names}", [part for parts in suspects[shown:] for part in parts])
     if not d.causes:
-        yield Text(remains(d))
+        left = Text(remains(d))
+        yield Folded("What is left", [left], narrow=True) if d.suspects else left
         return
     f, left = d.lack_of_fit, Text(f"{_beside(d)} {remains(d)}".strip(), "quiet")
     size = "" if f is None else f": lack of fit {f.statistic:z.2f}, threshold {f.threshold:z.2f}"
@@ -126,8 +127,9 @@ def _doubted(d: Diagnosis) -> list[Run]:
 def _suspect(d: Diagnosis, k: int) -> list[Part]:
     c = d.suspects[k]
     title = cause_title(d, c)
-    text = f"{found(d, c)} {title} is suspected and not named, for want of: {failed(d, c)}."
-    return [Text(text), marks(c, f"suspect{k}")]
+    checks = listed(x.name for x in c.checks if x.decides and x.passed is False)
+    text = f"{title} is suspected and not named: it has evidence, and failed {checks}."
+    return [Text(sentence(text)), marks(c, f"suspect{k}")]
 
 
 def _worth(d: Diagnosis) -> Iterator[Part]:
@@ -147,14 +149,16 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
     else:
         yield Text(_NOTHING)
         rows = [(joint_name(d.arm, j), x) for j, x in enumerate(_before(d), 1)]
-        yield Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), rows, beside=True)
+        table = Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), rows, beside=True)
+        yield Folded(caption, [table], narrow=True) if d.suspects else table
     known = bool(np.isfinite(d.errors.low).any())
     how = "; intervals from a block bootstrap" if known else "; the record is too short for intervals"
     how = how if d.causes else ""
     measured = _ERRORS[d.test.prepared.input is None]
     said = f"{measured} on the test record, which nothing of the choice or the fit has seen{how}."
     note = Text(said, "quiet")
-    yield Folded("How the error was measured", [note], narrow=True) if d.causes else note
+    folds = bool(d.causes or d.suspects)
+    yield Folded("How the error was measured", [note], narrow=True) if folds else note
 
 
 def _before(d: Diagnosis) -> list[tuple[str, str]]:

@@ -20,6 +20,8 @@ from modelgen.report.words import listed, place_of
 REDUCED = "reduced"
 _BETTER_LOGS = "Record a motion that moves every joint over its range, several periods in a row."
 
+_FURTHER_MOTION = "Record another motion and add its log to the training records."
+
 
 @dataclass(frozen=True)
 class Step:
@@ -43,6 +45,8 @@ def following(d: Diagnosis, call: Call) -> list[Step]:
     elif d.verdict == "outside_catalogue":
         text = "Look at the residuals below: over what they bend, and at which joint. Another motion helps."
         steps.append(_other_motion(d, call, text))
+    elif d.verdict == "suspected":
+        steps.append(_other_motion(d, call, _FURTHER_MOTION))
     if d.next_experiment is not None:
         steps.append(Step(f"To separate the cause from its rivals: {followed(d.next_experiment)}."))
     else:

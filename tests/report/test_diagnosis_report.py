@@ -639,6 +639,21 @@ def test_a_page_without_a_cause_answers_the_same_questions(
     assert ("form" in said) == (verdict == "suspected")
 
 
+def test_what_is_suspected_is_no_fact_and_has_a_next_step(found: Diagnosis, tmp_path: Path) -> None:
+    """With a command, on the first screen, also where four are suspected."""
+    d, path = other(found, "suspected"), tmp_path / "report.html"
+    suspects = tuple(replace(d.suspects[0], effect=effect) for effect in FRICTIONS[:4])
+    path.write_text(report(replace(d, suspects=suspects)), encoding="utf-8")
+    with opened(path, 400) as page:
+        box = page.locator("dl.answer pre").bounding_box()
+        said = page.locator("dl.answer").inner_text()
+        assert box is not None
+        assert box["y"] + box["height"] < 900
+    assert "modelgen excite" in said
+    assert sentence(finding(d.arm, "stribeck_friction", 2, d.suspects[0].parameters)) not in said
+    assert "is suspected and not named: it has evidence, and failed form" in said
+
+
 def test_the_size_of_what_repeats_is_said(found: Diagnosis) -> None:
     """Of three periods an F of 9 leaves 8/3 of the noise's mean square: 8/11 of all."""
     d = other(found, "outside_catalogue")

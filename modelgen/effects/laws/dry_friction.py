@@ -97,7 +97,7 @@ class LoadDependentFriction(Friction):
         return cls.states if p.get("rise", 0.0) != 0 else ()
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
-        """FL |load| sign(v), the load the links' weight, with a rise all that moves them."""
+        """FL |load| sign(v), load being the weight of the links, or with a rise all that moves them."""
         load = x.state.get("load", x.load)
         return p["coefficient"] * sp.Abs(load) * direction(x.velocity, p["smoothing"])
 
