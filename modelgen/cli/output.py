@@ -8,7 +8,7 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from textwrap import wrap
 from typing import Any, Literal
@@ -73,10 +73,14 @@ def print_table(table: Table) -> None:
     """
     table = table.filled()
     console = Console(width=_width())
-    grid = _grid(table)
-    if Measurement.get(console, console.options.update(max_width=_ENDLESS), grid).minimum > console.width:
+    least, most = zip(*(_extent(table, k) for k in range(len(table.columns))), strict=True)
+    grid = _grid(table, least)
+    beside = Measurement.get(console, console.options.update(max_width=_ENDLESS), grid).minimum - sum(least)
+    widths = _shared(least, most, console.width - beside)
+    if sum(widths) + beside > console.width:
         typer.echo(_below(table, console.width))
         return
+    grid = _grid(table, widths)
     with console.capture() as captured:
         console.print(grid)
     typer.echo("\n".join(line.rstrip() for line in captured.get().rstrip("\n").split("\n")))
@@ -109,16 +113,33 @@ def _below(table: Table, width: int) -> str:
     return "\n".join(lines)
 
 
-def _grid(table: Table) -> Grid:
+def _extent(table: Table, k: int) -> tuple[int, int]:
+    """Columns that the longest word of the table's column number k takes, and its longest line. A name, which
+    stays on one line, is a word.
+    """
+    heading = list(table.columns)[k]
+    lines = [line for cell in (heading, *(row[k] for row in table.rows)) for line in cell.split("\n")]
+    most = max(map(len, lines))
+    words = (word for line in lines for word in line.split())
+    return most if heading in table.names else max(map(len, words), default=1), most
+
+
+def _shared(least: Sequence[int], most: Sequence[int], width: int) -> list[int]:
+    """Widths between least and most whose sum is at most `width` where that can be: the widest give way."""
+    bound = max(most)
+    while bound > 0 and sum(min(b, max(a, bound)) for a, b in zip(least, most, strict=True)) > width:
+        bound -= 1
+    return [min(b, max(a, bound)) for a, b in zip(least, most, strict=True)]
+
+
+def _grid(table: Table, widths: Sequence[int]) -> Grid:
     grid = Grid(
         title=escape(table.title) or None, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold"
     )
-    for k, (heading, side) in enumerate(table.columns.items()):
+    for (heading, side), width in zip(table.columns.items(), widths, strict=True):
         justify: Literal["left", "right"] = "right" if side == "right" else "left"
-        words = (word for cell in (heading, *(row[k] for row in table.rows)) for word in cell.split())
-        longest = max(map(len, words), default=1)
         named = heading in table.names
-        grid.add_column(heading, justify=justify, overflow="fold", no_wrap=named, min_width=longest)
+        grid.add_column(heading, justify=justify, overflow="fold", no_wrap=named, width=width)
     for row in table.rows:
         # Text of the user is no markup.
         grid.add_row(*(cell.replace("[", "\\[") for cell in row))

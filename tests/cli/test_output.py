@@ -48,6 +48,17 @@ def test_a_table_fits_and_breaks_no_word(
     assert words <= {word for line in lines for word in line.split()}
 
 
+@pytest.mark.parametrize("width", [60, 75, *range(84, 121, 3)])
+def test_the_catalogue_loses_no_word_at_any_width(width: int) -> None:
+    def said(columns: int) -> tuple[set[str], int]:
+        text = CliRunner().invoke(app, ["effects"], env={"COLUMNS": str(columns)}).stdout
+        return set(re.findall(r"[\w.]+", text)), max(map(len, text.splitlines()))
+
+    words, wide = said(width)
+    assert wide <= width
+    assert said(1000)[0] <= words
+
+
 SENTENCE = "the extended model against the test record, " + 8 * "which is a long sentence, " + "ends"
 COMMAND = "modelgen simulate found/digger_extended.yaml --parameters found/digger_parameters.yaml --log b.csv"
 
