@@ -5,7 +5,7 @@ from modelgen.charts.drawn import drawn
 from modelgen.charts.intervals import Interval, intervals
 from modelgen.charts.paths import mark
 from modelgen.charts.sheet import sheet
-from modelgen.charts.ticks import apart, number, sized, ticks
+from modelgen.charts.ticks import apart, at_joints, number, sized, ticks
 
 __all__ = [
     "ROLES",
@@ -14,6 +14,7 @@ __all__ = [
     "Curve",
     "Interval",
     "apart",
+    "at_joints",
     "drawn",
     "intervals",
     "labels",

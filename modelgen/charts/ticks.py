@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 _LEAST = 3  # ticks of an axis
 _WIDER = 2.0  # than asked for a step may be
@@ -46,6 +47,13 @@ def anchored(at: float, word: str, width: float) -> str:
 def sized(value: float, unit: str, digits: int = 3) -> str:
     """A number with its unit; that of a ratio is not written."""
     return f"{number(value, digits)} {'' if unit == '1' else unit}".rstrip()
+
+
+def at_joints(names: Sequence[str], figures: Sequence[str]) -> str:
+    """Figures in words, each at its joint; said once where all joints have the same."""
+    if len(set(figures)) == 1:
+        return f"{figures[0]} at {'every joint' if len(figures) > 1 else names[0]}"
+    return ", ".join(f"{figure} at {name}" for name, figure in zip(names, figures, strict=True))
 
 
 def apart(before: float, after: float, digits: int = 3) -> tuple[str, str]:

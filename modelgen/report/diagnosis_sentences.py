@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from modelgen.charts import number
+from modelgen.charts import at_joints, number
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
@@ -222,9 +222,9 @@ def compared(d: Diagnosis) -> list[str]:
     rested = bool((np.abs(rmse - before) > _SAME * rmse)[known].any())
     if not rested and abs(usual - cutoff) <= _SAME * cutoff:
         return []
-    numbers = ", ".join(f"{x:z.4g}" for x in rmse)
-    at_rest = "fitted with what the filter carries from samples at rest, as identify does, it is"
-    counted = f"; {at_rest} {numbers} {d.errors.unit}" if rested else ""
+    numbers = at_joints(d.arm.coordinate_names, [f"{x:z.4g}" for x in rmse])
+    at_rest = "fitted with what the filter carries from samples at rest, as identify does, it is,"
+    counted = f"; {at_rest} in {d.errors.unit}, {numbers}" if rested else ""
     other = f", identify chooses {usual:z.4g} Hz" if abs(usual - cutoff) > _SAME * cutoff else ""
     return [
         f"The error is that up to {cutoff:z.6g} Hz, fitted and judged while the joint moves{counted}{other}; "

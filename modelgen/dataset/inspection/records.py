@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from modelgen.charts import at_joints
 from modelgen.dataset.inspection.channels import Channel, Inspected, inspect_record
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.instants import EffortInstant
@@ -27,7 +28,7 @@ class RecordsInspected:
     "previous", "instant", or the delay [s] of the effort's samples; None for free motions. repeats: rows of
     the log per new reading, the most. left_out: samples of the training records (n,) that stand for no
     equation of their joint: those at rest, and those that the filters trim. instant: what the data say of
-    `hold`; None where they were not asked.
+    `hold`; None where they were not asked. joints: their names (n,).
     """
 
     train: tuple[Inspected, ...]
@@ -37,6 +38,7 @@ class RecordsInspected:
     repeats: float
     left_out: tuple[int, ...]
     instant: EffortInstant | None = None
+    joints: tuple[str, ...] = ()
 
     @property
     def samples(self) -> int:
@@ -116,8 +118,9 @@ class RecordsInspected:
             said.append(f"coarse readings: {', '.join(dict.fromkeys(coarse))}")
         shares = np.array(self.left_out) / max(self.samples, 1)
         if (shares > RESTING).any():
-            joints = ", ".join(f"{100 * share:.0f} %" for share in shares)
-            said.append(f"left out at rest and at the ends, joint by joint: {joints}")
+            names = self.joints or [f"joint {k + 1}" for k in range(len(shares))]
+            percent = [f"{100 * share:.0f} %" for share in shares]
+            said.append(f"left out at rest and at the ends: {at_joints(names, percent)}")
         return said
 
     @property
@@ -154,6 +157,7 @@ def inspect_records(
         repeats=max(p.record.repeats for p in train),
         left_out=tuple(int(x) for x in np.rint(left)),
         instant=instant,
+        joints=() if first.arm is None else tuple(first.arm.coordinate_names),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import signal
 
-from modelgen.charts import Chart, Curve, sheet
+from modelgen.charts import Chart, Curve, at_joints, sheet
 from modelgen.dataset.processing.filters import low_pass
 from modelgen.dataset.processing.prepare import Prepared
 from modelgen.numeric import Array
@@ -36,8 +36,10 @@ def described(prepared: Prepared) -> list[str]:
     rows = len(prepared.rows)
     every = f"every {_ordinal(s.factor)} sample" if s.spacing is None else f"a sample every {s.spacing:.5g}"
     lines.append(f"rows: {every}, {s.trim:.3g} s cut off at both ends: {rows} rows")
-    moving = ", ".join(f"{100 * share:.0f} %" for share in prepared.moving.mean(axis=0))
-    lines.append(f"rows in which the joints move: {moving}")
+    arm = prepared.record.arm
+    names = [f"joint {k + 1}" for k in range(prepared.n)] if arm is None else arm.coordinate_names
+    moving = [f"{100 * share:.0f} %" for share in prepared.moving.mean(axis=0)]
+    lines.append(f"rows that move: {at_joints(names, moving)}")
     return [*lines, *prepared.record.remarks]
 
 
