@@ -57,7 +57,7 @@ def judged(force: Any, seed: int, *laws: Any) -> tuple[float, Likeness | None]:
         assert gain is not None
         trials.append(FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain))
     shape = SmoothFunction(BY_PLACE, {0: functions(q, 0.2)})
-    return ahead([shape], trials, without), likeness([shape], system)
+    return ahead([shape], trials, without)[0], likeness([shape], system)
 
 
 def test_a_law_that_is_there_is_ahead_of_a_function() -> None:
