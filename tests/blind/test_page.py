@@ -54,6 +54,9 @@ def test_what_is_kept_gives_the_same_counts(tmp_path: Any, monkeypatch: pytest.M
         lambda folder: [({**s, "family": "x", "seed": 0, "size": None, "setting": "y"}, a) for s, a in CASES],
     )
     page.keep("set", "a set", tmp_path)
-    text, cases = page.kept("set")
-    assert text == "a set"
-    assert ablation.ablated(cases) == ablation.ablated(CASES)
+    found = page.kept("set")
+    assert (found.text, found.number) == ("a set", 1)
+    assert ablation.ablated(found.cases) == ablation.ablated(CASES)
+    page.keep("another", "a set", tmp_path)
+    page.keep("set", "the same once more", tmp_path)
+    assert {name: one.number for name, one in page.sets().items()} == {"set": 1, "another": 2}

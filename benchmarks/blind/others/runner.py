@@ -26,7 +26,7 @@ from modelgen.errors import InputError
 
 def entries() -> list[Entry]:
     """Cases that are kept, in an order by lot, the same each time: the first of them are a sample of all."""
-    found = [entry_of(said) for path in sorted(RUNS.glob("*.jsonl")) for said, _ in kept(path.stem)[1]]
+    found = [entry_of(said) for path in sorted(RUNS.glob("*.jsonl")) for said, _ in kept(path.stem).cases]
     return sorted(dict.fromkeys(found), key=lambda e: (crc32(e.name.encode()), e.name))
 
 
