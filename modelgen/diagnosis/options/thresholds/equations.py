@@ -135,6 +135,6 @@ class EquationThresholds(Group):
     max_noise_over_rest_speed: float = entry(
         2.0,
         "1",
-        "The noise allows a cut-off where its gate stays below so many times that of the motion.",
+        "The noise allows a cut-off where its speeds stay below so many times those that count as rest.",
         JUDGED,
     )
