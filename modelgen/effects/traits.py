@@ -62,14 +62,15 @@ class Shows(Enum):
 class Reading:
     """A reading on the bench of what a cause claims. names: the parameters that claim it. std: standard
     deviation of the reading in their unit; None where it is a force that is read off the input for `duration`
-    [s], with the noise of that. claim: what the cause says of it, with a place for the size.
+    [s], with the noise of that, in A. claim: what the cause says of it, with a place for the size and its
+    unit.
     """
 
     text: str
     names: tuple[str, ...]
     std: float | None = None
     duration: float = 1.0
-    claim: str = "the cause claims {:.2g}"
+    claim: str = "the cause claims {}"
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelgen.charts import sized
 from modelgen.dataset import drives_of
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis
 from modelgen.diagnosis.experiment.motions import Setup
@@ -19,6 +20,7 @@ from modelgen.effects import CATALOGUE, Shows
 from modelgen.errors import InputError
 from modelgen.excitation.limits import bounds, ranges, speeds
 from modelgen.functions.nominal import about_origin, grouped
+from modelgen.model.parameters import units_at
 from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions
 
@@ -75,15 +77,17 @@ def readings(
         place = "" if joint is None else f"{stage.arm.coordinate_names[joint - 1]}: "
         size = float(np.sqrt(sum(values.get(name, 0.0) ** 2 for name in reading.names)))
         if reading.std is not None:
-            evidence = (size / reading.std) ** 2
+            evidence, unit = (size / reading.std) ** 2, units_at(stage.arm, effect, joint)[reading.names[0]]
         elif joint is None:
             continue
         else:
             size /= drives_of(stage.arm)[joint - 1].torque_constant
             noise = float(np.sqrt(judge.plain[joint - 1])) * float(judge.system.sizes[joint - 1])
             rows = max(1.0, reading.duration * stage.prepared[0].rate * float(judge.shares[joint - 1]))
-            evidence = rows * float(np.log1p((size / noise) ** 2))
-        found.append(Test(f"{place}read {reading.text} ({reading.claim.format(size)})", evidence))
+            evidence, unit = rows * float(np.log1p((size / noise) ** 2)), "A"
+        found.append(
+            Test(f"{place}read {reading.text} ({reading.claim.format(sized(size, unit, 2))})", evidence)
+        )
     return found
 
 

@@ -193,7 +193,7 @@ class Backlash(Compliance):
         "the joint's angle to 0.1 mrad at the link, the motor held, the link pushed both ways",
         ("play",),
         1e-4,
-        claim="a gap of {:.2g}",
+        claim="a gap of {}",
     )
     experiment = "a motion that reverses the load, with encoders on motor and link"
     shown = at(play=0.01, stiffness=30000.0, damping=300.0)

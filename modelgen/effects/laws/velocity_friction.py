@@ -105,7 +105,7 @@ class FrictionOffset(Effect):
         f"the current at rest with the motor switched off, for {AT_REST:g} s",
         ("offset",),
         duration=AT_REST,
-        claim="an offset of the sensor of {:.2g}; none with asymmetric friction",
+        claim="an offset of the sensor of {}; none with asymmetric friction",
     )
     experiment = "the current with the motor switched off, and constant speeds in both directions"
     shown = at(offset=0.05)
