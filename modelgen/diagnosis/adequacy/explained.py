@@ -88,11 +88,9 @@ def left_smoothly(system: System, joints: Sequence[int]) -> Array:
     """
     equations, sizes, found = system.equations, mean_squares(system), np.zeros(system.n)
     least = equations.thresholds.adequacy.min_evidence_in_noise
-    alone = [shape for shape in smooth_functions(system) if len(shape.columns) == 1]
+    alone = (s for s in smooth_functions(system) if len(s.columns) == 1 and s.columns.keys() <= set(joints))
     for shape in chain(alone, *(shapes_at(j, equations) for j in joints)):
         (j,) = shape.columns
-        if j not in joints:
-            continue
         worth = log_evidence(shape, system)
         if worth.evidence > least:
             found[j] = max(found[j], sizes[j] * worth.share)

@@ -83,7 +83,8 @@ def free_forms(
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
             rest = max(rest, terms[joint].evidence)
-        shapes = [*shapes_at(joint - 1, equations), of_late(joint - 1, equations)]
+        further = spots(joint - 1, equations), of_late(joint - 1, equations)
+        shapes = [*shapes_at(joint - 1, equations), *further]
         by, shape = ahead(shapes, own, without)
         free = FreeForm(by - rest, most, what=shape.text)
         found[joint] = max(free, found[joint], key=lambda form: form.ahead - form.most)
@@ -148,9 +149,8 @@ def _by_record(trial: FittedCandidate, without: System) -> Sequence[Array]:
 
 
 def shapes_at(j: int, equations: Equations) -> Iterator[SmoothFunction]:
-    """Functions of no law of what a force at joint j (from 0) may depend on, but of when."""
+    """Functions of no law of what a force at joint j (from 0) may depend on, but spots and of when."""
     yield from of_state(j, equations)
-    yield spots(j, equations)
     yield from of_others(j, equations)
     yield of_way(j, equations)
 
