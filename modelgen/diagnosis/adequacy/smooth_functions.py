@@ -177,14 +177,13 @@ def _likelihood(
     if not (sizes.max() > 0 and stack.rss.any()):
         return best, function
     grams, rights = [], []
-    for j in range(len(stack.weights)):
-        place = stack.groups == j
-        basis, left = stack.basis[place], stack.left[place]
-        gram, right = through.T @ (basis.T @ basis) @ through, -through.T @ (basis.T @ left)
+    for j, (basis, taken) in enumerate(stack.products):
+        gram, right = through.T @ basis @ through, -through.T @ taken
         if j < len(acted) and acted[j]:
+            place = stack.groups == j
             part = own[place[there]]
-            cross = part.T @ basis @ through
-            gram, right = gram + part.T @ part - cross - cross.T, right + part.T @ left
+            cross = part.T @ stack.basis[place] @ through
+            gram, right = gram + part.T @ part - cross - cross.T, right + part.T @ stack.left[place]
         grams.append(gram)
         rights.append(right)
     used = stack.squares > 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -91,6 +92,12 @@ class StackedEquations:
         """
         basis = self.basis if self.alone is None else self.alone
         return independent_of(unit[: len(basis)], basis)
+
+    @cached_property
+    def products(self) -> list[tuple[Array, Array]]:
+        """Of each group, as `squares`: the basis' rows there with themselves (b, b), and with `left` (b,)."""
+        parts = [self.groups == j for j in range(len(self.weights))]
+        return [(self.basis[p].T @ self.basis[p], self.basis[p].T @ self.left[p]) for p in parts]
 
     def by_group(self, left: Array) -> Array:
         """Sums of squares of (R + D,), as `squares`."""
