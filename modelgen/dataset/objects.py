@@ -122,6 +122,11 @@ class Record:
         return int(self.q.shape[1])
 
     @property
+    def joint_names(self) -> list[str]:
+        """Names of the coordinates' joints; their numbers, where no arm is known."""
+        return [f"joint {k + 1}" for k in range(self.n)] if self.arm is None else self.arm.coordinate_names
+
+    @property
     def step(self) -> float:
         """Sampling period [s]."""
         return float(self.t[-1] - self.t[0]) / (len(self.t) - 1)

@@ -37,8 +37,8 @@ class RecordsInspected:
     hold: str | float | None
     repeats: float
     left_out: tuple[int, ...]
+    joints: tuple[str, ...]
     instant: EffortInstant | None = None
-    joints: tuple[str, ...] = ()
 
     @property
     def samples(self) -> int:
@@ -118,9 +118,8 @@ class RecordsInspected:
             said.append(f"coarse readings: {', '.join(dict.fromkeys(coarse))}")
         shares = np.array(self.left_out) / max(self.samples, 1)
         if (shares > RESTING).any():
-            names = self.joints or [f"joint {k + 1}" for k in range(len(shares))]
             percent = [f"{100 * share:.0f} %" for share in shares]
-            said.append(f"left out at rest and at the ends: {at_joints(names, percent)}")
+            said.append(f"left out at rest and at the ends: {at_joints(self.joints, percent)}")
         return said
 
     @property
@@ -157,7 +156,7 @@ def inspect_records(
         repeats=max(p.record.repeats for p in train),
         left_out=tuple(int(x) for x in np.rint(left)),
         instant=instant,
-        joints=() if first.arm is None else tuple(first.arm.coordinate_names),
+        joints=tuple(first.joint_names),
     )
 
 

@@ -36,10 +36,8 @@ def described(prepared: Prepared) -> list[str]:
     rows = len(prepared.rows)
     every = f"every {_ordinal(s.factor)} sample" if s.spacing is None else f"a sample every {s.spacing:.5g}"
     lines.append(f"rows: {every}, {s.trim:.3g} s cut off at both ends: {rows} rows")
-    arm = prepared.record.arm
-    names = [f"joint {k + 1}" for k in range(prepared.n)] if arm is None else arm.coordinate_names
     moving = [f"{100 * share:.0f} %" for share in prepared.moving.mean(axis=0)]
-    lines.append(f"rows that move: {at_joints(names, moving)}")
+    lines.append(f"rows that move: {at_joints(prepared.record.joint_names, moving)}")
     return [*lines, *prepared.record.remarks]
 
 
@@ -67,12 +65,12 @@ def _position(prepared: Prepared, k: int) -> Chart:
     column = (record.motor if at_motor else record.q)[:, k : k + 1]
     rate, unit = 1.0 / record.step, _unit(prepared, k, at_motor=at_motor)
     filtered = low_pass(column, s.position_cutoff, rate, s.position_order) if s.position_cutoff else column
-    name = _joint(prepared, k)
+    name = prepared.record.joint_names[k]
     return _chart(f"{name}, position", f"position [{unit}/√Hz]", column, filtered, rate, s.position_cutoff)
 
 
 def _effort(prepared: Prepared, k: int) -> Chart:
-    name = _joint(prepared, k)
+    name = prepared.record.joint_names[k]
     if prepared.input is None or prepared.gain is None:
         return Chart(f"{name}: free motion", "frequency [Hz]", "no effort [-]", [])
     s, rate = prepared.settings, 1.0 / prepared.record.step
@@ -105,8 +103,3 @@ def _unit(prepared: Prepared, k: int, *, at_motor: bool) -> str:
     if at_motor or arm is None:
         return "motor unit" if at_motor else "rad or m"
     return arm.coordinate_units[k]
-
-
-def _joint(prepared: Prepared, k: int) -> str:
-    arm = prepared.record.arm
-    return arm.joints[arm.coordinates[k]].name if arm is not None else f"joint {k + 1}"
