@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import isnan
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,6 @@ from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose as diagnose_records
 from modelgen.diagnosis.pipeline import records
 from modelgen.diagnosis.result import Diagnosis as Found
-from modelgen.diagnosis.result import to_json
 from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
 from modelgen.effects.placement import joint_meant, titled
@@ -28,6 +28,7 @@ from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, given
 from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, interval, suspicions
 from modelgen.report.experiment import followed
+from modelgen.report.following import whole_json
 from modelgen.report.words import joint_name, legible, place_of
 from modelgen.report.writing import write
 
@@ -79,9 +80,10 @@ class Diagnosis(Shown):
         Returns
         -------
         dict
-            Verdict, causes, lack of fit, errors on the test log, next experiment.
+            Verdict, causes, lack of fit, errors on the test log, next experiment; paths of a command in it
+            are those of the folder of the last `write`, else of the current one.
         """
-        return to_json(self.found)
+        return whole_json(self.found, self.call)
 
     def write(self, folder: Path | str, *, code: bool = True) -> None:
         """Write the files of `modelgen diagnose` into a folder, all of them or none.
@@ -101,6 +103,7 @@ class Diagnosis(Shown):
             Where the folder cannot be written.
         """
         write(self.found, Path(folder), code=code, call=self.call)
+        self.call = replace(self.call, folder=Path(folder))
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and tables of `modelgen diagnose`.

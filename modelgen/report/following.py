@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from modelgen.diagnosis.result import Diagnosis
+from modelgen.diagnosis.result import Diagnosis, to_json
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import Found, titled
 from modelgen.options import words_of
@@ -18,9 +19,13 @@ from modelgen.report.words import listed, place_of
 
 # What is without the causes that make the test record worse: a description, a folder beside the page.
 REDUCED = "reduced"
-_BETTER_LOGS = "Record a motion that moves every joint over its range, several periods in a row."
-
-_FURTHER_MOTION = "Record another motion and add its log to the training records."
+# By verdict, where another motion is what helps.
+_MOTIONS = {
+    "cannot_tell": "Record a motion that moves every joint over its range, several periods in a row.",
+    "outside_catalogue": "Look at the residuals in the report: over what they bend, and at which joint. "
+    "Another motion helps.",
+    "suspected": "Record another motion and add its log to the training records.",
+}
 
 
 @dataclass(frozen=True)
@@ -40,25 +45,49 @@ def following(d: Diagnosis, call: Call) -> list[Step]:
     elif d.verdict == "nothing_missing":
         text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
         steps.append(Step(text, code))
-    elif d.verdict == "cannot_tell":
-        steps.append(_other_motion(d, call, _BETTER_LOGS))
-    elif d.verdict == "outside_catalogue":
-        text = "Look at the residuals below: over what they bend, and at which joint. Another motion helps."
-        steps.append(_other_motion(d, call, text))
-    elif d.verdict == "suspected":
-        steps.append(_other_motion(d, call, _FURTHER_MOTION))
+    elif d.verdict in _MOTIONS:
+        steps.append(other_motion(d, call))
     if d.next_experiment is not None:
         steps.append(Step(f"To separate the cause from its rivals: {followed(d.next_experiment)}."))
     else:
-        places: dict[str, list[int | None]] = {}
-        for c in (*d.causes, *d.suspects):
-            places.setdefault(c.effect, []).append(c.joint)
-        steps += [
-            Step(f"To see {_wherever(d, effect, joints)} by itself: {CATALOGUE[effect].experiment}.")
-            for effect, joints in places.items()
-            if CATALOGUE[effect].experiment
-        ]
+        steps += [Step(text) for text in _by_itself(d)]
     return steps
+
+
+def whole_json(d: Diagnosis, call: Call) -> dict[str, Any]:
+    """diagnosis.json, with what the page proposes as `next_experiment`.
+
+    That is what separates a cause from its rivals, or another motion with the command that computes it where
+    the verdict asks for one; None else. call: as of `following`.
+    """
+    said = to_json(d)
+    if d.next_experiment is None and d.verdict in _MOTIONS:
+        said["next_experiment"] = {
+            "separates": [],
+            "do": _MOTIONS[d.verdict],
+            "command": other_motion(d, call).command or None,
+            "trajectory": None,
+            "tests": [{"test": text, "expected_delta_bic": None} for text in _by_itself(d)],
+        }
+    return said
+
+
+def _by_itself(d: Diagnosis) -> list[str]:
+    """What shows each effect by itself, that was named or is suspected."""
+    places: dict[str, list[int | None]] = {}
+    for c in (*d.causes, *d.suspects):
+        places.setdefault(c.effect, []).append(c.joint)
+    return [
+        f"To see {_wherever(d, effect, joints)} by itself: {CATALOGUE[effect].experiment}."
+        for effect, joints in places.items()
+        if CATALOGUE[effect].experiment
+    ]
+
+
+def proposed(d: Diagnosis, call: Call) -> list[Step]:
+    """Steps that the terminal offers at the end, each with a command where there is one."""
+    motion = [other_motion(d, call)] if d.verdict in _MOTIONS else []
+    return [*motion, *carried(d, call), *replaying(d, call)]
 
 
 def carried(d: Diagnosis, call: Call) -> list[Step]:
@@ -123,8 +152,9 @@ def _wherever(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> str:
     return f"{effect} at {listed(place_of(d.arm, joint) for joint in joints)}"
 
 
-def _other_motion(d: Diagnosis, call: Call, text: str) -> Step:
+def other_motion(d: Diagnosis, call: Call) -> Step:
     """A motion to be recorded next, with the speeds of the test record where the arm has no limits."""
+    text = _MOTIONS[d.verdict]
     p = d.test.prepared
     speeds = np.abs(p.picked(p.dq)).max(axis=0).tolist()
     description = call.beside(f"{d.arm.name}_extended.yaml")

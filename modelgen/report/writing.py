@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 from modelgen.description import load
-from modelgen.diagnosis.result import Diagnosis, to_json
+from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
 from modelgen.errors import InputError
@@ -17,7 +18,7 @@ from modelgen.generation import generate
 from modelgen.report.call import Call
 from modelgen.report.diagnosis import pictures, report
 from modelgen.report.experiment import NAMES, plans
-from modelgen.report.following import REDUCED, reduced_causes, reduced_name
+from modelgen.report.following import REDUCED, reduced_causes, reduced_name, whole_json
 
 
 def write(
@@ -48,7 +49,8 @@ def write(
         if code:
             (arm,) = load(new / f"{name}_extended.yaml", known_effects()).values()
             generate([arm], new / "generated", Options(identified=values), processes=1)
-        text = json.dumps(to_json(d), indent=2, allow_nan=False) + "\n"
+        asked = replace(call or Call(d.arm), folder=called or out)
+        text = json.dumps(whole_json(d, asked), indent=2, allow_nan=False) + "\n"
         (new / "diagnosis.json").write_text(text, encoding="utf-8", newline="\n")
         (new / "report.html").write_text(report(d, called or out, call), encoding="utf-8", newline="\n")
         for picture, text in {**pictures(d), **plans(d)}.items():

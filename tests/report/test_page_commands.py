@@ -1,5 +1,6 @@
 """The commands on the pages, copied as they stand: they run in the folder in which modelgen was called."""
 
+import json
 import re
 import shlex
 from collections.abc import Mapping
@@ -21,7 +22,7 @@ from modelgen.calibration.lever import lever_of
 from modelgen.cli.app import app
 from modelgen.options import DiagnosisOptions, ExcitationOptions, words_of
 from modelgen.report.call import Call
-from modelgen.report.following import replaying
+from modelgen.report.following import proposed, replaying
 
 # The arm of diagnosis_support, with the effort in mA and without a limit of speed.
 DESCRIPTION = """schema: 1
@@ -249,3 +250,27 @@ def test_a_description_that_no_file_has_is_to_be_written_first(tmp_path: Path) -
         made = Call(replace(arm, where=None))
         assert made.description == "arms.yaml"
         assert "arms.yaml" in made.first
+
+
+@pytest.mark.parametrize("verdict", ["suspected", "outside_catalogue", "cannot_tell"])
+def test_programs_and_the_terminal_get_the_motion_that_the_page_proposes(bench: Path, verdict: str) -> None:
+    """With the same command, which runs, in the file and in what --json prints after it was written."""
+    logs = [f"logs of may/{name}.csv" for name in ("one", "two", "test")]
+    with chdir(bench):
+        arm = mg.load_arms("my arm.yaml")["bench"]
+        asked = {"mapping": "columns.yaml", "cutoff": 7.5, "effects": ("friction_offset",)}
+        d = mg.diagnose(arm, logs[:2], logs[2], experiment=False, processes=1, **asked)
+        suspects = d.causes if verdict == "suspected" else ()
+        found = replace(d.found, verdict=verdict, causes=(), laws=(), suspects=suspects)
+        shown = Diagnosis(found, d.call)
+        shown.write("not named", code=False)
+        (step,) = proposed(found, shown.call)
+    page = (bench / "not named" / "report.html").read_text(encoding="utf-8")
+    (words,) = commands(bench / "not named" / "report.html")
+    assert words[:2] == ["excite", "not named/bench_extended.yaml"]
+    said = json.loads((bench / "not named" / "diagnosis.json").read_text(encoding="utf-8"))["next_experiment"]
+    assert shlex.split(said["command"])[1:] == shlex.split(step.command)[1:] == words
+    assert said["do"] in unescape(page)
+    assert [test["test"] in unescape(page) for test in said["tests"]] == [True] * len(suspects)
+    assert shown.to_json()["next_experiment"] == said
+    run(words, bench)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -37,7 +36,7 @@ def diagnose(
     from modelgen.cli.output import print_result, progress_bar, say
     from modelgen.files import check_folder
     from modelgen.generation.folders import check_output
-    from modelgen.report.following import carried, replaying
+    from modelgen.report.following import proposed
 
     found = one(arms, arm)
     check_folder("--out", out)
@@ -52,6 +51,5 @@ def diagnose(
     for line in result.details() if verbose else []:
         say(line)
     say(f"report: {out / 'report.html'}")
-    call = replace(result.call, folder=out)
-    for step in (*carried(result.found, call), *replaying(result.found, call)):
+    for step in proposed(result.found, result.call):
         say(step.text, step.command)
