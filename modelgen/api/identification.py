@@ -19,6 +19,7 @@ from modelgen.description import Arm
 from modelgen.effects.editing import with_torque_constants
 from modelgen.functions.parameters_file import parameters_yaml
 from modelgen.identification import Estimate, Validation
+from modelgen.identification.summary import impossible
 from modelgen.identification.workflow import Outcome, identify_logs
 from modelgen.options import IdentificationOptions, changed
 from modelgen.progress import Progress, silent
@@ -146,7 +147,8 @@ class Identification(Result):
         errors = ""
         if self.test is not None:
             errors = f", test NRMSE {', '.join(f'{x:z.1f}' for x in self.test.nrmse_percent)} %"
-        return f"Identification of {self.arm.name}: {len(self.parameters)} base parameters{errors}"
+        wrong = "".join(f". {text}" for text in impossible(self.outcome.found))
+        return f"Identification of {self.arm.name}: {len(self.parameters)} base parameters{errors}{wrong}"
 
 
 def identify(

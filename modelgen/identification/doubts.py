@@ -14,7 +14,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model, grouped
 from modelgen.functions.nominal import nominal_links
-from modelgen.identification.objects import Identification
+from modelgen.identification.objects import Identification, Impossible
 from modelgen.numeric import Array
 
 POSES = 60  # of the records, at which inertia and weight are looked at
@@ -126,11 +126,12 @@ def _inertia(*given: Any) -> list[str]:
     found = [model.arm.joints[model.arm.coordinates[j]].name for j in _below_zero(*given)]
     if not found:
         return []
-    return [
+    text = (
         f"Impossible: the inertia at {', '.join(found)} comes out below zero. Is the sign of the efforts the "
         "other way round, are positions and efforts of one joint and instant, are the positions too coarse, "
         "or does the model lack an effect (modelgen diagnose)?"
-    ]
+    )
+    return [Impossible(text, found)]
 
 
 def _below_zero(

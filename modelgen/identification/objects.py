@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +80,18 @@ class Validation:
             return 0.0, 0.0
         size = float(abs(value) * self.sizes[j, k])
         return size, 100.0 * size / float(np.sqrt(np.mean(self.measured[:, j] ** 2)))
+
+
+class Impossible(str):
+    """A doubt: a result that no arm has. joints: names of those where it is."""
+
+    joints: tuple[str, ...]
+
+    def __new__(cls, text: str, joints: Sequence[str] = ()) -> Self:
+        """Make one of its text and the names of the joints."""
+        made = super().__new__(cls, text)
+        made.joints = tuple(joints)
+        return made
 
 
 @dataclass(frozen=True)

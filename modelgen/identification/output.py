@@ -6,7 +6,7 @@ from typing import Any
 
 from modelgen.identification.instrumental import Comparison
 from modelgen.identification.objects import Identification, Validation
-from modelgen.identification.summary import impossible, verdict
+from modelgen.identification.summary import questions, verdict
 
 
 def to_json(found: Identification) -> dict[str, Any]:
@@ -31,7 +31,7 @@ def to_json(found: Identification) -> dict[str, Any]:
         ],
         "test": None if test is None else errors(test),
         "verdict": verdict(found),
-        "doubts": [*impossible(found), *found.doubts],
+        "doubts": questions(found),
         "least_squares": _least_squares(found.comparison),
         **_noise(found),
         **_gains(found),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from modelgen.effects import CATALOGUE
 from modelgen.functions.nominal import known_base
-from modelgen.identification.objects import MATTERS, POOR, Estimate, Identification
+from modelgen.identification.objects import MATTERS, POOR, Estimate, Identification, Impossible
 
 CLEARLY = 3.0  # standard deviations
 _NAMED = 4  # parameters beside the worst
@@ -23,7 +23,7 @@ _SHOWN_BY = (
 def verdict(found: Identification) -> str:
     """Which parameters are well determined, which are not, and what experiment would help."""
     worse, lost = found.poor(), _lost(found)
-    text = [*questions(found), headline(found)]
+    text = [*impossible(found), *questions(found), determined(found)]
     if worse:
         worst = sorted(worse, key=lambda pair: -_moved(found, *pair))
         named = ", ".join(_doubtful(found, k) for k, _ in worst[:_WORST])
@@ -34,7 +34,17 @@ def verdict(found: Identification) -> str:
     return " ".join([*text, *remarks(found), *helpful(found)])
 
 
-def headline(found: Identification) -> str:
+def impossible(found: Identification) -> list[str]:
+    """The sentence that comes first where something was found that no arm has; none where nothing was."""
+    asked = [doubt for doubt in questions(found) if isinstance(doubt, Impossible)]
+    where = {joint for doubt in asked for joint in doubt.joints}
+    if not where:
+        return []
+    names = ", ".join(name for name in found.arm.coordinate_names if name in where)
+    return [f"Physically impossible values at {names}: do not use the parameters before that is explained."]
+
+
+def determined(found: Identification) -> str:
     """How many parameters are well determined."""
     dropped = sum(e.dropped for e in found.estimates)
     good = len(found.estimates) - len(_lost(found)) - len(found.poor()) - dropped
@@ -44,7 +54,7 @@ def headline(found: Identification) -> str:
 
 def questions(found: Identification) -> list[str]:
     """What makes the description or the records doubtful."""
-    return [*impossible(found), *found.doubts]
+    return [*_driven(found), *found.doubts]
 
 
 def remarks(found: Identification) -> list[str]:
@@ -154,16 +164,17 @@ def driving(estimates: Sequence[Estimate]) -> list[Estimate]:
     ]
 
 
-def impossible(found: Identification) -> list[str]:
+def _driven(found: Identification) -> list[Impossible]:
     """A question where parameters of effects that are never negative come out below zero clearly."""
     negative = driving(found.estimates)
     if not negative:
         return []
-    joints = ", ".join(found.arm.coordinate_names[j - 1] for j in sorted({e.joint for e in negative}))
-    return [
-        f"Impossible: {', '.join(e.name for e in negative)} below zero, which would drive {joints}. "
-        "Is the sign of the efforts the other way round, or that of torque_constant?"
-    ]
+    joints = [found.arm.coordinate_names[j - 1] for j in sorted({e.joint for e in negative})]
+    text = (
+        f"Impossible: {', '.join(e.name for e in negative)} below zero, which would drive "
+        f"{', '.join(joints)}. Is the sign of the efforts the other way round, or that of torque_constant?"
+    )
+    return [Impossible(text, joints)]
 
 
 def experiment(wanting: Sequence[Estimate], names: Sequence[str]) -> list[str]:

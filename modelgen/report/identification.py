@@ -11,16 +11,19 @@ from numpy.typing import NDArray
 from modelgen.charts import Chart, Curve, Interval, number, over_time, sheet
 from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
-from modelgen.identification.summary import headline, helpful, questions, remarks
+from modelgen.identification.summary import determined, helpful, impossible, questions, remarks
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.options import words_of
 from modelgen.report.arm_drawing import arm_drawing
 from modelgen.report.call import WHERE, Call
-from modelgen.report.page import WIDE, Block, Command, Folded, Grid, Lines, Text, block, page, pictured
+from modelgen.report.page import WIDE, Block, Command, Folded, Grid, Lines, Run, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
 AS_DESCRIBED = "the arm as described"
+_EXPLAIN = "Answer the questions above first: no code should be generated from impossible values."
+_EXPLAINED = "If the records are read rightly the model lacks something; this names the cause."
+_LACKING = "Where the error is larger than the noise the model lacks something; this names the cause."
 _SHOWN = 5  # poorly determined parameters in full: more would leave the other answers no place
 _LOOKS = ("s1", "s2", "s3")  # of models beside
 
@@ -113,9 +116,10 @@ def report(
 
 
 def _found(found: Identification) -> list[Any]:
-    """One line, and below it what is doubtful or remarkable."""
+    """What is impossible comes first, then how much is known, and below it what is doubtful or remarkable."""
     more = [*questions(found), *remarks(found)]
-    return [Text(headline(found)), *([Lines(more)] if more else [])]
+    first = [Text([Run(text, "strong")]) for text in impossible(found)]
+    return [*first, Text(determined(found)), *([Lines(more)] if more else [])]
 
 
 def _method(found: Identification) -> Text:
@@ -168,14 +172,16 @@ def _following(found: Identification, call: Call, speeds: Sequence[float]) -> li
     scaled = words_of(call.options, ("gains",)) if not found.gains else []
     values = ["--parameters", call.beside(f"{name}_parameters.yaml")]
     generate = call.command("generate", *values, *left_out, *scaled, description=described)
-    parts: list[Any] = [
+    code = [
         Text(f"{call.first}{sentence(f'generate code with these values folded in, {WHERE}')}"),
         Command(generate),
     ]
+    wrong = bool(impossible(found))
+    parts: list[Any] = [Text(f"{call.first}{_EXPLAIN}")] if wrong else code
     diagnose = call.diagnosing()
     if found.test is not None and diagnose:
         parts += [
-            Text("Where the error is larger than the noise the model lacks something; this names the cause."),
+            Text(_EXPLAINED if wrong else _LACKING),
             Command(diagnose),
         ]
     excite = call.exciting(call.beside("trajectory.csv"), speeds)

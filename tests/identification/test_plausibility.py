@@ -236,10 +236,23 @@ def test_a_link_not_far_from_its_nominal_self_is_no_doubt(mass: int, logs: list[
 
 
 def test_an_inertia_below_zero_is_called_impossible(arm: mg.Arm, logs: list[Table]) -> None:
-    """Efforts that lag by a quarter of a second look like an inertia below zero."""
+    """Efforts that lag by a quarter of a second look like an inertia below zero, which is said first."""
     late = [x | {k: np.roll(x[k], 25) for k in ("i1", "i2")} for x in logs]
-    doubts = mg.identify(arm, *late).to_json()["doubts"]
-    assert any(doubt.startswith("Impossible: the inertia at ") for doubt in doubts)
+    found = mg.identify(arm, *late)
+    doubts, verdict = found.to_json()["doubts"], found.to_json()["verdict"]
+    (doubt,) = (doubt for doubt in doubts if doubt.startswith("Impossible: the inertia at "))
+    joints = doubt.removeprefix("Impossible: the inertia at ").partition(" comes out")[0]
+    assert verdict.startswith(f"Physically impossible values at {joints}: do not use the parameters")
+    assert found.shown()[-1] == verdict
+    assert "Physically impossible values at" in repr(found)
+    page = found.files()["report.html"]
+    first = re.split("<dt[^>]*>", page)[1]  # the answer to the first question
+    said = re.sub("<[^>]+>", " ", first)
+    assert 0 < said.index("Physically impossible values") < said.index("parameters are determined to")
+    assert "modelgen generate" not in page  # no code from such values
+    right = mg.identify(arm, *logs)
+    assert "mpossible" not in right.files()["report.html"] + right.to_json()["verdict"] + repr(right)
+    assert "modelgen generate" in right.files()["report.html"]
 
 
 @pytest.mark.parametrize("turned", [("i1", "i2"), ("i2",)])
