@@ -5,7 +5,8 @@ the slope of the efforts as the model has them, in which their noise has no part
 friction are slopes of others, and what is left for the delay is little: its deviation says how little. What
 the rounding of the positions does to it is seen by rounding them again (Cook and Stefanski 1994). What the
 model lacks is no noise, and pulls the delays of all parts of a log the same way: the deviation holds how much
-they change where every joint may have any law of its own position, speed and load (Hausman 1978).
+they change where every joint may have any law of its own position, speed and load (Hausman 1978). A delay of
+more than a sample that leaves nearly as much as none stands for what is missing, and is not given.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, Record, Settings, choose, drives_of, prepare
+from modelgen.dataset.processing.content import white_noise
 from modelgen.dataset.processing.filters import advanced
 from modelgen.dataset.processing.instants import EffortInstant, beyond, fitting, with_hold
 from modelgen.dataset.processing.rounding import position_steps
@@ -25,6 +28,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.options import prepared as reduced
+from modelgen.identification.unexplained import FAR
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
@@ -36,6 +40,7 @@ WAVES = (0.5, 1, 1.5, 2, 3)  # in the range of a joint, of which its free law of
 SLOW = (0.05, 0.2)  # of the highest speed, below which a law of friction may be another
 DRAWS = 4  # of further roundings of the positions, where the data would tell without
 ALIKE = 0.25  # samples, half of what is between two conventions: joints that are so near agree
+EXPLAINS = 0.25  # of what is left without it, that a delay beyond a sample may leave to be believed
 APART = 4.0  # deviations by which a joint may be from all, if it is a matter of the log
 
 
@@ -54,8 +59,10 @@ def effort_instant(
     if found is None:
         return known
     delay, std, alike, joints = found
-    fits = fitting(delay, std, first.step, limits) if alike else None
-    late = tuple((name, d) for name, d, s in joints if beyond(d, s, first.hold / first.step))
+    fits, used = fitting(delay, std, first.step, limits) if alike else None, first.hold / first.step
+    late = tuple((name, d) for name, d, s, believed in joints if believed and beyond(d, s, used))
+    if fits is None and not all(believed for *_, believed in joints):
+        return replace(known, late=late, alike=False, missing=True)
     said = EffortInstant(known.hold, known.known, known.step, delay, std, fits, alike, late)
     if fits is None or known.known or fits == known.hold:
         return said
@@ -71,9 +78,9 @@ def at_instants(records: Sequence[Record], found: EffortInstant | None) -> list[
 
 def _delay(
     records: Sequence[Record], arm: Arm, limits: DatasetThresholds
-) -> tuple[float, float, bool, list[tuple[str, float, float]]] | None:
+) -> tuple[float, float, bool, list[tuple[str, float, float, bool]]] | None:
     """Common delay and its deviation [samples], whether the joints agree, and name, delay and deviation of
-    each that tells; None where there is none.
+    each that tells, and whether it is to be believed; None where there is none.
     """
     chosen = Options().evaluated
     model, evaluator = build_model(arm, chosen), Evaluator(reduced(arm, chosen))
@@ -83,7 +90,8 @@ def _delay(
     try:
         settings = choose(list(records), Settings(thresholds=limits))
         prepared = [prepare(r, settings) for r in beginnings]
-        delays, deviations = _Fit(prepared, model, evaluator).delays()
+        fit = _Fit(prepared, model, evaluator)
+        delays, deviations = fit.delays()
         if not np.isfinite(deviations).any():
             return None
         if _common(delays, deviations)[1] <= limits.max_instant_std and position_steps(records[0]).any():
@@ -100,7 +108,10 @@ def _delay(
     common, std = _common(delays, deviations)
     apart = np.maximum(APART * deviations, ALIKE)
     names = np.array(arm.coordinate_names)[told].tolist()
-    joints = list(zip(names, delays[told].tolist(), deviations[told].tolist(), strict=True))
+    used = records[0].hold / records[0].step
+    believed = ~fit.missing | (np.abs(delays - used) <= 1.0)
+    columns = (x[told].tolist() for x in (delays, deviations, believed))
+    joints = list(zip(names, *columns, strict=True))
     return common, std, bool((np.abs(delays - common) <= apart)[told].all()), joints
 
 
@@ -131,6 +142,7 @@ class _Fit:
         self.records, self.model, self.evaluator = records, model, evaluator
         self.n, self.p = records[0].n, len(model.grouping.base)
         self.moving = [r.moving for r in records]
+        self.missing = np.zeros(self.n, dtype=bool)
         self.motions = [Motion(r.time, r.q, r.dq, r.ddq) for r in records]
         self._evaluate(np.zeros(self.p))
 
@@ -151,7 +163,8 @@ class _Fit:
         efforts = self._efforts(delays)
         if sum(int(m.sum()) for m in self.moving) < 3 * (self.p + self.n):
             return delays, np.full(self.n, np.inf)
-        theta = Regression(efforts, self.columns, self.moving).solve("wls").theta
+        before = Regression(efforts, self.columns, self.moving).solve("wls")
+        theta = before.theta
         self._evaluate(theta)
         told, deviations = np.ones(self.n, dtype=bool), np.full(self.n, np.inf)
         for _ in range(STEPS):
@@ -166,9 +179,24 @@ class _Fit:
             efforts = self._efforts(delays)
         else:
             told &= np.abs(moved) <= deviations
+        self.missing = self._missing(solution.sigma, before.sigma)
         if free:
             deviations = np.hypot(deviations, self._beside_free_laws(efforts, columns, theta, solution.sigma))
         return delays, np.where(told & (deviations > 0.0), deviations, np.inf)
+
+    def _missing(self, left: Array, without: Array) -> NDArray[np.bool_]:
+        """Joints (n,) at which more than noise is left with the delays, and not much less than without.
+
+        Then it is causes that the model lacks that are left, and a delay may stand for one of them.
+        """
+        square = np.zeros(self.n)
+        for r in self.records:
+            assert r.record.input is not None
+            rate = 1.0 / r.record.step
+            band = min(1.0, 2.0 * r.settings.cutoff / rate) if r.settings.cutoff else 1.0
+            square += band * np.array([white_noise(x, rate) for x in r.record.input.T]) ** 2
+        noise = np.sqrt(square / len(self.records))
+        return np.asarray((left > FAR * noise) & (left > EXPLAINS * without))
 
     def _with_delays(self, theta: Array) -> list[Array]:
         """Columns (M, n, p + n) of each record: those of the model, and the slopes of its efforts."""

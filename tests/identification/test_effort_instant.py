@@ -250,3 +250,34 @@ def test_its_deviation_holds_what_the_model_lacks(what: str, hold: str, arm: mg.
 def test_free_laws_cost_nothing_where_the_model_is_complete(arm: mg.Arm) -> None:
     found = effort_instant([mg.read_log(log(arm, "instant", 1), arm)], arm)
     assert found.std < 0.003
+
+
+OF_THE_OTHER_JOINT: dict[str, Law] = {
+    "friction": lambda q, dq: np.sign(dq[:, ::-1]),
+    "drag": lambda q, dq: 0.3 * dq[:, ::-1],
+}
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("what", OF_THE_OTHER_JOINT)
+def test_a_delay_that_stands_for_what_the_model_lacks_is_not_given(what: str, seed: int, arm: mg.Arm) -> None:
+    """Of some samples, with a deviation of a tenth of one, it leaves most of what is left without it."""
+    found = effort_instant(
+        [mg.read_log(log(arm, "following", seed, besides=OF_THE_OTHER_JOINT[what]), arm)], arm
+    )
+    assert found is not None
+    said = found.to_json()
+    assert said.keys() >= {"hold", "known_from", "delay_samples", "std_samples", "fits", "data"}
+    assert (said["hold"], said["fits"], said["data"]) == ("following", None, "cannot_tell")
+    assert said["delay_samples"] is said["std_samples"] is None
+    assert found.line().endswith("; the data cannot tell while the model lacks causes")
+    assert found.questions() == ()
+
+
+@pytest.mark.parametrize("what", LACKING)
+def test_a_true_delay_is_given_beside_what_the_model_lacks(what: str, arm: mg.Arm) -> None:
+    record = mg.read_log(log(arm, -12 * STEP, 1, besides=LACKING[what]), arm)
+    found = effort_instant([record], arm)
+    assert found.to_json()["data"] == "beyond_a_sample"
+    assert found.delay == pytest.approx(-12.0, abs=0.1)
+    assert len(found.questions()) == 1

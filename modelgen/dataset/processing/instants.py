@@ -23,6 +23,7 @@ class EffortInstant:
     data have it [sampling periods]; None where they do not say. fits: what that is, a convention or a delay
     [s]; None where the data cannot tell. step: sampling period [s]. alike: whether the joints agree. late:
     names of joints whose efforts are clearly more than a sample away from what is used, each with its delay.
+    missing: whether a delay that fits best stands for causes that the model lacks, and is not given.
     """
 
     hold: str | float
@@ -33,6 +34,7 @@ class EffortInstant:
     fits: str | float | None = None
     alike: bool = True
     late: tuple[tuple[str, float], ...] = ()
+    missing: bool = False
 
     @property
     def answer(self) -> str:
@@ -43,7 +45,8 @@ class EffortInstant:
             return "agree" if agrees(self) else "disagree"
         if self._beyond_and_so():
             return "agree"
-        if self.std is None or (self.std > USUAL.max_instant_std and not self.late):
+        vague = self.std is None or self.std > USUAL.max_instant_std
+        if vague and not self.late:
             return "cannot_tell"
         return "beyond_a_sample" if self.alike else "joints_differ"
 
@@ -95,6 +98,8 @@ class EffortInstant:
         text += source.get(self.known, "")
         if self.fits is not None and self.answer == "disagree":
             measured += f", hold: {self.fits if isinstance(self.fits, str) else f'{self.fits:.4g}'}"
+        if self.missing:
+            return text + "; the data cannot tell while the model lacks causes"
         return text + ANSWERS[self.answer] + (f": {measured}" if measured else "")
 
 
