@@ -14,7 +14,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model, grouped
 from modelgen.functions.nominal import nominal_links
-from modelgen.identification.objects import Identification, Impossible
+from modelgen.identification.objects import DIAGNOSING, Identification, Impossible
 from modelgen.numeric import Array
 
 POSES = 60  # of the records, at which inertia and weight are looked at
@@ -69,7 +69,7 @@ def worse_on_test(found: Identification, train: Sequence[Prepared]) -> list[str]
             said.append(
                 f"The error at {name} is {test.nrmse_percent[j]:.0f} % of its effort on the test records, "
                 f"{times:.0f} times what it is on those fitted: are they of the same arm, read alike, and "
-                "what does the description lack (modelgen diagnose)?"
+                f"what does the description lack{DIAGNOSING}?"
             )
     return said
 
@@ -129,7 +129,7 @@ def _inertia(*given: Any) -> list[str]:
     text = (
         f"Impossible: the inertia at {', '.join(found)} comes out below zero. Is the sign of the efforts the "
         "other way round, are positions and efforts of one joint and instant, are the positions too coarse, "
-        "or does the model lack an effect (modelgen diagnose)?"
+        f"or does the model lack an effect{DIAGNOSING}?"
     )
     return [Impossible(text, found)]
 

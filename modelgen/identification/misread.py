@@ -12,6 +12,7 @@ from modelgen.dataset import Prepared
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
+from modelgen.identification.objects import DIAGNOSING, Doubt
 from modelgen.identification.readings import ZERO, amounts, readings
 from modelgen.identification.unexplained import FAR, POOR, Unexplained, unexplained
 from modelgen.numeric import Array
@@ -30,7 +31,7 @@ class Asked:
     inputs, through the filter; None where they were not fitted so, or there is one record alone.
     """
 
-    questions: tuple[str, ...] = ()
+    questions: tuple[Doubt, ...] = ()
     alone: Array | None = None
 
 
@@ -74,7 +75,7 @@ def _fit(p: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:
     return fit
 
 
-def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[str]:
+def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[Doubt]:
     """Questions about joints of whose efforts' changes hardly anything is explained that is not noise, and
     those of which a constant explains much of the rest.
 
@@ -86,7 +87,7 @@ def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[str]
     error, changes, noise, beside = (
         np.sqrt(np.mean([x**2 for x in part], axis=0)) for part in zip(*parts, strict=True)
     )
-    first, questions = train[0].record, []
+    first, questions = train[0].record, list[Doubt]()
     assert first.arm is not None
     for j, name in enumerate(first.arm.coordinate_names):
         share = error[j] / max(changes[j], 1e-300)
@@ -95,22 +96,24 @@ def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[str]
         constant = float(np.mean([fit.constant[j] for fit in fits]))
         if beside[j] < SHIFTED * error[j] and abs(constant) > FAR * beside[j]:
             constant *= 1.0 if first.gain is None else float(np.sqrt(np.mean(first.gain[:, j] ** 2)))
-            questions.append(
+            text = (
                 f"A constant effort of {constant:.3g} {first.effort_unit[j]} at {name} explains "
                 f"{100 * (1 - (beside[j] / error[j]) ** 2):.0f} % of what the model leaves there: are the "
-                "readings zero without an effort, and is friction the same either way (modelgen diagnose)?"
+                f"readings zero without an effort, and is friction the same either way{DIAGNOSING}?"
             )
+            questions.append(Doubt(text, [name]))
         if share <= HARDLY:
             continue
         logged = [x[p.awake[:, j], j] for p in train if (x := p.record.logged_effort) is not None]
         moving = np.concatenate(logged)
         one_side = len(moving) > 0 and 0.0 <= moving.min() < ZERO * moving.max()
         lost = f" They are never below {moving.min():.3g}: is their sign lost?" if one_side else ""
-        questions.append(
+        text = (
             f"The model leaves {100 * min(share, 1.0):.0f} % of the changes of the effort of {name} "
-            "unexplained: are its columns what they are read as, and what does the description lack "
-            f"(modelgen diagnose)?{lost}"
+            "unexplained: are its columns what they are read as, and what does the description lack"
+            f"{DIAGNOSING}?{lost}"
         )
+        questions.append(Doubt(text, [name]))
     return questions
 
 

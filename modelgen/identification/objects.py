@@ -82,8 +82,11 @@ class Validation:
         return size, 100.0 * size / float(np.sqrt(np.mean(self.measured[:, j] ** 2)))
 
 
-class Impossible(str):
-    """A doubt: a result that no arm has. joints: names of those where it is."""
+DIAGNOSING = " (modelgen diagnose)"  # ends a question that a diagnosis answers
+
+
+class Doubt(str):
+    """A question about joints. joints: their names."""
 
     joints: tuple[str, ...]
 
@@ -92,6 +95,10 @@ class Impossible(str):
         made = super().__new__(cls, text)
         made.joints = tuple(joints)
         return made
+
+
+class Impossible(Doubt):
+    """A doubt about a result that no arm has."""
 
 
 @dataclass(frozen=True)

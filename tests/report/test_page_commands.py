@@ -110,6 +110,10 @@ def test_what_identify_and_diagnose_propose_runs_as_it_is_copied(bench: Path) ->
     ((generate, *words),) = commands(bench / "what was found" / "diagnosis" / "report.html")
     parsed([generate, *words], bench)
     run([generate, *words, "--out", "extended code"], bench)
+    asked_about = "A constant effort of", "(modelgen diagnose)"  # a question that the named cause answers
+    for folder, there in (("what was found", True), ("what was found/diagnosis", False)):
+        page = (bench / folder / "report.html").read_text(encoding="utf-8")
+        assert [text in page for text in asked_about] == [there, there]
     sizes = []
     for folder in ("generated", "extended code"):
         header = (bench / folder / "bench" / "include" / "bench.h").read_text(encoding="utf-8")

@@ -40,6 +40,7 @@ from modelgen.errors import InputError
 from modelgen.identification.doubts import doubts
 from modelgen.identification.identify import errors_of
 from modelgen.identification.misread import check_reading
+from modelgen.identification.objects import DIAGNOSING
 from modelgen.numeric import Array
 
 
@@ -133,7 +134,17 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     fit = solution.theta, solution.covariance, solution.determined
     asked = check_reading(train, study.model, study.evaluator).questions
     about = doubts(train, study.model, study.evaluator, *fit, whole=decision.verdict != "named")
-    return AsIdentified(found.rmse, chosen.cutoff, (*asked, *about))
+    answered = _answered(extension)
+    left = [doubt for doubt in asked if not answered.issuperset(doubt.joints)]
+    texts = (text.replace(DIAGNOSING, "") for text in (*left, *about))  # this is the diagnosis
+    return AsIdentified(found.rmse, chosen.cutoff, tuple(texts))
+
+
+def _answered(extension: Extension) -> set[str]:
+    """Names of the joints at which a cause is named: it answers what is left there."""
+    joints = {cause.trial.candidate.joint for cause in extension.selection.causes}
+    names = extension.before.arm.coordinate_names
+    return set(names) if None in joints else {names[j - 1] for j in joints if j is not None}
 
 
 def _settings(study: Study, decision: Decision, selection: Selection, options: Options) -> dict[str, object]:
