@@ -141,12 +141,17 @@ define environment
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 endef
 
+# pip compiles what it copies, not what it links to: where Python keeps no bytecode by itself, commands start slower.
+compiled = @$(BIN)/python -m compileall -q modelgen
+
 $(INSTALLED): pyproject.toml
 	$(environment)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	$(compiled)
 	@touch $@
 
 $(TESTED): pyproject.toml
 	$(environment)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	$(compiled)
 	@touch $(INSTALLED) $@

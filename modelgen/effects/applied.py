@@ -25,13 +25,13 @@ from modelgen.effects.base import (
 )
 from modelgen.effects.catalogue import CATALOGUE, unit_text
 from modelgen.effects.variables import (
+    POINT,
     BodyVariables,
     InputVariables,
     PointVariables,
     Variables,
     body_variables,
     joint_variables,
-    point_variables,
     state_symbols,
 )
 from modelgen.errors import InputError
@@ -222,16 +222,19 @@ def free_symbol(name: str) -> sp.Symbol:
     return sp.Symbol(f"free_{name}", real=True)
 
 
-# A law over symbols is the same for every arm, and a diagnosis asks for each many times.
+# A law over symbols is the same for every arm, and at each point of each link: only the port of a part knows
+# what its symbols are. A diagnosis asks for each many times.
 @lru_cache(maxsize=1024)
 def _on_link(effect: type[LinkEffect], link: int, given: Given) -> tuple[Part, ...]:
-    values, parts = dict(given), []
-    for k, point in enumerate(effect().points(values), 1):
-        x = point_variables(f"_{link + 1}_{k}")
-        moment = effect().moment(x, values)
-        forces = (*effect().force(x, values), *(moment if any(m != 0 for m in moment) else []))
-        parts.append(Part("point", link, x, forces, point))
-    return tuple(parts)
+    forces = _at_point(effect, given)
+    return tuple(Part("point", link, POINT, forces, point) for point in effect().points(dict(given)))
+
+
+@lru_cache(maxsize=256)
+def _at_point(effect: type[LinkEffect], given: Given) -> tuple[sp.Expr, ...]:
+    values = dict(given)
+    moment = effect().moment(POINT, values)
+    return (*effect().force(POINT, values), *(moment if any(m != 0 for m in moment) else []))
 
 
 @lru_cache(maxsize=1024)

@@ -116,11 +116,11 @@ def joint_variables(number: str, effect: str, states: tuple[str, ...], drive: Tr
     )
 
 
-def point_variables(number: str) -> PointVariables:
-    """Variables with the number of link and point in their names."""
+def _point_variables() -> PointVariables:
+    """Variables at any point of any link, with names that no symbol of a description can have."""
 
     def triple(name: str) -> sp.Matrix:
-        return sp.Matrix([sp.Symbol(f"{name}_{axis}{number}", real=True) for axis in "xyz"])
+        return sp.Matrix([sp.Symbol(f"{name}_{axis} of the point", real=True) for axis in "xyz"])
 
     return PointVariables(
         velocity=triple("velocity"),
@@ -130,7 +130,7 @@ def point_variables(number: str) -> PointVariables:
         acceleration=triple("acceleration"),
         gravity=triple("gravity"),
         line=triple("line"),
-        length=sp.Symbol(f"length{number}", positive=True),
+        length=sp.Symbol("length of the point", positive=True),
     )
 
 
@@ -153,3 +153,6 @@ def body_variables(number: str, drive: Transmission) -> BodyVariables:
 def state_symbols(number: str, effect: str, states: tuple[str, ...]) -> dict[str, sp.Symbol]:
     """Symbols of an effect's states."""
     return {name: sp.Symbol(f"{effect}_{name}_{number}", real=True) for name in states}
+
+
+POINT = _point_variables()
