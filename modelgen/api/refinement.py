@@ -119,7 +119,8 @@ class Refinement(Result):
     def __repr__(self) -> str:
         free = sum(x.std is not None for x in self.found.parameters)
         after = ", ".join(f"{x:z.1f}" for x in self.found.after.f_gof)
-        return f"Refinement of {self.arm.name}: {free} parameters tuned, F_gof {after} %"
+        ended = "" if self.converged else ", not converged"
+        return f"Refinement of {self.arm.name}: {free} parameters tuned{ended}, F_gof {after} %"
 
 
 def refine(

@@ -15,6 +15,8 @@ from modelgen.report.words import listed, sentence
 
 _FAR = 2.0  # standard deviations
 _NAMED = 6  # parameters that moved, in a sentence
+_VAGUE = "Standard deviations, and what they move, are rough there."
+_NEAR = "if the simulated motion below is near enough to the measured one all the same"
 
 
 def motion(found: Refinement) -> list[Chart]:
@@ -58,14 +60,8 @@ def report(found: Refinement, call: Call) -> str:
     heads = [("joint", "left"), ("F_gof % before", "right"), ("F_gof % after", "right")]
     heads += [("RMSE before", "right"), ("RMSE after", "right")]
     free = [x for x in found.parameters if x.std is not None]
-    tuned = f"{len(free)} of {len(found.parameters)}"
-    steps = f"after {found.rounds} steps"
-    ended = f"It converged {steps}" if found.converged else f"It did not converge {steps}: {found.stopped}"
     answers: Parts = [
-        (
-            "What was found",
-            [Text(f"{tuned} parameters were tuned until the simulated motion is the measured one. {ended}.")],
-        ),
+        ("What was found", _ended(found, len(free))),
         (
             "How well it moves",
             [
@@ -80,7 +76,7 @@ def report(found: Refinement, call: Call) -> str:
         ("What moved", [Text(_moved(free)), *_uncertain(found)]),
         (
             "What to do next",
-            _following(call),
+            _following(call, found.converged),
         ),
     ]
     table = [
@@ -95,7 +91,7 @@ def report(found: Refinement, call: Call) -> str:
         for x in found.parameters
     ]
     columns = [("parameter", "left"), ("start", "right"), ("refined", "right"), ("std", "right")]
-    columns += [("moved by std", "right"), ("unit", "left"), ("std moves the motion by (RMS)", "left")]
+    columns += [("moved by std", "right"), ("unit", "left"), ("std in the motion (RMS)", "left")]
     sections: Parts = [
         ("Measured against simulated motion", [block(motion(found))]),
         ("Parameters", [*_pictured(found), Grid("Parameters", columns, table, folds=True)]),
@@ -103,12 +99,25 @@ def report(found: Refinement, call: Call) -> str:
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
 
 
-def _following(call: Call) -> list[Part | str]:
+def _ended(found: Refinement, free: int) -> list[Part | str]:
+    """Whether the values are those of the best fit, and how many are."""
+    tuned, steps = f"{free} of {len(found.parameters)} parameters", f"after {found.rounds} steps"
+    if found.converged:
+        text = f"{tuned} were tuned until no step brings the simulated motion nearer to the measured one"
+        return [Text(f"{text}: it converged {steps}.")]
+    return [
+        Text([Run(f"It did not converge {steps}: {found.stopped}.", "strong")]),
+        Text(f"The values of {tuned} are those of its last step, not of the best fit. {_VAGUE}"),
+    ]
+
+
+def _following(call: Call, converged: bool) -> list[Part | str]:
     """The code, and what the model lacks."""
     generate = call.command("generate", "--parameters", call.beside(f"{call.arm.name}_parameters.yaml"))
     diagnose = call.diagnosing()
+    folded = f"generate code with these values folded in, {WHERE}"
     parts: list[Part | str] = [
-        Text(f"{call.first}{sentence(f'generate code with these values folded in, {WHERE}')}"),
+        Text(f"{call.first}{sentence(folded if converged else f'{_NEAR}, {folded}')}"),
         Command(generate),
     ]
     if diagnose:

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser_support import SCHEMES, WIDTHS, letters, on_few_sheets, opened, violations, wider
+from browser_support import SCHEMES, WIDTHS, letters, on_few_sheets, on_paper, opened, violations, wider
 from diagnosis_support import ARM, three
 from matplotlib.image import imread
 from playwright.sync_api import Locator
 
 import modelgen as mg
 from modelgen.api.identification import Identification
+from modelgen.api.refinement import Refinement
 from modelgen.api.results import Table
 from modelgen.calibration.lever import lever_of
 from modelgen.fleet.overview import overview
@@ -323,6 +324,43 @@ def test_what_is_uncertain_of_a_refinement_is_said_in_its_motion() -> None:
         assert x.moves < 1e-3  # rad, the noise: so many samples tell more than one
     page = found.files()["report.html"]
     assert "Most uncertain in the motion is" in page
+
+
+def test_the_words_of_a_refinement_agree_with_how_it_ended() -> None:
+    """Tuned until nothing is nearer, or stopped on the way, which is said first."""
+    arm = mg.load_arms()["gravity_link2"]
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
+    done = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
+    assert done.converged
+    for stopped in ("", "the errors still fell at step 40, the last one"):
+        result = Refinement(replace(done.found, stopped=stopped), done.call)
+        found, _, _, following = re.split("<dt[^>]*>", result.files()["report.html"])[1:5]
+        said = re.sub("<[^>]+>", "", found.partition("<dd>")[2])
+        assert ("parameters were tuned until no step" in said) == (not stopped)
+        assert said.strip().startswith("It did not converge after") == bool(stopped)
+        assert stopped in said
+        assert ("is near enough to the measured one all the same, generate" in following) == bool(stopped)
+        assert ("not converged" in repr(result)) == bool(stopped)
+
+
+def test_a_table_of_many_columns_has_a_line_for_each_row_on_paper(tmp_path: Path) -> None:
+    """With values and units of a usual length; it stood in a part of the sheet, in rows of five lines."""
+    arm, path = mg.load_arms()["gravity_link2"], tmp_path / "report.html"
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
+    result = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
+    (own,) = [x for x in result.found.parameters if x.name == "FV1"]
+    long = replace(own, start=9.9346e-09, value=1.01183e-08, std=5.1e-11, unit="J s^2/unit^2", moves=4.7e-06)
+    others = [replace(long, name=f"ZZ{k}R") for k in range(12)]
+    result.found = replace(result.found, parameters=tuple(others))
+    path.write_text(result.files()["report.html"], encoding="utf-8")
+    with opened(path) as page:
+        on_few_sheets(page, 1)
+    with opened(path) as page, on_paper(page):
+        rows = page.get_by_role("region", name="Parameters").locator("tbody tr").all()
+        boxes = [row.bounding_box() for row in rows]
+        letter = letters(page, "tbody td")
+    assert len(boxes) > 1
+    assert all(box is not None and box["height"] < 2.0 * letter for box in boxes)
 
 
 @pytest.mark.parametrize("name", ["identify", "refine", "calibrate"])
