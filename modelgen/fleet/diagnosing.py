@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from modelgen.fleet.store import Row, fingerprint, folder, keep, written
 from modelgen.fleet.units import Unit
 from modelgen.options import DiagnosisOptions
 from modelgen.report.diagnosis_sentences import cause_title, harmful
+from modelgen.report.following import Step, following
 from modelgen.report.writing import write
 
 CRASHED = "the process ended: out of memory, or a crash"
@@ -46,7 +47,7 @@ def done(job: Job) -> Row:
             d = _diagnosed(unit)
             called = folder(Path(job.called or job.out), unit.name)
             write(d.found, new, code=job.code, called=called, call=d.call)
-            row |= _found(d)
+            row |= _found(d) | _next(d, called)
             row["report"] = f"units/{unit.name}/report.html"
         except InputError as error:
             row["error"] = _short(str(error), unit)
@@ -113,6 +114,10 @@ def _found(d: Diagnosis) -> Row:
         "joints": [c["joint"] for c in said["causes"]],
         "joint_names": [c["joint_name"] for c in said["causes"]],
         "titles": [cause_title(d.found, c) for c in d.found.causes],
+        "suspects": [cause_title(d.found, c) for c in d.found.suspects],
+        "failed_checks": [
+            [x.name for x in c.checks if x.decides and x.passed is False] for c in d.found.suspects
+        ],
         "harms": [c in worse for c in d.found.causes],
         "delta_bic": [c["evidence"]["delta_bic"] for c in said["causes"]],
         "cross_gain_percent": [c["evidence"]["cross_gain_percent"] for c in said["causes"]],
@@ -137,6 +142,13 @@ def _found(d: Diagnosis) -> Row:
         ],
         "not_identifiable": [n["effect"] for n in said["not_identifiable"]],
     }
+
+
+def _next(d: Diagnosis, called: Path) -> Row:
+    """What to do first after a diagnosis, and the command for it. called: its folder, which that names."""
+    steps = following(d.found, replace(d.call, folder=called))
+    step = next((s for s in steps if s.command), steps[0] if steps else Step(""))
+    return {"next": step.text, "command": step.command}
 
 
 def _places(arm: Arm, causes: list[dict[str, Any]]) -> list[str]:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from modelgen.diagnosis.result import VERDICTS
 from modelgen.fleet.store import Row
-from modelgen.report.page import Lines, Part, Run, Text, page
+from modelgen.report.page import Command, Lines, Part, Run, Text, page
 from modelgen.report.parts import breaking, line
 from modelgen.report.words import listed
 
@@ -23,9 +23,21 @@ WORDS = {
     "cannot_tell": "cannot tell",
     FAILED: "failed",
 }
+# What a unit does, and several, by verdict; and what, where nothing has a name.
+_CLAUSES = {
+    "named": ("lacks", "lack"),
+    "suspected": ("may lack", "may lack"),
+    "nothing_missing": ("lacks nothing", "lack nothing"),
+    "outside_catalogue": ("lacks something outside the catalogue", "lack something outside the catalogue"),
+    "cannot_tell": ("gives no answer", "give no answer"),
+    FAILED: ("could not be diagnosed", "could not be diagnosed"),
+}
+_UNNAMED = {"named": " something", "suspected": " something"}
 _HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", "less error %", "lack of fit", "s", "said")
 _LOOKS = 7  # colours that are told apart
 _URGENT = 8  # units that are listed first
+_GROUPS = 5  # units that lack the same, in a sentence each
+_UNITS = 4  # of a group, by their names
 
 _WIDEST = 80.0  # percent of the room, of a bar
 _NOTHING = "Every unit could be diagnosed, and nothing is left unexplained."
@@ -42,13 +54,13 @@ def overview(rows: Sequence[Row]) -> str:
     """HTML that needs nothing beside it but the reports that it links to."""
     counts, named, worth = verdicts(rows), cause_bars(rows), _worth(rows)
     found = [(WORDS[key], [(WORDS[key], counts[key], "k0")], counts[key]) for key in WORDS if counts[key]]
-    urgent = list(_urgent(rows))
-    answers: list[tuple[str, list[Part]]] = [("What was found", [Bars("Verdicts", "verdict", found)])]
+    said: list[Part] = [Text(text) for text in differences(rows)]
+    answers: list[tuple[str, list[Part]]] = [("What was found", [*said, Bars("Verdicts", "verdict", found)])]
     if named:
         answers.append(("What is missing", [Bars("Causes named, by joint", "cause", named)]))
     if worth:
         answers.append(("What it is worth", [Text(worth)]))
-    answers.append(("What to look at next", [Lines(urgent) if urgent else Text(_NOTHING)]))
+    answers.append(("What to look at next", list(_next(rows))))
     minutes = sum(row.get("cpu_seconds") or 0.0 for row in rows) / 60
     units = [
         Units([_row(row) for row in rows]),
@@ -56,6 +68,33 @@ def overview(rows: Sequence[Row]) -> str:
     ]
     heading = f"Fleet of {len(rows)} unit{'' if len(rows) == 1 else 's'}"
     return page(heading, "Diagnosis of many arms", answers, [("Units", units)], own="fleet")
+
+
+def differences(rows: Sequence[Row]) -> list[str]:
+    """Which units lack what, in sentences: most of them first, and in what others differ from these."""
+    groups: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+    for row in rows:
+        what = _titles(row) if row.get("causes") else row.get("suspects") or ()
+        groups.setdefault((verdict(row), tuple(what)), []).append(row["unit"])
+    order = sorted(groups, key=lambda key: -len(groups[key]))
+    most = len(groups[order[0]]) if order else 0
+    usual = 2 * most > len(rows) > 2
+    said = []
+    for k, key in enumerate(order[:_GROUPS]):
+        units, (found, causes_) = groups[key], key
+        one, many = _CLAUSES[found]
+        named = listed(units[:_UNITS]) + (f" and {len(units) - _UNITS} more" if units[_UNITS:] else "")
+        what = f" {listed(causes_)}" if causes_ else _UNNAMED.get(found, "")
+        if usual and k == 0:
+            count = f"All {most}" if most == len(rows) else f"{most} of {len(rows)}"
+            said.append(f"{count} units {many}{what}.")
+        elif usual:
+            differ = ("differs: it", one) if len(units) == 1 else ("differ: they", many)
+            said.append(f"{named} {differ[0]} {differ[1]}{what}.")
+        else:
+            said.append(f"{named} {one if len(units) == 1 else many}{what}.")
+    left = len(order) - _GROUPS
+    return said + ([f"{left} further group{'' if left == 1 else 's'}: see the table."] if left > 0 else [])
 
 
 @dataclass(frozen=True)
@@ -166,24 +205,46 @@ def _worth(rows: Sequence[Row]) -> str:
     return f"{said} {units} a cause {_HARM}, though all together may make it better."
 
 
+def _open(rows: Sequence[Row]) -> list[Row]:
+    """Units that failed or were left unexplained, the most urgent first."""
+    ends = [FAILED, "outside_catalogue", "suspected", "cannot_tell"]
+    return sorted((r for r in rows if verdict(r) in ends), key=lambda row: ends.index(verdict(row)))
+
+
 def _urgent(rows: Sequence[Row]) -> Iterator[list[Run]]:
-    """Units that failed or were left unexplained, or of which a cause harms the test record: each with its
-    report, and why.
+    """Units that failed or were left unexplained, or of which a cause harms the test record, each with its
+    report.
     """
-    open_ends = [FAILED, "outside_catalogue", "suspected", "cannot_tell"]
-    wanting = [row for row in rows if verdict(row) in open_ends]
-    wanting.sort(key=lambda row: open_ends.index(verdict(row)))
-    lines = [
-        [_unit(row), Run(f": {WORDS[verdict(row)]}, {row.get('error') or row.get('reason') or ''}")]
-        for row in wanting
-    ]
+    lines = []
+    for row in _open(rows):
+        error = row.get("error")
+        lines.append([_unit(row), Run(f": {WORDS[verdict(row)]}{f', {error}' if error else ''}")])
     for row in rows:
-        worse = [title for title, harm in zip(_titles(row), row.get("harms") or (), strict=False) if harm]
+        worse = _harming(row)
         if worse:
             lines.append([_unit(row), Run(f": {listed(worse)} {_HARM}; its page has the model without")])
     yield from lines[:_URGENT]
     if len(lines) > _URGENT:
         yield [Run(f"{len(lines) - _URGENT} more: see the table")]
+
+
+def _harming(row: Row) -> list[str]:
+    """Causes that make the test record of a unit worse."""
+    return [title for title, harm in zip(_titles(row), row.get("harms") or (), strict=False) if harm]
+
+
+def _next(rows: Sequence[Row]) -> Iterator[Part]:
+    """The units to look at, and the command for the first of them that has one."""
+    urgent = list(_urgent(rows))
+    yield Lines(urgent) if urgent else Text(_NOTHING)
+    wanting = _open(rows) + [row for row in rows if _harming(row)]
+    first = next((row for row in [*wanting, *rows] if row.get("command")), None)
+    if first is not None:
+        text = first["next"]
+        yield Text([Run("For "), _unit(first), Run(f": {text[:1].lower()}{text[1:]}")])
+        yield Command(first["command"])
+        if len(rows) > 1:
+            yield Text("The pages of the others have theirs.", "quiet")
 
 
 def _titles(row: Row) -> list[str]:
@@ -218,8 +279,18 @@ def _row(row: Row) -> dict[str, Any]:
                 (row.get("seconds"), ".1f", "s"),
             )
         ],
-        "said": row.get("error") or row.get("reason") or "",
+        "said": row.get("error") or _failing(row) or row.get("reason") or "",
     }
+
+
+def _failing(row: Row) -> str:
+    """Suspects by the checks that they failed; empty where there are none, or a cause is named."""
+    groups: dict[str, list[str]] = {}
+    for title, checks in zip(row.get("suspects") or (), row.get("failed_checks") or (), strict=False):
+        groups.setdefault(listed(checks), []).append(title)
+    if row.get("causes"):
+        return ""
+    return "; ".join(f"{listed(titles)} failed the check {checks}" for checks, titles in groups.items())
 
 
 def _number(value: float | None, form: str) -> tuple[str, str]:

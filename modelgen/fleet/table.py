@@ -51,6 +51,8 @@ def schema() -> Any:
             ("joints", pa.list_(whole)),
             ("joint_names", texts),
             ("titles", texts),
+            ("suspects", texts),
+            ("failed_checks", pa.list_(texts)),
             ("harms", pa.list_(pa.bool_())),
             ("delta_bic", numbers),
             ("cross_gain_percent", numbers),

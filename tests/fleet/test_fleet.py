@@ -22,7 +22,7 @@ from ruamel.yaml import YAML
 
 from modelgen.errors import InputError
 from modelgen.fleet.diagnosing import Job, crashed
-from modelgen.fleet.overview import overview
+from modelgen.fleet.overview import differences, overview
 from modelgen.fleet.run import diagnose_fleet
 from modelgen.fleet.schema import fleet_json_schema
 from modelgen.fleet.store import kept, read
@@ -141,7 +141,7 @@ def test_the_overview_stands_alone_and_links_to_the_reports(out: Path) -> None:
     text = (out / "overview.html").read_text(encoding="utf-8")
     found = Links()
     found.feed(text)
-    assert found.links == ["units/one/report.html", "units/two/report.html"]
+    assert list(dict.fromkeys(found.links)) == ["units/one/report.html", "units/two/report.html"]
     assert all((out / link).is_file() for link in found.links)
     assert found.tags.count("tr") - text.count('<th scope="row">') == 3 + len(NAMES)  # of three tables
     assert "<b>nobody" not in text
@@ -360,3 +360,55 @@ def test_words_of_a_log_are_no_markup() -> None:
     text = overview([{"unit": "u", "arm": "a", "error": "<script>alert(1)</script> & more"}])
     assert "<script>alert" not in text
     assert "&lt;script&gt;alert(1)" in text
+
+
+def rows_of(verdict: str, *units: str, **more: object) -> list[dict[str, object]]:
+    return [
+        {"unit": unit, "arm": "digger", "verdict": verdict, "reason": f"why {unit}"} | more for unit in units
+    ]
+
+
+SPRING = {"causes": ["spring"], "joints": [2], "joint_names": ["elbow"], "ambiguous_with": [[]]}
+
+
+def test_the_overview_says_first_which_units_differ_and_by_what() -> None:
+    usual = rows_of("nothing_missing", "u1", "u2", "u3", "u4", "u5")
+    lacking = rows_of("named", "u6", **SPRING)
+    assert differences([*usual, *lacking]) == [
+        "5 of 6 units lack nothing.",
+        "u6 differs: it lacks spring at elbow.",
+    ]
+    assert differences(usual) == ["All 5 units lack nothing."]
+    several = [*usual, *lacking, *rows_of("named", "u7", **SPRING), *rows_of("failed", "u8")]
+    assert differences(several)[1:] == [
+        "u6 and u7 differ: they lack spring at elbow.",
+        "u8 differs: it could not be diagnosed.",
+    ]
+    suspect = rows_of("suspected", "u9", suspects=["presliding at elbow"], failed_checks=[["form"]])
+    assert differences([*lacking, *suspect]) == [
+        "u6 lacks spring at elbow.",
+        "u9 may lack presliding at elbow.",
+    ]
+    text = overview([*usual, *lacking])
+    assert text.index("5 of 6 units lack nothing.") < text.index("<caption>")  # in words, then in bars
+
+
+def test_the_overview_has_the_next_command_and_says_nothing_twice() -> None:
+    wanting = [
+        *rows_of("failed", "f", error="f.csv: there is no such log"),
+        *rows_of("cannot_tell", "c", next="Record a motion. This computes one:", command="modelgen excite a"),
+        *rows_of("suspected", "s", suspects=["spring at elbow", "presliding at elbow"],
+                 failed_checks=[["form"], ["form"]], next="Record another:", command="modelgen excite b"),
+    ]  # fmt: skip
+    named = rows_of("named", "n", **SPRING, next="Generate the code:", command="modelgen generate n")
+    text = overview([*named, *wanting])
+    assert re.findall(r"<pre><code>(.*?)</code>", text) == [
+        "modelgen excite b"
+    ]  # of the first that wants one
+    assert "record another:" in text
+    assert "f: failed, f.csv: there is no such log" in text
+    for once in ("why c", "why n"):
+        assert text.count(once) == 1
+    assert text.count("failed the check form") == 1
+    assert re.findall(r"<pre><code>(.*?)</code>", overview(named)) == ["modelgen generate n"]
+    assert "<pre>" not in overview(rows_of("nothing_missing", "kept"))  # of a fleet before this
