@@ -17,7 +17,7 @@ from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call
-from modelgen.report.excitation import picture, report
+from modelgen.report.excitation import picture, report, worst
 from modelgen.report.words import limit_name
 
 
@@ -113,6 +113,7 @@ class Excitation(Result):
             f"{e.arm.name}: condition number {e.condition:z.4g} with columns of unit norm ({e.raw:z.3g} in "
             f"the parameters' own units), {made['base_parameters']} base parameters, "
             f"{made['samples']} samples",
+            *worst(e),
             f"starts: {len(reached)}, from {reached[0]:z.4g} to {reached[-1]:z.4g}",
             Table("limits", {"limit": "left", "used %": "right"}, rows),
         ]

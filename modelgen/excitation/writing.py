@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from modelgen.dataset import drives_of
+from modelgen.excitation.determined import determined
 from modelgen.excitation.run import Excitation
 from modelgen.numeric import Array
 
+WORST = 3  # parameters that are named
 _TRAJECTORY = ("q", "dq", "ddq", "qm", "dqm")
 
 
@@ -83,6 +85,15 @@ def data(e: Excitation) -> dict[str, Any]:
         "condition_numbers_of_starts": [_number(x) for x in reached],
         "base_parameters": len(p.names),
         "samples": len(e.t),
+        "worst_determined": [
+            {
+                "parameter": d.name,
+                "joint": d.joint + 1,
+                "effort": _number(d.size),
+                "percent_of_effort": None if d.share is None else _number(d.share),
+            }
+            for d in determined(e)[:WORST]
+        ],
         "limits_used": {name: round(x, 4) for name, x in e.usage.items()},
         "series": joints,
         "remarks": [*e.arm.notes, *p.remarks],

@@ -6,16 +6,25 @@ import numpy as np
 
 from modelgen.charts import Chart, Curve, number, over_time, sheet
 from modelgen.dataset.drives import drives_of
-from modelgen.excitation import Excitation
+from modelgen.excitation import NOISE, Excitation, determined
+from modelgen.excitation.writing import WORST
+from modelgen.functions import EVALUATED, build_model
+from modelgen.identification.objects import MATTERS, Estimate
+from modelgen.identification.summary import experiment
 from modelgen.options import ExcitationOptions, options_of, words_of
 from modelgen.report.call import WHERE, Call
 from modelgen.report.page import Command, Grid, Lines, Part, Parts, Text, block, page
-from modelgen.report.words import limit_name
+from modelgen.report.words import limit_name, listed
 
 _GOOD, _FAIR = (
     30.0,
     100.0,
 )  # condition numbers with columns of unit norm (Schroeer 1993; Gautier and Khalil 1992)
+_UNKNOWN = (
+    "with the same noise at all joints, for the description has no nominal inertials and effects that say "
+    "how large their efforts are"
+)
+_BETTER = "more --starts and --harmonics look for such a motion, wider limits make room for it."
 _ELSEWHERE = ("processes", "dask")  # options that say where the work is done
 _SIDES = (
     ("q", "position", "", "joint"),
@@ -70,6 +79,7 @@ def report(e: Excitation, stem: str, call: Call) -> str:
     rows = [(limit_name(e.arm, limit), f"{100 * share:z.1f}") for limit, share in tight]
     answers: Parts = [
         ("What was found", [Text(said)]),
+        ("What it determines worst", [Text(text) for text in worst(e)]),
         (
             "What it asks of the arm",
             [
@@ -91,6 +101,44 @@ def report(e: Excitation, stem: str, call: Call) -> str:
         ("Limits", [Grid("Limits", [("limit", "left"), ("used %", "right")], rows, long=True)]),
     ]
     return page(f"{e.arm.name}: excitation trajectory", "Excitation", answers, sections)
+
+
+def worst(e: Excitation) -> list[str]:
+    """Which parameters a period determines worst, in the unit of the inputs, and what to change."""
+    names, found = e.arm.coordinate_names, determined(e)[:WORST]
+    units = [
+        "A" if drive.driven else "N" if unit == "m" else "N m"
+        for drive, unit in zip(drives_of(e.arm), e.arm.coordinate_units, strict=True)
+    ]
+    first, noise = found[0], f"with noise of {100 * NOISE:g} % of its joint's effort in every sample"
+    if first.share is None:
+        noise = _UNKNOWN
+        said = listed(f"{d.name} ({number(d.size, 2)} of the noise, at {names[d.joint]})" for d in found)
+    else:
+        said = listed(
+            f"{d.name} ({number(d.size, 2)} {units[d.joint]}, {number(d.share or 0.0, 2)} % of the effort of "
+            f"{names[d.joint]})"
+            for d in found
+        )
+    text = f"Most uncertain, by the effort that it stands for: {said}, after one period {noise}."
+    periods = max(d.periods(MATTERS) for d in found)
+    if periods <= 1:
+        matter = "would matter in the effort" if first.share is not None else "a single sample has of noise"
+        return [text, f"Nothing has to be changed: no parameter is uncertain by what {matter}."]
+    model = build_model(e.arm, EVALUATED)
+    base = {b.name: model.standard[b.representative].name for b in model.grouping.base}
+    wanting = [
+        Estimate(d.name, 0.0, None, "", False, joint=d.joint + 1, standard=base[d.name])
+        for d in found
+        if d.periods(MATTERS) > 1
+    ]
+    limit = f"{MATTERS:g} % of the effort" if first.share is not None else "that noise"
+    advice = "; ".join(experiment(wanting, names))
+    return [
+        text,
+        f"Record {periods} periods in a row to have them within {limit}, or let the motion show them better "
+        f"({advice}): {_BETTER}",
+    ]
 
 
 def _following(e: Excitation, stem: str, call: Call) -> list[Part | str]:

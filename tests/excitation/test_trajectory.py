@@ -14,7 +14,7 @@ from modelgen.backends.numpy import NumpyFunction
 from modelgen.cli.app import app
 from modelgen.description import Limits
 from modelgen.errors import InputError
-from modelgen.excitation import Excitation, excite, random_conditions
+from modelgen.excitation import Excitation, determined, excite, random_conditions
 from modelgen.functions.nominal import nominal_base
 from modelgen.options import ExcitationOptions, box
 
@@ -207,3 +207,37 @@ def test_set_points_come_at_the_controller_s_rate(tmp_path: Path) -> None:
     assert np.diff(fast["t"]) == pytest.approx(0.01)
     assert np.diff(slow["t"]) == pytest.approx(0.1)
     assert fast["qm1"][::10] == pytest.approx(slow["qm1"], abs=1e-7)
+
+
+def test_what_is_determined_worst_is_what_scatters_most_in_the_effort() -> None:
+    """By estimates from many records with noise, with the regressor that is emitted."""
+    e = ariane4()
+    n, p = e.signals["q"].shape[1], len(e.problem.names)
+    y = evaluated(e, "regressor", e.signals["q"], e.signals["dq"], e.signals["ddq"]).reshape(-1, n, p)
+    rms = np.sqrt(np.mean((y @ np.array(list(nominal_base(model("ariane4")).values()))) ** 2, axis=0))
+    noise = 0.01 * rms
+    weighted = (y / noise[:, None]).reshape(-1, p)
+    norms = np.linalg.norm(weighted, axis=0)
+    random = np.random.default_rng(0)
+    draws = random.normal(size=(len(weighted), 400))
+    errors = np.linalg.lstsq(weighted / norms, draws, rcond=None)[0].T / norms  # (400, p)
+    moved = errors.std(axis=0) * np.sqrt(np.mean(y**2, axis=0))  # (n, p)
+    shares = 100.0 * moved / rms[:, None]
+    found = determined(e)
+    assert [x.name for x in found] != list(e.problem.names)
+    for x in found:
+        k = e.problem.names.index(x.name)
+        assert shares[x.joint, k] == pytest.approx(shares[:, k].max())
+        assert x.share == pytest.approx(shares[x.joint, k], rel=0.15)  # of 400 draws
+        assert x.size == pytest.approx(moved[x.joint, k], rel=0.15)
+    assert [x.share for x in found] == sorted((x.share for x in found), reverse=True)
+
+
+def test_so_many_periods_determine_it_better() -> None:
+    """The deviations of a mean fall with the root of how often it is measured."""
+    worst = determined(ariane4())[0]
+    assert worst.share is not None
+    periods = worst.periods(worst.share / 3.3)
+    assert worst.share / np.sqrt(periods) <= worst.share / 3.3 < worst.share / np.sqrt(periods - 1)
+    assert worst.periods(2.0 * worst.share) == 1
+    assert replace(worst, share=None, size=2.5).periods(1.0) == 7

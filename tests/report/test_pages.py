@@ -26,7 +26,7 @@ QUESTIONS = {
     "identify": "What was found, How well it predicts, What is uncertain, What to do next",
     "refine": "What was found, How well it moves, What moved, What to do next",
     "calibrate": "What was found, Described and calibrated, What is uncertain, What to do next",
-    "excite": "What was found, What it asks of the arm, What to do next",
+    "excite": "What was found, What it determines worst, What it asks of the arm, What to do next",
     "fleet": "What was found, What is missing, What it is worth, What to look at next",
 }
 ROW = {
@@ -409,3 +409,22 @@ def test_what_a_calibration_leaves_open_is_said_in_its_units(pages: Mapping[str,
     assert found.keys() == stds.keys()
     for name, half in found.items():
         assert float(half) == pytest.approx(1.96 * float(stds[name]), rel=0.06)
+
+
+def test_what_an_excitation_determines_worst_is_said_in_amperes(pages: Mapping[str, Path]) -> None:
+    """With how to mend it, on the page, in the terminal and in the JSON file alike."""
+    made = mg.excite(mg.load_arms()["ariane4"], period=20.0, starts=1, iterations=5, processes=1)
+    data = made.to_json()["worst_determined"]
+    with opened(pages["excite"]) as page:
+        said = page.locator("dl.answer > div").nth(1).inner_text()
+    found = re.findall(r"(\w+) \(([\d.]+) A, ([\d.]+) % of the effort of (\w+)\)", said)
+    assert len(found) == len(data) == 3
+    for (name, size, share, joint), x in zip(found, data, strict=True):
+        assert (name, joint) == (x["parameter"], made.arm.coordinate_names[x["joint"] - 1])
+        assert float(size) == pytest.approx(x["effort"], rel=0.06)
+        assert float(share) == pytest.approx(x["percent_of_effort"], rel=0.06)
+    (periods,) = re.findall(r"Record (\d+) periods in a row", said)
+    assert max(x["percent_of_effort"] for x in data) / float(periods) ** 0.5 <= 1.0
+    assert "larger accelerations, of" in said
+    lines = [line for line in made.shown() if isinstance(line, str)]
+    assert all(any(text == line for line in lines) for text in said.splitlines()[1:] if text)
