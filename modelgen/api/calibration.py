@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from modelgen.api.description import an_arm
+from modelgen.api.description import an_arm, joint_number
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
 from modelgen.calibration import Calibration as Found
@@ -111,7 +111,7 @@ class Calibration(Result):
 
 
 def calibrate(
-    arm: Arm, joint: int, log: Log, options: CalibrationOptions | None = None, **changes: Any
+    arm: Arm, joint: int | str, log: Log, options: CalibrationOptions | None = None, **changes: Any
 ) -> Calibration:
     """Fit a lever's geometry to motor counts and measured joint angles.
 
@@ -119,8 +119,8 @@ def calibrate(
     ----------
     arm : Arm
         An arm with a levered drive.
-    joint : int
-        The coordinate, from 1.
+    joint : int or str
+        The coordinate by its number, from 1, or by the joint's name.
     log : log
         A log with t [s], qm<joint> [motor unit] and the measured q<joint> [rad]; N samples.
     options : CalibrationOptions, optional
@@ -136,7 +136,7 @@ def calibrate(
     Raises
     ------
     InputError
-        For a joint without a lever, missing columns, and data that determine nothing.
+        For an unknown joint or one without a lever, missing columns, and data that determine nothing.
 
     References
     ----------
@@ -144,4 +144,5 @@ def calibrate(
     """
     an_arm(arm)
     (one,) = listed(log, "log")
-    return Calibration(arm, calibrate_log(arm, joint, one, changed(options or CalibrationOptions(), changes)))
+    chosen = changed(options or CalibrationOptions(), changes)
+    return Calibration(arm, calibrate_log(arm, joint_number(arm, joint, "--joint"), one, chosen))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from modelgen.description import Arm, load
 from modelgen.effects import known_effects
-from modelgen.errors import InputError
+from modelgen.errors import InputError, suggest
 from modelgen.resources import shipped_arms
 
 
@@ -38,6 +38,23 @@ def description_file(path: Path | str | None) -> Path:
         return Path(path)
     here = Path("arms.yaml")
     return here if here.exists() else shipped_arms()
+
+
+def joint_number(arm: Arm, given: int | str, option: str) -> int:
+    """Number of a coordinate, from 1, by its name or its number. option: that it was given with.
+
+    Raises InputError for a name that no moving joint has, and a number beyond them.
+    """
+    names = arm.coordinate_names
+    if isinstance(given, str) and given in names:
+        return names.index(given) + 1
+    if str(given).isdecimal() and 1 <= int(given) <= len(names):
+        return int(given)
+    near = suggest(str(given), names, listed=True)
+    raise InputError(
+        f"{option}: found joint '{given}', expected a joint of {arm.name} by its name or number, 1 to "
+        f"{len(names)}{near}"
+    )
 
 
 def an_arm(given: object) -> Arm:

@@ -8,7 +8,7 @@ from math import isnan
 from pathlib import Path
 from typing import Any
 
-from modelgen.api.description import an_arm
+from modelgen.api.description import an_arm, joint_number
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Shown, Table
 from modelgen.charts import apart, sized
@@ -21,7 +21,6 @@ from modelgen.diagnosis.result import Diagnosis as Found
 from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
 from modelgen.effects.placement import joint_meant, titled
-from modelgen.errors import InputError
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
@@ -218,7 +217,7 @@ def diagnosed(
     progress: Progress = silent,
 ) -> Diagnosis:
     """The same of lists of logs. Raises InputError."""
-    wanted = [_place(text) for text in options.effects]
+    wanted = [_place(arm, text) for text in options.effects]
     thresholds = USUAL.with_values(options.thresholds)
     progress("reading", 0, None)
     found = diagnose_records(
@@ -235,12 +234,10 @@ def diagnosed(
     return Diagnosis(found, given(arm, train, test, options))
 
 
-def _place(text: str) -> tuple[str, int | None]:
-    """Effect and joint of NAME or NAME:JOINT. Raises InputError."""
+def _place(arm: Arm, text: str) -> tuple[str, int | None]:
+    """Effect and joint of NAME or NAME:JOINT, the joint by its name or number. Raises InputError."""
     name, colon, joint = text.partition(":")
-    if colon and not joint.isdecimal():
-        raise InputError(f"--effect {text}: found '{joint}', expected a joint from 1, as in {name}:2")
-    return name, int(joint) if colon else None
+    return name, joint_number(arm, joint, f"--effect {text}") if colon else None
 
 
 def _row(arm: Arm, c: NamedCause) -> list[str]:

@@ -78,7 +78,7 @@ def lever_of(arm: Arm, joint: int) -> Lever:
     own = arm.joints[arm.coordinates[joint - 1]]
     actuator = own.drive.actuator
     if actuator is None:
-        levered = [str(n) for n, i in enumerate(arm.coordinates, 1) if arm.joints[i].drive.actuator]
+        levered = [arm.joints[i].name for i in arm.coordinates if arm.joints[i].drive.actuator]
         available = f"levered: {', '.join(levered)}" if levered else "the arm has no levered drive"
         raise InputError(f"--joint: joint {joint} ({own.name}) has no lever to calibrate ({available})")
     values = (actuator.l1, actuator.l2, *actuator.length, actuator.offset)

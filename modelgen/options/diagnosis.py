@@ -24,7 +24,7 @@ class DiagnosisOptions:
         "Ask for this effect alone; repeatable.",
         "NAME[:JOINT]",
         ["--effect"],
-        doc="Effects to ask for alone, NAME or NAME:JOINT with a joint from 1. Default: the catalogue.",
+        doc="Effects to ask for alone, NAME or NAME:JOINT, by name or number. Default: the catalogue.",
     )
     experiment: bool = option(
         True,

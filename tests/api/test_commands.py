@@ -259,3 +259,22 @@ def test_logs_in_memory_give_the_answer_of_their_files(arm: mg.Arm) -> None:
     assert simulated.to_json()["joints"] == mg.simulate(arm, "a.csv").to_json()["joints"]
     refined = mg.refine(arm, mg.read_log("a.csv@0:4", arm), free=["MX1"])
     assert refined.to_json() == mg.refine(arm, "a.csv@0:4", free=["MX1"]).to_json()
+
+
+def test_a_joint_is_given_by_its_name_or_its_number(arm: mg.Arm, bench: Path, tmp_path: Path) -> None:
+    """The same result; a name that no joint has gets the names, and exit status 2."""
+    line = ["calibrate", "lever.csv", "--arm", "boom", "--json", "--out", tmp_path / "lever", "--joint"]
+    by_number, by_name = (called(*line, joint, cwd=bench) for joint in ("1", "lift"))
+    assert (by_name.returncode, by_name.stdout) == (0, by_number.stdout)
+    assert mg.calibrate(arm, "lift", "lever.csv").to_json() == json.loads(by_name.stdout)
+    logs = ["--arm", "boom", "--train", "a.csv", "--train", "b.csv", "--test", "c.csv", "--no-experiment"]
+    asked = ["diagnose", *logs, "--jobs", "1", "--json", "--out", tmp_path / "found", "--effect"]
+    answers = [called(*asked, f"spring:{joint}", cwd=bench) for joint in ("1", "lift")]
+    assert answers[0].returncode == 0
+    assert answers[0].stdout == answers[1].stdout
+    for wrong in ("lit", "2", "0"):
+        for command in ([*line, wrong], [*asked, f"spring:{wrong}"]):
+            done = called(*command, cwd=bench)
+            assert done.returncode == 2
+            assert f"found joint '{wrong}', expected a joint of boom" in done.stderr
+            assert "lift" in done.stderr

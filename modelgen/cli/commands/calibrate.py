@@ -21,7 +21,9 @@ ArmsAndLog = Annotated[
         show_default=False,
     ),
 ]
-LeverJoint = Annotated[int, typer.Option(metavar="J", help="The joint, counted from 1.", show_default=False)]
+LeverJoint = Annotated[
+    str, typer.Option(metavar="JOINT", help="The joint by its name or number, from 1.", show_default=False)
+]
 
 
 @guarded
