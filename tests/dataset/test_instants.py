@@ -42,6 +42,28 @@ def test_a_coarse_encoder_that_turns_slowly_does_not_repeat_readings(tmp_path: P
     assert len(record.t) == len(t)
 
 
+@pytest.mark.parametrize(("every", "coarse"), [(20, 0.004), (6, 0.004), (20 / 3, 0.002)])
+def test_coarse_readings_that_come_again_at_a_refresh_repeat(
+    every: float, coarse: float, tmp_path: Path
+) -> None:
+    rate = 500.0
+    t = np.arange(round(20 * rate)) / rate
+    fresh = np.floor(np.arange(len(t)) / every + 1e-9) * every / rate
+    q = 0.2 * np.sin(2.1 * fresh) + 0.05 * np.sin(5.3 * fresh)
+    effort = 2.0 * np.cos(2.1 * fresh) + 0.7 * np.sin(3.7 * fresh)
+    table = {"t": t, "q1": coarse * np.rint(q / coarse), "tau1": 0.25 * np.rint(effort / 0.25)}
+    record = read(write_csv(tmp_path / "a.csv", table), AXIS)
+    assert record.repeats == pytest.approx(every, rel=2e-3)
+    assert 1 / record.step == pytest.approx(rate / every, rel=1e-3)
+
+
+def test_slow_coarse_joints_at_constant_speeds_do_not_repeat_readings(tmp_path: Path) -> None:
+    t = times(20.0, 200.0)
+    ramp = np.abs((t / 5) % 2 - 1)
+    table = {"t": t, "q1": 0.002 * np.rint(0.25 * ramp / 0.002), "tau1": 0.25 * np.rint(0.25 * ramp / 0.004)}
+    assert read(write_csv(tmp_path / "a.csv", table), AXIS).repeats == 1.0
+
+
 def test_stamps_coarser_than_the_samples(tmp_path: Path) -> None:
     t = times(8.0, 400.0)
     table = columns(t) | {"t": np.floor(t * 100) / 100}  # hundredths of a second, four samples each

@@ -10,6 +10,9 @@ from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.numeric import Array
 
 
+LEAST_UNEVEN = 4.0  # rows per refresh that is no whole number of them, below which changes anywhere look like it
+
+
 @dataclass(frozen=True)
 class Refresh:
     """every: rows from one new reading to the next. first: rows (M,) at which a new reading stands."""
@@ -34,13 +37,18 @@ def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | N
     """The rows of columns (N, k) at which new readings stand; None where readings do not repeat.
 
     They do where all columns change together, at instants a refresh apart. A coarse encoder that turns slowly
-    is distinguished from that: it changes by one step of its resolution, and not after equal times.
+    is distinguished from that: it changes by one step of its resolution, and not after equal times. Coarse
+    readings often come again at a refresh; what shows it then is that all changes of several columns lie a
+    whole number of refreshes apart.
     """
-    changed = np.any(np.diff(columns, axis=0) != 0.0, axis=1)
-    rows = np.flatnonzero(changed) + 1
+    changes = np.diff(columns, axis=0) != 0.0
+    rows = np.flatnonzero(changes.any(axis=1)) + 1
     if len(rows) < limits.min_refreshes or len(rows) * limits.min_repeats > len(columns):
         return None
     waits = np.diff(rows)
+    common = _common(rows)
+    if common >= limits.min_repeats and sum(_uneven(x, limits) for x in columns.T) > 1:
+        return _refreshed(rows, common)
     every = float(np.median(waits))
     if every < limits.min_repeats:
         return None
@@ -55,7 +63,28 @@ def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | N
         return None
     if not any(_moves(column[rows], limits) for column in columns.T):
         return None
-    every = float(np.mean(waits[near]))
+    return _refreshed(rows, float(np.mean(waits[near])))
+
+
+def _common(rows: np.ndarray) -> float:
+    """The distance that all distances of rows (M,) are multiples of, to a row where it is no whole number; 0
+    where there is none above 1.
+    """
+    waits = np.diff(rows)
+    whole = int(np.gcd.reduce(waits))
+    every = float(np.mean(waits[waits <= 1.5 * waits.min()]))
+    if whole > 1 or every < LEAST_UNEVEN:
+        return float(whole) if whole > 1 else 0.0
+    for _ in range(2):
+        count = np.append(0, np.cumsum(np.rint(waits / every)))
+        every, first = np.polyfit(count, rows, 1)
+    apart = rows - first - every * count
+    return float(every) if np.ptp(apart) < 1.5 else 0.0
+
+
+def _refreshed(rows: np.ndarray, every: float) -> Refresh:
+    """The rows of new readings, of which those (M,) that show a change are known."""
+    waits = np.diff(rows)
     counts = np.maximum(np.rint(waits / every), 1).astype(int)
     inner = [rows[:1]]
     for begin, wait, count in zip(rows[:-1], waits, counts, strict=True):
@@ -65,6 +94,21 @@ def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | N
     if abs(first[0] - every) <= max(1.01, 0.1 * every):
         first = np.concatenate([[0], first])
     return Refresh(every, first)
+
+
+def _uneven(column: Array, limits: DatasetThresholds) -> bool:
+    """Whether a column (N,) changes as no slow encoder at a constant speed does: by other than single steps,
+    or after unlike times.
+    """
+    steps = np.diff(column)
+    rows = np.flatnonzero(steps)
+    if len(rows) < limits.min_refreshes // 2:
+        return False
+    size, waits = np.abs(steps[rows]), np.diff(rows)
+    usual = np.unique(waits, return_counts=True)[1].max() / len(waits)
+    return bool(np.mean(size > 1.5 * size.min()) > 1.0 - limits.single_refreshes) or bool(
+        usual < limits.single_refreshes
+    )
 
 
 def _moves(readings: Array, limits: DatasetThresholds) -> bool:
