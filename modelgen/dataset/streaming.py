@@ -19,9 +19,12 @@ from modelgen.dataset.processing.timing import Axis, Survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.read import record_of
+from modelgen.dataset.reading.repeats import refresh_of
+from modelgen.dataset.reading.slow_positions import refreshes
 from modelgen.dataset.reading.sources import open_source
 from modelgen.dataset.thresholds import USUAL
 from modelgen.description import Arm
+from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 # What the filters' memory may hold of samples outside of a block. Second derivatives magnify what is
@@ -141,7 +144,22 @@ class Stream:
         """The beginning of the log, for what is chosen from its content."""
         blocks = _Content(self).checked(self._source.blocks())
         table, t = _Rows(blocks, self.axis).table(0, min(self.samples, LONGEST_SAMPLE))
+        self._check_repeats(table)
         return replace(record_of(self._source, self.arm, table, self.axis, t)[0], name=self.spec)
+
+    def _check_repeats(self, table: Array) -> None:
+        """Readings must not repeat: rows are used as they are. Raises InputError."""
+        source = self._source
+        positions = [source.wanted.index(name) for name in source.signals.position]
+        whole = refresh_of(table[:, 1:], source.thresholds)
+        found = [*refreshes(table, positions, source.thresholds).values(), *([whole] if whole else [])]
+        if not found:
+            return
+        which = "every reading" if whole else "a reading of the positions"
+        raise InputError(
+            f"{self.spec}: {which} stands there {max(x.every for x in found):.4g} times, which is not mended "
+            "in logs that are read block by block; give a part of it, FILE@t0:t1, or write new readings alone"
+        )
 
 
 class _Content:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from dataset_support import AXIS, DRIVEN, columns, motion, times, write_csv
 
-from modelgen.dataset import last_quarter_out, prepare, read, split
+from modelgen.dataset import Stream, last_quarter_out, prepare, read, split
+from modelgen.dataset.inspection import inspect
 from modelgen.errors import InputError
 
 RNG = np.random.default_rng(11)
@@ -55,6 +56,37 @@ def test_coarse_readings_that_come_again_at_a_refresh_repeat(
     record = read(write_csv(tmp_path / "a.csv", table), AXIS)
     assert record.repeats == pytest.approx(every, rel=2e-3)
     assert 1 / record.step == pytest.approx(rate / every, rel=1e-3)
+
+
+@pytest.mark.parametrize("slow", [("q1", "qm2"), ("q1",)])
+def test_positions_that_are_refreshed_less_often_than_efforts(slow: tuple[str, ...], tmp_path: Path) -> None:
+    t = times(12.0, 500.0)
+    fresh = t[np.arange(len(t)) // 10 * 10]
+    noise = 0.01 * np.random.default_rng(3).normal(size=len(t))
+    fast = columns(t)
+    table = fast | {name: columns(fresh)[name] for name in slow} | {"i1": fast["i1"] + noise}
+    log = write_csv(tmp_path / "a.csv", table)
+    record = read(log, DRIVEN)
+    assert 1 / record.step == pytest.approx(50.0, rel=1e-4)
+    assert record.q == pytest.approx(motion(record.t)[0], abs=1e-6)
+    assert record.input is not None
+    # the effort until the next position, on average half a period after this one
+    later = 2 * motion(record.t + 0.01 - 0.001)[1][:, 0]
+    assert record.input[1:-1, 0] == pytest.approx(later[1:-1], abs=0.02)
+    assert record.hold == pytest.approx(0.01)
+    assert f"{', '.join(slow)} stand" in record.remarks[0]
+    assert any("stands there 10 times while others change" in said for said in inspect(log).remarks)
+    with pytest.raises(InputError, match="a reading of the positions stands there 10 times"):
+        Stream(log, DRIVEN).settings  # noqa: B018
+
+
+def test_rows_that_stand_there_twice_count_once(tmp_path: Path) -> None:
+    table = columns(times(8.0, 200.0))
+    again = np.sort(np.append(np.arange(1600), np.arange(0, 1600, 10)))
+    record = read(write_csv(tmp_path / "a.csv", {k: x[again] for k, x in table.items()}), DRIVEN)
+    assert record.t == pytest.approx(table["t"], abs=1e-9)
+    assert record.q[:, 0].tolist() == table["q1"].tolist()
+    assert record.remarks == ("160 rows stand there again, stamp and readings: each counts once",)
 
 
 def test_slow_coarse_joints_at_constant_speeds_do_not_repeat_readings(tmp_path: Path) -> None:

@@ -24,6 +24,7 @@ from modelgen.dataset.reading.plausible import doubtful_unit
 from modelgen.dataset.reading.read import read_with_stamps
 from modelgen.dataset.reading.renamed import in_small_letters
 from modelgen.dataset.reading.repeats import refresh_of
+from modelgen.dataset.reading.slow_positions import refreshes
 from modelgen.dataset.reading.sources import BLOCK, opened
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.thresholds import USUAL
@@ -123,6 +124,8 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
             f"every reading stands there {refresh.every:.4g} times: the source is slower than the log"
         )
     moving = {name: x for name, x in readings.items() if name != stamps and kind_of(name) == "position"}
+    if refresh is None and measured:
+        remarks += _slower(moving)
     named = [values for name, values in readings.items() if _POSITION.fullmatch(name)]
     positions = named or [x for x in moving.values() if np.ptp(x) > 0.0]
     found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in readings.items()], positions)
@@ -134,6 +137,16 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
         finite = [(name, x) for name, x in moving.items() if np.isfinite(x).all()]
         remarks += [said for name, x in finite if (said := jump_of((name,), t, x[:, None], USUAL))]
     return replace(found, without_numbers=rest, remarks=(*remarks, *([doubt] if doubt else [])))
+
+
+def _slower(columns: Mapping[str, Array]) -> list[str]:
+    """Remarks about positions that are refreshed less often than other readings."""
+    finite = {name: x for name, x in columns.items() if np.isfinite(x).all()}
+    if not finite:
+        return []
+    found = refreshes(np.stack(list(finite.values()), axis=1), range(len(finite)))
+    names = list(finite)
+    return [f"{names[k]} stands there {x.every:.4g} times while others change" for k, x in found.items()]
 
 
 def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:

@@ -19,7 +19,8 @@ from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.lone import without_lone
 from modelgen.dataset.reading.plausible import check_efforts, check_unsigned, doubtful_unit
-from modelgen.dataset.reading.repeats import refresh_of
+from modelgen.dataset.reading.repeats import refresh_of, without_doubled
+from modelgen.dataset.reading.slow_positions import slow_positions
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
@@ -67,11 +68,20 @@ def read_with_stamps(
     checks.check_length(spec, len(table), thresholds.min_samples)
     checks.check_finite(spec, table[:, 0], source.wanted, table)
     stamps = table[:, 0]
-    table, found, repeats = _true_instants(source, table)
     positions, efforts = (
         {k: name for k, name in enumerate(source.wanted) if name in part}
         for part in (source.signals.position, source.signals.effort)
     )
+    table, doubled = without_doubled(table)
+    table, found, repeats = _new_readings(source, table)
+    together = repeats > 1.0 and not source.stated and any(source.signals.effort)
+    slow = slow_positions(source.wanted, table, list(positions), list(efforts), source.hold, thresholds)
+    if slow is not None and np.all(np.diff(table[:, 0]) > 0.0):
+        together, repeats, source = False, repeats * slow.every, replace(source, hold=slow.hold)
+        found.append(_slower(slow.names, table[:, 0], slow.every))
+        table = slow.table
+    table, stamped = _true_stamps(source, table)
+    found = [*doubled, *found, *stamped]
     table, lone = without_lone(spec, table, positions, efforts, thresholds)
     found += lone
     checks.check_length(spec, len(table), thresholds.min_samples)
@@ -79,7 +89,6 @@ def read_with_stamps(
     if axis.method != "none" and source.rate is None and repeats == 1.0:
         rate = _rate_of_file(source)
         axis = survey(Survey(spec, rate, source.gap, thresholds), table[:, 0], BLOCK)
-    together = repeats > 1.0 and not source.stated and any(source.signals.effort)
     if together:
         # Position and effort that are new together were read together, which no controller's output is.
         source = replace(source, hold="instant")
@@ -116,27 +125,40 @@ def _rate_of_file(source: Source) -> float | None:
     return 1.0 / float(np.median(steps)) if len(steps) else None
 
 
-def _true_instants(source: Source, table: Array) -> tuple[Array, list[str], float]:
-    """The rows of new readings, at instants that the positions agree with; remarks; rows per reading."""
-    remarks, repeats = [], 1.0
+def _new_readings(source: Source, table: Array) -> tuple[Array, list[str], float]:
+    """The rows of new readings, at the instants at which they are new; remarks; rows per reading."""
     t = table[:, 0]
     found = refresh_of(table[:, 1:], source.thresholds)
-    if found is not None and np.all(np.diff(t) > 0.0):
-        rate = (len(t) - 1) / (t[-1] - t[0])
-        table, repeats = table[found.first].copy(), found.every
-        table[:, 0] = found.instants(t)
-        remarks.append(
-            f"every reading stands there {repeats:.4g} times: the log has {rate:.6g} Hz, its source "
-            f"{rate / repeats:.6g} Hz; new readings alone are used, at their instants"
-        )
-    if source.rate is None and len(table) > 1:
-        names = source.wanted
-        positions = table[:, [names.index(name) for name in source.signals.position]]
-        even, remark = true_stamps(table[:, 0], positions, source.thresholds)
-        if remark is not None:
-            table = np.column_stack([even, table[:, 1:]])
-            remarks.append(remark)
-    return table, remarks, repeats
+    if found is None or not np.all(np.diff(t) > 0.0):
+        return table, [], 1.0
+    rate = (len(t) - 1) / (t[-1] - t[0])
+    table = table[found.first].copy()
+    table[:, 0] = found.instants(t)
+    remark = (
+        f"every reading stands there {found.every:.4g} times: the log has {rate:.6g} Hz, its source "
+        f"{rate / found.every:.6g} Hz; new readings alone are used, at their instants"
+    )
+    return table, [remark], found.every
+
+
+def _slower(names: Sequence[str], t: Array, every: float) -> str:
+    """The remark about positions that are refreshed less often than the efforts."""
+    rate = (len(t) - 1) / (t[-1] - t[0])
+    which, stand = ", ".join(names), "stand" if len(names) > 1 else "stands"
+    return (
+        f"{which} {stand} there {every:.4g} times while others change: the log has {rate:.6g} Hz, its "
+        f"positions {rate / every:.6g} Hz; rows of new positions are used, with the efforts until the next"
+    )
+
+
+def _true_stamps(source: Source, table: Array) -> tuple[Array, list[str]]:
+    """The table at instants that the positions agree with, and remarks."""
+    if source.rate is not None or len(table) < 2:
+        return table, []
+    names = source.wanted
+    positions = table[:, [names.index(name) for name in source.signals.position]]
+    even, remark = true_stamps(table[:, 0], positions, source.thresholds)
+    return (table, []) if remark is None else (np.column_stack([even, table[:, 1:]]), [remark])
 
 
 def _of_arm(record: Record, arm: Arm) -> Record:

@@ -9,8 +9,7 @@ import numpy as np
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.numeric import Array
 
-
-LEAST_UNEVEN = 4.0  # rows per refresh that is no whole number of them, below which changes anywhere look like it
+LEAST_UNEVEN = 4.0  # rows per refresh, below which changes anywhere are within a row of whole ones
 
 
 @dataclass(frozen=True)
@@ -109,6 +108,18 @@ def _uneven(column: Array, limits: DatasetThresholds) -> bool:
     return bool(np.mean(size > 1.5 * size.min()) > 1.0 - limits.single_refreshes) or bool(
         usual < limits.single_refreshes
     )
+
+
+def without_doubled(table: Array) -> tuple[Array, list[str]]:
+    """A table (N, k), the time first, without rows that stand there twice with one stamp; remarks.
+
+    Where rows of one stamp differ, the stamps are coarse, and none is left out.
+    """
+    again = np.append(False, np.diff(table[:, 0]) == 0.0)
+    same = np.append(False, (np.diff(table, axis=0) == 0.0).all(axis=1))
+    if not again.any() or not np.array_equal(again, same):
+        return table, []
+    return table[~same], [f"{int(same.sum())} rows stand there again, stamp and readings: each counts once"]
 
 
 def _moves(readings: Array, limits: DatasetThresholds) -> bool:
