@@ -19,7 +19,6 @@ from modelgen.numeric import Array
 
 BETTER = 0.33  # of what is unexplained, that another reading may leave to be believed
 HARDLY = 0.5  # of the changes of a joint's efforts, unexplained, that is asked about
-SHIFTED = 0.7  # of what is left, that a constant effort may leave to be asked about
 APART = 3.0  # times what fits to each record leave, from which on one to all is asked about
 NOTABLE = 2.0  # % of the effort, likewise
 ROWS = 100  # per parameter, of a record that is asked
@@ -76,15 +75,14 @@ def _fit(p: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:
 
 
 def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[Doubt]:
-    """Questions about joints of whose efforts' changes hardly anything is explained that is not noise, and
-    those of which a constant explains much of the rest.
+    """Questions about joints of whose efforts' changes hardly anything is explained that is not noise.
 
     fits: of each record. What is little in one record beside others is asked of all of them.
     """
     if not fits:
         return []
-    parts = ((fit.error, fit.changes, fit.noise, fit.beside) for fit in fits)
-    error, changes, noise, beside = (
+    parts = ((fit.error, fit.changes, fit.noise) for fit in fits)
+    error, changes, noise = (
         np.sqrt(np.mean([x**2 for x in part], axis=0)) for part in zip(*parts, strict=True)
     )
     first, questions = train[0].record, list[Doubt]()
@@ -93,15 +91,6 @@ def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[Doub
         share = error[j] / max(changes[j], 1e-300)
         if not changes[j] or error[j] <= FAR * noise[j]:
             continue
-        constant = float(np.mean([fit.constant[j] for fit in fits]))
-        if beside[j] < SHIFTED * error[j] and abs(constant) > FAR * beside[j]:
-            constant *= 1.0 if first.gain is None else float(np.sqrt(np.mean(first.gain[:, j] ** 2)))
-            text = (
-                f"A constant effort of {constant:.3g} {first.effort_unit[j]} at {name} explains "
-                f"{100 * (1 - (beside[j] / error[j]) ** 2):.0f} % of what the model leaves there: are the "
-                f"readings zero without an effort, and is friction the same either way{DIAGNOSING}?"
-            )
-            questions.append(Doubt(text, [name]))
         if share <= HARDLY:
             continue
         logged = [x[p.awake[:, j], j] for p in train if (x := p.record.logged_effort) is not None]

@@ -15,7 +15,6 @@ from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
-from modelgen.regression.least_squares import Regression
 
 POOR = 0.15  # of the efforts of a joint, unexplained, from which on another reading is asked for
 CHANGES = 0.25  # of their changes, likewise
@@ -26,15 +25,12 @@ FAR = 3.0  # times what noise is through the filter, that is none
 class Unexplained:
     """share: RMS left of the efforts over theirs (n,), 0 for joints at rest. error: what is left, changes:
     the deviation of the efforts from their mean, noise: that of white noise, (n,) each, after the filter.
-    constant: effort of each joint that explains most of what is left, beside: what it leaves, (n,) each.
     """
 
     share: Array
     error: Array
     changes: Array
     noise: Array
-    constant: Array
-    beside: Array
 
     @property
     def poor(self) -> NDArray[np.bool_]:
@@ -52,28 +48,17 @@ def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluat
         if sum(int(m.sum()) for m in regression.moving) < 3 * p:
             return None
         theta = regression.least_squares()
-        freer = _with_constants(regression, prepared)
-        more = freer.least_squares()
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return None
     effort, moving = regression.effort[0], regression.moving[0]
     rate, cutoff = 1.0 / record.step, like.settings.cutoff
-    left, beside = (_size(x.residuals(y)[0], moving) for x, y in ((regression, theta), (freer, more)))
+    left = _size(regression.residuals(theta)[0], moving)
     shares = left / np.maximum(_size(effort, moving), 1e-300)
     changes = np.array([np.std(x[m]) if m.any() else 0.0 for x, m in zip(effort.T, moving.T, strict=True)])
     assert record.input is not None
     band = min(1.0, 2.0 * cutoff / rate) if cutoff else 1.0
     noise = [math.sqrt(band) * white_noise(x, rate) for x in record.input.T]
-    return Unexplained(shares, left, changes, np.array(noise), more[p:], beside)
-
-
-def _with_constants(regression: Regression, p: Prepared) -> Regression:
-    """The regression of a record with a constant effort of each joint beside the model."""
-    weights, n = p.parallel(p.weights), p.n
-    more = np.zeros((len(weights), n, n))
-    more[:, range(n), range(n)] = weights
-    columns = [np.concatenate([regression.columns[0], more], axis=2)]
-    return Regression(regression.effort, columns, regression.moving)
+    return Unexplained(shares, left, changes, np.array(noise))
 
 
 def _size(values: Array, moving: NDArray[np.bool_]) -> Array:

@@ -35,6 +35,7 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.options import prepared as reduced
+from modelgen.identification.channels import effort_questions
 from modelgen.identification.cut_off_streamed import streamed_limits
 from modelgen.identification.doubts import check_sign, doubts, worse_on_test
 from modelgen.identification.effort_instant import at_instants, effort_instant
@@ -204,7 +205,8 @@ def _whole(
     found = identified(fitted, held)
     if options == Options():
         apart = [] if payloads else disagreeing(fitted, asked_of.alone, found.solution.sigma)
-        found = replace(found, doubts=(*asked_of.questions, *apart, *_doubts(fitted, found, evaluator)))
+        about = _doubts(fitted, found, evaluator, payloads=bool(payloads))
+        found = replace(found, doubts=(*asked_of.questions, *apart, *about))
     if instant is not None:
         found = replace(found, doubts=(*found.doubts, *instant.questions()))
     found = replace(found, doubts=(*found.doubts, *worse_on_test(found, fitted)))
@@ -237,13 +239,16 @@ def _misread(
     return asked
 
 
-def _doubts(train: Sequence[Prepared], found: Identification, evaluator: Evaluator) -> tuple[str, ...]:
+def _doubts(
+    train: Sequence[Prepared], found: Identification, evaluator: Evaluator, *, payloads: bool = False
+) -> tuple[str, ...]:
     """Questions about what was found. Raises InputError where the efforts are counted the other way."""
     s = found.solution  # as the data have it: consistent parameters hide what is impossible
     plain = [replace(e, value=float(x)) for e, x in zip(found.estimates, s.theta, strict=True)]
     joints = sorted({e.joint for e in driving(plain)})
     check_sign(train, found.model, evaluator, s.theta, s.covariance, s.determined, joints)
-    return tuple(doubts(train, found.model, evaluator, s.theta, s.covariance, s.determined))
+    asked = [] if payloads else effort_questions(train, found.model, evaluator)
+    return (*asked, *doubts(train, found.model, evaluator, s.theta, s.covariance, s.determined))
 
 
 def _streamed(

@@ -167,15 +167,32 @@ def test_a_test_record_of_another_arm_is_asked_about(arm: mg.Arm, logs: list[Tab
     assert any("The error at shoulder is 200 % of its effort on the test records" in x for x in doubts)
 
 
-def test_efforts_whose_zero_is_off_are_asked_about(arm: mg.Arm, logs: list[Table]) -> None:
+@pytest.mark.parametrize("zero", [0.4, 0.02, -0.02])
+def test_efforts_whose_zero_is_off_are_asked_about(zero: float, arm: mg.Arm, logs: list[Table]) -> None:
     """What a constant explains of the rest is named with its size, in the unit of the log."""
-    shifted = [x | {"i2": x["i2"] + 0.4} for x in logs]
+    shifted = [x | {"i2": x["i2"] + zero} for x in logs]
     doubts = mg.identify(arm, *shifted).to_json()["doubts"]
     (said,) = (x for x in doubts if x.startswith("A constant effort of"))
     size, unit = said.split()[4:6]
-    assert float(size) == pytest.approx(0.4, rel=0.05)
+    assert float(size) == pytest.approx(zero, rel=0.05)
     assert unit == "A"
     assert "at elbow explains" in said
+
+
+@pytest.mark.parametrize("sharpness", [1.0, 4.0, np.inf])
+def test_efforts_that_fall_short_are_asked_about(sharpness: float, arm: mg.Arm, logs: list[Table]) -> None:
+    """A limit that is soft, or that lies before the noise, shows in no reading that stands there."""
+    random = np.random.default_rng(6)
+
+    def short(x: np.ndarray) -> np.ndarray:
+        top = 0.8 * np.abs(x).max()
+        if np.isinf(sharpness):
+            return np.clip(x, -top, top) + 0.002 * random.normal(size=len(x))
+        return x / (1.0 + np.abs(x / top) ** (2 * sharpness)) ** (0.5 / sharpness)
+
+    doubts = mg.identify(arm, *[x | {"i1": short(x["i1"])} for x in logs]).to_json()["doubts"]
+    assert any(x.startswith("The efforts of shoulder fall short of the model's") for x in doubts)
+    assert not any("elbow" in x for x in doubts)
 
 
 def test_an_effort_of_which_nothing_is_explained_is_asked_about(arm: mg.Arm, logs: list[Table]) -> None:
@@ -358,10 +375,11 @@ def test_a_diagnosis_names_nothing_for_what_is_cut_off(arm: mg.Arm, logs: list[T
     assert found.to_json()["causes"] == []
 
 
-@pytest.mark.parametrize("step", [0.01, 0.25])
+@pytest.mark.parametrize("step", [0.01, 0.25, 1.0])
 def test_coarse_currents_are_not_cut_off(step: float, arm: mg.Arm, logs: list[Table]) -> None:
     coarse = [{k: step * np.rint(x / step) if k[0] == "i" else x for k, x in t.items()} for t in logs]
     found = mg.identify(arm, *coarse)
+    assert not any("constant" in doubt or "fall short" in doubt for doubt in found.to_json()["doubts"])
     assert not any("cut off" in remark for remark in found.to_json()["log"]["remarks"])
     truth = model_of(arm).nominal
     hits = [abs(e.value - truth[name]) < 3 * e.std for name, e in found.parameters.items()]
