@@ -21,6 +21,7 @@ ROWS = 100  # per parameter, of a record that is asked
 POWER = 5  # of the model's effort over its largest: what a channel lacks that is cut off, sharply or softly
 COARSE = 2.0  # deviations of the effort, from which on its rounding is no noise beside it (Widrow 1956)
 ZERO, SHORT = 0.1, 0.5  # of the squares that are left, which a constant and a curve explain at least
+ABOVE_ALL = 0.5  # the same of a constant, in a diagnosis, which names effects
 WRONG = "Parameters may be wrong by more than their deviations say."
 
 

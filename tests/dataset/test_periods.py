@@ -48,3 +48,10 @@ def test_rows_of_two_periods_have_the_same_phase(period: float) -> None:
     assert np.abs(kept[rows:] - kept[:-rows] - period).max() <= 1.0
     assert abs(np.mean(kept[rows:] - kept[:-rows]) - period) < 0.1
     assert chosen.factor / 2 < chosen.stride <= chosen.factor
+
+
+@pytest.mark.parametrize("count", [62, 120, 229, 361])
+def test_a_motion_slower_than_the_record_has_no_period(count: int) -> None:
+    t = np.arange(count) / 60.0
+    q = 0.7 * np.cos(0.8 * t)[:, None]
+    assert period_of(Record("run", t, q, q), None) is None

@@ -140,6 +140,10 @@ ONES = np.linspace(0, 1, len(T))
         (setting("t", slice(800, None), np.nan), "found nan in the column t at sample 801"),
         (setting("i2", 10, np.nan), r"found nan in the column i2 at t = 0\.05 s, expected a finite number"),
         (setting("q1", 10, np.inf), "found inf in the column q1"),
+        (
+            setting("q1", slice(None), 5e299),
+            r"found 5e\+299 in the column q1 .* expected a finite number below",
+        ),
         (setting("q1", slice(None), 0.5), r"the position q1 is 0\.5 in all 1600 samples.*locked: \{hip: "),
         (setting("i2", slice(None), 0.0), "the effort i2 is 0 in all 1600 samples.*leave the effort columns"),
         (

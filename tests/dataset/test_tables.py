@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from modelgen.dataset import check_separate, read, read_columns
+from modelgen.dataset.inspection import skeleton
 from modelgen.description import loads
 from modelgen.errors import InputError
 from modelgen.extras import DASK, LOGS
@@ -70,6 +71,7 @@ CERTAIN = {
         "Instrument,XY 100\nRate,120\nDate,2024-05-01\n\n" + table("t,q1,i1", ROWS),
         "3 lines before the header are passed over",
     ),
+    "names with units": (table("t [s],q1 (rad),i1 [A]", ROWS), "names of columns are read without the units"),
     "names in capitals": (table("T,Q1,I1", ROWS), "small letters"),
     "a column without a name": (
         table(",t,q1,i1", [(str(k), *row) for k, row in enumerate(ROWS)]),
@@ -97,6 +99,41 @@ def test_texts_of_every_encoding(encoding: str, tmp_path: Path) -> None:
     rows = [(*row, "x") for row in ROWS]
     record = read(file_of(tmp_path, table("t,q1,i1,Öl °C", rows), encoding), ARM)
     assert record.input[:, 0] == pytest.approx(EFFORT, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("header", "unit"),
+    [("t [ms],q1 [rad],i1 [A]", "ms"), ("t [s],q1 [deg],i1 [A]", "deg"), ("T,Q1,I1\ns,rad,mA", "mA")],
+)
+def test_another_unit_in_or_below_the_names_is_refused(header: str, unit: str, tmp_path: Path) -> None:
+    file = file_of(tmp_path, table(header, ROWS))
+    with pytest.raises(InputError, match=f"the file says that .* is in {unit}, expected"):
+        read(file, ARM)
+    written = skeleton(file, ARM)
+    assert f"unit: {unit}" in written
+    mapping = tmp_path / "mapping.yaml"
+    mapping.write_text(written, encoding="utf-8")
+    if unit != "ms":
+        assert len(read(file, ARM, mapping).t) == len(T)
+
+
+def test_units_that_a_parquet_file_says_count(tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    said = {"t": "s", "q1": "deg", "i1": "A"}
+    schema = pyarrow.schema(
+        [pyarrow.field(k, pyarrow.float64(), metadata={"unit": u}) for k, u in said.items()]
+    )
+    file = str(tmp_path / "a.parquet")
+    parquet.write_table(pyarrow.table({"t": T, "q1": Q, "i1": EFFORT}, schema=schema), file)
+    with pytest.raises(InputError, match="the file says that q1 is in deg, expected rad"):
+        read(file, ARM)
+
+
+def test_a_time_of_day_is_refused_with_what_is_read(tmp_path: Path) -> None:
+    rows = [(f"12:00:{k // 60:02}.{k % 60:02}", *row[1:]) for k, row in enumerate(ROWS)]
+    with pytest.raises(InputError, match=r"a\.csv:2:1: found '12:00:00\.00' .* a date and time such as 2026"):
+        read(file_of(tmp_path, table("t,q1,i1", rows)), ARM)
 
 
 def test_a_table_without_a_header_takes_its_names_from_the_mapping(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.inspection.bare_arm import arm_of
-from modelgen.dataset.inspection.guesses import guessed_unit, kind_of, time_of, unit_of_time
+from modelgen.dataset.inspection.guesses import guessed_unit, kind_of, time_of, unit_in, unit_of_time
 from modelgen.dataset.mapping.units import TIMES
 from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.processing.periods import repetition
@@ -22,7 +22,6 @@ from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.plausible import doubtful_unit
 from modelgen.dataset.reading.read import read_with_stamps
-from modelgen.dataset.reading.renamed import in_small_letters
 from modelgen.dataset.reading.repeats import refresh_of
 from modelgen.dataset.reading.slow_positions import refreshes
 from modelgen.dataset.reading.sources import BLOCK, opened
@@ -105,13 +104,13 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
     if arm is not None:
         return _of_record(*read_with_stamps(log, arm, mapping))
     spec = parse(log)
-    reader = in_small_letters(opened(spec))
+    reader = opened(spec)
     columns, rest = _columns(spec, reader)
-    remarks = list(reader.remarks)
+    remarks, said = list(reader.remarks), _said(reader)
     t = columns.get("t")
     stamps = time_of(columns) if t is None else None
     if stamps is not None:
-        unit = unit_of_time(columns[stamps])
+        unit = unit_of_time(columns[stamps], stamps, said.get(stamps, ""))
         t = TIMES[unit] * (columns[stamps] - columns[stamps][0])
         remarks.append(
             f"no column t: times are those of {stamps}, in {unit} by a guess, from the first one on"
@@ -128,15 +127,25 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
         remarks += _slower(moving)
     named = [values for name, values in readings.items() if _POSITION.fullmatch(name)]
     positions = named or [x for x in moving.values() if np.ptp(x) > 0.0]
-    found = _inspected(spec.text, t, [_channel(name, "", x) for name, x in readings.items()], positions)
+    found = _inspected(
+        spec.text, t, [_channel(name, said.get(name, ""), x) for name, x in readings.items()], positions
+    )
     doubt = "" if math.isnan(found.rate) else doubtful_unit(1.0 / found.rate, USUAL)
     axis = np.arange(len(next(iter(columns.values()))), dtype=np.float64) if t is None else t
     found = replace(found, t=np.asarray(axis, dtype=np.float64), columns=columns)
     remarks += found.remarks
     if t is not None and np.isfinite(t).all() and (np.diff(t) > 0.0).all():
         finite = [(name, x) for name, x in moving.items() if np.isfinite(x).all()]
-        remarks += [said for name, x in finite if (said := jump_of((name,), t, x[:, None], USUAL))]
+        remarks += [jump for name, x in finite if (jump := jump_of((name,), t, x[:, None], USUAL))]
     return replace(found, without_numbers=rest, remarks=(*remarks, *([doubt] if doubt else [])))
+
+
+def _said(reader: Reader) -> dict[str, str]:
+    """Units that the file says of its columns, as a mapping file writes them."""
+    said: Mapping[str, str] = getattr(reader, "units", {})
+    kinds = {name: "time" if name == "t" else kind_of(name) or "" for name in said}
+    found = {name: unit_in(name, kinds[name] or "time", word) for name, word in said.items()}
+    return {name: unit for name, unit in found.items() if unit}
 
 
 def _slower(columns: Mapping[str, Array]) -> list[str]:
@@ -152,7 +161,7 @@ def _slower(columns: Mapping[str, Array]) -> list[str]:
 def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Columns of numbers (N,) of a log by name, and the names of the others. Raises InputError."""
     spec = parse(log)
-    return _columns(spec, in_small_letters(opened(spec)))
+    return _columns(spec, opened(spec))
 
 
 def inspect_record(record: Record, lag: float | None, samples: int | None = None) -> Inspected:

@@ -21,6 +21,23 @@ _KINDS = (
     ("torque", re.compile(r"tau|torq|effort|force|load|moment", re.IGNORECASE)),
     ("position", re.compile(r"pos|angle|(^|[^a-z])(q|qm)(_|\d|$|\[)|enc|deg|rad", re.IGNORECASE)),
 )
+_BRACKETS = re.compile(r"[\[(<]\s*([^\[\]()<>]+?)\s*[\])>]\s*$")
+_ENDING = re.compile(r"_(deg|rad|mrad|rev|mm|cm|mA|ms|us|ns|Nm|rpm)$")
+# What units are called, in small letters without blanks and points, by kind of the column.
+_CALLED: Mapping[str, Mapping[str, str]] = {
+    "position": {
+        **dict.fromkeys(("deg", "degree", "degrees", "°"), "deg"),
+        **dict.fromkeys(("rad", "radian", "radians"), "rad"),
+        **dict.fromkeys(("rev", "turn", "turns", "revolutions"), "rev"),
+        **{word: word for word in ("mrad", "m", "cm", "mm", "um")},
+    },
+    "velocity": {word: word for word in ("rad/s", "deg/s", "rev/s", "m/s", "mm/s", "rpm")},
+    "acceleration": {word: word for word in ("rad/s^2", "deg/s^2", "m/s^2", "mm/s^2")},
+    "temperature": dict.fromkeys(("degc", "°c", "c"), "degC"),
+    "current": {"a": "A", "amp": "A", "ampere": "A", "ma": "mA"},
+    "torque": {"nm": "N m", "nmm": "N mm", "knm": "kN m", "n": "N", "kn": "kN"},
+    "time": {"s": "s", "sec": "s", "ms": "ms", "us": "us", "µs": "us", "ns": "ns"},
+}
 TURNS = 4 * np.pi  # rad, beyond which an angle is taken as degrees
 AMPERES = 200.0  # beyond which a current is taken as milliamperes
 
@@ -41,8 +58,19 @@ def time_of(columns: Mapping[str, Array]) -> str | None:
     return next((name for name in named if "header.stamp" in name), next(iter(named), None))
 
 
-def unit_of_time(stamps: Array) -> str:
-    """The unit that makes the step one of a robot's logs."""
+def unit_in(name: str, kind: str, said: str = "") -> str:
+    """The unit that a column's name says, for its kind, or the file beside it; empty where neither does."""
+    found = _BRACKETS.search(name) or _ENDING.search(name)
+    word = said or (found[1] if found else "")
+    plain = word.lower().replace("²", "^2").translate({ord(c): None for c in " ·.*[]()<>"})
+    return _CALLED[kind].get(plain, "")
+
+
+def unit_of_time(stamps: Array, name: str = "", said: str = "") -> str:
+    """The unit that its name or the file says, else one that makes the step that of a robot's logs."""
+    named = unit_in(name, "time", said)
+    if named:
+        return named
     return next(iter(plausible_times(float(np.median(np.diff(stamps))))), "s")
 
 
@@ -56,6 +84,9 @@ def guessed_unit(name: str, values: Array) -> str:
     kind, finite = kind_of(name), values[np.isfinite(values)]
     if kind is None or not len(finite):
         return ""
+    named = unit_in(name, kind)
+    if named:
+        return named
     if kind == "position" and np.array_equal(finite, np.rint(finite)) and np.ptp(finite) > TURNS:
         return "counts"
     largest = float(np.abs(finite).max())

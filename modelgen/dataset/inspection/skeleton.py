@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 
-from modelgen.dataset.inspection.channels import Inspected, columns_of_log
+from modelgen.dataset.inspection.channels import Inspected, inspect
 from modelgen.dataset.inspection.guesses import kind_of, time_of, unit_of_angle, unit_of_time
+from modelgen.dataset.mapping.units import EFFORTS, LENGTHS, POSITIONS
 from modelgen.dataset.reading.column_table import Log
-from modelgen.dataset.reading.specs import parse
 from modelgen.description import Arm
 from modelgen.errors import InputError
 
@@ -17,10 +17,9 @@ def skeleton(log: Log | Inspected, arm: Arm | None = None) -> str:
 
     log: also as `inspect` has found it without an arm, whose columns are those of the log.
     """
-    if isinstance(log, Inspected):
-        text, columns = log.name, dict(log.columns)
-    else:
-        text, columns = parse(log).text, columns_of_log(log)[0]
+    seen = log if isinstance(log, Inspected) else inspect(log)
+    text, columns = seen.name, dict(seen.columns)
+    said = {channel.name: channel.unit or channel.guess for channel in seen.channels}
     found: dict[str, list[str]] = {}
     time = time_of(columns)
     for name in columns:
@@ -39,7 +38,7 @@ def skeleton(log: Log | Inspected, arm: Arm | None = None) -> str:
     if time is None:
         lines.append("rate: 100  # ? samples per second: found no column of stamps")
     else:
-        unit = unit_of_time(columns[time])
+        unit = said.get(time) or unit_of_time(columns[time], time)
         lines.append(f"time: {{column: {json.dumps(time)}, unit: {unit}, relative: true}}  # ? unit")
     lines.append(
         "# hold: following  # instant, previous, or a delay [s]; where nothing is said, the data are asked"
@@ -48,9 +47,14 @@ def skeleton(log: Log | Inspected, arm: Arm | None = None) -> str:
     for k in range(n):
         name = "" if arm is None else f"  # {arm.joints[arm.coordinates[k]].name}"
         prismatic = arm is not None and arm.joints[arm.coordinates[k]].type == "prismatic"
-        unit = "m" if prismatic else unit_of_angle(columns[positions[k]])
+        unit = said[positions[k]]
+        if unit not in (LENGTHS if prismatic else POSITIONS["rad"]):
+            unit = "m" if prismatic else unit_of_angle(columns[positions[k]])
         lines.append(f"  - position: {{column: {json.dumps(positions[k])}, unit: {unit}}}  # ?{name}")
         if k < len(efforts):
-            effort = "A" if "current" in found else "N" if prismatic else "N m"
+            effort = said[efforts[k]]
+            wrong = ("N m", "N mm", "kN m") if prismatic else ("N", "kN")
+            if effort not in EFFORTS or effort in wrong:
+                effort = "A" if "current" in found else "N" if prismatic else "N m"
             lines.append(f"    effort: {{column: {json.dumps(efforts[k])}, unit: {effort}}}  # ?")
     return "\n".join(lines) + "\n"

@@ -42,8 +42,13 @@ def period_of(record: Record, given: float | None, limits: DatasetThresholds = U
     q = record.q[::coarse] - record.q.mean(axis=0)
     scale = np.maximum((q**2).mean(axis=0), 1e-300)
     lags = np.arange(max(3, len(q) // 60), len(q) // 2 + 1)
-    errors = np.array([(((q[lag:] - q[:-lag]) ** 2).mean(axis=0) / (2 * scale)).max() for lag in lags])
+    errors = np.array([_unlike(q, lag, scale) for lag in lags])
     good = np.flatnonzero(errors < limits.max_period_difference)
+    if len(good) and not good[0]:
+        # Where positions differ no more after any shorter time, it is that they hardly move in it.
+        shorter = [_unlike(q, lag, scale) for lag in range(1, int(lags[0]))]
+        if max(shorter, default=0.0) < limits.max_period_difference:
+            good = good[np.cumprod(good == np.arange(len(good))) == 0]
     if not len(good):
         return None
     # the first valley: its multiples repeat as well
@@ -103,6 +108,11 @@ def _settled(q: Array, lag: int, end: int = 0) -> int:
     differing = (((q[lag:] - q[:-lag]) ** 2) / power).max(axis=1)
     other = np.flatnonzero(differing[:lag] > max(SETTLED, ALIKE * differing[-lag:].max()))
     return int(other[-1]) + 1 if len(other) else 0
+
+
+def _unlike(q: Array, lag: int, scale: Array) -> float:
+    """Mean square by which positions (N, n) differ after a lag, over twice their scale (n,), the largest."""
+    return float((((q[lag:] - q[:-lag]) ** 2).mean(axis=0) / (2 * scale)).max())
 
 
 def _differs(q: Array, lag: int) -> float:

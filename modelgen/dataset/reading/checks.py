@@ -13,17 +13,19 @@ from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.transmission import of_joint
 
+LARGEST = 1e30  # beyond nanoseconds since 1970 and counts of 64 bits; its square is still a number
+
 
 def check_finite(file: str, stamps: Array, names: tuple[str, ...], block: Array, first: int = 0) -> None:
-    """No NaN and no infinity in a block (N, k) of columns. Raises InputError."""
-    finite = np.isfinite(block)
+    """No NaN, no infinity and no number beyond all units in a block (N, k) of columns. Raises InputError."""
+    finite = np.abs(block) < LARGEST
     if not finite.all():
         wrong = np.argwhere(~finite)
         row, column = (int(x) for x in wrong[0])
         time = f"t = {stamps[row]:.9g} s" if np.isfinite(stamps[row]) else f"sample {first + row + 1}"
         raise InputError(
             f"{file}: found {block[row, column]} in the column {names[column]} at {time}, expected a finite "
-            f"number ({len(wrong)} such in this block); use the parts beside it, FILE@t0:t1"
+            f"number below {LARGEST:g} ({len(wrong)} such in this block); use the parts beside it, FILE@t0:t1"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -18,6 +19,8 @@ from modelgen.dataset.reading.turns import in_turn
 from modelgen.description.document import one_line
 from modelgen.errors import InputError, Location
 from modelgen.numeric import Array
+
+_CLOCK = re.compile(r"\d[:./-]\d+[:./-]\d")
 
 
 class CsvReader:
@@ -147,6 +150,8 @@ class CsvReader:
             else ""
         )
         expected = f"a number{hint}" if begin is None else "a date, as in the rows before"
+        if begin is None and _CLOCK.search(cell):
+            expected = "a number, or a date and time such as 2026-03-01T12:00:00.000"
         raise InputError(
             f"found '{said}' in the column {self.names[index]}, expected {expected}",
             Location(str(self.path), line, column),

@@ -43,6 +43,9 @@ class ParquetReader:
         self.instants = frozenset(
             f.name for f in schema if pyarrow.types.is_timestamp(f.type) or pyarrow.types.is_time(f.type)
         )
+        said = {f.name: dict(f.metadata or {}) for f in schema}
+        words = {name: about.get(b"unit", about.get(b"units")) for name, about in said.items()}
+        self.units = {name: word.decode(errors="replace") for name, word in words.items() if word}
         self._found: dict[str, None] = {}
         self.sparse = self._sparse()
         self.by_column = not self.sparse

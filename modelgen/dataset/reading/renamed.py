@@ -1,40 +1,67 @@
-"""Columns whose names are those of docs/logs.md in capitals: T, Q1, TAU1."""
+"""Columns whose names are those of docs/logs.md in capitals, or with their unit: T, Q1; t [s], q1 (rad)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 
 from modelgen.dataset.objects import Reader
 from modelgen.dataset.reading.signals import is_signal
 from modelgen.numeric import Array
 
+_WITH_UNIT = re.compile(r"\s*(\w+)\s*[\[(<]\s*([^\[\]()<>]+?)\s*[\])>]\s*")
 
-class Lowered:
-    """A reader under names in small letters."""
 
-    def __init__(self, reader: Reader) -> None:
+class Renamed:
+    """A reader under other names. names: the original one by the new one, in the file's order. units: what
+    the original names say, by new name.
+    """
+
+    def __init__(
+        self, reader: Reader, names: Mapping[str, str], remark: str, units: Mapping[str, str]
+    ) -> None:
         self.reader, self.by_column = reader, reader.by_column
-        self._original = {name.lower(): name for name in reader.names}
-        self.names = tuple(name.lower() for name in reader.names)
+        self._original, self._remark = dict(names), remark
+        self.names = tuple(names)
+        said: Mapping[str, str] = getattr(reader, "units", {})
+        self.units = {new: said[old] for new, old in names.items() if old in said} | dict(units)
+
+    @property
+    def origin(self) -> float:
+        """What the column t counts from [s since 1970, UTC]."""
+        origins: Mapping[str, float] = getattr(self.reader, "origins", {})
+        return origins.get(self._original.get("t", ""), 0.0)
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """Of the reader, and that names were changed."""
-        return ("names of columns are read in small letters", *self.reader.remarks)
+        return (self._remark, *self.reader.remarks)
 
     def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
         """The wanted columns, block after block."""
         return self.reader.blocks(tuple(self._original[name] for name in wanted), rows)
 
 
-def in_small_letters(reader: Reader) -> Reader:
-    """The reader, under names in small letters where its own are those of the contract in capitals.
+def by_contract(reader: Reader) -> Reader:
+    """The reader, under the names of the contract where its own are these in capitals or with their unit.
 
     Certain only where all of them are, the time included, and none comes twice.
     """
     names = reader.names
-    lower = [name.lower() for name in names]
-    capital = [name for name in names if not is_signal(name) and is_signal(name.lower())]
-    if "t" in names or "T" not in names or len(capital) < 2 or any(map(is_signal, names)):
+    if any(map(is_signal, names)):
         return reader
-    return Lowered(reader) if len(set(lower)) == len(lower) else reader
+    lower = [name.lower() for name in names]
+    capital = [name for name in lower if is_signal(name)]
+    if "T" in names and len(capital) > 1 and len(set(lower)) == len(lower):
+        said = "names of columns are read in small letters"
+        return Renamed(reader, dict(zip(lower, names, strict=True)), said, {})
+    parts = [_WITH_UNIT.fullmatch(name) for name in names]
+    short = [
+        part[1].lower() if part and is_signal(part[1].lower()) else name
+        for part, name in zip(parts, names, strict=True)
+    ]
+    units = {new: part[2] for new, part in zip(short, parts, strict=True) if part and is_signal(new)}
+    if "t" not in units or len(units) < 2 or len(set(short)) < len(short):
+        return reader
+    said = "names of columns are read without the units in them"
+    return Renamed(reader, dict(zip(short, names, strict=True)), said, units)

@@ -14,7 +14,7 @@ from modelgen.dataset.mapping.files import listed, load_mapping
 from modelgen.dataset.objects import Layout, Reader, Record
 from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.column_table import Log
-from modelgen.dataset.reading.renamed import in_small_letters
+from modelgen.dataset.reading.renamed import by_contract
 from modelgen.dataset.reading.shape import other_unit, unit_word
 from modelgen.dataset.reading.signals import Signals, find_signals
 from modelgen.dataset.reading.specs import Spec, parse
@@ -94,7 +94,7 @@ def open_source(
     spec = parse(log)
     drives = drives_of(arm)
     if mapping is None:
-        reader = in_small_letters(opened(spec))
+        reader = by_contract(opened(spec))
         if isinstance(reader, BagReader):
             raise InputError(
                 f"{spec.text}: a bag needs a mapping file (--mapping) that names its columns: "
@@ -134,6 +134,8 @@ def check_units(
             continue
         kind = name.rstrip("0123456789")
         expected = "s" if name == "t" else "A" if kind == "i" else None
+        if kind == "qm" and (unit := drives[int(name.removeprefix(kind)) - 1].unit) in ("rad", "m"):
+            expected = unit
         if expected is None and kind in ("q", "dq", "ddq", "tau"):
             prismatic = arm.joints[arm.coordinates[int(name.removeprefix(kind)) - 1]].type == "prismatic"
             base = ("N" if prismatic else "N m") if kind == "tau" else ("m" if prismatic else "rad")
@@ -161,7 +163,7 @@ def read_columns(log: Log, names: Sequence[str]) -> dict[str, Array]:
     Raises InputError.
     """
     spec = parse(log)
-    reader = in_small_letters(opened(spec))
+    reader = by_contract(opened(spec))
     wanted = tuple(dict.fromkeys(("t", *names)))
     absent = [name for name in wanted if name not in reader.names]
     if absent:

@@ -37,14 +37,12 @@ from modelgen.diagnosis.result.not_identifiable import not_identifiable
 from modelgen.diagnosis.selection import Cause, Selection, threshold
 from modelgen.diagnosis.validation import Check
 from modelgen.errors import InputError
-from modelgen.identification.channels import effort_questions
+from modelgen.identification.channels import ABOVE_ALL, effort_questions
 from modelgen.identification.doubts import doubts
 from modelgen.identification.identify import errors_of
 from modelgen.identification.misread import check_reading
 from modelgen.identification.objects import DIAGNOSING
 from modelgen.numeric import Array
-
-ZERO_OFF = 0.5  # of the squares that the model leaves, from which on a constant is more than an effect
 
 
 def reported(study: Study, decision: Decision, extension: Extension, options: Options) -> Diagnosis:
@@ -136,7 +134,7 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     chosen = choose(as_given(study.records[:-1]), Settings(thresholds=study.thresholds.dataset))
     fit = solution.theta, solution.covariance, solution.determined
     asked = check_reading(train, study.model, study.evaluator).questions
-    asked += tuple(effort_questions(train, study.model, study.evaluator, zero=ZERO_OFF, short=False))
+    asked += tuple(effort_questions(train, study.model, study.evaluator, zero=ABOVE_ALL, short=False))
     about = doubts(train, study.model, study.evaluator, *fit, whole=decision.verdict != "named")
     answered = _answered(extension)
     left = [doubt for doubt in asked if not answered.issuperset(doubt.joints)]
