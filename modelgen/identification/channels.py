@@ -11,6 +11,7 @@ from modelgen.dataset.processing.rounding import LONGEST, resolution
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
+from modelgen.identification.cut_off import LEVELS
 from modelgen.identification.objects import DIAGNOSING, Doubt
 from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
@@ -79,7 +80,9 @@ def _coarse(train: Sequence[Prepared], j: int) -> bool:
         x[:LONGEST, j][p.awake[:LONGEST, j]] for p in train if (x := p.record.logged_effort) is not None
     ]
     moving = np.concatenate(logged)
-    return len(moving) > 0 and (resolution(moving) or 0.0) > COARSE * float(np.std(moving))
+    if not 0 < len(np.unique(moving)) < LEVELS:
+        return len(moving) > 0 and (resolution(moving) or 0.0) > COARSE * float(np.std(moving))
+    return True
 
 
 def _beginning(p: Prepared, model: Model) -> Prepared:

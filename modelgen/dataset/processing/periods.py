@@ -42,7 +42,7 @@ def period_of(record: Record, given: float | None, limits: DatasetThresholds = U
     q = record.q[::coarse] - record.q.mean(axis=0)
     scale = np.maximum((q**2).mean(axis=0), 1e-300)
     lags = np.arange(max(3, len(q) // 60), len(q) // 2 + 1)
-    errors = np.array([_unlike(q, lag, scale) for lag in lags])
+    errors = np.array([_unlike(q, int(lag), scale) for lag in lags])
     good = np.flatnonzero(errors < limits.max_period_difference)
     if len(good) and not good[0]:
         # Where positions differ no more after any shorter time, it is that they hardly move in it.
