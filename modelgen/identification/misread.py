@@ -18,6 +18,7 @@ from modelgen.identification.unexplained import FAR, POOR, Unexplained, unexplai
 from modelgen.numeric import Array
 
 BETTER = 0.33  # of what is unexplained, that another reading may leave to be believed
+ALIKE = 2.0  # times what the best reading leaves, up to which another is named beside it
 HARDLY = 0.5  # of the changes of a joint's efforts, unexplained, that is asked about
 APART = 3.0  # times what fits to each record leave, from which on one to all is asked about
 NOTABLE = 2.0  # % of the effort, likewise
@@ -67,8 +68,11 @@ def _fit(p: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:
             found.append((float(np.sqrt(np.mean(other.share**2))), reading.question))
     best, question = min(found, default=(math.inf, ""))
     if best < min(BETTER * total, POOR):
+        # Of readings that explain hardly less nobody knows which is right.
+        alike = [asked for left, asked in sorted(found) if left < min(BETTER * total, POOR, ALIKE * best)]
+        also = "".join(f", or {asked}" for asked in alike if asked != question)
         raise InputError(
-            f"{whole.name}: {question}? Then {100 * best:.2g} % of the efforts are left unexplained, as "
+            f"{whole.name}: {question}{also}? Then {100 * best:.2g} % of the efforts are left unexplained, as "
             f"the log stands {100 * total:.2g} %; a mapping file (--mapping) says what each column is"
         )
     return fit

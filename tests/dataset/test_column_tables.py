@@ -286,3 +286,19 @@ def test_a_time_with_its_unit_in_its_name_is_asked_about(arm: Arm) -> None:
     table["t [s]"] = table.pop("t")
     with pytest.raises(InputError, match=r"did you mean the column 't \[s\]'"):
         read(named(table, "log"), arm)
+
+
+@pytest.mark.parametrize("index", ["t", "dates", "times"])
+def test_the_index_of_a_frame_is_the_time_where_it_is_one(index: str, arm: Arm) -> None:
+    frame = pandas.DataFrame(columns())
+    spans = pandas.to_timedelta(frame["t"], unit="s")
+    frame = frame.set_index(
+        {"t": frame["t"], "dates": pandas.Timestamp("2026-03-01") + spans}.get(index, spans)
+    )
+    frame = frame.drop(columns="t")
+    frame.index.name = "t" if index == "t" else None
+    record = read(named(frame, "log"), arm)
+    assert record.t == pytest.approx(columns()["t"], abs=1e-9)
+    assert "t is the table's index" in record.remarks
+    with pytest.raises(InputError, match=r"the column t \[s\] is missing"):
+        read(named(frame.reset_index(drop=True), "log"), arm)

@@ -216,6 +216,15 @@ def test_a_log_that_was_read_wrongly_is_asked_about(
         getattr(mg, command)(arm, train, test)
 
 
+def test_a_reading_that_explains_hardly_less_is_asked_about_too() -> None:
+    """Degrees are those of a motor behind a gear of 57, by the log alone."""
+    geared = loads(ARMS.replace("ratio: 50", "ratio: 57"), "arms.yaml", known_effects())["two"]
+    train, test = [x | {"q1": np.degrees(x["q1"])} for x in (log(geared, 1), log(geared, 2))]
+    with pytest.raises(mg.InputError, match="are the positions in degrees") as error:
+        mg.identify(geared, train, test)
+    assert "are the positions q1 those of the motors" in str(error.value)
+
+
 def test_the_log_as_it_is_raises_no_doubt(arm: mg.Arm, logs: list[Table]) -> None:
     found = mg.identify(arm, *logs)
     assert found.to_json()["doubts"] == []

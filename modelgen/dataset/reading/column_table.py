@@ -39,6 +39,9 @@ class ColumnTable:
                 f"{name}: found {kind}, expected a path, FILE@t0:t1, a record or a table of columns"
             )
         self.names: tuple[str, ...] = tuple(str(x) for x in names)
+        self._index = None if "t" in self.names else _times_of(columns)
+        if self._index is not None:
+            self.names = ("t", *self.names)
         if not self.names:
             raise InputError(f"{name}: the table has no columns, expected t, q1, i1 and so on")
         self._found: dict[str, None] = {}
@@ -75,12 +78,16 @@ class ColumnTable:
             try:
                 digest.update(self._column(name).tobytes())
             except InputError:
-                digest.update(repr(self._columns[name]).encode())
+                digest.update(repr(self._values(name)).encode())
         return digest.hexdigest()
 
     def _values(self, name: str) -> np.ndarray:
         """A column as an array; objects as numbers or dates where they are."""
-        column = self._columns[name]
+        if name == "t" and self._index is not None:
+            self._found["t is the table's index"] = None
+            column = self._index
+        else:
+            column = self._columns[name]
         if isinstance(column, np.ma.MaskedArray) and column.dtype.kind in "iuf":
             column = np.ma.filled(column.astype(float), np.nan)
         values = np.asarray(column)
@@ -100,6 +107,15 @@ class ColumnTable:
         if values.dtype.kind not in "iuf":
             raise InputError(f"{self.name}: found {values.dtype} in the column {name}, expected numbers")
         return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _times_of(columns: Any) -> Any:
+    """The index of a pandas frame where that is called t or holds dates or times; else None."""
+    index = getattr(columns, "index", None)
+    if not hasattr(columns, "reset_index") or index is None:
+        return None
+    kind = getattr(getattr(index, "dtype", None), "kind", "")
+    return index if getattr(index, "name", None) == "t" or kind in ("m", "M") else None
 
 
 def _seconds(values: np.ndarray) -> Array:
