@@ -72,8 +72,8 @@ def _fit(p: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:
         alike = [asked for left, asked in sorted(found) if left < min(BETTER * total, POOR, ALIKE * best)]
         also = "".join(f", or {asked}" for asked in alike if asked != question)
         raise InputError(
-            f"{whole.name}: {question}{also}? Then {100 * best:.2g} % of the efforts are left unexplained, as "
-            f"the log stands {100 * total:.2g} %; a mapping file (--mapping) says what each column is"
+            f"{whole.name}: {question}{also}? Then {100 * best:.2g} % of the efforts are left unexplained, "
+            f"as the log stands {100 * total:.2g} %; a mapping file (--mapping) says what each column is"
         )
     return fit
 
