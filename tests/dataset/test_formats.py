@@ -155,6 +155,18 @@ def test_what_is_no_bag_is_refused(name: str, tmp_path: Path) -> None:
         read(str(path), DRIVEN, mapping(tmp_path))
 
 
+def test_a_bag_that_was_not_closed_says_what_mends_it(tmp_path: Path) -> None:
+    path = ros1_bag(tmp_path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(InputError, match="`rosbag reindex FILE` mends it"):
+        read(str(path), DRIVEN, mapping(tmp_path))
+    active = path.with_suffix(".bag.active")
+    path.rename(active)
+    with pytest.raises(InputError, match=r"`rosbag reindex FILE`, then name it \.bag"):
+        read(str(active), DRIVEN, mapping(tmp_path))
+
+
 def written(path: Path, table: dict[str, Any]) -> str:
     parquet.write_table(pyarrow.table(table), path, row_group_size=300)
     return str(path)

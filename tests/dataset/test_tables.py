@@ -130,6 +130,17 @@ def test_units_that_a_parquet_file_says_count(tmp_path: Path) -> None:
         read(file, ARM)
 
 
+def test_rows_in_turn_whose_stamps_come_in_bursts_are_refused(tmp_path: Path) -> None:
+    burst = [0.1 * (k // 8 + 1) + 1e-6 * (k % 8) for k in range(2 * len(ROWS))]
+    rows = [
+        (f"{burst[2 * k + j]:.6f}", *((q, "") if j == 0 else ("", i)))
+        for k, (_, q, i) in enumerate(ROWS)
+        for j in (0, 1)
+    ]
+    with pytest.raises(InputError, match=r"the stamps of the column q1 come in bursts, most 2e-06 s apart"):
+        read(file_of(tmp_path, table("t,q1,i1", rows)), ARM)
+
+
 def test_a_time_of_day_is_refused_with_what_is_read(tmp_path: Path) -> None:
     rows = [(f"12:00:{k // 60:02}.{k % 60:02}", *row[1:]) for k, row in enumerate(ROWS)]
     with pytest.raises(InputError, match=r"a\.csv:2:1: found '12:00:00\.00' .* a date and time such as 2026"):

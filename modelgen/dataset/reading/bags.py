@@ -191,7 +191,9 @@ class BagReader:
         except Exception as error:
             # Foreign code on a file of any content: whatever it raises means that the file cannot be read.
             reason = " ".join(str(error).split())[:160] or type(error).__name__
-            raise InputError(f"{self.path}: cannot be read as a bag: {reason}") from None
+            reindex = self.path.suffix == ".bag" and "index" in reason
+            hint = "; it was not closed or is cut off: `rosbag reindex FILE` mends it" if reindex else ""
+            raise InputError(f"{self.path}: cannot be read as a bag: {reason}{hint}") from None
 
     def _remark(self, text: str) -> None:
         self._found[text] = None

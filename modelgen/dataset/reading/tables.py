@@ -42,4 +42,6 @@ def open_table(path: Path, layout: Layout | None = None) -> Reader:
         return CsvReader(path, layout)
     kinds = ".csv, .csv.gz, .txt, .tsv, .parquet, .bag, .db3, .mcap, or the folder of a ROS 2 bag"
     hint = "; in the spreadsheet, save the sheet as CSV UTF-8" if suffix in SHEETS else ""
+    if suffix == ".active":
+        hint = "; a bag that was not closed: `rosbag reindex FILE`, then name it .bag"
     raise InputError(f"{path}: found a log of the kind '{suffix}', expected {kinds}{hint}")

@@ -8,6 +8,8 @@ from modelgen.dataset.thresholds import USUAL
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
+BURSTS = 0.2  # of the mean time between readings, below which the usual one says that they come in bursts
+
 
 def in_turn(file: str, names: tuple[str, ...], table: Array) -> tuple[Array, str]:
     """Columns (N, k), blank where NaN, at the instants of the first of them after the time; a remark.
@@ -33,6 +35,12 @@ def in_turn(file: str, names: tuple[str, ...], table: Array) -> tuple[Array, str
         longest = USUAL.max_gap_periods * float(np.median(steps))
         if len(steps) and steps.max() > longest:
             at = stamps[int(np.argmax(steps))]
+            if np.median(steps) < BURSTS * np.mean(steps):
+                raise InputError(
+                    f"{file}: the stamps of the column {names[k]} come in bursts, most "
+                    f"{np.median(steps):.3g} s apart, up to {steps.max():.4g} s: expected each row at the time "
+                    "at which it was read, or all columns in every row"
+                )
             raise InputError(
                 f"{file}: the column {names[k]} is blank for {steps.max():.4g} s after t = {at:.9g}, "
                 f"expected a reading every {np.median(steps):.4g} s"
