@@ -38,7 +38,8 @@ def effort_questions(
     explain a part that is no chance.
 
     Weights of links take up most of either, so that little shows in the residuals. zero: part of the squares
-    left over that a constant explains at least. short: whether readings that fall short are asked about.
+    that the model leaves, which a constant explains at least. short: whether efforts that fall short are
+    asked about.
     """
     if any(p.record.input is None or p.record.arm is None for p in train):
         return []

@@ -38,8 +38,8 @@ def in_turn(file: str, names: tuple[str, ...], table: Array) -> tuple[Array, str
             if np.median(steps) < BURSTS * np.mean(steps):
                 raise InputError(
                     f"{file}: the stamps of the column {names[k]} come in bursts, most "
-                    f"{np.median(steps):.3g} s apart, up to {steps.max():.4g} s: expected each row at the time "
-                    "at which it was read, or all columns in every row"
+                    f"{np.median(steps):.3g} s apart, up to {steps.max():.4g} s: expected each row at "
+                    "the time at which it was read, or all columns in every row"
                 )
             raise InputError(
                 f"{file}: the column {names[k]} is blank for {steps.max():.4g} s after t = {at:.9g}, "
