@@ -365,3 +365,12 @@ def test_when_a_record_began_is_known_from_stamps_that_count_from_1970(
     else:
         assert record.begins is None
         assert later.begins is None
+
+
+def test_a_joint_that_only_trembles_is_remarked_on(tmp_path: Path) -> None:
+    random = np.random.default_rng(2)
+    table = columns(T)
+    noise = 0.3 + 1e-4 * random.normal(size=len(T))
+    (said,) = read(write_csv(tmp_path / "a.csv", table | {"q1": noise}), DRIVEN).remarks
+    assert said.startswith("q1 shows no motion, only noise of 0.0001 about 0.3")
+    assert not read(write_csv(tmp_path / "b.csv", table | {"q1": table["q1"] + noise}), DRIVEN).remarks

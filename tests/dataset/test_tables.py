@@ -274,12 +274,14 @@ def test_a_spreadsheet_is_exported_first(tmp_path: Path) -> None:
         read(str(tmp_path / "a.xlsx"), ARM)
 
 
-@pytest.mark.parametrize("kind", ["date in us", "date in ns", "integer in us"])
+@pytest.mark.parametrize("kind", ["date in us", "date in ns", "span in us", "integer in us"])
 def test_times_of_every_type_in_parquet(kind: str, tmp_path: Path) -> None:
     pyarrow = pytest.importorskip("pyarrow")
     parquet = pytest.importorskip("pyarrow.parquet")
     start = datetime(2025, 3, 4, 5, 6, 7, 89, tzinfo=UTC)
-    if kind.startswith("date"):
+    if kind.startswith("span"):
+        column = pyarrow.array([timedelta(seconds=5.0 + float(t)) for t in T], pyarrow.duration("us"))
+    elif kind.startswith("date"):
         column = pyarrow.array(
             [start + timedelta(seconds=float(t)) for t in T], pyarrow.timestamp(kind[-2:], tz="UTC")
         )
@@ -287,7 +289,8 @@ def test_times_of_every_type_in_parquet(kind: str, tmp_path: Path) -> None:
         column = pyarrow.array([round(1e6 * (start.timestamp() + t)) for t in T], pyarrow.int64())
     file = tmp_path / "a.parquet"
     parquet.write_table(pyarrow.table({"t": column, "q1": Q, "i1": EFFORT}), file)
-    mapping = None if kind.startswith("date") else mapping_of(tmp_path, "time: {unit: us, relative: true}")
+    whole = kind.startswith("integer")
+    mapping = mapping_of(tmp_path, "time: {unit: us, relative: true}") if whole else None
     record = read(str(file), ARM, mapping)
     assert record.t == pytest.approx(T, abs=2e-6)
     assert record.q[:, 0] == pytest.approx(Q, abs=1e-4)

@@ -72,6 +72,20 @@ def check_constant(
         )
 
 
+def trembling(names: Sequence[str], columns: Array) -> list[str]:
+    """Remarks about positions (N, n) that change from one reading to the next by more than over the record.
+
+    Those of a motion that is slower than a sixth of the rate do not: this is the noise of a joint at rest.
+    """
+    step, whole = np.diff(columns, axis=0).std(axis=0), columns.std(axis=0)
+    return [
+        f"{name} shows no motion, only noise of {whole[k]:.2g} about {columns[:, k].mean():.4g}: what "
+        "depends on it is not determined; lock the joint in the description, or move it"
+        for k, name in enumerate(names)
+        if step[k] > whole[k] > 0.0
+    ]
+
+
 def check_jumps(file: str, arm: Arm, names: tuple[str, ...], q: Array, t: Array, steady: float) -> None:
     """No sensor that starts anew after a turn. q: (N, n) joint coordinates; steady: median step [rad] below
     which a jump is no motion. Raises InputError.

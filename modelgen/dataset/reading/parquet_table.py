@@ -40,9 +40,9 @@ class ParquetReader:
             raise InputError(f"{path}: this is no Parquet file: {str(error).splitlines()[0]}") from None
         schema = self._file.schema_arrow
         self.names = tuple(schema.names)
-        self.instants = frozenset(
-            f.name for f in schema if pyarrow.types.is_timestamp(f.type) or pyarrow.types.is_time(f.type)
-        )
+        kinds = pyarrow.types
+        times = (kinds.is_timestamp, kinds.is_time, kinds.is_duration)
+        self.instants = frozenset(f.name for f in schema if any(fits(f.type) for fits in times))
         said = {f.name: dict(f.metadata or {}) for f in schema}
         words = {name: about.get(b"unit", about.get(b"units")) for name, about in said.items()}
         self.units = {name: word.decode(errors="replace") for name, word in words.items() if word}

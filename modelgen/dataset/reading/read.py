@@ -208,6 +208,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     jump = jump_of(signals.position, table[:, 0], as_read, limits)
     margin = limits.max_range_excess
     left = checks.check_range(file, arm, drives, signals.position, logged, q, margin)
+    left += checks.trembling(signals.position, as_read)
     remarks = [*source.remarks, *left, *([jump] if jump else [])]
     if axis.method != "none":
         remarks.append(
