@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.diagnosis.adequacy import (
     Examined,
     Remains,
     aliases,
     examined,
+    instant_shown,
     lack_of_fit,
     most_like,
     verdict_of,
@@ -47,6 +49,12 @@ class Decision:
     correlated: Endogeneity | None
     verdict: str
     reason: str
+
+    @property
+    def instant(self) -> EffortInstant | None:
+        """When the efforts were read, where a suspect says it that is only the log's."""
+        alone = [e.cause for e in self.suspects if [c.name for c in e.failed] == ["admissible"]]
+        return instant_shown(alone, self.before, self.band.equations)
 
 
 def decide(band: Band, options: Options, progress: Progress | None = None) -> Decision:

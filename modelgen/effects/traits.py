@@ -155,6 +155,13 @@ class Traits(ABC):
         return None
 
     @classmethod
+    def lags(cls, values: Numbers) -> bool:
+        """Whether such a time is the time constant of a first-order lag: of the effort, or, where it is
+        negative, of what the log has of it.
+        """
+        return False
+
+    @classmethod
     def scales(cls, values: Numbers) -> float | None:
         """Factor that it puts on the joint's input, where that is all it does."""
         return None

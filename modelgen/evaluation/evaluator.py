@@ -167,7 +167,7 @@ class Evaluator:
         definition = CATALOGUE[effect]
         delay, factor = definition.delays(values), definition.scales(values)
         if delay is not None:
-            return added(motion.t, self.inputs(motion, parameters), delay, joint)
+            return added(motion.t, self.inputs(motion, parameters), delay, joint, definition.lags(values))
         if factor is not None and joint is not None and self._proportional:
             self._changed(effect, joint, values)  # where the arm admits it
             inputs = self.inputs(motion, parameters)

@@ -5,8 +5,9 @@ the slope of the efforts as the model has them, in which their noise has no part
 friction are slopes of others, and what is left for the delay is little: its deviation says how little. What
 the rounding of the positions does to it is seen by rounding them again (Cook and Stefanski 1994). What the
 model lacks is no noise, and pulls the delays of all parts of a log the same way: the deviation holds how much
-they change where every joint may have any law of its own position, speed and load (Hausman 1978). A delay of
-more than a sample that leaves nearly as much as none stands for what is missing, and is not given.
+they change where every joint may have any law of its own position, speed and load, and dry friction that
+turns late (Hausman 1978). A delay of more than a sample that leaves nearly as much as none stands for what is
+missing, and is not given.
 """
 
 from __future__ import annotations
@@ -245,10 +246,14 @@ class _Fit:
 
 
 def _laws(q: Array, dq: Array, effort: Array) -> Array:
-    """Laws (N, n, k) of positions in their range [0, 1], speeds over the highest, and loads, (N, n) each."""
+    """Laws (N, n, k) of positions in their range [0, 1], speeds over the highest, and loads, (N, n) each.
+
+    The last but one is dry friction that turns late: a joint that creeps before it goes, bristles that bend.
+    """
     sign = np.sign(dq)
     waves = [f(2 * np.pi * k * q) for k in WAVES for f in (np.sin, np.cos)]
     drags = [sign * np.abs(dq) ** k for k in (2, 3)]
     stops = [sign * np.exp(-((dq / v) ** 2)) for v in SLOW]
     loads = [effort * dq, np.abs(effort) * sign, sign * q, sign * q**2]
-    return np.stack([*waves, *drags, *stops, *loads, np.ones_like(q)], axis=2)
+    late = np.gradient(sign, axis=0)
+    return np.stack([*waves, *drags, *stops, *loads, late, np.ones_like(q)], axis=2)

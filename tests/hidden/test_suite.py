@@ -81,7 +81,12 @@ def test_the_ranking_tells_the_story_of_what_is_named(case: Case, outcome: Any) 
 def test_the_command_line_and_the_function_give_the_same(case: Case, outcome: Any) -> None:
     folder = Path(outcome(case)["folder"])
     written = json.loads((folder / "diagnosis" / "diagnosis.json").read_text(encoding="utf-8"))
-    assert diagnosed_here(folder, case.name, experiment=True) == written
+    here = diagnosed_here(folder, case.name, experiment=True)
+    if here["next_experiment"] is None:  # only a command knows how it was called
+        del here["next_experiment"]
+        proposed = written.pop("next_experiment")
+        assert (proposed is None) == (written["verdict"] in ("named", "nothing_missing"))
+    assert here == written
 
 
 @pytest.mark.parametrize("case", NULLS, ids=title)

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.charts import number
-from modelgen.dataset.processing.instants import fitting
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.adequacy.figures_said import FREE_FUNCTION, ahead_of, form_said, percent, possible
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
+from modelgen.diagnosis.adequacy.log_delay import out_of_step
 from modelgen.diagnosis.candidates import with_causes
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import covariance
@@ -228,44 +228,9 @@ def admissible(cause: Cause, equations: Equations) -> Check:
     """Whether its values can be those of an arm, as far as these records tell. equations: of the band."""
     c = cause.trial.candidate
     why = c.definition.impossible(equations.arm, c.joint, cause.trial.parameters)
-    why = why or _out_of_step(cause, equations)
+    why = why or out_of_step(cause, equations)
     said = why or possible(cause, equations.arm)
     return Check("admissible", not why, True, float("nan"), float("nan"), said)
-
-
-def _out_of_step(cause: Cause, equations: Equations) -> str:
-    """Why a delay is none of the arm: a log may read its channels in turn, or efforts and positions apart.
-
-    A delay that all joints share is the log's where a log may have it that nobody has said anything of. A
-    single joint has nothing to share it with where the mapping says when the efforts were read.
-    """
-    c = cause.trial.candidate
-    delay = c.definition.delays(cause.trial.parameters)
-    if delay is None:
-        return ""
-    if c.joint is None or equations.n == 1:
-        return _of_the_log(delay, equations)
-    interval = max(r.prepared.record.step for r in equations.rows)
-    if abs(delay) >= interval:
-        return ""
-    return (
-        f"{delay:.2g} s at one joint is less than a sample of {interval:.2g} s, in which a log "
-        "may read one channel after the other; log faster to tell"
-    )
-
-
-def _of_the_log(delay: float, equations: Equations) -> str:
-    """Why a delay [s] of all joints is the log's own, empty where it is not."""
-    record = equations.rows[0].prepared.record
-    if equations.n == 1 and record.hold_known == "mapping":
-        return ""
-    after = (record.hold + delay) / record.step
-    if fitting(after, 0.0, record.step, equations.thresholds.dataset) is None:
-        return ""
-    return (
-        f"with {delay:.2g} s the efforts of all joints lie {after:.2f} samples after the positions' stamps, "
-        "which a log may have by when it reads them: `hold` of the mapping says when"
-    )
 
 
 def _gain(cause: Cause, equations: Equations) -> Check:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from modelgen.dataset import Record, Settings
 from modelgen.dataset.processing.content import quiet_cutoff
@@ -38,6 +38,10 @@ class Study:
     thresholds: Thresholds
     narrower: bool = False
     instant: EffortInstant | None = None
+
+    def at(self, instant: EffortInstant) -> Study:
+        """The same with the efforts at this instant."""
+        return replace(self, records=at_instants(self.records, instant), instant=instant)
 
 
 def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:

@@ -230,6 +230,15 @@ class TimeDelay(InputEffect):
             step=1e-4,
             usual=0.005,
         ),
+        Parameter(
+            "order",
+            "1",
+            "1: it lags as one of a first order with that time constant; 0: along a motion it comes late",
+            default=0.0,
+            bounds=(0.0, 1.0),
+            structural=True,
+            forms=(None, 1.0),
+        ),
     )
     family = Family.FRICTION  # it looks like what sticking does at reversals
     shows = frozenset({Shows.REVERSALS})
@@ -241,8 +250,13 @@ class TimeDelay(InputEffect):
 
     @classmethod
     def delays(cls, values: Numbers) -> float | None:
-        """Along a motion that is known it is a pure delay."""
+        """Along a motion that is known it is a pure delay, or what a lag makes of it."""
         return values["delay"]
+
+    @classmethod
+    def lags(cls, values: Numbers) -> bool:
+        """Current loops and filters of readings let the effort or the log lag."""
+        return bool(values.get("order", 0.0))
 
     @classmethod
     def simulated(cls, values: Numbers) -> Mapping[str, float]:
