@@ -38,6 +38,16 @@ def shipped_sizes() -> Path | None:
         return None
 
 
+def gallery() -> Path | None:
+    """The gallery of effects as a page, as HTML where `make docs` has built it; None of an installation
+    without the documentation.
+    """
+    checkout = Path(str(files("modelgen"))).parent
+    pages = checkout / "build" / "docs" / "gallery.html", checkout / "docs" / "gallery.md"
+    there = (checkout / "pyproject.toml").is_file()
+    return next((page for page in pages if there and page.is_file()), None)
+
+
 def default_effects() -> tuple[str, ...]:
     """Names of the effects of a driven joint whose description lists none."""
     text = (files("modelgen") / "effects" / "defaults.txt").read_text(encoding="utf-8")

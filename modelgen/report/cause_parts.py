@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -18,18 +19,11 @@ from modelgen.report.law_figures import judged_joint, law_charts, law_size, seen
 from modelgen.report.law_sketch import sketch
 from modelgen.report.page import Folded, Grid, Heading, Line, Marks, Part, Run, Section, Text, block
 from modelgen.report.words import law, legible, sentence
+from modelgen.resources import gallery
 
 _LOOKALIKES = (("confused with", "left"), ("what that is", "left"), ("seen by itself in", "left"))
 _DEFINED = (("parameter", "left"), ("unit", "left"), ("meaning", "left"))
-_DOCUMENTED: Line = [
-    Run(
-        "More, with what each effect does to a log: docs/gallery.md in the source of modelgen, a page of its "
-    ),
-    Run("documentation, which "),
-    Run("make docs", "code"),
-    Run(" builds there. All effects: "),
-    Run("modelgen effects", "code"),
-]
+_ELSEWHERE = "docs/gallery.md in the source of modelgen, a page of the documentation that "
 _VALUES = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"), ("meaning", "left"))
 
 
@@ -48,7 +42,7 @@ def law_found(d: Diagnosis, k: int) -> Section:
     """The law of cause k over the data, with its values and its evidence."""
     c = d.causes[k]
     reference = Run(f"{CATALOGUE[c.effect].reference}.", "quiet")
-    text = [Run(f"{_law(c.effect)} "), reference, Run(" "), _more(c)]
+    text = [Run(f"{_law(c.effect)} "), reference, Run(" "), *_more(c)]
     charts = law_charts(d, k)
     parts: list[Part] = [Text(text), Text(f"{_size(d, k)}{seen(charts)}"), block(charts), _values(d, c)]
     evidence = (
@@ -64,7 +58,7 @@ def suspected(d: Diagnosis, k: int) -> list[Part]:
     evidence = f"Evidence: delta BIC {c.delta_bic:z.1f}. It is not named: {failed(d, c)}."
     return [
         Heading(cause_title(d, c), f"suspect{k}"),
-        Text([Run(f"{_law(c.effect)} "), _more(c)]),
+        Text([Run(f"{_law(c.effect)} "), *_more(c)]),
         Text(evidence),
         _values(d, c),
     ]
@@ -102,7 +96,7 @@ def _about(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> list[Part
     defined = Grid(f"Parameters of {effect}", _DEFINED, values, folds=True)
     parts += [
         Folded(f"Parameters of {effect}", [defined], printed=False),
-        Text(_DOCUMENTED, "quiet"),
+        Text(_documented(effect), "quiet"),
     ]
     return parts
 
@@ -112,8 +106,22 @@ def _law(effect: str) -> str:
     return f"{sentence(CATALOGUE[effect].text)}{f' Law: {stated}' if stated else ''}"
 
 
-def _more(c: NamedCause) -> Run:
-    return Run("More about it", target=f"#about-{c.effect}")
+def _more(c: NamedCause) -> list[Run]:
+    """Links to what the page says of an effect, and to the gallery where the documentation is at hand."""
+    own, page = Run("More about it", target=f"#about-{c.effect}"), gallery()
+    return [own] if page is None else [own, Run(". "), _in_gallery(c.effect, page)]
+
+
+def _in_gallery(effect: str, page: Path) -> Run:
+    return Run("What it does to a log", target=f"{page.as_uri()}#{effect}")
+
+
+def _documented(effect: str) -> Line:
+    """Where else there is something on an effect."""
+    page = gallery()
+    here = [Run(f"What it does to a log: {_ELSEWHERE}"), Run("make docs", "code"), Run(" builds")]
+    linked = here if page is None else [_in_gallery(effect, page)]
+    return [*linked, Run(". All effects: "), Run("modelgen effects", "code")]
 
 
 def _size(d: Diagnosis, k: int) -> str:

@@ -6,6 +6,7 @@ import time
 from dataclasses import replace
 from html import escape, unescape
 from pathlib import Path
+from urllib.parse import unquote, urlparse
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import Diagnosis, to_json
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import titled
+from modelgen.report import cause_parts
 from modelgen.report.call import Call
 from modelgen.report.diagnosis import report
 from modelgen.report.diagnosis_answers import answers
@@ -804,3 +806,22 @@ def test_another_joint_is_called_by_its_name_and_by_its_number_in_json(found: Di
     )
     assert re.search(r">other<.*?>elbow<", values_of)
     assert to_json(d)["causes"][0]["parameters"]["other"]["value"] == 1.0
+
+
+def test_a_cause_leads_to_what_the_page_and_the_gallery_say_of_it(
+    found: Diagnosis, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By links to what is there; where the documentation is not at hand the page says where it is."""
+    text = report(found)
+    law, rest = text[text.index('id="cause0"') :].split('id="about-stribeck_friction"')
+    for part in (law, rest):
+        (target,) = re.findall(r'href="(file:[^"]+)">What it does to a log<', part)
+        where, _, anchor = target.partition("#")
+        gallery = Path(unquote(urlparse(where).path)).read_text(encoding="utf-8")
+        assert anchor == "stribeck_friction"
+        assert re.search(r'^## stribeck_friction$|id="stribeck_friction"', gallery, re.MULTILINE)
+    assert 'href="#about-stribeck_friction"' in law
+    monkeypatch.setattr(cause_parts, "gallery", lambda: None)
+    alone = report(found)
+    assert 'href="file:' not in alone
+    assert "What it does to a log: docs/gallery.md in the source of modelgen" in alone

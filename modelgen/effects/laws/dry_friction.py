@@ -78,7 +78,8 @@ class LoadDependentFriction(Friction):
         Parameter(
             "rise",
             "s",
-            "time in which the load follows the force that moves the links; 0: it is their weight alone",
+            "0: the load is the weight of the links alone; above: it is all that moves them, weight and "
+            "inertia, which it follows within this time",
             default=0.0,
             bounds=(0.0, 1.0),
             structural=True,
@@ -97,7 +98,7 @@ class LoadDependentFriction(Friction):
         return cls.states if p.get("rise", 0.0) != 0 else ()
 
     def law(self, x: Variables, p: Values) -> sp.Expr:
-        """FL |load| sign(v), load being the weight of the links, or with a rise all that moves them."""
+        """FL |load| sign(v): the load is the weight of the links, where rise is above 0 their inertia too."""
         load = x.state.get("load", x.load)
         return p["coefficient"] * sp.Abs(load) * direction(x.velocity, p["smoothing"])
 
