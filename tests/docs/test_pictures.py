@@ -9,6 +9,7 @@ from types import ModuleType
 from xml.etree import ElementTree
 
 import pytest
+from browser_support import opened
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -81,3 +82,24 @@ def test_charts_that_are_kept_look_as_those_that_are_drawn() -> None:
         assert text.split("<style>\n", 1)[1].split("</style>", 1)[0] == style, path
         for role, form in re.findall(r'<path class="dots (before|after)"[^>]* d="M[\d. -]+([^"M]*)', text):
             assert form.endswith("z") == (role == "after"), path
+
+
+@pytest.mark.parametrize("width", [1280, 1000, 800, 720, 560, 400])
+def test_no_picture_of_an_effect_is_left_alone_below_two_others(width: int, tmp_path: Path) -> None:
+    """The law stands above what it does to a log, in two pictures beside each other or below each other."""
+    gallery = (DOCS / "gallery.md").read_text(encoding="utf-8").partition("## load_dependent_friction")[2]
+    names = re.findall(r"!\[[^]]*\]\(([^)]+)\)", gallery)[:3]
+    pictures = "\n".join((DOCS / name).as_uri().join(('<img alt="" src="', '">')) for name in names)
+    style = (DOCS / "style" / "pages.css").read_text(encoding="utf-8")
+    path = tmp_path / "gallery.html"
+    path.write_text(
+        f'<html lang="en"><title>x</title><style>{style}</style><body style="max-width: 46em">'
+        f'<section id="gallery-of-effects"><p>{pictures}</p></section>',
+        encoding="utf-8",
+    )
+    with opened(path, width, alone=False) as page:
+        boxes = [image.bounding_box() for image in page.locator("img").all()]
+    tops = [round(box["y"]) for box in boxes if box is not None]
+    assert len(tops) == 3
+    rows = [tops.count(top) for top in sorted(set(tops))]
+    assert rows == ([1, 2] if width > 700 else [1, 1, 1])

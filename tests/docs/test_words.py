@@ -66,6 +66,22 @@ def test_the_documentation_has_the_words_of_the_glossary(checkout: Path) -> None
     assert not found, "\n".join(found)
 
 
+# Names of formats and of what a command is given, which are no words of the results.
+NO_TERMS = {"FILE", "LOG", "ARMS", "DIR", "YAML", "CSV", "SVG", "HTML", "UTC", "FMU", "URDF", "MJCF"}
+
+
+def test_what_results_are_measured_in_is_in_the_glossary(checkout: Path) -> None:
+    """Abbreviations of the pages and the terminal, and the words of the verdicts."""
+    found = {"suspect", "cut-off", "doubt"}
+    for package in ("report", "api", "fleet"):
+        for path in sorted((checkout / "modelgen" / package).rglob("*.py")):
+            for _, text in texts(path.read_text(encoding="utf-8")):
+                found |= set(re.findall(r"\b(?:[A-Z]{3,}|F_gof)\b", text)) - NO_TERMS
+    assert {"F_gof", "RMSE", "NRMSE", "BIC"} <= found
+    terms = terms_of(checkout)
+    assert not [word for word in sorted(found) if word.lower() not in terms]
+
+
 READ = {".c", ".h", ".py", ".sh", ".yaml"}  # what a user opens in examples: comments, texts and all
 
 
