@@ -152,15 +152,19 @@ def _doubtful(found: Identification, k: int) -> str:
 
 
 def driving(estimates: Sequence[Estimate]) -> list[Estimate]:
-    """Parameters of effects that are never negative, and come out below zero clearly."""
+    """Parameters of effects that are never negative, and come out below zero clearly.
+
+    None of a joint at which another law of the same friction, by a power of the speed say, is above zero
+    clearly: the two are alike in part, and it is their sum that brakes.
+    """
     limited = {p.symbol for effect in CATALOGUE.values() for p in effect.linear if p.bounds[0] >= 0.0}
+    varied = {p.symbol for effect in CATALOGUE.values() if effect.varies for p in effect.linear}
+    sizes = [(e, e.name.rstrip("0123456789"), e.value / e.std) for e in estimates if e.std]
+    braking = {e.joint for e, symbol, size in sizes if symbol in varied and size > CLEARLY}
     return [
         e
-        for e in estimates
-        if e.std is not None
-        and e.name == e.standard
-        and e.name.rstrip("0123456789") in limited
-        and e.value < -CLEARLY * e.std
+        for e, symbol, size in sizes
+        if e.name == e.standard and symbol in limited and size < -CLEARLY and e.joint not in braking
     ]
 
 

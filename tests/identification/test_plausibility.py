@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,8 @@ from identification_support import model_of
 import modelgen as mg
 from modelgen.description import loads
 from modelgen.effects import known_effects
+from modelgen.identification import Estimate
+from modelgen.identification.summary import driving
 
 ARMS = """
 schema: 1
@@ -393,3 +396,17 @@ def test_coarse_currents_are_not_cut_off(step: float, arm: mg.Arm, logs: list[Ta
     truth = model_of(arm).nominal
     hits = [abs(e.value - truth[name]) < 3 * e.std for name, e in found.parameters.items()]
     assert sum(hits) >= len(hits) - 1
+
+
+def test_friction_below_zero_is_possible_where_another_law_of_it_is_above() -> None:
+    """As found at a UR10's first joint: a power of the speed less a part that is in proportion to it."""
+    below = Estimate("FV1", -19.8, 2.0, "N m s/rad", True, joint=1, standard="FV1")
+    power = Estimate("FN1", 55.9, 2.6, "N m", True, joint=1, standard="FN1")
+    v = np.linspace(0.0, 0.9, 50)  # rad/s, of its motion
+    assert (power.value * (v / 0.975) ** 0.41 + below.value * v >= 0.0).all()
+    assert driving([below, power]) == []
+    elsewhere = replace(power, name="FN2", standard="FN2", joint=2)
+    turned = replace(power, value=-55.9)
+    dry = Estimate("FC1", 8.0, 0.9, "N m", True, joint=1, standard="FC1")
+    assert driving([below]) == driving([below, dry]) == [below]
+    assert driving([below, elsewhere]) == driving([below, turned]) == [below]
