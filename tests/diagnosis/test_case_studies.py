@@ -105,3 +105,41 @@ def test_tx40_lacks_its_coupling_and_friction_by_load_and_by_a_power_of_the_spee
     assert "rise" in causes["load_dependent_friction", 3]  # by the weight alone it has too little evidence
     # half of what friction and rotors leave there on a part of the log that took part in nothing
     assert found["error"]["after"][2] < 0.5 * found["error"]["before"][2]
+
+
+def test_ur10_has_the_answer_and_the_errors_of_the_page(tmp_path: Path) -> None:
+    """By its two commands: the report in its own band, the table in that of the deployed model."""
+    log = "ur10_unisa/ur10_exciting_trajectory.db3"
+    found = diagnosis(tmp_path / "ur10", "ur10", "ur10", [f"{log}@0:20"], f"{log}@20:27.5", "--no-experiment")
+    call = ["identify", str(tmp_path / "ur10" / "ur10_extended.yaml")]
+    call += [
+        "--mapping",
+        str(STUDIES / "ur10_mapping.yaml"),
+        "--cutoff",
+        "8",
+        "--out",
+        str(tmp_path / "at 8"),
+    ]
+    result = CliRunner().invoke(
+        app, [*call, "--train", f"{DATA / log}@0:20", "--test", f"{DATA / log}@20:27.5"]
+    )
+    assert result.exit_code == 0, result.output
+    in_band = json.loads((tmp_path / "at 8" / "identification.json").read_text(encoding="utf-8"))
+    as_on_the_page(found, in_band)
+
+
+def as_on_the_page(found: dict[str, Any], in_band: dict[str, Any]) -> None:
+    page = (ROOT / "docs" / "case-studies.md").read_text(encoding="utf-8").partition("\n## EMPS")[0]
+    (row,) = re.findall(r"^\| extended \| (.*) \|$", page, re.MULTILINE)
+    assert [f"{x:.3f}" for x in in_band["test"]["rmse"]] == row.split(" | ")
+    (gain, low, high, band) = re.findall(
+        r"(\d+) % less\nerror over all joints \((\d+) to (\d+) %\) up to ([\d.]+) Hz", page
+    )[0]
+    interval = found["error"]["overall_gain_interval_percent"]
+    assert [f"{x:.0f}" for x in (found["error"]["overall_gain_percent"], *interval)] == [gain, low, high]
+    assert f"{found['settings']['cutoff_hz']:.1f}" == band
+    assert len(found["causes"]) == 6
+    assert "[Six causes]" in page
+    assert len({c["joint_name"] for c in found["causes"]}) == 3
+    confirmed = [k["passed"] for c in found["causes"] for k in c["checks"] if k["name"] == "confirmed"]
+    assert confirmed == [True] * 6

@@ -39,6 +39,7 @@ PARSED = (
         "diagnose",
         "needs logs of others; tests/diagnosis/test_case_studies.py has them",
     ),
+    ("docs/case-studies.md", "identify", "follows on a diagnosis of logs of others"),
     ("README.md", "fleet", "a diagnosis for each arm; tests/fleet runs one"),
     ("docs/fleet.md", "fleet", "a diagnosis for each arm; tests/fleet runs one"),
     ("docs/packaging.md", "--max-flash", "compiles every function; tests/packaging/test_budget.py runs it"),
