@@ -138,8 +138,8 @@ def as_on_the_page(found: dict[str, Any], in_band: dict[str, Any]) -> None:
     interval = found["error"]["overall_gain_interval_percent"]
     assert [f"{x:.0f}" for x in (found["error"]["overall_gain_percent"], *interval)] == [gain, low, high]
     assert f"{found['settings']['cutoff_hz']:.1f}" == band
-    assert len(found["causes"]) == 6
-    assert "[Six causes]" in page
-    assert len({c["joint_name"] for c in found["causes"]}) == 3
+    assert len(found["causes"]) == 7
+    assert "[Seven causes]" in page
+    assert len({c["joint_name"] for c in found["causes"]}) == 4
     confirmed = [k["passed"] for c in found["causes"] for k in c["checks"] if k["name"] == "confirmed"]
-    assert confirmed == [True] * 6
+    assert confirmed == [True] * 7
