@@ -26,6 +26,7 @@ _MOTIONS = {
     "Another motion helps.",
     "suspected": "Record another motion and add its log to the training records.",
 }
+_EVERY = "Only some effects were asked for: ask for all of the catalogue."
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ def following(d: Diagnosis, call: Call) -> list[Step]:
         text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
         steps.append(Step(text, code))
     elif d.verdict in _MOTIONS:
-        steps.append(other_motion(d, call))
+        steps.append(asked_next(d, call)[1])
     if d.next_experiment is not None:
         steps.append(Step(f"To separate the cause from its rivals: {followed(d.next_experiment)}."))
     else:
@@ -62,10 +63,11 @@ def whole_json(d: Diagnosis, call: Call) -> dict[str, Any]:
     """
     said = to_json(d)
     if d.next_experiment is None and d.verdict in _MOTIONS:
+        what, step = asked_next(d, call)
         said["next_experiment"] = {
             "separates": [],
-            "do": _MOTIONS[d.verdict],
-            "command": other_motion(d, call).command or None,
+            "do": what,
+            "command": step.command or None,
             "trajectory": None,
             "tests": [{"test": text, "expected_delta_bic": None} for text in _by_itself(d)],
         }
@@ -86,8 +88,8 @@ def _by_itself(d: Diagnosis) -> list[str]:
 
 def proposed(d: Diagnosis, call: Call) -> list[Step]:
     """Steps that the terminal offers at the end, each with a command where there is one."""
-    motion = [other_motion(d, call)] if d.verdict in _MOTIONS else []
-    return [*motion, *carried(d, call), *replaying(d, call)]
+    first = [asked_next(d, call)[1]] if d.verdict in _MOTIONS else []
+    return [*first, *carried(d, call), *replaying(d, call)]
 
 
 def carried(d: Diagnosis, call: Call) -> list[Step]:
@@ -152,11 +154,18 @@ def _wherever(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> str:
     return f"{effect} at {listed(place_of(d.arm, joint) for joint in joints)}"
 
 
-def other_motion(d: Diagnosis, call: Call) -> Step:
-    """A motion to be recorded next, with the speeds of the test record where the arm has no limits."""
+def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
+    """What to do where nothing is named, by itself and with its command.
+
+    That is to ask for all effects, where what is missing is none of the few asked for; else to record another
+    motion, with the speeds of the test record where the arm has no limits.
+    """
+    if d.verdict == "outside_catalogue" and d.settings["asked"] != "all":
+        every = call.diagnosing()
+        return _EVERY, Step(f"{_EVERY} This does, {WHERE}:" if every else _EVERY, every)
     text = _MOTIONS[d.verdict]
     p = d.test.prepared
     speeds = np.abs(p.picked(p.dq)).max(axis=0).tolist()
     description = call.beside(f"{d.arm.name}_extended.yaml")
     excite = call.exciting(call.beside("trajectory.csv"), speeds, description)
-    return Step(f"{text} This computes one, {WHERE}:" if excite else text, excite)
+    return text, Step(f"{text} This computes one, {WHERE}:" if excite else text, excite)

@@ -256,8 +256,17 @@ def test_a_description_that_no_file_has_is_to_be_written_first(tmp_path: Path) -
         assert "arms.yaml" in made.first
 
 
-@pytest.mark.parametrize("verdict", ["suspected", "outside_catalogue", "cannot_tell"])
-def test_programs_and_the_terminal_get_the_motion_that_the_page_proposes(bench: Path, verdict: str) -> None:
+@pytest.mark.parametrize(
+    ("verdict", "proposes"),
+    [
+        ("suspected", ["excite", "not named/bench_extended.yaml"]),
+        ("outside_catalogue", ["diagnose", "my arm.yaml"]),  # for all effects, not for the one of this call
+        ("cannot_tell", ["excite", "not named/bench_extended.yaml"]),
+    ],
+)
+def test_programs_and_the_terminal_get_what_the_page_proposes(
+    bench: Path, verdict: str, proposes: list[str]
+) -> None:
     """With the same command, which runs, in the file and in what --json prints after it was written."""
     logs = [f"logs of may/{name}.csv" for name in ("one", "two", "test")]
     with chdir(bench):
@@ -269,12 +278,14 @@ def test_programs_and_the_terminal_get_the_motion_that_the_page_proposes(bench: 
         shown = Diagnosis(found, d.call)
         shown.write("not named", code=False)
         (step,) = proposed(found, shown.call)
+        in_memory = shown.to_json()["next_experiment"]
     page = (bench / "not named" / "report.html").read_text(encoding="utf-8")
     (words,) = commands(bench / "not named" / "report.html")
-    assert words[:2] == ["excite", "not named/bench_extended.yaml"]
+    assert words[:2] == proposes
+    assert "--effect" not in words
     said = json.loads((bench / "not named" / "diagnosis.json").read_text(encoding="utf-8"))["next_experiment"]
     assert shlex.split(said["command"])[1:] == shlex.split(step.command)[1:] == words
     assert said["do"] in unescape(page)
     assert [test["test"] in unescape(page) for test in said["tests"]] == [True] * len(suspects)
-    assert shown.to_json()["next_experiment"] == said
+    assert in_memory == said
     run(words, bench)
