@@ -30,8 +30,10 @@ PICTURE = PAGE.with_suffix(".svg")
 INTRODUCTION = """\
 # Strangers' arms: measured
 
-How often does `modelgen diagnose` name what is there, and what is not, on arms and records that it was not
-made for? Of each kind of records the newest set of three cases or more that nothing was chosen on:
+*How often does `modelgen diagnose` name what is there, and what is not, on arms and records that it was not
+made for?*
+
+Of each kind of records the newest set of three cases or more that nothing was chosen on:
 """
 MEANING = """\
 Exact is the right name at the right joint and nothing else; where nothing that the catalogue knows is
