@@ -50,7 +50,6 @@ class Decision:
     verdict: str
     reason: str
 
-    @property
     def instant(self) -> EffortInstant | None:
         """When the efforts were read, where a suspect says it that is only the log's."""
         alone = [e.cause for e in self.suspects if [c.name for c in e.failed] == ["admissible"]]

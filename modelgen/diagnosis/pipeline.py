@@ -39,8 +39,9 @@ def diagnose(
     options = replace(options or Options(), **changes)
     study = study_of(arm, found, options)
     decision = decided(study, options, progress)
-    if decision.instant is not None:
-        study = study.at(decision.instant)
+    instant = decision.instant()
+    if instant is not None:
+        study = study.at(instant)
         decision = decided(study, options, progress)
     extension = extend(arm, decision.selection, decision.band.equations)
     result = reported(study, decision, extension, options)

@@ -58,8 +58,8 @@ def following(d: Diagnosis, call: Call) -> list[Step]:
 def whole_json(d: Diagnosis, call: Call) -> dict[str, Any]:
     """diagnosis.json, with what the page proposes as `next_experiment`.
 
-    That is what separates a cause from its rivals, or another motion with the command that computes it where
-    the verdict asks for one; None else. call: as of `following`.
+    That is what separates a cause from its rivals, or what is to be done where nothing is named, with its
+    command; None else. call: as of `following`.
     """
     said = to_json(d)
     if d.next_experiment is None and d.verdict in _MOTIONS:
