@@ -27,7 +27,7 @@ class Dominance:
 
 
 def dominance(cause: Cause, selection: Selection) -> Dominance:
-    """The candidate that is ahead of the cause by most, of those that a gate refused.
+    """The candidate that is ahead of the cause by most, of those that validation refused.
 
     At the cause's turn, or beside all causes in the end: at its joint or of the whole arm. A constant law
     that the cause lets vary may not be ahead at all: what explains as much without varying shows no

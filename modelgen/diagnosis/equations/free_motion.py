@@ -16,7 +16,7 @@ from modelgen.numeric import Array
 
 
 def settings_of_swings(records: Sequence[Record], settings: Settings, limits: EquationThresholds) -> Settings:
-    """Settings with gates beyond the noise: a swing begins and ends at rest, where noise alone moves it.
+    """Settings with rest speeds beyond the noise: a swing begins and ends at rest, where noise alone is seen.
 
     The positions' filter rounds off the speed where friction changes sides, and so shifts its zero: it is as
     wide as the noise allows.

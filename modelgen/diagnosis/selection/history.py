@@ -15,7 +15,7 @@ SUSPECT = "suspect"
 
 @dataclass(frozen=True)
 class Ranked:
-    """A candidate's evidence at one turn, and why it is no cause: empty for what passed every gate.
+    """A candidate's evidence at one turn, and why it is no cause: empty for what passed validation.
 
     cross_gain, expected_gain: as a cause's, None where that was not asked; chosen: at this turn,
     after an exchange the one that stayed.
@@ -39,7 +39,7 @@ History = list[list[Ranked]]
 
 
 def ranked(trial: FittedCandidate, by: Judgement | None, refused: str) -> Ranked:
-    """by: where the gates were asked."""
+    """by: where validation was asked."""
     gain, expected = (None, None) if by is None else (by.gain, by.expected)
     return Ranked(*trial.candidate.place, trial.gain.delta_bic, gain, expected, refused)
 

@@ -75,7 +75,7 @@ def left_to(trial: FittedCandidate, system: System) -> float:
 
 
 def given_way(pair: Judged, passed: Sequence[Judged], share: float) -> str:
-    """Why what passed every gate is not what is there; empty for most. share: as of `at_one_joint`."""
+    """Why what passed validation is not what is there; empty for most. share: as of `at_one_joint`."""
     if at_one_joint(pair, passed, share):
         return "one joint"
     return "near rest" if imitated(pair, passed) else ""

@@ -1,4 +1,4 @@
-"""Forward selection of causes, exchange and backward elimination; each must pass every gate."""
+"""Forward selection of causes, exchange and backward elimination; each must pass validation."""
 
 from __future__ import annotations
 

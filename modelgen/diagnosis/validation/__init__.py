@@ -1,4 +1,4 @@
-"""The gates that a cause must pass on rows its fit has not seen."""
+"""What a cause must show on rows that its fit has not seen."""
 
 from modelgen.diagnosis.validation.agreement import agreement
 from modelgen.diagnosis.validation.check import Check

@@ -1,4 +1,4 @@
-"""The gates that a cause with evidence must pass: it helps and matters on rows that its fit has not seen.
+"""What a cause with evidence must show: it helps and matters on rows that its fit has not seen.
 
 The cause is fitted on one part of the records and carried to the other, then the other way round (`folds`);
 the squares of all parts count together.
@@ -26,8 +26,8 @@ from modelgen.regression.weighted import moving_rows, rmse, stacked, weighted_fi
 @dataclass(frozen=True)
 class Judgement:
     """gain: percent of the RMSE measured on rows that the fit has not seen; expected: what the value found in
-    all records must gain there, nan where that was not asked; refused: the gate that stays shut, empty where
-    none does.
+    all records must gain there, nan where that was not asked; refused: what it lacks, empty where
+    it lacks nothing.
     """
 
     gain: float
@@ -36,7 +36,7 @@ class Judgement:
 
 
 class Gates:
-    """Gates of one step of the selection.
+    """Validation at one step of the selection.
 
     system: with the causes that were chosen `before`; last: what is judged was chosen before those, which
     cannot have left it anything of theirs.

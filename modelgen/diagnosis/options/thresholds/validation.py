@@ -1,4 +1,4 @@
-"""Thresholds of the gates: what a cause must gain on rows that its fit has not seen."""
+"""Thresholds of validation: what a cause must gain on rows that its fit has not seen."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from modelgen.thresholds import Group, entry
 
 @dataclass(frozen=True)
 class ValidationThresholds(Group):
-    """What decides whether a cause with evidence passes the gates. Gains are those of the usual band."""
+    """What decides whether a cause with evidence passes validation. Gains are those of the usual band."""
 
     min_gain_percent: float = entry(
         1.5, "% of the RMSE", "A cause must promise this gain on unseen rows to be worth naming.", JUDGED
