@@ -17,7 +17,7 @@ from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call
-from modelgen.report.excitation import picture, report, worst
+from modelgen.report.excitation import picture, report, separates, worst
 from modelgen.report.words import limit_name
 
 
@@ -106,15 +106,12 @@ class Excitation(Result):
             In the order in which they are printed.
         """
         e, made = self.found, self.to_json()
-        reached = made["condition_numbers_of_starts"]
         rows = [[limit_name(e.arm, name), f"{100 * share:z.1f}"] for name, share in e.usage.items()]
         return [
             *(f"note: {remark}" for remark in made["remarks"]),
-            f"{e.arm.name}: condition number {e.condition:z.4g} with columns of unit norm ({e.raw:z.3g} in "
-            f"the parameters' own units), {made['base_parameters']} base parameters, "
-            f"{made['samples']} samples",
+            f"{e.arm.name}: {separates(e)}",
             *worst(e),
-            f"starts: {len(reached)}, from {reached[0]:z.4g} to {reached[-1]:z.4g}",
+            f"set-points: {made['samples']} in a period of {e.problem.settings.period:g} s",
             Table("limits", {"limit": "left", "used %": "right"}, rows),
         ]
 

@@ -21,7 +21,7 @@ from modelgen.identification.refinement import refine_logs, to_json
 from modelgen.options import RefinementOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, files_of
-from modelgen.report.refinement import picture, report
+from modelgen.report.refinement import headline, picture, report
 
 
 class Refinement(Result):
@@ -112,6 +112,7 @@ class Refinement(Result):
         headings = ("joint", "F_gof % before", "after", "RMSE before", "after ", "unit")
         parameters = dict.fromkeys(("parameter", "start", "value", "std", "unit"), "right")
         return [
+            headline(self.found),
             Table("", parameters, rows),
             Table("simulated motion", dict.fromkeys(headings, "right"), joints),
         ]

@@ -1,6 +1,6 @@
 """Charts as SVG: light enough to draw by the dozen, legible at any width, in the colours of their page."""
 
-from modelgen.charts.chart import ROLES, Band, Chart, Curve, labels, over_time
+from modelgen.charts.chart import ROLES, Band, Chart, Curve, labels, over_time, within
 from modelgen.charts.drawn import drawn
 from modelgen.charts.intervals import Interval, intervals
 from modelgen.charts.paths import mark
@@ -24,4 +24,5 @@ __all__ = [
     "sheet",
     "sized",
     "ticks",
+    "within",
 ]

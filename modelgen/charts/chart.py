@@ -78,6 +78,17 @@ def over_time(
     return Chart(title, "time [s]", y_label, since, text, **others)
 
 
+def within(curves: Sequence[Curve], low: float, high: float) -> tuple[float, float] | None:
+    """Ordinates that a chart shows of curves that leave the limits low and high, with room; None where none
+    does: of a simulated motion that runs away as much is drawn as leaves the measured one legible.
+    """
+    lowest, highest = (f([f(c.y[np.isfinite(c.y)]) for c in curves]) for f in (np.min, np.max))
+    if (low <= lowest and highest <= high) or not low < high:
+        return None
+    room = 0.05 * (high - low)
+    return max(float(lowest), low) - room, min(float(highest), high) + room
+
+
 def labels(charts: Sequence[Chart]) -> list[tuple[str, str, bool]]:
     """Role, label and whether it is dots of everything that has a label, once each."""
     found: dict[tuple[str, str, bool], None] = {}

@@ -33,7 +33,7 @@ _CLAUSES = {
     FAILED: ("could not be diagnosed", "could not be diagnosed"),
 }
 _UNNAMED = {"named": " something", "suspected": " something"}
-_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", "less error %", "lack of fit", "s", "said")
+_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", "less error %", "lack of fit", "s", "reason")
 _LOOKS = 7  # colours that are told apart
 _URGENT = 8  # units that are listed first
 _GROUPS = 5  # units that lack the same, in a sentence each
@@ -42,6 +42,10 @@ _UNITS = 4  # of a group, by their names
 _WIDEST = 80.0  # percent of the room, of a bar
 _NOTHING = "Every unit could be diagnosed, and nothing is left unexplained."
 _HARM = "makes its test record worse"
+_FAILED = (
+    "Of units that failed: mend what the lines say, and call modelgen fleet again with --again. What is "
+    "done, of the same files, is kept."
+)
 _READING = (
     "Less error: on the test record over all joints, with the causes than without. Lack of fit: over its "
     "threshold; above 1, something deterministic remains. A click on a heading sorts."
@@ -237,6 +241,8 @@ def _next(rows: Sequence[Row]) -> Iterator[Part]:
     """The units to look at, and the command for the first of them that has one."""
     urgent = list(_urgent(rows))
     yield Lines(urgent) if urgent else Text(_NOTHING)
+    if any(verdict(row) == FAILED for row in rows):
+        yield Text(_FAILED)
     wanting = _open(rows) + [row for row in rows if _harming(row)]
     first = next((row for row in [*wanting, *rows] if row.get("command")), None)
     if first is not None:

@@ -62,7 +62,7 @@ def remarks(found: Identification) -> list[str]:
     text, dropped = contradicting(found), [e.name for e in found.estimates if e.dropped]
     if dropped:
         text.append(f"Left out, since the records do not support them: {', '.join(dropped)}.")
-    if found.comparison is not None and found.comparison.biased:
+    if biased(found):
         text.append(
             "Errors of the positions bias least squares (test of Durbin, Wu and Hausman)"
             + ("; these are by instruments." if found.method == "iv" else ": use --method iv.")
@@ -79,6 +79,20 @@ def remarks(found: Identification) -> list[str]:
         gains = ", ".join(f"{names[g.joint - 1]} {g.value / g.described:.3f}" for g in found.gains)
         text.append(f"Torque constants over those of the description: {gains}.")
     return text
+
+
+def biased(found: Identification) -> bool:
+    """Whether errors of the positions bias least squares, by what matters in the effort.
+
+    Without a test record nothing says what matters: what is clear counts.
+    """
+    both, test = found.comparison, found.test
+    if both is None or not both.biased:
+        return False
+    if test is None or test.sizes is None or found.method == "iv":
+        return True
+    moved = [test.in_effort(k, both.solution.theta[k] - e.value)[1] for k, e in enumerate(found.estimates)]
+    return max(moved) > MATTERS
 
 
 def contradicting(found: Identification) -> list[str]:

@@ -79,6 +79,15 @@ class Call:
         kept = [*words_of(self.options, ("mapping", "period")), "--cutoff", f"{cutoff:.6g}"]
         return self.command("identify", *records, *kept, "--out", self.beside(out), description=description)
 
+    def by_instruments(self, description: str | None = None) -> str:
+        """The command that fits the same records by instrumental variables; empty where they are no files."""
+        if not self.train:
+            return ""
+        records = [*_repeated("--train", self.train), *_repeated("--test", self.test), "--method", "iv"]
+        kept = words_of(self.options, ("mapping", "period", "cutoff", "without"))
+        out = self.beside("by_instruments")
+        return self.command("identify", *records, *kept, "--out", out, description=description)
+
     def exciting(self, out: str, speeds: Sequence[float] = (), description: str | None = None) -> str:
         """The command for a motion that determines the parameters; empty where the arm lacks limits.
 

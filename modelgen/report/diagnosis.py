@@ -31,6 +31,7 @@ _FIT = (
 )
 _SHEET = ("speed", "position", "load (size of the effort)")  # of the residuals that stand in a file
 _RIVALS = (("cause", "left"), ("rival", "left"), ("why not", "left"))
+_NO_RIVALS = "None: no other candidate explains what a cause does nearly as well."
 _CANDIDATES = (
     ("effect", "left"),
     ("place", "left"),
@@ -97,7 +98,8 @@ def _others(d: Diagnosis) -> Iterator[Section]:
     found: list[Section] = []
     if against or (turns and not d.suspects):
         title = "Rivals, and why not" if d.causes else "What was tried"
-        found.append(Section(title, [Grid("Rivals", _RIVALS, against, folds=True)] if against else []))
+        said: list[Part] = [Grid("Rivals", _RIVALS, against, folds=True)] if against else []
+        found.append(Section(title, said or ([Text(_NO_RIVALS)] if d.causes else [])))
     if d.suspects:
         parts = [part for k in range(len(d.suspects)) for part in suspected(d, k)]
         found.append(Section("Suspects", parts))

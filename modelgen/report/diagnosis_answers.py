@@ -19,6 +19,7 @@ from modelgen.report.diagnosis_sentences import (
     harms,
     interval,
     missing,
+    reason,
     remains,
     worth,
 )
@@ -51,8 +52,8 @@ def answers(d: Diagnosis, call: Call) -> list[Section]:
 def _missing(d: Diagnosis) -> Iterator[Part]:
     if not d.causes:
         yield Text([Run(text, "strong") for text in missing(d)])
-        if not d.suspects:
-            yield Text(_reason(d))
+        if reason(d) and not d.suspects:
+            yield Text(reason(d))
         return
     order, texts = by_worth(d), missing(d)
     said = [Text([Run(texts[k], "strong"), Run(" "), _linked(d.causes[k].effect)]) for k in order]
@@ -150,15 +151,13 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
         yield Text(_NOTHING)
         rows = [(joint_name(d.arm, j), x) for j, x in enumerate(_before(d), 1)]
         table = Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), rows, beside=True)
-        yield Folded(caption, [table], narrow=True) if d.suspects else table
+        yield Folded(caption, [table], narrow=True)
     known = bool(np.isfinite(d.errors.low).any())
     how = "; intervals from a block bootstrap" if known else "; the record is too short for intervals"
     how = how if d.causes else ""
     measured = _ERRORS[d.test.prepared.input is None]
     said = f"{measured} on the test record, which nothing of the choice or the fit has seen{how}."
-    note = Text(said, "quiet")
-    folds = bool(d.causes or d.suspects)
-    yield Folded("How the error was measured", [note], narrow=True) if folds else note
+    yield Folded("How the error was measured", [Text(said, "quiet")], narrow=True)
 
 
 def _before(d: Diagnosis) -> list[tuple[str, str]]:
@@ -190,10 +189,6 @@ def _next(d: Diagnosis, call: Call) -> Iterator[Part]:
         yield Folded("Experiments that show each effect by itself", alone)
     else:
         yield from alone
-
-
-def _reason(d: Diagnosis) -> str:
-    return sentence(d.reason)
 
 
 def _gains(d: Diagnosis) -> list[tuple[str, tuple[str, str], str, tuple[str, str]]]:

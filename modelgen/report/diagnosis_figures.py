@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from modelgen.charts import Chart, Curve, over_time
+from modelgen.charts import Chart, Curve, over_time, within
 from modelgen.dataset.drives import drives_of
 from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.result import Diagnosis
@@ -137,23 +137,14 @@ def replayed(d: Diagnosis) -> list[Chart]:
             right.append(Curve(t, path - truth, role, label))
         low, high = float(np.nanmin(left[0].y)), float(np.nanmax(left[0].y))
         text = f"Position of {name}, measured and simulated window by window."
-        near = _within(left, 2 * low - high, 2 * high - low)
+        near = within(left, 2 * low - high, 2 * high - low)
         label = f"position [{unit[j]}]"
         charts.append(over_time(name, label, left, text, begin, zoom=True, y_range=near))
         text = f"Simulated less measured position of {name}."
-        near = _within(right, low - high, high - low)
+        near = within(right, low - high, high - low)
         title, label = f"{name}, error", f"error [{unit[j]}]"
         charts.append(over_time(title, label, right, text, begin, zoom=True, y_range=near))
     return charts
-
-
-def _within(curves: list[Curve], low: float, high: float) -> tuple[float, float] | None:
-    """What curves span of an ordinate between limits, with room; None where they stay between them."""
-    lowest, highest = (f([f(c.y[np.isfinite(c.y)]) for c in curves]) for f in (np.min, np.max))
-    if (low <= lowest and highest <= high) or not low < high:
-        return None
-    room = 0.05 * (high - low)
-    return max(float(lowest), low) - room, min(float(highest), high) + room
 
 
 def _joined(windows: Array) -> Array:

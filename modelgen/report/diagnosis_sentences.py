@@ -14,7 +14,6 @@ from modelgen.report.words import finding, joint_name, listed, sentence
 
 _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
-    "outside_catalogue": "Something is missing that is not in the catalogue.",
     "cannot_tell": "These records cannot tell.",
     "suspected": "Nothing can be named, and something is suspected.",
 }
@@ -31,14 +30,12 @@ def missing(d: Diagnosis) -> list[str]:
     """What is missing, a sentence for each cause; one that says so where none is named."""
     if d.verdict == "named":
         return [sentence(finding(d.arm, c.effect, c.joint, c.parameters, c.records)) for c in d.causes]
-    return [unnamed(d)]
+    return [_SENTENCES.get(d.verdict) or sentence(d.reason)]
 
 
-def unnamed(d: Diagnosis) -> str:
-    """The verdict where no cause is named."""
-    if d.verdict == "outside_catalogue" and d.settings["asked"] != "all":
-        return "Something is missing that is none of the effects asked for."
-    return _SENTENCES[d.verdict]
+def reason(d: Diagnosis) -> str:
+    """Why no cause is named; empty where `missing` says it."""
+    return sentence(d.reason) if d.verdict in _SENTENCES else ""
 
 
 def headline(d: Diagnosis) -> str:
@@ -46,7 +43,7 @@ def headline(d: Diagnosis) -> str:
     if d.verdict == "named":
         names = listed(cause_title(d, c) for c in d.causes)
         return " ".join([f"The model lacks {names}: {worth(d)}.", *doubted(d)])
-    return f"{unnamed(d)} {sentence(d.reason)}"
+    return " ".join([*missing(d), reason(d)]).rstrip()
 
 
 def worth(d: Diagnosis) -> str:
@@ -223,13 +220,14 @@ def compared(d: Diagnosis) -> list[str]:
     if not rested and abs(usual - cutoff) <= _SAME * cutoff:
         return []
     numbers = at_joints(d.arm.coordinate_names, [f"{x:z.4g}" for x in rmse])
-    at_rest = "fitted with what the filter carries from samples at rest, as identify does, it is,"
-    counted = f"; {at_rest} in {d.errors.unit}, {numbers}" if rested else ""
-    other = f", identify chooses {usual:z.4g} Hz" if abs(usual - cutoff) > _SAME * cutoff else ""
-    return [
-        f"The error is that up to {cutoff:z.6g} Hz, fitted and judged while the joint moves{counted}{other}; "
-        f"modelgen identify --cutoff {cutoff:z.6g} has this band."
+    rest = f" and fits what the filter carries over from rest too: {numbers} [{d.errors.unit}]"
+    said = [
+        f"The errors are those up to {cutoff:z.6g} Hz, the band of this diagnosis, while the joint moves.",
+        f"modelgen identify --cutoff {cutoff:z.6g} has the same band{rest if rested else ''}.",
     ]
+    if abs(usual - cutoff) > _SAME * cutoff:
+        said.append(f"Without --cutoff it chooses {usual:z.4g} Hz, and has other errors.")
+    return [" ".join(said)]
 
 
 def suspicions(d: Diagnosis) -> list[str]:

@@ -66,19 +66,11 @@ def picture(e: Excitation) -> str:
 def report(e: Excitation, stem: str, call: Call) -> str:
     """HTML that needs nothing beside it. stem: what the names of the files beside it begin with."""
     s = e.problem.settings
-    grade = "well" if e.condition <= _GOOD else "fairly" if e.condition <= _FAIR else "badly"
-    said = (
-        f"The motion separates the {len(e.problem.names)} base parameters {grade}: condition number "
-        f"{number(e.condition)} with columns of unit norm ({_GOOD:g} is good, above {_FAIR:g} is poor)."
-    )
-    reached = [x for x in e.values if np.isfinite(x)]
-    if len(reached) > 1:
-        said += f" {len(reached)} starts ended between {number(min(reached))} and {number(max(reached))}."
     remarks = [*e.arm.notes, *e.problem.remarks]
     tight = sorted(e.usage.items(), key=lambda item: -item[1])
     rows = [(limit_name(e.arm, limit), f"{100 * share:z.1f}") for limit, share in tight]
     answers: Parts = [
-        ("What was found", [Text(said)]),
+        ("What was found", [Text(separates(e))]),
         ("What it determines worst", [Text(text) for text in worst(e)]),
         (
             "What it asks of the arm",
@@ -101,6 +93,19 @@ def report(e: Excitation, stem: str, call: Call) -> str:
         ("Limits", [Grid("Limits", [("limit", "left"), ("used %", "right")], rows, long=True)]),
     ]
     return page(f"{e.arm.name}: excitation trajectory", "Excitation", answers, sections)
+
+
+def separates(e: Excitation) -> str:
+    """How well the motion tells the base parameters apart, by its condition number."""
+    grade = "well" if e.condition <= _GOOD else "fairly" if e.condition <= _FAIR else "badly"
+    said = (
+        f"The motion separates the {len(e.problem.names)} base parameters {grade}: condition number "
+        f"{number(e.condition)} with columns of unit norm ({_GOOD:g} is good, above {_FAIR:g} is poor)."
+    )
+    reached = [x for x in e.values if np.isfinite(x)]
+    if len(reached) > 1:
+        said += f" {len(reached)} starts ended between {number(min(reached))} and {number(max(reached))}."
+    return said
 
 
 def worst(e: Excitation) -> list[str]:

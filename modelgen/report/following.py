@@ -39,20 +39,23 @@ class Step:
 
 def following(d: Diagnosis, call: Call) -> list[Step]:
     """Steps, the first one first. call: how the diagnosis was asked for, with the folder of its report."""
-    code = _generating(d, call, call.beside(f"{d.arm.name}_extended.yaml"))
-    steps = []
-    if d.verdict == "named":
-        steps += carried(d, call) or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
-    elif d.verdict == "nothing_missing":
-        text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
-        steps.append(Step(text, code))
-    elif d.verdict in _MOTIONS:
-        steps.append(asked_next(d, call)[1])
+    steps = _first(d, call)
     if d.next_experiment is not None:
         steps.append(Step(f"To separate the cause from its rivals: {followed(d.next_experiment)}."))
     else:
         steps += [Step(text) for text in _by_itself(d)]
     return steps
+
+
+def _first(d: Diagnosis, call: Call) -> list[Step]:
+    """What the verdict asks for: the code of what was found, or another motion."""
+    if d.verdict in _MOTIONS:
+        return [asked_next(d, call)[1]]
+    code = _generating(d, call, call.beside(f"{d.arm.name}_extended.yaml"))
+    if d.verdict == "named":
+        return carried(d, call) or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
+    text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
+    return [Step(text, code)]
 
 
 def whole_json(d: Diagnosis, call: Call) -> dict[str, Any]:
@@ -88,8 +91,7 @@ def _by_itself(d: Diagnosis) -> list[str]:
 
 def proposed(d: Diagnosis, call: Call) -> list[Step]:
     """Steps that the terminal offers at the end, each with a command where there is one."""
-    first = [asked_next(d, call)[1]] if d.verdict in _MOTIONS else []
-    return [*first, *carried(d, call), *replaying(d, call)]
+    return [*_first(d, call), *replaying(d, call)]
 
 
 def carried(d: Diagnosis, call: Call) -> list[Step]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from modelgen.charts import Chart, Curve, Interval, number, over_time, sheet
 from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
-from modelgen.identification.summary import determined, helpful, impossible, questions, remarks
+from modelgen.identification.summary import biased, determined, helpful, impossible, questions, remarks
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.options import words_of
@@ -22,6 +22,7 @@ from modelgen.report.words import listed, sentence
 
 AS_DESCRIBED = "the arm as described"
 _EXPLAIN = "Answer the questions above first: no code should be generated from impossible values."
+_UNBIASED = "which the errors of the positions do not bias; code should be generated from those values"
 _EXPLAINED = "If the records are read rightly the model lacks something; this names the cause."
 _LACKING = "Where the error is larger than the noise the model lacks something; this names the cause."
 _SHOWN = 5  # poorly determined parameters in full: more would leave the other answers no place
@@ -176,7 +177,13 @@ def _following(found: Identification, call: Call, speeds: Sequence[float]) -> li
         Text(f"{call.first}{sentence(f'generate code with these values folded in, {WHERE}')}"),
         Command(generate),
     ]
-    wrong = bool(impossible(found))
+    wrong, unbiased = bool(impossible(found)), not biased(found) or found.method == "iv"
+    again = "" if unbiased else call.by_instruments(described)
+    if again:
+        code = [
+            Text(f"{call.first}{sentence(f'fit again by instruments, {_UNBIASED}, {WHERE}')}"),
+            Command(again),
+        ]
     parts: list[Any] = [Text(f"{call.first}{_EXPLAIN}")] if wrong else code
     diagnose = call.diagnosing()
     if found.test is not None and diagnose:

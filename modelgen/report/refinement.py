@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from modelgen.charts import Chart, Curve, Interval, apart, number, over_time, sheet
+from modelgen.charts import Chart, Curve, Interval, apart, number, over_time, sheet, within
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
 from modelgen.report.call import WHERE, Call
@@ -14,6 +15,7 @@ from modelgen.report.page import WIDE, Block, Command, Grid, Part, Parts, Run, T
 from modelgen.report.words import listed, sentence
 
 _FAR = 2.0  # standard deviations
+_SAME = 1.01  # of an error, that needs no word
 _NAMED = 6  # parameters that moved, in a sentence
 _VAGUE = "Standard deviations, and what they move, are rough there."
 _NEAR = "if the simulated motion below is near enough to the measured one all the same"
@@ -22,20 +24,23 @@ _NEAR = "if the simulated motion below is near enough to the measured one all th
 def motion(found: Refinement) -> list[Chart]:
     """Measured and simulated positions of every joint, part after part, and their difference."""
     arm = found.plant.arm
-    t, measured, simulated = _joined(found)
+    t = _times(found)
+    measured, started, refined = map(_joined, (found.measured, found.started, found.simulated))
+    models = ((started, "before", "simulated, at the start"), (refined, "after", "simulated, refined"))
     charts = []
     for j, name in enumerate(arm.coordinate_names):
         unit = arm.coordinate_units[j]
-        curves = [
-            Curve(t, measured[:, j], "measured", "measured"),
-            Curve(t, simulated[:, j], "before", "simulated, refined"),
-        ]
+        curves = [Curve(t, measured[:, j], "measured", "measured")]
+        curves += [Curve(t, x[:, j], role, label) for x, role, label in models]
+        low, high = float(np.nanmin(measured[:, j])), float(np.nanmax(measured[:, j]))
+        near = within(curves, 2 * low - high, 2 * high - low)
         text = f"Position of {name}, measured and simulated."
-        charts.append(over_time(name, f"position [{unit}]", curves, text, t[0], zoom=True))
-        error = [Curve(t, simulated[:, j] - measured[:, j], "before", "simulated, refined")]
+        charts.append(over_time(name, f"position [{unit}]", curves, text, t[0], zoom=True, y_range=near))
+        errors = [Curve(t, (x - measured)[:, j], role, label) for x, role, label in models]
+        near = within(errors, low - high, high - low)
         text = f"Simulated less measured position of {name}."
         title, label = f"{name}, error", f"error [{unit}]"
-        charts.append(over_time(title, label, error, text, t[0], zoom=True))
+        charts.append(over_time(title, label, errors, text, t[0], zoom=True, y_range=near))
     return charts
 
 
@@ -99,14 +104,28 @@ def report(found: Refinement, call: Call) -> str:
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
 
 
+def headline(found: Refinement) -> str:
+    """How far the simulated motion is from the measured one, before and after, where it errs most."""
+    arm, before, after = found.plant.arm, found.before.rmse, found.after.rmse
+    span = [float(np.ptp(np.concatenate([q[:, j] for q in found.measured]))) for j in range(len(after))]
+    worst = int(np.argmax(after / np.maximum(span, 1e-300)))
+    old, new = apart(before[worst], after[worst])
+    where = f"at {arm.coordinate_names[worst]}" + (", where it errs most" if len(after) > 1 else "")
+    worse = [arm.coordinate_names[j] for j in range(len(after)) if after[j] > _SAME * before[j]]
+    lost = f" It is farther from it than before at {listed(worse)}." if worse else ""
+    text = f"The simulated motion misses the measured one by {new} {arm.coordinate_units[worst]} (RMSE)"
+    return f"{text} {where}; with the values at the start it was {old}.{lost}"
+
+
 def _ended(found: Refinement, free: int) -> list[Part | str]:
     """Whether the values are those of the best fit, and how many are."""
     tuned, steps = f"{free} of {len(found.parameters)} parameters", f"after {found.rounds} steps"
     if found.converged:
         text = f"{tuned} were tuned until no step brings the simulated motion nearer to the measured one"
-        return [Text(f"{text}: it converged {steps}.")]
+        return [Text([Run(headline(found), "strong")]), Text(f"{text}: it converged {steps}.")]
     return [
         Text([Run(f"It did not converge {steps}: {found.stopped}.", "strong")]),
+        Text(headline(found)),
         Text(f"The values of {tuned} are those of its last step, not of the best fit. {_VAGUE}"),
     ]
 
@@ -146,7 +165,10 @@ def _moved(free: list[Any]) -> str:
         key=lambda x: -abs(x.value - x.start) / x.std,
     )
     if not far:
-        return f"No parameter left its start by more than {_FAR:g} standard deviations."
+        return (
+            f"No parameter left its start by more than {_FAR:g} standard deviations: each start agrees with "
+            "these records, and what the motion gained is by all together."
+        )
     said = listed(f"{x.name} {' → '.join(apart(x.start, x.value))} {x.unit}".rstrip() for x in far[:_NAMED])
     more = f", and {len(far) - _NAMED} more" if len(far) > _NAMED else ""
     return f"By more than {_FAR:g} standard deviations: {said}{more}."
@@ -198,14 +220,17 @@ def _uncertain(found: Refinement) -> list[Part]:
     ]
 
 
-def _joined(found: Refinement) -> tuple[Array, Array, Array]:
-    """Times, measured and simulated positions, part after part with a gap between two."""
-    times, measured, simulated, begin = [], [], [], 0.0
-    for t, q, run in zip(found.t, found.measured, found.simulated, strict=True):
+def _times(found: Refinement) -> Array:
+    """Times of all parts, one after the other, with one more where `_joined` has a gap."""
+    times, begin = [], 0.0
+    for t in found.t:
         at = begin + t - t[0]
         begin = float(at[-1])
-        gap = np.full((1, q.shape[1]), np.nan)
         times += [at, np.array([begin])]
-        measured += [q, gap]
-        simulated += [run, gap]
-    return np.concatenate(times), np.concatenate(measured), np.concatenate(simulated)
+    return np.concatenate(times)
+
+
+def _joined(runs: Sequence[Array]) -> Array:
+    """Positions part after part with a gap after each."""
+    gap = np.full((1, runs[0].shape[1]), np.nan)
+    return np.concatenate([rows for run in runs for rows in (run, gap)])

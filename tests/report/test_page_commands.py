@@ -121,6 +121,26 @@ def test_what_identify_and_diagnose_propose_runs_as_it_is_copied(bench: Path) ->
     assert sizes[1] == sizes[0] + 1  # the offset
 
 
+def test_values_that_noisy_positions_bias_are_fitted_by_instruments_before_there_is_code(bench: Path) -> None:
+    """Positions with noise of 5 mrad and a wide band; the same records without it have code at once."""
+    (bench / "noisy").mkdir()
+    for k, name in enumerate(("one", "two")):
+        table = np.loadtxt(bench / "logs of may" / f"{name}.csv", delimiter=",", skiprows=1)
+        table[:, 1:3] += 5e-3 * np.random.default_rng(k).standard_normal((len(table), 2))
+        path = bench / "noisy" / f"{name}.csv"
+        np.savetxt(path, table, fmt="%.9g", delimiter=",", header="t,q1,q2,i1,i2", comments="")
+    logs = ["--train", "noisy/one.csv", "--test", "noisy/two.csv", "--mapping", "columns.yaml"]
+    run(["identify", "my arm.yaml", *logs, "--cutoff", "12", "--out", "biased"], bench)
+    proposed_there = {words[0]: words for words in commands(bench / "biased" / "report.html")}
+    assert "generate" not in proposed_there
+    again = proposed_there["identify"]
+    assert again[again.index("--method") + 1] == "iv"
+    run(again, bench)
+    page = bench / again[again.index("--out") + 1] / "report.html"
+    assert "these are by instruments" in page.read_text(encoding="utf-8")
+    assert {words[0] for words in commands(page)} >= {"generate"}
+
+
 def test_a_cause_that_harms_the_test_record_is_left_out_of_what_is_proposed(bench: Path) -> None:
     """A description has the others alone; where there are none, the arm as described is fitted."""
     logs = [f"logs of may/{name}.csv" for name in ("one", "two", "test")]

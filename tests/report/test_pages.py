@@ -392,7 +392,7 @@ def test_what_moved_is_written_with_the_digits_that_tell_it_from_before(tmp_path
     assert "FV1 2.02481 → 2.02484 " in text
     assert ">2.02481</td>" in text
     assert ">2.02484</td>" in text
-    (parameters, _) = result.shown()
+    (_, parameters, _) = result.shown()
     assert isinstance(parameters, Table)
     assert ["FV1", "2.02481", "2.02484"] in [row[:3] for row in parameters.rows]
 

@@ -14,8 +14,8 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     """Whether each joint moves at the rows (M, n), given its speeds dq (N, n).
 
     A joint is at rest where it is slower than its rest speed for longer than `settings.rest_time`; a
-    reversal passes faster. A row counts as moving where its own speed is above that and the parallel filter has
-    drawn no more than a fiftieth of its weight from samples at rest.
+    reversal passes faster. A row counts as moving where its own speed is above that and the parallel filter
+    has drawn no more than a fiftieth of its weight from samples at rest.
     """
     slow = np.abs(dq) < np.array(settings.gates)
     rest = _resting(slow, settings.rest_time * rate)

@@ -51,7 +51,8 @@ class Refined:
 class Refinement:
     """plant: with the refined parameters. before, after: scores of the whole simulated parts (rad, m).
 
-    measured, simulated: positions part by part (K, n); t their times. rounds: Gauss-Newton steps.
+    measured, simulated, started: positions part by part (K, n), those of the refined parameters and of
+    where they started; t their times. rounds: Gauss-Newton steps.
     stopped: why it ended before it converged, empty where it did converge.
     """
 
@@ -62,6 +63,7 @@ class Refinement:
     t: tuple[Array, ...]
     measured: tuple[Array, ...]
     simulated: tuple[Array, ...]
+    started: tuple[Array, ...]
     rounds: int
     stopped: str
 
@@ -109,7 +111,7 @@ def refine(
     p, low, high = plant.parameters.copy(), *_limits(plant, chosen)
     guesses = [part.guess() for part in every]
     fit = Fit(model, every)
-    before = fit.whole(p, guesses)
+    started = fit.runs(p, guesses)
     names = [plant.model.grouping.base[k].name for k in chosen]
     rounds, stopped = 0, ""
     for stage in (every, [part.single() for part in every]):
@@ -144,7 +146,7 @@ def refine(
     std = final.deviations(weights)
     per_unit = np.sqrt((np.concatenate(final.columns) ** 2).mean(axis=0))  # (n, f)
     shown = np.argmax(per_unit * weights[:, None], axis=0)
-    runs = [fit.through(p, g, part) for g, part in zip(guesses, every, strict=True)]
+    runs = Fit(model, every).runs(p, guesses)
     base = plant.model.grouping.base
     found = []
     for k, b in enumerate(base):
@@ -159,11 +161,12 @@ def refine(
     return Refinement(
         Plant(plant.slip, p, p),
         tuple(found),
-        before,
+        scored(every, started),
         scored(every, runs),
         tuple(part.t for part in every),
         tuple(part.q for part in every),
         tuple(runs),
+        tuple(started),
         rounds,
         stopped,
     )

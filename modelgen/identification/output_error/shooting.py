@@ -169,14 +169,11 @@ class Fit:
         ratio = np.sqrt((q**2).mean(axis=0) / np.maximum((dq**2).mean(axis=0), 1e-12))
         return np.concatenate([np.ones(len(ratio)), ratio])
 
-    def through(self, p: Array, guess: Guess, part: Part) -> Array:
-        """Positions (K, n) from the initial state alone."""
-        n = self.model.plant.n
-        return self.model.run(guess.states[0], part.t, part.input, p)[0][:, :n]
-
-    def whole(self, p: Array, guesses: Sequence[Guess]) -> Scores:
-        """Scores of the simulation from the initial states."""
-        return scored(self.parts, [self.through(p, g, x) for g, x in zip(guesses, self.parts, strict=True)])
+    def runs(self, p: Array, guesses: Sequence[Guess]) -> list[Array]:
+        """Positions (K, n) of every part, simulated from its initial state alone."""
+        n, run = self.model.plant.n, self.model.run
+        pairs = zip(guesses, self.parts, strict=True)
+        return [run(g.states[0], part.t, part.input, p)[0][:, :n] for g, part in pairs]
 
 
 def scored(every: Sequence[Part], runs: Sequence[Array]) -> Scores:
