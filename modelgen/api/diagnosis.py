@@ -127,18 +127,7 @@ class Diagnosis(Shown):
                 "the same as",
             )
             parts.append(Table("", dict.fromkeys(headings, "left"), rows, ("cause",)))
-        e = d.errors
-        errors = [
-            [
-                joint_name(d.arm, j + 1),
-                *apart(e.before[j], e.after[j], 4),
-                f"{e.gain[j]:z.1f}",
-                interval(e.low[j], e.high[j]),
-            ]
-            for j in range(len(e.before))
-        ]
-        columns = dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right")
-        parts.append(Table(f"error on the test record [{e.unit}]", columns, errors))
+        parts.append(_errors(d))
         parts += [
             *suspicions(d),
             *harms(d),
@@ -162,6 +151,20 @@ class Diagnosis(Shown):
 
     def __repr__(self) -> str:
         return f"Diagnosis of {self.arm.name}: {self.verdict}. {headline(self.found)}"
+
+
+def _errors(d: Found) -> Table:
+    """Errors of the test record by joint; what changed, where something is named."""
+    e, names = d.errors, [joint_name(d.arm, j + 1) for j in range(len(d.errors.before))]
+    title = f"error on the test record [{e.unit}]"
+    if not d.causes:
+        rows = [[name, f"{x:z.4g}"] for name, x in zip(names, e.before, strict=True)]
+        return Table(title, dict.fromkeys(("joint", "error"), "right"), rows)
+    rows = [
+        [name, *apart(e.before[j], e.after[j], 4), f"{e.gain[j]:z.1f}", interval(e.low[j], e.high[j])]
+        for j, name in enumerate(names)
+    ]
+    return Table(title, dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right"), rows)
 
 
 def diagnose(

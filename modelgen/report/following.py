@@ -121,7 +121,7 @@ def replaying(d: Diagnosis, call: Call) -> list[Step]:
         return []
     worse, folder = bool(harmful(d)), ""
     description = call.beside(f"{d.arm.name}_extended.yaml")
-    text = "the extended model against the test record:"
+    text = "The extended model against the test record:"
     if worse:
         reduced, folder = reduced_name(d), f"{REDUCED}/"
         description = call.beside(reduced) if reduced else call.description

@@ -631,13 +631,16 @@ def test_a_page_without_a_cause_answers_the_same_questions(
     path.write_text(report(other(found, verdict)), encoding="utf-8")
     with opened(path, 400, "dark") as page:
         assert page.locator("dl.answer dt").all_inner_texts() == list(ASKED)
+        step = page.locator("dl.answer dd").last.bounding_box()
+        assert step is not None
+        assert step["y"] + step["height"] < 900  # on the first screen of a phone
         page.evaluate("document.querySelectorAll('details:not(.screen)').forEach(d => d.open = true)")
         assert violations(page) == []
         assert wider(page) == 0
         said = page.locator("dl.answer").inner_text()
     assert "less %" not in said
     assert "joint 2" not in said  # by its name
-    assert ("remains at j2" in said) == (verdict != "suspected")
+    assert said.count("remains at j2") == (verdict != "suspected")
     assert ("form" in said) == (verdict == "suspected")
 
 
@@ -654,6 +657,18 @@ def test_what_is_suspected_is_no_fact_and_has_a_next_step(found: Diagnosis, tmp_
     assert "modelgen excite" in said
     assert sentence(finding(d.arm, "stribeck_friction", 2, d.suspects[0].parameters)) not in said
     assert "is suspected and not named: it has evidence, and failed form" in said
+
+
+def test_that_a_cause_has_no_rival_is_said_and_printed(found: Diagnosis, tmp_path: Path) -> None:
+    path = tmp_path / "report.html"
+    (cause,) = found.causes
+    for rivals in ((), (("friction_offset", 1, 3.0),)):
+        path.write_text(
+            report(replace(found, causes=(replace(cause, ambiguous_with=rivals),))), encoding="utf-8"
+        )
+        with opened(path) as page, on_paper(page):
+            section = page.locator("section", has=page.get_by_role("heading", name="Rivals, and why not"))
+            assert ("no other candidate explains" in section.inner_text()) == (not rivals)
 
 
 def test_the_size_of_what_repeats_is_said(found: Diagnosis) -> None:

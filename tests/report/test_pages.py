@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from html import unescape
 from io import BytesIO
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from modelgen.api.refinement import Refinement
 from modelgen.api.results import Table
 from modelgen.calibration.lever import lever_of
 from modelgen.fleet.overview import overview
+from modelgen.report.refinement import motion
 
 pytestmark = pytest.mark.xdist_group("pages")
 
@@ -324,6 +326,28 @@ def test_what_is_uncertain_of_a_refinement_is_said_in_its_motion() -> None:
         assert x.moves < 1e-3  # rad, the noise: so many samples tell more than one
     page = found.files()["report.html"]
     assert "Most uncertain in the motion is" in page
+
+
+def test_a_refinement_says_first_by_how_much_the_simulated_motion_errs() -> None:
+    """Before it too from the initial state that suits best: values that are right gain nothing by it."""
+    arm = mg.load_arms()["gravity_link2"]
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
+    right = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
+    assert right.found.before.rmse[0] < 1e-6  # rad
+    values = {x.name: x.start for x in right.parameters.values()}
+    other = values | {"FV1": 1.5 * values["FV1"]}
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0, parameters=other)
+    found = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
+    first = found.shown()[0]
+    assert isinstance(first, str)
+    assert first in unescape(found.files()["report.html"])
+    after, before = (float(x) for x in re.findall(r"(?:by|was) (\d[\d.e-]*\d)", first))
+    missed = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0).q - swing.q
+    assert 0.3 < before / float(np.sqrt(np.mean(missed**2))) <= 1.0  # another initial state suits it better
+    assert after < 1e-3 * before
+    position, error = motion(found.found)
+    assert [c.label for c in position.curves] == ["measured", "simulated, at the start", "simulated, refined"]
+    assert np.sqrt(np.nanmean(error.curves[0].y ** 2)) == pytest.approx(before, rel=0.01)
 
 
 def test_the_words_of_a_refinement_agree_with_how_it_ended() -> None:

@@ -49,7 +49,8 @@ class Refined:
 
 @dataclass(frozen=True)
 class Refinement:
-    """plant: with the refined parameters. before, after: scores of the whole simulated parts (rad, m).
+    """plant: with the refined parameters. before, after: scores of the whole simulated parts (rad, m), each
+    from the initial states that suit its parameters best, so that what the parameters gain is theirs.
 
     measured, simulated, started: positions part by part (K, n), those of the refined parameters and of
     where they started; t their times. rounds: Gauss-Newton steps.
@@ -111,10 +112,10 @@ def refine(
     p, low, high = plant.parameters.copy(), *_limits(plant, chosen)
     guesses = [part.guess() for part in every]
     fit = Fit(model, every)
-    started = fit.runs(p, guesses)
     names = [plant.model.grouping.base[k].name for k in chosen]
-    rounds, stopped = 0, ""
-    for stage in (every, [part.single() for part in every]):
+    rounds, stopped, singles = 0, "", [part.single() for part in every]
+    started = _started(Fit(model, singles), p, _first(guesses), names)
+    for stage in (every, singles):
         # Shooting at many points finds the way; the last steps are those of the motion as one.
         fit = Fit(model, stage)
         guesses = [Guess(g.states[: len(part.intervals)]) for g, part in zip(guesses, stage, strict=True)]
@@ -126,18 +127,10 @@ def refine(
             cost, (step, alpha) = now.cost(weights), _step(now, weights, names, p[chosen], low, high)
             promised = 1.0 - step.promised / max(cost, 1e-300)
             end = "" if promised < UNKEPT else _unkept(rounds, promised)
-            for _ in range(HALVINGS):
-                tried = p.copy()
-                tried[chosen] += alpha * step.parameters
-                moved = [g.moved(x, alpha) for g, x in zip(guesses, step.states, strict=True)]
-                value = fit.cost(tried, moved, weights)
-                if value < cost:
-                    done = cost - value < LEAST_GAIN * cost
-                    p, guesses = tried, moved
-                    break
-                alpha /= 2
-            else:
-                done = True
+            moved = _lowered(fit, p, guesses, step, alpha, chosen, weights, cost)
+            done = moved is None
+            if moved is not None:
+                p, guesses, done = moved
             stopped = end if done else stopped
             if progress is not None:
                 progress(rounds, cost)
@@ -170,6 +163,57 @@ def refine(
         rounds,
         stopped,
     )
+
+
+def _first(guesses: Sequence[Guess]) -> list[Guess]:
+    """The initial states alone."""
+    return [Guess(g.states[:1]) for g in guesses]
+
+
+def _started(fit: Fit, p: Array, guesses: Sequence[Guess], names: Sequence[str]) -> list[Array]:
+    """Positions (K, n) of every part at parameters p, from the initial states that bring them nearest to the
+    measured ones; from those guessed where no motion near them runs.
+    """
+    held, found, done = np.zeros(len(names), dtype=bool), list(guesses), False
+    try:
+        for _ in range(ROUNDS):
+            now = fit.linear(p, found)
+            weights = now.weights()
+            moved = _lowered(
+                fit, p, found, now.step(weights, names, held), 1.0, [], weights, now.cost(weights)
+            )
+            if moved is None:
+                break
+            _, found, done = moved
+            if done:
+                break
+    except InputError:
+        found = list(guesses)
+    return fit.runs(p, found)
+
+
+def _lowered(
+    fit: Fit,
+    p: Array,
+    guesses: Sequence[Guess],
+    step: Step,
+    alpha: float,
+    chosen: Sequence[int],
+    weights: Array,
+    cost: float,
+) -> tuple[Array, list[Guess], bool] | None:
+    """Parameters and guesses after as much of a step as lowers the cost, and whether that was too little for
+    another one; None where no part of it lowers the cost. alpha: how much of the step may be gone at most.
+    """
+    for _ in range(HALVINGS):
+        tried = p.copy()
+        tried[chosen] += alpha * step.parameters[: len(chosen)]
+        moved = [g.moved(x, alpha) for g, x in zip(guesses, step.states, strict=True)]
+        value = fit.cost(tried, moved, weights)
+        if value < cost:
+            return tried, moved, cost - value < LEAST_GAIN * cost
+        alpha /= 2
+    return None
 
 
 def _unkept(number: int, promised: float) -> str:
