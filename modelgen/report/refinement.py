@@ -73,7 +73,8 @@ def report(found: Refinement, call: Call) -> str:
                 Grid("Simulated motion", heads, rows, folds=True),
                 Text(
                     "Goodness of fit 100 (1 - |y - simulated| / |y - mean y|), and RMSE of the positions, of "
-                    "whole parts simulated from their beginning.",
+                    "whole parts simulated from their beginning, each from the initial states that suit its "
+                    "parameters best.",
                     "quiet",
                 ),
             ],

@@ -72,7 +72,8 @@ def test_friction_is_found_from_motion_alone(swings: list[str], tmp_path: Path) 
     (joint,) = data["joints"]
     # what remains is the noise
     assert joint["rmse"] == pytest.approx(2e-4, rel=0.1)
-    assert joint["f_gof_before"] < 95 < 99.5 < joint["f_gof"]
+    assert joint["f_gof"] > 99.5
+    assert joint["rmse_before"] > 10 * joint["rmse"]  # from the initial states that suit it best, too
     assert data["converged"]
     assert sorted(p.name for p in (tmp_path / "r").iterdir()) == [
         "gravity_link2_parameters.yaml",
