@@ -73,7 +73,8 @@ class Record:
     cut_off : ndarray of bool, optional
         Samples (N, n) at which an effort is cut off; None: to be read off the efforts.
     jump : str
-        Where a position of the log jumps as no motion does, and what to do; empty where none does.
+        Where a position of the log jumps as no motion does, or rows are missing, and what to do; empty where
+        nothing of that is found.
 
     Attributes
     ----------

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelgen.dataset.drives import NumericDrive
 from modelgen.dataset.mapping.units import plausible_times
@@ -16,6 +18,11 @@ from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 BITS = (16, 24, 32, 12, 10, 8)
+OVER = 0.9  # of the range, that readings of a counter jump where it overflows
+WHOLE = 0.97  # of a counter's range, that is there at least
+STANDING = 5.0  # times as many as one step before it, that stand at an end where readings are cut off
+Scale = tuple[float, float]
+STEADY = 0.2  # of the range without overflows, that readings change from one to the next
 
 
 def doubtful_unit(step: float, limits: DatasetThresholds) -> str:
@@ -45,15 +52,80 @@ def unsigned_bits(values: Array) -> int | None:
     return None
 
 
-def check_unsigned(file: str, name: str, values: Array) -> None:
-    """Readings as logged must not be unsigned where they are negative. Raises InputError."""
-    bits = unsigned_bits(values)
-    if bits is not None:
-        raise InputError(
-            f"{file}: the column {name} runs from {values.min():.6g} to {values.max():.6g} with nothing "
-            f"in the middle: negative values read as unsigned, so that -1 is {2**bits - 1}; declare "
-            f"`bits: {bits}` for it in a mapping file (--mapping)"
-        )
+def check_counters(
+    file: str, names: Sequence[str], table: Array, asked: Sequence[str | None], scales: Mapping[str, Scale]
+) -> None:
+    """Columns (N, k), the first of them times [s], whose readings as logged must not be unsigned where they
+    are negative, nor overflow. asked: names of the columns that are. scales: factor and offset that a mapping
+    file has. Raises InputError.
+    """
+    for k, name in enumerate(names):
+        if name not in asked:
+            continue
+        factor, offset = scales.get(name, (1.0, 0.0))
+        with np.errstate(over="ignore"):  # a wrong digit makes any number
+            values = (table[:, k] - offset) / factor
+            bits = unsigned_bits(np.round(values, 6))
+        if bits is not None:
+            raise InputError(
+                f"{file}: the column {name} runs from {values.min():.6g} to {values.max():.6g} with nothing "
+                f"in the middle: negative values read as unsigned, so that -1 is {2**bits - 1}; declare "
+                f"`bits: {bits}` for it in a mapping file (--mapping)"
+            )
+        found = overflows(values)
+        if found is not None:
+            m, more = int(found.places[0]), len(found.places) - 1
+            raise InputError(
+                f"{file}: the column {name} goes from {values[m]:.6g} to {values[m + 1]:.6g} after "
+                f"t = {table[m, 0]:.9g} s{f', and so in {more} more places' if more else ''}: a counter of "
+                f"{found.bits} bits overflows there; use the parts beside it, FILE@t0:t1, or log it with "
+                "more bits or in coarser steps"
+            )
+
+
+@dataclass(frozen=True)
+class Overflow:
+    """A counter of so many bits that overflows after samples `places`."""
+
+    bits: int
+    places: NDArray[np.intp]
+
+
+def overflows(values: Array) -> Overflow | None:
+    """A counter that overflows in readings as logged (N,); None where none does.
+
+    Nearly all of its range is there, and from one end the readings go on smoothly at the other, for more than
+    one of them: a lone one is corrected. Readings that are cut off stand at the end.
+    """
+    width, steps = float(np.ptp(values)), np.diff(values)
+    over = np.abs(steps) > OVER * width
+    if width <= 0.0 or not over.any() or not (over & ~np.roll(over, 1) & ~np.roll(over, -1)).any():
+        return None
+    step = _step(values)
+    bits = next((b for b in BITS if step and WHOLE < (width / step + 1.0) / 2.0**b < 1.0 + 1e-4), None)
+    if bits is None:
+        return None
+    whole = np.unwrap(values, period=step * 2.0**bits)
+    extent = min(width, float(np.ptp(np.quantile(whole, (0.01, 0.99)))))
+    if np.quantile(np.abs(np.diff(whole)), 0.99) > STEADY * extent:
+        return None
+    for inward in (values.max() - values, values - values.min()):
+        last, before = (np.sum(np.rint(inward / step) == k) for k in (0, 1))
+        if last > STANDING * (before + 1):
+            return None
+    return Overflow(bits, np.flatnonzero(over))
+
+
+def _step(values: Array) -> float:
+    """What readings (N,) with nothing in the middle are multiples of; 0 where they are of nothing."""
+    steps = np.diff(np.unique(values))
+    steps = steps[steps > 1e-9 * float(np.abs(values).max())]
+    near = steps[steps < 20.0 * steps.min()] if len(steps) else steps
+    if len(near) < 8:
+        return 0.0
+    number = near / near.min()
+    even = np.abs(number - np.rint(number)).max() < 0.05
+    return float(near.sum() / np.rint(number).sum()) if even else 0.0
 
 
 def check_efforts(

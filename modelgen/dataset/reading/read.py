@@ -18,7 +18,8 @@ from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.lone import without_lone
-from modelgen.dataset.reading.plausible import check_efforts, check_unsigned, doubtful_unit
+from modelgen.dataset.reading.lost import lost_rows
+from modelgen.dataset.reading.plausible import check_counters, check_efforts, doubtful_unit
 from modelgen.dataset.reading.repeats import refresh_of, without_doubled
 from modelgen.dataset.reading.slow_positions import slow_positions
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
@@ -81,9 +82,9 @@ def read_with_stamps(
         found.append(_slower(slow.names, table[:, 0], slow.every))
         table = slow.table
     table, stamped = _true_stamps(source, table)
-    found = [*doubled, *found, *stamped]
+    _check_counters(source, table)
     table, lone = without_lone(spec, table, positions, efforts, thresholds)
-    found += lone
+    found = [*doubled, *found, *stamped, *lone]
     checks.check_length(spec, len(table), thresholds.min_samples)
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
     if axis.method != "none" and source.rate is None and repeats == 1.0:
@@ -141,6 +142,12 @@ def _new_readings(source: Source, table: Array) -> tuple[Array, list[str], float
     return table, [remark], found.every
 
 
+def _check_counters(source: Source, table: Array) -> None:
+    """Efforts and speeds (N, k) that are no counters read wrongly. Raises InputError."""
+    asked = [*source.signals.effort, *(source.signals.dq or ())]
+    check_counters(source.spec.text, source.wanted, table, asked, getattr(source.reader, "scales", {}))
+
+
 def _slower(names: Sequence[str], t: Array, every: float) -> str:
     """The remark about positions that are refreshed less often than the efforts."""
     rate = (len(t) - 1) / (t[-1] - t[0])
@@ -182,12 +189,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     """
     file, limits = source.spec.text, source.thresholds
     signals, drives = source.signals, source.drives
-    scales: dict[str, tuple[float, float]] = getattr(source.reader, "scales", {})
-    for k, column in enumerate(source.wanted):
-        if column in signals.effort or column in (signals.dq or ()):
-            factor, offset = scales.get(column, (1.0, 0.0))
-            with np.errstate(over="ignore"):  # a wrong digit makes any number
-                check_unsigned(file, column, np.round((table[:, k] - offset) / factor, 6))
+    _check_counters(source, table)
     on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
     counts: tuple[float, ...] = ()
@@ -206,10 +208,11 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     checks.check_jumps(file, arm, signals.position, q, t, limits.steady_step)
     as_read = table[:, [source.wanted.index(name) for name in signals.position]]
     jump = jump_of(signals.position, table[:, 0], as_read, limits)
+    lost, many = lost_rows(table[:, 0], as_read, limits) if axis.method == "none" else ("", "")
     margin = limits.max_range_excess
     left = checks.check_range(file, arm, drives, signals.position, logged, q, margin)
     left += checks.trembling(signals.position, as_read)
-    remarks = [*source.remarks, *left, *([jump] if jump else [])]
+    remarks = [*source.remarks, *left, *(x for x in (jump, lost) if x)]
     if axis.method != "none":
         remarks.append(
             f"time between samples varies by up to {axis.jitter:.2g} periods: "
@@ -259,7 +262,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         hold_known="mapping" if source.stated else "",
         counts=counts,
         begins=_begins(source, float(t[0])) if len(t) else None,
-        jump=jump,
+        jump=jump or many,
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged

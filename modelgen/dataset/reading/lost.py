@@ -1,0 +1,95 @@
+"""Rows that are missing although the stamps are even: a row's number as time, a logger that stamps anew."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.dataset.processing.rounding import LONGEST, resolution
+from modelgen.dataset.thresholds import DatasetThresholds
+from modelgen.numeric import Array
+
+BESIDE = 8  # steps on either side, whose median says what a step is there
+STAYING = 3  # steps on either side, over which the positions stay ahead
+SEEN = 4.0  # deviations of its noise, that a step of all positions is large, to tell it from two
+NEAR = 0.3  # steps, by which a number of them may miss a whole one
+ENOUGH = 1024  # steps, that noise is read off
+FEWEST = 5  # places, from which on rows are missing
+CLEARLY = 5.0  # times the places at which the positions fall behind in the same way, as noise has both
+REMARKED = 1e-3  # of the rows
+REFUSED = 5e-3  # of the rows: the motion seems so much faster, and inertias lose twice that
+
+
+def lost_rows(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[str, str]:
+    """What there is to say of rows that are missing between even stamps t (N,) [s], else empty; and the same
+    where they are so many that nothing is to be identified, else empty. positions: (N, n), as logged.
+    """
+    places, _, share = missing_rows(positions, limits)
+    if share < REMARKED:
+        return "", ""
+    said = (
+        f"{100 * share:.2g} % of the rows or so are missing though the stamps are even: after "
+        f"t = {t[places[0]]:.9g} s and in {len(places) - 1} more places the positions go on by two or more "
+        "of the steps beside; expected stamps of the readings' own clock, or a log without losses"
+    )
+    return said, said if share > REFUSED else ""
+
+
+def missing_rows(
+    positions: Array, limits: DatasetThresholds
+) -> tuple[NDArray[np.intp], NDArray[np.intp], float]:
+    """Samples of positions (N, n) after which rows are missing, how many there, and what part of all rows
+    that is; none where they are few.
+
+    Where rows are missing all joints go on by a whole number of the steps beside, and stay ahead. A reading
+    that is late, stands still or is noisy gives back what it took. Where the joints are so slow that a step
+    vanishes in noise nobody sees it: there as many are missing as elsewhere.
+    """
+    nothing = np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp), 0.0
+    if len(positions) < limits.min_lone_samples:
+        return nothing
+    steps, wide = np.diff(positions, axis=0), 2 * BESIDE + 1
+    window = np.lib.stride_tricks.sliding_window_view(steps, wide, axis=0)
+    here, some = steps[BESIDE:-BESIDE], slice(None, None, 1 + len(steps) // ENOUGH)
+    beside = np.median(window[some], axis=2)
+    apart = np.abs(here[some] - beside)
+    least = np.min(np.where(apart > 1e-9 * np.abs(steps).max(axis=0), apart, np.inf), axis=0)
+    noise = np.maximum(1.4826 * np.median(apart, axis=0), np.where(np.isfinite(least), least / 4, 0.0))
+    # The mean has the missing rows in it: a first look, which leaves few places.
+    first, seen = _ahead(here, (positions[wide:] - positions[:-wide]) / wide, noise, SEEN / 2)
+    near = np.flatnonzero(seen & (np.abs(first) > NEAR / 2))
+    if len(near) < FEWEST:
+        return nothing
+    counts = np.array([resolution(x[:LONGEST]) or 0.0 for x in positions.T])
+    noise = np.maximum(noise, counts / np.sqrt(6.0))
+    usual, seen = _ahead(here[some], beside, noise, SEEN)
+    if not seen.any() or 1.4826 * np.median(np.abs(usual[seen])) > 1.0 / SEEN:
+        return nothing  # they vary by parts of a step, as where the readings' instants do
+    part = float(seen.mean())
+    window = window[near]
+    beside = np.median(np.delete(window, BESIDE, axis=2), axis=2)
+    around = window[:, :, BESIDE - STAYING : BESIDE + STAYING + 1].sum(axis=2)
+    ahead, seen = _ahead(here[near], beside, noise, SEEN)
+    stays, _ = _ahead(around - 2 * STAYING * beside, beside, noise, SEEN)
+    found, fallen = _whole(ahead, stays) & seen, _whole(-ahead, -stays) & seen
+    if found.sum() < max(FEWEST, CLEARLY * fallen.sum()):
+        return nothing
+    rows = np.rint(ahead[found]).astype(np.intp)
+    return near[found] + BESIDE, rows, float(rows.sum() / (part * len(steps) + rows.sum()))
+
+
+def _ahead(here: Array, beside: Array, noise: Array, least: float) -> tuple[Array, NDArray[np.bool_]]:
+    """How many of the steps beside (M, n) the steps here are ahead of one, by all joints (M,), and where it
+    shows: those beside are `least` deviations (n,) of their noise large.
+    """
+    weights = beside / np.where(noise > 0.0, noise, np.inf) ** 2
+    power = np.einsum("kj,kj->k", weights, beside)
+    seen = power > least**2
+    return np.einsum("kj,kj->k", weights, here) / np.where(seen, power, np.inf) - seen, seen
+
+
+def _whole(ahead: Array, stays: Array) -> NDArray[np.bool_]:
+    """Where positions go on by whole steps more than those beside (M,), and are so far ahead then."""
+    number, later = np.rint(ahead), np.rint(stays)
+    near = (np.abs(ahead - number) < NEAR) & (np.abs(stays - later) < NEAR)
+    return near & (number >= 1.0) & (later >= number)
