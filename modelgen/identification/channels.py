@@ -1,4 +1,6 @@
-"""Faults of an effort's channel that parameters take up: a zero that is off, readings that fall short."""
+"""Faults of an effort's channel that parameters take up: a zero that is off, readings that fall short or are
+smoothed.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +15,8 @@ from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
 from modelgen.identification.cut_off import LEVELS
 from modelgen.identification.objects import DIAGNOSING, Doubt
+from modelgen.identification.slow_turns import SAID as WRONG
+from modelgen.identification.slow_turns import slow_turns
 from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression, Solution
@@ -23,7 +27,6 @@ POWER = 5  # of the model's effort over its largest: what a channel lacks that i
 COARSE = 2.0  # deviations of the effort, from which on its rounding is no noise beside it (Widrow 1956)
 ZERO, SHORT = 0.1, 0.5  # of the squares that are left, which a constant and a curve explain at least
 ABOVE_ALL = 0.5  # the same of a constant, in a diagnosis, which names effects
-WRONG = "Parameters may be wrong by more than their deviations say."
 
 
 def effort_questions(
@@ -35,7 +38,7 @@ def effort_questions(
     short: bool = True,
 ) -> list[Doubt]:
     """Questions about joints of whose efforts a constant, or readings that fall short where they are large,
-    explain a part that is no chance.
+    explain a part that is no chance, or whose efforts are smoothed.
 
     Weights of links take up most of either, so that little shows in the residuals. zero: part of the squares
     that the model leaves, which a constant explains at least. short: whether efforts that fall short are
@@ -49,6 +52,7 @@ def effort_questions(
             return []
         constants = found.explained(np.ones_like)
         curves = found.explained(lambda effort: effort**POWER) if short else None
+        turns = slow_turns(found.records, found.own, model, evaluator)
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return []  # what is wrong is said where the parameters are found
     first, said = train[0].record, list[Doubt]()
@@ -72,7 +76,7 @@ def effort_questions(
                 f"effort, and is friction the same either way{DIAGNOSING}? {WRONG}"
             )
             said.append(Doubt(text, [name]))
-    return said
+    return [*said, *turns]
 
 
 def _coarse(train: Sequence[Prepared], j: int) -> bool:
