@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from modelgen.dataset import read
 from modelgen.dataset.inspection import inspect
@@ -49,6 +50,7 @@ PIECES = [
     b"[",
     b": ",
 ]
+KINDS = ("csv", "parquet", "mcap", "mat", "packed mat", "npz", "mapping")
 PLAIN = "schema: 1\njoints: [{position: {column: q1, unit: rad}, effort: {column: i1, unit: A}}]\n"
 JSON = (
     "schema: 1\ntime: {column: /a.log_time}\n"
@@ -74,6 +76,11 @@ def made(folder: Path) -> dict[str, tuple[Path, str, bytes]]:
             writer.add_message(topic, round(1e9 * t), json.dumps({"q1": q, "i1": i}).encode(), round(1e9 * t))
         writer.finish()
     found = {"csv": (csv, PLAIN), "parquet": (columns, PLAIN), "mcap": (bag, JSON)}
+    for kind, packed in (("mat", False), ("packed mat", True)):
+        found[kind] = folder / f"{kind}.mat", PLAIN
+        savemat(found[kind][0], {"t": T, "q": {"q1": Q}, "i1": EFFORT}, do_compression=packed)
+    found["npz"] = folder / "a.npz", PLAIN
+    np.savez(found["npz"][0], **table)
     files = {kind: (file, text, file.read_bytes()) for kind, (file, text) in found.items()}
     return files | {"mapping": (csv, PLAIN, PLAIN.encode())}
 
@@ -110,14 +117,14 @@ def attempts(kind: str, count: int, folder: Path, seed: int = 0) -> int:
     return accepted
 
 
-@pytest.mark.parametrize("kind", ["csv", "parquet", "mcap", "mapping"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_edited_files(kind: str, tmp_path: Path) -> None:
     attempts(kind, 60, tmp_path)
 
 
 if __name__ == "__main__":
     each, start = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
-    for name in ("csv", "parquet", "mcap", "mapping"):
+    for name in KINDS:
         with tempfile.TemporaryDirectory() as place:
             read_rightly = attempts(name, each, Path(place), start)
         sys.stdout.write(f"{name}: {each} edits, {read_rightly} records, no traceback\n")

@@ -18,6 +18,7 @@ from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.processing.periods import repetition
 from modelgen.dataset.processing.rounding import resolution
 from modelgen.dataset.processing.splitting import repeats_from
+from modelgen.dataset.reading.array_table import ArrayTable
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.plausible import doubtful_unit
@@ -219,6 +220,8 @@ def _columns(spec: Spec, reader: Reader) -> tuple[dict[str, Array], tuple[str, .
     if "t" not in names and (spec.begin, spec.end) != (-math.inf, math.inf):
         raise InputError(f"{spec.text}: the column t [s] is missing, expected one to cut a part by")
     rest: tuple[str, ...] = ()
+    if isinstance(reader, ArrayTable):
+        names = reader.together
     try:
         table = _table(reader, names)
     except InputError:

@@ -9,17 +9,18 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 
 from modelgen.dataset.objects import Layout
-from modelgen.dataset.reading.text import cells_of, encoding_of, head_of, moment, number
+from modelgen.dataset.reading.text import cells_of, comment_before, encoding_of, head_of, moment, number
 from modelgen.errors import InputError, Location
 
 DELIMITERS: tuple[str | None, ...] = (",", ";", "\t", "|", None)  # None: blanks
 _WORDS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", None: "blanks"}
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
+_NAME = re.compile(r"[A-Za-z_]\w*(\s*[\[(<].*[\])>])?")  # with its unit
 _UNITS = frozenset(
     re.split(
         ",",
@@ -83,6 +84,10 @@ def shape_of(path: Path, file: Path, layout: Layout) -> Shape:
     first = next(
         (k for k, (_, row) in enumerate(rows) if _is_sample(row, width, numeric, decimal)), len(rows)
     )
+    commented = None if first or layout.columns else _commented(file, encoding, rows[0][0], width)
+    if commented is not None:
+        layout = replace(layout, columns=commented)
+        remarks.append(f"the names of the columns are those of a comment: {', '.join(commented)}")
     names, header, unit_row = _names(path, rows, first, width, layout, numeric, decimal)
     trailing = width == len(names) + 1 and all(not row[-1] for row in body if len(row) == width)
     if width != len(names) and not trailing and first < len(rows):
@@ -164,6 +169,16 @@ def _is_sample(row: list[str], width: int, numeric: Sequence[int], decimal: str)
         return False
     filled = [row[k] for k in numeric if row[k]]
     return 2 * sum(number(cell, decimal) is not None for cell in filled) >= max(len(filled), 1)
+
+
+def _commented(file: Path, encoding: str, line: int, width: int) -> tuple[str, ...] | None:
+    """Names (width,) in the comment above the first sample, in `line`; None where it holds no such names."""
+    comment = comment_before(file, encoding, line)
+    for delimiter in DELIMITERS:
+        cells = cells_of(comment, delimiter)
+        if len(set(cells)) == len(cells) == width > 1 and all(map(_NAME.fullmatch, cells)):
+            return tuple(cells)
+    return None
 
 
 def _names(

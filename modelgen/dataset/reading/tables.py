@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from modelgen.dataset.objects import Layout, Reader
+from modelgen.dataset.reading.array_table import ARRAYS, array_table
 from modelgen.dataset.reading.bag_messages import bag_files
 from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.csv_table import CsvReader
@@ -35,12 +36,14 @@ def open_table(path: Path, layout: Layout | None = None) -> Reader:
         return BagReader(path)
     if suffix in (".parquet", ".pq"):
         return ParquetReader(path)
+    if suffix in ARRAYS:
+        return array_table(path, layout.columns if layout else ())
     if suffix == ".gz":  # of a table of text
         suffix = Path(path.stem).suffix.lower()
         suffix = suffix if suffix in TEXTS else ".gz"
     if suffix in TEXTS or path.is_fifo():
         return CsvReader(path, layout)
-    kinds = ".csv, .csv.gz, .txt, .tsv, .parquet, .bag, .db3, .mcap, or the folder of a ROS 2 bag"
+    kinds = ".csv, .csv.gz, .txt, .tsv, .parquet, .mat, .npz, .bag, .db3, .mcap, or the folder of a ROS 2 bag"
     hint = "; in the spreadsheet, save the sheet as CSV UTF-8" if suffix in SHEETS else ""
     if suffix == ".active":
         hint = "; a bag that was not closed: `rosbag reindex FILE`, then name it .bag"

@@ -77,6 +77,13 @@ def head_of(path: Path, file: Path, encoding: str, skip: int) -> list[tuple[int,
         raise InputError(f"{path}: cannot be read in the encoding {encoding}") from None
 
 
+def comment_before(file: Path, encoding: str, line: int) -> str:
+    """Text of the last line that begins with # before a line, without that sign; empty where none does."""
+    with lines_of(file, encoding) as stream:
+        found = [text.strip(" #\r\n") for text in islice(stream, line - 1) if text.startswith("#")]
+    return found[-1] if found else ""
+
+
 def cells_of(line: str, delimiter: str | None) -> list[str]:
     """The cells of a line, without quotes and blanks around them."""
     if delimiter is None:
