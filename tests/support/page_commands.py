@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # Programs that blocks of the pages call. A block of shell that is indented begins with one of them.
 PROGRAMS = (
-    "modelgen", "python", "python3", "pip", "make", "cc", "sed", "dask", "frama-c",
+    "modelgen", "python", "python3", "pip", "make", "cc", "sed", "awk", "dask", "frama-c",
     "arm-none-eabi-gcc", "arm-none-eabi-size", "xacro",
 )  # fmt: skip
 # Made by the commands of a page, and called by it.
