@@ -25,6 +25,7 @@ MADE = ("self_test", "hold", "examples/mpc/build/c/loop")
 # Pages whose commands a test of their own runs as they are, with what they print.
 ELSEWHERE = {
     "docs/tutorial.md": "tests/docs/test_tutorial.py",
+    "docs/mpc.md": "tests/docs/test_mpc_page.py",
     "docs/from-a-urdf.md": "tests/docs/test_from_a_urdf.py",
     "docs/importing.md": "tests/docs/test_importing_page.py",
     "docs/exporting.md": "tests/docs/test_exporting_page.py",
