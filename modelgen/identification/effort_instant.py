@@ -33,8 +33,8 @@ from modelgen.identification.unexplained import FAR
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
-STEPS = 20  # of Gauss and Newton, at most
-LONGEST = 2.0  # samples, of a step
+STEPS = 20  # of Gauss and Newton, and as many at most that go on as far as they may
+LONGEST, TURNED = 2.0, 0.1  # samples, of a step, or periods of the cut-off where these are more
 SETTLED = 0.02  # samples, or this part of the deviation, at which they end
 ELEMENTS = 25_000_000  # of the regressor at full rate, beyond which the beginnings of the records do
 WAVES = (0.5, 1, 1.5, 2, 3)  # in the range of a joint, of which its free law of position is made
@@ -168,17 +168,25 @@ class _Fit:
         theta = before.theta
         self._evaluate(theta)
         told, deviations = np.ones(self.n, dtype=bool), np.full(self.n, np.inf)
-        for _ in range(STEPS):
+        cutoff = self.records[0].settings.cutoff or 1.0 / first.step
+        longest = max(LONGEST, TURNED / (cutoff * first.step))
+        near, way = 0, np.zeros(self.n)  # steps that do not go on as far as they may; where the last one went
+        for _ in range(2 * STEPS):
             columns = self._with_delays(theta)
             solution = Regression(efforts, columns, self.moving).solve("wls")
             theta, moved = solution.theta[: self.p], solution.theta[self.p :]
             told = solution.determined[self.p :] & np.isfinite(moved)
             deviations = np.sqrt(np.maximum(np.diag(solution.covariance)[self.p :], 0.0))
-            delays = delays + np.where(told, np.clip(moved, -LONGEST, LONGEST), 0.0)
-            if (np.abs(moved[told]) <= np.maximum(SETTLED, SETTLED * deviations[told])).all():
+            delays = delays + np.where(told, np.clip(moved, -longest, longest), 0.0)
+            settled = (np.abs(moved[told]) <= np.maximum(SETTLED, SETTLED * deviations[told])).all()
+            if settled:
                 break
             efforts = self._efforts(delays)
-        else:
+            near += not (told & (way * moved > longest)).any()
+            way = np.sign(moved)
+            if near == STEPS:
+                break
+        if not settled:
             told &= np.abs(moved) <= deviations
         self.missing = self._missing(solution.sigma, before.sigma)
         if free:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import made_up_plants as plants
 import numpy as np
 import pytest
 from identification_support import model_of
@@ -178,6 +179,33 @@ def test_one_joint_far_from_its_positions_is_named(arm: mg.Arm) -> None:
     (asked,) = (x for x in mg.identify(arm, train, test).to_json()["doubts"] if "older than" in x)
     assert asked.startswith(f"The efforts at {arm.coordinate_names[1]} are")
     assert "hold" not in asked
+
+
+@pytest.mark.parametrize("names", [("i2",), ("i1",), ("i1", "i2")])
+def test_efforts_that_are_very_late_are_asked_about(names: tuple[str, ...]) -> None:
+    """By an eighth of a second, many samples of a fast log."""
+    rate, late = 500.0, 62
+    text = plants.description(2, "{coulomb_friction: {magnitude: 0.01}}")
+    subject = loads(text, "arms.yaml", known_effects())["made_up"]
+
+    def table(seed: int) -> Table:
+        random = np.random.default_rng(seed)
+        t = np.arange(int(16 * rate)) / rate
+        q, dq, ddq = plants.motion(t, random.uniform(0, 6.28, (2, len(plants.WAVES))))
+        current = plants.PLAIN[2].currents(q, dq, ddq)
+        current[:, 1] += 0.01 / plants.CONSTANT[1] * np.sign(dq[:, 1])
+        motor = np.rint(q * plants.RATIO / 1e-3) * 1e-3
+        made = {"t": t, "qm1": motor[:, 0], "qm2": motor[:, 1], "i1": current[:, 0], "i2": current[:, 1]}
+        for name in names:
+            made[name] = np.concatenate([np.full(late, made[name][0]), made[name][:-late]])
+            made[name] = made[name] + 0.01 * random.normal(size=len(t))
+        return made
+
+    asked = [x for x in mg.identify(subject, table(1), table(2)).to_json()["doubts"] if "older than" in x]
+    joints = ", ".join(f"j{name[1:]}" for name in names)
+    assert len(asked) == 1
+    assert asked[0].startswith(f"The efforts at {joints} are")
+    assert float(asked[0].split(" are ")[1].split(" ms")[0]) == pytest.approx(1e3 * late / rate, rel=0.1)
 
 
 def test_what_noise_hides_is_said_to_be_hidden(arm: mg.Arm) -> None:
