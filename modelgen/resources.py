@@ -39,13 +39,10 @@ def shipped_sizes() -> Path | None:
 
 
 def gallery() -> Path | None:
-    """The gallery of effects as a page, as HTML where `make docs` has built it; None of an installation
-    without the documentation.
-    """
+    """The gallery of effects as a page, where `make docs` has built it; None elsewhere."""
     checkout = Path(str(files("modelgen"))).parent
-    pages = checkout / "build" / "docs" / "gallery.html", checkout / "docs" / "gallery.md"
-    there = (checkout / "pyproject.toml").is_file()
-    return next((page for page in pages if there and page.is_file()), None)
+    page = checkout / "build" / "docs" / "gallery.html"
+    return page if (checkout / "pyproject.toml").is_file() and page.is_file() else None
 
 
 def default_effects() -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from modelgen.charts import apart
 from modelgen.description import Arm, loads
 from modelgen.effects import known_effects
 from modelgen.options import CalibrationOptions, changed
-from modelgen.report.calibration import picture, report
+from modelgen.report.calibration import picture, report, verdict
 from modelgen.report.call import Call
 from modelgen.report.words import joint_name
 
@@ -95,7 +95,8 @@ class Calibration(Result):
         parts: list[str | Table] = [
             f"{self.arm.name}, {joint_name(self.arm, c.joint)}: "
             f"RMSE of the angle {before} -> {after} rad "
-            f"({c.improvement_percent:z.1f} % better), {len(c.motor)} samples"
+            f"({c.improvement_percent:z.1f} % better), {len(c.motor)} samples",
+            verdict(c),
         ]
         if c.after.rev != c.before.rev:
             left = c.candidates[c.before.rev]

@@ -11,6 +11,7 @@ from modelgen.report.call import WHERE, Call
 from modelgen.report.page import WIDE, Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
 from modelgen.report.words import joint_name, listed, sentence
 
+_FAR = 2.0  # standard deviations
 _BEFORE, _AFTER = "as described", "calibrated"
 _MM = {"m": (1e3, "mm")}  # as which lengths are said
 
@@ -57,7 +58,7 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
     name = joint_name(arm, c.joint)
     before, after = apart(float(np.degrees(c.rms_before)), float(np.degrees(c.rms_after)))
     said = f"The lever of {name} explains the angle to {after} deg instead of {before} deg (RMSE): "
-    said += f"{c.improvement_percent:z.0f} % less, over {len(c.motor)} samples."
+    said += f"{c.improvement_percent:z.0f} % less, over {len(c.motor)} samples. {verdict(c)}"
     branch = []
     if c.after.rev != c.before.rev:
         left = number(float(np.degrees(c.candidates[c.before.rev])))
@@ -81,7 +82,7 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
         ("What is uncertain", [Text(_uncertain(c)), *weak]),
         (
             "What to do next",
-            _following(call),
+            _following(call, stands(c)),
         ),
     ]
     sections: Parts = [
@@ -89,6 +90,27 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
         ("Measured angles and both levers", [block(charts(arm, c))]),
     ]
     return page(f"{arm.name}: lever of {name}", "Calibration", answers, sections)
+
+
+def stands(c: Calibration) -> bool:
+    """Whether the lever as described agrees with the angles: its branch, and every value by its deviation."""
+    return c.after.rev == c.before.rev and not _moved(c)
+
+
+def verdict(c: Calibration) -> str:
+    """What differs from the description, in words."""
+    if stands(c):
+        return f"The description stands: no value differs from it by more than {_FAR:g} standard deviations."
+    moved = listed(
+        f"{e.name} is {number(size * e.value, 4)} {unit}, not {number(size * e.before, 4)}"
+        for e, size, unit in _moved(c)
+    )
+    return f"Differs by more than {_FAR:g} standard deviations: {moved}." if moved else "The branch differs."
+
+
+def _moved(c: Calibration) -> list[tuple[Estimate, float, str]]:
+    """Estimates that differ clearly from the description, as `_sized`."""
+    return [x for x in _sized(c) if abs(x[0].value - x[0].before) > _FAR * x[0].std]
 
 
 def _sized(c: Calibration) -> list[tuple[Estimate, float, str]]:
@@ -117,12 +139,12 @@ def _pictured(c: Calibration) -> list[Part | str]:
     ]
 
 
-def _following(call: Call) -> list[Part | str]:
-    """The description with this lever in what follows: a motion, then the parameters."""
-    described = call.beside(f"{call.arm.name}_calibrated.yaml")
+def _following(call: Call, stands: bool) -> list[Part | str]:
+    """The description, with this lever where it differs, in what follows: a motion, then the parameters."""
+    described = None if stands else call.beside(f"{call.arm.name}_calibrated.yaml")
     used = [
-        Run(described, "code"),
-        Run(" is the description with this lever: "),
+        Run("Keep the description: " if described is None else described, "" if stands else "code"),
+        Run("" if stands else " is the description with this lever: "),
         Run("modelgen identify", "code"),
         Run(" finds the parameters with it, from records of a motion that determines them."),
     ]

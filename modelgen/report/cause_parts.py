@@ -23,7 +23,7 @@ from modelgen.resources import gallery
 
 _LOOKALIKES = (("confused with", "left"), ("what that is", "left"), ("seen by itself in", "left"))
 _DEFINED = (("parameter", "left"), ("unit", "left"), ("meaning", "left"))
-_ELSEWHERE = "docs/gallery.md in the source of modelgen, a page of the documentation that "
+_ELSEWHERE = "the gallery of the documentation, which "
 _VALUES = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"), ("meaning", "left"))
 
 

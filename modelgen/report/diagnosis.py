@@ -27,10 +27,11 @@ _SIMULATED = {
 }
 _FIT = (
     "goodness of fit 100 (1 - |y - y\N{COMBINING CIRCUMFLEX ACCENT}| / |y - mean y|), mean absolute error "
-    "and RMSE in rad or m, before and after."
+    "and RMSE in rad or m"
 )
 _SHEET = ("speed", "position", "load (size of the effort)")  # of the residuals that stand in a file
 _RIVALS = (("cause", "left"), ("rival", "left"), ("why not", "left"))
+_GAPS = "Gaps: the joint rests there, or the record begins or ends; that is not judged."
 _NO_RIVALS = "None: no other candidate explains what a cause does nearly as well."
 _CANDIDATES = (
     ("effect", "left"),
@@ -40,16 +41,19 @@ _CANDIDATES = (
     ("expected %", "right"),
     ("answer", "left"),
 )
-_MOTION = (
-    ("joint", "left"),
-    ("F_gof before", "right"),
-    ("F_gof after", "right"),
-    ("MAE before", "right"),
-    ("MAE after", "right"),
-    ("RMSE before", "right"),
-    ("RMSE after", "right"),
-)
 _PARAMETERS = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"))
+_SETTINGS = {
+    "asked": "effects asked for",
+    "train": "training records",
+    "test": "test record",
+    "cutoff_hz": "cut-off of effort and regressor [Hz]",
+    "position_cutoff_hz": "cut-off of the positions [Hz]",
+    "factor": "samples of the log for one row",
+    "rest_speeds": "speeds below which a joint rests [rad/s, m/s]",
+    "period_s": "periods of the training records [s]",
+    "evidence_threshold": "least evidence of a cause [delta BIC]",
+    "practical_gain_percent": "least gain of a cause [% of the RMSE]",
+}
 _RECORDS = (("record", "left"), ("use", "left"), ("samples", "right"), ("rate [Hz]", "right"))
 _BEGINS = ("begins (UTC)", "left")
 _UNDATED = "Their stamps do not count from 1970, and do not say when they were made."
@@ -74,7 +78,8 @@ def report(d: Diagnosis, folder: Path | None = None, call: Call | None = None) -
 def _sections(d: Diagnosis) -> Iterator[Section]:
     drawing = named_joints(d)
     if drawing:
-        title = "The arm, to turn and move, with the joints that are named"
+        what = "named" if d.causes else "suspected"
+        title = f"The arm, to turn and move, with the joints at which something is {what}"
         yield Section("", [Folded(title, [drawing], screen=True)])
     yield from (law_found(d, k) for k in by_worth(d))
     yield from _others(d)
@@ -82,9 +87,9 @@ def _sections(d: Diagnosis) -> Iterator[Section]:
     if experiment:
         yield Section("Next experiment", experiment)
     yield Section("The log, and what is assumed about it", _log(d))
-    yield Section(
-        "Measured against predicted, the whole test record", [block(efforts(d)), _over_abscissae(d)]
-    )
+    whole: list[Part] = [block(efforts(d)), _over_abscissae(d)]
+    rests = [] if d.test.moving.all() else [Text(_GAPS)]
+    yield Section("Measured against predicted, the whole test record", [*rests, *whole])
     motion = _simulation(d)
     if motion:
         yield Section("Simulated motion", motion)
@@ -135,20 +140,21 @@ def _simulation(d: Diagnosis) -> list[Part]:
     one, two = d.simulation
     if one is None or two is None:
         return []
+    models = (("before", one), ("after", two)) if d.causes else (("", one),)
+    heads = [("joint", "left")]
+    scores = [f"{score} {when}".rstrip() for score in ("F_gof", "MAE", "RMSE") for when, _ in models]
+    heads += [(score, "right") for score in scores]
     rows = [
         (
             joint_name(d.arm, j + 1),
-            _fit(one.f_gof[j]),
-            _fit(two.f_gof[j]),
-            f"{one.mae[j]:z.3g}",
-            f"{two.mae[j]:z.3g}",
-            f"{one.rmse[j]:z.3g}",
-            f"{two.rmse[j]:z.3g}",
+            *(_fit(x.f_gof[j]) for _, x in models),
+            *(f"{x.mae[j]:z.3g}" for _, x in models),
+            *(f"{x.rmse[j]:z.3g}" for _, x in models),
         )
         for j in range(len(one.f_gof))
     ]
-    text = f"{_SIMULATED[d.test.prepared.input is None]}: {_FIT}"
-    return [Text(text), Grid("Simulated motion", _MOTION, rows, folds=True), block(replayed(d))]
+    text = f"{_SIMULATED[d.test.prepared.input is None]}: {_FIT}{', before and after' if d.causes else ''}."
+    return [Text(text), Grid("Simulated motion", heads, rows, folds=True), block(replayed(d))]
 
 
 def _fit(percent: float) -> str:
@@ -158,7 +164,7 @@ def _fit(percent: float) -> str:
 
 def _files(d: Diagnosis) -> list[Part]:
     values = [(name, f"{e.value:z.6g}", f"{e.std:z.2g}", e.unit) for name, e in d.parameters.items()]
-    settings = [(name, _said(value)) for name, value in d.settings.items()]
+    settings = [(_SETTINGS.get(name, name), _said(value)) for name, value in d.settings.items()]
     extended, identified = f"{d.arm.name}_extended.yaml", f"{d.arm.name}_parameters.yaml"
     beside = [
         Run("Beside this page: "),

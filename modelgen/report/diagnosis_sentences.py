@@ -15,8 +15,8 @@ from modelgen.report.words import finding, joint_name, listed, sentence
 _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
     "cannot_tell": "These records cannot tell.",
-    "suspected": "Nothing can be named, and something is suspected.",
 }
+_TITLES = 2  # suspects by their names, in a headline
 _VISIBLE = 0.05  # percent: less is 0.0 in print
 _SAME = 0.01  # of an error or a cut-off, that needs no word
 
@@ -30,6 +30,10 @@ def missing(d: Diagnosis) -> list[str]:
     """What is missing, a sentence for each cause; one that says so where none is named."""
     if d.verdict == "named":
         return [sentence(finding(d.arm, c.effect, c.joint, c.parameters, c.records)) for c in d.causes]
+    if d.verdict == "suspected":
+        titles = [cause_title(d, c) for c in d.suspects]
+        more = [f"{len(titles) - _TITLES} more"] if titles[_TITLES:] else []
+        return [f"Nothing can be named; suspected: {listed(titles[:_TITLES] + more)}."]
     return [_SENTENCES.get(d.verdict) or sentence(d.reason)]
 
 

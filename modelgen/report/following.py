@@ -159,10 +159,10 @@ def _wherever(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> str:
 def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
     """What to do where nothing is named, by itself and with its command.
 
-    That is to ask for all effects, where what is missing is none of the few asked for; else to record another
-    motion, with the speeds of the test record where the arm has no limits.
+    That is to ask for all effects, where only some were asked for; else to record another motion, with the
+    speeds of the test record where the arm has no limits.
     """
-    if d.verdict == "outside_catalogue" and d.settings["asked"] != "all":
+    if d.settings["asked"] != "all":
         every = call.diagnosing()
         return _EVERY, Step(f"{_EVERY} This does, {WHERE}:" if every else _EVERY, every)
     text = _MOTIONS[d.verdict]

@@ -251,7 +251,7 @@ def models(test: Validation, others: Sequence[Alternative]) -> list[tuple[str, l
     rows = [(AS_DESCRIBED, [f"{a} ({b})" for a, b in table(test)])]
     for other in others:
         change = 100.0 * (test.rmse / np.maximum(other.test.rmse, 1e-300) - 1.0)
-        cells = [f"{a} ({b}) {c:+z.0f} %" for (a, b), c in zip(table(other.test), change, strict=True)]
+        cells = [f"{a} ({b}) {c:+z.0f}%" for (a, b), c in zip(table(other.test), change, strict=True)]
         rows.append((other.name, cells))
     return rows
 

@@ -10,6 +10,7 @@ import numpy as np
 from modelgen.charts import Chart, Curve, Interval, apart, number, over_time, sheet, within
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
+from modelgen.options import words_of
 from modelgen.report.call import WHERE, Call
 from modelgen.report.page import WIDE, Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
@@ -17,6 +18,7 @@ from modelgen.report.words import listed, sentence
 _FAR = 2.0  # standard deviations
 _SAME = 1.01  # of an error, that needs no word
 _NAMED = 6  # parameters that moved, in a sentence
+_KEEP = "Nothing was gained by what matters: keep the values of the start."
 _VAGUE = "Standard deviations, and what they move, are rough there."
 _NEAR = "if the simulated motion below is near enough to the measured one all the same"
 
@@ -79,10 +81,10 @@ def report(found: Refinement, call: Call) -> str:
                 ),
             ],
         ),
-        ("What moved", [Text(_moved(free)), *_uncertain(found)]),
+        ("What moved", [Text(_moved(free, _gained(found))), *_uncertain(found)]),
         (
             "What to do next",
-            _following(call, found.converged),
+            _following(call, found.converged, _gained(found)),
         ),
     ]
     table = [
@@ -115,7 +117,13 @@ def headline(found: Refinement) -> str:
     worse = [arm.coordinate_names[j] for j in range(len(after)) if after[j] > _SAME * before[j]]
     lost = f" It is farther from it than before at {listed(worse)}." if worse else ""
     text = f"The simulated motion misses the measured one by {new} {arm.coordinate_units[worst]} (RMSE)"
-    return f"{text} {where}; with the values at the start it was {old}.{lost}"
+    kept = "" if _gained(found) else f" {_KEEP}"
+    return f"{text} {where}; with the values at the start it was {old}.{lost}{kept}"
+
+
+def _gained(found: Refinement) -> bool:
+    """Whether the simulated motion of some joint is nearer to the measured one than at the start."""
+    return bool((found.before.rmse > _SAME * found.after.rmse).any())
 
 
 def _ended(found: Refinement, free: int) -> list[Part | str]:
@@ -131,8 +139,8 @@ def _ended(found: Refinement, free: int) -> list[Part | str]:
     ]
 
 
-def _following(call: Call, converged: bool) -> list[Part | str]:
-    """The code, and what the model lacks."""
+def _following(call: Call, converged: bool, gained: bool) -> list[Part | str]:
+    """The code, where there is a reason to have the values in it, and what the model lacks."""
     generate = call.command("generate", "--parameters", call.beside(f"{call.arm.name}_parameters.yaml"))
     diagnose = call.diagnosing()
     folded = f"generate code with these values folded in, {WHERE}"
@@ -140,6 +148,9 @@ def _following(call: Call, converged: bool) -> list[Part | str]:
         Text(f"{call.first}{sentence(folded if converged else f'{_NEAR}, {folded}')}"),
         Command(generate),
     ]
+    if not gained:
+        start = call.command("generate", *words_of(call.options, ("parameters",)))
+        parts = [Text(f"{call.first}{_KEEP} Their code, {WHERE}:"), Command(start)]
     if diagnose:
         return [
             *parts,
@@ -159,17 +170,15 @@ def _following(call: Call, converged: bool) -> list[Part | str]:
     return [*parts, Text(named)]
 
 
-def _moved(free: list[Any]) -> str:
+def _moved(free: list[Any], gained: bool) -> str:
     """Which parameters left their start by more than their uncertainty."""
     far = sorted(
         (x for x in free if x.std and abs(x.value - x.start) > _FAR * x.std),
         key=lambda x: -abs(x.value - x.start) / x.std,
     )
     if not far:
-        return (
-            f"No parameter left its start by more than {_FAR:g} standard deviations: each start agrees with "
-            "these records, and what the motion gained is by all together."
-        )
+        more = "; what the motion gained is by all together" if gained else ""
+        return f"No parameter left its start by more than {_FAR:g} standard deviations{more}."
     said = listed(f"{x.name} {' → '.join(apart(x.start, x.value))} {x.unit}".rstrip() for x in far[:_NAMED])
     more = f", and {len(far) - _NAMED} more" if len(far) > _NAMED else ""
     return f"By more than {_FAR:g} standard deviations: {said}{more}."

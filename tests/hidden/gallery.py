@@ -131,7 +131,7 @@ def _entry(effect: type[Definition], line: Line, run: Sequence[Line]) -> Iterato
     yield from (f"## {name}", "", f"{sentence(effect.text)} Law: {law(name)}", "")
     yield from (f"![{text}]({path})" for text, path in drawn)
     yield from ("", f"**In a log.** {_log(line)} {_counted(name, run)}", "")
-    yield "| looks alike | its evidence here | what separates the two | expected delta BIC |"
+    yield "| confused with | its evidence here | what separates the two | expected delta BIC |"
     yield "|---|---|---|---|"
     yield from (_row(other, line) for other in effect.confused_with)
     reading = "" if effect.reading is None else f" Or read {effect.reading.text}."

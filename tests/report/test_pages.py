@@ -198,7 +198,7 @@ def test_units_fold_on_a_phone_and_are_sorted_there(pages: Mapping[str, Path]) -
         first = page.locator("#units tbody tr").first
         assert "broken" in first.inner_text()
         heads = first.locator("td:not(:empty)").evaluate_all("c => c.map(x => x.dataset.head)")
-        assert heads == ["unit", "arm", "verdict", "said"]
+        assert heads == ["unit", "arm", "verdict", "reason"]
 
 
 def test_units_are_sorted_and_found_by_the_keyboard(pages: Mapping[str, Path]) -> None:
@@ -332,14 +332,18 @@ def test_a_refinement_says_first_by_how_much_the_simulated_motion_errs() -> None
     """Before it too from the initial state that suits best: values that are right gain nothing by it."""
     arm = mg.load_arms()["gravity_link2"]
     swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
-    right = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
-    assert right.found.before.rmse[0] < 1e-6  # rad
+    noise = 1e-4 * np.random.default_rng(0).standard_normal(len(swing.t))
+    right = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0] + noise})
+    assert right.found.before.rmse[0] == pytest.approx(1e-4, rel=0.1)  # rad
+    assert "keep the values of the start" in str(right.shown()[0])
+    assert "gained is by all together" not in right.files()["report.html"]
     values = {x.name: x.start for x in right.parameters.values()}
     other = values | {"FV1": 1.5 * values["FV1"]}
     swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0, parameters=other)
     found = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
     first = found.shown()[0]
     assert isinstance(first, str)
+    assert "keep the values" not in first
     assert first in unescape(found.files()["report.html"])
     after, before = (float(x) for x in re.findall(r"(?:by|was) (\d[\d.e-]*\d)", first))
     missed = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0).q - swing.q
@@ -433,6 +437,20 @@ def test_what_a_calibration_leaves_open_is_said_in_its_units(pages: Mapping[str,
     assert found.keys() == stds.keys()
     for name, half in found.items():
         assert float(half) == pytest.approx(1.96 * float(stds[name]), rel=0.06)
+
+
+def test_a_calibration_says_whether_the_description_stands() -> None:
+    """Of angles of the lever as described, and of one whose zero is elsewhere."""
+    arm, motor = mg.load_arms()["ariane4"], np.linspace(0.0, 20_000.0, 300)
+    noise = 2e-3 * np.random.default_rng(1).standard_normal(len(motor))
+    for offset in (0.0, 0.05):
+        log = {"t": 0.05 * np.arange(300), "qm3": motor, "q3": lever_of(arm, 3).angle(motor) + offset + noise}
+        found = mg.calibrate(arm, 3, log)
+        (verdict,) = [x for x in found.shown() if isinstance(x, str) and "standard deviations" in x]
+        assert verdict.startswith("The description stands") == (not offset)
+        page = found.files()["report.html"]
+        assert verdict in page
+        assert ("Keep the description" in page) == (not offset)
 
 
 def test_what_an_excitation_determines_worst_is_said_in_amperes(pages: Mapping[str, Path]) -> None:

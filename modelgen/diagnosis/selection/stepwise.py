@@ -118,7 +118,8 @@ class _Steps:
         search = Search(self.system, self.known, elastic)
         taken = {t.candidate.place for t in self.trials}
         left = [c for c in self.pool if c.place not in taken]
-        told = None if self.report is None else partial(self.report, f"cause {len(self.causes) + 1}")
+        stage = f"candidates for cause {len(self.causes) + 1}"
+        told = None if self.report is None else partial(self.report, stage)
         trials, faint, astray, refused = [], [], [], []
         for found in fit_pool(left, search, self.where, told):
             if found is None:
