@@ -19,6 +19,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -91,25 +92,53 @@ def main() -> int:
         done = subprocess.run([sys.executable, "-m", "sphinx", *options, str(source), str(out)], check=False)
     if not done.returncode:
         for page in out.rglob("*.html"):
-            _write(page, accessible(page.read_text("utf-8")))
+            _write(page, pictured(accessible(page.read_text("utf-8")), page.parent))
         print(f"{os.path.relpath(out)}/index.html")
     return done.returncode
 
 
-def accessible(html: str) -> str:
+def accessible(text: str) -> str:
     """A page with what the theme leaves out for keyboards and screen readers: reach, levels, names."""
-    html = re.sub(r"<pre>(?=<span></span>)", '<pre tabindex="0">', html)
-    html = re.sub(r'<div class="table-wrapper[^"]*"', r'\g<0> tabindex="0"', html)
-    html = html.replace('role="heading"><span', 'role="heading" aria-level="2"><span')
-    html = html.replace(
+    text = re.sub(r"<pre>(?=<span></span>)", '<pre tabindex="0">', text)
+    text = re.sub(r'<div class="table-wrapper[^"]*"', r'\g<0> tabindex="0"', text)
+    text = text.replace('role="heading"><span', 'role="heading" aria-level="2"><span')
+    text = text.replace(
         '<aside class="sidebar-drawer">', '<aside class="sidebar-drawer" aria-label="All pages">'
     )
-    html = re.sub(r'<aside class="toc-drawer[^"]*"', r'\g<0> aria-label="This page"', html)
-    html = html.replace('<div id="search-results">', '<h1>Search</h1>\n<div id="search-results">')
+    text = re.sub(r'<aside class="toc-drawer[^"]*"', r'\g<0> aria-label="This page"', text)
+    text = text.replace('<div id="search-results">', '<h1>Search</h1>\n<div id="search-results">')
     # A long name breaks between its words.
-    html = re.sub(r"(<h[12]>)(\w+)(?=<)", lambda m: m[1] + m[2].replace("_", "_<wbr>"), html)
+    text = re.sub(r"(<h[12]>)(\w+)(?=<)", lambda m: m[1] + m[2].replace("_", "_<wbr>"), text)
     # A cell above the names of the rows heads nothing.
-    return re.sub(r'<th class="head([^"]*)">(?:<p></p>)?</th>', r'<td class="head\1"></td>', html)
+    return re.sub(r'<th class="head([^"]*)">(?:<p></p>)?</th>', r'<td class="head\1"></td>', text)
+
+
+def pictured(text: str, folder: Path) -> str:
+    """A page of a folder whose pictures lead to their own files, in boxes that scroll on a narrow screen.
+
+    A picture is not drawn narrower there than three quarters of its own width, so that its letters stay
+    legible.
+    """
+
+    def boxed(found: re.Match[str]) -> str:
+        width = natural_width(folder / found["src"])
+        style = f' style="--legible: {round(0.75 * width)}px"' if width else ""
+        return f'<span class="picture"{style}><a href="{found["src"]}">{found[0]}</a></span>'
+
+    return re.sub(r'<img [^>]*src="(?P<src>[^":]*_images/[^"]+)"[^>]*>', boxed, text)
+
+
+def natural_width(picture: Path) -> float:
+    """Width that a picture has by itself [pixel]; 0 where it names none."""
+    if picture.suffix == ".png":
+        return float(int.from_bytes(picture.read_bytes()[16:20], "big"))
+    head = re.search(r"<svg[^>]*>", picture.read_text("utf-8"))
+    tag = head[0] if head else ""
+    named = re.search(r'\bwidth="([\d.]+)(pt|px|)"', tag)
+    if named:
+        return float(named[1]) * (4 / 3 if named[2] == "pt" else 1)
+    box = re.search(r'\bviewBox="[-\d.]+ [-\d.]+ ([\d.]+)', tag)
+    return float(box[1]) if box else 0.0
 
 
 def gather(folder: Path) -> None:
@@ -192,22 +221,34 @@ def modules(package: str) -> Iterator[str]:
 
 
 def command_line() -> str:
-    """The help of every command."""
-    environment = {**os.environ, "COLUMNS": "88", "TERMINAL_WIDTH": "88", "NO_COLOR": "1", "TERM": "dumb"}
-
-    def text(*words: str) -> str:
-        call = [sys.executable, "-m", "modelgen", *words]
-        done = subprocess.run(call, capture_output=True, text=True, check=True, env=environment)
-        return "\n".join(line.rstrip() for line in done.stdout.strip().splitlines())
-
+    """Every command with its options, an explanation under each name: legible on a narrow screen too."""
     from typer.main import get_command  # noqa: PLC0415 - slow, and only here
 
     from modelgen.cli.app import app  # noqa: PLC0415
 
-    parts = [f"# Command line\n\n```text\n{text('--help')}\n```\n"]
-    for name in get_command(app).commands:  # type: ignore[attr-defined]
-        parts.append(f"## {name}\n\n```text\n{text(name, '--help')}\n```\n")
-    return "\n".join(parts)
+    group: Any = get_command(app)
+    inside = group.context_class(group, info_name="modelgen")
+    parts = ["# Command line", *_explained(group, inside)]
+    for name, command in group.commands.items():
+        context = command.context_class(command, info_name=name, parent=inside)
+        parts += [f"## {name}", *_explained(command, context)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _explained(command: Any, context: Any) -> Iterator[str]:
+    """Usage, purpose and parameters of a command, as blocks of Markdown."""
+    yield f"```text\n{' '.join([context.command_path, *command.collect_usage_pieces(context)])}\n```"
+    paragraphs = [_plain(part) for part in re.split(r"\n\s*\n", command.help or "")]
+    records = [p.get_help_record(context) for p in command.get_params(context)]
+    rows = [f"   ``{name}``\n      {_plain(said)}\n" for name, said in filter(None, records)]
+    text = "\n\n".join([*paragraphs, ".. container:: options", "\n".join(rows)])
+    yield f"```{{eval-rst}}\n{text}```"
+
+
+def _plain(text: str) -> str:
+    """A paragraph in one line, whose characters mean themselves; options in it are code."""
+    text = re.sub(r"([*|_\\`])", r"\\\1", " ".join(text.split()))
+    return re.sub(r"(?<![\w-])--[a-z][a-z-]*", r"``\g<0>``", text)
 
 
 def _linked(text: str) -> str:

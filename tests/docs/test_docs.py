@@ -66,6 +66,42 @@ def test_pages_hold_to_the_rules_of_accessibility_at_any_width(site: Path, width
             assert wider(page) == 0, name
 
 
+@pytest.mark.parametrize("name", ["architecture", "benchmarks", "gallery"])
+def test_pictures_are_legible_on_a_narrow_screen(site: Path, name: str) -> None:
+    """Three quarters of their own width or more, in a box that keys reach and move, and in full by a link."""
+    with opened(site / f"{name}.html", 400, alone=False) as page:
+        shown = page.locator("article img").evaluate_all(
+            "all => all.map(e => [e.getBoundingClientRect().width / e.naturalWidth, e.src, e.alt,"
+            " e.closest('.picture > a')?.href])"
+        )
+        assert len(shown) >= 2
+        for scale, source, words, link in shown:
+            assert scale >= 0.74, source
+            assert link == source
+            assert words
+        assert wider(page) == 0
+        if name != "gallery":
+            page.locator(".picture > a").first.focus()
+            page.keyboard.press("ArrowRight")
+            page.wait_for_function("document.querySelector('.picture').scrollLeft > 0", timeout=5000)
+
+
+def test_options_are_explained_under_their_names_on_a_narrow_screen(site: Path) -> None:
+    with opened(site / "reference/command_line.html", 400, alone=False) as page:
+        rows = page.locator(".options > dl > dt").evaluate_all(
+            "all => all.map(e => [e.innerText, e.getBoundingClientRect().bottom,"
+            " e.nextElementSibling.innerText, e.nextElementSibling.getBoundingClientRect().toJSON(),"
+            " e.nextElementSibling.scrollWidth - e.nextElementSibling.clientWidth])"
+        )
+        names = " ".join(row[0] for row in rows)
+        assert all(name in names for name in ("--train", "--rate HZ", "--no-derivatives", "ARMS <path>"))
+        for name, bottom, said, box, beyond in rows:
+            assert said.strip(), name
+            assert box["top"] >= bottom, name
+            assert 0 < box["left"] < box["right"] <= 400, name
+            assert beyond == 0, name
+
+
 def test_every_case_study_is_one_screen(site: Path) -> None:
     """From its question to its command, on a screen of 1280 by 800, below where a link leads to."""
     with opened(site / "case-studies.html", alone=False) as page:
