@@ -69,17 +69,12 @@ def opened(path: Path, width: int = 1280, scheme: str = "light", *, alone: bool 
         context.close()
 
 
-def violations(page: Page, *, contrast: bool = True) -> list[str]:
-    """What axe-core finds wrong in a page and its frames, a line for each rule and element; without contrast
-    the rule that takes longest is left out.
-    """
+def violations(page: Page) -> list[str]:
+    """What axe-core finds wrong in a page and its frames, a line for each rule and element."""
     rules = files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
     for frame in page.frames:
         frame.evaluate(rules)
-    found: list[dict[str, Any]] = page.evaluate(
-        "on => axe.run(document, {rules: {'color-contrast': {enabled: on}}}).then(r => r.violations)",
-        contrast,
-    )
+    found: list[dict[str, Any]] = page.evaluate("axe.run().then(r => r.violations)")
     return [
         f"{rule['id']}: {node['target']} {node.get('failureSummary', '')[:300]}"
         for rule in found
