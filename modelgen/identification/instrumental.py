@@ -57,10 +57,12 @@ def compared(
         return None
     size = int(known.sum())
     zw, ww = np.zeros((size, size)), np.zeros((size, size))
-    zy, wy = np.zeros(size), np.zeros(size)
+    zy, wy, zz = np.zeros(size), np.zeros(size), np.zeros(size)
     for y, w, z, _ in rows:
         zw, ww, zy, wy = zw + z.T @ w, ww + w.T @ w, zy + z.T @ y, wy + w.T @ y
-    by_instruments, by_squares = np.linalg.pinv(zw, rcond=1e-12), np.linalg.pinv(ww, rcond=1e-12)
+        zz += (z**2).sum(axis=0)
+    lengths = np.sqrt(np.diag(ww))
+    by_instruments, by_squares = _inverse(zw, np.sqrt(zz), lengths), _inverse(ww, lengths, lengths)
     theta, plain = by_instruments @ zy, by_squares @ wy
     covariance, difference = np.zeros((size, size)), np.zeros((size, size))
     for joint in sorted({j for *_, j in rows}):
@@ -76,6 +78,14 @@ def compared(
     spread[np.ix_(known, known)] = covariance
     threshold = float(special.chdtri(degrees, SIGNIFICANCE)) if degrees else float("inf")
     return Comparison(replace(least, theta=whole, covariance=spread), statistic, degrees, threshold)
+
+
+def _inverse(products: Array, left: Array, right: Array) -> Array:
+    """Of products (p, p) of columns with these lengths, at unit length: columns of friction by counts of a
+    motor are ten powers of ten longer than those of inertias, which would be lost.
+    """
+    a, b = (np.where(x > 0.0, x, 1.0) for x in (left, right))
+    return np.asarray(np.linalg.pinv(products / np.outer(a, b), rcond=1e-12) / np.outer(b, a))
 
 
 _Rows = tuple[Array, Array, Array, int]

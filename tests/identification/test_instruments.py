@@ -14,7 +14,9 @@ from modelgen.errors import InputError
 from modelgen.functions import build_model
 from modelgen.functions.nominal import base_matrix
 from modelgen.identification import Instruments, identify, verdict
+from modelgen.identification.instrumental import Instrument, compared
 from modelgen.identification.simulated_instruments import Tracking
+from modelgen.regression.least_squares import Regression
 from modelgen.simulation import Reference
 
 PERIOD = 2.0  # s, short and fast: accelerations count, and their errors with them
@@ -134,3 +136,20 @@ def test_without_periods_there_are_no_instruments() -> None:
     assert identify(prepared, arm).comparison is None
     with pytest.raises(InputError, match="no motion that repeats"):
         identify(prepared, arm, method="iv")
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-9, 1e9])
+def test_the_unit_of_a_parameter_is_no_part_of_its_value(unit: float) -> None:
+    """One by counts of a motor has columns ten powers of ten longer than an inertia: both are found."""
+    rng = np.random.default_rng(3)
+    motion = rng.normal(size=(4000, 1, 2)) * np.array([1.0, unit])
+    truth = np.array([2.0, 0.5 / unit])
+    effort = motion @ truth + 0.01 * rng.normal(size=(4000, 1))
+    seen = motion + 0.3 * rng.normal(size=motion.shape) * np.array([1.0, unit])
+    other = motion + 0.3 * rng.normal(size=motion.shape) * np.array([1.0, unit])
+    regression = Regression([effort], [seen], [np.ones((4000, 1), dtype=bool)])
+    least = regression.solve("ols")
+    found = compared(regression, least, [Instrument(other, np.ones((4000, 1), dtype=bool))])
+    assert found is not None
+    np.testing.assert_allclose(found.solution.theta / truth, 1.0, atol=0.05)
+    assert (np.abs(least.theta / truth - 1.0) > 0.05).all()  # errors of the columns bias least squares
