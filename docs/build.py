@@ -106,6 +106,8 @@ def accessible(text: str) -> str:
         '<aside class="sidebar-drawer">', '<aside class="sidebar-drawer" aria-label="All pages">'
     )
     text = re.sub(r'<aside class="toc-drawer[^"]*"', r'\g<0> aria-label="This page"', text)
+    # Of a part of a log, FILE@t0:t1, docutils makes an address to write to.
+    text = re.sub(r'<a [^>]*href="mailto:[^"]*"[^>]*>(.*?)</a>', r"\1", text)
     text = text.replace('<div id="search-results">', '<h1>Search</h1>\n<div id="search-results">')
     # A long name breaks between its words.
     text = re.sub(r"(<h[12]>)(\w+)(?=<)", lambda m: m[1] + m[2].replace("_", "_<wbr>"), text)

@@ -150,7 +150,8 @@ def _following(call: Call, converged: bool, gained: bool) -> list[Part | str]:
     ]
     if not gained:
         start = call.command("generate", *words_of(call.options, ("parameters",)))
-        parts = [Text(f"{call.first}{_KEEP} Their code, {WHERE}:"), Command(start)]
+        folded = f"generate code with the values of the start, {WHERE}"
+        parts = [Text(f"{call.first}{sentence(folded)}"), Command(start)]
     if diagnose:
         return [
             *parts,

@@ -1,7 +1,9 @@
 """The documentation builds without a warning, and has every page and every public name."""
 
+import re
 import subprocess
 import sys
+from html import unescape
 from itertools import product
 from pathlib import Path
 
@@ -42,6 +44,8 @@ def test_the_reference_has_docstrings_and_the_help(site: Path) -> None:
     for name in ("generate", "identify", "diagnose", "simulate"):
         assert f'id="{name}"' in commands
     assert "--train" in commands
+    assert "FILE@t0:t1" in unescape(re.sub("<[^>]+>", "", commands))
+    assert not [page for page in site.rglob("*.html") if "mailto:" in page.read_text(encoding="utf-8")]
 
 
 def test_every_page_has_one_heading_of_its_own(site: Path) -> None:
