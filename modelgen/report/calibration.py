@@ -141,10 +141,12 @@ def _pictured(c: Calibration) -> list[Part | str]:
 
 def _following(call: Call, stands: bool) -> list[Part | str]:
     """The description, with this lever where it differs, in what follows: a motion, then the parameters."""
-    described = None if stands else call.beside(f"{call.arm.name}_calibrated.yaml")
+    described, first = None, [Run("Keep the description: ")]
+    if not stands:
+        described = call.beside(f"{call.arm.name}_calibrated.yaml")
+        first = [Run(described, "code"), Run(" is the description with this lever: ")]
     used = [
-        Run("Keep the description: " if described is None else described, "" if stands else "code"),
-        Run("" if stands else " is the description with this lever: "),
+        *first,
         Run("modelgen identify", "code"),
         Run(" finds the parameters with it, from records of a motion that determines them."),
     ]

@@ -177,8 +177,8 @@ def _following(found: Identification, call: Call, speeds: Sequence[float]) -> li
         Text(f"{call.first}{sentence(f'generate code with these values folded in, {WHERE}')}"),
         Command(generate),
     ]
-    wrong, unbiased = bool(impossible(found)), not biased(found) or found.method == "iv"
-    again = "" if unbiased else call.by_instruments(described)
+    wrong = bool(impossible(found))
+    again = call.by_instruments(described) if found.method != "iv" and biased(found) else ""
     if again:
         code = [
             Text(f"{call.first}{sentence(f'fit again by instruments, {_UNBIASED}, {WHERE}')}"),

@@ -23,16 +23,13 @@ class ArrayTable(ColumnTable):
 
     def __init__(self, columns: Mapping[str, np.ndarray], name: str) -> None:
         super().__init__(columns, name)
-        others = [x for x in self.names if x not in self.together]
+        lengths = Counter(map(len, columns.values()))
+        ((usual, _),) = lengths.most_common(1)
+        # Names of the columns of the record that has most of them, the first such one.
+        self.together = tuple(x for x in self.names if len(columns[x]) == usual)
+        others = [x for x in self.names if len(columns[x]) != usual]
         if others:
             self._found[f"the file holds more than one record: {', '.join(others)} have other lengths"] = None
-
-    @property
-    def together(self) -> tuple[str, ...]:
-        """Names of the columns of the record that has most of them, the first such one."""
-        lengths = [len(self._columns[name]) for name in self.names]
-        (usual, _), *_ = Counter(lengths).most_common(1)
-        return tuple(name for name, count in zip(self.names, lengths, strict=True) if count == usual)
 
 
 def array_table(path: Path, names: tuple[str, ...] = ()) -> ArrayTable:
