@@ -1,7 +1,7 @@
 """The page of the blind benchmark, docs/strangers.md, from kept answers.
 
-    python -m blind.page --keep NAME "what the set is" DIR   # answers of a folder into runs/NAME.jsonl
-    python -m blind.page                                     # the page anew, of all that is kept
+    python -m blind.page --keep NAME "what is special of it" DIR   # answers of a folder into runs/NAME.jsonl
+    python -m blind.page                                           # the page anew, of all that is kept
 
 What is kept of an answer is what the judge and the table of checks need.
 """
@@ -10,14 +10,16 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from blind import page_words as words
 from blind.ablation import Answered
 from blind.ablation import table as checks_table
-from blind.judge import answers, counted
+from blind.judge import answers, counted, group
 from blind.others.method import method
 from blind.others.table import Score, picture, scores
 from blind.others.table import table as others_table
@@ -27,79 +29,11 @@ RUNS = HERE / "runs"
 PAGE = HERE.parents[1] / "docs" / "strangers.md"
 PICTURE = PAGE.with_suffix(".svg")
 
-INTRODUCTION = """\
-# Strangers' arms: measured
-
-*How often does `modelgen diagnose` name what is there, and what is not, on arms and records that it was not
-made for?*
-
-Of each kind of records the newest set of three cases or more that nothing was chosen on:
-"""
-MEANING = """\
-Exact is the right name at the right joint and nothing else; where nothing that the catalogue knows is
-hidden, it is nothing named. Answers that name nothing there are "I cannot tell", "something outside the
-catalogue", or a suspect with the check that it failed. In brackets: 95 % Wilson intervals.
-
-- **Arms.** Family B is made by Lagrange's equations in C with joint loops, sticking friction, inductances and
-  logs that read their channels late, family C is random arms simulated by MuJoCo. They share no code with
-  modelgen, nor with each other.
-- **Records.** `two` is two records of 30 s at 100 Hz, `four` four at 500 Hz, `ordinary` is pick and place,
-  jogging and sweeps, in which nothing repeats.
-- **Size.** s is the error of a fit of the user's model over that of the same fit without the hidden thing: at
-  1.10 the hidden thing has a fifth of the noise's power, at 1.30 two thirds.
-
-## What is still wrong
-
-Lost motion is rarely named at these sizes: play and elastic joints are suspects, or "I cannot tell". A thing
-outside the catalogue that acts nearly as a law inside it does on these records has that law's name: where
-nothing repeats, and what is left is as large as the noise, no record can tell the two. Causes are held
-against functions of another joint's motion and of what was before for this reason; of the six false names in
-15 ordinary records of `b-5ebf2491` below, and of the five of `b-80585599`, which this was made on, two and
-three are left.
-"""
-MEASURED = """\
-## How it was measured
-
-The cases are those of `benchmarks/blind`, and every answer is kept in `benchmarks/blind/runs`. Each set was
-answered by the code of its commit and looked at once; what was found in it was mended later, so that it is no
-proof of the mended code. The newest set comes last.
-"""
-OTHERS = """\
-## What others name
-
-The same records, and other ways to choose. All get the same filtered equations, those of the band that
-modelgen asks first, and the same columns: every candidate of [the catalogue](effects.md) at every place, with
-the values at which it explains most alone beside the user's model. modelgen's search finds these, so that the
-others need none. What is compared is the choice, not the filtering. The parameters of the user's model are
-fitted beside whatever is chosen. None of the others has modelgen's checks. The judge is the same, and
-aliases count for all.
-
-![Exact names, false names and error removed, by method](strangers.svg)
-
-Error removed is on the test record, which no method has seen: of the mean square error that the hidden
-effect adds to the noise, at its joint, the part that the extended model removes; all cases together, with
-an interval of 95 % by a bootstrap of the cases. Who names nothing removes nothing. A near relative of what is
-hidden, or several of them together, can predict as well as the right name: an error removed is no proof of
-a name. The network names nothing; it learns what the user's model leaves.
-"""
-ADDING = """\
-A method of your own is a class of a few lines in a module of `benchmarks/blind/others/methods`; it is found
-by the module's name. `benchmarks/blind/README.md` shows one. From `benchmarks`,
-
-```sh
-pip install -e "..[others]"
-python -m blind.others.runner mine --seconds 600   # goes on where it ended
-python -m blind.page                               # this page with its row
-```
-"""
-CHECKS = """\
-## What each check is worth
-
-The same answers, counted again as if a check decided otherwise: without one that decides, what it alone
-made a suspect is named. The checks are described in [how a diagnosis works](diagnosis_method.md).
-"""
 FEW = 3  # cases, from which a set is shown among the answers
-ANSWER = ("family", "records", "hidden", "s", "cases", "exact", "a false name", "set")
+SIZE, SMALL = "1.30", "1.10"  # sizes s of what is said in words
+ORDER = ("nothing", "one effect", "lost motion", "outside")
+ANSWER = ("hidden", "s", "arms", "exact", "a false name")
+BY_RECORDS = ("family", "records", *ANSWER, "set")
 COLUMNS = (
     "set",
     "records",
@@ -113,10 +47,15 @@ COLUMNS = (
     "CPU s",
 )
 
+Place = tuple[str, str, str, str]  # family, setting, group of kinds, size
+Shown = Mapping[Place, tuple[str, list[Answered]]]
+
 
 @dataclass(frozen=True)
 class Kept:
-    """A kept set. text: what it is; number: by age, the newest has the largest; cases: truths and answers."""
+    """A kept set. text: what is special of it, if anything; number: by age, the newest has the largest;
+    cases: truths and answers.
+    """
 
     text: str
     number: int
@@ -173,16 +112,35 @@ def _cause(c: dict[str, Any]) -> dict[str, Any]:
 
 def page() -> str:
     """The page, of all that is kept."""
-    texts = "\n".join(f"- `{name}`: {one.text}" for name, one in sets().items())
-    every = every_case()
-    checks = [CHECKS, checks_table(every), ""]
-    measured = [MEASURED, texts, "", _table(COLUMNS, _all_rows()), ""]
-    parts = [INTRODUCTION, _table(ANSWER, _answer_rows()), "", MEANING, *_others(every), *checks, *measured]
-    return "\n".join(parts)
+    every, shown = every_case(), newest()
+    said = figures(shown)
+    texts = [f"- `{name}`: {one.text}" for name, one in sets().items() if one.text]
+    parts = [
+        words.INTRODUCTION.format(**said),
+        _table(ANSWER, [row for _, row in sorted(_pooled(shown).items())]),
+        "",
+        _folded(words.BY_RECORDS, _table(BY_RECORDS, _by_records(shown))),
+        words.CANNOT.format(**said),
+        *_others(every),
+        words.CHECKS,
+        checks_table(every),
+        "",
+        words.SETS.format(few=FEW),
+        *texts,
+        "",
+        _folded(words.EVERY_SET, _table(COLUMNS, _all_rows())),
+        words.RUNNING,
+    ]
+    return "\n".join(parts).rstrip("\n") + "\n"
 
 
 def _table(heading: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in [heading, ("---",) * len(heading), *rows])
+
+
+def _folded(title: str, table: str) -> str:
+    """A table that opens by a click, in Markdown."""
+    return f"<details>\n<summary>{title}</summary>\n\n{table}\n\n</details>\n"
 
 
 def _all_rows() -> list[tuple[str, ...]]:
@@ -195,20 +153,67 @@ def _all_rows() -> list[tuple[str, ...]]:
     ]
 
 
-def _answer_rows() -> list[tuple[str, ...]]:
-    """Of every family, kind of records, what is hidden and its size the counts of the newest set that has
-    FEW cases of it; a set to work on is none.
+def newest() -> dict[Place, tuple[str, list[Answered]]]:
+    """Of every family, kind of records, what is hidden and its size the newest set that has FEW cases of it,
+    and these; a set to work on is none.
     """
-    newest: dict[tuple[str, ...], tuple[str, ...]] = {}
+    found: dict[Place, tuple[str, list[Answered]]] = {}
     for name, one in sets().items():
-        if not one.number:
-            continue
-        for row in counted(one.cases):
-            if row["family"] != "all" and row["cases"] >= FEW:
-                place = (row["family"].upper(), row["setting"], row["group"], row["size"] or "-")
-                newest[place] = (*place, *_row(name, row)[4:7], f"`{name}`")
-    order = {group: k for k, group in enumerate(("nothing", "one effect", "lost motion", "outside"))}
-    return sorted(newest.values(), key=lambda row: (row[0], row[1], order[row[2]], row[3]))
+        places: dict[Place, list[Answered]] = defaultdict(list)
+        for said, answer in one.cases if one.number else ():
+            size = "" if said["size"] is None else f"{said['size']:.2f}"
+            places[said["family"], said["setting"], group(said), size].append((said, answer))
+        found |= {place: (name, cases) for place, cases in places.items() if len(cases) >= FEW}
+    return found
+
+
+def _by_records(shown: Shown) -> list[tuple[str, ...]]:
+    """Counts by family and kind of records, each of one set."""
+    places = sorted(shown, key=lambda p: (*p[:2], ORDER.index(p[2]), p[3]))
+    rows = [(place, *shown[place]) for place in places]
+    return [(p[0].upper(), p[1], *_counts(p[2:], _together(cases)), f"`{name}`") for p, name, cases in rows]
+
+
+def _pooled(shown: Shown) -> dict[tuple[int, str], tuple[str, ...]]:
+    """Counts by what is hidden and its size, all families and kinds of records together."""
+    kinds = {place[2:] for place in shown}
+    return {(ORDER.index(k[0]), k[1]): _counts(k, _together(_cases(shown, *k))) for k in kinds}
+
+
+def _cases(shown: Shown, hidden: str, size: str) -> list[Answered]:
+    return [case for place, (_, cases) in shown.items() if place[2:] == (hidden, size) for case in cases]
+
+
+def _together(cases: Iterable[Answered]) -> dict[str, Any]:
+    """Counts of cases of any kind, in one row of `blind.judge`."""
+    (row,) = (row for row in counted(cases) if row["family"] == "all")
+    return row
+
+
+def _counts(kind: Sequence[str], row: dict[str, Any]) -> tuple[str, ...]:
+    return kind[0], kind[1] or "-", str(row["cases"]), _share(row, "exact"), _share(row, "false")
+
+
+def figures(shown: Shown) -> dict[str, str]:
+    """What the page says in words: counts with their intervals."""
+
+    def said(key: str, hidden: str, size: str = SIZE) -> str:
+        row = _together(_cases(shown, hidden, size))
+        low, high = (100.0 * x for x in row[key]["interval"])
+        return f"{row[key]['count']} of {row['cases']} arms ({low:.0f} to {high:.0f} %)"
+
+    return {
+        "s": SIZE,
+        "small": SMALL,
+        "alarms": said("false", "nothing", ""),
+        "named": said("exact", "one effect"),
+        "misnamed": said("false", "one effect"),
+        "outside": said("false", "outside"),
+        "lost": said("exact", "lost motion"),
+        "siblings": str(_together(_cases(shown, "lost motion", SIZE))["sibling"]["count"]),
+        "named_small": said("exact", "one effect", SMALL),
+        "misnamed_small": said("false", "one effect", SMALL),
+    }
 
 
 def every_case() -> list[Answered]:
@@ -222,11 +227,8 @@ def _others(every: list[Answered]) -> list[str]:
     if not rows:
         return []
     tuned = [f"- {by.title}: {by.tuning}" for by in (method(row.name) for row in rows[1:])]
-    count = (
-        f"Counted on {rows[0].false[1]} of the {len(every)} cases: those that all have answered, and in "
-        "which the user's model leaves the same error in the band of either.\n"
-    )
-    return [OTHERS, count, others_table(rows), "", *tuned, "", ADDING]
+    count = words.COUNTED.format(common=rows[0].false[1], every=len(every))
+    return [words.OTHERS, count, others_table(rows), "", *tuned, ""]
 
 
 def compared(every: Sequence[Answered]) -> list[Score]:
@@ -235,13 +237,14 @@ def compared(every: Sequence[Answered]) -> list[Score]:
 
 
 def _row(name: str, row: dict[str, Any]) -> tuple[str, ...]:
-    def share(key: str) -> str:
-        low, high = (100.0 * x for x in row[key]["interval"])
-        return f"{row[key]['count']} ({low:.0f} to {high:.0f} %)"
-
     more = ("-" if row[k] is None else f"{row[k]:.1f}" for k in ("removed_percent", "cpu_s"))
     place = (name, row["setting"], row["group"], row["size"] or "-", str(row["cases"]))
-    return (*place, share("exact"), share("false"), str(row["suspects"]["count"]), *more)
+    return (*place, _share(row, "exact"), _share(row, "false"), str(row["suspects"]["count"]), *more)
+
+
+def _share(row: dict[str, Any], key: str) -> str:
+    low, high = (100.0 * x for x in row[key]["interval"])
+    return f"{row[key]['count']} ({low:.0f} to {high:.0f} %)"
 
 
 def main() -> None:
@@ -249,7 +252,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--keep", nargs=3, metavar=("NAME", "TEXT", "DIR"))
+    parser.add_argument("--keep", nargs=3, metavar=("NAME", "SPECIAL", "DIR"))
     given = parser.parse_args()
     if given.keep:
         name, text, folder = given.keep

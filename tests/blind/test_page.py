@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
@@ -44,6 +45,30 @@ def test_a_check_is_worth_what_it_alone_decides(row: str, exact: int, named: int
 
 def test_the_page_is_that_of_the_kept_answers() -> None:
     assert page.PAGE.read_text(encoding="utf-8") == page.page()
+
+
+def test_the_answer_in_words_is_the_sum_of_the_sets_that_are_shown() -> None:
+    """Counted from the page's own table by family and records, without the judge."""
+    text = page.PAGE.read_text(encoding="utf-8")
+    words, short, long = (
+        part.split("</details>")[0] for part in re.split(r"^\| (?:hidden|family) .*", text, flags=re.M)[:3]
+    )
+    sums: dict[tuple[str, str], list[int]] = {}
+    for line in long.splitlines()[2:]:
+        if cells := [cell.strip() for cell in line.strip("|").split("|")][2:7]:
+            counts = sums.setdefault((cells[0], cells[1]), [0, 0, 0])
+            for k, cell in enumerate(cells[2:]):
+                counts[k] += int(cell.split()[0])
+    for (hidden, size), (arms, exact, false) in sums.items():
+        assert re.search(rf"^\| {hidden} \| {size} \| {arms} \| {exact} \(.*\| {false} \(", short, re.M)
+    said = [tuple(map(int, found)) for found in re.findall(r"(\d+)\s+of\s+(\d+)\s+arms", words)]
+    nothing, one, outside = (sums[k] for k in (("nothing", "-"), ("one effect", "1.30"), ("outside", "1.30")))
+    assert said == [
+        (nothing[2], nothing[0]),
+        (one[1], one[0]),
+        (one[2], one[0]),
+        (outside[2], outside[0]),
+    ]
 
 
 def test_what_is_kept_gives_the_same_counts(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
