@@ -2,6 +2,7 @@
 
     PYTHONPATH=tests python -m architecture.picture     draw those of docs/architecture.md anew
 
+The packages are too many to be described in their boxes: a table in the page does it, from their docstrings.
 A box stands one floor above the highest that it imports. An arrow leads from a box to one that it imports;
 what follows from other arrows is left out (transitive reduction). Single files on the first floor of the
 whole, which nearly everything imports, are named in a line below. Same source, same bytes.
@@ -20,11 +21,15 @@ from pathlib import Path
 
 from architecture.house import NAME, ROOT, Graph, file_graph, files, floors, rooms
 
+PAGE = ROOT / "docs" / "architecture.md"
+TABLE = ("<!-- the table of packages: begin -->", "<!-- the table of packages: end -->")
 PICTURES = {"architecture.svg": NAME, "diagnosis_stages.svg": f"{NAME}.diagnosis"}
 ENTRY = "__main__"  # the two lines behind `python -m modelgen`
 GAP, LANE = 14.0, 4.0  # between boxes, and the width of an arrow that passes a floor
 HEIGHT, BETWEEN, MARGIN, LINE = 50.0, 36.0, 16.0, 13.0
-LETTER = 5.6  # widest mean of a line
+LETTER, BOLD = 5.6, 8.6  # widest mean of a line, and of a name
+NAME_HEIGHT = 27.0  # of a box that has a name alone
+PORTS = 16.0, 10.0  # between arrows that leave a box, and that reach it, at most
 SWEEPS, SETTLING = 40, 300  # of the order on the floors, and of the places
 STRAIGHT = 6.0  # times as much a bend of an arrow counts where it passes a floor as where it meets a box
 COLOURS = ("#1f5fa8", "#d1661a", "#3a8f4d", "#8a4fa3", "#a83a4a", "#2a8f8f", "#666666")
@@ -60,10 +65,10 @@ def reduced(graph: Graph) -> Graph:
     }
 
 
-def layered(graph: Graph, width: float) -> list[list[Node]]:
+def layered(graph: Graph, widths: Mapping[str, float]) -> list[list[Node]]:
     """Nodes floor by floor, the lowest first; an arrow over several floors has a node on each between."""
     level = floors(graph)
-    boxes = {name: Node(name, level[name], width) for name in sorted(graph)}
+    boxes = {name: Node(name, level[name], widths[name]) for name in sorted(graph)}
     result: list[list[Node]] = [[] for _ in range(max(level.values()))]
     for node in boxes.values():
         result[node.floor - 1].append(node)
@@ -146,25 +151,55 @@ def described(package: str, room: str, modules: Mapping[str, Path]) -> tuple[str
     return text.split("\n", maxsplit=1)[0].rstrip(".").replace("`", ""), sorted(inside)
 
 
+def boxed(package: str, root: Path) -> tuple[dict[str, frozenset[str]], set[str]]:
+    """Rooms that have a box with what they import, and single files that nearly everything imports."""
+    modules = files(root)
+    graph = {k: v - {ENTRY} for k, v in rooms(package, file_graph(root)).items() if k != ENTRY}
+    single = {
+        k
+        for k, v in graph.items()
+        if package == NAME and not v and modules[f"{package}.{k}"].stem != "__init__"
+    }
+    return {k: v - single for k, v in graph.items() if k not in single}, single
+
+
+def packages(root: Path = ROOT) -> str:
+    """The packages and what each is for, from the top floor down, as a table in Markdown."""
+    graph, _ = boxed(NAME, root)
+    level, modules = floors(graph), files(root)
+    rows = [
+        f"| `{name}` | {described(NAME, name, modules)[0]} |"
+        for name in sorted(graph, key=lambda name: (-level[name], name))
+    ]
+    return "\n".join(["| package | what it is |", "|---|---|", *rows])
+
+
+def tabled(page: str, table: str) -> str:
+    """A page with the table between its marks."""
+    before, rest = page.split(TABLE[0])
+    after = rest.split(TABLE[1])[1]
+    return f"{before}{TABLE[0]}\n\n{table}\n\n{TABLE[1]}{after}"
+
+
 def drawn(package: str, root: Path = ROOT) -> str:
     """The picture of a package's rooms as SVG."""
     modules, whole = files(root), package == NAME
-    graph = {k: v - {ENTRY} for k, v in rooms(package, file_graph(root)).items() if k != ENTRY}
-    single = {k for k, v in graph.items() if whole and not v and modules[f"{package}.{k}"].stem != "__init__"}
-    graph = {k: v - single for k, v in graph.items() if k not in single}
-    width = 158.0 if whole else 350.0
-    layers = layered(graph, width)
+    graph, single = boxed(package, root)
+    layers = layered(graph, {name: BOLD * len(name) + 12.0 if whole else 350.0 for name in graph})
     arrange(layers)
-    letters = int((width - 8.0) / LETTER)
-    lines = {}
-    for name in graph:
-        text, inside = described(package, name, modules)
-        files_in = [] if whole else textwrap.wrap(", ".join(inside), letters)
-        lines[name] = [
+    lines: dict[str, list[tuple[str, str]]] = {name: [] for name in graph}
+    for node in (n for row in layers for n in row if n.is_box and not whole):
+        text, inside = described(package, node.name, modules)
+        letters = int((node.width - 8.0) / LETTER)
+        lines[node.name] = [
             *((x, "#333") for x in textwrap.wrap(text, letters)),
-            *((x, "#1f5fa8") for x in files_in),
+            *((x, "#1f5fa8") for x in textwrap.wrap(", ".join(inside), letters)),
         ]
-    heights = [max(HEIGHT, *(25.0 + LINE * len(lines[n.name]) for n in row if n.is_box)) for row in layers]
+    least = NAME_HEIGHT if whole else HEIGHT
+    heights = [
+        max(least, *(25.0 + LINE * len(lines[n.name]) if lines[n.name] else 0.0 for n in row if n.is_box))
+        for row in layers
+    ]
     tops = [MARGIN + sum(h + BETWEEN for h in heights[k + 1 :]) for k in range(len(layers))]
     across = max(n.x + n.width / 2 for row in layers for n in row) + MARGIN
     foot = tops[0] + heights[0] + MARGIN
@@ -197,7 +232,7 @@ def drawn(package: str, root: Path = ROOT) -> str:
 def _arrow(start: Node, end: Node, tops: Sequence[float], heights: Sequence[float], colour: int) -> str:
     """From the foot of a box to the head of another one, straight where it passes a floor."""
     places = {n.name: k for k, n in enumerate(sorted(start.below, key=lambda n: n.x))}
-    x = start.x + (places[end.name] - (len(start.below) - 1) / 2) * 16.0
+    x = start.x + (places[end.name] - (len(start.below) - 1) / 2) * _port(start, start.below, PORTS[0])
     y = tops[start.floor - 1] + heights[start.floor - 1]
     path = f"M{x:.0f} {y:.0f}"
     before, node = start, end
@@ -206,7 +241,7 @@ def _arrow(start: Node, end: Node, tops: Sequence[float], heights: Sequence[floa
         to = node.x
         if node.is_box:
             arriving = sorted(node.above, key=lambda n: n.x)
-            to += (arriving.index(before) - (len(arriving) - 1) / 2) * 10.0
+            to += (arriving.index(before) - (len(arriving) - 1) / 2) * _port(node, arriving, PORTS[1])
         middle = (y + near) / 2
         path += f" C{x:.0f} {middle:.0f} {to:.0f} {middle:.0f} {to:.0f} {near:.0f}"
         if node.is_box:
@@ -218,6 +253,11 @@ def _arrow(start: Node, end: Node, tops: Sequence[float], heights: Sequence[floa
         f'  <path d="{path}" fill="none" stroke="{COLOURS[colour]}" stroke-width="1.3" '
         f'marker-end="url(#end{colour})"/>'
     )
+
+
+def _port(box: Node, arrows: Sequence[Node], most: float) -> float:
+    """Distance of a box's arrows at its edge, so that all are within it."""
+    return min(most, (box.width - 10.0) / len(arrows))
 
 
 def _box(node: Node, top: float, height: float, lines: Sequence[tuple[str, str]], colour: str) -> list[str]:
@@ -234,10 +274,11 @@ def _box(node: Node, top: float, height: float, lines: Sequence[tuple[str, str]]
 
 
 def main() -> None:
-    """Write the pictures."""
+    """Write the pictures and the table."""
     for name, package in PICTURES.items():
         (ROOT / "docs" / name).write_text(drawn(package), encoding="utf-8")
         print(f"docs/{name}")
+    PAGE.write_text(tabled(PAGE.read_text(encoding="utf-8"), packages()), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -7,11 +7,13 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from architecture.house import ROOT, Graph, circles, file_graph, rooms
-from architecture.picture import NAME, PICTURES, arrange, drawn, layered, reduced
+from architecture.picture import NAME, PAGE, PICTURES, arrange, drawn, layered, packages, reduced, tabled
 
 pytestmark = pytest.mark.xdist_group("picture")
 
 SVG = "{http://www.w3.org/2000/svg}"
+COLUMN = 736  # of the documentation's text on a screen of 1280 [pixel]
+PHONE = 368  # of the same on one of 400, on which a picture has three quarters of its size
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +26,23 @@ def test_the_picture_is_that_of_the_imports(name: str, made: dict[str, str]) -> 
     """Where it is not: PYTHONPATH=tests python -m architecture.picture."""
     kept = (ROOT / "docs" / name).read_text(encoding="utf-8")
     assert made[name] == kept, "PYTHONPATH=tests python -m architecture.picture draws it anew"
+
+
+def test_the_table_of_packages_is_that_of_their_docstrings() -> None:
+    """Where it is not: PYTHONPATH=tests python -m architecture.picture."""
+    kept, table = PAGE.read_text(encoding="utf-8"), packages()
+    assert tabled(kept, table) == kept
+    rows = [line.strip("| ").split(" | ") for line in table.splitlines()[2:]]
+    assert all(len(row) == 2 and len(row[1]) > 10 for row in rows), rows
+    folders = {p.parent.name for p in (ROOT / NAME).glob("*/__init__.py")}
+    assert folders <= {row[0].strip("`") for row in rows}
+
+
+def test_the_house_is_legible_on_a_desk_and_begins_on_a_phone_with_a_box(made: dict[str, str]) -> None:
+    root = ET.fromstring(made["architecture.svg"])
+    assert float(root.attrib["width"]) <= COLUMN
+    top = min(root.findall(f"{SVG}rect")[1:], key=lambda r: float(r.attrib["y"])).attrib
+    assert 0.75 * (float(top["x"]) + float(top["width"])) < PHONE
 
 
 @pytest.mark.parametrize("name", sorted(PICTURES))
@@ -82,7 +101,8 @@ def test_what_can_be_reached_stays() -> None:
 
 def test_nodes_of_a_floor_keep_their_distance() -> None:
     layers = layered(
-        {"a": frozenset("bcd"), "b": frozenset("d"), "c": frozenset("d"), "d": frozenset()}, 100.0
+        {"a": frozenset("bcd"), "b": frozenset("d"), "c": frozenset("d"), "d": frozenset()},
+        dict.fromkeys("abcd", 100.0),
     )
     arrange(layers)
     for layer in layers:
