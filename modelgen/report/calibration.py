@@ -8,7 +8,20 @@ from modelgen.calibration import Calibration, Estimate
 from modelgen.charts import Chart, Curve, Interval, apart, number, sheet
 from modelgen.description import Arm
 from modelgen.report.call import WHERE, Call
-from modelgen.report.page import WIDE, Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
+from modelgen.report.page import (
+    WIDE,
+    Block,
+    Command,
+    Folded,
+    Grid,
+    Part,
+    Parts,
+    Run,
+    Text,
+    block,
+    page,
+    pictured,
+)
 from modelgen.report.words import joint_name, listed, sentence
 
 _FAR = 2.0  # standard deviations
@@ -76,9 +89,10 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
         )
         for e, size, unit in _sized(c)
     ]
+    table = Grid("Lever as described and calibrated", heads, rows, folds=True)
     answers: Parts = [
         ("What was found", [Text(said), *branch]),
-        ("Described and calibrated", [Grid("Lever as described and calibrated", heads, rows, folds=True)]),
+        ("Described and calibrated", [Folded(f"All {len(rows)} values", [table], narrow=True)]),
         ("What is uncertain", [Text(_uncertain(c)), *weak]),
         (
             "What to do next",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -13,6 +14,7 @@ from markupsafe import Markup, escape
 from modelgen.charts import Chart, drawn, labels, mark
 from modelgen.resources import templates_folder
 
+_FIXED = "\N{NO-BREAK SPACE}"
 _ANSWERS = {"yes": "passed", "no": "failed", "unasked": "not asked"}
 
 
@@ -99,7 +101,7 @@ class Grid(Part):
     def values(self) -> Mapping[str, Any]:
         """For the template."""
         looks = ["n" if side == "right" else "u" if head == "unit" else "" for head, side in self.heads]
-        heads = [{"text": head, "look": "n" if side == "right" else ""} for head, side in self.heads]
+        heads = [{"text": _head(head), "look": "n" if side == "right" else ""} for head, side in self.heads]
         rows = [
             [_cell(cell, look, head) for cell, look, (head, _) in zip(row, looks, self.heads, strict=True)]
             for row in self.rows
@@ -249,6 +251,11 @@ def _looks(run: Run) -> dict[str, Any]:
     plain = not run.target and not any(kinds.values())
     linked, quiet = bool(run.target), run.look == "quiet"
     return {"text": run.text, "target": run.target, "linked": linked, "quiet": quiet, "plain": plain, **kinds}
+
+
+def _head(text: str) -> str:
+    """What a head of a column has in brackets stays on one line."""
+    return re.sub(r"[(\[].*?[)\]]", lambda m: m[0].replace(" ", _FIXED), text)
 
 
 def _cell(cell: str | tuple[str, str], look: str, head: str) -> dict[str, str]:

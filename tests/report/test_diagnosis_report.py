@@ -270,7 +270,7 @@ def test_the_page_is_printed_on_few_sheets_and_whole(many: bool, found: Diagnosi
 
 
 def test_the_table_of_errors_needs_no_scrolling_on_a_phone(found: Diagnosis, tmp_path: Path) -> None:
-    """Each interval stands below its value there, of numbers as wide as they become."""
+    """Each interval stands below its value there, on a line, of numbers as wide as they become."""
     d, path = of_seven_joints(found), tmp_path / "report.html"
     errors = replace(d.errors, low=np.full(7, -100.4), high=np.full(7, 100.4))
     asked = answers(replace(d, errors=errors), Call(d.arm))
@@ -285,6 +285,7 @@ def test_the_table_of_errors_needs_no_scrolling_on_a_phone(found: Diagnosis, tmp
             assert interval is not None
             assert interval["y"] > value["y"] + 10
             assert interval["x"] + interval["width"] <= 400
+            assert interval["height"] < 25  # a line of this size
 
 
 def test_what_fails_a_reported_check_is_named(found: Diagnosis) -> None:

@@ -20,6 +20,8 @@ from modelgen.api.refinement import Refinement
 from modelgen.api.results import Table
 from modelgen.calibration.lever import lever_of
 from modelgen.fleet.overview import overview
+from modelgen.report.page import Grid
+from modelgen.report.page import page as paged
 from modelgen.report.refinement import motion
 
 pytestmark = pytest.mark.xdist_group("pages")
@@ -156,8 +158,25 @@ def test_a_table_shows_at_its_edge_that_it_goes_on(scheme: str, pages: Mapping[s
 @pytest.mark.parametrize("name", QUESTIONS)
 def test_no_table_of_an_answer_needs_scrolling_on_a_phone(name: str, pages: Mapping[str, Path]) -> None:
     with opened(pages[name], 400) as page:
+        following = page.locator("dl.answer > div").last.bounding_box()
+        assert following is not None
+        assert following["y"] < 900  # what to do next is on the first screen
+        page.evaluate("document.querySelectorAll('dl.answer details').forEach(d => d.open = true)")
         for table in page.locator("dl.answer .table").all():
             assert _beyond(table) == 0
+
+
+def test_what_a_head_has_in_brackets_stays_on_one_line(tmp_path: Path) -> None:
+    grid = Grid("Errors", [("less % (95 %)", "right")] * 9, [["1"] * 9])
+    path = tmp_path / "page.html"
+    path.write_text(paged("Errors", "Test", [("Errors", [grid])], []), encoding="utf-8")
+    with opened(path, 400) as window:
+        heads = window.locator("th").all()
+        assert len(heads) == 9
+        for head in heads:
+            assert len(_lines(head, "95")) == 1
+            assert _lines(head, "95") == _lines(head, "%)")
+            assert _lines(head, "less") != _lines(head, "95")
 
 
 def test_names_beside_their_values_are_whole_on_a_phone(pages: Mapping[str, Path]) -> None:
@@ -168,6 +187,20 @@ def test_names_beside_their_values_are_whole_on_a_phone(pages: Mapping[str, Path
             box = name.bounding_box()
             assert box is not None
             assert box["x"] >= picture["x"]
+
+
+def _lines(cell: Locator, text: str) -> set[int]:
+    """Heights at which a piece of the text of a cell stands [pixel]."""
+    found: list[float] = cell.evaluate(
+        """(cell, text) => {
+          const range = document.createRange(), node = cell.firstChild, at = node.data.indexOf(text);
+          range.setStart(node, at);
+          range.setEnd(node, at + text.length);
+          return [...range.getClientRects()].map(r => r.top);
+        }""",
+        text,
+    )
+    return {round(y) for y in found}
 
 
 def _beyond(table: Locator) -> int:
