@@ -18,7 +18,8 @@ _SENTENCES = {
 }
 _TITLES = 2  # suspects by their names, in a headline
 _VISIBLE = 0.05  # percent: less is 0.0 in print
-_SAME = 0.01  # of an error or a cut-off, that needs no word
+_SAME = 0.01  # of a cut-off, that needs no word
+_ALIKE = 0.1  # of an error, that nobody who compares wonders about
 
 
 def cause_title(d: Diagnosis, c: NamedCause) -> str:
@@ -214,23 +215,27 @@ def assumptions(d: Diagnosis) -> list[str]:
 
 
 def compared(d: Diagnosis) -> list[str]:
-    """Why `modelgen identify` says another error of the test record, where it does."""
+    """How to compare with what `modelgen identify` says of the same model, where that is another error."""
     if d.identified is None:
         return []
     rmse, usual = d.identified.rmse, d.identified.cutoff
     cutoff, before = float(d.settings["cutoff_hz"]), d.errors.before
-    known = np.isfinite(before)
-    rested = bool((np.abs(rmse - before) > _SAME * rmse)[known].any())
-    if not rested and abs(usual - cutoff) <= _SAME * cutoff:
+    rested = bool((np.abs(rmse - before) > _ALIKE * rmse)[np.isfinite(before)].any())
+    banded = abs(usual - cutoff) > _SAME * cutoff
+    if not rested and not banded:
         return []
-    numbers = at_joints(d.arm.coordinate_names, [f"{x:z.4g}" for x in rmse])
-    rest = f" and fits what the filter carries over from rest too: {numbers} [{d.errors.unit}]"
-    said = [
-        f"The errors are those up to {cutoff:z.6g} Hz, the band of this diagnosis, while the joint moves.",
-        f"modelgen identify --cutoff {cutoff:z.6g} has the same band{rest if rested else ''}.",
-    ]
-    if abs(usual - cutoff) > _SAME * cutoff:
-        said.append(f"Without --cutoff it chooses {usual:z.4g} Hz, and has other errors.")
+    said = [f"The errors on the test record are those below {cutoff:z.6g} Hz, while the joint moves."]
+    if banded:
+        said.append(
+            f"Without an option modelgen identify has those below {usual:z.4g} Hz, which say nothing of "
+            f"these: to compare, call modelgen identify --cutoff {cutoff:z.6g}."
+        )
+    if rested:
+        numbers = at_joints(d.arm.coordinate_names, [f"{x:z.4g}" for x in rmse])
+        said.append(
+            f"For the model as described {'it then' if banded else 'modelgen identify'} says {numbers} "
+            f"[{d.errors.unit}], since it counts what its filter carries over from rest too."
+        )
     return [" ".join(said)]
 
 
