@@ -51,7 +51,7 @@ def _first(d: Diagnosis, call: Call) -> list[Step]:
     """What the verdict asks for: the code of what was found, or another motion."""
     if d.verdict in _MOTIONS:
         return [asked_next(d, call)[1]]
-    code = _generating(d, call, call.beside(f"{d.arm.name}_extended.yaml"))
+    code = _generating(d, call, _described(d, call))
     if d.verdict == "named":
         return carried(d, call) or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
     text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
@@ -143,6 +143,13 @@ def reduced_causes(d: Diagnosis) -> list[Found]:
     return [found for found in d.added if found[:2] not in worse]
 
 
+def _described(d: Diagnosis, call: Call) -> str:
+    """Path of the description that is gone on with: the extended one where something is named, else that of
+    the call, unless no file has it.
+    """
+    return call.beside(f"{d.arm.name}_extended.yaml") if d.causes or call.first else call.description
+
+
 def _generating(d: Diagnosis, call: Call, description: str, folder: str = "") -> str:
     """The command for the code of a description, with the parameters in a folder beside the page."""
     values = call.beside(f"{folder}/{d.arm.name}_parameters.yaml".lstrip("/"))
@@ -168,6 +175,6 @@ def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
     text = _MOTIONS[d.verdict]
     p = d.test.prepared
     speeds = np.abs(p.picked(p.dq)).max(axis=0).tolist()
-    description = call.beside(f"{d.arm.name}_extended.yaml")
+    description = _described(d, call)
     excite = call.exciting(call.beside("trajectory.csv"), speeds, description)
     return text, Step(f"{text} This computes one, {WHERE}:" if excite else text, excite)

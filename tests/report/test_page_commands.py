@@ -279,9 +279,9 @@ def test_a_description_that_no_file_has_is_to_be_written_first(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("verdict", "proposes"),
     [
-        ("suspected", ["excite", "not named/bench_extended.yaml"]),
-        ("outside_catalogue", ["excite", "not named/bench_extended.yaml"]),
-        ("cannot_tell", ["excite", "not named/bench_extended.yaml"]),
+        ("suspected", ["excite", "my arm.yaml"]),
+        ("outside_catalogue", ["excite", "my arm.yaml"]),
+        ("cannot_tell", ["excite", "my arm.yaml"]),
         # For all effects, where few were asked for: what is missing may be one of the others.
         ("suspected", ["diagnose", "my arm.yaml"]),
         ("outside_catalogue", ["diagnose", "my arm.yaml"]),
@@ -314,3 +314,34 @@ def test_programs_and_the_terminal_get_what_the_page_proposes(
     assert [test["test"] in unescape(page) for test in said["tests"]] == [True] * len(suspects)
     assert in_memory == said
     run(words, bench)
+
+
+@pytest.mark.slow
+def test_where_nothing_is_missing_the_description_as_given_goes_on(bench: Path) -> None:
+    """With the parameters from the records; the extended one, which says the same, where no file has it."""
+    logs = [f"logs of may/{name}.csv" for name in ("one", "two", "test")]
+    with chdir(bench):
+        arm = mg.load_arms("my arm.yaml")["bench"]
+        asked = {"mapping": "columns.yaml", "cutoff": 7.5, "effects": ("friction_offset",)}
+        d = mg.diagnose(arm, logs[:2], logs[2], experiment=False, processes=1, **asked)
+        own = {name: e for name, e in d.found.parameters.items() if name != "FO2"}
+        found = replace(
+            d.found,
+            verdict="nothing_missing",
+            causes=(),
+            laws=(),
+            added=(),
+            after=d.found.before,
+            parameters=own,
+        )
+        shown = Diagnosis(found, d.call)
+        shown.write("complete", code=False)
+        (step,) = proposed(found, shown.call)
+        (unread,) = proposed(found, replace(shown.call, arm=replace(arm, where=None)))
+    (words,) = commands(bench / "complete" / "report.html")
+    assert words == shlex.split(step.command)[1:]
+    assert words[:2] == ["generate", "my arm.yaml"]
+    assert words[words.index("--parameters") + 1] == "complete/bench_parameters.yaml"
+    assert shlex.split(unread.command)[2] == "complete/bench_extended.yaml"
+    run([*words, "--out", "complete/code"], bench)
+    assert (bench / "complete" / "code" / "bench" / "include" / "bench.h").is_file()
