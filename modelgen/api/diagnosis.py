@@ -25,7 +25,15 @@ from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, given
-from modelgen.report.diagnosis_sentences import assumptions, compared, harms, headline, interval, suspicions
+from modelgen.report.diagnosis_sentences import (
+    assumptions,
+    compared,
+    harms,
+    headline,
+    interval,
+    opening,
+    suspicions,
+)
 from modelgen.report.experiment import followed
 from modelgen.report.following import whole_json
 from modelgen.report.words import joint_name, legible, place_of
@@ -113,7 +121,7 @@ class Diagnosis(Shown):
             In the order in which they are printed.
         """
         d = self.found
-        parts: list[str | Table] = [headline(d)]
+        parts: list[str | Table] = [opening(d)]
         rows = [_row(d.arm, c) for c in d.causes]
         if rows:
             headings = (

@@ -103,5 +103,10 @@ def records(
         raise InputError(f"found {len(test)} test records, expected one: --test LOG")
     found = several(train, arm, mapping, thresholds)
     if len(found) == 1:
+        if found[0].input is None:
+            raise InputError(
+                f"{found[0].name}: found one release to train on, expected two or more, each with its "
+                "--train: the end of a swing has little of its begin"
+            )
         found = split(found[0], period, thresholds)
     return [*found, read(test[0], arm, mapping, thresholds)]

@@ -88,6 +88,15 @@ class Call:
         out = self.beside("by_instruments")
         return self.command("identify", *records, *kept, "--out", out, description=description)
 
+    def refining(self, out: str, description: str) -> str:
+        """The command that tunes a description on the training records' motion; empty where they are no
+        files.
+        """
+        if not self.train:
+            return ""
+        kept = [*_repeated("--log", self.train), *words_of(self.options, ("mapping",))]
+        return self.command("refine", *kept, "--out", self.beside(out), description=description)
+
     def exciting(self, out: str, speeds: Sequence[float] = (), description: str | None = None) -> str:
         """The command for a motion that determines the parameters; empty where the arm lacks limits.
 

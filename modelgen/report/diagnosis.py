@@ -11,9 +11,9 @@ from modelgen.charts import sheet
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.call import Call
 from modelgen.report.cause_parts import about, law_found, suspected
-from modelgen.report.diagnosis_answers import answers, by_worth
+from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import efforts, replayed, residuals
-from modelgen.report.diagnosis_sentences import assumptions, compared, rivals
+from modelgen.report.diagnosis_sentences import assumptions, by_worth, compared, rivals
 from modelgen.report.experiment import described
 from modelgen.report.named_joints import named_joints
 from modelgen.report.page import Folded, Grid, Heading, Lines, Part, Run, Section, Text, block, page

@@ -12,6 +12,7 @@ from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.call import Call
 from modelgen.report.cause_parts import marks
 from modelgen.report.diagnosis_sentences import (
+    by_worth,
     cause_title,
     doubted,
     efforts_of,
@@ -60,12 +61,6 @@ def _missing(d: Diagnosis) -> Iterator[Part]:
     yield from said[:_SHOWN]
     if said[_SHOWN:]:
         yield Folded(f"And {len(said) - _SHOWN} more", said[_SHOWN:])
-
-
-def by_worth(d: Diagnosis) -> list[int]:
-    """Numbers of the causes, that of most worth on the test record first, those without a figure last."""
-    gains = [c.share.gain for c in d.causes]
-    return sorted(range(len(gains)), key=lambda k: np.inf if np.isnan(gains[k]) else -gains[k])
 
 
 def _linked(effect: str) -> Run:

@@ -17,6 +17,7 @@ _SENTENCES = {
     "cannot_tell": "These records cannot tell.",
 }
 _TITLES = 2  # suspects by their names, in a headline
+_SPOKEN = 3  # causes in sentences, in the terminal
 _VISIBLE = 0.05  # percent: less is 0.0 in print
 _SAME = 0.01  # of a cut-off, that needs no word
 _ALIKE = 0.1  # of an error, that nobody who compares wonders about
@@ -51,6 +52,23 @@ def headline(d: Diagnosis) -> str:
     return " ".join([*missing(d), reason(d)]).rstrip()
 
 
+def opening(d: Diagnosis) -> str:
+    """What the terminal says first: the sentences that the page has, of many causes those of most worth."""
+    if d.verdict != "named":
+        return headline(d)
+    texts, order = missing(d), by_worth(d)
+    said = [texts[k] for k in order[:_SPOKEN]]
+    if order[_SPOKEN:]:
+        said.append(f"And {len(order) - _SPOKEN} more, in the table.")
+    return " ".join([*said, sentence(worth(d)), *doubted(d)])
+
+
+def by_worth(d: Diagnosis) -> list[int]:
+    """Numbers of the causes, that of most worth on the test record first, those without a figure last."""
+    gains = [c.share.gain for c in d.causes]
+    return sorted(range(len(gains)), key=lambda k: np.inf if np.isnan(gains[k]) else -gains[k])
+
+
 def worth(d: Diagnosis) -> str:
     """What the causes are worth on the test record, over all joints, and the worst joint where one lost."""
     e, (low, high) = d.errors, d.errors.interval
@@ -65,7 +83,7 @@ def worth(d: Diagnosis) -> str:
         said = f"the test record has {-e.overall:z.1f} % more error{joints}"
     else:
         said = f"the test record is predicted no better{joints}"
-    if e.gain[worst] <= -_VISIBLE:
+    if joints and e.gain[worst] <= -_VISIBLE:
         said += f", {-e.gain[worst]:z.1f} % more at {joint_name(d.arm, worst + 1)}"
     return said
 
@@ -98,8 +116,9 @@ def doubted(d: Diagnosis) -> list[str]:
     """The causes that failed a check that decides nothing, or harm the test record, a sentence a kind."""
     worse = harmful(d)
     unconfirmed = [c for c in _failing(d, "confirmed") if not any(c is w for w in worse)]
+    said = len(d.causes) == 1 and d.errors.overall <= -_VISIBLE  # by what it is worth
     kinds = (
-        ("The test record is predicted worse with {}.", worse),
+        ("The test record is predicted worse with {}.", [] if said else worse),
         ("The test record does not confirm {}.", unconfirmed),
         ("Not stable, the training records differ in its size: {}.", _failing(d, "stable")),
     )
@@ -242,7 +261,7 @@ def compared(d: Diagnosis) -> list[str]:
 def suspicions(d: Diagnosis) -> list[str]:
     """What has evidence and is not named, each with the check that it failed."""
     return [
-        f"Suspected: {cause_title(d, c)}, evidence {c.delta_bic:z.1f}. It is not named: "
+        f"{cause_title(d, c)} has evidence of {c.delta_bic:z.1f} and is not named: "
         + "; ".join(f"{name}: {text}" for name, mark, text in (checked(k) for k in c.checks) if mark == "no")
         + "."
         for c in d.suspects

@@ -19,12 +19,18 @@ from modelgen.report.words import listed, place_of
 
 # What is without the causes that make the test record worse: a description, a folder beside the page.
 REDUCED = "reduced"
+_LOOK = "Look at the residuals in the report: over what they bend, and at which joint."
 # By verdict, where another motion is what helps.
 _MOTIONS = {
     "cannot_tell": "Record a motion that moves every joint over its range, several periods in a row.",
-    "outside_catalogue": "Look at the residuals in the report: over what they bend, and at which joint. "
-    "Another motion helps.",
+    "outside_catalogue": f"{_LOOK} Another motion helps.",
     "suspected": "Record another motion and add its log to the training records.",
+}
+# The same where nothing drives the arm.
+_RELEASES = {
+    "cannot_tell": "Release every joint from several angles, from each of them twice or more.",
+    "outside_catalogue": f"{_LOOK} Releases from other angles help.",
+    "suspected": "Release the arm from other angles and add these logs to the training records.",
 }
 _EVERY = "Only some effects were asked for: ask for all of the catalogue."
 
@@ -78,7 +84,9 @@ def whole_json(d: Diagnosis, call: Call) -> dict[str, Any]:
 
 
 def _by_itself(d: Diagnosis) -> list[str]:
-    """What shows each effect by itself, that was named or is suspected."""
+    """What shows each effect by itself, that was named or is suspected; none where nothing drives the arm."""
+    if _free(d):
+        return []
     places: dict[str, list[int | None]] = {}
     for c in (*d.causes, *d.suspects):
         places.setdefault(c.effect, []).append(c.joint)
@@ -103,11 +111,16 @@ def carried(d: Diagnosis, call: Call) -> list[Step]:
     reduced = reduced_name(d)
     description = call.beside(reduced) if reduced else call.description
     what = f"{reduced}, the description without {names}" if reduced else f"the description, without {names}"
-    fit = call.identifying(REDUCED, description, float(d.settings["cutoff_hz"]))
+    if _free(d):
+        fit = call.refining(REDUCED, description)
+        text, by = f"Tune {what}, on the releases", "refine"
+    else:
+        fit = call.identifying(REDUCED, description, float(d.settings["cutoff_hz"]))
+        text, by = f"Fit {what}, to the records", "identify"
     if not fit:
-        return [Step(f"Fit {what}, to the records by modelgen identify, and generate its code.")]
+        return [Step(f"{text} by modelgen {by}, and generate its code.")]
     return [
-        Step(f"Fit {what}, to the records, {WHERE}:", fit),
+        Step(f"{text}, {WHERE}:", fit),
         Step("Then generate its code:", _generating(d, call, description, REDUCED)),
     ]
 
@@ -119,17 +132,17 @@ def replaying(d: Diagnosis, call: Call) -> list[Step]:
     """
     if not d.causes:
         return []
-    worse, folder = bool(harmful(d)), ""
+    worse, folder, name = bool(harmful(d)), "", ""  # a description of one arm needs no name
     description = call.beside(f"{d.arm.name}_extended.yaml")
     text = "The extended model against the test record:"
     if worse:
         reduced, folder = reduced_name(d), f"{REDUCED}/"
-        description = call.beside(reduced) if reduced else call.description
+        description, name = (call.beside(reduced), "") if reduced else (call.description, d.arm.name)
         text = "Once that is fitted, it against the test record:"
     words = ["--parameters", call.beside(f"{folder}{d.arm.name}_parameters.yaml")]
     words += [word for log in call.test for word in ("--log", log)]
     words += words_of(call.options, ("mapping",))
-    return [Step(text, command("simulate", description, "" if description else d.arm.name, *words))]
+    return [Step(text, command("simulate", description, name, *words))]
 
 
 def reduced_name(d: Diagnosis) -> str:
@@ -172,9 +185,16 @@ def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
     if d.settings["asked"] != "all":
         every = call.diagnosing()
         return _EVERY, Step(f"{_EVERY} This does, {WHERE}:" if every else _EVERY, every)
+    if _free(d):
+        return _RELEASES[d.verdict], Step(_RELEASES[d.verdict])
     text = _MOTIONS[d.verdict]
     p = d.test.prepared
     speeds = np.abs(p.picked(p.dq)).max(axis=0).tolist()
     description = _described(d, call)
     excite = call.exciting(call.beside("trajectory.csv"), speeds, description)
     return text, Step(f"{text} This computes one, {WHERE}:" if excite else text, excite)
+
+
+def _free(d: Diagnosis) -> bool:
+    """Whether the arm swung by itself: no motion can be asked of it."""
+    return d.test.prepared.input is None

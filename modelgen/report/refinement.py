@@ -19,6 +19,7 @@ _FAR = 2.0  # standard deviations
 _SAME = 1.01  # of an error, that needs no word
 _NAMED = 6  # parameters that moved, in a sentence
 _KEEP = "Nothing was gained by what matters: keep the values of the start."
+_RELEASES = 3  # that a diagnosis of free motions needs: a release is not split in two
 _VAGUE = "Standard deviations, and what they move, are rough there."
 _NEAR = "if the simulated motion below is near enough to the measured one all the same"
 
@@ -84,7 +85,7 @@ def report(found: Refinement, call: Call) -> str:
         ("What moved", [Text(_moved(free, _gained(found))), *_uncertain(found)]),
         (
             "What to do next",
-            _following(call, found.converged, _gained(found)),
+            _following(call, found),
         ),
     ]
     table = [
@@ -139,8 +140,9 @@ def _ended(found: Refinement, free: int) -> list[Part | str]:
     ]
 
 
-def _following(call: Call, converged: bool, gained: bool) -> list[Part | str]:
+def _following(call: Call, found: Refinement) -> list[Part | str]:
     """The code, where there is a reason to have the values in it, and what the model lacks."""
+    converged, gained = found.converged, _gained(found)
     generate = call.command("generate", "--parameters", call.beside(f"{call.arm.name}_parameters.yaml"))
     diagnose = call.diagnosing()
     folded = f"generate code with these values folded in, {WHERE}"
@@ -152,19 +154,23 @@ def _following(call: Call, converged: bool, gained: bool) -> list[Part | str]:
         start = call.command("generate", *words_of(call.options, ("parameters",)))
         folded = f"generate code with the values of the start, {WHERE}"
         parts = [Text(f"{call.first}{sentence(folded)}"), Command(start)]
-    if diagnose:
+    if diagnose and (found.effort or len(call.train) + len(call.test) >= _RELEASES):
         return [
             *parts,
             Text("Where the motion still differs by more than its noise, this names the cause."),
             Command(diagnose),
         ]
+    more = "a second motion, which nothing is fitted to"
+    place = "this record is for "
+    if not found.effort:
+        more = f"releases until there are {_RELEASES}, of which nothing is fitted to the last"
+        place = "all others are for "
     named = [
-        Run("Where the motion still differs by more than its noise, record a second motion, which nothing "),
-        Run("is fitted to, and let "),
+        Run(f"Where the motion still differs by more than its noise, record {more}, and let "),
         Run("modelgen diagnose", "code"),
-        Run(" name the cause: this record is for "),
+        Run(f" name the cause: {place}"),
         Run("--train", "code"),
-        Run(", the second for "),
+        Run(", the second for " if found.effort else ", each with its own, the last for "),
         Run("--test", "code"),
         Run("."),
     ]

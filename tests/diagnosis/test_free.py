@@ -17,6 +17,7 @@ from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose, records
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import known_effects
+from modelgen.errors import InputError
 
 ANGLES = (20, 30, 40)  # deg
 # Link 2 of the shipped gravity arm: 6.743220 kg at 0.193949 m, 0.056052 kg m^2 about its centre of mass.
@@ -74,10 +75,26 @@ def test_spring_with_shifted_rest_and_stiction(arm: Arm, tmp_path: Path) -> None
     assert spring["stiffness"].value == pytest.approx(STIFF, rel=0.05)
     assert -spring["preload"].value / spring["stiffness"].value == pytest.approx(radians(15), rel=0.05)
     assert found.errors.gain[0] > 85.0
+    spring_share, stiction_share = (
+        c.share for c in found.causes
+    )  # it bends the whole swing, stiction its end
+    assert spring_share.low > 50.0
+    assert 0.0 < stiction_share.low < stiction_share.gain < spring_share.gain
     before, after = found.simulation
     assert before is not None
     assert after is not None
     assert after.f_gof[0] > 95.0 > before.f_gof[0]
+
+
+def test_a_record_that_noise_alone_moves_is_no_release(arm: Arm, tmp_path: Path) -> None:
+    train, test = swings(BARE, tmp_path, 0.0)
+    noise = 1e-3 * np.random.default_rng(7).standard_normal(3000)
+    table = np.column_stack([1e-3 * np.arange(3000), noise])
+    np.savetxt(tmp_path / "rests.csv", table, delimiter=",", header="t,q1", comments="", fmt="%.9g")
+    with pytest.raises(InputError, match=r"rests\.csv: all joints rest"):
+        diagnose(arm, records(arm, [train[0], str(tmp_path / "rests.csv")], [test], None, USUAL.dataset))
+    with pytest.raises(InputError, match="found one release to train on, expected two or more"):
+        records(arm, train[:1], [test], None, USUAL.dataset)
 
 
 def test_links_without_inertials_give_no_scale(checkout: Path, tmp_path: Path) -> None:

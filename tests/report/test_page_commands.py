@@ -3,7 +3,6 @@
 import json
 import re
 import shlex
-from collections.abc import Mapping
 from contextlib import chdir
 from dataclasses import replace
 from html import unescape
@@ -14,6 +13,7 @@ import numpy as np
 import pytest
 from command_support import called
 from diagnosis_support import record
+from page_commands import SHORT, commands, parsed, run
 from typer.main import get_command
 
 import modelgen as mg
@@ -40,40 +40,6 @@ joints:
   - {position: {column: q1, unit: rad}, effort: {column: i1, unit: mA}}
   - {position: {column: q2, unit: rad}, effort: {column: i2, unit: mA}}
 """
-FILES = {"ARMS", "LOG", "FILE"}  # placeholders of values that are files, but for what is written
-SHORT = {
-    "excite": ("--period", "5", "--starts", "1", "--iterations", "5", "--jobs", "1"),
-    "diagnose": ("--effect", "friction_offset", "--no-experiment", "--jobs", "1"),
-}
-
-
-def commands(page: Path) -> list[list[str]]:
-    """Words of every command of a page, as a shell splits them."""
-    found = re.findall(r"<pre><code>(.*?)</code>", page.read_text(encoding="utf-8"), re.DOTALL)
-    lines = [shlex.split(unescape(text)) for text in found]
-    assert all(line[0] == "modelgen" for line in lines)
-    return [line[1:] for line in lines]
-
-
-def parsed(words: list[str], folder: Path) -> Mapping[str, Any]:
-    """Values by name, of a command through the parser; every file that it reads is there."""
-    group: Any = get_command(app)
-    context = group.context_class(group, info_name="modelgen")
-    name, command, rest = group.resolve_command(context, words)
-    values: dict[str, Any] = command.make_context(name, rest, parent=context).params
-    for parameter in command.params:
-        given = values.get(parameter.name)
-        if parameter.name == "out" or not given or parameter.metavar not in FILES:
-            continue
-        for text in given if isinstance(given, list | tuple) else [given]:
-            assert (folder / str(text).partition("@")[0]).is_file(), (words, text)
-    return values
-
-
-def run(words: list[str], folder: Path) -> None:
-    """The command itself, in the folder, with options that make it quick."""
-    done = called(*words, *SHORT.get(words[0], ()), cwd=folder)
-    assert done.returncode == 0, (words, done.stderr)
 
 
 @pytest.fixture(scope="module")
@@ -225,9 +191,9 @@ def test_an_excitation_is_followed_by_another_and_by_its_records(bench: Path) ->
 
 def test_what_refine_and_calibrate_propose_runs_as_it_is_copied(tmp_path: Path) -> None:
     """For arms that modelgen ships, in a folder that has no description."""
-    swing = mg.simulate(mg.load_arms()["gravity_link2"], q0="20 deg", duration=2.0, rate=200.0)
-    noise = 1e-3 * np.random.default_rng(0).standard_normal((2, len(swing.t)))
-    for name, e in zip(("a", "b"), noise, strict=True):
+    swing = mg.simulate(mg.load_arms()["gravity_link2"], q0="20 deg", duration=6.0, rate=200.0)
+    noise = 1e-3 * np.random.default_rng(0).standard_normal((3, len(swing.t)))
+    for name, e in zip(("a", "b", "c"), noise, strict=True):
         table = np.column_stack([swing.t, swing.q[:, 0] + e])
         np.savetxt(tmp_path / f"{name}.csv", table, delimiter=",", header="t,q1", comments="")
     run(["refine", "--arm", "gravity_link2", "--log", "a.csv", "--out", "one"], tmp_path)
@@ -236,9 +202,18 @@ def test_what_refine_and_calibrate_propose_runs_as_it_is_copied(tmp_path: Path) 
     assert (tmp_path / "generated" / "gravity_link2").is_dir()
     assert "for <code>--test</code>" in (tmp_path / "one" / "report.html").read_text(encoding="utf-8")
     run(["refine", "--arm", "gravity_link2", "--log", "a.csv", "--log", "b.csv", "--out", "two"], tmp_path)
-    _, diagnose = commands(tmp_path / "two" / "report.html")
+    assert len(commands(tmp_path / "two" / "report.html")) == 1  # a release is not split in two
+    three = [word for name in "abc" for word in ("--log", f"{name}.csv")]
+    run(["refine", "--arm", "gravity_link2", *three, "--out", "three"], tmp_path)
+    _, diagnose = commands(tmp_path / "three" / "report.html")
     asked = parsed(diagnose, tmp_path)
-    assert (asked["train"], asked["test"]) == (["a.csv"], ["b.csv"])
+    assert (asked["train"], asked["test"]) == (["a.csv", "b.csv"], ["c.csv"])
+    done = called(*diagnose, "--effect", "spring", "--no-experiment", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    one = diagnose[diagnose.index("--train") + 4 :]
+    done = called("diagnose", "--arm", "gravity_link2", "--train", "a.csv", *one, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "found one release to train on, expected two or more" in " ".join(done.stderr.split())
 
     arm, motor = mg.load_arms()["ariane4"], np.linspace(0.0, 20_000.0, 300)
     angle = lever_of(arm, 3).angle(motor) + 0.02

@@ -72,9 +72,12 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             "finer encoders, or encoders at the motors, can tell"
         )
     if fit is None:
+        more = (
+            ": excite with two or more identical periods (--period gives their length where it is not found)"
+        )
         return "cannot_tell", (
-            "nothing could be named, and no period repeats by which the noise could be measured: excite with "
-            "two or more identical periods (--period gives their length where it is not found)"
+            "nothing could be named, and no period repeats by which the noise could be measured"
+            + ("" if selection.system.equations.free else more)
         )
     if correlated is not None and correlated.found and correlated.cost.max() > least:
         joint = names[int(np.argmax(correlated.cost))]

@@ -51,11 +51,13 @@ def noise_of_speeds(records: Sequence[Record], settings: Settings) -> Array:
 def released(record: Record, settings: Settings) -> Record:
     """Cut a record from the release to the last standstill: filters must not see the hand that held the arm.
 
+    It moves where it does for half a period of the cut-off or longer; noise alone is faster for moments.
     Raises InputError where no joint moves.
     """
     p = prepare(record, settings)
-    rest = np.abs(p.dq) < np.asarray(p.settings.gates)
-    moving = np.flatnonzero(~rest.all(axis=1))
+    moves = np.asarray((np.abs(p.dq) >= np.asarray(p.settings.gates)).any(axis=1))
+    least = max(1, round(0.5 / ((p.settings.cutoff or 1.0) * record.step)))
+    moving = np.flatnonzero(long_runs(moves, least))
     if not len(moving):
         raise InputError(f"{record.name}: all joints rest; expected a free motion from a release to rest")
     return record.part(int(moving[0]), int(moving[-1]) + 1)

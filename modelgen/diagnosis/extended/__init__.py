@@ -9,7 +9,14 @@ from modelgen.diagnosis.extended.extended_model import (
     without,
 )
 from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions, Share
-from modelgen.diagnosis.extended.test_errors import errors, motion_errors, on_test, residuals, shares
+from modelgen.diagnosis.extended.test_errors import (
+    errors,
+    motion_errors,
+    motion_shares,
+    on_test,
+    residuals,
+    shares,
+)
 from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates
 
 __all__ = [
@@ -25,6 +32,7 @@ __all__ = [
     "errors",
     "extend",
     "motion_errors",
+    "motion_shares",
     "on_test",
     "replay",
     "residuals",

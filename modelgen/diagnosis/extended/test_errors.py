@@ -14,7 +14,7 @@ import numpy as np
 from modelgen.dataset import Record
 from modelgen.diagnosis.candidates import FittedCandidate, candidate_columns, with_causes
 from modelgen.diagnosis.equations import Rows, rows_of
-from modelgen.diagnosis.extended.extended_model import Extension, seen_by
+from modelgen.diagnosis.extended.extended_model import Extension, extended, replay, seen_by
 from modelgen.diagnosis.extended.findings import Errors, Share
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
 from modelgen.evaluation import Evaluator
@@ -47,11 +47,44 @@ def motion_errors(
     interval = np.nan, np.nan
     joints = [] if record.arm is None else [record.arm.joints[i] for i in record.arm.coordinates]
     unit = ", ".join(dict.fromkeys(j.unit for j in joints)) or "rad"
-    if before is not None and after is not None and before.simulated.shape == after.simulated.shape:
-        old, new = ((s.simulated - s.measured).reshape(-1, n) for s in (before, after))
+    pair = _deviations(before, after, n)
+    if pair is not None:
+        old, new = pair
         found = np.array([compared(old[:, j], new[:, j], limits) for j in range(n)])
         interval = overall_interval([(old[:, j], new[:, j]) for j in range(n)], limits)
     return _errors(unit, found, interval)
+
+
+def motion_shares(
+    extension: Extension, test: Rows, on: Sequence[bool], after: Windows | None, limits: ExtendedThresholds
+) -> list[Share]:
+    """Shares of the causes in what a free motion is simulated better, over the joints where each acts.
+
+    The model is fitted with all causes and with all but this one. on: of each cause, whether it is there,
+    `on_test`; one that is not has no share. after: the motion simulated with all. Not a number where either
+    cannot be simulated.
+    """
+    selection, n, found = extension.selection, test.prepared.record.n, []
+    for k, (cause, so) in enumerate(zip(selection.causes, on, strict=True)):
+        kept = [c for i, c in enumerate(selection.causes) if i != k and on[i]]
+        fitted = extended(extension.before, replace(selection, causes=kept), extension.equations)
+        pair = _deviations(replay(fitted, test, limits) if so else None, after, n)
+        if pair is None:
+            found.append(Share())
+            continue
+        joints = sorted(cause.trial.candidate.joints(n))
+        scales = np.maximum(np.sqrt((pair[1] ** 2).mean(axis=0)), 1e-300)
+        old, new = (np.concatenate([e[:, j] / scales[j] for j in joints]) for e in pair)
+        found.append(Share(*compared(old, new, limits)[2:]))
+    return found
+
+
+def _deviations(before: Windows | None, after: Windows | None, n: int) -> tuple[Array, Array] | None:
+    """Simulated minus measured positions (M, n) of both; None where one is missing or of other length."""
+    if before is None or after is None or before.simulated.shape != after.simulated.shape:
+        return None
+    old, new = ((s.simulated - s.measured).reshape(-1, n) for s in (before, after))
+    return old, new
 
 
 def _errors(unit: str, found: Array, interval: tuple[float, float]) -> Errors:

@@ -23,6 +23,7 @@ from modelgen.diagnosis.extended import (
     cause_estimates,
     errors,
     motion_errors,
+    motion_shares,
     on_test,
     replay,
     residuals,
@@ -52,16 +53,20 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
     test = equations.of_record(band.test, extension.before.theta)
     there = on_test(extension, test)
     pair = residuals(test, extension, there)
+    described = replay(extension.before, test, limits)
     causes = _named(decision, extension)
-    if causes and not equations.free:
-        worth = shares(extension, test, there)
+    played = described, replay(without(extension, there), test, limits) if causes else described
+    if causes:
+        worth = (
+            motion_shares(extension, test, there, played[1], limits)
+            if equations.free
+            else shares(extension, test, there)
+        )
         causes = tuple(replace(cause, share=share) for cause, share in zip(causes, worth, strict=True))
     causes = tuple(
         replace(c, checks=(*c.checks, confirmed(c.share.gain, c.share.low, so)), records=_having(c, so, test))
         for c, so in zip(causes, there, strict=True)
     )
-    described = replay(extension.before, test, limits)
-    played = described, replay(without(extension, there), test, limits) if causes else described
     after, fit = extension.after, decision.remains.fit
     values = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
     split = {number: e.value for number, e in extension.inertias.items()}

@@ -54,7 +54,8 @@ class Refinement:
 
     measured, simulated, started: positions part by part (K, n), those of the refined parameters and of
     where they started; t their times. rounds: Gauss-Newton steps.
-    stopped: why it ended before it converged, empty where it did converge.
+    stopped: why it ended before it converged, empty where it did converge. effort: whether the logs have
+    efforts; else the motions are free.
     """
 
     plant: Plant
@@ -67,6 +68,7 @@ class Refinement:
     started: tuple[Array, ...]
     rounds: int
     stopped: str
+    effort: bool
 
     @property
     def converged(self) -> bool:
@@ -162,6 +164,7 @@ def refine(
         tuple(started),
         rounds,
         stopped,
+        effort,
     )
 
 
