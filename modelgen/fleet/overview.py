@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any, ClassVar
 
-from modelgen.diagnosis.result import VERDICTS
+from modelgen.fleet.sentences import FAILED, differences, titles, verdict
 from modelgen.fleet.store import Row
 from modelgen.report.page import Command, Lines, Part, Run, Text, page
 from modelgen.report.parts import breaking, line
 from modelgen.report.words import listed
 
-FAILED = "failed"
 WORDS = {
     "named": "cause named",
     "suspected": "cause suspected",
@@ -23,21 +22,9 @@ WORDS = {
     "cannot_tell": "cannot tell",
     FAILED: "failed",
 }
-# What a unit does, and several, by verdict; and what, where nothing has a name.
-_CLAUSES = {
-    "named": ("lacks", "lack"),
-    "suspected": ("may lack", "may lack"),
-    "nothing_missing": ("lacks nothing", "lack nothing"),
-    "outside_catalogue": ("lacks something outside the catalogue", "lack something outside the catalogue"),
-    "cannot_tell": ("gives no answer", "give no answer"),
-    FAILED: ("could not be diagnosed", "could not be diagnosed"),
-}
-_UNNAMED = {"named": " something", "suspected": " something"}
 _HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", "less error %", "lack of fit", "s", "reason")
 _LOOKS = 7  # colours that are told apart
 _URGENT = 8  # units that are listed first
-_GROUPS = 5  # units that lack the same, in a sentence each
-_UNITS = 4  # of a group, by their names
 
 _WIDEST = 80.0  # percent of the room, of a bar
 _NOTHING = "Every unit could be diagnosed, and nothing is left unexplained."
@@ -72,33 +59,6 @@ def overview(rows: Sequence[Row]) -> str:
     ]
     heading = f"Fleet of {len(rows)} unit{'' if len(rows) == 1 else 's'}"
     return page(heading, "Diagnosis of many arms", answers, [("Units", units)], own="fleet")
-
-
-def differences(rows: Sequence[Row]) -> list[str]:
-    """Which units lack what, in sentences: most of them first, and in what others differ from these."""
-    groups: dict[tuple[str, tuple[str, ...]], list[str]] = {}
-    for row in rows:
-        what = _titles(row) if row.get("causes") else row.get("suspects") or ()
-        groups.setdefault((verdict(row), tuple(what)), []).append(row["unit"])
-    order = sorted(groups, key=lambda key: -len(groups[key]))
-    most = len(groups[order[0]]) if order else 0
-    usual = 2 * most > len(rows) > 2
-    said = []
-    for k, key in enumerate(order[:_GROUPS]):
-        units, (found, causes_) = groups[key], key
-        one, many = _CLAUSES[found]
-        named = listed(units[:_UNITS]) + (f" and {len(units) - _UNITS} more" if units[_UNITS:] else "")
-        what = f" {listed(causes_)}" if causes_ else _UNNAMED.get(found, "")
-        if usual and k == 0:
-            count = f"All {most}" if most == len(rows) else f"{most} of {len(rows)}"
-            said.append(f"{count} units {many}{what}.")
-        elif usual:
-            differ = ("differs: it", one) if len(units) == 1 else ("differ: they", many)
-            said.append(f"{named} {differ[0]} {differ[1]}{what}.")
-        else:
-            said.append(f"{named} {one if len(units) == 1 else many}{what}.")
-    left = len(order) - _GROUPS
-    return said + ([f"{left} further group{'' if left == 1 else 's'}: see the table."] if left > 0 else [])
 
 
 @dataclass(frozen=True)
@@ -150,12 +110,6 @@ class Units(Part):
 def verdicts(rows: Sequence[Row]) -> Counter[str]:
     """How many units have which verdict; FAILED for those that have none."""
     return Counter(verdict(row) for row in rows)
-
-
-def verdict(row: Row) -> str:
-    """One of VERDICTS, or FAILED."""
-    found = row.get("verdict")
-    return found if found in VERDICTS else FAILED
 
 
 def causes(rows: Sequence[Row]) -> Counter[tuple[str, int | None, str]]:
@@ -234,7 +188,7 @@ def _urgent(rows: Sequence[Row]) -> Iterator[list[Run]]:
 
 def _harming(row: Row) -> list[str]:
     """Causes that make the test record of a unit worse."""
-    return [title for title, harm in zip(_titles(row), row.get("harms") or (), strict=False) if harm]
+    return [title for title, harm in zip(titles(row), row.get("harms") or (), strict=False) if harm]
 
 
 def _next(rows: Sequence[Row]) -> Iterator[Part]:
@@ -253,12 +207,6 @@ def _next(rows: Sequence[Row]) -> Iterator[Part]:
             yield Text("The pages of the others have theirs.", "quiet")
 
 
-def _titles(row: Row) -> list[str]:
-    """Causes with their joints."""
-    named = zip(row.get("causes") or (), row.get("joint_names") or (), strict=True)
-    return row.get("titles") or [e if j is None else f"{e} at {j}" for e, j in named]
-
-
 def _unit(row: Row) -> Run:
     """The name of a unit, which leads to its report."""
     return Run(row["unit"], target=row.get("report") or "")
@@ -267,9 +215,9 @@ def _unit(row: Row) -> Run:
 def _row(row: Row) -> dict[str, Any]:
     found = verdict(row)
     fit, threshold = row.get("lack_of_fit"), row.get("lack_of_fit_threshold")
-    titles = _titles(row)
-    harms = row.get("harms") or [False] * len(titles)
-    named = zip(titles, row.get("ambiguous_with") or (), harms, strict=True)
+    causes_ = titles(row)
+    harms = row.get("harms") or [False] * len(causes_)
+    named = zip(causes_, row.get("ambiguous_with") or (), harms, strict=True)
     return {
         "unit": line([_unit(row)]),
         "arm": row["arm"] or "",

@@ -104,6 +104,17 @@ def finding(
     return (said or titled(arm, effect, joint)) + where
 
 
+def there(effect: str, place: str, other: str = "") -> str:
+    """The clause that says what is there, without values: what arms have in common whose values differ.
+
+    place: name of a joint, or "the whole arm"; other: that of a further joint that it has to do with.
+    """
+    definition = CATALOGUE[effect]
+    said = re.sub(r":?(?: by)? \{(?!joint|place|drive|other)[^}]*\}(?: of it)?", "", definition.finding)
+    where = {"joint": place, "place": place, "drive": f"the drive of {place}", "other": other}
+    return said.format(**where) or f"{definition.text} acts at {place}"
+
+
 def sentence(clause: str) -> str:
     """With a capital letter, unless a name of the catalogue comes first, and a full stop."""
     first = clause[:1] if "_" in clause.partition(" ")[0] else clause[:1].upper()

@@ -20,11 +20,13 @@ from hidden.cases import Case, Hidden, make
 from jobs_support import cluster
 from ruamel.yaml import YAML
 
+from modelgen.effects import CATALOGUE
 from modelgen.errors import InputError
 from modelgen.fleet.diagnosing import Job, crashed
-from modelgen.fleet.overview import differences, overview
+from modelgen.fleet.overview import overview
 from modelgen.fleet.run import diagnose_fleet
 from modelgen.fleet.schema import fleet_json_schema
+from modelgen.fleet.sentences import differences
 from modelgen.fleet.store import kept, read
 from modelgen.fleet.units import Unit, load_fleet
 from modelgen.jobs import Where
@@ -376,21 +378,45 @@ def test_the_overview_says_first_which_units_differ_and_by_what() -> None:
     lacking = rows_of("named", "u6", **SPRING)
     assert differences([*usual, *lacking]) == [
         "5 of 6 units lack nothing.",
-        "u6 differs: it lacks spring at elbow.",
+        "u6 differs: a spring acts at elbow.",
     ]
     assert differences(usual) == ["All 5 units lack nothing."]
     several = [*usual, *lacking, *rows_of("named", "u7", **SPRING), *rows_of("failed", "u8")]
     assert differences(several)[1:] == [
-        "u6 and u7 differ: they lack spring at elbow.",
+        "u6 and u7 differ: a spring acts at elbow.",
         "u8 differs: it could not be diagnosed.",
     ]
     suspect = rows_of("suspected", "u9", suspects=["presliding at elbow"], failed_checks=[["form"]])
     assert differences([*lacking, *suspect]) == [
-        "u6 lacks spring at elbow.",
-        "u9 may lack presliding at elbow.",
+        "In u6 a spring acts at elbow.",
+        "In u9 perhaps friction in the drive of elbow builds up over a distance after each reversal.",
     ]
     text = overview([*usual, *lacking])
     assert text.index("5 of 6 units lack nothing.") < text.index("<caption>")  # in words, then in bars
+
+
+@pytest.mark.parametrize("effect", CATALOGUE)
+def test_a_fleet_says_every_effect_in_words_without_values(effect: str) -> None:
+    """In a sentence that has the joints and neither the effect's name nor a value."""
+    named = {"causes": [effect], "joints": [2], "joint_names": ["elbow"], "ambiguous_with": [[]]}
+    titles = [f"{effect} at elbow and wrist"]
+    (said,) = differences(rows_of("named", "u1", "u2", "u3", **named, titles=titles))
+    assert re.fullmatch(r"In all 3 units [a-z' ]+\.", said)
+    assert "elbow" in said or CATALOGUE[effect].scope == "arm"
+    assert ("wrist" in said) == ("{other}" in CATALOGUE[effect].finding)
+    assert "  " not in said
+
+
+def test_of_many_causes_the_first_are_said_in_words() -> None:
+    many = ["spring at elbow", "presliding at elbow", "spring at wrist", "backlash at wrist", "made_up at j"]
+    perhaps = rows_of("suspected", "u1", "u2", suspects=many[:1])
+    assert differences([*perhaps, *rows_of("nothing_missing", "u3")]) == [
+        "In 2 of 3 units perhaps a spring acts at elbow.",
+        "u3 differs: it lacks nothing.",
+    ]
+    (said,) = differences(rows_of("suspected", "u1", suspects=many, failed_checks=[["form"]] * 5))
+    assert said.endswith("a spring acts at wrist and 2 more are named below.")
+    assert differences(rows_of("suspected", "u1", suspects=many[4:])) == ["In u1 perhaps made_up at j."]
 
 
 def test_the_overview_has_the_next_command_and_says_nothing_twice() -> None:
