@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_support import called
-from page_commands import commands, run
+from copied_commands import commands, run
 from witness.free_swings import Link
 
 # Link 2 of the shipped gravity arm, with its friction.

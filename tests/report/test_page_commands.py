@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from command_support import called
+from copied_commands import SHORT, commands, parsed, run
 from diagnosis_support import record
-from page_commands import SHORT, commands, parsed, run
 from typer.main import get_command
 
 import modelgen as mg
