@@ -32,8 +32,8 @@ PICTURE = PAGE.with_suffix(".svg")
 FEW = 3  # cases, from which a set is shown among the answers
 SIZE, SMALL = "1.30", "1.10"  # sizes s of what is said in words
 ORDER = ("nothing", "one effect", "lost motion", "outside")
-ANSWER = ("hidden", "s", "arms", "exact", "a false name")
-BY_RECORDS = ("family", "records", *ANSWER, "set")
+ANSWER = ("hidden", "s", "exact", "a false name")
+BY_RECORDS = ("family", "records", "hidden", "s", "arms", "exact", "a false name", "set")
 COLUMNS = (
     "set",
     "records",
@@ -117,7 +117,7 @@ def page() -> str:
     texts = [f"- `{name}`: {one.text}" for name, one in sets().items() if one.text]
     parts = [
         words.INTRODUCTION.format(**said),
-        _table(ANSWER, [row for _, row in sorted(_pooled(shown).items())]),
+        _table(ANSWER, _pooled(shown)),
         "",
         _folded(words.BY_RECORDS, _table(BY_RECORDS, _by_records(shown))),
         words.CANNOT.format(**said),
@@ -174,10 +174,11 @@ def _by_records(shown: Shown) -> list[tuple[str, ...]]:
     return [(p[0].upper(), p[1], *_counts(p[2:], _together(cases)), f"`{name}`") for p, name, cases in rows]
 
 
-def _pooled(shown: Shown) -> dict[tuple[int, str], tuple[str, ...]]:
+def _pooled(shown: Shown) -> list[tuple[str, ...]]:
     """Counts by what is hidden and its size, all families and kinds of records together."""
-    kinds = {place[2:] for place in shown}
-    return {(ORDER.index(k[0]), k[1]): _counts(k, _together(_cases(shown, *k))) for k in kinds}
+    kinds = sorted({place[2:] for place in shown}, key=lambda kind: (ORDER.index(kind[0]), kind[1]))
+    rows = [(*kind, _together(_cases(shown, *kind))) for kind in kinds]
+    return [(hidden, size or "-", _of(row, "exact"), _of(row, "false")) for hidden, size, row in rows]
 
 
 def _cases(shown: Shown, hidden: str, size: str) -> list[Answered]:
@@ -198,9 +199,7 @@ def figures(shown: Shown) -> dict[str, str]:
     """What the page says in words: counts with their intervals."""
 
     def said(key: str, hidden: str, size: str = SIZE) -> str:
-        row = _together(_cases(shown, hidden, size))
-        low, high = (100.0 * x for x in row[key]["interval"])
-        return f"{row[key]['count']} of {row['cases']} arms ({low:.0f} to {high:.0f} %)"
+        return _of(_together(_cases(shown, hidden, size)), key, " arms")
 
     return {
         "s": SIZE,
@@ -240,6 +239,11 @@ def _row(name: str, row: dict[str, Any]) -> tuple[str, ...]:
     more = ("-" if row[k] is None else f"{row[k]:.1f}" for k in ("removed_percent", "cpu_s"))
     place = (name, row["setting"], row["group"], row["size"] or "-", str(row["cases"]))
     return (*place, _share(row, "exact"), _share(row, "false"), str(row["suspects"]["count"]), *more)
+
+
+def _of(row: dict[str, Any], key: str, what: str = "") -> str:
+    """A count out of the cases of a row. what: they are."""
+    return _share(row, key).replace(" (", f" of {row['cases']}{what} (")
 
 
 def _share(row: dict[str, Any], key: str) -> str:

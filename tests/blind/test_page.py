@@ -60,7 +60,8 @@ def test_the_answer_in_words_is_the_sum_of_the_sets_that_are_shown() -> None:
             for k, cell in enumerate(cells[2:]):
                 counts[k] += int(cell.split()[0])
     for (hidden, size), (arms, exact, false) in sums.items():
-        assert re.search(rf"^\| {hidden} \| {size} \| {arms} \| {exact} \(.*\| {false} \(", short, re.M)
+        shown = rf"{exact} of {arms} \(.* \| {false} of {arms} \("
+        assert re.search(rf"^\| {hidden} \| {size} \| {shown}", short, re.M)
     said = [tuple(map(int, found)) for found in re.findall(r"(\d+)\s+of\s+(\d+)\s+arms", words)]
     nothing, one, outside = (sums[k] for k in (("nothing", "-"), ("one effect", "1.30"), ("outside", "1.30")))
     assert said == [
