@@ -17,8 +17,9 @@ from modelgen.charts import apart
 from modelgen.description import Arm, loads
 from modelgen.effects import known_effects
 from modelgen.options import CalibrationOptions, changed
-from modelgen.report.calibration import picture, report, verdict
+from modelgen.report.calibration import following, picture, report, stands, verdict
 from modelgen.report.call import Call
+from modelgen.report.parts import steps
 from modelgen.report.words import joint_name
 
 
@@ -81,6 +82,21 @@ class Calibration(Result):
             "calibration.svg": picture(self.arm, c),
             "report.html": report(self.arm, c, Call(self.arm, folder=Path(folder))),
         }
+
+    def next_steps(self, folder: Path | str = "") -> Sequence[tuple[str, str]]:
+        """What the page says is to be done next.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where the files are, which the commands need. Default: the current folder.
+
+        Returns
+        -------
+        sequence of tuple of str
+            Each a sentence and the command for it, empty where there is none.
+        """
+        return steps(following(Call(self.arm, folder=Path(folder)), stands(self.found)))
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and tables of `modelgen calibrate`.

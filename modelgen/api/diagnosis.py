@@ -35,7 +35,7 @@ from modelgen.report.diagnosis_sentences import (
     suspicions,
 )
 from modelgen.report.experiment import followed
-from modelgen.report.following import whole_json
+from modelgen.report.following import proposed, whole_json
 from modelgen.report.words import joint_name, legible, place_of
 from modelgen.report.writing import write
 
@@ -91,6 +91,22 @@ class Diagnosis(Shown):
             are those of the folder of the last `write`, else of the current one.
         """
         return whole_json(self.found, self.call)
+
+    def next_steps(self, folder: Path | str | None = None) -> Sequence[tuple[str, str]]:
+        """What is to be done next.
+
+        Parameters
+        ----------
+        folder : Path or str, optional
+            Where the files are, which the commands need. Default: that of the last `write`.
+
+        Returns
+        -------
+        sequence of tuple of str
+            Each a sentence and the command for it, empty where there is none.
+        """
+        call = self.call if folder is None else replace(self.call, folder=Path(folder))
+        return [(step.text, step.command) for step in proposed(self.found, call)]
 
     def write(self, folder: Path | str, *, code: bool = True) -> None:
         """Write the files of `modelgen diagnose` into a folder, all of them or none.

@@ -17,7 +17,8 @@ from modelgen.numeric import Array
 from modelgen.options import ExcitationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call
-from modelgen.report.excitation import picture, report, separates, worst
+from modelgen.report.excitation import following, picture, report, separates, worst
+from modelgen.report.parts import steps
 from modelgen.report.words import limit_name
 
 
@@ -96,6 +97,23 @@ class Excitation(Result):
         out = Path(folder)
         check_folder("--out", out)
         write_together("--out", out, self.files(out, stem))
+
+    def next_steps(self, folder: Path | str = "", stem: str = "trajectory") -> Sequence[tuple[str, str]]:
+        """What the page says is to be done next.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where the files are, which the commands need. Default: the current folder.
+        stem : str
+            What their names begin with.
+
+        Returns
+        -------
+        sequence of tuple of str
+            Each a sentence and the command for it, empty where there is none.
+        """
+        return steps(following(self.found, stem, Call(self.arm, folder=Path(folder))))
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and tables of `modelgen excite`.

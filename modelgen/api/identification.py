@@ -24,7 +24,8 @@ from modelgen.identification.workflow import Outcome, identify_logs
 from modelgen.options import IdentificationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, files_of
-from modelgen.report.identification import models, picture, report, table
+from modelgen.report.identification import following, models, picture, report, table
+from modelgen.report.parts import steps
 from modelgen.report.words import joint_name
 
 
@@ -80,12 +81,11 @@ class Identification(Result):
         o, found, data = self.outcome, self.outcome.found, self.outcome.data
         name, drawn = found.arm.name, spectra(o.first)
         call = replace(self.call, folder=Path(folder))
-        speeds = np.abs(o.first.picked(o.first.dq)).max(axis=0).tolist()
         files = {
             "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
             f"{name}_parameters.yaml": parameters_yaml(name, {e.name: e.value for e in found.estimates}),
             "spectra.svg": sheet(drawn, 2),
-            "report.html": report(found, o.others, _processing(o, every=True), drawn, call, speeds),
+            "report.html": report(found, o.others, _processing(o, every=True), drawn, call, self._speeds()),
         }
         if found.test is not None:
             files["test.svg"] = picture(found.test, found.arm.coordinate_names, o.others)
@@ -93,6 +93,28 @@ class Identification(Result):
             constants = {g.joint: g.value for g in found.gains}
             files[f"{name}_identified.yaml"] = with_torque_constants(found.arm, constants)
         return files
+
+    def next_steps(self, folder: Path | str = "") -> Sequence[tuple[str, str]]:
+        """What the page says is to be done next.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where the files are, which the commands need. Default: the current folder.
+
+        Returns
+        -------
+        sequence of tuple of str
+            Each a sentence and the command for it, empty where there is none.
+        """
+        call = replace(self.call, folder=Path(folder))
+        return steps(following(self.outcome.found, call, self._speeds()))
+
+    def _speeds(self) -> list[float]:
+        """The largest speed of every joint (n,) in the first record [rad/s, m/s]."""
+        first = self.outcome.first
+        largest: list[float] = np.abs(first.picked(first.dq)).max(axis=0).tolist()
+        return largest
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and tables of `modelgen identify`.

@@ -21,7 +21,8 @@ from modelgen.identification.refinement import refine_logs, to_json
 from modelgen.options import RefinementOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, files_of
-from modelgen.report.refinement import headline, picture, report
+from modelgen.report.parts import steps
+from modelgen.report.refinement import following, headline, picture, report
 
 
 class Refinement(Result):
@@ -82,6 +83,21 @@ class Refinement(Result):
             "refinement.svg": picture(self.found),
             "report.html": report(self.found, replace(self.call, folder=Path(folder))),
         }
+
+    def next_steps(self, folder: Path | str = "") -> Sequence[tuple[str, str]]:
+        """What the page says is to be done next.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where the files are, which the commands need. Default: the current folder.
+
+        Returns
+        -------
+        sequence of tuple of str
+            Each a sentence and the command for it, empty where there is none.
+        """
+        return steps(following(replace(self.call, folder=Path(folder)), self.found))
 
     def shown(self) -> Sequence[str | Table]:
         """Lines and tables of `modelgen refine`.

@@ -91,6 +91,21 @@ class Result(Shown):
             Text by name.
         """
 
+    @abstractmethod
+    def next_steps(self, folder: Path | str = "") -> Sequence[tuple[str, str]]:
+        """What the page says is to be done next.
+
+        Parameters
+        ----------
+        folder : Path or str
+            Where the files are, which the commands need. Default: the current folder.
+
+        Returns
+        -------
+        sequence of tuple of str
+            Each a sentence and the command for it, empty where there is none.
+        """
+
     def write(self, folder: Path | str) -> None:
         """Write the files of the command into a folder, all of them or none.
 

@@ -8,8 +8,9 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from textwrap import wrap
 from typing import Any, Literal
 
@@ -49,6 +50,13 @@ def print_result(result: Shown, *, as_json: bool) -> None:
             print_table(part)
         else:
             say(part)
+
+
+def say_next(page: Path, steps: Iterable[tuple[str, str]]) -> None:
+    """Where the page is, and what is to be done next: a sentence each, with its command."""
+    say(f"report: {page}")
+    for text, command in steps:
+        say(text, command)
 
 
 def say(text: str, command: str = "") -> None:

@@ -96,7 +96,7 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
         ("What is uncertain", [Text(_uncertain(c)), *weak]),
         (
             "What to do next",
-            _following(call, stands(c)),
+            following(call, stands(c)),
         ),
     ]
     sections: Parts = [
@@ -153,7 +153,7 @@ def _pictured(c: Calibration) -> list[Part | str]:
     ]
 
 
-def _following(call: Call, stands: bool) -> list[Part | str]:
+def following(call: Call, stands: bool) -> list[Part | str]:
     """The description, with this lever where it differs, in what follows: a motion, then the parameters."""
     described, first = None, [Run("Keep the description: ")]
     if not stands:

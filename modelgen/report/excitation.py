@@ -86,7 +86,7 @@ def report(e: Excitation, stem: str, call: Call) -> str:
                 *([Lines(remarks)] if remarks else []),
             ],
         ),
-        ("What to do next", _following(e, stem, call)),
+        ("What to do next", following(e, stem, call)),
     ]
     sections: Parts = [
         ("The motion", [block(charts(e))]),
@@ -146,7 +146,7 @@ def worst(e: Excitation) -> list[str]:
     ]
 
 
-def _following(e: Excitation, stem: str, call: Call) -> list[Part | str]:
+def following(e: Excitation, stem: str, call: Call) -> list[Part | str]:
     """Two records of two motions, and what makes parameters of them."""
     train, test = (call.beside(f"{stem}{word}_record.csv") for word in ("", "_test"))
     names = [name for name in options_of(ExcitationOptions) if name not in (*_ELSEWHERE, "seed")]

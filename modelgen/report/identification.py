@@ -94,7 +94,7 @@ def report(
         ("What was found", _found(found)),
         ("How well it predicts", errors),
         ("What is uncertain", _uncertain(found)),
-        ("What to do next", _following(found, call, speeds)),
+        ("What to do next", following(found, call, speeds)),
     ]
     sections: list[tuple[str, Sequence[Any]]] = [("Parameters", [*_parameters(found), _method(found)])]
     if found.gains:
@@ -165,7 +165,7 @@ def _uncertain(found: Identification) -> list[Any]:
     return parts or [Text("No parameter is uncertain by what would matter in the effort.")]
 
 
-def _following(found: Identification, call: Call, speeds: Sequence[float]) -> list[Any]:
+def following(found: Identification, call: Call, speeds: Sequence[float]) -> list[Any]:
     """The code, what the model lacks, a better motion."""
     name = found.arm.name
     described = call.beside(f"{name}_identified.yaml") if found.gains else None

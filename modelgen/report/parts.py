@@ -225,6 +225,18 @@ def line(text: Line) -> Markup:
     return _filled("line", {"runs": [_looks(run) for run in runs]})
 
 
+def steps(parts: Sequence[Any]) -> list[tuple[str, str]]:
+    """Texts of parts, each with the command that follows on it; empty where none does."""
+    found: list[tuple[str, str]] = []
+    for part in parts:
+        if isinstance(part, Command):
+            found[-1] = found[-1][0], part.text
+        elif isinstance(part, Text):
+            runs = [part.text] if isinstance(part.text, str) else [run.text for run in part.text]
+            found.append(("".join(runs), ""))
+    return found
+
+
 def block(charts: Sequence[Chart]) -> Block:
     """Drawn charts that stand beside and below each other."""
     return Block([(c.title, Markup(drawn(c))) for c in charts], labels(charts), any(c.zoom for c in charts))

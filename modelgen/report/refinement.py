@@ -85,7 +85,7 @@ def report(found: Refinement, call: Call) -> str:
         ("What moved", [Text(_moved(free, _gained(found))), *_uncertain(found)]),
         (
             "What to do next",
-            _following(call, found),
+            following(call, found),
         ),
     ]
     table = [
@@ -140,7 +140,7 @@ def _ended(found: Refinement, free: int) -> list[Part | str]:
     ]
 
 
-def _following(call: Call, found: Refinement) -> list[Part | str]:
+def following(call: Call, found: Refinement) -> list[Part | str]:
     """The code, where there is a reason to have the values in it, and what the model lacks."""
     converged, gained = found.converged, _gained(found)
     generate = call.command("generate", "--parameters", call.beside(f"{call.arm.name}_parameters.yaml"))

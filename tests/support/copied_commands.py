@@ -45,6 +45,10 @@ def parsed(words: list[str], folder: Path) -> Mapping[str, Any]:
 
 
 def run(words: list[str], folder: Path) -> None:
-    """The command itself, in the folder, with options that make it quick."""
+    """The command itself, in the folder, with options that make it quick; it ends with those of its page."""
     done = called(*words, *SHORT.get(words[0], ()), cwd=folder)
     assert done.returncode == 0, (words, done.stderr)
+    if words[0] in ("calibrate", "excite", "identify", "refine"):
+        ((page, end),) = re.findall(r"^report: (.*?)\n(.*)\Z", done.stdout, re.DOTALL | re.MULTILINE)
+        for line in commands(folder / page):
+            assert re.search(f"{re.escape(shlex.join(['modelgen', *line]))}$", end, re.MULTILINE), line

@@ -40,7 +40,7 @@ def calibrate(
     """Fit a lever's geometry to motor counts and measured joint angles."""
     from modelgen.api.calibration import calibrate as calibrated
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result, say
+    from modelgen.cli.output import print_result, say_next
     from modelgen.errors import InputError
     from modelgen.files import check_folder
 
@@ -52,4 +52,4 @@ def calibrate(
     result.write(out)
     print_result(result, as_json=as_json)
     if not as_json:
-        say(f"wrote {out / 'calibration.json'}, {found.name}_calibrated.yaml, calibration.svg, report.html")
+        say_next(out / "report.html", result.next_steps(out))

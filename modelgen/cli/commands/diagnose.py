@@ -33,10 +33,9 @@ def diagnose(
     """Name what the model gets wrong in logs, extend it by the cause, and measure the gain."""
     from modelgen.api.diagnosis import diagnosed
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result, progress_bar, say
+    from modelgen.cli.output import print_result, progress_bar, say, say_next
     from modelgen.files import check_folder
     from modelgen.generation.folders import check_output
-    from modelgen.report.following import proposed
 
     found = one(arms, arm)
     check_folder("--out", out)
@@ -50,6 +49,4 @@ def diagnose(
         return
     for line in result.details() if verbose else []:
         say(line)
-    say(f"report: {out / 'report.html'}")
-    for step in proposed(result.found, result.call):
-        say(step.text, step.command)
+    say_next(out / "report.html", result.next_steps())

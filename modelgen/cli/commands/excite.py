@@ -31,7 +31,7 @@ def excite(
     """Compute a trajectory that determines the base parameters well, within the arm's limits."""
     from modelgen.api.excitation import excite as excited
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result, progress_bar, say
+    from modelgen.cli.output import print_result, progress_bar, say, say_next
     from modelgen.errors import InputError
     from modelgen.files import check_writable
 
@@ -44,6 +44,8 @@ def excite(
         result = excited(found, options, progress=progress)
     result.write(out.parent, out.stem)
     print_result(result, as_json=as_json)
-    if not as_json:
-        for name in result.files(out.parent, out.stem):
-            say(f"wrote {out.parent / name}")
+    if as_json:
+        return
+    names = [name for name in result.files(out.parent, out.stem) if not name.endswith(".html")]
+    say(f"wrote {', '.join(str(out.parent / name) for name in names)}")
+    say_next(out.with_suffix(".html"), result.next_steps(out.parent, out.stem))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -35,7 +34,7 @@ def identify(
     """Find the base parameters from logs, with their uncertainty, and validate them on other logs."""
     from modelgen.api.identification import identify as identified
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result, progress_bar, say
+    from modelgen.cli.output import print_result, progress_bar, say, say_next
     from modelgen.files import check_folder
 
     found = one(arms, arm)
@@ -48,6 +47,4 @@ def identify(
         return
     for line in result.details() if verbose else []:
         say(line)
-    following = replace(result.call, folder=out).diagnosing()
-    if following:
-        say("what the model lacks:", following)
+    say_next(out / "report.html", result.next_steps(out))

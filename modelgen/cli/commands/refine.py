@@ -34,7 +34,7 @@ def refine(
     """Tune base parameters until the simulated motion is the measured one; exit 1 where that does not end."""
     from modelgen.api.refinement import refine as refined
     from modelgen.cli.arms import one
-    from modelgen.cli.output import print_result, progress_bar
+    from modelgen.cli.output import print_result, progress_bar, say_next
     from modelgen.files import check_folder
 
     found = one(arms, arm)
@@ -43,6 +43,8 @@ def refine(
         result = refined(found, log, options, progress=progress)
     result.write(out)
     print_result(result, as_json=as_json)
+    if not as_json:
+        say_next(out / "report.html", result.next_steps(out))
     if not result.converged:
         typer.echo(f"not converged: {result.found.stopped}; what was found so far is in {out}", err=True)
         raise typer.Exit(CHECK_FAILED)
