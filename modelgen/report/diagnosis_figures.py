@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from modelgen.charts import Chart, Curve, over_time, within
+from modelgen.charts import Chart, Curve, over_time
 from modelgen.dataset.drives import drives_of
 from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.numeric import Array
+from modelgen.report.motion_figures import Motion, joined, motion_pair
 
 _WINDOWS = 24  # of the simulated motion that are shown
 BINS = 24  # over an abscissa
@@ -113,41 +114,18 @@ def binned(x: Array, y: Array, bins: int = BINS) -> tuple[Array, Array]:
 
 
 def replayed(d: Diagnosis) -> list[Chart]:
-    """Measured and simulated positions of windows of the test record, and their difference. Of a simulated
-    motion that runs away as much is drawn as leaves the measured one legible.
-    """
-    shown = [s for s in d.simulation if s is not None]
-    if not shown:
-        return []
+    """Measured and simulated positions of windows of the test record, and their difference."""
+    models = zip(d.simulation, ("before", "after"), (BEFORE, AFTER), strict=True)
+    shown = [
+        (s, role, label) for s, role, label in models if s is not None and (role == "before" or d.causes)
+    ]
     unit, charts, begin = d.arm.coordinate_units, [], d.test.prepared.t[0]
-    for j, name in enumerate(d.arm.coordinate_names):
-        left: list[Curve] = []
-        right: list[Curve] = []
-        for scores, role, label in zip(d.simulation, ("before", "after"), (BEFORE, AFTER), strict=True):
-            if scores is None or (role == "after" and not d.causes):
-                continue
-            count = min(_WINDOWS, len(scores.t))
-            t, path, truth = (
-                _joined(v)
-                for v in (scores.t[:count], scores.simulated[:count, :, j], scores.measured[:count, :, j])
+    for j, name in enumerate(d.arm.coordinate_names if shown else ()):
+        motions = []
+        for s, role, label in shown:
+            t, measured, simulated = (
+                joined(x[:_WINDOWS]) for x in (s.t, s.measured[:, :, j], s.simulated[:, :, j])
             )
-            if not left:
-                left.append(Curve(t, truth, "measured", "measured"))
-            left.append(Curve(t, path, role, label))
-            right.append(Curve(t, path - truth, role, label))
-        low, high = float(np.nanmin(left[0].y)), float(np.nanmax(left[0].y))
-        text = f"Position of {name}, measured and simulated window by window."
-        near = within(left, 2 * low - high, 2 * high - low)
-        label = f"position [{unit[j]}]"
-        charts.append(over_time(name, label, left, text, begin, zoom=True, y_range=near))
-        text = f"Simulated less measured position of {name}."
-        near = within(right, low - high, high - low)
-        title, label = f"{name}, error", f"error [{unit[j]}]"
-        charts.append(over_time(title, label, right, text, begin, zoom=True, y_range=near))
+            motions.append(Motion(t, measured, simulated, role, label))
+        charts += motion_pair(name, unit[j], motions, begin)
     return charts
-
-
-def _joined(windows: Array) -> Array:
-    """Windows (W, S) one after the other, with a gap between two."""
-    gap = np.full((len(windows), 1), np.nan)
-    return np.concatenate([np.asarray(windows, dtype=float), gap], axis=1).ravel()

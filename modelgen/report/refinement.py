@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from modelgen.charts import Chart, Curve, Interval, apart, number, over_time, sheet, within
+from modelgen.charts import Chart, Interval, apart, number, sheet
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
 from modelgen.options import words_of
 from modelgen.report.call import WHERE, Call
+from modelgen.report.motion_figures import Motion, joined, motion_pair
 from modelgen.report.page import WIDE, Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
@@ -28,22 +28,12 @@ def motion(found: Refinement) -> list[Chart]:
     """Measured and simulated positions of every joint, part after part, and their difference."""
     arm = found.plant.arm
     t = _times(found)
-    measured, started, refined = map(_joined, (found.measured, found.started, found.simulated))
+    measured, started, refined = map(joined, (found.measured, found.started, found.simulated))
     models = ((started, "before", "simulated, at the start"), (refined, "after", "simulated, refined"))
     charts = []
     for j, name in enumerate(arm.coordinate_names):
-        unit = arm.coordinate_units[j]
-        curves = [Curve(t, measured[:, j], "measured", "measured")]
-        curves += [Curve(t, x[:, j], role, label) for x, role, label in models]
-        low, high = float(np.nanmin(measured[:, j])), float(np.nanmax(measured[:, j]))
-        near = within(curves, 2 * low - high, 2 * high - low)
-        text = f"Position of {name}, measured and simulated."
-        charts.append(over_time(name, f"position [{unit}]", curves, text, t[0], zoom=True, y_range=near))
-        errors = [Curve(t, (x - measured)[:, j], role, label) for x, role, label in models]
-        near = within(errors, low - high, high - low)
-        text = f"Simulated less measured position of {name}."
-        title, label = f"{name}, error", f"error [{unit}]"
-        charts.append(over_time(title, label, errors, text, t[0], zoom=True, y_range=near))
+        motions = [Motion(t, measured[:, j], path[:, j], role, label) for path, role, label in models]
+        charts += motion_pair(name, arm.coordinate_units[j], motions, t[0])
     return charts
 
 
@@ -238,16 +228,10 @@ def _uncertain(found: Refinement) -> list[Part]:
 
 
 def _times(found: Refinement) -> Array:
-    """Times of all parts, one after the other, with one more where `_joined` has a gap."""
+    """Times of all parts, one after the other, with one more where `joined` has a gap."""
     times, begin = [], 0.0
     for t in found.t:
         at = begin + t - t[0]
         begin = float(at[-1])
         times += [at, np.array([begin])]
     return np.concatenate(times)
-
-
-def _joined(runs: Sequence[Array]) -> Array:
-    """Positions part after part with a gap after each."""
-    gap = np.full((1, runs[0].shape[1]), np.nan)
-    return np.concatenate([rows for run in runs for rows in (run, gap)])
