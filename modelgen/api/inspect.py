@@ -134,9 +134,8 @@ class Inspection(Shown):
         parts.append(Table("", columns, rows))
         if x.without_numbers:
             parts.append(f"no numbers: {', '.join(x.without_numbers)}")
-        if self.instant is not None:
-            parts.append(self.instant.line())
-        return [*parts, *(f"note: {remark}" for remark in x.remarks)]
+        asked = [] if self.instant is None else [self.instant.line(), *self.instant.questions()]
+        return [*parts, *asked, *(f"note: {remark}" for remark in x.remarks)]
 
     def __repr__(self) -> str:
         return f"Inspection of {self._headline()}"

@@ -16,32 +16,23 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, Record, Settings, choose, drives_of, prepare
-from modelgen.dataset.processing.content import white_noise
-from modelgen.dataset.processing.filters import advanced
-from modelgen.dataset.processing.instants import EffortInstant, beyond, fitting, with_hold
+from modelgen.dataset.processing.instants import EffortInstant, LateChannel, beyond, fitting, with_hold
 from modelgen.dataset.processing.rounding import position_steps
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
-from modelgen.evaluation import Evaluator, Motion
-from modelgen.functions import Model, Options, build_model
+from modelgen.evaluation import Evaluator
+from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification.unexplained import FAR
+from modelgen.identification.delay_fit import DelayFit
+from modelgen.identification.late_channels import late_channels
 from modelgen.numeric import Array
-from modelgen.regression.least_squares import Regression
 
-STEPS = 20  # of Gauss and Newton, and as many at most that go on as far as they may
-LONGEST, TURNED = 2.0, 0.1  # samples, of a step, or periods of the cut-off where these are more
-SETTLED = 0.02  # samples, or this part of the deviation, at which they end
 ELEMENTS = 25_000_000  # of the regressor at full rate, beyond which the beginnings of the records do
-WAVES = (0.5, 1, 1.5, 2, 3)  # in the range of a joint, of which its free law of position is made
-SLOW = (0.05, 0.2)  # of the highest speed, below which a law of friction may be another
 DRAWS = 4  # of further roundings of the positions, where the data would tell without
 ALIKE = 0.25  # samples, half of what is between two conventions: joints that are so near agree
-EXPLAINS = 0.25  # of what is left without it, that a delay beyond a sample may leave to be believed
 APART = 4.0  # deviations by which a joint may be from all, if it is a matter of the log
 
 
@@ -59,9 +50,11 @@ def effort_instant(
     found = _delay(records, arm, limits)
     if found is None:
         return known
+    if isinstance(found, list):
+        return replace(known, alike=False, channels=tuple(found))
     delay, std, alike, joints = found
     fits, used = fitting(delay, std, first.step, limits) if alike else None, first.hold / first.step
-    late = tuple((name, d) for name, d, s, believed in joints if believed and beyond(d, s, used))
+    late = tuple((name, d, s) for name, d, s, believed in joints if believed and beyond(d, s, used))
     if fits is None and not all(believed for *_, believed in joints):
         return replace(known, late=late, alike=False, missing=True)
     said = EffortInstant(known.hold, known.known, known.step, delay, std, fits, alike, late)
@@ -79,9 +72,10 @@ def at_instants(records: Sequence[Record], found: EffortInstant | None) -> list[
 
 def _delay(
     records: Sequence[Record], arm: Arm, limits: DatasetThresholds
-) -> tuple[float, float, bool, list[tuple[str, float, float, bool]]] | None:
-    """Common delay and its deviation [samples], whether the joints agree, and name, delay and deviation of
-    each that tells, and whether it is to be believed; None where there is none.
+) -> list[LateChannel] | tuple[float, float, bool, list[tuple[str, float, float, bool]]] | None:
+    """Channels that are older than the others; else the common delay and its deviation [samples], whether the
+    joints agree, and name, delay and deviation of each that tells, and whether it is to be believed; None
+    where there is none.
     """
     chosen = Options().evaluated
     model, evaluator = build_model(arm, chosen), Evaluator(reduced(arm, chosen))
@@ -91,15 +85,18 @@ def _delay(
     try:
         settings = choose(list(records), Settings(thresholds=limits))
         prepared = [prepare(r, settings) for r in beginnings]
-        fit = _Fit(prepared, model, evaluator)
+        fit = DelayFit(prepared, model, evaluator)
         delays, deviations = fit.delays()
+        channels = late_channels(fit, delays, deviations, arm.coordinate_names)
+        if channels:
+            return channels
         if not np.isfinite(deviations).any():
             return None
         if _common(delays, deviations)[1] <= limits.max_instant_std and position_steps(records[0]).any():
             square = np.zeros(n)
             for seed in range(DRAWS):
                 again = [prepare(_rounded_anew(r, seed), settings) for r in prepared]
-                square += (_Fit(again, model, evaluator).delays(free=False)[0] - delays) ** 2 / DRAWS
+                square += (DelayFit(again, model, evaluator).delays(free=False)[0] - delays) ** 2 / DRAWS
             deviations = np.sqrt(deviations**2 + np.where(np.isfinite(square), square, np.inf))
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return None  # what is wrong is said where the parameters are found
@@ -134,134 +131,3 @@ def _rounded_anew(p: Prepared, seed: int) -> Record:
             q[:, k] = step * np.rint((q[:, k] + place) / step) - place
             motor[:, k] = drives[k].motor(q[:, k]) if drives else q[:, k]
     return replace(record, q=q, motor=motor)
-
-
-class _Fit:
-    """Records, and the columns (M, n, p) of their model away from rest."""
-
-    def __init__(self, records: Sequence[Prepared], model: Model, evaluator: Evaluator) -> None:
-        self.records, self.model, self.evaluator = records, model, evaluator
-        self.n, self.p = records[0].n, len(model.grouping.base)
-        self.moving = [r.moving for r in records]
-        self.missing = np.zeros(self.n, dtype=bool)
-        self.motions = [Motion(r.time, r.q, r.dq, r.ddq) for r in records]
-        self._evaluate(np.zeros(self.p))
-
-    def _evaluate(self, theta: Array) -> None:
-        pairs = list(zip(self.records, self.motions, strict=True))
-        self.full = [np.asarray(self.evaluator.regressor(self.model, m, theta)) for _, m in pairs]
-        self.columns = [
-            r.parallel(full * r.weights[:, :, None]) for r, full in zip(self.records, self.full, strict=True)
-        ]
-
-    def delays(self, *, free: bool = True) -> tuple[Array, Array]:
-        """Delays of the joints (n,) and their deviations [samples], infinite for those that do not tell.
-
-        free: whether these hold what free laws beside the model change.
-        """
-        first = self.records[0].record
-        delays = np.full(self.n, first.hold / first.step)
-        efforts = self._efforts(delays)
-        if sum(int(m.sum()) for m in self.moving) < 3 * (self.p + self.n):
-            return delays, np.full(self.n, np.inf)
-        before = Regression(efforts, self.columns, self.moving).solve("wls")
-        theta = before.theta
-        self._evaluate(theta)
-        told, deviations = np.ones(self.n, dtype=bool), np.full(self.n, np.inf)
-        cutoff = self.records[0].settings.cutoff or 1.0 / first.step
-        longest = max(LONGEST, TURNED / (cutoff * first.step))
-        near, way = 0, np.zeros(self.n)  # steps that do not go on as far as they may; where the last one went
-        for _ in range(2 * STEPS):
-            columns = self._with_delays(theta)
-            solution = Regression(efforts, columns, self.moving).solve("wls")
-            theta, moved = solution.theta[: self.p], solution.theta[self.p :]
-            told = solution.determined[self.p :] & np.isfinite(moved)
-            deviations = np.sqrt(np.maximum(np.diag(solution.covariance)[self.p :], 0.0))
-            delays = delays + np.where(told, np.clip(moved, -longest, longest), 0.0)
-            settled = (np.abs(moved[told]) <= np.maximum(SETTLED, SETTLED * deviations[told])).all()
-            if settled:
-                break
-            efforts = self._efforts(delays)
-            near += not (told & (way * moved > longest)).any()
-            way = np.sign(moved)
-            if near == STEPS:
-                break
-        if not settled:
-            told &= np.abs(moved) <= deviations
-        self.missing = self._missing(solution.sigma, before.sigma)
-        if free:
-            deviations = np.hypot(deviations, self._beside_free_laws(efforts, columns, theta, solution.sigma))
-        return delays, np.where(told & (deviations > 0.0), deviations, np.inf)
-
-    def _missing(self, left: Array, without: Array) -> NDArray[np.bool_]:
-        """Joints (n,) at which more than noise is left with the delays, and not much less than without.
-
-        Then it is causes that the model lacks that are left, and a delay may stand for one of them.
-        """
-        square = np.zeros(self.n)
-        for r in self.records:
-            assert r.record.input is not None
-            rate = 1.0 / r.record.step
-            band = min(1.0, 2.0 * r.settings.cutoff / rate) if r.settings.cutoff else 1.0
-            square += band * np.array([white_noise(x, rate) for x in r.record.input.T]) ** 2
-        noise = np.sqrt(square / len(self.records))
-        return np.asarray((left > FAR * noise) & (left > EXPLAINS * without))
-
-    def _with_delays(self, theta: Array) -> list[Array]:
-        """Columns (M, n, p + n) of each record: those of the model, and the slopes of its efforts."""
-        columns = []
-        for r, own, full in zip(self.records, self.columns, self.full, strict=True):
-            slope = r.parallel(np.gradient(full @ theta, axis=0) * r.weights)
-            more = np.zeros((len(slope), self.n, self.n))
-            more[:, range(self.n), range(self.n)] = slope
-            columns.append(np.concatenate([own, more], axis=2))
-        return columns
-
-    def _beside_free_laws(
-        self, efforts: Sequence[Array], columns: Sequence[Array], theta: Array, sigma: Array
-    ) -> Array:
-        """Changes of the delays (n,) where each joint may have any law of its position, speed and load."""
-        low = np.min([r.q.min(axis=0) for r in self.records], axis=0)
-        high = np.max([r.q.max(axis=0) for r in self.records], axis=0)
-        fast = np.max([np.abs(r.dq).max(axis=0) for r in self.records], axis=0)
-        freer = []
-        for r, own, full in zip(self.records, columns, self.full, strict=True):
-            laws = _laws(
-                (r.q - low) / np.maximum(high - low, 1e-300), r.dq / np.maximum(fast, 1e-300), full @ theta
-            )
-            count = laws.shape[2]
-            more = np.zeros((len(own), self.n, self.n * count))
-            for j in range(self.n):
-                more[:, j, j * count : (j + 1) * count] = r.parallel(laws[:, j] * r.weights[:, j, None])
-            freer.append(np.concatenate([own, more], axis=2))
-        weighted = [x / sigma[:, None] for x in freer], [y / sigma for y in efforts]
-        moved = Regression(weighted[1], weighted[0], self.moving).least_squares()
-        return moved[self.p : self.p + self.n]
-
-    def _efforts(self, delays: Array) -> list[Array]:
-        """Efforts (M, n) at the positions' instants, where their samples lie `delays` samples after them."""
-        found = []
-        for r, motion in zip(self.records, self.motions, strict=True):
-            assert r.record.input is not None
-            given = np.column_stack(
-                [
-                    advanced(x[:, None], d, held=False)[:, 0]
-                    for x, d in zip(r.record.input.T, delays, strict=True)
-                ]
-            )
-            found.append(r.parallel(self.evaluator.ideal(self.model, motion, given) * r.weights))
-        return found
-
-
-def _laws(q: Array, dq: Array, effort: Array) -> Array:
-    """Laws (N, n, k) of positions in their range [0, 1], speeds over the highest, and loads, (N, n) each.
-
-    The last but one is dry friction that turns late: a joint that creeps before it goes, bristles that bend.
-    """
-    sign = np.sign(dq)
-    waves = [f(2 * np.pi * k * q) for k in WAVES for f in (np.sin, np.cos)]
-    drags = [sign * np.abs(dq) ** k for k in (2, 3)]
-    stops = [sign * np.exp(-((dq / v) ** 2)) for v in SLOW]
-    loads = [effort * dq, np.abs(effort) * sign, sign * q, sign * q**2]
-    late = np.gradient(sign, axis=0)
-    return np.stack([*waves, *drags, *stops, *loads, late, np.ones_like(q)], axis=2)

@@ -15,6 +15,31 @@ CONVENTIONS = {"following": 0.5, "instant": 0.0, "previous": -0.5}
 
 
 @dataclass(frozen=True)
+class LateChannel:
+    """Channels of a joint that are older than all others, or younger.
+
+    name: of the joint. what: "positions", "efforts", or "positions and efforts". samples: how many sampling
+    periods older, negative for younger. deviation: of that.
+    """
+
+    name: str
+    what: str
+    samples: float
+    deviation: float
+
+    def question(self, step: float) -> str:
+        """A question about them, for a sampling period [s]."""
+        age, rows = abs(self.samples), round(abs(self.samples))
+        how, where = ("older", "up") if self.samples > 0 else ("younger", "down")
+        columns = "columns" if " and " in self.what else "column"
+        return (
+            f"The {self.what} at {self.name} are {age * step * 1e3:.3g} ms ({age:.3g} ± "
+            f"{self.deviation:.1g} samples) {how} than all other channels: are they filtered, or sent late? "
+            f"Parameters may be wrong by that; move their {columns} {where} by {rows} rows beside the others."
+        )
+
+
+@dataclass(frozen=True)
 class EffortInstant:
     """When the efforts of records were read.
 
@@ -22,8 +47,10 @@ class EffortInstant:
     nothing, where it is the default. delay, std: of the efforts' samples after the positions' stamps as the
     data have it [sampling periods]; None where they do not say. fits: what that is, a convention or a delay
     [s]; None where the data cannot tell. step: sampling period [s]. alike: whether the joints agree. late:
-    names of joints whose efforts are clearly more than a sample away from what is used, each with its delay.
-    missing: whether a delay that fits best stands for causes that the model lacks, and is not given.
+    names of joints whose efforts are clearly more than a sample away from what is used, each with its delay
+    and deviation. missing: whether a delay that fits best stands for causes that the model lacks, and is not
+    given. channels: those that are clearly older than all others where positions are among them, in place of
+    the delays.
     """
 
     hold: str | float
@@ -33,12 +60,15 @@ class EffortInstant:
     std: float | None = None
     fits: str | float | None = None
     alike: bool = True
-    late: tuple[tuple[str, float], ...] = ()
+    late: tuple[tuple[str, float, float], ...] = ()
     missing: bool = False
+    channels: tuple[LateChannel, ...] = ()
 
     @property
     def answer(self) -> str:
         """What the data say to what is used: one of ANSWERS."""
+        if self.channels:
+            return "joints_differ"
         if self.known == "data":
             return "found"
         if self.fits is not None:
@@ -70,18 +100,21 @@ class EffortInstant:
 
     def questions(self) -> tuple[str, ...]:
         """A question for efforts that are clearly late or early, of all joints together where they agree."""
+        if self.channels:
+            return tuple(channel.question(self.step) for channel in self.channels)
         if self.answer not in ("beyond_a_sample", "joints_differ") or not self.late:
             return ()
-        groups = [(", ".join(name for name, _ in self.late), self.delay)] if self.alike else self.late
+        groups = self.late
+        if self.alike and self.delay is not None and self.std is not None:
+            groups = ((", ".join(name for name, *_ in self.late), self.delay, self.std),)
         said = []
-        for names, delay in groups:
-            assert delay is not None
+        for names, delay, std in groups:
             old, young = ("efforts", "positions") if delay < 0 else ("positions", "efforts")
             how = f"; `hold: {delay * self.step:.4g}` in a mapping file reads them so" if self.alike else ""
             said.append(
-                f"The {old} at {names} are {abs(delay) * self.step * 1e3:.3g} ms ({abs(delay):.2g} samples) "
-                f"older than the {young} beside them: are they filtered, or sent late? Parameters may be "
-                f"wrong by that{how}."
+                f"The {old} at {names} are {abs(delay) * self.step * 1e3:.3g} ms ({abs(delay):.3g} ± "
+                f"{std:.1g} samples) older than the {young} beside them: are they filtered, or sent late? "
+                f"Parameters may be wrong by that{how}."
             )
         return tuple(said)
 
@@ -98,6 +131,8 @@ class EffortInstant:
         text += source.get(self.known, "")
         if self.fits is not None and self.answer == "disagree":
             measured += f", hold: {self.fits if isinstance(self.fits, str) else f'{self.fits:.4g}'}"
+        if self.channels:
+            return text + "; the data cannot tell, for channels of a joint are older than the others"
         if self.missing:
             return text + "; the data cannot tell while the model lacks causes"
         return text + ANSWERS[self.answer] + (f": {measured}" if measured else "")

@@ -41,6 +41,8 @@ class Study:
 
     def at(self, instant: EffortInstant) -> Study:
         """The same with the efforts at this instant."""
+        if self.instant is not None:
+            instant = replace(instant, channels=self.instant.channels)
         return replace(self, records=at_instants(self.records, instant), instant=instant)
 
 

@@ -144,7 +144,8 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     answered = _answered(extension)
     left = [doubt for doubt in asked if not answered.issuperset(doubt.joints)]
     texts = (text.replace(DIAGNOSING, "") for text in (*left, *about))  # this is the diagnosis
-    return AsIdentified(found.rmse, chosen.cutoff, tuple(texts))
+    late = study.instant.questions() if study.instant is not None and study.instant.channels else ()
+    return AsIdentified(found.rmse, chosen.cutoff, (*texts, *late))
 
 
 def _answered(extension: Extension) -> set[str]:

@@ -1,0 +1,275 @@
+"""Channels of a log that are older than the others: the positions of a joint, its efforts, or both.
+
+What a joint's inertia and weight do at another joint depends on where it is at that instant: the other's
+effort says how old its position is, and its own friction and weight how old it is beside its own effort. The
+delays of all channels are fitted beside the parameters (Gauss and Newton). That all are old alike is seen by
+nothing: the fewest channels are named beside which the others are alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.dataset.processing.instants import CLEARLY, LateChannel
+from modelgen.evaluation import Motion
+from modelgen.identification.delay_fit import DelayFit
+from modelgen.numeric import Array
+from modelgen.regression.least_squares import Regression
+
+FREER = 2.0  # times that free laws change an age, by which it is beyond a sample
+SUSPECT, APART = 3.0, 0.5  # deviations, beyond as many samples, from which on all delays are fitted
+REACH = 0.1  # periods of the cut-off, to either side, over which slopes are taken
+LONGEST = 2.5  # periods of the cut-off, of a step
+STEPS, HALVES = 12, 5  # of Gauss and Newton, and how often one is halved that leaves more than before
+ALIKE = 0.25  # samples by which channels that are read in turn differ
+SETTLED, PART = 0.05, 0.2  # samples, or this part of the deviation, at which they end
+WORSE = 1.05  # of what is left of a joint's efforts without them, that no true delays leave
+LEAST = 1e-13  # part of columns of unit length that depends on no others
+NOTHING = 1e-4  # of the logarithm of what is left, with which they end too
+
+
+@dataclass(frozen=True)
+class Late:
+    """Channels of a joint (from 0, None: of all) that are older than the others by samples.
+
+    positions, efforts: which of the two, or both. noise: deviation of the samples by noise. change: of the
+    samples where each joint may have any law of its own.
+    """
+
+    joint: int | None
+    positions: bool
+    efforts: bool
+    samples: float
+    noise: float
+    change: float
+
+    @property
+    def clear(self) -> bool:
+        """Whether that is clearly more than a sample."""
+        return abs(self.samples) - 1.0 > max(CLEARLY * self.noise, FREER * abs(self.change))
+
+    @property
+    def deviation(self) -> float:
+        """Of the samples."""
+        return float(np.hypot(self.noise, self.change))
+
+
+@dataclass(frozen=True)
+class Ages:
+    """How old the channels are (2 n,) [samples], efforts, then positions, and the covariance of that, with
+    those that the data tell (2 n,). The first position is the origin. change: of the ages (2 n,) where each
+    joint may have any law of its own.
+    """
+
+    age: Array
+    covariance: Array
+    told: NDArray[np.bool_]
+    change: Array
+
+    @property
+    def n(self) -> int:
+        """Number of joints."""
+        return len(self.age) // 2
+
+    def apart(self) -> tuple[Array, Array]:
+        """How much older each channel is than each other (2 n, 2 n), with the deviation, infinite where that
+        is not known.
+        """
+        age, covariance, told = self.age, self.covariance, self.told
+        variance = np.diag(covariance)
+        square = np.maximum(variance[:, None] + variance - 2.0 * covariance, 0.0)
+        return age[:, None] - age, np.where(told[:, None] & told, np.sqrt(square), np.inf)
+
+    def late(self) -> list[Late]:
+        """The fewest channels by whose ages the others are alike, each the one that explains most."""
+        n, origin = self.n, self.n
+        kept = np.flatnonzero(self.told & (np.arange(2 * n) != origin))
+        alike = ALIKE**2 * (np.eye(len(kept)) + 1.0)
+        weights = np.asarray(np.linalg.pinv(self.covariance[np.ix_(kept, kept)] + alike), dtype=np.float64)
+        places: list[tuple[int | None, bool, bool]] = [(None, False, True)]
+        places += [(j, p, e) for j in range(n) for p, e in ((True, False), (False, True), (True, True))]
+        shapes = []
+        for j, position, effort in places:
+            at, there = slice(None) if j is None else slice(j, j + 1), np.zeros((2, n))
+            there[0, at], there[1, at] = effort, position
+            shapes.append(there.ravel()[kept] - there.ravel()[origin])
+        chosen: list[int] = []
+        found: list[Late] = []
+        for _ in range(n):
+            fits = {
+                k: self._fit([shapes[i] for i in (*chosen, k)], kept, weights) for k in range(len(places))
+            }
+            # Of two that say the same the one that is older is named.
+            k = min(fits, key=lambda k: (round(fits[k][1], 6), -fits[k][0][-1][0]))
+            named = [Late(*places[i], *x) for i, x in zip((*chosen, k), fits[k][0], strict=True)]
+            if k in chosen or not named[-1].clear:
+                break
+            chosen.append(k)
+            found = named
+        return found
+
+    def _fit(
+        self, shapes: Sequence[Array], kept: NDArray[np.intp], weights: Array
+    ) -> tuple[list[tuple[float, float, float]], float]:
+        """Ages of shapes with deviations and changes, and what is left of the others' (chi squared)."""
+        x, y = np.stack(shapes, axis=1), self.age[kept]
+        covariance = np.linalg.pinv(x.T @ weights @ x)
+        mean = covariance @ x.T @ weights
+        left = y - x @ (mean @ y)
+        deviations = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        found = np.stack([mean @ y, deviations, mean @ self.change[kept]], axis=1)
+        return [(float(a), float(d), float(c)) for a, d, c in found], float(left @ weights @ left)
+
+
+def late_channels(fit: DelayFit, delays: Array, deviations: Array, names: Sequence[str]) -> list[LateChannel]:
+    """Channels that are clearly older than all others, with positions among them; none where efforts alone
+    are, or where the delays leave as much as none do: then they stand for what the model lacks.
+
+    fit: of the efforts' delays (n,) [samples], which have these deviations. names: of the joints.
+    """
+    if fit.n == 1 or not fit.theta.any():
+        return []
+    channels = Channels(fit)
+    if not channels.suspected(delays, deviations):
+        return []
+    ages, believed = channels.settled()
+    late = ages.late()
+    if not any(x.positions for x in late):
+        return []
+    if any(not x.clear or x.joint is None or not believed[x.joint] for x in late):
+        return []
+    words = {(True, False): "positions", (False, True): "efforts", (True, True): "positions and efforts"}
+    return [
+        LateChannel(names[x.joint], words[x.positions, x.efforts], x.samples, x.deviation)
+        for x in late
+        if x.joint is not None
+    ]
+
+
+class Channels:
+    """Delays of all channels by a fit of the efforts' delays."""
+
+    def __init__(self, fit: DelayFit) -> None:
+        self.fit, self.n, self.p = fit, fit.n, fit.p
+        first = fit.records[0].record
+        self.used = first.hold / first.step
+        self.cutoff = (fit.records[0].settings.cutoff or 1.0 / first.step) * first.step
+        self.reach = max(1, round(REACH / self.cutoff))
+
+    def suspected(self, delays: Array, deviations: Array) -> bool:
+        """Whether channels may be older than others, where the efforts have these delays (n,) alone."""
+        off = np.abs(delays - self.used)
+        if (off - 1.0 > SUSPECT * deviations).any():
+            return True
+        fit = self.fit
+        efforts, columns = fit.efforts(np.full(self.n, self.used)), self._columns(fit.theta, both=False)
+        found = self._as_ages(*_normal(efforts, columns, fit.moving, fit.sigma))
+        older, deviations = found.apart()
+        return bool((np.abs(older) - APART > SUSPECT * deviations).any())
+
+    def settled(self) -> tuple[Ages, NDArray[np.bool_]]:
+        """Delays of all channels, and joints (n,) of which little but noise is left with them, free laws
+        beside, and no more than without.
+        """
+        fit, n = self.fit, self.n
+        delays, positions = np.full(n, self.used), np.zeros(n)
+        fit.at(positions, fit.theta)
+        efforts = fit.efforts(delays)
+        first = before = Regression(efforts, fit.columns, fit.moving).solve("wls")
+        longest = LONGEST / self.cutoff
+        for _ in range(STEPS):
+            columns = self._columns(before.theta)
+            solution = Regression(efforts, columns, fit.moving).solve("wls")
+            found = self._as_ages(solution.theta, solution.covariance, solution.determined)
+            deviations = np.sqrt(np.diag(found.covariance))
+            step = np.where(found.told, np.clip(found.age, -longest, longest), 0.0)
+            if (np.abs(step) <= np.maximum(SETTLED, PART * deviations)).all():
+                break
+            for _ in range(HALVES):
+                trial = delays - step[:n], positions + step[n:]
+                fit.at(trial[1], before.theta)
+                efforts = fit.efforts(trial[0])
+                after = Regression(efforts, fit.columns, fit.moving).solve("wls")
+                gain = float(np.log(before.sigma / after.sigma).sum())
+                if gain > 0.0:
+                    break
+                step = step / 2.0
+            else:
+                fit.at(positions, before.theta)
+                efforts = fit.efforts(delays)
+                break
+            before, (delays, positions) = after, trial
+            if gain < NOTHING:
+                break
+        free, left = fit.beside_free_laws(efforts, columns, before.theta, before.sigma)
+        change = np.concatenate([-free[:n], [0.0], free[n:]])
+        ages = Ages(self._ages(delays, positions), found.covariance, found.told, change)
+        believed = ~fit.lacks(np.minimum(left, before.sigma), first.sigma)
+        return ages, believed & (before.sigma <= WORSE * first.sigma)
+
+    def _ages(self, delays: Array, positions: Array) -> Array:
+        return np.concatenate([self.used - delays, positions])
+
+    def _as_ages(self, theta: Array, covariance: Array, determined: NDArray[np.bool_]) -> Ages:
+        """Ages of the channels by a solution for parameters and delays."""
+        n, p = self.n, self.p
+        sign = np.concatenate([-np.ones(n), np.ones(n - 1)])
+        kept = np.delete(np.arange(2 * n), n)  # the first position is the others' origin
+        age, whole = np.zeros(2 * n), np.zeros((2 * n, 2 * n))
+        age[kept] = sign * theta[p:]
+        whole[np.ix_(kept, kept)] = sign[:, None] * covariance[p:, p:] * sign
+        return Ages(age, whole, np.insert(determined[p:], n, True), np.zeros(2 * n))
+
+    def _columns(self, theta: Array, *, both: bool = True) -> list[Array]:
+        """Columns (M, n, p + 2 n - 1) of each record: with the delays of efforts and of positions but one.
+
+        both: whether slopes reach to both sides, or ahead alone, at half the cost.
+        """
+        fit, n, made = self.fit, self.n, []
+        ends = (self.reach, -self.reach if both else 0)
+        over = float(ends[0] - ends[1])
+        for k, own in enumerate(fit.columns):
+            r, motion, weights, now = fit.records[k], fit.motions[k], fit.weights[k], fit.full[k] @ theta
+            more = np.zeros((len(own), n, 2 * n - 1))
+            ahead, behind = (_beside(now, way) for way in ends)
+            more[:, range(n), range(n)] = r.parallel((ahead - behind) / over * weights)
+            for j in range(1, n):
+                ahead, behind = (self._efforts(motion, j, way, theta) if way else now for way in ends)
+                more[:, :, n + j - 1] = r.parallel((ahead - behind) / over * weights)
+            made.append(np.concatenate([own, more], axis=2))
+        return made
+
+    def _efforts(self, motion: Motion, joint: int, way: int, theta: Array) -> Array:
+        """Efforts (N, n) of the model where one joint is some samples ahead, or behind."""
+        q, dq, ddq = (x.copy() for x in (motion.q, motion.dq, motion.ddq))
+        for x in (q, dq, ddq):
+            x[:, joint] = _beside(x[:, joint], way)
+        there = Motion(motion.t, q, dq, ddq)
+        return np.asarray(self.fit.evaluator.regressor(self.fit.model, there, theta)) @ theta
+
+
+def _beside(x: Array, way: int) -> Array:
+    """x (N, ...) some samples later, or earlier; at the ends as it is there."""
+    return np.asarray(x[np.clip(np.arange(len(x)) + way, 0, len(x) - 1)])
+
+
+def _normal(
+    efforts: Sequence[Array], columns: Sequence[Array], moving: Sequence[NDArray[np.bool_]], sigma: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Parameters (p,) by least squares, their covariance as of white noise, and flags: all.
+
+    sigma: (n,) of that noise. What rows do not determine has a deviation far beyond any parameter.
+    """
+    rows = [m / sigma for m in moving]
+    x = np.concatenate(
+        [(c * w[:, :, None]).reshape(-1, c.shape[2]) for c, w in zip(columns, rows, strict=True)]
+    )
+    y = np.concatenate([(e * w).ravel() for e, w in zip(efforts, rows, strict=True)])
+    scale = np.maximum(np.linalg.norm(x, axis=0), 1e-300)
+    values, vectors = np.linalg.eigh((x.T @ x) / np.outer(scale, scale))
+    inverse = (vectors / np.maximum(values, LEAST)) @ vectors.T / np.outer(scale, scale)
+    return inverse @ (x.T @ y), inverse, np.ones(len(scale), dtype=bool)
