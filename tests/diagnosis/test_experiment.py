@@ -156,6 +156,17 @@ def test_the_plant_on_the_proposed_trajectory_tells_apart_what_its_record_did_no
         assert beyond(trials, truth) > CONVINCING
 
 
+@pytest.mark.parametrize("times", [12, 20])
+def test_what_is_expected_of_a_motion_is_what_its_record_tells(times: int, tmp_path: Path) -> None:
+    """Also where the causes are so large that the evidence grows no longer with their power."""
+    case = SETS["backlash"]
+    scene = Scene(case.pair, (times * case.magnitudes[0], times * case.magnitudes[1]), tmp_path)
+    found, _, judge = judged(scene, case.true)
+    members = [hypothesis(t, ExperimentThresholds()) for t in found]
+    expected = judge.evidence(members, judge.system.rows)[case.true, 1 - case.true]
+    assert expected == pytest.approx(beyond(found, case.true), rel=0.2)
+
+
 @pytest.mark.parametrize("beside", [False, True])
 def test_a_slow_trajectory_is_worth_as_much_at_a_sixth_of_the_samples(tmp_path: Path, beside: bool) -> None:
     """Also beside a law that changes within fewer samples."""
