@@ -21,15 +21,22 @@ from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
 FREER = 2.0  # times that free laws change an age, by which it is beyond a sample
-SUSPECT, APART = 3.0, 0.5  # deviations, beyond as many samples, from which on all delays are fitted
+SUSPECT, APART = (
+    3.0,
+    0.5,
+)  # deviations, beyond as many samples, from which on all delays are fitted
 REACH = 0.1  # periods of the cut-off, to either side, over which slopes are taken
 LONGEST = 2.5  # periods of the cut-off, of a step
-STEPS, HALVES = 12, 5  # of Gauss and Newton, and how often one is halved that leaves more than before
+STEPS, HALVES = (
+    12,
+    5,
+)  # of Gauss and Newton, and how often one is halved that leaves more than before
 ALIKE = 0.25  # samples by which channels that are read in turn differ
 SETTLED, PART = 0.05, 0.2  # samples, or this part of the deviation, at which they end
 WORSE = 1.05  # of what is left of a joint's efforts without them, that no true delays leave
 LEAST = 1e-13  # part of columns of unit length that depends on no others
-NOTHING = 1e-4  # of the logarithm of what is left, with which they end too
+LITTLE = 0.05  # of the logarithm of what is left of an effort, by which a step is to lower it at least
+NOTHING = 1e-3  # of the logarithm of what is left, with which they end too
 
 
 @dataclass(frozen=True)
@@ -70,11 +77,6 @@ class Ages:
     told: NDArray[np.bool_]
     change: Array
 
-    @property
-    def n(self) -> int:
-        """Number of joints."""
-        return len(self.age) // 2
-
     def apart(self) -> tuple[Array, Array]:
         """How much older each channel is than each other (2 n, 2 n), with the deviation, infinite where that
         is not known.
@@ -86,10 +88,13 @@ class Ages:
 
     def late(self) -> list[Late]:
         """The fewest channels by whose ages the others are alike, each the one that explains most."""
-        n, origin = self.n, self.n
+        n = origin = len(self.age) // 2
         kept = np.flatnonzero(self.told & (np.arange(2 * n) != origin))
         alike = ALIKE**2 * (np.eye(len(kept)) + 1.0)
-        weights = np.asarray(np.linalg.pinv(self.covariance[np.ix_(kept, kept)] + alike), dtype=np.float64)
+        weights = np.asarray(
+            np.linalg.pinv(self.covariance[np.ix_(kept, kept)] + alike),
+            dtype=np.float64,
+        )
         places: list[tuple[int | None, bool, bool]] = [(None, False, True)]
         places += [(j, p, e) for j in range(n) for p, e in ((True, False), (False, True), (True, True))]
         shapes = []
@@ -142,7 +147,11 @@ def late_channels(fit: DelayFit, delays: Array, deviations: Array, names: Sequen
         return []
     if any(not x.clear or x.joint is None or not believed[x.joint] for x in late):
         return []
-    words = {(True, False): "positions", (False, True): "efforts", (True, True): "positions and efforts"}
+    words = {
+        (True, False): "positions",
+        (False, True): "efforts",
+        (True, True): "positions and efforts",
+    }
     return [
         LateChannel(names[x.joint], words[x.positions, x.efforts], x.samples, x.deviation)
         for x in late
@@ -166,7 +175,10 @@ class Channels:
         if (off - 1.0 > SUSPECT * deviations).any():
             return True
         fit = self.fit
-        efforts, columns = fit.efforts(np.full(self.n, self.used)), self._columns(fit.theta, both=False)
+        efforts, columns = (
+            fit.efforts(np.full(self.n, self.used)),
+            self._columns(fit.theta, both=False),
+        )
         found = self._as_ages(*_normal(efforts, columns, fit.moving, fit.sigma))
         older, deviations = found.apart()
         return bool((np.abs(older) - APART > SUSPECT * deviations).any())
@@ -179,37 +191,59 @@ class Channels:
         delays, positions = np.full(n, self.used), np.zeros(n)
         fit.at(positions, fit.theta)
         efforts = fit.efforts(delays)
-        first = before = Regression(efforts, fit.columns, fit.moving).solve("wls")
+        theta, sigma = self._left(efforts, fit.sigma)
+        first = sigma
         longest = LONGEST / self.cutoff
         for _ in range(STEPS):
-            columns = self._columns(before.theta)
-            solution = Regression(efforts, columns, fit.moving).solve("wls")
-            found = self._as_ages(solution.theta, solution.covariance, solution.determined)
+            columns = self._columns(theta)
+            found = self._as_ages(*_normal(efforts, columns, fit.moving, sigma))
             deviations = np.sqrt(np.diag(found.covariance))
             step = np.where(found.told, np.clip(found.age, -longest, longest), 0.0)
             if (np.abs(step) <= np.maximum(SETTLED, PART * deviations)).all():
                 break
             for _ in range(HALVES):
                 trial = delays - step[:n], positions + step[n:]
-                fit.at(trial[1], before.theta)
+                self._leave_ends(*trial)
+                fit.at(trial[1], theta)
                 efforts = fit.efforts(trial[0])
-                after = Regression(efforts, fit.columns, fit.moving).solve("wls")
-                gain = float(np.log(before.sigma / after.sigma).sum())
+                after = self._left(efforts, sigma)
+                gain = float(np.log(sigma / after[1]).sum())
                 if gain > 0.0:
                     break
                 step = step / 2.0
             else:
-                fit.at(positions, before.theta)
+                self._leave_ends(delays, positions)
+                fit.at(positions, theta)
                 efforts = fit.efforts(delays)
                 break
-            before, (delays, positions) = after, trial
-            if gain < NOTHING:
+            (theta, sigma), (delays, positions) = after, trial
+            lost = float(np.log(first / sigma).sum()) < LITTLE * n and bool(fit.lacks(sigma, first).all())
+            if gain < NOTHING or lost:
                 break
-        free, left = fit.beside_free_laws(efforts, columns, before.theta, before.sigma)
+        columns = self._columns(theta)
+        solution = Regression(efforts, columns, fit.moving).solve("wls")
+        found = self._as_ages(solution.theta, solution.covariance, solution.determined)
+        free, left = fit.beside_free_laws(efforts, columns, theta, sigma)
         change = np.concatenate([-free[:n], [0.0], free[n:]])
         ages = Ages(self._ages(delays, positions), found.covariance, found.told, change)
-        believed = ~fit.lacks(np.minimum(left, before.sigma), first.sigma)
-        return ages, believed & (before.sigma <= WORSE * first.sigma)
+        believed = ~fit.lacks(np.minimum(left, sigma), first)
+        return ages, believed & (sigma <= WORSE * first)
+
+    def _leave_ends(self, delays: Array, positions: Array) -> None:
+        """Rows near the ends of the records do not count: what is moved there is not in the log."""
+        reach = np.ceil(max(np.abs(delays).max(), np.abs(positions).max())) + self.reach
+        self.fit.moving = [
+            r.moving & ((r.rows >= reach) & (r.rows < len(r.time) - reach))[:, None] for r in self.fit.records
+        ]
+
+    def _left(self, efforts: Sequence[Array], sigma: Array) -> tuple[Array, Array]:
+        """Parameters (p,) with the joints weighted by sigma (n,), and what they leave of the efforts (n,)."""
+        fit = self.fit
+        theta, *_ = _normal(efforts, fit.columns, fit.moving, sigma)
+        left = Regression(efforts, fit.columns, fit.moving).residuals(theta)
+        squares = sum((e**2 * m).sum(axis=0) for e, m in zip(left, fit.moving, strict=True))
+        rows = sum(m.sum(axis=0) for m in fit.moving)
+        return theta, np.maximum(np.sqrt(squares / np.maximum(rows, 1)), 1e-300)
 
     def _ages(self, delays: Array, positions: Array) -> Array:
         return np.concatenate([self.used - delays, positions])
@@ -233,7 +267,12 @@ class Channels:
         ends = (self.reach, -self.reach if both else 0)
         over = float(ends[0] - ends[1])
         for k, own in enumerate(fit.columns):
-            r, motion, weights, now = fit.records[k], fit.motions[k], fit.weights[k], fit.full[k] @ theta
+            r, motion, weights, now = (
+                fit.records[k],
+                fit.motions[k],
+                fit.weights[k],
+                fit.full[k] @ theta,
+            )
             more = np.zeros((len(own), n, 2 * n - 1))
             ahead, behind = (_beside(now, way) for way in ends)
             more[:, range(n), range(n)] = r.parallel((ahead - behind) / over * weights)
@@ -258,7 +297,10 @@ def _beside(x: Array, way: int) -> Array:
 
 
 def _normal(
-    efforts: Sequence[Array], columns: Sequence[Array], moving: Sequence[NDArray[np.bool_]], sigma: Array
+    efforts: Sequence[Array],
+    columns: Sequence[Array],
+    moving: Sequence[NDArray[np.bool_]],
+    sigma: Array,
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Parameters (p,) by least squares, their covariance as of white noise, and flags: all.
 
