@@ -200,6 +200,8 @@ def _one_link(
     """
     of_links, own = links
     used = of_links & determined
+    if not used.any():  # of a screw drive that hides the link's mass, say
+        return []
     table = columns[:, :, used].reshape(-1, int(used.sum()))
     parts = [table @ x[used] for x in own]
     nominal, seen = sum(parts, np.zeros(len(table))), table @ theta[used]

@@ -49,6 +49,7 @@ _SETTINGS = {
     "cutoff_hz": "cut-off of effort and regressor [Hz]",
     "position_cutoff_hz": "cut-off of the positions [Hz]",
     "factor": "samples of the log for one row",
+    "simulated_window_s": "length of a simulated window, but of free motions [s]",
     "rest_speeds": "speeds below which a joint rests [rad/s, m/s]",
     "period_s": "periods of the training records [s]",
     "evidence_threshold": "least evidence of a cause [delta BIC]",

@@ -24,7 +24,7 @@ def efforts(d: Diagnosis) -> list[Chart]:
     # at rest dry friction has any value: nothing is predicted
     missed = [np.where(held.moving, r, np.nan) for r in d.residuals]
     units, charts = units_of(d), []
-    word = "of the links" if free else "measured"
+    word = "needed by the links" if free else "measured"
     for j, name in enumerate(d.arm.coordinate_names):
         curves = [Curve(t, measured[:, j], "measured", word)]
         left = [Curve(t, missed[0][:, j], "before", BEFORE)]

@@ -31,12 +31,21 @@ def cause_title(d: Diagnosis, c: NamedCause) -> str:
 def missing(d: Diagnosis) -> list[str]:
     """What is missing, a sentence for each cause; one that says so where none is named."""
     if d.verdict == "named":
-        return [sentence(finding(d.arm, c.effect, c.joint, c.parameters, c.records)) for c in d.causes]
+        return [_found(d, c) for c in d.causes]
     if d.verdict == "suspected":
         titles = [cause_title(d, c) for c in d.suspects]
         more = [f"{len(titles) - _TITLES} more"] if titles[_TITLES:] else []
         return [f"Nothing can be named; suspected: {listed(titles[:_TITLES] + more)}."]
     return [_SENTENCES.get(d.verdict) or sentence(d.reason)]
+
+
+def _found(d: Diagnosis, c: NamedCause) -> str:
+    """A cause in a sentence, and what no motion of the arm tells from it."""
+    said = sentence(finding(d.arm, c.effect, c.joint, c.parameters, c.records))
+    if not c.aliases:
+        return said
+    same = " or ".join(titled(d.arm, effect, joint) for effect, joint in c.aliases)
+    return f"{said} Or it is {same}: no motion of this arm tells them apart."
 
 
 def reason(d: Diagnosis) -> str:

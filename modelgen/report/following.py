@@ -28,7 +28,8 @@ _MOTIONS = {
 }
 # The same where nothing drives the arm.
 _RELEASES = {
-    "cannot_tell": "Release every joint from several angles, from each of them twice or more.",
+    "cannot_tell": "A release that does not repeat shows no noise: tune the parameters on the motion, and "
+    "see whether it is missed by more than the encoders' noise.",
     "outside_catalogue": f"{_LOOK} Releases from other angles help.",
     "suspected": "Release the arm from other angles and add these logs to the training records.",
 }
@@ -142,6 +143,8 @@ def replaying(d: Diagnosis, call: Call) -> list[Step]:
     words = ["--parameters", call.beside(f"{folder}{d.arm.name}_parameters.yaml")]
     words += [word for log in call.test for word in ("--log", log)]
     words += words_of(call.options, ("mapping",))
+    if not _free(d):  # as its motion is simulated on the page
+        words += ["--window", f"{d.settings['simulated_window_s']:g}"]
     return [Step(text, command("simulate", description, name, *words))]
 
 
@@ -186,7 +189,9 @@ def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
         every = call.diagnosing()
         return _EVERY, Step(f"{_EVERY} This does, {WHERE}:" if every else _EVERY, every)
     if _free(d):
-        return _RELEASES[d.verdict], Step(_RELEASES[d.verdict])
+        text = _RELEASES[d.verdict]
+        refine = call.refining("refined", call.description) if d.verdict == "cannot_tell" else ""
+        return text, Step(f"{text} This does, {WHERE}:" if refine else text, refine)
     text = _MOTIONS[d.verdict]
     p = d.test.prepared
     speeds = np.abs(p.picked(p.dq)).max(axis=0).tolist()

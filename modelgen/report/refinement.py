@@ -141,7 +141,8 @@ def following(call: Call, found: Refinement) -> list[Part | str]:
         Command(generate),
     ]
     if not gained:
-        start = call.command("generate", *words_of(call.options, ("parameters",)))
+        # what the start is from: a file, else the description
+        start = call.command("generate", *(words_of(call.options, ("parameters",)) or ["--nominal"]))
         folded = f"generate code with the values of the start, {WHERE}"
         parts = [Text(f"{call.first}{sentence(folded)}"), Command(start)]
     if diagnose and (found.effort or len(call.train) + len(call.test) >= _RELEASES):

@@ -9,6 +9,7 @@ import numpy as np
 
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.prepare import held_inputs
+from modelgen.dataset.processing.released import free_samples
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 from modelgen.simulation.control import Control, Reference, controller
@@ -47,11 +48,12 @@ def replay(
 ) -> Replay:
     """The record simulated from its measured initial state with its measured inputs.
 
-    A record without effort is a free motion. window: length [s] after which the simulation starts again
-    from the measured state (multiple shooting; Bock 1983), so that an unstable arm remains comparable; by
-    default the record is one window. control: "pi" or "computed_torque" follow the measured positions as
-    their reference instead of the measured inputs (closed loop). start: q, dq (n,) at the beginning in
-    place of the measured ones. Raises InputError where a window holds fewer than two samples.
+    A record without effort is a free motion: it counts from its release on, as of `free_samples`. window:
+    length [s] after which the simulation starts again from the measured state (multiple shooting; Bock
+    1983), so that an unstable arm remains comparable; by default the record is one window. control: "pi" or
+    "computed_torque" follow the measured positions as their reference instead of the measured inputs
+    (closed loop). start: q, dq (n,) at the beginning in place of the measured ones. Raises InputError where
+    a window holds fewer than two samples.
     """
     p = prepared
     rate = 1.0 / p.record.step
@@ -62,15 +64,16 @@ def replay(
     inputs = held_inputs(p)
     simulated, velocities = np.full_like(p.q, np.nan), np.full_like(p.q, np.nan)
     ended = ""
-    begins = list(range(0, count - 1, length - 1))
+    free = p.input is None and not control
+    released = free_samples(p)[0] if free and start is None else 0
+    begins = list(range(released, count - 1, length - 1))
     for begin in begins:
         last = min(count, begin + length)
-        first = (p.q[begin], p.dq[begin]) if begin else start or beginning(p)
+        first = (p.q[begin], p.dq[begin]) if begin > released else start or beginning(p, released)
         given: Control | Array = inputs[begin:last]
         if control:
             reference = Reference(p.time[begin:last] - p.time[begin], p.q[begin:last])
             given = controller(plant, control, reference, bandwidth, rate)
-        free = p.input is None and not control
         low, high = plant.strokes
         found = simulate(
             plant,
@@ -82,27 +85,28 @@ def replay(
             method=method,
             step=step,
         )
-        end = begin + len(found.t)
-        simulated[begin:end], velocities[begin:end] = found.q, found.dq
+        ran = slice(begin, begin + len(found.t))
+        simulated[ran], velocities[ran] = found.q, found.dq
         ended = found.ended or ended
         if progress is not None:
             progress(float(p.time[last - 1] - p.time[0]))
-    ran = np.isfinite(simulated).all(axis=1)
-    return Replay(p.time, p.q, simulated, velocities, scores(p.q[ran], simulated[ran]), len(begins), ended)
+    there = np.isfinite(simulated).all(axis=1)
+    reached = scores(p.q[there], simulated[there])
+    return Replay(p.time, p.q, simulated, velocities, reached, len(begins), ended)
 
 
-def beginning(prepared: Prepared) -> tuple[Array, Array]:
-    """q, dq (n,) where a record begins: measured rates where the log has them, else a parabola's.
+def beginning(prepared: Prepared, at: int = 0) -> tuple[Array, Array]:
+    """q, dq (n,) where a motion begins, at a sample: measured rates where a log has them, or a parabola's.
 
     There a filter of both sides knows one side only; the parabola is fitted to the first samples as
     measured, over the time that the filter of the positions takes to respond, ten samples at least.
     """
     record = prepared.record
     if record.dq is not None:
-        return record.q[0].copy(), record.dq[0].copy()
+        return record.q[at].copy(), record.dq[at].copy()
     cutoff = prepared.settings.position_cutoff
     span = 10 if not cutoff else max(10, round(0.5 / cutoff / record.step))
-    span = min(span, len(record.t))
-    t = record.t[:span] - record.t[0]
-    fit = np.linalg.lstsq(np.vander(t, 3, increasing=True), record.q[:span], rcond=None)[0]
+    rows = slice(at, at + span)
+    t = record.t[rows] - record.t[at]
+    fit = np.linalg.lstsq(np.vander(t, 3, increasing=True), record.q[rows], rcond=None)[0]
     return fit[0], fit[1]

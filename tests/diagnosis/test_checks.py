@@ -71,6 +71,26 @@ def test_a_law_outside_the_catalogue_lends_its_evidence_to_no_name(joint: int) -
     assert found.verdict in ("suspected", "outside_catalogue")
 
 
+def test_a_gain_that_fades_is_no_friction_that_warms_up() -> None:
+    """A drive that gives a fifth more effort when it is cold: friction is a part of that alone."""
+    records = []
+    for r in three(None, 1, 0.0, seed=12):
+        given = np.asarray(r.input).copy()
+        given[:, 0] *= 1.0 + 0.2 * np.exp(-(r.t - r.t[0]) / 12.0)
+        records.append(replace(r, input=given))
+    found = diagnose(ARM, records, experiment=False)
+    assert not found.causes
+    (failed,) = (
+        c
+        for suspect in found.suspects
+        if (suspect.effect, suspect.joint) == ("friction_warm_up", 1)
+        for c in suspect.checks
+        if c.decides and c.passed is False
+    )
+    assert failed.name == "form"
+    assert "a free function of the joint's effort and the time" in failed.text
+
+
 @pytest.mark.parametrize("repeats", [True, False])
 @pytest.mark.parametrize(("wave", "passed"), [(0.0, True), (1.6, False)])
 def test_a_law_that_leaves_much_of_what_is_not_noise_lends_it_no_name(

@@ -131,9 +131,12 @@ def _entry(effect: type[Definition], line: Line, run: Sequence[Line]) -> Iterato
     yield from (f"## {name}", "", f"{sentence(effect.text)} Law: {law(name)}", "")
     yield from (f"![{text}]({path})" for text, path in drawn)
     yield from ("", f"**In a log.** {_log(line)} {_counted(name, run)}", "")
-    yield "| confused with | its evidence here | what separates the two | expected delta BIC |"
-    yield "|---|---|---|---|"
-    yield from (_row(other, line) for other in effect.confused_with)
+    rows = [_row(other, line) for other in effect.confused_with]
+    heads = ["confused with", "its evidence here", "what separates the two", "expected delta BIC"]
+    shown = len(heads) if any(row[-1] for row in rows) else len(heads) - 1
+    yield f"| {' | '.join(heads[:shown])} |"
+    yield "|---" * shown + "|"
+    yield from (f"| {' | '.join(row[:shown])} |" for row in rows)
     reading = "" if effect.reading is None else f" Or read {effect.reading.text}."
     yield from ("", f"**Seen by itself in:** {effect.experiment}.{reading}", "")
     yield f"Parameters: [effects](effects.md#{name}). {effect.reference}."
@@ -166,14 +169,13 @@ def _counted(name: str, run: Sequence[Line]) -> str:
     return f"{said}."
 
 
-def _row(other: str, line: Line) -> str:
+def _row(other: str, line: Line) -> tuple[str, ...]:
     tried = next((x for x in line["lookalikes"] if x["effect"] == other), None)
     seen = tried is not None and tried["share"] >= LEAST
     share = f"{100 * tried['share']:.0f} %" if tried is not None and seen else "none"
     if tried is None or tried["test"] is None or float(tried["evidence"]) < ENOUGH:
-        return f"| {_link(other)} | {share} | {CATALOGUE[other].experiment} | |"
-    evidence = f"{float(tried['evidence']):.0f}"
-    return f"| {_link(other)} | {share} | {tried['test'].split(' (')[0]} | {evidence} |"
+        return _link(other), share, CATALOGUE[other].experiment, ""
+    return _link(other), share, tried["test"].split(" (")[0], f"{float(tried['evidence']):.0f}"
 
 
 def _link(name: str) -> str:

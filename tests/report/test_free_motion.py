@@ -49,3 +49,7 @@ def test_a_name_says_what_it_is_worth_on_the_test_release(folder: Path, test: st
     assert first[0] == ("generate" if helps else "refine")
     for line in (first, *rest):
         run(line, folder)
+    # what the terminal offers last has the motion from its release on, as the page has
+    (replay,) = (line[line.index("modelgen ") :] for line in done.stdout.splitlines() if "simulate" in line)
+    scores = json.loads(called(*replay.split()[1:], "--json", cwd=folder).stdout)
+    assert scores["joints"][0]["f_gof_percent"] > 90.0

@@ -1,12 +1,12 @@
 """Whether a function of no law, or a law that is not one of several joints, explains as much as the causes.
 
-At a joint the functions are of its position and speed, of another joint's beside them, or of what the
-joint did before; Gaussian processes with a jump where the speed changes its sign (Rasmussen and Williams
-2006): whatever a friction or a force over these does, one of them can. A law that is there explains as
-much at the price of its few parameters; one that is not ahead of the functions has only their shape for
-itself. A law that acts on several joints says how much on each: where each has a size of its own, it is
-not the law. What bends or has play acts wherever its load changes: if it explains only rows at which its
-joint nearly rests, what is there is a form of friction.
+At a joint the functions are of its position and speed, of another joint's beside them, of what the joint
+did before, or of the time; Gaussian processes with a jump where the speed changes its sign (Rasmussen and
+Williams 2006): whatever a friction or a force over these does, one of them can. A law that is there
+explains as much at the price of its few parameters; one that is not ahead of the functions has only their
+shape for itself. A law that acts on several joints says how much on each: where each has a size of its
+own, it is not the law. What bends or has play acts wherever its load changes: if it explains only rows at
+which its joint nearly rests, what is there is a form of friction.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modelgen.diagnosis.adequacy.motion_functions import of_late, of_others, of_state, of_way
+from modelgen.diagnosis.adequacy.motion_functions import of_late, of_others, of_state, of_way, of_when
 from modelgen.diagnosis.adequacy.smooth_functions import (
     SmoothFunction,
     Worth,
@@ -83,8 +83,10 @@ def free_forms(
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
             rest = max(rest, terms[joint].evidence)
+        inputs = [equations.evaluator.inputs(r.motion, without.base) for r in equations.rows]
         further = spots(joint - 1, equations), of_late(joint - 1, equations)
-        shapes = [*shapes_at(joint - 1, equations), *further]
+        when = of_when(joint - 1, equations, inputs)
+        shapes = [*shapes_at(joint - 1, equations), *further, *when]
         by, shape = ahead(shapes, own, without)
         free = FreeForm(by - rest, most, what=shape.text)
         found[joint] = max(free, found[joint], key=lambda form: form.ahead - form.most)

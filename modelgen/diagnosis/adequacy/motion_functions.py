@@ -1,4 +1,4 @@
-"""Functions of no law over what a force at a joint may depend on: its own motion, another joint's, its past.
+"""Functions of no law over what a force at a joint may depend on: its motion, another's, its past, the time.
 
 A cause outside the catalogue that depends on more than the joint's own position and speed looks like a law of
 these as long as it is held against functions of these alone. What a joint did before is remembered in two
@@ -75,6 +75,20 @@ def of_way(j: int, equations: Equations) -> SmoothFunction:
         for r, path, place in zip(equations.rows, q, _places(q), strict=True)
     ]
     return SmoothFunction("the joint's position and the way that it came", {j: columns})
+
+
+def of_when(j: int, equations: Equations, inputs: Sequence[Array]) -> Iterator[SmoothFunction]:
+    """At joint j (from 0) a force, and a gain of its drive, that change with the time since a record's begin.
+
+    inputs: (N, n) of every record, as the model has them.
+    """
+    times = [(r.prepared.time - r.prepared.time[0])[:, None] for r in equations.rows]
+    for bend in equations.thresholds.adequacy.bend_lengths:
+        over = functions(times, bend)
+        force = [r.equation(j, x) for r, x in zip(equations.rows, over, strict=True)]
+        yield SmoothFunction("the time", {j: force})
+        gain = [r.equation(j, x * u[:, [j]]) for r, x, u in zip(equations.rows, over, inputs, strict=True)]
+        yield SmoothFunction("the joint's effort and the time", {j: gain})
 
 
 def _places(positions: Sequence[Array]) -> list[Array]:

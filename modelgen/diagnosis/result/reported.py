@@ -174,6 +174,9 @@ def _settings(study: Study, decision: Decision, selection: Selection, options: O
         "rest_speeds": [float(f"{gate:.6g}") for gate in chosen.gates],
         "period_s": [None if p is None else float(f"{p * r.step:.9g}") for p, r in periods],
         "evidence_threshold": threshold(selection.system),
+        "simulated_window_s": None
+        if decision.band.equations.free
+        else options.thresholds.extended.simulated_window,
         "practical_gain_percent": round(least, 3),
         **({"thresholds": others} if others else {}),
     }

@@ -9,12 +9,11 @@ import numpy as np
 
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.prepare import held_inputs
+from modelgen.dataset.processing.released import free_samples
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 RATE = 250.0  # Hz, beyond which samples are left out: the steps between them are exact enough
-AFTER = 1.0  # s of rest that count
-LATEST = 0.1  # s, after which a motion that has not begun is held by a hand
 
 
 @dataclass(frozen=True)
@@ -53,11 +52,11 @@ class Part:
 def parts(p: Prepared, window: float | None, interval: float) -> list[Part]:
     """The parts of a record: windows of so many seconds, or the whole from its release on.
 
-    A free motion begins where a hand lets go: rest for longer than LATEST before it is left out, and so is
-    rest later than AFTER. Raises InputError for windows of less than ten samples.
+    Of a free motion what counts is as of `free_samples`. Raises InputError for windows of less than ten
+    samples.
     """
     stride = max(1, int((1.0 / p.record.step) / RATE))
-    begin, end = _motion(p) if p.input is None else (0, len(p.time))
+    begin, end = free_samples(p) if p.input is None else (0, len(p.time))
     rows = np.arange(begin, end, stride)
     q, dq, t = p.record.q[rows], p.dq[rows], p.time[rows]
     given = held_inputs(p)
@@ -78,19 +77,6 @@ def parts(p: Prepared, window: float | None, interval: float) -> list[Part]:
         cut = tuple(pairwise(edges))
         found.append(Part(p.record.name, t[take], q[take], dq[take], u[take], cut))
     return [_standing(part) if p.input is None else part for part in found]
-
-
-def _motion(p: Prepared) -> tuple[int, int]:
-    """The samples from and before which a free motion moves, with some rest behind it."""
-    q = p.record.q
-    noise = 1.4826 * np.median(np.abs(np.diff(q, axis=0)), axis=0) / np.sqrt(2)
-    far = np.maximum(10 * noise, 5e-3 * np.ptp(q, axis=0))
-    moving = np.flatnonzero((np.abs(q - q[0]) > far).any(axis=1))
-    if not len(moving):
-        raise InputError(f"{p.record.name}: all joints rest; expected a free motion")
-    last = int(np.flatnonzero((np.abs(q - q[-1]) > far).any(axis=1))[-1])
-    begin = int(moving[0]) if moving[0] * p.record.step > LATEST else 0
-    return begin, min(len(q), last + round(AFTER / p.record.step))
 
 
 def _standing(part: Part) -> Part:
