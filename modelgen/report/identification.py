@@ -202,7 +202,7 @@ def _parameters(found: Identification) -> list[Any]:
     nominal, parts = known_base(found.model), list[Any]()
     test = found.test
     if test is not None and test.sizes is not None:
-        groups: dict[str, list[Interval]] = {}
+        groups: dict[int, list[Interval]] = {}  # the joints of an arm may differ by much
         for k, e in enumerate(found.estimates):
             j = test.shown_by(k)
             if j is None or e.std is None:
@@ -211,15 +211,15 @@ def _parameters(found: Identification) -> list[Any]:
             half = WIDE * e.std
             ends = (e.value - half) * size, (e.value + half) * size
             described = None if expected is None else expected * size
-            groups.setdefault(test.unit[j], []).append(Interval(e.name, e.value * size, *ends, described))
+            groups.setdefault(j, []).append(Interval(e.name, e.value * size, *ends, described))
         charts = [
             pictured(
                 rows,
-                f"effort over the test record [{unit}]",
+                f"effort over the test record [{test.unit[j]}]",
                 "Effort that each parameter stands for, with its interval and its nominal value.",
-                "" if len(groups) == 1 else f"parameters of joints in {unit}",
+                "" if len(groups) == 1 else f"parameters that show at {found.arm.coordinate_names[j]}",
             )
-            for unit, rows in groups.items()
+            for j, rows in sorted(groups.items())
         ]
         parts += [
             Text(

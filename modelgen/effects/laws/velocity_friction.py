@@ -134,7 +134,15 @@ class AsymmetricViscousFriction(Effect):
     finding = "viscous friction in {drive} differs between the two directions"
     reference = "Elhami and Brookfield 1996"
     varies = (ViscousFriction,)
-    linear = (Parameter("coefficient", "{f} s/{x}", "half the difference of the two", "FA", bounds=ANY),)
+    linear = (
+        Parameter(
+            "coefficient",
+            "{f} s/{x}",
+            "half the difference of both directions'",
+            "FA",
+            bounds=ANY,
+        ),
+    )
     confused_with = ("friction_offset",)
     experiment = "constant speeds, several in each direction"
     shown = at(coefficient=0.0005)
