@@ -36,6 +36,7 @@ SETTLED, PART = 0.05, 0.2  # samples, or this part of the deviation, at which th
 WORSE = 1.05  # of what is left of a joint's efforts without them, that no true delays leave
 LEAST = 1e-13  # part of columns of unit length that depends on no others
 LITTLE = 0.05  # of the logarithm of what is left of an effort, by which a step is to lower it at least
+ROWS = 3  # that move, for each parameter and delay
 NOTHING = 1e-3  # of the logarithm of what is left, with which they end too
 
 
@@ -139,7 +140,7 @@ def late_channels(fit: DelayFit, delays: Array, deviations: Array, names: Sequen
     if fit.n == 1 or not fit.theta.any():
         return []
     channels = Channels(fit)
-    if not channels.suspected(delays, deviations):
+    if not channels.enough or not channels.suspected(delays, deviations):
         return []
     ages, believed = channels.settled()
     late = ages.late()
@@ -168,6 +169,11 @@ class Channels:
         self.used = first.hold / first.step
         self.cutoff = (fit.records[0].settings.cutoff or 1.0 / first.step) * first.step
         self.reach = max(1, round(REACH / self.cutoff))
+
+    @property
+    def enough(self) -> bool:
+        """Whether there are rows for the parameters and the delays of all channels."""
+        return sum(int(m.sum()) for m in self.fit.moving) >= ROWS * (self.p + 2 * self.n)
 
     def suspected(self, delays: Array, deviations: Array) -> bool:
         """Whether channels may be older than others, where the efforts have these delays (n,) alone."""
@@ -204,12 +210,13 @@ class Channels:
             for _ in range(HALVES):
                 trial = delays - step[:n], positions + step[n:]
                 self._leave_ends(*trial)
-                fit.at(trial[1], theta)
-                efforts = fit.efforts(trial[0])
-                after = self._left(efforts, sigma)
-                gain = float(np.log(sigma / after[1]).sum())
-                if gain > 0.0:
-                    break
+                if self.enough:
+                    fit.at(trial[1], theta)
+                    efforts = fit.efforts(trial[0])
+                    after = self._left(efforts, sigma)
+                    gain = float(np.log(sigma / after[1]).sum())
+                    if gain > 0.0:
+                        break
                 step = step / 2.0
             else:
                 self._leave_ends(delays, positions)
@@ -311,7 +318,8 @@ def _normal(
         [(c * w[:, :, None]).reshape(-1, c.shape[2]) for c, w in zip(columns, rows, strict=True)]
     )
     y = np.concatenate([(e * w).ravel() for e, w in zip(efforts, rows, strict=True)])
-    scale = np.maximum(np.linalg.norm(x, axis=0), 1e-300)
+    norms = np.linalg.norm(x, axis=0)
+    scale = np.where(norms > 0.0, norms, 1.0)
     values, vectors = np.linalg.eigh((x.T @ x) / np.outer(scale, scale))
     inverse = (vectors / np.maximum(values, LEAST)) @ vectors.T / np.outer(scale, scale)
     return inverse @ (x.T @ y), inverse, np.ones(len(scale), dtype=bool)
