@@ -21,16 +21,10 @@ from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
 FREER = 2.0  # times that free laws change an age, by which it is beyond a sample
-SUSPECT, APART = (
-    3.0,
-    0.5,
-)  # deviations, beyond as many samples, from which on all delays are fitted
+SUSPECT, APART = 3.0, 0.5  # deviations, beyond as many samples, from which on all delays are fitted
 REACH = 0.1  # periods of the cut-off, to either side, over which slopes are taken
 LONGEST = 2.5  # periods of the cut-off, of a step
-STEPS, HALVES = (
-    12,
-    5,
-)  # of Gauss and Newton, and how often one is halved that leaves more than before
+STEPS, HALVES = 12, 5  # of Gauss and Newton, and how often one is halved that leaves more than before
 ALIKE = 0.25  # samples by which channels that are read in turn differ
 SETTLED, PART = 0.05, 0.2  # samples, or this part of the deviation, at which they end
 WORSE = 1.05  # of what is left of a joint's efforts without them, that no true delays leave
@@ -274,12 +268,7 @@ class Channels:
         ends = (self.reach, -self.reach if both else 0)
         over = float(ends[0] - ends[1])
         for k, own in enumerate(fit.columns):
-            r, motion, weights, now = (
-                fit.records[k],
-                fit.motions[k],
-                fit.weights[k],
-                fit.full[k] @ theta,
-            )
+            r, motion, weights, now = fit.records[k], fit.motions[k], fit.weights[k], fit.full[k] @ theta
             more = np.zeros((len(own), n, 2 * n - 1))
             ahead, behind = (_beside(now, way) for way in ends)
             more[:, range(n), range(n)] = r.parallel((ahead - behind) / over * weights)

@@ -426,10 +426,10 @@ def test_a_table_of_many_columns_has_a_line_for_each_row_on_paper(tmp_path: Path
 
 @pytest.mark.parametrize("name", ["identify", "refine", "calibrate"])
 def test_parameters_stand_with_their_intervals_in_a_picture(name: str, pages: Mapping[str, Path]) -> None:
-    """A dot within its interval for each, beside a ring at what was known before."""
+    """A dot within its interval for each, beside a ring at what was known before; of identify by joint."""
     with opened(pages[name]) as page:
         pictures = page.locator("svg.rows")
-        units = {"calibrate": ["[mm]", "[rad]"], "refine": ["[rad]"], "identify": ["[A]"]}[name]
+        units = {"calibrate": ["[mm]", "[rad]"], "refine": ["[rad]"], "identify": 2 * ["[A]"]}[name]
         labels = [text.split()[-1] for text in pictures.locator(".label").all_text_contents()]
         assert labels == units
         for picture in pictures.all():
