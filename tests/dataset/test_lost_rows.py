@@ -10,6 +10,8 @@ from dataset_support import AXIS, AXIS_MAPPING, DRIVEN, columns, times, write_cs
 
 import modelgen as mg
 from modelgen.dataset import Stream
+from modelgen.dataset.reading.lost import REFUSED, missing_rows
+from modelgen.dataset.thresholds import USUAL
 from modelgen.errors import InputError
 from modelgen.identification.streamed import identify_streamed
 
@@ -99,3 +101,27 @@ def test_what_else_motions_and_readings_have_is_no_loss(seed: int) -> None:
         for bits in (12, 16, 20):
             found = mg.read_log(rounded(table, bits), DRIVEN)
             assert not any("are missing" in x for x in found.remarks), (what, bits)
+
+
+def jogged(seed: int) -> np.ndarray:
+    """Positions (N, 2) in counts of two joints that make short moves of least jerk, with rests between."""
+    random, q = np.random.default_rng(seed), np.zeros((4000, 2))
+    for j in range(2):
+        at = 0
+        while at < len(q) - 100:
+            s = np.linspace(0.0, 1.0, int(random.integers(8, 60)) + 1)[1:]
+            move = random.uniform(-3000.0, 3000.0) * (10 * s**3 - 15 * s**4 + 6 * s**5)
+            q[at : at + len(s), j] += move
+            q[at + len(s) :, j] += move[-1]
+            at += len(s) + int(random.integers(0, 40))
+    return np.round(q)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_short_moves_are_no_missing_rows(seed: int) -> None:
+    """They begin and end within samples: a step is larger than those around, not than both next to it."""
+    q = jogged(seed)
+    _, _, share = missing_rows(q, USUAL)
+    assert share == 0.0
+    _, _, share = missing_rows(q[np.random.default_rng(seed).random(len(q)) >= 0.05], USUAL)
+    assert REFUSED < share < 0.07

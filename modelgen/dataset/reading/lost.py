@@ -13,6 +13,7 @@ BESIDE = 8  # steps on either side, whose median says what a step is there
 STAYING = 3  # steps on either side, over which the positions stay ahead
 SEEN = 4.0  # deviations of its noise, that a step of all positions is large, to tell it from two
 NEAR = 0.3  # steps, by which a number of them may miss a whole one
+ALONE = 0.5  # of a step, by which one is ahead of either next to it
 ENOUGH = 1024  # steps, that noise is read off
 FEWEST = 5  # places, from which on rows are missing
 CLEARLY = 5.0  # times the places at which the positions fall behind in the same way, as noise has both
@@ -71,7 +72,11 @@ def missing_rows(
     around = window[:, :, BESIDE - STAYING : BESIDE + STAYING + 1].sum(axis=2)
     ahead, seen = _ahead(here[near], beside, noise, SEEN)
     stays, _ = _ahead(around - 2 * STAYING * beside, beside, noise, SEEN)
+    # Steps of a short move differ from those around it, and not from both next to it.
+    alone = [_ahead(here[near], window[:, :, BESIDE + way], noise, 0.0)[0] for way in (-1, 1)]
     found, fallen = _whole(ahead, stays) & seen, _whole(-ahead, -stays) & seen
+    found &= np.minimum(*alone) > ALONE
+    fallen &= np.maximum(*alone) < -ALONE
     if found.sum() < max(FEWEST, CLEARLY * fallen.sum()):
         return nothing
     rows = np.rint(ahead[found]).astype(np.intp)
