@@ -154,7 +154,7 @@ def _simulation(d: Diagnosis) -> list[Part]:
         )
         for j in range(len(one.f_gof))
     ]
-    text = f"{_SIMULATED[d.test.prepared.input is None]}: {_FIT}{', before and after' if d.causes else ''}."
+    text = f"{_SIMULATED[d.free]}: {_FIT}{', before and after' if d.causes else ''}."
     return [Text(text), Grid("Simulated motion", heads, rows, folds=True), block(replayed(d))]
 
 

@@ -150,7 +150,7 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
     known = bool(np.isfinite(d.errors.low).any())
     how = "; intervals from a block bootstrap" if known else "; the record is too short for intervals"
     how = how if d.causes else ""
-    measured = _ERRORS[d.test.prepared.input is None]
+    measured = _ERRORS[d.free]
     said = f"{measured} on the test record, which nothing of the choice or the fit has seen{how}."
     yield Folded("How the error was measured", [Text(said, "quiet")], narrow=True)
 

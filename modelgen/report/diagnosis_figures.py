@@ -20,7 +20,7 @@ BEFORE, AFTER = "model as described", "extended model"
 def efforts(d: Diagnosis) -> list[Chart]:
     """Measured and predicted effort and the residual of every joint, over the whole test record."""
     held, t = d.test, d.test.prepared.t
-    measured, free = measured_efforts(held), held.prepared.input is None
+    measured, free = measured_efforts(held), d.free
     # at rest dry friction has any value: nothing is predicted
     missed = [np.where(held.moving, r, np.nan) for r in d.residuals]
     units, charts = units_of(d), []

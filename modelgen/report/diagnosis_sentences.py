@@ -169,9 +169,9 @@ def _spoken_of(d: Diagnosis) -> set[int]:
 
 def efforts_of(d: Diagnosis) -> list[float] | None:
     """RMS (n,) of the efforts of the test record while joints move; None of a free motion."""
-    held = d.test
-    if held.prepared.input is None:
+    if d.free:
         return None
+    held = d.test
     effort = held.prepared.effort * held.gain
     moving = [held.moving[:, j] for j in range(effort.shape[1])]
     return [float(np.sqrt(np.mean(effort[m, j] ** 2))) if m.any() else np.nan for j, m in enumerate(moving)]

@@ -86,7 +86,7 @@ def whole_json(d: Diagnosis, call: Call) -> dict[str, Any]:
 
 def _by_itself(d: Diagnosis) -> list[str]:
     """What shows each effect by itself, that was named or is suspected; none where nothing drives the arm."""
-    if _free(d):
+    if d.free:
         return []
     places: dict[str, list[int | None]] = {}
     for c in (*d.causes, *d.suspects):
@@ -112,7 +112,7 @@ def carried(d: Diagnosis, call: Call) -> list[Step]:
     reduced = reduced_name(d)
     description = call.beside(reduced) if reduced else call.description
     what = f"{reduced}, the description without {names}" if reduced else f"the description, without {names}"
-    if _free(d):
+    if d.free:
         fit = call.refining(REDUCED, description)
         text, by = f"Tune {what}, on the releases", "refine"
     else:
@@ -143,7 +143,7 @@ def replaying(d: Diagnosis, call: Call) -> list[Step]:
     words = ["--parameters", call.beside(f"{folder}{d.arm.name}_parameters.yaml")]
     words += [word for log in call.test for word in ("--log", log)]
     words += words_of(call.options, ("mapping",))
-    if not _free(d):  # as its motion is simulated on the page
+    if not d.free:  # as its motion is simulated on the page
         words += ["--window", f"{d.settings['simulated_window_s']:g}"]
     return [Step(text, command("simulate", description, name, *words))]
 
@@ -188,7 +188,7 @@ def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
     if d.settings["asked"] != "all":
         every = call.diagnosing()
         return _EVERY, Step(f"{_EVERY} This does, {WHERE}:" if every else _EVERY, every)
-    if _free(d):
+    if d.free:
         text = _RELEASES[d.verdict]
         refine = call.refining("refined", call.description) if d.verdict == "cannot_tell" else ""
         return text, Step(f"{text} This does, {WHERE}:" if refine else text, refine)
@@ -198,8 +198,3 @@ def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
     description = _described(d, call)
     excite = call.exciting(call.beside("trajectory.csv"), speeds, description)
     return text, Step(f"{text} This computes one, {WHERE}:" if excite else text, excite)
-
-
-def _free(d: Diagnosis) -> bool:
-    """Whether the arm swung by itself: no motion can be asked of it."""
-    return d.test.prepared.input is None

@@ -72,3 +72,8 @@ class Diagnosis:
     positions: Positions | None = None
     inertias: Mapping[int, Estimate] = field(default_factory=dict)
     laws: tuple[Array, ...] = ()
+
+    @property
+    def free(self) -> bool:
+        """Whether the records are free motions: nothing drives the arm."""
+        return self.test.prepared.input is None
