@@ -135,11 +135,12 @@ def replaying(d: Diagnosis, call: Call) -> list[Step]:
         return []
     worse, folder, name = bool(harmful(d)), "", ""  # a description of one arm needs no name
     description = call.beside(f"{d.arm.name}_extended.yaml")
-    text = "The extended model against the test record:"
+    against = "the whole test record, rest included:" if d.free else "the test record:"
+    text = f"The extended model against {against}"
     if worse:
         reduced, folder = reduced_name(d), f"{REDUCED}/"
         description, name = (call.beside(reduced), "") if reduced else (call.description, d.arm.name)
-        text = "Once that is fitted, it against the test record:"
+        text = f"Once that is fitted, it against {against}"
     words = ["--parameters", call.beside(f"{folder}{d.arm.name}_parameters.yaml")]
     words += [word for log in call.test for word in ("--log", log)]
     words += words_of(call.options, ("mapping",))

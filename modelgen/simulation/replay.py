@@ -15,7 +15,8 @@ from modelgen.numeric import Array
 from modelgen.simulation.control import Control, Reference, controller
 from modelgen.simulation.metrics import Scores, scores
 from modelgen.simulation.plant import Plant
-from modelgen.simulation.simulate import simulate
+from modelgen.simulation.simulate import default_method, simulate
+from modelgen.simulation.start import Motions, nearest_start
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,8 @@ def replay(
 ) -> Replay:
     """The record simulated from its measured initial state with its measured inputs.
 
-    A record without effort is a free motion: it counts from its release on, as of `free_samples`. window:
+    A record without effort is a free motion: it counts from its release on, as of `free_samples`, and without
+    windows begins with the state that fits its first second best, `nearest_start`. window:
     length [s] after which the simulation starts again from the measured state (multiple shooting; Bock
     1983), so that an unstable arm remains comparable; by default the record is one window. control: "pi" or
     "computed_torque" follow the measured positions as their reference instead of the measured inputs
@@ -75,6 +77,9 @@ def replay(
             reference = Reference(p.time[begin:last] - p.time[begin], p.q[begin:last])
             given = controller(plant, control, reference, bandwidth, rate)
         low, high = plant.strokes
+        if free and start is None and window is None:
+            near = _motions(plant, np.clip(first[0], low, high), first[1], rate, method, step)
+            first = nearest_start(near, p.q[begin:last], p.record.step, *first)
         found = simulate(
             plant,
             np.clip(first[0], low, high),
@@ -93,6 +98,21 @@ def replay(
     there = np.isfinite(simulated).all(axis=1)
     reached = scores(p.q[there], simulated[there])
     return Replay(p.time, p.q, simulated, velocities, reached, len(begins), ended)
+
+
+def _motions(plant: Plant, q: Array, dq: Array, rate: float, method: str, step: float | None) -> Motions:
+    """Free motions from starts about q, dq (n,), by compiled steps where they serve: they are many."""
+    quick = method or default_method(plant, q, dq, compiled=True)
+    low, high = plant.strokes
+
+    def motions(starts: Array, speeds: Array, samples: int) -> Array:
+        path, duration = np.full((len(starts), samples, plant.n), np.nan), (samples - 1) / rate
+        for k, (at, speed) in enumerate(zip(starts, speeds, strict=True)):
+            found = simulate(plant, np.clip(at, low, high), speed, duration, rate, method=quick, step=step)
+            path[k, : len(found.q)] = found.q
+        return path
+
+    return motions
 
 
 def beginning(prepared: Prepared, at: int = 0) -> tuple[Array, Array]:

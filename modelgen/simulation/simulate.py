@@ -72,7 +72,7 @@ def simulate(
             f"{plant.arm.name}: the accelerations at the beginning are not finite; a joint with play or "
             "elasticity needs a drive with inertia of its own, in the description's nominal values"
         )
-    name = method or _default(plant, y, control is not None)
+    name = method or default_method(plant, q, dq, compiled=control is not None)
     path = np.empty((count, len(y)))
     path[0] = y
     feedback = held if callable(held) else None
@@ -175,9 +175,10 @@ def _who(plant: Plant, y: Array, low: Array, high: Array, what: str) -> str:
     return f"joint {plant.names[k]} left its {stroke} ({low[k]:.6g} to {high[k]:.6g})"
 
 
-def _default(plant: Plant, y: Array, controlled: bool) -> str:
-    stiff = fastest(plant, y) > STIFF
-    if controlled and compiler() is not None and not stiff:
+def default_method(plant: Plant, q: Array, dq: Array, *, compiled: bool) -> str:
+    """The method for motions that begin at q, dq (n,). compiled: fixed steps of compiled C will do."""
+    stiff = fastest(plant, np.concatenate([q, dq, np.zeros(len(plant.model.states))])) > STIFF
+    if compiled and compiler() is not None and not stiff:
         return "fixed"
     return "LSODA" if plant.model.states or stiff else "DOP853"
 

@@ -21,7 +21,7 @@ from modelgen.evaluation import Evaluator
 from modelgen.functions import EVALUATED, Model, build_model
 from modelgen.numeric import Array
 from modelgen.regression.weighted import misfit, weighted_fit
-from modelgen.simulation.windows import Windows, simulated_windows
+from modelgen.simulation.windows import Windows, simulated_release, simulated_windows
 
 # Budgets of the fit beside elastic joints: how finely parameters are found decides nothing.
 HALVES = 10  # steps, of which half is taken each
@@ -147,7 +147,7 @@ def seen_by(prepared: Prepared, arm: Arm) -> Prepared:
 def replay(fitted: FittedModel, rows: Rows, limits: ExtendedThresholds) -> Windows | None:
     """Simulated against measured positions; None where the record is too short, or nothing stays finite.
 
-    A free motion has no inputs, and is simulated from its beginning to its end.
+    A free motion has no inputs, and is simulated from its beginning to its end, from the start that fits it.
     """
     p = rows.prepared
     trim = int(p.rows[0])
@@ -171,6 +171,8 @@ def replay(fitted: FittedModel, rows: Rows, limits: ExtendedThresholds) -> Windo
             rows.motion, fitted.parameters
         )  # what the model's coordinates are
         p = replace(p, q=moved.q, dq=moved.dq, ddq=moved.ddq)
+    if p.input is None:
+        return simulated_release(fitted.model, fitted.parameters, states, p, int(starts[0]), length)
     return simulated_windows(fitted.model, fitted.parameters, states, p, starts, length)
 
 
