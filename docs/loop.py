@@ -3,8 +3,8 @@
     python docs/loop.py     writes docs/loop.svg anew
 
 The curve of the log is the current of the stick in examples/diagnosis, the law that of the friction hidden
-there; the rest is a sketch. The picture stands on a ground of its own, so it is the same by day and by night.
-Same files, same bytes.
+there; the rest is a sketch. The picture stands on a ground of its own, with colours for the day and for the
+night. Same files, same bytes.
 """
 
 from __future__ import annotations
@@ -21,6 +21,18 @@ WIDTH, HEIGHT = 664, 392
 BOX = (264, 150)  # width and height of a station
 AT = {"arm": (14, 14), "log": (386, 14), "cause": (386, 228), "code": (14, 228)}
 INK, SOFT, BLUE, ORANGE, GROUND = "#1b1f24", "#59636e", "#1f5fa8", "#b3500e", "#ffffff"
+SHEET, EDGE, GREEN, PIVOT = "#f3f5f7", "#c8d0d8", "#3a8f4d", "#f0a04b"
+# Where the reader's system is dark, a style replaces each by the second.
+NIGHT = {
+    INK: "#e6ebef",
+    SOFT: "#a4afb9",
+    BLUE: "#6fb0f0",
+    ORANGE: "#ffb07a",
+    GROUND: "#14191e",
+    SHEET: "#20272e",
+    EDGE: "#3a444d",
+    GREEN: "#5fbf75",
+}
 FONT = "font-family='Helvetica, Arial, sans-serif'"
 
 
@@ -32,18 +44,27 @@ def picture() -> str:
         "<title id='title'>The loop of modelgen</title>",
         "<desc id='text'>An arm is moved and recorded. The log shows what its model gets wrong. "
         "The diagnosis names the physical cause. Its code goes into the controller of the arm.</desc>",
+        f"<style>@media (prefers-color-scheme: dark) {{ {_night()} }}</style>",
         "<defs><marker id='tip' viewBox='0 0 8 8' refX='7' refY='4' markerWidth='7' markerHeight='7' "
         f"orient='auto'><path d='M0 0 8 4 0 8Z' fill='{BLUE}'/></marker></defs>",
-        f"<rect width='{WIDTH}' height='{HEIGHT}' rx='10' fill='#f3f5f7'/>",
+        f"<rect width='{WIDTH}' height='{HEIGHT}' rx='10' fill='{SHEET}'/>",
     ]
     for name, (x, y) in AT.items():
         parts.append(
             f"<rect x='{x}' y='{y}' width='{BOX[0]}' height='{BOX[1]}' rx='8' fill='{GROUND}' "
-            "stroke='#c8d0d8'/>"
+            f"stroke='{EDGE}'/>"
         )
         parts.append(_text(x + 14, y + 26, name, size=19, weight="bold"))
     parts += [*_arm(), *_log(), *_cause(), *_code(), *_arrows(), "</svg>"]
     return "\n".join(parts) + "\n"
+
+
+def _night() -> str:
+    """Rules that put the colours of the night in place of those of the day."""
+    kinds = ("fill", "stroke")
+    return " ".join(
+        f"[{kind}='{day}'] {{ {kind}: {night}; }}" for day, night in NIGHT.items() for kind in kinds
+    )
 
 
 def _arm() -> Iterable[str]:
@@ -51,13 +72,11 @@ def _arm() -> Iterable[str]:
     x, y = AT["arm"]
     base, elbow, tip = (x + 64, y + 122), (x + 138, y + 54), (x + 226, y + 98)
     yield f"<path d='M{base[0] - 34} {base[1] + 10}h68' stroke='{SOFT}' stroke-width='3'/>"
-    yield _path([(base[0] + 34, base[1] + 6), (x + 116, y + 76)], "#3a8f4d", 6)
-    yield _path(
-        [(x + 92, y + 80), (elbow[0] - 8, elbow[1] - 22), (elbow[0] + 26, elbow[1] + 13)], "#3a8f4d", 5
-    )
+    yield _path([(base[0] + 34, base[1] + 6), (x + 116, y + 76)], GREEN, 6)
+    yield _path([(x + 92, y + 80), (elbow[0] - 8, elbow[1] - 22), (elbow[0] + 26, elbow[1] + 13)], GREEN, 5)
     yield _path([base, elbow, tip], INK, 8)
     for cx, cy in (base, elbow):
-        yield f"<circle cx='{cx}' cy='{cy}' r='8' fill='#f0a04b' stroke='{INK}' stroke-width='2'/>"
+        yield f"<circle cx='{cx}' cy='{cy}' r='8' fill='{PIVOT}' stroke='{INK}' stroke-width='2'/>"
     yield _text(x + BOX[0] - 14, y + 26, "arms.yaml", size=15, colour=SOFT, anchor="end", mono=True)
 
 

@@ -17,6 +17,7 @@ from modelgen.description import Arm
 from modelgen.identification.effort_instant import effort_instant
 
 _ROUNDING = 1e-6  # of a period: what is left of stamps in decimal digits
+_GUESSED = "?: guessed from names and sizes; the arm's description settles units, and which joints slide"
 
 
 class Inspection(Shown):
@@ -132,6 +133,8 @@ class Inspection(Shown):
         numbers = ("lowest", "highest", "resolution", "repeated %", "at rest %", "spikes", "missing")
         columns |= dict.fromkeys(numbers, "right")
         parts.append(Table("", columns, rows))
+        if any(c.guess and not c.unit for c in x.channels):
+            parts.append(_GUESSED)
         if x.without_numbers:
             parts.append(f"no numbers: {', '.join(x.without_numbers)}")
         asked = [] if self.instant is None else [self.instant.line(), *self.instant.questions()]

@@ -93,7 +93,8 @@ def worth(d: Diagnosis) -> str:
     else:
         said = f"the test record is predicted no better{joints}"
     if joints and e.gain[worst] <= -_VISIBLE:
-        said += f", {-e.gain[worst]:z.1f} % more at {joint_name(d.arm, worst + 1)}"
+        beyond = interval(-e.high[worst], -e.low[worst], " ({} %)")
+        said += f", {-e.gain[worst]:z.1f} % more at {joint_name(d.arm, worst + 1)}{beyond}"
     return said
 
 
@@ -255,7 +256,7 @@ def compared(d: Diagnosis) -> list[str]:
     said = [f"The errors on the test record are those below {cutoff:z.6g} Hz, while the joint moves."]
     if banded:
         said.append(
-            f"Without an option modelgen identify has those below {usual:z.4g} Hz, which say nothing of "
+            f"Without an option modelgen identify counts those below {usual:z.4g} Hz, other errors than "
             f"these: to compare, call modelgen identify --cutoff {cutoff:z.6g}."
         )
     if rested:

@@ -48,7 +48,9 @@ def test_the_picture_of_the_loop_is_that_of_the_example() -> None:
 
 
 def test_the_picture_of_the_loop_is_legible_on_any_page() -> None:
-    """It lies on a ground of its own, from edge to edge, and its text stands out from that."""
+    """It lies on a ground of its own, from edge to edge, and its text stands out from that, by day and by
+    night.
+    """
     picture = ElementTree.fromstring((DOCS / "loop.svg").read_text(encoding="utf-8"))
     ns = "{http://www.w3.org/2000/svg}"
     ground = next(r for r in picture.iter(f"{ns}rect"))
@@ -58,6 +60,11 @@ def test_the_picture_of_the_loop_is_legible_on_any_page() -> None:
     for text in texts:
         for paper in ("#ffffff", ground.get("fill") or ""):
             assert contrast(text.get("fill") or "", paper) > 4.5, text.text
+    style = next(picture.iter(f"{ns}style")).text or ""
+    night = dict(re.findall(r"\[fill='(#\w+)'\] \{ fill: (#\w+); \}", style))
+    for text in texts:
+        for paper in (night["#ffffff"], night[ground.get("fill") or ""]):
+            assert contrast(night[text.get("fill") or ""], paper) > 4.5, text.text
 
 
 def test_the_bars_of_the_ur10_are_those_of_its_table() -> None:
