@@ -12,6 +12,7 @@ from modelgen.api.description import an_arm, joint_number
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Shown, Table
 from modelgen.charts import apart, sized
+from modelgen.dataset import split_said
 from modelgen.description import Arm, loads
 from modelgen.diagnosis.extended import Estimate, NamedCause
 from modelgen.diagnosis.options.thresholds import USUAL
@@ -247,17 +248,18 @@ def diagnosed(
     wanted = [_place(arm, text) for text in options.effects]
     thresholds = USUAL.with_values(options.thresholds)
     progress("reading", 0, None)
-    found = diagnose_records(
-        arm,
-        records(arm, train, test, options.mapping, thresholds.dataset, options.period),
-        cutoff=options.cutoff,
-        period=options.period,
-        progress=progress,
-        experiment=options.experiment,
-        thresholds=thresholds,
-        effects=wanted,
-        where=Where(options.processes),
-    )
+    with split_said(train):
+        found = diagnose_records(
+            arm,
+            records(arm, train, test, options.mapping, thresholds.dataset, options.period),
+            cutoff=options.cutoff,
+            period=options.period,
+            progress=progress,
+            experiment=options.experiment,
+            thresholds=thresholds,
+            effects=wanted,
+            where=Where(options.processes),
+        )
     return Diagnosis(found, given(arm, train, test, options))
 
 

@@ -14,7 +14,7 @@ from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
 from modelgen.charts import sheet
-from modelgen.dataset import spectra
+from modelgen.dataset import spectra, split_said
 from modelgen.description import Arm
 from modelgen.effects.editing import with_torque_constants
 from modelgen.functions.parameters_file import parameters_yaml
@@ -216,7 +216,9 @@ def identify(
     """
     an_arm(arm)
     chosen = changed(options or IdentificationOptions(), changes)
-    outcome = identify_logs(arm, listed(train, "train"), listed(test, "test"), chosen, progress)
+    training, testing = listed(train, "train"), listed(test, "test")
+    with split_said(training):
+        outcome = identify_logs(arm, training, testing, chosen, progress)
     fitted, held = (files_of(x.name for x in part) for part in (outcome.log.train, outcome.log.test))
     return Identification(outcome, Call(arm, fitted, held, chosen))
 

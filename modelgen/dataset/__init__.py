@@ -5,7 +5,7 @@ from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.prepare import Prepared, prepare
 from modelgen.dataset.processing.settings import PRESETS, Chosen, Settings, choose, preset
 from modelgen.dataset.processing.spectra import described, spectra, spectra_svg
-from modelgen.dataset.processing.splitting import split
+from modelgen.dataset.processing.splitting import split, split_said
 from modelgen.dataset.reading.column_table import ColumnTable, Log, named
 from modelgen.dataset.reading.gathering import check_different, gather, several
 from modelgen.dataset.reading.read import read
@@ -43,4 +43,5 @@ __all__ = [
     "spectra",
     "spectra_svg",
     "split",
+    "split_said",
 ]

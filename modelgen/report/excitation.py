@@ -25,6 +25,7 @@ _UNKNOWN = (
     "how large their efforts are"
 )
 _BETTER = "more --starts and --harmonics look for such a motion, wider limits make room for it."
+_SECOND = "_test"  # what the name of the second motion ends in
 _ELSEWHERE = ("processes", "dask")  # options that say where the work is done
 _SIDES = (
     ("q", "position", "", "joint"),
@@ -147,20 +148,29 @@ def worst(e: Excitation) -> list[str]:
 
 
 def following(e: Excitation, stem: str, call: Call) -> list[Part | str]:
-    """Two records of two motions, and what makes parameters of them."""
-    train, test = (call.beside(f"{stem}{word}_record.csv") for word in ("", "_test"))
+    """Two records of two motions, and what makes parameters of them.
+
+    A stem that ends in `_test` is that of the second motion, whose record is the test record.
+    """
+    second = stem.endswith(_SECOND) and stem != _SECOND
+    first = stem.removesuffix(_SECOND) if second else stem
+    train, test = (call.beside(f"{first}{word}_record.csv") for word in ("", _SECOND))
+    run = f"Give {stem}_set_points.csv to the position controller, two periods or more in a row, and record "
+    records = ["--train", train, "--test", test, "--out", call.beside("identified")]
+    fit = Command(call.command("identify", *records))
+    if second:
+        said = f"positions and efforts as {test}: the test record, where that of the first motion is {train}."
+        return [Text(f"{call.first}{run}{said} With both records, the parameters, {WHERE}:"), fit]
     names = [name for name in options_of(ExcitationOptions) if name not in (*_ELSEWHERE, "seed")]
     again = words_of(e.problem.settings, names)
     seed = str(e.problem.settings.seed + 1)
-    other = call.command("excite", *again, "--seed", seed, "--out", call.beside(f"{stem}_test.csv"))
-    records = ["--train", train, "--test", test, "--out", call.beside("identified")]
+    other = call.command("excite", *again, "--seed", seed, "--out", call.beside(f"{stem}{_SECOND}.csv"))
     return [
         Text(
-            f"{call.first}Give {stem}_set_points.csv to the position controller, two periods or more in a "
-            f"row, and record positions and efforts as {train}. A second motion is for the test record, "
+            f"{call.first}{run}positions and efforts as {train}. A second motion is for the test record, "
             f"{test}; this computes it, {WHERE}:"
         ),
         Command(other),
         Text("With both records, the parameters:"),
-        Command(call.command("identify", *records)),
+        fit,
     ]

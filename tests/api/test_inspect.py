@@ -183,6 +183,17 @@ def test_rest_and_spikes_are_counted(log: dict[str, np.ndarray]) -> None:
     assert found["tau1"].at_rest is None
 
 
+def test_a_joint_that_rests_throughout_is_a_note(arm: mg.Arm, log: dict[str, np.ndarray]) -> None:
+    """As identify and diagnose have it: a log may hold a joint, not all of them."""
+    held = log | {"q1": np.full(1600, 0.4)}
+    found = mg.inspect_log(held, arm)
+    assert any("left out for a, at rest throughout" in remark for remark in found.to_json()["remarks"])
+    assert next(c for c in found.channels if c.name == "q1").at_rest == 1.0
+    assert any(isinstance(part, str) and part.startswith("note: ") for part in found.shown())
+    with pytest.raises(mg.InputError, match="all 2 joints are at rest"):
+        mg.inspect_log(held | {"q2": np.zeros(1600)}, arm)
+
+
 def test_stamps_of_another_name_are_used_by_a_guess(log: dict[str, np.ndarray]) -> None:
     table = {"stamp_ms": 1e12 + 1e3 * log["t"], "hip_pos": log["q2"]}
     found = mg.inspect_log(table)

@@ -221,6 +221,14 @@ def test_records_too_short(logs: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+def test_a_refused_part_of_a_single_log_is_said_to_be_one(logs: Path, tmp_path: Path) -> None:
+    train = f"{logs / 'train_a.csv'}@0:1.6"
+    answer = ask(logs, tmp_path / "out", train=(train,), test=(str(logs / "test.csv"),))
+    assert answer.code == 2
+    assert f"{train}, the single training log, is split in two, and of the parts " in answer.said
+    assert "too short a record" in answer.said
+
+
 def test_an_effect_that_the_arm_has_already_is_no_candidate(logs: Path) -> None:
     arm = next(iter(load(logs / "arms.yaml", known_effects()).values()))
     assert places(arm, "coulomb_friction") == []

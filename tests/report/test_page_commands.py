@@ -187,6 +187,12 @@ def test_an_excitation_is_followed_by_another_and_by_its_records(bench: Path) ->
         assert f" {name}" in said  # what does not exist yet is named in words
         (bench / name).write_text("t,q1,q2,i1,i2\n", encoding="utf-8")
     assert parsed(identify, bench)["test"] == ["motions/first_test_record.csv"]
+    # nothing follows the second motion but the parameters of both
+    (last,) = commands(bench / "motions" / "first_test.html")
+    assert last == identify
+    said = unescape((bench / "motions" / "first_test.html").read_text(encoding="utf-8"))
+    assert " as motions/first_test_record.csv: the test record, " in said
+    assert " where that of the first motion is motions/first_record.csv." in said
 
 
 def test_what_refine_and_calibrate_propose_runs_as_it_is_copied(tmp_path: Path) -> None:

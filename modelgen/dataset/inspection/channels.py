@@ -96,14 +96,15 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
     """A log as it is: without an arm all its columns, with an arm those that are read for it, in its units.
 
     A mapping file without an arm makes columns of joints without limits and gears. Raises InputError for a
-    log that cannot be opened, and with an arm or a mapping also as `read` does.
+    log that cannot be opened, and with an arm or a mapping also as `read` does, where some joints, not all,
+    may stand throughout.
     """
     if isinstance(log, Record):
         return _of_record(log)
     if arm is None and mapping is not None:
         arm = arm_of(mapping)
     if arm is not None:
-        return _of_record(*read_with_stamps(log, arm, mapping))
+        return _of_record(*read_with_stamps(log, arm, mapping, still=True))
     spec = parse(log)
     reader = opened(spec)
     columns, rest = _columns(spec, reader)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.periods import repetition
-from modelgen.dataset.reading.specs import cut
+from modelgen.dataset.reading.column_table import Log
+from modelgen.dataset.reading.specs import cut, parse
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
@@ -72,6 +74,22 @@ def _parts(record: Record, begin: int, middle: int, said: str) -> list[Record]:
     remark = f"{record.name}: a single training log, split in two at t = {at} s: {said}"
     told = replace(record, remarks=(remark, *record.remarks))
     return [cut(told, begin, middle), cut(told, middle, len(record.t))]
+
+
+@contextmanager
+def split_said(train: Sequence[Log]) -> Iterator[None]:
+    """Refusals of a part that `split` made name the single training log too, as it was given."""
+    try:
+        yield
+    except InputError as error:
+        given = [parse(log) for log in train]
+        name = f"{error.message} ".split(": ")[0]
+        if len(given) != 1 or error.where is not None or name == given[0].text:
+            raise
+        if not name.startswith(f"{given[0].path}@"):
+            raise
+        said = f"{given[0].text}, the single training log, is split in two, and of the parts {error.message}"
+        raise InputError(said) from None
 
 
 def as_given(parts: Sequence[Record]) -> list[Record]:

@@ -107,9 +107,8 @@ def read_with_stamps(
         checks.check_constant(spec, arm, source.signals.effort, record.input, "effort", held=held)
     if held:
         names = ", ".join(arm.joints[arm.coordinates[k]].name for k in held)
-        record = replace(
-            record, remarks=(*record.remarks, f"{spec}: left out for {names}, at rest throughout")
-        )
+        said = f"{spec}: left out for {names}, at rest throughout: only other records tell of that"
+        record = replace(record, remarks=(*record.remarks, said))
     return record, stamps
 
 
