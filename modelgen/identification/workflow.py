@@ -76,11 +76,15 @@ class Outcome:
         beside = [{"model": o.name, **errors(o.test)} for o in self.others]
         return (
             to_json(self.found)
-            | {"cutoff_hz": self.chosen.cutoff, "processing": described(self.first)}
+            | {"cutoff_hz": self.chosen.cutoff, "processing": self._processing}
             | {"log": self.log.to_json()}
             | ({"without_drives": beside} if beside else {})
             | ({} if self.folds is None else {"folds": self._folds(self.folds)})
         )
+
+    @property
+    def _processing(self) -> list[str]:
+        return described(self.first, len(self.log.train), self.log.samples)
 
     @staticmethod
     def _folds(folds: Folds) -> dict[str, Any]:

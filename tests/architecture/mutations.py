@@ -98,11 +98,11 @@ MUTATIONS = (
     ),
     Mutation(
         "validation",
-        "gates.py",
+        "conditions.py",
         "carried = due & (gains >= ",
         "carried = due & (gains <= ",
         "a cause that carries nothing to unseen rows is taken",
-        ("test_gates.py", "test_selection.py"),
+        ("test_conditions.py", "test_selection.py"),
     ),
     Mutation(
         "selection",

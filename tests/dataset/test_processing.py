@@ -263,3 +263,8 @@ def test_the_processing_is_told(tmp_path: Path) -> None:
     assert text[0] == "record: 4000 samples at 200 Hz"
     assert "effort and regressor alike: Butterworth, order 4, 4 Hz, forwards and backwards" in text[3]
     assert "every 21st sample" in text[4]
+    one = replace(recorded(tmp_path), name="one.csv")
+    text = described(prepare(one, replace(choose([one], Settings(cutoff=4.0)), spacing=9.998)), 2, 9000)
+    assert text[0] == "2 training records: 9000 samples at 200 Hz"
+    assert text[4].startswith("rows (one.csv, the first record): a row every 9.998 samples, ")
+    assert text[5].startswith("rows that move (one.csv, the first record): ")

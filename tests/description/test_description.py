@@ -211,6 +211,7 @@ def test_the_same_text_gives_the_same_arm_wherever_its_lines_are(checkout: Path)
 @pytest.mark.parametrize("name", ["my_arm", "A", "arm2", "null", "Off", "x" * 48])
 def test_the_starter_file_loads_as_it_stands(name: str) -> None:
     arms = loads(starter(name), "arms.yaml", known_effects())
+    assert arms[name].source == ""  # an example has none
     assert list(arms) == [name]
     arm = arms[name]
     assert arm.notes == ()

@@ -13,7 +13,7 @@ from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.evidence.likelihood import Evidence
 from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.selection.compliance import member
-from modelgen.diagnosis.validation.gates import Judgement
+from modelgen.diagnosis.validation.conditions import Judgement
 
 GAP = 0.004  # rad in the middle of the stroke, per unit of the plant's magnitude
 

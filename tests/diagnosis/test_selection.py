@@ -15,7 +15,7 @@ from modelgen.diagnosis.options.thresholds import SelectionThresholds
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
 from modelgen.diagnosis.selection.rivals import at_one_joint
-from modelgen.diagnosis.validation.gates import Judgement
+from modelgen.diagnosis.validation.conditions import Judgement
 from modelgen.errors import InputError
 from modelgen.evaluation import with_effect
 

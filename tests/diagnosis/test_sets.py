@@ -15,7 +15,7 @@ from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.evidence.likelihood import Evidence
 from modelgen.diagnosis.options.thresholds import SelectionThresholds
 from modelgen.diagnosis.selection.rivals import imitated, lesser_rivals, needed_behind
-from modelgen.diagnosis.validation.gates import Judgement
+from modelgen.diagnosis.validation.conditions import Judgement
 from modelgen.effects import CATALOGUE
 
 

@@ -43,7 +43,7 @@ from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.compliance import member
 from modelgen.diagnosis.selection.rivals import ambiguity_set, lesser_rivals, needed_behind
 from modelgen.diagnosis.selection.stepwise import least_evidence, threshold
-from modelgen.diagnosis.validation.gates import Gates, Judgement
+from modelgen.diagnosis.validation.conditions import Gates, Judgement
 from modelgen.functions import build_model
 from modelgen.thresholds import Value
 

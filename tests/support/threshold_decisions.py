@@ -37,7 +37,7 @@ from modelgen.diagnosis.selection.backward import backward_elimination
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.history import Ranked
 from modelgen.diagnosis.selection.refit import refit
-from modelgen.diagnosis.validation.gates import Gates, Judgement, instrumented
+from modelgen.diagnosis.validation.conditions import Gates, Judgement, instrumented
 from modelgen.excitation.problem import problem
 from modelgen.functions import build_model
 from modelgen.jobs import HERE

@@ -13,11 +13,17 @@ from modelgen.numeric import Array
 POINTS = 300  # of a curve, at most: the picture stays small
 
 
-def described(prepared: Prepared) -> list[str]:
-    """The processing in words, a line per step; then the reader's remarks."""
+def described(prepared: Prepared, records: int = 1, samples: int | None = None) -> list[str]:
+    """The processing in words, a line per step; then the reader's remarks.
+
+    records: how many there are, of which `prepared` is the first; samples: of all of them, where it is not
+    the only one.
+    """
     s, rate = prepared.settings, 1.0 / prepared.record.step
     passes = "forwards and backwards (zero phase)"
-    lines = [f"record: {len(prepared.time)} samples at {rate:.6g} Hz"]
+    several = records > 1
+    count = samples if several and samples is not None else len(prepared.time)
+    lines = [f"{f'{records} training records' if several else 'record'}: {count} samples at {rate:.6g} Hz"]
     if s.position_cutoff:
         lines.append(
             f"positions: Butterworth, order {s.position_order}, {s.position_cutoff:.4g} Hz, {passes}; "
@@ -34,10 +40,12 @@ def described(prepared: Prepared) -> list[str]:
     else:
         lines.append("effort and regressor: not filtered")
     rows = len(prepared.rows)
-    every = f"every {_ordinal(s.factor)} sample" if s.spacing is None else f"a sample every {s.spacing:.5g}"
-    lines.append(f"rows: {every}, {s.trim:.3g} s cut off at both ends: {rows} rows")
+    factor = _ordinal(s.factor)
+    every = f"every {factor} sample" if s.spacing is None else f"a row every {s.spacing:.5g} samples"
+    whose = f" ({prepared.record.name}, the first record)" if several else ""
+    lines.append(f"rows{whose}: {every}, {s.trim:.3g} s cut off at both ends: {rows} rows")
     moving = [f"{100 * share:.0f} %" for share in prepared.moving.mean(axis=0)]
-    lines.append(f"rows that move: {at_joints(prepared.record.joint_names, moving)}")
+    lines.append(f"rows that move{whose}: {at_joints(prepared.record.joint_names, moving)}")
     return [*lines, *prepared.record.remarks]
 
 

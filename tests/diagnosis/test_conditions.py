@@ -12,7 +12,7 @@ from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.likelihood import not_negative
-from modelgen.diagnosis.validation.gates import Gates, Judgement
+from modelgen.diagnosis.validation.conditions import Gates, Judgement
 from modelgen.numeric import Array
 from modelgen.regression.weighted import rmse, weighted_fit
 
