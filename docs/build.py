@@ -109,10 +109,46 @@ def accessible(text: str) -> str:
     # Of a part of a log, FILE@t0:t1, docutils makes an address to write to.
     text = re.sub(r'<a [^>]*href="mailto:[^"]*"[^>]*>(.*?)</a>', r"\1", text)
     text = text.replace('<div id="search-results">', '<h1>Search</h1>\n<div id="search-results">')
+    text = re.sub(r"<table.*?</table>", lambda m: labelled(m[0]), text, flags=re.DOTALL)
+    text = re.sub(
+        r'(<div class="highlight-sh.*?<pre[^>]*><span></span>)(.*?)(?=</pre>)',
+        lambda m: m[1] + in_words(m[2]),
+        text,
+        flags=re.DOTALL,
+    )
     # A long name breaks between its words.
     text = re.sub(r"(<h[12]>)(\w+)(?=<)", lambda m: m[1] + m[2].replace("_", "_<wbr>"), text)
     # A cell above the names of the rows heads nothing.
     return re.sub(r'<th class="head([^"]*)">(?:<p></p>)?</th>', r'<td class="head\1"></td>', text)
+
+
+def labelled(table: str) -> str:
+    """A table whose cells, but for a row's first, name their column: narrow screens fold it."""
+    head, end, body = table.partition("</thead>")
+    names = [re.sub(r"<[^>]*>", "", cell) for cell in re.findall(r"<t[hd][^>]*>.*?</t[hd]>", head, re.DOTALL)]
+
+    def row(found: re.Match[str]) -> str:
+        cells = re.split(r"(?=<td)", found[0])
+        for k, name in list(enumerate(names, 1))[1:]:
+            if k < len(cells):
+                cells[k] = cells[k].replace("<td", f'<td data-label="{name}"', 1)
+        return "".join(cells)
+
+    return head + end + re.sub(r"<tr.*?</tr>", row, body, flags=re.DOTALL)
+
+
+def in_words(code: str) -> str:
+    """Highlighted text with a box about each word, in which no line ends: options have hyphens."""
+    parts, word = [], ""
+    for opening, text in re.findall(r"(?:(<span[^>]*>))?([^<]+)(?:</span>)?", code):
+        for piece in re.findall(r"\s+|\S+", text):
+            marked = f"{opening}{piece}</span>" if opening else piece
+            if not piece.isspace():
+                word += marked
+                continue
+            parts += [f'<span class="word">{word}</span>' if word else "", marked]
+            word = ""
+    return "".join(parts) + (f'<span class="word">{word}</span>' if word else "")
 
 
 def pictured(text: str, folder: Path) -> str:

@@ -23,6 +23,7 @@ from modelgen.resources import templates_folder
 HERE = Path(__file__).resolve().parent
 PLACE = HERE / "case-studies"
 WIDTH, HEIGHT, STRIP = 440, 220, 44  # of a chart, and what stands above it
+LONG = 10  # letters of a joint's name that have room below its bars
 CHART = re.compile(
     r"<text class=\"title\"[^>]*>(.*?)</text>\n<svg x=[^>]*>(.*?)</svg>(?=\n<text class=\"title\"|\n</svg>)",
     re.DOTALL,
@@ -53,29 +54,32 @@ def residual(folder: Path, joint: int, over: str) -> str:
     return _alone(unescape(title) if over == "time" else f"{unescape(title)}: mean residual", chart, key)
 
 
-def bars(rows: dict[str, list[float]], joints: list[str], unit: str) -> str:
-    """Errors by joint, a bar for each row of a table."""
+def bars(rows: dict[str, list[float]], joints: list[str], of: str) -> str:
+    """Errors by joint, a bar for each row of a table. of: the end of the title, with the unit."""
     highest = max(max(values) for values in rows.values())
+    names = [name.replace("_", "_\n").split("\n") if len(name) > LONG else [name] for name in joints]
+    floor = HEIGHT - 12 - 12 * max(map(len, names))
     group = (WIDTH - 40) / len(joints)
     wide = 0.8 * group / len(rows)
     parts = []
     for k in range(4):
         value = 0.1 * k
-        y = HEIGHT - 24 - (HEIGHT - 44) * value / highest
+        y = floor - (floor - 20) * value / highest
         parts.append(f'<path class="grid" d="M36 {y:.1f}H{WIDTH}"/>')
         parts.append(f'<text class="tick" x="32" y="{y + 4:.1f}" text-anchor="end">{value:.1f}</text>')
-    for j, joint in enumerate(joints):
+    for j, lines in enumerate(names):
         left = 40 + group * j
         for k, (role, values) in enumerate(zip(ROLES, rows.values(), strict=True)):
-            high = (HEIGHT - 44) * values[j] / highest
-            parts.append(_bar(role, left + wide * k, HEIGHT - 24 - high, wide - 1.0, high))
+            high = (floor - 20) * values[j] / highest
+            parts.append(_bar(role, left + wide * k, floor - high, wide - 1.0, high))
         middle = left + 0.4 * group
-        parts.append(
-            f'<text class="tick" x="{middle:.1f}" y="{HEIGHT - 8}" text-anchor="middle">'
-            f"{escape(joint)}</text>"
-        )
+        parts += [
+            f'<text class="tick" x="{middle:.1f}" y="{floor + 16 + 12 * k}" text-anchor="middle">'
+            f"{escape(line)}</text>"
+            for k, line in enumerate(lines)
+        ]
     key = [(f"bar {role}", name) for role, name in zip(ROLES, rows, strict=True)]
-    return _alone(f"RMSE on the held-out record [{unit}]", "".join(parts), key)
+    return _alone(f"RMSE on the held-out record{of}", "".join(parts), key)
 
 
 def _bar(role: str, x: float, y: float, wide: float, high: float) -> str:
@@ -94,8 +98,8 @@ def ur10() -> str:
     table = re.findall(r"^\|[ -].*\|$", section, re.MULTILINE)
     head, _, *rest = [[cell.strip() for cell in line.strip("|").split("|")] for line in table]
     rows = {row[0]: [float(cell) for cell in row[1:]] for row in rest}
-    joints = [name.removeprefix("shoulder_").replace("_", " ") for name in head[1:]]
-    return bars(rows, joints, "A")
+    band = re.findall(r"up to [\d.]+ Hz", head[0])[0]
+    return bars(rows, head[1:], f", {band} [A]")
 
 
 def _alone(title: str, chart: str, key: list[tuple[str, str]]) -> str:

@@ -163,9 +163,11 @@ def _of_input(definition: type[InputEffect]) -> Chart:
         states = list(stepped(value, *states, float(t[1])))
     last = slice((_SETTLED - 1) * _SAMPLES, None, _SAMPLES // _DRAWN)
     given, made = (np.append(v[last], v[last][0]) for v in (given, made))
-    text = f"What {definition.name} and an ideal drive make of a sinusoidal input of {_WAVE:g} Hz."
+    # what has no states makes the same of every frequency
+    of, name = (f" of {_WAVE:g} Hz", f"at {_WAVE:g} Hz") if symbols else ("", definition.name)
+    text = f"What {definition.name} and an ideal drive make of a sinusoidal input{of}."
     ends = np.array([-_INPUT, _INPUT])
-    curves = [Curve(ends, ends, "before", "an ideal drive"), Curve(given, made, "law", f"at {_WAVE:g} Hz")]
+    curves = [Curve(ends, ends, "before", "an ideal drive"), Curve(given, made, "law", name)]
     return Chart("the law", "input [A]", "effort as that of [A]", curves, text)
 
 

@@ -91,6 +91,32 @@ def test_charts_that_are_kept_look_as_those_that_are_drawn() -> None:
             assert form.endswith("z") == (role == "after"), path
 
 
+def test_a_folded_table_names_its_columns_and_a_word_of_a_command_stays_whole(tmp_path: Path) -> None:
+    build = script("build")
+    heads = "".join(f'<th class="head"><p>{x}</p></th>' for x in ("arm", "error [A]", "test"))
+    rows = "<tr><td><p>one</p></td><td><p>0.1</p></td><td><p>--seed</p></td></tr>"
+    table = build.labelled(f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>")
+    assert re.findall(r'<td(?: data-label="(.*?)")?><p>(.*?)</p>', table) == [
+        ("", "one"),
+        ("error [A]", "0.1"),
+        ("test", "--seed"),
+    ]
+    code = '<span class="n">a</span>-b<span class="w"> </span><span class="s">--out c-d\n  e</span>'
+    worded = build.in_words(code)
+    assert re.sub("<[^>]*>", "", worded) == re.sub("<[^>]*>", "", code)  # what is copied
+    style = (DOCS / "style" / "pages.css").read_text(encoding="utf-8")
+    path = tmp_path / "words.html"
+    path.write_text(
+        f'<html lang="en"><title>x</title><style>{style}</style><body><section id="case-studies">'
+        f'<pre style="width: 5ch; margin: 0">{worded}</pre></section>',
+        encoding="utf-8",
+    )
+    with opened(path, 400, alone=False) as shown:
+        heights = [box.bounding_box()["height"] for box in shown.locator(".word").all()]
+    assert len(heights) == 4
+    assert max(heights) < 1.5 * min(heights)
+
+
 @pytest.mark.parametrize("width", [1280, 1000, 800, 720, 560, 400])
 def test_no_picture_of_an_effect_is_left_alone_below_two_others(width: int, tmp_path: Path) -> None:
     """The law stands above what it does to a log, in two pictures beside each other or below each other."""

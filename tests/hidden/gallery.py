@@ -35,7 +35,12 @@ HEAD = """\
 # Gallery of effects
 
 *What does each effect of the [catalogue](effects.md) do to a log, what looks like it, and how do I tell
-the two apart?* The first picture of an entry is the law with the values of an example. The other two are
+the two apart?* The records are of simulated arms: `direct2` has two joints with geared motors, `levered2`
+two that screws turn by levers, `mixed2` one of each, `mixed3` a slewing joint with a geared motor and two
+with screws and levers. `taut_hose`, a hose that resists two joints once it is taut, is hidden in the blind
+run and is no effect of the catalogue.
+
+The first picture of an entry is the law with the values of an example. The other two are
 of simulated records in which the effect was hidden, over what shows it best: what the rest of the model
 leaves of the effort, with the law that `modelgen diagnose --effect` finds; and the mean residual without
 and with it. What remembers, or has to do with other joints, is drawn over those seconds of the test record
@@ -146,8 +151,8 @@ def _log(line: Line) -> str:
     encoder = "" if line["encoder"] == "motor" else ", with encoders at the joints"
     place, unit = line["place"], line["unit"]
     return (
-        f"Arm `{line['arm']}`{encoder}. {line['found']} That is {line['size']} of the {line['whole']} {unit} "
-        f"(RMS) of {place}; with it in the model the error there falls from {line['before']} to "
+        f"Arm `{line['arm']}`{encoder}. {line['found']} That is {line['size']} {unit} of the {line['whole']} "
+        f"{unit} (RMS) of {place}; with it in the model the error there falls from {line['before']} to "
         f"{line['after']} {unit} on a record that the fit has not seen."
     )
 
@@ -165,7 +170,10 @@ def _counted(name: str, run: Sequence[Line]) -> str:
     if instead:
         said += f"; named instead or besides: {listed(f'{_link(x)} ({k})' for x, k in instead.items())}"
     if wrong:
-        said += f". It was named where {listed(f'{_link(x)} ({k})' for x, k in wrong.items())} was hidden"
+        hidden = (
+            f"{listed(f'{_link(x)} ({k})' for x, k in wrong.items())} {'was' if len(wrong) == 1 else 'were'}"
+        )
+        said += f". It was named where {hidden} hidden"
     return f"{said}."
 
 
