@@ -11,7 +11,7 @@ from typing import Any
 from modelgen.api.description import an_arm, joint_number
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Shown, Table
-from modelgen.charts import apart, sized
+from modelgen.charts import apart
 from modelgen.dataset import split_said
 from modelgen.description import Arm, loads
 from modelgen.diagnosis.extended import Estimate, NamedCause
@@ -21,7 +21,7 @@ from modelgen.diagnosis.pipeline import records
 from modelgen.diagnosis.result import Diagnosis as Found
 from modelgen.effects import known_effects
 from modelgen.effects.editing import extended_yaml
-from modelgen.effects.placement import joint_meant, titled
+from modelgen.effects.placement import titled
 from modelgen.jobs import Where
 from modelgen.options import DiagnosisOptions, changed
 from modelgen.progress import Progress, silent
@@ -37,7 +37,7 @@ from modelgen.report.diagnosis_sentences import (
 )
 from modelgen.report.experiment import followed
 from modelgen.report.following import proposed, whole_json
-from modelgen.report.words import joint_name, legible, place_of
+from modelgen.report.words import joint_name, legible, place_of, value_said
 from modelgen.report.writing import write
 
 
@@ -270,10 +270,7 @@ def _place(arm: Arm, text: str) -> tuple[str, int | None]:
 
 
 def _row(arm: Arm, c: NamedCause) -> list[str]:
-    values = ", ".join(
-        f"{n} {joint_meant(arm, c.effect, n, e.value) or sized(e.value, e.unit, 4)}"
-        for n, e in legible(c.parameters).items()
-    )
+    values = ", ".join(f"{n} {value_said(arm, c.effect, n, e)}" for n, e in legible(c.parameters).items())
     rivals = ", ".join(titled(arm, e, j) for e, j, _ in c.ambiguous_with)
     same = ", ".join(titled(arm, e, j) for e, j in c.aliases)
     gains = f"{c.cross_gain:z.1f}", "" if isnan(c.share.gain) else f"{c.share.gain:z.1f}"

@@ -124,7 +124,8 @@ def _found(d: Diagnosis) -> Row:
         "ambiguous_with": [_places(d.arm, c["ambiguous_with"]) for c in said["causes"]],
         "aliases": [_places(d.arm, c["aliases"]) for c in said["causes"]],
         "cause_parameters": [
-            {"cause": c["effect"], "joint": c["joint"], "name": name, **value}
+            {"cause": c["effect"], "joint": c["joint"], "name": name}
+            | {key: value[key] for key in ("value", "std", "unit")}
             for c in said["causes"]
             for name, value in c["parameters"].items()
         ],
@@ -140,7 +141,11 @@ def _found(d: Diagnosis) -> Row:
             {"name": name, "value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
             for name, e in d.parameters.items()
         ],
-        "not_identifiable": [n["effect"] for n in said["not_identifiable"]],
+        "not_identifiable": [
+            n["effect"]
+            for n in said["not_identifiable"]
+            if not any(n["effect"] == c["effect"] for c in said["causes"])
+        ],
     }
 
 

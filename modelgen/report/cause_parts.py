@@ -12,13 +12,12 @@ from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
-from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
 from modelgen.report.diagnosis_sentences import cause_title, checked, interval
 from modelgen.report.law_figures import judged_joint, law_charts, law_size, seen
 from modelgen.report.law_sketch import sketch
 from modelgen.report.page import Folded, Grid, Heading, Line, Marks, Part, Run, Section, Text, block
-from modelgen.report.words import law, legible, sentence
+from modelgen.report.words import law, legible, sentence, value_said
 from modelgen.resources import gallery
 
 _LOOKALIKES = (("confused with", "left"), ("what that is", "left"), ("seen by itself in", "left"))
@@ -144,7 +143,7 @@ def _values(d: Diagnosis, c: NamedCause) -> Grid:
     rows: Sequence[Sequence[str]] = [
         (
             name,
-            joint_meant(d.arm, c.effect, name, e.value) or f"{e.value:z.4g}",
+            value_said(d.arm, c.effect, name, e, unit=False),
             "" if np.isnan(e.std) else f"{e.std:z.2g}",
             "" if e.unit == "1" else e.unit,
             meanings.get(name, ""),

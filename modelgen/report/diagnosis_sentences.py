@@ -69,7 +69,14 @@ def opening(d: Diagnosis) -> str:
     said = [texts[k] for k in order[:_SPOKEN]]
     if order[_SPOKEN:]:
         said.append(f"And {len(order) - _SPOKEN} more, in the table.")
-    return " ".join([*said, sentence(worth(d)), *doubted(d)])
+    more = [beside(d)] if beside(d) else []
+    return " ".join([*said, sentence(worth(d)), *more, *doubted(d)])
+
+
+def beside(d: Diagnosis) -> str:
+    """What remains beside the causes, the reason without that the checks are passed; empty where nothing."""
+    more = d.reason.partition("; ")[2] if d.verdict == "named" else ""
+    return sentence(more) if more else ""
 
 
 def by_worth(d: Diagnosis) -> list[int]:
@@ -102,16 +109,20 @@ _MARKED = 1.0  # %, of harm that no interval says to be more than chance
 
 
 def interval(low: float, high: float, around: str = "{}") -> str:
-    """Of a gain [%], put into `around`; empty where the test record is too short for one."""
-    return "" if np.isnan(low) else around.format(f"{low:z.1f} to {high:z.1f}")
+    """Of a gain [%], put into `around`; empty where the test record is too short for one, or where both ends
+    are the same in print.
+    """
+    ends = f"{low:z.1f}", f"{high:z.1f}"
+    return "" if np.isnan(low) or ends[0] == ends[1] else around.format(" to ".join(ends))
 
 
 def harms(d: Diagnosis) -> list[str]:
     """Warnings about causes that make the test record worse."""
-    short = "it is too short for an interval"
+    short = " (it is too short for an interval)"
     return [
         f"With {cause_title(d, c)} the error on the test record is {-c.share.gain:z.1f} % "
-        f"larger ({interval(-c.share.high, -c.share.low, '{} %') or short}): what was found does not carry "
+        f"larger{short if np.isnan(c.share.low) else interval(-c.share.high, -c.share.low, ' ({} %)')}: what "
+        "was found does not carry "
         f"over to that record.{CATALOGUE[c.effect].caveat}"
         for c in harmful(d)
     ]

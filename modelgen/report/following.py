@@ -13,7 +13,7 @@ from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import Found, titled
 from modelgen.options import words_of
 from modelgen.report.call import WHERE, Call, command
-from modelgen.report.diagnosis_sentences import cause_title, harmful
+from modelgen.report.diagnosis_sentences import beside, cause_title, harmful
 from modelgen.report.experiment import followed
 from modelgen.report.words import listed, place_of
 
@@ -33,6 +33,14 @@ _RELEASES = {
     "outside_catalogue": f"{_LOOK} Releases from other angles help.",
     "suspected": "Release the arm from other angles and add these logs to the training records.",
 }
+_COARSE = (
+    "Use finer encoders; else record a motion that is faster and goes farther, beside which their steps are "
+    "smaller."
+)
+_REMAINS = (
+    "Something remains that is not named, and the values of what is named hold as far as it does not act on "
+    "them."
+)
 _EVERY = "Only some effects were asked for: ask for all of the catalogue."
 
 
@@ -60,7 +68,8 @@ def _first(d: Diagnosis, call: Call) -> list[Step]:
         return [asked_next(d, call)[1]]
     code = _generating(d, call, _described(d, call))
     if d.verdict == "named":
-        return carried(d, call) or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
+        steps = carried(d, call) or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
+        return [*steps, Step(f"{_REMAINS} {_LOOK}")] if beside(d) else steps
     text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
     return [Step(text, code)]
 
@@ -193,7 +202,9 @@ def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
         text = _RELEASES[d.verdict]
         refine = call.refining("refined", call.description) if d.verdict == "cannot_tell" else ""
         return text, Step(f"{text} This does, {WHERE}:" if refine else text, refine)
-    text = _MOTIONS[d.verdict]
+    feigned = 0.0 if d.positions is None else float(d.positions.feigned.max())
+    coarse = d.verdict == "cannot_tell" and feigned > float(d.settings["practical_gain_percent"])
+    text = _COARSE if coarse else _MOTIONS[d.verdict]
     p = d.test.prepared
     speeds = np.abs(p.picked(p.dq)).max(axis=0).tolist()
     description = _described(d, call)

@@ -26,6 +26,7 @@ _LIMITED = {
     "effort": "effort",
 }
 _BELOW = 1e-3  # of a deviation, of which two digits are printed
+NOT_SEPARATE = "in the arm's parameters"
 _DIGITS = 1e-12  # of a value, which a computation of doubles leaves of zero
 
 
@@ -77,6 +78,16 @@ def legible(parameters: Mapping[str, Any]) -> Mapping[str, Any]:
         least = _BELOW * e.std if e.std > 0.0 else _DIGITS * peers
         found[name] = replace(e, value=0.0) if abs(e.value) < least else e
     return found
+
+
+def value_said(arm: Arm, effect: str, name: str, e: Any, digits: int = 4, *, unit: bool = True) -> str:
+    """The value of a cause's parameter: of a joint its name; one that the arm's own parameters hold has none.
+    unit: whether that is said too.
+    """
+    if not e.separate:
+        return NOT_SEPARATE
+    plain = sized(e.value, e.unit, digits) if unit else f"{e.value:z.{digits}g}"
+    return joint_meant(arm, effect, name, e.value) or plain
 
 
 def finding(

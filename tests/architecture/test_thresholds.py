@@ -13,6 +13,7 @@ DIAGNOSIS = ROOT / "modelgen" / "diagnosis"
 ENTRIES = DIAGNOSIS / "options" / "thresholds"
 
 ACCURACY = "how finely something is computed: another value changes digits"
+PRINTED = "what is printed in place of a figure that says no more"
 BUDGET = "how long a search goes on: a longer one finds what this one found"
 START = "where a search begins: its end is elsewhere"
 ROUNDING = "what is smaller is rounding of floating-point arithmetic"
@@ -25,6 +26,7 @@ SAID = "the sentence that describes the test says it in words"
 CONSTANTS = {
     "adequacy/distinguishable.py": {"SEED": SEED},
     "adequacy/explained.py": {"NEIGHBOURS": ACCURACY},
+    "adequacy/figures_said.py": {"HARDLY": PRINTED},
     "adequacy/null_distribution.py": {"NULLS": MEASURED},
     "adequacy/motion_functions.py": {"EVEN": ACCURACY, "MEMORIES": ACCURACY, "WAYS": ACCURACY},
     "adequacy/smooth_functions.py": {

@@ -34,7 +34,7 @@ def judged(seed: int, sizes: tuple[float, ...], *, unlike: bool = False) -> floa
         shown = 0.0 * cause if unlike and k else cause
         columns.append(np.stack([*base, shown], axis=1)[:, None, :])
     parts = [([row], [k]) for k, row in enumerate(rows)]
-    return agreement(parts, equations_of(rows, [PERIOD] * len(rows)), columns, 3)
+    return agreement(parts, equations_of(rows, [PERIOD] * len(rows)), columns, 3).probability
 
 
 @pytest.mark.parametrize("count", [2, 3])

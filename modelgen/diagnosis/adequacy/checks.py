@@ -184,7 +184,7 @@ def significant(k: int, selection: Selection, equations: Equations) -> Check:
         found = _largest(*_estimated(k, selection, equations))
         text = "its parameters count together, by the evidence"
         if np.isfinite(found):
-            text += f"; the clearest of them is {number(found)} standard deviations from zero, none need be"
+            text += f", not each alone; the clearest is {number(found)} standard deviations from zero"
         return Check("significant", True, True, found, float("nan"), text)
     of = _searched if any(name in cause.trial.values for name in claims) else _estimated
     found = c.definition.above_zero(equations.arm, *of(k, selection, equations))
@@ -271,11 +271,15 @@ def _stable(k: int, selection: Selection) -> Check:
     others = [c.trial for i, c in enumerate(selection.causes) if i != k]
     columns = with_causes(system.equations, [*others, trial])  # the cause's own at the end
     own = columns[0].shape[2] - trial.columns[0].shape[2]
-    found = agreement(parts, system.equations, columns, own) if len(parts) > 1 else float("nan")
-    text = "one record cannot tell whether its size is the same in all"
-    if not np.isnan(found):
-        text = (
-            f"{what} differ in its size as much as these in {percent(found)} of cases where it is the same "
-            f"in all; {percent(least)} is asked"
-        )
-    return Check("stable", None if np.isnan(found) else found >= least, False, found, least, text)
+    if parts[1:] == []:
+        text = "one record cannot tell whether its size is the same in all"
+        return Check("stable", None, False, float("nan"), least, text)
+    found, ratio = agreement(parts, system.equations, columns, own)
+    text = (
+        f"{what} differ in its size as much as these in {percent(found)} of cases where it is the same "
+        f"in all; {percent(least)} is asked"
+    )
+    if found >= least or np.isnan(ratio):
+        return Check("stable", found >= least, False, found, least, text)
+    text += f"; its deviations are {ratio:z.2g} times those of noise alone, so that they hold what differs"
+    return Check("stable", False, False, found, least, text, ratio)

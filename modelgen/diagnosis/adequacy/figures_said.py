@@ -12,6 +12,7 @@ from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
 
 FREE_FUNCTION = "a free function"
+HARDLY = 1e-4  # a share beneath which its figure says no more
 
 
 def possible(cause: Cause, arm: Arm) -> str:
@@ -56,5 +57,7 @@ def form_said(by: FreeForm) -> str:
 
 
 def percent(share: float) -> str:
-    """A share in percent."""
+    """A share in percent; hardly any has no figure of its own."""
+    if 0.0 <= share < HARDLY:
+        return f"less than {100.0 * HARDLY:g} %"
     return f"{number(100.0 * share, 2)} %"

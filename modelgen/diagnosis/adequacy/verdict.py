@@ -11,7 +11,7 @@ from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.checks import Examined
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, place
 from modelgen.diagnosis.adequacy.smooth_functions import Likeness
-from modelgen.diagnosis.candidates import Candidate
+from modelgen.diagnosis.candidates import Candidate, at_motor
 from modelgen.diagnosis.evidence import Endogeneity
 from modelgen.diagnosis.selection import Cause, Selection
 from modelgen.effects.placement import titled
@@ -48,8 +48,9 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
     like = "" if likeness is None else f", most like {likeness.shape.text}"
     if selection.causes:
         left = like or (fit is not None and fit.found)
+        beside = "it" if len(selection.causes) == 1 else "them"
         return "named", "a cause passed every check that decides" + (
-            f"; something deterministic remains beside it{like}" if left else ""
+            f"; something deterministic remains beside {beside}{like}" if left else ""
         )
     if remains.suspects:
         return "suspected", "; ".join(_suspected(arm, e) for e in remains.suspects)
@@ -57,7 +58,7 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
         rivals = " and ".join(_rivals(arm, c) for c in remains.unclear)
         return "cannot_tell", (
             f"the positions are too coarse to tell {rivals}: each "
-            "explains what is missing nearly as well; finer encoders, or encoders at the motors, can tell"
+            f"explains what is missing nearly as well; {_finer(selection)} can tell"
         )
     if remains.counted:
         return "nothing_missing", (
@@ -69,7 +70,7 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
         return "cannot_tell", (
             "the positions are too coarse or too noisy: their errors alone could feign a gain of "
             f"{remains.feigned.max():.1f} % at {joint}, and nothing explains more; "
-            "finer encoders, or encoders at the motors, can tell"
+            f"{_finer(selection)} can tell"
         )
     if fit is None:
         more = (
@@ -93,6 +94,13 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
+
+
+def _finer(selection: Selection) -> str:
+    """The encoders that can tell: at the motors, where they are not there."""
+    rows, n = selection.system.rows, selection.system.n
+    motors = all(at_motor(j, rows) for j in range(1, n + 1))
+    return "finer encoders" if motors else "finer encoders, or encoders at the motors,"
 
 
 def _suspected(arm: Arm, e: Examined) -> str:

@@ -131,7 +131,8 @@ class Search:
             columns = self._columns(candidate, values)
         else:
             columns = candidate_columns(candidate, around, self.equations, self.base)
-        if columns is None or not all(np.isfinite(c).all() for c in columns):
+        most = np.sqrt(np.sqrt(np.finfo(np.float64).max))  # what runs away leaves no room for squares
+        if columns is None or not all((np.abs(c) < most).all() for c in columns):
             return None
         gain = self.system.gain(columns, extra, candidate.positive, passing=candidate.passing)
         if gain is None:

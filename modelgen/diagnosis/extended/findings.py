@@ -14,11 +14,14 @@ from modelgen.numeric import Array
 
 @dataclass(frozen=True)
 class Estimate:
-    """A parameter of a cause."""
+    """A parameter of a cause. separate: whether the records show it beside the arm's own parameters, which
+    hold it where they do not; its value then is zero.
+    """
 
     value: float
     std: float
     unit: str
+    separate: bool = True
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.extended.findings import Estimate
-from modelgen.diagnosis.selection import Selection, covariance_of, deviations
+from modelgen.diagnosis.selection import Selection, covariance_of, deviations, unseparated
 from modelgen.functions import Model
 from modelgen.model.parameters import units_at
 from modelgen.numeric import Array
@@ -34,7 +34,8 @@ def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str
     """
     most = equations.thresholds.extended.max_relative_deviation
     found = []
-    for cause, spread in zip(selection.causes, deviations(selection, equations), strict=True):
+    alike = unseparated(selection, equations)
+    for cause, spread, held in zip(selection.causes, deviations(selection, equations), alike, strict=True):
         units = units_at(equations.arm, *cause.trial.candidate.place)
         values, searched = cause.trial.parameters, cause.trial.values
         c = cause.trial.candidate
@@ -42,7 +43,9 @@ def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str
         open_ |= {name for name in searched if name in values and spread[name] > most * abs(values[name])}
         found.append(
             {
-                name: Estimate(v, float("nan") if name in open_ else spread[name], units.get(name, ""))
+                name: Estimate(
+                    v, float("nan") if name in open_ else spread[name], units.get(name, ""), name not in held
+                )
                 for name, v in values.items()
             }
         )

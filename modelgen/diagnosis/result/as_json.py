@@ -117,6 +117,7 @@ def _cause(c: NamedCause) -> dict[str, Any]:
         **({} if c.records is None else {"records": list(c.records)}),
         "parameters": {
             name: {"value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
+            | ({} if e.separate else {"separate": False})
             for name, e in c.parameters.items()
         },
         "evidence": {

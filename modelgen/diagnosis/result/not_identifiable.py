@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import at_links, at_motor, cold
 from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.selection import Selection
 from modelgen.effects import CATALOGUE, Family, Presence, Seen
 
 
-def not_identifiable(arm: Arm, equations: Equations, selection: Selection) -> tuple[tuple[str, str], ...]:
-    """What these records could not show, whatever is there; what concerns all of them first."""
+def not_identifiable(
+    arm: Arm, equations: Equations, selection: Selection, causes: Sequence[NamedCause] = ()
+) -> tuple[tuple[str, str], ...]:
+    """What these records could not show, whatever is there: of the causes, then what concerns all records."""
     rows, n, coarse = equations.rows, equations.n, equations.coarse
     moved = any(r.prepared.input is not None for r in rows)
     unsided = [
@@ -29,4 +34,18 @@ def not_identifiable(arm: Arm, equations: Equations, selection: Selection) -> tu
             e.simpler is not None,
         ),
     )
-    return tuple((e.name, reason) for e in order for reason in e.hidden(arm, seen, e.name in named))
+    hidden = ((e.name, reason) for e in order for reason in e.hidden(arm, seen, e.name in named))
+    return (*_unseparated(causes), *hidden)
+
+
+def _unseparated(causes: Sequence[NamedCause]) -> list[tuple[str, str]]:
+    return [
+        (
+            c.effect,
+            f"its {name}{'' if c.joint_name is None else f' at {c.joint_name}'} acts as the arm's own "
+            "parameters do, which hold it: they are off by it, and the model is right with both",
+        )
+        for c in causes
+        for name, e in c.parameters.items()
+        if not e.separate
+    ]

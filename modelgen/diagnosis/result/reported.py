@@ -77,7 +77,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         reason=decision.reason,
         causes=causes,
         suspects=_suspects(decision, arm),
-        not_identifiable=not_identifiable(arm, equations, selection),
+        not_identifiable=not_identifiable(arm, equations, selection, causes),
         lack_of_fit=fit,
         lack_of_fit_part=None if fit is None else place(fit, equations.rows),
         likeness=decision.remains.likeness,
@@ -233,13 +233,17 @@ def _as_named(
     checks: tuple[Check, ...],
     records: Sequence[str],
 ) -> NamedCause:
-    """A cause with its values and checks, without what only the test record or its rivals say."""
+    """A cause with its values and checks, without what only the test record or its rivals say.
+
+    Deviations hold what the records differ by (Birge 1932).
+    """
     c = cause.trial.candidate
+    times = float(np.prod([check.widened for check in checks]))
     having = [name for k, name in enumerate(records) if k not in c.absent]
     return NamedCause(
         effect=c.effect,
         joint=c.joint,
-        parameters=values,
+        parameters={name: replace(e, std=times * e.std) for name, e in values.items()},
         delta_bic=cause.delta_bic,
         cross_gain=cause.cross_gain,
         expected_gain=cause.expected_gain,

@@ -2,7 +2,7 @@
 
 from modelgen.diagnosis.selection.cause import Cause, Selection, together, with_trials
 from modelgen.diagnosis.selection.compliance import alternatives, best_beside
-from modelgen.diagnosis.selection.deviations import covariance_of, deviations
+from modelgen.diagnosis.selection.deviations import covariance_of, deviations, unseparated
 from modelgen.diagnosis.selection.history import (
     COARSE,
     EXCHANGED,
@@ -35,5 +35,6 @@ __all__ = [
     "refit_elastic",
     "threshold",
     "together",
+    "unseparated",
     "with_trials",
 ]

@@ -88,17 +88,43 @@ def _at_zero(cause: Cause, equations: Equations, system: System) -> tuple[list[i
     Not of those that the records cannot show beside all others.
     """
     trial = cause.trial
+    held, made, shown = _held(cause, equations, system)
+    open_ = [k for k, there in zip(held, shown, strict=True) if there]
+    if not open_:
+        return [], [np.zeros((*t.shape[:2], 0)) for t in trial.columns]
+    return open_, [t[:, :, open_] for t in made]
+
+
+def unseparated(selection: Selection, equations: Equations) -> list[list[str]]:
+    """Names of the parameters of each cause that the records cannot show beside all others: what they would
+    add is in the arm's own parameters. equations: as of `deviations`.
+    """
+    system = selection.system
+    of_arm = equations.with_rows(system.rows)
+    found = []
+    for cause in selection.causes:
+        held, made, shown = _held(cause, of_arm, system)
+        there = [any(t[:, :, k].any() for t in made) for k in held]
+        columns = [k for k, so, alone in zip(held, there, shown, strict=True) if so and not alone]
+        found.append([cause.trial.candidate.names[k] for k in columns])
+    return found
+
+
+def _held(
+    cause: Cause, equations: Equations, system: System
+) -> tuple[list[int], Sequence[Array], Sequence[bool]]:
+    """Numbers (h) of the cause's columns that are zero, all its columns (M, n, k) of every record as they
+    would be, and whether the records show those (h) beside all others.
+    """
+    trial = cause.trial
     c, tables = trial.candidate, trial.columns
     held = [] if c.elastic else np.flatnonzero(~np.any([t.any(axis=(0, 1)) for t in tables], axis=0)).tolist()
-    nothing = [np.zeros((*t.shape[:2], 0)) for t in tables]
     made = candidate_columns(c, {**trial.values, **trial.around}, equations, system.base) if held else None
     if made is None:
-        return [], nothing
+        return [], [], []
     stacked = system.plain.stacked([t[:, :, held] for t in made])
     norms = np.linalg.norm(stacked, axis=0)
-    shown = system.plain.shown(stacked / np.where(norms > 0.0, norms, 1.0))
-    open_ = [k for k, there in zip(held, shown, strict=True) if there]
-    return open_, [t[:, :, open_] for t in made]
+    return held, made, system.plain.shown(stacked / np.where(norms > 0.0, norms, 1.0)).tolist()
 
 
 def _carried(selection: Selection, equations: Equations) -> list[Array]:

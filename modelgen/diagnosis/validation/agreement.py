@@ -9,6 +9,7 @@ periods of a record, any of them in the place of each, turned and with any sign.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,22 +25,32 @@ DRAWS = 64  # of noise: a budget, more tell the same with less scatter
 SEED = 20010601
 
 
+class Agreement(NamedTuple):
+    """probability: that estimates lie as far apart by noise alone. ratio: how many times farther apart they
+    lie than that (Birge 1932), not a number where they cannot be compared.
+    """
+
+    probability: float
+    ratio: float
+
+
 def agreement(
     parts: Sequence[tuple[Sequence[Rows], Sequence[int]]],
     equations: Equations,
     columns: Sequence[Array],
     own: int,
-) -> float:
-    """Probability that estimates of the columns from `own` on lie as far apart by noise alone (Wald's test).
+) -> Agreement:
+    """How well estimates of the columns from `own` on agree (Wald's test).
 
     parts: rows, and which records they are of; columns: (M, n, p), of all records. A column
-    that some part lacks is left out; 0 where none is left: what cannot be compared is not agreed on.
+    that some part lacks is left out; probability 0 where none is left: what cannot be compared is not agreed
+    on.
     """
     rows, periods = equations.rows, equations.periods
     shown = [_shown(some, [columns[i] for i in which]) for some, which in parts]
     kept = [k for k in range(own, columns[0].shape[2]) if all(there[k] for there in shown)]
     if not kept:
-        return 0.0
+        return Agreement(0.0, float("nan"))
     columns = [c[:, :, [*range(own), *kept]] for c in columns]
     theta = weighted_fit(rows, columns)
     weights = weights_of(rows, columns, theta)
@@ -60,7 +71,8 @@ def agreement(
         ranks.append(int(np.linalg.matrix_rank(scatter, hermitian=True)))
     mean = np.linalg.pinv(sum(w for _, w in found), hermitian=True) @ sum(w @ off for off, w in found)
     apart = sum(float((off - mean) @ w @ (off - mean)) for off, w in found)
-    return float(chi2.sf(apart, max(1, sum(ranks) - max(ranks))))
+    freedom = max(1, sum(ranks) - max(ranks))
+    return Agreement(float(chi2.sf(apart, freedom)), float(np.sqrt(apart / freedom)))
 
 
 def _shown(rows: Sequence[Rows], columns: Sequence[Array]) -> NDArray[np.bool_]:

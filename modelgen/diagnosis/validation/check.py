@@ -11,6 +11,7 @@ class Check:
 
     passed: None where it could not be asked. decides: whether a cause that fails it is none. value,
     threshold: the figures that it compares, not a number where it compares none. text: both in words.
+    widened: how many times the deviations of noise alone those of the cause's parameters are.
     """
 
     name: str
@@ -19,3 +20,4 @@ class Check:
     value: float
     threshold: float
     text: str
+    widened: float = 1.0

@@ -128,7 +128,7 @@ class Gates:
         """Whether the parts agree on the cause."""
         parts = [part for _, part in folds(self.rows, split)]
         own = self.old[0].shape[2]
-        return agreement(parts, self.equations, new, own) >= self.limits.min_agreement
+        return agreement(parts, self.equations, new, own).probability >= self.limits.min_agreement
 
     def _least(self, trial: FittedCandidate) -> float:
         """Percent of the RMSE that the cause must gain in the usual band."""
