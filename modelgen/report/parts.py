@@ -64,10 +64,14 @@ class Heading(Part):
 
 @dataclass(frozen=True)
 class Command(Part):
-    """A command to copy."""
+    """A command to copy, which breaks between its words alone: options have hyphens."""
 
     kind: ClassVar[str] = "command"
     text: str
+
+    def values(self) -> Mapping[str, Any]:
+        """For the template."""
+        return {"words": self.text.split(" ")}
 
 
 @dataclass(frozen=True)

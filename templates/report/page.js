@@ -31,8 +31,21 @@ function fit() {
 }
 narrow.addEventListener("change", fit);
 fit();
+// The figures of a mark are tapped while it has the focus: a tap gives it, a second one takes it away.
+const marked = ".marks button, .checks button";
+let tapped = null;
+document.addEventListener("pointerdown", e => {
+  const button = e.target.closest(marked);
+  tapped = button === document.activeElement ? button : null;
+});
+document.addEventListener("click", e => {
+  const button = e.target.closest(marked);
+  if (!button || !e.detail) return;  // a key keeps what the focus shows
+  if (button === tapped) button.blur();
+  else button.focus();  // which not every telephone does by itself
+});
 document.addEventListener("keydown", e => {
-  if (e.key === "Escape") document.activeElement.closest(".marks")?.ownerDocument.activeElement.blur();
+  if (e.key === "Escape" && document.activeElement.matches(marked)) document.activeElement.blur();
 });
 
 // Enlarges the abscissae of the charts that belong together.

@@ -419,6 +419,11 @@ def test_of_many_causes_the_first_are_said_in_words() -> None:
     assert differences(rows_of("suspected", "u1", suspects=many[4:])) == ["In u1 perhaps made_up at j."]
 
 
+def copied(text: str) -> list[str]:
+    """The commands of a page, as they are copied."""
+    return [re.sub("<[^>]*>", "", code) for code in re.findall(r"<pre><code>(.*?)</code>", text)]
+
+
 def test_the_overview_has_the_next_command_and_says_nothing_twice() -> None:
     wanting = [
         *rows_of("failed", "f", error="f.csv: there is no such log"),
@@ -428,13 +433,11 @@ def test_the_overview_has_the_next_command_and_says_nothing_twice() -> None:
     ]  # fmt: skip
     named = rows_of("named", "n", **SPRING, next="Generate the code:", command="modelgen generate n")
     text = overview([*named, *wanting])
-    assert re.findall(r"<pre><code>(.*?)</code>", text) == [
-        "modelgen excite b"
-    ]  # of the first that wants one
+    assert copied(text) == ["modelgen excite b"]  # of the first that wants one
     assert "record another:" in text
     assert "f: failed, f.csv: there is no such log" in text
     for once in ("why c", "why n"):
         assert text.count(once) == 1
     assert text.count("failed the check form") == 1
-    assert re.findall(r"<pre><code>(.*?)</code>", overview(named)) == ["modelgen generate n"]
+    assert copied(overview(named)) == ["modelgen generate n"]
     assert "<pre>" not in overview(rows_of("nothing_missing", "kept"))  # of a fleet before this

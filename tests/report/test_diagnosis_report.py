@@ -242,6 +242,14 @@ def test_marks_of_many_causes_are_rows_on_a_phone_too(scheme: str, found: Diagno
                 assert abs(middles[1] - middles[0]) < 4
         cell = rows.first.locator("td").first
         assert not cell.locator(".tip").is_visible()
+        for sign in window.locator("dl.answer .checks td button").all():
+            finger = sign.bounding_box()
+            assert finger is not None
+            assert min(finger["width"], finger["height"]) >= 24
+        for seen in (True, False):  # by a tap, and no more by a second one
+            cell.locator("button").click()
+            window.mouse.move(2, 2)
+            assert cell.locator(".tip").is_visible() == seen
         cell.locator("button").focus()
         assert cell.locator(".tip").is_visible()
         box = cell.locator(".tip").bounding_box()

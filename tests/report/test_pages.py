@@ -20,7 +20,7 @@ from modelgen.api.refinement import Refinement
 from modelgen.api.results import Table
 from modelgen.calibration.lever import lever_of
 from modelgen.fleet.overview import overview
-from modelgen.report.page import Grid
+from modelgen.report.page import Command, Grid
 from modelgen.report.page import page as paged
 from modelgen.report.refinement import motion
 
@@ -47,6 +47,21 @@ ROW = {
     "seconds": 14.0,
     "cpu_seconds": 13.0,
 }
+
+
+def test_a_command_breaks_between_its_words_alone(tmp_path: Path) -> None:
+    """At 400 px options stay whole, hyphens and ends of names too; what is copied is as it was."""
+    text = "modelgen excite arms.yaml --arm digger --period 10 --starts 2 --seed 1 --out 'a b/trajectory.csv'"
+    path = tmp_path / "page.html"
+    path.write_text(paged("x", "y", [("What", [Command(text)])], []), encoding="utf-8")
+    with opened(path, 400) as window:
+        assert window.locator("pre code").text_content() == text
+        heights = [box["height"] for box in map(Locator.bounding_box, window.locator(".word").all()) if box]
+        assert len(heights) == text.count(" ") + 1
+        assert max(heights) < 1.5 * min(heights)
+        whole = window.locator("pre code").bounding_box()
+    assert whole is not None
+    assert whole["height"] > 2 * max(heights)
 
 
 def identified() -> str:
