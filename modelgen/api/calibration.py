@@ -13,11 +13,19 @@ from modelgen.api.results import Named, Result, Table
 from modelgen.calibration import Calibration as Found
 from modelgen.calibration import Estimate, calibrated_yaml
 from modelgen.calibration.workflow import calibrate_log, data
-from modelgen.charts import apart
 from modelgen.description import Arm, loads
 from modelgen.effects import known_effects
 from modelgen.options import CalibrationOptions, changed
-from modelgen.report.calibration import following, picture, report, stands, verdict
+from modelgen.report.calibration import (
+    beside,
+    errors,
+    following,
+    picture,
+    report,
+    stands,
+    values,
+    verdict,
+)
 from modelgen.report.call import Call
 from modelgen.report.parts import steps
 from modelgen.report.words import joint_name
@@ -107,24 +115,21 @@ class Calibration(Result):
             In the order in which they are printed.
         """
         c = self.found
-        before, after = apart(c.rms_before, c.rms_after, 4)
+        before, after = errors(c)
         parts: list[str | Table] = [
             f"{self.arm.name}, {joint_name(self.arm, c.joint)}: "
-            f"RMSE of the angle {before} -> {after} rad "
+            f"RMSE of the angle {before} -> {after} deg "
             f"({c.improvement_percent:z.1f} % better), {len(c.motor)} samples",
             verdict(c),
+            *beside(c),
         ]
-        if c.after.rev != c.before.rev:
-            left = c.candidates[c.before.rev]
-            parts.append(f"rev is {c.after.rev:+d}: the other branch leaves {left:z.4g} rad")
-        rows = [[e.name, *apart(e.before, e.value, 6), f"{e.std:z.2g}", e.unit] for e in c.estimates]
         sides = {"": "left", "described": "right", "calibrated": "right", "std": "right", "unit": "left"}
-        return [*parts, Table("", sides, rows), *(f"not determined: {words}" for words in c.weak)]
+        return [*parts, Table("", sides, values(c)), *(f"not determined: {words}" for words in c.weak)]
 
     def __repr__(self) -> str:
         c = self.found
-        errors = f"RMSE {' -> '.join(apart(c.rms_before, c.rms_after, 4))} rad"
-        return f"Calibration of {self.arm.name}, {joint_name(self.arm, c.joint)}: {errors}"
+        said = f"RMSE {' -> '.join(errors(c))} deg"
+        return f"Calibration of {self.arm.name}, {joint_name(self.arm, c.joint)}: {said}"
 
 
 def calibrate(

@@ -22,7 +22,7 @@ from modelgen.options import RefinementOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, files_of
 from modelgen.report.parts import steps
-from modelgen.report.refinement import following, headline, picture, report
+from modelgen.report.refinement import following, headline, misses, picture, report
 
 
 class Refinement(Result):
@@ -120,10 +120,11 @@ class Refinement(Result):
             [
                 name,
                 *apart(j["f_gof_before"], j["f_gof"], 4),
-                *apart(j["rmse_before"], j["rmse"], 4),
-                j["unit"],
+                *missed,
             ]
-            for name, j in zip(self.arm.coordinate_names, self.to_json()["joints"], strict=True)
+            for name, j, missed in zip(
+                self.arm.coordinate_names, self.to_json()["joints"], misses(self.found), strict=True
+            )
         ]
         headings = ("joint", "F_gof % before", "after", "RMSE before", "after ", "unit")
         parameters = dict.fromkeys(("parameter", "start", "value", "std", "unit"), "right")

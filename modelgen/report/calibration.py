@@ -26,7 +26,13 @@ from modelgen.report.words import joint_name, listed, sentence
 
 _FAR = 2.0  # standard deviations
 _BEFORE, _AFTER = "as described", "calibrated"
-_MM = {"m": (1e3, "mm")}  # as which lengths are said
+_SAID = {"m": (1e3, "mm"), "rad": (float(np.degrees(1.0)), "deg")}  # factor and unit in which values are said
+_MUCH = 0.5  # of the error, from which on what a constant offset alone explains is worth a sentence
+_MEANT = (
+    "l1 and l2 are the distances of the actuator's two ends from the joint's axis, qp_min and qp_max its "
+    "lengths at the ends of the motor's range, offset the joint's angle beyond that of this triangle. Moved "
+    "by std: how far a value is from the description, in its standard deviations (std)."
+)
 
 
 def charts(arm: Arm, c: Calibration) -> list[Chart]:
@@ -53,8 +59,8 @@ def charts(arm: Arm, c: Calibration) -> list[Chart]:
             label,
             "error [deg]",
             [
-                Curve(x, measured - before, "before", _BEFORE),
-                Curve(x, measured - after, "after", _AFTER),
+                Curve(x, measured - before, "before", _BEFORE, True),
+                Curve(x, measured - after, "after", _AFTER, True),
             ],
             f"Measured angle of {name} less that of either lever.",
         ),
@@ -69,30 +75,22 @@ def picture(arm: Arm, c: Calibration) -> str:
 def report(arm: Arm, c: Calibration, call: Call) -> str:
     """HTML that needs nothing beside it."""
     name = joint_name(arm, c.joint)
-    before, after = apart(float(np.degrees(c.rms_before)), float(np.degrees(c.rms_after)))
+    before, after = errors(c)
     said = f"The lever of {name} explains the angle to {after} deg instead of {before} deg (RMSE): "
     said += f"{c.improvement_percent:z.0f} % less, over {len(c.motor)} samples. {verdict(c)}"
-    branch = []
-    if c.after.rev != c.before.rev:
-        left = number(float(np.degrees(c.candidates[c.before.rev])))
-        branch = [Text(f"rev is {c.after.rev:+d}: the other branch leaves {left} deg.")]
+    branch = [Text(text) for text in beside(c)]
     weak = [Text(f"Not determined: {words}.") for words in c.weak]
     heads = [("value", "left"), *((h, "right") for h in ("described", "calibrated", "std", "moved by std"))]
     heads.append(("unit", "left"))
-    rows = [
-        (
-            e.name,
-            *apart(size * e.before, size * e.value, 5),
-            number(size * e.std, 2),
-            f"{(e.value - e.before) / e.std:+z.1f}" if e.std > 0 else "",
-            unit,
-        )
-        for e, size, unit in _sized(c)
-    ]
+    steps = (f"{(e.value - e.before) / e.std:+z.1f}" if e.std > 0 else "" for e in c.estimates)
+    rows = [(*row[:-1], step, row[-1]) for row, step in zip(values(c), steps, strict=True)]
     table = Grid("Lever as described and calibrated", heads, rows, folds=True)
     answers: Parts = [
         ("What was found", [Text(said), *branch]),
-        ("Described and calibrated", [Folded(f"All {len(rows)} values", [table], narrow=True)]),
+        (
+            "Described and calibrated",
+            [Folded(f"All {len(rows)} values", [table, Text(_MEANT, "quiet")], narrow=True)],
+        ),
         ("What is uncertain", [Text(_uncertain(c)), *weak]),
         (
             "What to do next",
@@ -104,6 +102,31 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
         ("Measured angles and both levers", [block(charts(arm, c))]),
     ]
     return page(f"{arm.name}: lever of {name}", "Calibration", answers, sections)
+
+
+def errors(c: Calibration) -> tuple[str, str]:
+    """RMSE of the angle with the lever as described and as found [deg]."""
+    return apart(float(np.degrees(c.rms_before)), float(np.degrees(c.rms_after)))
+
+
+def beside(c: Calibration) -> list[str]:
+    """What else would explain the angle: the other branch, a constant offset alone where that does much."""
+    said = []
+    if c.after.rev != c.before.rev:
+        left = number(float(np.degrees(c.candidates[c.before.rev])))
+        said.append(f"rev is {c.after.rev:+d}: the other branch leaves {left} deg.")
+    if c.rms_shifted < _MUCH * c.rms_before:
+        left = number(float(np.degrees(c.rms_shifted)))
+        said.append(f"A constant offset of the angle alone, with the lever as described, leaves {left} deg.")
+    return said
+
+
+def values(c: Calibration) -> list[list[str]]:
+    """Name, described, calibrated, standard deviation and unit of every value."""
+    return [
+        [e.name, *apart(size * e.before, size * e.value, 5), number(size * e.std, 2), unit]
+        for e, size, unit in _sized(c)
+    ]
 
 
 def stands(c: Calibration) -> bool:
@@ -128,8 +151,8 @@ def _moved(c: Calibration) -> list[tuple[Estimate, float, str]]:
 
 
 def _sized(c: Calibration) -> list[tuple[Estimate, float, str]]:
-    """Estimates with the factor and the unit in which they are said: lengths in mm."""
-    return [(e, *_MM.get(e.unit, (1.0, e.unit))) for e in c.estimates]
+    """Estimates with the factor and the unit in which they are said: lengths in mm, angles in deg."""
+    return [(e, *_SAID.get(e.unit, (1.0, e.unit))) for e in c.estimates]
 
 
 def _uncertain(c: Calibration) -> str:

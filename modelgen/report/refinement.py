@@ -18,7 +18,9 @@ from modelgen.report.words import listed, sentence
 _FAR = 2.0  # standard deviations
 _SAME = 1.01  # of an error, that needs no word
 _NAMED = 6  # parameters that moved, in a sentence
-_KEEP = "Nothing was gained by what matters: keep the values of the start."
+_KEEP = "The other values bring no joint nearer by one percent: keep the values of the start."
+_FINE = {"rad": (1e3, "mrad"), "m": (1e3, "mm")}  # factor and unit in which small errors are said
+_COARSE = 0.01  # rad, m: from which on they are said in these
 _RELEASES = 3  # that a diagnosis of free motions needs: a release is not split in two
 _VAGUE = "Standard deviations, and what they move, are rough there."
 _NEAR = "if the simulated motion below is near enough to the measured one all the same"
@@ -51,9 +53,9 @@ def report(found: Refinement, call: Call) -> str:
         (
             joint,
             *apart(found.before.f_gof[k], found.after.f_gof[k], 4),
-            *(f"{x} {units[k]}" for x in apart(found.before.rmse[k], found.after.rmse[k])),
+            *(f"{x} {unit}" for x in (before, after)),
         )
-        for k, joint in enumerate(names)
+        for k, (joint, (before, after, unit)) in enumerate(zip(names, misses(found), strict=True))
     ]
     heads = [("joint", "left"), ("F_gof % before", "right"), ("F_gof % after", "right")]
     heads += [("RMSE before", "right"), ("RMSE after", "right")]
@@ -85,7 +87,7 @@ def report(found: Refinement, call: Call) -> str:
             "held" if x.std is None else f"{x.std:z.2g}",
             "" if not x.std else f"{(x.value - x.start) / x.std:+z.1f}",
             x.unit,
-            "" if not x.std else f"{number(x.moves, 2)} {units[x.shown_by]} at {names[x.shown_by]}",
+            "" if not x.std else f"{_fine(x.moves, units[x.shown_by])} at {names[x.shown_by]}",
         )
         for x in found.parameters
     ]
@@ -103,13 +105,35 @@ def headline(found: Refinement) -> str:
     arm, before, after = found.plant.arm, found.before.rmse, found.after.rmse
     span = [float(np.ptp(np.concatenate([q[:, j] for q in found.measured]))) for j in range(len(after))]
     worst = int(np.argmax(after / np.maximum(span, 1e-300)))
-    old, new = apart(before[worst], after[worst])
+    old, new, unit = misses(found)[worst]
     where = f"at {arm.coordinate_names[worst]}" + (", where it errs most" if len(after) > 1 else "")
     worse = [arm.coordinate_names[j] for j in range(len(after)) if after[j] > _SAME * before[j]]
     lost = f" It is farther from it than before at {listed(worse)}." if worse else ""
-    text = f"The simulated motion misses the measured one by {new} {arm.coordinate_units[worst]} (RMSE)"
+    text = f"The simulated motion misses the measured one by {new} {unit} (RMSE)"
     kept = "" if _gained(found) else f" {_KEEP}"
-    return f"{text} {where}; with the values at the start it was {old}.{lost}{kept}"
+    start = f"it was {old} {unit}" if old != new else "it was the same in these digits"
+    return f"{text} {where}; with the values at the start {start}.{lost}{kept}"
+
+
+def misses(found: Refinement) -> list[tuple[str, str, str]]:
+    """RMSE of the positions before and after, in three digits, and their unit: by joint."""
+    said = []
+    for k, own in enumerate(found.plant.arm.coordinate_units):
+        before, after = float(found.before.rmse[k]), float(found.after.rmse[k])
+        size, unit = _unit(after, own)
+        said.append((number(size * before), number(size * after), unit))
+    return said
+
+
+def _unit(value: float, unit: str) -> tuple[float, str]:
+    """Factor and unit in which a value can be read."""
+    return _FINE.get(unit, (1.0, unit)) if abs(value) < _COARSE else (1.0, unit)
+
+
+def _fine(value: float, unit: str) -> str:
+    """A small value in two digits, with its unit."""
+    size, said = _unit(value, unit)
+    return f"{number(size * value, 2)} {said}"
 
 
 def _gained(found: Refinement) -> bool:
@@ -154,16 +178,17 @@ def following(call: Call, found: Refinement) -> list[Part | str]:
     more = "a second motion, which nothing is fitted to"
     place = "this record is for "
     if not found.effort:
-        more = f"releases until there are {_RELEASES}, of which nothing is fitted to the last"
-        place = "all others are for "
+        more = f"{_RELEASES} releases or more"
+        place = "name each of them but the last by a "
+    ends = (", the second for ", ".") if found.effort else (" of its own, the last one by ", ".")
     named = [
         Run(f"Where the motion still differs by more than its noise, record {more}, and let "),
         Run("modelgen diagnose", "code"),
-        Run(f" name the cause: {place}"),
+        Run(f" find the cause: {place}"),
         Run("--train", "code"),
-        Run(", the second for " if found.effort else ", each with its own, the last for "),
+        Run(ends[0]),
         Run("--test", "code"),
-        Run("."),
+        Run(ends[1]),
     ]
     return [*parts, Text(named)]
 
@@ -222,8 +247,7 @@ def _uncertain(found: Refinement) -> list[Part]:
     return [
         Text(
             f"Most uncertain in the motion is {worst.name}: its standard deviation moves {name} by "
-            f"{number(worst.moves, 2)} {unit} (RMS), beside an error of {number(errors[worst.shown_by], 2)} "
-            f"{unit}."
+            f"{_fine(worst.moves, unit)} (RMS), beside an error of {_fine(errors[worst.shown_by], unit)}."
         )
     ]
 

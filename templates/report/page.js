@@ -31,7 +31,7 @@ function fit() {
 }
 narrow.addEventListener("change", fit);
 fit();
-// The figures of a mark are tapped while it has the focus: a tap gives it, a second one takes it away.
+// The figures of a mark are shown while it has the focus: a tap gives it, a second one takes it away.
 const marked = ".marks button, .checks button";
 let tapped = null;
 document.addEventListener("pointerdown", e => {

@@ -1,18 +1,23 @@
 """Levers found again from motor counts and measured angles."""
 
 import json
+import re
+from html import unescape
 from pathlib import Path
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import modelgen as mg
+from modelgen.api.results import Table
 from modelgen.calibration import Lever, calibrate, lever_of
 from modelgen.cli.app import app
 from modelgen.dataset import drives_of
 from modelgen.description import load
 from modelgen.effects import known_effects
 from modelgen.errors import InputError
+from modelgen.report.calibration import charts
 from modelgen.resources import shipped_arms
 
 ARMS = load(shipped_arms(), known_effects())
@@ -112,6 +117,28 @@ def test_the_other_branch_is_found() -> None:
     motor, measured = experiment(true, 0.005, 4)
     mirrored = Lever(-true.rev, true.motor, true.values)
     assert calibrate(mirrored, 2, motor, measured, 0.01).after.rev == true.rev
+
+
+def test_angles_have_one_unit_and_what_an_offset_alone_explains_is_said() -> None:
+    """The page and the terminal in degrees, an offset that is wrong by 6 deg beside noise of 0.2 deg."""
+    arm = mg.load_arms()["ariane4"]
+    motor = np.linspace(0.0, 20_000.0, 300)
+    noise = np.radians(0.2) * np.random.default_rng(1).standard_normal(300)
+    angle = lever_of(arm, 3).angle(motor) + np.radians(6.0) + noise
+    found = mg.calibrate(arm, 3, {"t": 0.05 * np.arange(300), "qm3": motor, "q3": angle})
+    page = unescape(found.files()["report.html"])
+    shown = found.shown()
+    lines = [part for part in shown if isinstance(part, str)]
+    (alone,) = [line for line in lines if line.startswith("A constant offset of the angle alone")]
+    (left,) = re.findall(r"leaves (0\.\d+) deg\.", alone)
+    assert float(left) == pytest.approx(0.2, rel=0.15)
+    assert alone in page
+    assert re.search(r"RMSE of the angle 5\.98 -> 0\.\d+ deg", lines[0])
+    (table,) = [part for part in shown if isinstance(part, Table)]
+    assert [row[-1] for row in table.rows] == ["mm", "mm", "mm", "mm", "deg"]
+    assert " rad" not in " ".join(re.sub("<[^>]*>", " ", page).split())
+    assert "qp_min and qp_max its lengths" in page
+    assert all(curve.dots for curve in charts(arm, found.found)[1].curves)
 
 
 def test_command_writes_a_description_that_loads(tmp_path: Path) -> None:

@@ -207,7 +207,7 @@ def test_what_refine_and_calibrate_propose_runs_as_it_is_copied(tmp_path: Path) 
     run(generate, tmp_path)
     assert (tmp_path / "generated" / "gravity_link2").is_dir()
     assert "--nominal" in generate or "--parameters" in generate  # values of the start, or tuned ones
-    assert "for <code>--test</code>" in (tmp_path / "one" / "report.html").read_text(encoding="utf-8")
+    assert "by <code>--test</code>" in (tmp_path / "one" / "report.html").read_text(encoding="utf-8")
     run(["refine", "--arm", "gravity_link2", "--log", "a.csv", "--log", "b.csv", "--out", "two"], tmp_path)
     assert len(commands(tmp_path / "two" / "report.html")) == 1  # a release is not split in two
     three = [word for name in "abc" for word in ("--log", f"{name}.csv")]

@@ -384,6 +384,7 @@ def test_a_refinement_says_first_by_how_much_the_simulated_motion_errs() -> None
     right = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0] + noise})
     assert right.found.before.rmse[0] == pytest.approx(1e-4, rel=0.1)  # rad
     assert "keep the values of the start" in str(right.shown()[0])
+    assert re.search(r"misses the measured one by 0\.\d{3,4} mrad \(RMSE\)", str(right.shown()[0]))
     assert "gained is by all together" not in right.files()["report.html"]
     values = {x.name: x.start for x in right.parameters.values()}
     other = values | {"FV1": 1.5 * values["FV1"]}
@@ -393,7 +394,7 @@ def test_a_refinement_says_first_by_how_much_the_simulated_motion_errs() -> None
     assert isinstance(first, str)
     assert "keep the values" not in first
     assert first in unescape(found.files()["report.html"])
-    after, before = (float(x) for x in re.findall(r"(?:by|was) (\d[\d.e-]*\d)", first))
+    after, before = (1e-3 * float(x) for x in re.findall(r"(?:by|was) (\d[\d.e-]*\d) mrad", first))
     missed = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0).q - swing.q
     assert 0.3 < before / float(np.sqrt(np.mean(missed**2))) <= 1.0  # another initial state suits it better
     assert after < 1e-3 * before
@@ -444,7 +445,7 @@ def test_parameters_stand_with_their_intervals_in_a_picture(name: str, pages: Ma
     """A dot within its interval for each, beside a ring at what was known before; of identify by joint."""
     with opened(pages[name]) as page:
         pictures = page.locator("svg.rows")
-        units = {"calibrate": ["[mm]", "[rad]"], "refine": ["[rad]"], "identify": 2 * ["[A]"]}[name]
+        units = {"calibrate": ["[mm]", "[deg]"], "refine": ["[rad]"], "identify": 2 * ["[A]"]}[name]
         labels = [text.split()[-1] for text in pictures.locator(".label").all_text_contents()]
         assert labels == units
         for picture in pictures.all():
@@ -481,7 +482,7 @@ def test_what_a_calibration_leaves_open_is_said_in_its_units(pages: Mapping[str,
             row.locator("td").first.inner_text(): row.locator("td").nth(3).inner_text()
             for row in values.locator("tbody tr").all()
         }
-    found = dict(re.findall(r"(\w+) ± ([\d.]+) (?:mm|rad)", said))
+    found = dict(re.findall(r"(\w+) ± ([\d.]+) (?:mm|deg)", said))
     assert found.keys() == stds.keys()
     for name, half in found.items():
         assert float(half) == pytest.approx(1.96 * float(stds[name]), rel=0.06)
