@@ -337,7 +337,7 @@ def test_every_check_says_its_figure_and_its_threshold_in_words(found: Diagnosis
                 near = [
                     x == pytest.approx(abs(figure) * s, rel=0.06, abs=0.06) for x in said for s in (1, 100)
                 ]
-                assert any(near) or "must not be ahead" in check.text, check
+                assert any(near) or "must not explain more" in check.text, check
         assert said or not np.isfinite([check.value, check.threshold]).any(), check
         assert "threshold" not in check.text
     by_name = {check.name: check for check in cause.checks}

@@ -247,7 +247,8 @@ def _gain(cause: Cause, equations: Equations) -> Check:
 def _undominated(by: Dominance, arm: Arm) -> Check:
     text = "nothing else explains as much at its joint"
     if by.place is not None:
-        text = f"{titled(arm, *by.place)}, which failed a condition, {ahead_of(by.ahead, by.most)}"
+        other = f"{titled(arm, *by.place)}, no cause itself for it fails a condition,"
+        text = f"{other} {ahead_of(by.ahead, by.most)}"
     return Check("undominated", by.ahead <= by.most, True, by.ahead, by.most, text)
 
 

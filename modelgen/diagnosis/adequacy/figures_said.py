@@ -39,10 +39,10 @@ def range_said(low: float, high: float) -> str:
 
 
 def ahead_of(ahead: float, most: float) -> str:
-    """How far something is before or behind a cause in delta BIC, and how far it may be."""
-    where = f"{number(ahead)} ahead of it" if ahead > 0.0 else f"{number(-ahead)} behind it"
-    may = f"may be {number(most)} ahead" if most > 0.0 else "must not be ahead"
-    return f"is {where} in delta BIC; it {may}"
+    """How much more or less something explains than a cause, and how much more it may."""
+    what = "more" if ahead > 0.0 else "less"
+    may = f"{number(most)} more are allowed" if most > 0.0 else "it must not explain more"
+    return f"explains {what}, by {number(abs(ahead))} of delta BIC; {may}"
 
 
 def form_said(by: FreeForm) -> str:
