@@ -32,11 +32,11 @@ from modelgen.report.diagnosis_sentences import (
     harms,
     headline,
     interval,
-    opening,
     suspicions,
 )
 from modelgen.report.experiment import followed
 from modelgen.report.following import proposed, whole_json
+from modelgen.report.opening import opening
 from modelgen.report.words import joint_name, legible, place_of, value_said
 from modelgen.report.writing import write
 

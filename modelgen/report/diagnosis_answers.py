@@ -26,6 +26,7 @@ from modelgen.report.diagnosis_sentences import (
     worth,
 )
 from modelgen.report.following import following
+from modelgen.report.opening import hardly_moved
 from modelgen.report.page import Checks, Command, Folded, Grid, Part, Run, Section, Text
 from modelgen.report.words import joint_name, listed, sentence
 
@@ -77,6 +78,8 @@ def _names(d: Diagnosis, causes: Sequence[NamedCause]) -> str:
 
 
 def _sure(d: Diagnosis) -> Iterator[Part]:
+    if rests := hardly_moved(d):
+        yield Text(rests)
     if len(d.causes) == 1:
         yield marks(d.causes[0], "cause0")
     elif d.causes:

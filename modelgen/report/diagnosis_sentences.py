@@ -17,7 +17,6 @@ _SENTENCES = {
     "cannot_tell": "These records cannot tell.",
 }
 _TITLES = 2  # suspects by their names, in a headline
-_SPOKEN = 3  # causes in sentences, in the terminal
 _VISIBLE = 0.05  # percent: less is 0.0 in print
 _SAME = 0.01  # of a cut-off, that needs no word
 _ALIKE = 0.1  # of an error, that nobody who compares wonders about
@@ -59,18 +58,6 @@ def headline(d: Diagnosis) -> str:
         names = listed(cause_title(d, c) for c in d.causes)
         return " ".join([f"The model lacks {names}: {worth(d)}.", *doubted(d)])
     return " ".join([*missing(d), reason(d)]).rstrip()
-
-
-def opening(d: Diagnosis) -> str:
-    """What the terminal says first: the sentences that the page has, of many causes those of most worth."""
-    if d.verdict != "named":
-        return headline(d)
-    texts, order = missing(d), by_worth(d)
-    said = [texts[k] for k in order[:_SPOKEN]]
-    if order[_SPOKEN:]:
-        said.append(f"And {len(order) - _SPOKEN} more, in the table.")
-    more = [beside(d)] if beside(d) else []
-    return " ".join([*said, sentence(worth(d)), *more, *doubted(d)])
 
 
 def beside(d: Diagnosis) -> str:

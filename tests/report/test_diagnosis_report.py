@@ -29,7 +29,9 @@ from modelgen.report.diagnosis import report
 from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import binned, efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import doubted, headline, remains, worth
+from modelgen.report.following import following
 from modelgen.report.law_figures import judged_joint, law_charts, seen
+from modelgen.report.opening import hardly_moved, opening
 from modelgen.report.page import page
 from modelgen.report.words import finding, legible, sentence
 from modelgen.simulation.windows import Windows
@@ -852,3 +854,19 @@ def test_a_cause_leads_to_what_the_page_and_the_gallery_say_of_it(
     alone = report(found)
     assert 'href="file:' not in alone
     assert "What it does to a log: the gallery of the documentation" in alone
+
+
+def test_a_joint_that_hardly_moves_and_what_remains_are_said_first(found: Diagnosis) -> None:
+    """In the terminal and on the page: a verdict says little of a joint that rests."""
+    assert not hardly_moved(found)
+    resting = replace(found, log=replace(found.log, left_out=(0, round(0.91 * found.log.samples))))
+    said = "Left out at rest: 91 % of the samples at j2; these records say little of what is missing there."
+    assert said in opening(resting)
+    assert said in report(resting)
+    left = replace(
+        found, reason="a cause passed every check that decides; something deterministic remains beside it"
+    )
+    assert "Something deterministic remains beside it." in opening(left)
+    steps = [step.text for step in following(left, Call(left.arm))]
+    assert any(text.startswith("Something remains that is not named") for text in steps)
+    assert not any("remains" in step.text for step in following(found, Call(found.arm)))

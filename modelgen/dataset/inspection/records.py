@@ -46,6 +46,11 @@ class RecordsInspected:
         return sum(x.samples for x in self.train)
 
     @property
+    def shares_left_out(self) -> list[float]:
+        """Shares (n,) of the samples of the training records that stand for no equation of their joint."""
+        return [count / max(self.samples, 1) for count in self.left_out]
+
+    @property
     def resolution(self) -> dict[str, float]:
         """Finest step of the readings by channel, of those that have one, in the channel's unit."""
         found: dict[str, float] = {}
@@ -116,9 +121,8 @@ class RecordsInspected:
         coarse = [_step(c) for c in self._channels if c.coarse(COARSE)]
         if coarse:
             said.append(f"coarse readings: {', '.join(dict.fromkeys(coarse))}")
-        shares = np.array(self.left_out) / max(self.samples, 1)
-        if (shares > RESTING).any():
-            percent = [f"{100 * share:.0f} %" for share in shares]
+        if max(self.shares_left_out, default=0.0) > RESTING:
+            percent = [f"{100 * share:.0f} %" for share in self.shares_left_out]
             said.append(f"left out at rest and at the ends: {at_joints(self.joints, percent)}")
         return said
 
