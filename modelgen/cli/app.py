@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from modelgen.cli.collection import collect_no_more, collect_rarely
 from modelgen.cli.commands import (
@@ -29,6 +33,29 @@ from modelgen.cli.commands import (
 from modelgen.version import __version__
 
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)]
+
+
+class _Command(TyperCommand):
+    """A command in whose help brackets are text: those of units would be read as markup and left out."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help."""
+        with _escaped(self.params):
+            super().format_help(ctx, formatter)
+
+
+@contextmanager
+def _escaped(params: list[Any]) -> Iterator[None]:
+    """Parameters whose help is escaped until the end."""
+    texts = [(p, p.help) for p in params if getattr(p, "help", None)]
+    for p, text in texts:
+        p.help = re.sub(r"\[(?=[a-z])", r"\[", text)
+    try:
+        yield
+    finally:
+        for p, text in texts:
+            p.help = text
+
 
 app = typer.Typer(
     name="modelgen",
@@ -70,7 +97,7 @@ for _command in (
     export,
     cmake_dir,
 ):
-    app.command(_command.__name__.strip("_").replace("_", "-"))(_command)
+    app.command(_command.__name__.strip("_").replace("_", "-"), cls=_Command)(_command)
 
 
 def main() -> None:

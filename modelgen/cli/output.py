@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from textwrap import wrap
 from typing import Any, Literal
@@ -37,7 +38,11 @@ _WIDTH = 120  # columns where stdout is no terminal
 _NOTHING: tuple[str, float, float | None] = ("", 0.0, None)
 _ENDLESS = 10_000  # columns, more than any table has
 _EVERY = 20.0  # seconds between two lines on the progress
-_UNIT = re.compile(r"(\d) (?=(?:deg|rad|Hz|ms|mm|s|m|A|N)\b|%)")  # what stays beside its number
+# A number, or nothing, and its unit, between whose words no line ends.
+_NAMES = "deg|mrad|rad|kHz|Hz|µs|ms|min|mm|kg|mA|kN|s|m|A|N|V|J|W|K|turns?"
+_UNIT = rf"(?:(?:{_NAMES})(?![\w-])(?:\^\d)?(?:/\w+(?:\^\d)?)?|%)"
+_QUANTITY = re.compile(rf"(?<=\d) {_UNIT}(?: {_UNIT})*|(?<!\S){_UNIT}(?: {_UNIT})+(?!\S)")
+_FIXED = "\ue000"  # a space at which neither textwrap nor rich breaks, until the lines are made
 
 
 def print_result(result: Shown, *, as_json: bool) -> None:
@@ -68,9 +73,9 @@ def say(text: str, command: str = "") -> None:
     if not width:
         typer.echo(f"{text} {command}".rstrip())
         return
-    kept = _UNIT.sub("\\1\N{NO-BREAK SPACE}", text)
+    kept = _together(text)
     lines = wrap(kept, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
-    lines = [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
+    lines = [line.replace(_FIXED, " ") for line in lines]
     typer.echo("\n".join([*lines, *([f"  {command}"] if command else [])]))
 
 
@@ -80,18 +85,27 @@ def print_table(table: Table) -> None:
     Where its words would have to be broken, its rows stand below each other, a line for each column.
     """
     table = table.filled()
+    table = replace(table, rows=[[_together(cell) for cell in row] for row in table.rows])
     console = Console(width=_width())
     least, most = zip(*(_extent(table, k) for k in range(len(table.columns))), strict=True)
     grid = _grid(table, least)
     beside = Measurement.get(console, console.options.update(max_width=_ENDLESS), grid).minimum - sum(least)
     widths = _shared(least, most, console.width - beside)
     if sum(widths) + beside > console.width:
-        typer.echo(_below(table, console.width))
+        typer.echo(_below(table, console.width).replace(_FIXED, " "))
         return
     grid = _grid(table, widths)
     with console.capture() as captured:
+        if table.title:  # as wide as the terminal, however narrow its table is
+            console.print(escape(table.title), style="bold", highlight=False)
         console.print(grid)
-    typer.echo("\n".join(line.rstrip() for line in captured.get().rstrip("\n").split("\n")))
+    lines = captured.get().replace(_FIXED, " ").rstrip("\n").split("\n")
+    typer.echo("\n".join(line.rstrip() for line in lines))
+
+
+def _together(text: str) -> str:
+    """Text in which no line can end within a quantity, until `_FIXED` is a space again."""
+    return _QUANTITY.sub(lambda found: found[0].replace(" ", _FIXED), text)
 
 
 def _width() -> int | None:
@@ -141,9 +155,7 @@ def _shared(least: Sequence[int], most: Sequence[int], width: int) -> list[int]:
 
 
 def _grid(table: Table, widths: Sequence[int]) -> Grid:
-    grid = Grid(
-        title=escape(table.title) or None, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold"
-    )
+    grid = Grid(box=box.SIMPLE_HEAD)
     for (heading, side), width in zip(table.columns.items(), widths, strict=True):
         justify: Literal["left", "right"] = "right" if side == "right" else "left"
         named = heading in table.names

@@ -48,6 +48,34 @@ def test_a_table_fits_and_breaks_no_word(
     assert words <= {word for line in lines for word in line.split()}
 
 
+def test_a_title_is_as_wide_as_the_terminal_and_no_quantity_is_torn(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """However narrow its table is; what is copied has plain spaces."""
+    monkeypatch.setenv("COLUMNS", "60")
+    narrow = {"joint": "right", "error": "right"}
+    lines = shown(Table("error on the test record [A]", narrow, [["elbow", "0.0013"]]), capsys)
+    assert lines[0] == "error on the test record [A]"
+    values = "every 2.5 mm, sine 0.002524 N m, cosine -0.01234 N m s/rad, at 0.25 kg m^2"
+    for width in range(60, 100):
+        monkeypatch.setenv("COLUMNS", str(width))
+        text = shown(Table("", {"cause": "left", "values": "left"}, [["x" * 36, values]]), capsys)
+        for quantity in ("2.5 mm,", "0.002524 N m,", "-0.01234 N m s/rad,", "0.25 kg m^2"):
+            assert any(quantity in line for line in text), (width, text)
+    output.say(values * 20)
+    assert "\ue000" not in capsys.readouterr().out
+
+
+def test_units_in_brackets_are_in_the_help() -> None:
+    for command, said in (("inspect", "FILE@t0:t1 [s]."), ("simulate", "link [kg], in its frame [m].")):
+        text = CliRunner().invoke(app, [command, "--help"], env={"COLUMNS": "200"}).stdout
+        assert said in text
+    text = CliRunner().invoke(app, ["diagnose", "--help"], env={"COLUMNS": "200"}).stdout
+    assert "FILE or FILE@t0:t1 [s]; repeatable." in text
+    assert "The record for the final errors alone; needed." in text
+    assert "\\" not in text
+
+
 @pytest.mark.parametrize("width", [60, 75, *range(84, 121, 3)])
 def test_the_catalogue_loses_no_word_at_any_width(width: int) -> None:
     def said(columns: int) -> tuple[set[str], int]:

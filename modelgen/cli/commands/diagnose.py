@@ -13,7 +13,8 @@ from modelgen.options import DiagnosisOptions
 # ruff: noqa: PLC0415 - the help is quick
 
 Test = Annotated[
-    list[str] | None, typer.Option("--test", metavar="LOG", help="The record for the final errors alone.")
+    list[str] | None,
+    typer.Option("--test", metavar="LOG", help="The record for the final errors alone; needed."),
 ]
 
 
