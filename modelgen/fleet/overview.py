@@ -22,36 +22,41 @@ WORDS = {
     "cannot_tell": "cannot tell",
     FAILED: "failed",
 }
-_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", "less error %", "lack of fit", "s", "reason")
+_FIT = "lack of fit / threshold"
+_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", "less error %", _FIT, "s", "reason")
 _LOOKS = 7  # colours that are told apart
 _URGENT = 8  # units that are listed first
 
 _WIDEST = 80.0  # percent of the room, of a bar
+_FAR = 2.0  # lack of fit over its threshold, from which on a unit with a named cause is to be looked at
 _NOTHING = "Every unit could be diagnosed, and nothing is left unexplained."
 _HARM = "makes its test record worse"
 _FAILED = (
     "Of units that failed: mend what the lines say, and call modelgen fleet again with --again. What is "
-    "done, of the same files, is kept."
+    "done, of the same files, is kept"
 )
 _READING = (
-    "Less error: on the test record over all joints, with the causes than without. Lack of fit: over its "
-    "threshold; above 1, something deterministic remains. A click on a heading sorts."
+    "Less error: on the test record over all joints, with the causes than without. Lack of fit / threshold: "
+    "above 1, something deterministic remains. A click on a heading sorts."
 )
 
 Piece = tuple[str, int, str]  # word, count, look
 
 
-def overview(rows: Sequence[Row]) -> str:
-    """HTML that needs nothing beside it but the reports that it links to."""
+def overview(rows: Sequence[Row], again: str = "") -> str:
+    """HTML that needs nothing beside it but the reports that it links to. again: the command that makes what
+    failed anew, empty where no file has the fleet.
+    """
     counts, named, worth = verdicts(rows), cause_bars(rows), _worth(rows)
     found = [(WORDS[key], [(WORDS[key], counts[key], "k0")], counts[key]) for key in WORDS if counts[key]]
-    said: list[Part] = [Text(text) for text in differences(rows)]
+    said: list[Part] = [Text(_marked(text)) for text in differences(rows)]
     answers: list[tuple[str, list[Part]]] = [("What was found", [*said, Bars("Verdicts", "verdict", found)])]
     if named:
         answers.append(("What is missing", [Bars("Causes named, by joint", "cause", named)]))
+        answers.append(("How sure", [Text(_sure(rows))]))
     if worth:
         answers.append(("What it is worth", [Text(worth)]))
-    answers.append(("What to look at next", list(_next(rows))))
+    answers.append(("What to look at next", list(_next(rows, again))))
     minutes = sum(row.get("cpu_seconds") or 0.0 for row in rows) / 60
     units = [
         Units([_row(row) for row in rows]),
@@ -142,6 +147,29 @@ def cause_bars(rows: Sequence[Row]) -> list[tuple[str, list[Piece], int]]:
     return bars
 
 
+def _marked(text: str) -> list[Run]:
+    """A sentence whose names in backquotes are code."""
+    return [Run(piece, "code" if k % 2 else "") for k, piece in enumerate(text.split("`")) if piece]
+
+
+def _sure(rows: Sequence[Row]) -> str:
+    """What the causes that are named have passed, with their evidence and how many have a rival."""
+    named = [row for row in rows if row.get("causes")]
+    count = sum(len(row["causes"]) for row in named)
+    found = [x for row in named for x in row.get("delta_bic") or ()]
+    rivals = sum(bool(others) for row in named for others in row.get("ambiguous_with") or ())
+    said = "The cause" if count == 1 else f"Each of the {count} causes"
+    said += " passed every check that decides"
+    if found:
+        low, high = f"{min(found):z.0f}", f"{max(found):z.0f}"
+        said += f"; evidence (delta BIC) {low if low == high else f'{low} to {high}'}"
+    if not rivals:
+        return f"{said}; {'it has no' if count == 1 else 'none has a'} rival."
+    return (
+        f"{said}. {rivals} of {count} {'has' if rivals == 1 else 'have'} a rival: in the table, behind “or”."
+    )
+
+
 def _worth(rows: Sequence[Row]) -> str:
     """What naming causes is worth on the test records, over the units that have one."""
     named = [row.get("overall_gain_percent") for row in rows if row.get("causes")]
@@ -181,6 +209,9 @@ def _urgent(rows: Sequence[Row]) -> Iterator[list[Run]]:
         worse = _harming(row)
         if worse:
             lines.append([_unit(row), Run(f": {listed(worse)} {_HARM}; its page has the model without")])
+        elif row.get("causes") and _fit(row) > _FAR:
+            remains = f"something deterministic remains beside what is named, {_FIT} {_fit(row):.3g}"
+            lines.append([_unit(row), Run(f": {remains}")])
     yield from lines[:_URGENT]
     if len(lines) > _URGENT:
         yield [Run(f"{len(lines) - _URGENT} more: see the table")]
@@ -191,19 +222,27 @@ def _harming(row: Row) -> list[str]:
     return [title for title, harm in zip(titles(row), row.get("harms") or (), strict=False) if harm]
 
 
-def _next(rows: Sequence[Row]) -> Iterator[Part]:
+def _fit(row: Row) -> float:
+    """Lack of fit over its threshold; 0 where it was not measured."""
+    fit, threshold = row.get("lack_of_fit"), row.get("lack_of_fit_threshold")
+    return fit / threshold if fit is not None and threshold else 0.0
+
+
+def _next(rows: Sequence[Row], again: str) -> Iterator[Part]:
     """The units to look at, and the command for the first of them that has one."""
     urgent = list(_urgent(rows))
     yield Lines(urgent) if urgent else Text(_NOTHING)
     if any(verdict(row) == FAILED for row in rows):
-        yield Text(_FAILED)
+        yield Text(f"{_FAILED}{':' if again else '.'}")
+        if again:
+            yield Command(again)
     wanting = _open(rows) + [row for row in rows if _harming(row)]
     first = next((row for row in [*wanting, *rows] if row.get("command")), None)
     if first is not None:
         text = first["next"]
         yield Text([Run("For "), _unit(first), Run(f": {text[:1].lower()}{text[1:]}")])
         yield Command(first["command"])
-        if len(rows) > 1:
+        if any(row is not first and row.get("command") for row in rows):
             yield Text("The pages of the others have theirs.", "quiet")
 
 
@@ -214,7 +253,6 @@ def _unit(row: Row) -> Run:
 
 def _row(row: Row) -> dict[str, Any]:
     found = verdict(row)
-    fit, threshold = row.get("lack_of_fit"), row.get("lack_of_fit_threshold")
     causes_ = titles(row)
     harms = row.get("harms") or [False] * len(causes_)
     named = zip(causes_, row.get("ambiguous_with") or (), harms, strict=True)
@@ -229,7 +267,7 @@ def _row(row: Row) -> dict[str, Any]:
             for value, form, head in (
                 (max(row.get("delta_bic") or (), default=None), "z.1f", "delta BIC"),
                 (row.get("overall_gain_percent") if row.get("causes") else None, "z.1f", "less error %"),
-                (None if fit is None else fit / threshold, ".2f", "lack of fit"),
+                (None if row.get("lack_of_fit") is None else _fit(row), ".2f", _FIT),
                 (row.get("seconds"), ".1f", "s"),
             )
         ],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -76,18 +77,22 @@ def diagnose_fleet(
     again: bool = False,
     code: bool = False,
     progress: Progress | None = None,
+    file: Path | None = None,
 ) -> Fleet:
     """Diagnose what is not there yet, then write fleet.parquet and overview.html into `out`.
 
     A unit that cannot be diagnosed gets a row with its error. A unit is there where an earlier call has made
     it of the same files with the same settings. again: make the units that failed anew. code: write the
-    extended model's code of every unit. Raises InputError where nothing can be written, or the cluster is
-    not reached or lost.
+    extended model's code of every unit. file: which has the units, for the command on the page. Raises
+    InputError where nothing can be written, or the cluster is not reached or lost.
     """
     library()  # before the long work, not after it
     _prepare(out)
     try:
-        return _diagnosed(units, out, where, again, code, progress)
+        found = _diagnosed(units, out, where, again, code, progress)
+        write_table(found.rows, out / NAME)
+        _write(out / PAGE, overview(found.rows, _again(file, out, code)))
+        return found
     finally:
         store.swept(out)  # of processes that were ended by an interruption
         for left in (out / "units", out):  # where nothing came of it
@@ -120,9 +125,15 @@ def _diagnosed(
         if progress:
             progress(len(rows), len(units))
     ordered = [rows[u.name] for u in units]
-    write_table(ordered, out / NAME)
-    _write(out / PAGE, overview(ordered))
     return Fleet(ordered, kept, out)
+
+
+def _again(file: Path | None, out: Path, code: bool) -> str:
+    """The command that makes what failed anew; empty where no file has the fleet."""
+    if file is None:
+        return ""
+    more = ["--code"] if code else []
+    return shlex.join(["modelgen", "fleet", str(file), "--out", str(out), "--again", *more])
 
 
 def _prepare(out: Path) -> None:

@@ -14,7 +14,10 @@ FAILED = "failed"
 _CLAUSES = {
     "named": ("lacks something", "lack something"),
     "suspected": ("may lack something", "may lack something"),
-    "nothing_missing": ("lacks nothing", "lack nothing"),
+    "nothing_missing": (
+        "lacks nothing that its records could show",
+        "lack nothing that their records could show",
+    ),
     "outside_catalogue": ("lacks something outside the catalogue", "lack something outside the catalogue"),
     "cannot_tell": ("gives no answer", "give no answer"),
     FAILED: ("could not be diagnosed", "could not be diagnosed"),
@@ -26,7 +29,9 @@ _CAUSES = 3  # of a group, in words
 
 
 def differences(rows: Sequence[Row]) -> list[str]:
-    """Which units lack what, in sentences: most of them first, and in what others differ from these."""
+    """Which units lack what, in sentences: most of them first, and in what others differ from these. Names of
+    units are in backquotes.
+    """
     groups: dict[tuple[str, tuple[str, ...]], list[str]] = {}
     for row in rows:
         what = titles(row) if row.get("causes") else row.get("suspects") or ()
@@ -37,7 +42,8 @@ def differences(rows: Sequence[Row]) -> list[str]:
     said = []
     for k, (found, what) in enumerate(order[:_GROUPS]):
         units = groups[found, what]
-        named = listed(units[:_UNITS]) + (f" and {len(units) - _UNITS} more" if units[_UNITS:] else "")
+        quoted = [f"`{unit}`" for unit in units[:_UNITS]]
+        named = listed(quoted) + (f" and {len(units) - _UNITS} more" if units[_UNITS:] else "")
         one, many = _CLAUSES[found]
         clause = _PERHAPS.get(found, "") + _missing(what) if what else ""
         if usual and k == 0:

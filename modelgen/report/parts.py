@@ -71,7 +71,8 @@ class Command(Part):
 
     def values(self) -> Mapping[str, Any]:
         """For the template."""
-        return {"words": self.text.split(" ")}
+        # a path that is longer than the line breaks between its folders
+        return {"words": [escape(word).replace("/", Markup("/<wbr>")) for word in self.text.split(" ")]}
 
 
 @dataclass(frozen=True)

@@ -377,22 +377,24 @@ def test_the_overview_says_first_which_units_differ_and_by_what() -> None:
     usual = rows_of("nothing_missing", "u1", "u2", "u3", "u4", "u5")
     lacking = rows_of("named", "u6", **SPRING)
     assert differences([*usual, *lacking]) == [
-        "5 of 6 units lack nothing.",
-        "u6 differs: a spring acts at elbow.",
+        "5 of 6 units lack nothing that their records could show.",
+        "`u6` differs: a spring acts at elbow.",
     ]
-    assert differences(usual) == ["All 5 units lack nothing."]
+    assert differences(usual) == ["All 5 units lack nothing that their records could show."]
     several = [*usual, *lacking, *rows_of("named", "u7", **SPRING), *rows_of("failed", "u8")]
     assert differences(several)[1:] == [
-        "u6 and u7 differ: a spring acts at elbow.",
-        "u8 differs: it could not be diagnosed.",
+        "`u6` and `u7` differ: a spring acts at elbow.",
+        "`u8` differs: it could not be diagnosed.",
     ]
     suspect = rows_of("suspected", "u9", suspects=["presliding at elbow"], failed_checks=[["form"]])
     assert differences([*lacking, *suspect]) == [
-        "In u6 a spring acts at elbow.",
-        "In u9 perhaps friction in the drive of elbow builds up over a distance after each reversal.",
+        "In `u6` a spring acts at elbow.",
+        "In `u9` perhaps friction in the drive of elbow builds up over a distance after each reversal.",
     ]
     text = overview([*usual, *lacking])
-    assert text.index("5 of 6 units lack nothing.") < text.index("<caption>")  # in words, then in bars
+    assert text.index("5 of 6 units lack nothing that their records could show.") < text.index(
+        "<caption>"
+    )  # in words, then in bars
 
 
 @pytest.mark.parametrize("effect", CATALOGUE)
@@ -412,16 +414,30 @@ def test_of_many_causes_the_first_are_said_in_words() -> None:
     perhaps = rows_of("suspected", "u1", "u2", suspects=many[:1])
     assert differences([*perhaps, *rows_of("nothing_missing", "u3")]) == [
         "In 2 of 3 units perhaps a spring acts at elbow.",
-        "u3 differs: it lacks nothing.",
+        "`u3` differs: it lacks nothing that its records could show.",
     ]
     (said,) = differences(rows_of("suspected", "u1", suspects=many, failed_checks=[["form"]] * 5))
     assert said.endswith("a spring acts at wrist and 2 more are named below.")
-    assert differences(rows_of("suspected", "u1", suspects=many[4:])) == ["In u1 perhaps made_up at j."]
+    assert differences(rows_of("suspected", "u1", suspects=many[4:])) == ["In `u1` perhaps made_up at j."]
 
 
 def copied(text: str) -> list[str]:
     """The commands of a page, as they are copied."""
     return [re.sub("<[^>]*>", "", code) for code in re.findall(r"<pre><code>(.*?)</code>", text)]
+
+
+def test_what_remains_beside_a_cause_is_to_be_looked_at_and_how_sure_it_is_said() -> None:
+    fit = {"lack_of_fit": 20.0, "lack_of_fit_threshold": 1.25, "delta_bic": [289.3]}
+    far = rows_of("named", "far", **SPRING, **fit)
+    near = rows_of("named", "near", **SPRING, **fit | {"lack_of_fit": 1.0, "delta_bic": [30.0]})
+    text = overview([*far, *near])
+    said = " ".join(re.sub("<[^>]*>", "", text).split())
+    assert "far: something deterministic remains beside what is named, lack of fit / threshold 16" in said
+    assert "near: something" not in said
+    assert "Each of the 2 causes passed every check that decides; evidence (delta BIC) 30 to 289;" in said
+    assert "<code>far</code> and <code>near</code>" in text
+    rival = rows_of("named", "u", **SPRING | {"ambiguous_with": [["base_tilt"]]})
+    assert "1 of 1 has a rival" in overview(rival)
 
 
 def test_the_overview_has_the_next_command_and_says_nothing_twice() -> None:
@@ -440,4 +456,9 @@ def test_the_overview_has_the_next_command_and_says_nothing_twice() -> None:
         assert text.count(once) == 1
     assert text.count("failed the check form") == 1
     assert copied(overview(named)) == ["modelgen generate n"]
+    assert "The pages of the others have theirs." in text
+    assert "have theirs" not in overview([*named, *rows_of("failed", "f", error="x")])  # which have none
+    again = "modelgen fleet fleet.yaml --out found --again"
+    assert copied(overview(wanting, again)) == [again, "modelgen excite b"]
+    assert again not in overview(named, again)  # nothing failed
     assert "<pre>" not in overview(rows_of("nothing_missing", "kept"))  # of a fleet before this

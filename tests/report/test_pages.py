@@ -31,7 +31,7 @@ QUESTIONS = {
     "refine": "What was found, How well it moves, What moved, What to do next",
     "calibrate": "What was found, Described and calibrated, What is uncertain, What to do next",
     "excite": "What was found, What it determines worst, What it asks of the arm, What to do next",
-    "fleet": "What was found, What is missing, What it is worth, What to look at next",
+    "fleet": "What was found, What is missing, How sure, What it is worth, What to look at next",
 }
 ROW = {
     "arm": "digger",
@@ -296,7 +296,7 @@ def test_a_cause_that_harms_its_test_record_is_marked_in_a_fleet(tmp_path: Path)
         marked = page.locator("#units strong")
         assert marked.all_inner_texts() == ["✗ makes its test record worse"]
         assert "spring at boom" in marked.locator("..").inner_text()
-        worth, following = (page.locator("dl.answer > div").nth(k).inner_text() for k in (2, 3))
+        worth, following = (page.locator("dl.answer > div").nth(k).inner_text() for k in (3, 4))
     assert "In one unit a cause makes its test record worse" in worth
     assert "u1: spring at boom makes its test record worse" in following
     assert "u0" not in following

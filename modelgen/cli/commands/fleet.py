@@ -48,6 +48,7 @@ def fleet(
             Where(jobs, dask),
             again=again,
             code=code,
+            file=file,
             progress=lambda done, total: progress("diagnosing", done, total),
         )
     print_result(found, as_json=as_json)
