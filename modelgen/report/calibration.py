@@ -59,8 +59,8 @@ def charts(arm: Arm, c: Calibration) -> list[Chart]:
             label,
             "error [deg]",
             [
-                Curve(x, measured - before, "before", _BEFORE, True),
-                Curve(x, measured - after, "after", _AFTER, True),
+                Curve(x, measured - before, "before", f"error {_BEFORE}", True),
+                Curve(x, measured - after, "after", f"error {_AFTER}", True),
             ],
             f"Measured angle of {name} less that of either lever.",
         ),

@@ -18,7 +18,7 @@ from modelgen.report.words import listed, sentence
 _FAR = 2.0  # standard deviations
 _SAME = 1.01  # of an error, that needs no word
 _NAMED = 6  # parameters that moved, in a sentence
-_KEEP = "The other values bring no joint nearer by one percent: keep the values of the start."
+_KEEP = "The tuned values bring no joint nearer by 1 %: keep the values of the start."
 _FINE = {"rad": (1e3, "mrad"), "m": (1e3, "mm")}  # factor and unit in which small errors are said
 _COARSE = 0.01  # rad, m: from which on they are said in these
 _RELEASES = 3  # that a diagnosis of free motions needs: a release is not split in two
@@ -111,7 +111,7 @@ def headline(found: Refinement) -> str:
     lost = f" It is farther from it than before at {listed(worse)}." if worse else ""
     text = f"The simulated motion misses the measured one by {new} {unit} (RMSE)"
     kept = "" if _gained(found) else f" {_KEEP}"
-    start = f"it was {old} {unit}" if old != new else "it was the same in these digits"
+    start = f"it was {old} {unit}" if old != new else "it was as much"
     return f"{text} {where}; with the values at the start {start}.{lost}{kept}"
 
 
