@@ -64,15 +64,10 @@ class Heading(Part):
 
 @dataclass(frozen=True)
 class Command(Part):
-    """A command to copy, which breaks between its words alone: options have hyphens."""
+    """A command to copy."""
 
     kind: ClassVar[str] = "command"
     text: str
-
-    def values(self) -> Mapping[str, Any]:
-        """For the template."""
-        # a path that is longer than the line breaks between its folders
-        return {"words": [escape(word).replace("/", Markup("/<wbr>")) for word in self.text.split(" ")]}
 
 
 @dataclass(frozen=True)

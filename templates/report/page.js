@@ -1,4 +1,14 @@
 "use strict";
+// A command breaks between its words alone, for options have hyphens, and a long path between its folders.
+for (const code of document.querySelectorAll("pre code")) {
+  code.replaceChildren(...code.textContent.split(/( +)/).map(word => {
+    if (!word.trim()) return word;
+    const span = document.createElement("span");
+    span.className = "word";
+    word.split(/(?<=\/)/).forEach((piece, k) => span.append(...(k ? [document.createElement("wbr")] : []), piece));
+    return span;
+  }));
+}
 // Copies a command.
 for (const pre of document.querySelectorAll("pre")) {
   const button = document.createElement("button");

@@ -423,7 +423,7 @@ def test_of_many_causes_the_first_are_said_in_words() -> None:
 
 def copied(text: str) -> list[str]:
     """The commands of a page, as they are copied."""
-    return [re.sub("<[^>]*>", "", code) for code in re.findall(r"<pre><code>(.*?)</code>", text)]
+    return re.findall(r"<pre><code>(.*?)</code>", text)
 
 
 def test_what_remains_beside_a_cause_is_to_be_looked_at_and_how_sure_it_is_said() -> None:

@@ -24,7 +24,7 @@ SHORT = {
 def commands(page: Path) -> list[list[str]]:
     """Words of every command of a page, as a shell splits them."""
     found = re.findall(r"<pre><code>(.*?)</code>", page.read_text(encoding="utf-8"), re.DOTALL)
-    lines = [shlex.split(unescape(re.sub("<[^>]*>", "", text))) for text in found]
+    lines = [shlex.split(unescape(text)) for text in found]
     assert all(line[0] == "modelgen" for line in lines)
     return [line[1:] for line in lines]
 
