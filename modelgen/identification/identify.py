@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from modelgen.evaluation import Evaluator
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.nominal import payload_base
 from modelgen.functions.options import prepared as reduced
+from modelgen.identification.by_load import fitted_by_load, slopes_of
 from modelgen.identification.consistent import consistent
 from modelgen.identification.essential import essential, only, part, refit
 from modelgen.identification.gains import Gain, estimated, with_gains
@@ -115,8 +117,13 @@ def _refuse(options: Options, method: str, *, physical: bool, payloads: bool) ->
 
 def _columns_by_load(model: Model) -> bool:
     """Whether columns of the regressor depend on the parameters, by loads or states."""
+    return bool({"load", "state"} & _arguments(model))
+
+
+def _arguments(model: Model) -> set[str]:
+    """What the regressor depends on."""
     (function,) = [f for f in model.functions if f.name == "regressor"]
-    return bool({"load", "state"} & {a.name for a in function.arguments})
+    return {a.name for a in function.arguments}
 
 
 def errors_of(
@@ -137,7 +144,7 @@ def _fitted(
     added: Sequence[Array] | None,
     method: str,
 ) -> tuple[Regression, Solution]:
-    """Rows and least squares. Columns that depend on the load are evaluated anew with the load found."""
+    """Rows and least squares. Columns that depend on the load follow the load as it is found."""
     theta = np.zeros(len(model.grouping.base))
     # noise that joints share is shared by whole rows alone
     whole = method == "gls"
@@ -147,6 +154,14 @@ def _fitted(
     if _columns_by_load(model):
         regression = regression_of(evaluator, model, train, solution.theta, added, all_samples=whole)
         solution = regression.solve(method)
+    if _arguments(model) & {"load", "state"} == {"load"}:
+        more = [theta] * len(train) if added is None else added
+        regression, solution = fitted_by_load(
+            lambda at: regression_of(evaluator, model, train, at, added, all_samples=whole),
+            partial(slopes_of, evaluator, model, train, more),
+            solution,
+            method,
+        )
     return regression, solution
 
 
