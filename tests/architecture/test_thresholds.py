@@ -36,6 +36,7 @@ CONSTANTS = {
         "SPREAD": ROUNDING,
     },
     "candidates/columns.py": {"TAIL": ROUNDING},
+    "candidates/periodogram.py": {"MANY": BUDGET, "PLACES": ACCURACY},
     "candidates/search.py": {
         "REFINEMENTS": ACCURACY,
         "GOLDEN": FORMULA,
