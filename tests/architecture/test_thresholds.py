@@ -89,6 +89,13 @@ CONSTANTS = {
     },
     "selection/deviations.py": {"STEP": ACCURACY, "LEAST": ACCURACY, "OPEN": ROUNDING},
     "selection/refit.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "WORSE": ROUNDING},
+    "selection/refit_by_load.py": {
+        "TURNS": BUDGET,
+        "HALVINGS": BUDGET,
+        "LEAST_GAIN": ACCURACY,
+        "TOUCH": ACCURACY,
+        "LEAST": ACCURACY,
+    },
     "selection/elastic_fit.py": {
         "STEPS": BUDGET,
         "CLOSE": ACCURACY,

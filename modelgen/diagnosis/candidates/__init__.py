@@ -10,7 +10,13 @@ from modelgen.diagnosis.candidates.candidate import (
     cold,
     without_rests,
 )
-from modelgen.diagnosis.candidates.columns import candidate_columns, of_part, slopes, unchanging
+from modelgen.diagnosis.candidates.columns import (
+    candidate_columns,
+    columns_at_rows,
+    of_part,
+    slopes,
+    unchanging,
+)
 from modelgen.diagnosis.candidates.fitted import (
     FittedCandidate,
     beside,
@@ -40,6 +46,7 @@ __all__ = [
     "candidates",
     "check_one_arm",
     "cold",
+    "columns_at_rows",
     "fit_pool",
     "named",
     "of_part",

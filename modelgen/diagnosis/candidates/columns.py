@@ -45,6 +45,19 @@ def candidate_columns(
     return where_there(candidate, of_part(candidate, found) if candidate.definition.linear else found)
 
 
+def columns_at_rows(candidate: Candidate, values: Values, equations: Equations, base: Array) -> list[Array]:
+    """Columns (M, n, k) of a linear effect at the rows of every record, as `candidate_columns` before the
+    filter.
+    """
+    found = []
+    for r in equations.rows:
+        m, at = r.motion, r.prepared.rows
+        rows = Motion(m.t[at], m.q[at], m.dq[at], m.ddq[at])
+        given = {**candidate.fixed, **values}
+        found.append(equations.evaluator.columns(candidate.effect, candidate.joint, rows, given, base))
+    return where_there(candidate, of_part(candidate, found))
+
+
 def of_part(candidate: Candidate, tables: Sequence[Array]) -> list[Array]:
     """Pick the columns that are asked for, of those (M, n, k) of all parameters."""
     if not candidate.part:

@@ -19,6 +19,7 @@ from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.elastic_fit import smooth
+from modelgen.diagnosis.selection.refit_by_load import load_slopes, loaded
 from modelgen.numeric import Array
 
 STEP = 0.01  # of a value, over which slopes are taken
@@ -128,12 +129,16 @@ def _held(
 
 
 def _carried(selection: Selection, equations: Equations) -> list[Array]:
-    """What elastic joints add changes so by the arm's own parameters, (M, n, k) of each record."""
-    elastic = [c.trial for c in selection.causes if smooth(c.trial, equations)]
-    if not elastic:
+    """What elastic joints and friction by the load add changes so by the arm's own parameters, (M, n, k) of
+    each record.
+    """
+    trials = [c.trial for c in selection.causes]
+    elastic = [t for t in trials if smooth(t, equations)]
+    by_load = [t for t in trials if loaded(t, equations)]
+    if not elastic and not by_load:
         return []
     theta = selection.system.theta[: equations.unknowns]
-    found = [np.zeros((*r.effort.shape, len(theta))) for r in equations.rows]
+    found = load_slopes(by_load, [t.gain.values for t in by_load], theta, equations)
     for trial in elastic:
         here = candidate_columns(trial.candidate, trial.values, equations, equations.base(theta))
         for i, value in enumerate(theta):

@@ -23,6 +23,7 @@ from modelgen.diagnosis.candidates import (
 )
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.selection.cause import Cause
+from modelgen.diagnosis.selection.refit_by_load import refit_by_load
 from modelgen.numeric import Array
 from modelgen.regression.weighted import misfit, weighted_fit
 
@@ -68,6 +69,7 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
             break
     for cause, trial in zip(causes, best, strict=True):
         cause.trial = trial
+    refit_by_load(causes, equations)
 
 
 def _towards(found: Array, at: Array, way: Array) -> tuple[Array, Array]:
