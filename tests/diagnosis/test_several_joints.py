@@ -32,7 +32,7 @@ def test_friction_of_one_joint_by_the_speed_of_another_is_no_coupling(tmp_path: 
     assert suspect["effect"] == "transmission_coupling"
     form = form_of(suspect)
     assert form["passed"] is False
-    assert form["text"].startswith("a free function of the joint's speed and that of j1 is")
+    assert form["text"].startswith("a free function of the joint's speed and that of j1 explains more")
 
 
 @pytest.mark.parametrize(("kind", "joint"), [("transmission_coupling", 2), ("base_tilt", None)])
