@@ -39,9 +39,12 @@ _NOTHING: tuple[str, float, float | None] = ("", 0.0, None)
 _ENDLESS = 10_000  # columns, more than any table has
 _EVERY = 20.0  # seconds between two lines on the progress
 # A number, or nothing, and its unit, between whose words no line ends.
-_NAMES = "deg|mrad|rad|kHz|Hz|µs|ms|min|mm|kg|mA|kN|s|m|A|N|V|J|W|K|turns?"
+_NAMES = "deg|mrad|rad|kHz|Hz|µs|ms|min|mm|kg|mA|kN|s|m|A|N|V|J|W|K|turns?|samples?"
 _UNIT = rf"(?:(?:{_NAMES})(?![\w-])(?:\^\d)?(?:/\w+(?:\^\d)?)?|%)"
-_QUANTITY = re.compile(rf"(?<=\d) {_UNIT}(?: {_UNIT})*|(?<!\S){_UNIT}(?: {_UNIT})+(?!\S)")
+_DEVIATION = r" ± \d[\d.e+-]*"
+_QUANTITY = re.compile(
+    rf"(?<=\d)(?:{_DEVIATION})?(?: {_UNIT})+|(?<=\d){_DEVIATION}|(?<!\S){_UNIT}(?: {_UNIT})+(?!\S)"
+)
 _FIXED = "\ue000"  # a space at which neither textwrap nor rich breaks, until the lines are made
 
 

@@ -177,7 +177,9 @@ def _worth(rows: Sequence[Row]) -> str:
     if not gains:
         return ""
     worse = sum(g < 0.0 for g in gains)
-    said = f"With the causes the error on the test records is {median(gains):z.1f} % less over all joints"
+    middle = median(gains)
+    way = "less" if middle >= 0.0 else "larger"
+    said = f"With the causes the error on the test records is {abs(middle):z.1f} % {way} over all joints"
     low, high = f"{min(gains):z.1f}", f"{max(gains):z.1f}"
     if low != high:
         said += f" (median of {len(gains)} units, {low} to {high} %)"

@@ -115,7 +115,8 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
 
 def _passed(causes: Sequence[NamedCause]) -> str:
     others = dict.fromkeys(c.name for cause in causes for c in cause.checks if not c.decides)
-    return f"All {len(causes)} passed the checks that decide; {listed(others)} decide nothing. "
+    every = "Both" if len(causes) == 2 else f"All {len(causes)}"
+    return f"{every} passed the checks that decide; {listed(others)} decide nothing. "
 
 
 def _doubted(d: Diagnosis) -> list[Run]:

@@ -128,7 +128,7 @@ def doubted(d: Diagnosis) -> list[str]:
     kinds = (
         ("The test record is predicted worse with {}.", [] if said else worse),
         ("The test record does not confirm {}.", unconfirmed),
-        ("Not stable, the training records differ in its size: {}.", _failing(d, "stable")),
+        ("Not stable, the training records differ in the size of {}.", _failing(d, "stable")),
     )
     return [text.format(listed(cause_title(d, c) for c in lost)) for text, lost in kinds if lost]
 
@@ -193,7 +193,7 @@ def _left(d: Diagnosis) -> str:
     sizes = f"{number(left[j], 2)} of {number(efforts[j], 2)} {_unit(d, j)}"
     where = f" at {joint_name(d.arm, j + 1)}" if len(shares) > 1 else ""
     largest = ", the largest share of all joints" if where and j == most else ""
-    share = f", {100.0 * shares[j]:z.2g} % of the effort{largest}"
+    share = f", {number(100.0 * shares[j], 2)} % of the effort{largest}"
     return f"What is left on the test record, noise and all, is {sizes} (RMS){where}{share}."
 
 

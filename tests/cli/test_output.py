@@ -62,6 +62,12 @@ def test_a_title_is_as_wide_as_the_terminal_and_no_quantity_is_torn(
         text = shown(Table("", {"cause": "left", "values": "left"}, [["x" * 36, values]]), capsys)
         for quantity in ("2.5 mm,", "0.002524 N m,", "-0.01234 N m s/rad,", "0.25 kg m^2"):
             assert any(quantity in line for line in text), (width, text)
+        output.say(
+            "The data agree, of efforts that were read: 0.50 ± 0.065 samples after it, 12 ± 0.4 mm off."
+        )
+        said = capsys.readouterr().out.splitlines()
+        for quantity in ("0.50 ± 0.065 samples", "12 ± 0.4 mm"):
+            assert any(quantity in line for line in said), (width, said)
     output.say(values * 20)
     assert "\ue000" not in capsys.readouterr().out
 

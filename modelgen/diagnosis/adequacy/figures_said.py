@@ -40,6 +40,8 @@ def range_said(low: float, high: float) -> str:
 
 def ahead_of(ahead: float, most: float) -> str:
     """How much more or less something explains than a cause, and how much more it may."""
+    if not np.isfinite(ahead):
+        return "explains nothing"
     what = "more" if ahead > 0.0 else "less"
     may = f"{number(most)} more are allowed" if most > 0.0 else "it must not explain more"
     return f"explains {what}, by {number(abs(ahead))} of delta BIC; {may}"
