@@ -8,7 +8,7 @@ from modelgen.dataset import Record
 from modelgen.description import loads
 from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import to_json
-from modelgen.effects import known_effects
+from modelgen.effects import CATALOGUE, Seen, known_effects
 
 LIFT = """
 schema: 1
@@ -69,3 +69,13 @@ def test_what_records_differ_in_is_in_the_deviations() -> None:
     found, usual = cause.parameters["offset"], alike.parameters["offset"]
     assert abs(usual.value - 1.15) < 2.0 * usual.std < 0.02
     assert all(abs(found.value - size) < 2.0 * found.std < 0.5 for size in sizes)
+
+
+def test_an_arm_without_drives_has_no_torque_constant() -> None:
+    """It is not among what the records cannot show."""
+    none = LIFT.replace("{type: direct, ratio: 400, torque_constant: 0.05}", "{type: none}")
+    free = loads(none, "l", known_effects())
+    driven = loads(LIFT, "l", known_effects())
+    seen = Seen(False, (), (), False)
+    assert CATALOGUE["drive_gain_error"].hidden(free["lift"], seen, False) == []
+    assert CATALOGUE["drive_gain_error"].hidden(driven["lift"], seen, False)

@@ -60,6 +60,6 @@ def base_estimates(model: Model, theta: Array, equations: Equations) -> Mapping[
     lift = rows[0].baseline.lift
     spread = np.sqrt(np.maximum(0.0, np.diag(lift @ covariance_of(system) @ lift.T)))
     return {
-        b.name: Estimate(float(v), float(s), b.unit)
+        b.name: Estimate(float(v), float(s) if s > 0.0 else float("nan"), b.unit)
         for b, v, s in zip(model.grouping.base, rows[0].baseline.base(theta), spread, strict=True)
     }

@@ -163,8 +163,8 @@ class DriveGainError(DescriptionEffect):
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
-        """A single joint hides it."""
-        if named or len(arm.coordinates) > 1:
+        """A single joint hides it, where something drives that."""
+        if named or len(arm.coordinates) > 1 or not arm.joints[arm.coordinates[0]].drive.driven:
             return []
         return ["the torque constant of a single joint scales all its parameters"]
 
