@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from modelgen.backends.numpy import NumpyFunction
@@ -36,6 +37,10 @@ class Motion:
     cutoff: float = 0.0
     before: Motion | None = field(default=None, repr=False)
     held: bool = False
+
+    def picked(self, samples: NDArray[np.intp]) -> Motion:
+        """The motion at these samples alone, one by one."""
+        return Motion(self.t[samples], self.q[samples], self.dq[samples], self.ddq[samples])
 
     def rest_until(self, end: float) -> Motion:
         """A rest from where this motion ends up to a time [s], as one step (2 samples)."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from modelgen.fleet.store import Row
 from modelgen.fleet.table import NAME, library, write_table
 from modelgen.fleet.units import Unit
 from modelgen.jobs import Where, run
+from modelgen.report.call import command
 
 PAGE = "overview.html"
 SHOWN = 10  # failures and causes that are printed
@@ -133,7 +133,7 @@ def _again(file: Path | None, out: Path, code: bool) -> str:
     if file is None:
         return ""
     more = ["--code"] if code else []
-    return shlex.join(["modelgen", "fleet", str(file), "--out", str(out), "--again", *more])
+    return command("fleet", file, "", "--out", str(out), "--again", *more)
 
 
 def _prepare(out: Path) -> None:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from modelgen.dataset import Prepared
-from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.identification.rows import motion_of
 from modelgen.numeric import Array
@@ -67,14 +67,9 @@ def fitted_by_load(
 
 def _misfit(regression: Regression, theta: Array) -> float:
     """What weighted least squares makes least: half the logarithms of the joints' mean squares, by rows."""
-    total, count = 0.0, 0.0
+    residuals, total, count = regression.residuals(theta), 0.0, 0.0
     for j in range(regression.effort[0].shape[1]):
-        left = np.concatenate(
-            [
-                (y[:, j] - c[:, j] @ theta)[m[:, j]]
-                for y, c, m in zip(regression.effort, regression.columns, regression.moving, strict=True)
-            ]
-        )
+        left = np.concatenate([e[m[:, j], j] for e, m in zip(residuals, regression.moving, strict=True)])
         if len(left):
             total += len(left) * 0.5 * float(np.log(max(np.mean(left**2), 1e-300)))
             count += len(left)
@@ -87,8 +82,7 @@ def slopes_of(
     """`slopes` of `fitted_by_load` at the rows, by differences; what the filter does to them is left out."""
     found = []
     for p, more in zip(records, added, strict=False):
-        motion = motion_of(p)
-        rows = Motion(motion.t[p.rows], motion.q[p.rows], motion.dq[p.rows], motion.ddq[p.rows])
+        rows = motion_of(p).picked(p.rows)
         whole = theta + more
         before = np.asarray(evaluator.regressor(model, rows, whole)) @ whole
         table = np.zeros((*before.shape, len(theta)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -75,7 +76,7 @@ class Rows:
             return 0.0
 
         def columns(samples: NDArray[np.intp], dq: Array) -> Array:
-            within = Motion(motion.t[samples], motion.q[samples], dq, motion.ddq[samples])
+            within = replace(motion.picked(samples), dq=dq)
             made = np.asarray(self.evaluator.regressor(self.model, within, np.zeros(self.p)))
             return made[:, self.joint, self.parameter]
 

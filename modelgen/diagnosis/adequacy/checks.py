@@ -272,7 +272,7 @@ def _stable(k: int, selection: Selection) -> Check:
     others = [c.trial for i, c in enumerate(selection.causes) if i != k]
     columns = with_causes(system.equations, [*others, trial])  # the cause's own at the end
     own = columns[0].shape[2] - trial.columns[0].shape[2]
-    if parts[1:] == []:
+    if len(parts) == 1:
         text = "one record cannot tell whether its size is the same in all"
         return Check("stable", None, False, float("nan"), least, text)
     found, ratio = agreement(parts, system.equations, columns, own)

@@ -51,9 +51,7 @@ def columns_at_rows(candidate: Candidate, values: Values, equations: Equations, 
     """
     found = []
     for r in equations.rows:
-        m, at = r.motion, r.prepared.rows
-        rows = Motion(m.t[at], m.q[at], m.dq[at], m.ddq[at])
-        given = {**candidate.fixed, **values}
+        rows, given = r.motion.picked(r.prepared.rows), {**candidate.fixed, **values}
         found.append(equations.evaluator.columns(candidate.effect, candidate.joint, rows, given, base))
     return where_there(candidate, of_part(candidate, found))
 
