@@ -271,8 +271,10 @@ def test_a_payload_has_a_mass(mass: float, moment: float, passed: bool) -> None:
     random = np.random.default_rng(4)
     rows, _, periods = made(lambda x: 0.0 * x)
     columns = [random.normal(size=(len(r.effort), 1, 2)) for r in rows]
+    own = Unknowns(np.zeros(2), np.eye(2))
     loaded = [
-        replace(r, effort=r.effort + c @ np.array([mass, moment])) for r, c in zip(rows, columns, strict=True)
+        replace(r, effort=r.effort + c @ np.array([mass, moment]), baseline=own)
+        for r, c in zip(rows, columns, strict=True)
     ]
     bare = system_of(loaded, periods=periods)
     gain = bare.gain(columns)

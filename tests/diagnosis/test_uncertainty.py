@@ -74,7 +74,8 @@ def test_what_is_hardly_determined_has_no_interval() -> None:
     trial = Search(System(equations)).trial(candidate)
     assert trial is not None
     selection = selected(equations, trial)
-    (raw,), (said,) = deviations(selection, equations), cause_estimates(selection, equations)
+    spread = deviations(selection, equations)
+    (raw,), (said,) = spread.causes, cause_estimates(selection, equations, spread)
     assert raw["velocity"] > 0.5 * said["velocity"].value
     assert np.isnan(said["velocity"].std)
     assert said["magnitude"].std == raw["magnitude"]
@@ -91,7 +92,8 @@ def test_what_a_bound_holds_at_zero_is_as_unsure_as_elsewhere() -> None:
         columns=[np.zeros_like(c) for c in free.columns],
         gain=replace(free.gain, values=np.zeros(1)),
     )
-    (stated,) = deviations(selected(equations, free), equations)
-    (bound,) = deviations(selected(equations, held), equations)
+    (stated,) = deviations(selected(equations, free), equations).causes
+    spread = deviations(selected(equations, held), equations)
+    (bound,) = spread.causes
     assert np.isclose(bound["coefficient"], stated["coefficient"], rtol=0.1)
-    assert cause_estimates(selected(equations, held), equations)[0]["coefficient"].std > 0.0
+    assert cause_estimates(selected(equations, held), equations, spread)[0]["coefficient"].std > 0.0

@@ -1,6 +1,6 @@
 """Is what is left explained: lack of fit, smooth functions, checks, causes that cannot be distinguished."""
 
-from modelgen.diagnosis.adequacy.checks import Examined, confirmed, examined
+from modelgen.diagnosis.adequacy.checks import Examined, confirmed, examined, significance_of
 from modelgen.diagnosis.adequacy.distinguishable import aliases, without_indistinguishable
 from modelgen.diagnosis.adequacy.figures_said import possible
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit, place
@@ -21,6 +21,7 @@ __all__ = [
     "most_like",
     "place",
     "possible",
+    "significance_of",
     "verdict_of",
     "without_indistinguishable",
 ]

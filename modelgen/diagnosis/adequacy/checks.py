@@ -11,12 +11,19 @@ from modelgen.charts import number
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.dominance import Dominance, dominance
 from modelgen.diagnosis.adequacy.explained import explained
-from modelgen.diagnosis.adequacy.figures_said import FREE_FUNCTION, ahead_of, form_said, percent, possible
+from modelgen.diagnosis.adequacy.figures_said import (
+    FREE_FUNCTION,
+    ahead_of,
+    claimed,
+    form_said,
+    percent,
+    possible,
+    significance,
+)
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
 from modelgen.diagnosis.adequacy.log_delay import out_of_step
-from modelgen.diagnosis.candidates import with_causes
+from modelgen.diagnosis.candidates import FittedCandidate, with_causes
 from modelgen.diagnosis.equations import Equations
-from modelgen.diagnosis.evidence import covariance
 from modelgen.diagnosis.options.thresholds import in_band
 from modelgen.diagnosis.selection import (
     SUSPECT,
@@ -46,17 +53,18 @@ class Examined:
 
 def examined(selection: Selection, equations: Equations) -> list[Examined]:
     """Every cause of the selection with its checks. equations: of the band, all rows that move."""
+    stable = [_stable(k, selection) for k in range(len(selection.causes))]
     every = [
         Examined(
             cause,
             (
                 _evidence(cause, selection),
-                significant(k, selection, equations),
+                significant(k, selection, equations, stable[k].widened),
                 admissible(cause, equations),
                 _gain(cause, equations),
                 _undominated(dominance(cause, selection), equations.arm),
                 *complete,
-                _stable(k, selection),
+                stable[k],
             ),
         )
         for k, (cause, complete) in enumerate(
@@ -171,57 +179,29 @@ def _evidence(cause: Cause, selection: Selection) -> Check:
     return Check("evidence", cause.delta_bic >= least, True, cause.delta_bic, least, text)
 
 
-def significant(k: int, selection: Selection, equations: Equations) -> Check:
+def significant(k: int, selection: Selection, equations: Equations, widened: float = 1.0) -> Check:
     """Whether what an effect claims is not zero: asked of parameters without which it would not be there.
 
-    k: number of the cause. equations: of the band.
+    k: number of the cause. equations: of the band. widened: times that the records differ more in it than
+    noise does.
     """
-    cause = selection.causes[k]
-    least = selection.system.equations.thresholds.adequacy.min_claimed_deviations
-    c = cause.trial.candidate
-    claims = [name for name in c.definition.claims if name in (*c.names, *cause.trial.values)]
-    if not claims:
-        found = _largest(*_estimated(k, selection, equations))
-        text = "its parameters count together, by the evidence"
-        if np.isfinite(found):
-            text += f", not each alone; the clearest is {number(found)} standard deviations from zero"
-        return Check("significant", True, True, found, float("nan"), text)
-    of = _searched if any(name in cause.trial.values for name in claims) else _estimated
-    found = c.definition.above_zero(equations.arm, *of(k, selection, equations))
-    text = (
-        f"its {' and '.join(claims)} differs by {number(found)} standard deviations from that of an arm "
-        f"without it; {number(least)} is asked"
-    )
-    return Check("significant", found >= least, True, found, least, text)
-
-
-def _largest(values: Mapping[str, float], spread: Mapping[str, float]) -> float:
-    """How many standard deviations from zero the clearest parameter is, not a number where none has any."""
-    found = [abs(value) / spread[name] for name, value in values.items() if spread[name] > 0.0]
-    return max(found, default=float("nan"))
-
-
-def _estimated(
-    k: int, selection: Selection, equations: Equations
-) -> tuple[Mapping[str, float], Mapping[str, float]]:
-    """Values and standard deviations of what was estimated of the cause number k, by name."""
-    system, own = selection.system, selection.columns[k]
-    names = selection.causes[k].trial.candidate.names
-    spread = np.sqrt(np.maximum(0.0, np.diag(covariance(system))))
-    values = zip(names, system.theta[own].tolist(), strict=True)
-    return dict(values), dict(zip(names, spread[own].tolist(), strict=True))
-
-
-def _searched(
-    k: int, selection: Selection, equations: Equations
-) -> tuple[Mapping[str, float], Mapping[str, float]]:
-    """The same of its own parameters, which follow from what was searched for, as they are beside the arm's;
-    nothing of those whose slope cannot be had.
-    """
+    trial = selection.causes[k].trial
+    if not claimed(trial):
+        return significance_of(trial, equations, {}, {})
     settled = refit_elastic(selection, equations)
-    values, spread = settled.causes[k].trial.parameters, deviations(settled, equations)[k]
-    known = {name: std for name, std in spread.items() if np.isfinite(std)}
-    return {name: values[name] for name in known}, known
+    values, spread = settled.causes[k].trial.parameters, deviations(settled, equations).causes[k]
+    return significance_of(trial, equations, values, {name: widened * s for name, s in spread.items()})
+
+
+def significance_of(
+    trial: FittedCandidate, equations: Equations, values: Mapping[str, float], spread: Mapping[str, float]
+) -> Check:
+    """The check `significant` of a cause with these values and standard deviations, by name."""
+    found, text = significance(trial, equations.arm, values, spread)
+    if not claimed(trial):
+        return Check("significant", True, True, found, float("nan"), text)
+    least = equations.thresholds.adequacy.min_claimed_deviations
+    return Check("significant", found >= least, True, found, least, f"{text}; {number(least)} is asked")
 
 
 def admissible(cause: Cause, equations: Equations) -> Check:

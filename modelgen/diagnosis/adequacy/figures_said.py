@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from modelgen.charts import number, sized
 from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.free_form import FreeForm
+from modelgen.diagnosis.candidates import FittedCandidate
 from modelgen.diagnosis.selection import Cause
 from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
@@ -27,6 +30,33 @@ def possible(cause: Cause, arm: Arm) -> str:
         if p.name in values
     ]
     return f"its values can be those of an arm: {'; '.join(said)}" if said else "it has no values of its own"
+
+
+def claimed(cause: FittedCandidate) -> tuple[str, ...]:
+    """Names of what its effect claims and was found: without it the effect would not be there."""
+    c = cause.candidate
+    return tuple(name for name in c.definition.claims if name in (*c.names, *cause.values))
+
+
+def significance(
+    cause: FittedCandidate, arm: Arm, values: Mapping[str, float], spread: Mapping[str, float]
+) -> tuple[float, str]:
+    """How many standard deviations what a cause claims is from an arm without it, else the clearest of its
+    parameters from zero, and that in words; not a number where none has a deviation.
+
+    values, spread: of its parameters by name.
+    """
+    known = {name: std for name, std in spread.items() if std > 0.0}  # which one that is not a number is not
+    names = claimed(cause)
+    if names:
+        found = cause.candidate.definition.above_zero(arm, {n: values[n] for n in known}, known)
+        what = f"its {' and '.join(names)} differs by {number(found)} standard deviations"
+        return found, f"{what} from that of an arm without it"
+    text = "its parameters count together, by the evidence, not each alone"
+    sizes = [abs(values[name]) / std for name, std in known.items() if name in cause.candidate.names]
+    if not sizes:
+        return float("nan"), text
+    return max(sizes), f"{text}; the clearest is {number(max(sizes))} standard deviations from zero"
 
 
 def range_said(low: float, high: float) -> str:

@@ -65,7 +65,7 @@ def instant_shown(
         if after is None:
             continue
         place = [c.trial.candidate for c in selection.causes].index(cause.trial.candidate)
-        std = float(np.nanmax([*deviations(selection, equations)[place].values()])) / record.step
+        std = float(np.nanmax([*deviations(selection, equations).causes[place].values()])) / record.step
         fits = fitting(after, std, record.step, equations.thresholds.dataset)
         if fits is not None and fits != record.effort_hold:
             return EffortInstant(fits, "data", record.step, after, std, fits)

@@ -10,9 +10,9 @@ import numpy as np
 from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
 from modelgen.diagnosis.equations import Equations, Rows, Unknowns, estimated, held, rows_of, rows_twice
+from modelgen.diagnosis.extended.cause_values import as_fitted, bounded_fit, own_parameters, valued
 from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
 from modelgen.diagnosis.extended.findings import Estimate
-from modelgen.diagnosis.extended.uncertainty import valued
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
 from modelgen.diagnosis.selection import Selection, refit_elastic
 from modelgen.effects import CATALOGUE, Family, described
@@ -69,7 +69,9 @@ def extend(arm: Arm, selection: Selection, equations: Equations) -> Extension:
     inertias, selection, split = split_drive_inertia(selection, equations)
     selection = valued(refit_elastic(selection, split))
     before = fitted(arm, equations.model, equations.rows)
-    return Extension(selection, split, base, inertias, before, extended(before, selection, split))
+    after = extended(before, selection, split)
+    selection = as_fitted(selection, after.model, after.parameters)
+    return Extension(selection, split, base, inertias, before, after)
 
 
 def fitted(arm: Arm, model: Model, rows: Sequence[Rows]) -> FittedModel:
@@ -95,7 +97,9 @@ def extended(before: FittedModel, selection: Selection, equations: Equations) ->
         rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
         return FittedModel(bigger, model, *settled(bigger, model, seen, known, first, rigid))
     own = rows_twice(Evaluator(bigger), model, seen, known, start)
-    return fitted(bigger, model, _as_there(own, before, selection, equations, start))
+    rows = _as_there(own, before, selection, equations, start)
+    bounds = [*own_parameters(model, [c.trial for c in selection.causes])]
+    return FittedModel(bigger, model, rows, bounded_fit(rows, bounds))
 
 
 def _as_there(

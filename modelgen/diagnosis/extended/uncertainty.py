@@ -2,49 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
+from modelgen.diagnosis.extended.cause_values import own_parameters
+from modelgen.diagnosis.extended.extended_model import Extension, FittedModel
 from modelgen.diagnosis.extended.findings import Estimate
-from modelgen.diagnosis.selection import Selection, covariance_of, deviations, unseparated
-from modelgen.functions import Model
+from modelgen.diagnosis.selection import Selection, Spread, covariance_of, unseparated
 from modelgen.model.parameters import units_at
 from modelgen.numeric import Array
 
 
-def valued(selection: Selection) -> Selection:
-    """The selection with the values of its causes as the extended model is fitted: by the plain equations."""
-    causes = []
-    for cause, own in zip(selection.causes, selection.columns, strict=True):
-        trial, values = cause.trial, selection.system.theta[own]
-        if not trial.candidate.elastic:  # which are as they were simulated
-            values = np.where(trial.candidate.positive, np.maximum(values, 0.0), values)
-            trial = replace(trial, gain=replace(trial.gain, values=values))
-        causes.append(replace(cause, trial=trial))
-    return replace(selection, causes=causes)
-
-
-def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str, Estimate]]:
+def cause_estimates(selection: Selection, equations: Equations, spread: Spread) -> list[dict[str, Estimate]]:
     """Estimates of the causes' own parameters; what was fixed, is not determined or hangs on a guess has no
-    deviation.
+    deviation. spread: `deviations` of the selection.
     """
     most = equations.thresholds.extended.max_relative_deviation
     found = []
     alike = unseparated(selection, equations)
-    for cause, spread, held in zip(selection.causes, deviations(selection, equations), alike, strict=True):
+    for cause, own, held in zip(selection.causes, spread.causes, alike, strict=True):
         units = units_at(equations.arm, *cause.trial.candidate.place)
         values, searched = cause.trial.parameters, cause.trial.values
         c = cause.trial.candidate
         open_ = {*c.definition.conditional(c.fixed)}
-        open_ |= {name for name in searched if name in values and spread[name] > most * abs(values[name])}
+        open_ |= {name for name in searched if name in values and own[name] > most * abs(values[name])}
         found.append(
             {
                 name: Estimate(
-                    v, float("nan") if name in open_ else spread[name], units.get(name, ""), name not in held
+                    v, float("nan") if name in open_ else own[name], units.get(name, ""), name not in held
                 )
                 for name, v in values.items()
             }
@@ -52,14 +41,33 @@ def cause_estimates(selection: Selection, equations: Equations) -> list[dict[str
     return found
 
 
-def base_estimates(model: Model, theta: Array, equations: Equations) -> Mapping[str, Estimate]:
-    """Base parameters of a model from its fit; those that were known have no deviation. theta: unknowns (k,)
-    of its equations.
+def base_estimates(
+    extension: Extension, spread: Spread, causes: Sequence[Mapping[str, Estimate]]
+) -> Mapping[str, Estimate]:
+    """Base parameters of the extended model; those that were known have no deviation.
+
+    spread: `deviations` of its causes and of the arm's parameters beside them. causes: estimates of the
+    causes' parameters, which those that are base parameters have here too. What another model would group
+    otherwise has the deviation of its own fit.
     """
-    system, rows = System(equations), equations.rows
-    lift = rows[0].baseline.lift
-    spread = np.sqrt(np.maximum(0.0, np.diag(lift @ covariance_of(system) @ lift.T)))
-    return {
-        b.name: Estimate(float(v), float(s) if s > 0.0 else float("nan"), b.unit)
-        for b, v, s in zip(model.grouping.base, rows[0].baseline.base(theta), spread, strict=True)
+    after, equations = extension.after, extension.equations
+    own = _own_deviations(after, equations)
+    lift = equations.rows[0].baseline.lift
+    described = equations.model.grouping.base
+    shared = np.sqrt(np.maximum(0.0, np.diag(lift @ spread.arm @ lift.T)))
+    beside = {(b.name, b.expression): float(s) for b, s in zip(described, shared, strict=True)}
+    found = {
+        b.name: Estimate(float(v), beside.get((b.name, b.expression), float(s)), b.unit)
+        for b, v, s in zip(after.model.grouping.base, after.parameters, own, strict=True)
     }
+    names = [b.name for b in after.model.grouping.base]
+    for p in own_parameters(after.model, [c.trial for c in extension.selection.causes]):
+        found[names[p.base]] = replace(causes[p.cause][p.name], separate=True)
+    return {name: replace(e, std=e.std if e.std > 0.0 else float("nan")) for name, e in found.items()}
+
+
+def _own_deviations(fitted: FittedModel, equations: Equations) -> Array:
+    """Standard deviations (p,) of a model's base parameters in the equations of its own."""
+    lift = fitted.rows[0].baseline.lift
+    covariance = covariance_of(System(equations.with_rows(fitted.rows)))
+    return np.asarray(np.sqrt(np.maximum(0.0, np.diag(lift @ covariance @ lift.T))))

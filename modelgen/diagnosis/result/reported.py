@@ -11,7 +11,7 @@ from modelgen.dataset import Settings, choose
 from modelgen.dataset.inspection import inspect_records
 from modelgen.dataset.processing.splitting import as_given
 from modelgen.description import Arm
-from modelgen.diagnosis.adequacy import confirmed, place, possible
+from modelgen.diagnosis.adequacy import confirmed, place, possible, significance_of
 from modelgen.diagnosis.decision import Decision
 from modelgen.diagnosis.equations import Equations, Rows, Study, described_by
 from modelgen.diagnosis.extended import (
@@ -35,7 +35,7 @@ from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.options.thresholds import USUAL, in_band
 from modelgen.diagnosis.result.diagnosis import AsIdentified, Diagnosis
 from modelgen.diagnosis.result.not_identifiable import not_identifiable
-from modelgen.diagnosis.selection import Cause, Selection, threshold
+from modelgen.diagnosis.selection import Cause, Selection, Spread, deviations, threshold
 from modelgen.diagnosis.validation import Check
 from modelgen.errors import InputError
 from modelgen.identification.channels import ABOVE_ALL, effort_questions
@@ -54,7 +54,8 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
     there = on_test(extension, test)
     pair = residuals(test, extension, there)
     described = replay(extension.before, test, limits)
-    causes = _named(decision, extension)
+    spread = deviations(selection, equations)
+    causes = _named(decision, extension, spread)
     played = described, replay(without(extension, there), test, limits) if causes else described
     if causes:
         worth = (
@@ -87,7 +88,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         simulation=played,
         before=extension.before,
         after=after,
-        parameters=base_estimates(after.model, after.theta, equations.with_rows(after.rows)),
+        parameters=base_estimates(extension, spread, [c.parameters for c in causes]),
         next_experiment=None,
         test=test,
         residuals=pair,
@@ -182,12 +183,12 @@ def _settings(study: Study, decision: Decision, selection: Selection, options: O
     }
 
 
-def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
-    """The causes as they are reported, with aliases and rivals."""
+def _named(decision: Decision, extension: Extension, spread: Spread) -> tuple[NamedCause, ...]:
+    """The causes as they are reported, with aliases and rivals. spread: of the extension's selection."""
     causes, arm = extension.selection.causes, extension.before.arm
     if not causes:
         return ()
-    estimates = cause_estimates(extension.selection, extension.equations)
+    estimates = cause_estimates(extension.selection, extension.equations, spread)
     records = _names(extension.equations)
     result = []
     for cause, same, values, asked in zip(causes, decision.equal, estimates, decision.causes, strict=True):
@@ -195,16 +196,21 @@ def _named(decision: Decision, extension: Extension) -> tuple[NamedCause, ...]:
         rivals = tuple(
             (*t.candidate.place, behind) for t, behind in cause.rivals if t.candidate.place not in aliases
         )
-        named = _as_named(arm, cause, values, _as_reported(asked.checks, cause, arm), records)
-        result.append(replace(named, aliases=aliases, ambiguous_with=rivals))
+        named = _as_named(arm, cause, values, asked.checks, records)
+        checks = _as_reported(named, cause, extension.equations)
+        result.append(replace(named, aliases=aliases, ambiguous_with=rivals, checks=checks))
     return tuple(result)
 
 
-def _as_reported(checks: Sequence[Check], cause: Cause, arm: Arm) -> tuple[Check, ...]:
-    """Checks of a cause that say the values of the extended model, which were found anew."""
+def _as_reported(named: NamedCause, cause: Cause, equations: Equations) -> tuple[Check, ...]:
+    """Checks of a cause that say the values and deviations that it is reported with."""
+    values = {name: e.value for name, e in named.parameters.items()}
+    spread = {name: e.std for name, e in named.parameters.items()}
+    anew = {"significant": significance_of(cause.trial, equations, values, spread)}
+    said = (anew.get(c.name, c) if c.passed else c for c in named.checks)
     return tuple(
-        replace(check, text=possible(cause, arm)) if check.name == "admissible" and check.passed else check
-        for check in checks
+        replace(c, text=possible(cause, equations.arm)) if c.name == "admissible" and c.passed else c
+        for c in said
     )
 
 
@@ -213,13 +219,15 @@ def _suspects(decision: Decision, arm: Arm) -> tuple[NamedCause, ...]:
     if not decision.suspects:
         return ()
     before, unmeasured = decision.before, confirmed(float("nan"), float("nan"))
-    found = zip(before.causes, cause_estimates(before, before.system.equations), strict=True)
-    estimates = {id(cause): values for cause, values in found}
-    records = _names(before.system.equations)
-    return tuple(
-        _as_named(arm, e.cause, estimates[id(e.cause)], (*e.checks, unmeasured), records)
-        for e in decision.suspects
-    )
+    equations = before.system.equations
+    values = cause_estimates(before, equations, deviations(before, equations))
+    estimates = {id(cause): own for cause, own in zip(before.causes, values, strict=True)}
+    records, found = _names(equations), []
+    for e in decision.suspects:
+        named = _as_named(arm, e.cause, estimates[id(e.cause)], e.checks, records)
+        checks = _as_reported(named, e.cause, equations)
+        found.append(replace(named, checks=(*checks, unmeasured)))
+    return tuple(found)
 
 
 def _names(equations: Equations) -> list[str]:

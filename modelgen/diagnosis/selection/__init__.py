@@ -2,7 +2,7 @@
 
 from modelgen.diagnosis.selection.cause import Cause, Selection, together, with_trials
 from modelgen.diagnosis.selection.compliance import alternatives, best_beside
-from modelgen.diagnosis.selection.deviations import covariance_of, deviations, unseparated
+from modelgen.diagnosis.selection.deviations import Spread, covariance_of, deviations, unseparated
 from modelgen.diagnosis.selection.history import (
     COARSE,
     EXCHANGED,
@@ -25,6 +25,7 @@ __all__ = [
     "Ranked",
     "Report",
     "Selection",
+    "Spread",
     "alternatives",
     "best_beside",
     "covariance_of",

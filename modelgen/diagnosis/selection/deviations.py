@@ -9,8 +9,8 @@ Bates and Watts 1988, 2.2): what is said of the others then counts that it is no
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -53,15 +53,25 @@ def covariance_of(
     return np.asarray(back @ noise @ back.T)
 
 
-def deviations(selection: Selection, equations: Equations) -> list[dict[str, float]]:
-    """Standard deviations of the causes' parameters by name; nan of what was fixed, and of what the records
-    cannot show.
+@dataclass(frozen=True)
+class Spread:
+    """How far values found together may be off. causes: standard deviations of each cause's parameters by
+    name; nan of what was fixed, and of what the records cannot show. arm: covariance of the unknowns of the
+    equations (k, k).
+    """
+
+    causes: Sequence[Mapping[str, float]]
+    arm: Array
+
+
+def deviations(selection: Selection, equations: Equations) -> Spread:
+    """Deviations of the causes' parameters and of the arm's, of one fit.
 
     equations: whose arm further columns are made for.
     """
-    if not selection.causes:
-        return []
     system, rows = selection.system, selection.system.rows
+    if not selection.causes:
+        return Spread((), covariance_of(system))
     of_arm = equations.with_rows(rows)
     slopes = [_slopes(c, of_arm, system.base) for c in selection.causes]
     zero = [_at_zero(c, of_arm, system) for c in selection.causes]
@@ -79,7 +89,7 @@ def deviations(selection: Selection, equations: Equations) -> list[dict[str, flo
         at[columns] = np.arange(last, last + tables[0].shape[2])
         found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
         searched = last + tables[0].shape[2]
-    return found
+    return Spread(found, whole[: equations.unknowns, : equations.unknowns])
 
 
 def _at_zero(cause: Cause, equations: Equations, system: System) -> tuple[list[int], list[Array]]:
