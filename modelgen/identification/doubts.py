@@ -14,12 +14,12 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model, grouped
 from modelgen.functions.nominal import nominal_links
-from modelgen.identification.objects import DIAGNOSING, Identification, Impossible
+from modelgen.identification.impossible import CLEARLY
+from modelgen.identification.objects import DIAGNOSING, Doubt, Identification, Impossible
 from modelgen.numeric import Array
 
 POSES = 60  # of the records, at which inertia and weight are looked at
 PART = 0.1  # of the efforts, that an inertia makes up to be looked at
-CLEARLY = 3.0  # standard deviations
 FACTOR = 5.0  # between the weight found and that of the nominal links, from which on it is asked about
 ALONE = 0.8  # of the power of what differs, that another size of one link explains if it is asked about
 NOTABLE = 0.02  # of the largest weight at a joint [N m, N], below which that at another is not compared
@@ -37,22 +37,49 @@ def doubts(
     determined: NDArray[np.bool_],
     *,
     whole: bool = True,
-) -> list[str]:
+) -> list[Doubt]:
     """Questions about base parameters theta (p,) by poses of the records.
 
     determined: flags (p,). whole: whether nothing is known to be missing in the model; what is would show in
     its inertia.
     """
-    q, ddq, efforts = _poses(train)
-    at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
-    given = model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined
-    found, links = _inertia(*given) if whole else [], _links(model)
+    links = _links(model)
+    found: list[Doubt] = (
+        [*inertia_below_zero(train, model, evaluator, theta, covariance, determined)] if whole else []
+    )
     if not links[1]:
         return found
+    q, ddq, _ = _poses(train)
+    at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
     along = _columns(model, evaluator, q, ddq, theta)
     gain = gains(model.arm, q)
     weight = _weight(model, gain, at_rest, links, theta, determined)
     return [*found, *(weight or _one_link(model, along * gain[:, :, None], links, theta, determined))]
+
+
+def inertia_below_zero(
+    train: Sequence[Prepared],
+    model: Model,
+    evaluator: Evaluator,
+    theta: Array,
+    covariance: Array,
+    determined: NDArray[np.bool_],
+) -> list[Impossible]:
+    """The question about joints whose own inertia is below zero, of base parameters theta (p,) by poses of
+    the records. determined: flags (p,).
+    """
+    q, ddq, efforts = _poses(train)
+    at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
+    below = _below_zero(model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined)
+    found = [model.arm.coordinate_names[j] for j in below]
+    if not found:
+        return []
+    text = (
+        f"Impossible: the inertia at {', '.join(found)} comes out below zero. Is the sign of the efforts the "
+        "other way round, are positions and efforts of one joint and instant, are the positions too coarse, "
+        f"or does the model lack an effect{DIAGNOSING}?"
+    )
+    return [Impossible(text, found)]
 
 
 def worse_on_test(found: Identification, train: Sequence[Prepared]) -> list[str]:
@@ -120,20 +147,6 @@ def _columns(model: Model, evaluator: Evaluator, q: Array, ddq: Array, theta: Ar
     return np.asarray(evaluator.regressor(model, motion, theta))
 
 
-def _inertia(*given: Any) -> list[str]:
-    """The question about joints whose own inertia is below zero."""
-    model = given[0]
-    found = [model.arm.joints[model.arm.coordinates[j]].name for j in _below_zero(*given)]
-    if not found:
-        return []
-    text = (
-        f"Impossible: the inertia at {', '.join(found)} comes out below zero. Is the sign of the efforts the "
-        "other way round, are positions and efforts of one joint and instant, are the positions too coarse, "
-        f"or does the model lack an effect{DIAGNOSING}?"
-    )
-    return [Impossible(text, found)]
-
-
 def _below_zero(
     model: Model,
     evaluator: Evaluator,
@@ -193,7 +206,7 @@ def _one_link(
     links: tuple[NDArray[np.bool_], list[Array]],
     theta: Array,
     determined: NDArray[np.bool_],
-) -> list[str]:
+) -> list[Doubt]:
     """The link that is some times its nominal self, where that alone explains how the efforts differ.
 
     columns: (N, n, p) of weight and accelerations along the records.
@@ -215,27 +228,30 @@ def _one_link(
     if share < ALONE or 1.0 / FACTOR < times < FACTOR:
         return []
     name = model.arm.joints[best].name
-    return [
+    text = (
         f"The efforts are those of {times:.2g} times the nominal link {name}, the others as described: is a "
         "unit another one there, of its mass or of lengths?"
-    ]
+    )
+    return [Doubt(text, [name])]
 
 
-def _weight(model: Model, *given: Any) -> list[str]:
+def _weight(model: Model, *given: Any) -> list[Doubt]:
     """Joints whose weight is far from that of the nominal links, where the description has all of them."""
-    said = []
+    said = list[Doubt]()
     for j, scale in _weights(model, *given).items():
         name = model.arm.joints[model.arm.coordinates[j]].name
         if scale < -1.0 / FACTOR:
-            said.append(
+            text = (
                 f"The weight at {name} comes out {scale:.3g} times that of the nominal links, of the other "
                 "sign: do gravity in the description and the sign of the efforts agree?"
             )
+            said.append(Doubt(text, [name]))
         elif not 1.0 / FACTOR < scale < FACTOR:
-            said.append(
+            text = (
                 f"The weight at {name} comes out {scale:.3g} times that of the nominal links: is a unit "
                 "another one, of masses and lengths there, of the efforts, or of torque_constant and ratio?"
             )
+            said.append(Doubt(text, [name]))
     return said
 
 

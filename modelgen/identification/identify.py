@@ -267,24 +267,34 @@ def concluded(
     """Estimates and validation of a solution. added: base parameters of payloads, those of `test` last."""
     found = consistent(model, solution.theta, solution.precision) if physical else None
     theta: Array = solution.theta if found is None else found.base
-    flags, places = essential(solution), joints_of(model)
     spread = np.sqrt(np.maximum(np.diag(solution.covariance), 0.0))
+    values = estimates_of(model, theta, np.where(solution.determined, spread, np.nan))
     estimates = tuple(
-        Estimate(
-            b.name,
-            float(theta[k]),
-            float(spread[k]) if solution.determined[k] else None,
-            b.unit,
-            bool(flags[k]) and not solution.dropped[k],
-            bool(solution.dropped[k]),
-            places[k],
-            model.standard[b.representative].name,
-        )
-        for k, b in enumerate(model.grouping.base)
+        replace(e, essential=bool(flag) and not dropped, dropped=bool(dropped))
+        for e, flag, dropped in zip(values, essential(solution), solution.dropped, strict=True)
     )
     carried = added[len(added) - len(test) :] if added else None
     validation = validate(evaluator, model, test, theta, carried) if test else None
     return Identification(arm, model, method, solution, estimates, validation, found)
+
+
+def estimates_of(model: Model, theta: Array, spread: Array) -> tuple[Estimate, ...]:
+    """Estimates of base parameters theta (p,). spread: (p,) standard deviations, not a number where none is
+    known.
+    """
+    given = zip(model.grouping.base, theta, spread, joints_of(model), strict=True)
+    return tuple(
+        Estimate(
+            b.name,
+            float(value),
+            float(std) if np.isfinite(std) else None,
+            b.unit,
+            essential=True,
+            joint=joint,
+            standard=model.standard[b.representative].name,
+        )
+        for b, value, std, joint in given
+    )
 
 
 def joints_of(model: Model) -> list[int]:

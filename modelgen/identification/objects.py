@@ -96,6 +96,10 @@ class Doubt(str):
         made.joints = tuple(joints)
         return made
 
+    def without(self, words: str) -> Self:
+        """The same question without these words."""
+        return type(self)(self.replace(words, ""), self.joints)
+
 
 class Impossible(Doubt):
     """A doubt about a result that no arm has."""

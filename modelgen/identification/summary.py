@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from modelgen.effects import CATALOGUE
 from modelgen.functions.nominal import known_base
-from modelgen.identification.objects import MATTERS, POOR, Estimate, Identification, Impossible
+from modelgen.identification.impossible import driven, impossible_at
+from modelgen.identification.objects import MATTERS, POOR, Estimate, Identification
 
 CLEARLY = 3.0  # standard deviations
 _NAMED = 4  # parameters beside the worst
@@ -36,12 +36,8 @@ def verdict(found: Identification) -> str:
 
 def impossible(found: Identification) -> list[str]:
     """The sentence that comes first where something was found that no arm has; none where nothing was."""
-    asked = [doubt for doubt in questions(found) if isinstance(doubt, Impossible)]
-    where = {joint for doubt in asked for joint in doubt.joints}
-    if not where:
-        return []
-    names = ", ".join(name for name in found.arm.coordinate_names if name in where)
-    return [f"Physically impossible values at {names}: do not use the parameters before that is explained."]
+    said = impossible_at(questions(found), found.arm.coordinate_names)
+    return [said] if said else []
 
 
 def determined(found: Identification) -> str:
@@ -54,7 +50,7 @@ def determined(found: Identification) -> str:
 
 def questions(found: Identification) -> list[str]:
     """What makes the description or the records doubtful."""
-    return [*_driven(found), *found.doubts]
+    return [*driven(found.estimates, found.arm.coordinate_names), *found.doubts]
 
 
 def remarks(found: Identification) -> list[str]:
@@ -163,36 +159,6 @@ def _doubtful(found: Identification, k: int) -> str:
     size, share = test.in_effort(k, e.std)
     name = found.arm.joints[found.arm.coordinates[j]].name
     return f"{e.name} ({size:.2g} {test.unit[j]}, {share:.1f} % of the effort of {name})"
-
-
-def driving(estimates: Sequence[Estimate]) -> list[Estimate]:
-    """Parameters of effects that are never negative, and come out below zero clearly.
-
-    None of a joint at which another law of the same friction, by a power of the speed say, is above zero
-    clearly: the two are alike in part, and it is their sum that brakes.
-    """
-    limited = {p.symbol for effect in CATALOGUE.values() for p in effect.linear if p.bounds[0] >= 0.0}
-    varied = {p.symbol for effect in CATALOGUE.values() if effect.varies for p in effect.linear}
-    sizes = [(e, e.name.rstrip("0123456789"), e.value / e.std) for e in estimates if e.std]
-    braking = {e.joint for e, symbol, size in sizes if symbol in varied and size > CLEARLY}
-    return [
-        e
-        for e, symbol, size in sizes
-        if e.name == e.standard and symbol in limited and size < -CLEARLY and e.joint not in braking
-    ]
-
-
-def _driven(found: Identification) -> list[Impossible]:
-    """A question where parameters of effects that are never negative come out below zero clearly."""
-    negative = driving(found.estimates)
-    if not negative:
-        return []
-    joints = [found.arm.coordinate_names[j - 1] for j in sorted({e.joint for e in negative})]
-    text = (
-        f"Impossible: {', '.join(e.name for e in negative)} below zero, which would drive "
-        f"{', '.join(joints)}. Is the sign of the efforts the other way round, or that of torque_constant?"
-    )
-    return [Impossible(text, joints)]
 
 
 def experiment(wanting: Sequence[Estimate], names: Sequence[str]) -> list[str]:

@@ -41,6 +41,7 @@ from modelgen.identification.doubts import check_sign, doubts, worse_on_test
 from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
+from modelgen.identification.impossible import driving
 from modelgen.identification.misread import Asked, check_reading, disagreeing
 from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
@@ -48,7 +49,6 @@ from modelgen.identification.output import errors, to_json
 from modelgen.identification.payloads import at_the_origin, payloads_of, without_cut_off_by_payload
 from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.streamed import identify_streamed
-from modelgen.identification.summary import driving
 from modelgen.identification.without_drives import Alternative, without_drives
 from modelgen.options import IdentificationOptions
 from modelgen.progress import Progress, silent

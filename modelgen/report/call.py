@@ -69,14 +69,15 @@ class Call:
         records = [*_repeated("--train", self.train), "--test", self.test[0]]
         return self.command("diagnose", *records, *self.kept(), "--out", self.beside("diagnosis"))
 
-    def identifying(self, out: str, description: str, cutoff: float) -> str:
+    def identifying(self, out: str, description: str, cutoff: float, *, consistent: bool = False) -> str:
         """The command that fits a description to the same records in a band [Hz]; empty where they are no
-        files.
+        files. consistent: with links that could exist.
         """
         if not self.train:
             return ""
         records = [*_repeated("--train", self.train), *_repeated("--test", self.test)]
         kept = [*words_of(self.options, ("mapping", "period")), "--cutoff", f"{cutoff:.6g}"]
+        kept += ["--consistent"] if consistent else []
         return self.command("identify", *records, *kept, "--out", self.beside(out), description=description)
 
     def by_instruments(self, description: str | None = None) -> str:

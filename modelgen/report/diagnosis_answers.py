@@ -21,6 +21,7 @@ from modelgen.report.diagnosis_sentences import (
     harms,
     interval,
     missing,
+    no_arm,
     reason,
     remains,
     worth,
@@ -61,6 +62,7 @@ def _missing(d: Diagnosis) -> Iterator[Part]:
         yield Text([Run(text, "strong") for text in missing(d)])
         if reason(d) and not d.suspects:
             yield Text(reason(d))
+        yield from (Text([Run(text, "strong")]) for text in no_arm(d))
         return
     order, texts = by_worth(d), missing(d)
     said = [Text([Run(texts[k], "strong"), Run(" "), _linked(d.causes[k].effect)]) for k in order]

@@ -10,6 +10,7 @@ from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE, Family
 from modelgen.effects.placement import titled
+from modelgen.identification.impossible import impossible_at
 from modelgen.report.words import finding, joint_name, listed, sentence
 
 _SENTENCES = {
@@ -57,7 +58,7 @@ def headline(d: Diagnosis) -> str:
     if d.verdict == "named":
         names = listed(cause_title(d, c) for c in d.causes)
         return " ".join([f"The model lacks {names}: {worth(d)}.", *doubted(d)])
-    return " ".join([*missing(d), reason(d)]).rstrip()
+    return " ".join(part for part in (*missing(d), reason(d), *no_arm(d)) if part)
 
 
 def beside(d: Diagnosis) -> str:
@@ -121,7 +122,9 @@ def harmful(d: Diagnosis) -> list[NamedCause]:
 
 
 def doubted(d: Diagnosis) -> list[str]:
-    """The causes that failed a check that decides nothing, or harm the test record, a sentence a kind."""
+    """Values that no arm has, and the causes that failed a check that decides nothing, or harm the test
+    record, a sentence a kind.
+    """
     worse = harmful(d)
     unconfirmed = [c for c in _failing(d, "confirmed") if not any(c is w for w in worse)]
     said = len(d.causes) == 1 and d.errors.overall <= -_VISIBLE  # by what it is worth
@@ -130,7 +133,14 @@ def doubted(d: Diagnosis) -> list[str]:
         ("The test record does not confirm {}.", unconfirmed),
         ("Not stable, the training records differ in the size of {}.", _failing(d, "stable")),
     )
-    return [text.format(listed(cause_title(d, c) for c in lost)) for text, lost in kinds if lost]
+    marked = [text.format(listed(cause_title(d, c) for c in lost)) for text, lost in kinds if lost]
+    return [*no_arm(d), *marked]
+
+
+def no_arm(d: Diagnosis) -> list[str]:
+    """The sentence about values that no arm has; none where all can be those of one."""
+    said = impossible_at(d.doubts, d.arm.coordinate_names)
+    return [said] if said else []
 
 
 def _failing(d: Diagnosis, name: str) -> list[NamedCause]:
@@ -238,7 +248,7 @@ def assumptions(d: Diagnosis) -> list[str]:
         for drive in d.after.model.grouping.drives
         if drive.nominal is None and (k := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
-    return used + unknown + ([] if d.identified is None else list(d.identified.doubts))
+    return used + unknown + list(d.doubts)
 
 
 def compared(d: Diagnosis) -> list[str]:

@@ -13,12 +13,16 @@ from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import Found, titled
 from modelgen.options import words_of
 from modelgen.report.call import WHERE, Call, command
-from modelgen.report.diagnosis_sentences import beside, cause_title, harmful
+from modelgen.report.diagnosis_sentences import beside, cause_title, harmful, no_arm
 from modelgen.report.experiment import followed
 from modelgen.report.words import listed, place_of
 
 # What is without the causes that make the test record worse: a description, a folder beside the page.
 REDUCED = "reduced"
+# What has values that an arm can have: a folder beside the page.
+POSSIBLE = "consistent"
+_EXPLAIN = "Do not generate code from values that no arm has."
+_NEAREST = "modelgen identify --consistent"
 _LOOK = "Look at the residuals in the report: over what they bend, and at which joint."
 # By verdict, where another motion is what helps.
 _MOTIONS = {
@@ -68,8 +72,11 @@ def _first(d: Diagnosis, call: Call) -> list[Step]:
         return [asked_next(d, call)[1]]
     code = _generating(d, call, _described(d, call))
     if d.verdict == "named":
-        steps = carried(d, call) or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
+        steps = carried(d, call) or possible_links(d, call)
+        steps = steps or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
         return [*steps, Step(f"{_REMAINS} {_LOOK}")] if beside(d) else steps
+    if no_arm(d):
+        return possible_links(d, call)
     text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
     return [Step(text, code)]
 
@@ -132,6 +139,20 @@ def carried(d: Diagnosis, call: Call) -> list[Step]:
     return [
         Step(f"{text}, {WHERE}:", fit),
         Step("Then generate its code:", _generating(d, call, description, REDUCED)),
+    ]
+
+
+def possible_links(d: Diagnosis, call: Call) -> list[Step]:
+    """Steps to values that an arm can have; none where all can be those of one."""
+    if not no_arm(d):
+        return []
+    description = _described(d, call)
+    fit = call.identifying(POSSIBLE, description, float(d.settings["cutoff_hz"]), consistent=True)
+    if not fit:
+        return [Step(f"{_EXPLAIN} The nearest values of links that could exist are those of {_NEAREST}.")]
+    return [
+        Step(f"{_EXPLAIN} The nearest values of links that could exist, {WHERE}:", fit),
+        Step("Then generate its code:", _generating(d, call, description, POSSIBLE)),
     ]
 
 

@@ -123,8 +123,8 @@ MUTATIONS = (
     Mutation(
         "extended",
         "uncertainty.py",
-        "spread[name] > most",
-        "spread[name] < most",
+        "own[name] > most",
+        "own[name] < most",
         "what is well determined has no interval",
         ("test_uncertainty.py",),
     ),

@@ -66,6 +66,7 @@ CONSTANTS = {
         "GROWTH": FORMULA,
         "DECAY": FORMULA,
     },
+    "extended/cause_values.py": {"ROUNDING": ROUNDING},
     "extended/drive_inertia.py": {"SOFTER": START},
     "extended/extended_model.py": {
         "HALVES": BUDGET,

@@ -14,7 +14,7 @@ import modelgen as mg
 from modelgen.description import loads
 from modelgen.effects import known_effects
 from modelgen.identification import Estimate
-from modelgen.identification.summary import driving
+from modelgen.identification.impossible import driving
 
 ARMS = """
 schema: 1

@@ -85,7 +85,9 @@ def test_one_value_in_the_answer_the_description_and_the_table(found: Diagnosis)
     described = found.after.arm.joints[1].effects[-1].values["velocity"]
     assert described == pytest.approx(cause.parameters["velocity"].value, rel=1e-8)
     assert 0.0 < cause.parameters["velocity"].std < 0.3 * cause.parameters["velocity"].value
-    assert cause.parameters["magnitude"].std > found.parameters[place].std  # the velocity is not known
+    assert found.parameters[place].std == cause.parameters["magnitude"].std
+    (check,) = [c for c in cause.checks if c.name == "significant"]
+    assert check.value == pytest.approx(found.parameters[place].value / found.parameters[place].std)
     assert np.isnan(cause.parameters["exponent"].std)
 
 

@@ -17,7 +17,7 @@ from modelgen.diagnosis.extended.test_errors import (
     residuals,
     shares,
 )
-from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates
+from modelgen.diagnosis.extended.uncertainty import base_estimates, cause_estimates, covariance_of_base
 
 __all__ = [
     "Errors",
@@ -29,6 +29,7 @@ __all__ = [
     "Share",
     "base_estimates",
     "cause_estimates",
+    "covariance_of_base",
     "errors",
     "extend",
     "motion_errors",

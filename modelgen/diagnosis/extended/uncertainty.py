@@ -51,7 +51,7 @@ def base_estimates(
     otherwise has the deviation of its own fit.
     """
     after, equations = extension.after, extension.equations
-    own = _own_deviations(after, equations)
+    own = np.sqrt(np.maximum(0.0, np.diag(covariance_of_base(after, equations))))
     lift = equations.rows[0].baseline.lift
     described = equations.model.grouping.base
     shared = np.sqrt(np.maximum(0.0, np.diag(lift @ spread.arm @ lift.T)))
@@ -66,8 +66,7 @@ def base_estimates(
     return {name: replace(e, std=e.std if e.std > 0.0 else float("nan")) for name, e in found.items()}
 
 
-def _own_deviations(fitted: FittedModel, equations: Equations) -> Array:
-    """Standard deviations (p,) of a model's base parameters in the equations of its own."""
+def covariance_of_base(fitted: FittedModel, equations: Equations) -> Array:
+    """Covariance (p, p) of a model's base parameters in the equations of its own; zero of what was known."""
     lift = fitted.rows[0].baseline.lift
-    covariance = covariance_of(System(equations.with_rows(fitted.rows)))
-    return np.asarray(np.sqrt(np.maximum(0.0, np.diag(lift @ covariance @ lift.T))))
+    return np.asarray(lift @ covariance_of(System(equations.with_rows(fitted.rows))) @ lift.T)

@@ -23,7 +23,7 @@ def to_json(d: Diagnosis) -> dict[str, Any]:
         "arm": d.arm.name,
         "verdict": d.verdict,
         "reason": d.reason,
-        "doubts": [] if d.identified is None else list(d.identified.doubts),
+        "doubts": list(d.doubts),
         "causes": [_cause(c) for c in d.causes],
         "suspects": [_cause(c) for c in d.suspects],
         "not_identifiable": [{"effect": name, "reason": reason} for name, reason in d.not_identifiable],

@@ -13,6 +13,7 @@ from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.experiment import Experiment
 from modelgen.diagnosis.extended import Errors, Estimate, FittedModel, NamedCause, Positions
 from modelgen.diagnosis.selection import History
+from modelgen.identification.objects import Impossible
 from modelgen.numeric import Array
 from modelgen.simulation.windows import Windows
 
@@ -36,15 +37,16 @@ class AsIdentified:
 class Diagnosis:
     """Everything that was found.
 
-    lack_of_fit_part: record, and times from and to in its first period [s], of the part that shows most, None
-    where it is no part; likeness: what the causes leave is most like; before, after: the arm as described and
-    the arm with the causes, fitted to the training records; simulation: of the test record with either; test:
-    rows of the test record; ranking: candidates with evidence by step, best first; added: effects that the
-    description is extended by, each with its joint and values; residuals: (M, n) before and after, as the log
-    has its efforts; laws: (M, n) of each cause, what it alone adds to these, empty where it cannot be
-    computed; suspects: what has evidence and failed a check that decides; inertias: of drives before elastic
-    joints and play by coordinate (from 1); log: facts of the records; identified: what identify has, None for
-    free motions.
+    lack_of_fit_part: record, and times from and to in its first period [s], of the part that shows most,
+    None where it is no part; likeness: what the causes leave is most like; before, after: the arm as
+    described and the arm with the causes, fitted to the training records; simulation: of the test record
+    with either; test: rows of the test record; ranking: candidates with evidence by step, best first;
+    added: effects that the description is extended by, each with its joint and values; residuals: (M, n)
+    before and after, as the log has its efforts; laws: (M, n) of each cause, what it alone adds to these,
+    empty where it cannot be computed; impossible: questions about values of the extended model that no arm
+    has; suspects: what has evidence and failed a check that decides; inertias: of drives before elastic
+    joints and play by coordinate (from 1); log: facts of the records; identified: what identify has, None
+    for free motions.
     """
 
     arm: Arm
@@ -72,6 +74,13 @@ class Diagnosis:
     positions: Positions | None = None
     inertias: Mapping[int, Estimate] = field(default_factory=dict)
     laws: tuple[Array, ...] = ()
+    impossible: tuple[Impossible, ...] = ()
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Questions about what no arm has, or the described one has not."""
+        known = () if self.identified is None else self.identified.doubts
+        return (*self.impossible, *(text for text in known if text not in self.impossible))
 
     @property
     def free(self) -> bool:

@@ -21,6 +21,7 @@ from modelgen.diagnosis.extended import (
     Positions,
     base_estimates,
     cause_estimates,
+    covariance_of_base,
     errors,
     motion_errors,
     motion_shares,
@@ -38,11 +39,13 @@ from modelgen.diagnosis.result.not_identifiable import not_identifiable
 from modelgen.diagnosis.selection import Cause, Selection, Spread, deviations, threshold
 from modelgen.diagnosis.validation import Check
 from modelgen.errors import InputError
+from modelgen.evaluation import Evaluator
 from modelgen.identification.channels import ABOVE_ALL, effort_questions
-from modelgen.identification.doubts import doubts
-from modelgen.identification.identify import errors_of
+from modelgen.identification.doubts import doubts, inertia_below_zero
+from modelgen.identification.identify import errors_of, estimates_of
+from modelgen.identification.impossible import driven
 from modelgen.identification.misread import check_reading
-from modelgen.identification.objects import DIAGNOSING
+from modelgen.identification.objects import DIAGNOSING, Impossible
 from modelgen.numeric import Array
 
 
@@ -69,6 +72,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         for c, so in zip(causes, there, strict=True)
     )
     after, fit = extension.after, decision.remains.fit
+    parameters = base_estimates(extension, spread, [c.parameters for c in causes])
     values = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
     split = {number: e.value for number, e in extension.inertias.items()}
     added = *described_by(split), *values
@@ -88,7 +92,8 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         simulation=played,
         before=extension.before,
         after=after,
-        parameters=base_estimates(extension, spread, [c.parameters for c in causes]),
+        parameters=parameters,
+        impossible=_impossible(extension, parameters),
         next_experiment=None,
         test=test,
         residuals=pair,
@@ -144,9 +149,26 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     about = doubts(train, study.model, study.evaluator, *fit, whole=decision.verdict != "named")
     answered = _answered(extension)
     left = [doubt for doubt in asked if not answered.issuperset(doubt.joints)]
-    texts = (text.replace(DIAGNOSING, "") for text in (*left, *about))  # this is the diagnosis
+    texts = (text.without(DIAGNOSING) for text in (*left, *about))  # this is the diagnosis
     late = study.instant.questions() if study.instant is not None and study.instant.channels else ()
     return AsIdentified(found.rmse, chosen.cutoff, (*texts, *late))
+
+
+def _impossible(extension: Extension, parameters: Mapping[str, Estimate]) -> tuple[Impossible, ...]:
+    """Questions about values of the extended model that no arm has; none of a free motion, of which links are
+    known. parameters: its base parameters by name.
+    """
+    after, equations = extension.after, extension.equations
+    if equations.free or not extension.selection.causes:
+        return ()
+    model, names = after.model, after.arm.coordinate_names
+    spread = np.array([parameters[b.name].std for b in model.grouping.base])
+    found = driven(estimates_of(model, after.parameters, spread), names)
+    if not any(c.trial.candidate.elastic for c in extension.selection.causes):  # its links lag at any pose
+        train, covariance = [r.prepared for r in after.rows], covariance_of_base(after, equations)
+        fit = after.parameters, covariance, np.diag(covariance) > 0.0
+        found += inertia_below_zero(train, model, Evaluator(after.arm), *fit)
+    return tuple(doubt.without(DIAGNOSING) for doubt in found)
 
 
 def _answered(extension: Extension) -> set[str]:
