@@ -420,13 +420,34 @@ def test_the_words_of_a_refinement_agree_with_how_it_ended() -> None:
         assert ("not converged" in repr(result)) == bool(stopped)
 
 
+def test_no_code_comes_first_of_values_that_the_motion_does_not_determine() -> None:
+    """A swing or two in noise show the sum of a pendulum's dry and viscous friction, and hardly either; in
+    more noise they show nothing.
+    """
+    arm = mg.load_arms()["gravity_link2"]
+    swing = mg.simulate(arm, q0="20 deg", duration=1.5, rate=200.0)
+    nominal = {"ZZ1": 0.309706, "MX1": 1.307841, "MY1": 0.0, "FV1": 0.7, "FC1": 0.187}
+    for noise, loose in ((0.03, True), (0.003, False)):
+        q = swing.q[:, 0] + noise * np.random.default_rng(0).standard_normal(len(swing.t))
+        result = mg.refine(arm, {"t": swing.t, "q1": q}, parameters=nominal)
+        moved = [x.moves for x in result.found.parameters if x.std]
+        page = re.sub("<[^>]+>", "", result.files()["report.html"])
+        assert (max(moved) > result.found.after.rmse[0]) == loose
+        assert ("Generate no code yet: FV1 is not determined" in page) == loose
+        assert ("For motions like this one alone, generate code" in page) == loose
+        assert page.count("modelgen generate") == 1
+    q = swing.q[:, 0] + 0.06 * np.random.default_rng(0).standard_normal(len(swing.t))
+    with pytest.raises(mg.InputError, match="less than ten times their noise"):
+        mg.refine(arm, {"t": swing.t, "q1": q})
+
+
 def test_a_table_of_many_columns_has_a_line_for_each_row_on_paper(tmp_path: Path) -> None:
     """With values and units of a usual length; it stood in a part of the sheet, in rows of five lines."""
     arm, path = mg.load_arms()["gravity_link2"], tmp_path / "report.html"
     swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
     result = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
     (own,) = [x for x in result.found.parameters if x.name == "FV1"]
-    long = replace(own, start=9.9346e-09, value=1.01183e-08, std=5.1e-11, unit="J s^2/unit^2", moves=4.7e-06)
+    long = replace(own, start=9.9346e-09, value=1.01183e-08, std=5.1e-11, unit="J s^2/unit^2")
     others = [replace(long, name=f"ZZ{k}R") for k in range(12)]
     result.found = replace(result.found, parameters=tuple(others))
     path.write_text(result.files()["report.html"], encoding="utf-8")
