@@ -66,7 +66,7 @@ class Effects(Mapping[str, type[Definition]], Shown):
 
 
 def _unit(parameter: Parameter) -> str:
-    return parameter.unit.format(f="F", x="x")
+    return parameter.unit.format(f="F", x="x", q="q")
 
 
 def _bounds(parameter: Parameter) -> str:

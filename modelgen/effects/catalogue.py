@@ -87,7 +87,7 @@ def effect_texts() -> dict[str, str]:
 
 def unit_text(effect: type[Definition], parameter: Parameter) -> str:
     """A parameter's unit in words that hold for every joint and drive."""
-    turning, sliding = (parameter.unit.format(f=f, x=x) for f, x in (("N m", "rad"), ("N", "m")))
+    turning, sliding = (parameter.unit.format(f=f, x=x, q=x) for f, x in (("N m", "rad"), ("N", "m")))
     if turning == sliding:
         return turning
     if effect.side == "motor":

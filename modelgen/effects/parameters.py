@@ -17,11 +17,12 @@ POSITIVE = (1e-12, float("inf"))
 class Parameter:
     """A parameter of an effect.
 
-    unit: {f} stands for the unit of the generalised force, {x} for that of the coordinate. symbol: its
-    name among the standard parameters, before the joint's number (linear parameters only). default:
-    None where the description must give a value for a nonlinear parameter. bounds: sensible values.
-    structural: chooses the form of the law, or where it acts; no program leaves it open. joint: it is the
-    number of a coordinate, from 1, for which people read the joint's name.
+    unit: {f} stands for the unit of the generalised force, {x} for that of the coordinate, {q} for that of
+    the joint's where the coordinate is the motor's. symbol: its name among the standard parameters, before
+    the joint's number (linear parameters only). default: None where the description must give a value for a
+    nonlinear parameter. bounds: sensible values. structural: chooses the form of the law, or where it acts;
+    no program leaves it open. joint: it is the number of a coordinate, from 1, for which people read the
+    joint's name.
 
     What a diagnosis does with it. grid: where it begins to look for the value of a nonlinear parameter, in
     units of `scale`, ascending, of either sign: "speed" (95 % of the coordinate's speeds are below), "span"

@@ -17,8 +17,9 @@ from modelgen.errors import InputError, suggest
 from modelgen.fleet.store import Row, fingerprint, folder, keep, written
 from modelgen.fleet.units import Unit
 from modelgen.options import DiagnosisOptions
-from modelgen.report.diagnosis_sentences import cause_title, harmful
+from modelgen.report.diagnosis_sentences import cause_title, doubted, harmful, worth
 from modelgen.report.following import Step, following
+from modelgen.report.words import sentence
 from modelgen.report.writing import write
 
 CRASHED = "the process ended: out of memory, or a crash"
@@ -118,6 +119,8 @@ def _found(d: Diagnosis) -> Row:
         "failed_checks": [
             [x.name for x in c.checks if x.decides and x.passed is False] for c in d.found.suspects
         ],
+        "worth": sentence(worth(d.found)) if said["causes"] else None,
+        "doubts": doubted(d.found) if said["causes"] else [],
         "harms": [c in worse for c in d.found.causes],
         "delta_bic": [c["evidence"]["delta_bic"] for c in said["causes"]],
         "cross_gain_percent": [c["evidence"]["cross_gain_percent"] for c in said["causes"]],
@@ -137,6 +140,7 @@ def _found(d: Diagnosis) -> Row:
         "gain_percent": error["gain_percent"],
         "best_gain_percent": max(gains) if gains and said["causes"] else None,
         "overall_gain_percent": error["overall_gain_percent"],
+        "overall_gain_interval_percent": error["overall_gain_interval_percent"],
         "parameters": [
             {"name": name, "value": rounded(e.value), "std": rounded(e.std), "unit": e.unit}
             for name, e in d.parameters.items()

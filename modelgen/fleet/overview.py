@@ -23,7 +23,8 @@ WORDS = {
     FAILED: "failed",
 }
 _FIT = "lack of fit / threshold"
-_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", "less error %", _FIT, "s", "reason")
+_LESS = "less error %"
+_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", _LESS, _FIT, "s", "reason")
 _LOOKS = 7  # colours that are told apart
 _URGENT = 8  # units that are listed first
 
@@ -62,7 +63,9 @@ def overview(rows: Sequence[Row], again: str = "") -> str:
         Units([_row(row) for row in rows]),
         Text(f"{_READING} {minutes:z.3g} min of processor time.", "quiet"),
     ]
-    heading = f"Fleet of {len(rows)} unit{'' if len(rows) == 1 else 's'}"
+    arms = listed(f"{name}" for name in dict.fromkeys(row["arm"] for row in rows) if name)
+    count = f"{len(rows)} unit{'' if len(rows) == 1 else 's'}"
+    heading = f"{arms}: fleet of {count}" if arms else f"Fleet of {count}"
     return page(heading, "Diagnosis of many arms", answers, [("Units", units)], own="fleet")
 
 
@@ -176,6 +179,9 @@ def _worth(rows: Sequence[Row]) -> str:
     gains = [gain for gain in named if gain is not None]
     if not gains:
         return ""
+    alone = [row["worth"] for row in rows if row.get("worth")]
+    if len(alone) == len(gains) == 1:
+        return str(alone[0])
     worse = sum(g < 0.0 for g in gains)
     middle = median(gains)
     way = "less" if middle >= 0.0 else "larger"
@@ -211,6 +217,8 @@ def _urgent(rows: Sequence[Row]) -> Iterator[list[Run]]:
         worse = _harming(row)
         if worse:
             lines.append([_unit(row), Run(f": {listed(worse)} {_HARM}; its page has the model without")])
+        elif doubts := row.get("doubts"):
+            lines.append([_unit(row), Run(f": {' '.join(doubts)}")])
         elif row.get("causes") and _fit(row) > _FAR:
             remains = f"something deterministic remains beside what is named, {_FIT} {_fit(row):.3g}"
             lines.append([_unit(row), Run(f": {remains}")])
@@ -234,6 +242,13 @@ def _next(rows: Sequence[Row], again: str) -> Iterator[Part]:
     """The units to look at, and the command for the first of them that has one."""
     urgent = list(_urgent(rows))
     yield Lines(urgent) if urgent else Text(_NOTHING)
+    yield from first_step(rows, again)
+    if sum(bool(row.get("command")) for row in rows) > 1:
+        yield Text("The pages of the others have theirs.", "quiet")
+
+
+def first_step(rows: Sequence[Row], again: str) -> Iterator[Part]:
+    """What is to be done first, with its command. again: as of `overview`."""
     if any(verdict(row) == FAILED for row in rows):
         yield Text(f"{_FAILED}{':' if again else '.'}")
         if again:
@@ -244,8 +259,6 @@ def _next(rows: Sequence[Row], again: str) -> Iterator[Part]:
         text = first["next"]
         yield Text([Run("For "), _unit(first), Run(f": {text[:1].lower()}{text[1:]}")])
         yield Command(first["command"])
-        if any(row is not first and row.get("command") for row in rows):
-            yield Text("The pages of the others have theirs.", "quiet")
 
 
 def _unit(row: Row) -> Run:
@@ -268,22 +281,29 @@ def _row(row: Row) -> dict[str, Any]:
             (*_number(value, form), head)
             for value, form, head in (
                 (max(row.get("delta_bic") or (), default=None), "z.1f", "delta BIC"),
-                (row.get("overall_gain_percent") if row.get("causes") else None, "z.1f", "less error %"),
+                (row.get("overall_gain_percent") if row.get("causes") else None, "z.1f", _LESS),
                 (None if row.get("lack_of_fit") is None else _fit(row), ".2f", _FIT),
                 (row.get("seconds"), ".1f", "s"),
             )
         ],
-        "said": row.get("error") or _failing(row) or row.get("reason") or "",
+        "said": row.get("error") or _more(row) or _failing(row) or row.get("reason") or "",
     }
 
 
+def _more(row: Row) -> str:
+    """What is to be known beside causes that are named: worth, doubts and suspects; empty without one."""
+    if not row.get("causes"):
+        return ""
+    suspects = _failing(row)
+    also = [f"Suspected too: {suspects}."] if suspects else []
+    return " ".join([*([row["worth"]] if row.get("worth") else []), *(row.get("doubts") or ()), *also])
+
+
 def _failing(row: Row) -> str:
-    """Suspects by the checks that they failed; empty where there are none, or a cause is named."""
+    """Suspects by the checks that they failed; empty where there are none."""
     groups: dict[str, list[str]] = {}
     for title, checks in zip(row.get("suspects") or (), row.get("failed_checks") or (), strict=False):
         groups.setdefault(listed(checks), []).append(title)
-    if row.get("causes"):
-        return ""
     return "; ".join(f"{listed(titles)} failed the check {checks}" for checks, titles in groups.items())
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +12,13 @@ from modelgen.api.results import Shown, Table
 from modelgen.errors import InputError
 from modelgen.fleet import store
 from modelgen.fleet.diagnosing import Job, crashed, done
-from modelgen.fleet.overview import WORDS, causes, overview, verdicts
+from modelgen.fleet.overview import WORDS, causes, first_step, overview, verdicts
 from modelgen.fleet.store import Row
 from modelgen.fleet.table import NAME, library, write_table
 from modelgen.fleet.units import Unit
 from modelgen.jobs import Where, run
 from modelgen.report.call import command
+from modelgen.report.parts import steps
 
 PAGE = "overview.html"
 SHOWN = 10  # failures and causes that are printed
@@ -27,11 +28,18 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, repr=False)
 class Fleet(Shown):
-    """rows: one per unit, in their order. kept: how many of them are of an earlier call. out: the folder."""
+    """rows: one per unit, in their order. kept: how many of them are of an earlier call. out: the folder.
+    again: the command that makes what failed anew, empty where no file has the fleet.
+    """
 
     rows: list[Row]
     kept: int
     out: Path
+    again: str = ""
+
+    def next_steps(self) -> Sequence[tuple[str, str]]:
+        """What to do first, as on the page: sentences, each with its command, which may be empty."""
+        return steps([*first_step(self.rows, self.again)])
 
     def to_json(self) -> dict[str, Any]:
         """Counts, failures, and where table and page are."""
@@ -89,9 +97,9 @@ def diagnose_fleet(
     library()  # before the long work, not after it
     _prepare(out)
     try:
-        found = _diagnosed(units, out, where, again, code, progress)
+        found = replace(_diagnosed(units, out, where, again, code, progress), again=_again(file, out, code))
         write_table(found.rows, out / NAME)
-        _write(out / PAGE, overview(found.rows, _again(file, out, code)))
+        _write(out / PAGE, overview(found.rows, found.again))
         return found
     finally:
         store.swept(out)  # of processes that were ended by an interruption

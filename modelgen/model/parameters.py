@@ -59,7 +59,11 @@ def effect_parameters(arm: Arm, effect: AppliedEffect) -> list[StandardParameter
     return [
         StandardParameter(
             symbol.name,
-            unit_of(parameter.unit, coordinate_unit(arm, effect)),
+            unit_of(
+                parameter.unit,
+                coordinate_unit(arm, effect),
+                "m" if effect.joint is None else arm.joints[effect.joint].unit,
+            ),
             effect.joint,
             f"{parameter.text} ({effect.effect.name}) of {whose}",
         )
@@ -69,14 +73,14 @@ def effect_parameters(arm: Arm, effect: AppliedEffect) -> list[StandardParameter
 
 def units_at(arm: Arm, effect: str, joint: int | None) -> dict[str, str]:
     """Units of an effect's parameters by name, at a coordinate (from 1) or for the whole arm."""
-    coordinate = "m"
+    coordinate = own = "m"
     if joint is not None:
         described = arm.joints[arm.coordinates[joint - 1]]
         drive = of_joint(arm, described)
-        coordinate = described.unit
+        coordinate = own = described.unit
         if CATALOGUE[effect].side == "motor" and drive.driven:
             coordinate = drive.unit
-    return {p.name: unit_of(p.unit, coordinate) for p in CATALOGUE[effect].accepted()}
+    return {p.name: unit_of(p.unit, coordinate, own) for p in CATALOGUE[effect].accepted()}
 
 
 def coordinate_unit(arm: Arm, effect: AppliedEffect) -> str:
@@ -90,12 +94,16 @@ def coordinate_unit(arm: Arm, effect: AppliedEffect) -> str:
     return joint.unit
 
 
-def unit_of(pattern: str, coordinate: str) -> str:
-    """A parameter's unit from its pattern over {f}, the force, and {x}, the coordinate."""
+def unit_of(pattern: str, coordinate: str, joint: str = "rad") -> str:
+    """A parameter's unit from its pattern over {f}, the force, {x}, the coordinate, and {q}, the joint's.
+
+    joint: unit of the joint's coordinate.
+    """
     force = {"rad": "N m", "m": "N"}.get(coordinate)
     if force:
-        return pattern.format(f=force, x=coordinate)
+        return pattern.format(f=force, x=coordinate, q=joint)
     if "{f}" not in pattern:
-        return pattern.format(x=coordinate)
+        return pattern.format(x=coordinate, q=joint)
     over, _, under = pattern.replace("{f}", "J").partition("/")
-    return f"{over}/{coordinate}" + ("^2" if "{x}" in under else "")
+    own = f"{over}/{coordinate}" + ("^2" if "{x}" in under else "")
+    return f"{over}/({coordinate} {under.format(q=joint)})" if "{q}" in under else own

@@ -55,4 +55,4 @@ def _row(p: Parameter, linear: bool) -> str:
     bounds = "any" if np.isinf([low, high]).all() else f"{low:g} to {high:g}"
     bounds = f"at least {low:g}" if np.isinf(high) and np.isfinite(low) else bounds
     kind = "linear" if linear else ("" if p.default is None else f"default {p.default:z.6g}")
-    return f"| `{p.name}` | {p.unit.format(f='F', x='x')} | {kind} | {bounds} | {p.text} |"
+    return f"| `{p.name}` | {p.unit.format(f='F', x='x', q='q')} | {kind} | {bounds} | {p.text} |"

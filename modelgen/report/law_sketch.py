@@ -141,7 +141,7 @@ def _of_variable(effect: str, own: Characteristic) -> Chart:
     x = np.linspace(-own.reach, own.reach, _DRAWN)
     force = sp.lambdify(own.variable, own.force, "numpy")(x)
     text = f"The law of {effect}: torque at the joint over the {own.name}."
-    label = f"{own.name} [{own.unit.format(x='rad')}]"
+    label = f"{own.name} [{own.unit.format(f='N m', x='rad', q='rad')}]"
     return Chart("the law", label, "torque at the joint [N m]", [Curve(x, force, "law")], text)
 
 

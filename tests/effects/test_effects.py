@@ -127,13 +127,23 @@ def test_columns_are_what_a_unit_of_each_parameter_adds(name: str, drive: str) -
     agree(call(with_effect, "forward_dynamics_standard", q, dq, expected, theta, state=state), ddq)
 
 
+def test_units_of_what_changes_over_the_position_have_the_joints_own() -> None:
+    """Slope and curvature of dry friction are forces at the drive over a joint's angle or travel."""
+    slope, curvature = (p.unit for p in CATALOGUE["position_dependent_friction"].linear)
+    assert [unit_of(slope, *at) for at in (("rad", "rad"), ("m", "m"), ("unit", "rad"), ("m", "rad"))] == [
+        "N m/rad", "N/m", "J/(unit rad)", "N/rad",
+    ]  # fmt: skip
+    assert unit_of(curvature, "unit", "rad") == "J/(unit rad^2)"
+    assert unit_of(curvature, "rad") == "N m/rad^2"
+
+
 @pytest.mark.parametrize("name", LOCAL)
 def test_the_unit_of_the_motor_coordinate_changes_nothing(name: str) -> None:
     """Increments, or a thousandth of them: parameters follow the unit that they are printed with."""
     factor = 1e-3
 
     def converted(unit: str) -> float:
-        under = unit.partition("/")[2].split()
+        under = unit.partition("/")[2].strip("()").split()
         over = unit.partition("/")[0].split()
         exponent = 0
         for sign, parts in ((1, over), (-1, under)):

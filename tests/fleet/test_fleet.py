@@ -440,6 +440,22 @@ def test_what_remains_beside_a_cause_is_to_be_looked_at_and_how_sure_it_is_said(
     assert "1 of 1 has a rival" in overview(rival)
 
 
+def test_a_named_unit_says_its_worth_its_doubts_and_its_suspects() -> None:
+    """The joint that lost, what differs between its records, and what is suspected beside the cause."""
+    lost = "8.0 % less error on the test record over all joints (5.0 to 11.0 %), 2.0 % more at boom."
+    unstable = "Not stable, the training records differ in the size of spring at elbow."
+    row = SPRING | {"worth": lost, "doubts": [unstable], "overall_gain_percent": 8.0}
+    (one,) = rows_of("named", "u", **row, suspects=["presliding at boom"], failed_checks=[["form"]])
+    text = " ".join(re.sub("<[^>]*>", " ", overview([one])).split())
+    assert "digger: fleet of 1 unit" in text
+    worth, after = text.index("What it is worth"), text.index("What to look at next")
+    assert worth < text.index(lost) < after < text.index(unstable)
+    assert "Suspected too: presliding at boom failed the check form." in text
+    several = overview([one, *rows_of("named", "other", **SPRING | {"overall_gain_percent": 4.0})])
+    assert "median of 2 units" in several
+    assert lost in several
+
+
 def test_the_overview_has_the_next_command_and_says_nothing_twice() -> None:
     wanting = [
         *rows_of("failed", "f", error="f.csv: there is no such log"),

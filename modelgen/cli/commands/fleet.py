@@ -33,7 +33,7 @@ def fleet(
     as_json: Json = False,
 ) -> None:
     """Diagnose the logs of many arms as one job, which goes on after an interruption: one table, one page."""
-    from modelgen.cli.output import print_result, progress_bar
+    from modelgen.cli.output import print_result, progress_bar, say
     from modelgen.fleet.units import load_fleet
 
     units = load_fleet(file)
@@ -58,5 +58,8 @@ def fleet(
             typer.echo(f"failed: {unit['unit']}: {unit['error']}", err=True)
         if len(failed) > SHOWN:
             typer.echo(f"failed: {len(failed) - SHOWN} more, see the table", err=True)
+        if len(failed) < len(units):
+            for text, command in found.next_steps():
+                say(text, command)
     if len(failed) == len(units):
         raise InputError(f"no unit of {file} could be diagnosed; {failed[0]['unit']}: {failed[0]['error']}")

@@ -121,8 +121,8 @@ class PositionDependentFriction(Friction):
     reference = "Armstrong 1988; Popovic and Goldenberg 1998"
     varies = (CoulombFriction,)
     linear = (
-        Parameter("slope", "{f}", "change per rad or m of the joint", "FP", bounds=ANY),
-        Parameter("curvature", "{f}", "the same per square of the joint coordinate", "FQ", bounds=ANY),
+        Parameter("slope", "{f}/{q}", "change over the joint's position", "FP", bounds=ANY),
+        Parameter("curvature", "{f}/{q}^2", "change over its square", "FQ", bounds=ANY),
     )
     nonlinear = (SMOOTHING,)
     shows = frozenset({Shows.PLACES, Shows.LOAD})
