@@ -32,11 +32,11 @@ from modelgen.report.diagnosis_sentences import (
     harms,
     headline,
     interval,
-    suspicions,
 )
 from modelgen.report.experiment import followed
 from modelgen.report.following import proposed, whole_json
 from modelgen.report.opening import opening
+from modelgen.report.others import suspicions
 from modelgen.report.words import joint_name, legible, place_of, value_said
 from modelgen.report.writing import write
 
@@ -146,7 +146,7 @@ class Diagnosis(Shown):
                 "joint",
                 "parameters",
                 "delta BIC",
-                "gain %",
+                "unseen %",
                 "on test %",
                 "or perhaps",
                 "the same as",
@@ -189,7 +189,7 @@ def _errors(d: Found) -> Table:
         [name, *apart(e.before[j], e.after[j], 4), f"{e.gain[j]:z.1f}", interval(e.low[j], e.high[j])]
         for j, name in enumerate(names)
     ]
-    return Table(title, dict.fromkeys(("joint", "before", "after", "gain %", "95 %"), "right"), rows)
+    return Table(title, dict.fromkeys(("joint", "before", "after", "less %", "95 %"), "right"), rows)
 
 
 def diagnose(

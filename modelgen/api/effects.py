@@ -58,7 +58,7 @@ class Effects(Mapping[str, type[Definition]], Shown):
         return [
             Table("", columns, rows),
             "side: the coordinate x that the effect belongs to, of the motor or of the joint.",
-            "units: x is that coordinate's unit, F the unit of the force or torque that does work on it.",
+            "units: x is that of the coordinate, q that of the joint's, F that of the force or torque on x.",
         ]
 
     def __repr__(self) -> str:

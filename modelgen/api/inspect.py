@@ -147,7 +147,7 @@ class Inspection(Shown):
         x = self.found
         if math.isnan(x.rate):
             return f"{x.name}: {len(x.channels)} columns, no time t that runs"
-        varies = f"time between samples varies by up to {x.jitter:z.2g} periods"
+        varies = f"time between samples varies by up to {x.jitter:z.2g} of the sampling period"
         jitter = "evenly sampled" if x.jitter < _ROUNDING else varies
         time = f"{x.samples} samples from {x.begin:z.6g} s to {x.end:z.6g} s at {x.rate:z.6g} Hz"
         return f"{x.name}: {time}, {jitter}"

@@ -22,7 +22,8 @@ from modelgen.options import RefinementOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, files_of
 from modelgen.report.parts import steps
-from modelgen.report.refinement import following, headline, misses, picture, report
+from modelgen.report.refinement import headline, misses, picture, report
+from modelgen.report.refinement_steps import following
 
 
 class Refinement(Result):

@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 
 from modelgen.dataset import Prepared
-from modelgen.dataset.processing.periods import period_of, rows_in
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
@@ -23,7 +22,7 @@ from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, compared
 from modelgen.identification.objects import Estimate, Identification, Validation
 from modelgen.identification.rounded_efforts import with_rounding
-from modelgen.identification.validation import regression_of, validate
+from modelgen.identification.validation import regression_of, rows_in_period, validate
 from modelgen.numeric import Array
 from modelgen.regression.instruments import Instrument, of_period
 from modelgen.regression.least_squares import Regression, Solution
@@ -216,7 +215,7 @@ def _by_instruments(
     if given.source not in INSTRUMENTS:
         raise InputError(f"--instrument: found '{given.source}', expected {', '.join(INSTRUMENTS)}")
     if given.source != "simulated":
-        periods = [_rows_in_period(p) for p in train]
+        periods = [rows_in_period(p) for p in train]
         found = compared(
             regression,
             least,
@@ -246,11 +245,6 @@ def _by_instruments(
         if (moved <= SETTLED * spread).all():
             break
     return None if found is None else replace(found, simulated=True)
-
-
-def _rows_in_period(p: Prepared) -> int | None:
-    """Rows in a period of the motion; None where it does not repeat, or not on whole rows."""
-    return rows_in(period_of(p.record, None), p.settings)
 
 
 def concluded(

@@ -51,7 +51,9 @@ class Validation:
 
     t: (M,) [s]; measured, predicted: (M, n), records one after the other. rows: (n,), how many were judged.
     noise: of the inputs there. sizes: (n, p), RMS of what one unit of each parameter adds to the efforts.
-    judged: (M, n), samples that were; at rest an effort is whatever holds the joint. None: all.
+    judged: (M, n), samples that were; at rest an effort is whatever holds the joint. None: all. repeats: RMSE
+    (n,) of what differs between the periods of the records, which no model can predict, nan where nothing
+    repeats.
     """
 
     unit: tuple[str, ...]
@@ -64,6 +66,7 @@ class Validation:
     noise: Noise | None = None
     sizes: Array | None = None
     judged: NDArray[np.bool_] | None = None
+    repeats: Array | None = None
 
     def shown_by(self, k: int) -> int | None:
         """Joint (from 0) in whose effort parameter k weighs most; None where it shows in none."""

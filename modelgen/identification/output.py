@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from modelgen.identification.instrumental import Comparison
 from modelgen.identification.objects import Identification, Validation
 from modelgen.identification.summary import questions, verdict
@@ -45,7 +47,15 @@ def errors(test: Validation) -> dict[str, Any]:
         "unit": ", ".join(dict.fromkeys(test.unit)),
         "rmse": [float(x) for x in test.rmse],
         "nrmse_percent": [float(x) for x in test.nrmse_percent],
+        **_repeats(test),
     }
+
+
+def _repeats(test: Validation) -> dict[str, Any]:
+    """What differs between periods; nothing where none repeats."""
+    if test.repeats is None or not np.isfinite(test.repeats).any():
+        return {}
+    return {"noise_rmse": [float(x) if np.isfinite(x) else None for x in test.repeats]}
 
 
 def _least_squares(c: Comparison | None) -> dict[str, Any] | None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.filters import row_autocorrelation
+from modelgen.dataset.processing.periods import noise_of, period_of, rows_in
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
@@ -66,6 +68,26 @@ def validate(
         sizes=sizes,
         judged=asked,
     )
+
+
+def with_repeats(found: Validation, records: Sequence[Prepared]) -> Validation:
+    """The validation with the noise of its records, where they repeat: what differs between their periods."""
+    wrong = found.measured - found.predicted
+    flags = np.ones_like(wrong, dtype=bool) if found.judged is None else found.judged
+    ends, periods = np.cumsum([len(p.t) for p in records])[:-1], [rows_in_period(p) for p in records]
+    parts = list(zip(np.split(wrong, ends), np.split(flags, ends), periods, strict=True))
+    noise = []
+    for j in range(wrong.shape[1]):
+        own = [noise_of(e[:, j], m[:, j], rows) for e, m, rows in parts if rows is not None]
+        squares = sum(float((values**2).sum()) for values, _ in own)
+        count = sum(int(there.sum()) for _, there in own)
+        noise.append(np.sqrt(squares / count) if count else np.nan)
+    return replace(found, repeats=np.array(noise))
+
+
+def rows_in_period(p: Prepared) -> int | None:
+    """Rows in a period of the motion; None where it does not repeat, or not on whole rows."""
+    return rows_in(period_of(p.record, None), p.settings)
 
 
 def _sizes(regression: Regression, gain: Sequence[Array]) -> Array:

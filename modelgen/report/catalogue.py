@@ -23,12 +23,11 @@ def pages() -> dict[str, str]:
 _HEAD = """# Effects
 
 What `effects` in arms.yaml may name, and what `modelgen diagnose` looks for. x is the coordinate of the
-motor or of the joint, as said with each; F the force or torque that does work on it. Linear parameters have
-a column of the regressor each, the others are fixed by the description. The pictures are of an example: the
-torque while one joint of a planar arm swings slowly, a geared one where the effect needs no lever; of what
-bends a drive's input, what comes of a sinusoidal one. [The gallery](gallery.md) shows what each does to a
-log.
-"""
+motor or of the joint, as said with each; q that of the joint; F the force or torque that does work on x.
+Linear parameters have a column of the regressor each, the others are fixed by the description. The
+pictures are of an example: the torque while one joint of a planar arm swings slowly, a geared one where
+the effect needs no lever; of what bends a drive's input, what comes of a sinusoidal one. [The
+gallery](gallery.md) shows what each does to a log. """
 
 
 def _section(effect: type[Definition], shown: str) -> str:

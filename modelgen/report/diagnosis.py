@@ -13,9 +13,10 @@ from modelgen.report.call import Call
 from modelgen.report.cause_parts import about, law_found, suspected
 from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import efforts, replayed, residuals
-from modelgen.report.diagnosis_sentences import assumptions, by_worth, compared, rivals
+from modelgen.report.diagnosis_sentences import assumptions, by_worth, compared
 from modelgen.report.experiment import described
 from modelgen.report.named_joints import named_joints
+from modelgen.report.others import rivals
 from modelgen.report.page import Folded, Grid, Heading, Lines, Part, Run, Section, Text, block, page
 from modelgen.report.ranking import rankings
 from modelgen.report.words import joint_name
@@ -37,7 +38,7 @@ _CANDIDATES = (
     ("effect", "left"),
     ("place", "left"),
     ("delta BIC", "right"),
-    ("gain %", "right"),
+    ("unseen %", "right"),
     ("expected %", "right"),
     ("answer", "left"),
 )

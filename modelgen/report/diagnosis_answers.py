@@ -28,6 +28,7 @@ from modelgen.report.diagnosis_sentences import (
 )
 from modelgen.report.following import following
 from modelgen.report.opening import hardly_moved
+from modelgen.report.others import near, suspected
 from modelgen.report.page import Checks, Command, Folded, Grid, Part, Run, Section, Text
 from modelgen.report.words import joint_name, listed, sentence
 
@@ -40,7 +41,7 @@ _ERRORS = {
     True: "RMSE of the simulated free motion, from the release on,",
     False: "RMS of the error, of that of the effort,",
 }
-_NOTHING = "Nothing is named, so nothing is gained. The model as described misses, on the test record:"
+_NOTHING = "No cause is named. The model as described errs on the test record by:"
 _CHECKS = "Checks of each cause"
 _ROWS = 2  # of a table that a phone has room for beside the other answers
 _SHOWN = 4  # causes in full: more would leave the other answers no place on the first screen
@@ -98,6 +99,8 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
         yield Text([Run(_passed(d.causes)), *_doubted(d)])
     if len(d.causes) == 1 and doubted(d):
         yield Text(_doubted(d))
+    if rival := near(d):
+        yield Text(rival)
     suspects = [_suspect(d, k) for k in range(len(d.suspects))]
     shown = 0 if d.causes else _SUSPECTS
     for parts in suspects[:shown]:
@@ -129,8 +132,8 @@ def _suspect(d: Diagnosis, k: int) -> list[Part]:
     c = d.suspects[k]
     title = cause_title(d, c)
     checks = listed(x.name for x in c.checks if x.decides and x.passed is False)
-    text = f"{title} is suspected and not named: it has evidence, and failed {checks}."
-    return [Text(sentence(text)), marks(c, f"suspect{k}")]
+    text = f"{suspected(d, c)}{title} has evidence, and is not named for it failed {checks}."
+    return [Text(text), marks(c, f"suspect{k}")]
 
 
 def _worth(d: Diagnosis) -> Iterator[Part]:

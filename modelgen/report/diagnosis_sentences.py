@@ -9,15 +9,15 @@ from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE, Family
-from modelgen.effects.placement import titled
+from modelgen.effects.placement import joint_meant, titled
 from modelgen.identification.impossible import impossible_at
-from modelgen.report.words import finding, joint_name, listed, sentence
+from modelgen.report.words import finding, joint_name, listed, place_of, sentence, there
 
 _SENTENCES = {
     "nothing_missing": "Nothing is missing that these records could show.",
     "cannot_tell": "These records cannot tell.",
 }
-_TITLES = 2  # suspects by their names, in a headline
+_TITLES = 2  # suspects that are all in the headline, in words
 _VISIBLE = 0.05  # percent: less is 0.0 in print
 _SAME = 0.01  # of a cut-off, that needs no word
 _ALIKE = 0.1  # of an error, that nobody who compares wonders about
@@ -33,10 +33,16 @@ def missing(d: Diagnosis) -> list[str]:
     if d.verdict == "named":
         return [_found(d, c) for c in d.causes]
     if d.verdict == "suspected":
-        titles = [cause_title(d, c) for c in d.suspects]
-        more = [f"{len(titles) - _TITLES} more"] if titles[_TITLES:] else []
-        return [f"Nothing can be named; suspected: {listed(titles[:_TITLES] + more)}."]
+        clauses = [f"{perhaps(d, c)} ({c.effect})" for c in d.suspects]
+        shown = clauses if len(clauses) <= _TITLES else [clauses[0], f"{len(clauses) - 1} more"]
+        return [f"Nothing can be named; perhaps {listed(shown)}."]
     return [_SENTENCES.get(d.verdict) or sentence(d.reason)]
+
+
+def perhaps(d: Diagnosis, c: NamedCause) -> str:
+    """What a suspect would be, in words without values."""
+    others = (joint_meant(d.arm, c.effect, name, e.value) for name, e in c.parameters.items())
+    return there(c.effect, place_of(d.arm, c.joint), next((name for name in others if name), ""))
 
 
 def _found(d: Diagnosis, c: NamedCause) -> str:
@@ -276,40 +282,9 @@ def compared(d: Diagnosis) -> list[str]:
     return [" ".join(said)]
 
 
-def suspicions(d: Diagnosis) -> list[str]:
-    """What has evidence and is not named, each with the check that it failed."""
-    return [
-        f"{cause_title(d, c)} has evidence of {c.delta_bic:z.1f} and is not named: "
-        + "; ".join(f"{name}: {text}" for name, mark, text in (checked(k) for k in c.checks) if mark == "no")
-        + "."
-        for c in d.suspects
-    ]
-
-
 def checked(c: Check) -> tuple[str, str, str]:
     """Name, answer and figures of a check."""
     mark = "not asked" if c.passed is None else "yes" if c.passed else "no"
     if not c.decides and c.passed is False:
         mark = "no, which does not decide"
     return c.name, mark, c.text
-
-
-def rivals(d: Diagnosis) -> list[tuple[str, str, str]]:
-    """Cause, rival and why it is not named, of every cause."""
-    found = []
-    further = "" if d.next_experiment is None else "; the next experiment separates them"
-    for c in d.causes:
-        own = cause_title(d, c)
-        found += [
-            (own, titled(d.arm, e, j), "no motion of this arm separates the two: it is named by convention")
-            for e, j in c.aliases
-        ]
-        found += [
-            (
-                own,
-                titled(d.arm, e, j),
-                f"delta BIC {behind:z.1f} behind: nearly as good{further}",
-            )
-            for e, j, behind in c.ambiguous_with
-        ]
-    return found

@@ -25,6 +25,10 @@ _EXPLAIN = "Answer the questions above first: no code should be generated from i
 _UNBIASED = "which the errors of the positions do not bias; code should be generated from those values"
 _EXPLAINED = "If the records are read rightly the model lacks something; this names the cause."
 _LACKING = "Where the error is larger than the noise the model lacks something; this names the cause."
+_UNKNOWN = "Nothing repeats in the test records, so that they do not show how much of it is noise."
+_NOISE = "noise, between periods"
+_QUESTIONS = 2  # that a phone has room for before the other answers
+_POOR = "Poorly determined parameters"
 _SHOWN = 5  # poorly determined parameters in full: more would leave the other answers no place
 _LOOKS = ("s1", "s2", "s3")  # of models beside
 
@@ -78,15 +82,12 @@ def report(
     if test is not None:
         heads = [("model", "left"), *((f"{n} [{u}]", "right") for n, u in zip(names, test.unit, strict=True))]
         share = listed(f"{x:z.1f} % at {n}" for x, n in zip(test.nrmse_percent, names, strict=True))
+        title, cells = "Errors on the test records", [(t, *cells) for t, cells in models(test, others)]
+        unknown = "" if _noise_known(test) else f" {_UNKNOWN}"
         errors = [
             Text(f"On records that it has not seen, the model misses {share} of the effort (NRMSE)."),
-            Grid(
-                "Errors on the test records",
-                heads,
-                [(t, *cells) for t, cells in models(test, others)],
-                folds=True,
-            ),
-            Text("RMSE, in brackets NRMSE in % of the effort.", "quiet"),
+            Folded(title, [Grid(title, heads, cells, folds=True)], narrow=True),
+            Text(f"RMSE, in brackets NRMSE in % of the effort.{unknown}", "quiet"),
         ]
         if others:
             errors.append(Text("Below it: by how much the arm as described is below or above.", "quiet"))
@@ -120,7 +121,12 @@ def _found(found: Identification) -> list[Any]:
     """What is impossible comes first, then how much is known, and below it what is doubtful or remarkable."""
     more = [*questions(found), *remarks(found)]
     first = [Text([Run(text, "strong")]) for text in impossible(found)]
-    return [*first, Text(determined(found)), *([Lines(more)] if more else [])]
+    said: list[Any] = [Lines(more[:_QUESTIONS])] if more else []
+    if more[_QUESTIONS:]:
+        left = len(more) - _QUESTIONS
+        title = f"{left} more question{'' if left == 1 else 's'} and remark{'' if left == 1 else 's'}"
+        said.append(Folded(title, [Lines(more[_QUESTIONS:])], narrow=True))
+    return [*first, Text(determined(found)), *said]
 
 
 def _method(found: Identification) -> Text:
@@ -156,7 +162,7 @@ def _uncertain(found: Identification) -> list[Any]:
         table = [row[1:] for row in rows]
         parts += [
             Text("What the standard deviation of these parameters moves in the effort:"),
-            Grid("Poorly determined parameters", heads, table[:_SHOWN], folds=True),
+            Folded(_POOR, [Grid(_POOR, heads, table[:_SHOWN], folds=True)], narrow=True),
         ]
         if table[_SHOWN:]:
             more = Grid("Further poorly determined parameters", heads, table[_SHOWN:], folds=True)
@@ -247,13 +253,22 @@ def table(test: Validation) -> list[tuple[str, str]]:
 
 
 def models(test: Validation, others: Sequence[Alternative]) -> list[tuple[str, list[str]]]:
-    """RMSE and NRMSE in % by model, and by how much the arm as described is below it in %, joint by joint."""
+    """RMSE and NRMSE in % by model, by how much the arm as described is below it in %, joint by joint; noise,
+    where the records repeat.
+    """
     rows = [(AS_DESCRIBED, [f"{a} ({b})" for a, b in table(test)])]
     for other in others:
         change = 100.0 * (test.rmse / np.maximum(other.test.rmse, 1e-300) - 1.0)
         cells = [f"{a} ({b}) {c:+z.0f}%" for (a, b), c in zip(table(other.test), change, strict=True)]
         rows.append((other.name, cells))
+    noise = test.repeats
+    if noise is not None and _noise_known(test):
+        rows.append((_NOISE, [f"{x:z.4g}" if np.isfinite(x) else "not known" for x in noise]))
     return rows
+
+
+def _noise_known(test: Validation) -> bool:
+    return test.repeats is not None and bool(np.isfinite(test.repeats).any())
 
 
 def _elapsed(t: Array) -> tuple[Array, NDArray[np.intp]]:

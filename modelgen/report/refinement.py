@@ -7,24 +7,36 @@ from typing import Any
 import numpy as np
 
 from modelgen.charts import Chart, Interval, apart, number, sheet
-from modelgen.identification.objects import MATTERS
 from modelgen.identification.output_error.refine import Refinement
 from modelgen.numeric import Array
-from modelgen.options import words_of
-from modelgen.report.call import WHERE, Call
+from modelgen.report.call import Call
 from modelgen.report.motion_figures import Motion, joined, motion_pair
-from modelgen.report.page import WIDE, Block, Command, Grid, Part, Parts, Run, Text, block, page, pictured
-from modelgen.report.words import listed, sentence
+from modelgen.report.page import (
+    WIDE,
+    Block,
+    Folded,
+    Grid,
+    Part,
+    Parts,
+    Run,
+    Text,
+    block,
+    page,
+    pictured,
+)
+from modelgen.report.refinement_steps import SAME, following, gained
+from modelgen.report.words import listed
 
 _FAR = 2.0  # standard deviations
-_SAME = 1.01  # of an error, that needs no word
 _NAMED = 6  # parameters that moved, in a sentence
 _KEEP = "The tuned values bring no joint nearer by 1 %: keep the values of the start."
 _FINE = {"rad": (1e3, "mrad"), "m": (1e3, "mm")}  # factor and unit in which small errors are said
 _COARSE = 0.01  # rad, m: from which on they are said in these
-_RELEASES = 3  # that a diagnosis of free motions needs: a release is not split in two
+_MEASURED = (
+    "Goodness of fit 100 (1 - |y - simulated| / |y - mean y|), and RMSE of the positions, of whole parts "
+    "simulated from their beginning, each from the initial states that suit its parameters best."
+)
 _VAGUE = "Standard deviations, and what they move, are rough there."
-_NEAR = "if the simulated motion below is near enough to the measured one all the same"
 
 
 def motion(found: Refinement) -> list[Chart]:
@@ -66,16 +78,11 @@ def report(found: Refinement, call: Call) -> str:
         (
             "How well it moves",
             [
-                Grid("Simulated motion", heads, rows, folds=True),
-                Text(
-                    "Goodness of fit 100 (1 - |y - simulated| / |y - mean y|), and RMSE of the positions, of "
-                    "whole parts simulated from their beginning, each from the initial states that suit its "
-                    "parameters best.",
-                    "quiet",
-                ),
+                Folded("Simulated motion", [Grid("Simulated motion", heads, rows, folds=True)], narrow=True),
+                Folded("How it is measured", [Text(_MEASURED, "quiet")], narrow=True),
             ],
         ),
-        ("What moved", [Text(_moved(free, _gained(found))), *_uncertain(found)]),
+        ("What moved", [Text(_moved(free, gained(found))), *_uncertain(found)]),
         (
             "What to do next",
             following(call, found),
@@ -108,10 +115,10 @@ def headline(found: Refinement) -> str:
     worst = int(np.argmax(after / np.maximum(span, 1e-300)))
     old, new, unit = misses(found)[worst]
     where = f"at {arm.coordinate_names[worst]}" + (", where it errs most" if len(after) > 1 else "")
-    worse = [arm.coordinate_names[j] for j in range(len(after)) if after[j] > _SAME * before[j]]
+    worse = [arm.coordinate_names[j] for j in range(len(after)) if after[j] > SAME * before[j]]
     lost = f" It is farther from it than before at {listed(worse)}." if worse else ""
     text = f"The simulated motion misses the measured one by {new} {unit} (RMSE)"
-    kept = "" if _gained(found) else f" {_KEEP}"
+    kept = "" if gained(found) else f" {_KEEP}"
     start = f"it was {old} {unit}" if old != new else "it was as much"
     return f"{text} {where}; with the values at the start {start}.{lost}{kept}"
 
@@ -137,11 +144,6 @@ def _fine(value: float, unit: str) -> str:
     return f"{number(size * value, 2)} {said}"
 
 
-def _gained(found: Refinement) -> bool:
-    """Whether the simulated motion of some joint is nearer to the measured one than at the start."""
-    return bool((found.before.rmse > _SAME * found.after.rmse).any())
-
-
 def _ended(found: Refinement, free: int) -> list[Part | str]:
     """Whether the values are those of the best fit, and how many are."""
     tuned, steps = f"{free} of {len(found.parameters)} parameters", f"after {found.rounds} steps"
@@ -153,93 +155,6 @@ def _ended(found: Refinement, free: int) -> list[Part | str]:
         Text(headline(found)),
         Text(f"The values of {tuned} are those of its last step, not of the best fit. {_VAGUE}"),
     ]
-
-
-def following(call: Call, found: Refinement) -> list[Part | str]:
-    """The code, where there is a reason to have the values in it, and what the model lacks.
-
-    Where values are not determined, what determines them comes first.
-    """
-    loose = _loose(found)
-    if not _gained(found):
-        return [*_first(call, _from_start(call)), *_lacking(call, found)]
-    code = _folded_in(call, found.converged)
-    if not loose:
-        return [*_first(call, code), *_lacking(call, found)]
-    more = _further(call, found, loose)
-    text, command = code
-    least = Text(sentence(f"for motions like {'this one' if len(found.t) == 1 else 'these'} alone, {text}"))
-    return [*_first(call, more), *_lacking(call, found), least, Command(command)]
-
-
-def _first(call: Call, step: tuple[str, str]) -> list[Part | str]:
-    """A sentence with its command, where it has one, that comes first."""
-    text, command = step
-    return [Text(f"{call.first}{sentence(text)}"), *([Command(command)] if command else [])]
-
-
-def _folded_in(call: Call, converged: bool) -> tuple[str, str]:
-    """How to generate the code of what was found."""
-    text = f"generate code with these values folded in, {WHERE}"
-    values = call.beside(f"{call.arm.name}_parameters.yaml")
-    return text if converged else f"{_NEAR}, {text}", call.command("generate", "--parameters", values)
-
-
-def _from_start(call: Call) -> tuple[str, str]:
-    """How to generate the code of the start, which is from a file, else the description."""
-    values = words_of(call.options, ("parameters",)) or ["--nominal"]
-    return f"generate code with the values of the start, {WHERE}", call.command("generate", *values)
-
-
-def _further(call: Call, found: Refinement, loose: list[str]) -> tuple[str, str]:
-    """What determines the values that these motions leave open."""
-    names = listed([*loose[:_NAMED], *([f"{len(loose) - _NAMED} more"] if loose[_NAMED:] else [])])
-    verb = "is" if len(loose) == 1 else "are"
-    whose = "its standard deviation moves" if len(loose) == 1 else "the standard deviation of each moves"
-    text = f"generate no code yet: {names} {verb} not determined, {whose} the motion by more than it errs"
-    if not found.effort:
-        return f"{text}. Give refine releases from other angles too, each by a --log of its own", ""
-    text = f"{text}. Give refine further motions too, each by a --log of its own"
-    pairs = zip(found.measured, found.t, strict=True)
-    speeds = np.max([np.abs(np.gradient(q, t, axis=0)).max(axis=0) for q, t in pairs], axis=0)
-    excite = call.exciting(call.beside("trajectory.csv"), speeds.tolist())
-    return (f"{text}. This computes one, {WHERE}" if excite else text), excite
-
-
-def _loose(found: Refinement) -> list[str]:
-    """Names of parameters whose uncertainty moves the motion by more than it errs, and by what matters of it,
-    worst first.
-    """
-    least = MATTERS / 100.0 * np.std(np.concatenate(found.measured), axis=0)
-    errors = np.maximum(found.after.rmse, least)
-    times = {x.name: x.moves / float(errors[x.shown_by]) for x in found.parameters if x.std}
-    return [name for name in sorted(times, key=lambda name: -times[name]) if times[name] > 1.0]
-
-
-def _lacking(call: Call, found: Refinement) -> list[Part | str]:
-    """What names the cause where the motion still differs."""
-    diagnose = call.diagnosing()
-    if diagnose and (found.effort or len(call.train) + len(call.test) >= _RELEASES):
-        return [
-            Text("Where the motion still differs by more than its noise, this names the cause."),
-            Command(diagnose),
-        ]
-    more = "a second motion, which nothing is fitted to"
-    place = "this record is for "
-    if not found.effort:
-        more = f"{_RELEASES} releases or more"
-        place = "name each of them but the last by a "
-    ends = (", the second for ", ".") if found.effort else (" of its own, the last one by ", ".")
-    named = [
-        Run(f"Where the motion still differs by more than its noise, record {more}, and let "),
-        Run("modelgen diagnose", "code"),
-        Run(f" find the cause: {place}"),
-        Run("--train", "code"),
-        Run(ends[0]),
-        Run("--test", "code"),
-        Run(ends[1]),
-    ]
-    return [Text(named)]
 
 
 def _moved(free: list[Any], gained: bool) -> str:

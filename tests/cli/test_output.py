@@ -24,7 +24,7 @@ CAUSE = {
     "joint": "shoulder_lift_joint",
     "parameters": "coefficient 0.07433, rise 0.0124 s",
     "delta BIC": "289.3",
-    "gain %": "24.1",
+    "unseen %": "24.1",
     "on test %": "47.1",
     "or perhaps": "",
     "the same as": "",

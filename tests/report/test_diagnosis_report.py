@@ -669,7 +669,7 @@ def test_what_is_suspected_is_no_fact_and_has_a_next_step(found: Diagnosis, tmp_
         assert box["y"] + box["height"] < 900
     assert "modelgen excite" in said
     assert sentence(finding(d.arm, "stribeck_friction", 2, d.suspects[0].parameters)) not in said
-    assert "is suspected and not named: it has evidence, and failed form" in said
+    assert "has evidence, and is not named for it failed form" in said
 
 
 def test_that_a_cause_has_no_rival_is_said_and_printed(found: Diagnosis, tmp_path: Path) -> None:
@@ -802,7 +802,7 @@ def test_units_of_an_effect_are_those_of_its_joint(unit: str, joint: str, found:
 def test_every_effect_says_in_words_that_it_is_there(effect: str) -> None:
     definition = CATALOGUE[effect]
     values = {
-        p.name: Estimate(2.0 if p.joint else 0.05, 0.01, p.unit.format(f="N m", x="rad"))
+        p.name: Estimate(2.0 if p.joint else 0.05, 0.01, p.unit.format(f="N m", x="rad", q="rad"))
         for p in definition.accepted()
     }
     joint = None if definition.scope == "arm" else 1

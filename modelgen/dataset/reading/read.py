@@ -214,7 +214,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     remarks = [*source.remarks, *left, *(x for x in (jump, lost) if x)]
     if axis.method != "none":
         remarks.append(
-            f"time between samples varies by up to {axis.jitter:.2g} periods: "
+            f"time between samples varies by up to {axis.jitter:.2g} of the sampling period: "
             f"resampled at {1 / axis.step:.6g} Hz"
         )
     doubt = doubtful_unit(axis.step, limits)

@@ -156,11 +156,15 @@ def confirmed(gain: float, low: float, there: bool = True) -> Check:
     if np.isfinite(gain):
         end = "which is too short for an interval"
         if asked:
-            end = f"{low:z.1f} % less at the lower end of the 95 % interval; more than 0 % less confirms it"
-        sense = "less" if gain >= 0.0 else "more"
+            worst = f"{abs(low):.1f} % {_sense(low)} at the lower end of the 95 % interval"
+            end = f"{worst}; more than 0 % less confirms it"
         how = "with it" if there else "where it is not, once the training records are fitted with it"
-        text = f"{abs(gain):.1f} % {sense} error on the test record {how}, {end}"
+        text = f"{abs(gain):.1f} % {_sense(gain)} error on the test record {how}, {end}"
     return Check("confirmed", low > 0.0 if asked else None, False, low, 0.0, text)
+
+
+def _sense(gain: float) -> str:
+    return "less" if gain >= 0.0 else "more"
 
 
 def _evidence(cause: Cause, selection: Selection) -> Check:
@@ -227,7 +231,7 @@ def _gain(cause: Cause, equations: Equations) -> Check:
 def _undominated(by: Dominance, arm: Arm) -> Check:
     text = "nothing else explains as much at its joint"
     if by.place is not None:
-        other = f"{titled(arm, *by.place)}, no cause itself for it fails a condition,"
+        other = f"{titled(arm, *by.place)}, which fails a condition and is no cause itself,"
         text = f"{other} {ahead_of(by.ahead, by.most)}"
     return Check("undominated", by.ahead <= by.most, True, by.ahead, by.most, text)
 

@@ -63,7 +63,7 @@ def of_late(j: int, equations: Equations) -> SmoothFunction:
         r.equation(j, np.hstack([_of_late(x, r.prepared.time, seconds) for seconds in MEMORIES]))
         for r, x in zip(equations.rows, _speeds(j, equations), strict=True)
     ]
-    return SmoothFunction("the joint's mean speed of late", {j: tables})
+    return SmoothFunction("the joint's mean speed over the last seconds", {j: tables})
 
 
 def of_way(j: int, equations: Equations) -> SmoothFunction:
