@@ -41,7 +41,6 @@ _ERRORS = {
     True: "RMSE of the simulated free motion, from the release on,",
     False: "RMS of the error, of that of the effort,",
 }
-_NOTHING = "No cause is named. The model as described errs on the test record by:"
 _CHECKS = "Checks of each cause"
 _ROWS = 2  # of a table that a phone has room for beside the other answers
 _SHOWN = 4  # causes in full: more would leave the other answers no place on the first screen
@@ -111,11 +110,19 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
         yield Folded(f"{title}: {names}", [part for parts in suspects[shown:] for part in parts])
     if not d.causes:
         left = Text(remains(d))
-        yield Folded("What is left", [left], narrow=True) if d.suspects else left
+        yield Folded(_left(d), [left], narrow=True) if d.suspects else left
         return
-    f, left = d.lack_of_fit, Text(f"{beside(d)} {remains(d)}".strip(), "quiet")
-    size = "" if f is None else f": lack of fit {f.statistic:z.2f}, threshold {f.threshold:z.2f}"
-    yield Folded(f"What is left{size}", [left], narrow=True) if len(d.causes) > 1 else left
+    left = Text(f"{beside(d)} {remains(d)}".strip(), "quiet")
+    yield Folded(_left(d), [left], narrow=True) if len(d.causes) > 1 else left
+
+
+def _left(d: Diagnosis) -> str:
+    """Title of what is left, which says whether that is more than noise."""
+    f = d.lack_of_fit
+    if f is None:
+        return "What is left: no period repeats, by which the noise could be measured"
+    what = "more than noise" if f.statistic > f.threshold else "no more than noise"
+    return f"What is left: {what}, lack of fit {f.statistic:z.2f}, threshold {f.threshold:z.2f}"
 
 
 def _passed(causes: Sequence[NamedCause]) -> str:
@@ -151,7 +158,7 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
         many = len(d.causes) > 1 or len(errors.rows) > _ROWS
         yield Folded(caption, [errors], narrow=True) if many else errors
     else:
-        yield Text(_NOTHING)
+        yield Text(_erring(d))
         rows = [(joint_name(d.arm, j), x) for j, x in enumerate(_before(d), 1)]
         table = Grid(caption, (("joint", "left"), (f"error [{unit}]", "right")), rows, beside=True)
         yield Folded(caption, [table], narrow=True)
@@ -163,6 +170,20 @@ def _worth(d: Diagnosis) -> Iterator[Part]:
     if d.causes and len(d.errors.gain) > 1:
         said += f" {_OVER_ALL}"
     yield Folded("How the error was measured", [Text(said, "quiet")], narrow=True)
+
+
+def _erring(d: Diagnosis) -> str:
+    """How large the error of the model as described is, at the joint where it is largest."""
+    before, names, efforts = d.errors.before, d.arm.coordinate_names, efforts_of(d)
+    known = np.nan_to_num(before if efforts is None else before / np.maximum(efforts, 1e-300))
+    j = int(np.argmax(known))
+    size = (
+        f"{number(before[j])} {d.errors.unit}"
+        if efforts is None
+        else f"{100.0 * known[j]:z.2g} % of the effort"
+    )
+    most = "" if len(before) == 1 else ", its largest error"
+    return f"No cause is named. The model as described errs on the test record by {size} at {names[j]}{most}."
 
 
 def _before(d: Diagnosis) -> list[tuple[str, str]]:

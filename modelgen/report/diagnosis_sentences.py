@@ -18,6 +18,10 @@ _SENTENCES = {
     "cannot_tell": "These records cannot tell.",
 }
 _TITLES = 2  # suspects that are all in the headline, in words
+_SWINGING = (
+    "A swing shows ratios alone: masses, centres of mass and inertia are those of the description. Where "
+    "these are wrong, the difference looks like a spring or like friction."
+)
 _VISIBLE = 0.05  # percent: less is 0.0 in print
 _SAME = 0.01  # of a cut-off, that needs no word
 _ALIKE = 0.1  # of an error, that nobody who compares wonders about
@@ -254,7 +258,8 @@ def assumptions(d: Diagnosis) -> list[str]:
         for drive in d.after.model.grouping.drives
         if drive.nominal is None and (k := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
-    return used + unknown + list(d.doubts)
+    links = [_SWINGING] if d.free else []
+    return links + used + unknown + list(d.doubts)
 
 
 def compared(d: Diagnosis) -> list[str]:

@@ -167,8 +167,8 @@ def following(e: Excitation, stem: str, call: Call) -> list[Part | str]:
     other = call.command("excite", *again, "--seed", seed, "--out", call.beside(f"{stem}{_SECOND}.csv"))
     return [
         Text(
-            f"{call.first}{run}positions and efforts as {train}. A second motion is for the test record, "
-            f"{test}; this computes it, {WHERE}:"
+            f"{call.first}{run}positions and efforts as {train}. The test record, {test}, is of another "
+            f"motion, which this computes, {WHERE}; its page says how it is recorded:"
         ),
         Command(other),
         Text("With both records, the parameters:"),

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from arms_support import ARMS
+from scipy.signal import butter, sosfiltfilt
 
 import modelgen as mg
 from modelgen.dataset import prepare
@@ -62,3 +63,33 @@ def test_noise_of_the_inputs_is_found() -> None:
     assert (np.array(observer["largest"]) > 2.5 * np.array(observer["rms"])).all()
     assert (np.array(data["input"]) < noise).all()  # filtered
     assert all(0.01 < time < 0.2 for time in data["correlation_s"])
+
+
+def test_what_differs_between_periods_is_the_noise_of_the_test_record() -> None:
+    """White noise through the filter of the efforts, whatever else the model lacks; nothing where no motion
+    repeats.
+    """
+    rng, arm, noise, cutoff = np.random.default_rng(5), ARMS["gravity_arm"], 0.05, 8.0
+    model = mg.build_model(arm)
+    nominal = model.nominal
+    assert nominal is not None
+
+    def log(begin: float, periods: int) -> dict[str, np.ndarray]:
+        t = np.arange(0.0, 10.0 * periods, STEP)
+        w = 2.0 * np.pi / 10.0 * np.array([[2.0, 3.0], [3.0, 5.0]])
+        angle = w[:, None, :] * t[:, None] + begin
+        q, dq, ddq = (x.sum(axis=0) for x in (np.sin(angle), w[:, None, :] * np.cos(angle),
+                                              -w[:, None, :] ** 2 * np.sin(angle)))  # fmt: skip
+        effort = model.functions["inverse_dynamics"](q, dq, ddq, np.array(list(nominal.values())))
+        effort += 0.5 * np.sin(2.0 * q) + noise * rng.standard_normal(effort.shape)
+        return {"t": t, "q1": q[:, 0], "q2": q[:, 1], "tau1": effort[:, 0], "tau2": effort[:, 1]}
+
+    found = mg.identify(arm, log(0.0, 3), log(1.0, 3), cutoff=cutoff)
+    test = found.to_json()["test"]
+    white = sosfiltfilt(butter(4, cutoff * 2 * STEP, output="sos"), rng.standard_normal(200_000))
+    np.testing.assert_allclose(test["noise_rmse"], noise * np.std(white), rtol=0.15)
+    assert min(test["rmse"]) > 3.0 * max(test["noise_rmse"])
+    assert "noise, between periods" in found.files()["report.html"]
+    once = mg.identify(arm, log(0.0, 3), log(1.0, 1), cutoff=cutoff)
+    assert "noise_rmse" not in once.to_json()["test"]
+    assert "do not show how much of it is noise" in once.files()["report.html"]

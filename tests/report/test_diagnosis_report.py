@@ -23,6 +23,8 @@ from modelgen.diagnosis.pipeline import diagnose
 from modelgen.diagnosis.result import Diagnosis, to_json
 from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import titled
+from modelgen.identification.objects import Impossible
+from modelgen.options import DiagnosisOptions
 from modelgen.report import cause_parts
 from modelgen.report.call import Call
 from modelgen.report.diagnosis import report
@@ -670,6 +672,23 @@ def test_what_is_suspected_is_no_fact_and_has_a_next_step(found: Diagnosis, tmp_
     assert "modelgen excite" in said
     assert sentence(finding(d.arm, "stribeck_friction", 2, d.suspects[0].parameters)) not in said
     assert "has evidence, and is not named for it failed form" in said
+
+
+def test_no_code_is_made_of_values_that_no_arm_has(found: Diagnosis) -> None:
+    """Named or not: what is impossible is said first, and the nearest values that could exist come next."""
+    doubt = Impossible("Impossible: the inertia at j2 comes out below zero.", ["j2"])
+    call = Call(found.arm, ("a.csv",), ("b.csv",), DiagnosisOptions(), folder=Path("out"))
+    for d in (found, other(found, "nothing_missing")):
+        sound = [step.command for step in following(d, call)]
+        assert sound[0].startswith("modelgen generate")
+        broken = replace(d, impossible=(doubt,))
+        steps = [step.command for step in following(broken, call)]
+        assert steps[0].startswith("modelgen identify")
+        assert "--consistent" in steps[0]
+        assert "consistent/" in steps[1]
+        assert "Physically impossible values at j2" in opening(broken)
+        assert "Physically impossible values at j2" in re.sub("<[^>]+>", "", report(broken))
+        assert str(doubt) in to_json(broken)["doubts"]
 
 
 def test_that_a_cause_has_no_rival_is_said_and_printed(found: Diagnosis, tmp_path: Path) -> None:
