@@ -23,7 +23,8 @@ from modelgen.diagnosis.candidates import Candidate, asked, at_motor, candidates
 from modelgen.diagnosis.equations import Band, Equations, feigned, harmless
 from modelgen.diagnosis.evidence import Endogeneity, endogeneity, mean_squares
 from modelgen.diagnosis.options import Options
-from modelgen.diagnosis.selection import SUSPECT, Selection, forward_selection
+from modelgen.diagnosis.selection import SUSPECT, Selection, forward_selection, paired, with_pair
+from modelgen.jobs import Where
 from modelgen.numeric import Array
 
 Progress = Callable[[str, int, int], None]
@@ -61,7 +62,8 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     equations = band.equations
     pool = _pool(band, options)
     selection = forward_selection(equations, pool, progress, options.where)
-    before, every = selection, examined(selection, equations)
+    selection, every = in_pairs(selection, pool, equations, progress, options.where)
+    before = selection
     suspects = [e for e in every if e.failed]
     selection = selection.without([e.cause for e in suspects], SUSPECT) if suspects else selection
     named = [c.trial.candidate for c in selection.causes]
@@ -84,6 +86,32 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     verdict, reason = verdict_of(selection, remains)
     causes = [e for e in every if any(e.cause.trial.candidate == c.trial.candidate for c in selection.causes)]
     return Decision(band, selection, causes, suspects, before, equal, remains, correlated, verdict, reason)
+
+
+def in_pairs(
+    selection: Selection,
+    pool: Sequence[Candidate],
+    equations: Equations,
+    progress: Progress | None,
+    where: Where,
+) -> tuple[Selection, list[Examined]]:
+    """The selection with its checks; with a pair of causes at a joint where that leaves fewer that fail them.
+
+    Steps that chose one cause after the other may have gone astray where a cause is a suspect.
+    """
+    every = examined(selection, equations)
+    joints = (e.cause.trial.candidate.joint for e in every if e.failed)
+    for joint in sorted({j for j in joints if j is not None}):
+        found = paired(selection.causes, joint, pool, equations, where)
+        if found is None:
+            continue
+        doubtful = [e.cause for e in every if e.failed]
+        start = with_pair(selection, found, doubtful, equations)
+        tried = forward_selection(equations, pool, progress, where, start)
+        checked = examined(tried, equations)
+        if sum(bool(e.failed) for e in checked) < sum(bool(e.failed) for e in every):
+            selection, every = tried, checked
+    return selection, every
 
 
 def _pool(band: Band, options: Options) -> list[Candidate]:

@@ -15,7 +15,7 @@ from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
 from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
 from modelgen.diagnosis.selection import Selection, refit_elastic
-from modelgen.effects import CATALOGUE, Family, described
+from modelgen.effects import CATALOGUE, Family, applied_effects, described
 from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
 from modelgen.functions import EVALUATED, Model, build_model
@@ -23,7 +23,7 @@ from modelgen.numeric import Array
 from modelgen.regression.weighted import misfit, weighted_fit
 from modelgen.simulation.windows import Windows, simulated_release, simulated_windows
 
-# Budgets of the fit beside elastic joints: how finely parameters are found decides nothing.
+# Budgets of fits beside elastic joints and friction by the load: how finely these end decides nothing.
 HALVES = 10  # steps, of which half is taken each
 WHOLES = 6  # steps by the slopes
 SHORTER = 3  # times a step is halved that leads astray
@@ -96,9 +96,17 @@ def extended(before: FittedModel, selection: Selection, equations: Equations) ->
     if any(CATALOGUE[effect].family is Family.ELASTIC for effect, _, _ in causes):
         rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
         return FittedModel(bigger, model, *settled(bigger, model, seen, known, first, rigid))
-    own = rows_twice(Evaluator(bigger), model, seen, known, start)
-    rows = _as_there(own, before, selection, equations, start)
     bounds = [*own_parameters(model, [c.trial for c in selection.causes])]
+    own = rows_twice(Evaluator(bigger), model, seen, known, start)
+    if not equations.free and any(e.depends_on("load") for e in applied_effects(bigger)):
+        search = _Search(Evaluator(bigger), model, seen, known)
+        search.at(weighted_fit(own, [r.columns for r in own]))
+        theta = bounded_fit(search.stepped(), bounds)
+        rows = _as_there(search.at(theta)[0], before, selection, equations, theta)
+        if all(a is b for a, b in zip(rows, search.last, strict=True)):
+            return FittedModel(bigger, model, rows, theta)
+        return FittedModel(bigger, model, rows, bounded_fit(rows, bounds))
+    rows = _as_there(own, before, selection, equations, start)
     return FittedModel(bigger, model, rows, bounded_fit(rows, bounds))
 
 
@@ -199,12 +207,8 @@ def settled(
     for _ in range(HALVES):
         rows, _ = search.at(theta)
         theta = (theta + weighted_fit(rows, [r.columns for r in rows])) / 2
-    for _ in range(WHOLES if search.least >= rigid else 0):
-        least, theta = search.least, search.theta
-        rows = search.linearised()
-        step = weighted_fit(rows, [r.columns for r in rows]) - theta
-        if not any(search.at(theta + step / 2**k)[1] < least for k in range(SHORTER + 1)):
-            break
+    if search.least >= rigid:
+        search.stepped()
     return search.rows, search.theta
 
 
@@ -217,6 +221,7 @@ class _Search:
         self.evaluator, self.model, self.train, self.known = evaluator, model, train, known
         self.rows: list[Rows] = []
         self.theta, self.least = np.zeros(0), np.inf
+        self.last: list[Rows] = []
 
     def at(self, theta: Array) -> tuple[list[Rows], float]:
         """Equations there, and their misfit."""
@@ -224,7 +229,18 @@ class _Search:
         left = misfit(rows, [r.columns for r in rows], theta)
         if not self.rows or left < self.least:
             self.rows, self.theta, self.least = rows, theta, left
+        self.last = rows
         return rows, left
+
+    def stepped(self) -> list[Rows]:
+        """Go on from the best by Gauss's and Newton's steps until none explains more; `linearised` there."""
+        for _ in range(WHOLES):
+            least, theta = self.least, self.theta
+            rows = self.linearised()
+            step = weighted_fit(rows, [r.columns for r in rows]) - theta
+            if not any(self.at(theta + step / 2**k)[1] < least for k in range(SHORTER + 1)):
+                return rows
+        return self.linearised()
 
     def linearised(self) -> list[Rows]:
         """Equations at the best, with what each unknown changes for its column."""

@@ -12,6 +12,7 @@ from modelgen.diagnosis.selection.history import (
     Ranked,
 )
 from modelgen.diagnosis.selection.marginality import lets_vary
+from modelgen.diagnosis.selection.pairs import paired, with_pair
 from modelgen.diagnosis.selection.refit_elastic import refit_elastic
 from modelgen.diagnosis.selection.stepwise import Report, forward_selection, needed_evidence, threshold
 
@@ -33,9 +34,11 @@ __all__ = [
     "forward_selection",
     "lets_vary",
     "needed_evidence",
+    "paired",
     "refit_elastic",
     "threshold",
     "together",
     "unseparated",
+    "with_pair",
     "with_trials",
 ]

@@ -28,7 +28,7 @@ def exchanged(causes: Sequence[Cause], equations: Equations) -> list[Cause] | No
         return None
     bare = System(equations)
     better: list[Cause] | None = None
-    most = _worth(causes, bare)
+    most = worth_of(causes, bare)
     for place, cause in enumerate(causes):
         best = better or causes
         held = best[place].trial
@@ -42,7 +42,7 @@ def exchanged(causes: Sequence[Cause], equations: Equations) -> list[Cause] | No
             tried = [replace(c) for c in best]
             tried[place].trial = trial
             refit(tried, equations)
-            found = _worth(tried, bare)
+            found = worth_of(tried, bare)
             if found > most:
                 rivals = [(t, behind) for t, behind in cause.rivals if t is not trial]
                 less = found - most + place_penalty(trial.candidate) - place_penalty(held.candidate)
@@ -51,6 +51,7 @@ def exchanged(causes: Sequence[Cause], equations: Equations) -> list[Cause] | No
     return better
 
 
-def _worth(causes: Sequence[Cause], bare: System) -> float:
+def worth_of(causes: Sequence[Cause], bare: System) -> float:
+    """Evidence of the causes together, less what speaks against their values and places beforehand."""
     charged = sum(c.trial.prior_penalty + place_penalty(c.trial.candidate) for c in causes)
     return together([c.trial for c in causes], bare) - charged

@@ -41,16 +41,22 @@ Report = Callable[[str, int, int], None]
 
 
 def forward_selection(
-    equations: Equations, pool: Sequence[Candidate], report: Report | None = None, where: Where = HERE
+    equations: Equations,
+    pool: Sequence[Candidate],
+    report: Report | None = None,
+    where: Where = HERE,
+    start: Selection | None = None,
 ) -> Selection:
     """Causes in the order in which they were found. where: processes among which candidates are shared.
+    start: to go on from, where something was found before.
 
     One cause after the other is chosen; then each gives its place to the rival with which all have more
     evidence; then those leave that the others have made superfluous.
     """
-    steps = _Steps(equations, pool, report, where)
+    steps = _Steps(equations, pool, report, where, start)
     limits = equations.thresholds.selection
-    for _ in range(max(limits.max_causes, limits.max_causes_per_joint * equations.n)):
+    most = max(limits.max_causes, limits.max_causes_per_joint * equations.n)
+    for _ in range(most - len(steps.causes)):
         if not steps.take():
             break
     steps.exchange()
@@ -62,14 +68,19 @@ class _Steps:
     """A selection on its way: the causes so far, the system with them, and what was asked at every step."""
 
     def __init__(
-        self, equations: Equations, pool: Sequence[Candidate], report: Report | None, where: Where
+        self,
+        equations: Equations,
+        pool: Sequence[Candidate],
+        report: Report | None,
+        where: Where,
+        start: Selection | None,
     ) -> None:
         self.pool, self.report, self.where = pool, report, where
-        self.causes: list[Cause] = []
-        self.system = System(equations)
+        self.causes: list[Cause] = [] if start is None else list(start.causes)
+        self.system = System(equations) if start is None else start.system
         self.evidence = threshold(self.system)
         self.known: Columns = {}
-        self.turns: History = []
+        self.turns: History = [] if start is None else list(start.turns)
         # errors of a known size: what they could feign is their price
         self.stepped = bool(repeating_errors(equations).any())
 
