@@ -23,7 +23,15 @@ from modelgen.diagnosis.candidates import Candidate, asked, at_motor, candidates
 from modelgen.diagnosis.equations import Band, Equations, feigned, harmless
 from modelgen.diagnosis.evidence import Endogeneity, endogeneity, mean_squares
 from modelgen.diagnosis.options import Options
-from modelgen.diagnosis.selection import SUSPECT, Selection, forward_selection, paired, with_pair
+from modelgen.diagnosis.selection import (
+    SUSPECT,
+    Selection,
+    doubtful_joints,
+    forward_selection,
+    paired,
+    with_pair,
+    with_rival,
+)
 from modelgen.jobs import Where
 from modelgen.numeric import Array
 
@@ -95,22 +103,29 @@ def in_pairs(
     progress: Progress | None,
     where: Where,
 ) -> tuple[Selection, list[Examined]]:
-    """The selection with its checks; with a pair of causes at a joint where that leaves fewer that fail them.
+    """The selection with its checks; with a pair of causes at a joint where that explains more by what makes
+    a rival none, or more and leaves fewer that fail a check. Where neither is ahead, each is a rival.
 
-    Steps that chose one cause after the other may have gone astray where a cause is a suspect.
+    Steps that chose one cause after the other may have gone astray where a cause is a suspect, or is one that
+    is confused with what follows the load.
     """
     every = examined(selection, equations)
-    joints = (e.cause.trial.candidate.joint for e in every if e.failed)
-    for joint in sorted({j for j in joints if j is not None}):
+    margin = equations.thresholds.selection.rival_margin_bic
+    for joint in doubtful_joints(selection.causes, [e.cause for e in every if e.failed], pool, equations):
         found = paired(selection.causes, joint, pool, equations, where)
-        if found is None:
+        if found is None or found[0] < -margin:
             continue
-        doubtful = [e.cause for e in every if e.failed]
-        start = with_pair(selection, found, doubtful, equations)
-        tried = forward_selection(equations, pool, progress, where, start)
-        checked = examined(tried, equations)
-        if sum(bool(e.failed) for e in checked) < sum(bool(e.failed) for e in every):
-            selection, every = tried, checked
+        ahead, causes = found
+        suspects = [e.cause for e in every if e.failed]
+        if ahead > 0.0:
+            start = with_pair(selection, causes, suspects, equations)
+            tried = forward_selection(equations, pool, progress, where, start)
+            checked = examined(tried, equations)
+            if ahead > margin or sum(bool(e.failed) for e in checked) < len(suspects):
+                selection, every = tried, checked
+                continue
+        selection = with_rival(selection, causes[-2:], ahead)
+        every = examined(selection, equations)
     return selection, every
 
 

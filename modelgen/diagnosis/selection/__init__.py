@@ -12,7 +12,7 @@ from modelgen.diagnosis.selection.history import (
     Ranked,
 )
 from modelgen.diagnosis.selection.marginality import lets_vary
-from modelgen.diagnosis.selection.pairs import paired, with_pair
+from modelgen.diagnosis.selection.pairs import doubtful_joints, paired, with_pair, with_rival
 from modelgen.diagnosis.selection.refit_elastic import refit_elastic
 from modelgen.diagnosis.selection.stepwise import Report, forward_selection, needed_evidence, threshold
 
@@ -31,6 +31,7 @@ __all__ = [
     "best_beside",
     "covariance_of",
     "deviations",
+    "doubtful_joints",
     "forward_selection",
     "lets_vary",
     "needed_evidence",
@@ -40,5 +41,6 @@ __all__ = [
     "together",
     "unseparated",
     "with_pair",
+    "with_rival",
     "with_trials",
 ]

@@ -29,7 +29,7 @@ from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.exchange import worth_of
 from modelgen.diagnosis.selection.history import best_of_each, ranked
 from modelgen.diagnosis.selection.refit import refit
-from modelgen.diagnosis.selection.refit_by_load import load_slopes, loaded
+from modelgen.diagnosis.selection.refit_by_load import follows_load, load_slopes, loaded
 from modelgen.diagnosis.selection.rivals import needed_behind
 from modelgen.jobs import Where
 from modelgen.regression.weighted import misfit, weighted_fit
@@ -37,11 +37,28 @@ from modelgen.regression.weighted import misfit, weighted_fit
 REFITTED = 3  # pairs of each, those that a first step says to explain most: a budget
 
 
+def doubtful_joints(
+    causes: Sequence[Cause], suspects: Sequence[Cause], pool: Sequence[Candidate], equations: Equations
+) -> list[int]:
+    """Joints (from 1) at which a pair may be there instead of the causes: where one of them is a suspect, or
+    people confuse it with what follows the load and is none of them.
+    """
+    loads = {c.place for c in pool if follows_load(c, equations)}
+    named = {c.trial.candidate.place for c in causes}
+    found = {c.trial.candidate.joint for c in suspects}
+    for cause in causes:
+        c = cause.trial.candidate
+        others = ((name, c.joint) for name in c.definition.confused_with)
+        if any(place in loads and place not in named for place in others):
+            found.add(c.joint)
+    return sorted(j for j in found if j is not None and any(joint == j for _, joint in loads))
+
+
 def paired(
     causes: Sequence[Cause], joint: int, pool: Sequence[Candidate], equations: Equations, where: Where
-) -> list[Cause] | None:
-    """The causes with the pair that explains most in the place of those at a joint (from 1); None where no
-    pair explains more than these. Further pairs are rivals of its second.
+) -> tuple[float, list[Cause]] | None:
+    """The causes with the pair that explains most in the place of those at a joint (from 1), and by how much
+    evidence that is ahead of these; None where there is none. Further pairs are rivals of its second.
     """
     kept = [c for c in causes if c.trial.candidate.joint != joint]
     taken = {c.trial.candidate.place for c in kept}
@@ -57,8 +74,6 @@ def paired(
         return None
     found.sort(key=lambda pair: -pair[0])
     most, best = found[0]
-    if most <= worth_of(causes, bare):
-        return None
     second, limits = best[-1].trial, equations.thresholds.selection
     others = [(tried[-1].trial, most - worth) for worth, tried in found[1:]]
     rivals = [
@@ -66,7 +81,22 @@ def paired(
         for t, behind in others
         if t.candidate.place != second.candidate.place and behind <= needed_behind(second, t, limits)
     ]
-    return [*best[:-1], replace(best[-1], rivals=rivals)]
+    return most - worth_of(causes, bare), [*best[:-1], replace(best[-1], rivals=rivals)]
+
+
+def with_rival(selection: Selection, pair: Sequence[Cause], ahead: float) -> Selection:
+    """The selection where what follows the load, the first of a pair, is a rival of the cause that people
+    confuse it with. ahead: of the pair, in evidence.
+    """
+    first = pair[0].trial
+    causes = [
+        replace(c, rivals=[*c.rivals, (first, max(0.0, -ahead))])
+        if first.candidate.effect in c.trial.candidate.definition.confused_with
+        and c.trial.candidate.joint == first.candidate.joint
+        else c
+        for c in selection.causes
+    ]
+    return replace(selection, causes=causes)
 
 
 def with_pair(

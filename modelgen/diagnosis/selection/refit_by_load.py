@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from modelgen.diagnosis.candidates import (
+    Candidate,
     FittedCandidate,
     candidate_columns,
     columns_at_rows,
@@ -42,7 +43,7 @@ def refit_by_load(causes: Sequence[Cause], equations: Equations) -> None:
     places = [k for k, t in enumerate(trials) if loaded(t, equations)]
     if not places:
         return
-    theta = weighted_fit(rows, with_causes(equations, trials))
+    theta = _bounded(weighted_fit(rows, with_causes(equations, trials)), trials, own)
     start = _anew(trials, places, theta, equations)
     if start is None:
         return
@@ -82,7 +83,12 @@ def refit_by_load(causes: Sequence[Cause], equations: Equations) -> None:
 
 def loaded(trial: FittedCandidate, equations: Equations) -> bool:
     """Whether a cause's columns follow the load, which is made by the arm's parameters."""
-    c = trial.candidate
+    return follows_load(trial.candidate, equations)
+
+
+def follows_load(candidate: Candidate, equations: Equations) -> bool:
+    """Whether columns of a candidate follow the load, as of `loaded`."""
+    c = candidate
     return not (c.elastic or c.curved or unchanging(c, equations.evaluator))
 
 
@@ -90,6 +96,14 @@ def _values(trials: Sequence[FittedCandidate], theta: Array, own: int) -> list[A
     """Values of each trial's columns, of theta (own unknowns, then these)."""
     ends = np.cumsum([own, *(t.columns[0].shape[2] for t in trials)])
     return [theta[begin:end] for begin, end in pairwise(ends)]
+
+
+def _bounded(theta: Array, trials: Sequence[FittedCandidate], own: int) -> Array:
+    """Unknowns and values to begin at: with the load of a fit that lacks what carries part of it, what may not
+    be negative often is.
+    """
+    positive = [np.zeros(own, dtype=bool), *(np.array(t.candidate.positive, dtype=bool) for t in trials)]
+    return np.asarray(np.where(np.concatenate(positive) & (theta < 0.0), 0.0, theta))
 
 
 def _anew(
