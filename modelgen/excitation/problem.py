@@ -12,12 +12,12 @@ import numpy as np
 
 from modelgen.backends.casadi.function import casadi_function
 from modelgen.description import Arm
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, applied_effects
 from modelgen.errors import InputError
 from modelgen.excitation.fourier import Basis, basis
 from modelgen.excitation.limits import Bound, bounds, ranges, speeds
-from modelgen.functions import EVALUATED, build_model
-from modelgen.functions.nominal import nominal_base
+from modelgen.functions import EVALUATED, Model, build_model, grouped
+from modelgen.functions.nominal import nominal_base, nominal_links
 from modelgen.numeric import Array
 from modelgen.options import Box, ExcitationOptions
 
@@ -139,8 +139,38 @@ class _Functions:
     nominal: bool
 
 
-def _functions(arm: Arm, limits: Sequence[Bound], settings: ExcitationOptions) -> _Functions:
+def _weighed(arm: Arm) -> Model:
+    """The model, without friction by the load where nobody knows what the links weigh."""
     model = build_model(arm, EVALUATED)
+    loaded = {(e.effect.name, e.joint) for e in applied_effects(arm) if e.depends_on("load")}
+    if not loaded or _weights(model):
+        return model
+    joints = tuple(
+        replace(joint, effects=tuple(use for use in joint.effects if (use.name, k) not in loaded))
+        for k, joint in enumerate(arm.joints)
+    )
+    return build_model(replace(arm, joints=joints), EVALUATED)
+
+
+def _nominal(model: Model) -> list[float]:
+    """Nominal base parameters; none where the description does not give them."""
+    try:
+        return list(nominal_base(model).values())
+    except InputError:
+        return []
+
+
+def _weights(model: Model) -> list[float]:
+    """Base parameters of the nominal links alone; none where the description does not give them."""
+    try:
+        known = nominal_links(model.arm)
+    except InputError:
+        return []
+    return list(grouped(model, [known.get(p.name, 0.0) for p in model.standard]).values())
+
+
+def _functions(arm: Arm, limits: Sequence[Bound], settings: ExcitationOptions) -> _Functions:
+    model = _weighed(arm)
     if model.states:
         raise InputError(
             f"{arm.name}: its effects have states ({', '.join(model.states)}), which depend on the past; "
@@ -158,12 +188,11 @@ def _functions(arm: Arm, limits: Sequence[Bound], settings: ExcitationOptions) -
         motor = casadi_function(made["motor_from_joint"]).call([q, dq, ddq])
     arguments = {"q": q, "dq": dq, "ddq": ddq}
     regressor = casadi_function(made["regressor"])
+    nominal = _nominal(model)
+    if "load" in regressor.name_in():
+        arguments["load"] = casadi_function(made["load"])(q, _weights(model))
     y = regressor(*(arguments[name] for name in regressor.name_in()))
     values = {**arguments, "qm": motor[0], "dqm": motor[1], "ddqm": motor[2]}
-    try:
-        nominal = list(nominal_base(model).values())
-    except InputError:
-        nominal = []
     values["input"] = y @ ca.DM(nominal) if nominal else ca.SX.nan(n)
     values["effort"] = values["input"] * casadi_function(made["drive_gain"])(q)
     rows, names = [], []

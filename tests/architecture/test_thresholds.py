@@ -90,6 +90,7 @@ CONSTANTS = {
     },
     "selection/deviations.py": {"STEP": ACCURACY, "LEAST": ACCURACY, "OPEN": ROUNDING},
     "selection/refit.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "WORSE": ROUNDING},
+    "selection/pairs.py": {"REFITTED": BUDGET},
     "selection/refit_by_load.py": {
         "TURNS": BUDGET,
         "HALVINGS": BUDGET,

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.cli.app import app
 from modelgen.description import Limits
+from modelgen.description.objects import EffectUse
 from modelgen.errors import InputError
 from modelgen.excitation import Excitation, determined, excite, random_conditions
 from modelgen.functions.nominal import nominal_base
@@ -241,3 +242,23 @@ def test_so_many_periods_determine_it_better() -> None:
     assert worst.share / np.sqrt(periods) <= worst.share / 3.3 < worst.share / np.sqrt(periods - 1)
     assert worst.periods(2.0 * worst.share) == 1
     assert replace(worst, share=None, size=2.5).periods(1.0) == 7
+
+
+@pytest.mark.parametrize("weighed", [True, False])
+def test_friction_by_the_load_asks_for_no_more_than_the_links_weight(weighed: bool) -> None:
+    """Its column follows the nominal links; where none are given it has none, and the others are shown."""
+    arm = ARMS["rx90"]
+    first = arm.coordinates[1]
+    friction = EffectUse("load_dependent_friction", {"coefficient": 0.05})
+    joint = replace(arm.joints[first], effects=(*arm.joints[first].effects, friction))
+    joints = tuple(joint if k == first else j for k, j in enumerate(arm.joints))
+    links = arm.links if weighed else (None,) * len(arm.links)
+    bare, loaded = (
+        excite(
+            replace(arm, joints=x, links=links),
+            replace(PAPER, velocity=1.0, period=5.0, starts=1, iterations=1),
+        )
+        for x in (arm.joints, joints)
+    )
+    assert np.isfinite(loaded.condition)
+    assert (loaded.condition == bare.condition) == (not weighed)

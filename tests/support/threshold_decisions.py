@@ -24,7 +24,7 @@ from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms
 from modelgen.diagnosis.candidates import FittedCandidate, candidates
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.search import Search
-from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.equations import Equations, Unknowns
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.experiment import experiment, next_experiment, setup
 from modelgen.diagnosis.experiment.discrimination import Discriminator, hypothesis
@@ -32,7 +32,7 @@ from modelgen.diagnosis.experiment.trajectory import as_run
 from modelgen.diagnosis.extended import drive_inertia, extended_model
 from modelgen.diagnosis.extended.uncertainty import cause_estimates
 from modelgen.diagnosis.options import Thresholds
-from modelgen.diagnosis.selection import stepwise
+from modelgen.diagnosis.selection import deviations, stepwise
 from modelgen.diagnosis.selection.backward import backward_elimination
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.history import Ranked
@@ -118,7 +118,7 @@ def of_all_joints(limits: Thresholds) -> Any:
     pairs = {None: Judgement(5.0, 5.0, ""), 1: Judgement(10.0, 10.0, "")}
     trials = [valued(90.0, joint=joint) for joint in pairs]
     equations = real(limits)
-    steps = stepwise._Steps(equations, [], None, HERE)
+    steps = stepwise._Steps(equations, [], None, HERE, None)
     asked = SimpleNamespace(judged=lambda t: pairs[t.candidate.joint])
     with patch.object(stepwise, "harmless", return_value=True):
         return [by.refused for _, by in steps._judged(trials, asked)]  # type: ignore[arg-type]
@@ -247,7 +247,10 @@ def claimed(limits: Thresholds) -> Any:
     equations = known(limits)
     trial = law(equations, constant, "payload_change")
     trial = replace(trial, candidate=replace(trial.candidate, part=("mass",)))
-    described = replace(equations, evaluator=SimpleNamespace(arm=ARM))
+    own = Unknowns(np.zeros(2), np.eye(2))
+    rows = [replace(r, baseline=own) for r in equations.rows]
+    described = replace(equations, rows=rows, evaluator=SimpleNamespace(arm=ARM))
+    equations = equations.with_rows(rows)
     return significant(0, selected(equations, trial), described).passed
 
 
@@ -278,7 +281,9 @@ def determined(limits: Thresholds) -> Any:
     trial = next(c for c in candidates(equations) if c.place == ("stribeck_friction", 1))
     found = Search(System(equations)).trial(trial)
     assert found is not None
-    (estimates,) = cause_estimates(selected(equations, found), equations)
+    selection = selected(equations, found)
+    spread = deviations(selection, equations)
+    (estimates,) = cause_estimates(selection, equations, spread)
     return {name: bool(np.isfinite(estimate.std)) for name, estimate in estimates.items()}
 
 

@@ -99,8 +99,8 @@ def _values(trials: Sequence[FittedCandidate], theta: Array, own: int) -> list[A
 
 
 def _bounded(theta: Array, trials: Sequence[FittedCandidate], own: int) -> Array:
-    """Unknowns and values to begin at: with the load of a fit that lacks what carries part of it, what may not
-    be negative often is.
+    """Unknowns and values to begin at: beside a load that something else carries in part, what may not be
+    negative often is.
     """
     positive = [np.zeros(own, dtype=bool), *(np.array(t.candidate.positive, dtype=bool) for t in trials)]
     return np.asarray(np.where(np.concatenate(positive) & (theta < 0.0), 0.0, theta))
