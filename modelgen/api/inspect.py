@@ -13,10 +13,10 @@ from modelgen.api.results import Shown, Table
 from modelgen.dataset import Record, read
 from modelgen.dataset.inspection import Channel, Inspected, inspect, inspection_svg, skeleton
 from modelgen.dataset.processing.instants import EffortInstant
+from modelgen.dataset.processing.stamps import EVEN, strayed
 from modelgen.description import Arm
 from modelgen.identification.effort_instant import effort_instant
 
-_ROUNDING = 1e-6  # of a period: what is left of stamps in decimal digits
 _GUESSED = "?: guessed from names and sizes; the arm's description settles units, and which joints slide"
 
 
@@ -147,8 +147,7 @@ class Inspection(Shown):
         x = self.found
         if math.isnan(x.rate):
             return f"{x.name}: {len(x.channels)} columns, no time t that runs"
-        varies = f"time between samples varies by up to {x.jitter:z.2g} of the sampling period"
-        jitter = "evenly sampled" if x.jitter < _ROUNDING else varies
+        jitter = "evenly sampled" if x.jitter < EVEN else strayed(x.jitter)
         time = f"{x.samples} samples from {x.begin:z.6g} s to {x.end:z.6g} s at {x.rate:z.6g} Hz"
         return f"{x.name}: {time}, {jitter}"
 

@@ -59,9 +59,10 @@ def overview(rows: Sequence[Row], again: str = "") -> str:
         answers.append(("What it is worth", [Text(worth)]))
     answers.append(("What to look at next", list(_next(rows, again))))
     minutes = sum(row.get("cpu_seconds") or 0.0 for row in rows) / 60
+    time = f"s: by the clock, beside other units; {minutes:z.3g} min of processor time."
     units = [
         Units([_row(row) for row in rows]),
-        Text(f"{_READING} {minutes:z.3g} min of processor time.", "quiet"),
+        Text(f"{_READING} {time}", "quiet"),
     ]
     arms = listed(f"{name}" for name in dict.fromkeys(row["arm"] for row in rows) if name)
     count = f"{len(rows)} unit{'' if len(rows) == 1 else 's'}"

@@ -66,7 +66,9 @@ class Fleet(Shown):
             [c["effect"], c["joint_name"] or "the whole arm", str(c["units"])] for c in said["causes"][:SHOWN]
         ]
         columns = {"cause": "left", "joint": "left", "units": "right"}
-        tables = [Table("", columns, rows)] if rows else []
+        left = len(said["causes"]) - len(rows)
+        tables: list[str | Table] = [Table("", columns, rows)] if rows else []
+        tables += [f"{left} more cause{'' if left == 1 else 's'}: see the overview"] if left else []
         return [repr(self), *tables, f"table: {said['table']}", f"overview: {said['overview']}"]
 
     def __repr__(self) -> str:

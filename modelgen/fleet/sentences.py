@@ -65,7 +65,7 @@ def _begun(text: str) -> str:
 
 def _missing(what: Sequence[str]) -> str:
     """What is named or suspected, in words; the first of many."""
-    more = [f"{len(what) - _CAUSES} more are named below"] if what[_CAUSES:] else []
+    more = [f"{len(what) - _CAUSES} more, in the table"] if what[_CAUSES:] else []
     return listed([*(_words(title) for title in what[:_CAUSES]), *more])
 
 

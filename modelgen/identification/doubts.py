@@ -25,6 +25,7 @@ ALONE = 0.8  # of the power of what differs, that another size of one link expla
 NOTABLE = 0.02  # of the largest weight at a joint [N m, N], below which that at another is not compared
 WORSE = 3.0  # times the error of what was fitted, from which on that of the test records is asked about
 LARGE = 10.0  # % of the effort, likewise
+NOTHING = 100.0  # % of the effort, which a model that predicts zero misses
 LINK = ("XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M")
 
 
@@ -87,12 +88,21 @@ def worse_on_test(found: Identification, train: Sequence[Prepared]) -> list[str]
     test = found.test
     if test is None or not np.all(np.isfinite(found.solution.sigma)):
         return []
-    names, said = found.arm.coordinate_names, []
+    names, said = found.arm.coordinate_names, list[str]()
     for j, name in enumerate(names):
         gain = 1.0 if train[0].gain is None else float(np.sqrt(np.mean(train[0].gain[:, j] ** 2)))
         fitted = float(found.solution.sigma[j]) * gain
         times = float(test.rmse[j]) / max(fitted, 1e-300)
-        if times > WORSE and test.nrmse_percent[j] > LARGE:
+        if test.nrmse_percent[j] > NOTHING:
+            said.append(
+                Impossible(
+                    f"Impossible: the error at {name} is {test.nrmse_percent[j]:.0f} % of its effort on the "
+                    "test records, more than that of no model at all. Are they of the same arm, read alike, "
+                    "and do the training records move that joint?",
+                    [name],
+                )
+            )
+        elif times > WORSE and test.nrmse_percent[j] > LARGE:
             said.append(
                 f"The error at {name} is {test.nrmse_percent[j]:.0f} % of its effort on the test records, "
                 f"{times:.0f} times what it is on those fitted: are they of the same arm, read alike, and "

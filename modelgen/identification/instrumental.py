@@ -29,7 +29,8 @@ FEWEST = 10  # rows with a partner, per parameter
 class Comparison:
     """Least squares beside instrumental variables.
 
-    solution: by instruments. statistic: chi-squared with `degrees` where least squares is not biased.
+    solution: by instruments. statistic: chi-squared with `degrees` where least squares is not biased. weak:
+    the instruments say too little, so that the test records are predicted far worse by it.
     """
 
     solution: Solution
@@ -37,6 +38,7 @@ class Comparison:
     degrees: int
     threshold: float
     simulated: bool = False  # whether the instruments are of a simulation
+    weak: bool = False
 
     @property
     def biased(self) -> bool:

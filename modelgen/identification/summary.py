@@ -83,7 +83,7 @@ def biased(found: Identification) -> bool:
     Without a test record nothing says what matters: what is clear counts.
     """
     both, test = found.comparison, found.test
-    if both is None or not both.biased:
+    if both is None or not both.biased or both.weak:
         return False
     if test is None or test.sizes is None or found.method == "iv":
         return True

@@ -6,18 +6,22 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline, interp1d
 
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.filters import row_autocorrelation
-from modelgen.dataset.processing.periods import noise_of, period_of, rows_in
+from modelgen.dataset.processing.periods import period_of, rows_in
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
-from modelgen.identification.objects import Validation
+from modelgen.identification.objects import Identification, Validation
 from modelgen.identification.rows import Rows, motion_of
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
+FAR_WORSE = 1.5  # times the error of least squares: bias would be the lesser evil
+AROUND = 2.0  # samples, by which the period may be off that a record is said to have
 LAGS = 13  # rows after which filtered noise hangs together no more
 
 
@@ -74,15 +78,42 @@ def with_repeats(found: Validation, records: Sequence[Prepared]) -> Validation:
     """The validation with the noise of its records, where they repeat: what differs between their periods."""
     wrong = found.measured - found.predicted
     flags = np.ones_like(wrong, dtype=bool) if found.judged is None else found.judged
-    ends, periods = np.cumsum([len(p.t) for p in records])[:-1], [rows_in_period(p) for p in records]
-    parts = list(zip(np.split(wrong, ends), np.split(flags, ends), periods, strict=True))
+    ends = np.cumsum([len(p.t) for p in records])[:-1]
+    parts = list(zip(records, np.split(wrong, ends), np.split(flags, ends), strict=True))
     noise = []
     for j in range(wrong.shape[1]):
-        own = [noise_of(e[:, j], m[:, j], rows) for e, m, rows in parts if rows is not None]
-        squares = sum(float((values**2).sum()) for values, _ in own)
-        count = sum(int(there.sum()) for _, there in own)
-        noise.append(np.sqrt(squares / count) if count else np.nan)
+        own = [x for p, e, m in parts for x in _between_periods(p, e[:, j], m[:, j])]
+        noise.append(np.sqrt(np.mean(np.concatenate(own) ** 2) / 2.0) if own else np.nan)
     return replace(found, repeats=np.array(noise))
+
+
+def _between_periods(p: Prepared, errors: Array, judged: NDArray[np.bool_]) -> list[Array]:
+    """Differences of the errors (M,) from those a period later, where both are judged; none where nothing
+    repeats.
+
+    A period need be no whole number of rows, nor known better than to a few samples.
+    """
+    period = period_of(p.record, None)
+    if period is None:
+        return []
+    later, there = CubicSpline(p.t, errors), interp1d(p.t, judged.astype(float), bounds_error=False)
+    found = list[Array]()
+    for shift in period + np.arange(-AROUND, AROUND + 0.25, 0.5):
+        at = p.t + shift * p.record.step
+        both = judged & (np.nan_to_num(there(at)) == 1.0)
+        if both.any():
+            found.append(later(at[both]) - errors[both])
+    return [min(found, key=lambda x: float(np.mean(x**2)))] if found else []
+
+
+def held_against(found: Identification, test: Sequence[Prepared], evaluator: Evaluator) -> Identification:
+    """The identification; its estimate by instruments is weak where it predicts test records far worse."""
+    both, own = found.comparison, found.test
+    if both is None or own is None or not both.biased or found.method == "iv":
+        return found
+    other = validate(evaluator, found.model, test, both.solution.theta)
+    weak = bool((other.rmse > FAR_WORSE * own.rmse).any())
+    return replace(found, comparison=replace(both, weak=weak))
 
 
 def rows_in_period(p: Prepared) -> int | None:

@@ -7,6 +7,8 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+import numpy as np
+
 from modelgen.charts import sheet
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.call import Call
@@ -165,7 +167,11 @@ def _fit(percent: float) -> str:
 
 
 def _files(d: Diagnosis) -> list[Part]:
-    values = [(name, f"{e.value:z.6g}", f"{e.std:z.2g}", e.unit) for name, e in d.parameters.items()]
+    known = "held" if d.free else "not known"  # what the records do not show
+    values = [
+        (name, f"{e.value:z.6g}", known if np.isnan(e.std) else f"{e.std:z.2g}", e.unit)
+        for name, e in d.parameters.items()
+    ]
     settings = [(_SETTINGS.get(name, name), _said(value)) for name, value in d.settings.items()]
     extended, identified = f"{d.arm.name}_extended.yaml", f"{d.arm.name}_parameters.yaml"
     beside = [

@@ -12,6 +12,7 @@ from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.call import Call
 from modelgen.report.cause_parts import marks
 from modelgen.report.diagnosis_sentences import (
+    SWINGING,
     beside,
     by_worth,
     cause_title,
@@ -98,6 +99,8 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
         yield Text([Run(_passed(d.causes)), *_doubted(d)])
     if len(d.causes) == 1 and doubted(d):
         yield Text(_doubted(d))
+    if d.free and d.causes:
+        yield Text(SWINGING, "quiet")
     if rival := near(d):
         yield Text(rival)
     suspects = [_suspect(d, k) for k in range(len(d.suspects))]
@@ -139,7 +142,7 @@ def _suspect(d: Diagnosis, k: int) -> list[Part]:
     c = d.suspects[k]
     title = cause_title(d, c)
     checks = listed(x.name for x in c.checks if x.decides and x.passed is False)
-    text = f"{suspected(d, c)}{title} has evidence, and is not named for it failed {checks}."
+    text = f"{suspected(d, c)}{title} has evidence, and is not named: it failed {checks}."
     return [Text(text), marks(c, f"suspect{k}")]
 
 
@@ -180,7 +183,7 @@ def _erring(d: Diagnosis) -> str:
     size = (
         f"{number(before[j])} {d.errors.unit}"
         if efforts is None
-        else f"{100.0 * known[j]:z.2g} % of the effort"
+        else f"{number(100.0 * known[j], 2)} % of the effort"
     )
     most = "" if len(before) == 1 else ", its largest error"
     return f"No cause is named. The model as described errs on the test record by {size} at {names[j]}{most}."

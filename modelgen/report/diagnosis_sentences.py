@@ -18,7 +18,7 @@ _SENTENCES = {
     "cannot_tell": "These records cannot tell.",
 }
 _TITLES = 2  # suspects that are all in the headline, in words
-_SWINGING = (
+SWINGING = (
     "A swing shows ratios alone: masses, centres of mass and inertia are those of the description. Where "
     "these are wrong, the difference looks like a spring or like friction."
 )
@@ -258,7 +258,7 @@ def assumptions(d: Diagnosis) -> list[str]:
         for drive in d.after.model.grouping.drives
         if drive.nominal is None and (k := d.arm.coordinates.index(drive.joint) + 1) in compliant
     ]
-    links = [_SWINGING] if d.free else []
+    links = [SWINGING] if d.free else []
     return links + used + unknown + list(d.doubts)
 
 

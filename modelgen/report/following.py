@@ -38,7 +38,7 @@ _RELEASES = {
     "suspected": "Release the arm from other angles and add these logs to the training records.",
 }
 _COARSE = (
-    "Use finer encoders; else record a motion that is faster and goes farther, beside which their steps are "
+    "Use finer encoders; else record a motion that goes farther, or is faster, beside which their steps are "
     "smaller."
 )
 _REMAINS = (
@@ -170,7 +170,9 @@ def replaying(d: Diagnosis, call: Call) -> list[Step]:
     if worse:
         reduced, folder = reduced_name(d), f"{REDUCED}/"
         description, name = (call.beside(reduced), "") if reduced else (call.description, d.arm.name)
-        text = f"Once that is fitted, it against {against}"
+        text = f"Once that is fitted, compare it with {against}"
+    elif no_arm(d):
+        folder, text = f"{POSSIBLE}/", f"Once that is fitted, compare it with {against}"
     words = ["--parameters", call.beside(f"{folder}{d.arm.name}_parameters.yaml")]
     words += [word for log in call.test for word in ("--log", log)]
     words += words_of(call.options, ("mapping",))
@@ -230,4 +232,5 @@ def asked_next(d: Diagnosis, call: Call) -> tuple[str, Step]:
     speeds = np.abs(p.picked(p.dq)).max(axis=0).tolist()
     description = _described(d, call)
     excite = call.exciting(call.beside("trajectory.csv"), speeds, description)
-    return text, Step(f"{text} This computes one, {WHERE}:" if excite else text, excite)
+    one = "one that goes farther" if coarse else "one"
+    return text, Step(f"{text} This computes {one}, {WHERE}:" if excite else text, excite)

@@ -12,6 +12,7 @@ from modelgen.charts import Chart, Curve, Interval, number, over_time, sheet
 from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
 from modelgen.identification.summary import biased, determined, helpful, impossible, questions, remarks
+from modelgen.identification.unexplained import FAR
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.options import words_of
@@ -191,16 +192,34 @@ def following(found: Identification, call: Call, speeds: Sequence[float]) -> lis
             Command(again),
         ]
     parts: list[Any] = [Text(f"{call.first}{_EXPLAIN}")] if wrong else code
-    diagnose = call.diagnosing()
+    diagnose, far = call.diagnosing(), "" if found.test is None else _above_noise(found.test, found)
     if found.test is not None and diagnose:
-        parts += [
-            Text(_EXPLAINED if wrong else _LACKING),
-            Command(diagnose),
-        ]
+        if far and not wrong:
+            code = [
+                Text("For the values as they are: generate code with these folded in:"),
+                Command(generate),
+            ]
+            parts = [Text(f"{call.first}{far}"), Command(diagnose), *code]
+        else:
+            parts += [Text(_EXPLAINED if wrong else _LACKING), Command(diagnose)]
     excite = call.exciting(call.beside("trajectory.csv"), speeds)
     if found.poor() and excite:
         parts += [Text("A motion that determines the parameters better:"), Command(excite)]
     return parts
+
+
+def _above_noise(test: Validation, found: Identification) -> str:
+    """By how much the error is larger than the noise where the model clearly lacks something; else empty."""
+    if test.repeats is None:
+        return ""
+    times = np.nan_to_num(test.rmse / np.maximum(test.repeats, 1e-300))
+    j = int(np.argmax(times))
+    if times[j] < FAR:
+        return ""
+    where = found.arm.coordinate_names[j]
+    return (
+        f"The error at {where} is {times[j]:.0f} times the noise: the model lacks something. This names it:"
+    )
 
 
 def _parameters(found: Identification) -> list[Any]:

@@ -6,7 +6,7 @@ from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects.placement import titled
 from modelgen.report.diagnosis_sentences import cause_title, checked, perhaps
-from modelgen.report.words import listed, sentence
+from modelgen.report.words import sentence
 
 
 def suspicions(d: Diagnosis) -> list[str]:
@@ -53,6 +53,6 @@ def near(d: Diagnosis) -> str:
     for c in d.causes:
         if c.ambiguous_with:
             effect, joint, behind = min(c.ambiguous_with, key=lambda other: other[2])
-            own = f" as {cause_title(d, c)}" if len(d.causes) > 1 else ""
+            own = f" instead of {cause_title(d, c)}" if len(d.causes) > 1 else ""
             said.append(f"{titled(d.arm, effect, joint)}{own}, {behind:z.1f} of delta BIC behind")
-    return sentence(f"nearly as good is {listed(said)}") if said else ""
+    return sentence(f"nearly as good: {'; '.join(said)}") if said else ""

@@ -74,7 +74,7 @@ def test_time_that_jitters_and_runs_backwards_is_said(log: dict[str, np.ndarray]
     t[500] = t[498]
     found = mg.inspect_log({"t": t, "q1": log["q1"]})
     assert found.to_json()["backwards"] == 1
-    assert "varies by up to 2 of the sampling period" in repr(found)
+    assert "varies by up to 2 sampling periods" in repr(found)
     assert found.jitter == pytest.approx(2.0)  # from 498 to 500 and on to 501
     found = mg.inspect_log({"t": np.delete(log["t"], [100, 101]), "q1": np.delete(log["q1"], [100, 101])})
     assert found.jitter == pytest.approx(2.0)

@@ -236,7 +236,10 @@ def test_one_choice_serves_several_records(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        (Settings(cutoff=120.0), "found the cut-off 120 Hz, expected one below half the rate, 100 Hz"),
+        (
+            Settings(cutoff=120.0),
+            "found the cut-off 120 Hz, expected one above 0 and below half the rate, 100 Hz",
+        ),
         (Settings(cutoff=5.0, position_cutoff=-1.0), "found the position cut-off -1 Hz"),
         (Settings(cutoff=0.2), "too short a record: with the cut-off 0.2 Hz only"),
         (Settings(rest_gate=(0.1, 0.1, 0.1)), "found 3 rest thresholds, expected one or 2"),

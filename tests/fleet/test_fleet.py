@@ -417,7 +417,7 @@ def test_of_many_causes_the_first_are_said_in_words() -> None:
         "`u3` differs: it lacks nothing that its records could show.",
     ]
     (said,) = differences(rows_of("suspected", "u1", suspects=many, failed_checks=[["form"]] * 5))
-    assert said.endswith("a spring acts at wrist and 2 more are named below.")
+    assert said.endswith("a spring acts at wrist and 2 more, in the table.")
     assert differences(rows_of("suspected", "u1", suspects=many[4:])) == ["In `u1` perhaps made_up at j."]
 
 

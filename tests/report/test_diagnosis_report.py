@@ -671,7 +671,7 @@ def test_what_is_suspected_is_no_fact_and_has_a_next_step(found: Diagnosis, tmp_
         assert box["y"] + box["height"] < 900
     assert "modelgen excite" in said
     assert sentence(finding(d.arm, "stribeck_friction", 2, d.suspects[0].parameters)) not in said
-    assert "has evidence, and is not named for it failed form" in said
+    assert "has evidence, and is not named: it failed form" in said
 
 
 def test_no_code_is_made_of_values_that_no_arm_has(found: Diagnosis) -> None:

@@ -165,8 +165,8 @@ def _check(record: Record, cutoff: float, position_cutoff: float) -> None:
     for name, value in (("cut-off", cutoff), ("position cut-off", position_cutoff)):
         if not 0.0 <= value < 0.5 * rate:
             raise InputError(
-                f"{record.name}: found the {name} {value:g} Hz, expected one below half the rate, "
-                f"{0.5 * rate:.6g} Hz"
+                f"{record.name}: found the {name} {value:g} Hz, expected one above 0 and below half the "
+                f"rate, {0.5 * rate:.6g} Hz"
             )
 
 

@@ -7,6 +7,8 @@ import numpy as np
 from modelgen.dataset.thresholds import DatasetThresholds
 from modelgen.numeric import Array
 
+EVEN = 1e-6  # of a period: what is left of stamps in decimal digits
+
 
 def true_stamps(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[Array, str | None]:
     """Stamps (N,) [s], or evenly spaced ones where the positions (N, n) say so; a remark on that.
@@ -34,6 +36,12 @@ def true_stamps(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[
     else:
         return t, None
     return even, f"{said}: samples count as evenly spaced, at {1 / period:.6g} Hz"
+
+
+def strayed(jitter: float) -> str:
+    """How far the time between samples strays from the period, in words. jitter: of the period."""
+    much = f"{jitter:.2g} sampling periods" if jitter >= 1.0 else f"{jitter:.2g} of the sampling period"
+    return f"time between samples varies by up to {much}"
 
 
 def roughness(t: Array, positions: Array) -> float:

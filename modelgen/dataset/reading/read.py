@@ -12,7 +12,7 @@ import numpy as np
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.resampling import held_resampled, smooth_resampled
 from modelgen.dataset.processing.rounding import LONGEST, resolution
-from modelgen.dataset.processing.stamps import true_stamps
+from modelgen.dataset.processing.stamps import EVEN, strayed, true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.column_table import Log
@@ -214,8 +214,9 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     remarks = [*source.remarks, *left, *(x for x in (jump, lost) if x)]
     if axis.method != "none":
         remarks.append(
-            f"time between samples varies by up to {axis.jitter:.2g} of the sampling period: "
-            f"resampled at {1 / axis.step:.6g} Hz"
+            f"{file}: {strayed(axis.jitter)}: resampled at {1 / axis.step:.6g} Hz"
+            if axis.jitter >= EVEN
+            else f"{file}: resampled at {1 / axis.step:.6g} Hz"
         )
     doubt = doubtful_unit(axis.step, limits)
     if doubt and not source.timed:

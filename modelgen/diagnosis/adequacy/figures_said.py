@@ -15,6 +15,7 @@ from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
 
 FREE_FUNCTION = "a free function"
+_CLEAR = 2.0  # standard deviations
 HARDLY = 1e-4  # a share beneath which its figure says no more
 
 
@@ -52,11 +53,18 @@ def significance(
         found = cause.candidate.definition.above_zero(arm, {n: values[n] for n in known}, known)
         what = f"its {' and '.join(names)} differs by {number(found)} standard deviations"
         return found, f"{what} from that of an arm without it"
-    text = "its parameters count together, by the evidence, not each alone"
     sizes = [abs(values[name]) / std for name, std in known.items() if name in cause.candidate.names]
+    one = len(cause.candidate.names) == 1
+    text = "not asked, its evidence counts" if one else "not asked of each, their evidence counts together"
     if not sizes:
         return float("nan"), text
-    return max(sizes), f"{text}; the clearest is {number(max(sizes))} standard deviations from zero"
+    largest = number(max(sizes))
+    if one:
+        name = cause.candidate.names[0]
+        return max(sizes), f"{text}; its {name} is {largest} standard deviations from zero"
+    text = f"{text}; the clearest of its parameters is {largest} standard deviations from zero"
+    alone = "" if max(sizes) >= _CLEAR else ": what they make together is known, none of them by itself"
+    return max(sizes), f"{text}{alone}"
 
 
 def range_said(low: float, high: float) -> str:

@@ -76,7 +76,7 @@ class LeverGeometry(DescriptionEffect):
     overlooked = (5.0, 0.03)  # m, by which a length between pivots may be off however short it is
     confused_with = ("encoder_offset", "position_dependent_friction", "actuator_mass")
     reading = Reading("the lever's lengths, to 0.5 mm", ("l1", "l2", "length"), 5e-4)
-    experiment = "`modelgen calibrate`, or static holds over the whole stroke"
+    experiment = "a calibration of the lever (modelgen calibrate), or static holds over the whole stroke"
     shown = at(l2=0.001)
 
     @classmethod
