@@ -15,7 +15,7 @@ from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model, grouped
 from modelgen.functions.nominal import nominal_links
 from modelgen.identification.impossible import CLEARLY
-from modelgen.identification.objects import DIAGNOSING, Doubt, Identification, Impossible
+from modelgen.identification.objects import DIAGNOSING, Doubt, Identification, Impossible, WorseThanNone
 from modelgen.numeric import Array
 
 POSES = 60  # of the records, at which inertia and weight are looked at
@@ -94,14 +94,12 @@ def worse_on_test(found: Identification, train: Sequence[Prepared]) -> list[str]
         fitted = float(found.solution.sigma[j]) * gain
         times = float(test.rmse[j]) / max(fitted, 1e-300)
         if test.nrmse_percent[j] > NOTHING:
-            said.append(
-                Impossible(
-                    f"Impossible: the error at {name} is {test.nrmse_percent[j]:.0f} % of its effort on the "
-                    "test records, more than that of no model at all. Are they of the same arm, read alike, "
-                    "and do the training records move that joint?",
-                    [name],
-                )
+            text = (
+                f"The error at {name} is {test.nrmse_percent[j]:.0f} % of its effort on the test records, "
+                "more than that of no model at all: are they of the same arm, read alike, and do training "
+                "records move that joint?"
             )
+            said.append(WorseThanNone(text, [name]))
         elif times > WORSE and test.nrmse_percent[j] > LARGE:
             said.append(
                 f"The error at {name} is {test.nrmse_percent[j]:.0f} % of its effort on the test records, "

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from modelgen.effects import CATALOGUE
-from modelgen.identification.objects import Estimate, Impossible
+from modelgen.identification.objects import Estimate, Impossible, WorseThanNone
 
 CLEARLY = 3.0  # standard deviations
 
@@ -48,8 +48,11 @@ def impossible_at(doubts: Iterable[str], joints: Sequence[str]) -> str:
 
     joints: names of the coordinates.
     """
-    where = {joint for doubt in doubts if isinstance(doubt, Impossible) for joint in doubt.joints}
-    if not where:
-        return ""
-    names = ", ".join(name for name in joints if name in where)
-    return f"Physically impossible values at {names}: do not use the parameters before that is explained."
+    asked = [doubt for doubt in doubts if isinstance(doubt, Impossible)]
+    useless = {joint for doubt in asked if isinstance(doubt, WorseThanNone) for joint in doubt.joints}
+    where = {joint for doubt in asked for joint in doubt.joints} - useless
+    said = (("Physically impossible values", where), ("A prediction that is worse than none", useless))
+    what = [
+        f"{text} at {', '.join(name for name in joints if name in found)}" for text, found in said if found
+    ]
+    return f"{'; '.join(what)}: do not use the parameters before that is explained." if what else ""

@@ -108,6 +108,10 @@ class Impossible(Doubt):
     """A doubt about a result that no arm has."""
 
 
+class WorseThanNone(Impossible):
+    """A doubt about a model that predicts worse than none."""
+
+
 @dataclass(frozen=True)
 class Identification:
     """Parameters that the training records give an arm, and its errors on the test records.

@@ -18,6 +18,10 @@ _SENTENCES = {
     "cannot_tell": "These records cannot tell.",
 }
 _TITLES = 2  # suspects that are all in the headline, in words
+UNMEASURED = (
+    "No period repeats in the training records: what of the residuals is noise is not known, and a cause may "
+    "be named for it. Record three periods of a motion to be sure."
+)
 SWINGING = (
     "A swing shows ratios alone: masses, centres of mass and inertia are those of the description. Where "
     "these are wrong, the difference looks like a spring or like friction."
@@ -144,7 +148,8 @@ def doubted(d: Diagnosis) -> list[str]:
         ("Not stable, the training records differ in the size of {}.", _failing(d, "stable")),
     )
     marked = [text.format(listed(cause_title(d, c) for c in lost)) for text, lost in kinds if lost]
-    return [*no_arm(d), *marked]
+    unmeasured = d.causes and d.lack_of_fit is None and not d.free
+    return [*no_arm(d), *marked, *([UNMEASURED] if unmeasured else [])]
 
 
 def no_arm(d: Diagnosis) -> list[str]:

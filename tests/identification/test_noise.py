@@ -1,5 +1,7 @@
 """What an identification says of the errors that it left, for the watch on the arm."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from arms_support import ARMS
@@ -7,8 +9,12 @@ from scipy.signal import butter, sosfiltfilt
 
 import modelgen as mg
 from modelgen.dataset import prepare
+from modelgen.evaluation import Evaluator
 from modelgen.functions import EVALUATED, build_model
+from modelgen.identification.instrumental import Comparison
 from modelgen.identification.noise import gain_of, outside
+from modelgen.identification.summary import biased
+from modelgen.identification.validation import held_against, validate
 
 STEP = 0.005
 
@@ -93,3 +99,28 @@ def test_what_differs_between_periods_is_the_noise_of_the_test_record() -> None:
     once = mg.identify(arm, log(0.0, 3), log(1.0, 1), cutoff=cutoff)
     assert "noise_rmse" not in once.to_json()["test"]
     assert "do not show how much of it is noise" in once.files()["report.html"]
+
+
+def test_an_estimate_that_predicts_far_worse_is_weak_and_one_worse_than_none_impossible() -> None:
+    """Least squares on a record that moves every joint, beside the same with one parameter three times as
+    large; and a test record of which every effort has the other sign.
+    """
+    rng, arm = np.random.default_rng(6), ARMS["gravity_arm"]
+    train, test = table(rng, 60.0, 0.02), table(rng, 40.0, 0.02)
+    outcome = mg.identify(arm, train, test, cutoff=8.0).outcome
+    found, held = outcome.found, [prepare(mg.read_log(test, arm), outcome.chosen)]
+    evaluator, solution = Evaluator(arm), found.solution
+    found = replace(found, test=validate(evaluator, found.model, held, solution.theta))
+    for factor, weak in ((1.0, False), (3.0, True)):
+        theta = solution.theta.copy()
+        theta[int(np.argmax(np.abs(theta)))] *= factor
+        beside = Comparison(replace(solution, theta=theta), 99.0, 3, 9.0)
+        judged = held_against(replace(found, comparison=beside), held, evaluator)
+        assert judged.comparison is not None
+        assert judged.comparison.weak == weak
+        assert biased(replace(found, comparison=beside)) == weak  # by what the parameter moves
+        assert not biased(judged)
+    other = test | {"tau1": -test["tau1"], "tau2": -test["tau2"]}
+    wrong = mg.identify(arm, train, other, cutoff=8.0)
+    assert "more than that of no model at all" in " ".join(wrong.to_json()["doubts"])
+    assert "no code should be generated" in wrong.files()["report.html"]
