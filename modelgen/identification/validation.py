@@ -74,6 +74,16 @@ def validate(
     )
 
 
+def judged_by(found: Identification, test: Sequence[Prepared], evaluator: Evaluator | None) -> Identification:
+    """The identification with what its test records say beside its errors: their noise, and whether another
+    estimate is far worse. evaluator: None where that is not asked.
+    """
+    if found.test is None:
+        return found
+    found = replace(found, test=with_repeats(found.test, test))
+    return found if evaluator is None else held_against(found, test, evaluator)
+
+
 def with_repeats(found: Validation, records: Sequence[Prepared]) -> Validation:
     """The validation with the noise of its records, where they repeat: what differs between their periods."""
     wrong = found.measured - found.predicted

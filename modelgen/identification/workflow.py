@@ -49,7 +49,7 @@ from modelgen.identification.output import errors, to_json
 from modelgen.identification.payloads import at_the_origin, payloads_of, without_cut_off_by_payload
 from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.streamed import identify_streamed
-from modelgen.identification.validation import held_against, with_repeats
+from modelgen.identification.validation import judged_by
 from modelgen.identification.without_drives import Alternative, without_drives
 from modelgen.options import IdentificationOptions
 from modelgen.progress import Progress, silent
@@ -218,10 +218,7 @@ def _whole(
     points = [log for k, log in enumerate([*train, *test]) if len(payloads.get(k, ())) == 1]
     if points:
         found = replace(found, doubts=(*found.doubts, at_the_origin(points)))
-    if found.test is not None:
-        found = replace(found, test=with_repeats(found.test, held))
-        if not payloads and options == Options():
-            found = held_against(found, held, evaluator)
+    found = judged_by(found, held, None if payloads or options != Options() else evaluator)
     found = with_noise(found, options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()
     if o.compare_drives:

@@ -26,7 +26,7 @@ SAID = "the sentence that describes the test says it in words"
 CONSTANTS = {
     "adequacy/distinguishable.py": {"SEED": SEED},
     "adequacy/explained.py": {"NEIGHBOURS": ACCURACY},
-    "adequacy/figures_said.py": {"HARDLY": PRINTED},
+    "adequacy/figures_said.py": {"CLEAR": PRINTED, "HARDLY": PRINTED},
     "adequacy/null_distribution.py": {"NULLS": MEASURED},
     "adequacy/motion_functions.py": {"EVEN": ACCURACY, "MEMORIES": ACCURACY, "WAYS": ACCURACY},
     "adequacy/smooth_functions.py": {

@@ -15,7 +15,7 @@ from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
 
 FREE_FUNCTION = "a free function"
-_CLEAR = 2.0  # standard deviations
+CLEAR = 2.0  # standard deviations
 HARDLY = 1e-4  # a share beneath which its figure says no more
 
 
@@ -63,7 +63,7 @@ def significance(
         name = cause.candidate.names[0]
         return max(sizes), f"{text}; its {name} is {largest} standard deviations from zero"
     text = f"{text}; the clearest of its parameters is {largest} standard deviations from zero"
-    alone = "" if max(sizes) >= _CLEAR else ": what they make together is known, none of them by itself"
+    alone = "" if max(sizes) >= CLEAR else ": what they make together is known, none of them by itself"
     return max(sizes), f"{text}{alone}"
 
 
