@@ -27,7 +27,8 @@ motor or of the joint, as said with each; q that of the joint; F the force or to
 Linear parameters have a column of the regressor each, the others are fixed by the description. The
 pictures are of an example: the torque while one joint of a planar arm swings slowly, a geared one where
 the effect needs no lever; of what bends a drive's input, what comes of a sinusoidal one. [The
-gallery](gallery.md) shows what each does to a log. """
+gallery](gallery.md) shows what each does to a log.
+"""
 
 
 def _section(effect: type[Definition], shown: str) -> str:

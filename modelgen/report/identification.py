@@ -195,11 +195,11 @@ def following(found: Identification, call: Call, speeds: Sequence[float]) -> lis
     diagnose, far = call.diagnosing(), "" if found.test is None else _above_noise(found.test, found)
     if found.test is not None and diagnose:
         if far and not wrong:
-            code = [
+            asis = [
                 Text("For the values as they are: generate code with these folded in:"),
                 Command(generate),
             ]
-            parts = [Text(f"{call.first}{far}"), Command(diagnose), *code]
+            parts = [Text(f"{call.first}{far}"), Command(diagnose), *(code if again else asis)]
         else:
             parts += [Text(_EXPLAINED if wrong else _LACKING), Command(diagnose)]
     excite = call.exciting(call.beside("trajectory.csv"), speeds)

@@ -42,16 +42,16 @@ def cause_estimates(selection: Selection, equations: Equations, spread: Spread) 
 
 
 def base_estimates(
-    extension: Extension, spread: Spread, causes: Sequence[Mapping[str, Estimate]]
+    extension: Extension, spread: Spread, causes: Sequence[Mapping[str, Estimate]], covariance: Array
 ) -> Mapping[str, Estimate]:
     """Base parameters of the extended model; those that were known have no deviation.
 
     spread: `deviations` of its causes and of the arm's parameters beside them. causes: estimates of the
     causes' parameters, which those that are base parameters have here too. What another model would group
-    otherwise has the deviation of its own fit.
+    otherwise has the deviation of its own fit. covariance: (p, p), `covariance_of_base` of that model.
     """
     after, equations = extension.after, extension.equations
-    own = np.sqrt(np.maximum(0.0, np.diag(covariance_of_base(after, equations))))
+    own = np.sqrt(np.maximum(0.0, np.diag(covariance)))
     lift = equations.rows[0].baseline.lift
     described = equations.model.grouping.base
     shared = np.sqrt(np.maximum(0.0, np.diag(lift @ spread.arm @ lift.T)))

@@ -72,7 +72,8 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         for c, so in zip(causes, there, strict=True)
     )
     after, fit = extension.after, decision.remains.fit
-    parameters = base_estimates(extension, spread, [c.parameters for c in causes])
+    covariance = covariance_of_base(after, equations)
+    parameters = base_estimates(extension, spread, [c.parameters for c in causes], covariance)
     values = [(*c.trial.candidate.place, c.trial.parameters) for c in selection.causes]
     split = {number: e.value for number, e in extension.inertias.items()}
     added = *described_by(split), *values
@@ -93,7 +94,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         before=extension.before,
         after=after,
         parameters=parameters,
-        impossible=_impossible(extension, parameters),
+        impossible=_impossible(extension, parameters, covariance),
         next_experiment=None,
         test=test,
         residuals=pair,
@@ -154,9 +155,11 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     return AsIdentified(found.rmse, chosen.cutoff, (*texts, *late))
 
 
-def _impossible(extension: Extension, parameters: Mapping[str, Estimate]) -> tuple[Impossible, ...]:
+def _impossible(
+    extension: Extension, parameters: Mapping[str, Estimate], covariance: Array
+) -> tuple[Impossible, ...]:
     """Questions about values of the extended model that no arm has; none of a free motion, of which links are
-    known. parameters: its base parameters by name.
+    known. parameters, covariance (p, p): of its base parameters.
     """
     after, equations = extension.after, extension.equations
     if equations.free or not extension.selection.causes:
@@ -165,7 +168,7 @@ def _impossible(extension: Extension, parameters: Mapping[str, Estimate]) -> tup
     spread = np.array([parameters[b.name].std for b in model.grouping.base])
     found = driven(estimates_of(model, after.parameters, spread), names)
     if not any(c.trial.candidate.elastic for c in extension.selection.causes):  # its links lag at any pose
-        train, covariance = [r.prepared for r in after.rows], covariance_of_base(after, equations)
+        train = [r.prepared for r in after.rows]
         fit = after.parameters, covariance, np.diag(covariance) > 0.0
         found += inertia_below_zero(train, model, Evaluator(after.arm), *fit)
     return tuple(doubt.without(DIAGNOSING) for doubt in found)

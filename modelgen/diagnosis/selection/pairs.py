@@ -29,7 +29,7 @@ from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.exchange import worth_of
 from modelgen.diagnosis.selection.history import best_of_each, ranked
 from modelgen.diagnosis.selection.refit import refit
-from modelgen.diagnosis.selection.refit_by_load import follows_load, load_slopes, loaded
+from modelgen.diagnosis.selection.refit_by_load import follows_load, linearised, loaded
 from modelgen.diagnosis.selection.rivals import needed_behind
 from modelgen.jobs import Where
 from modelgen.regression.weighted import misfit, weighted_fit
@@ -107,14 +107,15 @@ def with_pair(
     """
     doubtful = {c.trial.candidate.place for c in suspects}
     kept = [c for c in found[:-2] if c.trial.candidate.place not in doubtful]
-    system = system_of(equations, [c.trial for c in (*kept, *found[-2:])])
-    causes = [measured(c, [*kept, *found[-2:]], system) for c in (*kept, *found[-2:])]
+    every = [*kept, *found[-2:]]
+    system = system_of(equations, [c.trial for c in every])
+    causes = [measured(c, every, system) for c in every]
     places = {c.trial.candidate.place for c in kept}
     turns = [turn for turn in selection.turns if any(r.chosen and r.place in places for r in turn)]
     for c in causes[-2:]:
         own = replace(c.trial, gain=replace(c.trial.gain, delta_bic=c.delta_bic))
-        every = [ranked(t, None, "") for t in (own, *(t for t, _ in c.rivals))]
-        turns.append(best_of_each(every, own.candidate.place))
+        ranking = [ranked(t, None, "") for t in (own, *(t for t, _ in c.rivals))]
+        turns.append(best_of_each(ranking, own.candidate.place))
     return Selection(causes, system, turns)
 
 
@@ -122,16 +123,10 @@ def _likely(
     first: FittedCandidate, trials: Sequence[FittedCandidate], kept: Sequence[Cause], equations: Equations
 ) -> list[FittedCandidate]:
     """The others that explain most beside the first, by one step of Gauss's and Newton's."""
-    rows, own = equations.rows, equations.unknowns
     beside = [*(c.trial for c in kept), first]
     table = with_causes(equations, beside)
-    theta = weighted_fit(rows, table)
-    values = theta[len(theta) - first.columns[0].shape[2] :]
-    change = load_slopes([first], [values], theta[:own], equations)
-    moved = [replace(r, effort=r.effort + d @ theta[:own]) for r, d in zip(rows, change, strict=True)]
-    slopes = [
-        np.concatenate([c[:, :, :own] + d, c[:, :, own:]], axis=2) for c, d in zip(table, change, strict=True)
-    ]
+    theta = weighted_fit(equations.rows, table)
+    moved, slopes = linearised([first], beside, table, theta, equations)
     left = list[tuple[float, int, FittedCandidate]]()
     for t in trials:
         if t.candidate.place == first.candidate.place:

@@ -21,7 +21,7 @@ from modelgen.diagnosis.candidates import (
     unchanging,
     with_causes,
 )
-from modelgen.diagnosis.equations import Equations
+from modelgen.diagnosis.equations import Equations, Rows
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.numeric import Array
 from modelgen.regression.weighted import misfit, weighted_fit
@@ -51,15 +51,7 @@ def refit_by_load(causes: Sequence[Cause], equations: Equations) -> None:
     least, best = misfit(rows, table, theta), trials
     trials = start
     for _ in range(TURNS):
-        own_values = _values(trials, theta, own)
-        change = load_slopes(
-            [trials[k] for k in places], [own_values[k] for k in places], theta[:own], equations
-        )
-        moved = [replace(r, effort=r.effort + d @ theta[:own]) for r, d in zip(rows, change, strict=True)]
-        slopes = [
-            np.concatenate([c[:, :, :own] + d, c[:, :, own:]], axis=2)
-            for c, d in zip(table, change, strict=True)
-        ]
+        moved, slopes = linearised([trials[k] for k in places], trials, table, theta, equations)
         step = weighted_fit(moved, slopes) - theta
         for half in range(HALVINGS):
             tried = theta + step / 2**half
@@ -127,6 +119,34 @@ def _anew(
             trial = replace(trial, gain=replace(trial.gain, values=values))
         found[k] = trial
     return found
+
+
+def linearised(
+    following: Sequence[FittedCandidate],
+    trials: Sequence[FittedCandidate],
+    table: Sequence[Array],
+    theta: Array,
+    equations: Equations,
+) -> tuple[list[Rows], list[Array]]:
+    """Rows and columns by which a step of Gauss's and Newton's leads from theta (own unknowns, then values).
+
+    following: those of the trials whose columns follow the load. table: (M, n, k), the model's own columns
+    and the trials' of each record.
+    """
+    own = equations.unknowns
+    values = [v for t, v in zip(trials, _values(trials, theta, own), strict=True) if _among(t, following)]
+    change = load_slopes(following, values, theta[:own], equations)
+    moved = [
+        replace(r, effort=r.effort + d @ theta[:own]) for r, d in zip(equations.rows, change, strict=True)
+    ]
+    slopes = [
+        np.concatenate([c[:, :, :own] + d, c[:, :, own:]], axis=2) for c, d in zip(table, change, strict=True)
+    ]
+    return moved, slopes
+
+
+def _among(trial: FittedCandidate, others: Sequence[FittedCandidate]) -> bool:
+    return any(trial is other for other in others)
 
 
 def load_slopes(
