@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import compress
 from statistics import median
 from typing import Any, ClassVar
 
@@ -25,6 +26,7 @@ WORDS = {
 _FIT = "lack of fit / threshold"
 _LESS = "less error %"
 _HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", _LESS, _FIT, "s", "reason")
+_NUMBERS = ("verdict", "delta BIC", _LESS, _FIT, "s")  # heads of columns that are sorted as numbers
 _LOOKS = 7  # colours that are told apart
 _URGENT = 8  # units that are listed first
 
@@ -106,14 +108,16 @@ def _said(label: str, pieces: Sequence[Piece]) -> str:
 
 @dataclass(frozen=True)
 class Units(Part):
-    """The table of all units, which can be sorted and filtered."""
+    """The table of all units, which can be sorted and filtered. rows: of cells by their heads."""
 
     kind: ClassVar[str] = "units"
-    rows: Sequence[Mapping[str, Any]]
+    rows: Sequence[Sequence[Mapping[str, Any]]]
 
     def values(self) -> Mapping[str, Any]:
-        """For the template."""
-        return {"heads": _HEADS, "rows": self.rows}
+        """For the template, without columns that are empty."""
+        filled = [any(row[k]["text"] or row[k]["causes"] for row in self.rows) for k in range(len(_HEADS))]
+        heads = [{"text": head, "number": head in _NUMBERS} for head in compress(_HEADS, filled)]
+        return {"heads": heads, "rows": [list(compress(row, filled)) for row in self.rows]}
 
 
 def verdicts(rows: Sequence[Row]) -> Counter[str]:
@@ -267,28 +271,38 @@ def _unit(row: Row) -> Run:
     return Run(row["unit"], target=row.get("report") or "")
 
 
-def _row(row: Row) -> dict[str, Any]:
+def _row(row: Row) -> list[dict[str, Any]]:
+    """A cell for each of the heads."""
     found = verdict(row)
     causes_ = titles(row)
     harms = row.get("harms") or [False] * len(causes_)
     named = zip(causes_, row.get("ambiguous_with") or (), harms, strict=True)
-    return {
-        "unit": line([_unit(row)]),
-        "arm": row["arm"] or "",
-        "verdict": WORDS[found],
-        "order": list(WORDS).index(found),
-        "causes": [(title, ", ".join(rivals), f"✗ {_HARM}" if harm else "") for title, rivals, harm in named],
-        "figures": [
-            (*_number(value, form), head)
-            for value, form, head in (
-                (max(row.get("delta_bic") or (), default=None), "z.1f", "delta BIC"),
-                (row.get("overall_gain_percent") if row.get("causes") else None, "z.1f", _LESS),
-                (None if row.get("lack_of_fit") is None else _fit(row), ".2f", _FIT),
-                (row.get("seconds"), ".1f", "s"),
-            )
-        ],
-        "said": row.get("error") or _more(row) or _failing(row) or row.get("reason") or "",
-    }
+    figures = (
+        (max(row.get("delta_bic") or (), default=None), "z.1f"),
+        (row.get("overall_gain_percent") if row.get("causes") else None, "z.1f"),
+        (None if row.get("lack_of_fit") is None else _fit(row), ".2f"),
+        (row.get("seconds"), ".1f"),
+    )
+    cells = [
+        _cell(line([_unit(row)])),
+        _cell(row["arm"] or ""),
+        _cell(WORDS[found], sort=str(list(WORDS).index(found))),
+        _cell(
+            causes=[
+                (title, ", ".join(rivals), f"✗ {_HARM}" if harm else "") for title, rivals, harm in named
+            ],
+        ),
+        *(_cell(shown, "n", sort) for sort, shown in (_number(value, form) for value, form in figures)),
+        _cell(row.get("error") or _more(row) or _failing(row) or row.get("reason") or "", "quiet"),
+    ]
+    return [{"head": head, **cell} for head, cell in zip(_HEADS, cells, strict=True)]
+
+
+def _cell(
+    text: str = "", look: str = "", sort: str | None = None, causes: Sequence[tuple[str, str, str]] = ()
+) -> dict[str, Any]:
+    """A cell of a unit. sort: what it is sorted by, None for its text; causes: with rivals and harm."""
+    return {"text": text, "look": look, "sort": sort, "causes": causes}
 
 
 def _more(row: Row) -> str:

@@ -20,7 +20,9 @@ from modelgen.identification.rows import Rows, motion_of
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
-FAR_WORSE = 1.5  # times the error of least squares: bias would be the lesser evil
+# Times the error of least squares. From noisy positions the biased values predict best by construction: the
+# true ones err by this much more where noise has made a value this much squared too small (Fuller 1987, 1.1).
+FAR_WORSE = 3.0
 AROUND = 2.0  # samples, by which the period may be off that a record is said to have
 LAGS = 13  # rows after which filtered noise hangs together no more
 
@@ -117,7 +119,9 @@ def _between_periods(p: Prepared, errors: Array, judged: NDArray[np.bool_]) -> l
 
 
 def held_against(found: Identification, test: Sequence[Prepared], evaluator: Evaluator) -> Identification:
-    """The identification; its estimate by instruments is weak where it predicts test records far worse."""
+    """The identification; its estimate by instruments is weak where it predicts test records far worse than
+    the bias that it claims can explain.
+    """
     both, own = found.comparison, found.test
     if both is None or own is None or not both.biased or found.method == "iv":
         return found

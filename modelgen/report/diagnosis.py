@@ -22,6 +22,7 @@ from modelgen.report.others import rivals
 from modelgen.report.page import Folded, Grid, Heading, Lines, Part, Run, Section, Text, block, page
 from modelgen.report.ranking import rankings
 from modelgen.report.words import joint_name
+from modelgen.simulation.windows import Windows
 
 # By whether the test record is a free motion.
 _SIMULATED = {
@@ -44,6 +45,7 @@ _CANDIDATES = (
     ("expected %", "right"),
     ("answer", "left"),
 )
+_SOME = 0.05  # of a record, that need not be mentioned
 _PARAMETERS = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"))
 _SETTINGS = {
     "asked": "effects asked for",
@@ -157,8 +159,22 @@ def _simulation(d: Diagnosis) -> list[Part]:
         )
         for j in range(len(one.f_gof))
     ]
-    text = f"{_SIMULATED[d.free]}: {_FIT}{', before and after' if d.causes else ''}."
-    return [Text(text), Grid("Simulated motion", heads, rows, folds=True), block(replayed(d))]
+    text = f"{_SIMULATED[d.free]}: {_FIT}{', before and after' if d.causes else ''}. {_covered(d, one)}"
+    return [Text(text.rstrip()), Grid("Simulated motion", heads, rows, folds=True), block(replayed(d))]
+
+
+def _covered(d: Diagnosis, simulated: Windows) -> str:
+    """How much of the record was simulated, for whoever compares with a simulation of all of it."""
+    t = d.test.prepared.t
+    whole = float(t[-1] - t[0])
+    count, part = len(simulated.t), float(np.sum(simulated.t[:, -1] - simulated.t[:, 0]))
+    if part > (1.0 - _SOME) * whole:
+        return ""
+    windows = "" if d.free else f" in {count} windows"
+    return (
+        f"That is {part:z.3g} s{windows} of the record's {whole:z.3g} s: modelgen simulate --log counts the "
+        "rest too, and its errors are others."
+    )
 
 
 def _fit(percent: float) -> str:

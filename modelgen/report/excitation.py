@@ -77,7 +77,8 @@ def report(e: Excitation, stem: str, call: Call) -> str:
             "What it asks of the arm",
             [
                 Text(
-                    f"One period of {s.period:g} s, {s.rate:g} set-points a second, {s.harmonics} harmonics."
+                    f"One period of {s.period:g} s, {s.rate:g} set-points a second, {s.harmonics} harmonics. "
+                    "The last row of the file is the first one again, a period later: a loop leaves it out."
                 ),
                 *(
                     [Text(f"Tightest limit: {rows[0][0]}, {100 * tight[0][1]:z.0f} % of it used.")]

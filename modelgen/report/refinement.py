@@ -102,7 +102,7 @@ def report(found: Refinement, call: Call) -> str:
     columns = [("parameter", "left"), ("start", "right"), ("refined", "right"), ("std", "right")]
     columns += [("moved by std", "right"), ("unit", "left"), ("std in the motion (RMS)", "left")]
     sections: Parts = [
-        ("Measured against simulated motion", [block(motion(found))]),
+        ("Measured against simulated motion", [*_joined(found), block(motion(found))]),
         ("Parameters", [*_pictured(found), Grid("Parameters", columns, table, folds=True)]),
     ]
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
@@ -214,6 +214,16 @@ def _uncertain(found: Refinement) -> list[Part]:
             f"{_fine(worst.moves, unit)} (RMS), beside an error of {_fine(errors[worst.shown_by], unit)}."
         )
     ]
+
+
+def _joined(found: Refinement) -> list[Part]:
+    """Where the axis of the time has which part."""
+    if len(found.t) < 2:
+        return []
+    ends = np.cumsum([t[-1] - t[0] for t in found.t])[:-1]
+    seconds = listed(f"{end:z.4g} s" for end in ends)
+    text = f"{len(found.t)} parts of the records, one after the other: the next one begins at {seconds}."
+    return [Text(text)]
 
 
 def _times(found: Refinement) -> Array:

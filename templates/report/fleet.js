@@ -4,7 +4,7 @@ function sort(k) {
   const up = heads[k].getAttribute("aria-sort") !== "ascending";
   heads.forEach(h => h.setAttribute("aria-sort", "none"));
   heads[k].setAttribute("aria-sort", up ? "ascending" : "descending");
-  const number = k >= 4 && k <= 7 || k === 2;
+  const number = "number" in heads[k].dataset;
   const order = (a, b) => {
     const x = value(a, k), y = value(b, k);
     if (x === "" || y === "") return (x === "") - (y === "");  // what is missing comes last

@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 
 import modelgen as mg
 from modelgen.api.results import Table
-from modelgen.calibration import Lever, calibrate, lever_of
+from modelgen.calibration import Lever, calibrate, calibrated_yaml, lever_of
 from modelgen.cli.app import app
 from modelgen.dataset import drives_of
-from modelgen.description import load
+from modelgen.description import load, loads
 from modelgen.effects import known_effects
 from modelgen.errors import InputError
 from modelgen.report.calibration import charts
@@ -159,6 +159,23 @@ def test_command_writes_a_description_that_loads(tmp_path: Path) -> None:
     first = {p.name: p.read_bytes() for p in out.iterdir()}
     assert CliRunner().invoke(app, line).exit_code == 0
     assert first == {p.name: p.read_bytes() for p in out.iterdir()}
+
+
+def test_a_comment_on_a_value_that_is_another_one_now_goes_with_it() -> None:
+    """And those on lines of their own, and beside what stays, are kept."""
+    text = shipped_arms().read_text(encoding="utf-8")
+    first = text.index("l1:", text.index("ariane4:"))
+    end = text.index("\n", first)
+    said = "# measured on the drawing\n          # of the motor's side"
+    whole = f"{text[:end]} {said}{text[end:]}"
+    described = loads(whole, known_effects=known_effects())["ariane4"]
+    true = lever_of(described, 1)
+    same = calibrated_yaml(described, 1, true)
+    assert "# measured on the drawing" in same
+    moved = calibrated_yaml(described, 1, Lever(1, true.motor, true.values + 0.001))
+    assert "# measured on the drawing" not in moved
+    assert "# of the motor's side" in moved
+    assert "# assumed" in moved  # rev stays as it is
 
 
 def test_refusals(tmp_path: Path) -> None:
