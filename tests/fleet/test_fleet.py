@@ -145,7 +145,7 @@ def test_the_overview_stands_alone_and_links_to_the_reports(out: Path) -> None:
     found.feed(text)
     outwards = [link for link in found.links if not link.startswith("#")]
     assert list(dict.fromkeys(outwards)) == ["units/one/report.html", "units/two/report.html"]
-    assert all((out / link).is_file() for link in found.links)
+    assert all((out / link).is_file() for link in outwards)
     assert found.tags.count("tr") - text.count('<th scope="row">') == 3 + len(NAMES)  # of three tables
     assert "<b>nobody" not in text
     assert "stribeck_friction at j2" in text
@@ -456,6 +456,30 @@ def test_a_named_unit_says_its_worth_its_doubts_and_its_suspects() -> None:
     several = overview([one, *rows_of("named", "other", **SPRING | {"overall_gain_percent": 4.0})])
     assert "median of 2 units" in several
     assert lost in several
+
+
+def test_the_table_of_units_has_no_empty_column() -> None:
+    """Where nothing is named there are no causes and no evidence; what sorts as a number says so itself."""
+    heads = re.compile(r"<th scope=\"col\"[^>]*>(?:<[^>]*>)?([^<]*)<")
+    plain = overview([row | {"seconds": 3.0} for row in rows_of("nothing_missing", "u1", "u2")])
+    assert heads.findall(plain)[-5:] == ["unit", "arm", "verdict", "s", "reason"]
+    named = overview(rows_of("named", "u", **SPRING, delta_bic=[41.0], overall_gain_percent=4.0))
+    assert heads.findall(named)[-7:] == [
+        "unit",
+        "arm",
+        "verdict",
+        "causes",
+        "delta BIC",
+        "less error %",
+        "reason",
+    ]
+    assert named.count(" data-number") == 3  # verdict, evidence, error
+    for text in (plain, named):
+        table = text[
+            text.index('<table id="units"') : text.index("</table>", text.index('<table id="units"'))
+        ]
+        sizes = {row.count("<td ") for row in table.split("<tr")[2:]}
+        assert sizes == {len(heads.findall(table))}
 
 
 def test_the_overview_has_the_next_command_and_says_nothing_twice() -> None:
