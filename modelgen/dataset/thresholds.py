@@ -131,9 +131,15 @@ class DatasetThresholds(Group):
     max_instant_std: float = entry(
         0.15,
         "sampling periods",
-        "When the efforts were read is not asked of records that tell it less surely; readings do not count "
-        "within this of which their joint turns back.",
+        "When the efforts were read is not asked of records that tell it less surely.",
         "conventions are half a period apart: more than three standard deviations",
+    )
+    turning_periods: float = entry(
+        1.0,
+        "sampling periods",
+        "Efforts at an instant do not count so near to one at which their joint turns back: it sticks there, "
+        "and nobody sees between two readings for how long. Twice that where efforts are interpolated.",
+        "the last reading before a turn and the first one after it",
     )
     instant_tolerance: float = entry(
         0.25,

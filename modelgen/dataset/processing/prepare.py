@@ -185,12 +185,13 @@ def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
     """Samples (N, n) away from rest, for speeds dq (N, n), of joints and of what turns with two of them.
 
     Nor do those count at which nobody knows which way a joint moves: it is slower than the rounding of its
-    position lets see, or turns back within what the instants of the efforts are known to, a period where
-    they lie between two readings. A held effort is a mean, and tells of either side.
+    position lets see, or turns back before the next reading or after the last one. It sticks for a while as
+    it turns, and nobody sees between two readings for how long; an effort that lies between two readings is
+    made of those a period further off, too. A held effort is a mean, and tells of either side.
     """
     rate = 1.0 / record.step
     between = abs(record.hold * rate - round(record.hold * rate)) > 1e-9
-    within = 0.0 if record.held else 1.0 if between else chosen.thresholds.max_instant_std
+    within = 0.0 if record.held else chosen.thresholds.turning_periods * (2.0 if between else 1.0)
     awake: np.ndarray = samples_away_from_rest(dq, chosen, rate)
     awake &= directed(dq, chosen.noise, within)
     for part in () if record.arm is None else couplings_of(record.arm):

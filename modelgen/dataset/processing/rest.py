@@ -45,8 +45,9 @@ def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarr
 def directed(dq: Array, noise: tuple[float, ...], within: float) -> np.ndarray:
     """Samples (N, n) where the direction of speeds (N, n) is known.
 
-    noise: speeds (n,) that the rounding of the positions may feign. within: sampling periods to which the
-    instants of the efforts beside are known; the joint turned back earlier or comes to it later.
+    noise: speeds (n,) that the rounding of the positions may feign. within: sampling periods before and after
+    the instant at which the joint turns back, as its acceleration has it; a joint that sticks for some time
+    is near it for longer.
     """
     if len(dq) < 2:
         return np.ones(dq.shape, dtype=bool)
