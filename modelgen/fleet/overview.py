@@ -5,35 +5,22 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import compress
 from statistics import median
 from typing import Any, ClassVar
 
 from modelgen.fleet.sentences import FAILED, differences, titles, verdict
 from modelgen.fleet.store import Row
+from modelgen.fleet.unit_table import FIT, HARM, WORDS, Units, cells, fit_over_threshold, linked
 from modelgen.report.page import Command, Lines, Part, Run, Text, page
-from modelgen.report.parts import breaking, line
+from modelgen.report.parts import breaking
 from modelgen.report.words import listed
 
-WORDS = {
-    "named": "cause named",
-    "suspected": "cause suspected",
-    "nothing_missing": "nothing missing",
-    "outside_catalogue": "outside the catalogue",
-    "cannot_tell": "cannot tell",
-    FAILED: "failed",
-}
-_FIT = "lack of fit / threshold"
-_LESS = "less error %"
-_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", _LESS, _FIT, "s", "reason")
-_NUMBERS = ("verdict", "delta BIC", _LESS, _FIT, "s")  # heads of columns that are sorted as numbers
 _LOOKS = 7  # colours that are told apart
 _URGENT = 8  # units that are listed first
 
 _WIDEST = 80.0  # percent of the room, of a bar
 _FAR = 2.0  # lack of fit over its threshold, from which on a unit with a named cause is to be looked at
 _NOTHING = "Every unit could be diagnosed, and nothing is left unexplained."
-_HARM = "makes its test record worse"
 _FAILED = (
     "Of units that failed: mend what the lines say, and call modelgen fleet again with --again. What is "
     "done, of the same files, is kept"
@@ -63,7 +50,7 @@ def overview(rows: Sequence[Row], again: str = "") -> str:
     minutes = sum(row.get("cpu_seconds") or 0.0 for row in rows) / 60
     time = f"s: by the clock, beside other units; {minutes:z.3g} min of processor time."
     units = [
-        Units([_row(row) for row in rows]),
+        Units([cells(row) for row in rows]),
         Text(f"{_READING} {time}", "quiet"),
     ]
     arms = listed(f"{name}" for name in dict.fromkeys(row["arm"] for row in rows) if name)
@@ -104,20 +91,6 @@ def _said(label: str, pieces: Sequence[Piece]) -> str:
     if len(pieces) > 1:
         return ", ".join(f"{word}: {count}" for word, count, _ in pieces)
     return "".join(word for word, _, _ in pieces if word != label)
-
-
-@dataclass(frozen=True)
-class Units(Part):
-    """The table of all units, which can be sorted and filtered. rows: of cells by their heads."""
-
-    kind: ClassVar[str] = "units"
-    rows: Sequence[Sequence[Mapping[str, Any]]]
-
-    def values(self) -> Mapping[str, Any]:
-        """For the template, without columns that are empty."""
-        filled = [any(row[k]["text"] or row[k]["causes"] for row in self.rows) for k in range(len(_HEADS))]
-        heads = [{"text": head, "number": head in _NUMBERS} for head in compress(_HEADS, filled)]
-        return {"heads": heads, "rows": [list(compress(row, filled)) for row in self.rows]}
 
 
 def verdicts(rows: Sequence[Row]) -> Counter[str]:
@@ -201,7 +174,7 @@ def _worth(rows: Sequence[Row]) -> str:
     if not harmed:
         return said
     units = "In one unit" if harmed == 1 else f"In {harmed} units"
-    return f"{said} {units} a cause {_HARM}, though all together may make it better."
+    return f"{said} {units} a cause {HARM}, though all together may make it better."
 
 
 def _open(rows: Sequence[Row]) -> list[Row]:
@@ -217,16 +190,18 @@ def _urgent(rows: Sequence[Row]) -> Iterator[list[Run]]:
     lines = []
     for row in _open(rows):
         error = row.get("error")
-        lines.append([_unit(row), Run(f": {WORDS[verdict(row)]}{f', {error}' if error else ''}")])
+        lines.append([linked(row), Run(f": {WORDS[verdict(row)]}{f', {error}' if error else ''}")])
     for row in rows:
         worse = _harming(row)
         if worse:
-            lines.append([_unit(row), Run(f": {listed(worse)} {_HARM}; its page has the model without")])
+            lines.append([linked(row), Run(f": {listed(worse)} {HARM}; its page has the model without")])
         elif doubts := row.get("doubts"):
-            lines.append([_unit(row), Run(f": {' '.join(doubts)}")])
-        elif row.get("causes") and _fit(row) > _FAR:
-            remains = f"something deterministic remains beside what is named, {_FIT} {_fit(row):.3g}"
-            lines.append([_unit(row), Run(f": {remains}")])
+            lines.append([linked(row), Run(f": {' '.join(doubts)}")])
+        elif row.get("causes") and fit_over_threshold(row) > _FAR:
+            remains = (
+                f"something deterministic remains beside what is named, {FIT} {fit_over_threshold(row):.3g}"
+            )
+            lines.append([linked(row), Run(f": {remains}")])
     yield from lines[:_URGENT]
     if len(lines) > _URGENT:
         yield [Run(f"{len(lines) - _URGENT} more: see the table")]
@@ -235,12 +210,6 @@ def _urgent(rows: Sequence[Row]) -> Iterator[list[Run]]:
 def _harming(row: Row) -> list[str]:
     """Causes that make the test record of a unit worse."""
     return [title for title, harm in zip(titles(row), row.get("harms") or (), strict=False) if harm]
-
-
-def _fit(row: Row) -> float:
-    """Lack of fit over its threshold; 0 where it was not measured."""
-    fit, threshold = row.get("lack_of_fit"), row.get("lack_of_fit_threshold")
-    return fit / threshold if fit is not None and threshold else 0.0
 
 
 def _next(rows: Sequence[Row], again: str) -> Iterator[Part]:
@@ -262,66 +231,5 @@ def first_step(rows: Sequence[Row], again: str) -> Iterator[Part]:
     first = next((row for row in [*wanting, *rows] if row.get("command")), None)
     if first is not None:
         text = first["next"]
-        yield Text([Run("For "), _unit(first), Run(f": {text[:1].lower()}{text[1:]}")])
+        yield Text([Run("For "), linked(first), Run(f": {text[:1].lower()}{text[1:]}")])
         yield Command(first["command"])
-
-
-def _unit(row: Row) -> Run:
-    """The name of a unit, which leads to its report."""
-    return Run(row["unit"], target=row.get("report") or "")
-
-
-def _row(row: Row) -> list[dict[str, Any]]:
-    """A cell for each of the heads."""
-    found = verdict(row)
-    causes_ = titles(row)
-    harms = row.get("harms") or [False] * len(causes_)
-    named = zip(causes_, row.get("ambiguous_with") or (), harms, strict=True)
-    figures = (
-        (max(row.get("delta_bic") or (), default=None), "z.1f"),
-        (row.get("overall_gain_percent") if row.get("causes") else None, "z.1f"),
-        (None if row.get("lack_of_fit") is None else _fit(row), ".2f"),
-        (row.get("seconds"), ".1f"),
-    )
-    cells = [
-        _cell(line([_unit(row)])),
-        _cell(row["arm"] or ""),
-        _cell(WORDS[found], sort=str(list(WORDS).index(found))),
-        _cell(
-            causes=[
-                (title, ", ".join(rivals), f"✗ {_HARM}" if harm else "") for title, rivals, harm in named
-            ],
-        ),
-        *(_cell(shown, "n", sort) for sort, shown in (_number(value, form) for value, form in figures)),
-        _cell(row.get("error") or _more(row) or _failing(row) or row.get("reason") or "", "quiet"),
-    ]
-    return [{"head": head, **cell} for head, cell in zip(_HEADS, cells, strict=True)]
-
-
-def _cell(
-    text: str = "", look: str = "", sort: str | None = None, causes: Sequence[tuple[str, str, str]] = ()
-) -> dict[str, Any]:
-    """A cell of a unit. sort: what it is sorted by, None for its text; causes: with rivals and harm."""
-    return {"text": text, "look": look, "sort": sort, "causes": causes}
-
-
-def _more(row: Row) -> str:
-    """What is to be known beside causes that are named: worth, doubts and suspects; empty without one."""
-    if not row.get("causes"):
-        return ""
-    suspects = _failing(row)
-    also = [f"Suspected too: {suspects}."] if suspects else []
-    return " ".join([*([row["worth"]] if row.get("worth") else []), *(row.get("doubts") or ()), *also])
-
-
-def _failing(row: Row) -> str:
-    """Suspects by the checks that they failed; empty where there are none."""
-    groups: dict[str, list[str]] = {}
-    for title, checks in zip(row.get("suspects") or (), row.get("failed_checks") or (), strict=False):
-        groups.setdefault(listed(checks), []).append(title)
-    return "; ".join(f"{listed(titles)} failed the check {checks}" for checks, titles in groups.items())
-
-
-def _number(value: float | None, form: str) -> tuple[str, str]:
-    """Return the number as sorted and as shown."""
-    return ("", "") if value is None else (f"{value:z.9g}", f"{value:{form}}")

@@ -12,9 +12,10 @@ from modelgen.api.results import Shown, Table
 from modelgen.errors import InputError
 from modelgen.fleet import store
 from modelgen.fleet.diagnosing import Job, crashed, done
-from modelgen.fleet.overview import WORDS, causes, first_step, overview, verdicts
+from modelgen.fleet.overview import causes, first_step, overview, verdicts
 from modelgen.fleet.store import Row
 from modelgen.fleet.table import NAME, library, write_table
+from modelgen.fleet.unit_table import WORDS
 from modelgen.fleet.units import Unit
 from modelgen.jobs import Where, run
 from modelgen.report.call import command
