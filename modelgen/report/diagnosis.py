@@ -15,7 +15,7 @@ from modelgen.report.call import Call
 from modelgen.report.cause_parts import about, law_found, suspected
 from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import efforts, replayed, residuals
-from modelgen.report.diagnosis_sentences import assumptions, by_worth, compared
+from modelgen.report.diagnosis_sentences import SWINGING, assumptions, by_worth, compared
 from modelgen.report.experiment import described
 from modelgen.report.named_joints import named_joints
 from modelgen.report.others import rivals
@@ -126,7 +126,9 @@ def _others(d: Diagnosis) -> Iterator[Section]:
 
 def _log(d: Diagnosis) -> list[Part]:
     hidden = [f"{name}: {why}" for name, why in d.not_identifiable]
-    said: list[Part] = [Lines([*d.log.lines(), *assumptions(d), *compared(d)])]
+    above = (SWINGING,) if d.causes else ()  # on the first screen already
+    assumed = [text for text in assumptions(d) if text not in above]
+    said: list[Part] = [Lines([*d.log.lines(), *assumed, *compared(d)])]
     return [*said, Heading("What these records cannot show"), Lines(hidden)] if hidden else said
 
 

@@ -19,7 +19,7 @@ from modelgen.diagnosis.extended.findings import Errors, Share
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
 from modelgen.evaluation import Evaluator
 from modelgen.numeric import Array
-from modelgen.regression.weighted import rmse, weighted_fit
+from modelgen.regression.weighted import weighted_fit
 from modelgen.simulation.windows import Windows
 
 DRAWS = 400  # of the bootstrap: a budget
@@ -206,9 +206,10 @@ def columns_of(trial: FittedCandidate, test: Rows, extension: Extension) -> Arra
 def shares(extension: Extension, test: Rows, on: Sequence[bool]) -> list[Share]:
     """Shares of the causes, over the joints where each acts, in units of what all causes leave there.
 
-    The model is fitted to the training records, with all causes and with all but this one; values that were
-    searched for stay. on: of each cause, whether it is there, `on_test`. Where it is not, its share is what
-    the arm's parameters are better for. Not a number where one of them cannot stand on that record.
+    The model is fitted to the training records, with all causes as the extended one is, and with all but this
+    one; values that were searched for stay. on: of each cause, whether it is there, `on_test`. Where it is
+    not, its share is what the arm's parameters are better for. Not a number where one of them cannot stand on
+    that record.
     """
     selection, limits = extension.selection, extension.equations.thresholds.extended
     equations, (trials, _) = selection.system.equations, _alike(extension)
@@ -218,17 +219,19 @@ def shares(extension: Extension, test: Rows, on: Sequence[bool]) -> list[Share]:
         return [Share()] * len(trials)
     there = [table if so else np.zeros_like(table) for table, so in zip(there, on, strict=True)]
 
-    def left(kept: Sequence[int]) -> tuple[Array, Array]:
-        """Residuals (M, n) of the model with these causes, and their RMSE by joint (n,)."""
+    def left(kept: Sequence[int]) -> Array:
+        """Residuals (M, n) of the model with some of the causes."""
         theta = weighted_fit(equations.rows, with_causes(equations, [trials[k] for k in kept]))
         table = np.concatenate([test.columns, *(there[k] for k in kept)], axis=2)
-        return test.effort - table @ theta, rmse([test], [table], theta)
+        return np.asarray(test.effort - table @ theta)
 
-    every, found = range(len(trials)), []
-    with_all, sizes = left(every)
-    sizes = np.maximum(sizes, 1e-300)
-    for k in every:
-        without, _ = left([i for i in every if i != k])
+    bare, with_all = (e / test.gain for e in residuals(test, extension, on))
+    moving = np.where(test.moving, with_all, np.nan)
+    sizes = [max(float(np.sqrt(np.nanmean(e**2))), 1e-300) if np.isfinite(e).any() else 1.0 for e in moving.T]
+    found = []
+    for k in range(len(trials)):
+        others = [i for i in range(len(trials)) if i != k]
+        without = left(others) if others else bare
         places = trials[k].candidate.joints(len(sizes))
         before, after = (
             np.concatenate([e[test.moving[:, j], j] / sizes[j] for j in places]) for e in (without, with_all)
