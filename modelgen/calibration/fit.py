@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import special
 from scipy.optimize import least_squares
 
 from modelgen.calibration.lever import NAMES, UNITS, Lever
@@ -19,6 +20,7 @@ from modelgen.numeric import Array
 LEAST_SAMPLES = 20
 _ROUNDS = 8  # of fit and residual variance
 _FAR = 6.0  # standard deviations of the prior
+_SIGNIFICANCE = 1e-3  # of the test that the lever as described explains the angles
 _OFFSET_PRIOR = 2 * np.pi  # [rad]: the offset is free
 
 
@@ -55,6 +57,15 @@ class Calibration:
     weak: tuple[str, ...]
     motor: Array
     measured: Array
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the lever as described explains the angles as well as the one found, all values together.
+
+        By the ratio of likelihoods of as many samples as are independent (Wilks 1938).
+        """
+        gained = len(self.motor) / self.correlation * ((self.rms_before / self.rms_after) ** 2 - 1.0)
+        return self.before.rev == self.after.rev and bool(gained <= special.chdtri(len(NAMES), _SIGNIFICANCE))
 
     @property
     def improvement_percent(self) -> float:

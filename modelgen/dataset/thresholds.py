@@ -131,7 +131,8 @@ class DatasetThresholds(Group):
     max_instant_std: float = entry(
         0.15,
         "sampling periods",
-        "When the efforts were read is not asked of records that tell it less surely.",
+        "When the efforts were read is not asked of records that tell it less surely; readings do not count "
+        "within this of which their joint turns back.",
         "conventions are half a period apart: more than three standard deviations",
     )
     turning_periods: float = entry(

@@ -25,10 +25,9 @@ _FAILED = (
     "Of units that failed: mend what the lines say, and call modelgen fleet again with --again. What is "
     "done, of the same files, is kept"
 )
-_READING = (
-    "Less error: on the test record over all joints, with the causes than without. Lack of fit / threshold: "
-    "above 1, something deterministic remains. A click on a heading sorts."
-)
+_LESS = "Less error: on the test record over all joints, with the causes than without. "
+_REMAINS = "Lack of fit / threshold: above 1, something deterministic remains. "
+_SORTS = "A click on a heading sorts."
 
 Piece = tuple[str, int, str]  # word, count, look
 
@@ -51,7 +50,7 @@ def overview(rows: Sequence[Row], again: str = "") -> str:
     time = f"s: by the clock, beside other units; {minutes:z.3g} min of processor time."
     units = [
         Units([cells(row) for row in rows]),
-        Text(f"{_READING} {time}", "quiet"),
+        Text(f"{_explained(rows)} {time}", "quiet"),
     ]
     arms = listed(f"{name}" for name in dict.fromkeys(row["arm"] for row in rows) if name)
     count = f"{len(rows)} unit{'' if len(rows) == 1 else 's'}"
@@ -126,6 +125,13 @@ def cause_bars(rows: Sequence[Row]) -> list[tuple[str, list[Piece], int]]:
             parts.append(("whole arm", found[effect, None, ""], "k4"))
         bars.append((effect, parts, effects[effect]))
     return bars
+
+
+def _explained(rows: Sequence[Row]) -> str:
+    """What the columns of the table are, those that it has."""
+    less = any(row.get("causes") and row.get("overall_gain_percent") is not None for row in rows)
+    remains = any(row.get("lack_of_fit") is not None for row in rows)
+    return f"{_LESS if less else ''}{_REMAINS if remains else ''}{_SORTS}"
 
 
 def _marked(text: str) -> list[Run]:

@@ -113,9 +113,10 @@ def contradicting(found: Identification) -> list[str]:
         return [f"{name} differs from its nominal value by {worst}."]
     others = ", ".join(other for _, other, _ in rest[:_NAMED])
     more = f" and {len(rest) - _NAMED} more" if len(rest) > _NAMED else ""
+    against = "" if found.test is None else "against the effort of its joint "
     return [
         f"{len(apart)} of the {len(nominal)} parameters with nominal values differ from these clearly: "
-        f"{name} most, by {worst}; then {others}{more}."
+        f"{against}{name} most, by {worst}; then {others}{more}."
     ]
 
 

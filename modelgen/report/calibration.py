@@ -130,8 +130,8 @@ def values(c: Calibration) -> list[list[str]]:
 
 
 def stands(c: Calibration) -> bool:
-    """Whether the lever as described agrees with the angles: its branch, and every value by its deviation."""
-    return c.after.rev == c.before.rev and not _moved(c)
+    """Whether the lever as described agrees with the angles: its branch, every value, and all together."""
+    return c.agrees and not _moved(c)
 
 
 def verdict(c: Calibration) -> str:
@@ -142,7 +142,14 @@ def verdict(c: Calibration) -> str:
         f"{e.name} is {number(size * e.value, 4)} {unit}, not {number(size * e.before, 4)}"
         for e, size, unit in _moved(c)
     )
-    return f"Differs by more than {_FAR:g} standard deviations: {moved}." if moved else "The branch differs."
+    if moved:
+        return f"Differs by more than {_FAR:g} standard deviations: {moved}."
+    if c.after.rev != c.before.rev:
+        return "The branch differs."
+    return (
+        f"No value alone differs by more than {_FAR:g} standard deviations, for the angles do not tell one "
+        "from another; together they are not those described."
+    )
 
 
 def _moved(c: Calibration) -> list[tuple[Estimate, float, str]]:

@@ -14,7 +14,7 @@ from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.call import Call
 from modelgen.report.cause_parts import about, law_found, suspected
 from modelgen.report.diagnosis_answers import answers
-from modelgen.report.diagnosis_figures import efforts, replayed, residuals
+from modelgen.report.diagnosis_figures import WINDOWS, efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import SWINGING, assumptions, by_worth, compared
 from modelgen.report.experiment import described
 from modelgen.report.named_joints import named_joints
@@ -166,17 +166,19 @@ def _simulation(d: Diagnosis) -> list[Part]:
 
 
 def _covered(d: Diagnosis, simulated: Windows) -> str:
-    """How much of the record was simulated, for whoever compares with a simulation of all of it."""
+    """How much of the record was simulated, and how much of that is drawn."""
     t = d.test.prepared.t
     whole = float(t[-1] - t[0])
     count, part = len(simulated.t), float(np.sum(simulated.t[:, -1] - simulated.t[:, 0]))
-    if part > (1.0 - _SOME) * whole:
-        return ""
-    windows = "" if d.free else f" in {count} windows"
-    return (
-        f"That is {part:z.3g} s{windows} of the record's {whole:z.3g} s: modelgen simulate --log counts the "
-        "rest too, and its errors are others."
-    )
+    said = []
+    if count > WINDOWS and not d.free:
+        said.append(f"The first {WINDOWS} of {count} windows are drawn.")
+    if part < (1.0 - _SOME) * whole:
+        said.append(
+            f"Simulated are {part:z.3g} s of the record's {whole:z.3g} s: modelgen simulate --log counts the "
+            "rest too, and its errors are others."
+        )
+    return " ".join(said)
 
 
 def _fit(percent: float) -> str:

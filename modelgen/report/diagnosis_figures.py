@@ -11,7 +11,7 @@ from modelgen.diagnosis.result import Diagnosis
 from modelgen.numeric import Array
 from modelgen.report.motion_figures import Motion, joined, motion_pair
 
-_WINDOWS = 24  # of the simulated motion that are shown
+WINDOWS = 24  # of the simulated motion that are shown
 BINS = 24  # over an abscissa
 HELD = 5  # samples, at least, that a mean is made of
 BEFORE, AFTER = "model as described", "extended model"
@@ -124,7 +124,7 @@ def replayed(d: Diagnosis) -> list[Chart]:
         motions = []
         for s, role, label in shown:
             t, measured, simulated = (
-                joined(x[:_WINDOWS]) for x in (s.t, s.measured[:, :, j], s.simulated[:, :, j])
+                joined(x[:WINDOWS]) for x in (s.t, s.measured[:, :, j], s.simulated[:, :, j])
             )
             motions.append(Motion(t, measured, simulated, role, label))
         charts += motion_pair(name, unit[j], motions, begin)

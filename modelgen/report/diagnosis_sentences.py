@@ -169,12 +169,13 @@ def remains(d: Diagnosis) -> str:
         unknown = "No period repeats in the training records, so the noise could not be measured."
         return f"{unknown} {_left(d)}".rstrip()
     where = joint_name(d.arm, f.worst.joint + 1)
-    part = d.lack_of_fit_part
+    part, usual = d.lack_of_fit_part, "1 for a complete model"
     if part is not None:
+        usual = "the most of many short parts of the period"
         where += f", {part[0]} from {part[1]:z.2f} to {part[2]:z.2f} s"
     said = (
         f"Lack of fit over {f.periods} repeated periods: {f.statistic:z.2f}, threshold {f.threshold:z.2f} "
-        f"(1 for a complete model), largest at {where}."
+        f"({usual}), largest at {where}."
     )
     sizes = _sizes(d) if f.found else {}
     repeats = f"About {listed(sizes.values())} repeats (RMS)." if sizes else ""

@@ -25,7 +25,9 @@ AS_DESCRIBED = "the arm as described"
 _EXPLAIN = "Answer the questions above first: no code should be generated from impossible values."
 _UNBIASED = "which the errors of the positions do not bias; code should be generated from those values"
 _EXPLAINED = "If the records are read rightly the model lacks something; this names the cause."
-_LACKING = "Where the error is larger than the noise the model lacks something; this names the cause."
+_LACKING = (
+    "An error that is several times the noise says that the model lacks something; this names the cause."
+)
 _UNKNOWN = "Nothing repeats in the test records, so that they do not show how much of it is noise."
 _NOISE = "noise, between periods"
 _QUESTIONS = 2  # that a phone has room for before the other answers

@@ -87,7 +87,6 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
     name, unit = d.arm.coordinate_names[j], units_of(d)[j]
     against_motion = "" if (best.side > 0).all() else " against the motion"
     x_label = f"{best.name} [{best.unit}]"
-    turned = best.side if np.mean(law[m, j] * best.side) >= 0.0 or not against_motion else -best.side
     effect, over = d.causes[k].effect, best.name
     wave = _wave(d, k)
     kept = _inner(best.x)
@@ -97,7 +96,7 @@ def law_charts(d: Diagnosis, k: int) -> list[Chart]:
         kept = np.logical_and(kept, _amid(best.x, _SEEN * wave))
         shown, waves = f", {_SEEN} of its {waves:z.0f} waves", _SEEN
     x = best.x[kept]
-    old, new, own = ((r[m, j] * turned)[kept] for r in (*d.residuals, law))
+    old, new, own = ((r[m, j] * best.side)[kept] for r in (*d.residuals, law))
     some = np.linspace(0, len(own) - 1, min(_SAMPLES, len(own))).astype(int)
     bins = max(_bins(effect, over), int(_DOTS * waves))
     groups = max(_groups(effect, over), int(_FINE * waves))

@@ -34,7 +34,8 @@ _FINE = {"rad": (1e3, "mrad"), "m": (1e3, "mm")}  # factor and unit in which sma
 _COARSE = 0.01  # rad, m: from which on they are said in these
 _MEASURED = (
     "Goodness of fit 100 (1 - |y - simulated| / |y - mean y|), and RMSE of the positions, of whole parts "
-    "simulated from their beginning, each from the initial states that suit its parameters best."
+    "simulated from their beginning, each from the initial states that suit its parameters best. The parts "
+    "are those that were fitted: modelgen simulate --log says how well another motion is met."
 )
 _VAGUE = "Standard deviations, and what they move, are rough there."
 
@@ -210,7 +211,7 @@ def _uncertain(found: Refinement) -> list[Part]:
     unit, name = arm.coordinate_units[worst.shown_by], arm.coordinate_names[worst.shown_by]
     return [
         Text(
-            f"Most uncertain in the motion is {worst.name}: its standard deviation moves {name} by "
+            f"Most uncertain, against the errors that remain, is {worst.name}: its deviation moves {name} by "
             f"{_fine(worst.moves, unit)} (RMS), beside an error of {_fine(errors[worst.shown_by], unit)}."
         )
     ]

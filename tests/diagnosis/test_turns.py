@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import modelgen as mg
+from modelgen.dataset.processing.rest import beside_turns
 from modelgen.numeric import Array
 
 ARM = """schema: 1
@@ -52,7 +53,7 @@ def log(seed: int, hold: str) -> Array:
 
 @pytest.mark.parametrize("hold", ["instant", "0.004"])
 def test_a_joint_that_sticks_as_it_turns_lacks_nothing(tmp_path: Path, hold: str) -> None:
-    """Were the readings at its turns counted, something would be missing."""
+    """Were the readings at its turns counted, something would be missing, where they are of one instant."""
     mapping = tmp_path / "mapping.yaml"
     joint = "{position: {column: q1, unit: rad}, effort: {column: i1, unit: A}}"
     mapping.write_text(f"schema: 1\nhold: {hold}\njoints:\n  - {joint}\n", encoding="utf-8")
@@ -68,4 +69,14 @@ def test_a_joint_that_sticks_as_it_turns_lacks_nothing(tmp_path: Path, hold: str
             arm, logs[:2], logs[2], mapping=mapping, thresholds=chosen, experiment=False, processes=1
         )
         verdicts.append(found.verdict)
-    assert verdicts[0] == "nothing_missing" != verdicts[1]
+    assert verdicts[0] == "nothing_missing"
+    assert hold != "instant" or verdicts[1] != "nothing_missing"
+
+
+def test_what_noise_turns_is_no_turn() -> None:
+    """A joint that moves slowly beside the noise of its speed, and one that turns five times, with none."""
+    t = np.arange(0.0, 20.0, 0.01)
+    noisy = 0.05 * np.sin(1.5 * t) + 0.1 * np.random.default_rng(5).standard_normal(len(t))
+    found = beside_turns(np.column_stack([noisy, np.sin(0.8 * t + 0.3)]), 1.0, 6)
+    assert not found[:, 0].any()
+    assert 5 <= found[:, 1].sum() <= 2 * 5

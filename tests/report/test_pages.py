@@ -373,7 +373,7 @@ def test_what_is_uncertain_of_a_refinement_is_said_in_its_motion() -> None:
         assert x.moves == pytest.approx(moved, rel=0.05)
         assert x.moves < 1e-3  # rad, the noise: so many samples tell more than one
     page = found.files()["report.html"]
-    assert "Most uncertain in the motion is" in page
+    assert "Most uncertain, against the errors that remain, is" in page
 
 
 def test_a_refinement_says_first_by_how_much_the_simulated_motion_errs() -> None:
