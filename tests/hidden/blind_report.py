@@ -146,7 +146,10 @@ def _answers(good: list[Line], strengths: list[float]) -> list[tuple[str, str]]:
         ("recovered at least 90 %", proportion(most, len(recovered))),
         ("14-bit joint encoders: a wrong name", rate(coarse, "result", "wrong")),
         ("14-bit joint encoders, s = 1.3: cause and joint", rate(hidden, "result", "found")),
-        ("free motion: right answer", rate(free, "result", "found")),
+        (
+            "free motion: right answer, or one that these motions cannot tell from it",
+            rate(free, "result", "found"),
+        ),
         ("free motion: a wrong name", rate(free, "result", "wrong")),
         ("seconds for a diagnosis, median (longest)", _seconds(good)),
     ]

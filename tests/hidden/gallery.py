@@ -174,6 +174,8 @@ def _counted(name: str, run: Sequence[Line]) -> str:
             f"{listed(f'{_link(x)} ({k})' for x, k in wrong.items())} {'was' if len(wrong) == 1 else 'were'}"
         )
         said += f". It was named where {hidden} hidden"
+        if any(x["result"] == "found" for x in others if name in [other for other, _ in x["named"]]):
+            said += ", in records in which the two are one"
     return f"{said}."
 
 

@@ -498,6 +498,18 @@ def with_a_ripple(found: Diagnosis, waves: float) -> tuple[Diagnosis, float]:
     return with_law(found, "torque_ripple", values, np.sin(harmonic * motor)), harmonic
 
 
+def test_friction_that_is_less_than_described_is_drawn_below_zero(found: Diagnosis) -> None:
+    """A law of dry friction over the position that is negative everywhere: against the motion it is too."""
+    p = found.test.prepared
+    q, side = p.picked(p.q)[:, 1], np.sign(p.picked(p.dq)[:, 1])
+    values = {"slope": 0.0, "curvature": -2.0}
+    law, _ = law_charts(with_law(found, "position_dependent_friction", values, -2.0 * q**2 * side), 0)
+    assert "against the motion" in law.y_label
+    (curve,) = [c for c in law.curves if c.role == "law"]
+    assert np.nanmin(curve.y) < 0.0
+    assert np.nanmax(curve.y) < 0.1 * -np.nanmin(curve.y)
+
+
 def test_friction_by_load_is_drawn_over_the_load_as_a_line() -> None:
     """Whose slope is the coefficient, from no load on; not over the position, where it has two signs."""
     records, asked = three("load_dependent_friction", 2, 0.3), [("load_dependent_friction", 2)]
