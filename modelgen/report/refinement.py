@@ -212,7 +212,8 @@ def _uncertain(found: Refinement) -> list[Part]:
     return [
         Text(
             f"Most uncertain, against the errors that remain, is {worst.name}: its deviation moves {name} by "
-            f"{_fine(worst.moves, unit)} (RMS), beside an error of {_fine(errors[worst.shown_by], unit)}."
+            f"{_fine(worst.moves, unit)} (RMS), beside an error of {_fine(errors[worst.shown_by], unit)}. "
+            "Deviations count the errors of this motion; what the model lacks may move values by more."
         )
     ]
 
