@@ -203,13 +203,13 @@ def columns_of(trial: FittedCandidate, test: Rows, extension: Extension) -> Arra
     return None if found is None else found[0]
 
 
-def shares(extension: Extension, test: Rows, on: Sequence[bool]) -> list[Share]:
+def shares(extension: Extension, test: Rows, on: Sequence[bool], pair: tuple[Array, Array]) -> list[Share]:
     """Shares of the causes, over the joints where each acts, in units of what all causes leave there.
 
     The model is fitted to the training records, with all causes as the extended one is, and with all but this
     one; values that were searched for stay. on: of each cause, whether it is there, `on_test`. Where it is
-    not, its share is what the arm's parameters are better for. Not a number where one of them cannot stand on
-    that record.
+    not, its share is what the arm's parameters are better for. pair: the `residuals` before and after. Not a
+    number where one of the causes cannot stand on that record.
     """
     selection, limits = extension.selection, extension.equations.thresholds.extended
     equations, (trials, _) = selection.system.equations, _alike(extension)
@@ -225,7 +225,7 @@ def shares(extension: Extension, test: Rows, on: Sequence[bool]) -> list[Share]:
         table = np.concatenate([test.columns, *(there[k] for k in kept)], axis=2)
         return np.asarray(test.effort - table @ theta)
 
-    bare, with_all = (e / test.gain for e in residuals(test, extension, on))
+    bare, with_all = (e / test.gain for e in pair)
     moving = np.where(test.moving, with_all, np.nan)
     sizes = [max(float(np.sqrt(np.nanmean(e**2))), 1e-300) if np.isfinite(e).any() else 1.0 for e in moving.T]
     found = []

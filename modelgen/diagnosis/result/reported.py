@@ -64,7 +64,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         worth = (
             motion_shares(extension, test, there, played[1], limits)
             if equations.free
-            else shares(extension, test, there)
+            else shares(extension, test, there, pair)
         )
         causes = tuple(replace(cause, share=share) for cause, share in zip(causes, worth, strict=True))
     causes = tuple(
