@@ -77,6 +77,7 @@ def page(title: str, task: str, answers: Parts, sections: Parts, own: str = "") 
             title=title,
             task=task,
             answers=[_filled(a) for a in answers],
+            next_title=answers[-1][0] if answers else "",
             sections=[_filled(s) for s in sections],
             style=_joined("chart.css", *(f"{name}.css" for name in names)),
             script=_joined(*(f"{name}.js" for name in names)),

@@ -34,17 +34,25 @@ PIECES = st.sampled_from([*TOKENS.split(), *ODD, *BREAKS])
 
 
 def outcome(text: str) -> None:
-    """Loads the text: good arms or a good message, within two seconds of CPU."""
-    start = time.process_time()
-    message = ""
-    try:
-        arms = loads(text)
-    except InputError as error:
-        message = str(error)
-    else:
-        assert arms
-        assert all(isinstance(arm, Arm) and arm.coordinates for arm in arms.values())
-    assert time.process_time() - start < 2.0
+    """Loads the text: good arms or a good message, within two seconds of CPU.
+
+    The time is the least of three: the collector of a long run's garbage comes once, a document that takes
+    long takes long every time.
+    """
+    for _ in range(3):
+        start = time.thread_time()
+        message = ""
+        try:
+            arms = loads(text)
+        except InputError as error:
+            message = str(error)
+        else:
+            assert arms
+            assert all(isinstance(arm, Arm) and arm.coordinates for arm in arms.values())
+        took = time.thread_time() - start
+        if took < 2.0:
+            break
+    assert took < 2.0
     if message:
         assert re.match(r"arms\.yaml:[1-9][0-9]*:[1-9][0-9]*: ", message)
         assert message.isprintable()
