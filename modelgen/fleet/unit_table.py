@@ -71,7 +71,7 @@ def _cell(
     text: str = "", look: str = "", sort: str | None = None, causes: Sequence[tuple[str, str, str]] = ()
 ) -> dict[str, Any]:
     """A cell of a unit. sort: what it is sorted by, None for its text; causes: with rivals and harm."""
-    return {"text": text, "look": look, "sort": sort, "causes": causes}
+    return {"text": text, "look": look, "sorted": sort is not None, "sort": sort, "causes": causes}
 
 
 def fit_over_threshold(row: Row) -> float:

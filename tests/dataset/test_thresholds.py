@@ -20,7 +20,7 @@ from modelgen.dataset import (
     read,
 )
 from modelgen.dataset.processing.content import check_coarse, chosen_cutoff, motion_bandwidth
-from modelgen.dataset.processing.instants import fitting
+from modelgen.dataset.processing.instants import fitting, with_hold
 from modelgen.dataset.processing.periods import period_of
 from modelgen.dataset.processing.sequence import in_sequence
 from modelgen.dataset.processing.stamps import true_stamps
@@ -106,7 +106,7 @@ def moving(limits: DatasetThresholds) -> Any:
 
 
 def awake(limits: DatasetThresholds, r: Record = RECORD) -> Any:
-    return prepare(r, Settings(cutoff=5.0, thresholds=limits)).awake.tolist()
+    return prepare(r, Settings(cutoff=5.0, turns=False, thresholds=limits)).awake.tolist()
 
 
 def of_rates(limits: DatasetThresholds) -> Any:
@@ -199,6 +199,7 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "min_rest_time": (0.5, lambda limits: chosen(limits, cutoff=5.0)),
         "max_rest_weight": (0.5, moving),
         "short_rest_cutoff_periods": (0.2, awake),
+        "turning_periods": (4.0, lambda limits: awake(limits, with_hold(RECORD, "instant"))),
         "max_instant_std": (0.01, lambda limits: fitting(0.02, 0.05, STEP, limits)),
         "instant_tolerance": (0.02, lambda limits: fitting(0.15, 0.01, STEP, limits)),
         "min_rows": (100, rows),

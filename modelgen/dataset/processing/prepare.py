@@ -7,6 +7,7 @@ robots with power model"; Pham, Gautier and Poignet, 2001).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -17,7 +18,13 @@ from modelgen.dataset.drives import drives_of
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.decimation import Decimation, decimation, kept
 from modelgen.dataset.processing.filters import advanced, smoothed
-from modelgen.dataset.processing.rest import directed, moving_samples, samples_away_from_rest, weights
+from modelgen.dataset.processing.rest import (
+    beside_turns,
+    directed,
+    moving_samples,
+    samples_away_from_rest,
+    weights,
+)
 from modelgen.dataset.processing.saturation import saturated
 from modelgen.dataset.processing.settings import Chosen, Settings, choose
 from modelgen.errors import InputError
@@ -186,13 +193,19 @@ def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
 
     Nor do those count at which nobody knows which way a joint moves: it is slower than the rounding of its
     position lets see, or turns back within what the instants of the efforts are known to, a period where
-    they lie between two readings. A held effort is a mean, and tells of either side.
+    they lie between two readings. Nor, where turns do not count, the last before a turn and the first after
+    it: a joint sticks for a while as it turns, and nobody sees between two readings for how long. What lies
+    between two readings is made of those a period further off, too. A held effort is a mean, and tells of
+    either side.
     """
-    rate = 1.0 / record.step
+    rate, limits = 1.0 / record.step, chosen.thresholds
     between = abs(record.hold * rate - round(record.hold * rate)) > 1e-9
-    within = 0.0 if record.held else 1.0 if between else chosen.thresholds.max_instant_std
+    within = 0.0 if record.held else 1.0 if between else limits.max_instant_std
     awake: np.ndarray = samples_away_from_rest(dq, chosen, rate)
     awake &= directed(dq, chosen.noise, within)
+    if not (chosen.turns or record.held):
+        apart = math.ceil(rate / chosen.position_cutoff) if chosen.position_cutoff else 1
+        awake &= ~beside_turns(dq, limits.turning_periods * (2.0 if between else 1.0), apart)
     for part in () if record.arm is None else couplings_of(record.arm):
         own = replace(chosen, gates=(part.gate(chosen.gates),))
         awake[:, [part.one, part.other]] &= samples_away_from_rest(part.speed(dq), own, rate)

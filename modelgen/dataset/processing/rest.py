@@ -53,6 +53,23 @@ def directed(dq: Array, noise: tuple[float, ...], within: float) -> np.ndarray:
     return np.asarray(np.abs(dq) >= np.maximum(noise, within * np.abs(np.gradient(dq, axis=0))))
 
 
+def beside_turns(dq: Array, within: float, apart: int) -> np.ndarray:
+    """Samples (N, n) that lie `within` sampling periods of an instant at which a joint turns back, as its
+    acceleration has it: one that sticks for some time is near it for longer.
+
+    dq: speeds (N, n). apart: samples between two turns, at least; speeds most of whose changes of sign lie
+    nearer to each other have them by their noise, and say nothing of turns.
+    """
+    if len(dq) < 2 or not within:
+        return np.zeros(dq.shape, dtype=bool)
+    turned = np.zeros(dq.shape)
+    turned[1:] = dq[1:] * dq[:-1] <= 0.0
+    around = ndimage.convolve1d(turned, np.ones(2 * apart + 1), axis=0, mode="constant")
+    alone = (turned > 0.0) & (around < 1.5)
+    seen = 2.0 * alone.sum(axis=0) >= turned.sum(axis=0)
+    return np.asarray(seen & (np.abs(dq) < within * np.abs(np.gradient(dq, axis=0))))
+
+
 def weights(flags: np.ndarray, settings: Chosen, rate: float) -> Array:
     """Weights (N, n) of samples by which columns are multiplied before a filter: 0 where flags (N, n) are not
     set, 1 away from there.

@@ -25,8 +25,8 @@ class Settings:
     which runs forwards and backwards. position_cutoff, position_order: light filter of the positions,
     0 Hz: none. half_width: of the central differences, whose order is twice that. factor: decimation,
     every factor-th sample is kept. trim: cut off at both ends [s]. rest_gate: speeds below which a
-    joint is at rest [rad/s, m/s], one or by joint. rest_time: how long it must stay below [s]. thresholds:
-    by which the rest is chosen.
+    joint is at rest [rad/s, m/s], one or by joint. rest_time: how long it must stay below [s]. turns: whether
+    efforts at an instant count beside a turn of their joint. thresholds: by which the rest is chosen.
     """
 
     cutoff: float | None = None
@@ -38,6 +38,7 @@ class Settings:
     trim: float | None = None
     rest_gate: float | tuple[float, ...] | None = None
     rest_time: float | None = None
+    turns: bool = True
     thresholds: DatasetThresholds = USUAL
 
 
@@ -61,6 +62,7 @@ class Chosen:
     rest_time: float
     noise: tuple[float, ...]
     edge: float
+    turns: bool = True
     thresholds: DatasetThresholds = USUAL
     spacing: float | None = None
 
@@ -156,6 +158,7 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         rest_time=time,
         noise=tuple(np.max([n.speeds for n in noise], axis=0).tolist()),
         edge=1.0 / (position or 0.5 * rate) if noisy else 0.0,
+        turns=settings.turns,
         thresholds=limits,
     )
 

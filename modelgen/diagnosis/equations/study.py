@@ -62,6 +62,8 @@ def study_of(arm: Arm, found: Sequence[Record], options: Options) -> Study:
         trained, lengths = _repeating(found[:-1], period, thresholds)
         found = [*trained, found[-1]]
     settings = settings_for(found, options.cutoff, thresholds)
+    # What is left out mixes noise into the band: how much is seen where the motion repeats, and there alone.
+    settings = replace(settings, turns=all(p is None for p in lengths))
     if free:
         found = [released(record, settings) for record in found]
         if period is not None:
