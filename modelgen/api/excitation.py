@@ -175,6 +175,6 @@ def excite(
     progress(f"{arm.name}: writing the programme", 0, None)
 
     def iterated(ended: int, done: int, most: int) -> None:
-        progress(f"{arm.name}: {ended} of {chosen.starts} starts done, iteration", done, most)
+        progress(f"{arm.name}: iterations of {chosen.starts} starts, {ended} done", done, most)
 
     return Excitation(optimise(arm, chosen, None if progress is silent else iterated))

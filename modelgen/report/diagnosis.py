@@ -31,7 +31,7 @@ _SIMULATED = {
 }
 _FIT = (
     "goodness of fit 100 (1 - |y - y\N{COMBINING CIRCUMFLEX ACCENT}| / |y - mean y|), mean absolute error "
-    "and RMSE in rad or m"
+    "and RMSE in"
 )
 _SHEET = ("speed", "position", "load (size of the effort)")  # of the residuals that stand in a file
 _RIVALS = (("cause", "left"), ("rival", "left"), ("why not", "left"))
@@ -161,7 +161,8 @@ def _simulation(d: Diagnosis) -> list[Part]:
         )
         for j in range(len(one.f_gof))
     ]
-    text = f"{_SIMULATED[d.free]}: {_FIT}{', before and after' if d.causes else ''}. {_covered(d, one)}"
+    fit = f"{_FIT} {' or '.join(sorted(set(d.arm.coordinate_units), reverse=True))}"
+    text = f"{_SIMULATED[d.free]}: {fit}{', before and after' if d.causes else ''}. {_covered(d, one)}"
     return [Text(text.rstrip()), Grid("Simulated motion", heads, rows, folds=True), block(replayed(d))]
 
 

@@ -278,7 +278,7 @@ def compared(d: Diagnosis) -> list[str]:
     banded = abs(usual - cutoff) > _SAME * cutoff
     if not rested and not banded:
         return []
-    said = [f"The errors on the test record are those below {cutoff:z.6g} Hz, while the joint moves."]
+    said = [f"The errors on the test record are those below {cutoff:z.4g} Hz, while the joint moves."]
     if banded:
         said.append(
             f"Without an option modelgen identify counts those below {usual:z.4g} Hz, other errors than "

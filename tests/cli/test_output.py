@@ -207,7 +207,7 @@ def test_an_excitation_says_how_far_its_starts_are(processes: int, tmp_path: Pat
         app, [*words, "--out", str(tmp_path / "a.csv")], env={"MODELGEN_PROGRESS": "0.5"}
     )
     assert done.exit_code == 0
-    said = rf"s: ariane4: 0 of {processes} starts done, iteration, (\d+) of {60 * processes}$"
+    said = rf"s: ariane4: iterations of {processes} starts, 0 done, (\d+) of {60 * processes}$"
     found = re.findall(said, done.stderr, re.MULTILINE)
     within = [int(n) for n in found if 0 < int(n) < 60 * processes]
     assert len(within) >= 2

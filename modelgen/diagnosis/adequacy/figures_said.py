@@ -55,7 +55,7 @@ def significance(
         return found, f"{what} from that of an arm without it"
     sizes = [abs(values[name]) / std for name, std in known.items() if name in cause.candidate.names]
     one = len(cause.candidate.names) == 1
-    text = "not asked, its evidence counts" if one else "not asked of each, their evidence counts together"
+    text = "its evidence decides" if one else "their evidence together decides"
     if not sizes:
         return float("nan"), text
     largest = number(max(sizes))
