@@ -65,10 +65,21 @@ def test_what_errors_of_positions_can_feign() -> None:
 
 
 def test_coarse_positions_name_nothing_and_say_why() -> None:
-    records = [coarse(r) for r in three(None, 1, 0.0, seed=4)]
+    """Their errors are the larger part of what remains: nobody sees what else does."""
+    records = [coarse(r, 2.0 * COUNT) for r in three(None, 1, 0.0, seed=4)]
     found = diagnose(ARM, records)
     assert found.verdict == "cannot_tell", found.causes
     assert "too coarse" in found.reason
+
+
+def test_coarse_positions_hide_nothing_where_other_noise_is_larger_and_nothing_repeats() -> None:
+    """Their errors could feign more than what counts, and have not."""
+    records = [coarse(r, 0.6 * COUNT) for r in three(None, 1, 0.0, seed=4)]
+    found = diagnose(ARM, records)
+    assert found.positions.feigned.max() > 2.0 * USUAL.validation.min_gain_percent
+    assert found.verdict == "nothing_missing"
+    small = diagnose(ARM, [coarse(r, 0.6 * COUNT) for r in three("stribeck_friction", 1, 0.1, seed=4)])
+    assert [(c.effect, c.joint) for c in small.causes] == [("stribeck_friction", 1)]
 
 
 @pytest.mark.parametrize("effect", ["stribeck_friction", "friction_offset"])

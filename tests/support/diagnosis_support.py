@@ -73,9 +73,9 @@ def three(effect: str | None, joint: int, size: float, seed: int = 0) -> list[Re
 COUNT = 2 * np.pi / 2**13
 
 
-def coarse(record: Record) -> Record:
-    """Seen by encoders at the joints."""
-    q = np.round(record.q / COUNT) * COUNT
+def coarse(record: Record, count: float = COUNT) -> Record:
+    """Seen by encoders at the joints, in steps of `count` [rad]."""
+    q = np.round(record.q / count) * count
     return replace(record, q=q, motor=q * np.array([80.0, 60.0]), motor_side=(False, False))
 
 

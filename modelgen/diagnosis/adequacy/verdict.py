@@ -17,6 +17,9 @@ from modelgen.diagnosis.selection import Cause, Selection
 from modelgen.effects.placement import titled
 from modelgen.numeric import Array
 
+# Percent of the RMSE that errors of the positions could feign where they are half of its square.
+LARGER_PART = 100.0 * (1.0 - np.sqrt(0.5))
+
 
 @dataclass(frozen=True)
 class Remains:
@@ -65,7 +68,7 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             "what remains is no more than what the counts of the encoders leave; whatever is less than that "
             "takes finer ones to see"
         )
-    if remains.feigned.max() > least:
+    if remains.feigned.max() > (least if _in_doubt(selection, remains) else LARGER_PART):
         joint = names[int(np.argmax(remains.feigned))]
         return "cannot_tell", (
             "the positions are too coarse or too noisy: their errors alone could feign a gain of "
@@ -94,6 +97,15 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
+
+
+def _in_doubt(selection: Selection, remains: Remains) -> bool:
+    """Whether anything remains that errors of the positions may have made, or may hide.
+
+    Else what remains is noise, whichever part of it is the positions'.
+    """
+    deterministic = remains.fit is None or remains.fit.found or remains.likeness is not None
+    return deterministic or any(r.refused == "positions" for turn in selection.turns for r in turn)
 
 
 def _finer(selection: Selection) -> str:
