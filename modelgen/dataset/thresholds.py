@@ -138,9 +138,9 @@ class DatasetThresholds(Group):
     turning_periods: float = entry(
         1.0,
         "sampling periods",
-        "Where motions repeat, a diagnosis leaves out efforts at an instant so near to one at which their "
-        "joint turns back: it sticks there, and nobody sees between two readings for how long. Twice that "
-        "where efforts are interpolated.",
+        "Where motions repeat, a diagnosis leaves out efforts so near to an instant at which their joint "
+        "turns back: it sticks there, and nobody sees between two readings for how long. Twice that where "
+        "efforts are interpolated.",
         "the last reading before a turn and the first one after it",
     )
     instant_tolerance: float = entry(

@@ -193,17 +193,17 @@ def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
 
     Nor do those count at which nobody knows which way a joint moves: it is slower than the rounding of its
     position lets see, or turns back within what the instants of the efforts are known to, a period where
-    they lie between two readings. Nor, where turns do not count, the last before a turn and the first after
-    it: a joint sticks for a while as it turns, and nobody sees between two readings for how long. What lies
-    between two readings is made of those a period further off, too. A held effort is a mean, and tells of
-    either side.
+    they lie between two readings; of held efforts, which are means, either side is known. Nor, where turns do
+    not count, the last before a turn and the first after it: a joint sticks for a while as it turns, and
+    nobody sees between two readings for how long, of means either. What lies between two readings is made of
+    those a period further off, too.
     """
     rate, limits = 1.0 / record.step, chosen.thresholds
     between = abs(record.hold * rate - round(record.hold * rate)) > 1e-9
     within = 0.0 if record.held else 1.0 if between else limits.max_instant_std
     awake: np.ndarray = samples_away_from_rest(dq, chosen, rate)
     awake &= directed(dq, chosen.noise, within)
-    if not (chosen.turns or record.held):
+    if not chosen.turns:
         apart = math.ceil(rate / chosen.position_cutoff) if chosen.position_cutoff else 1
         awake &= ~beside_turns(dq, limits.turning_periods * (2.0 if between else 1.0), apart)
     for part in () if record.arm is None else couplings_of(record.arm):

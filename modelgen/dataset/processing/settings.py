@@ -26,7 +26,7 @@ class Settings:
     0 Hz: none. half_width: of the central differences, whose order is twice that. factor: decimation,
     every factor-th sample is kept. trim: cut off at both ends [s]. rest_gate: speeds below which a
     joint is at rest [rad/s, m/s], one or by joint. rest_time: how long it must stay below [s]. turns: whether
-    efforts at an instant count beside a turn of their joint. thresholds: by which the rest is chosen.
+    efforts count beside a turn of their joint. thresholds: by which the rest is chosen.
     """
 
     cutoff: float | None = None
