@@ -9,6 +9,7 @@ import numpy as np
 
 from modelgen.backends.numpy import NumpyFunction
 from modelgen.charts import Chart, Curve, number, over_time
+from modelgen.dataset.drives import drives_of
 from modelgen.diagnosis.equations.checks import columns_of_effects
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.effects import CATALOGUE, Definition, InputEffect
@@ -41,7 +42,7 @@ _FAR = 2.0  # times the span of the others, by which they are left out
 
 @dataclass(frozen=True)
 class _Abscissa:
-    """x: (M,) at the rows that move. side: (M,) ones, or the direction of the motion."""
+    """x: (M,) at the rows that move. side: (M,) ones, or the sign of an effort that drives the motion."""
 
     name: str
     unit: str
@@ -232,7 +233,7 @@ def _abscissa(d: Diagnosis, k: int, j: int) -> tuple[_Abscissa, float]:
 
 def _tried(d: Diagnosis, j: int, definition: type[Definition]) -> Iterator[_Abscissa]:
     p, m = d.test.prepared, d.test.moving[:, j]
-    direction = np.sign(p.picked(p.dq)[m, j])
+    direction = np.sign(_driving(d)[m, j])
     abscissae = against(d)
     # what is a curve over the motor's position is one over the joint's, but for what repeats with the motor
     motor = abscissae.pop("motor position")
@@ -248,6 +249,15 @@ def _tried(d: Diagnosis, j: int, definition: type[Definition]) -> Iterator[_Absc
     time = p.t[m] - p.t[0]
     for side in (np.ones(len(time)), direction):
         yield _Abscissa("time", "s", time, side)
+
+
+def _driving(d: Diagnosis) -> Array:
+    """Speeds (M, n) of the motors, signed as the efforts of the log are that drive them: a lever may turn its
+    joint the other way, and so may the constant of a motor or of a transducer.
+    """
+    p = d.test.prepared
+    constants = np.array([x.torque_constant for x in drives_of(d.arm)])
+    return np.asarray(p.picked(p.dmotor) * constants * d.test.gain)
 
 
 def _loads(d: Diagnosis) -> dict[str, Array]:

@@ -510,6 +510,20 @@ def test_friction_that_is_less_than_described_is_drawn_below_zero(found: Diagnos
     assert np.nanmax(curve.y) < 0.1 * -np.nanmin(curve.y)
 
 
+def test_friction_is_drawn_above_zero_whichever_way_its_motor_turns_the_joint(found: Diagnosis) -> None:
+    p = found.test.prepared
+    q, side = p.picked(p.q)[:, 1], np.sign(p.picked(p.dq)[:, 1])
+    values = {"slope": 0.0, "curvature": 2.0}
+    turned = replace(found.test, prepared=replace(p, motor=-p.motor, dmotor=-p.dmotor, ddmotor=-p.ddmotor))
+    for test, way in ((found.test, 1.0), (turned, -1.0)):
+        drawn = with_law(found, "position_dependent_friction", values, 2.0 * way * q**2 * side)
+        law, _ = law_charts(replace(drawn, test=test), 0)
+        assert "against the motion" in law.y_label
+        (curve,) = [c for c in law.curves if c.role == "law"]
+        assert np.nanmax(curve.y) > 0.0
+        assert np.nanmin(curve.y) > -0.1 * np.nanmax(curve.y)
+
+
 def test_friction_by_load_is_drawn_over_the_load_as_a_line() -> None:
     """Whose slope is the coefficient, from no load on; not over the position, where it has two signs."""
     records, asked = three("load_dependent_friction", 2, 0.3), [("load_dependent_friction", 2)]
