@@ -103,6 +103,7 @@ class Traits(ABC):
     periodic: it repeats with its coordinate, `harmonic` times in a `revolution`, two of its parameters; the
         waves are read off a periodogram.
     rereads: with it the joint is elsewhere at the same reading of its motor.
+    relative: motions show it beside that of other joints alone; where all have it, so do the parameters.
     of_rotor: its parameter is the inertia of the drive itself, before what lies between drive and link.
     overlooked: how many times its usual size, and in any case up to which value, nobody sees it at a glance.
     reading: what can be read of it on the bench.
@@ -129,6 +130,7 @@ class Traits(ABC):
     needs_drive: ClassVar[bool] = False
     periodic: ClassVar[bool] = False
     rereads: ClassVar[bool] = False
+    relative: ClassVar[bool] = False
     of_rotor: ClassVar[bool] = False
     overlooked: ClassVar[tuple[float, float]] = (math.inf, 0.0)
     reading: ClassVar[Reading | None] = None

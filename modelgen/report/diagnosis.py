@@ -119,7 +119,7 @@ def _others(d: Diagnosis) -> Iterator[Section]:
         for heading, rows in turns:
             parts += [Heading(heading), Grid(heading, _CANDIDATES, rows)]
         last = found.pop()
-        folded = Folded("All candidates, and why each is no cause", parts, printed=False)
+        folded = Folded("The candidates, and what became of each", parts, printed=False)
         found.append(last._replace(parts=[*last.parts, folded]))
     yield from found
 

@@ -28,10 +28,13 @@ _SHOWN = 12  # candidates of a turn
 
 
 def rankings(arm: Arm, turns: History) -> list[tuple[str, list[Sequence[str]]]]:
-    """Heading and rows of every turn that had candidates."""
+    """Heading and rows of every turn that had candidates, of the best of them."""
     headings = ["Candidates", *[f"Candidates beside what turn {k} chose" for k in range(1, len(turns) + 1)]]
-    ranked = zip(headings, (_rows(arm, turn) for turn in turns), strict=False)
-    return [(heading, rows) for heading, rows in ranked if rows]
+    return [
+        (heading + (f": {_SHOWN} of {len(turn)}" if len(turn) > _SHOWN else ""), _rows(arm, turn))
+        for heading, turn in zip(headings, turns, strict=False)
+        if turn
+    ]
 
 
 def _rows(arm: Arm, turn: Sequence[Ranked]) -> list[Sequence[str]]:

@@ -35,6 +35,7 @@ CONSTANTS = {
         "SIZES": ACCURACY,
         "SPREAD": ROUNDING,
     },
+    "adequacy/verdict.py": {"LARGER_PART": "the larger part of something is more than half of it"},
     "candidates/columns.py": {"TAIL": ROUNDING},
     "candidates/periodogram.py": {"MANY": BUDGET, "PLACES": ACCURACY},
     "candidates/search.py": {

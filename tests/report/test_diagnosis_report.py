@@ -279,7 +279,7 @@ def test_the_page_is_printed_on_few_sheets_and_whole(many: bool, found: Diagnosi
                 shown = folded.locator("table, p, ul").first.is_visible()
                 title = folded.locator("summary").text_content() or ""
                 assert shown != title.startswith(
-                    ("All candidates", *(f"Parameters of {e}" for e in CATALOGUE))
+                    ("The candidates", *(f"Parameters of {e}" for e in CATALOGUE))
                 )
 
 

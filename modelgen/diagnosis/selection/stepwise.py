@@ -128,7 +128,7 @@ class _Steps:
         elastic = {t.candidate.joint for t in self.trials if t.candidate.elastic}
         search = Search(self.system, self.known, elastic)
         taken = {t.candidate.place for t in self.trials}
-        left = [c for c in self.pool if c.place not in taken]
+        left = [c for c in self.pool if c.place not in taken and not self._last(c)]
         stage = f"candidates for cause {len(self.causes) + 1}"
         told = None if self.report is None else partial(self.report, stage)
         trials, faint, astray, refused = [], [], [], []
@@ -145,6 +145,18 @@ class _Steps:
             else:
                 trials.append(found)
         return trials, faint, astray, refused
+
+    def _last(self, c: Candidate) -> bool:
+        """Whether an effect that shows between joints alone is a cause at all the others already: at all of
+        them it is the scale of the parameters, and a fit that shrinks everything has the least residuals.
+        """
+        arm = self.equations.arm
+        if not c.definition.relative or c.joint is None:
+            return False
+        others = {j for j in range(1, self.equations.n + 1) if c.definition.stands_at(arm, j)} - {c.joint}
+        return bool(others) and others <= {
+            t.candidate.joint for t in self.trials if t.candidate.effect == c.effect
+        }
 
     def _judged(self, trials: Sequence[FittedCandidate], gates: Gates) -> list[Judged]:
         """Judge the trials by the gates; some of those that pass give way to others."""

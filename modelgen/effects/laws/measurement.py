@@ -123,6 +123,7 @@ class DriveGainError(DescriptionEffect):
         ),
     )
     needs_effort = True
+    relative = True
     confused_with = ("load_dependent_friction", "torque_constant_saturation")
     experiment = "a run with a known payload"
     shown = at(error=0.1)
