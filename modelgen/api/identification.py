@@ -225,7 +225,8 @@ def identify(
 
 def _processing(o: Outcome, *, every: bool = False) -> list[str]:
     """What was found out about the logs, in few lines or every one, and how they were processed."""
-    steps = [line for line in o.data["processing"] if line not in o.log.remarks]
+    # the first says how many samples there are, as the log does
+    steps = [line for line in o.data["processing"][1:] if line not in o.log.remarks]
     lines = o.log.lines() if every else o.log.brief()[0]
     return [*(f"log: {line}" for line in lines), *steps]
 

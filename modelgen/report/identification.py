@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ _LACKING = (
     "An error that is several times the noise says that the model lacks something; this names the cause."
 )
 _UNKNOWN = "Nothing repeats in the test records, so that they do not show how much of it is noise."
+_RING = ", and a ring where the description has it"
 _NOISE = "noise, between periods"
 _QUESTIONS = 2  # that a phone has room for before the other answers
 _POOR = "Poorly determined parameters"
@@ -194,34 +196,38 @@ def following(found: Identification, call: Call, speeds: Sequence[float]) -> lis
             Command(again),
         ]
     parts: list[Any] = [Text(f"{call.first}{_EXPLAIN}")] if wrong else code
-    diagnose, far = call.diagnosing(), "" if found.test is None else _above_noise(found.test, found)
+    diagnose = call.diagnosing()
     if found.test is not None and diagnose:
+        far, said = _beside_noise(found.test, found)
         if far and not wrong:
             asis = [
                 Text("For the values as they are: generate code with these folded in:"),
                 Command(generate),
             ]
-            parts = [Text(f"{call.first}{far}"), Command(diagnose), *(code if again else asis)]
+            parts = [Text(f"{call.first}{said}"), Command(diagnose), *(code if again else asis)]
         else:
-            parts += [Text(_EXPLAINED if wrong else _LACKING), Command(diagnose)]
+            parts += [Text(_EXPLAINED if wrong else said), Command(diagnose)]
     excite = call.exciting(call.beside("trajectory.csv"), speeds)
     if found.poor() and excite:
         parts += [Text("A motion that determines the parameters better:"), Command(excite)]
     return parts
 
 
-def _above_noise(test: Validation, found: Identification) -> str:
-    """By how much the error is larger than the noise where the model clearly lacks something; else empty."""
-    if test.repeats is None:
-        return ""
+def _beside_noise(test: Validation, found: Identification) -> tuple[bool, str]:
+    """Whether the model clearly lacks something, by how much the error is larger than the noise, and what is
+    said of it before the command that names it.
+    """
+    if not _noise_known(test) or test.repeats is None:
+        return False, _LACKING
     times = np.nan_to_num(test.rmse / np.maximum(test.repeats, 1e-300))
     j = int(np.argmax(times))
-    if times[j] < FAR:
-        return ""
     where = found.arm.coordinate_names[j]
-    return (
-        f"The error at {where} is {times[j]:.0f} times the noise: the model lacks something. This names it:"
-    )
+    if times[j] < FAR:
+        less = ", and less elsewhere" if len(times) > 1 else ""
+        said = f"The error is {times[j]:z.2g} times the noise at {where}{less}."
+        return False, f"{said} This says whether the model lacks something, and names the cause:"
+    said = f"The error at {where} is {times[j]:.0f} times the noise: the model lacks something."
+    return True, f"{said} This names it:"
 
 
 def _parameters(found: Identification) -> list[Any]:
@@ -251,14 +257,15 @@ def _parameters(found: Identification) -> list[Any]:
         parts += [
             Text(
                 "Each parameter times the RMS of what one unit of it adds to the effort, where it shows "
-                "most: a dot with its 95 % interval, and a ring where the description has it."
+                f"most: a dot with its 95 % interval{_RING if nominal else ''}."
             ),
             Block(charts),
         ]
     heads = [("parameter", "left"), *((h, "right") for h in ("value", "std", "nominal", "std %"))]
     heads += [("unit", "left"), ("essential", "left")]
-    rows = [_parameter(e, nominal.get(e.name)) for e in found.estimates]
-    return [*parts, Grid("Parameters", heads, rows)]
+    shown = [bool(nominal) or head != "nominal" for head, _ in heads]
+    rows = [tuple(compress(_parameter(e, nominal.get(e.name)), shown)) for e in found.estimates]
+    return [*parts, Grid("Parameters", list(compress(heads, shown)), rows)]
 
 
 def _parameter(e: Any, nominal: float | None) -> tuple[str, ...]:
