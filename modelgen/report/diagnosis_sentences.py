@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from modelgen.charts import at_joints, number
+from modelgen.diagnosis.adequacy import LackOfFit
 from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.diagnosis.validation import Check
@@ -18,6 +19,7 @@ _SENTENCES = {
     "cannot_tell": "These records cannot tell.",
 }
 _TITLES = 2  # suspects that are all in the headline, in words
+_PART = 0.5  # of what is not noise: a suspect that explains less is not what is missing
 UNMEASURED = (
     "No period repeats in the training records: what of the residuals is noise is not known, and a cause may "
     "be named for it. Record three periods of a motion to be sure."
@@ -43,7 +45,11 @@ def missing(d: Diagnosis) -> list[str]:
     if d.verdict == "suspected":
         clauses = [f"{perhaps(d, c)} ({c.effect})" for c in d.suspects]
         shown = clauses if len(clauses) <= _TITLES else [clauses[0], f"{len(clauses) - 1} more"]
-        return [f"Nothing can be named; perhaps {listed(shown)}."]
+        share, fit = _explained(d), d.lack_of_fit
+        if fit is None or not fit.found or share >= _PART or np.isnan(share):
+            return [f"Nothing can be named; perhaps {listed(shown)}."]
+        where, part = f"something deterministic remains at {_most(d, fit)}", f"{100 * share:.0f} %"
+        return [f"Nothing can be named: {where}, of which {part} is explained if {listed(shown)}."]
     return [_SENTENCES.get(d.verdict) or sentence(d.reason)]
 
 
@@ -162,20 +168,29 @@ def _failing(d: Diagnosis, name: str) -> list[NamedCause]:
     return [c for c in d.causes if any(k.name == name and k.passed is False for k in c.checks)]
 
 
+def _explained(d: Diagnosis) -> float:
+    """The largest share of what is not noise that suspects explain at their joints; nan: not known."""
+    shares = [c.value for s in d.suspects for c in s.checks if c.name == "explains" and c.value is not None]
+    return max(shares, default=float("nan"))
+
+
+def _most(d: Diagnosis, f: LackOfFit) -> str:
+    """The joint at which most is left, and when."""
+    where, part = joint_name(d.arm, f.worst.joint + 1), d.lack_of_fit_part
+    return where if part is None else f"{where}, {part[0]} from {part[1]:z.2f} to {part[2]:z.2f} s"
+
+
 def remains(d: Diagnosis) -> str:
     """What repeats in the residuals beside the noise, with its size where something deterministic is left."""
     f = d.lack_of_fit
     if f is None:
         unknown = "No period repeats in the training records, so the noise could not be measured."
         return f"{unknown} {_left(d)}".rstrip()
-    where = joint_name(d.arm, f.worst.joint + 1)
-    part, usual = d.lack_of_fit_part, "1 for a complete model"
-    if part is not None:
-        usual = "the most of many short parts of the period"
-        where += f", {part[0]} from {part[1]:z.2f} to {part[2]:z.2f} s"
+    short = d.lack_of_fit_part is not None
+    usual = "the most of many short parts of the period" if short else "1 for a complete model"
     said = (
         f"Lack of fit over {f.periods} repeated periods: {f.statistic:z.2f}, threshold {f.threshold:z.2f} "
-        f"({usual}), largest at {where}."
+        f"({usual}), largest at {_most(d, f)}."
     )
     sizes = _sizes(d) if f.found else {}
     repeats = f"About {listed(sizes.values())} repeats (RMS)." if sizes else ""

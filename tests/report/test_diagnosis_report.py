@@ -700,6 +700,17 @@ def test_what_is_suspected_is_no_fact_and_has_a_next_step(found: Diagnosis, tmp_
     assert "has evidence, and is not named: it failed form" in said
 
 
+def test_a_suspect_that_explains_little_is_not_what_is_missing(found: Diagnosis) -> None:
+    """What remains comes first then, and how much of it the suspect is."""
+    left, d = other(found, "outside_catalogue").lack_of_fit, other(found, "suspected")
+    (suspect,) = d.suspects
+    assert headline(replace(d, lack_of_fit=left)).startswith("Nothing can be named; perhaps ")
+    checks = tuple(replace(c, value=0.11) if c.name == "explains" else c for c in suspect.checks)
+    small = headline(replace(d, lack_of_fit=left, suspects=(replace(suspect, checks=checks),)))
+    assert small.startswith("Nothing can be named: something deterministic remains at j2, ")
+    assert "of which 11 % is explained if " in small
+
+
 def test_no_code_is_made_of_values_that_no_arm_has(found: Diagnosis) -> None:
     """Named or not: what is impossible is said first, and the nearest values that could exist come next."""
     doubt = Impossible("Impossible: the inertia at j2 comes out below zero.", ["j2"])
