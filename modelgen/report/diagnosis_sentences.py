@@ -303,7 +303,8 @@ def compared(d: Diagnosis) -> list[str]:
         numbers = at_joints(d.arm.coordinate_names, [f"{x:z.4g}" for x in rmse])
         said.append(
             f"For the model as described {'it then' if banded else 'modelgen identify'} says {numbers} "
-            f"[{d.errors.unit}], since it counts what its filter carries over from rest too."
+            f"[{d.errors.unit}], since it counts what its filter carries over from rest too, and "
+            "weights the rows otherwise, which matters where a model lacks much."
         )
     return [" ".join(said)]
 

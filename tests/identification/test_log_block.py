@@ -104,10 +104,11 @@ def test_the_two_errors_are_one_in_the_same_band(arm: mg.Arm, results: list[Any]
     cutoff = diagnosed["settings"]["cutoff_hz"]
     train, test = [log(16.0, 1), log(16.0, 2)], log(8.0, 3)
     same = mg.identify(arm, train, test, cutoff=cutoff).to_json()
-    assert diagnosed["error"]["with_rest"] == pytest.approx(same["test"]["rmse"], rel=0.01)
+    assert diagnosed["error"]["with_rest"] == pytest.approx(same["test"]["rmse"], rel=1e-5)
     said = [x for x in results[1].shown() if isinstance(x, str) and "identify --cutoff" in x]
     assert len(said) == 1
-    assert f"{cutoff:g} Hz" in said[0]
+    assert f"{cutoff:.4g} Hz" in said[0]
+    assert f"--cutoff {cutoff:g}" in said[0]
 
 
 def test_what_is_written_can_be_simulated_and_generated_at_once(results: list[Any], tmp_path: Path) -> None:
