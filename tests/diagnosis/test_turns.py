@@ -56,7 +56,7 @@ def log(seed: int, hold: str) -> Array:
 
 @pytest.mark.parametrize("hold", ["following", "instant", "0.004"])
 def test_a_joint_that_sticks_as_it_turns_lacks_nothing(tmp_path: Path, hold: str) -> None:
-    """Were the readings at its turns counted, something would be missing, where they are of one instant."""
+    """Were its turns counted, something would be missing; with a delay the nearest are left out anyhow."""
     mapping = tmp_path / "mapping.yaml"
     joint = "{position: {column: q1, unit: rad}, effort: {column: i1, unit: A}}"
     mapping.write_text(f"schema: 1\nhold: {hold}\njoints:\n  - {joint}\n", encoding="utf-8")

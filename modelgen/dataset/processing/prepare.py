@@ -114,6 +114,13 @@ class Prepared:
         """Columns (N, ...) at the rows, not filtered: (M, ...)."""
         return np.asarray(columns[self.rows])
 
+    def with_turns(self) -> Prepared:
+        """The same where samples beside turns count; what is filtered stays as it is."""
+        if self.settings.turns or self.input is None:
+            return self
+        settings = replace(self.settings, turns=True)
+        return replace(self, settings=settings, awake=_counted(self.record, self.dq, settings))
+
     @property
     def effort(self) -> Array:
         """The input through the parallel filter (M, n). Raises InputError for a free motion."""
@@ -184,8 +191,13 @@ def prepare(record: Record, settings: Settings | Chosen | None = None) -> Prepar
         rows=rows,
         moving=moving_samples(dq, rows, chosen, rate) & ~cut[rows],
         # a swing turns slowly, and what is known of its friction is there
-        awake=np.ones(dq.shape, dtype=bool) if given is None else _awake(record, dq, chosen) & ~cut,
+        awake=np.ones(dq.shape, dtype=bool) if given is None else _counted(record, dq, chosen, cut),
     )
+
+
+def _counted(record: Record, dq: Array, chosen: Chosen, cut: np.ndarray | None = None) -> np.ndarray:
+    """Samples (N, n) that are awake and whose effort is not cut off. cut: those where it is, where known."""
+    return np.asarray(_awake(record, dq, chosen) & ~(_cut_off(record) if cut is None else cut))
 
 
 def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.dataset import Prepared, Settings, choose, prepare
+from modelgen.dataset import Settings, choose
 from modelgen.dataset.inspection import inspect_records
 from modelgen.dataset.processing.splitting import as_given
 from modelgen.description import Arm
@@ -138,7 +138,8 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     equations = extension.equations
     if equations.free:
         return None
-    *train, test = (_as_identified(p) for p in (*(r.prepared for r in equations.rows), decision.band.test))
+    # as identify has them: it has no reason to leave turns out
+    *train, test = (p.with_turns() for p in (*(r.prepared for r in equations.rows), decision.band.test))
     try:
         solution, found = errors_of(train, [test], study.model, study.evaluator)
     except InputError:
@@ -153,14 +154,6 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     texts = (text.without(DIAGNOSING) for text in (*left, *about))  # this is the diagnosis
     late = study.instant.questions() if study.instant is not None and study.instant.channels else ()
     return AsIdentified(found.rmse, chosen.cutoff, (*texts, *late))
-
-
-def _as_identified(p: Prepared) -> Prepared:
-    """The record as `modelgen identify` has it, with its samples beside turns."""
-    if p.settings.turns:
-        return p
-    settings = replace(p.settings, turns=True)
-    return replace(p, settings=settings, awake=prepare(p.record, settings).awake)
 
 
 def _impossible(
