@@ -22,7 +22,7 @@ from modelgen.options import RefinementOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, files_of
 from modelgen.report.parts import steps
-from modelgen.report.refinement import headline, misses, picture, report
+from modelgen.report.refinement import deviation, headline, misses, picture, report
 from modelgen.report.refinement_steps import following
 
 
@@ -41,7 +41,7 @@ class Refinement(Result):
     arm : Arm
         The arm as described.
     parameters : Named of Refined
-        Base parameters (p,) by name: start, value, std (None where held), unit.
+        Base parameters (p,) by name: start, value, std (None where held, or not converged), unit.
     converged : bool
         Whether no step is left that lowers the errors by what is worth it; `found.stopped` says why not.
     """
@@ -112,7 +112,7 @@ class Refinement(Result):
             [
                 x.name,
                 *apart(x.start, x.value, 5),
-                "held" if x.std is None else f"{x.std:z.2g}",
+                deviation(x),
                 x.unit,
             ]
             for x in self.found.parameters
@@ -136,7 +136,7 @@ class Refinement(Result):
         ]
 
     def __repr__(self) -> str:
-        free = sum(x.std is not None for x in self.found.parameters)
+        free = sum(not x.held for x in self.found.parameters)
         after = ", ".join(f"{x:z.1f}" for x in self.found.after.f_gof)
         ended = "" if self.converged else ", not converged"
         return f"Refinement of {self.arm.name}: {free} parameters tuned{ended}, F_gof {after} %"

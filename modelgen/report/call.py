@@ -69,14 +69,19 @@ class Call:
         records = [*_repeated("--train", self.train), "--test", self.test[0]]
         return self.command("diagnose", *records, *self.kept(), "--out", self.beside("diagnosis"))
 
-    def identifying(self, out: str, description: str, cutoff: float, *, consistent: bool = False) -> str:
-        """The command that fits a description to the same records in a band [Hz]; empty where they are no
-        files. consistent: with links that could exist.
+    def identifying(
+        self, out: str, description: str, cutoff: float | None = None, *, consistent: bool = False
+    ) -> str:
+        """The command that fits a description to the same records in a band [Hz], by default its own; empty
+        where they are no files. consistent: with links that could exist.
         """
-        if not self.train:
+        logs = self.train or self.test
+        if not logs:
             return ""
-        records = [*_repeated("--train", self.train), *_repeated("--test", self.test)]
-        kept = [*words_of(self.options, ("mapping", "period")), "--cutoff", f"{cutoff:.6g}"]
+        records = _repeated("--train", logs)
+        records += _repeated("--test", self.test) if self.train else []
+        kept = words_of(self.options, ("mapping", "period"))
+        kept += [] if cutoff is None else ["--cutoff", f"{cutoff:.6g}"]
         kept += ["--consistent"] if consistent else []
         return self.command("identify", *records, *kept, "--out", self.beside(out), description=description)
 

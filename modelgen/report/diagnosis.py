@@ -17,6 +17,7 @@ from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import WINDOWS, efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import SWINGING, assumptions, by_worth, compared
 from modelgen.report.experiment import described
+from modelgen.report.following import RESIDUALS
 from modelgen.report.named_joints import named_joints
 from modelgen.report.others import rivals
 from modelgen.report.page import Folded, Grid, Heading, Lines, Part, Run, Section, Text, block, page
@@ -133,15 +134,14 @@ def _log(d: Diagnosis) -> list[Part]:
 
 
 def _over_abscissae(d: Diagnosis) -> Folded:
-    title = "Residuals over speed, position, load and more"
     parts: list[Part] = [Text("Means over bins of the test record.")]
     over = residuals(d)
     if len(d.arm.coordinates) == 1:  # one beside the other, each with what it is over as its title
         parts.append(block([replace(chart, title=f"over {name}") for name, (chart,) in over.items()]))
-        return Folded(title, parts)
+        return Folded(RESIDUALS, parts)
     for name, charts in over.items():
         parts += [Heading(f"Over {name}"), block(charts)]
-    return Folded(title, parts)
+    return Folded(RESIDUALS, parts)
 
 
 def _simulation(d: Diagnosis) -> list[Part]:

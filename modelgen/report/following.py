@@ -23,7 +23,8 @@ REDUCED = "reduced"
 POSSIBLE = "consistent"
 _EXPLAIN = "Do not generate code from values that no arm has."
 _NEAREST = "modelgen identify --consistent"
-_LOOK = "Look at the residuals in the report: over what they bend, and at which joint."
+RESIDUALS = "Residuals over speed, position, load and more"  # a fold of the report
+_LOOK = f'Look at "{RESIDUALS}" in the report: over what they bend, and at which joint.'
 # By verdict, where another motion is what helps.
 _MOTIONS = {
     "cannot_tell": "Record a motion that moves every joint over its range, several periods in a row.",

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from modelgen.charts import Chart, Interval, apart, number, sheet
-from modelgen.identification.output_error.refine import Refinement
+from modelgen.identification.output_error.refine import Refined, Refinement
 from modelgen.numeric import Array
 from modelgen.report.call import Call
 from modelgen.report.motion_figures import Motion, joined, motion_pair
@@ -37,7 +37,7 @@ _MEASURED = (
     "simulated from their beginning, each from the initial states that suit its parameters best. The parts "
     "are those that were fitted: modelgen simulate --log says how well another motion is met."
 )
-_VAGUE = "Standard deviations, and what they move, are rough there."
+_VAGUE = "Nothing says how far from that they are."
 
 
 def motion(found: Refinement) -> list[Chart]:
@@ -73,7 +73,7 @@ def report(found: Refinement, call: Call) -> str:
     ]
     heads = [("joint", "left"), ("F_gof % before", "right"), ("F_gof % after", "right")]
     heads += [("RMSE before", "right"), ("RMSE after", "right")]
-    free = [x for x in found.parameters if x.std is not None]
+    free = [x for x in found.parameters if not x.held]
     answers: Parts = [
         ("What was found", _ended(found, len(free))),
         (
@@ -93,7 +93,7 @@ def report(found: Refinement, call: Call) -> str:
         (
             x.name,
             *apart(x.start, x.value, 5),
-            "held" if x.std is None else f"{x.std:z.2g}",
+            deviation(x),
             "" if not x.std else f"{(x.value - x.start) / x.std:+z.1f}",
             x.unit,
             "" if not x.std else f"{_fine(x.moves, units[x.shown_by])} at {names[x.shown_by]}",
@@ -119,7 +119,7 @@ def headline(found: Refinement) -> str:
     worse = [arm.coordinate_names[j] for j in range(len(after)) if after[j] > SAME * before[j]]
     lost = f" It is farther from it than before at {listed(worse)}." if worse else ""
     text = f"The simulated motion misses the measured one by {new} {unit} (RMSE)"
-    kept = "" if gained(found) else f" {_KEEP}"
+    kept = "" if gained(found) or not found.converged else f" {_KEEP}"
     start = f"it was {old} {unit}" if old != new else "it was as much"
     return f"{text} {where}; with the values at the start {start}.{lost}{kept}"
 
@@ -132,6 +132,11 @@ def misses(found: Refinement) -> list[tuple[str, str, str]]:
         size, unit = _unit(after, own)
         said.append((number(size * before), number(size * after), unit))
     return said
+
+
+def deviation(x: Refined) -> str:
+    """A parameter's standard deviation in words."""
+    return "held" if x.held else "not known" if x.std is None else f"{x.std:z.2g}"
 
 
 def _unit(value: float, unit: str) -> tuple[float, str]:
@@ -164,6 +169,8 @@ def _moved(free: list[Any], gained: bool) -> str:
         (x for x in free if x.std and abs(x.value - x.start) > _FAR * x.std),
         key=lambda x: -abs(x.value - x.start) / x.std,
     )
+    if all(x.std is None for x in free):
+        return "How far any parameter is from its start says nothing: this is no best fit."
     if not far:
         more = "; what the motion gained is by all together" if gained else ""
         return f"No parameter left its start by more than {_FAR:g} standard deviations{more}."
@@ -223,9 +230,12 @@ def _joined(found: Refinement) -> list[Part]:
     if len(found.t) < 2:
         return []
     ends = np.cumsum([t[-1] - t[0] for t in found.t])[:-1]
-    seconds = listed(f"{end:z.4g} s" for end in ends)
-    text = f"{len(found.t)} parts of the records, one after the other: the next one begins at {seconds}."
-    return [Text(text)]
+    text = f"{len(found.t)} parts of the records, one after the other"
+    if len(ends) > 1 and np.ptp(np.diff(ends, prepend=0.0)) < 1e-3 * ends[0]:
+        return [Text(f"{text}: the next one begins every {ends[0]:z.4g} s.")]
+    seconds = [f"{end:z.4g} s" for end in ends[:_NAMED]]
+    more = [f"{len(ends) - _NAMED} more"] if len(ends) > _NAMED else []
+    return [Text(f"{text}: the next one begins at {listed([*seconds, *more])}.")]
 
 
 def _times(found: Refinement) -> Array:

@@ -23,6 +23,8 @@ def following(call: Call, found: Refinement) -> list[Part | str]:
     Where values are not determined, what determines them comes first.
     """
     loose = _loose(found)
+    if not found.converged and not gained(found):
+        return [*_first(call, _elsewhere(call, found)), *_lacking(call, found)]
     if not gained(found):
         return [*_first(call, _from_start(call)), *_lacking(call, found)]
     code = _folded_in(call, found.converged)
@@ -45,6 +47,16 @@ def _folded_in(call: Call, converged: bool) -> tuple[str, str]:
     text = f"generate code with these values folded in, {WHERE}"
     values = call.beside(f"{call.arm.name}_parameters.yaml")
     return text if converged else f"{_NEAR}, {text}", call.command("generate", "--parameters", values)
+
+
+def _elsewhere(call: Call, found: Refinement) -> tuple[str, str]:
+    """Where another refinement begins, of one that found nothing."""
+    text = "this says nothing of the parameters: generate no code by it"
+    near = "begin nearer, by --parameters; or with a shorter --window, or another part of the record"
+    fit = call.identifying("identified", call.description) if found.effort else ""
+    if not fit:
+        return f"{text}. {sentence(near)}", ""
+    return f"{text}. Identify the parameters, and {near}; this identifies them, {WHERE}", fit
 
 
 def _from_start(call: Call) -> tuple[str, str]:

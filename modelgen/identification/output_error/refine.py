@@ -32,7 +32,8 @@ UNKEPT = 0.01  # of the cost: where a step promises more and brings less than th
 
 @dataclass(frozen=True)
 class Refined:
-    """A base parameter before and after; std None where it was held.
+    """A base parameter before and after; std None where it was held, or the fit did not converge: then the
+    values are not those of the least errors, and nothing says how far from them they are.
 
     moves: how far its standard deviation moves the simulated positions (RMS [rad, m]) of the coordinate
     `shown_by` (from 0), at which it shows most beside the errors.
@@ -45,6 +46,7 @@ class Refined:
     std: float | None
     moves: float = 0.0
     shown_by: int = 0
+    held: bool = False
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,7 @@ def refine(
     free: default_free by default; the others are held. window: the simulation starts anew after so long
     [s], with initial states of their own, for arms that run away from their logs; by default a record is one
     part. interval: of multiple shooting [s]. Joints are weighted by their remaining errors; standard
-    deviations are those given the held values, of errors that hang together in time. Raises
+    deviations are those given the held values, of noise of positions and efforts. Raises
     InputError for unknown names, states of effects, values that the motion does not tell apart, and a
     simulation that does not run.
     """
@@ -138,7 +140,7 @@ def refine(
                 progress(rounds, cost)
     final = fit.linear(p, guesses)
     weights = final.weights()
-    std = final.deviations(weights)
+    std = final.deviations(weights, fit.steps(p, guesses) if effort else [])
     per_unit = np.sqrt((np.concatenate(final.columns) ** 2).mean(axis=0))  # (n, f)
     shown = np.argmax(per_unit * weights[:, None], axis=0)
     runs = Fit(model, every).runs(p, guesses)
@@ -147,10 +149,13 @@ def refine(
     for k, b in enumerate(base):
         start, value = float(plant.parameters[k]), float(p[k])
         if k not in chosen:
-            found.append(Refined(b.name, b.unit, start, value, None))
+            found.append(Refined(b.name, b.unit, start, value, None, held=True))
             continue
         i = chosen.index(k)
         j = int(shown[i])
+        if stopped:
+            found.append(Refined(b.name, b.unit, start, value, None, shown_by=j))
+            continue
         moves = float(std[i] * per_unit[j, i])
         found.append(Refined(b.name, b.unit, start, value, float(std[i]), moves, j))
     return Refinement(

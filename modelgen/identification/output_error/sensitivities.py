@@ -40,21 +40,36 @@ class Sensitive:
 
         inputs: (K, n), held over the interval that follows. NaN from where the state is not finite.
         """
-        n, m = self.plant.n, 2 * self.plant.n
-        y, s = y0.copy(), np.hstack([np.eye(m), np.zeros((m, len(self.free)))])
-        path, slopes = np.full((len(times), m), np.nan), np.full((len(times), *s.shape), np.nan)
-        path[0], slopes[0] = y, s
+        path, slopes, _ = self._run(y0, times, inputs, p, False)
+        return path, slopes
+
+    def disturbed(self, y0: Array, times: Array, inputs: Array, p: Array) -> Array:
+        """Derivatives (K - 1, 2n, 2n + n) of the state at the end of each interval by that at its begin, and
+        by the input (n,) held over it. As of `run`.
+        """
+        return self._run(y0, times, inputs, p, True)[2]
+
+    def _run(
+        self, y0: Array, times: Array, inputs: Array, p: Array, disturbed: bool
+    ) -> tuple[Array, Array, Array]:
+        """As of `run` and, where it is asked for, of `disturbed`."""
+        n, m, wide = self.plant.n, 2 * self.plant.n, 2 * self.plant.n + len(self.free)
+        begin = np.hstack([np.eye(m), np.zeros((m, n))])[:, : 3 * n if disturbed else 0]
+        y, s = y0.copy(), np.hstack([np.eye(m), np.zeros((m, len(self.free))), begin])
+        path, slopes = np.full((len(times), m), np.nan), np.full((len(times), m, wide), np.nan)
+        steps = np.tile(begin, (len(times) - 1, 1, 1))
+        path[0], slopes[0] = y, s[:, :wide]
         modes: Modes = tuple(int(x) for x in np.sign(self.rows @ y[n:]))
         for k in range(len(times) - 1):
             u, t, end = inputs[k], float(times[k]), float(times[k + 1])
             modes = self._settled(y, p, u, t, modes)
             if self._at_rest(modes) and (inputs[k:] == u).all():
-                path[k + 1 :], slopes[k + 1 :] = y, s
+                path[k + 1 :], slopes[k + 1 :] = y, s[:, :wide]
                 break
             for _ in range(_EVENTS):
-                after, jacobian = self._stepped(modes, y, p, u, t, end - t)
+                after, jacobian = self._stepped(modes, y, p, u, t, end - t, disturbed)
                 if not np.isfinite(after).all():
-                    return path, slopes
+                    return path, slopes, steps
                 margins = self._margins(after, p, u, end, modes)
                 over = [c for c, value in enumerate(margins) if value < 0.0]
                 if not over:
@@ -62,14 +77,15 @@ class Sensitive:
                     break
                 lengths = [self._crossing(c, modes, y, p, u, t, end - t) for c in over]
                 first = int(np.argmin(lengths))
-                after, jacobian = self._stepped(modes, y, p, u, t, lengths[first])
+                after, jacobian = self._stepped(modes, y, p, u, t, lengths[first], disturbed)
                 y, s, t = after, self._chained(jacobian, s), t + lengths[first]
                 y, s, modes = self._changed(over[first], y, s, p, u, t, modes)
             for c, own in enumerate(self.plant.own):
                 if modes[c] == 0 and own >= 0:
                     y[n + own], s[n + own] = 0.0, 0.0
-            path[k + 1], slopes[k + 1] = y, s
-        return path, slopes
+            path[k + 1], slopes[k + 1], steps[k] = y, s[:, :wide], s[:, wide:]
+            s[:, wide:] = begin
+        return path, slopes, steps
 
     def _at_rest(self, modes: Modes) -> bool:
         """Every coordinate sticks by itself."""
@@ -131,18 +147,22 @@ class Sensitive:
                 return low
         return float(brentq(margin, low, h, xtol=1e-16, rtol=1e-14))
 
-    def _stepped(self, modes: Modes, y: Array, p: Array, u: Array, t: float, h: float) -> tuple[Array, Array]:
-        after, jacobian = self._step(modes)(y, p, u, t, h)
+    def _stepped(
+        self, modes: Modes, y: Array, p: Array, u: Array, t: float, h: float, disturbed: bool = False
+    ) -> tuple[Array, Array]:
+        after, jacobian = self._step(modes, disturbed)(y, p, u, t, h)
         return np.asarray(after).ravel(), np.asarray(jacobian)
 
     def _chained(self, jacobian: Array, s: Array) -> Array:
-        m = 2 * self.plant.n
+        m, wide = 2 * self.plant.n, 2 * self.plant.n + len(self.free)
         made = jacobian[:, :m] @ s
-        made[:, m:] += jacobian[:, m:]
+        made[:, m:wide] += jacobian[:, m:wide]
+        if jacobian.shape[1] > wide:
+            made[:, wide + m :] += jacobian[:, wide:]
         return np.asarray(made)
 
-    def _made(self, modes: Modes) -> ca.Function:
-        """One step: state after it, and its Jacobian by state and free parameters."""
+    def _made(self, modes: Modes, disturbed: bool) -> ca.Function:
+        """One step: state after it, and its Jacobian by state, free parameters and, where asked, input."""
         n, c = self.plant.n, len(self.rows)
         y, p, u, t = self._symbols()
         h = ca.SX.sym("h")
@@ -166,7 +186,8 @@ class Sensitive:
         d = rate(y + h / 2 * b, t + h / 2)
         e = rate(y + h * d, t + h)
         after = y + h / 6 * (a + 2 * b + 2 * d + e)
-        jacobian = ca.densify(ca.jacobian(after, ca.vertcat(y, p[self.free])))
+        by = ca.vertcat(y, p[self.free], u) if disturbed else ca.vertcat(y, p[self.free])
+        jacobian = ca.densify(ca.jacobian(after, by))
         return ca.Function("step", [y, p, u, t, h], [after, jacobian])
 
     def _symbols(self) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:

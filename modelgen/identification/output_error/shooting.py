@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.errors import InputError
+from modelgen.identification.output_error.effort_noise import scatter
 from modelgen.identification.output_error.parts import Guess, Part
 from modelgen.identification.output_error.sensitivities import Sensitive
 from modelgen.numeric import Array
@@ -93,19 +94,25 @@ class Linear:
             states.append(np.array([offset + matrix @ z for offset, matrix in follow]))
         return Step(change, states, promised)
 
-    def deviations(self, weights: Array) -> Array:
-        """Standard deviations of the parameters (f,): B (sum of V_j X_j' X_j) B, B the inverse of X' X and
-        V_j the joint's spectral density at zero, 1 + 2 sum of its autocorrelations times its variance."""
-        errors, columns, _ = self._projected(weights)
+    def deviations(self, weights: Array, steps: Sequence[Array]) -> Array:
+        """Standard deviations of the parameters (f,): B M B, B the inverse of X' X.
+
+        M is the sum over joints of V_j X_j' X_j, V_j the joint's spectral density at zero, 1 + 2 sum of its
+        autocorrelations times its variance; or, of driven motions, what noise of the efforts makes it. Of
+        the two the larger one counts for each parameter. steps: as of `Sensitive.disturbed`, by part; none of
+        free motions.
+        """
+        errors, columns, bases = self._projected(weights)
         f = columns[0].shape[2]
-        normal, meat = np.zeros((f, f)), np.zeros((f, f))
+        normal, spectral = np.zeros((f, f)), np.zeros((f, f))
         for j in range(len(weights)):
             own = sum((c[:, j].T @ c[:, j] for c in columns), np.zeros((f, f)))
             normal += own
-            meat += _long_run([e[:, j] for e in errors]) * own
+            spectral += _long_run([e[:, j] for e in errors]) * own
         size = np.sqrt(np.diag(normal))
         inverse = np.linalg.inv(normal / np.outer(size, size)) / np.outer(size, size)
-        return np.asarray(np.sqrt(np.diag(inverse @ meat @ inverse)))
+        meats = [spectral, scatter(errors, columns, bases, steps, weights)] if steps else [spectral]
+        return np.asarray(np.sqrt(np.max([np.diag(inverse @ x @ inverse) for x in meats], axis=0)))
 
 
 @dataclass(frozen=True)
@@ -168,6 +175,11 @@ class Fit:
         dq = np.concatenate([part.dq for part in self.parts])
         ratio = np.sqrt((q**2).mean(axis=0) / np.maximum((dq**2).mean(axis=0), 1e-12))
         return np.concatenate([np.ones(len(ratio)), ratio])
+
+    def steps(self, p: Array, guesses: Sequence[Guess]) -> list[Array]:
+        """What every interval between samples of every part does, as of `Sensitive.disturbed`."""
+        pairs = zip(guesses, self.parts, strict=True)
+        return [self.model.disturbed(g.states[0], part.t, part.input, p) for g, part in pairs]
 
     def runs(self, p: Array, guesses: Sequence[Guess]) -> list[Array]:
         """Positions (K, n) of every part, simulated from its initial state alone."""
