@@ -63,6 +63,8 @@ class Record:
         When the efforts were read: "following", "previous" or "instant", or their delay [s].
     hold_known : str
         What says so: "mapping", "readings", or nothing, where it is the default.
+    hold_std : float
+        How far that may be off [s].
     counts : tuple of float
         Step of the logged positions by joint, in the unit that was logged, 0 where there is none; empty: not
         known, to be read off the samples.
@@ -111,6 +113,7 @@ class Record:
     jitter: float = 0.0
     effort_hold: str | float = "following"
     hold_known: str = ""
+    hold_std: float = 0.0
     counts: tuple[float, ...] = ()
     begins: float | None = None
     period: float | None = None

@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.dataset import Prepared, Record, Settings, choose, drives_of, prepare
+from modelgen.dataset import Record, Settings, choose, prepare
 from modelgen.dataset.processing.instants import EffortInstant, LateChannel, beyond, fitting, with_hold
 from modelgen.dataset.processing.rounding import position_steps
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
@@ -28,6 +28,7 @@ from modelgen.functions import Options, build_model
 from modelgen.functions.options import prepared as reduced
 from modelgen.identification.delay_fit import DelayFit
 from modelgen.identification.late_channels import late_channels
+from modelgen.identification.rounded_positions import rounded_anew
 from modelgen.numeric import Array
 
 ELEMENTS = 25_000_000  # of the regressor at full rate, beyond which the beginnings of the records do
@@ -64,10 +65,11 @@ def effort_instant(
 
 
 def at_instants(records: Sequence[Record], found: EffortInstant | None) -> list[Record]:
-    """The records with their efforts at the instants found."""
-    if found is None or found.known != "data":
+    """The records with their efforts at the instants found, and how far these may be off."""
+    if found is None:
         return list(records)
-    return [record if record.input is None else with_hold(record, found.hold) for record in records]
+    driven = [r if r.input is None or found.known != "data" else with_hold(r, found.hold) for r in records]
+    return [r if r.input is None else replace(r, hold_std=found.doubt * r.step) for r in driven]
 
 
 def _delay(
@@ -95,7 +97,7 @@ def _delay(
         if _common(delays, deviations)[1] <= limits.max_instant_std and position_steps(records[0]).any():
             square = np.zeros(n)
             for seed in range(DRAWS):
-                again = [prepare(_rounded_anew(r, seed), settings) for r in prepared]
+                again = [prepare(rounded_anew(r, seed), settings) for r in prepared]
                 square += (DelayFit(again, model, evaluator).delays(free=False)[0] - delays) ** 2 / DRAWS
             deviations = np.sqrt(deviations**2 + np.where(np.isfinite(square), square, np.inf))
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
@@ -118,16 +120,3 @@ def _common(delays: Array, deviations: Array) -> tuple[float, float]:
     weights = 1.0 / deviations**2
     used = np.where(weights > 0.0, delays, 0.0)
     return float(weights @ used / weights.sum()), float(weights.sum() ** -0.5)
-
-
-def _rounded_anew(p: Prepared, seed: int) -> Record:
-    """The record with its smoothed positions rounded once more, at other places of the steps."""
-    random, record = np.random.default_rng(seed), p.record
-    q, motor = p.q.copy(), p.motor.copy()
-    drives = drives_of(record.arm) if record.arm is not None else ()
-    for k, step in enumerate(position_steps(record)):
-        if step:
-            place = step * random.uniform()
-            q[:, k] = step * np.rint((q[:, k] + place) / step) - place
-            motor[:, k] = drives[k].motor(q[:, k]) if drives else q[:, k]
-    return replace(record, q=q, motor=motor)

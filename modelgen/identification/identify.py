@@ -22,6 +22,8 @@ from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, compared
 from modelgen.identification.objects import Estimate, Identification, Validation
 from modelgen.identification.rounded_efforts import with_rounding
+from modelgen.identification.rounded_positions import with_rounded_positions
+from modelgen.identification.unknown_instant import with_unknown_instant
 from modelgen.identification.validation import regression_of, rows_in_period, validate
 from modelgen.numeric import Array
 from modelgen.regression.instruments import Instrument, of_period
@@ -100,6 +102,8 @@ def identify(
             )
         solution = both.solution
     solution = with_rounding(solution, regression, train, model, evaluator)
+    solution = with_rounded_positions(solution, regression, train, model, evaluator, added)
+    solution = with_unknown_instant(solution, regression, train, model, evaluator)
     found = concluded(arm, model, evaluator, method, solution, test, physical=physical, added=added)
     return replace(found, comparison=both)
 

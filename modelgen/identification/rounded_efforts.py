@@ -40,11 +40,11 @@ def with_rounding(
     kept = solution.determined & ~solution.dropped
     columns = [c[:, :, kept] * weights[:, None] for c in regression.columns]
     spread = np.zeros_like(solution.covariance)
-    ideal = [_ideal(p, model, evaluator, solution.theta) for p in train]
+    inputs = [ideal(p, model, evaluator, solution.theta) for p in train]
     for seed in range(DRAWS):
         random = np.random.default_rng(seed)
         errors = [
-            _rounding(p, y, step, random) * weights for p, y, step in zip(train, ideal, steps, strict=True)
+            _rounding(p, y, step, random) * weights for p, y, step in zip(train, inputs, steps, strict=True)
         ]
         moved = Regression(errors, columns, regression.moving).least_squares()
         spread[np.ix_(kept, kept)] += np.outer(moved, moved) / DRAWS
@@ -114,19 +114,19 @@ def _steps(p: Prepared) -> Array:
     return found
 
 
-def _ideal(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
+def ideal(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """Inputs (N, n) of the model along a record."""
     motion = Motion(p.time, p.q, p.dq, p.ddq)
     return np.asarray(evaluator.regressor(model, motion, theta) @ theta + evaluator.known.inputs(motion))
 
 
-def _rounding(p: Prepared, ideal: Array, steps: Array, random: np.random.Generator) -> Array:
-    """Errors (M, n) of the rows of a record, of another rounding of its inputs `ideal` (N, n)."""
+def _rounding(p: Prepared, inputs: Array, steps: Array, random: np.random.Generator) -> Array:
+    """Errors (M, n) of the rows of a record, of another rounding of its inputs `inputs` (N, n)."""
     assert p.input is not None
-    gain = np.ones_like(ideal) if p.gain is None else p.gain
-    errors = np.zeros_like(ideal)
+    gain = np.ones_like(inputs) if p.gain is None else p.gain
+    errors = np.zeros_like(inputs)
     for k in np.flatnonzero(steps):
-        step, logged = steps[k], ideal[:, k] * gain[:, k]
+        step, logged = steps[k], inputs[:, k] * gain[:, k]
         left = (p.input[:, k] * gain[:, k] - logged)[p.awake[:, k]]
         noise = np.sqrt(max(float(np.mean(left**2)) - step**2 / 12.0, 0.0)) if len(left) else 0.0
         place = step * random.uniform()

@@ -156,7 +156,9 @@ def following(e: Excitation, stem: str, call: Call) -> list[Part | str]:
     second = stem.endswith(_SECOND) and stem != _SECOND
     first = stem.removesuffix(_SECOND) if second else stem
     train, test = (call.beside(f"{first}{word}_record.csv") for word in ("", _SECOND))
-    run = f"Give {stem}_set_points.csv to the position controller, two periods or more in a row, and record "
+    run = (
+        f"Give {stem}_set_points.csv to the position controller, three or more periods in a row, and record "
+    )
     records = ["--train", train, "--test", test, "--out", call.beside("identified")]
     fit = Command(call.command("identify", *records))
     if second:

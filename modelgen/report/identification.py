@@ -22,7 +22,7 @@ from modelgen.report.call import WHERE, Call
 from modelgen.report.page import WIDE, Block, Command, Folded, Grid, Lines, Run, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
-AS_DESCRIBED = "the arm as described"
+FITTED = "the arm's model, fitted"
 _EXPLAIN = "Answer the questions above first: no code should be generated from impossible values."
 _UNBIASED = "which the errors of the positions do not bias; code should be generated from those values"
 _EXPLAINED = "If the records are read rightly the model lacks something; this names the cause."
@@ -45,7 +45,7 @@ def predictions(names: Sequence[str], found: Validation, others: Sequence[Altern
     """
     t, breaks = _elapsed(found.t)
     models = [(o.name, o.test, _LOOKS[k % len(_LOOKS)]) for k, o in enumerate(others)]
-    models.append((AS_DESCRIBED if others else "predicted", found, "before"))
+    models.append((FITTED if others else "predicted", found, "before"))
     charts = []
     for j, name in enumerate(names):
         unit = found.unit[j]
@@ -95,7 +95,7 @@ def report(
             Text(f"RMSE, in brackets NRMSE in % of the effort.{unknown}", "quiet"),
         ]
         if others:
-            errors.append(Text("Below it: by how much the arm as described is below or above.", "quiet"))
+            errors.append(Text("Below it: by how much the arm's model is below or above.", "quiet"))
     answers = [
         ("What was found", _found(found)),
         ("How well it predicts", errors),
@@ -281,10 +281,10 @@ def table(test: Validation) -> list[tuple[str, str]]:
 
 
 def models(test: Validation, others: Sequence[Alternative]) -> list[tuple[str, list[str]]]:
-    """RMSE and NRMSE in % by model, by how much the arm as described is below it in %, joint by joint; noise,
+    """RMSE and NRMSE in % by model, by how much the arm's own is below it in %, joint by joint; noise,
     where the records repeat.
     """
-    rows = [(AS_DESCRIBED, [f"{a} ({b})" for a, b in table(test)])]
+    rows = [(FITTED, [f"{a} ({b})" for a, b in table(test)])]
     for other in others:
         change = 100.0 * (test.rmse / np.maximum(other.test.rmse, 1e-300) - 1.0)
         cells = [f"{a} ({b}) {c:+z.0f}%" for (a, b), c in zip(table(other.test), change, strict=True)]

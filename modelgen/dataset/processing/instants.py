@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from modelgen.dataset.objects import Record
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 
@@ -12,6 +14,7 @@ CLEARLY = 5.0  # deviations by which a delay is beyond a sample
 
 # Sampling periods by which what an effort's sample stands for lies after the position's stamp.
 CONVENTIONS = {"following": 0.5, "instant": 0.0, "previous": -0.5}
+UNKNOWN = 0.65  # sampling periods: the conventions from the default one, each as likely as the others (RMS)
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,18 @@ class EffortInstant:
         if vague and not self.late:
             return "cannot_tell"
         return "beyond_a_sample" if self.alike else "joints_differ"
+
+    @property
+    def doubt(self) -> float:
+        """How far the instant may be from what is used [sampling periods]: nothing where somebody said it, or
+        where channels are late, which is asked about.
+        """
+        if self.known not in ("", "data") or self.channels:
+            return 0.0
+        if self.delay is None or self.std is None:
+            return UNKNOWN
+        used = CONVENTIONS[self.hold] if isinstance(self.hold, str) else self.hold / self.step
+        return min(UNKNOWN, float(np.hypot(self.std, self.delay - used)))
 
     def _beyond_and_so(self) -> bool:
         """Whether a stated delay that is no convention is what the data say, to a part of a sample."""

@@ -171,7 +171,8 @@ def _evidence(cause: Cause, selection: Selection) -> Check:
     trial, system = cause.trial, selection.system
     least, usual = needed_evidence(trial, system), threshold(system)
     limits = system.equations.thresholds.selection
-    why = "" if system.coloured else ", since no period repeats by which the noise could be measured"
+    unknown = "too little repeats" if system.noise_known else "no period repeats"
+    why = "" if system.coloured else f", since {unknown} by which the noise could be measured"
     if least > usual:
         single = least == limits.single_parameter_delta_bic and not trial.candidate.passing
         whose = "a cause with a single parameter" if single else "what fades within a record"

@@ -76,9 +76,7 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"{_finer(selection)} can tell"
         )
     if fit is None:
-        more = (
-            ": excite with two or more identical periods (--period gives their length where it is not found)"
-        )
+        more = ": excite with three or more identical periods (--period says how long where it is not found)"
         return "cannot_tell", (
             "nothing could be named, and no period repeats by which the noise could be measured"
             + ("" if selection.system.equations.free else more)

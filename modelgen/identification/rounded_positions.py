@@ -1,0 +1,62 @@
+"""What the rounding of positions does to parameters: accelerations of coarse counts make inertias smaller."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modelgen.dataset import Prepared, Record, drives_of, prepare
+from modelgen.dataset.processing.rounding import position_steps
+from modelgen.evaluation import Evaluator
+from modelgen.functions import Model
+from modelgen.identification.validation import regression_of
+from modelgen.numeric import Array
+from modelgen.regression.least_squares import Regression, Solution
+
+DRAWS = 2  # of further roundings, each the cost of a fit
+
+
+def with_rounded_positions(
+    solution: Solution,
+    regression: Regression,
+    train: Sequence[Prepared],
+    model: Model,
+    evaluator: Evaluator,
+    added: Sequence[Array],
+) -> Solution:
+    """The solution with what rounding of the positions adds to its covariance.
+
+    Errors of the regressor move parameters one way, however many rows there are. The smoothed positions are
+    rounded once more, at other places of their steps, and fitted like the log's: the parameters move about
+    as far again (Cook and Stefanski 1994).
+    """
+    if not any(position_steps(p.record).any() for p in train):
+        return solution
+    weights = 1.0 / np.maximum(solution.sigma, 1e-300)
+    kept = solution.determined & ~solution.dropped
+
+    def fitted(made: Regression) -> Array:
+        columns = [c[:, :, kept] * weights[:, None] for c in made.columns]
+        return Regression([e * weights for e in made.effort], columns, regression.moving).least_squares()
+
+    covariance, first = solution.covariance.copy(), fitted(regression)
+    for seed in range(DRAWS):
+        again = [replace(prepare(rounded_anew(p, seed), p.settings), awake=p.awake) for p in train]
+        moved = fitted(regression_of(evaluator, model, again, solution.theta, added)) - first
+        covariance[np.ix_(kept, kept)] += np.outer(moved, moved) / DRAWS
+    return replace(solution, covariance=covariance)
+
+
+def rounded_anew(p: Prepared, seed: int) -> Record:
+    """The record with its smoothed positions rounded once more, at other places of the steps."""
+    random, record = np.random.default_rng(seed), p.record
+    q, motor = p.q.copy(), p.motor.copy()
+    drives = drives_of(record.arm) if record.arm is not None else ()
+    for k, step in enumerate(position_steps(record)):
+        if step:
+            place = step * random.uniform()
+            q[:, k] = step * np.rint((q[:, k] + place) / step) - place
+            motor[:, k] = drives[k].motor(q[:, k]) if drives else q[:, k]
+    return replace(record, q=q, motor=motor)
