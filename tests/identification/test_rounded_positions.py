@@ -1,0 +1,91 @@
+"""Deviations hold what coarse positions do, however long the record is, and what nobody knows of instants."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import modelgen as mg
+from modelgen.description import loads
+from modelgen.effects import known_effects
+
+Table = dict[str, np.ndarray]
+ARM = loads(
+    """
+schema: 1
+convention: khalil_kleinfinger
+arms:
+  one:
+    gravity: [0, -9.81, 0]
+    joints:
+      - {name: hip, drive: {type: direct, ratio: 40, torque_constant: 0.05},
+         effects: [{viscous_friction: {coefficient: 1.0e-4}}, {coulomb_friction: {magnitude: 0.01}}]}
+    links:
+      hip: {mass: 3, com: [0.2, 0, 0], inertia: [0.01, 0, 0, 0.1, 0, 0.1]}
+""",
+    "arms.yaml",
+    known_effects(),
+)["one"]
+# By hand: 3 x 0.2^2 + 0.1, 3 x 0.2; friction as the motor has it.
+INERTIA, MOMENT, VISCOUS, DRY = 0.22, 0.6, 1.0e-4, 0.01
+TRUTH = {"ZZ1": INERTIA, "MX1": MOMENT, "MY1": 0.0, "FV1": VISCOUS, "FC1": DRY}
+
+
+def log(
+    seed: int, *, bits: int = 0, seconds: float = 20.0, rate: float = 250.0, noise: float = 0.005
+) -> Table:
+    """Six harmonics of 5 s, by hand; positions of so many bits a turn. Efforts are read at their instant."""
+    random, t = np.random.default_rng(seed), np.arange(int(rate * seconds)) / rate
+    w = 2 * np.pi * np.arange(1, 7) / 5.0
+    size, phase = random.uniform(0.1, 0.3, 6), random.uniform(0, 6.28, 6)
+    q, dq, ddq = (
+        (size * w**k * np.sin(t[:, None] * w + phase + k * np.pi / 2)).sum(axis=1) for k in range(3)
+    )
+    torque = INERTIA * ddq + 9.81 * MOMENT * np.cos(q) + 40 * (VISCOUS * 40 * dq + DRY * np.sign(dq))
+    current = torque / (40 * 0.05) + noise * random.standard_normal(len(t))
+    step = 2 * np.pi / 2**bits if bits else 0.0
+    return {"t": t, "q1": step * np.rint(q / step) if step else q, "i1": current}
+
+
+@pytest.fixture(scope="module")
+def stated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What says that efforts are read at the positions' instant."""
+    path = tmp_path_factory.mktemp("mapping") / "mapping.yaml"
+    joint = "{position: {column: q1, unit: rad}, effort: {column: i1, unit: A}}"
+    path.write_text(f"schema: 1\ntime: {{column: t}}\nhold: instant\njoints:\n  - {joint}\n")
+    return path
+
+
+def away(mapping: Path | None, seeds: range, **how: float) -> np.ndarray:
+    """Errors of the parameters in their deviations, by log."""
+    found = []
+    for seed in seeds:
+        result = mg.identify(ARM, log(seed, **how), log(seed + 1000, **how), mapping=mapping)
+        found.append(
+            [(result.parameters[name].value - x) / result.parameters[name].std for name, x in TRUTH.items()]
+        )
+    return np.array(found)
+
+
+@pytest.mark.parametrize("bits", [10, 12])
+def test_deviations_hold_what_coarse_positions_do_to_a_long_record(bits: int, stated: Path) -> None:
+    """Noise of a minute hides nothing of it."""
+    found = away(stated, range(4), bits=bits, seconds=60.0)
+    assert np.sqrt(np.mean(found**2)) < 1.6
+    assert np.abs(found).max() < 4.0
+
+
+def test_fine_positions_have_the_deviations_of_their_noise(stated: Path) -> None:
+    """Neither much less nor much more."""
+    found = away(stated, range(8))
+    assert 0.6 < np.sqrt(np.mean(found**2)) < 1.5
+
+
+def test_deviations_hold_the_instant_that_a_slow_log_does_not_show(stated: Path) -> None:
+    """Of 20 Hz the default is half a sample off, which is more than the noise."""
+    slow = away(None, range(4), rate=20.0)
+    assert np.abs(slow).max() < 3.0
+    known = away(stated, range(4), rate=20.0)
+    assert np.abs(known).max() < 4.0
