@@ -221,6 +221,13 @@ def test_channels_in_turn_keep_their_own_instants(tmp_path: Path) -> None:
         read(file_of(tmp_path, table("t,q1,i1", hole)), ARM)
 
 
+def test_a_channel_that_begins_late_leaves_the_rows_before_out(tmp_path: Path) -> None:
+    rows = [(row[0], row[1], row[2] if k >= 150 else "") for k, row in enumerate(ROWS)]
+    record = read(file_of(tmp_path, table("t,q1,i1", rows)), ARM)
+    assert len(record.t) == len(ROWS) - 150
+    assert "150 rows are left out, for they are without i1" in record.remarks[-1]
+
+
 def test_unsigned_readings_are_found_and_the_mapping_undoes_them(tmp_path: Path) -> None:
     raw = np.rint(100 * EFFORT).astype(int) % (1 << 16)
     rows = [(t, q, str(i)) for (t, q, _), i in zip(ROWS, raw, strict=True)]

@@ -22,7 +22,7 @@ _KINDS = (
     ("position", re.compile(r"pos|angle|(^|[^a-z])(q|qm)(_|\d|$|\[)|enc|deg|rad", re.IGNORECASE)),
 )
 _BRACKETS = re.compile(r"[\[(<]\s*([^\[\]()<>]+?)\s*[\])>]\s*$")
-_ENDING = re.compile(r"_(deg|rad|mrad|rev|mm|cm|mA|ms|us|ns|Nm|rpm)$")
+_ENDING = re.compile(r"_(deg|rad|mrad|rev|mm|cm|mA|A|ms|us|ns|Nm|Nmm|kNm|N|kN|rpm)$")
 # What units are called, in small letters without blanks and points, by kind of the column.
 _CALLED: Mapping[str, Mapping[str, str]] = {
     "position": {

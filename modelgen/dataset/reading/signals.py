@@ -134,7 +134,7 @@ def _near(name: str, names: Sequence[str]) -> str:
     near = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.5)
     if name == "t":
         near = [n.lower() for n in names if re.search(r"time|stamp|^t\b", n.lower())]
-    original = next((n for n in names if near and n.lower() == near[0]), None)
+    original = next((n for n in names if near and n.lower() == near[0] and not _SIGNAL.fullmatch(n)), None)
     return (
         f", did you mean the column '{original}'? a mapping file (--mapping) renames it" if original else ""
     )

@@ -26,7 +26,7 @@ def in_turn(file: str, names: tuple[str, ...], table: Array) -> tuple[Array, str
     empty = next((name for name, there in zip(names, filled.T, strict=True) if there.sum() < 2), None)
     if empty is not None:
         raise InputError(f"{file}: the column {empty} holds no readings")
-    base = filled[:, 1] if len(names) > 1 else filled[:, 0]
+    base = filled[:, min(1, len(names) - 1)].copy()
     chosen = t[base]
     for k in range(1, len(names)):
         stamps = t[filled[:, k]]
@@ -53,6 +53,9 @@ def in_turn(file: str, names: tuple[str, ...], table: Array) -> tuple[Array, str
         there = filled[:, k]
         result[:, k] = np.interp(chosen, t[there], table[there, k])
     own = [name for name, there in zip(names, filled.T, strict=True) if not there[base].all()]
-    listed = ", ".join(own) if own else "no column"
+    if not own:
+        short = ", ".join(name for name, there in zip(names, filled.T, strict=True) if not there.all())
+        return result, f"{len(t) - len(chosen)} rows are left out, for they are without {short}"
+    listed = ", ".join(own)
     at = names[min(1, len(names) - 1)]
     return result, f"rows come in turn: {listed} interpolated by straight lines at the instants of {at}"
