@@ -221,12 +221,18 @@ def test_channels_in_turn_keep_their_own_instants(tmp_path: Path) -> None:
         read(file_of(tmp_path, table("t,q1,i1", hole)), ARM)
 
 
-def test_a_channel_that_begins_late_leaves_the_rows_before_out(tmp_path: Path) -> None:
-    rows = [(row[0], row[1], row[2] if k >= len(ROWS) // 2 else "") for k, row in enumerate(ROWS)]
+@pytest.mark.parametrize("there", [slice(3, None), slice(60, None), slice(180, None), slice(None, 200)])
+def test_a_channel_that_begins_late_or_ends_early_leaves_the_others_rows_out(
+    there: slice, tmp_path: Path
+) -> None:
+    kept = range(len(ROWS))[there]
+    rows = [(row[0], row[1], row[2] if k in kept else "") for k, row in enumerate(ROWS)]
     record = read(file_of(tmp_path, table("t,q1,i1", rows)), ARM)
-    late = len(ROWS) // 2
-    assert len(record.t) == len(ROWS) - late
-    assert f"{late} rows are left out, for they are without i1" in record.remarks[-1]
+    assert len(record.t) == len(kept)
+    assert record.q[:, 0] == pytest.approx(Q[there], abs=1e-5)
+    assert record.input[:, 0] == pytest.approx(EFFORT[there], abs=1e-5)
+    left = len(ROWS) - len(kept)
+    assert f"{left} rows are left out, for they are without i1" in record.remarks[-1]
 
 
 def test_unsigned_readings_are_found_and_the_mapping_undoes_them(tmp_path: Path) -> None:

@@ -14,7 +14,15 @@ from datetime import datetime
 from pathlib import Path
 
 from modelgen.dataset.objects import Layout
-from modelgen.dataset.reading.text import cells_of, comment_before, encoding_of, head_of, moment, number
+from modelgen.dataset.reading.text import (
+    cells_of,
+    comment_before,
+    encoding_of,
+    head_of,
+    last_line,
+    moment,
+    number,
+)
 from modelgen.errors import InputError, Location
 
 DELIMITERS: tuple[str | None, ...] = (",", ";", "\t", "|", None)  # None: blanks
@@ -106,6 +114,15 @@ def shape_of(path: Path, file: Path, layout: Layout) -> Shape:
     blank = [sum(not row[k] for row in body if len(row) == width) for k in range(min(width, len(names)))]
     sparse = frozenset(k for k, count in enumerate(blank) if count >= 10 and count > 0.2 * len(body))
     begin = rows[first][1][: len(names)] if first < len(rows) else []
+    # A channel that begins later than the others, or ends sooner, is blank there.
+    ends = [begin, cells_of(last_line(file, encoding), found)]
+    sparse |= {
+        k
+        for row in ends
+        if len(row) >= len(names) and any(row)
+        for k in numeric
+        if k < len(names) and not row[k]
+    }
     dates = {k: date for k, cell in enumerate(begin) if (date := moment(cell)) is not None}
     for k, date in dates.items():
         remarks.append(f"{names[k]} holds dates, in UTC where they name no zone: it counts from {date}")

@@ -17,6 +17,7 @@ from modelgen.errors import InputError
 
 HEAD = 1 << 16  # bytes that the encoding is taken from
 LINES = 400  # of a file's beginning, that its shape is taken from
+END = 65_536  # bytes at the end of a file that hold its last line
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
     (codecs.BOM_UTF32_LE, "utf-32"),
@@ -75,6 +76,17 @@ def head_of(path: Path, file: Path, encoding: str, skip: int) -> list[tuple[int,
             return list(islice(kept, LINES))
     except (LookupError, UnicodeError):
         raise InputError(f"{path}: cannot be read in the encoding {encoding}") from None
+
+
+def last_line(file: Path, encoding: str) -> str:
+    """Text of the last whole line; empty where an end of that size has none, or the file no such end."""
+    size = file.stat().st_size
+    if encoding.startswith("utf-16") or not file.is_file():
+        return ""
+    with file.open("rb") as stream:
+        stream.seek(max(0, size - END))
+        lines = stream.read().decode(encoding, errors="replace").split("\n")
+    return next((x.rstrip("\r") for x in reversed(lines[1:-1]) if x.strip()), "")
 
 
 def comment_before(file: Path, encoding: str, line: int) -> str:
