@@ -25,6 +25,7 @@ _UNKNOWN = (
     "how large their efforts are"
 )
 _BETTER = "more --starts and --harmonics look for such a motion, wider limits make room for it."
+_STILL = 0.01  # of a joint's largest speed, that no controller notices at the begin
 _SECOND = "_test"  # what the name of the second motion ends in
 _ELSEWHERE = ("processes", "dask")  # options that say where the work is done
 _SIDES = (
@@ -85,6 +86,7 @@ def report(e: Excitation, stem: str, call: Call) -> str:
                     if tight
                     else []
                 ),
+                *_begin(e),
                 *([Lines(remarks)] if remarks else []),
             ],
         ),
@@ -95,6 +97,29 @@ def report(e: Excitation, stem: str, call: Call) -> str:
         ("Limits", [Grid("Limits", [("limit", "left"), ("used %", "right")], rows, long=True)]),
     ]
     return page(f"{e.arm.name}: excitation trajectory", "Excitation", answers, sections)
+
+
+def _begin(e: Excitation) -> list[Part | str]:
+    """Where the motion begins, and how fast."""
+    parts = zip(
+        e.arm.coordinate_names, e.arm.coordinate_units, e.signals["q"][0], e.signals["dq"][0], strict=True
+    )
+    first, moving = [], False
+    for k, (name, unit, q, dq) in enumerate(parts):
+        size, own = (1.0, unit) if unit == "m" else (180.0 / np.pi, "deg")
+        fast = abs(dq) > _STILL * np.abs(e.signals["dq"][:, k]).max()
+        moving |= bool(fast)
+        first.append(
+            f"{name} {number(size * q)} {own}" + (f" at {number(size * dq)} {own}/s" if fast else "")
+        )
+    text = f"It begins at {listed(first)}."
+    if not moving:
+        return [Text(f"{text} Bring the arm there first.")]
+    return [
+        Text(
+            f"{text} Bring the arm there first; it jumps to that speed. With --rest a motion begins at rest."
+        )
+    ]
 
 
 def separates(e: Excitation) -> str:
