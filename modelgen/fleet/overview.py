@@ -234,7 +234,8 @@ def first_step(rows: Sequence[Row], again: str) -> Iterator[Part]:
         if again:
             yield Command(again)
     wanting = _open(rows) + [row for row in rows if _harming(row)]
-    first = next((row for row in [*wanting, *rows] if row.get("command")), None)
+    lacking = [row for row in rows if row.get("causes")]
+    first = next((row for row in [*wanting, *lacking, *rows] if row.get("command")), None)
     if first is not None:
         text = first["next"]
         yield Text([Run("For "), linked(first), Run(f": {text[:1].lower()}{text[1:]}")])

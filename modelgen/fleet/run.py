@@ -75,9 +75,15 @@ class Fleet(Shown):
     def __repr__(self) -> str:
         said = self.to_json()
         kept = f", {said['kept']} of them from before" if said["kept"] else ""
-        counts = ", ".join(f"{n} {WORDS[key]}" for key, n in said["verdicts"].items() if n)
+        counts = ", ".join(f"{n} {_with(key, n)}" for key, n in said["verdicts"].items() if n)
         units = "1 unit" if said["units"] == 1 else f"{said['units']} units"
         return f"{units}{kept}: {counts}"
+
+
+def _with(key: str, units: int) -> str:
+    """A verdict after the number of its units."""
+    words = WORDS[key]
+    return words.replace("cause ", "causes ") if units > 1 else words
 
 
 def diagnose_fleet(

@@ -47,7 +47,8 @@ def cells(row: Row) -> list[dict[str, Any]]:
     found = verdict(row)
     causes_ = titles(row)
     harms = row.get("harms") or [False] * len(causes_)
-    named = zip(causes_, row.get("ambiguous_with") or (), harms, strict=True)
+    sized = [f"{title}{_sized(row, k)}" for k, title in enumerate(causes_)]
+    named = zip(sized, row.get("ambiguous_with") or (), harms, strict=True)
     figures = (
         (max(row.get("delta_bic") or (), default=None), "z.1f"),
         (row.get("overall_gain_percent") if row.get("causes") else None, "z.1f"),
@@ -65,6 +66,17 @@ def cells(row: Row) -> list[dict[str, Any]]:
         _cell(row.get("error") or _more(row) or _failing(row) or row.get("reason") or "", "quiet"),
     ]
     return [{"head": head, **cell} for head, cell in zip(_HEADS, made, strict=True)]
+
+
+def _sized(row: Row, k: int) -> str:
+    """What was found of the k-th cause, with its deviations; empty where nothing of it has one."""
+    place = (row["causes"][k], row["joints"][k])
+    said = [
+        f"{x['name']} {x['value']:.4g} ± {x['std']:.2g}{f' {unit}' if (unit := x['unit']) != '1' else ''}"
+        for x in row.get("cause_parameters") or ()
+        if (x["cause"], x["joint"]) == place and x["std"]
+    ]
+    return f": {listed(said)}" if said else ""
 
 
 def _cell(
