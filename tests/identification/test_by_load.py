@@ -1,5 +1,7 @@
 """Friction in proportion to the load, which the parameters make that are looked for."""
 
+from pathlib import Path
+
 import pytest
 from loaded_rod import DRY, LOADED, MOMENT, PRELOAD, STIFFNESS, VISCOUS, described, log
 
@@ -9,11 +11,15 @@ from modelgen.effects import known_effects
 
 
 @pytest.mark.parametrize("spring", [False, True], ids=["alone", "beside a spring"])
-def test_the_friction_is_that_of_the_load_that_is_found(spring: bool) -> None:
+def test_the_friction_is_that_of_the_load_that_is_found(spring: bool, tmp_path: Path) -> None:
     """With columns of the load of the fit before it was off by dozens of its deviations."""
+    mapping = tmp_path / "mapping.yaml"
+    joint = "{position: {column: q1, unit: rad}, effort: {column: i1, unit: A}}"
+    mapping.write_text(f"schema: 1\ntime: {{column: t}}\nhold: instant\njoints:\n  - {joint}\n")
     more = ("load_dependent_friction", *(["spring"] if spring else []))
     arm = loads(described(*more), "arm.yaml", known_effects())["rod"]
-    found = identify(arm, log(0, spring=spring), log(1, spring=spring)).parameters
+    logs = log(0, spring=spring), log(1, spring=spring)
+    found = identify(arm, *logs, mapping=mapping).parameters
     wanted = {"FL1": LOADED, "FC1": DRY / 100.0, "FV1": VISCOUS / 1e4, "MX1": MOMENT}
     wanted |= {"KS1": STIFFNESS, "KO1": PRELOAD} if spring else {}
     for name, value in wanted.items():

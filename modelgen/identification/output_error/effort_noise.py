@@ -14,6 +14,9 @@ from scipy.optimize import nnls
 
 from modelgen.numeric import Array
 
+# Deviations by which bends exceed those of white noise: of a sum of N squares, and of the noise that it is
+# compared with, that is sqrt(8 / N) of it, since neighbours share readings.
+CLEARLY = 3.0
 DRAWS = 8  # of noise at each drive, by which its share of the errors is found
 _SECOND, _THIRD = 6.0, 20.0  # sums of squares of the weights of differences: 1, 2, 1 and 1, 3, 3, 1
 
@@ -48,14 +51,16 @@ def _sizes(errors: Sequence[Array], left: Sequence[Array], positions: Array) -> 
 
     left: what unit noise of each drive leaves, (K, n, n, DRAWS), the joint first. positions: variances (n,).
     Over longer times efforts show more beside the positions, in fewer bends: each joint has the lag at which
-    they are known best.
+    they are known best, and none where bends are no more than chance makes of the positions' noise.
     """
     n, longest = errors[0].shape[1], min(len(e) for e in errors) // 4
     shares, squares, least = np.zeros((n, n)), np.zeros(n), np.full(n, np.inf)
     for lag in (2**k for k in range(max(1, longest).bit_length())):
         found = np.sum([(_bends(e, lag) ** 2).sum(axis=0) for e in errors], axis=0)
         own = np.sum([(_bends(x, lag) ** 2).sum(axis=0) for x in left], axis=0).mean(axis=2)
-        beyond = found - _SECOND * positions * sum(max(0, len(e) - 2 * lag) for e in errors)
+        count = sum(len(e) - 2 * lag for e in errors)
+        beyond = found - _SECOND * positions * count
+        beyond[beyond < CLEARLY * found * np.sqrt(8.0 / count)] = 0.0
         doubt = lag * (found / np.maximum(beyond, 1e-12 * found + 1e-300)) ** 2
         better = doubt < least
         least[better], squares[better], shares[better] = doubt[better], beyond[better], own[better]
