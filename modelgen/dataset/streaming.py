@@ -17,10 +17,9 @@ from modelgen.dataset.processing.resampling import REACH
 from modelgen.dataset.processing.settings import Chosen, Settings, choose
 from modelgen.dataset.processing.timing import Axis, Survey
 from modelgen.dataset.reading import checks
+from modelgen.dataset.reading.clocks import clocks
 from modelgen.dataset.reading.column_table import Log
-from modelgen.dataset.reading.read import record_of
-from modelgen.dataset.reading.repeats import refresh_of
-from modelgen.dataset.reading.slow_positions import refreshes
+from modelgen.dataset.reading.read import channels_of, record_of
 from modelgen.dataset.reading.sources import open_source
 from modelgen.dataset.thresholds import USUAL
 from modelgen.description import Arm
@@ -150,15 +149,20 @@ class Stream:
     def _check_repeats(self, table: Array) -> None:
         """Readings must not repeat: rows are used as they are. Raises InputError."""
         source = self._source
-        positions = [source.wanted.index(name) for name in source.signals.position]
-        whole = refresh_of(table[:, 1:], source.thresholds)
-        found = [*refreshes(table, positions, source.thresholds).values(), *([whole] if whole else [])]
+        channels = channels_of(source)
+        found = clocks(table, channels.positions, channels.efforts, source.thresholds)
         if not found:
             return
-        which = "every reading" if whole else "a reading of the positions"
+        if len(found) == len(source.wanted) - 1:
+            which = "every reading"
+        elif set(found) <= set(channels.positions):
+            which = "a reading of the positions"
+        else:
+            which = f"a reading of {', '.join(source.wanted[k] for k in sorted(found))}"
+        most = max(x.every for x in found.values())
         raise InputError(
-            f"{self.spec}: {which} stands there {max(x.every for x in found):.4g} times, which is not mended "
-            "in logs that are read block by block; give a part of it, FILE@t0:t1, or write new readings alone"
+            f"{self.spec}: {which} stands there {most:.4g} times, which is not mended in logs "
+            "that are read block by block; give a part of it, FILE@t0:t1, or write new readings alone"
         )
 
 

@@ -78,6 +78,12 @@ class DatasetThresholds(Group):
         "Readings repeat where one moves by more in the median; a slow, coarse encoder moves by one.",
         _CHOICE,
     )
+    moves_after_standing: float = entry(
+        0.5,
+        "of the large changes",
+        "Readings repeat where more than that come after the reading stood; what is read anew moves before.",
+        "instants that follow no clock, at a mean of two rows, leave 61 % of the changes after a repetition",
+    )
     remarked_effort: float = entry(1.1, "of the limit", "A larger effort is remarked on.", _GUARD)
     impossible_effort: float = entry(3.0, "of the limit", "A larger effort is refused.", _GUARD)
     outlying_effort: float = entry(

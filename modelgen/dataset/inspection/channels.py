@@ -19,12 +19,11 @@ from modelgen.dataset.processing.periods import repetition
 from modelgen.dataset.processing.rounding import resolution
 from modelgen.dataset.processing.splitting import repeats_from
 from modelgen.dataset.reading.array_table import ArrayTable
+from modelgen.dataset.reading.clocks import Channels, repeated_in
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.plausible import doubtful_unit
 from modelgen.dataset.reading.read import read_with_stamps
-from modelgen.dataset.reading.repeats import refresh_of
-from modelgen.dataset.reading.slow_positions import refreshes
 from modelgen.dataset.reading.sources import BLOCK, opened
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.thresholds import USUAL
@@ -118,15 +117,8 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
             f"no column t: times are those of {stamps}, in {unit} by a guess, from the first one on"
         )
     readings = {name: x for name, x in columns.items() if name != "t"}
-    measured = [x for x in readings.values() if np.isfinite(x).all()]
-    refresh = refresh_of(np.stack(measured, axis=1)) if measured else None
-    if refresh is not None:
-        remarks.append(
-            f"every reading stands there {refresh.every:.4g} times: the source is slower than the log"
-        )
     moving = {name: x for name, x in readings.items() if name != stamps and kind_of(name) == "position"}
-    if refresh is None and measured:
-        remarks += _slower(moving)
+    remarks += _repeated({name: x for name, x in readings.items() if name != stamps}, tuple(moving))
     named = [values for name, values in readings.items() if _POSITION.fullmatch(name)]
     positions = named or [x for x in moving.values() if np.ptp(x) > 0.0]
     found = _inspected(
@@ -150,14 +142,16 @@ def _said(reader: Reader) -> dict[str, str]:
     return {name: unit for name, unit in found.items() if unit}
 
 
-def _slower(columns: Mapping[str, Array]) -> list[str]:
-    """Remarks about positions that are refreshed less often than other readings."""
+def _repeated(columns: Mapping[str, Array], positions: Sequence[str]) -> tuple[str, ...]:
+    """Remarks about readings that are refreshed less often than the log is written."""
     finite = {name: x for name, x in columns.items() if np.isfinite(x).all()}
     if not finite:
-        return []
-    found = refreshes(np.stack(list(finite.values()), axis=1), range(len(finite)))
-    names = list(finite)
-    return [f"{names[k]} stands there {x.every:.4g} times while others change" for k, x in found.items()]
+        return ()
+    names = ("t", *finite)
+    table = np.stack([np.arange(len(next(iter(finite.values())))), *finite.values()], axis=1)
+    of_motion = [k for k, name in enumerate(names) if name in positions]
+    efforts = [k for k, name in enumerate(names) if kind_of(name) == "current"]
+    return repeated_in(table, Channels(names, of_motion, efforts))
 
 
 def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:

@@ -15,13 +15,13 @@ from modelgen.dataset.processing.rounding import LONGEST, resolution
 from modelgen.dataset.processing.stamps import EVEN, strayed, true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
+from modelgen.dataset.reading.clocks import Channels, fresh
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.lone import without_lone
 from modelgen.dataset.reading.lost import lost_rows
 from modelgen.dataset.reading.plausible import check_counters, check_efforts, doubtful_unit
-from modelgen.dataset.reading.repeats import refresh_of, without_doubled
-from modelgen.dataset.reading.slow_positions import slow_positions
+from modelgen.dataset.reading.repeats import without_doubled
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
@@ -74,17 +74,15 @@ def read_with_stamps(
         for part in (source.signals.position, source.signals.effort)
     )
     table, doubled = without_doubled(table)
-    table, found, repeats = _new_readings(source, table)
-    together = repeats > 1.0 and not source.stated and any(source.signals.effort)
-    slow = slow_positions(source.wanted, table, list(positions), list(efforts), source.hold, thresholds)
-    if slow is not None and np.all(np.diff(table[:, 0]) > 0.0):
-        together, repeats, source = False, repeats * slow.every, replace(source, hold=slow.hold)
-        found.append(_slower(slow.names, table[:, 0], slow.every))
-        table = slow.table
+    new = fresh(table, channels_of(source), thresholds) if np.all(np.diff(table[:, 0]) > 0.0) else None
+    together, repeats = False, 1.0
+    if new is not None:
+        table, repeats, source = new.table, new.every, replace(source, hold=new.hold)
+        together = new.together and not source.stated
     table, stamped = _true_stamps(source, table)
     _check_counters(source, table)
     table, lone = without_lone(spec, table, positions, efforts, thresholds)
-    found = [*doubled, *found, *stamped, *lone]
+    found = [*doubled, *(() if new is None else new.remarks), *stamped, *lone]
     checks.check_length(spec, len(table), thresholds.min_samples)
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
     if axis.method != "none" and source.rate is None and repeats == 1.0:
@@ -125,36 +123,24 @@ def _rate_of_file(source: Source) -> float | None:
     return 1.0 / float(np.median(steps)) if len(steps) else None
 
 
-def _new_readings(source: Source, table: Array) -> tuple[Array, list[str], float]:
-    """The rows of new readings, at the instants at which they are new; remarks; rows per reading."""
-    t = table[:, 0]
-    found = refresh_of(table[:, 1:], source.thresholds)
-    if found is None or not np.all(np.diff(t) > 0.0):
-        return table, [], 1.0
-    rate = (len(t) - 1) / (t[-1] - t[0])
-    table = table[found.first].copy()
-    table[:, 0] = found.instants(t)
-    remark = (
-        f"every reading stands there {found.every:.4g} times: the log has {rate:.6g} Hz, its source "
-        f"{rate / found.every:.6g} Hz; new readings alone are used, at their instants"
+def channels_of(source: Source) -> Channels:
+    """Which of the source's columns are positions and efforts, and of which joints."""
+    names, signals = source.wanted, source.signals
+    pairs = zip(signals.position, signals.effort, strict=True)
+    return Channels(
+        names,
+        [names.index(name) for name in dict.fromkeys(signals.position)],
+        [names.index(name) for name in dict.fromkeys(signals.effort) if name is not None],
+        [(names.index(at), names.index(effort)) for at, effort in pairs if effort is not None],
+        source.hold,
+        source.stated,
     )
-    return table, [remark], found.every
 
 
 def _check_counters(source: Source, table: Array) -> None:
     """Efforts and speeds (N, k) that are no counters read wrongly. Raises InputError."""
     asked = [*source.signals.effort, *(source.signals.dq or ())]
     check_counters(source.spec.text, source.wanted, table, asked, getattr(source.reader, "scales", {}))
-
-
-def _slower(names: Sequence[str], t: Array, every: float) -> str:
-    """The remark about positions that are refreshed less often than the efforts."""
-    rate = (len(t) - 1) / (t[-1] - t[0])
-    which, stand = ", ".join(names), "stand" if len(names) > 1 else "stands"
-    return (
-        f"{which} {stand} there {every:.4g} times while others change: the log has {rate:.6g} Hz, its "
-        f"positions {rate / every:.6g} Hz; rows of new positions are used, with the efforts until the next"
-    )
 
 
 def _true_stamps(source: Source, table: Array) -> tuple[Array, list[str]]:

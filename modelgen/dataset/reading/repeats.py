@@ -10,6 +10,8 @@ from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.numeric import Array
 
 LEAST_UNEVEN = 4.0  # rows per refresh, below which changes anywhere are within a row of whole ones
+REST = 5.0  # refreshes: a source that shows nothing new for longer rests, it has not missed so many
+LIKE = 0.9  # of the changes of two columns that one clock refreshes, each of which may come again unchanged
 
 
 @dataclass(frozen=True)
@@ -31,14 +33,22 @@ class Refresh:
         row = float(np.median(np.diff(t)))
         return np.asarray(shown[0] + even) if 0.05 * row < np.ptp(late) < 1.5 * row else shown
 
+    @property
+    def times(self) -> str:
+        """How often a reading stands there, in words."""
+        waits = np.diff(self.first)
+        low, high = waits.min(), int(np.quantile(waits, 0.99))
+        varied = f" on average, from {low} to {high}" if high - low > max(1.01, 0.1 * self.every) else ""
+        return f"{self.every:.4g} times{varied}"
+
 
 def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | None:
     """The rows of columns (N, k) at which new readings stand; None where readings do not repeat.
 
-    They do where all columns change together, at instants a refresh apart. A coarse encoder that turns slowly
-    is distinguished from that: it changes by one step of its resolution, and not after equal times. Coarse
-    readings often come again at a refresh; what shows it then is that all changes of several columns lie a
-    whole number of refreshes apart.
+    They do where all columns change together, at instants of their source. A column that moves by far more
+    than its resolution and stands before it shows them, whatever the clock. A coarse encoder that turns
+    slowly is distinguished from that: it changes by one step of its resolution. Coarse readings often come
+    again at a refresh; what shows it then is that all changes lie a whole number of refreshes apart.
     """
     changes = np.diff(columns, axis=0) != 0.0
     rows = np.flatnonzero(changes.any(axis=1)) + 1
@@ -49,20 +59,53 @@ def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | N
     if common >= limits.min_repeats and sum(_uneven(x, limits) for x in columns.T) > 1:
         return _refreshed(rows, common)
     every = float(np.median(waits))
-    if every < limits.min_repeats:
-        return None
     near = np.abs(waits - every) <= max(1.01, 0.1 * every)
     # A refresh may bring the same reading again: its change then comes after several.
     several = np.abs(waits / every - np.rint(waits / every)) * every <= max(1.01, 0.1 * every)
-    if (
-        near.mean() < limits.single_refreshes
-        or several.mean() <= limits.whole_refreshes
-        or (waits < 0.5 * every).any()
-    ):
+    regular = (
+        every >= limits.min_repeats
+        and near.mean() >= limits.single_refreshes
+        and several.mean() > limits.whole_refreshes
+        and not (waits < 0.5 * every).any()
+    )
+    if regular and any(_moves(column[rows], limits) for column in columns.T):
+        return _refreshed(rows, float(np.mean(waits[near])))
+    return _at_own_instants(columns, rows, limits)
+
+
+def _at_own_instants(columns: Array, rows: np.ndarray, limits: DatasetThresholds) -> Refresh | None:
+    """The refresh of a source whose clock need not be even; None where no column shows one.
+
+    A column shows that all are refreshed at the rows (M,) of their changes where it stands, and then moves by
+    far more than its resolution. What is read in every row moves in the row before.
+    """
+    if not any(_stands_and_moves(column, len(rows), limits) for column in columns.T):
         return None
-    if not any(_moves(column[rows], limits) for column in columns.T):
+    waits = np.diff(rows)
+    short = waits[waits <= REST * np.mean(waits)]
+    every = float(np.mean(short))
+    if every < limits.min_repeats:
         return None
-    return _refreshed(rows, float(np.mean(waits[near])))
+    first = [rows[:1]]
+    for begin, wait in zip(rows[:-1], waits, strict=True):
+        count = max(round(wait / every), 1) if wait > REST * every else 1
+        first.append(begin + np.rint(wait * np.arange(1, count + 1) / count).astype(int))
+    return Refresh(every, np.concatenate(first))
+
+
+def _stands_and_moves(column: Array, changes: int, limits: DatasetThresholds) -> bool:
+    """Whether a column (N,) changes at most of so many changes, by far more than its resolution, mostly after
+    it stood, and comes to ever new readings: what has a few levels may stand at each of them.
+    """
+    steps = np.abs(np.diff(column))
+    rows = np.flatnonzero(steps)
+    if len(rows) < LIKE * changes or len(np.unique(column[rows + 1])) < limits.min_refreshes:
+        return False
+    if not _moves(column[rows + 1], limits):
+        return False
+    large = steps[rows[1:]] > limits.refresh_over_resolution * steps[rows].min()
+    stood = np.diff(rows)[large] > 1
+    return len(stood) > 0 and float(np.mean(stood)) > limits.moves_after_standing
 
 
 def _common(rows: np.ndarray) -> float:
