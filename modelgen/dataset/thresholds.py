@@ -61,7 +61,7 @@ class DatasetThresholds(Group):
         60, "readings", "Repeated readings are recognised by so many new ones at least.", _GUARD
     )
     min_repeats: float = entry(
-        1.9, "rows", "Readings repeat where a new one comes after so many rows at least.", _GUARD
+        1.9, "rows", "Of an even clock, a new reading comes after so many rows at least.", _GUARD
     )
     single_refreshes: float = entry(
         0.9, "of the readings", "Readings repeat where so many come one refresh after the last.", _CHOICE
@@ -78,10 +78,13 @@ class DatasetThresholds(Group):
         "Readings repeat where one moves by more in the median; a slow, coarse encoder moves by one.",
         _CHOICE,
     )
+    least_repeats: float = entry(
+        1.1, "rows", "Of a clock that is not even, a new reading comes after so many rows at least.", _GUARD
+    )
     moves_after_standing: float = entry(
         0.5,
         "of the large changes",
-        "Readings repeat where more than that come after the reading stood; what is read anew moves before.",
+        "Readings repeat where more than that come after the reading stood; less where its steps are finer.",
         "instants that follow no clock, at a mean of two rows, leave 61 % of the changes after a repetition",
     )
     remarked_effort: float = entry(1.1, "of the limit", "A larger effort is remarked on.", _GUARD)

@@ -161,11 +161,12 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
         "doubled_stamps": (0.9, stamped(4 * STEP * np.floor(np.arange(200.0) / 4))),
         "even_roughness": (0.0, stamped(uneven(0.8))),
         "min_refreshes": (300, repeated()),
-        "min_repeats": (5.0, repeated()),
+        "min_repeats": (5.0, repeated(period=50)),
         "single_refreshes": (1.1, repeated(1, period=50)),
         "whole_refreshes": (1.0, repeated(1, period=50)),
         "refresh_over_resolution": (1e9, repeated(1)),
-        "moves_after_standing": (0.95, repeated(1, least=1)),
+        "least_repeats": (2.0, repeated(1, often=(1, 2))),
+        "moves_after_standing": (1e6, repeated(1, often=(1, 8))),
         "remarked_effort": (1.3, efforts(0.85)),
         "impossible_effort": (1.05, efforts(0.9)),
         "outlying_effort": (50.0, efforts(np.inf, 30.0, 0.0005)),
@@ -210,13 +211,13 @@ def cases(folder: Path) -> dict[str, tuple[Value, Seen]]:
     }
 
 
-def repeated(count: int = 4, *, period: int = 200, least: int = 4) -> Seen:
-    """200 readings of some channels that stand there four times each, at 1 kHz, or from `least` times on.
+def repeated(count: int = 4, *, period: int = 200, often: tuple[int, int] = (4, 4)) -> Seen:
+    """200 readings of some channels that stand there so often at 1 kHz, from the first to the second number.
 
     period: readings after which the motion comes again.
     """
-    often = np.random.default_rng(2).integers(least, 9 - least, 200)
-    fresh = np.repeat(STEP * (np.arange(200) % period), often)
+    rows = np.random.default_rng(2).integers(often[0], often[1] + 1, 200)
+    fresh = np.repeat(STEP * (np.arange(200) % period), rows)
     q = 0.3 * np.sin(np.multiply.outer(fresh, [1.0, 1.3]))
     columns = np.column_stack([q, np.cos(q)])[:, -count:]
     return lambda limits: refresh_of(columns, limits) is not None

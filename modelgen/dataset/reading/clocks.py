@@ -66,15 +66,19 @@ def clocks(
     for together in (tuple(every), motion):
         if not found and (whole := refresh_of(table[:, list(together)], limits)) is not None:
             found = dict.fromkeys(together, whole)
-    known = list(found.values())[:1]
+    changes = {k: np.flatnonzero(np.diff(table[:, k])) + 1 for k in every}
+    known = {id(x): (x, len(np.unique(np.concatenate([changes[k] for k in found])))) for x in found.values()}
     alone = {k: refresh_of(table[:, [k]], limits) for k in motion}
     own = {k: x for k, x in alone.items() if x is not None}
-    changes = {k: np.flatnonzero(np.diff(table[:, k])) + 1 for k in every}
     for k, refresh in sorted(own.items(), key=lambda item: item[1].every):
-        of_one = (x for x in known if refresh.every < _SLOWER * x.every and _share(changes[k], x) >= _BOTH)
-        found[k] = next(of_one, refresh)
-        known += [] if any(found[k] is x for x in known) else [found[k]]
-    slowest_first = sorted(known, key=lambda x: -x.every)
+        for clock, often in known.values():
+            as_fast = refresh.every < _SLOWER * clock.every or len(changes[k]) * _SLOWER > often
+            if as_fast and _share(changes[k], clock) >= _BOTH:
+                found[k] = clock
+                break
+        else:
+            found[k], known[id(refresh)] = refresh, (refresh, len(changes[k]))
+    slowest_first = sorted((x for x, _ in known.values()), key=lambda x: -x.every)
     for k in every:
         if k not in found and len(changes[k]) >= _FEW:
             shared = [x for x in slowest_first if _share(changes[k], x) >= _COARSE]
@@ -96,7 +100,7 @@ def fresh(table: Array, channels: Channels, limits: DatasetThresholds = USUAL) -
     Each reading counts once, at the instant at which it is new. The rows are those of the slowest effort,
     where positions are smooth enough to be interpolated to them, else those of the slowest channel. What has
     another clock is interpolated between its own instants, positions by cubic splines, all else by straight
-    lines. Efforts that act until the next row, and are read in each, count with their mean up to the next.
+    lines. Efforts that act until the next row, all read in each, count with their mean up to the next.
     """
     found = clocks(table, channels.positions, channels.efforts, limits)
     of_motion = {k: found[k] for k in (*channels.positions, *channels.efforts) if k in found}
@@ -108,7 +112,8 @@ def fresh(table: Array, channels: Channels, limits: DatasetThresholds = USUAL) -
     result = table[rows].copy()
     result[:, 0] = at
     inside = np.full(len(rows), fill_value=True)
-    hold, averaged = channels.hold, [k for k in channels.efforts if k not in found]
+    each_row = not any(k in found for k in channels.efforts)
+    hold, averaged = channels.hold, list(channels.efforts) if each_row else []
     evened = not np.array_equal(at, t[rows])
     for k in range(1, table.shape[1]):
         own, smooth = found.get(k), k in channels.positions
@@ -120,13 +125,13 @@ def fresh(table: Array, channels: Channels, limits: DatasetThresholds = USUAL) -
     if averaged and hold in ("following", "previous"):
         _average(result, table, rows, averaged, late=int(hold == "previous"))
         hold = "following"
-    elif not averaged and not channels.stated:
+    elif not each_row and not channels.stated:
         hold = "instant"
     together = bool(channels.pairs) and all(
         k in found and found[k] is found.get(j) for k, j in channels.pairs
     )
     said = _said(channels, found, t)
-    if hold != channels.hold and not averaged and not together:
+    if hold != channels.hold and not each_row and not together:
         said = (*said, "an effort counts as read at the instant at which it is new (hold: instant)")
     return Fresh(result[inside], slowest.every, hold, together, said)
 

@@ -52,8 +52,10 @@ def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | N
     """
     changes = np.diff(columns, axis=0) != 0.0
     rows = np.flatnonzero(changes.any(axis=1)) + 1
-    if len(rows) < limits.min_refreshes or len(rows) * limits.min_repeats > len(columns):
+    if len(rows) < limits.min_refreshes:
         return None
+    if len(rows) * limits.min_repeats > len(columns):
+        return _at_own_instants(columns, rows, limits)
     waits = np.diff(rows)
     common = _common(rows)
     if common >= limits.min_repeats and sum(_uneven(x, limits) for x in columns.T) > 1:
@@ -84,7 +86,7 @@ def _at_own_instants(columns: Array, rows: np.ndarray, limits: DatasetThresholds
     waits = np.diff(rows)
     short = waits[waits <= REST * np.mean(waits)]
     every = float(np.mean(short))
-    if every < limits.min_repeats:
+    if every < limits.least_repeats:
         return None
     first = [rows[:1]]
     for begin, wait in zip(rows[:-1], waits, strict=True):
@@ -103,9 +105,12 @@ def _stands_and_moves(column: Array, changes: int, limits: DatasetThresholds) ->
         return False
     if not _moves(column[rows + 1], limits):
         return False
-    large = steps[rows[1:]] > limits.refresh_over_resolution * steps[rows].min()
-    stood = np.diff(rows)[large] > 1
-    return len(stood) > 0 and float(np.mean(stood)) > limits.moves_after_standing
+    size = steps[rows] / steps[rows].min()
+    large = size > limits.refresh_over_resolution
+    # The finer its steps, the more seldom what is read in every row is the same twice by chance.
+    by_chance = limits.moves_after_standing * limits.refresh_over_resolution / float(np.median(size))
+    stood = (np.diff(rows) > 1)[large[1:] & large[:-1]]
+    return len(stood) > 0 and float(np.mean(stood)) > max(by_chance, 0.5 * (limits.least_repeats - 1.0))
 
 
 def _common(rows: np.ndarray) -> float:
