@@ -115,13 +115,14 @@ def shape_of(path: Path, file: Path, layout: Layout) -> Shape:
     sparse = frozenset(k for k, count in enumerate(blank) if count >= 10 and count > 0.2 * len(body))
     begin = rows[first][1][: len(names)] if first < len(rows) else []
     # A channel that begins later than the others, or ends sooner, is blank there.
-    ends = [begin, cells_of(last_line(file, encoding), found)]
+    ends = [row for row in (begin, cells_of(last_line(file, encoding), found)) if len(row) >= len(names)]
+    read = [row for _, row in rows[first:] if len(row) == width]
     sparse |= {
         k
-        for row in ends
-        if len(row) >= len(names) and any(row)
         for k in numeric
-        if k < len(names) and not row[k]
+        if k < len(names)
+        and any(any(row) and not row[k] for row in ends)
+        and sum(bool(row[k]) for row in read) > 1
     }
     dates = {k: date for k, cell in enumerate(begin) if (date := moment(cell)) is not None}
     for k, date in dates.items():
