@@ -10,6 +10,7 @@ from dataset_support import AXIS, DRIVEN, columns, motion, times, write_csv
 
 from modelgen.dataset import read
 from modelgen.dataset.inspection import inspect
+from modelgen.dataset.reading.clocks import clocks
 from modelgen.numeric import Array
 
 NAMES = ("q1", "qm2", "i1", "i2")
@@ -147,3 +148,17 @@ def test_an_effort_of_a_few_levels_is_read_in_every_row(tmp_path: Path) -> None:
     profile = np.sign(np.sin(2 * np.pi * 0.5 * t)) * (1.0 + 2.0 * (np.sin(2 * np.pi * 1.5 * t) > 0.0))
     table = {"t": t, "q1": 0.2 * np.sin(2 * np.pi * 0.5 * t), "tau1": profile}
     assert read(write_csv(tmp_path / "a.csv", table), AXIS).repeats == 1.0
+
+
+def test_a_motor_that_is_logged_as_it_moves_on_repeats_nothing() -> None:
+    """It stands while some rows are written, and moves by far more than a step between them."""
+    random = np.random.default_rng(2)
+    stays = random.integers(1, 5, 300)
+    q = np.repeat(np.cumsum(random.uniform(0.001, 0.03, 300)), stays)
+    i = 0.1 * np.sin(20 * q) + 0.01 * random.standard_normal(len(q))
+    begins = np.append(0, np.cumsum(stays))[:-1]
+    steps = np.full(len(q), 0.013)
+    steps[begins] += random.uniform(0.1, 0.8, 300)
+    logged, paced = np.cumsum(steps), 0.013 * np.arange(len(q))
+    assert clocks(np.column_stack([logged, q, i]), [1], [2]) == {}
+    assert 1 in clocks(np.column_stack([paced, q, i]), [1], [2])

@@ -21,6 +21,9 @@ _SLOWER = 1.2  # rows per reading of one column over those of another, from whic
 # fifth of the position's, up to which splines through its readings are right to a part in a thousand.
 _PER_READING = 5
 _ROUNDED = 1e-5  # of a position's range, below which its rounding is no noise that splines would colour
+# Times the usual step between stamps, from which on a row came late, and how many such rows a log has that is
+# written by a clock, lost ones and what a busy machine delays among them.
+_LATE, _SELDOM = 2.5, 0.1
 _FEW = 20  # changes of a coarse column, by which chance cannot put them all where another is refreshed
 
 
@@ -62,13 +65,19 @@ def clocks(
     refreshes alone it changes.
     """
     motion, every = (*positions, *efforts), range(1, table.shape[1])
+    steps = np.diff(table[:, 0])
+    # A motor that is logged whenever it has moved on stands, and then moves: that shows no clock of a source.
+    unpaced = bool(np.mean(steps > _LATE * np.median(steps)) > _SELDOM)
     found: dict[int, Refresh] = {}
     for together in (tuple(every), motion):
-        if not found and (whole := refresh_of(table[:, list(together)], limits)) is not None:
+        if (
+            not found
+            and (whole := refresh_of(table[:, list(together)], limits, even_only=unpaced)) is not None
+        ):
             found = dict.fromkeys(together, whole)
     changes = {k: np.flatnonzero(np.diff(table[:, k])) + 1 for k in every}
     known = {id(x): (x, len(np.unique(np.concatenate([changes[k] for k in found])))) for x in found.values()}
-    alone = {k: refresh_of(table[:, [k]], limits) for k in motion}
+    alone = {k: refresh_of(table[:, [k]], limits, even_only=unpaced) for k in motion}
     own = {k: x for k, x in alone.items() if x is not None}
     for k, refresh in sorted(own.items(), key=lambda item: item[1].every):
         for clock, often in known.values():
@@ -84,7 +93,7 @@ def clocks(
             shared = [x for x in slowest_first if _share(changes[k], x) >= _COARSE]
             found |= dict.fromkeys([k], shared[0]) if shared else {}
     if not any(k in found for k in positions) and len(positions) > 1:
-        jointly = refresh_of(table[:, list(positions)], limits)
+        jointly = refresh_of(table[:, list(positions)], limits, even_only=unpaced)
         found |= {} if jointly is None else dict.fromkeys(positions, jointly)
     return found
 

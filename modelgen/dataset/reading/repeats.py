@@ -42,20 +42,23 @@ class Refresh:
         return f"{self.every:.4g} times{varied}"
 
 
-def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | None:
+def refresh_of(
+    columns: Array, limits: DatasetThresholds = USUAL, *, even_only: bool = False
+) -> Refresh | None:
     """The rows of columns (N, k) at which new readings stand; None where readings do not repeat.
 
     They do where all columns change together, at instants of their source. A column that moves by far more
     than its resolution and stands before it shows them, whatever the clock. A coarse encoder that turns
     slowly is distinguished from that: it changes by one step of its resolution. Coarse readings often come
     again at a refresh; what shows it then is that all changes lie a whole number of refreshes apart.
+    even_only: of a source with an even clock, where the rows themselves have none.
     """
     changes = np.diff(columns, axis=0) != 0.0
     rows = np.flatnonzero(changes.any(axis=1)) + 1
     if len(rows) < limits.min_refreshes:
         return None
     if len(rows) * limits.min_repeats > len(columns):
-        return _at_own_instants(columns, rows, limits)
+        return None if even_only else _at_own_instants(columns, rows, limits)
     waits = np.diff(rows)
     common = _common(rows)
     if common >= limits.min_repeats and sum(_uneven(x, limits) for x in columns.T) > 1:
@@ -72,7 +75,7 @@ def refresh_of(columns: Array, limits: DatasetThresholds = USUAL) -> Refresh | N
     )
     if regular and any(_moves(column[rows], limits) for column in columns.T):
         return _refreshed(rows, float(np.mean(waits[near])))
-    return _at_own_instants(columns, rows, limits)
+    return None if even_only else _at_own_instants(columns, rows, limits)
 
 
 def _at_own_instants(columns: Array, rows: np.ndarray, limits: DatasetThresholds) -> Refresh | None:
