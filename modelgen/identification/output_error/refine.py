@@ -140,7 +140,8 @@ def refine(
                 progress(rounds, cost)
     final = fit.linear(p, guesses)
     weights = final.weights()
-    std = final.deviations(weights, fit.steps(p, guesses) if effort else [])
+    # of what is no best fit nothing says how far it is from that
+    std = None if stopped else final.deviations(weights, fit.steps(p, guesses) if effort else [])
     per_unit = np.sqrt((np.concatenate(final.columns) ** 2).mean(axis=0))  # (n, f)
     shown = np.argmax(per_unit * weights[:, None], axis=0)
     runs = Fit(model, every).runs(p, guesses)
@@ -153,7 +154,7 @@ def refine(
             continue
         i = chosen.index(k)
         j = int(shown[i])
-        if stopped:
+        if std is None:
             found.append(Refined(b.name, b.unit, start, value, None, shown_by=j))
             continue
         moves = float(std[i] * per_unit[j, i])
