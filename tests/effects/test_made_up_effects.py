@@ -157,7 +157,8 @@ def test_identify_fits_the_model_that_has_it(name: str, tmp_path: Path) -> None:
     plant = plants.PLANTS[name]
     logs = [plants.log(tmp_path / f"{k}.csv", plant, k) for k in range(2)]
     arms, out = described(name, plant.n, tmp_path / "arms.yaml"), tmp_path / "out"
-    done = called("identify", arms, "--train", logs[0], "--test", logs[1], "--out", out)
+    held = plants.held(tmp_path / "held.yaml", plant)
+    done = called("identify", arms, "--train", logs[0], "--test", logs[1], "--mapping", held, "--out", out)
     assert done.returncode == 0, done.stderr
     found = json.loads((out / "identification.json").read_text(encoding="utf-8"))
     values = {p["name"]: (p["value"], p["std"]) for p in found["parameters"]}

@@ -167,3 +167,15 @@ def log(path: Path, plant: Plant, seed: int, periods: int = PERIODS) -> Path:
     table = np.column_stack([t, motor, current])
     np.savetxt(path, table, "%.9g", ",", header=",".join(names), comments="")
     return path
+
+
+def held(path: Path, plant: Plant) -> Path:
+    """A mapping of `log` that says when its currents act. Where nobody says it, the parameters' deviations
+    hold what the data leave open, which is a tenth of a sample here.
+    """
+    lines = ["schema: 1", "time: {column: t, unit: s}", "hold: following", "joints:"]
+    for k in range(1, plant.n + 1):
+        position, effort = f"{{column: qm{k}, unit: rad, side: motor}}", f"{{column: i{k}, unit: A}}"
+        lines.append(f"  - {{position: {position}, effort: {effort}}}")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
