@@ -14,7 +14,7 @@ from identification import BEFORE, ROOT, TEST, identified
 from long_log import CHUNK, NOISE, RATE, names, period, write
 from numpy.typing import NDArray
 
-from modelgen.dataset.objects import Reader
+from modelgen.dataset.objects import Reader, Wanted
 from modelgen.dataset.reading import sources
 from modelgen.dataset.reading.tables import open_table
 from modelgen.figures import COLOURS, figure, svg
@@ -41,14 +41,14 @@ class Made:
         self.noise = np.hstack([noise[0], noise[1]]).T
         self.rng = rng
 
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+    def blocks(self, wanted: Wanted, rows: int) -> Iterator[Array]:
         """The wanted columns; the noise of every chunk begins elsewhere."""
         for begin in range(0, self.samples, CHUNK):
             start = time.process_time()
             count = min(CHUNK, self.samples - begin)
             self.part[0] = (begin + np.arange(CHUNK)) / RATE
-            table = self.part[: len(wanted)].copy()
-            if len(wanted) > 1:
+            table = self.part[: len(wanted.names)].copy()
+            if len(wanted.names) > 1:
                 table[1:] += np.roll(self.noise, int(self.rng.integers(CHUNK)), axis=1)
             print("made", time.process_time() - start, file=sys.stderr)
             for first in range(0, count, rows):

@@ -240,6 +240,20 @@ class Layout:
     skip_lines: int = 0
 
 
+@dataclass(frozen=True)
+class Wanted:
+    """Columns that are asked of a reader, the time first, and what is known of them.
+
+    positions, efforts: of the names, as far as somebody says so. turning: positions that begin anew after a
+    turn.
+    """
+
+    names: tuple[str, ...]
+    positions: frozenset[str] = frozenset()
+    efforts: frozenset[str] = frozenset()
+    turning: frozenset[str] = frozenset()
+
+
 class Reader(Protocol):
     """A file with named columns."""
 
@@ -255,5 +269,5 @@ class Reader(Protocol):
     def names(self) -> tuple[str, ...]:
         """Names of the columns, in the file's order; doubled ones as often as they stand there."""
 
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
-        """The wanted columns (rows at most, len(wanted)), block after block. Raises InputError."""
+    def blocks(self, wanted: Wanted, rows: int) -> Iterator[Array]:
+        """The wanted columns (rows at most, len(wanted.names)), block after block. Raises InputError."""

@@ -14,6 +14,7 @@ from dataset_support import AXIS, DRIVEN, columns, motion, times, write_csv
 
 from modelgen.dataset import Stream, read
 from modelgen.dataset.inspection import inspect
+from modelgen.dataset.objects import Wanted
 from modelgen.errors import InputError
 
 pyarrow = pytest.importorskip("pyarrow")
@@ -202,10 +203,10 @@ def test_columns_of_several_lengths_are_a_damaged_file(monkeypatch: pytest.Monke
 
         names, by_column, remarks = ("t", "q1"), True, ()
 
-        def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[np.ndarray]:
-            if len(wanted) > 1:
+        def blocks(self, wanted: Wanted, rows: int) -> Iterator[np.ndarray]:
+            if len(wanted.names) > 1:
                 raise InputError("columns differ")
-            yield times()[: 800 if wanted == ("q1",) else 1600, None]
+            yield times()[: 800 if wanted.names == ("q1",) else 1600, None]
 
     monkeypatch.setattr("modelgen.dataset.inspection.channels.opened", lambda spec: Halved())
     with pytest.raises(InputError, match="the column q1 has 800 readings, others 1600"):

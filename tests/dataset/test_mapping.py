@@ -14,6 +14,7 @@ from modelgen.dataset import described, prepare, read
 from modelgen.dataset.mapping.files import load_mapping
 from modelgen.dataset.mapping.formula import FormulaError, formula
 from modelgen.dataset.mapping.schema import mapping_json_schema
+from modelgen.dataset.objects import Wanted
 from modelgen.dataset.reading.sources import open_source
 from modelgen.description.document import parse
 from modelgen.errors import InputError
@@ -143,7 +144,7 @@ def test_a_sensor_that_starts_anew_is_made_continuous(tmp_path: Path) -> None:
     assert record.q[:, 0] == pytest.approx(turns["q1"], abs=1e-9)
     # The same block by block.
     reader = open_source(file, FREE, tmp_path / "mapping.yaml").reader
-    parts = [block[:, 0] for block in reader.blocks(("q1",), 100)]
+    parts = [block[:, 0] for block in reader.blocks(Wanted(("q1",)), 100)]
     assert np.concatenate(parts) == pytest.approx(turns["q1"], abs=1e-9)
 
 

@@ -215,7 +215,7 @@ def test_channels_in_turn_keep_their_own_instants(tmp_path: Path) -> None:
     assert record.q[:, 0] == pytest.approx(0.8 * np.cos(2 * record.t), abs=1e-5)
     # Straight lines: an eighth of the square of the step times the curvature.
     assert record.input[:, 0] == pytest.approx(1.5 * np.sin(3 * record.t) - 0.2, abs=13.5 / 8 / 120**2 * 1.1)
-    assert "rows come in turn: i1" in record.remarks[-1]
+    assert "rows come in turn: q1" in record.remarks[-1]
     hole = [row for row in rows if not (row[1] == "" and 1.0 < float(row[0]) < 1.4)]
     with pytest.raises(InputError, match=r"the column i1 is blank for 0.4.* s after t = "):
         read(file_of(tmp_path, table("t,q1,i1", hole)), ARM)

@@ -24,6 +24,7 @@ from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.plausible import doubtful_unit
 from modelgen.dataset.reading.read import read_with_stamps
+from modelgen.dataset.reading.signals import by_names
 from modelgen.dataset.reading.sources import BLOCK, opened
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.thresholds import USUAL
@@ -253,7 +254,7 @@ def _one_by_one(
 
 
 def _table(reader: Reader, names: tuple[str, ...]) -> Array:
-    blocks = [block.copy() for block in reader.blocks(names, BLOCK)]
+    blocks = [block.copy() for block in reader.blocks(by_names(names), BLOCK)]
     return np.concatenate(blocks) if blocks else np.empty((0, len(names)))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from modelgen.dataset.mapping.files import Foreign, listed
 from modelgen.dataset.mapping.formula import Formula, FormulaError, formula
 from modelgen.dataset.mapping.schema import ColumnModel, JointModel
 from modelgen.dataset.mapping.signals import Signal, check_once
-from modelgen.dataset.objects import Reader
+from modelgen.dataset.objects import Reader, Wanted
 from modelgen.description import Arm
 from modelgen.description.document import Steps
 from modelgen.description.messages import describe
@@ -87,28 +87,43 @@ class MappedReader:
             return {}
         return {name: (s.factor, s.offset) for name, s in self._signals.items() if s.bits is None}
 
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+    def _originals(self, wanted: Wanted) -> Wanted:
+        """The log's own columns, the time's first, of which the wanted ones are made."""
+
+        def of(names: Iterable[str]) -> list[str]:
+            signals = [self._signals[member] for name in names for member in self._members(name)]
+            return [self._aliases.get(x, x) for signal in signals for x in signal.formula.names]
+
+        def turns(name: str) -> bool:
+            signals = [self._signals[member] for member in self._members(name)]
+            return any(x.wrap is not None or x.bits is not None for x in signals)
+
+        time = [self._aliases.get(name, name) for name in self._time.formula.names]
+        return Wanted(
+            tuple(dict.fromkeys([*time, *of(wanted.names)])),
+            frozenset(of(wanted.positions)),
+            frozenset(of(wanted.efforts)),
+            frozenset(of(filter(turns, wanted.positions))),
+        )
+
+    def blocks(self, wanted: Wanted, rows: int) -> Iterator[Array]:
         """The wanted columns, block after block."""
-        needed = [*self._time.formula.names]  # first: in a bag, the time's topic sets the rows
-        for name in wanted:
-            for member in self._members(name):
-                needed += self._signals[member].formula.names
-        original = tuple(dict.fromkeys(self._aliases.get(name, name) for name in needed))
+        asked, names = self._originals(wanted), wanted.names
         start: float | None = None
         last: dict[Signal, float] = {}
         count = 0
-        if not original:  # the time alone of a log whose samples are counted
-            original = tuple(dict.fromkeys(next(iter(self._signals.values())).formula.names))
-        for block in self.reader.blocks(original, rows):
-            columns = {name: block[:, i] for i, name in enumerate(original)}
+        if not asked.names:  # the time alone of a log whose samples are counted
+            asked = Wanted(tuple(dict.fromkeys(next(iter(self._signals.values())).formula.names)))
+        for block in self.reader.blocks(asked, rows):
+            columns = {name: block[:, i] for i, name in enumerate(asked.names)}
             columns |= {short: columns[name] for short, name in self._aliases.items() if name in columns}
             if start is None:
                 raw = self._time.formula(columns)
                 start = float(raw.flat[0]) if self.foreign.document.time.relative else 0.0
                 self.origin = self._counted + self._time.factor * start
-            made = self._block(wanted, columns, start, last, len(block))
+            made = self._block(names, columns, start, last, len(block))
             if self._rate:
-                made[:, [i for i, name in enumerate(wanted) if name == "t"]] = (
+                made[:, [i for i, name in enumerate(names) if name == "t"]] = (
                     (count + np.arange(len(block))) / self._rate
                 )[:, None]
             count += len(block)

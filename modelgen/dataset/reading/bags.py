@@ -9,23 +9,25 @@ from typing import Any
 
 import numpy as np
 
+from modelgen.dataset.objects import Wanted
 from modelgen.dataset.reading.bag_messages import Messages, messages_of
 from modelgen.dataset.reading.messages import columns_of, labels, number_at
 from modelgen.dataset.reading.specs import unreadable
-from modelgen.dataset.reading.turns import in_turn
+from modelgen.dataset.reading.turns import joined
 from modelgen.errors import InputError
 from modelgen.extras import missing
 from modelgen.numeric import Array
 
+ROWS = 4096  # messages gathered at a time
 PEEK = 200  # messages of a topic that its columns are taken from
 LOG_TIME = "log_time"
 
 
 class BagReader:
-    """A bag whose columns are `topic.field`, one row per message of the time column's topic.
+    """A bag whose columns are `topic.field`.
 
-    Columns of other topics are interpolated at those times, by straight lines; such topics are held in
-    memory. Raises InputError where the file cannot be read or a library is missing.
+    Where columns are of several topics, these are held in memory, and joined at common instants. Raises
+    InputError where the file cannot be read or a library is missing.
     """
 
     by_column = False
@@ -72,38 +74,25 @@ class BagReader:
         self._several = {topic for topic, known in publishers.items() if len(known) > 1}
         return {topic: tuple(columns) for topic, columns in found.items()}
 
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
-        """The wanted columns, block after block; the first wanted one is the time and sets the rows."""
-        places = [self._place(name) for name in wanted]
+    def blocks(self, wanted: Wanted, rows: int) -> Iterator[Array]:
+        """The wanted columns, block after block; the first wanted one is the time."""
+        places = [self._place(name) for name in wanted.names]
         base = places[0][0]
-        others = {topic for topic, _ in places} - {base}
-        series = {topic: self._series(topic, places) for topic in sorted(others)}
-        if base in self._several:
-            own = [k for k, (topic, _) in enumerate(places) if topic == base]
-            table = np.zeros((0, len(places)))
-            part = self._present(base, [places[k][1] for k in own])
-            if (~np.isnan(part)).all():
-                chosen = part
-            else:
-                chosen, remark = in_turn(str(self.path), tuple(wanted[k] for k in own), part)
-                self._remark(remark)
-            table = np.zeros((len(chosen), len(places)))
-            table[:, own] = chosen
-            for k in range(0, len(table), rows):
-                yield from self._joined(table[k : k + rows], places, series)
+        topics = sorted({topic for topic, _ in places})
+        if topics == [base] and base not in self._several:
+            yield from self._streamed(base, [name for _, name in places], rows)
             return
-        waiting: list[list[float]] = []
-        with self._messages([base]) as messages:
-            for _, time, decoded in messages:
-                message = decoded()
-                waiting.append(
-                    [self._number(message, time, name) if topic == base else 0.0 for topic, name in places]
-                )
-                if len(waiting) == rows:
-                    yield from self._joined(np.array(waiting), places, series)
-                    waiting = []
-        if waiting:
-            yield from self._joined(np.array(waiting), places, series)
+        series = {topic: self._series(topic, places) for topic in topics}
+        readings = []
+        for topic, name in places[1:]:
+            stamps, values = series[topic]
+            # Of several publishers, a message may lack a column; else a NaN is one that was logged.
+            there = ~np.isnan(values[name]) if topic in self._several else slice(None)
+            readings.append((stamps[there], values[name][there]))
+        table, remark = joined(str(self.path), wanted, readings, series[base][0])
+        if remark:
+            self._remark(remark)
+        yield from (table[k : k + rows] for k in range(0, len(table), rows))
 
     def _present(self, topic: str, names: Sequence[str]) -> Array:
         """Columns (N, k) of a topic with several publishers, the time first, in the order of time.
@@ -126,49 +115,39 @@ class BagReader:
         table = np.array(kept).reshape(len(kept), len(names))
         return table[np.argsort(table[:, 0], kind="stable")] if np.isnan(table).any() else table
 
-    def _joined(
-        self, block: Array, places: Sequence[tuple[str, str]], series: dict[str, tuple[Array, Array]]
-    ) -> Iterator[Array]:
-        """The block with the other topics' columns filled in, where those topics have begun and not ended."""
-        t = block[:, 0]
-        inside = np.ones(len(t), dtype=bool)
-        for topic, (stamps, values) in series.items():
-            inside &= (t >= stamps[0]) & (t <= stamps[-1])
-            names = [name for other, name in places if other == topic]
-            for k, (other, name) in enumerate(places):
-                if other == topic:
-                    block[:, k] = np.interp(t, stamps, values[:, names.index(name)])
-        if inside.any():
-            yield block[inside]
-
-    def _series(self, topic: str, places: Sequence[tuple[str, str]]) -> tuple[Array, Array]:
-        """Times (N,) and wanted columns (N, k) of a topic; its times are of the kind of the base's."""
-        clock = places[0][1]
+    def _series(self, topic: str, places: Sequence[tuple[str, str]]) -> tuple[Array, dict[str, Array]]:
+        """Times (N,) of a topic's messages, of the kind of the time column's, and its wanted columns (N,)."""
+        base, clock = places[0]
         if clock not in self._topics[topic]:
             raise InputError(
-                f"{self.path}: {places[0][0]} and {topic} have no common clock: {topic} has no {clock}; "
-                f"use {places[0][0]}.{LOG_TIME} as the time column"
+                f"{self.path}: {base} and {topic} have no common clock: {topic} has no {clock}; "
+                f"use {base}.{LOG_TIME} as the time column"
             )
-        names = [name for other, name in places if other == topic]
+        names = [name for other, name in places[1:] if other == topic]
         if topic in self._several:
             table = self._present(topic, [clock, *names])
-            table = table[~np.isnan(table).any(axis=1)]
         else:
-            table = self._all(topic, [clock, *names])
-        if not len(table):
-            raise InputError(f"{self.path}: {topic} has no message with all of {', '.join(names)}")
+            blocks = list(self._streamed(topic, [clock, *names], ROWS))
+            table = np.concatenate(blocks) if blocks else np.empty((0, 1 + len(names)))
+        for name, x in zip(names, table.T[1:], strict=True):
+            if np.isnan(x).all():
+                raise InputError(f"{self.path}: {topic} has no message with {name}")
         if np.any(np.diff(table[:, 0]) <= 0.0):
             raise InputError(f"{self.path}: time runs backwards in {topic}.{clock}")
-        return table[:, 0], table[:, 1:]
+        return table[:, 0], dict(zip(names, table.T[1:], strict=True))
 
-    def _all(self, topic: str, names: Sequence[str]) -> Array:
+    def _streamed(self, topic: str, names: Sequence[str], rows: int) -> Iterator[Array]:
+        """Columns of a topic, block after block."""
+        waiting: list[list[float]] = []
         with self._messages([topic]) as messages:
-            rows = [
-                [self._number(m, time, n) for n in names]
-                for _, time, decoded in messages
-                for m in [decoded()]
-            ]
-        return np.array(rows).reshape(len(rows), len(names))
+            for _, time, decoded in messages:
+                message = decoded()
+                waiting.append([self._number(message, time, name) for name in names])
+                if len(waiting) == rows:
+                    yield np.array(waiting)
+                    waiting = []
+        if waiting:
+            yield np.array(waiting)
 
     def _number(self, message: Any, time: int, name: str) -> float:
         if name == LOG_TIME:

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
-from modelgen.dataset.processing.rounding import resolution
+from modelgen.dataset.reading.between import SLOWER, between, is_smooth
 from modelgen.dataset.reading.repeats import Refresh, refresh_of
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.numeric import Array
@@ -16,11 +15,9 @@ from modelgen.numeric import Array
 # Of the changes of a column, those that come when another is refreshed: the least for one clock, where both
 # are as fast, and for a coarse column, which changes now and then.
 _BOTH, _COARSE = 0.9, 0.98
-_SLOWER = 1.2  # rows per reading of one column over those of another, from which they have two clocks
 # Rows of the efforts per reading of a position: a cut-off, at most a 25th of their rate, is then at most a
 # fifth of the position's, up to which splines through its readings are right to a part in a thousand.
 _PER_READING = 5
-_ROUNDED = 1e-5  # of a position's range, below which its rounding is no noise that splines would colour
 # Times the usual step between stamps, from which on a row came late, and how many such rows a log has that is
 # written by a clock, lost ones and what a busy machine delays among them.
 _LATE, _SELDOM = 2.5, 0.1
@@ -81,7 +78,7 @@ def clocks(
     own = {k: x for k, x in alone.items() if x is not None}
     for k, refresh in sorted(own.items(), key=lambda item: item[1].every):
         for clock, often in known.values():
-            as_fast = refresh.every < _SLOWER * clock.every or len(changes[k]) * _SLOWER > often
+            as_fast = refresh.every < SLOWER * clock.every or len(changes[k]) * SLOWER > often
             if as_fast and _share(changes[k], clock) >= _BOTH:
                 found[k] = clock
                 break
@@ -127,10 +124,10 @@ def fresh(table: Array, channels: Channels, limits: DatasetThresholds = USUAL) -
     for k in range(1, table.shape[1]):
         own, smooth = found.get(k), k in channels.positions
         if own is not None and own is not clock:
-            result[:, k] = _between(own.instants(t), table[own.first, k], at, smooth)
+            result[:, k] = between(own.instants(t), table[own.first, k], at, smooth=smooth)
             inside &= (rows >= own.first[0]) & (rows <= own.first[-1])
         elif own is None and evened and k not in averaged:
-            result[:, k] = _between(t, table[:, k], at, smooth)
+            result[:, k] = between(t, table[:, k], at, smooth=smooth)
     if averaged and hold in ("following", "previous"):
         _average(result, table, rows, averaged, late=int(hold == "previous"))
         hold = "following"
@@ -152,23 +149,11 @@ def _rows(
     slow = [k for k in channels.positions if found.get(k) is slowest]
     of_efforts = [found[k] for k in channels.efforts if k in found]
     clock = max(of_efforts, key=lambda x: x.every, default=None)
-    if not slow or not channels.efforts or clock is slowest or not all(_smooth(table[:, k]) for k in slow):
+    if not slow or not channels.efforts or clock is slowest or not all(is_smooth(table[:, k]) for k in slow):
         return slowest, slowest.first
     rows = np.arange(len(table)) if clock is None else clock.first
     stride = int(slowest.every / (_PER_READING * (1.0 if clock is None else clock.every)))
     return clock, rows[:: max(stride, 1)]
-
-
-def _smooth(position: Array) -> bool:
-    """Whether readings (N,) of a position are rounded so little that they lie on a smooth curve."""
-    step = resolution(position)
-    return step is None or step < _ROUNDED * float(np.ptp(position))
-
-
-def _between(stamps: Array, readings: Array, at: Array, smooth: bool) -> Array:
-    """Readings (N,) at other instants (M,)."""
-    curve = CubicSpline(stamps, readings)(at) if smooth else np.interp(at, stamps, readings)
-    return np.asarray(curve)
 
 
 def _average(result: Array, table: Array, rows: np.ndarray, efforts: Sequence[int], *, late: int) -> None:

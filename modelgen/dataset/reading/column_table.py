@@ -6,13 +6,17 @@ import hashlib
 import os
 from collections.abc import Iterator, Mapping
 from datetime import UTC, date, timedelta
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from modelgen.dataset.objects import Record
+from modelgen.dataset.objects import Record, Wanted
+from modelgen.dataset.reading.turns import in_turn
 from modelgen.errors import InputError
 from modelgen.numeric import Array
+
+_MANY = 0.2  # of the rows
 
 
 class ColumnTable:
@@ -22,8 +26,6 @@ class ColumnTable:
     columns: a mapping, a data frame of pandas or polars, a table of pyarrow, or an array with fields. name:
     what messages call it. Raises InputError where it is no such table.
     """
-
-    by_column = True
 
     def __init__(self, columns: Any, name: str) -> None:
         self.name, self._columns = name, columns
@@ -51,6 +53,17 @@ class ColumnTable:
         """Names of the columns that are dates or times."""
         return frozenset(name for name in self.names if self._values(name).dtype.kind in "mM")
 
+    @cached_property
+    def sparse(self) -> frozenset[str]:
+        """Names of the columns of numbers that are blank in many rows, which are rows of several in turn."""
+        numbers = {name: x for name in self.names if (x := self._values(name)).dtype.kind == "f"}
+        return frozenset(name for name, x in numbers.items() if _MANY < np.isnan(x).mean() < 1.0)
+
+    @property
+    def by_column(self) -> bool:
+        """Whether a column is read without the others."""
+        return not self.sparse
+
     @property
     def remarks(self) -> tuple[str, ...]:
         """What was found out about the columns that were read."""
@@ -59,13 +72,17 @@ class ColumnTable:
     def __str__(self) -> str:
         return self.name
 
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+    def blocks(self, wanted: Wanted, rows: int) -> Iterator[Array]:
         """The wanted columns, `rows` at a time. Raises InputError for columns that are no numbers."""
-        columns = [self._column(name) for name in wanted]
-        lengths = {name: len(column) for name, column in zip(wanted, columns, strict=True)}
+        columns = [self._column(name) for name in wanted.names]
+        lengths = {name: len(column) for name, column in zip(wanted.names, columns, strict=True)}
         if len(set(lengths.values())) > 1:
             found = ", ".join(f"{name} has {count}" for name, count in lengths.items())
             raise InputError(f"{self.name}: the columns differ in length: {found} samples")
+        if self.sparse.intersection(wanted.names[1:]):
+            table, remark = in_turn(self.name, wanted, np.stack(columns).T)
+            self._found[remark] = None
+            columns = list(table.T)
         for begin in range(0, len(columns[0]), rows):
             # Columns in order in memory, as the readers of files give them.
             yield np.stack([column[begin : begin + rows] for column in columns]).T

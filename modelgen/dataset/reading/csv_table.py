@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from modelgen.dataset.objects import Layout
+from modelgen.dataset.objects import Layout, Wanted
 from modelgen.dataset.reading.pipes import plain_file
 from modelgen.dataset.reading.shape import Shape, shape_of, wrong_count
 from modelgen.dataset.reading.specs import unreadable
@@ -54,23 +54,30 @@ class CsvReader:
         return self.origins.get("t", 0.0)
 
     @property
+    def sparse(self) -> bool:
+        """Whether columns are blank in many rows."""
+        return bool(self.shape.sparse)
+
+    @property
     def remarks(self) -> tuple[str, ...]:
         """What was found out about the file, and assumed."""
         return tuple(self._found)
 
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+    def blocks(self, wanted: Wanted, rows: int) -> Iterator[Array]:
         """The wanted columns, block after block. Raises InputError with the place of a bad cell."""
-        indices = [self.names.index(name) for name in wanted]
+        indices = [self.names.index(name) for name in wanted.names]
         if self.shape.sparse.intersection(indices):
-            whole = list(self._rows(indices, rows))
-            table = np.concatenate(whole) if whole else np.empty((0, len(wanted)))
+            # Among rows in turn every channel is blank somewhere, the one that is read most often least.
+            blank = frozenset(indices[1:]) if self.shape.seldom.intersection(indices) else self.shape.sparse
+            whole = list(self._rows(indices, rows, blank))
+            table = np.concatenate(whole) if whole else np.empty((0, len(indices)))
             table, remark = in_turn(str(self.path), wanted, table)
             self._found[remark] = None
             yield from (table[k : k + rows] for k in range(0, len(table), rows))
             return
         yield from self._rows(indices, rows)
 
-    def _rows(self, indices: list[int], rows: int) -> Iterator[Array]:
+    def _rows(self, indices: list[int], rows: int, blank: frozenset[int] = frozenset()) -> Iterator[Array]:
         line = self.shape.header
         with lines_of(self._file, self.shape.encoding) as stream:
             for _ in range(line):
@@ -80,7 +87,7 @@ class CsvReader:
                 following = list(islice(stream, rows))
                 block = self._fast(held, indices)
                 if block is None:
-                    block = self._slow(held, line, indices, last=not following)
+                    block = self._slow(held, line, indices, blank, last=not following)
                 line += len(held)
                 held = following
                 if len(block):
@@ -106,7 +113,9 @@ class CsvReader:
         except ValueError:
             return None
 
-    def _slow(self, lines: list[str], before: int, indices: list[int], *, last: bool) -> Array:
+    def _slow(
+        self, lines: list[str], before: int, indices: list[int], blank: frozenset[int], *, last: bool
+    ) -> Array:
         """The block cell by cell. Raises InputError at the first cell that is no number."""
         width = len(self.names)
         found = []
@@ -127,10 +136,10 @@ class CsvReader:
                     wrong_count(len(cells), self.names, "", self.shape.delimiter),
                     Location(str(self.path), k, 1),
                 )
-            found.append([self._number(cells, text, k, i) for i in indices])
+            found.append([self._number(cells, text, k, i, blank=i in blank) for i in indices])
         return np.array(found).reshape(len(found), len(indices))
 
-    def _number(self, cells: Sequence[str], text: str, line: int, index: int) -> float:
+    def _number(self, cells: Sequence[str], text: str, line: int, index: int, *, blank: bool) -> float:
         cell = cells[index]
         begin = self.shape.dates.get(index)
         if begin is not None and (date := moment(cell)) is not None:
@@ -138,7 +147,7 @@ class CsvReader:
         value = number(cell, self.shape.decimal)
         if value is not None and begin is None:
             return value
-        if not cell and index in self.shape.sparse:
+        if not cell and blank:
             return np.nan
         between = self.shape.delimiter or " "
         raw = text.split(self.shape.delimiter) if '"' not in text else list(cells)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from modelgen.dataset.objects import Wanted
 from modelgen.dataset.reading.specs import unreadable
 from modelgen.dataset.reading.turns import in_turn
 from modelgen.errors import DamagedFileError, InputError
@@ -55,14 +56,14 @@ class ParquetReader:
         """What was found out about the file, and assumed."""
         return tuple(self._found)
 
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+    def blocks(self, wanted: Wanted, rows: int) -> Iterator[Array]:
         """The wanted columns, `rows` at a time; a missing value is NaN. Raises InputError."""
-        for name in self.instants.intersection(wanted):
+        for name in self.instants.intersection(wanted.names):
             self._found[f"{name} is a date or time: seconds are counted from the file's first row"] = None
-        if not self.sparse.intersection(wanted):
-            yield from self._rows(wanted, rows)
+        if not self.sparse.intersection(wanted.names):
+            yield from self._rows(wanted.names, rows)
             return
-        table, remark = in_turn(str(self.path), wanted, np.concatenate(list(self._rows(wanted, rows))))
+        table, remark = in_turn(str(self.path), wanted, np.concatenate(list(self._rows(wanted.names, rows))))
         self._found[remark] = None
         yield from (table[k : k + rows] for k in range(0, len(table), rows))
 

@@ -116,8 +116,8 @@ def _rate_of_file(source: Source) -> float | None:
     if (spec.begin, spec.end) == (-math.inf, math.inf):
         return None
     whole = replace(source, spec=replace(spec, begin=-math.inf, end=math.inf))
-    # in a bag the messages of others on the topic are no samples
-    stamps = np.concatenate(list(whole.blocks(time_alone=not source.of_messages)))[:, 0]
+    # rows of others are no samples: messages on the topic of a bag, blank cells
+    stamps = np.concatenate(list(whole.blocks(time_alone=not source.in_turn)))[:, 0]
     steps = np.diff(stamps[np.isfinite(stamps)])
     steps = steps[steps > 0.0]
     return 1.0 / float(np.median(steps)) if len(steps) else None

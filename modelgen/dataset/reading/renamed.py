@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from modelgen.dataset.objects import Reader
+from modelgen.dataset.objects import Reader, Wanted
 from modelgen.dataset.reading.signals import is_signal
 from modelgen.numeric import Array
 
@@ -37,9 +37,13 @@ class Renamed:
         """Of the reader, and that names were changed."""
         return (self._remark, *self.reader.remarks)
 
-    def blocks(self, wanted: tuple[str, ...], rows: int) -> Iterator[Array]:
+    def blocks(self, wanted: Wanted, rows: int) -> Iterator[Array]:
         """The wanted columns, block after block."""
-        return self.reader.blocks(tuple(self._original[name] for name in wanted), rows)
+        own = self._original
+        parts = (wanted.positions, wanted.efforts, wanted.turning)
+        positions, efforts, turning = (frozenset(own[name] for name in part) for part in parts)
+        names = tuple(own[name] for name in wanted.names)
+        return self.reader.blocks(Wanted(names, positions, efforts, turning), rows)
 
 
 def by_contract(reader: Reader) -> Reader:

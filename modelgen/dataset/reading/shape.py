@@ -45,8 +45,9 @@ class Shape:
     """encoding: of the text. delimiter: between cells, None for blanks. decimal: sign. names: of the columns.
 
     header: number of the last line before the samples. quoted: whether cells have quotes. trailing:
-    whether every row ends with a delimiter. sparse: columns that are blank in many rows, by number. units: by
-    column, where a row of the file says them. dates: of the first sample, by the number of its column, where
+    whether every row ends with a delimiter. sparse: columns that are blank in rows, by
+    number; seldom: those of them that are in many, rows of several sources in turn. units: by column, where a
+    row of the file says them. dates: of the first sample, by the number of its column, where
     columns hold dates.
     """
 
@@ -57,6 +58,7 @@ class Shape:
     header: int
     trailing: bool
     sparse: frozenset[int]
+    seldom: frozenset[int]
     units: dict[str, str]
     dates: dict[int, datetime]
     remarks: tuple[str, ...]
@@ -112,12 +114,12 @@ def shape_of(path: Path, file: Path, layout: Layout) -> Shape:
         remarks.append(f"line {rows[first - 1][0]} holds units: {', '.join(units.values())}")
     last = rows[first - 1][0] if first else layout.skip_lines
     blank = [sum(not row[k] for row in body if len(row) == width) for k in range(min(width, len(names)))]
-    sparse = frozenset(k for k, count in enumerate(blank) if count >= 10 and count > 0.2 * len(body))
+    seldom = frozenset(k for k, count in enumerate(blank) if count >= 10 and count > 0.2 * len(body))
     begin = rows[first][1][: len(names)] if first < len(rows) else []
     # A channel that begins later than the others, or ends sooner, is blank there.
     ends = [row for row in (begin, cells_of(last_line(file, encoding), found)) if len(row) >= len(names)]
     read = [row for _, row in rows[first:] if len(row) == width]
-    sparse |= {
+    sparse = seldom | {
         k
         for k in numeric
         if k < len(names)
@@ -127,7 +129,9 @@ def shape_of(path: Path, file: Path, layout: Layout) -> Shape:
     dates = {k: date for k, cell in enumerate(begin) if (date := moment(cell)) is not None}
     for k, date in dates.items():
         remarks.append(f"{names[k]} holds dates, in UTC where they name no zone: it counts from {date}")
-    return Shape(encoding, found, decimal, names, last, trailing, sparse, units, dates, tuple(remarks))
+    return Shape(
+        encoding, found, decimal, names, last, trailing, sparse, seldom, units, dates, tuple(remarks)
+    )
 
 
 def _delimiter(lines: Sequence[str], decimal: str | None) -> str | None:

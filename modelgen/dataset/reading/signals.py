@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from modelgen.dataset.drives import NumericDrive
+from modelgen.dataset.objects import Wanted
 from modelgen.description import Arm
 from modelgen.errors import InputError
 
@@ -20,6 +21,13 @@ _SIGNAL = re.compile(rf"({'|'.join(sorted(KINDS, key=len, reverse=True))})([1-9]
 def is_signal(name: str) -> bool:
     """Whether a column has a name of docs/logs.md: t, q1, tau2."""
     return name == "t" or _SIGNAL.fullmatch(name) is not None
+
+
+def by_names(names: tuple[str, ...]) -> Wanted:
+    """Columns whose names say what they are, where they are those of docs/logs.md."""
+    kinds = {name: found[1] for name in names if (found := _SIGNAL.fullmatch(name))}
+    positions = frozenset(name for name, kind in kinds.items() if kind in ("q", "qm"))
+    return Wanted(names, positions, frozenset(name for name, kind in kinds.items() if kind in ("i", "tau")))
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ import numpy as np
 from modelgen.dataset.drives import NumericDrive, drives_of
 from modelgen.dataset.mapping.columns import MappedReader
 from modelgen.dataset.mapping.files import listed, load_mapping
-from modelgen.dataset.objects import Layout, Reader, Record
+from modelgen.dataset.objects import Layout, Reader, Record, Wanted
 from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.renamed import by_contract
 from modelgen.dataset.reading.shape import other_unit, unit_word
-from modelgen.dataset.reading.signals import Signals, find_signals
+from modelgen.dataset.reading.signals import Signals, by_names, find_signals
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.reading.tables import open_table
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
@@ -55,9 +55,10 @@ class Source:
         return self.reader.remarks
 
     @property
-    def of_messages(self) -> bool:
-        """Whether rows are messages, of which some may hold none of the columns."""
-        return isinstance(getattr(self.reader, "reader", None), BagReader)
+    def in_turn(self) -> bool:
+        """Whether some rows may hold none of the columns: messages of a bag, or blank cells."""
+        inner = getattr(self.reader, "reader", self.reader)
+        return isinstance(inner, BagReader) or bool(getattr(inner, "sparse", ()))
 
     @property
     def wanted(self) -> tuple[str, ...]:
@@ -66,7 +67,11 @@ class Source:
 
     def blocks(self, rows: int = BLOCK, *, time_alone: bool = False) -> Iterator[Array]:
         """The wanted columns of the part in blocks of `rows`; rows without a time are kept for refusal."""
-        wanted = self.wanted[:1] if time_alone else self.wanted
+        signals = self.signals
+        efforts = frozenset(name for name in signals.effort if name is not None)
+        wanted = Wanted(self.wanted, frozenset(signals.position), efforts)
+        if time_alone:
+            wanted = Wanted(self.wanted[:1])
         waiting: list[Array] = []
         for block in self.reader.blocks(wanted, rows):
             t = block[:, 0]
@@ -79,7 +84,7 @@ class Source:
                 whole = np.concatenate(waiting)
                 yield whole[:rows]
                 waiting = [whole[rows:]]
-        rest = np.concatenate(waiting) if waiting else np.empty((0, len(wanted)))
+        rest = np.concatenate(waiting) if waiting else np.empty((0, len(wanted.names)))
         if len(rest):
             yield rest
 
@@ -169,7 +174,7 @@ def read_columns(log: Log, names: Sequence[str]) -> dict[str, Array]:
     if absent:
         raise InputError(f"{spec.text}: the column {absent[0]} is missing (found {', '.join(reader.names)})")
     parts = []
-    for block in reader.blocks(wanted, BLOCK):
+    for block in reader.blocks(by_names(wanted), BLOCK):
         inside = (block[:, 0] >= spec.begin) & (block[:, 0] < spec.end)
         parts.append(block[inside])
     table = np.concatenate(parts) if parts else np.empty((0, len(wanted)))
