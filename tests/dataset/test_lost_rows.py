@@ -1,4 +1,4 @@
-"""Rows that are missing though the stamps are even are found by the positions; nothing is identified then."""
+"""Rows that are missing though stamps are even, found by the positions: few are made good, many refused."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dataset_support import AXIS, AXIS_MAPPING, DRIVEN, columns, times, write_csv
+from dataset_support import AXIS, AXIS_MAPPING, DRIVEN, columns, motion, times, write_csv
 
 import modelgen as mg
 from modelgen.dataset import Stream
-from modelgen.dataset.reading.lost import REFUSED, missing_rows
+from modelgen.dataset.reading.lost import RESTORED, missing_rows
 from modelgen.dataset.thresholds import USUAL
 from modelgen.errors import InputError
 from modelgen.identification.streamed import identify_streamed
@@ -51,6 +51,28 @@ def test_rows_are_missing(share: float, bits: int, run: int, tmp_path: Path) -> 
         with pytest.raises(InputError, match="the rows or so are missing"):
             asked(DRIVEN, test, table)
     file = write_csv(tmp_path / "a.csv", table)
+    with pytest.raises(InputError, match=r"a\.csv.*the rows or so are missing"):
+        identify_streamed([Stream(file, DRIVEN)], DRIVEN)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("bits", [12, 14, 20])
+def test_what_follows_a_few_missing_rows_counts_as_so_much_later(bits: int, seed: int) -> None:
+    kept = without(0.0035, seed)
+    record = mg.read_log(numbered_anew(rounded(columns(T), bits), kept), DRIVEN)
+    assert not record.jump
+    assert any(x.endswith("what follows counts as so much later") for x in record.remarks)
+    lost = int(len(T) - kept.sum())
+    assert lost >= 10
+    assert abs(record.t[-1] - T[kept][-1]) < 0.3 * lost / 200.0
+    off = np.abs(record.q - motion(record.t)[0]).max(axis=0)
+    as_stamped = np.abs(motion(T[: kept.sum()])[0] - motion(T[kept])[0]).max(axis=0)
+    assert (off < 0.3 * as_stamped + 2.0 * np.pi / 2**bits).all()
+
+
+def test_few_missing_rows_of_a_log_that_is_read_in_blocks_are_refused(tmp_path: Path) -> None:
+    """Where the rows before a block are missing is not known there."""
+    file = write_csv(tmp_path / "a.csv", numbered_anew(rounded(columns(T), 16), without(0.0035, 1)))
     with pytest.raises(InputError, match=r"a\.csv.*the rows or so are missing"):
         identify_streamed([Stream(file, DRIVEN)], DRIVEN)
 
@@ -124,4 +146,4 @@ def test_short_moves_are_no_missing_rows(seed: int) -> None:
     _, _, share = missing_rows(q, USUAL)
     assert share == 0.0
     _, _, share = missing_rows(q[np.random.default_rng(seed).random(len(q)) >= 0.05], USUAL)
-    assert REFUSED < share < 0.07
+    assert RESTORED < share < 0.07

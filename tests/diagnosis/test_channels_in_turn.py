@@ -39,8 +39,8 @@ def log(path: Path, seed: int, angles: float, currents: float) -> Path:
         found = [np.full_like(t, 0.3), np.zeros_like(t), np.zeros_like(t)]
         for (harmonic, size), phase in zip(WAVES, phases, strict=True):
             w = 2.0 * np.pi * harmonic / PERIOD
-            for k, x in enumerate(found):
-                x += size * w**k * np.sin(w * t + phase + 0.5 * np.pi * k)
+            for k in range(3):
+                found[k] += size * w**k * np.sin(w * t + phase + 0.5 * np.pi * k)
         return found
 
     places = np.arange(0.0, PERIOD * PERIODS, 1.0 / angles)

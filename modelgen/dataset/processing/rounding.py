@@ -10,6 +10,12 @@ from modelgen.numeric import Array
 
 LONGEST = 1 << 18  # samples that a step is read off
 _WHOLE = 0.01  # of a step, by which a multiple of it may miss a whole number
+# The same where a log has few digits for its counts, and of how many differences, which chance does not have:
+# of random ones three in ten are so near a whole number.
+_DIGITS, _MANY = 0.15, 30
+_REACH = (
+    3.0  # times as large are the differences that a step is made more exact by, from one look to the next
+)
 
 
 def resolution(values: Array) -> float | None:
@@ -20,12 +26,17 @@ def resolution(values: Array) -> float | None:
     steps = steps[steps > smallest]
     if len(steps) < 2:
         return None
-    step = float(steps.min())
+    # The mean over many steps has more digits than the smallest.
+    step, reach = float(steps.min()), 1.5
+    while True:
+        some = steps[steps < reach * step]
+        step = float(some.sum() / np.round(some / step).sum())
+        if len(some) == len(steps):
+            break
+        reach *= _REACH
     multiples = steps / step
-    if np.max(np.abs(multiples - np.round(multiples))) > _WHOLE:
-        return None
-    # The mean over all steps has more digits than the smallest.
-    return float(steps.sum() / np.round(multiples).sum())
+    missed = float(np.max(np.abs(multiples - np.round(multiples))))
+    return step if missed <= (_WHOLE if len(steps) < _MANY else _DIGITS) else None
 
 
 def position_steps(record: Record) -> Array:

@@ -17,23 +17,41 @@ ALONE = 0.5  # of a step, by which one is ahead of either next to it
 ENOUGH = 1024  # steps, that noise is read off
 FEWEST = 5  # places, from which on rows are missing
 CLEARLY = 5.0  # times the places at which the positions fall behind in the same way, as noise has both
-REMARKED = 1e-3  # of the rows
-REFUSED = 5e-3  # of the rows: the motion seems so much faster, and inertias lose twice that
+REMARKED = 1e-3  # of the rows: the motion seems so much faster, and inertias lose twice that
+RESTORED = 5e-3  # of the rows, up to which those found are all but all there are
 
 
-def lost_rows(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[str, str]:
-    """What there is to say of rows that are missing between even stamps t (N,) [s], else empty; and the same
-    where they are so many that nothing is to be identified, else empty. positions: (N, n), as logged.
+def lost_rows(t: Array, positions: Array, limits: DatasetThresholds) -> str:
+    """What there is to say of rows that are missing between even stamps t (N,) [s], else empty. positions:
+    (N, n), as logged.
     """
     places, _, share = missing_rows(positions, limits)
     if share < REMARKED:
-        return "", ""
-    said = (
+        return ""
+    return (
+        f"{_so_many(t, places, share)}; expected stamps of the readings' own clock, or a log without losses"
+    )
+
+
+def at_their_instants(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[Array, str]:
+    """Even stamps t (N,) [s], later by the rows that are missing before them, and a remark; unchanged where
+    none are, or so many that those between, which nobody sees, would count. positions: (N, n), as logged.
+    """
+    places, rows, share = missing_rows(positions, limits)
+    if not len(places) or share > RESTORED:
+        return t, ""
+    later = np.zeros(len(t))
+    np.add.at(later, places + 1, rows)
+    said = f"{_so_many(t, places, share)}; what follows counts as so much later"
+    return t + float(np.median(np.diff(t))) * np.cumsum(later), said
+
+
+def _so_many(t: Array, places: NDArray[np.intp], share: float) -> str:
+    return (
         f"{100 * share:.2g} % of the rows or so are missing though the stamps are even: after "
         f"t = {t[places[0]]:.9g} s and in {len(places) - 1} more places the positions go on by two or more "
-        "of the steps beside; expected stamps of the readings' own clock, or a log without losses"
+        "of the steps beside"
     )
-    return said, said if share > REFUSED else ""
 
 
 def missing_rows(
@@ -68,7 +86,7 @@ def missing_rows(
         return nothing  # they vary by parts of a step, as where the readings' instants do
     part = float(seen.mean())
     window = window[near]
-    beside = np.median(np.delete(window, BESIDE, axis=2), axis=2)
+    beside = _usual(np.delete(window, BESIDE, axis=2), noise)
     around = window[:, :, BESIDE - STAYING : BESIDE + STAYING + 1].sum(axis=2)
     ahead, seen = _ahead(here[near], beside, noise, SEEN)
     stays, _ = _ahead(around - 2 * STAYING * beside, beside, noise, SEEN)
@@ -79,8 +97,19 @@ def missing_rows(
     fallen &= np.maximum(*alone) < -ALONE
     if found.sum() < max(FEWEST, CLEARLY * fallen.sum()):
         return nothing
-    rows = np.rint(ahead[found]).astype(np.intp)
+    # In a short move the steps next to it say better than those around it how large one is.
+    rows = np.rint(np.median([ahead, *alone], axis=0)[found]).astype(np.intp)
     return near[found] + BESIDE, rows, float(rows.sum() / (part * len(steps) + rows.sum()))
+
+
+def _usual(window: Array, noise: Array) -> Array:
+    """The step (M, n) that those of a window (M, n, K) have in common, to parts of a count: the mean of those
+    about their median, without what is ahead by a step.
+    """
+    middle = np.median(window, axis=2, keepdims=True)
+    apart, spread = np.abs(window - middle), NEAR * np.abs(middle) + 2.0 * noise[:, None]
+    near = apart <= np.maximum(spread, np.min(apart, axis=2, keepdims=True))
+    return np.asarray(np.sum(window, axis=2, where=near) / np.sum(near, axis=2))
 
 
 def _ahead(here: Array, beside: Array, noise: Array, least: float) -> tuple[Array, NDArray[np.bool_]]:

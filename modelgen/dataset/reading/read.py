@@ -19,7 +19,7 @@ from modelgen.dataset.reading.clocks import Channels, fresh
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.lone import without_lone
-from modelgen.dataset.reading.lost import lost_rows
+from modelgen.dataset.reading.lost import at_their_instants, lost_rows
 from modelgen.dataset.reading.plausible import check_counters, check_efforts, doubtful_unit
 from modelgen.dataset.reading.repeats import without_doubled
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
@@ -85,6 +85,13 @@ def read_with_stamps(
     found = [*doubled, *(() if new is None else new.remarks), *stamped, *lone]
     checks.check_length(spec, len(table), thresholds.min_samples)
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
+    if axis.method == "none":
+        as_read = table[:, [source.wanted.index(name) for name in source.signals.position]]
+        t, said = at_their_instants(table[:, 0], as_read, thresholds)
+        if said:
+            found.append(said)
+            table = np.column_stack([t, table[:, 1:]])
+            axis = survey(Survey(spec, source.rate, source.gap, thresholds), t, BLOCK)
     if axis.method != "none" and source.rate is None and repeats == 1.0:
         rate = _rate_of_file(source)
         axis = survey(Survey(spec, rate, source.gap, thresholds), table[:, 0], BLOCK)
@@ -193,7 +200,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     checks.check_jumps(file, arm, signals.position, q, t, limits.steady_step)
     as_read = table[:, [source.wanted.index(name) for name in signals.position]]
     jump = jump_of(signals.position, table[:, 0], as_read, limits)
-    lost, many = lost_rows(table[:, 0], as_read, limits) if axis.method == "none" else ("", "")
+    lost = lost_rows(table[:, 0], as_read, limits) if axis.method == "none" else ""
     margin = limits.max_range_excess
     left = checks.check_range(file, arm, drives, signals.position, logged, q, margin)
     left += checks.trembling(signals.position, as_read)
@@ -248,7 +255,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         hold_known="mapping" if source.stated else "",
         counts=counts,
         begins=_begins(source, float(t[0])) if len(t) else None,
-        jump=jump or many,
+        jump=jump or lost,
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged
