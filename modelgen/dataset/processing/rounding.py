@@ -13,9 +13,7 @@ _WHOLE = 0.01  # of a step, by which a multiple of it may miss a whole number
 # The same where a log has few digits for its counts, and of how many differences, which chance does not have:
 # of random ones three in ten are so near a whole number.
 _DIGITS, _MANY = 0.15, 30
-_REACH = (
-    3.0  # times as large are the differences that a step is made more exact by, from one look to the next
-)
+_REACH = 3.0  # times as large are the differences by which a step is made more exact, from look to look
 
 
 def resolution(values: Array) -> float | None:
