@@ -55,7 +55,7 @@ class Stream:
         limits = USUAL if settings is None else settings.thresholds
         self._source = open_source(log, arm, mapping, limits)
         self.spec, self.arm = self._source.spec.text, arm
-        self._asked, self._least = settings, block
+        self._asked, self._least, self._doubt = settings, block, 0.0
         self.axis = self._survey()
         self.samples = self.axis.count
 
@@ -67,11 +67,14 @@ class Stream:
         result._asked = settings
         return result
 
-    def at_instants(self, hold: str | float) -> Stream:
-        """The same log with its efforts read as `hold` says."""
+    def at_instants(self, hold: str | float | None, doubt: float) -> Stream:
+        """The same log with its efforts read as `hold` says, None: as before, and how far they may be off
+        [sampling periods].
+        """
         result = copy(self)
         result.__dict__.pop("beginning", None)
-        result._source = replace(self._source, hold=hold)
+        result._source = self._source if hold is None else replace(self._source, hold=hold)
+        result._doubt = doubt
         return result
 
     @cached_property
@@ -114,7 +117,8 @@ class Stream:
             table, t = rows.table(low, high)
             record, _ = record_of(self._source, self.arm, table, self.axis, t)
             name = f"{self.spec} block {number} of {len(begins)}"
-            yield replace(record, name=name, core=(begin - low, end - low), first=low)
+            hold_std = self._doubt * record.step
+            yield replace(record, name=name, core=(begin - low, end - low), first=low, hold_std=hold_std)
         content.check_changes()
 
     def _begins(self) -> range:

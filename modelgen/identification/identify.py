@@ -21,9 +21,7 @@ from modelgen.identification.essential import essential, only, part, refit
 from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, compared
 from modelgen.identification.objects import Estimate, Identification, Validation
-from modelgen.identification.rounded_efforts import with_rounding
-from modelgen.identification.rounded_positions import with_rounded_positions
-from modelgen.identification.unknown_instant import with_unknown_instant
+from modelgen.identification.reading_errors import with_reading_errors
 from modelgen.identification.validation import regression_of, rows_in_period, validate
 from modelgen.numeric import Array
 from modelgen.regression.instruments import Instrument, of_period
@@ -101,9 +99,7 @@ def identify(
                 "record (see modelgen excite), or --instrument simulated"
             )
         solution = both.solution
-    solution = with_rounding(solution, regression, train, model, evaluator)
-    solution = with_rounded_positions(solution, regression, train, model, evaluator, added)
-    solution = with_unknown_instant(solution, regression, train, model, evaluator)
+    solution = with_reading_errors(solution, regression, train, model, evaluator, added)
     found = concluded(arm, model, evaluator, method, solution, test, physical=physical, added=added)
     return replace(found, comparison=both)
 

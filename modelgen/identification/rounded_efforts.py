@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -36,22 +35,15 @@ def with_rounding(
     steps = [_steps(p) for p in train]
     if not any(x.any() for x in steps):
         return solution
-    weights = 1.0 / np.maximum(solution.sigma, 1e-300)
-    kept = solution.determined & ~solution.dropped
-    columns = [c[:, :, kept] * weights[:, None] for c in regression.columns]
-    spread = np.zeros_like(solution.covariance)
-    inputs = [ideal(p, model, evaluator, solution.theta) for p in train]
+    inputs, moves = [ideal(p, model, evaluator, solution.theta) for p in train], list[Array]()
     for seed in range(DRAWS):
         random = np.random.default_rng(seed)
-        errors = [
-            _rounding(p, y, step, random) * weights for p, y, step in zip(train, inputs, steps, strict=True)
-        ]
-        moved = Regression(errors, columns, regression.moving).least_squares()
-        spread[np.ix_(kept, kept)] += np.outer(moved, moved) / DRAWS
+        errors = [_rounding(p, y, step, random) for p, y, step in zip(train, inputs, steps, strict=True)]
+        moves.append(regression.moved_by(solution, errors) / np.sqrt(DRAWS))
     changed = _by_steps(train, model, evaluator, solution.theta, np.max(steps, axis=0))
     if changed is not None:
-        spread[np.ix_(kept, kept)] += np.outer(changed[kept], changed[kept])
-    return replace(solution, covariance=solution.covariance + spread)
+        moves.append(changed[solution.kept])
+    return solution.uncertain_by(moves)
 
 
 def _by_steps(

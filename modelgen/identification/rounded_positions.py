@@ -24,7 +24,7 @@ def with_rounded_positions(
     train: Sequence[Prepared],
     model: Model,
     evaluator: Evaluator,
-    added: Sequence[Array],
+    added: Sequence[Array] | None,
 ) -> Solution:
     """The solution with what rounding of the positions adds to its covariance.
 
@@ -34,19 +34,13 @@ def with_rounded_positions(
     """
     if not any(position_steps(p.record).any() for p in train):
         return solution
-    weights = 1.0 / np.maximum(solution.sigma, 1e-300)
-    kept = solution.determined & ~solution.dropped
-
-    def fitted(made: Regression) -> Array:
-        columns = [c[:, :, kept] * weights[:, None] for c in made.columns]
-        return Regression([e * weights for e in made.effort], columns, regression.moving).least_squares()
-
-    covariance, first = solution.covariance.copy(), fitted(regression)
+    first, moves = regression.as_in(solution).least_squares(), list[Array]()
     for seed in range(DRAWS):
         again = [replace(prepare(rounded_anew(p, seed), p.settings), awake=p.awake) for p in train]
-        moved = fitted(regression_of(evaluator, model, again, solution.theta, added)) - first
-        covariance[np.ix_(kept, kept)] += np.outer(moved, moved) / DRAWS
-    return replace(solution, covariance=covariance)
+        rows = regression_of(evaluator, model, again, solution.theta, added)
+        found = replace(rows, moving=regression.moving).as_in(solution).least_squares()
+        moves.append((found - first) / np.sqrt(DRAWS))
+    return solution.uncertain_by(moves)
 
 
 def rounded_anew(p: Prepared, seed: int) -> Record:

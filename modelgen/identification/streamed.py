@@ -22,7 +22,9 @@ from modelgen.functions.options import prepared as reduced
 from modelgen.identification.cut_off_streamed import StreamedLimits
 from modelgen.identification.identify import concluded
 from modelgen.identification.objects import Identification
+from modelgen.identification.reading_errors import with_reading_errors
 from modelgen.identification.rows import Rows
+from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
 from modelgen.regression.autocovariance import ORDER, autoregression, meat_of
 from modelgen.regression.least_squares import ROUNDS, Solution, Triangle
@@ -30,6 +32,7 @@ from modelgen.regression.least_squares import ROUNDS, Solution, Triangle
 Progress = Callable[[int, int], None]
 Block = tuple[Array, Array, NDArray[np.bool_]]
 PART = 32  # blocks that the standard deviations are made of, at most
+WHOLE = 4  # of them kept with every sample, for what errors of the readings do
 KEPT = 128 * 1024**2  # bytes of them that are kept
 
 
@@ -79,6 +82,9 @@ def identify_streamed(
     covariance = np.zeros((p, p))
     covariance[np.ix_(known, known)] = _sandwich(blocks, triangles, theta, known, weights)
     solution = Solution(theta, covariance, known, condition, sigma, precision)
+    # Such errors move parameters by as much in a part of the log as in the whole.
+    some = regression_of(evaluator, model, blocks.whole, theta)
+    solution = with_reading_errors(solution, some, blocks.whole, model, evaluator)
     return concluded(arm, model, evaluator, method, solution, test, physical=physical)
 
 
@@ -86,6 +92,7 @@ class _Blocks:
     """Efforts (M, n), columns (M, c) and moving rows (M, n) of block after block, as often as wanted.
 
     Those of `part` are kept from the first time on where they fit into KEPT bytes, else computed again.
+    whole: a few blocks, evenly spread, with every sample.
     """
 
     def __init__(
@@ -96,9 +103,12 @@ class _Blocks:
         self.step = max(1, -(-self.count // PART))  # of the blocks that `part` takes
         self.done, self.total = 0, self.count
         self.kept: list[Block] | None = []
+        self.whole: list[Prepared] = []
+        self._apart = -(-self.count // WHOLE)
 
     def __iter__(self) -> Iterator[Block]:
         """Every block."""
+        self.whole = []
         for number, block in self._blocks(1):
             if self.kept is not None and number % self.step == 0:
                 self.kept.append(block)
@@ -126,6 +136,8 @@ class _Blocks:
                 check_jumps([record])
                 whole = record if self.limits is None else self.limits.without(record)
                 p = prepare(whole, stream.settings)
+                if step == 1 and number % self._apart == self._apart // 2:
+                    self.whole.append(p)
                 effort, columns = self.rows.of(p, zero)
                 yield number, (effort, columns, self.rows.moving(p))
                 self.done += 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -25,14 +24,8 @@ def with_unknown_instant(
     """
     if not any(p.record.hold_std for p in train):
         return solution
-    weights = 1.0 / np.maximum(solution.sigma, 1e-300)
-    kept = solution.determined & ~solution.dropped
-    columns = [c[:, :, kept] * weights[:, None] for c in regression.columns]
     errors = []
     for p in train:
         rate = np.gradient(ideal(p, model, evaluator, solution.theta), p.time, axis=0)
-        errors.append(np.asarray(p.parallel(p.record.hold_std * rate * p.weights)) * weights)
-    moved = Regression(errors, columns, regression.moving).least_squares()
-    covariance = solution.covariance.copy()
-    covariance[np.ix_(kept, kept)] += np.outer(moved, moved)
-    return replace(solution, covariance=covariance)
+        errors.append(np.asarray(p.parallel(p.record.hold_std * rate * p.weights)))
+    return solution.uncertain_by([regression.moved_by(solution, errors)])

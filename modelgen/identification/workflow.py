@@ -287,8 +287,9 @@ def _streamed(
     instant = effort_instant([limits.without(first.beginning)], arm)
     tests = at_instants([limits.beyond(read(spec, arm, o.mapping)) for spec in test], instant)
     check_jumps(tests)
-    if instant is not None and instant.known == "data":
-        streams = [stream.at_instants(instant.hold) for stream in streams]
+    if instant is not None:
+        hold = instant.hold if instant.known == "data" else None
+        streams = [stream.at_instants(hold, instant.doubt) for stream in streams]
     testing = in_sequence([prepare(record, chosen) for record in tests])
     doing = f"identifying, {sum(s.samples for s in streams):,} samples"
     progress(doing, 0, None)

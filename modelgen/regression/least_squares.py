@@ -77,6 +77,20 @@ class Solution:
         """Flags (p,) of what was removed from the fit."""
         return np.zeros(len(self.theta), dtype=bool) if self.left_out is None else self.left_out
 
+    @property
+    def kept(self) -> NDArray[np.bool_]:
+        """Flags (p,) of what was found from the rows."""
+        return self.determined & ~self.dropped
+
+    def uncertain_by(self, moves: Sequence[Array]) -> Solution:
+        """The solution with covariance for what moves the kept parameters by each of `moves` (kept,) at once,
+        all by one error that nobody knows the size and the sign of.
+        """
+        covariance = self.covariance.copy()
+        for moved in moves:
+            covariance[np.ix_(self.kept, self.kept)] += np.outer(moved, moved)
+        return replace(self, covariance=covariance)
+
 
 @dataclass(frozen=True)
 class Regression:
@@ -114,6 +128,16 @@ class Regression:
         assert len(sigma) == n
         covariance = self._covariance(theta, known, weights)
         return Solution(theta, covariance, known, condition, sigma, self._precision(sigma))
+
+    def as_in(self, solution: Solution) -> Regression:
+        """The rows with the weights and the columns of a solution's fit, for `least_squares`."""
+        weights = 1.0 / np.maximum(solution.sigma, 1e-300)
+        columns = [c[:, :, solution.kept] * weights[:, None] for c in self.columns]
+        return replace(self, effort=[e * weights for e in self.effort], columns=columns)
+
+    def moved_by(self, solution: Solution, errors: Sequence[Array]) -> Array:
+        """What errors of the efforts, (M, n) of each record, move the kept parameters of a solution by."""
+        return replace(self, effort=errors).as_in(solution).least_squares()
 
     def least_squares(self) -> Array:
         """Parameters (p,) by "ols" alone, for whoever does not ask how certain they are."""

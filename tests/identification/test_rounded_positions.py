@@ -58,11 +58,11 @@ def stated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def away(mapping: Path | None, seeds: range, **how: float) -> np.ndarray:
+def away(mapping: Path | None, seeds: range, *, stream: bool = False, **how: float) -> np.ndarray:
     """Errors of the parameters in their deviations, by log."""
     found = []
     for seed in seeds:
-        result = mg.identify(ARM, log(seed, **how), log(seed + 1000, **how), mapping=mapping)
+        result = mg.identify(ARM, log(seed, **how), log(seed + 1000, **how), mapping=mapping, stream=stream)
         found.append(
             [(result.parameters[name].value - x) / result.parameters[name].std for name, x in TRUTH.items()]
         )
@@ -73,6 +73,14 @@ def away(mapping: Path | None, seeds: range, **how: float) -> np.ndarray:
 def test_deviations_hold_what_coarse_positions_do_to_a_long_record(bits: int, stated: Path) -> None:
     """Noise of a minute hides nothing of it."""
     found = away(stated, range(4), bits=bits, seconds=60.0)
+    assert np.sqrt(np.mean(found**2)) < 1.6
+    assert np.abs(found).max() < 4.0
+
+
+@pytest.mark.parametrize("how", [{"bits": 12, "seconds": 120.0}, {"rate": 20.0, "seconds": 60.0}])
+def test_deviations_of_a_streamed_log_hold_the_same(how: dict[str, float], stated: Path) -> None:
+    """A long record is what is streamed, and what noise hides least of."""
+    found = away(stated if "bits" in how else None, range(3), stream=True, **how)
     assert np.sqrt(np.mean(found**2)) < 1.6
     assert np.abs(found).max() < 4.0
 
