@@ -15,6 +15,18 @@ from modelgen.numeric import Array
 
 
 @dataclass(frozen=True)
+class Uneven:
+    """Efforts of a record at the stamps of its log, before they were moved to a uniform axis.
+
+    stamps: (M,) [s]; efforts: (M, n) as logged; method: as the axis has it, "spline" and so on.
+    """
+
+    stamps: Array
+    efforts: Array
+    method: str
+
+
+@dataclass(frozen=True)
 class Record:
     """One log, or a part of one: N samples of an arm with n coordinates, on one uniform time axis.
 
@@ -77,6 +89,8 @@ class Record:
     jump : str
         Where a position of the log jumps as no motion does, or rows are missing, and what to do; empty where
         nothing of that is found.
+    uneven : Uneven, optional
+        The efforts at their stamps, where the samples were moved to a uniform axis.
 
     Attributes
     ----------
@@ -119,6 +133,7 @@ class Record:
     period: float | None = None
     cut_off: NDArray[np.bool_] | None = None
     jump: str = ""
+    uneven: Uneven | None = None
 
     @property
     def n(self) -> int:

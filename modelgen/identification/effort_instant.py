@@ -18,7 +18,14 @@ from dataclasses import replace
 import numpy as np
 
 from modelgen.dataset import Record, Settings, choose, prepare
-from modelgen.dataset.processing.instants import EffortInstant, LateChannel, beyond, fitting, with_hold
+from modelgen.dataset.processing.instants import (
+    CONVENTIONS,
+    EffortInstant,
+    LateChannel,
+    beyond,
+    fitting,
+    with_hold,
+)
 from modelgen.dataset.processing.rounding import position_steps
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
@@ -47,6 +54,29 @@ def effort_instant(
     first = records[0]
     if any(r.input is None for r in records):
         return None
+    if first.hold_known or not any(r.uneven for r in records):
+        return _instant(records, arm, limits)
+    # Between uneven stamps conventions differ by more than a delay: that one is right which the data have
+    # when the efforts are read so.
+    found = {str(first.effort_hold): _instant(records, arm, limits)}
+    for hold in CONVENTIONS:
+        read = [with_hold(r, hold) for r in records]
+        x = _instant(read, arm, limits)
+        if x.delay is None or x.std is None or not x.alike:
+            continue
+        delay = x.delay - read[0].hold / x.step + CONVENTIONS[hold]
+        if fitting(delay, x.std, x.step, limits) == hold:
+            found[hold] = replace(x, hold=hold, delay=delay, fits=hold)
+    right = [hold for hold, x in found.items() if x.fits == hold]
+    if not right:
+        return found[str(first.effort_hold)]
+    best = min(right, key=lambda hold: abs((found[hold].delay or 0.0) - CONVENTIONS[hold]))
+    return found[best] if best == first.effort_hold else replace(found[best], known="data")
+
+
+def _instant(records: Sequence[Record], arm: Arm, limits: DatasetThresholds) -> EffortInstant:
+    """The same of efforts, read as the records have them."""
+    first = records[0]
     known = EffortInstant(first.effort_hold, first.hold_known, first.step)
     found = _delay(records, arm, limits)
     if found is None:

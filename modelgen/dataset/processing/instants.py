@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.resampling import efforts_resampled
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 
 CLEARLY = 5.0  # deviations by which a delay is beyond a sample
@@ -197,8 +198,16 @@ def beyond(delay: float, std: float, used: float) -> bool:
 
 
 def with_hold(record: Record, hold: str | float) -> Record:
-    """The record with its efforts read as `hold` says."""
-    step = record.step
+    """The record with its efforts read as `hold` says.
+
+    Those of a log with uneven stamps are moved to its axis anew: what one reading stands for is longer where
+    the next comes later.
+    """
+    step, uneven = record.step, record.uneven
+    if uneven is not None and record.gain is not None:
+        efforts, later = efforts_resampled(uneven.stamps, uneven.efforts, record.t, step, uneven.method, hold)
+        held = hold in ("following", "previous")
+        return replace(record, input=efforts / record.gain, hold=later, held=held, effort_hold=hold)
     later = CONVENTIONS[hold] * step if isinstance(hold, str) else hold
     return replace(record, hold=later, held=hold in ("following", "previous"), effort_hold=hold)
 

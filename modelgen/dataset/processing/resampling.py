@@ -22,6 +22,18 @@ def smooth_resampled(stamps: Array, values: Array, t: Array, step: float, method
     return np.asarray(curve(t), dtype=np.float64)
 
 
+def efforts_resampled(
+    stamps: Array, efforts: Array, t: Array, step: float, method: str, hold: str | float
+) -> tuple[Array, float]:
+    """Efforts (N, k) read as `hold` says, on the axis t (M,), and how far their samples lie after it [s]."""
+    if hold in ("following", "previous"):
+        if hold == "previous":  # the same staircase, each value one sample earlier
+            efforts = np.vstack([efforts[1:], efforts[-1:]])
+        return held_resampled(stamps, efforts, t, step), 0.5 * step
+    later = hold if isinstance(hold, float) else 0.0
+    return smooth_resampled(stamps + later, efforts, t, step, method), 0.0
+
+
 def held_resampled(stamps: Array, values: Array, t: Array, step: float) -> Array:
     """A signal (N, k) that is constant from each stamp to the next: its mean over each [t, t + step].
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
@@ -32,6 +33,12 @@ class Axis:
         return self.begin + self.step * numbers
 
 
+_BESIDE = 15  # steps, whose median is the usual one there: no single late sample
+_LOOKED_AT = 4096  # of them per block
+_SELDOM = 0.05  # of the time, that a log may be slower than its axis
+_ALIKE = 1.2  # times as long are steps of one rate
+
+
 @dataclass
 class Survey:
     """Statistics of a log's stamps, gathered block by block.
@@ -49,6 +56,7 @@ class Survey:
     jitter: float = 0.0
     ends: list[tuple[int, float]] = field(default_factory=list)  # number and time of the blocks' ends
     bends: list[float] = field(default_factory=list)  # largest distance of a block's stamps from their chord
+    usual: list[Array] = field(default_factory=list)  # steps that are usual where they are, of some samples
 
     def add(self, stamps: Array) -> None:
         """The next stamps (N,). Raises InputError where time does not run, or where there is a gap."""
@@ -74,6 +82,8 @@ class Survey:
             )
         if steps.size:
             self.jitter = max(self.jitter, float(np.max(np.abs(steps - self.period))) / self.period)
+        if len(steps) >= _BESIDE:
+            self.usual.append(median_filter(steps, _BESIDE, mode="nearest")[:: 1 + len(steps) // _LOOKED_AT])
         if not self.ends:
             self.ends.append((0, float(stamps[0])))
         chord = np.linspace(line[0], line[-1], len(line))
@@ -90,13 +100,25 @@ class Survey:
             drift = max(abs(t - begin - k * step) for k, t in self.ends)
             if drift + max(self.bends) <= self.limits.max_jitter * self.period:
                 return Axis(begin, step, self.count, self.jitter, "none")
-            step = self.period
+            step = self._slowest()
         else:
             step = 1.0 / self.rate
         count = int(np.floor((end - begin) / step * (1.0 + 1e-12))) + 1
         even = "spline" if self.jitter < self.limits.max_spline_jitter else "monotone"
         averaged = step > self.limits.averaging_step * self.period
         return Axis(begin, step, count, self.jitter, "mean" if averaged else even)
+
+    def _slowest(self) -> float:
+        """Steps [s] of the slowest rate that a log has for long: what is read more often is averaged, for
+        nobody knows what was between samples where they are fewer.
+        """
+        usual = np.sort(np.concatenate(self.usual)) if self.usual else np.empty(0)
+        if not len(usual):
+            return self.period
+        slow = usual[np.searchsorted(np.cumsum(usual), (1.0 - _SELDOM) * usual.sum())]
+        if slow < self.limits.averaging_step * self.period:
+            return self.period
+        return float(np.median(usual[(usual > slow / _ALIKE) & (usual < slow * _ALIKE)]))
 
 
 def survey(found: Survey, stamps: Array, block: int) -> Axis:

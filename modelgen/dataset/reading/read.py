@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from modelgen.dataset.objects import Record
-from modelgen.dataset.processing.resampling import held_resampled, smooth_resampled
+from modelgen.dataset.objects import Record, Uneven
+from modelgen.dataset.processing.resampling import efforts_resampled, smooth_resampled
 from modelgen.dataset.processing.rounding import LONGEST, resolution
 from modelgen.dataset.processing.stamps import EVEN, strayed, true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
@@ -256,6 +256,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         counts=counts,
         begins=_begins(source, float(t[0])) if len(t) else None,
         jump=jump or lost,
+        uneven=on_axis.uneven(signals.effort) if given is not None else None,
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged
@@ -287,12 +288,11 @@ class _Columns:
     axis: Axis
     t: Array
 
-    def smooth(self, names: Sequence[str | None], delay: float = 0.0) -> Array:
+    def smooth(self, names: Sequence[str | None]) -> Array:
         table = self._table(names)
         if self.axis.method == "none":
             return table
-        stamps = self.columns["t"] + delay
-        return smooth_resampled(stamps, table, self.t, self.axis.step, self.axis.method)
+        return smooth_resampled(self.columns["t"], table, self.t, self.axis.step, self.axis.method)
 
     def efforts(self, names: Sequence[str | None]) -> tuple[Array, float]:
         """Efforts on the axis, and the time by which their samples lie after the stamps."""
@@ -301,11 +301,13 @@ class _Columns:
         if self.axis.method == "none":
             later = {"following": half, "previous": -half, "instant": 0.0}
             return table, later[hold] if isinstance(hold, str) else hold
-        if hold in ("following", "previous"):
-            if hold == "previous":  # the same staircase, each value one sample earlier
-                table = np.vstack([table[1:], table[-1:]])
-            return held_resampled(self.columns["t"], table, self.t, self.axis.step), half
-        return self.smooth(names, hold if isinstance(hold, float) else 0.0), 0.0
+        return efforts_resampled(self.columns["t"], table, self.t, self.axis.step, self.axis.method, hold)
+
+    def uneven(self, names: Sequence[str | None]) -> Uneven | None:
+        """Efforts at their stamps, where those are not the axis."""
+        if self.axis.method == "none":
+            return None
+        return Uneven(self.columns["t"], self._table(names), self.axis.method)
 
     def _table(self, names: Sequence[str | None]) -> Array:
         zero = np.zeros_like(self.columns["t"])
