@@ -89,6 +89,8 @@ class Record:
     jump : str
         Where a position of the log jumps as no motion does, or rows are missing, and what to do; empty where
         nothing of that is found.
+    absent : ndarray of bool, optional
+        Samples (N, n) at which the log has no reading of an effort; None: it has all.
     uneven : Uneven, optional
         The efforts at their stamps, where the samples were moved to a uniform axis.
 
@@ -133,6 +135,7 @@ class Record:
     period: float | None = None
     cut_off: NDArray[np.bool_] | None = None
     jump: str = ""
+    absent: NDArray[np.bool_] | None = None
     uneven: Uneven | None = None
 
     @property
@@ -236,6 +239,7 @@ class Record:
             temperature=cut(self.temperature),
             core=None,
             cut_off=None if self.cut_off is None else self.cut_off[begin:end],
+            absent=None if self.absent is None else self.absent[begin:end],
             begins=None if self.begins is None else self.begins + float(self.t[begin] - self.t[0]),
         )
 

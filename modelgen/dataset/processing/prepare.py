@@ -225,14 +225,16 @@ def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
 
 
 def _cut_off(record: Record) -> np.ndarray:
-    """Samples (N, n) at which an effort is cut off: they say no more of it than those that hold a joint."""
-    if record.cut_off is not None:
-        return record.cut_off
+    """Samples (N, n) at which an effort is cut off, or was not read: they say no more of it than those that
+    hold a joint.
+    """
     found, logged = np.zeros(record.q.shape, dtype=bool), record.logged_effort
-    if logged is not None:
+    if record.cut_off is not None:
+        found |= record.cut_off
+    elif logged is not None:
         for k, effort in enumerate(logged.T):
             found[:, k] = saturated(effort, record.q[:, k])
-    return found
+    return found if record.absent is None else found | record.absent
 
 
 def kept_rows(record: Record, settings: Chosen) -> np.ndarray:

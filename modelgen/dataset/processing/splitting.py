@@ -16,7 +16,7 @@ from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
-_COLUMNS = ("t", "q", "motor", "input", "gain", "dq", "ddq", "temperature", "cut_off")
+_COLUMNS = ("t", "q", "motor", "input", "gain", "dq", "ddq", "temperature", "cut_off", "absent")
 REPEATING = 3  # periods of which two can stay together, which shows what is noise
 
 

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from modelgen.dataset.objects import Record, Uneven
-from modelgen.dataset.processing.resampling import efforts_resampled, smooth_resampled
+from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.rounding import LONGEST, resolution
 from modelgen.dataset.processing.stamps import EVEN, strayed, true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
+from modelgen.dataset.reading.absent import without_absent
 from modelgen.dataset.reading.clocks import Channels, fresh
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.lone import without_lone
 from modelgen.dataset.reading.lost import at_their_instants, lost_rows
+from modelgen.dataset.reading.on_axis import OnAxis
 from modelgen.dataset.reading.plausible import check_counters, check_efforts, doubtful_unit
 from modelgen.dataset.reading.repeats import without_doubled
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source
@@ -182,7 +184,9 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     file, limits = source.spec.text, source.thresholds
     signals, drives = source.signals, source.drives
     _check_counters(source, table)
-    on_axis = _Columns(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
+    numbers = {source.wanted.index(name): name for name in signals.effort if name is not None}
+    table, unread, left_out = without_absent(file, table, numbers)
+    on_axis = OnAxis(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
     counts: tuple[float, ...] = ()
     if axis.method != "none":  # which blurs them
@@ -204,7 +208,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     margin = limits.max_range_excess
     left = checks.check_range(file, arm, drives, signals.position, logged, q, margin)
     left += checks.trembling(signals.position, as_read)
-    remarks = [*source.remarks, *left, *(x for x in (jump, lost) if x)]
+    remarks = [*source.remarks, *left, *left_out, *(x for x in (jump, lost) if x)]
     if axis.method != "none":
         remarks.append(
             f"{file}: {strayed(axis.jitter)}: resampled at {1 / axis.step:.6g} Hz"
@@ -256,10 +260,17 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         counts=counts,
         begins=_begins(source, float(t[0])) if len(t) else None,
         jump=jump or lost,
+        absent=None if unread is None else on_axis.touched(_of(unread, source, signals.effort)),
         uneven=on_axis.uneven(signals.effort) if given is not None else None,
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged
+
+
+def _of(flags: NDArray[np.bool_], source: Source, names: Sequence[str | None]) -> NDArray[np.bool_]:
+    """Flags (N, n) of some columns of the source's, none where there is no column."""
+    numbers = [0 if name is None else source.wanted.index(name) for name in names]
+    return flags[:, numbers]
 
 
 def _begins(source: Source, first: float) -> float | None:
@@ -277,39 +288,3 @@ def effort_units(source: Source, arm: Arm) -> tuple[str, ...]:
         by_name = "A" if kind == "i" or (drive.driven and name is None) else joint
         units.append(by_name if kind == "tau" or name is None else source.effort_units.get(name, by_name))
     return tuple(units)
-
-
-@dataclass(frozen=True)
-class _Columns:
-    """Columns by name, moved to the uniform axis."""
-
-    source: Source
-    columns: dict[str, Array]
-    axis: Axis
-    t: Array
-
-    def smooth(self, names: Sequence[str | None]) -> Array:
-        table = self._table(names)
-        if self.axis.method == "none":
-            return table
-        return smooth_resampled(self.columns["t"], table, self.t, self.axis.step, self.axis.method)
-
-    def efforts(self, names: Sequence[str | None]) -> tuple[Array, float]:
-        """Efforts on the axis, and the time by which their samples lie after the stamps."""
-        table, hold = self._table(names), self.source.hold
-        half = 0.5 * self.axis.step
-        if self.axis.method == "none":
-            later = {"following": half, "previous": -half, "instant": 0.0}
-            return table, later[hold] if isinstance(hold, str) else hold
-        return efforts_resampled(self.columns["t"], table, self.t, self.axis.step, self.axis.method, hold)
-
-    def uneven(self, names: Sequence[str | None]) -> Uneven | None:
-        """Efforts at their stamps, where those are not the axis."""
-        if self.axis.method == "none":
-            return None
-        return Uneven(self.columns["t"], self._table(names), self.axis.method)
-
-    def _table(self, names: Sequence[str | None]) -> Array:
-        zero = np.zeros_like(self.columns["t"])
-        # Columns in order in memory: what follows goes through them one by one.
-        return np.stack([zero if name is None else self.columns[name] for name in names]).T

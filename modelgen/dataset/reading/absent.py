@@ -1,0 +1,85 @@
+"""Efforts that nobody read: a number that stands still while the channel beside it never does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelgen.numeric import Array
+
+FEWEST = 3  # equal readings in a row, of a channel that never repeats one else
+CHANCE = 1e-3  # of a record, that as many are equal where some neighbours are
+MOST = 0.5  # of the readings: an effort that stands more often is switched, not read
+JUMP = 6.0  # times the usual step, by which it is away from the readings before or after
+LOOKS = 8  # at how many are equal by chance, each without the runs of the look before
+
+
+def absent(values: Array) -> NDArray[np.bool_]:
+    """Flags (N,) of an effort's readings that are none: the channel dropped out, froze, or has a dead band.
+
+    They are equal, several in a row, as chance does not make them in this channel. One that stands as it is
+    commanded, or is cut off, has no noise elsewhere, or goes there in its usual steps.
+    """
+    found = np.zeros(len(values), dtype=bool)
+    begins = np.flatnonzero(np.append(True, np.diff(values) != 0.0))
+    ends = np.append(begins[1:], len(values))  # the first reading after each run of equal ones
+    lengths, least = ends - begins, FEWEST
+    for _ in range(LOOKS):
+        short = lengths < least
+        equal = float(np.sum(lengths[short] - 1)) / max(float(np.sum(lengths[short])), 1.0)
+        wanted = FEWEST if equal == 0.0 else 1 + math.ceil(math.log(CHANCE / len(values)) / math.log(equal))
+        if wanted <= least:
+            break
+        least = wanted
+    steps = np.abs(np.diff(values))
+    usual = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else 0.0
+    long = np.flatnonzero((lengths >= least) & (begins > 0) & (ends < len(values)))
+    if not len(long) or lengths[long].sum() > MOST * len(values):
+        return found
+    at = values[begins[long]]
+    into, out = (np.abs(x - at) > JUMP * usual for x in (values[begins[long] - 1], values[ends[long]]))
+    # One that freezes goes on from its last reading; at an end of the range an effort is cut off. Noise never
+    # stands, but what is commanded, or simulated, may: there a jump shows it.
+    inside = (at > values.min()) & (at < values.max())
+    noisy = np.median(np.abs(np.diff(values, 2))) > usual
+    long = long[(out & into) | (inside & (out | noisy))]
+    for begin, end in zip(begins[long], ends[long], strict=True):
+        found[begin:end] = True
+    for level, runs in zip(*np.unique(values[begins[long]], return_counts=True), strict=True):
+        if runs > 1:  # what stands for no reading does so alone, too
+            found |= values == level
+    return found
+
+
+def without_absent(
+    file: str, table: Array, efforts: Mapping[int, str]
+) -> tuple[Array, NDArray[np.bool_] | None, list[str]]:
+    """A table (N, k), the time first, whose efforts are straight lines where nobody read them; flags (N, k)
+    of these, None where there are none; and remarks. efforts: names of these columns, by number.
+    """
+    result, remarks, flags = table, list[str](), np.zeros(table.shape, dtype=bool)
+    for k, name in efforts.items():
+        found = absent(table[:, k])
+        if not found.any() or found.all():
+            continue
+        result = result.copy() if result is table else result
+        t, there = table[:, 0], ~found
+        result[found, k] = np.interp(t[found], t[there], table[there, k])
+        flags[:, k] = found
+        remarks.append(_said(f"{file}: {name}", t, table[:, k], found))
+    return result, flags if remarks else None, remarks
+
+
+def _said(name: str, t: Array, values: Array, flags: NDArray[np.bool_]) -> str:
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
+    begins, lengths = edges[::2], np.diff(edges)[::2]
+    longest = int(np.argmax(lengths))
+    first = begins[longest]
+    places = "there" if len(begins) == 1 else f"in {len(begins)} places, {flags.sum()} rows in all"
+    return (
+        f"{name} stands at {values[first]:.6g} for {lengths[longest]} rows from t = {t[first]:.9g} s on, as its "
+        f"readings never do else: it was not read {places}, and nothing is made of it"
+    )
