@@ -80,6 +80,6 @@ def _said(name: str, t: Array, values: Array, flags: NDArray[np.bool_]) -> str:
     first = begins[longest]
     places = "there" if len(begins) == 1 else f"in {len(begins)} places, {flags.sum()} rows in all"
     return (
-        f"{name} stands at {values[first]:.6g} for {lengths[longest]} rows from t = {t[first]:.9g} s on, as its "
-        f"readings never do else: it was not read {places}, and nothing is made of it"
+        f"{name} stands at {values[first]:.6g} for {lengths[longest]} rows from t = {t[first]:.9g} s on, as "
+        f"its readings never do else: it was not read {places}, and nothing is made of it"
     )
