@@ -155,15 +155,21 @@ def pictured(text: str, folder: Path) -> str:
     """A page of a folder whose pictures lead to their own files, in boxes that scroll on a narrow screen.
 
     A picture is not drawn narrower there than three quarters of its own width, so that its letters stay
-    legible.
+    legible. One that has no colours for the night lies on a card of its own.
     """
 
     def boxed(found: re.Match[str]) -> str:
-        width = natural_width(folder / found["src"])
-        style = f' style="--legible: {round(0.75 * width)}px"' if width else ""
-        return f'<span class="picture"{style}><a href="{found["src"]}">{found[0]}</a></span>'
+        path = folder / found["src"]
+        style = f' style="--legible: {round(0.75 * width)}px"' if (width := natural_width(path)) else ""
+        card = "" if has_night(path) else " card"
+        return f'<span class="picture{card}"{style}><a href="{found["src"]}">{found[0]}</a></span>'
 
     return re.sub(r'<img [^>]*src="(?P<src>[^":]*_images/[^"]+)"[^>]*>', boxed, text)
+
+
+def has_night(picture: Path) -> bool:
+    """Whether a picture has colours for dark pages beside those for light ones."""
+    return picture.suffix == ".svg" and "prefers-color-scheme: dark" in picture.read_text("utf-8")
 
 
 def natural_width(picture: Path) -> float:

@@ -33,6 +33,21 @@ PORTS = 16.0, 10.0  # between arrows that leave a box, and that reach it, at mos
 SWEEPS, SETTLING = 40, 300  # of the order on the floors, and of the places
 STRAIGHT = 6.0  # times as much a bend of an arrow counts where it passes a floor as where it meets a box
 COLOURS = ("#1f5fa8", "#d1661a", "#3a8f4d", "#8a4fa3", "#a83a4a", "#2a8f8f", "#666666")
+PAPER, SHEET, INK, TEXT = "#ffffff", "#f7f9fc", "#000000", "#333333"
+# Where the reader's system is dark, a style puts these in the places of those.
+NIGHT = {
+    **dict(
+        zip(
+            COLOURS,
+            ("#6fb0f0", "#ffb07a", "#5fbf75", "#c490dc", "#f08a98", "#5fc9c9", "#aab4bd"),
+            strict=True,
+        )
+    ),
+    PAPER: "#14191e",
+    SHEET: "#20272e",
+    INK: "#e6ebef",
+    TEXT: "#c8d0d8",
+}
 
 
 @dataclass
@@ -192,8 +207,8 @@ def drawn(package: str, root: Path = ROOT) -> str:
         text, inside = described(package, node.name, modules)
         letters = int((node.width - 8.0) / LETTER)
         lines[node.name] = [
-            *((x, "#333") for x in textwrap.wrap(text, letters)),
-            *((x, "#1f5fa8") for x in textwrap.wrap(", ".join(inside), letters)),
+            *((x, TEXT) for x in textwrap.wrap(text, letters)),
+            *((x, COLOURS[0]) for x in textwrap.wrap(", ".join(inside), letters)),
         ]
     least = NAME_HEIGHT if whole else HEIGHT
     heights = [
@@ -208,6 +223,7 @@ def drawn(package: str, root: Path = ROOT) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {across:.0f} {total:.0f}" '
         f'width="{across:.0f}" height="{total:.0f}" font-family="DejaVu Sans, sans-serif" font-size="10">',
         f"  <title>What {package} is made of: an arrow leads to what is imported</title>",
+        f"  <style>@media (prefers-color-scheme: dark) {{ {_night()} }}</style>",
         "  <defs>",
         *(
             f'    <marker id="end{k}" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" '
@@ -215,7 +231,7 @@ def drawn(package: str, root: Path = ROOT) -> str:
             for k, colour in enumerate(COLOURS)
         ),
         "  </defs>",
-        '  <rect width="100%" height="100%" fill="white"/>',
+        f'  <rect width="100%" height="100%" fill="{PAPER}"/>',
     ]
     boxes = [n for row in reversed(layers) for n in row if n.is_box]
     for k, node in enumerate(boxes):
@@ -225,8 +241,19 @@ def drawn(package: str, root: Path = ROOT) -> str:
         parts += _box(node, top, height, lines[node.name], COLOURS[k % len(COLOURS)])
     if single:
         said = f"Below all of them, single files: {', '.join(sorted(single))}"
-        parts.append(f'  <text x="{MARGIN:.0f}" y="{foot + 12:.0f}" font-size="11">{said}</text>')
+        parts.append(
+            f'  <text x="{MARGIN:.0f}" y="{foot + 12:.0f}" font-size="11" fill="{INK}">{said}</text>'
+        )
     return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def _night() -> str:
+    """Rules that put the colours of the night in place of those of the day."""
+    return " ".join(
+        f"[{kind}='{day}'] {{ {kind}: {night}; }}"
+        for day, night in NIGHT.items()
+        for kind in ("fill", "stroke")
+    )
 
 
 def _arrow(start: Node, end: Node, tops: Sequence[float], heights: Sequence[float], colour: int) -> str:
@@ -264,8 +291,9 @@ def _box(node: Node, top: float, height: float, lines: Sequence[tuple[str, str]]
     left, middle = node.x - node.width / 2, f'x="{node.x:.0f}" text-anchor="middle"'
     return [
         f'  <rect x="{left:.0f}" y="{top:.0f}" width="{node.width:.0f}" height="{height:.0f}" rx="5" '
-        f'fill="#f7f9fc" stroke="{colour}" stroke-width="1.5"/>',
-        f'  <text {middle} y="{top + 16:.0f}" font-size="12.5" font-weight="bold">{escape(node.name)}</text>',
+        f'fill="{SHEET}" stroke="{colour}" stroke-width="1.5"/>',
+        f'  <text {middle} y="{top + 16:.0f}" font-size="12.5" font-weight="bold" fill="{INK}">'
+        f"{escape(node.name)}</text>",
         *(
             f'  <text {middle} y="{top + 31 + LINE * k:.0f}" fill="{shade}">{escape(line)}</text>'
             for k, (line, shade) in enumerate(lines)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import re
+import shutil
 from pathlib import Path
 from types import ModuleType
 from xml.etree import ElementTree
@@ -89,6 +90,33 @@ def test_charts_that_are_kept_look_as_those_that_are_drawn() -> None:
         assert text.split("<style>\n", 1)[1].split("</style>", 1)[0] == style, path
         for role, form in re.findall(r'<path class="dots (before|after)"[^>]* d="M[\d. -]+([^"M]*)', text):
             assert form.endswith("z") == (role == "after"), path
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_picture_that_is_wider_than_the_screen_says_so_and_one_for_light_pages_lies_on_a_card(
+    scheme: str, tmp_path: Path
+) -> None:
+    names = ("identification.svg", "lever.svg")  # wide, without a night; narrow, with one
+    folder = tmp_path / "_images"
+    folder.mkdir()
+    for name in names:
+        shutil.copy(DOCS / name, folder)
+    style = (DOCS / "style" / "pages.css").read_text(encoding="utf-8")
+    pictures = "".join(f'<img alt="" src="_images/{name}">' for name in names)
+    theme = "img { max-width: 100%; height: auto }"
+    path = tmp_path / "page.html"
+    path.write_text(
+        f'<html lang="en"><title>x</title><style>{theme}{style}</style><body style="margin: 0 1rem">'
+        + script("build").pictured(pictures, tmp_path),
+        encoding="utf-8",
+    )
+    with opened(path, 400, alone=False, scheme=scheme) as page:
+        seen = page.locator(".picture").evaluate_all(
+            "all => all.map(b => [b.scrollWidth > b.clientWidth,"
+            " getComputedStyle(b, '::before').fontSize !== '0px',"
+            " getComputedStyle(b.querySelector('a')).backgroundColor === 'rgb(255, 255, 255)'])"
+        )
+    assert seen == [[True, True, True], [False, False, False]]
 
 
 def test_a_folded_table_names_its_columns_and_a_word_of_a_command_stays_whole(tmp_path: Path) -> None:
