@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from modelgen.api.description import an_arm
-from modelgen.api.model import total
+from modelgen.api.model import COST, costs, total
 from modelgen.api.results import Shown, Table
 from modelgen.description import Arm
 from modelgen.errors import InputError, suggest
@@ -93,8 +93,11 @@ class Generated(Shown):
         Table
             By arm; a function and its twin for the standard parameters share an entry.
         """
-        rows = [[arm.name, ", ".join(_costs(arm.operations))] for arm in self.arms]
-        heading = "operations (mul + add + neg), base/standard parameters"
+        rows = [
+            [arm.name, ", ".join(f"{n} {a}/{b}".rstrip("/") for n, a, b in costs(arm.operations))]
+            for arm in self.arms
+        ]
+        heading = f"{COST}, base/standard parameters"
         return Table("", {"arm": "left", heading: "left"}, rows, ("arm",))
 
     def __repr__(self) -> str:
@@ -195,18 +198,6 @@ def _budget(o: GenerationOptions) -> Budget | None:
         raise InputError(f"--target: found '{o.target}'{suggest(o.target, TARGETS)}")
     nothing = o.max_flash is None and o.max_stack is None
     return None if nothing else Budget(o.target, o.max_flash, o.max_stack)
-
-
-def _costs(operations: Mapping[str, Mapping[str, int]]) -> list[str]:
-    """A function and its twin for the standard parameters share an entry."""
-    costs = []
-    for name, counts in operations.items():
-        twin = operations.get(f"{name}_standard")
-        if twin is not None:
-            costs.append(f"{name} {total(counts)}/{total(twin)}")
-        elif name.removesuffix("_standard") not in operations or name == name.removesuffix("_standard"):
-            costs.append(f"{name} {total(counts)}")
-    return costs
 
 
 def _arm_data(arm: GeneratedArm) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from modelgen.api.description import an_arm
-from modelgen.api.results import Named, Shown, Table
+from modelgen.api.results import Named, Shown, Table, as_html
 from modelgen.backends import NumpyFunction
 from modelgen.base_parameters import BaseParameter, for_reading
 from modelgen.description import Arm
@@ -17,6 +17,7 @@ from modelgen.functions import build_model as build
 from modelgen.functions import nominal_base
 from modelgen.options import ModelOptions, changed
 
+COST = "operations (mul + add + neg)"
 KINDS = ("mul", "add", "neg", "div", "sqrt", "trig", "other")
 
 
@@ -87,23 +88,40 @@ class Model(Shown):
             In the order in which they are printed.
         """
         arm, model = self.arm, self.built
-        names = arm.coordinate_names
+        names, base = arm.coordinate_names, model.grouping.base
         parts: list[str | Table] = [
             f"{arm.name}: {len(names)} joint{'s' if len(names) > 1 else ''} ({', '.join(names)})"
         ]
         if arm.source:
             parts.append(f"source: {' '.join(arm.source.split())}")
         parts += [f"note: {note}" for note in (*arm.notes, *model.remarks)]
-        base, nominal = model.grouping.base, self.nominal
+        parts.append(
+            f"{len(model.standard)} standard parameters, {len(base)} base parameters: "
+            f"{', '.join(p.name for p in base)}"
+        )
+        rows = [
+            [name, *map(str, pair)] for name, *pair in costs({f.name: f.operations for f in model.functions})
+        ]
+        columns = {"function": "left", "base": "right", "standard": "right"}
+        return [*parts, Table(f"{COST}, by the parameters that the function has", columns, rows)]
+
+    def details(self) -> Sequence[Table]:
+        """Tables that `modelgen show --verbose` prints besides.
+
+        Returns
+        -------
+        sequence of Table
+            Base parameters in closed form with nominal value and unit, standard parameters without effect,
+            operations by kind.
+        """
+        model, nominal = self.built, self.nominal
         known = {} if nominal is None else {"nominal": "right"}
         rows = [
             [str(i), _equation(p), *([f"{nominal[p.name]:z.6g}"] if nominal else []), p.unit]
-            for i, p in enumerate(base)
+            for i, p in enumerate(model.grouping.base)
         ]
         columns = {"": "right", "base parameter": "left", **known, "unit": "left"}
-        parts.append(
-            Table(f"{len(model.standard)} standard parameters, {len(base)} base parameters", columns, rows)
-        )
+        parts = [Table("base parameters in closed form", columns, rows)]
         without = [model.standard[i].name for i in model.grouping.without_effect]
         if without:
             heading = {"standard parameters": "left"}
@@ -112,8 +130,11 @@ class Model(Shown):
             [f.name, str(total(f.operations)), *(str(f.operations.get(kind, 0)) for kind in KINDS)]
             for f in model.functions
         ]
-        costs = {"function": "left", "mul+add+neg": "right", **dict.fromkeys(KINDS, "right")}
-        return [*parts, Table("operations", costs, counts)]
+        kinds = {"function": "left", "mul+add+neg": "right", **dict.fromkeys(KINDS, "right")}
+        return [*parts, Table("operations by kind", kinds, counts)]
+
+    def _repr_html_(self) -> str:
+        return as_html([*self.shown(), *self.details()])
 
     def __repr__(self) -> str:
         built = self.built
@@ -180,6 +201,16 @@ def build_model(arm: Arm, options: ModelOptions | None = None, **changes: Any) -
 def total(operations: Mapping[str, int]) -> int:
     """Multiplications, additions and negations."""
     return sum(operations[kind] for kind in ("mul", "add", "neg"))
+
+
+def costs(operations: Mapping[str, Mapping[str, int]]) -> Iterator[tuple[str, int | str, int | str]]:
+    """Name and operations of each function, and those of its twin for the standard parameters, or ""."""
+    for name, counts in operations.items():
+        plain = name.removesuffix("_standard")
+        if plain != name and plain in operations:
+            continue
+        twin = operations.get(f"{name}_standard")
+        yield name, total(counts), "" if twin is None else total(twin)
 
 
 def _equation(parameter: BaseParameter) -> str:

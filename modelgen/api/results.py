@@ -52,6 +52,11 @@ class Table:
         return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
+def as_html(parts: Sequence[str | Table]) -> str:
+    """Lines and tables as HTML."""
+    return "\n".join(part.html() if isinstance(part, Table) else f"<p>{escape(part)}</p>" for part in parts)
+
+
 class Shown(ABC):
     """Something that a command prints, as lines and tables."""
 
@@ -67,10 +72,7 @@ class Shown(ABC):
     def __repr__(self) -> str: ...
 
     def _repr_html_(self) -> str:
-        parts = [
-            part.html() if isinstance(part, Table) else f"<p>{escape(part)}</p>" for part in self.shown()
-        ]
-        return "\n".join(parts)
+        return as_html(self.shown())
 
 
 class Result(Shown):

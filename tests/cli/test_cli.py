@@ -377,3 +377,34 @@ def test_the_only_arm_of_a_file_needs_no_name(tmp_path: Path, checkout: Path) ->
     one, other = (call("show", *more, cwd=tmp_path, checkout=checkout) for more in ([], ["--arm", "mine"]))
     assert one.returncode == 0
     assert one.stdout == other.stdout
+
+
+def test_generate_says_where_it_wrote(tmp_path: Path, checkout: Path) -> None:
+    one = ["generate", "--arm", "screw_axis", "--out", "code", "-j", "1"]
+    both = [*one, "--arm", "gravity_arm"]
+    for words, folder in ((one, "code/screw_axis"), (both, "code")):
+        done = call(*words, cwd=tmp_path, checkout=checkout)
+        assert done.stdout.splitlines()[-1] == f"code: {folder}"
+        assert (tmp_path / folder).is_dir()
+    assert "code:" not in call(*one, "--check", cwd=tmp_path, checkout=checkout).stdout
+
+
+def test_show_is_short_and_has_the_tables_on_demand(tmp_path: Path, checkout: Path) -> None:
+    words = ["show", "--arm", "ur10e"]
+    short = call(*words, cwd=tmp_path, checkout=checkout).stdout
+    long = call(*words, "--verbose", cwd=tmp_path, checkout=checkout).stdout
+    assert len(short.splitlines()) <= 40
+    shown = json.loads(call(*words, "--json", cwd=tmp_path, checkout=checkout).stdout)
+    names = [p["name"] for p in shown["base_parameters"]]
+    assert ", ".join(names) in short
+    cost = {n: str(sum(f[k] for k in ("mul", "add", "neg"))) for n, f in shown["functions"].items()}
+    rows = [line.split() for line in short.splitlines()]
+    assert ["inverse_dynamics", cost["inverse_dynamics"], cost["inverse_dynamics_standard"]] in rows
+    assert ["jacobian", cost["jacobian"]] in rows
+    rows = [line.split() for line in long.splitlines()]
+    for name, counts in shown["functions"].items():
+        kinds = ("mul", "add", "neg", "div", "sqrt", "trig", "other")
+        assert [name, cost[name], *(str(counts.get(kind, 0)) for kind in kinds)] in rows
+    assert all(p["expression"].split()[0] in long for p in shown["base_parameters"])
+    assert all(name in long for name in shown["without_effect"])
+    assert long.startswith(short[: short.index("--verbose")].rstrip())

@@ -47,7 +47,7 @@ def generate(
     """Write C99 and CasADi functions of every arm, with identified parameters folded in where given."""
     from modelgen.api.generation import generate as generated
     from modelgen.cli.arms import selected
-    from modelgen.cli.output import print_result, print_table, progress_bar
+    from modelgen.cli.output import print_result, print_table, progress_bar, say
 
     file, found = selected(arms, arm or [])
     with progress_bar() as progress:
@@ -82,3 +82,5 @@ def generate(
         count = f"{len(result.drift)} file{'s' if len(result.drift) > 1 else ''}"
         typer.echo(f"{count} under {out} differ from what {file} describes; run modelgen generate", err=True)
         raise typer.Exit(CHECK_FAILED)
+    if not (check or as_json):
+        say(f"code: {out / found[0].name if len(found) == 1 else out}")
