@@ -66,8 +66,8 @@ def document(tables: Mapping[str, Table]) -> str:
         "",
         "*How much flash, stack and time does a function take on a microcontroller?*",
         "",
-        "Written by `python benchmarks/size.py --accept`; [firmware.md](firmware.md#sizes) says what the "
-        "figures mean. Single precision, flags of [firmware.md](firmware.md#flags). Flash and stack in "
+        "Written by `python benchmarks/size.py --accept`; [On a microcontroller](firmware.md#sizes) says "
+        "what the figures mean. Single precision, [its flags](firmware.md#flags). Flash and stack in "
         "bytes; `_identified`: parameters folded in.",
     ]
     first, *others = tables

@@ -41,7 +41,7 @@ precision, with parameters folded in where the tool can do that. modelgen's figu
 - MuJoCo: `mj_inverse`, `mj_forward`, with all that these pipelines do besides.
 - A tree: `two_fingers`. A locked joint: `ariane4`. Prismatic joints: `scara`, `screw_axis`.
 
-modelgen and the figures of [sizes.md](sizes.md) (Cortex-M4F) share the same C.
+modelgen and the figures of the [table of sizes](sizes.md) (Cortex-M4F) share the same C.
 """
 
 

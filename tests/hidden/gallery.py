@@ -37,8 +37,11 @@ HEAD = """\
 *What does each effect of the [catalogue](effects.md) do to a log, what looks like it, and how do I tell
 the two apart?* The records are of simulated arms: `direct2` has two joints with geared motors, `levered2`
 two that screws turn by levers, `mixed2` one of each, `mixed3` a slewing joint with a geared motor and two
-with screws and levers. `taut_hose`, a hose that resists two joints once it is taut, is hidden in the blind
-run and is no effect of the catalogue.
+with screws and levers. How often [the blind run](diagnosis.md) found an effect is counted over all its arms
+in which that effect alone was hidden: those with fine encoders at three strengths, which are the ones in
+[its own table](diagnosis.md#by-effect), and besides those with coarse encoders and, of backlash and
+flexibility, the further ones with fine encoders at the joints. `taut_hose`, a hose that resists two joints
+once it is taut, is hidden in the blind run and is no effect of the catalogue.
 
 The first picture of an entry is the law with the values of an example. The other two are
 of simulated records in which the effect was hidden, over what shows it best: what the rest of the model
