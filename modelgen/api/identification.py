@@ -25,7 +25,9 @@ from modelgen.options import IdentificationOptions, changed
 from modelgen.progress import Progress, silent
 from modelgen.report.call import Call, files_of
 from modelgen.report.identification import following, models, picture, report, table
+from modelgen.report.page import Lines, Part
 from modelgen.report.parts import steps
+from modelgen.report.records import records_table
 from modelgen.report.words import joint_name
 
 
@@ -85,7 +87,7 @@ class Identification(Result):
             "identification.json": json.dumps(data, indent=2, allow_nan=False) + "\n",
             f"{name}_parameters.yaml": parameters_yaml(name, {e.name: e.value for e in found.estimates}),
             "spectra.svg": sheet(drawn, 2),
-            "report.html": report(found, o.others, _processing(o, every=True), drawn, call, self._speeds()),
+            "report.html": report(found, o.others, _of_logs(o), drawn, call, self._speeds()),
         }
         if found.test is not None:
             files["test.svg"] = picture(found.test, found.arm.coordinate_names, o.others)
@@ -221,6 +223,11 @@ def identify(
         outcome = identify_logs(arm, training, testing, chosen, progress)
     fitted, held = (files_of(x.name for x in part) for part in (outcome.log.train, outcome.log.test))
     return Identification(outcome, Call(arm, fitted, held, chosen))
+
+
+def _of_logs(o: Outcome) -> list[Part]:
+    """What the page says of the logs."""
+    return [Lines(_processing(o, every=True)), records_table(o.log.recorded())]
 
 
 def _processing(o: Outcome, *, every: bool = False) -> list[str]:

@@ -14,6 +14,7 @@ from scipy import special
 from scipy.optimize import least_squares
 
 from modelgen.calibration.lever import NAMES, UNITS, Lever
+from modelgen.dataset.recorded import Recorded
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
@@ -21,6 +22,7 @@ LEAST_SAMPLES = 20
 _ROUNDS = 8  # of fit and residual variance
 _FAR = 6.0  # standard deviations of the prior
 _SIGNIFICANCE = 1e-3  # of the test that the lever as described explains the angles
+_STEP = 1e-4  # of the stroke, for central differences: far above rounding, far below the lever's bend
 _OFFSET_PRIOR = 2 * np.pi  # [rad]: the offset is free
 
 
@@ -42,7 +44,9 @@ class Calibration:
     before, after: the lever as described and as found. rms: of the angle errors [rad]; `shifted` is that of
     the lever as described with the best constant added. candidates: rev to rms. correlation: samples
     that count as one, since their residuals hang together. weak: combinations that the angles tell less of
-    than the lengths as measured do, in words. motor, measured: (N,) the data.
+    than the lengths as measured do, in words. motor, measured: (N,) the data. record: the log that they are
+    from. angle_std: (N,) [rad], of the angle by the lever as found; effort_std: (N,), of the joint's effort
+    per current, as a share of it. Both are by what the values leave open together.
     """
 
     joint: int
@@ -57,6 +61,9 @@ class Calibration:
     weak: tuple[str, ...]
     motor: Array
     measured: Array
+    angle_std: Array
+    effort_std: Array
+    record: Recorded | None = None
 
     @property
     def agrees(self) -> bool:
@@ -121,7 +128,22 @@ def calibrate(lever: Lever, joint: int, motor: Array, measured: Array, length_st
         weak,
         motor,
         kept,
+        *_meaning(after, motor, covariance),
     )
+
+
+def _meaning(lever: Lever, motor: Array, covariance: Array) -> tuple[Array, Array]:
+    """Standard deviations (N,) of the angle [rad] and, as a share, of the effort per current at the joint.
+
+    The effort is the motor's over dq/dq_m, so that its share is that of this slope.
+    """
+    step = _STEP * (lever.motor[1] - lever.motor[0])
+    inside = np.clip(motor, min(lever.motor) + abs(step), max(lever.motor) - abs(step))
+    columns = lever.jacobian(inside)
+    slope = (lever.continued(inside + step) - lever.continued(inside - step)) / (2.0 * step)
+    bend = (lever.jacobian(inside + step) - lever.jacobian(inside - step)) / (2.0 * step)
+    angle, share = (np.sqrt(np.einsum("ni,ij,nj->n", x, covariance, x).clip(0.0)) for x in (columns, bend))
+    return angle, share / np.maximum(np.abs(slope), 1e-300)
 
 
 def _check(lever: Lever, motor: Array, measured: Array, length_std: float) -> None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from modelgen.calibration.fit import Calibration, calibrate
 from modelgen.calibration.lever import lever_of
-from modelgen.dataset import read_columns
+from modelgen.dataset import dated_columns, parse
+from modelgen.dataset.recorded import of_stamps
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.options import CalibrationOptions
@@ -21,12 +23,13 @@ def calibrate_log(arm: Arm, joint: int, log: Any, options: CalibrationOptions | 
     """
     o = options or CalibrationOptions()
     lever = lever_of(arm, joint)
-    columns = read_columns(log, (f"qm{joint}", f"q{joint}"))
+    columns, begins = dated_columns(log, (f"qm{joint}", f"q{joint}"))
     motor, measured = columns[f"qm{joint}"], columns[f"q{joint}"]
     try:
-        return calibrate(lever, joint, motor, measured, o.length_std)
+        found = calibrate(lever, joint, motor, measured, o.length_std)
     except InputError as error:
         raise InputError(f"{log}: {error}") from None
+    return replace(found, record=of_stamps(parse(log).text, columns["t"], begins))
 
 
 def data(arm: Arm, c: Calibration) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from modelgen.dataset.processing.splitting import split, split_said
 from modelgen.dataset.reading.column_table import ColumnTable, Log, named
 from modelgen.dataset.reading.gathering import check_different, gather, several
 from modelgen.dataset.reading.read import read
-from modelgen.dataset.reading.sources import read_columns
+from modelgen.dataset.reading.sources import dated_columns, read_columns
 from modelgen.dataset.reading.specs import Spec, check_separate, last_quarter_out, parse
 from modelgen.dataset.streaming import Stream
 from modelgen.dataset.thresholds import DatasetThresholds
@@ -29,6 +29,7 @@ __all__ = [
     "check_different",
     "check_separate",
     "choose",
+    "dated_columns",
     "described",
     "drives_of",
     "gather",

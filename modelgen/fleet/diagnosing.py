@@ -109,6 +109,7 @@ def _found(d: Diagnosis) -> Row:
     worse = harmful(d.found)
     return {
         "arm": said["arm"],
+        "begins": [x.begins for x in d.found.log.recorded()],
         "verdict": said["verdict"],
         "reason": said["reason"],
         "causes": [c["effect"] for c in said["causes"]],

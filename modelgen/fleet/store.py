@@ -16,7 +16,7 @@ from modelgen.errors import InputError
 from modelgen.fleet.units import Unit
 from modelgen.version import __version__
 
-FORM = 5  # of the rows: another number makes every unit anew
+FORM = 6  # of the rows: another number makes every unit anew
 ROW = "unit.json"
 _NEW, _OLD = ".new", ".old"
 

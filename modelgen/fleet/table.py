@@ -45,6 +45,7 @@ def schema() -> Any:
         [
             ("unit", text),
             ("arm", text),
+            ("begins", numbers),
             ("verdict", text),
             ("reason", text),
             ("causes", texts),

@@ -11,6 +11,7 @@ from modelgen.fleet.sentences import FAILED, titles, verdict
 from modelgen.fleet.store import Row
 from modelgen.report.page import Part, Run
 from modelgen.report.parts import line
+from modelgen.report.records import BEGINS, first_instant
 from modelgen.report.words import listed
 
 WORDS = {
@@ -23,7 +24,7 @@ WORDS = {
 }
 FIT = "lack of fit / threshold"
 _LESS = "less error %"
-_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", _LESS, FIT, "s", "reason")
+_HEADS = ("unit", "arm", "verdict", "causes", "delta BIC", _LESS, FIT, "s", BEGINS, "reason")
 _NUMBERS = ("verdict", "delta BIC", _LESS, FIT, "s")  # heads of columns that are sorted as numbers
 HARM = "makes its test record worse"
 
@@ -63,6 +64,7 @@ def cells(row: Row) -> list[dict[str, Any]]:
             causes=[(title, ", ".join(rivals), f"✗ {HARM}" if harm else "") for title, rivals, harm in named],
         ),
         *(_cell(shown, "n", sort) for sort, shown in (_number(value, form) for value, form in figures)),
+        _cell(first_instant(row.get("begins") or ())),
         _cell(row.get("error") or _more(row) or _failing(row) or row.get("reason") or "", "quiet"),
     ]
     return [{"head": head, **cell} for head, cell in zip(_HEADS, made, strict=True)]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from modelgen.dataset import Settings, choose, prepare, read
+from modelgen.dataset.recorded import recorded
 from modelgen.description import Arm
 from modelgen.functions.parameters_file import values_of
 from modelgen.identification.output_error.refine import Refinement, refine
@@ -30,13 +32,14 @@ def refine_logs(
     chosen = choose(records, Settings())
     prepared = [prepare(record, chosen) for record in records]
     progress("refining", 0, None)
-    return refine(
+    found = refine(
         made,
         prepared,
         free=o.free,
         window=o.window,
         progress=lambda rounds, _: progress(f"refining, step {rounds}", 0, None),
     )
+    return replace(found, records=tuple(map(recorded, records)))
 
 
 def to_json(found: Refinement) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import numpy as np
 from modelgen.calibration import Calibration, Estimate
 from modelgen.charts import Chart, Curve, Interval, apart, number, sheet
 from modelgen.description import Arm
+from modelgen.numeric import Array
 from modelgen.report.call import WHERE, Call
 from modelgen.report.page import (
     WIDE,
@@ -22,6 +23,7 @@ from modelgen.report.page import (
     page,
     pictured,
 )
+from modelgen.report.records import records_table
 from modelgen.report.words import joint_name, listed, sentence
 
 _FAR = 2.0  # standard deviations
@@ -91,7 +93,7 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
             "Described and calibrated",
             [Folded(f"All {len(rows)} values", [table, Text(_MEANT, "quiet")], narrow=True)],
         ),
-        ("What is uncertain", [Text(_uncertain(c)), *weak]),
+        ("What is uncertain", [Text(_meant(c)), Text(_uncertain(c)), *weak]),
         (
             "What to do next",
             following(call, stands(c)),
@@ -100,6 +102,7 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
     sections: Parts = [
         ("Values", _pictured(c)),
         ("Measured angles and both levers", [block(charts(arm, c))]),
+        *([("The log", [records_table([c.record])])] if c.record else []),
     ]
     return page(f"{arm.name}: lever of {name}", "Calibration", answers, sections)
 
@@ -167,6 +170,21 @@ def _uncertain(c: Calibration) -> str:
     said = listed(f"{e.name} ± {number(WIDE * size * e.std, 2)} {unit}" for e, size, unit in _sized(c))
     more = "" if c.weak else " The angles and the measured lengths determine every value."
     return f"95 % intervals: {said}.{more}"
+
+
+def _meant(c: Calibration) -> str:
+    """What the values' uncertainty, all together, makes of the angle and of the effort over the record."""
+    angle, effort = WIDE * np.degrees(c.angle_std), 100.0 * WIDE * c.effort_std
+    at = number(float(c.motor[int(np.argmax(effort))]), 3)
+    (a, most_a), (e, most_e) = ((number(_rms(x), 2), number(float(x.max()), 2)) for x in (angle, effort))
+    return (
+        f"Over this record all values together leave the angle open by ± {a} deg (RMS; {most_a} at most), "
+        f"and the joint's effort per current by ± {e} % ({most_e} % at most, where the motor is at {at})."
+    )
+
+
+def _rms(x: Array) -> float:
+    return float(np.sqrt(np.mean(x**2)))
 
 
 def _pictured(c: Calibration) -> list[Part | str]:

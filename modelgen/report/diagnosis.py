@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +21,7 @@ from modelgen.report.named_joints import named_joints
 from modelgen.report.others import rivals
 from modelgen.report.page import Folded, Grid, Heading, Lines, Part, Run, Section, Text, block, page
 from modelgen.report.ranking import rankings
+from modelgen.report.records import records_table
 from modelgen.report.words import joint_name
 from modelgen.simulation.windows import Windows
 
@@ -61,9 +61,6 @@ _SETTINGS = {
     "evidence_threshold": "least evidence of a cause [delta BIC]",
     "practical_gain_percent": "least gain of a cause [% of the RMSE]",
 }
-_RECORDS = (("record", "left"), ("use", "left"), ("samples", "right"), ("rate [Hz]", "right"))
-_BEGINS = ("begins (UTC)", "left")
-_UNDATED = "Their stamps do not count from 1970, and do not say when they were made."
 
 
 def pictures(d: Diagnosis) -> dict[str, str]:
@@ -212,7 +209,7 @@ def _files(d: Diagnosis) -> list[Part]:
     ]
     model = "extended model" if d.causes else "model"
     tables = [
-        _records(d),
+        records_table(d.log.recorded()),
         Grid("Settings", (("setting", "left"), ("value", "left")), settings),
     ]
     return [
@@ -220,21 +217,6 @@ def _files(d: Diagnosis) -> list[Part]:
         Folded("Records and settings", tables),
         Text(beside),
     ]
-
-
-def _records(d: Diagnosis) -> Grid:
-    """The records, with when they begin where their stamps tell."""
-    every = (*d.log.train, *d.log.test)
-    rows = [(r["name"], r["use"], str(r["samples"]), f"{r['rate']:g}") for r in d.log.to_json()["records"]]
-    if all(x.begins is None for x in every):
-        return Grid(f"Records. {_UNDATED}", _RECORDS, rows, folds=True)
-    dated = [(*row, _instant(x.begins)) for row, x in zip(rows, every, strict=True)]
-    return Grid("Records", (*_RECORDS, _BEGINS), dated, folds=True)
-
-
-def _instant(begins: float | None) -> str:
-    """ISO 8601 of seconds since 1970, UTC, to the second; empty where they are not known."""
-    return "" if begins is None else f"{datetime.fromtimestamp(int(begins), UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
 def _said(value: object) -> str:

@@ -75,12 +75,12 @@ def picture(found: Validation, names: Sequence[str], others: Sequence[Alternativ
 def report(
     found: Identification,
     others: Sequence[Alternative],
-    processing: Sequence[str],
+    processing: Sequence[Any],
     spectra: Sequence[Chart],
     call: Call,
     speeds: Sequence[float],
 ) -> str:
-    """HTML that needs nothing beside it. speeds: largest (n,) of the records [per s]."""
+    """HTML that needs nothing beside it. processing: parts on the logs. speeds: largest (n,) [per s]."""
     arm, test = found.arm, found.test
     names = arm.coordinate_names
     errors: list[Any] = [Text("There is no test record: nothing says how well the model predicts.")]
@@ -116,7 +116,7 @@ def report(
         said = [Text("Gaps: the joint rests there, and its effort is whatever holds it; that is not judged.")]
         sections.append((title, [*(said if rests else []), block(predictions(names, test, others))]))
     shown = Folded("Spectra before and after the filters", [block(spectra)], printed=False, narrow=True)
-    sections.append(("Processing of the logs", [Lines(processing), shown]))
+    sections.append(("Processing of the logs", [*processing, shown]))
     drawing = Folded("The arm, to turn and move", [arm_drawing(arm)], screen=True)
     sections.append(("The arm", [drawing]))
     return page(f"{arm.name}: identified parameters", "Identification", answers, sections)

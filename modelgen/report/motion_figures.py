@@ -10,6 +10,9 @@ import numpy as np
 from modelgen.charts import Chart, Curve, over_time, within
 from modelgen.numeric import Array
 
+_FINE = {"rad": (1e3, "mrad"), "m": (1e3, "mm")}  # factor and unit in which small errors are said
+_COARSE = 0.01  # rad, m: from which on they are said in these
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -22,16 +25,21 @@ class Motion:
     label: str
 
 
-def motion_pair(name: str, unit: str, motions: Sequence[Motion], begin: float) -> list[Chart]:
+def motion_pair(
+    name: str, unit: str, motions: Sequence[Motion], begin: float, error: float | None = None
+) -> list[Chart]:
     """Measured and simulated positions of a joint, and their difference.
 
     Of a simulated motion that runs away as much is drawn as leaves the measured one legible. The measured one
-    is that of the first of `motions`. begin: where the times count from [s].
+    is that of the first of `motions`. begin: where the times count from [s]. error: the one by whose size the
+    unit of the differences is chosen, that of the positions without.
     """
     t, measured = motions[0].t, motions[0].measured
     paths = [Curve(t, measured, "measured", "measured")]
     paths += [Curve(m.t, m.simulated, m.role, m.label) for m in motions]
-    errors = [Curve(m.t, m.simulated - m.measured, m.role, m.label) for m in motions]
+    left = [m.simulated - m.measured for m in motions]
+    size, fine = (1.0, unit) if error is None else small(error, unit)
+    errors = [Curve(m.t, size * e, m.role, m.label) for m, e in zip(motions, left, strict=True)]
     low, high = float(np.nanmin(measured)), float(np.nanmax(measured))
     return [
         over_time(
@@ -45,14 +53,19 @@ def motion_pair(name: str, unit: str, motions: Sequence[Motion], begin: float) -
         ),
         over_time(
             f"{name}, error",
-            f"error [{unit}]",
+            f"error [{fine}]",
             errors,
             f"Simulated less measured position of {name}.",
             begin,
             zoom=True,
-            y_range=within(errors, low - high, high - low),
+            y_range=within(errors, size * (low - high), size * (high - low)),
         ),
     ]
+
+
+def small(value: float, unit: str) -> tuple[float, str]:
+    """Factor and unit in which a value of that size can be read: mrad or mm where it is small."""
+    return _FINE.get(unit, (1.0, unit)) if abs(value) < _COARSE else (1.0, unit)
 
 
 def joined(runs: Iterable[Array]) -> Array:

@@ -10,7 +10,7 @@ from modelgen.charts import Chart, Interval, apart, number, sheet
 from modelgen.identification.output_error.refine import Refined, Refinement
 from modelgen.numeric import Array
 from modelgen.report.call import Call
-from modelgen.report.motion_figures import Motion, joined, motion_pair
+from modelgen.report.motion_figures import Motion, joined, motion_pair, small
 from modelgen.report.page import (
     WIDE,
     Block,
@@ -24,14 +24,13 @@ from modelgen.report.page import (
     page,
     pictured,
 )
+from modelgen.report.records import records_table
 from modelgen.report.refinement_steps import SAME, following, gained
 from modelgen.report.words import listed
 
 _FAR = 2.0  # standard deviations
 _NAMED = 6  # parameters that moved, in a sentence
 _KEEP = "The tuned values bring no joint nearer by 1 %: keep the values of the start."
-_FINE = {"rad": (1e3, "mrad"), "m": (1e3, "mm")}  # factor and unit in which small errors are said
-_COARSE = 0.01  # rad, m: from which on they are said in these
 _MEASURED = (
     "Goodness of fit 100 (1 - |y - simulated| / |y - mean y|), and RMSE of the positions, of whole parts "
     "simulated from their beginning, each from the initial states that suit its parameters best. The parts "
@@ -49,7 +48,7 @@ def motion(found: Refinement) -> list[Chart]:
     charts = []
     for j, name in enumerate(arm.coordinate_names):
         motions = [Motion(t, measured[:, j], path[:, j], role, label) for path, role, label in models]
-        charts += motion_pair(name, arm.coordinate_units[j], motions, t[0])
+        charts += motion_pair(name, arm.coordinate_units[j], motions, t[0], float(found.after.rmse[j]))
     return charts
 
 
@@ -62,7 +61,6 @@ def report(found: Refinement, call: Call) -> str:
     """HTML that needs nothing beside it."""
     arm = found.plant.arm
     name, names = arm.name, arm.coordinate_names
-    units = arm.coordinate_units
     rows = [
         (
             joint,
@@ -96,7 +94,7 @@ def report(found: Refinement, call: Call) -> str:
             deviation(x),
             "" if not x.std else f"{(x.value - x.start) / x.std:+z.1f}",
             x.unit,
-            "" if not x.std else f"{_fine(x.moves, units[x.shown_by])} at {names[x.shown_by]}",
+            "" if not x.std else f"{_moving(found, x)} at {names[x.shown_by]}",
         )
         for x in found.parameters
     ]
@@ -105,6 +103,7 @@ def report(found: Refinement, call: Call) -> str:
     sections: Parts = [
         ("Measured against simulated motion", [*_joined(found), block(motion(found))]),
         ("Parameters", [*_pictured(found), Grid("Parameters", columns, table, folds=True)]),
+        ("The logs", [records_table(found.records)]),
     ]
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
 
@@ -129,7 +128,7 @@ def misses(found: Refinement) -> list[tuple[str, str, str]]:
     said = []
     for k, own in enumerate(found.plant.arm.coordinate_units):
         before, after = float(found.before.rmse[k]), float(found.after.rmse[k])
-        size, unit = _unit(after, own)
+        size, unit = small(after, own)
         said.append((number(size * before), number(size * after), unit))
     return said
 
@@ -139,14 +138,15 @@ def deviation(x: Refined) -> str:
     return "held" if x.held else "not known" if x.std is None else f"{x.std:z.2g}"
 
 
-def _unit(value: float, unit: str) -> tuple[float, str]:
-    """Factor and unit in which a value can be read."""
-    return _FINE.get(unit, (1.0, unit)) if abs(value) < _COARSE else (1.0, unit)
+def _moving(found: Refinement, x: Refined) -> str:
+    """What a parameter's deviation moves, in two digits, with its unit."""
+    factor, unit = _sized(found, x)
+    return f"{number(factor * x.moves, 2)} {unit}"
 
 
 def _fine(value: float, unit: str) -> str:
     """A small value in two digits, with its unit."""
-    size, said = _unit(value, unit)
+    size, said = small(value, unit)
     return f"{number(size * value, 2)} {said}"
 
 
@@ -179,18 +179,23 @@ def _moved(free: list[Any], gained: bool) -> str:
     return f"By more than {_FAR:g} standard deviations: {said}{more}."
 
 
+def _sized(found: Refinement, x: Refined) -> tuple[float, str]:
+    """Factor and unit in which table and picture have what a parameter moves: fine where one needs it."""
+    units = found.plant.arm.coordinate_units
+    own = units[x.shown_by]
+    return small(min(y.moves for y in found.parameters if y.std and units[y.shown_by] == own), own)
+
+
 def _pictured(found: Refinement) -> list[Part]:
     """A picture of every unit of motion: what a parameter moved by, with its interval, beside its start."""
-    arm = found.plant.arm
     groups: dict[str, list[Interval]] = {}
     for x in found.parameters:
         if not x.std:
             continue
-        size = x.moves / x.std
-        moved, half = (x.value - x.start) * size, WIDE * x.moves
-        groups.setdefault(arm.coordinate_units[x.shown_by], []).append(
-            Interval(x.name, moved, moved - half, moved + half, 0.0)
-        )
+        factor, unit = _sized(found, x)
+        size, half = factor * x.moves / x.std, WIDE * factor * x.moves
+        moved = (x.value - x.start) * size
+        groups.setdefault(unit, []).append(Interval(x.name, moved, moved - half, moved + half, 0.0))
     charts = [
         pictured(
             rows,

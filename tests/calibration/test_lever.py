@@ -216,3 +216,24 @@ def test_refusals(tmp_path: Path) -> None:
     answer = CliRunner().invoke(app, [*line, "--out", str(tmp_path / "no")])
     assert answer.exit_code == 2
     assert not (tmp_path / "no").exists()
+
+
+@pytest.mark.parametrize("joint", [1, 2, 3])
+def test_what_is_uncertain_in_angle_and_effort_is_how_far_these_scatter(joint: int) -> None:
+    """Over records with other noise: angles, and the slopes to which the effort per current is inverse."""
+    true = lever_of(ARMS["ariane4"], joint)
+    start = wrong(true, 1)
+    fits = [calibrate(start, joint, *experiment(true, 0.02, seed, 400), 0.008) for seed in range(40)]
+    motor = fits[0].motor
+    step = 1e-3 * (true.motor[1] - true.motor[0])
+    inner = np.clip(motor, *(np.sort(true.motor) + abs(step) * np.array([1.0, -1.0])))
+    angles = np.array([triangle(f.after, motor) for f in fits])
+    efforts = np.array(
+        [2.0 * step / (triangle(f.after, inner + step) - triangle(f.after, inner - step)) for f in fits]
+    )
+    rms = lambda x: float(np.sqrt(np.mean(x**2)))  # noqa: E731
+    for seen, said in (
+        (np.std(angles, axis=0), fits[0].angle_std),
+        (np.std(efforts, axis=0) / np.abs(np.mean(efforts, axis=0)), fits[0].effort_std),
+    ):
+        assert rms(seen) == pytest.approx(rms(said), rel=0.35)  # of 40 records: 11 % by chance

@@ -14,6 +14,7 @@ from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.instants import EffortInstant
 from modelgen.dataset.processing.prepare import Prepared
 from modelgen.dataset.processing.settings import Chosen
+from modelgen.dataset.recorded import Recorded
 
 COARSE = 1e-3  # of a channel's range, from which on its resolution is worth a line
 RESTING = 0.05  # of the samples, from which on those left out are worth a line
@@ -63,6 +64,11 @@ class RecordsInspected:
     def period(self) -> float | None:
         """Period [s] of the first training record that repeats itself."""
         return next((x.period for x in self.train if x.period is not None), None)
+
+    def recorded(self) -> list[Recorded]:
+        """What a page says of each record, in the order of use."""
+        uses = (("train", self.train), ("test", self.test))
+        return [Recorded(x.name, use, x.samples, x.rate, x.begins) for use, own in uses for x in own]
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -24,15 +24,11 @@ from modelgen.dataset.reading.lost import at_their_instants, lost_rows
 from modelgen.dataset.reading.on_axis import OnAxis
 from modelgen.dataset.reading.plausible import check_counters, check_efforts, doubtful_unit
 from modelgen.dataset.reading.repeats import without_doubled
-from modelgen.dataset.reading.sources import BLOCK, Source, open_source
+from modelgen.dataset.reading.sources import BLOCK, Source, open_source, since_1970
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
-
-# Seconds since 1970 that a log can have begun at: from September 2001 to October 2096. No clock that counts
-# from its own start comes so far.
-_EPOCH = (1e9, 4e9)
 
 
 def read(
@@ -258,7 +254,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         effort_hold=source.hold,
         hold_known="mapping" if source.stated else "",
         counts=counts,
-        begins=_begins(source, float(t[0])) if len(t) else None,
+        begins=since_1970(source.reader, float(t[0])) if len(t) else None,
         jump=jump or lost,
         absent=None if unread is None else on_axis.touched(_of(unread, source, signals.effort)),
         uneven=on_axis.uneven(signals.effort) if given is not None else None,
@@ -271,12 +267,6 @@ def _of(flags: NDArray[np.bool_], source: Source, names: Sequence[str | None]) -
     """Flags (N, n) of some columns of the source's, none where there is no column."""
     numbers = [0 if name is None else source.wanted.index(name) for name in names]
     return flags[:, numbers]
-
-
-def _begins(source: Source, first: float) -> float | None:
-    """First stamp in seconds since 1970; None where it is too small or too large to count from then."""
-    since_1970 = float(getattr(source.reader, "origin", 0.0)) + first
-    return since_1970 if _EPOCH[0] <= since_1970 < _EPOCH[1] else None
 
 
 def effort_units(source: Source, arm: Arm) -> tuple[str, ...]:

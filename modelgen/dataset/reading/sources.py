@@ -26,6 +26,10 @@ from modelgen.numeric import Array
 
 BLOCK = 65_536  # rows read at a time
 
+# Seconds since 1970 that a log can have begun at: from September 2001 to October 2096. No clock that counts
+# from its own start comes so far.
+_EPOCH = (1e9, 4e9)
+
 
 @dataclass(frozen=True)
 class Source:
@@ -167,6 +171,11 @@ def read_columns(log: Log, names: Sequence[str]) -> dict[str, Array]:
     For logs that hold more than one arm's record does: motor counts and joint angles side by side, say.
     Raises InputError.
     """
+    return dated_columns(log, names)[0]
+
+
+def dated_columns(log: Log, names: Sequence[str]) -> tuple[dict[str, Array], float | None]:
+    """As `read_columns`, and the first stamp in seconds since 1970, as `since_1970`. Raises InputError."""
     spec = parse(log)
     reader = by_contract(opened(spec))
     wanted = tuple(dict.fromkeys(("t", *names)))
@@ -178,4 +187,11 @@ def read_columns(log: Log, names: Sequence[str]) -> dict[str, Array]:
         inside = (block[:, 0] >= spec.begin) & (block[:, 0] < spec.end)
         parts.append(block[inside])
     table = np.concatenate(parts) if parts else np.empty((0, len(wanted)))
-    return {name: table[:, k] for k, name in enumerate(wanted)}
+    begins = since_1970(reader, float(table[0, 0])) if len(table) else None
+    return {name: table[:, k] for k, name in enumerate(wanted)}, begins
+
+
+def since_1970(reader: object, first: float) -> float | None:
+    """First stamp in seconds since 1970; None where it is too small or too large to count from then."""
+    stamp = float(getattr(reader, "origin", 0.0)) + first
+    return stamp if _EPOCH[0] <= stamp < _EPOCH[1] else None

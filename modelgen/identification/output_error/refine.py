@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modelgen.dataset import Prepared
+from modelgen.dataset.recorded import Recorded
 from modelgen.effects import applied_effects
 from modelgen.errors import InputError
 from modelgen.identification.output_error.parts import Guess, parts
@@ -57,7 +58,7 @@ class Refinement:
     measured, simulated, started: positions part by part (K, n), those of the refined parameters and of
     where they started; t their times. rounds: Gauss-Newton steps.
     stopped: why it ended before it converged, empty where it did converge. effort: whether the logs have
-    efforts; else the motions are free.
+    efforts; else the motions are free. records: what was read.
     """
 
     plant: Plant
@@ -71,6 +72,7 @@ class Refinement:
     rounds: int
     stopped: str
     effort: bool
+    records: tuple[Recorded, ...] = ()
 
     @property
     def converged(self) -> bool:
