@@ -178,8 +178,8 @@ def _meant(c: Calibration) -> str:
     at = number(float(c.motor[int(np.argmax(effort))]), 3)
     (a, most_a), (e, most_e) = ((number(_rms(x), 2), number(float(x.max()), 2)) for x in (angle, effort))
     return (
-        f"Over this record all values together leave the angle open by ± {a} deg (RMS; {most_a} at most), "
-        f"and the joint's effort per current by ± {e} % ({most_e} % at most, where the motor is at {at})."
+        f"Over this record the values together give the angle to {a} deg (95 %, RMS; {most_a} at worst), and "
+        f"the joint's effort per current to {e} % ({most_e} % at worst, where the motor is at {at})."
     )
 
 

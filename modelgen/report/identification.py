@@ -13,12 +13,12 @@ from modelgen.charts import Chart, Curve, Interval, number, over_time, sheet
 from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
 from modelgen.identification.summary import biased, determined, helpful, impossible, questions, remarks
-from modelgen.identification.unexplained import FAR
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.options import words_of
 from modelgen.report.arm_drawing import arm_drawing
 from modelgen.report.call import WHERE, Call
+from modelgen.report.noise import beside_noise, counted_as_noise, noise_known
 from modelgen.report.page import WIDE, Block, Command, Folded, Grid, Lines, Run, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
@@ -26,10 +26,6 @@ FITTED = "the arm's model, fitted"
 _EXPLAIN = "Answer the questions above first: no code should be generated from impossible values."
 _UNBIASED = "which the errors of the positions do not bias; code should be generated from those values"
 _EXPLAINED = "If the records are read rightly the model lacks something; this names the cause."
-_LACKING = (
-    "An error that is several times the noise says that the model lacks something; this names the cause."
-)
-_UNKNOWN = "Nothing repeats in the test records, so that they do not show how much of it is noise."
 _RING = ", and a ring where the description has it"
 _NOISE = "noise, between periods"
 _QUESTIONS = 2  # that a phone has room for before the other answers
@@ -88,11 +84,11 @@ def report(
         heads = [("model", "left"), *((f"{n} [{u}]", "right") for n, u in zip(names, test.unit, strict=True))]
         share = listed(f"{x:z.1f} % at {n}" for x, n in zip(test.nrmse_percent, names, strict=True))
         title, cells = "Errors on the test records", [(t, *cells) for t, cells in models(test, others)]
-        unknown = "" if _noise_known(test) else f" {_UNKNOWN}"
+        counted = counted_as_noise(test)
         errors = [
             Text(f"On records that it has not seen, the model misses {share} of the effort (NRMSE)."),
             Folded(title, [Grid(title, heads, cells, folds=True)], narrow=True),
-            Text(f"RMSE, in brackets NRMSE in % of the effort.{unknown}", "quiet"),
+            Text(f"RMSE, in brackets NRMSE in % of the effort. {counted}", "quiet"),
         ]
         if others:
             errors.append(Text("Below it: by how much the arm's model is below or above.", "quiet"))
@@ -198,7 +194,7 @@ def following(found: Identification, call: Call, speeds: Sequence[float]) -> lis
     parts: list[Any] = [Text(f"{call.first}{_EXPLAIN}")] if wrong else code
     diagnose = call.diagnosing()
     if found.test is not None and diagnose:
-        far, said = _beside_noise(found.test, found)
+        far, said = beside_noise(found.test, found.arm.coordinate_names)
         if far and not wrong:
             asis = [
                 Text("For the values as they are: generate code with these folded in:"),
@@ -211,23 +207,6 @@ def following(found: Identification, call: Call, speeds: Sequence[float]) -> lis
     if found.poor() and excite:
         parts += [Text("A motion that determines the parameters better:"), Command(excite)]
     return parts
-
-
-def _beside_noise(test: Validation, found: Identification) -> tuple[bool, str]:
-    """Whether the model clearly lacks something, by how much the error is larger than the noise, and what is
-    said of it before the command that names it.
-    """
-    if not _noise_known(test) or test.repeats is None:
-        return False, _LACKING
-    times = np.nan_to_num(test.rmse / np.maximum(test.repeats, 1e-300))
-    j = int(np.argmax(times))
-    where = found.arm.coordinate_names[j]
-    if times[j] < FAR:
-        less = ", and less elsewhere" if len(times) > 1 else ""
-        said = f"The error is {times[j]:z.2g} times the noise at {where}{less}."
-        return False, f"{said} This says whether the model lacks something, and names the cause:"
-    said = f"The error at {where} is {times[j]:.0f} times the noise: the model lacks something."
-    return True, f"{said} This names it:"
 
 
 def _parameters(found: Identification) -> list[Any]:
@@ -290,13 +269,9 @@ def models(test: Validation, others: Sequence[Alternative]) -> list[tuple[str, l
         cells = [f"{a} ({b}) {c:+z.0f}%" for (a, b), c in zip(table(other.test), change, strict=True)]
         rows.append((other.name, cells))
     noise = test.repeats
-    if noise is not None and _noise_known(test):
+    if noise is not None and noise_known(test):
         rows.append((_NOISE, [f"{x:z.4g}" if np.isfinite(x) else "not known" for x in noise]))
     return rows
-
-
-def _noise_known(test: Validation) -> bool:
-    return test.repeats is not None and bool(np.isfinite(test.repeats).any())
 
 
 def _elapsed(t: Array) -> tuple[Array, NDArray[np.intp]]:

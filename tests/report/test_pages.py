@@ -400,7 +400,8 @@ def test_a_refinement_says_first_by_how_much_the_simulated_motion_errs() -> None
     assert after < 1e-3 * before
     position, error = motion(found.found)
     assert [c.label for c in position.curves] == ["measured", "simulated, at the start", "simulated, refined"]
-    assert np.sqrt(np.nanmean(error.curves[0].y ** 2)) == pytest.approx(before, rel=0.01)
+    assert error.y_label == "error [mrad]"
+    assert np.sqrt(np.nanmean(error.curves[0].y ** 2)) == pytest.approx(1e3 * before, rel=0.01)
 
 
 def test_the_words_of_a_refinement_agree_with_how_it_ended() -> None:
@@ -466,7 +467,7 @@ def test_parameters_stand_with_their_intervals_in_a_picture(name: str, pages: Ma
     """A dot within its interval for each, beside a ring at what was known before; of identify by joint."""
     with opened(pages[name]) as page:
         pictures = page.locator("svg.rows")
-        units = {"calibrate": ["[mm]", "[deg]"], "refine": ["[rad]"], "identify": 2 * ["[A]"]}[name]
+        units = {"calibrate": ["[mm]", "[deg]"], "refine": ["[mrad]"], "identify": 2 * ["[A]"]}[name]
         labels = [text.split()[-1] for text in pictures.locator(".label").all_text_contents()]
         assert labels == units
         for picture in pictures.all():

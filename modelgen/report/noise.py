@@ -1,0 +1,50 @@
+"""The error of an identified model beside the noise of its test records, in the words of the diagnosis.
+
+Noise is what differs between the periods of a motion, here as in the lack of fit of a diagnosis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modelgen.identification import Validation
+from modelgen.identification.unexplained import FAR
+
+_LACKING = (
+    "An error that is several times the noise says that the model lacks something; this names the cause."
+)
+_UNKNOWN = "Nothing repeats in the test records, so that they do not show how much of it is noise."
+_COUNTED = (
+    "Noise is what differs between the periods of the test records. What the error has above it repeats: the "
+    "model lacks something, or its parameters are not right for a motion that they were not fitted to. "
+    "modelgen diagnose says which: its lack of fit is what repeats in the training records."
+)
+
+
+def noise_known(test: Validation) -> bool:
+    """Whether the test records repeat."""
+    return test.repeats is not None and bool(np.isfinite(test.repeats).any())
+
+
+def counted_as_noise(test: Validation) -> str:
+    """What the noise in the table of errors counts, and what an error above it can be."""
+    return _COUNTED if noise_known(test) else _UNKNOWN
+
+
+def beside_noise(test: Validation, names: Sequence[str]) -> tuple[bool, str]:
+    """Whether the model clearly lacks something, by how much the error is larger than the noise, and what is
+    said of it before the command that names it. names: of the joints.
+    """
+    if not noise_known(test) or test.repeats is None:
+        return False, _LACKING
+    times = np.nan_to_num(test.rmse / np.maximum(test.repeats, 1e-300))
+    j = int(np.argmax(times))
+    where = names[j]
+    if times[j] < FAR:
+        less = ", and less elsewhere" if len(times) > 1 else ""
+        said = f"The error is {times[j]:z.2g} times the noise at {where}{less}."
+        return False, f"{said} This says whether the model lacks something, and names the cause:"
+    said = f"The error at {where} is {times[j]:.0f} times the noise: the model lacks something."
+    return True, f"{said} This names it:"
