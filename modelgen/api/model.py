@@ -88,22 +88,30 @@ class Model(Shown):
             In the order in which they are printed.
         """
         arm, model = self.arm, self.built
-        names, base = arm.coordinate_names, model.grouping.base
+        names, base, nominal = arm.coordinate_names, model.grouping.base, self.nominal
         parts: list[str | Table] = [
             f"{arm.name}: {len(names)} joint{'s' if len(names) > 1 else ''} ({', '.join(names)})"
         ]
         if arm.source:
             parts.append(f"source: {' '.join(arm.source.split())}")
         parts += [f"note: {note}" for note in (*arm.notes, *model.remarks)]
-        parts.append(
-            f"{len(model.standard)} standard parameters, {len(base)} base parameters: "
-            f"{', '.join(p.name for p in base)}"
-        )
+        known = {} if nominal is None else {"nominal": "right"}
         rows = [
-            [name, *map(str, pair)] for name, *pair in costs({f.name: f.operations for f in model.functions})
+            [str(i), _equation(p), *([f"{nominal[p.name]:z.6g}"] if nominal else []), p.unit]
+            for i, p in enumerate(base)
         ]
-        columns = {"function": "left", "base": "right", "standard": "right"}
-        return [*parts, Table(f"{COST}, by the parameters that the function has", columns, rows)]
+        columns = {"": "right", "base parameter": "left", **known, "unit": "left"}
+        title = f"{len(model.standard)} standard parameters, {len(base)} base parameters"
+        counts = costs({f.name: f.operations for f in model.functions})
+        return [
+            *parts,
+            Table(title, columns, rows),
+            Table(
+                f"{COST}, by the parameters that the function has",
+                {"function": "left", "base": "right", "standard": "right"},
+                [[name, *map(str, pair)] for name, *pair in counts],
+            ),
+        ]
 
     def details(self) -> Sequence[Table]:
         """Tables that `modelgen show --verbose` prints besides.
@@ -111,17 +119,9 @@ class Model(Shown):
         Returns
         -------
         sequence of Table
-            Base parameters in closed form with nominal value and unit, standard parameters without effect,
-            operations by kind.
+            Standard parameters without effect, operations by kind.
         """
-        model, nominal = self.built, self.nominal
-        known = {} if nominal is None else {"nominal": "right"}
-        rows = [
-            [str(i), _equation(p), *([f"{nominal[p.name]:z.6g}"] if nominal else []), p.unit]
-            for i, p in enumerate(model.grouping.base)
-        ]
-        columns = {"": "right", "base parameter": "left", **known, "unit": "left"}
-        parts = [Table("base parameters in closed form", columns, rows)]
+        model, parts = self.built, list[Table]()
         without = [model.standard[i].name for i in model.grouping.without_effect]
         if without:
             heading = {"standard parameters": "left"}

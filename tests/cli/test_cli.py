@@ -393,10 +393,9 @@ def test_show_is_short_and_has_the_tables_on_demand(tmp_path: Path, checkout: Pa
     words = ["show", "--arm", "ur10e"]
     short = call(*words, cwd=tmp_path, checkout=checkout).stdout
     long = call(*words, "--verbose", cwd=tmp_path, checkout=checkout).stdout
-    assert len(short.splitlines()) <= 40
+    assert len(short.splitlines()) <= 100
     shown = json.loads(call(*words, "--json", cwd=tmp_path, checkout=checkout).stdout)
-    names = [p["name"] for p in shown["base_parameters"]]
-    assert ", ".join(names) in short
+    assert all(p["expression"].split()[0] in short for p in shown["base_parameters"])
     cost = {n: str(sum(f[k] for k in ("mul", "add", "neg"))) for n, f in shown["functions"].items()}
     rows = [line.split() for line in short.splitlines()]
     assert ["inverse_dynamics", cost["inverse_dynamics"], cost["inverse_dynamics_standard"]] in rows
@@ -405,6 +404,5 @@ def test_show_is_short_and_has_the_tables_on_demand(tmp_path: Path, checkout: Pa
     for name, counts in shown["functions"].items():
         kinds = ("mul", "add", "neg", "div", "sqrt", "trig", "other")
         assert [name, cost[name], *(str(counts.get(kind, 0)) for kind in kinds)] in rows
-    assert all(p["expression"].split()[0] in long for p in shown["base_parameters"])
     assert all(name in long for name in shown["without_effect"])
     assert long.startswith(short[: short.index("--verbose")].rstrip())

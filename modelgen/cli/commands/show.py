@@ -10,7 +10,7 @@ from modelgen.cli.guard import guarded
 from modelgen.cli.options import Arms, Json, OneArm, with_options
 from modelgen.options import ModelOptions
 
-MORE = "closed form, nominal value and unit of the base parameters, and operations by kind"
+MORE = "standard parameters without effect on the input, and operations by kind"
 Verbose = Annotated[bool, typer.Option("--verbose", help=f"Besides: {MORE}.")]
 
 
