@@ -83,11 +83,11 @@ def test_readings_are_readings(step: float, noise: float) -> None:
     stands = np.concatenate([current[:2000], np.full(600, current[1999]), current[2000:]])
     for values in (current, cut) if noise else (current, cut, stands):
         read = values if not step else step * np.rint(values / step)
-        assert not absent(read).any()
+        assert not absent(read, np.cumsum(np.ones(len(read)))).any()
 
 
 def test_an_effort_that_is_commanded_in_steps_is_read() -> None:
     levels = np.random.default_rng(1).uniform(-1.0, 1.0, 60)
-    assert not absent(np.repeat(levels, 100)).any()
+    assert not absent(np.repeat(levels, 100), T).any()
     trapezoid = np.interp(T % 8.0, [0.0, 2.0, 4.0, 6.0, 8.0], [0.0, 1.0, 1.0, -1.0, 0.0])
-    assert not absent(trapezoid).any()
+    assert not absent(trapezoid, T).any()

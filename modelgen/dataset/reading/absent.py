@@ -15,13 +15,19 @@ CHANCE = 1e-3  # of a record, that as many are equal where some neighbours are
 MOST = 0.5  # of the readings: an effort that stands more often is switched, not read
 JUMP = 6.0  # times the usual step, by which it is away from the readings before or after
 LOOKS = 8  # at how many are equal by chance, each without the runs of the look before
+MOVES = 0.02  # of its RMS speed, at which a joint moves, so that its effort has no reason to stand
+FROZEN = 10  # equal readings in a row, at least, of a channel with noise that does not jump when it goes on
+OFTEN = 0.99  # of its runs of equal readings, of whose length it must be that many times
+TIMES = 4.0
 
 
-def absent(values: Array) -> NDArray[np.bool_]:
+def absent(values: Array, position: Array) -> NDArray[np.bool_]:
     """Flags (N,) of an effort's readings that are none: the channel dropped out, froze, or has a dead band.
 
-    They are equal, several in a row, as chance does not make them in this channel. One that stands as it is
-    commanded, or is cut off, has no noise elsewhere, or goes there in its usual steps.
+    They are equal, several in a row, as chance does not make them in this channel, while the joint moves, and
+    the effort jumps there and back; or it goes on from its last reading for much longer than it ever stands.
+    One that stands as it is commanded, or is cut off, has no noise elsewhere, or goes there in usual steps.
+    position: (N,), of the joint.
     """
     found = np.zeros(len(values), dtype=bool)
     begins = np.flatnonzero(np.append(True, np.diff(values) != 0.0))
@@ -34,35 +40,40 @@ def absent(values: Array) -> NDArray[np.bool_]:
         if wanted <= least:
             break
         least = wanted
+    speed = np.abs(np.gradient(position))
+    moves = np.add.reduceat(speed, begins) > MOVES * float(np.sqrt(np.mean(speed**2))) * lengths
     steps = np.abs(np.diff(values))
     usual = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else 0.0
-    long = np.flatnonzero((lengths >= least) & (begins > 0) & (ends < len(values)))
+    long = np.flatnonzero((lengths >= least) & moves & (begins > 0) & (ends < len(values)))
     if not len(long) or lengths[long].sum() > MOST * len(values):
         return found
     at = values[begins[long]]
     into, out = (np.abs(x - at) > JUMP * usual for x in (values[begins[long] - 1], values[ends[long]]))
-    # One that freezes goes on from its last reading; at an end of the range an effort is cut off. Noise never
-    # stands, but what is commanded, or simulated, may: there a jump shows it.
+    # At an end of the range an effort is cut off. Noise never stands, but what is commanded, or simulated,
+    # may: there a jump shows it.
     inside = (at > values.min()) & (at < values.max())
     noisy = np.median(np.abs(np.diff(values, 2))) > usual
-    long = long[(out & into) | (inside & (out | noisy))]
-    for begin, end in zip(begins[long], ends[long], strict=True):
+    much = lengths[long] >= TIMES * float(np.quantile(lengths[moves], OFTEN))
+    dropped = long[out & into]
+    frozen = long[inside & much & (out | (noisy & (lengths[long] >= FROZEN)))]
+    for begin, end in zip(begins[both := np.union1d(dropped, frozen)], ends[both], strict=True):
         found[begin:end] = True
-    for level, runs in zip(*np.unique(values[begins[long]], return_counts=True), strict=True):
+    for level, runs in zip(*np.unique(values[begins[dropped]], return_counts=True), strict=True):
         if runs > 1:  # what stands for no reading does so alone, too
             found |= values == level
     return found
 
 
 def without_absent(
-    file: str, table: Array, efforts: Mapping[int, str]
+    file: str, table: Array, efforts: Mapping[int, tuple[str, int]]
 ) -> tuple[Array, NDArray[np.bool_] | None, list[str]]:
     """A table (N, k), the time first, whose efforts are straight lines where nobody read them; flags (N, k)
-    of these, None where there are none; and remarks. efforts: names of these columns, by number.
+    of these, None where there are none; and remarks. efforts: by the numbers of these columns, their names
+    and the numbers of their joints' positions.
     """
     result, remarks, flags = table, list[str](), np.zeros(table.shape, dtype=bool)
-    for k, name in efforts.items():
-        found = absent(table[:, k])
+    for k, (name, place) in efforts.items():
+        found = absent(table[:, k], table[:, place])
         if not found.any() or found.all():
             continue
         result = result.copy() if result is table else result

@@ -180,7 +180,11 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     file, limits = source.spec.text, source.thresholds
     signals, drives = source.signals, source.drives
     _check_counters(source, table)
-    numbers = {source.wanted.index(name): name for name in signals.effort if name is not None}
+    numbers = {
+        source.wanted.index(name): (name, source.wanted.index(place))
+        for name, place in zip(signals.effort, signals.position, strict=True)
+        if name is not None
+    }
     table, unread, left_out = without_absent(file, table, numbers)
     on_axis = OnAxis(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
