@@ -58,10 +58,11 @@ def effort_instant(
         return _instant(records, arm, limits)
     # Between uneven stamps conventions differ by more than a delay: that one is right which the data have
     # when the efforts are read so.
-    found = {str(first.effort_hold): _instant(records, arm, limits)}
+    as_read, used = _instant(records, arm, limits), str(first.effort_hold)
+    found = {used: as_read}
     for hold in CONVENTIONS:
-        read = [with_hold(r, hold) for r in records]
-        x = _instant(read, arm, limits)
+        read = records if hold == used else [with_hold(r, hold) for r in records]
+        x = as_read if hold == used else _instant(read, arm, limits)
         if x.delay is None or x.std is None or not x.alike:
             continue
         delay = x.delay - read[0].hold / x.step + CONVENTIONS[hold]
@@ -69,9 +70,9 @@ def effort_instant(
             found[hold] = replace(x, hold=hold, delay=delay, fits=hold)
     right = [hold for hold, x in found.items() if x.fits == hold]
     if not right:
-        return found[str(first.effort_hold)]
+        return as_read
     best = min(right, key=lambda hold: abs((found[hold].delay or 0.0) - CONVENTIONS[hold]))
-    return found[best] if best == first.effort_hold else replace(found[best], known="data")
+    return found[best] if best == used else replace(found[best], known="data")
 
 
 def _instant(records: Sequence[Record], arm: Arm, limits: DatasetThresholds) -> EffortInstant:

@@ -109,7 +109,9 @@ class _Blocks:
     def __iter__(self) -> Iterator[Block]:
         """Every block."""
         self.whole = []
-        for number, block in self._blocks(1):
+        for number, p, block in self._blocks(1):
+            if number % self._apart == self._apart // 2:
+                self.whole.append(p)
             if self.kept is not None and number % self.step == 0:
                 self.kept.append(block)
                 if sum(array.nbytes for one in self.kept for array in one) > KEPT:
@@ -123,9 +125,9 @@ class _Blocks:
         if self.kept is not None:
             yield from self.kept
         else:
-            yield from (block for _, block in self._blocks(self.step))
+            yield from (block for *_, block in self._blocks(self.step))
 
-    def _blocks(self, step: int) -> Iterator[tuple[int, Block]]:
+    def _blocks(self, step: int) -> Iterator[tuple[int, Prepared, Block]]:
         zero = np.zeros(self.rows.p)
         number = -1
         for stream in self.streams:
@@ -136,10 +138,8 @@ class _Blocks:
                 check_jumps([record])
                 whole = record if self.limits is None else self.limits.without(record)
                 p = prepare(whole, stream.settings)
-                if step == 1 and number % self._apart == self._apart // 2:
-                    self.whole.append(p)
                 effort, columns = self.rows.of(p, zero)
-                yield number, (effort, columns, self.rows.moving(p))
+                yield number, p, (effort, columns, self.rows.moving(p))
                 self.done += 1
                 if self.progress is not None:
                     self.progress(self.done, self.total)

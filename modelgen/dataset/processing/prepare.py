@@ -228,10 +228,10 @@ def _cut_off(record: Record) -> np.ndarray:
     """Samples (N, n) at which an effort is cut off, or was not read: they say no more of it than those that
     hold a joint.
     """
-    found, logged = np.zeros(record.q.shape, dtype=bool), record.logged_effort
+    found = np.zeros(record.q.shape, dtype=bool)
     if record.cut_off is not None:
         found |= record.cut_off
-    elif logged is not None:
+    elif (logged := record.logged_effort) is not None:
         for k, effort in enumerate(logged.T):
             found[:, k] = saturated(effort, record.q[:, k])
     return found if record.absent is None else found | record.absent

@@ -8,9 +8,8 @@ from scipy.interpolate import CubicSpline
 from modelgen.dataset.processing.rounding import resolution
 from modelgen.numeric import Array
 
-SLOWER = (
-    1.2  # times the time between readings of another channel, from which a channel has a clock of its own
-)
+# Times the time between readings of one channel, from which another has a clock of its own.
+SLOWER = 1.2
 _ROUNDED = 1e-5  # of a position's range, below which its rounding is no noise that splines would colour
 
 
