@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from modelgen.dataset.reading.clocks import Channels
 from modelgen.numeric import Array
 
 FEWEST = 3  # equal readings in a row, of a channel that never repeats one else
@@ -56,8 +56,8 @@ def absent(values: Array, position: Array) -> NDArray[np.bool_]:
     much = lengths[long] >= TIMES * float(np.quantile(lengths[moves], OFTEN))
     dropped = long[out & into]
     frozen = long[inside & much & (out | (noisy & (lengths[long] >= FROZEN)))]
-    for begin, end in zip(begins[both := np.union1d(dropped, frozen)], ends[both], strict=True):
-        found[begin:end] = True
+    for k in np.union1d(dropped, frozen):
+        found[begins[k] : ends[k]] = True
     for level, runs in zip(*np.unique(values[begins[dropped]], return_counts=True), strict=True):
         if runs > 1:  # what stands for no reading does so alone, too
             found |= values == level
@@ -65,23 +65,22 @@ def absent(values: Array, position: Array) -> NDArray[np.bool_]:
 
 
 def without_absent(
-    file: str, table: Array, efforts: Mapping[int, tuple[str, int]]
-) -> tuple[Array, NDArray[np.bool_] | None, list[str]]:
-    """A table (N, k), the time first, whose efforts are straight lines where nobody read them; flags (N, k)
-    of these, None where there are none; and remarks. efforts: by the numbers of these columns, their names
-    and the numbers of their joints' positions.
+    file: str, table: Array, channels: Channels
+) -> tuple[Array, dict[str, NDArray[np.bool_]], list[str]]:
+    """A table (N, k), the time first, whose efforts are straight lines where nobody read them; flags (N,) of
+    these by the names of their columns; and remarks.
     """
-    result, remarks, flags = table, list[str](), np.zeros(table.shape, dtype=bool)
-    for k, (name, place) in efforts.items():
-        found = absent(table[:, k], table[:, place])
+    result, remarks, flags = table, list[str](), dict[str, NDArray[np.bool_]]()
+    for k, place in {effort: position for position, effort in channels.pairs}.items():
+        found, name = absent(table[:, k], table[:, place]), channels.names[k]
         if not found.any() or found.all():
             continue
         result = result.copy() if result is table else result
         t, there = table[:, 0], ~found
         result[found, k] = np.interp(t[found], t[there], table[there, k])
-        flags[:, k] = found
+        flags[name] = found
         remarks.append(_said(f"{file}: {name}", t, table[:, k], found))
-    return result, flags if remarks else None, remarks
+    return result, flags, remarks
 
 
 def _said(name: str, t: Array, values: Array, flags: NDArray[np.bool_]) -> str:

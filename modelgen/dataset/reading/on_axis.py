@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation
 
 from modelgen.dataset.objects import Uneven
 from modelgen.dataset.processing.resampling import efforts_resampled, smooth_resampled
@@ -40,14 +41,21 @@ class OnAxis:
             return table, later[hold] if isinstance(hold, str) else hold
         return efforts_resampled(self.columns["t"], table, self.t, self.axis.step, self.axis.method, hold)
 
-    def touched(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Samples (M, n) of which a flagged reading (N, n) has a part, at whatever instant it was read."""
-        found = flags.copy()
-        found[1:] |= flags[:-1]
-        found[:-1] |= flags[1:]
-        if self.axis.method == "none":
-            return found
-        return np.stack([np.interp(self.t, self.columns["t"], x) > 0.0 for x in found.T], axis=1)
+    def touched(
+        self, names: Sequence[str | None], flags: Mapping[str, NDArray[np.bool_]]
+    ) -> NDArray[np.bool_] | None:
+        """Samples (M, n) of which a flagged reading has a part, at whatever instant it was read; None where
+        no reading is. flags: (N,), by the names of some columns.
+        """
+        if not flags:
+            return None
+        found = np.zeros((len(self.t), len(names)), dtype=bool)
+        for k, name in enumerate(names):
+            if name is not None and name in flags:
+                beside = binary_dilation(flags[name], iterations=1)
+                even = self.axis.method == "none"
+                found[:, k] = beside if even else np.interp(self.t, self.columns["t"], beside) > 0.0
+        return found
 
     def uneven(self, names: Sequence[str | None]) -> Uneven | None:
         """Efforts at their stamps, where those are not the axis."""

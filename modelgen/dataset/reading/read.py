@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.rounding import LONGEST, resolution
@@ -180,12 +178,7 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     file, limits = source.spec.text, source.thresholds
     signals, drives = source.signals, source.drives
     _check_counters(source, table)
-    numbers = {
-        source.wanted.index(name): (name, source.wanted.index(place))
-        for name, place in zip(signals.effort, signals.position, strict=True)
-        if name is not None
-    }
-    table, unread, left_out = without_absent(file, table, numbers)
+    table, unread, left_out = without_absent(file, table, channels_of(source))
     on_axis = OnAxis(source, {name: table[:, k] for k, name in enumerate(source.wanted)}, axis, t)
     logged = on_axis.smooth(signals.position)
     counts: tuple[float, ...] = ()
@@ -260,17 +253,11 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
         counts=counts,
         begins=since_1970(source.reader, float(t[0])) if len(t) else None,
         jump=jump or lost,
-        absent=None if unread is None else on_axis.touched(_of(unread, source, signals.effort)),
+        absent=on_axis.touched(signals.effort, unread),
         uneven=on_axis.uneven(signals.effort) if given is not None else None,
     )
     beyond = check_efforts(record, signals.effort, arm, drives, limits)
     return (replace(record, remarks=(*remarks, *beyond)) if beyond else record), logged
-
-
-def _of(flags: NDArray[np.bool_], source: Source, names: Sequence[str | None]) -> NDArray[np.bool_]:
-    """Flags (N, n) of some columns of the source's, none where there is no column."""
-    numbers = [0 if name is None else source.wanted.index(name) for name in names]
-    return flags[:, numbers]
 
 
 def effort_units(source: Source, arm: Arm) -> tuple[str, ...]:
