@@ -83,6 +83,16 @@ def test_efforts_are_those_that_were_read(kind: str, rate: float, tmp_path: Path
     assert record.remarks[-1] == "rows come in turn: q1 interpolated by splines at the instants of i1"
 
 
+@pytest.mark.parametrize("kind", ["csv", "frame", "parquet"])
+def test_a_few_blank_cells_of_a_short_log_are_no_rows_in_turn(kind: str, tmp_path: Path) -> None:
+    """Nine of 36 are a quarter, and still readings that are missing, which nobody interpolates."""
+    t = at(50.0)[:36]
+    columns = {"t": t, "q1": position(t), "i1": effort(t)}
+    columns["i1"][9:27:2] = np.nan
+    with pytest.raises(InputError, match=r"found (nan|'nothing') in the column i1"):
+        logged(kind, tmp_path, columns)
+
+
 def test_coarse_positions_and_slower_ones_keep_their_instants(tmp_path: Path) -> None:
     for columns in (in_turn(at(250.0), at(250.0, 0.002), digits=3), in_turn(at(100.0), at(1000.0, 0.0005))):
         record = read(from_csv(tmp_path, columns), ARM)

@@ -12,11 +12,9 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from modelgen.dataset.objects import Record, Wanted
-from modelgen.dataset.reading.turns import in_turn
+from modelgen.dataset.reading.turns import blank_in_many, in_turn
 from modelgen.errors import InputError
 from modelgen.numeric import Array
-
-_MANY = 0.2  # of the rows
 
 
 class ColumnTable:
@@ -56,8 +54,8 @@ class ColumnTable:
     @cached_property
     def sparse(self) -> frozenset[str]:
         """Names of the columns of numbers that are blank in many rows, which are rows of several in turn."""
-        numbers = {name: x for name in self.names if (x := self._values(name)).dtype.kind == "f"}
-        return frozenset(name for name, x in numbers.items() if _MANY < np.isnan(x).mean() < 1.0)
+        blank = {name: np.isnan(x) for name in self.names if (x := self._values(name)).dtype.kind == "f"}
+        return frozenset(n for n, x in blank.items() if not x.all() and blank_in_many(int(x.sum()), x.size))
 
     @property
     def by_column(self) -> bool:

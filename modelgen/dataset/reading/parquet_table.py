@@ -10,7 +10,7 @@ import numpy as np
 
 from modelgen.dataset.objects import Wanted
 from modelgen.dataset.reading.specs import unreadable
-from modelgen.dataset.reading.turns import in_turn
+from modelgen.dataset.reading.turns import blank_in_many, in_turn
 from modelgen.errors import DamagedFileError, InputError
 from modelgen.extras import missing
 from modelgen.numeric import Array
@@ -117,7 +117,7 @@ class ParquetReader:
         except (OSError, KeyError, ValueError, StopIteration, pyarrow.ArrowException):
             return frozenset()  # what is damaged is found when it is read
         rows = batch.num_rows
-        return frozenset(n for n, count in blank.items() if count >= 10 and 0.2 * rows < count < rows)
+        return frozenset(n for n, count in blank.items() if count < rows and blank_in_many(count, rows))
 
 
 def _seconds(column: Any, name: str, first: dict[str, int]) -> Array:

@@ -23,6 +23,7 @@ from modelgen.dataset.reading.text import (
     moment,
     number,
 )
+from modelgen.dataset.reading.turns import blank_in_many
 from modelgen.errors import InputError, Location
 
 DELIMITERS: tuple[str | None, ...] = (",", ";", "\t", "|", None)  # None: blanks
@@ -114,7 +115,7 @@ def shape_of(path: Path, file: Path, layout: Layout) -> Shape:
         remarks.append(f"line {rows[first - 1][0]} holds units: {', '.join(units.values())}")
     last = rows[first - 1][0] if first else layout.skip_lines
     blank = [sum(not row[k] for row in body if len(row) == width) for k in range(min(width, len(names)))]
-    seldom = frozenset(k for k, count in enumerate(blank) if count >= 10 and count > 0.2 * len(body))
+    seldom = frozenset(k for k, count in enumerate(blank) if blank_in_many(count, len(body)))
     begin = rows[first][1][: len(names)] if first < len(rows) else []
     # A channel that begins later than the others, or ends sooner, is blank there.
     ends = [row for row in (begin, cells_of(last_line(file, encoding), found)) if len(row) >= len(names)]

@@ -12,9 +12,19 @@ from modelgen.dataset.thresholds import USUAL
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
+FEWEST = 10  # blank cells of a column, from which on they are no mistakes
+SHARE = 0.2  # of its rows, that must be blank, too
 BURSTS = 0.2  # of the mean time between readings, below which the usual one says that they come in bursts
 
 Readings = tuple[Array, Array]  # a channel's own stamps (N,) [s] and what was read at them (N,)
+
+
+def blank_in_many(blank: int, rows: int) -> bool:
+    """Whether a column that is blank in some of its rows says that rows of several sources come in turn.
+
+    blank: number of its blank cells. rows: number of the rows that were looked at.
+    """
+    return blank >= FEWEST and blank > SHARE * rows
 
 
 def in_turn(file: str, wanted: Wanted, table: Array) -> tuple[Array, str]:
