@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,50 +23,49 @@ REMARKED = 1e-3  # of the rows: the motion seems so much faster, and inertias lo
 RESTORED = 5e-3  # of the rows, up to which those found are all but all there are
 
 
-def lost_rows(t: Array, positions: Array, limits: DatasetThresholds) -> str:
-    """What there is to say of rows that are missing between even stamps t (N,) [s], else empty. positions:
-    (N, n), as logged.
-    """
-    places, _, share = missing_rows(positions, limits)
-    if share < REMARKED:
+class Missing(NamedTuple):
+    """places: samples (M,) after which rows are missing. rows: how many there (M,). share: of all rows."""
+
+    places: NDArray[np.intp]
+    rows: NDArray[np.intp]
+    share: float
+
+
+def lost_rows(t: Array, missing: Missing) -> str:
+    """What there is to say of rows that are missing between even stamps t (N,) [s], else empty."""
+    if missing.share < REMARKED:
         return ""
-    return (
-        f"{_so_many(t, places, share)}; expected stamps of the readings' own clock, or a log without losses"
-    )
+    return f"{_so_many(t, missing)}; expected stamps of the readings' own clock, or a log without losses"
 
 
-def at_their_instants(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[Array, str]:
+def at_their_instants(t: Array, missing: Missing) -> tuple[Array, str]:
     """Even stamps t (N,) [s], later by the rows that are missing before them, and a remark; unchanged where
-    none are, or so many that those between, which nobody sees, would count. positions: (N, n), as logged.
+    none are, or so many that those between, which nobody sees, would count.
     """
-    places, rows, share = missing_rows(positions, limits)
-    if not len(places) or share > RESTORED:
+    if not len(missing.places) or missing.share > RESTORED:
         return t, ""
     later = np.zeros(len(t))
-    np.add.at(later, places + 1, rows)
-    said = f"{_so_many(t, places, share)}; what follows counts as so much later"
+    np.add.at(later, missing.places + 1, missing.rows)
+    said = f"{_so_many(t, missing)}; what follows counts as so much later"
     return t + float(np.median(np.diff(t))) * np.cumsum(later), said
 
 
-def _so_many(t: Array, places: NDArray[np.intp], share: float) -> str:
+def _so_many(t: Array, missing: Missing) -> str:
     return (
-        f"{100 * share:.2g} % of the rows or so are missing though the stamps are even: after "
-        f"t = {t[places[0]]:.9g} s and in {len(places) - 1} more places the positions go on by two or more "
-        "of the steps beside"
+        f"{100 * missing.share:.2g} % of the rows or so are missing though the stamps are even: after "
+        f"t = {t[missing.places[0]]:.9g} s and in {len(missing.places) - 1} more places the positions go on "
+        "by two or more of the steps beside"
     )
 
 
-def missing_rows(
-    positions: Array, limits: DatasetThresholds
-) -> tuple[NDArray[np.intp], NDArray[np.intp], float]:
-    """Samples of positions (N, n) after which rows are missing, how many there, and what part of all rows
-    that is; none where they are few.
+def missing_rows(positions: Array, limits: DatasetThresholds) -> Missing:
+    """Where rows are missing by positions (N, n), as logged, that have even stamps; none where they are few.
 
     Where rows are missing all joints go on by a whole number of the steps beside, and stay ahead. A reading
     that is late, stands still or is noisy gives back what it took. Where the joints are so slow that a step
     vanishes in noise nobody sees it: there as many are missing as elsewhere.
     """
-    nothing = np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp), 0.0
+    nothing = Missing(np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp), 0.0)
     if len(positions) < limits.min_lone_samples:
         return nothing
     steps, wide = np.diff(positions, axis=0), 2 * BESIDE + 1
@@ -99,7 +100,7 @@ def missing_rows(
         return nothing
     # In a short move the steps next to it say better than those around it how large one is.
     rows = np.rint(np.median([ahead, *alone], axis=0)[found]).astype(np.intp)
-    return near[found] + BESIDE, rows, float(rows.sum() / (part * len(steps) + rows.sum()))
+    return Missing(near[found] + BESIDE, rows, float(rows.sum() / (part * len(steps) + rows.sum())))
 
 
 def _usual(window: Array, noise: Array) -> Array:

@@ -18,7 +18,7 @@ from modelgen.dataset.reading.clocks import Channels, fresh
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.lone import without_lone
-from modelgen.dataset.reading.lost import at_their_instants, lost_rows
+from modelgen.dataset.reading.lost import Missing, at_their_instants, lost_rows, missing_rows
 from modelgen.dataset.reading.on_axis import OnAxis
 from modelgen.dataset.reading.plausible import check_counters, check_efforts, doubtful_unit
 from modelgen.dataset.reading.repeats import without_doubled
@@ -81,9 +81,11 @@ def read_with_stamps(
     found = [*doubled, *(() if new is None else new.remarks), *stamped, *lone]
     checks.check_length(spec, len(table), thresholds.min_samples)
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
+    missing = None
     if axis.method == "none":
         as_read = table[:, [source.wanted.index(name) for name in source.signals.position]]
-        t, said = at_their_instants(table[:, 0], as_read, thresholds)
+        missing = missing_rows(as_read, thresholds)
+        t, said = at_their_instants(table[:, 0], missing)
         if said:
             found.append(said)
             table = np.column_stack([t, table[:, 1:]])
@@ -97,7 +99,7 @@ def read_with_stamps(
         found.append(
             "the effort is new where the position is: it counts as read at the same instant (hold: instant)"
         )
-    record, logged = record_of(source, arm, table, axis, axis.times())
+    record, logged = record_of(source, arm, table, axis, axis.times(), missing)
     if together:
         record = replace(record, hold_known="readings")
     if found:
@@ -169,11 +171,14 @@ def _of_arm(record: Record, arm: Arm) -> Record:
     return record
 
 
-def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> tuple[Record, Array]:
+def record_of(
+    source: Source, arm: Arm, table: Array, axis: Axis, t: Array, missing: Missing | None = None
+) -> tuple[Record, Array]:
     """The record of a table of the source's columns (N, k), and its positions as logged (M, n).
 
-    t: times of the axis that it shall have (M,) [s], all or a part. Raises InputError where positions leave
-    the arm's limits.
+    t: times of the axis that it shall have (M,) [s], all or a part. missing: rows of the table that its
+    positions show to be missing, None where they are still to be looked for. Raises InputError where
+    positions leave the arm's limits.
     """
     file, limits = source.spec.text, source.thresholds
     signals, drives = source.signals, source.drives
@@ -197,7 +202,9 @@ def record_of(source: Source, arm: Arm, table: Array, axis: Axis, t: Array) -> t
     checks.check_jumps(file, arm, signals.position, q, t, limits.steady_step)
     as_read = table[:, [source.wanted.index(name) for name in signals.position]]
     jump = jump_of(signals.position, table[:, 0], as_read, limits)
-    lost = lost_rows(table[:, 0], as_read, limits) if axis.method == "none" else ""
+    lost = ""
+    if axis.method == "none":
+        lost = lost_rows(table[:, 0], missing_rows(as_read, limits) if missing is None else missing)
     margin = limits.max_range_excess
     left = checks.check_range(file, arm, drives, signals.position, logged, q, margin)
     left += checks.trembling(signals.position, as_read)
