@@ -83,8 +83,7 @@ def read_with_stamps(
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
     missing = None
     if axis.method == "none":
-        as_read = table[:, [source.wanted.index(name) for name in source.signals.position]]
-        missing = missing_rows(as_read, thresholds)
+        missing = missing_rows(_positions(source, table), thresholds)
         t, said = at_their_instants(table[:, 0], missing)
         if said:
             found.append(said)
@@ -142,6 +141,11 @@ def channels_of(source: Source) -> Channels:
     )
 
 
+def _positions(source: Source, table: Array) -> Array:
+    """Positions (N, n) of a table of the source's columns (N, k), by joint, as logged."""
+    return table[:, [source.wanted.index(name) for name in source.signals.position]]
+
+
 def _check_counters(source: Source, table: Array) -> None:
     """Efforts and speeds (N, k) that are no counters read wrongly. Raises InputError."""
     asked = [*source.signals.effort, *(source.signals.dq or ())]
@@ -152,9 +156,7 @@ def _true_stamps(source: Source, table: Array) -> tuple[Array, list[str]]:
     """The table at instants that the positions agree with, and remarks."""
     if source.rate is not None or len(table) < 2:
         return table, []
-    names = source.wanted
-    positions = table[:, [names.index(name) for name in source.signals.position]]
-    even, remark = true_stamps(table[:, 0], positions, source.thresholds)
+    even, remark = true_stamps(table[:, 0], _positions(source, table), source.thresholds)
     return (table, []) if remark is None else (np.column_stack([even, table[:, 1:]]), [remark])
 
 
@@ -200,7 +202,7 @@ def record_of(
         else:
             motor[:, k] = drive.motor(logged[:, k])
     checks.check_jumps(file, arm, signals.position, q, t, limits.steady_step)
-    as_read = table[:, [source.wanted.index(name) for name in signals.position]]
+    as_read = _positions(source, table)
     jump = jump_of(signals.position, table[:, 0], as_read, limits)
     lost = ""
     if axis.method == "none":
