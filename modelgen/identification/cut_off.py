@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Chosen, Prepared, Record, Settings, choose, prepare
-from modelgen.dataset.processing.rounding import LONGEST, resolution
+from modelgen.dataset.processing.rounding import step_of
 from modelgen.dataset.processing.saturation import CUT_OFF, FEWEST, ends_of, saturated, standing_at
 from modelgen.description import Arm
 from modelgen.errors import InputError
@@ -136,7 +136,7 @@ def ends_in(prepared: Sequence[Prepared]) -> Iterator[End]:
         levels, counts = np.unique(logged, return_counts=True)
         if len(levels) < LEVELS:
             continue
-        step = resolution(logged[:LONGEST]) or 0.0
+        step = step_of(logged)
         shown = {level for p in prepared for level, _ in ends_of(logged_of(p)[:, j], p.record.q[:, j])}
         for sign, at in ((1, -1), (-1, 0)):
             if counts[at] >= least:

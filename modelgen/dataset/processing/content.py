@@ -15,7 +15,7 @@ import numpy as np
 from scipy import signal
 
 from modelgen.dataset.objects import Record
-from modelgen.dataset.processing.rounding import position_steps, rounding_power
+from modelgen.dataset.processing.rounding import difference_power, position_steps, rounding_power
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
@@ -120,7 +120,7 @@ def _spectrum(joint: int, q: Array, step: float, rate: float) -> Spectrum:
         more = float(np.median(power[upper] / rounding[upper]))
         more = more if 1.0 < more < NOISIER else 1.0
         rounding, total = more * rounding, more * total
-    white = (np.sin(2 * np.pi * f / rate) * rate) ** 2
+    white = difference_power(rate, f)
     positions = np.divide(power, white, out=np.zeros_like(power), where=white > 0.0)
     return Spectrum(joint, f, power, rounding, f <= _seen(f, positions, total), white)
 

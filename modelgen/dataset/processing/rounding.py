@@ -37,6 +37,11 @@ def resolution(values: Array) -> float | None:
     return step if missed <= (_WHOLE if len(steps) < _MANY else _DIGITS) else None
 
 
+def step_of(values: Array) -> float:
+    """Resolution of a log's readings (N,) as its first ones show it, in their unit; 0 where there is none."""
+    return resolution(values[:LONGEST]) or 0.0
+
+
 def position_steps(record: Record) -> Array:
     """Steps of the joint coordinates (n,) [rad, m] that those of the logged positions are, 0 where none show.
 
@@ -44,7 +49,7 @@ def position_steps(record: Record) -> Array:
     """
     sides = record.motor_side or (False,) * record.n
     logged = [record.motor[:, k] if side else record.q[:, k] for k, side in enumerate(sides)]
-    steps = record.counts or tuple(resolution(x[:LONGEST]) or 0.0 for x in logged)
+    steps = record.counts or tuple(map(step_of, logged))
     drives = () if record.arm is None else drives_of(record.arm)
     found = np.array(steps)
     for k, side in enumerate(sides):
@@ -53,10 +58,17 @@ def position_steps(record: Record) -> Array:
     return found
 
 
+def difference_power(rate: float, f: Array) -> Array:
+    """Power of the speed over that of the position [1/s^2], by central differences of one sample, at
+    frequencies f [Hz].
+    """
+    return np.asarray((np.sin(2 * np.pi * f / rate) * rate) ** 2)
+
+
 def rounding_power(step: float, rate: float, f: Array) -> Array:
     """Power per Hz of the speed that rounding to a step feigns, at frequencies f [Hz].
 
     Rounding errors are uniform over a step and counted as white (Bennett 1948); central differences of one
     sample make speeds of them.
     """
-    return np.asarray(step**2 / (6.0 * rate) * (np.sin(2 * np.pi * f / rate) * rate) ** 2)
+    return np.asarray(step**2 / (6.0 * rate) * difference_power(rate, f))

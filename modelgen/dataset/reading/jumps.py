@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset.objects import Record
-from modelgen.dataset.processing.rounding import LONGEST, resolution
+from modelgen.dataset.processing.rounding import step_of
 from modelgen.dataset.thresholds import DatasetThresholds
 from modelgen.errors import InputError
 from modelgen.numeric import Array
@@ -69,6 +69,6 @@ def jumps(t: Array, values: Array, limits: DatasetThresholds) -> tuple[NDArray[n
     padded = np.pad(size, BESIDE)
     window = np.lib.stride_tricks.sliding_window_view(padded, 2 * BESIDE + 1)[large]
     beside = np.sort(np.delete(window, BESIDE, axis=1), axis=1)[:, -LIKE]
-    step = resolution(values[:LONGEST]) or 0.0
+    step = step_of(values)
     found = size[large] > limits.jump * np.maximum(beside, ROUNDED / limits.jump * step)
     return large[found], usual

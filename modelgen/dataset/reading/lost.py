@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.dataset.processing.rounding import LONGEST, resolution
+from modelgen.dataset.processing.rounding import step_of
 from modelgen.dataset.thresholds import DatasetThresholds
 from modelgen.numeric import Array
 
@@ -80,7 +80,7 @@ def missing_rows(positions: Array, limits: DatasetThresholds) -> Missing:
     near = np.flatnonzero(seen & (np.abs(first) > NEAR / 2))
     if len(near) < FEWEST:
         return nothing
-    counts = np.array([resolution(x[:LONGEST]) or 0.0 for x in positions.T])
+    counts = np.array([step_of(x) for x in positions.T])
     noise = np.maximum(noise, counts / np.sqrt(6.0))
     usual, seen = _ahead(here[some], beside, noise, SEEN)
     if not seen.any() or 1.4826 * np.median(np.abs(usual[seen])) > 1.0 / SEEN:

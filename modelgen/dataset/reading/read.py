@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from modelgen.dataset.objects import Record
-from modelgen.dataset.processing.rounding import LONGEST, resolution
+from modelgen.dataset.processing.rounding import step_of
 from modelgen.dataset.processing.stamps import EVEN, strayed, true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
 from modelgen.dataset.reading import checks
@@ -190,8 +190,7 @@ def record_of(
     logged = on_axis.smooth(signals.position)
     counts: tuple[float, ...] = ()
     if axis.method != "none":  # which blurs them
-        read_off = [on_axis.columns[name][:LONGEST] for name in signals.position]
-        counts = tuple(resolution(x) or 0.0 for x in read_off)
+        counts = tuple(step_of(on_axis.columns[name]) for name in signals.position)
     motor_side = tuple(name.startswith("qm") for name in signals.position)
     q, motor = logged.copy(order="K"), logged.copy(order="K")
     for k, drive in enumerate(drives):
