@@ -96,9 +96,13 @@ def _resting(slow: np.ndarray, longest: float) -> np.ndarray:
 
 def long_runs(flags: np.ndarray, longest: int) -> np.ndarray:
     """The flags (N,), without runs of True shorter than `longest`."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(np.int8), [0]))))
     kept = np.zeros(len(flags), dtype=bool)
-    for begin, end in edges.reshape(-1, 2):
+    for begin, end in runs(flags):
         if end - begin >= longest:
             kept[begin:end] = True
     return kept
+
+
+def runs(flags: np.ndarray) -> np.ndarray:
+    """Samples (K, 2) at which runs of True in flags (N,) begin, and those after their last ones."""
+    return np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(np.int8), [0])))).reshape(-1, 2)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from modelgen.dataset.processing.rest import runs
 from modelgen.dataset.reading.clocks import Channels
 from modelgen.numeric import Array
 
@@ -58,8 +59,8 @@ def absent(values: Array, position: Array) -> NDArray[np.bool_]:
     frozen = long[inside & much & (out | (noisy & (lengths[long] >= FROZEN)))]
     for k in np.union1d(dropped, frozen):
         found[begins[k] : ends[k]] = True
-    for level, runs in zip(*np.unique(values[begins[dropped]], return_counts=True), strict=True):
-        if runs > 1:  # what stands for no reading does so alone, too
+    for level, often in zip(*np.unique(values[begins[dropped]], return_counts=True), strict=True):
+        if often > 1:  # what stands for no reading does so alone, too
             found |= values == level
     return found
 
@@ -84,8 +85,8 @@ def without_absent(
 
 
 def _said(name: str, t: Array, values: Array, flags: NDArray[np.bool_]) -> str:
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
-    begins, lengths = edges[::2], np.diff(edges)[::2]
+    begins, ends = runs(flags).T
+    lengths = ends - begins
     longest = int(np.argmax(lengths))
     first = begins[longest]
     places = "there" if len(begins) == 1 else f"in {len(begins)} places, {flags.sum()} rows in all"
