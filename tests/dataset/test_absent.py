@@ -4,30 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from geared_link import LINK, sines
 
 import modelgen as mg
 from modelgen.dataset.reading.absent import absent
 from modelgen.description import loads
 from modelgen.effects import known_effects
 
-ARM = loads(
-    """
-schema: 1
-convention: khalil_kleinfinger
-arms:
-  one:
-    gravity: [0, -9.81, 0]
-    joints:
-      - {name: hip, drive: {type: direct, ratio: 40, torque_constant: 0.05},
-         effects: [{viscous_friction: {coefficient: 1.0e-3}}, {coulomb_friction: {magnitude: 0.01}}]}
-    links:
-      hip: {mass: 3, com: [0.2, 0, 0], inertia: [0.01, 0, 0, 0.1, 0, 0.1]}
-""",
-    "arms.yaml",
-    known_effects(),
-)["one"]
-INERTIA, MOMENT, VISCOUS, DRY, PERIOD = 0.22, 0.6, 1.0e-3, 0.01, 8.0
-TRUTH = {"ZZ1": INERTIA, "MX1": MOMENT, "MY1": 0.0, "FV1": VISCOUS, "FC1": DRY}
+ARM = loads(LINK.description(), "arms.yaml", known_effects())["one"]
 T = np.arange(0.0, 24.0, 0.004)
 KINDS = ("dropped out", "a number for nothing", "frozen", "dead band")
 
@@ -35,13 +19,9 @@ KINDS = ("dropped out", "a number for nothing", "frozen", "dead band")
 def log(seed: int, kind: str, noise: float = 0.005) -> dict[str, np.ndarray]:
     """Three periods of four harmonics about the upright, by hand, whose current is partly not read."""
     random = np.random.default_rng(seed)
-    size, phase = np.array([0.5, 0.3, 0.15, 0.05]), random.uniform(0, 6.28, 4)
-    w = 2 * np.pi * np.array([1, 2, 3, 5]) / PERIOD
-    q, dq, ddq = (
-        (size * w**k * np.sin(T[:, None] * w + phase + k * np.pi / 2)).sum(axis=1) for k in range(3)
-    )
-    torque = INERTIA * ddq - 9.81 * MOMENT * np.sin(q) + 40 * (VISCOUS * 40 * dq + DRY * np.sign(dq))
-    current = torque / (40 * 0.05) + noise * random.standard_normal(len(T))
+    q, dq, ddq = sines(T, random.uniform(0, 6.28, 4))
+    q += np.pi / 2
+    current = LINK.currents(q, dq, ddq) + noise * random.standard_normal(len(T))
     places = random.integers(200, len(T) - 200, 12)
     for place in places:
         if kind == "dropped out":
@@ -52,17 +32,16 @@ def log(seed: int, kind: str, noise: float = 0.005) -> dict[str, np.ndarray]:
             current[place : place + 40] = current[place]
     if kind == "dead band":
         current[np.abs(current) < 0.3] = 0.0
-    angle = q + np.pi / 2 + 2e-6 * random.standard_normal(len(T))
-    return {"t": T, "q1": angle, "i1": current}
+    return {"t": T, "q1": q + 2e-6 * random.standard_normal(len(T)), "i1": current}
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_was_not_read_moves_no_parameter(kind: str) -> None:
     found = mg.identify(ARM, log(1, kind), log(2, kind))
-    for name, value in TRUTH.items():
+    for name, value in LINK.parameters.items():
         p = found.parameters[name]
         assert abs(p.value - value) < 4.0 * p.std, name
-        assert p.std < 0.03 * max(value, 0.02 * MOMENT), name
+        assert p.std < 0.03 * max(value, 0.02 * LINK.moment), name
     (remark,) = (x for x in mg.read_log(log(1, kind), ARM).remarks if "it was not read" in x)
     assert "i1 stands at" in remark
 

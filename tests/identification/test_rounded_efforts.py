@@ -4,29 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from identification_support import model_of
+from geared_link import GearedLink, sines
 
 import modelgen as mg
 from modelgen.description import loads
 from modelgen.effects import known_effects
 
 # A pendulum whose current is a few amperes, and its weight most of it.
-ARM = loads(
-    """
-schema: 1
-convention: khalil_kleinfinger
-arms:
-  one:
-    gravity: [0, -9.81, 0]
-    joints:
-      - {name: hip, drive: {type: direct, ratio: 50, torque_constant: 0.1},
-         effects: [{viscous_friction: {coefficient: 2.0e-4}}, {coulomb_friction: {magnitude: 0.02}}]}
-    links:
-      hip: {mass: 4, com: [0.25, 0, 0], inertia: [0.01, 0, 0, 0.2, 0, 0.2]}
-""",
-    "arms.yaml",
-    known_effects(),
-)["one"]
+LINK = GearedLink(mass=4.0, moment=1.0, inertia=0.45, ratio=50.0, constant=0.1, viscous=2.0e-4, dry=0.02)
+ARM = loads(LINK.description(), "arms.yaml", known_effects())["one"]
 RATE, SECONDS = 200.0, 10.0
 Table = dict[str, np.ndarray]
 
@@ -36,23 +22,17 @@ def log(seed: int, step: float, noise: float) -> Table:
     random, t = np.random.default_rng(seed), np.arange(int(RATE * SECONDS)) / RATE
     w = 2 * np.pi * np.arange(1, 6) / SECONDS
     size, phase = random.uniform(0.1, 0.35, 5) / np.sqrt(np.arange(1, 6)), random.uniform(0, 6.28, 5)
-    q, dq, ddq = (
-        (size * w**k * np.sin(t[:, None] * w + phase + k * np.pi / 2)).sum(axis=1) for k in range(3)
-    )
-    model = model_of(ARM)
-    current = model.functions["inverse_dynamics"](
-        q=q[:, None], dq=dq[:, None], ddq=ddq[:, None], parameters=np.array(list(model.nominal.values()))
-    )[:, 0]
-    current = current + noise * random.normal(size=len(t))
+    q, dq, ddq = sines(t, phase, size, w)
+    current = LINK.currents(q, dq, ddq) + noise * random.normal(size=len(t))
     return {"t": t, "q1": q, "i1": step * np.rint(current / step) if step else current}
 
 
 def errors(step: float, noise: float, seeds: range) -> np.ndarray:
     """Errors of the parameters in their deviations, by log."""
-    truth, found = model_of(ARM).nominal, []
+    found = []
     for seed in seeds:
         result = mg.identify(ARM, log(seed, step, noise), log(seed + 1000, step, noise))
-        found.append([(e.value - truth[name]) / e.std for name, e in result.parameters.items()])
+        found.append([(e.value - LINK.parameters[name]) / e.std for name, e in result.parameters.items()])
     return np.array(found)
 
 
@@ -68,7 +48,7 @@ def test_deviations_hold_where_few_readings_do_not_show_whether_they_are_cut_off
     step: float, top: float
 ) -> None:
     """Two or three readings in steps as large as what the efforts do, be they cut off at `top` [A] or not."""
-    truth, apart = model_of(ARM).nominal, []
+    apart = []
     for seed in range(10):
         logs = [log(seed + more, step, 0.01) for more in (0, 1000)]
         for table in logs:
@@ -77,7 +57,7 @@ def test_deviations_hold_where_few_readings_do_not_show_whether_they_are_cut_off
         if min(np.sort(np.unique(x["i1"], return_counts=True)[1])[:-1].sum() for x in logs) < 100:
             continue  # hardly ever another reading than one
         found = mg.identify(ARM, *logs)
-        apart += [(e.value - truth[name]) / e.std for name, e in found.parameters.items()]
+        apart += [(e.value - LINK.parameters[name]) / e.std for name, e in found.parameters.items()]
     assert len(apart) >= 20
     assert (np.abs(apart) < 1.96).mean() >= 0.85
     assert np.abs(apart).max() < 5.0

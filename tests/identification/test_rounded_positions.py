@@ -2,35 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import geared_link
 import numpy as np
 import pytest
+from geared_link import sines
 
 import modelgen as mg
 from modelgen.description import loads
 from modelgen.effects import known_effects
 
 Table = dict[str, np.ndarray]
-ARM = loads(
-    """
-schema: 1
-convention: khalil_kleinfinger
-arms:
-  one:
-    gravity: [0, -9.81, 0]
-    joints:
-      - {name: hip, drive: {type: direct, ratio: 40, torque_constant: 0.05},
-         effects: [{viscous_friction: {coefficient: 1.0e-4}}, {coulomb_friction: {magnitude: 0.01}}]}
-    links:
-      hip: {mass: 3, com: [0.2, 0, 0], inertia: [0.01, 0, 0, 0.1, 0, 0.1]}
-""",
-    "arms.yaml",
-    known_effects(),
-)["one"]
-# By hand: 3 x 0.2^2 + 0.1, 3 x 0.2; friction as the motor has it.
-INERTIA, MOMENT, VISCOUS, DRY = 0.22, 0.6, 1.0e-4, 0.01
-TRUTH = {"ZZ1": INERTIA, "MX1": MOMENT, "MY1": 0.0, "FV1": VISCOUS, "FC1": DRY}
+LINK = replace(geared_link.LINK, viscous=1.0e-4)
+ARM = loads(LINK.description(), "arms.yaml", known_effects())["one"]
 
 
 def log(
@@ -40,11 +26,8 @@ def log(
     random, t = np.random.default_rng(seed), np.arange(int(rate * seconds)) / rate
     w = 2 * np.pi * np.arange(1, 7) / 5.0
     size, phase = random.uniform(0.1, 0.3, 6), random.uniform(0, 6.28, 6)
-    q, dq, ddq = (
-        (size * w**k * np.sin(t[:, None] * w + phase + k * np.pi / 2)).sum(axis=1) for k in range(3)
-    )
-    torque = INERTIA * ddq + 9.81 * MOMENT * np.cos(q) + 40 * (VISCOUS * 40 * dq + DRY * np.sign(dq))
-    current = torque / (40 * 0.05) + noise * random.standard_normal(len(t))
+    q, dq, ddq = sines(t, phase, size, w)
+    current = LINK.currents(q, dq, ddq) + noise * random.standard_normal(len(t))
     step = 2 * np.pi / 2**bits if bits else 0.0
     return {"t": t, "q1": step * np.rint(q / step) if step else q, "i1": current}
 
@@ -64,7 +47,10 @@ def away(mapping: Path | None, seeds: range, *, stream: bool = False, **how: flo
     for seed in seeds:
         result = mg.identify(ARM, log(seed, **how), log(seed + 1000, **how), mapping=mapping, stream=stream)
         found.append(
-            [(result.parameters[name].value - x) / result.parameters[name].std for name, x in TRUTH.items()]
+            [
+                (result.parameters[name].value - x) / result.parameters[name].std
+                for name, x in LINK.parameters.items()
+            ]
         )
     return np.array(found)
 

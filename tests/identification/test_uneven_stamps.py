@@ -4,29 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from geared_link import LINK, sines
 
 import modelgen as mg
 from modelgen.description import loads
 from modelgen.effects import known_effects
 
-ARM = loads(
-    """
-schema: 1
-convention: khalil_kleinfinger
-arms:
-  one:
-    gravity: [0, -9.81, 0]
-    joints:
-      - {name: hip, drive: {type: direct, ratio: 40, torque_constant: 0.05},
-         effects: [{viscous_friction: {coefficient: 1.0e-3}}, {coulomb_friction: {magnitude: 0.01}}]}
-    links:
-      hip: {mass: 3, com: [0.2, 0, 0], inertia: [0.01, 0, 0, 0.1, 0, 0.1]}
-""",
-    "arms.yaml",
-    known_effects(),
-)["one"]
-INERTIA, MOMENT, VISCOUS, DRY, PERIOD = 0.22, 0.6, 1.0e-3, 0.01, 8.0
-TRUTH = {"ZZ1": INERTIA, "MX1": MOMENT, "MY1": 0.0, "FV1": VISCOUS, "FC1": DRY}
+ARM = loads(LINK.description(), "arms.yaml", known_effects())["one"]
 FAST, SLOW = np.arange(0.0, 24.0, 0.002), np.arange(0.0, 24.0, 0.01)
 STAMPS = {
     "slow, then fast": np.concatenate([SLOW[SLOW < 12.0], FAST[FAST >= 12.0]]),
@@ -39,20 +23,10 @@ ACTS = {"instant": (0.0, 0.0), "following": (0.0, 1.0), "previous": (-1.0, 0.0)}
 def log(seed: int, stamps: np.ndarray, acts: str) -> dict[str, np.ndarray]:
     """Three periods of four harmonics, by hand; a current is the mean over the rows that it acts between."""
     random = np.random.default_rng(seed)
-    size, phase = np.array([0.5, 0.3, 0.15, 0.05]), random.uniform(0, 6.28, 4)
-    w = 2 * np.pi * np.array([1, 2, 3, 5]) / PERIOD
-
-    def current(t: np.ndarray) -> np.ndarray:
-        q, dq, ddq = (
-            (size * w**k * np.sin(t[:, None] * w + phase + k * np.pi / 2)).sum(axis=1) for k in range(3)
-        )
-        torque = INERTIA * ddq + 9.81 * MOMENT * np.cos(q) + 40 * (VISCOUS * 40 * dq + DRY * np.sign(dq))
-        return np.asarray(torque / (40 * 0.05))
-
-    rows = np.arange(len(stamps), dtype=float)
+    phase, rows = random.uniform(0, 6.28, 4), np.arange(len(stamps), dtype=float)
     low, high = (np.interp(rows + way, rows, stamps) for way in ACTS[acts])
-    parts = [current(low + (high - low) * (k + 0.5) / 8) for k in range(8)]
-    q = (size * np.sin(stamps[:, None] * w + phase)).sum(axis=1) + 2e-6 * random.standard_normal(len(stamps))
+    parts = [LINK.currents(*sines(low + (high - low) * (k + 0.5) / 8, phase)) for k in range(8)]
+    q = sines(stamps, phase)[0] + 2e-6 * random.standard_normal(len(stamps))
     return {"t": stamps, "q1": q, "i1": np.mean(parts, axis=0) + 5e-3 * random.standard_normal(len(stamps))}
 
 
@@ -63,7 +37,7 @@ def test_efforts_between_uneven_stamps_are_read_as_the_data_have_them(kind: str,
     made = found.to_json()["log"]
     assert made["rate"] == pytest.approx(100.0, rel=1e-3)  # what nobody read is not made up
     assert made["effort_instant"]["hold"] == acts, made["effort_instant"]
-    for name, value in TRUTH.items():
+    for name, value in LINK.parameters.items():
         p = found.parameters[name]
         assert abs(p.value - value) < 4.0 * p.std, name
 
