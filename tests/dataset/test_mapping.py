@@ -11,6 +11,7 @@ import pytest
 from dataset_support import AXIS, AXIS_LOG, AXIS_MAPPING, DRIVEN, FREE, T, counts_of, motion, write_csv
 
 from modelgen.dataset import described, prepare, read
+from modelgen.dataset.inspection.channels import inspect
 from modelgen.dataset.mapping.files import load_mapping
 from modelgen.dataset.mapping.formula import FormulaError, formula
 from modelgen.dataset.mapping.schema import mapping_json_schema
@@ -76,6 +77,31 @@ def test_the_hold_says_when_the_effort_was(hold: str, seconds: float, tmp_path: 
     record = read(write_csv(tmp_path / "a.csv", DRIVEN_LOG), DRIVEN, mapping)
     assert record.hold == pytest.approx(seconds)
     assert record.held == (hold == "following")
+
+
+def test_a_mapping_without_joints_says_the_rest_of_a_log_with_the_contracts_names(tmp_path: Path) -> None:
+    log = {"t": 1e3 * T, "q1": Q[:, 0], "q2": Q[:, 1], "i1": np.cos(T), "i2": np.sin(T)}
+    plain = read(write_csv(tmp_path / "plain.csv", log | {"t": T}), DRIVEN)
+    text = "schema: 1\nhold: 0.004\ntime: {unit: ms}\n"
+    record = read(write_csv(tmp_path / "a.csv", log), DRIVEN, written(tmp_path, text))
+    assert record.t == pytest.approx(plain.t)
+    assert record.q == pytest.approx(plain.q)
+    assert record.input == pytest.approx(plain.input)
+    assert (record.hold, record.hold_known) == (0.004, "mapping")
+    # units in the names are checked as without a mapping; the stamps' is what the mapping says
+    said = {
+        f"{name} [{unit}]": log[name] for name, unit in zip(log, ("us", "deg", "rad", "A", "A"), strict=True)
+    }
+    with pytest.raises(InputError, match="the file says that q1 is in deg, expected rad"):
+        read(write_csv(tmp_path / "said.csv", said), DRIVEN, written(tmp_path, text))
+    with pytest.raises(InputError, match="the column i2 or tau2 is missing"):
+        read(
+            write_csv(tmp_path / "b.csv", {k: v for k, v in log.items() if k != "i2"}),
+            DRIVEN,
+            written(tmp_path, text),
+        )
+    with pytest.raises(InputError, match="found no joints, expected them, or an arm too"):
+        inspect(tmp_path / "a.csv", None, written(tmp_path, text))
 
 
 def test_a_force_at_the_motor_is_divided_by_the_torque_constant(tmp_path: Path) -> None:

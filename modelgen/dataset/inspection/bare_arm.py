@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from modelgen.dataset.mapping.files import Foreign, load_mapping
+from modelgen.dataset.mapping.schema import JointModel
 from modelgen.dataset.mapping.units import EFFORTS, LENGTHS, POSITIONS
 from modelgen.description import Arm, loads
 
@@ -18,14 +19,15 @@ def arm_of(mapping: Path | str) -> Arm:
     Raises InputError for a mapping file with a mistake, and for units that a drive alone gives a meaning.
     """
     foreign = load_mapping(mapping)
-    joints = [_joint(foreign, k) for k in range(len(foreign.document.joints))]
+    if foreign.joints is None:
+        raise foreign.error("found no joints, expected them, or an arm too: modelgen inspect LOG ARMS", [])
+    joints = [_joint(foreign, k, model) for k, model in enumerate(foreign.joints)]
     text = {"schema": 1, "convention": "khalil_kleinfinger", "arms": {"log": {"joints": joints}}}
     return loads(json.dumps(text), str(mapping))["log"]
 
 
-def _joint(foreign: Foreign, k: int) -> dict[str, object]:
+def _joint(foreign: Foreign, k: int, model: JointModel) -> dict[str, object]:
     """The description of a joint: it slides where its position is a length."""
-    model = foreign.document.joints[k]
     position, effort = model.position, model.effort
     slides, at_motor = position.unit in LENGTHS, position.side == "motor"
     if position.unit not in {**POSITIONS["rad"], **LENGTHS} or (slides and at_motor):

@@ -24,22 +24,27 @@ from modelgen.numeric import Array
 class MappedReader:
     """A reader with the columns t, q<n> or qm<n>, dq<n>, ddq<n>, temperature<n>, i<n>, tau<n>, taum<n>, u<n>.
 
-    taum<n> is a force at the motor coordinate, u<n> a duty cycle or a voltage. Raises InputError where the
+    taum<n> is a force at the motor coordinate, u<n> a duty cycle or a voltage. named: the log's columns that
+    have such a name themselves, which are read where the mapping has no joints. Raises InputError where the
     mapping does not fit the arm or the file's columns.
     """
 
-    def __init__(self, foreign: Foreign, reader: Reader, arm: Arm, drives: Sequence[NumericDrive]) -> None:
+    def __init__(
+        self,
+        foreign: Foreign,
+        reader: Reader,
+        arm: Arm,
+        drives: Sequence[NumericDrive],
+        named: Sequence[str] = (),
+    ) -> None:
         self.foreign, self.reader, self.arm, self.drives = foreign, reader, arm, drives
         self.by_column = reader.by_column
         document = foreign.document
         n = len(drives)
-        if len(document.joints) != n:
-            joints = ", ".join(arm.coordinate_names)
-            raise foreign.error(
-                f"found {len(document.joints)} joints, expected {n}, the coordinates of {arm.name}: {joints}",
-                ["joints"],
-                key=True,
-            )
+        joints = foreign.joints
+        if joints is not None and len(joints) != n:
+            expected = f"expected {n}, the coordinates of {arm.name}: {', '.join(arm.coordinate_names)}"
+            raise foreign.error(f"found {len(joints)} joints, {expected}", ["joints"], key=True)
         self._remarks: list[str] = []
         self.effort_units: dict[str, str] = {}
         self._aliases = dict(document.names)
@@ -58,7 +63,9 @@ class MappedReader:
         self.origin = self._counted  # of the time t, in what the log's own stamps count from [s]
         self._signals: dict[str, Signal] = {}
         self._groups: dict[str, list[str]] = {}  # coupled columns by kind, in the order of the joints
-        for k, joint in enumerate(document.joints):
+        if joints is None:
+            self._signals = {name: Signal(formula(name, self._columns), 1.0, 0.0) for name in named}
+        for k, joint in enumerate(joints or ()):
             self._joint(k, joint)
         check_once(foreign, self._signals, self._aliases)
         self._coupling = foreign.matrices(n)

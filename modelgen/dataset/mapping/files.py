@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from modelgen.dataset.mapping import units
-from modelgen.dataset.mapping.schema import Document
+from modelgen.dataset.mapping.schema import Document, JointModel
 from modelgen.dataset.objects import Layout
 from modelgen.description.document import Node, Steps, parse, read_text
 from modelgen.description.expressions import ExpressionError, evaluate
@@ -55,6 +55,11 @@ class Foreign:
                 hint = "; with 4096 counts per revolution write unit: rev, scale: 1/4096"
             raise self.error(f"found the unit {describe(name)}{suggest(name, known)}{hint}", [*path, "unit"])
         return known[name]
+
+    @property
+    def joints(self) -> Sequence[JointModel] | None:
+        """What the joints' columns are; None where the log has them by the names of docs/logs.md."""
+        return self.document.joints
 
     @property
     def layout(self) -> Layout:
@@ -118,7 +123,7 @@ def load_mapping(path: Path | str) -> Foreign:
     foreign = Foreign(document, root)
     _ = foreign.hold
     foreign.unit(document.time.unit, units.TIMES, ["time"])
-    for i, joint in enumerate(document.joints):
+    for i, joint in enumerate(foreign.joints or ()):
         if joint.effort is not None:
             foreign.unit(joint.effort.unit, units.EFFORTS, ["joints", i, "effort"])
     return foreign

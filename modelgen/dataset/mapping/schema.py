@@ -112,8 +112,10 @@ class Document(Model):
     names: dict[str, str] = Field(
         default={}, description="Short names for columns whose own cannot be part of a formula."
     )
-    joints: Annotated[list[JointModel], Field(min_length=1)] = Field(
-        description="The joints, in the order of the arm's coordinates."
+    joints: Annotated[list[JointModel], Field(min_length=1)] | None = Field(
+        default=None,
+        description="The joints, in the order of the arm's coordinates. Default: by the names t, q1, i1, "
+        "in SI units.",
     )
     coupling: CouplingModel | None = Field(default=None, description="A coupled transmission.")
 

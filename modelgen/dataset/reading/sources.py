@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from modelgen.dataset.reading.bags import BagReader
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.renamed import by_contract
 from modelgen.dataset.reading.shape import other_unit, unit_word
-from modelgen.dataset.reading.signals import Signals, by_names, find_signals
+from modelgen.dataset.reading.signals import Signals, by_names, find_signals, is_signal
 from modelgen.dataset.reading.specs import Spec, parse
 from modelgen.dataset.reading.tables import open_table
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
@@ -61,7 +61,9 @@ class Source:
     @property
     def in_turn(self) -> bool:
         """Whether some rows may hold none of the columns: messages of a bag, or blank cells."""
-        inner = getattr(self.reader, "reader", self.reader)
+        inner = self.reader
+        while (within := getattr(inner, "reader", None)) is not None:
+            inner = within
         return isinstance(inner, BagReader) or bool(getattr(inner, "sparse", ()))
 
     @property
@@ -103,25 +105,28 @@ def open_source(
     spec = parse(log)
     drives = drives_of(arm)
     if mapping is None:
-        reader = by_contract(opened(spec))
-        if isinstance(reader, BagReader):
-            raise InputError(
-                f"{spec.text}: a bag needs a mapping file (--mapping) that names its columns: "
-                + listed(reader.names)
-            )
+        reader = _named(spec)
         signals = find_signals(spec.text, reader.names, arm, drives)
-        check_units(spec.text, reader, signals, arm, drives)
+        check_units(spec.text, getattr(reader, "units", {}), signals, arm, drives)
         timed = "t" in getattr(reader, "units", {})
         return Source(spec, reader, signals, drives, thresholds=thresholds, timed=timed)
     foreign = load_mapping(mapping)
-    logged = opened(spec, foreign.layout)
-    mapped = MappedReader(foreign, logged, arm, drives)
+    by_name = foreign.joints is None
+    logged = _named(spec, foreign.layout) if by_name else opened(spec, foreign.layout)
     time = foreign.document.time
+    named = [name for name in logged.names if name not in ("t", time.column) and is_signal(name)]
+    mapped = MappedReader(foreign, logged, arm, drives, named)
+    signals = find_signals(spec.text, mapped.names, arm, drives, mapped=not by_name)
+    if by_name:
+        said = {**getattr(logged, "units", {})}
+        if "unit" in time.model_fields_set:
+            said.pop("t", None)
+        check_units(spec.text, said, signals, arm, drives)
     declared = "unit" in time.model_fields_set or foreign.document.rate is not None
     return Source(
         spec,
         mapped,
-        find_signals(spec.text, mapped.names, arm, drives, mapped=True),
+        signals,
         drives,
         foreign.hold,
         foreign.positive(time.resample, ["time", "resample"]),
@@ -133,11 +138,21 @@ def open_source(
     )
 
 
+def _named(spec: Spec, layout: Layout | None = None) -> Reader:
+    """The log, under the names of docs/logs.md as far as it has them. Raises InputError for a bag."""
+    reader = by_contract(opened(spec, layout))
+    if isinstance(reader, BagReader):
+        raise InputError(
+            f"{spec.text}: a bag needs a mapping file (--mapping) that names its columns: "
+            + listed(reader.names)
+        )
+    return reader
+
+
 def check_units(
-    file: str, reader: Reader, signals: Signals, arm: Arm, drives: Sequence[NumericDrive]
+    file: str, said: Mapping[str, str], signals: Signals, arm: Arm, drives: Sequence[NumericDrive]
 ) -> None:
-    """Units that the file itself says must be those of docs/logs.md. Raises InputError."""
-    said: dict[str, str] = getattr(reader, "units", {})
+    """Units that the file itself says, by column, must be those of docs/logs.md. Raises InputError."""
     for name in signals.wanted:
         if name not in said:
             continue
