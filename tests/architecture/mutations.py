@@ -115,8 +115,8 @@ MUTATIONS = (
     Mutation(
         "adequacy",
         "lack_of_fit.py",
-        "self.between += float(squares.sum())",
-        "self.between += float(squares.max())",
+        "self.between += float(found.between.sum())",
+        "self.between += float(found.between.max())",
         "what repeats in every period is hardly seen",
         ("test_lack_of_fit.py",),
     ),

@@ -88,6 +88,41 @@ def test_noise_alone_is_not_found_in_many_records() -> None:
         assert not fit.found
 
 
+def uneven(kind: str, random: Generator) -> Array:
+    """What noise has more than elsewhere (2, PERIOD * PERIODS) at some rows of two records."""
+    more = random.normal(size=(2, PERIOD * PERIODS))
+    phase = np.arange(PERIOD * PERIODS) % PERIOD
+    if kind == "outliers":  # one reading in 300
+        return 30.0 * more * (random.random(more.shape) < 1 / 300)
+    if kind == "in a stretch of the period":
+        return 4.0 * more * ((phase > 300) & (phase < 360))
+    return 3.0 * more * np.array([[0.0], [1.0]])
+
+
+@pytest.mark.parametrize("kind", ["outliers", "in a stretch of the period", "in one record"])
+def test_noise_that_is_larger_in_places_is_no_lack_of_fit(kind: str) -> None:
+    """What repeats beside it is found as ever."""
+    found = 0
+    for k in range(20):
+        random = default_rng([6, k])
+        for repeats in (np.zeros(PERIOD), bump(6.0)):
+            made = system(k, repeats)
+            rows = [
+                replace(r, effort=r.effort + more[:, None])
+                for r, more in zip(made.rows, uneven(kind, random), strict=True)
+            ]
+            fit = lack_of_fit(system_of(rows, periods=made.periods))
+            assert fit is not None
+            if repeats.any():
+                assert fit.found
+                assert fit.worst.kind == PART
+                assert fit.worst.begin < BUMP.stop
+                assert fit.worst.end > BUMP.start
+            else:
+                found += fit.found
+    assert found <= 2
+
+
 def test_errors_of_the_positions_that_repeat_are_no_lack_of_fit() -> None:
     """Counts round the same motion alike: as large as the noise, they are found unless told of."""
     for seed in range(10):

@@ -13,13 +13,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 from scipy import special
 
 from modelgen.dataset.processing.periods import folded
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
+from modelgen.diagnosis.adequacy.scatter import Phases, Scatter
 from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.evidence import System, independent
 from modelgen.diagnosis.options.thresholds import AdequacyThresholds, EvidenceThresholds
@@ -97,7 +98,7 @@ class LackOfFit:
 
 @dataclass
 class _Sums:
-    """Sums of one joint between and within periods, and by record the squares of the means by phase.
+    """Sums of one joint between and within periods, and by record and phase.
 
     rounding: the sum that errors of the positions that repeat are expected to add between. limits: by which
     is tested.
@@ -110,7 +111,7 @@ class _Sums:
     within: float = 0.0
     free_between: float = 0.0
     free_within: float = 0.0
-    phases: list[tuple[int, Array, Array]] = field(default_factory=list)
+    phases: list[Phases] = field(default_factory=list)
 
     def add(self, record: int, table: Array, share: float, error: float) -> None:
         """A record of one joint, one line a period; `share` of its rows are independent. error: mean square
@@ -121,21 +122,32 @@ class _Sums:
         full = count >= 2
         if not full.any():
             return
-        part, k = table[:, full], count[full]
-        mean = np.nanmean(part, axis=0)
-        squares, free = np.zeros(len(full)), np.where(full, share, 0.0)
-        squares[full] = k * mean**2
-        self.between += float(squares.sum())
+        values, k = np.where(there & full, table, 0.0), np.where(full, count, 0)
+        mean = values.sum(axis=0) / np.maximum(k, 1)
+        within = np.where(there & full, values - mean, 0.0)
+        found = Phases(
+            record,
+            k * mean**2,
+            (within**2).sum(axis=0),
+            np.where(full, share, 0.0),
+            share * np.maximum(k - 1, 0),
+        )
+        self.phases.append(found)
         self.rounding += error * float(k.sum())
-        self.within += float(np.nansum((part - mean) ** 2))
-        self.free_between += float(free.sum())
-        self.free_within += share * float((k - 1).sum())
-        self.phases.append((record, squares, free))
+        self.between += float(found.between.sum())
+        self.within += float(found.within.sum())
+        self.free_between += float(found.free_between.sum())
+        self.free_within += float(found.free_within.sum())
+
+    @cached_property
+    def scatter(self) -> Scatter:
+        """Noise by record and phase."""
+        return Scatter(self.phases, self.limits.lack_of_fit_significance, self.limits.parts_of_period)
 
     @property
-    def chance(self) -> float:
-        """Sum between periods that a complete model leaves, for each independent phase."""
-        return self.within / self.free_within + self.rounding / self.free_between
+    def repeated(self) -> float:
+        """Mean square that rounding is expected to leave between periods, for each independent phase."""
+        return self.rounding / self.free_between
 
     def whole(self, joint: int, tests: int) -> Test:
         """Test all rows."""
@@ -143,27 +155,35 @@ class _Sums:
         if self.free_within < self.limits.min_scatter_rows or self.within <= 0:
             return Test(WHOLE, joint, 0.0, np.inf, size)
         free = max(self.limits.min_phase_rows, self.free_between)
-        statistic = (self.between / free) / self.chance
-        return Test(WHOLE, joint, statistic, self._quantile(free, tests), size)
+        statistic = (self.between / free) / (self.within / self.free_within + self.repeated)
+        noise = self.scatter.everywhere()
+        quantile = self._quantile(max(self.limits.min_phase_rows, noise.between), noise.within, tests)
+        return Test(WHOLE, joint, statistic, quantile, size)
 
     def parts(self, joint: int, tests: int) -> Iterator[Test]:
-        """Test every part of every record."""
+        """Test every part of every record.
+
+        Where residuals scatter clearly more than elsewhere, by outliers or by noise that grows, that is the
+        measure: the mean over periods has its share of it.
+        """
         limits, size = self.limits, inflation(PART, self.limits.null_share)
         if self.free_within < limits.min_scatter_rows or self.within <= 0:
             return
         tests *= 2 * limits.parts_of_period * len(self.phases)
-        for record, squares, free in self.phases:
-            for begin, end in parts(len(squares), limits.parts_of_period):
-                phases = np.arange(begin, end) % len(squares)
-                count = float(free[phases].sum())
+        for k, one in enumerate(self.phases):
+            rows = len(one.between)
+            for begin, end in parts(rows, limits.parts_of_period):
+                phases = np.arange(begin, end) % rows
+                count = float(one.free_between[phases].sum())
                 if count < limits.min_part_rows:
                     continue
-                statistic = (float(squares[phases].sum()) / count) / self.chance
-                quantile = self._quantile(count, tests)
-                yield Test(PART, joint, statistic, quantile, size, record, begin, end)
+                noise = self.scatter.at(k, phases)
+                statistic = float(one.between[phases].sum()) / count / (noise.square + self.repeated)
+                quantile = self._quantile(noise.between, noise.within, tests)
+                yield Test(PART, joint, statistic, quantile, size, one.record, begin, end)
 
-    def _quantile(self, free: float, tests: int) -> float:
-        return float(special.fdtri(free, self.free_within, 1 - self.limits.lack_of_fit_significance / tests))
+    def _quantile(self, between: float, within: float, tests: int) -> float:
+        return float(special.fdtri(between, within, 1 - self.limits.lack_of_fit_significance / tests))
 
 
 def parts(rows: int, count: int) -> Iterator[tuple[int, int]]:

@@ -1,0 +1,110 @@
+"""How much residuals differ between periods, phase by phase: noise need not be alike everywhere.
+
+One reading far off, or noise that grows with the speed, leaves as much in the mean over the periods as its
+share is; measured by what all rows differ, it would be a lack of fit. What rows of a record, a part of its
+period or half a part differ is their noise where it is clearly more than that of all, and sums over
+unlike noise have fewer degrees of freedom (Satterthwaite 1946).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy import special
+
+from modelgen.numeric import Array
+
+
+@dataclass(frozen=True)
+class Phases:
+    """Sums of one joint in a record (rows of the period,): between and within periods, and their degrees of
+    freedom.
+    """
+
+    record: int
+    between: Array
+    within: Array
+    free_between: Array
+    free_within: Array
+
+
+@dataclass(frozen=True)
+class Chance:
+    """What noise leaves between periods, for each independent phase: its mean square, and the degrees of
+    freedom of sums of it between and within periods.
+    """
+
+    square: float
+    between: float
+    within: float
+
+
+@dataclass
+class Scatter:
+    """Noise of one joint by record and phase, as clear as `significance` asks.
+
+    squares, free: mean square and degrees of freedom of each kind of noise, that of all rows first; kinds:
+    by record which of them a phase has (rows of the period,).
+    """
+
+    phases: Sequence[Phases]
+    significance: float
+    parts: int
+    squares: list[float] = field(init=False)
+    free: list[float] = field(init=False)
+    kinds: list[Array] = field(init=False)
+
+    def __post_init__(self) -> None:
+        free = sum(float(one.free_within.sum()) for one in self.phases)
+        self.squares = [sum(float(one.within.sum()) for one in self.phases) / free]
+        self.free = [free]
+        self.kinds = [np.zeros(len(one.within), dtype=np.int64) for one in self.phases]
+        for one, kinds in zip(self.phases, self.kinds, strict=True):
+            for pieces in (1, self.parts, 2 * self.parts):
+                for begin, end in even(len(kinds), pieces):
+                    self._look(one, kinds, slice(begin, end))
+
+    def at(self, record: int, phases: Array | slice = slice(None)) -> Chance:
+        """Of some phases of the record of that place among those that repeat."""
+        return self._chance([(self.phases[record].free_between[phases], self.kinds[record][phases])])
+
+    def everywhere(self) -> Chance:
+        """Of all phases of all records."""
+        rows = [(one.free_between, kinds) for one, kinds in zip(self.phases, self.kinds, strict=True)]
+        return self._chance(rows)
+
+    def _look(self, one: Phases, kinds: Array, piece: slice) -> None:
+        """Give a piece of a record a noise of its own where it is clearly another than that of its place."""
+        count = float(one.free_within[piece].sum())
+        if count <= 0.0:
+            return
+        own, here = float(one.within[piece].sum()) / count, int(kinds[piece][0])
+        ratio = own / self.squares[here] if self.squares[here] > 0.0 else 1.0
+        if ratio > self._quantile(count, self.free[here]):
+            kinds[piece] = len(self.squares)
+            self.squares.append(own)
+            self.free.append(count)
+        elif here and ratio < 1.0 / self._quantile(self.free[here], count):
+            kinds[piece] = 0  # beside a place that has more
+
+    def _quantile(self, first: float, second: float) -> float:
+        return float(special.fdtri(first, second, 1.0 - self.significance))
+
+    def _chance(self, rows: Sequence[tuple[Array, Array]]) -> Chance:
+        squares, free = np.array(self.squares), np.array(self.free)
+        count = sum(np.bincount(kinds, weights, len(squares)) for weights, kinds in rows)
+        sums = count * squares
+        total = float(sums.sum())
+        return Chance(
+            total / float(count.sum()),
+            total**2 / float((sums * squares).sum()),
+            total**2 / float((sums**2 / free).sum()),
+        )
+
+
+def even(rows: int, count: int) -> Iterator[tuple[int, int]]:
+    """First and last phase (exclusive) of each of `count` parts of `rows` phases."""
+    for k in range(count):
+        yield round(k * rows / count), round((k + 1) * rows / count)
