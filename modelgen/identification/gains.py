@@ -73,7 +73,7 @@ def estimated(
             name = arm.joints[arm.coordinates[j]].name
             raise InputError(
                 f"--gains estimated: these records do not determine the gain of joint {name}; expected a "
-                "heavier payload, or motions in which it loads that joint"
+                "heavier payload, motions in which it loads that joint, or it in another of the records"
             )
     found = []
     for k, j in enumerate(where):

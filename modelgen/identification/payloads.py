@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from modelgen.dataset import Chosen, Record, parse
+import numpy as np
+
+from modelgen.dataset import Chosen, Prepared, Record, parse
 from modelgen.description import Arm
 from modelgen.errors import InputError
+from modelgen.evaluation import Evaluator
+from modelgen.functions import Model
+from modelgen.functions.nominal import payload_base
 from modelgen.identification.cut_off import without_cut_off
+from modelgen.identification.validation import regression_of
+from modelgen.numeric import Array
 from modelgen.simulation.values import numbers
+
+CLEARLY = 4.0  # deviations by which a payload is not what was said
+NOTABLE = 0.1  # of the payload, which errors of the model may explain
 
 
 def payloads_of(
@@ -48,6 +59,47 @@ def at_the_origin(logs: Sequence[Any]) -> str:
         f"The payload of {names} counts as a point at the origin of the last link's frame: where is it? "
         "--payload LOG=KG,X,Y,Z says so, in metres in that frame."
     )
+
+
+def payload_questions(
+    train: Sequence[Prepared],
+    model: Model,
+    evaluator: Evaluator,
+    theta: Array,
+    payloads: Mapping[int, Sequence[float]],
+) -> list[str]:
+    """Questions about payloads that the efforts deny, set against the other training records.
+
+    Each record may have its payload so many times besides, beside parameters (p,) that all share. theta: for
+    columns that depend on the load [base]. payloads: known ones, by number of the record.
+    """
+    carrying = [k for k in range(len(train)) if k in payloads]
+    if len(carrying) == len(train):
+        carrying = carrying[1:]  # what all of them carry is a part of the last link
+    if not carrying:
+        return []
+    added = [payload_base(model, payloads.get(k, ())) for k in range(len(train))]
+    regression = regression_of(evaluator, model, train, theta, added)
+    wider = []
+    for k, columns in enumerate(regression.columns):
+        more = np.zeros((*columns.shape[:2], len(carrying)))
+        if k in carrying:
+            more[:, :, carrying.index(k)] = columns @ added[k]
+        wider.append(np.concatenate([columns, more], axis=2))
+    solution, size = replace(regression, columns=wider).solve(), len(theta)
+    spread = np.sqrt(np.maximum(np.diag(solution.covariance), 0.0))
+    asked = []
+    for i, k in enumerate(carrying, size):
+        other, std = float(solution.theta[i]), float(spread[i])
+        if solution.determined[i] and abs(other) > max(CLEARLY * std, NOTABLE):
+            mass, name = payloads[k][0], train[k].record.name
+            shown = f"{(1.0 + other) * mass:.3g} ± {std * mass:.1g} kg"
+            asked.append(
+                f"--payload {name}={mass:g}: beside the other training records its efforts show {shown}. Is "
+                "it the right record, the right mass in the right place, and are the torque constants right? "
+                "--gains estimated finds these from it."
+            )
+    return asked
 
 
 def without_cut_off_by_payload(

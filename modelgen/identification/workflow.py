@@ -46,7 +46,12 @@ from modelgen.identification.misread import Asked, check_reading, disagreeing
 from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
 from modelgen.identification.output import errors, to_json
-from modelgen.identification.payloads import at_the_origin, payloads_of, without_cut_off_by_payload
+from modelgen.identification.payloads import (
+    at_the_origin,
+    payload_questions,
+    payloads_of,
+    without_cut_off_by_payload,
+)
 from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.streamed import identify_streamed
 from modelgen.identification.validation import judged_by
@@ -211,7 +216,8 @@ def _whole(
     if options == Options():
         apart = [] if payloads else disagreeing(fitted, asked_of.alone, found.solution.sigma)
         about = _doubts(fitted, found, evaluator, payloads=bool(payloads))
-        found = replace(found, doubts=(*asked_of.questions, *apart, *about))
+        carried = payload_questions(fitted, model, evaluator, found.solution.theta, payloads)
+        found = replace(found, doubts=(*asked_of.questions, *apart, *about, *carried))
     if instant is not None:
         found = replace(found, doubts=(*found.doubts, *instant.questions()))
     found = replace(found, doubts=(*found.doubts, *worse_on_test(found, fitted)))
