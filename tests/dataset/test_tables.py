@@ -15,6 +15,7 @@ import pytest
 
 from modelgen.dataset import check_separate, read, read_columns
 from modelgen.dataset.inspection import skeleton
+from modelgen.dataset.inspection.channels import inspect
 from modelgen.description import loads
 from modelgen.errors import InputError
 from modelgen.extras import DASK, LOGS
@@ -242,6 +243,7 @@ def test_unsigned_readings_are_found_and_the_mapping_undoes_them(tmp_path: Path)
     message = r"the column i1 runs from \d+ to 655\d\d .* -1 is 65535; declare `bits: 16`"
     with pytest.raises(InputError, match=message):
         read(file, ARM)
+    assert any(re.search(message, remark) for remark in inspect(file).remarks)
     mapping = mapping_of(tmp_path)
     with pytest.raises(InputError, match=message):
         read(file, ARM, mapping)

@@ -22,7 +22,7 @@ from modelgen.dataset.reading.array_table import ArrayTable
 from modelgen.dataset.reading.clocks import Channels, repeated_in
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
-from modelgen.dataset.reading.plausible import doubtful_unit
+from modelgen.dataset.reading.plausible import counter, doubtful_unit
 from modelgen.dataset.reading.read import read_with_stamps
 from modelgen.dataset.reading.signals import by_names
 from modelgen.dataset.reading.sources import BLOCK, opened
@@ -35,6 +35,7 @@ from modelgen.numeric import Array
 _POSITION = re.compile(r"qm?[1-9][0-9]*")
 REST_SAMPLES = 5  # on either side, over which a position that stands does not move
 RESTING = 0.01  # of what it moves in as many samples otherwise
+COUNTED = ("current", "torque", "velocity")  # whose counters may be read as unsigned, or overflow
 SPIKE = 5.0  # of the 99 % quantile of the steps
 
 
@@ -108,11 +109,11 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
     spec = parse(log)
     reader = opened(spec)
     columns, rest = _columns(spec, reader)
-    remarks, said = list(reader.remarks), _said(reader)
+    remarks, units = list(reader.remarks), _said(reader)
     t = columns.get("t")
     stamps = time_of(columns) if t is None else None
     if stamps is not None:
-        unit = unit_of_time(columns[stamps], stamps, said.get(stamps, ""))
+        unit = unit_of_time(columns[stamps], stamps, units.get(stamps, ""))
         t = TIMES[unit] * (columns[stamps] - columns[stamps][0])
         remarks.append(
             f"no column t: times are those of {stamps}, in {unit} by a guess, from the first one on"
@@ -123,12 +124,15 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
     named = [values for name, values in readings.items() if _POSITION.fullmatch(name)]
     positions = named or [x for x in moving.values() if np.ptp(x) > 0.0]
     found = _inspected(
-        spec.text, t, [_channel(name, said.get(name, ""), x) for name, x in readings.items()], positions
+        spec.text, t, [_channel(name, units.get(name, ""), x) for name, x in readings.items()], positions
     )
     doubt = "" if math.isnan(found.rate) else doubtful_unit(1.0 / found.rate, USUAL)
     axis = np.arange(len(next(iter(columns.values()))), dtype=np.float64) if t is None else t
     found = replace(found, t=np.asarray(axis, dtype=np.float64), columns=columns)
     remarks += found.remarks
+    for name, x in readings.items():
+        if kind_of(name) in COUNTED and np.isfinite(x).all() and (said := counter(name, found.t, x)):
+            remarks.append(said)
     if t is not None and np.isfinite(t).all() and (np.diff(t) > 0.0).all():
         finite = [(name, x) for name, x in moving.items() if np.isfinite(x).all()]
         remarks += [jump for name, x in finite if (jump := jump_of((name,), t, x[:, None], USUAL))]

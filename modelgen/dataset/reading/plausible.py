@@ -63,24 +63,32 @@ def check_counters(
         if name not in asked:
             continue
         factor, offset = scales.get(name, (1.0, 0.0))
-        with np.errstate(over="ignore"):  # a wrong digit makes any number
-            values = (table[:, k] - offset) / factor
-            bits = unsigned_bits(np.round(values, 6))
-        if bits is not None:
-            raise InputError(
-                f"{file}: the column {name} runs from {values.min():.6g} to {values.max():.6g} with nothing "
-                f"in the middle: negative values read as unsigned, so that -1 is {2**bits - 1}; declare "
-                f"`bits: {bits}` for it in a mapping file (--mapping)"
-            )
-        found = overflows(values)
-        if found is not None:
-            m, more = int(found.places[0]), len(found.places) - 1
-            raise InputError(
-                f"{file}: the column {name} goes from {values[m]:.6g} to {values[m + 1]:.6g} after "
-                f"t = {table[m, 0]:.9g} s{f', and so in {more} more places' if more else ''}: a counter of "
-                f"{found.bits} bits overflows there; use the parts beside it, FILE@t0:t1, or log it with "
-                "more bits or in coarser steps"
-            )
+        said = counter(name, table[:, 0], (table[:, k] - offset) / factor)
+        if said:
+            raise InputError(f"{file}: {said}")
+
+
+def counter(name: str, t: Array, values: Array) -> str:
+    """What is wrong with a column (N,) of readings as logged, if it is a counter that is read wrongly; else
+    nothing. t: times (N,) [s].
+    """
+    with np.errstate(over="ignore"):  # a wrong digit makes any number
+        bits = unsigned_bits(np.round(values, 6))
+    if bits is not None:
+        return (
+            f"the column {name} runs from {values.min():.6g} to {values.max():.6g} with nothing in the "
+            f"middle: negative values read as unsigned, so that -1 is {2**bits - 1}; declare `bits: {bits}` "
+            "for it in a mapping file (--mapping)"
+        )
+    found = overflows(values)
+    if found is None:
+        return ""
+    m, more = int(found.places[0]), len(found.places) - 1
+    return (
+        f"the column {name} goes from {values[m]:.6g} to {values[m + 1]:.6g} after t = {t[m]:.9g} s"
+        f"{f', and so in {more} more places' if more else ''}: a counter of {found.bits} bits overflows "
+        "there; use the parts beside it, FILE@t0:t1, or log it with more bits or in coarser steps"
+    )
 
 
 @dataclass(frozen=True)
