@@ -93,6 +93,20 @@ def test_a_few_blank_cells_of_a_short_log_are_no_rows_in_turn(kind: str, tmp_pat
         logged(kind, tmp_path, columns)
 
 
+@pytest.mark.parametrize("kind", ["csv", "frame", "parquet"])
+def test_a_channel_may_begin_after_thousands_of_rows(kind: str, tmp_path: Path) -> None:
+    """Parquet is judged by its first rows; one that never begins is said by its name."""
+    t = np.arange(6000) / 500.0
+    columns = {"t": t, "q1": position(t), "i1": np.where(t < 10.0, np.nan, effort(t))}
+    record = logged(kind, tmp_path, columns)
+    assert (record.t[0], len(record.t)) == (pytest.approx(10.0), 1000)
+    assert "5000 rows are left out, for they are without i1" in record.remarks[-1]
+    with pytest.raises(InputError, match="the column i1 holds no readings"):
+        logged(kind, tmp_path, columns | {"i1": np.full(len(t), np.nan)})
+    spare = columns | {"i1": effort(t), "spare": np.full(len(t), np.nan)}
+    assert not logged(kind, tmp_path, spare).remarks
+
+
 def test_coarse_positions_and_slower_ones_keep_their_instants(tmp_path: Path) -> None:
     for columns in (in_turn(at(250.0), at(250.0, 0.002), digits=3), in_turn(at(100.0), at(1000.0, 0.0005))):
         record = read(from_csv(tmp_path, columns), ARM)

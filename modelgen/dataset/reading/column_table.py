@@ -55,7 +55,7 @@ class ColumnTable:
     def sparse(self) -> frozenset[str]:
         """Names of the columns of numbers that are blank in many rows, which are rows of several in turn."""
         blank = {name: np.isnan(x) for name in self.names if (x := self._values(name)).dtype.kind == "f"}
-        return frozenset(n for n, x in blank.items() if not x.all() and blank_in_many(int(x.sum()), x.size))
+        return frozenset(name for name, x in blank.items() if blank_in_many(int(x.sum()), x.size))
 
     @property
     def by_column(self) -> bool:

@@ -104,7 +104,7 @@ class ParquetReader:
             raise DamagedFileError(f"{self.path}: cannot be read on: {str(error).splitlines()[0]}") from None
 
     def _sparse(self) -> frozenset[str]:
-        """Columns that are blank in many of the first rows but not in all."""
+        """Columns that are blank in many of the first rows, perhaps in all of them."""
         import pyarrow  # noqa: PLC0415 - an extra
 
         types = pyarrow.types
@@ -117,7 +117,7 @@ class ParquetReader:
         except (OSError, KeyError, ValueError, StopIteration, pyarrow.ArrowException):
             return frozenset()  # what is damaged is found when it is read
         rows = batch.num_rows
-        return frozenset(n for n, count in blank.items() if count < rows and blank_in_many(count, rows))
+        return frozenset(name for name, count in blank.items() if blank_in_many(count, rows))
 
 
 def _seconds(column: Any, name: str, first: dict[str, int]) -> Array:
