@@ -15,6 +15,7 @@ from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.functions.nominal import payload_base
 from modelgen.identification.cut_off import without_cut_off
+from modelgen.identification.objects import Identification
 from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
 from modelgen.simulation.values import numbers
@@ -52,16 +53,31 @@ def payloads_of(
     return found
 
 
-def at_the_origin(logs: Sequence[Any]) -> str:
-    """What is assumed of payloads of which the mass alone is given."""
-    names = ", ".join(log if isinstance(log, str) else getattr(log, "name", "a table") for log in logs)
-    return (
-        f"The payload of {names} counts as a point at the origin of the last link's frame: where is it? "
-        "--payload LOG=KG,X,Y,Z says so, in metres in that frame."
-    )
-
-
 def payload_questions(
+    found: Identification,
+    train: Sequence[Prepared],
+    evaluator: Evaluator,
+    payloads: Mapping[int, Sequence[float]],
+    logs: Sequence[Any],
+) -> list[str]:
+    """Questions about known payloads: where they are, and how heavy where the efforts deny them.
+
+    payloads: by number of the log. logs: as they were given, the training logs first. Efforts from which the
+    torque constants were found by a payload cannot deny it.
+    """
+    denied = [] if found.gains else _denied(train, found.model, evaluator, found.solution.theta, payloads)
+    points = [log for k, log in enumerate(logs) if len(payloads.get(k, ())) == 1]
+    if not points:
+        return denied
+    names = ", ".join(log if isinstance(log, str) else getattr(log, "name", "a table") for log in points)
+    return [
+        *denied,
+        f"The payload of {names} counts as a point at the origin of the last link's frame: where is it? "
+        "--payload LOG=KG,X,Y,Z says so, in metres in that frame.",
+    ]
+
+
+def _denied(
     train: Sequence[Prepared],
     model: Model,
     evaluator: Evaluator,
@@ -71,7 +87,7 @@ def payload_questions(
     """Questions about payloads that the efforts deny, set against the other training records.
 
     Each record may have its payload so many times besides, beside parameters (p,) that all share. theta: for
-    columns that depend on the load [base]. payloads: known ones, by number of the record.
+    columns that depend on the load [base].
     """
     carrying = [k for k in range(len(train)) if k in payloads]
     if len(carrying) == len(train):

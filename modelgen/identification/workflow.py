@@ -46,12 +46,7 @@ from modelgen.identification.misread import Asked, check_reading, disagreeing
 from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
 from modelgen.identification.output import errors, to_json
-from modelgen.identification.payloads import (
-    at_the_origin,
-    payload_questions,
-    payloads_of,
-    without_cut_off_by_payload,
-)
+from modelgen.identification.payloads import payload_questions, payloads_of, without_cut_off_by_payload
 from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.streamed import identify_streamed
 from modelgen.identification.validation import judged_by
@@ -216,14 +211,11 @@ def _whole(
     if options == Options():
         apart = [] if payloads else disagreeing(fitted, asked_of.alone, found.solution.sigma)
         about = _doubts(fitted, found, evaluator, payloads=bool(payloads))
-        carried = payload_questions(fitted, model, evaluator, found.solution.theta, payloads)
-        found = replace(found, doubts=(*asked_of.questions, *apart, *about, *carried))
+        found = replace(found, doubts=(*asked_of.questions, *apart, *about))
     if instant is not None:
         found = replace(found, doubts=(*found.doubts, *instant.questions()))
-    found = replace(found, doubts=(*found.doubts, *worse_on_test(found, fitted)))
-    points = [log for k, log in enumerate([*train, *test]) if len(payloads.get(k, ())) == 1]
-    if points:
-        found = replace(found, doubts=(*found.doubts, at_the_origin(points)))
+    carried = payload_questions(found, fitted, evaluator, payloads, [*train, *test])
+    found = replace(found, doubts=(*found.doubts, *worse_on_test(found, fitted), *carried))
     found = judged_by(found, held, None if payloads or options != Options() else evaluator)
     found = with_noise(found, options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()

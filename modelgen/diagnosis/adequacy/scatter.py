@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from modelgen.numeric import Array
@@ -54,19 +55,19 @@ class Scatter:
     parts: int
     squares: list[float] = field(init=False)
     free: list[float] = field(init=False)
-    kinds: list[Array] = field(init=False)
+    kinds: list[NDArray[np.intp]] = field(init=False)
 
     def __post_init__(self) -> None:
         free = sum(float(one.free_within.sum()) for one in self.phases)
         self.squares = [sum(float(one.within.sum()) for one in self.phases) / free]
         self.free = [free]
-        self.kinds = [np.zeros(len(one.within), dtype=np.int64) for one in self.phases]
+        self.kinds = [np.zeros(len(one.within), dtype=np.intp) for one in self.phases]
         for one, kinds in zip(self.phases, self.kinds, strict=True):
             for pieces in (1, self.parts, 2 * self.parts):
                 for begin, end in even(len(kinds), pieces):
                     self._look(one, kinds, slice(begin, end))
 
-    def at(self, record: int, phases: Array | slice = slice(None)) -> Chance:
+    def at(self, record: int, phases: NDArray[np.intp]) -> Chance:
         """Of some phases of the record of that place among those that repeat."""
         return self._chance([(self.phases[record].free_between[phases], self.kinds[record][phases])])
 
@@ -75,7 +76,7 @@ class Scatter:
         rows = [(one.free_between, kinds) for one, kinds in zip(self.phases, self.kinds, strict=True)]
         return self._chance(rows)
 
-    def _look(self, one: Phases, kinds: Array, piece: slice) -> None:
+    def _look(self, one: Phases, kinds: NDArray[np.intp], piece: slice) -> None:
         """Give a piece of a record a noise of its own where it is clearly another than that of its place."""
         count = float(one.free_within[piece].sum())
         if count <= 0.0:
@@ -92,9 +93,9 @@ class Scatter:
     def _quantile(self, first: float, second: float) -> float:
         return float(special.fdtri(first, second, 1.0 - self.significance))
 
-    def _chance(self, rows: Sequence[tuple[Array, Array]]) -> Chance:
+    def _chance(self, rows: Sequence[tuple[Array, NDArray[np.intp]]]) -> Chance:
         squares, free = np.array(self.squares), np.array(self.free)
-        count = sum(np.bincount(kinds, weights, len(squares)) for weights, kinds in rows)
+        count = np.sum([np.bincount(kinds, weights, len(squares)) for weights, kinds in rows], axis=0)
         sums = count * squares
         total = float(sums.sum())
         return Chance(
