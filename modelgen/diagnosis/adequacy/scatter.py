@@ -46,8 +46,8 @@ class Chance:
 class Scatter:
     """Noise of one joint by record and phase, as clear as `significance` asks.
 
-    squares, free: mean square and degrees of freedom of each kind of noise, that of all rows first; kinds:
-    by record which of them a phase has (rows of the period,).
+    squares, free: mean square and degrees of freedom of each kind of noise, the usual one first; kinds: by
+    record which of them a phase has (rows of the period,).
     """
 
     phases: Sequence[Phases]
@@ -58,14 +58,27 @@ class Scatter:
     kinds: list[NDArray[np.intp]] = field(init=False)
 
     def __post_init__(self) -> None:
-        free = sum(float(one.free_within.sum()) for one in self.phases)
-        self.squares = [sum(float(one.within.sum()) for one in self.phases) / free]
-        self.free = [free]
         self.kinds = [np.zeros(len(one.within), dtype=np.intp) for one in self.phases]
-        for one, kinds in zip(self.phases, self.kinds, strict=True):
-            for pieces in (1, self.parts, 2 * self.parts):
-                for begin, end in even(len(kinds), pieces):
-                    self._look(one, kinds, slice(begin, end))
+        for _ in range(self.parts):  # a place that has more makes that of all rows too large
+            before = self.kinds
+            usual = [(one, kinds == 0) for one, kinds in zip(self.phases, before, strict=True)]
+            free = sum(float(one.free_within[there].sum()) for one, there in usual)
+            if free <= 0.0:
+                break
+            self.squares = [sum(float(one.within[there].sum()) for one, there in usual) / free]
+            self.free = [free]
+            self.kinds = [np.zeros_like(kinds) for kinds in before]
+            for one, kinds in zip(self.phases, self.kinds, strict=True):
+                for pieces in (1, self.parts, 2 * self.parts):
+                    for begin, end in even(len(kinds), pieces):
+                        self._look(one, kinds, slice(begin, end))
+            if all(map(np.array_equal, before, self.kinds)):
+                break
+        # Errors of the parameters, which noise anywhere makes, repeat where there is little of it too.
+        free = sum(float(one.free_within.sum()) for one in self.phases)
+        every = sum(float(one.within.sum()) for one in self.phases) / free
+        self.squares = [every, *(max(every, own) for own in self.squares[1:])]
+        self.free[0] = free
 
     def at(self, record: int, phases: NDArray[np.intp]) -> Chance:
         """Of some phases of the record of that place among those that repeat."""
