@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from modelgen.dataset import Prepared
-from modelgen.dataset.processing.rounding import LONGEST, resolution
+from modelgen.dataset.processing.rounding import effort_steps
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
 from modelgen.identification.effort_limits import gain_of, logged_of, motion_of
@@ -32,7 +32,7 @@ def with_rounding(
     places of the steps, and fitted like the log's (Cook and Stefanski 1994). Noise of half a step or more
     makes rounding noise itself, and adds next to nothing.
     """
-    steps = [_steps(p) for p in train]
+    steps = [effort_steps(p.record, COARSE) for p in train]
     if not any(x.any() for x in steps):
         return solution
     inputs, moves = [ideal(p, model, evaluator, solution.theta) for p in train], list[Array]()
@@ -93,19 +93,6 @@ def _within(x: Samples, step: float) -> Samples:
     return Samples(x.columns, value, side, width)
 
 
-def _steps(p: Prepared) -> Array:
-    """Steps (n,) of the logged efforts that are coarse, 0 where they are fine or have none."""
-    found, logged = np.zeros(p.n), p.record.logged_effort
-    if logged is None:
-        return found
-    for k, effort in enumerate(logged[:LONGEST].T):
-        levels = np.unique(effort)
-        step = float(np.ptp(levels)) if len(levels) == 2 else resolution(effort)
-        if step is not None and step / np.sqrt(12.0) > COARSE * np.sqrt(np.mean(effort**2)):
-            found[k] = step
-    return found
-
-
 def ideal(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """Inputs (N, n) of the model along a record."""
     motion = Motion(p.time, p.q, p.dq, p.ddq)
@@ -116,11 +103,13 @@ def _rounding(p: Prepared, inputs: Array, steps: Array, random: np.random.Genera
     """Errors (M, n) of the rows of a record, of another rounding of its inputs `inputs` (N, n)."""
     assert p.input is not None
     gain = np.ones_like(inputs) if p.gain is None else p.gain
-    errors = np.zeros_like(inputs)
+    smooth, errors = p.smooth(inputs * gain), np.zeros_like(inputs)
     for k in np.flatnonzero(steps):
-        step, logged = steps[k], inputs[:, k] * gain[:, k]
-        left = (p.input[:, k] * gain[:, k] - logged)[p.awake[:, k]]
-        noise = np.sqrt(max(float(np.mean(left**2)) - step**2 / 12.0, 0.0)) if len(left) else 0.0
+        step, logged = steps[k], smooth[:, k]
+        # noise of the accelerations is in the one, jumps of friction are not in the other
+        left = [(p.input[:, k] * gain[:, k] - y)[p.awake[:, k]] for y in (inputs[:, k] * gain[:, k], logged)]
+        squares = min(float(np.mean(x**2)) for x in left) if len(left[0]) else 0.0
+        noise = np.sqrt(max(squares - step**2 / 12.0, 0.0))
         place = step * random.uniform()
         noisy = logged + noise * random.normal(size=len(logged)) + place
         errors[:, k] = (step * np.rint(noisy / step) - noisy) / gain[:, k]

@@ -49,6 +49,7 @@ CONSTANTS = {
         "SECANTS": ACCURACY,
         "SETTLED": BUDGET,
     },
+    "equations/effort_errors.py": {"SEED": SEED, "HALVINGS": ACCURACY},
     "equations/position_errors.py": {"SEED": SEED, "THIRD": FORMULA},
     "equations/prior.py": {"NOTHING": ROUNDING},
     "evidence/likelihood.py": {

@@ -17,7 +17,7 @@ from modelgen.dataset.couplings import couplings_of
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.objects import Record
 from modelgen.dataset.processing.decimation import Decimation, decimation, kept
-from modelgen.dataset.processing.filters import advanced, smoothed
+from modelgen.dataset.processing.filters import advanced, low_pass, smoothed
 from modelgen.dataset.processing.rest import (
     beside_turns,
     directed,
@@ -100,6 +100,16 @@ class Prepared:
             part = table[:, k : k + COLUMNS]
             result[:, k : k + COLUMNS] = kept(part, self.rows, chosen.cutoff, rate, chosen.order)
         return result.reshape((len(self.rows), *columns.shape[1:]))
+
+    def smooth(self, columns: Array) -> Array:
+        """Columns (N, k) at full rate without the noise of the accelerations that they are made of: (N, k).
+
+        Through the parallel filter, where there is one.
+        """
+        chosen = self.settings
+        if not chosen.cutoff:
+            return columns
+        return low_pass(columns, chosen.cutoff, 1.0 / self.record.step, chosen.order)
 
     @cached_property
     def weights(self) -> Array:

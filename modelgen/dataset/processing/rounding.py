@@ -1,4 +1,6 @@
-"""Rounding of the positions: its step, as the readings show it, and its noise, which follows from that."""
+"""Rounding of positions and efforts: its step, as the readings show it, and its errors, which follow from
+that.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from modelgen.dataset.drives import drives_of
 from modelgen.dataset.objects import Record
 from modelgen.numeric import Array
 
+WAVES = 8  # of the sawtooth of rounding errors: noise of a twelfth of a step leaves no more
 LONGEST = 1 << 18  # samples that a step is read off
 _WHOLE = 0.01  # of a step, by which a multiple of it may miss a whole number
 # The same where a log has few digits for its counts, and of how many differences, which chance does not have:
@@ -40,6 +43,47 @@ def resolution(values: Array) -> float | None:
 def step_of(values: Array) -> float:
     """Resolution of a log's readings (N,) as its first ones show it, in their unit; 0 where there is none."""
     return resolution(values[:LONGEST]) or 0.0
+
+
+def effort_steps(record: Record, share: float) -> Array:
+    """Steps (n,) of the logged efforts whose rounding is more than a share of them, 0 where it is less or
+    they have none. Root mean squares.
+    """
+    logged = record.logged_effort
+    found = np.zeros(record.n)
+    if logged is None:
+        return found
+    for k, effort in enumerate(logged[:LONGEST].T):
+        levels = np.unique(effort)
+        step = float(np.ptp(levels)) if len(levels) == 2 else resolution(effort)
+        if step is not None and step / np.sqrt(12.0) > share * np.sqrt(np.mean(effort**2)):
+            found[k] = step
+    return found
+
+
+def mean_error(values: Array, step: float, noise: float) -> Array:
+    """Error (N,) that rounding to a step has on average where noise of a deviation is added before.
+
+    The sawtooth of the values (N,) through the noise's characteristic function (Widrow 1956).
+    """
+    error = np.zeros(len(values))
+    for k in range(1, WAVES + 1):
+        size = step / (np.pi * k) * np.exp(-2.0 * (np.pi * k * noise / step) ** 2)
+        error += (-1.0) ** k * size * np.sin(2.0 * np.pi * k * values / step)
+    return error
+
+
+def mean_error_power(step: float, noise: float) -> float:
+    """Mean square of `mean_error` over values anywhere in a step."""
+    k = np.arange(1, WAVES + 1)
+    return float(np.sum((step / (np.pi * k)) ** 2 * np.exp(-4.0 * (np.pi * k * noise / step) ** 2)) / 2.0)
+
+
+def scatter_of(step: float, noise: float) -> float:
+    """Variance of readings rounded to a step, of a value with noise of a deviation: of the noise, and of the
+    rounding errors what their mean is not.
+    """
+    return noise**2 + step**2 / 12.0 - mean_error_power(step, noise)
 
 
 def position_steps(record: Record) -> Array:

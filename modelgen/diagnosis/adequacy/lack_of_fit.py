@@ -100,8 +100,8 @@ class LackOfFit:
 class _Sums:
     """Sums of one joint between and within periods, and by record and phase.
 
-    rounding: the sum that errors of the positions that repeat are expected to add between. limits: by which
-    is tested.
+    rounding: the sum that rounded readings that repeat are expected to add between. limits: by which is
+    tested.
     """
 
     limits: AdequacyThresholds
@@ -113,9 +113,9 @@ class _Sums:
     free_within: float = 0.0
     phases: list[Phases] = field(default_factory=list)
 
-    def add(self, record: int, table: Array, share: float, error: float) -> None:
-        """A record of one joint, one line a period; `share` of its rows are independent. error: mean square
-        of what errors of its positions leave alike in every period.
+    def add(self, record: int, table: Array, share: float, errors: Array) -> None:
+        """A record of one joint, one line a period; `share` of its rows are independent. errors: the same
+        of what rounded readings leave alike in every period.
         """
         there = np.isfinite(table)
         count = there.sum(axis=0)
@@ -131,9 +131,10 @@ class _Sums:
             (within**2).sum(axis=0),
             np.where(full, share, 0.0),
             share * np.maximum(k - 1, 0),
+            np.where(there & full, errors**2, 0.0).sum(axis=0),
         )
         self.phases.append(found)
-        self.rounding += error * float(k.sum())
+        self.rounding += float(found.rounding.sum())
         self.between += float(found.between.sum())
         self.within += float(found.within.sum())
         self.free_between += float(found.free_between.sum())
@@ -164,7 +165,7 @@ class _Sums:
         """Test every part of every record.
 
         Where residuals scatter clearly more than elsewhere, by outliers or by noise that grows, that is the
-        measure: the mean over periods has its share of it.
+        measure: the mean over periods has its share of it. Nor is rounding alike everywhere.
         """
         limits, size = self.limits, inflation(PART, self.limits.null_share)
         if self.free_within < limits.min_scatter_rows or self.within <= 0:
@@ -178,7 +179,8 @@ class _Sums:
                 if count < limits.min_part_rows:
                     continue
                 noise = self.scatter.at(k, phases)
-                statistic = float(one.between[phases].sum()) / count / (noise.square + self.repeated)
+                rounding = max(self.repeated, float(one.rounding[phases].sum()) / count)
+                statistic = float(one.between[phases].sum()) / count / (noise.square + rounding)
                 quantile = self._quantile(noise.between, noise.within, tests)
                 yield Test(PART, joint, statistic, quantile, size, one.record, begin, end)
 
@@ -241,10 +243,9 @@ def _tests(system: System) -> tuple[list[Test], int]:
         for j in range(n):
             moving = r.moving[:, j]
             table = folded(np.where(moving, system.residuals[i][:, j], np.nan), rows)
-            repeated = r.repeated[moving, j] if r.repeated is not None else np.zeros(0)
-            error = float((repeated**2).mean()) if len(repeated) else 0.0
+            errors = np.zeros(table.shape) if r.repeated is None else folded(r.repeated[:, j], rows)
             share = independent_rows(table, limits.evidence)
-            sums[j].add(i, table, share, error)
+            sums[j].add(i, table, share, errors)
     found = [s.whole(j, n) for j, s in enumerate(sums)]
     return found + [t for j, s in enumerate(sums) for t in s.parts(j, n)], most
 

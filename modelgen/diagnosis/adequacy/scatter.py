@@ -20,8 +20,8 @@ from modelgen.numeric import Array
 
 @dataclass(frozen=True)
 class Phases:
-    """Sums of one joint in a record (rows of the period,): between and within periods, and their degrees of
-    freedom.
+    """Sums of one joint in a record (rows of the period,): between and within periods, their degrees of
+    freedom, and what rounding is expected to add between.
     """
 
     record: int
@@ -29,6 +29,7 @@ class Phases:
     within: Array
     free_between: Array
     free_within: Array
+    rounding: Array
 
 
 @dataclass(frozen=True)

@@ -69,11 +69,14 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             "takes finer ones to see"
         )
     if remains.feigned.max() > (least if _in_doubt(selection, remains) else LARGER_PART):
-        joint = names[int(np.argmax(remains.feigned))]
+        worst = int(np.argmax(remains.feigned))
+        what, finer = "the positions are too coarse or too noisy", _finer(selection)
+        if _steps_of_effort(selection, worst):
+            what = "the efforts are logged in steps that are too coarse"
+            finer = "finer steps, or a motion that differs from period to period,"
         return "cannot_tell", (
-            "the positions are too coarse or too noisy: their errors alone could feign a gain of "
-            f"{remains.feigned.max():.1f} % at {joint}, and nothing explains more; "
-            f"{_finer(selection)} can tell"
+            f"{what}: their errors alone could feign a gain of {remains.feigned.max():.1f} % at "
+            f"{names[worst]}, and nothing explains more; {finer} can tell"
         )
     if fit is None:
         more = ": excite with three or more identical periods (--period says how long where it is not found)"
@@ -104,6 +107,13 @@ def _in_doubt(selection: Selection, remains: Remains) -> bool:
     """
     deterministic = remains.fit is None or remains.fit.found or remains.likeness is not None
     return deterministic or any(r.refused == "positions" for turn in selection.turns for r in turn)
+
+
+def _steps_of_effort(selection: Selection, joint: int) -> bool:
+    """Whether the rounding of its efforts is the larger part of what errors leave at a joint (from 0)."""
+    equations = selection.system.equations
+    every, efforts = (np.broadcast_to(x, equations.n)[joint] for x in (equations.blur, equations.stepped))
+    return bool(2.0 * efforts > every)
 
 
 def _finer(selection: Selection) -> str:

@@ -23,7 +23,8 @@ class Equations:
 
     model: of the arm as described. evaluator: of the inputs that the arm, or a changed one, needs along the
     records' motions. rows: of each record. periods: rows in a period of each record, None where nothing
-    repeats. blur: what errors of the positions leave in the residuals, mean squares by joint (n,). narrowed:
+    repeats. blur: what errors of the positions, and those of efforts in steps that repeat, leave in the
+    residuals, mean squares by joint (n,); stepped: of it that of the efforts. narrowed:
     the usual cut-off over that of these equations. thresholds: by which everything made of them decides.
     apart: of the arm with the inertia of drives that its parameters hold with their links', None where there
     is none: what is elastic lies between the two.
@@ -35,6 +36,7 @@ class Equations:
     periods: Sequence[int | None]
     thresholds: Thresholds
     blur: Array = field(default_factory=lambda: np.zeros(1))
+    stepped: Array = field(default_factory=lambda: np.zeros(1))
     narrowed: float = 1.0
     apart: Evaluator | None = None
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, Record, drives_of, prepare
 from modelgen.dataset.processing.content import white_noise
+from modelgen.diagnosis.equations.effort_errors import left_by_rounded_efforts
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.options.thresholds import EquationThresholds
@@ -98,20 +99,24 @@ def blurred(prepared: Prepared, limits: EquationThresholds, which: NDArray[np.bo
 
 
 def with_errors(equations: Equations, theta: Array) -> Equations:
-    """The equations with what errors of the positions leave where that repeats, and with its mean squares,
-    where it repeats or not, as `blur`. theta: unknowns (k,) of a first fit.
+    """The equations with what errors of positions and efforts leave where that repeats, and with its mean
+    squares, those of the positions where they do not repeat too. theta: unknowns (k,) of a first fit.
     """
     which = repeating_errors(equations)
-    total, found = np.zeros(len(which)), []
-    for r in equations.rows:
+    total, efforts, found = np.zeros(len(which)), np.zeros(len(which)), []
+    for r, period in zip(equations.rows, equations.periods, strict=True):
         every = _left_by_errors(r, equations, theta)
         total += (every**2 * r.moving).sum(axis=0)
-        some = None
+        some = left_by_rounded_efforts(r, period, equations, theta)
+        if some is not None:
+            efforts += (some**2 * r.moving).sum(axis=0)
         if which.any():
-            some = every if which.all() else _left_by_errors(r, equations, theta, which)
+            of_positions = every if which.all() else _left_by_errors(r, equations, theta, which)
+            some = of_positions if some is None else some + of_positions
         found.append(replace(r, repeated=some))
-    blur = np.asarray(total / np.maximum(moving_rows(equations.rows), 1.0))
-    return replace(equations, rows=found, blur=blur)
+    moving = np.maximum(moving_rows(equations.rows), 1.0)
+    blur, stepped = (total + efforts) / moving, efforts / moving
+    return replace(equations, rows=found, blur=blur, stepped=stepped)
 
 
 def _left_by_errors(

@@ -24,7 +24,7 @@ __all__ = ["Array", "Rows", "rows_of"]
 class Rows:
     """M rows of n joints. effort: (M, n) as the model has its inputs, less what is known of them; columns:
     (M, n, p), one for each unknown of the baseline; moving: (M, n), rows that count. repeated: (M, n), a draw
-    of what rounded positions leave in the residuals, if that repeats with the motion; None if nothing does.
+    of what rounded readings leave in the residuals, if that repeats with the motion; None if nothing does.
     """
 
     prepared: Prepared

@@ -47,6 +47,7 @@ class Gates:
         self.equations, self.rows = system.equations, system.rows
         self.limits = system.equations.thresholds.validation
         self.blur = np.broadcast_to(self.equations.blur, system.n)
+        self.stepped = np.broadcast_to(self.equations.stepped, system.n)
         self.old = with_causes(self.equations, before)
         self.counts = moving_rows(self.rows)
         formed = [t.candidate for t in before if not _known_form(t.candidate)]
@@ -82,9 +83,10 @@ class Gates:
         refitted = _gains(again)[places]
         least = np.full(len(places), in_band(self._least(trial), self.equations.narrowed))
         least = np.maximum(least, self.forms.least(trial.candidate)[places])
-        could = feigned(self.blur[places], (again[0] / self._tried(split))[places])
+        left = (again[0] / self._tried(split))[places]
+        could = feigned(self.blur[places], left)
         if (could > least).any() and instrumented(trial, self.system):
-            could = np.zeros(len(places))
+            could = feigned(self.stepped[places], left)  # which no instrument is free of
         doubtful = not self.system.noise_known or _feignable(trial.candidate)
         strict = np.array([doubtful or j in self.taken for j in places], dtype=bool) | (could > least)
         anew = strict & (refitted >= np.maximum(least, self.limits.position_error_factor * could))
