@@ -19,7 +19,7 @@ from modelgen.diagnosis.adequacy import (
     verdict_of,
     without_indistinguishable,
 )
-from modelgen.diagnosis.candidates import Candidate, asked, at_motor, candidates
+from modelgen.diagnosis.candidates import Candidate, Place, asked, at_motor, candidates
 from modelgen.diagnosis.equations import Band, Equations, feigned, harmless
 from modelgen.diagnosis.evidence import Endogeneity, endogeneity, mean_squares
 from modelgen.diagnosis.options import Options
@@ -68,14 +68,19 @@ class Decision:
 def decide(band: Band, options: Options, progress: Progress | None = None) -> Decision:
     """What these equations say. Raises InputError where none of the effects can be asked for."""
     equations = band.equations
-    pool = _pool(band, options)
-    selection = forward_selection(equations, pool, progress, options.where)
-    selection, every = in_pairs(selection, pool, equations, progress, options.where)
-    before = selection
-    suspects = [e for e in every if e.failed]
-    selection = selection.without([e.cause for e in suspects], SUSPECT) if suspects else selection
-    named = [c.trial.candidate for c in selection.causes]
-    equal = aliases(named, pool, equations, selection.system.base) if named else []
+    pool = tried = _pool(band, options)
+    while True:
+        selection = forward_selection(equations, tried, progress, options.where)
+        selection, every = in_pairs(selection, tried, equations, progress, options.where)
+        before = selection
+        suspects = [e for e in every if e.failed]
+        selection = selection.without([e.cause for e in suspects], SUSPECT) if suspects else selection
+        named = [c.trial.candidate for c in selection.causes]
+        equal = aliases(named, pool, equations, selection.system.base) if named else []
+        twice = _said_twice(named, equal)
+        if not twice:
+            break
+        tried = [c for c in tried if c.place not in twice]
     selection, unclear = without_indistinguishable(selection, equal)
     if unclear:
         equal = []
@@ -94,6 +99,20 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     verdict, reason = verdict_of(selection, remains)
     causes = [e for e in every if any(e.cause.trial.candidate == c.trial.candidate for c in selection.causes)]
     return Decision(band, selection, causes, suspects, before, equal, remains, correlated, verdict, reason)
+
+
+def _said_twice(named: Sequence[Candidate], equal: Sequence[Sequence[Candidate]]) -> set[Place]:
+    """Causes that are aliases of one named before them: what no motion tells apart explains nothing twice.
+
+    Only the little in which large values of them differ, of the other sign each, would be explained: no law
+    of theirs.
+    """
+    places = [c.place for c in named]
+    return {
+        place
+        for k, place in enumerate(places)
+        if any(place == other.place for before in equal[:k] for other in before)
+    }
 
 
 def in_pairs(
