@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from modelgen.dataset import Prepared, prepare
+from modelgen.dataset import Prepared
 from modelgen.dataset.processing.rounding import LONGEST, resolution
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
@@ -17,12 +17,11 @@ from modelgen.identification.cut_off import LEVELS
 from modelgen.identification.objects import DIAGNOSING, Doubt
 from modelgen.identification.slow_turns import SAID as WRONG
 from modelgen.identification.slow_turns import slow_turns
-from modelgen.identification.validation import regression_of
+from modelgen.identification.validation import beginning, regression_of
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression, Solution
 
 CLEARLY = 5.0  # standard deviations, which hold that residuals of neighbouring rows hang together
-ROWS = 100  # per parameter, of a record that is asked
 POWER = 5  # of the model's effort over its largest: what a channel lacks that is cut off, sharply or softly
 COARSE = 2.0  # deviations of the effort, from which on its rounding is no noise beside it (Widrow 1956)
 ZERO, SHORT = 0.1, 0.5  # of the squares that are left, which a constant and a curve explain at least
@@ -47,7 +46,7 @@ def effort_questions(
     if any(p.record.input is None or p.record.arm is None for p in train):
         return []
     try:
-        found = _Beside([_beginning(p, model) for p in train], model, evaluator)
+        found = _Beside([beginning(p, model) for p in train], model, evaluator)
         if not found.enough:
             return []
         constants = found.explained(np.ones_like)
@@ -88,12 +87,6 @@ def _coarse(train: Sequence[Prepared], j: int) -> bool:
     if not 0 < len(np.unique(moving)) < LEVELS:
         return len(moving) > 0 and (resolution(moving) or 0.0) > COARSE * float(np.std(moving))
     return True
-
-
-def _beginning(p: Prepared, model: Model) -> Prepared:
-    """The part of a record that is asked."""
-    enough = 2 * p.settings.trimmed(p.record.step) + ROWS * len(model.grouping.base) * p.settings.factor
-    return p if enough >= len(p.record.t) else prepare(p.record.part(0, enough), p.settings)
 
 
 class _Beside:

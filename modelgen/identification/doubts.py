@@ -109,36 +109,28 @@ def worse_on_test(found: Identification, train: Sequence[Prepared]) -> list[str]
     return said
 
 
-def check_sign(
+def of_other_sign(
     train: Sequence[Prepared],
     model: Model,
     evaluator: Evaluator,
     theta: Array,
     covariance: Array,
     determined: NDArray[np.bool_],
-    driving: Sequence[int],
-) -> None:
-    """Refuse efforts that are counted the other way, by a joint's friction and its inertia or weight.
-
-    One of them alone may be what the model lacks. driving: numbers of the coordinates, from 1, whose friction
-    is below zero. Raises InputError.
+    part: float | None = None,
+) -> list[int]:
+    """Coordinates (from 0) whose own inertia is below zero, or whose weight has the other sign than that of
+    the nominal links, of base parameters theta (p,) by poses of the records. determined: flags (p,). part: of
+    the efforts, that an inertia makes up to be looked at.
     """
-    if not driving:
-        return
     q, ddq, efforts = _poses(train)
     at_rest = _columns(model, evaluator, q, np.zeros_like(q), theta)
-    below = _below_zero(model, evaluator, (q, ddq, efforts), at_rest, theta, covariance, determined)
+    poses = q, ddq, efforts
+    below = _below_zero(model, evaluator, poses, at_rest, theta, covariance, determined, part)
     links = _links(model)
     if links[1]:
         scales = _weights(model, gains(model.arm, q), at_rest, links, theta, determined)
         below += [j for j, scale in scales.items() if scale < -1.0 / FACTOR]
-    both = [model.arm.joints[model.arm.coordinates[j - 1]].name for j in driving if j - 1 in below]
-    if both:
-        raise InputError(
-            f"{train[0].record.name}: friction at {', '.join(both)} comes out below zero, and inertia or "
-            "weight with the other sign; expected efforts that act in the direction of the positions: is "
-            "their sign the other way round, or that of torque_constant?"
-        )
+    return below
 
 
 def _poses(train: Sequence[Prepared]) -> tuple[Array, Array, Array]:
@@ -163,6 +155,7 @@ def _below_zero(
     theta: Array,
     covariance: Array,
     determined: NDArray[np.bool_],
+    part: float | None = None,
 ) -> list[int]:
     """Coordinates whose own inertia is below zero clearly, at most of the poses: no body has that.
 
@@ -174,7 +167,7 @@ def _below_zero(
         alone[:, j] = 1.0
         row = (_columns(model, evaluator, q, alone, theta) - at_rest)[:, j]
         made = float(np.linalg.norm((row @ theta) * accelerations[:, j]))
-        if made < PART * float(np.linalg.norm(efforts[:, j])):
+        if made < (PART if part is None else part) * float(np.linalg.norm(efforts[:, j])):
             continue
         row = row * np.sign(drives[j].gain(q[:, j]))[:, None]
         if row[:, ~determined].any():

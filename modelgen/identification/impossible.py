@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from modelgen.effects import CATALOGUE
-from modelgen.identification.objects import Estimate, Impossible, WorseThanNone
+from modelgen.identification.objects import DIAGNOSING, Estimate, Impossible, WorseThanNone
 
 CLEARLY = 3.0  # standard deviations
 
@@ -27,18 +27,25 @@ def driving(estimates: Sequence[Estimate]) -> list[Estimate]:
     ]
 
 
-def driven(estimates: Sequence[Estimate], joints: Sequence[str]) -> list[Impossible]:
+def driven(
+    estimates: Sequence[Estimate], joints: Sequence[str], *, signs_tried: bool = False
+) -> list[Impossible]:
     """A question where parameters of effects that are never negative come out below zero clearly.
 
-    joints: names of the coordinates.
+    joints: names of the coordinates. signs_tried: whether the other sign of the efforts was tried in vain.
     """
     negative = driving(estimates)
     if not negative:
         return []
     where = [joints[j - 1] for j in sorted({e.joint for e in negative})]
+    asked = (
+        f"The model lacks something there{DIAGNOSING}: the other sign of the efforts explains no more."
+        if signs_tried
+        else "Is the sign of the efforts the other way round, or that of torque_constant?"
+    )
     text = (
         f"Impossible: {', '.join(e.name for e in negative)} below zero, which would drive "
-        f"{', '.join(where)}. Is the sign of the efforts the other way round, or that of torque_constant?"
+        f"{', '.join(where)}. {asked}"
     )
     return [Impossible(text, where)]
 

@@ -117,7 +117,7 @@ class Identification:
     """Parameters that the training records give an arm, and its errors on the test records.
 
     gains: torque constants that were found; `arm` has them. doubts: about what no arm has, or the described
-    one has not.
+    one has not. signs_tried: whether the other signs of the efforts were tried, and explain no more.
     """
 
     arm: Arm
@@ -130,6 +130,7 @@ class Identification:
     comparison: Comparison | None = None
     gains: tuple[Gain, ...] = ()
     doubts: tuple[str, ...] = ()
+    signs_tried: bool = False
 
     def poor(self) -> list[tuple[int, Estimate]]:
         """Parameters that are poorly determined, with their numbers: of themselves and in the effort, where a

@@ -50,7 +50,8 @@ def determined(found: Identification) -> str:
 
 def questions(found: Identification) -> list[str]:
     """What makes the description or the records doubtful."""
-    return [*driven(found.estimates, found.arm.coordinate_names), *found.doubts]
+    names = found.arm.coordinate_names
+    return [*driven(found.estimates, names, signs_tried=found.signs_tried), *found.doubts]
 
 
 def remarks(found: Identification) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, interp1d
 
-from modelgen.dataset import Prepared
+from modelgen.dataset import Prepared, prepare
 from modelgen.dataset.processing.filters import row_autocorrelation
 from modelgen.dataset.processing.periods import period_of, rows_in
 from modelgen.errors import InputError
@@ -24,6 +24,7 @@ from modelgen.regression.least_squares import Regression
 # true ones err by this much more where noise has made a value this much squared too small (Fuller 1987, 1.1).
 FAR_WORSE = 3.0
 AROUND = 2.0  # samples, by which the period may be off that a record is said to have
+ROWS = 100  # per parameter, of the beginning of a record that is asked about what it holds
 LAGS = 13  # rows after which filtered noise hangs together no more
 
 
@@ -128,6 +129,12 @@ def held_against(found: Identification, test: Sequence[Prepared], evaluator: Eva
     other = validate(evaluator, found.model, test, both.solution.theta)
     weak = bool((other.rmse > FAR_WORSE * own.rmse).any())
     return replace(found, comparison=replace(both, weak=weak))
+
+
+def beginning(p: Prepared, model: Model) -> Prepared:
+    """The part of a record that is enough to ask what it holds."""
+    enough = 2 * p.settings.trimmed(p.record.step) + ROWS * len(model.grouping.base) * p.settings.factor
+    return p if enough >= len(p.record.t) else prepare(p.record.part(0, enough), p.settings)
 
 
 def rows_in_period(p: Prepared) -> int | None:

@@ -33,20 +33,20 @@ from modelgen.dataset.reading.jumps import check_jumps
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
-from modelgen.functions import Model, Options, build_model
+from modelgen.functions import Options, build_model
+from modelgen.functions.nominal import payload_base
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification.channels import effort_questions
 from modelgen.identification.cut_off_streamed import streamed_limits
-from modelgen.identification.doubts import check_sign, doubts, worse_on_test
+from modelgen.identification.doubts import worse_on_test
 from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
-from modelgen.identification.impossible import driving
-from modelgen.identification.misread import Asked, check_reading, disagreeing
+from modelgen.identification.misread import Asked, disagreeing
 from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
 from modelgen.identification.output import errors, to_json
 from modelgen.identification.payloads import payload_questions, payloads_of, without_cut_off_by_payload
+from modelgen.identification.questions import doubts_of, misread
 from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.streamed import identify_streamed
 from modelgen.identification.validation import judged_by
@@ -206,16 +206,17 @@ def _whole(
         )
 
     model, evaluator = build_model(arm, options.evaluated), Evaluator(reduced(arm, options))
-    asked_of = _misread(fitted, held, model, evaluator) if options == Options() else Asked()
+    asked_of = misread(fitted, held, model, evaluator) if options == Options() else Asked()
     found = identified(fitted, held)
     if options == Options():
         apart = [] if payloads else disagreeing(fitted, asked_of.alone, found.solution.sigma)
-        about = _doubts(fitted, found, evaluator, payloads=bool(payloads))
-        found = replace(found, doubts=(*asked_of.questions, *apart, *about))
+        carried = [payload_base(model, payloads.get(k, ())) for k in range(len(fitted))]
+        about = doubts_of(fitted, found, evaluator, carried if payloads else None)
+        found = replace(found, doubts=(*asked_of.questions, *apart, *about), signs_tried=True)
     if instant is not None:
         found = replace(found, doubts=(*found.doubts, *instant.questions()))
-    carried = payload_questions(found, fitted, evaluator, payloads, [*train, *test])
-    found = replace(found, doubts=(*found.doubts, *worse_on_test(found, fitted), *carried))
+    of_payloads = payload_questions(found, fitted, evaluator, payloads, [*train, *test])
+    found = replace(found, doubts=(*found.doubts, *worse_on_test(found, fitted), *of_payloads))
     found = judged_by(found, held, None if payloads or options != Options() else evaluator)
     found = with_noise(found, options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()
@@ -228,31 +229,6 @@ def _whole(
         parts = folds(training, o.folds, chosen, identified)
     log = inspect_records(fitted, testing, chosen, periods, instant=instant)
     return Outcome(found, others, fitted[0], chosen, log, parts)
-
-
-def _misread(
-    train: Sequence[Prepared], test: Sequence[Prepared], model: Model, evaluator: Evaluator
-) -> Asked:
-    """Questions about training records that may hold something else than is read; test records are asked too.
-
-    Raises InputError.
-    """
-    asked = check_reading(train, model, evaluator)
-    if test:
-        check_reading(test, model, evaluator)
-    return asked
-
-
-def _doubts(
-    train: Sequence[Prepared], found: Identification, evaluator: Evaluator, *, payloads: bool = False
-) -> tuple[str, ...]:
-    """Questions about what was found. Raises InputError where the efforts are counted the other way."""
-    s = found.solution  # as the data have it: consistent parameters hide what is impossible
-    plain = [replace(e, value=float(x)) for e, x in zip(found.estimates, s.theta, strict=True)]
-    joints = sorted({e.joint for e in driving(plain)})
-    check_sign(train, found.model, evaluator, s.theta, s.covariance, s.determined, joints)
-    asked = [] if payloads else effort_questions(train, found.model, evaluator)
-    return (*asked, *doubts(train, found.model, evaluator, s.theta, s.covariance, s.determined))
 
 
 def _streamed(
@@ -305,10 +281,10 @@ def _streamed(
     heads = [prepare(limits.without(record), chosen) for record in begun]
     if options == Options():
         evaluator = Evaluator(reduced(arm, options))
-        asked_of = _misread(heads, testing, found.model, evaluator)
+        asked_of = misread(heads, testing, found.model, evaluator)
         apart = disagreeing(heads, asked_of.alone, found.solution.sigma)
-        about = (*asked_of.questions, *apart, *_doubts(heads, found, evaluator))
-        found = replace(found, doubts=(*about, *worse_on_test(found, heads)))
+        about = (*asked_of.questions, *apart, *doubts_of(heads, found, evaluator))
+        found = replace(found, doubts=(*about, *worse_on_test(found, heads)), signs_tried=True)
     if instant is not None:
         found = replace(found, doubts=(*found.doubts, *instant.questions()))
     found = with_noise(found, options, testing, False)
