@@ -18,6 +18,7 @@ from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.result import Diagnosis, reported
 from modelgen.errors import InputError
 from modelgen.identification.misread import check_reading
+from modelgen.identification.signs import check_signs
 from modelgen.jobs import one_thread
 
 
@@ -58,6 +59,7 @@ def decided(study: Study, options: Options, progress: Progress | None = None) ->
     for band in bands(study):
         check_reading([r.prepared for r in band.equations.rows], study.model, study.evaluator)
         check_efforts(band.equations)
+        check_signs([r.prepared for r in band.equations.rows], study.model, study.evaluator)
         check_one_arm(band)
         decision = decide(band, options, progress)
         if decision.verdict != "cannot_tell":

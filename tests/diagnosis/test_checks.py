@@ -343,6 +343,29 @@ def test_a_joint_that_a_value_means_is_called_by_its_name() -> None:
     assert "ratio is -1.00, may be" in check.text
 
 
+@pytest.mark.parametrize(("surplus", "passed"), [(-0.5, True), (-1.998, False), (-1.0, False)])
+def test_a_cause_whose_value_no_arm_has_beside_the_others_is_not_admissible(
+    surplus: float, passed: bool
+) -> None:
+    """Efforts of the other sign look like a torque constant below zero; no stand-in for that is shown."""
+    cause, _ = chosen(effect="viscous_friction")
+    alone, beside = (
+        replace(
+            cause.trial,
+            candidate=Candidate("drive_gain_error", 2),
+            values={},
+            gain=replace(cause.trial.gain, values=np.array([x])),
+        )
+        for x in (0.002, surplus)
+    )
+    equations: Any = SimpleNamespace(arm=ARM, n=2, rows=[], thresholds=USUAL)
+    check = admissible(replace(cause, trial=alone), equations, beside)
+    assert check.decides
+    assert check.passed is passed
+    assert "99999" not in check.text
+    assert ("error beyond what it may be, -0.9" in check.text) is not passed
+
+
 def check_of_delay(joint: int | None, delay: float, joints: int, hold: float, known: str) -> Check:
     """The check of a delay [s]. hold: of the log [s], whose sampling period is 0.01 s; known: from what."""
     cause, _ = chosen(effect="time_delay")

@@ -14,6 +14,7 @@ from modelgen.diagnosis.adequacy.explained import explained
 from modelgen.diagnosis.adequacy.figures_said import (
     FREE_FUNCTION,
     ahead_of,
+    beyond,
     claimed,
     form_said,
     percent,
@@ -22,7 +23,7 @@ from modelgen.diagnosis.adequacy.figures_said import (
 )
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
 from modelgen.diagnosis.adequacy.log_delay import out_of_step
-from modelgen.diagnosis.candidates import FittedCandidate, with_causes
+from modelgen.diagnosis.candidates import FittedCandidate, beyond_bounds, with_causes
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.options.thresholds import in_band
 from modelgen.diagnosis.selection import (
@@ -60,15 +61,15 @@ def examined(selection: Selection, equations: Equations) -> list[Examined]:
             (
                 _evidence(cause, selection),
                 significant(k, selection, equations, stable[k].widened),
-                admissible(cause, equations),
+                admissible(cause, equations, solved),
                 _gain(cause, equations),
                 _undominated(dominance(cause, selection), equations.arm),
                 *complete,
                 stable[k],
             ),
         )
-        for k, (cause, complete) in enumerate(
-            zip(selection.causes, _complete(selection, equations), strict=True)
+        for k, (cause, solved, complete) in enumerate(
+            zip(selection.causes, selection.solved, _complete(selection, equations), strict=True)
         )
     ]
     return of_those_that_stay(ended_by_suspects(every), selection, equations)
@@ -209,10 +210,14 @@ def significance_of(
     return Check("significant", found >= least, True, found, least, f"{text}; {number(least)} is asked")
 
 
-def admissible(cause: Cause, equations: Equations) -> Check:
-    """Whether its values can be those of an arm, as far as these records tell. equations: of the band."""
+def admissible(cause: Cause, equations: Equations, solved: FittedCandidate | None = None) -> Check:
+    """Whether its values can be those of an arm, as far as these records tell. equations: of the band.
+
+    solved: the cause with the values that it has beside all others, where these are known.
+    """
     c = cause.trial.candidate
-    why = c.definition.impossible(equations.arm, c.joint, cause.trial.parameters)
+    why = "" if solved is None else beyond(beyond_bounds(solved))
+    why = why or c.definition.impossible(equations.arm, c.joint, cause.trial.parameters)
     why = why or out_of_step(cause, equations)
     said = why or possible(cause, equations.arm)
     return Check("admissible", not why, True, float("nan"), float("nan"), said)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from modelgen.description import Arm
 from modelgen.diagnosis.adequacy.free_form import FreeForm
 from modelgen.diagnosis.candidates import FittedCandidate
 from modelgen.diagnosis.selection import Cause
+from modelgen.effects import Parameter
 from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
 
@@ -31,6 +32,12 @@ def possible(cause: Cause, arm: Arm) -> str:
         if p.name in values
     ]
     return f"its values can be those of an arm: {'; '.join(said)}" if said else "it has no values of its own"
+
+
+def beyond(parameters: Sequence[Parameter]) -> str:
+    """That these come out beyond what they may be beside all other causes, a clause; empty for none."""
+    said = [f"{p.name} beyond what it may be, {range_said(*p.bounds)}" for p in parameters]
+    return f"beside all others it comes out with {' and '.join(said)}" if said else ""
 
 
 def claimed(cause: FittedCandidate) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from modelgen.diagnosis.candidates.columns import (
 from modelgen.diagnosis.candidates.fitted import (
     FittedCandidate,
     beside,
+    beyond_bounds,
     named,
     sensible,
     system_of,
@@ -42,6 +43,7 @@ __all__ = [
     "at_links",
     "at_motor",
     "beside",
+    "beyond_bounds",
     "candidate_columns",
     "candidates",
     "check_one_arm",

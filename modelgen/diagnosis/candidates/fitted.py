@@ -11,7 +11,7 @@ from modelgen.diagnosis.candidates.candidate import Candidate, Values
 from modelgen.diagnosis.candidates.prior_odds import beyond_plausible, place_penalty
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import Evidence, System
-from modelgen.effects import described
+from modelgen.effects import Parameter, described
 from modelgen.errors import InputError
 from modelgen.evaluation import with_effect
 from modelgen.numeric import Array
@@ -66,6 +66,16 @@ def with_causes(equations: Equations, trials: Sequence[FittedCandidate]) -> list
 def system_of(equations: Equations, trials: Sequence[FittedCandidate], noise: System | None = None) -> System:
     """The equations with the causes' columns. noise: a system whose noise they have."""
     return System(equations, with_causes(equations, trials), noise)
+
+
+def beyond_bounds(trial: FittedCandidate) -> list[Parameter]:
+    """Parameters that act in no proportion, whose values no arm has."""
+    found = trial.parameters
+    return [
+        p
+        for p in trial.candidate.definition.nonlinear
+        if p.name in found and not p.bounds[0] <= found[p.name] <= p.bounds[1]
+    ]
 
 
 def beside(trial: FittedCandidate, system: System) -> Evidence | None:

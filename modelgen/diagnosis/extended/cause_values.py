@@ -66,13 +66,7 @@ def bounded_fit(rows: Sequence[Rows], own: Sequence[OwnParameter]) -> Array:
 
 def valued(selection: Selection) -> Selection:
     """The selection with the values of its causes as the extended model is fitted: by the plain equations."""
-    causes = []
-    for cause, own in zip(selection.causes, selection.columns, strict=True):
-        trial, values = cause.trial, selection.system.theta[own]
-        if not trial.candidate.elastic:  # which are as they were simulated
-            values = np.where(trial.candidate.positive, np.maximum(values, 0.0), values)
-            trial = replace(trial, gain=replace(trial.gain, values=values))
-        causes.append(replace(cause, trial=trial))
+    causes = [replace(c, trial=t) for c, t in zip(selection.causes, selection.solved, strict=True)]
     return replace(selection, causes=causes)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
+from modelgen.diagnosis.candidates import beyond_bounds
 from modelgen.diagnosis.equations import Equations, Rows, Unknowns, estimated, held, rows_of, rows_twice
 from modelgen.diagnosis.extended.cause_values import as_fitted, bounded_fit, own_parameters, valued
 from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
@@ -16,7 +17,8 @@ from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
 from modelgen.diagnosis.selection import Selection, refit_elastic
 from modelgen.effects import CATALOGUE, Family, applied_effects, described
-from modelgen.effects.placement import extended_arm
+from modelgen.effects.placement import extended_arm, titled
+from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import EVALUATED, Model, build_model
 from modelgen.numeric import Array
@@ -68,10 +70,23 @@ def extend(arm: Arm, selection: Selection, equations: Equations) -> Extension:
     base = selection.system.base
     inertias, selection, split = split_drive_inertia(selection, equations)
     selection = valued(refit_elastic(selection, split))
+    _check(arm, selection)
     before = fitted(arm, equations.model, equations.rows)
     after = extended(before, selection, split)
     selection = as_fitted(selection, after.model, after.parameters)
     return Extension(selection, split, base, inertias, before, after)
+
+
+def _check(arm: Arm, selection: Selection) -> None:
+    """Raises InputError where a cause that passed has no value that an arm can have beside all the rest."""
+    for trial in (c.trial for c in selection.causes):
+        for p in beyond_bounds(trial):
+            name, (low, high) = titled(arm, *trial.candidate.place), p.bounds
+            raise InputError(
+                f"{arm.name}: beside all others, {name} comes out with a value that no arm has ({p.name} may "
+                f"be {low:g} to {high:g}); are signs and units of the efforts, ratio and torque_constant "
+                "right?"
+            )
 
 
 def fitted(arm: Arm, model: Model, rows: Sequence[Rows]) -> FittedModel:

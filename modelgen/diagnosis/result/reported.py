@@ -167,7 +167,7 @@ def _impossible(
         return ()
     model, names = after.model, after.arm.coordinate_names
     spread = np.array([parameters[b.name].std for b in model.grouping.base])
-    found = driven(estimates_of(model, after.parameters, spread), names)
+    found = driven(estimates_of(model, after.parameters, spread), names, signs_tried=True)
     if not any(c.trial.candidate.elastic for c in extension.selection.causes):  # its links lag at any pose
         train = [r.prepared for r in after.rows]
         fit = after.parameters, covariance, np.diag(covariance) > 0.0

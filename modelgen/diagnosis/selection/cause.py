@@ -59,6 +59,18 @@ class Selection:
         ends = self.system.equations.unknowns + np.cumsum([0, *counts])
         return [slice(int(begin), int(end)) for begin, end in pairwise(ends)]
 
+    @property
+    def solved(self) -> list[FittedCandidate]:
+        """The causes' candidates with the values that the system has; elastic ones as they were simulated."""
+        found = []
+        for cause, own in zip(self.causes, self.columns, strict=True):
+            trial, values = cause.trial, self.system.theta[own]
+            if not trial.candidate.elastic:
+                values = np.where(trial.candidate.positive, np.maximum(values, 0.0), values)
+                trial = replace(trial, gain=replace(trial.gain, values=values))
+            found.append(trial)
+        return found
+
     def without(self, lost: Sequence[Cause], why: str) -> Selection:
         """Take causes out; the turns say why."""
         kept = [c for c in self.causes if all(c is not other for other in lost)]
