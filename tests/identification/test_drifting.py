@@ -1,0 +1,72 @@
+"""Currents whose sensor's zero drifts over a record are asked about: weight takes up a part of that."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from geared_link import LINK, sines
+from made_up_plants import CONSTANT, PERIOD, PLAIN, WAVES, description, motion
+
+import modelgen as mg
+from modelgen.description import loads
+
+ONE = loads(LINK.description(values=False))["one"]
+TWO = loads(description(2))["made_up"]
+Table = dict[str, np.ndarray]
+
+
+def of_link(seed: int, drift: float = 0.0) -> Table:
+    """Two periods of the link at 200 Hz. drift: of its current's zero, over the record [A]."""
+    random = np.random.default_rng([31, seed])
+    t = np.arange(0.0, 16.0, 0.005)
+    q, dq, ddq = sines(t, random.uniform(0.0, 2 * np.pi, 4))
+    noise = 0.02 * random.normal(size=len(t))
+    return {"t": t, "q1": q, "i1": LINK.currents(q, dq, ddq) + drift * t / 16.0 + noise}
+
+
+def of_arm(seed: int, drift: float = 0.0) -> Table:
+    """Five periods of the planar arm with dry friction at 250 Hz. drift: at its second joint [A]."""
+    random = np.random.default_rng([32, seed])
+    t = np.arange(0.0, 5 * PERIOD, 0.004)
+    q, dq, ddq = motion(t, random.uniform(0.0, 2 * np.pi, (2, len(WAVES))))
+    current = PLAIN[2].currents(q, dq, ddq) + np.sign(dq) * np.divide((0.018, 0.011), CONSTANT)
+    current[:, 1] += drift * t / t[-1]
+    current += 0.01 * random.normal(size=q.shape)
+    return {"t": t, "q1": q[:, 0], "q2": q[:, 1], "i1": current[:, 0], "i2": current[:, 1]}
+
+
+def asked(arm: mg.Arm, logs: list[Table]) -> list[str]:
+    """Questions about a drift."""
+    doubts = mg.identify(arm, logs[:2], logs[2]).to_json()["doubts"]
+    return [x for x in doubts if "drift away from the model's" in x]
+
+
+@pytest.mark.parametrize("signs", [(1, 1), (1, -1), (0, 1)])
+def test_a_drift_is_asked_about_with_its_size_in_each_record(signs: tuple[int, int]) -> None:
+    (said,) = asked(ONE, [*(of_link(k, 0.2 * sign) for k, sign in enumerate(signs)), of_link(2)])
+    assert said.startswith("The efforts of hip drift away from the model's, by ")
+    shown = re.findall(r"(-?[\d.]+) ± ([\d.e-]+) A in 16 s of (\S+?)[,:] ", said)
+    expected = {f"train[{k}]": 0.2 * sign for k, sign in enumerate(signs) if sign}
+    assert {name for _, _, name in shown} == expected.keys()
+    for size, std, name in shown:
+        assert abs(float(size) - expected[name]) < 4 * float(std)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_drift_at_one_joint_of_two_is_asked_about_there(seed: int) -> None:
+    (said,) = asked(TWO, [of_arm(3 * seed + k, 0.15) for k in range(3)])
+    assert said.startswith("The efforts of j2 drift away")
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_sound_log_of_a_link_raises_no_question(seed: int) -> None:
+    logs = [of_link(100 + 3 * seed + k) for k in range(3)]
+    assert mg.identify(ONE, logs[:2], logs[2]).to_json()["doubts"] == []
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_sound_log_of_an_arm_raises_no_question(seed: int) -> None:
+    logs = [of_arm(100 + 3 * seed + k) for k in range(3)]
+    assert mg.identify(TWO, logs[:2], logs[2]).to_json()["doubts"] == []
