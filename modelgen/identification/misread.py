@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,8 +63,10 @@ def _fit(p: Prepared, model: Model, evaluator: Evaluator) -> Unexplained | None:
         return fit
     total, found = float(np.sqrt(np.mean(fit.share**2))), []
     for reading in (*readings(record, fit), *amounts(record, fit, p, model, evaluator)):
-        other = unexplained(reading.record, p, model, evaluator)
-        if other is not None:
+        like = replace(p, settings=reading.settings(chosen))
+        other = unexplained(reading.record, like, model, evaluator)
+        # What leaves a joint at rest that moves explains nothing of it.
+        if other is not None and not ((other.share == 0.0) & (fit.share > 0.0)).any():
             found.append((float(np.sqrt(np.mean(other.share**2))), reading.question))
     best, question = min(found, default=(math.inf, ""))
     if best < min(BETTER * total, POOR):

@@ -9,7 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from modelgen.dataset import Prepared, Record, drives_of, prepare
+from modelgen.dataset import Chosen, Prepared, Record, drives_of, prepare
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
@@ -25,10 +25,23 @@ TURN = 2 * math.pi  # rad, or m
 
 @dataclass(frozen=True)
 class Reading:
-    """A record as it may be, and the question whether it is."""
+    """A record as it may be, and the question whether it is. faster: times (n,) that its speeds are those of
+    the log as it stands; empty: they are alike.
+    """
 
     record: Record
     question: str
+    faster: tuple[float, ...] = ()
+
+    def settings(self, chosen: Chosen) -> Chosen:
+        """The settings of the log as it stands, with those of rest for these speeds."""
+        if not self.faster:
+            return chosen
+        gates, noise = (
+            tuple(x * times for x, times in zip(values, self.faster, strict=True))
+            for values in (chosen.gates, chosen.noise)
+        )
+        return replace(chosen, gates=gates, noise=noise)
 
 
 def readings(record: Record, fit: Unexplained) -> Iterator[Reading]:
@@ -43,9 +56,11 @@ def readings(record: Record, fit: Unexplained) -> Iterator[Reading]:
     wide = [bool(np.ptp(record.q[:, k]) > TURN) and not sides[k] for k in range(record.n)]
     angles = [k for k, j in enumerate(joints) if j.type == "revolute" and wide[k]]
     if angles:
-        q = record.q.copy()
-        q[:, angles] *= math.pi / 180
-        yield Reading(replace(record, q=q), "are the positions in degrees")
+        faster = np.ones(record.n)
+        faster[angles] = math.pi / 180
+        whose = "" if len(angles) == record.n else f" ({', '.join(f'q{k + 1}' for k in angles)})"
+        degrees = replace(record, q=record.q * faster)
+        yield Reading(degrees, f"are the positions in degrees{whose}", tuple(faster.tolist()))
     geared = [
         k
         for k, drive in enumerate(drives_of(arm))
@@ -53,10 +68,14 @@ def readings(record: Record, fit: Unexplained) -> Iterator[Reading]:
     ]
     for some in [geared, *([k] for k in geared if len(geared) > 1)]:
         if some:
-            q = record.q.copy()
-            q[:, some] /= np.array([drives_of(arm)[k].ratio for k in some], dtype=float)
+            slower = np.ones(record.n)
+            slower[some] = [drives_of(arm)[k].ratio for k in some]
             names = ", ".join(f"q{k + 1}" for k in some)
-            yield Reading(replace(record, q=q), f"are the positions {names} those of the motors (qm<n>)")
+            yield Reading(
+                replace(record, q=record.q / slower),
+                f"are the positions {names} those of the motors (qm<n>)",
+                tuple((1.0 / np.abs(slower)).tolist()),
+            )
     yield from _joint_angles(record)
     yield from _reversed(record)
     yield from _against_the_base(record)
@@ -97,7 +116,9 @@ def _joint_angles(record: Record) -> Iterator[Reading]:
     names = ", ".join(f"qm{k + 1}" for k in some)
     logged = tuple(side and k not in some for k, side in enumerate(sides))
     yield Reading(
-        replace(record, q=q, motor=motor, motor_side=logged), f"are the positions {names} those of the joints"
+        replace(record, q=q, motor=motor, motor_side=logged),
+        f"are the positions {names} those of the joints",
+        tuple(abs(d.ratio or 1.0) if k in some else 1.0 for k, d in enumerate(drives)),
     )
 
 
