@@ -17,10 +17,10 @@ def arm() -> mg.Arm:
     return loads(LINK.description())["one"]
 
 
-def log(seed: int, step: float, noise: float, stribeck: float) -> Table:
-    """Three periods at 200 Hz. stribeck: more friction at low speed [A]."""
+def log(seed: int, step: float, noise: float, stribeck: float, rate: float = 200.0) -> Table:
+    """Three periods. stribeck: more friction at low speed [A]. rate: samples per second [Hz]."""
     random = np.random.default_rng([seed, 5])
-    t = np.arange(0.0, 3 * PERIOD, 0.005)
+    t = np.arange(int(3 * PERIOD * rate)) / rate
     q, dq, ddq = sines(t, random.uniform(0.0, 6.28, 4))
     effort = LINK.currents(q, dq, ddq) + stribeck * np.sign(dq) * np.exp(-((dq / 0.15) ** 2))
     effort += noise * random.normal(size=len(t))
@@ -28,8 +28,10 @@ def log(seed: int, step: float, noise: float, stribeck: float) -> Table:
     return {"t": t, "qm1": position, "i1": step * np.rint(effort / step)}
 
 
-def diagnosis(arm: mg.Arm, seed: int, step: float, noise: float, stribeck: float = 0.0) -> mg.Diagnosis:
-    logs = [log(10 * seed + k, step, noise, stribeck) for k in range(3)]
+def diagnosis(
+    arm: mg.Arm, seed: int, step: float, noise: float, stribeck: float = 0.0, rate: float = 200.0
+) -> mg.Diagnosis:
+    logs = [log(10 * seed + k, step, noise, stribeck, rate) for k in range(3)]
     return mg.diagnose(arm, logs[:2], logs[2], experiment=False)
 
 
@@ -48,6 +50,12 @@ def test_steps_that_hide_what_may_be_there_are_said(
 
 def test_noise_of_a_third_of_a_step_makes_noise_of_its_rounding(arm: mg.Arm) -> None:
     assert diagnosis(arm, 0, 0.1, 0.03).verdict == "nothing_missing"
+
+
+def test_rows_need_be_no_whole_numbers_of_samples(arm: mg.Arm) -> None:
+    """Of a period with a prime number of samples."""
+    found = diagnosis(arm, 0, 0.1, 0.01, rate=1619.0 / PERIOD)
+    assert (found.verdict, found.causes, found.suspects) == ("cannot_tell", (), ())
 
 
 @pytest.mark.parametrize("noise", [0.01, 0.03])

@@ -27,7 +27,7 @@ def left_by_rounded_efforts(r: Rows, period: int | None, equations: Equations, t
     logged = record.logged_effort
     if period is None or logged is None or p.input is None:
         return None
-    steps, lag = effort_steps(record, 0.0), period * p.settings.stride
+    steps, lag = effort_steps(record, 0.0), round(period * p.settings.stride)
     change = logged[lag:] - logged[:-lag]
     scatter = (change**2).mean(axis=0) / 2.0 if len(change) else np.zeros(record.n)
     noise = np.array([_noise(*x) for x in zip(steps, scatter, strict=True)])
