@@ -5,5 +5,6 @@ from __future__ import annotations
 from modelgen.effects.placement import places, with_effect
 from modelgen.evaluation.evaluator import Evaluator
 from modelgen.evaluation.motion import Motion
+from modelgen.evaluation.predicted import predicted
 
-__all__ = ["Evaluator", "Motion", "places", "with_effect"]
+__all__ = ["Evaluator", "Motion", "places", "predicted", "with_effect"]

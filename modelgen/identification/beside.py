@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,10 +63,9 @@ class Beside:
 
     def with_columns(self, added: Sequence[Array]) -> Added:
         """What columns (M, n, k) of each record explain, through the filter."""
-        both = zip(self.own.columns, added, strict=True)
-        columns = [np.concatenate([own, more], axis=2) / self.sigma[:, None] for own, more in both]
-        efforts = [effort / self.sigma for effort in self.own.effort]
-        regression = Regression(efforts, columns, self.own.moving, self.own.white)
+        both = self.own.beside(added)
+        columns = [table / self.sigma[:, None] for table in both.columns]
+        regression = replace(both, effort=[y / self.sigma for y in both.effort], columns=columns)
         solution: Solution = regression.solve("ols")
         amount = solution.theta[self.p :]
         std = np.sqrt(np.maximum(np.diag(solution.covariance)[self.p :], 0.0))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
-from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation import Evaluator, Motion, predicted
 from modelgen.functions import Model
 from modelgen.numeric import Array
 
@@ -59,9 +59,7 @@ def gain_of(p: Prepared) -> Array:
 
 def ideal_of(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """What the log would carry of the model's efforts (N, n)."""
-    motion = motion_of(p)
-    made = evaluator.regressor(model, motion, theta) @ theta + evaluator.known.inputs(motion)
-    return np.asarray(made * gain_of(p))
+    return np.asarray(predicted(evaluator, model, motion_of(p), theta) * gain_of(p))
 
 
 def motion_of(p: Prepared) -> Motion:

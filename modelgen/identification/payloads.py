@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -96,13 +95,10 @@ def _denied(
         return []
     added = [payload_base(model, payloads.get(k, ())) for k in range(len(train))]
     regression = regression_of(evaluator, model, train, theta, added)
-    wider = []
-    for k, columns in enumerate(regression.columns):
-        more = np.zeros((*columns.shape[:2], len(carrying)))
-        if k in carrying:
-            more[:, :, carrying.index(k)] = columns @ added[k]
-        wider.append(np.concatenate([columns, more], axis=2))
-    solution, size = replace(regression, columns=wider).solve(), len(theta)
+    more = [np.zeros((*columns.shape[:2], len(carrying))) for columns in regression.columns]
+    for i, k in enumerate(carrying):
+        more[k][:, :, i] = regression.columns[k] @ added[k]
+    solution, size = regression.beside(more).solve(), len(theta)
     spread = np.sqrt(np.maximum(np.diag(solution.covariance), 0.0))
     asked = []
     for i, k in enumerate(carrying, size):

@@ -11,7 +11,7 @@ import numpy as np
 
 from modelgen.dataset import Chosen, Prepared, Record, drives_of, prepare
 from modelgen.errors import InputError
-from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation import Evaluator, Motion, predicted
 from modelgen.functions import Model
 from modelgen.functions.nominal import known_base
 from modelgen.identification.unexplained import POOR, Unexplained
@@ -180,7 +180,7 @@ def amounts(
     known = known_base(model)
     theta = np.array([known.get(b.name, 0.0) for b in model.grouping.base])
     for _ in range(ROUNDS):
-        made = np.asarray(evaluator.regressor(model, motion, theta) @ theta + evaluator.known.inputs(motion))
+        made = predicted(evaluator, model, motion, theta)
         given = record.input.copy()
         given[:, found] = np.where(made[:, found] < 0.0, -1.0, 1.0) * record.input[:, found]
         signed = replace(record, input=given)

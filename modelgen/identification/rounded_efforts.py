@@ -8,7 +8,7 @@ import numpy as np
 
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.rounding import effort_steps
-from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation import Evaluator, Motion, predicted
 from modelgen.functions import Model
 from modelgen.identification.effort_limits import gain_of, logged_of, motion_of
 from modelgen.numeric import Array
@@ -95,8 +95,7 @@ def _within(x: Samples, step: float) -> Samples:
 
 def ideal(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """Inputs (N, n) of the model along a record."""
-    motion = Motion(p.time, p.q, p.dq, p.ddq)
-    return np.asarray(evaluator.regressor(model, motion, theta) @ theta + evaluator.known.inputs(motion))
+    return predicted(evaluator, model, Motion(p.time, p.q, p.dq, p.ddq), theta)
 
 
 def _rounding(p: Prepared, inputs: Array, steps: Array, random: np.random.Generator) -> Array:

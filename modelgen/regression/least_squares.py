@@ -129,6 +129,11 @@ class Regression:
         covariance = self._covariance(theta, known, weights)
         return Solution(theta, covariance, known, condition, sigma, self._precision(sigma))
 
+    def beside(self, added: Sequence[Array]) -> Regression:
+        """The rows with further columns (M, n, k) of each record after their own."""
+        both = zip(self.columns, added, strict=True)
+        return replace(self, columns=[np.concatenate([own, more], axis=2) for own, more in both])
+
     def as_in(self, solution: Solution) -> Regression:
         """The rows with the weights and the columns of a solution's fit, for `least_squares`."""
         weights = 1.0 / np.maximum(solution.sigma, 1e-300)

@@ -115,8 +115,8 @@ MUTATIONS = (
     Mutation(
         "adequacy",
         "lack_of_fit.py",
-        "self.between += float(found.between.sum())",
-        "self.between += float(found.between.max())",
+        "between = sum(float(one.between.sum()) for one in self.phases)",
+        "between = max(float(one.between.max()) for one in self.phases)",
         "what repeats in every period is hardly seen",
         ("test_lack_of_fit.py",),
     ),

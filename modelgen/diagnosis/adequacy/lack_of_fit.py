@@ -20,7 +20,7 @@ from scipy import special
 
 from modelgen.dataset.processing.periods import folded
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
-from modelgen.diagnosis.adequacy.scatter import Phases, Scatter
+from modelgen.diagnosis.adequacy.scatter import Phases, Scatter, parts
 from modelgen.diagnosis.equations import Rows
 from modelgen.diagnosis.evidence import System, independent
 from modelgen.diagnosis.options.thresholds import AdequacyThresholds, EvidenceThresholds
@@ -98,19 +98,9 @@ class LackOfFit:
 
 @dataclass
 class _Sums:
-    """Sums of one joint between and within periods, and by record and phase.
-
-    rounding: the sum that rounded readings that repeat are expected to add between. limits: by which is
-    tested.
-    """
+    """Sums of one joint by record and phase. limits: by which is tested."""
 
     limits: AdequacyThresholds
-
-    between: float = 0.0
-    rounding: float = 0.0
-    within: float = 0.0
-    free_between: float = 0.0
-    free_within: float = 0.0
     phases: list[Phases] = field(default_factory=list)
 
     def add(self, record: int, table: Array, share: float, errors: Array) -> None:
@@ -125,7 +115,7 @@ class _Sums:
         values, k = np.where(there & full, table, 0.0), np.where(full, count, 0)
         mean = values.sum(axis=0) / np.maximum(k, 1)
         within = np.where(there & full, values - mean, 0.0)
-        found = Phases(
+        sums = Phases(
             record,
             k * mean**2,
             (within**2).sum(axis=0),
@@ -133,12 +123,22 @@ class _Sums:
             share * np.maximum(k - 1, 0),
             np.where(there & full, errors**2, 0.0).sum(axis=0),
         )
-        self.phases.append(found)
-        self.rounding += float(found.rounding.sum())
-        self.between += float(found.between.sum())
-        self.within += float(found.within.sum())
-        self.free_between += float(found.free_between.sum())
-        self.free_within += float(found.free_within.sum())
+        self.phases.append(sums)
+
+    @property
+    def free_between(self) -> float:
+        """Independent phases of all records."""
+        return sum(float(one.free_between.sum()) for one in self.phases)
+
+    @property
+    def free_within(self) -> float:
+        """Degrees of freedom of what differs between the periods of a record."""
+        return sum(float(one.free_within.sum()) for one in self.phases)
+
+    @property
+    def within(self) -> float:
+        """Squares of that."""
+        return sum(float(one.within.sum()) for one in self.phases)
 
     @cached_property
     def scatter(self) -> Scatter:
@@ -148,7 +148,7 @@ class _Sums:
     @property
     def repeated(self) -> float:
         """Mean square that rounding is expected to leave between periods, for each independent phase."""
-        return self.rounding / self.free_between
+        return sum(float(one.rounding.sum()) for one in self.phases) / self.free_between
 
     def whole(self, joint: int, tests: int) -> Test:
         """Test all rows."""
@@ -156,7 +156,8 @@ class _Sums:
         if self.free_within < self.limits.min_scatter_rows or self.within <= 0:
             return Test(WHOLE, joint, 0.0, np.inf, size)
         free = max(self.limits.min_phase_rows, self.free_between)
-        statistic = (self.between / free) / (self.within / self.free_within + self.repeated)
+        between = sum(float(one.between.sum()) for one in self.phases)
+        statistic = (between / free) / (self.within / self.free_within + self.repeated)
         noise = self.scatter.everywhere()
         quantile = self._quantile(max(self.limits.min_phase_rows, noise.between), noise.within, tests)
         return Test(WHOLE, joint, statistic, quantile, size)
@@ -171,6 +172,7 @@ class _Sums:
         if self.free_within < limits.min_scatter_rows or self.within <= 0:
             return
         tests *= 2 * limits.parts_of_period * len(self.phases)
+        repeated = self.repeated
         for k, one in enumerate(self.phases):
             rows = len(one.between)
             for begin, end in parts(rows, limits.parts_of_period):
@@ -179,22 +181,13 @@ class _Sums:
                 if count < limits.min_part_rows:
                     continue
                 noise = self.scatter.at(k, phases)
-                rounding = max(self.repeated, float(one.rounding[phases].sum()) / count)
+                rounding = max(repeated, float(one.rounding[phases].sum()) / count)
                 statistic = float(one.between[phases].sum()) / count / (noise.square + rounding)
                 quantile = self._quantile(noise.between, noise.within, tests)
                 yield Test(PART, joint, statistic, quantile, size, one.record, begin, end)
 
     def _quantile(self, between: float, within: float, tests: int) -> float:
         return float(special.fdtri(between, within, 1 - self.limits.lack_of_fit_significance / tests))
-
-
-def parts(rows: int, count: int) -> Iterator[tuple[int, int]]:
-    """First and last phase (exclusive, beyond the end: of the next period) of each of `count` parts of `rows`
-    phases, and of those halfway between.
-    """
-    for half in range(2 * count):
-        begin, end = (round((half + shift) / 2 * rows / count) for shift in (0, 2))
-        yield begin, end
 
 
 def lack_of_fit(system: System) -> LackOfFit | None:

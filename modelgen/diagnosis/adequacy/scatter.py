@@ -8,7 +8,7 @@ unlike noise have fewer degrees of freedom (Satterthwaite 1946).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -71,7 +71,7 @@ class Scatter:
             self.kinds = [np.zeros_like(kinds) for kinds in before]
             for one, kinds in zip(self.phases, self.kinds, strict=True):
                 for pieces in (1, self.parts, 2 * self.parts):
-                    for begin, end in even(len(kinds), pieces):
+                    for begin, end in parts(len(kinds), pieces)[::2]:
                         self._look(one, kinds, slice(begin, end))
             if all(map(np.array_equal, before, self.kinds)):
                 break
@@ -119,7 +119,9 @@ class Scatter:
         )
 
 
-def even(rows: int, count: int) -> Iterator[tuple[int, int]]:
-    """First and last phase (exclusive) of each of `count` parts of `rows` phases."""
-    for k in range(count):
-        yield round(k * rows / count), round((k + 1) * rows / count)
+def parts(rows: int, count: int) -> list[tuple[int, int]]:
+    """First and last phase (exclusive, beyond the end: of the next period) of each of `count` parts of `rows`
+    phases, each followed by the one halfway to the next.
+    """
+    edges = [round(half * rows / (2 * count)) for half in range(2 * count + 2)]
+    return [(edges[half], edges[half + 2]) for half in range(2 * count)]

@@ -11,6 +11,7 @@ import numpy as np
 from modelgen.dataset.processing.rounding import effort_steps, mean_error, scatter_of
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.rows import Rows
+from modelgen.evaluation import predicted
 from modelgen.numeric import Array
 
 SEED = 19560101  # of the place that a step has in the draw
@@ -34,8 +35,7 @@ def left_by_rounded_efforts(r: Rows, period: int | None, equations: Equations, t
     coarse = [k for k in range(record.n) if steps[k] > 0.0 and noise[k] < steps[k]]
     if not coarse:
         return None
-    evaluator, base = equations.evaluator, equations.base(theta)
-    inputs = evaluator.regressor(equations.model, r.motion, base) @ base + evaluator.known.inputs(r.motion)
+    inputs = predicted(equations.evaluator, equations.model, r.motion, equations.base(theta))
     gain, random = np.ones_like(inputs) if p.gain is None else p.gain, np.random.default_rng(SEED)
     smooth, errors = p.smooth(inputs * gain), np.zeros_like(inputs)
     for k in coarse:
