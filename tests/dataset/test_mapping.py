@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import jsonschema
@@ -100,6 +101,21 @@ def test_a_mapping_without_joints_says_the_rest_of_a_log_with_the_contracts_name
             DRIVEN,
             written(tmp_path, text),
         )
+    # a file whose names are changed says its stamps' unit, and from when they count, as without a mapping
+    alone = written(tmp_path, "schema: 1\nhold: instant\n")
+    slow = {
+        f"{name} [{'s' if name == 't' else 'rad' if name[0] == 'q' else 'A'}]": x for name, x in log.items()
+    }
+    slowly = read(write_csv(tmp_path / "slow.csv", slow), DRIVEN, alone)
+    assert slowly.step == pytest.approx(1e3 * plain.step)
+    start = datetime(2025, 3, 4, 5, 6, 7, tzinfo=UTC)
+    lines = ["T,Q1,Q2,I1,I2"]
+    for row in zip(*log.values(), strict=True):
+        at = start + timedelta(milliseconds=float(row[0]))
+        lines.append(",".join([at.isoformat(), *(f"{x:.9g}" for x in row[1:])]))
+    (tmp_path / "dated.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    dated = [read(str(tmp_path / "dated.csv"), DRIVEN, mapping) for mapping in (None, alone)]
+    assert [record.begins for record in dated] == [pytest.approx(start.timestamp())] * 2
     with pytest.raises(InputError, match="found no joints, expected them, or an arm too"):
         inspect(tmp_path / "a.csv", None, written(tmp_path, text))
 

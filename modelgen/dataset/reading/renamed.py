@@ -27,10 +27,21 @@ class Renamed:
         self.units = {new: said[old] for new, old in names.items() if old in said} | dict(units)
 
     @property
+    def instants(self) -> frozenset[str]:
+        """Names of the columns that are dates or times."""
+        there = getattr(self.reader, "instants", ())
+        return frozenset(new for new, old in self._original.items() if old in there)
+
+    @property
+    def origins(self) -> dict[str, float]:
+        """What columns of dates count from [s since 1970, UTC], by name."""
+        origins: Mapping[str, float] = getattr(self.reader, "origins", {})
+        return {new: origins[old] for new, old in self._original.items() if old in origins}
+
+    @property
     def origin(self) -> float:
         """What the column t counts from [s since 1970, UTC]."""
-        origins: Mapping[str, float] = getattr(self.reader, "origins", {})
-        return origins.get(self._original.get("t", ""), 0.0)
+        return self.origins.get("t", 0.0)
 
     @property
     def remarks(self) -> tuple[str, ...]:

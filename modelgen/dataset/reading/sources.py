@@ -117,12 +117,13 @@ def open_source(
     named = [name for name in logged.names if name not in ("t", time.column) and is_signal(name)]
     mapped = MappedReader(foreign, logged, arm, drives, named)
     signals = find_signals(spec.text, mapped.names, arm, drives, mapped=not by_name)
+    declared = "unit" in time.model_fields_set or foreign.document.rate is not None
     if by_name:
-        said = {**getattr(logged, "units", {})}
+        said: dict[str, str] = dict(getattr(logged, "units", {}))
         if "unit" in time.model_fields_set:
             said.pop("t", None)
         check_units(spec.text, said, signals, arm, drives)
-    declared = "unit" in time.model_fields_set or foreign.document.rate is not None
+        declared |= "t" in said
     return Source(
         spec,
         mapped,
