@@ -89,10 +89,33 @@ def _instant(records: Sequence[Record], arm: Arm, limits: DatasetThresholds) -> 
     late = tuple((name, d, s) for name, d, s, believed in joints if believed and beyond(d, s, used))
     if fits is None and not all(believed for *_, believed in joints):
         return replace(known, late=late, alike=False, missing=True)
+    if not alike and not known.known and (others := _of_the_others(joints, first.step, limits)) is not None:
+        return others
     said = EffortInstant(known.hold, known.known, known.step, delay, std, fits, alike, late)
     if fits is None or known.known or fits == known.hold:
         return said
     return EffortInstant(fits, "data", known.step, delay, std, fits)
+
+
+def _of_the_others(
+    joints: Sequence[tuple[str, float, float, bool]], step: float, limits: DatasetThresholds
+) -> EffortInstant | None:
+    """The instant by the joints whose efforts are near a convention, where they agree on it: the efforts of
+    those that are a sample from all of them are late, and say nothing of it. None where no joint is late.
+    """
+    late = [x for x in joints if all(beyond(x[1], x[2], place) for place in CONVENTIONS.values())]
+    others = [x for x in joints if x not in late]
+    if not late or not others:
+        return None
+    delays, deviations = (np.array([x[k] for x in others]) for k in (1, 2))
+    common, std = _common(delays, deviations)
+    if (np.abs(delays - common) > np.maximum(APART * deviations, ALIKE)).any():
+        return None
+    fits = fitting(common, std, step, limits)
+    if not isinstance(fits, str):
+        return None
+    found = tuple((name, delay, deviation) for name, delay, deviation, _ in late)
+    return EffortInstant(fits, "data", step, common, std, fits, alike=False, late=found)
 
 
 def at_instants(records: Sequence[Record], found: EffortInstant | None) -> list[Record]:

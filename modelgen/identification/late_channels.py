@@ -9,120 +9,28 @@ nothing: the fewest channels are named beside which the others are alike.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.dataset.processing.instants import CLEARLY, LateChannel
+from modelgen.dataset.processing.instants import LateChannel
 from modelgen.evaluation import Motion
+from modelgen.identification.channel_ages import SETTLED, Ages
 from modelgen.identification.delay_fit import DelayFit
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
-FREER = 2.0  # times that free laws change an age, by which it is beyond a sample
 SUSPECT, APART = 3.0, 0.5  # deviations, beyond as many samples, from which on all delays are fitted
 REACH = 0.1  # periods of the cut-off, to either side, over which slopes are taken
 LONGEST = 2.5  # periods of the cut-off, of a step
 STEPS, HALVES = 12, 5  # of Gauss and Newton, and how often one is halved that leaves more than before
-ALIKE = 0.25  # samples by which channels that are read in turn differ
-SETTLED, PART = 0.05, 0.2  # samples, or this part of the deviation, at which they end
+PART = 0.2  # of the deviation, or SETTLED samples, at which they end
+ALONE, MORE = 0.7, 1.5  # of what delays leave, what free laws leave beside them; times, what such laws leave
 WORSE = 1.05  # of what is left of a joint's efforts without them, that no true delays leave
 LEAST = 1e-13  # part of columns of unit length that depends on no others
 LITTLE = 0.05  # of the logarithm of what is left of an effort, by which a step is to lower it at least
 ROWS = 3  # that move, for each parameter and delay
 NOTHING = 1e-3  # of the logarithm of what is left, with which they end too
-
-
-@dataclass(frozen=True)
-class Late:
-    """Channels of a joint (from 0, None: of all) that are older than the others by samples.
-
-    positions, efforts: which of the two, or both. noise: deviation of the samples by noise. change: of the
-    samples where each joint may have any law of its own.
-    """
-
-    joint: int | None
-    positions: bool
-    efforts: bool
-    samples: float
-    noise: float
-    change: float
-
-    @property
-    def clear(self) -> bool:
-        """Whether that is clearly more than a sample."""
-        return abs(self.samples) - 1.0 > max(CLEARLY * self.noise, FREER * abs(self.change))
-
-    @property
-    def deviation(self) -> float:
-        """Of the samples."""
-        return float(np.hypot(self.noise, self.change))
-
-
-@dataclass(frozen=True)
-class Ages:
-    """How old the channels are (2 n,) [samples], efforts, then positions, and the covariance of that, with
-    those that the data tell (2 n,). The first position is the origin. change: of the ages (2 n,) where each
-    joint may have any law of its own.
-    """
-
-    age: Array
-    covariance: Array
-    told: NDArray[np.bool_]
-    change: Array
-
-    def apart(self) -> tuple[Array, Array]:
-        """How much older each channel is than each other (2 n, 2 n), with the deviation, infinite where that
-        is not known.
-        """
-        age, covariance, told = self.age, self.covariance, self.told
-        variance = np.diag(covariance)
-        square = np.maximum(variance[:, None] + variance - 2.0 * covariance, 0.0)
-        return age[:, None] - age, np.where(told[:, None] & told, np.sqrt(square), np.inf)
-
-    def late(self) -> list[Late]:
-        """The fewest channels by whose ages the others are alike, each the one that explains most."""
-        n = origin = len(self.age) // 2
-        kept = np.flatnonzero(self.told & (np.arange(2 * n) != origin))
-        alike = ALIKE**2 * (np.eye(len(kept)) + 1.0)
-        weights = np.asarray(
-            np.linalg.pinv(self.covariance[np.ix_(kept, kept)] + alike),
-            dtype=np.float64,
-        )
-        places: list[tuple[int | None, bool, bool]] = [(None, False, True)]
-        places += [(j, p, e) for j in range(n) for p, e in ((True, False), (False, True), (True, True))]
-        shapes = []
-        for j, position, effort in places:
-            at, there = slice(None) if j is None else slice(j, j + 1), np.zeros((2, n))
-            there[0, at], there[1, at] = effort, position
-            shapes.append(there.ravel()[kept] - there.ravel()[origin])
-        chosen: list[int] = []
-        found: list[Late] = []
-        for _ in range(n):
-            fits = {
-                k: self._fit([shapes[i] for i in (*chosen, k)], kept, weights) for k in range(len(places))
-            }
-            # Of two that say the same the one that is older is named.
-            k = min(fits, key=lambda k: (round(fits[k][1], 6), -fits[k][0][-1][0]))
-            named = [Late(*places[i], *x) for i, x in zip((*chosen, k), fits[k][0], strict=True)]
-            if k in chosen or not named[-1].clear:
-                break
-            chosen.append(k)
-            found = named
-        return found
-
-    def _fit(
-        self, shapes: Sequence[Array], kept: NDArray[np.intp], weights: Array
-    ) -> tuple[list[tuple[float, float, float]], float]:
-        """Ages of shapes with deviations and changes, and what is left of the others' (chi squared)."""
-        x, y = np.stack(shapes, axis=1), self.age[kept]
-        covariance = np.linalg.pinv(x.T @ weights @ x)
-        mean = covariance @ x.T @ weights
-        left = y - x @ (mean @ y)
-        deviations = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        found = np.stack([mean @ y, deviations, mean @ self.change[kept]], axis=1)
-        return [(float(a), float(d), float(c)) for a, d, c in found], float(left @ weights @ left)
 
 
 def late_channels(fit: DelayFit, delays: Array, deviations: Array, names: Sequence[str]) -> list[LateChannel]:
@@ -185,7 +93,7 @@ class Channels:
 
     def settled(self) -> tuple[Ages, NDArray[np.bool_]]:
         """Delays of all channels, and joints (n,) of which little but noise is left with them, free laws
-        beside, and no more than without.
+        beside, and no more than without; no joint where such laws alone explain it.
         """
         fit, n = self.fit, self.n
         delays, positions = np.full(n, self.used), np.zeros(n)
@@ -193,6 +101,7 @@ class Channels:
         efforts = fit.efforts(delays)
         theta, sigma = self._left(efforts, fit.sigma)
         first = sigma
+        _, lawful = fit.beside_free_laws(efforts, fit.columns, theta, sigma)
         longest = LONGEST / self.cutoff
         for _ in range(STEPS):
             columns = self._columns(theta)
@@ -227,8 +136,11 @@ class Channels:
         free, left = fit.beside_free_laws(efforts, columns, theta, sigma)
         change = np.concatenate([-free[:n], [0.0], free[n:]])
         ages = Ages(self._ages(delays, positions), found.covariance, found.told, change)
-        believed = ~fit.lacks(np.minimum(left, sigma), first)
-        return ages, believed & (sigma <= WORSE * first)
+        believed = ~fit.lacks(np.minimum(left, sigma), first) & (sigma <= WORSE * first)
+        # Delays alone leave hardly more than free laws beside them, or such laws alone leave far more.
+        rows = sum(m.sum(axis=0) for m in fit.moving)
+        needed = float(rows @ np.log(np.maximum(lawful, 1e-300) / np.maximum(left, 1e-300))) / rows.sum()
+        return ages, believed & ((left >= ALONE * sigma).all() | (needed > np.log(MORE)))
 
     def _leave_ends(self, delays: Array, positions: Array) -> None:
         """Rows near the ends of the records do not count: what is moved there is not in the log."""

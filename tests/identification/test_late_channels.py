@@ -95,6 +95,21 @@ def test_a_late_joint_is_named_with_its_delay(
     assert found.to_json()["log"]["effort_instant"]["data"] == "joints_differ"
 
 
+@pytest.mark.parametrize("samples", [2, 3])
+@pytest.mark.parametrize("late", [POSITIONS, BOTH])
+@pytest.mark.parametrize("joint", [0, 1])
+def test_positions_that_are_late_by_few_samples_are_asked_about(
+    joint: int, late: tuple[int, int], samples: int, arm: mg.Arm
+) -> None:
+    records = [mg.read_log(log(seed, joint, late, samples, rate=100.0), arm) for seed in (1, 2)]
+    found = effort_instant(records, arm)
+    assert found is not None
+    (x,) = found.channels
+    assert (x.name, x.what) == (f"j{joint + 1}", WHAT[late])
+    assert x.samples == pytest.approx(samples, abs=3 * x.deviation)
+    assert x.deviation < 0.3
+
+
 def test_the_rows_that_it_says_mend_the_log(arm: mg.Arm) -> None:
     def moved(table: Table, rows: int) -> Table:
         return {name: x[rows:] if name == "qm2" else x[: len(x) - rows] for name, x in table.items()}
@@ -120,12 +135,30 @@ def test_efforts_of_a_joint_that_are_late_by_few_samples_are_asked_about(
     assert float(said) == pytest.approx(samples, abs=max(0.2, 4 * float(deviation)))
 
 
+@pytest.mark.parametrize("joint", [0, 1])
+def test_efforts_that_are_late_say_nothing_of_the_others(joint: int, arm: mg.Arm) -> None:
+    found = effort_instant([mg.read_log(log(seed, joint, EFFORTS, 3), arm) for seed in (1, 2)], arm)
+    assert found is not None
+    assert (found.hold, found.known) == ("instant", "data")
+    ((name, delay, deviation),) = found.late
+    assert name == f"j{joint + 1}"
+    assert delay == pytest.approx(-3.0, abs=4 * deviation)
+
+
 LACKING: dict[str, Law] = {
     "drag": lambda q, dq: 0.05 * dq * np.abs(dq),
     "stribeck": lambda q, dq: 0.15 * np.sign(dq) * np.exp(-((dq / 0.2) ** 2)),
     "spring": lambda q, dq: 0.15 * np.sin(3 * q),
     "of the other joint": lambda q, dq: 0.1 * np.sign(dq[:, ::-1]),
+    "of its own load": lambda q, dq: 0.15 * np.sign(dq) * np.abs(np.sin(q)),
 }
+# Seeds in which delays far away fit as well as no delays do.
+MISLED = [("spring", 1000.0, 22), ("spring", 1000.0, 25), ("of its own load", 1000.0, 23)]
+MISLED += [
+    ("of its own load", 250.0, 34),
+    ("of the other joint", 100.0, 32),
+    ("of the other joint", 100.0, 34),
+]
 
 
 @pytest.mark.parametrize("rate", [100.0, 500.0])
@@ -137,6 +170,13 @@ def test_nothing_is_said_of_sound_channels(what: str, ordinary: bool, rate: floa
         found = effort_instant([mg.read_log(table, arm)], arm)
         assert found is not None
         assert not found.channels
+
+
+@pytest.mark.parametrize(("what", "rate", "seed"), MISLED)
+def test_delays_that_fit_far_away_are_not_believed(what: str, rate: float, seed: int, arm: mg.Arm) -> None:
+    found = effort_instant([mg.read_log(log(seed, rate=rate, besides=LACKING[what]), arm)], arm)
+    assert found is not None
+    assert not found.channels
 
 
 def test_a_late_joint_is_named_beside_what_the_model_lacks(arm: mg.Arm) -> None:

@@ -87,11 +87,11 @@ class EffortInstant:
     @property
     def doubt(self) -> float:
         """How far the instant may be from what is used [sampling periods]: nothing where somebody said it, or
-        where channels are late, which is asked about.
+        where channels are late, which is asked about; as if nobody knew it where the efforts of a joint are.
         """
         if self.known not in ("", "data") or self.channels:
             return 0.0
-        if self.delay is None or self.std is None:
+        if self.delay is None or self.std is None or (self.late and not self.alike):
             return UNKNOWN
         used = CONVENTIONS[self.hold] if isinstance(self.hold, str) else self.hold / self.step
         return min(UNKNOWN, float(np.hypot(self.std, self.delay - used)))
@@ -118,7 +118,7 @@ class EffortInstant:
         """A question for efforts that are clearly late or early, of all joints together where they agree."""
         if self.channels:
             return tuple(channel.question(self.step) for channel in self.channels)
-        if self.answer not in ("beyond_a_sample", "joints_differ") or not self.late:
+        if not self.late or (self.alike and self.answer != "beyond_a_sample"):
             return ()
         groups = self.late
         if self.alike and self.delay is not None and self.std is not None:
