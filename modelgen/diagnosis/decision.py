@@ -92,7 +92,7 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
         fit=fit,
         feigned=feigned(equations.blur, left),
         correlated=None if harmless(equations, left) else correlated,
-        likeness=None if unclear else most_like(system),
+        likeness=None if unclear else most_like(system, suspects, fit),
         counted=equations.free and fit is None and _counted(equations, left),
         asked=bool(options.effects),
     )

@@ -5,8 +5,9 @@ from modelgen.diagnosis.adequacy.distinguishable import aliases, without_indisti
 from modelgen.diagnosis.adequacy.figures_said import possible
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit, place
 from modelgen.diagnosis.adequacy.log_delay import instant_shown
-from modelgen.diagnosis.adequacy.smooth_functions import Likeness, most_like
+from modelgen.diagnosis.adequacy.smooth_functions import Likeness
 from modelgen.diagnosis.adequacy.verdict import Remains, verdict_of
+from modelgen.diagnosis.adequacy.what_is_left import most_like
 
 __all__ = [
     "Examined",

@@ -102,8 +102,9 @@ def _complete(
 ) -> list[tuple[Check, Check]]:
     """For every cause, whether those of its joints say all that is to say there: `form` and `explains`."""
     terms = further_terms(selection)
-    forms = free_forms(selection, equations, terms)
-    shares = explained(selection, terms, [c.trial for c in suspects])
+    failed = [c.trial for c in suspects]
+    forms = free_forms(selection, equations, terms, failed)
+    shares = explained(selection, terms, failed)
     own = (forms.get(c.trial.candidate.joint) for c in selection.causes)
     return [(_form(form), share) for form, share in zip(own, shares, strict=True)]
 

@@ -99,7 +99,9 @@ def form_said(by: FreeForm) -> str:
             f"{number(-by.ahead)} of delta BIC are left for it without the rows at which its joint is "
             f"slowest, where friction changes; {number(-by.most)} is asked"
         )
-    what = "the same with a size of its own at each joint" if by.apart else f"{FREE_FUNCTION} of {by.what}"
+    what = by.what if by.error else f"{FREE_FUNCTION} of {by.what}"
+    if by.apart:
+        what = "the same with a size of its own at each joint"
     return f"{what} {ahead_of(by.ahead, by.most)}"
 
 

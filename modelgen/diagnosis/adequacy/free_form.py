@@ -6,7 +6,8 @@ Williams 2006): whatever a friction or a force over these does, one of them can.
 explains as much at the price of its few parameters; one that is not ahead of the functions has only their
 shape for itself. A law that acts on several joints says how much on each: where each has a size of its
 own, it is not the law. What bends or has play acts wherever its load changes: if it explains only rows at
-which its joint nearly rests, what is there is a form of friction.
+which its joint nearly rests, what is there is a form of friction. And an encoder's error that repeats with
+each turn of its shaft may do what they do.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from modelgen.diagnosis.adequacy.encoder_errors import of_encoder
 from modelgen.diagnosis.adequacy.motion_functions import of_late, of_others, of_state, of_way, of_when
 from modelgen.diagnosis.adequacy.smooth_functions import (
     SmoothFunction,
@@ -36,7 +38,7 @@ class FreeForm:
     """ahead: delta BIC by which what has no law is ahead of the causes at a joint, or of the whole arm; most:
     by which it may be. apart: it is the law itself, with a size of its own at every joint, or record; slow:
     nothing, while the joint is not at its slowest, so that `ahead` is the evidence that the cause has there,
-    below zero. what: else, what the function is of.
+    below zero. error: it is an error of an encoder. what: which error, else what the function is of.
     """
 
     ahead: float
@@ -44,6 +46,7 @@ class FreeForm:
     what: str = ""
     apart: bool = False
     slow: bool = False
+    error: bool = False
 
     @property
     def as_good(self) -> bool:
@@ -52,7 +55,10 @@ class FreeForm:
 
 
 def free_forms(
-    selection: Selection, equations: Equations, terms: Mapping[int, Worth]
+    selection: Selection,
+    equations: Equations,
+    terms: Mapping[int, Worth],
+    suspects: Sequence[FittedCandidate] = (),
 ) -> dict[int | None, FreeForm]:
     """Find, for each joint with causes, the free function that is ahead of them by most, and for it and the
     whole arm by how much their own laws are with a size at every joint.
@@ -60,23 +66,27 @@ def free_forms(
     Asked for all causes of a joint together; a cause whose law is the first terms of a series counts with the
     function that the series would come to. The laws of elastic joints and play are none of the joint's
     motion: at their joints it is asked what they explain while these are not at their slowest. Not of free
-    motions. terms: by joint, see `further_terms`.
+    motions. terms: by joint, see `further_terms`. suspects: what was found beside the causes, and has failed:
+    errors of the encoders at its joints may do what these do.
     """
     if equations.free:
         return {}
     limits = equations.thresholds.adequacy
     most = 0.0 if selection.system.noise_known else limits.min_clear_evidence
+    every = [*(c.trial for c in selection.causes), *suspects]
+    joints = {j - 1 for t in every if (j := t.candidate.joint) is not None}
+    errors = [shape for j in sorted(joints) for shape in of_encoder(j, selection.system)]
     found: dict[int | None, FreeForm] = {}
     for joint in {c.trial.candidate.joint: None for c in selection.causes}:
         own = [c.trial for c in selection.causes if c.trial.candidate.joint == joint]
         elastic = [t for t in own if t.candidate.elastic]
-        if elastic and joint is not None:
-            found[joint] = max(
-                (_slowest_out(t, joint - 1, selection) for t in elastic), key=lambda form: form.ahead
-            )
-            continue
         others = [c.trial for c in selection.causes if c.trial.candidate.joint != joint]
         without = system_of(equations, others, selection.system)
+        if elastic and joint is not None:
+            slow = (_slowest_out(t, joint - 1, selection) for t in elastic)
+            forms = [max(slow, key=lambda form: form.ahead), *_misread(errors, own, without)]
+            found[joint] = max(forms, key=lambda form: form.ahead - form.most)
+            continue
         found[joint] = _apart(own, without)
         if joint is None:
             continue
@@ -89,8 +99,18 @@ def free_forms(
         shapes = [*shapes_at(joint - 1, equations), *further, *when]
         by, shape = ahead(shapes, own, without)
         free = FreeForm(by - rest, most, what=shape.text)
-        found[joint] = max(free, found[joint], key=lambda form: form.ahead - form.most)
+        forms = [free, found[joint], *_misread(errors, own, without)]
+        found[joint] = max(forms, key=lambda form: form.ahead - form.most)
     return found
+
+
+def _misread(
+    errors: Iterable[SmoothFunction], own: Sequence[FittedCandidate], without: System
+) -> Iterator[FreeForm]:
+    """Errors of encoders against the causes at a joint. without: the system of the others."""
+    for shape in errors:
+        by, _ = ahead([shape], own, without)
+        yield FreeForm(by, 0.0, what=shape.text, error=True)
 
 
 def _slowest_out(trial: FittedCandidate, j: int, selection: Selection) -> FreeForm:

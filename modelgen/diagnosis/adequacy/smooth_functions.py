@@ -31,10 +31,13 @@ SIZES = np.logspace(-3.0, 5.0, 17)  # of a function against the noise, over whic
 
 @dataclass(frozen=True)
 class SmoothFunction:
-    """text: what it is; columns: by joint (from 0) that it acts on, (M, k) of every record."""
+    """text: what it is; columns: by joint (from 0) that it acts on, (M, k) of every record. encoder: joint
+    (from 0) of whose encoder it is an error.
+    """
 
     text: str
     columns: Mapping[int, Sequence[Array]]
+    encoder: int | None = None
 
 
 @dataclass(frozen=True)
@@ -56,14 +59,6 @@ class Worth:
     def share(self) -> float:
         """Of the mean squares of those joints."""
         return 1.0 - (1.0 - self.percent / 100.0) ** 2
-
-
-def most_like(system: System) -> Likeness | None:
-    """What the causes leave is most like this function of no law; None where it is like none.
-
-    None as well of free motions, which show little but forces that depend on where the arm is.
-    """
-    return None if system.equations.free else likeness(smooth_functions(system), system)
 
 
 def likeness(shapes: Iterable[SmoothFunction], system: System) -> Likeness | None:

@@ -55,7 +55,7 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
         return "named", "a cause passed every check that decides" + (
             f"; something deterministic remains beside {beside}{like}" if left else ""
         )
-    if remains.suspects:
+    if remains.suspects and not _misread(remains):
         return "suspected", "; ".join(_suspected(arm, e) for e in remains.suspects)
     if remains.unclear:
         rivals = " and ".join(_rivals(arm, c) for c in remains.unclear)
@@ -98,6 +98,14 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
+
+
+def _misread(remains: Remains) -> bool:
+    """Whether what is left is an encoder's error, and functions of no law are ahead of all suspects."""
+    likeness = remains.likeness
+    if likeness is None or likeness.shape.encoder is None:
+        return False
+    return all("form" in [c.name for c in e.failed] for e in remains.suspects)
 
 
 def _in_doubt(selection: Selection, remains: Remains) -> bool:
