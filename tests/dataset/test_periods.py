@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from modelgen.dataset import Record
-from modelgen.dataset.processing.periods import period_of, rows_in, with_whole_rows
+from modelgen.dataset.processing.periods import period_of, repetition, rows_in, with_whole_rows
 from modelgen.dataset.processing.prepare import kept_rows
 from modelgen.dataset.processing.settings import Settings, choose
+from modelgen.dataset.processing.splitting import split
+from modelgen.errors import InputError
 
 SECONDS = 40.0
 
@@ -55,3 +57,43 @@ def test_a_motion_slower_than_the_record_has_no_period(count: int) -> None:
     t = np.arange(count) / 60.0
     q = 0.7 * np.cos(0.8 * t)[:, None]
     assert period_of(Record("run", t, q, q), None) is None
+
+
+def sticking(seed: int, into: float = 0.0) -> Record:
+    """Three periods of 10 s, of which the second joint sticks elsewhere in each. into: [rad] by which
+    the first joint is off at the start, for half a second.
+    """
+    record = moving(10.0, 100.0, 1e-4, seed).part(0, 3000)
+    rng, q = np.random.default_rng([seed, 1]), record.q.copy()
+    for k in range(3):
+        slow = np.convolve(rng.normal(size=1000 + 300), np.hanning(301) / 150.0, "valid")
+        q[1000 * k : 1000 * (k + 1), 1] += 0.05 * slow
+    q[:, 0] += into * np.exp(-record.t / 0.1)
+    return Record("run", record.t, q, q)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_joint_that_sticks_elsewhere_does_not_say_when_the_others_repeat(seed: int) -> None:
+    assert period_of(sticking(seed), None) == pytest.approx(1000, abs=1)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_what_is_given_and_found_needs_no_way_into_the_motion(seed: int) -> None:
+    record = sticking(seed, into=0.05)
+    assert repetition(record, 10.0) == (0, 1000)
+    one, two = split(record, 10.0)
+    assert (len(one.t), len(two.t)) == (2000, 1000)
+
+
+def test_a_last_period_may_lack_a_little() -> None:
+    parts = split(moving(10.0, 100.0, 1e-4, 0).part(0, 2980))
+    assert [len(x.t) for x in parts] == [2000, 980]
+
+
+def test_a_period_that_the_record_contradicts_is_refused() -> None:
+    record = moving(10.0, 100.0, 1e-4, 0)
+    with pytest.raises(
+        InputError, match=r"--period: run repeats after 10 s, not nearly as well after 9\.9 s"
+    ):
+        period_of(record, 9.9)
+    assert period_of(record, 20.0) == 2000

@@ -24,6 +24,10 @@ BESIDE = 0.1  # of a sample a period, by which rows may drift from the same phas
 PIECES = 16  # of a record, of which the first ones may not repeat
 SETTLED = 1e-4  # of the power, by which a sample may differ from that a period later
 ALIKE = 2.0  # times the most in the last period, by which it may as well
+LATER = 3  # periods, of which the first one says nothing of how long they are
+CLOSE = 1e-3  # of a period, by which one that is found may be off
+CONTRADICTED = 10.0  # times what positions differ by after a period that is found
+SHORT = 0.05  # of a period, by which the last one may be shorter than it is
 FEWEST = 4  # samples a row, so that half a sample of a row's place is little
 
 
@@ -60,7 +64,9 @@ def period_of(record: Record, given: float | None, limits: DatasetThresholds = U
     valley = good[(good >= good[0]) & (good <= last)]
     about = int(lags[valley[np.argmin(errors[valley])]]) * coarse
     near = range(max(1, about - 2 * coarse), min(about + 2 * coarse, count // 2) + 1)
-    exact = [_differs(record.q, lag) for lag in near]
+    # An arm may still be on its way into the motion in the first of several periods.
+    later = record.q[about:] if count >= LATER * about else record.q
+    exact = [_differs(later, lag) for lag in near]
     return _between(record.q, near[int(np.argmin(exact))])
 
 
@@ -84,7 +90,8 @@ def repetition(
     except InputError as error:  # of a given period, which what comes later may have
         refused = error
     if period is not None:  # a given one may be missed by more than noise makes
-        begin = 0 if given is None else _settled(record.q, round(period))
+        found = None if given is None else period_of(record, None, limits)
+        begin = 0 if given is None or _same(found, period) else _settled(record.q, round(period))
         later = period_of(record.part(begin, len(record.t)), given, limits) if begin else None
         return (0, period) if later is None else (begin, later)
     count = len(record.t)
@@ -102,6 +109,16 @@ def repetition(
     return None if period is None else (begin, period)
 
 
+def whole_periods(count: int, period: float) -> int:
+    """How many periods [samples] so many samples have, the last one but for a little of it."""
+    return int(max(count + 1, count + SHORT * period) / period)
+
+
+def _same(found: float | None, period: float) -> bool:
+    """Whether a period that was found is one [samples] that was given."""
+    return found is not None and abs(found - period) <= max(1.0, CLOSE * period)
+
+
 def _settled(q: Array, lag: int, end: int = 0) -> int:
     """First sample from which positions (N, n) repeat after a lag; `end`: one by which they do."""
     power = np.maximum(2 * q[end:].var(axis=0), 1e-300)
@@ -116,8 +133,13 @@ def _unlike(q: Array, lag: int, scale: Array) -> float:
 
 
 def _differs(q: Array, lag: int) -> float:
-    """Mean square by which positions (N, n) differ after a lag."""
-    return float(((q[lag:] - q[:-lag]) ** 2).mean())
+    """Mean square by which positions (N, n) differ after a lag, the geometric mean over the joints.
+
+    It is least at the likeliest lag where each joint differs by a noise of its own size: a joint that sticks
+    elsewhere in each period does not say when the others repeat.
+    """
+    squares = ((q[lag:] - q[:-lag]) ** 2).mean(axis=0)
+    return float(np.exp(np.log(np.maximum(squares, 1e-300)).mean()))
 
 
 def _between(q: Array, lag: int) -> float:
@@ -151,13 +173,20 @@ def _checked(record: Record, given: float, limits: DatasetThresholds) -> float |
     if not _holds_two(record, lag):
         return None
     differs = float(_differing(record.q, lag)[_differing(record.q, 1) < loose].max(initial=0.0))
+    found = period_of(record, None, limits)
     if differs > loose:
-        found = period_of(record, None, limits)
         hint = "leave it out" if found is None else f"found is {found * record.step:.6g} s"
         raise InputError(
             f"--period: {record.name} does not repeat after {given:g} s: its positions differ by "
             f"{100 * differs:.2g} % of their power, expected {100 * loose:g} % at most; {hint}"
         )
+    if found is not None and (times := max(1, round(lag / found))) * found <= len(record.t) / 2:
+        at_best = _differs(record.q, round(times * found))
+        if _differs(record.q, lag) > CONTRADICTED * at_best and not _same(times * found, lag):
+            raise InputError(
+                f"--period: {record.name} repeats after {times * found * record.step:.6g} s, not nearly as "
+                f"well after {given:g} s; expected the former, or leave it out"
+            )
     exact = given / record.step
     return lag if abs(exact - lag) * len(record.t) / lag < OFF else exact
 

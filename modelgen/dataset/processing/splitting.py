@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from modelgen.dataset.objects import Record
-from modelgen.dataset.processing.periods import repetition
+from modelgen.dataset.processing.periods import repetition, whole_periods
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.specs import cut, parse
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
@@ -57,7 +57,7 @@ def split(record: Record, period: float | None = None, limits: DatasetThresholds
     if found is None:
         return _parts(record, 0, count // 2, "the motion does not repeat")
     begin, lag = found
-    whole = int((count - begin + 1) / lag)
+    whole = whole_periods(count - begin, lag)
     first = whole - whole // 2
     known = replace(record, period=lag)
     counts = f"{whole} periods of {lag * record.step:.6g} s"
