@@ -60,16 +60,14 @@ def test_a_motion_slower_than_the_record_has_no_period(count: int) -> None:
 
 
 def sticking(seed: int, into: float = 0.0) -> Record:
-    """Three periods of 10 s, of which the second joint sticks elsewhere in each. into: [rad] by which
-    the first joint is off at the start, for half a second.
+    """Three periods of 10 s; the second joint comes later in each. into: [rad] by which the first joint
+    is off at the start, for half a second.
     """
     record = moving(10.0, 100.0, 1e-4, seed).part(0, 3000)
-    rng, q = np.random.default_rng([seed, 1]), record.q.copy()
-    for k in range(3):
-        slow = np.convolve(rng.normal(size=1000 + 300), np.hanning(301) / 150.0, "valid")
-        q[1000 * k : 1000 * (k + 1), 1] += 0.05 * slow
-    q[:, 0] += into * np.exp(-record.t / 0.1)
-    return Record("run", record.t, q, q)
+    t, q = record.t, record.q.copy()
+    q[:, 1] = np.interp(t - 0.04 * np.floor(t / 10.0), t, q[:, 1])
+    q[:, 0] += into * np.exp(-t / 0.1)
+    return Record("run", t, q, q)
 
 
 @pytest.mark.parametrize("seed", range(4))
