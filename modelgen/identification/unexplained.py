@@ -15,6 +15,7 @@ from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
+from modelgen.regression.least_squares import Regression
 
 POOR = 0.15  # of the efforts of a joint, unexplained, from which on another reading is asked for
 CHANGES = 0.25  # of their changes, likewise
@@ -47,7 +48,7 @@ def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluat
         regression = regression_of(evaluator, model, [prepared], np.zeros(p))
         if sum(int(m.sum()) for m in regression.moving) < 3 * p:
             return None
-        theta = regression.least_squares()
+        theta = _weighted(regression)
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return None
     effort, moving = regression.effort[0], regression.moving[0]
@@ -59,6 +60,19 @@ def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluat
     band = min(1.0, 2.0 * cutoff / rate) if cutoff else 1.0
     noise = [math.sqrt(band) * white_noise(x, rate) for x in record.input.T]
     return Unexplained(shares, left, changes, np.array(noise))
+
+
+def _weighted(regression: Regression) -> Array:
+    """Parameters (p,) by the efforts of each joint in proportion to their size, then to what is left of them:
+    where joints have units of their own, or one is read wrongly, the others keep what is theirs.
+    """
+    moving, by = regression.moving[0], regression.effort[0]
+    for _ in range(2):
+        size = _size(by, moving)
+        weights = np.where(size > 0.0, 1.0 / np.maximum(size, 1e-300), 0.0)
+        theta = regression.scaled(weights).least_squares()
+        by = regression.residuals(theta)[0]
+    return theta
 
 
 def _size(values: Array, moving: NDArray[np.bool_]) -> Array:
