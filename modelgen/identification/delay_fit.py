@@ -27,6 +27,7 @@ LONGEST, TURNED = 2.0, 0.1  # samples, of a step, or periods of the cut-off wher
 SETTLED = 0.02  # samples, or this part of the deviation, at which they end
 WAVES = (0.5, 1, 1.5, 2, 3)  # in the range of a joint, of which its free law of position is made
 SLOW = (0.05, 0.2)  # of the highest speed, below which a law of friction may be another
+ALONE, MORE = 0.7, 1.5  # of what delays leave, what free laws leave beside them; times, what such laws leave
 EXPLAINS = 0.25  # of what is left without it, that a delay beyond a sample may leave to be believed
 
 
@@ -95,8 +96,12 @@ class DelayFit:
             told &= np.abs(moved) <= deviations
         self.missing = self.lacks(solution.sigma, before.sigma)
         if free:
-            change, _ = self.beside_free_laws(efforts, columns, theta, solution.sigma)
+            change, left = self.beside_free_laws(efforts, columns, theta, solution.sigma)
             deviations = np.hypot(deviations, change)
+            if (np.abs(delays - first.hold / first.step) > 1.0).any():
+                efforts = self.efforts(np.full(self.n, first.hold / first.step))
+                _, without = self.beside_free_laws(efforts, self.columns, before.theta, before.sigma)
+                self.missing |= ~needed(without, left, solution.sigma)
         return delays, np.where(told & (deviations > 0.0), deviations, np.inf)
 
     def lacks(self, left: Array, without: Array) -> NDArray[np.bool_]:
@@ -166,6 +171,13 @@ class DelayFit:
             given = earlier(r.record.input, -delays)
             found.append(r.parallel(self.evaluator.ideal(self.model, motion, given) * weights))
         return found
+
+
+def needed(without: Array, left: Array, delayed: Array) -> NDArray[np.bool_]:
+    """Joints (n,) whose efforts delays explain: hardly less is left beside free laws too, or far more by such
+    laws alone. left, without: beside free laws, with delays and without; delayed: with delays alone, (n,).
+    """
+    return np.asarray((left >= ALONE * delayed) | (without > MORE * left))
 
 
 def earlier(x: Array, delays: Array) -> Array:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from modelgen.dataset.processing.instants import LateChannel
 from modelgen.evaluation import Motion
 from modelgen.identification.channel_ages import SETTLED, Ages
-from modelgen.identification.delay_fit import DelayFit
+from modelgen.identification.delay_fit import DelayFit, needed
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
@@ -25,7 +25,6 @@ REACH = 0.1  # periods of the cut-off, to either side, over which slopes are tak
 LONGEST = 2.5  # periods of the cut-off, of a step
 STEPS, HALVES = 12, 5  # of Gauss and Newton, and how often one is halved that leaves more than before
 PART = 0.2  # of the deviation, or SETTLED samples, at which they end
-ALONE, MORE = 0.7, 1.5  # of what delays leave, what free laws leave beside them; times, what such laws leave
 WORSE = 1.05  # of what is left of a joint's efforts without them, that no true delays leave
 LEAST = 1e-13  # part of columns of unit length that depends on no others
 LITTLE = 0.05  # of the logarithm of what is left of an effort, by which a step is to lower it at least
@@ -137,10 +136,7 @@ class Channels:
         change = np.concatenate([-free[:n], [0.0], free[n:]])
         ages = Ages(self._ages(delays, positions), found.covariance, found.told, change)
         believed = ~fit.lacks(np.minimum(left, sigma), first) & (sigma <= WORSE * first)
-        # Delays alone leave hardly more than free laws beside them, or such laws alone leave far more.
-        rows = sum(m.sum(axis=0) for m in fit.moving)
-        needed = float(rows @ np.log(np.maximum(lawful, 1e-300) / np.maximum(left, 1e-300))) / rows.sum()
-        return ages, believed & ((left >= ALONE * sigma).all() | (needed > np.log(MORE)))
+        return ages, believed & needed(lawful, left, sigma)
 
     def _leave_ends(self, delays: Array, positions: Array) -> None:
         """Rows near the ends of the records do not count: what is moved there is not in the log."""

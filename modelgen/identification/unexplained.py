@@ -20,12 +20,19 @@ from modelgen.regression.least_squares import Regression
 POOR = 0.15  # of the efforts of a joint, unexplained, from which on another reading is asked for
 CHANGES = 0.25  # of their changes, likewise
 FAR = 3.0  # times what noise is through the filter, that is none
+ROUNDS, SETTLED = (
+    30,
+    0.01,
+)  # in which efforts are weighed by what is left of them; changes of that, at the end
+SMALLEST = 1e-5  # of an effort, that counts as left of it
+LEAST = 1e-13  # of the largest eigenvalue, that a combination of parameters is found from
 
 
 @dataclass(frozen=True)
 class Unexplained:
-    """share: RMS left of the efforts over theirs (n,), 0 for joints at rest. error: what is left, changes:
-    the deviation of the efforts from their mean, noise: that of white noise, (n,) each, after the filter.
+    """share: RMS that least squares leave of the efforts over theirs (n,), 0 for joints at rest. error: what
+    is left where the effort of each joint counts by that, changes: the deviation of the efforts from their
+    mean, noise: that of white noise, (n,) each, after the filter.
     """
 
     share: Array
@@ -48,13 +55,13 @@ def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluat
         regression = regression_of(evaluator, model, [prepared], np.zeros(p))
         if sum(int(m.sum()) for m in regression.moving) < 3 * p:
             return None
-        theta = _weighted(regression)
+        plain, fair = regression.least_squares(), _by_what_is_left(regression)
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return None
     effort, moving = regression.effort[0], regression.moving[0]
     rate, cutoff = 1.0 / record.step, like.settings.cutoff
-    left = _size(regression.residuals(theta)[0], moving)
-    shares = left / np.maximum(_size(effort, moving), 1e-300)
+    shares = _size(regression.residuals(plain)[0], moving) / np.maximum(_size(effort, moving), 1e-300)
+    left = _size(regression.residuals(fair)[0], moving)
     changes = np.array([np.std(x[m]) if m.any() else 0.0 for x, m in zip(effort.T, moving.T, strict=True)])
     assert record.input is not None
     band = min(1.0, 2.0 * cutoff / rate) if cutoff else 1.0
@@ -62,17 +69,26 @@ def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluat
     return Unexplained(shares, left, changes, np.array(noise))
 
 
-def _weighted(regression: Regression) -> Array:
-    """Parameters (p,) by the efforts of each joint in proportion to their size, then to what is left of them:
-    where joints have units of their own, or one is read wrongly, the others keep what is theirs.
+def _by_what_is_left(regression: Regression) -> Array:
+    """Parameters (p,) by the efforts of each joint in proportion to what is left of them: where joints have
+    units of their own, or one is read wrongly, the others keep what is theirs.
     """
-    moving, by = regression.moving[0], regression.effort[0]
-    for _ in range(2):
-        size = _size(by, moving)
-        weights = np.where(size > 0.0, 1.0 / np.maximum(size, 1e-300), 0.0)
-        theta = regression.scaled(weights).least_squares()
-        by = regression.residuals(theta)[0]
-    return theta
+    effort, table, moving = regression.effort[0], regression.columns[0], regression.moving[0]
+    scale = np.linalg.norm(table.reshape(-1, table.shape[2]), axis=0)
+    scale = np.where(scale > 0.0, scale, 1.0)
+    rows = [(table[m, j] / scale, effort[m, j]) for j, m in enumerate(moving.T) if m.any()]
+    grams, rights = np.array([x.T @ x for x, _ in rows]), np.array([x.T @ y for x, y in rows])
+    squares, count = np.array([y @ y for _, y in rows]), np.array([len(y) for _, y in rows])
+    left, theta = squares, np.zeros(len(scale))
+    for _ in range(ROUNDS):
+        weights = count / np.maximum(left, np.maximum(SMALLEST**2 * squares, 1e-300))
+        values, vectors = np.linalg.eigh(np.einsum("j,jkl->kl", weights, grams))
+        kept = values > LEAST * values.max(initial=0.0)
+        theta = (vectors[:, kept] / values[kept]) @ (vectors[:, kept].T @ (weights @ rights))
+        before, left = left, squares + np.einsum("k,jkl,l->j", theta, grams, theta) - 2.0 * rights @ theta
+        if (np.abs(left - before) <= SETTLED * before).all():
+            break
+    return np.asarray(theta / scale)
 
 
 def _size(values: Array, moving: NDArray[np.bool_]) -> Array:

@@ -136,12 +136,8 @@ class Regression:
 
     def as_in(self, solution: Solution) -> Regression:
         """The rows with the weights and the columns of a solution's fit, for `least_squares`."""
-        kept = replace(self, columns=[c[:, :, solution.kept] for c in self.columns])
-        return kept.scaled(1.0 / np.maximum(solution.sigma, 1e-300))
-
-    def scaled(self, weights: Array) -> Regression:
-        """The rows of each joint times its weight, (n,)."""
-        columns = [c * weights[:, None] for c in self.columns]
+        weights = 1.0 / np.maximum(solution.sigma, 1e-300)
+        columns = [c[:, :, solution.kept] * weights[:, None] for c in self.columns]
         return replace(self, effort=[e * weights for e in self.effort], columns=columns)
 
     def moved_by(self, solution: Solution, errors: Sequence[Array]) -> Array:

@@ -169,7 +169,7 @@ def test_nothing_is_said_of_sound_channels(what: str, ordinary: bool, rate: floa
         table = log(seed, rate=rate, besides=LACKING.get(what), ordinary=ordinary)
         found = effort_instant([mg.read_log(table, arm)], arm)
         assert found is not None
-        assert not found.channels
+        assert not (found.channels or found.late)
 
 
 @pytest.mark.parametrize(("what", "rate", "seed"), MISLED)
@@ -177,6 +177,17 @@ def test_delays_that_fit_far_away_are_not_believed(what: str, rate: float, seed:
     found = effort_instant([mg.read_log(log(seed, rate=rate, besides=LACKING[what]), arm)], arm)
     assert found is not None
     assert not found.channels
+
+
+@pytest.mark.parametrize("stiffness", [0.5, 2.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_spring_that_the_model_lacks_is_no_delay(seed: int, stiffness: float, arm: mg.Arm) -> None:
+    def spring(q: np.ndarray, _: np.ndarray) -> np.ndarray:
+        return stiffness * (q - 0.3) * [0.0, 1.0]
+
+    found = effort_instant([mg.read_log(log(seed, rate=200.0, besides=spring), arm)], arm)
+    assert found is not None
+    assert not (found.channels or found.late)
 
 
 def test_a_late_joint_is_named_beside_what_the_model_lacks(arm: mg.Arm) -> None:
