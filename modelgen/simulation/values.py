@@ -10,6 +10,8 @@ from modelgen.description.expressions import ExpressionError, evaluate
 from modelgen.errors import InputError
 from modelgen.numeric import Array
 
+ANGLES, MASSES = "0.35, 'pi/9' or '20 deg'", "2.5 or 2.5,0,0,0.1 (kg, m)"
+
 
 def by_joint(option: str, given: str | float | Sequence[float], names: Sequence[str]) -> Array:
     """(n,) values [rad, m] from "20 deg" (for all joints), "20 deg, 0.1, ..." (for each), or numbers."""
@@ -39,17 +41,17 @@ def locks(given: Sequence[str] | Mapping[str, float]) -> dict[str, float]:
 
 
 def numbers(option: str, given: str | float | Sequence[float]) -> list[float]:
-    """Numbers between commas, or as they stand."""
+    """Numbers of a payload between commas, or as they stand."""
     if not isinstance(given, str):
         return [float(x) for x in np.atleast_1d(np.asarray(given, dtype=float))]
-    return [_value(option, part.strip()) for part in given.split(",")] if given.strip() else []
+    return [_value(option, part.strip(), MASSES) for part in given.split(",")] if given.strip() else []
 
 
-def _value(option: str, text: str) -> float:
+def _value(option: str, text: str, like: str = ANGLES) -> float:
     try:
         value = evaluate(text, "any").value
     except ExpressionError as error:
-        raise InputError(f"{option}: '{text}': {error}; expected 0.35, 'pi/9' or '20 deg'") from error
+        raise InputError(f"{option}: '{text}': {error}; expected {like}") from error
     if not np.isfinite(value):
         raise InputError(f"{option}: found '{text}', expected a finite number")
     return value

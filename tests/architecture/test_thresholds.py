@@ -25,6 +25,7 @@ SAID = "the sentence that describes the test says it in words"
 
 CONSTANTS = {
     "adequacy/distinguishable.py": {"SEED": SEED},
+    "adequacy/encoder_errors.py": {"SIZE": ACCURACY},
     "adequacy/explained.py": {"NEIGHBOURS": ACCURACY},
     "adequacy/figures_said.py": {"CLEAR": PRINTED, "HARDLY": PRINTED},
     "adequacy/null_distribution.py": {"NULLS": MEASURED},

@@ -66,3 +66,22 @@ def test_a_mapping_needs_no_arm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 def test_the_picture_is_written(tmp_path: Path) -> None:
     called(write_csv(tmp_path / "a.csv", columns(times())), "--plot", str(tmp_path / "a.svg"))
     assert (tmp_path / "a.svg").read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_a_picture_is_no_other_kind_of_file(tmp_path: Path) -> None:
+    file = write_csv(tmp_path / "a.csv", columns(times()))
+    result = CliRunner().invoke(app, ["inspect", file, "--plot", str(tmp_path / "a.png")])
+    assert result.exit_code == 2
+    assert "the picture is an SVG, expected" in " ".join(result.stderr.split())
+    assert not (tmp_path / "a.png").exists()
+
+
+def test_a_word_in_a_column_of_numbers_is_said(tmp_path: Path) -> None:
+    file = Path(write_csv(tmp_path / "a.csv", columns(times())))
+    lines = file.read_text(encoding="utf-8").splitlines()
+    cells = lines[500].split(",")
+    lines[500] = ",".join([cells[0], "abc", *cells[2:]])
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    data = json.loads(called(str(file), "--json"))
+    assert data["without_numbers"] == ["q1"]
+    assert any("the column q1 is left out: found 'abc'" in remark for remark in data["remarks"])

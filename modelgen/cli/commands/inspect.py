@@ -50,6 +50,7 @@ def inspect(
     from modelgen.api.inspect import inspect_log, mapping_skeleton
     from modelgen.cli.arms import one
     from modelgen.cli.output import print_result
+    from modelgen.errors import InputError
     from modelgen.files import check_writable, write_new, write_together
 
     found = one(arms, arm) if arms is not None or arm else None
@@ -58,6 +59,8 @@ def inspect(
             check_writable(option, path)
     if skeleton is not None and (found is not None or mapping is not None):
         write_new(skeleton, mapping_skeleton(log, found))
+    if plot is not None and plot.suffix.lower() != ".svg":
+        raise InputError(f"--plot {plot}: the picture is an SVG, expected {plot.with_suffix('.svg')}")
     result = inspect_log(log, found, mapping=mapping)
     if skeleton is not None and found is None and mapping is None:
         write_new(skeleton, mapping_skeleton(result))

@@ -12,24 +12,22 @@ import numpy as np
 
 from modelgen.dataset.drives import drives_of
 from modelgen.dataset.inspection.bare_arm import arm_of
+from modelgen.dataset.inspection.bare_columns import numbers_in
 from modelgen.dataset.inspection.guesses import guessed_unit, kind_of, time_of, unit_in, unit_of_time
 from modelgen.dataset.mapping.units import TIMES
 from modelgen.dataset.objects import Reader, Record
 from modelgen.dataset.processing.periods import repetition
 from modelgen.dataset.processing.rounding import resolution
 from modelgen.dataset.processing.splitting import repeats_from
-from modelgen.dataset.reading.array_table import ArrayTable
 from modelgen.dataset.reading.clocks import Channels, repeated_in
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.jumps import jump_of
 from modelgen.dataset.reading.plausible import counter, doubtful_unit
 from modelgen.dataset.reading.read import read_with_stamps
-from modelgen.dataset.reading.signals import by_names
-from modelgen.dataset.reading.sources import BLOCK, opened
-from modelgen.dataset.reading.specs import Spec, parse
+from modelgen.dataset.reading.sources import opened
+from modelgen.dataset.reading.specs import parse
 from modelgen.dataset.thresholds import USUAL
 from modelgen.description import Arm
-from modelgen.errors import DamagedFileError, InputError
 from modelgen.numeric import Array
 
 _POSITION = re.compile(r"qm?[1-9][0-9]*")
@@ -108,8 +106,8 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
         return _of_record(*read_with_stamps(log, arm, mapping, still=True))
     spec = parse(log)
     reader = opened(spec)
-    columns, rest = _columns(spec, reader)
-    remarks, units = list(reader.remarks), _said(reader)
+    columns, rest = numbers_in(spec, reader)
+    remarks, units = [*reader.remarks, *(x for x in rest.values() if x)], _said(reader)
     t = columns.get("t")
     stamps = time_of(columns) if t is None else None
     if stamps is not None:
@@ -136,7 +134,7 @@ def inspect(log: Log, arm: Arm | None = None, mapping: Path | str | None = None)
     if t is not None and np.isfinite(t).all() and (np.diff(t) > 0.0).all():
         finite = [(name, x) for name, x in moving.items() if np.isfinite(x).all()]
         remarks += [jump for name, x in finite if (jump := jump_of((name,), t, x[:, None], USUAL))]
-    return replace(found, without_numbers=rest, remarks=(*remarks, *([doubt] if doubt else [])))
+    return replace(found, without_numbers=tuple(rest), remarks=(*remarks, *([doubt] if doubt else [])))
 
 
 def _said(reader: Reader) -> dict[str, str]:
@@ -157,12 +155,6 @@ def _repeated(columns: Mapping[str, Array], positions: Sequence[str]) -> tuple[s
     of_motion = [k for k, name in enumerate(names) if name in positions]
     efforts = [k for k, name in enumerate(names) if kind_of(name) == "current"]
     return repeated_in(table, Channels(names, of_motion, efforts))
-
-
-def columns_of_log(log: Log) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """Columns of numbers (N,) of a log by name, and the names of the others. Raises InputError."""
-    spec = parse(log)
-    return _columns(spec, opened(spec))
 
 
 def inspect_record(record: Record, lag: float | None, samples: int | None = None) -> Inspected:
@@ -212,54 +204,6 @@ def _period(record: Record) -> tuple[float | None, tuple[str, ...]]:
     if found is None:
         return None, ()
     return found[1] * record.step, (repeats_from(record, found),) if found[0] else ()
-
-
-def _columns(spec: Spec, reader: Reader) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """Columns of numbers of the part of a log, and names of the other columns. Raises InputError."""
-    names = tuple(dict.fromkeys(reader.names))
-    if "t" not in names and (spec.begin, spec.end) != (-math.inf, math.inf):
-        raise InputError(f"{spec.text}: the column t [s] is missing, expected one to cut a part by")
-    rest: tuple[str, ...] = ()
-    if isinstance(reader, ArrayTable):
-        names = reader.together
-    try:
-        table = _table(reader, names)
-    except InputError:
-        table, names, rest = _one_by_one(spec.text, reader, names)
-    columns = dict(zip(names, table.T, strict=True))
-    if "t" in columns:
-        inside = (columns["t"] >= spec.begin) & (columns["t"] < spec.end)
-        columns = {name: values[inside] for name, values in columns.items()}
-    if not columns or not len(next(iter(columns.values()))):
-        raise InputError(f"{spec.text}: found no numbers")
-    return columns, rest
-
-
-def _one_by_one(
-    file: str, reader: Reader, names: Sequence[str]
-) -> tuple[Array, tuple[str, ...], tuple[str, ...]]:
-    """Columns that are numbers (N, k), their names, and the names of the others. Raises DamagedFileError."""
-    found: dict[str, Array] = {}
-    for name in names:
-        try:
-            found[name] = _table(reader, (name,))[:, 0]
-        except DamagedFileError:  # which has not said what it holds
-            raise
-        except InputError:
-            continue
-    lengths = {name: len(x) for name, x in found.items()}
-    if len(set(lengths.values())) > 1:
-        few = min(lengths, key=lambda name: lengths[name])
-        raise DamagedFileError(
-            f"{file}: the column {few} has {lengths[few]} readings, others {max(lengths.values())}"
-        )
-    table = np.stack(list(found.values()), axis=1) if found else np.empty((0, 0))
-    return table, tuple(found), tuple(name for name in names if name not in found)
-
-
-def _table(reader: Reader, names: tuple[str, ...]) -> Array:
-    blocks = [block.copy() for block in reader.blocks(by_names(names), BLOCK)]
-    return np.concatenate(blocks) if blocks else np.empty((0, len(names)))
 
 
 def _inspected(
