@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperGroup
 
 from modelgen.cli.collection import collect_no_more, collect_rarely
 from modelgen.cli.commands import (
@@ -30,9 +31,41 @@ from modelgen.cli.commands import (
     show,
     simulate,
 )
+from modelgen.cli.guard import BAD_INPUT, INTERRUPTED
 from modelgen.version import __version__
 
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)]
+
+
+_UsageError: Any = typer.BadParameter.__mro__[1]  # Typer gives it no name of its own
+
+
+class _Group(TyperGroup):
+    """The commands. A call that no command has is one line, as any bad input."""
+
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """Call a command; ends the process unless `standalone_mode` is False."""
+        alone = extra.pop("standalone_mode", True)
+        extra["standalone_mode"] = False
+        if not alone:
+            return super().main(*args, **extra)
+        try:
+            status = super().main(*args, **extra)
+        except _UsageError as error:
+            typer.echo(_line(error), err=True)
+            sys.exit(BAD_INPUT)
+        except typer.Abort:
+            typer.echo("interrupted; nothing is half-written", err=True)
+            sys.exit(INTERRUPTED)
+        sys.exit(status if isinstance(status, int) else 0)
+
+
+def _line(error: Any) -> str:
+    said = " ".join(error.format_message().split())
+    if error.ctx is None:
+        return said
+    usage = " ".join(error.ctx.get_usage().split())
+    return f"{said}{'' if said[-1] in '.?' else '.'} {usage}; {error.ctx.command_path} --help says more"
 
 
 class _Command(TyperCommand):
@@ -59,6 +92,7 @@ def _escaped(params: list[Any]) -> Iterator[None]:
 
 app = typer.Typer(
     name="modelgen",
+    cls=_Group,
     help="From the YAML description of a robot arm to its dynamic model in C99, CasADi and NumPy.",
     epilog="Exit status: 0 done, 1 a check failed, 2 bad input, 130 interrupted, 141 the reader of stdout is "
     "gone. Messages go to stderr, data to stdout.",

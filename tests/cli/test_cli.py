@@ -271,6 +271,7 @@ def test_a_wrong_call_exits_with_2_and_shows_the_usage(
     done = call(*arguments, cwd=tmp_path, checkout=checkout)
     assert done.returncode == 2
     assert "Usage: modelgen" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
     assert "Traceback" not in done.stderr
     assert done.stdout == ""
 
