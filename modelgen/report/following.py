@@ -59,12 +59,21 @@ class Step:
 
 def following(d: Diagnosis, call: Call) -> list[Step]:
     """Steps, the first one first. call: how the diagnosis was asked for, with the folder of its report."""
-    steps = _first(d, call)
+    steps = [*_mending(d), *_first(d, call)]
     if d.next_experiment is not None:
         steps.append(Step(f"To separate the cause from its rivals: {followed(d.next_experiment)}."))
     else:
         steps += [Step(text) for text in _by_itself(d)]
     return steps
+
+
+def late_channels(d: Diagnosis) -> tuple[str, ...]:
+    """Questions about channels that are older than the others: a further log will have them so too."""
+    return () if d.identified is None else d.identified.late
+
+
+def _mending(d: Diagnosis) -> list[Step]:
+    return [Step(text) for text in late_channels(d)]
 
 
 def _first(d: Diagnosis, call: Call) -> list[Step]:
@@ -117,7 +126,7 @@ def _by_itself(d: Diagnosis) -> list[str]:
 
 def proposed(d: Diagnosis, call: Call) -> list[Step]:
     """Steps that the terminal offers at the end, each with a command where there is one."""
-    return [*_first(d, call), *replaying(d, call)]
+    return [*_mending(d), *_first(d, call), *replaying(d, call)]
 
 
 def carried(d: Diagnosis, call: Call) -> list[Step]:

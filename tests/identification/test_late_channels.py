@@ -223,3 +223,4 @@ def test_inspect_and_diagnose_say_it_too(arm: mg.Arm) -> None:
     found = mg.diagnose(arm, train, test, experiment=False, effects=["friction_offset"])
     (asked,) = questions(found)
     assert asked.startswith("The positions at j2 are")
+    assert found.next_steps("found")[0][0] == asked

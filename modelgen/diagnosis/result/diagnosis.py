@@ -25,12 +25,13 @@ class AsIdentified:
     """What `modelgen identify` has of the arm as described in this band, with samples at rest.
 
     rmse: (n,) on the test record. cutoff: that identify would choose [Hz]. doubts: questions about what no
-    arm has, or the described one has not.
+    arm has, or the described one has not. late: about channels of the log that are older than the others.
     """
 
     rmse: Array
     cutoff: float
     doubts: tuple[str, ...] = ()
+    late: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,8 @@ class Diagnosis:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Questions about what no arm has, or the described one has not."""
-        known = () if self.identified is None else self.identified.doubts
+        """Questions about what no arm has, or the described one has not, and about the log."""
+        known = () if self.identified is None else (*self.identified.doubts, *self.identified.late)
         return (*self.impossible, *(text for text in known if text not in self.impossible))
 
     @property

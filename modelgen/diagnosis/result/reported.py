@@ -153,7 +153,7 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     left = [doubt for doubt in asked if not answered.issuperset(doubt.joints)]
     texts = (text.without(DIAGNOSING) for text in (*left, *about))  # this is the diagnosis
     late = study.instant.questions() if study.instant is not None and study.instant.channels else ()
-    return AsIdentified(found.rmse, chosen.cutoff, (*texts, *late))
+    return AsIdentified(found.rmse, chosen.cutoff, tuple(texts), late)
 
 
 def _impossible(
