@@ -187,13 +187,13 @@ def _evidence(cause: Cause, selection: Selection) -> Check:
 
 
 def significant(k: int, selection: Selection, equations: Equations, widened: float = 1.0) -> Check:
-    """Whether what an effect claims is not zero: asked of parameters without which it would not be there.
+    """Whether what an effect claims is not zero, or its only parameter: without these it would not be there.
 
     k: number of the cause. equations: of the band. widened: times that the records differ more in it than
     noise does.
     """
     trial = selection.causes[k].trial
-    if not claimed(trial):
+    if not (claimed(trial) or len(trial.candidate.names) == 1):
         return significance_of(trial, equations, {}, {})
     settled = refit_elastic(selection, equations)
     values, spread = settled.causes[k].trial.parameters, deviations(settled, equations).causes[k]
@@ -205,7 +205,8 @@ def significance_of(
 ) -> Check:
     """The check `significant` of a cause with these values and standard deviations, by name."""
     found, text = significance(trial, equations.arm, values, spread)
-    if not claimed(trial):
+    single = len(trial.candidate.names) == 1 and np.isfinite(found)
+    if not (claimed(trial) or single):
         return Check("significant", True, True, found, float("nan"), text)
     least = equations.thresholds.adequacy.min_claimed_deviations
     return Check("significant", found >= least, True, found, least, f"{text}; {number(least)} is asked")

@@ -67,8 +67,7 @@ def significance(
         return float("nan"), text
     largest = number(max(sizes))
     if one:
-        name = cause.candidate.names[0]
-        return max(sizes), f"{text}; its {name} is {largest} standard deviations from zero"
+        return max(sizes), f"its {cause.candidate.names[0]} is {largest} standard deviations from zero"
     text = f"{text}; the clearest of its parameters is {largest} standard deviations from zero"
     alone = "" if max(sizes) >= CLEAR else ": what they make together is known, none of them by itself"
     return max(sizes), f"{text}{alone}"

@@ -107,10 +107,11 @@ def free_forms(
 def _misread(
     errors: Iterable[SmoothFunction], own: Sequence[FittedCandidate], without: System
 ) -> Iterator[FreeForm]:
-    """Errors of encoders against the causes at a joint. without: the system of the others."""
+    """Errors of encoders that are ahead of the causes at a joint. without: the system of the others."""
     for shape in errors:
         by, _ = ahead([shape], own, without)
-        yield FreeForm(by, 0.0, what=shape.text, error=True)
+        if by > 0.0:
+            yield FreeForm(by, 0.0, what=shape.text, error=True)
 
 
 def _slowest_out(trial: FittedCandidate, j: int, selection: Selection) -> FreeForm:
