@@ -215,4 +215,4 @@ def following(call: Call, stands: bool) -> list[Part | str]:
     excite = call.exciting(call.beside("trajectory.csv"), description=described)
     if not excite:
         return [Text(used)]
-    return [Text(used), Text(sentence(f"this computes such a motion, {WHERE}")), Command(excite)]
+    return [Text(used), Text(sentence(f"this computes such a motion, {WHERE}:")), Command(excite)]

@@ -181,14 +181,14 @@ def following(found: Identification, call: Call, speeds: Sequence[float]) -> lis
     values = ["--parameters", call.beside(f"{name}_parameters.yaml")]
     generate = call.command("generate", *values, *left_out, *scaled, description=described)
     code = [
-        Text(f"{call.first}{sentence(f'generate code with these values folded in, {WHERE}')}"),
+        Text(f"{call.first}{sentence(f'generate code with these values folded in, {WHERE}:')}"),
         Command(generate),
     ]
     wrong = bool(impossible(found))
     again = call.by_instruments(described) if found.method != "iv" and biased(found) else ""
     if again:
         code = [
-            Text(f"{call.first}{sentence(f'fit again by instruments, {_UNBIASED}, {WHERE}')}"),
+            Text(f"{call.first}{sentence(f'fit again by instruments, {_UNBIASED}, {WHERE}:')}"),
             Command(again),
         ]
     parts: list[Any] = [Text(f"{call.first}{_EXPLAIN}")] if wrong else code

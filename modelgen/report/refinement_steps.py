@@ -32,14 +32,15 @@ def following(call: Call, found: Refinement) -> list[Part | str]:
         return [*_first(call, code), *_lacking(call, found)]
     more = _further(call, found, loose)
     text, command = code
-    least = Text(sentence(f"for motions like {'this one' if len(found.t) == 1 else 'these'} alone, {text}"))
+    least = Text(sentence(f"for motions like {'this one' if len(found.t) == 1 else 'these'} alone, {text}:"))
     return [*_first(call, more), *_lacking(call, found), least, Command(command)]
 
 
 def _first(call: Call, step: tuple[str, str]) -> list[Part | str]:
     """A sentence with its command, where it has one, that comes first."""
     text, command = step
-    return [Text(f"{call.first}{sentence(text)}"), *([Command(command)] if command else [])]
+    said = sentence(f"{text}:" if command else text)
+    return [Text(f"{call.first}{said}"), *([Command(command)] if command else [])]
 
 
 def _folded_in(call: Call, converged: bool) -> tuple[str, str]:

@@ -127,9 +127,9 @@ def there(effect: str, place: str, other: str = "") -> str:
 
 
 def sentence(clause: str) -> str:
-    """With a capital letter, unless a name of the catalogue comes first, and a full stop."""
+    """With a capital letter, unless a name of the catalogue comes first, and a full stop or its own end."""
     first = clause[:1] if "_" in clause.partition(" ")[0] else clause[:1].upper()
-    return f"{first}{clause[1:]}{'' if clause.endswith(('.', '?')) else '.'}"
+    return f"{first}{clause[1:]}{'' if clause.endswith(('.', '?', ':')) else '.'}"
 
 
 def listed(words: Iterable[str]) -> str:

@@ -38,8 +38,9 @@ class LateChannel:
         columns = "columns" if " and " in self.what else "column"
         return (
             f"The {self.what} at {self.name} are {age * step * 1e3:.3g} ms ({age:.3g} ± "
-            f"{self.deviation:.1g} samples) {how} than all other channels: are they filtered, or sent late? "
-            f"Parameters may be wrong by that; move their {columns} {where} by {rows} rows beside the others."
+            f"{_short(self.deviation)} samples) {how} than all other channels: are they filtered, or sent "
+            f"late? Parameters may be wrong by that; move their {columns} {where} by {rows} rows beside the "
+            "others."
         )
 
 
@@ -129,8 +130,8 @@ class EffortInstant:
             how = f"; `hold: {delay * self.step:.4g}` in a mapping file reads them so" if self.alike else ""
             said.append(
                 f"The {old} at {names} are {abs(delay) * self.step * 1e3:.3g} ms ({abs(delay):.3g} ± "
-                f"{std:.1g} samples) older than the {young} beside them: are they filtered, or sent late? "
-                f"Parameters may be wrong by that{how}."
+                f"{_short(std)} samples) older than the {young} beside them: are they filtered, or sent "
+                f"late? Parameters may be wrong by that{how}."
             )
         return tuple(said)
 
@@ -210,6 +211,11 @@ def with_hold(record: Record, hold: str | float) -> Record:
         return replace(record, input=efforts / record.gain, hold=later, held=held, effort_hold=hold)
     later = CONVENTIONS[hold] * step if isinstance(hold, str) else hold
     return replace(record, hold=later, held=hold in ("following", "previous"), effort_hold=hold)
+
+
+def _short(deviation: float) -> str:
+    """One digit, without an exponent."""
+    return f"{float(f'{deviation:.1g}'):g}"
 
 
 def _tolerance(std: float, limits: DatasetThresholds) -> float:
