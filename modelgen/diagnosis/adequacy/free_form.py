@@ -84,8 +84,8 @@ def free_forms(
         without = system_of(equations, others, selection.system)
         if elastic and joint is not None:
             slow = (_slowest_out(t, joint - 1, selection) for t in elastic)
-            forms = [max(slow, key=lambda form: form.ahead), *_misread(errors, own, without)]
-            found[joint] = max(forms, key=lambda form: form.ahead - form.most)
+            slowest = max(slow, key=lambda form: form.ahead)
+            found[joint] = _or_misread(slowest, errors, own, without, most)
             continue
         found[joint] = _apart(own, without)
         if joint is None:
@@ -99,19 +99,25 @@ def free_forms(
         shapes = [*shapes_at(joint - 1, equations), *further, *when]
         by, shape = ahead(shapes, own, without)
         free = FreeForm(by - rest, most, what=shape.text)
-        forms = [free, found[joint], *_misread(errors, own, without)]
-        found[joint] = max(forms, key=lambda form: form.ahead - form.most)
+        form = max(free, found[joint], key=lambda form: form.ahead - form.most)
+        found[joint] = _or_misread(form, errors, own, without, most)
     return found
 
 
-def _misread(
-    errors: Iterable[SmoothFunction], own: Sequence[FittedCandidate], without: System
-) -> Iterator[FreeForm]:
-    """Errors of encoders that are ahead of the causes at a joint. without: the system of the others."""
-    for shape in errors:
-        by, _ = ahead([shape], own, without)
-        if by > 0.0:
-            yield FreeForm(by, 0.0, what=shape.text, error=True)
+def _or_misread(
+    form: FreeForm,
+    errors: Iterable[SmoothFunction],
+    own: Sequence[FittedCandidate],
+    without: System,
+    most: float,
+) -> FreeForm:
+    """The form, or an error of an encoder that is ahead of the causes at its joint by more than `most`, and
+    so of the form where that is ahead of them too. without: the system of the others.
+    """
+    every = (FreeForm(ahead([e], own, without)[0], most, what=e.text, error=True) for e in errors)
+    best = max(every, key=lambda one: one.ahead, default=form)
+    known = form.as_good and form.ahead + most >= best.ahead
+    return best if best.as_good and not known else form
 
 
 def _slowest_out(trial: FittedCandidate, j: int, selection: Selection) -> FreeForm:
