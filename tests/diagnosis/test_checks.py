@@ -286,29 +286,6 @@ def test_a_payload_has_a_mass(mass: float, moment: float, passed: bool) -> None:
     assert (check.name, check.decides, check.passed) == ("significant", True, passed)
 
 
-@pytest.mark.parametrize(("size", "passed"), [(0.05, False), (-0.05, False), (0.3, True), (-0.3, True)])
-def test_the_only_parameter_of_a_cause_is_there(size: float, passed: bool) -> None:
-    """In noise of unit size and 1200 rows its deviation is 0.03."""
-    random = np.random.default_rng(8)
-    rows, _, periods = made(lambda x: 0.0 * x)
-    columns = [random.normal(size=(len(r.effort), 1, 1)) for r in rows]
-    own = Unknowns(np.zeros(2), np.eye(2))
-    moved = [
-        replace(r, effort=r.effort + size * c[:, :, 0], baseline=own)
-        for r, c in zip(rows, columns, strict=True)
-    ]
-    bare = system_of(moved, periods=periods)
-    gain = bare.gain(columns)
-    assert gain is not None
-    trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain)
-    system = system_of(moved, with_causes(bare.equations, [trial]), periods)
-    evaluator = SimpleNamespace(arm=ARM, needs_load=lambda *_: False)
-    described = replace(system.equations, evaluator=evaluator)
-    check = significant(0, Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []), described)
-    assert (check.name, check.decides, check.passed) == ("significant", True, passed)
-    assert check.value == pytest.approx(abs(size) / 0.03, abs=2.0)  # its own deviation is 1
-
-
 @pytest.mark.parametrize(("compliance", "passed"), [(0.05, False), (0.3, True)])
 def test_an_elastic_joint_is_not_as_good_as_rigid(
     compliance: float, passed: bool, monkeypatch: pytest.MonkeyPatch

@@ -20,7 +20,6 @@ from modelgen.diagnosis.adequacy.figures_said import (
     percent,
     possible,
     significance,
-    single,
 )
 from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_terms
 from modelgen.diagnosis.adequacy.log_delay import out_of_step
@@ -177,8 +176,8 @@ def _evidence(cause: Cause, selection: Selection) -> Check:
     unknown = "too little repeats" if system.noise_known else "no period repeats"
     why = "" if system.coloured else f", since {unknown} by which the noise could be measured"
     if least > usual:
-        alone = least == limits.single_parameter_delta_bic and not trial.candidate.passing
-        whose = "a cause with a single parameter" if alone else "what fades within a record"
+        single = least == limits.single_parameter_delta_bic and not trial.candidate.passing
+        whose = "a cause with a single parameter" if single else "what fades within a record"
         why = f" of {whose}, {number(usual)} of others"
     text = (
         f"{number(cause.delta_bic)} of delta BIC, the evidence for it beside all other causes; "
@@ -188,13 +187,13 @@ def _evidence(cause: Cause, selection: Selection) -> Check:
 
 
 def significant(k: int, selection: Selection, equations: Equations, widened: float = 1.0) -> Check:
-    """Whether what an effect claims is not zero, or its only parameter: without these it would not be there.
+    """Whether what an effect claims is not zero: asked of parameters without which it would not be there.
 
     k: number of the cause. equations: of the band. widened: times that the records differ more in it than
     noise does.
     """
     trial = selection.causes[k].trial
-    if not (claimed(trial) or single(trial)):
+    if not claimed(trial):
         return significance_of(trial, equations, {}, {})
     settled = refit_elastic(selection, equations)
     values, spread = settled.causes[k].trial.parameters, deviations(settled, equations).causes[k]
@@ -206,7 +205,7 @@ def significance_of(
 ) -> Check:
     """The check `significant` of a cause with these values and standard deviations, by name."""
     found, text = significance(trial, equations.arm, values, spread)
-    if not (claimed(trial) or (single(trial) and np.isfinite(found))):
+    if not claimed(trial):
         return Check("significant", True, True, found, float("nan"), text)
     least = equations.thresholds.adequacy.min_claimed_deviations
     return Check("significant", found >= least, True, found, least, f"{text}; {number(least)} is asked")

@@ -46,11 +46,6 @@ def claimed(cause: FittedCandidate) -> tuple[str, ...]:
     return tuple(name for name in c.definition.claims if name in (*c.names, *cause.values))
 
 
-def single(cause: FittedCandidate) -> bool:
-    """Whether one parameter is all that was found of it: without it the cause would not be there."""
-    return len(cause.candidate.names) == 1 and not cause.candidate.searched
-
-
 def significance(
     cause: FittedCandidate, arm: Arm, values: Mapping[str, float], spread: Mapping[str, float]
 ) -> tuple[float, str]:
@@ -72,8 +67,8 @@ def significance(
         return float("nan"), text
     largest = number(max(sizes))
     if one:
-        far = f"its {cause.candidate.names[0]} is {largest} standard deviations from zero"
-        return max(sizes), far if single(cause) else f"{text}; {far}"
+        name = cause.candidate.names[0]
+        return max(sizes), f"{text}; its {name} is {largest} standard deviations from zero"
     text = f"{text}; the clearest of its parameters is {largest} standard deviations from zero"
     alone = "" if max(sizes) >= CLEAR else ": what they make together is known, none of them by itself"
     return max(sizes), f"{text}{alone}"

@@ -77,7 +77,7 @@ class AdequacyThresholds(Group):
         3.0,
         "standard deviations",
         "What an effect claims, as a payload its mass or an elastic joint its compliance, must be above zero "
-        "by so many, and the only parameter of an effect that has one away from it.",
+        "by so many.",
         STRANGERS,
     )
     min_stable_probability: float = entry(
