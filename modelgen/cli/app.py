@@ -31,7 +31,7 @@ from modelgen.cli.commands import (
     show,
     simulate,
 )
-from modelgen.cli.guard import BAD_INPUT, INTERRUPTED
+from modelgen.cli.guard import BAD_INPUT, INTERRUPTED, STOPPED
 from modelgen.version import __version__
 
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)]
@@ -55,7 +55,7 @@ class _Group(TyperGroup):
             typer.echo(_line(error), err=True)
             sys.exit(BAD_INPUT)
         except typer.Abort:
-            typer.echo("interrupted; nothing is half-written", err=True)
+            typer.echo(STOPPED, err=True)
             sys.exit(INTERRUPTED)
         sys.exit(status if isinstance(status, int) else 0)
 

@@ -17,6 +17,7 @@ P = ParamSpec("P")
 CHECK_FAILED = 1
 BAD_INPUT = 2
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+STOPPED = "interrupted; nothing is half-written"
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -35,7 +36,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             typer.echo(" ".join(str(error).split("\n")), err=True)
             raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt:
-            typer.echo("interrupted; nothing is half-written", err=True)
+            typer.echo(STOPPED, err=True)
             raise typer.Exit(INTERRUPTED) from None
         except BrokenPipeError:
             # Python would complain once more when it flushes at its end.

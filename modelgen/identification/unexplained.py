@@ -20,10 +20,8 @@ from modelgen.regression.least_squares import Regression
 POOR = 0.15  # of the efforts of a joint, unexplained, from which on another reading is asked for
 CHANGES = 0.25  # of their changes, likewise
 FAR = 3.0  # times what noise is through the filter, that is none
-ROUNDS, SETTLED = (
-    30,
-    0.01,
-)  # in which efforts are weighed by what is left of them; changes of that, at the end
+ROUNDS = 30  # in which efforts are weighed by what is left of them
+SETTLED = 0.01  # of that, by which it changes at the end
 SMALLEST = 1e-5  # of an effort, that counts as left of it
 LEAST = 1e-13  # of the largest eigenvalue, that a combination of parameters is found from
 

@@ -27,7 +27,7 @@ from modelgen.report.diagnosis_sentences import (
     remains,
     worth,
 )
-from modelgen.report.following import following, late_channels
+from modelgen.report.following import following
 from modelgen.report.opening import hardly_moved
 from modelgen.report.others import near, suspected
 from modelgen.report.page import Checks, Command, Folded, Grid, Part, Run, Section, Text
@@ -209,12 +209,11 @@ def _warned(d: Diagnosis) -> Iterator[Part]:
 
 def _next(d: Diagnosis, call: Call) -> Iterator[Part]:
     steps = following(d, call)
-    late = late_channels(d)
-    yield from (Text([Run(text, "strong")]) for text in late)
-    steps = [step for step in steps if step.text not in late]
-    alone = [Text(step.text) for step in steps if not step.command]
+    alone = [Text(step.text) for step in steps if not (step.command or step.mends)]
     for step in steps:
-        if step.command:
+        if step.mends:
+            yield Text([Run(step.text, "strong")])
+        elif step.command:
             yield Text(step.text)
             yield Command(step.command)
     if len(alone) > 1:

@@ -51,10 +51,11 @@ _EVERY = "Only some effects were asked for: ask for all of the catalogue."
 
 @dataclass(frozen=True)
 class Step:
-    """What to do; command: empty where none does it."""
+    """What to do; command: empty where none does it. mends: whether it is the log that is to be mended."""
 
     text: str
     command: str = ""
+    mends: bool = False
 
 
 def following(d: Diagnosis, call: Call) -> list[Step]:
@@ -67,13 +68,9 @@ def following(d: Diagnosis, call: Call) -> list[Step]:
     return steps
 
 
-def late_channels(d: Diagnosis) -> tuple[str, ...]:
-    """Questions about channels that are older than the others: a further log will have them so too."""
-    return () if d.identified is None else d.identified.late
-
-
 def _mending(d: Diagnosis) -> list[Step]:
-    return [Step(text) for text in late_channels(d)]
+    """Questions about channels that are older than the others: a further log will have them so too."""
+    return [] if d.identified is None else [Step(text, mends=True) for text in d.identified.late]
 
 
 def _first(d: Diagnosis, call: Call) -> list[Step]:

@@ -53,14 +53,14 @@ def inspect(
     from modelgen.errors import InputError
     from modelgen.files import check_writable, write_new, write_together
 
+    if plot is not None and plot.suffix.lower() != ".svg":
+        raise InputError(f"--plot {plot}: the picture is an SVG, expected {plot.with_suffix('.svg')}")
     found = one(arms, arm) if arms is not None or arm else None
     for option, path in (("--skeleton", skeleton), ("--plot", plot)):
         if path is not None:
             check_writable(option, path)
     if skeleton is not None and (found is not None or mapping is not None):
         write_new(skeleton, mapping_skeleton(log, found))
-    if plot is not None and plot.suffix.lower() != ".svg":
-        raise InputError(f"--plot {plot}: the picture is an SVG, expected {plot.with_suffix('.svg')}")
     result = inspect_log(log, found, mapping=mapping)
     if skeleton is not None and found is None and mapping is None:
         write_new(skeleton, mapping_skeleton(result))

@@ -13,9 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from modelgen.dataset import Record, drives_of, prepare
+from modelgen.dataset import Record, drives_of
 from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction
-from modelgen.diagnosis.equations import Equations, Rows
+from modelgen.diagnosis.equations import Equations, Rows, left_by_reading
 from modelgen.diagnosis.evidence import System
 from modelgen.numeric import Array
 
@@ -46,13 +46,10 @@ def _columns(r: Rows, j: int, ratio: float, equations: Equations, theta: Array) 
     """What a sine and a cosine of the shaft's angle, added to what joint j's encoder reads, leave in the
     residuals, (M, n, 2), by their size [rad of the shaft].
     """
-    p, found = r.prepared, []
-    for wave in (np.sin, np.cos):
-        error = SIZE * wave(ratio * p.record.q[:, j]) / ratio
-        read = replace(prepare(_read_with(p.record, j, error), p.settings), awake=p.awake)
-        again = equations.of_record(read, theta)
-        found.append((again.effort - r.effort) - (again.columns - r.columns) @ theta)
-    return np.stack(found, axis=2) / SIZE
+    record = r.prepared.record
+    errors = [SIZE * wave(ratio * record.q[:, j]) / ratio for wave in (np.sin, np.cos)]
+    left = [left_by_reading(_read_with(record, j, error), r, equations, theta) for error in errors]
+    return np.stack(left, axis=2) / SIZE
 
 
 def _read_with(record: Record, j: int, error: Array) -> Record:

@@ -106,7 +106,7 @@ def free_forms(
 
 def _or_misread(
     form: FreeForm,
-    errors: Iterable[SmoothFunction],
+    errors: Sequence[SmoothFunction],
     own: Sequence[FittedCandidate],
     without: System,
     most: float,
@@ -114,8 +114,10 @@ def _or_misread(
     """The form, or an error of an encoder that is ahead of the causes at its joint by more than `most`, and
     so of the form where that is ahead of them too. without: the system of the others.
     """
-    every = (FreeForm(ahead([e], own, without)[0], most, what=e.text, error=True) for e in errors)
-    best = max(every, key=lambda one: one.ahead, default=form)
+    if not errors:
+        return form
+    by, error = ahead(errors, own, without)
+    best = FreeForm(by, most, what=error.text, error=True)
     known = form.as_good and form.ahead + most >= best.ahead
     return best if best.as_good and not known else form
 

@@ -5,7 +5,13 @@ from modelgen.diagnosis.equations.checks import check_efforts, columns_of_effect
 from modelgen.diagnosis.equations.drive_inertia import described_by, hidden_inertias
 from modelgen.diagnosis.equations.equations import Equations
 from modelgen.diagnosis.equations.free_motion import released
-from modelgen.diagnosis.equations.position_errors import feigned, harmless, repeating_errors, with_errors
+from modelgen.diagnosis.equations.position_errors import (
+    feigned,
+    harmless,
+    left_by_reading,
+    repeating_errors,
+    with_errors,
+)
 from modelgen.diagnosis.equations.prior import NominalPrior, Unknowns, estimated, held
 from modelgen.diagnosis.equations.rows import Rows, rows_of, turning
 from modelgen.diagnosis.equations.study import Study, settings_for, study_of
@@ -26,6 +32,7 @@ __all__ = [
     "harmless",
     "held",
     "hidden_inertias",
+    "left_by_reading",
     "released",
     "repeating_errors",
     "rows_of",

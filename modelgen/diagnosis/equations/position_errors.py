@@ -126,8 +126,13 @@ def _left_by_errors(
     p, limits = r.prepared, equations.thresholds.equations
     if p.input is None and not counts(p.record, limits).any():
         return np.zeros(r.effort.shape)
-    blurry = replace(prepare(blurred(p, limits, which), p.settings), awake=p.awake)
-    again = equations.of_record(blurry, theta)
+    return left_by_reading(blurred(p, limits, which), r, equations, theta)
+
+
+def left_by_reading(record: Record, r: Rows, equations: Equations, theta: Array) -> Array:
+    """What another reading of a record's motion leaves in its residuals, (M, n). theta: unknowns (k,)."""
+    read = replace(prepare(record, r.prepared.settings), awake=r.prepared.awake)
+    again = equations.of_record(read, theta)
     return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
 
 
