@@ -53,7 +53,7 @@ class Validation:
     noise: of the inputs there. sizes: (n, p), RMS of what one unit of each parameter adds to the efforts.
     judged: (M, n), samples that were; at rest an effort is whatever holds the joint. None: all. repeats: RMSE
     (n,) of what differs between the periods of the records, which no model can predict, nan where nothing
-    repeats.
+    repeats. coarse: of the power of accelerations below the cut-off, what the steps of the positions feign.
     """
 
     unit: tuple[str, ...]
@@ -67,6 +67,7 @@ class Validation:
     sizes: Array | None = None
     judged: NDArray[np.bool_] | None = None
     repeats: Array | None = None
+    coarse: float = 0.0
 
     def shown_by(self, k: int) -> int | None:
         """Joint (from 0) in whose effort parameter k weighs most; None where it shows in none."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from modelgen.dataset import Prepared
+from modelgen.dataset import Chosen, Prepared, Record
+from modelgen.dataset.processing.content import feigned_by_rounding, too_coarse
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
 from modelgen.identification.channels import effort_questions
@@ -26,6 +27,18 @@ def misread(train: Sequence[Prepared], test: Sequence[Prepared], model: Model, e
     if test:
         check_reading(test, model, evaluator)
     return asked
+
+
+def coarse_positions(train: Sequence[Record], chosen: Chosen) -> tuple[str, ...]:
+    """Where positions are too coarse for a cut-off that was asked for."""
+    limits, cutoff = chosen.thresholds, chosen.cutoff
+    for record in train if cutoff else ():
+        if feigned_by_rounding(record, cutoff, limits)[0] > limits.max_rounding_share:
+            return (
+                f"{record.name}: {too_coarse(record, cutoff, limits)}: inertias come out too small, by more "
+                "than their deviations say. Leave the cut-off to modelgen, or ask for a lower one.",
+            )
+    return ()
 
 
 def doubts_of(

@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from modelgen.dataset import Prepared, Record, drives_of, prepare
+from modelgen.dataset.processing.content import quiet_speeds
+from modelgen.dataset.processing.filters import low_pass
 from modelgen.dataset.processing.rounding import position_steps
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
@@ -43,10 +45,18 @@ def with_rounded_positions(
     return solution.uncertain_by(moves)
 
 
+def _motion(p: Prepared) -> Array:
+    """Positions (N, n) in which no steps are seen: another rounding of those would be the log's, moved."""
+    quiet, own = quiet_speeds(p.record, p.settings.thresholds), p.settings.position_cutoff
+    if 0.0 < own <= quiet or np.isinf(quiet):
+        return p.q.copy()
+    return low_pass(p.record.q, quiet, 1.0 / p.record.step, p.settings.position_order)
+
+
 def rounded_anew(p: Prepared, seed: int) -> Record:
     """The record with its smoothed positions rounded once more, at other places of the steps."""
     random, record = np.random.default_rng(seed), p.record
-    q, motor = p.q.copy(), p.motor.copy()
+    q, motor = _motion(p), p.motor.copy()
     drives = drives_of(record.arm) if record.arm is not None else ()
     for k, step in enumerate(position_steps(record)):
         if step:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, interp1d
 
 from modelgen.dataset import Prepared, prepare
+from modelgen.dataset.processing.content import feigned_by_rounding
 from modelgen.dataset.processing.filters import row_autocorrelation
 from modelgen.dataset.processing.periods import period_of, rows_in
 from modelgen.errors import InputError
@@ -78,12 +79,14 @@ def validate(
 
 
 def judged_by(found: Identification, test: Sequence[Prepared], evaluator: Evaluator | None) -> Identification:
-    """The identification with what its test records say beside its errors: their noise, and whether another
-    estimate is far worse. evaluator: None where that is not asked.
+    """The identification with what its test records say beside its errors: their noise, how coarse their
+    positions are, and whether another estimate is far worse. evaluator: None where that is not asked.
     """
     if found.test is None:
         return found
-    found = replace(found, test=with_repeats(found.test, test))
+    cutoff, limits = test[0].settings.cutoff, test[0].settings.thresholds
+    coarse = [feigned_by_rounding(p.record, cutoff, limits)[0] for p in test] if cutoff else [0.0]
+    found = replace(found, test=replace(with_repeats(found.test, test), coarse=max(coarse)))
     return found if evaluator is None else held_against(found, test, evaluator)
 
 

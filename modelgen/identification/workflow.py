@@ -46,7 +46,7 @@ from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
 from modelgen.identification.output import errors, to_json
 from modelgen.identification.payloads import payload_questions, payloads_of, without_cut_off_by_payload
-from modelgen.identification.questions import doubts_of, misread
+from modelgen.identification.questions import coarse_positions, doubts_of, misread
 from modelgen.identification.simulated_instruments import Tracking
 from modelgen.identification.streamed import identify_streamed
 from modelgen.identification.validation import judged_by
@@ -179,7 +179,10 @@ def _whole(
     training, testing = without_cut_off_by_payload(training, testing, payloads, chosen, arm)
     instant = effort_instant([r for k, r in enumerate(training) if k not in payloads] or training, arm)
     training, testing = at_instants(training, instant), at_instants(testing, instant)
-    if o.cutoff is None and o.preset == "default":
+    coarse: tuple[str, ...] = ()
+    if o.cutoff is not None:
+        coarse = coarse_positions(training, chosen)
+    elif o.preset == "default":
         for record in training:
             check_coarse(record, chosen.cutoff)
     progress("identifying", 0, None)
@@ -216,7 +219,7 @@ def _whole(
     if instant is not None:
         found = replace(found, doubts=(*found.doubts, *instant.questions()))
     of_payloads = payload_questions(found, fitted, evaluator, payloads, [*train, *test])
-    found = replace(found, doubts=(*found.doubts, *worse_on_test(found, fitted), *of_payloads))
+    found = replace(found, doubts=(*coarse, *found.doubts, *worse_on_test(found, fitted), *of_payloads))
     found = judged_by(found, held, None if payloads or options != Options() else evaluator)
     found = with_noise(found, options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()

@@ -13,6 +13,7 @@ from geared_link import sines
 import modelgen as mg
 from modelgen.description import loads
 from modelgen.effects import known_effects
+from modelgen.report.noise import beside_noise
 
 Table = dict[str, np.ndarray]
 LINK = replace(geared_link.LINK, viscous=1.0e-4)
@@ -83,3 +84,26 @@ def test_deviations_hold_the_instant_that_a_slow_log_does_not_show(stated: Path)
     assert np.abs(slow).max() < 3.0
     known = away(stated, range(4), rate=20.0)
     assert np.abs(known).max() < 4.0
+
+
+def test_steps_of_positions_are_no_lack_of_the_model_and_a_cut_off_beyond_them_is_asked_about(
+    stated: Path,
+) -> None:
+    """Nothing is missing. Steps of a motion that repeats repeat with it: the periods differ by less."""
+
+    def judged(bits: int, cutoff: float) -> mg.IdentificationResult:
+        train, test = (log(seed, bits=bits, noise=1e-4) for seed in (3, 1003))
+        return mg.identify(ARM, train, test, mapping=stated, cutoff=cutoff)
+
+    blurred, beyond, fine = judged(10, 2.5), judged(8, 8.0), judged(0, 8.0)
+    for found in (blurred, beyond):
+        test = found.to_json()["test"]
+        assert test["rmse"][0] > 3.0 * test["noise_rmse"][0]
+        lacks, said = beside_noise(found.outcome.found.test, ("one",))
+        assert not lacks
+        assert "the steps of the positions feign" in said
+    assert "steps" not in beside_noise(fine.outcome.found.test, ("one",))[1]
+    asked = [[d for d in x.to_json()["doubts"] if "too coarse" in d] for x in (fine, blurred, beyond)]
+    assert [len(doubts) for doubts in asked] == [0, 0, 1]
+    assert "inertias come out too small" in asked[2][0]
+    assert beyond.parameters["ZZ1"].value < 0.9 * LINK.parameters["ZZ1"]

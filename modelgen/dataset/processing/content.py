@@ -186,15 +186,30 @@ def check_coarse(record: Record, cutoff: float, limits: DatasetThresholds = USUA
 
     A cut-off that the motion needs may let through more of it than is asked for.
     """
-    feigned = [(float(s.feigned[np.searchsorted(s.f, cutoff) - 1]), s.joint) for s in spectra(record, limits)]
-    share, joint = max(feigned)
-    if share <= limits.max_rounding_share:
-        return
+    if feigned_by_rounding(record, cutoff, limits)[0] > limits.max_rounding_share:
+        raise InputError(
+            f"{record.name}: {too_coarse(record, cutoff, limits)}; what would help: the motor's encoder, "
+            "faster motions over more of the range, more samples per second; --cutoff takes the choice upon "
+            "you"
+        )
+
+
+def too_coarse(record: Record, cutoff: float, limits: DatasetThresholds = USUAL) -> str:
+    """In words, where rounding feigns more of the accelerations below a cut-off [Hz] than may be."""
+    share, joint = feigned_by_rounding(record, cutoff, limits)
     arm, most = record.arm, limits.max_rounding_share
     name = f"q{joint + 1}" if arm is None else arm.joints[arm.coordinates[joint]].name
-    raise InputError(
-        f"{record.name}: the positions of {name} are too coarse: steps of "
-        f"{position_steps(record)[joint]:.3g} feign {100 * share:.2g} % of the power of its accelerations "
-        f"below {cutoff:.3g} Hz, expected {100 * most:g} % at most; what would help: the motor's encoder, "
-        "faster motions over more of the range, more samples per second; --cutoff takes the choice upon you"
+    return (
+        f"the positions of {name} are too coarse: steps of {position_steps(record)[joint]:.3g} feign "
+        f"{100 * share:.2g} % of the power of its accelerations below {cutoff:.3g} Hz, expected "
+        f"{100 * most:g} % at most"
     )
+
+
+def feigned_by_rounding(
+    record: Record, cutoff: float, limits: DatasetThresholds = USUAL
+) -> tuple[float, int]:
+    """The largest share of the accelerations' power below a cut-off [Hz] that rounding feigns, and its joint
+    (from 0).
+    """
+    return max((float(s.feigned[np.searchsorted(s.f, cutoff) - 1]), s.joint) for s in spectra(record, limits))
