@@ -205,7 +205,7 @@ class Evaluator:
             return self._inputs_of(changed, seen, parameters) - self.inputs(motion, parameters)
         found = self._inputs_of(changed, motion, parameters) - self.inputs(motion, parameters)
         turned = np.subtract(changed.arm.gravity, self._own.arm.gravity)
-        return found + self._hidden_weight(motion, turned) if turned.any() else found
+        return found + self.hidden_weight.inputs(motion, turned) if turned.any() else found
 
     def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
         """Parameters with which what the joint carries can be simulated."""
@@ -229,15 +229,9 @@ class Evaluator:
         return not any(part.place == "input" for effect in self._own.effects for part in effect.parts)
 
     @cached_property
-    def _weight(self) -> HiddenWeight:
+    def hidden_weight(self) -> HiddenWeight:
+        """What weighs in a gravity of another direction and the base parameters do not contain."""
         return HiddenWeight(self.arm, self.base)
-
-    def _hidden_weight(self, motion: Motion, gravity: Array) -> Array:
-        """Inputs (N, n) that hold in a further gravity (3,) what the base parameters do not contain."""
-        none = np.zeros(0)
-        return np.tensordot(
-            gravity, self._recent.along("weight", motion, none, lambda: self._weight.columns(motion)), 1
-        )
 
     @cached_property
     def _varied(self) -> Variations:

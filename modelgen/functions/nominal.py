@@ -123,6 +123,15 @@ def about_origin(link: Inertial) -> Mapping[str, float]:
     }
 
 
+def natural_scale(link: Inertial) -> tuple[float, float]:
+    """Of a link's mass [kg] and first moments [kg m]: the mass, and its product with the root of the mean
+    square distance from the frame's origin.
+    """
+    spread = 0.5 * (link.inertia[0] + link.inertia[3] + link.inertia[5])
+    square = sum(c * c for c in link.com) + (max(0.0, spread) / link.mass if link.mass > 0 else 0.0)
+    return link.mass, float(link.mass * square**0.5)
+
+
 def payload_standard(model: Model, payload: Sequence[float]) -> NDArray[np.float64]:
     """Standard parameters (s,) that a point mass adds. payload: mass [kg] and, if wanted, x, y, z [m].
 

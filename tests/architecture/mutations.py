@@ -131,8 +131,8 @@ MUTATIONS = (
     Mutation(
         "selection",
         "deviations.py",
-        "back @ noise @ back.T",
-        "back @ back.T",
+        "self.back @ self.noise @ self.back.T",
+        "self.back @ self.back.T",
         "intervals take coloured noise for white",
         ("test_uncertainty.py",),
     ),

@@ -128,7 +128,6 @@ LITERALS: dict[str, dict[float, str]] = {
     "equations/checks.py": {3: TEXT},
     "equations/free_motion.py": {1.4826: FORMULA},
     "equations/position_errors.py": {3: FORMULA},
-    "equations/prior.py": {3: "an index", 5: "an index"},
     "experiment/bench_tests.py": {5: "how steep a speed is reversed, as the docstring says"},
     "experiment/experiment.py": {4: TEXT},
     "extended/extended_model.py": {4: "a window has samples to be simulated at"},

@@ -19,7 +19,7 @@ from modelgen.description.objects import Arm
 from modelgen.diagnosis.options.thresholds import EquationThresholds
 from modelgen.errors import InputError
 from modelgen.functions import Model
-from modelgen.functions.nominal import base_matrix, factor_value, nominal_links
+from modelgen.functions.nominal import base_matrix, factor_value, natural_scale, nominal_links
 from modelgen.numeric import Array
 
 NOTHING = 1e-9  # of the largest scatter: less is rounding
@@ -34,6 +34,11 @@ class NominalPrior:
     rows: Array
     right: Array
     least: float
+
+    def scatter(self, base: Array) -> float:
+        """How far base parameters (p,) are from what is told of them, root mean square; 1 is expected."""
+        left = self.rows @ base - self.right
+        return float(np.sqrt((self.least + left @ left) / (self.least + len(left))))
 
 
 def told(model: Model, limits: EquationThresholds) -> NominalPrior | None:
@@ -74,10 +79,9 @@ def _sizes(arm: Arm) -> dict[str, float]:
     for i, link in enumerate(arm.links, start=1):
         if link is None:
             continue
-        spread = 0.5 * (link.inertia[0] + link.inertia[3] + link.inertia[5])
-        square = sum(c * c for c in link.com) + (max(0.0, spread) / link.mass if link.mass > 0 else 0.0)
-        first, second = link.mass * square**0.5, link.mass * square
-        found[f"M{i}"] = link.mass
+        mass, first = natural_scale(link)
+        second = first * first / mass if mass > 0 else 0.0
+        found[f"M{i}"] = mass
         found |= {f"M{a}{i}": first for a in "XYZ"}
         found |= {f"{a}{i}": second for a in ("XX", "XY", "XZ", "YY", "YZ", "ZZ")}
     return found

@@ -19,6 +19,7 @@ from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.elastic_fit import smooth
+from modelgen.diagnosis.selection.hidden_weight import by_hidden_weight
 from modelgen.diagnosis.selection.refit_by_load import load_slopes, loaded
 from modelgen.numeric import Array
 
@@ -27,12 +28,37 @@ LEAST = 1e-6  # of a parameter's own unit
 OPEN = 1e-9  # of the largest singular value: below, the rows say nothing
 
 
-def covariance_of(
+@dataclass(frozen=True)
+class LeastSquares:
+    """The least squares estimate of r combinations of p unknowns from stacked equations (R, p). back: (p, r);
+    along: (R, r), orthonormal; noise: (r, r), its variance along these.
+    """
+
+    back: Array
+    along: Array
+    noise: Array
+
+    @property
+    def covariance(self) -> Array:
+        """Of the unknowns (p, p), by noise."""
+        return np.asarray(self.back @ self.noise @ self.back.T)
+
+    def moved(self, further: Array) -> Array:
+        """By how much the unknowns are off (p, h), where columns (R, h) are left out of the equations."""
+        return np.asarray(self.back @ (self.along.T @ further))
+
+
+def covariance_of(system: System) -> Array:
+    """Covariance (p, p) of the least squares estimate of a system's columns."""
+    return estimate_of(system).covariance
+
+
+def estimate_of(
     system: System, slopes: Sequence[Array] = (), known: Sequence[int] = (), carried: Sequence[Array] = ()
-) -> Array:
-    """Covariance of the least squares estimate of a system's columns (p), and of what has these slopes (M,
-    n, m) of each record: (p + m, p + m). known: columns whose factor is. carried: (M, n, k) of each record,
-    what simulated columns change by the arm's own parameters.
+) -> LeastSquares:
+    """The least squares estimate of a system's columns (p), and of what has these slopes (M, n, m) of each
+    record. known: columns whose factor is. carried: (M, n, k) of each record, what simulated columns change
+    by the arm's own parameters.
     """
     plain = system.plain
     matrix = plain.matrix.copy()
@@ -50,7 +76,7 @@ def covariance_of(
     noise = np.eye(int(kept.sum())) / plain.share if plain.colour is None else plain.colour.variance(along)
     back = (vt[kept].T / s[kept]) / norms[:, None]
     back[empty] = 0.0
-    return np.asarray(back @ noise @ back.T)
+    return LeastSquares(back, along, noise)
 
 
 @dataclass(frozen=True)
@@ -81,13 +107,23 @@ def deviations(selection: Selection, equations: Equations) -> Spread:
     compliant = [c.trial.candidate.elastic for c in selection.causes]
     held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
     carried = _carried(selection, of_arm)
-    whole = covariance_of(system, together if together[0].shape[2] else (), held, carried)
-    searched, found = len(system.theta), []
-    for cause, own, slope, (columns, tables) in zip(selection.causes, places, slopes, zero, strict=True):
+    fit = estimate_of(system, together if together[0].shape[2] else (), held, carried)
+    whole, unknown = fit.covariance, set[int]()
+    for k, cause in enumerate(selection.causes):
+        hidden = by_hidden_weight(cause.trial, of_arm, system.base)
+        if hidden is None:
+            unknown.add(k)
+        elif hidden[0].shape[2]:
+            moved = fit.moved(system.plain.records(hidden))
+            whole = whole + moved @ moved.T
+    searched, found = len(system.theta), list[Mapping[str, float]]()
+    several = zip(selection.causes, places, slopes, zero, strict=True)
+    for k, (cause, own, slope, (columns, tables)) in enumerate(several):
         last = searched + slope[0].shape[2]
         at = np.r_[own, searched:last]
         at[columns] = np.arange(last, last + tables[0].shape[2])
-        found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
+        by_name = _physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start)
+        found.append(dict.fromkeys(by_name, math.nan) if k in unknown else by_name)
         searched = last + tables[0].shape[2]
     return Spread(found, whole[: equations.unknowns, : equations.unknowns])
 
