@@ -17,13 +17,19 @@ TWO = loads(description(2))["made_up"]
 Table = dict[str, np.ndarray]
 
 
-def of_link(seed: int, drift: float = 0.0) -> Table:
-    """Two periods of the link at 200 Hz. drift: of its current's zero, over the record [A]."""
+def of_link(seed: int, drift: float = 0.0, warmer: float = 0.0) -> Table:
+    """Two periods of the link at 200 Hz. Over the record, drift: of its current's zero; warmer: of its dry
+    friction [A].
+    """
     random = np.random.default_rng([31, seed])
     t = np.arange(0.0, 16.0, 0.005)
     q, dq, ddq = sines(t, random.uniform(0.0, 2 * np.pi, 4))
     noise = 0.02 * random.normal(size=len(t))
-    return {"t": t, "q1": q, "i1": LINK.currents(q, dq, ddq) + drift * t / 16.0 + noise}
+    return {
+        "t": t,
+        "q1": q,
+        "i1": LINK.currents(q, dq, ddq) + (drift + warmer * np.sign(dq)) * t / 16.0 + noise,
+    }
 
 
 def of_arm(seed: int, drift: float = 0.0) -> Table:
@@ -37,10 +43,10 @@ def of_arm(seed: int, drift: float = 0.0) -> Table:
     return {"t": t, "q1": q[:, 0], "q2": q[:, 1], "i1": current[:, 0], "i2": current[:, 1]}
 
 
-def asked(arm: mg.Arm, logs: list[Table]) -> list[str]:
+def asked(arm: mg.Arm, logs: list[Table], about: str = "drift away from the model's") -> list[str]:
     """Questions about a drift."""
     doubts = mg.identify(arm, logs[:2], logs[2]).to_json()["doubts"]
-    return [x for x in doubts if "drift away from the model's" in x]
+    return [x for x in doubts if about in x]
 
 
 @pytest.mark.parametrize("signs", [(1, 1), (1, -1), (0, 1)])
@@ -52,6 +58,19 @@ def test_a_drift_is_asked_about_with_its_size_in_each_record(signs: tuple[int, i
     assert {name for _, _, name in shown} == expected.keys()
     for size, std, name in shown:
         assert abs(float(size) - expected[name]) < 4 * float(std)
+
+
+@pytest.mark.parametrize("warmer", [(-0.1, -0.1), (0.0, -0.1), (0.15, 0.15)])
+def test_friction_that_changes_is_asked_about_and_is_no_drift_of_a_zero(warmer: tuple[float, float]) -> None:
+    """The mean over the record is what identification gives."""
+    logs = [*(of_link(k, 0.0, x) for k, x in enumerate(warmer)), of_link(2)]
+    (said,) = asked(ONE, logs, "Friction at hip changes, by ")
+    shown = re.findall(r"(-?[\d.]+) ± ([\d.e-]+) A in 16 s of (\S+?)[,:] ", said)
+    expected = {f"train[{k}]": x for k, x in enumerate(warmer) if x}
+    assert {name for _, _, name in shown} == expected.keys()
+    for size, std, name in shown:
+        assert abs(float(size) - expected[name]) < 4 * float(std)
+    assert asked(ONE, logs) == []
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
