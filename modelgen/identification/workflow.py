@@ -36,6 +36,7 @@ from modelgen.evaluation import Evaluator
 from modelgen.functions import Options, build_model
 from modelgen.functions.nominal import payload_base
 from modelgen.functions.options import prepared as reduced
+from modelgen.identification.beside_noise import lacking
 from modelgen.identification.cut_off_streamed import streamed_limits
 from modelgen.identification.doubts import worse_on_test
 from modelgen.identification.effort_instant import at_instants, effort_instant
@@ -221,7 +222,7 @@ def _whole(
     of_payloads = payload_questions(found, fitted, evaluator, payloads, [*train, *test])
     found = replace(found, doubts=(*coarse, *found.doubts, *worse_on_test(found, fitted), *of_payloads))
     found = judged_by(found, held, None if payloads or options != Options() else evaluator)
-    found = with_noise(found, options, held, bool(payloads))
+    found = with_noise(replace(found, doubts=(*found.doubts, *lacking(found))), options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()
     if o.compare_drives:
         progress("identifying without the drives", 0, None)

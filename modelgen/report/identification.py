@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from modelgen.charts import Chart, Curve, Interval, number, over_time, sheet
 from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
+from modelgen.identification.beside_noise import noise_known
 from modelgen.identification.summary import biased, determined, helpful, impossible, questions, remarks
 from modelgen.identification.without_drives import Alternative
 from modelgen.numeric import Array
 from modelgen.options import words_of
 from modelgen.report.arm_drawing import arm_drawing
 from modelgen.report.call import WHERE, Call
-from modelgen.report.noise import beside_noise, counted_as_noise, noise_known
+from modelgen.report.noise import counted_as_noise, said_of_noise
 from modelgen.report.page import WIDE, Block, Command, Folded, Grid, Lines, Run, Text, block, page, pictured
 from modelgen.report.words import listed, sentence
 
@@ -194,7 +195,7 @@ def following(found: Identification, call: Call, speeds: Sequence[float]) -> lis
     parts: list[Any] = [Text(f"{call.first}{_EXPLAIN}")] if wrong else code
     diagnose = call.diagnosing()
     if found.test is not None and diagnose:
-        far, said = beside_noise(found.test, found.arm.coordinate_names)
+        far, said = said_of_noise(found)
         if far and not wrong:
             asis = [
                 Text("For the values as they are: generate code with these folded in:"),

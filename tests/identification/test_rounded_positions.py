@@ -13,7 +13,7 @@ from geared_link import sines
 import modelgen as mg
 from modelgen.description import loads
 from modelgen.effects import known_effects
-from modelgen.report.noise import beside_noise
+from modelgen.report.noise import said_of_noise
 
 Table = dict[str, np.ndarray]
 LINK = replace(geared_link.LINK, viscous=1.0e-4)
@@ -99,10 +99,10 @@ def test_steps_of_positions_are_no_lack_of_the_model_and_a_cut_off_beyond_them_i
     for found in (blurred, beyond):
         test = found.to_json()["test"]
         assert test["rmse"][0] > 3.0 * test["noise_rmse"][0]
-        lacks, said = beside_noise(found.outcome.found.test, ("one",))
+        lacks, said = said_of_noise(found.outcome.found)
         assert not lacks
         assert "the steps of the positions feign" in said
-    assert "steps" not in beside_noise(fine.outcome.found.test, ("one",))[1]
+    assert "steps" not in said_of_noise(fine.outcome.found)[1]
     asked = [[d for d in x.to_json()["doubts"] if "too coarse" in d] for x in (fine, blurred, beyond)]
     assert [len(doubts) for doubts in asked] == [0, 0, 1]
     assert "inertias come out too small" in asked[2][0]

@@ -1,0 +1,64 @@
+"""The error of an identified model beside the noise of its test records, which no model predicts.
+
+What is left above it repeats with the motion: the model lacks something. Deviations hold noise, and not that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelgen.identification.objects import Doubt, Identification, Validation
+from modelgen.identification.unexplained import FAR
+
+
+class Lacking(Doubt):
+    """A doubt about a model that lacks something."""
+
+
+@dataclass(frozen=True)
+class BesideNoise:
+    """joint: (from 0), whose error is largest beside its noise, `times` as large. far: whether that is more
+    than noise is. steps: whether the steps of the positions can make it.
+    """
+
+    joint: int
+    times: float
+    far: bool
+    steps: bool
+
+    @property
+    def lacks(self) -> bool:
+        """Whether the model lacks something."""
+        return self.far and not self.steps
+
+
+def noise_known(test: Validation) -> bool:
+    """Whether the test records repeat."""
+    return test.repeats is not None and bool(np.isfinite(test.repeats).any())
+
+
+def beside_noise(test: Validation) -> BesideNoise | None:
+    """The error beside the noise; None where nothing repeats."""
+    if test.repeats is None or not noise_known(test):
+        return None
+    times = np.nan_to_num(test.rmse / np.maximum(test.repeats, 1e-300))
+    j = int(np.argmax(times))
+    # what accelerations make of the efforts is less than all of their changes
+    feigned = np.sqrt(test.coarse) * np.std(test.measured, axis=0)
+    steps = bool((test.rmse < FAR * np.hypot(test.repeats, feigned)).all())
+    return BesideNoise(j, float(times[j]), bool(times[j] >= FAR), steps)
+
+
+def lacking(found: Identification) -> tuple[Doubt, ...]:
+    """The doubt about a model that lacks something; none where another is said already."""
+    known = None if found.test is None else beside_noise(found.test)
+    if known is None or not known.lacks or found.doubts:
+        return ()
+    name = found.arm.coordinate_names[known.joint]
+    text = (
+        f"The error at {name} is {known.times:.0f} times the noise: the model lacks something, and "
+        "parameters may be wrong by more than their deviations say."
+    )
+    return (Lacking(text, [name]),)
