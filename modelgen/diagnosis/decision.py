@@ -26,6 +26,7 @@ from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.selection import (
     SUSPECT,
     Selection,
+    beside_hidden_weight,
     doubtful_joints,
     forward_selection,
     paired,
@@ -84,6 +85,7 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     selection, unclear = without_indistinguishable(selection, equal)
     if unclear:
         equal = []
+    selection = beside_hidden_weight(selection)
     system = selection.system
     fit, correlated, left = lack_of_fit(system), endogeneity(system), mean_squares(system)
     remains = Remains(

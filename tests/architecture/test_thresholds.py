@@ -20,6 +20,7 @@ ROUNDING = "what is smaller is rounding of floating-point arithmetic"
 SEED = "of a random generator, so that answers repeat"
 MEASURED = "a distribution that was measured"
 FORMULA = "part of a formula"
+OPEN = "a deviation beyond all that can be: what it is of may be anything"
 TEXT = "how many digits or items a text shows"
 SAID = "the sentence that describes the test says it in words"
 
@@ -92,6 +93,7 @@ CONSTANTS = {
         "LEAST": ROUNDING,
     },
     "selection/deviations.py": {"STEP": ACCURACY, "LEAST": ACCURACY, "OPEN": ROUNDING},
+    "selection/hidden_weight.py": {"UNKNOWN": OPEN},
     "selection/refit.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "WORSE": ROUNDING},
     "selection/pairs.py": {"REFITTED": BUDGET},
     "selection/refit_by_load.py": {

@@ -31,6 +31,7 @@ from modelgen.diagnosis.selection import (
     Cause,
     Selection,
     deviations,
+    left_beside_hidden_weight,
     needed_evidence,
     refit_elastic,
     threshold,
@@ -179,11 +180,11 @@ def _evidence(cause: Cause, selection: Selection) -> Check:
         single = least == limits.single_parameter_delta_bic and not trial.candidate.passing
         whose = "a cause with a single parameter" if single else "what fades within a record"
         why = f" of {whose}, {number(usual)} of others"
-    text = (
-        f"{number(cause.delta_bic)} of delta BIC, the evidence for it beside all other causes; "
-        f"{number(least)} is asked{why}"
-    )
-    return Check("evidence", cause.delta_bic >= least, True, cause.delta_bic, least, text)
+    share = left_beside_hidden_weight(cause, selection)
+    found = share * cause.delta_bic
+    beside = "all other causes" if share == 1.0 else "all other causes and weights that an upright arm hides"
+    text = f"{number(found)} of delta BIC, the evidence for it beside {beside}; {number(least)} is asked{why}"
+    return Check("evidence", found >= least, True, found, least, text)
 
 
 def significant(k: int, selection: Selection, equations: Equations, widened: float = 1.0) -> Check:

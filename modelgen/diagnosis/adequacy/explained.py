@@ -20,7 +20,7 @@ from modelgen.diagnosis.adequacy.lack_of_fit import lack_of_fit
 from modelgen.diagnosis.adequacy.smooth_functions import Worth, log_evidence, smooth_functions
 from modelgen.diagnosis.candidates import FittedCandidate, with_causes
 from modelgen.diagnosis.evidence import System, mean_squares
-from modelgen.diagnosis.selection import Selection
+from modelgen.diagnosis.selection import Selection, explained_by_hidden_weight
 from modelgen.diagnosis.validation import Check
 from modelgen.numeric import Array
 from modelgen.regression.weighted import rmse, weighted_fit
@@ -34,7 +34,8 @@ def explained(
     """Whether the causes at the joints of each cause explain most of what is not noise there.
 
     What errors of the positions repeat is no lack of the model, and what the further terms of a law that is
-    the first ones of a series explain is its own, where they are the lesser part. Passed as well where no
+    the first ones of a series explain is its own, where they are the lesser part, as is the weight that a
+    tilt turns and an upright arm hides. Passed as well where no
     more repeats than noise leaves by chance. Where nothing repeats, what the best function of no law explains
     beside the causes is not noise, nor is what suspects explain. Not asked of free motions that do not
     repeat. terms: by joint, see `further_terms`; suspects: that are not among the causes.
@@ -52,7 +53,8 @@ def explained(
         left = np.maximum(left_smoothly(system, sorted(at)), _of_suspects(selection, suspects))
     else:
         left = left_alike(system, theta)
-    rest = np.maximum(0.0, left - _of_further_terms(selection, terms)) / sizes
+    theirs = _of_further_terms(selection, terms) + explained_by_hidden_weight(selection)
+    rest = np.maximum(0.0, left - theirs) / sizes
     found = []
     for cause in selection.causes:
         joints = cause.trial.candidate.joints(system.n)

@@ -15,7 +15,7 @@ from modelgen.diagnosis.extended.cause_values import as_fitted, bounded_fit, own
 from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
 from modelgen.diagnosis.extended.findings import Estimate
 from modelgen.diagnosis.options.thresholds import ExtendedThresholds
-from modelgen.diagnosis.selection import Selection, refit_elastic
+from modelgen.diagnosis.selection import Selection, beside_hidden_weight, refit_elastic
 from modelgen.effects import CATALOGUE, Family, applied_effects, described
 from modelgen.effects.placement import extended_arm, titled
 from modelgen.errors import InputError
@@ -69,7 +69,7 @@ def extend(arm: Arm, selection: Selection, equations: Equations) -> Extension:
     """Refit the causes' values beside the arm's parameters; fit the arm as described and with the causes."""
     base = selection.system.base
     inertias, selection, split = split_drive_inertia(selection, equations)
-    selection = valued(refit_elastic(selection, split))
+    selection = valued(beside_hidden_weight(refit_elastic(selection, split)))
     _check(arm, selection)
     before = fitted(arm, equations.model, equations.rows)
     after = extended(before, selection, split)

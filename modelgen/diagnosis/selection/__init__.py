@@ -3,6 +3,11 @@
 from modelgen.diagnosis.selection.cause import Cause, Selection, together, with_trials
 from modelgen.diagnosis.selection.compliance import alternatives, best_beside
 from modelgen.diagnosis.selection.deviations import Spread, covariance_of, deviations, unseparated
+from modelgen.diagnosis.selection.hidden_weight import (
+    beside_hidden_weight,
+    explained_by_hidden_weight,
+    left_beside_hidden_weight,
+)
 from modelgen.diagnosis.selection.history import (
     COARSE,
     EXCHANGED,
@@ -28,11 +33,14 @@ __all__ = [
     "Selection",
     "Spread",
     "alternatives",
+    "beside_hidden_weight",
     "best_beside",
     "covariance_of",
     "deviations",
     "doubtful_joints",
+    "explained_by_hidden_weight",
     "forward_selection",
+    "left_beside_hidden_weight",
     "lets_vary",
     "needed_evidence",
     "paired",

@@ -19,7 +19,7 @@ from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.elastic_fit import smooth
-from modelgen.diagnosis.selection.hidden_weight import by_hidden_weight
+from modelgen.diagnosis.selection.hidden_weight import hidden_weights
 from modelgen.diagnosis.selection.refit_by_load import load_slopes, loaded
 from modelgen.numeric import Array
 
@@ -108,22 +108,16 @@ def deviations(selection: Selection, equations: Equations) -> Spread:
     held = [own.start for own, simulated in zip(places, compliant, strict=True) if simulated]
     carried = _carried(selection, of_arm)
     fit = estimate_of(system, together if together[0].shape[2] else (), held, carried)
-    whole, unknown = fit.covariance, set[int]()
-    for k, cause in enumerate(selection.causes):
-        hidden = by_hidden_weight(cause.trial, of_arm, system.base)
-        if hidden is None:
-            unknown.add(k)
-        elif hidden[0].shape[2]:
-            moved = fit.moved(system.plain.records(hidden))
-            whole = whole + moved @ moved.T
-    searched, found = len(system.theta), list[Mapping[str, float]]()
-    several = zip(selection.causes, places, slopes, zero, strict=True)
-    for k, (cause, own, slope, (columns, tables)) in enumerate(several):
+    whole, hidden = fit.covariance, hidden_weights(selection.causes, system, system.plain)
+    if hidden is not None:
+        moved = fit.moved(hidden.whole)
+        whole = whole + moved @ hidden.uncertain @ moved.T
+    searched, found = len(system.theta), []
+    for cause, own, slope, (columns, tables) in zip(selection.causes, places, slopes, zero, strict=True):
         last = searched + slope[0].shape[2]
         at = np.r_[own, searched:last]
         at[columns] = np.arange(last, last + tables[0].shape[2])
-        by_name = _physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start)
-        found.append(dict.fromkeys(by_name, math.nan) if k in unknown else by_name)
+        found.append(_physical(cause.trial, whole[np.ix_(at, at)], own.stop - own.start))
         searched = last + tables[0].shape[2]
     return Spread(found, whole[: equations.unknowns, : equations.unknowns])
 

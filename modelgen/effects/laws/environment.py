@@ -295,13 +295,6 @@ class BaseTilt(DescriptionEffect):
         along = max(range(3), key=lambda axis: abs(float(arm.gravity[axis])))
         return (tuple(name for axis, name in enumerate("xyz") if axis != along),)
 
-    @classmethod
-    def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
-        """How large it is, where nobody knows the weights that an upright arm hides."""
-        known = not arm.fluid_density and None not in arm.links
-        told = "nominal inertials of every link, or an inclinometer, tell it"
-        return [] if known or not named else [f"its size hangs on weights that an upright arm hides: {told}"]
-
     def changed(self, arm: Arm, joint: int | None, values: Mapping[str, float]) -> Arm:
         """Gravity as the turned base sees it: Rz' Ry' Rx' g."""
         g = sp.Matrix(arm.gravity)
