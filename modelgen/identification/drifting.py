@@ -1,8 +1,9 @@
-"""Efforts that drift over a record: the zero of their sensor moves, or friction changes as it warms up."""
+"""Efforts that drift over a record: the zero of a sensor moves, friction or a motor changes as it warms."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,20 +22,42 @@ NOTABLE = 0.01  # of the efforts' RMS, that a drift is over a record at least
 SAID = "Parameters may be wrong by more than their deviations say."
 
 
-_ZERO = (
-    "The efforts of {name} drift away from the model's, by {each}: does the zero of their sensor drift"
-    f"{DIAGNOSING}? Log them at rest with the brake on before and after. {SAID}"
-)
-_FRICTION = (
-    "Friction at {name} changes, by {each}: does it warm up, or does the motion grow and the model lack a "
-    f"law of friction{DIAGNOSING}? Let the arm warm up before it is logged. {SAID}"
+@dataclass(frozen=True)
+class _Law:
+    """A law of the joints' speeds and of the model's efforts, (N, n) each, that efforts may follow more or
+    less as time goes by. question: of a joint's `name`, with the change over `each` record. relative: whether
+    that is said in % of the model's effort.
+    """
+
+    of: Callable[[Array, Array], Array]
+    question: str
+    relative: bool = False
+
+
+_LAWS = (
+    _Law(
+        lambda speed, effort: np.ones_like(speed),
+        "The efforts of {name} drift away from the model's, by {each}: does the zero of their sensor drift"
+        f"{DIAGNOSING}? Log them at rest with the brake on before and after. {SAID}",
+    ),
+    _Law(
+        lambda speed, effort: np.sign(speed),
+        "Friction at {name} changes, by {each}: does it warm up, or does the motion grow and the model lack "
+        f"a law of friction{DIAGNOSING}? Let the arm warm up before it is logged. {SAID}",
+    ),
+    _Law(
+        lambda speed, effort: effort,
+        "The efforts of {name} grow or shrink against the model's, by {each}: does the motor lose torque as "
+        f"it warms, or the supply sag{DIAGNOSING}? Log torques, or let the motor warm up before. {SAID}",
+        relative=True,
+    ),
 )
 
 
 def drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> dict[int, Doubt]:
-    """Questions by joint (from 0) whose efforts run away from the model's with time, the same whichever way
-    the joint moves or against its motion, in each record as fast as it may be; of many records some are
-    looked at. None where a fit fails.
+    """Questions by joint (from 0) whose efforts run away from the model's with time: alike whichever way the
+    joint moves, against its motion, or in proportion, in each record as fast as it may be; of many records
+    some are looked at. None where a fit fails.
     """
     try:
         return _drifting(train, model, evaluator)
@@ -50,33 +73,36 @@ def _drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> 
     found = Beside([part for own in parts for part in own], model, evaluator)
     if not found.enough:
         return {}
-    shown = found.with_columns(_columns(train, parts))
-    arm, said = train[0].record.arm, dict[int, Doubt]()
+    arm, said = train[0].record.arm, dict[int, tuple[float, Doubt]]()
     assert arm is not None
-    for j, name in enumerate(arm.coordinate_names):
-        laws = []
-        for law in range(2):
-            columns = [(law * len(train) + k) * n + j for k in range(len(train))]
-            moved = [(shown.amount[c] * found.gain[j], shown.std[c] * found.gain[j]) for c in columns]
-            laws.append(_clear(moved, NOTABLE * found.logged[j], train, j))
-        (zero, of_zero), (friction, of_friction) = laws
-        if max(zero, friction) > 0.0:
-            text, each = (_ZERO, of_zero) if zero >= friction else (_FRICTION, of_friction)
-            said[j] = Doubt(text.format(name=name, each=each), [name])
-    return said
+    size = np.maximum(found.logged / found.gain, 1e-300)
+    for law in _LAWS:
+        laws = [law.of(p.dq, effort / size) for p, effort in zip(found.records, found.efforts, strict=True)]
+        shown = found.with_columns(_columns(train, parts, laws))
+        for j, name in enumerate(arm.coordinate_names):
+            moved = [
+                (shown.amount[k] * found.gain[j], shown.std[k] * found.gain[j])
+                for k in range(j, n * len(train), n)
+            ]
+            clear, each = _clear(moved, law, float(found.logged[j]), train, j)
+            if clear > said.get(j, (0.0,))[0]:
+                said[j] = clear, Doubt(law.question.format(name=name, each=each), [name])
+    return {j: doubt for j, (_, doubt) in said.items()}
 
 
 def _clear(
-    moved: Sequence[tuple[float, float]], notable: float, train: Sequence[Prepared], j: int
+    moved: Sequence[tuple[float, float]], law: _Law, size: float, train: Sequence[Prepared], j: int
 ) -> tuple[float, str]:
     """The largest change over a record in its deviations, 0 where none is clear, and those that are in words.
 
-    moved: change and deviation in each record, in the log's unit.
+    moved: change and deviation in each record, in the log's unit. size: RMS of the efforts in that.
     """
     several = zip(moved, train, strict=True)
-    clear = [(x, s, p) for (x, s), p in several if abs(x) > max(CLEARLY * s, notable) > 0.0 and s > 0.0]
+    clear = [(x, s, p) for (x, s), p in several if abs(x) > max(CLEARLY * s, NOTABLE * size) and s > 0.0]
+    unit, scale = ("%", 100.0 / size) if law.relative else ("", 1.0)
     each = (
-        f"{x:.3g} ± {s:.1g} {p.record.effort_unit[j]} in {np.ptp(p.time):.3g} s of {p.record.name}"
+        f"{scale * x:.3g} ± {scale * s:.1g} {unit or p.record.effort_unit[j]} in {np.ptp(p.time):.3g} s of "
+        f"{p.record.name}"
         for x, s, p in clear
     )
     return max((abs(x) / s for x, s, _ in clear), default=0.0), ", ".join(each)
@@ -92,20 +118,19 @@ def _spread(p: Prepared, model: Model) -> list[Prepared]:
     return [prepare(p.record.part(a, a + size), p.settings) for a in np.linspace(0, last, PARTS).astype(int)]
 
 
-def _columns(train: Sequence[Prepared], parts: Sequence[Sequence[Prepared]]) -> list[Array]:
-    """Columns (M, n, 4 records n) of each part, of one record and one joint each: time that runs from -1/2 to
-    1/2, the same against the motion, and both without the time, for what drifts is not zero in the middle
-    because it is at the beginning; the last not of the first record, whose friction is the model's.
+def _columns(
+    train: Sequence[Prepared], parts: Sequence[Sequence[Prepared]], laws: Sequence[Array]
+) -> list[Array]:
+    """Columns (M, n, 2 records n) of each part, of one record and one joint each: its law (N, n) times a time
+    that runs from -1/2 to 1/2, and the law by itself, for what drifts is not zero in the middle because it is
+    at the beginning.
     """
-    columns, n = [], train[0].n
+    columns, n, left = list[Array](), train[0].n, iter(laws)
     for k, (whole, own) in enumerate(zip(train, parts, strict=True)):
         for part in own:
-            time = (part.time - whole.time[0]) / max(float(np.ptp(whole.time)), 1e-300) - 0.5
-            ones, sign = np.ones((len(time), n)), np.sign(part.dq)
-            laws = (time[:, None] * ones, time[:, None] * sign, ones, sign if k else 0.0 * sign)
-            added = np.zeros((len(part.rows), n, len(laws) * n * len(train)))
-            for i, law in enumerate(laws):
-                first = (i * len(train) + k) * n
-                added[:, range(n), range(first, first + n)] = part.parallel(law * part.weights)
+            law, time = next(left), (part.time - whole.time[0]) / max(float(np.ptp(whole.time)), 1e-300) - 0.5
+            added = np.zeros((len(part.rows), n, 2 * n * len(train)))
+            for first, values in ((k * n, time[:, None] * law), ((len(train) + k) * n, law)):
+                added[:, range(n), range(first, first + n)] = part.parallel(values * part.weights)
             columns.append(added)
     return columns

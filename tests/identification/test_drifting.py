@@ -1,4 +1,4 @@
-"""Currents whose sensor's zero drifts over a record are asked about: weight takes up a part of that."""
+"""Currents that drift over a record are asked about: parameters are means over it, or take up a part."""
 
 from __future__ import annotations
 
@@ -17,19 +17,16 @@ TWO = loads(description(2))["made_up"]
 Table = dict[str, np.ndarray]
 
 
-def of_link(seed: int, drift: float = 0.0, warmer: float = 0.0) -> Table:
+def of_link(seed: int, drift: float = 0.0, warmer: float = 0.0, weaker: float = 0.0) -> Table:
     """Two periods of the link at 200 Hz. Over the record, drift: of its current's zero; warmer: of its dry
-    friction [A].
+    friction [A]; weaker: of its torque, which more current makes up for.
     """
     random = np.random.default_rng([31, seed])
     t = np.arange(0.0, 16.0, 0.005)
     q, dq, ddq = sines(t, random.uniform(0.0, 2 * np.pi, 4))
-    noise = 0.02 * random.normal(size=len(t))
-    return {
-        "t": t,
-        "q1": q,
-        "i1": LINK.currents(q, dq, ddq) + (drift + warmer * np.sign(dq)) * t / 16.0 + noise,
-    }
+    over, noise = t / t[-1], 0.02 * random.normal(size=len(t))
+    current = LINK.currents(q, dq, ddq) / (1.0 - weaker * over) + (drift + warmer * np.sign(dq)) * over
+    return {"t": t, "q1": q, "i1": current + noise}
 
 
 def of_arm(seed: int, drift: float = 0.0) -> Table:
@@ -71,6 +68,19 @@ def test_friction_that_changes_is_asked_about_and_is_no_drift_of_a_zero(warmer: 
     for size, std, name in shown:
         assert abs(float(size) - expected[name]) < 4 * float(std)
     assert asked(ONE, logs) == []
+
+
+@pytest.mark.parametrize("weaker", [(0.1, 0.1), (0.0, 0.1)])
+def test_a_motor_that_loses_torque_is_asked_about(weaker: tuple[float, float]) -> None:
+    """As its magnets warm: more current for the same torque."""
+    logs = [*(of_link(k, weaker=x) for k, x in enumerate(weaker)), of_link(2)]
+    (said,) = asked(ONE, logs, "grow or shrink against the model's, by ")
+    shown = re.findall(r"(-?[\d.]+) ± ([\d.e-]+) % in 16 s of (\S+?)[,:] ", said)
+    expected = {f"train[{k}]": 100.0 * x for k, x in enumerate(weaker) if x}
+    assert {name for _, _, name in shown} == expected.keys()
+    for size, _, name in shown:
+        assert float(size) == pytest.approx(expected[name], rel=0.25)
+    assert asked(ONE, logs) == asked(ONE, logs, "Friction at hip changes") == []
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
