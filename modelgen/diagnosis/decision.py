@@ -33,6 +33,7 @@ from modelgen.diagnosis.selection import (
     with_pair,
     with_rival,
 )
+from modelgen.identification.drifting import drifting
 from modelgen.jobs import Where
 from modelgen.numeric import Array
 
@@ -97,10 +98,20 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
         likeness=None if unclear else most_like(system, suspects, fit),
         counted=equations.free and fit is None and _counted(equations, left),
         asked=bool(options.effects),
+        drifting=() if selection.causes or suspects else _drifting(equations),
     )
     verdict, reason = verdict_of(selection, remains)
     causes = [e for e in every if any(e.cause.trial.candidate == c.trial.candidate for c in selection.causes)]
     return Decision(band, selection, causes, suspects, before, equal, remains, correlated, verdict, reason)
+
+
+def _drifting(equations: Equations) -> list[str]:
+    """Joints whose efforts run away from the model's over a record."""
+    if equations.free:
+        return []
+    train = [r.prepared.with_turns() for r in equations.rows]
+    found = drifting(train, equations.model, equations.evaluator)
+    return [equations.arm.coordinate_names[j] for j in sorted(found)]
 
 
 def _said_twice(named: Sequence[Candidate], equal: Sequence[Sequence[Candidate]]) -> set[Place]:

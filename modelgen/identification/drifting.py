@@ -18,6 +18,7 @@ from modelgen.numeric import Array
 CLEARLY = 5.0  # standard deviations, which hold that residuals of neighbouring rows hang together
 ROWS, PARTS = 300, 3  # per parameter, of a record that is asked, and parts in which they are spread over it
 RECORDS = 4  # that are looked at, at most: each has columns of its own
+ALIKE = 0.7  # of the clearest change's deviations, from which on another may as well be what changes
 NOTABLE = 0.01  # of the efforts' RMS, that a drift is over a record at least
 SAID = "Parameters may be wrong by more than their deviations say."
 
@@ -25,33 +26,49 @@ SAID = "Parameters may be wrong by more than their deviations say."
 @dataclass(frozen=True)
 class _Law:
     """A law of the joints' speeds and of the model's efforts, (N, n) each, that efforts may follow more or
-    less as time goes by. question: of a joint's `name`, with the change over `each` record. relative: whether
-    that is said in % of the model's effort.
+    less as time goes by. what: of a joint's `name`; cause: what may do it; advice: what tells, or helps.
+    relative: whether the change is said in % of the model's effort.
     """
 
     of: Callable[[Array, Array], Array]
-    question: str
+    what: str
+    cause: str
+    advice: str
     relative: bool = False
 
 
 _LAWS = (
     _Law(
         lambda speed, effort: np.ones_like(speed),
-        "The efforts of {name} drift away from the model's, by {each}: does the zero of their sensor drift"
-        f"{DIAGNOSING}? Log them at rest with the brake on before and after. {SAID}",
+        "The efforts of {name} drift away from the model's",
+        "does the zero of their sensor drift",
+        "Log them at rest with the brake on before and after.",
     ),
     _Law(
         lambda speed, effort: np.sign(speed),
-        "Friction at {name} changes, by {each}: does it warm up, or does the motion grow and the model lack "
-        f"a law of friction{DIAGNOSING}? Let the arm warm up before it is logged. {SAID}",
+        "Friction at {name} changes",
+        "does friction warm up, or the motion grow and the model lack a law of friction",
+        "Let the arm warm up before it is logged.",
     ),
     _Law(
         lambda speed, effort: effort,
-        "The efforts of {name} grow or shrink against the model's, by {each}: does the motor lose torque as "
-        f"it warms, or the supply sag{DIAGNOSING}? Log torques, or let the motor warm up before. {SAID}",
+        "The efforts of {name} grow or shrink against the model's",
+        "does the motor lose torque as it warms, or the supply sag",
+        "Let the motor warm up before, or log its temperature and supply.",
         relative=True,
     ),
 )
+
+
+@dataclass(frozen=True)
+class _Change:
+    """Of the efforts of a joint by a law. clear: in its deviations, of the record in which it is clearest;
+    each: of every record in which it is clear, in words.
+    """
+
+    law: _Law
+    clear: float
+    each: str
 
 
 def drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> dict[int, Doubt]:
@@ -73,39 +90,51 @@ def _drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> 
     found = Beside([part for own in parts for part in own], model, evaluator)
     if not found.enough:
         return {}
-    arm, said = train[0].record.arm, dict[int, tuple[float, Doubt]]()
-    assert arm is not None
+    changes: list[list[_Change]] = [[] for _ in range(n)]
     size = np.maximum(found.logged / found.gain, 1e-300)
     for law in _LAWS:
         laws = [law.of(p.dq, effort / size) for p, effort in zip(found.records, found.efforts, strict=True)]
         shown = found.with_columns(_columns(train, parts, laws))
-        for j, name in enumerate(arm.coordinate_names):
+        for j in range(n):
             moved = [
                 (shown.amount[k] * found.gain[j], shown.std[k] * found.gain[j])
                 for k in range(j, n * len(train), n)
             ]
-            clear, each = _clear(moved, law, float(found.logged[j]), train, j)
-            if clear > said.get(j, (0.0,))[0]:
-                said[j] = clear, Doubt(law.question.format(name=name, each=each), [name])
-    return {j: doubt for j, (_, doubt) in said.items()}
+            changes[j] += _clear(moved, law, float(found.logged[j]), train, j)
+    arm = train[0].record.arm
+    assert arm is not None
+    return {
+        j: Doubt(_question(name, own), [name])
+        for j, (name, own) in enumerate(zip(arm.coordinate_names, changes, strict=True))
+        if own
+    }
 
 
 def _clear(
     moved: Sequence[tuple[float, float]], law: _Law, size: float, train: Sequence[Prepared], j: int
-) -> tuple[float, str]:
-    """The largest change over a record in its deviations, 0 where none is clear, and those that are in words.
-
-    moved: change and deviation in each record, in the log's unit. size: RMS of the efforts in that.
+) -> list[_Change]:
+    """The change where it is clear. moved: over each record, and its deviation, in the log's unit; size: RMS
+    of the efforts in that.
     """
     several = zip(moved, train, strict=True)
     clear = [(x, s, p) for (x, s), p in several if abs(x) > max(CLEARLY * s, NOTABLE * size) and s > 0.0]
+    if not clear:
+        return []
     unit, scale = ("%", 100.0 / size) if law.relative else ("", 1.0)
     each = (
         f"{scale * x:.3g} ± {scale * s:.1g} {unit or p.record.effort_unit[j]} in {np.ptp(p.time):.3g} s of "
         f"{p.record.name}"
         for x, s, p in clear
     )
-    return max((abs(x) / s for x, s, _ in clear), default=0.0), ", ".join(each)
+    return [_Change(law, max(abs(x) / s for x, s, _ in clear), ", ".join(each))]
+
+
+def _question(name: str, changes: Sequence[_Change]) -> str:
+    """About the clearest change of a joint's efforts, and what else may be behind it."""
+    best = max(changes, key=lambda change: change.clear)
+    causes = [c.law.cause for c in changes if c is best or c.clear > ALIKE * best.clear]
+    what = best.law.what.format(name=name)
+    return f"{what}, by {best.each}: {', or '.join(causes)}{DIAGNOSING}? {best.law.advice} {SAID}"
 
 
 def _spread(p: Prepared, model: Model) -> list[Prepared]:

@@ -29,7 +29,8 @@ class Remains:
     rivals; fit: lack of fit, None where nothing repeats; feigned: percent of the RMSE by joint that errors of
     the positions could feign; correlated: what the test of Durbin, Wu and Hausman says, None where it has no
     say; likeness: what is left is most like; counted: whether the encoders' counts are all the noise there
-    is, and what remains is no more than that; asked: whether some effects alone were asked for.
+    is, and what remains is no more than that; asked: whether some effects alone were asked for; drifting:
+    joints whose efforts run away from the model's over a record, which repeats with no period.
     """
 
     suspects: Sequence[Examined]
@@ -40,6 +41,7 @@ class Remains:
     likeness: Likeness | None
     counted: bool = False
     asked: bool = False
+    drifting: Sequence[str] = ()
 
 
 def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
@@ -63,7 +65,7 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"the positions are too coarse to tell {rivals}: each "
             f"explains what is missing nearly as well; {_finer(selection)} can tell"
         )
-    if remains.counted:
+    if remains.counted and not remains.drifting:
         return "nothing_missing", (
             "what remains is no more than what the counts of the encoders leave; whatever is less than that "
             "takes finer ones to see"
@@ -91,11 +93,17 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"and Hausman, {correlated.statistic:.0f} over a threshold of {correlated.threshold:.0f}), which "
             f"costs {correlated.cost.max():.1f} % at {joint}; better encoders can tell"
         )
+    pool = "none of the effects asked for" if remains.asked else "no effect of the catalogue"
     if fit.found or likeness is not None:
-        pool = "none of the effects asked for" if remains.asked else "no effect of the catalogue"
         return (
             "outside_catalogue",
             f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}",
+        )
+    if remains.drifting:
+        where = ", ".join(remains.drifting)
+        return (
+            "outside_catalogue",
+            f"the efforts of {where} run away from the model's over a record, which {pool} explains",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
 
