@@ -33,7 +33,8 @@ from modelgen.diagnosis.selection import (
     with_pair,
     with_rival,
 )
-from modelgen.identification.drifting import drifting
+from modelgen.identification.drifting import BENT, drifting
+from modelgen.identification.objects import Doubt
 from modelgen.jobs import Where
 from modelgen.numeric import Array
 
@@ -105,13 +106,13 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     return Decision(band, selection, causes, suspects, before, equal, remains, correlated, verdict, reason)
 
 
-def _drifting(equations: Equations) -> list[str]:
-    """Joints whose efforts run away from the model's over a record."""
+def _drifting(equations: Equations) -> list[Doubt]:
+    """Questions about joints whose efforts change against the model's as time goes by."""
     if equations.free:
         return []
     train = [r.prepared.with_turns() for r in equations.rows]
-    found = drifting(train, equations.model, equations.evaluator)
-    return [equations.arm.coordinate_names[j] for j in sorted(found)]
+    found = drifting(train, equations.model, equations.evaluator, BENT)
+    return [found[j] for j in sorted(found)]
 
 
 def _said_twice(named: Sequence[Candidate], equal: Sequence[Sequence[Candidate]]) -> set[Place]:

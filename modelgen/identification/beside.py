@@ -19,11 +19,13 @@ from modelgen.regression.least_squares import Regression, Solution
 class Added:
     """Of further columns (k,) each: their amount, its standard deviation, and the part of the squares of what
     the model leaves at a joint (n,) that all of them explain together; zeros where an amount is not known.
+    covariance: (k, k), of the amounts.
     """
 
     amount: Array
     std: Array
     share: Array
+    covariance: Array
 
     @property
     def clear(self) -> Array:
@@ -59,7 +61,7 @@ class Beside:
             added[:, range(n), range(n)] = r.parallel(law(self.efforts[k] / self.largest) * r.weights)
             columns.append(added)
         found = self.with_columns(columns)
-        return Added(found.amount, found.std, np.where(found.std > 0.0, found.share, 0.0))
+        return replace(found, share=np.where(found.std > 0.0, found.share, 0.0))
 
     def with_columns(self, added: Sequence[Array]) -> Added:
         """What columns (M, n, k) of each record explain, through the filter."""
@@ -68,10 +70,11 @@ class Beside:
         regression = replace(both, effort=[y / self.sigma for y in both.effort], columns=columns)
         solution: Solution = regression.solve("ols")
         amount = solution.theta[self.p :]
-        std = np.sqrt(np.maximum(np.diag(solution.covariance)[self.p :], 0.0))
+        covariance = solution.covariance[self.p :, self.p :]
+        std = np.sqrt(np.maximum(np.diag(covariance), 0.0))
         known = solution.determined[self.p :] & (std > 0.0)
         share = 1.0 - _sizes(regression, solution.theta) ** 2
-        return Added(np.where(known, amount, 0.0), np.where(known, std, 0.0), share)
+        return Added(np.where(known, amount, 0.0), np.where(known, std, 0.0), share, covariance)
 
 
 def _sizes(regression: Regression, theta: Array) -> Array:

@@ -6,12 +6,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
+from scipy.stats import chi2, norm
 
 from modelgen.dataset import Prepared, prepare
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model
-from modelgen.identification.beside import Beside
+from modelgen.identification.beside import Added, Beside
 from modelgen.identification.objects import DIAGNOSING, Doubt
 from modelgen.numeric import Array
 
@@ -20,6 +22,9 @@ ROWS, PARTS = 300, 3  # per parameter, of a record that is asked, and parts in w
 RECORDS = 4  # that are looked at, at most: each has columns of its own
 ALIKE = 0.7  # of the clearest change's deviations, from which on another may as well be what changes
 NOTABLE = 0.01  # of the efforts' RMS, that a drift is over a record at least
+BENT = 5  # terms of a polynomial over a record, of what changes back and forth: two waves and a half
+COURSE = 50  # points over a record, at which what bends is looked at
+MOST = 37.0  # deviations: chances of more have no number
 SAID = "Parameters may be wrong by more than their deviations say."
 
 
@@ -71,20 +76,23 @@ class _Change:
     each: str
 
 
-def drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> dict[int, Doubt]:
+def drifting(
+    train: Sequence[Prepared], model: Model, evaluator: Evaluator, terms: int = 1
+) -> dict[int, Doubt]:
     """Questions by joint (from 0) whose efforts run away from the model's with time: alike whichever way the
     joint moves, against its motion, or in proportion, in each record as fast as it may be; of many records
-    some are looked at. None where a fit fails.
+    some are looked at. None where a fit fails. terms: of the polynomial over a record that is looked for, 1:
+    a straight line.
     """
     try:
-        return _drifting(train, model, evaluator)
+        return _drifting(train, model, evaluator, terms)
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return {}  # what is wrong is said where the parameters are found
 
 
-def _drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> dict[int, Doubt]:
+def _drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator, terms: int) -> dict[int, Doubt]:
     """The same. Raises InputError, LinAlgError and FloatingPointError."""
-    chosen = np.unique(np.linspace(0, len(train) - 1, RECORDS).astype(int))
+    chosen = np.unique(np.linspace(0, len(train) - 1, max(2, RECORDS // terms)).astype(int))
     train = [train[k] for k in chosen]
     n, parts = train[0].n, [_spread(p, model) for p in train]
     found = Beside([part for own in parts for part in own], model, evaluator)
@@ -94,12 +102,10 @@ def _drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> 
     size = np.maximum(found.logged / found.gain, 1e-300)
     for law in _LAWS:
         laws = [law.of(p.dq, effort / size) for p, effort in zip(found.records, found.efforts, strict=True)]
-        shown = found.with_columns(_columns(train, parts, laws))
+        shown = found.with_columns(_columns(train, parts, laws, terms))
         for j in range(n):
-            moved = [
-                (shown.amount[k] * found.gain[j], shown.std[k] * found.gain[j])
-                for k in range(j, n * len(train), n)
-            ]
+            firsts = range(0, len(train) * (terms + 1) * n, (terms + 1) * n)
+            moved = [_over(shown, range(k + j, k + terms * n, n), found.gain[j]) for k in firsts]
             changes[j] += _clear(moved, law, float(found.logged[j]), train, j)
     arm = train[0].record.arm
     assert arm is not None
@@ -108,6 +114,22 @@ def _drifting(train: Sequence[Prepared], model: Model, evaluator: Evaluator) -> 
         for j, (name, own) in enumerate(zip(arm.coordinate_names, changes, strict=True))
         if own
     }
+
+
+def _over(shown: Added, places: Sequence[int], gain: float) -> tuple[float, float]:
+    """Change over a record by the terms at these places, and its deviation, in the log's unit: of a line from
+    the first to the last sample, of what bends from the least to the most, as clear as all terms together.
+    """
+    amount, known = shown.amount[places], shown.std[places] > 0.0
+    if not known.all():
+        return 0.0, 0.0
+    if len(places) == 1:
+        return float(amount[0] * gain), float(shown.std[places[0]] * gain)
+    square = float(amount @ np.linalg.solve(shown.covariance[np.ix_(places, places)], amount))
+    chance = float(chi2.sf(square, len(places)))
+    course = 0.5 * legvander(np.linspace(-1.0, 1.0, COURSE), len(places))[:, 1:] @ amount
+    change, clear = float(np.ptp(course) * gain), float(norm.isf(0.5 * chance)) if chance > 0.0 else MOST
+    return change, change / max(clear, 1e-9)
 
 
 def _clear(
@@ -148,18 +170,21 @@ def _spread(p: Prepared, model: Model) -> list[Prepared]:
 
 
 def _columns(
-    train: Sequence[Prepared], parts: Sequence[Sequence[Prepared]], laws: Sequence[Array]
+    train: Sequence[Prepared], parts: Sequence[Sequence[Prepared]], laws: Sequence[Array], terms: int
 ) -> list[Array]:
-    """Columns (M, n, 2 records n) of each part, of one record and one joint each: its law (N, n) times a time
-    that runs from -1/2 to 1/2, and the law by itself, for what drifts is not zero in the middle because it is
-    at the beginning.
+    """Columns (M, n, records (terms + 1) n) of each part, of one record and one joint each: its law (N, n)
+    times polynomials that run from -1/2 to 1/2 or back to 1/2 over the record (Legendre), and the law by
+    itself, for what drifts is not zero in the middle because it is at the beginning.
     """
     columns, n, left = list[Array](), train[0].n, iter(laws)
     for k, (whole, own) in enumerate(zip(train, parts, strict=True)):
         for part in own:
-            law, time = next(left), (part.time - whole.time[0]) / max(float(np.ptp(whole.time)), 1e-300) - 0.5
-            added = np.zeros((len(part.rows), n, 2 * n * len(train)))
-            for first, values in ((k * n, time[:, None] * law), ((len(train) + k) * n, law)):
-                added[:, range(n), range(first, first + n)] = part.parallel(values * part.weights)
+            law, over = next(left), (part.time - whole.time[0]) / max(float(np.ptp(whole.time)), 1e-300)
+            bent = 0.5 * legvander(2.0 * over - 1.0, terms)[:, 1:]
+            added = np.zeros((len(part.rows), n, len(train) * (terms + 1) * n))
+            for i, time in enumerate([*bent.T, np.ones(len(over))]):
+                first = (k * (terms + 1) + i) * n
+                values = part.parallel(time[:, None] * law * part.weights)
+                added[:, range(n), range(first, first + n)] = values
             columns.append(added)
     return columns

@@ -38,6 +38,7 @@ CONSTANTS = {
         "SPREAD": ROUNDING,
     },
     "adequacy/verdict.py": {"LARGER_PART": "the larger part of something is more than half of it"},
+    "candidates/candidate.py": {"NEAR": ACCURACY},
     "candidates/columns.py": {"TAIL": ROUNDING},
     "candidates/periodogram.py": {"MANY": BUDGET, "PLACES": ACCURACY},
     "candidates/search.py": {

@@ -236,6 +236,8 @@ def test_a_law_whose_form_is_a_guess_ends_the_naming(guessed: bool) -> None:
     [
         ("friction_warm_up", {"time": 1.4}, False),
         ("friction_warm_up", {"time": 20.0}, True),
+        ("friction_warm_up", {"time": 20.0, "dry": -0.1, "speed": 10.0}, False),
+        ("friction_warm_up", {"time": 20.0, "dry": -0.1, "viscous": 0.02, "speed": 10.0}, True),
         (
             "torque_ripple",
             {"harmonic": 1.0 / 80.0, "revolution": 2 * np.pi},

@@ -12,12 +12,15 @@ from modelgen.description import loads
 ARM = loads(LINK.description(values=False))["one"]
 
 
-def log(seed: int, weaker: float) -> dict[str, np.ndarray]:
-    """Five periods of the link at 200 Hz. weaker: part of its torque that the motor loses with 15 s."""
+def log(seed: int, weaker: float, wander: float = 0.0) -> dict[str, np.ndarray]:
+    """Five periods of the link at 200 Hz. weaker: part of its torque that the motor loses with 15 s; wander:
+    that its supply takes and gives, in waves of 23 s.
+    """
     random = np.random.default_rng([33, seed])
     t = np.arange(0.0, 40.0, 0.005)
     q, dq, ddq = sines(t, random.uniform(0.0, 2 * np.pi, 4))
     current = LINK.currents(q, dq, ddq) / (1.0 - weaker * (1.0 - np.exp(-t / 15.0)))
+    current *= 1.0 + wander * np.sin(2.0 * np.pi * t / 23.0)
     return {"t": t, "q1": q, "i1": current + 0.06 * random.normal(size=len(t))}
 
 
@@ -30,4 +33,13 @@ def test_a_motor_that_loses_torque_is_no_noise(weaker: float) -> None:
     assert asked == bool(weaker)
     assert found.verdict == ("outside_catalogue" if weaker else "nothing_missing")
     if weaker:
-        assert found.reason.startswith("the efforts of hip run away from the model's over a record")
+        assert found.reason.startswith("the efforts of hip change against the model's")
+
+
+def test_nor_is_one_that_gains_and_loses_torque() -> None:
+    """What grows and falls over a record leaves no line: it takes a polynomial to see it."""
+    logs = [log(k, 0.0, 0.06) for k in range(3)]
+    found = mg.diagnose(ARM, logs[:2], logs[2], experiment=False).to_json()
+    assert found["verdict"] == "outside_catalogue"
+    (doubt,) = found["doubts"]
+    assert "grow or shrink against the model's, by 1" in doubt

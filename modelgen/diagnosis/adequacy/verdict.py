@@ -15,6 +15,7 @@ from modelgen.diagnosis.candidates import Candidate, at_motor
 from modelgen.diagnosis.evidence import Endogeneity
 from modelgen.diagnosis.selection import Cause, Selection
 from modelgen.effects.placement import titled
+from modelgen.identification.objects import Doubt
 from modelgen.numeric import Array
 
 # Percent of the RMSE that errors of the positions could feign where they are half of its square.
@@ -30,7 +31,7 @@ class Remains:
     the positions could feign; correlated: what the test of Durbin, Wu and Hausman says, None where it has no
     say; likeness: what is left is most like; counted: whether the encoders' counts are all the noise there
     is, and what remains is no more than that; asked: whether some effects alone were asked for; drifting:
-    joints whose efforts run away from the model's over a record, which repeats with no period.
+    questions about joints whose efforts change against the model's as time goes by.
     """
 
     suspects: Sequence[Examined]
@@ -41,7 +42,7 @@ class Remains:
     likeness: Likeness | None
     counted: bool = False
     asked: bool = False
-    drifting: Sequence[str] = ()
+    drifting: Sequence[Doubt] = ()
 
 
 def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
@@ -100,10 +101,10 @@ def verdict_of(selection: Selection, remains: Remains) -> tuple[str, str]:
             f"something deterministic remains{_where(fit, selection)} that {pool} explains{like}",
         )
     if remains.drifting:
-        where = ", ".join(remains.drifting)
+        where = ", ".join(name for doubt in remains.drifting for name in doubt.joints)
         return (
             "outside_catalogue",
-            f"the efforts of {where} run away from the model's over a record, which {pool} explains",
+            f"the efforts of {where} change against the model's as time goes by, which {pool} explains",
         )
     return "nothing_missing", "what remains does not repeat from period to period: it is noise"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -15,6 +16,7 @@ from modelgen.evaluation import places
 
 Values = Mapping[str, float]
 Place = tuple[str, int | None]  # effect and joint
+NEAR = 0.02  # of its logarithm, to which a section finds the end of a search
 
 
 @dataclass(frozen=True)
@@ -218,6 +220,19 @@ def grid_unit(kind: str, name: str, joint: int | None, equations: Equations) -> 
         for r in rows
     ]
     return float(np.quantile(np.concatenate(efforts), 0.95)) / max(span, 1e-12)
+
+
+def at_ends(candidate: Candidate, values: Values, equations: Equations) -> set[str]:
+    """Names of the values that are at an end of their search: beyond it they were not looked for."""
+    found = set()
+    for p in candidate.searched:
+        if p.name not in values or len(p.grid) < 2 or p.turns:
+            continue
+        unit = grid_unit(p.scale, candidate.effect, candidate.joint, equations)
+        ends = (min(map(abs, p.grid)), max(map(abs, p.grid)))
+        if any(abs(math.log(abs(values[p.name]) / (unit * end))) < NEAR for end in ends):
+            found.add(p.name)
+    return found
 
 
 def without_rests(equations: Equations, candidate: Candidate, values: Values) -> Equations:

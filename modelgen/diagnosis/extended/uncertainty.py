@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from modelgen.diagnosis.candidates import at_ends
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
 from modelgen.diagnosis.extended.cause_values import own_parameters
@@ -18,8 +19,8 @@ from modelgen.numeric import Array
 
 
 def cause_estimates(selection: Selection, equations: Equations, spread: Spread) -> list[dict[str, Estimate]]:
-    """Estimates of the causes' own parameters; what was fixed, is not determined or hangs on a guess has no
-    deviation. spread: `deviations` of the selection.
+    """Estimates of the causes' own parameters; what was fixed, is not determined, is at an end of its search
+    or hangs on a guess has no deviation. spread: `deviations` of the selection.
     """
     most = equations.thresholds.extended.max_relative_deviation
     found = []
@@ -30,6 +31,7 @@ def cause_estimates(selection: Selection, equations: Equations, spread: Spread) 
         c = cause.trial.candidate
         open_ = {*c.definition.conditional(c.fixed)}
         open_ |= {name for name in searched if name in values and own[name] > most * abs(values[name])}
+        open_ |= at_ends(c, searched, equations)
         found.append(
             {
                 name: Estimate(

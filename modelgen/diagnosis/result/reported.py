@@ -148,6 +148,8 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     fit = solution.theta, solution.covariance, solution.determined
     asked = check_reading(train, study.model, study.evaluator).questions
     asked += tuple(effort_questions(train, study.model, study.evaluator, zero=ABOVE_ALL, short=False))
+    said = {name for doubt in asked for name in doubt.joints}
+    asked += tuple(doubt for doubt in decision.remains.drifting if said.isdisjoint(doubt.joints))
     about = doubts(train, study.model, study.evaluator, *fit, whole=decision.verdict != "named")
     answered = _answered(extension)
     left = [doubt for doubt in asked if not answered.issuperset(doubt.joints)]

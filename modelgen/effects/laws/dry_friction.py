@@ -185,9 +185,11 @@ class FrictionWarmUp(Friction):
     @classmethod
     def impossible(cls, arm: Arm, number: int | None, values: Numbers) -> str:
         """A drive's housing warms in minutes, its oil film in tens of seconds."""
-        if values["time"] >= QUICKEST:
-            return ""
-        return f"no drive warms with a time constant of {values['time']:.2g} s; {QUICKEST:.0f} s is quick"
+        if values["time"] < QUICKEST:
+            return f"no drive warms with a time constant of {values['time']:.2g} s; {QUICKEST:.0f} s is quick"
+        if values.get("dry", 0.0) + values.get("viscous", 0.0) * values.get("speed", 0.0) < 0.0:
+            return "friction would grow as the drive warms"
+        return ""
 
     @classmethod
     def hidden(cls, arm: Arm, seen: Seen, named: bool) -> list[str]:
