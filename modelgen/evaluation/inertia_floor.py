@@ -45,7 +45,11 @@ def carried(
     whole = own + inertia(drives, parameters)
     for place in places:
         unit = inertia(links, np.eye(len(parameters))[place])
-        lacking = float(np.max(LEAST * np.median(whole / unit) - own / unit))
+        shown = np.abs(unit) > NOTHING * np.abs(unit).max(initial=0.0)
+        if not shown.any():
+            continue
+        ratio = whole[shown] / unit[shown]
+        lacking = float(np.max(LEAST * np.median(ratio) - own[shown] / unit[shown]))
         if lacking > 0.0:
             parameters = parameters.copy()
             parameters[place] += lacking

@@ -291,6 +291,7 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "equations.min_moving_share": (0.2, lambda t: still(t, 0.1)),
     "equations.min_equations_per_unknown": (50.0, lambda t: still(t, 0.1)),
     "equations.max_condition_number": (1.0, lambda t: refusal(lambda: check_excitation(real(t)))),
+    "equations.max_unseparated_share": (-0.1, lambda t: refusal(lambda: check_excitation(real(t)))),
     "equations.max_unexplained_effort": (0.0, lambda t: refusal(lambda: check_efforts(real(t)))),
     "equations.max_turned_share": (1e9, lambda t: refusal(lambda: check_efforts(real(t)))),
     "equations.max_driving_friction": (-1.0, lambda t: refusal(lambda: check_efforts(real(t)))),

@@ -50,8 +50,15 @@ class EquationThresholds(Group):
     max_condition_number: float = entry(
         1e3,
         "1",
-        "A motion whose regressor, columns of unit norm, has a larger condition number is refused.",
+        "A combination of parameters is told by the motion if the largest singular value of the regressor, "
+        "columns of unit norm, is at most so many times its own.",
         "an order of magnitude above what excitation by `modelgen excite` reaches (Gautier and Khalil 1992)",
+    )
+    max_unseparated_share: float = entry(
+        0.1,
+        "of the parameters",
+        "A motion that leaves a larger share of the combinations of parameters untold is refused.",
+        GUARD,
     )
     max_unexplained_effort: float = entry(
         0.95,
