@@ -18,6 +18,7 @@ from modelgen.evaluation.motion import Motion
 from modelgen.numeric import Array
 
 LEAST = 0.05  # of the inertia of links and drive: the links'
+NOTHING = 1e-9  # of the largest, below which a parameter does not show in a pose
 COUNT = 400  # places along a motion where it is asked for
 ABOUT, ALONG = 5, 9  # of a link's ten standard parameters: ZZ, and M where it slides
 Inputs = Callable[[Motion, Array], Array]

@@ -20,6 +20,7 @@ ROUNDING = "what is smaller is rounding of floating-point arithmetic"
 SEED = "of a random generator, so that answers repeat"
 MEASURED = "a distribution that was measured"
 FORMULA = "part of a formula"
+SPLIT = "where a band is cut in two: another cut parts it as well"
 OPEN = "a deviation beyond all that can be: what it is of may be anything"
 TEXT = "how many digits or items a text shows"
 SAID = "the sentence that describes the test says it in words"
@@ -38,6 +39,7 @@ CONSTANTS = {
         "SPREAD": ROUNDING,
     },
     "adequacy/verdict.py": {"LARGER_PART": "the larger part of something is more than half of it"},
+    "adequacy/free_form.py": {"SLOW_ROWS": SPLIT},
     "candidates/candidate.py": {"NEAR": ACCURACY},
     "candidates/columns.py": {"TAIL": ROUNDING},
     "candidates/periodogram.py": {"MANY": BUDGET, "PLACES": ACCURACY},
@@ -95,7 +97,7 @@ CONSTANTS = {
     },
     "selection/deviations.py": {"STEP": ACCURACY, "LEAST": ACCURACY, "OPEN": ROUNDING},
     "selection/hidden_weight.py": {"UNKNOWN": OPEN},
-    "selection/refit.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "WORSE": ROUNDING},
+    "selection/refit.py": {"TURNS": BUDGET, "CLOSE": ACCURACY, "NEAR": ACCURACY, "WORSE": ROUNDING},
     "selection/pairs.py": {"REFITTED": BUDGET},
     "selection/refit_by_load.py": {
         "TURNS": BUDGET,

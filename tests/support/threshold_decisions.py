@@ -243,6 +243,21 @@ def at_both_joints(limits: Thresholds) -> bool:
     return form.apart and form.as_good
 
 
+def at_any_pace(limits: Thresholds) -> bool:
+    """Whether a delay of which slow motion has all, and fast motion nothing, is outdone by itself with a size
+    for each.
+    """
+    equations, hidden = waving(limits)
+    tables = [np.zeros((len(x), 2, 1)) for x in hidden]
+    for table, x in zip(tables, hidden, strict=True):
+        table[:, 0, 0] = x + 0.5 * np.std(x) * np.cos(np.pi * np.arange(len(x)))
+    gain = System(equations).gain(tables)
+    assert gain is not None
+    trial = FittedCandidate(Candidate("time_delay", None), {}, tables, gain)
+    form = free_forms(selected(equations, trial), equations, {})[None]
+    return form.pace and form.as_good
+
+
 def claimed(limits: Thresholds) -> Any:
     equations = known(limits)
     trial = law(equations, constant, "payload_change")
@@ -361,6 +376,7 @@ CASES: dict[str, tuple[Value, Seen]] = {
     "adequacy.min_absorbed_share": (2.0, absorbed),
     "adequacy.max_behind_refused": (30.0, dominated),
     "adequacy.max_apart_ahead": (1e6, at_both_joints),
+    "adequacy.max_pace_share": (1e6, at_any_pace),
     "adequacy.slow_rows_share": (0.01, lambda t: elastic_while(t, slow=True).ahead),
     "adequacy.min_clear_evidence": (1e6, lambda t: freely(t, constant)),
     "adequacy.min_evidence_in_noise": (1e6, left_beside),

@@ -100,7 +100,9 @@ def form_said(by: FreeForm) -> str:
             f"slowest, where friction changes; {number(-by.most)} is asked"
         )
     what = by.what if by.error else f"{FREE_FUNCTION} of {by.what}"
-    if by.apart:
+    if by.pace:
+        what = "the same with a size of its own in slow motion"
+    elif by.apart:
         what = "the same with a size of its own at each joint"
     return f"{what} {ahead_of(by.ahead, by.most)}"
 

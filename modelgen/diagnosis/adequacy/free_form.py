@@ -16,6 +16,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
 
 from modelgen.diagnosis.adequacy.encoder_errors import of_encoder
 from modelgen.diagnosis.adequacy.motion_functions import of_late, of_others, of_state, of_way, of_when
@@ -32,19 +34,23 @@ from modelgen.diagnosis.selection import Selection, threshold, together
 from modelgen.effects import Family
 from modelgen.numeric import Array
 
+SLOW_ROWS = 3.0  # rows over which a column is evened: an eighth of the cut-off
+
 
 @dataclass(frozen=True)
 class FreeForm:
     """ahead: delta BIC by which what has no law is ahead of the causes at a joint, or of the whole arm; most:
     by which it may be. apart: it is the law itself, with a size of its own at every joint, or record; slow:
     nothing, while the joint is not at its slowest, so that `ahead` is the evidence that the cause has there,
-    below zero. error: it is an error of an encoder. what: which error, else what the function is of.
+    below zero. pace: it is the law itself, with a size of its own in slow motion. error: it is an error of an
+    encoder. what: which error, else what the function is of.
     """
 
     ahead: float
     most: float
     what: str = ""
     apart: bool = False
+    pace: bool = False
     slow: bool = False
     error: bool = False
 
@@ -144,19 +150,56 @@ def _slowest_out(trial: FittedCandidate, j: int, selection: Selection) -> FreeFo
 
 def _apart(own: Sequence[FittedCandidate], without: System) -> FreeForm:
     """Delta BIC by which causes are ahead of themselves with a size of their own at each joint that they act
-    on; what some records have, with one in each record. Those that act on several joints by the law of a
-    fluid, of which arms differ, or by what is a guess, keep one size.
+    on; what some records have, with one in each record; a delay, with one for slow motion. Those that act on
+    several joints by the law of a fluid, of which arms differ, or by what is a guess, keep one size.
 
     own: of a joint, or of the whole arm; without: the system of the others.
     """
-    most = without.equations.thresholds.adequacy.max_apart_ahead
+    most, alone = without.equations.thresholds.adequacy.max_apart_ahead, together(own, without, fair=True)
     columns = [_by_record(t, without) if t.candidate.coming else _by_joint(t) for t in own]
-    if all(split is t.columns for split, t in zip(columns, own, strict=True)):
-        return FreeForm(-np.inf, most, apart=True)
-    beside = [np.concatenate(tables, axis=2) for tables in zip(*columns, strict=True)]
-    gain = without.fair.gain(beside, float(sum(len(t.values) for t in own)), ())
-    alone = together(own, without, fair=True)
-    return FreeForm(-np.inf if gain is None else gain.delta_bic - alone, most, apart=True)
+    found = [FreeForm(-np.inf, most, apart=True)]
+    if any(split is not t.columns for split, t in zip(columns, own, strict=True)):
+        beside = [np.concatenate(tables, axis=2) for tables in zip(*columns, strict=True)]
+        gain = without.fair.gain(beside, float(sum(len(t.values) for t in own)), ())
+        if gain is not None:
+            found.append(FreeForm(gain.delta_bic - alone, most, apart=True))
+    found += [_slowly(t, without) for t in own if t.candidate.definition.delays(t.parameters) is not None]
+    return max(found, key=lambda form: form.ahead - form.most)
+
+
+def _slowly(delay: FittedCandidate, without: System) -> FreeForm:
+    """Delta BIC of a further delay in slow motion alone, beside parameters that are found there.
+
+    A disturbance that the controller answers passes for a delay at its own frequencies, and bends the arm's
+    parameters by what it has there.
+    """
+    equations, limits = without.equations, without.equations.thresholds.adequacy
+    tables, beside = ([_evened(t) for t in columns] for columns in (delay.columns, without.columns))
+    rows = [
+        replace(r, effort=_evened(r.effort), columns=_evened(r.columns), moving=_within(r.moving))
+        for r in equations.rows
+    ]
+    if not any(r.moving.any() for r in rows):
+        return FreeForm(-np.inf, limits.max_apart_ahead, pace=True)
+    slow = System(equations.with_rows(rows), beside)
+    whole = slow.fair.gain(tables)
+    late = [replace(r, effort=r.effort - t @ delay.gain.values) for r, t in zip(rows, tables, strict=True)]
+    further = System(equations.with_rows(late), beside).fair.gain(tables)
+    if whole is None or further is None:
+        return FreeForm(-np.inf, limits.max_apart_ahead, pace=True)
+    most = max(limits.max_apart_ahead, limits.max_pace_share * whole.delta_bic)
+    return FreeForm(further.delta_bic, most, pace=True)
+
+
+def _within(moving: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Flags (M, n) of the rows that move with those around them: what is left out at a rest is slow too."""
+    around = np.ones((2 * round(2.0 * SLOW_ROWS) + 1, 1))
+    return np.asarray(ndimage.binary_erosion(moving, around))
+
+
+def _evened(values: Array) -> Array:
+    """Rows (M, ...) of a record, of what is slow in them."""
+    return np.asarray(ndimage.gaussian_filter1d(values, SLOW_ROWS, axis=0, mode="nearest"))
 
 
 def _by_joint(trial: FittedCandidate) -> Sequence[Array]:

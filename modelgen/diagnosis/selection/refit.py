@@ -30,6 +30,7 @@ from modelgen.regression.weighted import misfit, weighted_fit
 # When the turns end: how finely values are found decides nothing.
 TURNS = 10
 CLOSE = 0.005  # of a value, its change in a turn
+NEAR = 0.05  # of a value, at which a column that follows no line stands for it
 WORSE = 1e-4  # rise of the misfit by which a turn is not taken
 
 
@@ -41,11 +42,12 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
     best, least, last, most = trials, np.inf, np.zeros(0), np.full(1, np.inf)
     at: list[Array] = [np.zeros(0)] * len(trials)  # values that columns were made at
     ways: list[Array] = [np.zeros(0)] * len(trials)  # by which they went there
+    settled = True  # columns that follow no line were made near what was found: else a misfit says nothing
     for turn in range(TURNS):
         table = with_causes(equations, trials)
         theta = weighted_fit(rows, table)
         left = misfit(rows, table, theta)
-        if left > least + WORSE:
+        if left > least + WORSE and settled:
             break
         ends = np.cumsum([own, *(t.columns[0].shape[2] for t in trials)])
         values = [theta[begin:end] for begin, end in pairwise(ends)]
@@ -55,7 +57,11 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
         if (np.array(sizes) > most).any():
             best = [c.trial for c in causes]
             break
-        best, least = trials, min(left, least)
+        best, least = trials, min(left, least) if settled else left
+        settled = all(
+            not t.candidate.curved or (len(a) == len(v) and np.allclose(v, a, rtol=NEAR))
+            for t, a, v in zip(trials, at, values, strict=True)
+        )
         if len(last) and np.allclose(theta[own:], last, rtol=CLOSE, atol=1e-12):
             break
         most = most if turn else farthest * np.array(sizes)

@@ -73,6 +73,12 @@ class AdequacyThresholds(Group):
         "is ahead by more; what some records have, by itself with a size of its own in each.",
         STRANGERS,
     )
+    max_pace_share: float = entry(
+        0.05,
+        "of its evidence",
+        "A delay is outdone by itself with a size for slow and for fast motion, if that is ahead by more.",
+        "filters of 20 Hz on a log of 500 Hz, 1 %; arms on a base that shakes, 18 % at least",
+    )
     min_claimed_deviations: float = entry(
         3.0,
         "standard deviations",
