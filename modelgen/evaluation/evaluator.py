@@ -85,6 +85,8 @@ class Evaluator:
         loads = states = None
         if self._own.state_names() and names & {"load", "state"}:
             states = self._states(self._own, motion, (), parameters)
+            if not parameters.any():  # links that weigh nothing swing on no spring: as if none bent
+                states = np.where(np.isfinite(states), states, 0.0)
         if "load" in names:
             made = self._function(model, "load")
             loads = np.asarray(made(**given_for(made.function, motion, parameters, states=states)))

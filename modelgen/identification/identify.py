@@ -22,6 +22,7 @@ from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, compared
 from modelgen.identification.objects import Estimate, Identification, Validation
 from modelgen.identification.reading_errors import with_reading_errors
+from modelgen.identification.rows import compliant
 from modelgen.identification.validation import regression_of, rows_in_period, validate
 from modelgen.numeric import Array
 from modelgen.regression.instruments import Instrument, of_period
@@ -45,6 +46,14 @@ class Instruments:
 
     source: str = "auto"
     simulated: Simulated | None = None
+
+
+TURNS = 12  # of parameters and the states that follow from them
+CLOSE = 1e-4  # of every parameter, by which the last turn changes it
+RUNS_AWAY = (
+    "elastic joints or play swing beyond all bounds along this motion with the parameters that are found; "
+    "are their described values right?"
+)
 
 
 def identify(
@@ -150,9 +159,17 @@ def _fitted(
     regression = regression_of(evaluator, model, train, theta, added, all_samples=whole)
     enough(model.arm, regression)
     solution = regression.solve(method)
-    if _columns_by_load(model):
-        regression = regression_of(evaluator, model, train, solution.theta, added, all_samples=whole)
-        solution = regression.solve(method)
+    # what elastic joints add follows from the parameters, and these from that
+    turns = TURNS if compliant(model.arm) else int(_columns_by_load(model))
+    for _ in range(turns):
+        before = solution.theta
+        regression = regression_of(evaluator, model, train, before, added, all_samples=whole)
+        try:
+            solution = regression.solve(method)
+        except FloatingPointError:
+            raise InputError(f"{train[0].record.name}: {RUNS_AWAY}") from None
+        if np.allclose(solution.theta, before, rtol=CLOSE):
+            break
     if _arguments(model) & {"load", "state"} == {"load"}:
         more = [theta] * len(train) if added is None else added
         regression, solution = fitted_by_load(

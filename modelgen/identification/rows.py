@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from modelgen.backends.compiled import RegressorColumns
 from modelgen.dataset import Prepared
+from modelgen.description import Arm
+from modelgen.effects import CATALOGUE, Family
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.functions import Model
@@ -19,6 +21,13 @@ from modelgen.numeric import Array
 
 LEFT = 0.5  # of the filter's weight, that a row has from samples away from rest at least
 SAMPLED = ["q", "dq", "ddq"]  # what the regressor may depend on, to be compiled
+
+
+def compliant(arm: Arm) -> bool:
+    """Whether an arm as described has elastic joints or play: what they do is no column, and follows from the
+    parameters.
+    """
+    return any(CATALOGUE[use.name].family is Family.ELASTIC for joint in arm.joints for use in joint.effects)
 
 
 class Rows:
@@ -58,6 +67,10 @@ class Rows:
             raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
         motion, awake = motion_of(p), self._awake(p)
         effort = self.evaluator.ideal(self.model, motion, p.input)
+        if theta.any() and compliant(self.model.arm):
+            columns = self.evaluator.regressor(self.model, motion, theta)
+            effort = effort - self.evaluator.link_side.led(motion, theta)
+            effort = effort - self.evaluator.unseen(motion, columns, theta)
         effort = np.asarray(p.parallel(effort if awake is None else effort * awake))
         if self._compiled and RegressorColumns.fit(p.q):
             inputs = [p.q, p.dq, p.ddq, *([] if awake is None else [awake])]
@@ -111,6 +124,11 @@ class Rows:
 
 
 def motion_of(p: Prepared) -> Motion:
-    """The record's motion, and those that it runs on from."""
+    """The record's motion, and those that it runs on from; with the side of the joints that was measured,
+    where that matters.
+    """
     before = None if p.before is None else motion_of(p.before)
-    return Motion(p.time, p.q, p.dq, p.ddq, before=before, held=p.record.held)
+    if p.record.arm is None or not compliant(p.record.arm):
+        return Motion(p.time, p.q, p.dq, p.ddq, before=before, held=p.record.held)
+    sides = p.record.motor_side or (False,) * p.n
+    return Motion(p.time, p.q, p.dq, p.ddq, sides, p.settings.cutoff, before, p.record.held)

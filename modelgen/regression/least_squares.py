@@ -42,8 +42,11 @@ class Triangle:
     def solve(self) -> tuple[Array, NDArray[np.bool_], float]:
         """Parameters (p,), flags of those that the rows determine (p,), condition number.
 
-        Undetermined parameters are zero; the condition is of the determined columns at unit length.
+        Undetermined parameters are zero; the condition is of the determined columns at unit length. Raises
+        FloatingPointError where a row is not finite.
         """
+        if not np.isfinite(self.r).all():
+            raise FloatingPointError("a row is not finite")
         matrix, right = self.r[:, :-1], self.r[:, -1]
         size = np.linalg.norm(matrix, axis=0)
         scale = np.where(size > 0, size, 1.0)
