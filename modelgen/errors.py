@@ -41,6 +41,17 @@ class DamagedFileError(InputError):
     """A file that began as one of its kind and cannot be read on."""
 
 
+def nearest(name: str, options: Iterable[str]) -> str | None:
+    """The name that exists and is most like this one, or begins most like it; None where none does."""
+    known = list(options)
+    near = difflib.get_close_matches(name, known, n=1)
+    if near:
+        return near[0]
+    begun = {one[: len(name) + 1]: one for one in reversed(known)}
+    near = difflib.get_close_matches(name, list(begun), n=1, cutoff=0.75)
+    return begun[near[0]] if near else None
+
+
 def suggest(name: str, options: Iterable[str], *, listed: bool = False) -> str:
     """The nearest of the names that exist; all if `listed`, where there are few or none comes near."""
     known = list(options)

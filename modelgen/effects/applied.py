@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -34,7 +33,7 @@ from modelgen.effects.variables import (
     joint_variables,
     state_symbols,
 )
-from modelgen.errors import InputError
+from modelgen.errors import InputError, nearest
 from modelgen.transmission import of_joint
 
 TIME_STEP = sp.Symbol("dt", positive=True)
@@ -269,8 +268,8 @@ def pivot_direction(joint: Joint) -> float | None:
 
 
 def _hint(name: str, known: Mapping[str, object]) -> str:
-    close = get_close_matches(name, known, 1)
-    return f", did you mean {close[0]}?" if close else ""
+    near = nearest(name, known)
+    return f", did you mean {near}?" if near else ""
 
 
 def described(arm: Arm) -> Arm:

@@ -290,6 +290,7 @@ def test_a_joint_at_rest_cannot_show_what_is_asked_for(logs: Path, tmp_path: Pat
         ("coulomb_friction:2", "the model of j2 has it already"),
         ("viscous_friction", "the model of the arm has it already"),
         ("stribek_friction", "did you mean 'stribeck_friction'"),
+        ("stribek", "did you mean 'stribeck_friction'"),
         ("stribeck_friction:9", "found joint '9', expected a joint of"),
         ("stribeck_friction:x", "found joint 'x', expected a joint of"),
     ],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from difflib import get_close_matches
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from modelgen.diagnosis.candidates.candidate import Candidate, Place, first_valu
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.equations import Band, Equations, columns_of_effects, weights_of_efforts
 from modelgen.effects import CATALOGUE, Presence
-from modelgen.errors import InputError
+from modelgen.errors import InputError, nearest
 from modelgen.regression.weighted import moving_share, orthonormal, rmse, stacked, weighted_fit
 
 
@@ -70,8 +69,8 @@ def asked(pool: Sequence[Candidate], wanted: Sequence[Place], band: Band) -> lis
     arm, found = band.equations.arm, list[Candidate]()
     for effect, joint in wanted:
         if effect not in CATALOGUE:
-            near = get_close_matches(effect, CATALOGUE, n=1)
-            hint = f", did you mean '{near[0]}'?" if near else ", expected one of `modelgen effects`"
+            near = nearest(effect, CATALOGUE)
+            hint = f", did you mean '{near}'?" if near else ", expected one of `modelgen effects`"
             raise InputError(f"--effect: found '{effect}'{hint}")
         if joint is not None and not 1 <= joint <= len(arm.coordinates):
             raise InputError(

@@ -48,9 +48,11 @@ class LeastSquares:
         return np.asarray(self.back @ (self.along.T @ further))
 
 
-def covariance_of(system: System) -> Array:
-    """Covariance (p, p) of the least squares estimate of a system's columns."""
-    return estimate_of(system).covariance
+def covariance_of(system: System, slopes: Sequence[Array] = ()) -> Array:
+    """Covariance (p + m, p + m) of the least squares estimate of a system's columns, and of what has these
+    slopes (M, n, m) of each record.
+    """
+    return estimate_of(system, slopes).covariance
 
 
 def estimate_of(
