@@ -13,6 +13,7 @@ from modelgen.diagnosis.adequacy import (
     Remains,
     aliases,
     examined,
+    instant_beside_elastic,
     instant_shown,
     lack_of_fit,
     most_like,
@@ -63,9 +64,10 @@ class Decision:
     reason: str
 
     def instant(self) -> EffortInstant | None:
-        """When the efforts were read, where a suspect says it that is only the log's."""
+        """When the efforts were read, where a suspect says it that is only the log's, or an elastic joint."""
         alone = [e.cause for e in self.suspects if [c.name for c in e.failed] == ["admissible"]]
-        return instant_shown(alone, self.before, self.band.equations)
+        shown = instant_shown(alone, self.before, self.band.equations)
+        return shown or instant_beside_elastic(self.selection, self.band.equations)
 
 
 def decide(band: Band, options: Options, progress: Progress | None = None) -> Decision:

@@ -17,7 +17,7 @@ from modelgen.functions.objects import Function
 from modelgen.numeric import Array
 
 # An implicit midpoint rule makes what rings at f slower by (pi f step)^2 / 3: 0.8 % at 10 Hz in FINE steps.
-FINE, SHORT = 0.005, 0.002  # s
+FINE = 0.005  # s
 
 
 @dataclass(frozen=True)
@@ -55,13 +55,12 @@ class Motion:
 
     @cached_property
     def finer(self) -> tuple[Motion, int]:
-        """The motion in the middle of finer steps, and how many of these make one; itself where it is short.
+        """The motion in the middle of steps that are fine, and how many of these make one of its own.
 
-        What rings is simulated in these: a long step holds the load of its begin, half a step late.
+        What rings is simulated in these: a step that holds the load of its begin is half of itself late, as
+        damping makes it.
         """
-        if self.step <= SHORT:
-            return self, 1
-        count = math.ceil(self.step / FINE - 1e-9)
+        count = max(1, math.ceil(self.step / FINE - 1e-9))
         begins = np.linspace(self.t[0], self.t[-1], (len(self.t) - 1) * count + 1)
         t = np.minimum(begins + self.step / count / 2, self.t[-1])
         q, dq = (CubicHermiteSpline(self.t, *x)(t) for x in ((self.q, self.dq), (self.dq, self.ddq)))

@@ -40,6 +40,7 @@ CONSTANTS = {
     },
     "adequacy/verdict.py": {"LARGER_PART": "the larger part of something is more than half of it"},
     "adequacy/free_form.py": {"SLOW_ROWS": SPLIT},
+    "adequacy/log_delay.py": {"ROUNDS": ACCURACY, "NARROWER": ACCURACY},
     "candidates/candidate.py": {"NEAR": ACCURACY},
     "candidates/columns.py": {"TAIL": ROUNDING},
     "candidates/periodogram.py": {"MANY": BUDGET, "PLACES": ACCURACY},

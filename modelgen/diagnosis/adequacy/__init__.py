@@ -4,7 +4,7 @@ from modelgen.diagnosis.adequacy.checks import Examined, confirmed, examined, si
 from modelgen.diagnosis.adequacy.distinguishable import aliases, without_indistinguishable
 from modelgen.diagnosis.adequacy.figures_said import possible
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit, place
-from modelgen.diagnosis.adequacy.log_delay import instant_shown
+from modelgen.diagnosis.adequacy.log_delay import instant_beside_elastic, instant_shown
 from modelgen.diagnosis.adequacy.smooth_functions import Likeness
 from modelgen.diagnosis.adequacy.verdict import Remains, verdict_of
 from modelgen.diagnosis.adequacy.what_is_left import most_like
@@ -17,6 +17,7 @@ __all__ = [
     "aliases",
     "confirmed",
     "examined",
+    "instant_beside_elastic",
     "instant_shown",
     "lack_of_fit",
     "most_like",

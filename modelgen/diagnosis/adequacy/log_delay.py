@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from modelgen.dataset.processing.instants import EffortInstant, fitting
-from modelgen.diagnosis.equations import Equations
-from modelgen.diagnosis.selection import Cause, Selection, deviations
+from modelgen.dataset.processing.instants import CONVENTIONS, EffortInstant, fitting
+from modelgen.diagnosis.equations import Equations, Rows
+from modelgen.diagnosis.evidence import mean_squares
+from modelgen.diagnosis.selection import Cause, Selection, deviations, refit_elastic
+from modelgen.numeric import Array
+
+ROUNDS, NARROWER = 2, 5.0  # of parabolas, and how much narrower the next one is
 
 
 def out_of_step(cause: Cause, equations: Equations) -> str:
@@ -70,3 +75,55 @@ def instant_shown(
         if fits is not None and fits != record.effort_hold:
             return EffortInstant(fits, "data", record.step, after, std, fits)
     return None
+
+
+def instant_beside_elastic(selection: Selection, equations: Equations) -> EffortInstant | None:
+    """When the efforts were read, as elastic joints among the causes have it; None where none is behind
+    a motor, where it is known, and where the instant that is used is as likely.
+
+    Half a sample does much what damping does, so that a rigid model cannot tell. With the joints' values
+    found anew for every convention, what is left is a parabola over the instant.
+    """
+    record, limits = equations.rows[0].prepared.record, equations.thresholds
+    elastic = [c for c in selection.causes if c.trial.candidate.elastic]
+    late = any(c.trial.candidate.definition.delays(c.trial.parameters) is not None for c in selection.causes)
+    if not elastic or late or not record.hold_std or record.effort_hold not in CONVENTIONS:
+        return None
+    used = CONVENTIONS[str(record.effort_hold)]
+    rates = [_rate(r, elastic, selection, equations) for r in equations.rows]
+    counts, own = selection.system.plain.counts, mean_squares(selection.system)
+
+    def left(after: float) -> float:
+        rows = [
+            replace(r, effort=r.effort + (used - after) * r.prepared.record.step * rate)
+            for r, rate in zip(equations.rows, rates, strict=True)
+        ]
+        found = mean_squares(refit_elastic(selection, equations.with_rows(rows)).system)
+        return float(counts @ (found / np.maximum(own, 1e-300)))
+
+    best, reach = 0.0, max(CONVENTIONS.values())
+    for _ in range(ROUNDS):
+        places = best + reach * np.array([-1.0, 0.0, 1.0])
+        bend, slope, level = np.polyfit(places, [left(x) for x in places], 2)
+        if bend <= 0.0:
+            return None
+        best = float(np.clip(-0.5 * slope / bend, places[0] - reach, places[2] + reach))
+        reach /= NARROWER
+    least, total = level + 0.5 * slope * best, float(counts.sum())
+    if least <= 0.0 or total * np.log(total / least) < limits.adequacy.max_behind_refused:
+        return None
+    std = float(np.sqrt(least / total / bend))
+    fits = fitting(best, std, record.step, limits.dataset)
+    if fits in (None, record.effort_hold):
+        return None
+    return EffortInstant(fits, "data", record.step, best, std, fits)
+
+
+def _rate(r: Rows, elastic: Sequence[Cause], selection: Selection, equations: Equations) -> Array:
+    """Rate (M, n) of the efforts of a record, as the model with its elastic joints has them."""
+    evaluator, base = equations.evaluator, selection.system.base
+    inputs = evaluator.inputs(r.motion, base)
+    for cause in elastic:
+        c = cause.trial.candidate
+        inputs = inputs + evaluator.contribution(c.effect, c.joint, r.motion, cause.trial.parameters, base)
+    return r.filtered(np.gradient(inputs, r.prepared.time, axis=0)[:, :, None])[:, :, 0]
