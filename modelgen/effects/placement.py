@@ -54,8 +54,8 @@ def joint_meant(arm: Arm, effect: str, parameter: str, value: float) -> str:
 def places(arm: Arm, name: str) -> list[int | None]:
     """Numbers of the coordinates (from 1) at which the effect can stand and does not yet; None: the arm.
 
-    One that may stand at either is offered for the whole arm; between inputs and efforts also for one of
-    several joints alone.
+    One that may stand at either is offered for the whole arm, or for the others where some joints have it;
+    between inputs and efforts also for one of several joints alone.
     """
     effect = CATALOGUE[name]
     everywhere = any(use.name == name for use in arm.effects)
@@ -65,7 +65,8 @@ def places(arm: Arm, name: str) -> list[int | None]:
         for number, index in enumerate(arm.coordinates, 1)
         if all(use.name != name for use in arm.joints[index].effects) and effect.stands_at(arm, number)
     ]
-    if effect.scope == "joint":
+    some = any(use.name == name for index in arm.coordinates for use in arm.joints[index].effects)
+    if effect.scope == "joint" or some:
         return alone
     several = issubclass(effect, InputEffect) and effect.scope == "either" and len(alone) != 1
     return [*whole, *alone] if several and whole else whole

@@ -141,6 +141,13 @@ def test_places_follow_the_drives() -> None:
     assert places(ARMS["gravity_link1"], "transmission_coupling") == []
 
 
+def test_a_fluid_that_drags_on_some_links_may_drag_on_the_others() -> None:
+    arm = replace(ARMS["ur10e"], effects=())
+    assert places(arm, "fluid_drag") == [None]
+    some = with_effect(arm, "fluid_drag", 2, {"coefficient": 3.0})
+    assert places(some, "fluid_drag") == [1, 3, 4, 5, 6]
+
+
 def test_a_function_in_memory_is_the_emitted_one() -> None:
     emitted = build(ARMS["ariane4"], WHOLE)
     q, dq, ddq = states(ARMS["ariane4"], 3)
