@@ -54,7 +54,7 @@ def check_excitation(equations: Equations) -> None:
     """Raises InputError where the motion does not tell the model's own parameters apart.
 
     Where a joint rests there is no such demand: the others can be asked all the same. Nor is there where few
-    combinations are not told, as weight and buoyancy of a slow arm are: causes are looked for beside these.
+    combinations look alike, as weight and buoyancy of a slow arm do: causes are looked for beside these.
     """
     limits, rows, model = equations.thresholds.equations, equations.rows, equations.model
     if not (moving_share(rows) > limits.min_moving_share).all():
@@ -74,7 +74,7 @@ def check_excitation(equations: Equations) -> None:
     said = f" ({', '.join(names[used[k]] for k in several)})" if names else ""
     raise InputError(
         f"{equations.arm.name}: the motion of the training records does not tell the model's parameters "
-        f"apart{said}: {unknown} combinations of {len(s)} are not told (condition number "
+        f"apart{said}: {unknown} combinations of {len(s)} do not show (condition number "
         f"{s[0] / max(s[-1], 1e-300):.2g}, {worst:.0f} is usual); see modelgen excite"
     )
 

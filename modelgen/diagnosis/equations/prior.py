@@ -36,7 +36,7 @@ class NominalPrior:
     least: float
 
     def scatter(self, base: Array) -> float:
-        """How far base parameters (p,) are from what is told of them, root mean square; 1 is expected."""
+        """How far base parameters (p,) are from what is given of them, root mean square; 1 is expected."""
         left = self.rows @ base - self.right
         return float(np.sqrt((self.least + left @ left) / (self.least + len(left))))
 

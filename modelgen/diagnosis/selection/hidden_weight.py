@@ -46,7 +46,7 @@ class HiddenWeights:
         return np.asarray(self.uncertain @ (self.share * (self.columns.T @ self.beyond(stacked))))
 
     def explain(self, stacked: Array) -> Array:
-        """What of stacked values (R,) they are taken to explain."""
+        """What of stacked values (R,) they explain."""
         return np.asarray(self.columns @ self.amounts(stacked))
 
     @property

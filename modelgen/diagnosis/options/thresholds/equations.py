@@ -50,14 +50,14 @@ class EquationThresholds(Group):
     max_condition_number: float = entry(
         1e3,
         "1",
-        "A combination of parameters is told by the motion if the largest singular value of the regressor, "
+        "A combination of parameters shows in the motion if the largest singular value of the regressor, "
         "columns of unit norm, is at most so many times its own.",
         "an order of magnitude above what excitation by `modelgen excite` reaches (Gautier and Khalil 1992)",
     )
     max_unseparated_share: float = entry(
         0.1,
         "of the parameters",
-        "A motion that leaves a larger share of the combinations of parameters untold is refused.",
+        "A motion in which a larger share of the combinations of parameters does not show is refused.",
         GUARD,
     )
     max_unexplained_effort: float = entry(
