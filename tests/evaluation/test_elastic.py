@@ -63,8 +63,7 @@ def test_it_swings_with_the_motion_alone(natural: float, tmp_path: Path) -> None
     rigid = p.inputs(m, base)
     elastic = p.contribution("joint_flexibility", 1, m, {"stiffness": stiffness, "damping": damping}, base)
     answer = -INERTIA * w**2 / (stiffness - INERTIA * w**2 + 1j * damping * w)
-    # a step holds the load of its begin: half a sample late
-    turn = np.exp(1j * (w * (t - 0.5 / 500) + 0.7))
+    turn = np.exp(1j * (w * t + 0.7))
     expected = -INERTIA * w**2 * size * ((1 - answer) * turn).imag / (50.0 * 0.1)
     lag = size * answer
     swing = abs(INERTIA * w**2 * lag / 5.0)

@@ -35,14 +35,33 @@ WORSE = 1e-4  # rise of the misfit by which a turn is not taken
 
 
 def refit(causes: Sequence[Cause], equations: Equations) -> None:
-    """Takes the columns of the causes anew until their values stay; an elastic joint's are as they were."""
+    """Takes the columns of the causes anew until their values stay; an elastic joint's are as they were.
+
+    What is left with a column that follows no line says little where it was made at another value than is
+    found with it. Turns that go on over such are taken where they come to less.
+    """
+    trials, least = _turned(causes, equations, patient=False)
+    if any(t.candidate.curved for t in trials):
+        others, less = _turned(causes, equations, patient=True)
+        trials = others if less < least else trials
+    for cause, trial in zip(causes, trials, strict=True):
+        cause.trial = trial
+    refit_by_load(causes, equations)
+
+
+def _turned(
+    causes: Sequence[Cause], equations: Equations, *, patient: bool
+) -> tuple[list[FittedCandidate], float]:
+    """The causes after turns that leave less each, and the misfit that they end at. patient: whether turns go
+    on from columns that follow no line and were not made near what was found, whatever these leave.
+    """
     rows, own = equations.rows, equations.unknowns
     farthest = equations.thresholds.selection.max_refit_growth
     trials = [c.trial for c in causes]
     best, least, last, most = trials, np.inf, np.zeros(0), np.full(1, np.inf)
     at: list[Array] = [np.zeros(0)] * len(trials)  # values that columns were made at
     ways: list[Array] = [np.zeros(0)] * len(trials)  # by which they went there
-    settled = True  # columns that follow no line were made near what was found: else a misfit says nothing
+    settled = True
     for turn in range(TURNS):
         table = with_causes(equations, trials)
         theta = weighted_fit(rows, table)
@@ -55,10 +74,9 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
             sum(float(((c @ v) ** 2).sum()) for c in t.columns) for t, v in zip(trials, values, strict=True)
         ]
         if (np.array(sizes) > most).any():
-            best = [c.trial for c in causes]
-            break
+            return [c.trial for c in causes], np.inf if patient else least
         best, least = trials, min(left, least) if settled else left
-        settled = all(
+        settled = not patient or all(
             not t.candidate.curved or (len(a) == len(v) and np.allclose(v, a, rtol=NEAR))
             for t, a, v in zip(trials, at, values, strict=True)
         )
@@ -73,9 +91,7 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
         trials = [_anew(t, v, equations, base) for t, v in zip(best, at, strict=True)]
         if all(new is old for new, old in zip(trials, best, strict=True)):
             break
-    for cause, trial in zip(causes, best, strict=True):
-        cause.trial = trial
-    refit_by_load(causes, equations)
+    return best, least
 
 
 def _towards(found: Array, at: Array, way: Array) -> tuple[Array, Array]:
