@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 from evaluation_support import motion
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from witness.arms import ARMS, WHOLE, Emitted, build, shipped
 from witness.compare import agree
 from witness.mechanism import states
 
 from modelgen.backends.casadi.function import casadi_function
-from modelgen.effects import CATALOGUE
+from modelgen.effects import CATALOGUE, Family
 from modelgen.evaluation import Evaluator, Motion, places, with_effect
 from modelgen.evaluation import states as series
 
@@ -38,6 +39,13 @@ LINKS = np.tile([0.3, 0.01, 0.02, 0.4, -0.01, 0.35, 0.2, 0.1, -0.1, 3.0], 10)
 @cache
 def evaluator(arm: str) -> Evaluator:
     return Evaluator(ARMS[arm])
+
+
+def in_the_middle(m: Motion) -> Motion:
+    """The motion in the middle of its steps, which a step of what rings has as its load."""
+    t = np.minimum(m.t + 0.5 * m.step, m.t[-1])
+    q, dq = (CubicHermiteSpline(m.t, *x)(t) for x in ((m.q, m.dq), (m.dq, m.ddq)))
+    return replace(m, q=q, dq=dq, ddq=CubicSpline(m.t, m.ddq)(t))
 
 
 def with_states(emitted: Emitted, m: Motion, theta: np.ndarray, start: np.ndarray) -> dict[str, np.ndarray]:
@@ -109,7 +117,8 @@ def test_an_effect_adds_what_the_arm_with_it_does(
     linear = CATALOGUE[effect].linear
     everything = {**values, **{x.name: 1.0 for x in linear}}
     found = p.contribution(effect, joint, m, everything, base)
-    extra = with_states(emitted, m, theta, starts[-1])
+    rings = CATALOGUE[effect].family is Family.ELASTIC
+    extra = with_states(emitted, in_the_middle(m) if rings else m, theta, starts[-1])
     if "load_standard" in emitted.functions:
         extra["load"] = emitted("load_standard", m.q, theta)
     given = call(emitted, "inverse_dynamics_standard", m.q, m.dq, m.ddq, theta, **extra)
