@@ -38,7 +38,7 @@ def refit(causes: Sequence[Cause], equations: Equations) -> None:
     """Takes the columns of the causes anew until their values stay; an elastic joint's are as they were.
 
     What is left with a column that follows no line says little where it was made at another value than is
-    found with it. Turns that go on over such are taken where they come to less.
+    found with it. Turns that go on over such count where they come to less.
     """
     trials, least = _turned(causes, equations, patient=False)
     if any(t.candidate.curved for t in trials):
