@@ -51,6 +51,11 @@ def led_by(arm: Arm, motion: Motion) -> list[tuple[str, int, dict[str, float]]]:
     ]
 
 
+def compliant(arm: Arm) -> bool:
+    """Whether the arm has elastic joints or play: what these do is no column, and follows from parameters."""
+    return any(CATALOGUE[u.name].family is Family.ELASTIC for joint in arm.joints for u in joint.effects)
+
+
 def rigid(arm: Arm) -> Arm:
     """The arm without elastic joints and play."""
     joints = []

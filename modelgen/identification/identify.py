@@ -12,6 +12,7 @@ from modelgen.dataset import Prepared
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
+from modelgen.evaluation.link_encoder import compliant
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.nominal import payload_base
 from modelgen.functions.options import prepared as reduced
@@ -22,7 +23,6 @@ from modelgen.identification.gains import Gain, estimated, with_gains
 from modelgen.identification.instrumental import Comparison, compared
 from modelgen.identification.objects import Estimate, Identification, Validation
 from modelgen.identification.reading_errors import with_reading_errors
-from modelgen.identification.rows import compliant
 from modelgen.identification.validation import regression_of, rows_in_period, validate
 from modelgen.numeric import Array
 from modelgen.regression.instruments import Instrument, of_period

@@ -11,23 +11,15 @@ from numpy.typing import NDArray
 
 from modelgen.backends.compiled import RegressorColumns
 from modelgen.dataset import Prepared
-from modelgen.description import Arm
-from modelgen.effects import CATALOGUE, Family
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation.link_encoder import compliant
 from modelgen.functions import Model
 from modelgen.native import compiler
 from modelgen.numeric import Array
 
 LEFT = 0.5  # of the filter's weight, that a row has from samples away from rest at least
 SAMPLED = ["q", "dq", "ddq"]  # what the regressor may depend on, to be compiled
-
-
-def compliant(arm: Arm) -> bool:
-    """Whether an arm as described has elastic joints or play: what they do is no column, and follows from the
-    parameters.
-    """
-    return any(CATALOGUE[use.name].family is Family.ELASTIC for joint in arm.joints for use in joint.effects)
 
 
 class Rows:
@@ -66,11 +58,11 @@ class Rows:
         if p.input is None:
             raise InputError(f"{p.record.name}: a free motion has no effort to identify from")
         motion, awake = motion_of(p), self._awake(p)
-        effort = self.evaluator.ideal(self.model, motion, p.input)
+        effort, full = self.evaluator.ideal(self.model, motion, p.input), None
         if theta.any() and compliant(self.model.arm):
-            columns = self.evaluator.regressor(self.model, motion, theta)
+            full = np.asarray(self.evaluator.regressor(self.model, motion, theta))
             effort = effort - self.evaluator.link_side.led(motion, theta)
-            effort = effort - self.evaluator.unseen(motion, columns, theta)
+            effort = effort - self.evaluator.unseen(motion, full, theta)
         effort = np.asarray(p.parallel(effort if awake is None else effort * awake))
         if self._compiled and RegressorColumns.fit(p.q):
             inputs = [p.q, p.dq, p.ddq, *([] if awake is None else [awake])]
@@ -79,8 +71,10 @@ class Rows:
                 columns = made.filtered(inputs, **vars(d)) if d else p.parallel(made.values(inputs))
                 return effort, columns + self._turned(p, motion, awake)
             self._compiled = {}
-        full = np.asarray(self.evaluator.regressor(self.model, motion, theta))[:, self.joint, self.parameter]
-        return effort, p.parallel(full if awake is None else full * awake[:, self.joint])
+        if full is None:
+            full = np.asarray(self.evaluator.regressor(self.model, motion, theta))
+        table = full[:, self.joint, self.parameter]
+        return effort, p.parallel(table if awake is None else table * awake[:, self.joint])
 
     def _turned(self, p: Prepared, motion: Motion, awake: Array | None) -> Array | float:
         """Columns (M, c) to be added for joints that turn back in a sample over which efforts are means."""

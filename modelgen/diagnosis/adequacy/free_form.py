@@ -163,7 +163,7 @@ def _apart(own: Sequence[FittedCandidate], without: System) -> FreeForm:
         gain = without.fair.gain(beside, float(sum(len(t.values) for t in own)), ())
         if gain is not None:
             found.append(FreeForm(gain.delta_bic - alone, most, apart=True))
-    found += [_slowly(t, without) for t in own if t.candidate.definition.delays(t.parameters) is not None]
+    found += [_slowly(t, without) for t in own if t.delay is not None]
     return max(found, key=lambda form: form.ahead - form.most)
 
 

@@ -23,7 +23,7 @@ def out_of_step(cause: Cause, equations: Equations) -> str:
     single joint has nothing to share it with where the mapping says when the efforts were read.
     """
     c = cause.trial.candidate
-    delay = c.definition.delays(cause.trial.parameters)
+    delay = cause.trial.delay
     if delay is None:
         return ""
     after = _of_the_log(cause, equations)
@@ -44,7 +44,7 @@ def out_of_step(cause: Cause, equations: Equations) -> str:
 def _of_the_log(cause: Cause, equations: Equations) -> float | None:
     """Samples after the positions' stamps at which the efforts were read, None for a delay of the arm."""
     c, record = cause.trial.candidate, equations.rows[0].prepared.record
-    delay = c.definition.delays(cause.trial.parameters)
+    delay = cause.trial.delay
     alone = equations.n == 1
     if delay is None or not (c.joint is None or alone) or (alone and record.hold_known == "mapping"):
         return None
@@ -86,7 +86,7 @@ def instant_beside_elastic(selection: Selection, equations: Equations) -> Effort
     """
     record, limits = equations.rows[0].prepared.record, equations.thresholds
     elastic = [c for c in selection.causes if c.trial.candidate.elastic]
-    late = any(c.trial.candidate.definition.delays(c.trial.parameters) is not None for c in selection.causes)
+    late = any(c.trial.delay is not None for c in selection.causes)
     if not elastic or late or not record.hold_std or record.effort_hold not in CONVENTIONS:
         return None
     used = CONVENTIONS[str(record.effort_hold)]

@@ -38,6 +38,11 @@ class FittedCandidate:
         return self.gain.delta_bic - place_penalty(self.candidate)
 
     @property
+    def delay(self) -> float | None:
+        """Time [s] by which the effort comes late, where that is all it does."""
+        return self.candidate.definition.delays(self.parameters)
+
+    @property
     def parameters(self) -> dict[str, float]:
         """All values: fixed, searched and estimated."""
         estimated = named(self.candidate, self.gain.values)
