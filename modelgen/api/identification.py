@@ -13,7 +13,7 @@ import numpy as np
 from modelgen.api.description import an_arm
 from modelgen.api.logs import Log, listed
 from modelgen.api.results import Named, Result, Table
-from modelgen.charts import sheet
+from modelgen.charts import in_percent, known, number, sheet
 from modelgen.dataset import spectra, split_said
 from modelgen.description import Arm
 from modelgen.effects.editing import with_torque_constants
@@ -130,9 +130,9 @@ class Identification(Result):
         rows = [
             [
                 e.name,
-                f"{e.value:z.5g}",
+                known(e.value, e.std),
                 "" if e.std is None else f"{e.std:z.2g}",
-                "" if e.relative is None else f"{e.relative:z.1f}",
+                "" if e.relative is None else in_percent(e.relative),
                 e.unit,
                 "yes" if e.essential else "left out" if e.dropped else "no",
             ]
@@ -141,9 +141,10 @@ class Identification(Result):
         headings = ("parameter", "value", "std", "std %", "unit", "essential")
         parts: list[str | Table] = [Table("", dict.fromkeys(headings, "right"), rows)]
         if found.gains:
+            names = [joint_name(self.arm, g.joint) for g in found.gains]
             rows = [
-                [joint_name(self.arm, g.joint), f"{g.described:z.6g}", f"{g.value:z.6g}", f"{g.std:z.2g}"]
-                for g in found.gains
+                [name, number(g.described, 5), known(g.value, g.std), f"{g.std:z.2g}"]
+                for name, g in zip(names, found.gains, strict=True)
             ]
             columns = dict.fromkeys(("joint", "described", "found", "std"), "right")
             parts.append(Table("torque constants", columns, rows))

@@ -86,7 +86,7 @@ def calibrate(lever: Lever, joint: int, motor: Array, measured: Array, length_st
     length_std [m]: how well the four lengths of the description are known. Both branches (rev) are tried.
     Raises InputError for data that determine nothing.
     """
-    _check(lever, motor, measured, length_std)
+    _check(lever, motor, measured)
     fits = {rev: _fit(replace(lever, rev=rev), motor, measured, length_std) for rev in (1, -1)}
     rms = {rev: _rms(fit, motor, measured) for rev, fit in fits.items()}
     rev = min(rms, key=lambda r: (rms[r], r != lever.rev))
@@ -146,9 +146,7 @@ def _meaning(lever: Lever, motor: Array, covariance: Array) -> tuple[Array, Arra
     return angle, share / np.maximum(np.abs(slope), 1e-300)
 
 
-def _check(lever: Lever, motor: Array, measured: Array, length_std: float) -> None:
-    if not (np.isfinite(length_std) and length_std > 0):
-        raise InputError(f"--length-std: found {length_std:g}, expected a positive number of metres")
+def _check(lever: Lever, motor: Array, measured: Array) -> None:
     if len(motor) < LEAST_SAMPLES:
         raise InputError(f"the log has {len(motor)} samples, expected at least {LEAST_SAMPLES}")
     if not (np.isfinite(motor).all() and np.isfinite(measured).all()):

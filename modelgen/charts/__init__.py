@@ -5,7 +5,7 @@ from modelgen.charts.drawn import drawn
 from modelgen.charts.intervals import Interval, intervals
 from modelgen.charts.paths import mark
 from modelgen.charts.sheet import sheet
-from modelgen.charts.ticks import apart, at_joints, number, sized, ticks
+from modelgen.charts.ticks import apart, at_joints, in_percent, known, number, sized, ticks
 
 __all__ = [
     "ROLES",
@@ -16,7 +16,9 @@ __all__ = [
     "apart",
     "at_joints",
     "drawn",
+    "in_percent",
     "intervals",
+    "known",
     "labels",
     "mark",
     "number",

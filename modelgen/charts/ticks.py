@@ -72,3 +72,16 @@ def number(value: float, digits: int = 3) -> str:
     if not _SMALL <= abs(value) < _LARGE:
         return f"{value:.{digits}g}"
     return f"{value:.{max(0, digits - 1 - math.floor(math.log10(abs(value))))}f}"
+
+
+def known(value: float, std: float | None, digits: int = 5) -> str:
+    """A number down to the second digit of its standard deviation, where that is known; at most `digits`."""
+    if not std or not math.isfinite(std) or value == 0.0 or not math.isfinite(value):
+        return number(value, digits)
+    figures = math.floor(math.log10(abs(value))) - math.floor(math.log10(std)) + 2
+    return number(value, min(max(figures, 1), digits))
+
+
+def in_percent(share: float) -> str:
+    """A share in percent; of more than a thousand none has a use for the digits."""
+    return f"{share:z.1f}" if share <= 1000.0 else "> 1000"

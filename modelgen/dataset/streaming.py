@@ -19,7 +19,7 @@ from modelgen.dataset.processing.timing import Axis, Survey
 from modelgen.dataset.reading import checks
 from modelgen.dataset.reading.clocks import clocks
 from modelgen.dataset.reading.column_table import Log
-from modelgen.dataset.reading.read import channels_of, record_of
+from modelgen.dataset.reading.read import channels_of, check_length, record_of
 from modelgen.dataset.reading.sources import open_source
 from modelgen.dataset.thresholds import USUAL
 from modelgen.description import Arm
@@ -137,7 +137,7 @@ class Stream:
             if alone:
                 checks.check_finite(self.spec, block[:, 0], ("t",), block, found.count)
             found.add(block[:, 0])
-        checks.check_length(self.spec, found.count, limits.min_samples)
+        check_length(self._source, found.count)
         if not alone:
             content.check_changes()
         return found.axis()

@@ -48,6 +48,10 @@ _OPERATORS: Mapping[type[ast.operator], str] = {
 # "90 deg", "90deg", "(a + b) mm"; but "d3m" is a name.
 _UNIT_AT_END = re.compile(r"(.*?)(?<![A-Za-z0-9_])([0-9]+(?:[eE][0-9]+)?)?(deg|rad|mm|cm|m)\s*", re.DOTALL)
 _HINTS = {"^": "; a power is written **", "°": '; degrees are written "90 deg"', "π": "; write pi"}
+# "2 kg"; but 1e5 is a number, and 2 pi lacks its sign of multiplication.
+_OTHER_UNIT = re.compile(
+    r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?\s*(?![eE][-+]?[0-9]|(?:pi|j|if)\b)([A-Za-z%][\w%*/^ .]*)"
+)
 _FOREIGN = re.compile(r"[^0-9A-Za-z_.+\-*/() ]")
 
 
@@ -88,6 +92,10 @@ def evaluate(raw: float | str, kind: str, symbols: Mapping[str, float] | None = 
     """
     if isinstance(raw, str):
         text, factor = _split_unit(raw, kind)
+        if other := _OTHER_UNIT.fullmatch(text):
+            reads = ", ".join(name for name, (of, _) in UNITS.items() if kind in (of, "any"))
+            here = f"'{other[1]}' is none of the units {reads}" if reads else "no unit is read here"
+            raise ExpressionError(f"{here}; write the number alone, in SI units")
         tree = _parse(text, unit=text != raw.strip())
         quantity = _walk(tree, symbols or {}, 0)
         if factor != 1.0:

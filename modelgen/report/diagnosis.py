@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from modelgen.charts import sheet
+from modelgen.charts import known, sheet
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.call import Call
 from modelgen.report.cause_parts import about, law_found, suspected
@@ -185,9 +185,9 @@ def _fit(percent: float) -> str:
 
 
 def _files(d: Diagnosis) -> list[Part]:
-    known = "held" if d.free else "not known"  # what the records do not show
+    unknown = "held" if d.free else "not known"  # what the records do not show
     values = [
-        (name, f"{e.value:z.6g}", known if np.isnan(e.std) else f"{e.std:z.2g}", e.unit)
+        (name, known(e.value, e.std), unknown if np.isnan(e.std) else f"{e.std:z.2g}", e.unit)
         for name, e in d.parameters.items()
     ]
     settings = [(_SETTINGS.get(name, name), _said(value)) for name, value in d.settings.items()]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from modelgen.charts import Chart, Curve, Interval, number, over_time, sheet
+from modelgen.charts import Chart, Curve, Interval, in_percent, known, number, over_time, sheet
 from modelgen.functions.nominal import known_base
 from modelgen.identification import Identification, Validation
 from modelgen.identification.beside_noise import noise_known
@@ -103,7 +103,7 @@ def report(
     if found.gains:
         heads = [("joint", "left"), *((h, "right") for h in ("described", "found", "std"))]
         rows = [
-            (names[g.joint - 1], f"{g.described:z.6g}", f"{g.value:z.6g}", f"{g.std:z.2g}")
+            (names[g.joint - 1], number(g.described, 5), known(g.value, g.std), f"{g.std:z.2g}")
             for g in found.gains
         ]
         sections.append(("Torque constants", [Grid("Torque constants", heads, rows)]))
@@ -250,9 +250,9 @@ def _parameters(found: Identification) -> list[Any]:
 
 def _parameter(e: Any, nominal: float | None) -> tuple[str, ...]:
     std = "left out" if e.dropped else "not determined" if e.std is None else f"{e.std:z.2g}"
-    share = "" if e.relative is None else f"{e.relative:z.1f}"
-    described = "" if nominal is None else f"{nominal:z.5g}"
-    return e.name, f"{e.value:z.5g}", std, described, share, e.unit, "yes" if e.essential else "no"
+    share = "" if e.relative is None else in_percent(e.relative)
+    described = "" if nominal is None else number(nominal, 5)
+    return e.name, known(e.value, e.std), std, described, share, e.unit, "yes" if e.essential else "no"
 
 
 def table(test: Validation) -> list[tuple[str, str]]:

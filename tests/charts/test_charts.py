@@ -8,7 +8,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from modelgen.charts import Band, Chart, Curve, Interval, drawn, intervals, number, sheet, ticks
+from modelgen.charts import (
+    Band,
+    Chart,
+    Curve,
+    Interval,
+    drawn,
+    in_percent,
+    intervals,
+    known,
+    number,
+    sheet,
+    ticks,
+)
 
 SVG = "{http://www.w3.org/2000/svg}"
 NUMBERS = re.compile(r"-?\d+")
@@ -197,3 +209,26 @@ def test_what_is_compared_is_told_apart_without_colours() -> None:
     assert dashes["after"]
     lines = [dashes[f"s{k}"].strip() for k in range(7)]
     assert len(set(lines)) == 7
+
+
+@pytest.mark.parametrize(
+    ("value", "std", "said"),
+    [
+        (0.71353, 0.0072, "0.7135"),
+        (2.02, 4.5e-5, "2.0200"),
+        (0.00010871, 0.00016, "0.00011"),
+        (0.0049, 1.2, "0.005"),
+        (5684.9, 310.0, "5685"),
+        (0.123456789, None, "0.12346"),
+        (0.123456789, float("nan"), "0.12346"),
+        (0.0, 0.1, "0"),
+    ],
+)
+def test_a_value_is_said_to_the_second_digit_of_its_deviation(
+    value: float, std: float | None, said: str
+) -> None:
+    assert known(value, std) == said
+
+
+def test_a_share_far_above_the_whole_has_no_digits() -> None:
+    assert (in_percent(30.54), in_percent(3578.8)) == ("30.5", "> 1000")

@@ -234,6 +234,8 @@ def test_a_short_record_is_refused(tmp_path: Path) -> None:
     file = write_csv(tmp_path / "a.csv", columns(T))
     with pytest.raises(InputError, match="found 10 samples, expected at least 20"):
         read(f"{file}@1:1.05", DRIVEN)
+    with pytest.raises(InputError, match=r"found 0 samples, .* the log has 1600, from 0 to 7\.995 s"):
+        read(f"{file}@100:200", DRIVEN)
 
 
 @pytest.mark.parametrize(

@@ -29,12 +29,6 @@ def check_finite(file: str, stamps: Array, names: tuple[str, ...], block: Array,
         )
 
 
-def check_length(file: str, samples: int, least: int) -> None:
-    """Refuse a record with fewer samples. Raises InputError."""
-    if samples < least:
-        raise InputError(f"{file}: found {samples} samples, expected at least {least}")
-
-
 def check_constant(
     file: str,
     arm: Arm,

@@ -23,6 +23,7 @@ from modelgen.dataset.reading.on_axis import OnAxis
 from modelgen.dataset.reading.plausible import check_counters, check_efforts, doubtful_unit
 from modelgen.dataset.reading.repeats import without_doubled
 from modelgen.dataset.reading.sources import BLOCK, Source, open_source, since_1970
+from modelgen.dataset.reading.specs import Spec
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
@@ -62,7 +63,7 @@ def read_with_stamps(
     spec = source.spec.text
     blocks = list(source.blocks())
     table = np.concatenate(blocks) if blocks else np.empty((0, len(source.wanted)))
-    checks.check_length(spec, len(table), thresholds.min_samples)
+    check_length(source, len(table))
     checks.check_finite(spec, table[:, 0], source.wanted, table)
     stamps = table[:, 0]
     positions, efforts = (
@@ -79,7 +80,7 @@ def read_with_stamps(
     _check_counters(source, table)
     table, lone = without_lone(spec, table, positions, efforts, thresholds)
     found = [*doubled, *(() if new is None else new.remarks), *stamped, *lone]
-    checks.check_length(spec, len(table), thresholds.min_samples)
+    check_length(source, len(table))
     axis = survey(Survey(spec, source.rate, source.gap, thresholds), table[:, 0], BLOCK)
     missing = None
     if axis.method == "none":
@@ -114,15 +115,37 @@ def read_with_stamps(
     return record, stamps
 
 
+def check_length(source: Source, samples: int) -> None:
+    """Refuse a record with too few samples. Raises InputError, which says of a part what there is."""
+    least = source.thresholds.min_samples
+    if samples >= least:
+        return
+    message = f"{source.spec.text}: found {samples} samples, expected at least {least}"
+    stamps = _stamps_of_file(source) if _is_part(source.spec) else ()
+    if len(stamps):
+        message += f"; the log has {len(stamps)}, from {min(stamps):.9g} to {max(stamps):.9g} s"
+    raise InputError(message)
+
+
+def _is_part(spec: Spec) -> bool:
+    return (spec.begin, spec.end) != (-math.inf, math.inf)
+
+
+def _stamps_of_file(source: Source) -> Array:
+    """The stamps (N,) [s] of the whole file of which the source is a part."""
+    whole = replace(source, spec=replace(source.spec, begin=-math.inf, end=math.inf))
+    # rows of others are no samples: messages on the topic of a bag, blank cells
+    blocks = list(whole.blocks(time_alone=not source.in_turn))
+    stamps = np.concatenate(blocks)[:, 0] if blocks else np.empty(0)
+    found: Array = stamps[np.isfinite(stamps)]
+    return found
+
+
 def _rate_of_file(source: Source) -> float | None:
     """Samples per second by the median step of the whole file: its parts have one rate. None for a whole."""
-    spec = source.spec
-    if (spec.begin, spec.end) == (-math.inf, math.inf):
+    if not _is_part(source.spec):
         return None
-    whole = replace(source, spec=replace(spec, begin=-math.inf, end=math.inf))
-    # rows of others are no samples: messages on the topic of a bag, blank cells
-    stamps = np.concatenate(list(whole.blocks(time_alone=not source.in_turn)))[:, 0]
-    steps = np.diff(stamps[np.isfinite(stamps)])
+    steps = np.diff(_stamps_of_file(source))
     steps = steps[steps > 0.0]
     return 1.0 / float(np.median(steps)) if len(steps) else None
 

@@ -65,7 +65,12 @@ def parts(p: Prepared, window: float | None, interval: float) -> list[Part]:
     step = float(t[1] - t[0])
     count = len(t) - 1 if window is None else round(window / step) if np.isfinite(window) else 0
     if count < 10:
-        raise InputError(f"{p.record.name}: found {count} samples in a window, expected 10 at least")
+        if window is None:
+            raise InputError(f"{p.record.name}: found {count} samples, expected 10 at least")
+        raise InputError(
+            f"--window {window:g}: found {count} samples in a window of {p.record.name}, expected 10 "
+            f"at least, which are {10 * step:.3g} s"
+        )
     found = []
     for first in range(0, max(1, len(t) - count // 2), count):
         last = min(len(t) - 1, first + count)
