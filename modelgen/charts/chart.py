@@ -13,6 +13,8 @@ from modelgen.numeric import Array
 # What a curve is decides its look: colour, width and dashes stand in the style of the page.
 ROLES = ("measured", "before", "after", "law", "noise", "s0", "s1", "s2", "s3", "s4", "s5", "s6")
 
+_BESIDE = 0.02  # of the span of the abscissae, beside dots
+
 
 @dataclass(frozen=True)
 class Curve:
@@ -57,7 +59,9 @@ class Chart:
         x = [self.along(c.x) for c in self.curves]
         y = [self.along(c.y) for c in self.curves] + [np.array([b.low, b.high]) for b in self.bands]
         limits = None if self.y_range is None else self.along(np.array(self.y_range))
-        return _span(x, 0.0), _span(y, 0.05) if limits is None else (float(limits[0]), float(limits[1]))
+        # Of dots, the first and the last are drawn whole.
+        beside = _BESIDE if any(c.dots for c in self.curves) and not self.zoom else 0.0
+        return _span(x, beside), _span(y, 0.05) if limits is None else (float(limits[0]), float(limits[1]))
 
     def along(self, values: Array) -> Array:
         """Where values (N,) lie along an axis: themselves, or their decimal logarithms."""

@@ -91,15 +91,16 @@ def _first(d: Diagnosis, call: Call) -> list[Step]:
 def whole_json(d: Diagnosis, call: Call) -> dict[str, Any]:
     """diagnosis.json, with what the page proposes as `next_experiment`.
 
-    That is what separates a cause from its rivals, or what is to be done where nothing is named, with its
-    command; None else. call: as of `following`.
+    That is what separates a cause from its rivals, or what is to be done where nothing is named or a channel
+    is to be mended, with its command; None else. call: as of `following`.
     """
     said = to_json(d)
-    if d.next_experiment is None and d.verdict in _MOTIONS:
-        what, step = asked_next(d, call)
+    mending = [step.text for step in _mending(d)]
+    if d.next_experiment is None and (mending or d.verdict in _MOTIONS):
+        what, step = asked_next(d, call) if d.verdict in _MOTIONS else ("", Step(""))
         said["next_experiment"] = {
             "separates": [],
-            "do": what,
+            "do": " ".join([*mending, what]).rstrip(),
             "command": step.command or None,
             "trajectory": None,
             "tests": [{"test": text, "expected_delta_bic": None} for text in _by_itself(d)],
