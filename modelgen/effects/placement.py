@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from modelgen.description import Arm
 from modelgen.description.objects import EffectUse
-from modelgen.effects import CATALOGUE, InputEffect
+from modelgen.effects import CATALOGUE
 
 # effect, number of the coordinate from 1 or None for the whole arm, values of its parameters
 Found = tuple[str, int | None, Mapping[str, float]]
@@ -55,7 +55,7 @@ def places(arm: Arm, name: str) -> list[int | None]:
     """Numbers of the coordinates (from 1) at which the effect can stand and does not yet; None: the arm.
 
     One that may stand at either is offered for the whole arm, or for the others where some joints have it;
-    between inputs and efforts also for one of several joints alone.
+    each alone too where each has a size of its own, as links of different thickness have.
     """
     effect = CATALOGUE[name]
     everywhere = any(use.name == name for use in arm.effects)
@@ -68,8 +68,7 @@ def places(arm: Arm, name: str) -> list[int | None]:
     some = any(use.name == name for index in arm.coordinates for use in arm.joints[index].effects)
     if effect.scope == "joint" or some:
         return alone
-    several = issubclass(effect, InputEffect) and effect.scope == "either" and len(alone) != 1
-    return [*whole, *alone] if several and whole else whole
+    return [*whole, *alone] if whole and effect.own_sizes and len(alone) != 1 else whole
 
 
 def with_effect(arm: Arm, name: str, joint: int | None, values: Mapping[str, float]) -> Arm:

@@ -104,6 +104,8 @@ class Traits(ABC):
         waves are read off a periodogram.
     rereads: with it the joint is elsewhere at the same reading of its motor.
     relative: motions show it beside that of other joints alone; where all have it, so do the parameters.
+    own_sizes: each joint or link has a size of its own, so that one that may stand at either is looked for at
+        each alone too.
     of_rotor: its parameter is the inertia of the drive itself, before what lies between drive and link.
     overlooked: how many times its usual size, and in any case up to which value, nobody sees it at a glance.
     reading: what can be read of it on the bench.
@@ -131,6 +133,7 @@ class Traits(ABC):
     periodic: ClassVar[bool] = False
     rereads: ClassVar[bool] = False
     relative: ClassVar[bool] = False
+    own_sizes: ClassVar[bool] = False
     of_rotor: ClassVar[bool] = False
     overlooked: ClassVar[tuple[float, float]] = (math.inf, 0.0)
     reading: ClassVar[Reading | None] = None

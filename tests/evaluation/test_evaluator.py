@@ -152,7 +152,7 @@ def test_places_follow_the_drives() -> None:
 
 def test_a_fluid_that_drags_on_some_links_may_drag_on_the_others() -> None:
     arm = replace(ARMS["ur10e"], effects=())
-    assert places(arm, "fluid_drag") == [None]
+    assert places(arm, "fluid_drag") == [None, 1, 2, 3, 4, 5, 6]
     some = with_effect(arm, "fluid_drag", 2, {"coefficient": 3.0})
     assert places(some, "fluid_drag") == [1, 3, 4, 5, 6]
 

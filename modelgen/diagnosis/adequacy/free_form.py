@@ -20,7 +20,14 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from modelgen.diagnosis.adequacy.encoder_errors import of_encoder
-from modelgen.diagnosis.adequacy.motion_functions import of_late, of_others, of_state, of_way, of_when
+from modelgen.diagnosis.adequacy.motion_functions import (
+    of_gain,
+    of_late,
+    of_others,
+    of_state,
+    of_way,
+    of_when,
+)
 from modelgen.diagnosis.adequacy.smooth_functions import (
     SmoothFunction,
     Worth,
@@ -101,8 +108,8 @@ def free_forms(
             rest = max(rest, terms[joint].evidence)
         inputs = [equations.evaluator.inputs(r.motion, without.base) for r in equations.rows]
         further = spots(joint - 1, equations), of_late(joint - 1, equations)
-        when = of_when(joint - 1, equations, inputs)
-        shapes = [*shapes_at(joint - 1, equations), *further, *when]
+        by_inputs = [f for of in (of_gain, of_when) for f in of(joint - 1, equations, inputs)]
+        shapes = [*shapes_at(joint - 1, equations), *further, *by_inputs]
         by, shape = ahead(shapes, own, without)
         free = FreeForm(by - rest, most, what=shape.text)
         form = max(free, found[joint], key=lambda form: form.ahead - form.most)

@@ -18,6 +18,7 @@ from modelgen.diagnosis.equations import Equations
 from modelgen.numeric import Array
 
 OF_STATE = "the joint's position and speed"
+OF_GAIN = "the joint's effort times a function of its position"
 MEMORIES = np.geomspace(0.03, 3.0, 7)  # s, over which a force fades that the speed builds up
 WAYS = np.geomspace(1e-3, 1.0, 8)  # of the range, over which a hysteresis builds up
 EVEN = 1.0  # of the range, over which a hysteresis differs from place to place
@@ -25,7 +26,7 @@ EVEN = 1.0  # of the range, over which a hysteresis differs from place to place
 
 def of_state(j: int, equations: Equations, series: bool = False) -> Iterator[SmoothFunction]:
     """Functions of position and speed of joint j (from 0), of every bend length, with a jump where the speed
-    changes its sign.
+    changes its sign and without.
 
     series: of the position, times the direction.
     """
@@ -33,6 +34,8 @@ def of_state(j: int, equations: Equations, series: bool = False) -> Iterator[Smo
     over = positions if series else [np.hstack(x) for x in zip(positions, _speeds(j, equations), strict=True)]
     for bend in equations.thresholds.adequacy.bend_lengths:
         yield _function(OF_STATE, j, equations, over, bend, even=not series)
+        if not series:
+            yield _function(OF_STATE, j, equations, over, bend, jump=False)
 
 
 def of_others(j: int, equations: Equations) -> Iterator[SmoothFunction]:
@@ -52,6 +55,17 @@ def of_others(j: int, equations: Equations) -> Iterator[SmoothFunction]:
         )
         both = [x[:, [j, i]] for x in v]
         yield _function(f"the joint's speed and that of {names[i]}", j, equations, both, bend, jump=False)
+
+
+def of_gain(j: int, equations: Equations, inputs: Sequence[Array]) -> Iterator[SmoothFunction]:
+    """At joint j (from 0) a gain of its drive that changes with its position.
+
+    inputs: (N, n) of every record, as the model has them.
+    """
+    places = [r.prepared.q[:, [j]] for r in equations.rows]
+    for bend in equations.thresholds.adequacy.bend_lengths:
+        over = zip(equations.rows, functions(places, bend), inputs, strict=True)
+        yield SmoothFunction(OF_GAIN, {j: [r.equation(j, x * u[:, [j]]) for r, x, u in over]})
 
 
 def of_late(j: int, equations: Equations) -> SmoothFunction:

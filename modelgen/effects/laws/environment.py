@@ -47,6 +47,7 @@ class Strips(LinkEffect):
 
     nonlinear = TIP
     family = Family.FLUID
+    own_sizes = True
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:

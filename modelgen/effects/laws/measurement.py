@@ -222,6 +222,7 @@ class TimeDelay(InputEffect):
     finding = "the effort of {place} comes {delay} after the logged input"
     reference = "Swevers, Verdonck and De Schutter 2007"
     scope = "either"
+    own_sizes = True
     nonlinear = (
         Parameter(
             "delay",
