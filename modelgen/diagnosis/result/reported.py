@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -44,7 +44,7 @@ from modelgen.identification.channels import ABOVE_ALL, effort_questions
 from modelgen.identification.doubts import doubts, inertia_below_zero
 from modelgen.identification.identify import errors_of, estimates_of
 from modelgen.identification.impossible import driven
-from modelgen.identification.misread import check_reading
+from modelgen.identification.misread import HARDLY, check_reading
 from modelgen.identification.objects import DIAGNOSING, Impossible
 from modelgen.numeric import Array
 
@@ -101,7 +101,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
         laws=tuple(_law(c, test, extension) for c in selection.causes),
         ranking=selection.turns,
         added=added,
-        identified=_identified(study, decision, extension),
+        identified=_identified(study, decision, extension, _answered(extension, test, pair)),
         log=inspect_records(
             [r.prepared for r in equations.rows],
             study.records[-1:],
@@ -133,8 +133,13 @@ def _law(cause: Cause, test: Rows, extension: Extension) -> Array:
     return found if np.isfinite(found).all() else np.zeros((0, 0))
 
 
-def _identified(study: Study, decision: Decision, extension: Extension) -> AsIdentified | None:
-    """What `modelgen identify` has of the records in this band, None of a free motion or where it refuses."""
+def _identified(
+    study: Study, decision: Decision, extension: Extension, answered: Collection[str]
+) -> AsIdentified | None:
+    """What `modelgen identify` has of the records in this band, None of a free motion or where it refuses.
+
+    answered: joints at which causes answer what is left there.
+    """
     equations = extension.equations
     if equations.free:
         return None
@@ -151,8 +156,7 @@ def _identified(study: Study, decision: Decision, extension: Extension) -> AsIde
     said = {name for doubt in asked for name in doubt.joints}
     asked += tuple(doubt for doubt in decision.remains.drifting if said.isdisjoint(doubt.joints))
     about = doubts(train, study.model, study.evaluator, *fit, whole=decision.verdict != "named")
-    answered = _answered(extension)
-    left = [doubt for doubt in asked if not answered.issuperset(doubt.joints)]
+    left = [doubt for doubt in asked if not set(doubt.joints) <= set(answered)]
     texts = (text.without(DIAGNOSING) for text in (*left, *about))  # this is the diagnosis
     late = study.instant.questions() if study.instant is not None and study.instant.channels else ()
     return AsIdentified(found.rmse, chosen.cutoff, tuple(texts), late)
@@ -177,11 +181,16 @@ def _impossible(
     return tuple(doubt.without(DIAGNOSING) for doubt in found)
 
 
-def _answered(extension: Extension) -> set[str]:
-    """Names of the joints at which a cause is named: it answers what is left there."""
+def _answered(extension: Extension, test: Rows, pair: tuple[Array, Array]) -> set[str]:
+    """Names of the joints at which what is left is answered: a cause is named there, or one
+    elsewhere explains most of it. pair: residuals (M, n) of the test record before and after.
+    """
     joints = {cause.trial.candidate.joint for cause in extension.selection.causes}
     names = extension.before.arm.coordinate_names
-    return set(names) if None in joints else {names[j - 1] for j in joints if j is not None}
+    if None in joints:
+        return set(names)
+    before, after = (np.sum(np.where(test.moving, x, 0.0) ** 2, axis=0) for x in pair)
+    return {name for j, name in enumerate(names) if j + 1 in joints or after[j] < HARDLY**2 * before[j]}
 
 
 def _settings(study: Study, decision: Decision, selection: Selection, options: Options) -> dict[str, object]:

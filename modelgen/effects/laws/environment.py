@@ -62,6 +62,11 @@ class Strips(LinkEffect):
         text = f"it is not looked for where links that carry no other have no nominal inertials: {ends}"
         return [text] if ends else []
 
+    @classmethod
+    def judged_at(cls, joint: int | None, fixed: Numbers, n: int) -> list[int]:
+        """By all joints that may carry the link: a slow one far out is held by those that swing it."""
+        return list(range(n if joint is None else joint))
+
     def points(self, p: Values) -> Sequence[Point]:
         """The nodes of the quadrature."""
         return [Point(fraction=place, part=weight) for place, weight in _NODES]
