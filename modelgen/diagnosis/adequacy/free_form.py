@@ -32,12 +32,13 @@ from modelgen.diagnosis.adequacy.smooth_functions import (
     SmoothFunction,
     Worth,
     log_evidence,
+    of_pose,
     spots,
 )
 from modelgen.diagnosis.candidates import FittedCandidate, beside, candidate_columns, system_of
 from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import System
-from modelgen.diagnosis.selection import Selection, threshold, together
+from modelgen.diagnosis.selection import Selection, beside_hidden_weight, threshold, together
 from modelgen.effects import Family
 from modelgen.numeric import Array
 
@@ -102,6 +103,9 @@ def free_forms(
             continue
         found[joint] = _apart(own, without)
         if joint is None:
+            found[joint] = max(
+                found[joint], _of_pose(selection, most), key=lambda form: form.ahead - form.most
+            )
             continue
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
@@ -207,6 +211,21 @@ def _within(moving: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _evened(values: Array) -> Array:
     """Rows (M, ...) of a record, of what is slow in them."""
     return np.asarray(ndimage.gaussian_filter1d(values, SLOW_ROWS, axis=0, mode="nearest"))
+
+
+def _of_pose(selection: Selection, most: float) -> FreeForm:
+    """Delta BIC by which functions of where the arm is, one at each joint, are ahead of all causes together.
+
+    A pull at the arm looks like a tilt, a constant force at a joint and other lengths of a lever together.
+    """
+    selection = beside_hidden_weight(selection)
+    equations = selection.system.equations
+    nothing = system_of(equations, [], selection.system)
+    lengths = equations.thresholds.adequacy.bend_lengths
+    worth = [[log_evidence(f, nothing).evidence for f in of_pose(equations, bend)] for bend in lengths]
+    best = sum(max(0.0, *at_joint) for at_joint in zip(*worth, strict=True))
+    own = [c.trial for c in selection.causes]
+    return FreeForm(best - together(own, nothing, fair=True), most, "where the arm is, one at each joint")
 
 
 def _by_joint(trial: FittedCandidate) -> Sequence[Array]:

@@ -78,7 +78,7 @@ def like_delta_bic(limits: AdequacyThresholds) -> float:
 def smooth_functions(system: System) -> Iterator[SmoothFunction]:
     """Functions for driven arms, with the inputs that follow from the system's parameters."""
     equations, rows, n = system.equations, system.rows, system.n
-    limits, names = equations.thresholds.adequacy, equations.arm.coordinate_names
+    limits = equations.thresholds.adequacy
     inputs = [equations.evaluator.inputs(r.motion, system.base) for r in rows]
     power = [
         np.abs(gains(equations.arm, r.prepared.q) * u * r.prepared.dq).sum(axis=1, keepdims=True)
@@ -87,16 +87,21 @@ def smooth_functions(system: System) -> Iterator[SmoothFunction]:
     for j in range(n):
         yield spots(j, equations)
     for bend in limits.bend_lengths:
-        free = functions([r.prepared.q for r in rows], bend)
-        for j in range(n):
-            where = [r.equation(j, x) for r, x in zip(rows, free, strict=True)]
-            yield SmoothFunction(f"a force at {names[j]} that depends on where the arm is", {j: where})
+        yield from of_pose(equations, bend)
         taken = functions(power, bend)
         columns = {
             j: [r.equation(j, u[:, [j]] * x) for r, u, x in zip(rows, inputs, taken, strict=True)]
             for j in range(n)
         }
         yield SmoothFunction("a gain of all drives that depends on the power that they take", columns)
+
+
+def of_pose(equations: Equations, bend: float) -> Iterator[SmoothFunction]:
+    """A function of where the arm is at each joint in turn, of a bend length."""
+    free = functions([r.prepared.q for r in equations.rows], bend)
+    for j, name in enumerate(equations.arm.coordinate_names):
+        where = [r.equation(j, x) for r, x in zip(equations.rows, free, strict=True)]
+        yield SmoothFunction(f"a force at {name} that depends on where the arm is", {j: where})
 
 
 def spots(j: int, equations: Equations) -> SmoothFunction:
