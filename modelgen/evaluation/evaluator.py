@@ -29,7 +29,7 @@ from modelgen.evaluation.programs import (
     links_and_effect,
     loads_of,
 )
-from modelgen.evaluation.states import Series
+from modelgen.evaluation.states import TOUCH, Series
 from modelgen.evaluation.tilted_gravity import HiddenWeight
 from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
@@ -191,6 +191,26 @@ class Evaluator:
         found = self._run(call, e, call.function, motion, values, parameters)
         return found - self._links(motion, links_alone(self.arm, self.base, joint, parameters))
 
+    def ringing(
+        self, effect: str, joint: int, motion: Motion, values: Values, parameters: Array, seconds: float
+    ) -> Array:
+        """Inputs (N, n, 2) by which an elastic joint at a measured motor rings from a motion's begin on, for
+        so long: per unit of a further lag of its link there, and of a rate of that.
+        """
+        e, count = self._of_effect(effect, joint, values), max(2, round(seconds / motion.step))
+        self.contribution(effect, joint, motion, values, parameters)  # where it can stand
+        call, parameters = self._made[e, "added"], self._carried(joint, motion, parameters)
+        part = motion.until(count)
+
+        def added(push: Array) -> Array:
+            return self._run(call, e, call.function, part, values, parameters, push)
+
+        size, own = len(e.state_names()), self._series[e]
+        pushes = TOUCH * np.eye(size)[[own.lags[0], own.rates[0]]]
+        still, found = added(np.zeros(size)), np.zeros((*motion.q.shape, 2))
+        found[: len(part.t)] = np.stack([(added(push) - still) / TOUCH for push in pushes], axis=2)
+        return found
+
     def _by_change(
         self,
         definition: type[Definition],
@@ -280,6 +300,7 @@ class Evaluator:
         motion: Motion,
         values: Values,
         parameters: Array,
+        push: Array | None = None,
     ) -> Array:
         free = self._free(e, values)
         loads = None
@@ -292,7 +313,7 @@ class Evaluator:
                 return np.asarray(made(**given_for(made.function, motion, parameters)))
 
             loads = self._recent.along("loads", motion, parameters, inputs)
-        states = self._states(e, motion, free, parameters) if e.state_names() else None
+        states = self._states(e, motion, free, parameters, push) if e.state_names() else None
         given = given_for(function, motion, parameters, free=free, loads=loads, states=states)
         return evaluated(call, given, motion)
 
@@ -306,11 +327,18 @@ class Evaluator:
             raise ValueError(f"no value for {', '.join(missing)}")
         return tuple(float(value) for value in given if value is not None)
 
-    def _states(self, e: Equations, motion: Motion, free: tuple[float, ...], parameters: Array) -> Array:
+    def _states(
+        self,
+        e: Equations,
+        motion: Motion,
+        free: tuple[float, ...],
+        parameters: Array,
+        push: Array | None = None,
+    ) -> Array:
         """States at every sample, (N, s), from zero or where the motion before left them; a transmission's
-        from where its load holds it.
+        from where its load holds it, and its push (s,) beside.
         """
         if e not in self._series:
             self._series[e] = Series(e, self.base, REMEMBERED)
-        found = self._series[e].run(motion, free, parameters)[:-1]
+        found = self._series[e].run(motion, free, parameters, push)[:-1]
         return lagging(found, e, motion, motion)  # a measured link is where it is

@@ -42,6 +42,11 @@ class Motion:
         """The motion at these samples alone, one by one."""
         return Motion(self.t[samples], self.q[samples], self.dq[samples], self.ddq[samples])
 
+    def until(self, count: int) -> Motion:
+        """Its first samples, so many."""
+        tables = {name: getattr(self, name)[:count] for name in ("t", "q", "dq", "ddq")}
+        return replace(self, **tables, before=None)
+
     def rest_until(self, end: float) -> Motion:
         """A rest from where this motion ends up to a time [s], as one step (2 samples)."""
         still = np.zeros((2, self.q.shape[1]))

@@ -119,15 +119,18 @@ class Series:
         taken = {a.name: given[a.name] for a in self.heads.function.arguments}
         return np.broadcast_to(np.asarray(self.heads(**taken)), (count, self.rest.arguments[1].size))
 
-    def run(self, motion: Motion, free: Sequence[float], parameters: Array) -> Array:
+    def run(
+        self, motion: Motion, free: Sequence[float], parameters: Array, push: Array | None = None
+    ) -> Array:
         """States (N + 1, s), from where the motion before and the rest after it left them, else from zero.
 
         Elastic transmissions begin where their load holds them, and ring in finer steps than the samples'.
+        push: (s,), by how much they begin elsewhere.
         """
         finer, count = motion.finer if self.lags else (motion, 1)
         if finer is not motion:
             head = self._recent.along("head", finer, parameters, lambda: self.head(finer, parameters))
-            found = self(head, free, finer)
+            found = self(head, free, finer, push=push)
             return np.concatenate([found[:-1:count], found[-1:]])
         start = None
         if motion.before is not None and not self.lags:
@@ -135,15 +138,21 @@ class Series:
             rest = motion.before.rest_until(float(motion.t[0]))
             start = self(self.head(rest, parameters), free, rest, ended)[1]
         head = self._recent.along("head", motion, parameters, lambda: self.head(motion, parameters))
-        return self(head, free, motion, start)
+        return self(head, free, motion, start, push)
 
     def __call__(
-        self, head: Array, free: Sequence[float], motion: Motion, start: Array | None = None
+        self,
+        head: Array,
+        free: Sequence[float],
+        motion: Motion,
+        start: Array | None = None,
+        push: Array | None = None,
     ) -> Array:
         """States (N + 1, s) from the first sample to one step after the last one.
 
         start: (s,) at the first sample, by default zero. Elastic transmissions begin as far behind as their
-        load winds them, and as fast: let loose, a soft one would ring for as long as the record.
+        load winds them, and as fast: let loose, a soft one would ring for as long as the record. push: added
+        to that.
         """
         values, before = np.array([*free, 0.0]), len(head) - len(motion.t)
         state = np.zeros((len(motion.t) + 1, self.rest.arguments[0].size))
@@ -155,6 +164,8 @@ class Series:
             state[0, self.rates] = (second - first) / (self._ends(motion)[1] * motion.step)
             calm = before + round(CALM / motion.step)
             state[0] = self._calm(np.ascontiguousarray(head[before:calm]), values, state[0])
+        if push is not None:
+            state[0] += push
         self._steps.run(np.ascontiguousarray(head[before:]), values, state)
         return state
 

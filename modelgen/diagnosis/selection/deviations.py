@@ -182,11 +182,13 @@ def _carried(selection: Selection, equations: Equations) -> list[Array]:
     theta = selection.system.theta[: equations.unknowns]
     found = load_slopes(by_load, [t.gain.values for t in by_load], theta, equations)
     for trial in elastic:
-        here = candidate_columns(trial.candidate, trial.values, equations, equations.base(theta))
+        here = candidate_columns(
+            trial.candidate, trial.values, equations, equations.base(theta), ringing=True
+        )
         for i, value in enumerate(theta):
             step = max(STEP * abs(float(value)), LEAST)
             moved = equations.base(theta + step * (np.arange(len(theta)) == i))
-            there = candidate_columns(trial.candidate, trial.values, equations, moved)
+            there = candidate_columns(trial.candidate, trial.values, equations, moved, ringing=True)
             if here is not None and there is not None:
                 for table, a, b in zip(found, here, there, strict=True):
                     table[:, :, i] += (b - a)[:, :, 0] / step
@@ -201,7 +203,9 @@ def _slopes(cause: Cause, equations: Equations, base: Array) -> list[Array]:
     for name, value in trial.values.items():
         step = STEP * (abs(value) or 1.0)
         ends = [
-            candidate_columns(trial.candidate, {**trial.values, **trial.around, name: x}, equations, base)
+            candidate_columns(
+                trial.candidate, {**trial.values, **trial.around, name: x}, equations, base, ringing=True
+            )
             for x in (value - step, value + step)
         ]
         for k, part in enumerate(parts):

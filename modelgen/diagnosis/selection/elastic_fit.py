@@ -114,7 +114,7 @@ class ElasticFit:
     def _trials(self, logarithms: Array, theta: Array) -> list[FittedCandidate]:
         base, found = self.equations.base(theta), []
         for trial, values in zip(self.moving, self._values(logarithms), strict=True):
-            made = candidate_columns(trial.candidate, values, self.equations, base)
+            made = candidate_columns(trial.candidate, values, self.equations, base, ringing=True)
             found.append(trial if made is None else replace(trial, values=values, columns=made))
         return found
 
@@ -122,7 +122,7 @@ class ElasticFit:
         """What all of them add, stacked; None where it cannot be."""
         base, found = self.equations.base(theta), np.zeros(len(self.right))
         for trial, given in zip(self.moving, values, strict=True):
-            made = candidate_columns(trial.candidate, given, self.equations, base)
+            made = candidate_columns(trial.candidate, given, self.equations, base, ringing=True)
             if made is None or not all(np.isfinite(c).all() for c in made):
                 return None
             found += stacked(self.equations.rows, made, self.weights)[0][:, 0]
