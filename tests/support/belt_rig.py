@@ -20,14 +20,17 @@ STEP = 2.5e-4  # s, of the simulation
 Table = dict[str, np.ndarray]
 
 
-def rig(stiffness: float | None = None) -> Arm:
-    """The rig as it is described, with a belt of this stiffness, or with none."""
+def rig(stiffness: float | None = None, rotor: float = 1.0) -> Arm:
+    """The rig as it is described, with a belt of this stiffness, or with none.
+
+    rotor: the share of its inertia that it is described with.
+    """
     own = LINK - MASS * ARM**2
     belt = (
         "" if stiffness is None else f"{{joint_flexibility: {{stiffness: {stiffness}, damping: {DAMPING}}}}}"
     )
     effects = ", ".join(
-        ["viscous_friction, coulomb_friction", f"{{drive_inertia: {{inertia: {ROTOR}}}}}", belt]
+        ["viscous_friction, coulomb_friction", f"{{drive_inertia: {{inertia: {rotor * ROTOR:.9g}}}}}", belt]
     )
     text = f"""
 schema: 1
@@ -45,7 +48,7 @@ arms:
 
 
 @cache
-def _simulated(seed: int) -> np.ndarray:
+def _simulated(seed: int, damping: float, fallen: bool) -> np.ndarray:
     """Time, positions of motor and link at the joint, torque there: (4, N), three periods of 8 s."""
     random = np.random.default_rng([66, seed])
     t = np.arange(0.0, 24.0, STEP)
@@ -56,21 +59,25 @@ def _simulated(seed: int) -> np.ndarray:
     speed = np.gradient(wanted, STEP)
     weight = 9.81 * MASS * ARM
     motor, dm, dl = 0.0, 0.0, 0.0
-    link = motor - weight / STIFFNESS  # it hangs in its belt
+    link = motor if fallen else motor - weight / STIFFNESS  # it is let go, or hangs in its belt
     rows = np.zeros((len(t), 3))
     for k in range(len(t)):
         torque = weight + 400.0 * (wanted[k] - motor) + 12.0 * (speed[k] - dm)
         rows[k] = motor, link, torque
-        belt = STIFFNESS * (motor - link) + DAMPING * (dm - dl)
+        belt = STIFFNESS * (motor - link) + damping * (dm - dl)
         dm += STEP * (torque - belt - RATIO**2 * VISCOUS * dm) / (RATIO**2 * ROTOR)
         dl += STEP * (belt - weight * np.cos(link)) / LINK
         motor, link = motor + STEP * dm, link + STEP * dl
     return np.array([t, *rows.T])
 
 
-def log(seed: int, side: str = "motor", rate: float = 500.0) -> Table:
-    """Readings of one instant, of the encoder at the motor or at the link; currents with noise."""
-    t, motor, link, torque = _simulated(seed)[:, :: round(1.0 / (rate * STEP))]
+def log(
+    seed: int, side: str = "motor", rate: float = 500.0, *, damping: float = DAMPING, fallen: bool = False
+) -> Table:
+    """Readings of one instant, of the encoder at the motor or at the link; currents with noise. fallen: the
+    link falls into its belt as the record begins.
+    """
+    t, motor, link, torque = _simulated(seed, damping, fallen)[:, :: round(1.0 / (rate * STEP))]
     noise = 0.01 * np.random.default_rng([67, seed]).normal(size=len(t))
     seen = {"qm1": RATIO * motor} if side == "motor" else {"q1": link}
     return {"t": t, **seen, "i1": torque / (RATIO * CONSTANT) + noise}

@@ -9,6 +9,7 @@ from modelgen.diagnosis.extended.extended_model import (
     without,
 )
 from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions, Share
+from modelgen.diagnosis.extended.inertia_doubt import with_drive_inertia
 from modelgen.diagnosis.extended.test_errors import (
     errors,
     motion_errors,
@@ -39,5 +40,6 @@ __all__ = [
     "residuals",
     "shares",
     "unit_of_efforts",
+    "with_drive_inertia",
     "without",
 ]

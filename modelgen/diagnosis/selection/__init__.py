@@ -3,6 +3,7 @@
 from modelgen.diagnosis.selection.cause import Cause, Selection, together, with_trials
 from modelgen.diagnosis.selection.compliance import alternatives, best_beside
 from modelgen.diagnosis.selection.deviations import Spread, covariance_of, deviations, unseparated
+from modelgen.diagnosis.selection.elastic_fit import smooth
 from modelgen.diagnosis.selection.hidden_weight import (
     beside_hidden_weight,
     explained_by_hidden_weight,
@@ -45,6 +46,7 @@ __all__ = [
     "needed_evidence",
     "paired",
     "refit_elastic",
+    "smooth",
     "threshold",
     "together",
     "unseparated",
