@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property, partial
 
 import numpy as np
@@ -11,7 +10,7 @@ from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters.rules import slid
 from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE, Definition, DescriptionEffect, InputEffect, described
-from modelgen.effects.placement import with_effect
+from modelgen.evaluation.alone import Alone, Values, free_values
 from modelgen.evaluation.cache import Recent
 from modelgen.evaluation.changed_description import Changed, Changes, Variations
 from modelgen.evaluation.delay import acting, added, undone
@@ -35,7 +34,6 @@ from modelgen.functions.objects import Function, Model
 from modelgen.model.equations import Equations
 from modelgen.numeric import Array
 
-Values = Mapping[str, float]
 REMEMBERED = 40  # results that do not depend on an effect's own values
 
 
@@ -49,7 +47,7 @@ class Evaluator:
     def __init__(self, arm: Arm) -> None:
         self.arm = arm
         self.base = grouping(arm)
-        self._equations: dict[tuple[str, int | None, tuple[tuple[str, float], ...]], Equations] = {}
+        self._alone = Alone(arm)
         self._made: dict[object, NumpyFunction] = {}
         self._arms: dict[object, Equations] = {}
         self._columns: dict[Equations, tuple[NumpyFunction, list[tuple[str, int]]]] = {}
@@ -63,7 +61,7 @@ class Evaluator:
 
     def needs_load(self, effect: str, joint: int | None, values: Values) -> bool:
         """Whether its columns depend on the arm's base parameters."""
-        effects = self._of_effect(effect, joint, values).effects
+        effects = self._alone(effect, joint, values).effects
         return any(e.depends_on(name) for e in effects for name in ("load", "carried"))
 
     def inputs(self, motion: Motion, parameters: Array) -> Array:
@@ -150,7 +148,7 @@ class Evaluator:
         States start at zero and are stepped along the motion. Raises InputError where the effect cannot
         stand there.
         """
-        e = self._of_effect(effect, joint, values)
+        e = self._alone(effect, joint, values)
         names = [p.name for p in CATALOGUE[effect].linear]
         if e not in self._columns:
             function, places = columns_of(e)
@@ -182,7 +180,7 @@ class Evaluator:
             return np.asarray(columns @ weights)
         if joint is not None and at_link(motion, joint):
             return self.link_side.added(joint, motion, dict(values), parameters)
-        e = self._of_effect(effect, joint, values)
+        e = self._alone(effect, joint, values)
         if (e, "added") not in self._made:
             self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
         call = self._made[e, "added"]
@@ -197,18 +195,17 @@ class Evaluator:
         """Inputs (N, n, 2) by which an elastic joint at a measured motor rings from a motion's begin on, for
         so long: per unit of a further lag of its link there, and of a rate of that.
         """
-        e, count = self._of_effect(effect, joint, values), max(2, round(seconds / motion.step))
         self.contribution(effect, joint, motion, values, parameters)  # where it can stand
+        e, part = self._alone(effect, joint, values), motion.until(max(2, round(seconds / motion.step)))
         call, parameters = self._made[e, "added"], self._carried(joint, motion, parameters)
-        part = motion.until(count)
 
         def added(push: Array) -> Array:
             return self._run(call, e, call.function, part, values, parameters, push)
 
-        size, own = len(e.state_names()), self._series[e]
-        pushes = TOUCH * np.eye(size)[[own.lags[0], own.rates[0]]]
-        still, found = added(np.zeros(size)), np.zeros((*motion.q.shape, 2))
-        found[: len(part.t)] = np.stack([(added(push) - still) / TOUCH for push in pushes], axis=2)
+        own, found = self._series[e], np.zeros((*motion.q.shape, 2))
+        pushes = TOUCH * np.eye(len(e.state_names()))[[own.lags[0], own.rates[0]]]
+        rung = [(added(push) - added(0.0 * push)) / TOUCH for push in pushes]
+        found[: len(part.t)] = np.stack(rung, axis=2)
         return found
 
     def _by_change(
@@ -281,17 +278,6 @@ class Evaluator:
         states = self._states(e, motion, (), parameters) if e.state_names() else None
         return evaluated(call, given_for(call.function, motion, parameters, states=states), motion)
 
-    def _of_effect(self, effect: str, joint: int | None, values: Values) -> Equations:
-        """Equations of the arm with this effect alone, what is not fixed left free."""
-        definition: type[Definition] = CATALOGUE[effect]
-        free = tuple(p.name for p in definition.nonlinear if not p.structural)
-        fixed = {p.name: values[p.name] for p in definition.nonlinear if p.structural and p.name in values}
-        key = (effect, joint, tuple(sorted(fixed.items())))
-        if key not in self._equations:
-            alone = with_effect(self.arm.without_effects(), effect, joint, fixed)
-            self._equations[key] = Equations(slid(alone), free=free, lazy=True)
-        return self._equations[key]
-
     def _run(
         self,
         call: NumpyFunction,
@@ -302,7 +288,7 @@ class Evaluator:
         parameters: Array,
         push: Array | None = None,
     ) -> Array:
-        free = self._free(e, values)
+        free = free_values(e, values)
         loads = None
         if any(effect.depends_on("load") for effect in e.effects):
             if "loads" not in self._made:
@@ -316,16 +302,6 @@ class Evaluator:
         states = self._states(e, motion, free, parameters, push) if e.state_names() else None
         given = given_for(function, motion, parameters, free=free, loads=loads, states=states)
         return evaluated(call, given, motion)
-
-    def _free(self, e: Equations, values: Values) -> tuple[float, ...]:
-        """Values of what was left free, in order."""
-        defaults = {p.name: p.default for effect in e.effects for p in effect.effect.nonlinear}
-        names = [symbol.name.removeprefix("free_") for symbol in e.free]
-        given = [values.get(name, defaults[name]) for name in names]
-        missing = [name for name, value in zip(names, given, strict=True) if value is None]
-        if missing:
-            raise ValueError(f"no value for {', '.join(missing)}")
-        return tuple(float(value) for value in given if value is not None)
 
     def _states(
         self,

@@ -138,7 +138,7 @@ class Series:
             rest = motion.before.rest_until(float(motion.t[0]))
             start = self(self.head(rest, parameters), free, rest, ended)[1]
         head = self._recent.along("head", motion, parameters, lambda: self.head(motion, parameters))
-        return self(head, free, motion, start, push)
+        return self(head, free, motion, start, push=push)
 
     def __call__(
         self,

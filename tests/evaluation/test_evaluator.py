@@ -108,8 +108,8 @@ def test_an_effect_adds_what_the_arm_with_it_does(
     starts = [np.zeros(len(emitted.model.states))]  # a transmission's: tests/evaluation/test_elastic.py
     run = series.Series.__call__
 
-    def noted(*given: Any) -> np.ndarray:
-        states = run(*given)
+    def noted(*given: Any, **more: Any) -> np.ndarray:
+        states = run(*given, **more)
         starts.append(states[0])
         return states
 
