@@ -12,6 +12,7 @@ from modelgen.dataset import Prepared, Record, prepare
 from modelgen.dataset.processing.content import white_noise
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
+from modelgen.evaluation.link_encoder import compliant
 from modelgen.functions import Model
 from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
@@ -22,6 +23,7 @@ CHANGES = 0.25  # of their changes, likewise
 FAR = 3.0  # times what noise is through the filter, that is none
 ROUNDS = 30  # in which efforts are weighed by what is left of them
 SETTLED = 0.01  # of that, by which it changes at the end
+TURNS = 6  # in which the parameters of an arm with elastic joints settle
 SMALLEST = 1e-5  # of an effort, that counts as left of it
 LEAST = 1e-13  # of the largest eigenvalue, that a combination of parameters is found from
 
@@ -54,9 +56,16 @@ def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluat
         if sum(int(m.sum()) for m in regression.moving) < 3 * p:
             return None
         plain, fair = regression.least_squares(), _by_what_is_left(regression)
+        effort = regression.effort[0]
+        for _ in range(TURNS if compliant(model.arm) else 0):  # elastic joints add what follows from these
+            before = fair
+            regression = regression_of(evaluator, model, [prepared], before)
+            plain, fair = regression.least_squares(), _by_what_is_left(regression)
+            if np.allclose(fair, before, rtol=SETTLED):
+                break
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return None
-    effort, moving = regression.effort[0], regression.moving[0]
+    moving = regression.moving[0]
     rate, cutoff = 1.0 / record.step, like.settings.cutoff
     shares = _size(regression.residuals(plain)[0], moving) / np.maximum(_size(effort, moving), 1e-300)
     left = _size(regression.residuals(fair)[0], moving)

@@ -23,3 +23,8 @@ def test_parameters_beside_an_elastic_joint(side: str) -> None:
 
 def test_a_joint_that_is_far_too_soft_is_asked_about() -> None:
     assert any("unexplained" in doubt for doubt in found(30.0, "motor").to_json()["doubts"])
+
+
+@pytest.mark.parametrize("side", ["motor", "link"])
+def test_one_that_is_as_stiff_as_described_is_asked_nothing(side: str) -> None:
+    assert found(STIFFNESS, side).to_json()["doubts"] == []
