@@ -76,7 +76,7 @@ CONSTANTS = {
     },
     "extended/cause_values.py": {"ROUNDING": ROUNDING},
     "extended/drive_inertia.py": {"SOFTER": START},
-    "extended/inertia_doubt.py": {"STEP": ACCURACY},
+    "extended/elastic_doubt.py": {"STEP": ACCURACY},
     "extended/extended_model.py": {
         "HALVES": BUDGET,
         "WHOLES": BUDGET,
@@ -138,7 +138,7 @@ LITERALS: dict[str, dict[float, str]] = {
     "experiment/bench_tests.py": {5: "how steep a speed is reversed, as the docstring says"},
     "experiment/experiment.py": {4: TEXT},
     "extended/extended_model.py": {4: "a window has samples to be simulated at"},
-    "extended/inertia_doubt.py": {4: FORMULA},
+    "extended/elastic_doubt.py": {4: FORMULA},
     "extended/test_errors.py": {5: "a number of columns"},
     "result/reported.py": {3: TEXT},
     "selection/compliance.py": {1e6: "a misfit that no comparison exceeds"},

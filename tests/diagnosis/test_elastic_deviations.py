@@ -4,6 +4,7 @@ where the inertia of its drive is described wrongly.
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from belt_rig import STIFFNESS, log, rig
 
@@ -13,8 +14,12 @@ from modelgen.diagnosis.extended import NamedCause
 DAMPING = 0.15  # N m s/rad: it rings for two seconds
 
 
-def found(rotor: float = 1.0, *, fallen: bool) -> NamedCause:
+def found(rotor: float = 1.0, *, fallen: bool = False, counts: int = 0) -> NamedCause:
+    """counts: of the encoder, in a turn of the motor; 0: it rounds nothing."""
     logs = [log(seed, damping=DAMPING, fallen=fallen) for seed in range(3)]
+    for table in logs if counts else ():
+        step = 2.0 * np.pi / counts
+        table["qm1"] = step * np.rint(table["qm1"] / step)
     effects = ["joint_flexibility"]
     (cause,) = mg.diagnose(rig(rotor=rotor), logs[:2], logs[2], effects=effects, experiment=False).causes
     return cause
@@ -30,5 +35,12 @@ def test_a_link_that_rings_as_a_record_begins_is_no_other_stiffness(fallen: bool
 
 @pytest.mark.parametrize("rotor", [0.85, 1.15])
 def test_a_stiffness_holds_what_the_rotor_may_be_off_by(rotor: float) -> None:
-    stiffness = found(rotor, fallen=False).parameters["stiffness"]
+    stiffness = found(rotor).parameters["stiffness"]
     assert abs(stiffness.value - STIFFNESS) < 2.5 * stiffness.std < 0.3 * STIFFNESS
+
+
+@pytest.mark.parametrize("counts", [2000, 16000])
+def test_a_damping_holds_what_rounded_positions_make_the_link_ring(counts: int) -> None:
+    """They make it ring as the efforts do not: the damping comes out larger."""
+    damping = found(counts=counts).parameters["damping"]
+    assert abs(damping.value - DAMPING) < 3.0 * damping.std

@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from modelgen.dataset.processing.instants import CONVENTIONS, EffortInstant, fitting
-from modelgen.diagnosis.equations import Equations, Rows
+from modelgen.diagnosis.equations import Equations
 from modelgen.diagnosis.evidence import mean_squares
-from modelgen.diagnosis.selection import Cause, Selection, deviations, refit_elastic
-from modelgen.numeric import Array
+from modelgen.diagnosis.selection import Cause, Selection, deviations, effort_rates, refit_elastic
 
 ROUNDS, NARROWER = 2, 5.0  # of parabolas, and how much narrower the next one is
 
@@ -90,7 +89,7 @@ def instant_beside_elastic(selection: Selection, equations: Equations) -> Effort
     if not elastic or late or not record.hold_std or record.effort_hold not in CONVENTIONS:
         return None
     used = CONVENTIONS[str(record.effort_hold)]
-    rates = [_rate(r, elastic, selection, equations) for r in equations.rows]
+    rates = effort_rates(selection, equations)
     counts, own = selection.system.plain.counts, mean_squares(selection.system)
 
     def left(after: float) -> float:
@@ -117,13 +116,3 @@ def instant_beside_elastic(selection: Selection, equations: Equations) -> Effort
     if fits in (None, record.effort_hold):
         return None
     return EffortInstant(fits, "data", record.step, best, std, fits)
-
-
-def _rate(r: Rows, elastic: Sequence[Cause], selection: Selection, equations: Equations) -> Array:
-    """Rate (M, n) of the efforts of a record, as the model with its elastic joints has them."""
-    evaluator, base = equations.evaluator, selection.system.base
-    inputs = evaluator.inputs(r.motion, base)
-    for cause in elastic:
-        c = cause.trial.candidate
-        inputs = inputs + evaluator.contribution(c.effect, c.joint, r.motion, cause.trial.parameters, base)
-    return r.filtered(np.gradient(inputs, r.prepared.time, axis=0)[:, :, None])[:, :, 0]

@@ -1,5 +1,6 @@
 """The model with the causes: refitted values, their uncertainty, errors on the test record."""
 
+from modelgen.diagnosis.extended.elastic_doubt import with_elastic_doubt
 from modelgen.diagnosis.extended.extended_model import (
     Extension,
     FittedModel,
@@ -9,7 +10,6 @@ from modelgen.diagnosis.extended.extended_model import (
     without,
 )
 from modelgen.diagnosis.extended.findings import Errors, Estimate, NamedCause, Positions, Share
-from modelgen.diagnosis.extended.inertia_doubt import with_drive_inertia
 from modelgen.diagnosis.extended.test_errors import (
     errors,
     motion_errors,
@@ -40,6 +40,6 @@ __all__ = [
     "residuals",
     "shares",
     "unit_of_efforts",
-    "with_drive_inertia",
+    "with_elastic_doubt",
     "without",
 ]

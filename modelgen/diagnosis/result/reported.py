@@ -30,7 +30,7 @@ from modelgen.diagnosis.extended import (
     residuals,
     shares,
     unit_of_efforts,
-    with_drive_inertia,
+    with_elastic_doubt,
     without,
 )
 from modelgen.diagnosis.options import Options
@@ -58,7 +58,7 @@ def reported(study: Study, decision: Decision, extension: Extension, options: Op
     there = on_test(extension, test)
     pair = residuals(test, extension, there)
     described = replay(extension.before, test, limits)
-    spread = with_drive_inertia(deviations(selection, equations), selection, equations, extension.inertias)
+    spread = with_elastic_doubt(deviations(selection, equations), selection, equations, extension.inertias)
     causes = _named(decision, extension, spread)
     played = described, replay(without(extension, there), test, limits) if causes else described
     if causes:

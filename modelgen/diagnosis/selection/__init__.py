@@ -19,7 +19,7 @@ from modelgen.diagnosis.selection.history import (
 )
 from modelgen.diagnosis.selection.marginality import lets_vary
 from modelgen.diagnosis.selection.pairs import doubtful_joints, paired, with_pair, with_rival
-from modelgen.diagnosis.selection.refit_elastic import refit_elastic
+from modelgen.diagnosis.selection.refit_elastic import effort_rates, refit_elastic
 from modelgen.diagnosis.selection.stepwise import Report, forward_selection, needed_evidence, threshold
 
 __all__ = [
@@ -39,6 +39,7 @@ __all__ = [
     "covariance_of",
     "deviations",
     "doubtful_joints",
+    "effort_rates",
     "explained_by_hidden_weight",
     "forward_selection",
     "left_beside_hidden_weight",

@@ -32,6 +32,20 @@ def refit_elastic(selection: Selection, equations: Equations) -> Selection:
     return _behind_links(_at_motors(selection, equations), equations)
 
 
+def effort_rates(selection: Selection, equations: Equations) -> list[Array]:
+    """Rate (M, n) of the efforts of every record, as the model with its elastic joints has them."""
+    evaluator, base, found = equations.evaluator, selection.system.base, []
+    for r in equations.rows:
+        inputs = evaluator.inputs(r.motion, base)
+        for cause in selection.causes:
+            c = cause.trial.candidate
+            if c.elastic:
+                given = cause.trial.parameters
+                inputs = inputs + evaluator.contribution(c.effect, c.joint, r.motion, given, base)
+        found.append(r.filtered(np.gradient(inputs, r.prepared.time, axis=0)[:, :, None])[:, :, 0])
+    return found
+
+
 def _at_motors(selection: Selection, equations: Equations) -> Selection:
     trials = [c.trial for c in selection.causes]
     moving = [t for t in trials if smooth(t, equations)]
