@@ -30,7 +30,7 @@ def test_a_link_that_rings_as_a_record_begins_is_no_other_stiffness(fallen: bool
     stiffness, damping = (found(fallen=fallen).parameters[name] for name in ("stiffness", "damping"))
     assert abs(stiffness.value - STIFFNESS) < 0.01 * STIFFNESS
     assert abs(stiffness.value - STIFFNESS) < 2.5 * stiffness.std < 0.1 * STIFFNESS
-    assert abs(damping.value - DAMPING) < 3.0 * damping.std < 0.3 * DAMPING
+    assert abs(damping.value - DAMPING) < min(3.0 * damping.std, 0.1 * DAMPING)
 
 
 @pytest.mark.parametrize("rotor", [0.85, 1.15])
@@ -40,7 +40,7 @@ def test_a_stiffness_holds_what_the_rotor_may_be_off_by(rotor: float) -> None:
 
 
 @pytest.mark.parametrize("counts", [2000, 16000])
-def test_a_damping_holds_what_rounded_positions_make_the_link_ring(counts: int) -> None:
-    """They make it ring as the efforts do not: the damping comes out larger."""
+def test_a_damping_holds_what_rounded_positions_hide(counts: int) -> None:
+    """They make the link ring as the efforts do not, and leave open when these were read."""
     damping = found(counts=counts).parameters["damping"]
     assert abs(damping.value - DAMPING) < 3.0 * damping.std

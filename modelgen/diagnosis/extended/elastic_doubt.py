@@ -139,6 +139,7 @@ def _by_inertia(
     here = (below + above) / 2.0 if rest is None else rest.delta_bic
     lost = max(0.0, 2.0 * here - below - above)  # twice the evidence lost by a step, as delta BIC
     variance = 1.0 / (1.0 / std**2 + lost / (2.0 * step**2)) if std > 0.0 else 0.0
-    shift = variance * (above - below) / (4.0 * step)
+    # A slope says where to, not how far: what is known so is hardly off by more than twice its deviation.
+    shift = min(abs(variance * (above - below) / (4.0 * step)), 2.0 * std)
     off = math.sqrt(variance + shift**2) / (2.0 * step)
     return {name: off * abs(high[name] - low[name]) for name in low.keys() & high.keys()}
