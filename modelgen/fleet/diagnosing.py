@@ -97,8 +97,9 @@ def _arm(unit: Unit) -> Arm:
 
 
 def _short(message: str, unit: Unit) -> str:
-    """One line, with paths as the fleet's file has them."""
-    return " ".join(message.replace(unit.base.rstrip("/\\") + "/", "").split())
+    """One line, with paths as the fleet's file has them, and its words for what is an option of a command."""
+    there = message.replace("(--mapping)", "(`mapping` of the unit)")
+    return " ".join(there.replace(unit.base.rstrip("/\\") + "/", "").split())
 
 
 def _found(d: Diagnosis) -> Row:
