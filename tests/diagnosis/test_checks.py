@@ -304,7 +304,7 @@ def test_an_elastic_joint_is_not_as_good_as_rigid(
         for r, c in zip(rows, shapes, strict=True)
     ]
 
-    def simulated(candidate: Candidate, values: dict[str, float], *of: Any) -> list[np.ndarray]:
+    def simulated(candidate: Candidate, values: dict[str, float], *of: Any, **more: Any) -> list[np.ndarray]:
         return [c / values["stiffness"] for c in shapes]
 
     measured = import_module("modelgen.diagnosis.selection.elastic_fit")

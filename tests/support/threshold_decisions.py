@@ -20,7 +20,7 @@ from modelgen.diagnosis.adequacy.checks import _stable, significant
 from modelgen.diagnosis.adequacy.distinguishable import aliases
 from modelgen.diagnosis.adequacy.dominance import dominance
 from modelgen.diagnosis.adequacy.explained import left_smoothly
-from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms
+from modelgen.diagnosis.adequacy.free_form import FreeForm, free_forms, further_form
 from modelgen.diagnosis.candidates import FittedCandidate, candidates
 from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.search import Search
@@ -254,7 +254,7 @@ def at_any_pace(limits: Thresholds) -> bool:
     gain = System(equations).gain(tables)
     assert gain is not None
     trial = FittedCandidate(Candidate("time_delay", None), {}, tables, gain)
-    form = free_forms(selected(equations, trial), equations, {})[None]
+    form = further_form([trial], System(equations))
     return form.pace and form.as_good
 
 

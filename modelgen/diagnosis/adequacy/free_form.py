@@ -101,7 +101,7 @@ def free_forms(
             slowest = max(slow, key=lambda form: form.ahead)
             found[joint] = _or_misread(slowest, errors, own, without, most)
             continue
-        found[joint] = _apart(own, without)
+        found[joint] = further_form(own, without)
         if joint is None:
             found[joint] = max(
                 found[joint], _of_pose(selection, most), key=lambda form: form.ahead - form.most
@@ -159,7 +159,7 @@ def _slowest_out(trial: FittedCandidate, j: int, selection: Selection) -> FreeFo
     return FreeForm(-evidence, -threshold(selection.system), slow=True)
 
 
-def _apart(own: Sequence[FittedCandidate], without: System) -> FreeForm:
+def further_form(own: Sequence[FittedCandidate], without: System) -> FreeForm:
     """Delta BIC by which causes are ahead of themselves with a size of their own at each joint that they act
     on; what some records have, with one in each record; a delay, with one for slow motion. Those that act on
     several joints by the law of a fluid, of which arms differ, or by what is a guess, keep one size.

@@ -115,8 +115,10 @@ class FluidDrag(Strips):
 
     @classmethod
     def stands_at(cls, arm: Arm, number: int | None) -> bool:
-        """It stands where the end of links that carry no other is known or can be guessed."""
-        return super().stands_at(arm, number) or _guessed_end(arm) > 0.0
+        """It stands where the end of links that carry no other is known; on the whole arm where it can be
+        guessed too: which link drags is asked of no guess.
+        """
+        return super().stands_at(arm, number) or (number is None and _guessed_end(arm) > 0.0)
 
     @classmethod
     def variants(cls, arm: Arm, number: int | None) -> list[dict[str, float]]:
