@@ -81,7 +81,7 @@ class Call:
         records = _repeated("--train", logs)
         records += _repeated("--test", self.test) if self.train else []
         kept = words_of(self.options, ("mapping", "period"))
-        kept += [] if cutoff is None else ["--cutoff", f"{cutoff:.4g}"]
+        kept += [] if cutoff is None else ["--cutoff", f"{cutoff:.6g}"]
         kept += ["--consistent"] if consistent else []
         return self.command("identify", *records, *kept, "--out", self.beside(out), description=description)
 

@@ -297,7 +297,7 @@ def compared(d: Diagnosis) -> list[str]:
     if banded:
         said.append(
             f"Without an option modelgen identify counts those below {usual:z.4g} Hz, other errors than "
-            f"these: to compare, call modelgen identify --cutoff {cutoff:z.4g}."
+            f"these: to compare, call modelgen identify --cutoff {cutoff:z.6g}."
         )
     if rested:
         numbers = at_joints(d.arm.coordinate_names, [f"{x:z.4g}" for x in rmse])
