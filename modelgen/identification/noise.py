@@ -54,7 +54,7 @@ def noise_of(model: Model, evaluator: Evaluator, records: Sequence[Prepared], th
     return Noise(
         tuple(rms),
         tuple(correlation),
-        tuple(float(gate) for gate in settings.gates),
+        tuple(float(gate) for gate in settings.rest_speeds),
         tuple(float(x) for x in np.sqrt(np.mean(every**2, axis=0))),
         tuple(float(x) for x in np.abs(every).max(axis=0)),
         gain_of(records),

@@ -39,9 +39,9 @@ class Reading:
             return chosen
         gates, noise = (
             tuple(x * times for x, times in zip(values, self.faster, strict=True))
-            for values in (chosen.gates, chosen.noise)
+            for values in (chosen.rest_speeds, chosen.noise)
         )
-        return replace(chosen, gates=gates, noise=noise)
+        return replace(chosen, rest_speeds=gates, noise=noise)
 
 
 def readings(record: Record, fit: Unexplained) -> Iterator[Reading]:

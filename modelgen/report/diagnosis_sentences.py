@@ -45,11 +45,15 @@ def missing(d: Diagnosis) -> list[str]:
     if d.verdict == "suspected":
         clauses = [f"{perhaps(d, c)} ({c.effect})" for c in d.suspects]
         shown = clauses if len(clauses) <= _TITLES else [clauses[0], f"{len(clauses) - 1} more"]
-        share, fit = _explained(d), d.lack_of_fit
-        if fit is None or not fit.found or share >= _PART or np.isnan(share):
+        best, share = _explained(d)
+        fit = d.lack_of_fit
+        if best is None or fit is None or not fit.found or share >= _PART:
             return [f"Nothing can be named; perhaps {listed(shown)}."]
-        where, part = f"something deterministic remains at {_most(d, fit)}", f"{100 * share:.0f} %"
-        return [f"Nothing can be named: {where}, of which {part} is explained if {listed(shown)}."]
+        where = f"something deterministic remains, most at {_most(d, fit)}"
+        what = "that" if len(clauses) == 1 else f"of these {cause_title(d, best)}"
+        there = "" if best.joint is None else f" at {joint_name(d.arm, best.joint)}"
+        part = f"{what} explains {100 * share:.0f} % of what is not noise{there}"
+        return [f"Nothing can be named: {where}; perhaps {listed(shown)}, and {part}."]
     return [_SENTENCES.get(d.verdict) or sentence(d.reason)]
 
 
@@ -168,10 +172,12 @@ def _failing(d: Diagnosis, name: str) -> list[NamedCause]:
     return [c for c in d.causes if any(k.name == name and k.passed is False for k in c.checks)]
 
 
-def _explained(d: Diagnosis) -> float:
-    """The largest share of what is not noise that suspects explain at their joints; nan: not known."""
-    shares = [c.value for s in d.suspects for c in s.checks if c.name == "explains" and c.value is not None]
-    return max(shares, default=float("nan"))
+def _explained(d: Diagnosis) -> tuple[NamedCause | None, float]:
+    """The suspect that explains most of what is not noise at its joints, and that share; None: not known."""
+    shares: list[tuple[NamedCause | None, float]] = [
+        (s, c.value) for s in d.suspects for c in s.checks if c.name == "explains" and c.value is not None
+    ]
+    return max(shares, key=lambda one: one[1], default=(None, float("nan")))
 
 
 def _most(d: Diagnosis, f: LackOfFit) -> str:

@@ -7,14 +7,14 @@ from datetime import UTC, datetime
 from itertools import compress
 
 from modelgen.dataset.recorded import Recorded
-from modelgen.report.page import Grid
+from modelgen.report.page import Grid, Part, Text
 
 BEGINS = "begins (UTC)"
 _HEADS = (("record", "left"), ("use", "left"), ("samples", "right"), ("rate [Hz]", "right"), (BEGINS, "left"))
 _UNDATED = "Their stamps do not count from 1970, and do not say when they were made."
 
 
-def records_table(records: Sequence[Recorded]) -> Grid:
+def records_table(records: Sequence[Recorded]) -> list[Part]:
     """A row for each record; without a column of dates, and a word on that, where none is known."""
     dated = any(x.begins is not None for x in records)
     shown = (True, any(x.use for x in records), True, True, dated)
@@ -22,8 +22,8 @@ def records_table(records: Sequence[Recorded]) -> Grid:
         tuple(compress((x.name, x.use, str(x.samples), f"{x.rate:g}", instant(x.begins)), shown))
         for x in records
     ]
-    title = "Records" if dated else f"Records. {_UNDATED}"
-    return Grid(title, tuple(compress(_HEADS, shown)), rows, folds=True)
+    table = Grid("Records", tuple(compress(_HEADS, shown)), rows, folds=True)
+    return [table] if dated else [table, Text(_UNDATED, "quiet")]
 
 
 def instant(begins: float | None) -> str:

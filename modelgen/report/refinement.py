@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -100,10 +101,15 @@ def report(found: Refinement, call: Call) -> str:
     ]
     columns = [("parameter", "left"), ("start", "right"), ("refined", "right"), ("std", "right")]
     columns += [("moved by std", "right"), ("unit", "left"), ("std in the motion (RMS)", "left")]
+    filled = [any(cells) for cells in zip(*table, strict=True)]
+    shown = [tuple(compress(row, filled)) for row in table]
     sections: Parts = [
         ("Measured against simulated motion", [*_joined(found), block(motion(found))]),
-        ("Parameters", [*_pictured(found), Grid("Parameters", columns, table, folds=True)]),
-        ("The logs", [records_table(found.records)]),
+        (
+            "Parameters",
+            [*_pictured(found), Grid("Parameters", list(compress(columns, filled)), shown, folds=True)],
+        ),
+        ("The logs", records_table(found.records)),
     ]
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
 

@@ -12,7 +12,7 @@ from modelgen.report.page import Command, Part, Run, Text
 from modelgen.report.words import listed, sentence
 
 _RELEASES = 3  # that a diagnosis of free motions needs: a release is not split in two
-_NEAR = "if the simulated motion below is near enough to the measured one all the same"
+_NEAR = "if the simulated motion is near enough to the measured one all the same"
 SAME = 1.01  # of an error, that needs no word
 _LISTED = 6  # parameters by their names
 

@@ -1,4 +1,4 @@
-"""Gates on equations of which everything is known: no arm, no filter, white noise."""
+"""Conditions on equations of which everything is known: no arm, no filter, white noise."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from modelgen.diagnosis.candidates.candidate import Candidate
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.equations.rows import Rows
 from modelgen.diagnosis.evidence.likelihood import not_negative
-from modelgen.diagnosis.validation.conditions import Gates, Judgement
+from modelgen.diagnosis.validation.conditions import Conditions, Judgement
 from modelgen.numeric import Array
 from modelgen.regression.weighted import rmse, weighted_fit
 
@@ -35,7 +35,7 @@ def gains(random: Generator, size: float) -> tuple[float, float, float]:
     gain = system.gain(columns[:2])
     assert gain is not None
     trial = FittedCandidate(Candidate("friction_offset", 1), {}, columns[:2], gain)
-    found = Gates(system, []).judged(trial)
+    found = Conditions(system, []).judged(trial)
     both = [np.concatenate([r.columns, c], axis=2) for r, c in zip(rows, columns, strict=True)]
     left = []
     for tables in ([r.columns for r in rows], both):
@@ -92,7 +92,7 @@ def judged(seed: int, sizes: tuple[float, float]) -> Judgement:
     system = system_of(rows, [r.columns for r in rows], [LONG // 3] * 2)
     gain = system.gain(columns)
     assert gain is not None
-    return Gates(system, []).judged(FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain))
+    return Conditions(system, []).judged(FittedCandidate(Candidate("friction_offset", 1), {}, columns, gain))
 
 
 def test_a_cause_that_one_record_contradicts_is_refused() -> None:
@@ -122,7 +122,7 @@ def play_judged(seed: int, shown: float, there: tuple[float, float]) -> Judgemen
     system = system_of(rows, [r.columns for r in rows], [LONG // 3] * 2)
     gain = system.gain(columns)
     assert gain is not None
-    return Gates(system, []).judged(FittedCandidate(Candidate("backlash", 1), {}, columns, gain))
+    return Conditions(system, []).judged(FittedCandidate(Candidate("backlash", 1), {}, columns, gain))
 
 
 def test_a_record_without_impacts_does_not_speak_against_play() -> None:
@@ -163,7 +163,7 @@ def beside(
         columns = [np.concatenate([c, t], axis=2) for c, t in zip(columns, table, strict=True)]
     if evidence is not None:
         trials[-1] = replace(trials[-1], gain=replace(trials[-1].gain, delta_bic=evidence))
-    return Gates(system, trials[:-1]).judged(trials[-1])
+    return Conditions(system, trials[:-1]).judged(trials[-1])
 
 
 def test_beside_a_fluid_a_cause_is_more_than_its_law_may_leave() -> None:

@@ -28,7 +28,7 @@ def test_rows_count_where_the_coupling_turns(folder: Path) -> None:
     arm = load(folder / "arms.yaml")["arm"]
     prepared = prepare(read(str(folder / "train_a.csv"), arm))
     found = turning(prepared, 2, other=1, ratio=-1.0)
-    slow = np.abs(prepared.dq[:, 1] - prepared.dq[:, 0]) < sum(prepared.settings.gates)
+    slow = np.abs(prepared.dq[:, 1] - prepared.dq[:, 0]) < sum(prepared.settings.rest_speeds)
     assert (found[:, 0] == found[:, 1]).all()
     assert not slow[prepared.rows[found[:, 0]]].any()
     rests = prepared.time[slow]  # as far as the filter of the equations reaches, it mixes in what rests

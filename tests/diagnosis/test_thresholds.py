@@ -43,7 +43,7 @@ from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.compliance import member
 from modelgen.diagnosis.selection.rivals import ambiguity_set, lesser_rivals, needed_behind
 from modelgen.diagnosis.selection.stepwise import least_evidence, threshold
-from modelgen.diagnosis.validation.conditions import Gates, Judgement
+from modelgen.diagnosis.validation.conditions import Conditions, Judgement
 from modelgen.functions import build_model
 from modelgen.thresholds import Value
 
@@ -201,14 +201,14 @@ def judged(
     gain = system.gain(columns)
     assert gain is not None
     trial = FittedCandidate(Candidate(effect, 1), {}, columns, gain)
-    return Gates(system, []).judged(trial).refused
+    return Conditions(system, []).judged(trial).refused
 
 
 def least_gain(
     limits: Thresholds, effect: str, *before: str, delta_bic: float = 8.0, repeat: bool = True
 ) -> Any:
     """Percent that a cause must gain beside others."""
-    gates = Gates(System(known(limits, repeat=repeat)), [])
+    gates = Conditions(System(known(limits, repeat=repeat)), [])
     gates.before = [valued(50.0, name) for name in before]
     return gates._least(valued(delta_bic, effect))
 
@@ -219,7 +219,7 @@ def formed(limits: Thresholds, effect: str) -> Any:
     trial = law(equations, lambda x: np.ones(len(x)), effect)
     tables = with_columns(equations, trial)
     other = Candidate("presliding" if effect == "stribeck_friction" else "spring", 1)
-    return Gates(System(equations, tables), [trial]).forms.least(other).tolist()
+    return Conditions(System(equations, tables), [trial]).forms.least(other).tolist()
 
 
 def evident(limits: Thresholds, effect: str = "friction_offset", rank: int = 2) -> Any:

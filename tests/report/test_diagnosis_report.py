@@ -707,8 +707,8 @@ def test_a_suspect_that_explains_little_is_not_what_is_missing(found: Diagnosis)
     assert headline(replace(d, lack_of_fit=left)).startswith("Nothing can be named; perhaps ")
     checks = tuple(replace(c, value=0.11) if c.name == "explains" else c for c in suspect.checks)
     small = headline(replace(d, lack_of_fit=left, suspects=(replace(suspect, checks=checks),)))
-    assert small.startswith("Nothing can be named: something deterministic remains at j2, ")
-    assert "of which 11 % is explained if " in small
+    assert small.startswith("Nothing can be named: something deterministic remains, most at j2")
+    assert small.endswith(", and that explains 11 % of what is not noise at j2.")
 
 
 def test_no_code_is_made_of_values_that_no_arm_has(found: Diagnosis) -> None:

@@ -37,7 +37,7 @@ from modelgen.diagnosis.selection.backward import backward_elimination
 from modelgen.diagnosis.selection.cause import Cause, Selection
 from modelgen.diagnosis.selection.history import Ranked
 from modelgen.diagnosis.selection.refit import refit
-from modelgen.diagnosis.validation.conditions import Gates, Judgement, instrumented
+from modelgen.diagnosis.validation.conditions import Conditions, Judgement, instrumented
 from modelgen.excitation.problem import problem
 from modelgen.functions import build_model
 from modelgen.jobs import HERE
@@ -83,7 +83,7 @@ def gates(limits: Thresholds, count: int = 2, *, repeat: bool = True, blur: floa
         rows += made(lambda x: 0.4 * constant(x), seed)[0]
         periods += periods[:2]
     equations = replace(equations, rows=rows, periods=periods, blur=np.array([blur]))
-    return Gates(System(equations), []).judged(law(equations, constant))
+    return Conditions(System(equations), []).judged(law(equations, constant))
 
 
 def faint_in_one(limits: Thresholds) -> bool:
@@ -91,7 +91,7 @@ def faint_in_one(limits: Thresholds) -> bool:
     equations = known(limits)
     trial = law(equations, np.sign, "backlash")
     first, second = trial.columns
-    return Gates(System(equations), [])._somewhere(replace(trial, columns=[0.25 * first, second]))
+    return Conditions(System(equations), [])._somewhere(replace(trial, columns=[0.25 * first, second]))
 
 
 def at_first_joint(equations: Equations, columns: Sequence[Array]) -> FittedCandidate:

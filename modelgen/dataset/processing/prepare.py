@@ -229,7 +229,7 @@ def _awake(record: Record, dq: Array, chosen: Chosen) -> np.ndarray:
         apart = math.ceil(rate / chosen.position_cutoff) if chosen.position_cutoff else 1
         awake &= ~beside_turns(dq, limits.turning_periods * (2.0 if between else 1.0), apart)
     for part in () if record.arm is None else couplings_of(record.arm):
-        own = replace(chosen, gates=(part.gate(chosen.gates),))
+        own = replace(chosen, rest_speeds=(part.gate(chosen.rest_speeds),))
         awake[:, [part.one, part.other]] &= samples_away_from_rest(part.speed(dq), own, rate)
     return awake
 

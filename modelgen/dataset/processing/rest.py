@@ -17,7 +17,7 @@ def moving_samples(dq: Array, rows: np.ndarray, settings: Chosen, rate: float) -
     reversal passes faster. A row counts as moving where its own speed is above that and the parallel filter
     has drawn no more than a fiftieth of its weight from samples at rest.
     """
-    slow = np.abs(dq) < np.array(settings.gates)
+    slow = np.abs(dq) < np.array(settings.rest_speeds)
     rest = _resting(slow, settings.rest_time * rate)
     moving = ~slow[rows]
     resting = np.flatnonzero(rest.any(axis=0))
@@ -32,7 +32,7 @@ def samples_away_from_rest(dq: Array, settings: Chosen, rate: float) -> np.ndarr
     """Samples (N, n) where the joint does not rest, be it for a moment, nor stops or starts, for longer, so
     near that the filters of its position blend both.
     """
-    slow = np.abs(dq) < np.array(settings.gates)
+    slow = np.abs(dq) < np.array(settings.rest_speeds)
     moment, reach = settings.rest_time, settings.half_width
     if settings.cutoff:
         moment = min(moment, settings.thresholds.short_rest_cutoff_periods / settings.cutoff)

@@ -58,7 +58,7 @@ class Chosen:
     half_width: int
     factor: int
     trim: float
-    gates: tuple[float, ...]
+    rest_speeds: tuple[float, ...]
     rest_time: float
     noise: tuple[float, ...]
     edge: float
@@ -154,7 +154,7 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         half_width=settings.half_width,
         factor=factor,
         trim=trim,
-        gates=gates,
+        rest_speeds=gates,
         rest_time=time,
         noise=tuple(np.max([n.speeds for n in noise], axis=0).tolist()),
         edge=1.0 / (position or 0.5 * rate) if noisy else 0.0,

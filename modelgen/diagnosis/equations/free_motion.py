@@ -25,12 +25,12 @@ def settings_of_swings(records: Sequence[Record], settings: Settings, limits: Eq
     for ratio in limits.position_cutoff_ratios:
         wide = replace(settings, position_cutoff=ratio * (settings.cutoff or 0.0))
         if ratio * (settings.cutoff or 0.0) < limits.max_position_cutoff * rate:
-            gates, noise = choose(list(records), wide).gates, times * noise_of_speeds(records, wide)
+            gates, noise = choose(list(records), wide).rest_speeds, times * noise_of_speeds(records, wide)
             if all(x < limits.max_noise_over_rest_speed * g for g, x in zip(gates, noise, strict=True)):
                 break
     else:
         wide = settings
-        gates, noise = choose(list(records), wide).gates, times * noise_of_speeds(records, wide)
+        gates, noise = choose(list(records), wide).rest_speeds, times * noise_of_speeds(records, wide)
     return replace(wide, rest_gate=tuple(max(g, float(x)) for g, x in zip(gates, noise, strict=True)))
 
 
@@ -55,7 +55,7 @@ def released(record: Record, settings: Settings) -> Record:
     Raises InputError where no joint moves.
     """
     p = prepare(record, settings)
-    moves = np.asarray((np.abs(p.dq) >= np.asarray(p.settings.gates)).any(axis=1))
+    moves = np.asarray((np.abs(p.dq) >= np.asarray(p.settings.rest_speeds)).any(axis=1))
     least = max(1, round(0.5 / ((p.settings.cutoff or 1.0) * record.step)))
     moving = np.flatnonzero(long_runs(moves, least))
     if not len(moving):
@@ -68,7 +68,7 @@ def away_from_rest(p: Prepared) -> Prepared:
     step = p.record.step
     longest, reach = max(2, round(p.settings.rest_time / step)), p.settings.trimmed(step)
     kept = p.moving.copy()
-    for j, gate in enumerate(p.settings.gates):
+    for j, gate in enumerate(p.settings.rest_speeds):
         rest = long_runs(np.abs(p.dq[:, j]) < gate, longest)
         kept[:, j] &= ~binary_dilation(rest, iterations=reach)[p.rows]
     return replace(p, moving=kept)

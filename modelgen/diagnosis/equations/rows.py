@@ -118,7 +118,7 @@ def turning(prepared: Prepared, joint: int, other: int, ratio: float) -> NDArray
 
 
 def _turning(part: Coupling, prepared: Prepared) -> NDArray[np.bool_]:
-    own = replace(prepared.settings, gates=(part.gate(prepared.settings.gates),))
+    own = replace(prepared.settings, rest_speeds=(part.gate(prepared.settings.rest_speeds),))
     speed, rate = part.speed(prepared.dq), 1.0 / prepared.record.step
     found = np.ones((len(prepared.rows), prepared.n), dtype=bool)
     found[:, [part.one, part.other]] = moving_samples(speed, prepared.rows, own, rate)

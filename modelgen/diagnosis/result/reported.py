@@ -210,7 +210,7 @@ def _settings(study: Study, decision: Decision, selection: Selection, options: O
         "cutoff_hz": chosen.cutoff,
         "position_cutoff_hz": chosen.position_cutoff,
         "factor": chosen.factor,
-        "rest_speeds": [float(f"{gate:.6g}") for gate in chosen.gates],
+        "rest_speeds": [float(f"{gate:.6g}") for gate in chosen.rest_speeds],
         "period_s": [None if p is None else float(f"{p * r.step:.9g}") for p, r in periods],
         "evidence_threshold": threshold(selection.system),
         "simulated_window_s": None

@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.diagnosis.candidates import FittedCandidate, beside, system_of
 from modelgen.diagnosis.evidence import System, whitened_fit
 from modelgen.diagnosis.selection.cause import Cause
-from modelgen.diagnosis.validation import Gates
+from modelgen.diagnosis.validation import Conditions
 
 
 def backward_elimination(causes: list[Cause], system: System, evidence: float) -> tuple[list[Cause], System]:
@@ -32,8 +32,10 @@ def backward_elimination(causes: list[Cause], system: System, evidence: float) -
             signs = _least_values(causes, system)
             worst = int(np.argmin(signs))
             if signs[worst] >= -most:
-                gates = [Gates(s, others, last=True) for others, s in zip(rest, without, strict=True)]
-                gains = [_gain(c.trial, g) for c, g in zip(causes, gates, strict=True)]
+                conditions = [
+                    Conditions(s, others, last=True) for others, s in zip(rest, without, strict=True)
+                ]
+                gains = [_gain(c.trial, g) for c, g in zip(causes, conditions, strict=True)]
                 worst = int(np.argmin(gains))
                 if gains[worst] > 0.0:
                     break
@@ -46,15 +48,15 @@ def measured(cause: Cause, causes: Sequence[Cause], system: System) -> Cause:
     """The cause with its evidence and gains beside all others. system: with all of them."""
     others = [c.trial for c in causes if c is not cause]
     without = system_of(system.equations, others)
-    by = Gates(without, others, last=True).judged(cause.trial)
+    by = Conditions(without, others, last=True).judged(cause.trial)
     return replace(
         cause, delta_bic=_worth(cause.trial, without), cross_gain=by.gain, expected_gain=by.expected
     )
 
 
-def _gain(trial: FittedCandidate, gates: Gates) -> float:
+def _gain(trial: FittedCandidate, conditions: Conditions) -> float:
     """Expected gain given all others, in percent; zero where a gate stays shut."""
-    found = gates.judged(trial)
+    found = conditions.judged(trial)
     return 0.0 if found.refused else max(found.expected, found.gain)
 
 

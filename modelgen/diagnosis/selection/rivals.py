@@ -14,7 +14,7 @@ from modelgen.diagnosis.options.thresholds import SelectionThresholds
 from modelgen.diagnosis.selection.cause import Cause
 from modelgen.diagnosis.selection.compliance import Judged, alternatives
 from modelgen.diagnosis.selection.marginality import varied
-from modelgen.diagnosis.validation import Gates
+from modelgen.diagnosis.validation import Conditions
 
 Rival = tuple[FittedCandidate, float]  # and by how much delta BIC it is behind
 
@@ -37,15 +37,17 @@ def rivals_of(chosen: Judged, eligible: Sequence[Judged], system: System) -> lis
     return found
 
 
-def lesser_rivals(best: FittedCandidate, faint: Sequence[FittedCandidate], gates: Gates) -> list[Rival]:
+def lesser_rivals(
+    best: FittedCandidate, faint: Sequence[FittedCandidate], conditions: Conditions
+) -> list[Rival]:
     """Rivals of the best that cannot be named themselves and may be what is there all the same: of too little
     evidence, where the best has little more.
     """
-    most = gates.equations.thresholds.selection.rival_margin_bic
+    most = conditions.equations.thresholds.selection.rival_margin_bic
     behind = [(t, best.gain.delta_bic - t.gain.delta_bic) for t in faint]
     others = [(t, by) for t, by in behind if by <= most and t.candidate != best.candidate]
     near = [(t, max(0.0, by)) for t, by in others if not varied(t.candidate, best.candidate)]
-    return [(t, by) for t, by in near if not gates.judged(t).refused]
+    return [(t, by) for t, by in near if not conditions.judged(t).refused]
 
 
 def ambiguity_set(causes: Sequence[Cause], system: System) -> list[Cause]:

@@ -34,7 +34,7 @@ from modelgen.diagnosis.selection.history import (
 from modelgen.diagnosis.selection.marginality import constant_first
 from modelgen.diagnosis.selection.refit import refit
 from modelgen.diagnosis.selection.rivals import ambiguity_set, given_way, lesser_rivals, rivals_of
-from modelgen.diagnosis.validation import Gates, instrumented
+from modelgen.diagnosis.validation import Conditions, instrumented
 from modelgen.jobs import HERE, Where
 
 Report = Callable[[str, int, int], None]
@@ -98,8 +98,8 @@ class _Steps:
         """Take the best candidate that passes every gate; False where none does."""
         trials, faint, astray, ranking = self._fitted()
         settled = refined(trials, astray, self.causes, self.system, self.where)
-        gates = Gates(self.system, self.trials)
-        judged = self._judged(sorted([*trials, *settled], key=lambda t: -t.odds), gates)
+        conditions = Conditions(self.system, self.trials)
+        judged = self._judged(sorted([*trials, *settled], key=lambda t: -t.odds), conditions)
         ranking += [ranked(t, by, by.refused) for t, by in judged]
         eligible = [pair for pair in judged if not pair[1].refused]
         if not eligible:
@@ -107,7 +107,7 @@ class _Steps:
             return False
         best, by = constant_first(member(eligible[0], eligible, self.equations.thresholds), eligible)
         self.turns.append(best_of_each(ranking, best.candidate.place))
-        rivals, lesser = rivals_of((best, by), eligible, self.system), lesser_rivals(best, faint, gates)
+        rivals, lesser = rivals_of((best, by), eligible, self.system), lesser_rivals(best, faint, conditions)
         own = [t for t in settled if t.candidate == best.candidate]
         self.causes.append(
             Cause((own or [best])[0], best.gain.delta_bic, by.gain, by.expected, rivals, lesser)
@@ -158,13 +158,13 @@ class _Steps:
             t.candidate.joint for t in self.trials if t.candidate.effect == c.effect
         }
 
-    def _judged(self, trials: Sequence[FittedCandidate], gates: Gates) -> list[Judged]:
-        """Judge the trials by the gates; some of those that pass give way to others."""
+    def _judged(self, trials: Sequence[FittedCandidate], conditions: Conditions) -> list[Judged]:
+        """Judge the trials by the conditions; some of those that pass give way to others."""
         priced = self.stepped or harmless(self.equations, mean_squares(self.system))
         noisy = not priced and correlated(self.system)
         found: list[Judged] = []
         for t in trials:
-            by = gates.judged(t)
+            by = conditions.judged(t)
             # behind an elastic joint a link swings otherwise in every period, as errors do
             if (
                 noisy

@@ -2,7 +2,7 @@
 
 from modelgen.diagnosis.validation.agreement import agreement
 from modelgen.diagnosis.validation.check import Check
-from modelgen.diagnosis.validation.conditions import Gates, Judgement, instrumented
+from modelgen.diagnosis.validation.conditions import Conditions, Judgement, instrumented
 from modelgen.diagnosis.validation.cross_validation import Part, Split, folds
 
-__all__ = ["Check", "Gates", "Judgement", "Part", "Split", "agreement", "folds", "instrumented"]
+__all__ = ["Check", "Conditions", "Judgement", "Part", "Split", "agreement", "folds", "instrumented"]

@@ -35,7 +35,7 @@ class Judgement:
     refused: str
 
 
-class Gates:
+class Conditions:
     """Validation at one step of the selection.
 
     system: with the causes that were chosen `before`; last: what is judged was chosen before those, which
