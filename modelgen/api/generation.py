@@ -79,7 +79,7 @@ class Generated(Shown):
         columns = {
             "arm": "left",
             "joints": "right",
-            "standard\n→ base": "right",
+            "param.\n→ base": "right",
             "inverse\ndynamics": "right",
             "files": "right",
         }

@@ -228,7 +228,7 @@ def identify(
 
 def _of_logs(o: Outcome) -> list[Part]:
     """What the page says of the logs."""
-    return [Lines(_processing(o, every=True)), *records_table(o.log.recorded())]
+    return [Lines(_processing(o, every=True)), records_table(o.log.recorded())]
 
 
 def _processing(o: Outcome, *, every: bool = False) -> list[str]:

@@ -102,7 +102,7 @@ def report(arm: Arm, c: Calibration, call: Call) -> str:
     sections: Parts = [
         ("Values", _pictured(c)),
         ("Measured angles and both levers", [block(charts(arm, c))]),
-        *([("The log", records_table([c.record]))] if c.record else []),
+        *([("The log", [records_table([c.record])])] if c.record else []),
     ]
     return page(f"{arm.name}: lever of {name}", "Calibration", answers, sections)
 

@@ -209,7 +209,7 @@ def _files(d: Diagnosis) -> list[Part]:
     ]
     model = "extended model" if d.causes else "model"
     tables = [
-        *records_table(d.log.recorded()),
+        records_table(d.log.recorded()),
         Grid("Settings", (("setting", "left"), ("value", "left")), settings),
     ]
     return [

@@ -45,15 +45,13 @@ def missing(d: Diagnosis) -> list[str]:
     if d.verdict == "suspected":
         clauses = [f"{perhaps(d, c)} ({c.effect})" for c in d.suspects]
         shown = clauses if len(clauses) <= _TITLES else [clauses[0], f"{len(clauses) - 1} more"]
-        best, share = _explained(d)
-        fit = d.lack_of_fit
+        (best, share), fit = _explained(d), d.lack_of_fit
         if best is None or fit is None or not fit.found or share >= _PART:
             return [f"Nothing can be named; perhaps {listed(shown)}."]
         where = f"something deterministic remains, most at {_most(d, fit)}"
         what = "that" if len(clauses) == 1 else f"of these {cause_title(d, best)}"
-        there = "" if best.joint is None else f" at {joint_name(d.arm, best.joint)}"
-        part = f"{what} explains {100 * share:.0f} % of what is not noise{there}"
-        return [f"Nothing can be named: {where}; perhaps {listed(shown)}, and {part}."]
+        part = f"{100 * share:.0f} % of what is not noise at {place_of(d.arm, best.joint)}"
+        return [f"Nothing can be named: {where}; perhaps {listed(shown)}, and {what} explains {part}."]
     return [_SENTENCES.get(d.verdict) or sentence(d.reason)]
 
 
@@ -174,10 +172,8 @@ def _failing(d: Diagnosis, name: str) -> list[NamedCause]:
 
 def _explained(d: Diagnosis) -> tuple[NamedCause | None, float]:
     """The suspect that explains most of what is not noise at its joints, and that share; None: not known."""
-    shares: list[tuple[NamedCause | None, float]] = [
-        (s, c.value) for s in d.suspects for c in s.checks if c.name == "explains" and c.value is not None
-    ]
-    return max(shares, key=lambda one: one[1], default=(None, float("nan")))
+    asked = [(s, c.value) for s in d.suspects for c in s.checks if c.name == "explains"]
+    return max((one for one in asked if not np.isnan(one[1])), key=lambda one: one[1], default=(None, np.nan))
 
 
 def _most(d: Diagnosis, f: LackOfFit) -> str:

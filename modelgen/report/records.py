@@ -7,14 +7,15 @@ from datetime import UTC, datetime
 from itertools import compress
 
 from modelgen.dataset.recorded import Recorded
-from modelgen.report.page import Grid, Part, Text
+from modelgen.report.page import Grid
 
 BEGINS = "begins (UTC)"
 _HEADS = (("record", "left"), ("use", "left"), ("samples", "right"), ("rate [Hz]", "right"), (BEGINS, "left"))
+_NO_DATE = "record, undated"
 _UNDATED = "Their stamps do not count from 1970, and do not say when they were made."
 
 
-def records_table(records: Sequence[Recorded]) -> list[Part]:
+def records_table(records: Sequence[Recorded]) -> Grid:
     """A row for each record; without a column of dates, and a word on that, where none is known."""
     dated = any(x.begins is not None for x in records)
     shown = (True, any(x.use for x in records), True, True, dated)
@@ -22,8 +23,10 @@ def records_table(records: Sequence[Recorded]) -> list[Part]:
         tuple(compress((x.name, x.use, str(x.samples), f"{x.rate:g}", instant(x.begins)), shown))
         for x in records
     ]
-    table = Grid("Records", tuple(compress(_HEADS, shown)), rows, folds=True)
-    return [table] if dated else [table, Text(_UNDATED, "quiet")]
+    heads = list(compress(_HEADS, shown))
+    if dated:
+        return Grid("Records", heads, rows, folds=True)
+    return Grid(f"Records. {_UNDATED}", [(_NO_DATE, "left"), *heads[1:]], rows, folds=True)
 
 
 def instant(begins: float | None) -> str:

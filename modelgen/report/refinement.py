@@ -109,7 +109,7 @@ def report(found: Refinement, call: Call) -> str:
             "Parameters",
             [*_pictured(found), Grid("Parameters", list(compress(columns, filled)), shown, folds=True)],
         ),
-        ("The logs", records_table(found.records)),
+        ("The logs", [records_table(found.records)]),
     ]
     return page(f"{name}: refined parameters", "Refinement", answers, sections)
 

@@ -25,7 +25,7 @@ def test_a_table_of_records_has_dates_where_one_is_known() -> None:
     assert dated.rows == [("a.csv", "train", "100", "250", SAID), ("b.csv", "test", "10", "250", "")]
     plain = records_table([replace(x, begins=None, use="") for x in some])
     assert "do not say when they were made" in plain.caption
-    assert [head for head, _ in plain.heads] == ["record", "samples", "rate [Hz]"]
+    assert [head for head, _ in plain.heads] == ["record, undated", "samples", "rate [Hz]"]
     assert of_stamps("c", np.arange(5) / 250.0, None).rate == pytest.approx(250.0)
 
 
