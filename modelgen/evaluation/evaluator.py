@@ -181,31 +181,31 @@ class Evaluator:
         if joint is not None and at_link(motion, joint):
             return self.link_side.added(joint, motion, dict(values), parameters)
         e = self._alone(effect, joint, values)
-        if (e, "added") not in self._made:
-            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
-        call = self._made[e, "added"]
+        call = self._with_links(e)
         if joint is not None:
             parameters = self._carried(joint, motion, parameters)
         found = self._run(call, e, call.function, motion, values, parameters)
         return found - self._links(motion, links_alone(self.arm, self.base, joint, parameters))
 
-    def ringing(
-        self, effect: str, joint: int, motion: Motion, values: Values, parameters: Array, seconds: float
-    ) -> Array:
-        """Inputs (N, n, 2) by which an elastic joint at a measured motor rings from a motion's begin on, for
-        so long: per unit of a further lag of its link there, and of a rate of that.
+    def _with_links(self, e: Equations) -> NumpyFunction:
+        if (e, "added") not in self._made:
+            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
+        return self._made[e, "added"]
+
+    def ringing(self, effect: str, joint: int, motion: Motion, values: Values, parameters: Array) -> Array:
+        """Inputs (N, n, 2) by which an elastic joint at a measured motor rings in `Motion.beginning`: per
+        unit of a further lag of its link at the begin, and of a rate of that.
         """
-        self.contribution(effect, joint, motion, values, parameters)  # where it can stand
-        e, part = self._alone(effect, joint, values), motion.until(max(2, round(seconds / motion.step)))
-        call, parameters = self._made[e, "added"], self._carried(joint, motion, parameters)
+        e, part = self._alone(effect, joint, values), motion.beginning
+        call, parameters = self._with_links(e), self._carried(joint, motion, parameters)
 
         def added(push: Array) -> Array:
             return self._run(call, e, call.function, part, values, parameters, push)
 
-        own, found = self._series[e], np.zeros((*motion.q.shape, 2))
-        pushes = TOUCH * np.eye(len(e.state_names()))[[own.lags[0], own.rates[0]]]
-        rung = [(added(push) - added(0.0 * push)) / TOUCH for push in pushes]
-        found[: len(part.t)] = np.stack(rung, axis=2)
+        still, found = added(np.zeros(len(e.state_names()))), np.zeros((*motion.q.shape, 2))
+        places = [self._series[e].lags[0], self._series[e].rates[0]]
+        pushes = TOUCH * np.eye(len(e.state_names()))[places]
+        found[: len(part.t)] = np.stack([(added(push) - still) / TOUCH for push in pushes], axis=2)
         return found
 
     def _by_change(

@@ -18,6 +18,7 @@ from modelgen.numeric import Array
 
 # An implicit midpoint rule makes what rings at f slower by (pi f step)^2 / 3: 0.8 % at 10 Hz in FINE steps.
 FINE = 0.005  # s
+RINGING = 10.0  # s, in which what a motion begins with has rung down
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,10 @@ class Motion:
         """The motion at these samples alone, one by one."""
         return Motion(self.t[samples], self.q[samples], self.dq[samples], self.ddq[samples])
 
-    def until(self, count: int) -> Motion:
-        """Its first samples, so many."""
+    @cached_property
+    def beginning(self) -> Motion:
+        """Its first `RINGING` seconds."""
+        count = max(2, round(RINGING / self.step))
         tables = {name: getattr(self, name)[:count] for name in ("t", "q", "dq", "ddq")}
         return replace(self, **tables, before=None)
 

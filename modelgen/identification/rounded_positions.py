@@ -38,7 +38,7 @@ def with_rounded_positions(
         return solution
     first, moves = regression.as_in(solution).least_squares(), list[Array]()
     for seed in range(DRAWS):
-        again = [replace(prepare(rounded_anew(p, seed), p.settings), awake=p.awake) for p in train]
+        again = [prepared_anew(p, seed) for p in train]
         rows = regression_of(evaluator, model, again, solution.theta, added)
         found = replace(rows, moving=regression.moving).as_in(solution).least_squares()
         moves.append((found - first) / np.sqrt(DRAWS))
@@ -51,6 +51,11 @@ def _motion(p: Prepared) -> Array:
     if 0.0 < own <= quiet or np.isinf(quiet):
         return p.q.copy()
     return low_pass(p.record.q, quiet, 1.0 / p.record.step, p.settings.position_order)
+
+
+def prepared_anew(p: Prepared, seed: int) -> Prepared:
+    """The record with its positions rounded once more, prepared alike: joints rest where they did."""
+    return replace(prepare(rounded_anew(p, seed), p.settings), awake=p.awake)
 
 
 def rounded_anew(p: Prepared, seed: int) -> Record:

@@ -42,7 +42,7 @@ CONSTANTS = {
     "adequacy/free_form.py": {"SLOW_ROWS": SPLIT},
     "adequacy/log_delay.py": {"ROUNDS": ACCURACY, "NARROWER": ACCURACY},
     "candidates/candidate.py": {"NEAR": ACCURACY},
-    "candidates/columns.py": {"RINGING": BUDGET, "TAIL": ROUNDING},
+    "candidates/columns.py": {"TAIL": ROUNDING},
     "candidates/periodogram.py": {"MANY": BUDGET, "PLACES": ACCURACY},
     "candidates/search.py": {
         "REFINEMENTS": ACCURACY,

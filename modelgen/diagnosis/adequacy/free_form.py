@@ -63,6 +63,11 @@ class FreeForm:
     error: bool = False
 
     @property
+    def beyond(self) -> float:
+        """Delta BIC by which it is farther ahead than it may be."""
+        return self.ahead - self.most
+
+    @property
     def as_good(self) -> bool:
         """Whether nothing speaks for the laws that the function does not have."""
         return self.ahead > self.most
@@ -103,9 +108,7 @@ def free_forms(
             continue
         found[joint] = further_form(own, without)
         if joint is None:
-            found[joint] = max(
-                found[joint], _of_pose(selection, most), key=lambda form: form.ahead - form.most
-            )
+            found[joint] = max(found[joint], _of_pose(selection, most), key=lambda form: form.beyond)
             continue
         rest = 0.0  # of the series, which is no other cause
         if any(t.candidate.definition.series for t in own):
@@ -116,7 +119,7 @@ def free_forms(
         shapes = [*shapes_at(joint - 1, equations), *further, *by_inputs]
         by, shape = ahead(shapes, own, without)
         free = FreeForm(by - rest, most, what=shape.text)
-        form = max(free, found[joint], key=lambda form: form.ahead - form.most)
+        form = max(free, found[joint], key=lambda form: form.beyond)
         found[joint] = _or_misread(form, errors, own, without, most)
     return found
 
@@ -175,7 +178,7 @@ def further_form(own: Sequence[FittedCandidate], without: System) -> FreeForm:
         if gain is not None:
             found.append(FreeForm(gain.delta_bic - alone, most, apart=True))
     found += [_slowly(t, without) for t in own if t.delay is not None]
-    return max(found, key=lambda form: form.ahead - form.most)
+    return max(found, key=lambda form: form.beyond)
 
 
 def _slowly(delay: FittedCandidate, without: System) -> FreeForm:

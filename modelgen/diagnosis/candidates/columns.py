@@ -17,7 +17,6 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator, Motion
 from modelgen.numeric import Array
 
-RINGING = 10.0  # s, from a record's begin on
 TAIL = 1e-6  # of the largest of all records: less is rounding
 
 
@@ -107,7 +106,7 @@ def _begun(
     if at_links(c.joint, [r]):
         return none
     given = c.definition.physical({**c.fixed, **values})
-    rings = r.filtered(evaluator.ringing(c.effect, c.joint, r.motion, given, base, RINGING))
+    rings = r.filtered(evaluator.ringing(c.effect, c.joint, r.motion, given, base))
     rigid = r.filtered(evaluator.inputs(r.motion, base)[:, :, None])[:, :, 0]
     moving = r.moving[:, j]
     left, own = (effort - rigid)[moving, j], rings[moving, j]

@@ -13,7 +13,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from modelgen.dataset import prepare
 from modelgen.dataset.processing.rounding import position_steps
 from modelgen.diagnosis.candidates import FittedCandidate, beside, system_of
 from modelgen.diagnosis.equations import Equations, described_by
@@ -23,7 +22,7 @@ from modelgen.diagnosis.selection import Selection, Spread, best_beside, effort_
 from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
 from modelgen.functions.nominal import factor_value
-from modelgen.identification.rounded_positions import rounded_anew
+from modelgen.identification.rounded_positions import prepared_anew
 from modelgen.numeric import Array
 
 STEP = 0.1  # of an inertia, over which slopes are taken
@@ -37,14 +36,14 @@ def with_elastic_doubt(
 
     split: inertia of the drives, by the number of the joint, that was split from the links'.
     """
-    causes, late = list(spread.causes), None
-    for k, cause in enumerate(selection.causes):
-        trial, joint = cause.trial, cause.trial.candidate.joint
-        if joint is None or not smooth(trial, equations):
-            continue
-        others = [c.trial for c in selection.causes if c is not cause]
-        late = late or _by_instant(selection, equations)
-        theta = selection.system.theta[: equations.unknowns]
+    trials, causes = [c.trial for c in selection.causes], list(spread.causes)
+    elastic = [k for k, trial in enumerate(trials) if smooth(trial, equations)]
+    late = _by_instant(selection, equations) if elastic else []
+    theta = selection.system.theta[: equations.unknowns]
+    for k in elastic:
+        trial, joint = trials[k], trials[k].candidate.joint
+        assert joint is not None
+        others = [t for t in trials if t is not trial]
         doubts = [late[k], _by_rounding(trial, others, equations, theta)]
         known = _known(joint, selection, equations, split.get(joint))
         if known is not None:
@@ -64,10 +63,10 @@ def _by_rounding(
     """
     if not any(position_steps(r.prepared.record).any() for r in equations.rows):
         return {}
-    rows = []
-    for r in equations.rows:
-        again = replace(prepare(rounded_anew(r.prepared, 0), r.prepared.settings), awake=r.prepared.awake)
-        rows.append(replace(equations.of_record(again, theta), moving=r.moving))
+    rows = [
+        replace(equations.of_record(prepared_anew(r.prepared, 0), theta), moving=r.moving)
+        for r in equations.rows
+    ]
     found = best_beside(trial, [trial.values], others, equations.with_rows(rows))
     return {} if found is None else _apart(trial, found)
 

@@ -55,7 +55,7 @@ def measured(cause: Cause, causes: Sequence[Cause], system: System) -> Cause:
 
 
 def _gain(trial: FittedCandidate, conditions: Conditions) -> float:
-    """Expected gain given all others, in percent; zero where a gate stays shut."""
+    """Expected gain given all others, in percent; zero where one of them fails."""
     found = conditions.judged(trial)
     return 0.0 if found.refused else max(found.expected, found.gain)
 
