@@ -5,6 +5,9 @@ from __future__ import annotations
 from importlib.resources import files
 from pathlib import Path
 
+# Of a checkout, of what does not stand at its top.
+_FOLDERS = {"sizes.json": "benchmarks", "gallery": "docs", "gallery.jsonl": "tests/hidden/runs"}
+
 
 def templates_folder() -> Path:
     """Folder of the Jinja templates.
@@ -38,11 +41,12 @@ def shipped_sizes() -> Path | None:
         return None
 
 
-def gallery() -> Path | None:
-    """The gallery of effects as a page, where `make docs` has built it; None elsewhere."""
-    checkout = Path(str(files("modelgen"))).parent
-    page = checkout / "build" / "docs" / "gallery.html"
-    return page if (checkout / "pyproject.toml").is_file() and page.is_file() else None
+def gallery() -> tuple[Path, Path] | None:
+    """Folder of the gallery's pictures, and what its records showed; None where they are not at hand."""
+    try:
+        return _find("gallery"), _find("gallery.jsonl")
+    except FileNotFoundError:
+        return None
 
 
 def default_effects() -> tuple[str, ...]:
@@ -56,7 +60,7 @@ def _find(name: str) -> Path:
     checkout = package.parent
     # The checkout comes first: an editable installation leaves a copy that ages. pyproject.toml tells it
     # from a site-packages folder, where `templates` may belong to somebody else.
-    beside = checkout / ("benchmarks" if name == "sizes.json" else "") / name
+    beside = checkout / _FOLDERS.get(name, "") / name
     candidates = [beside] if (checkout / "pyproject.toml").is_file() else []
     candidates.append(package / f"_{name}")
     for path in candidates:

@@ -80,7 +80,7 @@ class Generated(Shown):
             "arm": "left",
             "joints": "right",
             "param.\n→ base": "right",
-            "inverse\ndynamics": "right",
+            "oper. of\ninverse\ndynamics": "right",
             "files": "right",
         }
         return [Table("", columns, rows, ("arm",))]

@@ -4,7 +4,7 @@ from modelgen.charts.chart import ROLES, Band, Chart, Curve, labels, over_time, 
 from modelgen.charts.drawn import drawn
 from modelgen.charts.intervals import Interval, intervals
 from modelgen.charts.paths import mark
-from modelgen.charts.sheet import sheet
+from modelgen.charts.sheet import chart_of, sheet
 from modelgen.charts.ticks import apart, at_joints, in_percent, known, number, sized, ticks
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Interval",
     "apart",
     "at_joints",
+    "chart_of",
     "drawn",
     "in_percent",
     "intervals",

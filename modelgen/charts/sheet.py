@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
-from html import escape
+from html import escape, unescape
 
 from modelgen.charts.chart import Chart, labels
 from modelgen.charts.drawn import HEIGHT, WIDTH, drawn
@@ -11,6 +12,7 @@ from modelgen.charts.paths import mark
 from modelgen.resources import templates_folder
 
 _LETTER, _LINE, _STRIP, _TITLE = 6.8, 18, 8, 18
+_ENTRY = re.compile(r'<path class="(line|dots) (\w+)" d="[^"]*"/>\n<text class="label"[^>]*>([^<]*)</text>')
 
 
 def sheet(charts: Sequence[Chart], columns: int, size: tuple[int, int] = (WIDTH, HEIGHT)) -> str:
@@ -35,6 +37,14 @@ def sheet(charts: Sequence[Chart], columns: int, size: tuple[int, int] = (WIDTH,
             f'<svg x="{x}" y="{y + _TITLE}" width="{wide}" height="{size[1]}">{drawn(chart, size)}</svg>'
         )
     return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def chart_of(text: str) -> tuple[str, str, list[tuple[str, str, bool]]]:
+    """Title, SVG and legend of the chart of a sheet that has one: what `sheet` was made of, for a page."""
+    chart = text[text.index('<svg class="chart"') : text.rindex("</svg>")].rstrip().removesuffix("</svg>")
+    title = re.search('class="title"[^>]*>([^<]*)<', text)
+    legend = [(role, unescape(label), kind == "dots") for kind, role, label in _ENTRY.findall(text)]
+    return unescape(title[1]) if title else "", chart, legend
 
 
 def _legend(entries: Sequence[tuple[str, str, bool]], width: int) -> tuple[list[str], int]:

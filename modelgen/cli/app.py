@@ -94,8 +94,8 @@ app = typer.Typer(
     name="modelgen",
     cls=_Group,
     help="From the YAML description of a robot arm to its dynamic model in C99, CasADi and NumPy.",
-    epilog="Exit status: 0 done, 1 a check failed, 2 bad input, 130 interrupted, 141 the reader of stdout is "
-    "gone. Messages go to stderr, data to stdout.",
+    epilog="Exit status: 0 done, 1 a check failed, or a unit of a fleet, 2 bad input, 130 interrupted, 141 "
+    "the reader of stdout is gone. Messages go to stderr, data to stdout.",
     add_completion=False,
     # A traceback that Python prints itself can be copied into a report.
     pretty_exceptions_enable=False,

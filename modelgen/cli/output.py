@@ -95,7 +95,7 @@ def print_table(table: Table) -> None:
     beside = Measurement.get(console, console.options.update(max_width=_ENDLESS), grid).minimum - sum(least)
     widths = _shared(least, most, console.width - beside)
     if sum(widths) + beside > console.width:
-        typer.echo(_below(table, console.width).replace(_FIXED, " "))
+        typer.echo(f"{_below(table, console.width)}\n".replace(_FIXED, " "))
         return
     grid = _grid(table, widths)
     with console.capture() as captured:

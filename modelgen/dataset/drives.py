@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 
 from modelgen.description import Arm, geometry_symbol
+from modelgen.effects import described
 from modelgen.numeric import Array
 from modelgen.transmission import Curves, Transmission, curves, of_joint
 
@@ -32,11 +33,12 @@ _known: list[tuple[Arm, tuple[NumericDrive, ...]]] = []
 
 
 def drives_of(arm: Arm) -> tuple[NumericDrive, ...]:
-    """The drives of an arm's coordinates, in their order."""
+    """The drives of an arm's coordinates, in their order, as its effects on the description make them."""
     found = next((drives for known, drives in _known if known is arm), None)
     if found is None:
-        joints = [arm.joints[i] for i in arm.coordinates]
-        found = tuple(_drive(of_joint(arm, joint), joint.type == "prismatic") for joint in joints)
+        changed = described(arm)
+        joints = [changed.joints[i] for i in arm.coordinates]
+        found = tuple(_drive(of_joint(changed, joint), joint.type == "prismatic") for joint in joints)
         _known.insert(0, (arm, found))
         del _known[_KEPT:]
     return found

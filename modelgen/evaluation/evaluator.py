@@ -10,6 +10,7 @@ from modelgen.backends.numpy import NumpyFunction
 from modelgen.base_parameters.rules import slid
 from modelgen.description.objects import Arm
 from modelgen.effects import CATALOGUE, Definition, DescriptionEffect, InputEffect, described
+from modelgen.evaluation import programs
 from modelgen.evaluation.alone import Alone, Values, free_values
 from modelgen.evaluation.cache import Recent
 from modelgen.evaluation.changed_description import Changed, Changes, Variations
@@ -17,17 +18,8 @@ from modelgen.evaluation.delay import acting, added, undone
 from modelgen.evaluation.inertia_floor import carried
 from modelgen.evaluation.known_forces import KnownForces
 from modelgen.evaluation.lever_ratio import gain, leverage, reread
-from modelgen.evaluation.link_encoder import LinkSide, at_link, lagging, led_by, rigid
+from modelgen.evaluation.link_encoder import LinkSide, at_link, compliant, lagging, led_by, rigid
 from modelgen.evaluation.motion import Motion, evaluated, given_for
-from modelgen.evaluation.programs import (
-    Links,
-    columns_of,
-    grouping,
-    inputs_of,
-    links_alone,
-    links_and_effect,
-    loads_of,
-)
 from modelgen.evaluation.states import TOUCH, Series
 from modelgen.evaluation.tilted_gravity import HiddenWeight
 from modelgen.functions.objects import Function, Model
@@ -46,7 +38,7 @@ class Evaluator:
 
     def __init__(self, arm: Arm) -> None:
         self.arm = arm
-        self.base = grouping(arm)
+        self.base = programs.grouping(arm)
         self._alone = Alone(arm)
         self._made: dict[object, NumpyFunction] = {}
         self._arms: dict[object, Equations] = {}
@@ -84,7 +76,9 @@ class Evaluator:
         if self._own.state_names() and names & {"load", "state"}:
             states = self._states(self._own, motion, (), parameters)
             if not parameters.any():  # links that weigh nothing swing on no spring: as if none bent
+                bent = self._series[self._own]
                 states = np.where(np.isfinite(states), states, 0.0)
+                states[:, [*bent.lags, *bent.rates]] = 0.0
         if "load" in names:
             made = self._function(model, "load")
             loads = np.asarray(made(**given_for(made.function, motion, parameters, states=states)))
@@ -92,13 +86,13 @@ class Evaluator:
         return evaluated(function, given, motion).reshape(len(motion.t), self.n, -1)
 
     def unseen(self, motion: Motion, columns: Array, parameters: Array) -> Array:
-        """Inputs (N, n) that the regressor (N, n, p) leaves out: those of elastic joints and play behind
-        motors.
+        """Inputs (N, n) that the regressor (N, n, p) leaves out: what the arm's own elastic joints and play
+        add; zero for parameters that all are.
         """
-        joints = [e.joint for e in self._own.effects if e.elastic and e.joint is not None]
-        behind = [self.arm.coordinates.index(joint) + 1 for joint in joints]
-        if not parameters.any() or not behind or any(at_link(motion, joint) for joint in behind):
+        if not parameters.any() or not compliant(self.arm):
             return np.zeros(motion.q.shape)
+        if led_by(self.arm, motion):
+            return self.link_side.led(motion, parameters)
         return self.inputs(motion, parameters) - columns @ parameters
 
     def ideal(self, model: Model, motion: Motion, given: Array) -> Array:
@@ -151,7 +145,7 @@ class Evaluator:
         e = self._alone(effect, joint, values)
         names = [p.name for p in CATALOGUE[effect].linear]
         if e not in self._columns:
-            function, places = columns_of(e)
+            function, places = programs.columns_of(e)
             self._columns[e] = NumpyFunction(function), places
         call, places = self._columns[e]
         found = self._run(call, e, call.function, motion, values, parameters)
@@ -185,11 +179,11 @@ class Evaluator:
         if joint is not None:
             parameters = self._carried(joint, motion, parameters)
         found = self._run(call, e, call.function, motion, values, parameters)
-        return found - self._links(motion, links_alone(self.arm, self.base, joint, parameters))
+        return found - self._links(motion, programs.links_alone(self.arm, self.base, joint, parameters))
 
     def _with_links(self, e: Equations) -> NumpyFunction:
         if (e, "added") not in self._made:
-            self._made[e, "added"] = NumpyFunction(links_and_effect(e, self.base))
+            self._made[e, "added"] = NumpyFunction(programs.links_and_effect(e, self.base))
         return self._made[e, "added"]
 
     def ringing(self, effect: str, joint: int, motion: Motion, values: Values, parameters: Array) -> Array:
@@ -228,7 +222,7 @@ class Evaluator:
 
     def _carried(self, joint: int, motion: Motion, parameters: Array) -> Array:
         """Parameters with which what the joint carries can be simulated."""
-        alone = links_alone(self.arm, self.base, joint, parameters)
+        alone = programs.links_alone(self.arm, self.base, joint, parameters)
         given = self.arm, self.base, joint, motion, alone, self._bare, self.link_side.drives
         return self._recent.along(
             ("carried", joint), motion, parameters, lambda: parameters + (carried(*given) - alone)
@@ -239,8 +233,8 @@ class Evaluator:
         return self._recent.along("links", motion, parameters, lambda: self._bare(motion, parameters))
 
     @cached_property
-    def _bare(self) -> Links:
-        return Links(self.arm, self.base)
+    def _bare(self) -> programs.Links:
+        return programs.Links(self.arm, self.base)
 
     @cached_property
     def _proportional(self) -> bool:
@@ -273,10 +267,21 @@ class Evaluator:
     def _along(self, key: object, e: Equations, motion: Motion, parameters: Array) -> Array:
         """Inputs of an arm whose own effects may have states."""
         if ("inputs", key) not in self._made:
-            self._made["inputs", key] = NumpyFunction(inputs_of(e, self.base))
+            self._made["inputs", key] = NumpyFunction(programs.inputs_of(e, self.base))
         call = self._made["inputs", key]
+        return evaluated(call, self._given(call.function, e, motion, parameters), motion)
+
+    def _loads(self, motion: Motion, parameters: Array) -> Array:
+        """Loads at the motor coordinates (N, n) of the arm with its own effects."""
+        if "loads" not in self._made:
+            self._made["loads"] = NumpyFunction(programs.loads_of(self._own, self.base))
+        call = self._made["loads"]
+        return np.asarray(call(**self._given(call.function, self._own, motion, parameters)))
+
+    def _given(self, f: Function, e: Equations, motion: Motion, parameters: Array) -> dict[str, Array]:
+        """Arguments of a function of an arm, with the states of its effects, (N, .) or (.,) by name."""
         states = self._states(e, motion, (), parameters) if e.state_names() else None
-        return evaluated(call, given_for(call.function, motion, parameters, states=states), motion)
+        return given_for(f, motion, parameters, states=states)
 
     def _run(
         self,
@@ -291,14 +296,7 @@ class Evaluator:
         free = free_values(e, values)
         loads = None
         if any(effect.depends_on("load") for effect in e.effects):
-            if "loads" not in self._made:
-                self._made["loads"] = NumpyFunction(loads_of(self.arm, self.base))
-            made = self._made["loads"]
-
-            def inputs() -> Array:
-                return np.asarray(made(**given_for(made.function, motion, parameters)))
-
-            loads = self._recent.along("loads", motion, parameters, inputs)
+            loads = self._recent.along("loads", motion, parameters, partial(self._loads, motion, parameters))
         states = self._states(e, motion, free, parameters, push) if e.state_names() else None
         given = given_for(function, motion, parameters, free=free, loads=loads, states=states)
         return evaluated(call, given, motion)

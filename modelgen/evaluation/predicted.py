@@ -12,4 +12,6 @@ from modelgen.numeric import Array
 
 def predicted(evaluator: Evaluator, model: Model, motion: Motion, base: Array) -> Array:
     """Inputs of ideal drives (N, n) that base parameters (p,) take along a motion, with the known forces."""
-    return np.asarray(evaluator.regressor(model, motion, base) @ base + evaluator.known.inputs(motion))
+    columns = np.asarray(evaluator.regressor(model, motion, base))
+    unseen = evaluator.unseen(motion, columns, base)
+    return np.asarray(columns @ base + unseen + evaluator.known.inputs(motion))

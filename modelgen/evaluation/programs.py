@@ -38,9 +38,8 @@ def inputs_of(e: Equations, base: Grouping) -> Function:
     return bare("inputs", e, len(base.base), dynamics.inverse_dynamics(e.vector("dq"), e.vector("ddq")))
 
 
-def loads_of(arm: Arm, base: Grouping) -> Function:
+def loads_of(e: Equations, base: Grouping) -> Function:
     """Loads at the motor coordinates."""
-    e = Equations(slid(described(arm)), lazy=True)
     return bare("loads", e, len(base.base), Dynamics(e, base_values(e, base)).loads())
 
 

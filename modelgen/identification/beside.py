@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.dataset import Prepared
-from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation import Evaluator, predicted
 from modelgen.functions import Model
+from modelgen.identification.rows import motion_of
 from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression, Solution
@@ -40,13 +41,13 @@ class Beside:
         self.records, n, p = records, records[0].n, len(model.grouping.base)
         first = regression_of(evaluator, model, records, np.zeros(p))
         self.enough = sum(int(m.sum()) for m in first.moving) >= 3 * (p + n)
-        theta = first.least_squares()
+        # each joint counts by what is left of it: what one lacks is not sought at others
+        theta = first.solve("wls").theta
         own = regression_of(evaluator, model, records, theta)
-        theta = own.least_squares()
+        theta = own.solve("wls").theta
         self.sigma = np.maximum(_sizes(own, theta), 1e-300)
         self.own, self.p = own, p
-        motions = [Motion(r.time, r.q, r.dq, r.ddq, held=r.record.held) for r in records]
-        self.efforts = [np.asarray(evaluator.regressor(model, m, theta) @ theta) for m in motions]
+        self.efforts = [predicted(evaluator, model, motion_of(r), theta) for r in records]
         gains = [np.ones_like(r.q) if r.gain is None else r.gain for r in records]
         self.gain = np.sqrt(np.mean(np.concatenate(gains) ** 2, axis=0))
         size = np.sqrt(np.mean(np.concatenate(self.efforts) ** 2, axis=0))

@@ -12,6 +12,9 @@ import numpy as np
 from modelgen.identification.objects import Doubt, Identification, Validation
 from modelgen.identification.unexplained import FAR
 
+TENS = 10.0  # from which on a figure has no decimals
+_LACKS = "the model lacks something, and parameters may be wrong by more than their deviations say."
+
 
 class Lacking(Doubt):
     """A doubt about a model that lacks something."""
@@ -53,12 +56,20 @@ def beside_noise(test: Validation) -> BesideNoise | None:
 
 def lacking(found: Identification) -> tuple[Doubt, ...]:
     """The doubt about a model that lacks something; none where another is said already."""
-    known = None if found.test is None else beside_noise(found.test)
-    if known is None or not known.lacks or found.doubts:
+    if found.doubts:
         return ()
-    name = found.arm.coordinate_names[known.joint]
-    text = (
-        f"The error at {name} is {known.times:.0f} times the noise: the model lacks something, and "
-        "parameters may be wrong by more than their deviations say."
-    )
-    return (Lacking(text, [name]),)
+    names, remains = found.arm.coordinate_names, found.remains
+    if remains is not None and len(remains.found):
+        worst, *others = remains.found
+        beside = f" ({', '.join(names[j] for j in others)} too)" if others else ""
+        square = float(remains.statistic[worst])
+        what = (
+            f"What the model leaves at {names[worst]}{beside} repeats from period to period of the training "
+            f"records, with {square:.{int(square < TENS)}f} times the mean square of noise"
+        )
+        return (Lacking(f"{what}: {_LACKS}", [names[j] for j in remains.found]),)
+    known = None if found.test is None else beside_noise(found.test)
+    if known is None or not known.lacks:
+        return ()
+    name = names[known.joint]
+    return (Lacking(f"The error at {name} is {known.times:.0f} times the noise: {_LACKS}", [name]),)

@@ -1,4 +1,5 @@
-"""Parameters of models whose friction grows with the load: the regressor depends on what is looked for.
+"""Parameters of models whose regressor depends on what is looked for: friction grows with the load, or joints
+are elastic.
 
 With columns at the load of the fit before, gravity that is known badly, beside a spring say, ends in the
 wrong friction with a small deviation. By Gauss's and Newton's steps the load's own change with the parameters
@@ -9,11 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from modelgen.dataset import Prepared
-from modelgen.evaluation import Evaluator
+from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation.link_encoder import compliant
 from modelgen.functions import Model
 from modelgen.identification.rows import motion_of
 from modelgen.numeric import Array
@@ -79,16 +82,25 @@ def _misfit(regression: Regression, theta: Array) -> float:
 def slopes_of(
     evaluator: Evaluator, model: Model, records: Sequence[Prepared], added: Sequence[Array], theta: Array
 ) -> list[Array]:
-    """`slopes` of `fitted_by_load` at the rows, by differences; what the filter does to them is left out."""
-    found = []
+    """`slopes` of `fitted_by_load` at the rows, by differences. What the filter does to them is left out, but
+    where elastic joints swing.
+    """
+    found, elastic = [], compliant(model.arm)
     for p, more in zip(records, added, strict=False):
-        rows = motion_of(p).picked(p.rows)
+        motion = motion_of(p) if elastic else motion_of(p).picked(p.rows)
         whole = theta + more
-        before = np.asarray(evaluator.regressor(model, rows, whole)) @ whole
+        efforts = partial(_efforts, evaluator, model, motion, whole)
+        before = efforts(whole)
         table = np.zeros((*before.shape, len(theta)))
         for k, value in enumerate(theta):
             step = max(TOUCH * abs(float(value)), LEAST)
             moved = whole + step * (np.arange(len(theta)) == k)
-            table[:, :, k] = (np.asarray(evaluator.regressor(model, rows, moved)) @ whole - before) / step
-        found.append(table)
+            table[:, :, k] = (efforts(moved) - before) / step
+        found.append(p.parallel(table * p.weights[:, :, None]) if elastic else table)
     return found
+
+
+def _efforts(evaluator: Evaluator, model: Model, motion: Motion, theta: Array, at: Array) -> Array:
+    """Efforts (N, n) of parameters theta (p,), with the columns, and what elastic joints add, at others."""
+    columns = np.asarray(evaluator.regressor(model, motion, at))
+    return columns @ theta + evaluator.unseen(motion, columns, at)

@@ -25,7 +25,8 @@ from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.functions import Model, Options, build_model
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification.effort_limits import Beyond, End, beside, gain_of, ideal_of, logged_of, motion_of
+from modelgen.identification.effort_limits import Beyond, End, beside, gain_of, ideal_of, logged_of
+from modelgen.identification.rows import motion_of
 from modelgen.identification.validation import regression_of
 from modelgen.numeric import Array
 from modelgen.regression.censored import Samples, censored

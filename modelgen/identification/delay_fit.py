@@ -9,6 +9,7 @@ and load, and dry friction that turns late, the delays change by as much as it p
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +17,10 @@ from numpy.typing import NDArray
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.content import white_noise
 from modelgen.dataset.processing.filters import advanced
-from modelgen.evaluation import Evaluator, Motion
+from modelgen.evaluation import Evaluator
+from modelgen.evaluation.link_encoder import compliant
 from modelgen.functions import Model
+from modelgen.identification.rows import motion_of
 from modelgen.identification.unexplained import FAR
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
@@ -46,7 +49,8 @@ class DelayFit:
         """The columns where the positions of the joints are (n,) samples older than their stamps."""
         moved = [[earlier(x, positions) for x in (r.q, r.dq, r.ddq)] for r in self.records]
         self.motions = [
-            Motion(r.time, q, dq, ddq) for r, (q, dq, ddq) in zip(self.records, moved, strict=True)
+            replace(motion_of(r), q=q, dq=dq, ddq=ddq, held=False)
+            for r, (q, dq, ddq) in zip(self.records, moved, strict=True)
         ]
         self.weights = [r.weights for r in self.records]
         if positions.any():
@@ -56,6 +60,10 @@ class DelayFit:
 
     def _evaluate(self, theta: Array) -> None:
         self.full = [np.asarray(self.evaluator.regressor(self.model, m, theta)) for m in self.motions]
+        both = zip(self.motions, self.full, strict=True)
+        self.unseen = [self.evaluator.unseen(motion, full, theta) for motion, full in both]
+        if not all(np.isfinite(x).all() for x in self.unseen):
+            raise FloatingPointError("an elastic joint runs away")
         parts = zip(self.records, self.full, self.weights, strict=True)
         self.columns = [r.parallel(full * weights[:, :, None]) for r, full, weights in parts]
 
@@ -69,10 +77,12 @@ class DelayFit:
         efforts = self.efforts(delays)
         if sum(int(m.sum()) for m in self.moving) < 3 * (self.p + self.n):
             return delays, np.full(self.n, np.inf)
-        before = Regression(efforts, self.columns, self.moving).solve("wls")
-        self.theta, self.sigma = before.theta, before.sigma
-        theta = before.theta
+        without = Regression(efforts, self.columns, self.moving).solve("wls")
+        self.theta, self.sigma = without.theta, without.sigma
+        theta = without.theta
         self._evaluate(theta)
+        if compliant(self.model.arm):
+            efforts = self.efforts(delays)
         told, deviations = np.ones(self.n, dtype=bool), np.full(self.n, np.inf)
         cutoff = self.records[0].settings.cutoff or 1.0 / first.step
         longest = max(LONGEST, TURNED / (cutoff * first.step))
@@ -80,11 +90,14 @@ class DelayFit:
         for _ in range(2 * STEPS):
             columns = self.with_delays(theta)
             solution = Regression(efforts, columns, self.moving).solve("wls")
-            theta, moved = solution.theta[: self.p], solution.theta[self.p :]
+            before, theta, moved = theta, solution.theta[: self.p], solution.theta[self.p :]
             told = solution.determined[self.p :] & np.isfinite(moved)
             deviations = np.sqrt(np.maximum(np.diag(solution.covariance)[self.p :], 0.0))
             delays = delays + np.where(told, np.clip(moved, -longest, longest), 0.0)
             settled = (np.abs(moved[told]) <= np.maximum(SETTLED, SETTLED * deviations[told])).all()
+            if compliant(self.model.arm):  # what elastic joints add follows from the parameters
+                self._evaluate(theta)
+                settled &= np.allclose(theta, before, rtol=SETTLED)
             if settled:
                 break
             efforts = self.efforts(delays)
@@ -94,14 +107,14 @@ class DelayFit:
                 break
         if not settled:
             told &= np.abs(moved) <= deviations
-        self.missing = self.lacks(solution.sigma, before.sigma)
+        self.missing = self.lacks(solution.sigma, without.sigma)
         if free:
             change, left = self.beside_free_laws(efforts, columns, theta, solution.sigma)
             deviations = np.hypot(deviations, change)
             if (np.abs(delays - first.hold / first.step) > 1.0).any():
                 efforts = self.efforts(np.full(self.n, first.hold / first.step))
-                _, without = self.beside_free_laws(efforts, self.columns, before.theta, before.sigma)
-                self.missing |= ~needed(without, left, solution.sigma)
+                _, freely = self.beside_free_laws(efforts, self.columns, without.theta, without.sigma)
+                self.missing |= ~needed(freely, left, solution.sigma)
         return delays, np.where(told & (deviations > 0.0), deviations, np.inf)
 
     def lacks(self, left: Array, without: Array) -> NDArray[np.bool_]:
@@ -121,8 +134,8 @@ class DelayFit:
     def with_delays(self, theta: Array) -> list[Array]:
         """Columns (M, n, p + n) of each record: those of the model, and the slopes of its efforts."""
         columns = []
-        for r, own, full, weights in self._parts(self.columns):
-            slope = r.parallel(np.gradient(full @ theta, axis=0) * weights)
+        for (r, own, full, weights), unseen in zip(self._parts(self.columns), self.unseen, strict=True):
+            slope = r.parallel(np.gradient(full @ theta + unseen, axis=0) * weights)
             more = np.zeros((len(slope), self.n, self.n))
             more[:, range(self.n), range(self.n)] = slope
             columns.append(np.concatenate([own, more], axis=2))
@@ -166,10 +179,12 @@ class DelayFit:
     def efforts(self, delays: Array) -> list[Array]:
         """Efforts (M, n) at the positions' instants, where their samples lie `delays` samples after them."""
         found = []
-        for r, motion, weights in zip(self.records, self.motions, self.weights, strict=True):
+        parts = zip(self.records, self.motions, self.unseen, self.weights, strict=True)
+        for r, motion, unseen, weights in parts:
             assert r.record.input is not None
             given = earlier(r.record.input, -delays)
-            found.append(r.parallel(self.evaluator.ideal(self.model, motion, given) * weights))
+            ideal = self.evaluator.ideal(self.model, motion, given) - unseen
+            found.append(r.parallel(ideal * weights))
         return found
 
 

@@ -27,6 +27,7 @@ from modelgen.dataset.processing.instants import (
     with_hold,
 )
 from modelgen.dataset.processing.rounding import position_steps
+from modelgen.dataset.processing.sequence import in_sequence
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
 from modelgen.description import Arm
 from modelgen.errors import InputError
@@ -140,7 +141,7 @@ def _delay(
     beginnings = [r.part(0, min(len(r.t), longest)) for r in records]
     try:
         settings = choose(list(records), Settings(thresholds=limits))
-        prepared = [prepare(r, settings) for r in beginnings]
+        prepared = in_sequence([prepare(r, settings) for r in beginnings])
         fit = DelayFit(prepared, model, evaluator)
         delays, deviations = fit.delays()
         channels = late_channels(fit, delays, deviations, arm.coordinate_names)
@@ -151,7 +152,8 @@ def _delay(
         if _common(delays, deviations)[1] <= limits.max_instant_std and position_steps(records[0]).any():
             square = np.zeros(n)
             for seed in range(DRAWS):
-                again = [prepare(rounded_anew(r, seed), settings) for r in prepared]
+                anew = [prepare(rounded_anew(r, seed), settings) for r in prepared]
+                again = [replace(x, before=r.before) for x, r in zip(anew, prepared, strict=True)]
                 square += (DelayFit(again, model, evaluator).delays(free=False)[0] - delays) ** 2 / DRAWS
             deviations = np.sqrt(deviations**2 + np.where(np.isfinite(square), square, np.inf))
     except (InputError, np.linalg.LinAlgError, FloatingPointError):

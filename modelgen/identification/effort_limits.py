@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared
-from modelgen.evaluation import Evaluator, Motion, predicted
+from modelgen.evaluation import Evaluator, predicted
 from modelgen.functions import Model
+from modelgen.identification.rows import motion_of
 from modelgen.numeric import Array
 
 CLEAR = 3.0  # deviations of the noise below the limit, from which on it does nothing
@@ -62,11 +63,6 @@ def ideal_of(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> A
     return np.asarray(predicted(evaluator, model, motion_of(p), theta) * gain_of(p))
 
 
-def motion_of(p: Prepared) -> Motion:
-    """The record's motion (N, n), with efforts as it has them."""
-    return Motion(p.time, p.q, p.dq, p.ddq, held=p.record.held)
-
-
 def beside(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Samples beside those that are named: efforts at the instants of the positions have a part of both."""
     found = np.zeros_like(flags)
@@ -99,7 +95,8 @@ class Beyond:
         """
         motion, logged, gain = motion_of(p), logged_of(p), gain_of(p)
         columns = self.evaluator.regressor(self.model, motion, self.theta)
-        ideal = (columns @ self.theta + self.evaluator.known.inputs(motion)) * gain
+        unseen = self.evaluator.unseen(motion, columns, self.theta)
+        ideal = (columns @ self.theta + unseen + self.evaluator.known.inputs(motion)) * gain
         found = np.zeros(p.q.shape, dtype=bool)
         for e in self.ends:
             j, x = e.joint, columns[:, e.joint] * gain[:, e.joint, None]

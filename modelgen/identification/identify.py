@@ -48,7 +48,7 @@ class Instruments:
     simulated: Simulated | None = None
 
 
-TURNS = 12  # of parameters and the states that follow from them
+ROUNDS = 12  # of parameters and the states that follow from them
 CLOSE = 1e-4  # of every parameter, by which the last turn changes it
 RUNS_AWAY = (
     "elastic joints or play swing beyond all bounds along this motion with the parameters that are found; "
@@ -160,7 +160,7 @@ def _fitted(
     enough(model.arm, regression)
     solution = regression.solve(method)
     # what elastic joints add follows from the parameters, and these from that
-    turns = TURNS if compliant(model.arm) else int(_columns_by_load(model))
+    turns = ROUNDS if compliant(model.arm) else int(_columns_by_load(model))
     for _ in range(turns):
         before = solution.theta
         regression = regression_of(evaluator, model, train, before, added, all_samples=whole)
@@ -170,7 +170,7 @@ def _fitted(
             raise InputError(f"{train[0].record.name}: {RUNS_AWAY}") from None
         if np.allclose(solution.theta, before, rtol=CLOSE):
             break
-    if _arguments(model) & {"load", "state"} == {"load"}:
+    if compliant(model.arm) or _arguments(model) & {"load", "state"} == {"load"}:
         more = [theta] * len(train) if added is None else added
         regression, solution = fitted_by_load(
             lambda at: regression_of(evaluator, model, train, at, added, all_samples=whole),

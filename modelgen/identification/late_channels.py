@@ -9,6 +9,7 @@ nothing: the fewest channels are named beside which the others are alike.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -191,8 +192,9 @@ class Channels:
         q, dq, ddq = (x.copy() for x in (motion.q, motion.dq, motion.ddq))
         for x in (q, dq, ddq):
             x[:, joint] = _beside(x[:, joint], way)
-        there = Motion(motion.t, q, dq, ddq)
-        return np.asarray(self.fit.evaluator.regressor(self.fit.model, there, theta)) @ theta
+        there = replace(motion, q=q, dq=dq, ddq=ddq)
+        columns = np.asarray(self.fit.evaluator.regressor(self.fit.model, there, theta))
+        return columns @ theta + self.fit.evaluator.unseen(there, columns, theta)
 
 
 def _beside(x: Array, way: int) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,11 +114,36 @@ class WorseThanNone(Impossible):
 
 
 @dataclass(frozen=True)
+class LackOfFit:
+    """What the model leaves alike in every period of the training records.
+
+    statistic: its mean square over that of noise, (n,), one where the model is complete, nan where nothing
+    repeats; threshold: (n,), from which on the model lacks something.
+    """
+
+    statistic: Array
+    threshold: Array
+
+    @property
+    def found(self) -> NDArray[np.intp]:
+        """Joints (from 0) at which the model lacks something, the worst first."""
+        beyond = np.nan_to_num(self.statistic / self.threshold)
+        order = np.argsort(-beyond, kind="stable")
+        return order[beyond[order] > 1.0]
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data, by joint."""
+        pairs = (("statistic", self.statistic), ("threshold", self.threshold))
+        return {name: [float(x) if np.isfinite(x) else None for x in values] for name, values in pairs}
+
+
+@dataclass(frozen=True)
 class Identification:
     """Parameters that the training records give an arm, and its errors on the test records.
 
     gains: torque constants that were found; `arm` has them. doubts: about what no arm has, or the described
-    one has not. signs_tried: whether the other signs of the efforts were tried, and explain no more.
+    one has not. signs_tried: whether the other signs of the efforts were tried, and explain no more. remains:
+    in the training records, None where nothing repeats.
     """
 
     arm: Arm
@@ -132,6 +157,7 @@ class Identification:
     gains: tuple[Gain, ...] = ()
     doubts: tuple[str, ...] = ()
     signs_tried: bool = False
+    remains: LackOfFit | None = None
 
     def poor(self) -> list[tuple[int, Estimate]]:
         """Parameters that are poorly determined, with their numbers: of themselves and in the effort, where a

@@ -34,6 +34,7 @@ def to_json(found: Identification) -> dict[str, Any]:
         "test": None if test is None else errors(test),
         "verdict": verdict(found),
         "doubts": questions(found),
+        **({} if found.remains is None else {"lack_of_fit": found.remains.to_json()}),
         "least_squares": _least_squares(found.comparison),
         **_noise(found),
         **_gains(found),

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from modelgen.dataset import Prepared
 from modelgen.dataset.processing.rounding import effort_steps
-from modelgen.evaluation import Evaluator, Motion, predicted
+from modelgen.evaluation import Evaluator, predicted
 from modelgen.functions import Model
-from modelgen.identification.effort_limits import gain_of, logged_of, motion_of
+from modelgen.identification.effort_limits import gain_of, logged_of
+from modelgen.identification.rows import motion_of
 from modelgen.numeric import Array
 from modelgen.regression.censored import Samples, censored
 from modelgen.regression.least_squares import Regression, Solution
@@ -38,7 +40,7 @@ def with_rounding(
     inputs, moves = [ideal(p, model, evaluator, solution.theta) for p in train], list[Array]()
     for seed in range(DRAWS):
         random = np.random.default_rng(seed)
-        errors = [_rounding(p, y, step, random) for p, y, step in zip(train, inputs, steps, strict=True)]
+        errors = [rounding(p, y, step, random) for p, y, step in zip(train, inputs, steps, strict=True)]
         moves.append(regression.moved_by(solution, errors) / np.sqrt(DRAWS))
     changed = _by_steps(train, model, evaluator, solution.theta, np.max(steps, axis=0))
     if changed is not None:
@@ -95,11 +97,11 @@ def _within(x: Samples, step: float) -> Samples:
 
 def ideal(p: Prepared, model: Model, evaluator: Evaluator, theta: Array) -> Array:
     """Inputs (N, n) of the model along a record."""
-    return predicted(evaluator, model, Motion(p.time, p.q, p.dq, p.ddq), theta)
+    return predicted(evaluator, model, replace(motion_of(p), held=False), theta)
 
 
-def _rounding(p: Prepared, inputs: Array, steps: Array, random: np.random.Generator) -> Array:
-    """Errors (M, n) of the rows of a record, of another rounding of its inputs `inputs` (N, n)."""
+def rounding(p: Prepared, inputs: Array, steps: Array, random: np.random.Generator) -> Array:
+    """Errors (M, n) of the rows of a record, of another rounding of its inputs (N, n) to steps (n,)."""
     assert p.input is not None
     gain = np.ones_like(inputs) if p.gain is None else p.gain
     smooth, errors = p.smooth(inputs * gain), np.zeros_like(inputs)

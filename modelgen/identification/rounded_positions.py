@@ -54,8 +54,10 @@ def _motion(p: Prepared) -> Array:
 
 
 def prepared_anew(p: Prepared, seed: int) -> Prepared:
-    """The record with its positions rounded once more, prepared alike: joints rest where they did."""
-    return replace(prepare(rounded_anew(p, seed), p.settings), awake=p.awake)
+    """The record with its positions rounded once more, prepared alike: joints rest where they did, and it
+    runs on from what it did.
+    """
+    return replace(prepare(rounded_anew(p, seed), p.settings), awake=p.awake, before=p.before)
 
 
 def rounded_anew(p: Prepared, seed: int) -> Record:

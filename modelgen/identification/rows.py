@@ -61,7 +61,6 @@ class Rows:
         effort, full = self.evaluator.ideal(self.model, motion, p.input), None
         if theta.any() and compliant(self.model.arm):
             full = np.asarray(self.evaluator.regressor(self.model, motion, theta))
-            effort = effort - self.evaluator.link_side.led(motion, theta)
             effort = effort - self.evaluator.unseen(motion, full, theta)
         effort = np.asarray(p.parallel(effort if awake is None else effort * awake))
         if self._compiled and RegressorColumns.fit(p.q):

@@ -68,4 +68,4 @@ class Tracking:
             )
         motor = np.stack([d.motor(x) for d, x in zip(drives_of(self.arm), found.q.T, strict=True)], axis=1)
         changed = replace(record, q=found.q, motor=motor, motor_side=(), arm=self.arm)
-        return prepare(changed, p.settings)
+        return replace(prepare(changed, p.settings), before=p.before)

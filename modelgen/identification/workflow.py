@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from modelgen.dataset import (
     Chosen,
     Prepared,
@@ -26,7 +28,7 @@ from modelgen.dataset import (
 from modelgen.dataset import preset as processing
 from modelgen.dataset.inspection import RecordsInspected, inspect_records
 from modelgen.dataset.processing.content import check_coarse
-from modelgen.dataset.processing.periods import repetition, with_whole_rows
+from modelgen.dataset.processing.periods import repetition, rows_in, with_whole_rows
 from modelgen.dataset.processing.sequence import in_sequence
 from modelgen.dataset.processing.splitting import repeats_from
 from modelgen.dataset.reading.jumps import check_jumps
@@ -42,6 +44,7 @@ from modelgen.identification.doubts import worse_on_test
 from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
+from modelgen.identification.lack_of_fit import lack_of_fit
 from modelgen.identification.misread import Asked, disagreeing
 from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
@@ -222,7 +225,13 @@ def _whole(
     of_payloads = payload_questions(found, fitted, evaluator, payloads, [*train, *test])
     found = replace(found, doubts=(*coarse, *found.doubts, *worse_on_test(found, fitted), *of_payloads))
     found = judged_by(found, held, None if payloads or options != Options() else evaluator)
-    found = with_noise(replace(found, doubts=(*found.doubts, *lacking(found))), options, held, bool(payloads))
+    if options == Options():
+        theta = np.array([e.value for e in found.estimates])
+        rows = [rows_in(p, chosen) for p in periods]
+        remains = lack_of_fit(fitted, model, evaluator, theta, rows, carried if payloads else None)
+        found = replace(found, remains=remains)
+    found = replace(found, doubts=(*found.doubts, *lacking(found)))
+    found = with_noise(found, options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()
     if o.compare_drives:
         progress("identifying without the drives", 0, None)

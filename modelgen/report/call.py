@@ -103,6 +103,14 @@ class Call:
         kept = [*_repeated("--log", self.train), *words_of(self.options, ("mapping",))]
         return self.command("refine", *kept, "--out", self.beside(out), description=description)
 
+    def refining_again(self, out: str, window: float) -> str:
+        """The command of a refinement with another window [s]; empty where its logs are no files."""
+        if not self.train:
+            return ""
+        kept = words_of(self.options, ("mapping", "parameters", "free"))
+        words = [*_repeated("--log", self.train), *kept, "--window", f"{window:g}"]
+        return self.command("refine", *words, "--out", self.beside(out))
+
     def exciting(self, out: str, speeds: Sequence[float] = (), description: str | None = None) -> str:
         """The command for a motion that determines the parameters; empty where the arm lacks limits.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
@@ -14,15 +13,14 @@ from modelgen.diagnosis.validation import Check
 from modelgen.effects import CATALOGUE
 from modelgen.model.parameters import units_at
 from modelgen.report.diagnosis_sentences import cause_title, checked, interval
+from modelgen.report.in_a_log import in_a_log
 from modelgen.report.law_figures import judged_joint, law_charts, law_size, seen
 from modelgen.report.law_sketch import sketch
-from modelgen.report.page import Folded, Grid, Heading, Line, Marks, Part, Run, Section, Text, block
+from modelgen.report.page import Folded, Grid, Heading, Marks, Part, Run, Section, Text, block
 from modelgen.report.words import law, legible, sentence, value_said
-from modelgen.resources import gallery
 
 _LOOKALIKES = (("confused with", "left"), ("what that is", "left"), ("seen by itself in", "left"))
 _DEFINED = (("parameter", "left"), ("unit", "left"), ("meaning", "left"))
-_ELSEWHERE = "the gallery of the documentation, which "
 _VALUES = (("parameter", "left"), ("value", "right"), ("std", "right"), ("unit", "left"), ("meaning", "left"))
 
 
@@ -41,7 +39,7 @@ def law_found(d: Diagnosis, k: int) -> Section:
     """The law of cause k over the data, with its values and its evidence."""
     c = d.causes[k]
     reference = Run(f"{CATALOGUE[c.effect].reference}.", "quiet")
-    text = [Run(f"{_law(c.effect)} "), reference, Run(" "), *_more(c)]
+    text = [Run(f"{_law(c.effect)} "), reference, Run(" "), _more(c)]
     charts = law_charts(d, k)
     parts: list[Part] = [Text(text), Text(f"{_size(d, k)}{seen(charts)}"), block(charts), _values(d, c)]
     evidence = (
@@ -57,7 +55,7 @@ def suspected(d: Diagnosis, k: int) -> list[Part]:
     evidence = f"Evidence: delta BIC {c.delta_bic:z.1f}. It is not named: {failed(d, c)}."
     return [
         Heading(cause_title(d, c), f"suspect{k}"),
-        Text([Run(f"{_law(c.effect)} "), *_more(c)]),
+        Text([Run(f"{_law(c.effect)} "), _more(c)]),
         Text(evidence),
         _values(d, c),
     ]
@@ -94,8 +92,9 @@ def _about(d: Diagnosis, effect: str, joints: Sequence[int | None]) -> list[Part
     ]
     defined = Grid(f"Parameters of {effect}", _DEFINED, values, folds=True)
     parts += [
+        *in_a_log(effect),
         Folded(f"Parameters of {effect}", [defined], printed=False),
-        Text(_documented(effect), "quiet"),
+        Text([Run("All effects: "), Run("modelgen effects", "code")], "quiet"),
     ]
     return parts
 
@@ -105,22 +104,9 @@ def _law(effect: str) -> str:
     return f"{sentence(CATALOGUE[effect].text)}{f' Law: {stated}' if stated else ''}"
 
 
-def _more(c: NamedCause) -> list[Run]:
-    """Links to what the page says of an effect, and to the gallery where the documentation is at hand."""
-    own, page = Run("More about it", target=f"#about-{c.effect}"), gallery()
-    return [own] if page is None else [own, Run(". "), _in_gallery(c.effect, page)]
-
-
-def _in_gallery(effect: str, page: Path) -> Run:
-    return Run("What it does to a log", target=f"{page.as_uri()}#{effect}")
-
-
-def _documented(effect: str) -> Line:
-    """Where else there is something on an effect."""
-    page = gallery()
-    here = [Run(f"What it does to a log: {_ELSEWHERE}"), Run("make docs", "code"), Run(" builds")]
-    linked = here if page is None else [_in_gallery(effect, page)]
-    return [*linked, Run(". All effects: "), Run("modelgen effects", "code")]
+def _more(c: NamedCause) -> Run:
+    """A link to what the page says of an effect."""
+    return Run("More about it, and what it does to a log", target=f"#about-{c.effect}")
 
 
 def _size(d: Diagnosis, k: int) -> str:
@@ -145,7 +131,7 @@ def _values(d: Diagnosis, c: NamedCause) -> Grid:
             name,
             value_said(d.arm, c.effect, name, e, unit=False),
             "" if np.isnan(e.std) else f"{e.std:z.2g}",
-            "" if e.unit == "1" else e.unit,
+            e.unit,
             meanings.get(name, ""),
         )
         for name, e in legible(c.parameters).items()

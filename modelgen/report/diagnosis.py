@@ -25,6 +25,10 @@ from modelgen.report.records import records_table
 from modelgen.report.words import joint_name
 from modelgen.simulation.windows import Windows
 
+_FINER = (
+    "modelgen simulate --log with --window {window:g} takes finer steps, and begins its windows at the first "
+    "sample of the log, which is left out here: its errors differ a little from these."
+)
 # By whether the test record is a free motion.
 _SIMULATED = {
     True: "The test record simulated from its release on",
@@ -160,7 +164,11 @@ def _simulation(d: Diagnosis) -> list[Part]:
     ]
     fit = f"{_FIT} {' or '.join(sorted(set(d.arm.coordinate_units), reverse=True))}"
     text = f"{_SIMULATED[d.free]}: {fit}{', before and after' if d.causes else ''}. {_covered(d, one)}"
-    return [Text(text.rstrip()), Grid("Simulated motion", heads, rows, folds=True), block(replayed(d))]
+    parts: list[Part] = [Text(text.rstrip()), Grid("Simulated motion", heads, rows, folds=True)]
+    if not d.free:
+        again = _FINER.format(window=d.settings["simulated_window_s"])
+        parts.append(Text(again, "quiet unprinted"))  # about a command that is copied from the screen
+    return [*parts, block(replayed(d))]
 
 
 def _covered(d: Diagnosis, simulated: Windows) -> str:

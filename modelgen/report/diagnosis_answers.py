@@ -11,6 +11,7 @@ from modelgen.diagnosis.extended import NamedCause
 from modelgen.diagnosis.result import Diagnosis
 from modelgen.report.call import Call
 from modelgen.report.cause_parts import marks
+from modelgen.report.complete import complete
 from modelgen.report.diagnosis_sentences import (
     SWINGING,
     beside,
@@ -40,7 +41,7 @@ _OVER_ALL = (
 # By whether the test record is a free motion.
 _ERRORS = {
     True: "RMSE of the simulated free motion, from the release on,",
-    False: "RMS of the error, of that of the effort,",
+    False: "RMS of the error, beside that of the effort,",
 }
 _CHECKS = "Checks of each cause"
 _ROWS = 2  # of a table that a phone has room for beside the other answers
@@ -83,6 +84,9 @@ def _names(d: Diagnosis, causes: Sequence[NamedCause]) -> str:
 def _sure(d: Diagnosis) -> Iterator[Part]:
     if rests := hardly_moved(d):
         yield Text(rests)
+    checks = complete(d)
+    if checks is not None:
+        yield checks
     if len(d.causes) == 1:
         yield marks(d.causes[0], "cause0")
     elif d.causes:
@@ -94,8 +98,8 @@ def _sure(d: Diagnosis) -> Iterator[Part]:
             )
             for k in by_worth(d)
         ]
-        checks = Checks(_CHECKS, rows)
-        yield Folded(_CHECKS, [checks], narrow=True) if len(rows) > _ROWS else checks
+        table = Checks(_CHECKS, rows)
+        yield Folded(_CHECKS, [table], narrow=True) if len(rows) > _ROWS else table
         yield Text([Run(_passed(d.causes)), *_doubted(d)])
     if len(d.causes) == 1 and doubted(d):
         yield Text(_doubted(d))
@@ -209,10 +213,10 @@ def _warned(d: Diagnosis) -> Iterator[Part]:
 
 def _next(d: Diagnosis, call: Call) -> Iterator[Part]:
     steps = following(d, call)
-    alone = [Text(step.text) for step in steps if not (step.command or step.mends)]
+    alone = [Text(step.text) for step in steps if not (step.command or step.mends or step.warns)]
     for step in steps:
-        if step.mends:
-            yield Text([Run(step.text, "strong")])
+        if step.mends or step.warns:
+            yield Text([Run(step.text, "strong")] if step.mends else step.text)
         elif step.command:
             yield Text(step.text)
             yield Command(step.command)

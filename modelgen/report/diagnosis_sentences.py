@@ -194,7 +194,7 @@ def remains(d: Diagnosis) -> str:
         f"Lack of fit over {f.periods} repeated periods: {f.statistic:z.2f}, threshold {f.threshold:z.2f} "
         f"({usual}), largest at {_most(d, f)}."
     )
-    sizes = _sizes(d) if f.found else {}
+    sizes = repeating_sizes(d) if f.found else {}
     repeats = f"About {listed(sizes.values())} repeats (RMS)." if sizes else ""
     joints = _spoken_of(d)
     left = _left(d) if joints and not joints & sizes.keys() else ""
@@ -240,7 +240,7 @@ def _left(d: Diagnosis) -> str:
     return f"What is left on the test record, noise and all, is {sizes} (RMS){where}{share}."
 
 
-def _sizes(d: Diagnosis) -> dict[int, str]:
+def repeating_sizes(d: Diagnosis) -> dict[int, str]:
     """About how large what is deterministic in the residuals of all rows is, of the effort.
 
     By joint (from 0), first those of which the reason speaks.

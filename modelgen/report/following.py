@@ -13,7 +13,7 @@ from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import Found, titled
 from modelgen.options import words_of
 from modelgen.report.call import WHERE, Call, command
-from modelgen.report.diagnosis_sentences import beside, cause_title, harmful, no_arm
+from modelgen.report.diagnosis_sentences import beside, cause_title, harmful, no_arm, repeating_sizes
 from modelgen.report.experiment import followed
 from modelgen.report.words import listed, place_of
 
@@ -43,19 +43,22 @@ _COARSE = (
     "smaller."
 )
 _REMAINS = (
-    "Something remains that is not named, and the values of what is named hold as far as it does not act on "
-    "them."
+    "Something remains that is not named{sizes}: the values of what is named hold as far as it does not act "
+    "on them."
 )
 _EVERY = "Only some effects were asked for: ask for all of the catalogue."
 
 
 @dataclass(frozen=True)
 class Step:
-    """What to do; command: empty where none does it. mends: whether it is the log that is to be mended."""
+    """What to do; command: empty where none does it. mends: whether it is the log that is to be mended.
+    warns: whether it says how far to trust what follows it.
+    """
 
     text: str
     command: str = ""
     mends: bool = False
+    warns: bool = False
 
 
 def following(d: Diagnosis, call: Call) -> list[Step]:
@@ -81,11 +84,18 @@ def _first(d: Diagnosis, call: Call) -> list[Step]:
     if d.verdict == "named":
         steps = carried(d, call) or possible_links(d, call)
         steps = steps or [Step(f"Generate the code of the extended model, {WHERE}:", code)]
-        return [*steps, Step(f"{_REMAINS} {_LOOK}")] if beside(d) else steps
+        return [_remaining(d), *steps] if beside(d) else steps
     if no_arm(d):
         return possible_links(d, call)
     text = f"Use the model as described, with its parameters from these records; its code, {WHERE}:"
     return [Step(text, code)]
+
+
+def _remaining(d: Diagnosis) -> Step:
+    """What the causes leave, and how large that is."""
+    sizes = listed(repeating_sizes(d).values())
+    said = _REMAINS.format(sizes=f", about {sizes} (RMS)" if sizes else "")
+    return Step(f"{said} {_LOOK}", warns=True)
 
 
 def whole_json(d: Diagnosis, call: Call) -> dict[str, Any]:

@@ -5,9 +5,13 @@ Noise is what differs between the periods of a motion, here as in the lack of fi
 
 from __future__ import annotations
 
+import numpy as np
+
+from modelgen.charts import number
 from modelgen.identification import Identification, Validation
 from modelgen.identification.beside_noise import Lacking, beside_noise, noise_known
 
+SOME = 2.0  # times the mean square of noise: more than sound models leave of most logs
 _LACKING = (
     "An error that is several times the noise says that the model lacks something; this names the cause."
 )
@@ -29,13 +33,16 @@ def said_of_noise(found: Identification) -> tuple[bool, str]:
     """Whether the model clearly lacks something, by how much the error is larger than the noise, and what is
     said of it before the command that names it.
     """
+    if any(isinstance(doubt, Lacking) for doubt in found.doubts):
+        return True, "This names what the model lacks:"
     known = None if found.test is None else beside_noise(found.test)
     if known is None or found.test is None:
         return False, _LACKING
     where = found.arm.coordinate_names[known.joint]
     if not known.far:
         less = ", and less elsewhere" if len(found.test.rmse) > 1 else ""
-        return False, f"The error is {known.times:z.2g} times the noise at {where}{less}. {_WHETHER}"
+        said = f"The error is {known.times:z.2g} times the noise at {where}{less}."
+        return False, f"{said}{_repeating(found)} {_WHETHER}"
     said = f"The error at {where} is {known.times:.0f} times the noise"
     if known.steps:
         theirs = (
@@ -43,6 +50,17 @@ def said_of_noise(found: Identification) -> tuple[bool, str]:
             "accelerations and can make it; a lower cut-off tells"
         )
         return False, f"{said}: {theirs}. {_WHETHER}"
-    if any(isinstance(doubt, Lacking) for doubt in found.doubts):
-        return True, "This names what the model lacks:"
     return True, f"{said}: the model lacks something. This names it:"
+
+
+def _repeating(found: Identification) -> str:
+    """What the model leaves alike in the periods of the training records, where that is more than noise."""
+    fit = found.remains
+    if fit is None or not (fit.statistic > SOME).any():
+        return ""
+    worst = int(np.nanargmax(fit.statistic))
+    times, where = number(float(fit.statistic[worst]), 2), found.arm.coordinate_names[worst]
+    return (
+        f" In the training records {times} times the mean square of noise repeats at {where}: deviations do "
+        "not hold that."
+    )

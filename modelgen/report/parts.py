@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import compress
 from typing import Any, ClassVar
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -100,14 +101,28 @@ class Grid(Part):
 
     def values(self) -> Mapping[str, Any]:
         """For the template."""
-        looks = ["n" if side == "right" else "u" if head == "unit" else "" for head, side in self.heads]
-        heads = [{"text": _head(head), "look": "n" if side == "right" else ""} for head, side in self.heads]
+        columns, cells_of = self._columns()
+        looks = ["n" if side == "right" else "u" if head == "unit" else "" for head, side in columns]
+        heads = [{"text": _head(head), "look": "n" if side == "right" else ""} for head, side in columns]
         rows = [
-            [_cell(cell, look, head) for cell, look, (head, _) in zip(row, looks, self.heads, strict=True)]
-            for row in self.rows
+            [_cell(cell, look, head) for cell, look, (head, _) in zip(row, looks, columns, strict=True)]
+            for row in cells_of
         ]
         looks_of_all = {"folds": self.folds, "beside": self.beside, "long": self.long}
         return {"caption": self.caption, "heads": heads, "rows": rows, **looks_of_all}
+
+    def _columns(self) -> tuple[list[tuple[str, str]], list[list[str | tuple[str, str]]]]:
+        """Heads and rows. Unit "1" is not shown, and a column of units that has none is left out."""
+        names = [head for head, _ in self.heads]
+        rows = [
+            ["" if name == "unit" and cell == "1" else cell for name, cell in zip(names, row, strict=True)]
+            for row in self.rows
+        ]
+        kept = [
+            name != "unit" or not rows or any(column)
+            for name, column in zip(names, zip(*rows, strict=True) if rows else names, strict=True)
+        ]
+        return list(compress(self.heads, kept)), [list(compress(row, kept)) for row in rows]
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,16 @@ def rankings(arm: Arm, turns: History) -> list[tuple[str, list[Sequence[str]]]]:
     ]
 
 
+def strongest(arm: Arm, turns: History) -> str:
+    """The first turn's candidate with most evidence, and why it is no cause; empty where none was tried."""
+    if not turns or not turns[0]:
+        return ""
+    best = max(turns[0], key=lambda r: r.delta_bic)
+    why = _REFUSED.get(best.refused, "")
+    said = f"of {len(turns[0])} the most evidence has {best.effect} at {place_of(arm, best.joint)}"
+    return f"{said}, delta BIC {best.delta_bic:z.1f}{f': {why}' if why else ''}"
+
+
 def _rows(arm: Arm, turn: Sequence[Ranked]) -> list[Sequence[str]]:
     """The candidates of one turn with their evidence, the losing ones too."""
     rows: list[Sequence[str]] = []

@@ -1,13 +1,15 @@
-"""The report of a refinement: motion before and after, parameters against where they started."""
+"""The report of a refinement: motion before and after, parameters against start and description."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import compress
 from typing import Any
 
 import numpy as np
 
 from modelgen.charts import Chart, Interval, apart, number, sheet
+from modelgen.functions.nominal import known_base
 from modelgen.identification.output_error.refine import Refined, Refinement
 from modelgen.numeric import Array
 from modelgen.report.call import Call
@@ -37,7 +39,7 @@ _MEASURED = (
     "simulated from their beginning, each from the initial states that suit its parameters best. The parts "
     "are those that were fitted: modelgen simulate --log says how well another motion is met."
 )
-_VAGUE = "Nothing says how far from that they are."
+_NO_INTERVALS = "It did not converge, and no value has an interval."
 
 
 def motion(found: Refinement) -> list[Chart]:
@@ -165,8 +167,21 @@ def _ended(found: Refinement, free: int) -> list[Part | str]:
     return [
         Text([Run(f"It did not converge {steps}: {found.stopped}.", "strong")]),
         Text(headline(found)),
-        Text(f"The values of {tuned} are those of its last step, not of the best fit. {_VAGUE}"),
+        Text(_values(found, tuned)),
     ]
+
+
+def _values(found: Refinement, tuned: str) -> str:
+    """Whose the values of a refinement are that did not converge. tuned: how many of them."""
+    if all(x.value == x.start for x in found.parameters):
+        return (
+            "All values are those of the start: no step brought the simulated motion nearer. Nothing says "
+            "how far they are from the best fit."
+        )
+    return (
+        f"The values of {tuned} are those of its last step, not of the best fit. Nothing says how far from "
+        "that they are."
+    )
 
 
 def _moved(free: list[Any], gained: bool) -> str:
@@ -193,29 +208,45 @@ def _sized(found: Refinement, x: Refined) -> tuple[float, str]:
 
 
 def _pictured(found: Refinement) -> list[Part]:
-    """A picture of every unit of motion: what a parameter moved by, with its interval, beside its start."""
+    """A picture of every unit of motion: what a parameter moved by, with its interval where one is known, and
+    what the description has of it.
+    """
+    nominal = known_base(found.plant.model)
+    free = [x for x in found.parameters if not x.held and np.isfinite(x.per_unit)]
     groups: dict[str, list[Interval]] = {}
-    for x in found.parameters:
-        if not x.std:
-            continue
-        factor, unit = _sized(found, x)
-        size, half = factor * x.moves / x.std, WIDE * factor * x.moves
-        moved = (x.value - x.start) * size
-        groups.setdefault(unit, []).append(Interval(x.name, moved, moved - half, moved + half, 0.0))
+    for x in free:
+        factor, unit = _drawn(found, free, x)
+        size, half = factor * x.per_unit, WIDE * factor * x.moves
+        moved = size * (x.value - x.start)
+        described = size * (nominal[x.name] - x.start) if x.name in nominal else None
+        groups.setdefault(unit, []).append(Interval(x.name, moved, moved - half, moved + half, described))
+    certain = any(x.std for x in free)
+    ring = ", and a ring where the description has it" if any(x.name in nominal for x in free) else ""
     charts = [
         pictured(
             rows,
             f"change of the motion, RMS [{unit}]",
-            "What each parameter moved by, in the motion, with its interval and its start at zero.",
+            f"What each parameter moved by, in the motion{', with its interval' if certain else ''}{ring}.",
             "" if len(groups) == 1 else f"parameters that show in {unit}",
         )
         for unit, rows in groups.items()
     ]
     said = (
-        "How far each parameter went from its start, times what one unit of it moves the motion by (RMS), "
-        "where it shows most: a dot with its 95 % interval, and a ring at the start."
+        "How far each parameter went from its start, which is at zero, times what one unit of it moves the "
+        f"motion by (RMS), where it shows most: a dot{' with its 95 % interval' if certain else ''}{ring}."
+        f"{'' if certain else f' {_NO_INTERVALS}'}"
     )
     return [Text(said), Block(charts)] if charts else []
+
+
+def _drawn(found: Refinement, free: Sequence[Refined], x: Refined) -> tuple[float, str]:
+    """Factor and unit of a parameter in the picture: those of the table where deviations are known."""
+    if x.std:
+        return _sized(found, x)
+    units = found.plant.arm.coordinate_units
+    own = units[x.shown_by]
+    moved = max(y.per_unit * abs(y.value - y.start) for y in free if units[y.shown_by] == own)
+    return small(moved, own)
 
 
 def _uncertain(found: Refinement) -> list[Part]:

@@ -53,11 +53,22 @@ def _folded_in(call: Call, converged: bool) -> tuple[str, str]:
 def _elsewhere(call: Call, found: Refinement) -> tuple[str, str]:
     """Where another refinement begins, of one that found nothing."""
     text = "this says nothing of the parameters: generate no code by it"
+    if found.effort and words_of(call.options, ("parameters",)):  # it began at values of a fit
+        often = "begin the simulation anew more often, or take another part of the record"
+        again = call.refining_again("again", _shorter(call, found))
+        return f"{text}. {sentence(often)}{f' This begins anew more often, {WHERE}' if again else ''}", again
     near = "begin nearer, by --parameters; or with a shorter --window, or another part of the record"
     fit = call.identifying("identified", call.description) if found.effort else ""
     if not fit:
         return f"{text}. {sentence(near)}", ""
     return f"{text}. Identify the parameters, and {near}; this identifies them, {WHERE}", fit
+
+
+def _shorter(call: Call, found: Refinement) -> float:
+    """Half the window [s]; of a record that was simulated from end to end, a twentieth."""
+    window = getattr(call.options, "window", None)
+    length = max(float(t[-1] - t[0]) for t in found.t)
+    return float(f"{window / 2.0 if window else length / 20.0:.2g}")
 
 
 def _from_start(call: Call) -> tuple[str, str]:

@@ -161,7 +161,7 @@ def test_units_are_guessed_and_marked_as_guesses() -> None:
         "motor_current": 3e3 * q,
         "drive_temp": 30 + q,
     }
-    table |= {"encoder": np.round(1e4 * q), "state": q}
+    table |= {"encoder": np.round(1e4 * q), "homed_pos": np.round(1e4 * q) - 211.35, "state": q}
     found = mg.inspect_log(table)
     guesses = {c["name"]: c["unit_guess"] for c in found.to_json()["channels"]}
     assert guesses == {
@@ -170,6 +170,7 @@ def test_units_are_guessed_and_marked_as_guesses() -> None:
         "motor_current": "mA",
         "drive_temp": "degC",
         "encoder": "counts",
+        "homed_pos": "counts",
         "state": None,
     }
     assert all(c.unit == "" for c in found.channels)

@@ -55,6 +55,7 @@ CONSTANTS = {
         "SECANTS": ACCURACY,
         "SETTLED": BUDGET,
     },
+    "equations/band.py": {"TURNS": BUDGET, "CLOSE": ACCURACY},
     "equations/effort_errors.py": {"SEED": SEED, "HALVINGS": ACCURACY},
     "equations/position_errors.py": {"SEED": SEED, "THIRD": FORMULA},
     "equations/prior.py": {"NOTHING": ROUNDING},

@@ -46,6 +46,7 @@ def test_a_table_fits_and_breaks_no_word(
     assert max(map(len, lines)) <= width
     words = {word for cell in CAUSE.values() for word in cell.split()}
     assert words <= {word for line in lines for word in line.split()}
+    assert not lines[-1]  # what is printed next stands apart
 
 
 def test_a_title_is_as_wide_as_the_terminal_and_no_quantity_is_torn(

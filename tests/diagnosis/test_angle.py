@@ -14,7 +14,7 @@ from modelgen.description import load
 from modelgen.diagnosis.candidates.candidate import Candidate, candidates
 from modelgen.diagnosis.candidates.columns import candidate_columns
 from modelgen.diagnosis.candidates.search import Search, bracket
-from modelgen.diagnosis.equations import Equations, estimated, rows_twice, settings_for
+from modelgen.diagnosis.equations import Equations, estimated, settings_for, settled_rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import records
@@ -35,7 +35,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[Equations, Array, C
     found = records(arm, [str(folder / "train_a.csv")], [str(folder / "test.csv")], None, USUAL.dataset)
     model, evaluator = build_model(arm), Evaluator(arm)
     prepared = [prepare(r, choose(list(found), settings_for(found, None, USUAL))) for r in found]
-    rows = rows_twice(evaluator, model, prepared, estimated(model, USUAL.equations))
+    rows = settled_rows(evaluator, model, prepared, estimated(model, USUAL.equations))
     equations = Equations(model, evaluator, rows, [None] * len(rows), USUAL)
     base = equations.base(weighted_fit(rows, equations.columns))
     pool = candidates(equations)

@@ -18,7 +18,7 @@ from modelgen.description import Arm, load
 from modelgen.diagnosis.candidates.candidate import Candidate, candidates
 from modelgen.diagnosis.candidates.fitted import FittedCandidate
 from modelgen.diagnosis.candidates.search import Search
-from modelgen.diagnosis.equations import Equations, estimated, rows_twice, settings_for
+from modelgen.diagnosis.equations import Equations, estimated, settings_for, settled_rows
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.experiment.discrimination import Discriminator, Hypothesis, hypothesis
 from modelgen.diagnosis.experiment.experiment import Experiment
@@ -79,7 +79,7 @@ class Scene:
         """Both members fitted to the records."""
         chosen = choose(records, settings_for(records, None, USUAL))
         prepared = [prepare(r, chosen) for r in records]
-        rows = rows_twice(self.evaluator, self.model, prepared, estimated(self.model, USUAL.equations))
+        rows = settled_rows(self.evaluator, self.model, prepared, estimated(self.model, USUAL.equations))
         period = round(PERIOD / records[0].step)
         periods = [period // chosen.factor if period % chosen.factor == 0 else None for _ in records]
         equations = Equations(self.model, self.evaluator, rows, periods, USUAL)

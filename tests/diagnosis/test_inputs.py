@@ -280,14 +280,14 @@ def test_a_joint_at_rest_cannot_show_what_is_asked_for(logs: Path, tmp_path: Pat
     more = "--effect", "stribeck_friction:3"
     answer = ask(logs, tmp_path / "out", *more, train=train, test=(str(logs / "test.csv"),))
     assert answer.code == 2
-    assert "j3 rests in the training records, which cannot show it" in answer.said
+    assert "bucket rests in the training records, which cannot show it" in answer.said
     assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        ("coulomb_friction:2", "the model of j2 has it already"),
+        ("coulomb_friction:2", "the model of stick has it already"),
         ("viscous_friction", "the model of the arm has it already"),
         ("stribek_friction", "did you mean 'stribeck_friction'"),
         ("stribek", "did you mean 'stribeck_friction'"),

@@ -13,6 +13,7 @@ from modelgen.diagnosis.equations import position_errors
 from modelgen.diagnosis.equations.position_errors import blurred, counts, feigned, rounded
 from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import diagnose
+from modelgen.identification.rounded_positions import prepared_anew
 from modelgen.numeric import Array
 
 LIMITS = USUAL.equations
@@ -114,3 +115,9 @@ def test_noise_without_steps_is_seen_by_instruments_and_drawn_as_large() -> None
 def test_the_other_period_has_the_same_phase() -> None:
     assert list(other_period(7, 3)) == [3, 4, 5, 6, 1, 2, 3]
     assert list(other_period(4, 3)) == [3, -1, -1, 0]
+
+
+def test_a_record_that_is_read_anew_runs_on_from_what_it_did() -> None:
+    """Heat that a drive keeps from one record to the next is no error of the positions."""
+    first, second = (prepare(coarse(record)) for record in three(None, 1, 0.0)[:2])
+    assert prepared_anew(replace(second, before=first), 0).before is first

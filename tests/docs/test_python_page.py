@@ -62,7 +62,7 @@ def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     assert "experiment" in code
     shutil.copytree(ROOT / "examples" / "diagnosis", tmp_path / "examples" / "diagnosis")
     (said,) = re.findall(r"print\(found\)  # (.*) \.\.\.", code)
-    assert "load_dependent_friction at j2" in said
+    assert "load_dependent_friction at stick" in said
     assert said in run(code, tmp_path)
     assert (tmp_path / "build" / "digger" / "report.html").exists()
 

@@ -201,7 +201,7 @@ def test_the_page_can_be_used_by_everybody(
         inner = window.frames[-1]
         assert violations(window) == []
         inner.evaluate("document.querySelectorAll('details').forEach(d => d.open = true)")
-        inner.wait_for_function("document.querySelectorAll('#table tr').length > 1")
+        inner.locator("#table tr").nth(1).wait_for(state="attached")
         assert violations(window) == []
         inner.locator("#table .scroll").focus()
         assert inner.evaluate("document.activeElement.getAttribute('aria-label')") == (

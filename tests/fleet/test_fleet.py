@@ -90,7 +90,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def out(file: Path) -> Path:
     """Of an uninterrupted call."""
     answer = called(file, file.parent / "out", "--jobs", "2")
-    assert answer.returncode == 0, answer.stderr
+    assert answer.returncode == 1, answer.stderr
     assert "5 units: 1 cause named, 1 nothing missing, 3 failed" in answer.stdout
     assert answer.stderr.count("failed:") == 3
     return file.parent / "out"
@@ -171,7 +171,7 @@ def test_killed_in_the_middle_and_taken_up_on_a_cluster(file: Path, out: Path, t
     (other / "units" / ".two.new").mkdir(exist_ok=True)  # what it was writing
     with cluster(tmp_path) as address:
         answer = called(file, other, "--dask", address, "--json")
-    assert answer.returncode == 0, answer.stderr
+    assert answer.returncode == 1, answer.stderr
     said = json.loads(answer.stdout)
     assert said["kept"] == len(there)
     assert said["verdicts"]["failed"] == 3
@@ -207,6 +207,13 @@ def test_what_has_not_changed_is_kept_and_what_has_is_made_anew(
     more = json.loads(here(again / "fleet.yaml", again / "out", "--json", "--again", "-j", "1").stdout)
     assert more["kept"] == 2
     assert more["failed"] == said["failed"]
+    for name in ("broken", "without"):
+        shutil.rmtree(again / "logs" / name)
+    text = FLEET[: FLEET.index("units:")] + FLEET[FLEET.index("patterns:") :]
+    (again / "fleet.yaml").write_text(text, encoding="utf-8")
+    answer = here(again / "fleet.yaml", again / "out", "--json")
+    assert answer.returncode == 0  # of a fleet in which none failed
+    assert json.loads(answer.stdout)["kept"] == 2
 
 
 def test_a_unit_that_ended_its_process_is_tried_again(file: Path, tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from modelgen.charts import Chart, number, sheet
 from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.effects import CATALOGUE, Definition
 from modelgen.jobs import one_thread
+from modelgen.report.in_a_log import LEAST, in_records, seen_by
 from modelgen.report.law_figures import judged_joint, law_charts, law_size
 from modelgen.report.words import finding, law, listed, sentence
 
@@ -29,19 +30,20 @@ DOCS = ROOT / "docs"
 KEPT = RUNS / "gallery.jsonl"
 SIZE = (350, 210)  # pixel: two beside each other on a page of the documentation, one on a telephone
 GROUPS = ("single", "coarse", "link_side")  # of a blind run, with one effect of the catalogue hidden
-LEAST = 0.005  # of the evidence, that is worth a number
 ENOUGH = USUAL.selection.rival_margin_bic  # of a test that separates two causes
 HEAD = """\
 # Gallery of effects
 
 *What does each effect of the [catalogue](effects.md) do to a log, what looks like it, and how do I tell
-the two apart?* The records are of simulated arms: `direct2` has two joints with geared motors, `levered2`
-two that screws turn by levers, `mixed2` one of each, `mixed3` a slewing joint with a geared motor and two
-with screws and levers. How often [the blind run](diagnosis.md) found an effect is counted over all its arms
-in which that effect alone was hidden: those with fine encoders at three strengths, which are the ones in
-[its own table](diagnosis.md#by-effect), and besides those with coarse encoders and, of backlash and
-flexibility, the further ones with fine encoders at the joints. `taut_hose`, a hose that resists two joints
-once it is taut, is hidden in the blind run and is no effect of the catalogue.
+the two apart?* Every entry has a law, what simulated records show of it, and what separates it from its
+[look-alikes](glossary.md); [below](#how-these-records-were-made): which arms, and what is counted.
+"""
+MADE = """\
+## How these records were made
+
+The records are of simulated arms: `direct2` has two joints with geared motors, `levered2` two that screws
+turn by levers, `mixed2` one of each, `mixed3` a slewing joint with a geared motor and two with screws and
+levers. The plant shares no code with modelgen.
 
 The first picture of an entry is the law with the values of an example. The other two are
 of simulated records in which the effect was hidden, over what shows it best: what the rest of the model
@@ -52,7 +54,15 @@ in which it explains most.
 The evidence of a look-alike is what it explains of the same records in place of the effect that is there: one
 near 100 % cannot be separated from it by them. Of the tests on the bench, the one is named of which `modelgen
 diagnose` expects most evidence (delta BIC), in the noise of these records; where none has enough of it, the
-experiment that shows the look-alike. Written by `make gallery`; the plant shares no code with modelgen.
+experiment that shows the look-alike.
+
+How often [the blind run](diagnosis.md) found an effect is counted over all its arms in which that effect
+alone was hidden: those with fine encoders at three strengths, which are the ones in
+[its own table](diagnosis.md#by-effect), and besides those with coarse encoders and, of backlash and
+flexibility, the further ones with fine encoders at the joints. `taut_hose`, a hose that resists two joints
+once it is taut, is hidden in the blind run and is no effect of the catalogue.
+
+Written by `make gallery`.
 """
 
 
@@ -129,7 +139,7 @@ def page(lines: Mapping[str, Line], run: Sequence[Line]) -> str:
     """The page, from what was kept of every effect of the catalogue. run: lines of a blind run."""
     index = [f"- [{name}](#{name}): {effect.text}" for name, effect in CATALOGUE.items()]
     entries = ["\n".join(_entry(effect, lines[name], run)) for name, effect in CATALOGUE.items()]
-    return "\n".join([HEAD, *index, "", "\n\n".join(entries)]) + "\n"
+    return "\n".join([HEAD, *index, "", "\n\n".join([*entries, MADE])])
 
 
 def _entry(effect: type[Definition], line: Line, run: Sequence[Line]) -> Iterator[str]:
@@ -151,13 +161,7 @@ def _entry(effect: type[Definition], line: Line, run: Sequence[Line]) -> Iterato
 
 
 def _log(line: Line) -> str:
-    encoder = "" if line["encoder"] == "motor" else ", with encoders at the joints"
-    place, unit = line["place"], line["unit"]
-    return (
-        f"Arm `{line['arm']}`{encoder}. {line['found']} That is {line['size']} {unit} of the {line['whole']} "
-        f"{unit} (RMS) of {place}; with it in the model the error there falls from {line['before']} to "
-        f"{line['after']} {unit} on a record that the fit has not seen."
-    )
+    return f"Arm `{line['arm']}`{seen_by(line)}. {in_records(line)}"
 
 
 def _counted(name: str, run: Sequence[Line]) -> str:

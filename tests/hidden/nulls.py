@@ -24,7 +24,7 @@ from modelgen.dataset.processing.periods import period_of, rows_in, with_whole_r
 from modelgen.description import load
 from modelgen.diagnosis.adequacy.lack_of_fit import ratios
 from modelgen.diagnosis.adequacy.smooth_functions import SHAPE, log_evidence, smooth_functions
-from modelgen.diagnosis.equations import Equations, estimated, rows_twice, settings_for, with_errors
+from modelgen.diagnosis.equations import Equations, estimated, settings_for, settled_rows, with_errors
 from modelgen.diagnosis.evidence.system import System
 from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import records
@@ -59,7 +59,7 @@ def of_null(arm: str, seed: int, train: int) -> dict[str, float]:
     lengths = [period_of(record, None) for record in found]
     chosen = with_whole_rows(choose(list(found), settings_for(found, None, USUAL)), lengths)
     model, evaluator = build_model(described), Evaluator(described)
-    rows = rows_twice(
+    rows = settled_rows(
         evaluator, model, [prepare(r, chosen) for r in found], estimated(model, USUAL.equations)
     )
     periods = [rows_in(p, chosen) for p in lengths]

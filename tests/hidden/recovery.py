@@ -11,7 +11,7 @@ from hidden.cases import RECORDS, TEST, Bench, Case
 from modelgen.dataset import choose, prepare
 from modelgen.dataset.processing.periods import period_of, with_whole_rows
 from modelgen.description import load
-from modelgen.diagnosis.equations import estimated, rows_twice, settings_for
+from modelgen.diagnosis.equations import estimated, settings_for, settled_rows
 from modelgen.diagnosis.options.thresholds import USUAL
 from modelgen.diagnosis.pipeline import records
 from modelgen.evaluation import Evaluator
@@ -34,7 +34,7 @@ def reachable(case: Case, folder: Path, cutoff: float | None = None) -> list[flo
     lengths = [period_of(record, None) for record in found[:-1]]
     settings = with_whole_rows(choose(found[:-1], settings_for(found, cutoff, USUAL)), lengths)
     model, evaluator = build_model(arm, EVALUATED), Evaluator(arm)
-    *train, test = rows_twice(
+    *train, test = settled_rows(
         evaluator, model, [prepare(r, settings) for r in found], estimated(model, USUAL.equations)
     )
     theta = weighted_fit(train, [r.columns for r in train])

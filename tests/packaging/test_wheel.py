@@ -77,7 +77,8 @@ def test_the_wheel_carries_the_templates_the_arms_and_the_licence(
         names = set(archive.namelist())
         metadata = next(name for name in names if name.endswith(".dist-info/METADATA"))
         assert "License-Expression: Apache-2.0" in archive.read(metadata).decode()
-    wanted = templates | {"modelgen/_arms.yaml", "modelgen/py.typed"}
+    wanted = templates | {"modelgen/_arms.yaml", "modelgen/py.typed", "modelgen/_gallery.jsonl"}
+    wanted |= {f"modelgen/_gallery/{name}" for name in files_below(checkout / "docs" / "gallery")}
     assert wanted <= names
     assert any(name.endswith(".dist-info/licenses/LICENSE") for name in names)
     # Nothing of the checkout but the package: no tests, no generated code at the top level.
@@ -87,12 +88,14 @@ def test_the_wheel_carries_the_templates_the_arms_and_the_licence(
 def test_the_installed_package_finds_its_own_resources(installation: Installation, tmp_path: Path) -> None:
     code = (
         "import modelgen, modelgen.resources as found;"
-        "print(modelgen.__file__, found.templates_folder(), found.shipped_arms(), sep='\\n')"
+        "print(modelgen.__file__, found.templates_folder(), found.shipped_arms(), sep='\\n');"
+        "print(*found.gallery(), sep='\\n')"
     )
     done = installation.python("-c", code, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     package = installation.target / "modelgen"
-    expected = [package / "__init__.py", package / "_templates", package / "_arms.yaml"]
+    names = ("__init__.py", "_templates", "_arms.yaml", "_gallery", "_gallery.jsonl")
+    expected = [package / name for name in names]
     assert done.stdout.splitlines() == [str(path) for path in expected]
 
 

@@ -6,7 +6,7 @@ import time
 from dataclasses import replace
 from html import escape, unescape
 from pathlib import Path
-from urllib.parse import unquote, urlparse
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from diagnosis_support import ARM, three
 
 from modelgen.api.diagnosis import Diagnosis as Shown
 from modelgen.api.results import Table
-from modelgen.charts import drawn, number
+from modelgen.charts import chart_of, drawn, number
 from modelgen.description import DirectDrive, NoDrive
 from modelgen.diagnosis.adequacy.smooth_functions import Likeness, SmoothFunction
 from modelgen.diagnosis.extended import Estimate
@@ -25,16 +25,18 @@ from modelgen.effects import CATALOGUE
 from modelgen.effects.placement import titled
 from modelgen.identification.objects import Impossible
 from modelgen.options import DiagnosisOptions
-from modelgen.report import cause_parts
+from modelgen.report import in_a_log
 from modelgen.report.call import Call
+from modelgen.report.complete import complete
 from modelgen.report.diagnosis import report
 from modelgen.report.diagnosis_answers import answers
 from modelgen.report.diagnosis_figures import binned, efforts, replayed, residuals
 from modelgen.report.diagnosis_sentences import doubted, headline, remains, worth
 from modelgen.report.following import following
+from modelgen.report.in_a_log import PARTS
 from modelgen.report.law_figures import judged_joint, law_charts, seen
 from modelgen.report.opening import hardly_moved, opening
-from modelgen.report.page import page
+from modelgen.report.page import Block, Folded, page
 from modelgen.report.words import finding, legible, sentence
 from modelgen.simulation.windows import Windows
 
@@ -279,7 +281,7 @@ def test_the_page_is_printed_on_few_sheets_and_whole(many: bool, found: Diagnosi
                 shown = folded.locator("table, p, ul").first.is_visible()
                 title = folded.locator("summary").text_content() or ""
                 assert shown != title.startswith(
-                    ("The candidates", *(f"Parameters of {e}" for e in CATALOGUE))
+                    ("The candidates", "What it does to a log", *(f"Parameters of {e}" for e in CATALOGUE))
                 )
 
 
@@ -685,6 +687,38 @@ def test_a_page_without_a_cause_answers_the_same_questions(
     assert ("form" in said) == (verdict == "suspected")
 
 
+def test_where_nothing_is_missing_the_page_says_what_was_checked(tmp_path: Path) -> None:
+    """A row of marks; what repeats and is as large as it says shows, what is a third of that does not."""
+    records, path = three(None, 1, 0.0), tmp_path / "report.html"
+    d = diagnose(ARM, records)
+    assert d.verdict == "nothing_missing"
+    path.write_text(report(d), encoding="utf-8")
+    with opened(path, 400) as window:
+        row = window.locator("dl.answer dd").nth(1)
+        names = [text.strip(" ✓\n") for text in row.locator(".marks button").all_inner_texts()]
+        assert names == ["no lack of fit", "no candidate", "sensitive", "test record"]
+        assert row.locator(".marks li.yes").count() == len(names)
+        fits, _, sizes, unseen = row.locator(".tip").all_text_contents()
+        assert violations(window) == []
+    assert d.lack_of_fit is not None
+    assert f"{d.lack_of_fit.statistic:.2f}, threshold {d.lack_of_fit.threshold:.2f}" in fits
+    assert re.search(r"is 1(\.\d)? times the noise", unseen)
+    (size,) = re.findall(r"([\d.]+) of [\d.]+ A at j1", sizes)
+    wave = np.sin(2 * np.pi * 1.3 * records[0].t)[:, None] * np.array([1.0, 0.0])  # A, of any period of 10 s
+    for times, shows in ((2.0, True), (0.3, False)):
+        added = times * np.sqrt(2.0) * float(size) * wave
+        again = [replace(r, input=r.input + added) for r in records if r.input is not None]
+        fit = diagnose(ARM, again).lack_of_fit
+        assert fit is not None
+        (whole,) = [t for t in fit.tests if (t.kind, t.joint) == ("whole", 0)]
+        assert whole.found == shows
+    free = replace(d, verdict="suspected")
+    assert complete(free) is None
+    unknown = complete(replace(d, lack_of_fit=None))
+    assert unknown is not None
+    assert [look for look, _, _ in unknown.marks] == ["unasked", "yes", "unasked", "unasked"]
+
+
 def test_what_is_suspected_is_no_fact_and_has_a_next_step(found: Diagnosis, tmp_path: Path) -> None:
     """With a command, on the first screen, also where four are suspected."""
     d, path = other(found, "suspected"), tmp_path / "report.html"
@@ -892,26 +926,45 @@ def test_another_joint_is_called_by_its_name_and_by_its_number_in_json(found: Di
     assert to_json(d)["causes"][0]["parameters"]["other"]["value"] == 1.0
 
 
-def test_a_cause_leads_to_what_the_page_and_the_gallery_say_of_it(
+def test_a_cause_leads_to_what_the_page_has_of_it_with_what_the_gallery_shows(
     found: Diagnosis, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By links to what is there; where the documentation is not built the page says where it is."""
-    built = tmp_path / "gallery.html"
-    built.write_text('<h2 id="stribeck_friction">', encoding="utf-8")
-    monkeypatch.setattr(cause_parts, "gallery", lambda: built)
-    text = report(found)
-    law, rest = text[text.index('id="cause0"') :].split('id="about-stribeck_friction"')
-    for part in (law, rest):
-        (target,) = re.findall(r'href="(file:[^"]+)">What it does to a log<', part)
-        where, _, anchor = target.partition("#")
-        gallery = Path(unquote(urlparse(where).path)).read_text(encoding="utf-8")
-        assert anchor == "stribeck_friction"
-        assert 'id="stribeck_friction"' in gallery
-    assert 'href="#about-stribeck_friction"' in law
-    monkeypatch.setattr(cause_parts, "gallery", lambda: None)
+    """By links within the page; of an effect that the gallery lacks, or without it, as far as it goes."""
+    path = tmp_path / "report.html"
+    path.write_text(report(found), encoding="utf-8")
+    with opened(path) as page:
+        page.get_by_role("link", name="More about it, and what it does to a log").click()
+        assert page.url.endswith("#about-stribeck_friction")
+        section = page.locator("section", has=page.get_by_role("heading", name="About stribeck_friction"))
+        fold = section.locator("details", has_text="What it does to a log")
+        assert not fold.locator("svg.chart").first.is_visible()
+        fold.locator("summary").click()
+        assert fold.locator("svg.chart").count() == len(PARTS)
+        assert fold.locator("svg.chart").last.is_visible()
+        said = fold.inner_text()
+    for words in ("simulated arm", "on a record that the fit has not seen", "law of the cause", "59 %"):
+        assert words in said
+    assert 'href="file:' not in report(found)
+    monkeypatch.setattr(in_a_log, "gallery", lambda: None)
     alone = report(found)
-    assert 'href="file:' not in alone
-    assert "What it does to a log: the gallery of the documentation" in alone
+    assert "What it does to a log" not in alone
+    assert 'id="about-stribeck_friction"' in alone
+
+
+@pytest.mark.parametrize("effect", CATALOGUE)
+def test_the_charts_of_the_gallery_are_those_of_its_files(effect: str, checkout: Path) -> None:
+    """Whole, with their titles, their legends and their texts, which the page's own style draws."""
+    (fold,) = in_a_log.in_a_log(effect)
+    assert isinstance(fold, Folded)
+    (block,) = [part for part in fold.parts if isinstance(part, Block)]
+    assert len(block.charts) == len(PARTS)
+    for part, (title, chart) in zip(PARTS, block.charts, strict=True):
+        text = (checkout / "docs" / "gallery" / f"{effect}-{part}.svg").read_text(encoding="utf-8")
+        assert title
+        assert ElementTree.fromstring(chart).attrib["class"] == "chart"
+        assert chart in text
+        assert "<style" not in chart
+        assert {label for _, label, _ in block.legend} >= {label for _, label, _ in chart_of(text)[2]} > set()
 
 
 def test_a_joint_that_hardly_moves_and_what_remains_are_said_first(found: Diagnosis) -> None:
@@ -926,5 +979,5 @@ def test_a_joint_that_hardly_moves_and_what_remains_are_said_first(found: Diagno
     )
     assert "Something deterministic remains beside it." in opening(left)
     steps = [step.text for step in following(left, Call(left.arm))]
-    assert any(text.startswith("Something remains that is not named") for text in steps)
+    assert steps[0].startswith("Something remains that is not named")  # how far to trust what follows
     assert not any("remains" in step.text for step in following(found, Call(found.arm)))

@@ -155,6 +155,9 @@ def test_a_cause_that_harms_the_test_record_is_left_out_of_what_is_proposed(benc
     first, *_ = commands(bench / "beside others" / "report.html")
     assert first[:2] == ["generate", "beside others/bench_extended.yaml"]
     (step,) = replaying(d.found, replace(d.call, folder=Path("beside others")))
+    said = unescape((bench / "beside others" / "report.html").read_text(encoding="utf-8"))
+    window = step.command.partition("--window ")[2].split()[0]
+    assert f"modelgen simulate --log with --window {window} takes finer steps" in said
     assert shlex.split(step.command)[1:3] == ["simulate", "beside others/bench_extended.yaml"]
 
 

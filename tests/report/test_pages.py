@@ -9,7 +9,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser_support import SCHEMES, WIDTHS, letters, on_few_sheets, on_paper, opened, violations, wider
+from browser_support import (
+    SCHEMES,
+    WIDTHS,
+    letters,
+    on_few_sheets,
+    on_paper,
+    opened,
+    printed,
+    violations,
+    wider,
+)
 from diagnosis_support import ARM, three
 from matplotlib.image import imread
 from playwright.sync_api import Locator
@@ -22,6 +32,7 @@ from modelgen.calibration.lever import lever_of
 from modelgen.fleet.overview import overview
 from modelgen.report.page import Command, Grid
 from modelgen.report.page import page as paged
+from modelgen.report.parts import html
 from modelgen.report.refinement import motion
 
 pytestmark = pytest.mark.xdist_group("pages")
@@ -144,6 +155,17 @@ def test_a_page_is_printed_on_few_sheets_and_whole(name: str, pages: Mapping[str
         on_few_sheets(page, 1)
 
 
+def test_a_joint_has_one_row_of_the_motion_on_paper(pages: Mapping[str, Path]) -> None:
+    """So that the limits are on the same sheet, on one of US Letter too, 6 % shorter than one of A4."""
+    with opened(pages["excite"]) as page:
+        _, filled = printed(page)
+        assert filled < 0.9
+        with on_paper(page):
+            boxes = [box for box in map(Locator.bounding_box, page.locator("figure").all()) if box]
+    assert len(boxes) == 12
+    assert [len({round(box["y"]) for box in boxes[k : k + 4]}) for k in (0, 4, 8)] == [1, 1, 1]
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_table_shows_at_its_edge_that_it_goes_on(scheme: str, pages: Mapping[str, Path]) -> None:
     """By a shade at the right, then at the left; none at an end, and none of a table that has room."""
@@ -192,6 +214,18 @@ def test_what_a_head_has_in_brackets_stays_on_one_line(tmp_path: Path) -> None:
             assert len(_lines(head, "95")) == 1
             assert _lines(head, "95") == _lines(head, "%)")
             assert _lines(head, "less") != _lines(head, "95")
+
+
+def test_a_number_without_a_unit_has_no_unit_beside_it() -> None:
+    """Nor has a table a column of units that is empty."""
+    heads = (("parameter", "left"), ("unit", "left"))
+
+    def shown(*units: str) -> list[str]:
+        (table,) = html([Grid("Parameters", heads, [("k", unit) for unit in units])])
+        return re.findall(r"<t[hd](?: [^>]*)?>([^<]*)<", table)
+
+    assert shown("1", "") == ["parameter", "k", "k"]
+    assert shown("1", "m") == ["parameter", "unit", "k", "", "k", "m"]
 
 
 def test_names_beside_their_values_are_whole_on_a_phone(pages: Mapping[str, Path]) -> None:
@@ -421,6 +455,26 @@ def test_the_words_of_a_refinement_agree_with_how_it_ended() -> None:
         assert ("not converged" in repr(result)) == bool(stopped)
 
 
+def test_what_began_at_identified_values_and_found_nothing_begins_anew_more_often(tmp_path: Path) -> None:
+    """To identify the parameters is what was done; values that no step left are those of the start."""
+    arm = mg.load_arms()["gravity_link2"]
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
+    done = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]})
+    start = tuple(replace(x, value=x.start) for x in done.found.parameters)
+    nothing = replace(done.found, parameters=start, stopped="no step", effort=True, before=done.found.after)
+    log, values = tmp_path / "a.csv", tmp_path / "values.yaml"
+    log.touch()
+    call = replace(
+        done.call,
+        train=(str(log),),
+        options=mg.RefinementOptions(parameters=values, window=0.5),
+    )
+    said = re.sub("<[^>]+>", "", Refinement(nothing, call).files()["report.html"])
+    assert "All values are those of the start" in said
+    assert "Identify the parameters" not in said
+    assert f"--log {log} --parameters {values} --window 0.25 --out again" in said
+
+
 def test_no_code_comes_first_of_values_that_the_motion_does_not_determine() -> None:
     """A swing or two in noise show the sum of a pendulum's dry and viscous friction, and hardly either; in
     more noise they show nothing.
@@ -477,6 +531,38 @@ def test_parameters_stand_with_their_intervals_in_a_picture(name: str, pages: Ma
             for span, dot in zip(spans, dots, strict=True):
                 low, high = re.findall(r"[MH]([\d.]+)", span.get_attribute("d") or "")
                 assert float(low) < float(dot.get_attribute("cx") or "nan") < float(high)
+
+
+@pytest.mark.parametrize("converged", [True, False])
+def test_a_refinement_draws_its_parameters_beside_the_description(converged: bool, tmp_path: Path) -> None:
+    """From where they started, at zero; of one that did not converge without intervals."""
+    arm, path = mg.load_arms()["gravity_link2"], tmp_path / "report.html"
+    swing = mg.simulate(arm, q0="20 deg", duration=2.0, rate=200.0)
+    nominal = {x.name: x.start for x in mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]}).found.parameters}
+    start = nominal | {"FV1": 1.5 * nominal["FV1"]}
+    result = mg.refine(arm, {"t": swing.t, "q1": swing.q[:, 0]}, parameters=start)
+    if not converged:
+        uncertain = tuple(replace(x, std=None) for x in result.found.parameters)
+        result.found = replace(result.found, parameters=uncertain, stopped="the errors still fell")
+    path.write_text(result.files()["report.html"], encoding="utf-8")
+    with opened(path) as page:
+        (picture,) = page.locator("svg.rows").all()
+        assert ("no value has an interval" in page.content()) != converged
+        assert ("its 95 % interval" in page.content()) == converged
+        zero = re.findall(r"M([\d.]+)", picture.locator(".grid.zero").get_attribute("d") or "")
+        rows = [
+            tuple(float(mark.get_attribute("cx") or "nan") for mark in picture.locator(look).all())
+            for look in (".dot", ".ring")
+        ]
+        assert rows[0] == pytest.approx(rows[1], abs=1.0)  # pixel: the values of the description are found
+        assert (
+            min(abs(x - float(zero[0])) for x in rows[0])
+            < 1.0
+            < max(abs(x - float(zero[0])) for x in rows[0])
+        )
+        spans = [s.get_attribute("d") or "" for s in picture.locator(".span").all()]
+        ends = [re.findall(r"[MH]([\d.]+)", span) for span in spans]
+        assert converged or all(low == high for low, high in ends)
 
 
 def test_what_moved_is_written_with_the_digits_that_tell_it_from_before(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 LIST = Path(__file__).resolve().parents[1] / "slow.txt"
 # Seconds of processor time of set-up, call and tear-down together.
-LIMIT = 0.25
+LIMIT = 0.15
 
 _TIME = re.compile(r"([\d.]+)s (?:setup|call|teardown) +(\S+\.py::.*)")
 _FUNCTION = re.compile(r"^def (\w+)\(", re.MULTILINE)

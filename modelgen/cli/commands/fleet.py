@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from modelgen.cli.guard import guarded
+from modelgen.cli.guard import CHECK_FAILED, guarded
 from modelgen.cli.options import Dask, Folder, Jobs, Json
 
 # ruff: noqa: PLC0415 - the help is quick
@@ -32,7 +32,10 @@ def fleet(
     code: Code = False,
     as_json: Json = False,
 ) -> None:
-    """Diagnose the logs of many arms as one job, which goes on after an interruption: one table, one page."""
+    """Diagnose the logs of many arms as one job, which goes on after an interruption: one table, one page.
+
+    Exit 1 where a unit could not be diagnosed, all else is written; 2 where none could.
+    """
     from modelgen.cli.output import print_result, progress_bar, say
     from modelgen.fleet.units import load_fleet
 
@@ -63,3 +66,5 @@ def fleet(
                 say(text, command)
     if len(failed) == len(units):
         raise InputError(f"no unit of {file} could be diagnosed; {failed[0]['unit']}: {failed[0]['error']}")
+    if failed:
+        raise typer.Exit(CHECK_FAILED)

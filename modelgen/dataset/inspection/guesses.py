@@ -87,7 +87,7 @@ def guessed_unit(name: str, values: Array) -> str:
     named = unit_in(name, kind)
     if named:
         return named
-    if kind == "position" and np.array_equal(finite, np.rint(finite)) and np.ptp(finite) > TURNS:
+    if kind == "position" and _whole_steps(finite) and np.ptp(finite) > TURNS:
         return "counts"
     largest = float(np.abs(finite).max())
     angle = unit_of_angle(finite)
@@ -100,3 +100,10 @@ def guessed_unit(name: str, values: Array) -> str:
         "torque": "N m",
     }
     return units[kind]
+
+
+@np.errstate(over="ignore")  # a wrong digit makes any number
+def _whole_steps(values: Array) -> bool:
+    """Whether all differ by whole numbers: counts of an encoder, with an offset of any size."""
+    steps = values - values[0]
+    return bool(np.allclose(steps, np.rint(steps), rtol=0.0, atol=1e-6))

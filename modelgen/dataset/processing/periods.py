@@ -231,6 +231,19 @@ def folded(values: NDArray[np.float64], rows: int) -> Array:
     return table.reshape(periods, rows)
 
 
+def by_phase(table: Array) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Of values, a line a period and nan where there is none, at each phase (rows,): squares of their mean
+    times their number, squares of what differs from it, and their number, 0 where fewer than two are there.
+    """
+    there = np.isfinite(table)
+    count = there.sum(axis=0)
+    full = count >= 2
+    values, k = np.where(there & full, table, 0.0), np.where(full, count, 0)
+    mean = values.sum(axis=0) / np.maximum(k, 1)
+    within = np.where(there & full, values - mean, 0.0)
+    return k * mean**2, (within**2).sum(axis=0), k
+
+
 def noise_of(values: Array, usable: NDArray[np.bool_], rows: int) -> tuple[Array, NDArray[np.bool_]]:
     """Values (M,) less their mean over periods at the same phase, with the variance of the noise.
 

@@ -16,6 +16,7 @@ from modelgen.effects.placement import joint_meant
 from modelgen.model.parameters import units_at
 
 FREE_FUNCTION = "a free function"
+_FREE = ("a force ", "a gain ")  # that depends on something
 CLEAR = 2.0  # standard deviations
 HARDLY = 1e-4  # a share beneath which its figure says no more
 
@@ -99,7 +100,8 @@ def form_said(by: FreeForm) -> str:
             f"{number(-by.ahead)} of delta BIC are left for it without the rows at which its joint is "
             f"slowest, where friction changes; {number(-by.most)} is asked"
         )
-    what = by.what if by.error else f"{FREE_FUNCTION} of {by.what}"
+    whole = by.error or by.what.startswith(_FREE)
+    what = by.what if whole else f"{FREE_FUNCTION} of {by.what}"
     if by.pace:
         what = "the same with a size of its own in slow motion"
     elif by.apart:

@@ -18,7 +18,7 @@ from functools import cache, cached_property
 import numpy as np
 from scipy import special
 
-from modelgen.dataset.processing.periods import folded
+from modelgen.dataset.processing.periods import by_phase, folded
 from modelgen.diagnosis.adequacy.null_distribution import NULLS
 from modelgen.diagnosis.adequacy.scatter import Phases, Scatter, parts
 from modelgen.diagnosis.equations import Rows
@@ -107,23 +107,13 @@ class _Sums:
         """A record of one joint, one line a period; `share` of its rows are independent. errors: the same
         of what rounded readings leave alike in every period.
         """
-        there = np.isfinite(table)
-        count = there.sum(axis=0)
-        full = count >= 2
+        between, within, k = by_phase(table)
+        full = k > 0
         if not full.any():
             return
-        values, k = np.where(there & full, table, 0.0), np.where(full, count, 0)
-        mean = values.sum(axis=0) / np.maximum(k, 1)
-        within = np.where(there & full, values - mean, 0.0)
-        sums = Phases(
-            record,
-            k * mean**2,
-            (within**2).sum(axis=0),
-            np.where(full, share, 0.0),
-            share * np.maximum(k - 1, 0),
-            np.where(there & full, errors**2, 0.0).sum(axis=0),
-        )
-        self.phases.append(sums)
+        rounding = np.where(np.isfinite(table) & full, errors**2, 0.0).sum(axis=0)
+        free = np.where(full, share, 0.0), share * np.maximum(k - 1, 0)
+        self.phases.append(Phases(record, between, within, *free, rounding))
 
     @property
     def free_between(self) -> float:

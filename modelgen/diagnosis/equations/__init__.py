@@ -1,6 +1,6 @@
 """The equations y = X b + e of all training records, as wide a band as the encoders allow."""
 
-from modelgen.diagnosis.equations.band import Band, bands, rows_twice
+from modelgen.diagnosis.equations.band import Band, bands, settled_rows
 from modelgen.diagnosis.equations.checks import check_efforts, columns_of_effects, weights_of_efforts
 from modelgen.diagnosis.equations.drive_inertia import described_by, hidden_inertias
 from modelgen.diagnosis.equations.equations import Equations
@@ -36,8 +36,8 @@ __all__ = [
     "released",
     "repeating_errors",
     "rows_of",
-    "rows_twice",
     "settings_for",
+    "settled_rows",
     "study_of",
     "turning",
     "weights_of_efforts",

@@ -27,9 +27,14 @@ from modelgen.diagnosis.equations.rows import Rows, rows_of
 from modelgen.diagnosis.equations.study import Study
 from modelgen.effects.placement import extended_arm
 from modelgen.evaluation import Evaluator
+from modelgen.evaluation.link_encoder import compliant
 from modelgen.functions import Model
 from modelgen.numeric import Array
 from modelgen.regression.weighted import rmse, weighted_fit
+
+# Budgets: how finely the equations settle decides nothing.
+TURNS = 12  # of parameters and what elastic joints make of them
+CLOSE = 1e-4  # of every parameter, by which the last turn changes it
 
 
 @dataclass(frozen=True)
@@ -87,7 +92,7 @@ def _band(study: Study, settings: Settings) -> Band:
         prepared = [away_from_rest(p) for p in prepared]
     check_test(prepared[-1])
     known = held(model) if free else estimated(model, study.thresholds.equations)
-    rows = rows_twice(study.evaluator, model, prepared[:-1], known)
+    rows = settled_rows(study.evaluator, model, prepared[:-1], known)
     equations = Equations(model, study.evaluator, rows, periods, study.thresholds)
     check_motion(equations)
     check_excitation(equations)
@@ -103,17 +108,22 @@ def _apart(equations: Equations, theta: Array) -> Evaluator | None:
     return Evaluator(extended_arm(equations.arm, described_by(found))) if found else None
 
 
-def rows_twice(
+def settled_rows(
     evaluator: Evaluator,
     model: Model,
     prepared: Sequence[Prepared],
     baseline: Unknowns,
     start: Array | None = None,
 ) -> list[Rows]:
-    """The records' equations; made twice where columns depend on the parameters. start: unknowns (k,)."""
-    rows = [rows_of(evaluator, model, p, start, baseline) for p in prepared]
+    """The records' equations; made again where they depend on the parameters, until these stay as they are
+    where the arm has elastic joints. start: unknowns (k,).
+    """
+    rows, theta = [rows_of(evaluator, model, p, start, baseline) for p in prepared], start
     (regressor,) = [f for f in model.functions if f.name == "regressor"]
-    if {"load", "state"} & {a.name for a in regressor.arguments}:
-        theta = weighted_fit(rows, [r.columns for r in rows])
+    by_load = bool({"load", "state"} & {a.name for a in regressor.arguments})
+    for _ in range(TURNS if compliant(model.arm) else int(by_load)):
+        before, theta = theta, weighted_fit(rows, [r.columns for r in rows])
+        if before is not None and np.allclose(theta, before, rtol=CLOSE):
+            break
         rows = [rows_of(evaluator, model, p, theta, baseline) for p in prepared]
     return rows

@@ -131,7 +131,8 @@ def _left_by_errors(
 
 def left_by_reading(record: Record, r: Rows, equations: Equations, theta: Array) -> Array:
     """What another reading of a record's motion leaves in its residuals, (M, n). theta: unknowns (k,)."""
-    read = replace(prepare(record, r.prepared.settings), awake=r.prepared.awake)
+    own = r.prepared
+    read = replace(prepare(record, own.settings), awake=own.awake, before=own.before)
     again = equations.of_record(read, theta)
     return np.asarray((again.effort - r.effort) - (again.columns - r.columns) @ theta)
 

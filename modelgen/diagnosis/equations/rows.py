@@ -93,8 +93,7 @@ def rows_of(
     motion = motion_of(prepared)
     columns = evaluator.regressor(model, motion, parameters)
     given = np.zeros(prepared.q.shape) if prepared.input is None else prepared.input
-    effort = evaluator.ideal(model, motion, given) - evaluator.link_side.led(motion, parameters)
-    effort = effort - evaluator.unseen(motion, columns, parameters)
+    effort = evaluator.ideal(model, motion, given) - evaluator.unseen(motion, columns, parameters)
     if known.fixed.any() or known.lift.shape[0] != known.lift.shape[1]:
         effort = effort - columns @ known.fixed
         columns = columns @ known.lift

@@ -10,7 +10,7 @@ import numpy as np
 from modelgen.dataset import Prepared, prepare
 from modelgen.description import Arm
 from modelgen.diagnosis.candidates import beyond_bounds
-from modelgen.diagnosis.equations import Equations, Rows, Unknowns, estimated, held, rows_of, rows_twice
+from modelgen.diagnosis.equations import Equations, Rows, Unknowns, estimated, held, rows_of, settled_rows
 from modelgen.diagnosis.extended.cause_values import as_fitted, bounded_fit, own_parameters, valued
 from modelgen.diagnosis.extended.drive_inertia import split_drive_inertia
 from modelgen.diagnosis.extended.findings import Estimate
@@ -112,7 +112,7 @@ def extended(before: FittedModel, selection: Selection, equations: Equations) ->
         rigid = misfit(before.rows, [r.columns for r in before.rows], before.theta)
         return FittedModel(bigger, model, *settled(bigger, model, seen, known, first, rigid))
     bounds = [*own_parameters(model, [c.trial for c in selection.causes])]
-    own = rows_twice(Evaluator(bigger), model, seen, known, start)
+    own = settled_rows(Evaluator(bigger), model, seen, known, start)
     if not equations.free and any(e.depends_on("load") for e in applied_effects(bigger)):
         search = _Search(Evaluator(bigger), model, seen, known)
         search.at(weighted_fit(own, [r.columns for r in own]))
@@ -140,7 +140,7 @@ def _as_there(
             arm = extended_arm(equations.arm, [(*t.candidate.place, t.parameters) for t in there])
             model = build_model(arm, EVALUATED)
             known = held(model) if equations.free else estimated(model, equations.thresholds.equations)
-            (less,) = rows_twice(Evaluator(arm), model, [seen_by(rows.prepared, arm)], known, start)
+            (less,) = settled_rows(Evaluator(arm), model, [seen_by(rows.prepared, arm)], known, start)
         if less.columns.shape == rows.columns.shape:
             found[k] = less
     return found

@@ -36,8 +36,8 @@ class Refined:
     """A base parameter before and after; std None where it was held, or the fit did not converge: then the
     values are not those of the least errors, and nothing says how far from them they are.
 
-    moves: how far its standard deviation moves the simulated positions (RMS [rad, m]) of the coordinate
-    `shown_by` (from 0), at which it shows most beside the errors.
+    per_unit: how far one unit of it moves the simulated positions (RMS [rad, m]) of the coordinate `shown_by`
+    (from 0), at which it shows most beside the errors; 0 where it was held.
     """
 
     name: str
@@ -45,9 +45,14 @@ class Refined:
     start: float
     value: float
     std: float | None
-    moves: float = 0.0
+    per_unit: float = 0.0
     shown_by: int = 0
     held: bool = False
+
+    @property
+    def moves(self) -> float:
+        """How far its standard deviation moves the simulated positions (RMS [rad, m]); 0 without one."""
+        return self.per_unit * (self.std or 0.0)
 
 
 @dataclass(frozen=True)
@@ -156,11 +161,8 @@ def refine(
             continue
         i = chosen.index(k)
         j = int(shown[i])
-        if std is None:
-            found.append(Refined(b.name, b.unit, start, value, None, shown_by=j))
-            continue
-        moves = float(std[i] * per_unit[j, i])
-        found.append(Refined(b.name, b.unit, start, value, float(std[i]), moves, j))
+        deviation = None if std is None else float(std[i])
+        found.append(Refined(b.name, b.unit, start, value, deviation, float(per_unit[j, i]), j))
     return Refinement(
         Plant(plant.slip, p, p),
         tuple(found),
