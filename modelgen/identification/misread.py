@@ -20,6 +20,7 @@ from modelgen.numeric import Array
 BETTER = 0.33  # of what is unexplained, that another reading may leave to be believed
 ALIKE = 2.0  # times what the best reading leaves, up to which another is named beside it
 HARDLY = 0.5  # of the changes of a joint's efforts, unexplained, that is asked about
+ANEW = 1.1  # times what differs between periods, up to which what is unexplained is said to be that
 APART = 3.0  # times what fits to each record leave, from which on one to all is asked about
 NOTABLE = 2.0  # % of the effort, likewise
 ROWS = 100  # per parameter, of a record that is asked
@@ -87,8 +88,8 @@ def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[Doub
     """
     if not fits:
         return []
-    parts = ((fit.error, fit.changes, fit.noise) for fit in fits)
-    error, changes, noise = (
+    parts = ((fit.error, fit.changes, fit.noise, fit.repeats) for fit in fits)
+    error, changes, noise, repeats = (
         np.sqrt(np.mean([x**2 for x in part], axis=0)) for part in zip(*parts, strict=True)
     )
     first, questions = train[0].record, list[Doubt]()
@@ -98,6 +99,13 @@ def _hardly(train: Sequence[Prepared], fits: Sequence[Unexplained]) -> list[Doub
         if not changes[j] or error[j] <= FAR * noise[j]:
             continue
         if share <= HARDLY:
+            continue
+        if error[j] <= ANEW * repeats[j]:
+            text = (
+                f"Of the changes of the effort of {name}, {100 * min(share, 1.0):.0f} % differ from one "
+                "period of the motion to the next: is its sensor that noisy, its column what it is read as?"
+            )
+            questions.append(Doubt(text, [name]))
             continue
         logged = [x[p.awake[:, j], j] for p in train if (x := p.record.logged_effort) is not None]
         moving = np.concatenate(logged)

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from modelgen.dataset import Prepared, Record, prepare
 from modelgen.dataset.processing.content import white_noise
+from modelgen.dataset.processing.periods import by_phase, folded
 from modelgen.errors import InputError
 from modelgen.evaluation import Evaluator
 from modelgen.evaluation.link_encoder import compliant
 from modelgen.functions import Model
-from modelgen.identification.validation import regression_of
+from modelgen.identification.validation import regression_of, rows_in_period
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
@@ -32,13 +33,15 @@ LEAST = 1e-13  # of the largest eigenvalue, that a combination of parameters is 
 class Unexplained:
     """share: RMS that least squares leave of the efforts over theirs (n,), 0 for joints at rest. error: what
     is left where the effort of each joint counts by that, changes: the deviation of the efforts from their
-    mean, noise: that of white noise, (n,) each, after the filter.
+    mean, noise: that of white noise, repeats: of that error, what differs between periods of the motion, nan
+    where none repeats; (n,) each, after the filter.
     """
 
     share: Array
     error: Array
     changes: Array
     noise: Array
+    repeats: Array
 
     @property
     def poor(self) -> NDArray[np.bool_]:
@@ -68,12 +71,24 @@ def unexplained(record: Record, like: Prepared, model: Model, evaluator: Evaluat
     moving = regression.moving[0]
     rate, cutoff = 1.0 / record.step, like.settings.cutoff
     shares = _size(regression.residuals(plain)[0], moving) / np.maximum(_size(effort, moving), 1e-300)
-    left = _size(regression.residuals(fair)[0], moving)
+    residuals = regression.residuals(fair)[0]
+    left = _size(residuals, moving)
     changes = np.array([np.std(x[m]) if m.any() else 0.0 for x, m in zip(effort.T, moving.T, strict=True)])
     assert record.input is not None
     band = min(1.0, 2.0 * cutoff / rate) if cutoff else 1.0
     noise = [math.sqrt(band) * white_noise(x, rate) for x in record.input.T]
-    return Unexplained(shares, left, changes, np.array(noise))
+    return Unexplained(shares, left, changes, np.array(noise), _between_periods(prepared, residuals, moving))
+
+
+def _between_periods(p: Prepared, errors: Array, moving: NDArray[np.bool_]) -> Array:
+    """RMS (n,) of what differs between periods of the errors (M, n) at rows that move (M, n)."""
+    period, found = rows_in_period(p), np.full(errors.shape[1], np.nan)
+    for j in range(len(found) if period is not None else 0):
+        assert period is not None
+        _, within, count = by_phase(folded(np.where(moving[:, j], errors[:, j], np.nan), period))
+        free = int(np.maximum(count - 1, 0).sum())
+        found[j] = math.sqrt(within.sum() / free) if free else np.nan
+    return found
 
 
 def _by_what_is_left(regression: Regression) -> Array:

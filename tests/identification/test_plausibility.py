@@ -44,11 +44,13 @@ def logs(arm: mg.Arm) -> list[Table]:
     return [log(arm, seed) for seed in (1, 2)]
 
 
-def log(arm: mg.Arm, seed: int, centre: float = 0.0) -> Table:
-    """20 s at 100 Hz of the arm as described, about a position of the shoulder."""
+def log(arm: mg.Arm, seed: int, centre: float = 0.0, beside: float = 1.1) -> Table:
+    """20 s at 100 Hz of the arm as described, about a position of the shoulder. beside: frequencies of the
+    elbow, those of the shoulder 1; where both are alike the motion repeats after 10 s.
+    """
     random = np.random.default_rng(seed)
     t = np.arange(2000) / 100
-    w = 2 * np.pi * np.outer([0.1, 0.2, 0.3, 0.5], [1.0, 1.1])
+    w = 2 * np.pi * np.outer([0.1, 0.2, 0.3, 0.5], [1.0, beside])
     size, phase = random.uniform(0.1, 0.4, w.shape), random.uniform(0, 6, w.shape)
     angle = t[:, None, None] * w + phase
     q = (size * np.sin(angle)).sum(axis=1) + np.array([centre, 0.0])
@@ -206,6 +208,24 @@ def test_an_effort_of_which_nothing_is_explained_is_asked_about(arm: mg.Arm, log
     noise = 0.02 * random.normal(size=(2, len(logs[0]["t"])))
     doubts = mg.identify(arm, logs[0] | {"i2": logs[0]["i2"] + noise[0]}, logs[1]).to_json()["doubts"]
     assert not any("unexplained" in x for x in doubts)
+
+
+def test_noise_that_hides_an_effort_is_called_noise(arm: mg.Arm) -> None:
+    """Noise slower than the cut-off passes the filter, but it does not repeat with the motion."""
+    random = np.random.default_rng(7)
+    logs = [log(arm, seed, beside=1.0) for seed in (1, 2)]
+    slow = np.convolve(random.normal(size=2 * 2000 + 49), np.ones(50) / np.sqrt(50), mode="valid")
+    noise = 0.8 * slow.reshape(2, 2000)
+    noisy = [x | {"i2": x["i2"] + e} for x, e in zip(logs, noise, strict=True)]
+    doubts = mg.identify(arm, *noisy).to_json()["doubts"]
+    assert not any("unexplained" in x for x in doubts)
+    assert (
+        sum("of elbow" in x and "differ from one period of the motion to the next" in x for x in doubts) == 1
+    )
+    # What repeats is none of it.
+    other = np.sin(17.0 * np.pi / 5.0 * logs[0]["t"]) + 0.1 * random.normal(size=2000)
+    doubts = mg.identify(arm, logs[0] | {"i2": other}, logs[1]).to_json()["doubts"]
+    assert any("of the changes of the effort of elbow unexplained" in x for x in doubts)
 
 
 @pytest.mark.parametrize("name", WRONG)
