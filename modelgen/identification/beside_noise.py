@@ -23,18 +23,20 @@ class Lacking(Doubt):
 @dataclass(frozen=True)
 class BesideNoise:
     """joint: (from 0), whose error is largest beside its noise, `times` as large. far: whether that is more
-    than noise is. steps: whether the steps of the positions can make it.
+    than noise is. steps: whether the steps of the positions can make it; rests: whether what holds joints at
+    rest makes it.
     """
 
     joint: int
     times: float
     far: bool
     steps: bool
+    rests: bool
 
     @property
     def lacks(self) -> bool:
         """Whether the model lacks something."""
-        return self.far and not self.steps
+        return self.far and not self.steps and not self.rests
 
 
 def noise_known(test: Validation) -> bool:
@@ -51,7 +53,8 @@ def beside_noise(test: Validation) -> BesideNoise | None:
     # what accelerations make of the efforts is less than all of their changes
     feigned = np.sqrt(test.coarse) * np.std(test.measured, axis=0)
     steps = bool((test.rmse < FAR * np.hypot(test.repeats, feigned)).all())
-    return BesideNoise(j, float(times[j]), bool(times[j] >= FAR), steps)
+    rests = test.moving is not None and bool((test.moving < FAR).all())
+    return BesideNoise(j, float(times[j]), bool(times[j] >= FAR), steps, rests)
 
 
 def lacking(found: Identification) -> tuple[Doubt, ...]:

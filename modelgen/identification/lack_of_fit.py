@@ -2,20 +2,23 @@
 
 Noise differs from period to period. What does not is the model's own error, and no deviation that is made of
 noise holds it (Draper and Smith 1998, 1.5). Readings in coarse steps repeat too, and that is no error of the
-model: their roundings are drawn once more, at other places of the steps, and count as noise.
+model: their roundings are drawn once more, at other places of the steps, and count as noise. The filter of
+positions moves the instants at which a joint that sticks sets off, and friction's sign with these, alike in
+every period: what is found has to be found with as light a filter as the steps allow too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from modelgen.dataset import Prepared
+from modelgen.dataset import Prepared, prepare
+from modelgen.dataset.processing.content import quiet_speeds
 from modelgen.dataset.processing.periods import by_phase, folded
 from modelgen.dataset.processing.rounding import effort_steps, position_steps
 from modelgen.evaluation import Evaluator
@@ -23,7 +26,7 @@ from modelgen.functions import Model
 from modelgen.identification.objects import LackOfFit
 from modelgen.identification.rounded_efforts import COARSE, ideal, rounding
 from modelgen.identification.rounded_positions import prepared_anew
-from modelgen.identification.validation import regression_of
+from modelgen.identification.validation import regression_of, rows_in_period
 from modelgen.numeric import Array
 from modelgen.regression.least_squares import Regression
 
@@ -41,6 +44,7 @@ class _Sums:
     within: float = 0.0
     free_between: float = 0.0
     free_within: float = 0.0
+    rows: int = 0
 
     @property
     def repeats(self) -> float:
@@ -52,6 +56,7 @@ class _Sums:
         between, within, count = by_phase(folded(np.where(moving, errors, np.nan), rows))
         self.between += float(between.sum())
         self.within += float(within.sum())
+        self.rows += int(count.sum())
         self.free_between += float((count > 0).sum())
         self.free_within += float(np.maximum(count - 1, 0).sum())
 
@@ -71,6 +76,50 @@ def lack_of_fit(
     """
     if all(rows is None for rows in periods):
         return None
+    found = _found(train, model, evaluator, theta, periods, added)
+    if found is None or not len(found.found):
+        return found
+    sharp = [_sharp(p) for p in train]
+    own = regression_of(evaluator, model, sharp, theta, added).least_squares()
+    return _found(sharp, model, evaluator, own, periods, added)
+
+
+def beside_noise_in_motion(
+    test: Sequence[Prepared], model: Model, evaluator: Evaluator, theta: Array
+) -> Array | None:
+    """RMS (n,) of the errors of the base parameters theta (p,) over that of noise, on records that were not
+    fitted; None where nothing repeats, nan where a joint has no noise.
+
+    Rests and turns are left out before the filter, as in a fit: it carries on what holds a joint there.
+    """
+    sharp = [_sharp(p) for p in test]
+    periods = [rows_in_period(p) for p in sharp]
+    if all(rows is None for rows in periods):
+        return None
+    regression = regression_of(evaluator, model, sharp, theta)
+    sums = _sums(regression.residuals(theta), regression, periods)
+    noise = [s.within / s.free_within if s.free_within else 0.0 for s in sums]
+    whole = [(s.between + s.within) / max(s.rows, 1) for s in sums]
+    return np.sqrt([e / v if v > 0.0 else np.nan for e, v in zip(whole, noise, strict=True)])
+
+
+def _sharp(p: Prepared) -> Prepared:
+    """The record with its positions filtered as little as their steps allow."""
+    own, limits = p.settings.position_cutoff, p.settings.thresholds
+    quiet = quiet_speeds(p.record, limits)
+    light = 0.0 if quiet * p.record.step > limits.max_position_cutoff or not own else max(own, quiet)
+    return replace(prepare(p.record, replace(p.settings, position_cutoff=light)), before=p.before)
+
+
+def _found(
+    train: Sequence[Prepared],
+    model: Model,
+    evaluator: Evaluator,
+    theta: Array,
+    periods: Sequence[int | None],
+    added: Sequence[Array] | None,
+) -> LackOfFit | None:
+    """The test on records as they are prepared; arguments as there."""
     regression = regression_of(evaluator, model, train, theta, added)
     own = _sums(regression.residuals(theta), regression, periods)
     share = 1.0 if regression.white is None else 1.0 / (1.0 + 2.0 * float((regression.white[1:] ** 2).sum()))

@@ -54,6 +54,7 @@ class Validation:
     judged: (M, n), samples that were; at rest an effort is whatever holds the joint. None: all. repeats: RMSE
     (n,) of what differs between the periods of the records, which no model can predict, nan where nothing
     repeats. coarse: of the power of accelerations below the cut-off, what the steps of the positions feign.
+    moving: error over noise (n,) where rests and turns are left out before the filter; None where not asked.
     """
 
     unit: tuple[str, ...]
@@ -68,6 +69,7 @@ class Validation:
     judged: NDArray[np.bool_] | None = None
     repeats: Array | None = None
     coarse: float = 0.0
+    moving: Array | None = None
 
     def shown_by(self, k: int) -> int | None:
         """Joint (from 0) in whose effort parameter k weighs most; None where it shows in none."""

@@ -38,13 +38,13 @@ from modelgen.evaluation import Evaluator
 from modelgen.functions import Options, build_model
 from modelgen.functions.nominal import payload_base
 from modelgen.functions.options import prepared as reduced
-from modelgen.identification.beside_noise import lacking
+from modelgen.identification.beside_noise import beside_noise, lacking
 from modelgen.identification.cut_off_streamed import streamed_limits
 from modelgen.identification.doubts import worse_on_test
 from modelgen.identification.effort_instant import at_instants, effort_instant
 from modelgen.identification.folds import Folds, folds
 from modelgen.identification.identify import METHODS, Instruments, identify
-from modelgen.identification.lack_of_fit import lack_of_fit
+from modelgen.identification.lack_of_fit import beside_noise_in_motion, lack_of_fit
 from modelgen.identification.misread import Asked, disagreeing
 from modelgen.identification.noise import with_noise
 from modelgen.identification.objects import Identification
@@ -230,6 +230,10 @@ def _whole(
         rows = [rows_in(p, chosen) for p in periods]
         remains = lack_of_fit(fitted, model, evaluator, theta, rows, carried if payloads else None)
         found = replace(found, remains=remains)
+        known = None if found.test is None or payloads else beside_noise(found.test)
+        if found.test is not None and known is not None and known.lacks:
+            moving = beside_noise_in_motion(held, model, evaluator, theta)
+            found = replace(found, test=replace(found.test, moving=moving))
     found = replace(found, doubts=(*found.doubts, *lacking(found)))
     found = with_noise(found, options, held, bool(payloads))
     others: tuple[Alternative, ...] = ()

@@ -50,6 +50,12 @@ def said_of_noise(found: Identification) -> tuple[bool, str]:
             "accelerations and can make it; a lower cut-off tells"
         )
         return False, f"{said}: {theirs}. {_WHETHER}"
+    if known.rests and found.test.moving is not None:
+        least = number(float(np.nanmax(found.test.moving)), 2)
+        held = (
+            f"what holds joints at rest makes it; without their rests and turns it is {least} times the noise"
+        )
+        return False, f"{said}: {held}. {_WHETHER}"
     return True, f"{said}: the model lacks something. This names it:"
 
 
