@@ -369,6 +369,13 @@ def test_when_a_record_began_is_known_from_stamps_that_count_from_1970(
         assert later.begins is None
 
 
+def test_rows_that_lost_their_order_are_refused(tmp_path: Path) -> None:
+    table, order = columns(T), np.random.default_rng(4).permutation(len(T))
+    shuffled = {name: x if name == "t" else x[order] for name, x in table.items()}
+    with pytest.raises(InputError, match="are the rows not in the order of time"):
+        read(write_csv(tmp_path / "a.csv", shuffled), DRIVEN)
+
+
 def test_a_joint_that_only_trembles_is_remarked_on(tmp_path: Path) -> None:
     random = np.random.default_rng(2)
     table = columns(T)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import signal
 
 from modelgen.dataset.objects import Record
@@ -95,6 +96,15 @@ class Spectrum:
         """Frequency [Hz] up to which rounding feigns a share of the speed's power at most."""
         noisy = np.cumsum(self.rounding) > share * np.sum(self.power[self.seen])
         return float(self.f[np.argmax(noisy)]) if noisy.any() else np.inf
+
+
+def noise_alone(q: Array) -> NDArray[np.bool_]:
+    """Columns (n,) of positions (N, n) that change from one reading to the next by more than over the record.
+
+    Those of a motion that is slower than a sixth of the rate do not: this is the noise of a joint at rest.
+    """
+    whole = q.std(axis=0)
+    return np.asarray((np.diff(q, axis=0).std(axis=0) > whole) & (whole > 0.0))
 
 
 def spectra(record: Record, limits: DatasetThresholds = USUAL) -> list[Spectrum]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modelgen.dataset.objects import Record
-from modelgen.dataset.processing.content import chosen_cutoff, quiet_speeds, white_noise
+from modelgen.dataset.processing.content import chosen_cutoff, noise_alone, quiet_speeds, white_noise
 from modelgen.dataset.processing.filters import smoothed
 from modelgen.dataset.processing.rounding import position_steps
 from modelgen.dataset.thresholds import USUAL, DatasetThresholds
@@ -175,10 +175,11 @@ def _check(record: Record, cutoff: float, position_cutoff: float) -> None:
 
 def chosen_gates(record: Record, speed: Array, limits: DatasetThresholds) -> tuple[float, ...]:
     """Speeds [rad/s, m/s] below which the joints are at rest: 1 % of their high speeds (N, n), and all of
-    their speeds where they have a few readings alone.
+    their speeds where they have a few readings alone, or noise alone.
     """
     high = np.quantile(np.abs(speed), 0.99, axis=0)
-    still = [len(np.unique(q)) <= limits.max_readings_at_rest for q in record.q.T]
+    few = [len(np.unique(q)) <= limits.max_readings_at_rest for q in record.q.T]
+    still = noise_alone(record.q) | np.array(few)
     gate = limits.rest_speed
     return tuple(np.where(still, (1.0 + gate) * np.abs(speed).max(axis=0), gate * high).tolist())
 

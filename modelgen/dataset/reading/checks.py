@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from modelgen.dataset.drives import NumericDrive
+from modelgen.dataset.processing.content import noise_alone
 from modelgen.description import Arm
 from modelgen.errors import InputError
 from modelgen.numeric import Array
@@ -66,17 +67,21 @@ def check_constant(
         )
 
 
-def trembling(names: Sequence[str], columns: Array) -> list[str]:
-    """Remarks about positions (N, n) that change from one reading to the next by more than over the record.
-
-    Those of a motion that is slower than a sixth of the rate do not: this is the noise of a joint at rest.
-    """
-    step, whole = np.diff(columns, axis=0).std(axis=0), columns.std(axis=0)
+def trembling(file: str, names: Sequence[str], columns: Array) -> list[str]:
+    """Remarks about positions (N, n) that are noise of a joint at rest. Raises InputError where all are."""
+    found, step, whole = noise_alone(columns), np.diff(columns, axis=0).std(axis=0), columns.std(axis=0)
+    if found.all():
+        others = ", and the other positions likewise," if len(names) > 1 else ","
+        raise InputError(
+            f"{file}: {names[0]} changes by {step[0]:.2g} from row to row and by {whole[0]:.2g} over the "
+            f"record (RMS){others} as noise does; expected a motion: does the arm rest, or are the rows not "
+            "in the order of time?"
+        )
     return [
         f"{name} shows no motion, only noise of {whole[k]:.2g} about {columns[:, k].mean():.4g}: what "
         "depends on it is not determined; lock the joint in the description, or move it"
         for k, name in enumerate(names)
-        if step[k] > whole[k] > 0.0
+        if found[k]
     ]
 
 

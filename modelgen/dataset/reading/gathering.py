@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.content import noise_alone
 from modelgen.dataset.reading.column_table import Log
 from modelgen.dataset.reading.read import read
 from modelgen.dataset.reading.specs import check_separate
@@ -45,12 +46,13 @@ def several(
 ) -> list[Record]:
     """Records of one purpose: in some of them a joint may stand throughout, not in all. Raises InputError."""
     found = [read(spec, arm, mapping, thresholds, still=len(logs) > 1) for spec in logs]
-    never = [k for k in range(found[0].n) if not any(np.ptp(r.q[:, k]) for r in found)]
-    if never and len(found[0].t):
-        name = arm.joints[arm.coordinates[never[0]]].name
+    still = [(np.ptp(r.q, axis=0) == 0.0) | noise_alone(r.q) for r in found if len(r.t)]
+    for k in np.flatnonzero(np.all(still, axis=0)) if still else ():
+        name, q = arm.joints[arm.coordinates[k]].name, found[0].q[:, k]
+        noise = f", but for noise of {q.std():.2g}," if np.ptp(q) else ""
         raise InputError(
-            f"{found[0].name}: joint {name} stands at {found[0].q[0, never[0]]:.6g} in all samples of all "
-            "records, expected a motion in one of them; where it was held, lock it in the description, "
+            f"{found[0].name}: joint {name} stands at {q.mean():.6g}{noise} in all samples of all records, "
+            "expected a motion in one of them; where it was held, lock it in the description, "
             f"locked: {{{name}: ...}}"
         )
     return found

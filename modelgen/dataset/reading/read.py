@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from modelgen.dataset.objects import Record
+from modelgen.dataset.processing.content import noise_alone
 from modelgen.dataset.processing.rounding import step_of
 from modelgen.dataset.processing.stamps import EVEN, strayed, true_stamps
 from modelgen.dataset.processing.timing import Axis, Survey, survey
@@ -104,7 +105,8 @@ def read_with_stamps(
         record = replace(record, hold_known="readings")
     if found:
         record = replace(record, remarks=(*found, *record.remarks), repeats=repeats)
-    held = tuple(k for k in range(record.n) if still and record.n > 1 and not np.ptp(logged[:, k]))
+    stands = (np.ptp(logged, axis=0) == 0.0) | noise_alone(logged)
+    held = tuple(int(k) for k in np.flatnonzero(stands)) if still and record.n > 1 else ()
     checks.check_constant(spec, arm, source.signals.position, logged, "position", held=held)
     if record.input is not None:
         checks.check_constant(spec, arm, source.signals.effort, record.input, "effort", held=held)
@@ -231,7 +233,7 @@ def record_of(
         lost = lost_rows(table[:, 0], missing_rows(as_read, limits) if missing is None else missing)
     margin = limits.max_range_excess
     left = checks.check_range(file, arm, drives, signals.position, logged, q, margin)
-    left += checks.trembling(signals.position, as_read)
+    left += checks.trembling(file, signals.position, as_read)
     remarks = [*source.remarks, *left, *left_out, *(x for x in (jump, lost) if x)]
     if axis.method != "none":
         remarks.append(
