@@ -83,20 +83,23 @@ def slopes_of(
     evaluator: Evaluator, model: Model, records: Sequence[Prepared], added: Sequence[Array], theta: Array
 ) -> list[Array]:
     """`slopes` of `fitted_by_load` at the rows, by differences. What the filter does to them is left out, but
-    where elastic joints swing.
+    where elastic joints swing, or a law has a state.
     """
-    found, elastic = [], compliant(model.arm)
+    (function,) = [f for f in model.functions if f.name == "regressor"]
+    found, every = [], compliant(model.arm) or any(a.name == "state" for a in function.arguments)
     for p, more in zip(records, added, strict=False):
-        motion = motion_of(p) if elastic else motion_of(p).picked(p.rows)
+        motion = motion_of(p) if every else motion_of(p).picked(p.rows)
         whole = theta + more
         efforts = partial(_efforts, evaluator, model, motion, whole)
         before = efforts(whole)
         table = np.zeros((*before.shape, len(theta)))
-        for k, value in enumerate(theta):
+        # A state that follows from the motion alone stays as it is.
+        moves = bool((efforts(whole * (1.0 + TOUCH) + LEAST) != before).any())
+        for k, value in enumerate(theta if moves else ()):
             step = max(TOUCH * abs(float(value)), LEAST)
             moved = whole + step * (np.arange(len(theta)) == k)
             table[:, :, k] = (efforts(moved) - before) / step
-        found.append(p.parallel(table * p.weights[:, :, None]) if elastic else table)
+        found.append(p.parallel(table * p.weights[:, :, None]) if every else table)
     return found
 
 

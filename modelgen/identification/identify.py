@@ -170,7 +170,7 @@ def _fitted(
             raise InputError(f"{train[0].record.name}: {RUNS_AWAY}") from None
         if np.allclose(solution.theta, before, rtol=CLOSE):
             break
-    if compliant(model.arm) or _arguments(model) & {"load", "state"} == {"load"}:
+    if compliant(model.arm) or _columns_by_load(model):
         more = [theta] * len(train) if added is None else added
         regression, solution = fitted_by_load(
             lambda at: regression_of(evaluator, model, train, at, added, all_samples=whole),

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from loaded_rod import DRY, LOADED, MOMENT, PRELOAD, STIFFNESS, VISCOUS, described, log
 
@@ -29,3 +30,21 @@ def test_the_friction_is_that_of_the_load_that_is_found(spring: bool, tmp_path: 
     friction = found["FL1"].std
     assert friction is not None
     assert friction < (0.01 if spring else 0.002)
+
+
+def test_the_friction_is_that_of_a_load_with_its_inertia(tmp_path: Path) -> None:
+    """A load that is followed within a time is a state, and follows from what is looked for as well."""
+    law = "load_dependent_friction: {rise: 0.0001}"
+    arm = loads(described(law).replace("drive_inertia, ", ""), "arm.yaml", known_effects())["rod"]
+    away = []
+    for seed in range(2):
+        logs = [log(2 * seed + k, spring=False, reach=1.5, inertia=True, loaded=0.5) for k in (0, 1)]
+        mapping = tmp_path / "mapping.yaml"
+        mapping.write_text("schema: 1\nhold: instant\n")
+        found = identify(arm, *logs, mapping=mapping).parameters
+        for name, value in {"FL1": 0.5, "FC1": DRY / 100.0}.items():
+            e = found[name]
+            assert e.std is not None
+            away.append((e.value - value) / e.std)
+    # Four deviations of unit size: their mean square is above 4.6 in one run of a thousand.
+    assert np.mean(np.square(away)) < 4.6, away

@@ -27,8 +27,13 @@ def described(*effects: str) -> str:
     return ARM.replace(" MORE", "".join(f", {name}" for name in effects))
 
 
-def log(seed: int, *, spring: bool, reach: float = 0.2) -> dict[str, Array]:
-    """Three periods of 8 s at 250 Hz: positions with 1e-5 rad, currents with 2 mA of noise."""
+def log(
+    seed: int, *, spring: bool, reach: float = 0.2, inertia: bool = False, loaded: float = LOADED
+) -> dict[str, Array]:
+    """Three periods of 8 s at 250 Hz: positions with 1e-5 rad, currents with 2 mA of noise.
+
+    inertia: whether the gear's load is all that moves the rod, not its weight alone.
+    """
     random = np.random.default_rng(seed)
     t = np.arange(6000) / 250.0
     w = 2 * np.pi / 8.0 * np.arange(1, 6)
@@ -37,7 +42,8 @@ def log(seed: int, *, spring: bool, reach: float = 0.2) -> dict[str, Array]:
     c, s = np.cos(phase), np.sin(phase)
     q, dq, ddq = 0.6 + c @ a + s @ b, -s @ (a * w) + c @ (b * w), -c @ (a * w**2) - s @ (b * w**2)
     weight = 9.81 * MOMENT * np.cos(q)
-    torque = INERTIA * ddq + weight + VISCOUS * dq + (DRY + LOADED * np.abs(weight)) * np.sign(dq)
+    load = np.abs(weight + INERTIA * ddq * inertia)
+    torque = INERTIA * ddq + weight + VISCOUS * dq + (DRY + loaded * load) * np.sign(dq)
     if spring:
         torque += STIFFNESS * q + PRELOAD
     current = torque / 5.0 + 0.002 * random.normal(size=len(t))
