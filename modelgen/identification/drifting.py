@@ -58,8 +58,8 @@ _LAWS = (
     _Law(
         lambda speed, effort: effort,
         "The efforts of {name} grow or shrink against the model's",
-        "does the motor lose torque as it warms, or the supply sag",
-        "Let the motor warm up before, or log its temperature and supply.",
+        "does the motor lose torque as it warms, the supply sag, or is a load picked up on the way",
+        "Let the motor warm up before, log its temperature and supply, end a record where the load changes.",
         relative=True,
     ),
 )

@@ -57,6 +57,9 @@ def significance(
     """
     known = {name: std for name, std in spread.items() if std > 0.0}  # which one that is not a number is not
     names = claimed(cause)
+    hidden = [name for name in names if values.get(name) == 0.0 and name not in known]
+    if hidden:
+        return 0.0, f"its {' and '.join(hidden)}, by which it would be there, does not show in these records"
     if names:
         found = cause.candidate.definition.above_zero(arm, {n: values[n] for n in known}, known)
         what = f"its {' and '.join(names)} differs by {number(found)} standard deviations"
