@@ -12,7 +12,7 @@ from slow_tests import function_of, listed
 
 from modelgen.cli.collection import collect_rarely
 
-pytest_plugins = ["processor_times"]
+pytest_plugins = ["processor_times", "time_budget"]
 
 # pytest-xdist already fills the cores. NumPy's libraries read this when they are loaded, after this file.
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
