@@ -162,3 +162,16 @@ def test_a_motor_that_is_logged_as_it_moves_on_repeats_nothing() -> None:
     logged, paced = np.cumsum(steps), 0.013 * np.arange(len(q))
     assert clocks(np.column_stack([logged, q, i]), [1], [2]) == {}
     assert 1 in clocks(np.column_stack([paced, q, i]), [1], [2])
+
+
+def test_the_rounding_of_what_a_mapping_computes_is_no_reading() -> None:
+    """An angle against the link before, of two inclinometers of 0.1 degrees, moves at times by 1e-14."""
+    random, t = np.random.default_rng(3), times(75.0, 50.0)
+    first, second = (
+        sum(18.0 / k * np.sin(0.25 * k * t + random.uniform(0, 6.28)) for k in (1, 2, 3, 5)) for _ in range(2)
+    )
+    boom, stick = (0.1 * np.rint(10.0 * (x + 40.0)) for x in (first, first + second))
+    efforts = [1e5 * np.round(100 + 30 * np.sin(t + k) + random.normal(size=len(t)), 1) for k in range(2)]
+    turned = np.radians(stick - boom)
+    assert 0.0 < np.abs(np.diff(turned))[np.diff(turned) != 0.0].min() < 1e-12
+    assert not clocks(np.column_stack([t, np.radians(boom), turned, *efforts]), (1, 2), (3, 4))

@@ -106,7 +106,8 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         if abs(record.step / first.step - 1.0) > limits.max_rate_difference:
             raise InputError(
                 f"{record.name}: found the rate {1 / record.step:.6g} Hz, {first.name} has "
-                f"{1 / first.step:.6g} Hz; `time: {{resample: ...}}` in a mapping file gives them one rate"
+                f"{1 / first.step:.6g} Hz{_seldom_new([first, record])}; `time: {{resample: ...}}` in a "
+                "mapping file gives them one rate"
             )
     rate = 1.0 / first.step
     if isinstance(settings, Chosen):
@@ -161,6 +162,12 @@ def choose(records: Record | Sequence[Record], settings: Settings | Chosen | Non
         turns=settings.turns,
         thresholds=limits,
     )
+
+
+def _seldom_new(records: Sequence[Record]) -> str:
+    """Why records have another rate than their stamps: readings that repeat, in words."""
+    said = [f"every {r.repeats:.3g} rows of {r.name}" for r in records if r.repeats > 1.0]
+    return f", for readings are new once in {' and in '.join(said)}" if said else ""
 
 
 def _check(record: Record, cutoff: float, position_cutoff: float) -> None:

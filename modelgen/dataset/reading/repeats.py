@@ -11,6 +11,7 @@ from modelgen.numeric import Array
 
 LEAST_UNEVEN = 4.0  # rows per refresh, below which changes anywhere are within a row of whole ones
 REST = 5.0  # refreshes: a source that shows nothing new for longer rests, it has not missed so many
+EXACT = 1e-13  # of the largest reading: a smaller change is the rounding of what a mapping computes
 LIKE = 0.9  # of the changes of two columns that one clock refreshes, each of which may come again unchanged
 
 
@@ -53,7 +54,7 @@ def refresh_of(
     again at a refresh; what shows it then is that all changes lie a whole number of refreshes apart.
     even_only: of a source with an even clock, where the rows themselves have none.
     """
-    changes = np.diff(columns, axis=0) != 0.0
+    changes = _steps(columns) != 0.0
     rows = np.flatnonzero(changes.any(axis=1)) + 1
     if len(rows) < limits.min_refreshes:
         return None
@@ -102,7 +103,7 @@ def _stands_and_moves(column: Array, changes: int, limits: DatasetThresholds) ->
     """Whether a column (N,) changes at most of so many changes, by far more than its resolution, mostly after
     it stood, and comes to ever new readings: what has a few levels may stand at each of them.
     """
-    steps = np.abs(np.diff(column))
+    steps = np.abs(_steps(column))
     rows = np.flatnonzero(steps)
     if len(rows) < LIKE * changes or len(np.unique(column[rows + 1])) < limits.min_refreshes:
         return False
@@ -150,7 +151,7 @@ def _uneven(column: Array, limits: DatasetThresholds) -> bool:
     """Whether a column (N,) changes as no slow encoder at a constant speed does: by other than single steps,
     or after unlike times.
     """
-    steps = np.diff(column)
+    steps = _steps(column)
     rows = np.flatnonzero(steps)
     if len(rows) < limits.min_refreshes // 2:
         return False
@@ -173,9 +174,15 @@ def without_doubled(table: Array) -> tuple[Array, list[str]]:
     return table[~same], [f"{int(same.sum())} rows stand there again, stamp and readings: each counts once"]
 
 
+def _steps(columns: Array) -> Array:
+    """Changes of columns (N, k), or of one (N,), from each row to the next."""
+    steps = np.diff(columns, axis=0)
+    return np.where(np.abs(steps) > EXACT * np.abs(columns).max(axis=0, initial=0.0), steps, 0.0)
+
+
 def _moves(readings: Array, limits: DatasetThresholds) -> bool:
     """Whether readings (M,) move by more than steps of their own resolution."""
-    steps = np.abs(np.diff(readings))
+    steps = np.abs(_steps(readings))
     steps = steps[steps > 0.0]
     enough = len(steps) >= limits.min_refreshes // 2
     return enough and float(np.median(steps)) > limits.refresh_over_resolution * float(steps.min())
