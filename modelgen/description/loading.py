@@ -38,6 +38,6 @@ def loads(
     try:
         document = Document.model_validate(root.plain())
     except ValidationError as error:
-        raise first_mistake(root, error) from None
+        raise first_mistake(root, error, Document) from None
     arms = build(document, root, known_effects)
     return {name: replace(arm, document=text) for name, arm in arms.items()}

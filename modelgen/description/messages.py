@@ -6,8 +6,9 @@ import difflib
 import re
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
+from modelgen.description.belonging import belongs
 from modelgen.description.document import Node, Steps, one_line
 from modelgen.description.schema import VERSION
 from modelgen.errors import InputError, suggest
@@ -56,21 +57,22 @@ def mistake(root: Node, path: Steps, message: str, key: bool = False) -> InputEr
     return InputError(f"{prefix}: {message}" if prefix else message, root.locate(path, key))
 
 
-def first_mistake(root: Node, error: ValidationError) -> InputError:
-    """The first structural mistake in reading order."""
-    found = [_structural(root, dict(entry)) for entry in error.errors(include_url=False)]
+def first_mistake(root: Node, error: ValidationError, document: type[BaseModel]) -> InputError:
+    """The first structural mistake in reading order, of a file of this kind."""
+    found = [_structural(root, dict(entry), document) for entry in error.errors(include_url=False)]
     return min(found, key=lambda item: item[0])[1]
 
 
-def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[int, int], InputError]:
+def _structural(
+    root: Node, entry: dict[str, Any], document: type[BaseModel]
+) -> tuple[tuple[int, int], InputError]:
     kind, context, value = entry["type"], entry.get("ctx", {}), entry["input"]
     path = _path(root, entry["loc"])
     key = False
     if kind == "unknown_key":
         path, key = [*path, context["key"]], True
-        message = (
-            f"found the unknown key {describe(context['key'])}{suggest(context['key'], context['options'])}"
-        )
+        message = f"found the unknown key {describe(context['key'])}"
+        message += _instead(context["key"], context["options"], document)
     elif kind == "missing":
         message = f"the key '{entry['loc'][-1]}' is missing"
     elif kind == "union_tag_not_found" and "discriminator" in context and path[-1:] == ["drive"]:
@@ -98,9 +100,16 @@ def _structural(root: Node, entry: dict[str, Any]) -> tuple[tuple[int, int], Inp
     else:
         message = f"found {describe(value)}: {entry['msg']}"
     result = mistake(root, path, message, key)
-    where = result.where
-    assert where is not None
-    return (where.line, where.column), result
+    at = result.where
+    assert at is not None
+    return (at.line, at.column), result
+
+
+def _instead(key: Any, options: list[str], document: type[BaseModel]) -> str:
+    """A key of this place that is a slip away, or else the place of this one, or else the nearest key."""
+    slip = isinstance(key, str) and difflib.get_close_matches(key, options, n=1, cutoff=0.8)
+    where = "" if slip else belongs(document, key)
+    return f"; it belongs {where}" if where else suggest(key, options)
 
 
 def _one_of(value: Any, options: list[str]) -> str:

@@ -62,7 +62,7 @@ def load_fleet(path: Path) -> list[Unit]:
     try:
         document = Document.model_validate(root.plain())
     except ValidationError as error:
-        raise first_mistake(root, error) from None
+        raise first_mistake(root, error, Document) from None
     found: dict[str, Unit] = {}
     for unit, place in _units(document, root, str(path.parent.absolute())):
         if unit.name in found:

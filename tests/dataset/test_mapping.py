@@ -193,6 +193,11 @@ def test_a_sensor_that_starts_anew_is_made_continuous(tmp_path: Path) -> None:
 BROKEN = [
     (AXIS_MAPPING.replace("schema: 1", "schema: 2"), ":2:9: schema: found 2, expected 1"),
     (AXIS_MAPPING.replace("joints", "axes"), ":4:1: axes: found the unknown key 'axes'"),
+    (AXIS_MAPPING.replace("unit: ms", "rate: 50"), "unknown key 'rate'; it belongs at the top level"),
+    (
+        AXIS_MAPPING.replace("unit: V", "columns: V"),
+        "found the unknown key 'columns', did you mean 'column'?",
+    ),
     (AXIS_MAPPING.replace("unit: V", "units: V"), "found the unknown key 'units', did you mean 'unit'?"),
     (AXIS_MAPPING.replace("unit: V", "scale: 1"), "joints.0.effort: the key 'unit' is missing"),
     (AXIS_MAPPING.replace("unit: V", "unit: volts"), ":6:46: joints.0.effort.unit: found the unit 'volts'"),

@@ -136,7 +136,7 @@ ONES = np.linspace(0, 1, len(T))
         (edited(lambda x: x.update(dq2=ONES)), "found dq2, but the column dq1 is missing"),
         (without("i1", "i2"), "found no effort, expected i<n> or tau<n>"),
         (setting("t", 700, 1.0), r"time runs backwards after t = 3\.495 s: the next stamp is 1 s"),
-        (setting("t", 700, 3.495), r"time stands still after t = 3\.495 s"),
+        (setting("t", 700, 3.495), r"time stands still after t = 3\.495 s: .*`rate:` in a mapping file"),
         (setting("t", slice(800, None), np.nan), "found nan in the column t at sample 801"),
         (setting("i2", 10, np.nan), r"found nan in the column i2 at t = 0\.05 s, expected a finite number"),
         (setting("q1", 10, np.inf), "found inf in the column q1"),

@@ -343,6 +343,12 @@ def test_a_misspelt_key_is_told_rather_than_the_one_that_is_missing() -> None:
     assert "found the unknown key 'ratoi', did you mean 'ratio'?" in complaint("ratio: 100", "ratoi: 100")
 
 
+def test_a_key_in_a_wrong_place_is_told_its_own() -> None:
+    assert "drive.limits: found the unknown key 'limits'; it belongs in arms.joints" in complaint(
+        "ratio: 100", "ratio: 100, limits: {velocity: 1}"
+    )
+
+
 def test_without_a_catalogue_any_effect_will_do() -> None:
     arm = loads(GOOD.replace("[viscous_friction,", "[unheard_of,"))["arm"]
     assert arm.joints[1].effects[0].name == "unheard_of"

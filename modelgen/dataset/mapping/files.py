@@ -119,7 +119,7 @@ def load_mapping(path: Path | str) -> Foreign:
     try:
         document = Document.model_validate(root.plain())
     except ValidationError as error:
-        raise first_mistake(root, error) from None
+        raise first_mistake(root, error, Document) from None
     foreign = Foreign(document, root)
     _ = foreign.hold
     foreign.unit(document.time.unit, units.TIMES, ["time"])

@@ -66,9 +66,13 @@ class Survey:
         wrong = np.flatnonzero(steps <= 0.0)
         if wrong.size:
             k = int(wrong[0])
-            what = "stands still" if steps[k] == 0.0 else "runs backwards"
+            what, hint = "runs backwards", ""
+            if steps[k] == 0.0:
+                what = "stands still"
+                hint = "; where rows are evenly spaced, `rate:` in a mapping file (--mapping) counts them"
             raise InputError(
-                f"{self.file}: time {what} after t = {line[k]:.9g} s: the next stamp is {line[k + 1]:.9g} s"
+                f"{self.file}: time {what} after t = {line[k]:.9g} s: "
+                f"the next stamp is {line[k + 1]:.9g} s{hint}"
             )
         if self.period == 0.0 and steps.size:
             self.period = float(np.median(steps))
