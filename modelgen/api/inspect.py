@@ -112,7 +112,7 @@ class Inspection(Shown):
         x = self.found
         parts: list[str | Table] = [self._headline()]
         if x.backwards:
-            parts.append(f"time stands still or runs backwards {x.backwards} times")
+            parts.append(f"time stands still or runs backwards at {x.backwards} of {x.samples} stamps")
         if not math.isnan(x.rate):
             parts.append("the motion does not repeat" if x.period is None else f"period {x.period:z.6g} s")
         rows = [

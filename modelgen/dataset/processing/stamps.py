@@ -40,7 +40,12 @@ def true_stamps(t: Array, positions: Array, limits: DatasetThresholds) -> tuple[
 
 def strayed(jitter: float) -> str:
     """How far the time between samples strays from the period, in words. jitter: of the period."""
-    much = f"{jitter:.2g} sampling periods" if jitter >= 1.0 else f"{jitter:.2g} of the sampling period"
+    if jitter < 1.0:
+        much = f"{jitter:.2g} of the sampling period"
+    elif f"{jitter:.2g}" == "1":
+        much = "a sampling period"
+    else:
+        much = f"{jitter:.2g} sampling periods"
     return f"time between samples varies by up to {much}"
 
 
