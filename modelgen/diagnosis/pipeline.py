@@ -9,6 +9,7 @@ from typing import Any
 
 from modelgen.dataset import DatasetThresholds, Record, check_separate, last_quarter_out, read, several, split
 from modelgen.description import Arm
+from modelgen.diagnosis.adequacy import worth_nothing
 from modelgen.diagnosis.candidates import Place, check_one_arm
 from modelgen.diagnosis.decision import Decision, Progress, decide, withdrawn
 from modelgen.diagnosis.equations import Study, bands, check_efforts, study_of
@@ -81,9 +82,7 @@ def worthless(result: Diagnosis) -> dict[Place, Check]:
     if result.free or there or not result.causes or not round(gain, 1) <= 0.0:
         return {}
     none = [c for c in result.causes if round(c.share.gain, 1) <= 0.0] or result.causes
-    less = f"{abs(gain):.1f} % {'more' if gain < 0.0 else 'less'} error on the test record over all joints"
-    failed = Check("confirmed", False, True, gain, 0.0, f"{less} with it; what is named makes it less")
-    return {(c.effect, c.joint): failed for c in none}
+    return {(c.effect, c.joint): worth_nothing(gain, c.effect) for c in none}
 
 
 def proposed(
