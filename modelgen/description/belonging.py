@@ -1,4 +1,4 @@
-"""Where a key belongs that stands in another place: found in the JSON Schema of the file."""
+"""Where a key belongs that is in another place: found in the JSON Schema of the file."""
 
 from __future__ import annotations
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from itertools import compress
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -27,7 +26,6 @@ from modelgen.diagnosis.evidence import Endogeneity, endogeneity, mean_squares
 from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.selection import (
     SUSPECT,
-    Cause,
     Selection,
     beside_hidden_weight,
     doubtful_joints,
@@ -36,7 +34,6 @@ from modelgen.diagnosis.selection import (
     with_pair,
     with_rival,
 )
-from modelgen.diagnosis.validation import Check
 from modelgen.identification.drifting import BENT, drifting
 from modelgen.identification.objects import Doubt
 from modelgen.jobs import Where
@@ -46,11 +43,13 @@ Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
-class Chosen:
-    """What was chosen in one band.
+class Decision:
+    """What one band says.
 
     causes: those of the selection with their checks; suspects: what failed one of them, in the order in which
-    it was chosen; before: the selection with the suspects; equal: aliases of every cause.
+    it was chosen; before: the selection with the suspects; equal: aliases of every cause; remains: what the
+    causes leave; correlated: what the test of Durbin, Wu and Hausman says,
+    whether it has a say or not.
     """
 
     band: Band
@@ -59,16 +58,6 @@ class Chosen:
     suspects: Sequence[Examined]
     before: Selection
     equal: Sequence[Sequence[Candidate]]
-
-
-@dataclass(frozen=True)
-class Decision(Chosen):
-    """What one band says.
-
-    remains: what the causes leave; correlated: what the test of Durbin, Wu and Hausman says, whether it has a
-    say or not.
-    """
-
     remains: Remains
     correlated: Endogeneity | None
     verdict: str
@@ -101,49 +90,22 @@ def decide(band: Band, options: Options, progress: Progress | None = None) -> De
     if unclear:
         equal = []
     selection = beside_hidden_weight(selection)
-    places = [c.trial.candidate for c in selection.causes]
-    causes = [e for e in every if e.cause.trial.candidate in places]
-    return _concluded(Chosen(band, selection, causes, suspects, before, equal), unclear, options)
-
-
-def withdrawn(decision: Decision, failed: Mapping[Place, Check], options: Options) -> Decision:
-    """The decision without causes that fail a further check, by place: these are suspects."""
-    lost = [c for c in decision.selection.causes if c.trial.candidate.place in failed]
-    again = [
-        replace(e, checks=(*e.checks, failed[e.cause.trial.candidate.place]))
-        for e in decision.causes
-        if e.cause.trial.candidate.place in failed
-    ]
-    kept = [c.trial.candidate.place not in failed for c in decision.selection.causes]
-    chosen = Chosen(
-        decision.band,
-        decision.selection.without(lost, SUSPECT),
-        [e for e in decision.causes if e.cause.trial.candidate.place not in failed],
-        [*decision.suspects, *again],
-        decision.before,
-        list(compress(decision.equal, kept)),
-    )
-    return _concluded(chosen, (), options)
-
-
-def _concluded(chosen: Chosen, unclear: Sequence[Cause], options: Options) -> Decision:
-    """The decision about what was chosen. unclear: what coarse positions do not tell from its rivals."""
-    selection, equations = chosen.selection, chosen.band.equations
     system = selection.system
     fit, correlated, left = lack_of_fit(system), endogeneity(system), mean_squares(system)
     remains = Remains(
-        suspects=chosen.suspects,
+        suspects=suspects,
         unclear=unclear,
         fit=fit,
         feigned=feigned(equations.blur, left),
         correlated=None if harmless(equations, left) else correlated,
-        likeness=None if unclear else most_like(system, chosen.suspects, fit),
+        likeness=None if unclear else most_like(system, suspects, fit),
         counted=equations.free and fit is None and _counted(equations, left),
         asked=bool(options.effects),
-        drifting=() if selection.causes or chosen.suspects else _drifting(equations),
+        drifting=() if selection.causes or suspects else _drifting(equations),
     )
     verdict, reason = verdict_of(selection, remains)
-    return Decision(**vars(chosen), remains=remains, correlated=correlated, verdict=verdict, reason=reason)
+    causes = [e for e in every if any(e.cause.trial.candidate == c.trial.candidate for c in selection.causes)]
+    return Decision(band, selection, causes, suspects, before, equal, remains, correlated, verdict, reason)
 
 
 def _drifting(equations: Equations) -> list[Doubt]:

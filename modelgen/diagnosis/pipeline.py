@@ -9,15 +9,13 @@ from typing import Any
 
 from modelgen.dataset import DatasetThresholds, Record, check_separate, last_quarter_out, read, several, split
 from modelgen.description import Arm
-from modelgen.diagnosis.adequacy import worth_nothing
-from modelgen.diagnosis.candidates import Place, check_one_arm
-from modelgen.diagnosis.decision import Decision, Progress, decide, withdrawn
+from modelgen.diagnosis.candidates import check_one_arm
+from modelgen.diagnosis.decision import Decision, Progress, decide
 from modelgen.diagnosis.equations import Study, bands, check_efforts, study_of
 from modelgen.diagnosis.experiment import Experiment, next_experiment, setup
 from modelgen.diagnosis.extended import Extension, extend
 from modelgen.diagnosis.options import Options
 from modelgen.diagnosis.result import Diagnosis, reported
-from modelgen.diagnosis.validation import Check
 from modelgen.errors import InputError
 from modelgen.identification.misread import check_reading
 from modelgen.identification.signs import check_signs
@@ -48,10 +46,6 @@ def diagnose(
         decision = decided(study, options, progress)
     extension = extend(arm, decision.selection, decision.band.equations)
     result = reported(study, decision, extension, options)
-    while lost := worthless(result):
-        decision = withdrawn(decision, lost, options)
-        extension = extend(arm, decision.selection, decision.band.equations)
-        result = reported(study, decision, extension, options)
     if options.experiment and result.verdict == "named":
         result = replace(result, next_experiment=proposed(result, study, extension, options, progress))
     return result
@@ -71,18 +65,6 @@ def decided(study: Study, options: Options, progress: Progress | None = None) ->
         if decision.verdict != "cannot_tell":
             break
     return decision
-
-
-def worthless(result: Diagnosis) -> dict[Place, Check]:
-    """Check of the causes by place that are not named, for all of them together make nothing less of the
-    error on the test record, to a tenth of a percent. None where some records alone have one.
-    """
-    gain = result.errors.overall
-    there = any(c.records is not None for c in result.causes)
-    if result.free or there or not result.causes or not round(gain, 1) <= 0.0:
-        return {}
-    none = [c for c in result.causes if round(c.share.gain, 1) <= 0.0] or result.causes
-    return {(c.effect, c.joint): worth_nothing(gain, c.effect) for c in none}
 
 
 def proposed(

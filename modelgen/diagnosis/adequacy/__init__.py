@@ -1,7 +1,6 @@
 """Is what is left explained: lack of fit, smooth functions, checks, causes that cannot be distinguished."""
 
-from modelgen.diagnosis.adequacy.checks import Examined, examined, significance_of
-from modelgen.diagnosis.adequacy.confirmation import confirmed, worth_nothing
+from modelgen.diagnosis.adequacy.checks import Examined, confirmed, examined, significance_of
 from modelgen.diagnosis.adequacy.distinguishable import aliases, without_indistinguishable
 from modelgen.diagnosis.adequacy.figures_said import possible
 from modelgen.diagnosis.adequacy.lack_of_fit import LackOfFit, lack_of_fit, place
@@ -27,5 +26,4 @@ __all__ = [
     "significance_of",
     "verdict_of",
     "without_indistinguishable",
-    "worth_nothing",
 ]

@@ -148,6 +148,28 @@ def _behind(check: Check, before: Cause, cause: Cause, guess: Cause | None) -> C
     return replace(check, passed=False, value=ahead, text=text)
 
 
+def confirmed(gain: float, low: float, there: bool = True) -> Check:
+    """Whether a cause lowers the error on the test record.
+
+    gain, low: its share and the lower bound [%]. there: whether the record has it, or is predicted better by
+    an arm without it.
+    """
+    asked = bool(np.isfinite(low))
+    text = "the test record cannot tell what it is worth there"
+    if np.isfinite(gain):
+        end = "which is too short for an interval"
+        if asked:
+            worst = f"{abs(low):.1f} % {_sense(low)} at the lower end of the 95 % interval"
+            end = f"{worst}; more than 0 % less confirms it"
+        how = "with it" if there else "where it is not, once the training records are fitted with it"
+        text = f"{abs(gain):.1f} % {_sense(gain)} error on the test record {how}, {end}"
+    return Check("confirmed", low > 0.0 if asked else None, False, low, 0.0, text)
+
+
+def _sense(gain: float) -> str:
+    return "less" if gain >= 0.0 else "more"
+
+
 def _evidence(cause: Cause, selection: Selection) -> Check:
     trial, system = cause.trial, selection.system
     least, usual = needed_evidence(trial, system), threshold(system)

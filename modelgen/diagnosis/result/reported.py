@@ -264,9 +264,7 @@ def _suspects(decision: Decision, arm: Arm) -> tuple[NamedCause, ...]:
     for e in decision.suspects:
         named = _as_named(arm, e.cause, estimates[id(e.cause)], e.checks, records)
         checks = _as_reported(named, e.cause, equations)
-        if all(c.name != unmeasured.name for c in checks):
-            checks = (*checks, unmeasured)
-        found.append(replace(named, checks=checks))
+        found.append(replace(named, checks=(*checks, unmeasured)))
     return tuple(found)
 
 

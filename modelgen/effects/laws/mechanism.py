@@ -107,7 +107,7 @@ class TorqueRipple(Effect):
     )
     periodic = True
     needs_drive = True  # a bearing alone has neither poles nor teeth
-    caveat = " Its phase carries over only where both logs count positions from the same zero."
+    caveat = " Its phase does only where both logs count positions from the same zero."
     shows = frozenset({Shows.BRIEFLY})
     confused_with = ("position_dependent_friction", "lever_geometry")
     experiment = "slow constant speed, and the spectrum over the motor's angle"
