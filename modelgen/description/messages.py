@@ -72,7 +72,7 @@ def _structural(
     if kind == "unknown_key":
         path, key = [*path, context["key"]], True
         message = f"found the unknown key {describe(context['key'])}"
-        message += _instead(context["key"], context["options"], document)
+        message += _instead(context["key"], context["options"], document, path[:-1])
     elif kind == "missing":
         message = f"the key '{entry['loc'][-1]}' is missing"
     elif kind == "union_tag_not_found" and "discriminator" in context and path[-1:] == ["drive"]:
@@ -105,10 +105,10 @@ def _structural(
     return (at.line, at.column), result
 
 
-def _instead(key: Any, options: list[str], document: type[BaseModel]) -> str:
+def _instead(key: Any, options: list[str], document: type[BaseModel], place: Steps) -> str:
     """A key of this place that is a slip away, or else the place of this one, or else the nearest key."""
     slip = isinstance(key, str) and difflib.get_close_matches(key, options, n=1, cutoff=0.8)
-    where = "" if slip else belongs(document, key)
+    where = "" if slip else belongs(document, key, place)
     return f"; it belongs {where}" if where else suggest(key, options)
 
 

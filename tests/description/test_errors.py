@@ -4,6 +4,7 @@ import pytest
 
 from modelgen.description import loads
 from modelgen.errors import InputError
+from modelgen.transmission import KINDS
 
 EFFECTS = {
     "viscous_friction": ["coefficient"],
@@ -347,6 +348,13 @@ def test_a_key_in_a_wrong_place_is_told_its_own() -> None:
     assert "drive.limits: found the unknown key 'limits'; it belongs in arms.joints" in complaint(
         "ratio: 100", "ratio: 100, limits: {velocity: 1}"
     )
+
+
+def test_a_key_of_another_kind_of_drive_is_told_which() -> None:
+    said = complaint("ratio: 100", "ratio: 100, lever: 0.1")
+    assert "drive.lever: found the unknown key 'lever'; it belongs to the type " in said
+    assert all(kind in KINDS for kind in said.rpartition("the type ")[2].split(" or "))
+    assert "found the unknown key 'mass'; it belongs in arms.links" in complaint("arms:", "mass: 2\narms:")
 
 
 def test_without_a_catalogue_any_effect_will_do() -> None:
