@@ -130,7 +130,7 @@ class Evaluator:
 
     def _function(self, model: Model, name: str) -> NumpyFunction:
         if ("model", name) not in self._made:
-            (function,) = [f for f in model.functions if f.name == name]
+            function = model.function(name)
             self._made["model", name] = NumpyFunction(function)
         return self._made["model", name]
 

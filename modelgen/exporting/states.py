@@ -56,7 +56,7 @@ class States:
 
     def efforts(self, model: Model, parameters: Array) -> Array:
         """Efforts (N, n) at the joints with these base parameters, states of effects at zero."""
-        function = next(f for f in model.functions if f.name == "inverse_dynamics")
+        function = model.function("inverse_dynamics")
         given = {"q": self.q, "dq": self.dq, "ddq": self.ddq, "parameters": parameters}
         named = {a.name: given.get(a.name, np.zeros(a.size)) for a in function.arguments}
         gains = np.array([drive.gain(self.q[:, n]) for n, drive in enumerate(self.drives)])

@@ -91,6 +91,10 @@ class Function:
     stacked: bool = False
     parts: tuple[str, ...] = ()
 
+    def reads(self, *names: str) -> bool:
+        """Whether one of the arguments has one of these names."""
+        return any(a.name in names for a in self.arguments)
+
 
 @dataclass(frozen=True)
 class SparsityTable:
@@ -134,3 +138,7 @@ class Model:
     levels: Levels | None = None  # of the functions that watch, where noise is known
     batch: tuple[str, ...] = ()  # names of functions that are wanted over many states too
     remarks: tuple[str, ...] = ()  # for the user: what can be told apart, and what cannot
+
+    def function(self, name: str) -> Function:
+        """The function of this name. Raises StopIteration where the arm has none."""
+        return next(f for f in self.functions if f.name == name)

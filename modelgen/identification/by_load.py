@@ -85,8 +85,7 @@ def slopes_of(
     """`slopes` of `fitted_by_load` at the rows, by differences. What the filter does to them is left out, but
     where elastic joints swing, or a law has a state.
     """
-    (function,) = [f for f in model.functions if f.name == "regressor"]
-    found, every = [], compliant(model.arm) or any(a.name == "state" for a in function.arguments)
+    found, every = [], compliant(model.arm) or model.function("regressor").reads("state")
     for p, more in zip(records, added, strict=False):
         motion = motion_of(p) if every else motion_of(p).picked(p.rows)
         whole = theta + more

@@ -125,13 +125,7 @@ def _refuse(options: Options, method: str, *, physical: bool, payloads: bool) ->
 
 def _columns_by_load(model: Model) -> bool:
     """Whether columns of the regressor depend on the parameters, by loads or states."""
-    return bool({"load", "state"} & _arguments(model))
-
-
-def _arguments(model: Model) -> set[str]:
-    """What the regressor depends on."""
-    (function,) = [f for f in model.functions if f.name == "regressor"]
-    return {a.name for a in function.arguments}
+    return model.function("regressor").reads("load", "state")
 
 
 def errors_of(

@@ -43,7 +43,7 @@ class Rows:
         self.parameter = np.array(model.packed.columns, dtype=np.intp)
         ends = np.searchsorted(self.joint, np.arange(self.n + 1))
         self.of_joint = [slice(a, b) for a, b in pairwise(ends)]
-        (function,) = [f for f in model.functions if f.name == "regressor"]
+        function = model.function("regressor")
         self._compiled: dict[bool, RegressorColumns] = {}  # by whether samples have weights
         if [a.name for a in function.arguments] == SAMPLED and compiler() is not None:
             for weighted in (False, True):

@@ -57,8 +57,7 @@ def identify_streamed(
     options = options or Options()
     model, evaluator = build_model(arm, options.evaluated), Evaluator(reduced(arm, options))
     rows = Rows(model, evaluator)
-    (function,) = [f for f in model.functions if f.name == "regressor"]
-    if {"load", "state"} & {a.name for a in function.arguments}:
+    if model.function("regressor").reads("load", "state"):
         raise InputError(f"{arm.name}: an effect with states or loads needs the whole log; give a part of it")
     n, p = rows.n, rows.p
     blocks = _Blocks(train, rows, limits, progress)

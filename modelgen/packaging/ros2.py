@@ -112,7 +112,7 @@ def _units(model: Model) -> list[str]:
 
 
 def _inverse_dynamics(model: Model) -> Function:
-    return next(f for f in model.functions if f.name == "inverse_dynamics")
+    return model.function("inverse_dynamics")
 
 
 def _missing(model: Model) -> list[str]:

@@ -263,7 +263,7 @@ def _driving(d: Diagnosis) -> Array:
 def _loads(d: Diagnosis) -> dict[str, Array]:
     """What the links ask of their drives, in size, in the unit of the log (M, n): friction is not in it."""
     test, model = d.test, d.after.model
-    function = next(f for f in model.functions if f.name == "gravity")
+    function = model.function("gravity")
     given = {"q": test.prepared.picked(test.prepared.q)}
     given["parameters"] = np.where(_of_links(model), d.after.theta, 0.0)
     given |= {a.name: np.zeros(a.size) for a in function.arguments if a.name not in given}

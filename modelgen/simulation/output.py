@@ -37,7 +37,7 @@ def facts(p: Plant, found: Trajectory) -> dict[str, Any]:
 
 
 def _energy(p: Plant, found: Trajectory) -> tuple[float, float]:
-    function = NumpyFunction(next(f for f in p.model.functions if f.name == "energy"))
+    function = NumpyFunction(p.model.function("energy"))
     ends = []
     for k in (0, -1):
         given = {

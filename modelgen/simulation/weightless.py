@@ -37,7 +37,7 @@ def check_inertia(plant: Plant, q: Array) -> None:
 def _mass_matrix(plant: Plant, q: Array) -> Array:
     """Mass matrix (n, n), drives included [kg m^2, kg m, kg]."""
     name = "mass_matrix_standard" if plant.slip.standard else "mass_matrix"
-    function = next(f for f in plant.model.functions if f.name == name)
+    function = plant.model.function(name)
     given = {"q": q, "parameters": plant.parameters}
     given |= {a.name: np.zeros(a.size) for a in function.arguments if a.name not in given}
     return np.asarray(NumpyFunction(function)(**given), dtype=float).reshape(plant.n, plant.n)

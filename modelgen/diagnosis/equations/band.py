@@ -119,8 +119,7 @@ def settled_rows(
     where the arm has elastic joints. start: unknowns (k,).
     """
     rows, theta = [rows_of(evaluator, model, p, start, baseline) for p in prepared], start
-    (regressor,) = [f for f in model.functions if f.name == "regressor"]
-    by_load = bool({"load", "state"} & {a.name for a in regressor.arguments})
+    by_load = model.function("regressor").reads("load", "state")
     for _ in range(TURNS if compliant(model.arm) else int(by_load)):
         before, theta = theta, weighted_fit(rows, [r.columns for r in rows])
         if before is not None and np.allclose(theta, before, rtol=CLOSE):

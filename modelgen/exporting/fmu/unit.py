@@ -132,7 +132,7 @@ _PENDING = "guid pending"
 
 def _sources(plant: Plant, q: Array, step: float, standard: Standard) -> dict[str, str]:
     """C by name, all in one folder; MAIN includes the others."""
-    motors = next(f for f in plant.model.functions if f.name == "motor_from_joint")
+    motors = plant.model.function("motor_from_joint")
     files = {}
     licence = f"/* {LICENCE} */"
     for path, text in fixed.sources(plant, [motors]).items():
