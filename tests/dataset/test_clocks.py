@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from dataset_support import AXIS, DRIVEN, columns, motion, times, write_csv
 
-from modelgen.dataset import read
+from modelgen.dataset import choose, read
 from modelgen.dataset.inspection import inspect
 from modelgen.dataset.reading.clocks import clocks
+from modelgen.errors import InputError
 from modelgen.numeric import Array
 
 NAMES = ("q1", "qm2", "i1", "i2")
@@ -53,6 +54,16 @@ def test_a_source_without_an_even_clock_counts_at_its_own_instants(
     assert "every reading stands there" in record.remarks[0]
     assert "times on average, from" in record.remarks[0]
     assert any("every reading stands there" in remark for remark in inspect(log).remarks)
+
+
+def test_records_of_unlike_rates_are_told_which_repeats_its_readings(tmp_path: Path) -> None:
+    t = times(16.0, 400.0)
+    tables = {"all.csv": noisy(t), "some.csv": held(t, np.arange(0.0, 17.0, 0.025))}
+    every, some = (read(write_csv(tmp_path / name, table), DRIVEN) for name, table in tables.items())
+    why = r"40 Hz, .* 400 Hz, for readings are new once in every 10 rows of .*some"
+    with pytest.raises(InputError, match=why) as said:
+        choose([every, some])
+    assert "rows of " + every.name not in str(said.value)
 
 
 def test_readings_at_random_instants_count_once(tmp_path: Path) -> None:

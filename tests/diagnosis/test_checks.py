@@ -21,6 +21,7 @@ from modelgen.diagnosis.adequacy.checks import (
     significant,
 )
 from modelgen.diagnosis.adequacy.dominance import dominance
+from modelgen.diagnosis.adequacy.figures_said import significance
 from modelgen.diagnosis.adequacy.smooth_functions import SmoothFunction, functions
 from modelgen.diagnosis.candidates import Candidate, FittedCandidate, with_causes
 from modelgen.diagnosis.equations import Unknowns
@@ -286,6 +287,19 @@ def test_a_payload_has_a_mass(mass: float, moment: float, passed: bool) -> None:
     described = replace(system.equations, evaluator=SimpleNamespace(arm=ARM))
     check = significant(0, Selection([Cause(trial, gain.delta_bic, 5.0, 5.0)], system, []), described)
     assert (check.name, check.decides, check.passed) == ("significant", True, passed)
+
+
+@pytest.mark.parametrize(("mass", "shown"), [({"mass": 0.0}, False), ({"mass": 2.0}, True)])
+def test_a_payload_without_a_mass_is_none_however_clear_its_place(
+    mass: dict[str, float], shown: bool
+) -> None:
+    """A mass that stays at zero has no deviation: of its place alone nothing follows."""
+    evidence: Any = None  # is not asked
+    trial = FittedCandidate(Candidate("payload_change", None, part=("mass", "moment_x")), {}, [], evidence)
+    spread = {"x": 0.01} | ({"mass": 0.1} if shown else {})
+    found, text = significance(trial, ARM, {"x": 0.3, **mass}, spread)
+    assert (found > 3.0) == shown
+    assert ("does not show in these records" in text) != shown
 
 
 @pytest.mark.parametrize(("compliance", "passed"), [(0.05, False), (0.3, True)])
