@@ -86,12 +86,17 @@ def test_spring_with_shifted_rest_and_stiction(arm: Arm, tmp_path: Path) -> None
     assert after.f_gof[0] > 95.0 > before.f_gof[0]
 
 
-def test_a_record_that_noise_alone_moves_is_no_release(arm: Arm, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("samples", "said"), [(1, "q1 changes by .* as noise does"), (5, "all joints rest")])
+def test_a_record_that_noise_alone_moves_is_no_release(
+    samples: int, said: str, arm: Arm, tmp_path: Path
+) -> None:
+    """White noise, and what a sensor's own mean over some samples leaves of it."""
     train, test = swings(BARE, tmp_path, 0.0)
-    noise = 1e-3 * np.random.default_rng(7).standard_normal(3000)
+    noise = 1e-3 * np.random.default_rng(7).standard_normal(3000 + samples - 1)
+    noise = np.convolve(noise, np.full(samples, 1.0 / samples), mode="valid")
     table = np.column_stack([1e-3 * np.arange(3000), noise])
     np.savetxt(tmp_path / "rests.csv", table, delimiter=",", header="t,q1", comments="", fmt="%.9g")
-    with pytest.raises(InputError, match=r"rests\.csv: q1 changes by .* as noise does"):
+    with pytest.raises(InputError, match=rf"rests\.csv: {said}"):
         diagnose(arm, records(arm, [train[0], str(tmp_path / "rests.csv")], [test], None, USUAL.dataset))
     with pytest.raises(InputError, match="found one release to train on, expected two or more"):
         records(arm, train[:1], [test], None, USUAL.dataset)
